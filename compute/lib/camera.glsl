@@ -1,0 +1,44 @@
+// Pixel and depth to view space. All of it comes from the projection matrix: see module/src/camera.h.
+#ifndef PELLUCID_CAMERA_GLSL
+#define PELLUCID_CAMERA_GLSL
+
+#include "shared/pellucid_shared.h"
+
+// Larger planar distances, and all values <= 0, mean "nothing there" (capture manifest, section 5).
+const float kNoDepth = 1.0e9;
+
+struct ViewRay {
+  vec3 origin, direction; // direction has planar length 1
+};
+
+ViewRay viewRay(Camera camera, ivec2 pixel) {
+  vec4 r = camera.rayBase + float(pixel.x) * camera.rayX + float(pixel.y) * camera.rayY;
+  return ViewRay(vec3(r.zw, 0.0), vec3(r.xy, camera.range.x));
+}
+
+// C d - A of a device depth d; 0 where d is at infinity.
+float depthDenominator(Camera camera, float depth) {
+  return camera.depth.z * depth - camera.depth.x;
+}
+
+// Planar distance of a device depth; -1 where it holds nothing.
+float planarDistance(Camera camera, float depth) {
+  float denominator = depthDenominator(camera, depth);
+  // The comparison is false for NaN, and keeps 0/0 of an infinite far plane out.
+  bool something = abs(denominator) > 0.0 && depth != camera.range.z;
+  return something ? (camera.depth.y - depth * camera.depth.w) / denominator : -1.0;
+}
+
+// Planar distance of a viewZ value; -1 where it holds nothing.
+float planarDistanceViewZ(float viewZ) {
+  return viewZ > 0.0 && viewZ < kNoDepth ? viewZ : -1.0;
+}
+
+// Lengths in mm that one pixel step in x and y covers at planar distance p, facing the camera.
+vec2 pixelSize(Camera camera, float p) {
+  vec2 x = camera.rayX.xy * p + camera.rayX.zw;
+  vec2 y = camera.rayY.xy * p + camera.rayY.zw;
+  return vec2(length(x), length(y)) * camera.range.w;
+}
+
+#endif

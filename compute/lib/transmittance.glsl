@@ -1,0 +1,26 @@
+// T(d): fraction of the flux entering one face of a slab that leaves the other. d in mm, >= 0.
+#ifndef PELLUCID_TRANSMITTANCE_GLSL
+#define PELLUCID_TRANSMITTANCE_GLSL
+
+// a1 e^{-k1 d} + a2 e^{-k2 d}
+float transmittanceExp2(vec4 p, float d) {
+  return p.x * exp(-p.y * d) + p.z * exp(-p.w * d);
+}
+
+// a / sinh(kappa d + z) + b e^{-c d}; z > 0 by construction. Written with e^{-y} so that a thick slab
+// gives 0 and not 1/inf: 1/sinh y = 2 e^{-y} / (1 - e^{-2y}).
+float transmittanceSinhExp(vec4 p, float c, float d) {
+  float y = max(p.y * d + p.z, 1.0e-6);
+  float e = exp(-y);
+  // 1 - e^2 loses its bits where y is small; 2y(1 - y) is its series there (error 2/3 y^2).
+  float denominator = y < 1.0e-3 ? 2.0 * y * (1.0 - y) : 1.0 - e * e;
+  return p.x * 2.0 * e / denominator + p.w * exp(-c * d);
+}
+
+// One term w e^{-d^2 / (2 v)} of d'Eon & Luebke 2007: R(sqrt(r^2 + d^2)) of a Gaussian sum,
+// integrated over the plane.
+vec3 transmittanceGaussian(vec3 weight, vec3 falloff, float d) {
+  return weight * exp(-d * d * falloff);
+}
+
+#endif

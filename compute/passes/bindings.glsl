@@ -1,0 +1,46 @@
+// Set 0 of every pass, and the few functions that read it.
+#ifndef PELLUCID_BINDINGS_GLSL
+#define PELLUCID_BINDINGS_GLSL
+
+#include "gbuffer_decode.glsl"
+#include "lib/camera.glsl"
+#include "lib/sanitize.glsl"
+#include "shared/pellucid_shared.h"
+
+layout(local_size_x = PELLUCID_GROUP_X, local_size_y = PELLUCID_GROUP_Y) in;
+
+layout(push_constant) uniform Pass { PassConstants pass; };
+layout(set = 0, binding = PELLUCID_BINDING_FRAME) uniform Frame { FrameConstants frame; };
+layout(set = 0, binding = PELLUCID_BINDING_FRONT_DEPTH) uniform texture2D frontDepthImage;
+layout(set = 0, binding = PELLUCID_BINDING_SOURCE) uniform texture2D sourceImage;
+layout(set = 0, binding = PELLUCID_BINDING_ALBEDO) uniform texture2D albedoImage;
+layout(set = 0, binding = PELLUCID_BINDING_MATERIAL) uniform utexture2D materialImage;
+layout(set = 0, binding = PELLUCID_BINDING_DESTINATION, FORMAT) uniform writeonly image2D destinationImage;
+
+bool hasFlag(uint flag) { return (frame.flags.x & flag) != 0u; }
+
+ivec2 invocationPixel() { return ivec2(frame.rect.xy) + ivec2(gl_GlobalInvocationID.xy); }
+
+bool insideRect(ivec2 pixel) {
+  return all(greaterThanEqual(pixel, ivec2(frame.rect.xy))) && all(lessThan(pixel, ivec2(frame.rect.zw)));
+}
+
+// 0 for none and for values beyond the material list, so that a stray id cannot read past it.
+uint materialAt(ivec2 pixel) {
+  uint id = decodeMaterial(texelFetch(materialImage, pixel, 0));
+  return id <= frame.flags.y ? id : 0u;
+}
+
+// Planar distance of the front surface, -1 where there is none.
+float frontDistance(ivec2 pixel) {
+  float stored = texelFetch(frontDepthImage, pixel, 0).x;
+  return hasFlag(PELLUCID_FLAG_FRONT_VIEW_Z) ? planarDistanceViewZ(stored) : planarDistance(frame.camera, stored);
+}
+
+// `last`: this is the frame's final write, so the post-scatter albedo applies.
+void writeResult(ivec2 pixel, vec3 color, float alpha, bool last) {
+  if (last && hasFlag(PELLUCID_FLAG_ALBEDO)) color *= sanitize(texelFetch(albedoImage, pixel, 0).rgb);
+  imageStore(destinationImage, pixel, vec4(sanitize(color), alpha));
+}
+
+#endif

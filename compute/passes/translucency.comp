@@ -1,0 +1,179 @@
+// Thickness, transmittance, occlusion and the addition to irradiance, fused. PHYSICS: the exitance
+// T(d) E_back is added as T(d)/rho E_back, so that albedo times the diffused sum is T E_back.
+#version 460
+#extension GL_EXT_samplerless_texture_functions : require
+#extension GL_GOOGLE_include_directive : require
+
+#include "lib/light.glsl"
+#include "lib/shadow.glsl"
+#include "lib/thickness.glsl"
+#include "lib/transmittance.glsl"
+#include "passes/bindings.glsl"
+
+layout(set = 0, binding = PELLUCID_BINDING_LIGHTS) readonly buffer Lights { LightConstants lights[]; };
+layout(set = 0, binding = PELLUCID_BINDING_SHADOWS) readonly buffer Shadows { ShadowConstants shadows[]; };
+layout(set = 0, binding = PELLUCID_BINDING_MATERIALS) readonly buffer Materials { MaterialConstants materials[]; };
+layout(set = 0, binding = PELLUCID_BINDING_BACK_DEPTH) uniform texture2D backDepthImage;
+layout(set = 0, binding = PELLUCID_BINDING_NORMAL) uniform texture2D normalImage;
+layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 0) uniform texture2D shadowImage0;
+layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 1) uniform texture2D shadowImage1;
+layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 2) uniform texture2D shadowImage2;
+layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 3) uniform texture2D shadowImage3;
+layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 4) uniform texture2D shadowImage4;
+layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 5) uniform texture2D shadowImage5;
+layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 6) uniform texture2D shadowImage6;
+layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 7) uniform texture2D shadowImage7;
+
+// A switch over constant bindings needs no shaderSampledImageArrayDynamicIndexing.
+float shadowTexel(uint image, ivec2 texel) {
+  switch (image) {
+    case 0u: return texelFetch(shadowImage0, texel, 0).x;
+    case 1u: return texelFetch(shadowImage1, texel, 0).x;
+    case 2u: return texelFetch(shadowImage2, texel, 0).x;
+    case 3u: return texelFetch(shadowImage3, texel, 0).x;
+    case 4u: return texelFetch(shadowImage4, texel, 0).x;
+    case 5u: return texelFetch(shadowImage5, texel, 0).x;
+    case 6u: return texelFetch(shadowImage6, texel, 0).x;
+    default: return texelFetch(shadowImage7, texel, 0).x;
+  }
+}
+
+vec3 materialTransmittance(uint m, float d) {
+  vec3 t = vec3(0.0);
+  if (materials[m].meta.x == PELLUCID_SHADER_TRANSMITTANCE_EXP2) {
+    for (int c = 0; c < 3; ++c) t[c] = transmittanceExp2(materials[m].transmittance[c], d);
+  } else if (materials[m].meta.x == PELLUCID_SHADER_TRANSMITTANCE_SINH_EXP) {
+    for (int c = 0; c < 3; ++c)
+      t[c] = transmittanceSinhExp(materials[m].transmittance[c], materials[m].transmittance4[c], d);
+  } else {
+    for (uint i = 0u; i < materials[m].meta.y; ++i)
+      t += transmittanceGaussian(materials[m].gaussianWeight[i].rgb, materials[m].gaussianFalloff[i].rgb, d);
+  }
+  return clamp(t, vec3(0.0), vec3(1.0));
+}
+
+// What one pixel knows of its surface. View space, scene units.
+struct Surface {
+  vec3 position, normal, view; // view: unit, from the eye
+  float chord;                 // along the view ray; -1: unknown
+  bool hasNormal;
+};
+
+Surface surfaceAt(ivec2 pixel, float front, float frontStored) {
+  ViewRay ray = viewRay(frame.camera, pixel);
+  Surface s;
+  s.position = ray.origin + front * ray.direction;
+  s.view = normalize(ray.direction);
+  s.chord = -1.0;
+  if (hasFlag(PELLUCID_FLAG_BACK_DEPTH)) {
+    float backStored = texelFetch(backDepthImage, pixel, 0).x;
+    bool backViewZ = hasFlag(PELLUCID_FLAG_BACK_VIEW_Z);
+    float back = backViewZ ? planarDistanceViewZ(backStored) : planarDistance(frame.camera, backStored);
+    bool device = !backViewZ && !hasFlag(PELLUCID_FLAG_FRONT_VIEW_Z);
+    float difference = device ? planarDifference(frame.camera, backStored, frontStored) : back - front;
+    if (back > 0.0) s.chord = chord(difference, ray);
+  }
+  s.normal = vec3(0.0);
+  if (hasFlag(PELLUCID_FLAG_NORMAL))
+    s.normal = mat3(frame.viewFromNormal) * decodeNormal(texelFetch(normalImage, pixel, 0));
+  float squared = dot(s.normal, s.normal);
+  s.hasNormal = squared > 1.0e-8 && squared < 1.0e8; // false for NaN too
+  if (s.hasNormal) s.normal *= inversesqrt(squared);
+  return s;
+}
+
+struct LightSpace {
+  bool inside, holds; // the map contains the point; its texel has a surface
+  float thickness;    // scene units along the light ray; negative: the surface is beyond the point
+  float bias;
+};
+
+// The first of the light's maps that contains x.
+LightSpace lightSpace(LightConstants light, Incident incident, vec3 x) {
+  for (uint i = 0u; i < light.meta.z; ++i) {
+    ShadowConstants shadow = shadows[light.meta.y + i];
+    ShadowReceiver receiver = projectReceiver(shadow, x);
+    if (!receiver.inside) continue;
+    float stored = shadowTexel(shadow.meta.x, receiver.texel);
+    return LightSpace(true, shadowHolds(shadow, stored), lightThickness(shadow, receiver, x, incident, stored),
+                      shadow.depth.y);
+  }
+  return LightSpace(false, false, -1.0, 0.0);
+}
+
+struct Transmitted {
+  float thickness; // scene units; -1: no light comes through
+  vec3 arriving;   // irradiance of the hidden face before occlusion
+  float visible;
+};
+
+// docs/design.md says why each source is what it is. The hidden face is taken antiparallel to N; without
+// normals its cosine is replaced by the angle between view and light (Whelan 2009, 4.2).
+Transmitted lightTransmission(LightConstants light, Surface s) {
+  Incident incident = incidentLight(light, s.position);
+  bool mapped = light.meta.z != 0u;
+  if (mapped && !hasFlag(PELLUCID_FLAG_CAMERA_THICKNESS)) {
+    LightSpace l = lightSpace(light, incident, s.position);
+    float cosine = s.hasNormal ? -dot(s.normal, incident.toLight) : dot(s.view, incident.toLight);
+    vec3 arriving = incident.irradiance * max(cosine, 0.0);
+    return Transmitted(max(l.thickness - l.bias, 0.0), arriving, l.inside && l.holds ? 1.0 : 0.0);
+  }
+  if (s.chord < 0.0) return Transmitted(-1.0, vec3(0.0), 0.0);
+  vec3 back = s.position + s.chord * s.view;
+  incident = incidentLight(light, back);
+  float cosine = s.hasNormal ? -dot(s.normal, incident.toLight) : dot(s.view, incident.toLight);
+  // A slab's thickness along its normal, from the chord along the view ray.
+  float thickness = s.hasNormal ? s.chord * abs(dot(s.normal, s.view)) : s.chord;
+  float visible = 1.0;
+  if (mapped) {
+    LightSpace l = lightSpace(light, incident, back);
+    visible = l.inside && l.holds && l.thickness <= l.bias ? 1.0 : 0.0;
+  }
+  return Transmitted(thickness, incident.irradiance * max(cosine, 0.0), visible);
+}
+
+void main() {
+  ivec2 pixel = invocationPixel();
+  if (!insideRect(pixel)) return;
+  uint material = materialAt(pixel);
+  if (material == 0u) return;
+  uint m = material - 1u;
+
+  vec4 source = texelFetch(sourceImage, pixel, 0);
+  vec3 irradiance = sanitize(source.rgb);
+  float front = frontDistance(pixel);
+  vec3 arriving = vec3(0.0), visible = vec3(0.0), transmitted = vec3(0.0);
+  vec3 thickness = vec3(-1.0);
+  if (front > 0.0) {
+    Surface s = surfaceAt(pixel, front, texelFetch(frontDepthImage, pixel, 0).x);
+    float mm = frame.camera.range.w;
+    if (s.chord >= 0.0) thickness.r = s.chord * mm;
+    for (uint i = 0u; i < pass.value.y; ++i) {
+      LightConstants light = lights[pass.value.x + i];
+      Transmitted t = lightTransmission(light, s);
+      vec3 through = t.arriving * t.visible;
+      // Most pixels face some lights; T is the expensive part.
+      if (t.thickness >= 0.0 && max(through.r, max(through.g, through.b)) > 0.0)
+        transmitted += through * materialTransmittance(m, t.thickness * mm);
+#ifdef DEBUG_VIEWS
+      arriving += t.arriving;
+      visible += through;
+      if (t.visible > 0.0 && thickness.b < 0.0) thickness.b = t.thickness * mm;
+      LightSpace l = lightSpace(light, incidentLight(light, s.position), s.position);
+      if (l.inside && l.holds && thickness.g < 0.0) thickness.g = max(l.thickness - l.bias, 0.0) * mm;
+#endif
+    }
+  }
+  vec3 result = irradiance + transmitted * materials[m].inverseReflectance.rgb;
+#ifdef DEBUG_VIEWS
+  uint view = frame.flags.z;
+  // The divisors are positive where they are used; nothing arriving shows as 0.
+  vec3 some = vec3(greaterThan(arriving, vec3(0.0)));
+  if (view == PELLUCID_SHADER_DEBUG_THICKNESS) result = thickness;
+  if (view == PELLUCID_SHADER_DEBUG_TRANSMITTANCE) result = some * transmitted / max(visible, vec3(1.0e-30));
+  if (view == PELLUCID_SHADER_DEBUG_OCCLUSION) result = some * visible / max(arriving, vec3(1.0e-30));
+  imageStore(destinationImage, pixel, vec4(result, source.a));
+#else
+  writeResult(pixel, result, source.a, pass.value.z != 0u);
+#endif
+}

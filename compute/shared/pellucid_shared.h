@@ -1,0 +1,114 @@
+// Structs, binding numbers and group sizes, read by C++ and GLSL alike. Only 16-byte members, so
+// std140, std430 and C++ agree without padding rules. View space is the camera's; lengths in scene
+// units unless said otherwise.
+#ifndef PELLUCID_SHARED_H
+#define PELLUCID_SHARED_H
+
+#ifdef __cplusplus
+#include <glm/mat4x4.hpp>
+#include <glm/vec4.hpp>
+namespace pellucid::shared {
+using glm::mat4;
+using glm::uvec4;
+using glm::vec4;
+#endif
+
+#define PELLUCID_GROUP_X 8
+#define PELLUCID_GROUP_Y 8
+
+#define PELLUCID_BINDING_FRAME 0
+#define PELLUCID_BINDING_LIGHTS 1
+#define PELLUCID_BINDING_SHADOWS 2
+#define PELLUCID_BINDING_MATERIALS 3
+#define PELLUCID_BINDING_KERNELS 4
+#define PELLUCID_BINDING_FRONT_DEPTH 5
+#define PELLUCID_BINDING_BACK_DEPTH 6
+#define PELLUCID_BINDING_SOURCE 7
+#define PELLUCID_BINDING_NORMAL 8
+#define PELLUCID_BINDING_ALBEDO 9
+#define PELLUCID_BINDING_MATERIAL 10
+#define PELLUCID_BINDING_DESTINATION 11
+#define PELLUCID_BINDING_SHADOW_IMAGES 12 // and the next SHADOW_IMAGE_COUNT - 1
+#define PELLUCID_SHADOW_IMAGE_COUNT 8     // 14 sampled images in all; every device has 16
+#define PELLUCID_BINDING_COUNT 20
+
+// FrameConstants::flags.x
+#define PELLUCID_FLAG_BACK_DEPTH 1u
+#define PELLUCID_FLAG_NORMAL 2u
+#define PELLUCID_FLAG_ALBEDO 4u
+#define PELLUCID_FLAG_FRONT_VIEW_Z 8u
+#define PELLUCID_FLAG_BACK_VIEW_Z 16u
+#define PELLUCID_FLAG_CAMERA_THICKNESS 32u
+
+// Values of the public enums the shaders branch on; constants.cpp asserts that they agree.
+#define PELLUCID_SHADER_LIGHT_DIRECTIONAL 0u
+#define PELLUCID_SHADER_LIGHT_SPOT 2u
+#define PELLUCID_SHADER_DEPTH_DEVICE 0u
+#define PELLUCID_SHADER_DEPTH_VIEW_Z 1u
+#define PELLUCID_SHADER_TRANSMITTANCE_EXP2 0u
+#define PELLUCID_SHADER_TRANSMITTANCE_SINH_EXP 1u
+#define PELLUCID_SHADER_DEBUG_THICKNESS 1u
+#define PELLUCID_SHADER_DEBUG_TRANSMITTANCE 2u
+#define PELLUCID_SHADER_DEBUG_OCCLUSION 3u
+
+#define PELLUCID_GAUSSIANS 8
+#define PELLUCID_KERNEL_TAPS 17 // one side, center included
+
+// The camera as the shaders use it. With s = +1 or -1 the sign of view z in front of the eye, p = s z
+// is the planar distance and a pixel's view ray is point(p) = origin + p direction.
+struct Camera {
+  vec4 rayBase; // pixel (0, 0): direction.xy, origin.xy
+  vec4 rayX;    // change per pixel in x
+  vec4 rayY;    // change per pixel in y
+  vec4 depth;   // A, B, C, D: device depth = (A p + B) / (C p + D)
+  vec4 range;   // x: s; y: AD - BC; z: device depth that holds nothing; w: mm per scene unit
+};
+
+struct FrameConstants {
+  Camera camera;
+  mat4 viewFromNormal; // rotation of the normal image's space into view space
+  uvec4 rect;          // x, y, end x, end y
+  uvec4 flags;         // x: PELLUCID_FLAG_*; y: materials; z: debug view
+};
+
+struct LightConstants {
+  vec4 position;  // view space; w: 1 / range, 0 unlimited
+  vec4 direction; // of travel, view space, unit
+  vec4 radiance;  // color times intensity
+  vec4 cone;      // KHR_lights_punctual: x: scale, y: offset of the cosine
+  uvec4 meta;     // x: type; y: first of shadows[]; z: how many
+};
+
+struct ShadowConstants {
+  mat4 clipFromView; // light clip from camera view space
+  vec4 planar;       // dot(planar, (x, 1)): planar distance from the light, for DEPTH_VIEW_Z
+  vec4 depth;        // x: perspective: clip z at the light; orthographic: scene units along the
+                     // light per clip z or per planar unit; y: bias; z, w: texels
+  uvec4 meta;        // x: image; y: encoding; z: 1 perspective; w: texel value that holds nothing (bits)
+};
+
+struct MaterialConstants {
+  vec4 transmittance[3]; // per channel, the model's first four parameters
+  vec4 transmittance4;   // rgb: the fifth
+  vec4 inverseReflectance; // rgb: 1/rho
+  uvec4 meta;            // x: model; y: Gaussians; z: 1 if it diffuses
+  vec4 gaussianFalloff[PELLUCID_GAUSSIANS]; // rgb: 1/(2 v), 1/mm^2
+  vec4 gaussianWeight[PELLUCID_GAUSSIANS];  // rgb
+};
+
+// The 1-D kernel of the two-dispatch diffusion; taps 1.. stand on both sides of the center.
+struct KernelConstants {
+  vec4 tap[PELLUCID_KERNEL_TAPS];        // rgb: weight of one side; w: offset, mm
+  vec4 tapFalloff[PELLUCID_KERNEL_TAPS]; // rgb: 1/(2 v) of the Gaussians that reach the offset
+};
+
+// Push constants. translucency: first light, lights, 1 if this is the last dispatch.
+// diffuse: step x, step y, 1 if this is the last dispatch.
+struct PassConstants {
+  uvec4 value;
+};
+
+#ifdef __cplusplus
+} // namespace pellucid::shared
+#endif
+#endif

@@ -1,0 +1,355 @@
+/* Pellucid: screen-space translucency and subsurface diffusion as Vulkan compute dispatches.
+ *
+ * The whole run-time API. C ABI, Vulkan headers only. The caller owns every Vulkan object: the
+ * module creates pipelines and layouts, records vkCmd* calls into the caller's command buffer, and
+ * never allocates device memory, transitions an image layout, submits or waits.
+ *
+ * Conventions, unless a field says otherwise:
+ * - matrices: 16 floats, column-major, column vectors (GLM and Vulkan memory order);
+ * - clip space: Vulkan, x right, y down, depth 0..1; any near/far order, perspective or
+ *   orthographic, either handedness: everything is read from the matrix;
+ * - lengths: scene units, `metersPerUnit` meters each; material coefficients in mm;
+ * - colors: linear, scene-referred;
+ * - a zero-initialized optional field is its default; pellucidInit* writes the other defaults.
+ */
+#ifndef PELLUCID_H
+#define PELLUCID_H
+
+#include <stddef.h>
+#include <stdint.h>
+#include <vulkan/vulkan_core.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Passed in PellucidContextDesc; the library refuses a header it does not know. */
+#define PELLUCID_HEADER_VERSION 1u
+
+typedef int32_t PellucidResult;
+enum {
+  PELLUCID_OK = 0,
+  PELLUCID_ERROR_INVALID_ARGUMENT = -1, /* a field is wrong; the message names it */
+  PELLUCID_ERROR_VERSION = -2,          /* structSize or headerVersion unknown to this library */
+  PELLUCID_ERROR_MISSING_FEATURE = -3,  /* the device lacks Vulkan 1.1 or push descriptors */
+  PELLUCID_ERROR_OUT_OF_MEMORY = -4,
+  PELLUCID_ERROR_VULKAN = -5,        /* a Vulkan call failed; the message has the VkResult */
+  PELLUCID_ERROR_CAPACITY = -6,      /* more dispatches or shadow images than a plan holds */
+  PELLUCID_ERROR_BUFFER_TOO_SMALL = -7 /* constants slice or text buffer shorter than needed */
+};
+
+typedef enum PellucidSeverity {
+  PELLUCID_SEVERITY_WARNING = 0,
+  PELLUCID_SEVERITY_ERROR = 1
+} PellucidSeverity;
+
+/* `field` is the API field at fault ("lights[2].color"), `message` a UTF-8 sentence. Both are valid
+ * during the call only. Called on the thread that made the API call. */
+typedef void (*PellucidMessageFn)(void* user, PellucidSeverity severity, const char* field,
+                                  const char* message);
+
+/* ---- Materials ------------------------------------------------------------------------------- */
+
+enum { PELLUCID_MAX_GAUSSIANS = 8 };
+
+/* T(d): fraction of the flux entering one face of a slab of thickness d (mm) that leaves the other.
+ * The parameters are PellucidMaterial::transmittance[channel], in the order given here. */
+typedef enum PellucidTransmittanceModel {
+  PELLUCID_TRANSMITTANCE_EXP2 = 0,     /* a1, k1, a2, k2: a1 e^{-k1 d} + a2 e^{-k2 d} */
+  PELLUCID_TRANSMITTANCE_SINH_EXP = 1, /* a, kappa, z, b, c: a / sinh(kappa d + z) + b e^{-c d} */
+  PELLUCID_TRANSMITTANCE_GAUSSIANS = 2 /* none: sum w_i e^{-d^2 / (2 v_i)} over the profile's own
+                                          Gaussians (d'Eon 2007; R(sqrt(r^2+d^2)) integrated) */
+} PellucidTransmittanceModel;
+
+/* What the shaders evaluate. Filled by pellucidCompileMaterial (pellucid_material.h) from physical
+ * coefficients or a preset, or by hand. Index order of arrays of 3: R, G, B. */
+typedef struct PellucidMaterial {
+  uint32_t structSize;        /* sizeof(PellucidMaterial) */
+  uint32_t transmittanceModel; /* PellucidTransmittanceModel */
+  float transmittance[3][5];  /* 1/mm for rates, 1 for amplitudes; see the model */
+  float reflectance[3];       /* rho, semi-infinite diffuse reflectance, (0, 1] */
+  uint32_t gaussianCount;     /* 1..PELLUCID_MAX_GAUSSIANS; 0: the material does not diffuse */
+  float gaussianVariance[3][PELLUCID_MAX_GAUSSIANS]; /* mm^2, > 0, of one axis: w/(2 pi v) e^{-r^2/2v} */
+  float gaussianWeight[3][PELLUCID_MAX_GAUSSIANS];   /* each channel sums to 1 */
+  float radius[3];            /* mm; 99.9 % of the diffused energy lies within */
+  float burleyDistance[3];    /* mm; d of Christensen & Burley 2015 eq. 3 that the Gaussians fit, or 0 */
+} PellucidMaterial;
+
+/* ---- Frame ----------------------------------------------------------------------------------- */
+
+/* An image the caller owns. The view must be 2D, one layer, one mip; the layout is the one the image
+ * is in while the recorded commands run and is never changed. A null view means "not given". */
+typedef struct PellucidImage {
+  VkImageView view;
+  VkImageLayout layout;
+} PellucidImage;
+
+typedef enum PellucidDepthEncoding {
+  PELLUCID_DEPTH_DEVICE = 0,  /* the 0..1 value of the matrix that rendered it */
+  PELLUCID_DEPTH_VIEW_Z = 1,  /* positive planar distance in front of the eye, scene units; <= 0,
+                                 >= 1e9, inf or NaN: nothing there */
+  PELLUCID_DEPTH_DISTANCE = 2 /* distance from the light, scene units (shadow maps only) */
+} PellucidDepthEncoding;
+
+typedef enum PellucidLightType {
+  PELLUCID_LIGHT_DIRECTIONAL = 0,
+  PELLUCID_LIGHT_POINT = 1,
+  PELLUCID_LIGHT_SPOT = 2
+} PellucidLightType;
+
+/* Names and units of KHR_lights_punctual. */
+typedef struct PellucidLight {
+  uint32_t type;        /* PellucidLightType */
+  float position[3];    /* world; point and spot */
+  float direction[3];   /* world, direction of travel; directional and spot; any length > 0 */
+  float color[3];       /* linear, >= 0 */
+  float intensity;      /* directional: irradiance at normal incidence; else E = intensity cos/r^2,
+                           r in scene units */
+  float range;          /* scene units; 0: unlimited (window of KHR_lights_punctual) */
+  float innerConeAngle; /* radians from the axis; spot; < outerConeAngle */
+  float outerConeAngle; /* radians, (0, pi/2]; spot */
+  uint32_t firstShadowMap, shadowMapCount; /* into frame.shadowMaps, 0..PELLUCID_MAX_LIGHT_SHADOW_MAPS; the first that contains the
+                                              receiver is used: 6 for a cube, n for cascades. 0 maps:
+                                              unshadowed, thickness from the camera's depths */
+} PellucidLight;
+
+typedef struct PellucidShadowMap {
+  uint32_t image;        /* index into frame.shadowImages */
+  uint32_t extent[2];    /* texels */
+  uint32_t encoding;     /* PellucidDepthEncoding */
+  float clipFromWorld[16];
+  float viewFromWorld[16]; /* right-handed, -z forward; not read for PELLUCID_DEPTH_DEVICE, nor for
+                              DISTANCE of point and spot lights */
+  float bias;            /* scene units of thickness; nearer than this counts as the receiver itself */
+} PellucidShadowMap;
+
+/* A fused dispatch binds 8 shadow images; a frame with more gets several such dispatches. */
+enum { PELLUCID_MAX_LIGHT_SHADOW_MAPS = 8, PELLUCID_MAX_TRANSIENTS = 4 };
+
+typedef enum PellucidFeatureBits {
+  PELLUCID_FEATURE_TRANSLUCENCY = 1u << 0,
+  PELLUCID_FEATURE_DIFFUSION = 1u << 1
+} PellucidFeatureBits;
+
+/* Where the thickness of a light with a shadow map comes from. Lights without one always use the
+ * camera's front and back depth. */
+typedef enum PellucidThicknessSource {
+  PELLUCID_THICKNESS_LIGHT = 0, /* distance along the light ray from the shadow map's surface */
+  PELLUCID_THICKNESS_CAMERA = 1 /* back depth minus front depth; the shadow map only occludes */
+} PellucidThicknessSource;
+
+/* Write one intermediate into `output` instead of the result. Float values, alpha kept. */
+typedef enum PellucidDebugView {
+  PELLUCID_DEBUG_NONE = 0,
+  PELLUCID_DEBUG_THICKNESS = 1,     /* mm: R camera-space chord, G light-space of the first light with
+                                       a map that contains the pixel, B the one used by the first
+                                       contributing light; -1: none */
+  PELLUCID_DEBUG_TRANSMITTANCE = 2, /* transmitted / arriving, summed over lights; 0 where none */
+  PELLUCID_DEBUG_OCCLUSION = 3,     /* fraction of the lights' back irradiance that the maps let by */
+  PELLUCID_DEBUG_IRRADIANCE = 4     /* irradiance + transmitted/rho: what the diffusion reads */
+} PellucidDebugView;
+
+typedef struct PellucidFrame {
+  uint32_t structSize; /* sizeof(PellucidFrame), written by pellucidInitFrame */
+  uint32_t features;   /* PellucidFeatureBits; default both */
+  uint32_t imageExtent[2]; /* pixels of every screen-sized image */
+  uint32_t renderRect[4];  /* x, y, width, height inside imageExtent; width 0: the whole image.
+                              Nothing outside is read or written */
+  float metersPerUnit;     /* default 1 */
+  float clipFromView[16];  /* the projection that rendered the depths, jitter included */
+  float viewFromWorld[16]; /* rigid; default identity */
+
+  PellucidImage frontDepth; /* required; one float channel */
+  PellucidImage backDepth;  /* nearest back face behind the front; without it there is no camera-space
+                               thickness */
+  PellucidImage irradiance; /* required; E, not divided by pi, not multiplied by albedo */
+  PellucidImage normal;     /* outward unit vectors, components -1..1 */
+  PellucidImage albedo;     /* multiplied after scattering */
+  PellucidImage material;   /* required; unsigned integer, 0 none, i: materials[i - 1] */
+  PellucidImage output;     /* required; storage image of outputFormat; may be the irradiance image.
+                               Pixels of material 0 are not written; alpha is the irradiance's */
+  PellucidImage transients[PELLUCID_MAX_TRANSIENTS]; /* as listed by pellucidGetImageNeeds */
+  VkFormat outputFormat;    /* VK_FORMAT_R16G16B16A16_SFLOAT (default) or R32G32B32A32_SFLOAT; also
+                               of the transients */
+  uint32_t frontDepthEncoding, backDepthEncoding; /* PELLUCID_DEPTH_DEVICE (default) or VIEW_Z */
+  uint32_t normalsInViewSpace; /* 0: world (default) */
+
+  uint32_t materialCount;   /* 1..255 */
+  const PellucidMaterial* materials;
+  uint32_t lightCount;      /* any number; 0: no translucency */
+  const PellucidLight* lights;
+  uint32_t shadowMapCount;
+  const PellucidShadowMap* shadowMaps;
+  uint32_t shadowImageCount; /* any number */
+  const PellucidImage* shadowImages; /* depth or one float channel, one 2D view per map */
+
+  uint32_t thicknessSource; /* PellucidThicknessSource */
+  uint32_t debugView;       /* PellucidDebugView */
+} PellucidFrame;
+
+/* ---- Plan ------------------------------------------------------------------------------------ */
+
+/* Images and buffers a dispatch binds, as bits for pellucidGetRequiredInputs and as names in plans.
+ * Transients are PELLUCID_RESOURCE_TRANSIENT0 + index, shadow images SHADOW0 + index. */
+typedef enum PellucidResource {
+  PELLUCID_RESOURCE_FRONT_DEPTH = 0,
+  PELLUCID_RESOURCE_BACK_DEPTH = 1,
+  PELLUCID_RESOURCE_IRRADIANCE = 2,
+  PELLUCID_RESOURCE_NORMAL = 3,
+  PELLUCID_RESOURCE_ALBEDO = 4,
+  PELLUCID_RESOURCE_MATERIAL = 5,
+  PELLUCID_RESOURCE_OUTPUT = 6,
+  PELLUCID_RESOURCE_CONSTANTS = 7, /* a range of the constants slice */
+  PELLUCID_RESOURCE_TRANSIENT0 = 8,
+  PELLUCID_RESOURCE_SHADOW0 = 16
+} PellucidResource;
+
+typedef enum PellucidPipeline {
+  PELLUCID_PIPELINE_TRANSLUCENCY_16F = 0,
+  PELLUCID_PIPELINE_TRANSLUCENCY_32F = 1,
+  PELLUCID_PIPELINE_DEBUG_16F = 2,
+  PELLUCID_PIPELINE_DEBUG_32F = 3,
+  PELLUCID_PIPELINE_DIFFUSE_16F = 4,
+  PELLUCID_PIPELINE_DIFFUSE_32F = 5,
+  PELLUCID_PIPELINE_COUNT = 6
+} PellucidPipeline;
+
+enum {
+  PELLUCID_MAX_DISPATCHES = 32,
+  PELLUCID_MAX_BINDINGS = 24,
+  PELLUCID_MAX_SKIPS = 16,
+  PELLUCID_PUSH_CONSTANT_BYTES = 16
+};
+
+typedef struct PellucidBinding {
+  uint32_t binding;            /* of set 0, the push-descriptor set */
+  VkDescriptorType type;
+  uint32_t resource;           /* PellucidResource */
+  uint32_t level;              /* mip or pyramid level; 0 for a plain image */
+  VkDeviceSize offset, size;   /* bytes in the constants slice; buffers only */
+} PellucidBinding;
+
+typedef struct PellucidDispatch {
+  const char* name;             /* static string */
+  uint32_t pipeline;            /* PellucidPipeline */
+  uint32_t groups[3];           /* workgroups; unused when indirect */
+  uint32_t indirect;            /* 1: VkDispatchIndirectCommand at indirectOffset of indirectResource */
+  uint32_t indirectResource;
+  VkDeviceSize indirectOffset;
+  uint32_t barrierBefore;       /* 1: a compute-to-compute memory barrier precedes the dispatch */
+  uint32_t pushConstants[PELLUCID_PUSH_CONSTANT_BYTES / 4];
+  uint32_t bindingCount;
+  PellucidBinding bindings[PELLUCID_MAX_BINDINGS];
+  uint64_t modeledBytes;        /* least device-memory traffic: each image read once, written once */
+} PellucidDispatch;
+
+typedef struct PellucidSkip {
+  const char* what;   /* static string */
+  const char* reason; /* static string */
+  uint32_t count;     /* how many (lights, say) */
+} PellucidSkip;
+
+typedef struct PellucidPlan {
+  uint32_t dispatchCount, barrierCount;
+  uint32_t skipCount;
+  uint32_t activeLights;      /* lights that can contribute; the others are in skips */
+  VkDeviceSize constantsSize; /* bytes RecordPlan writes into the constants slice */
+  PellucidDispatch dispatches[PELLUCID_MAX_DISPATCHES];
+  PellucidSkip skips[PELLUCID_MAX_SKIPS];
+} PellucidPlan;
+
+/* One transient the caller creates: 2D, one mip, imageExtent, usage SAMPLED | STORAGE. It holds
+ * nothing between frames, so it may alias any memory not used during dispatches first..last. */
+typedef struct PellucidImageNeed {
+  VkFormat format;
+  uint32_t extent[2];
+  uint32_t firstDispatch, lastDispatch;
+  uint64_t bytes;
+} PellucidImageNeed;
+
+/* ---- Context --------------------------------------------------------------------------------- */
+
+typedef struct PellucidContext PellucidContext;
+
+typedef struct PellucidContextDesc {
+  uint32_t structSize;    /* sizeof(PellucidContextDesc), written by pellucidInitContextDesc */
+  uint32_t headerVersion; /* PELLUCID_HEADER_VERSION, likewise */
+  uint32_t apiVersion;    /* the VkApplicationInfo::apiVersion in use, >= VK_API_VERSION_1_1 */
+  VkInstance instance;
+  VkPhysicalDevice physicalDevice;
+  VkDevice device;        /* VK_KHR_push_descriptor enabled */
+  PFN_vkGetInstanceProcAddr getInstanceProcAddr;
+  VkPipelineCache pipelineCache;          /* optional */
+  const VkAllocationCallbacks* allocator; /* optional; host memory of Vulkan objects */
+  PellucidMessageFn message;              /* optional */
+  void* messageUser;
+} PellucidContextDesc;
+
+void pellucidInitContextDesc(PellucidContextDesc* desc);
+
+/* Builds every pipeline. The context is immutable: any thread may use it. On failure *context is
+ * NULL and the message callback has the sentence. */
+PellucidResult pellucidCreateContext(const PellucidContextDesc* desc, PellucidContext** context);
+
+/* The device must have finished with commands recorded through the context. NULL is allowed. */
+void pellucidDestroyContext(PellucidContext* context);
+
+/* ---- Planning: pure functions, no device, no allocation -------------------------------------- */
+
+void pellucidInitFrame(PellucidFrame* frame);
+
+/* Bit (1 << PellucidResource) of each screen-sized image that `features` cannot do without. */
+uint32_t pellucidGetRequiredInputs(uint32_t features);
+
+/* The transients of this frame: writes up to *count needs, sets *count to the number there are.
+ * `needs` may be NULL. Transient views are not looked at, so call it before creating them. */
+PellucidResult pellucidGetImageNeeds(const PellucidFrame* frame, uint32_t* count,
+                                     PellucidImageNeed* needs);
+
+/* Checks every convention; calls `fn` for each finding. PELLUCID_OK unless one is an error. */
+PellucidResult pellucidValidateFrame(const PellucidFrame* frame, PellucidMessageFn fn, void* user);
+
+/* Same frame and previous plan, same plan. `previous` is the last frame's plan or NULL; history
+ * comes in here and nowhere else; no feature reuses results yet. The plan keeps no pointer to the frame.
+ * Of the views only whether the optional inputs are given is read. */
+PellucidResult pellucidBuildPlan(const PellucidFrame* frame, const PellucidPlan* previous,
+                                 PellucidPlan* plan);
+
+/* ---- Recording ------------------------------------------------------------------------------- */
+
+/* Host-visible, host-coherent memory for one recording, usage STORAGE_BUFFER | UNIFORM_BUFFER. */
+typedef struct PellucidConstantsSlice {
+  VkBuffer buffer;
+  VkDeviceSize offset; /* multiple of 256, the largest alignment Vulkan lets a device ask for */
+  VkDeviceSize size;   /* >= plan.constantsSize */
+  void* mapped;        /* address of `offset` */
+} PellucidConstantsSlice;
+
+/* Writes the slice and records every dispatch and the barriers between them. Before: the inputs
+ * are readable by, and the output and transients free for, COMPUTE_SHADER. After: `output` was
+ * written by COMPUTE_SHADER / SHADER_WRITE. Compute pipeline, push constants and set 0 are left
+ * changed. `frame` is the one that made the plan, with its views filled in. */
+PellucidResult pellucidRecordPlan(const PellucidContext* context, VkCommandBuffer commandBuffer,
+                                  const PellucidPlan* plan, const PellucidFrame* frame,
+                                  const PellucidConstantsSlice* constants);
+
+/* For engines that record themselves: the constants RecordPlan would write, and the SPIR-V of a
+ * pipeline (entry point "main", push constants PELLUCID_PUSH_CONSTANT_BYTES). */
+PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const PellucidFrame* frame,
+                                      void* mapped, size_t size);
+PellucidResult pellucidGetShader(uint32_t pipeline, const uint32_t** words, size_t* wordCount);
+
+/* ---- Text ------------------------------------------------------------------------------------ */
+
+/* Zero-terminated JSON. *size is the room in `text` and becomes the bytes needed, terminator
+ * included; `text` may be NULL to ask. */
+PellucidResult pellucidPlanToJson(const PellucidPlan* plan, char* text, size_t* size);
+
+const char* pellucidResultName(PellucidResult result);
+const char* pellucidResourceName(uint32_t resource); /* "frontDepth", ... */
+const char* pellucidPipelineName(uint32_t pipeline);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

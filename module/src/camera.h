@@ -1,0 +1,28 @@
+// Projection matrix -> what the shaders need. Pure, double inside.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include "shared/pellucid_shared.h"
+
+namespace pellucid {
+
+// The depth and w rows of a projection that has no skew between depth and x, y:
+// device depth = (A p + B) / (C p + D) with p the planar distance in front of the eye, >= 0.
+struct DepthRange {
+  double a, b, c, d;
+  double forward;  // sign of view z in front of the eye: -1 right-handed, +1 left-handed
+  bool perspective;
+  double nothing;  // device depth of the far plane: where a cleared buffer holds nothing
+};
+
+// What is wrong with a projection, or nullptr; `range` is written only when nothing is.
+const char* readDepthRange(const glm::dmat4& clipFromView, DepthRange* range);
+
+// `clipFromView` must have passed readDepthRange.
+shared::Camera makeCamera(const glm::dmat4& clipFromView, const DepthRange& range, glm::uvec2 extent,
+                          double metersPerUnit);
+
+glm::dmat4 toMatrix(const float (&columns)[16]);
+
+}  // namespace pellucid

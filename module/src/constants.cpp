@@ -1,0 +1,198 @@
+// The bytes of the constants slice: frame, lights, shadow maps, materials, kernels.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "camera.h"
+#include "frame.h"
+#include "validate.h"
+
+namespace pellucid {
+namespace {
+
+static_assert(PELLUCID_SHADER_LIGHT_DIRECTIONAL == PELLUCID_LIGHT_DIRECTIONAL);
+static_assert(PELLUCID_SHADER_LIGHT_SPOT == PELLUCID_LIGHT_SPOT);
+static_assert(PELLUCID_SHADER_DEPTH_DEVICE == PELLUCID_DEPTH_DEVICE);
+static_assert(PELLUCID_SHADER_DEPTH_VIEW_Z == PELLUCID_DEPTH_VIEW_Z);
+static_assert(PELLUCID_SHADER_TRANSMITTANCE_EXP2 == PELLUCID_TRANSMITTANCE_EXP2);
+static_assert(PELLUCID_SHADER_TRANSMITTANCE_SINH_EXP == PELLUCID_TRANSMITTANCE_SINH_EXP);
+static_assert(PELLUCID_SHADER_DEBUG_THICKNESS == PELLUCID_DEBUG_THICKNESS);
+static_assert(PELLUCID_SHADER_DEBUG_TRANSMITTANCE == PELLUCID_DEBUG_TRANSMITTANCE);
+static_assert(PELLUCID_SHADER_DEBUG_OCCLUSION == PELLUCID_DEBUG_OCCLUSION);
+static_assert(PELLUCID_GAUSSIANS == PELLUCID_MAX_GAUSSIANS);
+static_assert(PELLUCID_MAX_LIGHT_SHADOW_MAPS <= PELLUCID_SHADOW_IMAGE_COUNT);
+
+glm::vec4 rgb(const float (&v)[3], float w = 0) { return {v[0], v[1], v[2], w}; }
+
+shared::FrameConstants frameConstants(const PellucidFrame& f) {
+  shared::FrameConstants c{};
+  const glm::dmat4 clip = toMatrix(f.clipFromView);
+  DepthRange range;
+  readDepthRange(clip, &range);
+  c.camera = makeCamera(clip, range, {f.imageExtent[0], f.imageExtent[1]}, f.metersPerUnit);
+  c.viewFromNormal = f.normalsInViewSpace ? glm::mat4(1) : glm::mat4(glm::mat3(toMatrix(f.viewFromWorld)));
+  const Rect r = renderRect(f);
+  c.rect = {r.x, r.y, r.x + r.width, r.y + r.height};
+  uint32_t flags = 0;
+  if (given(f.backDepth)) flags |= PELLUCID_FLAG_BACK_DEPTH;
+  if (given(f.normal)) flags |= PELLUCID_FLAG_NORMAL;
+  if (given(f.albedo)) flags |= PELLUCID_FLAG_ALBEDO;
+  if (f.frontDepthEncoding == PELLUCID_DEPTH_VIEW_Z) flags |= PELLUCID_FLAG_FRONT_VIEW_Z;
+  if (f.backDepthEncoding == PELLUCID_DEPTH_VIEW_Z) flags |= PELLUCID_FLAG_BACK_VIEW_Z;
+  if (f.thicknessSource == PELLUCID_THICKNESS_CAMERA) flags |= PELLUCID_FLAG_CAMERA_THICKNESS;
+  c.flags = {flags, f.materialCount, f.debugView, 0};
+  return c;
+}
+
+glm::dvec3 travel(const PellucidLight& l) {
+  return glm::normalize(glm::dvec3(l.direction[0], l.direction[1], l.direction[2]));
+}
+
+shared::LightConstants lightConstants(const PellucidLight& l, const glm::dmat4& viewFromWorld,
+                                      uint32_t firstShadow) {
+  shared::LightConstants c{};
+  c.meta = {l.type, firstShadow, l.shadowMapCount, 0};
+  c.radiance = rgb(l.color) * l.intensity;
+  if (l.type != PELLUCID_LIGHT_DIRECTIONAL) {
+    const glm::dvec4 position(l.position[0], l.position[1], l.position[2], 1);
+    c.position = glm::vec4(glm::vec3(viewFromWorld * position), l.range > 0 ? 1 / l.range : 0);
+  }
+  if (l.type != PELLUCID_LIGHT_POINT) c.direction = glm::vec4(glm::dmat3(viewFromWorld) * travel(l), 0);
+  if (l.type == PELLUCID_LIGHT_SPOT) {
+    // KHR_lights_punctual, "Inner and Outer Cone Angles"; 0.001 is its own guard.
+    const double inner = std::cos(static_cast<double>(l.innerConeAngle));
+    const double outer = std::cos(static_cast<double>(l.outerConeAngle));
+    const double scale = 1 / std::max(0.001, inner - outer);
+    c.cone = {static_cast<float>(scale), static_cast<float>(-outer * scale), 0, 0};
+  }
+  return c;
+}
+
+shared::ShadowConstants shadowConstants(const PellucidShadowMap& s, const PellucidLight& l,
+                                        const glm::dmat4& worldFromView, uint32_t slot) {
+  shared::ShadowConstants c{};
+  const glm::dmat4 clipFromWorld = toMatrix(s.clipFromWorld);
+  c.clipFromView = glm::mat4(clipFromWorld * worldFromView);
+  const bool perspective = l.type != PELLUCID_LIGHT_DIRECTIONAL;
+  // The distance from a directional light is measured like its planar depth.
+  const uint32_t encoding = !perspective && s.encoding == PELLUCID_DEPTH_DISTANCE
+                                ? static_cast<uint32_t>(PELLUCID_DEPTH_VIEW_Z)
+                                : s.encoding;
+  const glm::dvec4 zRow(clipFromWorld[0][2], clipFromWorld[1][2], clipFromWorld[2][2], clipFromWorld[3][2]);
+  double depthScale = 1;
+  if (encoding == PELLUCID_DEPTH_VIEW_Z) {
+    const glm::dmat4 planar = toMatrix(s.viewFromWorld) * worldFromView;
+    c.planar = -glm::vec4(planar[0][2], planar[1][2], planar[2][2], planar[3][2]);
+    if (!perspective) {
+      const glm::dmat4 view = toMatrix(s.viewFromWorld);
+      depthScale = 1 / -glm::dot(glm::dvec3(view[0][2], view[1][2], view[2][2]), travel(l));
+    }
+  } else if (perspective) {
+    depthScale = glm::dot(zRow, glm::dvec4(l.position[0], l.position[1], l.position[2], 1));
+  } else {
+    depthScale = 1 / glm::dot(glm::dvec3(zRow), travel(l));
+  }
+  c.depth = {static_cast<float>(depthScale), s.bias, static_cast<float>(s.extent[0]),
+             static_cast<float>(s.extent[1])};
+  // A cleared device-depth map holds its far plane: depth grows away from the light, or is reversed.
+  const bool forward = perspective ? depthScale < 0 : depthScale > 0;
+  const float nothing = forward ? 1.0f : 0.0f;
+  uint32_t bits;
+  std::memcpy(&bits, &nothing, sizeof bits);
+  c.meta = {slot, encoding, perspective ? 1u : 0u, bits};
+  return c;
+}
+
+shared::MaterialConstants materialConstants(const PellucidMaterial& m) {
+  shared::MaterialConstants c{};
+  c.meta = {m.transmittanceModel, m.gaussianCount, m.gaussianCount > 0 ? 1u : 0u, 0};
+  for (int channel = 0; channel < 3; ++channel) {
+    const float* t = m.transmittance[channel];
+    // The shader reads a, kappa, z, b and c of SINH_EXP as xyzw and the fifth.
+    c.transmittance[channel] = {t[0], t[1], t[2], t[3]};
+    c.transmittance4[channel] = t[4];
+    c.inverseReflectance[channel] = 1 / m.reflectance[channel];
+    for (uint32_t i = 0; i < m.gaussianCount; ++i) {
+      c.gaussianFalloff[i][channel] = 0.5f / m.gaussianVariance[channel][i];
+      c.gaussianWeight[i][channel] = m.gaussianWeight[channel][i];
+    }
+  }
+  return c;
+}
+
+// Taps at R (i/N)^2, R the radius that holds 99.9 %: dense where the profile is steep. A tap's weight is
+// the 1-D profile's integral over the cell between the midpoints to its neighbors, so the weights add to
+// the energy inside R however few there are.
+shared::KernelConstants kernelConstants(const PellucidMaterial& m) {
+  shared::KernelConstants c{};
+  c.tap[0] = glm::vec4(1, 1, 1, 0);
+  if (m.gaussianCount == 0) return c;
+  const double radius = std::max({m.radius[0], m.radius[1], m.radius[2]});
+  constexpr int last = PELLUCID_KERNEL_TAPS - 1;
+  const auto offset = [&](int i) { return radius * i * i / (static_cast<double>(last) * last); };
+  for (int i = 0; i <= last; ++i) {
+    const double from = i == 0 ? 0 : 0.5 * (offset(i - 1) + offset(i));
+    const double to = i == last ? radius : 0.5 * (offset(i) + offset(i + 1));
+    c.tap[i].w = static_cast<float>(offset(i));
+    for (int channel = 0; channel < 3; ++channel) {
+      double weight = 0, falloff = 0;
+      for (uint32_t k = 0; k < m.gaussianCount; ++k) {
+        const double sigma = std::sqrt(2.0 * m.gaussianVariance[channel][k]);
+        const double part =
+            0.5 * m.gaussianWeight[channel][k] * (std::erf(to / sigma) - std::erf(from / sigma));
+        weight += part;
+        falloff += part / (sigma * sigma);
+      }
+      c.tapFalloff[i][channel] = static_cast<float>(weight > 0 ? falloff / weight : 0);
+      // The center tap has both its halves; the others are applied once on each side.
+      c.tap[i][channel] = static_cast<float>(i == 0 ? 2 * weight : weight);
+    }
+  }
+  return c;
+}
+
+template <class T>
+void put(void* slice, VkDeviceSize offset, const T& value) {
+  std::memcpy(static_cast<char*>(slice) + offset, &value, sizeof value);
+}
+
+}  // namespace
+}  // namespace pellucid
+
+using namespace pellucid;
+
+extern "C" PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const PellucidFrame* frame,
+                                                 void* mapped, size_t size) {
+  if (!plan || !mapped) return PELLUCID_ERROR_INVALID_ARGUMENT;
+  const PellucidResult result = checkFrame(frame, nullptr, nullptr);
+  if (result != PELLUCID_OK) return result;
+  const PellucidFrame& f = *frame;
+  const ConstantsLayout layout = constantsLayout(f);
+  if (layout.size != plan->constantsSize || layout.lightCount != plan->activeLights)
+    return PELLUCID_ERROR_INVALID_ARGUMENT;
+  if (size < layout.size) return PELLUCID_ERROR_BUFFER_TOO_SMALL;
+
+  std::memset(mapped, 0, static_cast<size_t>(layout.size));
+  put(mapped, layout.frame.offset, frameConstants(f));
+  const glm::dmat4 viewFromWorld = toMatrix(f.viewFromWorld);
+  const glm::dmat4 worldFromView = glm::inverse(viewFromWorld);
+  uint32_t light = 0, shadow = 0;
+  const auto eachLight = [&](const LightGroup& group, const PellucidLight& l) {
+    put(mapped, layout.lights.offset + light * sizeof(shared::LightConstants),
+        lightConstants(l, viewFromWorld, shadow));
+    // addLight ran before this call, so the group already has a slot for each of the light's images.
+    for (uint32_t i = 0; i < l.shadowMapCount; ++i, ++shadow) {
+      const PellucidShadowMap& s = f.shadowMaps[l.firstShadowMap + i];
+      put(mapped, layout.shadows.offset + shadow * sizeof(shared::ShadowConstants),
+          shadowConstants(s, l, worldFromView, group.slot(s.image)));
+    }
+    ++light;
+  };
+  forEachLightGroup(f, eachLight, [](const LightGroup&) {});
+  for (uint32_t i = 0; i < f.materialCount; ++i) {
+    put(mapped, layout.materials.offset + i * sizeof(shared::MaterialConstants),
+        materialConstants(f.materials[i]));
+    put(mapped, layout.kernels.offset + i * sizeof(shared::KernelConstants), kernelConstants(f.materials[i]));
+  }
+  return PELLUCID_OK;
+}

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <array>
+
+#include "pellucid/pellucid.h"
+#include "vk_table.h"
+
+// Immutable once pellucidCreateContext has returned.
+struct PellucidContext {
+  VkDevice device = VK_NULL_HANDLE;
+  VkAllocationCallbacks allocator{};
+  bool hasAllocator = false;
+  pellucid::VkTable vk;
+  PellucidMessageFn message = nullptr;
+  void* messageUser = nullptr;
+  VkDescriptorSetLayout setLayout = VK_NULL_HANDLE;
+  VkPipelineLayout pipelineLayout = VK_NULL_HANDLE;
+  std::array<VkPipeline, PELLUCID_PIPELINE_COUNT> pipelines{};
+
+  const VkAllocationCallbacks* callbacks() const { return hasAllocator ? &allocator : nullptr; }
+};

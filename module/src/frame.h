@@ -1,0 +1,76 @@
+// What planning, validation and the constants agree on about a frame. Pure.
+#pragma once
+
+#include <array>
+
+#include "pellucid/pellucid.h"
+#include "shared/pellucid_shared.h"
+
+namespace pellucid {
+
+struct Rect {
+  uint32_t x, y, width, height;
+};
+
+Rect renderRect(const PellucidFrame& frame);
+
+inline bool given(const PellucidImage& image) { return image.view != VK_NULL_HANDLE; }
+
+// Why a light adds nothing to this frame, or nullptr. Static string.
+const char* whyLightIsSkipped(const PellucidFrame& frame, const PellucidLight& light);
+
+bool anyMaterialDiffuses(const PellucidFrame& frame);
+
+// One fused dispatch binds PELLUCID_SHADOW_IMAGE_COUNT shadow images, so lights are taken in order into
+// groups that need no more. Shadow constants are laid out light by light within the groups.
+struct LightGroup {
+  uint32_t firstLight = 0, lightCount = 0;  // among the lights that are not skipped
+  uint32_t imageCount = 0;
+  std::array<uint32_t, PELLUCID_SHADOW_IMAGE_COUNT> images{};  // into frame.shadowImages
+
+  // Slot of an image, or PELLUCID_SHADOW_IMAGE_COUNT.
+  uint32_t slot(uint32_t image) const {
+    for (uint32_t i = 0; i < imageCount; ++i)
+      if (images[i] == image) return i;
+    return PELLUCID_SHADOW_IMAGE_COUNT;
+  }
+};
+
+// Adds the light's maps to the group; false (and no change) if they do not fit.
+bool addLight(const PellucidFrame& frame, const PellucidLight& light, LightGroup* group);
+
+// Calls group(const LightGroup&) for each group in order, and light(const LightGroup&, const
+// PellucidLight&) for each light as it is placed.
+template <class OnLight, class OnGroup>
+void forEachLightGroup(const PellucidFrame& frame, OnLight&& light, OnGroup&& group) {
+  LightGroup current;
+  for (uint32_t i = 0; i < frame.lightCount; ++i) {
+    if (whyLightIsSkipped(frame, frame.lights[i])) continue;
+    if (!addLight(frame, frame.lights[i], &current)) {
+      group(static_cast<const LightGroup&>(current));
+      LightGroup next;
+      next.firstLight = current.firstLight + current.lightCount;
+      current = next;
+      addLight(frame, frame.lights[i], &current);
+    }
+    light(static_cast<const LightGroup&>(current), frame.lights[i]);
+  }
+  if (current.lightCount > 0) group(static_cast<const LightGroup&>(current));
+}
+
+// How many fused dispatches the lights need; 0 without lights.
+uint32_t lightGroupCount(const PellucidFrame& frame);
+
+// Byte ranges of the constants slice. 256: the largest offset alignment Vulkan allows a device to ask.
+struct ConstantsLayout {
+  struct Range {
+    VkDeviceSize offset, size;
+  };
+  Range frame, lights, shadows, materials, kernels;
+  VkDeviceSize size;
+  uint32_t lightCount, shadowCount;
+};
+
+ConstantsLayout constantsLayout(const PellucidFrame& frame);
+
+}  // namespace pellucid

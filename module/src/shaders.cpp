@@ -1,0 +1,38 @@
+#include "shaders.h"
+
+#include <array>
+
+#include "kDebug16f.h"
+#include "kDebug32f.h"
+#include "kDiffuse16f.h"
+#include "kDiffuse32f.h"
+#include "kTranslucency16f.h"
+#include "kTranslucency32f.h"
+#include "pellucid/pellucid.h"
+
+namespace pellucid {
+namespace {
+
+template <std::size_t N>
+constexpr Shader shader(const uint32_t (&words)[N]) {
+  return {words, N};
+}
+
+// In the order of PellucidPipeline.
+const std::array kShaders = {shader(kTranslucency16f), shader(kTranslucency32f), shader(kDebug16f),
+                             shader(kDebug32f),        shader(kDiffuse16f),      shader(kDiffuse32f)};
+static_assert(kShaders.size() == PELLUCID_PIPELINE_COUNT);
+
+}  // namespace
+
+Shader shaderOf(uint32_t pipeline) { return kShaders[pipeline]; }
+
+}  // namespace pellucid
+
+extern "C" PellucidResult pellucidGetShader(uint32_t pipeline, const uint32_t** words, size_t* wordCount) {
+  if (pipeline >= PELLUCID_PIPELINE_COUNT || !words || !wordCount) return PELLUCID_ERROR_INVALID_ARGUMENT;
+  const pellucid::Shader s = pellucid::shaderOf(pipeline);
+  *words = s.words;
+  *wordCount = s.wordCount;
+  return PELLUCID_OK;
+}

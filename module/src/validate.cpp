@@ -1,0 +1,292 @@
+// Every convention, checked, in a sentence a person understands.
+#include "validate.h"
+
+#include <cmath>
+
+#include "camera.h"
+#include "frame.h"
+#include "text.h"
+
+namespace pellucid {
+namespace {
+
+class Findings {
+public:
+  Findings(PellucidMessageFn fn, void* user) : fn_(fn), user_(user) {}
+
+  PellucidResult result() const { return failed_ ? PELLUCID_ERROR_INVALID_ARGUMENT : PELLUCID_OK; }
+
+  template <class... Parts>
+  void error(const char* field, const Parts&... sentence) {
+    failed_ = true;
+    say(PELLUCID_SEVERITY_ERROR, field, sentence...);
+  }
+  template <class... Parts>
+  void warning(const char* field, const Parts&... sentence) {
+    say(PELLUCID_SEVERITY_WARNING, field, sentence...);
+  }
+
+private:
+  template <class... Parts>
+  void say(PellucidSeverity severity, const char* field, const Parts&... sentence) {
+    if (!fn_) return;
+    char message[256];
+    Text text(message, sizeof message);
+    (text << ... << sentence);
+    fn_(user_, severity, field, message);
+  }
+
+  PellucidMessageFn fn_;
+  void* user_;
+  bool failed_ = false;
+};
+
+// "lights[3].color" without allocation.
+class Field {
+public:
+  template <class... Parts>
+  explicit Field(const Parts&... parts) {
+    Text text(name_, sizeof name_);
+    (text << ... << parts);
+  }
+  operator const char*() const { return name_; }
+
+private:
+  char name_[64];
+};
+
+bool finite(const float* values, int count) {
+  for (int i = 0; i < count; ++i)
+    if (!std::isfinite(values[i])) return false;
+  return true;
+}
+
+// An affine, rigid transform: rotation, no scale. 1e-3 forgives float matrices built in several steps.
+bool rigid(const glm::dmat4& m) {
+  const glm::dmat3 r(m);
+  const glm::dmat3 shouldBeIdentity = glm::transpose(r) * r;
+  for (int c = 0; c < 3; ++c)
+    for (int i = 0; i < 3; ++i)
+      if (std::abs(shouldBeIdentity[c][i] - (c == i ? 1.0 : 0.0)) > 1e-3) return false;
+  return m[0][3] == 0 && m[1][3] == 0 && m[2][3] == 0 && m[3][3] == 1;
+}
+
+void checkImageSize(const PellucidFrame& f, Findings& out) {
+  const uint32_t w = f.imageExtent[0], h = f.imageExtent[1];
+  if (w == 0 || h == 0 || w > 65536 || h > 65536) {
+    out.error("imageExtent", "is ", w, " x ", h, "; both must be 1..65536");
+    return;
+  }
+  const uint32_t* r = f.renderRect;
+  if (r[2] == 0 && (r[0] || r[1] || r[3]))
+    out.error("renderRect", "has width 0 (the whole image) but x ", r[0], ", y ", r[1], ", height ", r[3]);
+  else if (r[2] > 0 && (r[3] == 0 || r[0] >= w || r[2] > w - r[0] || r[1] >= h || r[3] > h - r[1]))
+    out.error("renderRect", "is ", r[0], ", ", r[1], " + ", r[2], " x ", r[3], ", outside the ", w, " x ", h,
+              " image");
+}
+
+void checkMaterial(const PellucidMaterial& m, uint32_t index, Findings& out) {
+  const auto field = [index](const char* name) { return Field("materials[", index, "].", name); };
+  if (m.structSize != sizeof(PellucidMaterial)) {
+    out.error(field("structSize"), "is ", m.structSize, "; this library expects ", sizeof(PellucidMaterial));
+    return;
+  }
+  if (m.transmittanceModel > PELLUCID_TRANSMITTANCE_GAUSSIANS)
+    out.error(field("transmittanceModel"), "is ", m.transmittanceModel, ", not a PellucidTransmittanceModel");
+  if (m.gaussianCount > PELLUCID_MAX_GAUSSIANS) {
+    out.error(field("gaussianCount"), "is ", m.gaussianCount, "; at most ",
+              static_cast<int>(PELLUCID_MAX_GAUSSIANS));
+    return;
+  }
+  if (m.transmittanceModel == PELLUCID_TRANSMITTANCE_GAUSSIANS && m.gaussianCount == 0)
+    out.error(field("gaussianCount"), "is 0, but the transmittance model needs Gaussians");
+  for (int c = 0; c < 3; ++c) {
+    const float* t = m.transmittance[c];
+    if (!finite(t, 5)) out.error(field("transmittance"), "of channel ", c, " is not finite");
+    if (m.transmittanceModel == PELLUCID_TRANSMITTANCE_EXP2 && !(t[1] >= 0 && t[3] >= 0))
+      out.error(field("transmittance"), "of channel ", c, " grows with thickness: k1 ", t[1], ", k2 ", t[3]);
+    if (m.transmittanceModel == PELLUCID_TRANSMITTANCE_SINH_EXP && !(t[1] >= 0 && t[2] > 0 && t[4] >= 0))
+      out.error(field("transmittance"), "of channel ", c, " needs kappa >= 0, z > 0, c >= 0; they are ", t[1],
+                ", ", t[2], ", ", t[4]);
+    if (!(m.reflectance[c] > 0 && m.reflectance[c] <= 1))
+      out.error(field("reflectance"), "of channel ", c, " is ", m.reflectance[c], ", outside (0, 1]");
+    float sum = 0;
+    for (uint32_t i = 0; i < m.gaussianCount; ++i) {
+      if (!(m.gaussianVariance[c][i] > 0) || !std::isfinite(m.gaussianVariance[c][i]))
+        out.error(field("gaussianVariance"), "[", c, "][", i, "] is ", m.gaussianVariance[c][i],
+                  "; must be > 0");
+      if (!(m.gaussianWeight[c][i] >= 0))
+        out.error(field("gaussianWeight"), "[", c, "][", i, "] is ", m.gaussianWeight[c][i],
+                  "; must be >= 0");
+      sum += m.gaussianWeight[c][i];
+    }
+    // 1e-3: the accuracy to which constant irradiance is promised to stay constant.
+    if (m.gaussianCount > 0 && !(std::abs(sum - 1) <= 1e-3f))
+      out.error(field("gaussianWeight"), "of channel ", c, " sums to ", sum, ", not 1");
+    if (m.gaussianCount > 0 && !(m.radius[c] > 0 && std::isfinite(m.radius[c])))
+      out.error(field("radius"), "of channel ", c, " is ", m.radius[c], "; must be > 0");
+  }
+}
+
+void checkShadowMap(const PellucidFrame& f, uint32_t index, Findings& out) {
+  const PellucidShadowMap& s = f.shadowMaps[index];
+  const auto field = [index](const char* name) { return Field("shadowMaps[", index, "].", name); };
+  if (s.image >= f.shadowImageCount)
+    out.error(field("image"), "is ", s.image, ", but there are ", f.shadowImageCount, " shadowImages");
+  if (s.extent[0] == 0 || s.extent[1] == 0)
+    out.error(field("extent"), "is ", s.extent[0], " x ", s.extent[1]);
+  if (s.encoding > PELLUCID_DEPTH_DISTANCE)
+    out.error(field("encoding"), "is ", s.encoding, ", not a PellucidDepthEncoding");
+  if (!finite(s.clipFromWorld, 16))
+    out.error(field("clipFromWorld"), "is not finite");
+  else if (glm::determinant(toMatrix(s.clipFromWorld)) == 0)
+    out.error(field("clipFromWorld"), "cannot be inverted");
+  if (s.encoding != PELLUCID_DEPTH_DEVICE &&
+      !(finite(s.viewFromWorld, 16) && rigid(toMatrix(s.viewFromWorld))))
+    out.error(field("viewFromWorld"), "is not a rotation and translation, which this encoding needs");
+  if (!(s.bias >= 0 && std::isfinite(s.bias))) out.error(field("bias"), "is ", s.bias, "; must be >= 0");
+}
+
+void checkLight(const PellucidFrame& f, uint32_t index, Findings& out) {
+  const PellucidLight& l = f.lights[index];
+  const auto field = [index](const char* name) { return Field("lights[", index, "].", name); };
+  if (l.type > PELLUCID_LIGHT_SPOT) {
+    out.error(field("type"), "is ", l.type, ", not a PellucidLightType");
+    return;
+  }
+  for (int c = 0; c < 3; ++c)
+    if (!(l.color[c] >= 0 && std::isfinite(l.color[c])))
+      out.error(field("color"), "[", c, "] is ", l.color[c]);
+  if (!(l.intensity >= 0 && std::isfinite(l.intensity))) out.error(field("intensity"), "is ", l.intensity);
+  if (!(l.range >= 0)) out.error(field("range"), "is ", l.range, "; must be >= 0");
+  if (l.type != PELLUCID_LIGHT_DIRECTIONAL && !finite(l.position, 3))
+    out.error(field("position"), "is not finite");
+  const float length = std::hypot(l.direction[0], l.direction[1], l.direction[2]);
+  if (l.type != PELLUCID_LIGHT_POINT && !(length > 0 && std::isfinite(length)))
+    out.error(field("direction"), "has length ", length);
+  if (l.type == PELLUCID_LIGHT_SPOT &&
+      !(l.innerConeAngle >= 0 && l.innerConeAngle < l.outerConeAngle && l.outerConeAngle <= 1.5707964f))
+    out.error(field("outerConeAngle"), "is ", l.outerConeAngle, " with inner ", l.innerConeAngle,
+              "; needs 0 <= inner < outer <= pi/2");
+  if (l.shadowMapCount > PELLUCID_MAX_LIGHT_SHADOW_MAPS || l.firstShadowMap > f.shadowMapCount ||
+      l.shadowMapCount > f.shadowMapCount - l.firstShadowMap) {
+    out.error(field("shadowMapCount"), "is ", l.shadowMapCount, " from ", l.firstShadowMap, "; there are ",
+              f.shadowMapCount, " and a light takes at most ",
+              static_cast<int>(PELLUCID_MAX_LIGHT_SHADOW_MAPS));
+    return;
+  }
+  for (uint32_t i = 0; i < l.shadowMapCount; ++i) {
+    const PellucidShadowMap& s = f.shadowMaps[l.firstShadowMap + i];
+    const glm::dmat4 clip = toMatrix(s.clipFromWorld);
+    const bool perspective = clip[0][3] != 0 || clip[1][3] != 0 || clip[2][3] != 0;
+    if (perspective == (l.type == PELLUCID_LIGHT_DIRECTIONAL))
+      out.error(field("firstShadowMap"), "names a map with ",
+                perspective ? "a perspective" : "an orthographic",
+                " clipFromWorld, which this type of light cannot have");
+    else if (perspective) {
+      const glm::dvec4 atLight = clip * glm::dvec4(l.position[0], l.position[1], l.position[2], 1);
+      const double scale = std::abs(clip[0][3]) + std::abs(clip[1][3]) + std::abs(clip[2][3]);
+      const double size = 1 + std::abs(l.position[0]) + std::abs(l.position[1]) + std::abs(l.position[2]);
+      // 1e-4 of the light's distance from the origin: float matrices, not a different center.
+      if (std::abs(atLight.w) > 1e-4 * scale * size)
+        out.error(field("position"), "is not the center of its shadow map's projection; clip w there is ",
+                  atLight.w);
+    }
+  }
+}
+
+}  // namespace
+
+PellucidResult checkFrame(const PellucidFrame* frame, PellucidMessageFn fn, void* user) {
+  Findings out(fn, user);
+  if (!frame) {
+    out.error("frame", "is NULL");
+    return out.result();
+  }
+  const PellucidFrame& f = *frame;
+  if (f.structSize != sizeof(PellucidFrame)) {
+    out.error("structSize", "is ", f.structSize, "; this library expects ", sizeof(PellucidFrame),
+              " (call pellucidInitFrame)");
+    return PELLUCID_ERROR_VERSION;
+  }
+  constexpr uint32_t known = PELLUCID_FEATURE_TRANSLUCENCY | PELLUCID_FEATURE_DIFFUSION;
+  if (f.features & ~known) out.error("features", "has unknown bits: ", f.features);
+  checkImageSize(f, out);
+  if (!(f.metersPerUnit > 0 && std::isfinite(f.metersPerUnit)))
+    out.error("metersPerUnit", "is ", f.metersPerUnit, "; must be > 0");
+  DepthRange range;
+  if (const char* wrong = readDepthRange(toMatrix(f.clipFromView), &range)) out.error("clipFromView", wrong);
+  if (!finite(f.viewFromWorld, 16) || !rigid(toMatrix(f.viewFromWorld)))
+    out.error("viewFromWorld", "is not a rotation and translation");
+  if (f.outputFormat != VK_FORMAT_R16G16B16A16_SFLOAT && f.outputFormat != VK_FORMAT_R32G32B32A32_SFLOAT)
+    out.error("outputFormat", "is VkFormat ", static_cast<int>(f.outputFormat),
+              "; use R16G16B16A16_SFLOAT or R32G32B32A32_SFLOAT");
+  if (f.frontDepthEncoding > PELLUCID_DEPTH_VIEW_Z)
+    out.error("frontDepthEncoding", "is ", f.frontDepthEncoding, "; use DEVICE or VIEW_Z");
+  if (f.backDepthEncoding > PELLUCID_DEPTH_VIEW_Z)
+    out.error("backDepthEncoding", "is ", f.backDepthEncoding, "; use DEVICE or VIEW_Z");
+  if (f.thicknessSource > PELLUCID_THICKNESS_CAMERA)
+    out.error("thicknessSource", "is ", f.thicknessSource, ", not a PellucidThicknessSource");
+  if (f.debugView > PELLUCID_DEBUG_IRRADIANCE)
+    out.error("debugView", "is ", f.debugView, ", not a PellucidDebugView");
+
+  // 255: the material image is r8ui and 0 means none.
+  if (f.materialCount == 0 || f.materialCount > 255 || !f.materials)
+    out.error("materials", "has ", f.materialCount, f.materials ? "" : " at NULL", "; needs 1..255");
+  if (f.lightCount > 0 && !f.lights) out.error("lights", "is NULL, but lightCount is ", f.lightCount);
+  if (f.shadowMapCount > 0 && !f.shadowMaps)
+    out.error("shadowMaps", "is NULL, but shadowMapCount is ", f.shadowMapCount);
+  if (f.shadowImageCount > 0 && !f.shadowImages)
+    out.error("shadowImages", "is NULL, but shadowImageCount is ", f.shadowImageCount);
+  if (out.result() != PELLUCID_OK) return out.result();
+
+  for (uint32_t i = 0; i < f.materialCount; ++i) checkMaterial(f.materials[i], i, out);
+  for (uint32_t i = 0; i < f.shadowMapCount; ++i) checkShadowMap(f, i, out);
+  if (out.result() != PELLUCID_OK) return out.result();
+  for (uint32_t i = 0; i < f.lightCount; ++i) {
+    checkLight(f, i, out);
+    if (const char* reason = whyLightIsSkipped(f, f.lights[i]))
+      out.warning(Field("lights[", i, "]"), "adds nothing: ", reason);
+  }
+  if (out.result() != PELLUCID_OK) return out.result();
+  const uint32_t groups = lightGroupCount(f);
+  if (groups > 1 && f.debugView != PELLUCID_DEBUG_NONE && f.debugView != PELLUCID_DEBUG_IRRADIANCE)
+    out.error("debugView", "is ", f.debugView, ", which needs all lights in one dispatch; they use ", groups);
+  if (groups + 2 > PELLUCID_MAX_DISPATCHES) {
+    out.error("shadowImages", "are more than the plan's ", static_cast<int>(PELLUCID_MAX_DISPATCHES),
+              " dispatches can bind");
+    return PELLUCID_ERROR_CAPACITY;
+  }
+  return out.result();
+}
+
+PellucidResult checkViews(const PellucidFrame& f, PellucidMessageFn fn, void* user) {
+  Findings out(fn, user);
+  const PellucidImage* required[] = {&f.frontDepth, &f.irradiance, &f.material, &f.output};
+  const char* names[] = {"frontDepth", "irradiance", "material", "output"};
+  for (int i = 0; i < 4; ++i)
+    if (!given(*required[i])) out.error(names[i], "has no view, but is required");
+  for (uint32_t i = 0; i < f.shadowImageCount; ++i)
+    if (!given(f.shadowImages[i])) out.error(Field("shadowImages[", i, "]"), "has no view");
+  uint32_t needed = 0;
+  pellucidGetImageNeeds(&f, &needed, nullptr);
+  for (uint32_t i = 0; i < needed; ++i)
+    if (!given(f.transients[i]))
+      out.error(Field("transients[", i, "]"), "has no view; see pellucidGetImageNeeds");
+  if (f.output.layout != VK_IMAGE_LAYOUT_GENERAL && given(f.output))
+    out.error("output", "is in VkImageLayout ", static_cast<int>(f.output.layout),
+              "; storage writes need GENERAL");
+  for (uint32_t i = 0; i < needed; ++i)
+    if (given(f.transients[i]) && f.transients[i].layout != VK_IMAGE_LAYOUT_GENERAL)
+      out.error(Field("transients[", i, "]"), "is in VkImageLayout ",
+                static_cast<int>(f.transients[i].layout), "; must be GENERAL");
+  return out.result();
+}
+
+}  // namespace pellucid
+
+extern "C" PellucidResult pellucidValidateFrame(const PellucidFrame* frame, PellucidMessageFn fn,
+                                                void* user) {
+  const PellucidResult result = pellucid::checkFrame(frame, fn, user);
+  return result == PELLUCID_OK ? pellucid::checkViews(*frame, fn, user) : result;
+}

@@ -1,0 +1,14 @@
+#include "vk_table.h"
+
+namespace pellucid {
+
+const char* loadVkTable(PFN_vkGetDeviceProcAddr getDeviceProcAddr, VkDevice device, VkTable* table) {
+#define PELLUCID_LOAD(name)                                                     \
+  table->name = reinterpret_cast<PFN_##name>(getDeviceProcAddr(device, #name)); \
+  if (!table->name) return #name;
+  PELLUCID_DEVICE_FUNCTIONS(PELLUCID_LOAD)
+#undef PELLUCID_LOAD
+  return nullptr;
+}
+
+}  // namespace pellucid
