@@ -1,0 +1,89 @@
+// One captured frame in memory: what a manifest (version 1) and its EXR files hold, decoded.
+// Everything that makes or replays frames speaks this type; only capture/ knows the files.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "common/image.h"
+#include "pellucid/pellucid.h"
+
+namespace pellucid::harness {
+
+using Matrix = std::array<double, 16>;  // column-major, column vectors, Vulkan clip space
+
+inline constexpr Matrix kIdentity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+
+// Depth value at which a viewZ or distance image holds nothing (manifest: >= 1e9).
+inline constexpr float kNoDepth = 1e10f;
+
+struct DepthImage {
+  Image image;  // one channel; empty: the capture has none
+  PellucidDepthEncoding encoding = PELLUCID_DEPTH_VIEW_Z;
+};
+
+struct ShadowMap {
+  DepthImage depth;
+  Matrix clipFromWorld = kIdentity;
+  std::optional<Matrix> viewFromWorld;  // required for VIEW_Z and DISTANCE
+};
+
+struct Light {
+  PellucidLightType type = PELLUCID_LIGHT_DIRECTIONAL;
+  std::array<double, 3> position = {0, 0, 0};
+  std::array<double, 3> direction = {0, 0, -1};  // of travel
+  std::array<double, 3> color = {1, 1, 1};
+  double intensity = 1;
+  double range = 0;
+  double innerConeAngle = 0, outerConeAngle = 0.785;
+  std::optional<ShadowMap> shadowMap;
+};
+
+// How a manifest describes a material. Coefficients are stored in 1/mm whatever unit the file used.
+struct PresetMaterial {
+  std::string preset;
+};
+struct CoefficientMaterial {
+  std::array<double, 3> scattering, absorption;  // 1/mm; scattering is sigma_s before similarity
+  double g = 0, ior = 1.4;
+};
+// Profile given directly, with T(d) = a1 e^{-k1 d} + a2 e^{-k2 d} or, absent, Burley's own slab
+// 1/4 e^{-d/l} + 3/4 e^{-d/3l}.
+struct BurleyMaterial {
+  std::array<double, 3> distance;                                     // mm
+  std::optional<std::array<std::array<double, 4>, 3>> transmittance;  // per channel a1, k1, a2, k2
+};
+struct GaussianMaterial {
+  std::vector<double> variance;               // mm^2, shared by the channels
+  std::vector<std::array<double, 3>> weight;  // RGB per Gaussian
+};
+using MaterialSource = std::variant<PresetMaterial, CoefficientMaterial, BurleyMaterial, GaussianMaterial>;
+
+struct Truth {
+  Image image;  // RGB, already times scale
+};
+
+struct Capture {
+  std::string name;  // path it came from, or the scene's name
+  int width = 0, height = 0;
+  double metersPerUnit = 1;
+  Matrix clipFromView = kIdentity, viewFromWorld = kIdentity;
+
+  DepthImage frontDepth;  // required
+  DepthImage backDepth;
+  Image irradiance;  // RGB; required
+  Image normal;      // XYZ
+  bool normalsInViewSpace = false;
+  Image albedo;                        // RGB
+  std::vector<std::uint8_t> material;  // required; 0 none, i: materials[i - 1]
+
+  std::vector<Light> lights;
+  std::vector<MaterialSource> materials;
+  std::optional<Truth> truth;
+};
+
+}  // namespace pellucid::harness

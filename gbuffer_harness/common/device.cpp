@@ -1,0 +1,309 @@
+#include "common/device.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstring>
+
+#include "common/error.h"
+
+namespace pellucid::harness {
+namespace {
+
+constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
+
+bool hasLayer(const char* name) {
+  uint32_t count = 0;
+  vkEnumerateInstanceLayerProperties(&count, nullptr);
+  std::vector<VkLayerProperties> layers(count);
+  vkEnumerateInstanceLayerProperties(&count, layers.data());
+  return std::any_of(layers.begin(), layers.end(),
+                     [&](const auto& l) { return !std::strcmp(l.layerName, name); });
+}
+
+bool hasPushDescriptors(VkPhysicalDevice device) {
+  uint32_t count = 0;
+  vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr);
+  std::vector<VkExtensionProperties> extensions(count);
+  vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data());
+  return std::any_of(extensions.begin(), extensions.end(), [](const auto& e) {
+    return !std::strcmp(e.extensionName, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME);
+  });
+}
+
+// A queue family that computes, or -1.
+int computeFamily(VkPhysicalDevice device) {
+  uint32_t count = 0;
+  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
+  for (uint32_t i = 0; i < count; ++i)
+    if (families[i].queueFlags & VK_QUEUE_COMPUTE_BIT && families[i].timestampValidBits > 0)
+      return static_cast<int>(i);
+  return -1;
+}
+
+int speed(VkPhysicalDeviceType type) {
+  switch (type) {
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+      return 4;
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+      return 3;
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+      return 2;
+    case VK_PHYSICAL_DEVICE_TYPE_CPU:
+      return 1;
+    default:
+      return 0;
+  }
+}
+
+std::string lower(std::string s) {
+  std::transform(s.begin(), s.end(), s.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return s;
+}
+
+}  // namespace
+
+void check(VkResult result, const char* call) {
+  if (result != VK_SUCCESS)
+    throw DeviceError(std::string(call) + " returned VkResult " + std::to_string(result));
+}
+
+Device::Device(const DeviceOptions& options) {
+  // The destructor does not run when a constructor throws.
+  try {
+    createInstance(options.validation);
+    chooseDevice(options.name);
+    createDevice();
+  } catch (...) {
+    release();
+    throw;
+  }
+}
+
+Device::~Device() { release(); }
+
+void Device::release() {
+  if (device_) {
+    vkDeviceWaitIdle(device_);
+    vkDestroyCommandPool(device_, pool_, nullptr);
+    vkDestroyDevice(device_, nullptr);
+  }
+  if (messenger_) {
+    const auto destroy = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(
+        vkGetInstanceProcAddr(instance_, "vkDestroyDebugUtilsMessengerEXT"));
+    destroy(instance_, messenger_, nullptr);
+  }
+  if (instance_) vkDestroyInstance(instance_, nullptr);
+}
+
+void Device::createInstance(bool validation) {
+  VkApplicationInfo application{VK_STRUCTURE_TYPE_APPLICATION_INFO};
+  application.pApplicationName = "pellucid";
+  application.apiVersion = VK_API_VERSION_1_1;
+  VkInstanceCreateInfo info{VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO};
+  info.pApplicationInfo = &application;
+
+  VkDebugUtilsMessengerCreateInfoEXT messenger{VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT};
+  messenger.messageSeverity =
+      VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+  messenger.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT;
+  messenger.pfnUserCallback = &Device::onMessage;
+  messenger.pUserData = this;
+  const VkValidationFeatureEnableEXT synchronization =
+      VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
+  VkValidationFeaturesEXT features{VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT};
+  features.enabledValidationFeatureCount = 1;
+  features.pEnabledValidationFeatures = &synchronization;
+  const char* extension = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
+  if (validation) {
+    if (!hasLayer(kValidationLayer)) throw DeviceError("the Vulkan validation layers are not installed");
+    info.enabledLayerCount = 1;
+    info.ppEnabledLayerNames = &kValidationLayer;
+    info.enabledExtensionCount = 1;
+    info.ppEnabledExtensionNames = &extension;
+    info.pNext = &features;
+    features.pNext = &messenger;
+  }
+  check(vkCreateInstance(&info, nullptr, &instance_), "vkCreateInstance");
+  if (!validation) return;
+  const auto create = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(
+      vkGetInstanceProcAddr(instance_, "vkCreateDebugUtilsMessengerEXT"));
+  check(create(instance_, &messenger, nullptr, &messenger_), "vkCreateDebugUtilsMessengerEXT");
+}
+
+void Device::chooseDevice(const std::string& name) {
+  uint32_t count = 0;
+  check(vkEnumeratePhysicalDevices(instance_, &count, nullptr), "vkEnumeratePhysicalDevices");
+  std::vector<VkPhysicalDevice> devices(count);
+  if (count > 0)
+    check(vkEnumeratePhysicalDevices(instance_, &count, devices.data()), "vkEnumeratePhysicalDevices");
+
+  std::string seen;
+  int best = -1;
+  for (VkPhysicalDevice candidate : devices) {
+    VkPhysicalDeviceProperties properties;
+    vkGetPhysicalDeviceProperties(candidate, &properties);
+    const int family = computeFamily(candidate);
+    std::string why;
+    if (properties.apiVersion < VK_API_VERSION_1_1)
+      why = "Vulkan 1.1 is missing";
+    else if (!hasPushDescriptors(candidate))
+      why = "VK_KHR_push_descriptor is missing";
+    else if (family < 0)
+      why = "no compute queue with timestamps";
+    seen += "\n  " + std::string(properties.deviceName) + (why.empty() ? "" : " (" + why + ")");
+    if (!why.empty() || lower(properties.deviceName).find(lower(name)) == std::string::npos) continue;
+    if (speed(properties.deviceType) <= best) continue;
+    best = speed(properties.deviceType);
+    physicalDevice_ = candidate;
+    properties_ = properties;
+    queueFamily_ = static_cast<uint32_t>(family);
+  }
+  if (!physicalDevice_)
+    throw DeviceError(devices.empty()
+                          ? "no Vulkan device; install a driver (Debian: mesa-vulkan-drivers)"
+                          : "no usable Vulkan device" +
+                                (name.empty() ? std::string() : " whose name contains \"" + name + "\"") +
+                                "; there are:" + seen);
+}
+
+void Device::createDevice() {
+  VkPhysicalDeviceDriverProperties driver{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
+  VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
+  // Core in 1.2; an older device would ignore the struct and leave the strings empty.
+  if (properties_.apiVersion >= VK_API_VERSION_1_2) properties.pNext = &driver;
+  vkGetPhysicalDeviceProperties2(physicalDevice_, &properties);
+  driver_ = std::string(driver.driverName) + " " + driver.driverInfo;
+
+  const float priority = 1;
+  VkDeviceQueueCreateInfo queue{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO};
+  queue.queueFamilyIndex = queueFamily_;
+  queue.queueCount = 1;
+  queue.pQueuePriorities = &priority;
+  const char* extension = VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME;
+  VkDeviceCreateInfo info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO};
+  info.queueCreateInfoCount = 1;
+  info.pQueueCreateInfos = &queue;
+  info.enabledExtensionCount = 1;
+  info.ppEnabledExtensionNames = &extension;
+  check(vkCreateDevice(physicalDevice_, &info, nullptr, &device_), "vkCreateDevice");
+  vkGetDeviceQueue(device_, queueFamily_, 0, &queue_);
+  VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
+  pool.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT;
+  pool.queueFamilyIndex = queueFamily_;
+  check(vkCreateCommandPool(device_, &pool, nullptr, &pool_), "vkCreateCommandPool");
+}
+
+std::string Device::description() const {
+  return std::string(properties_.deviceName) + (driver_.size() > 1 ? ", " + driver_ : std::string());
+}
+
+void Device::run(const std::function<void(VkCommandBuffer)>& record) {
+  VkCommandBufferAllocateInfo allocate{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
+  allocate.commandPool = pool_;
+  allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+  allocate.commandBufferCount = 1;
+  VkCommandBuffer commandBuffer;
+  check(vkAllocateCommandBuffers(device_, &allocate, &commandBuffer), "vkAllocateCommandBuffers");
+  VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
+  begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+  VkFence fence = VK_NULL_HANDLE;
+  const auto release = [&] {
+    vkDestroyFence(device_, fence, nullptr);
+    vkFreeCommandBuffers(device_, pool_, 1, &commandBuffer);
+  };
+  try {
+    check(vkBeginCommandBuffer(commandBuffer, &begin), "vkBeginCommandBuffer");
+    record(commandBuffer);
+    check(vkEndCommandBuffer(commandBuffer), "vkEndCommandBuffer");
+    VkFenceCreateInfo fenceInfo{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
+    check(vkCreateFence(device_, &fenceInfo, nullptr, &fence), "vkCreateFence");
+    VkSubmitInfo submit{VK_STRUCTURE_TYPE_SUBMIT_INFO};
+    submit.commandBufferCount = 1;
+    submit.pCommandBuffers = &commandBuffer;
+    check(vkQueueSubmit(queue_, 1, &submit, fence), "vkQueueSubmit");
+    check(vkWaitForFences(device_, 1, &fence, VK_TRUE, UINT64_MAX), "vkWaitForFences");
+  } catch (...) {
+    release();
+    throw;
+  }
+  release();
+}
+
+uint32_t Device::memoryType(uint32_t typeBits, VkMemoryPropertyFlags flags) const {
+  VkPhysicalDeviceMemoryProperties memory;
+  vkGetPhysicalDeviceMemoryProperties(physicalDevice_, &memory);
+  for (uint32_t i = 0; i < memory.memoryTypeCount; ++i)
+    if (typeBits & (1u << i) && (memory.memoryTypes[i].propertyFlags & flags) == flags) return i;
+  throw DeviceError("the device has no memory type with VkMemoryPropertyFlags " + std::to_string(flags));
+}
+
+std::vector<std::string> Device::validationMessages() const {
+  const std::lock_guard lock(messagesMutex_);
+  return messages_;
+}
+
+VkBool32 Device::onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
+                           const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
+  auto* self = static_cast<Device*>(user);
+  const std::lock_guard lock(self->messagesMutex_);
+  self->messages_.emplace_back(data->pMessage);
+  return VK_FALSE;
+}
+
+HostBuffer::HostBuffer(const Device& device, VkDeviceSize size, VkBufferUsageFlags usage)
+    : device_(device), size_(size) {
+  VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
+  info.size = size;
+  info.usage = usage;
+  check(vkCreateBuffer(device.handle(), &info, nullptr, &buffer_), "vkCreateBuffer");
+  VkMemoryRequirements needs;
+  vkGetBufferMemoryRequirements(device.handle(), buffer_, &needs);
+  VkMemoryAllocateInfo allocate{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
+  allocate.allocationSize = needs.size;
+  allocate.memoryTypeIndex = device.memoryType(
+      needs.memoryTypeBits, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
+  check(vkAllocateMemory(device.handle(), &allocate, nullptr, &memory_), "vkAllocateMemory");
+  check(vkBindBufferMemory(device.handle(), buffer_, memory_, 0), "vkBindBufferMemory");
+  check(vkMapMemory(device.handle(), memory_, 0, VK_WHOLE_SIZE, 0, &mapped_), "vkMapMemory");
+}
+
+HostBuffer::~HostBuffer() {
+  vkDestroyBuffer(device_.handle(), buffer_, nullptr);
+  vkFreeMemory(device_.handle(), memory_, nullptr);
+}
+
+Timestamps::Timestamps(const Device& device, uint32_t count) : device_(device), count_(count) {
+  VkQueryPoolCreateInfo info{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
+  info.queryType = VK_QUERY_TYPE_TIMESTAMP;
+  info.queryCount = count;
+  check(vkCreateQueryPool(device.handle(), &info, nullptr, &pool_), "vkCreateQueryPool");
+}
+
+Timestamps::~Timestamps() { vkDestroyQueryPool(device_.handle(), pool_, nullptr); }
+
+void Timestamps::reset(VkCommandBuffer commandBuffer) const {
+  vkCmdResetQueryPool(commandBuffer, pool_, 0, count_);
+}
+
+void Timestamps::mark(VkCommandBuffer commandBuffer, uint32_t index) const {
+  vkCmdWriteTimestamp(commandBuffer, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, pool_, index);
+}
+
+std::vector<double> Timestamps::intervals() const {
+  std::vector<uint64_t> ticks(count_);
+  check(
+      vkGetQueryPoolResults(device_.handle(), pool_, 0, count_, ticks.size() * sizeof(uint64_t), ticks.data(),
+                            sizeof(uint64_t), VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
+      "vkGetQueryPoolResults");
+  std::vector<double> result;
+  for (uint32_t i = 1; i < count_; ++i)
+    result.push_back(static_cast<double>(ticks[i] - ticks[i - 1]) *
+                     static_cast<double>(device_.properties().limits.timestampPeriod) * 1e-3);
+  return result;
+}
+
+}  // namespace pellucid::harness

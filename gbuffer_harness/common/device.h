@@ -1,0 +1,104 @@
+// A Vulkan device with one compute queue: what an engine already has before it meets Pellucid.
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+#include <functional>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace pellucid::harness {
+
+// Throws DeviceError naming the call unless `result` is VK_SUCCESS.
+void check(VkResult result, const char* call);
+
+struct DeviceOptions {
+  std::string name;         // part of the device's name, any case; empty: the fastest kind there is
+  bool validation = false;  // core and synchronization validation; messages are collected
+};
+
+class Device {
+public:
+  // Throws DeviceError that lists the devices there are.
+  explicit Device(const DeviceOptions& options = {});
+  ~Device();
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  VkInstance instance() const { return instance_; }
+  VkPhysicalDevice physicalDevice() const { return physicalDevice_; }
+  VkDevice handle() const { return device_; }
+  const VkPhysicalDeviceProperties& properties() const { return properties_; }
+  std::string description() const;  // "name, driver and version"
+
+  // Records with `record`, submits and waits.
+  void run(const std::function<void(VkCommandBuffer)>& record);
+
+  uint32_t memoryType(uint32_t typeBits, VkMemoryPropertyFlags flags) const;
+
+  // What the validation layers have said so far; warnings and errors.
+  std::vector<std::string> validationMessages() const;
+
+private:
+  void createInstance(bool validation);
+  void chooseDevice(const std::string& name);
+  void createDevice();
+  void release();
+  static VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT,
+                                                  VkDebugUtilsMessageTypeFlagsEXT,
+                                                  const VkDebugUtilsMessengerCallbackDataEXT*, void*);
+
+  VkInstance instance_ = VK_NULL_HANDLE;
+  VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
+  VkPhysicalDevice physicalDevice_ = VK_NULL_HANDLE;
+  VkPhysicalDeviceProperties properties_{};
+  std::string driver_;
+  uint32_t queueFamily_ = 0;
+  VkDevice device_ = VK_NULL_HANDLE;
+  VkQueue queue_ = VK_NULL_HANDLE;
+  VkCommandPool pool_ = VK_NULL_HANDLE;
+  mutable std::mutex messagesMutex_;
+  std::vector<std::string> messages_;
+};
+
+// Host-visible, coherent, mapped.
+class HostBuffer {
+public:
+  HostBuffer(const Device& device, VkDeviceSize size, VkBufferUsageFlags usage);
+  ~HostBuffer();
+  HostBuffer(const HostBuffer&) = delete;
+  HostBuffer& operator=(const HostBuffer&) = delete;
+
+  VkBuffer handle() const { return buffer_; }
+  VkDeviceSize size() const { return size_; }
+  void* mapped() const { return mapped_; }
+
+private:
+  const Device& device_;
+  VkDeviceSize size_;
+  VkBuffer buffer_ = VK_NULL_HANDLE;
+  VkDeviceMemory memory_ = VK_NULL_HANDLE;
+  void* mapped_ = nullptr;
+};
+
+// GPU timestamps around what is recorded between mark() calls.
+class Timestamps {
+public:
+  Timestamps(const Device& device, uint32_t count);
+  ~Timestamps();
+  Timestamps(const Timestamps&) = delete;
+  Timestamps& operator=(const Timestamps&) = delete;
+
+  void reset(VkCommandBuffer commandBuffer) const;
+  void mark(VkCommandBuffer commandBuffer, uint32_t index) const;
+  // Microseconds between consecutive marks.
+  std::vector<double> intervals() const;
+
+private:
+  const Device& device_;
+  uint32_t count_;
+  VkQueryPool pool_ = VK_NULL_HANDLE;
+};
+
+}  // namespace pellucid::harness

@@ -1,0 +1,164 @@
+#include "common/gpu_image.h"
+
+#include <algorithm>
+#include <cstring>
+#include <glm/gtc/packing.hpp>
+
+#include "common/error.h"
+
+namespace pellucid::harness {
+namespace {
+
+struct Texel {
+  int channels;
+  int bytes;  // per channel
+};
+
+Texel texelOf(VkFormat format) {
+  switch (format) {
+    case VK_FORMAT_R32_SFLOAT:
+      return {1, 4};
+    case VK_FORMAT_R16G16B16A16_SFLOAT:
+      return {4, 2};
+    case VK_FORMAT_R32G32B32A32_SFLOAT:
+      return {4, 4};
+    case VK_FORMAT_R8_UINT:
+      return {1, 1};
+    default:
+      throw DeviceError("GpuImage does not know VkFormat " + std::to_string(format));
+  }
+}
+
+// From any layout and use to GENERAL, ready for everything: the harness values clarity over overlap.
+void barrier(VkCommandBuffer commandBuffer, VkImage image, VkImageLayout from) {
+  VkImageMemoryBarrier b{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER};
+  b.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
+  b.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
+  b.oldLayout = from;
+  b.newLayout = VK_IMAGE_LAYOUT_GENERAL;
+  b.srcQueueFamilyIndex = b.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+  b.image = image;
+  b.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+  vkCmdPipelineBarrier(commandBuffer, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
+                       0, 0, nullptr, 0, nullptr, 1, &b);
+}
+
+VkBufferImageCopy wholeImage(int width, int height) {
+  VkBufferImageCopy region{};
+  region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+  region.imageExtent = {static_cast<uint32_t>(width), static_cast<uint32_t>(height), 1};
+  return region;
+}
+
+}  // namespace
+
+GpuImage::GpuImage(Device& device, int width, int height, VkFormat format)
+    : device_(device), width_(width), height_(height), format_(format) {
+  VkImageCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO};
+  info.imageType = VK_IMAGE_TYPE_2D;
+  info.format = format;
+  info.extent = {static_cast<uint32_t>(width), static_cast<uint32_t>(height), 1};
+  info.mipLevels = info.arrayLayers = 1;
+  info.samples = VK_SAMPLE_COUNT_1_BIT;
+  info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  if (format != VK_FORMAT_R8_UINT) info.usage |= VK_IMAGE_USAGE_STORAGE_BIT;
+  const auto limit = static_cast<int>(device.properties().limits.maxImageDimension2D);
+  if (width < 1 || height < 1 || width > limit || height > limit)
+    throw DeviceError("an image of " + std::to_string(width) + " x " + std::to_string(height) +
+                      " does not fit the device, whose limit is " + std::to_string(limit));
+  check(vkCreateImage(device.handle(), &info, nullptr, &image_), "vkCreateImage");
+  VkMemoryRequirements needs;
+  vkGetImageMemoryRequirements(device.handle(), image_, &needs);
+  VkMemoryAllocateInfo allocate{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
+  allocate.allocationSize = needs.size;
+  allocate.memoryTypeIndex = device.memoryType(needs.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
+  check(vkAllocateMemory(device.handle(), &allocate, nullptr, &memory_), "vkAllocateMemory");
+  check(vkBindImageMemory(device.handle(), image_, memory_, 0), "vkBindImageMemory");
+  VkImageViewCreateInfo view{VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
+  view.image = image_;
+  view.viewType = VK_IMAGE_VIEW_TYPE_2D;
+  view.format = format;
+  view.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+  check(vkCreateImageView(device.handle(), &view, nullptr, &view_), "vkCreateImageView");
+}
+
+GpuImage::~GpuImage() {
+  vkDestroyImageView(device_.handle(), view_, nullptr);
+  vkDestroyImage(device_.handle(), image_, nullptr);
+  vkFreeMemory(device_.handle(), memory_, nullptr);
+}
+
+void GpuImage::transfer(const void* bytes) {
+  const Texel texel = texelOf(format_);
+  const auto size =
+      static_cast<VkDeviceSize>(width_) * static_cast<VkDeviceSize>(height_ * texel.channels * texel.bytes);
+  HostBuffer staging(device_, size, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+  std::memcpy(staging.mapped(), bytes, static_cast<size_t>(size));
+  device_.run([&](VkCommandBuffer commandBuffer) {
+    barrier(commandBuffer, image_, VK_IMAGE_LAYOUT_UNDEFINED);
+    const VkBufferImageCopy region = wholeImage(width_, height_);
+    vkCmdCopyBufferToImage(commandBuffer, staging.handle(), image_, VK_IMAGE_LAYOUT_GENERAL, 1, &region);
+    barrier(commandBuffer, image_, VK_IMAGE_LAYOUT_GENERAL);
+  });
+}
+
+void GpuImage::upload(const Image& source) {
+  if (source.width != width_ || source.height != height_)
+    throw DeviceError("upload of " + std::to_string(source.width) + " x " + std::to_string(source.height) +
+                      " into an image of " + std::to_string(width_) + " x " + std::to_string(height_));
+  const Texel texel = texelOf(format_);
+  std::vector<float> full(source.pixels() * static_cast<size_t>(texel.channels));
+  for (size_t i = 0; i < source.pixels(); ++i)
+    for (int c = 0; c < texel.channels; ++c)
+      full[i * static_cast<size_t>(texel.channels) + static_cast<size_t>(c)] =
+          c < source.channels ? source.data[i * static_cast<size_t>(source.channels) + static_cast<size_t>(c)]
+                              : (c == 3 ? 1.0f : 0.0f);
+  if (texel.bytes == 4) return transfer(full.data());
+  std::vector<glm::uint16> half(full.size());
+  std::transform(full.begin(), full.end(), half.begin(), [](float v) { return glm::packHalf1x16(v); });
+  transfer(half.data());
+}
+
+void GpuImage::upload(const std::vector<std::uint8_t>& source) {
+  if (source.size() != static_cast<size_t>(width_) * static_cast<size_t>(height_))
+    throw DeviceError("upload of " + std::to_string(source.size()) + " bytes into an image of " +
+                      std::to_string(width_) + " x " + std::to_string(height_));
+  transfer(source.data());
+}
+
+void GpuImage::clear() {
+  const Texel texel = texelOf(format_);
+  transfer(std::vector<std::uint8_t>(static_cast<size_t>(width_) * static_cast<size_t>(height_) *
+                                     static_cast<size_t>(texel.channels * texel.bytes))
+               .data());
+}
+
+Image GpuImage::download() const {
+  const Texel texel = texelOf(format_);
+  Image result(width_, height_, texel.channels);
+  HostBuffer staging(device_, result.data.size() * static_cast<size_t>(texel.bytes),
+                     VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+  device_.run([&](VkCommandBuffer commandBuffer) {
+    barrier(commandBuffer, image_, VK_IMAGE_LAYOUT_GENERAL);
+    const VkBufferImageCopy region = wholeImage(width_, height_);
+    vkCmdCopyImageToBuffer(commandBuffer, image_, VK_IMAGE_LAYOUT_GENERAL, staging.handle(), 1, &region);
+    VkMemoryBarrier toHost{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr, VK_ACCESS_TRANSFER_WRITE_BIT,
+                           VK_ACCESS_HOST_READ_BIT};
+    vkCmdPipelineBarrier(commandBuffer, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1,
+                         &toHost, 0, nullptr, 0, nullptr);
+  });
+  if (texel.bytes == 4) {
+    std::memcpy(result.data.data(), staging.mapped(), result.data.size() * sizeof(float));
+  } else if (texel.bytes == 2) {
+    const auto* half = static_cast<const glm::uint16*>(staging.mapped());
+    std::transform(half, half + result.data.size(), result.data.begin(),
+                   [](glm::uint16 v) { return glm::unpackHalf1x16(v); });
+  } else {
+    const auto* bytes = static_cast<const std::uint8_t*>(staging.mapped());
+    std::transform(bytes, bytes + result.data.size(), result.data.begin(),
+                   [](std::uint8_t v) { return static_cast<float>(v); });
+  }
+  return result;
+}
+
+}  // namespace pellucid::harness

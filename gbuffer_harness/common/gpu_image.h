@@ -1,0 +1,40 @@
+// A 2D image with its view and memory, in VK_IMAGE_LAYOUT_GENERAL from its first upload or clear on.
+#pragma once
+
+#include "common/device.h"
+#include "common/image.h"
+#include "pellucid/pellucid.h"
+
+namespace pellucid::harness {
+
+class GpuImage {
+public:
+  // Usable as sampled and storage image and for transfers. Formats: R32_SFLOAT, R16G16B16A16_SFLOAT,
+  // R32G32B32A32_SFLOAT, R8_UINT (not storage).
+  GpuImage(Device& device, int width, int height, VkFormat format);
+  ~GpuImage();
+  GpuImage(const GpuImage&) = delete;
+  GpuImage& operator=(const GpuImage&) = delete;
+
+  // Converts to the image's format. Channels that the source lacks become 0, alpha 1.
+  void upload(const Image& source);
+  void upload(const std::vector<std::uint8_t>& source);  // R8_UINT
+  void clear();                                          // all bits of every texel 0
+  Image download() const;
+
+  // How an engine hands it to Pellucid.
+  PellucidImage use() const { return {view_, VK_IMAGE_LAYOUT_GENERAL}; }
+  VkImage handle() const { return image_; }
+
+private:
+  void transfer(const void* bytes);
+
+  Device& device_;
+  int width_, height_;
+  VkFormat format_;
+  VkImage image_ = VK_NULL_HANDLE;
+  VkDeviceMemory memory_ = VK_NULL_HANDLE;
+  VkImageView view_ = VK_NULL_HANDLE;
+};
+
+}  // namespace pellucid::harness

@@ -1,0 +1,33 @@
+// Plain float image: interleaved channels, row 0 at the top.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace pellucid::harness {
+
+struct Image {
+  int width = 0, height = 0, channels = 0;
+  std::vector<float> data;
+
+  Image() = default;
+  Image(int w, int h, int c, float value = 0.0f)
+      : width(w),
+        height(h),
+        channels(c),
+        data(static_cast<std::size_t>(w) * static_cast<std::size_t>(h) * static_cast<std::size_t>(c), value) {
+  }
+
+  bool empty() const { return data.empty(); }
+  std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
+  float* at(int x, int y) { return data.data() + index(x, y); }
+  const float* at(int x, int y) const { return data.data() + index(x, y); }
+
+private:
+  std::size_t index(int x, int y) const {
+    return (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) *
+           static_cast<std::size_t>(channels);
+  }
+};
+
+}  // namespace pellucid::harness

@@ -1,0 +1,151 @@
+#include "replay/replay.h"
+
+#include "common/error.h"
+#include "common/gpu_image.h"
+
+namespace pellucid::harness {
+
+// The device images of one frame, uploaded.
+class FrameRun::Images {
+public:
+  Images(Device& device, const Capture& capture, const ReplaySettings& settings, FrameData& data)
+      : device_(device), width_(capture.width), height_(capture.height) {
+    PellucidFrame& f = data.frame;
+    f.frontDepth = add(capture.frontDepth.image, VK_FORMAT_R32_SFLOAT);
+    if (!capture.backDepth.image.empty()) f.backDepth = add(capture.backDepth.image, VK_FORMAT_R32_SFLOAT);
+    GpuImage& irradiance = create(width_, height_, settings.outputFormat);
+    irradiance.upload(capture.irradiance);
+    f.irradiance = irradiance.use();
+    if (!capture.normal.empty()) f.normal = add(capture.normal, VK_FORMAT_R32G32B32A32_SFLOAT);
+    if (!capture.albedo.empty()) f.albedo = add(capture.albedo, VK_FORMAT_R32G32B32A32_SFLOAT);
+    GpuImage& material = create(width_, height_, VK_FORMAT_R8_UINT);
+    material.upload(capture.material);
+    f.material = material.use();
+    for (size_t i = 0; i < data.shadowDepths.size(); ++i)
+      data.shadowImages[i] = add(*data.shadowDepths[i], VK_FORMAT_R32_SFLOAT);
+
+    const bool debug = settings.debugView != PELLUCID_DEBUG_NONE;
+    if (settings.aliasOutput && !debug) {
+      f.output = f.irradiance;
+      output_ = &irradiance;
+    } else {
+      output_ = &create(width_, height_, settings.outputFormat);
+      f.output = output_->use();
+      if (debug)
+        output_->clear();
+      else
+        output_->upload(composited(capture));
+    }
+    PellucidImageNeed needs[PELLUCID_MAX_TRANSIENTS];
+    uint32_t count = PELLUCID_MAX_TRANSIENTS;
+    requireOk(pellucidGetImageNeeds(&f, &count, needs), f, capture.name);
+    for (uint32_t i = 0; i < count; ++i) {
+      GpuImage& image =
+          create(static_cast<int>(needs[i].extent[0]), static_cast<int>(needs[i].extent[1]), needs[i].format);
+      image.clear();  // brings it into GENERAL
+      f.transients[i] = image.use();
+    }
+  }
+
+  Image output() const { return output_->download(); }
+
+private:
+  GpuImage& create(int width, int height, VkFormat format) {
+    images_.push_back(std::make_unique<GpuImage>(device_, width, height, format));
+    return *images_.back();
+  }
+  PellucidImage add(const Image& image, VkFormat format) {
+    GpuImage& gpu = create(image.width, image.height, format);
+    gpu.upload(image);
+    return gpu.use();
+  }
+  static Image composited(const Capture& capture) {
+    Image result = capture.irradiance;
+    for (size_t i = 0; i < result.data.size() && !capture.albedo.empty(); ++i)
+      result.data[i] *= capture.albedo.data[i];
+    return result;
+  }
+
+  Device& device_;
+  int width_, height_;
+  std::vector<std::unique_ptr<GpuImage>> images_;
+  GpuImage* output_ = nullptr;
+};
+
+namespace {
+
+void onContextMessage(void* user, PellucidSeverity, const char* field, const char* message) {
+  *static_cast<std::string*>(user) += std::string(field) + " " + message;
+}
+
+}  // namespace
+
+Context::Context(Device& device) {
+  std::string message;
+  PellucidContextDesc desc;
+  pellucidInitContextDesc(&desc);
+  desc.instance = device.instance();
+  desc.physicalDevice = device.physicalDevice();
+  desc.device = device.handle();
+  desc.getInstanceProcAddr = &vkGetInstanceProcAddr;
+  desc.message = &onContextMessage;
+  desc.messageUser = &message;
+  const PellucidResult result = pellucidCreateContext(&desc, &context_);
+  if (result != PELLUCID_OK) throw DeviceError(std::string(pellucidResultName(result)) + ": " + message);
+}
+
+Context::~Context() { pellucidDestroyContext(context_); }
+
+FrameRun::FrameRun(Device& device, const Context& context, const Capture& capture,
+                   const std::vector<PellucidMaterial>& materials, const ReplaySettings& settings)
+    : context_(context), name_(capture.name), plan_(std::make_unique<PellucidPlan>()) {
+  makeFrame(capture, materials, settings, data_);
+  images_ = std::make_unique<Images>(device, capture, settings, data_);
+  const PellucidFrame& frame = data_.frame;
+  requireOk(pellucidValidateFrame(&frame, nullptr, nullptr), frame, name_);
+  requireOk(pellucidBuildPlan(&frame, nullptr, plan_.get()), frame, name_);
+  constants_ = std::make_unique<HostBuffer>(
+      device, plan_->constantsSize, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+}
+
+FrameRun::~FrameRun() = default;
+
+void FrameRun::record(VkCommandBuffer commandBuffer, const PellucidPlan& plan) const {
+  const PellucidConstantsSlice slice{constants_->handle(), 0, constants_->size(), constants_->mapped()};
+  requireOk(pellucidRecordPlan(context_.handle(), commandBuffer, &plan, &data_.frame, &slice), data_.frame,
+            name_);
+}
+
+void FrameRun::record(VkCommandBuffer commandBuffer) const { record(commandBuffer, *plan_); }
+
+void FrameRun::record(VkCommandBuffer commandBuffer, uint32_t dispatch) const {
+  PellucidPlan single = *plan_;
+  single.dispatchCount = 1;
+  single.dispatches[0] = plan_->dispatches[dispatch];
+  record(commandBuffer, single);
+}
+
+Image FrameRun::output() const { return images_->output(); }
+
+ReplayResult Replayer::run(const Capture& capture, const std::vector<PellucidMaterial>& materials,
+                           const ReplaySettings& settings) {
+  const FrameRun run(device_, context_, capture, materials, settings);
+  ReplayResult result;
+  result.plan = run.plan();
+  Timestamps timestamps(device_, result.plan.dispatchCount + 1);
+  device_.run([&](VkCommandBuffer commandBuffer) {
+    timestamps.reset(commandBuffer);
+    timestamps.mark(commandBuffer, 0);
+    for (uint32_t i = 0; i < result.plan.dispatchCount; ++i) {
+      run.record(commandBuffer, i);
+      timestamps.mark(commandBuffer, i + 1);
+    }
+  });
+  const std::vector<double> intervals = timestamps.intervals();
+  for (uint32_t i = 0; i < result.plan.dispatchCount; ++i)
+    result.times.push_back({result.plan.dispatches[i].name, intervals[i]});
+  result.output = run.output();
+  return result;
+}
+
+}  // namespace pellucid::harness

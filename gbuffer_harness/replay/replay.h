@@ -1,0 +1,82 @@
+// Capture in, module, image out: one frame of an engine, on any Vulkan device.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/device.h"
+#include "replay/frame.h"
+
+namespace pellucid::harness {
+
+// A module context on a device.
+class Context {
+public:
+  explicit Context(Device& device);  // throws DeviceError with the module's sentence
+  ~Context();
+  Context(const Context&) = delete;
+  Context& operator=(const Context&) = delete;
+
+  const PellucidContext* handle() const { return context_; }
+
+private:
+  PellucidContext* context_ = nullptr;
+};
+
+// One capture on the device, planned and ready to record as often as wanted.
+class FrameRun {
+public:
+  // `materials[i]` is the compiled capture.materials[i]. Throws InputError for what validation refuses.
+  // The capture is not needed afterwards.
+  FrameRun(Device& device, const Context& context, const Capture& capture,
+           const std::vector<PellucidMaterial>& materials, const ReplaySettings& settings);
+  ~FrameRun();
+
+  const PellucidPlan& plan() const { return *plan_; }
+  const PellucidFrame& frame() const { return data_.frame; }
+
+  void record(VkCommandBuffer commandBuffer) const;                     // the whole plan
+  void record(VkCommandBuffer commandBuffer, uint32_t dispatch) const;  // one dispatch of it
+
+  // RGBA. Outside the rect and at material 0: irradiance times albedo, as an engine that composites in
+  // place would have there; 0 for debug views.
+  Image output() const;
+
+private:
+  class Images;
+
+  void record(VkCommandBuffer commandBuffer, const PellucidPlan& plan) const;
+
+  const Context& context_;
+  std::string name_;
+  FrameData data_;
+  std::unique_ptr<Images> images_;
+  std::unique_ptr<PellucidPlan> plan_;  // too large for a stack
+  std::unique_ptr<HostBuffer> constants_;
+};
+
+struct DispatchTime {
+  std::string name;
+  double microseconds;
+};
+
+struct ReplayResult {
+  Image output;  // as FrameRun::output
+  PellucidPlan plan;
+  std::vector<DispatchTime> times;  // GPU timestamps, one per dispatch
+};
+
+class Replayer {
+public:
+  explicit Replayer(Device& device) : device_(device), context_(device) {}
+
+  ReplayResult run(const Capture& capture, const std::vector<PellucidMaterial>& materials,
+                   const ReplaySettings& settings);
+
+private:
+  Device& device_;
+  Context context_;
+};
+
+}  // namespace pellucid::harness
