@@ -2,9 +2,8 @@
 # each variant includes, so editing any .glsl or shared header rebuilds exactly its users.
 find_program(PELLUCID_GLSLANG glslangValidator REQUIRED)
 
-# pellucid_shader(target array pass [definitions...]): array is the C name of the SPIR-V words.
-function(pellucid_shader target array pass)
-  set(source ${PROJECT_SOURCE_DIR}/compute/passes/${pass}.comp)
+# pellucid_shader(target array source [definitions...]): array is the C name of the SPIR-V words.
+function(pellucid_shader target array source)
   set(directory ${CMAKE_CURRENT_BINARY_DIR}/spirv)
   set(header ${directory}/${array}.h)
   file(MAKE_DIRECTORY ${directory})
@@ -25,10 +24,14 @@ function(pellucid_shader target array pass)
 endfunction()
 
 function(pellucid_embed_shaders target)
+  set(passes ${PROJECT_SOURCE_DIR}/compute/passes)
   foreach(bits 16 32)
     set(format FORMAT=rgba${bits}f)
-    pellucid_shader(${target} kTranslucency${bits}f translucency ${format})
-    pellucid_shader(${target} kDebug${bits}f translucency ${format} DEBUG_VIEWS)
-    pellucid_shader(${target} kDiffuse${bits}f diffuse ${format})
+    if(bits EQUAL 16)
+      list(APPEND format HALF)
+    endif()
+    pellucid_shader(${target} kTranslucency${bits}f ${passes}/translucency.comp ${format})
+    pellucid_shader(${target} kDebug${bits}f ${passes}/translucency.comp ${format} DEBUG_VIEWS)
+    pellucid_shader(${target} kDiffuse${bits}f ${passes}/diffuse.comp ${format})
   endforeach()
 endfunction()

@@ -9,4 +9,12 @@ vec3 sanitize(vec3 v) {
   return v;
 }
 
+// v rounded to the nearest half, ties to even. Image stores may truncate (Vulkan leaves it open), which
+// darkens by up to 1e-3 a pass; what is already a half is stored as it is on every device. v >= 0.
+vec3 roundToHalf(vec3 v) {
+  uvec3 bits = floatBitsToUint(v);
+  bits += 0xFFFu + ((bits >> 13) & 1u); // half keeps 10 of 23 mantissa bits
+  return uintBitsToFloat(bits & 0xFFFFE000u);
+}
+
 #endif

@@ -12,8 +12,8 @@ float transmittanceExp2(vec4 p, float d) {
 float transmittanceSinhExp(vec4 p, float c, float d) {
   float y = max(p.y * d + p.z, 1.0e-6);
   float e = exp(-y);
-  // 1 - e^2 loses its bits where y is small; 2y(1 - y) is its series there (error 2/3 y^2).
-  float denominator = y < 1.0e-3 ? 2.0 * y * (1.0 - y) : 1.0 - e * e;
+  // 1 - e^2 loses its bits where y is small; its series there is off by 2/15 y^4 < 1e-6.
+  float denominator = y < 0.05 ? 2.0 * y * (1.0 - y * (1.0 - y * (2.0 / 3.0 - y / 3.0))) : 1.0 - e * e;
   return p.x * 2.0 * e / denominator + p.w * exp(-c * d);
 }
 

@@ -40,7 +40,11 @@ float frontDistance(ivec2 pixel) {
 // `last`: this is the frame's final write, so the post-scatter albedo applies.
 void writeResult(ivec2 pixel, vec3 color, float alpha, bool last) {
   if (last && hasFlag(PELLUCID_FLAG_ALBEDO)) color *= sanitize(texelFetch(albedoImage, pixel, 0).rgb);
-  imageStore(destinationImage, pixel, vec4(sanitize(color), alpha));
+  color = sanitize(color);
+#ifdef HALF
+  color = roundToHalf(color);
+#endif
+  imageStore(destinationImage, pixel, vec4(color, alpha));
 }
 
 #endif

@@ -1,0 +1,115 @@
+// A valid frame without images, to be bent by tests.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "pellucid/pellucid.h"
+
+namespace pellucid::test {
+
+// skin1-like numbers; only their validity matters where no picture is compared.
+inline PellucidMaterial plainMaterial() {
+  PellucidMaterial m{};
+  m.structSize = sizeof m;
+  m.transmittanceModel = PELLUCID_TRANSMITTANCE_EXP2;
+  m.gaussianCount = 2;
+  for (int c = 0; c < 3; ++c) {
+    const float t[5] = {0.6f, 0.5f, 0.3f, 2.0f, 0};
+    std::copy(t, t + 5, m.transmittance[c]);
+    m.reflectance[c] = 0.5f;
+    m.gaussianVariance[c][0] = 0.2f;
+    m.gaussianVariance[c][1] = 2.0f;
+    m.gaussianWeight[c][0] = 0.4f;
+    m.gaussianWeight[c][1] = 0.6f;
+    m.radius[c] = 5;
+  }
+  return m;
+}
+
+struct Frame {
+  PellucidFrame frame;
+  PellucidMaterial material = plainMaterial();
+  std::vector<PellucidLight> lights;
+  std::vector<PellucidShadowMap> maps;
+  std::vector<PellucidImage> images;
+
+  // One directional light per shadow image; without images one light without a map.
+  explicit Frame(uint32_t shadowImages = 1) {
+    pellucidInitFrame(&frame);
+    frame.imageExtent[0] = 100;
+    frame.imageExtent[1] = 50;
+    frame.metersPerUnit = 0.001f;
+    const float projection[16] = {1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 0, -1, 0, 0, 0.1f, 0};  // reversed, infinite
+    std::copy(projection, projection + 16, frame.clipFromView);
+    frame.frontDepth = frame.backDepth = frame.irradiance = frame.material = frame.output = view();
+    for (uint32_t i = 0; i < shadowImages; ++i) {
+      PellucidShadowMap map{};
+      map.image = i;
+      map.extent[0] = map.extent[1] = 64;
+      const float clip[16] = {0.1f, 0, 0, 0, 0, 0.1f, 0, 0, 0, 0, -0.01f, 0, 0, 0, 0.5f, 1};
+      std::copy(clip, clip + 16, map.clipFromWorld);
+      maps.push_back(map);
+      images.push_back(view());
+      lights.push_back(light(i, 1));
+    }
+    if (shadowImages == 0) lights.push_back(light(0, 0));
+    use();
+  }
+  Frame(const Frame&) = delete;
+
+  // After a change to the vectors.
+  void use() {
+    frame.materialCount = 1;
+    frame.materials = &material;
+    frame.lightCount = static_cast<uint32_t>(lights.size());
+    frame.lights = lights.data();
+    frame.shadowMapCount = static_cast<uint32_t>(maps.size());
+    frame.shadowMaps = maps.data();
+    frame.shadowImageCount = static_cast<uint32_t>(images.size());
+    frame.shadowImages = images.data();
+  }
+
+  PellucidPlan plan() const {
+    PellucidPlan plan;
+    EXPECT_EQ(pellucidBuildPlan(&frame, nullptr, &plan), PELLUCID_OK) << problems();
+    return plan;
+  }
+
+  // Every message of pellucidValidateFrame, "field message" a line.
+  std::string problems(PellucidSeverity least = PELLUCID_SEVERITY_ERROR) const {
+    struct All {
+      PellucidSeverity least;
+      std::string text;
+    } all{least, {}};
+    pellucidValidateFrame(
+        &frame,
+        [](void* user, PellucidSeverity severity, const char* field, const char* message) {
+          auto& a = *static_cast<All*>(user);
+          if (severity >= a.least) a.text += std::string(field) + " " + message + "\n";
+        },
+        &all);
+    return all.text;
+  }
+
+  // Planning never dereferences a view.
+  static PellucidImage view() {
+    return {reinterpret_cast<VkImageView>(uintptr_t{1}), VK_IMAGE_LAYOUT_GENERAL};
+  }
+
+  static PellucidLight light(uint32_t firstMap, uint32_t mapCount) {
+    PellucidLight l{};
+    l.type = PELLUCID_LIGHT_DIRECTIONAL;
+    l.direction[2] = 1;
+    l.color[0] = l.color[1] = l.color[2] = 1;
+    l.intensity = 3;
+    l.firstShadowMap = firstMap;
+    l.shadowMapCount = mapCount;
+    return l;
+  }
+};
+
+}  // namespace pellucid::test

@@ -1,0 +1,120 @@
+// A validated Vulkan device shared by the GPU tests. No device fails the tests; one validation or
+// synchronization message fails the test that caused it.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <memory>
+
+#include "common/device.h"
+#include "replay/replay.h"
+
+namespace pellucid::test {
+
+using namespace pellucid::harness;
+
+class GpuTest : public testing::Test {
+protected:
+  static Device& device() {
+    static Device shared({"", true});
+    return shared;
+  }
+  static Replayer& replayer() {
+    static Replayer shared(device());
+    return shared;
+  }
+
+  void SetUp() override { messagesBefore_ = device().validationMessages().size(); }
+  void TearDown() override {
+    const std::vector<std::string> messages = device().validationMessages();
+    for (size_t i = messagesBefore_; i < messages.size(); ++i) ADD_FAILURE() << messages[i];
+  }
+
+  static Image replay(const Capture& capture, const PellucidMaterial& material,
+                      const ReplaySettings& settings = {}) {
+    return replayer().run(capture, {material}, settings).output;
+  }
+
+private:
+  size_t messagesBefore_ = 0;
+};
+
+// T = e^{-d / 2 mm} in red, e^{-d} in green, 0.7 e^{-2 d} + 0.3 e^{-d / 4 mm} in blue.
+inline PellucidMaterial testMaterial() {
+  PellucidMaterial m{};
+  m.structSize = sizeof m;
+  m.transmittanceModel = PELLUCID_TRANSMITTANCE_EXP2;
+  const float t[3][5] = {{1, 0.5f, 0, 0, 0}, {1, 1, 0, 0, 0}, {0.7f, 2, 0.3f, 0.25f, 0}};
+  std::memcpy(m.transmittance, t, sizeof t);
+  m.gaussianCount = 2;
+  for (int c = 0; c < 3; ++c) {
+    m.reflectance[c] = 0.5f;
+    m.gaussianVariance[c][0] = 0.2f * static_cast<float>(c + 1);
+    m.gaussianVariance[c][1] = 1.5f * static_cast<float>(c + 1);
+    m.gaussianWeight[c][0] = 0.4f;
+    m.gaussianWeight[c][1] = 0.6f;
+    m.radius[c] = 3.1f * std::sqrt(m.gaussianVariance[c][1]);
+  }
+  return m;
+}
+
+// A slab facing an orthographic right-handed camera: front at 10 mm, back `thickness` mm behind it,
+// pixels of 0.25 mm, material 1 and normals towards the camera everywhere, irradiance (1, 0.5, 0.25).
+inline Capture flatCapture(int width, int height, double thickness = 1) {
+  Capture c;
+  c.name = "flat";
+  c.width = width;
+  c.height = height;
+  c.metersPerUnit = 0.001;
+  c.clipFromView = kIdentity;
+  c.clipFromView[0] = 8.0 / width;
+  c.clipFromView[5] = -8.0 / height;
+  c.clipFromView[10] = -1.0 / 100;
+  c.frontDepth.image = Image(width, height, 1, 10);
+  c.backDepth.image = Image(width, height, 1, static_cast<float>(10 + thickness));
+  c.irradiance = Image(width, height, 3);
+  c.normal = Image(width, height, 3);
+  for (size_t i = 0; i < c.irradiance.pixels(); ++i) {
+    c.irradiance.data[3 * i] = 1;
+    c.irradiance.data[3 * i + 1] = 0.5f;
+    c.irradiance.data[3 * i + 2] = 0.25f;
+    c.normal.data[3 * i + 2] = 1;
+  }
+  c.material.assign(c.irradiance.pixels(), 1);
+  c.materials.resize(1);
+  return c;
+}
+
+// Straight from behind, E = 3.
+inline Light backLight() {
+  Light light;
+  light.direction = {0, 0, 1};
+  light.intensity = 3;
+  return light;
+}
+
+// Orthographic map of a light travelling along +z from z = -50, covering +-100 mm, whose surface lies at
+// view depth `z` (negative) everywhere.
+inline ShadowMap flatShadowMap(double z, PellucidDepthEncoding encoding, int size = 32) {
+  ShadowMap map;
+  map.clipFromWorld = kIdentity;
+  map.clipFromWorld[0] = map.clipFromWorld[5] = 0.01;
+  map.clipFromWorld[10] = 1.0 / 100;
+  map.clipFromWorld[14] = 0.5;
+  // The light's view looks along +z: turned half round about y.
+  map.viewFromWorld = Matrix{-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, -50, 1};
+  const double distance = z + 50;
+  map.depth.encoding = encoding;
+  map.depth.image =
+      Image(size, size, 1, static_cast<float>(encoding == PELLUCID_DEPTH_DEVICE ? distance / 100 : distance));
+  return map;
+}
+
+inline bool sameBits(const Image& a, const Image& b) {
+  return a.data.size() == b.data.size() &&
+         std::memcmp(a.data.data(), b.data.data(), a.data.size() * sizeof(float)) == 0;
+}
+
+}  // namespace pellucid::test

@@ -1,0 +1,118 @@
+// The GPU passes against the float64 reference, which shares no code with them.
+#include "gpu_fixture.h"
+
+#include <cstdio>
+
+#include "common/compare.h"
+#include "reference/reference.h"
+#include "scene/scene.h"
+
+namespace {
+
+using namespace pellucid::test;
+namespace reference = pellucid::harness::reference;
+
+struct Scene {
+  const char* name;
+  bool reversedZ = false, infiniteFar = false;
+  std::optional<bool> orthographic = std::nullopt;
+  PellucidDepthEncoding depth = PELLUCID_DEPTH_VIEW_Z, shadow = PELLUCID_DEPTH_VIEW_Z;
+  std::optional<PellucidLightType> light = std::nullopt;
+  // Share of pixels that a rounding of the projection may move to the next shadow texel.
+  double outliers = 2e-3;
+};
+
+Capture make(const Scene& scene) {
+  SceneParameters p;
+  p.name = scene.name;
+  p.width = 96;
+  p.height = 80;
+  p.reversedZ = scene.reversedZ;
+  p.infiniteFar = scene.infiniteFar;
+  p.orthographic = scene.orthographic;
+  p.depthEncoding = scene.depth;
+  p.shadowEncoding = scene.shadow;
+  p.lightType = scene.light;
+  p.shadowSize = 128;
+  return makeScene(p);
+}
+
+// Largest |gpu - reference| over the material's pixels but for the worst `outliers` of them, relative to
+// `scale` or, when 0, to the reference's own value.
+double worst(const Capture& c, const Image& gpu, const Image& ref, int channels, double scale,
+             double outliers) {
+  std::vector<double> errors;
+  for (size_t i = 0; i < gpu.pixels(); ++i) {
+    if (c.material[i] == 0) continue;
+    double worstOfPixel = 0;
+    for (size_t k = 0; k < static_cast<size_t>(channels); ++k) {
+      const double a = static_cast<double>(gpu.data[i * 4 + k]), b = static_cast<double>(ref.data[i * 3 + k]);
+      const double size = scale > 0 ? scale : std::max(std::abs(b), 1e-30);
+      worstOfPixel = std::max(worstOfPixel, std::abs(a - b) / size);
+    }
+    errors.push_back(worstOfPixel);
+  }
+  EXPECT_GT(errors.size(), 100u) << "the scene shows no material";
+  std::sort(errors.begin(), errors.end());
+  return errors[static_cast<size_t>(static_cast<double>(errors.size() - 1) * (1 - outliers))];
+}
+
+class Agreement : public GpuTest, public testing::WithParamInterface<Scene> {
+protected:
+  void compare(PellucidDebugView view, PellucidThicknessSource source, uint32_t features, int channels,
+               double scale, double tolerance, double outliers) {
+    const Capture c = make(GetParam());
+    const std::vector<PellucidMaterial> materials(std::max<size_t>(c.materials.size(), 1), testMaterial());
+    ReplaySettings s;
+    s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+    s.debugView = view;
+    s.thicknessSource = source;
+    s.features = features;
+    reference::Settings r;
+    r.debugView = view;
+    r.thicknessSource = source;
+    r.features = features;
+    const Image gpu = replayer().run(c, materials, s).output;
+    const Image ref = reference::compute(c, materials, r).image;
+    EXPECT_LT(worst(c, gpu, ref, channels, scale, outliers), tolerance);
+  }
+};
+
+TEST_P(Agreement, CameraThickness) {
+  // Float depths near 100 mm carry 4e-6 mm; the thinnest parts are some tenths of a mm.
+  compare(PELLUCID_DEBUG_THICKNESS, PELLUCID_THICKNESS_CAMERA, 3, 1, 0, 1e-5, 0);
+}
+
+TEST_P(Agreement, Transmittance) {
+  for (const auto source : {PELLUCID_THICKNESS_LIGHT, PELLUCID_THICKNESS_CAMERA})
+    compare(PELLUCID_DEBUG_TRANSMITTANCE, source, 3, 3, 1, 2e-4, GetParam().outliers);
+}
+
+TEST_P(Agreement, Occlusion) {
+  compare(PELLUCID_DEBUG_OCCLUSION, PELLUCID_THICKNESS_CAMERA, 3, 3, 1, 1e-4, 2 * GetParam().outliers);
+}
+
+TEST_P(Agreement, TranslucencyFrame) {
+  for (const auto source : {PELLUCID_THICKNESS_LIGHT, PELLUCID_THICKNESS_CAMERA})
+    compare(PELLUCID_DEBUG_NONE, source, PELLUCID_FEATURE_TRANSLUCENCY, 3, 1, 1e-3, GetParam().outliers);
+}
+
+// Tilted about the horizontal axis: a texel boundary takes a whole row of the 80 with it.
+constexpr Scene kTiltedRows{
+    "near_far", false, false, std::nullopt, PELLUCID_DEPTH_VIEW_Z, PELLUCID_DEPTH_VIEW_Z, std::nullopt, 0.03};
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Agreement,
+                         testing::Values(Scene{"sphere"},
+                                         Scene{"sphere", true, true, false, PELLUCID_DEPTH_DEVICE,
+                                               PELLUCID_DEPTH_DEVICE, PELLUCID_LIGHT_POINT},
+                                         Scene{"wedge", false, false, true, PELLUCID_DEPTH_DEVICE,
+                                               PELLUCID_DEPTH_DEVICE, PELLUCID_LIGHT_DIRECTIONAL},
+                                         Scene{"slab", true, false, false, PELLUCID_DEPTH_DEVICE,
+                                               PELLUCID_DEPTH_DISTANCE, PELLUCID_LIGHT_SPOT},
+                                         Scene{"torus"}, Scene{"two_sheets"}, Scene{"ear"}, Scene{"blades"},
+                                         Scene{"noise"}, kTiltedRows),
+                         [](const auto& test) {
+                           return std::string(test.param.name) + std::to_string(test.index);
+                         });
+
+}  // namespace

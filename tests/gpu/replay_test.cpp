@@ -1,0 +1,403 @@
+// The promises about pixels: what is read, what is written, and that it is always the same.
+#include "gpu_fixture.h"
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace {
+
+using namespace pellucid::test;
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+using Replay = GpuTest;
+
+void expectPixel(const Image& image, int x, int y, double r, double g, double b, double tolerance) {
+  EXPECT_NEAR(image.at(x, y)[0], r, tolerance * r) << x << ", " << y;
+  EXPECT_NEAR(image.at(x, y)[1], g, tolerance * g) << x << ", " << y;
+  EXPECT_NEAR(image.at(x, y)[2], b, tolerance * b) << x << ", " << y;
+}
+
+// 1e-3: the promise; half output alone rounds by 5e-4.
+constexpr double kConstant = 1e-3;
+
+class Sizes : public GpuTest, public testing::WithParamInterface<std::pair<int, int>> {};
+
+TEST_P(Sizes, ConstantIrradianceStays) {
+  const auto [width, height] = GetParam();
+  Capture c = flatCapture(width, height);
+  for (float& v : c.irradiance.data) v *= 1.2348f;  // not a half: rounding counts
+  const Image out = replay(c, testMaterial());
+  const auto check = [&](int x, int y) { expectPixel(out, x, y, 1.2348, 0.6174, 0.3087, kConstant); };
+  for (int y = 0; y < height; y += std::max(1, height / 50))
+    for (int x = 0; x < width; x += std::max(1, width / 50)) check(x, y);
+  check(width - 1, height - 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(Replay, Sizes,
+                         testing::Values(std::pair(1, 1), std::pair(3, 5), std::pair(64, 64),
+                                         std::pair(1921, 1081)));
+
+TEST_F(Replay, SlabTransmitsTOfItsThickness) {
+  Capture c = flatCapture(16, 16, 2);
+  c.lights = {backLight()};
+  ReplaySettings s;
+  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  const Image out = replay(c, testMaterial(), s);
+  // E + T(2 mm) E_back / rho, with E_back = 3 and rho = 1/2.
+  const double blue = 0.7 * std::exp(-4.0) + 0.3 * std::exp(-0.5);
+  // 1e-5: float arithmetic over a few dozen operations.
+  expectPixel(out, 8, 8, 1 + 6 * std::exp(-1.0), 0.5 + 6 * std::exp(-2.0), 0.25 + 6 * blue, 1e-5);
+}
+
+TEST_F(Replay, ShadowMapThicknessEqualsCameraThicknessOnASlab) {
+  for (const auto encoding : {PELLUCID_DEPTH_DEVICE, PELLUCID_DEPTH_VIEW_Z, PELLUCID_DEPTH_DISTANCE}) {
+    Capture c = flatCapture(16, 16, 2);
+    c.lights = {backLight()};
+    c.lights[0].shadowMap = flatShadowMap(-12, encoding);
+    ReplaySettings s;
+    s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+    s.debugView = PELLUCID_DEBUG_THICKNESS;
+    const Image thickness = replay(c, testMaterial(), s);
+    // Device depth of this map: 2^-24 of 100 mm.
+    expectPixel(thickness, 5, 5, 2, 2, 2, 1e-5);
+  }
+}
+
+TEST_F(Replay, OccludedBackIsDark) {
+  Capture c = flatCapture(16, 16, 2);
+  c.lights = {backLight()};
+  c.lights[0].shadowMap = flatShadowMap(-42, PELLUCID_DEPTH_VIEW_Z);  // a body 30 mm behind the slab
+  ReplaySettings s;
+  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  s.thicknessSource = PELLUCID_THICKNESS_CAMERA;
+  expectPixel(replay(c, testMaterial(), s), 5, 5, 1, 0.5, 0.25, 1e-5);
+  // Light space: 32 mm of thickness, e^{-16} of the light in red and e^{-8} in blue's slow part.
+  s.thicknessSource = PELLUCID_THICKNESS_LIGHT;
+  expectPixel(replay(c, testMaterial(), s), 5, 5, 1 + 6 * std::exp(-16.0), 0.5, 0.25 + 1.8 * std::exp(-8.0),
+              1e-5);
+}
+
+TEST_F(Replay, OutsideTheMapAndEmptyTexelsGiveNoLight) {
+  for (const auto source : {PELLUCID_THICKNESS_LIGHT, PELLUCID_THICKNESS_CAMERA}) {
+    ReplaySettings s;
+    s.thicknessSource = source;
+    Capture c = flatCapture(8, 8, 2);
+    c.lights = {backLight()};
+    c.lights[0].shadowMap = flatShadowMap(-12, PELLUCID_DEPTH_VIEW_Z);
+    c.lights[0].shadowMap->clipFromWorld[12] = 5;  // the receiver is at ndc x = 5
+    expectPixel(replay(c, testMaterial(), s), 4, 4, 1, 0.5, 0.25, kConstant);
+    for (const float nothing : {pellucid::harness::kNoDepth, 0.0f, -1.0f, kNan, INFINITY}) {
+      c.lights[0].shadowMap = flatShadowMap(-12, PELLUCID_DEPTH_VIEW_Z);
+      for (float& v : c.lights[0].shadowMap->depth.image.data) v = nothing;
+      expectPixel(replay(c, testMaterial(), s), 4, 4, 1, 0.5, 0.25, kConstant);
+    }
+    c.lights[0].shadowMap = flatShadowMap(-12, PELLUCID_DEPTH_DEVICE);
+    for (float& v : c.lights[0].shadowMap->depth.image.data) v = 1;  // cleared
+    expectPixel(replay(c, testMaterial(), s), 4, 4, 1, 0.5, 0.25, kConstant);
+  }
+}
+
+TEST_F(Replay, NoBackDepthAndNoMapIsNeverBright) {
+  Capture c = flatCapture(8, 8);
+  c.backDepth = {};
+  c.lights = {backLight()};
+  expectPixel(replay(c, testMaterial()), 4, 4, 1, 0.5, 0.25, kConstant);
+}
+
+// Lights with and without maps, of every type, more than one dispatch binds.
+TEST_F(Replay, LightsAddUp) {
+  Capture c = flatCapture(8, 8, 2);
+  ReplaySettings s;
+  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  const double through = 6 * std::exp(-1.0);  // of one light, red
+  for (const int mapped : {0, 1, 4, 19}) {
+    for (const int lights : {1, 8, 64}) {
+      if (mapped > lights) continue;
+      c.lights.assign(static_cast<size_t>(lights), backLight());
+      for (int i = 0; i < mapped; ++i)
+        c.lights[static_cast<size_t>(i)].shadowMap = flatShadowMap(-12, PELLUCID_DEPTH_VIEW_Z, 4);
+      const Image out = replay(c, testMaterial(), s);
+      EXPECT_NEAR(out.at(4, 4)[0], 1 + lights * through, 1e-5 * lights * through)
+          << lights << " lights, " << mapped << " maps";
+    }
+  }
+}
+
+TEST_F(Replay, PointAndSpotLightsFollowTheInverseSquare) {
+  Capture c = flatCapture(1, 1, 2);
+  Light light;
+  light.type = PELLUCID_LIGHT_POINT;
+  light.position = {0, 0, -32};  // 20 mm behind the back face
+  light.intensity = 1200;
+  ReplaySettings s;
+  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  const double red = 2 * std::exp(-1.0) * 1200 / 400;
+  c.lights = {light};
+  EXPECT_NEAR(replay(c, testMaterial(), s).at(0, 0)[0], 1 + red, 1e-5 * red);
+  light.range = 40;
+  c.lights = {light};
+  EXPECT_NEAR(replay(c, testMaterial(), s).at(0, 0)[0], 1 + red * (1 - 1.0 / 16), 1e-5 * red);
+  light.range = 10;
+  c.lights = {light};
+  EXPECT_NEAR(replay(c, testMaterial(), s).at(0, 0)[0], 1, 1e-6);
+  light = c.lights[0];
+  light.range = 0;
+  light.type = PELLUCID_LIGHT_SPOT;
+  light.direction = {0, 0, 1};
+  light.innerConeAngle = 0.1;
+  light.outerConeAngle = 0.2;
+  c.lights = {light};
+  EXPECT_NEAR(replay(c, testMaterial(), s).at(0, 0)[0], 1 + red, 1e-5 * red);
+  light.direction = {1, 0, 0};
+  c.lights = {light};
+  EXPECT_NEAR(replay(c, testMaterial(), s).at(0, 0)[0], 1, 1e-6);
+}
+
+// Irradiance noise, two objects, a depth step: everything that could make a difference between runs.
+Capture busyCapture(int width, int height) {
+  Capture c = flatCapture(width, height, 1.5);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> value(0, 2);
+  for (float& v : c.irradiance.data) v = value(random);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      if (x > width / 2) c.frontDepth.image.at(x, y)[0] = 11;
+      if ((x / 7 + y / 5) % 4 == 0) c.material[static_cast<size_t>(y * width + x)] = 0;
+    }
+  c.lights = {backLight()};
+  return c;
+}
+
+TEST_F(Replay, SameRunSameBits) {
+  const Capture c = busyCapture(61, 47);
+  EXPECT_TRUE(sameBits(replay(c, testMaterial()), replay(c, testMaterial())));
+}
+
+TEST_F(Replay, OutputMayBeTheIrradianceImage) {
+  const Capture c = busyCapture(61, 47);
+  ReplaySettings s;
+  for (const uint32_t features : {1u, 2u, 3u}) {
+    s.features = features;
+    s.aliasOutput = false;
+    const Image apart = replay(c, testMaterial(), s);
+    s.aliasOutput = true;
+    EXPECT_TRUE(sameBits(apart, replay(c, testMaterial(), s))) << "features " << features;
+  }
+}
+
+TEST_F(Replay, PoisonNeverReachesTheOutput) {
+  Capture c = busyCapture(64, 48);
+  ReplaySettings s;
+  s.renderRect = {10, 7, 37, 29};
+  const Image clean = replay(c, testMaterial(), s);
+  const auto inside = [&](int x, int y) { return x >= 10 && x < 47 && y >= 7 && y < 36; };
+  Capture poisoned = c;
+  for (int y = 0; y < c.height; ++y)
+    for (int x = 0; x < c.width; ++x) {
+      if (inside(x, y) && c.material[static_cast<size_t>(y * c.width + x)] != 0) continue;
+      for (int k = 0; k < 3; ++k) poisoned.irradiance.at(x, y)[k] = poisoned.normal.at(x, y)[k] = kNan;
+      poisoned.frontDepth.image.at(x, y)[0] = poisoned.backDepth.image.at(x, y)[0] = kNan;
+    }
+  const Image out = replay(poisoned, testMaterial(), s);
+  for (int y = 0; y < c.height; ++y)
+    for (int x = 0; x < c.width; ++x) {
+      const bool owned = inside(x, y) && c.material[static_cast<size_t>(y * c.width + x)] != 0;
+      for (int k = 0; k < 3; ++k) {
+        if (owned)
+          EXPECT_EQ(out.at(x, y)[k], clean.at(x, y)[k]) << x << ", " << y;
+        else
+          EXPECT_TRUE(std::isnan(out.at(x, y)[k])) << "written at " << x << ", " << y;
+      }
+    }
+}
+
+TEST_F(Replay, BadValuesAtMaterialPixelsStayFinite) {
+  Capture c = busyCapture(32, 32);
+  c.lights.push_back(backLight());
+  c.lights[1].shadowMap = flatShadowMap(-12, PELLUCID_DEPTH_VIEW_Z);
+  const float bad[] = {kNan, INFINITY, -INFINITY, -1, 0, 1e38f, 1e-38f};
+  int i = 0;
+  const auto next = [&] { return bad[static_cast<size_t>(i++) % std::size(bad)]; };
+  for (int y = 0; y < 32; y += 3)
+    for (int x = 0; x < 32; x += 2) {
+      c.irradiance.at(x, y)[y % 3] = next();
+      c.frontDepth.image.at(x, y)[0] = next();
+      c.backDepth.image.at(31 - x, y)[0] = next();
+      c.normal.at(x, 31 - y)[x % 3] = next();
+      c.lights[1].shadowMap->depth.image.at(x, y)[0] = next();
+    }
+  ReplaySettings s;
+  for (const auto source : {PELLUCID_THICKNESS_LIGHT, PELLUCID_THICKNESS_CAMERA}) {
+    s.thicknessSource = source;
+    const Image out = replay(c, testMaterial(), s);
+    for (int y = 0; y < 32; ++y)
+      for (int x = 0; x < 32; ++x)
+        for (int k = 0; k < 3; ++k)
+          EXPECT_TRUE(c.material[static_cast<size_t>(y * 32 + x)] == 0 ||
+                      (std::isfinite(out.at(x, y)[k]) && out.at(x, y)[k] >= 0))
+              << x << ", " << y;
+  }
+}
+
+// PEERS.md defect 1: dark skin beside lit skin must not count as "not skin".
+TEST_F(Replay, BlackIsNotAMask) {
+  const auto edge = [](float dark) {
+    Capture c = flatCapture(64, 8);
+    for (int y = 0; y < 8; ++y)
+      for (int x = 0; x < 32; ++x)
+        for (int k = 0; k < 3; ++k) c.irradiance.at(x, y)[k] = dark;
+    return c;
+  };
+  const Image black = replay(edge(0), testMaterial()), almost = replay(edge(1e-6f), testMaterial());
+  for (int x = 0; x < 64; ++x) EXPECT_NEAR(black.at(x, 4)[0], almost.at(x, 4)[0], 1e-3) << x;
+  EXPECT_GT(black.at(31, 4)[0], 0.2f) << "light diffuses into the dark";
+}
+
+// PEERS.md defect 2: a kernel narrower than a pixel returns its input.
+TEST_F(Replay, SubPixelKernelReturnsTheInput) {
+  Capture c = busyCapture(40, 40);
+  c.lights.clear();
+  c.metersPerUnit = 10;  // a pixel is 2.5 m
+  ReplaySettings s;
+  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  const Image out = replay(c, testMaterial(), s);
+  for (int y = 0; y < 40; ++y)
+    for (int x = 0; x < 40; ++x)
+      for (int k = 0; k < 3; ++k) EXPECT_NEAR(out.at(x, y)[k], c.irradiance.at(x, y)[k], 1e-5);
+}
+
+// Two sheets with a gap in depth of 8 mm: Gaussians of at most 4.5 mm^2 let e^{-64/9} across.
+TEST_F(Replay, DepthGapStopsDiffusion) {
+  Capture c = flatCapture(64, 8);
+  for (int y = 0; y < 8; ++y)
+    for (int x = 32; x < 64; ++x) {
+      c.frontDepth.image.at(x, y)[0] = 18;
+      for (int k = 0; k < 3; ++k) c.irradiance.at(x, y)[k] = 0;
+    }
+  const Image out = replay(c, testMaterial());
+  for (int k = 0; k < 3; ++k)
+    EXPECT_LT(out.at(32, 4)[k], std::exp(-64.0 / 9) * c.irradiance.at(0, 0)[k]) << k;
+}
+
+TEST_F(Replay, MaterialBorderStopsDiffusion) {
+  Capture c = flatCapture(32, 8);
+  c.materials.resize(2);
+  for (int y = 0; y < 8; ++y)
+    for (int x = 16; x < 32; ++x) {
+      c.material[static_cast<size_t>(y * 32 + x)] = 2;
+      for (int k = 0; k < 3; ++k) c.irradiance.at(x, y)[k] = 0;
+    }
+  const Image out = replayer().run(c, {testMaterial(), testMaterial()}, {}).output;
+  expectPixel(out, 15, 4, 1, 0.5, 0.25, kConstant);
+  for (int k = 0; k < 3; ++k) EXPECT_EQ(out.at(16, 4)[k], 0);
+}
+
+TEST_F(Replay, MaterialBeyondTheListIsNone) {
+  Capture c = flatCapture(4, 4);
+  c.material[5] = 9;
+  Capture poison = c;
+  for (int k = 0; k < 3; ++k) poison.irradiance.at(1, 1)[k] = 100;
+  expectPixel(replay(poison, testMaterial()), 2, 2, 1, 0.5, 0.25, kConstant);
+  EXPECT_EQ(replay(poison, testMaterial()).at(1, 1)[0], 100) << "not written";
+}
+
+TEST_F(Replay, AlbedoMultipliesOnceAtTheEnd) {
+  Capture c = flatCapture(16, 16, 2);
+  c.albedo = Image(16, 16, 3, 0.5f);
+  c.lights = {backLight()};
+  for (const uint32_t features : {1u, 3u}) {
+    ReplaySettings s;
+    s.features = features;
+    const Image out = replay(c, testMaterial(), s);
+    expectPixel(out, 8, 8, 0.5 * (1 + 6 * std::exp(-1.0)), 0.5 * (0.5 + 6 * std::exp(-2.0)),
+                0.5 * (0.25 + 6 * (0.7 * std::exp(-4.0) + 0.3 * std::exp(-0.5))), kConstant);
+  }
+}
+
+// Whatever matrix rendered the depths, the picture is the same.
+TEST_F(Replay, EveryDepthConventionGivesTheSamePicture) {
+  const double n = 1, f = 100;
+  struct Convention {
+    const char* name;
+    double a, b, c, d, s;
+  };
+  const Convention conventions[] = {
+      {"perspective RH", -f / (f - n), -f * n / (f - n), -1, 0, -1},
+      {"perspective RH reversed", n / (f - n), f * n / (f - n), -1, 0, -1},
+      {"perspective RH reversed infinite", 0, n, -1, 0, -1},
+      {"perspective LH", f / (f - n), -f * n / (f - n), 1, 0, 1},
+  };
+  ReplaySettings s;
+  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  Image first;
+  for (const Convention& v : conventions) {
+    Capture c = flatCapture(32, 32, 2);
+    c.clipFromView = {4, 0, 0, 0, 0, -4, 0, 0, 0, 0, v.a, v.c, 0, 0, v.b, v.d};
+    for (DepthImage* depth : {&c.frontDepth, &c.backDepth}) {
+      depth->encoding = PELLUCID_DEPTH_DEVICE;
+      for (float& p : depth->image.data)
+        p = static_cast<float>((v.a * v.s * p + v.b) / (v.c * v.s * p + v.d));
+    }
+    for (size_t i = 0; i < c.normal.pixels(); ++i) c.normal.data[3 * i + 2] = static_cast<float>(-v.s);
+    Light light = backLight();
+    light.direction = {0, 0, -v.s};  // towards the eye
+    c.lights = {light};
+    const Image out = replay(c, testMaterial(), s);
+    if (first.empty()) first = out;
+    // 1e-4: forward-Z float depth at 10 of [1, 100] mm resolves 6e-6 of a 2 mm thickness.
+    for (size_t i = 0; i < out.data.size(); ++i)
+      ASSERT_NEAR(out.data[i], first.data[i], 1e-4 * first.data[i]) << v.name;
+  }
+}
+
+TEST_F(Replay, DebugViews) {
+  Capture c = flatCapture(8, 8, 2);
+  c.lights = {backLight()};
+  c.lights[0].shadowMap = flatShadowMap(-12, PELLUCID_DEPTH_VIEW_Z);
+  ReplaySettings s;
+  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  s.debugView = PELLUCID_DEBUG_TRANSMITTANCE;
+  expectPixel(replay(c, testMaterial(), s), 4, 4, std::exp(-1.0), std::exp(-2.0),
+              0.7 * std::exp(-4.0) + 0.3 * std::exp(-0.5), 1e-5);
+  s.debugView = PELLUCID_DEBUG_OCCLUSION;
+  expectPixel(replay(c, testMaterial(), s), 4, 4, 1, 1, 1, 1e-6);
+  s.debugView = PELLUCID_DEBUG_IRRADIANCE;
+  EXPECT_NEAR(replay(c, testMaterial(), s).at(4, 4)[0], 1 + 6 * std::exp(-1.0), 1e-4);
+  c.material[0] = 0;
+  EXPECT_EQ(replay(c, testMaterial(), s).at(0, 0)[0], 0) << "material 0 stays cleared";
+}
+
+TEST_F(Replay, TransmittanceModelsMatchTheirFormulas) {
+  PellucidMaterial sinh = testMaterial(), gauss = testMaterial();
+  sinh.transmittanceModel = PELLUCID_TRANSMITTANCE_SINH_EXP;
+  const float parameters[3][5] = {
+      {0.5f, 0.3f, 0.8f, 0.1f, 2}, {1e-4f, 1e-4f, 2e-4f, 0.2f, 1}, {0.4f, 3, 1, 0.3f, 0.5f}};
+  std::memcpy(sinh.transmittance, parameters, sizeof parameters);
+  gauss.transmittanceModel = PELLUCID_TRANSMITTANCE_GAUSSIANS;
+  ReplaySettings s;
+  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  s.debugView = PELLUCID_DEBUG_TRANSMITTANCE;
+  for (const double d : {0.01, 0.5, 3.0, 12.0}) {
+    Capture c = flatCapture(1, 1, d);
+    c.lights = {backLight()};
+    // The stored depths are floats: the thickness has their rounding.
+    const double t =
+        static_cast<double>(c.backDepth.image.data[0]) - static_cast<double>(c.frontDepth.image.data[0]);
+    const Image s1 = replay(c, sinh, s), g1 = replay(c, gauss, s);
+    for (int k = 0; k < 3; ++k) {
+      const auto p = [&](int i) { return static_cast<double>(parameters[k][i]); };
+      const double expected = p(0) / std::sinh(p(1) * t + p(2)) + p(3) * std::exp(-p(4) * t);
+      EXPECT_NEAR(s1.data[static_cast<size_t>(k)], expected, 1e-5 * expected + 1e-9)
+          << "d " << d << " channel " << k;
+      double sum = 0;
+      for (uint32_t i = 0; i < 2; ++i)
+        sum += static_cast<double>(gauss.gaussianWeight[k][i]) *
+               std::exp(-t * t / (2 * static_cast<double>(gauss.gaussianVariance[k][i])));
+      EXPECT_NEAR(g1.data[static_cast<size_t>(k)], sum, 1e-5 * sum + 1e-9) << "d " << d << " channel " << k;
+    }
+  }
+}
+
+}  // namespace

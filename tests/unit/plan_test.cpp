@@ -1,0 +1,198 @@
+// BuildPlan and what goes with it, without a device.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "frame_fixture.h"
+
+namespace {
+
+using pellucid::test::Frame;
+
+std::vector<std::string> names(const PellucidPlan& plan) {
+  std::vector<std::string> result;
+  for (uint32_t i = 0; i < plan.dispatchCount; ++i) result.emplace_back(plan.dispatches[i].name);
+  return result;
+}
+
+bool skips(const PellucidPlan& plan, const std::string& what, const std::string& reason, uint32_t count = 1) {
+  for (uint32_t i = 0; i < plan.skipCount; ++i)
+    if (plan.skips[i].what == what && plan.skips[i].reason == reason && plan.skips[i].count == count)
+      return true;
+  return false;
+}
+
+TEST(Plan, WholeFrameIsThreeDispatches) {
+  Frame f;
+  const PellucidPlan plan = f.plan();
+  EXPECT_EQ(names(plan),
+            (std::vector<std::string>{"translucency", "diffuse horizontally", "diffuse vertically"}));
+  EXPECT_EQ(plan.barrierCount, 2u);
+  EXPECT_EQ(plan.skipCount, 0u);
+  EXPECT_EQ(plan.dispatches[0].barrierBefore, 0u);
+  EXPECT_EQ(plan.dispatches[0].groups[0], 13u) << "100 pixels in groups of 8";
+  EXPECT_EQ(plan.dispatches[0].groups[1], 7u) << "50 pixels in groups of 8";
+}
+
+TEST(Plan, SameInputSamePlan) {
+  Frame f;
+  const PellucidPlan a = f.plan(), b = f.plan();
+  EXPECT_EQ(std::memcmp(&a, &b, sizeof a), 0);
+}
+
+TEST(Plan, ThreadsPlanTheSame) {
+  Frame f;
+  const PellucidPlan expected = f.plan();
+  std::vector<std::thread> threads;
+  std::atomic<int> different = 0;
+  for (int t = 0; t < 4; ++t)
+    threads.emplace_back([&] {
+      for (int i = 0; i < 100; ++i) {
+        const PellucidPlan plan = f.plan();
+        different += std::memcmp(&plan, &expected, sizeof plan) != 0;
+      }
+    });
+  for (std::thread& t : threads) t.join();
+  EXPECT_EQ(different, 0);
+}
+
+TEST(Plan, EveryReadIsOfSomethingWritten) {
+  for (uint32_t features : {0u, 1u, 2u, 3u})
+    for (uint32_t images : {0u, 1u, 9u, 20u}) {
+      Frame f(images);
+      f.frame.features = features;
+      const PellucidPlan plan = f.plan();
+      ASSERT_GT(plan.dispatchCount, 0u);
+      std::set<uint32_t> written;
+      for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
+        uint32_t destination = 0;
+        for (uint32_t b = 0; b < plan.dispatches[i].bindingCount; ++b) {
+          const PellucidBinding& binding = plan.dispatches[i].bindings[b];
+          const bool write = binding.type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+          if (write) destination = binding.resource;
+          const bool transient = binding.resource >= PELLUCID_RESOURCE_TRANSIENT0 &&
+                                 binding.resource < PELLUCID_RESOURCE_SHADOW0;
+          EXPECT_TRUE(!transient || write || written.count(binding.resource)) << "dispatch " << i;
+          EXPECT_TRUE(binding.resource != PELLUCID_RESOURCE_IRRADIANCE || i == 0)
+              << "irradiance is read by the first dispatch only";
+        }
+        const bool last = i + 1 == plan.dispatchCount;
+        EXPECT_EQ(destination == PELLUCID_RESOURCE_OUTPUT, last)
+            << "output is written by the last dispatch only";
+        written.insert(destination);
+      }
+    }
+}
+
+TEST(Plan, NoLightNoTranslucency) {
+  Frame f;
+  f.frame.lightCount = 0;
+  const PellucidPlan plan = f.plan();
+  EXPECT_EQ(names(plan), (std::vector<std::string>{"diffuse horizontally", "diffuse vertically"}));
+  EXPECT_TRUE(skips(plan, "translucency", "no light can contribute"));
+}
+
+TEST(Plan, DropsLightsThatCannotContribute) {
+  Frame f;
+  f.lights.resize(5, f.lights[0]);
+  f.lights[1].intensity = 0;
+  f.lights[2].color[0] = f.lights[2].color[1] = f.lights[2].color[2] = 0;
+  f.lights[3].shadowMapCount = 0;
+  f.frame.backDepth = {};
+  f.use();
+  const PellucidPlan plan = f.plan();
+  EXPECT_EQ(plan.activeLights, 2u);
+  EXPECT_TRUE(skips(plan, "light", "no intensity", 2));
+  EXPECT_TRUE(skips(plan, "light", "no back depth to take a thickness from", 1));
+}
+
+TEST(Plan, DiffusionNeedsAMaterialThatDiffuses) {
+  Frame f;
+  f.material.gaussianCount = 0;
+  const PellucidPlan plan = f.plan();
+  EXPECT_EQ(names(plan), std::vector<std::string>{"translucency"});
+  EXPECT_TRUE(skips(plan, "diffusion", "no material diffuses"));
+}
+
+TEST(Plan, ManyShadowImagesBecomeSeveralDispatches) {
+  Frame f(20);  // 8 a dispatch
+  const PellucidPlan plan = f.plan();
+  EXPECT_EQ(plan.dispatchCount, 5u);
+  EXPECT_EQ(plan.activeLights, 20u);
+  uint32_t lights = 0;
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(plan.dispatches[i].pushConstants[0], lights);
+    lights += plan.dispatches[i].pushConstants[1];
+  }
+  EXPECT_EQ(lights, 20u);
+}
+
+TEST(Plan, ImageNeedsCoverThePlan) {
+  Frame f;
+  for (uint32_t features : {1u, 2u, 3u}) {
+    f.frame.features = features;
+    PellucidImageNeed needs[PELLUCID_MAX_TRANSIENTS];
+    uint32_t count = PELLUCID_MAX_TRANSIENTS;
+    ASSERT_EQ(pellucidGetImageNeeds(&f.frame, &count, needs), PELLUCID_OK);
+    EXPECT_EQ(count, features == 3 ? 2u : features == 2 ? 1u : 0u);
+    const PellucidPlan plan = f.plan();
+    for (uint32_t d = 0; d < plan.dispatchCount; ++d)
+      for (uint32_t b = 0; b < plan.dispatches[d].bindingCount; ++b) {
+        const uint32_t resource = plan.dispatches[d].bindings[b].resource;
+        if (resource < PELLUCID_RESOURCE_TRANSIENT0 || resource >= PELLUCID_RESOURCE_SHADOW0) continue;
+        const uint32_t transient = resource - PELLUCID_RESOURCE_TRANSIENT0;
+        ASSERT_LT(transient, count);
+        EXPECT_GE(d, needs[transient].firstDispatch);
+        EXPECT_LE(d, needs[transient].lastDispatch);
+        EXPECT_EQ(needs[transient].bytes, 100u * 50u * 8u);
+      }
+  }
+}
+
+TEST(Plan, JsonParses) {
+  Frame f;
+  const PellucidPlan plan = f.plan();
+  size_t size = 0;
+  ASSERT_EQ(pellucidPlanToJson(&plan, nullptr, &size), PELLUCID_OK);
+  std::string text(size, '?');
+  ASSERT_EQ(pellucidPlanToJson(&plan, text.data(), &size), PELLUCID_OK);
+  text.pop_back();
+  const nlohmann::json json = nlohmann::json::parse(text);
+  EXPECT_EQ(json.at("dispatchCount"), 3);
+  EXPECT_EQ(json.at("dispatches").at(0).at("groups"), nlohmann::json::array({13, 7, 1}));
+  size = 10;
+  char small[10];
+  EXPECT_EQ(pellucidPlanToJson(&plan, small, &size), PELLUCID_ERROR_BUFFER_TOO_SMALL);
+  EXPECT_EQ(size, text.size() + 1) << "says how much is needed";
+  EXPECT_EQ(std::strlen(small), 9u) << "terminated within its room";
+}
+
+TEST(Plan, ShadersAreSpirv) {
+  for (uint32_t p = 0; p < PELLUCID_PIPELINE_COUNT; ++p) {
+    const uint32_t* words = nullptr;
+    size_t count = 0;
+    ASSERT_EQ(pellucidGetShader(p, &words, &count), PELLUCID_OK);
+    ASSERT_GT(count, 5u);
+    EXPECT_EQ(words[0], 0x07230203u);
+  }
+  const uint32_t* words = nullptr;
+  size_t count = 0;
+  EXPECT_EQ(pellucidGetShader(PELLUCID_PIPELINE_COUNT, &words, &count), PELLUCID_ERROR_INVALID_ARGUMENT);
+}
+
+TEST(Plan, ConstantsStayInTheirSlice) {
+  Frame f(9);
+  const PellucidPlan plan = f.plan();
+  std::vector<unsigned char> slice(static_cast<size_t>(plan.constantsSize) + 64, 0xAB);
+  ASSERT_EQ(pellucidWriteConstants(&plan, &f.frame, slice.data(), static_cast<size_t>(plan.constantsSize)),
+            PELLUCID_OK);
+  for (size_t i = 0; i < 64; ++i) EXPECT_EQ(slice[static_cast<size_t>(plan.constantsSize) + i], 0xAB);
+  EXPECT_EQ(
+      pellucidWriteConstants(&plan, &f.frame, slice.data(), static_cast<size_t>(plan.constantsSize) - 1),
+      PELLUCID_ERROR_BUFFER_TOO_SMALL);
+}
+
+}  // namespace

@@ -1,0 +1,124 @@
+// Each convention violated once: the field is named, the value is in the sentence, and no plan is made.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "frame_fixture.h"
+
+namespace {
+
+using pellucid::test::Frame;
+
+struct Violation {
+  std::string name, field, sentence;
+  std::function<void(Frame&)> commit;
+};
+
+const std::vector<Violation> kViolations = {
+    {"StructSize", "structSize", "pellucidInitFrame", [](Frame& f) { f.frame.structSize = 7; }},
+    {"Features", "features", "unknown bits: 64", [](Frame& f) { f.frame.features = 64; }},
+    {"Extent", "imageExtent", "0 x 50", [](Frame& f) { f.frame.imageExtent[0] = 0; }},
+    {"RectOutside", "renderRect", "90, 0 + 20 x 5",
+     [](Frame& f) {
+       f.frame.renderRect[0] = 90;
+       f.frame.renderRect[2] = 20;
+       f.frame.renderRect[3] = 5;
+     }},
+    {"RectOverflow", "renderRect", "outside",
+     [](Frame& f) {
+       f.frame.renderRect[0] = 0xFFFFFFFF;
+       f.frame.renderRect[2] = 2;
+       f.frame.renderRect[3] = 2;
+     }},
+    {"MetersPerUnit", "metersPerUnit", "0", [](Frame& f) { f.frame.metersPerUnit = 0; }},
+    {"ProjectionNan", "clipFromView", "not finite", [](Frame& f) { f.frame.clipFromView[0] = NAN; }},
+    {"ViewScale", "viewFromWorld", "rotation", [](Frame& f) { f.frame.viewFromWorld[0] = 2; }},
+    {"OutputFormat", "outputFormat", "VkFormat 37",
+     [](Frame& f) { f.frame.outputFormat = VK_FORMAT_R8G8B8A8_UNORM; }},
+    {"DepthEncoding", "backDepthEncoding", "2",
+     [](Frame& f) { f.frame.backDepthEncoding = PELLUCID_DEPTH_DISTANCE; }},
+    {"DebugView", "debugView", "99", [](Frame& f) { f.frame.debugView = 99; }},
+    {"NoMaterials", "materials", "has 0", [](Frame& f) { f.frame.materialCount = 0; }},
+    {"MaterialSize", "materials[0].structSize", "1", [](Frame& f) { f.material.structSize = 1; }},
+    {"GrowingTransmittance", "materials[0].transmittance", "grows",
+     [](Frame& f) { f.material.transmittance[1][1] = -1; }},
+    {"SinhPole", "materials[0].transmittance", "z > 0",
+     [](Frame& f) {
+       f.material.transmittanceModel = PELLUCID_TRANSMITTANCE_SINH_EXP;
+       f.material.transmittance[0][2] = 0;
+     }},
+    {"Reflectance", "materials[0].reflectance", "channel 2 is 0",
+     [](Frame& f) { f.material.reflectance[2] = 0; }},
+    {"Weights", "materials[0].gaussianWeight", "sums to",
+     [](Frame& f) { f.material.gaussianWeight[0][0] = 0.9f; }},
+    {"Variance", "materials[0].gaussianVariance", "[1][0]",
+     [](Frame& f) { f.material.gaussianVariance[1][0] = 0; }},
+    {"TooManyGaussians", "materials[0].gaussianCount", "9", [](Frame& f) { f.material.gaussianCount = 9; }},
+    {"ShadowImage", "shadowMaps[0].image", "is 5", [](Frame& f) { f.maps[0].image = 5; }},
+    {"ShadowSingular", "shadowMaps[0].clipFromWorld", "inverted",
+     [](Frame& f) { f.maps[0].clipFromWorld[0] = 0; }},
+    {"ShadowBias", "shadowMaps[0].bias", "-1", [](Frame& f) { f.maps[0].bias = -1; }},
+    {"ShadowView", "shadowMaps[0].viewFromWorld", "encoding",
+     [](Frame& f) { f.maps[0].encoding = PELLUCID_DEPTH_VIEW_Z; }},
+    {"LightType", "lights[0].type", "9", [](Frame& f) { f.lights[0].type = 9; }},
+    {"LightColor", "lights[0].color", "[1] is -1", [](Frame& f) { f.lights[0].color[1] = -1; }},
+    {"LightDirection", "lights[0].direction", "length 0", [](Frame& f) { f.lights[0].direction[2] = 0; }},
+    {"SpotCone", "lights[0].outerConeAngle", "inner",
+     [](Frame& f) { f.lights[0].type = PELLUCID_LIGHT_SPOT; }},
+    {"LightMaps", "lights[0].shadowMapCount", "is 3", [](Frame& f) { f.lights[0].shadowMapCount = 3; }},
+    {"PointWithOrthographicMap", "lights[0].firstShadowMap", "orthographic",
+     [](Frame& f) { f.lights[0].type = PELLUCID_LIGHT_POINT; }},
+};
+
+class Validate : public testing::TestWithParam<Violation> {};
+
+TEST_P(Validate, NamesFieldAndValue) {
+  Frame f;
+  f.frame.transients[0] = f.frame.transients[1] = Frame::view();
+  ASSERT_EQ(f.problems(), "");
+  GetParam().commit(f);
+  const std::string problems = f.problems();
+  EXPECT_EQ(problems.find(GetParam().field), 0u) << problems;
+  EXPECT_NE(problems.find(GetParam().sentence), std::string::npos) << problems;
+  PellucidPlan plan;
+  EXPECT_NE(pellucidBuildPlan(&f.frame, nullptr, &plan), PELLUCID_OK);
+  EXPECT_EQ(plan.dispatchCount, 0u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Fields, Validate, testing::ValuesIn(kViolations),
+                         [](const auto& test) { return test.param.name; });
+
+TEST(Validate, MissingViewsAreNamed) {
+  Frame f;
+  f.frame.irradiance = {};
+  const std::string problems = f.problems();
+  EXPECT_NE(problems.find("irradiance has no view"), std::string::npos);
+  EXPECT_NE(problems.find("transients[1] has no view"), std::string::npos);
+}
+
+TEST(Validate, WarnsOfLightsThatAddNothing) {
+  Frame f;
+  f.frame.transients[0] = f.frame.transients[1] = Frame::view();
+  f.lights[0].intensity = 0;
+  EXPECT_NE(f.problems(PELLUCID_SEVERITY_WARNING).find("lights[0] adds nothing: no intensity"),
+            std::string::npos);
+  EXPECT_EQ(f.problems(), "");
+}
+
+TEST(Validate, NullIsAnError) {
+  EXPECT_EQ(pellucidValidateFrame(nullptr, nullptr, nullptr), PELLUCID_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(pellucidBuildPlan(nullptr, nullptr, nullptr), PELLUCID_ERROR_INVALID_ARGUMENT);
+  PellucidContext* context = nullptr;
+  EXPECT_EQ(pellucidCreateContext(nullptr, &context), PELLUCID_ERROR_INVALID_ARGUMENT);
+  pellucidDestroyContext(nullptr);
+}
+
+TEST(Names, AreKnown) {
+  EXPECT_STREQ(pellucidResultName(PELLUCID_ERROR_CAPACITY), "PELLUCID_ERROR_CAPACITY");
+  EXPECT_STREQ(pellucidResourceName(PELLUCID_RESOURCE_OUTPUT), "output");
+  EXPECT_STREQ(pellucidResourceName(PELLUCID_RESOURCE_SHADOW0 + 3), "shadowImage");
+  EXPECT_STREQ(pellucidPipelineName(PELLUCID_PIPELINE_COUNT), "unknown pipeline");
+}
+
+}  // namespace
