@@ -1,0 +1,19 @@
+// The subcommands of `pellucid`, one file each. A callback throws a harness error for main() to turn
+// into an exit code.
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace pellucid::harness {
+
+void addInfoCommand(CLI::App& app);
+void addReplayCommand(CLI::App& app);
+void addPlanCommand(CLI::App& app);
+void addMaterialCommand(CLI::App& app);
+void addReferenceCommand(CLI::App& app);
+void addCompareCommand(CLI::App& app);
+void addCaptureCommand(CLI::App& app);
+
+}  // namespace pellucid::harness

@@ -1,0 +1,48 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "cli/command.h"
+#include "cli/commands.h"
+#include "common/error.h"
+
+using namespace pellucid::harness;
+
+namespace {
+
+enum ExitCode { OK = 0, OVER_LIMIT = 1, USAGE = 2, BAD_INPUT = 3, NO_DEVICE = 4 };
+
+int fail(ExitCode code, const char* sentence) {
+  std::fprintf(stderr, "pellucid: %s\n", sentence);
+  return code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Screen-space translucency and subsurface diffusion on captured frames.", "pellucid");
+  app.require_subcommand(1);
+  app.footer("Exit codes: 0 ok, 1 comparison over its limit, 2 usage, 3 bad input, 4 no usable device.");
+  addInfoCommand(app);
+  addReplayCommand(app);
+  addPlanCommand(app);
+  addMaterialCommand(app);
+  addReferenceCommand(app);
+  addCompareCommand(app);
+  addCaptureCommand(app);
+  try {
+    app.parse(argc, argv);
+    return OK;
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? OK : USAGE;  // --help also ends up here
+  } catch (const LimitExceeded& e) {
+    return fail(OVER_LIMIT, e.what());
+  } catch (const UsageError& e) {
+    return fail(USAGE, e.what());
+  } catch (const DeviceError& e) {
+    return fail(NO_DEVICE, e.what());
+  } catch (const std::bad_alloc&) {
+    return fail(BAD_INPUT, "out of memory");
+  } catch (const std::exception& e) {
+    return fail(BAD_INPUT, e.what());
+  }
+}

@@ -1,0 +1,43 @@
+// `pellucid plan`: the dispatch plan of a capture, without a device.
+#include <cstdio>
+
+#include <nlohmann/json.hpp>
+
+#include "capture/material.h"
+#include "capture/read.h"
+#include "cli/commands.h"
+#include "cli/plan_text.h"
+#include "cli/settings.h"
+
+namespace pellucid::harness {
+
+std::string planJson(const PellucidPlan& plan) {
+  size_t size = 0;
+  pellucidPlanToJson(&plan, nullptr, &size);
+  std::string text(size, '\0');
+  pellucidPlanToJson(&plan, text.data(), &size);
+  text.pop_back();  // the terminator
+  return text;
+}
+
+void addPlanCommand(CLI::App& app) {
+  struct Options {
+    std::string input;
+    SettingsOptions settings;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("plan", "Print the dispatch plan of a capture as JSON; needs no device");
+  command->add_option("capture", options->input, "manifest (.json) or EXR with an embedded one")->required();
+  options->settings.addTo(*command);
+  command->callback([options] {
+    const Capture capture = readCapture(options->input);
+    FrameData data;
+    makeFrame(capture, compileMaterials(capture), options->settings.parse(), data);
+    PellucidPlan plan;
+    requireOk(pellucidBuildPlan(&data.frame, nullptr, &plan), data.frame, capture.name);
+    std::printf("%s\n", nlohmann::json::parse(planJson(plan)).dump(2).c_str());
+  });
+}
+
+}  // namespace pellucid::harness

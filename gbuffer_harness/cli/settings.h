@@ -1,0 +1,22 @@
+// Options that say how a capture is run; shared by replay and plan.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "replay/frame.h"
+
+namespace pellucid::harness {
+
+struct SettingsOptions {
+  std::vector<std::string> set;  // key=value
+  std::string debug;
+
+  void addTo(CLI::App& command);
+
+  // Throws UsageError naming the key and the value.
+  ReplaySettings parse() const;
+};
+
+}  // namespace pellucid::harness

@@ -1,0 +1,95 @@
+// The README's integration snippet, compiled as it stands there and run.
+#include <gtest/gtest.h>
+#include <vulkan/vulkan.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "common/gpu_image.h"
+
+// What the snippet expects of an engine.
+struct GBuffer {
+  uint32_t width, height;
+  float metersPerUnit;
+  float projection[16], view[16];
+  VkImageView depth, backFaceDepth, irradiance, normal, materialId, scratch[2];
+  uint32_t lightCount;
+  const PellucidLight* lights;
+  VkBuffer uploadBuffer;
+  VkDeviceSize uploadSize;
+  void* uploadMapped;
+};
+
+#include "readme_snippet.inc"
+
+namespace {
+
+using namespace pellucid::harness;
+
+TEST(Readme, SnippetMakesASlabGlow) {
+  Device device({"", true});
+  Translucency t;
+  ASSERT_TRUE(createTranslucency(device.instance(), device.physicalDevice(), device.handle(), t));
+
+  constexpr int kSize = 16;
+  const auto image = [&](VkFormat format, const Image& content) {
+    auto gpu = std::make_unique<GpuImage>(device, kSize, kSize, format);
+    gpu->upload(content);
+    return gpu;
+  };
+  Image facing(kSize, kSize, 3);
+  for (size_t i = 2; i < facing.data.size(); i += 3) facing.data[i] = 1;
+  const auto depth = image(VK_FORMAT_R32_SFLOAT, Image(kSize, kSize, 1, 0.01f));     // 10 units away
+  const auto back = image(VK_FORMAT_R32_SFLOAT, Image(kSize, kSize, 1, 0.1f / 12));  // 2 units behind
+  const auto irradiance = image(VK_FORMAT_R16G16B16A16_SFLOAT, Image(kSize, kSize, 3, 0.0f));
+  const auto normal = image(VK_FORMAT_R32G32B32A32_SFLOAT, facing);
+  const auto scratch0 = image(VK_FORMAT_R16G16B16A16_SFLOAT, Image(kSize, kSize, 3, 0.0f));
+  const auto scratch1 = image(VK_FORMAT_R16G16B16A16_SFLOAT, Image(kSize, kSize, 3, 0.0f));
+  GpuImage material(device, kSize, kSize, VK_FORMAT_R8_UINT);
+  material.upload(std::vector<std::uint8_t>(kSize * kSize, 1));
+  HostBuffer upload(device, 64 * 1024,
+                    VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+
+  PellucidLight light{};
+  light.direction[2] = 1;
+  light.color[0] = light.color[1] = light.color[2] = 1;
+  light.intensity = 10;
+  GBuffer g{};
+  g.width = g.height = kSize;
+  g.metersPerUnit = 0.001f;
+  const float projection[16] = {1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 0, -1, 0, 0, 0.1f, 0};  // reversed, infinite
+  std::copy_n(projection, 16, g.projection);
+  for (int i = 0; i < 4; ++i) g.view[i * 5] = 1;
+  g.depth = depth->use().view;
+  g.backFaceDepth = back->use().view;
+  g.irradiance = irradiance->use().view;
+  g.normal = normal->use().view;
+  g.materialId = material.use().view;
+  g.scratch[0] = scratch0->use().view;
+  g.scratch[1] = scratch1->use().view;
+  g.lightCount = 1;
+  g.lights = &light;
+  g.uploadBuffer = upload.handle();
+  g.uploadSize = upload.size();
+  g.uploadMapped = upload.mapped();
+
+  device.run([&](VkCommandBuffer commandBuffer) { EXPECT_TRUE(recordTranslucency(commandBuffer, g, t)); });
+  const Image out = irradiance->download();
+  const float* center = out.at(kSize / 2, kSize / 2);
+  EXPECT_GT(center[0], 1.0f);
+  EXPECT_GT(center[0], 3 * center[1]) << "skin lets red through";
+  EXPECT_GT(center[1], 3 * center[2]);
+  pellucidDestroyContext(t.context);
+  for (const std::string& message : device.validationMessages()) ADD_FAILURE() << message;
+}
+
+TEST(Readme, SnippetIsUnder60Lines) {
+  std::ifstream snippet(PELLUCID_SNIPPET);
+  std::string line;
+  int lines = 0;
+  while (std::getline(snippet, line)) lines += !line.empty();
+  EXPECT_GT(lines, 20);
+  EXPECT_LT(lines, 60);
+}
+
+}  // namespace
