@@ -1,0 +1,51 @@
+// Cameras in every convention an engine may use, in double precision.
+#pragma once
+
+#include <array>
+
+#include "capture/capture.h"
+
+namespace pellucid::harness {
+
+using Vector3 = std::array<double, 3>;
+
+// Sign of the view axis: right-handed looks along -z (glTF, OpenGL), left-handed along +z (Direct3D).
+enum class Handedness { Right, Left };
+
+// Planar distances of the clip planes along the view axis, scene units, 0 < nearPlane < farPlane
+// (orthographic: nearPlane may be <= 0). farPlane may be infinity for a perspective.
+struct ClipRange {
+  double nearPlane = 1, farPlane = 1000;
+  bool reversed = false;  // device depth 1 at nearPlane, 0 at farPlane
+};
+
+// clipFromView of a symmetric frustum, Vulkan clip space: y down, depth 0..1, w > 0 in front.
+// verticalFov: radians, (0, pi). aspect: width / height. Throws InputError on values outside.
+Matrix perspective(double verticalFov, double aspect, const ClipRange& range,
+                   Handedness handedness = Handedness::Right);
+
+// clipFromView of a box `width` by `height` scene units around the axis. Throws InputError.
+Matrix orthographic(double width, double height, const ClipRange& range,
+                    Handedness handedness = Handedness::Right);
+
+// Rigid viewFromWorld of an eye looking at target. `up` need not be perpendicular; when it is
+// parallel to the axis another one is taken. In a left-handed world the result is left-handed too.
+Matrix lookAt(const Vector3& eye, const Vector3& target, const Vector3& up,
+              Handedness handedness = Handedness::Right);
+
+// Device depth of a planar distance through clipFromView; not clamped.
+double deviceDepth(const Matrix& clipFromView, double viewZ, Handedness handedness = Handedness::Right);
+
+// A depth buffer as the matrix would have rendered it. Pixels that hold nothing get the value the
+// buffer is cleared to: 1, or 0 when the matrix is reversed. Throws InputError when the image is not
+// PELLUCID_DEPTH_VIEW_Z.
+DepthImage toDeviceDepth(const DepthImage& viewZ, const Matrix& clipFromView,
+                         Handedness handedness = Handedness::Right);
+
+// Device depth of "nothing there": that of the end of the range where distances grow.
+double clearDepth(const Matrix& clipFromView, Handedness handedness = Handedness::Right);
+
+// a * b.
+Matrix multiply(const Matrix& a, const Matrix& b);
+
+}  // namespace pellucid::harness

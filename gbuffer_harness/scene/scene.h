@@ -1,0 +1,53 @@
+// Procedural captures, made on the CPU: analytic or distance-field geometry cast in double precision.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "capture/capture.h"
+#include "scene/camera.h"
+
+namespace pellucid::harness {
+
+struct SceneParameters {
+  std::string name;                       // one of listScenes()
+  int width = 256, height = 256;          // pixels, 1..8192
+  unsigned seed = 1;                      // of the scenes that scatter things
+  std::map<std::string, double> options;  // the scene's own; see SceneInfo::options
+
+  std::optional<bool> orthographic;  // absent: as the scene prefers
+  bool reversedZ = false;
+  bool infiniteFar = false;  // perspective only
+  // Left mirrors the world in z, so that viewFromWorld stays rigid. Manifests are right-handed: such
+  // a capture is for use in memory.
+  Handedness handedness = Handedness::Right;
+  PellucidDepthEncoding depthEncoding = PELLUCID_DEPTH_VIEW_Z;  // DEVICE or VIEW_Z
+  bool normalsInViewSpace = false;
+
+  std::optional<PellucidLightType> lightType;  // absent: as the scene prefers; same E at its center
+  int shadowSize = 512;                        // texels across a shadow map; 0: no shadow maps
+  PellucidDepthEncoding shadowEncoding = PELLUCID_DEPTH_VIEW_Z;
+};
+
+struct SceneOption {
+  std::string name;
+  double defaultValue, minimum, maximum;
+  std::string description;  // with the unit
+};
+
+struct SceneInfo {
+  std::string name, description;
+  std::vector<SceneOption> options;
+};
+
+std::vector<SceneInfo> listScenes();
+
+// The same parameters give the same capture, bit for bit, whatever the number of threads. The scene
+// unit is 1 mm. exactThickness, where given, receives the closed-form length (mm) of the view ray
+// inside the first object, 0 where there is none, one channel; empty when the scene has no closed
+// form. Throws InputError naming the field when a name, size, option or combination is not known.
+Capture makeScene(const SceneParameters& parameters, Image* exactThickness = nullptr);
+
+}  // namespace pellucid::harness

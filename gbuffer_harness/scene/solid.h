@@ -1,0 +1,115 @@
+// Solids that a ray can be intersected with: analytic ones and distance fields. Double precision.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <optional>
+#include <vector>
+
+namespace pellucid::harness {
+
+struct Ray {
+  glm::dvec3 origin, direction;  // unit direction
+  glm::dvec3 at(double t) const { return origin + t * direction; }
+};
+
+// Distances along a ray between which it is inside a solid; exit may be infinity.
+struct Span {
+  double enter, exit;
+};
+
+class Solid {
+public:
+  virtual ~Solid() = default;
+
+  // The first span that begins at t >= tMin. A span already begun at tMin is passed over: its front
+  // face lies before tMin, as a face in front of a near plane does.
+  virtual std::optional<Span> firstSpan(const Ray& ray, double tMin) const = 0;
+
+  // Whether a span begins in [tMin, tMax]; cheaper than firstSpan where the exit costs extra.
+  virtual bool blocks(const Ray& ray, double tMin, double tMax) const;
+
+  // Outward unit normal at a point of the surface.
+  virtual glm::dvec3 normal(const glm::dvec3& point) const = 0;
+};
+
+// Points with dot(normal, p) <= offset for every plane: slabs, wedges, boxes, tapered blades.
+class Polyhedron : public Solid {
+public:
+  struct Plane {
+    glm::dvec3 normal;  // outward, unit
+    double offset;
+  };
+  explicit Polyhedron(std::vector<Plane> planes) : planes_(std::move(planes)) {}
+  // Axes are unit and perpendicular; an infinite half extent leaves that pair of faces out.
+  static Polyhedron box(const glm::dvec3& center, const glm::dmat3& axes, const glm::dvec3& halfExtent);
+
+  std::optional<Span> firstSpan(const Ray& ray, double tMin) const override;
+  glm::dvec3 normal(const glm::dvec3& point) const override;
+
+private:
+  std::vector<Plane> planes_;
+};
+
+class Ellipsoid : public Solid {
+public:
+  Ellipsoid(const glm::dvec3& center, const glm::dvec3& radii) : center_(center), radii_(radii) {}
+
+  std::optional<Span> firstSpan(const Ray& ray, double tMin) const override;
+  glm::dvec3 normal(const glm::dvec3& point) const override;
+
+private:
+  glm::dvec3 center_, radii_;
+};
+
+// The solid between two concentric spheres.
+class HollowSphere : public Solid {
+public:
+  HollowSphere(const glm::dvec3& center, double outerRadius, double innerRadius)
+      : center_(center), outer_(outerRadius), inner_(innerRadius) {}
+
+  std::optional<Span> firstSpan(const Ray& ray, double tMin) const override;
+  glm::dvec3 normal(const glm::dvec3& point) const override;
+
+private:
+  glm::dvec3 center_;
+  double outer_, inner_;
+};
+
+class Torus : public Solid {
+public:
+  Torus(const glm::dvec3& center, const glm::dvec3& axis, double majorRadius, double minorRadius)
+      : center_(center), axis_(axis), major_(majorRadius), minor_(minorRadius) {}
+
+  std::optional<Span> firstSpan(const Ray& ray, double tMin) const override;
+  glm::dvec3 normal(const glm::dvec3& point) const override;
+
+private:
+  glm::dvec3 center_, axis_;
+  double major_, minor_;
+};
+
+// A solid given by a function that is negative inside, found by sphere tracing (Hart 1996) and a
+// bracketed root search to 1e-9 scene units. Only the part inside the bounding box exists.
+class DistanceField : public Solid {
+public:
+  std::optional<Span> firstSpan(const Ray& ray, double tMin) const override;
+  bool blocks(const Ray& ray, double tMin, double tMax) const override;
+  glm::dvec3 normal(const glm::dvec3& point) const override;
+
+  // At most the distance to the surface times a constant the field has been scaled for.
+  virtual double distance(const glm::dvec3& point) const = 0;
+
+protected:
+  DistanceField(const glm::dvec3& boxMin, const glm::dvec3& boxMax, double smallestStep)
+      : boxMin_(boxMin), boxMax_(boxMax), smallestStep_(smallestStep) {}
+
+private:
+  std::optional<Span> clipToBox(const Ray& ray) const;
+  double march(const Ray& ray, double t, double end, double sign) const;
+  double findEntry(const Ray& ray, const Span& box, double tMin, double end) const;
+
+  glm::dvec3 boxMin_, boxMax_;
+  double smallestStep_;  // features thinner than this may be missed
+};
+
+}  // namespace pellucid::harness

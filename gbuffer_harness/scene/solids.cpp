@@ -1,0 +1,256 @@
+// Back-lit solids, most of them of known thickness.
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "scene/model.h"
+
+namespace pellucid::harness {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Of a shadow map around what it covers.
+constexpr double kMargin = 1.1;
+
+double radians(double degrees) { return degrees * std::numbers::pi / 180; }
+
+const SceneOption kExtent = {"extent", 40, 1e-3, 1e5, "visible width, mm"};
+const SceneOption kLightAngle = {"lightAngle", 20, -180, 180,
+                                 "direction towards the light, degrees from straight behind"};
+const SceneOption kTilt = {"tilt", 0, -85, 85, "rotation about the vertical axis, degrees"};
+const SceneOption kThickness = {"thickness", 4, 1e-6, 1e3, "mm"};
+
+void addObject(SceneModel& model, std::unique_ptr<Solid> solid) {
+  model.objects.emplace_back().solid = std::move(solid);
+}
+
+void addBox(SceneModel& model, const glm::dvec3& center, const glm::dvec3& halfExtent,
+            const glm::dmat3& axes = glm::dmat3(1)) {
+  addObject(model, std::make_unique<Polyhedron>(Polyhedron::box(center, axes, halfExtent)));
+}
+
+// Axes of a box turned about the vertical axis; the third is its front normal.
+glm::dmat3 turned(double degrees) {
+  const double angle = radians(degrees);
+  return {{std::cos(angle), 0, -std::sin(angle)}, {0, 1, 0}, {std::sin(angle), 0, std::cos(angle)}};
+}
+
+// The camera on the z axis looking at the origin, one light behind it, shadow maps over what is seen.
+SceneModel backLit(const SceneParameters& parameters, const OptionValues& options) {
+  const double extent = options["extent"];
+  SceneModel model;
+  model.camera =
+      placeCamera(parameters, {{0, 0, 4 * extent}, {0, 0, 0}, extent, false, extent / 4, 12 * extent});
+  model.radius = extent;
+  const double angle = radians(options["lightAngle"]);
+  model.lights.push_back(placeLight(parameters, {{0, 0, 0},
+                                                 {std::sin(angle), 0, -std::cos(angle)},
+                                                 1,
+                                                 PELLUCID_LIGHT_DIRECTIONAL,
+                                                 5 * extent,
+                                                 extent}));
+  return model;
+}
+
+// Distance of the ray's line from the origin, squared.
+double squaredDistanceToOrigin(const Ray& ray) {
+  const glm::dvec3 moment = glm::cross(ray.origin, ray.direction);
+  return glm::dot(moment, moment);
+}
+
+double halfChord(double radius, double squaredDistance) {
+  return std::sqrt(std::max(0.0, radius * radius - squaredDistance));
+}
+
+SceneModel buildSlab(const SceneParameters& parameters, const OptionValues& options) {
+  SceneModel model = backLit(parameters, options);
+  const glm::dmat3 axes = turned(options["tilt"]);
+  const double thickness = options["thickness"];
+  addBox(model, -thickness / 2 * axes[2], {kInfinity, kInfinity, thickness / 2}, axes);
+  model.exactThickness = [normal = axes[2], thickness](const Ray& ray) {
+    return thickness / std::abs(glm::dot(ray.direction, normal));
+  };
+  return model;
+}
+
+SceneModel buildWedge(const SceneParameters& parameters, const OptionValues& options) {
+  SceneModel model = backLit(parameters, options);
+  const double angle = radians(options["angle"]);
+  const double edge = -0.45 * options["extent"];  // x of the sharp edge
+  const glm::dvec3 back(-std::sin(angle), 0, -std::cos(angle));
+  addObject(model, std::make_unique<Polyhedron>(
+                       std::vector<Polyhedron::Plane>{{{0, 0, 1}, 0}, {back, -edge * std::sin(angle)}}));
+  model.exactThickness = [edge, back](const Ray& ray) {
+    // From the front face z = 0 at distance x from the edge, the back face recedes at a known rate.
+    const double x = ray.at(-ray.origin.z / ray.direction.z).x - edge;
+    return std::max(0.0, x * -back.x / glm::dot(back, ray.direction));
+  };
+  return model;
+}
+
+SceneModel buildSphere(const SceneParameters& parameters, const OptionValues& options) {
+  SceneModel model = backLit(parameters, options);
+  const double radius = options["radius"];
+  addObject(model, std::make_unique<Ellipsoid>(glm::dvec3(0), glm::dvec3(radius)));
+  model.radius = kMargin * radius;
+  model.exactThickness = [radius](const Ray& ray) {
+    return 2 * halfChord(radius, squaredDistanceToOrigin(ray));
+  };
+  return model;
+}
+
+SceneModel buildHollowSphere(const SceneParameters& parameters, const OptionValues& options) {
+  SceneModel model = backLit(parameters, options);
+  const double outer = options["radius"];
+  const double inner = outer * options["hollow"];
+  addObject(model, std::make_unique<HollowSphere>(glm::dvec3(0), outer, inner));
+  model.radius = kMargin * outer;
+  model.exactThickness = [outer, inner](const Ray& ray) {
+    const double square = squaredDistanceToOrigin(ray);
+    return square < inner * inner ? halfChord(outer, square) - halfChord(inner, square)
+                                  : 2 * halfChord(outer, square);
+  };
+  return model;
+}
+
+SceneModel buildTorus(const SceneParameters& parameters, const OptionValues& options) {
+  SceneModel model = backLit(parameters, options);
+  const double tilt = radians(options["tilt"]);
+  const Torus torus(glm::dvec3(0), {0, std::sin(tilt), std::cos(tilt)}, options["majorRadius"],
+                    options["majorRadius"] * options["tube"]);
+  addObject(model, std::make_unique<Torus>(torus));
+  model.radius = kMargin * options["majorRadius"] * (1 + options["tube"]);
+  model.exactThickness = [torus](const Ray& ray) {
+    const std::optional<Span> span = torus.firstSpan(ray, 0);
+    return span ? span->exit - span->enter : 0;
+  };
+  return model;
+}
+
+SceneModel buildTwoSheets(const SceneParameters& parameters, const OptionValues& options) {
+  SceneModel model = backLit(parameters, options);
+  const double thickness = options["thickness"];
+  const double second = -thickness - options["gap"];  // front of the second sheet
+  addBox(model, {0, 0, -thickness / 2}, {kInfinity, kInfinity, thickness / 2});
+  addObject(model, std::make_unique<Polyhedron>(std::vector<Polyhedron::Plane>{
+                       {{-1, 0, 0}, 0}, {{0, 0, 1}, second}, {{0, 0, -1}, thickness - second}}));
+  model.exactThickness = [thickness](const Ray& ray) { return thickness / std::abs(ray.direction.z); };
+  return model;
+}
+
+SceneModel buildBlocked(const SceneParameters& parameters, const OptionValues& options) {
+  SceneModel model = backLit(parameters, options);
+  const double thickness = options["thickness"];
+  const double extent = options["extent"];
+  addBox(model, {0, 0, -thickness / 2}, {0.4 * extent, 0.4 * extent, thickness / 2});
+  // The body stands on the line from the sheet's center to the light.
+  const glm::dvec3 towardLight =
+      -glm::dvec3(model.lights[0].direction[0], model.lights[0].direction[1], model.lights[0].direction[2]);
+  addObject(model, std::make_unique<Ellipsoid>(towardLight * (options["bodyDistance"] * extent),
+                                               glm::dvec3(options["bodyRadius"] * extent)));
+  return model;
+}
+
+SceneModel buildOccluder(const SceneParameters& parameters, const OptionValues& options) {
+  SceneModel model = backLit(parameters, options);
+  const double thickness = options["thickness"];
+  const double extent = options["extent"];
+  addBox(model, {0, 0, -thickness / 2}, {0.2 * extent, 0.3 * extent, thickness / 2});
+  // Wide enough to fill the view, not to reach the light's way to the sheet.
+  addBox(model, {0, 0, -(options["distance"] + 0.25) * extent}, {0.8 * extent, 0.8 * extent, 0.25 * extent});
+  model.radius = 1.6 * extent;
+  return model;
+}
+
+SceneModel buildTwoMaterials(const SceneParameters& parameters, const OptionValues& options) {
+  SceneModel model = backLit(parameters, options);
+  const double extent = options["extent"];
+  addObject(model, std::make_unique<Ellipsoid>(glm::dvec3(0), glm::dvec3(0.4, 0.4, 0.1) * extent));
+  model.radius = kMargin * 0.4 * extent;
+  model.objects[0].materialAt = [](const glm::dvec3& p) {
+    return static_cast<std::uint8_t>(p.x < 0 ? 1 : 2);
+  };
+  model.materials = {PresetMaterial{"skin1"}, PresetMaterial{"marble"}};
+  LightPlacement front{{0, 0, 0}, {1, 1, 1}, 1};
+  front.distance = 5 * extent;
+  front.coneRadius = extent;
+  model.lights.push_back(placeLight(parameters, front));
+  return model;
+}
+
+SceneModel buildNearFar(const SceneParameters& parameters, const OptionValues& options) {
+  SceneModel model = backLit(parameters, options);
+  const double extent = options["extent"];
+  const double tilt = radians(options["tilt"]);
+  // Clip planes close around the target, so that the sheet leaves the frustum through both.
+  model.camera =
+      placeCamera(parameters, {{0, 0, 4 * extent}, {0, 0, 0}, extent, false, 3.2 * extent, 4.8 * extent});
+  const glm::dvec3 normal(0, std::sin(tilt), std::cos(tilt));
+  const double half = options["thickness"] / 2;
+  addBox(model, -half * normal, {kInfinity, kInfinity, half},
+         {{1, 0, 0}, glm::cross(normal, {1, 0, 0}), normal});
+  return model;
+}
+
+SceneOption withDefault(SceneOption option, double value) {
+  option.defaultValue = value;
+  return option;
+}
+
+}  // namespace
+
+std::vector<SceneDefinition> solidScenes() {
+  const SceneOption radius = {"radius", 8, 1e-3, 1e4, "mm"};
+  const SceneOption thin = withDefault(kThickness, 2);
+  return {
+      {{"slab", "Infinite slab lit from behind", {kThickness, kTilt, kLightAngle, kExtent}}, buildSlab},
+      {{"wedge",
+        "Infinite wedge, sharp edge at the left, lit from behind",
+        {{"angle", 15, 0.1, 80, "between the faces, degrees"}, kLightAngle, kExtent}},
+       buildWedge},
+      {{"sphere", "Sphere lit from behind", {radius, kLightAngle, kExtent}}, buildSphere},
+      {{"hollow_sphere",
+        "Spherical shell lit from behind",
+        {radius, {"hollow", 0.75, 0.01, 0.999, "inner radius / outer radius"}, kLightAngle, kExtent}},
+       buildHollowSphere},
+      {{"torus",
+        "Ring lit from behind",
+        {{"majorRadius", 12, 1e-3, 1e4, "radius of the ring's middle line, mm"},
+         {"tube", 0.3, 0.01, 0.99, "tube radius / majorRadius"},
+         withDefault(kTilt, 30),
+         kLightAngle,
+         kExtent}},
+       buildTorus},
+      {{"two_sheets",
+        "Thin sheet; behind its right half a second one stands in the light",
+        {thin, {"gap", 15, 1e-3, 1e4, "between the sheets, mm"}, kLightAngle, kExtent}},
+       buildTwoSheets},
+      {{"blocked",
+        "Thin sheet with a body between it and the light",
+        {thin,
+         {"bodyDistance", 0.5, 0.1, 0.8, "of the body's center from the sheet, extents"},
+         {"bodyRadius", 0.15, 0.01, 0.45, "extents"},
+         kLightAngle,
+         kExtent}},
+       buildBlocked},
+      {{"occluder",
+        "Thin sheet in front of a large body, lit from between them: the body must not block it",
+        {thin,
+         {"distance", 0.5, 0.3, 0.5, "of the body's front from the sheet, extents"},
+         withDefault(kLightAngle, 75),
+         kExtent}},
+       buildOccluder},
+      {{"two_materials",
+        "One body of two materials, border at x = 0, lit from both sides",
+        {kLightAngle, kExtent}},
+       buildTwoMaterials},
+      {{"near_far",
+        "Thin sheet that leaves the frustum through the near and the far plane",
+        {thin, {"tilt", 70, 65, 85, "rotation about the horizontal axis, degrees"}, kLightAngle, kExtent}},
+       buildNearFar},
+  };
+}
+
+}  // namespace pellucid::harness

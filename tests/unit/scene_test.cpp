@@ -1,0 +1,650 @@
+// Procedural scenes against closed forms, and the cameras in every convention.
+#include "scene/scene.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "common/error.h"
+#include "scene/model.h"
+#include "scene/polynomial.h"
+#include "scene/render.h"
+#include "scene/vector.h"
+
+namespace pellucid::harness {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+SceneParameters sized(const std::string& name, int size) {
+  SceneParameters parameters;
+  parameters.name = name;
+  parameters.width = parameters.height = size;
+  parameters.shadowSize = 0;
+  return parameters;
+}
+
+SceneModel buildModel(const SceneParameters& parameters) {
+  const SceneDefinition& scene = findScene(parameters.name);
+  return scene.build(parameters, OptionValues(scene.info, parameters.options));
+}
+
+// Largest relative error of the cast thickness in double, over pixels where `exact` is at least
+// `smallest` mm; every one of them must be hit.
+double thicknessError(const SceneParameters& parameters, const std::function<double(const Ray&)>& exact,
+                      double smallest) {
+  const SceneModel model = buildModel(parameters);
+  double worst = 0;
+  int counted = 0;
+  for (int y = 0; y < parameters.height; ++y) {
+    for (int x = 0; x < parameters.width; ++x) {
+      const Ray ray = model.camera.ray(x + 0.5, y + 0.5, parameters.width, parameters.height);
+      const double expected = exact(ray);
+      if (expected < smallest) continue;
+      const std::optional<Hit> hit = firstHit(model.objects, ray, -kInfinity);
+      if (!hit) return kInfinity;
+      worst = std::max(worst, std::abs(hit->exit - hit->enter - expected) / expected);
+      ++counted;
+    }
+  }
+  EXPECT_GT(counted, parameters.width * parameters.height / 20) << "too few pixels to mean anything";
+  return worst;
+}
+
+// Distance of the ray's line from the origin, and of the eye.
+double lineDistance(const Ray& ray) { return glm::length(glm::cross(ray.origin, ray.direction)); }
+
+class SceneThickness : public ::testing::TestWithParam<bool> {
+protected:
+  SceneParameters parameters(const std::string& name, std::map<std::string, double> options = {}) const {
+    SceneParameters p = sized(name, 64);
+    p.orthographic = GetParam();
+    p.options = std::move(options);
+    return p;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Projections, SceneThickness, ::testing::Bool(),
+                         [](const auto& test) { return test.param ? "Orthographic" : "Perspective"; });
+
+// Thickness away from silhouettes; at them its relative error grows without bound as it goes to 0.
+constexpr double kTolerance = 1e-6;
+
+TEST_P(SceneThickness, SlabIsThicknessOverCosine) {
+  for (const double tilt : {0.0, 50.0}) {
+    const double angle = tilt * std::numbers::pi / 180;
+    const auto exact = [&](const Ray& ray) {
+      return 4 / std::abs(ray.direction.x * std::sin(angle) + ray.direction.z * std::cos(angle));
+    };
+    EXPECT_LT(thicknessError(parameters("slab", {{"tilt", tilt}}), exact, 1), kTolerance) << tilt;
+  }
+}
+
+TEST_P(SceneThickness, WedgeIsProportionalToTheDistanceFromTheEdge) {
+  const double tangent = std::tan(15 * std::numbers::pi / 180);
+  const auto exact = [&](const Ray& ray) {
+    // Along the axis: x tan(angle). Obliquely, intersect with the back face z = -(x - edge) tan.
+    const double x = ray.at(-ray.origin.z / ray.direction.z).x + 18;
+    return x * tangent / (-ray.direction.z - ray.direction.x * tangent);
+  };
+  EXPECT_LT(thicknessError(parameters("wedge"), exact, 0.01), kTolerance);
+}
+
+TEST_P(SceneThickness, SphereIsItsChord) {
+  const auto exact = [](const Ray& ray) {
+    return 2 * std::sqrt(std::max(0.0, 64 - std::pow(lineDistance(ray), 2)));
+  };
+  EXPECT_LT(thicknessError(parameters("sphere", {{"extent", 18}}), exact, 0.5), kTolerance);
+}
+
+TEST_P(SceneThickness, HollowSphereEndsAtTheInnerSurface) {
+  const auto exact = [](const Ray& ray) {
+    const double square = std::pow(lineDistance(ray), 2);
+    return std::sqrt(std::max(0.0, 64 - square)) - std::sqrt(std::max(0.0, 36 - square)) +
+           (square >= 36 ? std::sqrt(std::max(0.0, 64 - square)) : 0);
+  };
+  EXPECT_LT(thicknessError(parameters("hollow_sphere", {{"extent", 18}}), exact, 0.5), kTolerance);
+}
+
+TEST_P(SceneThickness, TwoSheetsIsTheFirstSheet) {
+  const auto exact = [](const Ray& ray) { return 2 / std::abs(ray.direction.z); };
+  EXPECT_LT(thicknessError(parameters("two_sheets"), exact, 1), kTolerance);
+}
+
+TEST_P(SceneThickness, TorusAgreesWithDistanceBisection) {
+  // Found without the quartic: the distance to a torus is known exactly, so march and bisect it.
+  const double tilt = 30 * std::numbers::pi / 180;
+  const glm::dvec3 axis(0, std::sin(tilt), std::cos(tilt));
+  const auto distance = [&](const glm::dvec3& p) {
+    const double height = glm::dot(p, axis);
+    return std::hypot(glm::length(p - height * axis) - 12, height) - 3.6;
+  };
+  const auto exact = [&](const Ray& ray) {
+    const auto crossing = [&](double t, double end, double sign) {
+      while (t < end && sign * distance(ray.at(t)) > 0) t += std::max(1e-3, sign * distance(ray.at(t)));
+      if (t >= end) return kInfinity;
+      double a = t - std::max(2e-3, 2 * std::abs(distance(ray.at(t)))), b = t;
+      for (int i = 0; i < 60; ++i) (sign * distance(ray.at((a + b) / 2)) > 0 ? a : b) = (a + b) / 2;
+      return (a + b) / 2;
+    };
+    const double enter = crossing(100, 300, 1);
+    return std::isinf(enter) ? 0.0 : crossing(enter + 1e-6, 300, -1) - enter;
+  };
+  EXPECT_LT(thicknessError(parameters("torus"), exact, 0.5), kTolerance);
+}
+
+TEST(Scene, ExactThicknessMatchesTheStoredDepths) {
+  for (const std::string name :
+       {"slab", "wedge", "sphere", "hollow_sphere", "torus", "two_sheets", "plane"}) {
+    Image exact;
+    const Capture capture = makeScene(sized(name, 48), &exact);
+    const SceneModel model = buildModel(sized(name, 48));
+    ASSERT_EQ(exact.data.size(), capture.frontDepth.image.data.size()) << name;
+    for (int y = 0; y < 48; ++y) {
+      for (int x = 0; x < 48; ++x) {
+        const float front = *capture.frontDepth.image.at(x, y);
+        if (front >= kNoDepth) continue;
+        const Ray ray = model.camera.ray(x + 0.5, y + 0.5, 48, 48);
+        const double stored = (static_cast<double>(*capture.backDepth.image.at(x, y)) - front) /
+                              model.camera.viewZPerLength(ray);
+        // Two depths and one thickness rounded to float, 2^-24 of each.
+        EXPECT_NEAR(stored, *exact.at(x, y), 3 * front * std::ldexp(1, -24)) << name << " " << x << "," << y;
+      }
+    }
+  }
+}
+
+class BallField : public DistanceField {
+public:
+  BallField() : DistanceField(glm::dvec3(-3), glm::dvec3(3), 1e-3) {}
+  double distance(const glm::dvec3& p) const override { return std::abs(glm::length(p) - 1.5) - 0.5; }
+};
+
+TEST(Scene, DistanceFieldAgreesWithAnalyticSpheres) {
+  const BallField field;  // between radii 1 and 2
+  const HollowSphere sphere(glm::dvec3(0), 2, 1);
+  for (int i = 0; i < 60; ++i) {
+    const double offset = 0.0331 * i;  // up to 1.95: the last rays graze
+    const Ray ray{{offset, 0.1, 300}, glm::normalize(glm::dvec3(0, 0, -1))};
+    for (const double tMin : {0.0, 299.9}) {  // before the shell and from within its hollow or wall
+      const std::optional<Span> expected = sphere.firstSpan(ray, tMin);
+      const std::optional<Span> found = field.firstSpan(ray, tMin);
+      ASSERT_EQ(expected.has_value(), found.has_value()) << offset << " " << tMin;
+      if (!expected) continue;
+      EXPECT_NEAR(found->enter, expected->enter, 3e-9);
+      EXPECT_NEAR(found->exit, expected->exit, 3e-9);
+      EXPECT_NEAR(glm::length(field.normal(ray.at(found->enter)) - sphere.normal(ray.at(expected->enter))), 0,
+                  1e-6);
+      EXPECT_TRUE(field.blocks(ray, tMin, expected->enter + 0.01));
+      EXPECT_FALSE(field.blocks(ray, tMin, expected->enter - 0.01));
+    }
+  }
+}
+
+TEST(Scene, OverlappingObjectsEndWhereTheirUnionEnds) {
+  std::vector<Object> objects;
+  for (const double z : {0.0, -1.5, -3.0, -9.0}) {  // the first three overlap in a chain
+    objects.emplace_back().solid = std::make_unique<Ellipsoid>(glm::dvec3(0, 0, z), glm::dvec3(1));
+  }
+  const std::optional<Hit> hit = firstHit(objects, {{0, 0, 5}, {0, 0, -1}}, 0);
+  ASSERT_TRUE(hit);
+  EXPECT_DOUBLE_EQ(hit->enter, 4);
+  EXPECT_DOUBLE_EQ(hit->exit, 9);
+}
+
+TEST(Scene, RealRootsOfAProductOfFactors) {
+  const double a = -2, b = 1, c = 3, d = 3.001;
+  const std::vector<double> found =
+      realRoots({a * b * c * d, -(a * b * c + a * b * d + a * c * d + b * c * d),
+                 a * b + a * c + a * d + b * c + b * d + c * d, -(a + b + c + d), 1},
+                -10, 10);
+  ASSERT_EQ(found.size(), 4u);
+  EXPECT_NEAR(found[0], a, 1e-12);
+  EXPECT_NEAR(found[1], b, 1e-12);
+  EXPECT_NEAR(found[2], c, 1e-9);  // two roots 1e-3 apart are 1e3 times as ill-conditioned
+  EXPECT_NEAR(found[3], d, 1e-9);
+}
+
+// ---- Cameras
+
+struct Convention {
+  bool orthographic, reversed, infinite;
+  Handedness handedness;
+};
+
+class SceneCamera : public ::testing::TestWithParam<Convention> {};
+INSTANTIATE_TEST_SUITE_P(Conventions, SceneCamera, ::testing::ValuesIn([] {
+                           std::vector<Convention> all;
+                           for (const Handedness handedness : {Handedness::Right, Handedness::Left}) {
+                             for (const bool reversed : {false, true}) {
+                               all.push_back({false, reversed, false, handedness});
+                               all.push_back({false, reversed, true, handedness});
+                               all.push_back({true, reversed, false, handedness});
+                             }
+                           }
+                           return all;
+                         }()),
+                         [](const auto& test) {
+                           const Convention& c = test.param;
+                           return std::string(c.orthographic ? "Orthographic" : "Perspective") +
+                                  (c.reversed ? "Reversed" : "") + (c.infinite ? "Infinite" : "") +
+                                  (c.handedness == Handedness::Left ? "Left" : "Right");
+                         });
+
+TEST_P(SceneCamera, MapsKnownPoints) {
+  const Convention& c = GetParam();
+  const double n = 2;
+  const double f = c.infinite ? kInfinity : 50;
+  const double forward = c.handedness == Handedness::Left ? 1 : -1;
+  const double tangent = 0.5;  // half the vertical view
+  const double aspect = 1.6;
+  const Matrix matrix = c.orthographic
+                            ? orthographic(2 * aspect, 2, {n, f, c.reversed}, c.handedness)
+                            : perspective(2 * std::atan(tangent), aspect, {n, f, c.reversed}, c.handedness);
+  const auto project = [&](double x, double y, double viewZ) {
+    const glm::dvec4 clip = toGlm(matrix) * glm::dvec4(x, y, forward * viewZ, 1);
+    EXPECT_GT(clip.w, 0);
+    return glm::dvec3(clip) / clip.w;
+  };
+  for (const double z : {n, 10.0, 49.0}) {
+    const double top = c.orthographic ? 1 : z * tangent;
+    const glm::dvec3 corner = project(-top * aspect, top, z);  // upper left as seen
+    EXPECT_NEAR(corner.x, -1, 1e-14);
+    EXPECT_NEAR(corner.y, -1, 1e-14);  // Vulkan's y points down
+    EXPECT_NEAR(corner.z, deviceDepth(matrix, z, c.handedness), 1e-14);
+  }
+  EXPECT_NEAR(project(0, 0, n).z, c.reversed ? 1 : 0, 1e-14);
+  const double farthest = c.infinite ? 1e12 : f;
+  EXPECT_NEAR(project(0, 0, farthest).z, c.reversed ? 0 : 1, 1e-11);
+  EXPECT_EQ(clearDepth(matrix, c.handedness), c.reversed ? 0 : 1);
+}
+
+TEST_P(SceneCamera, DeviceDepthHoldsWhatViewZHolds) {
+  const Convention& c = GetParam();
+  SceneParameters parameters = sized("sphere", 32);
+  parameters.orthographic = c.orthographic;
+  parameters.reversedZ = c.reversed;
+  parameters.infiniteFar = c.infinite;
+  parameters.handedness = c.handedness;
+  const Capture viewZ = makeScene(parameters);
+  parameters.depthEncoding = PELLUCID_DEPTH_DEVICE;
+  const Capture device = makeScene(parameters);
+  ASSERT_EQ(device.frontDepth.encoding, PELLUCID_DEPTH_DEVICE);
+  ASSERT_EQ(device.clipFromView, viewZ.clipFromView);
+  const DepthImage converted = toDeviceDepth(viewZ.frontDepth, viewZ.clipFromView, c.handedness);
+  // Depth falls off as near * viewZ rounded to float / viewZ^2 at most, or span^-1 when parallel.
+  const double slack = 2 * std::ldexp(1, -24);
+  for (std::size_t i = 0; i < converted.image.data.size(); ++i) {
+    EXPECT_NEAR(device.frontDepth.image.data[i], converted.image.data[i], slack);
+    if (viewZ.material[i] == 0) {
+      EXPECT_EQ(device.frontDepth.image.data[i], c.reversed ? 0.0f : 1.0f);
+    }
+  }
+}
+
+// World position of a pixel through the capture's own matrices, as a replay would find it.
+glm::dvec3 worldPosition(const Capture& capture, int x, int y, double viewZ, bool left) {
+  const glm::dmat4 clipFromView = toGlm(capture.clipFromView);
+  const double z = left ? viewZ : -viewZ;
+  const double w = clipFromView[2][3] * z + clipFromView[3][3];
+  const glm::dvec4 view(w * (2 * (x + 0.5) / capture.width - 1) / clipFromView[0][0],
+                        w * (2 * (y + 0.5) / capture.height - 1) / clipFromView[1][1], z, 1);
+  return glm::inverse(toGlm(capture.viewFromWorld)) * view;
+}
+
+TEST(Scene, LeftHandedCaptureIsTheMirroredWorld) {
+  SceneParameters parameters = sized("torus", 32);
+  parameters.shadowSize = 16;
+  parameters.lightType = PELLUCID_LIGHT_POINT;
+  const Capture right = makeScene(parameters);
+  parameters.handedness = Handedness::Left;
+  const Capture left = makeScene(parameters);
+  EXPECT_NEAR(glm::determinant(toGlm(left.viewFromWorld)), 1, 1e-14) << "still rigid";
+  const glm::dvec3 mirror(1, 1, -1);
+  for (int y = 0; y < 32; ++y) {
+    for (int x = 0; x < 32; ++x) {
+      const double viewZ = *right.frontDepth.image.at(x, y);
+      EXPECT_EQ(*left.frontDepth.image.at(x, y), *right.frontDepth.image.at(x, y));
+      if (viewZ >= kNoDepth) continue;
+      const glm::dvec3 a = worldPosition(right, x, y, viewZ, false);
+      const glm::dvec3 b = worldPosition(left, x, y, viewZ, true);
+      EXPECT_NEAR(glm::length(a * mirror - b), 0, 1e-9);
+      EXPECT_EQ(left.normal.at(x, y)[2], -right.normal.at(x, y)[2]);
+      const ShadowMap& rightMap = *right.lights[0].shadowMap;
+      const ShadowMap& leftMap = *left.lights[0].shadowMap;
+      const auto seenAlike = [&](const Matrix& fromRight, const Matrix& fromLeft) {
+        return glm::length(toGlm(fromRight) * glm::dvec4(a, 1) - toGlm(fromLeft) * glm::dvec4(b, 1)) < 1e-9;
+      };
+      EXPECT_TRUE(seenAlike(rightMap.clipFromWorld, leftMap.clipFromWorld));
+      EXPECT_TRUE(seenAlike(*rightMap.viewFromWorld, *leftMap.viewFromWorld));
+    }
+  }
+  EXPECT_EQ(toGlm(left.lights[0].position), mirror * toGlm(right.lights[0].position));
+  EXPECT_EQ(toGlm(left.lights[0].direction), mirror * toGlm(right.lights[0].direction));
+}
+
+TEST(Scene, LookAtIsRigidAndPutsTheTargetOnTheAxis) {
+  for (const Handedness handedness : {Handedness::Right, Handedness::Left}) {
+    for (const Vector3& up : {Vector3{0, 1, 0}, Vector3{1, 2, 3}}) {  // the second is parallel to the axis
+      const Matrix matrix = lookAt({1, 2, 3}, {2, 4, 6}, up, handedness);
+      const glm::dmat4 view = toGlm(matrix);
+      EXPECT_NEAR(glm::determinant(view), 1, 1e-14);
+      const glm::dvec4 eye = view * glm::dvec4(1, 2, 3, 1);
+      const glm::dvec4 target = view * glm::dvec4(2, 4, 6, 1);
+      EXPECT_NEAR(glm::length(glm::dvec3(eye)), 0, 1e-14);
+      EXPECT_NEAR(target.x, 0, 1e-14);
+      EXPECT_NEAR(target.y, 0, 1e-14);
+      EXPECT_NEAR(target.z, std::sqrt(14) * (handedness == Handedness::Left ? 1 : -1), 1e-14);
+      if (up == Vector3{0, 1, 0}) {
+        EXPECT_GT((view * glm::dvec4(0, 1, 0, 0)).y, 0);
+      }
+    }
+  }
+}
+
+// ---- Light
+
+// Where a world point falls in a shadow map.
+struct Lookup {
+  int x, y;
+  double pointViewZ;
+  double viewZPerLength;  // of the light's ray
+};
+std::optional<Lookup> lookUp(const ShadowMap& map, const glm::dvec3& point) {
+  const glm::dvec4 clip = toGlm(map.clipFromWorld) * glm::dvec4(point, 1);
+  const glm::dvec4 view = toGlm(*map.viewFromWorld) * glm::dvec4(point, 1);
+  const int size = map.depth.image.width;
+  const double x = (clip.x / clip.w + 1) / 2 * size;
+  const double y = (clip.y / clip.w + 1) / 2 * size;
+  if (x < 1 || y < 1 || x >= size - 1 || y >= size - 1) return std::nullopt;
+  const bool parallel = toGlm(map.clipFromWorld)[3][3] == clip.w;
+  return Lookup{static_cast<int>(x), static_cast<int>(y), -view.z,
+                parallel ? 1 : -view.z / glm::length(glm::dvec3(view))};
+}
+
+double storedViewZ(const ShadowMap& map, const Lookup& at, int x, int y) {
+  const double value = *map.depth.image.at(x, y);
+  if (map.depth.encoding == PELLUCID_DEPTH_VIEW_Z) return value;
+  if (map.depth.encoding == PELLUCID_DEPTH_DISTANCE) return value * at.viewZPerLength;
+  // The z and w rows of clipFromView, from clipFromWorld and the rigid viewFromWorld.
+  const glm::dmat4 clipFromView = toGlm(map.clipFromWorld) * glm::inverse(toGlm(*map.viewFromWorld));
+  return (clipFromView[3][2] - value * clipFromView[3][3]) /
+         (clipFromView[2][2] - value * clipFromView[2][3]);
+}
+
+struct ShadowCase {
+  const char* scene;
+  PellucidLightType light;
+  PellucidDepthEncoding encoding;
+};
+class SceneShadow : public ::testing::TestWithParam<ShadowCase> {};
+INSTANTIATE_TEST_SUITE_P(
+    Lights, SceneShadow,
+    ::testing::Values(ShadowCase{"spheres", PELLUCID_LIGHT_DIRECTIONAL, PELLUCID_DEPTH_VIEW_Z},
+                      ShadowCase{"spheres", PELLUCID_LIGHT_POINT, PELLUCID_DEPTH_DISTANCE},
+                      ShadowCase{"torus", PELLUCID_LIGHT_POINT, PELLUCID_DEPTH_DEVICE},
+                      ShadowCase{"torus", PELLUCID_LIGHT_DIRECTIONAL, PELLUCID_DEPTH_DEVICE},
+                      ShadowCase{"blocked", PELLUCID_LIGHT_SPOT, PELLUCID_DEPTH_VIEW_Z},
+                      ShadowCase{"ear", PELLUCID_LIGHT_POINT, PELLUCID_DEPTH_VIEW_Z}));
+
+// Front and back surface of every pixel: shadow ray against shadow map, wherever the map can know.
+// It cannot at the edge of a shadow (neighboring texels disagree) and nearer to the receiver than the
+// receiver's own slope changes the distance within a texel.
+TEST_P(SceneShadow, MapAgreesWithShadowRays) {
+  SceneParameters parameters = sized(GetParam().scene, 40);
+  parameters.lightType = GetParam().light;
+  parameters.shadowEncoding = GetParam().encoding;
+  parameters.shadowSize = 400;
+  const Capture capture = makeScene(parameters);
+  const SceneModel model = buildModel(parameters);
+  const double texel = 2 * model.radius / parameters.shadowSize;
+  int lit = 0;
+  int shadowed = 0;
+  const auto compare = [&](const Light& light, const glm::dvec3& point, const glm::dvec3& normal) {
+    glm::dvec3 toLight = -toGlm(light.direction);
+    if (light.type != PELLUCID_LIGHT_DIRECTIONAL) toLight = glm::normalize(toGlm(light.position) - point);
+    const double cosine = glm::dot(normal, toLight);
+    const std::optional<Lookup> at = lookUp(*light.shadowMap, point);
+    if (cosine < 0.3 || !at) return;
+    const double slack = 2.5 * texel / cosine;
+    int blocked = 0;
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        blocked += storedViewZ(*light.shadowMap, *at, at->x + dx, at->y + dy) < at->pointViewZ - slack;
+      }
+    }
+    if (blocked != 0 && blocked != 9) return;
+    const glm::dvec3 origin = blocked ? point : point + slack * toLight;
+    EXPECT_EQ(blocked == 0, reaches(model.objects, light, origin, normal, 1e-3))
+        << point.x << " " << point.y << " " << point.z;
+    ++(blocked ? shadowed : lit);
+  };
+  for (int i = 0; i < 40 * 40; ++i) {
+    const Ray ray = model.camera.ray(i % 40 + 0.5, i / 40 + 0.5, 40, 40);
+    const std::optional<Hit> hit = firstHit(model.objects, ray, 0);
+    if (!hit) continue;
+    const glm::dvec3 front = ray.at(hit->enter);
+    const glm::dvec3 back = ray.at(hit->exit);
+    for (const Light& light : capture.lights) {
+      compare(light, front, hit->object->solid->normal(front));
+      compare(light, back, hit->object->solid->normal(back));
+    }
+  }
+  EXPECT_GT(lit, 50);
+  // A ring barely shades itself; the others must have shown shadow.
+  if (std::string(GetParam().scene) != "torus") {
+    EXPECT_GT(shadowed, 50);
+  }
+}
+
+TEST(Scene, IrradianceFollowsTheLightsDefinition) {
+  Light light;
+  light.type = PELLUCID_LIGHT_POINT;
+  light.position = {0, 0, 10};
+  light.direction = {0, 0, -1};
+  light.intensity = 300;
+  light.color = {1, 0.5, 0};
+  const glm::dvec3 up(0, 0, 1);
+  // 300 / 10^2 head on; at 45 degrees 300 cos 45 / 200.
+  EXPECT_NEAR(unshadowedIrradiance(light, {0, 0, 0}, up).x, 3, 1e-12);
+  EXPECT_NEAR(unshadowedIrradiance(light, {0, 0, 0}, up).y, 1.5, 1e-12);
+  EXPECT_NEAR(unshadowedIrradiance(light, {10, 0, 0}, up).x, 1.5 * std::numbers::sqrt2 / 2, 1e-12);
+  EXPECT_EQ(unshadowedIrradiance(light, {0, 0, 0}, -up), glm::dvec3(0));
+  light.range = 20;  // window of KHR_lights_punctual: 1 - (10/20)^4
+  EXPECT_NEAR(unshadowedIrradiance(light, {0, 0, 0}, up).x, 3 * (1 - 1.0 / 16), 1e-12);
+  light.range = 0;
+  light.type = PELLUCID_LIGHT_SPOT;
+  light.innerConeAngle = 0.1;
+  light.outerConeAngle = 0.3;
+  EXPECT_NEAR(unshadowedIrradiance(light, {0, 0, 0}, up).x, 3, 1e-12);
+  EXPECT_EQ(unshadowedIrradiance(light, {10 * std::tan(0.31), 0, 0}, up), glm::dvec3(0));
+  const double middle = (std::cos(0.2) - std::cos(0.3)) / (std::cos(0.1) - std::cos(0.3));
+  EXPECT_NEAR(unshadowedIrradiance(light, {10 * std::tan(0.2), 0, 0}, up).x,
+              middle * middle * 3 * std::pow(std::cos(0.2), 3), 1e-12);
+  light.type = PELLUCID_LIGHT_DIRECTIONAL;
+  EXPECT_NEAR(unshadowedIrradiance(light, {99, 0, 0}, up).x, 300, 1e-12);
+}
+
+TEST(Scene, LightTypesGiveTheSameIrradianceAtTheCenter) {
+  for (const PellucidLightType type :
+       {PELLUCID_LIGHT_DIRECTIONAL, PELLUCID_LIGHT_POINT, PELLUCID_LIGHT_SPOT}) {
+    SceneParameters parameters = sized("slab", 8);
+    parameters.lightType = type;
+    const Light light = buildModel(parameters).lights.at(0);
+    EXPECT_NEAR(unshadowedIrradiance(light, glm::dvec3(0), -toGlm(light.direction)).x, 1, 1e-12) << type;
+  }
+}
+
+// ---- Patterns
+
+TEST(Scene, ImpulseIsOnePixel) {
+  for (const int size : {33, 64}) {
+    const Capture capture = makeScene(sized("impulse", size));
+    double sum = 0;
+    for (const float value : capture.irradiance.data) sum += value;
+    EXPECT_EQ(sum, 3);  // three channels
+    EXPECT_EQ(*capture.irradiance.at(size / 2, size / 2), 1);
+  }
+}
+
+TEST(Scene, StepIsAveragedOverThePixel) {
+  SceneParameters parameters = sized("step", 65);  // the edge halves the middle column
+  parameters.options = {{"samples", 8}};
+  const Capture capture = makeScene(parameters);
+  for (int x = 0; x < 65; ++x) {
+    EXPECT_EQ(*capture.irradiance.at(x, 20), x < 32 ? 0.0f : x == 32 ? 0.5f : 1.0f) << x;
+  }
+  parameters.options = {{"angle", 90}};  // positive side: up
+  const Capture turned = makeScene(parameters);
+  EXPECT_EQ(*turned.irradiance.at(5, 3), 1);
+  EXPECT_EQ(*turned.irradiance.at(60, 60), 0);
+}
+
+TEST(Scene, TiltedPatternIsForeshortened) {
+  SceneParameters parameters = sized("sinusoid", 64);
+  parameters.options = {{"tilt", 60}, {"period", 10}, {"extent", 40}};
+  const Capture capture = makeScene(parameters);
+  for (int x = 0; x < 64; ++x) {
+    const double screen = ((x + 0.5) / 64 - 0.5) * 40;
+    const double expected = 1 + std::cos(2 * std::numbers::pi * screen / std::cos(std::numbers::pi / 3) / 10);
+    EXPECT_NEAR(*capture.irradiance.at(x, 10), expected, 1e-6) << x;
+  }
+}
+
+TEST(Scene, GapIsTheStatedDepth) {
+  SceneParameters parameters = sized("gap", 32);
+  parameters.options = {{"gap", 7}};
+  const Capture capture = makeScene(parameters);
+  EXPECT_NEAR(*capture.frontDepth.image.at(20, 5) - *capture.frontDepth.image.at(10, 5), 7, 1e-4);
+  EXPECT_EQ(*capture.irradiance.at(10, 5), 1);
+  EXPECT_EQ(*capture.irradiance.at(20, 5), 0);
+}
+
+// ---- All scenes
+
+TEST(Scene, EverySceneIsAConsistentCapture) {
+  for (const SceneInfo& info : listScenes()) {
+    SceneParameters parameters = sized(info.name, 24);
+    parameters.shadowSize = 24;
+    const Capture capture = makeScene(parameters);
+    int covered = 0;
+    for (int y = 0; y < 24; ++y) {
+      for (int x = 0; x < 24; ++x) {
+        const float front = *capture.frontDepth.image.at(x, y);
+        const int material = capture.material[static_cast<std::size_t>(y * 24 + x)];
+        ASSERT_EQ(material != 0, front < kNoDepth) << info.name;
+        if (material == 0) continue;
+        ++covered;
+        ASSERT_LE(material, static_cast<int>(capture.materials.size())) << info.name;
+        ASSERT_GE(*capture.backDepth.image.at(x, y), front) << info.name;
+        const float* normal = capture.normal.at(x, y);
+        const glm::dvec3 n(normal[0], normal[1], normal[2]);
+        EXPECT_NEAR(glm::length(n), 1, 1e-6) << info.name;
+        const glm::dvec3 eye = glm::inverse(toGlm(capture.viewFromWorld))[3];
+        const glm::dvec3 point = worldPosition(capture, x, y, front, false);
+        const bool perspective = capture.clipFromView[11] != 0;
+        // At silhouettes rounding may turn the normal past the edge.
+        if (perspective) {
+          EXPECT_LT(glm::dot(glm::normalize(point - eye), n), 1e-3) << info.name;
+        }
+        for (int c = 0; c < 3; ++c) {
+          EXPECT_TRUE(std::isfinite(capture.irradiance.at(x, y)[c]) && capture.irradiance.at(x, y)[c] >= 0);
+        }
+      }
+    }
+    EXPECT_GT(covered, 24) << info.name;
+    for (const Light& light : capture.lights) EXPECT_TRUE(light.shadowMap) << info.name;
+    EXPECT_EQ(capture.metersPerUnit, 0.001);
+  }
+}
+
+TEST(Scene, SameParametersSameBits) {
+  SceneParameters parameters = sized("spheres", 48);
+  parameters.shadowSize = 32;
+  const Capture a = makeScene(parameters);
+  const Capture b = makeScene(parameters);  // rows fall to other threads
+  EXPECT_EQ(a.frontDepth.image.data, b.frontDepth.image.data);
+  EXPECT_EQ(a.backDepth.image.data, b.backDepth.image.data);
+  EXPECT_EQ(a.irradiance.data, b.irradiance.data);
+  EXPECT_EQ(a.lights[0].shadowMap->depth.image.data, b.lights[0].shadowMap->depth.image.data);
+  parameters.seed = 2;
+  EXPECT_NE(a.frontDepth.image.data, makeScene(parameters).frontDepth.image.data);
+}
+
+TEST(Scene, OnePixelWorks) {
+  const Capture capture = makeScene(sized("sphere", 1));
+  EXPECT_EQ(capture.material, std::vector<std::uint8_t>{1});
+}
+
+TEST(Scene, NearFarLeavesTheFrustumThroughBothPlanes) {
+  SceneParameters parameters = sized("near_far", 64);
+  const Capture capture = makeScene(parameters);
+  const SceneModel model = buildModel(parameters);
+  float nearest = kNoDepth;
+  float farthest = 0;
+  for (const float z : capture.frontDepth.image.data) {
+    nearest = std::min(nearest, z);
+    if (z < kNoDepth) farthest = std::max(farthest, z);
+  }
+  const double span = model.camera.range.farPlane - model.camera.range.nearPlane;
+  EXPECT_NEAR(nearest, model.camera.range.nearPlane, 0.05 * span);
+  EXPECT_NEAR(farthest, model.camera.range.farPlane, 0.05 * span);
+  EXPECT_EQ(capture.material.front(), 0);
+  EXPECT_EQ(capture.material.back(), 0);
+}
+
+// ---- Errors
+
+std::string messageOf(const SceneParameters& parameters) {
+  try {
+    makeScene(parameters);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(Scene, ErrorsNameFieldAndValue) {
+  EXPECT_NE(messageOf(sized("eer", 8)).find("no scene \"eer\"; there are ear, "), std::string::npos);
+  SceneParameters parameters = sized("slab", 8);
+  parameters.options = {{"thicknes", 1}};
+  EXPECT_NE(messageOf(parameters).find("no option \"thicknes\"; it has thickness, tilt"), std::string::npos);
+  for (const double value : {-1.0, std::nan("")}) {
+    parameters.options = {{"thickness", value}};
+    EXPECT_NE(messageOf(parameters).find("option thickness = "), std::string::npos);
+  }
+  parameters.options.clear();
+  parameters.width = 0;
+  EXPECT_NE(messageOf(parameters).find("width: 0 is outside 1"), std::string::npos);
+  parameters.width = 100000;
+  EXPECT_NE(messageOf(parameters).find("width: 100000"), std::string::npos);
+  parameters.width = 8;
+  parameters.shadowSize = -1;
+  EXPECT_NE(messageOf(parameters).find("shadowSize: -1"), std::string::npos);
+  parameters.shadowSize = 0;
+  parameters.infiniteFar = true;
+  parameters.orthographic = true;
+  EXPECT_NE(messageOf(parameters).find("infiniteFar"), std::string::npos);
+  parameters.orthographic = false;
+  parameters.depthEncoding = PELLUCID_DEPTH_DISTANCE;
+  EXPECT_NE(messageOf(parameters).find("depthEncoding"), std::string::npos);
+  parameters = sized("sphere", 8);
+  parameters.shadowSize = 8;
+  parameters.lightType = PELLUCID_LIGHT_POINT;
+  parameters.options = {{"radius", 1e4}};
+  EXPECT_NE(messageOf(parameters).find("scene \"sphere\": its light"), std::string::npos);
+}
+
+TEST(Scene, CamerasRefuseWhatHasNoProjection) {
+  EXPECT_THROW(perspective(1, 1, {0, 10}), InputError);
+  EXPECT_THROW(perspective(1, 1, {5, 5}), InputError);
+  EXPECT_THROW(perspective(0, 1, {1, 10}), InputError);
+  EXPECT_THROW(perspective(4, 1, {1, 10}), InputError);
+  EXPECT_THROW(perspective(1, std::nan(""), {1, 10}), InputError);
+  EXPECT_THROW(orthographic(1, 1, {0, kInfinity}), InputError);
+  EXPECT_THROW(orthographic(0, 1, {0, 1}), InputError);
+}
+
+}  // namespace
+}  // namespace pellucid::harness
