@@ -1,0 +1,100 @@
+// `pellucid reference`: the float64 ground truth of a capture, to EXR.
+#include "reference/reference.h"
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <memory>
+
+#include "capture/exr.h"
+#include "capture/material.h"
+#include "capture/read.h"
+#include "cli/commands.h"
+#include "cli/settings.h"
+#include "common/error.h"
+
+namespace pellucid::harness {
+namespace {
+
+struct Options {
+  std::string input, output;
+  SettingsOptions settings;
+  reference::ProfileSource profile = reference::ProfileSource::Material;
+  double discardedEnergy = reference::DiffusionSettings{}.discardedEnergy;
+  double shadowBias = 0;
+  int jobs = 0;
+};
+
+reference::Settings toSettings(const Options& options) {
+  const ReplaySettings replay = options.settings.parse();
+  const ReplaySettings defaults;
+  if (replay.outputFormat != defaults.outputFormat || replay.aliasOutput ||
+      replay.renderRect != defaults.renderRect)
+    throw UsageError(
+        "--set: format, alias and rect say how images are stored; the reference has no use for them");
+  reference::Settings settings;
+  settings.features = replay.features;
+  settings.thicknessSource = replay.thicknessSource;
+  settings.debugView = replay.debugView;
+  settings.shadowBias = options.shadowBias;
+  settings.diffusion.source = options.profile;
+  settings.diffusion.discardedEnergy = options.discardedEnergy;
+  settings.jobs = options.jobs;
+  return settings;
+}
+
+void runReference(const Options& options) {
+  const reference::Settings settings = toSettings(options);
+  const Capture capture = readCapture(options.input);
+  const auto start = std::chrono::steady_clock::now();
+  const reference::Result result = reference::compute(capture, compileMaterials(capture), settings);
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+
+  std::filesystem::path output = options.output;
+  if (output.empty()) output = std::filesystem::path(options.input).stem().string() + ".reference.exr";
+  std::string set;
+  for (const std::string& s : options.settings.set) set += (set.empty() ? "" : " ") + s;
+  writeExr(output, result.image, {"R", "G", "B"},
+           {{"pellucid.device", "float64 reference"},
+            {"pellucid.capture", capture.name},
+            {"pellucid.settings", set},
+            {"pellucid.debug", options.settings.debug}});
+  if (result.radius > 0)
+    std::printf("diffusion cut off at %.4g mm, which leaves out %.2g of the profile's energy at most\n",
+                result.radius, result.discardedEnergy);
+  std::printf("wrote %s (%.1f s)\n", output.string().c_str(), elapsed.count());
+}
+
+}  // namespace
+
+void addReferenceCommand(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("reference", "Compute a capture's float64 ground truth on the CPU");
+  command->add_option("capture", options->input, "manifest (.json) or EXR with an embedded one")->required();
+  command->add_option("-o,--output", options->output, "EXR to write; default: <capture>.reference.exr here");
+  options->settings.addTo(*command);
+  const std::map<std::string, reference::ProfileSource> profiles = {
+      {"material", reference::ProfileSource::Material},
+      {"burley", reference::ProfileSource::Burley},
+      {"gaussians", reference::ProfileSource::Gaussians}};
+  command
+      ->add_option(
+          "--profile", options->profile,
+          "material (Burley where the material has a distance, else its Gaussians), burley, gaussians")
+      ->transform(CLI::CheckedTransformer(profiles));
+  command
+      ->add_option("--radius-cut", options->discardedEnergy,
+                   "profile energy that may lie outside of the diffusion's cut-off radius")
+      ->check(CLI::Range(1e-12, 0.5))
+      ->capture_default_str();
+  command
+      ->add_option("--shadow-bias", options->shadowBias,
+                   "scene units behind the shadow map's surface that still count as lit (thickness=camera)")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--jobs", options->jobs, "threads; default: all")->check(CLI::Range(1, 1024));
+  command->callback([options] { runReference(*options); });
+}
+
+}  // namespace pellucid::harness

@@ -1,0 +1,116 @@
+#include "reference/light.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/error.h"
+#include "reference/camera.h"
+
+namespace pellucid::harness::reference {
+namespace {
+
+glm::dvec3 toVector(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
+
+double rangeWindow(double distance, double range) {
+  if (!(range > 0)) return 1;
+  return std::clamp(1 - std::pow(distance / range, 4), 0.0, 1.0);
+}
+
+// Reference implementation in the text of KHR_lights_punctual.
+double coneFalloff(const Light& light, const glm::dvec3& toLight) {
+  const double cosInner = std::cos(light.innerConeAngle), cosOuter = std::cos(light.outerConeAngle);
+  const double scale = 1 / std::max(0.001, cosInner - cosOuter);
+  const double cosAngle = glm::dot(glm::normalize(toVector(light.direction)), -toLight);
+  const double t = std::clamp((cosAngle - cosOuter) * scale, 0.0, 1.0);
+  return t * t;
+}
+
+}  // namespace
+
+Arrival arrivalAt(const Light& light, const glm::dvec3& point) {
+  const glm::dvec3 emitted = light.intensity * toVector(light.color);
+  if (light.type == PELLUCID_LIGHT_DIRECTIONAL) return {-glm::normalize(toVector(light.direction)), emitted};
+  const glm::dvec3 offset = toVector(light.position) - point;
+  const double distance = glm::length(offset);
+  if (!(distance > 0)) return {glm::dvec3(0, 0, 1), glm::dvec3(0)};
+  const glm::dvec3 toLight = offset / distance;
+  const double cone = light.type == PELLUCID_LIGHT_SPOT ? coneFalloff(light, toLight) : 1;
+  return {toLight, emitted * (cone * rangeWindow(distance, light.range) / (distance * distance))};
+}
+
+ShadowView::ShadowView(const Light& light, const ShadowMap& map)
+    : light_(light),
+      map_(map),
+      clipFromWorld_(toMatrix(map.clipFromWorld)),
+      worldFromClip_(glm::inverse(clipFromWorld_)),
+      viewFromWorld_(1.0) {
+  const double determinant = glm::determinant(clipFromWorld_);
+  if (!(std::abs(determinant) > 0) || !std::isfinite(determinant))
+    throw InputError("", "shadowMap.clipFromWorld", "the matrix is singular");
+  if (map.depth.image.empty()) throw InputError("", "shadowMap", "has no depth image");
+  const bool needsView =
+      map.depth.encoding == PELLUCID_DEPTH_VIEW_Z ||
+      (map.depth.encoding == PELLUCID_DEPTH_DISTANCE && light.type == PELLUCID_LIGHT_DIRECTIONAL);
+  if (needsView && !map.viewFromWorld)
+    throw InputError("", "shadowMap.viewFromWorld", "missing, and the depth encoding needs it");
+  if (map.viewFromWorld) viewFromWorld_ = toMatrix(*map.viewFromWorld);
+  perspective_ = clipFromWorld_[0][3] != 0 || clipFromWorld_[1][3] != 0 || clipFromWorld_[2][3] != 0;
+}
+
+std::optional<ShadowView::Projected> ShadowView::project(const glm::dvec3& point) const {
+  const glm::dvec4 clip = clipFromWorld_ * glm::dvec4(point, 1);
+  if (!(clip.w > 0)) return std::nullopt;
+  const glm::dvec2 ndc = glm::dvec2(clip) / clip.w;
+  const Image& image = map_.depth.image;
+  const double px = std::floor((ndc.x * 0.5 + 0.5) * image.width);
+  const double py = std::floor((ndc.y * 0.5 + 0.5) * image.height);
+  if (!(px >= 0 && py >= 0 && px < image.width && py < image.height)) return std::nullopt;
+  return Projected{ndc, *image.at(static_cast<int>(px), static_cast<int>(py))};
+}
+
+// Whether a device depth is the end of 0..1 that lies away from the light, which the map was cleared to.
+bool ShadowView::isFarEnd(const glm::dvec3& point, const glm::dvec3& travel, float stored) const {
+  const glm::dvec4 clip = clipFromWorld_ * glm::dvec4(point, 1);
+  const glm::dvec4 along = clipFromWorld_ * glm::dvec4(travel, 0);
+  const bool grows = along.z * clip.w - along.w * clip.z > 0;
+  return stored == (grows ? 1.0f : 0.0f);
+}
+
+ShadowView::Lookup ShadowView::deviceDistance(const glm::dvec3& point, const Projected& p) const {
+  const glm::dvec3 travel = -arrivalAt(light_, point).toLight;
+  if (!(p.stored >= 0 && p.stored <= 1) || isFarEnd(point, travel, p.stored)) return {Kind::Empty, 0};
+  const glm::dvec4 surface = worldFromClip_ * glm::dvec4(p.ndc, double(p.stored), 1);
+  return {Kind::Surface, glm::dot(point - glm::dvec3(surface) / surface.w, travel)};
+}
+
+// The planar difference grows to the length of the ray between the two planes.
+ShadowView::Lookup ShadowView::planarDistance(const glm::dvec3& point, float stored) const {
+  if (!holdsSurface(stored)) return {Kind::Empty, 0};
+  const glm::dvec3 inView(viewFromWorld_ * glm::dvec4(point, 1));
+  const double planar = -inView.z;
+  const double rayPerDepth = perspective_ ? glm::length(inView) / planar : 1;
+  return {Kind::Surface, (planar - double(stored)) * rayPerDepth};
+}
+
+ShadowView::Lookup ShadowView::radialDistance(const glm::dvec3& point, float stored) const {
+  if (!holdsSurface(stored)) return {Kind::Empty, 0};
+  const double distance = light_.type == PELLUCID_LIGHT_DIRECTIONAL
+                              ? -(viewFromWorld_ * glm::dvec4(point, 1)).z
+                              : glm::distance(point, toVector(light_.position));
+  return {Kind::Surface, distance - double(stored)};
+}
+
+ShadowView::Lookup ShadowView::at(const glm::dvec3& point) const {
+  const std::optional<Projected> p = project(point);
+  if (!p) return {Kind::Outside, 0};
+  switch (map_.depth.encoding) {
+    case PELLUCID_DEPTH_VIEW_Z:
+      return planarDistance(point, p->stored);
+    case PELLUCID_DEPTH_DISTANCE:
+      return radialDistance(point, p->stored);
+    default:
+      return deviceDistance(point, *p);
+  }
+}
+
+}  // namespace pellucid::harness::reference

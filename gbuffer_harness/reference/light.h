@@ -1,0 +1,56 @@
+// Punctual lights and their shadow maps in double precision. World space, scene units.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <optional>
+
+#include "capture/capture.h"
+
+namespace pellucid::harness::reference {
+
+struct Arrival {
+  glm::dvec3 toLight;     // unit, from the point
+  glm::dvec3 irradiance;  // RGB on a surface facing the light
+};
+
+// KHR_lights_punctual: directional intensity is irradiance; point and spot give intensity / r^2 times
+// the range window max(0, min(1, 1 - (r/range)^4)) and the spot's angular falloff.
+Arrival arrivalAt(const Light& light, const glm::dvec3& point);
+
+// A light's shadow map, asked where a point lies behind the surface it stores.
+class ShadowView {
+public:
+  // Keeps references. Throws InputError when a matrix the encoding needs is missing or singular.
+  ShadowView(const Light& light, const ShadowMap& map);
+
+  enum class Kind {
+    Outside,  // the point projects outside the map or lies behind the light
+    Empty,    // the nearest texel stores no surface
+    Surface
+  };
+  struct Lookup {
+    Kind kind;
+    double distance;  // along the light ray from the stored surface to the point; negative when the
+                      // point is nearer to the light. Surface only
+  };
+  // Nearest texel. Thickness and occlusion both come from here.
+  Lookup at(const glm::dvec3& point) const;
+
+private:
+  struct Projected {
+    glm::dvec2 ndc;
+    float stored;
+  };
+  std::optional<Projected> project(const glm::dvec3& point) const;
+  Lookup deviceDistance(const glm::dvec3& point, const Projected& p) const;
+  Lookup planarDistance(const glm::dvec3& point, float stored) const;
+  Lookup radialDistance(const glm::dvec3& point, float stored) const;
+  bool isFarEnd(const glm::dvec3& point, const glm::dvec3& travel, float stored) const;
+
+  const Light& light_;
+  const ShadowMap& map_;
+  glm::dmat4 clipFromWorld_, worldFromClip_, viewFromWorld_;
+  bool perspective_;
+};
+
+}  // namespace pellucid::harness::reference

@@ -1,0 +1,145 @@
+#include "reference/profile.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "common/error.h"
+
+namespace pellucid::harness::reference {
+
+double BurleyProfile::cumulative(double r) const {
+  const double x = std::exp(-r / (3 * distance));
+  return 1 - 0.25 * x * x * x - 0.75 * x;
+}
+
+double BurleyProfile::ringDensity(double r) const {
+  const double x = std::exp(-r / (3 * distance));
+  return (x * x * x + x) / (4 * distance);
+}
+
+double GaussianProfile::cumulative(double r) const {
+  double sum = 0;
+  for (std::size_t i = 0; i < variance.size(); ++i) sum -= weight[i] * std::expm1(-r * r / (2 * variance[i]));
+  return sum;
+}
+
+double GaussianProfile::ringDensity(double r) const {
+  double sum = 0;
+  for (std::size_t i = 0; i < variance.size(); ++i)
+    sum += weight[i] / variance[i] * std::exp(-r * r / (2 * variance[i]));
+  return r * sum;
+}
+
+double GaussianProfile::finestScale() const {
+  return std::sqrt(*std::min_element(variance.begin(), variance.end()));
+}
+
+TabulatedProfile::TabulatedProfile(std::vector<double> radius, const std::vector<double>& value)
+    : radius_(std::move(radius)) {
+  if (radius_.size() < 2 || radius_.size() != value.size())
+    throw InputError("", "profile table",
+                     "needs two or more radii and as many values, not " + std::to_string(radius_.size()) +
+                         " and " + std::to_string(value.size()));
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    const bool ascends = i == 0 ? radius_[0] >= 0 : radius_[i] > radius_[i - 1];
+    if (!ascends || !std::isfinite(radius_[i]) || !(value[i] >= 0) || !std::isfinite(value[i]))
+      throw InputError("", "profile table",
+                       "entry " + std::to_string(i) + ": radius " + std::to_string(radius_[i]) + ", value " +
+                           std::to_string(value[i]) + " (radii ascend from 0, values are finite and >= 0)");
+    ring_.push_back(2 * std::numbers::pi * radius_[i] * value[i]);
+  }
+  if (radius_[0] > 0) {
+    radius_.insert(radius_.begin(), 0);
+    ring_.insert(ring_.begin(), 0);
+  }
+  cumulative_.push_back(0);
+  for (std::size_t i = 1; i < radius_.size(); ++i)
+    cumulative_.push_back(cumulative_.back() +
+                          0.5 * (ring_[i] + ring_[i - 1]) * (radius_[i] - radius_[i - 1]));
+  const double total = cumulative_.back();
+  if (!(total > 0)) throw InputError("", "profile table", "its integral over the plane is 0");
+  for (double& r : ring_) r /= total;
+  for (double& c : cumulative_) c /= total;
+}
+
+double TabulatedProfile::cumulative(double r) const {
+  if (r >= radius_.back()) return 1;
+  const auto above = std::upper_bound(radius_.begin(), radius_.end(), r);
+  const std::size_t i = static_cast<std::size_t>(above - radius_.begin()) - 1;
+  return cumulative_[i] + 0.5 * (ring_[i] + ringDensity(r)) * (r - radius_[i]);
+}
+
+double TabulatedProfile::ringDensity(double r) const {
+  if (r >= radius_.back()) return 0;
+  const auto above = std::upper_bound(radius_.begin(), radius_.end(), r);
+  const std::size_t i = static_cast<std::size_t>(above - radius_.begin()) - 1;
+  return std::lerp(ring_[i], ring_[i + 1], (r - radius_[i]) / (radius_[i + 1] - radius_[i]));
+}
+
+double TabulatedProfile::finestScale() const {
+  // Kinks at the radii limit the cubic interpolation: several cells between most of them.
+  return radius_.back() / double(radius_.size() * radius_.size());
+}
+
+double cumulative(const Profile& p, double r) {
+  return std::visit([&](const auto& profile) { return profile.cumulative(r); }, p);
+}
+
+double ringDensity(const Profile& p, double r) {
+  return std::visit([&](const auto& profile) { return profile.ringDensity(r); }, p);
+}
+
+double radiusOfTail(const Profile& p, double fraction) {
+  double high = std::visit([](const auto&profile) { return profile.finestScale(); }, p), low = 0;
+  for (; 1 - cumulative(p, high) > fraction; high *= 2) low = high;
+  while (high - low > 1e-6 * high) {
+    const double middle = 0.5 * (low + high);
+    (1 - cumulative(p, middle) > fraction ? low : high) = middle;
+  }
+  return high;
+}
+
+namespace {
+
+// Cells per sqrt(finest scale) that keep the interpolation error below the documented 1e-6, and a cap on
+// memory for profiles whose channels differ by more than about 1e5 in width.
+constexpr double kCellsPerRootScale = 32;
+constexpr double kMostCells = 16384;
+
+}  // namespace
+
+ProfileTable::ProfileTable(const std::array<Profile, 3>& profiles, double radius) : radius_(radius) {
+  double finest = radius;
+  for (const Profile& p : profiles)
+    finest = std::min(finest, std::visit([](const auto& profile) { return profile.finestScale(); }, p));
+  const double cells = std::min(std::ceil(kCellsPerRootScale * std::sqrt(radius / finest)), kMostCells);
+  cellsPerRoot_ = cells / std::sqrt(radius);
+  const std::size_t count = static_cast<std::size_t>(cells);
+  ring_ = tabulate(profiles, 1 / cellsPerRoot_, count, &reference::ringDensity);
+  cumulative_ = tabulate(profiles, 1 / cellsPerRoot_, count, &reference::cumulative);
+}
+
+// The cubic through the function at f = 0, 1/3, 2/3 and 1 of every cell. One cell more than needed, so
+// that r = radius() rounded up still finds one.
+std::vector<ProfileTable::Cubic> ProfileTable::tabulate(const std::array<Profile, 3>& profiles, double step,
+                                                        std::size_t cells,
+                                                        double (*function)(const Profile&, double)) {
+  std::vector<Cubic> table(cells + 1, Cubic{Lanes{0}, Lanes{0}, Lanes{0}, Lanes{0}});
+  for (std::size_t i = 0; i <= cells; ++i)
+    for (int c = 0; c < 3; ++c) {
+      double y[4];
+      for (int k = 0; k < 4; ++k) {
+        const double root = step * (double(i) + k / 3.0);
+        y[k] = function(profiles[static_cast<std::size_t>(c)], root * root);
+      }
+      table[i][0][c] = y[0];
+      table[i][1][c] = -5.5 * y[0] + 9 * y[1] - 4.5 * y[2] + y[3];
+      table[i][2][c] = 9 * y[0] - 22.5 * y[1] + 18 * y[2] - 4.5 * y[3];
+      table[i][3][c] = 4.5 * (y[3] - y[0]) + 13.5 * (y[1] - y[2]);
+    }
+  return table;
+}
+
+}  // namespace pellucid::harness::reference

@@ -1,0 +1,98 @@
+// Radial diffusion profiles R(r), integral 1 over the plane, in double precision. Lengths in mm.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <glm/glm.hpp>
+#include <numbers>
+#include <variant>
+#include <vector>
+
+namespace pellucid::harness::reference {
+
+// Every profile answers three questions:
+//   cumulative(r)    energy within r, 0..1
+//   ringDensity(r)   its derivative, 2 pi r R(r), 1/mm; finite at r = 0
+//   finestScale()    length over which ringDensity changes by itself, > 0
+
+// R(r) = (e^{-r/d} + e^{-r/3d}) / (8 pi d r), Christensen & Burley 2015 eq. 3.
+struct BurleyProfile {
+  double distance;  // d, > 0
+  double cumulative(double r) const;
+  double ringDensity(double r) const;
+  double finestScale() const { return distance; }
+};
+
+// R(r) = sum_i w_i / (2 pi v_i) e^{-r^2 / 2 v_i}, d'Eon et al. 2007; weights sum to 1.
+struct GaussianProfile {
+  std::vector<double> variance, weight;
+  double cumulative(double r) const;
+  double ringDensity(double r) const;
+  double finestScale() const;
+};
+
+// R measured at ascending radii; r R(r) is linear in between, R constant below the first radius and 0
+// above the last. Scaled to integral 1.
+class TabulatedProfile {
+public:
+  // Throws InputError unless radii ascend from >= 0, values are finite and >= 0, and both have at
+  // least two entries and a positive integral.
+  TabulatedProfile(std::vector<double> radius, const std::vector<double>& value);
+  double cumulative(double r) const;
+  double ringDensity(double r) const;
+  double finestScale() const;
+
+private:
+  std::vector<double> radius_, ring_, cumulative_;  // radius_[0] = 0
+};
+
+using Profile = std::variant<BurleyProfile, GaussianProfile, TabulatedProfile>;
+
+double cumulative(const Profile& p, double r);
+double ringDensity(const Profile& p, double r);
+
+// Radius outside of which `fraction` of the energy lies, rounded up by at most 1e-6 of itself.
+double radiusOfTail(const Profile& p, double fraction);
+
+// Three channels of a profile on one grid that is fine near r = 0 (uniform in sqrt(r)), cubic in
+// between. Measured error of both functions: below 1e-6 of their maximum.
+class ProfileTable {
+public:
+  // R, G, B and a lane of padding, so that sums over the channels fill whole vector registers.
+  using Lanes = glm::dvec4;
+
+  ProfileTable(const std::array<Profile, 3>& profiles, double radius);
+
+  double radius() const { return radius_; }
+
+  // R(r), 1/mm^2, 0 < r < radius(). Takes r^2, which is what distances come as.
+  Lanes value(double rSquared) const {
+    const double r = std::sqrt(rSquared);
+    return evaluate(ring_.data(), std::sqrt(r) * cellsPerRoot_) * (1 / (2 * std::numbers::pi * r));
+  }
+
+  // Energy within r; beyond radius() that within radius().
+  Lanes cumulativeEnergy(double r) const {
+    return evaluate(cumulative_.data(), std::sqrt(std::min(r, radius_)) * cellsPerRoot_);
+  }
+
+private:
+  using Cubic = std::array<Lanes, 4>;  // coefficients of 1, f, f^2, f^3 for f in 0..1
+
+  static Lanes evaluate(const Cubic* cells, double position) {
+    const int cell = static_cast<int>(position);
+    const double f = position - cell;
+    const Cubic& k = cells[cell];
+    return k[0] + f * (k[1] + f * (k[2] + f * k[3]));
+  }
+
+  static std::vector<Cubic> tabulate(const std::array<Profile, 3>& profiles, double step, std::size_t cells,
+                                     double (*function)(const Profile&, double));
+
+  double radius_, cellsPerRoot_;
+  std::vector<Cubic> ring_, cumulative_;
+};
+
+}  // namespace pellucid::harness::reference

@@ -1,0 +1,162 @@
+#include "reference/reference.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+
+#include "common/error.h"
+#include "common/parallel.h"
+#include "common/progress.h"
+#include "reference/surface.h"
+#include "reference/translucency.h"
+
+namespace pellucid::harness::reference {
+namespace {
+
+constexpr double kLargestHalf = 65504;
+
+double sanitized(float e) { return e > 0 ? std::min(double(e), kLargestHalf) : 0.0; }
+
+glm::dvec3 dividedOrZero(const glm::dvec3& a, const glm::dvec3& b) {
+  const auto divide = [](double n, double d) { return d > 0 ? n / d : 0.0; };
+  return {divide(a.x, b.x), divide(a.y, b.y), divide(a.z, b.z)};
+}
+
+glm::dvec3 debugColor(const Transmission& t, PellucidDebugView view) {
+  switch (view) {
+    case PELLUCID_DEBUG_THICKNESS:
+      return {t.cameraThickness.value_or(-1), t.lightThickness.value_or(-1), t.usedThickness.value_or(-1)};
+    case PELLUCID_DEBUG_TRANSMITTANCE:
+      return dividedOrZero(t.transmitted, t.unoccluded);
+    default:
+      return dividedOrZero(t.unoccluded, t.arriving);
+  }
+}
+
+void validate(const Capture& capture, const std::vector<PellucidMaterial>& materials) {
+  if (!(capture.metersPerUnit > 0) || !std::isfinite(capture.metersPerUnit))
+    throw InputError(capture.name, "metersPerUnit",
+                     std::to_string(capture.metersPerUnit) + " is not a length");
+  const auto highest = std::max_element(capture.material.begin(), capture.material.end());
+  if (highest != capture.material.end() && *highest > materials.size())
+    throw InputError(
+        capture.name, "material",
+        "index " + std::to_string(*highest) + " but " + std::to_string(materials.size()) + " materials");
+  for (std::size_t i = 0; i < materials.size(); ++i)
+    for (const float rho : materials[i].reflectance)
+      if (!(rho > 0))
+        throw InputError(capture.name, "materials[" + std::to_string(i) + "].reflectance",
+                         std::to_string(rho) + " is not positive");
+}
+
+// One run over one capture.
+class Pass {
+public:
+  Pass(const Capture& capture, const std::vector<PellucidMaterial>& materials, const Settings& settings)
+      : capture_(capture),
+        materials_(materials),
+        settings_(settings),
+        surfaces_(capture),
+        translucency_(capture, surfaces_, settings.thicknessSource, settings.shadowBias),
+        values_(capture.material.size()) {}
+
+  Result run() {
+    switch (settings_.debugView) {
+      case PELLUCID_DEBUG_NONE:
+        return diffused();
+      case PELLUCID_DEBUG_IRRADIANCE:
+        gatherIrradiance();
+        return {toImage(values_), 0, 0};
+      default:
+        gatherDebugView();
+        return {toImage(values_), 0, 0};
+    }
+  }
+
+private:
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(capture_.width) +
+           static_cast<std::size_t>(x);
+  }
+
+  // fn(x, y, index) for every pixel with a material.
+  template <typename Fn>
+  void forEachPixel(const char* label, const Fn& fn) const {
+    Progress progress(label, static_cast<std::uint64_t>(capture_.height));
+    parallelRows(capture_.height, settings_.jobs, [&](int y) {
+      for (int x = 0; x < capture_.width; ++x)
+        if (capture_.material[index(x, y)] != 0) fn(x, y, index(x, y));
+      progress.advance();
+    });
+  }
+
+  const PellucidMaterial& material(std::size_t i) const { return materials_[capture_.material[i] - 1u]; }
+
+  Transmission transmission(int x, int y, std::size_t i) const {
+    const std::optional<Surface> surface = surfaces_.at(x, y);
+    return surface ? translucency_.at(*surface, material(i)) : Transmission{};
+  }
+
+  // E + transmitted / rho.
+  void gatherIrradiance() {
+    forEachPixel("translucency", [&](int x, int y, std::size_t i) {
+      const float* e = capture_.irradiance.at(x, y);
+      values_[i] = {sanitized(e[0]), sanitized(e[1]), sanitized(e[2])};
+      if (!(settings_.features & PELLUCID_FEATURE_TRANSLUCENCY)) return;
+      const float* rho = material(i).reflectance;
+      values_[i] += transmission(x, y, i).transmitted / glm::dvec3(rho[0], rho[1], rho[2]);
+    });
+  }
+
+  void gatherDebugView() {
+    forEachPixel("debug view", [&](int x, int y, std::size_t i) {
+      values_[i] = debugColor(transmission(x, y, i), settings_.debugView);
+    });
+  }
+
+  Result diffused() {
+    gatherIrradiance();
+    Result result;
+    std::vector<glm::dvec3> output = values_;
+    if (settings_.features & PELLUCID_FEATURE_DIFFUSION) {
+      const Diffusion diffusion(capture_, surfaces_, materials_, settings_.diffusion, values_);
+      forEachPixel("diffusion", [&](int x, int y, std::size_t i) { output[i] = diffusion.at(x, y); });
+      result.radius = diffusion.radius();
+      result.discardedEnergy = settings_.diffusion.discardedEnergy;
+    }
+    if (!capture_.albedo.empty())
+      forEachPixel("albedo", [&](int x, int y, std::size_t i) {
+        const float* albedo = capture_.albedo.at(x, y);
+        output[i] *= glm::dvec3(albedo[0], albedo[1], albedo[2]);
+      });
+    result.image = toImage(output);
+    return result;
+  }
+
+  Image toImage(const std::vector<glm::dvec3>& values) const {
+    Image image(capture_.width, capture_.height, 3);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      for (std::size_t c = 0; c < 3; ++c)
+        image.data[3 * i + c] = static_cast<float>(values[i][static_cast<glm::length_t>(c)]);
+    return image;
+  }
+
+  const Capture& capture_;
+  const std::vector<PellucidMaterial>& materials_;
+  const Settings& settings_;
+  SurfaceReader surfaces_;
+  Translucency translucency_;
+  std::vector<glm::dvec3> values_;  // 0 where there is no material
+};
+
+}  // namespace
+
+Result compute(const Capture& capture, const std::vector<PellucidMaterial>& materials,
+               const Settings& settings) {
+  validate(capture, materials);
+  return Pass(capture, materials, settings).run();
+}
+
+}  // namespace pellucid::harness::reference

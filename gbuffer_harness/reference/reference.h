@@ -1,0 +1,38 @@
+// Float64 ground truth of the whole pass, written from the equations alone: it shares no code with
+// the module or its shaders.
+#pragma once
+
+#include <vector>
+
+#include "capture/capture.h"
+#include "reference/diffusion.h"
+
+namespace pellucid::harness::reference {
+
+// Mirrors the settings of PellucidFrame.
+struct Settings {
+  std::uint32_t features = PELLUCID_FEATURE_TRANSLUCENCY | PELLUCID_FEATURE_DIFFUSION;
+  PellucidThicknessSource thicknessSource = PELLUCID_THICKNESS_LIGHT;
+  PellucidDebugView debugView = PELLUCID_DEBUG_NONE;
+  double shadowBias = 0;  // PellucidShadowMap::bias of every map, scene units
+  DiffusionSettings diffusion;
+  int jobs = 0;  // threads; 0: as many as the machine has
+};
+
+struct Result {
+  Image image;                 // RGB, see compute()
+  double radius = 0;           // cut-off of the diffusion, mm; 0 when nothing was diffused
+  double discardedEnergy = 0;  // profile energy outside of the radius, at most
+};
+
+// The output of the pass, albedo * diffused(E + transmitted / rho), or the debug view; computed in
+// double, rounded to float at the end. `materials` belong to the capture's in order. Pixels of
+// material 0, which the pass leaves alone, are 0. Irradiance that is NaN or negative counts as 0 and
+// above 65504 (largest half) as 65504. A material pixel without front depth only gets its albedo.
+// Debug views have the layouts of PellucidDebugView, TRANSMITTANCE and OCCLUSION per channel:
+// transmitted / unoccluded and unoccluded / arriving irradiance, 0 where the divisor is 0.
+// Throws InputError naming the capture, field and value.
+Result compute(const Capture& capture, const std::vector<PellucidMaterial>& materials,
+               const Settings& settings);
+
+}  // namespace pellucid::harness::reference

@@ -1,0 +1,61 @@
+// Light through thin parts, pixel by pixel: thickness, occlusion, transmitted exitance.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <optional>
+#include <vector>
+
+#include "capture/capture.h"
+#include "reference/light.h"
+#include "reference/surface.h"
+
+namespace pellucid::harness::reference {
+
+// What one pixel receives from behind. Thickness in mm; irradiance and exitance RGB, summed over lights.
+struct Transmission {
+  std::optional<double> cameraThickness;  // ray chord between front and back depth
+  std::optional<double> lightThickness;   // first light with a map that contains the pixel
+  std::optional<double> usedThickness;    // the one that T(d) of the first contributing light took
+  glm::dvec3 arriving{0};                 // back irradiance, shadow maps ignored
+  glm::dvec3 unoccluded{0};               // the part of it that the shadow maps let by
+  glm::dvec3 transmitted{0};              // sum of T(d) times the unoccluded back irradiance
+};
+
+class Translucency {
+public:
+  // Keeps references to the capture and the reader. `shadowBias` in scene units: with the camera's
+  // thickness, a back point this far behind the stored surface still counts as lit.
+  Translucency(const Capture& capture, const SurfaceReader& surfaces, PellucidThicknessSource source,
+               double shadowBias);
+
+  Transmission at(const Surface& surface, const PellucidMaterial& material) const;
+
+private:
+  // A receiver in world space.
+  struct Receiver {
+    glm::dvec3 position, ray;
+    std::optional<glm::dvec3> normal;
+    std::optional<double> chord;  // scene units
+  };
+  // One light's part of a Transmission.
+  struct LightPath {
+    double thickness = 0;  // scene units
+    glm::dvec3 arriving{0};
+    bool reaches = false;
+  };
+
+  Receiver toWorld(const Surface& surface) const;
+  LightPath lightSpacePath(std::size_t light, const Receiver& r) const;
+  LightPath cameraSpacePath(std::size_t light, const Receiver& r) const;
+  std::optional<double> firstLightDistance(const Receiver& r) const;  // scene units
+  bool usesLightSpace(std::size_t light) const;
+  bool backPointLit(std::size_t light, const glm::dvec3& backPoint) const;
+
+  const Capture& capture_;
+  const SurfaceReader& surfaces_;
+  PellucidThicknessSource source_;
+  double shadowBias_;
+  std::vector<std::optional<ShadowView>> shadows_;  // one per light
+};
+
+}  // namespace pellucid::harness::reference

@@ -1,0 +1,41 @@
+#include "reference/transmittance.h"
+
+#include <cmath>
+#include <string>
+
+#include "common/error.h"
+
+namespace pellucid::harness::reference {
+namespace {
+
+double gaussianSum(const PellucidMaterial& m, int channel, double d) {
+  double sum = 0;
+  for (unsigned i = 0; i < m.gaussianCount; ++i)
+    sum += double(m.gaussianWeight[channel][i]) *
+           std::exp(-d * d / (2 * double(m.gaussianVariance[channel][i])));
+  return sum;
+}
+
+double channelTransmittance(const PellucidMaterial& m, int channel, double d) {
+  const float* p = m.transmittance[channel];
+  switch (m.transmittanceModel) {
+    case PELLUCID_TRANSMITTANCE_EXP2:
+      return double(p[0]) * std::exp(-double(p[1]) * d) + double(p[2]) * std::exp(-double(p[3]) * d);
+    case PELLUCID_TRANSMITTANCE_SINH_EXP:
+      return double(p[0]) / std::sinh(double(p[1]) * d + double(p[2])) +
+             double(p[3]) * std::exp(-double(p[4]) * d);
+    case PELLUCID_TRANSMITTANCE_GAUSSIANS:
+      return gaussianSum(m, channel, d);
+    default:
+      throw InputError("", "transmittanceModel", "unknown model " + std::to_string(m.transmittanceModel));
+  }
+}
+
+}  // namespace
+
+glm::dvec3 transmittance(const PellucidMaterial& m, double thickness) {
+  return {channelTransmittance(m, 0, thickness), channelTransmittance(m, 1, thickness),
+          channelTransmittance(m, 2, thickness)};
+}
+
+}  // namespace pellucid::harness::reference

@@ -1,0 +1,147 @@
+// Tiny analytic captures and exact answers for the tests of the float64 reference.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <glm/glm.hpp>
+#include <numbers>
+#include <vector>
+
+#include "capture/capture.h"
+#include "reference/diffusion.h"
+#include "reference/surface.h"
+
+namespace pellucid::harness::reference {
+
+// Orthographic, 1 unit = 1 mm, pixels of side `pixel` mm, +x right, +y up, depths 0..200 forward.
+inline Matrix orthographic(int width, int height, double pixel) {
+  Matrix m = kIdentity;
+  m[0] = 2 / (width * pixel);
+  m[5] = -2 / (height * pixel);
+  m[10] = -1.0 / 200;
+  return m;
+}
+
+// View x and y (mm) of a pixel coordinate of an orthographic capture.
+inline glm::dvec2 planePoint(const Capture& c, double px, double py) {
+  return {(px / c.width * 2 - 1) / c.clipFromView[0], (py / c.height * 2 - 1) / c.clipFromView[5]};
+}
+
+// Plane facing the camera at depth 100, material 1 everywhere, irradiance 1.
+inline Capture facingPlane(int width, int height, double pixel) {
+  Capture c;
+  c.name = "test";
+  c.width = width;
+  c.height = height;
+  c.metersPerUnit = 0.001;
+  c.clipFromView = orthographic(width, height, pixel);
+  c.frontDepth.image = Image(width, height, 1, 100.0f);
+  c.irradiance = Image(width, height, 3, 1.0f);
+  c.normal = Image(width, height, 3);
+  for (std::size_t i = 0; i < c.normal.pixels(); ++i) c.normal.data[3 * i + 2] = 1;
+  c.normalsInViewSpace = true;
+  c.material.assign(c.normal.pixels(), 1);
+  return c;
+}
+
+// Same irradiance in R, G and B of every pixel: the mean of `value` over the pixel, given its lower left
+// corner in view x and y (mm).
+inline void paint(Capture& c, const std::function<double(glm::dvec2)>& meanOver) {
+  for (int y = 0; y < c.height; ++y)
+    for (int x = 0; x < c.width; ++x) {
+      const float mean = static_cast<float>(meanOver(planePoint(c, x, y + 1)));
+      for (int k = 0; k < 3; ++k) c.irradiance.at(x, y)[k] = mean;
+    }
+}
+
+// Fraction of the square of side `pixel` at `corner` where dot(direction, point) > 0.
+inline double halfPlaneCoverage(glm::dvec2 corner, double pixel, glm::dvec2 direction) {
+  constexpr int kColumns = 256;
+  double covered = 0;
+  for (int i = 0; i < kColumns; ++i) {
+    const double x = corner.x + pixel * (i + 0.5) / kColumns;
+    if (std::abs(direction.y) < 1e-12) {
+      covered += direction.x * x > 0 ? 1 : 0;
+      continue;
+    }
+    const double edge = std::clamp((-direction.x * x / direction.y - corner.y) / pixel, 0.0, 1.0);
+    covered += direction.y > 0 ? 1 - edge : edge;
+  }
+  return covered / kColumns;
+}
+
+// T(d) = e^{-2d}, rho = 1/2, profile Burley of distance d in every channel.
+inline PellucidMaterial burleyMaterial(double d) {
+  PellucidMaterial m{};
+  m.structSize = sizeof m;
+  m.transmittanceModel = PELLUCID_TRANSMITTANCE_EXP2;
+  for (int c = 0; c < 3; ++c) {
+    m.transmittance[c][0] = 1;
+    m.transmittance[c][1] = 2;
+    m.reflectance[c] = 0.5f;
+    m.burleyDistance[c] = static_cast<float>(d);
+  }
+  return m;
+}
+
+inline PellucidMaterial gaussianMaterial(double variance) {
+  PellucidMaterial m = burleyMaterial(0);
+  m.gaussianCount = 1;
+  for (int c = 0; c < 3; ++c) {
+    m.gaussianVariance[c][0] = static_cast<float>(variance);
+    m.gaussianWeight[c][0] = 1;
+  }
+  return m;
+}
+
+// The diffusion of a capture's irradiance, asked pixel by pixel.
+class DiffusedCapture {
+public:
+  DiffusedCapture(const Capture& capture, const PellucidMaterial& material,
+                  const DiffusionSettings& settings = {})
+      : surfaces_(capture),
+        irradiance_(irradianceOf(capture)),
+        diffusion_(capture, surfaces_, {material}, settings, irradiance_) {}
+
+  double at(int x, int y) const { return diffusion_.at(x, y).x; }
+  const Diffusion& diffusion() const { return diffusion_; }
+
+private:
+  static std::vector<glm::dvec3> irradianceOf(const Capture& c) {
+    std::vector<glm::dvec3> e;
+    for (std::size_t i = 0; i < c.irradiance.pixels(); ++i)
+      e.emplace_back(c.irradiance.data[3 * i], c.irradiance.data[3 * i + 1], c.irradiance.data[3 * i + 2]);
+    return e;
+  }
+
+  SurfaceReader surfaces_;
+  std::vector<glm::dvec3> irradiance_;
+  Diffusion diffusion_;
+};
+
+inline double burleyCumulative(double r, double d) {
+  return 1 - std::exp(-r / d) / 4 - 3 * std::exp(-r / (3 * d)) / 4;
+}
+
+// int_0^z K_0(s) ds, odd in z, from K_0(s) = int_0^inf e^{-s cosh t} dt.
+inline double integratedBesselK0(double z) {
+  if (z < 0) return -integratedBesselK0(-z);
+  constexpr double kEnd = 40;
+  constexpr int kIntervals = 4000;
+  const auto f = [z](double t) { return -std::expm1(-z * std::cosh(t)) / std::cosh(t); };
+  double sum = f(0) + f(kEnd);
+  for (int i = 1; i < kIntervals; ++i) sum += (i % 2 ? 4 : 2) * f(kEnd * i / kIntervals);
+  return sum * kEnd / kIntervals / 3;
+}
+
+// Burley's profile over a lit half-plane, x mm inside the edge.
+inline double burleyStep(double x, double d) {
+  return 0.5 + (integratedBesselK0(x / d) + 3 * integratedBesselK0(x / (3 * d))) / (4 * std::numbers::pi);
+}
+
+inline double gaussianStep(double x, double variance) {
+  return 0.5 * (1 + std::erf(x / std::sqrt(2 * variance)));
+}
+
+}  // namespace pellucid::harness::reference
