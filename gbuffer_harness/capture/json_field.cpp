@@ -1,0 +1,131 @@
+#include "capture/json_field.h"
+
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "common/error.h"
+
+namespace pellucid::harness {
+
+using nlohmann::json;
+
+json parseJson(const std::string& file, const std::string& text) {
+  // The library keeps the last of two equal keys; a manifest that says a thing twice is wrong.
+  std::vector<std::set<std::string>> open;
+  const auto refuseTwins = [&](int, json::parse_event_t event, json& parsed) {
+    if (event == json::parse_event_t::object_start) open.emplace_back();
+    if (event == json::parse_event_t::object_end) open.pop_back();
+    if (event == json::parse_event_t::key && !open.back().insert(parsed.get<std::string>()).second)
+      throw InputError(file, parsed.get<std::string>(), "the key stands twice in one object");
+    return true;
+  };
+  try {
+    return json::parse(text, refuseTwins);
+  } catch (const json::exception& error) {
+    throw InputError(file, "", std::string("not valid JSON: ") + error.what());
+  }
+}
+
+void Field::fail(const std::string& sentence) const { throw InputError(file_, path_, sentence); }
+
+void Field::failCount(std::size_t expected) const {
+  fail("needs " + std::to_string(expected) + " numbers, has " + std::to_string(value_->size()));
+}
+
+std::string Field::shown() const {
+  constexpr std::size_t kLongest = 60;
+  std::string text = value_->dump(-1, ' ', true, json::error_handler_t::replace);
+  if (text.size() > kLongest) text = text.substr(0, kLongest) + "...";
+  return text;
+}
+
+void Field::allowKeys(std::initializer_list<std::string_view> keys) const {
+  for (const auto& [key, field] : members()) {
+    bool known = false;
+    std::string list;
+    for (const std::string_view candidate : keys) {
+      known = known || candidate == key;
+      list += (list.empty() ? "" : ", ") + std::string(candidate);
+    }
+    if (!known) field.fail("unknown key; known here: " + list);
+  }
+}
+
+Field Field::member(const std::string& key, const json& value) const {
+  return Field(file_, path_.empty() ? key : path_ + "." + key, value);
+}
+
+std::optional<Field> Field::find(const char* key) const {
+  if (!has(key)) return std::nullopt;
+  return member(key, value_->at(key));
+}
+
+Field Field::operator[](const char* key) const {
+  if (!has(key)) throw InputError(file_, path_.empty() ? key : path_ + "." + key, "missing");
+  return member(key, value_->at(key));
+}
+
+std::vector<std::pair<std::string, Field>> Field::members() const {
+  if (!value_->is_object()) fail("must be an object, is " + shown());
+  std::vector<std::pair<std::string, Field>> result;
+  for (const auto& [key, value] : value_->items()) result.emplace_back(key, member(key, value));
+  return result;
+}
+
+std::vector<Field> Field::items() const {
+  if (!value_->is_array()) fail("must be an array, is " + shown());
+  std::vector<Field> result;
+  for (std::size_t i = 0; i < value_->size(); ++i)
+    result.push_back(Field(file_, path_ + "[" + std::to_string(i) + "]", (*value_)[i]));
+  return result;
+}
+
+double Field::number() const {
+  if (!value_->is_number()) fail("must be a number, is " + shown());
+  const double result = value_->get<double>();
+  if (!(std::abs(result) <= static_cast<double>(std::numeric_limits<float>::max())))
+    fail("must be a finite number that a 32-bit float can hold, is " + shown());
+  return result;
+}
+
+double Field::number(double least, double most) const {
+  const double result = number();
+  if (result < least) fail("must be at least " + json(least).dump() + ", is " + shown());
+  if (result > most) fail("must be at most " + json(most).dump() + ", is " + shown());
+  return result;
+}
+
+int Field::integer(int least, int most) const {
+  const double result = number(least, most);
+  if (result != std::floor(result)) fail("must be a whole number, is " + shown());
+  return static_cast<int>(result);
+}
+
+std::string Field::text() const {
+  if (!value_->is_string()) fail("must be a string, is " + shown());
+  std::string result = value_->get<std::string>();
+  if (result.empty()) fail("must not be empty");
+  return result;
+}
+
+std::size_t Field::choice(std::initializer_list<std::string_view> choices) const {
+  const std::string value = text();
+  std::string list;
+  std::size_t index = 0;
+  for (const std::string_view candidate : choices) {
+    if (candidate == value) return index;
+    list += (list.empty() ? "\"" : ", \"") + std::string(candidate) + "\"";
+    ++index;
+  }
+  fail("must be one of " + list + ", is " + shown());
+}
+
+std::vector<double> Field::numbers() const {
+  std::vector<double> result;
+  for (const Field& item : items()) result.push_back(item.number());
+  if (result.empty()) fail("must not be empty");
+  return result;
+}
+
+}  // namespace pellucid::harness

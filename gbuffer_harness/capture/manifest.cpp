@@ -1,0 +1,366 @@
+#include "capture/manifest.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <glm/glm.hpp>
+#include <numbers>
+#include <sstream>
+
+#include "capture/exr.h"
+#include "capture/json_field.h"
+#include "common/error.h"
+
+namespace pellucid::harness {
+
+namespace {
+
+constexpr int kVersion = 1;
+constexpr int kMaxMaterials = 255;  // the module's material image has 8 bits
+
+Matrix invertible(const Field& field) {
+  const Matrix matrix = field.numbers<16>();
+  // Units differ between rows and columns; scale them away before judging the determinant.
+  glm::dmat4 scaled;
+  for (int column = 0; column < 4; ++column)
+    for (int row = 0; row < 4; ++row)
+      scaled[column][row] = matrix[static_cast<std::size_t>(column * 4 + row)];
+  const auto largest = [](const glm::dvec4& v) {
+    return std::max(std::max(std::abs(v.x), std::abs(v.y)), std::max(std::abs(v.z), std::abs(v.w)));
+  };
+  for (int pass = 0; pass < 2; ++pass) {  // first rows, then columns
+    scaled = glm::transpose(scaled);
+    for (int i = 0; i < 4; ++i)
+      if (largest(scaled[i]) > 0) scaled[i] /= largest(scaled[i]);
+  }
+  if (!(std::abs(glm::determinant(scaled)) > 1e-10)) field.fail("the matrix is singular: " + field.shown());
+  return matrix;
+}
+
+Matrix rigid(const Field& field) {
+  Matrix m = field.numbers<16>();
+  constexpr double kTolerance = 1e-3;  // matrices that went through float32 and a few products
+  if (std::abs(m[3]) + std::abs(m[7]) + std::abs(m[11]) + std::abs(m[15] - 1) > kTolerance)
+    field.fail(
+        "the last row must be 0 0 0 1; matrices are column-major, with the translation in numbers 13 to 15");
+  for (std::size_t a = 0; a < 3; ++a)
+    for (std::size_t b = 0; b <= a; ++b) {
+      const double dot = m[a * 4] * m[b * 4] + m[a * 4 + 1] * m[b * 4 + 1] + m[a * 4 + 2] * m[b * 4 + 2];
+      if (std::abs(dot - (a == b ? 1 : 0)) > kTolerance)
+        field.fail("must be rigid (rotation and translation, no scale), so that view units are scene units");
+    }
+  m[3] = m[7] = m[11] = 0;
+  m[15] = 1;
+  return m;
+}
+
+// Reads one buffer of `components` values per pixel; `directory` is where relative names start and
+// `embedded` the EXR that holds the manifest, or empty.
+struct BufferReader {
+  std::filesystem::path directory, embedded;
+
+  BufferSource operator()(const Field& field, std::size_t components) const {
+    BufferSource source;
+    source.field = field.path();
+    if (field.has("constant")) {
+      for (const char* key : {"file", "part", "channel", "channels"})
+        if (const auto other = field.find(key)) other->fail("a constant has no " + std::string(key));
+      const Field constant = field["constant"];
+      source.constant = constant.numbers();
+      if (source.constant.size() != components)
+        constant.fail("needs " + std::to_string(components) + " number(s), has " +
+                      std::to_string(source.constant.size()));
+      return source;
+    }
+    if (const auto file = field.find("file"))
+      source.file = directory / file->text();
+    else if (!embedded.empty())
+      source.file = embedded;
+    else
+      field["file"];  // throws: missing
+    if (const auto part = field.find("part")) source.part = part->integer(0, 65535);
+    if (components == 1) {
+      source.channels = {field["channel"].text()};
+    } else {
+      const Field channels = field["channels"];
+      for (const Field& channel : channels.items()) source.channels.push_back(channel.text());
+      if (source.channels.size() != components)
+        channels.fail("needs " + std::to_string(components) + " channel names, has " +
+                      std::to_string(source.channels.size()));
+    }
+    return source;
+  }
+};
+
+PellucidDepthEncoding screenEncoding(const Field& field) {
+  return field["encoding"].choice({"device", "viewZ"}) == 0 ? PELLUCID_DEPTH_DEVICE : PELLUCID_DEPTH_VIEW_Z;
+}
+
+PellucidDepthEncoding shadowEncoding(const Field& field) {
+  constexpr PellucidDepthEncoding kEncodings[] = {PELLUCID_DEPTH_DEVICE, PELLUCID_DEPTH_VIEW_Z,
+                                                  PELLUCID_DEPTH_DISTANCE};
+  return kEncodings[field["encoding"].choice({"device", "viewZ", "distance"})];
+}
+
+std::map<int, int> readMaterialMap(const Field& field, int materialCount) {
+  std::map<int, int> map;
+  for (const auto& [key, value] : field.members()) {
+    const bool digits =
+        !key.empty() && key.size() <= 8 && key.find_first_not_of("0123456789") == std::string::npos;
+    if (!digits || std::stoi(key) > kMaxStoredMaterial)
+      value.fail("the key must be a whole number from 0 to " + std::to_string(kMaxStoredMaterial));
+    const int index = value.integer(0, kMaxMaterials);
+    if (index > materialCount)
+      value.fail("material " + std::to_string(index) + ", but there are " + std::to_string(materialCount) +
+                 " materials");
+    if (!map.emplace(std::stoi(key), index).second) value.fail("the same stored value stands twice");
+  }
+  if (map.empty()) field.fail("must not be empty");
+  return map;
+}
+
+MaterialSource readCoefficients(const Field& field) {
+  field.allowKeys({"scattering", "absorption", "g", "ior", "unit"});
+  CoefficientMaterial material;
+  double perMillimeter = 1;  // what 1 of the file's unit is in 1/mm
+  if (const auto unit = field.find("unit")) {
+    constexpr double kScales[] = {1, 0.1, 0.001};
+    perMillimeter = kScales[unit->choice({"1/mm", "1/cm", "1/m"})];
+  }
+  const auto coefficients = [&](const char* key) {
+    auto values = field[key].numbers<3>();
+    for (double& value : values) {
+      if (value < 0) field[key].fail("must not be negative, is " + field[key].shown());
+      value *= perMillimeter;
+    }
+    return values;
+  };
+  material.scattering = coefficients("scattering");
+  material.absorption = coefficients("absorption");
+  if (const auto g = field.find("g")) material.g = g->number(-0.999, 0.999);
+  if (const auto ior = field.find("ior")) material.ior = ior->number(1, 4);
+  return material;
+}
+
+MaterialSource readBurley(const Field& field) {
+  field.allowKeys({"profile", "distance", "transmittance"});
+  field["profile"].choice({"burley"});
+  BurleyMaterial material;
+  material.distance = field["distance"].numbers<3>();
+  for (const double distance : material.distance)
+    if (!(distance > 0)) field["distance"].fail("must be positive (mm), is " + field["distance"].shown());
+  if (const auto transmittance = field.find("transmittance")) {
+    transmittance->allowKeys({"a1", "k1", "a2", "k2"});
+    std::array<std::array<double, 4>, 3> exponentials = {};
+    constexpr const char* kNames[] = {"a1", "k1", "a2", "k2"};
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Field values = (*transmittance)[kNames[i]];
+      const auto rgb = values.numbers<3>();
+      for (std::size_t channel = 0; channel < 3; ++channel) {
+        if (kNames[i][0] == 'k' && !(rgb[channel] > 0))
+          values.fail("must be positive (1/mm), is " + values.shown());
+        exponentials[channel][i] = rgb[channel];
+      }
+    }
+    for (const auto& [a1, k1, a2, k2] : exponentials)
+      if (a1 + a2 < 0 || a1 + a2 > 1)
+        transmittance->fail("T(0) = a1 + a2 must be from 0 to 1, is " + std::to_string(a1 + a2));
+    material.transmittance = exponentials;
+  }
+  return material;
+}
+
+MaterialSource readGaussians(const Field& field) {
+  field.allowKeys({"gaussians"});
+  const Field gaussians = field["gaussians"];
+  gaussians.allowKeys({"variance", "weight"});
+  GaussianMaterial material;
+  material.variance = gaussians["variance"].numbers();
+  if (material.variance.size() > PELLUCID_MAX_GAUSSIANS)
+    gaussians["variance"].fail("at most " + std::to_string(PELLUCID_MAX_GAUSSIANS) + " Gaussians, has " +
+                               std::to_string(material.variance.size()));
+  for (const double variance : material.variance)
+    if (!(variance > 0))
+      gaussians["variance"].fail("must be positive (mm^2), is " + gaussians["variance"].shown());
+  const Field weights = gaussians["weight"];
+  std::array<double, 3> sum = {0, 0, 0};
+  for (const Field& weight : weights.items()) {
+    material.weight.push_back(weight.numbers<3>());
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      if (material.weight.back()[channel] < 0) weight.fail("must not be negative, is " + weight.shown());
+      sum[channel] += material.weight.back()[channel];
+    }
+  }
+  if (material.weight.size() != material.variance.size())
+    weights.fail("needs one RGB triple per variance (" + std::to_string(material.variance.size()) +
+                 "), has " + std::to_string(material.weight.size()));
+  for (const double total : sum)
+    if (std::abs(total - 1) > 0.01)  // published tables are rounded to three digits
+      weights.fail("each channel must sum to 1, one sums to " + std::to_string(total));
+  return material;
+}
+
+MaterialSource readMaterial(const Field& field) {
+  if (field.has("preset")) {
+    field.allowKeys({"preset"});
+    return PresetMaterial{field["preset"].text()};
+  }
+  if (field.has("profile")) return readBurley(field);
+  if (field.has("gaussians")) return readGaussians(field);
+  if (field.has("scattering") || field.has("absorption")) return readCoefficients(field);
+  field.fail("must have \"preset\", \"scattering\" and \"absorption\", \"profile\" or \"gaussians\", is " +
+             field.shown());
+}
+
+ShadowMap readShadowMap(const Field& field) {
+  field.allowKeys({"file", "part", "channel", "constant", "encoding", "clipFromWorld", "viewFromWorld"});
+  ShadowMap map;
+  map.depth.encoding = shadowEncoding(field);
+  map.clipFromWorld = invertible(field["clipFromWorld"]);
+  if (field.has("viewFromWorld") || map.depth.encoding != PELLUCID_DEPTH_DEVICE)
+    map.viewFromWorld = rigid(field["viewFromWorld"]);
+  return map;
+}
+
+Light readLight(const Field& field) {
+  field.allowKeys({"type", "position", "direction", "color", "intensity", "range", "innerConeAngle",
+                   "outerConeAngle", "shadowMap"});
+  constexpr double kMost = 1e30;  // its square times a scene's extent still fits a float64
+  Light light;
+  constexpr PellucidLightType kTypes[] = {PELLUCID_LIGHT_DIRECTIONAL, PELLUCID_LIGHT_POINT,
+                                          PELLUCID_LIGHT_SPOT};
+  light.type = kTypes[field["type"].choice({"directional", "point", "spot"})];
+  if (field.has("position") || light.type != PELLUCID_LIGHT_DIRECTIONAL)
+    light.position = field["position"].numbers<3>();
+  if (field.has("direction") || light.type != PELLUCID_LIGHT_POINT) {
+    const Field direction = field["direction"];
+    light.direction = direction.numbers<3>();
+    if (!(std::hypot(light.direction[0], light.direction[1], light.direction[2]) > 0))
+      direction.fail("must have a length above 0, is " + direction.shown());
+  }
+  if (const auto color = field.find("color")) {
+    light.color = color->numbers<3>();
+    for (const double component : light.color)
+      if (component < 0) color->fail("must not be negative, is " + color->shown());
+  }
+  if (const auto intensity = field.find("intensity")) light.intensity = intensity->number(0, kMost);
+  if (const auto range = field.find("range")) light.range = range->number(0, kMost);
+  if (const auto inner = field.find("innerConeAngle")) light.innerConeAngle = inner->number();
+  if (const auto outer = field.find("outerConeAngle")) light.outerConeAngle = outer->number();
+  if (light.type == PELLUCID_LIGHT_SPOT) {
+    const auto fail = [&](const char* key, const std::string& sentence, double value) {
+      std::ostringstream number;
+      number << value;
+      throw InputError(field.file(), field.path() + "." + key, sentence + ", is " + number.str());
+    };
+    if (!(light.outerConeAngle > 0 && light.outerConeAngle <= std::numbers::pi / 2))
+      fail("outerConeAngle", "must be above 0 and at most pi/2 radians", light.outerConeAngle);
+    if (!(light.innerConeAngle >= 0 && light.innerConeAngle < light.outerConeAngle))
+      fail("innerConeAngle", "must be at least 0 and less than outerConeAngle", light.innerConeAngle);
+  }
+  if (const auto map = field.find("shadowMap")) light.shadowMap = readShadowMap(*map);
+  return light;
+}
+
+void readBuffers(const Field& buffers, const BufferReader& read, Manifest& manifest) {
+  buffers.allowKeys({"frontDepth", "backDepth", "irradiance", "normal", "albedo", "material"});
+  const auto depth = [&](const Field& field, DepthImage& image) {
+    field.allowKeys({"file", "part", "channel", "encoding", "constant"});
+    image.encoding = screenEncoding(field);
+    return read(field, 1);
+  };
+  manifest.frontDepth = depth(buffers["frontDepth"], manifest.capture.frontDepth);
+  if (const auto field = buffers.find("backDepth"))
+    manifest.backDepth = depth(*field, manifest.capture.backDepth);
+
+  buffers["irradiance"].allowKeys({"file", "part", "channels", "constant"});
+  manifest.irradiance = read(buffers["irradiance"], 3);
+  if (const auto field = buffers.find("albedo")) {
+    field->allowKeys({"file", "part", "channels", "constant"});
+    manifest.albedo = read(*field, 3);
+  }
+  if (const auto field = buffers.find("normal")) {
+    field->allowKeys({"file", "part", "channels", "space", "constant"});
+    if (const auto space = field->find("space"))
+      manifest.capture.normalsInViewSpace = space->choice({"world", "view"}) == 1;
+    manifest.normal = read(*field, 3);
+  }
+
+  const Field material = buffers["material"];
+  material.allowKeys({"file", "part", "channel", "map", "constant"});
+  manifest.material = read(material, 1);
+  if (const auto map = material.find("map"))
+    manifest.materialMap = readMaterialMap(*map, static_cast<int>(manifest.capture.materials.size()));
+}
+
+void parse(const Field& root, const BufferReader& read, Manifest& manifest) {
+  // The version comes first: another version's keys are not "unknown".
+  if (const Field version = root["pellucid"]; version.number() != kVersion)
+    version.fail("manifest version " + version.shown() + "; this program reads version " +
+                 std::to_string(kVersion));
+  root.allowKeys({"pellucid", "metersPerUnit", "camera", "buffers", "lights", "materials", "truth"});
+  Capture& capture = manifest.capture;
+  if (const auto meters = root.find("metersPerUnit")) {
+    capture.metersPerUnit = meters->number();
+    if (!(capture.metersPerUnit > 0)) meters->fail("must be positive, is " + meters->shown());
+  }
+  const Field camera = root["camera"];
+  camera.allowKeys({"clipFromView", "viewFromWorld"});
+  capture.clipFromView = invertible(camera["clipFromView"]);
+  capture.viewFromWorld = rigid(camera["viewFromWorld"]);
+
+  const Field materials = root["materials"];
+  for (const Field& material : materials.items()) capture.materials.push_back(readMaterial(material));
+  if (capture.materials.empty() || capture.materials.size() > kMaxMaterials)
+    materials.fail("needs 1 to " + std::to_string(kMaxMaterials) + " materials, has " +
+                   std::to_string(capture.materials.size()));
+  readBuffers(root["buffers"], read, manifest);
+  if (const auto lights = root.find("lights")) {
+    for (const Field& light : lights->items()) {
+      capture.lights.push_back(readLight(light));
+      const auto map = light.find("shadowMap");
+      manifest.shadowMaps.push_back(map ? std::optional(read(*map, 1)) : std::nullopt);
+    }
+  }
+  if (const auto truth = root.find("truth")) {
+    truth->allowKeys({"file", "part", "channels", "constant", "scale"});
+    manifest.truth = read(*truth, 3);
+    if (const auto scale = truth->find("scale")) manifest.truthScale = scale->number();
+  }
+}
+
+std::string readText(const std::filesystem::path& path) {
+  constexpr std::uintmax_t kMaxBytes = 64u << 20;  // a manifest has a few kilobytes
+  if (std::filesystem::file_size(path) > kMaxBytes)
+    throw InputError(path.string(), "", "too large for a manifest: more than 64 MiB");
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  if (!file) throw InputError(path.string(), "", "cannot be read");
+  return text.str();
+}
+
+}  // namespace
+
+Manifest readManifest(const std::filesystem::path& path) {
+  Manifest manifest;
+  manifest.path = path;
+  manifest.capture.name = path.string();
+  BufferReader read{path.parent_path(), {}};
+  std::string text;
+  if (isExr(path)) {
+    const auto embedded = ExrFile(path).findText(kManifestAttribute);
+    if (!embedded)
+      throw InputError(path.string(), kManifestAttribute,
+                       "the EXR has no such string attribute; give the JSON manifest instead");
+    text = *embedded;
+    read.embedded = path;
+  } else {
+    text = readText(path);
+  }
+  const nlohmann::json document = parseJson(path.string(), text);
+  parse(Field(path.string(), document), read, manifest);
+  return manifest;
+}
+
+}  // namespace pellucid::harness

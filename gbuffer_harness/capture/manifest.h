@@ -1,0 +1,47 @@
+// The capture manifest, version 1, as written: what it says and where the pixels are, before any pixel is
+// read.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "capture/capture.h"
+
+namespace pellucid::harness {
+
+// Where one buffer's numbers come from.
+struct BufferSource {
+  std::string field;                  // JSON path, for messages
+  std::filesystem::path file;         // absolute or relative to the working directory; empty for a constant
+  std::optional<int> part;            // absent: the one part that has the channels
+  std::vector<std::string> channels;  // full EXR names, layer included
+  std::vector<double> constant;       // the same value in every pixel, instead of a file
+
+  bool isConstant() const { return !constant.empty(); }
+};
+
+// Stored material values are read as floats: these are the integers that a float counts without gaps.
+inline constexpr int kMaxStoredMaterial = 1 << 24;
+
+// String attribute of an EXR that embeds its manifest.
+inline constexpr const char* kManifestAttribute = "pellucid.manifest";
+
+struct Manifest {
+  std::filesystem::path path;
+  Capture capture;  // everything but the images and the size
+
+  BufferSource frontDepth, irradiance, material;
+  std::optional<BufferSource> backDepth, normal, albedo, truth;
+  std::vector<std::optional<BufferSource>> shadowMaps;  // one per light
+  std::map<int, int> materialMap;  // stored value -> material index; empty: the value is the index
+  double truthScale = 1;
+};
+
+// Reads `path`: a JSON manifest, or an EXR with one in the string attribute `pellucid.manifest`; the
+// file's first bytes tell which. Throws InputError naming file, field and value. No pixel is read.
+Manifest readManifest(const std::filesystem::path& path);
+
+}  // namespace pellucid::harness

@@ -1,0 +1,83 @@
+#include "capture/material.h"
+
+#include <algorithm>
+
+#include "common/error.h"
+#include "pellucid/pellucid_material.h"
+
+namespace pellucid::harness {
+
+namespace {
+
+// Writes a source into a description; the strings stay the source's.
+struct Describe {
+  PellucidMaterialDesc& desc;
+  const std::string& where;
+
+  void operator()(const PresetMaterial& material) const {
+    desc.kind = PELLUCID_MATERIAL_PRESET;
+    desc.preset = material.preset.c_str();
+  }
+  void operator()(const CoefficientMaterial& material) const {
+    desc.kind = PELLUCID_MATERIAL_COEFFICIENTS;
+    std::copy(material.scattering.begin(), material.scattering.end(), desc.scattering);
+    std::copy(material.absorption.begin(), material.absorption.end(), desc.absorption);
+    desc.g = material.g;
+    desc.ior = material.ior;
+  }
+  void operator()(const BurleyMaterial& material) const {
+    desc.kind = PELLUCID_MATERIAL_BURLEY;
+    std::copy(material.distance.begin(), material.distance.end(), desc.burleyDistance);
+    for (std::size_t channel = 0; material.transmittance && channel < 3; ++channel)
+      std::copy((*material.transmittance)[channel].begin(), (*material.transmittance)[channel].end(),
+                desc.transmittance[channel]);
+  }
+  void operator()(const GaussianMaterial& material) const {
+    desc.kind = PELLUCID_MATERIAL_GAUSSIANS;
+    const std::size_t count = material.variance.size();
+    if (count < 1 || count > PELLUCID_MAX_GAUSSIANS || material.weight.size() != count)
+      throw InputError(where, "gaussians",
+                       std::to_string(count) + " variances and " + std::to_string(material.weight.size()) +
+                           " weights; 1 to " + std::to_string(PELLUCID_MAX_GAUSSIANS) +
+                           " of each are needed");
+    desc.gaussianCount = static_cast<std::uint32_t>(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      desc.gaussianVariance[i] = material.variance[i];
+      for (std::size_t channel = 0; channel < 3; ++channel)
+        desc.gaussianWeight[channel][i] = material.weight[i][channel];
+    }
+  }
+};
+
+}  // namespace
+
+PellucidMaterial compileMaterial(const MaterialSource& source, const std::string& where) {
+  PellucidMaterialDesc desc;
+  pellucidInitMaterialDesc(&desc);
+  std::visit(Describe{desc, where}, source);
+
+  struct Complaint {
+    std::string field, sentence;
+  } complaint;
+  const PellucidMessageFn note = [](void* user, PellucidSeverity severity, const char* field,
+                                    const char* message) {
+    if (severity == PELLUCID_SEVERITY_ERROR) *static_cast<Complaint*>(user) = {field, message};
+  };
+  PellucidMaterial material = {};
+  const PellucidResult result = pellucidCompileMaterial(&desc, &material, nullptr, note, &complaint);
+  if (result != PELLUCID_OK) {
+    if (complaint.sentence.empty()) complaint.sentence = pellucidResultName(result);
+    throw InputError(where, complaint.field, complaint.sentence);
+  }
+  return material;
+}
+
+std::vector<PellucidMaterial> compileMaterials(const Capture& capture) {
+  std::vector<PellucidMaterial> materials;
+  for (std::size_t i = 0; i < capture.materials.size(); ++i)
+    materials.push_back(
+        compileMaterial(capture.materials[i], capture.name + ": materials[" + std::to_string(i) + "]"));
+  return materials;
+}
+
+}  // namespace pellucid::harness

@@ -1,0 +1,18 @@
+// From a manifest's description of a material to what the shaders evaluate.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "capture/capture.h"
+
+namespace pellucid::harness {
+
+// Through the material compiler (pellucid_material.h); milliseconds. `where` stands before the field in
+// errors ("capture.json: materials[0]"). Throws InputError for a description the compiler refuses.
+PellucidMaterial compileMaterial(const MaterialSource& source, const std::string& where);
+
+// Every material of a capture, in order.
+std::vector<PellucidMaterial> compileMaterials(const Capture& capture);
+
+}  // namespace pellucid::harness

@@ -1,0 +1,158 @@
+#include "capture/read.h"
+
+#include <cmath>
+#include <limits>
+#include <map>
+#include <sstream>
+#include <tuple>
+#include <vector>
+
+#include "capture/exr.h"
+#include "common/error.h"
+
+namespace pellucid::harness {
+
+namespace {
+
+// Marks material pixels outside the data window: no material, whatever the map says of 0.
+constexpr float kOutside = -std::numeric_limits<float>::infinity();
+
+struct Request {
+  const BufferSource* source;
+  Image* image;  // channels set
+  float outside;
+  bool screen;     // must have the screen's size
+  bool mustCover;  // pixels outside the data window are an error
+};
+
+std::string sizeText(int width, int height) { return std::to_string(width) + "x" + std::to_string(height); }
+
+// Opens each file once, agrees on the screen's size, then reads each part in one pass.
+class Loader {
+public:
+  explicit Loader(const Manifest& manifest) : manifest_(manifest) {}
+
+  void want(const BufferSource& source, Image& image, int channels, float outside, bool screen) {
+    image.channels = channels;
+    requests_.push_back({&source, &image, outside, screen, false});
+  }
+  void wantDepth(const BufferSource& source, DepthImage& depth, bool screen) {
+    want(source, depth.image, 1, kNoDepth, screen);
+    requests_.back().mustCover = depth.encoding == PELLUCID_DEPTH_DEVICE;
+  }
+
+  void load(int& screenWidth, int& screenHeight) {
+    std::map<std::tuple<std::filesystem::path, int, ExrWindow>, std::vector<ExrPlane>> parts;
+    const Request* first = nullptr;
+    for (const Request& request : requests_) {
+      const BufferSource& source = *request.source;
+      if (source.isConstant()) continue;
+      const ExrFile& file = open(source.file, source.field + ".file");
+      const int part = file.findPart(source.channels, source.part, source.field);
+      // In a file of several parts the display window is the screen's, whatever the shadow map's size.
+      const ExrWindow window = request.screen || file.partCount() == 1 ? ExrWindow::Display : ExrWindow::Data;
+      const int width = file.width(part, window), height = file.height(part, window);
+      if (request.screen && !first) {
+        first = &request;
+        screenWidth = width;
+        screenHeight = height;
+      } else if (request.screen && (width != screenWidth || height != screenHeight)) {
+        throw InputError(source.file.string(), source.field,
+                         sizeText(width, height) + " pixels, but " + first->source->field + " has " +
+                             sizeText(screenWidth, screenHeight));
+      }
+      if (request.mustCover && window == ExrWindow::Display && !file.coversDisplay(part))
+        throw InputError(
+            source.file.string(), source.field,
+            "the data window leaves out pixels of the display window, for which device depth has no "
+            "value; use viewZ or write the whole window");
+      auto& planes = parts[{source.file, part, window}];
+      for (std::size_t i = 0; i < source.channels.size(); ++i)
+        planes.push_back({source.channels[i], request.image, static_cast<int>(i), request.outside});
+    }
+    if (!first)
+      throw InputError(manifest_.path.string(), "buffers",
+                       "every buffer is a constant; one must come from a file, to give the size");
+    for (const auto& [key, planes] : parts) {
+      const auto& [path, part, window] = key;
+      files_.at(path).read(part, window, planes);
+    }
+    for (const Request& request : requests_)
+      if (request.source->isConstant()) fill(request, screenWidth, screenHeight);
+  }
+
+private:
+  const ExrFile& open(const std::filesystem::path& path, const std::string& field) {
+    auto found = files_.find(path);
+    if (found == files_.end()) found = files_.emplace(path, ExrFile(path, field)).first;
+    return found->second;
+  }
+
+  // A constant shadow map is one texel; screen buffers have the screen's size.
+  static void fill(const Request& request, int width, int height) {
+    Image& image = *request.image;
+    image = request.screen ? Image(width, height, image.channels) : Image(1, 1, image.channels);
+    for (std::size_t i = 0; i < image.data.size(); ++i)
+      image.data[i] = static_cast<float>(request.source->constant[i % request.source->constant.size()]);
+  }
+
+  const Manifest& manifest_;
+  std::vector<Request> requests_;
+  std::map<std::filesystem::path, ExrFile> files_;
+};
+
+std::vector<std::uint8_t> materialIndices(const Manifest& manifest, const Image& stored) {
+  const BufferSource& source = manifest.material;
+  const std::size_t count = manifest.capture.materials.size();
+  const auto fail = [&](std::size_t pixel, const std::string& why) {
+    const auto width = static_cast<std::size_t>(stored.width);
+    std::ostringstream sentence;
+    sentence << "pixel (" << pixel % width << ", " << pixel / width << ") holds " << stored.data[pixel]
+             << why;
+    throw InputError((source.isConstant() ? manifest.path : source.file).string(), source.field,
+                     sentence.str());
+  };
+  std::vector<std::uint8_t> indices(stored.pixels());
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    if (stored.data[i] == kOutside) continue;
+    const float value = std::round(stored.data[i]);
+    if (!(value >= 0 && value <= kMaxStoredMaterial)) fail(i, ", which is no material");
+    int index = static_cast<int>(value);
+    if (const auto mapped = manifest.materialMap.find(index); mapped != manifest.materialMap.end())
+      index = mapped->second;
+    else if (!manifest.materialMap.empty() && index != 0)
+      fail(i, ", which \"map\" does not name");
+    if (static_cast<std::size_t>(index) > count)
+      fail(i, ", but there are " + std::to_string(count) + " materials");
+    indices[i] = static_cast<std::uint8_t>(index);
+  }
+  return indices;
+}
+
+}  // namespace
+
+Capture readCapture(const std::filesystem::path& path) { return readCapture(readManifest(path)); }
+
+Capture readCapture(const Manifest& manifest) {
+  Capture capture = manifest.capture;
+  Image material;
+  Loader loader(manifest);
+  loader.wantDepth(manifest.frontDepth, capture.frontDepth, true);
+  if (manifest.backDepth) loader.wantDepth(*manifest.backDepth, capture.backDepth, true);
+  loader.want(manifest.irradiance, capture.irradiance, 3, 0, true);
+  if (manifest.normal) loader.want(*manifest.normal, capture.normal, 3, 0, true);
+  if (manifest.albedo) loader.want(*manifest.albedo, capture.albedo, 3, 0, true);
+  loader.want(manifest.material, material, 1, kOutside, true);
+  if (manifest.truth) loader.want(*manifest.truth, capture.truth.emplace().image, 3, 0, true);
+  for (std::size_t i = 0; i < capture.lights.size(); ++i)
+    if (manifest.shadowMaps[i])
+      loader.wantDepth(*manifest.shadowMaps[i], capture.lights[i].shadowMap->depth, false);
+  loader.load(capture.width, capture.height);
+
+  capture.material = materialIndices(manifest, material);
+  if (capture.truth)
+    for (float& value : capture.truth->image.data) value *= static_cast<float>(manifest.truthScale);
+  return capture;
+}
+
+}  // namespace pellucid::harness

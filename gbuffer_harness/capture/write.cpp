@@ -1,0 +1,139 @@
+#include "capture/write.h"
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "capture/exr.h"
+#include "capture/manifest.h"
+
+namespace pellucid::harness {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <class... Visitors>
+struct Overloaded : Visitors... {
+  using Visitors::operator()...;
+};
+
+const char* encodingName(PellucidDepthEncoding encoding) {
+  return encoding == PELLUCID_DEPTH_DEVICE   ? "device"
+         : encoding == PELLUCID_DEPTH_VIEW_Z ? "viewZ"
+                                             : "distance";
+}
+
+Json materialJson(const MaterialSource& source) {
+  return std::visit(Overloaded{
+                        [](const PresetMaterial& m) {
+                          return Json{{"preset", m.preset}};
+                        },
+                        [](const CoefficientMaterial& m) {
+                          return Json{{"scattering", m.scattering},
+                                      {"absorption", m.absorption},
+                                      {"g", m.g},
+                                      {"ior", m.ior},
+                                      {"unit", "1/mm"}};
+                        },
+                        [](const BurleyMaterial& m) {
+                          Json json = {{"profile", "burley"}, {"distance", m.distance}};
+                          if (m.transmittance) {
+                            const char* const names[] = {"a1", "k1", "a2", "k2"};
+                            for (std::size_t i = 0; i < 4; ++i)
+                              for (const auto& channel : *m.transmittance)
+                                json["transmittance"][names[i]].push_back(channel[i]);
+                          }
+                          return json;
+                        },
+                        [](const GaussianMaterial& m) {
+                          return Json{{"gaussians", {{"variance", m.variance}, {"weight", m.weight}}}};
+                        },
+                    },
+                    source);
+}
+
+// Collects the channels of one part and says where they are.
+struct PartWriter {
+  ExrPart part;
+  int index;
+
+  Json add(const Image& image, const std::string& layer, const char* components, ExrFormat format) {
+    Json names = Json::array();
+    for (int i = 0; i < image.channels; ++i) {
+      const std::string name = layer + "." + components[i];
+      part.channels.push_back({name, format, &image, i});
+      names.push_back(name);
+    }
+    Json buffer = {{"part", index}};
+    if (image.channels == 1)
+      buffer["channel"] = names[0];
+    else
+      buffer["channels"] = names;
+    return buffer;
+  }
+  Json addDepth(const DepthImage& depth, const std::string& layer) {
+    Json buffer = add(depth.image, layer, "Z", ExrFormat::Float);
+    buffer["encoding"] = encodingName(depth.encoding);
+    return buffer;
+  }
+};
+
+Json lightJson(const Light& light) {
+  const char* const types[] = {"directional", "point", "spot"};
+  Json json = {{"type", types[light.type]}, {"position", light.position},   {"direction", light.direction},
+               {"color", light.color},      {"intensity", light.intensity}, {"range", light.range}};
+  if (light.type == PELLUCID_LIGHT_SPOT) {
+    json["innerConeAngle"] = light.innerConeAngle;
+    json["outerConeAngle"] = light.outerConeAngle;
+  }
+  return json;
+}
+
+}  // namespace
+
+void writeCapture(const Capture& capture, const std::filesystem::path& exr, ColorFormat color) {
+  const ExrFormat format = color == ColorFormat::Half ? ExrFormat::Half : ExrFormat::Float;
+  Image material(capture.width, capture.height, 1);
+  for (std::size_t i = 0; i < capture.material.size(); ++i) material.data[i] = capture.material[i];
+
+  PartWriter screen{{"screen", {}, {}}, 0};
+  Json manifest = {
+      {"pellucid", 1},
+      {"metersPerUnit", capture.metersPerUnit},
+      {"camera", {{"clipFromView", capture.clipFromView}, {"viewFromWorld", capture.viewFromWorld}}}};
+  Json& buffers = manifest["buffers"];
+  buffers["frontDepth"] = screen.addDepth(capture.frontDepth, "front");
+  if (!capture.backDepth.image.empty()) buffers["backDepth"] = screen.addDepth(capture.backDepth, "back");
+  buffers["irradiance"] = screen.add(capture.irradiance, "irradiance", "RGB", format);
+  if (!capture.normal.empty()) {
+    buffers["normal"] = screen.add(capture.normal, "normal", "XYZ", format);
+    buffers["normal"]["space"] = capture.normalsInViewSpace ? "view" : "world";
+  }
+  if (!capture.albedo.empty()) buffers["albedo"] = screen.add(capture.albedo, "albedo", "RGB", format);
+  buffers["material"] = screen.add(material, "material", "I", ExrFormat::Uint);
+  if (capture.truth) manifest["truth"] = screen.add(capture.truth->image, "truth", "RGB", format);
+
+  std::vector<ExrPart> parts = {std::move(screen.part)};
+  manifest["lights"] = Json::array();
+  for (std::size_t i = 0; i < capture.lights.size(); ++i) {
+    const Light& light = capture.lights[i];
+    Json json = lightJson(light);
+    if (light.shadowMap) {
+      PartWriter map{{"shadowMap" + std::to_string(i), {}, {}}, static_cast<int>(parts.size())};
+      json["shadowMap"] = map.addDepth(light.shadowMap->depth, "shadow");
+      json["shadowMap"]["clipFromWorld"] = light.shadowMap->clipFromWorld;
+      if (light.shadowMap->viewFromWorld)
+        json["shadowMap"]["viewFromWorld"] = *light.shadowMap->viewFromWorld;
+      parts.push_back(std::move(map.part));
+    }
+    manifest["lights"].push_back(std::move(json));
+  }
+  manifest["materials"] = Json::array();
+  for (const MaterialSource& source : capture.materials)
+    manifest["materials"].push_back(materialJson(source));
+  parts.front().attributes[kManifestAttribute] = manifest.dump();
+  writeExrParts(exr, parts);
+}
+
+}  // namespace pellucid::harness

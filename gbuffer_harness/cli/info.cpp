@@ -1,0 +1,304 @@
+// `pellucid info`: what a capture holds, what its missing parts switch off, what looks wrong.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <limits>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <sstream>
+
+#include "capture/exr.h"
+#include "capture/material.h"
+#include "capture/read.h"
+#include "cli/commands.h"
+#include "reference/camera.h"
+#include "replay/frame.h"
+
+namespace pellucid::harness {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using reference::Camera;
+
+constexpr const char* kEncodings[] = {"device", "viewZ", "distance"};
+constexpr const char* kLightTypes[] = {"directional", "point", "spot"};
+
+struct Range {
+  float least = std::numeric_limits<float>::infinity(), most = -least;
+
+  void add(double value) {
+    least = std::min(least, static_cast<float>(value));
+    most = std::max(most, static_cast<float>(value));
+  }
+  Json json() const { return least > most ? Json() : Json{least, most}; }
+};
+
+// Where the numbers come from; `constant`, or file, part, channels and their format.
+Json sourceJson(const BufferSource& source) {
+  if (source.isConstant()) return {{"constant", source.constant}};
+  const ExrFile file(source.file);
+  const int part = file.findPart(source.channels, source.part, source.field);
+  return {{"file", source.file.string()},
+          {"part", part},
+          {"channels", source.channels},
+          {"format", file.channelFormat(part, source.channels.front())}};
+}
+
+Json imageJson(const BufferSource& source, const Image& image) {
+  Json json = sourceJson(source);
+  Range range;
+  for (const float value : image.data)
+    if (std::isfinite(value)) range.add(value);
+  json["range"] = range.json();
+  return json;
+}
+
+// The range of a screen depth is planar distance in scene units, whatever the encoding.
+Json depthJson(const BufferSource& source, const DepthImage& depth, const Camera& camera) {
+  Json json = sourceJson(source);
+  json["encoding"] = kEncodings[depth.encoding];
+  Range range;
+  std::size_t surfaces = 0;
+  for (const float value : depth.image.data) {
+    const auto planar = camera.planarDepth(value, depth.encoding);
+    if (!planar) continue;
+    ++surfaces;
+    range.add(*planar);
+  }
+  json["range"] = range.json();
+  json["pixels"] = surfaces;
+  return json;
+}
+
+Json shadowJson(const BufferSource& source, const DepthImage& depth) {
+  Json json = sourceJson(source);
+  json["encoding"] = kEncodings[depth.encoding];
+  json["size"] = {depth.image.width, depth.image.height};
+  Range range;
+  for (const float value : depth.image.data)
+    if (depth.encoding == PELLUCID_DEPTH_DEVICE ? std::isfinite(value) : reference::holdsSurface(value))
+      range.add(value);
+  json["range"] = range.json();
+  return json;
+}
+
+const char* materialKind(const MaterialSource& source) {
+  constexpr const char* kKinds[] = {"preset", "coefficients", "burley", "gaussians"};
+  return kKinds[source.index()];
+}
+
+Json materialsJson(const Capture& capture, const std::vector<PellucidMaterial>& materials) {
+  Json json = Json::array();
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    const auto index = static_cast<std::uint8_t>(i + 1);
+    Json entry = {{"index", index}, {"kind", materialKind(capture.materials[i])}};
+    if (const auto* preset = std::get_if<PresetMaterial>(&capture.materials[i]))
+      entry["preset"] = preset->preset;
+    entry["pixels"] = std::count(capture.material.begin(), capture.material.end(), index);
+    entry["reflectance"] = materials[i].reflectance;
+    entry["radius"] = materials[i].radius;
+    json.push_back(std::move(entry));
+  }
+  return json;
+}
+
+// What the absence of optional parts means for the result.
+std::vector<std::string> missingParts(const Capture& capture) {
+  std::vector<std::string> missing;
+  if (capture.backDepth.image.empty())
+    missing.push_back(
+        "no backDepth: no camera-space thickness; lights without a shadow map add no translucency");
+  if (capture.normal.empty())
+    missing.push_back("no normal: the angle between view and light takes the place of -N.L");
+  if (capture.albedo.empty()) missing.push_back("no albedo: the output is not multiplied by a surface color");
+  if (capture.lights.empty()) missing.push_back("no lights: no translucency");
+  for (std::size_t i = 0; i < capture.lights.size(); ++i)
+    if (!capture.lights[i].shadowMap && !capture.backDepth.image.empty())
+      missing.push_back("lights[" + std::to_string(i) +
+                        "] has no shadow map: thickness from the camera's depths, nothing else shadows it");
+  if (!capture.truth) missing.push_back("no truth: compare needs another image to compare with");
+  return missing;
+}
+
+// Collects "COUNT of TOTAL sentence".
+class Warnings {
+public:
+  explicit Warnings(std::vector<std::string>& sentences) : sentences_(sentences) {}
+  void count(std::size_t count, std::size_t total, const std::string& sentence) {
+    if (count > 0)
+      sentences_.push_back(std::to_string(count) + " of " + std::to_string(total) + " " + sentence);
+  }
+
+private:
+  std::vector<std::string>& sentences_;
+};
+
+void checkPixels(const Capture& capture, const Camera& camera, std::vector<std::string>& sentences) {
+  const bool hasBack = !capture.backDepth.image.empty(), hasNormal = !capture.normal.empty();
+  glm::dmat3 viewFromNormal(1);
+  if (!capture.normalsInViewSpace) viewFromNormal = glm::dmat3(reference::toMatrix(capture.viewFromWorld));
+  std::size_t total = 0, noFront = 0, noBack = 0, reversed = 0, notUnit = 0, facingAway = 0;
+  std::size_t badIrradiance = 0, badAlbedo = 0;
+  for (int y = 0; y < capture.height; ++y) {
+    for (int x = 0; x < capture.width; ++x) {
+      if (capture.material[static_cast<std::size_t>(y) * static_cast<std::size_t>(capture.width) +
+                           static_cast<std::size_t>(x)] == 0)
+        continue;
+      ++total;
+      const float* light = capture.irradiance.at(x, y);
+      badIrradiance += !std::all_of(light, light + 3, [](float v) { return v >= 0 && std::isfinite(v); });
+      if (!capture.albedo.empty()) {
+        const float* albedo = capture.albedo.at(x, y);
+        badAlbedo += !std::all_of(albedo, albedo + 3, [](float v) { return v >= 0 && v <= 1; });
+      }
+      const auto front = camera.planarDepth(*capture.frontDepth.image.at(x, y), capture.frontDepth.encoding);
+      noFront += !front;
+      if (hasBack) {
+        const auto back = camera.planarDepth(*capture.backDepth.image.at(x, y), capture.backDepth.encoding);
+        noBack += !back;
+        constexpr double kRounding = 1e-5;  // both depths may be floats that went through a matrix
+        reversed += front && back && *back < *front * (1 - kRounding);
+      }
+      if (hasNormal) {
+        const float* n = capture.normal.at(x, y);
+        const glm::dvec3 normal(n[0], n[1], n[2]);
+        constexpr double kUnit = 0.01;  // 8-bit encodings reach 0.004
+        notUnit += !(std::abs(glm::length(normal) - 1) <= kUnit);
+        if (front)
+          facingAway += glm::dot(viewFromNormal * normal,
+                                 camera.rayThrough(camera.position({x + 0.5, y + 0.5}, *front))) > 0;
+      }
+    }
+  }
+  Warnings warnings(sentences);
+  if (total == 0) sentences.push_back("no pixel has a material: the output is the irradiance");
+  warnings.count(noFront, total, "material pixels have no front depth");
+  warnings.count(noBack, total, "material pixels have no back depth");
+  warnings.count(reversed, total, "material pixels have their back depth in front of the front depth");
+  warnings.count(notUnit, total, "normals are not of length 1");
+  if (20 * facingAway > total)  // interpolated normals do it at silhouettes, a few percent
+    warnings.count(facingAway, total, "normals point away from the camera: is \"space\" right?");
+  warnings.count(badIrradiance, total, "material pixels have an irradiance that is negative or not finite");
+  warnings.count(badAlbedo, total, "material pixels have an albedo outside 0..1");
+}
+
+// The module's own findings about the frame.
+void checkConventions(const Capture& capture, const std::vector<PellucidMaterial>& materials,
+                      std::vector<std::string>& sentences) {
+  FrameData data;
+  makeFrame(capture, materials, {}, data);
+  // Transients are the replay's business: a view stands in for each.
+  std::fill(std::begin(data.frame.transients), std::end(data.frame.transients), data.frame.output);
+  pellucidValidateFrame(
+      &data.frame,
+      [](void* user, PellucidSeverity severity, const char* field, const char* message) {
+        const std::string prefix = severity == PELLUCID_SEVERITY_ERROR ? "cannot be replayed: " : "";
+        static_cast<std::vector<std::string>*>(user)->push_back(prefix + field + " " + message);
+      },
+      &sentences);
+}
+
+Json describe(const std::filesystem::path& path) {
+  const Manifest manifest = readManifest(path);
+  const Capture capture = readCapture(manifest);
+  const std::vector<PellucidMaterial> materials = compileMaterials(capture);
+  const Camera camera(capture.clipFromView, capture.width, capture.height);
+
+  Json json = {{"capture", path.string()},
+               {"size", {capture.width, capture.height}},
+               {"metersPerUnit", capture.metersPerUnit}};
+  Json& buffers = json["buffers"];
+  buffers["frontDepth"] = depthJson(manifest.frontDepth, capture.frontDepth, camera);
+  if (manifest.backDepth) buffers["backDepth"] = depthJson(*manifest.backDepth, capture.backDepth, camera);
+  buffers["irradiance"] = imageJson(manifest.irradiance, capture.irradiance);
+  if (manifest.normal) {
+    buffers["normal"] = imageJson(*manifest.normal, capture.normal);
+    buffers["normal"]["space"] = capture.normalsInViewSpace ? "view" : "world";
+  }
+  if (manifest.albedo) buffers["albedo"] = imageJson(*manifest.albedo, capture.albedo);
+  buffers["material"] = sourceJson(manifest.material);
+  buffers["material"]["pixels"] =
+      capture.material.size() -
+      static_cast<std::size_t>(std::count(capture.material.begin(), capture.material.end(), 0));
+  if (manifest.truth) {
+    buffers["truth"] = imageJson(*manifest.truth, capture.truth->image);
+    buffers["truth"]["scale"] = manifest.truthScale;
+  }
+  json["lights"] = Json::array();
+  for (std::size_t i = 0; i < capture.lights.size(); ++i) {
+    const Light& light = capture.lights[i];
+    Json entry = {{"type", kLightTypes[light.type]}, {"color", light.color}, {"intensity", light.intensity}};
+    if (light.shadowMap) entry["shadowMap"] = shadowJson(*manifest.shadowMaps[i], light.shadowMap->depth);
+    json["lights"].push_back(std::move(entry));
+  }
+  json["materials"] = materialsJson(capture, materials);
+  json["missing"] = missingParts(capture);
+  std::vector<std::string> warnings;
+  checkConventions(capture, materials, warnings);
+  checkPixels(capture, camera, warnings);
+  json["warnings"] = warnings;
+  return json;
+}
+
+// "key value, key value" of an object's scalars and arrays; lists without brackets.
+std::string line(const Json& object) {
+  std::ostringstream text;
+  text.precision(6);
+  for (const auto& [key, value] : object.items()) {
+    if (value.is_object()) continue;
+    text << (text.str().empty() ? "" : ", ") << key;
+    const auto print = [&](const Json& item) {
+      if (item.is_string())
+        text << ' ' << item.get<std::string>();
+      else if (item.is_number_float())
+        text << ' ' << item.get<double>();
+      else
+        text << ' ' << item.dump();
+    };
+    if (value.is_array())
+      for (const Json& item : value) print(item);
+    else
+      print(value);
+  }
+  return text.str();
+}
+
+std::string toText(const Json& json) {
+  std::ostringstream text;
+  text << json["capture"].get<std::string>() << ": " << json["size"][0] << "x" << json["size"][1]
+       << " pixels, " << json["metersPerUnit"] << " meters per unit\n";
+  for (const auto& [name, buffer] : json["buffers"].items())
+    text << "  " << name << ": " << line(buffer) << "\n";
+  for (std::size_t i = 0; i < json["lights"].size(); ++i) {
+    const Json& light = json["lights"][i];
+    text << "  lights[" << i << "]: " << line(light) << "\n";
+    if (light.contains("shadowMap")) text << "    shadowMap: " << line(light["shadowMap"]) << "\n";
+  }
+  for (const Json& material : json["materials"]) text << "  material: " << line(material) << "\n";
+  for (const Json& sentence : json["missing"]) text << "missing: " << sentence.get<std::string>() << "\n";
+  for (const Json& sentence : json["warnings"]) text << "warning: " << sentence.get<std::string>() << "\n";
+  return text.str();
+}
+
+}  // namespace
+
+void addInfoCommand(CLI::App& app) {
+  struct Options {
+    std::string input;
+    bool json = false;
+  };
+  const auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("info", "Say what a capture holds, lacks, and what looks wrong in it");
+  command->add_option("capture", options->input, "manifest (.json) or EXR with an embedded one")->required();
+  command->add_flag("--json", options->json, "print JSON");
+  command->callback([options] {
+    const Json json = describe(options->input);
+    std::cout << (options->json ? json.dump(2) + "\n" : toText(json));
+  });
+}
+
+}  // namespace pellucid::harness

@@ -1,0 +1,66 @@
+#include "common/png.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "common/error.h"
+
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#define STB_IMAGE_WRITE_STATIC
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+#include <stb/stb_image_write.h>
+#pragma GCC diagnostic pop
+
+namespace pellucid::harness {
+
+namespace {
+
+std::uint8_t srgbByte(float linear) {
+  const float x = std::clamp(linear, 0.0f, 1.0f);
+  const float encoded = x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1.0f / 2.4f) - 0.055f;
+  return static_cast<std::uint8_t>(std::lround(encoded * 255.0f));
+}
+
+}  // namespace
+
+void writePng(const std::filesystem::path& path, int width, int height,
+              const std::vector<std::uint8_t>& rgb) {
+  if (!stbi_write_png(path.string().c_str(), width, height, 3, rgb.data(), width * 3))
+    throw InputError(path.string(), "", "the PNG cannot be written");
+}
+
+std::vector<std::uint8_t> toSrgb(const Image& image, float exposure) {
+  constexpr std::array<std::uint8_t, 3> kMagenta = {255, 0, 255};
+  std::vector<std::uint8_t> rgb(image.pixels() * 3);
+  const int used = std::min(image.channels, 3);
+  for (std::size_t i = 0; i < image.pixels(); ++i) {
+    const float* pixel = image.data.data() + i * static_cast<std::size_t>(image.channels);
+    const bool finite = std::all_of(pixel, pixel + used, [](float value) { return std::isfinite(value); });
+    for (int c = 0; c < 3; ++c) {
+      const float value = pixel[std::min(c, used - 1)];
+      rgb[i * 3 + static_cast<std::size_t>(c)] =
+          finite ? srgbByte(value * exposure) : kMagenta[static_cast<std::size_t>(c)];
+    }
+  }
+  return rgb;
+}
+
+Image sideBySide(const std::vector<const Image*>& images, int gap) {
+  int width = gap * (static_cast<int>(images.size()) - 1);
+  for (const Image* image : images) width += image->width;
+  Image result(width, images.front()->height, images.front()->channels);
+  int left = 0;
+  for (const Image* image : images) {
+    for (int y = 0; y < image->height; ++y)
+      std::copy_n(image->at(0, y),
+                  static_cast<std::size_t>(image->width) * static_cast<std::size_t>(image->channels),
+                  result.at(left, y));
+    left += image->width + gap;
+  }
+  return result;
+}
+
+}  // namespace pellucid::harness

@@ -1,0 +1,22 @@
+// 8-bit pictures of float images, for people to look at.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "common/image.h"
+
+namespace pellucid::harness {
+
+// `rgb`: width * height * 3 bytes, row 0 at the top. Throws InputError when the file cannot be written.
+void writePng(const std::filesystem::path& path, int width, int height, const std::vector<std::uint8_t>& rgb);
+
+// Linear to display: times `exposure`, the exact sRGB curve (IEC 61966-2-1), clamped to 0..255. One
+// channel becomes gray, channels past the third are left out. NaN and infinity are magenta.
+std::vector<std::uint8_t> toSrgb(const Image& image, float exposure = 1.0f);
+
+// Images of one height and channel count, left to right, with a black gap of `gap` pixels between.
+Image sideBySide(const std::vector<const Image*>& images, int gap = 4);
+
+}  // namespace pellucid::harness

@@ -1,0 +1,199 @@
+// A small capture on disk, for tests to read, change and damage.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <string>
+
+#include "capture/capture.h"
+#include "capture/exr.h"
+#include "capture/read.h"
+#include "common/error.h"
+
+namespace pellucid::harness {
+
+// A directory of its own that goes away with the test.
+class TemporaryDirectory {
+public:
+  TemporaryDirectory() {
+    static int count = 0;
+    const auto base = std::filesystem::temp_directory_path();
+    do {
+      path_ =
+          base / ("pellucid_test_" + std::to_string(std::random_device{}()) + "_" + std::to_string(count++));
+    } while (!std::filesystem::create_directory(path_));
+  }
+  ~TemporaryDirectory() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TemporaryDirectory(const TemporaryDirectory&) = delete;
+  TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
+
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+
+private:
+  std::filesystem::path path_;
+};
+
+inline constexpr int kSampleWidth = 7, kSampleHeight = 5;  // not equal, not even: transposed reads show
+inline constexpr int kSampleShadowSize = 3;
+
+// Values that differ in every pixel and component and need all bits of a float.
+inline Image sampleImage(int width, int height, int channels, float first) {
+  Image image(width, height, channels);
+  for (std::size_t i = 0; i < image.data.size(); ++i)
+    image.data[i] = first + std::sqrt(static_cast<float>(i)) / 3.0f;
+  return image;
+}
+
+// Every buffer, a light of each type, a material of each form, a truth.
+inline Capture sampleCapture() {
+  Capture capture;
+  capture.width = kSampleWidth;
+  capture.height = kSampleHeight;
+  capture.metersPerUnit = 0.001;
+  capture.clipFromView = {2, 0, 0, 0, 0, -2, 0, 0, 0, 0, -1.01, -1, 0, 0, -0.1, 0};
+  capture.viewFromWorld = {1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0.1, 0.2, -3, 1};
+  const auto screen = [](int channels, float first) {
+    return sampleImage(kSampleWidth, kSampleHeight, channels, first);
+  };
+  capture.frontDepth = {screen(1, 2.0f), PELLUCID_DEPTH_VIEW_Z};
+  capture.frontDepth.image.data[0] = kNoDepth;
+  capture.frontDepth.image.data[1] = std::numeric_limits<float>::infinity();
+  capture.backDepth = {screen(1, 0.125f), PELLUCID_DEPTH_DEVICE};
+  capture.irradiance = screen(3, 0.1f);
+  capture.normal = screen(3, -0.7f);
+  capture.normalsInViewSpace = true;
+  capture.albedo = screen(3, 0.3f);
+  capture.truth = Truth{screen(3, 0.9f)};
+  for (int i = 0; i < kSampleWidth * kSampleHeight; ++i)
+    capture.material.push_back(static_cast<std::uint8_t>(i % 5));
+
+  Light sun;
+  sun.direction = {0.1, -0.7, 1.0 / 3.0};
+  sun.color = {1, 0.5, 0.25};
+  sun.intensity = 12.566370614359172;
+  sun.shadowMap =
+      ShadowMap{{sampleImage(kSampleShadowSize, kSampleShadowSize, 1, 0.2f), PELLUCID_DEPTH_DEVICE},
+                {0.1, 0, 0, 0, 0, 0.1, 0, 0, 0, 0, -0.01, 0, 0, 0, 0.5, 1},
+                std::nullopt};
+  Light lamp;
+  lamp.type = PELLUCID_LIGHT_POINT;
+  lamp.position = {1.5, 2.5, -3.5};
+  lamp.range = 40;
+  Light spot;
+  spot.type = PELLUCID_LIGHT_SPOT;
+  spot.position = {0, 0, -9};
+  spot.innerConeAngle = 0.25;
+  spot.outerConeAngle = 0.5;
+  spot.shadowMap = ShadowMap{{sampleImage(11, 13, 1, 4.0f), PELLUCID_DEPTH_DISTANCE},
+                             {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, -1, 0, 0, -0.1, 0},
+                             kIdentity};
+  capture.lights = {sun, lamp, spot};
+  capture.materials = {
+      PresetMaterial{"skin1"}, CoefficientMaterial{{0.74, 0.88, 1.01}, {0.032, 0.17, 0.48}, 0.1, 1.3},
+      BurleyMaterial{
+          {1, 2, 3},
+          std::array<std::array<double, 4>, 3>{{{0.5, 1, 0.25, 2}, {0.5, 3, 0.25, 4}, {0.5, 5, 0.25, 6}}}},
+      GaussianMaterial{{0.5, 2}, {{0.25, 0.5, 0.75}, {0.75, 0.5, 0.25}}}};
+  return capture;
+}
+
+inline void writeText(const std::filesystem::path& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
+
+inline std::string readText(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// Writes g.exr and s.exr of the sample's values into `directory` and returns the manifest that names them.
+inline nlohmann::json writeSampleFiles(const TemporaryDirectory& directory) {
+  const Capture capture = sampleCapture();
+  Image all(kSampleWidth, kSampleHeight, 6);
+  for (int y = 0; y < kSampleHeight; ++y)
+    for (int x = 0; x < kSampleWidth; ++x) {
+      float* pixel = all.at(x, y);
+      pixel[0] = *capture.frontDepth.image.at(x, y);
+      std::copy_n(capture.irradiance.at(x, y), 3, pixel + 1);
+      pixel[4] = static_cast<float>(x % 2);
+      pixel[5] = *capture.backDepth.image.at(x, y);
+    }
+  writeExr(directory / "g.exr", all, {"Z", "E.R", "E.G", "E.B", "id", "ZBack"});
+  writeExr(directory / "s.exr", capture.lights[0].shadowMap->depth.image, {"ViewLayer.Depth.Z"});
+  return nlohmann::json::parse(R"({
+    "pellucid": 1, "metersPerUnit": 0.001,
+    "camera": {"clipFromView": [2,0,0,0, 0,-2,0,0, 0,0,-1.01,-1, 0,0,-0.1,0],
+               "viewFromWorld": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0.1,0.2,-3,1]},
+    "buffers": {
+      "frontDepth": {"file": "g.exr", "part": 0, "channel": "Z", "encoding": "viewZ"},
+      "backDepth": {"file": "g.exr", "channel": "ZBack", "encoding": "device"},
+      "irradiance": {"file": "g.exr", "channels": ["E.R", "E.G", "E.B"]},
+      "normal": {"constant": [0, 0, 1], "space": "view"},
+      "albedo": {"constant": [0.62, 0.38, 0.24]},
+      "material": {"file": "g.exr", "channel": "id", "map": {"1": 1}}},
+    "lights": [{"type": "spot", "position": [0, 0, -9], "direction": [0, 0, 1], "color": [1, 1, 1], "intensity": 3,
+                "range": 0, "innerConeAngle": 0.1, "outerConeAngle": 0.7,
+                "shadowMap": {"file": "s.exr", "channel": "ViewLayer.Depth.Z", "encoding": "distance",
+                              "clipFromWorld": [1,0,0,0, 0,1,0,0, 0,0,-1,-1, 0,0,-0.1,0],
+                              "viewFromWorld": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]}}],
+    "materials": [{"scattering": [7.4, 8.8, 10.1], "absorption": [0.32, 1.7, 4.8], "g": 0, "ior": 1.4,
+                   "unit": "1/cm"}],
+    "truth": {"file": "g.exr", "channels": ["E.R", "E.G", "E.B"], "scale": 2}
+  })");
+}
+
+// Bits, so that NaN, infinity and -0 count.
+inline bool sameBits(const Image& a, const Image& b) {
+  return a.width == b.width && a.height == b.height && a.channels == b.channels &&
+         a.data.size() == b.data.size() &&
+         std::memcmp(a.data.data(), b.data.data(), a.data.size() * sizeof(float)) == 0;
+}
+
+inline void expectSame(const DepthImage& a, const DepthImage& b) {
+  EXPECT_TRUE(sameBits(a.image, b.image));
+  EXPECT_EQ(a.encoding, b.encoding);
+}
+
+inline std::string errorOf(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no InputError";
+}
+
+inline void expectNames(const std::string& sentence, const std::vector<std::string>& parts) {
+  for (const std::string& part : parts)
+    EXPECT_NE(sentence.find(part), std::string::npos) << '"' << part << "\" is not in: " << sentence;
+}
+
+// The sample files with a manifest to change.
+class Manifests : public testing::Test {
+protected:
+  Capture read() {
+    writeText(directory / "m.json", manifest.dump());
+    return readCapture(directory / "m.json");
+  }
+  std::string error() {
+    return errorOf([&] { read(); });
+  }
+
+  TemporaryDirectory directory;
+  nlohmann::json manifest = writeSampleFiles(directory);
+  Capture sample = sampleCapture();
+};
+
+}  // namespace pellucid::harness

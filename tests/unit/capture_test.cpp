@@ -1,0 +1,417 @@
+// Captures from and to disk: what is read is what was written, and what is wrong is named.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "capture/material.h"
+#include "capture/read.h"
+#include "capture/write.h"
+#include "common/error.h"
+#include "unit/capture_samples.h"
+
+namespace pellucid::harness {
+namespace {
+
+using nlohmann::json;
+
+// ---- Round trip
+
+TEST(CaptureRoundTrip, IsBitExactWithFloat) {
+  const TemporaryDirectory directory;
+  const Capture written = sampleCapture();
+  writeCapture(written, directory / "c.exr");
+  const Capture read = readCapture(directory / "c.exr");
+
+  EXPECT_EQ(read.name, (directory / "c.exr").string());
+  EXPECT_EQ(read.width, written.width);
+  EXPECT_EQ(read.height, written.height);
+  EXPECT_EQ(read.metersPerUnit, written.metersPerUnit);
+  EXPECT_EQ(read.clipFromView, written.clipFromView);
+  EXPECT_EQ(read.viewFromWorld, written.viewFromWorld);
+  expectSame(read.frontDepth, written.frontDepth);
+  expectSame(read.backDepth, written.backDepth);
+  EXPECT_TRUE(sameBits(read.irradiance, written.irradiance));
+  EXPECT_TRUE(sameBits(read.normal, written.normal));
+  EXPECT_EQ(read.normalsInViewSpace, written.normalsInViewSpace);
+  EXPECT_TRUE(sameBits(read.albedo, written.albedo));
+  EXPECT_TRUE(sameBits(read.truth->image, written.truth->image));
+  EXPECT_EQ(read.material, written.material);
+
+  ASSERT_EQ(read.lights.size(), written.lights.size());
+  for (std::size_t i = 0; i < read.lights.size(); ++i) {
+    SCOPED_TRACE(i);
+    const Light &a = read.lights[i], &b = written.lights[i];
+    EXPECT_EQ(a.type, b.type);
+    EXPECT_EQ(a.position, b.position);
+    EXPECT_EQ(a.direction, b.direction);
+    EXPECT_EQ(a.color, b.color);
+    EXPECT_EQ(a.intensity, b.intensity);
+    EXPECT_EQ(a.range, b.range);
+    EXPECT_EQ(a.innerConeAngle, b.innerConeAngle);
+    EXPECT_EQ(a.outerConeAngle, b.outerConeAngle);
+    ASSERT_EQ(a.shadowMap.has_value(), b.shadowMap.has_value());
+    if (!a.shadowMap) continue;
+    expectSame(a.shadowMap->depth, b.shadowMap->depth);
+    EXPECT_EQ(a.shadowMap->clipFromWorld, b.shadowMap->clipFromWorld);
+    EXPECT_EQ(a.shadowMap->viewFromWorld, b.shadowMap->viewFromWorld);
+  }
+
+  ASSERT_EQ(read.materials.size(), 4u);
+  EXPECT_EQ(std::get<PresetMaterial>(read.materials[0]).preset, "skin1");
+  const auto& coefficients = std::get<CoefficientMaterial>(read.materials[1]);
+  const auto& expected = std::get<CoefficientMaterial>(written.materials[1]);
+  EXPECT_EQ(coefficients.scattering, expected.scattering);
+  EXPECT_EQ(coefficients.absorption, expected.absorption);
+  EXPECT_EQ(coefficients.g, expected.g);
+  EXPECT_EQ(coefficients.ior, expected.ior);
+  const auto& burley = std::get<BurleyMaterial>(read.materials[2]);
+  EXPECT_EQ(burley.distance, std::get<BurleyMaterial>(written.materials[2]).distance);
+  EXPECT_EQ(burley.transmittance, std::get<BurleyMaterial>(written.materials[2]).transmittance);
+  const auto& gaussians = std::get<GaussianMaterial>(read.materials[3]);
+  EXPECT_EQ(gaussians.variance, std::get<GaussianMaterial>(written.materials[3]).variance);
+  EXPECT_EQ(gaussians.weight, std::get<GaussianMaterial>(written.materials[3]).weight);
+}
+
+TEST(CaptureRoundTrip, MinimalCaptureHasNoOptionalParts) {
+  const TemporaryDirectory directory;
+  Capture written = sampleCapture();
+  written.backDepth = {};
+  written.normal = written.albedo = {};
+  written.truth.reset();
+  written.lights.clear();
+  writeCapture(written, directory / "c.exr");
+  const Capture read = readCapture(directory / "c.exr");
+  EXPECT_TRUE(read.backDepth.image.empty());
+  EXPECT_TRUE(read.normal.empty());
+  EXPECT_TRUE(read.albedo.empty());
+  EXPECT_FALSE(read.truth.has_value());
+  EXPECT_TRUE(read.lights.empty());
+  expectSame(read.frontDepth, written.frontDepth);
+}
+
+TEST(CaptureRoundTrip, EqualCapturesMakeEqualFiles) {
+  const TemporaryDirectory directory;
+  writeCapture(sampleCapture(), directory / "a.exr");
+  writeCapture(sampleCapture(), directory / "b.exr");
+  EXPECT_EQ(readText(directory / "a.exr"), readText(directory / "b.exr"));
+}
+
+TEST(CaptureRoundTrip, HalfRoundsColorsAndKeepsDepths) {
+  const TemporaryDirectory directory;
+  const Capture written = sampleCapture();
+  writeCapture(written, directory / "c.exr", ColorFormat::Half);
+  const Capture read = readCapture(directory / "c.exr");
+  expectSame(read.frontDepth, written.frontDepth);
+  expectSame(read.backDepth, written.backDepth);
+  EXPECT_FALSE(sameBits(read.irradiance, written.irradiance));
+  for (std::size_t i = 0; i < read.irradiance.data.size(); ++i)  // half has 11 bits: half a unit of 2^-10
+    EXPECT_NEAR(read.irradiance.data[i], written.irradiance.data[i], written.irradiance.data[i] * 0x1p-11);
+}
+
+TEST(CaptureRoundTrip, HalfRefusesWhatItCannotHold) {
+  const TemporaryDirectory directory;
+  Capture capture = sampleCapture();
+  capture.irradiance.data[4] = 70000;
+  expectNames(errorOf([&] { writeCapture(capture, directory / "c.exr", ColorFormat::Half); }),
+              {"c.exr", "irradiance.G", "70000"});
+}
+
+TEST(CaptureRoundTrip, UnwritablePathIsNamed) {
+  const TemporaryDirectory directory;
+  expectNames(errorOf([&] { writeCapture(sampleCapture(), directory / "none/c.exr"); }), {"none/c.exr"});
+}
+
+// ---- Manifest beside EXR files
+
+TEST_F(Manifests, EveryBufferArrives) {
+  const Capture capture = read();
+  EXPECT_EQ(capture.width, kSampleWidth);
+  EXPECT_EQ(capture.height, kSampleHeight);
+  expectSame(capture.frontDepth, sample.frontDepth);
+  expectSame(capture.backDepth, sample.backDepth);
+  EXPECT_TRUE(sameBits(capture.irradiance, sample.irradiance));
+  EXPECT_EQ(capture.normal.at(6, 4)[2], 1.0f);
+  EXPECT_TRUE(capture.normalsInViewSpace);
+  EXPECT_EQ(capture.albedo.at(6, 4)[1], 0.38f);
+  EXPECT_EQ(capture.material[0], 0);
+  EXPECT_EQ(capture.material[1], 1);
+  ASSERT_EQ(capture.lights.size(), 1u);
+  EXPECT_EQ(capture.lights[0].type, PELLUCID_LIGHT_SPOT);
+  EXPECT_EQ(capture.lights[0].shadowMap->depth.encoding, PELLUCID_DEPTH_DISTANCE);
+  EXPECT_TRUE(sameBits(capture.lights[0].shadowMap->depth.image, sample.lights[0].shadowMap->depth.image));
+  EXPECT_EQ(capture.truth->image.at(2, 1)[0], 2 * sample.irradiance.at(2, 1)[0]);
+}
+
+TEST_F(Manifests, CoefficientsAreStoredPerMillimeter) {
+  const Capture capture = read();
+  const auto& material = std::get<CoefficientMaterial>(capture.materials[0]);
+  EXPECT_DOUBLE_EQ(material.scattering[0], 0.74);
+  EXPECT_DOUBLE_EQ(material.absorption[2], 0.48);
+}
+
+TEST_F(Manifests, DefaultsAreThoseOfTheStructures) {
+  manifest.erase("metersPerUnit");
+  manifest["lights"] = {{{"type", "point"}, {"position", {1, 2, 3}}}};
+  const Capture capture = read();
+  EXPECT_EQ(capture.metersPerUnit, 1);
+  const Light& light = capture.lights[0];
+  EXPECT_EQ(light.color, (std::array<double, 3>{1, 1, 1}));
+  EXPECT_EQ(light.intensity, 1);
+  EXPECT_EQ(light.range, 0);
+  EXPECT_FALSE(light.shadowMap.has_value());
+}
+
+TEST_F(Manifests, ConstantShadowMapIsOneTexel) {
+  auto& map = manifest["lights"][0]["shadowMap"];
+  map.erase("file");
+  map.erase("channel");
+  map["constant"] = {5};
+  const Capture capture = read();
+  EXPECT_EQ(capture.lights[0].shadowMap->depth.image.pixels(), 1u);
+  EXPECT_EQ(capture.lights[0].shadowMap->depth.image.data[0], 5.0f);
+}
+
+TEST_F(Manifests, OneChannelMayServeTwice) {
+  manifest["buffers"]["irradiance"]["channels"] = {"E.G", "E.G", "E.B"};
+  const Capture capture = read();
+  EXPECT_EQ(capture.irradiance.at(3, 2)[0], sample.irradiance.at(3, 2)[1]);
+  EXPECT_EQ(capture.irradiance.at(3, 2)[1], sample.irradiance.at(3, 2)[1]);
+  EXPECT_EQ(capture.irradiance.at(3, 2)[2], sample.irradiance.at(3, 2)[2]);
+}
+
+TEST_F(Manifests, FilesAreRelativeToTheManifest) {
+  std::filesystem::create_directory(directory / "sub");
+  for (const char* name : {"frontDepth", "backDepth", "irradiance", "material"})
+    manifest["buffers"][name]["file"] = "../g.exr";
+  manifest["truth"]["file"] = (directory / "g.exr").string();
+  manifest["lights"] = json::array();
+  writeText(directory / "sub/m.json", manifest.dump());
+  EXPECT_TRUE(sameBits(readCapture(directory / "sub/m.json").irradiance, sample.irradiance));
+}
+
+TEST_F(Manifests, FloatMaterialIsRounded) {
+  Image id(kSampleWidth, kSampleHeight, 1, 8.6f);
+  id.data[0] = 0.4f;
+  writeExr(directory / "id.exr", id, {"id"});
+  manifest["buffers"]["material"] = {{"file", "id.exr"}, {"channel", "id"}, {"map", {{"9", 1}}}};
+  const Capture capture = read();
+  EXPECT_EQ(capture.material[0], 0);  // rounds to 0, which needs no entry in the map
+  EXPECT_EQ(capture.material[1], 1);
+}
+
+TEST_F(Manifests, MaterialMayBeConstant) {
+  manifest["buffers"]["material"] = {{"constant", {1}}};
+  EXPECT_EQ(read().material, std::vector<std::uint8_t>(kSampleWidth * kSampleHeight, 1));
+}
+
+TEST_F(Manifests, EmbeddedTextNeedsNoFileNames) {
+  for (const char* name : {"frontDepth", "backDepth", "irradiance", "material"})
+    manifest["buffers"][name].erase("file");
+  manifest["truth"].erase("file");
+  Image all(kSampleWidth, kSampleHeight, 6, 1.0f);
+  writeExr(directory / "e.exr", all, {"Z", "E.R", "E.G", "E.B", "id", "ZBack"},
+           {{kManifestAttribute, manifest.dump()}});
+  EXPECT_EQ(readCapture(directory / "e.exr").irradiance.data[7], 1.0f);
+}
+
+TEST_F(Manifests, StoredMaterialsOutsideTheListAreNamed) {
+  manifest["buffers"]["material"]["map"] = {{"7", 1}};
+  expectNames(error(), {"g.exr", "buffers.material", "pixel (1, 0)", "holds 1", "map"});
+  manifest["buffers"]["material"] = {{"constant", {300}}};
+  expectNames(error(), {"m.json", "buffers.material", "300", "1 materials"});
+  manifest["buffers"]["material"] = {{"constant", {-1}}};
+  expectNames(error(), {"buffers.material", "-1", "no material"});
+  Image id(kSampleWidth, kSampleHeight, 1, std::numeric_limits<float>::quiet_NaN());
+  writeExr(directory / "id.exr", id, {"id"});
+  manifest["buffers"]["material"] = {{"file", "id.exr"}, {"channel", "id"}};
+  expectNames(error(), {"id.exr", "buffers.material", "pixel (0, 0)", "nan"});
+}
+
+TEST_F(Manifests, SizesMustAgree) {
+  writeExr(directory / "small.exr", Image(4, 4, 3), {"R", "G", "B"});
+  manifest["buffers"]["albedo"] = {{"file", "small.exr"}, {"channels", {"R", "G", "B"}}};
+  expectNames(error(), {"small.exr", "buffers.albedo", "4x4", "7x5", "buffers.frontDepth"});
+}
+
+TEST_F(Manifests, AConstantCaptureHasNoSize) {
+  for (auto& [name, buffer] : manifest["buffers"].items()) {
+    const json encoding = buffer.value("encoding", json());
+    buffer = {{"constant",
+               std::vector<double>(name == "normal" || name == "albedo" || name == "irradiance" ? 3 : 1, 1)}};
+    if (!encoding.is_null()) buffer["encoding"] = encoding;
+  }
+  manifest.erase("truth");
+  expectNames(error(), {"m.json", "buffers", "constant", "file"});
+}
+
+TEST_F(Manifests, OtherFilesAreNamed) {
+  expectNames(errorOf([&] { readCapture(directory / "none.json"); }), {"none.json", "no such file"});
+  writeText(directory / "m.json", "{\"pellucid\": 1, ");
+  expectNames(errorOf([&] { readCapture(directory / "m.json"); }), {"m.json", "JSON"});
+  writeText(directory / "m.json", "{\"pellucid\": 1, \"camera\": {}, \"camera\": {}}");
+  expectNames(errorOf([&] { readCapture(directory / "m.json"); }), {"m.json", "camera", "twice"});
+  expectNames(errorOf([&] { readCapture(directory / "g.exr"); }), {"g.exr", "pellucid.manifest"});
+  std::filesystem::create_directory(directory / "d");
+  expectNames(errorOf([&] { readCapture(directory / "d"); }), {"not a regular file"});
+  writeText(directory / "g.exr", "PNG, really");
+  expectNames(error(), {"g.exr", "buffers.frontDepth.file", "not an OpenEXR file"});
+}
+
+// One value of the manifest changed, and what the error must name besides m.json.
+struct Mistake {
+  const char* pointer;
+  const char* value;  // JSON; "" removes the key
+  std::vector<std::string> named;
+};
+
+class Mistakes : public Manifests, public testing::WithParamInterface<Mistake> {};
+
+TEST_P(Mistakes, AreNamed) {
+  const json::json_pointer pointer(GetParam().pointer);
+  if (GetParam().value[0] == '\0')
+    manifest[pointer.parent_pointer()].erase(pointer.back());
+  else
+    manifest[pointer] = json::parse(GetParam().value);
+  std::vector<std::string> named = GetParam().named;
+  named.push_back(directory.operator/("").string());
+  expectNames(error(), named);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Required, Mistakes,
+    testing::Values(
+        Mistake{"/pellucid", "", {"m.json", "pellucid", "missing"}},
+        Mistake{"/camera", "", {"m.json", "camera", "missing"}},
+        Mistake{"/camera/clipFromView", "", {"camera.clipFromView", "missing"}},
+        Mistake{"/camera/viewFromWorld", "", {"camera.viewFromWorld", "missing"}},
+        Mistake{"/buffers", "", {"buffers", "missing"}},
+        Mistake{"/buffers/frontDepth", "", {"buffers.frontDepth", "missing"}},
+        Mistake{"/buffers/irradiance", "", {"buffers.irradiance", "missing"}},
+        Mistake{"/buffers/material", "", {"buffers.material", "missing"}},
+        Mistake{"/buffers/frontDepth/encoding", "", {"buffers.frontDepth.encoding", "missing"}},
+        Mistake{"/buffers/frontDepth/file", "", {"buffers.frontDepth.file", "missing"}},
+        Mistake{"/buffers/frontDepth/channel", "", {"buffers.frontDepth.channel", "missing"}},
+        Mistake{"/buffers/irradiance/channels", "", {"buffers.irradiance.channels", "missing"}},
+        Mistake{"/materials", "", {"materials", "missing"}},
+        Mistake{"/materials/0/absorption", "", {"materials[0].absorption", "missing"}},
+        Mistake{"/lights/0/type", "", {"lights[0].type", "missing"}},
+        Mistake{"/lights/0/position", "", {"lights[0].position", "missing"}},
+        Mistake{"/lights/0/direction", "", {"lights[0].direction", "missing"}},
+        Mistake{"/lights/0/shadowMap/clipFromWorld", "", {"lights[0].shadowMap.clipFromWorld", "missing"}},
+        Mistake{"/lights/0/shadowMap/viewFromWorld", "", {"lights[0].shadowMap.viewFromWorld", "missing"}}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Unknown, Mistakes,
+    testing::Values(Mistake{"/exposure", "1", {"m.json", "exposure", "unknown key"}},
+                    Mistake{"/camera/fov", "1", {"camera.fov", "unknown key"}},
+                    Mistake{"/buffers/depth", "{}", {"buffers.depth", "unknown key", "frontDepth"}},
+                    Mistake{"/buffers/normal/encoding", "\"x\"", {"buffers.normal.encoding", "unknown key"}},
+                    Mistake{"/buffers/material/channels", "[]", {"buffers.material.channels", "unknown key"}},
+                    Mistake{"/lights/0/radius", "1", {"lights[0].radius", "unknown key"}},
+                    Mistake{"/lights/0/shadowMap/bias", "1", {"lights[0].shadowMap.bias", "unknown key"}},
+                    Mistake{"/materials/0/name", "\"x\"", {"materials[0].name", "unknown key"}},
+                    Mistake{"/truth/exposure", "1", {"truth.exposure", "unknown key"}}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Values, Mistakes,
+    testing::Values(
+        Mistake{"/pellucid", "2", {"m.json", "pellucid", "version 2"}},
+        Mistake{"/metersPerUnit", "0", {"metersPerUnit", "positive", "0"}},
+        Mistake{"/metersPerUnit", "\"1\"", {"metersPerUnit", "number", "\"1\""}},
+        Mistake{"/metersPerUnit", "1e300", {"metersPerUnit", "1e+300"}},
+        Mistake{"/camera/clipFromView", "[1,2,3]", {"camera.clipFromView", "16", "3"}},
+        Mistake{
+            "/camera/clipFromView", "[1,0,0,0,0,1,0,0,0,0,0,0,0,0,0,1]", {"camera.clipFromView", "singular"}},
+        Mistake{"/camera/clipFromView/5", "null", {"camera.clipFromView[5]", "null"}},
+        Mistake{
+            "/camera/viewFromWorld", "[2,0,0,0,0,2,0,0,0,0,2,0,0,0,0,1]", {"camera.viewFromWorld", "rigid"}},
+        Mistake{"/camera/viewFromWorld",
+                "[1,0,0,5,0,1,0,6,0,0,1,7,0,0,0,1]",
+                {"camera.viewFromWorld", "column-major"}},
+        Mistake{"/buffers/frontDepth/encoding",
+                "\"distance\"",
+                {"buffers.frontDepth.encoding", "viewZ", "distance"}},
+        Mistake{"/buffers/frontDepth/part", "4", {"g.exr", "buffers.frontDepth.part", "4"}},
+        Mistake{"/buffers/frontDepth/part", "-1", {"buffers.frontDepth.part", "-1"}},
+        Mistake{"/buffers/frontDepth/part", "0.5", {"buffers.frontDepth.part", "0.5"}},
+        Mistake{"/buffers/frontDepth/channel", "\"W\"", {"g.exr", "buffers.frontDepth", "\"W\"", "ZBack"}},
+        Mistake{
+            "/buffers/frontDepth/file", "\"h.exr\"", {"h.exr", "buffers.frontDepth.file", "no such file"}},
+        Mistake{"/buffers/frontDepth/constant", "[1]", {"buffers.frontDepth.file", "constant"}},
+        Mistake{"/buffers/albedo/constant", "[1]", {"buffers.albedo.constant", "3", "1"}},
+        Mistake{"/buffers/normal/space", "\"tangent\"", {"buffers.normal.space", "tangent", "world"}},
+        Mistake{"/buffers/irradiance/channels", "[\"E.R\"]", {"buffers.irradiance.channels", "3", "1"}},
+        Mistake{"/buffers/irradiance/channels/1", "\"\"", {"buffers.irradiance.channels[1]", "empty"}},
+        Mistake{"/buffers/material/map", "{\"1\": 2}", {"buffers.material.map.1", "2", "1 materials"}},
+        Mistake{"/buffers/material/map", "{\"one\": 1}", {"buffers.material.map.one", "whole number"}},
+        Mistake{"/buffers/material/map", "{\"1\": 1, \"01\": 0}", {"buffers.material.map", "twice"}},
+        Mistake{"/lights/0/type", "\"area\"", {"lights[0].type", "area", "spot"}},
+        Mistake{"/lights/0/direction", "[0,0,0]", {"lights[0].direction", "length"}},
+        Mistake{"/lights/0/color", "[1,-1,1]", {"lights[0].color", "negative", "-1"}},
+        Mistake{"/lights/0/intensity", "-2", {"lights[0].intensity", "-2"}},
+        Mistake{"/lights/0/range", "-1", {"lights[0].range", "-1"}},
+        Mistake{"/lights/0/outerConeAngle", "1.6", {"lights[0].outerConeAngle", "1.6"}},
+        Mistake{"/lights/0/innerConeAngle", "0.8", {"lights[0].innerConeAngle", "0.8"}},
+        Mistake{"/materials", "[]", {"materials", "0"}},
+        Mistake{"/materials/0/scattering/0", "-1", {"materials[0].scattering", "-1"}},
+        Mistake{"/materials/0/unit", "\"1/inch\"", {"materials[0].unit", "1/inch", "1/cm"}},
+        Mistake{"/materials/0/g", "1", {"materials[0].g", "1"}},
+        Mistake{"/materials/0/ior", "0.9", {"materials[0].ior", "0.9"}},
+        Mistake{"/materials/0", "{}", {"materials[0]", "preset"}},
+        Mistake{"/materials/0",
+                R"({"profile": "burley", "distance": [1, 0, 1]})",
+                {"materials[0].distance", "positive"}},
+        Mistake{
+            "/materials/0", R"({"profile": "sss", "distance": [1, 1, 1]})", {"materials[0].profile", "sss"}},
+        Mistake{"/materials/0",
+                R"({"gaussians": {"variance": [1], "weight": [[1, 1, 0.5]]}})",
+                {"materials[0].gaussians.weight", "sum"}},
+        Mistake{"/truth/scale", "\"pi\"", {"truth.scale", "pi"}}));
+
+TEST_F(Manifests, UnknownPresetIsNamedWhenCompiled) {
+  manifest["materials"][0] = {{"preset", "plutonium"}};
+  const Capture capture = read();
+  expectNames(errorOf([&] { compileMaterials(capture); }), {"m.json", "materials[0]", "preset", "plutonium"});
+}
+
+TEST(Materials, EveryFormCompiles) {
+  const auto materials = compileMaterials(sampleCapture());
+  ASSERT_EQ(materials.size(), 4u);
+  EXPECT_FLOAT_EQ(materials[2].transmittance[1][1], 3.0f);  // k1 of green, as given
+  EXPECT_EQ(materials[3].gaussianCount, 2u);
+  EXPECT_FLOAT_EQ(materials[3].gaussianWeight[2][1], 0.25f);
+}
+
+// ---- The path-traced captures, where they are
+
+TEST(SharedCaptures, AreReadAndSurviveARoundTrip) {
+  const char* variable = std::getenv("PELLUCID_SHARED");
+  const std::filesystem::path shared = (variable ? std::filesystem::path(variable)
+                                                 : std::filesystem::path(PELLUCID_SOURCE_DIR) / "../shared") /
+                                       "captures";
+  if (!std::filesystem::exists(shared)) GTEST_SKIP() << "no captures at " << shared;
+  const TemporaryDirectory directory;
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(shared)) {
+    if (!std::filesystem::exists(entry.path() / "manifest.json")) continue;
+    SCOPED_TRACE(entry.path());
+    ++count;
+    const Capture original = readCapture(entry.path() / "manifest.json");
+    ASSERT_EQ(original.lights.size(), 1u);
+    writeCapture(original, directory / "c.exr");
+    const Capture copy = readCapture(directory / "c.exr");
+    expectSame(copy.frontDepth, original.frontDepth);
+    expectSame(copy.backDepth, original.backDepth);
+    expectSame(copy.lights[0].shadowMap->depth, original.lights[0].shadowMap->depth);
+    EXPECT_TRUE(sameBits(copy.irradiance, original.irradiance));
+    EXPECT_TRUE(sameBits(copy.normal, original.normal));
+    EXPECT_TRUE(sameBits(copy.albedo, original.albedo));
+    EXPECT_TRUE(sameBits(copy.truth->image, original.truth->image));
+    EXPECT_EQ(copy.material, original.material);
+    EXPECT_EQ(copy.lights[0].shadowMap->clipFromWorld, original.lights[0].shadowMap->clipFromWorld);
+  }
+  EXPECT_GT(count, 0);
+}
+
+}  // namespace
+}  // namespace pellucid::harness

@@ -1,0 +1,276 @@
+// Differences between images against numbers worked out by hand, and the command's limits.
+#include "common/compare.h"
+
+#include <gtest/gtest.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <limits>
+
+#include "cli/command.h"
+#include "cli/commands.h"
+#include "common/error.h"
+#include "common/png.h"
+#include "unit/capture_samples.h"
+
+namespace pellucid::harness {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+Image filled(int width, int height, std::initializer_list<float> pixel) {
+  Image image(width, height, static_cast<int>(pixel.size()));
+  for (std::size_t i = 0; i < image.data.size(); ++i) image.data[i] = pixel.begin()[i % pixel.size()];
+  return image;
+}
+
+TEST(Compare, EqualImagesDifferByNothing) {
+  const Image image = sampleImage(9, 4, 3, 0.5f);
+  const Comparison result = compareImages(image, image, {});
+  EXPECT_EQ(result.pixels, 36u);
+  EXPECT_EQ(result.samples, 36u);
+  ASSERT_EQ(result.channels.size(), 3u);
+  for (const ChannelDifference& channel : result.channels) {
+    EXPECT_EQ(channel.relativeRmse, 0);
+    EXPECT_EQ(channel.p999, 0);
+    EXPECT_EQ(channel.max, 0);
+    EXPECT_EQ(channel.bias, 0);
+    EXPECT_EQ(channel.psnr, kInfinity);
+  }
+}
+
+TEST(Compare, DefinitionsByHand) {
+  // B is 3, 4 in one channel: RMS sqrt(12.5). A - B is 1, -2: RMSE sqrt(2.5).
+  Image a(2, 1, 1), b(2, 1, 1);
+  a.data = {4, 2};
+  b.data = {3, 4};
+  const ChannelDifference channel = compareImages(a, b, {}).channels[0];
+  EXPECT_DOUBLE_EQ(channel.relativeRmse, std::sqrt(2.5 / 12.5));
+  EXPECT_DOUBLE_EQ(channel.max, 2 / std::sqrt(12.5));
+  EXPECT_DOUBLE_EQ(channel.p999, channel.max);
+  EXPECT_DOUBLE_EQ(channel.psnr, 20 * std::log10(4 / std::sqrt(2.5)));
+  EXPECT_DOUBLE_EQ(channel.bias, 6.0 / 7.0 - 1);
+}
+
+TEST(Compare, ChannelsAreJudgedByThemselves) {
+  const Comparison result = compareImages(filled(4, 4, {2.2f, 1, 0}), filled(4, 4, {2, 1, 0}), {});
+  EXPECT_NEAR(result.channels[0].relativeRmse, 0.1, 1e-7);  // 2.2f is 1e-8 from 2.2
+  EXPECT_EQ(result.channels[1].relativeRmse, 0);
+  EXPECT_EQ(result.channels[2].relativeRmse, 0);  // 0 against 0
+}
+
+TEST(Compare, AnythingAgainstZeroIsInfinitelyFar) {
+  const ChannelDifference channel = compareImages(filled(2, 2, {1}), filled(2, 2, {0}), {}).channels[0];
+  EXPECT_EQ(channel.relativeRmse, kInfinity);
+  EXPECT_EQ(channel.bias, kInfinity);
+}
+
+TEST(Compare, P999LeavesOutOneInAThousand) {
+  // 2000 pixels of 1; three of A are off by 1, 2 and 3. Two may be above, so P99.9 is 1.
+  const Image b = filled(2000, 1, {1});
+  Image a = b;
+  a.data[10] += 3;
+  a.data[400] -= 2;
+  a.data[1999] += 1;
+  const ChannelDifference channel = compareImages(a, b, {}).channels[0];
+  EXPECT_EQ(channel.p999, 1);
+  EXPECT_EQ(channel.max, 3);
+}
+
+TEST(Compare, OnlyTheMaskCounts) {
+  const Image b = filled(3, 1, {1});
+  Image a = b;
+  a.data[2] = 100;
+  EXPECT_EQ(compareImages(a, b, {1, 1, 0}).channels[0].max, 0);
+  EXPECT_EQ(compareImages(a, b, {1, 1, 0}).pixels, 2u);
+  EXPECT_EQ(compareImages(a, b, {1, 1, 1}).channels[0].max, 99);
+}
+
+TEST(Compare, BoxesAverageNoiseAway) {
+  // A checkerboard of 1 +- 0.5 is exactly 1 in 2x2 blocks.
+  const Image b = filled(6, 4, {1});
+  Image a = b;
+  for (int y = 0; y < 4; ++y)
+    for (int x = 0; x < 6; ++x) *a.at(x, y) += (x + y) % 2 ? 0.5f : -0.5f;
+  EXPECT_DOUBLE_EQ(compareImages(a, b, {}).channels[0].relativeRmse, 0.5);
+  EXPECT_EQ(compareImages(a, b, {}, 2).channels[0].relativeRmse, 0);
+  EXPECT_EQ(compareImages(a, b, {}, 2).samples, 6u);
+}
+
+TEST(Compare, BoxesNeedHalfOfTheirPixels) {
+  // 3x2 pixels in 2x2 blocks: a whole one and the right edge's half one, of 1x2 pixels.
+  Image a(3, 2, 1), b(3, 2, 1, 1.0f);
+  a.data = {2, 4, 9, 8, 9, 9};
+  EXPECT_EQ(compareImages(a, b, {1, 0, 0, 1, 0, 0}, 2).samples, 1u);         // 2 of 4, 0 of 2
+  EXPECT_EQ(compareImages(a, b, {1, 0, 0, 1, 0, 0}, 2).channels[0].max, 4);  // mean of 2 and 8, minus 1
+  EXPECT_EQ(compareImages(a, b, {1, 0, 1, 0, 0, 0}, 2).samples, 1u);         // 1 of 4, 1 of 2
+  EXPECT_EQ(compareImages(a, b, {1, 0, 1, 0, 0, 0}, 2).channels[0].max, 8);  // the 9
+  EXPECT_EQ(compareImages(a, b, {}, 100).samples, 1u);
+}
+
+TEST(Compare, NonFinitePixelsAreCountedAndLeftOut) {
+  Image a = filled(4, 1, {1, 1, 1}), b = a;
+  a.at(1, 0)[2] = kNan;
+  a.at(2, 0)[0] = -std::numeric_limits<float>::infinity();
+  b.at(3, 0)[1] = kNan;
+  const Comparison result = compareImages(a, b, {});
+  EXPECT_EQ(result.nonFiniteA, 2u);
+  EXPECT_EQ(result.nonFiniteB, 1u);
+  EXPECT_EQ(result.samples, 1u);
+  EXPECT_EQ(result.channels[2].max, 0);
+}
+
+TEST(Compare, NothingToCompareIsAnError) {
+  const Image image = filled(2, 2, {1});
+  EXPECT_THROW(compareImages(image, image, {0, 0, 0, 0}), InputError);
+  EXPECT_THROW(compareImages(filled(2, 2, {kNan}), image, {}), InputError);
+  EXPECT_THROW(compareImages(filled(2, 3, {1}), image, {}), InputError);
+}
+
+TEST(CompareMask, SplitsByFrontIrradiance) {
+  Image irradiance(2, 2, 3);
+  irradiance.at(0, 0)[2] = 0.1f;
+  irradiance.at(0, 1)[0] = 5;
+  const std::vector<std::uint8_t> material = {1, 2, 0, 3};
+  EXPECT_EQ(comparisonMask(material, irradiance, Subset::All), (std::vector<std::uint8_t>{1, 1, 0, 1}));
+  EXPECT_EQ(comparisonMask(material, irradiance, Subset::Lit), (std::vector<std::uint8_t>{1, 0, 0, 0}));
+  EXPECT_EQ(comparisonMask(material, irradiance, Subset::Unlit), (std::vector<std::uint8_t>{0, 1, 0, 1}));
+}
+
+// ---- The command
+
+class CompareCommand : public testing::Test {
+protected:
+  void SetUp() override {
+    manifest["buffers"]["irradiance"] = {{"constant", {0, 0, 0}}};
+    writeText(directory / "m.json", manifest.dump());
+    // The truth is twice E.
+    const Image irradiance = sampleCapture().irradiance;
+    Image truth = irradiance;
+    for (float& value : truth.data) value *= 2;
+    write("same.exr", truth);
+    for (float& value : truth.data) value *= 1.01f;
+    write("near.exr", truth);
+    truth.data[3] = kNan;  // pixel (1, 0), which has a material
+    write("nan.exr", truth);
+  }
+  void write(const std::string& name, const Image& image) {
+    writeExr(directory / name, image, {"R", "G", "B"});
+  }
+  std::string path(const std::string& name) { return (directory / name).string(); }
+
+  // Standard output of `pellucid compare ARGUMENTS`.
+  std::string run(std::vector<std::string> arguments) {
+    CLI::App app;
+    addCompareCommand(app);
+    arguments.insert(arguments.begin(), "compare");
+    std::reverse(arguments.begin(), arguments.end());
+    testing::internal::CaptureStdout();
+    try {
+      app.parse(arguments);
+    } catch (...) {
+      output = testing::internal::GetCapturedStdout();
+      throw;
+    }
+    return output = testing::internal::GetCapturedStdout();
+  }
+
+  TemporaryDirectory directory;
+  nlohmann::json manifest = writeSampleFiles(directory);
+  std::string output;
+};
+
+TEST_F(CompareCommand, MeasuresAgainstTheTruthOverItsMaterial) {
+  const auto json = nlohmann::json::parse(run({path("near.exr"), path("m.json"), "--json"}));
+  EXPECT_EQ(json["pixels"], 15);  // 3 odd columns of 5 rows
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_NEAR(json["rel_rmse"][c].get<double>(), 0.01, 1e-6);  // floats times 1.01f
+    EXPECT_NEAR(json["bias"][c].get<double>(), 0.01, 1e-6);
+  }
+  EXPECT_TRUE(nlohmann::json::parse(run({path("same.exr"), path("m.json"), "--json"}))["psnr"][0].is_null());
+}
+
+TEST_F(CompareCommand, PrintsItsDefinitions) {
+  const std::string text = run({path("near.exr"), path("same.exr")});
+  for (const char* part : {"35 pixels", "rel_rmse", "p999", "psnr", "bias", "RMS(B)"})
+    EXPECT_NE(text.find(part), std::string::npos) << part;
+}
+
+TEST_F(CompareCommand, LimitsDecideTheExitCode) {
+  EXPECT_NO_THROW(
+      run({path("near.exr"), path("m.json"), "--limit", "rel_rmse=0.02,psnr=35", "--limit", "max=0.5"}));
+  EXPECT_THROW(run({path("near.exr"), path("m.json"), "--limit", "rel_rmse=0.005"}), LimitExceeded);
+  EXPECT_THROW(run({path("near.exr"), path("m.json"), "--limit", "psnr=80"}), LimitExceeded);
+  EXPECT_NO_THROW(run({path("nan.exr"), path("m.json")}));
+  EXPECT_THROW(run({path("nan.exr"), path("m.json"), "--limit", "rel_rmse=1000"}), LimitExceeded);
+  EXPECT_NE(output.find("infinity in 1 pixels of A"), std::string::npos) << output;  // printed all the same
+}
+
+TEST_F(CompareCommand, LimitsMustBeUnderstood) {
+  for (const char* limit :
+       {"rmse=1", "rel_rmse", "rel_rmse=", "rel_rmse=x", "rel_rmse=-1", "rel_rmse=1%", "max=nan"})
+    EXPECT_THROW(run({path("near.exr"), path("same.exr"), "--limit", limit}), UsageError) << limit;
+}
+
+TEST_F(CompareCommand, SubsetsNeedACapture) {
+  EXPECT_THROW(run({path("near.exr"), path("same.exr"), "--subset", "unlit"}), UsageError);
+  EXPECT_NO_THROW(run({path("near.exr"), path("m.json"), "--subset", "unlit"}));
+  EXPECT_THROW(run({path("near.exr"), path("m.json"), "--subset", "lit"}), InputError);  // no pixel is
+  EXPECT_NO_THROW(run({path("near.exr"), path("same.exr"), "--mask", path("m.json"), "--subset", "unlit"}));
+}
+
+TEST_F(CompareCommand, BadInputIsNamed) {
+  manifest.erase("truth");
+  writeText(directory / "m.json", manifest.dump());
+  const auto error = [&](const std::vector<std::string>& arguments) {
+    try {
+      run(arguments);
+    } catch (const InputError& e) {
+      return std::string(e.what());
+    }
+    return std::string("no InputError");
+  };
+  EXPECT_NE(error({path("near.exr"), path("m.json")}).find("truth"), std::string::npos);
+  write("small.exr", Image(4, 4, 3));
+  const std::string sizes = error({path("near.exr"), path("small.exr")});
+  for (const char* part : {"near.exr", "small.exr", "7x5", "4x4"})
+    EXPECT_NE(sizes.find(part), std::string::npos) << sizes;
+}
+
+TEST_F(CompareCommand, DrawsADifference) {
+  run({path("nan.exr"), path("m.json"), "--diff", path("d.png")});
+  EXPECT_EQ(readText(directory / "d.png").substr(1, 3), "PNG");
+}
+
+// ---- Pictures
+
+TEST(Pictures, SrgbCurveAndItsEnds) {
+  Image image(8, 1, 1);
+  // 0.0031308 is where the two pieces meet; 0.2158605 is the linear value of sRGB 128 / 255.
+  image.data = {0, 0.0031308f, 0.2158605f, 1, 7, -1, kNan, std::numeric_limits<float>::infinity()};
+  const std::vector<std::uint8_t> rgb = toSrgb(image);
+  const std::vector<std::uint8_t> gray = {0, 10, 128, 255, 255, 0};  // 12.92 * .0031308 * 255 = 10.3
+  for (std::size_t i = 0; i < gray.size(); ++i)
+    for (std::size_t c = 0; c < 3; ++c) EXPECT_EQ(rgb[3 * i + c], gray[i]) << i;
+  for (std::size_t i = gray.size(); i < 8; ++i) {
+    EXPECT_EQ(rgb[3 * i], 255);
+    EXPECT_EQ(rgb[3 * i + 1], 0);
+    EXPECT_EQ(rgb[3 * i + 2], 255);
+  }
+  EXPECT_EQ(toSrgb(image, 1 / 7.0f)[3 * 4], 255);
+}
+
+TEST(Pictures, SideBySide) {
+  const Image a = filled(2, 2, {1}), b = filled(3, 2, {2});
+  const Image both = sideBySide({&a, &b}, 1);
+  EXPECT_EQ(both.width, 6);
+  EXPECT_EQ(both.data, (std::vector<float>{1, 1, 0, 2, 2, 2, 1, 1, 0, 2, 2, 2}));
+}
+
+TEST(Pictures, UnwritablePathIsNamed) {
+  EXPECT_THROW(writePng("/nonexistent/directory/a.png", 1, 1, {0, 0, 0}), InputError);
+}
+
+}  // namespace
+}  // namespace pellucid::harness

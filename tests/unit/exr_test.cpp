@@ -1,0 +1,229 @@
+// What OpenEXR files may be: every layout that is read, and every one that is refused by name.
+#include <ImfChannelList.h>
+#include <ImfDeepFrameBuffer.h>
+#include <ImfDeepScanLineOutputFile.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfOutputFile.h>
+#include <ImfPartType.h>
+#include <ImfTileDescriptionAttribute.h>
+#include <ImfTiledOutputFile.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "capture/exr.h"
+#include "unit/capture_samples.h"
+
+namespace pellucid::harness {
+namespace {
+
+Imf::Slice floats(Image& image, const Imath::Box2i& window) {
+  return Imf::Slice::Make(Imf::FLOAT, image.data.data(), window);
+}
+
+class ExrFiles : public Manifests {
+protected:
+  // Reads irradiance from x.exr channel "V" three times.
+  Image readV() {
+    manifest["buffers"]["irradiance"] = {{"file", "x.exr"}, {"channels", {"V", "V", "V"}}};
+    const Capture capture = read();
+    Image first(capture.width, capture.height, 1);
+    for (std::size_t i = 0; i < first.data.size(); ++i) first.data[i] = capture.irradiance.data[3 * i];
+    return first;
+  }
+  std::string x() { return (directory / "x.exr").string(); }
+
+  Image values = sampleImage(kSampleWidth, kSampleHeight, 1, 0.3f);
+  const Imath::Box2i window{{0, 0}, {kSampleWidth - 1, kSampleHeight - 1}};
+};
+
+TEST_F(ExrFiles, TiledIsReadAtLevelZero) {
+  for (const Imf::LevelMode mode : {Imf::ONE_LEVEL, Imf::MIPMAP_LEVELS}) {
+    Imf::Header header(kSampleWidth, kSampleHeight);
+    header.channels().insert("V", Imf::Channel(Imf::FLOAT));
+    header.setTileDescription(Imf::TileDescription(4, 2, mode));
+    header.lineOrder() = Imf::RANDOM_Y;
+    {
+      Imf::TiledOutputFile file(x().c_str(), header);
+      Imf::FrameBuffer frame;
+      frame.insert("V", floats(values, window));
+      file.setFrameBuffer(frame);
+      for (int level = 0; level < file.numLevels(); ++level)
+        file.writeTiles(0, file.numXTiles(level) - 1, 0, file.numYTiles(level) - 1, level);
+    }
+    EXPECT_TRUE(sameBits(readV(), values));
+  }
+}
+
+TEST_F(ExrFiles, ScanlinesOfEveryLosslessCompressionAndOrder) {
+  for (const Imf::Compression compression : {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::ZIPS_COMPRESSION,
+                                             Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION}) {
+    for (const Imf::LineOrder order : {Imf::INCREASING_Y, Imf::DECREASING_Y}) {
+      Imf::Header header(kSampleWidth, kSampleHeight, 1, {0, 0}, 1, order, compression);
+      header.channels().insert("V", Imf::Channel(Imf::FLOAT));
+      {
+        Imf::OutputFile file(x().c_str(), header);
+        Imf::FrameBuffer frame;
+        frame.insert("V", floats(values, window));
+        file.setFrameBuffer(frame);
+        file.writePixels(kSampleHeight);
+      }
+      EXPECT_TRUE(sameBits(readV(), values)) << compression << " " << order;
+    }
+  }
+}
+
+TEST_F(ExrFiles, HalfAndUintBecomeFloat) {
+  std::vector<Imath::half> halves;
+  std::vector<unsigned> integers;
+  for (unsigned i = 0; i < kSampleWidth * kSampleHeight; ++i) {
+    halves.push_back(Imath::half(0.1f * static_cast<float>(i)));
+    integers.push_back(1000 + i);
+  }
+  Imf::Header header(kSampleWidth, kSampleHeight);
+  header.channels().insert("H", Imf::Channel(Imf::HALF));
+  header.channels().insert("U", Imf::Channel(Imf::UINT));
+  {
+    Imf::OutputFile file(x().c_str(), header);
+    Imf::FrameBuffer frame;
+    frame.insert("H", Imf::Slice::Make(Imf::HALF, halves.data(), window));
+    frame.insert("U", Imf::Slice::Make(Imf::UINT, integers.data(), window));
+    file.setFrameBuffer(frame);
+    file.writePixels(kSampleHeight);
+  }
+  manifest["buffers"]["irradiance"] = {{"file", "x.exr"}, {"channels", {"H", "U", "H"}}};
+  const Capture capture = read();
+  for (std::size_t i = 0; i < halves.size(); ++i) {
+    EXPECT_EQ(capture.irradiance.data[3 * i], static_cast<float>(halves[i]));
+    EXPECT_EQ(capture.irradiance.data[3 * i + 1], static_cast<float>(integers[i]));
+  }
+}
+
+TEST_F(ExrFiles, PixelsOutsideTheDataWindowHoldNothing) {
+  // 4x3 pixels at (2, 1) in a display window that starts at (-1, -1); some lie outside of it.
+  const Imath::Box2i display({-1, -1}, {kSampleWidth - 2, kSampleHeight - 2}), data({2, 1}, {8, 9});
+  Image part = sampleImage(7, 9, 1, 1.0f);
+  Image ones(7, 9, 1, 1.0f);
+  Imf::Header header(display, data);
+  for (const char* name : {"V", "Z", "id"}) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+  {
+    Imf::OutputFile file(x().c_str(), header);
+    Imf::FrameBuffer frame;
+    frame.insert("V", floats(part, data));
+    frame.insert("Z", floats(part, data));
+    frame.insert("id", floats(ones, data));
+    file.setFrameBuffer(frame);
+    file.writePixels(9);
+  }
+  manifest["buffers"]["frontDepth"] = {{"file", "x.exr"}, {"channel", "Z"}, {"encoding", "viewZ"}};
+  manifest["buffers"]["material"] = {{"file", "x.exr"}, {"channel", "id"}, {"map", {{"0", 1}, {"1", 1}}}};
+  manifest["buffers"]["irradiance"] = {{"file", "x.exr"}, {"channels", {"V", "V", "V"}}};
+  const Capture capture = read();
+  for (int y = 0; y < kSampleHeight; ++y)
+    for (int x = 0; x < kSampleWidth; ++x) {
+      const bool inside = x - 1 >= 2 && y - 1 >= 1;
+      const float stored = inside ? *part.at(x - 3, y - 2) : 0;
+      EXPECT_EQ(capture.irradiance.at(x, y)[1], stored);
+      EXPECT_EQ(*capture.frontDepth.image.at(x, y), inside ? stored : kNoDepth);
+      EXPECT_EQ(capture.material[static_cast<std::size_t>(y * kSampleWidth + x)],
+                inside);  // whatever 0 maps to
+    }
+  manifest["buffers"]["frontDepth"]["encoding"] = "device";
+  expectNames(error(), {"x.exr", "buffers.frontDepth", "data window", "device"});
+}
+
+TEST_F(ExrFiles, PartsAreFoundByChannelOrNumber) {
+  std::vector<ExrPart> parts(3);
+  Image other = sampleImage(kSampleWidth, kSampleHeight, 1, 5.0f);
+  parts[0] = {"a", {{"Y", ExrFormat::Float, &other, 0}}, {}};
+  parts[1] = {"b", {{"V", ExrFormat::Float, &values, 0}}, {}};
+  parts[2] = {"c", {{"Y", ExrFormat::Float, &values, 0}}, {}};
+  writeExrParts(x(), parts);
+  EXPECT_TRUE(sameBits(readV(), values));
+
+  manifest["buffers"]["irradiance"] = {{"file", "x.exr"}, {"channels", {"Y", "Y", "Y"}}};
+  expectNames(error(), {"x.exr", "buffers.irradiance", "\"Y\"", "parts 0 and 2"});
+  manifest["buffers"]["irradiance"]["part"] = 2;
+  EXPECT_EQ(read().irradiance.data[0], values.data[0]);
+  manifest["buffers"]["irradiance"]["part"] = 1;
+  expectNames(error(), {"x.exr", "buffers.irradiance", "part 1", "it has: V"});
+}
+
+TEST_F(ExrFiles, SubsampledChannelsAreRefusedByName) {
+  Imf::Header header(6, 4);
+  header.channels().insert("V", Imf::Channel(Imf::FLOAT, 2, 2));
+  {
+    Image quarter(3, 2, 1);
+    Imf::OutputFile file(x().c_str(), header);
+    Imf::FrameBuffer frame;
+    frame.insert("V", Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(quarter.data.data()), 4, 12, 2, 2));
+    file.setFrameBuffer(frame);
+    file.writePixels(4);
+  }
+  manifest["lights"][0]["shadowMap"]["file"] = "x.exr";  // the only buffer of any size
+  manifest["lights"][0]["shadowMap"]["channel"] = "V";
+  expectNames(error(), {"x.exr", "\"V\"", "subsampled 2x2"});
+}
+
+TEST_F(ExrFiles, DeepPartsAreRefusedByName) {
+  Imf::Header header(2, 1);
+  header.setType(Imf::DEEPSCANLINE);
+  header.compression() = Imf::ZIPS_COMPRESSION;
+  header.channels().insert("V", Imf::Channel(Imf::FLOAT));
+  {
+    float value = 1;
+    float* pointers[2] = {&value, &value};
+    unsigned counts[2] = {1, 1};
+    Imf::DeepScanLineOutputFile file(x().c_str(), header);
+    Imf::DeepFrameBuffer frame;
+    frame.insertSampleCountSlice(Imf::Slice(Imf::UINT, reinterpret_cast<char*>(counts), 4, 8));
+    frame.insert("V", Imf::DeepSlice(Imf::FLOAT, reinterpret_cast<char*>(pointers), sizeof(float*),
+                                     2 * sizeof(float*), 4));
+    file.setFrameBuffer(frame);
+    file.writePixels(1);
+  }
+  manifest["buffers"]["albedo"] = {{"file", "x.exr"}, {"channels", {"V", "V", "V"}}};
+  expectNames(error(), {"x.exr", "part 0", "deepscanline"});
+}
+
+TEST_F(ExrFiles, HugeImagesAreRefusedBeforeTheyAreRead) {
+  {
+    Imf::Header header({{0, 0}, {kMaxExrSide, 0}}, Imath::Box2i({0, 0}, {0, 0}));
+    header.channels().insert("V", Imf::Channel(Imf::FLOAT));
+    Image one(1, 1, 1);
+    Imf::OutputFile file(x().c_str(), header);
+    Imf::FrameBuffer frame;
+    frame.insert("V", floats(one, {{0, 0}, {0, 0}}));
+    file.setFrameBuffer(frame);
+    file.writePixels(1);
+  }
+  manifest["buffers"]["albedo"] = {{"file", "x.exr"}, {"channels", {"V", "V", "V"}}};
+  expectNames(error(), {"x.exr", "displayWindow", std::to_string(kMaxExrSide + 1) + "x1"});
+}
+
+// ---- Images
+
+TEST(ExrImages, FindTheirColor) {
+  const TemporaryDirectory directory;
+  const Image image = sampleImage(3, 2, 3, 0.5f);
+  writeExr(directory / "a.exr", image, {"R", "G", "B"}, {{"note", "x"}});
+  EXPECT_TRUE(sameBits(readExrImage(directory / "a.exr"), image));
+  writeExr(directory / "b.exr", image, {"diffuse.R", "diffuse.G", "diffuse.B"});
+  EXPECT_TRUE(sameBits(readExrImage(directory / "b.exr"), image));
+  writeExr(directory / "c.exr", image, {"X", "Y", "B"});
+  expectNames(errorOf([&] { readExrImage(directory / "c.exr"); }), {"c.exr", "channels", "B, X, Y"});
+  writeExrParts(directory / "d.exr", {{"a",
+                                       {{"a.R", ExrFormat::Half, &image, 0},
+                                        {"a.G", ExrFormat::Half, &image, 1},
+                                        {"a.B", ExrFormat::Half, &image, 2},
+                                        {"b.R", ExrFormat::Half, &image, 0},
+                                        {"b.G", ExrFormat::Half, &image, 1},
+                                        {"b.B", ExrFormat::Half, &image, 2}},
+                                       {}}});
+  expectNames(errorOf([&] { readExrImage(directory / "d.exr"); }), {"d.exr", "channels", "a.R, b.R"});
+}
+
+}  // namespace
+}  // namespace pellucid::harness
