@@ -4,6 +4,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
+#include "lib/angle.glsl"
 #include "lib/light.glsl"
 #include "lib/shadow.glsl"
 #include "lib/thickness.glsl"
@@ -45,11 +46,13 @@ vec3 materialTransmittance(uint m, float d) {
   } else if (materials[m].meta.x == PELLUCID_SHADER_TRANSMITTANCE_SINH_EXP) {
     for (int c = 0; c < 3; ++c)
       t[c] = transmittanceSinhExp(materials[m].transmittance[c], materials[m].transmittance4[c], d);
+  } else if (materials[m].meta.x == PELLUCID_SHADER_TRANSMITTANCE_LINEAR) {
+    for (int c = 0; c < 3; ++c) t[c] = 1.0 - d * materials[m].transmittance[c].x;
   } else {
     for (uint i = 0u; i < materials[m].meta.y; ++i)
       t += transmittanceGaussian(materials[m].gaussianWeight[i].rgb, materials[m].gaussianFalloff[i].rgb, d);
   }
-  return clamp(t, vec3(0.0), vec3(1.0));
+  return d <= frame.filterAndLimit.w ? clamp(t, vec3(0.0), vec3(1.0)) * frame.filterAndLimit.rgb : vec3(0.0);
 }
 
 // What one pixel knows of its surface. View space, scene units.
@@ -107,29 +110,38 @@ struct Transmitted {
   float visible;
 };
 
-// docs/design.md says why each source is what it is. The hidden face is taken antiparallel to N; without
-// normals its cosine is replaced by the angle between view and light (Whelan 2009, 4.2).
+float hiddenCosine(Surface s, vec3 toLight) {
+  uint model = frame.flags.w;
+  if (model == PELLUCID_SHADER_ANGLE_NORMAL && s.hasNormal) return max(-dot(s.normal, toLight), 0.0);
+  vec3 view = hasFlag(PELLUCID_FLAG_CONSTANT_VIEW) ? vec3(0.0, 0.0, frame.camera.range.x) : s.view;
+  float x = dot(view, toLight);
+  if (model == PELLUCID_SHADER_ANGLE_INVERSE_COSINE) return angleInverseCosine(x);
+  if (model == PELLUCID_SHADER_ANGLE_POLYNOMIAL) return anglePolynomial(frame.anglePolynomial, x);
+  if (model <= PELLUCID_SHADER_ANGLE_COSINE) return clamp(x, 0.0, 1.0);
+  return clamp(x * frame.angle.x + frame.angle.y, 0.0, 1.0); // minimum dot
+}
+
+// docs/design.md says why each source is what it is.
 Transmitted lightTransmission(LightConstants light, Surface s) {
   Incident incident = incidentLight(light, s.position);
   bool mapped = light.meta.z != 0u;
   if (mapped && !hasFlag(PELLUCID_FLAG_CAMERA_THICKNESS)) {
     LightSpace l = lightSpace(light, incident, s.position);
-    float cosine = s.hasNormal ? -dot(s.normal, incident.toLight) : dot(s.view, incident.toLight);
-    vec3 arriving = incident.irradiance * max(cosine, 0.0);
+    vec3 arriving = incident.irradiance * hiddenCosine(s, incident.toLight);
     return Transmitted(max(l.thickness - l.bias, 0.0), arriving, l.inside && l.holds ? 1.0 : 0.0);
   }
   if (s.chord < 0.0) return Transmitted(-1.0, vec3(0.0), 0.0);
   vec3 back = s.position + s.chord * s.view;
   incident = incidentLight(light, back);
-  float cosine = s.hasNormal ? -dot(s.normal, incident.toLight) : dot(s.view, incident.toLight);
   // A slab's thickness along its normal, from the chord along the view ray.
-  float thickness = s.hasNormal ? s.chord * abs(dot(s.normal, s.view)) : s.chord;
+  bool alongNormal = s.hasNormal && !hasFlag(PELLUCID_FLAG_CHORD_THICKNESS);
+  float thickness = alongNormal ? s.chord * abs(dot(s.normal, s.view)) : s.chord;
   float visible = 1.0;
   if (mapped) {
     LightSpace l = lightSpace(light, incident, back);
     visible = l.inside && l.holds && l.thickness <= l.bias ? 1.0 : 0.0;
   }
-  return Transmitted(thickness, incident.irradiance * max(cosine, 0.0), visible);
+  return Transmitted(thickness, incident.irradiance * hiddenCosine(s, incident.toLight), visible);
 }
 
 void main() {

@@ -39,6 +39,8 @@ using glm::vec4;
 #define PELLUCID_FLAG_FRONT_VIEW_Z 8u
 #define PELLUCID_FLAG_BACK_VIEW_Z 16u
 #define PELLUCID_FLAG_CAMERA_THICKNESS 32u
+#define PELLUCID_FLAG_CONSTANT_VIEW 64u
+#define PELLUCID_FLAG_CHORD_THICKNESS 128u
 
 // Values of the public enums the shaders branch on; constants.cpp asserts that they agree.
 #define PELLUCID_SHADER_LIGHT_DIRECTIONAL 0u
@@ -47,12 +49,17 @@ using glm::vec4;
 #define PELLUCID_SHADER_DEPTH_VIEW_Z 1u
 #define PELLUCID_SHADER_TRANSMITTANCE_EXP2 0u
 #define PELLUCID_SHADER_TRANSMITTANCE_SINH_EXP 1u
+#define PELLUCID_SHADER_TRANSMITTANCE_LINEAR 4u
+#define PELLUCID_SHADER_ANGLE_NORMAL 0u
+#define PELLUCID_SHADER_ANGLE_COSINE 1u
+#define PELLUCID_SHADER_ANGLE_INVERSE_COSINE 2u
+#define PELLUCID_SHADER_ANGLE_POLYNOMIAL 3u
 #define PELLUCID_SHADER_DEBUG_THICKNESS 1u
 #define PELLUCID_SHADER_DEBUG_TRANSMITTANCE 2u
 #define PELLUCID_SHADER_DEBUG_OCCLUSION 3u
 
 #define PELLUCID_GAUSSIANS 8
-#define PELLUCID_KERNEL_TAPS 17 // one side, center included
+#define PELLUCID_KERNEL_TAPS 25 // one side, center included
 
 // The camera as the shaders use it. With s = +1 or -1 the sign of view z in front of the eye, p = s z
 // is the planar distance and a pixel's view ray is point(p) = origin + p direction.
@@ -68,7 +75,10 @@ struct FrameConstants {
   Camera camera;
   mat4 viewFromNormal; // rotation of the normal image's space into view space
   uvec4 rect;          // x, y, end x, end y
-  uvec4 flags;         // x: PELLUCID_FLAG_*; y: materials; z: debug view
+  uvec4 flags;         // x: PELLUCID_FLAG_*; y: materials; z: debug view; w: angle model
+  vec4 anglePolynomial;
+  vec4 angle;          // x: scale, y: offset of the minimum dot's (m + x) / (m + 1)
+  vec4 filterAndLimit;        // rgb: factor of T; w: largest thickness, mm
 };
 
 struct LightConstants {
@@ -92,7 +102,7 @@ struct MaterialConstants {
   vec4 transmittance4;   // rgb: the fifth
   vec4 inverseReflectance; // rgb: 1/rho
   uvec4 meta;            // x: model; y: Gaussians; z: 1 if it diffuses
-  vec4 gaussianFalloff[PELLUCID_GAUSSIANS]; // rgb: 1/(2 v), 1/mm^2
+  vec4 gaussianFalloff[PELLUCID_GAUSSIANS]; // rgb: 1/(2 v), 1/mm^2; 1/v for the printed form
   vec4 gaussianWeight[PELLUCID_GAUSSIANS];  // rgb
 };
 

@@ -23,7 +23,6 @@ struct Options {
   SettingsOptions settings;
   reference::ProfileSource profile = reference::ProfileSource::Material;
   double discardedEnergy = reference::DiffusionSettings{}.discardedEnergy;
-  double shadowBias = 0;
   int jobs = 0;
 };
 
@@ -36,9 +35,8 @@ reference::Settings toSettings(const Options& options) {
         "--set: format, alias and rect say how images are stored; the reference has no use for them");
   reference::Settings settings;
   settings.features = replay.features;
-  settings.thicknessSource = replay.thicknessSource;
+  settings.translucency = replay.translucency;
   settings.debugView = replay.debugView;
-  settings.shadowBias = options.shadowBias;
   settings.diffusion.source = options.profile;
   settings.diffusion.discardedEnergy = options.discardedEnergy;
   settings.jobs = options.jobs;
@@ -49,17 +47,17 @@ void runReference(const Options& options) {
   const reference::Settings settings = toSettings(options);
   const Capture capture = readCapture(options.input);
   const auto start = std::chrono::steady_clock::now();
-  const reference::Result result = reference::compute(capture, compileMaterials(capture), settings);
+  const reference::Result result = reference::compute(
+      capture, withTransmittance(compileMaterials(capture), options.settings.parse().transmittance),
+      settings);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
 
   std::filesystem::path output = options.output;
   if (output.empty()) output = std::filesystem::path(options.input).stem().string() + ".reference.exr";
-  std::string set;
-  for (const std::string& s : options.settings.set) set += (set.empty() ? "" : " ") + s;
   writeExr(output, result.image, {"R", "G", "B"},
            {{"pellucid.device", "float64 reference"},
             {"pellucid.capture", capture.name},
-            {"pellucid.settings", set},
+            {"pellucid.settings", options.settings.text()},
             {"pellucid.debug", options.settings.debug}});
   if (result.radius > 0)
     std::printf("diffusion cut off at %.4g mm, which leaves out %.2g of the profile's energy at most\n",
@@ -89,10 +87,6 @@ void addReferenceCommand(CLI::App& app) {
                    "profile energy that may lie outside of the diffusion's cut-off radius")
       ->check(CLI::Range(1e-12, 0.5))
       ->capture_default_str();
-  command
-      ->add_option("--shadow-bias", options->shadowBias,
-                   "scene units behind the shadow map's surface that still count as lit (thickness=camera)")
-      ->check(CLI::NonNegativeNumber);
   command->add_option("--jobs", options->jobs, "threads; default: all")->check(CLI::Range(1, 1024));
   command->callback([options] { runReference(*options); });
 }

@@ -89,13 +89,11 @@ void replay(const Options& options) {
   std::filesystem::path output = options.output;
   if (output.empty()) output = std::filesystem::path(options.input).stem().string() + ".pellucid.exr";
   const Image image = rgb(result.output);
-  std::string set;
-  for (const std::string& s : options.settings.set) set += (set.empty() ? "" : " ") + s;
   writeExr(output, image, {"R", "G", "B"},
            {{"pellucid.device", device.description()},
             {"pellucid.capture", capture.name},
             {"pellucid.plan", planJson(result.plan)},
-            {"pellucid.settings", set},
+            {"pellucid.settings", options.settings.text()},
             {"pellucid.debug", options.settings.debug}});
   std::printf("wrote %s\n", output.string().c_str());
   const float exposure = options.exposure > 0 ? options.exposure : autoExposure(image);

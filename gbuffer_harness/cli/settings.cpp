@@ -1,6 +1,7 @@
 #include "cli/settings.h"
 
 #include <charconv>
+#include <cmath>
 #include <functional>
 #include <map>
 
@@ -22,6 +23,17 @@ const Names<PellucidThicknessSource> kThickness = {{"light", PELLUCID_THICKNESS_
                                                    {"camera", PELLUCID_THICKNESS_CAMERA}};
 const Names<VkFormat> kFormats = {{"rgba16f", VK_FORMAT_R16G16B16A16_SFLOAT},
                                   {"rgba32f", VK_FORMAT_R32G32B32A32_SFLOAT}};
+const Names<TransmittanceChoice> kTransmittance = {
+    {"material", TransmittanceChoice::Material},
+    {"linear", TransmittanceChoice::Linear},
+    {"gaussians", TransmittanceChoice::Gaussians},
+    {"gaussians-as-printed", TransmittanceChoice::GaussiansAsPrinted}};
+const Names<PellucidAngleModel> kAngles = {{"normal", PELLUCID_ANGLE_NORMAL},
+                                           {"cosine", PELLUCID_ANGLE_COSINE},
+                                           {"inverse-cosine", PELLUCID_ANGLE_INVERSE_COSINE},
+                                           {"polynomial", PELLUCID_ANGLE_POLYNOMIAL},
+                                           {"minimum-dot", PELLUCID_ANGLE_MINIMUM_DOT}};
+const Names<bool> kViews = {{"pixel", false}, {"constant", true}};
 const Names<bool> kBooleans = {{"0", false}, {"1", true}};
 
 std::vector<std::string> split(const std::string& text, char separator) {
@@ -51,42 +63,118 @@ uint32_t number(const std::string& key, const std::string& text) {
   return value;
 }
 
-using Setter = std::function<void(const std::string& key, const std::string& value, ReplaySettings&)>;
+float real(const std::string& key, const std::string& text) {
+  float value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+    throw UsageError(key + ": \"" + text + "\" is not a number");
+  return value;
+}
 
-const std::map<std::string, Setter> kKeys = {
+template <size_t N>
+std::array<float, N> reals(const std::string& key, const std::string& text) {
+  const std::vector<std::string> parts = split(text, ',');
+  if (parts.size() != N)
+    throw UsageError(key + ": \"" + text + "\" is not " + std::to_string(N) + " numbers with commas");
+  std::array<float, N> values;
+  for (size_t i = 0; i < N; ++i) values[i] = real(key, parts[i]);
+  return values;
+}
+
+struct Key {
+  std::string help;
+  std::function<void(const std::string& key, const std::string& value, ReplaySettings&)> set;
+};
+
+const std::map<std::string, Key> kKeys = {
     {"features",
-     [](const std::string& key, const std::string& value, ReplaySettings& s) {
-       s.features = 0;
-       for (const std::string& name : split(value, ',')) s.features |= lookUp(kFeatures, key, name);
-     }},
-    {"thickness", [](const std::string& key, const std::string& value,
-                     ReplaySettings& s) { s.thicknessSource = lookUp(kThickness, key, value); }},
-    {"format", [](const std::string& key, const std::string& value,
-                  ReplaySettings& s) { s.outputFormat = lookUp(kFormats, key, value); }},
-    {"alias", [](const std::string& key, const std::string& value,
-                 ReplaySettings& s) { s.aliasOutput = lookUp(kBooleans, key, value); }},
+     {"translucency,diffusion or none",
+      [](const auto& key, const auto& value, ReplaySettings& s) {
+        s.features = 0;
+        for (const std::string& name : split(value, ',')) s.features |= lookUp(kFeatures, key, name);
+      }}},
+    {"thickness",
+     {"light|camera, of lights with a shadow map",
+      [](const auto& key, const auto& value, ReplaySettings& s) {
+        s.translucency.thicknessSource = lookUp(kThickness, key, value);
+      }}},
+    {"transmittance",
+     {"material|linear|gaussians|gaussians-as-printed",
+      [](const auto& key, const auto& value, ReplaySettings& s) {
+        s.transmittance = lookUp(kTransmittance, key, value);
+      }}},
+    {"angle",
+     {"normal|cosine|inverse-cosine|polynomial|minimum-dot",
+      [](const auto& key, const auto& value, ReplaySettings& s) {
+        s.translucency.angleModel = lookUp(kAngles, key, value);
+      }}},
+    {"polynomial",
+     {"c0,c1,c2,c3 of angle=polynomial",
+      [](const auto& key, const auto& value, ReplaySettings& s) {
+        s.translucency.anglePolynomial = reals<4>(key, value);
+      }}},
+    {"minimum-dot",
+     {"of angle=minimum-dot, -1..0",
+      [](const auto& key, const auto& value, ReplaySettings& s) {
+        s.translucency.minimumDot = real(key, value);
+      }}},
+    {"view",
+     {"pixel|constant",
+      [](const auto& key, const auto& value, ReplaySettings& s) {
+        s.translucency.constantViewDirection = lookUp(kViews, key, value);
+      }}},
+    {"chord",
+     {"0|1: camera thickness without the cosine correction",
+      [](const auto& key, const auto& value, ReplaySettings& s) {
+        s.translucency.chordThickness = lookUp(kBooleans, key, value);
+      }}},
+    {"max-thickness",
+     {"mm, 0 for no limit", [](const auto& key, const auto& value,
+                               ReplaySettings& s) { s.translucency.maximumThickness = real(key, value); }}},
+    {"filter",
+     {"r,g,b that multiply T",
+      [](const auto& key, const auto& value, ReplaySettings& s) {
+        s.translucency.transmittanceFilter = reals<3>(key, value);
+      }}},
+    {"bias",
+     {"of shadow maps, scene units",
+      [](const auto& key, const auto& value, ReplaySettings& s) {
+        s.translucency.shadowBias = real(key, value);
+      }}},
+    {"format",
+     {"rgba16f|rgba32f", [](const auto& key, const auto& value,
+                            ReplaySettings& s) { s.outputFormat = lookUp(kFormats, key, value); }}},
+    {"alias",
+     {"0|1: output is the irradiance image",
+      [](const auto& key, const auto& value, ReplaySettings& s) {
+        s.aliasOutput = lookUp(kBooleans, key, value);
+      }}},
     {"rect",
-     [](const std::string& key, const std::string& value, ReplaySettings& s) {
-       const std::vector<std::string> parts = split(value, ',');
-       if (parts.size() != 4) throw UsageError(key + ": \"" + value + "\" is not x,y,width,height");
-       for (size_t i = 0; i < 4; ++i) s.renderRect[i] = number(key, parts[i]);
-     }},
+     {"x,y,width,height",
+      [](const auto& key, const auto& value, ReplaySettings& s) {
+        const auto parts = split(value, ',');
+        if (parts.size() != 4) throw UsageError(key + ": \"" + value + "\" is not x,y,width,height");
+        for (size_t i = 0; i < 4; ++i) s.renderRect[i] = number(key, parts[i]);
+      }}},
 };
 
 }  // namespace
 
 void SettingsOptions::addTo(CLI::App& command) {
-  command.add_option(
-      "--set", set,
-      "key=value, repeatable: features=translucency,diffusion; thickness=light|camera (of lights "
-      "with a shadow map); format=rgba16f|rgba32f; rect=x,y,width,height; alias=0|1 (output is the "
-      "irradiance image)");
+  std::string help = "key=value, repeatable:";
+  for (const auto& [name, key] : kKeys) help += " " + name + "=" + key.help + ";";
+  command.add_option("--mode", mode, "physical (default) or thesis: Whelan 2009's; --set changes either");
+  command.add_option("--set", set, help);
   command.add_option("--debug", debug,
                      "write an intermediate: thickness (mm), transmittance, occlusion, irradiance");
 }
 
 ReplaySettings SettingsOptions::parse() const {
   ReplaySettings settings;
+  if (mode == "thesis")
+    settings = thesisSettings();
+  else if (mode != "physical")
+    throw UsageError("--mode: \"" + mode + "\" is not one of physical, thesis");
   if (!debug.empty()) settings.debugView = lookUp(kDebugViews, "--debug", debug);
   for (const std::string& assignment : set) {
     const size_t equals = assignment.find('=');
@@ -98,9 +186,15 @@ ReplaySettings SettingsOptions::parse() const {
       for (const auto& [name, unused] : kKeys) known += (known.empty() ? "" : ", ") + name;
       throw UsageError("--set: unknown key \"" + key + "\"; there are " + known);
     }
-    found->second("--set " + key, assignment.substr(equals + 1), settings);
+    found->second.set("--set " + key, assignment.substr(equals + 1), settings);
   }
   return settings;
+}
+
+std::string SettingsOptions::text() const {
+  std::string all = "mode=" + mode;
+  for (const std::string& s : set) all += " " + s;
+  return all;
 }
 
 }  // namespace pellucid::harness

@@ -12,11 +12,15 @@ namespace pellucid::harness {
 struct SettingsOptions {
   std::vector<std::string> set;  // key=value
   std::string debug;
+  std::string mode = "physical";
 
   void addTo(CLI::App& command);
 
   // Throws UsageError naming the key and the value.
   ReplaySettings parse() const;
+
+  // As given, for the record.
+  std::string text() const;
 };
 
 }  // namespace pellucid::harness

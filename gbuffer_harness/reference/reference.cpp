@@ -59,7 +59,7 @@ public:
         materials_(materials),
         settings_(settings),
         surfaces_(capture),
-        translucency_(capture, surfaces_, settings.thicknessSource, settings.shadowBias),
+        translucency_(capture, surfaces_, settings.translucency),
         values_(capture.material.size()) {}
 
   Result run() {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "capture/capture.h"
+#include "common/translucency_settings.h"
 #include "reference/diffusion.h"
 
 namespace pellucid::harness::reference {
@@ -12,9 +13,8 @@ namespace pellucid::harness::reference {
 // Mirrors the settings of PellucidFrame.
 struct Settings {
   std::uint32_t features = PELLUCID_FEATURE_TRANSLUCENCY | PELLUCID_FEATURE_DIFFUSION;
-  PellucidThicknessSource thicknessSource = PELLUCID_THICKNESS_LIGHT;
+  TranslucencySettings translucency;
   PellucidDebugView debugView = PELLUCID_DEBUG_NONE;
-  double shadowBias = 0;  // PellucidShadowMap::bias of every map, scene units
   DiffusionSettings diffusion;
   int jobs = 0;  // threads; 0: as many as the machine has
 };

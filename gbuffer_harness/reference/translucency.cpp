@@ -2,24 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "reference/transmittance.h"
 
 namespace pellucid::harness::reference {
-namespace {
-
-// Cosine of the light on the unseen entry face, taken antiparallel to the exit face. Without a
-// normal, the cosine between the viewing ray and the light (thesis 4.2).
-double angularFactor(const std::optional<glm::dvec3>& normal, const glm::dvec3& ray,
-                     const glm::dvec3& toLight) {
-  return std::max(0.0, normal ? -glm::dot(*normal, toLight) : glm::dot(ray, toLight));
-}
-
-}  // namespace
-
 Translucency::Translucency(const Capture& capture, const SurfaceReader& surfaces,
-                           PellucidThicknessSource source, double shadowBias)
-    : capture_(capture), surfaces_(surfaces), source_(source), shadowBias_(shadowBias) {
+                           const TranslucencySettings& settings)
+    : capture_(capture), surfaces_(surfaces), settings_(settings) {
   for (const Light& light : capture.lights) {
     shadows_.emplace_back();
     if (light.shadowMap) shadows_.back().emplace(light, *light.shadowMap);
@@ -34,24 +24,47 @@ Translucency::Receiver Translucency::toWorld(const Surface& s) const {
   return r;
 }
 
+// The models of PellucidAngleModel.
+double Translucency::hiddenCosine(const Receiver& r, const glm::dvec3& toLight) const {
+  if (settings_.angleModel == PELLUCID_ANGLE_NORMAL && r.normal)
+    return std::max(0.0, -glm::dot(*r.normal, toLight));
+  const glm::dvec3 axis = glm::normalize(glm::dmat3(surfaces_.worldFromView()) * glm::dvec3(0, 0, -1));
+  const double x = std::clamp(glm::dot(settings_.constantViewDirection ? axis : r.ray, toLight), -1.0, 1.0);
+  const auto& c = settings_.anglePolynomial;
+  const double m = double(settings_.minimumDot);
+  switch (settings_.angleModel) {
+    case PELLUCID_ANGLE_INVERSE_COSINE:
+      return std::max(0.0, 1 - std::acos(x) * 2 / std::numbers::pi);
+    case PELLUCID_ANGLE_POLYNOMIAL:
+      return x > 0 ? std::clamp(
+                         double(c[0]) + double(c[1]) * x + double(c[2]) * x * x + double(c[3]) * x * x * x,
+                         0.0, 1.0)
+                   : 0.0;
+    case PELLUCID_ANGLE_MINIMUM_DOT:
+      return m > -1 ? std::clamp((m + x) / (m + 1), 0.0, 1.0) : 0.0;
+    default:
+      return std::max(0.0, x);
+  }
+}
+
 bool Translucency::usesLightSpace(std::size_t light) const {
-  return shadows_[light] && source_ == PELLUCID_THICKNESS_LIGHT;
+  return shadows_[light] && settings_.thicknessSource == PELLUCID_THICKNESS_LIGHT;
 }
 
 Translucency::LightPath Translucency::lightSpacePath(std::size_t light, const Receiver& r) const {
   const Arrival arrival = arrivalAt(capture_.lights[light], r.position);
   LightPath path;
-  path.arriving = arrival.irradiance * angularFactor(r.normal, r.ray, arrival.toLight);
+  path.arriving = arrival.irradiance * hiddenCosine(r, arrival.toLight);
   const ShadowView::Lookup lookup = shadows_[light]->at(r.position);
   path.reaches = lookup.kind == ShadowView::Kind::Surface;
-  path.thickness = std::max(0.0, lookup.distance);
+  path.thickness = std::max(0.0, lookup.distance - double(settings_.shadowBias));
   return path;
 }
 
 bool Translucency::backPointLit(std::size_t light, const glm::dvec3& backPoint) const {
   if (!shadows_[light]) return true;
   const ShadowView::Lookup lookup = shadows_[light]->at(backPoint);
-  return lookup.kind == ShadowView::Kind::Surface && lookup.distance <= shadowBias_;
+  return lookup.kind == ShadowView::Kind::Surface && lookup.distance <= double(settings_.shadowBias);
 }
 
 Translucency::LightPath Translucency::cameraSpacePath(std::size_t light, const Receiver& r) const {
@@ -59,9 +72,10 @@ Translucency::LightPath Translucency::cameraSpacePath(std::size_t light, const R
   if (!r.chord) return path;
   const glm::dvec3 backPoint = r.position + *r.chord * r.ray;
   const Arrival arrival = arrivalAt(capture_.lights[light], backPoint);
-  path.arriving = arrival.irradiance * angularFactor(r.normal, r.ray, arrival.toLight);
+  path.arriving = arrival.irradiance * hiddenCosine(r, arrival.toLight);
   path.reaches = backPointLit(light, backPoint);
-  path.thickness = *r.chord * (r.normal ? std::abs(glm::dot(*r.normal, r.ray)) : 1);
+  path.thickness =
+      *r.chord * (r.normal && !settings_.chordThickness ? std::abs(glm::dot(*r.normal, r.ray)) : 1);
   return path;
 }
 
@@ -69,7 +83,8 @@ std::optional<double> Translucency::firstLightDistance(const Receiver& r) const 
   for (const std::optional<ShadowView>& shadow : shadows_) {
     if (!shadow) continue;
     const ShadowView::Lookup lookup = shadow->at(r.position);
-    if (lookup.kind == ShadowView::Kind::Surface) return std::max(0.0, lookup.distance);
+    if (lookup.kind == ShadowView::Kind::Surface)
+      return std::max(0.0, lookup.distance - double(settings_.shadowBias));
     if (lookup.kind == ShadowView::Kind::Empty) return std::nullopt;
   }
   return std::nullopt;
@@ -78,6 +93,8 @@ std::optional<double> Translucency::firstLightDistance(const Receiver& r) const 
 Transmission Translucency::at(const Surface& surface, const PellucidMaterial& material) const {
   const double mmPerUnit = surfaces_.millimetersPerUnit();
   const Receiver receiver = toWorld(surface);
+  const auto& f = settings_.transmittanceFilter;
+  const glm::dvec3 filter(f[0], f[1], f[2]);
   Transmission t;
   if (receiver.chord) t.cameraThickness = *receiver.chord * mmPerUnit;
   if (const auto distance = firstLightDistance(receiver)) t.lightThickness = *distance * mmPerUnit;
@@ -87,7 +104,8 @@ Transmission Translucency::at(const Surface& surface, const PellucidMaterial& ma
     if (!path.reaches) continue;
     const double thickness = path.thickness * mmPerUnit;
     t.unoccluded += path.arriving;
-    t.transmitted += transmittance(material, thickness) * path.arriving;
+    if (!(settings_.maximumThickness > 0) || thickness <= double(settings_.maximumThickness))
+      t.transmitted += filter * transmittance(material, thickness) * path.arriving;
     if (!t.usedThickness && path.arriving != glm::dvec3(0)) t.usedThickness = thickness;
   }
   return t;

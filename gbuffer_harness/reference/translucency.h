@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "capture/capture.h"
+#include "common/translucency_settings.h"
 #include "reference/light.h"
 #include "reference/surface.h"
 
@@ -23,10 +24,8 @@ struct Transmission {
 
 class Translucency {
 public:
-  // Keeps references to the capture and the reader. `shadowBias` in scene units: with the camera's
-  // thickness, a back point this far behind the stored surface still counts as lit.
-  Translucency(const Capture& capture, const SurfaceReader& surfaces, PellucidThicknessSource source,
-               double shadowBias);
+  // Keeps references to the capture and the reader.
+  Translucency(const Capture& capture, const SurfaceReader& surfaces, const TranslucencySettings& settings);
 
   Transmission at(const Surface& surface, const PellucidMaterial& material) const;
 
@@ -45,6 +44,7 @@ private:
   };
 
   Receiver toWorld(const Surface& surface) const;
+  double hiddenCosine(const Receiver& r, const glm::dvec3& toLight) const;
   LightPath lightSpacePath(std::size_t light, const Receiver& r) const;
   LightPath cameraSpacePath(std::size_t light, const Receiver& r) const;
   std::optional<double> firstLightDistance(const Receiver& r) const;  // scene units
@@ -53,8 +53,7 @@ private:
 
   const Capture& capture_;
   const SurfaceReader& surfaces_;
-  PellucidThicknessSource source_;
-  double shadowBias_;
+  TranslucencySettings settings_;
   std::vector<std::optional<ShadowView>> shadows_;  // one per light
 };
 

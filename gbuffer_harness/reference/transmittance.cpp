@@ -1,5 +1,6 @@
 #include "reference/transmittance.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -8,11 +9,12 @@
 namespace pellucid::harness::reference {
 namespace {
 
-double gaussianSum(const PellucidMaterial& m, int channel, double d) {
+// `perVariance`: 1/2 for the integral of R(sqrt(r^2 + d^2)), 1 for thesis eq. 2.11 as printed.
+double gaussianSum(const PellucidMaterial& m, int channel, double d, double perVariance) {
   double sum = 0;
   for (unsigned i = 0; i < m.gaussianCount; ++i)
     sum += double(m.gaussianWeight[channel][i]) *
-           std::exp(-d * d / (2 * double(m.gaussianVariance[channel][i])));
+           std::exp(-d * d * perVariance / double(m.gaussianVariance[channel][i]));
   return sum;
 }
 
@@ -25,7 +27,11 @@ double channelTransmittance(const PellucidMaterial& m, int channel, double d) {
       return double(p[0]) / std::sinh(double(p[1]) * d + double(p[2])) +
              double(p[3]) * std::exp(-double(p[4]) * d);
     case PELLUCID_TRANSMITTANCE_GAUSSIANS:
-      return gaussianSum(m, channel, d);
+      return gaussianSum(m, channel, d, 0.5);
+    case PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED:
+      return gaussianSum(m, channel, d, 1);
+    case PELLUCID_TRANSMITTANCE_LINEAR:
+      return std::max(0.0, 1 - d / double(p[0]));
     default:
       throw InputError("", "transmittanceModel", "unknown model " + std::to_string(m.transmittanceModel));
   }

@@ -1,6 +1,7 @@
 #include "replay/frame.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "common/error.h"
 
@@ -15,7 +16,7 @@ void copy(const std::array<double, 3>& from, float (&to)[3]) {
   std::transform(from.begin(), from.end(), to, [](double v) { return static_cast<float>(v); });
 }
 
-void addLight(const Light& light, FrameData& data) {
+void addLight(const Light& light, float shadowBias, FrameData& data) {
   PellucidLight l{};
   l.type = light.type;
   copy(light.position, l.position);
@@ -32,6 +33,7 @@ void addLight(const Light& light, FrameData& data) {
     s.extent[0] = static_cast<uint32_t>(map.depth.image.width);
     s.extent[1] = static_cast<uint32_t>(map.depth.image.height);
     s.encoding = map.depth.encoding;
+    s.bias = shadowBias;
     copy(map.clipFromWorld, s.clipFromWorld);
     copy(map.viewFromWorld.value_or(kIdentity), s.viewFromWorld);
     l.firstShadowMap = static_cast<uint32_t>(data.shadowMaps.size());
@@ -42,12 +44,74 @@ void addLight(const Light& light, FrameData& data) {
   data.lights.push_back(l);
 }
 
+double transmittance(const PellucidMaterial& m, int channel, double d) {
+  const auto p = [&](int i) { return static_cast<double>(m.transmittance[channel][i]); };
+  if (m.transmittanceModel == PELLUCID_TRANSMITTANCE_EXP2)
+    return p(0) * std::exp(-p(1) * d) + p(2) * std::exp(-p(3) * d);
+  if (m.transmittanceModel == PELLUCID_TRANSMITTANCE_SINH_EXP)
+    return p(0) / std::sinh(p(1) * d + p(2)) + p(3) * std::exp(-p(4) * d);
+  double sum = 0;
+  for (uint32_t i = 0; i < m.gaussianCount; ++i)
+    sum += static_cast<double>(m.gaussianWeight[channel][i]) *
+           std::exp(-d * d / (2 * static_cast<double>(m.gaussianVariance[channel][i])));
+  return sum;
+}
+
+// The dmax whose line has the least RMS distance to T over 0..10 mm; skin is dark beyond. A fine
+// geometric search is enough: the RMS is smooth in dmax.
+float nearestLine(const PellucidMaterial& m, int channel) {
+  double best = INFINITY, bestLength = 1;
+  for (double length = 0.05; length < 200; length *= 1.005) {
+    double sum = 0;
+    for (int i = 0; i <= 200; ++i) {
+      const double d = 0.05 * i, error = std::max(0.0, 1 - d / length) - transmittance(m, channel, d);
+      sum += error * error;
+    }
+    if (sum < best) {
+      best = sum;
+      bestLength = length;
+    }
+  }
+  return static_cast<float>(bestLength);
+}
+
 }  // namespace
+
+ReplaySettings thesisSettings() {
+  ReplaySettings s;
+  s.transmittance = TransmittanceChoice::Linear;
+  s.translucency.thicknessSource = PELLUCID_THICKNESS_CAMERA;
+  s.translucency.angleModel = PELLUCID_ANGLE_INVERSE_COSINE;
+  s.translucency.chordThickness = true;
+  s.translucency.shadowBias = 0.5f;
+  return s;
+}
+
+std::vector<PellucidMaterial> withTransmittance(std::vector<PellucidMaterial> materials,
+                                                TransmittanceChoice choice) {
+  for (PellucidMaterial& m : materials) {
+    switch (choice) {
+      case TransmittanceChoice::Material:
+        break;
+      case TransmittanceChoice::Linear:
+        for (int c = 0; c < 3; ++c) m.transmittance[c][0] = nearestLine(m, c);
+        m.transmittanceModel = PELLUCID_TRANSMITTANCE_LINEAR;
+        break;
+      case TransmittanceChoice::Gaussians:
+        m.transmittanceModel = PELLUCID_TRANSMITTANCE_GAUSSIANS;
+        break;
+      case TransmittanceChoice::GaussiansAsPrinted:
+        m.transmittanceModel = PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED;
+        break;
+    }
+  }
+  return materials;
+}
 
 void makeFrame(const Capture& capture, const std::vector<PellucidMaterial>& materials,
                const ReplaySettings& settings, FrameData& data) {
-  data.materials = materials;
-  for (const Light& light : capture.lights) addLight(light, data);
+  data.materials = withTransmittance(materials, settings.transmittance);
+  for (const Light& light : capture.lights) addLight(light, settings.translucency.shadowBias, data);
   // Never dereferenced: planning only asks whether a view is there.
   const PellucidImage placeholder{reinterpret_cast<VkImageView>(uintptr_t{1}), VK_IMAGE_LAYOUT_GENERAL};
   data.shadowImages.assign(data.shadowDepths.size(), placeholder);
@@ -77,7 +141,15 @@ void makeFrame(const Capture& capture, const std::vector<PellucidMaterial>& mate
   f.shadowMaps = data.shadowMaps.data();
   f.shadowImageCount = static_cast<uint32_t>(data.shadowImages.size());
   f.shadowImages = data.shadowImages.data();
-  f.thicknessSource = settings.thicknessSource;
+  const TranslucencySettings& t = settings.translucency;
+  f.thicknessSource = t.thicknessSource;
+  f.angleModel = t.angleModel;
+  std::copy(t.anglePolynomial.begin(), t.anglePolynomial.end(), f.anglePolynomial);
+  f.minimumDot = t.minimumDot;
+  f.constantViewDirection = t.constantViewDirection;
+  f.chordThickness = t.chordThickness;
+  f.maximumThickness = t.maximumThickness;
+  std::copy(t.transmittanceFilter.begin(), t.transmittanceFilter.end(), f.transmittanceFilter);
   f.debugView = settings.debugView;
 }
 

@@ -4,18 +4,37 @@
 #include <vector>
 
 #include "capture/capture.h"
+#include "common/translucency_settings.h"
 #include "pellucid/pellucid.h"
 
 namespace pellucid::harness {
 
+// Which T(d) stands for the material's own.
+enum class TransmittanceChoice {
+  Material,
+  Linear,  // 1 - d/dmax with the dmax that is nearest to the material's own T over 0..10 mm
+  Gaussians,
+  GaussiansAsPrinted
+};
+
 struct ReplaySettings {
   uint32_t features = PELLUCID_FEATURE_TRANSLUCENCY | PELLUCID_FEATURE_DIFFUSION;
-  PellucidThicknessSource thicknessSource = PELLUCID_THICKNESS_LIGHT;
+  TranslucencySettings translucency;
+  TransmittanceChoice transmittance = TransmittanceChoice::Material;
   PellucidDebugView debugView = PELLUCID_DEBUG_NONE;
   VkFormat outputFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
   bool aliasOutput = false;  // output is the irradiance image; ignored for debug views
   std::array<uint32_t, 4> renderRect = {0, 0, 0, 0};  // width 0: everything
 };
+
+// Whelan 2009: linear transmittance, camera-space thickness along the view ray, the inverse cosine of the
+// angle between camera and light, rejection by the shadow map (biased by half a unit, because the back
+// face lies on the surface the map stores).
+ReplaySettings thesisSettings();
+
+// `materials` with T(d) exchanged as `choice` says.
+std::vector<PellucidMaterial> withTransmittance(std::vector<PellucidMaterial> materials,
+                                                TransmittanceChoice choice);
 
 // A frame and the arrays it points to. `shadowDepths[i]` is what shadowImages[i] must hold.
 struct FrameData {

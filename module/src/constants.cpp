@@ -16,6 +16,11 @@ static_assert(PELLUCID_SHADER_DEPTH_DEVICE == PELLUCID_DEPTH_DEVICE);
 static_assert(PELLUCID_SHADER_DEPTH_VIEW_Z == PELLUCID_DEPTH_VIEW_Z);
 static_assert(PELLUCID_SHADER_TRANSMITTANCE_EXP2 == PELLUCID_TRANSMITTANCE_EXP2);
 static_assert(PELLUCID_SHADER_TRANSMITTANCE_SINH_EXP == PELLUCID_TRANSMITTANCE_SINH_EXP);
+static_assert(PELLUCID_SHADER_TRANSMITTANCE_LINEAR == PELLUCID_TRANSMITTANCE_LINEAR);
+static_assert(PELLUCID_SHADER_ANGLE_NORMAL == PELLUCID_ANGLE_NORMAL);
+static_assert(PELLUCID_SHADER_ANGLE_COSINE == PELLUCID_ANGLE_COSINE);
+static_assert(PELLUCID_SHADER_ANGLE_INVERSE_COSINE == PELLUCID_ANGLE_INVERSE_COSINE);
+static_assert(PELLUCID_SHADER_ANGLE_POLYNOMIAL == PELLUCID_ANGLE_POLYNOMIAL);
 static_assert(PELLUCID_SHADER_DEBUG_THICKNESS == PELLUCID_DEBUG_THICKNESS);
 static_assert(PELLUCID_SHADER_DEBUG_TRANSMITTANCE == PELLUCID_DEBUG_TRANSMITTANCE);
 static_assert(PELLUCID_SHADER_DEBUG_OCCLUSION == PELLUCID_DEBUG_OCCLUSION);
@@ -40,7 +45,15 @@ shared::FrameConstants frameConstants(const PellucidFrame& f) {
   if (f.frontDepthEncoding == PELLUCID_DEPTH_VIEW_Z) flags |= PELLUCID_FLAG_FRONT_VIEW_Z;
   if (f.backDepthEncoding == PELLUCID_DEPTH_VIEW_Z) flags |= PELLUCID_FLAG_BACK_VIEW_Z;
   if (f.thicknessSource == PELLUCID_THICKNESS_CAMERA) flags |= PELLUCID_FLAG_CAMERA_THICKNESS;
-  c.flags = {flags, f.materialCount, f.debugView, 0};
+  if (f.constantViewDirection) flags |= PELLUCID_FLAG_CONSTANT_VIEW;
+  if (f.chordThickness) flags |= PELLUCID_FLAG_CHORD_THICKNESS;
+  c.flags = {flags, f.materialCount, f.debugView, f.angleModel};
+  const float* p = f.anglePolynomial;
+  c.anglePolynomial = {p[0], p[1], p[2], p[3]};
+  // At a minimum dot of -1 not even a light straight behind comes through; the quotient would be 0/0.
+  const float m = f.minimumDot;
+  c.angle = m > -1 ? glm::vec4(1 / (m + 1), m / (m + 1), 0, 0) : glm::vec4(0);
+  c.filterAndLimit = rgb(f.transmittanceFilter, f.maximumThickness > 0 ? f.maximumThickness : INFINITY);
   return c;
 }
 
@@ -106,14 +119,16 @@ shared::ShadowConstants shadowConstants(const PellucidShadowMap& s, const Pelluc
 shared::MaterialConstants materialConstants(const PellucidMaterial& m) {
   shared::MaterialConstants c{};
   c.meta = {m.transmittanceModel, m.gaussianCount, m.gaussianCount > 0 ? 1u : 0u, 0};
+  const float exponent = m.transmittanceModel == PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED ? 1.0f : 0.5f;
   for (int channel = 0; channel < 3; ++channel) {
     const float* t = m.transmittance[channel];
     // The shader reads a, kappa, z, b and c of SINH_EXP as xyzw and the fifth.
     c.transmittance[channel] = {t[0], t[1], t[2], t[3]};
+    if (m.transmittanceModel == PELLUCID_TRANSMITTANCE_LINEAR) c.transmittance[channel].x = 1 / t[0];
     c.transmittance4[channel] = t[4];
     c.inverseReflectance[channel] = 1 / m.reflectance[channel];
     for (uint32_t i = 0; i < m.gaussianCount; ++i) {
-      c.gaussianFalloff[i][channel] = 0.5f / m.gaussianVariance[channel][i];
+      c.gaussianFalloff[i][channel] = exponent / m.gaussianVariance[channel][i];
       c.gaussianWeight[i][channel] = m.gaussianWeight[channel][i];
     }
   }

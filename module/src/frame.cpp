@@ -74,4 +74,5 @@ extern "C" void pellucidInitFrame(PellucidFrame* frame) {
   frame->metersPerUnit = 1;
   for (int i = 0; i < 4; ++i) frame->viewFromWorld[i * 5] = 1;
   frame->outputFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
+  for (float& factor : frame->transmittanceFilter) factor = 1;
 }

@@ -91,14 +91,16 @@ void checkMaterial(const PellucidMaterial& m, uint32_t index, Findings& out) {
     out.error(field("structSize"), "is ", m.structSize, "; this library expects ", sizeof(PellucidMaterial));
     return;
   }
-  if (m.transmittanceModel > PELLUCID_TRANSMITTANCE_GAUSSIANS)
+  if (m.transmittanceModel > PELLUCID_TRANSMITTANCE_LINEAR)
     out.error(field("transmittanceModel"), "is ", m.transmittanceModel, ", not a PellucidTransmittanceModel");
   if (m.gaussianCount > PELLUCID_MAX_GAUSSIANS) {
     out.error(field("gaussianCount"), "is ", m.gaussianCount, "; at most ",
               static_cast<int>(PELLUCID_MAX_GAUSSIANS));
     return;
   }
-  if (m.transmittanceModel == PELLUCID_TRANSMITTANCE_GAUSSIANS && m.gaussianCount == 0)
+  const bool fromGaussians = m.transmittanceModel == PELLUCID_TRANSMITTANCE_GAUSSIANS ||
+                             m.transmittanceModel == PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED;
+  if (fromGaussians && m.gaussianCount == 0)
     out.error(field("gaussianCount"), "is 0, but the transmittance model needs Gaussians");
   for (int c = 0; c < 3; ++c) {
     const float* t = m.transmittance[c];
@@ -108,6 +110,8 @@ void checkMaterial(const PellucidMaterial& m, uint32_t index, Findings& out) {
     if (m.transmittanceModel == PELLUCID_TRANSMITTANCE_SINH_EXP && !(t[1] >= 0 && t[2] > 0 && t[4] >= 0))
       out.error(field("transmittance"), "of channel ", c, " needs kappa >= 0, z > 0, c >= 0; they are ", t[1],
                 ", ", t[2], ", ", t[4]);
+    if (m.transmittanceModel == PELLUCID_TRANSMITTANCE_LINEAR && !(t[0] > 0))
+      out.error(field("transmittance"), "of channel ", c, " has dmax ", t[0], "; must be > 0");
     if (!(m.reflectance[c] > 0 && m.reflectance[c] <= 1))
       out.error(field("reflectance"), "of channel ", c, " is ", m.reflectance[c], ", outside (0, 1]");
     float sum = 0;
@@ -229,6 +233,16 @@ PellucidResult checkFrame(const PellucidFrame* frame, PellucidMessageFn fn, void
     out.error("thicknessSource", "is ", f.thicknessSource, ", not a PellucidThicknessSource");
   if (f.debugView > PELLUCID_DEBUG_IRRADIANCE)
     out.error("debugView", "is ", f.debugView, ", not a PellucidDebugView");
+
+  if (f.angleModel > PELLUCID_ANGLE_MINIMUM_DOT)
+    out.error("angleModel", "is ", f.angleModel, ", not a PellucidAngleModel");
+  if (!finite(f.anglePolynomial, 4)) out.error("anglePolynomial", "is not finite");
+  if (!(f.minimumDot >= -1 && f.minimumDot <= 0))
+    out.error("minimumDot", "is ", f.minimumDot, ", outside [-1, 0]");
+  if (!(f.maximumThickness >= 0)) out.error("maximumThickness", "is ", f.maximumThickness, "; must be >= 0");
+  for (int c = 0; c < 3; ++c)
+    if (!(f.transmittanceFilter[c] >= 0 && f.transmittanceFilter[c] <= 1))
+      out.error("transmittanceFilter", "[", c, "] is ", f.transmittanceFilter[c], ", outside [0, 1]");
 
   // 255: the material image is r8ui and 0 means none.
   if (f.materialCount == 0 || f.materialCount > 255 || !f.materials)

@@ -66,11 +66,11 @@ protected:
     ReplaySettings s;
     s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
     s.debugView = view;
-    s.thicknessSource = source;
+    s.translucency.thicknessSource = source;
     s.features = features;
     reference::Settings r;
     r.debugView = view;
-    r.thicknessSource = source;
+    r.translucency.thicknessSource = source;
     r.features = features;
     const Image gpu = replayer().run(c, materials, s).output;
     const Image ref = reference::compute(c, materials, r).image;

@@ -71,10 +71,10 @@ TEST_F(Replay, OccludedBackIsDark) {
   c.lights[0].shadowMap = flatShadowMap(-42, PELLUCID_DEPTH_VIEW_Z);  // a body 30 mm behind the slab
   ReplaySettings s;
   s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
-  s.thicknessSource = PELLUCID_THICKNESS_CAMERA;
+  s.translucency.thicknessSource = PELLUCID_THICKNESS_CAMERA;
   expectPixel(replay(c, testMaterial(), s), 5, 5, 1, 0.5, 0.25, 1e-5);
   // Light space: 32 mm of thickness, e^{-16} of the light in red and e^{-8} in blue's slow part.
-  s.thicknessSource = PELLUCID_THICKNESS_LIGHT;
+  s.translucency.thicknessSource = PELLUCID_THICKNESS_LIGHT;
   expectPixel(replay(c, testMaterial(), s), 5, 5, 1 + 6 * std::exp(-16.0), 0.5, 0.25 + 1.8 * std::exp(-8.0),
               1e-5);
 }
@@ -82,7 +82,7 @@ TEST_F(Replay, OccludedBackIsDark) {
 TEST_F(Replay, OutsideTheMapAndEmptyTexelsGiveNoLight) {
   for (const auto source : {PELLUCID_THICKNESS_LIGHT, PELLUCID_THICKNESS_CAMERA}) {
     ReplaySettings s;
-    s.thicknessSource = source;
+    s.translucency.thicknessSource = source;
     Capture c = flatCapture(8, 8, 2);
     c.lights = {backLight()};
     c.lights[0].shadowMap = flatShadowMap(-12, PELLUCID_DEPTH_VIEW_Z);
@@ -230,7 +230,7 @@ TEST_F(Replay, BadValuesAtMaterialPixelsStayFinite) {
     }
   ReplaySettings s;
   for (const auto source : {PELLUCID_THICKNESS_LIGHT, PELLUCID_THICKNESS_CAMERA}) {
-    s.thicknessSource = source;
+    s.translucency.thicknessSource = source;
     const Image out = replay(c, testMaterial(), s);
     for (int y = 0; y < 32; ++y)
       for (int x = 0; x < 32; ++x)

@@ -57,8 +57,11 @@ enum { PELLUCID_MAX_GAUSSIANS = 8 };
 typedef enum PellucidTransmittanceModel {
   PELLUCID_TRANSMITTANCE_EXP2 = 0,     /* a1, k1, a2, k2: a1 e^{-k1 d} + a2 e^{-k2 d} */
   PELLUCID_TRANSMITTANCE_SINH_EXP = 1, /* a, kappa, z, b, c: a / sinh(kappa d + z) + b e^{-c d} */
-  PELLUCID_TRANSMITTANCE_GAUSSIANS = 2 /* none: sum w_i e^{-d^2 / (2 v_i)} over the profile's own
-                                          Gaussians (d'Eon 2007; R(sqrt(r^2+d^2)) integrated) */
+  PELLUCID_TRANSMITTANCE_GAUSSIANS = 2, /* none: sum w_i e^{-d^2 / (2 v_i)} over the profile's own
+                                           Gaussians (d'Eon 2007; R(sqrt(r^2+d^2)) integrated) */
+  PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED = 3, /* none: e^{-d^2 / v_i}, as Whelan 2009 eq. 2.11
+                                           prints it; twice the exponent that the integral gives */
+  PELLUCID_TRANSMITTANCE_LINEAR = 4     /* dmax (mm, > 0): 1 - d/dmax, 0 beyond (Whelan 2009, 4.1) */
 } PellucidTransmittanceModel;
 
 /* What the shaders evaluate. Filled by pellucidCompileMaterial (pellucid_material.h) from physical
@@ -138,6 +141,18 @@ typedef enum PellucidThicknessSource {
   PELLUCID_THICKNESS_CAMERA = 1 /* back depth minus front depth; the shadow map only occludes */
 } PellucidThicknessSource;
 
+/* What stands for the cosine of the light on the hidden face. x is the cosine between the view ray and
+ * the direction to the light: 1 when the light is straight behind. Every factor is clamped to 0..1. */
+typedef enum PellucidAngleModel {
+  PELLUCID_ANGLE_NORMAL = 0,         /* -N.L, the hidden face taken antiparallel to N; COSINE where
+                                        there is no normal */
+  PELLUCID_ANGLE_COSINE = 1,         /* x (Whelan 2009, 4.2) */
+  PELLUCID_ANGLE_INVERSE_COSINE = 2, /* 1 - acos(x) 2/pi (Whelan 2009, 4.4) */
+  PELLUCID_ANGLE_POLYNOMIAL = 3,     /* c0 + c1 x + c2 x^2 + c3 x^3 for x > 0, else 0: the form of the
+                                        quadratic and cubic of Whelan 2009, eqs. 4.4 and 4.5 */
+  PELLUCID_ANGLE_MINIMUM_DOT = 4     /* (m + x) / (m + 1), m = minimumDot (Whelan 2009, eq. 4.6) */
+} PellucidAngleModel;
+
 /* Write one intermediate into `output` instead of the result. Float values, alpha kept. */
 typedef enum PellucidDebugView {
   PELLUCID_DEBUG_NONE = 0,
@@ -185,6 +200,16 @@ typedef struct PellucidFrame {
 
   uint32_t thicknessSource; /* PellucidThicknessSource */
   uint32_t debugView;       /* PellucidDebugView */
+
+  uint32_t angleModel;      /* PellucidAngleModel */
+  float anglePolynomial[4]; /* c0..c3 of POLYNOMIAL */
+  float minimumDot;         /* of MINIMUM_DOT: the cosine between the directions to the eye and to the
+                               light above which nothing comes through, [-1, 0]; -1: nothing ever does */
+  uint32_t constantViewDirection; /* 1: one view ray for all pixels, the camera's axis (Whelan 2009) */
+  uint32_t chordThickness;  /* 1: camera-space thickness is the chord itself, without the cosine
+                               between N and the view ray */
+  float maximumThickness;   /* mm; thicker parts let nothing through; 0: no limit */
+  float transmittanceFilter[3]; /* multiplies T, [0, 1]; default 1 (Whelan 2009, 4.5: .55 .29 .28) */
 } PellucidFrame;
 
 /* ---- Plan ------------------------------------------------------------------------------------ */

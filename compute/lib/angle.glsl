@@ -1,0 +1,17 @@
+// Factors for the unknown cosine of the light on the hidden face. x: cosine between the view ray and the
+// direction to the light. See PellucidAngleModel.
+#ifndef PELLUCID_ANGLE_GLSL
+#define PELLUCID_ANGLE_GLSL
+
+// Whelan 2009, 4.4. The clamp keeps rounding from leaving the domain of acos.
+float angleInverseCosine(float x) {
+  const float kTwoOverPi = 0.63661977;
+  return clamp(1.0 - kTwoOverPi * acos(clamp(x, -1.0, 1.0)), 0.0, 1.0);
+}
+
+// Whelan 2009, eqs. 4.4 and 4.5. The clamp matters: the printed quadratic is negative near 120 degrees.
+float anglePolynomial(vec4 c, float x) {
+  return x > 0.0 ? clamp(c.x + x * (c.y + x * (c.z + x * c.w)), 0.0, 1.0) : 0.0;
+}
+
+#endif

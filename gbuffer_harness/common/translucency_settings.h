@@ -1,0 +1,25 @@
+// How light through thin parts is computed: the fields of PellucidFrame of these names, for the module
+// and the float64 reference alike.
+#pragma once
+
+#include <array>
+
+#include "pellucid/pellucid.h"
+
+namespace pellucid::harness {
+
+struct TranslucencySettings {
+  PellucidThicknessSource thicknessSource = PELLUCID_THICKNESS_LIGHT;
+  PellucidAngleModel angleModel = PELLUCID_ANGLE_NORMAL;
+  std::array<float, 4> anglePolynomial = {0, 1, 0, 0};
+  float minimumDot = 0;
+  bool constantViewDirection = false;
+  bool chordThickness = false;
+  float maximumThickness = 0;                    // mm; 0: no limit
+  std::array<float, 3> transmittanceFilter = {1, 1, 1};
+  float shadowBias = 0; // scene units, of every shadow map
+
+  bool operator==(const TranslucencySettings&) const = default;
+};
+
+} // namespace pellucid::harness

@@ -1,0 +1,143 @@
+/* Pellucid material compiler: physical scattering coefficients -> what the shaders evaluate.
+ *
+ * C ABI, target pellucid::material. Pure functions on the CPU, double inside, no global state: same
+ * input, same output, callable from any thread. Lengths in mm, coefficients in 1/mm.
+ *
+ * Physics: radiative transport with isotropic scattering by similarity, sigma_s' = (1 - g) sigma_s,
+ * in slabs and half-spaces with smooth Fresnel boundaries, solved by discrete ordinates (Chandrasekhar
+ * 1960; Stamnes et al. 1988). Index order of arrays of 3: R, G, B.
+ */
+#ifndef PELLUCID_MATERIAL_H
+#define PELLUCID_MATERIAL_H
+
+#include "pellucid/pellucid.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* How a material is described; each kind reads the fields of PellucidMaterialDesc listed with it,
+ * besides `gaussianCount` (all but GAUSSIANS fit that many). */
+typedef enum PellucidMaterialKind {
+  PELLUCID_MATERIAL_COEFFICIENTS = 0, /* scattering, absorption, g, ior, millimetersPerUnit */
+  PELLUCID_MATERIAL_PRESET = 1,       /* preset, ior; see pellucidPresetName */
+  PELLUCID_MATERIAL_BURLEY = 2,       /* burleyDistance, transmittance */
+  PELLUCID_MATERIAL_GAUSSIANS = 3,    /* gaussianCount, gaussianVariance, gaussianWeight */
+  PELLUCID_MATERIAL_SPECTRAL = 4,     /* spectrum, illuminant, g, ior, millimetersPerUnit */
+  PELLUCID_MATERIAL_SKIN = 5          /* melanin, melaninType, hemoglobin, illuminant, ior */
+} PellucidMaterialKind;
+
+/* The light under which spectral coefficients become Rec. 709 values: a slab with T = 1 at every
+ * wavelength is (1, 1, 1) under any of them. */
+typedef enum PellucidIlluminant {
+  PELLUCID_ILLUMINANT_D65 = 0, /* CIE standard illuminant D65 */
+  PELLUCID_ILLUMINANT_A = 1,   /* CIE standard illuminant A: Planck, 2848 K with c2 of 1931 */
+  PELLUCID_ILLUMINANT_E = 2    /* equal energy */
+} PellucidIlluminant;
+
+enum { PELLUCID_MAX_WAVELENGTHS = 1024 };
+
+/* Coefficients sampled over the visible range; linear in between, constant beyond the ends. */
+typedef struct PellucidSpectrum {
+  uint32_t count;           /* 2..PELLUCID_MAX_WAVELENGTHS */
+  const double* wavelength; /* nm, strictly increasing, the range must meet 380..780 */
+  const double* scattering; /* sigma_s, >= 0 */
+  const double* absorption; /* sigma_a, >= 0 */
+} PellucidSpectrum;
+
+typedef struct PellucidMaterialDesc {
+  uint32_t structSize;    /* sizeof(PellucidMaterialDesc), written by pellucidInitMaterialDesc */
+  uint32_t kind;          /* PellucidMaterialKind */
+  uint32_t gaussianCount; /* 1..PELLUCID_MAX_GAUSSIANS; default 6 (edge error 5e-4) */
+  uint32_t illuminant;    /* PellucidIlluminant */
+  const char* preset;     /* zero-terminated name */
+
+  double scattering[3]; /* sigma_s, >= 0; the reduced sigma_s' when g = 0 */
+  double absorption[3]; /* sigma_a, >= 0; a channel where both are 0 is refused */
+  double g;             /* mean cosine of scattering, (-1, 1) */
+  double ior;           /* relative index of refraction, [1, 3]; 0: the preset's own, else 1.4 */
+  double millimetersPerUnit; /* of the unit the coefficients are inverse to; 0: 1 (1/mm); 10: 1/cm */
+
+  double burleyDistance[3];   /* mm, > 0; d of Christensen & Burley 2015 eq. 3 */
+  double transmittance[3][4]; /* a1, k1, a2, k2 of T(d) = a1 e^{-k1 d} + a2 e^{-k2 d}, decreasing and
+                                 within [0, 1]; all 0: Burley's slab 1/4 e^{-d/l} + 3/4 e^{-d/3l} */
+
+  double gaussianVariance[PELLUCID_MAX_GAUSSIANS];  /* mm^2, > 0, of one axis */
+  double gaussianWeight[3][PELLUCID_MAX_GAUSSIANS]; /* >= 0; normalized to sum 1 per channel */
+
+  PellucidSpectrum spectrum;
+
+  /* Skin by physiology, Donner & Jensen 2006 */
+  double melanin;     /* C_m, volume fraction in the epidermis, [0, 1]; people: .01 - .5 */
+  double melaninType; /* beta_m, share of eumelanin, [0, 1] */
+  double hemoglobin;  /* C_h, volume fraction of blood in the dermis, [0, 1]; people: .001 - .1 */
+} PellucidMaterialDesc;
+
+/* What one channel was compiled from and how well the result fits. */
+typedef struct PellucidChannelReport {
+  double scattering, absorption; /* sigma_s', sigma_a, 1/mm; 0 for kinds without RGB coefficients */
+  double rho;                    /* diffuse reflectance of the half-space under Lambertian light from
+                                    outside; the light reflected without entering is not counted.
+                                    1 for kinds BURLEY and GAUSSIANS, whose albedo is the engine's.
+                                    PellucidMaterial::reflectance is this, at least 1e-4 */
+  double transmittanceError;     /* largest |T_fit / T - 1| on the thicknesses fitted, where T > 1e-4;
+                                    of the float coefficients */
+  double minThickness, maxThickness; /* mm; the thicknesses fitted */
+  double edgeError;              /* largest difference of the blurred half-plane step, Gaussians
+                                    against Burley */
+} PellucidChannelReport;
+
+typedef struct PellucidMaterialReport {
+  char name[64]; /* the preset's name, or the kind */
+  double ior;    /* the one used; 0 for kinds without */
+  PellucidChannelReport channels[3];
+} PellucidMaterialReport;
+
+void pellucidInitMaterialDesc(PellucidMaterialDesc* desc);
+
+/* Fills every field of *material, and *report when not NULL. On failure neither is written and
+ * `message` (optional) names the field and its value. Tens of milliseconds at most for RGB
+ * coefficients, some hundred for spectra and layered skin.
+ * Errors: INVALID_ARGUMENT, VERSION, OUT_OF_MEMORY. */
+PellucidResult pellucidCompileMaterial(const PellucidMaterialDesc* desc, PellucidMaterial* material,
+                                       PellucidMaterialReport* report, PellucidMessageFn message,
+                                       void* messageUser);
+
+/* ---- Exact transport ------------------------------------------------------------------------- */
+
+typedef struct PellucidSlab {
+  double transmittance;       /* flux out of the far face / Lambertian flux arriving on the near face */
+  double transmittanceNormal; /* the same for a beam at normal incidence */
+  double reflectance;         /* Lambertian light that enters and comes back out of the near face */
+} PellucidSlab;
+
+/* One slab of thickness d >= 0 mm; d = INFINITY is the half-space. scattering is sigma_s'.
+ * Errors: INVALID_ARGUMENT, OUT_OF_MEMORY. */
+PellucidResult pellucidSlabTransport(double scattering, double absorption, double ior, double thickness,
+                                     PellucidSlab* slab, PellucidMessageFn message, void* messageUser);
+
+/* What a material's T(d) was fitted to: slabs[3 * i + channel] for thickness[i], >= 0 mm. Of BURLEY
+ * and GAUSSIANS it is the function they define, for both incidences, and reflectance is 0. */
+PellucidResult pellucidMaterialSlabs(const PellucidMaterialDesc* desc, uint32_t count,
+                                     const double* thickness, PellucidSlab* slabs,
+                                     PellucidMessageFn message, void* messageUser);
+
+/* T(d) as the shaders evaluate it, d >= 0 mm, channel 0..2; NaN for a bad channel or model. */
+double pellucidEvaluateTransmittance(const PellucidMaterial* material, uint32_t channel, double thickness);
+
+/* ---- Presets --------------------------------------------------------------------------------- */
+
+uint32_t pellucidPresetCount(void);
+
+/* Lower case, e.g. "skin1", "whole_milk"; static string, or NULL beyond the last. */
+const char* pellucidPresetName(uint32_t index);
+
+/* Describes a preset: RGB coefficients as kind COEFFICIENTS with its index of refraction, layered skin
+ * as kind PRESET. Case and the difference between ' ', '-', '_' do not matter. Other fields get their
+ * defaults. INVALID_ARGUMENT when there is no such preset. */
+PellucidResult pellucidFindPreset(const char* name, PellucidMaterialDesc* desc);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,501 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <limits>
+#include <new>
+#include <optional>
+#include <string>
+
+#include "fit.h"
+#include "pellucid/pellucid_material.h"
+#include "presets.h"
+#include "profile.h"
+#include "skin.h"
+#include "spectrum.h"
+
+namespace pellucid::material {
+namespace {
+
+constexpr double kDefaultIor = 1.4;
+
+// A wrong field; becomes a message and a result code at the C boundary.
+struct Refusal : std::exception {
+  Refusal(std::string f, std::string s, PellucidResult r = PELLUCID_ERROR_INVALID_ARGUMENT)
+      : field(std::move(f)), sentence(std::move(s)), result(r) {}
+  std::string field, sentence;
+  PellucidResult result;
+};
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.9g", value);
+  return text;
+}
+
+std::string indexed(std::string field, std::size_t i) {
+  field += '[';
+  field += std::to_string(i);
+  field += ']';
+  return field;
+}
+
+// Throws unless low <= value <= high; NaN throws.
+void requireRange(const std::string& field, double value, double low, double high) {
+  if (!(value >= low && value <= high))
+    throw Refusal(field, number(value) + " is not within " + number(low) + " to " + number(high));
+}
+
+void requireCount(const std::string& field, std::size_t value, std::size_t low, std::size_t high) {
+  if (value < low || value > high)
+    throw Refusal(field, std::to_string(value) + " is not within " + std::to_string(low) + " to " +
+                             std::to_string(high));
+}
+
+// ---- Descriptions ------------------------------------------------------------------------------
+
+// The range in 1/mm beyond which lengths stop being representable in the float results.
+constexpr double kLeastExtinction = 1e-6, kMostExtinction = 1e6;
+
+Coefficients checkedCoefficients(const PellucidMaterialDesc& desc, const std::string& scatteringField,
+                                 const std::string& absorptionField, double scattering, double absorption) {
+  const double unit = desc.millimetersPerUnit == 0 ? 1 : desc.millimetersPerUnit;
+  requireRange(scatteringField, scattering, 0, std::numeric_limits<double>::max());
+  requireRange(absorptionField, absorption, 0, std::numeric_limits<double>::max());
+  const Coefficients result{scattering * (1 - desc.g) / unit, absorption / unit};
+  if (scattering == 0 && absorption == 0)
+    throw Refusal(scatteringField, "0, and so is " + absorptionField + ": such a medium is nothing at all");
+  if (!(result.extinction() >= kLeastExtinction && result.extinction() <= kMostExtinction))
+    throw Refusal(scatteringField, "reduced scattering and absorption add up to " +
+                                       number(result.extinction()) + " per mm, not within " +
+                                       number(kLeastExtinction) + " to " + number(kMostExtinction));
+  return result;
+}
+
+void checkMedium(const PellucidMaterialDesc& desc) {
+  if (!(desc.g > -1 && desc.g < 1)) throw Refusal("g", number(desc.g) + " is not between -1 and 1");
+  if (!(desc.millimetersPerUnit >= 0 && std::isfinite(desc.millimetersPerUnit)))
+    throw Refusal("millimetersPerUnit", number(desc.millimetersPerUnit) + " is not a positive length");
+}
+
+double checkedIor(double ior, double fallback) {
+  if (ior == 0) return fallback;
+  requireRange("ior", ior, 1, 3);
+  return ior;
+}
+
+PellucidIlluminant checkedIlluminant(uint32_t illuminant) {
+  if (illuminant > PELLUCID_ILLUMINANT_E)
+    throw Refusal("illuminant", std::to_string(illuminant) + " is no PellucidIlluminant");
+  return static_cast<PellucidIlluminant>(illuminant);
+}
+
+Description describeCoefficients(const PellucidMaterialDesc& desc) {
+  checkMedium(desc);
+  std::vector<Stack> channels;
+  for (std::size_t c = 0; c < 3; ++c)
+    channels.push_back({{},
+                        checkedCoefficients(desc, indexed("scattering", c), indexed("absorption", c),
+                                            desc.scattering[c], desc.absorption[c])});
+  return rgbDescription(checkedIor(desc.ior, kDefaultIor), std::move(channels));
+}
+
+const Preset& checkedPreset(const PellucidMaterialDesc& desc) {
+  if (desc.preset == nullptr) throw Refusal("preset", "no name is given");
+  const Preset* preset = findPreset(desc.preset);
+  if (preset == nullptr) {
+    std::string names;
+    for (const Preset& known : presets()) names += (names.empty() ? "" : ", ") + std::string(known.name);
+    throw Refusal("preset", std::string(desc.preset) + " is not one of " + names);
+  }
+  return *preset;
+}
+
+Description describePreset(const PellucidMaterialDesc& desc) {
+  const Preset& preset = checkedPreset(desc);
+  const double ior = checkedIor(desc.ior, preset.ior);
+  if (preset.layered) return threeLayerSkin(ior);
+  std::vector<Stack> channels;
+  for (std::size_t c = 0; c < 3; ++c) channels.push_back({{}, {preset.scattering[c], preset.absorption[c]}});
+  return rgbDescription(ior, std::move(channels));
+}
+
+Description describeSpectrum(const PellucidMaterialDesc& desc) {
+  checkMedium(desc);
+  const PellucidSpectrum& spectrum = desc.spectrum;
+  requireCount("spectrum.count", spectrum.count, 2, PELLUCID_MAX_WAVELENGTHS);
+  if (spectrum.wavelength == nullptr) throw Refusal("spectrum.wavelength", "no array is given");
+  if (spectrum.scattering == nullptr) throw Refusal("spectrum.scattering", "no array is given");
+  if (spectrum.absorption == nullptr) throw Refusal("spectrum.absorption", "no array is given");
+  const std::span wavelength(spectrum.wavelength, spectrum.count);
+  const std::span scattering(spectrum.scattering, spectrum.count);
+  const std::span absorption(spectrum.absorption, spectrum.count);
+  for (std::size_t i = 0; i < wavelength.size(); ++i) {
+    requireRange(indexed("spectrum.wavelength", i), wavelength[i], 1, 1e6);
+    if (i > 0 && !(wavelength[i] > wavelength[i - 1]))
+      throw Refusal(indexed("spectrum.wavelength", i), number(wavelength[i]) + " does not increase");
+    checkedCoefficients(desc, indexed("spectrum.scattering", i), indexed("spectrum.absorption", i),
+                        scattering[i], absorption[i]);
+  }
+  if (wavelength.front() > wavelengthAt(kWavelengthCount - 1) || wavelength.back() < wavelengthAt(0))
+    throw Refusal("spectrum.wavelength", number(wavelength.front()) + " to " + number(wavelength.back()) +
+                                             " nm has no part in 380 to 780");
+  Description description{checkedIor(desc.ior, kDefaultIor), {},
+                          rec709Weights(checkedIlluminant(desc.illuminant))};
+  for (int i = 0; i < kWavelengthCount; ++i) {
+    const double nm = wavelengthAt(i);
+    description.stacks.push_back({{},
+                                  checkedCoefficients(desc, "spectrum.scattering", "spectrum.absorption",
+                                                      interpolate(wavelength, scattering, nm),
+                                                      interpolate(wavelength, absorption, nm))});
+  }
+  return description;
+}
+
+Description describeSkin(const PellucidMaterialDesc& desc) {
+  requireRange("melanin", desc.melanin, 0, 1);
+  requireRange("melaninType", desc.melaninType, 0, 1);
+  requireRange("hemoglobin", desc.hemoglobin, 0, 1);
+  return physiologicalSkin({desc.melanin, desc.melaninType, desc.hemoglobin},
+                           checkedIlluminant(desc.illuminant), checkedIor(desc.ior, kDefaultIor));
+}
+
+// The kinds that are media; the others define T(d) and the profile directly.
+std::optional<Description> describe(const PellucidMaterialDesc& desc) {
+  switch (desc.kind) {
+    case PELLUCID_MATERIAL_COEFFICIENTS: return describeCoefficients(desc);
+    case PELLUCID_MATERIAL_PRESET: return describePreset(desc);
+    case PELLUCID_MATERIAL_SPECTRAL: return describeSpectrum(desc);
+    case PELLUCID_MATERIAL_SKIN: return describeSkin(desc);
+    case PELLUCID_MATERIAL_BURLEY:
+    case PELLUCID_MATERIAL_GAUSSIANS: return std::nullopt;
+    default: throw Refusal("kind", std::to_string(desc.kind) + " is no PellucidMaterialKind");
+  }
+}
+
+const char* kindName(const PellucidMaterialDesc& desc) {
+  switch (desc.kind) {
+    case PELLUCID_MATERIAL_PRESET: return checkedPreset(desc).name;
+    case PELLUCID_MATERIAL_BURLEY: return "burley";
+    case PELLUCID_MATERIAL_GAUSSIANS: return "gaussians";
+    case PELLUCID_MATERIAL_SPECTRAL: return "spectral";
+    case PELLUCID_MATERIAL_SKIN: return "skin";
+    default: return "coefficients";
+  }
+}
+
+// ---- Compilation -------------------------------------------------------------------------------
+
+struct Result {
+  PellucidMaterial material = {};
+  PellucidMaterialReport report = {};
+};
+
+// Gaussians, radius and distance of Burley's profile of distance d.
+void setBurley(Result& result, std::size_t channel, double d, std::uint32_t count) {
+  PellucidMaterial& material = result.material;
+  const UnitGaussians unit = burleyGaussians(static_cast<int>(count));
+  material.gaussianCount = count;
+  for (std::size_t i = 0; i < count; ++i) {
+    material.gaussianVariance[channel][i] = static_cast<float>(unit.variance[i] * d * d);
+    material.gaussianWeight[channel][i] = static_cast<float>(unit.weight[i]);
+  }
+  material.radius[channel] = static_cast<float>(kBurleyRadius999 * d);
+  material.burleyDistance[channel] = static_cast<float>(d);
+  result.report.channels[channel].edgeError = unit.edgeError;
+}
+
+void setCurve(PellucidMaterial& material, std::size_t channel, const Curve& curve) {
+  material.transmittanceModel = static_cast<std::uint32_t>(curve.model);
+  std::copy(curve.parameters.begin(), curve.parameters.end(), material.transmittance[channel]);
+}
+
+// T(d) to fit, per channel: 0.01 to 20 mm as far as T > 1e-4; further at either end where the medium is so
+// dense or so thin that this range would show only a part of its curve.
+std::array<std::vector<Sample>, 3> sampleTransmittance(const Source& source) {
+  constexpr double kLeast = 1e-4, kTiny = 1e-6;
+  constexpr int kSamples = 72, kMinimum = 8;
+  // Where wavelengths mix, what is left of a channel deep inside is a small difference of large numbers, or
+  // a color outside Rec. 709 cut to 0. Errors there are measured against this share of the brightest channel.
+  constexpr double kVisible = 0.05;
+  double first = 0.01, last = 20;
+  for (int c = 0; c < 3; ++c) {
+    first = std::min(first, 0.05 / source.extinction(c));
+    last = std::max(last, 3 / source.extinction(c));
+  }
+  const auto greatest = [&](double d) {
+    const std::array<Slab, 3> slabs = source.slabs(d);
+    return std::max({slabs[0].transmittance, slabs[1].transmittance, slabs[2].transmittance});
+  };
+  if (greatest(last) < kLeast) {
+    double low = first, high = last;
+    for (int step = 0; step < 8; ++step) {
+      const double middle = std::sqrt(low * high);
+      (greatest(middle) > kLeast ? low : high) = middle;
+    }
+    last = high;
+  }
+
+  std::array<std::vector<Sample>, 3> samples;
+  std::array<bool, 3> ended = {};
+  for (int i = 0; i < kSamples; ++i) {
+    const double d = first * std::pow(last / first, i / (kSamples - 1.0));
+    const std::array<Slab, 3> slabs = source.slabs(d);
+    const double brightest =
+        std::max({slabs[0].transmittance, slabs[1].transmittance, slabs[2].transmittance});
+    for (std::size_t c = 0; c < 3; ++c) {
+      // Up to and with the first sample below the limit: the curve must reach it.
+      const double scale = std::max({slabs[c].transmittance, source.mixed() ? kVisible * brightest : 0, kTiny});
+      if (!ended[c]) samples[c].push_back({d, slabs[c].transmittance, scale});
+      ended[c] = ended[c] || (scale < kLeast && i + 1 >= kMinimum);
+    }
+  }
+  return samples;
+}
+
+void compileMedium(const Description& description, std::uint32_t count, Result& result) {
+  const Source source(description);
+  const std::array<std::vector<Sample>, 3> samples = sampleTransmittance(source);
+  // Two exponentials are the cheaper form and the one that can be sampled exactly: taken where they are good
+  // to a tenth of a percent in every channel or the better form in every channel.
+  constexpr double kGood = 1e-3;
+  std::array<Fits, 3> fits;
+  std::array<bool, 3> better; // exp2
+  bool exp2Good = true, exp2Better = true;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const int channel = static_cast<int>(c);
+    fits[c] = fitTransmittance(samples[c], source.decay(channel), source.extinction(channel));
+    better[c] = fits[c].exp2.error <= fits[c].sinhExp.error;
+    exp2Good = exp2Good && fits[c].exp2.error <= kGood;
+    exp2Better = exp2Better && better[c];
+  }
+  const bool exp2 = exp2Good || exp2Better;
+
+  const std::array<Slab, 3> halfSpace = source.slabs(std::numeric_limits<double>::infinity());
+  const Rgb burley = source.burleyDistance();
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Fit& fit = exp2 || better[c] ? fits[c].exp2 : fits[c].sinhExp;
+    setCurve(result.material, c, !exp2 && better[c] ? asSinhExp(fit.curve) : fit.curve);
+    setBurley(result, c, burley[c], count);
+    // Shaders divide by it.
+    result.material.reflectance[c] = static_cast<float>(std::max(halfSpace[c].reflectance, 1e-4));
+    PellucidChannelReport& channel = result.report.channels[c];
+    channel.rho = halfSpace[c].reflectance;
+    channel.transmittanceError = fit.error;
+    channel.minThickness = samples[c].front().thickness;
+    channel.maxThickness = samples[c].back().thickness;
+    if (description.stacks.size() == 3 && description.stacks[c].outer.empty()) {
+      channel.scattering = description.stacks[c].core.scattering;
+      channel.absorption = description.stacks[c].core.absorption;
+    }
+  }
+  result.report.ior = description.ior;
+}
+
+Curve checkedCurve(const PellucidMaterialDesc& desc, std::size_t c) {
+  const double* given = desc.transmittance[c];
+  const double d = desc.burleyDistance[c];
+  const bool absent = std::all_of(&desc.transmittance[0][0], &desc.transmittance[0][0] + 12,
+                                  [](double value) { return value == 0; });
+  Curve curve{PELLUCID_TRANSMITTANCE_EXP2, {}};
+  for (std::size_t i = 0; i < 4; ++i) curve.parameters[i] = static_cast<float>(given[i]);
+  // Christensen & Burley 2015: what the profile leaves beyond depth d, 1 - cdf(d).
+  if (absent)
+    curve.parameters = {0.25f, static_cast<float>(1 / d), 0.75f, static_cast<float>(1 / (3 * d)), 0};
+  if (!isTransmittance(curve))
+    throw Refusal(indexed("transmittance", c),
+                  number(given[0]) + " e^{-" + number(given[1]) + " d} + " + number(given[2]) + " e^{-" +
+                      number(given[3]) + " d} does not fall from at most 1 to 0");
+  return curve;
+}
+
+void compileBurley(const PellucidMaterialDesc& desc, Result& result) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    requireRange(indexed("burleyDistance", c), desc.burleyDistance[c], 1e-6, 1e6);
+    setBurley(result, c, desc.burleyDistance[c], desc.gaussianCount);
+    setCurve(result.material, c, checkedCurve(desc, c));
+    result.material.reflectance[c] = 1;
+    result.report.channels[c].rho = 1;
+  }
+}
+
+void compileGaussians(const PellucidMaterialDesc& desc, Result& result) {
+  PellucidMaterial& material = result.material;
+  const std::uint32_t count = desc.gaussianCount;
+  material.transmittanceModel = PELLUCID_TRANSMITTANCE_GAUSSIANS;
+  material.gaussianCount = count;
+  for (std::size_t i = 0; i < count; ++i)
+    requireRange(indexed("gaussianVariance", i), desc.gaussianVariance[i], 1e-12, 1e12);
+  for (std::size_t c = 0; c < 3; ++c) {
+    double sum = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      requireRange(indexed(indexed("gaussianWeight", c), i), desc.gaussianWeight[c][i], 0, 1e12);
+      sum += desc.gaussianWeight[c][i];
+    }
+    if (sum == 0) throw Refusal(indexed("gaussianWeight", c), "every weight is 0");
+    double weight[PELLUCID_MAX_GAUSSIANS] = {};
+    for (std::size_t i = 0; i < count; ++i) {
+      weight[i] = desc.gaussianWeight[c][i] / sum;
+      material.gaussianVariance[c][i] = static_cast<float>(desc.gaussianVariance[i]);
+      material.gaussianWeight[c][i] = static_cast<float>(weight[i]);
+    }
+    material.radius[c] =
+        static_cast<float>(gaussianRadius999({desc.gaussianVariance, count}, {weight, count}));
+    material.reflectance[c] = 1;
+    result.report.channels[c].rho = 1;
+  }
+}
+
+Result compile(const PellucidMaterialDesc& desc) {
+  requireCount("gaussianCount", desc.gaussianCount, 1, PELLUCID_MAX_GAUSSIANS);
+  Result result;
+  result.material.structSize = sizeof(PellucidMaterial);
+  if (const std::optional<Description> medium = describe(desc))
+    compileMedium(*medium, desc.gaussianCount, result);
+  else if (desc.kind == PELLUCID_MATERIAL_BURLEY)
+    compileBurley(desc, result);
+  else
+    compileGaussians(desc, result);
+  std::snprintf(result.report.name, sizeof result.report.name, "%s", kindName(desc));
+  return result;
+}
+
+// ---- The C boundary ----------------------------------------------------------------------------
+
+double evaluateMaterial(const PellucidMaterial& material, std::size_t channel, double d) {
+  if (material.transmittanceModel == PELLUCID_TRANSMITTANCE_GAUSSIANS) {
+    double sum = 0;
+    for (std::size_t i = 0; i < std::min<std::size_t>(material.gaussianCount, PELLUCID_MAX_GAUSSIANS); ++i)
+      sum += static_cast<double>(material.gaussianWeight[channel][i]) *
+             std::exp(-d * d / (2 * static_cast<double>(material.gaussianVariance[channel][i])));
+    return sum;
+  }
+  if (material.transmittanceModel > PELLUCID_TRANSMITTANCE_GAUSSIANS)
+    return std::numeric_limits<double>::quiet_NaN();
+  Curve curve{static_cast<PellucidTransmittanceModel>(material.transmittanceModel), {}};
+  std::copy(std::begin(material.transmittance[channel]), std::end(material.transmittance[channel]),
+            curve.parameters.begin());
+  return evaluate(curve, d);
+}
+
+void requireDesc(const PellucidMaterialDesc* desc) {
+  if (desc == nullptr) throw Refusal("desc", "NULL");
+  if (desc->structSize != sizeof(PellucidMaterialDesc))
+    throw Refusal("structSize", std::to_string(desc->structSize) + " is not this library's " +
+                                    std::to_string(sizeof(PellucidMaterialDesc)),
+                  PELLUCID_ERROR_VERSION);
+}
+
+// Runs `body` and turns what it throws into a result code and a message.
+template <class Body>
+PellucidResult guarded(PellucidMessageFn message, void* user, Body&& body) noexcept {
+  try {
+    body();
+    return PELLUCID_OK;
+  } catch (const Refusal& refusal) {
+    if (message != nullptr)
+      message(user, PELLUCID_SEVERITY_ERROR, refusal.field.c_str(), refusal.sentence.c_str());
+    return refusal.result;
+  } catch (...) {
+    if (message != nullptr) message(user, PELLUCID_SEVERITY_ERROR, "", "out of memory");
+    return PELLUCID_ERROR_OUT_OF_MEMORY;
+  }
+}
+
+PellucidSlab publicSlab(const Slab& slab) {
+  return {slab.transmittance, slab.transmittanceNormal, slab.reflectance};
+}
+
+} // namespace
+} // namespace pellucid::material
+
+using namespace pellucid::material;
+
+void pellucidInitMaterialDesc(PellucidMaterialDesc* desc) {
+  *desc = {};
+  desc->structSize = sizeof(PellucidMaterialDesc);
+  desc->gaussianCount = 6;
+  desc->melanin = 0.03;
+  desc->melaninType = 0.5;
+  desc->hemoglobin = 0.02;
+}
+
+PellucidResult pellucidCompileMaterial(const PellucidMaterialDesc* desc, PellucidMaterial* material,
+                                       PellucidMaterialReport* report, PellucidMessageFn message,
+                                       void* messageUser) {
+  return guarded(message, messageUser, [&] {
+    requireDesc(desc);
+    if (material == nullptr) throw Refusal("material", "NULL");
+    const Result result = compile(*desc);
+    *material = result.material;
+    if (report != nullptr) *report = result.report;
+  });
+}
+
+PellucidResult pellucidSlabTransport(double scattering, double absorption, double ior, double thickness,
+                                     PellucidSlab* slab, PellucidMessageFn message, void* messageUser) {
+  return guarded(message, messageUser, [&] {
+    if (slab == nullptr) throw Refusal("slab", "NULL");
+    PellucidMaterialDesc desc;
+    pellucidInitMaterialDesc(&desc);
+    const Coefficients coefficients =
+        checkedCoefficients(desc, "scattering", "absorption", scattering, absorption);
+    requireRange("ior", ior, 1, 3);
+    requireRange("thickness", thickness, 0, std::numeric_limits<double>::infinity());
+    const Angles angles = makeAngles(ior);
+    *slab = publicSlab(Medium(angles, coefficients).slab(thickness));
+  });
+}
+
+PellucidResult pellucidMaterialSlabs(const PellucidMaterialDesc* desc, uint32_t count,
+                                     const double* thickness, PellucidSlab* slabs,
+                                     PellucidMessageFn message, void* messageUser) {
+  return guarded(message, messageUser, [&] {
+    requireDesc(desc);
+    if (count > 0 && thickness == nullptr) throw Refusal("thickness", "NULL");
+    if (count > 0 && slabs == nullptr) throw Refusal("slabs", "NULL");
+    for (std::size_t i = 0; i < count; ++i)
+      requireRange(indexed("thickness", i), thickness[i], 0, std::numeric_limits<double>::infinity());
+    if (const std::optional<Description> medium = describe(*desc)) {
+      const Source source(*medium);
+      for (std::size_t i = 0; i < count; ++i) {
+        const std::array<Slab, 3> rgb = source.slabs(thickness[i]);
+        std::transform(rgb.begin(), rgb.end(), slabs + 3 * i, publicSlab);
+      }
+      return;
+    }
+    const Result result = compile(*desc);
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t c = 0; c < 3; ++c) {
+        const double value = evaluateMaterial(result.material, c, thickness[i]);
+        slabs[3 * i + c] = {value, value, 0};
+      }
+  });
+}
+
+double pellucidEvaluateTransmittance(const PellucidMaterial* material, uint32_t channel, double thickness) {
+  if (material == nullptr || channel > 2) return std::numeric_limits<double>::quiet_NaN();
+  return evaluateMaterial(*material, channel, thickness);
+}
+
+uint32_t pellucidPresetCount(void) { return static_cast<uint32_t>(presets().size()); }
+
+const char* pellucidPresetName(uint32_t index) {
+  return index < presets().size() ? presets()[index].name : nullptr;
+}
+
+PellucidResult pellucidFindPreset(const char* name, PellucidMaterialDesc* desc) {
+  const Preset* preset = name == nullptr ? nullptr : findPreset(name);
+  if (preset == nullptr || desc == nullptr) return PELLUCID_ERROR_INVALID_ARGUMENT;
+  pellucidInitMaterialDesc(desc);
+  desc->ior = preset->ior;
+  if (preset->layered) {
+    desc->kind = PELLUCID_MATERIAL_PRESET;
+    desc->preset = preset->name;
+    return PELLUCID_OK;
+  }
+  std::copy(preset->scattering.begin(), preset->scattering.end(), desc->scattering);
+  std::copy(preset->absorption.begin(), preset->absorption.end(), desc->absorption);
+  return PELLUCID_OK;
+}

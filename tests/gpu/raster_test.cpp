@@ -1,0 +1,657 @@
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+#include "capture/material.h"
+#include "capture/read.h"
+#include "capture/write.h"
+#include "common/error.h"
+#include "gpu/gpu_fixture.h"
+#include "raster/framing.h"
+#include "raster/raster.h"
+
+namespace {
+
+using namespace pellucid::harness;
+using namespace pellucid::test;
+
+constexpr double kPi = std::numbers::pi;
+
+class Raster : public GpuTest {
+protected:
+  static RasterResult rasterize(const Model& model, const ModelCamera& camera, const RasterOptions& options) {
+    return pellucid::harness::rasterize(device(), model, camera, options);
+  }
+};
+
+Vertex vertexAt(const Vector3& position, const Vector3& normal) {
+  Vertex v{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    v.position[i] = static_cast<float>(position[i]);
+    v.normal[i] = static_cast<float>(normal[i]);
+  }
+  return v;
+}
+
+// Model of one surface of material 1, "skin1"; 1 unit is 1 mm.
+Model emptyModel() {
+  Model model;
+  model.name = "test";
+  model.metersPerUnit = 0.001;
+  model.surfaces.resize(1);
+  model.surfaces[0].baseColor = {0.5, 0.25, 0.125};
+  model.surfaces[0].material = 1;
+  model.materials = {PresetMaterial{"skin1"}};
+  return model;
+}
+
+// A part of everything that was added since the last one.
+void endPart(Model& model, std::uint32_t object, std::uint32_t surface = 0) {
+  const std::uint32_t first =
+      model.parts.empty() ? 0 : model.parts.back().firstIndex + model.parts.back().indexCount;
+  model.parts.push_back({first, static_cast<std::uint32_t>(model.indices.size()) - first, surface, object});
+}
+
+// Corners counterclockwise as seen from the side the normal points to.
+void addQuad(Model& model, const Vector3 (&corners)[4], const Vector3& normal) {
+  const auto first = static_cast<std::uint32_t>(model.vertices.size());
+  for (const Vector3& corner : corners) model.vertices.push_back(vertexAt(corner, normal));
+  for (const std::uint32_t i : {0u, 1u, 2u, 0u, 2u, 3u}) model.indices.push_back(first + i);
+}
+
+// Axis-aligned square facing +z.
+void addSquare(Model& model, double x, double y, double z, double half) {
+  addQuad(
+      model,
+      {{x - half, y - half, z}, {x + half, y - half, z}, {x + half, y + half, z}, {x - half, y + half, z}},
+      {0, 0, 1});
+}
+
+void addCube(Model& model, double half) {
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (const double sign : {-1.0, 1.0}) {
+      Vector3 n{}, u{}, v{};
+      n[axis] = sign;
+      u[(axis + 1) % 3] = sign;
+      v[(axis + 2) % 3] = 1;
+      const auto corner = [&](double a, double b) {
+        Vector3 p;
+        for (std::size_t i = 0; i < 3; ++i) p[i] = half * (n[i] + a * u[i] + b * v[i]);
+        return p;
+      };
+      addQuad(model, {corner(-1, -1), corner(1, -1), corner(1, 1), corner(-1, 1)}, n);
+    }
+}
+
+void addSphere(Model& model, const Vector3& center, double radius, std::uint32_t rings) {
+  const auto first = static_cast<std::uint32_t>(model.vertices.size());
+  const std::uint32_t segments = 2 * rings;
+  for (std::uint32_t i = 0; i <= rings; ++i)
+    for (std::uint32_t j = 0; j < segments; ++j) {
+      const double theta = kPi * i / rings, phi = 2 * kPi * j / segments;
+      const Vector3 n{std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)};
+      model.vertices.push_back(
+          vertexAt({center[0] + radius * n[0], center[1] + radius * n[1], center[2] + radius * n[2]}, n));
+    }
+  for (std::uint32_t i = 0; i < rings; ++i)
+    for (std::uint32_t j = 0; j < segments; ++j) {
+      const std::uint32_t next = (j + 1) % segments;
+      const std::uint32_t a = first + i * segments + j, b = first + i * segments + next;
+      for (const std::uint32_t k : {a, b, a + segments, b, b + segments, a + segments})
+        model.indices.push_back(k);
+    }
+}
+
+// Looks along -z from z = 100; 20 mm tall.
+ModelCamera frontCamera(bool orthographic) {
+  ModelCamera camera;
+  camera.viewFromWorld = lookAt({0, 0, 100}, {0, 0, 0}, {0, 1, 0});
+  camera.orthographic = orthographic;
+  camera.verticalFov = 2 * std::atan(0.1);
+  camera.height = 20;
+  camera.range = {50, 150};
+  return camera;
+}
+
+Light directional(const Vector3& direction, double intensity = 1) {
+  Light light;
+  light.direction = direction;
+  light.intensity = intensity;
+  return light;
+}
+
+// Planar distances of a capture's depth image through its matrix; < 0: nothing there.
+double planar(const Capture& capture, const DepthImage& depth, int x, int y) {
+  const double d = *depth.image.at(x, y);
+  if (depth.encoding == PELLUCID_DEPTH_VIEW_Z) return d < 1e9 ? d : -1;
+  if (d == clearDepth(capture.clipFromView)) return -1;
+  const Matrix& m = capture.clipFromView;
+  return -(d * m[15] - m[14]) / (m[10] - d * m[11]);
+}
+
+// The view ray through a pixel of frontCamera: world position at planar distance 0 and 1.
+struct PixelRay {
+  Vector3 origin, direction;
+};
+PixelRay rayOf(const Capture& capture, int x, int y) {
+  const double u = ((x + 0.5) / capture.width * 2 - 1) / capture.clipFromView[0];
+  const double v = ((y + 0.5) / capture.height * 2 - 1) / capture.clipFromView[5];
+  if (capture.clipFromView[15] == 0) return {{0, 0, 100}, {u, v, -1}};
+  return {{u, v, 100}, {0, 0, -1}};
+}
+
+// Planar distances where the ray meets a sphere about the origin; false: it misses.
+bool meetSphere(const PixelRay& ray, double radius, double (&t)[2]) {
+  double a = 0, b = 0, c = -radius * radius;
+  for (std::size_t i = 0; i < 3; ++i) {
+    a += ray.direction[i] * ray.direction[i];
+    b += ray.origin[i] * ray.direction[i];
+    c += ray.origin[i] * ray.origin[i];
+  }
+  if (b * b < a * c) return false;
+  const double root = std::sqrt(b * b - a * c);
+  t[0] = (-b - root) / a;
+  t[1] = (-b + root) / a;
+  return true;
+}
+
+struct Convention {
+  const char* name;
+  bool orthographic, reversed, infinite;
+  PellucidDepthEncoding encoding;
+};
+const Convention kConventions[] = {
+    {"perspective reversed", false, true, false, PELLUCID_DEPTH_DEVICE},
+    {"perspective reversed infinite", false, true, true, PELLUCID_DEPTH_DEVICE},
+    {"perspective forward", false, false, false, PELLUCID_DEPTH_DEVICE},
+    {"perspective forward infinite", false, false, true, PELLUCID_DEPTH_DEVICE},
+    {"perspective viewZ", false, true, false, PELLUCID_DEPTH_VIEW_Z},
+    {"orthographic reversed", true, true, false, PELLUCID_DEPTH_DEVICE},
+    {"orthographic forward", true, false, false, PELLUCID_DEPTH_DEVICE},
+    {"orthographic viewZ", true, false, false, PELLUCID_DEPTH_VIEW_Z},
+};
+
+RasterOptions optionsOf(const Convention& c, int size) {
+  RasterOptions options;
+  options.width = options.height = size;
+  options.reversedZ = c.reversed;
+  options.infiniteFar = c.infinite;
+  options.depthEncoding = c.encoding;
+  return options;
+}
+
+TEST_F(Raster, CubeHasExactDepthsInEveryConvention) {
+  Model model = emptyModel();
+  addCube(model, 5);
+  endPart(model, 0);
+  for (const Convention& convention : kConventions) {
+    const Capture c =
+        rasterize(model, frontCamera(convention.orthographic), optionsOf(convention, 64)).capture;
+    // Through the middle the ray is along z but for half a pixel: only front and back face are met.
+    // A float depth in [50, 150] mm resolves 2^-24 * 150 mm where planar; forward perspective depth
+    // 2^-24 * z^2 / n = 1.3e-5 mm; the matrix product loses a few of these.
+    for (const int x : {31, 32, 24})
+      for (const int y : {31, 32, 40}) {
+        EXPECT_NEAR(planar(c, c.frontDepth, x, y), 95, 2e-4) << convention.name;
+        EXPECT_NEAR(planar(c, c.backDepth, x, y), 105, 2e-4) << convention.name;
+        EXPECT_EQ(c.material[static_cast<std::size_t>(y * 64 + x)], 1) << convention.name;
+      }
+    EXPECT_EQ(planar(c, c.frontDepth, 1, 1), -1) << convention.name;
+    EXPECT_EQ(planar(c, c.backDepth, 1, 1), -1) << convention.name;
+    EXPECT_EQ(c.material[65], 0) << convention.name;
+    EXPECT_EQ(c.normal.at(32, 32)[2], 1.0f) << convention.name;
+    EXPECT_EQ(c.albedo.at(32, 32)[0], 0.5f) << convention.name;
+    EXPECT_EQ(c.albedo.at(32, 32)[2], 0.125f) << convention.name;
+  }
+}
+
+// A sphere of 256 rings: a chord of angle pi / 256 dips r (pi / 256)^2 / 8 = 1.9e-5 r below the sphere, on
+// both sides; thickness is off by up to twice that over the cosine of the angle to the surface.
+TEST_F(Raster, SphereHasExactThickness) {
+  constexpr double kRadius = 8;
+  Model model = emptyModel();
+  addSphere(model, {0, 0, 0}, kRadius, 256);
+  endPart(model, 0);
+  for (const bool orthographic : {false, true}) {
+    RasterOptions options;
+    options.width = options.height = 200;
+    const RasterResult result = rasterize(model, frontCamera(orthographic), options);
+    const Capture& c = result.capture;
+    EXPECT_EQ(result.openPixels, 0u);
+    double worst = 0;
+    int compared = 0;
+    for (int y = 0; y < c.height; ++y)
+      for (int x = 0; x < c.width; ++x) {
+        double t[2];
+        const bool hit = meetSphere(rayOf(c, x, y), kRadius, t);
+        const double front = planar(c, c.frontDepth, x, y), back = planar(c, c.backDepth, x, y);
+        if (!hit) {
+          ASSERT_LT(front, 0);
+          continue;
+        }
+        const double exact = t[1] - t[0];
+        if (exact < 0.5 * kRadius) continue;  // nearer to the rim the polygon's outline counts
+        worst = std::max(worst, std::abs((back - front) / exact - 1));
+        ++compared;
+      }
+    EXPECT_GT(compared, 15000);
+    EXPECT_LT(worst, 4e-4) << (orthographic ? "orthographic" : "perspective");
+    RecordProperty(orthographic ? "orthographic" : "perspective", std::to_string(worst));
+    printf("thickness error %g\n", worst);
+  }
+}
+
+TEST_F(Raster, FarthestBackFaceSpansHollows) {
+  Model model = emptyModel();
+  addCube(model, 5);
+  Model inner = emptyModel();
+  addCube(inner, 4);
+  // A hollow: the inner cube turned inside out, in the same object.
+  const auto first = static_cast<std::uint32_t>(model.vertices.size());
+  model.vertices.insert(model.vertices.end(), inner.vertices.begin(), inner.vertices.end());
+  for (std::size_t i = 0; i < inner.indices.size(); i += 3)
+    for (const std::size_t k : {i, i + 2, i + 1}) model.indices.push_back(first + inner.indices[k]);
+  endPart(model, 0);
+  RasterOptions options;
+  options.width = options.height = 32;
+  const Capture nearest = rasterize(model, frontCamera(false), options).capture;
+  EXPECT_NEAR(planar(nearest, nearest.backDepth, 16, 16), 96, 2e-4);
+  options.backFace = BackFace::Farthest;
+  const Capture farthest = rasterize(model, frontCamera(false), options).capture;
+  EXPECT_NEAR(planar(farthest, farthest.backDepth, 16, 16), 105, 2e-4);
+}
+
+// What is behind an open mesh must not become its thickness.
+TEST_F(Raster, OpenMeshHasNoThickness) {
+  Model model = emptyModel();
+  addSquare(model, 0, 0, 20, 5);
+  endPart(model, 0);
+  addSphere(model, {0, 0, -20}, 9, 32);
+  endPart(model, 1);
+  RasterOptions options;
+  options.width = options.height = 64;
+  for (const BackFace back : {BackFace::Nearest, BackFace::Farthest}) {
+    options.backFace = back;
+    const RasterResult result = rasterize(model, frontCamera(true), options);
+    const Capture& c = result.capture;
+    EXPECT_NEAR(planar(c, c.frontDepth, 32, 32), 80, 2e-4);
+    EXPECT_EQ(planar(c, c.backDepth, 32, 32), -1) << "the square has no back";
+    EXPECT_NEAR(planar(c, c.frontDepth, 32, 8), 120 - std::sqrt(81 - 7.34375 * 7.34375), 0.2);
+    EXPECT_GT(planar(c, c.backDepth, 32, 8), 120) << "the sphere beside it is closed";
+    EXPECT_EQ(result.openPixels, 32u * 32u);
+    ASSERT_EQ(result.warnings.size(), 1u);
+    EXPECT_NE(result.warnings[0].find("1024 of "), std::string::npos) << result.warnings[0];
+  }
+}
+
+// A cube without its back, and a square of the same object behind it: the first back face along the ray
+// belongs to the square.
+TEST_F(Raster, HoleIsNotThickness) {
+  Model model = emptyModel();
+  addCube(model, 5);
+  model.indices.erase(model.indices.begin() + 4 * 6, model.indices.begin() + 5 * 6);  // z = -5
+  const auto first = static_cast<std::uint32_t>(model.vertices.size());
+  addSquare(model, 0, 0, -30, 5);
+  for (std::size_t i = model.indices.size() - 6; i < model.indices.size(); i += 3)
+    std::swap(model.indices[i], model.indices[i + 1]);
+  model.indices.insert(model.indices.end(), {first, first + 1, first + 2, first, first + 2, first + 3});
+  endPart(model, 0);
+  RasterOptions options;
+  options.width = options.height = 32;
+  options.shadowSize = 0;
+  const RasterResult result = rasterize(model, frontCamera(true), options);
+  EXPECT_EQ(planar(result.capture, result.capture.backDepth, 16, 16), -1);
+  EXPECT_GT(result.openPixels, 200u);
+}
+
+TEST_F(Raster, SingleSidedFacesAreInvisibleFromBehindUnlessDoubleSided) {
+  Model model = emptyModel();
+  addQuad(model, {{-5, -5, 0}, {-5, 5, 0}, {5, 5, 0}, {5, -5, 0}}, {0, 0, -1});
+  endPart(model, 0);
+  RasterOptions options;
+  options.width = options.height = 16;
+  const Capture culled = rasterize(model, frontCamera(true), options).capture;
+  EXPECT_EQ(culled.material[16 * 8 + 8], 0);
+  model.surfaces[0].doubleSided = true;
+  model.lights = {directional({0, 0, -1})};
+  const Capture seen = rasterize(model, frontCamera(true), options).capture;
+  EXPECT_EQ(seen.material[16 * 8 + 8], 1);
+  EXPECT_EQ(seen.normal.at(8, 8)[2], 1.0f) << "turned towards the camera";
+  EXPECT_NEAR(seen.irradiance.at(8, 8)[0], 1, 1e-6);
+  EXPECT_EQ(planar(seen, seen.backDepth, 8, 8), -1);
+}
+
+TEST_F(Raster, DegenerateTrianglesCoverNothing) {
+  Model model = emptyModel();
+  addCube(model, 5);
+  model.indices.insert(model.indices.end(), {0, 0, 0, 0, 1, 1, 3, 2, 3});
+  endPart(model, 0);
+  RasterOptions options;
+  options.width = options.height = 64;
+  const RasterResult result = rasterize(model, frontCamera(false), options);
+  EXPECT_EQ(result.openPixels, 0u);
+  EXPECT_NEAR(planar(result.capture, result.capture.backDepth, 32, 32), 105, 2e-4);
+}
+
+// E = I N.L on a sphere, from normals interpolated between 256 rings.
+TEST_F(Raster, IrradianceIsLambert) {
+  Model model = emptyModel();
+  addSphere(model, {0, 0, 0}, 8, 256);
+  endPart(model, 0);
+  const Vector3 toLight = {0.6, 0, 0.8};
+  Light sun = directional({-0.6, 0, -0.8}, 3);
+  sun.color = {1, 0.5, 0.25};
+  Light point;
+  point.type = PELLUCID_LIGHT_POINT;
+  point.position = {60, 30, 40};
+  point.intensity = 8000;
+  Light spot = point;
+  spot.type = PELLUCID_LIGHT_SPOT;
+  spot.direction = {-60, -30, -40};
+  spot.innerConeAngle = 0.02;
+  spot.outerConeAngle = 0.12;
+  spot.range = 200;
+
+  RasterOptions options;
+  options.width = options.height = 128;
+  const auto expected = [&](const Light& light, const Vector3& x) {
+    const double r = 8;
+    if (light.type == PELLUCID_LIGHT_DIRECTIONAL)
+      return 3 * std::max(0.0, (x[0] * toLight[0] + x[2] * toLight[2]) / r);
+    double squared = 0, cosine = 0, axis = 0, length = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double d = light.position[i] - x[i];
+      squared += d * d;
+      cosine += d * x[i] / r;
+      axis -= d * light.direction[i];
+      length += light.direction[i] * light.direction[i];
+    }
+    const double distance = std::sqrt(squared);
+    double e = 8000 * std::max(0.0, cosine / distance) / squared;
+    if (light.type != PELLUCID_LIGHT_SPOT) return e;
+    e *= 1 - std::pow(distance / 200, 4);
+    const double outer = std::cos(0.12);
+    return e * std::pow(std::clamp((axis / distance / std::sqrt(length) - outer) / (std::cos(0.02) - outer),
+                                   0.0, 1.0),
+                        2);
+  };
+  for (const Light& light : {sun, point, spot}) {
+    model.lights = {light};
+    const Capture c = rasterize(model, frontCamera(false), options).capture;
+    ASSERT_TRUE(c.lights[0].shadowMap);
+    double worst = 0, brightest = 0;
+    for (int y = 0; y < c.height; ++y)
+      for (int x = 0; x < c.width; ++x) {
+        double t[2];
+        const PixelRay ray = rayOf(c, x, y);
+        if (c.material[static_cast<std::size_t>(y * c.width + x)] == 0 || !meetSphere(ray, 8, t)) continue;
+        Vector3 p;
+        for (std::size_t i = 0; i < 3; ++i) p[i] = ray.origin[i] + t[0] * ray.direction[i];
+        if (p[2] < 2) continue;  // the rim, as above
+        const double e = expected(light, p);
+        brightest = std::max(brightest, e);
+        worst = std::max(worst, std::abs(c.irradiance.at(x, y)[0] - e));
+        if (light.type == PELLUCID_LIGHT_DIRECTIONAL) {
+          ASSERT_NEAR(c.irradiance.at(x, y)[1], 0.5f * c.irradiance.at(x, y)[0], 1e-6);
+        }
+      }
+    printf("irradiance error %g of %g\n", worst, brightest);
+    // The chord's dip moves a point by 1.9e-5 r / cos; normals between rings are exact to (pi/256)^2 / 8.
+    EXPECT_LT(worst, 5e-4 * brightest) << "light type " << light.type;
+    EXPECT_GT(brightest, 0.5);
+  }
+}
+
+// A square 20 mm above a larger one shadows it exactly where the geometry says.
+TEST_F(Raster, ShadowsFallWhereTheyShould) {
+  Model model = emptyModel();
+  addSquare(model, 0, 0, 0, 9);
+  endPart(model, 0);
+  addSquare(model, -6, 0, 20, 2);  // seen beside its shadow
+  endPart(model, 1);
+  Light point;
+  point.type = PELLUCID_LIGHT_POINT;
+  point.position = {-18, 0, 60};  // the shadow is 1.5 times as large, about x = 0
+  point.intensity = 3600;
+  Light spot = point;
+  spot.type = PELLUCID_LIGHT_SPOT;
+  spot.direction = {18, 0, -60};
+  spot.innerConeAngle = 0.3;
+  spot.outerConeAngle = 0.5;
+  struct Case {
+    Light light;
+    double half;
+  };
+  const Case cases[] = {{directional({6, 0, -20}), 2}, {point, 3}, {spot, 3}};
+  RasterOptions options;
+  options.width = options.height = 200;  // 0.1 mm a pixel
+  for (const Case& k : cases) {
+    model.lights = {k.light};
+    const Capture c = rasterize(model, frontCamera(true), options).capture;
+    ASSERT_TRUE(c.lights[0].shadowMap);
+    int compared = 0;
+    for (int y = 0; y < 200; ++y)
+      for (int x = 0; x < 200; ++x) {
+        const Vector3 p = {(x + 0.5) * 0.1 - 10, 10 - (y + 0.5) * 0.1, 0};
+        if (std::abs(p[0]) > 8.9 || std::abs(p[1]) > 8.9) continue;
+        if (p[0] < -3.9 && std::abs(p[1]) < 2.1) continue;  // the upper square hides it
+        const double inside = k.half - std::max(std::abs(p[0]), std::abs(p[1]));
+        // Texels are 24 mm / 1024; four of them blend, and the offset shifts by one and a half.
+        if (std::abs(inside) < 0.1) continue;
+        if (inside > 0)
+          ASSERT_EQ(c.irradiance.at(x, y)[0], 0) << p[0] << ", " << p[1] << " light " << k.light.type;
+        else
+          ASSERT_GT(c.irradiance.at(x, y)[0], 0.3) << p[0] << ", " << p[1] << " light " << k.light.type;
+        ++compared;
+      }
+    EXPECT_GT(compared, 20000);
+  }
+}
+
+// A shadow map's numbers: the distance of a plane from the light in each encoding.
+TEST_F(Raster, ShadowMapEncodings) {
+  Model model = emptyModel();
+  addSquare(model, 0, 0, 0, 9);
+  endPart(model, 0);
+  Light point;
+  point.type = PELLUCID_LIGHT_POINT;
+  point.position = {0, 0, 40};
+  RasterOptions options;
+  options.width = options.height = 16;
+  options.shadowSize = 65;
+  for (const Light& light : {point, directional({0, 0, -1})})
+    for (const auto encoding : {PELLUCID_DEPTH_DEVICE, PELLUCID_DEPTH_VIEW_Z, PELLUCID_DEPTH_DISTANCE}) {
+      options.shadowEncoding = encoding;
+      model.lights = {light};
+      const Capture capture = rasterize(model, frontCamera(true), options).capture;
+      const ShadowMap& map = *capture.lights[0].shadowMap;
+      EXPECT_EQ(map.depth.encoding, encoding);
+      // From the texel back to the world through clipFromWorld: the plane is z = 0.
+      const auto clipOf = [&](double x, double y, double z) {
+        std::array<double, 4> clip{};
+        for (std::size_t r = 0; r < 4; ++r)
+          clip[r] = map.clipFromWorld[r] * x + map.clipFromWorld[4 + r] * y + map.clipFromWorld[8 + r] * z +
+                    map.clipFromWorld[12 + r];
+        return clip;
+      };
+      for (const double x : {-5.0, 0.0, 6.5}) {
+        const auto clip = clipOf(x, 2, 0);
+        const int tx = static_cast<int>((clip[0] / clip[3] * 0.5 + 0.5) * 65),
+                  ty = static_cast<int>((clip[1] / clip[3] * 0.5 + 0.5) * 65);
+        const double stored = *map.depth.image.at(tx, ty);
+        const double planarDistance =
+            -((*map.viewFromWorld)[2] * x + (*map.viewFromWorld)[6] * 2 + (*map.viewFromWorld)[14]);
+        if (encoding == PELLUCID_DEPTH_DEVICE)
+          EXPECT_NEAR(stored, clip[2] / clip[3], 1e-5);
+        else if (encoding == PELLUCID_DEPTH_VIEW_Z || light.type == PELLUCID_LIGHT_DIRECTIONAL)
+          EXPECT_NEAR(stored, planarDistance, 1e-5 * planarDistance);
+        else  // a texel is 0.3 mm wide
+          EXPECT_NEAR(stored, std::sqrt(x * x + 4 + 1600), 0.05);
+      }
+      const double corner = *map.depth.image.at(0, 0);
+      EXPECT_EQ(corner, encoding == PELLUCID_DEPTH_DEVICE ? 0 : static_cast<double>(kNoDepth))
+          << "outside the square";
+    }
+}
+
+TEST_F(Raster, PointLightWithinTheModelHasNoMapAndSaysSo) {
+  Model model = emptyModel();
+  addSquare(model, 0, 0, 0, 9);
+  endPart(model, 0);
+  Light point;
+  point.type = PELLUCID_LIGHT_POINT;
+  point.position = {0, 0, 1};
+  point.intensity = 1;
+  model.lights = {directional({0, 0, -1}), point};
+  RasterOptions options;
+  options.width = options.height = 17;
+  options.depthEncoding = PELLUCID_DEPTH_VIEW_Z;
+  const RasterResult result = rasterize(model, frontCamera(true), options);
+  EXPECT_TRUE(result.capture.lights[0].shadowMap);
+  EXPECT_FALSE(result.capture.lights[1].shadowMap);
+  EXPECT_NEAR(result.capture.irradiance.at(8, 8)[0], 2, 1e-5) << "both lights arrive";
+  ASSERT_EQ(result.warnings.size(), 2u);
+  EXPECT_NE(result.warnings[1].find("lights[1]"), std::string::npos) << result.warnings[1];
+}
+
+TEST_F(Raster, TexturesMarksAndHoles) {
+  Model model = emptyModel();
+  addSquare(model, 0, 0, 0, 8);
+  endPart(model, 0);
+  const std::array<float, 2> uv[] = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
+  for (std::size_t i = 0; i < 4; ++i) {
+    model.vertices[i].uv = uv[i];
+    model.vertices[i].mark = i < 2 ? 0 : 1;  // the upper half is marked
+    model.vertices[i].color = {1, 1, 0.5f};
+  }
+  Texture texture;
+  texture.width = texture.height = 2;
+  texture.rgba = {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 188, 255, 255, 255, 255, 10};
+  texture.wrapU = texture.wrapV = TextureWrap::Clamp;
+  model.textures = {texture};
+  model.surfaces[0].texture = 0;
+  model.surfaces[0].baseColor = {1, 1, 1};
+  model.surfaces[0].addedColor = {0, 0, 0.25};
+  model.surfaces[0].alphaCutoff = 0.5;
+  RasterOptions options;
+  options.width = options.height = 40;  // 0.5 mm
+  const Capture c = rasterize(model, frontCamera(true), options).capture;
+  const auto expectColor = [&](int x, int y, double r, double g, double b) {
+    EXPECT_NEAR(c.albedo.at(x, y)[0], r, 1e-3) << x << ", " << y;  // half-float texels
+    EXPECT_NEAR(c.albedo.at(x, y)[1], g, 1e-3) << x << ", " << y;
+    EXPECT_NEAR(c.albedo.at(x, y)[2], b, 1e-3) << x << ", " << y;
+  };
+  expectColor(6, 6, 1, 0, 0.25);
+  expectColor(33, 6, 0, 1, 0.25);
+  expectColor(6, 33, 0, 0, 0.25 + 0.5 * 0.5029);  // sRGB 188
+  EXPECT_LT(planar(c, c.frontDepth, 33, 33), 0) << "a hole";
+  EXPECT_EQ(c.material[40 * 6 + 6], 1);
+  EXPECT_EQ(c.material[40 * 33 + 6], 0) << "not marked";
+  EXPECT_NEAR(planar(c, c.frontDepth, 6, 33), 100, 2e-4) << "but there";
+}
+
+TEST_F(Raster, NormalsInViewSpace) {
+  Model model = emptyModel();
+  addSphere(model, {0, 0, 0}, 8, 64);
+  endPart(model, 0);
+  ModelCamera camera = frontCamera(false);
+  camera.viewFromWorld = lookAt({80, 0, 60}, {0, 0, 0}, {0, 1, 0});
+  RasterOptions options;
+  options.width = options.height = 33;
+  options.normalsInViewSpace = true;
+  const Capture c = rasterize(model, camera, options).capture;
+  EXPECT_TRUE(c.normalsInViewSpace);
+  EXPECT_NEAR(c.normal.at(16, 16)[2], 1, 1e-3);
+}
+
+TEST_F(Raster, BadOptionsAreRefusedByName) {
+  Model model = emptyModel();
+  addSquare(model, 0, 0, 0, 8);
+  endPart(model, 0);
+  const auto refusal = [&](const Model& m, const ModelCamera& camera, const RasterOptions& options) {
+    try {
+      rasterize(m, camera, options);
+    } catch (const InputError& e) {
+      return std::string(e.what());
+    }
+    return std::string("accepted");
+  };
+  RasterOptions options;
+  options.width = 0;
+  EXPECT_EQ(refusal(model, frontCamera(true), options), "test: width: 0 is outside 1 .. 8192");
+  options = {};
+  options.shadowSize = 9000;
+  EXPECT_EQ(refusal(model, frontCamera(true), options), "test: shadowSize: 9000 is outside 0 .. 8192");
+  options = {};
+  options.depthEncoding = PELLUCID_DEPTH_DISTANCE;
+  EXPECT_NE(refusal(model, frontCamera(true), options).find("depthEncoding"), std::string::npos);
+  options = {};
+  options.infiniteFar = true;
+  EXPECT_NE(refusal(model, frontCamera(true), options).find("infiniteFar"), std::string::npos);
+  model.parts.clear();
+  EXPECT_NE(refusal(model, frontCamera(true), {}).find("no triangle"), std::string::npos);
+}
+
+TEST(Framing, TheWholeModelIsInView) {
+  Model model = emptyModel();
+  addCube(model, 5);
+  endPart(model, 0);
+  for (const double aspect : {0.5, 1.0, 2.0})
+    for (const bool orthographicCamera : {false, true}) {
+      const ModelCamera camera = frameModel(model, {1, 2, 3}, 0.6, aspect, orthographicCamera);
+      const Matrix clip =
+          multiply(orthographicCamera ? orthographic(camera.height * aspect, camera.height, camera.range)
+                                      : perspective(camera.verticalFov, aspect, camera.range),
+                   camera.viewFromWorld);
+      double widest = 0;
+      for (const Vertex& v : model.vertices) {
+        double p[4];
+        for (std::size_t r = 0; r < 4; ++r)
+          p[r] = clip[r] * v.position[0] + clip[4 + r] * v.position[1] + clip[8 + r] * v.position[2] +
+                 clip[12 + r];
+        EXPECT_GT(p[2], 0);
+        EXPECT_LT(p[2], p[3]);
+        widest = std::max({widest, std::abs(p[0] / p[3]), std::abs(p[1] / p[3])});
+      }
+      EXPECT_LT(widest, 1);
+      EXPECT_GT(widest, 0.6);
+    }
+}
+
+// The capture on disk and the one in memory are one capture.
+TEST_F(Raster, WrittenCaptureReplaysBitIdentically) {
+  Model model = emptyModel();
+  addSphere(model, {0, 0, 0}, 6, 48);
+  endPart(model, 0);
+  addSquare(model, -7, 0, -12, 4);
+  endPart(model, 1);
+  Light point;
+  point.type = PELLUCID_LIGHT_POINT;
+  point.position = {10, 5, -60};
+  point.intensity = 9000;
+  model.lights = {directional({0.3, 0, 1}, 2), point};
+  RasterOptions options;
+  options.width = 96;
+  options.height = 80;
+  options.shadowSize = 256;
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() / ("pellucid_raster_" + std::to_string(::getpid()) + ".exr");
+  for (const auto encoding : {PELLUCID_DEPTH_DEVICE, PELLUCID_DEPTH_VIEW_Z}) {
+    options.depthEncoding = options.shadowEncoding = encoding;
+    const Capture direct = rasterize(model, frontCamera(false), options).capture;
+    EXPECT_TRUE(
+        sameBits(direct.irradiance, rasterize(model, frontCamera(false), options).capture.irradiance));
+    writeCapture(direct, file);
+    const Capture read = readCapture(file);
+    const std::vector<PellucidMaterial> materials = compileMaterials(direct);
+    const Image a = replayer().run(direct, materials, {}).output;
+    const Image b = replayer().run(read, compileMaterials(read), {}).output;
+    EXPECT_TRUE(sameBits(a, b));
+    EXPECT_GT(a.at(48, 40)[0], 0) << "light comes through";
+  }
+  std::filesystem::remove(file);
+}
+
+}  // namespace
