@@ -28,6 +28,7 @@ int main(int argc, char** argv) {
   addMaterialCommand(app);
   addReferenceCommand(app);
   addCompareCommand(app);
+  addEvaluateCommand(app);
   addCaptureCommand(app);
   try {
     app.parse(argc, argv);

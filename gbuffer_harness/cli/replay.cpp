@@ -23,12 +23,6 @@ struct Options {
   SettingsOptions settings;
 };
 
-Image rgb(const Image& rgba) {
-  Image result(rgba.width, rgba.height, 3);
-  for (size_t i = 0; i < rgba.pixels(); ++i) std::copy_n(&rgba.data[i * 4], 3, &result.data[i * 3]);
-  return result;
-}
-
 void multiply(Image& image, const Image& by) {
   for (size_t i = 0; i < image.data.size() && !by.empty(); ++i) image.data[i] *= by.data[i];
 }

@@ -1,6 +1,7 @@
 // Plain float image: interleaved channels, row 0 at the top.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -29,5 +30,12 @@ private:
            static_cast<std::size_t>(channels);
   }
 };
+
+// The first three channels of an image of four.
+inline Image rgb(const Image& rgba) {
+  Image result(rgba.width, rgba.height, 3);
+  for (std::size_t i = 0; i < rgba.pixels(); ++i) std::copy_n(&rgba.data[i * 4], 3, &result.data[i * 3]);
+  return result;
+}
 
 }  // namespace pellucid::harness

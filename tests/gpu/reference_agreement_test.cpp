@@ -2,6 +2,7 @@
 #include "gpu_fixture.h"
 
 #include <cstdio>
+#include <functional>
 
 #include "common/compare.h"
 #include "reference/reference.h"
@@ -114,5 +115,95 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Agreement,
                          [](const auto& test) {
                            return std::string(test.param.name) + std::to_string(test.index);
                          });
+
+// Every option of the thesis, on the scene where all of it shows.
+struct Option {
+  const char* name;
+  std::function<void(TranslucencySettings&)> set;
+  PellucidTransmittanceModel model = PELLUCID_TRANSMITTANCE_EXP2;
+};
+
+const Option kOptions[] = {
+    {"Cosine", [](TranslucencySettings& t) { t.angleModel = PELLUCID_ANGLE_COSINE; }},
+    {"InverseCosine", [](TranslucencySettings& t) { t.angleModel = PELLUCID_ANGLE_INVERSE_COSINE; }},
+    {"Polynomial",
+     [](TranslucencySettings& t) {
+       t.angleModel = PELLUCID_ANGLE_POLYNOMIAL;
+       t.anglePolynomial = {0.02f, -0.9f, 1.8f, 0.1f};  // negative in between
+     }},
+    {"MinimumDot",
+     [](TranslucencySettings& t) {
+       t.angleModel = PELLUCID_ANGLE_MINIMUM_DOT;
+       t.minimumDot = -0.4f;
+     }},
+    {"MinimumDotOfMinusOne",
+     [](TranslucencySettings& t) {
+       t.angleModel = PELLUCID_ANGLE_MINIMUM_DOT;
+       t.minimumDot = -1;
+     }},
+    {"ConstantView",
+     [](TranslucencySettings& t) {
+       t.angleModel = PELLUCID_ANGLE_COSINE;
+       t.constantViewDirection = true;
+     }},
+    {"Chord", [](TranslucencySettings& t) { t.chordThickness = true; }},
+    {"MaximumThickness", [](TranslucencySettings& t) { t.maximumThickness = 2.5f; }},
+    {"Filter",
+     [](TranslucencySettings& t) {
+       t.transmittanceFilter = {0.55f, 0.29f, 0.28f};
+     }},
+    {"Bias", [](TranslucencySettings& t) { t.shadowBias = 0.5f; }},
+    {"Linear", [](TranslucencySettings&) {}, PELLUCID_TRANSMITTANCE_LINEAR},
+    {"Gaussians", [](TranslucencySettings&) {}, PELLUCID_TRANSMITTANCE_GAUSSIANS},
+    {"GaussiansAsPrinted", [](TranslucencySettings&) {}, PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED},
+};
+
+class ThesisOptions : public GpuTest, public testing::WithParamInterface<Option> {};
+
+TEST_P(ThesisOptions, AgreeWithTheReference) {
+  const Capture c = make({"ear"});
+  PellucidMaterial material = testMaterial();
+  material.transmittanceModel = GetParam().model;
+  if (material.transmittanceModel == PELLUCID_TRANSMITTANCE_LINEAR)
+    for (int k = 0; k < 3; ++k) material.transmittance[k][0] = 4.0f / static_cast<float>(k + 1);
+  for (const auto source : {PELLUCID_THICKNESS_LIGHT, PELLUCID_THICKNESS_CAMERA}) {
+    ReplaySettings s;
+    s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+    s.features = PELLUCID_FEATURE_TRANSLUCENCY;
+    s.translucency.thicknessSource = source;
+    GetParam().set(s.translucency);
+    reference::Settings r;
+    r.features = s.features;
+    r.translucency = s.translucency;
+    const Image gpu = replay(c, material, s), ref = reference::compute(c, {material}, r).image;
+    EXPECT_LT(worst(c, gpu, ref, 3, 1, 4e-3), 1e-3);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Reference, ThesisOptions, testing::ValuesIn(kOptions),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+// The two-dispatch diffusion is another algorithm than the reference's sum over all pixels; this is how
+// far it is, for a later one to lower.
+TEST_F(GpuTest, DiffusionDistanceToBruteForce) {
+  // A wrong profile or a missing renormalization shows as tens of percent. Of the sphere only the limb is
+  // lit, where every pixel is a silhouette.
+  const std::pair<const char*, double> scenes[] = {
+      {"checker", 0.1}, {"step", 0.02}, {"tilted", 0.02}, {"sphere", 0.6}, {"ear", 0.12}};
+  for (const auto& [name, limit] : scenes) {
+    const Capture c = make({name});
+    const std::vector<PellucidMaterial> materials(std::max<size_t>(c.materials.size(), 1), testMaterial());
+    ReplaySettings s;
+    s.features = PELLUCID_FEATURE_DIFFUSION;
+    reference::Settings r;
+    r.features = s.features;
+    const Image gpu = rgb(replayer().run(c, materials, s).output);
+    const Comparison d = compareImages(gpu, reference::compute(c, materials, r).image,
+                                       comparisonMask(c.material, c.irradiance, Subset::All));
+    std::printf("%-10s relative RMSE %.4f %.4f %.4f\n", name, d.channels[0].relativeRmse,
+                d.channels[1].relativeRmse, d.channels[2].relativeRmse);
+    for (const ChannelDifference& k : d.channels) EXPECT_LT(k.relativeRmse, limit) << name;
+  }
+}
 
 }  // namespace

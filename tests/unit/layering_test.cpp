@@ -78,6 +78,6 @@ TEST_P(Layering, Holds) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Rules, Layering, testing::ValuesIn(kRules));
+INSTANTIATE_TEST_SUITE_P(Rules, Layering, testing::ValuesIn(kRules), [](const auto& test) { return "Rule" + std::to_string(test.index); });
 
 }  // namespace

@@ -1,0 +1,374 @@
+// `pellucid material`: what the material compiler makes of coefficients, a spectrum or a preset.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <iomanip>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <optional>
+
+#include "cli/commands.h"
+#include "common/error.h"
+#include "common/plot.h"
+#include "pellucid/pellucid_material.h"
+
+namespace pellucid::harness {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::array<const char*, 3> kChannelNames = {"R", "G", "B"};
+constexpr std::array<Color, 3> kChannelColors = {{{200, 40, 40}, {30, 140, 50}, {40, 70, 200}}};
+
+struct Options {
+  std::string name, spectral, plot, illuminant = "D65";
+  std::vector<double> scattering, absorption;
+  std::vector<double> thickness = {0.1, 0.2, 0.5, 1, 2, 5, 10, 20};
+  std::optional<double> g, ior, melanin, melaninType, haemoglobin;
+  std::uint32_t gaussians = 6;
+  bool json = false, list = false;
+};
+
+struct SpectrumFile {
+  std::vector<double> wavelength, scattering, absorption;
+};
+
+// Three numbers a line, separated by commas: wavelength in nm, sigma_s and sigma_a in 1/mm. A first line
+// that does not start with a number is a heading; empty lines and those that start with # are skipped.
+SpectrumFile readSpectrum(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) throw InputError(path, "", "the file cannot be read");
+  SpectrumFile spectrum;
+  std::string line;
+  for (int number = 1; std::getline(file, line); ++number) {
+    line.erase(
+        std::remove_if(line.begin(), line.end(), [](char c) { return c == ' ' || c == '\t' || c == '\r'; }),
+        line.end());
+    if (line.empty() || line[0] == '#') continue;
+    std::array<double, 3> row = {};
+    const char *at = line.data(), *const end = at + line.size();
+    std::size_t read = 0;
+    for (; read < row.size(); ++read) {
+      const auto [stop, error] = std::from_chars(at, end, row[read]);
+      if (error != std::errc() || (stop != end && *stop != ',')) break;
+      at = stop == end ? end : stop + 1;
+    }
+    if (read == 0 && number == 1) continue;
+    if (read < row.size() || at != end)
+      throw InputError(path, "line " + std::to_string(number),
+                       "\"" + line.substr(0, 60) + "\" is not three numbers");
+    if (spectrum.wavelength.size() == PELLUCID_MAX_WAVELENGTHS)
+      throw InputError(path, "line " + std::to_string(number),
+                       "more than " + std::to_string(PELLUCID_MAX_WAVELENGTHS) + " wavelengths");
+    spectrum.wavelength.push_back(row[0]);
+    spectrum.scattering.push_back(row[1]);
+    spectrum.absorption.push_back(row[2]);
+  }
+  return spectrum;
+}
+
+// Writes the options into a description, which points into `options` and `spectrum`.
+PellucidMaterialDesc describe(const Options& options, SpectrumFile& spectrum) {
+  const bool coefficients = !options.scattering.empty() || !options.absorption.empty();
+  const bool skin = options.melanin || options.melaninType || options.haemoglobin;
+  const int given = !options.name.empty() + coefficients + !options.spectral.empty() + skin;
+  if (given != 1)
+    throw UsageError(
+        "give one of: a preset's name (see --list), --scattering and --absorption, --spectral, or "
+        "--melanin, --melanin-type, --haemoglobin");
+  if (coefficients && (options.scattering.empty() || options.absorption.empty()))
+    throw UsageError("--scattering and --absorption go together");
+  if (options.g && !coefficients && options.spectral.empty())
+    throw UsageError("--g needs --scattering or --spectral");
+
+  PellucidMaterialDesc desc;
+  pellucidInitMaterialDesc(&desc);
+  desc.gaussianCount = options.gaussians;
+  desc.illuminant = options.illuminant == "A"   ? PELLUCID_ILLUMINANT_A
+                    : options.illuminant == "E" ? PELLUCID_ILLUMINANT_E
+                                                : PELLUCID_ILLUMINANT_D65;
+  desc.g = options.g.value_or(0);
+  if (options.ior) {
+    // 0 would stand for the default.
+    if (*options.ior == 0) throw InputError("", "ior", "0 is less than 1");
+    desc.ior = *options.ior;
+  }
+  if (!options.name.empty()) {
+    desc.kind = PELLUCID_MATERIAL_PRESET;
+    desc.preset = options.name.c_str();
+  } else if (coefficients) {
+    desc.kind = PELLUCID_MATERIAL_COEFFICIENTS;
+    std::copy_n(options.scattering.begin(), 3, desc.scattering);
+    std::copy_n(options.absorption.begin(), 3, desc.absorption);
+  } else if (skin) {
+    desc.kind = PELLUCID_MATERIAL_SKIN;
+    desc.melanin = options.melanin.value_or(desc.melanin);
+    desc.melaninType = options.melaninType.value_or(desc.melaninType);
+    desc.hemoglobin = options.haemoglobin.value_or(desc.hemoglobin);
+  } else {
+    spectrum = readSpectrum(options.spectral);
+    desc.kind = PELLUCID_MATERIAL_SPECTRAL;
+    desc.spectrum = {static_cast<std::uint32_t>(spectrum.wavelength.size()), spectrum.wavelength.data(),
+                     spectrum.scattering.data(), spectrum.absorption.data()};
+  }
+  return desc;
+}
+
+// Throws what the compiler complains of.
+template <class Call>
+void require(const std::string& file, Call&& call) {
+  struct Complaint {
+    std::string field, sentence = "out of memory";
+  } complaint;
+  const PellucidMessageFn note = [](void* user, PellucidSeverity, const char* field, const char* message) {
+    *static_cast<Complaint*>(user) = {field, message};
+  };
+  if (call(note, &complaint) != PELLUCID_OK) throw InputError(file, complaint.field, complaint.sentence);
+}
+
+struct Compiled {
+  PellucidMaterialDesc desc;
+  PellucidMaterial material;
+  PellucidMaterialReport report;
+  std::string file;  // named in errors
+
+  std::vector<PellucidSlab> slabs(const std::vector<double>& thickness) const {
+    std::vector<PellucidSlab> result(3 * thickness.size());
+    require(file, [&](PellucidMessageFn note, void* user) {
+      return pellucidMaterialSlabs(&desc, static_cast<std::uint32_t>(thickness.size()), thickness.data(),
+                                   result.data(), note, user);
+    });
+    return result;
+  }
+};
+
+// The parameters' names, in the order of PellucidMaterial::transmittance.
+std::vector<const char*> parameterNames(const PellucidMaterial& material) {
+  if (material.transmittanceModel == PELLUCID_TRANSMITTANCE_EXP2) return {"a1", "k1", "a2", "k2"};
+  return {"a", "kappa", "z", "b", "c"};
+}
+
+const char* formName(const PellucidMaterial& material) {
+  return material.transmittanceModel == PELLUCID_TRANSMITTANCE_EXP2 ? "exp2" : "sinh_exp";
+}
+
+// A float as the shortest decimal that reads back as the same float.
+double shortest(float value) {
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, value).ptr;
+  double result = 0;
+  std::from_chars(text, end, result);
+  return result;
+}
+
+Json toJson(const Compiled& compiled, const std::vector<double>& thickness) {
+  const PellucidMaterial& material = compiled.material;
+  const std::vector<PellucidSlab> exact = compiled.slabs(thickness);
+  Json channels = Json::array();
+  for (std::uint32_t c = 0; c < 3; ++c) {
+    const PellucidChannelReport& report = compiled.report.channels[c];
+    const bool plain = report.scattering + report.absorption > 0;  // one medium with coefficients of its own
+    Json coefficients, variance = Json::array(), weight = Json::array(), rows = Json::array();
+    const std::vector<const char*> names = parameterNames(material);
+    for (std::size_t i = 0; i < names.size(); ++i)
+      coefficients[names[i]] = shortest(material.transmittance[c][i]);
+    for (std::uint32_t i = 0; i < material.gaussianCount; ++i) {
+      variance.push_back(shortest(material.gaussianVariance[c][i]));
+      weight.push_back(shortest(material.gaussianWeight[c][i]));
+    }
+    for (std::size_t i = 0; i < thickness.size(); ++i)
+      rows.push_back({{"mm", thickness[i]},
+                      {"exact", exact[3 * i + c].transmittance},
+                      {"exact_normal", exact[3 * i + c].transmittanceNormal},
+                      {"fitted", pellucidEvaluateTransmittance(&material, c, thickness[i])}});
+    channels.push_back({{"name", kChannelNames[c]},
+                        {"scattering", plain ? Json(report.scattering) : Json()},
+                        {"absorption", plain ? Json(report.absorption) : Json()},
+                        {"rho", report.rho},
+                        {"fit",
+                         {{"form", formName(material)},
+                          {"coefficients", coefficients},
+                          {"max_relative_error", report.transmittanceError}}},
+                        {"profile",
+                         {{"burley_d", shortest(material.burleyDistance[c])},
+                          {"gaussians", {{"variance", variance}, {"weight", weight}}},
+                          {"edge_error", report.edgeError},
+                          {"radius_999", shortest(material.radius[c])}}},
+                        {"thickness", rows}});
+  }
+  return {
+      {"name", compiled.report.name}, {"ior", compiled.report.ior}, {"unit", "mm"}, {"channels", channels}};
+}
+
+// One row of three numbers.
+void printRow(const std::string& title, const std::array<double, 3>& values) {
+  std::cout << std::left << std::setw(26) << title << std::right << std::setprecision(6);
+  for (const double value : values) std::cout << std::setw(14) << value;
+  std::cout << '\n';
+}
+
+void printText(const Compiled& compiled, const std::vector<double>& thickness) {
+  const PellucidMaterial& material = compiled.material;
+  const auto row = [](const std::string& title, auto&& value) {
+    printRow(title, {value(0u), value(1u), value(2u)});
+  };
+  const auto report = [&](std::uint32_t c) -> const PellucidChannelReport& {
+    return compiled.report.channels[c];
+  };
+
+  std::cout << compiled.report.name << ", index of refraction " << compiled.report.ior
+            << ". Lengths in mm.\n\n"
+            << std::setw(26) << "";
+  for (const char* channel : kChannelNames) std::cout << std::setw(14) << channel;
+  std::cout << '\n';
+  if (report(0).scattering + report(0).absorption > 0) {
+    row("scattering (reduced)", [&](std::uint32_t c) { return report(c).scattering; });
+    row("absorption", [&](std::uint32_t c) { return report(c).absorption; });
+  }
+  row("rho, half-space", [&](std::uint32_t c) { return report(c).rho; });
+
+  std::cout << "\nT(d) = "
+            << (material.transmittanceModel == PELLUCID_TRANSMITTANCE_EXP2
+                    ? "a1 exp(-k1 d) + a2 exp(-k2 d)"
+                    : "a / sinh(kappa d + z) + b exp(-c d)")
+            << '\n';
+  const std::vector<const char*> names = parameterNames(material);
+  for (std::size_t i = 0; i < names.size(); ++i)
+    row(names[i], [&](std::uint32_t c) { return static_cast<double>(material.transmittance[c][i]); });
+  row("largest error, %", [&](std::uint32_t c) { return 100 * report(c).transmittanceError; });
+  row("  from thickness", [&](std::uint32_t c) { return report(c).minThickness; });
+  row("  to thickness", [&](std::uint32_t c) { return report(c).maxThickness; });
+
+  std::cout << "\nDiffusion\n";
+  row("Burley d", [&](std::uint32_t c) { return static_cast<double>(material.burleyDistance[c]); });
+  row("radius of 99.9 %", [&](std::uint32_t c) { return static_cast<double>(material.radius[c]); });
+  row("edge error of Gaussians", [&](std::uint32_t c) { return report(c).edgeError; });
+  for (std::uint32_t i = 0; i < material.gaussianCount; ++i) {
+    row("variance " + std::to_string(i),
+        [&](std::uint32_t c) { return static_cast<double>(material.gaussianVariance[c][i]); });
+    row("weight " + std::to_string(i),
+        [&](std::uint32_t c) { return static_cast<double>(material.gaussianWeight[c][i]); });
+  }
+
+  std::cout << "\nTransmittance: exact under Lambertian light, exact at normal incidence, fitted\n";
+  const std::vector<PellucidSlab> exact = compiled.slabs(thickness);
+  for (std::size_t i = 0; i < thickness.size(); ++i) {
+    std::ostringstream title;
+    title << thickness[i] << " mm";
+    row(title.str(), [&](std::uint32_t c) { return exact[3 * i + c].transmittance; });
+    row("  normal", [&](std::uint32_t c) { return exact[3 * i + c].transmittanceNormal; });
+    row("  fitted",
+        [&](std::uint32_t c) { return pellucidEvaluateTransmittance(&material, c, thickness[i]); });
+  }
+}
+
+std::vector<double> logarithmic(double first, double last, int count) {
+  std::vector<double> values;
+  for (int i = 0; i < count; ++i) values.push_back(first * std::pow(last / first, i / (count - 1.0)));
+  return values;
+}
+
+void writeMaterialPlot(const std::string& path, const Compiled& compiled) {
+  const PellucidMaterial& material = compiled.material;
+  Plot transmittance, profile;
+  transmittance.title = std::string("Transmittance of a slab: ") + compiled.report.name;
+  transmittance.x = {"thickness, mm", true, {}, {}};
+  transmittance.y = {"T", true, 1e-5, 1.0};
+  profile.title = "Diffusion profile: lines Burley, dots Gaussians";
+  profile.x = {"radius, mm", true, {}, {}};
+  profile.y = {"2 pi r R(r), 1/mm", true, {}, {}};
+
+  double farthest = 0;
+  for (const PellucidChannelReport& report : compiled.report.channels)
+    farthest = std::max(farthest, report.maxThickness);
+  const std::vector<double> thickness = logarithmic(compiled.report.channels[0].minThickness, farthest, 40);
+  const std::vector<double> fine = logarithmic(thickness.front(), farthest, 300);
+  const std::vector<PellucidSlab> exact = compiled.slabs(thickness);
+  for (std::uint32_t c = 0; c < 3; ++c) {
+    Series dots{std::string(kChannelNames[c]) + " exact", kChannelColors[c], thickness, {}, true};
+    for (std::size_t i = 0; i < thickness.size(); ++i) dots.y.push_back(exact[3 * i + c].transmittance);
+    Series line{std::string(kChannelNames[c]) + " fitted", kChannelColors[c], fine, {}, false};
+    for (const double d : fine) line.y.push_back(pellucidEvaluateTransmittance(&material, c, d));
+    transmittance.series.push_back(dots);
+    transmittance.series.push_back(line);
+
+    const double d = static_cast<double>(material.burleyDistance[c]);
+    const double radius999 = static_cast<double>(material.radius[c]);
+    Series burley{
+        kChannelNames[c], kChannelColors[c], logarithmic(radius999 / 1000, radius999, 200), {}, false};
+    for (const double r : burley.x) burley.y.push_back((std::exp(-r / d) + std::exp(-r / (3 * d))) / (4 * d));
+    Series gaussians{"", kChannelColors[c], logarithmic(radius999 / 1000, radius999, 50), {}, true};
+    for (const double r : gaussians.x) {
+      double sum = 0;
+      for (std::uint32_t i = 0; i < material.gaussianCount; ++i) {
+        const double v = static_cast<double>(material.gaussianVariance[c][i]);
+        sum += static_cast<double>(material.gaussianWeight[c][i]) * r / v * std::exp(-r * r / (2 * v));
+      }
+      gaussians.y.push_back(sum);
+    }
+    profile.series.push_back(burley);
+    profile.series.push_back(gaussians);
+  }
+  writePlot(path, {transmittance, profile});
+}
+
+void run(const Options& options) {
+  if (options.list) {
+    for (std::uint32_t i = 0; i < pellucidPresetCount(); ++i) std::cout << pellucidPresetName(i) << '\n';
+    return;
+  }
+  for (const double d : options.thickness)
+    if (!std::isfinite(d)) throw InputError("", "thickness", "not a finite number");
+  SpectrumFile spectrum;
+  Compiled compiled = {describe(options, spectrum), {}, {}, options.spectral};
+  require(compiled.file, [&](PellucidMessageFn note, void* user) {
+    return pellucidCompileMaterial(&compiled.desc, &compiled.material, &compiled.report, note, user);
+  });
+  if (options.json)
+    std::cout << toJson(compiled, options.thickness).dump(2) << '\n';
+  else
+    printText(compiled, options.thickness);
+  if (!options.plot.empty()) writeMaterialPlot(options.plot, compiled);
+}
+
+}  // namespace
+
+void addMaterialCommand(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("material", "Compile a material: its T(d), profile and what the shaders evaluate");
+  command->add_option("NAME", options->name, "a preset, see --list");
+  command->add_flag("--list", options->list, "print the presets' names");
+  command->add_option("--scattering", options->scattering, "sigma_s of R,G,B in 1/mm; reduced when --g is 0")
+      ->delimiter(',')
+      ->expected(3);
+  command->add_option("--absorption", options->absorption, "sigma_a of R,G,B in 1/mm")
+      ->delimiter(',')
+      ->expected(3);
+  command->add_option("--g", options->g, "mean cosine of scattering, between -1 and 1 (default 0)");
+  command->add_option("--ior", options->ior, "index of refraction, 1 to 3 (default: the preset's, else 1.4)");
+  command->add_option("--thickness", options->thickness, "mm, for the table")
+      ->delimiter(',')
+      ->capture_default_str();
+  command->add_option("--gaussians", options->gaussians, "how many Gaussians stand for the profile, 1 to 8")
+      ->capture_default_str();
+  command->add_option("--spectral", options->spectral, "CSV of wavelength (nm), sigma_s, sigma_a (1/mm)");
+  command->add_option("--illuminant", options->illuminant, "for spectra and skin: D65, A or E")
+      ->check(CLI::IsMember({"D65", "A", "E"}))
+      ->capture_default_str();
+  command->add_option("--melanin", options->melanin,
+                      "skin (Donner & Jensen 2006): melanin in the epidermis, 0 to 1");
+  command->add_option("--melanin-type", options->melaninType, "share of eumelanin, 0 to 1");
+  command->add_option("--haemoglobin", options->haemoglobin, "blood in the dermis, 0 to 1");
+  command->add_flag("--json", options->json, "print JSON");
+  command->add_option("--plot", options->plot, "write a PNG of T(d) and the profile");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace pellucid::harness
