@@ -1,191 +1,18 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
-#include <exception>
 #include <limits>
-#include <new>
 #include <optional>
 #include <string>
+#include <string_view>
 
+#include "describe.h"
 #include "fit.h"
 #include "pellucid/pellucid_material.h"
 #include "presets.h"
 #include "profile.h"
-#include "skin.h"
-#include "spectrum.h"
 
 namespace pellucid::material {
 namespace {
-
-constexpr double kDefaultIor = 1.4;
-
-// A wrong field; becomes a message and a result code at the C boundary.
-struct Refusal : std::exception {
-  Refusal(std::string f, std::string s, PellucidResult r = PELLUCID_ERROR_INVALID_ARGUMENT)
-      : field(std::move(f)), sentence(std::move(s)), result(r) {}
-  std::string field, sentence;
-  PellucidResult result;
-};
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.9g", value);
-  return text;
-}
-
-std::string indexed(std::string field, std::size_t i) {
-  field += '[';
-  field += std::to_string(i);
-  field += ']';
-  return field;
-}
-
-// Throws unless low <= value <= high; NaN throws.
-void requireRange(const std::string& field, double value, double low, double high) {
-  if (!(value >= low && value <= high))
-    throw Refusal(field, number(value) + " is not within " + number(low) + " to " + number(high));
-}
-
-void requireCount(const std::string& field, std::size_t value, std::size_t low, std::size_t high) {
-  if (value < low || value > high)
-    throw Refusal(field, std::to_string(value) + " is not within " + std::to_string(low) + " to " +
-                             std::to_string(high));
-}
-
-// ---- Descriptions ------------------------------------------------------------------------------
-
-// The range in 1/mm beyond which lengths stop being representable in the float results.
-constexpr double kLeastExtinction = 1e-6, kMostExtinction = 1e6;
-
-Coefficients checkedCoefficients(const PellucidMaterialDesc& desc, const std::string& scatteringField,
-                                 const std::string& absorptionField, double scattering, double absorption) {
-  const double unit = desc.millimetersPerUnit == 0 ? 1 : desc.millimetersPerUnit;
-  requireRange(scatteringField, scattering, 0, std::numeric_limits<double>::max());
-  requireRange(absorptionField, absorption, 0, std::numeric_limits<double>::max());
-  const Coefficients result{scattering * (1 - desc.g) / unit, absorption / unit};
-  if (scattering == 0 && absorption == 0)
-    throw Refusal(scatteringField, "0, and so is " + absorptionField + ": such a medium is nothing at all");
-  if (!(result.extinction() >= kLeastExtinction && result.extinction() <= kMostExtinction))
-    throw Refusal(scatteringField, "reduced scattering and absorption add up to " +
-                                       number(result.extinction()) + " per mm, not within " +
-                                       number(kLeastExtinction) + " to " + number(kMostExtinction));
-  return result;
-}
-
-void checkMedium(const PellucidMaterialDesc& desc) {
-  if (!(desc.g > -1 && desc.g < 1)) throw Refusal("g", number(desc.g) + " is not between -1 and 1");
-  if (!(desc.millimetersPerUnit >= 0 && std::isfinite(desc.millimetersPerUnit)))
-    throw Refusal("millimetersPerUnit", number(desc.millimetersPerUnit) + " is not a positive length");
-}
-
-double checkedIor(double ior, double fallback) {
-  if (ior == 0) return fallback;
-  requireRange("ior", ior, 1, 3);
-  return ior;
-}
-
-PellucidIlluminant checkedIlluminant(uint32_t illuminant) {
-  if (illuminant > PELLUCID_ILLUMINANT_E)
-    throw Refusal("illuminant", std::to_string(illuminant) + " is no PellucidIlluminant");
-  return static_cast<PellucidIlluminant>(illuminant);
-}
-
-Description describeCoefficients(const PellucidMaterialDesc& desc) {
-  checkMedium(desc);
-  std::vector<Stack> channels;
-  for (std::size_t c = 0; c < 3; ++c)
-    channels.push_back({{},
-                        checkedCoefficients(desc, indexed("scattering", c), indexed("absorption", c),
-                                            desc.scattering[c], desc.absorption[c])});
-  return rgbDescription(checkedIor(desc.ior, kDefaultIor), std::move(channels));
-}
-
-const Preset& checkedPreset(const PellucidMaterialDesc& desc) {
-  if (desc.preset == nullptr) throw Refusal("preset", "no name is given");
-  const Preset* preset = findPreset(desc.preset);
-  if (preset == nullptr) {
-    std::string names;
-    for (const Preset& known : presets()) names += (names.empty() ? "" : ", ") + std::string(known.name);
-    throw Refusal("preset", std::string(desc.preset) + " is not one of " + names);
-  }
-  return *preset;
-}
-
-Description describePreset(const PellucidMaterialDesc& desc) {
-  const Preset& preset = checkedPreset(desc);
-  const double ior = checkedIor(desc.ior, preset.ior);
-  if (preset.layered) return threeLayerSkin(ior);
-  std::vector<Stack> channels;
-  for (std::size_t c = 0; c < 3; ++c) channels.push_back({{}, {preset.scattering[c], preset.absorption[c]}});
-  return rgbDescription(ior, std::move(channels));
-}
-
-Description describeSpectrum(const PellucidMaterialDesc& desc) {
-  checkMedium(desc);
-  const PellucidSpectrum& spectrum = desc.spectrum;
-  requireCount("spectrum.count", spectrum.count, 2, PELLUCID_MAX_WAVELENGTHS);
-  if (spectrum.wavelength == nullptr) throw Refusal("spectrum.wavelength", "no array is given");
-  if (spectrum.scattering == nullptr) throw Refusal("spectrum.scattering", "no array is given");
-  if (spectrum.absorption == nullptr) throw Refusal("spectrum.absorption", "no array is given");
-  const std::span wavelength(spectrum.wavelength, spectrum.count);
-  const std::span scattering(spectrum.scattering, spectrum.count);
-  const std::span absorption(spectrum.absorption, spectrum.count);
-  for (std::size_t i = 0; i < wavelength.size(); ++i) {
-    requireRange(indexed("spectrum.wavelength", i), wavelength[i], 1, 1e6);
-    if (i > 0 && !(wavelength[i] > wavelength[i - 1]))
-      throw Refusal(indexed("spectrum.wavelength", i), number(wavelength[i]) + " does not increase");
-    checkedCoefficients(desc, indexed("spectrum.scattering", i), indexed("spectrum.absorption", i),
-                        scattering[i], absorption[i]);
-  }
-  if (wavelength.front() > wavelengthAt(kWavelengthCount - 1) || wavelength.back() < wavelengthAt(0))
-    throw Refusal("spectrum.wavelength", number(wavelength.front()) + " to " + number(wavelength.back()) +
-                                             " nm has no part in 380 to 780");
-  Description description{checkedIor(desc.ior, kDefaultIor), {},
-                          rec709Weights(checkedIlluminant(desc.illuminant))};
-  for (int i = 0; i < kWavelengthCount; ++i) {
-    const double nm = wavelengthAt(i);
-    description.stacks.push_back({{},
-                                  checkedCoefficients(desc, "spectrum.scattering", "spectrum.absorption",
-                                                      interpolate(wavelength, scattering, nm),
-                                                      interpolate(wavelength, absorption, nm))});
-  }
-  return description;
-}
-
-Description describeSkin(const PellucidMaterialDesc& desc) {
-  requireRange("melanin", desc.melanin, 0, 1);
-  requireRange("melaninType", desc.melaninType, 0, 1);
-  requireRange("hemoglobin", desc.hemoglobin, 0, 1);
-  return physiologicalSkin({desc.melanin, desc.melaninType, desc.hemoglobin},
-                           checkedIlluminant(desc.illuminant), checkedIor(desc.ior, kDefaultIor));
-}
-
-// The kinds that are media; the others define T(d) and the profile directly.
-std::optional<Description> describe(const PellucidMaterialDesc& desc) {
-  switch (desc.kind) {
-    case PELLUCID_MATERIAL_COEFFICIENTS: return describeCoefficients(desc);
-    case PELLUCID_MATERIAL_PRESET: return describePreset(desc);
-    case PELLUCID_MATERIAL_SPECTRAL: return describeSpectrum(desc);
-    case PELLUCID_MATERIAL_SKIN: return describeSkin(desc);
-    case PELLUCID_MATERIAL_BURLEY:
-    case PELLUCID_MATERIAL_GAUSSIANS: return std::nullopt;
-    default: throw Refusal("kind", std::to_string(desc.kind) + " is no PellucidMaterialKind");
-  }
-}
-
-const char* kindName(const PellucidMaterialDesc& desc) {
-  switch (desc.kind) {
-    case PELLUCID_MATERIAL_PRESET: return checkedPreset(desc).name;
-    case PELLUCID_MATERIAL_BURLEY: return "burley";
-    case PELLUCID_MATERIAL_GAUSSIANS: return "gaussians";
-    case PELLUCID_MATERIAL_SPECTRAL: return "spectral";
-    case PELLUCID_MATERIAL_SKIN: return "skin";
-    default: return "coefficients";
-  }
-}
-
-// ---- Compilation -------------------------------------------------------------------------------
 
 struct Result {
   PellucidMaterial material = {};
@@ -218,7 +45,7 @@ std::array<std::vector<Sample>, 3> sampleTransmittance(const Source& source) {
   constexpr int kSamples = 72, kMinimum = 8;
   // Where wavelengths mix, what is left of a channel deep inside is a small difference of large numbers, or
   // a color outside Rec. 709 cut to 0. Errors there are measured against this share of the brightest channel.
-  constexpr double kVisible = 0.05;
+  constexpr double kVisible = 0.5;
   double first = 0.01, last = 20;
   for (int c = 0; c < 3; ++c) {
     first = std::min(first, 0.05 / source.extinction(c));
@@ -246,7 +73,8 @@ std::array<std::vector<Sample>, 3> sampleTransmittance(const Source& source) {
         std::max({slabs[0].transmittance, slabs[1].transmittance, slabs[2].transmittance});
     for (std::size_t c = 0; c < 3; ++c) {
       // Up to and with the first sample below the limit: the curve must reach it.
-      const double scale = std::max({slabs[c].transmittance, source.mixed() ? kVisible * brightest : 0, kTiny});
+      const double scale =
+          std::max({slabs[c].transmittance, source.mixed() ? kVisible * brightest : 0, kTiny});
       if (!ended[c]) samples[c].push_back({d, slabs[c].transmittance, scale});
       ended[c] = ended[c] || (scale < kLeast && i + 1 >= kMinimum);
     }
@@ -261,7 +89,7 @@ void compileMedium(const Description& description, std::uint32_t count, Result& 
   // to a tenth of a percent in every channel or the better form in every channel.
   constexpr double kGood = 1e-3;
   std::array<Fits, 3> fits;
-  std::array<bool, 3> better; // exp2
+  std::array<bool, 3> better;  // exp2
   bool exp2Good = true, exp2Better = true;
   for (std::size_t c = 0; c < 3; ++c) {
     const int channel = static_cast<int>(c);
@@ -304,9 +132,9 @@ Curve checkedCurve(const PellucidMaterialDesc& desc, std::size_t c) {
   if (absent)
     curve.parameters = {0.25f, static_cast<float>(1 / d), 0.75f, static_cast<float>(1 / (3 * d)), 0};
   if (!isTransmittance(curve))
-    throw Refusal(indexed("transmittance", c),
-                  number(given[0]) + " e^{-" + number(given[1]) + " d} + " + number(given[2]) + " e^{-" +
-                      number(given[3]) + " d} does not fall from at most 1 to 0");
+    throw Refusal(indexed("transmittance", c), number(given[0]) + " e^{-" + number(given[1]) + " d} + " +
+                                                   number(given[2]) + " e^{-" + number(given[3]) +
+                                                   " d} does not fall from at most 1 to 0");
   return curve;
 }
 
@@ -357,33 +185,44 @@ Result compile(const PellucidMaterialDesc& desc) {
     compileBurley(desc, result);
   else
     compileGaussians(desc, result);
-  std::snprintf(result.report.name, sizeof result.report.name, "%s", kindName(desc));
+  const std::string_view name = kindName(desc);
+  name.copy(result.report.name, sizeof result.report.name - 1);
   return result;
 }
 
 // ---- The C boundary ----------------------------------------------------------------------------
 
 double evaluateMaterial(const PellucidMaterial& material, std::size_t channel, double d) {
-  if (material.transmittanceModel == PELLUCID_TRANSMITTANCE_GAUSSIANS) {
-    double sum = 0;
-    for (std::size_t i = 0; i < std::min<std::size_t>(material.gaussianCount, PELLUCID_MAX_GAUSSIANS); ++i)
-      sum += static_cast<double>(material.gaussianWeight[channel][i]) *
-             std::exp(-d * d / (2 * static_cast<double>(material.gaussianVariance[channel][i])));
-    return sum;
+  const float* parameters = material.transmittance[channel];
+  switch (material.transmittanceModel) {
+    case PELLUCID_TRANSMITTANCE_EXP2:
+    case PELLUCID_TRANSMITTANCE_SINH_EXP: {
+      Curve curve{static_cast<PellucidTransmittanceModel>(material.transmittanceModel), {}};
+      std::copy_n(parameters, curve.parameters.size(), curve.parameters.begin());
+      return evaluate(curve, d);
+    }
+    case PELLUCID_TRANSMITTANCE_GAUSSIANS:
+    case PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED: {
+      const double twice = material.transmittanceModel == PELLUCID_TRANSMITTANCE_GAUSSIANS ? 2 : 1;
+      double sum = 0;
+      for (std::size_t i = 0; i < std::min<std::size_t>(material.gaussianCount, PELLUCID_MAX_GAUSSIANS); ++i)
+        sum += static_cast<double>(material.gaussianWeight[channel][i]) *
+               std::exp(-d * d / (twice * static_cast<double>(material.gaussianVariance[channel][i])));
+      return sum;
+    }
+    case PELLUCID_TRANSMITTANCE_LINEAR:
+      return std::max(1 - d / static_cast<double>(parameters[0]), 0.0);
+    default:
+      return std::numeric_limits<double>::quiet_NaN();
   }
-  if (material.transmittanceModel > PELLUCID_TRANSMITTANCE_GAUSSIANS)
-    return std::numeric_limits<double>::quiet_NaN();
-  Curve curve{static_cast<PellucidTransmittanceModel>(material.transmittanceModel), {}};
-  std::copy(std::begin(material.transmittance[channel]), std::end(material.transmittance[channel]),
-            curve.parameters.begin());
-  return evaluate(curve, d);
 }
 
 void requireDesc(const PellucidMaterialDesc* desc) {
   if (desc == nullptr) throw Refusal("desc", "NULL");
   if (desc->structSize != sizeof(PellucidMaterialDesc))
-    throw Refusal("structSize", std::to_string(desc->structSize) + " is not this library's " +
-                                    std::to_string(sizeof(PellucidMaterialDesc)),
+    throw Refusal("structSize",
+                  std::to_string(desc->structSize) + " is not this library's " +
+                      std::to_string(sizeof(PellucidMaterialDesc)),
                   PELLUCID_ERROR_VERSION);
 }
 
@@ -407,8 +246,8 @@ PellucidSlab publicSlab(const Slab& slab) {
   return {slab.transmittance, slab.transmittanceNormal, slab.reflectance};
 }
 
-} // namespace
-} // namespace pellucid::material
+}  // namespace
+}  // namespace pellucid::material
 
 using namespace pellucid::material;
 
@@ -416,9 +255,9 @@ void pellucidInitMaterialDesc(PellucidMaterialDesc* desc) {
   *desc = {};
   desc->structSize = sizeof(PellucidMaterialDesc);
   desc->gaussianCount = 6;
-  desc->melanin = 0.03;
+  desc->melanin = 0.005;
   desc->melaninType = 0.5;
-  desc->hemoglobin = 0.02;
+  desc->hemoglobin = 0.005;
 }
 
 PellucidResult pellucidCompileMaterial(const PellucidMaterialDesc* desc, PellucidMaterial* material,
@@ -449,8 +288,8 @@ PellucidResult pellucidSlabTransport(double scattering, double absorption, doubl
 }
 
 PellucidResult pellucidMaterialSlabs(const PellucidMaterialDesc* desc, uint32_t count,
-                                     const double* thickness, PellucidSlab* slabs,
-                                     PellucidMessageFn message, void* messageUser) {
+                                     const double* thickness, PellucidSlab* slabs, PellucidMessageFn message,
+                                     void* messageUser) {
   return guarded(message, messageUser, [&] {
     requireDesc(desc);
     if (count > 0 && thickness == nullptr) throw Refusal("thickness", "NULL");

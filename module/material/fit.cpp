@@ -18,7 +18,7 @@ using Vector = Eigen::Matrix<double, N, 1>;
 // Each family maps free parameters to a curve. Rates enter as logarithms, which keeps them positive and
 // in order.
 struct Exp2Family {
-  using Parameters = Vector<4>; // a1, ln k1, a2, ln(k2 - k1)
+  using Parameters = Vector<4>;  // a1, ln k1, a2, ln(k2 - k1)
 
   double operator()(const Parameters& p, double d, Parameters& gradient) const {
     const double k1 = std::exp(p[1]), excess = std::exp(p[3]);
@@ -36,7 +36,7 @@ struct Exp2Family {
 };
 
 struct SinhExpFamily {
-  using Parameters = Vector<5>; // a, ln z, b, ln(c - kappa), ln kappa
+  using Parameters = Vector<5>;  // a, ln z, b, ln(c - kappa), ln kappa
   bool freeKappa;
 
   double operator()(const Parameters& p, double d, Parameters& gradient) const {
@@ -68,7 +68,9 @@ public:
     resetWeights();
   }
 
-  void resetWeights() { std::fill(weights_.begin(), weights_.end(), 1.0 / static_cast<double>(weights_.size())); }
+  void resetWeights() {
+    std::fill(weights_.begin(), weights_.end(), 1.0 / static_cast<double>(weights_.size()));
+  }
 
   // The least-squares solution from `start`, at most `steps` steps away.
   void descend(Parameters& p, int steps) {
@@ -101,7 +103,7 @@ public:
     constexpr int kRounds = 40, kPatience = 6;
     resetWeights();
     Fit best{{}, kInfinity};
-    int idle = 0; // rounds since the error last fell by a percent
+    int idle = 0;  // rounds since the error last fell by a percent
     for (int round = 0; round < kRounds && idle < kPatience; ++round) {
       descend(p, round == 0 ? 30 : 3);
       const double worst = worstResidual();
@@ -119,7 +121,8 @@ public:
 
   double worstResidual() const {
     double worst = 0;
-    for (const double residual : residuals_) worst = std::isfinite(residual) ? std::max(worst, std::abs(residual)) : kInfinity;
+    for (const double residual : residuals_)
+      worst = std::isfinite(residual) ? std::max(worst, std::abs(residual)) : kInfinity;
     return worst;
   }
 
@@ -157,7 +160,8 @@ double worstError(const Curve& curve, std::span<const Sample> samples) {
   if (!isTransmittance(curve)) return kInfinity;
   double worst = 0;
   for (const Sample& sample : samples)
-    worst = std::max(worst, std::abs(evaluate(curve, sample.thickness) - sample.transmittance) / sample.scale);
+    worst =
+        std::max(worst, std::abs(evaluate(curve, sample.thickness) - sample.transmittance) / sample.scale);
   return worst;
 }
 
@@ -214,15 +218,14 @@ double meanSlope(const Sample& a, const Sample& b) {
 
 // Where to start from, 1/mm.
 struct Rates {
-  std::vector<double> kappa, excess; // of the slow term; of the fast over the slow one
+  std::vector<double> kappa, excess;  // of the slow term; of the fast over the slow one
   double extinction;
 };
 
 Fit fitExp2(std::span<const Sample> samples, const Rates& rates) {
   std::vector<Exp2Family::Parameters> starts;
   for (const double kappa : rates.kappa)
-    for (const double excess : rates.excess)
-      starts.push_back({0.5, std::log(kappa), 0.3, std::log(excess)});
+    for (const double excess : rates.excess) starts.push_back({0.5, std::log(kappa), 0.3, std::log(excess)});
   const Fit fit = bestFit<Exp2Family>(Exp2Family{}, samples, starts);
   if (std::isfinite(fit.error)) return fit;
   // Data no single medium gives: one exponential through the ends of what is meant to be met.
@@ -256,7 +259,7 @@ Fit fitSinhExp(std::span<const Sample> samples, const Rates& rates, bool exact) 
   return released.error < held.error ? released : held;
 }
 
-} // namespace
+}  // namespace
 
 double evaluate(const Curve& curve, double thickness) {
   const auto p = [&](std::size_t i) { return static_cast<double>(curve.parameters[i]); };
@@ -274,10 +277,11 @@ bool isTransmittance(const Curve& curve) {
   const double slow = curve.parameters[1], fast = curve.parameters[exp2 ? 3 : 4];
   if (!(slow >= 0 && fast >= 0)) return false;
   if (!exp2 && !(curve.parameters[2] > 0)) return false;
-  if (!(evaluate(curve, 0) <= 1 + 1e-6)) return false; // the amplitudes are floats
+  if (!(evaluate(curve, 0) <= 1 + 1e-6)) return false;  // the amplitudes are floats
   // A sum of two decays has at most one extremum, so sampling from well below the shortest to well
   // beyond the longest length finds it.
-  const double shortest = 1 / std::max({slow, fast, 1e-12}), longest = 1 / std::max(std::min(slow, fast), 1e-12);
+  const double shortest = 1 / std::max({slow, fast, 1e-12}),
+               longest = 1 / std::max(std::min(slow, fast), 1e-12);
   double previous = evaluate(curve, 0);
   if (!(previous > 0)) return false;
   for (double d = 1e-3 * shortest; d < 30 * longest; d *= 1.2) {
@@ -288,11 +292,11 @@ bool isTransmittance(const Curve& curve) {
   return true;
 }
 
-Fits fitTransmittance(std::span<const Sample> samples, double decay, double extinction) {
+Fits fitTransmittance(std::span<const Sample> samples, std::optional<double> decay, double extinction) {
   Rates rates{{}, {}, extinction};
   for (const double excess : {0.2, 0.7, 1.6, 4.3}) rates.excess.push_back(excess * extinction);
-  if (decay > 0) {
-    rates.kappa = {decay};
+  if (decay) {
+    rates.kappa = {*decay};
   } else {
     const std::size_t last = lastRelative(samples);
     for (const std::size_t quarter : {1, 2, 3})
@@ -301,14 +305,14 @@ Fits fitTransmittance(std::span<const Sample> samples, double decay, double exti
   // Without absorption T falls like 1/d, the limit of a / sinh(kappa d + z) as kappa goes to 0; a kappa at
   // which sinh y = y to float precision over all samples stands in for it.
   for (double& kappa : rates.kappa) kappa = std::max(kappa, 1e-3 / samples.back().thickness);
-  return {fitExp2(samples, rates), fitSinhExp(samples, rates, decay > 0)};
+  return {fitExp2(samples, rates), fitSinhExp(samples, rates, decay.has_value())};
 }
 
 Curve asSinhExp(const Curve& curve) {
-  constexpr double z = 9; // e^{-2z} is below half a float's last bit
+  constexpr double z = 9;  // e^{-2z} is below half a float's last bit
   const auto& p = curve.parameters;
   return {PELLUCID_TRANSMITTANCE_SINH_EXP,
           {static_cast<float>(p[0] * std::exp(z) / 2), p[1], static_cast<float>(z), p[2], p[3]}};
 }
 
-} // namespace pellucid::material
+}  // namespace pellucid::material

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 
 #include "pellucid/pellucid.h"
@@ -9,9 +10,9 @@
 namespace pellucid::material {
 
 struct Sample {
-  double thickness;     // mm
+  double thickness;  // mm
   double transmittance;
-  double scale; // > 0; what an error is measured against: the transmittance itself for a relative error
+  double scale;  // > 0; what an error is measured against: the transmittance itself for a relative error
 };
 
 // Parameters in the order of PellucidMaterial::transmittance, in float as the shaders get them.
@@ -28,7 +29,7 @@ bool isTransmittance(const Curve& curve);
 
 struct Fit {
   Curve curve;
-  double error; // largest |fit - T| / scale over the samples; infinite when no valid curve was found
+  double error;  // largest |fit - T| / scale over the samples; infinite when no valid curve was found
 };
 
 struct Fits {
@@ -36,11 +37,11 @@ struct Fits {
 };
 
 // Least worst error over at least 8 samples in increasing order. `decay` is the exact asymptotic
-// decay of T, 0 if unknown; `extinction` > 0 the scale of its fall at small thickness; both in 1/mm. The
+// decay of T if known; `extinction` > 0 the scale of its fall at small thickness; both in 1/mm. The
 // curves pass isTransmittance.
-Fits fitTransmittance(std::span<const Sample> samples, double decay, double extinction);
+Fits fitTransmittance(std::span<const Sample> samples, std::optional<double> decay, double extinction);
 
 // An EXP2 curve as SINH_EXP: a / sinh(kappa d + z) is 2 a e^{-z} e^{-kappa d} for large z.
 Curve asSinhExp(const Curve& curve);
 
-} // namespace pellucid::material
+}  // namespace pellucid::material

@@ -27,7 +27,7 @@ char folded(char c) {
   return c == ' ' || c == '-' ? '_' : c;
 }
 
-} // namespace
+}  // namespace
 
 std::span<const Preset> presets() { return kPresets; }
 
@@ -37,4 +37,4 @@ const Preset* findPreset(std::string_view name) {
   return nullptr;
 }
 
-} // namespace pellucid::material
+}  // namespace pellucid::material

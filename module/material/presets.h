@@ -11,8 +11,8 @@ namespace pellucid::material {
 struct Preset {
   const char* name;
   double ior;
-  bool layered;               // three-layer skin; otherwise the coefficients
-  Rgb scattering, absorption; // sigma_s', sigma_a, 1/mm
+  bool layered;                // three-layer skin; otherwise the coefficients
+  Rgb scattering, absorption;  // sigma_s', sigma_a, 1/mm
 };
 
 std::span<const Preset> presets();
@@ -20,4 +20,4 @@ std::span<const Preset> presets();
 // Ignores case, and the difference between ' ', '-' and '_'. nullptr: none of that name.
 const Preset* findPreset(std::string_view name);
 
-} // namespace pellucid::material
+}  // namespace pellucid::material

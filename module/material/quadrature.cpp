@@ -53,19 +53,16 @@ Angles makeAngles(double ior, AngleCount count) {
   for (const Node& node : gaussLegendre(transmitted + (critical > 0 ? 0 : trapped), 0, 1)) {
     const double mu = std::sqrt(1 - (1 - node.x * node.x) / (ior * ior));
     const double reflectance = fresnelReflectance(node.x, ior);
-    directions.push_back({mu, node.weight * node.x / (ior * ior * mu), reflectance,
-                          ior * ior * (1 - reflectance)});
+    directions.push_back(
+        {mu, node.weight * node.x / (ior * ior * mu), reflectance, ior * ior * (1 - reflectance)});
   }
   const double reflectance = fresnelReflectance(1, ior);
   directions.push_back({1, kProbeWeight, reflectance, ior * ior * (1 - reflectance)});
 
   const auto size = static_cast<Eigen::Index>(directions.size());
-  Angles angles{ior,
-                Eigen::VectorXd(size),
-                Eigen::VectorXd(size),
-                Eigen::VectorXd(size),
-                Eigen::VectorXd(size),
-                size - 1};
+  Angles angles{
+      ior,     Eigen::VectorXd(size), Eigen::VectorXd(size), Eigen::VectorXd(size), Eigen::VectorXd(size),
+      size - 1};
   for (Eigen::Index i = 0; i < size; ++i) {
     const Direction& direction = directions[static_cast<std::size_t>(i)];
     angles.mu[i] = direction.mu;
@@ -76,4 +73,4 @@ Angles makeAngles(double ior, AngleCount count) {
   return angles;
 }
 
-} // namespace pellucid::material
+}  // namespace pellucid::material

@@ -22,10 +22,10 @@ double fresnelReflectance(double cosine, double ior);
 // is averaged over azimuth; unit radiance over the hemisphere outside is unit flux.
 struct Angles {
   double ior;
-  Eigen::VectorXd mu, weight; // integral over mu in [0, 1]: sum of weight f(mu); sums to 1
-  Eigen::VectorXd reflectance; // internal; 1 beyond the critical angle
-  Eigen::VectorXd entrance;    // radiance just inside under unit radiance from outside: n^2 (1 - r)
-  Eigen::Index normal;         // index of mu = 1
+  Eigen::VectorXd mu, weight;   // integral over mu in [0, 1]: sum of weight f(mu); sums to 1
+  Eigen::VectorXd reflectance;  // internal; 1 beyond the critical angle
+  Eigen::VectorXd entrance;     // radiance just inside under unit radiance from outside: n^2 (1 - r)
+  Eigen::Index normal;          // index of mu = 1
 };
 
 // Fine: slabs good to 1e-6. Coarse: to 6e-5, at a quarter of the cost.
@@ -33,4 +33,4 @@ enum class AngleCount { Fine, Coarse };
 
 Angles makeAngles(double ior, AngleCount count = AngleCount::Fine);
 
-} // namespace pellucid::material
+}  // namespace pellucid::material

@@ -14,14 +14,14 @@ struct Hemoglobin {
   double oxygenated, deoxygenated;
 };
 constexpr Hemoglobin kHemoglobin[kWavelengthCount] = {
-    {109564, 145232},   {167748, 167780},   {266232, 223296},   {466840, 303956},   {480360, 407560},
-    {246072, 528600},   {102580, 413280},   {62816, 103292},    {44480, 23388.8},   {33209.2, 16156.4},
-    {26629.2, 14550},   {23684.4, 16684},   {20932.8, 20862},   {20035.2, 25773.6}, {24202.4, 31589.6},
-    {39956.8, 39036.4}, {53236, 46592},     {43016, 53412},     {32613.2, 53788},   {44496, 45072},
-    {50104, 37020},     {14400.8, 28324.4}, {3200, 14677.2},    {1506, 9443.6},     {942, 6509.6},
-    {610, 5148.8},      {442, 4345.2},      {368, 3750.12},     {319.6, 3226.56},   {294, 2795.12},
-    {277.6, 2407.92},   {276, 2051.96},     {290, 1794.28},     {314, 1540.48},     {348, 1325.88},
-    {390, 1102.2},      {446, 1115.88},     {518, 1405.24},     {586, 1548.52},     {650, 1311.88},
+    {109564, 145232},   {167748, 167780},   {266232, 223296}, {466840, 303956},   {480360, 407560},
+    {246072, 528600},   {102580, 413280},   {62816, 103292},  {44480, 23388.8},   {33209.2, 16156.4},
+    {26629.2, 14550},   {23684.4, 16684},   {20932.8, 20862}, {20035.2, 25773.6}, {24202.4, 31589.6},
+    {39956.8, 39036.4}, {53236, 46592},     {43016, 53412},   {32613.2, 53788},   {44496, 45072},
+    {50104, 37020},     {14400.8, 28324.4}, {3200, 14677.2},  {1506, 9443.6},     {942, 6509.6},
+    {610, 5148.8},      {442, 4345.2},      {368, 3750.12},   {319.6, 3226.56},   {294, 2795.12},
+    {277.6, 2407.92},   {276, 2051.96},     {290, 1794.28},   {314, 1540.48},     {348, 1325.88},
+    {390, 1102.2},      {446, 1115.88},     {518, 1405.24},   {586, 1548.52},     {650, 1311.88},
     {710, 1075.44},
 };
 
@@ -33,12 +33,12 @@ double bloodAbsorption(int wavelength) {
          (kOxygenated * e.oxygenated + (1 - kOxygenated) * e.deoxygenated);
 }
 
-} // namespace
+}  // namespace
 
 Description threeLayerSkin(double ior) {
-  constexpr double kPerMillimeter = 0.1; // the published table is in 1/cm
+  constexpr double kPerMillimeter = 0.1;  // the published table is in 1/cm
   struct Layer {
-    double absorption[3], scattering[3], thickness; // 1/cm, mm
+    double absorption[3], scattering[3], thickness;  // 1/cm, mm
   };
   constexpr Layer kEpidermis = {{2.1, 2.1, 5.0}, {48, 60, 65}, 0.25};
   constexpr Layer kUpperDermis = {{0.16, 0.19, 0.30}, {32, 40, 46}, 0.20};
@@ -55,7 +55,7 @@ Description threeLayerSkin(double ior) {
 }
 
 Description physiologicalSkin(const Physiology& physiology, PellucidIlluminant illuminant, double ior) {
-  constexpr double kEpidermis = 0.25; // mm
+  constexpr double kEpidermis = 0.25;  // mm
   const auto& [melanin, type, hemoglobin] = physiology;
   Description skin{ior, {}, rec709Weights(illuminant)};
   for (int i = 0; i < kWavelengthCount; ++i) {
@@ -73,4 +73,4 @@ Description physiologicalSkin(const Physiology& physiology, PellucidIlluminant i
   return skin;
 }
 
-} // namespace pellucid::material
+}  // namespace pellucid::material

@@ -17,4 +17,4 @@ struct Physiology {
 };
 Description physiologicalSkin(const Physiology& physiology, PellucidIlluminant illuminant, double ior);
 
-} // namespace pellucid::material
+}  // namespace pellucid::material

@@ -16,7 +16,7 @@ struct Source::Solved {
   };
   std::vector<Outer> outer;
   Medium core;
-  Coefficients coefficients; // of the core
+  Coefficients coefficients;  // of the core
 };
 
 Description rgbDescription(double ior, std::vector<Stack> channels) {
@@ -30,19 +30,20 @@ bool isHomogeneousRgb(const Description& description) {
          std::ranges::all_of(description.stacks, [](const Stack& stack) { return stack.outer.empty(); });
 }
 
-} // namespace
+}  // namespace
 
 Source::Source(const Description& description)
-    : angles_(makeAngles(description.ior, isHomogeneousRgb(description) ? AngleCount::Fine : AngleCount::Coarse)),
-      weights_(description.weights), mixed_(description.stacks.size() != 3) {
+    : angles_(
+          makeAngles(description.ior, isHomogeneousRgb(description) ? AngleCount::Fine : AngleCount::Coarse)),
+      weights_(description.weights),
+      mixed_(description.stacks.size() != 3) {
   solved_.reserve(description.stacks.size());
   for (const Stack& stack : description.stacks) {
     solved_.push_back({{}, Medium(angles_, stack.core), stack.core});
     for (const Stack::Outer& outer : stack.outer)
-      solved_.back().outer.push_back({Medium(angles_, outer.coefficients), outer.coefficients, outer.thickness});
+      solved_.back().outer.push_back(
+          {Medium(angles_, outer.coefficients), outer.coefficients, outer.thickness});
   }
-  if (!mixed_)
-    for (std::size_t c = 0; c < 3; ++c) decay_[c] = caseEigenvalue(solved_[c].coefficients);
 }
 
 Source::~Source() = default;
@@ -53,7 +54,7 @@ Slab Source::stackSlab(const Solved& solved, double thickness) const {
   double full = 0;
   for (const auto& outer : solved.outer) full += 2 * outer.thickness;
   const bool slab = std::isfinite(thickness);
-  const double share = slab ? -std::expm1(-thickness / full) : 1; // of each layer's full thickness
+  const double share = slab ? -std::expm1(-thickness / full) : 1;  // of each layer's full thickness
 
   std::vector<Response> responses;
   for (const auto& outer : solved.outer) responses.push_back(outer.medium.layer(outer.thickness * share));
@@ -85,7 +86,7 @@ std::array<Slab, 3> Source::slabs(double thickness) const {
 
 double Source::stackBurleyDistance(const Solved& solved, double rho) const {
   if (solved.outer.empty()) return material::burleyDistance(solved.coefficients, angles_.ior);
-  double extinction = 0, reaching = 1; // e^{-2 kappa z} at the top of the layer
+  double extinction = 0, reaching = 1;  // e^{-2 kappa z} at the top of the layer
   for (const auto& outer : solved.outer) {
     const double below = reaching * std::exp(-2 * caseEigenvalue(outer.coefficients) * outer.thickness);
     extinction += (reaching - below) * outer.coefficients.extinction();
@@ -118,7 +119,10 @@ Rgb Source::burleyDistance() const {
   return mean;
 }
 
-double Source::decay(int channel) const { return decay_[static_cast<std::size_t>(channel)]; }
+std::optional<double> Source::decay(int channel) const {
+  if (mixed_) return std::nullopt;
+  return caseEigenvalue(solved_[static_cast<std::size_t>(channel)].coefficients);
+}
 
 double Source::extinction(int channel) const {
   double sum = 0, total = 0;
@@ -130,4 +134,4 @@ double Source::extinction(int channel) const {
   return sum / total;
 }
 
-} // namespace pellucid::material
+}  // namespace pellucid::material

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <array>
-#include <memory>
+#include <optional>
 #include <vector>
 
 #include "transport.h"
@@ -14,7 +14,7 @@ namespace pellucid::material {
 struct Stack {
   struct Outer {
     Coefficients coefficients;
-    double thickness; // mm, in front of a half-space
+    double thickness;  // mm, in front of a half-space
   };
   std::vector<Outer> outer;
   Coefficients core;
@@ -27,7 +27,7 @@ using Rgb = std::array<double, 3>;
 struct Description {
   double ior;
   std::vector<Stack> stacks;
-  std::vector<Rgb> weights; // as many as stacks
+  std::vector<Rgb> weights;  // as many as stacks
 };
 
 // Three channels of their own, no mixing.
@@ -37,7 +37,7 @@ class Source {
 public:
   explicit Source(const Description& description);
   ~Source();
-  Source(const Source&) = delete; // the media point at angles_
+  Source(const Source&) = delete;  // the media point at angles_
   Source& operator=(const Source&) = delete;
 
   // A slab of `thickness` mm in air; INFINITY: the half-space. Colors outside Rec. 709 are cut to [0, 1].
@@ -54,8 +54,8 @@ public:
   // True where channels are mixed from wavelengths.
   bool mixed() const { return mixed_; }
 
-  // Asymptotic decay of T, 1/mm: that of the core; 0 where wavelengths mix, which have no common one.
-  double decay(int channel) const;
+  // Asymptotic decay of T, 1/mm: that of the core. Mixed wavelengths have none in common.
+  std::optional<double> decay(int channel) const;
 
   // Mean extinction, 1/mm; the scale on which T(d) starts to fall.
   double extinction(int channel) const;
@@ -70,7 +70,6 @@ private:
   std::vector<Solved> solved_;
   std::vector<Rgb> weights_;
   bool mixed_;
-  std::array<double, 3> decay_ = {};
 };
 
-} // namespace pellucid::material
+}  // namespace pellucid::material

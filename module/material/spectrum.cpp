@@ -40,7 +40,7 @@ double illuminantA(double wavelength) {
   return std::pow(wavelength, -5) / std::expm1(1.435e7 / (2848 * wavelength));
 }
 
-} // namespace
+}  // namespace
 
 std::vector<Rgb> rec709Weights(PellucidIlluminant illuminant) {
   // XYZ to Rec. 709 primaries (ITU-R BT.709, IEC 61966-2-1); rows R, G, B.
@@ -74,4 +74,4 @@ double interpolate(std::span<const double> wavelength, std::span<const double> v
   return value[i - 1] + t * (value[i] - value[i - 1]);
 }
 
-} // namespace pellucid::material
+}  // namespace pellucid::material

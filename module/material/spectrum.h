@@ -20,4 +20,4 @@ std::vector<Rgb> rec709Weights(PellucidIlluminant illuminant);
 // Linear between the samples, constant beyond the ends.
 double interpolate(std::span<const double> wavelength, std::span<const double> value, double at);
 
-} // namespace pellucid::material
+}  // namespace pellucid::material

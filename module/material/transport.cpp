@@ -17,7 +17,7 @@ Slab measure(const Angles& angles, const Eigen::VectorXd& near, const Eigen::Vec
   return {(flux * far.array()).sum(), normal, (flux * near.array()).sum()};
 }
 
-} // namespace
+}  // namespace
 
 // With S, D the sum and difference of the radiance in directions +mu and -mu, isotropic scattering
 // gives mu dS/dtau = -D, mu dD/dtau = -S + albedo sum_j w_j S_j, hence S'' = A S with
@@ -58,7 +58,7 @@ Response Medium::respond(double thickness, const Eigen::VectorXd& reflectance,
   for (Eigen::Index k = 0; k < n; ++k) {
     const double kappa = decay_[k];
     const double x = kappa == 0 ? 0 : kappa * depth / 2;
-    if (x < 1e-5) { // coth x = 1/x + x/3, 1/sinh 2x = 1/2x - x/3
+    if (x < 1e-5) {  // coth x = 1/x + x/3, 1/sinh 2x = 1/2x - x/3
       even[k] = kappa * x;
       odd[k] = 2 / depth + kappa * x / 3;
       gap[k] = odd[k] - even[k];
@@ -79,7 +79,7 @@ Response Medium::respond(double thickness, const Eigen::VectorXd& reflectance,
   const Eigen::PartialPivLU<Eigen::MatrixXd> oddSystem(passed + bounced * odd.asDiagonal());
   const Eigen::MatrixXd oddModes = oddSystem.solve(source / 2);
   const Eigen::MatrixXd gapModes = gap.asDiagonal() * oddModes;
-  const Eigen::MatrixXd difference = evenSystem.solve(bounced * gapModes); // even - odd amplitudes
+  const Eigen::MatrixXd difference = evenSystem.solve(bounced * gapModes);  // even - odd amplitudes
 
   Response response;
   response.far = (modes_ * difference - slope * (even.asDiagonal() * difference - gapModes)) / 2;
@@ -138,4 +138,4 @@ double caseEigenvalue(const Coefficients& coefficients) {
   return (low + high) / 2 * coefficients.extinction();
 }
 
-} // namespace pellucid::material
+}  // namespace pellucid::material

@@ -11,16 +11,16 @@
 namespace pellucid::material {
 
 struct Coefficients {
-  double scattering, absorption; // sigma_s', sigma_a, 1/mm; their sum > 0
+  double scattering, absorption;  // sigma_s', sigma_a, 1/mm; their sum > 0
 
   double extinction() const { return scattering + absorption; }
   double albedo() const { return scattering / extinction(); }
 };
 
 struct Slab {
-  double transmittance;       // hemispherical, Lambertian light from outside
-  double transmittanceNormal; // hemispherical, normal incidence
-  double reflectance;         // Lambertian light from outside that entered and came back
+  double transmittance;        // hemispherical, Lambertian light from outside
+  double transmittanceNormal;  // hemispherical, normal incidence
+  double reflectance;          // Lambertian light from outside that entered and came back
 };
 
 // Radiance leaving the two faces of a layer, one column per column of the source.
@@ -47,8 +47,8 @@ public:
 private:
   const Angles* angles_;
   double extinction_;
-  Eigen::MatrixXd modes_;   // column k: sum of the up and down radiance in each direction
-  Eigen::VectorXd decay_;   // kappa_k >= 0 per unit optical depth
+  Eigen::MatrixXd modes_;  // column k: sum of the up and down radiance in each direction
+  Eigen::VectorXd decay_;  // kappa_k >= 0 per unit optical depth
 };
 
 // Layers between two faces to air, light from the side of the first. Each is the response to the identity
@@ -59,4 +59,4 @@ Slab layeredSlab(const Angles& angles, std::span<const Response* const> layers);
 // 1 = (albedo / 2x) ln((1 + x) / (1 - x)) (Case & Zweifel 1967).
 double caseEigenvalue(const Coefficients& coefficients);
 
-} // namespace pellucid::material
+}  // namespace pellucid::material

@@ -27,11 +27,12 @@ typedef enum PellucidMaterialKind {
   PELLUCID_MATERIAL_SKIN = 5          /* melanin, melaninType, hemoglobin, illuminant, ior */
 } PellucidMaterialKind;
 
-/* The light under which spectral coefficients become Rec. 709 values: a slab with T = 1 at every
- * wavelength is (1, 1, 1) under any of them. */
+/* The light under which values per wavelength (T(d), rho) become linear Rec. 709, with the CIE 1931
+ * 2-degree observer. T = 1 at every wavelength is (1, 1, 1) under any of them: the engine's light
+ * colors carry the illuminant. Values outside Rec. 709 are cut to [0, 1]. */
 typedef enum PellucidIlluminant {
   PELLUCID_ILLUMINANT_D65 = 0, /* CIE standard illuminant D65 */
-  PELLUCID_ILLUMINANT_A = 1,   /* CIE standard illuminant A: Planck, 2848 K with c2 of 1931 */
+  PELLUCID_ILLUMINANT_A = 1,   /* CIE standard illuminant A, 2856 K */
   PELLUCID_ILLUMINANT_E = 2    /* equal energy */
 } PellucidIlluminant;
 
@@ -68,9 +69,10 @@ typedef struct PellucidMaterialDesc {
   PellucidSpectrum spectrum;
 
   /* Skin by physiology, Donner & Jensen 2006 */
-  double melanin;     /* C_m, volume fraction in the epidermis, [0, 1]; people: .01 - .5 */
-  double melaninType; /* beta_m, share of eumelanin, [0, 1] */
-  double hemoglobin;  /* C_h, volume fraction of blood in the dermis, [0, 1]; people: .001 - .1 */
+  double melanin;     /* C_m, volume fraction in the epidermis, [0, 1]; fair .002, dark .3; default .005 */
+  double melaninType; /* beta_m, share of eumelanin, [0, 1]; default .5 */
+  double hemoglobin;  /* C_h, volume fraction of blood in the dermis, [0, 1]; pale .001, flushed .1;
+                         default .005 */
 } PellucidMaterialDesc;
 
 /* What one channel was compiled from and how well the result fits. */
@@ -80,9 +82,11 @@ typedef struct PellucidChannelReport {
                                     outside; the light reflected without entering is not counted.
                                     1 for kinds BURLEY and GAUSSIANS, whose albedo is the engine's.
                                     PellucidMaterial::reflectance is this, at least 1e-4 */
-  double transmittanceError;     /* largest |T_fit / T - 1| on the thicknesses fitted, where T > 1e-4;
-                                    of the float coefficients */
-  double minThickness, maxThickness; /* mm; the thicknesses fitted */
+  double transmittanceError;     /* largest |T_fit / T - 1| on the thicknesses fitted, of the float
+                                    coefficients. Where wavelengths mix, T in the denominator is at
+                                    least half of the brightest channel's */
+  double minThickness, maxThickness; /* mm; fitted: 0.01 to 20 as far as T > 1e-4, more for dense and
+                                        thin media */
   double edgeError;              /* largest difference of the blurred half-plane step, Gaussians
                                     against Burley */
 } PellucidChannelReport;
@@ -96,8 +100,8 @@ typedef struct PellucidMaterialReport {
 void pellucidInitMaterialDesc(PellucidMaterialDesc* desc);
 
 /* Fills every field of *material, and *report when not NULL. On failure neither is written and
- * `message` (optional) names the field and its value. Tens of milliseconds at most for RGB
- * coefficients, some hundred for spectra and layered skin.
+ * `message` (optional) names the field and its value. About 10 ms for RGB coefficients, 30 for
+ * spectra, 150 for skin by physiology.
  * Errors: INVALID_ARGUMENT, VERSION, OUT_OF_MEMORY. */
 PellucidResult pellucidCompileMaterial(const PellucidMaterialDesc* desc, PellucidMaterial* material,
                                        PellucidMaterialReport* report, PellucidMessageFn message,

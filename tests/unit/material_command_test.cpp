@@ -1,0 +1,136 @@
+// `pellucid material`: what it prints and what it refuses.
+#include <gtest/gtest.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+#include "cli/commands.h"
+#include "common/error.h"
+
+namespace {
+
+using namespace pellucid::harness;
+using Json = nlohmann::json;
+
+std::filesystem::path scratch(const std::string& name) {
+  const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+  return std::filesystem::path(testing::TempDir()) / (std::string(test->name()) + "_" + name);
+}
+
+// Standard output of `pellucid material ARGUMENTS`.
+std::string run(const std::string& arguments) {
+  CLI::App app;
+  addMaterialCommand(app);
+  std::ostringstream out;
+  std::streambuf* const standard = std::cout.rdbuf(out.rdbuf());
+  try {
+    app.parse("material " + arguments);
+  } catch (...) {
+    std::cout.rdbuf(standard);
+    throw;
+  }
+  std::cout.rdbuf(standard);
+  return out.str();
+}
+
+std::string refusal(const std::string& arguments) {
+  try {
+    run(arguments);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(MaterialCommand, JsonHoldsEverything) {
+  const Json json =
+      Json::parse(run("--scattering .74,.88,1.01 --absorption .032,.17,.48 --ior 1.3 "
+                      "--thickness 0.5,2 --gaussians 4 --json"));
+  EXPECT_EQ(json["ior"], 1.3);
+  EXPECT_EQ(json["unit"], "mm");
+  ASSERT_EQ(json["channels"].size(), 3u);
+  const Json& red = json["channels"][0];
+  EXPECT_EQ(red["name"], "R");
+  EXPECT_EQ(red["scattering"], 0.74);
+  EXPECT_EQ(red["absorption"], 0.032);
+  EXPECT_EQ(red["profile"]["gaussians"]["variance"].size(), 4u);
+  EXPECT_EQ(red["profile"]["gaussians"]["weight"].size(), 4u);
+  EXPECT_GT(red["profile"]["radius_999"], red["profile"]["burley_d"]);
+  ASSERT_EQ(red["thickness"].size(), 2u);
+  EXPECT_EQ(red["thickness"][0]["mm"], 0.5);
+  EXPECT_NEAR(red["thickness"][0]["exact"].get<double>(), 0.718046191, 1e-6);  // an independent solver
+  EXPECT_NEAR(red["thickness"][0]["exact_normal"].get<double>(), 0.793980924, 1e-6);
+
+  // What is printed is enough to evaluate T(d).
+  for (const Json& channel : json["channels"]) {
+    const Json& c = channel["fit"]["coefficients"];
+    const auto at = [&](const char* name) { return c[name].get<double>(); };
+    for (const Json& row : channel["thickness"]) {
+      const double d = row["mm"];
+      const double value =
+          channel["fit"]["form"] == "exp2"
+              ? at("a1") * std::exp(-at("k1") * d) + at("a2") * std::exp(-at("k2") * d)
+              : at("a") / std::sinh(at("kappa") * d + at("z")) + at("b") * std::exp(-at("c") * d);
+      EXPECT_NEAR(value / row["fitted"].get<double>(), 1, 1e-5);
+      EXPECT_NEAR(row["fitted"].get<double>() / row["exact"].get<double>(), 1,
+                  channel["fit"]["max_relative_error"].get<double>() * 1.05);
+    }
+  }
+}
+
+TEST(MaterialCommand, TextAndList) {
+  const std::string text = run("skin1 --thickness 1");
+  for (const char* part : {"skin1", "rho", "largest error", "Burley d", "variance 5", "1 mm", "fitted"})
+    EXPECT_NE(text.find(part), std::string::npos) << part;
+  EXPECT_NE(run("--list").find("whole_milk\n"), std::string::npos);
+}
+
+TEST(MaterialCommand, SpectrumFromFile) {
+  const std::filesystem::path path = scratch("spectrum.csv");
+  std::ofstream(path) << "nm, s, a\n# measured\n400, 2, 0.5\n\n700, 2, 0.05\n";
+  const Json json = Json::parse(run("--spectral " + path.string() + " --json --thickness 1"));
+  EXPECT_TRUE(json["channels"][0]["scattering"].is_null());  // many, not one
+  EXPECT_GT(json["channels"][0]["thickness"][0]["exact"], json["channels"][2]["thickness"][0]["exact"]);
+
+  std::ofstream(path) << "400,2,0.5\n700,2\n";
+  EXPECT_EQ(refusal("--spectral " + path.string()),
+            path.string() + ": line 2: \"700,2\" is not three numbers");
+  std::ofstream(path) << "400,2,0.5\n700,2,-1\n";
+  EXPECT_NE(refusal("--spectral " + path.string()).find("spectrum.absorption[1]: -1"), std::string::npos);
+  std::ofstream(path) << "";
+  EXPECT_NE(refusal("--spectral " + path.string()).find("spectrum.count: 0"), std::string::npos);
+  std::filesystem::remove(path);
+}
+
+TEST(MaterialCommand, RefusalsNameTheField) {
+  EXPECT_NE(refusal("gravel").find("gravel"), std::string::npos);
+  EXPECT_NE(refusal("skin1 --ior 0.5").find("ior: 0.5"), std::string::npos);
+  EXPECT_NE(refusal("skin1 --thickness inf").find("thickness"), std::string::npos);
+  EXPECT_NE(refusal("--scattering nan,1,1 --absorption 1,1,1").find("scattering[0]: nan"), std::string::npos);
+  EXPECT_THROW(run("--scattering 1,1,1"), UsageError);
+  EXPECT_THROW(run("skin1 --melanin 0.1"), UsageError);
+  EXPECT_THROW(run(""), UsageError);
+  EXPECT_THROW(run("--scattering 1,1 --absorption 1,1,1"), CLI::ParseError);
+}
+
+TEST(MaterialCommand, PlotIsWritten) {
+  const std::filesystem::path path = scratch("plot.png");
+  run("skin1 --thickness 1 --plot " + path.string());
+  std::array<char, 24> head = {};
+  std::ifstream(path, std::ios::binary).read(head.data(), head.size());
+  EXPECT_EQ(std::string(head.data() + 1, 3), "PNG");
+  // IHDR: two panels of 720 x 520.
+  EXPECT_EQ(static_cast<unsigned char>(head[18]) * 256 + static_cast<unsigned char>(head[19]), 1440);
+  EXPECT_EQ(static_cast<unsigned char>(head[22]) * 256 + static_cast<unsigned char>(head[23]), 520);
+  std::filesystem::remove(path);
+  EXPECT_NE(refusal("skin1 --plot /no/such/folder/a.png").find("/no/such/folder/a.png"), std::string::npos);
+}
+
+}  // namespace
