@@ -1,5 +1,5 @@
-# Compiles compute/passes/*.comp to SPIR-V arrays inside a target. glslang writes the list of files
-# each variant includes, so editing any .glsl or shared header rebuilds exactly its users.
+# Compiles shaders to SPIR-V arrays inside a target; the extension says the stage. glslang writes the list
+# of files each variant includes, so editing any .glsl or shared header rebuilds exactly its users.
 find_program(PELLUCID_GLSLANG glslangValidator REQUIRED)
 
 # pellucid_shader(target array source [definitions...]): array is the C name of the SPIR-V words.
@@ -11,7 +11,7 @@ function(pellucid_shader target array source)
   list(TRANSFORM definitions PREPEND -D)
   add_custom_command(
     OUTPUT ${header}
-    COMMAND ${PELLUCID_GLSLANG} --quiet -V --target-env vulkan1.1 -S comp
+    COMMAND ${PELLUCID_GLSLANG} --quiet -V --target-env vulkan1.1
             $<IF:$<BOOL:${PELLUCID_SHADER_DEBUG}>,-gVS,-g0>
             -I${PROJECT_SOURCE_DIR}/compute ${definitions}
             --depfile ${header}.d --vn ${array} -o ${header} ${source}

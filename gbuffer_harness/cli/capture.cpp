@@ -1,12 +1,15 @@
+// `pellucid capture`: a capture of a procedural scene, or of a glTF file.
 #include <CLI/CLI.hpp>
-#include <charconv>
 #include <iomanip>
 #include <iostream>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "capture/write.h"
+#include "cli/capture_gltf.h"
 #include "cli/commands.h"
+#include "cli/numbers.h"
 #include "common/error.h"
 #include "scene/scene.h"
 
@@ -14,20 +17,22 @@ namespace pellucid::harness {
 
 namespace {
 
+// Options of both kinds of capture stand outside the two; absent ones have each kind's own default.
 struct Options {
-  SceneParameters scene;
   std::string output, size = "512x512";
-  std::vector<std::string> set;
-};
+  bool infiniteFar = false, viewNormals = false;
+  std::optional<bool> reversedZ, orthographic;
+  std::optional<PellucidDepthEncoding> depth, shadowDepth;
+  std::optional<int> shadowSize;
+  std::vector<std::string> lights;
 
-template <class T>
-T parseNumber(const std::string& what, const std::string& text) {
-  T value{};
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc() || stop != end) throw UsageError(what + ": \"" + text + "\" is not a number");
-  return value;
-}
+  SceneParameters scene;
+  std::vector<std::string> set;
+
+  GltfCapture gltf;
+  std::string unit = "m", view;
+  std::vector<std::string> presets;
+};
 
 void printScenes() {
   for (const SceneInfo& scene : listScenes()) {
@@ -39,70 +44,160 @@ void printScenes() {
   }
 }
 
-void capture(const Options& options) {
-  if (options.scene.name == "list") return printScenes();
-  if (options.output.empty()) throw UsageError("capture: -o is required");
+struct Assignment {
+  std::string key, value;
+};
+Assignment parseAssignment(const std::string& option, const std::string& text) {
+  // Names may have an equals sign in them, values do not.
+  const std::size_t equals = text.rfind('=');
+  if (equals == std::string::npos) throw UsageError(option + ": \"" + text + "\" is not key=value");
+  return {text.substr(0, equals), text.substr(equals + 1)};
+}
 
+// Fields that SceneParameters and RasterOptions have in common.
+template <class Parameters>
+void setCommon(const Options& options, Parameters& to) {
+  const std::vector<std::string> size = split(options.size, 'x');
+  if (size.size() != 2) throw UsageError("--size: \"" + options.size + "\" is not WIDTHxHEIGHT");
+  to.width = parseNumber<int>("--size", size[0]);
+  to.height = parseNumber<int>("--size", size[1]);
+  to.infiniteFar = options.infiniteFar;
+  to.normalsInViewSpace = options.viewNormals;
+  to.reversedZ = options.reversedZ.value_or(to.reversedZ);
+  to.depthEncoding = options.depth.value_or(to.depthEncoding);
+  to.shadowEncoding = options.shadowDepth.value_or(to.shadowEncoding);
+  to.shadowSize = options.shadowSize.value_or(to.shadowSize);
+}
+
+PellucidLightType parseLightType(const std::string& text) {
+  const std::map<std::string, PellucidLightType> types = {{"directional", PELLUCID_LIGHT_DIRECTIONAL},
+                                                          {"point", PELLUCID_LIGHT_POINT},
+                                                          {"spot", PELLUCID_LIGHT_SPOT}};
+  const auto found = types.find(text);
+  if (found == types.end())
+    throw UsageError("--light: \"" + text +
+                     "\" is not directional, point or spot; a scene has its own position");
+  return found->second;
+}
+
+void captureProcedural(const Options& options) {
   SceneParameters scene = options.scene;
-  const std::size_t cross = options.size.find('x');
-  if (cross == std::string::npos) throw UsageError("--size: \"" + options.size + "\" is not WIDTHxHEIGHT");
-  scene.width = parseNumber<int>("--size", options.size.substr(0, cross));
-  scene.height = parseNumber<int>("--size", options.size.substr(cross + 1));
-  for (const std::string& assignment : options.set) {
-    const std::size_t equals = assignment.find('=');
-    if (equals == std::string::npos) throw UsageError("--set: \"" + assignment + "\" is not key=value");
-    const std::string key = assignment.substr(0, equals);
-    scene.options[key] = parseNumber<double>("--set " + key, assignment.substr(equals + 1));
+  setCommon(options, scene);
+  scene.orthographic = options.orthographic;
+  if (options.lights.size() > 1) throw UsageError("--light: a procedural scene has one light");
+  if (!options.lights.empty()) scene.lightType = parseLightType(options.lights.front());
+  for (const std::string& text : options.set) {
+    const Assignment set = parseAssignment("--set", text);
+    scene.options[set.key] = parseNumber<double>("--set " + set.key, set.value);
   }
   writeCapture(makeScene(scene), options.output);
+}
+
+void captureModel(const Options& options) {
+  GltfCapture gltf = options.gltf;
+  setCommon(options, gltf.raster);
+  gltf.output = options.output;
+  gltf.orthographic = options.orthographic.value_or(false);
+  gltf.lights = options.lights;
+  gltf.gltf.metersPerUnit = parseUnit(options.unit);
+  for (const std::string& text : options.presets) {
+    const Assignment set = parseAssignment("--material", text);
+    gltf.gltf.presets[set.key] = set.value;
+  }
+  if (!options.view.empty()) {
+    const std::vector<std::string> parts = split(options.view, ',');
+    if (parts.size() != 3) throw UsageError("--view: \"" + options.view + "\" is not X,Y,Z");
+    for (std::size_t i = 0; i < 3; ++i) gltf.toCamera[i] = parseNumber<double>("--view", parts[i]);
+  }
+  captureGltf(gltf);
+}
+
+void capture(const Options& options) {
+  if (options.scene.name == "list") return printScenes();
+  if (options.scene.name.empty() == options.gltf.model.empty())
+    throw UsageError("capture: either a model or --procedural is required");
+  if (options.output.empty()) throw UsageError("capture: -o is required");
+  return options.gltf.model.empty() ? captureProcedural(options) : captureModel(options);
+}
+
+void addCommonOptions(CLI::App& command, Options& options) {
+  command.add_option("-o,--output", options.output, "EXR to write, the manifest embedded");
+  command.add_option("--size", options.size, "WIDTHxHEIGHT in pixels")->capture_default_str();
+  const std::map<std::string, bool> projections = {{"perspective", false}, {"orthographic", true}};
+  command
+      .add_option("--projection", options.orthographic,
+                  "perspective or orthographic (default: the scene's; of a model's auto camera: perspective)")
+      ->transform(CLI::CheckedTransformer(projections, CLI::ignore_case));
+  command.add_flag("--reversed-z,!--forward-z", options.reversedZ,
+                   "device depth 1 at the near plane (default: a model yes, a scene no)");
+  command.add_flag("--infinite-far", options.infiniteFar, "no far plane (perspective only)");
+  command.add_flag("--view-normals", options.viewNormals, "normals in view instead of world space");
+  const std::map<std::string, PellucidDepthEncoding> encodings = {{"viewz", PELLUCID_DEPTH_VIEW_Z},
+                                                                  {"device", PELLUCID_DEPTH_DEVICE}};
+  command.add_option("--depth", options.depth, "viewz or device (default: a model device, a scene viewz)")
+      ->transform(CLI::CheckedTransformer(encodings, CLI::ignore_case));
+  std::map<std::string, PellucidDepthEncoding> shadowEncodings = encodings;
+  shadowEncodings["distance"] = PELLUCID_DEPTH_DISTANCE;
+  command
+      .add_option("--shadow-depth", options.shadowDepth, "viewz, device or distance (default: as --depth's)")
+      ->transform(CLI::CheckedTransformer(shadowEncodings, CLI::ignore_case));
+  command.add_option("--shadow-size", options.shadowSize,
+                     "texels across a shadow map; 0: none (default: a model 1024, a scene 512)");
+  command
+      .add_option(
+          "--light", options.lights,
+          std::string("of a scene: directional, point or spot; of a model, repeatable: ") + kLightSyntax)
+      ->take_all();
+}
+
+void addModelOptions(CLI::App& command, Options& options) {
+  GltfCapture& gltf = options.gltf;
+  const char* const group = "Models";
+  command.add_option("model", gltf.model, "glTF file, .glb or .gltf");
+  command.add_option("--material", options.presets, "NAME=PRESET, repeatable; NAME * means all others")
+      ->take_all()
+      ->group(group);
+  command.add_option("--unit", options.unit, "mm, cm, m or meters: the length of the file's unit")
+      ->capture_default_str()
+      ->group(group);
+  command.add_option("--camera", gltf.camera, "name of one of the file's cameras, or auto")->group(group);
+  command.add_option("--view", options.view, "X,Y,Z: where the auto camera stands from the center")
+      ->group(group);
+  command.add_option("--fov", gltf.verticalFov, "vertical field of view of the auto camera, degrees")
+      ->check(CLI::Range(1.0, 170.0))
+      ->capture_default_str()
+      ->group(group);
+  const std::map<std::string, BackFace> faces = {{"nearest", BackFace::Nearest},
+                                                 {"farthest", BackFace::Farthest}};
+  command.add_option("--back", gltf.raster.backFace, "which back face behind the front: nearest or farthest")
+      ->transform(CLI::CheckedTransformer(faces, CLI::ignore_case))
+      ->group(group);
+  command.add_option("--device", gltf.device, "part of the Vulkan device's name; default: the fastest kind")
+      ->group(group);
+}
+
+void addSceneOptions(CLI::App& command, Options& options) {
+  const char* const group = "Procedural scenes";
+  command
+      .add_option("--procedural", options.scene.name, "name of the scene; list: print all with their options")
+      ->group(group);
+  command.add_option("--seed", options.scene.seed, "of scenes that scatter things")
+      ->capture_default_str()
+      ->group(group);
+  command.add_option("--set", options.set, "key=value, repeatable: an option of the scene")
+      ->take_all()
+      ->group(group);
 }
 
 }  // namespace
 
 void addCaptureCommand(CLI::App& app) {
   const auto options = std::make_shared<Options>();
-  SceneParameters& scene = options->scene;
-  CLI::App* command = app.add_subcommand("capture", "Make a capture of a procedural scene");
-  command->add_option("--procedural", scene.name, "name of the scene; list: print all with their options")
-      ->required();
-  command->add_option("-o,--output", options->output, "EXR to write, the manifest embedded");
-  command->add_option("--size", options->size, "WIDTHxHEIGHT in pixels")->capture_default_str();
-  command->add_option("--seed", scene.seed, "of scenes that scatter things")->capture_default_str();
-  command->add_option("--set", options->set, "key=value, repeatable: an option of the scene")->take_all();
-
-  const auto orthographic = std::make_shared<bool>(false);
-  const std::map<std::string, bool> projections = {{"perspective", false}, {"orthographic", true}};
-  CLI::Option* projection =
-      command->add_option("--projection", *orthographic, "perspective or orthographic (default: the scene's)")
-          ->transform(CLI::CheckedTransformer(projections, CLI::ignore_case));
-  command->add_flag("--reversed-z", scene.reversedZ, "device depth 1 at the near plane");
-  command->add_flag("--infinite-far", scene.infiniteFar, "no far plane (perspective only)");
-  command->add_flag("--view-normals", scene.normalsInViewSpace, "normals in view instead of world space");
-
-  const std::map<std::string, PellucidDepthEncoding> encodings = {{"viewz", PELLUCID_DEPTH_VIEW_Z},
-                                                                  {"device", PELLUCID_DEPTH_DEVICE}};
-  command->add_option("--depth", scene.depthEncoding, "viewz (default) or device")
-      ->transform(CLI::CheckedTransformer(encodings, CLI::ignore_case));
-  std::map<std::string, PellucidDepthEncoding> shadowEncodings = encodings;
-  shadowEncodings["distance"] = PELLUCID_DEPTH_DISTANCE;
-  command->add_option("--shadow-depth", scene.shadowEncoding, "viewz (default), device or distance")
-      ->transform(CLI::CheckedTransformer(shadowEncodings, CLI::ignore_case));
-  command->add_option("--shadow-size", scene.shadowSize, "texels across a shadow map; 0: none")
-      ->capture_default_str();
-
-  const auto light = std::make_shared<PellucidLightType>(PELLUCID_LIGHT_DIRECTIONAL);
-  const std::map<std::string, PellucidLightType> lights = {{"directional", PELLUCID_LIGHT_DIRECTIONAL},
-                                                           {"point", PELLUCID_LIGHT_POINT},
-                                                           {"spot", PELLUCID_LIGHT_SPOT}};
-  CLI::Option* lightType =
-      command->add_option("--light", *light, "directional, point or spot (default: the scene's)")
-          ->transform(CLI::CheckedTransformer(lights, CLI::ignore_case));
-
-  command->callback([=] {
-    if (*projection) options->scene.orthographic = *orthographic;
-    if (*lightType) options->scene.lightType = *light;
-    capture(*options);
-  });
+  CLI::App* command = app.add_subcommand("capture", "Make a capture of a glTF model or a procedural scene");
+  addCommonOptions(*command, *options);
+  addModelOptions(*command, *options);
+  addSceneOptions(*command, *options);
+  command->callback([options] { capture(*options); });
 }
 
 }  // namespace pellucid::harness

@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <cstring>
+#include <optional>
 
 #include "common/error.h"
 
@@ -31,16 +32,24 @@ bool hasPushDescriptors(VkPhysicalDevice device) {
   });
 }
 
-// A queue family that computes, or -1.
-int computeFamily(VkPhysicalDevice device) {
+struct QueueFamily {
+  uint32_t index;
+  bool canDraw;
+};
+
+// A family that computes, if possible one that draws too.
+std::optional<QueueFamily> findFamily(VkPhysicalDevice device) {
   uint32_t count = 0;
   vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
   std::vector<VkQueueFamilyProperties> families(count);
   vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
-  for (uint32_t i = 0; i < count; ++i)
-    if (families[i].queueFlags & VK_QUEUE_COMPUTE_BIT && families[i].timestampValidBits > 0)
-      return static_cast<int>(i);
-  return -1;
+  std::optional<QueueFamily> best;
+  for (uint32_t i = 0; i < count; ++i) {
+    if (!(families[i].queueFlags & VK_QUEUE_COMPUTE_BIT) || families[i].timestampValidBits == 0) continue;
+    const bool canDraw = families[i].queueFlags & VK_QUEUE_GRAPHICS_BIT;
+    if (!best || (canDraw && !best->canDraw)) best = {i, canDraw};
+  }
+  return best;
 }
 
 int speed(VkPhysicalDeviceType type) {
@@ -146,13 +155,13 @@ void Device::chooseDevice(const std::string& name) {
   for (VkPhysicalDevice candidate : devices) {
     VkPhysicalDeviceProperties properties;
     vkGetPhysicalDeviceProperties(candidate, &properties);
-    const int family = computeFamily(candidate);
+    const std::optional<QueueFamily> family = findFamily(candidate);
     std::string why;
     if (properties.apiVersion < VK_API_VERSION_1_1)
       why = "Vulkan 1.1 is missing";
     else if (!hasPushDescriptors(candidate))
       why = "VK_KHR_push_descriptor is missing";
-    else if (family < 0)
+    else if (!family)
       why = "no compute queue with timestamps";
     seen += "\n  " + std::string(properties.deviceName) + (why.empty() ? "" : " (" + why + ")");
     if (!why.empty() || lower(properties.deviceName).find(lower(name)) == std::string::npos) continue;
@@ -160,7 +169,8 @@ void Device::chooseDevice(const std::string& name) {
     best = speed(properties.deviceType);
     physicalDevice_ = candidate;
     properties_ = properties;
-    queueFamily_ = static_cast<uint32_t>(family);
+    queueFamily_ = family->index;
+    canDraw_ = family->canDraw;
   }
   if (!physicalDevice_)
     throw DeviceError(devices.empty()

@@ -1,4 +1,4 @@
-// A Vulkan device with one compute queue: what an engine already has before it meets Pellucid.
+// A Vulkan device with one queue: what an engine already has before it meets Pellucid.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -31,6 +31,7 @@ public:
   VkDevice handle() const { return device_; }
   const VkPhysicalDeviceProperties& properties() const { return properties_; }
   std::string description() const;  // "name, driver and version"
+  bool canDraw() const { return canDraw_; }  // the queue does graphics besides compute
 
   // Records with `record`, submits and waits.
   void run(const std::function<void(VkCommandBuffer)>& record);
@@ -55,6 +56,7 @@ private:
   VkPhysicalDeviceProperties properties_{};
   std::string driver_;
   uint32_t queueFamily_ = 0;
+  bool canDraw_ = false;
   VkDevice device_ = VK_NULL_HANDLE;
   VkQueue queue_ = VK_NULL_HANDLE;
   VkCommandPool pool_ = VK_NULL_HANDLE;

@@ -52,7 +52,7 @@ VkBufferImageCopy wholeImage(int width, int height) {
 
 }  // namespace
 
-GpuImage::GpuImage(Device& device, int width, int height, VkFormat format)
+GpuImage::GpuImage(Device& device, int width, int height, VkFormat format, VkImageUsageFlags more)
     : device_(device), width_(width), height_(height), format_(format) {
   VkImageCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO};
   info.imageType = VK_IMAGE_TYPE_2D;
@@ -60,7 +60,8 @@ GpuImage::GpuImage(Device& device, int width, int height, VkFormat format)
   info.extent = {static_cast<uint32_t>(width), static_cast<uint32_t>(height), 1};
   info.mipLevels = info.arrayLayers = 1;
   info.samples = VK_SAMPLE_COUNT_1_BIT;
-  info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  info.usage =
+      VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | more;
   if (format != VK_FORMAT_R8_UINT) info.usage |= VK_IMAGE_USAGE_STORAGE_BIT;
   const auto limit = static_cast<int>(device.properties().limits.maxImageDimension2D);
   if (width < 1 || height < 1 || width > limit || height > limit)

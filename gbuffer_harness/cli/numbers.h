@@ -1,0 +1,33 @@
+// Numbers in command-line options.
+#pragma once
+
+#include <charconv>
+#include <string>
+#include <vector>
+
+#include "common/error.h"
+
+namespace pellucid::harness {
+
+// Throws UsageError, naming `option`, unless all of `text` is one number.
+template <class T>
+T parseNumber(const std::string& option, const std::string& text) {
+  T value{};
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || stop != end) throw UsageError(option + ": \"" + text + "\" is not a number");
+  return value;
+}
+
+inline std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts = {""};
+  for (const char c : text) {
+    if (c == separator)
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  }
+  return parts;
+}
+
+}  // namespace pellucid::harness

@@ -1,0 +1,204 @@
+#include "gltf/document.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <optional>
+#include <string_view>
+
+#include "common/error.h"
+
+namespace pellucid::harness {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uintmax_t kMaxFileBytes = 1u << 30;  // tinygltf counts in 32 bits
+constexpr int kMaxDepth = 100;                      // tinygltf reads extensions and extras recursively
+
+// Why the file cannot be read, or nothing.
+std::optional<std::string> readFile(const fs::path& path, std::vector<unsigned char>& bytes) {
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) return "is not a file that can be read";
+  const std::uintmax_t size = fs::file_size(path, error);
+  if (error) return error.message();
+  if (size > kMaxFileBytes)
+    return "has " + std::to_string(size) + " bytes; " + std::to_string(kMaxFileBytes) + " are the most";
+  bytes.resize(static_cast<std::size_t>(size));
+  std::ifstream in(path, std::ios::binary);
+  in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  if (!in) return "cannot be read";
+  return std::nullopt;
+}
+
+// What tinygltf's callbacks need and leave behind.
+struct Session {
+  fs::path folder;  // canonical
+  std::string refusal;
+  std::vector<std::vector<unsigned char>> images;
+};
+
+// tinygltf also looks in the working directory; only the file's folder counts here.
+bool isInFolder(const std::string& name, Session& session) {
+  if (name.rfind(session.folder.string(), 0) != 0) return false;
+  std::error_code error;
+  const fs::path real = fs::weakly_canonical(name, error);
+  const fs::path relative = real.lexically_relative(session.folder);
+  if (!error && !relative.empty() && *relative.begin() != "..") return true;
+  session.refusal = "uri \"" + name.substr(std::min(name.size(), session.folder.string().size() + 1)) +
+                    "\" leaves the file's folder";
+  return false;
+}
+
+tinygltf::FsCallbacks fileAccess(Session& session) {
+  tinygltf::FsCallbacks callbacks{};
+  callbacks.user_data = &session;
+  callbacks.FileExists = [](const std::string& name, void* user) {
+    std::error_code error;
+    return isInFolder(name, *static_cast<Session*>(user)) && fs::is_regular_file(name, error);
+  };
+  callbacks.ExpandFilePath = [](const std::string& name, void*) { return name; };
+  callbacks.ReadWholeFile = [](std::vector<unsigned char>* bytes, std::string* problem,
+                               const std::string& name, void*) {
+    const std::optional<std::string> why = readFile(name, *bytes);
+    if (why && problem) *problem = *why;
+    return !why;
+  };
+  callbacks.WriteWholeFile = [](std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
+    return false;
+  };
+  return callbacks;
+}
+
+// Keeps the encoded bytes: which images are decoded is decided later. Those of a buffer view are left
+// alone, because tinygltf has not checked that the view lies in its buffer.
+bool keepImage(tinygltf::Image* image, const int index, std::string*, std::string*, int, int,
+               const unsigned char* bytes, int size, void* user) {
+  if (image->bufferView >= 0) return true;
+  auto& images = static_cast<Session*>(user)->images;
+  images.resize(std::max(images.size(), static_cast<std::size_t>(index) + 1));
+  images[static_cast<std::size_t>(index)].assign(bytes, bytes + size);
+  return true;
+}
+
+std::uint32_t word(const std::vector<unsigned char>& bytes, std::size_t offset) {
+  std::uint32_t value = 0;  // GLB is little-endian
+  for (std::size_t i = 0; i < 4; ++i) value |= static_cast<std::uint32_t>(bytes[offset + i]) << (8 * i);
+  return value;
+}
+
+bool isBinary(const std::vector<unsigned char>& bytes) {
+  return bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0;
+}
+
+// The JSON text of either container.
+std::string_view jsonText(const std::string& file, const std::vector<unsigned char>& bytes) {
+  const auto* text = reinterpret_cast<const char*>(bytes.data());
+  if (!isBinary(bytes)) return {text, bytes.size()};
+  constexpr std::size_t kHeader = 20;
+  if (bytes.size() < kHeader) throw InputError(file, "", "is truncated: a GLB header has 20 bytes");
+  if (word(bytes, 4) != 2)
+    throw InputError(file, "", "is GLB version " + std::to_string(word(bytes, 4)) + "; 2 is known");
+  if (word(bytes, 8) > bytes.size())
+    throw InputError(file, "",
+                     "is truncated: its header says " + std::to_string(word(bytes, 8)) +
+                         " bytes, there are " + std::to_string(bytes.size()));
+  if (word(bytes, 12) > bytes.size() - kHeader)
+    throw InputError(file, "",
+                     "its JSON chunk says " + std::to_string(word(bytes, 12)) + " bytes, there are " +
+                         std::to_string(bytes.size() - kHeader));
+  return {text + kHeader, word(bytes, 12)};
+}
+
+// Depth of brackets outside strings.
+void checkNesting(const std::string& file, std::string_view json) {
+  int depth = 0;
+  bool inString = false;
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    const char c = json[i];
+    if (inString && c == '\\')
+      ++i;
+    else if (c == '"')
+      inString = !inString;
+    else if (!inString && (c == '[' || c == '{') && ++depth > kMaxDepth)
+      throw InputError(file, "", "its JSON is nested deeper than " + std::to_string(kMaxDepth) + " levels");
+    else if (!inString && (c == ']' || c == '}'))
+      --depth;
+  }
+}
+
+// tinygltf's lines as one sentence.
+std::string sentenceOf(std::string text) {
+  while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
+  for (std::size_t i = text.find('\n'); i != std::string::npos; i = text.find('\n', i))
+    text.replace(i, 1, "; ");
+  constexpr std::size_t kLongest = 300;
+  if (text.size() > kLongest) text = text.substr(0, kLongest) + " ...";
+  return text.empty() ? "cannot be parsed" : text;
+}
+
+}  // namespace
+
+void GltfDocument::fail(const std::string& field, const std::string& sentence) const {
+  throw InputError(file, field, sentence);
+}
+
+std::size_t GltfDocument::index(int index, std::size_t size, const std::string& field,
+                                const char* plural) const {
+  if (index < 0 || static_cast<std::size_t>(index) >= size)
+    fail(field, std::to_string(index) + " is not one of the " + std::to_string(size) + " " + plural);
+  return static_cast<std::size_t>(index);
+}
+
+GltfDocument::Bytes GltfDocument::bufferView(int viewIndex, const std::string& field) const {
+  const tinygltf::BufferView& view =
+      model.bufferViews[index(viewIndex, model.bufferViews.size(), field + ".bufferView", "buffer views")];
+  const std::string name = "bufferViews[" + std::to_string(viewIndex) + "]";
+  const auto& data =
+      model.buffers[index(view.buffer, model.buffers.size(), name + ".buffer", "buffers")].data;
+  if (view.byteOffset > data.size() || view.byteLength > data.size() - view.byteOffset)
+    fail(name, "byteOffset " + std::to_string(view.byteOffset) + " and byteLength " +
+                   std::to_string(view.byteLength) + " leave the " + std::to_string(data.size()) +
+                   " bytes of buffers[" + std::to_string(view.buffer) + "]");
+  return {data.data() + view.byteOffset, view.byteLength};
+}
+
+GltfDocument readGltf(const fs::path& path) {
+  GltfDocument document;
+  document.file = path.string();
+  std::vector<unsigned char> bytes;
+  if (const std::optional<std::string> why = readFile(path, bytes)) document.fail("", *why);
+  checkNesting(document.file, jsonText(document.file, bytes));
+
+  Session session;
+  std::error_code error;
+  session.folder = fs::canonical(path, error).parent_path();
+  tinygltf::TinyGLTF loader;
+  loader.SetFsCallbacks(fileAccess(session));
+  loader.SetImageLoader(keepImage, &session);
+  std::string problems, warnings;
+  bool loaded = false;
+  try {
+    const auto size = static_cast<unsigned int>(bytes.size());
+    const std::string folder = session.folder.string();
+    loaded =
+        isBinary(bytes)
+            ? loader.LoadBinaryFromMemory(&document.model, &problems, &warnings, bytes.data(), size, folder)
+            : loader.LoadASCIIFromString(&document.model, &problems, &warnings,
+                                         reinterpret_cast<const char*>(bytes.data()), size, folder);
+  } catch (const std::exception& e) {
+    problems = e.what();
+  }
+  if (!session.refusal.empty()) document.fail("", session.refusal);
+  // Some mistakes only leave a message, and the object out.
+  if (!loaded || !problems.empty()) document.fail("", sentenceOf(problems));
+  if (document.model.asset.version.rfind("2.", 0) != 0)
+    document.fail("asset.version", "\"" + document.model.asset.version + "\" is not 2.x");
+  document.images = std::move(session.images);
+  document.images.resize(document.model.images.size());
+  return document;
+}
+
+}  // namespace pellucid::harness

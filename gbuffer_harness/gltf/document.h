@@ -1,0 +1,35 @@
+// A glTF file parsed by tinygltf, with what it refers to in memory and nothing of it trusted.
+#pragma once
+
+#include <tiny_gltf.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace pellucid::harness {
+
+struct GltfDocument {
+  std::string file;  // for messages
+  tinygltf::Model model;
+  std::vector<std::vector<unsigned char>> images;  // encoded, for those with a URI; as model.images
+
+  // Throws InputError: file, field, sentence.
+  [[noreturn]] void fail(const std::string& field, const std::string& sentence) const;
+
+  // The bytes of a buffer view, all of them inside its buffer. `field` is what refers to the view.
+  struct Bytes {
+    const unsigned char* data;
+    std::size_t size;
+  };
+  Bytes bufferView(int index, const std::string& field) const;
+
+  // Throws InputError unless 0 <= index < size; "nodes[3].mesh: 7 is not one of the 2 meshes".
+  std::size_t index(int index, std::size_t size, const std::string& field, const char* plural) const;
+};
+
+// Throws InputError for files that are not glTF 2.0, truncated, nested too deeply or larger than 1 GiB, and
+// for URIs that leave the file's folder.
+GltfDocument readGltf(const std::filesystem::path& path);
+
+}  // namespace pellucid::harness

@@ -1,0 +1,235 @@
+#include "gltf/gltf.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <set>
+
+#include "gltf/document.h"
+#include "gltf/material.h"
+#include "gltf/mesh.h"
+#include "gltf/node.h"
+#include "gltf/texture.h"
+#include "scene/vector.h"
+
+namespace pellucid::harness {
+
+namespace {
+
+constexpr std::size_t kMaxMaterials = 255;  // 8 bits, 0 is none
+
+// Understood, or of no consequence for what is drawn.
+const std::set<std::string> kExtensions = {
+    "KHR_lights_punctual",   "KHR_materials_diffuse_transmission",
+    "KHR_materials_ior",     "KHR_materials_transmission",
+    "KHR_materials_volume",  "KHR_materials_volume_scatter",
+    "KHR_mesh_quantization",
+};
+
+// Rotation and position of a node, whatever its scale.
+struct Pose {
+  glm::dvec3 position, up, backward;
+};
+Pose poseOf(const glm::dmat4& world) {
+  return {glm::dvec3(world[3]), glm::dvec3(world[1]), glm::dvec3(world[2])};
+}
+
+class Loader {
+public:
+  Loader(const GltfDocument& document, const GltfOptions& options) : document_(document), options_(options) {}
+
+  GltfScene load();
+
+private:
+  void checkExtensions();
+  void addMesh(std::size_t node, const glm::dmat4& world);
+  void addCamera(std::size_t node, const glm::dmat4& world);
+  void addLight(std::size_t node, const glm::dmat4& world);
+  std::uint32_t surfaceOf(int material);
+  void checkPresetNames();
+
+  const GltfDocument& document_;
+  const GltfOptions& options_;
+  GltfScene scene_;
+  std::map<int, std::uint32_t> surfaces_;  // by glTF material
+  std::map<int, int> textures_;            // by glTF texture
+  std::map<int, int> texCoords_;           // by glTF material
+};
+
+void Loader::checkExtensions() {
+  for (const std::string& name : document_.model.extensionsRequired)
+    if (!kExtensions.count(name)) document_.fail("extensionsRequired", "\"" + name + "\" is not supported");
+  for (const std::string& name : document_.model.extensionsUsed)
+    if (!kExtensions.count(name)) scene_.warnings.push_back("extension " + name + " is ignored");
+}
+
+void Loader::checkPresetNames() {
+  std::vector<std::string>& names = scene_.materialNames;
+  for (std::size_t i = 0; i < document_.model.materials.size(); ++i)
+    names.push_back(materialName(document_, static_cast<int>(i)));
+  names.push_back(materialName(document_, -1));
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  for (const auto& [name, preset] : options_.presets)
+    if (name != "*" && std::find(names.begin(), names.end(), name) == names.end())
+      document_.fail("materials", "none is named \"" + name + "\"; there are " + list);
+}
+
+std::uint32_t Loader::surfaceOf(int material) {
+  if (const auto known = surfaces_.find(material); known != surfaces_.end()) return known->second;
+  Model& model = scene_.model;
+  GltfMaterial read = readMaterial(document_, material, options_, scene_.warnings);
+  if (read.texture != -1) {
+    const auto [entry, isNew] = textures_.try_emplace(read.texture, static_cast<int>(model.textures.size()));
+    if (isNew)
+      model.textures.push_back(readTexture(
+          document_, read.texture,
+          "materials[" + std::to_string(material) + "].pbrMetallicRoughness.baseColorTexture.index"));
+    read.surface.texture = entry->second;
+  }
+  if (read.medium) {
+    if (model.materials.size() == kMaxMaterials)
+      document_.fail("materials", "more than 255 of them are translucent");
+    model.materials.push_back(*read.medium);
+    read.surface.material = static_cast<std::uint8_t>(model.materials.size());
+  }
+  texCoords_[material] = read.texture >= 0 ? read.texCoord : -1;
+  model.surfaces.push_back(read.surface);
+  return surfaces_[material] = static_cast<std::uint32_t>(model.surfaces.size() - 1);
+}
+
+void Loader::addMesh(std::size_t node, const glm::dmat4& world) {
+  const tinygltf::Node& source = document_.model.nodes[node];
+  const std::string nodeName = "nodes[" + std::to_string(node) + "]";
+  if (source.skin != -1) document_.fail(nodeName + ".skin", "skinned meshes are not supported; bake the pose");
+  const std::size_t index =
+      document_.index(source.mesh, document_.model.meshes.size(), nodeName + ".mesh", "meshes");
+  const tinygltf::Mesh& mesh = document_.model.meshes[index];
+  const std::vector<double>& weights = source.weights.empty() ? mesh.weights : source.weights;
+  const bool morphed = std::any_of(weights.begin(), weights.end(), [](double w) { return w != 0; });
+
+  Model& model = scene_.model;
+  for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
+    const tinygltf::Primitive& primitive = mesh.primitives[i];
+    const std::string field = "meshes[" + std::to_string(index) + "].primitives[" + std::to_string(i) + "]";
+    if (morphed && !primitive.targets.empty())
+      document_.fail(field + ".targets", "morph targets in use are not supported; bake the shape");
+    if (primitive.material != -1)
+      document_.index(primitive.material, document_.model.materials.size(), field + ".material", "materials");
+    const std::uint32_t surface = surfaceOf(primitive.material);
+    const auto first = static_cast<std::uint32_t>(model.indices.size());
+    if (!appendPrimitive(document_, primitive, field, world, texCoords_[primitive.material], model,
+                         scene_.warnings))
+      continue;
+    model.parts.push_back({first, static_cast<std::uint32_t>(model.indices.size()) - first, surface,
+                           static_cast<std::uint32_t>(node)});
+  }
+}
+
+void Loader::addCamera(std::size_t node, const glm::dmat4& world) {
+  const tinygltf::Node& source = document_.model.nodes[node];
+  const std::size_t index = document_.index(source.camera, document_.model.cameras.size(),
+                                            "nodes[" + std::to_string(node) + "].camera", "cameras");
+  const tinygltf::Camera& camera = document_.model.cameras[index];
+  const std::string field = "cameras[" + std::to_string(index) + "]";
+  const auto require = [&](bool holds, const char* key, double value, const char* range) {
+    if (!holds) document_.fail(field + key, std::to_string(value) + " is not " + range);
+  };
+  ModelCamera result;
+  result.name = !camera.name.empty() ? camera.name : !source.name.empty() ? source.name : field;
+  result.orthographic = camera.type == "orthographic";
+  if (result.orthographic) {
+    const tinygltf::OrthographicCamera& o = camera.orthographic;
+    require(o.ymag > 0 && o.ymag < 1e18, ".orthographic.ymag", o.ymag, "> 0");
+    require(o.znear >= 0 && o.znear < 1e18, ".orthographic.znear", o.znear, ">= 0");
+    require(o.zfar > o.znear && o.zfar < 1e18, ".orthographic.zfar", o.zfar, "> znear");
+    result.height = 2 * o.ymag;
+    result.range = {o.znear, o.zfar, true};
+  } else {
+    const tinygltf::PerspectiveCamera& p = camera.perspective;
+    require(p.yfov > 0 && p.yfov < std::numbers::pi, ".perspective.yfov", p.yfov, "within 0 .. pi");
+    require(p.znear > 0 && p.znear < 1e18, ".perspective.znear", p.znear, "> 0");
+    require(p.zfar == 0 || (p.zfar > p.znear && p.zfar < 1e18), ".perspective.zfar", p.zfar, "> znear");
+    result.verticalFov = p.yfov;
+    result.range = {p.znear, p.zfar > 0 ? p.zfar : std::numeric_limits<double>::infinity(), true};
+  }
+  const Pose pose = poseOf(world);
+  if (!(glm::length(pose.backward) > 0))
+    document_.fail("nodes[" + std::to_string(node) + "]", "a camera is scaled by 0");
+  result.viewFromWorld = lookAt(fromGlm(pose.position),
+                                fromGlm(pose.position - glm::normalize(pose.backward)), fromGlm(pose.up));
+  scene_.model.cameras.push_back(result);
+}
+
+void Loader::addLight(std::size_t node, const glm::dmat4& world) {
+  const auto& extensions = document_.model.nodes[node].extensions;
+  const auto extension = extensions.find("KHR_lights_punctual");
+  if (extension == extensions.end()) return;
+  const std::string reference = "nodes[" + std::to_string(node) + "].extensions.KHR_lights_punctual.light";
+  if (!extension->second.IsObject() || !extension->second.Get("light").IsInt())
+    document_.fail(reference, "is not an integer");
+  const std::size_t index = document_.index(extension->second.Get("light").GetNumberAsInt(),
+                                            document_.model.lights.size(), reference, "lights");
+  const tinygltf::Light& source = document_.model.lights[index];
+  const std::string field = "extensions.KHR_lights_punctual.lights[" + std::to_string(index) + "].";
+  const auto require = [&](bool holds, const char* key, const char* range) {
+    if (!holds) document_.fail(field + key, std::string("is not ") + range);
+  };
+  Light light;
+  const std::map<std::string, PellucidLightType> types = {{"directional", PELLUCID_LIGHT_DIRECTIONAL},
+                                                          {"point", PELLUCID_LIGHT_POINT},
+                                                          {"spot", PELLUCID_LIGHT_SPOT}};
+  require(types.count(source.type), "type", "directional, point or spot");
+  light.type = types.at(source.type);
+  require(source.color.empty() || source.color.size() == 3, "color", "3 numbers");
+  for (std::size_t i = 0; i < source.color.size(); ++i) {
+    require(source.color[i] >= 0 && source.color[i] < 1e30, "color", ">= 0");
+    light.color[i] = source.color[i];
+  }
+  require(source.intensity >= 0 && source.intensity < 1e30, "intensity", ">= 0");
+  require(source.range >= 0 && source.range < 1e30, "range", ">= 0");
+  light.intensity = source.intensity;
+  light.range = source.range;
+  if (light.type == PELLUCID_LIGHT_SPOT) {
+    light.innerConeAngle = source.spot.innerConeAngle;
+    light.outerConeAngle = source.spot.outerConeAngle;
+    require(light.innerConeAngle >= 0 && light.innerConeAngle < light.outerConeAngle &&
+                light.outerConeAngle <= std::numbers::pi / 2 + 1e-6,
+            "spot", "0 <= innerConeAngle < outerConeAngle <= pi / 2");
+  }
+  const Pose pose = poseOf(world);
+  require(glm::length(pose.backward) > 0, "direction", "defined: its node is scaled by 0");
+  light.position = fromGlm(pose.position);
+  light.direction = fromGlm(-glm::normalize(pose.backward));
+  scene_.model.lights.push_back(light);
+}
+
+GltfScene Loader::load() {
+  Model& model = scene_.model;
+  model.name = document_.file;
+  model.metersPerUnit = options_.metersPerUnit;
+  checkExtensions();
+  checkPresetNames();
+  forEachNode(document_, [&](std::size_t node, const glm::dmat4& world) {
+    const tinygltf::Node& source = document_.model.nodes[node];
+    if (source.mesh != -1) addMesh(node, world);
+    if (source.camera != -1) addCamera(node, world);
+    addLight(node, world);
+  });
+  if (model.indices.empty()) document_.fail("meshes", "the scene has no triangles");
+  if (model.materials.empty())
+    scene_.warnings.push_back("no material of the scene is translucent; name a preset for one");
+  return std::move(scene_);
+}
+
+}  // namespace
+
+GltfScene loadGltf(const std::filesystem::path& path, const GltfOptions& options) {
+  const GltfDocument document = readGltf(path);
+  return Loader(document, options).load();
+}
+
+}  // namespace pellucid::harness

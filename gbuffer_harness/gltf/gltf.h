@@ -1,0 +1,32 @@
+// glTF 2.0 files (.glb, .gltf) as models for the rasterizer. docs/scenes.md has the mapping.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "raster/model.h"
+
+namespace pellucid::harness {
+
+struct GltfOptions {
+  double metersPerUnit = 1;  // glTF's own unit is the meter
+  // glTF material name -> preset of the material compiler, instead of what the file says. "*": every
+  // material that is not named; "default": triangles without a material.
+  std::map<std::string, std::string> presets;
+};
+
+struct GltfScene {
+  Model model;
+  std::vector<std::string> materialNames;  // as `presets` takes them
+  std::vector<std::string> warnings;       // sentences for a person: what is drawn otherwise than asked
+};
+
+// Reads the default scene, with every node's transform applied. Memory stays within a small multiple of
+// the files' size and of 2^24 vertices. External buffers and images must lie in the file's own folder or
+// below it. Throws InputError naming file, field and value for what is broken, and for what cannot be
+// drawn as asked: required extensions, skins, morph targets in use, sparse accessors.
+GltfScene loadGltf(const std::filesystem::path& path, const GltfOptions& options = {});
+
+}  // namespace pellucid::harness

@@ -1,0 +1,365 @@
+#include "raster/draw.h"
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+
+#include "common/error.h"
+#include "kRasterCount.h"
+#include "kRasterDepth.h"
+#include "kRasterMesh.h"
+#include "kRasterSurface.h"
+#include "scene/vector.h"
+
+namespace pellucid::harness {
+
+namespace {
+
+constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
+
+using ShaderModule = Owned<VkShaderModule, vkDestroyShaderModule>;
+
+struct Spirv {
+  const std::uint32_t* words;
+  std::size_t bytes;
+};
+
+Spirv fragmentSpirv(FragmentShader shader) {
+  switch (shader) {
+    case FragmentShader::Surface:
+      return {kRasterSurface, sizeof kRasterSurface};
+    case FragmentShader::Depth:
+      return {kRasterDepth, sizeof kRasterDepth};
+    case FragmentShader::Count:
+      return {kRasterCount, sizeof kRasterCount};
+  }
+  throw DeviceError("no such fragment shader");
+}
+
+VkPipelineShaderStageCreateInfo loadStage(Device& device, VkShaderStageFlagBits stage, Spirv code,
+                                          ShaderModule& shader) {
+  VkShaderModuleCreateInfo info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
+  info.codeSize = code.bytes;
+  info.pCode = code.words;
+  check(vkCreateShaderModule(device.handle(), &info, nullptr, shader.receive()), "vkCreateShaderModule");
+  VkPipelineShaderStageCreateInfo result{VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO};
+  result.stage = stage;
+  result.module = shader;
+  result.pName = "main";
+  return result;
+}
+
+template <class T>
+VkDeviceSize byteCount(const std::vector<T>& values) {
+  return static_cast<VkDeviceSize>(values.size() * sizeof(T));
+}
+
+// IEC 61966-2-1.
+float linearOf(std::uint8_t srgb) {
+  const double v = srgb / 255.0;
+  return static_cast<float>(v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4));
+}
+
+Image linearImage(const Texture& texture) {
+  std::array<float, 256> linear;
+  for (std::size_t i = 0; i < linear.size(); ++i) linear[i] = linearOf(static_cast<std::uint8_t>(i));
+  Image image(texture.width, texture.height, 4);
+  for (std::size_t i = 0; i < image.data.size(); ++i)
+    image.data[i] = i % 4 == 3 ? static_cast<float>(texture.rgba[i]) / 255.0f : linear[texture.rgba[i]];
+  return image;
+}
+
+VkSamplerAddressMode addressMode(TextureWrap wrap) {
+  return wrap == TextureWrap::Repeat  ? VK_SAMPLER_ADDRESS_MODE_REPEAT
+         : wrap == TextureWrap::Clamp ? VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE
+                                      : VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT;
+}
+
+glm::vec4 vec4(const std::array<double, 3>& rgb, double w) {
+  return {static_cast<float>(rgb[0]), static_cast<float>(rgb[1]), static_cast<float>(rgb[2]),
+          static_cast<float>(w)};
+}
+
+}  // namespace
+
+RenderTarget::RenderTarget(Device& device, int width, int height, const std::vector<Color>& colors,
+                           std::optional<float> clearDepth)
+    : extent_{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)},
+      depthMemory_(device),
+      depthImage_(device),
+      depthView_(device),
+      renderPass_(device),
+      framebuffer_(device) {
+  std::vector<VkImageView> views;
+  for (const Color& color : colors) {
+    images_.push_back(
+        std::make_unique<GpuImage>(device, width, height, color.format, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT));
+    views.push_back(images_.back()->use().view);
+    clears_.push_back({.color = color.clear});
+  }
+  if (clearDepth) {
+    createDepthBuffer(device);
+    views.push_back(depthView_);
+    clears_.push_back({.depthStencil = {*clearDepth, 0}});
+  }
+  createRenderPass(device, colors);
+  VkFramebufferCreateInfo info{VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO};
+  info.renderPass = renderPass_;
+  info.attachmentCount = static_cast<std::uint32_t>(views.size());
+  info.pAttachments = views.data();
+  info.width = extent_.width;
+  info.height = extent_.height;
+  info.layers = 1;
+  check(vkCreateFramebuffer(device.handle(), &info, nullptr, framebuffer_.receive()), "vkCreateFramebuffer");
+}
+
+void RenderTarget::createDepthBuffer(Device& device) {
+  VkImageCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO};
+  info.imageType = VK_IMAGE_TYPE_2D;
+  info.format = kDepthFormat;
+  info.extent = {extent_.width, extent_.height, 1};
+  info.mipLevels = info.arrayLayers = 1;
+  info.samples = VK_SAMPLE_COUNT_1_BIT;
+  info.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+  check(vkCreateImage(device.handle(), &info, nullptr, depthImage_.receive()), "vkCreateImage");
+  VkMemoryRequirements needs;
+  vkGetImageMemoryRequirements(device.handle(), depthImage_, &needs);
+  VkMemoryAllocateInfo allocate{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
+  allocate.allocationSize = needs.size;
+  allocate.memoryTypeIndex = device.memoryType(needs.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
+  check(vkAllocateMemory(device.handle(), &allocate, nullptr, depthMemory_.receive()), "vkAllocateMemory");
+  check(vkBindImageMemory(device.handle(), depthImage_, depthMemory_, 0), "vkBindImageMemory");
+  VkImageViewCreateInfo view{VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
+  view.image = depthImage_;
+  view.viewType = VK_IMAGE_VIEW_TYPE_2D;
+  view.format = kDepthFormat;
+  view.subresourceRange = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 1, 0, 1};
+  check(vkCreateImageView(device.handle(), &view, nullptr, depthView_.receive()), "vkCreateImageView");
+}
+
+void RenderTarget::createRenderPass(Device& device, const std::vector<Color>& colors) {
+  std::vector<VkAttachmentDescription> attachments;
+  std::vector<VkAttachmentReference> references;
+  const auto attach = [&](VkFormat format, VkAttachmentStoreOp store) {
+    references.push_back({static_cast<std::uint32_t>(attachments.size()), VK_IMAGE_LAYOUT_GENERAL});
+    VkAttachmentDescription a{};
+    a.format = format;
+    a.samples = VK_SAMPLE_COUNT_1_BIT;
+    a.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
+    a.storeOp = store;
+    a.stencilLoadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;
+    a.stencilStoreOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
+    a.finalLayout = VK_IMAGE_LAYOUT_GENERAL;
+    attachments.push_back(a);
+  };
+  for (const Color& color : colors) attach(color.format, VK_ATTACHMENT_STORE_OP_STORE);
+  const bool hasDepth = clears_.size() > colors.size();
+  if (hasDepth) attach(kDepthFormat, VK_ATTACHMENT_STORE_OP_DONT_CARE);
+
+  VkSubpassDescription subpass{};
+  subpass.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS;
+  subpass.colorAttachmentCount = static_cast<std::uint32_t>(colors.size());
+  subpass.pColorAttachments = references.data();
+  if (hasDepth) subpass.pDepthStencilAttachment = &references.back();
+  const VkAccessFlags everything = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
+  const VkPipelineStageFlags all = VK_PIPELINE_STAGE_ALL_COMMANDS_BIT;
+  const VkPipelineStageFlags drawing = VK_PIPELINE_STAGE_ALL_GRAPHICS_BIT;
+  const VkSubpassDependency dependencies[] = {
+      {VK_SUBPASS_EXTERNAL, 0, all, drawing, everything, everything, 0},
+      {0, VK_SUBPASS_EXTERNAL, drawing, all, everything, everything, 0}};
+  VkRenderPassCreateInfo info{VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO};
+  info.attachmentCount = static_cast<std::uint32_t>(attachments.size());
+  info.pAttachments = attachments.data();
+  info.subpassCount = 1;
+  info.pSubpasses = &subpass;
+  info.dependencyCount = static_cast<std::uint32_t>(std::size(dependencies));
+  info.pDependencies = dependencies;
+  check(vkCreateRenderPass(device.handle(), &info, nullptr, renderPass_.receive()), "vkCreateRenderPass");
+}
+
+void RenderTarget::begin(VkCommandBuffer commandBuffer) const {
+  VkRenderPassBeginInfo info{VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO};
+  info.renderPass = renderPass_;
+  info.framebuffer = framebuffer_;
+  info.renderArea.extent = extent_;
+  info.clearValueCount = static_cast<std::uint32_t>(clears_.size());
+  info.pClearValues = clears_.data();
+  vkCmdBeginRenderPass(commandBuffer, &info, VK_SUBPASS_CONTENTS_INLINE);
+  const VkViewport viewport{0, 0, static_cast<float>(extent_.width), static_cast<float>(extent_.height),
+                            0, 1};
+  const VkRect2D scissor{{0, 0}, extent_};
+  vkCmdSetViewport(commandBuffer, 0, 1, &viewport);
+  vkCmdSetScissor(commandBuffer, 0, 1, &scissor);
+}
+
+UploadedModel::UploadedModel(Device& device, const Model& model)
+    : device_(device),
+      model_(model),
+      vertices_(device, byteCount(model.vertices), VK_BUFFER_USAGE_VERTEX_BUFFER_BIT),
+      indices_(device, byteCount(model.indices), VK_BUFFER_USAGE_INDEX_BUFFER_BIT),
+      setLayout_(device),
+      layout_(device) {
+  if (!device.canDraw()) throw DeviceError(device.description() + " computes but has no queue that draws");
+  std::memcpy(vertices_.mapped(), model.vertices.data(), static_cast<std::size_t>(vertices_.size()));
+  std::memcpy(indices_.mapped(), model.indices.data(), static_cast<std::size_t>(indices_.size()));
+
+  const auto add = [&](const Texture& texture, VkFilter filter) {
+    textures_.push_back(
+        std::make_unique<GpuImage>(device, texture.width, texture.height, VK_FORMAT_R16G16B16A16_SFLOAT));
+    textures_.back()->upload(linearImage(texture));
+    VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
+    info.magFilter = info.minFilter = filter;
+    info.addressModeU = addressMode(texture.wrapU);
+    info.addressModeV = addressMode(texture.wrapV);
+    samplers_.push_back(std::make_unique<Owned<VkSampler, vkDestroySampler>>(device));
+    check(vkCreateSampler(device.handle(), &info, nullptr, samplers_.back()->receive()), "vkCreateSampler");
+  };
+  for (const Texture& texture : model.textures) add(texture, VK_FILTER_LINEAR);
+  // Its sampler also serves texelFetch from formats that need not filter.
+  add({1, 1, {255, 255, 255, 255}}, VK_FILTER_NEAREST);
+  createLayout();
+}
+
+void UploadedModel::createLayout() {
+  VkDescriptorSetLayoutBinding bindings[3]{};
+  for (std::uint32_t i = 0; i < std::size(bindings); ++i)
+    bindings[i] = {i, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1, VK_SHADER_STAGE_FRAGMENT_BIT, nullptr};
+  VkDescriptorSetLayoutCreateInfo set{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
+  set.flags = VK_DESCRIPTOR_SET_LAYOUT_CREATE_PUSH_DESCRIPTOR_BIT_KHR;
+  set.bindingCount = static_cast<std::uint32_t>(std::size(bindings));
+  set.pBindings = bindings;
+  check(vkCreateDescriptorSetLayout(device_.handle(), &set, nullptr, setLayout_.receive()),
+        "vkCreateDescriptorSetLayout");
+  const VkPushConstantRange constants{VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
+                                      sizeof(DrawConstants)};
+  const VkDescriptorSetLayout sets[] = {setLayout_};
+  VkPipelineLayoutCreateInfo layout{VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO};
+  layout.setLayoutCount = 1;
+  layout.pSetLayouts = sets;
+  layout.pushConstantRangeCount = 1;
+  layout.pPushConstantRanges = &constants;
+  check(vkCreatePipelineLayout(device_.handle(), &layout, nullptr, layout_.receive()),
+        "vkCreatePipelineLayout");
+  pushDescriptors_ = reinterpret_cast<PFN_vkCmdPushDescriptorSetKHR>(
+      vkGetDeviceProcAddr(device_.handle(), "vkCmdPushDescriptorSetKHR"));
+}
+
+void UploadedModel::createPipeline(Pipeline& pipeline, const RenderTarget& target,
+                                   const PipelineState& state) const {
+  ShaderModule vertex(device_), fragment(device_);
+  const VkPipelineShaderStageCreateInfo stages[] = {
+      loadStage(device_, VK_SHADER_STAGE_VERTEX_BIT, {kRasterMesh, sizeof kRasterMesh}, vertex),
+      loadStage(device_, VK_SHADER_STAGE_FRAGMENT_BIT, fragmentSpirv(state.shader), fragment)};
+
+  const VkVertexInputBindingDescription binding{0, sizeof(Vertex), VK_VERTEX_INPUT_RATE_VERTEX};
+  const VkVertexInputAttributeDescription attributes[] = {
+      {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, position)},
+      {1, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, normal)},
+      {2, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(Vertex, uv)},
+      {3, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, color)},
+      {4, 0, VK_FORMAT_R32_SFLOAT, offsetof(Vertex, mark)}};
+  VkPipelineVertexInputStateCreateInfo input{VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
+  input.vertexBindingDescriptionCount = 1;
+  input.pVertexBindingDescriptions = &binding;
+  input.vertexAttributeDescriptionCount = static_cast<std::uint32_t>(std::size(attributes));
+  input.pVertexAttributeDescriptions = attributes;
+  VkPipelineInputAssemblyStateCreateInfo assembly{
+      VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO};
+  assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+  VkPipelineViewportStateCreateInfo viewport{VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO};
+  viewport.viewportCount = viewport.scissorCount = 1;
+  VkPipelineRasterizationStateCreateInfo raster{VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO};
+  raster.cullMode = state.cull;
+  raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
+  raster.lineWidth = 1;
+  VkPipelineMultisampleStateCreateInfo samples{VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO};
+  samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
+  VkPipelineDepthStencilStateCreateInfo depth{VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO};
+  depth.depthTestEnable = depth.depthWriteEnable = state.depthTest.has_value();
+  depth.depthCompareOp = state.depthTest.value_or(VK_COMPARE_OP_ALWAYS);
+  VkPipelineColorBlendAttachmentState blend{};
+  blend.blendEnable = state.add;
+  blend.srcColorBlendFactor = blend.dstColorBlendFactor = VK_BLEND_FACTOR_ONE;
+  blend.srcAlphaBlendFactor = blend.dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
+  blend.colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT |
+                         VK_COLOR_COMPONENT_A_BIT;
+  const std::vector<VkPipelineColorBlendAttachmentState> blends(target.colorCount(), blend);
+  VkPipelineColorBlendStateCreateInfo colors{VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO};
+  colors.attachmentCount = static_cast<std::uint32_t>(blends.size());
+  colors.pAttachments = blends.data();
+  const VkDynamicState dynamicStates[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
+  VkPipelineDynamicStateCreateInfo dynamic{VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO};
+  dynamic.dynamicStateCount = static_cast<std::uint32_t>(std::size(dynamicStates));
+  dynamic.pDynamicStates = dynamicStates;
+
+  VkGraphicsPipelineCreateInfo info{VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO};
+  info.stageCount = static_cast<std::uint32_t>(std::size(stages));
+  info.pStages = stages;
+  info.pVertexInputState = &input;
+  info.pInputAssemblyState = &assembly;
+  info.pViewportState = &viewport;
+  info.pRasterizationState = &raster;
+  info.pMultisampleState = &samples;
+  info.pDepthStencilState = &depth;
+  info.pColorBlendState = &colors;
+  info.pDynamicState = &dynamic;
+  info.layout = layout_;
+  info.renderPass = target.renderPass();
+  check(vkCreateGraphicsPipelines(device_.handle(), VK_NULL_HANDLE, 1, &info, nullptr, pipeline.receive()),
+        "vkCreateGraphicsPipelines");
+}
+
+void UploadedModel::draw(const RenderTarget& target, const DrawView& view, const PipelineState& state,
+                         VkCullModeFlags doubleSidedCull, const EarlierPass& earlier) const {
+  Pipeline singleSided(device_), doubleSided(device_);
+  createPipeline(singleSided, target, state);
+  PipelineState other = state;
+  other.cull = doubleSidedCull;
+  createPipeline(doubleSided, target, other);
+
+  const glm::dmat4 viewFromWorld = toGlm(view.viewFromWorld);
+  DrawConstants constants{};
+  constants.clipFromWorld = glm::mat4(toGlm(view.clipFromView) * viewFromWorld);
+  constants.planar = -glm::vec4(glm::transpose(viewFromWorld)[2]);
+  const GpuImage& white = *textures_.back();
+
+  device_.run([&](VkCommandBuffer commandBuffer) {
+    target.begin(commandBuffer);
+    const VkDeviceSize offset = 0;
+    const VkBuffer vertexBuffer = vertices_.handle();
+    vkCmdBindVertexBuffers(commandBuffer, 0, 1, &vertexBuffer, &offset);
+    vkCmdBindIndexBuffer(commandBuffer, indices_.handle(), 0, VK_INDEX_TYPE_UINT32);
+    for (const Part& part : model_.parts) {
+      const Surface& surface = model_.surfaces[part.surface];
+      vkCmdBindPipeline(commandBuffer, VK_PIPELINE_BIND_POINT_GRAPHICS,
+                        surface.doubleSided ? doubleSided : singleSided);
+      const std::size_t texture =
+          surface.texture < 0 ? textures_.size() - 1 : static_cast<std::size_t>(surface.texture);
+      const GpuImage* images[] = {textures_[texture].get(), earlier.depth ? earlier.depth : &white,
+                                  earlier.albedoObject ? earlier.albedoObject : &white};
+      VkDescriptorImageInfo infos[3];
+      VkWriteDescriptorSet writes[3];
+      for (std::uint32_t i = 0; i < std::size(images); ++i) {
+        infos[i] = {*samplers_[i == 0 ? texture : samplers_.size() - 1], images[i]->use().view,
+                    images[i]->use().layout};
+        writes[i] = {VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
+        writes[i].dstBinding = i;
+        writes[i].descriptorCount = 1;
+        writes[i].descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+        writes[i].pImageInfo = &infos[i];
+      }
+      pushDescriptors_(commandBuffer, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0,
+                       static_cast<std::uint32_t>(std::size(writes)), writes);
+      constants.baseColor = vec4(surface.baseColor, surface.alphaCutoff);
+      constants.addedColor = vec4(surface.addedColor, part.object);
+      constants.ids = {surface.material, view.reversedDepth, earlier.depth != nullptr, 0};
+      vkCmdPushConstants(commandBuffer, layout_, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
+                         sizeof constants, &constants);
+      vkCmdDrawIndexed(commandBuffer, part.indexCount, 1, part.firstIndex, 0, 0);
+    }
+    target.end(commandBuffer);
+  });
+}
+
+}  // namespace pellucid::harness

@@ -1,0 +1,131 @@
+#include "raster/framing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <limits>
+#include <numbers>
+
+#include "common/error.h"
+#include "scene/vector.h"
+
+namespace pellucid::harness {
+
+namespace {
+
+constexpr double kMargin = 1.05;
+constexpr double kWidestHalfAngle = 75 * std::numbers::pi / 180;
+
+glm::dvec3 positionOf(const Vertex& vertex) {
+  return {vertex.position[0], vertex.position[1], vertex.position[2]};
+}
+
+// Calls visit(position) for the vertex of every index: vertices that no triangle uses do not count.
+template <class Visit>
+void forEachPosition(const Model& model, const Visit& visit) {
+  for (const Part& part : model.parts)
+    for (std::uint32_t i = 0; i < part.indexCount; ++i)
+      visit(positionOf(model.vertices[model.indices[part.firstIndex + i]]));
+}
+
+// Extent of the model as a view sees it.
+struct Extent {
+  double nearest = std::numeric_limits<double>::infinity(), farthest = -nearest;  // planar distance
+  double side = 0;                                                                // largest |x| or |y|
+  double tangent = 0;  // largest |x| or |y| per planar distance; infinite when something is not in front
+};
+
+Extent extentIn(const Model& model, const Matrix& viewFromWorld) {
+  const glm::dmat4 view = toGlm(viewFromWorld);
+  Extent extent;
+  forEachPosition(model, [&](const glm::dvec3& position) {
+    const glm::dvec3 p = view * glm::dvec4(position, 1);
+    const double side = std::max(std::abs(p.x), std::abs(p.y));
+    extent.nearest = std::min(extent.nearest, -p.z);
+    extent.farthest = std::max(extent.farthest, -p.z);
+    extent.side = std::max(extent.side, side);
+    extent.tangent =
+        std::max(extent.tangent, p.z < 0 ? side / -p.z : std::numeric_limits<double>::infinity());
+  });
+  return extent;
+}
+
+// Clip planes around [nearest, farthest], also where the model is a plane that faces the view.
+ClipRange clipAround(const Extent& extent, bool perspective) {
+  const double slack = 1e-3 * std::max({extent.farthest - extent.nearest, extent.side, 1e-6});
+  ClipRange range{extent.nearest - slack, extent.farthest + slack, true};
+  // A light within the model still needs a near plane in front of it.
+  if (perspective) range.nearPlane = std::max(range.nearPlane, 1e-3 * range.farPlane);
+  return range;
+}
+
+std::optional<LightView> perspectiveView(const Model& model, const Light& light, const glm::dvec3& axis,
+                                         double halfAngle) {
+  LightView view;
+  view.viewFromWorld = lookAt(light.position, fromGlm(toGlm(light.position) + axis), {0, 1, 0});
+  const Extent extent = extentIn(model, view.viewFromWorld);
+  halfAngle = std::min(halfAngle, std::atan(extent.tangent * kMargin));
+  if (!(halfAngle > 0) || halfAngle > kWidestHalfAngle || !(extent.farthest > 0)) return std::nullopt;
+  view.clipFromView = perspective(2 * halfAngle, 1, clipAround(extent, true));
+  return view;
+}
+
+}  // namespace
+
+Bounds boundsOf(const Model& model) {
+  glm::dvec3 low(std::numeric_limits<double>::infinity()), high = -low;
+  forEachPosition(model, [&](const glm::dvec3& position) {
+    low = glm::min(low, position);
+    high = glm::max(high, position);
+  });
+  if (!(low.x <= high.x)) throw InputError(model.name, "meshes", "there is no triangle to draw");
+  const double radius = 0.5 * glm::length(high - low);
+  return {fromGlm(0.5 * (low + high)), std::max(radius, 1e-6 * glm::length(high) + 1e-30)};
+}
+
+ModelCamera frameModel(const Model& model, const Vector3& toCamera, double verticalFov, double aspect,
+                       bool orthographic) {
+  const Bounds bounds = boundsOf(model);
+  const double length = glm::length(toGlm(toCamera));
+  if (!(length > 0) || !std::isfinite(length))
+    throw InputError(model.name, "view", "the direction to the camera has no length");
+  // The narrower of the two fields of view has to hold the sphere.
+  const double halfFov = std::atan(std::tan(verticalFov / 2) * std::min(1.0, aspect));
+  const double distance = bounds.radius * kMargin / std::sin(halfFov);
+  ModelCamera camera;
+  camera.name = "auto";
+  camera.viewFromWorld =
+      lookAt(fromGlm(toGlm(bounds.center) + toGlm(toCamera) * (distance / length)), bounds.center, {0, 1, 0});
+  camera.orthographic = orthographic;
+  camera.verticalFov = verticalFov;
+  camera.height = 2 * bounds.radius * kMargin / std::min(1.0, aspect);
+  camera.range = {distance - bounds.radius * kMargin, distance + bounds.radius * kMargin, true};
+  return camera;
+}
+
+std::optional<LightView> frameLight(const Model& model, const Light& light) {
+  const Bounds bounds = boundsOf(model);
+  if (light.type == PELLUCID_LIGHT_DIRECTIONAL) {
+    LightView view;
+    const glm::dvec3 axis = glm::normalize(toGlm(light.direction));
+    view.viewFromWorld =
+        lookAt(fromGlm(toGlm(bounds.center) - 2 * bounds.radius * axis), bounds.center, {0, 1, 0});
+    const Extent extent = extentIn(model, view.viewFromWorld);
+    const double size = 2 * kMargin * std::max(extent.side, 1e-3 * bounds.radius);
+    view.clipFromView = orthographic(size, size, clipAround(extent, false));
+    return view;
+  }
+  std::optional<LightView> view;
+  const glm::dvec3 toCenter = toGlm(bounds.center) - toGlm(light.position);
+  if (glm::length(toCenter) > bounds.radius)
+    view = perspectiveView(model, light, glm::normalize(toCenter), std::numbers::pi / 2);
+  if (light.type == PELLUCID_LIGHT_SPOT) {
+    const std::optional<LightView> cone =
+        perspectiveView(model, light, glm::normalize(toGlm(light.direction)), light.outerConeAngle * 1.001);
+    // A larger scale is a narrower view.
+    if (cone && (!view || cone->clipFromView[0] > view->clipFromView[0])) view = cone;
+  }
+  return view;
+}
+
+}  // namespace pellucid::harness

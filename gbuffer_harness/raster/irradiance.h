@@ -1,0 +1,48 @@
+// Irradiance of the visible surfaces, light by light.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "common/device.h"
+#include "common/gpu_image.h"
+#include "raster/draw.h"
+
+namespace pellucid::harness {
+
+// A shadow map as the irradiance pass reads it: planar distances, kNoDepth where nothing is.
+struct ShadowImage {
+  const GpuImage* planar = nullptr;
+  int size = 0;  // texels across
+  Matrix clipFromView, viewFromWorld;
+  bool perspective = false;
+};
+
+class IrradiancePass {
+public:
+  // normalPlanar: world normal and planar distance in front of `view`, which is symmetric about its axis;
+  // a distance <= 0 holds nothing and gets no light. The image must outlive this.
+  IrradiancePass(Device& device, const GpuImage& normalPlanar, int width, int height, const DrawView& view);
+
+  // Adds color * intensity * max(N.L, 0) and the attenuation of KHR_lights_punctual, times the part of the
+  // shadow map's texels that see the surface. Outside the map, or without one, nothing shadows.
+  void add(const Light& light, const ShadowImage* shadow);
+
+  Image irradiance() const;  // RGB
+
+private:
+  void createPipeline();
+
+  Device& device_;
+  const GpuImage& normalPlanar_;
+  int width_, height_;
+  DrawView view_;
+  GpuImage irradiance_;
+  Owned<VkSampler, vkDestroySampler> sampler_;
+  Owned<VkDescriptorSetLayout, vkDestroyDescriptorSetLayout> setLayout_;
+  Owned<VkPipelineLayout, vkDestroyPipelineLayout> layout_;
+  Owned<VkPipeline, vkDestroyPipeline> pipeline_;
+  PFN_vkCmdPushDescriptorSetKHR pushDescriptors_ = nullptr;
+};
+
+}  // namespace pellucid::harness

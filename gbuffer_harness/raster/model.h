@@ -1,0 +1,71 @@
+// Triangle meshes with what a rasterizer needs to draw them: what a glTF file becomes, and what tests build
+// by hand. World space is right-handed and in scene units throughout.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "capture/capture.h"
+#include "scene/camera.h"
+
+namespace pellucid::harness {
+
+struct Vertex {
+  std::array<float, 3> position;  // world
+  std::array<float, 3> normal;    // world, unit
+  std::array<float, 2> uv = {0, 0};
+  std::array<float, 3> color = {1, 1, 1};  // linear; multiplies the base color
+  float mark = 1;                          // pixels where it interpolates to less than 0.5 get material 0
+};
+
+enum class TextureWrap { Repeat, Clamp, Mirror };
+
+struct Texture {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> rgba;  // row 0 first; sRGB color, linear alpha
+  TextureWrap wrapU = TextureWrap::Repeat, wrapV = TextureWrap::Repeat;
+};
+
+// How a part is drawn: albedo = texture * baseColor * vertex color + addedColor.
+struct Surface {
+  std::string name;
+  std::array<double, 3> baseColor = {1, 1, 1};   // linear
+  std::array<double, 3> addedColor = {0, 0, 0};  // linear
+  int texture = -1;                              // into Model::textures; -1: white
+  double alphaCutoff = 0;                        // texels of less alpha are holes; 0: none are
+  bool doubleSided = false;                      // drawn from behind too, with the normal turned round
+  std::uint8_t material = 0;                     // index in the material image; 0: not translucent
+};
+
+struct Part {
+  std::uint32_t firstIndex = 0, indexCount = 0;  // triangles, counterclockwise from outside
+  std::uint32_t surface = 0;                     // into Model::surfaces
+  // Parts of one object bound one volume: a back face closes the volume only of its own object. < 2^24.
+  std::uint32_t object = 0;
+};
+
+struct ModelCamera {
+  std::string name;
+  Matrix viewFromWorld = kIdentity;  // rigid, -z forward
+  bool orthographic = false;
+  double verticalFov = 0.5;  // radians; perspective
+  double height = 1;         // scene units from the lower to the upper edge; orthographic
+  ClipRange range;           // `reversed` is decided by the rasterizer's options
+};
+
+struct Model {
+  std::string name;
+  double metersPerUnit = 1;
+  std::vector<Vertex> vertices;
+  std::vector<std::uint32_t> indices;
+  std::vector<Part> parts;
+  std::vector<Surface> surfaces;
+  std::vector<Texture> textures;
+  std::vector<MaterialSource> materials;
+  std::vector<ModelCamera> cameras;
+  std::vector<Light> lights;  // without shadow maps
+};
+
+}  // namespace pellucid::harness

@@ -1,0 +1,222 @@
+#include "raster/raster.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "common/error.h"
+#include "raster/draw.h"
+#include "raster/framing.h"
+#include "raster/irradiance.h"
+#include "scene/vector.h"
+
+namespace pellucid::harness {
+
+namespace {
+
+constexpr int kLargestSide = 8192;
+
+// Images of RenderTargets that shaders/depth.frag writes.
+constexpr std::size_t kPlanar = 0, kDeviceDepth = 1;
+
+void checkSide(const Model& model, const char* field, int value, int smallest) {
+  if (value < smallest || value > kLargestSide)
+    throw InputError(model.name, field,
+                     std::to_string(value) + " is outside " + std::to_string(smallest) + " .. " +
+                         std::to_string(kLargestSide));
+}
+
+Matrix projection(const ModelCamera& camera, const RasterOptions& options) {
+  const double aspect = static_cast<double>(options.width) / options.height;
+  ClipRange range = camera.range;
+  range.reversed = options.reversedZ;
+  if (options.infiniteFar) {
+    if (camera.orthographic)
+      throw InputError("", "infiniteFar",
+                       "camera \"" + camera.name + "\" is orthographic and needs a far plane");
+    range.farPlane = std::numeric_limits<double>::infinity();
+  }
+  return camera.orthographic ? orthographic(camera.height * aspect, camera.height, range)
+                             : perspective(camera.verticalFov, aspect, range);
+}
+
+VkCompareOp nearer(bool reversed) { return reversed ? VK_COMPARE_OP_GREATER : VK_COMPARE_OP_LESS; }
+float farDepth(bool reversed) { return reversed ? 0.0f : 1.0f; }
+
+VkClearColorValue clearTo(float value) { return {.float32 = {value, value, value, value}}; }
+
+// What shaders/depth.frag writes, cleared to "nothing there".
+std::vector<RenderTarget::Color> depthColors(bool reversed) {
+  return {{VK_FORMAT_R32_SFLOAT, clearTo(kNoDepth)}, {VK_FORMAT_R32_SFLOAT, clearTo(farDepth(reversed))}};
+}
+
+// What the first pass leaves for the others, on the device.
+struct FrontTarget {
+  RenderTarget target;
+
+  FrontTarget(Device& device, const RasterOptions& options)
+      : target(device, options.width, options.height,
+               {{VK_FORMAT_R32G32B32A32_SFLOAT, clearTo(0)},
+                {VK_FORMAT_R32G32B32A32_SFLOAT, clearTo(-1)},  // no object
+                {VK_FORMAT_R8_UINT, {}},
+                {VK_FORMAT_R32_SFLOAT, clearTo(farDepth(options.reversedZ))}},
+               farDepth(options.reversedZ)) {}
+  const GpuImage& normalPlanar() const { return target.image(0); }
+  const GpuImage& albedoObject() const { return target.image(1); }
+  const GpuImage& material() const { return target.image(2); }
+  const GpuImage& deviceDepth() const { return target.image(3); }
+};
+
+// Back depth in both encodings and the faces counted along each pixel's ray.
+struct BackImages {
+  Image planar, deviceDepth, count;
+};
+
+BackImages drawBack(Device& device, const UploadedModel& model, const DrawView& view,
+                    const FrontTarget& front, const RasterOptions& options) {
+  const bool farthest = options.backFace == BackFace::Farthest;
+  const bool keepGreater = options.reversedZ != farthest;
+  const RenderTarget back(device, options.width, options.height, depthColors(options.reversedZ),
+                          farDepth(keepGreater));
+  model.draw(back, view, {FragmentShader::Depth, VK_CULL_MODE_FRONT_BIT, nearer(keepGreater), false},
+             VK_CULL_MODE_FRONT_BIT, {&front.deviceDepth(), &front.albedoObject()});
+  // Half floats count to 2048 and every device can blend them.
+  const RenderTarget count(device, options.width, options.height,
+                           {{VK_FORMAT_R16G16B16A16_SFLOAT, clearTo(0)}}, std::nullopt);
+  model.draw(count, view, {FragmentShader::Count, VK_CULL_MODE_NONE, std::nullopt, true}, VK_CULL_MODE_NONE,
+             {&back.image(kDeviceDepth), &front.albedoObject()});
+  return {back.image(kPlanar).download(), back.image(kDeviceDepth).download(), count.image(0).download()};
+}
+
+// Between the front and the nearest back face of a closed object lies nothing of it, or as many entrances
+// as exits along the whole ray.
+bool isClosed(const float* count, BackFace backFace) {
+  return count[0] == 0 || (backFace == BackFace::Nearest && count[1] == 1);
+}
+
+DepthImage encodeShadow(const RenderTarget& target, const ShadowImage& view, PellucidDepthEncoding encoding) {
+  if (encoding == PELLUCID_DEPTH_DEVICE) return {target.image(kDeviceDepth).download(), encoding};
+  DepthImage depth{target.image(kPlanar).download(), encoding};
+  if (encoding != PELLUCID_DEPTH_DISTANCE || !view.perspective) return depth;
+  // Length of the ray through a texel per planar distance.
+  const double tangent = 1 / view.clipFromView[0];
+  for (int y = 0; y < view.size; ++y)
+    for (int x = 0; x < view.size; ++x) {
+      const double u = ((x + 0.5) / view.size * 2 - 1) * tangent;
+      const double v = ((y + 0.5) / view.size * 2 - 1) * tangent;
+      float& value = *depth.image.at(x, y);
+      if (value < kNoDepth) value = static_cast<float>(value * std::sqrt(1 + u * u + v * v));
+    }
+  return depth;
+}
+
+// Adds the light to `irradiance` and returns it with its shadow map.
+Light drawLight(Device& device, const Model& model, const UploadedModel& uploaded, const Light& light,
+                const RasterOptions& options, IrradiancePass& irradiance) {
+  Light result = light;
+  const std::optional<LightView> view = options.shadowSize > 0 ? frameLight(model, light) : std::nullopt;
+  if (!view) {
+    irradiance.add(light, nullptr);
+    return result;
+  }
+  constexpr bool kReversed = true;
+  const RenderTarget target(device, options.shadowSize, options.shadowSize, depthColors(kReversed),
+                            farDepth(kReversed));
+  uploaded.draw(target, {view->clipFromView, view->viewFromWorld, kReversed},
+                {FragmentShader::Depth, VK_CULL_MODE_NONE, nearer(kReversed), false}, VK_CULL_MODE_NONE);
+  const ShadowImage shadow{&target.image(kPlanar), options.shadowSize, view->clipFromView,
+                           view->viewFromWorld, light.type != PELLUCID_LIGHT_DIRECTIONAL};
+  irradiance.add(light, &shadow);
+  result.shadowMap = {encodeShadow(target, shadow, options.shadowEncoding),
+                      multiply(view->clipFromView, view->viewFromWorld), view->viewFromWorld};
+  return result;
+}
+
+// The pixels of the front and back passes as a capture has them.
+void fillCapture(const FrontTarget& front, const BackImages& back, const RasterOptions& options,
+                 RasterResult& result) {
+  Capture& capture = result.capture;
+  const bool device = options.depthEncoding == PELLUCID_DEPTH_DEVICE;
+  const Image normalPlanar = front.normalPlanar().download();
+  const Image albedo = front.albedoObject().download();
+  const Image material = front.material().download();
+  capture.frontDepth = {front.deviceDepth().download(), options.depthEncoding};
+  capture.backDepth = {device ? back.deviceDepth : back.planar, options.depthEncoding};
+  capture.normal = Image(capture.width, capture.height, 3);
+  capture.albedo = Image(capture.width, capture.height, 3);
+  capture.material.resize(material.pixels());
+  const float nothing = device ? farDepth(options.reversedZ) : kNoDepth;
+  const glm::dmat3 rotation =
+      options.normalsInViewSpace ? glm::dmat3(toGlm(capture.viewFromWorld)) : glm::dmat3(1);
+  for (std::size_t i = 0; i < material.pixels(); ++i) {
+    const float* n = &normalPlanar.data[4 * i];
+    const float planar = n[3];
+    if (!device) capture.frontDepth.image.data[i] = planar > 0 ? planar : kNoDepth;
+    if (!(planar > 0)) continue;
+    capture.material[i] = static_cast<std::uint8_t>(material.data[i]);
+    const glm::dvec3 normal = rotation * glm::dvec3(n[0], n[1], n[2]);
+    for (int c = 0; c < 3; ++c) {
+      const std::size_t k = 3 * i + static_cast<std::size_t>(c);
+      capture.normal.data[k] = static_cast<float>(normal[c]);
+      capture.albedo.data[k] = albedo.data[4 * i + static_cast<std::size_t>(c)];
+    }
+    if (!isClosed(&back.count.data[4 * i], options.backFace)) capture.backDepth.image.data[i] = nothing;
+    result.openPixels += capture.material[i] != 0 && capture.backDepth.image.data[i] == nothing;
+  }
+}
+
+void addWarnings(RasterResult& result, const RasterOptions& options) {
+  const Capture& capture = result.capture;
+  const auto covered = capture.material.size() - static_cast<std::size_t>(std::count(
+                                                     capture.material.begin(), capture.material.end(), 0));
+  if (covered == 0) result.warnings.push_back("no pixel has a material: nothing is translucent");
+  if (result.openPixels > 0)
+    result.warnings.push_back(std::to_string(result.openPixels) + " of " + std::to_string(covered) +
+                              " material pixels look through an open or single-sided mesh: they have no "
+                              "back depth");
+  for (std::size_t i = 0; i < capture.lights.size() && options.shadowSize > 0; ++i)
+    if (!capture.lights[i].shadowMap)
+      result.warnings.push_back("lights[" + std::to_string(i) +
+                                "] stands within or too close to the model for one perspective: it has no "
+                                "shadow map and nothing shadows it");
+}
+
+}  // namespace
+
+RasterResult rasterize(Device& device, const Model& model, const ModelCamera& camera,
+                       const RasterOptions& options) {
+  checkSide(model, "width", options.width, 1);
+  checkSide(model, "height", options.height, 1);
+  checkSide(model, "shadowSize", options.shadowSize, 0);
+  if (options.depthEncoding == PELLUCID_DEPTH_DISTANCE)
+    throw InputError(model.name, "depthEncoding", "distance is an encoding of shadow maps only");
+  boundsOf(model);  // refuses an empty model
+
+  RasterResult result;
+  Capture& capture = result.capture;
+  capture.name = model.name;
+  capture.width = options.width;
+  capture.height = options.height;
+  capture.metersPerUnit = model.metersPerUnit;
+  capture.clipFromView = projection(camera, options);
+  capture.viewFromWorld = camera.viewFromWorld;
+  capture.normalsInViewSpace = options.normalsInViewSpace;
+  capture.materials = model.materials;
+
+  const UploadedModel uploaded(device, model);
+  const DrawView view{capture.clipFromView, capture.viewFromWorld, options.reversedZ};
+  const FrontTarget front(device, options);
+  uploaded.draw(front.target, view,
+                {FragmentShader::Surface, VK_CULL_MODE_BACK_BIT, nearer(options.reversedZ), false},
+                VK_CULL_MODE_NONE);
+  fillCapture(front, drawBack(device, uploaded, view, front, options), options, result);
+
+  IrradiancePass irradiance(device, front.normalPlanar(), options.width, options.height, view);
+  for (const Light& light : model.lights)
+    capture.lights.push_back(drawLight(device, model, uploaded, light, options, irradiance));
+  capture.irradiance = irradiance.irradiance();
+  addWarnings(result, options);
+  return result;
+}
+
+}  // namespace pellucid::harness

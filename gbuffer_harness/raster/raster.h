@@ -1,0 +1,44 @@
+// A model through the rasterizer: the G-buffer an engine would hand to Pellucid.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/device.h"
+#include "raster/model.h"
+
+namespace pellucid::harness {
+
+enum class BackFace {
+  Nearest,  // of those behind the front: the thickness of the first layer
+  Farthest  // the thickness of everything, hollows included
+};
+
+struct RasterOptions {
+  int width = 512, height = 512;                                // pixels, 1..8192
+  bool reversedZ = true;                                        // device depth 1 at the near plane
+  bool infiniteFar = false;                                     // perspective cameras only
+  PellucidDepthEncoding depthEncoding = PELLUCID_DEPTH_DEVICE;  // DEVICE or VIEW_Z
+  bool normalsInViewSpace = false;
+  BackFace backFace = BackFace::Nearest;
+  int shadowSize = 1024;  // texels across a shadow map, 0..8192; 0: no shadow maps and no shadows
+  PellucidDepthEncoding shadowEncoding = PELLUCID_DEPTH_DEVICE;
+};
+
+struct RasterResult {
+  // With front and back depth, irradiance, normal, albedo and material; materials and lights as the model's,
+  // with shadow maps where frameLight() finds a view.
+  Capture capture;
+  // Pixels of a material through which the front's object is not closed: an open or single-sided mesh, or
+  // a hole. They have no back depth.
+  std::size_t openPixels = 0;
+  std::vector<std::string> warnings;  // sentences for a person
+};
+
+// Draws `model` as `camera` sees it. Coverage is one sample at each pixel's center. Same device and same
+// input, same bits. Throws InputError naming the field for a size or combination that is out of range, and
+// DeviceError when the device cannot draw.
+RasterResult rasterize(Device& device, const Model& model, const ModelCamera& camera,
+                       const RasterOptions& options);
+
+}  // namespace pellucid::harness

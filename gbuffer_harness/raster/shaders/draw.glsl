@@ -1,0 +1,27 @@
+// What every shader that draws a part shares; DrawConstants of draw.h.
+#ifndef PELLUCID_RASTER_DRAW_GLSL
+#define PELLUCID_RASTER_DRAW_GLSL
+
+layout(push_constant) uniform Draw {
+  mat4 clipFromWorld;
+  vec4 planar;     // dot(planar, (x, 1)): planar distance in front of the eye
+  vec4 baseColor;  // a: alpha below this is a hole
+  vec4 addedColor; // a: object
+  uvec4 ids;       // x: material; y: 1 reversed depth; z: 1 where only back faces behind the front count
+} draw;
+
+layout(set = 0, binding = 0) uniform sampler2D baseColorTexture;
+// Device depth that an earlier pass wrote: of the front faces, or in count.frag of the back faces.
+layout(set = 0, binding = 1) uniform sampler2D earlierDepth;
+layout(set = 0, binding = 2) uniform sampler2D frontAlbedoObject;
+
+bool isNearer(float depth, float other) {
+  return draw.ids.y != 0u ? depth > other : depth < other;
+}
+
+bool isHole(vec2 uv) {
+  // Level 0 and one sample, so that every pass agrees.
+  return draw.baseColor.a > 0.0 && textureLod(baseColorTexture, uv, 0.0).a < draw.baseColor.a;
+}
+
+#endif

@@ -1,0 +1,25 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "draw.glsl"
+
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in vec2 uv;
+layout(location = 3) in vec3 color;
+layout(location = 4) in float mark;
+
+layout(location = 0) out vec3 outNormal;
+layout(location = 1) out vec2 outUv;
+layout(location = 2) out vec4 outColorMark;
+layout(location = 3) out float outPlanar;
+
+// Passes compare depths of the same triangle for equality.
+invariant gl_Position;
+
+void main() {
+  gl_Position = draw.clipFromWorld * vec4(position, 1.0);
+  outNormal = normal;
+  outUv = uv;
+  outColorMark = vec4(color, mark);
+  outPlanar = dot(draw.planar, vec4(position, 1.0));
+}
