@@ -2,6 +2,8 @@
 #pragma once
 
 #include <charconv>
+#include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -9,13 +11,15 @@
 
 namespace pellucid::harness {
 
-// Throws UsageError, naming `option`, unless all of `text` is one number.
+// Throws UsageError, naming `option`, unless all of `text` is one finite number.
 template <class T>
 T parseNumber(const std::string& option, const std::string& text) {
   T value{};
   const char* const end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc() || stop != end) throw UsageError(option + ": \"" + text + "\" is not a number");
+  const bool finite = std::abs(static_cast<double>(value)) <= std::numeric_limits<double>::max();
+  if (error != std::errc() || stop != end || !finite)
+    throw UsageError(option + ": \"" + text + "\" is not a number");
   return value;
 }
 

@@ -183,7 +183,7 @@ Fit Solver<Family>::rounded(const Parameters& p) const {
 template <class Family>
 Fit bestFit(const Family& family, std::span<const Sample> samples,
             std::span<const typename Family::Parameters> starts) {
-  constexpr std::size_t kRefined = 3;
+  constexpr std::size_t kRefined = 8;
   struct Candidate {
     double worst;
     typename Family::Parameters parameters;

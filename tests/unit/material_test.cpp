@@ -118,7 +118,10 @@ TEST(Material, FitsEveryPresetAtEveryIndex) {
 
 TEST(Material, FitsSkinToATenthOfAPercent) {
   for (const char* name : {"skin1", "skin2"})
-    for (const double ior : {1.3, 1.4, 1.5}) {
+    for (const double ior : {1.0, 1.3, 1.4, 1.5}) {
+      // Without a Fresnel boundary the ballistic light of skin1's green and blue bends T more than the
+      // form can follow: 0.17 and 0.24 %.
+      if (std::string(name) == "skin1" && ior == 1.0) continue;
       const PellucidMaterialDesc desc = preset(name, ior);
       const Compiled compiled = compile(desc);
       for (const double worst : worstError(desc, compiled.material))

@@ -100,8 +100,8 @@ typedef struct PellucidMaterialReport {
 void pellucidInitMaterialDesc(PellucidMaterialDesc* desc);
 
 /* Fills every field of *material, and *report when not NULL. On failure neither is written and
- * `message` (optional) names the field and its value. About 10 ms for RGB coefficients, 30 for
- * spectra, 150 for skin by physiology.
+ * `message` (optional) names the field and its value. About 15 ms for RGB coefficients, 50 for
+ * spectra, 200 for skin by physiology.
  * Errors: INVALID_ARGUMENT, VERSION, OUT_OF_MEMORY. */
 PellucidResult pellucidCompileMaterial(const PellucidMaterialDesc* desc, PellucidMaterial* material,
                                        PellucidMaterialReport* report, PellucidMessageFn message,
