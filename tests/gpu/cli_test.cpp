@@ -1,0 +1,103 @@
+// The command as a person runs it: exit codes, sentences, files.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Outcome {
+  int code;
+  std::string text;  // standard output and error
+};
+
+Outcome run(const std::string& arguments) {
+  const std::string command = std::string(PELLUCID_COMMAND) + " " + arguments + " 2>&1";
+  FILE* pipe = popen(command.c_str(), "r");
+  if (!pipe) return {-1, "popen failed"};
+  Outcome outcome{0, {}};
+  char buffer[4096];
+  while (const size_t n = fread(buffer, 1, sizeof buffer, pipe)) outcome.text.append(buffer, n);
+  const int status = pclose(pipe);
+  outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return outcome;
+}
+
+class Cli : public testing::Test {
+protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("pellucid_cli_" + std::to_string(getpid()));
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  void expect(int code, const std::string& arguments, const std::string& sentence) const {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.code, code) << arguments << "\n" << outcome.text;
+    EXPECT_NE(outcome.text.find(sentence), std::string::npos) << arguments << "\n" << outcome.text;
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(Cli, CaptureReplayComparePlan) {
+  const std::string capture = path("slab.exr"), out = path("out.exr"), again = path("again.exr");
+  expect(0, "capture --procedural slab --size 48x32 -o " + capture, "");
+  expect(0, "info " + capture, "shadow");
+  expect(0, "plan " + capture, "\"dispatchCount\": 3");
+  expect(0, "replay " + capture + " -o " + out + " --triptych " + path("t.png") + " --png",
+         "diffuse vertically");
+  expect(0, "replay " + capture + " -o " + again, "wrote");
+  expect(0, "compare " + out + " " + again + " --mask " + capture + " --limit max=0", "rel_rmse");
+  for (const char* file : {"out.exr", "out.png", "t.png"}) EXPECT_GT(fs::file_size(path(file)), 100u) << file;
+  // Without translucency the picture is another one, and compare says so with its own exit code.
+  expect(0, "replay " + capture + " -o " + again + " --set features=diffusion", "skipped: 1 x translucency");
+  expect(1, "compare " + out + " " + again + " --mask " + capture + " --limit rel_rmse=0.001", "limit");
+  for (const char* view : {"thickness", "transmittance", "occlusion", "irradiance"}) {
+    expect(0, "replay " + capture + " --debug " + view + " -o " + path("d.exr"), "debug view");
+    EXPECT_TRUE(fs::exists(path("d.png"))) << view;
+    fs::remove(path("d.png"));
+  }
+  expect(0, "replay " + capture + " --mode thesis -o " + again, "translucency");
+  expect(0, "reference " + capture + " -o " + again, "wrote");
+  expect(0, "compare " + out + " " + again + " --mask " + capture + " --limit rel_rmse=0.05", "rel_rmse");
+}
+
+TEST_F(Cli, UsageErrors) {
+  expect(2, "", "subcommand");
+  expect(2, "replay", "capture");
+  expect(2, "replay x.exr --set colour=red", "unknown key \"colour\"");
+  expect(2, "replay x.exr --set thickness=both", "\"both\" is not one of camera, light");
+  expect(2, "replay x.exr --set rect=1,2,3", "\"1,2,3\" is not x,y,width,height");
+  expect(2, "replay x.exr --set filter=1,nan,1", "\"nan\"");
+  expect(2, "replay x.exr --debug soul", "\"soul\" is not one of");
+  expect(2, "replay x.exr --mode magic", "\"magic\" is not one of");
+}
+
+TEST_F(Cli, BadInput) {
+  expect(3, "replay " + path("missing.json"), "missing.json");
+  std::ofstream(path("broken.json")) << "{ \"pellucid\": 1, ";
+  expect(3, "info " + path("broken.json"), "broken.json");
+  std::ofstream(path("extra.json")) << "{ \"pellucid\": 1, \"colour\": 3 }";
+  expect(3, "plan " + path("extra.json"), "colour");
+  ASSERT_EQ(run("capture --procedural plane --size 16x16 -o " + path("plane.exr")).code, 0);
+  expect(3, "replay " + path("plane.exr") + " --set rect=8,8,20,4",
+         "renderRect is 8, 8 + 20 x 4, outside the 16 x 16 image");
+  expect(3, "replay " + path("plane.exr") + " -o " + path("no/such/folder/o.exr"), "no/such/folder");
+  expect(3, "capture --procedural nothing -o " + path("x.exr"), "no scene \"nothing\"; there are ear");
+  expect(3, "evaluate " + path("plane.exr"), "truth");
+}
+
+TEST_F(Cli, NoDevice) {
+  ASSERT_EQ(run("capture --procedural plane --size 16x16 -o " + path("plane.exr")).code, 0);
+  expect(4, "replay " + path("plane.exr") + " --device NoSuchDevice", "NoSuchDevice");
+}
+
+}  // namespace
