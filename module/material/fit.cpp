@@ -245,7 +245,8 @@ Fit fitSinhExp(std::span<const Sample> samples, const Rates& rates, bool exact) 
     for (const double paths : {0.5, 1.4, 3.5, 7.0})
       for (const double excess : rates.excess) {
         const double z = paths * kappa / rates.extinction;
-        starts.push_back({0.6 * std::sinh(z), std::log(z), 0.1, std::log(excess), std::log(kappa)});
+        for (const double b : {0.1, -0.2})
+          starts.push_back({(0.7 - b) * std::sinh(z), std::log(z), b, std::log(excess), std::log(kappa)});
       }
   Fit held{{}, kInfinity};
   if (exact) {

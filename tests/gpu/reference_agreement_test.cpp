@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <functional>
+#include <ostream>
 
 #include "common/compare.h"
 #include "reference/reference.h"
@@ -22,6 +23,9 @@ struct Scene {
   // Share of pixels that a rounding of the projection may move to the next shadow texel.
   double outliers = 2e-3;
 };
+
+// GoogleTest would print the bytes.
+void PrintTo(const Scene& value, std::ostream* out) { *out << value.name; }
 
 Capture make(const Scene& scene) {
   SceneParameters p;
@@ -122,6 +126,9 @@ struct Option {
   std::function<void(TranslucencySettings&)> set;
   PellucidTransmittanceModel model = PELLUCID_TRANSMITTANCE_EXP2;
 };
+
+// GoogleTest would print the bytes.
+void PrintTo(const Option& value, std::ostream* out) { *out << value.name; }
 
 const Option kOptions[] = {
     {"Cosine", [](TranslucencySettings& t) { t.angleModel = PELLUCID_ANGLE_COSINE; }},

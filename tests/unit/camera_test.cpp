@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <ostream>
+
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <string>
@@ -18,6 +20,9 @@ struct Convention {
   double nearest, farthest;  // planar distances the matrix was made for; farthest may be infinite
   bool reversed;
 };
+
+// GoogleTest would print the bytes.
+void PrintTo(const Convention& value, std::ostream* out) { *out << value.name; }
 
 // Built from the definitions, not from a library: x right, y up in view, y down in clip.
 Convention perspective(bool rightHanded, bool reversed, bool infinite, glm::dvec2 offset = {}) {

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <ostream>
 #include <regex>
 #include <sstream>
 
@@ -39,6 +40,9 @@ std::vector<fs::path> sources(const fs::path& folder) {
 struct Rule {
   std::string folder, pattern, reason, except;
 };
+
+// GoogleTest would print the bytes.
+void PrintTo(const Rule& value, std::ostream* out) { *out << value.folder << ": " << value.reason; }
 
 const std::vector<Rule> kRules = {
     {"compute/shared", R"(#include\s*[<"](?!glm/))", "shared headers include nothing but GLM types", ""},
@@ -78,6 +82,7 @@ TEST_P(Layering, Holds) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Rules, Layering, testing::ValuesIn(kRules), [](const auto& test) { return "Rule" + std::to_string(test.index); });
+INSTANTIATE_TEST_SUITE_P(Rules, Layering, testing::ValuesIn(kRules),
+                         [](const auto& test) { return "Rule" + std::to_string(test.index); });
 
 }  // namespace

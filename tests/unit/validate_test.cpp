@@ -1,6 +1,8 @@
 // Each convention violated once: the field is named, the value is in the sentence, and no plan is made.
 #include <gtest/gtest.h>
 
+#include <ostream>
+
 #include <cmath>
 #include <functional>
 
@@ -14,6 +16,9 @@ struct Violation {
   std::string name, field, sentence;
   std::function<void(Frame&)> commit;
 };
+
+// GoogleTest would print the bytes.
+void PrintTo(const Violation& value, std::ostream* out) { *out << value.name; }
 
 const std::vector<Violation> kViolations = {
     {"StructSize", "structSize", "pellucidInitFrame", [](Frame& f) { f.frame.structSize = 7; }},

@@ -1,0 +1,705 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <glm/glm.hpp>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "capture/material.h"
+#include "common/error.h"
+#include "common/png.h"
+#include "gltf/gltf.h"
+#include "gltf/material.h"
+#include "pellucid/pellucid_material.h"
+#include "raster/framing.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace pellucid::harness;
+using Json = nlohmann::ordered_json;
+
+// A folder that goes away with the test.
+class Gltf : public testing::Test {
+protected:
+  Gltf() {
+    static int count = 0;
+    folder_ = fs::temp_directory_path() /
+              ("pellucid_gltf_" + std::to_string(::getpid()) + "_" + std::to_string(count++));
+    fs::create_directory(folder_);
+  }
+  ~Gltf() override { fs::remove_all(folder_); }
+
+  fs::path write(const std::string& name, const std::string& bytes) const {
+    std::ofstream(folder_ / name, std::ios::binary) << bytes;
+    return folder_ / name;
+  }
+  // What loadGltf says of these bytes; empty: it accepts them.
+  std::string refusal(const std::string& bytes, const std::string& name = "t.glb",
+                      const GltfOptions& options = {}) const {
+    try {
+      loadGltf(write(name, bytes), options);
+      return "";
+    } catch (const InputError& e) {
+      return e.what();
+    }
+  }
+  void expectRefused(const std::string& bytes, std::initializer_list<const char*> words,
+                     const std::string& name = "t.glb", const GltfOptions& options = {}) const {
+    const std::string sentence = refusal(bytes, name, options);
+    EXPECT_NE(sentence.find(name), std::string::npos) << "the file is not named: " << sentence;
+    for (const char* word : words)
+      EXPECT_NE(sentence.find(word), std::string::npos) << "\"" << word << "\" is not in: " << sentence;
+  }
+
+  fs::path folder_;
+};
+
+void append(std::string& bytes, const void* data, std::size_t size) {
+  bytes.append(static_cast<const char*>(data), size);
+}
+
+// A glTF document under construction: JSON and one buffer.
+struct Builder {
+  Json json = {{"asset", {{"version", "2.0"}}}, {"scene", 0}, {"scenes", {{{"nodes", {0}}}}}};
+  std::string buffer;
+
+  int view(const void* data, std::size_t size) {
+    while (buffer.size() % 4 != 0) buffer.push_back('\0');
+    json["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", buffer.size()}, {"byteLength", size}});
+    append(buffer, data, size);
+    return static_cast<int>(json["bufferViews"].size()) - 1;
+  }
+  template <class T>
+  int accessor(const std::vector<T>& values, int componentType, const char* type, std::size_t components) {
+    const int v = view(values.data(), values.size() * sizeof(T));
+    json["accessors"].push_back({{"bufferView", v},
+                                 {"componentType", componentType},
+                                 {"count", values.size() / components},
+                                 {"type", type}});
+    return static_cast<int>(json["accessors"].size()) - 1;
+  }
+  int vectors(const std::vector<float>& values) { return accessor(values, 5126, "VEC3", 3); }
+  int indices(const std::vector<std::uint16_t>& values) { return accessor(values, 5123, "SCALAR", 1); }
+
+  std::string glb() {
+    if (!buffer.empty()) json["buffers"] = {{{"byteLength", buffer.size()}}};
+    std::string text = json.dump();
+    text.resize((text.size() + 3) / 4 * 4, ' ');
+    std::string bin = buffer;
+    bin.resize((bin.size() + 3) / 4 * 4, '\0');
+    const auto size = static_cast<std::uint32_t>(20 + text.size() + (bin.empty() ? 0 : 8 + bin.size()));
+    const std::uint32_t header[] = {0x46546C67, 2, size, static_cast<std::uint32_t>(text.size()), 0x4E4F534A};
+    std::string bytes;
+    append(bytes, header, sizeof header);
+    bytes += text;
+    if (!bin.empty()) {
+      const std::uint32_t chunk[] = {static_cast<std::uint32_t>(bin.size()), 0x004E4942};
+      append(bytes, chunk, sizeof chunk);
+      bytes += bin;
+    }
+    return bytes;
+  }
+};
+
+// Two triangles of the square [0, 2]^2 at z = 0, facing +z, of material "m".
+Builder square() {
+  Builder b;
+  const int position = b.vectors({0, 0, 0, 2, 0, 0, 2, 2, 0, 0, 2, 0});
+  const int normal = b.vectors({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1});
+  const int indices = b.indices({0, 1, 2, 0, 2, 3});
+  b.json["meshes"] = {{{"primitives",
+                        {{{"attributes", {{"POSITION", position}, {"NORMAL", normal}}},
+                          {"indices", indices},
+                          {"material", 0}}}}}};
+  b.json["nodes"] = {{{"mesh", 0}}};
+  b.json["materials"] = {{{"name", "m"}}};
+  return b;
+}
+
+glm::dvec3 corner(const Model& model, std::size_t i) {
+  const auto& p = model.vertices[model.indices[i]].position;
+  return {p[0], p[1], p[2]};
+}
+
+// Normal of a triangle by its winding, as long as twice its area.
+glm::dvec3 winding(const Model& model, std::size_t triangle) {
+  const glm::dvec3 a = corner(model, 3 * triangle);
+  return glm::cross(corner(model, 3 * triangle + 1) - a, corner(model, 3 * triangle + 2) - a);
+}
+
+void expectVector(const std::array<float, 3>& v, double x, double y, double z, double tolerance = 1e-6) {
+  EXPECT_NEAR(v[0], x, tolerance);
+  EXPECT_NEAR(v[1], y, tolerance);
+  EXPECT_NEAR(v[2], z, tolerance);
+}
+
+TEST_F(Gltf, TrianglesInWorldSpace) {
+  Builder b = square();
+  const double h = std::sqrt(0.5);
+  b.json["nodes"] = {{{"children", {1}}, {"translation", {10, 0, 0}}},
+                     {{"mesh", 0}, {"rotation", {0, h, 0, h}}, {"scale", {1, 2, 3}}}};
+  const GltfScene scene = loadGltf(write("t.glb", b.glb()));
+  const Model& m = scene.model;
+  ASSERT_EQ(m.vertices.size(), 4u);
+  ASSERT_EQ(m.parts.size(), 1u);
+  EXPECT_EQ(m.parts[0].indexCount, 6u);
+  EXPECT_EQ(m.parts[0].object, 1u);
+  EXPECT_EQ(m.surfaces[0].name, "m");
+  expectVector(m.vertices[2].position, 10, 4, -2);  // a quarter turn about y takes +x to -z
+  expectVector(m.vertices[2].normal, 1, 0, 0);
+  EXPECT_NEAR(winding(m, 0).x, 8, 1e-5);
+  EXPECT_EQ(m.metersPerUnit, 1);
+}
+
+TEST_F(Gltf, MirroredNodesKeepTheirOutside) {
+  Builder b = square();
+  b.json["nodes"] = {{{"mesh", 0}, {"matrix", {-1, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1, 0, 0, 0, 5, 1}}}};
+  const Model m = loadGltf(write("t.glb", b.glb())).model;
+  expectVector(m.vertices[2].position, -2, 4, 5);
+  expectVector(m.vertices[0].normal, 0, 0, 1);
+  for (const std::size_t triangle : {0u, 1u}) EXPECT_GT(winding(m, triangle).z, 0);
+}
+
+TEST_F(Gltf, EveryContainerGivesTheSameModel) {
+  Builder b = square();
+  const Model glb = loadGltf(write("t.glb", b.glb())).model;
+  const std::string data = b.buffer;
+  b.json["buffers"] = {{{"byteLength", data.size()}, {"uri", "a%20b.bin"}}};
+  write("a b.bin", data);
+  const Model external = loadGltf(write("t.gltf", b.json.dump())).model;
+  const char* const digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string base64;
+  for (std::size_t i = 0; i < data.size(); i += 3) {
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      group = group << 8 | (i + k < data.size() ? static_cast<unsigned char>(data[i + k]) : 0u);
+    for (std::size_t k = 0; k < 4; ++k)
+      base64 += i + k > data.size() ? '=' : digits[group >> (18 - 6 * k) & 63];
+  }
+  b.json["buffers"] = {
+      {{"byteLength", data.size()}, {"uri", "data:application/octet-stream;base64," + base64}}};
+  const Model embedded = loadGltf(write("e.gltf", b.json.dump())).model;
+  for (const Model* m : {&external, &embedded}) {
+    ASSERT_EQ(m->vertices.size(), 4u);
+    EXPECT_EQ(m->indices, glb.indices);
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(m->vertices[i].position, glb.vertices[i].position);
+  }
+}
+
+TEST_F(Gltf, StripsFansAndPlainVertices) {
+  for (const int mode : {4, 5, 6}) {
+    Builder b;
+    // Corners in the order that each mode needs.
+    const std::vector<float> corners =
+        mode == 4   ? std::vector<float>{0, 0, 0, 2, 0, 0, 2, 2, 0, 0, 0, 0, 2, 2, 0, 0, 2, 0}
+        : mode == 5 ? std::vector<float>{0, 2, 0, 0, 0, 0, 2, 2, 0, 2, 0, 0}
+                    : std::vector<float>{0, 0, 0, 2, 0, 0, 2, 2, 0, 0, 2, 0};
+    b.json["meshes"] = {
+        {{"primitives", {{{"attributes", {{"POSITION", b.vectors(corners)}}}, {"mode", mode}}}}}};
+    b.json["nodes"] = {{{"mesh", 0}}};
+    const Model m = loadGltf(write("t.glb", b.glb())).model;
+    ASSERT_EQ(m.indices.size(), 6u) << mode;
+    EXPECT_EQ(m.vertices.size(), 6u) << "without normals each triangle has its own vertices";
+    for (const std::size_t triangle : {0u, 1u}) EXPECT_NEAR(winding(m, triangle).z, 4, 1e-6) << mode;
+    for (const Vertex& v : m.vertices) expectVector(v.normal, 0, 0, 1);
+    EXPECT_EQ(m.surfaces[0].name, "default");
+  }
+}
+
+TEST_F(Gltf, QuantizedAndOtherAttributes) {
+  Builder b;
+  const int position =
+      b.accessor(std::vector<std::int16_t>{0, 0, 0, 0, 200, 0, 0, 0, 200, 200, 0, 0}, 5122, "VEC3", 4);
+  b.json["bufferViews"].back()["byteStride"] = 8;
+  const int normal =
+      b.accessor(std::vector<std::int8_t>{0, 0, 127, 0, 0, 0, 127, 0, 0, 0, -128, 0}, 5120, "VEC3", 4);
+  b.json["bufferViews"].back()["byteStride"] = 4;
+  b.json["accessors"].back()["normalized"] = true;
+  const int color = b.accessor(std::vector<std::uint8_t>{255, 0, 51, 255, 255, 0, 51, 255, 255, 0, 51, 255},
+                               5121, "VEC4", 4);
+  b.json["accessors"].back()["normalized"] = true;
+  const int mark = b.accessor(std::vector<float>{1, 0, 0.5f}, 5126, "SCALAR", 1);
+  b.json["extensionsRequired"] = {"KHR_mesh_quantization"};
+  b.json["meshes"] = {
+      {{"primitives",
+        {{{"attributes",
+           {{"POSITION", position}, {"NORMAL", normal}, {"COLOR_0", color}, {"_TRANSLUCENT", mark}}}}}}}};
+  b.json["nodes"] = {{{"mesh", 0}, {"scale", {0.01, 0.01, 0.01}}}};
+  const Model m = loadGltf(write("t.glb", b.glb())).model;
+  ASSERT_EQ(m.vertices.size(), 3u);
+  expectVector(m.vertices[2].position, 2, 2, 0);
+  expectVector(m.vertices[0].normal, 0, 0, 1);
+  expectVector(m.vertices[2].normal, 0, 0, -1);
+  expectVector(m.vertices[1].color, 1, 0, 0.2);
+  EXPECT_EQ(m.vertices[1].mark, 0);
+  EXPECT_EQ(m.vertices[2].mark, 0.5f);
+}
+
+TEST_F(Gltf, NormalsOfNoLengthComeFromTheTriangles) {
+  Builder b = square();
+  const int broken = b.vectors({0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0});
+  b.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = broken;
+  const Model m = loadGltf(write("t.glb", b.glb())).model;
+  expectVector(m.vertices[0].normal, 0, 0, 1);
+  expectVector(m.vertices[3].normal, 0, 0, 1);
+}
+
+TEST_F(Gltf, CamerasAndLights) {
+  Builder b = square();
+  b.json["scenes"][0]["nodes"] = {0, 1, 2, 3, 4};
+  b.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.1}}}},
+                       {{"name", "ortho"},
+                        {"type", "orthographic"},
+                        {"orthographic", {{"xmag", 3}, {"ymag", 2}, {"znear", 0}, {"zfar", 50}}}}};
+  b.json["extensionsUsed"] = {"KHR_lights_punctual", "VENDOR_thing"};
+  b.json["extensions"]["KHR_lights_punctual"]["lights"] = {
+      {{"type", "directional"}, {"color", {1, 0.5, 0}}, {"intensity", 3}},
+      {{"type", "spot"}, {"range", 7}, {"spot", {{"innerConeAngle", 0.1}, {"outerConeAngle", 0.3}}}}};
+  const double h = std::sqrt(0.5);
+  b.json["nodes"].push_back(
+      {{"name", "eye"}, {"camera", 0}, {"translation", {0, 0, 5}}, {"scale", {2, 2, 2}}});
+  b.json["nodes"].push_back({{"camera", 1}, {"rotation", {0, h, 0, h}}});
+  b.json["nodes"].push_back(
+      {{"rotation", {-h, 0, 0, h}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+  b.json["nodes"].push_back(
+      {{"translation", {1, 2, 3}}, {"extensions", {{"KHR_lights_punctual", {{"light", 1}}}}}});
+  const GltfScene scene = loadGltf(write("t.glb", b.glb()));
+  const Model& m = scene.model;
+  ASSERT_EQ(m.cameras.size(), 2u);
+  EXPECT_EQ(m.cameras[0].name, "eye");
+  EXPECT_EQ(m.cameras[0].verticalFov, 0.5);
+  EXPECT_EQ(m.cameras[0].range.nearPlane, 0.1);
+  EXPECT_TRUE(std::isinf(m.cameras[0].range.farPlane));
+  EXPECT_NEAR(m.cameras[0].viewFromWorld[14], -5, 1e-12) << "scale does not belong to a camera";
+  EXPECT_NEAR(m.cameras[0].viewFromWorld[0], 1, 1e-12);
+  EXPECT_EQ(m.cameras[1].name, "ortho");
+  EXPECT_TRUE(m.cameras[1].orthographic);
+  EXPECT_EQ(m.cameras[1].height, 4);
+  EXPECT_NEAR(m.cameras[1].viewFromWorld[2], 1, 1e-12) << "it looks along -x";
+  ASSERT_EQ(m.lights.size(), 2u);
+  EXPECT_EQ(m.lights[0].type, PELLUCID_LIGHT_DIRECTIONAL);
+  EXPECT_NEAR(m.lights[0].direction[1], -1, 1e-12) << "a quarter turn about -x takes -z to -y";
+  EXPECT_EQ(m.lights[0].color[1], 0.5);
+  EXPECT_EQ(m.lights[0].intensity, 3);
+  EXPECT_EQ(m.lights[1].type, PELLUCID_LIGHT_SPOT);
+  EXPECT_EQ(m.lights[1].position, (std::array<double, 3>{1, 2, 3}));
+  EXPECT_EQ(m.lights[1].range, 7);
+  EXPECT_EQ(m.lights[1].outerConeAngle, 0.3);
+  ASSERT_EQ(scene.warnings.size(), 2u);
+  EXPECT_EQ(scene.warnings[0], "extension VENDOR_thing is ignored");
+}
+
+TEST_F(Gltf, TexturesAreDecoded) {
+  writePng(folder_ / "c.png", 2, 1, {255, 0, 0, 0, 0, 255});
+  std::ifstream in(folder_ / "c.png", std::ios::binary);
+  const std::string png((std::istreambuf_iterator<char>(in)), {});
+  Builder b = square();
+  b.json["materials"][0]["pbrMetallicRoughness"] = {{"baseColorFactor", {0.5, 0.25, 0.125, 0.5}},
+                                                    {"baseColorTexture", {{"index", 0}, {"texCoord", 1}}}};
+  b.json["materials"][0]["alphaMode"] = "MASK";
+  b.json["materials"][0]["alphaCutoff"] = 0.2;
+  b.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_1"] =
+      b.accessor(std::vector<float>{0, 0, 1, 0, 1, 1, 0, 1}, 5126, "VEC2", 2);
+  b.json["samplers"] = {{{"wrapS", 33071}, {"wrapT", 33648}}};
+  b.json["textures"] = {{{"source", 0}, {"sampler", 0}}};
+  const int view = b.view(png.data(), png.size());
+  for (const bool external : {false, true}) {
+    b.json["images"] =
+        external ? Json{{{"uri", "c.png"}}} : Json{{{"bufferView", view}, {"mimeType", "image/png"}}};
+    const Model m = loadGltf(write("t.glb", b.glb())).model;
+    ASSERT_EQ(m.textures.size(), 1u);
+    EXPECT_EQ(m.textures[0].rgba, (std::vector<std::uint8_t>{255, 0, 0, 255, 0, 0, 255, 255}));
+    EXPECT_EQ(m.textures[0].wrapU, TextureWrap::Clamp);
+    EXPECT_EQ(m.textures[0].wrapV, TextureWrap::Mirror);
+    EXPECT_EQ(m.surfaces[0].texture, 0);
+    EXPECT_EQ(m.surfaces[0].baseColor[1], 0.25);
+    EXPECT_EQ(m.surfaces[0].alphaCutoff, 0.4) << "of the texel, before the factor";
+    EXPECT_EQ(m.vertices[2].uv, (std::array<float, 2>{1, 1}));
+  }
+  b.json["images"] = {{{"uri", "missing.png"}}};
+  expectRefused(b.glb(), {"images[0].uri", "missing.png"});
+  write("d.png", png.substr(0, png.size() / 2));
+  b.json["images"] = {{{"uri", "d.png"}}};
+  expectRefused(b.glb(), {"images[0]", "cannot be decoded"});
+  write("e.png", "not an image");
+  b.json["images"] = {{{"uri", "e.png"}}};
+  expectRefused(b.glb(), {"images[0]", "neither PNG nor JPEG"});
+  b.json["bufferViews"][static_cast<std::size_t>(view)]["byteLength"] = 1 << 20;
+  b.json["images"] = {{{"bufferView", view}, {"mimeType", "image/png"}}};
+  expectRefused(b.glb(), {"bufferViews[", "leave the"});
+}
+
+// ---- Materials
+
+Json scatterExtensions() {
+  return {
+      {"KHR_materials_volume",
+       {{"thicknessFactor", 1}, {"attenuationDistance", 0.002}, {"attenuationColor", {0.5, 0.25, 0.125}}}},
+      {"KHR_materials_volume_scatter", {{"multiscatterColor", {0.8, 0.5, 0.2}}, {"scatterAnisotropy", 0.25}}},
+      {"KHR_materials_diffuse_transmission", {{"diffuseTransmissionFactor", 1.0}}}};
+}
+
+TEST_F(Gltf, VolumeScatterBecomesCoefficients) {
+  Builder b = square();
+  b.json["materials"][0]["extensions"] = scatterExtensions();
+  const Model m = loadGltf(write("t.glb", b.glb())).model;
+  ASSERT_EQ(m.materials.size(), 1u);
+  EXPECT_EQ(m.surfaces[0].material, 1);
+  const auto& medium = std::get<CoefficientMaterial>(m.materials[0]);
+  const double colors[] = {0.5, 0.25, 0.125}, albedos[] = {0.8, 0.5, 0.2};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double extinction = -std::log(colors[i]) / 2;  // 1/mm: the distance is 2 mm
+    EXPECT_NEAR(medium.scattering[i] + medium.absorption[i], extinction, 1e-12);
+    EXPECT_NEAR(medium.scattering[i], extinction * singleScatteringAlbedo(albedos[i]), 1e-12);
+    EXPECT_NEAR(m.surfaces[0].baseColor[i], 0, 1e-12) << "all light enters";
+    EXPECT_NEAR(m.surfaces[0].addedColor[i], albedos[i], 1e-12);
+  }
+  EXPECT_EQ(medium.g, 0.25);
+  EXPECT_EQ(medium.ior, 1) << "a diffuse boundary does not refract";
+}
+
+// The half-space of the compiled material reflects what the artist asked for. The fit of Kulla & Conty is
+// good to about 0.01.
+TEST_F(Gltf, MultiscatterColorIsTheCompiledReflectance) {
+  for (const double color : {0.1, 0.5, 0.9}) {
+    Builder b = square();
+    b.json["materials"][0]["extensions"] = scatterExtensions();
+    b.json["materials"][0]["extensions"]["KHR_materials_volume_scatter"] = {
+        {"multiscatterColor", {color, color, color}}};
+    const Model m = loadGltf(write("t.glb", b.glb())).model;
+    const PellucidMaterial compiled = compileMaterial(m.materials[0], "test");
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(compiled.reflectance[i], color, 0.015) << i;
+  }
+}
+
+TEST_F(Gltf, UnitsScaleLengths) {
+  Builder b = square();
+  b.json["materials"][0]["extensions"] = scatterExtensions();
+  GltfOptions options;
+  options.metersPerUnit = 0.01;
+  const Model m = loadGltf(write("t.glb", b.glb()), options).model;
+  EXPECT_EQ(m.metersPerUnit, 0.01);
+  const auto& medium = std::get<CoefficientMaterial>(m.materials[0]);
+  EXPECT_NEAR(medium.scattering[0] + medium.absorption[0], -std::log(0.5) / 0.02, 1e-9)
+      << "0.002 cm are 0.02 mm";
+}
+
+TEST_F(Gltf, DiffuseTransmissionBecomesAnExponential) {
+  Builder b = square();
+  b.json["materials"][0]["extensions"] = {
+      {"KHR_materials_volume",
+       {{"thicknessFactor", 1}, {"attenuationDistance", 0.004}, {"attenuationColor", {0.5, 0.25, 1}}}},
+      {"KHR_materials_diffuse_transmission",
+       {{"diffuseTransmissionFactor", 0.5}, {"diffuseTransmissionColorFactor", {1, 0.5, 0.25}}}}};
+  const Model m = loadGltf(write("t.glb", b.glb())).model;
+  ASSERT_EQ(m.materials.size(), 1u);
+  const PellucidMaterial compiled = compileMaterial(m.materials[0], "test");
+  for (const double d : {0.0, 1.0, 4.0, 12.0}) {
+    EXPECT_NEAR(pellucidEvaluateTransmittance(&compiled, 0, d), 0.5 * std::pow(0.5, d / 4), 1e-6) << d;
+    EXPECT_NEAR(pellucidEvaluateTransmittance(&compiled, 1, d), 0.25 * std::pow(0.25, d / 4), 1e-6) << d;
+    EXPECT_NEAR(pellucidEvaluateTransmittance(&compiled, 2, d), 0.125 * std::pow(0.999, d / 4), 1e-6) << d;
+  }
+  // A thin wall: nothing absorbs on the way.
+  b.json["materials"][0]["extensions"].erase("KHR_materials_volume");
+  const PellucidMaterial thin = compileMaterial(loadGltf(write("t.glb", b.glb())).model.materials[0], "test");
+  EXPECT_NEAR(pellucidEvaluateTransmittance(&thin, 0, 10), 0.5, 1e-4);
+}
+
+TEST_F(Gltf, PresetsOverrideByName) {
+  Builder b = square();
+  b.json["materials"] = {{{"name", "m"}, {"extensions", scatterExtensions()}}, {{"name", "leaf=2"}}};
+  Json second = b.json["meshes"][0];
+  second["primitives"][0]["material"] = 1;
+  b.json["meshes"].push_back(second);
+  b.json["nodes"].push_back({{"mesh", 1}});
+  b.json["scenes"][0]["nodes"] = {0, 1};
+  const fs::path file = write("t.glb", b.glb());
+  const auto presetsOf = [&](const std::map<std::string, std::string>& presets) {
+    GltfOptions options;
+    options.presets = presets;
+    std::string names;
+    for (const MaterialSource& material : loadGltf(file, options).model.materials) {
+      const auto* preset = std::get_if<PresetMaterial>(&material);
+      names += (preset ? preset->preset : std::string("file")) + " ";
+    }
+    return names;
+  };
+  EXPECT_EQ(presetsOf({}), "file ");
+  EXPECT_EQ(presetsOf({{"m", "skin1"}}), "skin1 ");
+  EXPECT_EQ(presetsOf({{"leaf=2", "marble"}}), "file marble ");
+  EXPECT_EQ(presetsOf({{"*", "skin2"}, {"m", "ketchup"}}), "ketchup skin2 ");
+  GltfOptions options;
+  options.presets = {{"absent", "skin1"}};
+  expectRefused(b.glb(), {"absent", "m, leaf=2, default"}, "t.glb", options);
+  options.presets = {{"m", "no such thing"}};
+  expectRefused(b.glb(), {"material \"m\"", "no such thing"}, "t.glb", options);
+}
+
+TEST_F(Gltf, WhatIsNotAMediumIsSaid) {
+  const auto warnings = [&](const Json& extensions) {
+    Builder b = square();
+    b.json["materials"][0]["extensions"] = extensions;
+    std::string all;
+    const GltfScene scene = loadGltf(write("t.glb", b.glb()));
+    EXPECT_TRUE(scene.model.materials.empty());
+    for (const std::string& warning : scene.warnings) all += warning + "\n";
+    return all;
+  };
+  const Json clear = {{"thicknessFactor", 1}, {"attenuationDistance", 1}};
+  EXPECT_NE(warnings({{"KHR_materials_volume", clear}}).find("clear medium"), std::string::npos);
+  EXPECT_NE(warnings({{"KHR_materials_volume_scatter", Json::object()}}).find("needs KHR_materials_volume"),
+            std::string::npos);
+  EXPECT_NE(warnings({{"KHR_materials_volume", {{"attenuationDistance", 1}}}}).find("thin wall"),
+            std::string::npos);
+  EXPECT_NE(warnings(Json::object()).find("no material of the scene is translucent"), std::string::npos);
+}
+
+TEST_F(Gltf, BadMaterialValuesAreNamed) {
+  const auto refused = [&](const char* extension, const Json& value,
+                           std::initializer_list<const char*> words) {
+    Builder b = square();
+    b.json["materials"][0]["extensions"] = scatterExtensions();
+    b.json["materials"][0]["extensions"][extension].update(value);
+    expectRefused(b.glb(), words);
+  };
+  refused("KHR_materials_volume", {{"attenuationDistance", -1}},
+          {"materials[0]", "attenuationDistance", "-1"});
+  refused("KHR_materials_volume", {{"attenuationDistance", 0}}, {"attenuationDistance", "is 0"});
+  refused("KHR_materials_volume", {{"attenuationDistance", "far"}}, {"attenuationDistance", "not a number"});
+  refused("KHR_materials_volume", {{"attenuationColor", {1, 2, 3}}}, {"attenuationColor", "2.0"});
+  refused("KHR_materials_volume", {{"attenuationColor", {1, 1}}}, {"attenuationColor", "3 numbers"});
+  refused("KHR_materials_volume_scatter", {{"scatterAnisotropy", 1}}, {"scatterAnisotropy"});
+}
+
+// ---- Broken files
+
+TEST_F(Gltf, BrokenFilesAreRefusedWithASentence) {
+  struct Case {
+    const char* what;
+    std::function<void(Builder&)> breakIt;
+    std::vector<const char*> words;
+  };
+  const auto accessor = [](std::size_t i, const char* key, Json value) {
+    return [=](Builder& b) { b.json["accessors"][i][key] = value; };
+  };
+  const auto primitive = [](const char* key, Json value) {
+    return [=](Builder& b) { b.json["meshes"][0]["primitives"][0][key] = value; };
+  };
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<Case> cases = {
+      {"count beyond the view", accessor(0, "count", 5), {"accessors[0].count", "5 elements", "48 bytes"}},
+      {"count that wraps around", accessor(0, "count", 1537228672809129302LL), {"accessors[0]"}},
+      {"count 0", accessor(0, "count", 0), {"accessors[0].count", "0 elements"}},
+      {"negative count", accessor(0, "count", -4), {"count"}},
+      {"offset beyond the view", accessor(0, "byteOffset", 100), {"accessors[0]", "byteOffset 100"}},
+      {"type", accessor(0, "type", "MAT4"), {"accessors[0]"}},
+      {"position of 2 components", accessor(0, "type", "VEC2"), {"POSITION", "2 components"}},
+      {"component type", accessor(0, "componentType", 5124), {"accessors[0]", "5124"}},
+      {"no buffer view",
+       [](Builder& b) { b.json["accessors"][0].erase("bufferView"); },
+       {"accessors[0].bufferView"}},
+      {"no such buffer view", accessor(0, "bufferView", 99), {"accessors[0].bufferView", "99"}},
+      {"sparse",
+       accessor(0, "sparse",
+                {{"count", 1},
+                 {"indices", {{"bufferView", 0}, {"componentType", 5123}}},
+                 {"values", {{"bufferView", 0}}}}),
+       {"accessors[0].sparse"}},
+      {"view beyond the buffer",
+       [](Builder& b) { b.json["bufferViews"][0]["byteLength"] = 1 << 20; },
+       {"bufferViews[0]", "1048576"}},
+      {"view of no buffer",
+       [](Builder& b) { b.json["bufferViews"][0]["buffer"] = 3; },
+       {"bufferViews[0].buffer", "3"}},
+      {"stride",
+       [](Builder& b) { b.json["bufferViews"][0]["byteStride"] = 4; },
+       {"bufferViews[0].byteStride", "4"}},
+      {"index out of range",
+       [](Builder& b) {
+         b.json["meshes"][0]["primitives"][0]["indices"] = b.indices({0, 1, 4});
+       },
+       {"index 4", "4 vertices"}},
+      {"float indices", primitive("indices", 0), {"indices", "unsigned"}},
+      {"two indices",
+       [](Builder& b) {
+         b.json["meshes"][0]["primitives"][0]["indices"] = b.indices({0, 1});
+       },
+       {"multiple of 3"}},
+      {"no such mesh", [](Builder& b) { b.json["nodes"][0]["mesh"] = 7; }, {"nodes[0].mesh", "7"}},
+      {"negative mesh", [](Builder& b) { b.json["nodes"][0]["mesh"] = -7; }, {"nodes[0].mesh", "-7"}},
+      {"no such material", primitive("material", 4), {"material", "4"}},
+      {"mode", primitive("mode", 9), {"mode", "9"}},
+      {"no position", primitive("attributes", {{"NORMAL", 1}}), {"POSITION", "missing"}},
+      {"counts differ",
+       [](Builder& b) {
+         b.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = b.vectors({0, 0, 1});
+       },
+       {"attributes", "4 and 1"}},
+      {"NaN position",
+       [=](Builder& b) { std::memcpy(b.buffer.data() + 16, &nan, 4); },
+       {"accessors[0]", "element 1", "finite"}},
+      {"cycle",
+       [](Builder& b) {
+         b.json["nodes"] = {{{"children", {1}}}, {{"children", {0}}}};
+       },
+       {"nodes[0]", "twice"}},
+      {"shared child",
+       [](Builder& b) {
+         b.json["nodes"] = {{{"children", {1, 1}}}, {{"mesh", 0}}};
+       },
+       {"nodes[0].children", "nodes[1]", "twice"}},
+      {"no such child",
+       [](Builder& b) { b.json["nodes"][0]["children"] = {12}; },
+       {"nodes[0].children", "12"}},
+      {"no such scene", [](Builder& b) { b.json["scene"] = 3; }, {"scene", "3"}},
+      {"no scene", [](Builder& b) { b.json.erase("scenes"); }, {"scene"}},
+      {"empty scene", [](Builder& b) { b.json["scenes"][0]["nodes"] = Json::array(); }, {"no triangles"}},
+      {"matrix",
+       [](Builder& b) {
+         b.json["nodes"][0]["matrix"] = {1, 2, 3};
+       },
+       {"nodes[0].matrix", "16"}},
+      {"huge translation",
+       [](Builder& b) {
+         b.json["nodes"][0]["translation"] = {1e40, 0, 0};
+       },
+       {"nodes[0].translation"}},
+      {"huge scale",
+       [](Builder& b) {
+         b.json["nodes"][0]["scale"] = {1e25, 1, 1};
+       },
+       {"POSITION", "1e18"}},
+      {"rotation",
+       [](Builder& b) {
+         b.json["nodes"][0]["rotation"] = {0, 0, 0, 0};
+       },
+       {"nodes[0].rotation"}},
+      {"skin", [](Builder& b) { b.json["nodes"][0]["skin"] = 0; }, {"nodes[0].skin", "not supported"}},
+      {"morph",
+       [](Builder& b) {
+         b.json["meshes"][0]["weights"] = {0.5};
+         b.json["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", 0}}};
+       },
+       {"targets", "not supported"}},
+      {"required extension",
+       [](Builder& b) { b.json["extensionsRequired"] = {"KHR_draco_mesh_compression"}; },
+       {"extensionsRequired", "KHR_draco_mesh_compression"}},
+      {"version", [](Builder& b) { b.json["asset"]["version"] = "1.0"; }, {"asset.version", "1.0"}},
+      {"camera",
+       [](Builder& b) {
+         b.json["nodes"][0]["camera"] = 0;
+         b.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 4}, {"znear", 1}}}}};
+       },
+       {"cameras[0].perspective.yfov", "4.0"}},
+      {"light",
+       [](Builder& b) {
+         b.json["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0;
+         b.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"intensity", -1}}};
+       },
+       {"lights[0].intensity"}},
+      {"no such light",
+       [](Builder& b) { b.json["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 2; },
+       {"KHR_lights_punctual.light", "2"}},
+  };
+  for (const Case& c : cases) {
+    SCOPED_TRACE(c.what);
+    Builder b = square();
+    c.breakIt(b);
+    const std::string sentence = refusal(b.glb());
+    EXPECT_NE(sentence.find("t.glb: "), std::string::npos) << sentence;
+    for (const char* word : c.words)
+      EXPECT_NE(sentence.find(word), std::string::npos) << word << " is not in: " << sentence;
+  }
+}
+
+TEST_F(Gltf, FilesThatAreNotGltf) {
+  expectRefused("", {""}, "empty.glb");
+  expectRefused("glTF", {"truncated"});
+  expectRefused("{ \"asset\": ", {"parse"}, "t.gltf");
+  expectRefused("[1, 2]", {""}, "t.gltf");
+  std::string old = square().glb();
+  old[4] = 1;
+  expectRefused(old, {"version 1"});
+  std::string deep = "{\"asset\":{\"version\":\"2.0\",\"extras\":";
+  for (int i = 0; i < 200000; ++i) deep += '[';
+  expectRefused(deep, {"nested"}, "t.gltf");
+  EXPECT_THROW(loadGltf(folder_ / "absent.glb"), InputError);
+  EXPECT_THROW(loadGltf(folder_), InputError);
+}
+
+TEST_F(Gltf, UrisStayInTheFolder) {
+  fs::create_directory(folder_ / "inner");
+  Builder b = square();
+  write("secret.bin", b.buffer);
+  fs::create_symlink(folder_ / "secret.bin", folder_ / "inner" / "link.bin");
+  for (const std::string& uri :
+       std::vector<std::string>{"../secret.bin", "%2e%2e/secret.bin", "link.bin", "x/../../secret.bin"}) {
+    b.json["buffers"] = {{{"byteLength", b.buffer.size()}, {"uri", uri}}};
+    expectRefused(b.json.dump(), {"leaves the file's folder"}, "inner/t.gltf");
+  }
+  const std::string absolute = (folder_ / "secret.bin").string();
+  for (const std::string& uri : {absolute, "file://" + absolute, std::string("http://localhost/x.bin")}) {
+    b.json["buffers"] = {{{"byteLength", b.buffer.size()}, {"uri", uri}}};
+    expectRefused(b.json.dump(), {"not found"}, "inner/t.gltf");
+  }
+  // A file of that name in the working directory does not count either.
+  const fs::path before = fs::current_path();
+  fs::current_path(folder_);
+  b.json["buffers"] = {{{"byteLength", b.buffer.size()}, {"uri", "secret.bin"}}};
+  expectRefused(b.json.dump(), {"not found"}, "inner/t.gltf");
+  fs::current_path(before);
+}
+
+// 60 kB that stand for 2^14 times 4096 vertices.
+TEST_F(Gltf, InstancesCannotExhaustMemory) {
+  Builder b = square();
+  std::vector<float> positions(3 * 4096, 0.0f);
+  b.json["meshes"][0]["primitives"][0]["attributes"] = {{"POSITION", b.vectors(positions)}};
+  Json nodes = Json::array(), roots = Json::array();
+  for (int i = 0; i < 1 << 14; ++i) {
+    nodes.push_back({{"mesh", 0}});
+    roots.push_back(i);
+  }
+  b.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = b.vectors(positions);
+  b.json["nodes"] = nodes;
+  b.json["scenes"][0]["nodes"] = roots;
+  expectRefused(b.glb(), {"meshes[0].primitives[0]", "2^24"});
+}
+
+TEST_F(Gltf, EveryTruncationIsRefused) {
+  const std::string whole = square().glb();
+  for (std::size_t size = 0; size < whole.size(); size += 7)
+    ASSERT_FALSE(refusal(whole.substr(0, size)).empty()) << size << " of " << whole.size() << " bytes";
+}
+
+// Whatever stands in the file, the answer is a model or a sentence.
+TEST_F(Gltf, MutatedFilesNeverCrash) {
+  Builder b = square();
+  b.json["materials"][0]["extensions"] = scatterExtensions();
+  b.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.1}}}}};
+  b.json["nodes"][0]["camera"] = 0;
+  const std::string whole = b.glb();
+  std::mt19937 random(5);
+  const std::string digits = "0123456789-eE.,:\"[]{}";
+  int accepted = 0;
+  for (int i = 0; i < 800; ++i) {
+    std::string mutant = whole;
+    const int changes = 1 + static_cast<int>(random() % 4);
+    for (int k = 0; k < changes; ++k) {
+      const std::size_t at = random() % mutant.size();
+      mutant[at] = random() % 2 ? digits[random() % digits.size()] : static_cast<char>(random());
+    }
+    accepted += refusal(mutant).empty();
+  }
+  EXPECT_GT(accepted, 20);
+  EXPECT_LT(accepted, 780);
+}
+
+}  // namespace
