@@ -3,13 +3,16 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <numbers>
 
 #include "capture/material.h"
 #include "capture/read.h"
 #include "capture/write.h"
+#include "cli/capture_gltf.h"
 #include "common/error.h"
 #include "gltf/gltf.h"
+#include "gltf_builder.h"
 #include "gpu/gpu_fixture.h"
 #include "raster/framing.h"
 #include "raster/raster.h"
@@ -657,6 +660,50 @@ TEST_F(Raster, WrittenCaptureReplaysBitIdentically) {
   std::filesystem::remove(file);
 }
 
+// A file on disk to a capture on disk, with the light that the command adds.
+TEST_F(Raster, CommandMakesACaptureOfAFile) {
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("pellucid_command_" + std::to_string(::getpid()));
+  std::filesystem::create_directory(folder);
+  GltfBuilder b;
+  Model cube;
+  addCube(cube, 0.5);
+  std::vector<float> positions, normals;
+  std::vector<std::uint16_t> indices(cube.indices.begin(), cube.indices.end());
+  for (const Vertex& v : cube.vertices) {
+    positions.insert(positions.end(), v.position.begin(), v.position.end());
+    normals.insert(normals.end(), v.normal.begin(), v.normal.end());
+  }
+  b.json["meshes"] = {
+      {{"primitives",
+        {{{"attributes", {{"POSITION", b.vectors(positions)}, {"NORMAL", b.vectors(normals)}}},
+          {"indices", b.indices(indices)}}}}}};
+  b.json["nodes"] = {{{"mesh", 0}}};
+  GltfCapture options;
+  options.model = (folder / "cube.glb").string();
+  options.output = (folder / "cube.exr").string();
+  std::ofstream(options.model, std::ios::binary) << b.glb();
+  options.gltf.metersPerUnit = 0.01;
+  options.gltf.presets = {{"default", "skin1"}};
+  options.raster.width = options.raster.height = 32;
+  options.orthographic = true;
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  captureGltf(options);
+  const std::string said = testing::internal::GetCapturedStdout();
+  const std::string warned = testing::internal::GetCapturedStderr();
+  const Capture c = readCapture(options.output);
+  std::filesystem::remove_all(folder);
+  EXPECT_NE(said.find("12 triangles"), std::string::npos) << said;
+  EXPECT_NE(warned.find("no lights"), std::string::npos) << warned;
+  EXPECT_EQ(c.metersPerUnit, 0.01);
+  EXPECT_NEAR(planar(c, c.backDepth, 16, 16) - planar(c, c.frontDepth, 16, 16), 1, 1e-5);
+  ASSERT_EQ(c.lights.size(), 1u);
+  EXPECT_TRUE(c.lights[0].shadowMap);
+  EXPECT_EQ(c.irradiance.at(16, 16)[0], 0) << "the light comes from behind";
+  EXPECT_EQ(c.material[16 * 32 + 16], 1);
+}
+
 // The folder of models and path-traced captures, where there is one.
 std::filesystem::path sharedFolder() {
   const char* const given = std::getenv("PELLUCID_SHARED");
@@ -700,8 +747,8 @@ TEST_F(Raster, HeadAgreesWithCycles) {
       if (c.material[i] == 0 || cycles.material[i] == 0) continue;
       ++covered;
       const double z = *c.frontDepth.image.at(x, y);
-      front += std::abs(z - *cycles.frontDepth.image.at(x, y)) > 0.01;
-      back += std::abs(*c.backDepth.image.at(x, y) - *cycles.backDepth.image.at(x, y)) > 0.01;
+      front += std::abs(z - *cycles.frontDepth.image.at(x, y)) > 0.05;
+      back += std::abs(*c.backDepth.image.at(x, y) - *cycles.backDepth.image.at(x, y)) > 0.05;
       const PixelRay ray = rayOf(c, x, y);
       const glm::dvec3 position =
           worldFromView * glm::dvec4(ray.direction[0] * z, ray.direction[1] * z, -z, 1);
@@ -719,12 +766,11 @@ TEST_F(Raster, HeadAgreesWithCycles) {
   EXPECT_GT(lit, 30000);
   // Pixels where a silhouette or a crease falls on the other side, or, for light, a shadow's edge.
   EXPECT_LE(coverage, 7);
-  EXPECT_LT(front, covered / 400);
-  EXPECT_LT(back, covered / 400);
+  EXPECT_LT(front, covered / 1000);
+  EXPECT_LT(back, covered / 1000);
   EXPECT_LT(arriving, lit / 50);
   // The mesh is closed; a sliver's facing may be rounded differently from its coverage.
   EXPECT_LE(result.openPixels, 3u);
-  printf("front %d back %d lit %d arriving %d\n", front, back, lit, arriving);
 }
 
 }  // namespace

@@ -1,0 +1,60 @@
+// Path-traced captures, where they are: the ear must glow where the truth glows, and the errors of
+// docs/accuracy.md must not grow.
+#include "gpu_fixture.h"
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "capture/material.h"
+#include "capture/read.h"
+#include "common/compare.h"
+
+namespace {
+
+using namespace pellucid::test;
+
+struct Expectation {
+  const char* name;
+  double all[3];  // relative RMSE R G B of the physical mode, 4x4 averages
+};
+
+void PrintTo(const Expectation& value, std::ostream* out) { *out << value.name; }
+
+class SharedCapture : public GpuTest, public testing::WithParamInterface<Expectation> {};
+
+TEST_P(SharedCapture, IsAsNearToTheTruthAsDocumented) {
+  const char* variable = std::getenv("PELLUCID_SHARED");
+  const std::filesystem::path manifest =
+      (variable ? std::filesystem::path(variable)
+                : std::filesystem::path(PELLUCID_SOURCE_DIR) / "../shared") /
+      "captures" / GetParam().name / "manifest.json";
+  if (!std::filesystem::exists(manifest)) GTEST_SKIP() << "no capture at " << manifest;
+  const Capture capture = readCapture(manifest);
+  const std::vector<PellucidMaterial> materials = compileMaterials(capture);
+  const auto error = [&](uint32_t features) {
+    ReplaySettings s;
+    s.features = features;
+    const Image image = rgb(replayer().run(capture, materials, s).output);
+    return compareImages(image, capture.truth->image,
+                         comparisonMask(capture.material, capture.irradiance, Subset::All), 4)
+        .channels;
+  };
+  const auto whole = error(PELLUCID_FEATURE_TRANSLUCENCY | PELLUCID_FEATURE_DIFFUSION);
+  const auto without = error(PELLUCID_FEATURE_DIFFUSION);
+  for (size_t c = 0; c < 3; ++c) {
+    // 2 %: the truth is one noisy image, so only the device's rounding may differ.
+    EXPECT_LT(whole[c].relativeRmse, GetParam().all[c] * 1.02) << c;
+    EXPECT_LT(whole[c].relativeRmse, without[c].relativeRmse * (c == 2 ? 1.15 : 1.0))
+        << "worse than no translucency in " << c;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Truth, SharedCapture,
+                         testing::Values(Expectation{"ear_backlit", {.189, .123, .0605}},
+                                         Expectation{"head_sidelit", {.0515, .0475, .0415}},
+                                         Expectation{"slab_backlit", {.191, .271, .562}},
+                                         Expectation{"sphere_backlit", {.505, .305, .175}},
+                                         Expectation{"two_sheets", {.146, .157, .225}}),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+}  // namespace
