@@ -139,7 +139,8 @@ void addCommonOptions(CLI::App& command, Options& options) {
   std::map<std::string, PellucidDepthEncoding> shadowEncodings = encodings;
   shadowEncodings["distance"] = PELLUCID_DEPTH_DISTANCE;
   command
-      .add_option("--shadow-depth", options.shadowDepth, "viewz, device or distance (default: as --depth's)")
+      .add_option("--shadow-depth", options.shadowDepth,
+                  "viewz, device or distance (default: a model device, a scene viewz)")
       ->transform(CLI::CheckedTransformer(shadowEncodings, CLI::ignore_case));
   command.add_option("--shadow-size", options.shadowSize,
                      "texels across a shadow map; 0: none (default: a model 1024, a scene 512)");

@@ -104,7 +104,8 @@ std::uint32_t Loader::surfaceOf(int material) {
 void Loader::addMesh(std::size_t node, const glm::dmat4& world) {
   const tinygltf::Node& source = document_.model.nodes[node];
   const std::string nodeName = "nodes[" + std::to_string(node) + "]";
-  if (source.skin != -1) document_.fail(nodeName + ".skin", "skinned meshes are not supported; bake the pose");
+  if (source.skin != -1)
+    document_.fail(nodeName + ".skin", "skinned meshes are not supported; bake the pose");
   const std::size_t index =
       document_.index(source.mesh, document_.model.meshes.size(), nodeName + ".mesh", "meshes");
   const tinygltf::Mesh& mesh = document_.model.meshes[index];

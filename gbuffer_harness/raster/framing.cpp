@@ -89,17 +89,30 @@ ModelCamera frameModel(const Model& model, const Vector3& toCamera, double verti
   const double length = glm::length(toGlm(toCamera));
   if (!(length > 0) || !std::isfinite(length))
     throw InputError(model.name, "view", "the direction to the camera has no length");
-  // The narrower of the two fields of view has to hold the sphere.
-  const double halfFov = std::atan(std::tan(verticalFov / 2) * std::min(1.0, aspect));
-  const double distance = bounds.radius * kMargin / std::sin(halfFov);
+  // Seen from the center first; backing off by d - what a vertex is nearer - brings it into view.
+  const glm::dmat4 atCenter =
+      toGlm(lookAt(bounds.center, fromGlm(toGlm(bounds.center) - toGlm(toCamera) / length), {0, 1, 0}));
+  const double tangent = std::tan(verticalFov / 2);
+  double away = 0, height = 0, nearest = -bounds.radius, farthest = bounds.radius;
+  forEachPosition(model, [&](const glm::dvec3& position) {
+    const glm::dvec3 p = atCenter * glm::dvec4(position, 1);
+    const double half = kMargin * std::max(std::abs(p.x) / aspect, std::abs(p.y));
+    away = std::max(away, half / tangent + p.z);
+    height = std::max(height, 2 * half);
+    nearest = std::max(nearest, p.z);
+    farthest = std::min(farthest, p.z);
+  });
+  // A plane that faces the camera needs room between the clip planes too.
+  const double slack = (kMargin - 1) * bounds.radius;
+  away = std::max(away, nearest + 2 * slack);
   ModelCamera camera;
   camera.name = "auto";
   camera.viewFromWorld =
-      lookAt(fromGlm(toGlm(bounds.center) + toGlm(toCamera) * (distance / length)), bounds.center, {0, 1, 0});
+      lookAt(fromGlm(toGlm(bounds.center) + toGlm(toCamera) * (away / length)), bounds.center, {0, 1, 0});
   camera.orthographic = orthographic;
   camera.verticalFov = verticalFov;
-  camera.height = 2 * bounds.radius * kMargin / std::min(1.0, aspect);
-  camera.range = {distance - bounds.radius * kMargin, distance + bounds.radius * kMargin, true};
+  camera.height = std::max(height, slack);
+  camera.range = {away - nearest - slack, away - farthest + slack, true};
   return camera;
 }
 

@@ -12,10 +12,12 @@
 #include <random>
 
 #include "capture/material.h"
+#include "cli/capture_gltf.h"
 #include "common/error.h"
 #include "common/png.h"
 #include "gltf/gltf.h"
 #include "gltf/material.h"
+#include "gltf_builder.h"
 #include "pellucid/pellucid_material.h"
 #include "raster/framing.h"
 
@@ -23,6 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace pellucid::harness;
+using pellucid::test::GltfBuilder;
 using Json = nlohmann::ordered_json;
 
 // A folder that goes away with the test.
@@ -61,56 +64,9 @@ protected:
   fs::path folder_;
 };
 
-void append(std::string& bytes, const void* data, std::size_t size) {
-  bytes.append(static_cast<const char*>(data), size);
-}
-
-// A glTF document under construction: JSON and one buffer.
-struct Builder {
-  Json json = {{"asset", {{"version", "2.0"}}}, {"scene", 0}, {"scenes", {{{"nodes", {0}}}}}};
-  std::string buffer;
-
-  int view(const void* data, std::size_t size) {
-    while (buffer.size() % 4 != 0) buffer.push_back('\0');
-    json["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", buffer.size()}, {"byteLength", size}});
-    append(buffer, data, size);
-    return static_cast<int>(json["bufferViews"].size()) - 1;
-  }
-  template <class T>
-  int accessor(const std::vector<T>& values, int componentType, const char* type, std::size_t components) {
-    const int v = view(values.data(), values.size() * sizeof(T));
-    json["accessors"].push_back({{"bufferView", v},
-                                 {"componentType", componentType},
-                                 {"count", values.size() / components},
-                                 {"type", type}});
-    return static_cast<int>(json["accessors"].size()) - 1;
-  }
-  int vectors(const std::vector<float>& values) { return accessor(values, 5126, "VEC3", 3); }
-  int indices(const std::vector<std::uint16_t>& values) { return accessor(values, 5123, "SCALAR", 1); }
-
-  std::string glb() {
-    if (!buffer.empty()) json["buffers"] = {{{"byteLength", buffer.size()}}};
-    std::string text = json.dump();
-    text.resize((text.size() + 3) / 4 * 4, ' ');
-    std::string bin = buffer;
-    bin.resize((bin.size() + 3) / 4 * 4, '\0');
-    const auto size = static_cast<std::uint32_t>(20 + text.size() + (bin.empty() ? 0 : 8 + bin.size()));
-    const std::uint32_t header[] = {0x46546C67, 2, size, static_cast<std::uint32_t>(text.size()), 0x4E4F534A};
-    std::string bytes;
-    append(bytes, header, sizeof header);
-    bytes += text;
-    if (!bin.empty()) {
-      const std::uint32_t chunk[] = {static_cast<std::uint32_t>(bin.size()), 0x004E4942};
-      append(bytes, chunk, sizeof chunk);
-      bytes += bin;
-    }
-    return bytes;
-  }
-};
-
 // Two triangles of the square [0, 2]^2 at z = 0, facing +z, of material "m".
-Builder square() {
-  Builder b;
+GltfBuilder square() {
+  GltfBuilder b;
   const int position = b.vectors({0, 0, 0, 2, 0, 0, 2, 2, 0, 0, 2, 0});
   const int normal = b.vectors({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1});
   const int indices = b.indices({0, 1, 2, 0, 2, 3});
@@ -141,7 +97,7 @@ void expectVector(const std::array<float, 3>& v, double x, double y, double z, d
 }
 
 TEST_F(Gltf, TrianglesInWorldSpace) {
-  Builder b = square();
+  GltfBuilder b = square();
   const double h = std::sqrt(0.5);
   b.json["nodes"] = {{{"children", {1}}, {"translation", {10, 0, 0}}},
                      {{"mesh", 0}, {"rotation", {0, h, 0, h}}, {"scale", {1, 2, 3}}}};
@@ -159,7 +115,7 @@ TEST_F(Gltf, TrianglesInWorldSpace) {
 }
 
 TEST_F(Gltf, MirroredNodesKeepTheirOutside) {
-  Builder b = square();
+  GltfBuilder b = square();
   b.json["nodes"] = {{{"mesh", 0}, {"matrix", {-1, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1, 0, 0, 0, 5, 1}}}};
   const Model m = loadGltf(write("t.glb", b.glb())).model;
   expectVector(m.vertices[2].position, -2, 4, 5);
@@ -168,7 +124,7 @@ TEST_F(Gltf, MirroredNodesKeepTheirOutside) {
 }
 
 TEST_F(Gltf, EveryContainerGivesTheSameModel) {
-  Builder b = square();
+  GltfBuilder b = square();
   const Model glb = loadGltf(write("t.glb", b.glb())).model;
   const std::string data = b.buffer;
   b.json["buffers"] = {{{"byteLength", data.size()}, {"uri", "a%20b.bin"}}};
@@ -195,7 +151,7 @@ TEST_F(Gltf, EveryContainerGivesTheSameModel) {
 
 TEST_F(Gltf, StripsFansAndPlainVertices) {
   for (const int mode : {4, 5, 6}) {
-    Builder b;
+    GltfBuilder b;
     // Corners in the order that each mode needs.
     const std::vector<float> corners =
         mode == 4   ? std::vector<float>{0, 0, 0, 2, 0, 0, 2, 2, 0, 0, 0, 0, 2, 2, 0, 0, 2, 0}
@@ -214,7 +170,7 @@ TEST_F(Gltf, StripsFansAndPlainVertices) {
 }
 
 TEST_F(Gltf, QuantizedAndOtherAttributes) {
-  Builder b;
+  GltfBuilder b;
   const int position =
       b.accessor(std::vector<std::int16_t>{0, 0, 0, 0, 200, 0, 0, 0, 200, 200, 0, 0}, 5122, "VEC3", 4);
   b.json["bufferViews"].back()["byteStride"] = 8;
@@ -243,7 +199,7 @@ TEST_F(Gltf, QuantizedAndOtherAttributes) {
 }
 
 TEST_F(Gltf, NormalsOfNoLengthComeFromTheTriangles) {
-  Builder b = square();
+  GltfBuilder b = square();
   const int broken = b.vectors({0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0});
   b.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = broken;
   const Model m = loadGltf(write("t.glb", b.glb())).model;
@@ -252,7 +208,7 @@ TEST_F(Gltf, NormalsOfNoLengthComeFromTheTriangles) {
 }
 
 TEST_F(Gltf, CamerasAndLights) {
-  Builder b = square();
+  GltfBuilder b = square();
   b.json["scenes"][0]["nodes"] = {0, 1, 2, 3, 4};
   b.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.1}}}},
                        {{"name", "ortho"},
@@ -300,7 +256,7 @@ TEST_F(Gltf, TexturesAreDecoded) {
   writePng(folder_ / "c.png", 2, 1, {255, 0, 0, 0, 0, 255});
   std::ifstream in(folder_ / "c.png", std::ios::binary);
   const std::string png((std::istreambuf_iterator<char>(in)), {});
-  Builder b = square();
+  GltfBuilder b = square();
   b.json["materials"][0]["pbrMetallicRoughness"] = {{"baseColorFactor", {0.5, 0.25, 0.125, 0.5}},
                                                     {"baseColorTexture", {{"index", 0}, {"texCoord", 1}}}};
   b.json["materials"][0]["alphaMode"] = "MASK";
@@ -347,7 +303,7 @@ Json scatterExtensions() {
 }
 
 TEST_F(Gltf, VolumeScatterBecomesCoefficients) {
-  Builder b = square();
+  GltfBuilder b = square();
   b.json["materials"][0]["extensions"] = scatterExtensions();
   const Model m = loadGltf(write("t.glb", b.glb())).model;
   ASSERT_EQ(m.materials.size(), 1u);
@@ -369,7 +325,7 @@ TEST_F(Gltf, VolumeScatterBecomesCoefficients) {
 // good to about 0.01.
 TEST_F(Gltf, MultiscatterColorIsTheCompiledReflectance) {
   for (const double color : {0.1, 0.5, 0.9}) {
-    Builder b = square();
+    GltfBuilder b = square();
     b.json["materials"][0]["extensions"] = scatterExtensions();
     b.json["materials"][0]["extensions"]["KHR_materials_volume_scatter"] = {
         {"multiscatterColor", {color, color, color}}};
@@ -380,7 +336,7 @@ TEST_F(Gltf, MultiscatterColorIsTheCompiledReflectance) {
 }
 
 TEST_F(Gltf, UnitsScaleLengths) {
-  Builder b = square();
+  GltfBuilder b = square();
   b.json["materials"][0]["extensions"] = scatterExtensions();
   GltfOptions options;
   options.metersPerUnit = 0.01;
@@ -392,7 +348,7 @@ TEST_F(Gltf, UnitsScaleLengths) {
 }
 
 TEST_F(Gltf, DiffuseTransmissionBecomesAnExponential) {
-  Builder b = square();
+  GltfBuilder b = square();
   b.json["materials"][0]["extensions"] = {
       {"KHR_materials_volume",
        {{"thicknessFactor", 1}, {"attenuationDistance", 0.004}, {"attenuationColor", {0.5, 0.25, 1}}}},
@@ -413,7 +369,7 @@ TEST_F(Gltf, DiffuseTransmissionBecomesAnExponential) {
 }
 
 TEST_F(Gltf, PresetsOverrideByName) {
-  Builder b = square();
+  GltfBuilder b = square();
   b.json["materials"] = {{{"name", "m"}, {"extensions", scatterExtensions()}}, {{"name", "leaf=2"}}};
   Json second = b.json["meshes"][0];
   second["primitives"][0]["material"] = 1;
@@ -444,7 +400,7 @@ TEST_F(Gltf, PresetsOverrideByName) {
 
 TEST_F(Gltf, WhatIsNotAMediumIsSaid) {
   const auto warnings = [&](const Json& extensions) {
-    Builder b = square();
+    GltfBuilder b = square();
     b.json["materials"][0]["extensions"] = extensions;
     std::string all;
     const GltfScene scene = loadGltf(write("t.glb", b.glb()));
@@ -464,7 +420,7 @@ TEST_F(Gltf, WhatIsNotAMediumIsSaid) {
 TEST_F(Gltf, BadMaterialValuesAreNamed) {
   const auto refused = [&](const char* extension, const Json& value,
                            std::initializer_list<const char*> words) {
-    Builder b = square();
+    GltfBuilder b = square();
     b.json["materials"][0]["extensions"] = scatterExtensions();
     b.json["materials"][0]["extensions"][extension].update(value);
     expectRefused(b.glb(), words);
@@ -483,14 +439,14 @@ TEST_F(Gltf, BadMaterialValuesAreNamed) {
 TEST_F(Gltf, BrokenFilesAreRefusedWithASentence) {
   struct Case {
     const char* what;
-    std::function<void(Builder&)> breakIt;
+    std::function<void(GltfBuilder&)> breakIt;
     std::vector<const char*> words;
   };
   const auto accessor = [](std::size_t i, const char* key, Json value) {
-    return [=](Builder& b) { b.json["accessors"][i][key] = value; };
+    return [=](GltfBuilder& b) { b.json["accessors"][i][key] = value; };
   };
   const auto primitive = [](const char* key, Json value) {
-    return [=](Builder& b) { b.json["meshes"][0]["primitives"][0][key] = value; };
+    return [=](GltfBuilder& b) { b.json["meshes"][0]["primitives"][0][key] = value; };
   };
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const std::vector<Case> cases = {
@@ -503,7 +459,7 @@ TEST_F(Gltf, BrokenFilesAreRefusedWithASentence) {
       {"position of 2 components", accessor(0, "type", "VEC2"), {"POSITION", "2 components"}},
       {"component type", accessor(0, "componentType", 5124), {"accessors[0]", "5124"}},
       {"no buffer view",
-       [](Builder& b) { b.json["accessors"][0].erase("bufferView"); },
+       [](GltfBuilder& b) { b.json["accessors"][0].erase("bufferView"); },
        {"accessors[0].bufferView"}},
       {"no such buffer view", accessor(0, "bufferView", 99), {"accessors[0].bufferView", "99"}},
       {"sparse",
@@ -513,104 +469,104 @@ TEST_F(Gltf, BrokenFilesAreRefusedWithASentence) {
                  {"values", {{"bufferView", 0}}}}),
        {"accessors[0].sparse"}},
       {"view beyond the buffer",
-       [](Builder& b) { b.json["bufferViews"][0]["byteLength"] = 1 << 20; },
+       [](GltfBuilder& b) { b.json["bufferViews"][0]["byteLength"] = 1 << 20; },
        {"bufferViews[0]", "1048576"}},
       {"view of no buffer",
-       [](Builder& b) { b.json["bufferViews"][0]["buffer"] = 3; },
+       [](GltfBuilder& b) { b.json["bufferViews"][0]["buffer"] = 3; },
        {"bufferViews[0].buffer", "3"}},
       {"stride",
-       [](Builder& b) { b.json["bufferViews"][0]["byteStride"] = 4; },
+       [](GltfBuilder& b) { b.json["bufferViews"][0]["byteStride"] = 4; },
        {"bufferViews[0].byteStride", "4"}},
       {"index out of range",
-       [](Builder& b) {
+       [](GltfBuilder& b) {
          b.json["meshes"][0]["primitives"][0]["indices"] = b.indices({0, 1, 4});
        },
        {"index 4", "4 vertices"}},
       {"float indices", primitive("indices", 0), {"indices", "unsigned"}},
       {"two indices",
-       [](Builder& b) {
+       [](GltfBuilder& b) {
          b.json["meshes"][0]["primitives"][0]["indices"] = b.indices({0, 1});
        },
        {"multiple of 3"}},
-      {"no such mesh", [](Builder& b) { b.json["nodes"][0]["mesh"] = 7; }, {"nodes[0].mesh", "7"}},
-      {"negative mesh", [](Builder& b) { b.json["nodes"][0]["mesh"] = -7; }, {"nodes[0].mesh", "-7"}},
+      {"no such mesh", [](GltfBuilder& b) { b.json["nodes"][0]["mesh"] = 7; }, {"nodes[0].mesh", "7"}},
+      {"negative mesh", [](GltfBuilder& b) { b.json["nodes"][0]["mesh"] = -7; }, {"nodes[0].mesh", "-7"}},
       {"no such material", primitive("material", 4), {"material", "4"}},
       {"mode", primitive("mode", 9), {"mode", "9"}},
       {"no position", primitive("attributes", {{"NORMAL", 1}}), {"POSITION", "missing"}},
       {"counts differ",
-       [](Builder& b) {
+       [](GltfBuilder& b) {
          b.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = b.vectors({0, 0, 1});
        },
        {"attributes", "4 and 1"}},
       {"NaN position",
-       [=](Builder& b) { std::memcpy(b.buffer.data() + 16, &nan, 4); },
+       [=](GltfBuilder& b) { std::memcpy(b.buffer.data() + 16, &nan, 4); },
        {"accessors[0]", "element 1", "finite"}},
       {"cycle",
-       [](Builder& b) {
+       [](GltfBuilder& b) {
          b.json["nodes"] = {{{"children", {1}}}, {{"children", {0}}}};
        },
        {"nodes[0]", "twice"}},
       {"shared child",
-       [](Builder& b) {
+       [](GltfBuilder& b) {
          b.json["nodes"] = {{{"children", {1, 1}}}, {{"mesh", 0}}};
        },
        {"nodes[0].children", "nodes[1]", "twice"}},
       {"no such child",
-       [](Builder& b) { b.json["nodes"][0]["children"] = {12}; },
+       [](GltfBuilder& b) { b.json["nodes"][0]["children"] = {12}; },
        {"nodes[0].children", "12"}},
-      {"no such scene", [](Builder& b) { b.json["scene"] = 3; }, {"scene", "3"}},
-      {"no scene", [](Builder& b) { b.json.erase("scenes"); }, {"scene"}},
-      {"empty scene", [](Builder& b) { b.json["scenes"][0]["nodes"] = Json::array(); }, {"no triangles"}},
+      {"no such scene", [](GltfBuilder& b) { b.json["scene"] = 3; }, {"scene", "3"}},
+      {"no scene", [](GltfBuilder& b) { b.json.erase("scenes"); }, {"scene"}},
+      {"empty scene", [](GltfBuilder& b) { b.json["scenes"][0]["nodes"] = Json::array(); }, {"no triangles"}},
       {"matrix",
-       [](Builder& b) {
+       [](GltfBuilder& b) {
          b.json["nodes"][0]["matrix"] = {1, 2, 3};
        },
        {"nodes[0].matrix", "16"}},
       {"huge translation",
-       [](Builder& b) {
+       [](GltfBuilder& b) {
          b.json["nodes"][0]["translation"] = {1e40, 0, 0};
        },
        {"nodes[0].translation"}},
       {"huge scale",
-       [](Builder& b) {
+       [](GltfBuilder& b) {
          b.json["nodes"][0]["scale"] = {1e25, 1, 1};
        },
        {"POSITION", "1e18"}},
       {"rotation",
-       [](Builder& b) {
+       [](GltfBuilder& b) {
          b.json["nodes"][0]["rotation"] = {0, 0, 0, 0};
        },
        {"nodes[0].rotation"}},
-      {"skin", [](Builder& b) { b.json["nodes"][0]["skin"] = 0; }, {"nodes[0].skin", "not supported"}},
+      {"skin", [](GltfBuilder& b) { b.json["nodes"][0]["skin"] = 0; }, {"nodes[0].skin", "not supported"}},
       {"morph",
-       [](Builder& b) {
+       [](GltfBuilder& b) {
          b.json["meshes"][0]["weights"] = {0.5};
          b.json["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", 0}}};
        },
        {"targets", "not supported"}},
       {"required extension",
-       [](Builder& b) { b.json["extensionsRequired"] = {"KHR_draco_mesh_compression"}; },
+       [](GltfBuilder& b) { b.json["extensionsRequired"] = {"KHR_draco_mesh_compression"}; },
        {"extensionsRequired", "KHR_draco_mesh_compression"}},
-      {"version", [](Builder& b) { b.json["asset"]["version"] = "1.0"; }, {"asset.version", "1.0"}},
+      {"version", [](GltfBuilder& b) { b.json["asset"]["version"] = "1.0"; }, {"asset.version", "1.0"}},
       {"camera",
-       [](Builder& b) {
+       [](GltfBuilder& b) {
          b.json["nodes"][0]["camera"] = 0;
          b.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 4}, {"znear", 1}}}}};
        },
        {"cameras[0].perspective.yfov", "4.0"}},
       {"light",
-       [](Builder& b) {
+       [](GltfBuilder& b) {
          b.json["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0;
          b.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"intensity", -1}}};
        },
        {"lights[0].intensity"}},
       {"no such light",
-       [](Builder& b) { b.json["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 2; },
+       [](GltfBuilder& b) { b.json["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 2; },
        {"KHR_lights_punctual.light", "2"}},
   };
   for (const Case& c : cases) {
     SCOPED_TRACE(c.what);
-    Builder b = square();
+    GltfBuilder b = square();
     c.breakIt(b);
     const std::string sentence = refusal(b.glb());
     EXPECT_NE(sentence.find("t.glb: "), std::string::npos) << sentence;
@@ -636,7 +592,7 @@ TEST_F(Gltf, FilesThatAreNotGltf) {
 
 TEST_F(Gltf, UrisStayInTheFolder) {
   fs::create_directory(folder_ / "inner");
-  Builder b = square();
+  GltfBuilder b = square();
   write("secret.bin", b.buffer);
   fs::create_symlink(folder_ / "secret.bin", folder_ / "inner" / "link.bin");
   for (const std::string& uri :
@@ -659,7 +615,7 @@ TEST_F(Gltf, UrisStayInTheFolder) {
 
 // 60 kB that stand for 2^14 times 4096 vertices.
 TEST_F(Gltf, InstancesCannotExhaustMemory) {
-  Builder b = square();
+  GltfBuilder b = square();
   std::vector<float> positions(3 * 4096, 0.0f);
   b.json["meshes"][0]["primitives"][0]["attributes"] = {{"POSITION", b.vectors(positions)}};
   Json nodes = Json::array(), roots = Json::array();
@@ -681,7 +637,7 @@ TEST_F(Gltf, EveryTruncationIsRefused) {
 
 // Whatever stands in the file, the answer is a model or a sentence.
 TEST_F(Gltf, MutatedFilesNeverCrash) {
-  Builder b = square();
+  GltfBuilder b = square();
   b.json["materials"][0]["extensions"] = scatterExtensions();
   b.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.1}}}}};
   b.json["nodes"][0]["camera"] = 0;
@@ -700,6 +656,33 @@ TEST_F(Gltf, MutatedFilesNeverCrash) {
   }
   EXPECT_GT(accepted, 20);
   EXPECT_LT(accepted, 780);
+}
+
+// ---- The command's own syntax
+
+TEST_F(Gltf, UnitsAndLightsOfTheCommandLine) {
+  EXPECT_EQ(parseUnit("mm"), 0.001);
+  EXPECT_EQ(parseUnit("cm"), 0.01);
+  EXPECT_EQ(parseUnit("m"), 1);
+  EXPECT_EQ(parseUnit("0.052"), 0.052);
+  for (const char* bad : {"", "km", "0", "-1", "nan", "1m"}) EXPECT_THROW(parseUnit(bad), UsageError) << bad;
+
+  const Model model = loadGltf(write("t.glb", square().glb())).model;  // centered at (1, 1, 0)
+  const ModelCamera camera = frameModel(model, {0, 0, 1}, 0.5, 1, false);
+  const Light sun = parseLight("directional:1,-2,0.5:3", model, camera);
+  EXPECT_EQ(sun.type, PELLUCID_LIGHT_DIRECTIONAL);
+  EXPECT_EQ(sun.direction, (std::array<double, 3>{1, -2, 0.5}));
+  EXPECT_EQ(sun.intensity, 3);
+  const Light point = parseLight("point:1,1,-5", model, camera);
+  EXPECT_EQ(point.type, PELLUCID_LIGHT_POINT);
+  EXPECT_EQ(point.intensity, 25) << "E = 1 at the center";
+  const Light spot = parseLight("spot:1,1,-5:7", model, camera);
+  EXPECT_EQ(spot.direction, (std::array<double, 3>{0, 0, 1}));
+  EXPECT_NEAR(std::sin(spot.outerConeAngle), std::sqrt(2.0) / 5, 1e-9) << "the cone holds the model";
+  EXPECT_GT(parseLight("back", model, camera).direction[2], 0) << "towards the camera";
+  for (const char* bad : {"", "sun", "point", "point:1,2", "point:1,2,x", "point:1,2,3:-1",
+                          "directional:0,0,0", "spot:1,1,0", "point:1,2,3:4:5", "point:1,2,inf"})
+    EXPECT_THROW(parseLight(bad, model, camera), UsageError) << bad;
 }
 
 }  // namespace
