@@ -34,6 +34,21 @@ float planarDistanceViewZ(float viewZ) {
   return viewZ > 0.0 && viewZ < kNoDepth ? viewZ : -1.0;
 }
 
+// The pixel a view-space point falls on; false behind the eye.
+bool projectToPixel(Camera camera, vec3 position, out ivec2 pixel) {
+  // The inverse of point(p) = origin + p direction, both affine in the pixel: two linear equations.
+  float p = position.z * camera.range.x;
+  vec2 x = camera.rayX.xy * p + camera.rayX.zw, y = camera.rayY.xy * p + camera.rayY.zw;
+  vec2 rest = position.xy - (camera.rayBase.xy * p + camera.rayBase.zw);
+  float determinant = x.x * y.y - x.y * y.x;
+  pixel = ivec2(0);
+  if (!(abs(determinant) > 0.0) || !(p > 0.0)) return false;
+  vec2 at = vec2(rest.x * y.y - rest.y * y.x, x.x * rest.y - x.y * rest.x) / determinant;
+  // Far outside stays outside after the conversion.
+  pixel = ivec2(floor(clamp(at, vec2(-1.0e6), vec2(1.0e6)) + 0.5));
+  return true;
+}
+
 // Lengths in mm that one pixel step in x and y covers at planar distance p, facing the camera.
 vec2 pixelSize(Camera camera, float p) {
   vec2 x = camera.rayX.xy * p + camera.rayX.zw;

@@ -144,6 +144,10 @@ Transmitted lightTransmission(LightConstants light, Surface s) {
   return Transmitted(thickness, incident.irradiance * hiddenCosine(s, incident.toLight), visible);
 }
 
+#ifdef GATHER
+#include "passes/gather.glsl"
+#endif
+
 void main() {
   ivec2 pixel = invocationPixel();
   if (!insideRect(pixel)) return;
@@ -162,6 +166,12 @@ void main() {
     if (s.chord >= 0.0) thickness.r = s.chord * mm;
     for (uint i = 0u; i < pass.value.y; ++i) {
       LightConstants light = lights[pass.value.x + i];
+#ifdef GATHER
+      if (pass.value.w > 0u && light.meta.z != 0u) {
+        transmitted += gatherLight(m, light, s, pass.value.w);
+        continue;
+      }
+#endif
       Transmitted t = lightTransmission(light, s);
       vec3 through = t.arriving * t.visible;
       // Most pixels face some lights; T is the expensive part.

@@ -101,6 +101,7 @@ struct MaterialConstants {
   vec4 transmittance[3]; // per channel, the model's first four parameters
   vec4 transmittance4;   // rgb: the fifth
   vec4 inverseReflectance; // rgb: 1/rho
+  vec4 gatherRates;        // x: slow, y: fast; 1/mm
   uvec4 meta;            // x: model; y: Gaussians; z: 1 if it diffuses
   vec4 gaussianFalloff[PELLUCID_GAUSSIANS]; // rgb: 1/(2 v), 1/mm^2; 1/v for the printed form
   vec4 gaussianWeight[PELLUCID_GAUSSIANS];  // rgb
@@ -112,7 +113,7 @@ struct KernelConstants {
   vec4 tapFalloff[PELLUCID_KERNEL_TAPS]; // rgb: 1/(2 v) of the Gaussians that reach the offset
 };
 
-// Push constants. translucency: first light, lights, 1 if this is the last dispatch.
+// Push constants. translucency: first light, lights, 1 if this is the last dispatch, gather samples.
 // diffuse: step x, step y, 1 if this is the last dispatch.
 struct PassConstants {
   uvec4 value;

@@ -25,15 +25,20 @@ struct Model {
   ReplaySettings settings;
 };
 
+ReplaySettings gather(std::uint32_t samples) {
+  ReplaySettings s;
+  s.translucency.gatherSamples = samples;
+  return s;
+}
+
 std::vector<Model> models() {
   ReplaySettings none, light, camera;
   none.features = PELLUCID_FEATURE_DIFFUSION;
   camera.translucency.thicknessSource = PELLUCID_THICKNESS_CAMERA;
   camera.translucency.shadowBias = thesisSettings().translucency.shadowBias;
-  return {{"no translucency", none},
-          {"thesis", thesisSettings()},
-          {"camera-space thickness", camera},
-          {"light-space thickness (physical)", light}};
+  return {{"no translucency", none},          {"thesis", thesisSettings()},
+          {"camera-space thickness", camera}, {"light-space thickness", light},
+          {"gather, 16 samples", gather(16)}, {"gather, 64 samples", gather(64)}};
 }
 
 std::string cells(const Comparison& c) {

@@ -141,6 +141,11 @@ const std::map<std::string, Key> kKeys = {
       [](const auto& key, const auto& value, ReplaySettings& s) {
         s.translucency.shadowBias = real(key, value);
       }}},
+    {"gather",
+     {"samples of the shadow map, 0..64",
+      [](const auto& key, const auto& value, ReplaySettings& s) {
+        s.translucency.gatherSamples = number(key, value);
+      }}},
     {"format",
      {"rgba16f|rgba32f", [](const auto& key, const auto& value,
                             ReplaySettings& s) { s.outputFormat = lookUp(kFormats, key, value); }}},

@@ -17,6 +17,7 @@ struct TranslucencySettings {
   bool chordThickness = false;
   float maximumThickness = 0;                    // mm; 0: no limit
   std::array<float, 3> transmittanceFilter = {1, 1, 1};
+  std::uint32_t gatherSamples = 0;
   float shadowBias = 0; // scene units, of every shadow map
 
   bool operator==(const TranslucencySettings&) const = default;

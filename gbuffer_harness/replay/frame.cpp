@@ -146,6 +146,7 @@ void makeFrame(const Capture& capture, const std::vector<PellucidMaterial>& mate
   f.angleModel = t.angleModel;
   std::copy(t.anglePolynomial.begin(), t.anglePolynomial.end(), f.anglePolynomial);
   f.minimumDot = t.minimumDot;
+  f.gatherSamples = t.gatherSamples;
   f.constantViewDirection = t.constantViewDirection;
   f.chordThickness = t.chordThickness;
   f.maximumThickness = t.maximumThickness;

@@ -78,14 +78,16 @@ struct Builder {
 
   bool translucency(const LightGroup& group, uint32_t source, uint32_t destination) {
     const bool debug = frame.debugView != PELLUCID_DEBUG_NONE;
-    const uint32_t pipeline =
-        debug ? (wide() ? PELLUCID_PIPELINE_DEBUG_32F : PELLUCID_PIPELINE_DEBUG_16F)
-              : (wide() ? PELLUCID_PIPELINE_TRANSLUCENCY_32F : PELLUCID_PIPELINE_TRANSLUCENCY_16F);
+    const uint32_t half = debug                     ? PELLUCID_PIPELINE_DEBUG_16F
+                          : frame.gatherSamples > 0 ? PELLUCID_PIPELINE_GATHER_16F
+                                                    : PELLUCID_PIPELINE_TRANSLUCENCY_16F;
+    const uint32_t pipeline = half + (wide() ? 1 : 0);  // the 32F variant follows the 16F one
     PellucidDispatch* d = dispatch(debug ? "debug view" : "translucency", pipeline);
     if (!d) return false;
     d->pushConstants[0] = group.firstLight;
     d->pushConstants[1] = group.lightCount;
     d->pushConstants[2] = destination == PELLUCID_RESOURCE_OUTPUT;
+    d->pushConstants[3] = frame.gatherSamples;
     common(d, source, destination);
     constants(d, PELLUCID_BINDING_LIGHTS, layout.lights);
     constants(d, PELLUCID_BINDING_SHADOWS, layout.shadows);
@@ -169,17 +171,29 @@ bool build(const PellucidFrame& frame, PellucidPlan& plan) {
     fits = fits && b.translucency(group, source, to);
     source = to;
   };
-  if (stages.lights)
-    forEachLightGroup(
-        frame, [](const LightGroup&, const PellucidLight&) {}, translucency);
-  else if (stages.fused > 0)
-    translucency(LightGroup{});
-  if (stages.diffusion) {
-    uint32_t to = destination();
-    fits = fits && b.diffuse("diffuse horizontally", 1, 0, source, to);
-    source = to;
-    to = destination();
-    fits = fits && b.diffuse("diffuse vertically", 0, 1, source, to);
+  const auto translucencies = [&] {
+    if (stages.lights)
+      forEachLightGroup(
+          frame, [](const LightGroup&, const PellucidLight&) {}, translucency);
+    else if (stages.fused > 0)
+      translucency(LightGroup{});
+  };
+  const auto diffusion = [&] {
+    if (!stages.diffusion) return;
+    for (const uint32_t vertical : {0u, 1u}) {
+      const uint32_t to = destination();
+      fits = fits && b.diffuse(vertical ? "diffuse vertically" : "diffuse horizontally", 1 - vertical,
+                               vertical, source, to);
+      source = to;
+    }
+  };
+  // Gathered light has already spread on its way through; diffusing it again would spread it twice.
+  if (frame.gatherSamples > 0) {
+    diffusion();
+    translucencies();
+  } else {
+    translucencies();
+    diffusion();
   }
   return fits;
 }

@@ -6,6 +6,8 @@
 #include "kDebug32f.h"
 #include "kDiffuse16f.h"
 #include "kDiffuse32f.h"
+#include "kGather16f.h"
+#include "kGather32f.h"
 #include "kTranslucency16f.h"
 #include "kTranslucency32f.h"
 #include "pellucid/pellucid.h"
@@ -20,7 +22,8 @@ constexpr Shader shader(const uint32_t (&words)[N]) {
 
 // In the order of PellucidPipeline.
 const std::array kShaders = {shader(kTranslucency16f), shader(kTranslucency32f), shader(kDebug16f),
-                             shader(kDebug32f),        shader(kDiffuse16f),      shader(kDiffuse32f)};
+                             shader(kDebug32f),        shader(kDiffuse16f),      shader(kDiffuse32f),
+                             shader(kGather16f),       shader(kGather32f)};
 static_assert(kShaders.size() == PELLUCID_PIPELINE_COUNT);
 
 }  // namespace

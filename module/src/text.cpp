@@ -54,7 +54,8 @@ extern "C" const char* pellucidResourceName(uint32_t resource) {
 
 extern "C" const char* pellucidPipelineName(uint32_t pipeline) {
   static constexpr std::array names = {"translucency_rgba16f", "translucency_rgba32f", "debug_rgba16f",
-                                       "debug_rgba32f",        "diffuse_rgba16f",      "diffuse_rgba32f"};
+                                       "debug_rgba32f",        "diffuse_rgba16f",      "diffuse_rgba32f",
+                                       "gather_rgba16f",       "gather_rgba32f"};
   static_assert(names.size() == PELLUCID_PIPELINE_COUNT);
   return pipeline < names.size() ? names[pipeline] : "unknown pipeline";
 }

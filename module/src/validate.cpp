@@ -244,6 +244,9 @@ PellucidResult checkFrame(const PellucidFrame* frame, PellucidMessageFn fn, void
     if (!(f.transmittanceFilter[c] >= 0 && f.transmittanceFilter[c] <= 1))
       out.error("transmittanceFilter", "[", c, "] is ", f.transmittanceFilter[c], ", outside [0, 1]");
 
+  if (f.gatherSamples > 64 || f.gatherSamples % 4 != 0)
+    out.error("gatherSamples", "is ", f.gatherSamples, "; needs a multiple of 4, at most 64");
+
   // 255: the material image is r8ui and 0 means none.
   if (f.materialCount == 0 || f.materialCount > 255 || !f.materials)
     out.error("materials", "has ", f.materialCount, f.materials ? "" : " at NULL", "; needs 1..255");
@@ -254,7 +257,14 @@ PellucidResult checkFrame(const PellucidFrame* frame, PellucidMessageFn fn, void
     out.error("shadowImages", "is NULL, but shadowImageCount is ", f.shadowImageCount);
   if (out.result() != PELLUCID_OK) return out.result();
 
-  for (uint32_t i = 0; i < f.materialCount; ++i) checkMaterial(f.materials[i], i, out);
+  for (uint32_t i = 0; i < f.materialCount; ++i) {
+    checkMaterial(f.materials[i], i, out);
+    const uint32_t model = f.materials[i].transmittanceModel;
+    if (f.gatherSamples > 0 && model != PELLUCID_TRANSMITTANCE_EXP2 &&
+        model != PELLUCID_TRANSMITTANCE_SINH_EXP)
+      out.error(Field("materials[", i, "].transmittanceModel"), "is ", model,
+                ", which cannot be gathered; use EXP2 or SINH_EXP");
+  }
   for (uint32_t i = 0; i < f.shadowMapCount; ++i) checkShadowMap(f, i, out);
   if (out.result() != PELLUCID_OK) return out.result();
   for (uint32_t i = 0; i < f.lightCount; ++i) {

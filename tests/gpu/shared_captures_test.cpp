@@ -20,14 +20,17 @@ struct Expectation {
 
 void PrintTo(const Expectation& value, std::ostream* out) { *out << value.name; }
 
+std::filesystem::path sharedCaptures() {
+  const char* variable = std::getenv("PELLUCID_SHARED");
+  return (variable ? std::filesystem::path(variable)
+                   : std::filesystem::path(PELLUCID_SOURCE_DIR) / "../shared") /
+         "captures";
+}
+
 class SharedCapture : public GpuTest, public testing::WithParamInterface<Expectation> {};
 
 TEST_P(SharedCapture, IsAsNearToTheTruthAsDocumented) {
-  const char* variable = std::getenv("PELLUCID_SHARED");
-  const std::filesystem::path manifest =
-      (variable ? std::filesystem::path(variable)
-                : std::filesystem::path(PELLUCID_SOURCE_DIR) / "../shared") /
-      "captures" / GetParam().name / "manifest.json";
+  const std::filesystem::path manifest = sharedCaptures() / GetParam().name / "manifest.json";
   if (!std::filesystem::exists(manifest)) GTEST_SKIP() << "no capture at " << manifest;
   const Capture capture = readCapture(manifest);
   const std::vector<PellucidMaterial> materials = compileMaterials(capture);
@@ -47,6 +50,25 @@ TEST_P(SharedCapture, IsAsNearToTheTruthAsDocumented) {
     EXPECT_LT(whole[c].relativeRmse, without[c].relativeRmse * (c == 2 ? 1.15 : 1.0))
         << "worse than no translucency in " << c;
   }
+}
+
+// The gather halves the error of one thickness where no light falls from the front.
+TEST_F(GpuTest, GatherIsNearerToTheEarsTruth) {
+  const std::filesystem::path manifest = sharedCaptures() / "ear_backlit" / "manifest.json";
+  if (!std::filesystem::exists(manifest)) GTEST_SKIP() << "no capture at " << manifest;
+  const Capture capture = readCapture(manifest);
+  const std::vector<PellucidMaterial> materials = compileMaterials(capture);
+  const auto red = [&](uint32_t samples) {
+    ReplaySettings s;
+    s.translucency.gatherSamples = samples;
+    const Image image = rgb(replayer().run(capture, materials, s).output);
+    return compareImages(image, capture.truth->image,
+                         comparisonMask(capture.material, capture.irradiance, Subset::Unlit), 4)
+        .channels[0]
+        .relativeRmse;
+  };
+  EXPECT_LT(red(64), 0.55 * red(0));
+  EXPECT_LT(red(16), 0.6 * red(0));
 }
 
 INSTANTIATE_TEST_SUITE_P(Truth, SharedCapture,

@@ -210,6 +210,8 @@ typedef struct PellucidFrame {
                                between N and the view ray */
   float maximumThickness;   /* mm; thicker parts let nothing through; 0: no limit */
   float transmittanceFilter[3]; /* multiplies T, [0, 1]; default 1 (Whelan 2009, 4.5: .55 .29 .28) */
+  uint32_t gatherSamples;   /* 0..64, a multiple of 4: points of the shadow map a pixel gathers light from, for lights with
+                               one and materials of EXP2 or SINH_EXP; 0: one light-space thickness */
 } PellucidFrame;
 
 /* ---- Plan ------------------------------------------------------------------------------------ */
@@ -236,7 +238,9 @@ typedef enum PellucidPipeline {
   PELLUCID_PIPELINE_DEBUG_32F = 3,
   PELLUCID_PIPELINE_DIFFUSE_16F = 4,
   PELLUCID_PIPELINE_DIFFUSE_32F = 5,
-  PELLUCID_PIPELINE_COUNT = 6
+  PELLUCID_PIPELINE_GATHER_16F = 6,
+  PELLUCID_PIPELINE_GATHER_32F = 7,
+  PELLUCID_PIPELINE_COUNT = 8
 } PellucidPipeline;
 
 enum {

@@ -1,0 +1,133 @@
+// The light-space gather where its answer is known: K_T integrates to T(d) over a slab.
+#include "gpu_fixture.h"
+
+#include <cstdio>
+#include <limits>
+
+#include "common/error.h"
+
+namespace {
+
+using namespace pellucid::test;
+
+using Gather = GpuTest;
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+// Texels of 0.1 mm, so that the camera's view of a face is not mistaken for the face behind it.
+Capture backlitSlab(double thickness, PellucidDepthEncoding encoding) {
+  Capture c = flatCapture(8, 8, thickness);
+  c.lights = {backLight()};
+  c.lights[0].shadowMap = flatShadowMap(-10 - thickness, encoding, 2048);
+  return c;
+}
+
+ReplaySettings settings(uint32_t samples) {
+  ReplaySettings s;
+  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  s.translucency.gatherSamples = samples;
+  return s;
+}
+
+double transmittance(int channel, double d) {
+  return channel == 0   ? std::exp(-d / 2)
+         : channel == 1 ? std::exp(-d)
+                        : 0.7 * std::exp(-2 * d) + 0.3 * std::exp(-d / 4);
+}
+
+TEST_F(Gather, IsTheSlabsTransmittance) {
+  for (const auto encoding : {PELLUCID_DEPTH_DEVICE, PELLUCID_DEPTH_VIEW_Z})
+    for (const double d : {0.5, 1.0, 2.0, 4.0}) {
+      const Capture c = backlitSlab(d, encoding);
+      const Image out = replay(c, testMaterial(), settings(64));
+      for (int k = 0; k < 3; ++k) {
+        const double added = static_cast<double>(out.at(4, 4)[k] - c.irradiance.at(4, 4)[k]);
+        const double exact = 6 * transmittance(k, d);
+        // 64 samples drawn for four densities at once: the quadrature's own error is a few percent.
+        EXPECT_NEAR(added, exact, 0.06 * exact) << "d " << d << " channel " << k;
+      }
+    }
+}
+
+TEST_F(Gather, SamplesConverge) {
+  // RMS over thicknesses and channels, relative to the exact slab.
+  const auto error = [&](uint32_t samples) {
+    double sum = 0;
+    for (const double d : {0.5, 1.0, 2.0, 4.0}) {
+      const Capture c = backlitSlab(d, PELLUCID_DEPTH_VIEW_Z);
+      const Image out = replay(c, testMaterial(), settings(samples));
+      for (int k = 0; k < 3; ++k) {
+        const double exact = 6 * transmittance(k, d);
+        sum += std::pow((static_cast<double>(out.at(4, 4)[k] - c.irradiance.at(4, 4)[k]) - exact) / exact, 2);
+      }
+    }
+    return std::sqrt(sum / 12);
+  };
+  const double at8 = error(8), at64 = error(64);
+  std::printf("slab error: 8 samples %.3f, 16 %.3f, 32 %.3f, 64 %.3f\n", at8, error(16), error(32), at64);
+  EXPECT_LT(at64, 0.5 * at8);
+}
+
+TEST_F(Gather, WhatTheCameraSeesIsLeftOut) {
+  // Lit from the front: every texel is one the camera sees, so irradiance alone remains.
+  Capture c = flatCapture(8, 8, 2);
+  Light front = backLight();
+  front.direction = {0, 0, -1};
+  ShadowMap map;
+  map.clipFromWorld = kIdentity;
+  map.clipFromWorld[0] = map.clipFromWorld[5] = 0.01;
+  map.clipFromWorld[10] = -1.0 / 100;  // grows towards -z from z = 0
+  map.viewFromWorld = kIdentity;
+  map.depth.encoding = PELLUCID_DEPTH_VIEW_Z;
+  map.depth.image = Image(2048, 2048, 1, 10);
+  front.shadowMap = map;
+  c.lights = {front};
+  const Image out = replay(c, testMaterial(), settings(32));
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(out.at(4, 4)[k], c.irradiance.at(4, 4)[k], 1e-5);
+}
+
+TEST_F(Gather, NothingFromOutsideOrEmptyTexels) {
+  Capture c = backlitSlab(1, PELLUCID_DEPTH_VIEW_Z);
+  for (const float nothing : {pellucid::harness::kNoDepth, 0.0f, kNan}) {
+    for (float& v : c.lights[0].shadowMap->depth.image.data) v = nothing;
+    EXPECT_NEAR(replay(c, testMaterial(), settings(16)).at(4, 4)[0], 1, 1e-5) << nothing;
+  }
+  c = backlitSlab(1, PELLUCID_DEPTH_VIEW_Z);
+  c.lights[0].shadowMap->clipFromWorld[12] = 5;
+  EXPECT_NEAR(replay(c, testMaterial(), settings(16)).at(4, 4)[0], 1, 1e-5);
+}
+
+TEST_F(Gather, StaysFinite) {
+  Capture c = backlitSlab(1, PELLUCID_DEPTH_VIEW_Z);
+  const float bad[] = {kNan, INFINITY, -1, 0, 60, 60.0001f, 1e8f, 1e-8f, 59};
+  size_t i = 0;
+  for (float& v : c.lights[0].shadowMap->depth.image.data) v = bad[i++ % std::size(bad)];
+  for (int x = 0; x < 8; ++x) {
+    c.normal.at(x, 2)[2] = kNan;
+    c.frontDepth.image.at(x, 3)[0] = bad[static_cast<size_t>(x)];
+  }
+  const Image out = replay(c, testMaterial(), settings(64));
+  for (size_t p = 0; p < out.data.size(); ++p)
+    EXPECT_TRUE(std::isfinite(out.data[p]) && out.data[p] >= 0) << p;
+}
+
+// Diffusion comes first: gathered light has already spread.
+TEST_F(Gather, PlanDiffusesBeforeItGathers) {
+  const Capture c = backlitSlab(1, PELLUCID_DEPTH_VIEW_Z);
+  const PellucidPlan plan = replayer().run(c, {testMaterial()}, settings(8)).plan;
+  ASSERT_EQ(plan.dispatchCount, 3u);
+  EXPECT_STREQ(plan.dispatches[0].name, "diffuse horizontally");
+  EXPECT_STREQ(plan.dispatches[2].name, "translucency");
+  EXPECT_EQ(plan.dispatches[2].pipeline, static_cast<uint32_t>(PELLUCID_PIPELINE_GATHER_32F));
+}
+
+TEST_F(Gather, RefusesWhatItCannotSample) {
+  const Capture c = backlitSlab(1, PELLUCID_DEPTH_VIEW_Z);
+  EXPECT_THROW(replay(c, testMaterial(), settings(6)), InputError);
+  EXPECT_THROW(replay(c, testMaterial(), settings(68)), InputError);
+  PellucidMaterial gaussians = testMaterial();
+  gaussians.transmittanceModel = PELLUCID_TRANSMITTANCE_GAUSSIANS;
+  EXPECT_THROW(replay(c, gaussians, settings(8)), InputError);
+}
+
+}  // namespace
