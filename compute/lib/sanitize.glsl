@@ -3,10 +3,10 @@
 
 const float kLargestHalf = 65504.0;
 
-// Finite and >= 0. Written as comparisons because max() may return either operand for NaN.
+// Finite and >= 0. A selection by comparison, because max() may return either operand for NaN. No loops
+// over components anywhere: compilers keep dynamically indexed vectors in memory.
 vec3 sanitize(vec3 v) {
-  for (int c = 0; c < 3; ++c) v[c] = v[c] > 0.0 ? min(v[c], kLargestHalf) : 0.0;
-  return v;
+  return mix(vec3(0.0), min(v, vec3(kLargestHalf)), greaterThan(v, vec3(0.0)));
 }
 
 // v rounded to the nearest half, ties to even. Image stores may truncate (Vulkan leaves it open), which

@@ -32,10 +32,11 @@ uint materialAt(ivec2 pixel) {
 }
 
 // Planar distance of the front surface, -1 where there is none.
-float frontDistance(ivec2 pixel) {
-  float stored = texelFetch(frontDepthImage, pixel, 0).x;
+float frontDistanceOf(float stored) {
   return hasFlag(PELLUCID_FLAG_FRONT_VIEW_Z) ? planarDistanceViewZ(stored) : planarDistance(frame.camera, stored);
 }
+
+float frontDistance(ivec2 pixel) { return frontDistanceOf(texelFetch(frontDepthImage, pixel, 0).x); }
 
 // `last`: this is the frame's final write, so the post-scatter albedo applies.
 void writeResult(ivec2 pixel, vec3 color, float alpha, bool last) {

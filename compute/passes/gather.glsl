@@ -6,13 +6,13 @@
 
 // -T'(r), 1/mm.
 vec3 transmittanceSlope(uint m, float r) {
-  vec3 slope = vec3(0.0);
-  for (int c = 0; c < 3; ++c) {
-    vec4 p = materials[m].transmittance[c];
-    slope[c] = materials[m].meta.x == PELLUCID_SHADER_TRANSMITTANCE_EXP2
-                   ? transmittanceExp2Slope(p, r)
-                   : transmittanceSinhExpSlope(p, materials[m].transmittance4[c], r);
-  }
+  vec4 red = materials[m].transmittance[0], green = materials[m].transmittance[1], blue = materials[m].transmittance[2];
+  vec3 c = materials[m].transmittance4.rgb;
+  vec3 slope = materials[m].meta.x == PELLUCID_SHADER_TRANSMITTANCE_EXP2
+                   ? vec3(transmittanceExp2Slope(red, r), transmittanceExp2Slope(green, r),
+                          transmittanceExp2Slope(blue, r))
+                   : vec3(transmittanceSinhExpSlope(red, c.r, r), transmittanceSinhExpSlope(green, c.g, r),
+                          transmittanceSinhExpSlope(blue, c.b, r));
   return max(slope, vec3(0.0)) * frame.filterAndLimit.rgb;
 }
 

@@ -42,12 +42,15 @@ float shadowTexel(uint image, ivec2 texel) {
 vec3 materialTransmittance(uint m, float d) {
   vec3 t = vec3(0.0);
   if (materials[m].meta.x == PELLUCID_SHADER_TRANSMITTANCE_EXP2) {
-    for (int c = 0; c < 3; ++c) t[c] = transmittanceExp2(materials[m].transmittance[c], d);
+    t = vec3(transmittanceExp2(materials[m].transmittance[0], d), transmittanceExp2(materials[m].transmittance[1], d),
+             transmittanceExp2(materials[m].transmittance[2], d));
   } else if (materials[m].meta.x == PELLUCID_SHADER_TRANSMITTANCE_SINH_EXP) {
-    for (int c = 0; c < 3; ++c)
-      t[c] = transmittanceSinhExp(materials[m].transmittance[c], materials[m].transmittance4[c], d);
+    vec3 c = materials[m].transmittance4.rgb;
+    t = vec3(transmittanceSinhExp(materials[m].transmittance[0], c.r, d),
+             transmittanceSinhExp(materials[m].transmittance[1], c.g, d),
+             transmittanceSinhExp(materials[m].transmittance[2], c.b, d));
   } else if (materials[m].meta.x == PELLUCID_SHADER_TRANSMITTANCE_LINEAR) {
-    for (int c = 0; c < 3; ++c) t[c] = 1.0 - d * materials[m].transmittance[c].x;
+    t = 1.0 - d * vec3(materials[m].transmittance[0].x, materials[m].transmittance[1].x, materials[m].transmittance[2].x);
   } else {
     for (uint i = 0u; i < materials[m].meta.y; ++i)
       t += transmittanceGaussian(materials[m].gaussianWeight[i].rgb, materials[m].gaussianFalloff[i].rgb, d);
@@ -62,14 +65,13 @@ struct Surface {
   bool hasNormal;
 };
 
-Surface surfaceAt(ivec2 pixel, float front, float frontStored) {
+Surface surfaceAt(ivec2 pixel, float front, float frontStored, float backStored, vec4 normalTexel) {
   ViewRay ray = viewRay(frame.camera, pixel);
   Surface s;
   s.position = ray.origin + front * ray.direction;
   s.view = normalize(ray.direction);
   s.chord = -1.0;
   if (hasFlag(PELLUCID_FLAG_BACK_DEPTH)) {
-    float backStored = texelFetch(backDepthImage, pixel, 0).x;
     bool backViewZ = hasFlag(PELLUCID_FLAG_BACK_VIEW_Z);
     float back = backViewZ ? planarDistanceViewZ(backStored) : planarDistance(frame.camera, backStored);
     bool device = !backViewZ && !hasFlag(PELLUCID_FLAG_FRONT_VIEW_Z);
@@ -78,7 +80,7 @@ Surface surfaceAt(ivec2 pixel, float front, float frontStored) {
   }
   s.normal = vec3(0.0);
   if (hasFlag(PELLUCID_FLAG_NORMAL))
-    s.normal = mat3(frame.viewFromNormal) * decodeNormal(texelFetch(normalImage, pixel, 0));
+    s.normal = mat3(frame.viewFromNormal) * decodeNormal(normalTexel);
   float squared = dot(s.normal, s.normal);
   s.hasNormal = squared > 1.0e-8 && squared < 1.0e8; // false for NaN too
   if (s.hasNormal) s.normal *= inversesqrt(squared);
@@ -155,13 +157,18 @@ void main() {
   if (material == 0u) return;
   uint m = material - 1u;
 
+  // All at once and whatever the flags say (a stand-in is bound where an image is missing), so that their
+  // latencies overlap: the pass waits for memory more than it computes.
   vec4 source = texelFetch(sourceImage, pixel, 0);
+  float frontStored = texelFetch(frontDepthImage, pixel, 0).x;
+  float backStored = texelFetch(backDepthImage, pixel, 0).x;
+  vec4 normalTexel = texelFetch(normalImage, pixel, 0);
   vec3 irradiance = sanitize(source.rgb);
-  float front = frontDistance(pixel);
+  float front = frontDistanceOf(frontStored);
   vec3 arriving = vec3(0.0), visible = vec3(0.0), transmitted = vec3(0.0);
   vec3 thickness = vec3(-1.0);
   if (front > 0.0) {
-    Surface s = surfaceAt(pixel, front, texelFetch(frontDepthImage, pixel, 0).x);
+    Surface s = surfaceAt(pixel, front, frontStored, backStored, normalTexel);
     float mm = frame.camera.range.w;
     if (s.chord >= 0.0) thickness.r = s.chord * mm;
     for (uint i = 0u; i < pass.value.y; ++i) {
