@@ -1,16 +1,21 @@
 // `pellucid capture`: a capture of a procedural scene, or of a glTF file.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <iomanip>
 #include <iostream>
 #include <map>
 #include <memory>
+#include <numbers>
 #include <optional>
 
 #include "capture/write.h"
 #include "cli/capture_gltf.h"
 #include "cli/commands.h"
+#include "cli/frames.h"
 #include "cli/numbers.h"
 #include "common/error.h"
+#include "common/progress.h"
+#include "common/whole_file.h"
 #include "scene/scene.h"
 
 namespace pellucid::harness {
@@ -28,6 +33,10 @@ struct Options {
 
   SceneParameters scene;
   std::vector<std::string> set;
+
+  int turntable = 0, lightTurntable = 0;  // frames of one turn; 0: none
+  bool orbit = false;
+  std::string frames;
 
   GltfCapture gltf;
   std::string unit = "m", view;
@@ -80,6 +89,38 @@ PellucidLightType parseLightType(const std::string& text) {
   return found->second;
 }
 
+// The model turns before a fixed camera, or with --orbit the camera goes round the model, and the lights turn
+// at their own speed. As captures keep the model where it is, camera and lights turn back by its angle.
+Turn turnAt(const Options& options, int frame) {
+  const auto angle = [&](int frames) { return 2 * std::numbers::pi * ((frame - 1) % frames) / frames; };
+  Turn turn;
+  if (options.lightTurntable > 0) turn.lights = angle(options.lightTurntable);
+  if (options.turntable > 0) {
+    const double model = angle(options.turntable);
+    turn.camera = options.orbit ? model : -model;
+    if (!options.orbit) turn.lights = turn.lights.value_or(0) - model;
+  }
+  return turn;
+}
+
+std::vector<CaptureFrame> framesOf(const Options& options) {
+  const int turns = options.turntable > 0 ? options.turntable : options.lightTurntable;
+  if (turns == 0) {
+    if (options.orbit) throw UsageError("--orbit: needs --turntable");
+    if (!options.frames.empty()) throw UsageError("--frames: needs --turntable or --light-turntable");
+    return {{options.output, {}}};
+  }
+  if (options.orbit && options.turntable == 0) throw UsageError("--orbit: needs --turntable");
+  const FramePattern output("-o", options.output);
+  std::vector<CaptureFrame> frames;
+  for (const int frame :
+       parseFrames(options.frames.empty() ? "1-" + std::to_string(turns) : options.frames)) {
+    if (frame < 1) throw UsageError("--frames: a turntable begins at frame 1");
+    frames.push_back({output(frame), turnAt(options, frame)});
+  }
+  return frames;
+}
+
 void captureProcedural(const Options& options) {
   SceneParameters scene = options.scene;
   setCommon(options, scene);
@@ -90,13 +131,23 @@ void captureProcedural(const Options& options) {
     const Assignment set = parseAssignment("--set", text);
     scene.options[set.key] = parseNumber<double>("--set " + set.key, set.value);
   }
-  writeCapture(makeScene(scene), options.output);
+  const std::vector<CaptureFrame> frames = framesOf(options);
+  Progress progress("capturing", frames.size());
+  for (const CaptureFrame& frame : frames) {
+    scene.turn = frame.turn;
+    const Capture capture = makeScene(scene);
+    writeWhole(frame.output, [&](const auto& file) { writeCapture(capture, file); });
+    progress.advance();
+  }
 }
 
 void captureModel(const Options& options) {
   GltfCapture gltf = options.gltf;
   setCommon(options, gltf.raster);
-  gltf.output = options.output;
+  gltf.frames = framesOf(options);
+  // A degree apart is enough for any turntable: the auto camera leaves a margin.
+  const int turns = std::min(options.turntable, 360);
+  for (int i = 1; i < turns; ++i) gltf.cameraTurns.push_back(2 * std::numbers::pi * i / turns);
   gltf.orthographic = options.orthographic.value_or(false);
   gltf.lights = options.lights;
   gltf.gltf.metersPerUnit = parseUnit(options.unit);
@@ -151,6 +202,24 @@ void addCommonOptions(CLI::App& command, Options& options) {
       ->take_all();
 }
 
+void addTurntableOptions(CLI::App& command, Options& options) {
+  const char* const group = "Turntables";
+  const CLI::Range turns(1, 1000000);
+  command
+      .add_option("--turntable", options.turntable,
+                  "frames in which the model turns once about the vertical; -o is name.####.exr")
+      ->check(turns)
+      ->group(group);
+  command.add_option("--light-turntable", options.lightTurntable, "frames in which the lights turn once")
+      ->check(turns)
+      ->group(group);
+  command.add_flag("--orbit", options.orbit, "the camera goes round the model instead")->group(group);
+  command
+      .add_option("--frames", options.frames,
+                  "only these frames: FIRST-LAST or a list like 1-10,20 (default: one turn)")
+      ->group(group);
+}
+
 void addModelOptions(CLI::App& command, Options& options) {
   GltfCapture& gltf = options.gltf;
   const char* const group = "Models";
@@ -196,6 +265,7 @@ void addCaptureCommand(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("capture", "Make a capture of a glTF model or a procedural scene");
   addCommonOptions(*command, *options);
+  addTurntableOptions(*command, *options);
   addModelOptions(*command, *options);
   addSceneOptions(*command, *options);
   command->callback([options] { capture(*options); });

@@ -3,9 +3,12 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <set>
 
 #include "capture/write.h"
 #include "cli/numbers.h"
+#include "common/progress.h"
+#include "common/whole_file.h"
 #include "raster/framing.h"
 
 namespace pellucid::harness {
@@ -23,8 +26,8 @@ ModelCamera chooseCamera(const GltfCapture& options, const Model& model) {
   if (options.camera.empty() && !cameras.empty()) return cameras.front();
   if (options.camera.empty() || options.camera == "auto")
     return frameModel(model, options.toCamera, options.verticalFov * std::numbers::pi / 180,
-                      static_cast<double>(options.raster.width) / options.raster.height,
-                      options.orthographic);
+                      static_cast<double>(options.raster.width) / options.raster.height, options.orthographic,
+                      options.cameraTurns);
   std::string names = "auto";
   for (const ModelCamera& camera : cameras) {
     if (camera.name == options.camera) return camera;
@@ -99,13 +102,26 @@ void captureGltf(const GltfCapture& options) {
     scene.model.lights.push_back(parseLight(light, scene.model, camera));
 
   Device device({options.device, false});
-  const RasterResult result = rasterize(device, scene.model, camera, options.raster);
-  warn(result.warnings);
-  writeCapture(result.capture, options.output);
-  std::printf("%s: %zu triangles, %zu materials, camera %s, %zu lights on %s\nwrote %s\n",
+  const Vector3 center = boundsOf(scene.model).center;
+  const std::vector<Light> still = scene.model.lights;
+  std::set<std::string> said;  // a turntable's frames have most warnings in common
+  Progress progress("capturing", options.frames.size());
+  for (const CaptureFrame& frame : options.frames) {
+    ModelCamera turned = camera;
+    turned.viewFromWorld = turnedView(camera.viewFromWorld, center, frame.turn.camera.value_or(0));
+    for (std::size_t i = 0; i < still.size(); ++i)
+      scene.model.lights[i] = turnedLight(still[i], center, frame.turn.lights.value_or(0));
+    const RasterResult result = rasterize(device, scene.model, turned, options.raster);
+    for (const std::string& warning : result.warnings)
+      if (said.insert(warning).second) warn({frame.output.string() + ": " + warning});
+    writeWhole(frame.output, [&](const auto& file) { writeCapture(result.capture, file); });
+    progress.advance();
+  }
+  std::printf("%s: %zu triangles, %zu materials, camera %s, %zu lights on %s\nwrote %s%s\n",
               options.model.c_str(), scene.model.indices.size() / 3, scene.model.materials.size(),
               camera.name.c_str(), scene.model.lights.size(), device.description().c_str(),
-              options.output.c_str());
+              options.frames.front().output.c_str(),
+              options.frames.size() > 1 ? (" .. " + options.frames.back().output.string()).c_str() : "");
 }
 
 }  // namespace pellucid::harness

@@ -1,16 +1,26 @@
 // `pellucid capture MODEL`: a glTF file through the rasterizer.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "gltf/gltf.h"
 #include "raster/raster.h"
+#include "scene/turn.h"
 
 namespace pellucid::harness {
 
+// One capture to write, of the still scene or of a turntable.
+struct CaptureFrame {
+  std::filesystem::path output;
+  Turn turn;
+};
+
 struct GltfCapture {
-  std::string model, output, device;
+  std::string model, device;
+  std::vector<CaptureFrame> frames;
+  std::vector<double> cameraTurns = {0};  // of the whole turntable, radians: the auto camera fits them all
   GltfOptions gltf;
   RasterOptions raster;
   std::string camera;            // name of one of the file's cameras, or "auto"; empty: the first, else auto
@@ -22,7 +32,7 @@ struct GltfCapture {
 
 inline constexpr const char* kLightSyntax = "directional:X,Y,Z[:E], point:X,Y,Z[:I], spot:X,Y,Z[:I] or back";
 
-// Writes the capture and says on stdout what there is, with a warning for everything that is drawn
+// Writes the frames and says on stdout what there is, with a warning for everything that is drawn
 // otherwise than asked.
 void captureGltf(const GltfCapture& options);
 

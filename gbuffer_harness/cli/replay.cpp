@@ -1,25 +1,35 @@
-// `pellucid replay`: a capture through the module on a Vulkan device, to EXR and PNG.
+// `pellucid replay`: captures through the module on a Vulkan device, to EXR and PNG.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <map>
+#include <mutex>
 
 #include "capture/exr.h"
 #include "capture/material.h"
 #include "capture/read.h"
 #include "cli/commands.h"
+#include "cli/frames.h"
 #include "cli/plan_text.h"
 #include "cli/settings.h"
 #include "common/error.h"
+#include "common/parallel.h"
 #include "common/png.h"
+#include "common/progress.h"
+#include "common/whole_file.h"
 #include "replay/replay.h"
 
 namespace pellucid::harness {
 namespace {
 
+constexpr const char* kSettingsAttribute = "pellucid.settings";
+constexpr const char* kDebugAttribute = "pellucid.debug";
+
 struct Options {
-  std::string input, output, device, triptych;
-  bool png = false;
+  std::string input, output, device, triptych, frames;
+  bool png = false, overwrite = false;
   float exposure = 0;
+  int jobs = 2;
   SettingsOptions settings;
 };
 
@@ -69,10 +79,28 @@ void writeTriptych(const Options& options, const Capture& capture,
   std::printf("wrote %s (before | translucency | after)\n", options.triptych.c_str());
 }
 
-void replay(const Options& options) {
-  const ReplaySettings settings = options.settings.parse();
-  if (!options.triptych.empty() && settings.debugView != PELLUCID_DEBUG_NONE)
-    throw UsageError("--triptych shows results and cannot be combined with --debug");
+bool wantsPng(const Options& options, const ReplaySettings& settings) {
+  return options.png || settings.debugView != PELLUCID_DEBUG_NONE;
+}
+
+// The PNG comes first: a frame whose EXR is there is finished.
+void writeFrame(const Options& options, const std::filesystem::path& output, const Capture& capture,
+                const Device& device, const PellucidPlan& plan, const Image& image, bool png,
+                float exposure) {
+  if (png)
+    writeWhole(std::filesystem::path(output).replace_extension(".png"),
+               [&](const auto& file) { writePng(file, image.width, image.height, toSrgb(image, exposure)); });
+  writeWhole(output, [&](const auto& file) {
+    writeExr(file, image, {"R", "G", "B"},
+             {{"pellucid.device", device.description()},
+              {"pellucid.capture", capture.name},
+              {"pellucid.plan", planJson(plan)},
+              {kSettingsAttribute, options.settings.text()},
+              {kDebugAttribute, options.settings.debug}});
+  });
+}
+
+void replayOne(const Options& options, const ReplaySettings& settings) {
   const Capture capture = readCapture(options.input);
   const std::vector<PellucidMaterial> materials = compileMaterials(capture);
   Device device({options.device, false});
@@ -83,30 +111,116 @@ void replay(const Options& options) {
   std::filesystem::path output = options.output;
   if (output.empty()) output = std::filesystem::path(options.input).stem().string() + ".pellucid.exr";
   const Image image = rgb(result.output);
-  writeExr(output, image, {"R", "G", "B"},
-           {{"pellucid.device", device.description()},
-            {"pellucid.capture", capture.name},
-            {"pellucid.plan", planJson(result.plan)},
-            {"pellucid.settings", options.settings.text()},
-            {"pellucid.debug", options.settings.debug}});
-  std::printf("wrote %s\n", output.string().c_str());
   const float exposure = options.exposure > 0 ? options.exposure : autoExposure(image);
-  if (options.png || settings.debugView != PELLUCID_DEBUG_NONE) {
-    const std::string png = std::filesystem::path(output).replace_extension(".png").string();
-    writePng(png, image.width, image.height, toSrgb(image, exposure));
-    std::printf("wrote %s (exposure %g)\n", png.c_str(), static_cast<double>(exposure));
-  }
+  const bool png = wantsPng(options, settings);
+  writeFrame(options, output, capture, device, result.plan, image, png, exposure);
+  std::printf("wrote %s\n", output.string().c_str());
+  if (png)
+    std::printf("wrote %s (exposure %g)\n",
+                std::filesystem::path(output).replace_extension(".png").string().c_str(),
+                static_cast<double>(exposure));
   if (!options.triptych.empty())
     writeTriptych(options, capture, materials, settings, replayer, image, exposure);
+}
+
+// Whether `output` is a whole result of these settings. Throws InputError when it is one of others: a
+// sequence must not change its look where it was resumed.
+bool isFinished(const Options& options, const std::filesystem::path& output) {
+  if (options.overwrite || !std::filesystem::exists(output)) return false;
+  std::string settings, debug;
+  try {
+    readExrImage(output);
+    const ExrFile file(output);
+    settings = file.findText(kSettingsAttribute).value_or("");
+    debug = file.findText(kDebugAttribute).value_or("");
+  } catch (const InputError&) {
+    return false;  // damaged: made again
+  }
+  if (settings == options.settings.text() && debug == options.settings.debug) return true;
+  throw InputError(output.string(), kSettingsAttribute,
+                   "made with \"" + settings + (debug.empty() ? "" : " debug=" + debug) +
+                       "\" and not with these settings; --overwrite makes it again");
+}
+
+// Threads read, compile and write; one at a time has the device.
+void replaySequence(const Options& options, const ReplaySettings& settings) {
+  const FramePattern input("capture", options.input), output("-o", options.output);
+  const std::vector<int> frames = parseFrames(options.frames);
+  Device device({options.device, false});
+  Replayer replayer(device);
+  Progress progress("replaying", frames.size());
+  std::mutex deviceMutex, reportMutex;
+  std::map<int, std::string> failures;
+  int skipped = 0;
+  parallelRows(static_cast<int>(frames.size()), options.jobs, [&](int i) {
+    const int frame = frames[static_cast<std::size_t>(i)];
+    try {
+      if (isFinished(options, output(frame))) {
+        const std::scoped_lock lock(reportMutex);
+        ++skipped;
+      } else {
+        const Capture capture = readCapture(input(frame));
+        const std::vector<PellucidMaterial> materials = compileMaterials(capture);
+        std::unique_lock lock(deviceMutex);
+        const ReplayResult result = replayer.run(capture, materials, settings);
+        lock.unlock();
+        writeFrame(options, output(frame), capture, device, result.plan, rgb(result.output),
+                   wantsPng(options, settings), options.exposure);
+      }
+    } catch (const DeviceError&) {
+      throw;  // the next frame would find the same device
+    } catch (const std::exception& error) {
+      const std::scoped_lock lock(reportMutex);
+      failures[frame] = error.what();
+    }
+    progress.advance();
+  });
+  std::printf("%s\n%zu frames: %zu written, %d finished before, %zu failed\n", device.description().c_str(),
+              frames.size(), frames.size() - static_cast<std::size_t>(skipped) - failures.size(), skipped,
+              failures.size());
+  if (failures.empty()) return;
+  std::string report;
+  std::vector<int> failed;
+  for (const auto& [frame, sentence] : failures) {
+    report += "\n  frame " + std::to_string(frame) + ": " + sentence;
+    failed.push_back(frame);
+  }
+  throw InputError("", "", "failed: --frames " + framesText(failed) + report);
+}
+
+void replay(const Options& options) {
+  const ReplaySettings settings = options.settings.parse();
+  if (!options.triptych.empty() && settings.debugView != PELLUCID_DEBUG_NONE)
+    throw UsageError("--triptych shows results and cannot be combined with --debug");
+  if (options.frames.empty()) {
+    if (options.input.find('#') != std::string::npos && !std::filesystem::exists(options.input))
+      throw UsageError("\"" + options.input + "\" is a sequence: --frames FIRST-LAST is required");
+    return replayOne(options, settings);
+  }
+  if (!options.triptych.empty()) throw UsageError("--triptych shows one capture, not --frames");
+  if (options.output.empty()) throw UsageError("--frames: -o with #### is required");
+  if (wantsPng(options, settings) && !(options.exposure > 0))
+    throw UsageError("--frames: PNGs need --exposure, one for the whole sequence");
+  replaySequence(options, settings);
 }
 
 }  // namespace
 
 void addReplayCommand(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("replay", "Run a capture through the module on a Vulkan device");
-  command->add_option("capture", options->input, "manifest (.json) or EXR with an embedded one")->required();
-  command->add_option("-o,--output", options->output, "EXR to write; default: <capture>.pellucid.exr here");
+  CLI::App* command = app.add_subcommand("replay", "Run captures through the module on a Vulkan device");
+  command
+      ->add_option("capture", options->input,
+                   "manifest (.json) or EXR with an embedded one; of a sequence name.####.exr")
+      ->required();
+  command->add_option("-o,--output", options->output,
+                      "EXR to write; default: <capture>.pellucid.exr here; of a sequence out.####.exr");
+  command->add_option("--frames", options->frames,
+                      "a sequence: FIRST-LAST or a list like 1-10,20; frames finished before are skipped");
+  command->add_option("--jobs", options->jobs, "threads of a sequence that read and write files")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  command->add_flag("--overwrite", options->overwrite, "of a sequence: make finished frames again");
   command->add_flag("--png", options->png, "also write a PNG beside the EXR (--debug always does)");
   command->add_option("--triptych", options->triptych, "write a PNG of before | translucency | after");
   command->add_option("--exposure", options->exposure, "factor for PNGs; default: from the picture")

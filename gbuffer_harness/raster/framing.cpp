@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "common/error.h"
+#include "scene/turn.h"
 #include "scene/vector.h"
 
 namespace pellucid::harness {
@@ -84,24 +85,27 @@ Bounds boundsOf(const Model& model) {
 }
 
 ModelCamera frameModel(const Model& model, const Vector3& toCamera, double verticalFov, double aspect,
-                       bool orthographic) {
+                       bool orthographic, const std::vector<double>& turns) {
   const Bounds bounds = boundsOf(model);
   const double length = glm::length(toGlm(toCamera));
   if (!(length > 0) || !std::isfinite(length))
     throw InputError(model.name, "view", "the direction to the camera has no length");
   // Seen from the center first; backing off by d - what a vertex is nearer - brings it into view.
-  const glm::dmat4 atCenter =
-      toGlm(lookAt(bounds.center, fromGlm(toGlm(bounds.center) - toGlm(toCamera) / length), {0, 1, 0}));
+  const Matrix atCenter =
+      lookAt(bounds.center, fromGlm(toGlm(bounds.center) - toGlm(toCamera) / length), {0, 1, 0});
   const double tangent = std::tan(verticalFov / 2);
   double away = 0, height = 0, nearest = -bounds.radius, farthest = bounds.radius;
-  forEachPosition(model, [&](const glm::dvec3& position) {
-    const glm::dvec3 p = atCenter * glm::dvec4(position, 1);
-    const double half = kMargin * std::max(std::abs(p.x) / aspect, std::abs(p.y));
-    away = std::max(away, half / tangent + p.z);
-    height = std::max(height, 2 * half);
-    nearest = std::max(nearest, p.z);
-    farthest = std::min(farthest, p.z);
-  });
+  for (const double turn : turns) {
+    const glm::dmat4 view = toGlm(turnedView(atCenter, bounds.center, turn));
+    forEachPosition(model, [&](const glm::dvec3& position) {
+      const glm::dvec3 p = view * glm::dvec4(position, 1);
+      const double half = kMargin * std::max(std::abs(p.x) / aspect, std::abs(p.y));
+      away = std::max(away, half / tangent + p.z);
+      height = std::max(height, 2 * half);
+      nearest = std::max(nearest, p.z);
+      farthest = std::min(farthest, p.z);
+    });
+  }
   // A plane that faces the camera needs room between the clip planes too.
   const double slack = (kMargin - 1) * bounds.radius;
   away = std::max(away, nearest + 2 * slack);

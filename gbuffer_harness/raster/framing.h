@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "raster/model.h"
 
@@ -16,8 +17,9 @@ Bounds boundsOf(const Model& model);
 
 // A camera that sees the whole model from the direction `toCamera` (any length > 0) with a margin of 5 %.
 // verticalFov: radians, (0, pi); an orthographic camera takes only its size from it. aspect: width / height.
+// It sees the whole model also after turnedView() by each of `turns` (radians) about the model's center.
 ModelCamera frameModel(const Model& model, const Vector3& toCamera, double verticalFov, double aspect,
-                       bool orthographic);
+                       bool orthographic, const std::vector<double>& turns = {0});
 
 // A light's projection: reversed-Z, square.
 struct LightView {

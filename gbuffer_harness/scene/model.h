@@ -39,6 +39,7 @@ struct SceneModel {
   // The sphere that shadow maps cover.
   glm::dvec3 center = glm::dvec3(0);
   double radius = 1;
+  bool endless = false;  // objects reach beyond that sphere, so that a camera cannot go round them
 
   // Irradiance as a function of the surface position, in place of lights: test patterns. Averaged
   // over paintSamples^2 points of each pixel.

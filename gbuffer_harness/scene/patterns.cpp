@@ -48,6 +48,7 @@ SceneModel patternModel(const SceneParameters& parameters, const OptionValues& o
 
   SceneModel model;
   model.camera = patternCamera(parameters, options);
+  model.endless = true;
   Object plane;
   plane.solid = std::make_unique<Polyhedron>(
       Polyhedron::box(-half * normal, glm::dmat3(across, up, normal), {kInfinity, kInfinity, half}));
@@ -120,6 +121,7 @@ SceneModel buildGap(const SceneParameters& parameters, const OptionValues& optio
   const double gap = options["gap"];
   SceneModel model;
   model.camera = patternCamera(parameters, options);
+  model.endless = true;
   // Each half reaches from the middle outwards: two of a box's three pairs of faces, and one face.
   for (const double side : {-1.0, 1.0}) {
     const double front = side < 0 ? 0 : -gap;

@@ -3,6 +3,7 @@
 #include "common/error.h"
 #include "scene/model.h"
 #include "scene/render.h"
+#include "scene/vector.h"
 
 namespace pellucid::harness {
 
@@ -26,6 +27,21 @@ void checkSide(const char* field, int value, int smallest) {
     throw InputError("", field,
                      std::to_string(value) + " is outside " + std::to_string(smallest) + " .. " +
                          std::to_string(kLargestSide));
+  }
+}
+
+void applyTurn(const SceneParameters& parameters, SceneModel& model) {
+  const auto refuse = [&](const char* why) {
+    throw InputError("", "scene \"" + parameters.name + "\"", why);
+  };
+  const Vector3 center = fromGlm(model.center);
+  if (const auto angle = parameters.turn.camera) {
+    if (model.endless) refuse("has no end, so that a camera cannot go round it");
+    model.camera.viewFromWorld = turnedView(model.camera.viewFromWorld, center, *angle);
+  }
+  if (const auto angle = parameters.turn.lights) {
+    if (model.lights.empty()) refuse("has painted irradiance and no lights that could turn");
+    for (Light& light : model.lights) light = turnedLight(light, center, *angle);
   }
 }
 
@@ -55,7 +71,9 @@ Capture makeScene(const SceneParameters& parameters, Image* exactThickness) {
     throw InputError("", "depthEncoding", "distance is an encoding of shadow maps only");
   }
   const OptionValues options(scene.info, parameters.options);
-  return renderCapture(scene.build(parameters, options), parameters, exactThickness);
+  SceneModel model = scene.build(parameters, options);
+  applyTurn(parameters, model);
+  return renderCapture(model, parameters, exactThickness);
 }
 
 }  // namespace pellucid::harness

@@ -8,6 +8,7 @@
 
 #include "capture/capture.h"
 #include "scene/camera.h"
+#include "scene/turn.h"
 
 namespace pellucid::harness {
 
@@ -29,6 +30,9 @@ struct SceneParameters {
   std::optional<PellucidLightType> lightType;  // absent: as the scene prefers; same E at its center
   int shadowSize = 512;                        // texels across a shadow map; 0: no shadow maps
   PellucidDepthEncoding shadowEncoding = PELLUCID_DEPTH_VIEW_Z;
+
+  // About the scene's center. Refused by name: the camera of an endless scene, lights of a painted one.
+  Turn turn;
 };
 
 struct SceneOption {

@@ -68,6 +68,7 @@ SceneModel buildSlab(const SceneParameters& parameters, const OptionValues& opti
   SceneModel model = backLit(parameters, options);
   const glm::dmat3 axes = turned(options["tilt"]);
   const double thickness = options["thickness"];
+  model.endless = true;
   addBox(model, -thickness / 2 * axes[2], {kInfinity, kInfinity, thickness / 2}, axes);
   model.exactThickness = [normal = axes[2], thickness](const Ray& ray) {
     return thickness / std::abs(glm::dot(ray.direction, normal));
@@ -79,6 +80,7 @@ SceneModel buildWedge(const SceneParameters& parameters, const OptionValues& opt
   SceneModel model = backLit(parameters, options);
   const double angle = radians(options["angle"]);
   const double edge = -0.45 * options["extent"];  // x of the sharp edge
+  model.endless = true;
   const glm::dvec3 back(-std::sin(angle), 0, -std::cos(angle));
   addObject(model, std::make_unique<Polyhedron>(
                        std::vector<Polyhedron::Plane>{{{0, 0, 1}, 0}, {back, -edge * std::sin(angle)}}));
@@ -133,6 +135,7 @@ SceneModel buildTwoSheets(const SceneParameters& parameters, const OptionValues&
   SceneModel model = backLit(parameters, options);
   const double thickness = options["thickness"];
   const double second = -thickness - options["gap"];  // front of the second sheet
+  model.endless = true;
   addBox(model, {0, 0, -thickness / 2}, {kInfinity, kInfinity, thickness / 2});
   addObject(model, std::make_unique<Polyhedron>(std::vector<Polyhedron::Plane>{
                        {{-1, 0, 0}, 0}, {{0, 0, 1}, second}, {{0, 0, -1}, thickness - second}}));
@@ -187,6 +190,7 @@ SceneModel buildNearFar(const SceneParameters& parameters, const OptionValues& o
   // Clip planes close around the target, so that the sheet leaves the frustum through both.
   model.camera =
       placeCamera(parameters, {{0, 0, 4 * extent}, {0, 0, 0}, extent, false, 3.2 * extent, 4.8 * extent});
+  model.endless = true;
   const glm::dvec3 normal(0, std::sin(tilt), std::cos(tilt));
   const double half = options["thickness"] / 2;
   addBox(model, -half * normal, {kInfinity, kInfinity, half},

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <string>
 
 namespace {
@@ -42,6 +43,11 @@ protected:
     const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.code, code) << arguments << "\n" << outcome.text;
     EXPECT_NE(outcome.text.find(sentence), std::string::npos) << arguments << "\n" << outcome.text;
+  }
+
+  std::string bytes(const std::string& name) const {
+    std::ifstream file(path(name), std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
   }
 
   fs::path folder_;
@@ -98,6 +104,58 @@ TEST_F(Cli, BadInput) {
 TEST_F(Cli, NoDevice) {
   ASSERT_EQ(run("capture --procedural plane --size 16x16 -o " + path("plane.exr")).code, 0);
   expect(4, "replay " + path("plane.exr") + " --device NoSuchDevice", "NoSuchDevice");
+}
+
+TEST_F(Cli, TurntableAndSequence) {
+  const std::string in = path("in.###.exr"), out = path("out.#.exr");
+  expect(0,
+         "capture --procedural ear --size 24x24 --shadow-size 16 --turntable 4 --light-turntable 6 -o " + in,
+         "");
+  for (const char* file : {"in.001.exr", "in.002.exr", "in.003.exr", "in.004.exr"})
+    EXPECT_TRUE(fs::exists(path(file))) << file;
+  EXPECT_FALSE(fs::exists(path("in.005.exr")));
+  // One frame of it by itself is the same file.
+  fs::copy_file(path("in.003.exr"), path("kept.exr"));
+  expect(0,
+         "capture --procedural ear --size 24x24 --shadow-size 16 --turntable 4 --light-turntable 6 --frames "
+         "3 -o " +
+             in,
+         "");
+  EXPECT_EQ(bytes("in.003.exr"), bytes("kept.exr"));
+  EXPECT_NE(bytes("in.001.exr"), bytes("kept.exr"));
+
+  expect(0, "replay " + in + " -o " + out + " --frames 2-3 --jobs 2",
+         "2 written, 0 finished before, 0 failed");
+  // A damaged frame is made again, finished ones are not; a missing one does not lose the others.
+  fs::resize_file(path("out.2.exr"), fs::file_size(path("out.2.exr")) / 2);
+  fs::copy_file(path("out.3.exr"), path("third.exr"));
+  fs::remove(path("in.001.exr"));
+  expect(3, "replay " + in + " -o " + out + " --frames 1-4", "2 written, 1 finished before, 1 failed");
+  expect(3, "replay " + in + " -o " + out + " --frames 1,4",
+         "failed: --frames 1\n  frame 1: " + path("in.001.exr"));
+  EXPECT_EQ(bytes("out.3.exr"), bytes("third.exr"));
+  expect(0, "compare " + path("out.2.exr") + " " + path("out.3.exr"), "rel_rmse");
+  for (const auto& entry : fs::directory_iterator(folder_))
+    EXPECT_EQ(entry.path().string().find(".part-"), std::string::npos) << entry.path();
+  // Other settings would change the look in the middle.
+  expect(3, "replay " + in + " -o " + out + " --frames 2 --mode thesis", "made with \"mode=physical\"");
+  expect(0, "replay " + in + " -o " + out + " --frames 2 --mode thesis --overwrite", "1 written");
+  expect(0, "replay " + in + " -o " + path("p.#.exr") + " --frames 2 --png --exposure 1", "1 written");
+  EXPECT_TRUE(fs::exists(path("p.2.png")));
+}
+
+TEST_F(Cli, SequenceUsage) {
+  expect(2, "replay in.####.exr", "\"in.####.exr\" is a sequence: --frames FIRST-LAST is required");
+  expect(2, "replay in.exr -o o.#.exr --frames 1-2", "\"in.exr\" is not a file name with one run of #");
+  expect(2, "replay in.#.exr -o o.exr --frames 1-2", "\"o.exr\" is not a file name with one run of #");
+  expect(2, "replay in.#.exr --frames 1-2", "-o with #### is required");
+  expect(2, "replay in.#.exr -o o.#.exr --frames 2-1", "\"2-1\" ends before it begins");
+  expect(2, "replay in.#.exr -o o.#.exr --frames 1-2 --png", "--exposure");
+  expect(2, "replay in.#.exr -o o.#.exr --frames 1-2 --triptych t.png", "--triptych");
+  expect(2, "capture --procedural ear --turntable 3 -o x.exr", "one run of #");
+  expect(2, "capture --procedural ear --orbit -o x.exr", "--orbit: needs --turntable");
+  expect(2, "capture --procedural ear --frames 1-3 -o x.#.exr", "--frames: needs --turntable");
+  expect(3, "capture --procedural slab --turntable 3 -o " + path("x.#.exr"), "scene \"slab\": has no end");
 }
 
 }  // namespace

@@ -681,7 +681,8 @@ TEST_F(Raster, CommandMakesACaptureOfAFile) {
   b.json["nodes"] = {{{"mesh", 0}}};
   GltfCapture options;
   options.model = (folder / "cube.glb").string();
-  options.output = (folder / "cube.exr").string();
+  const std::filesystem::path output = folder / "cube.exr";
+  options.frames = {{output, {}}};
   std::ofstream(options.model, std::ios::binary) << b.glb();
   options.gltf.metersPerUnit = 0.01;
   options.gltf.presets = {{"default", "skin1"}};
@@ -692,7 +693,7 @@ TEST_F(Raster, CommandMakesACaptureOfAFile) {
   captureGltf(options);
   const std::string said = testing::internal::GetCapturedStdout();
   const std::string warned = testing::internal::GetCapturedStderr();
-  const Capture c = readCapture(options.output);
+  const Capture c = readCapture(output);
   std::filesystem::remove_all(folder);
   EXPECT_NE(said.find("12 triangles"), std::string::npos) << said;
   EXPECT_NE(warned.find("no lights"), std::string::npos) << warned;

@@ -646,5 +646,72 @@ TEST(Scene, CamerasRefuseWhatHasNoProjection) {
   EXPECT_THROW(orthographic(0, 1, {0, 1}), InputError);
 }
 
+// ---- Turntables
+
+Vector3 eyeOf(const Capture& capture) {
+  const glm::dmat4 view = toGlm(capture.viewFromWorld);
+  return fromGlm(-(glm::transpose(glm::dmat3(view)) * glm::dvec3(view[3])));
+}
+
+TEST(SceneTurn, CarriesCameraAndLightsRoundCounterclockwise) {
+  SceneParameters parameters = sized("sphere", 8);
+  parameters.lightType = PELLUCID_LIGHT_POINT;
+  const Capture still = makeScene(parameters);
+  parameters.turn = {std::numbers::pi / 2, std::numbers::pi};
+  const Capture turned = makeScene(parameters);
+  // From above +z goes to +x.
+  const Vector3 from = eyeOf(still), to = eyeOf(turned);
+  EXPECT_NEAR(to[0], from[2], 1e-9);
+  EXPECT_NEAR(to[2], -from[0], 1e-9);
+  EXPECT_GT(from[2], 100);
+  EXPECT_NEAR(turned.lights[0].position[0], -still.lights[0].position[0], 1e-9);
+  EXPECT_NEAR(turned.lights[0].position[2], -still.lights[0].position[2], 1e-9);
+}
+
+TEST(SceneTurn, OfASphereWithItsLightChangesNothing) {
+  SceneParameters parameters = sized("sphere", 24);
+  parameters.shadowSize = 16;
+  const Capture still = makeScene(parameters);
+  parameters.turn = {0, 0};
+  const Capture zero = makeScene(parameters);
+  EXPECT_EQ(zero.frontDepth.image.data, still.frontDepth.image.data);
+  EXPECT_EQ(zero.irradiance.data, still.irradiance.data);
+  parameters.turn = {1.1, 1.1};
+  const Capture together = makeScene(parameters);
+  parameters.turn = {1.1, std::nullopt};
+  const Capture apart = makeScene(parameters);
+  double worst = 0, moved = 0;
+  for (std::size_t i = 0; i < still.irradiance.data.size(); ++i) {
+    const double e = static_cast<double>(still.irradiance.data[i]);
+    worst = std::max(worst, std::abs(static_cast<double>(together.irradiance.data[i]) - e));
+    moved = std::max(moved, std::abs(static_cast<double>(apart.irradiance.data[i]) - e));
+  }
+  EXPECT_LT(worst, 1e-6);
+  EXPECT_GT(moved, 0.5);
+}
+
+TEST(SceneTurn, RefusesByName) {
+  const auto refusal = [](const char* name, const Turn& turn) {
+    SceneParameters parameters = sized(name, 4);
+    parameters.turn = turn;
+    try {
+      makeScene(parameters);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  EXPECT_EQ(refusal("slab", {0, std::nullopt}),
+            "scene \"slab\": has no end, so that a camera cannot go round it");
+  EXPECT_EQ(refusal("step", {std::nullopt, 0}),
+            "scene \"step\": has painted irradiance and no lights that could turn");
+  EXPECT_EQ(refusal("slab", {std::nullopt, 2}), "accepted");
+  for (const SceneInfo& scene : listScenes()) {
+    const std::string sentence = refusal(scene.name.c_str(), {1, 2});
+    EXPECT_TRUE(sentence == "accepted" || sentence.find("scene \"" + scene.name + "\": has ") == 0)
+        << sentence;
+  }
+}
+
 }  // namespace
 }  // namespace pellucid::harness

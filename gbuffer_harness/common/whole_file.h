@@ -1,0 +1,37 @@
+// Files that are either whole or not there.
+#pragma once
+
+#include <filesystem>
+#include <random>
+#include <sstream>
+#include <string>
+#include <system_error>
+
+#include "common/error.h"
+
+namespace pellucid::harness {
+
+// Calls write(temporary), a name of its own in the folder of `path`, and renames it to `path`. Whoever
+// looks at `path` meanwhile, or after a crash, sees what was there before. Nothing is left behind when
+// write throws. Throws InputError when the file cannot be renamed.
+template <class Write>
+void writeWhole(const std::filesystem::path& path, const Write& write) {
+  std::ostringstream suffix;
+  suffix << ".part-" << std::hex << std::random_device{}();
+  std::filesystem::path temporary = path;
+  temporary += suffix.str();
+  std::error_code error;
+  try {
+    write(temporary);
+  } catch (...) {
+    std::filesystem::remove(temporary, error);
+    throw;
+  }
+  std::filesystem::rename(temporary, path, error);
+  if (!error) return;
+  const std::string reason = error.message();
+  std::filesystem::remove(temporary, error);
+  throw InputError(path.string(), "", "cannot be written: " + reason);
+}
+
+}  // namespace pellucid::harness

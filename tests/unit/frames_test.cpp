@@ -1,0 +1,55 @@
+// Frame lists and patterns of the command line, and files that are whole or not there.
+#include "cli/frames.h"
+
+#include <stdexcept>
+
+#include "capture_samples.h"
+#include "common/whole_file.h"
+
+namespace pellucid::harness {
+namespace {
+
+TEST(Frames, RangesAndLists) {
+  EXPECT_EQ(parseFrames("7"), (std::vector<int>{7}));
+  EXPECT_EQ(parseFrames("1-3,20"), (std::vector<int>{1, 2, 3, 20}));
+  EXPECT_EQ(parseFrames("20,2-3,0003"), (std::vector<int>{2, 3, 20})) << "ascending, each once";
+  EXPECT_EQ(parseFrames("0-599").size(), 600u);
+  for (const char* bad :
+       {"", ",", "1,", "1-", "-1", "1-2-3", "3-1", "1.5", "1 2", "a", "99999999", "0-9999999"})
+    EXPECT_THROW(parseFrames(bad), UsageError) << bad;
+}
+
+TEST(Frames, TextIsTheInverse) {
+  for (const char* text : {"7", "1-3,20", "0,2,4-5", "1-600"}) EXPECT_EQ(framesText(parseFrames(text)), text);
+}
+
+TEST(Frames, PatternPadsToItsWidth) {
+  EXPECT_EQ(FramePattern("-o", "a/name.####.exr")(7), "a/name.0007.exr");
+  EXPECT_EQ(FramePattern("-o", "a/name.####.exr")(12345), "a/name.12345.exr");
+  EXPECT_EQ(FramePattern("-o", "#.exr")(0), "0.exr");
+  EXPECT_EQ(FramePattern("-o", "f##")(3), "f03");
+  for (const char* bad : {"", "name.exr", "a.##.b.##.exr", "a##/name.exr", "a#/b#.exr"})
+    EXPECT_THROW(FramePattern("-o", bad), UsageError) << bad;
+}
+
+TEST(WholeFile, AppearsWhenItIsWhole) {
+  const TemporaryDirectory folder;
+  const std::filesystem::path path = folder / "out.exr";
+  writeText(path, "before");
+  EXPECT_THROW(writeWhole(path,
+                          [&](const std::filesystem::path& file) {
+                            writeText(file, "half");
+                            EXPECT_EQ(file.parent_path(), path.parent_path()) << "renaming must not copy";
+                            EXPECT_EQ(readText(path), "before");
+                            throw std::runtime_error("disk full");
+                          }),
+               std::runtime_error);
+  EXPECT_EQ(readText(path), "before");
+  writeWhole(path, [](const std::filesystem::path& file) { writeText(file, "after"); });
+  EXPECT_EQ(readText(path), "after");
+  const std::filesystem::directory_iterator files(path.parent_path());
+  EXPECT_EQ(std::distance(begin(files), end(files)), 1) << "a temporary file stays behind";
+}
+
+}  // namespace
+}  // namespace pellucid::harness
