@@ -23,6 +23,8 @@ public:
   const std::string& path() const { return path_; }  // "lights[2].color"; empty: the root
   const std::string& file() const { return file_; }
 
+  const nlohmann::json& value() const { return *value_; }
+
   // Throws InputError: file, path, then `sentence`.
   [[noreturn]] void fail(const std::string& sentence) const;
   // The value as a message shows it: JSON, shortened.

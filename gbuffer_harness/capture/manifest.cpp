@@ -7,6 +7,7 @@
 #include <numbers>
 #include <sstream>
 
+#include "capture/blender.h"
 #include "capture/exr.h"
 #include "capture/json_field.h"
 #include "common/error.h"
@@ -342,11 +343,20 @@ std::string readText(const std::filesystem::path& path) {
 
 }  // namespace
 
-Manifest readManifest(const std::filesystem::path& path) {
+Manifest readManifest(const std::filesystem::path& path, ManifestPreset preset) {
   Manifest manifest;
   manifest.path = path;
   manifest.capture.name = path.string();
   BufferReader read{path.parent_path(), {}};
+  if (preset == ManifestPreset::Blender) {
+    const std::filesystem::path scene = std::filesystem::path(path).replace_extension(".json");
+    if (!std::filesystem::is_regular_file(scene))
+      throw InputError(scene.string(), "", "no such file; tools/blender_export.py writes it");
+    const nlohmann::json document = blenderManifest(path, scene, readText(scene));
+    parse(Field(scene.string(), document), read, manifest);
+    manifest.irradianceScale = kIrradiancePerDiffDir;
+    return manifest;
+  }
   std::string text;
   if (isExr(path)) {
     const auto embedded = ExrFile(path).findText(kManifestAttribute);

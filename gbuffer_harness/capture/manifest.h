@@ -38,10 +38,18 @@ struct Manifest {
   std::vector<std::optional<BufferSource>> shadowMaps;  // one per light
   std::map<int, int> materialMap;  // stored value -> material index; empty: the value is the index
   double truthScale = 1;
+  double irradianceScale = 1;  // of the stored values; not 1 for presets only
+};
+
+// Who made a file that is no capture of its own.
+enum class ManifestPreset {
+  None,
+  Blender  // multilayer EXR of Cycles; the JSON of tools/blender_export.py has its name, with .json
 };
 
 // Reads `path`: a JSON manifest, or an EXR with one in the string attribute `pellucid.manifest`; the
-// file's first bytes tell which. Throws InputError naming file, field and value. No pixel is read.
-Manifest readManifest(const std::filesystem::path& path);
+// file's first bytes tell which. With a preset it is the EXR. Throws InputError naming file, field and value.
+// No pixel is read.
+Manifest readManifest(const std::filesystem::path& path, ManifestPreset preset = ManifestPreset::None);
 
 }  // namespace pellucid::harness

@@ -131,7 +131,9 @@ std::vector<std::uint8_t> materialIndices(const Manifest& manifest, const Image&
 
 }  // namespace
 
-Capture readCapture(const std::filesystem::path& path) { return readCapture(readManifest(path)); }
+Capture readCapture(const std::filesystem::path& path, ManifestPreset preset) {
+  return readCapture(readManifest(path, preset));
+}
 
 Capture readCapture(const Manifest& manifest) {
   Capture capture = manifest.capture;
@@ -150,6 +152,8 @@ Capture readCapture(const Manifest& manifest) {
   loader.load(capture.width, capture.height);
 
   capture.material = materialIndices(manifest, material);
+  if (manifest.irradianceScale != 1)
+    for (float& value : capture.irradiance.data) value *= static_cast<float>(manifest.irradianceScale);
   if (capture.truth)
     for (float& value : capture.truth->image.data) value *= static_cast<float>(manifest.truthScale);
   return capture;

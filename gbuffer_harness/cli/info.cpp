@@ -13,6 +13,7 @@
 #include "capture/material.h"
 #include "capture/read.h"
 #include "cli/commands.h"
+#include "cli/preset.h"
 #include "reference/camera.h"
 #include "replay/frame.h"
 
@@ -201,8 +202,8 @@ void checkConventions(const Capture& capture, const std::vector<PellucidMaterial
       &sentences);
 }
 
-Json describe(const std::filesystem::path& path) {
-  const Manifest manifest = readManifest(path);
+Json describe(const std::filesystem::path& path, ManifestPreset preset) {
+  const Manifest manifest = readManifest(path, preset);
   const Capture capture = readCapture(manifest);
   const std::vector<PellucidMaterial> materials = compileMaterials(capture);
   const Camera camera(capture.clipFromView, capture.width, capture.height);
@@ -289,14 +290,16 @@ void addInfoCommand(CLI::App& app) {
   struct Options {
     std::string input;
     bool json = false;
+    ManifestPreset preset = ManifestPreset::None;
   };
   const auto options = std::make_shared<Options>();
   CLI::App* command =
       app.add_subcommand("info", "Say what a capture holds, lacks, and what looks wrong in it");
   command->add_option("capture", options->input, "manifest (.json) or EXR with an embedded one")->required();
+  addPresetOption(*command, options->preset);
   command->add_flag("--json", options->json, "print JSON");
   command->callback([options] {
-    const Json json = describe(options->input);
+    const Json json = describe(options->input, options->preset);
     std::cout << (options->json ? json.dump(2) + "\n" : toText(json));
   });
 }

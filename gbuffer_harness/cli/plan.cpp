@@ -7,6 +7,7 @@
 #include "capture/read.h"
 #include "cli/commands.h"
 #include "cli/plan_text.h"
+#include "cli/preset.h"
 #include "cli/settings.h"
 
 namespace pellucid::harness {
@@ -23,15 +24,17 @@ std::string planJson(const PellucidPlan& plan) {
 void addPlanCommand(CLI::App& app) {
   struct Options {
     std::string input;
+    ManifestPreset preset = ManifestPreset::None;
     SettingsOptions settings;
   };
   auto options = std::make_shared<Options>();
   CLI::App* command =
       app.add_subcommand("plan", "Print the dispatch plan of a capture as JSON; needs no device");
   command->add_option("capture", options->input, "manifest (.json) or EXR with an embedded one")->required();
+  addPresetOption(*command, options->preset);
   options->settings.addTo(*command);
   command->callback([options] {
-    const Capture capture = readCapture(options->input);
+    const Capture capture = readCapture(options->input, options->preset);
     FrameData data;
     makeFrame(capture, compileMaterials(capture), options->settings.parse(), data);
     PellucidPlan plan;

@@ -12,6 +12,7 @@
 #include "capture/material.h"
 #include "capture/read.h"
 #include "cli/commands.h"
+#include "cli/preset.h"
 #include "cli/settings.h"
 #include "common/error.h"
 
@@ -24,6 +25,7 @@ struct Options {
   reference::ProfileSource profile = reference::ProfileSource::Material;
   double discardedEnergy = reference::DiffusionSettings{}.discardedEnergy;
   int jobs = 0;
+  ManifestPreset preset = ManifestPreset::None;
 };
 
 reference::Settings toSettings(const Options& options) {
@@ -45,7 +47,7 @@ reference::Settings toSettings(const Options& options) {
 
 void runReference(const Options& options) {
   const reference::Settings settings = toSettings(options);
-  const Capture capture = readCapture(options.input);
+  const Capture capture = readCapture(options.input, options.preset);
   const auto start = std::chrono::steady_clock::now();
   const reference::Result result = reference::compute(
       capture, withTransmittance(compileMaterials(capture), options.settings.parse().transmittance),
@@ -72,6 +74,7 @@ void addReferenceCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand("reference", "Compute a capture's float64 ground truth on the CPU");
   command->add_option("capture", options->input, "manifest (.json) or EXR with an embedded one")->required();
   command->add_option("-o,--output", options->output, "EXR to write; default: <capture>.reference.exr here");
+  addPresetOption(*command, options->preset);
   options->settings.addTo(*command);
   const std::map<std::string, reference::ProfileSource> profiles = {
       {"material", reference::ProfileSource::Material},

@@ -11,6 +11,7 @@
 #include "cli/commands.h"
 #include "cli/frames.h"
 #include "cli/plan_text.h"
+#include "cli/preset.h"
 #include "cli/settings.h"
 #include "common/error.h"
 #include "common/parallel.h"
@@ -30,6 +31,7 @@ struct Options {
   bool png = false, overwrite = false;
   float exposure = 0;
   int jobs = 2;
+  ManifestPreset preset = ManifestPreset::None;
   SettingsOptions settings;
 };
 
@@ -101,7 +103,7 @@ void writeFrame(const Options& options, const std::filesystem::path& output, con
 }
 
 void replayOne(const Options& options, const ReplaySettings& settings) {
-  const Capture capture = readCapture(options.input);
+  const Capture capture = readCapture(options.input, options.preset);
   const std::vector<PellucidMaterial> materials = compileMaterials(capture);
   Device device({options.device, false});
   Replayer replayer(device);
@@ -159,7 +161,7 @@ void replaySequence(const Options& options, const ReplaySettings& settings) {
         const std::scoped_lock lock(reportMutex);
         ++skipped;
       } else {
-        const Capture capture = readCapture(input(frame));
+        const Capture capture = readCapture(input(frame), options.preset);
         const std::vector<PellucidMaterial> materials = compileMaterials(capture);
         std::unique_lock lock(deviceMutex);
         const ReplayResult result = replayer.run(capture, materials, settings);
@@ -227,6 +229,7 @@ void addReplayCommand(CLI::App& app) {
       ->check(CLI::PositiveNumber);
   command->add_option("--device", options->device,
                       "part of the Vulkan device's name; default: the fastest kind");
+  addPresetOption(*command, options->preset);
   options->settings.addTo(*command);
   command->callback([options] { replay(*options); });
 }

@@ -77,7 +77,7 @@ TEST_F(Turntable, TurningBackIsTheModelTurning) {
       worstLight =
           std::max(worstLight, difference(expected.irradiance.data[3 * i], actual.irradiance.data[3 * i]));
     }
-    EXPECT_GT(covered, 200) << angle;
+    EXPECT_GT(covered, 100) << angle;
     EXPECT_LE(different, 2) << angle << ": rounding may move a pixel of the edge";
     EXPECT_LT(worstDepth, 1e-5) << angle;
     EXPECT_LT(worstLight, 1e-3) << angle;
