@@ -66,6 +66,9 @@ const std::vector<Rule> kRules = {
     {"gbuffer_harness/replay", R"(#include\s*<(OpenEXR|ImfI|nlohmann))",
      "replay needs no files, so that the bench does not either", ""},
     {"gbuffer_harness/scene", R"(#include\s*<(OpenEXR|Imf|nlohmann))", "procedural scenes need no files", ""},
+    {"gbuffer_harness/raster",
+     R"(#include\s*(<(OpenEXR|Imf|nlohmann|tiny_gltf)|"(capture/(exr|read|write)|gltf/)))",
+     "the rasterizer knows models and captures, no files", ""},
 };
 
 class Layering : public testing::TestWithParam<Rule> {};
@@ -80,6 +83,21 @@ TEST_P(Layering, Holds) {
     EXPECT_FALSE(std::regex_search(text, match, pattern))
         << file << ": \"" << match.str() << "\": " << rule.reason;
   }
+}
+
+// Only the loader knows the glTF library: everything else speaks raster/model.h.
+TEST(LayeringOfLibraries, TinyGltfIsTheLoadersAlone) {
+  const std::regex library(R"(#include\s*[<"]tiny_gltf|tinygltf::)");
+  bool found = false;
+  for (const char* folder : {"module", "compute", "gbuffer_harness", "bench"}) {
+    for (const fs::path& file : sources(folder)) {
+      const bool loader = file.parent_path() == kRoot / "gbuffer_harness/gltf";
+      const bool uses = std::regex_search(code(file), library);
+      EXPECT_TRUE(loader || !uses) << file;
+      found = found || uses;
+    }
+  }
+  EXPECT_TRUE(found) << "the pattern matches nothing: the test looks for the wrong thing";
 }
 
 INSTANTIATE_TEST_SUITE_P(Rules, Layering, testing::ValuesIn(kRules),
