@@ -80,6 +80,13 @@ Capture slab(int width, int height, double coverage, double pixel) {
   return c;
 }
 
+// Of `lights` copies of the slab's light the first `mapped` keep their shadow map.
+Capture litBy(Capture c, int lights, int mapped) {
+  c.lights.assign(static_cast<size_t>(lights), c.lights[0]);
+  for (int i = mapped; i < lights; ++i) c.lights[static_cast<size_t>(i)].shadowMap.reset();
+  return c;
+}
+
 // The answer of a bench frame's fused dispatch, where it is known in closed form.
 void requireRightAnswer(Device& device, const Context& context) {
   ReplaySettings settings;
@@ -141,6 +148,17 @@ void bench(const Options& options) {
     row("whole frame" + suffix, measure(device, options.repeat, [&](VkCommandBuffer c) { run.record(c); }),
         total);
   }
+  // The fused dispatch by lights, and by how many of them have a shadow map.
+  for (const int lights : {1, 8, 64})
+    for (const int mapped : {0, 1, 4}) {
+      if (mapped > lights) continue;
+      const FrameRun run(device, context, litBy(slab(width, height, 1, 0.1), lights, mapped), {material()},
+                         {});
+      const double bytes = static_cast<double>(run.plan().dispatches[0].modeledBytes);
+      row("translucency, " + std::to_string(lights) + " lights, " + std::to_string(mapped) + " maps",
+          measure(device, options.repeat, [&](VkCommandBuffer c) { run.record(c, 0); }),
+          bytes / (static_cast<double>(width) * height));
+    }
   if (options.json == "-")
     std::printf("%s\n", results.dump(1).c_str());
   else if (!options.json.empty())

@@ -25,11 +25,16 @@ bool insideRect(ivec2 pixel) {
   return all(greaterThanEqual(pixel, ivec2(frame.rect.xy))) && all(lessThan(pixel, ivec2(frame.rect.zw)));
 }
 
-// 0 for none and for values beyond the material list, so that a stray id cannot read past it.
-uint materialAt(ivec2 pixel) {
-  uint id = decodeMaterial(texelFetch(materialImage, pixel, 0));
+// Index without the mark bit. 0 for none and for values beyond the material list, so that a stray id
+// cannot read past it.
+uint materialIndex(uint value) {
+  uint id = value & ~frame.marks.x;
   return id <= frame.flags.y ? id : 0u;
 }
+
+uint materialValueAt(ivec2 pixel) { return decodeMaterial(texelFetch(materialImage, pixel, 0)); }
+
+uint materialAt(ivec2 pixel) { return materialIndex(materialValueAt(pixel)); }
 
 // Planar distance of the front surface, -1 where there is none.
 float frontDistanceOf(float stored) {

@@ -112,7 +112,7 @@ struct Transmitted {
   float visible;
 };
 
-float hiddenCosine(Surface s, vec3 toLight) {
+float hiddenCosine(LightConstants light, Surface s, vec3 toLight) {
   uint model = frame.flags.w;
   if (model == PELLUCID_SHADER_ANGLE_NORMAL && s.hasNormal) return max(-dot(s.normal, toLight), 0.0);
   vec3 view = hasFlag(PELLUCID_FLAG_CONSTANT_VIEW) ? vec3(0.0, 0.0, frame.camera.range.x) : s.view;
@@ -120,7 +120,7 @@ float hiddenCosine(Surface s, vec3 toLight) {
   if (model == PELLUCID_SHADER_ANGLE_INVERSE_COSINE) return angleInverseCosine(x);
   if (model == PELLUCID_SHADER_ANGLE_POLYNOMIAL) return anglePolynomial(frame.anglePolynomial, x);
   if (model <= PELLUCID_SHADER_ANGLE_COSINE) return clamp(x, 0.0, 1.0);
-  return clamp(x * frame.angle.x + frame.angle.y, 0.0, 1.0); // minimum dot
+  return clamp(x * light.cone.z + light.cone.w, 0.0, 1.0); // minimum dot
 }
 
 // docs/design.md says why each source is what it is.
@@ -129,7 +129,7 @@ Transmitted lightTransmission(LightConstants light, Surface s) {
   bool mapped = light.meta.z != 0u;
   if (mapped && !hasFlag(PELLUCID_FLAG_CAMERA_THICKNESS)) {
     LightSpace l = lightSpace(light, incident, s.position);
-    vec3 arriving = incident.irradiance * hiddenCosine(s, incident.toLight);
+    vec3 arriving = incident.irradiance * hiddenCosine(light, s, incident.toLight);
     return Transmitted(max(l.thickness - l.bias, 0.0), arriving, l.inside && l.holds ? 1.0 : 0.0);
   }
   if (s.chord < 0.0) return Transmitted(-1.0, vec3(0.0), 0.0);
@@ -143,7 +143,7 @@ Transmitted lightTransmission(LightConstants light, Surface s) {
     LightSpace l = lightSpace(light, incident, back);
     visible = l.inside && l.holds && l.thickness <= l.bias ? 1.0 : 0.0;
   }
-  return Transmitted(thickness, incident.irradiance * hiddenCosine(s, incident.toLight), visible);
+  return Transmitted(thickness, incident.irradiance * hiddenCosine(light, s, incident.toLight), visible);
 }
 
 #ifdef GATHER
@@ -153,18 +153,25 @@ Transmitted lightTransmission(LightConstants light, Surface s) {
 void main() {
   ivec2 pixel = invocationPixel();
   if (!insideRect(pixel)) return;
-  uint material = materialAt(pixel);
+  uint value = materialValueAt(pixel);
+  uint material = materialIndex(value);
   if (material == 0u) return;
   uint m = material - 1u;
 
   // All at once and whatever the flags say (a stand-in is bound where an image is missing), so that their
   // latencies overlap: the pass waits for memory more than it computes.
   vec4 source = texelFetch(sourceImage, pixel, 0);
-  float frontStored = texelFetch(frontDepthImage, pixel, 0).x;
-  float backStored = texelFetch(backDepthImage, pixel, 0).x;
-  vec4 normalTexel = texelFetch(normalImage, pixel, 0);
+  // Marked pixels keep their irradiance, and read nothing else.
+  bool marked = (value & frame.marks.x) != 0u;
+  float frontStored = 0.0, backStored = 0.0;
+  vec4 normalTexel = vec4(0.0);
+  if (!marked) {
+    frontStored = texelFetch(frontDepthImage, pixel, 0).x;
+    backStored = texelFetch(backDepthImage, pixel, 0).x;
+    normalTexel = texelFetch(normalImage, pixel, 0);
+  }
   vec3 irradiance = sanitize(source.rgb);
-  float front = frontDistanceOf(frontStored);
+  float front = marked ? -1.0 : frontDistanceOf(frontStored);
   vec3 arriving = vec3(0.0), visible = vec3(0.0), transmitted = vec3(0.0);
   vec3 thickness = vec3(-1.0);
   if (front > 0.0) {

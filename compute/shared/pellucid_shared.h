@@ -77,7 +77,7 @@ struct FrameConstants {
   uvec4 rect;          // x, y, end x, end y
   uvec4 flags;         // x: PELLUCID_FLAG_*; y: materials; z: debug view; w: angle model
   vec4 anglePolynomial;
-  vec4 angle;          // x: scale, y: offset of the minimum dot's (m + x) / (m + 1)
+  uvec4 marks;         // x: bit of material values without translucency; 0: none
   vec4 filterAndLimit;        // rgb: factor of T; w: largest thickness, mm
 };
 
@@ -85,7 +85,8 @@ struct LightConstants {
   vec4 position;  // view space; w: 1 / range, 0 unlimited
   vec4 direction; // of travel, view space, unit
   vec4 radiance;  // color times intensity
-  vec4 cone;      // KHR_lights_punctual: x: scale, y: offset of the cosine
+  vec4 cone;      // KHR_lights_punctual: x: scale, y: offset of the cosine; z: scale, w: offset of the
+                  // minimum dot's (m + x) / (m + 1)
   uvec4 meta;     // x: type; y: first of shadows[]; z: how many
 };
 

@@ -32,7 +32,9 @@ const Names<PellucidAngleModel> kAngles = {{"normal", PELLUCID_ANGLE_NORMAL},
                                            {"cosine", PELLUCID_ANGLE_COSINE},
                                            {"inverse-cosine", PELLUCID_ANGLE_INVERSE_COSINE},
                                            {"polynomial", PELLUCID_ANGLE_POLYNOMIAL},
-                                           {"minimum-dot", PELLUCID_ANGLE_MINIMUM_DOT}};
+                                           {"minimum-dot", PELLUCID_ANGLE_MINIMUM_DOT},
+                                           {"minimum-dot-azimuth", PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH},
+                                           {"minimum-dot-sphere", PELLUCID_ANGLE_MINIMUM_DOT_SPHERE}};
 const Names<bool> kViews = {{"pixel", false}, {"constant", true}};
 const Names<bool> kBooleans = {{"0", false}, {"1", true}};
 
@@ -104,7 +106,7 @@ const std::map<std::string, Key> kKeys = {
         s.transmittance = lookUp(kTransmittance, key, value);
       }}},
     {"angle",
-     {"normal|cosine|inverse-cosine|polynomial|minimum-dot",
+     {"normal|cosine|inverse-cosine|polynomial|minimum-dot|minimum-dot-azimuth|minimum-dot-sphere",
       [](const auto& key, const auto& value, ReplaySettings& s) {
         s.translucency.angleModel = lookUp(kAngles, key, value);
       }}},
@@ -145,6 +147,31 @@ const std::map<std::string, Key> kKeys = {
      {"samples of the shadow map, 0..64",
       [](const auto& key, const auto& value, ReplaySettings& s) {
         s.translucency.gatherSamples = number(key, value);
+      }}},
+    {"minimum-dots",
+     {"m0,m1,.. of angle=minimum-dot-azimuth (thesis: 36) or -sphere (rows of a square)",
+      [](const auto& key, const auto& value, ReplaySettings& s) {
+        s.translucency.minimumDotTable.clear();
+        for (const std::string& entry : split(value, ','))
+          s.translucency.minimumDotTable.push_back(real(key, entry));
+      }}},
+    {"face",
+     {"x,y,z the object looks along, world",
+      [](const auto& key, const auto& value, ReplaySettings& s) {
+        s.translucency.faceVector = reals<3>(key, value);
+      }}},
+    {"up",
+     {"x,y,z of the object, world", [](const auto& key, const auto& value,
+                                       ReplaySettings& s) { s.translucency.upAxis = reals<3>(key, value); }}},
+    {"center",
+     {"x,y,z of the object, world",
+      [](const auto& key, const auto& value, ReplaySettings& s) {
+        s.translucency.objectCenter = reals<3>(key, value);
+      }}},
+    {"mark-bit",
+     {"of material values without translucency, 0 for none",
+      [](const auto& key, const auto& value, ReplaySettings& s) {
+        s.translucency.materialMarkBit = number(key, value);
       }}},
     {"format",
      {"rgba16f|rgba32f", [](const auto& key, const auto& value,

@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 #include <optional>
 #include <string>
+#include <unordered_set>
 
 #include "common/error.h"
 #include "common/parallel.h"
@@ -54,8 +55,11 @@ void validate(const Capture& capture, const std::vector<PellucidMaterial>& mater
 // One run over one capture.
 class Pass {
 public:
-  Pass(const Capture& capture, const std::vector<PellucidMaterial>& materials, const Settings& settings)
+  // `marks`: pixels that light does not come through.
+  Pass(const Capture& capture, const std::unordered_set<std::size_t>& marks,
+       const std::vector<PellucidMaterial>& materials, const Settings& settings)
       : capture_(capture),
+        marks_(marks),
         materials_(materials),
         settings_(settings),
         surfaces_(capture),
@@ -95,6 +99,7 @@ private:
   const PellucidMaterial& material(std::size_t i) const { return materials_[capture_.material[i] - 1u]; }
 
   Transmission transmission(int x, int y, std::size_t i) const {
+    if (marks_.count(i) != 0) return {};
     const std::optional<Surface> surface = surfaces_.at(x, y);
     return surface ? translucency_.at(*surface, material(i)) : Transmission{};
   }
@@ -144,6 +149,7 @@ private:
   }
 
   const Capture& capture_;
+  const std::unordered_set<std::size_t>& marks_;
   const std::vector<PellucidMaterial>& materials_;
   const Settings& settings_;
   SurfaceReader surfaces_;
@@ -155,8 +161,19 @@ private:
 
 Result compute(const Capture& capture, const std::vector<PellucidMaterial>& materials,
                const Settings& settings) {
-  validate(capture, materials);
-  return Pass(capture, materials, settings).run();
+  const std::uint32_t mark = settings.translucency.materialMarkBit;
+  if (mark == 0) {
+    validate(capture, materials);
+    return Pass(capture, {}, materials, settings).run();
+  }
+  Capture unmarked = capture;
+  std::unordered_set<std::size_t> marks;
+  for (std::size_t i = 0; i < capture.material.size(); ++i) {
+    if ((capture.material[i] & mark) != 0) marks.insert(i);
+    unmarked.material[i] = static_cast<std::uint8_t>(capture.material[i] & ~mark);
+  }
+  validate(unmarked, materials);
+  return Pass(unmarked, marks, materials, settings).run();
 }
 
 }  // namespace pellucid::harness::reference

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "reference/minimum_dot.h"
 #include "reference/transmittance.h"
 
 namespace pellucid::harness::reference {
@@ -13,6 +14,7 @@ Translucency::Translucency(const Capture& capture, const SurfaceReader& surfaces
   for (const Light& light : capture.lights) {
     shadows_.emplace_back();
     if (light.shadowMap) shadows_.back().emplace(light, *light.shadowMap);
+    minimumDots_.push_back(minimumDot(settings_, light));
   }
 }
 
@@ -25,13 +27,13 @@ Translucency::Receiver Translucency::toWorld(const Surface& s) const {
 }
 
 // The models of PellucidAngleModel.
-double Translucency::hiddenCosine(const Receiver& r, const glm::dvec3& toLight) const {
+double Translucency::hiddenCosine(const Receiver& r, std::size_t light, const glm::dvec3& toLight) const {
   if (settings_.angleModel == PELLUCID_ANGLE_NORMAL && r.normal)
     return std::max(0.0, -glm::dot(*r.normal, toLight));
   const glm::dvec3 axis = glm::normalize(glm::dmat3(surfaces_.worldFromView()) * glm::dvec3(0, 0, -1));
   const double x = std::clamp(glm::dot(settings_.constantViewDirection ? axis : r.ray, toLight), -1.0, 1.0);
   const auto& c = settings_.anglePolynomial;
-  const double m = double(settings_.minimumDot);
+  const double m = minimumDots_[light];
   switch (settings_.angleModel) {
     case PELLUCID_ANGLE_INVERSE_COSINE:
       return std::max(0.0, 1 - std::acos(x) * 2 / std::numbers::pi);
@@ -41,6 +43,8 @@ double Translucency::hiddenCosine(const Receiver& r, const glm::dvec3& toLight) 
                          0.0, 1.0)
                    : 0.0;
     case PELLUCID_ANGLE_MINIMUM_DOT:
+    case PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH:
+    case PELLUCID_ANGLE_MINIMUM_DOT_SPHERE:
       return m > -1 ? std::clamp((m + x) / (m + 1), 0.0, 1.0) : 0.0;
     default:
       return std::max(0.0, x);
@@ -54,7 +58,7 @@ bool Translucency::usesLightSpace(std::size_t light) const {
 Translucency::LightPath Translucency::lightSpacePath(std::size_t light, const Receiver& r) const {
   const Arrival arrival = arrivalAt(capture_.lights[light], r.position);
   LightPath path;
-  path.arriving = arrival.irradiance * hiddenCosine(r, arrival.toLight);
+  path.arriving = arrival.irradiance * hiddenCosine(r, light, arrival.toLight);
   const ShadowView::Lookup lookup = shadows_[light]->at(r.position);
   path.reaches = lookup.kind == ShadowView::Kind::Surface;
   path.thickness = std::max(0.0, lookup.distance - double(settings_.shadowBias));
@@ -72,7 +76,7 @@ Translucency::LightPath Translucency::cameraSpacePath(std::size_t light, const R
   if (!r.chord) return path;
   const glm::dvec3 backPoint = r.position + *r.chord * r.ray;
   const Arrival arrival = arrivalAt(capture_.lights[light], backPoint);
-  path.arriving = arrival.irradiance * hiddenCosine(r, arrival.toLight);
+  path.arriving = arrival.irradiance * hiddenCosine(r, light, arrival.toLight);
   path.reaches = backPointLit(light, backPoint);
   path.thickness =
       *r.chord * (r.normal && !settings_.chordThickness ? std::abs(glm::dot(*r.normal, r.ray)) : 1);

@@ -44,7 +44,7 @@ private:
   };
 
   Receiver toWorld(const Surface& surface) const;
-  double hiddenCosine(const Receiver& r, const glm::dvec3& toLight) const;
+  double hiddenCosine(const Receiver& r, std::size_t light, const glm::dvec3& toLight) const;
   LightPath lightSpacePath(std::size_t light, const Receiver& r) const;
   LightPath cameraSpacePath(std::size_t light, const Receiver& r) const;
   std::optional<double> firstLightDistance(const Receiver& r) const;  // scene units
@@ -55,6 +55,7 @@ private:
   const SurfaceReader& surfaces_;
   TranslucencySettings settings_;
   std::vector<std::optional<ShadowView>> shadows_;  // one per light
+  std::vector<double> minimumDots_;                 // one per light
 };
 
 }  // namespace pellucid::harness::reference

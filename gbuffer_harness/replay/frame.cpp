@@ -151,6 +151,17 @@ void makeFrame(const Capture& capture, const std::vector<PellucidMaterial>& mate
   f.chordThickness = t.chordThickness;
   f.maximumThickness = t.maximumThickness;
   std::copy(t.transmittanceFilter.begin(), t.transmittanceFilter.end(), f.transmittanceFilter);
+  data.minimumDotTable = t.minimumDotTable;
+  f.minimumDotTable = data.minimumDotTable.data();
+  const auto entries = static_cast<uint32_t>(data.minimumDotTable.size());
+  // Validation refuses a map that is not square by the size that is left.
+  const auto side = static_cast<uint32_t>(std::lround(std::sqrt(entries)));
+  const bool sphere = t.angleModel == PELLUCID_ANGLE_MINIMUM_DOT_SPHERE;
+  f.minimumDotTableSize = !sphere ? entries : side * side == entries ? side : 0;
+  std::copy(t.faceVector.begin(), t.faceVector.end(), f.faceVector);
+  std::copy(t.upAxis.begin(), t.upAxis.end(), f.upAxis);
+  std::copy(t.objectCenter.begin(), t.objectCenter.end(), f.objectCenter);
+  f.materialMarkBit = t.materialMarkBit;
   f.debugView = settings.debugView;
 }
 

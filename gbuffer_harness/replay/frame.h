@@ -44,6 +44,7 @@ struct FrameData {
   std::vector<PellucidShadowMap> shadowMaps;
   std::vector<PellucidImage> shadowImages;
   std::vector<const Image*> shadowDepths;
+  std::vector<float> minimumDotTable;
 
   FrameData() = default;
   FrameData(const FrameData&) = delete;  // frame points into the vectors

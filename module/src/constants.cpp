@@ -5,6 +5,7 @@
 
 #include "camera.h"
 #include "frame.h"
+#include "minimum_dot.h"
 #include "validate.h"
 
 namespace pellucid {
@@ -50,9 +51,7 @@ shared::FrameConstants frameConstants(const PellucidFrame& f) {
   c.flags = {flags, f.materialCount, f.debugView, f.angleModel};
   const float* p = f.anglePolynomial;
   c.anglePolynomial = {p[0], p[1], p[2], p[3]};
-  // At a minimum dot of -1 not even a light straight behind comes through; the quotient would be 0/0.
-  const float m = f.minimumDot;
-  c.angle = m > -1 ? glm::vec4(1 / (m + 1), m / (m + 1), 0, 0) : glm::vec4(0);
+  c.marks.x = f.materialMarkBit;
   c.filterAndLimit = rgb(f.transmittanceFilter, f.maximumThickness > 0 ? f.maximumThickness : INFINITY);
   return c;
 }
@@ -61,8 +60,8 @@ glm::dvec3 travel(const PellucidLight& l) {
   return glm::normalize(glm::dvec3(l.direction[0], l.direction[1], l.direction[2]));
 }
 
-shared::LightConstants lightConstants(const PellucidLight& l, const glm::dmat4& viewFromWorld,
-                                      uint32_t firstShadow) {
+shared::LightConstants lightConstants(const PellucidFrame& f, const PellucidLight& l,
+                                      const glm::dmat4& viewFromWorld, uint32_t firstShadow) {
   shared::LightConstants c{};
   c.meta = {l.type, firstShadow, l.shadowMapCount, 0};
   c.radiance = rgb(l.color) * l.intensity;
@@ -76,8 +75,13 @@ shared::LightConstants lightConstants(const PellucidLight& l, const glm::dmat4& 
     const double inner = std::cos(static_cast<double>(l.innerConeAngle));
     const double outer = std::cos(static_cast<double>(l.outerConeAngle));
     const double scale = 1 / std::max(0.001, inner - outer);
-    c.cone = {static_cast<float>(scale), static_cast<float>(-outer * scale), 0, 0};
+    c.cone.x = static_cast<float>(scale);
+    c.cone.y = static_cast<float>(-outer * scale);
   }
+  // A light whose minimum dot is -1 was skipped: nothing comes through, and the quotient would be 0/0.
+  const double m = minimumDotOf(f, l);
+  c.cone.z = static_cast<float>(m > -1 ? 1 / (m + 1) : 0);
+  c.cone.w = static_cast<float>(m > -1 ? m / (m + 1) : 0);
   return c;
 }
 
@@ -218,7 +222,7 @@ extern "C" PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const
   uint32_t light = 0, shadow = 0;
   const auto eachLight = [&](const LightGroup& group, const PellucidLight& l) {
     put(mapped, layout.lights.offset + light * sizeof(shared::LightConstants),
-        lightConstants(l, viewFromWorld, shadow));
+        lightConstants(f, l, viewFromWorld, shadow));
     // addLight ran before this call, so the group already has a slot for each of the light's images.
     for (uint32_t i = 0; i < l.shadowMapCount; ++i, ++shadow) {
       const PellucidShadowMap& s = f.shadowMaps[l.firstShadowMap + i];

@@ -7,14 +7,6 @@ Rect renderRect(const PellucidFrame& frame) {
   return {frame.renderRect[0], frame.renderRect[1], frame.renderRect[2], frame.renderRect[3]};
 }
 
-const char* whyLightIsSkipped(const PellucidFrame& frame, const PellucidLight& light) {
-  if (light.intensity <= 0 || (light.color[0] <= 0 && light.color[1] <= 0 && light.color[2] <= 0))
-    return "no intensity";
-  const bool needsCamera = light.shadowMapCount == 0 || frame.thicknessSource == PELLUCID_THICKNESS_CAMERA;
-  if (needsCamera && !given(frame.backDepth)) return "no back depth to take a thickness from";
-  return nullptr;
-}
-
 bool anyMaterialDiffuses(const PellucidFrame& frame) {
   for (uint32_t i = 0; i < frame.materialCount; ++i)
     if (frame.materials[i].gaussianCount > 0) return true;
@@ -75,4 +67,6 @@ extern "C" void pellucidInitFrame(PellucidFrame* frame) {
   for (int i = 0; i < 4; ++i) frame->viewFromWorld[i * 5] = 1;
   frame->outputFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
   for (float& factor : frame->transmittanceFilter) factor = 1;
+  frame->faceVector[2] = 1;
+  frame->upAxis[1] = 1;
 }

@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "cull.h"
 #include "pellucid/pellucid.h"
 #include "shared/pellucid_shared.h"
 
@@ -15,9 +16,6 @@ struct Rect {
 Rect renderRect(const PellucidFrame& frame);
 
 inline bool given(const PellucidImage& image) { return image.view != VK_NULL_HANDLE; }
-
-// Why a light adds nothing to this frame, or nullptr. Static string.
-const char* whyLightIsSkipped(const PellucidFrame& frame, const PellucidLight& light);
 
 bool anyMaterialDiffuses(const PellucidFrame& frame);
 
@@ -44,8 +42,9 @@ bool addLight(const PellucidFrame& frame, const PellucidLight& light, LightGroup
 template <class OnLight, class OnGroup>
 void forEachLightGroup(const PellucidFrame& frame, OnLight&& light, OnGroup&& group) {
   LightGroup current;
+  const ViewBounds view(frame);
   for (uint32_t i = 0; i < frame.lightCount; ++i) {
-    if (whyLightIsSkipped(frame, frame.lights[i])) continue;
+    if (view.whySkipped(frame.lights[i])) continue;
     if (!addLight(frame, frame.lights[i], &current)) {
       group(static_cast<const LightGroup&>(current));
       LightGroup next;

@@ -143,8 +143,9 @@ bool build(const PellucidFrame& frame, PellucidPlan& plan) {
   plan.activeLights = b.layout.lightCount;
   plan.constantsSize = b.layout.size;
 
+  const ViewBounds view(frame);
   for (uint32_t i = 0; i < frame.lightCount; ++i)
-    if (const char* reason = whyLightIsSkipped(frame, frame.lights[i])) b.skip("light", reason);
+    if (const char* reason = view.whySkipped(frame.lights[i])) b.skip("light", reason);
   if (!(frame.features & PELLUCID_FEATURE_TRANSLUCENCY))
     b.skip("translucency", "not among the features");
   else if (plan.activeLights == 0)

@@ -5,6 +5,7 @@
 
 #include "camera.h"
 #include "frame.h"
+#include "minimum_dot.h"
 #include "text.h"
 
 namespace pellucid {
@@ -83,6 +84,27 @@ void checkImageSize(const PellucidFrame& f, Findings& out) {
   else if (r[2] > 0 && (r[3] == 0 || r[0] >= w || r[2] > w - r[0] || r[1] >= h || r[3] > h - r[1]))
     out.error("renderRect", "is ", r[0], ", ", r[1], " + ", r[2], " x ", r[3], ", outside the ", w, " x ", h,
               " image");
+}
+
+void checkMinimumDotTable(const PellucidFrame& f, Findings& out) {
+  const bool azimuth = f.angleModel == PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH;
+  if (!azimuth && f.angleModel != PELLUCID_ANGLE_MINIMUM_DOT_SPHERE) return;
+  const uint32_t least = azimuth ? 1 : 3, most = azimuth ? 360 : 16, size = f.minimumDotTableSize;
+  if (size < least || size > most) {
+    out.error("minimumDotTableSize", "is ", size, ", outside ", least, "..", most);
+  } else if (!f.minimumDotTable) {
+    out.error("minimumDotTable", "is NULL, but the angle model looks minimum dots up");
+  } else {
+    for (uint32_t i = 0; i < minimumDotEntries(f); ++i)
+      if (!(f.minimumDotTable[i] >= -1 && f.minimumDotTable[i] <= 0))
+        out.error("minimumDotTable", "[", i, "] is ", f.minimumDotTable[i], ", outside [-1, 0]");
+  }
+  const glm::dvec3 face(f.faceVector[0], f.faceVector[1], f.faceVector[2]);
+  const glm::dvec3 up(f.upAxis[0], f.upAxis[1], f.upAxis[2]);
+  const double sine = glm::length(glm::cross(glm::normalize(up), glm::normalize(face)));
+  // Nearer to each other than this, float rounding would decide where the face looks.
+  if (!(sine > 1e-4)) out.error("faceVector", "and upAxis must be finite, longer than 0 and not parallel");
+  if (!finite(f.objectCenter, 3)) out.error("objectCenter", "is not finite");
 }
 
 void checkMaterial(const PellucidMaterial& m, uint32_t index, Findings& out) {
@@ -234,11 +256,12 @@ PellucidResult checkFrame(const PellucidFrame* frame, PellucidMessageFn fn, void
   if (f.debugView > PELLUCID_DEBUG_IRRADIANCE)
     out.error("debugView", "is ", f.debugView, ", not a PellucidDebugView");
 
-  if (f.angleModel > PELLUCID_ANGLE_MINIMUM_DOT)
+  if (f.angleModel > PELLUCID_ANGLE_MINIMUM_DOT_SPHERE)
     out.error("angleModel", "is ", f.angleModel, ", not a PellucidAngleModel");
   if (!finite(f.anglePolynomial, 4)) out.error("anglePolynomial", "is not finite");
   if (!(f.minimumDot >= -1 && f.minimumDot <= 0))
     out.error("minimumDot", "is ", f.minimumDot, ", outside [-1, 0]");
+  checkMinimumDotTable(f, out);
   if (!(f.maximumThickness >= 0)) out.error("maximumThickness", "is ", f.maximumThickness, "; must be >= 0");
   for (int c = 0; c < 3; ++c)
     if (!(f.transmittanceFilter[c] >= 0 && f.transmittanceFilter[c] <= 1))
@@ -250,6 +273,10 @@ PellucidResult checkFrame(const PellucidFrame* frame, PellucidMessageFn fn, void
   // 255: the material image is r8ui and 0 means none.
   if (f.materialCount == 0 || f.materialCount > 255 || !f.materials)
     out.error("materials", "has ", f.materialCount, f.materials ? "" : " at NULL", "; needs 1..255");
+  const uint32_t mark = f.materialMarkBit;
+  if (mark != 0 && ((mark & (mark - 1)) != 0 || mark <= f.materialCount))
+    out.error("materialMarkBit", "is ", mark, "; must be 0 or a power of two above the ", f.materialCount,
+              " materials");
   if (f.lightCount > 0 && !f.lights) out.error("lights", "is NULL, but lightCount is ", f.lightCount);
   if (f.shadowMapCount > 0 && !f.shadowMaps)
     out.error("shadowMaps", "is NULL, but shadowMapCount is ", f.shadowMapCount);
@@ -267,12 +294,12 @@ PellucidResult checkFrame(const PellucidFrame* frame, PellucidMessageFn fn, void
   }
   for (uint32_t i = 0; i < f.shadowMapCount; ++i) checkShadowMap(f, i, out);
   if (out.result() != PELLUCID_OK) return out.result();
-  for (uint32_t i = 0; i < f.lightCount; ++i) {
-    checkLight(f, i, out);
-    if (const char* reason = whyLightIsSkipped(f, f.lights[i]))
-      out.warning(Field("lights[", i, "]"), "adds nothing: ", reason);
-  }
+  for (uint32_t i = 0; i < f.lightCount; ++i) checkLight(f, i, out);
   if (out.result() != PELLUCID_OK) return out.result();
+  const ViewBounds view(f);
+  for (uint32_t i = 0; i < f.lightCount; ++i)
+    if (const char* reason = view.whySkipped(f.lights[i]))
+      out.warning(Field("lights[", i, "]"), "adds nothing: ", reason);
   const uint32_t groups = lightGroupCount(f);
   if (groups > 1 && f.debugView != PELLUCID_DEBUG_NONE && f.debugView != PELLUCID_DEBUG_IRRADIANCE)
     out.error("debugView", "is ", f.debugView, ", which needs all lights in one dispatch; they use ", groups);

@@ -148,6 +148,19 @@ const Option kOptions[] = {
        t.angleModel = PELLUCID_ANGLE_MINIMUM_DOT;
        t.minimumDot = -1;
      }},
+    {"MinimumDotAzimuth",
+     [](TranslucencySettings& t) {
+       t.angleModel = PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH;
+       for (int i = 0; i < 36; ++i) t.minimumDotTable.push_back(-static_cast<float>(i * 7 % 36) / 40);
+       t.faceVector = {0.3f, 0.1f, 1};
+       t.upAxis = {0.1f, 2, 0};
+     }},
+    {"MinimumDotSphere",
+     [](TranslucencySettings& t) {
+       t.angleModel = PELLUCID_ANGLE_MINIMUM_DOT_SPHERE;
+       for (int i = 0; i < 49; ++i) t.minimumDotTable.push_back(-static_cast<float>(i * 11 % 49) / 60);
+       t.faceVector = {0.3f, 0.1f, 1};
+     }},
     {"ConstantView",
      [](TranslucencySettings& t) {
        t.angleModel = PELLUCID_ANGLE_COSINE;
@@ -164,6 +177,67 @@ const Option kOptions[] = {
     {"Gaussians", [](TranslucencySettings&) {}, PELLUCID_TRANSMITTANCE_GAUSSIANS},
     {"GaussiansAsPrinted", [](TranslucencySettings&) {}, PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED},
 };
+
+// Table lookups where the light's direction is the receiver's own: point lights, from all around.
+TEST_F(GpuTest, MinimumDotTablesAgreeForLightsAllAround) {
+  Capture c = make({"slab"});
+  const Light from = c.lights.at(0);
+  for (const auto model : {PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH, PELLUCID_ANGLE_MINIMUM_DOT_SPHERE}) {
+    ReplaySettings s;
+    s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+    s.features = PELLUCID_FEATURE_TRANSLUCENCY;
+    s.translucency.angleModel = model;
+    s.translucency.objectCenter = {1, 2, 3};
+    for (int i = 0; i < 36; ++i)
+      s.translucency.minimumDotTable.push_back(-0.95f + static_cast<float>(i * 5 % 36) / 40);
+    c.lights.clear();
+    for (int i = 0; i < 24; ++i) {
+      Light light;
+      light.type = PELLUCID_LIGHT_POINT;
+      const double turn = 0.7 * i, height = std::cos(1.9 * i);
+      light.position = {200 * std::cos(turn), 200 * height, 200 * std::sin(turn)};
+      light.intensity = 4e4;
+      c.lights.push_back(light);
+    }
+    reference::Settings r;
+    r.features = s.features;
+    r.translucency = s.translucency;
+    const Image gpu = replay(c, testMaterial(), s), ref = reference::compute(c, {testMaterial()}, r).image;
+    EXPECT_LT(worst(c, gpu, ref, 3, 1, 0), 1e-3);
+  }
+}
+
+// Marked pixels: irradiance without translucency, and of the same material to their neighbors' diffusion.
+TEST_F(GpuTest, MarkedPixelsAgreeWithTheReference) {
+  Capture c = make({"ear"});
+  const Capture plain = c;
+  for (int y = 0; y < c.height; ++y)
+    for (int x = 0; x < c.width / 2; ++x) {
+      std::uint8_t& m = c.material[static_cast<size_t>(y * c.width + x)];
+      if (m != 0) m |= 128;
+    }
+  ReplaySettings s;
+  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  s.translucency.materialMarkBit = 128;
+  for (const uint32_t features : {1u, 3u}) {
+    s.features = features;
+    reference::Settings r;
+    r.features = features;
+    r.translucency = s.translucency;
+    const Image gpu = replay(c, testMaterial(), s);
+    if (features == 1) {
+      EXPECT_LT(worst(c, gpu, reference::compute(c, {testMaterial()}, r).image, 3, 1, 2e-3), 1e-3);
+      for (size_t i = 0; i < c.material.size(); ++i)
+        if (c.material[i] & 128)
+          for (size_t k = 0; k < 3; ++k) ASSERT_EQ(gpu.data[4 * i + k], c.irradiance.data[3 * i + k]);
+    }
+    // Where there is no light, marks change nothing: diffusion crosses their border.
+    Capture dark = c, darkPlain = plain;
+    dark.lights.clear();
+    darkPlain.lights.clear();
+    EXPECT_TRUE(sameBits(replay(dark, testMaterial(), s), replay(darkPlain, testMaterial(), s)));
+  }
+}
 
 class ThesisOptions : public GpuTest, public testing::WithParamInterface<Option> {};
 

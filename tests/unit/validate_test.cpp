@@ -36,6 +36,35 @@ const std::vector<Violation> kViolations = {
        f.frame.renderRect[2] = 2;
        f.frame.renderRect[3] = 2;
      }},
+    {"MarkBitOfTwoBits", "materialMarkBit", "192", [](Frame& f) { f.frame.materialMarkBit = 192; }},
+    {"MarkBitInTheIndex", "materialMarkBit", "above the 1 materials",
+     [](Frame& f) { f.frame.materialMarkBit = 1; }},
+    {"NoMinimumDots", "minimumDotTable", "NULL",
+     [](Frame& f) {
+       f.frame.angleModel = PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH;
+       f.frame.minimumDotTableSize = 36;
+     }},
+    {"MinimumDotTableSize", "minimumDotTableSize", "17, outside 3..16",
+     [](Frame& f) {
+       f.frame.angleModel = PELLUCID_ANGLE_MINIMUM_DOT_SPHERE;
+       f.frame.minimumDotTableSize = 17;
+     }},
+    {"MinimumDotEntry", "minimumDotTable", "[1] is 0.5",
+     [](Frame& f) {
+       static const float table[2] = {0, 0.5f};
+       f.frame.angleModel = PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH;
+       f.frame.minimumDotTable = table;
+       f.frame.minimumDotTableSize = 2;
+     }},
+    {"FaceAlongUp", "faceVector", "parallel",
+     [](Frame& f) {
+       static const float table[1] = {0};
+       f.frame.angleModel = PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH;
+       f.frame.minimumDotTable = table;
+       f.frame.minimumDotTableSize = 1;
+       f.frame.faceVector[1] = 5;
+       f.frame.faceVector[2] = 0;
+     }},
     {"MetersPerUnit", "metersPerUnit", "0", [](Frame& f) { f.frame.metersPerUnit = 0; }},
     {"ProjectionNan", "clipFromView", "not finite", [](Frame& f) { f.frame.clipFromView[0] = NAN; }},
     {"ViewScale", "viewFromWorld", "rotation", [](Frame& f) { f.frame.viewFromWorld[0] = 2; }},

@@ -150,7 +150,10 @@ typedef enum PellucidAngleModel {
   PELLUCID_ANGLE_INVERSE_COSINE = 2, /* 1 - acos(x) 2/pi (Whelan 2009, 4.4) */
   PELLUCID_ANGLE_POLYNOMIAL = 3,     /* c0 + c1 x + c2 x^2 + c3 x^3 for x > 0, else 0: the form of the
                                         quadratic and cubic of Whelan 2009, eqs. 4.4 and 4.5 */
-  PELLUCID_ANGLE_MINIMUM_DOT = 4     /* (m + x) / (m + 1), m = minimumDot (Whelan 2009, eq. 4.6) */
+  PELLUCID_ANGLE_MINIMUM_DOT = 4,    /* (m + x) / (m + 1), m = minimumDot (Whelan 2009, eq. 4.6) */
+  PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH = 5, /* m per light from minimumDotTable by the light's azimuth around
+                                             the object (Whelan 2009, 4.6.2) */
+  PELLUCID_ANGLE_MINIMUM_DOT_SPHERE = 6   /* the same by the direction on the sphere */
 } PellucidAngleModel;
 
 /* Write one intermediate into `output` instead of the result. Float values, alpha kept. */
@@ -212,6 +215,21 @@ typedef struct PellucidFrame {
   float transmittanceFilter[3]; /* multiplies T, [0, 1]; default 1 (Whelan 2009, 4.5: .55 .29 .28) */
   uint32_t gatherSamples;   /* 0..64, a multiple of 4: points of the shadow map a pixel gathers light from, for lights with
                                one and materials of EXP2 or SINH_EXP; 0: one light-space thickness */
+
+  /* Minimum dots by the direction from the object to a light, each [-1, 0]. AZIMUTH: minimumDotTableSize
+   * entries, 1..360 (Whelan: 36), at equal angles about upAxis, the first where the face looks and the next
+   * towards cross(upAxis, faceVector); linear in between, around the turn. SPHERE: size x size entries, size
+   * 3..16, rows first: the octahedral map x = s / l, y = f / l of the direction (s along cross(upAxis,
+   * faceVector), u up, f along the face; l = |s| + |u| + |f|), corners folded under for u < 0, both
+   * coordinates -1 at the first entry and 1 at the last; bilinear. Entries that share a direction on the
+   * border should agree. Looked up once a light. */
+  uint32_t minimumDotTableSize;
+  const float* minimumDotTable;
+  float faceVector[3];   /* world, not along upAxis; default +z */
+  float upAxis[3];       /* world; default +y */
+  float objectCenter[3]; /* world; where point and spot lights are seen from */
+  uint32_t materialMarkBit; /* a power of two above materialCount, or 0: pixels whose material value has the
+                               bit get diffusion and no translucency; the rest of the value is the index */
 } PellucidFrame;
 
 /* ---- Plan ------------------------------------------------------------------------------------ */
@@ -343,6 +361,30 @@ PellucidResult pellucidValidateFrame(const PellucidFrame* frame, PellucidMessage
  * Of the views only whether the optional inputs are given is read. */
 PellucidResult pellucidBuildPlan(const PellucidFrame* frame, const PellucidPlan* previous,
                                  PellucidPlan* plan);
+
+/* ---- Frame budget ---------------------------------------------------------------------------- */
+
+/* A setting that holds a frame time, and what it was decided from. What a quality stands for is the
+ * caller's (resolution, lights, diffusion); `reuse` asks for reuse of results between frames. */
+typedef struct PellucidBudgetState {
+  uint32_t quality; /* 3 best .. 0 cheapest */
+  uint32_t reuse;   /* 1: reuse; given up last when there is room again */
+  uint32_t overFrames, underFrames;   /* on end above the budget; on end with room for more */
+  uint32_t settleFrames;              /* times of the setting before that may still arrive */
+  uint32_t waitFrames;                /* of room before a better setting is tried */
+  uint32_t raised, heldFrames;        /* 1: the last change was upwards; frames since */
+  float raisedMs;                     /* time before the last step upwards; 0: no step to compare with */
+  uint32_t easierFrames;              /* on end well below raisedMs after that step failed */
+} PellucidBudgetState;
+
+void pellucidInitBudgetState(PellucidBudgetState* state); /* quality 3, no reuse */
+
+/* One frame's time, ms, against the budget (Whelan 2009, 6.2.5). Pure. Goes one setting down (reuse first,
+ * then quality) after 3 frames on end above the budget, so a setting that fits is reached within 20 frames;
+ * one up after waitFrames at most 70 % of it. An upward step that does not hold doubles the wait, until
+ * 30 frames on end take 70 % of the time from before it. Times that are negative or not finite, and
+ * budgets that are not > 0, change nothing. */
+void pellucidStepBudget(PellucidBudgetState* state, float measuredMs, float budgetMs);
 
 /* ---- Recording ------------------------------------------------------------------------------- */
 

@@ -1,0 +1,87 @@
+// Holds a frame time. Whelan 2009, 6.2.5.
+#include <algorithm>
+#include <cmath>
+
+#include "pellucid/pellucid.h"
+
+namespace {
+
+constexpr uint32_t kBest = 3;
+constexpr uint32_t kOverFrames = 3;    // a single spike changes nothing
+constexpr uint32_t kSettleFrames = 2;  // GPU times arrive a frame or two late
+constexpr uint32_t kFirstWait = 30;    // frames of room before a better setting is tried
+constexpr uint32_t kLongestWait = 4096;
+constexpr float kRoom = 0.7f;  // of the budget; the next setting may cost as much again as it frees
+
+bool best(const PellucidBudgetState& s) { return s.quality == kBest && s.reuse == 0; }
+bool cheapest(const PellucidBudgetState& s) { return s.quality == 0; }
+
+void changed(PellucidBudgetState& s) {
+  s.overFrames = s.underFrames = s.easierFrames = 0;
+  s.settleFrames = kSettleFrames;
+}
+
+// Reuse goes first: it costs a lag in the light, a lower quality costs sharpness.
+void lower(PellucidBudgetState& s) {
+  if (s.reuse == 0)
+    s.reuse = 1;
+  else
+    --s.quality;
+  changed(s);
+}
+
+void raise(PellucidBudgetState& s) {
+  if (s.quality < kBest)
+    ++s.quality;
+  else
+    s.reuse = 0;
+  changed(s);
+}
+
+}  // namespace
+
+extern "C" void pellucidInitBudgetState(PellucidBudgetState* state) {
+  if (!state) return;
+  *state = {};
+  state->quality = kBest;
+  state->waitFrames = kFirstWait;
+}
+
+extern "C" void pellucidStepBudget(PellucidBudgetState* state, float measuredMs, float budgetMs) {
+  if (!state || !(budgetMs > 0) || !(measuredMs >= 0) || !std::isfinite(measuredMs)) return;
+  PellucidBudgetState& s = *state;
+  if (s.settleFrames > 0) {
+    --s.settleFrames;
+    return;
+  }
+  // A raise proves itself by lasting well beyond the wait that led to it.
+  if (s.raised != 0 && ++s.heldFrames > 4 * s.waitFrames) {
+    s.raised = 0;
+    s.waitFrames = std::max(s.waitFrames / 2, kFirstWait);
+  }
+  s.overFrames = measuredMs > budgetMs ? s.overFrames + 1 : 0;
+  s.underFrames = measuredMs <= kRoom * budgetMs ? std::min(s.underFrames + 1, kLongestWait) : 0;
+  // Much less than when a raise failed: the load is another one, and what it taught no longer holds.
+  const bool easier = s.raised == 0 && measuredMs <= kRoom * s.raisedMs;
+  s.easierFrames = easier ? s.easierFrames + 1 : 0;
+  if (s.easierFrames >= kFirstWait) {
+    s.waitFrames = kFirstWait;
+    s.raisedMs = 0;
+    s.easierFrames = 0;
+  }
+  if (s.overFrames >= kOverFrames && !cheapest(s)) {
+    // It did not fit: the next try waits twice as long, so a load between two settings cannot swing.
+    if (s.raised != 0)
+      s.waitFrames = std::min(2 * s.waitFrames, kLongestWait);
+    else
+      s.raisedMs = 0;
+    s.raised = 0;
+    lower(s);
+  } else if (s.underFrames >= s.waitFrames && !best(s)) {
+    raise(s);
+    s.raised = 1;
+    s.raisedMs = measuredMs;
+    s.heldFrames = 0;
+  }
+  s.overFrames = std::min(s.overFrames, kOverFrames);
+}

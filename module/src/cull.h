@@ -1,0 +1,42 @@
+// Which lights cannot add to any pixel of a frame, decided without its images. Pure, double inside.
+#pragma once
+
+#include <array>
+#include <glm/glm.hpp>
+
+#include "pellucid/pellucid.h"
+
+namespace pellucid {
+
+// What the render rect can show: every surface lies on a ray start + p direction, p > 0. View space.
+class ViewBounds {
+public:
+  explicit ViewBounds(const PellucidFrame& frame);  // a frame whose matrices are valid
+
+  // Why a light adds nothing to the frame, or nullptr. Static string. Everything is conservative: a light
+  // that could add to one pixel stays.
+  const char* whySkipped(const PellucidLight& light) const;
+
+private:
+  bool angleStops(const PellucidLight& light) const;
+  bool rangeMisses(const PellucidLight& light) const;
+  bool coneMisses(const PellucidLight& light) const;
+
+  // Surfaces lie where dot(normal, x) >= offset.
+  struct Plane {
+    glm::dvec3 normal;  // unit
+    double offset;
+  };
+
+  const PellucidFrame& frame_;
+  glm::dmat4 viewFromWorld_;
+  bool bounded_;  // false: a projection whose rays neither share a start nor a direction
+  bool parallel_;
+  double forward_;
+  std::array<glm::dvec3, 4> starts_;
+  glm::dvec3 axis_;   // of a cone around all rays
+  double halfAngle_;  // radians; infinite: no such cone
+  std::array<Plane, 5> planes_;
+};
+
+}  // namespace pellucid

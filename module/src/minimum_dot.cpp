@@ -1,0 +1,65 @@
+#include "minimum_dot.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <numbers>
+
+namespace pellucid {
+namespace {
+
+glm::dvec3 vec(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
+
+// World direction from the object to the light; 0 for a light at its center.
+glm::dvec3 directionTo(const PellucidFrame& f, const PellucidLight& light) {
+  const glm::dvec3 d = light.type == PELLUCID_LIGHT_DIRECTIONAL ? -vec(light.direction)
+                                                                : vec(light.position) - vec(f.objectCenter);
+  const double length = glm::length(d);
+  return length > 0 ? d / length : d;
+}
+
+double alongAzimuth(const PellucidFrame& f, double side, double front) {
+  const double turns = std::atan2(side, front) / (2 * std::numbers::pi);
+  const double at = (turns - std::floor(turns)) * f.minimumDotTableSize;
+  const uint32_t i = static_cast<uint32_t>(at) % f.minimumDotTableSize;
+  const double from = f.minimumDotTable[i], to = f.minimumDotTable[(i + 1) % f.minimumDotTableSize];
+  return from + (to - from) * (at - std::floor(at));
+}
+
+double onSphere(const PellucidFrame& f, const glm::dvec3& d) {
+  const uint32_t n = f.minimumDotTableSize;
+  const double sum = std::abs(d.x) + std::abs(d.y) + std::abs(d.z);
+  glm::dvec2 p = sum > 0 ? glm::dvec2(d.x, d.z) / sum : glm::dvec2(0);
+  if (d.y < 0) p = {std::copysign(1 - std::abs(p.y), p.x), std::copysign(1 - std::abs(p.x), p.y)};
+  const glm::dvec2 at = glm::clamp(0.5 * p + 0.5, 0.0, 1.0) * (n - 1.0);
+  // The last cell also holds its far edge.
+  const uint32_t x = std::min(static_cast<uint32_t>(at.x), n - 2),
+                 y = std::min(static_cast<uint32_t>(at.y), n - 2);
+  const auto entry = [&](uint32_t i, uint32_t j) {
+    return static_cast<double>(f.minimumDotTable[j * n + i]);
+  };
+  const double upper = glm::mix(entry(x, y), entry(x + 1, y), at.x - x);
+  const double lower = glm::mix(entry(x, y + 1), entry(x + 1, y + 1), at.x - x);
+  return glm::mix(upper, lower, at.y - y);
+}
+
+}  // namespace
+
+double minimumDotOf(const PellucidFrame& f, const PellucidLight& light) {
+  if (f.angleModel == PELLUCID_ANGLE_MINIMUM_DOT) return f.minimumDot;
+  if (minimumDotEntries(f) == 0) return 0;
+  const glm::dvec3 up = glm::normalize(vec(f.upAxis));
+  const glm::dvec3 side = glm::normalize(glm::cross(up, vec(f.faceVector))), front = glm::cross(side, up);
+  const glm::dvec3 d = directionTo(f, light);
+  const glm::dvec3 local(glm::dot(d, side), glm::dot(d, up), glm::dot(d, front));
+  return f.angleModel == PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH ? alongAzimuth(f, local.x, local.z)
+                                                            : onSphere(f, local);
+}
+
+uint32_t minimumDotEntries(const PellucidFrame& f) {
+  if (f.angleModel == PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH) return f.minimumDotTableSize;
+  if (f.angleModel == PELLUCID_ANGLE_MINIMUM_DOT_SPHERE) return f.minimumDotTableSize * f.minimumDotTableSize;
+  return 0;
+}
+
+}  // namespace pellucid

@@ -1,0 +1,15 @@
+// Whelan 2009, 4.6: how far around the head a light must be before anything comes through.
+#pragma once
+
+#include "pellucid/pellucid.h"
+
+namespace pellucid {
+
+// The minimum dot of a light, [-1, 0]: frame.minimumDot or the table's entry for where the light is, and 0
+// for models without one.
+double minimumDotOf(const PellucidFrame& frame, const PellucidLight& light);
+
+// Entries that frame.minimumDotTable must have; 0 for models without a table.
+uint32_t minimumDotEntries(const PellucidFrame& frame);
+
+}  // namespace pellucid

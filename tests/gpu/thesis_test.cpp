@@ -1,0 +1,77 @@
+// The two failure cases of Whelan 2009, figures 4.5 and 4.6, against closed forms.
+#include "gpu_fixture.h"
+
+#include <numbers>
+
+#include "scene/scene.h"
+
+namespace {
+
+using namespace pellucid::test;
+
+constexpr int kSide = 96;
+constexpr double kThickness = 2;  // mm, the scenes' default
+
+class ThesisFigure : public GpuTest {
+protected:
+  static Capture make(const char* name) {
+    SceneParameters p;
+    p.name = name;
+    p.width = p.height = kSide;
+    p.orthographic = true;
+    p.lightType = PELLUCID_LIGHT_DIRECTIONAL;
+    return makeScene(p);
+  }
+
+  // Red light that comes through at a pixel, in the mode of the thesis but for T(d) = e^{-d / 2 mm}.
+  static double through(const Capture& c, int x, int y) {
+    ReplaySettings s = thesisSettings();
+    s.transmittance = TransmittanceChoice::Material;
+    s.features = PELLUCID_FEATURE_TRANSLUCENCY;
+    s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+    const Image out = replay(c, testMaterial(), s);
+    return static_cast<double>(out.at(x, y)[0] - c.irradiance.at(x, y)[0]);
+  }
+
+  // E (1 - acos(x) 2/pi) T / rho, x the cosine between view and light.
+  static double expected(const Capture& c) {
+    const Light& light = c.lights.at(0);
+    const Matrix& m = c.viewFromWorld;
+    double cosine = 0, length = 0;
+    for (size_t i = 0; i < 3; ++i) {
+      cosine += m[4 * i + 2] * light.direction[i];
+      length += light.direction[i] * light.direction[i];
+    }
+    const double angle = std::acos(cosine / std::sqrt(length));
+    return light.intensity * light.color[0] * (1 - angle * 2 / std::numbers::pi) * std::exp(-kThickness / 2) /
+           0.5;
+  }
+};
+
+// Figure 4.5: a body behind the thin part, from the camera. The nearest back face ends the thin part; the
+// farthest one would count the gap and the body as flesh.
+TEST_F(ThesisFigure, ThinPartInFrontOfAnOccluder) {
+  Capture c = make("occluder");
+  const int middle = kSide / 2;
+  // 1e-4: float depths of a view some 100 mm deep, on 2 mm.
+  EXPECT_NEAR(through(c, middle, middle), expected(c), 1e-4 * expected(c));
+  for (float& depth : c.backDepth.image.data) depth += 40;
+  EXPECT_LT(through(c, middle, middle), 1e-6 * expected(c));
+}
+
+// Figure 4.6: a body between the light and the thin part. The shadow map keeps its light away.
+TEST_F(ThesisFigure, ThinPartWhoseLightIsBlocked) {
+  Capture c = make("blocked");
+  const int middle = kSide / 2;
+  int corner = middle;  // the last pixel of the sheet on the diagonal, away from the body's shadow
+  const auto isSheet = [&](int i) { return c.material[static_cast<size_t>(i * kSide + i)] != 0; };
+  while (isSheet(corner + 1)) ++corner;
+  corner -= 2;
+  EXPECT_EQ(through(c, middle, middle), 0);
+  EXPECT_NEAR(through(c, corner, corner), expected(c), 1e-4 * expected(c));
+  // Without the map nothing knows of the body.
+  c.lights[0].shadowMap.reset();
+  EXPECT_NEAR(through(c, middle, middle), expected(c), 1e-4 * expected(c));
+}
+
+}  // namespace

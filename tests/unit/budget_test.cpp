@@ -1,0 +1,108 @@
+// pellucidStepBudget over time series: it must reach a setting that fits within a bounded number of frames
+// and must not swing between two.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include "pellucid/pellucid.h"
+
+namespace {
+
+constexpr float kBudget = 2;
+// Four reductions, each after 3 frames over the budget and 2 that are not looked at.
+constexpr int kLongestOver = 4 * (3 + 2);
+
+// What a setting costs of the best one's time.
+float share(const PellucidBudgetState& s) {
+  const float quality[] = {0.2f, 0.4f, 0.65f, 1};
+  return quality[s.quality] * (s.reuse ? 0.7f : 1.0f);
+}
+
+struct Series {
+  int changes = 0;
+  int longestOver = 0;  // frames on end above the budget
+  PellucidBudgetState last;
+};
+
+// `load(frame)`: the time of the best setting, ms.
+Series simulate(int frames, const std::function<float(int)>& load) {
+  Series run;
+  pellucidInitBudgetState(&run.last);
+  int over = 0;
+  for (int i = 0; i < frames; ++i) {
+    const PellucidBudgetState before = run.last;
+    const float measured = load(i) * share(before);
+    over = measured > kBudget ? over + 1 : 0;
+    run.longestOver = std::max(run.longestOver, over);
+    pellucidStepBudget(&run.last, measured, kBudget);
+    run.changes += run.last.quality != before.quality || run.last.reuse != before.reuse;
+  }
+  return run;
+}
+
+TEST(Budget, StaysBestWhenItFits) {
+  const Series run = simulate(1000, [](int) { return 1.9f; });
+  EXPECT_EQ(run.changes, 0);
+  EXPECT_EQ(run.last.quality, 3u);
+  EXPECT_EQ(run.last.reuse, 0u);
+}
+
+TEST(Budget, StepDownAndBack) {
+  const Series run = simulate(3000, [](int i) { return i >= 500 && i < 1500 ? 8.0f : 1.0f; });
+  EXPECT_LE(run.longestOver, kLongestOver);
+  EXPECT_EQ(run.last.quality, 3u) << "back at the best when the load is gone";
+  EXPECT_EQ(run.last.reuse, 0u);
+  EXPECT_LE(run.changes, 20);
+}
+
+TEST(Budget, SpikesChangeNothing) {
+  const Series run = simulate(5000, [](int i) { return i % 50 < 2 ? 20.0f : 1.5f; });
+  EXPECT_EQ(run.changes, 0);
+}
+
+// Every constant load, and so every gap between two settings.
+TEST(Budget, NoOscillationUnderConstantLoad) {
+  for (float load = 0.5f; load < 9; load *= 1.01f) {
+    const Series run = simulate(20000, [&](int) { return load; });
+    // 4 reductions, and failed raises at waits of 30, 60, .. 4096 frames: fewer than 10 pairs.
+    EXPECT_LE(run.changes, 4 + 20) << load;
+    EXPECT_LE(run.longestOver, kLongestOver) << load;
+  }
+}
+
+TEST(Budget, NoiseDoesNotSwing) {
+  for (float load : {1.5f, 1.9f, 2.0f, 2.5f, 3.0f, 4.0f, 6.0f}) {
+    std::mt19937 random(3);
+    std::normal_distribution<float> noise(1, 0.1f);
+    const Series run = simulate(20000, [&](int) { return load * noise(random); });
+    EXPECT_LE(run.changes, 60) << load;  // 3 in 1000 frames
+  }
+}
+
+TEST(Budget, SlowRamps) {
+  const Series run =
+      simulate(20000, [](int i) { return 0.5f + 7.5f * std::abs(1 - static_cast<float>(i) / 10000); });
+  EXPECT_LE(run.changes, 30);
+  EXPECT_LE(run.longestOver, kLongestOver);
+}
+
+TEST(Budget, WhatNeverFitsStaysCheapest) {
+  const Series run = simulate(1000, [](int) { return 100.0f; });
+  EXPECT_EQ(run.changes, 4);
+  EXPECT_EQ(run.last.quality, 0u);
+}
+
+TEST(Budget, BadTimesAreIgnored) {
+  PellucidBudgetState state;
+  pellucidInitBudgetState(&state);
+  for (const float bad : {NAN, INFINITY, -1.0f})
+    for (int i = 0; i < 10; ++i) pellucidStepBudget(&state, bad, kBudget);
+  for (const float bad : {NAN, 0.0f, -1.0f})
+    for (int i = 0; i < 10; ++i) pellucidStepBudget(&state, 100, bad);
+  EXPECT_EQ(state.quality, 3u);
+  EXPECT_EQ(state.overFrames, 0u);
+}
+
+}  // namespace
