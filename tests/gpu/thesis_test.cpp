@@ -11,6 +11,8 @@ using namespace pellucid::test;
 
 constexpr int kSide = 96;
 constexpr double kThickness = 2;  // mm, the scenes' default
+constexpr double kTolerance =
+    2.5e-3;  // Vulkan lets acos be off by 4096 units in the last place: 4e-4 of a factor of 1/6
 
 class ThesisFigure : public GpuTest {
 protected:
@@ -53,8 +55,7 @@ protected:
 TEST_F(ThesisFigure, ThinPartInFrontOfAnOccluder) {
   Capture c = make("occluder");
   const int middle = kSide / 2;
-  // 1e-4: float depths of a view some 100 mm deep, on 2 mm.
-  EXPECT_NEAR(through(c, middle, middle), expected(c), 1e-4 * expected(c));
+  EXPECT_NEAR(through(c, middle, middle), expected(c), kTolerance * expected(c));
   for (float& depth : c.backDepth.image.data) depth += 40;
   EXPECT_LT(through(c, middle, middle), 1e-6 * expected(c));
 }
@@ -68,10 +69,10 @@ TEST_F(ThesisFigure, ThinPartWhoseLightIsBlocked) {
   while (isSheet(corner + 1)) ++corner;
   corner -= 2;
   EXPECT_EQ(through(c, middle, middle), 0);
-  EXPECT_NEAR(through(c, corner, corner), expected(c), 1e-4 * expected(c));
+  EXPECT_NEAR(through(c, corner, corner), expected(c), kTolerance * expected(c));
   // Without the map nothing knows of the body.
   c.lights[0].shadowMap.reset();
-  EXPECT_NEAR(through(c, middle, middle), expected(c), 1e-4 * expected(c));
+  EXPECT_NEAR(through(c, middle, middle), expected(c), kTolerance * expected(c));
 }
 
 }  // namespace
