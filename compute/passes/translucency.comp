@@ -155,12 +155,17 @@ void main() {
   if (!insideRect(pixel)) return;
   uint value = materialValueAt(pixel);
   uint material = materialIndex(value);
-  if (material == 0u) return;
+  // A history that starts is 0 wherever nothing came through: the next frame's pixels may lie there.
+  bool starts = pass.value.z == PELLUCID_WRITE_STARTS;
+  if (material == 0u) {
+    if (starts) imageStore(destinationImage, pixel, vec4(0.0));
+    return;
+  }
   uint m = material - 1u;
 
   // All at once and whatever the flags say (a stand-in is bound where an image is missing), so that their
   // latencies overlap: the pass waits for memory more than it computes.
-  vec4 source = texelFetch(sourceImage, pixel, 0);
+  vec4 source = starts ? vec4(0.0) : texelFetch(sourceImage, pixel, 0);
   // Marked pixels keep their irradiance, and read nothing else.
   bool marked = (value & frame.marks.x) != 0u;
   float frontStored = 0.0, backStored = 0.0;
@@ -210,6 +215,6 @@ void main() {
   if (view == PELLUCID_SHADER_DEBUG_OCCLUSION) result = some * visible / max(arriving, vec3(1.0e-30));
   imageStore(destinationImage, pixel, vec4(result, source.a));
 #else
-  writeResult(pixel, result, source.a, pass.value.z != 0u);
+  writeResult(pixel, result, source.a, pass.value.z == PELLUCID_WRITE_LAST);
 #endif
 }

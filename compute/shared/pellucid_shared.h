@@ -25,6 +25,7 @@ using glm::vec4;
 #define PELLUCID_BINDING_BACK_DEPTH 6
 #define PELLUCID_BINDING_SOURCE 7
 #define PELLUCID_BINDING_NORMAL 8
+#define PELLUCID_BINDING_HISTORY PELLUCID_BINDING_NORMAL // of the add pass, which reads no normals
 #define PELLUCID_BINDING_ALBEDO 9
 #define PELLUCID_BINDING_MATERIAL 10
 #define PELLUCID_BINDING_DESTINATION 11
@@ -57,6 +58,10 @@ using glm::vec4;
 #define PELLUCID_SHADER_DEBUG_THICKNESS 1u
 #define PELLUCID_SHADER_DEBUG_TRANSMITTANCE 2u
 #define PELLUCID_SHADER_DEBUG_OCCLUSION 3u
+
+// PassConstants::value.z of the translucency pass
+#define PELLUCID_WRITE_LAST 1u   // the frame's final write
+#define PELLUCID_WRITE_STARTS 2u // of a history, from 0
 
 #define PELLUCID_GAUSSIANS 8
 #define PELLUCID_KERNEL_TAPS 25 // one side, center included
@@ -114,7 +119,8 @@ struct KernelConstants {
   vec4 tapFalloff[PELLUCID_KERNEL_TAPS]; // rgb: 1/(2 v) of the Gaussians that reach the offset
 };
 
-// Push constants. translucency: first light, lights, 1 if this is the last dispatch, gather samples.
+// Push constants. translucency: first light, lights, PELLUCID_WRITE_*, gather samples.
+// add: unused, unused, 1 if this is the last dispatch.
 // diffuse: step x, step y, 1 if this is the last dispatch.
 struct PassConstants {
   uvec4 value;

@@ -35,6 +35,9 @@ const Names<PellucidAngleModel> kAngles = {{"normal", PELLUCID_ANGLE_NORMAL},
                                            {"minimum-dot", PELLUCID_ANGLE_MINIMUM_DOT},
                                            {"minimum-dot-azimuth", PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH},
                                            {"minimum-dot-sphere", PELLUCID_ANGLE_MINIMUM_DOT_SPHERE}};
+const Names<PellucidReuse> kReuse = {{"none", PELLUCID_REUSE_NONE},
+                                     {"alternate", PELLUCID_REUSE_ALTERNATE},
+                                     {"coherence", PELLUCID_REUSE_COHERENCE}};
 const Names<bool> kViews = {{"pixel", false}, {"constant", true}};
 const Names<bool> kBooleans = {{"0", false}, {"1", true}};
 
@@ -173,6 +176,17 @@ const std::map<std::string, Key> kKeys = {
       [](const auto& key, const auto& value, ReplaySettings& s) {
         s.translucency.materialMarkBit = number(key, value);
       }}},
+    {"reuse",
+     {"none|alternate|coherence of what came through; a single frame always computes it",
+      [](const auto& key, const auto& value, ReplaySettings& s) { s.reuse = lookUp(kReuse, key, value); }}},
+    {"coherence-threshold",
+     {"change of the cosine between camera and light",
+      [](const auto& key, const auto& value, ReplaySettings& s) {
+        s.coherenceThreshold = real(key, value);
+      }}},
+    {"frame-load",
+     {"frame time / budget, multiplies the coherence threshold above 1",
+      [](const auto& key, const auto& value, ReplaySettings& s) { s.frameLoad = real(key, value); }}},
     {"format",
      {"rgba16f|rgba32f", [](const auto& key, const auto& value,
                             ReplaySettings& s) { s.outputFormat = lookUp(kFormats, key, value); }}},

@@ -23,6 +23,9 @@ struct ReplaySettings {
   TransmittanceChoice transmittance = TransmittanceChoice::Material;
   PellucidDebugView debugView = PELLUCID_DEBUG_NONE;
   VkFormat outputFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
+  PellucidReuse reuse = PELLUCID_REUSE_NONE;
+  float coherenceThreshold = 0.005f;
+  float frameLoad = 0;
   bool aliasOutput = false;  // output is the irradiance image; ignored for debug views
   std::array<uint32_t, 4> renderRect = {0, 0, 0, 0};  // width 0: everything
 };

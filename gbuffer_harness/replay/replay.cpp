@@ -8,7 +8,8 @@ namespace pellucid::harness {
 // The device images of one frame, uploaded.
 class FrameRun::Images {
 public:
-  Images(Device& device, const Capture& capture, const ReplaySettings& settings, FrameData& data)
+  Images(Device& device, const Capture& capture, const ReplaySettings& settings, FrameData& data,
+         const Images* previous)
       : device_(device), width_(capture.width), height_(capture.height) {
     PellucidFrame& f = data.frame;
     f.frontDepth = add(capture.frontDepth.image, VK_FORMAT_R32_SFLOAT);
@@ -40,6 +41,15 @@ public:
     uint32_t count = PELLUCID_MAX_TRANSIENTS;
     requireOk(pellucidGetImageNeeds(&f, &count, needs), f, capture.name);
     for (uint32_t i = 0; i < count; ++i) {
+      if (needs[i].persistent) {
+        history_ = previous ? previous->history_ : nullptr;
+        if (!history_) {
+          history_ = std::make_shared<GpuImage>(device, width_, height_, needs[i].format);
+          history_->clear();
+        }
+        f.history = history_->use();
+        continue;
+      }
       GpuImage& image =
           create(static_cast<int>(needs[i].extent[0]), static_cast<int>(needs[i].extent[1]), needs[i].format);
       image.clear();  // brings it into GENERAL
@@ -70,6 +80,7 @@ private:
   int width_, height_;
   std::vector<std::unique_ptr<GpuImage>> images_;
   GpuImage* output_ = nullptr;
+  std::shared_ptr<GpuImage> history_;  // of all frames of a sequence
 };
 
 namespace {
@@ -97,13 +108,15 @@ Context::Context(Device& device) {
 Context::~Context() { pellucidDestroyContext(context_); }
 
 FrameRun::FrameRun(Device& device, const Context& context, const Capture& capture,
-                   const std::vector<PellucidMaterial>& materials, const ReplaySettings& settings)
+                   const std::vector<PellucidMaterial>& materials, const ReplaySettings& settings,
+                   const FrameRun* previous)
     : context_(context), name_(capture.name), plan_(std::make_unique<PellucidPlan>()) {
   makeFrame(capture, materials, settings, data_);
-  images_ = std::make_unique<Images>(device, capture, settings, data_);
+  images_ = std::make_unique<Images>(device, capture, settings, data_,
+                                     previous ? previous->images_.get() : nullptr);
   const PellucidFrame& frame = data_.frame;
   requireOk(pellucidValidateFrame(&frame, nullptr, nullptr), frame, name_);
-  requireOk(pellucidBuildPlan(&frame, nullptr, plan_.get()), frame, name_);
+  requireOk(pellucidBuildPlan(&frame, previous ? previous->plan_.get() : nullptr, plan_.get()), frame, name_);
   constants_ = std::make_unique<HostBuffer>(
       device, plan_->constantsSize, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
 }

@@ -28,9 +28,11 @@ private:
 class FrameRun {
 public:
   // `materials[i]` is the compiled capture.materials[i]. Throws InputError for what validation refuses.
-  // The capture is not needed afterwards.
+  // The capture is not needed afterwards. `previous`: the frame recorded before this one, of the same size,
+  // whose history it goes on with.
   FrameRun(Device& device, const Context& context, const Capture& capture,
-           const std::vector<PellucidMaterial>& materials, const ReplaySettings& settings);
+           const std::vector<PellucidMaterial>& materials, const ReplaySettings& settings,
+           const FrameRun* previous = nullptr);
   ~FrameRun();
 
   const PellucidPlan& plan() const { return *plan_; }

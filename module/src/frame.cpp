@@ -69,4 +69,5 @@ extern "C" void pellucidInitFrame(PellucidFrame* frame) {
   for (float& factor : frame->transmittanceFilter) factor = 1;
   frame->faceVector[2] = 1;
   frame->upAxis[1] = 1;
+  frame->coherenceThreshold = 0.005f;
 }

@@ -1,5 +1,6 @@
 // Frame -> plan. Pure: no device, no allocation.
 #include "frame.h"
+#include "reuse.h"
 #include "validate.h"
 
 namespace pellucid {
@@ -37,7 +38,8 @@ struct Builder {
     d.groups[1] = (rect.height + PELLUCID_GROUP_Y - 1) / PELLUCID_GROUP_Y;
     d.groups[2] = 1;
     // Every dispatch after the first reads what the one before wrote.
-    d.barrierBefore = plan.dispatchCount > 0 ? 1 : 0;
+    // The first of a frame that reuses comes after the last frame's use of the history.
+    d.barrierBefore = plan.dispatchCount > 0 || plan.history.valid ? 1 : 0;
     plan.barrierCount += d.barrierBefore;
     ++plan.dispatchCount;
     return &d;
@@ -87,8 +89,12 @@ struct Builder {
     d->pushConstants[0] = group.firstLight;
     d->pushConstants[1] = group.lightCount;
     d->pushConstants[2] = destination == PELLUCID_RESOURCE_OUTPUT;
+    if (destination == PELLUCID_RESOURCE_HISTORY && group.firstLight == 0)
+      d->pushConstants[2] = PELLUCID_WRITE_STARTS;
     d->pushConstants[3] = frame.gatherSamples;
     common(d, source, destination);
+    if (d->pushConstants[2] == PELLUCID_WRITE_STARTS)
+      d->modeledBytes -= colorBytes() * pixels();  // what is there is not read
     constants(d, PELLUCID_BINDING_LIGHTS, layout.lights);
     constants(d, PELLUCID_BINDING_SHADOWS, layout.shadows);
     constants(d, PELLUCID_BINDING_MATERIALS, layout.materials);
@@ -101,6 +107,16 @@ struct Builder {
             used ? kShadow0 + group.images[slot] : static_cast<uint32_t>(PELLUCID_RESOURCE_FRONT_DEPTH),
             used ? kUnknownDepthBytes : 0);
     }
+    return true;
+  }
+
+  bool addHistory(uint32_t source, uint32_t destination) {
+    PellucidDispatch* d = dispatch(
+        "add history", wide() ? PELLUCID_PIPELINE_ADD_HISTORY_32F : PELLUCID_PIPELINE_ADD_HISTORY_16F);
+    if (!d) return false;
+    d->pushConstants[2] = destination == PELLUCID_RESOURCE_OUTPUT;
+    common(d, source, destination);
+    image(d, PELLUCID_BINDING_HISTORY, PELLUCID_RESOURCE_HISTORY, colorBytes());
     return true;
   }
 
@@ -122,8 +138,10 @@ struct Stages {
   bool lights;  // the fused dispatches carry lights
   bool diffusion;
   uint32_t fused;  // fused dispatches
+  bool history;    // these write the history, and one more adds it
 
-  uint32_t dispatches() const { return fused + (diffusion ? 2 : 0); }
+  // That write a transient or the output.
+  uint32_t writers() const { return (history ? 1 : fused) + (diffusion ? 2 : 0); }
 };
 
 Stages stagesOf(const PellucidFrame& frame) {
@@ -133,11 +151,12 @@ Stages stagesOf(const PellucidFrame& frame) {
   s.lights = s.fused > 0;
   s.diffusion = frame.features & PELLUCID_FEATURE_DIFFUSION && !debug && anyMaterialDiffuses(frame);
   // Without diffusion the fused pass still has to bring irradiance (times albedo) to the output.
-  if (s.dispatches() == 0) s.fused = 1;
+  if (s.writers() == 0) s.fused = 1;
+  s.history = keepsHistory(frame);
   return s;
 }
 
-bool build(const PellucidFrame& frame, PellucidPlan& plan) {
+bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan& plan) {
   Builder b{frame, constantsLayout(frame), renderRect(frame), plan};
   const Stages stages = stagesOf(frame);
   plan.activeLights = b.layout.lightCount;
@@ -157,9 +176,12 @@ bool build(const PellucidFrame& frame, PellucidPlan& plan) {
   else if (!stages.diffusion)
     b.skip("diffusion", "no material diffuses");
 
+  const bool reused = stages.history && decideReuse(frame, kept, &plan.history);
+  if (reused) b.skip("translucency", "reused from an earlier frame");
+
   // Images alternate between the two transients; the last write goes to the output.
   uint32_t source = PELLUCID_RESOURCE_IRRADIANCE, next = 0;
-  uint32_t remaining = stages.dispatches();
+  uint32_t remaining = stages.writers();
   const auto destination = [&]() -> uint32_t {
     if (--remaining == 0) return PELLUCID_RESOURCE_OUTPUT;
     const uint32_t transient = kTransient0 + next;
@@ -173,7 +195,17 @@ bool build(const PellucidFrame& frame, PellucidPlan& plan) {
     source = to;
   };
   const auto translucencies = [&] {
-    if (stages.lights)
+    if (stages.history) {
+      if (!reused)
+        forEachLightGroup(
+            frame, [](const LightGroup&, const PellucidLight&) {},
+            [&](const LightGroup& group) {
+              fits = fits && b.translucency(group, PELLUCID_RESOURCE_HISTORY, PELLUCID_RESOURCE_HISTORY);
+            });
+      const uint32_t to = destination();
+      fits = fits && b.addHistory(source, to);
+      source = to;
+    } else if (stages.lights)
       forEachLightGroup(
           frame, [](const LightGroup&, const PellucidLight&) {}, translucency);
     else if (stages.fused > 0)
@@ -207,11 +239,12 @@ using namespace pellucid;
 extern "C" PellucidResult pellucidBuildPlan(const PellucidFrame* frame, const PellucidPlan* previous,
                                             PellucidPlan* plan) {
   if (!plan) return PELLUCID_ERROR_INVALID_ARGUMENT;
-  (void)previous;
+  // The two plans may be one object.
+  const PellucidHistory kept = previous ? previous->history : PellucidHistory{};
   *plan = PellucidPlan{};
   const PellucidResult result = checkFrame(frame, nullptr, nullptr);
   if (result != PELLUCID_OK) return result;
-  if (!build(*frame, *plan)) {
+  if (!build(*frame, kept, *plan)) {
     *plan = PellucidPlan{};
     return PELLUCID_ERROR_CAPACITY;
   }
@@ -223,19 +256,25 @@ extern "C" PellucidResult pellucidGetImageNeeds(const PellucidFrame* frame, uint
   if (!count) return PELLUCID_ERROR_INVALID_ARGUMENT;
   const PellucidResult result = checkFrame(frame, nullptr, nullptr);
   if (result != PELLUCID_OK) return result;
-  const uint32_t dispatches = stagesOf(*frame).dispatches();
+  const Stages stages = stagesOf(*frame);
+  const uint32_t writers = stages.writers();
   const uint32_t room = *count;
-  *count = dispatches - 1 < 2 ? dispatches - 1 : 2;
+  const uint32_t transients = writers - 1 < 2 ? writers - 1 : 2;
+  *count = transients + (stages.history ? 1 : 0);
   const uint64_t texel = frame->outputFormat == VK_FORMAT_R32G32B32A32_SFLOAT ? 16 : 8;
+  const uint64_t bytes = texel * frame->imageExtent[0] * frame->imageExtent[1];
+  // Frames that refresh a history have its dispatches in front of those that write transients.
+  const uint32_t before = stages.history ? stages.fused : 0;
   for (uint32_t i = 0; needs && i < *count && i < room; ++i) {
-    // Dispatches 0 .. n - 2 write the transients in turn, so the last to write transient i has i's parity;
+    needs[i] = {frame->outputFormat, {frame->imageExtent[0], frame->imageExtent[1]}, 0, before, bytes, 0};
+    if (i == transients) {
+      needs[i].persistent = 1;
+      continue;
+    }
+    // Writers 0 .. n - 2 write the transients in turn, so the last to write transient i has i's parity;
     // the dispatch after it reads.
-    const uint32_t lastWriter = dispatches - 2 - ((dispatches - 2 - i) & 1u);
-    needs[i] = {frame->outputFormat,
-                {frame->imageExtent[0], frame->imageExtent[1]},
-                i,
-                lastWriter + 1,
-                texel * frame->imageExtent[0] * frame->imageExtent[1]};
+    needs[i].firstDispatch = i;
+    needs[i].lastDispatch = before + writers - 2 - ((writers - 2 - i) & 1u) + 1;
   }
   return PELLUCID_OK;
 }

@@ -7,6 +7,7 @@ namespace {
 
 const PellucidImage& imageOf(const PellucidFrame& f, uint32_t resource) {
   if (resource >= PELLUCID_RESOURCE_SHADOW0) return f.shadowImages[resource - PELLUCID_RESOURCE_SHADOW0];
+  if (resource == PELLUCID_RESOURCE_HISTORY) return f.history;
   if (resource >= PELLUCID_RESOURCE_TRANSIENT0) return f.transients[resource - PELLUCID_RESOURCE_TRANSIENT0];
   switch (resource) {
     case PELLUCID_RESOURCE_FRONT_DEPTH:

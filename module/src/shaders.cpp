@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "kAddHistory16f.h"
+#include "kAddHistory32f.h"
 #include "kDebug16f.h"
 #include "kDebug32f.h"
 #include "kDiffuse16f.h"
@@ -23,7 +25,9 @@ constexpr Shader shader(const uint32_t (&words)[N]) {
 // In the order of PellucidPipeline.
 const std::array kShaders = {shader(kTranslucency16f), shader(kTranslucency32f), shader(kDebug16f),
                              shader(kDebug32f),        shader(kDiffuse16f),      shader(kDiffuse32f),
-                             shader(kGather16f),       shader(kGather32f)};
+                             shader(kGather16f),       shader(kGather32f),
+
+                             shader(kAddHistory16f),   shader(kAddHistory32f)};
 static_assert(kShaders.size() == PELLUCID_PIPELINE_COUNT);
 
 }  // namespace

@@ -45,9 +45,9 @@ extern "C" const char* pellucidResultName(PellucidResult result) {
 }
 
 extern "C" const char* pellucidResourceName(uint32_t resource) {
-  static constexpr std::array names = {"frontDepth", "backDepth",  "irradiance", "normal",
-                                       "albedo",     "material",   "output",     "constants",
-                                       "transient0", "transient1", "transient2", "transient3"};
+  static constexpr std::array names = {"frontDepth", "backDepth",  "irradiance", "normal",     "albedo",
+                                       "material",   "output",     "constants",  "transient0", "transient1",
+                                       "transient2", "transient3", "history"};
   if (resource >= PELLUCID_RESOURCE_SHADOW0) return "shadowImage";
   return resource < names.size() ? names[resource] : "unknown resource";
 }
@@ -55,7 +55,9 @@ extern "C" const char* pellucidResourceName(uint32_t resource) {
 extern "C" const char* pellucidPipelineName(uint32_t pipeline) {
   static constexpr std::array names = {"translucency_rgba16f", "translucency_rgba32f", "debug_rgba16f",
                                        "debug_rgba32f",        "diffuse_rgba16f",      "diffuse_rgba32f",
-                                       "gather_rgba16f",       "gather_rgba32f"};
+                                       "gather_rgba16f",       "gather_rgba32f",
+
+                                       "add_history_rgba16f",  "add_history_rgba32f"};
   static_assert(names.size() == PELLUCID_PIPELINE_COUNT);
   return pipeline < names.size() ? names[pipeline] : "unknown pipeline";
 }

@@ -6,6 +6,7 @@
 #include "camera.h"
 #include "frame.h"
 #include "minimum_dot.h"
+#include "reuse.h"
 #include "text.h"
 
 namespace pellucid {
@@ -282,6 +283,14 @@ PellucidResult checkFrame(const PellucidFrame* frame, PellucidMessageFn fn, void
     out.error("shadowMaps", "is NULL, but shadowMapCount is ", f.shadowMapCount);
   if (f.shadowImageCount > 0 && !f.shadowImages)
     out.error("shadowImages", "is NULL, but shadowImageCount is ", f.shadowImageCount);
+  if (f.reuse == (PELLUCID_REUSE_ALTERNATE | PELLUCID_REUSE_COHERENCE))
+    out.error("reuse", "is both; alternating would skip frames in which coherence asks for a refresh");
+  else if (f.reuse > PELLUCID_REUSE_COHERENCE)
+    out.error("reuse", "is ", f.reuse, ", not a PellucidReuse");
+  if (!(f.coherenceThreshold >= 0))
+    out.error("coherenceThreshold", "is ", f.coherenceThreshold, "; must be >= 0");
+  if (!(f.frameLoad >= 0 && std::isfinite(f.frameLoad)))
+    out.error("frameLoad", "is ", f.frameLoad, "; must be >= 0");
   if (out.result() != PELLUCID_OK) return out.result();
 
   for (uint32_t i = 0; i < f.materialCount; ++i) {
@@ -303,7 +312,7 @@ PellucidResult checkFrame(const PellucidFrame* frame, PellucidMessageFn fn, void
   const uint32_t groups = lightGroupCount(f);
   if (groups > 1 && f.debugView != PELLUCID_DEBUG_NONE && f.debugView != PELLUCID_DEBUG_IRRADIANCE)
     out.error("debugView", "is ", f.debugView, ", which needs all lights in one dispatch; they use ", groups);
-  if (groups + 2 > PELLUCID_MAX_DISPATCHES) {
+  if (groups + (keepsHistory(f) ? 3 : 2) > PELLUCID_MAX_DISPATCHES) {
     out.error("shadowImages", "are more than the plan's ", static_cast<int>(PELLUCID_MAX_DISPATCHES),
               " dispatches can bind");
     return PELLUCID_ERROR_CAPACITY;
@@ -321,6 +330,13 @@ PellucidResult checkViews(const PellucidFrame& f, PellucidMessageFn fn, void* us
     if (!given(f.shadowImages[i])) out.error(Field("shadowImages[", i, "]"), "has no view");
   uint32_t needed = 0;
   pellucidGetImageNeeds(&f, &needed, nullptr);
+  if (keepsHistory(f)) {
+    --needed;
+    if (!given(f.history))
+      out.error("history", "has no view, but reuse needs it; see pellucidGetImageNeeds");
+    else if (f.history.layout != VK_IMAGE_LAYOUT_GENERAL)
+      out.error("history", "is in VkImageLayout ", static_cast<int>(f.history.layout), "; must be GENERAL");
+  }
   for (uint32_t i = 0; i < needed; ++i)
     if (!given(f.transients[i]))
       out.error(Field("transients[", i, "]"), "has no view; see pellucidGetImageNeeds");

@@ -1,4 +1,4 @@
-// The two failure cases of Whelan 2009, figures 4.5 and 4.6, against closed forms.
+// The two failure cases of Whelan 2009, figures 4.5 and 4.6, against closed forms; reuse between frames.
 #include "gpu_fixture.h"
 
 #include <numbers>
@@ -73,6 +73,59 @@ TEST_F(ThesisFigure, ThinPartWhoseLightIsBlocked) {
   // Without the map nothing knows of the body.
   c.lights[0].shadowMap.reset();
   EXPECT_NEAR(through(c, middle, middle), expected(c), kTolerance * expected(c));
+}
+
+// A light that turns: frames that refresh are as without reuse, frames between them are their own irradiance
+// plus the light that came through at the last refresh.
+TEST_F(GpuTest, ReuseOverATurningLight) {
+  const Context context(device());
+  for (const auto reuse : {PELLUCID_REUSE_ALTERNATE, PELLUCID_REUSE_COHERENCE})
+    for (const int maps : {1, 9}) {  // one fused dispatch, and two
+      ReplaySettings s;
+      s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+      s.features = PELLUCID_FEATURE_TRANSLUCENCY;
+      s.reuse = reuse;
+      ReplaySettings plain = s;
+      plain.reuse = PELLUCID_REUSE_NONE;
+      std::unique_ptr<FrameRun> last;
+      Image kept, keptIrradiance;  // of the last refresh
+      int refreshed = 0;
+      for (int i = 0; i < 12; ++i) {
+        Capture c = flatCapture(24, 16, 2);
+        for (size_t p = 0; p < c.irradiance.data.size(); ++p)
+          c.irradiance.data[p] += 0.1f * static_cast<float>(i);
+        // What was outside of the material at a refresh may be inside of it later.
+        for (size_t p = 0; p < c.material.size(); ++p) c.material[p] = static_cast<int>(p % 24) < 10 + i;
+        const double angle = 0.2 + 0.02 * i;
+        for (int k = 0; k < maps; ++k) {
+          Light light = backLight();
+          light.direction = {std::sin(angle), 0, std::cos(angle)};
+          light.intensity = 1;
+          light.shadowMap = flatShadowMap(-12, PELLUCID_DEPTH_VIEW_Z, 4);
+          c.lights.push_back(light);
+        }
+        auto run =
+            std::make_unique<FrameRun>(device(), context, c, std::vector{testMaterial()}, s, last.get());
+        device().run([&](VkCommandBuffer commands) { run->record(commands); });
+        const Image out = run->output(), own = replay(c, testMaterial(), plain);
+        if (run->plan().history.age == 0) {
+          kept = own;
+          keptIrradiance = c.irradiance;
+          ++refreshed;
+        }
+        for (size_t p = 0; p < out.data.size(); ++p) {
+          const size_t e = p / 4 * 3 + p % 4;
+          if (p % 4 == 3 || c.material[p / 4] == 0) continue;
+          const bool seen = kept.data[p] != keptIrradiance.data[e];  // was material at the refresh
+          const float through = seen ? kept.data[p] - keptIrradiance.data[e] : 0;
+          ASSERT_NEAR(out.data[p], c.irradiance.data[e] + through, 1e-5) << "frame " << i;
+        }
+        last = std::move(run);
+      }
+      EXPECT_GT(refreshed, 2);
+      EXPECT_LT(refreshed, 12);
+      EXPECT_TRUE(reuse != PELLUCID_REUSE_ALTERNATE || refreshed == 6) << refreshed;
+    }
 }
 
 }  // namespace

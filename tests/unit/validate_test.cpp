@@ -39,6 +39,9 @@ const std::vector<Violation> kViolations = {
     {"MarkBitOfTwoBits", "materialMarkBit", "192", [](Frame& f) { f.frame.materialMarkBit = 192; }},
     {"MarkBitInTheIndex", "materialMarkBit", "above the 1 materials",
      [](Frame& f) { f.frame.materialMarkBit = 1; }},
+    {"BothReuses", "reuse", "is both", [](Frame& f) { f.frame.reuse = 3; }},
+    {"CoherenceThreshold", "coherenceThreshold", "nan", [](Frame& f) { f.frame.coherenceThreshold = NAN; }},
+    {"FrameLoad", "frameLoad", "-1", [](Frame& f) { f.frame.frameLoad = -1; }},
     {"NoMinimumDots", "minimumDotTable", "NULL",
      [](Frame& f) {
        f.frame.angleModel = PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH;

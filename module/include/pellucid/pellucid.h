@@ -156,6 +156,16 @@ typedef enum PellucidAngleModel {
   PELLUCID_ANGLE_MINIMUM_DOT_SPHERE = 6   /* the same by the direction on the sphere */
 } PellucidAngleModel;
 
+/* Which frames compute the light that comes through and which take that of an earlier one: the part of a
+ * post-process that Whelan 2009 saves by not rendering the depth maps. Irradiance and diffusion are always
+ * the frame's own. One of the two: alternating would skip frames in which coherence asks for a refresh. */
+typedef enum PellucidReuse {
+  PELLUCID_REUSE_NONE = 0,
+  PELLUCID_REUSE_ALTERNATE = 1, /* every second frame (Whelan 2009, 4.7.4) */
+  PELLUCID_REUSE_COHERENCE = 2  /* until the cosine between the camera's axis and the direction to a light has
+                                   changed by more than the threshold (Whelan 2009, 4.7.5) */
+} PellucidReuse;
+
 /* Write one intermediate into `output` instead of the result. Float values, alpha kept. */
 typedef enum PellucidDebugView {
   PELLUCID_DEBUG_NONE = 0,
@@ -230,6 +240,14 @@ typedef struct PellucidFrame {
   float objectCenter[3]; /* world; where point and spot lights are seen from */
   uint32_t materialMarkBit; /* a power of two above materialCount, or 0: pixels whose material value has the
                                bit get diffusion and no translucency; the rest of the value is the index */
+
+  uint32_t reuse;           /* PellucidReuse. Kept light is looked up at the same pixel: pass no previous plan
+                               after a cut, and expect a lag of the frames in between where things move */
+  float coherenceThreshold; /* of COHERENCE, >= 0; default .005 */
+  float frameLoad;          /* frame time / its budget, >= 0: the threshold is multiplied by it where it is
+                               above 1, so that frames that are late refresh less often; 0: not known */
+  PellucidImage history;    /* with reuse; the persistent one of pellucidGetImageNeeds, GENERAL. Of the same
+                               image in all frames; its content is the module's */
 } PellucidFrame;
 
 /* ---- Plan ------------------------------------------------------------------------------------ */
@@ -246,6 +264,7 @@ typedef enum PellucidResource {
   PELLUCID_RESOURCE_OUTPUT = 6,
   PELLUCID_RESOURCE_CONSTANTS = 7, /* a range of the constants slice */
   PELLUCID_RESOURCE_TRANSIENT0 = 8,
+  PELLUCID_RESOURCE_HISTORY = 12,
   PELLUCID_RESOURCE_SHADOW0 = 16
 } PellucidResource;
 
@@ -258,7 +277,9 @@ typedef enum PellucidPipeline {
   PELLUCID_PIPELINE_DIFFUSE_32F = 5,
   PELLUCID_PIPELINE_GATHER_16F = 6,
   PELLUCID_PIPELINE_GATHER_32F = 7,
-  PELLUCID_PIPELINE_COUNT = 8
+  PELLUCID_PIPELINE_ADD_HISTORY_16F = 8,
+  PELLUCID_PIPELINE_ADD_HISTORY_32F = 9,
+  PELLUCID_PIPELINE_COUNT = 10
 } PellucidPipeline;
 
 enum {
@@ -296,6 +317,18 @@ typedef struct PellucidSkip {
   uint32_t count;     /* how many (lights, say) */
 } PellucidSkip;
 
+enum { PELLUCID_MAX_COHERENT_LIGHTS = 16 };
+
+/* What frame.history holds after the plan has run; how the next plan decides. */
+typedef struct PellucidHistory {
+  uint32_t valid; /* 0: nothing */
+  uint32_t age;   /* frames since it was written */
+  VkFormat format;
+  uint32_t extent[2], rect[4];
+  uint32_t lightCount; /* above PELLUCID_MAX_COHERENT_LIGHTS, COHERENCE refreshes every frame */
+  float lightDots[PELLUCID_MAX_COHERENT_LIGHTS]; /* camera axis and direction to the light, when written */
+} PellucidHistory;
+
 typedef struct PellucidPlan {
   uint32_t dispatchCount, barrierCount;
   uint32_t skipCount;
@@ -303,6 +336,7 @@ typedef struct PellucidPlan {
   VkDeviceSize constantsSize; /* bytes RecordPlan writes into the constants slice */
   PellucidDispatch dispatches[PELLUCID_MAX_DISPATCHES];
   PellucidSkip skips[PELLUCID_MAX_SKIPS];
+  PellucidHistory history;
 } PellucidPlan;
 
 /* One transient the caller creates: 2D, one mip, imageExtent, usage SAMPLED | STORAGE. It holds
@@ -312,6 +346,7 @@ typedef struct PellucidImageNeed {
   uint32_t extent[2];
   uint32_t firstDispatch, lastDispatch;
   uint64_t bytes;
+  uint32_t persistent; /* 1: for frame.history and not a transient; keeps its content between frames */
 } PellucidImageNeed;
 
 /* ---- Context --------------------------------------------------------------------------------- */
@@ -348,7 +383,7 @@ void pellucidInitFrame(PellucidFrame* frame);
 /* Bit (1 << PellucidResource) of each screen-sized image that `features` cannot do without. */
 uint32_t pellucidGetRequiredInputs(uint32_t features);
 
-/* The transients of this frame: writes up to *count needs, sets *count to the number there are.
+/* The transients of this frame, in order, then the persistent image of frames that reuse: writes up to *count needs, sets *count to the number there are.
  * `needs` may be NULL. Transient views are not looked at, so call it before creating them. */
 PellucidResult pellucidGetImageNeeds(const PellucidFrame* frame, uint32_t* count,
                                      PellucidImageNeed* needs);
@@ -356,8 +391,8 @@ PellucidResult pellucidGetImageNeeds(const PellucidFrame* frame, uint32_t* count
 /* Checks every convention; calls `fn` for each finding. PELLUCID_OK unless one is an error. */
 PellucidResult pellucidValidateFrame(const PellucidFrame* frame, PellucidMessageFn fn, void* user);
 
-/* Same frame and previous plan, same plan. `previous` is the last frame's plan or NULL; history
- * comes in here and nowhere else; no feature reuses results yet. The plan keeps no pointer to the frame.
+/* Same frame and previous plan, same plan. `previous` is the last recorded frame's plan or NULL; history
+ * comes in here and nowhere else; see PellucidReuse. The plan keeps no pointer to the frame.
  * Of the views only whether the optional inputs are given is read. */
 PellucidResult pellucidBuildPlan(const PellucidFrame* frame, const PellucidPlan* previous,
                                  PellucidPlan* plan);

@@ -1,0 +1,157 @@
+// Which frames of a sequence refresh the light that comes through, decided by BuildPlan alone.
+#include <cmath>
+
+#include "frame_fixture.h"
+
+namespace {
+
+using pellucid::test::Frame;
+
+bool reuses(const PellucidPlan& plan) {
+  for (uint32_t i = 0; i < plan.skipCount; ++i)
+    if (plan.skips[i].reason == std::string("reused from an earlier frame")) return true;
+  return false;
+}
+
+struct Sequence : Frame {
+  PellucidPlan last{};
+  bool first = true;
+
+  explicit Sequence(PellucidReuse reuse, uint32_t shadowImages = 1) : Frame(shadowImages) { frame.reuse = reuse; }
+
+  void turnLights(double degrees) {
+    const double angle = degrees * 3.14159265358979 / 180;
+    for (PellucidLight& l : lights) {
+      l.direction[0] = static_cast<float>(std::sin(angle));
+      l.direction[2] = static_cast<float>(std::cos(angle));
+    }
+  }
+
+  // Plans the next frame; true if it refreshes. The plan takes its own predecessor's place.
+  bool refreshes() {
+    EXPECT_EQ(pellucidBuildPlan(&frame, first ? nullptr : &last, &last), PELLUCID_OK) << problems();
+    first = false;
+    return !reuses(last);
+  }
+};
+
+TEST(Reuse, NoneNeverReuses) {
+  Sequence s(PELLUCID_REUSE_NONE);
+  for (int i = 0; i < 5; ++i) EXPECT_TRUE(s.refreshes());
+  EXPECT_EQ(s.last.history.valid, 0u);
+}
+
+TEST(Reuse, AlternateRefreshesEverySecondFrame) {
+  Sequence s(PELLUCID_REUSE_ALTERNATE);
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(s.refreshes(), i % 2 == 0) << i;
+}
+
+TEST(Reuse, CoherenceOfAStillLightRefreshesOnce) {
+  Sequence s(PELLUCID_REUSE_COHERENCE);
+  for (int i = 0; i < 50; ++i) EXPECT_EQ(s.refreshes(), i == 0) << i;
+  EXPECT_EQ(s.last.history.age, 49u);
+}
+
+// A light that turns half a degree a frame: refreshed exactly when the cosine has moved by more than .005.
+TEST(Reuse, CoherenceOfATurningLight) {
+  for (const float load : {0.0f, 1.0f, 4.0f}) {
+    Sequence s(PELLUCID_REUSE_COHERENCE);
+    s.frame.frameLoad = load;
+    const double threshold = 0.005 * std::max(1.0f, load);
+    double kept = 2;
+    int refreshed = 0;
+    for (int i = 0; i < 100; ++i) {
+      const double degrees = 20 + 0.5 * i, cosine = std::cos(degrees * 3.14159265358979 / 180);
+      s.turnLights(degrees);
+      const bool expected = std::abs(cosine - kept) > threshold;
+      EXPECT_EQ(s.refreshes(), expected) << i;
+      if (expected) kept = cosine;
+      refreshed += expected;
+    }
+    // 20 to 69.5 degrees is .59 of cosine: at most one refresh a threshold.
+    EXPECT_LE(refreshed, 1 + 0.59 / threshold);
+    EXPECT_GE(refreshed, 0.59 / threshold / 4);
+  }
+}
+
+TEST(Reuse, TheCameraTurnsTheCosineToo) {
+  Sequence s(PELLUCID_REUSE_COHERENCE);
+  EXPECT_TRUE(s.refreshes());
+  s.turnLights(30);
+  EXPECT_TRUE(s.refreshes());
+  // The camera follows by the same angle about the same axis, and so the cosine returns to 1.
+  const float c = std::cos(0.5235988f), n = std::sin(0.5235988f);
+  const float turned[16] = {c, 0, n, 0, 0, 1, 0, 0, -n, 0, c, 0, 0, 0, 0, 1};
+  std::copy(turned, turned + 16, s.frame.viewFromWorld);
+  EXPECT_TRUE(s.refreshes());
+  EXPECT_NEAR(s.last.history.lightDots[0], 1, 1e-6);
+  EXPECT_FALSE(s.refreshes());
+}
+
+TEST(Reuse, AnotherImageOrOtherLightsRefresh) {
+  for (const auto reuse : {PELLUCID_REUSE_ALTERNATE, PELLUCID_REUSE_COHERENCE}) {
+    const auto refreshesAfter = [&](auto change) {
+      Sequence s(reuse);
+      EXPECT_TRUE(s.refreshes());
+      change(s);
+      return s.refreshes();
+    };
+    EXPECT_FALSE(refreshesAfter([](Sequence&) {}));
+    EXPECT_TRUE(refreshesAfter([](Sequence& s) { s.frame.imageExtent[0] = 99; }));
+    EXPECT_TRUE(refreshesAfter([](Sequence& s) { s.frame.renderRect[2] = s.frame.renderRect[3] = 20; }));
+    EXPECT_TRUE(refreshesAfter([](Sequence& s) { s.frame.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT; }));
+    EXPECT_TRUE(refreshesAfter([](Sequence& s) {
+      s.lights.push_back(s.lights[0]);
+      s.use();
+    }));
+    EXPECT_TRUE(refreshesAfter([](Sequence& s) {
+      s.frame.lightCount = 0;
+      s.refreshes();  // nothing comes through, nothing is kept
+      s.use();
+    }));
+  }
+}
+
+TEST(Reuse, MoreLightsThanAreFollowedRefreshEveryFrame) {
+  Sequence s(PELLUCID_REUSE_COHERENCE);
+  s.lights.resize(PELLUCID_MAX_COHERENT_LIGHTS + 1, s.lights[0]);
+  s.use();
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(s.refreshes());
+}
+
+// The needs hold for frames that refresh, with several fused dispatches, and for those that reuse.
+TEST(Reuse, ImageNeedsCoverBothKindsOfFrame) {
+  for (const uint32_t images : {1u, 20u})
+    for (const uint32_t features : {1u, 3u}) {
+      Sequence s(PELLUCID_REUSE_ALTERNATE, images);
+      s.frame.features = features;
+      PellucidImageNeed needs[PELLUCID_MAX_TRANSIENTS];
+      uint32_t count = PELLUCID_MAX_TRANSIENTS;
+      ASSERT_EQ(pellucidGetImageNeeds(&s.frame, &count, needs), PELLUCID_OK);
+      ASSERT_EQ(count, features == 3 ? 3u : 1u);
+      for (uint32_t i = 0; i < count; ++i) EXPECT_EQ(needs[i].persistent, i + 1 == count);
+      for (int frame = 0; frame < 2; ++frame) {
+        s.refreshes();
+        EXPECT_EQ(s.last.dispatches[0].barrierBefore, 1u) << "after the last frame's use of the history";
+        for (uint32_t d = 0; d < s.last.dispatchCount; ++d)
+          for (uint32_t b = 0; b < s.last.dispatches[d].bindingCount; ++b) {
+            const uint32_t resource = s.last.dispatches[d].bindings[b].resource;
+            if (resource < PELLUCID_RESOURCE_TRANSIENT0 || resource >= PELLUCID_RESOURCE_HISTORY) continue;
+            const uint32_t transient = resource - PELLUCID_RESOURCE_TRANSIENT0;
+            ASSERT_LT(transient + 1, count);
+            EXPECT_GE(d, needs[transient].firstDispatch);
+            EXPECT_LE(d, needs[transient].lastDispatch);
+          }
+      }
+    }
+}
+
+TEST(Reuse, HistoryMustBeGiven) {
+  Sequence s(PELLUCID_REUSE_ALTERNATE);
+  s.frame.features = PELLUCID_FEATURE_TRANSLUCENCY;
+  EXPECT_NE(s.problems().find("history has no view"), std::string::npos) << s.problems();
+  s.frame.history = Frame::view();
+  EXPECT_EQ(s.problems(), "");
+}
+
+}  // namespace
