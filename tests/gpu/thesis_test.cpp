@@ -76,7 +76,7 @@ TEST_F(ThesisFigure, ThinPartWhoseLightIsBlocked) {
 }
 
 // A light that turns: frames that refresh are as without reuse, frames between them are their own irradiance
-// plus the light that came through at the last refresh.
+// plus the light that came through at the last refresh, gathered or not.
 TEST_F(GpuTest, ReuseOverATurningLight) {
   const Context context(device());
   for (const auto reuse : {PELLUCID_REUSE_ALTERNATE, PELLUCID_REUSE_COHERENCE})
@@ -85,6 +85,7 @@ TEST_F(GpuTest, ReuseOverATurningLight) {
       s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
       s.features = PELLUCID_FEATURE_TRANSLUCENCY;
       s.reuse = reuse;
+      s.translucency.gatherSamples = maps == 1 ? 8 : 0;
       ReplaySettings plain = s;
       plain.reuse = PELLUCID_REUSE_NONE;
       std::unique_ptr<FrameRun> last;

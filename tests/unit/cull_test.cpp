@@ -138,6 +138,17 @@ TEST(Cull, FrontLightsAreDropped) {
   s.translucency.angleModel = PELLUCID_ANGLE_COSINE;
   s.debugView = PELLUCID_DEBUG_THICKNESS;
   EXPECT_EQ(reasonOf(view.capture, s), "");
+
+  // What is gathered comes from around, whatever the angle.
+  s.debugView = PELLUCID_DEBUG_NONE;
+  s.translucency.gatherSamples = 8;
+  EXPECT_NE(reasonOf(view.capture, s), "") << "nothing is gathered without a map";
+  ShadowMap map;
+  map.clipFromWorld = {0.01, 0, 0, 0, 0, 0.01, 0, 0, 0, 0, 0.01, 0, 0, 0, 0.5, 1};
+  map.depth.encoding = PELLUCID_DEPTH_DEVICE;
+  map.depth.image = Image(1, 1, 1, 0.5f);
+  view.capture.lights[0].shadowMap = map;
+  EXPECT_EQ(reasonOf(view.capture, s), "");
 }
 
 }  // namespace
