@@ -17,7 +17,9 @@ struct Sequence : Frame {
   PellucidPlan last{};
   bool first = true;
 
-  explicit Sequence(PellucidReuse reuse, uint32_t shadowImages = 1) : Frame(shadowImages) { frame.reuse = reuse; }
+  explicit Sequence(PellucidReuse reuse, uint32_t shadowImages = 1) : Frame(shadowImages) {
+    frame.reuse = reuse;
+  }
 
   void turnLights(double degrees) {
     const double angle = degrees * 3.14159265358979 / 180;

@@ -383,8 +383,8 @@ void pellucidInitFrame(PellucidFrame* frame);
 /* Bit (1 << PellucidResource) of each screen-sized image that `features` cannot do without. */
 uint32_t pellucidGetRequiredInputs(uint32_t features);
 
-/* The transients of this frame, in order, then the persistent image of frames that reuse: writes up to *count needs, sets *count to the number there are.
- * `needs` may be NULL. Transient views are not looked at, so call it before creating them. */
+/* The transients of this frame in order, then with reuse the persistent image. Writes up to *count needs, sets
+ * *count to the number there are; `needs` may be NULL. Views are not looked at: call it before creating them. */
 PellucidResult pellucidGetImageNeeds(const PellucidFrame* frame, uint32_t* count,
                                      PellucidImageNeed* needs);
 
