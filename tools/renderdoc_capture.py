@@ -99,8 +99,7 @@ def open_and_capture(rd, path):
     rd.ShutdownReplay()
 
 
-if "pyrenderdoc" in globals():  # RenderDoc's own shell
-    import renderdoc
+if "pyrenderdoc" in globals():  # RenderDoc's own shell, where renderdoc is a global, too
     pyrenderdoc.Replay().BlockInvoke(lambda controller: capture(renderdoc, controller))
 elif __name__ == "__main__":
     import renderdoc
