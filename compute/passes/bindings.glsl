@@ -17,7 +17,7 @@ layout(set = 0, binding = PELLUCID_BINDING_ALBEDO) uniform texture2D albedoImage
 layout(set = 0, binding = PELLUCID_BINDING_MATERIAL) uniform utexture2D materialImage;
 layout(set = 0, binding = PELLUCID_BINDING_DESTINATION, FORMAT) uniform writeonly image2D destinationImage;
 
-bool hasFlag(uint flag) { return (frame.flags.x & flag) != 0u; }
+#include "lib/flags.glsl"
 
 ivec2 invocationPixel() { return ivec2(frame.rect.xy) + ivec2(gl_GlobalInvocationID.xy); }
 

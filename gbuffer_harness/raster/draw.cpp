@@ -4,19 +4,23 @@
 #include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <deque>
 
 #include "common/error.h"
 #include "kRasterCount.h"
 #include "kRasterDepth.h"
 #include "kRasterMesh.h"
 #include "kRasterSurface.h"
+#include "kRasterTransmit.h"
 #include "scene/vector.h"
+#include "shared/pellucid_shared.h"
 
 namespace pellucid::harness {
 
 namespace {
 
 constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
+constexpr std::uint32_t kOwnBindings = 3;  // of shaders/draw.glsl
 
 using ShaderModule = Owned<VkShaderModule, vkDestroyShaderModule>;
 
@@ -33,6 +37,8 @@ Spirv fragmentSpirv(FragmentShader shader) {
       return {kRasterDepth, sizeof kRasterDepth};
     case FragmentShader::Count:
       return {kRasterCount, sizeof kRasterCount};
+    case FragmentShader::Transmit:
+      return {kRasterTransmit, sizeof kRasterTransmit};
   }
   throw DeviceError("no such fragment shader");
 }
@@ -79,6 +85,73 @@ VkSamplerAddressMode addressMode(TextureWrap wrap) {
 glm::vec4 vec4(const std::array<double, 3>& rgb, double w) {
   return {static_cast<float>(rgb[0]), static_cast<float>(rgb[1]), static_cast<float>(rgb[2]),
           static_cast<float>(w)};
+}
+
+// Bindings of the module's fused dispatch that shaders/transmit.frag reads; they follow those of draw.glsl.
+struct PlannedBinding {
+  std::uint32_t binding;
+  VkDescriptorType type;
+};
+std::vector<PlannedBinding> plannedBindings() {
+  constexpr VkDescriptorType buffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+  constexpr VkDescriptorType image = VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
+  std::vector<PlannedBinding> all = {{PELLUCID_BINDING_FRAME, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
+                                     {PELLUCID_BINDING_LIGHTS, buffer},
+                                     {PELLUCID_BINDING_SHADOWS, buffer},
+                                     {PELLUCID_BINDING_MATERIALS, buffer},
+                                     {PELLUCID_BINDING_NORMAL, image},
+                                     {PELLUCID_BINDING_MATERIAL, image}};
+  for (std::uint32_t i = 0; i < PELLUCID_SHADOW_IMAGE_COUNT; ++i)
+    all.push_back({PELLUCID_BINDING_SHADOW_IMAGES + i, image});
+  return all;
+}
+
+const PellucidImage& plannedImage(const PellucidFrame& frame, std::uint32_t resource) {
+  if (resource >= PELLUCID_RESOURCE_SHADOW0) return frame.shadowImages[resource - PELLUCID_RESOURCE_SHADOW0];
+  if (resource == PELLUCID_RESOURCE_NORMAL) return frame.normal;
+  if (resource == PELLUCID_RESOURCE_MATERIAL) return frame.material;
+  return frame.frontDepth;  // what the plan binds for an input that the frame lacks
+}
+
+// The writes of one push, with what they point to.
+class DescriptorWrites {
+public:
+  void image(std::uint32_t binding, VkDescriptorType type, VkSampler sampler, const PellucidImage& use) {
+    images_.push_back({sampler, use.view, use.layout});
+    add(binding, type).pImageInfo = &images_.back();
+  }
+  void buffer(std::uint32_t binding, VkDescriptorType type, const VkDescriptorBufferInfo& range) {
+    buffers_.push_back(range);
+    add(binding, type).pBufferInfo = &buffers_.back();
+  }
+  const std::vector<VkWriteDescriptorSet>& all() const { return writes_; }
+
+private:
+  VkWriteDescriptorSet& add(std::uint32_t binding, VkDescriptorType type) {
+    VkWriteDescriptorSet& write =
+        writes_.emplace_back(VkWriteDescriptorSet{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET});
+    write.dstBinding = binding;
+    write.descriptorCount = 1;
+    write.descriptorType = type;
+    return write;
+  }
+
+  std::deque<VkDescriptorImageInfo> images_;  // a deque's elements stay where they are
+  std::deque<VkDescriptorBufferInfo> buffers_;
+  std::vector<VkWriteDescriptorSet> writes_;
+};
+
+void addPlanned(const PlannedInputs& planned, DescriptorWrites& writes) {
+  for (const PlannedBinding& wanted : plannedBindings())
+    for (std::uint32_t i = 0; i < planned.dispatch.bindingCount; ++i) {
+      const PellucidBinding& b = planned.dispatch.bindings[i];
+      if (b.binding != wanted.binding) continue;
+      const std::uint32_t to = kOwnBindings + b.binding;
+      if (b.resource == PELLUCID_RESOURCE_CONSTANTS)
+        writes.buffer(to, wanted.type, {planned.constants, b.offset, b.size});
+      else
+        writes.image(to, wanted.type, VK_NULL_HANDLE, plannedImage(planned.frame, b.resource));
+    }
 }
 
 }  // namespace
@@ -222,13 +295,16 @@ UploadedModel::UploadedModel(Device& device, const Model& model)
 }
 
 void UploadedModel::createLayout() {
-  VkDescriptorSetLayoutBinding bindings[3]{};
-  for (std::uint32_t i = 0; i < std::size(bindings); ++i)
-    bindings[i] = {i, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1, VK_SHADER_STAGE_FRAGMENT_BIT, nullptr};
+  std::vector<VkDescriptorSetLayoutBinding> bindings;
+  for (std::uint32_t i = 0; i < kOwnBindings; ++i)
+    bindings.push_back(
+        {i, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1, VK_SHADER_STAGE_FRAGMENT_BIT, nullptr});
+  for (const PlannedBinding& b : plannedBindings())
+    bindings.push_back({kOwnBindings + b.binding, b.type, 1, VK_SHADER_STAGE_FRAGMENT_BIT, nullptr});
   VkDescriptorSetLayoutCreateInfo set{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
   set.flags = VK_DESCRIPTOR_SET_LAYOUT_CREATE_PUSH_DESCRIPTOR_BIT_KHR;
-  set.bindingCount = static_cast<std::uint32_t>(std::size(bindings));
-  set.pBindings = bindings;
+  set.bindingCount = static_cast<std::uint32_t>(bindings.size());
+  set.pBindings = bindings.data();
   check(vkCreateDescriptorSetLayout(device_.handle(), &set, nullptr, setLayout_.receive()),
         "vkCreateDescriptorSetLayout");
   const VkPushConstantRange constants{VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
@@ -336,24 +412,20 @@ void UploadedModel::draw(const RenderTarget& target, const DrawView& view, const
                         surface.doubleSided ? doubleSided : singleSided);
       const std::size_t texture =
           surface.texture < 0 ? textures_.size() - 1 : static_cast<std::size_t>(surface.texture);
-      const GpuImage* images[] = {textures_[texture].get(), earlier.depth ? earlier.depth : &white,
-                                  earlier.albedoObject ? earlier.albedoObject : &white};
-      VkDescriptorImageInfo infos[3];
-      VkWriteDescriptorSet writes[3];
-      for (std::uint32_t i = 0; i < std::size(images); ++i) {
-        infos[i] = {*samplers_[i == 0 ? texture : samplers_.size() - 1], images[i]->use().view,
-                    images[i]->use().layout};
-        writes[i] = {VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
-        writes[i].dstBinding = i;
-        writes[i].descriptorCount = 1;
-        writes[i].descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-        writes[i].pImageInfo = &infos[i];
-      }
+      const GpuImage* images[kOwnBindings] = {textures_[texture].get(),
+                                              earlier.depth ? earlier.depth : &white,
+                                              earlier.albedoObject ? earlier.albedoObject : &white};
+      DescriptorWrites writes;
+      for (std::uint32_t i = 0; i < kOwnBindings; ++i)
+        writes.image(i, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                     *samplers_[i == 0 ? texture : samplers_.size() - 1], images[i]->use());
+      if (earlier.planned) addPlanned(*earlier.planned, writes);
       pushDescriptors_(commandBuffer, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0,
-                       static_cast<std::uint32_t>(std::size(writes)), writes);
+                       static_cast<std::uint32_t>(writes.all().size()), writes.all().data());
       constants.baseColor = vec4(surface.baseColor, surface.alphaCutoff);
       constants.addedColor = vec4(surface.addedColor, part.object);
-      constants.ids = {surface.material, view.reversedDepth, earlier.depth != nullptr, 0};
+      constants.ids = {surface.material, view.reversedDepth, earlier.depth != nullptr,
+                       earlier.planned ? earlier.planned->dispatch.pushConstants[1] : 0};
       vkCmdPushConstants(commandBuffer, layout_, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
                          sizeof constants, &constants);
       vkCmdDrawIndexed(commandBuffer, part.indexCount, 1, part.firstIndex, 0, 0);

@@ -62,7 +62,7 @@ private:
   Owned<VkFramebuffer, vkDestroyFramebuffer> framebuffer_;
 };
 
-enum class FragmentShader { Surface, Depth, Count };
+enum class FragmentShader { Surface, Depth, Count, Transmit };
 
 struct PipelineState {
   FragmentShader shader = FragmentShader::Surface;
@@ -87,10 +87,18 @@ struct DrawView {
   bool reversedDepth = true;
 };
 
+// What a fused dispatch of the module would bind, for FragmentShader::Transmit.
+struct PlannedInputs {
+  const PellucidDispatch& dispatch;
+  const PellucidFrame& frame;  // with its views
+  VkBuffer constants;          // the slice that pellucidWriteConstants filled, from offset 0
+};
+
 // What an earlier pass drew of the same view.
 struct EarlierPass {
   const GpuImage* depth = nullptr;
   const GpuImage* albedoObject = nullptr;
+  const PlannedInputs* planned = nullptr;
 };
 
 // A model in device memory.

@@ -7,6 +7,7 @@
 #include "common/error.h"
 #include "raster/draw.h"
 #include "raster/framing.h"
+#include "raster/front.h"
 #include "raster/irradiance.h"
 #include "scene/vector.h"
 
@@ -40,32 +41,10 @@ Matrix projection(const ModelCamera& camera, const RasterOptions& options) {
                              : perspective(camera.verticalFov, aspect, range);
 }
 
-VkCompareOp nearer(bool reversed) { return reversed ? VK_COMPARE_OP_GREATER : VK_COMPARE_OP_LESS; }
-float farDepth(bool reversed) { return reversed ? 0.0f : 1.0f; }
-
-VkClearColorValue clearTo(float value) { return {.float32 = {value, value, value, value}}; }
-
 // What shaders/depth.frag writes, cleared to "nothing there".
 std::vector<RenderTarget::Color> depthColors(bool reversed) {
   return {{VK_FORMAT_R32_SFLOAT, clearTo(kNoDepth)}, {VK_FORMAT_R32_SFLOAT, clearTo(farDepth(reversed))}};
 }
-
-// What the first pass leaves for the others, on the device.
-struct FrontTarget {
-  RenderTarget target;
-
-  FrontTarget(Device& device, const RasterOptions& options)
-      : target(device, options.width, options.height,
-               {{VK_FORMAT_R32G32B32A32_SFLOAT, clearTo(0)},
-                {VK_FORMAT_R32G32B32A32_SFLOAT, clearTo(-1)},  // no object
-                {VK_FORMAT_R8_UINT, {}},
-                {VK_FORMAT_R32_SFLOAT, clearTo(farDepth(options.reversedZ))}},
-               farDepth(options.reversedZ)) {}
-  const GpuImage& normalPlanar() const { return target.image(0); }
-  const GpuImage& albedoObject() const { return target.image(1); }
-  const GpuImage& material() const { return target.image(2); }
-  const GpuImage& deviceDepth() const { return target.image(3); }
-};
 
 // Back depth in both encodings and the faces counted along each pixel's ray.
 struct BackImages {
@@ -206,9 +185,7 @@ RasterResult rasterize(Device& device, const Model& model, const ModelCamera& ca
   const UploadedModel uploaded(device, model);
   const DrawView view{capture.clipFromView, capture.viewFromWorld, options.reversedZ};
   const FrontTarget front(device, options);
-  uploaded.draw(front.target, view,
-                {FragmentShader::Surface, VK_CULL_MODE_BACK_BIT, nearer(options.reversedZ), false},
-                VK_CULL_MODE_NONE);
+  front.draw(uploaded, view);
   fillCapture(front, drawBack(device, uploaded, view, front, options), options, result);
 
   IrradiancePass irradiance(device, front.normalPlanar(), options.width, options.height, view);

@@ -7,7 +7,8 @@ layout(push_constant) uniform Draw {
   vec4 planar;     // dot(planar, (x, 1)): planar distance in front of the eye
   vec4 baseColor;  // a: alpha below this is a hole
   vec4 addedColor; // a: object
-  uvec4 ids;       // x: material; y: 1 reversed depth; z: 1 where only back faces behind the front count
+  uvec4 ids;       // x: material; y: 1 reversed depth; z: 1 where only back faces behind the front count;
+                   // w: lights
 } draw;
 
 layout(set = 0, binding = 0) uniform sampler2D baseColorTexture;

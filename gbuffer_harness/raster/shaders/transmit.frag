@@ -1,0 +1,76 @@
+#version 450
+// The back-face pass when it also computes the light that comes through: camera-space thickness,
+// transmittance and lighting of the nearest back face, so that the frame needs no dispatch for them (Whelan
+// 2009, 6.2.4). What an engine does with compute/lib in a shader of its own.
+#extension GL_EXT_samplerless_texture_functions : require
+#extension GL_GOOGLE_include_directive : require
+#include "draw.glsl"
+#include "gbuffer_decode.glsl"
+#include "shared/pellucid_shared.h"
+
+layout(location = 1) in vec2 uv;
+
+layout(location = 0) out vec4 outTransmitted; // rgb: transmitted / rho, to be added to the irradiance
+
+// The bindings of the module's fused dispatch, after the three of draw.glsl (kOwnBindings of draw.cpp).
+#define PLANNED_BINDINGS 3
+layout(set = 0, binding = PLANNED_BINDINGS + PELLUCID_BINDING_FRAME) uniform Frame { FrameConstants frame; };
+layout(set = 0, binding = PLANNED_BINDINGS + PELLUCID_BINDING_LIGHTS) readonly buffer Lights {
+  LightConstants lights[];
+};
+layout(set = 0, binding = PLANNED_BINDINGS + PELLUCID_BINDING_SHADOWS) readonly buffer Shadows {
+  ShadowConstants shadows[];
+};
+layout(set = 0, binding = PLANNED_BINDINGS + PELLUCID_BINDING_MATERIALS) readonly buffer Materials {
+  MaterialConstants materials[];
+};
+layout(set = 0, binding = PLANNED_BINDINGS + PELLUCID_BINDING_NORMAL) uniform texture2D normalImage;
+layout(set = 0, binding = PLANNED_BINDINGS + PELLUCID_BINDING_MATERIAL) uniform utexture2D materialImage;
+#define SHADOW_BINDING PLANNED_BINDINGS + PELLUCID_BINDING_SHADOW_IMAGES
+layout(set = 0, binding = SHADOW_BINDING + 0) uniform texture2D shadowImage0;
+layout(set = 0, binding = SHADOW_BINDING + 1) uniform texture2D shadowImage1;
+layout(set = 0, binding = SHADOW_BINDING + 2) uniform texture2D shadowImage2;
+layout(set = 0, binding = SHADOW_BINDING + 3) uniform texture2D shadowImage3;
+layout(set = 0, binding = SHADOW_BINDING + 4) uniform texture2D shadowImage4;
+layout(set = 0, binding = SHADOW_BINDING + 5) uniform texture2D shadowImage5;
+layout(set = 0, binding = SHADOW_BINDING + 6) uniform texture2D shadowImage6;
+layout(set = 0, binding = SHADOW_BINDING + 7) uniform texture2D shadowImage7;
+
+float shadowTexel(uint image, ivec2 texel) {
+  switch (image) {
+    case 0u: return texelFetch(shadowImage0, texel, 0).x;
+    case 1u: return texelFetch(shadowImage1, texel, 0).x;
+    case 2u: return texelFetch(shadowImage2, texel, 0).x;
+    case 3u: return texelFetch(shadowImage3, texel, 0).x;
+    case 4u: return texelFetch(shadowImage4, texel, 0).x;
+    case 5u: return texelFetch(shadowImage5, texel, 0).x;
+    case 6u: return texelFetch(shadowImage6, texel, 0).x;
+    default: return texelFetch(shadowImage7, texel, 0).x;
+  }
+}
+
+#include "lib/transmission.glsl"
+
+void main() {
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  float front = texelFetch(earlierDepth, pixel, 0).r;
+  uint material = decodeMaterial(texelFetch(materialImage, pixel, 0));
+  bool sameObject = texelFetch(frontAlbedoObject, pixel, 0).a == draw.addedColor.a;
+  if (isHole(uv) || !sameObject || !isNearer(front, gl_FragCoord.z)) discard;
+  if (material == 0u || material > frame.flags.y) discard;
+
+  ViewRay ray = viewRay(frame.camera, pixel);
+  vec3 normal = vec3(0.0);
+  if (hasFlag(PELLUCID_FLAG_NORMAL))
+    normal = mat3(frame.viewFromNormal) * decodeNormal(texelFetch(normalImage, pixel, 0));
+  float through = chord(planarDifference(frame.camera, gl_FragCoord.z, front), ray);
+  Surface s = makeSurface(ray, planarDistance(frame.camera, front), through, normal);
+  vec3 sum = vec3(0.0);
+  for (uint i = 0u; i < draw.ids.w; ++i) {
+    Transmitted t = lightTransmission(lights[i], s);
+    vec3 light = t.arriving * t.visible;
+    if (t.thickness >= 0.0 && max(light.r, max(light.g, light.b)) > 0.0)
+      sum += light * materialTransmittance(material - 1u, t.thickness * frame.camera.range.w);
+  }
+  outTransmitted = vec4(sum * materials[material - 1u].inverseReflectance.rgb, 1.0);
+}

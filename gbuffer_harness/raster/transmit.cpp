@@ -1,0 +1,48 @@
+#include "raster/transmit.h"
+
+#include "common/error.h"
+#include "raster/draw.h"
+#include "raster/front.h"
+
+namespace pellucid::harness {
+
+namespace {
+
+// The one fused dispatch of the run.
+const PellucidDispatch& fusedDispatch(const FrameRun& run, const std::string& name) {
+  const PellucidPlan& plan = run.plan();
+  if (run.frame().thicknessSource != PELLUCID_THICKNESS_CAMERA)
+    throw InputError(name, "thicknessSource", "light-space thickness does not need the back faces");
+  if (plan.activeLights == 0) throw InputError(name, "lights", "none can contribute");
+  // Lights are read from the first dispatch on, so all are in it when it has as many as are active.
+  if (plan.dispatches[0].pushConstants[1] != plan.activeLights)
+    throw InputError(name, "lights", "have more shadow images than one dispatch binds");
+  return plan.dispatches[0];
+}
+
+}  // namespace
+
+Image rasterizeTransmitted(Device& device, const Model& model, const Capture& capture, const FrameRun& run,
+                           const RasterOptions& options) {
+  const PellucidFrame& frame = run.frame();
+  const PellucidDispatch& dispatch = fusedDispatch(run, model.name);
+  const HostBuffer constants(device, run.plan().constantsSize,
+                             VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+  requireOk(pellucidWriteConstants(&run.plan(), &frame, constants.mapped(),
+                                   static_cast<std::size_t>(constants.size())),
+            frame, model.name);
+
+  const UploadedModel uploaded(device, model);
+  const DrawView view{capture.clipFromView, capture.viewFromWorld, options.reversedZ};
+  const FrontTarget front(device, options);
+  front.draw(uploaded, view);
+  const bool keepGreater = options.reversedZ != (options.backFace == BackFace::Farthest);
+  const RenderTarget target(device, options.width, options.height,
+                            {{VK_FORMAT_R32G32B32A32_SFLOAT, clearTo(0)}}, farDepth(keepGreater));
+  const PlannedInputs planned{dispatch, frame, constants.handle()};
+  uploaded.draw(target, view, {FragmentShader::Transmit, VK_CULL_MODE_FRONT_BIT, nearer(keepGreater), false},
+                VK_CULL_MODE_FRONT_BIT, {&front.deviceDepth(), &front.albedoObject(), &planned});
+  return rgb(target.image(0).download());
+}
+
+}  // namespace pellucid::harness

@@ -1,0 +1,155 @@
+// Translucency computed by the shader that draws the back faces, against the fused dispatch.
+#include <cmath>
+#include <glm/glm.hpp>
+#include <numbers>
+
+#include "common/error.h"
+#include "gpu/gpu_fixture.h"
+#include "raster/raster.h"
+#include "raster/transmit.h"
+
+namespace {
+
+using namespace pellucid::harness;
+using namespace pellucid::test;
+
+// A closed blob of about 6 mm radius with dents, so that thickness and angles vary; 1 unit is 1 mm.
+Model blob() {
+  constexpr std::uint32_t kRings = 48, kSegments = 96;
+  const auto point = [](double theta, double phi) {
+    const double r = 6 + std::sin(3 * phi) * std::pow(std::sin(theta), 3) + 0.8 * std::cos(4 * theta);
+    return glm::dvec3(r * std::sin(theta) * std::cos(phi), r * std::cos(theta),
+                      0.5 * r * std::sin(theta) * std::sin(phi));
+  };
+  Model model;
+  model.name = "blob";
+  model.metersPerUnit = 0.001;
+  model.surfaces.resize(1);
+  model.surfaces[0].material = 1;
+  model.materials.resize(1);
+  constexpr double h = 1e-4;
+  for (std::uint32_t i = 0; i <= kRings; ++i)
+    for (std::uint32_t j = 0; j < kSegments; ++j) {
+      const double theta = std::numbers::pi * i / kRings, phi = 2 * std::numbers::pi * j / kSegments;
+      const glm::dvec3 p = point(theta, phi);
+      // At the poles the angle about them says nothing; the axis does.
+      const glm::dvec3 n = i == 0 || i == kRings
+                               ? glm::dvec3(0, i == 0 ? 1 : -1, 0)
+                               : glm::normalize(glm::cross(point(theta, phi + h) - point(theta, phi - h),
+                                                           point(theta + h, phi) - point(theta - h, phi)));
+      const double outward = glm::dot(n, p) > 0 ? 1 : -1;
+      Vertex v{};
+      for (int c = 0; c < 3; ++c) {
+        v.position[static_cast<std::size_t>(c)] = static_cast<float>(p[c]);
+        v.normal[static_cast<std::size_t>(c)] = static_cast<float>(outward * n[c]);
+      }
+      model.vertices.push_back(v);
+    }
+  for (std::uint32_t i = 0; i < kRings; ++i)
+    for (std::uint32_t j = 0; j < kSegments; ++j) {
+      const std::uint32_t a = i * kSegments + j, b = i * kSegments + (j + 1) % kSegments;
+      for (const std::uint32_t k : {a, b, a + kSegments, b, b + kSegments, a + kSegments})
+        model.indices.push_back(k);
+    }
+  model.parts = {{0, static_cast<std::uint32_t>(model.indices.size()), 0, 0}};
+
+  Light sun = backLight();
+  sun.direction = {0.3, -0.2, 1};
+  Light lamp = backLight();
+  lamp.type = PELLUCID_LIGHT_POINT;
+  lamp.position = {15, 5, -25};
+  lamp.intensity = 900;
+  lamp.color = {1, 0.6, 0.3};
+  Light spot = lamp;
+  spot.type = PELLUCID_LIGHT_SPOT;
+  spot.position = {-20, 0, -25};
+  spot.direction = {20, 0, 25};
+  spot.outerConeAngle = 0.4;
+  model.lights = {sun, lamp, spot};
+  return model;
+}
+
+ModelCamera camera(bool orthographic) {
+  ModelCamera c;
+  c.viewFromWorld = lookAt({10, 20, 100}, {0, 0, 0}, {0, 1, 0});
+  c.orthographic = orthographic;
+  c.verticalFov = 2 * std::atan(0.1);
+  c.height = 20;
+  c.range = {50, 150};
+  return c;
+}
+
+class Transmit : public GpuTest {
+protected:
+  struct Difference {
+    double worst = 0, peak = 0;
+    std::size_t lit = 0;
+  };
+
+  // Largest difference of the raster pass and what the dispatch adds to the irradiance.
+  static Difference difference(bool orthographic, const RasterOptions& options, ReplaySettings settings) {
+    const Model model = blob();
+    RasterResult raster = rasterize(device(), model, camera(orthographic), options);
+    EXPECT_EQ(raster.openPixels, 0u);
+    Capture& capture = raster.capture;
+    capture.albedo = {};  // would multiply the sum
+    settings.features = PELLUCID_FEATURE_TRANSLUCENCY;
+    settings.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+    settings.translucency.thicknessSource = PELLUCID_THICKNESS_CAMERA;
+    const Context context(device());
+    const FrameRun run(device(), context, capture, {testMaterial()}, settings);
+    device().run([&](VkCommandBuffer commandBuffer) { run.record(commandBuffer); });
+    const Image fused = run.output();
+    const Image drawn = rasterizeTransmitted(device(), model, capture, run, options);
+    Difference d;
+    for (std::size_t i = 0; i < drawn.data.size(); ++i) {
+      const double added = fused.data[i / 3 * 4 + i % 3] - capture.irradiance.data[i];
+      d.worst = std::max(d.worst, std::abs(added - drawn.data[i]));
+      d.peak = std::max(d.peak, added);
+      d.lit += added > 1e-3;
+    }
+    return d;
+  }
+};
+
+// Both evaluate the same functions of the same float depths; what is left is the rounding of the sum with
+// the irradiance.
+TEST_F(Transmit, BackFacePassEqualsTheFusedDispatch) {
+  ReplaySettings cosine = thesisSettings();
+  cosine.transmittance = TransmittanceChoice::Gaussians;
+  cosine.translucency.angleModel = PELLUCID_ANGLE_COSINE;
+  cosine.translucency.constantViewDirection = true;
+  cosine.translucency.transmittanceFilter = {0.55f, 0.29f, 0.28f};
+  ReplaySettings physical;
+  physical.translucency.shadowBias = 0.5f;
+  const std::pair<const char*, ReplaySettings> kSettings[] = {
+      {"physical", physical}, {"thesis", thesisSettings()}, {"cosine", cosine}};
+  for (const auto& [name, settings] : kSettings)
+    for (const bool orthographic : {false, true})
+      for (const bool reversed : {false, true}) {
+        SCOPED_TRACE(std::string(name) + (orthographic ? " orthographic" : "") +
+                     (reversed ? " reversed" : ""));
+        RasterOptions options;
+        options.width = 96;
+        options.height = 80;
+        options.reversedZ = reversed;
+        options.normalsInViewSpace = reversed;
+        options.shadowSize = 256;
+        options.shadowEncoding = orthographic ? PELLUCID_DEPTH_DISTANCE : PELLUCID_DEPTH_DEVICE;
+        const Difference d = difference(orthographic, options, settings);
+        EXPECT_LE(d.worst, 1e-3 * d.peak);
+        EXPECT_GT(d.lit, 300u);
+        EXPECT_GT(d.peak, 0.05);
+      }
+}
+
+TEST_F(Transmit, LightSpaceThicknessIsRefused) {
+  const Model model = blob();
+  const RasterOptions options{.width = 16, .height = 16};
+  const Capture capture = rasterize(device(), model, camera(false), options).capture;
+  const Context context(device());
+  const FrameRun run(device(), context, capture, {testMaterial()}, {});
+  EXPECT_THROW(rasterizeTransmitted(device(), model, capture, run, options), InputError);
+}
+
+}  // namespace
