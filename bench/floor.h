@@ -1,29 +1,20 @@
 // The bandwidth floor: one pass over both depths, the irradiance and the output.
 #pragma once
 
+#include <string>
+
 #include "common/gpu_image.h"
+#include "measure.h"
 
 namespace pellucid::bench {
 
-class FloorPass {
-public:
-  FloorPass(harness::Device& device, int width, int height);
-  ~FloorPass();
-  FloorPass(const FloorPass&) = delete;
-  FloorPass& operator=(const FloorPass&) = delete;
-
-  void record(VkCommandBuffer commandBuffer) const;
-  // True when the pass wrote what its inputs say: a floor that skips work would be no floor.
-  bool isRight() const;
-
-private:
-  harness::Device& device_;
-  int width_, height_;
-  harness::GpuImage front_, back_, irradiance_, result_;
-  VkDescriptorSetLayout setLayout_ = VK_NULL_HANDLE;
-  VkPipelineLayout layout_ = VK_NULL_HANDLE;
-  VkPipeline pipeline_ = VK_NULL_HANDLE;
-  PFN_vkCmdPushDescriptorSetKHR pushDescriptors_ = nullptr;
+struct Floor {
+  Time time;          // of the fastest shape
+  std::string shape;  // "16x16, 2 pixels a thread"
 };
+
+// The fastest of several workgroup shapes. Throws DeviceError when a pass wrote something else than its
+// inputs say: a floor that skips work would be no floor.
+Floor measureFloor(harness::Device& device, int width, int height, int repeat);
 
 }  // namespace pellucid::bench

@@ -1,15 +1,23 @@
-// pellucid_bench: GPU times of the module's plans as multiples of the bandwidth floor of the same run.
+// pellucid_bench: GPU times as multiples of the bandwidth floor of the same run: the module's plans,
+// translucency as separate dispatches, and the diffusions of others. What is timed is checked first.
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
-#include <random>
 
+#include "baselines/baselines.h"
 #include "commit.h"
+#include "common/compare.h"
 #include "common/error.h"
+#include "common/plot.h"
 #include "floor.h"
-#include "measure.h"
-#include "replay/replay.h"
+#include "pellucid/pellucid_material.h"
+#include "reference/reference.h"
+#include "report.h"
+#include "scene.h"
+#include "scene/scene.h"
+#include "steps.h"
 
 namespace {
 
@@ -17,68 +25,38 @@ using namespace pellucid::harness;
 using namespace pellucid::bench;
 
 struct Options {
-  std::string device, json;
+  std::string device, json, plot;
   std::pair<int, int> size = {1280, 720};
   int repeat = 30;
+  std::vector<double> coverage = {100, 25, 0};  // percent
+  double radius = 40;                           // pixels
 };
 
-// Burley's slab and six Gaussians of d'Eon et al. 2007's skin: the bench times arithmetic, and any
-// material has the same.
-PellucidMaterial material() {
-  PellucidMaterial m{};
-  m.structSize = sizeof m;
-  m.gaussianCount = 6;
-  const float variance[6] = {0.0064f, 0.0484f, 0.187f, 0.567f, 1.99f, 7.41f};
-  const float weight[3][6] = {{0.233f, 0.100f, 0.118f, 0.113f, 0.358f, 0.078f},
-                              {0.455f, 0.336f, 0.198f, 0.007f, 0.004f, 0},
-                              {0.649f, 0.344f, 0, 0.007f, 0, 0}};
-  for (int c = 0; c < 3; ++c) {
-    const float k = static_cast<float>(c + 1);
-    const float t[5] = {0.25f, k, 0.75f, k / 3, 0};
-    std::copy(t, t + 5, m.transmittance[c]);
-    m.reflectance[c] = 0.5f;
-    m.radius[c] = 3.7f * std::sqrt(variance[5]);
-    std::copy(variance, variance + 6, m.gaussianVariance[c]);
-    std::copy(weight[c], weight[c] + 6, m.gaussianWeight[c]);
-  }
-  return m;
-}
+struct Bench {
+  const Options& options;
+  Device& device;
+  const Context& context;
+  PellucidMaterial material;
+  double pixel;  // mm
+  Report& report;
 
-// A 2 mm slab, noise in the irradiance, one directional light from behind with a 1024^2 shadow map; the
-// upper `coverage` of the image has the material. A pixel is `pixel` mm wide.
-Capture slab(int width, int height, double coverage, double pixel) {
-  Capture c;
-  c.name = "slab";
-  c.width = width;
-  c.height = height;
-  c.metersPerUnit = 0.001;
-  c.clipFromView[0] = 2 / (pixel * width);
-  c.clipFromView[5] = -2 / (pixel * height);
-  c.clipFromView[10] = -1.0 / 100;
-  c.frontDepth.image = Image(width, height, 1, 50);
-  c.backDepth.image = Image(width, height, 1, 52);
-  c.normal = Image(width, height, 3);
-  c.irradiance = Image(width, height, 3);
-  std::mt19937 random(1);  // zeros would run faster than real data
-  for (size_t i = 0; i < c.irradiance.data.size(); ++i) {
-    c.irradiance.data[i] = static_cast<float>(random() % 1024) / 512;
-    c.normal.data[i] = i % 3 == 2 ? 1.0f : 0.0f;
+  std::shared_ptr<const BenchFrame> frame(const Capture& capture, const ReplaySettings& settings) const {
+    return std::make_shared<BenchFrame>(device, context, capture, material, settings);
   }
-  c.material.assign(c.irradiance.pixels(), 0);
-  std::fill_n(c.material.begin(),
-              static_cast<std::ptrdiff_t>(coverage * static_cast<double>(c.material.size())),
-              std::uint8_t{1});
-  c.materials.resize(1);
-  Light light;
-  light.direction = {0, 0, 1};
-  light.shadowMap.emplace();
-  light.shadowMap->clipFromWorld = {
-      2 / (pixel * width), 0, 0, 0, 0, 2 / (pixel * height), 0, 0, 0, 0, 0.01, 0, 0, 0, 1, 1};
-  light.shadowMap->depth.encoding = PELLUCID_DEPTH_DEVICE;
-  light.shadowMap->depth.image = Image(1024, 1024, 1, 0.48f);
-  c.lights = {light};
-  return c;
-}
+  Capture fullSlab() const { return slab(options.size.first, options.size.second, 1, pixel); }
+  Image run(const Variant& variant) const {
+    device.run(variant.record);
+    return variant.output();
+  }
+  Time time(const std::function<void(VkCommandBuffer)>& record) const {
+    return measure(device, options.repeat, record);
+  }
+  Time row(const Variant& v, std::optional<double> error) const {
+    const Time t = time(v.record);
+    report.add({v.name, v.dispatches, v.barriers, v.bytesPerPixel, error}, t);
+    return t;
+  }
+};
 
 // Of `lights` copies of the slab's light the first `mapped` keep their shadow map.
 Capture litBy(Capture c, int lights, int mapped) {
@@ -87,95 +65,217 @@ Capture litBy(Capture c, int lights, int mapped) {
   return c;
 }
 
-// The answer of a bench frame's fused dispatch, where it is known in closed form.
-void requireRightAnswer(Device& device, const Context& context) {
+// The fused dispatch on the slab, where the answer is closed: its T at 2 mm.
+void requireRightAnswer(const Bench& bench) {
   ReplaySettings settings;
   settings.features = PELLUCID_FEATURE_TRANSLUCENCY;
   settings.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
   const Capture c = slab(64, 48, 1, 0.1);
-  FrameRun run(device, context, c, {material()}, settings);
-  device.run([&](VkCommandBuffer commandBuffer) { run.record(commandBuffer); });
-  const Image out = run.output();
-  const float expected = c.irradiance.data[0] + 2 * (0.25f * std::exp(-2.0f) + 0.75f * std::exp(-2.0f / 3));
-  if (!(std::abs(out.data[0] - expected) < 1e-4f))
+  const Image out = bench.run(moduleVariant(bench.frame(c, settings), ""));
+  const double expected =
+      static_cast<double>(c.irradiance.data[0]) + pellucidEvaluateTransmittance(&bench.material, 0, 2) /
+                                                      static_cast<double>(bench.material.reflectance[0]);
+  if (!(std::abs(static_cast<double>(out.data[0]) - expected) < 1e-4))
     throw DeviceError("the fused dispatch gives " + std::to_string(out.data[0]) + " and not " +
                       std::to_string(expected));
+}
+
+// Root mean square over the channels of the relative RMSE of `image`, where there is a material. Throws
+// DeviceError beyond `limit`: a wrong pass is not worth timing.
+double requireNear(const Variant& v, const Image& image, const Image& truth, const Capture& capture,
+                   double limit) {
+  const Comparison c =
+      compareImages(image, truth, comparisonMask(capture.material, capture.irradiance, Subset::All));
+  double sum = 0;
+  for (const ChannelDifference& k : c.channels) sum += k.relativeRmse * k.relativeRmse;
+  const double error = std::sqrt(sum / static_cast<double>(c.channels.size()));
+  if (!(error <= limit) || c.nonFiniteA > 0)
+    throw DeviceError(v.name + " on \"" + capture.name + "\" is off by " + std::to_string(error));
+  return error;
+}
+
+void modulePlans(const Bench& bench) {
+  const auto [width, height] = bench.options.size;
+  for (const double coverage : bench.options.coverage) {
+    char title[64];
+    std::snprintf(title, sizeof title, "module, %g %% covered", coverage);
+    bench.report.section(title);
+    const auto frame = bench.frame(slab(width, height, coverage / 100, bench.pixel), {});
+    const PellucidPlan& plan = frame->run().plan();
+    for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
+      const PellucidDispatch& d = plan.dispatches[i];
+      const double bytes = static_cast<double>(d.modeledBytes) / (static_cast<double>(width) * height);
+      bench.report.add({d.name, 1, d.barrierBefore, bytes, {}},
+                       bench.time([&](VkCommandBuffer c) { frame->run().record(c, i); }));
+    }
+    bench.row(moduleVariant(frame, "whole frame"), {});
+  }
+}
+
+// The fused dispatch alone: by lights, by how many of them have a shadow map, by samples of the gather.
+void fusedDispatch(const Bench& bench) {
+  bench.report.section("fused dispatch");
+  const auto row = [&](const std::string& name, const Capture& capture, uint32_t samples) {
+    ReplaySettings settings;
+    settings.features = PELLUCID_FEATURE_TRANSLUCENCY;
+    settings.translucency.gatherSamples = samples;
+    bench.row(moduleVariant(bench.frame(capture, settings), name), {});
+  };
+  for (const int lights : {1, 8, 64})
+    for (const int mapped : {0, 1, 4})
+      if (mapped <= lights)
+        row(std::to_string(lights) + " lights, " + std::to_string(mapped) + " maps",
+            litBy(bench.fullSlab(), lights, mapped), 0);
+  for (const uint32_t samples : {4u, 8u, 16u, 32u})
+    row("1 light, gather " + std::to_string(samples), bench.fullSlab(), samples);
+}
+
+// Errors against the module, on the ear.
+void separateSteps(const Bench& bench) {
+  bench.report.section("translucency; error: from one dispatch");
+  ReplaySettings settings;
+  settings.features = PELLUCID_FEATURE_TRANSLUCENCY;
+  settings.translucency.thicknessSource = PELLUCID_THICKNESS_CAMERA;
+  settings.translucency.shadowBias = 0.5f;
+  SceneParameters p;
+  p.name = "ear";
+  p.width = p.height = 128;
+  p.depthEncoding = PELLUCID_DEPTH_DEVICE;
+  Capture ear = makeScene(p);
+  ear.albedo = {};       // the module would multiply by it
+  ear.lights.resize(1);  // the separate steps bind one shadow map
+  const std::vector<Variant> checked = translucencyVariants(bench.frame(ear, settings));
+  const std::vector<Variant> timed = translucencyVariants(bench.frame(bench.fullSlab(), settings));
+  const Image truth = bench.run(checked.back());
+  for (size_t i = 0; i < timed.size(); ++i)
+    // Half-float intermediate results round by 5e-4 of themselves.
+    bench.row(timed[i], requireNear(checked[i], bench.run(checked[i]), truth, ear, 2e-3));
+}
+
+struct Point {
+  std::string name;
+  double error, time;
+};
+
+std::vector<Variant> diffusions(const Bench& bench, const Capture& capture) {
+  ReplaySettings settings;
+  settings.features = PELLUCID_FEATURE_DIFFUSION;
+  const auto frame = bench.frame(capture, settings);
+  std::vector<Variant> all = {moduleVariant(frame, "Pellucid")};
+  for (Variant& v : baselines(frame)) all.push_back(std::move(v));
+  return all;
+}
+
+// Errors against the float64 reference, the largest of the patterns'.
+std::vector<Point> diffusion(const Bench& bench) {
+  bench.report.section("diffusion; error: from brute force");
+  std::vector<double> errors;
+  for (const Capture& pattern : patterns(128, bench.pixel)) {
+    reference::Settings settings;
+    settings.features = PELLUCID_FEATURE_DIFFUSION;
+    const Image truth = reference::compute(pattern, {bench.material}, settings).image;
+    const std::vector<Variant> variants = diffusions(bench, pattern);
+    errors.resize(variants.size());
+    for (size_t i = 0; i < variants.size(); ++i)
+      errors[i] = std::max(errors[i], requireNear(variants[i], bench.run(variants[i]), truth, pattern, 0.5));
+  }
+  std::vector<Point> points;
+  const std::vector<Variant> timed = diffusions(bench, bench.fullSlab());
+  for (size_t i = 0; i < timed.size(); ++i)
+    points.push_back({timed[i].name, errors[i], bench.row(timed[i], errors[i]).median});
+  return points;
+}
+
+// A logarithmic axis from decade to decade.
+Axis decades(const std::string& label, const std::vector<Point>& points, double Point::*value) {
+  const auto [low, high] = std::minmax_element(
+      points.begin(), points.end(), [&](const Point& a, const Point& b) { return a.*value < b.*value; });
+  return {label, true, std::pow(10, std::floor(std::log10(*low.*value))),
+          std::pow(10, std::ceil(std::log10(*high.*value)))};
+}
+
+// A family of variants is a color: what stands before the comma of its members' names.
+void plotDiffusion(const std::filesystem::path& folder, const std::vector<Point>& points,
+                   const std::string& device) {
+  const Color colors[] = {{200, 30, 30}, {30, 90, 200}, {20, 140, 60}, {150, 80, 160}};
+  Plot plot;
+  plot.title = device;
+  plot.x = decades("relative RMSE from brute force", points, &Point::error);
+  plot.y = decades("microseconds", points, &Point::time);
+  for (const Point& p : points) {
+    const std::string family = p.name.substr(0, p.name.find(','));
+    if (plot.series.empty() || plot.series.back().name != family) {
+      Series s;
+      s.name = family;
+      s.color = colors[plot.series.size() % std::size(colors)];
+      s.points = true;
+      plot.series.push_back(s);
+    }
+    plot.series.back().x.push_back(p.error);
+    plot.series.back().y.push_back(p.time);
+  }
+  std::filesystem::create_directories(folder);
+  writePlot(folder / "diffusion.png", {plot});
 }
 
 void bench(const Options& options) {
   const auto [width, height] = options.size;
   Device device({options.device, false});
   const Context context(device);
-  requireRightAnswer(device, context);
-  const FloorPass floor(device, width, height);
-  const Time floorTime = measure(device, options.repeat, [&](VkCommandBuffer c) { floor.record(c); });
-  if (!floor.isRight()) throw DeviceError("the floor pass wrote something else than its inputs say");
+  const Floor floor = measureFloor(device, width, height, options.repeat);
 
-  nlohmann::json results = {{"device", device.description()},
-                            {"commit", PELLUCID_COMMIT},
-                            {"width", width},
-                            {"height", height},
-                            {"repeat", options.repeat},
-                            {"floor_us", floorTime.median},
-                            {"results", nlohmann::json::array()}};
   std::FILE* table = options.json == "-" ? stderr : stdout;
-  std::fprintf(table, "%s, commit %s, %d x %d, median of %d\n%-34s %9s %9s %9s %8s %11s\n",
-               device.description().c_str(), PELLUCID_COMMIT, width, height, options.repeat, "", "us", "10 %",
-               "90 %", "x floor", "bytes/pixel");
-  const auto row = [&](const std::string& name, const Time& time, double bytes) {
-    std::fprintf(table, "%-34s %9.1f %9.1f %9.1f %8.2f %11.1f\n", name.c_str(), time.median, time.low,
-                 time.high, time.median / floorTime.median, bytes);
-    results["results"].push_back({{"name", name},
-                                  {"us", time.median},
-                                  {"p10_us", time.low},
-                                  {"p90_us", time.high},
-                                  {"floor_ratio", time.median / floorTime.median},
-                                  {"modeled_bytes_per_pixel", bytes}});
-  };
-  row("floor", floorTime, 24);
-  for (const double coverage : {1.0, 0.25, 0.0}) {
-    const Capture capture = slab(width, height, coverage, 0.1);
-    const std::string suffix = ", " + std::to_string(static_cast<int>(coverage * 100)) + " % covered";
-    const FrameRun run(device, context, capture, {material()}, {});
-    double total = 0;
-    const double pixels = static_cast<double>(width) * height;
-    for (uint32_t i = 0; i < run.plan().dispatchCount; ++i) {
-      const double bytes = static_cast<double>(run.plan().dispatches[i].modeledBytes) / pixels;
-      total += bytes;
-      row(run.plan().dispatches[i].name + suffix,
-          measure(device, options.repeat, [&](VkCommandBuffer c) { run.record(c, i); }), bytes);
-    }
-    row("whole frame" + suffix, measure(device, options.repeat, [&](VkCommandBuffer c) { run.record(c); }),
-        total);
+  Report report(table, floor.time.median);
+  const PellucidMaterial material = benchMaterial();
+  const Bench b{options, device, context, material, pixelSizeFor(material, options.radius), report};
+  requireRightAnswer(b);
+  std::fprintf(table, "%s, commit %s, %d x %d, median of %d, radius %g pixels\n",
+               device.description().c_str(), PELLUCID_COMMIT, width, height, options.repeat, options.radius);
+  report.section("floor");
+  report.add({floor.shape, 1, 0, 24, {}}, floor.time);
+  modulePlans(b);
+  fusedDispatch(b);
+  separateSteps(b);
+  const std::vector<Point> points = diffusion(b);
+  if (!options.plot.empty()) plotDiffusion(options.plot, points, device.description());
+
+  const nlohmann::json json = {{"device", device.description()},
+                               {"commit", PELLUCID_COMMIT},
+                               {"width", width},
+                               {"height", height},
+                               {"repeat", options.repeat},
+                               {"radius_pixels", options.radius},
+                               {"floor_us", floor.time.median},
+                               {"results", report.rows()}};
+  if (options.json == "-") {
+    std::printf("%s\n", json.dump(1).c_str());
+  } else if (!options.json.empty()) {
+    std::ofstream file(options.json);
+    file << json.dump(1) << "\n";
+    if (!file.flush()) throw InputError(options.json, "", "cannot be written");
   }
-  // The fused dispatch by lights, and by how many of them have a shadow map.
-  for (const int lights : {1, 8, 64})
-    for (const int mapped : {0, 1, 4}) {
-      if (mapped > lights) continue;
-      const FrameRun run(device, context, litBy(slab(width, height, 1, 0.1), lights, mapped), {material()},
-                         {});
-      const double bytes = static_cast<double>(run.plan().dispatches[0].modeledBytes);
-      row("translucency, " + std::to_string(lights) + " lights, " + std::to_string(mapped) + " maps",
-          measure(device, options.repeat, [&](VkCommandBuffer c) { run.record(c, 0); }),
-          bytes / (static_cast<double>(width) * height));
-    }
-  if (options.json == "-")
-    std::printf("%s\n", results.dump(1).c_str());
-  else if (!options.json.empty())
-    std::ofstream(options.json) << results.dump(1) << "\n";
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app("GPU times of Pellucid's dispatches as multiples of the bandwidth floor.", "pellucid_bench");
+  CLI::App app("GPU times of Pellucid's dispatches, and of others', as multiples of the bandwidth floor.",
+               "pellucid_bench");
   app.add_option("--device", options.device, "part of the Vulkan device's name");
   app.add_option("--size", options.size, "WIDTHxHEIGHT")->delimiter('x')->capture_default_str();
   app.add_option("--repeat", options.repeat, "counted runs of each")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
+  app.add_option("--coverage", options.coverage, "percent of the image with a material; several with commas")
+      ->delimiter(',')
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
+  app.add_option("--radius", options.radius, "pixels within which 99.9 % of the diffused energy lies")
+      ->check(CLI::Range(1.0, 1000.0))
+      ->capture_default_str();
   app.add_option("--json", options.json, "file to write, - for standard output");
+  app.add_option("--plot", options.plot, "folder to write diffusion.png into: time against error");
   CLI11_PARSE(app, argc, argv);
   try {
     bench(options);

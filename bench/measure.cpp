@@ -1,21 +1,37 @@
 #include "measure.h"
 
 #include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "compute_pass.h"
 
 namespace pellucid::bench {
 
 Time measure(harness::Device& device, int repeat, const std::function<void(VkCommandBuffer)>& record) {
-  std::vector<double> times;
+  constexpr double kSpan = 2000;  // microseconds
+  constexpr double kMost = 64;
   const harness::Timestamps timestamps(device, 2);
-  const int warmUp = repeat / 5 + 2;
-  for (int i = 0; i < warmUp + repeat; ++i) {
+  const auto run = [&](int times) {
     device.run([&](VkCommandBuffer commandBuffer) {
       timestamps.reset(commandBuffer);
       timestamps.mark(commandBuffer, 0);
-      record(commandBuffer);
+      for (int i = 0; i < times; ++i) {
+        record(commandBuffer);
+        computeBarrier(commandBuffer);
+      }
       timestamps.mark(commandBuffer, 1);
     });
-    if (i >= warmUp) times.push_back(timestamps.intervals()[0]);
+    return timestamps.intervals()[0] / times;
+  };
+  run(1);  // the first use of a pipeline may compile it
+  const double once = run(1);
+  const int passes = static_cast<int>(std::clamp(std::ceil(kSpan / std::max(once, 1.0)), 1.0, kMost));
+  std::vector<double> times;
+  const int warmUp = repeat / 5 + 2;
+  for (int i = 0; i < warmUp + repeat; ++i) {
+    const double time = run(passes);
+    if (i >= warmUp) times.push_back(time);
   }
   std::sort(times.begin(), times.end());
   const auto at = [&](double share) {

@@ -2,18 +2,19 @@
 #pragma once
 
 #include <functional>
-#include <vector>
 
 #include "common/device.h"
 
 namespace pellucid::bench {
 
+// Of one recording.
 struct Time {
   double median, low, high;  // microseconds; low and high: 10th and 90th percentile
 };
 
-// Runs `record` `repeat` times after `repeat / 5 + 2` that are not counted (clocks, caches), each in its
-// own submission between two timestamps.
+// Records `record` as often in one command buffer, with a compute barrier after each, as fills about two
+// milliseconds (at most 64 times), and divides: the gaps between submissions and clocks that fall while the
+// device waits do not count. `repeat` such command buffers are counted, after `repeat / 5 + 2` that are not.
 Time measure(harness::Device& device, int repeat, const std::function<void(VkCommandBuffer)>& record);
 
 }  // namespace pellucid::bench

@@ -1,0 +1,53 @@
+// A compute pipeline with push descriptors, for the passes that are not the module's.
+#pragma once
+
+#include <array>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "common/device.h"
+#include "pellucid/pellucid.h"
+
+namespace pellucid::bench {
+
+// What a binding holds.
+using Resource = std::variant<PellucidImage, VkDescriptorBufferInfo>;
+
+// How many pixels one workgroup does, and the constants 0.. that say so to the shader.
+struct Tile {
+  uint32_t width = 8, height = 8;
+  std::vector<uint32_t> specialization = {};
+};
+
+class ComputePass {
+public:
+  // types[i] is binding i of set 0. Combined image samplers are linear and clamp to the edge. The shader may
+  // have four words of push constants.
+  ComputePass(harness::Device& device, std::span<const uint32_t> spirv,
+              const std::vector<VkDescriptorType>& types, const Tile& tile = {});
+  ~ComputePass();
+  ComputePass(const ComputePass&) = delete;
+  ComputePass& operator=(const ComputePass&) = delete;
+
+  void record(VkCommandBuffer commandBuffer, int width, int height, const std::vector<Resource>& resources,
+              const std::array<uint32_t, 4>& push = {}) const;
+
+private:
+  void createLayout();
+  void createPipeline(std::span<const uint32_t> spirv);
+
+  harness::Device& device_;
+  std::vector<VkDescriptorType> types_;
+  Tile tile_;
+  VkSampler sampler_ = VK_NULL_HANDLE;
+  VkDescriptorSetLayout setLayout_ = VK_NULL_HANDLE;
+  VkPipelineLayout layout_ = VK_NULL_HANDLE;
+  VkPipeline pipeline_ = VK_NULL_HANDLE;
+  PFN_vkCmdPushDescriptorSetKHR pushDescriptors_ = nullptr;
+};
+
+// What one dispatch writes, the next may read and overwrite.
+void computeBarrier(VkCommandBuffer commandBuffer);
+
+}  // namespace pellucid::bench

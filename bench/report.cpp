@@ -1,0 +1,32 @@
+#include "report.h"
+
+namespace pellucid::bench {
+
+void Report::section(const std::string& title) {
+  section_ = title;
+  std::fprintf(table_, "\n%-36s %9s %9s %9s %8s %11s %11s %9s\n", title.c_str(), "us", "10 %", "90 %",
+               "x floor", "bytes/pixel", "dispatches", "error");
+}
+
+void Report::add(const Row& row, const Time& time) {
+  const std::string dispatches = std::to_string(row.dispatches) + " + " + std::to_string(row.barriers);
+  std::fprintf(table_, "  %-34s %9.1f %9.1f %9.1f %8.2f %11.1f %11s ", row.name.c_str(), time.median,
+               time.low, time.high, time.median / floor_, row.bytesPerPixel, dispatches.c_str());
+  if (row.error)
+    std::fprintf(table_, "%9.2g\n", *row.error);
+  else
+    std::fprintf(table_, "%9s\n", "-");
+  nlohmann::json json = {{"section", section_},
+                         {"name", row.name},
+                         {"us", time.median},
+                         {"p10_us", time.low},
+                         {"p90_us", time.high},
+                         {"floor_ratio", time.median / floor_},
+                         {"dispatches", row.dispatches},
+                         {"barriers", row.barriers},
+                         {"modeled_bytes_per_pixel", row.bytesPerPixel}};
+  if (row.error) json["relative_rmse"] = *row.error;
+  rows_.push_back(std::move(json));
+}
+
+}  // namespace pellucid::bench

@@ -1,0 +1,38 @@
+// The table that people read and the JSON that programs read, from the same rows.
+#pragma once
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "measure.h"
+#include "variant.h"
+
+namespace pellucid::bench {
+
+class Report {
+public:
+  // Writes the table to `table`. Times are also stated as multiples of `floor`, microseconds.
+  Report(std::FILE* table, double floor) : table_(table), floor_(floor) {}
+
+  void section(const std::string& title);
+
+  struct Row {
+    std::string name;
+    uint32_t dispatches, barriers;
+    double bytesPerPixel;
+    std::optional<double> error;  // relative RMSE; what against is in the section's title
+  };
+  void add(const Row& row, const Time& time);
+
+  const nlohmann::json& rows() const { return rows_; }
+
+private:
+  std::FILE* table_;
+  double floor_;
+  std::string section_;
+  nlohmann::json rows_ = nlohmann::json::array();
+};
+
+}  // namespace pellucid::bench

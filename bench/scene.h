@@ -1,0 +1,25 @@
+// What the benchmarks run on.
+#pragma once
+
+#include <vector>
+
+#include "capture/capture.h"
+#include "pellucid/pellucid.h"
+
+namespace pellucid::bench {
+
+// skin1 of Jensen et al. 2001.
+PellucidMaterial benchMaterial();
+
+// Pixel size (mm) at which the material's 99.9 % radius, of its widest channel, is `radius` pixels.
+double pixelSizeFor(const PellucidMaterial& material, double radius);
+
+// A 2 mm slab, noise in the irradiance, one directional light from behind with a 1024^2 shadow map; the
+// upper `coverage` of the image has the material. A pixel is `pixel` mm wide.
+harness::Capture slab(int width, int height, double coverage, double pixel);
+
+// Irradiance patterns that tell diffusion methods apart: a checker, a step at 30 degrees, a step on a plane
+// tilted by 45. `size` pixels of `pixel` mm a side.
+std::vector<harness::Capture> patterns(int size, double pixel);
+
+}  // namespace pellucid::bench

@@ -1,0 +1,48 @@
+// The light that comes through, over rho. THICKNESS: the chord comes from an image, else from both planar
+// distances here. One shadow image.
+#version 460
+#extension GL_EXT_samplerless_texture_functions : require
+#extension GL_GOOGLE_include_directive : require
+
+#include "gbuffer_decode.glsl"
+#include "steps.glsl"
+
+layout(push_constant) uniform Pass { uvec4 value; } pass; // x: lights
+layout(set = 0, binding = 1) readonly buffer Lights { LightConstants lights[]; };
+layout(set = 0, binding = 2) readonly buffer Shadows { ShadowConstants shadows[]; };
+layout(set = 0, binding = 3) readonly buffer Materials { MaterialConstants materials[]; };
+layout(set = 0, binding = 4) uniform texture2D frontImage;
+layout(set = 0, binding = 5) uniform texture2D thicknessOrBackImage;
+layout(set = 0, binding = 6) uniform texture2D normalImage;
+layout(set = 0, binding = 7) uniform utexture2D materialImage;
+layout(set = 0, binding = 8) uniform texture2D shadowImage;
+layout(set = 0, binding = 9, rgba16f) uniform writeonly image2D transmittedImage;
+
+float shadowTexel(uint image, ivec2 texel) { return texelFetch(shadowImage, texel, 0).x; }
+
+#include "lib/transmission.glsl"
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (isOutside(pixel)) return;
+  uint material = decodeMaterial(texelFetch(materialImage, pixel, 0));
+  vec3 sum = vec3(0.0);
+  float front = texelFetch(frontImage, pixel, 0).x;
+  if (material != 0u && front > 0.0) {
+    ViewRay ray = viewRay(frame.camera, pixel);
+    float through = texelFetch(thicknessOrBackImage, pixel, 0).x;
+#ifndef THICKNESS
+    through = through > 0.0 ? chord(through - front, ray) : -1.0;
+#endif
+    vec3 normal = mat3(frame.viewFromNormal) * decodeNormal(texelFetch(normalImage, pixel, 0));
+    Surface s = makeSurface(ray, front, through, normal);
+    for (uint i = 0u; i < pass.value.x; ++i) {
+      Transmitted t = lightTransmission(lights[i], s);
+      vec3 light = t.arriving * t.visible;
+      if (t.thickness >= 0.0 && max(light.r, max(light.g, light.b)) > 0.0)
+        sum += light * materialTransmittance(material - 1u, t.thickness * frame.camera.range.w);
+    }
+    sum *= materials[material - 1u].inverseReflectance.rgb;
+  }
+  imageStore(transmittedImage, pixel, vec4(sum, 1.0));
+}

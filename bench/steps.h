@@ -1,0 +1,16 @@
+// Translucency of camera-space thickness as separate dispatches, the way Whelan 2009 (4.7.2) first has it.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "bench_frame.h"
+
+namespace pellucid::bench {
+
+// Linearize front and back depth, thickness, transmittance, addition; the same with thickness and
+// transmittance in one; and the module's one dispatch. The frame: device depths, normals, back depth, at most
+// one shadow image, translucency alone with PELLUCID_THICKNESS_CAMERA.
+std::vector<Variant> translucencyVariants(const std::shared_ptr<const BenchFrame>& frame);
+
+}  // namespace pellucid::bench
