@@ -1,0 +1,85 @@
+// What a plan costs, for every feature, output and kind of lights, against a file that says what it should.
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "frame_fixture.h"
+
+namespace {
+
+using pellucid::test::Frame;
+
+constexpr const char* kFile = PELLUCID_SOURCE_DIR "/tests/golden/plan_counts.json";
+constexpr const char* kUpdate = "PELLUCID_UPDATE_GOLDEN=1 ./run test -R PlanCounts";
+
+struct Choice {
+  const char* name;
+  uint32_t value;
+};
+const Choice kFeatures[] = {{"none", 0},
+                            {"translucency", PELLUCID_FEATURE_TRANSLUCENCY},
+                            {"diffusion", PELLUCID_FEATURE_DIFFUSION},
+                            {"both", PELLUCID_FEATURE_TRANSLUCENCY | PELLUCID_FEATURE_DIFFUSION}};
+const Choice kOutputs[] = {{"rgba16f", VK_FORMAT_R16G16B16A16_SFLOAT},
+                           {"rgba32f", VK_FORMAT_R32G32B32A32_SFLOAT}};
+const Choice kDebug[] = {{"", PELLUCID_DEBUG_NONE}, {" debug view", PELLUCID_DEBUG_THICKNESS}};
+// value: lights with a shadow map each; 0: one without.
+const Choice kLights[] = {
+    {"1 light without a map", 0}, {"1 light", 1}, {"8 lights", 8}, {"9 lights", 9}, {"20 lights", 20}};
+
+nlohmann::json countsOf(const Frame& f) {
+  const PellucidPlan plan = f.plan();
+  uint32_t transients = 0;
+  EXPECT_EQ(pellucidGetImageNeeds(&f.frame, &transients, nullptr), PELLUCID_OK);
+  uint64_t bytes = 0;
+  for (uint32_t i = 0; i < plan.dispatchCount; ++i) bytes += plan.dispatches[i].modeledBytes;
+  return {{"dispatches", plan.dispatchCount},
+          {"barriers", plan.barrierCount},
+          {"transients", transients},
+          {"bytesPerPixel", bytes / (f.frame.imageExtent[0] * f.frame.imageExtent[1])}};
+}
+
+nlohmann::json allCounts() {
+  nlohmann::json all;
+  for (const Choice& lights : kLights) {
+    Frame f(lights.value);
+    for (const Choice& features : kFeatures)
+      for (const Choice& output : kOutputs)
+        for (const Choice& debug : kDebug) {
+          // Debug views need all lights in one dispatch, which binds eight maps.
+          if (debug.value != PELLUCID_DEBUG_NONE && lights.value > 8) continue;
+          f.frame.features = features.value;
+          f.frame.outputFormat = static_cast<VkFormat>(output.value);
+          f.frame.debugView = debug.value;
+          all[std::string(features.name) + ", " + output.name + debug.name + ", " + lights.name] =
+              countsOf(f);
+        }
+  }
+  return all;
+}
+
+TEST(PlanCounts, AreThoseOfTheGoldenFile) {
+  const nlohmann::json counts = allCounts();
+  if (std::getenv("PELLUCID_UPDATE_GOLDEN")) {
+    // One plan a line, so that a change shows as the lines of the plans it changes.
+    std::string text = "{";
+    for (const auto& [name, value] : counts.items())
+      text += (text.size() > 1 ? ",\n " : "\n ") + nlohmann::json(name).dump() + ": " + value.dump();
+    std::ofstream file(kFile);
+    file << text << "\n}\n";
+    ASSERT_TRUE(file.flush()) << kFile;
+    GTEST_SKIP() << "rewrote " << kFile;
+  }
+  std::ifstream file(kFile);
+  const nlohmann::json golden = nlohmann::json::parse(file, nullptr, false);
+  ASSERT_TRUE(golden.is_object()) << kFile << " is not JSON; to write it: " << kUpdate;
+  for (const auto& [name, value] : counts.items()) {
+    ASSERT_TRUE(golden.contains(name))
+        << kFile << " lacks the plan of \"" << name << "\"; to add it: " << kUpdate;
+    EXPECT_EQ(value, golden[name]) << "the plan of \"" << name << "\" costs something else than " << kFile
+                                   << " says. If that is meant: " << kUpdate;
+  }
+  EXPECT_EQ(golden.size(), counts.size()) << "plans that no longer exist; to drop them: " << kUpdate;
+}
+
+}  // namespace
