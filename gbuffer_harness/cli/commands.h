@@ -16,5 +16,6 @@ void addReferenceCommand(CLI::App& app);
 void addCompareCommand(CLI::App& app);
 void addEvaluateCommand(CLI::App& app);
 void addCaptureCommand(CLI::App& app);
+void addSheetCommand(CLI::App& app);
 
 }  // namespace pellucid::harness

@@ -30,6 +30,7 @@ int main(int argc, char** argv) {
   addCompareCommand(app);
   addEvaluateCommand(app);
   addCaptureCommand(app);
+  addSheetCommand(app);
   try {
     app.parse(argc, argv);
     return OK;

@@ -39,17 +39,6 @@ void multiply(Image& image, const Image& by) {
   for (size_t i = 0; i < image.data.size() && !by.empty(); ++i) image.data[i] *= by.data[i];
 }
 
-// Brings the 99th percentile of the lit values to 0.8: below white, above the middle.
-float autoExposure(const Image& image) {
-  std::vector<float> lit;
-  for (float v : image.data)
-    if (v > 0 && v < 1e30f) lit.push_back(v);
-  if (lit.empty()) return 1;
-  const auto nth = lit.begin() + static_cast<std::ptrdiff_t>(static_cast<double>(lit.size() - 1) * 0.99);
-  std::nth_element(lit.begin(), nth, lit.end());
-  return 0.8f / *nth;
-}
-
 void print(const Device& device, const ReplayResult& result) {
   std::printf("%s\n%-22s %-22s %12s %14s %10s\n", device.description().c_str(), "dispatch", "pipeline",
               "groups", "modeled bytes", "time us");

@@ -48,6 +48,16 @@ std::vector<std::uint8_t> toSrgb(const Image& image, float exposure) {
   return rgb;
 }
 
+float autoExposure(const Image& image) {
+  std::vector<float> lit;
+  for (float v : image.data)
+    if (v > 0 && v < 1e30f) lit.push_back(v);
+  if (lit.empty()) return 1;
+  const auto nth = lit.begin() + static_cast<std::ptrdiff_t>(static_cast<double>(lit.size() - 1) * 0.99);
+  std::nth_element(lit.begin(), nth, lit.end());
+  return 0.8f / *nth;
+}
+
 Image sideBySide(const std::vector<const Image*>& images, int gap) {
   int width = gap * (static_cast<int>(images.size()) - 1);
   for (const Image* image : images) width += image->width;
@@ -61,6 +71,20 @@ Image sideBySide(const std::vector<const Image*>& images, int gap) {
     left += image->width + gap;
   }
   return result;
+}
+
+Image contactSheet(const std::vector<const Image*>& images, int columns, int gap) {
+  const Image& first = *images.front();
+  const int count = static_cast<int>(images.size());
+  columns = std::min(columns, count);
+  const int rows = (count + columns - 1) / columns;
+  Image sheet(columns * (first.width + gap) - gap, rows * (first.height + gap) - gap, first.channels);
+  const auto row = static_cast<std::size_t>(first.width) * static_cast<std::size_t>(first.channels);
+  for (int i = 0; i < count; ++i)
+    for (int y = 0; y < first.height; ++y)
+      std::copy_n(images[static_cast<std::size_t>(i)]->at(0, y), row,
+                  sheet.at(i % columns * (first.width + gap), i / columns * (first.height + gap) + y));
+  return sheet;
 }
 
 }  // namespace pellucid::harness

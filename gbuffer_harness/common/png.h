@@ -16,7 +16,14 @@ void writePng(const std::filesystem::path& path, int width, int height, const st
 // channel becomes gray, channels past the third are left out. NaN and infinity are magenta.
 std::vector<std::uint8_t> toSrgb(const Image& image, float exposure = 1.0f);
 
+// The factor that brings the 99th percentile of the values above 0 to 0.8: below white, above the middle.
+float autoExposure(const Image& image);
+
 // Images of one height and channel count, left to right, with a black gap of `gap` pixels between.
 Image sideBySide(const std::vector<const Image*>& images, int gap = 4);
+
+// Images of one size and channel count in rows of `columns`, the first at the top left, with black gaps of
+// `gap` pixels; what the last row lacks is black. columns: >= 1.
+Image contactSheet(const std::vector<const Image*>& images, int columns, int gap = 4);
 
 }  // namespace pellucid::harness

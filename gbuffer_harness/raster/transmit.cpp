@@ -13,6 +13,8 @@ const PellucidDispatch& fusedDispatch(const FrameRun& run, const std::string& na
   const PellucidPlan& plan = run.plan();
   if (run.frame().thicknessSource != PELLUCID_THICKNESS_CAMERA)
     throw InputError(name, "thicknessSource", "light-space thickness does not need the back faces");
+  if (run.frame().gatherSamples > 0)
+    throw InputError(name, "gatherSamples", "gathering does not need the back faces");
   if (plan.activeLights == 0) throw InputError(name, "lights", "none can contribute");
   // Lights are read from the first dispatch on, so all are in it when it has as many as are active.
   if (plan.dispatches[0].pushConstants[1] != plan.activeLights)

@@ -76,6 +76,24 @@ TEST_F(Cli, CaptureReplayComparePlan) {
   expect(0, "compare " + out + " " + again + " --mask " + capture + " --limit rel_rmse=0.05", "rel_rmse");
 }
 
+TEST_F(Cli, Sheet) {
+  ASSERT_EQ(run("capture --procedural ear --set azimuth=-30 --size 24x16 -o " + path("left.exr")).code, 0);
+  ASSERT_EQ(run("capture --procedural ear --set azimuth=30 --size 24x16 -o " + path("right.exr")).code, 0);
+  for (const char* view : {"left", "right"})
+    expect(0, "replay " + path(view) + ".exr --set filter=.55,.29,.28 -o " + path(view) + "_out.exr",
+           "wrote");
+  const std::string views = path("left_out.exr") + " " + path("right_out.exr");
+  expect(0, "sheet " + views + " " + path("left_out.exr") + " --columns 2 -o " + path("sheet.png"),
+         "3 images");
+  EXPECT_GT(fs::file_size(path("sheet.png")), 100u);
+  expect(1, "compare " + views + " --limit rel_rmse=0.1", "limit");  // another view is another picture
+  ASSERT_EQ(run("capture --procedural plane --size 16x16 -o " + path("small.exr")).code, 0);
+  ASSERT_EQ(run("replay " + path("small.exr") + " -o " + path("small_out.exr")).code, 0);
+  expect(3, "sheet " + views + " " + path("small_out.exr") + " -o " + path("sheet.png"),
+         "small_out.exr: is 16 x 16");
+  expect(2, "sheet " + views + " -o " + path("sheet.png") + " --columns 0", "--columns");
+}
+
 TEST_F(Cli, UsageErrors) {
   expect(2, "", "subcommand");
   expect(2, "replay", "capture");

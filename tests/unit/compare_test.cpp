@@ -268,6 +268,21 @@ TEST(Pictures, SideBySide) {
   EXPECT_EQ(both.data, (std::vector<float>{1, 1, 0, 2, 2, 2, 1, 1, 0, 2, 2, 2}));
 }
 
+TEST(Pictures, ContactSheet) {
+  const Image a = filled(2, 1, {1}), b = filled(2, 1, {2}), c = filled(2, 1, {3});
+  const Image sheet = contactSheet({&a, &b, &c}, 2, 1);
+  EXPECT_EQ(sheet.width, 5);
+  EXPECT_EQ(sheet.data, (std::vector<float>{1, 1, 0, 2, 2, 0, 0, 0, 0, 0, 3, 3, 0, 0, 0}));
+  EXPECT_EQ(contactSheet({&a}, 3, 1).data, a.data) << "no more columns than images";
+}
+
+TEST(Pictures, ExposureBringsTheBrightBelowWhite) {
+  Image image(100, 1, 1, 2);
+  image.data[0] = 500;  // one highlight does not count
+  EXPECT_FLOAT_EQ(autoExposure(image), 0.4f);
+  EXPECT_EQ(autoExposure(Image(4, 4, 3)), 1) << "black";
+}
+
 TEST(Pictures, UnwritablePathIsNamed) {
   EXPECT_THROW(writePng("/nonexistent/directory/a.png", 1, 1, {0, 0, 0}), InputError);
 }
