@@ -21,29 +21,13 @@ BenchFrame::BenchFrame(Device& device, const Context& context, const Capture& ca
 }
 
 Resource BenchFrame::planned(uint32_t binding) const {
-  const PellucidFrame& f = run_.frame();
   const PellucidDispatch& dispatch = run_.plan().dispatches[0];
   for (uint32_t i = 0; i < dispatch.bindingCount; ++i) {
     const PellucidBinding& b = dispatch.bindings[i];
     if (b.binding != binding) continue;
     if (b.resource == PELLUCID_RESOURCE_CONSTANTS)
       return VkDescriptorBufferInfo{constants_.handle(), b.offset, b.size};
-    if (b.resource >= PELLUCID_RESOURCE_SHADOW0)
-      return f.shadowImages[b.resource - PELLUCID_RESOURCE_SHADOW0];
-    switch (b.resource) {
-      case PELLUCID_RESOURCE_FRONT_DEPTH:
-        return f.frontDepth;
-      case PELLUCID_RESOURCE_BACK_DEPTH:
-        return f.backDepth;
-      case PELLUCID_RESOURCE_IRRADIANCE:
-        return f.irradiance;
-      case PELLUCID_RESOURCE_NORMAL:
-        return f.normal;
-      case PELLUCID_RESOURCE_MATERIAL:
-        return f.material;
-      default:
-        break;
-    }
+    return imageOf(run_.frame(), b.resource);
   }
   throw DeviceError("the plan's first dispatch has no binding " + std::to_string(binding));
 }

@@ -12,6 +12,7 @@
 #include "kRasterMesh.h"
 #include "kRasterSurface.h"
 #include "kRasterTransmit.h"
+#include "replay/frame.h"
 #include "scene/vector.h"
 #include "shared/pellucid_shared.h"
 
@@ -106,13 +107,6 @@ std::vector<PlannedBinding> plannedBindings() {
   return all;
 }
 
-const PellucidImage& plannedImage(const PellucidFrame& frame, std::uint32_t resource) {
-  if (resource >= PELLUCID_RESOURCE_SHADOW0) return frame.shadowImages[resource - PELLUCID_RESOURCE_SHADOW0];
-  if (resource == PELLUCID_RESOURCE_NORMAL) return frame.normal;
-  if (resource == PELLUCID_RESOURCE_MATERIAL) return frame.material;
-  return frame.frontDepth;  // what the plan binds for an input that the frame lacks
-}
-
 // The writes of one push, with what they point to.
 class DescriptorWrites {
 public:
@@ -150,7 +144,7 @@ void addPlanned(const PlannedInputs& planned, DescriptorWrites& writes) {
       if (b.resource == PELLUCID_RESOURCE_CONSTANTS)
         writes.buffer(to, wanted.type, {planned.constants, b.offset, b.size});
       else
-        writes.image(to, wanted.type, VK_NULL_HANDLE, plannedImage(planned.frame, b.resource));
+        writes.image(to, wanted.type, VK_NULL_HANDLE, imageOf(planned.frame, b.resource));
     }
 }
 

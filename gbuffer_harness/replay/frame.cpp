@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/error.h"
 
@@ -166,6 +167,18 @@ void makeFrame(const Capture& capture, const std::vector<PellucidMaterial>& mate
   f.coherenceThreshold = settings.coherenceThreshold;
   f.frameLoad = settings.frameLoad;
   f.debugView = settings.debugView;
+}
+
+const PellucidImage& imageOf(const PellucidFrame& frame, uint32_t resource) {
+  const std::pair<uint32_t, const PellucidImage*> named[] = {
+      {PELLUCID_RESOURCE_FRONT_DEPTH, &frame.frontDepth}, {PELLUCID_RESOURCE_BACK_DEPTH, &frame.backDepth},
+      {PELLUCID_RESOURCE_IRRADIANCE, &frame.irradiance},  {PELLUCID_RESOURCE_NORMAL, &frame.normal},
+      {PELLUCID_RESOURCE_ALBEDO, &frame.albedo},          {PELLUCID_RESOURCE_MATERIAL, &frame.material},
+      {PELLUCID_RESOURCE_OUTPUT, &frame.output}};
+  for (const auto& [name, image] : named)
+    if (name == resource) return *image;
+  return resource >= PELLUCID_RESOURCE_SHADOW0 ? frame.shadowImages[resource - PELLUCID_RESOURCE_SHADOW0]
+                                               : frame.transients[resource - PELLUCID_RESOURCE_TRANSIENT0];
 }
 
 void requireOk(PellucidResult result, const PellucidFrame& frame, const std::string& name) {

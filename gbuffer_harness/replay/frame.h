@@ -59,6 +59,9 @@ struct FrameData {
 void makeFrame(const Capture& capture, const std::vector<PellucidMaterial>& materials,
                const ReplaySettings& settings, FrameData& data);
 
+// The image that a PellucidBinding of an image resource means, for passes that bind what a plan does.
+const PellucidImage& imageOf(const PellucidFrame& frame, uint32_t resource);
+
 // Throws InputError with every sentence of pellucidValidateFrame's errors when `result` is not OK.
 void requireOk(PellucidResult result, const PellucidFrame& frame, const std::string& name);
 
