@@ -35,6 +35,6 @@ void main() {
   }
   // Every sample may have missed, at a thin part.
   vec3 center = texelFetch(sourceImage, pixel, 0).rgb;
-  for (int c = 0; c < 3; ++c) sum[c] = weights[c] > 0.0 ? sum[c] / weights[c] : center[c];
-  imageStore(destinationImage, pixel, vec4(sum, 1.0));
+  vec3 result = mix(center, sum / weights, greaterThan(weights, vec3(0.0)));
+  imageStore(destinationImage, pixel, vec4(result, 1.0));
 }

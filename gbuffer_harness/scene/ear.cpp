@@ -1,7 +1,6 @@
 // The demonstration scene: a thin ear in front of a head, lit from behind.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "scene/model.h"
 #include "scene/spline.h"
@@ -159,11 +158,7 @@ private:
 
 SceneModel buildEar(const SceneParameters& parameters, const OptionValues& options) {
   SceneModel model;
-  const double azimuth = options["azimuth"] * std::numbers::pi / 180;
-  const glm::dvec3 target(3, -2, 0), away(-43, 12, 380);
-  const glm::dvec3 eye = target + glm::dvec3(away.x * std::cos(azimuth) + away.z * std::sin(azimuth), away.y,
-                                             away.z * std::cos(azimuth) - away.x * std::sin(azimuth));
-  model.camera = placeCamera(parameters, {eye, target, options["extent"], false, 200, 700});
+  model.camera = placeCamera(parameters, {{-40, 10, 380}, {3, -2, 0}, options["extent"], false, 200, 700});
   model.objects.emplace_back().solid = std::make_unique<Ear>();
   model.objects.emplace_back().solid = std::make_unique<Ellipsoid>(kHead.center, kHead.radii);
   model.center = {10, 0, -30};
@@ -190,8 +185,7 @@ std::vector<SceneDefinition> earScenes() {
             "Thin ear in front of a head, strong light from behind, weak light from the side",
             {{"backLight", 4, 0, 1e6, "irradiance of the light behind the head, at the ear"},
              {"frontLight", 0.7, 0, 1e6, "irradiance of the light from the front"},
-             {"extent", 92, 1, 1e4, "visible width, mm"},
-             {"azimuth", 0, -80, 80, "camera turned about the vertical through the ear, degrees"}}},
+             {"extent", 92, 1, 1e4, "visible width, mm"}}},
            buildEar}};
 }
 

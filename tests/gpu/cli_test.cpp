@@ -77,13 +77,14 @@ TEST_F(Cli, CaptureReplayComparePlan) {
 }
 
 TEST_F(Cli, Sheet) {
-  ASSERT_EQ(run("capture --procedural ear --set azimuth=-30 --size 24x16 -o " + path("left.exr")).code, 0);
-  ASSERT_EQ(run("capture --procedural ear --set azimuth=30 --size 24x16 -o " + path("right.exr")).code, 0);
-  for (const char* view : {"left", "right"})
-    expect(0, "replay " + path(view) + ".exr --set filter=.55,.29,.28 -o " + path(view) + "_out.exr",
-           "wrote");
-  const std::string views = path("left_out.exr") + " " + path("right_out.exr");
-  expect(0, "sheet " + views + " " + path("left_out.exr") + " --columns 2 -o " + path("sheet.png"),
+  const std::string turn = " --frames 2,12 ";
+  expect(0,
+         "capture --procedural ear --size 24x16 --turntable 12 --orbit" + turn + "-o " + path("ear.##.exr"),
+         "");
+  expect(0, "replay " + path("ear.##.exr") + turn + "--set filter=.55,.29,.28 -o " + path("view.##.exr"),
+         "2 frames: 2 written");
+  const std::string views = path("view.02.exr") + " " + path("view.12.exr");
+  expect(0, "sheet " + views + " " + path("view.02.exr") + " --columns 2 -o " + path("sheet.png"),
          "3 images");
   EXPECT_GT(fs::file_size(path("sheet.png")), 100u);
   expect(1, "compare " + views + " --limit rel_rmse=0.1", "limit");  // another view is another picture
