@@ -108,7 +108,7 @@ struct MaterialConstants {
   vec4 transmittance4;   // rgb: the fifth
   vec4 inverseReflectance; // rgb: 1/rho
   vec4 gatherRates;        // x: slow, y: fast; 1/mm
-  uvec4 meta;            // x: model; y: Gaussians; z: 1 if it diffuses
+  uvec4 meta;            // x: model; y: Gaussians
   vec4 gaussianFalloff[PELLUCID_GAUSSIANS]; // rgb: 1/(2 v), 1/mm^2; 1/v for the printed form
   vec4 gaussianWeight[PELLUCID_GAUSSIANS];  // rgb
 };

@@ -143,11 +143,11 @@ glm::vec4 gatherRates(const PellucidMaterial& m) {
   return {static_cast<float>(slow), static_cast<float>(std::max(fast, slow)), 0, 0};
 }
 
-shared::MaterialConstants materialConstants(const PellucidMaterial& m) {
+shared::MaterialConstants materialConstants(const PellucidMaterial& m, bool gathers) {
   shared::MaterialConstants c{};
-  c.meta = {m.transmittanceModel, m.gaussianCount, m.gaussianCount > 0 ? 1u : 0u, 0};
+  c.meta = {m.transmittanceModel, m.gaussianCount, 0, 0};
   const float exponent = m.transmittanceModel == PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED ? 1.0f : 0.5f;
-  if (m.transmittanceModel <= PELLUCID_TRANSMITTANCE_SINH_EXP) c.gatherRates = gatherRates(m);
+  if (gathers) c.gatherRates = gatherRates(m);
   for (int channel = 0; channel < 3; ++channel) {
     const float* t = m.transmittance[channel];
     // The shader reads a, kappa, z, b and c of SINH_EXP as xyzw and the fifth.
@@ -234,7 +234,7 @@ extern "C" PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const
   forEachLightGroup(f, eachLight, [](const LightGroup&) {});
   for (uint32_t i = 0; i < f.materialCount; ++i) {
     put(mapped, layout.materials.offset + i * sizeof(shared::MaterialConstants),
-        materialConstants(f.materials[i]));
+        materialConstants(f.materials[i], f.gatherSamples > 0));
     put(mapped, layout.kernels.offset + i * sizeof(shared::KernelConstants), kernelConstants(f.materials[i]));
   }
   return PELLUCID_OK;
