@@ -53,16 +53,6 @@ void printScenes() {
   }
 }
 
-struct Assignment {
-  std::string key, value;
-};
-Assignment parseAssignment(const std::string& option, const std::string& text) {
-  // Names may have an equals sign in them, values do not.
-  const std::size_t equals = text.rfind('=');
-  if (equals == std::string::npos) throw UsageError(option + ": \"" + text + "\" is not key=value");
-  return {text.substr(0, equals), text.substr(equals + 1)};
-}
-
 // Fields that SceneParameters and RasterOptions have in common.
 template <class Parameters>
 void setCommon(const Options& options, Parameters& to) {

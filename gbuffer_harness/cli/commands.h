@@ -17,5 +17,6 @@ void addCompareCommand(CLI::App& app);
 void addEvaluateCommand(CLI::App& app);
 void addCaptureCommand(CLI::App& app);
 void addSheetCommand(CLI::App& app);
+void addMeasureDotsCommand(CLI::App& app);
 
 }  // namespace pellucid::harness

@@ -31,6 +31,7 @@ int main(int argc, char** argv) {
   addEvaluateCommand(app);
   addCaptureCommand(app);
   addSheetCommand(app);
+  addMeasureDotsCommand(app);
   try {
     app.parse(argc, argv);
     return OK;

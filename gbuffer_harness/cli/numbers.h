@@ -1,4 +1,4 @@
-// Numbers in command-line options.
+// Numbers, lists and assignments in command-line options.
 #pragma once
 
 #include <charconv>
@@ -32,6 +32,16 @@ inline std::vector<std::string> split(const std::string& text, char separator) {
       parts.back() += c;
   }
   return parts;
+}
+
+struct Assignment {
+  std::string key, value;
+};
+inline Assignment parseAssignment(const std::string& option, const std::string& text) {
+  // Names may have an equals sign in them, values do not.
+  const std::size_t equals = text.rfind('=');
+  if (equals == std::string::npos) throw UsageError(option + ": \"" + text + "\" is not key=value");
+  return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
 }  // namespace pellucid::harness

@@ -2,9 +2,12 @@
 
 #include <charconv>
 #include <cmath>
+#include <fstream>
 #include <functional>
+#include <iterator>
 #include <map>
 
+#include "capture/json_field.h"
 #include "common/error.h"
 
 namespace pellucid::harness {
@@ -204,10 +207,50 @@ const std::map<std::string, Key> kKeys = {
       }}},
 };
 
+// As --set takes it: a string, a number, or an array's numbers with commas.
+std::string valueText(const Field& field) {
+  if (field.value().is_string()) return field.text();
+  if (!field.value().is_array()) return field.number(), field.value().dump();
+  std::string text;
+  for (const Field& item : field.items()) {
+    item.number();
+    text += (text.empty() ? "" : ",") + item.value().dump();
+  }
+  return text;
+}
+
+std::vector<std::string> assignmentsIn(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  const std::string text(std::istreambuf_iterator<char>(file), {});
+  if (!file) throw InputError(path, "", "cannot be read");
+  const nlohmann::json json = parseJson(path, text);
+  const Field root(path, json);
+  if (!json.is_object()) root.fail("is not an object of settings");
+  std::vector<std::string> assignments;
+  for (const auto& [key, field] : root.members()) {
+    if (kKeys.count(key) == 0) field.fail("is not a key of --set");
+    assignments.push_back(key + "=" + valueText(field));
+  }
+  return assignments;
+}
+
 }  // namespace
 
+std::vector<std::string> SettingsOptions::assignments() const {
+  std::vector<std::string> all;
+  for (const std::string& s : set) {
+    if (s.empty() || s.front() != '@') {
+      all.push_back(s);
+      continue;
+    }
+    const std::vector<std::string> read = assignmentsIn(s.substr(1));
+    all.insert(all.end(), read.begin(), read.end());
+  }
+  return all;
+}
+
 void SettingsOptions::addTo(CLI::App& command) {
-  std::string help = "key=value, repeatable:";
+  std::string help = "key=value, or @FILE with a JSON object of them, repeatable:";
   for (const auto& [name, key] : kKeys) help += " " + name + "=" + key.help + ";";
   command.add_option("--mode", mode, "physical (default) or thesis: Whelan 2009's; --set changes either");
   command.add_option("--set", set, help);
@@ -222,7 +265,7 @@ ReplaySettings SettingsOptions::parse() const {
   else if (mode != "physical")
     throw UsageError("--mode: \"" + mode + "\" is not one of physical, thesis");
   if (!debug.empty()) settings.debugView = lookUp(kDebugViews, "--debug", debug);
-  for (const std::string& assignment : set) {
+  for (const std::string& assignment : assignments()) {
     const size_t equals = assignment.find('=');
     if (equals == std::string::npos) throw UsageError("--set: \"" + assignment + "\" is not key=value");
     const std::string key = assignment.substr(0, equals);
@@ -239,7 +282,7 @@ ReplaySettings SettingsOptions::parse() const {
 
 std::string SettingsOptions::text() const {
   std::string all = "mode=" + mode;
-  for (const std::string& s : set) all += " " + s;
+  for (const std::string& s : assignments()) all += " " + s;
   return all;
 }
 

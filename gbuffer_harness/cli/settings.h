@@ -10,17 +10,20 @@
 namespace pellucid::harness {
 
 struct SettingsOptions {
-  std::vector<std::string> set;  // key=value
+  std::vector<std::string> set;  // key=value or @FILE
   std::string debug;
   std::string mode = "physical";
 
   void addTo(CLI::App& command);
 
-  // Throws UsageError naming the key and the value.
+  // Throws UsageError naming the key and the value, and InputError for a file.
   ReplaySettings parse() const;
 
-  // As given, for the record.
+  // As given, for the record; of files what they hold.
   std::string text() const;
+
+private:
+  std::vector<std::string> assignments() const;  // key=value
 };
 
 }  // namespace pellucid::harness

@@ -30,17 +30,31 @@ void checkSide(const char* field, int value, int smallest) {
   }
 }
 
+[[noreturn]] void refuse(const SceneParameters& parameters, const char* why) {
+  throw InputError("", "scene \"" + parameters.name + "\"", why);
+}
+
+void applyAim(const SceneParameters& parameters, SceneModel& model) {
+  if (!parameters.aim) return;
+  if (model.endless) refuse(parameters, "has no end, so that a camera cannot go round it");
+  if (model.lights.empty()) refuse(parameters, "has painted irradiance and no lights that could turn");
+  const glm::dvec3 eye(glm::inverse(toGlm(model.camera.viewFromWorld))[3]);
+  const glm::dvec3 toCamera = glm::normalize(toGlm(parameters.aim->toCamera));
+  model.camera.viewFromWorld = lookAt(fromGlm(model.center + glm::distance(eye, model.center) * toCamera),
+                                      fromGlm(model.center), {0, 1, 0});
+  Light light;
+  light.direction = fromGlm(-glm::normalize(toGlm(parameters.aim->toLight)));
+  model.lights = {light};
+}
+
 void applyTurn(const SceneParameters& parameters, SceneModel& model) {
-  const auto refuse = [&](const char* why) {
-    throw InputError("", "scene \"" + parameters.name + "\"", why);
-  };
   const Vector3 center = fromGlm(model.center);
   if (const auto angle = parameters.turn.camera) {
-    if (model.endless) refuse("has no end, so that a camera cannot go round it");
+    if (model.endless) refuse(parameters, "has no end, so that a camera cannot go round it");
     model.camera.viewFromWorld = turnedView(model.camera.viewFromWorld, center, *angle);
   }
   if (const auto angle = parameters.turn.lights) {
-    if (model.lights.empty()) refuse("has painted irradiance and no lights that could turn");
+    if (model.lights.empty()) refuse(parameters, "has painted irradiance and no lights that could turn");
     for (Light& light : model.lights) light = turnedLight(light, center, *angle);
   }
 }
@@ -72,8 +86,14 @@ Capture makeScene(const SceneParameters& parameters, Image* exactThickness) {
   }
   const OptionValues options(scene.info, parameters.options);
   SceneModel model = scene.build(parameters, options);
+  applyAim(parameters, model);
   applyTurn(parameters, model);
   return renderCapture(model, parameters, exactThickness);
+}
+
+Vector3 sceneCenter(const SceneParameters& parameters) {
+  const SceneDefinition& scene = findScene(parameters.name);
+  return fromGlm(scene.build(parameters, OptionValues(scene.info, parameters.options)).center);
 }
 
 }  // namespace pellucid::harness

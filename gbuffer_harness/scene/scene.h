@@ -12,6 +12,12 @@
 
 namespace pellucid::harness {
 
+// A camera and a light in place of a scene's own: the camera looks at the scene's center from this direction
+// at the distance it has, and one directional light of irradiance 1 comes from that one.
+struct Aim {
+  Vector3 toCamera, toLight;  // world, from the center; any length > 0
+};
+
 struct SceneParameters {
   std::string name;                       // one of listScenes()
   int width = 256, height = 256;          // pixels, 1..8192
@@ -33,6 +39,7 @@ struct SceneParameters {
 
   // About the scene's center. Refused by name: the camera of an endless scene, lights of a painted one.
   Turn turn;
+  std::optional<Aim> aim;  // refused likewise; `turn` comes after it
 };
 
 struct SceneOption {
@@ -53,5 +60,8 @@ std::vector<SceneInfo> listScenes();
 // inside the first object, 0 where there is none, one channel; empty when the scene has no closed
 // form. Throws InputError naming the field when a name, size, option or combination is not known.
 Capture makeScene(const SceneParameters& parameters, Image* exactThickness = nullptr);
+
+// World; what a Turn goes round and an Aim looks at. Throws likewise.
+Vector3 sceneCenter(const SceneParameters& parameters);
 
 }  // namespace pellucid::harness

@@ -104,7 +104,10 @@ void checkMinimumDotTable(const PellucidFrame& f, Findings& out) {
   const glm::dvec3 up(f.upAxis[0], f.upAxis[1], f.upAxis[2]);
   const double sine = glm::length(glm::cross(glm::normalize(up), glm::normalize(face)));
   // Nearer to each other than this, float rounding would decide where the face looks.
-  if (!(sine > 1e-4)) out.error("faceVector", "and upAxis must be finite, longer than 0 and not parallel");
+  if (!(sine > 1e-4))
+    out.error("faceVector", "is ", f.faceVector[0], ", ", f.faceVector[1], ", ", f.faceVector[2],
+              " and upAxis ", f.upAxis[0], ", ", f.upAxis[1], ", ", f.upAxis[2],
+              "; must be finite, longer than 0 and not parallel");
   if (!finite(f.objectCenter, 3)) out.error("objectCenter", "is not finite");
 }
 

@@ -1,0 +1,211 @@
+// `pellucid measure-dots`: a table of minimum dots, from pictures of the object lit from all around.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <functional>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "capture/material.h"
+#include "cli/capture_gltf.h"
+#include "cli/commands.h"
+#include "cli/minimum_dot_table.h"
+#include "cli/numbers.h"
+#include "cli/settings.h"
+#include "common/progress.h"
+#include "common/whole_file.h"
+#include "raster/framing.h"
+#include "replay/replay.h"
+#include "scene/scene.h"
+
+namespace pellucid::harness {
+namespace {
+
+struct Options {
+  std::string model, output, device, face = "0,0,1", up = "0,1,0", unit = "m";
+  SceneParameters scene;
+  std::vector<std::string> sceneSet, presets;
+  std::optional<int> entries, sphere;
+  int size = 64, shadowSize = 128;
+  Swing swing;
+  SettingsOptions settings;
+};
+
+// The object seen and lit from two directions.
+using View = std::function<Capture(const Vector3& toLight, const Vector3& toEye)>;
+
+struct Object {
+  Vector3 center;
+  View view;
+};
+
+Vector3 parseVector(const std::string& option, const std::string& text) {
+  const std::vector<std::string> parts = split(text, ',');
+  if (parts.size() != 3) throw UsageError(option + ": \"" + text + "\" is not X,Y,Z");
+  Vector3 vector;
+  for (std::size_t i = 0; i < 3; ++i) vector[i] = parseNumber<double>(option, parts[i]);
+  return vector;
+}
+
+DotTable tableOf(const Options& options) {
+  if (options.entries && options.sphere) throw UsageError("--entries and --sphere exclude each other");
+  DotTable table;
+  table.sphere = options.sphere.has_value();
+  table.size = table.sphere ? *options.sphere : options.entries.value_or(table.size);
+  table.face = parseVector("--face", options.face);
+  table.up = parseVector("--up", options.up);
+  const Vector3 &f = table.face, &u = table.up;
+  const double across =
+      std::hypot(u[1] * f[2] - u[2] * f[1], u[2] * f[0] - u[0] * f[2], u[0] * f[1] - u[1] * f[0]);
+  if (!(across > 1e-6 * std::hypot(f[0], f[1], f[2]) * std::hypot(u[0], u[1], u[2])))
+    throw UsageError("--face: \"" + options.face + "\" is along --up \"" + options.up + "\"");
+  return table;
+}
+
+ReplaySettings settingsOf(const Options& options) {
+  ReplaySettings settings = options.settings.parse();
+  const ReplaySettings defaults;
+  if (settings.features != defaults.features || settings.outputFormat != defaults.outputFormat ||
+      settings.aliasOutput || settings.renderRect != defaults.renderRect ||
+      settings.reuse != defaults.reuse || settings.debugView != defaults.debugView)
+    throw UsageError(
+        "--set: features, format, alias, rect, reuse and --debug are not of the light that comes through");
+  settings.features = PELLUCID_FEATURE_TRANSLUCENCY;
+  settings.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  return settings;
+}
+
+// Every view ray must have the same cosine with the light: cameras are orthographic.
+Object proceduralObject(const Options& options) {
+  SceneParameters scene = options.scene;
+  scene.width = scene.height = options.size;
+  scene.shadowSize = options.shadowSize;
+  scene.orthographic = true;
+  for (const std::string& text : options.sceneSet) {
+    const Assignment set = parseAssignment("--scene-set", text);
+    scene.options[set.key] = parseNumber<double>("--scene-set " + set.key, set.value);
+  }
+  return {sceneCenter(scene), [scene](const Vector3& toLight, const Vector3& toEye) {
+            SceneParameters aimed = scene;
+            aimed.aim = Aim{toEye, toLight};
+            return makeScene(aimed);
+          }};
+}
+
+Object modelObject(const Options& options, Device& device) {
+  GltfOptions gltf;
+  gltf.metersPerUnit = parseUnit(options.unit);
+  for (const std::string& text : options.presets) {
+    const Assignment set = parseAssignment("--material", text);
+    gltf.presets[set.key] = set.value;
+  }
+  const auto model = std::make_shared<Model>(loadGltf(options.model, gltf).model);
+  RasterOptions raster;
+  raster.width = raster.height = options.size;
+  raster.shadowSize = options.shadowSize;
+  return {boundsOf(*model).center, [model, raster, &device](const Vector3& toLight, const Vector3& toEye) {
+            Light light;
+            for (std::size_t i = 0; i < 3; ++i) light.direction[i] = -toLight[i];
+            model->lights = {light};
+            return rasterize(device, *model, frameModel(*model, toEye, 0.5, 1, true), raster).capture;
+          }};
+}
+
+// Mean over the material's pixels and the channels.
+double lightThrough(Capture& capture, const std::vector<PellucidMaterial>& materials,
+                    const ReplaySettings& settings, Replayer& replayer) {
+  // Without light of its own the frame is what came through.
+  std::fill(capture.irradiance.data.begin(), capture.irradiance.data.end(), 0.0f);
+  capture.albedo = {};
+  const Image out = replayer.run(capture, materials, settings).output;
+  double sum = 0;
+  std::size_t pixels = 0;
+  for (std::size_t i = 0; i < capture.material.size(); ++i) {
+    if (capture.material[i] == 0) continue;
+    ++pixels;
+    for (std::size_t c = 0; c < 3; ++c) sum += static_cast<double>(out.data[4 * i + c]) / 3;
+  }
+  return pixels > 0 ? sum / static_cast<double>(pixels) : 0;
+}
+
+void measure(const Options& options) {
+  if (options.scene.name.empty() == options.model.empty())
+    throw UsageError("measure-dots: either a model or --procedural is required");
+  const DotTable table = tableOf(options);
+  const ReplaySettings settings = settingsOf(options);
+  Device device({options.device, false});
+  Replayer replayer(device);
+  const Object object = options.model.empty() ? proceduralObject(options) : modelObject(options, device);
+  const std::size_t entries = lightDirections(table).size();
+  Progress progress("measuring", entries * (2 * static_cast<std::size_t>(options.swing.steps) + 1));
+  std::vector<PellucidMaterial> materials;  // of every view
+  const std::vector<double> dots =
+      measureMinimumDots(table, options.swing, [&](const Vector3& toLight, const Vector3& toEye) {
+        Capture capture = object.view(toLight, toEye);
+        if (materials.empty()) materials = compileMaterials(capture);
+        const double through = lightThrough(capture, materials, settings, replayer);
+        progress.advance();
+        return through;
+      });
+  const nlohmann::ordered_json json = {{"angle", table.sphere ? "minimum-dot-sphere" : "minimum-dot-azimuth"},
+                                       {"face", table.face},
+                                       {"up", table.up},
+                                       {"center", object.center},
+                                       {"minimum-dots", dots}};
+  if (options.output.empty()) {
+    std::cout << json.dump(2) << "\n";
+    return;
+  }
+  writeWhole(options.output, [&](const auto& path) {
+    std::ofstream file(path);
+    file << json.dump(2) << "\n";
+    if (!file.flush()) throw InputError(options.output, "", "cannot be written");
+  });
+  const auto [least, most] = std::minmax_element(dots.begin(), dots.end());
+  std::printf("wrote %s: %zu entries from %g to %g; replay --set @%s uses it\n", options.output.c_str(),
+              entries, *least, *most, options.output.c_str());
+}
+
+}  // namespace
+
+void addMeasureDotsCommand(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "measure-dots", "Measure how far behind an object lights must be before they come through (a table)");
+  command->add_option("model", options->model, "glTF file, .glb or .gltf");
+  command->add_option("--procedural", options->scene.name, "name of a procedural scene instead");
+  command->add_option("--scene-set", options->sceneSet, "key=value, repeatable: an option of that scene")
+      ->take_all();
+  command->add_option("--material", options->presets, "of a model: NAME=PRESET, repeatable; * all others")
+      ->take_all();
+  command->add_option("--unit", options->unit, "of a model: mm, cm, m or meters")->capture_default_str();
+  command->add_option("-o,--output", options->output, "JSON for --set @FILE; default: standard output");
+  command->add_option("--entries", options->entries, "lights around --up (default 36)")
+      ->check(CLI::Range(1, 360));
+  command->add_option("--sphere", options->sphere, "side of a map of all directions instead")
+      ->check(CLI::Range(3, 16));
+  command->add_option("--face", options->face, "X,Y,Z the object looks along, world")->capture_default_str();
+  command->add_option("--up", options->up, "X,Y,Z of the object, world")->capture_default_str();
+  command->add_option("--steps", options->swing.steps, "of the camera over its quarter turn")
+      ->check(CLI::Range(1, 900))
+      ->capture_default_str();
+  command
+      ->add_option("--threshold", options->swing.threshold,
+                   "what counts as light: this part of the most that any view shows")
+      ->check(CLI::Range(0.0, 0.99))
+      ->capture_default_str();
+  command->add_option("--size", options->size, "pixels across a view")
+      ->check(CLI::Range(8, 2048))
+      ->capture_default_str();
+  command->add_option("--shadow-size", options->shadowSize, "texels across a shadow map")
+      ->check(CLI::Range(8, 8192))
+      ->capture_default_str();
+  command->add_option("--device", options->device, "part of the Vulkan device's name");
+  options->settings.addTo(*command);
+  command->callback([options] { measure(*options); });
+}
+
+}  // namespace pellucid::harness
