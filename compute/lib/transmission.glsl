@@ -80,11 +80,10 @@ float hiddenCosine(LightConstants light, Surface s, vec3 toLight) {
   uint model = frame.flags.w;
   if (model == PELLUCID_SHADER_ANGLE_NORMAL && s.hasNormal) return max(-dot(s.normal, toLight), 0.0);
   vec3 view = hasFlag(PELLUCID_FLAG_CONSTANT_VIEW) ? vec3(0.0, 0.0, frame.camera.range.x) : s.view;
-  float x = dot(view, toLight);
+  float x = dot(view, toLight) * light.cone.z + light.cone.w; // from the minimum dot on, if the model has one
   if (model == PELLUCID_SHADER_ANGLE_INVERSE_COSINE) return angleInverseCosine(x);
   if (model == PELLUCID_SHADER_ANGLE_POLYNOMIAL) return anglePolynomial(frame.anglePolynomial, x);
-  if (model <= PELLUCID_SHADER_ANGLE_COSINE) return clamp(x, 0.0, 1.0);
-  return clamp(x * light.cone.z + light.cone.w, 0.0, 1.0); // minimum dot
+  return clamp(x, 0.0, 1.0);
 }
 
 // docs/design.md says why each source is what it is.

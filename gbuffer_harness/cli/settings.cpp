@@ -41,6 +41,9 @@ const Names<PellucidAngleModel> kAngles = {{"normal", PELLUCID_ANGLE_NORMAL},
 const Names<PellucidReuse> kReuse = {{"none", PELLUCID_REUSE_NONE},
                                      {"alternate", PELLUCID_REUSE_ALTERNATE},
                                      {"coherence", PELLUCID_REUSE_COHERENCE}};
+// Through the values that Whelan 2009's curves are known to take; docs/thesis.md.
+const Names<std::array<float, 4>> kPolynomials = {{"quadratic", {0, -0.9214f, 1.7884f, 0}},
+                                                  {"cubic", {0, 0, -0.744f, 1.744f}}};
 const Names<bool> kViews = {{"pixel", false}, {"constant", true}};
 const Names<bool> kBooleans = {{"0", false}, {"1", true}};
 
@@ -117,14 +120,20 @@ const std::map<std::string, Key> kKeys = {
         s.translucency.angleModel = lookUp(kAngles, key, value);
       }}},
     {"polynomial",
-     {"c0,c1,c2,c3 of angle=polynomial",
+     {"c0,c1,c2,c3 of angle=polynomial, or quadratic|cubic",
       [](const auto& key, const auto& value, ReplaySettings& s) {
-        s.translucency.anglePolynomial = reals<4>(key, value);
+        const bool named = value.find_first_of(",0123456789") == std::string::npos;
+        s.translucency.anglePolynomial = named ? lookUp(kPolynomials, key, value) : reals<4>(key, value);
       }}},
     {"minimum-dot",
-     {"of angle=minimum-dot, -1..0",
+     {"of angle=minimum-dot and prescale=1, -1..0",
       [](const auto& key, const auto& value, ReplaySettings& s) {
         s.translucency.minimumDot = real(key, value);
+      }}},
+    {"prescale",
+     {"0|1: cosine, inverse-cosine and polynomial begin at minimum-dot",
+      [](const auto& key, const auto& value, ReplaySettings& s) {
+        s.translucency.prescaleAngle = lookUp(kBooleans, key, value);
       }}},
     {"view",
      {"pixel|constant",

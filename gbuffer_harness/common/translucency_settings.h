@@ -23,6 +23,7 @@ struct TranslucencySettings {
   std::vector<float> minimumDotTable; // entries of the azimuth, or rows of the square octahedral map
   std::array<float, 3> faceVector = {0, 0, 1}, upAxis = {0, 1, 0}, objectCenter = {0, 0, 0};
   uint32_t materialMarkBit = 0;
+  bool prescaleAngle = false;
 
   bool operator==(const TranslucencySettings&) const = default;
 };

@@ -31,9 +31,16 @@ double Translucency::hiddenCosine(const Receiver& r, std::size_t light, const gl
   if (settings_.angleModel == PELLUCID_ANGLE_NORMAL && r.normal)
     return std::max(0.0, -glm::dot(*r.normal, toLight));
   const glm::dvec3 axis = glm::normalize(glm::dmat3(surfaces_.worldFromView()) * glm::dvec3(0, 0, -1));
-  const double x = std::clamp(glm::dot(settings_.constantViewDirection ? axis : r.ray, toLight), -1.0, 1.0);
+  double x = std::clamp(glm::dot(settings_.constantViewDirection ? axis : r.ray, toLight), -1.0, 1.0);
   const auto& c = settings_.anglePolynomial;
   const double m = minimumDots_[light];
+  if (settings_.prescaleAngle && settings_.angleModel >= PELLUCID_ANGLE_COSINE &&
+      settings_.angleModel <= PELLUCID_ANGLE_POLYNOMIAL) {
+    const double begin = double(settings_.minimumDot);
+    if (!(begin > -1)) return 0;
+    x = (begin + x) / (begin + 1);
+    if (x <= 0) return 0;
+  }
   switch (settings_.angleModel) {
     case PELLUCID_ANGLE_INVERSE_COSINE:
       return std::max(0.0, 1 - std::acos(x) * 2 / std::numbers::pi);

@@ -163,6 +163,7 @@ void makeFrame(const Capture& capture, const std::vector<PellucidMaterial>& mate
   std::copy(t.upAxis.begin(), t.upAxis.end(), f.upAxis);
   std::copy(t.objectCenter.begin(), t.objectCenter.end(), f.objectCenter);
   f.materialMarkBit = t.materialMarkBit;
+  f.prescaleAngle = t.prescaleAngle;
   f.reuse = settings.reuse;
   f.coherenceThreshold = settings.coherenceThreshold;
   f.frameLoad = settings.frameLoad;

@@ -46,7 +46,9 @@ double onSphere(const PellucidFrame& f, const glm::dvec3& d) {
 }  // namespace
 
 double minimumDotOf(const PellucidFrame& f, const PellucidLight& light) {
-  if (f.angleModel == PELLUCID_ANGLE_MINIMUM_DOT) return f.minimumDot;
+  const bool prescaled =
+      f.prescaleAngle && f.angleModel >= PELLUCID_ANGLE_COSINE && f.angleModel <= PELLUCID_ANGLE_POLYNOMIAL;
+  if (prescaled || f.angleModel == PELLUCID_ANGLE_MINIMUM_DOT) return f.minimumDot;
   if (minimumDotEntries(f) == 0) return 0;
   const glm::dvec3 up = glm::normalize(vec(f.upAxis));
   const glm::dvec3 side = glm::normalize(glm::cross(up, vec(f.faceVector))), front = glm::cross(side, up);

@@ -6,7 +6,7 @@
 namespace pellucid {
 
 // The minimum dot of a light, [-1, 0]: frame.minimumDot or the table's entry for where the light is, and 0
-// for models without one.
+// for models without one. Models that are prescaled have frame.minimumDot.
 double minimumDotOf(const PellucidFrame& frame, const PellucidLight& light);
 
 // Entries that frame.minimumDotTable must have; 0 for models without a table.

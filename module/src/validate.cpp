@@ -265,6 +265,7 @@ PellucidResult checkFrame(const PellucidFrame* frame, PellucidMessageFn fn, void
   if (!finite(f.anglePolynomial, 4)) out.error("anglePolynomial", "is not finite");
   if (!(f.minimumDot >= -1 && f.minimumDot <= 0))
     out.error("minimumDot", "is ", f.minimumDot, ", outside [-1, 0]");
+  if (f.prescaleAngle > 1) out.error("prescaleAngle", "is ", f.prescaleAngle, ", neither 0 nor 1");
   checkMinimumDotTable(f, out);
   if (!(f.maximumThickness >= 0)) out.error("maximumThickness", "is ", f.maximumThickness, "; must be >= 0");
   for (int c = 0; c < 3; ++c)

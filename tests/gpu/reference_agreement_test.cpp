@@ -148,6 +148,31 @@ const Option kOptions[] = {
        t.angleModel = PELLUCID_ANGLE_MINIMUM_DOT;
        t.minimumDot = -1;
      }},
+    {"PrescaledCosine",
+     [](TranslucencySettings& t) {
+       t.angleModel = PELLUCID_ANGLE_COSINE;
+       t.minimumDot = -0.4f;
+       t.prescaleAngle = true;
+     }},
+    {"PrescaledInverseCosine",
+     [](TranslucencySettings& t) {
+       t.angleModel = PELLUCID_ANGLE_INVERSE_COSINE;
+       t.minimumDot = -0.7f;
+       t.prescaleAngle = true;
+     }},
+    {"PrescaledPolynomial",
+     [](TranslucencySettings& t) {
+       t.angleModel = PELLUCID_ANGLE_POLYNOMIAL;
+       t.anglePolynomial = {0.1f, -0.9214f, 1.7884f, 0};
+       t.minimumDot = -0.5f;
+       t.prescaleAngle = true;
+     }},
+    {"PrescaledByMinusOne",
+     [](TranslucencySettings& t) {
+       t.angleModel = PELLUCID_ANGLE_INVERSE_COSINE;
+       t.minimumDot = -1;
+       t.prescaleAngle = true;
+     }},
     {"MinimumDotAzimuth",
      [](TranslucencySettings& t) {
        t.angleModel = PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH;

@@ -41,6 +41,7 @@ const std::vector<Violation> kViolations = {
      [](Frame& f) { f.frame.materialMarkBit = 1; }},
     {"BothReuses", "reuse", "is both", [](Frame& f) { f.frame.reuse = 3; }},
     {"CoherenceThreshold", "coherenceThreshold", "nan", [](Frame& f) { f.frame.coherenceThreshold = NAN; }},
+    {"PrescaleAngle", "prescaleAngle", "2", [](Frame& f) { f.frame.prescaleAngle = 2; }},
     {"FrameLoad", "frameLoad", "-1", [](Frame& f) { f.frame.frameLoad = -1; }},
     {"NoMinimumDots", "minimumDotTable", "NULL",
      [](Frame& f) {

@@ -216,8 +216,8 @@ typedef struct PellucidFrame {
 
   uint32_t angleModel;      /* PellucidAngleModel */
   float anglePolynomial[4]; /* c0..c3 of POLYNOMIAL */
-  float minimumDot;         /* of MINIMUM_DOT: the cosine between the directions to the eye and to the
-                               light above which nothing comes through, [-1, 0]; -1: nothing ever does */
+  float minimumDot;         /* of MINIMUM_DOT and prescaleAngle: the cosine between the directions to the eye
+                               and to the light above which nothing comes through, [-1, 0]; -1: nothing ever does */
   uint32_t constantViewDirection; /* 1: one view ray for all pixels, the camera's axis (Whelan 2009) */
   uint32_t chordThickness;  /* 1: camera-space thickness is the chord itself, without the cosine
                                between N and the view ray */
@@ -248,6 +248,10 @@ typedef struct PellucidFrame {
                                above 1, so that frames that are late refresh less often; 0: not known */
   PellucidImage history;    /* with reuse; the persistent one of pellucidGetImageNeeds, GENERAL. Of the same
                                image in all frames; its content is the module's */
+
+  uint32_t prescaleAngle;   /* 1: COSINE, INVERSE_COSINE and POLYNOMIAL take (m + x) / (m + 1), m = minimumDot,
+                               in place of x, so that they begin at the minimum dot and still reach their
+                               value at 1 (Whelan 2009, 4.4 with eq. 4.6); 0 (default): x itself */
 } PellucidFrame;
 
 /* ---- Plan ------------------------------------------------------------------------------------ */
