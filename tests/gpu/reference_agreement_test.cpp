@@ -232,6 +232,48 @@ TEST_F(GpuTest, MinimumDotTablesAgreeForLightsAllAround) {
   }
 }
 
+// Lights of all kinds and directions, the first of them with maps.
+TEST_F(GpuTest, ManyLightsAgreeWithTheReference) {
+  std::vector<Capture> lit;  // the same view, each with another light's own map
+  for (int i = 0; i < 4; ++i) {
+    SceneParameters p;
+    p.name = "ear";
+    p.width = 32;
+    p.height = 24;
+    p.shadowSize = 64;
+    p.lightType = static_cast<PellucidLightType>(i % 3);
+    p.turn.lights = 0.2 * i;
+    lit.push_back(makeScene(p));
+  }
+  for (const size_t lights : {1u, 8u, 64u})
+    for (const size_t maps : {0u, 1u, 4u}) {
+      if (maps > lights) continue;
+      Capture c = lit[0];
+      c.lights.clear();
+      for (size_t i = 0; i < lights; ++i) {
+        Light light = lit[i % 4].lights.at(0);
+        light.intensity *= (1 + 0.1 * static_cast<double>(i % 7)) / static_cast<double>(lights);
+        light.color = {1, 0.3 + 0.1 * static_cast<double>(i % 5), 0.5};
+        if (i >= maps) light.shadowMap.reset();
+        c.lights.push_back(light);
+      }
+      ReplaySettings s;
+      s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+      s.features = PELLUCID_FEATURE_TRANSLUCENCY;
+      reference::Settings r;
+      r.features = s.features;
+      const std::vector<PellucidMaterial> materials(std::max<size_t>(c.materials.size(), 1), testMaterial());
+      const Image gpu = replayer().run(c, materials, s).output;
+      const Image ref = reference::compute(c, materials, r).image;
+      // A rounding that moves a pixel to the next texel of a map is one of some hundred pixels here.
+      EXPECT_LT(worst(c, gpu, ref, 3, 1, maps > 0 ? 0.02 : 0), 1e-3)
+          << lights << " lights, " << maps << " maps";
+      c.lights.clear();
+      EXPECT_GT(worst(c, gpu, reference::compute(c, materials, r).image, 3, 1, 0), 0.05)
+          << "they add something";
+    }
+}
+
 // Marked pixels: irradiance without translucency, and of the same material to their neighbors' diffusion.
 TEST_F(GpuTest, MarkedPixelsAgreeWithTheReference) {
   Capture c = make({"ear"});

@@ -1,6 +1,7 @@
 // The two failure cases of Whelan 2009, figures 4.5 and 4.6, against closed forms; reuse between frames.
 #include "gpu_fixture.h"
 
+#include <cstdio>
 #include <numbers>
 
 #include "scene/scene.h"
@@ -98,6 +99,54 @@ TEST_F(ThesisFigure, ThinPartWhoseLightIsBlocked) {
   // Without the map nothing knows of the body.
   c.lights[0].shadowMap.reset();
   expectThrough(c, middle, middle);
+}
+
+// What the choice of the back face costs where the scene's exact thickness of the first layer is known. The
+// farthest face is that of the same scene with its gap filled, in the orthographic view along -z.
+TEST_F(ThesisFigure, NearestAndFarthestBackDepth) {
+  struct Case {
+    const char* name;
+    double nearest, farthest;  // limits of the relative RMSE: above nearest's, below farthest's
+  };
+  for (const Case& test : {Case{"hollow_sphere", 1e-4, 1}, Case{"two_sheets", 1e-4, 3}}) {
+    SceneParameters p;
+    p.name = test.name;
+    p.width = p.height = kSide;
+    p.orthographic = true;
+    p.lightType = PELLUCID_LIGHT_DIRECTIONAL;
+    Image exact;
+    const Capture nearest = makeScene(p, &exact);
+    Capture farthest = nearest;
+    if (test.name == std::string("hollow_sphere")) {
+      p.name = "sphere";
+      farthest.backDepth = makeScene(p).backDepth;
+    } else {
+      for (int y = 0; y < kSide; ++y)
+        for (int x = kSide / 2; x < kSide; ++x)
+          *farthest.backDepth.image.at(x, y) += 15 + 2;  // gap and sheet
+    }
+    ReplaySettings s = thesisSettings();
+    s.transmittance = TransmittanceChoice::Material;
+    s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+    s.debugView = PELLUCID_DEBUG_THICKNESS;
+    double error[2] = {0, 0}, lost = 0, light = 0, sum = 0;
+    for (const bool far : {false, true}) {
+      const Image out = replay(far ? farthest : nearest, testMaterial(), s);
+      for (size_t i = 0; i < nearest.material.size(); ++i) {
+        if (nearest.material[i] == 0) continue;
+        const double truth = exact.data[i], thickness = out.data[4 * i];
+        error[far] += (thickness - truth) * (thickness - truth);
+        sum += far ? 0 : truth * truth;
+        light += far ? 0 : std::exp(-truth / 2);
+        lost += far ? std::exp(-truth / 2) - std::exp(-thickness / 2) : 0;
+      }
+    }
+    std::printf(
+        "%-14s thickness, relative RMSE: nearest %.1e, farthest %.2f; light lost to farthest %.0f %%\n",
+        test.name, std::sqrt(error[0] / sum), std::sqrt(error[1] / sum), 100 * lost / light);
+    EXPECT_LT(std::sqrt(error[0] / sum), test.nearest) << test.name;
+    EXPECT_GT(std::sqrt(error[1] / sum), test.farthest) << test.name;
+  }
 }
 
 // A light that turns: frames that refresh are as without reuse, frames between them are their own irradiance
