@@ -251,7 +251,7 @@ typedef struct PellucidFrame {
 
   uint32_t prescaleAngle;   /* 1: COSINE, INVERSE_COSINE and POLYNOMIAL take (m + x) / (m + 1), m = minimumDot,
                                in place of x, so that they begin at the minimum dot and still reach their
-                               value at 1 (Whelan 2009, 4.4 with eq. 4.6); 0 (default): x itself */
+                               value at 1 (our reading of Whelan 2009's pre-scaling); 0 (default): x itself */
 } PellucidFrame;
 
 /* ---- Plan ------------------------------------------------------------------------------------ */
