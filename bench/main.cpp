@@ -61,7 +61,7 @@ struct Bench {
 // Of `lights` copies of the slab's light the first `mapped` keep their shadow map.
 Capture litBy(Capture c, int lights, int mapped) {
   c.lights.assign(static_cast<size_t>(lights), c.lights[0]);
-  for (int i = mapped; i < lights; ++i) c.lights[static_cast<size_t>(i)].shadowMap.reset();
+  for (int i = mapped; i < lights; ++i) c.lights[static_cast<size_t>(i)].shadowMaps.clear();
   return c;
 }
 

@@ -51,11 +51,11 @@ Capture slab(int width, int height, double coverage, double pixel) {
   c.materials.resize(1);
   Light light;
   light.direction = {0, 0, 1};
-  light.shadowMap.emplace();
-  light.shadowMap->clipFromWorld = {
+  light.shadowMaps.emplace_back();
+  light.shadowMaps[0].clipFromWorld = {
       2 / (pixel * width), 0, 0, 0, 0, 2 / (pixel * height), 0, 0, 0, 0, 0.01, 0, 0, 0, 1, 1};
-  light.shadowMap->depth.encoding = PELLUCID_DEPTH_DEVICE;
-  light.shadowMap->depth.image = Image(1024, 1024, 1, 0.48f);
+  light.shadowMaps[0].depth.encoding = PELLUCID_DEPTH_DEVICE;
+  light.shadowMaps[0].depth.image = Image(1024, 1024, 1, 0.48f);
   c.lights = {light};
   return c;
 }

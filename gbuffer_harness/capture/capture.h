@@ -40,7 +40,9 @@ struct Light {
   double intensity = 1;
   double range = 0;
   double innerConeAngle = 0, outerConeAngle = 0.785;
-  std::optional<ShadowMap> shadowMap;
+  // A receiver's is the first that contains it: six of a cube, or cascades. Up to
+  // PELLUCID_MAX_LIGHT_SHADOW_MAPS; none: nothing shadows the light.
+  std::vector<ShadowMap> shadowMaps;
 };
 
 // How a manifest describes a material. Coefficients are stored in 1/mm whatever unit the file used.

@@ -223,9 +223,22 @@ ShadowMap readShadowMap(const Field& field) {
   return map;
 }
 
+// A light's maps: "shadowMap" is one, "shadowMaps" are several.
+std::vector<Field> shadowMapsOf(const Field& light) {
+  const auto one = light.find("shadowMap"), several = light.find("shadowMaps");
+  if (one && several) several->fail("a light has either \"shadowMap\" or \"shadowMaps\", not both");
+  if (one) return {*one};
+  if (!several) return {};
+  std::vector<Field> maps = several->items();
+  if (maps.empty() || maps.size() > PELLUCID_MAX_LIGHT_SHADOW_MAPS)
+    several->fail("needs 1 to " + std::to_string(PELLUCID_MAX_LIGHT_SHADOW_MAPS) + " shadow maps, has " +
+                  std::to_string(maps.size()));
+  return maps;
+}
+
 Light readLight(const Field& field) {
   field.allowKeys({"type", "position", "direction", "color", "intensity", "range", "innerConeAngle",
-                   "outerConeAngle", "shadowMap"});
+                   "outerConeAngle", "shadowMap", "shadowMaps"});
   constexpr double kMost = 1e30;  // its square times a scene's extent still fits a float64
   Light light;
   constexpr PellucidLightType kTypes[] = {PELLUCID_LIGHT_DIRECTIONAL, PELLUCID_LIGHT_POINT,
@@ -259,7 +272,7 @@ Light readLight(const Field& field) {
     if (!(light.innerConeAngle >= 0 && light.innerConeAngle < light.outerConeAngle))
       fail("innerConeAngle", "must be at least 0 and less than outerConeAngle", light.innerConeAngle);
   }
-  if (const auto map = field.find("shadowMap")) light.shadowMap = readShadowMap(*map);
+  for (const Field& map : shadowMapsOf(field)) light.shadowMaps.push_back(readShadowMap(map));
   return light;
 }
 
@@ -319,8 +332,8 @@ void parse(const Field& root, const BufferReader& read, Manifest& manifest) {
   if (const auto lights = root.find("lights")) {
     for (const Field& light : lights->items()) {
       capture.lights.push_back(readLight(light));
-      const auto map = light.find("shadowMap");
-      manifest.shadowMaps.push_back(map ? std::optional(read(*map, 1)) : std::nullopt);
+      manifest.shadowMaps.emplace_back();
+      for (const Field& map : shadowMapsOf(light)) manifest.shadowMaps.back().push_back(read(map, 1));
     }
   }
   if (const auto truth = root.find("truth")) {

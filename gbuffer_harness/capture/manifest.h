@@ -35,7 +35,7 @@ struct Manifest {
 
   BufferSource frontDepth, irradiance, material;
   std::optional<BufferSource> backDepth, normal, albedo, truth;
-  std::vector<std::optional<BufferSource>> shadowMaps;  // one per light
+  std::vector<std::vector<BufferSource>> shadowMaps;  // per light, as Light::shadowMaps
   std::map<int, int> materialMap;  // stored value -> material index; empty: the value is the index
   double truthScale = 1;
   double irradianceScale = 1;  // of the stored values; not 1 for presets only

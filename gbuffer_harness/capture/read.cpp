@@ -147,8 +147,8 @@ Capture readCapture(const Manifest& manifest) {
   loader.want(manifest.material, material, 1, kOutside, true);
   if (manifest.truth) loader.want(*manifest.truth, capture.truth.emplace().image, 3, 0, true);
   for (std::size_t i = 0; i < capture.lights.size(); ++i)
-    if (manifest.shadowMaps[i])
-      loader.wantDepth(*manifest.shadowMaps[i], capture.lights[i].shadowMap->depth, false);
+    for (std::size_t k = 0; k < capture.lights[i].shadowMaps.size(); ++k)
+      loader.wantDepth(manifest.shadowMaps[i][k], capture.lights[i].shadowMaps[k].depth, false);
   loader.load(capture.width, capture.height);
 
   capture.material = materialIndices(manifest, material);

@@ -119,13 +119,17 @@ void writeCapture(const Capture& capture, const std::filesystem::path& exr, Colo
   for (std::size_t i = 0; i < capture.lights.size(); ++i) {
     const Light& light = capture.lights[i];
     Json json = lightJson(light);
-    if (light.shadowMap) {
-      PartWriter map{{"shadowMap" + std::to_string(i), {}, {}}, static_cast<int>(parts.size())};
-      json["shadowMap"] = map.addDepth(light.shadowMap->depth, "shadow");
-      json["shadowMap"]["clipFromWorld"] = light.shadowMap->clipFromWorld;
-      if (light.shadowMap->viewFromWorld)
-        json["shadowMap"]["viewFromWorld"] = *light.shadowMap->viewFromWorld;
-      parts.push_back(std::move(map.part));
+    const bool several = light.shadowMaps.size() > 1;
+    for (std::size_t k = 0; k < light.shadowMaps.size(); ++k) {
+      const ShadowMap& map = light.shadowMaps[k];
+      std::string name = "shadowMap" + std::to_string(i);
+      if (several) name.append(".").append(std::to_string(k));
+      PartWriter writer{{name, {}, {}}, static_cast<int>(parts.size())};
+      Json& entry = several ? json["shadowMaps"].emplace_back() : json["shadowMap"];
+      entry = writer.addDepth(map.depth, "shadow");
+      entry["clipFromWorld"] = map.clipFromWorld;
+      if (map.viewFromWorld) entry["viewFromWorld"] = *map.viewFromWorld;
+      parts.push_back(std::move(writer.part));
     }
     manifest["lights"].push_back(std::move(json));
   }

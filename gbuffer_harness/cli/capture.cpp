@@ -232,6 +232,13 @@ void addModelOptions(CLI::App& command, Options& options) {
   command.add_option("--back", gltf.raster.backFace, "which back face behind the front: nearest or farthest")
       ->transform(CLI::CheckedTransformer(faces, CLI::ignore_case))
       ->group(group);
+  const std::map<std::string, PointMaps> pointMaps = {
+      {"auto", PointMaps::Auto}, {"1", PointMaps::One}, {"6", PointMaps::Six}};
+  command
+      .add_option("--point-maps", gltf.raster.pointMaps,
+                  "shadow maps of a point light: 1, 6 or auto, 6 where 1 cannot see the whole model")
+      ->transform(CLI::CheckedTransformer(pointMaps, CLI::ignore_case))
+      ->group(group);
   command.add_option("--device", gltf.device, "part of the Vulkan device's name; default: the fastest kind")
       ->group(group);
 }

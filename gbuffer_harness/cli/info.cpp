@@ -117,7 +117,7 @@ std::vector<std::string> missingParts(const Capture& capture) {
   if (capture.albedo.empty()) missing.push_back("no albedo: the output is not multiplied by a surface color");
   if (capture.lights.empty()) missing.push_back("no lights: no translucency");
   for (std::size_t i = 0; i < capture.lights.size(); ++i)
-    if (!capture.lights[i].shadowMap && !capture.backDepth.image.empty())
+    if (capture.lights[i].shadowMaps.empty() && !capture.backDepth.image.empty())
       missing.push_back("lights[" + std::to_string(i) +
                         "] has no shadow map: thickness from the camera's depths, nothing else shadows it");
   if (!capture.truth) missing.push_back("no truth: compare needs another image to compare with");
@@ -232,7 +232,8 @@ Json describe(const std::filesystem::path& path, ManifestPreset preset) {
   for (std::size_t i = 0; i < capture.lights.size(); ++i) {
     const Light& light = capture.lights[i];
     Json entry = {{"type", kLightTypes[light.type]}, {"color", light.color}, {"intensity", light.intensity}};
-    if (light.shadowMap) entry["shadowMap"] = shadowJson(*manifest.shadowMaps[i], light.shadowMap->depth);
+    for (std::size_t k = 0; k < light.shadowMaps.size(); ++k)
+      entry["shadowMaps"].push_back(shadowJson(manifest.shadowMaps[i][k], light.shadowMaps[k].depth));
     json["lights"].push_back(std::move(entry));
   }
   json["materials"] = materialsJson(capture, materials);
@@ -276,7 +277,8 @@ std::string toText(const Json& json) {
   for (std::size_t i = 0; i < json["lights"].size(); ++i) {
     const Json& light = json["lights"][i];
     text << "  lights[" << i << "]: " << line(light) << "\n";
-    if (light.contains("shadowMap")) text << "    shadowMap: " << line(light["shadowMap"]) << "\n";
+    if (!light.contains("shadowMaps")) continue;
+    for (const Json& map : light["shadowMaps"]) text << "    shadowMap: " << line(map) << "\n";
   }
   for (const Json& material : json["materials"]) text << "  material: " << line(material) << "\n";
   for (const Json& sentence : json["missing"]) text << "missing: " << sentence.get<std::string>() << "\n";

@@ -71,6 +71,55 @@ std::optional<LightView> perspectiveView(const Model& model, const Light& light,
   return view;
 }
 
+LightView parallelView(const Model& model, const Bounds& bounds, const Light& light) {
+  LightView view;
+  const glm::dvec3 axis = glm::normalize(toGlm(light.direction));
+  view.viewFromWorld =
+      lookAt(fromGlm(toGlm(bounds.center) - 2 * bounds.radius * axis), bounds.center, {0, 1, 0});
+  const Extent extent = extentIn(model, view.viewFromWorld);
+  const double size = 2 * kMargin * std::max(extent.side, 1e-3 * bounds.radius);
+  view.clipFromView = orthographic(size, size, clipAround(extent, false));
+  return view;
+}
+
+std::optional<LightView> singleView(const Model& model, const Bounds& bounds, const Light& light) {
+  std::optional<LightView> view;
+  const glm::dvec3 toCenter = toGlm(bounds.center) - toGlm(light.position);
+  if (glm::length(toCenter) > bounds.radius)
+    view = perspectiveView(model, light, glm::normalize(toCenter), std::numbers::pi / 2);
+  if (light.type == PELLUCID_LIGHT_SPOT) {
+    const std::optional<LightView> cone =
+        perspectiveView(model, light, glm::normalize(toGlm(light.direction)), light.outerConeAngle * 1.001);
+    // A larger scale is a narrower view.
+    if (cone && (!view || cone->clipFromView[0] > view->clipFromView[0])) view = cone;
+  }
+  return view;
+}
+
+// Six faces, each a little wider than 90 degrees: a point on a seam must find its texel whichever way
+// rounding puts it, and the irradiance pass moves points by up to 2.2 texels and blends the one beyond.
+std::vector<LightView> cubeViews(const Model& model, const Light& light, int texels) {
+  constexpr int kSeamTexels = 4;
+  const double tangent = texels / std::max<double>(texels - 2 * kSeamTexels, 0.5 * texels);
+  double farthest = 0;  // planar distance from the face that looks there
+  forEachPosition(model, [&](const glm::dvec3& position) {
+    const glm::dvec3 away = glm::abs(position - toGlm(light.position));
+    farthest = std::max({farthest, away.x, away.y, away.z});
+  });
+  if (!(farthest > 0)) return {};
+  // Reversed depth is a float: a near plane this close costs no precision.
+  const ClipRange range{1e-4 * farthest, 1.001 * farthest, true};
+  std::vector<LightView> views;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double sign : {1.0, -1.0}) {
+      glm::dvec3 target = toGlm(light.position);
+      target[axis] += sign * farthest;
+      views.push_back({perspective(2 * std::atan(tangent), 1, range),
+                       lookAt(light.position, fromGlm(target), {0, 1, 0})});
+    }
+  return views;
+}
+
 }  // namespace
 
 Bounds boundsOf(const Model& model) {
@@ -120,29 +169,12 @@ ModelCamera frameModel(const Model& model, const Vector3& toCamera, double verti
   return camera;
 }
 
-std::optional<LightView> frameLight(const Model& model, const Light& light) {
+std::vector<LightView> frameLight(const Model& model, const Light& light, PointMaps maps, int texels) {
   const Bounds bounds = boundsOf(model);
-  if (light.type == PELLUCID_LIGHT_DIRECTIONAL) {
-    LightView view;
-    const glm::dvec3 axis = glm::normalize(toGlm(light.direction));
-    view.viewFromWorld =
-        lookAt(fromGlm(toGlm(bounds.center) - 2 * bounds.radius * axis), bounds.center, {0, 1, 0});
-    const Extent extent = extentIn(model, view.viewFromWorld);
-    const double size = 2 * kMargin * std::max(extent.side, 1e-3 * bounds.radius);
-    view.clipFromView = orthographic(size, size, clipAround(extent, false));
-    return view;
-  }
-  std::optional<LightView> view;
-  const glm::dvec3 toCenter = toGlm(bounds.center) - toGlm(light.position);
-  if (glm::length(toCenter) > bounds.radius)
-    view = perspectiveView(model, light, glm::normalize(toCenter), std::numbers::pi / 2);
-  if (light.type == PELLUCID_LIGHT_SPOT) {
-    const std::optional<LightView> cone =
-        perspectiveView(model, light, glm::normalize(toGlm(light.direction)), light.outerConeAngle * 1.001);
-    // A larger scale is a narrower view.
-    if (cone && (!view || cone->clipFromView[0] > view->clipFromView[0])) view = cone;
-  }
-  return view;
+  if (light.type == PELLUCID_LIGHT_DIRECTIONAL) return {parallelView(model, bounds, light)};
+  const bool cube = maps == PointMaps::Six && light.type == PELLUCID_LIGHT_POINT;
+  if (const auto view = cube ? std::nullopt : singleView(model, bounds, light)) return {*view};
+  return maps == PointMaps::One ? std::vector<LightView>() : cubeViews(model, light, texels);
 }
 
 }  // namespace pellucid::harness

@@ -1,7 +1,6 @@
 // Cameras and shadow-map projections that fit a model.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "raster/model.h"
@@ -26,9 +25,17 @@ struct LightView {
   Matrix clipFromView, viewFromWorld;
 };
 
-// Directional: the box of the model. Point: one perspective around the whole model, which is impossible
-// when the light stands within or close to it. Spot: its cone or the model, whichever is narrower. Empty
-// when the view would have to be wider than 150 degrees.
-std::optional<LightView> frameLight(const Model& model, const Light& light);
+// Shadow maps of a light that has a position.
+enum class PointMaps {
+  Auto,  // one where one suffices, else six
+  One,   // one, or none where one view would have to be wider than 150 degrees
+  Six    // of point lights: the faces of a cube; spots as Auto
+};
+
+// Views whose maps together hold all of the model that the light can reach. Directional: the box of the
+// model. Point: a perspective around the whole model, which is impossible when the light stands within or
+// close to it. Spot: its cone or the model, whichever is narrower. Six: along +x, -x, +y, -y, +z and -z of
+// the world. texels: across one map, > 0.
+std::vector<LightView> frameLight(const Model& model, const Light& light, PointMaps maps, int texels);
 
 }  // namespace pellucid::harness

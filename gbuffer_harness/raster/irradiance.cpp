@@ -12,13 +12,26 @@ namespace pellucid::harness {
 
 namespace {
 
+// The bindings of shaders/irradiance.comp.
+constexpr VkDescriptorType kTypes[] = {
+    VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+    VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE};
+constexpr std::uint32_t kShadowBinding = 2, kIrradianceBinding = 3;
+
 static_assert(PELLUCID_SHADER_LIGHT_DIRECTIONAL == PELLUCID_LIGHT_DIRECTIONAL);
 static_assert(PELLUCID_SHADER_LIGHT_SPOT == PELLUCID_LIGHT_SPOT);
 
-// The uniform block of shaders/irradiance.comp.
+constexpr std::uint32_t kShadowMaps = 6;  // SHADOW_MAPS
+
+// The uniform block.
 struct Constants {
-  glm::mat4 viewFromWorld, shadowFromView;
-  glm::vec4 shadowPlanar, shadow, eye;
+  struct ShadowView {
+    glm::mat4 clipFromView;
+    glm::vec4 planar;
+  };
+  glm::mat4 viewFromWorld;
+  ShadowView shadowViews[kShadowMaps];
+  glm::vec4 shadow, eye;
   shared::LightConstants light;
 };
 
@@ -36,13 +49,18 @@ shared::LightConstants lightConstants(const Light& light, const glm::dmat4& view
   return constants;
 }
 
-void setShadow(Constants& constants, const ShadowImage& shadow, const glm::dmat4& worldFromView) {
-  const glm::dmat4 shadowView = toGlm(shadow.viewFromWorld) * worldFromView;
-  constants.shadowFromView = glm::mat4(toGlm(shadow.clipFromView) * shadowView);
-  constants.shadowPlanar = -glm::vec4(glm::transpose(shadowView)[2]);
+void setShadows(Constants& constants, const std::vector<ShadowImage>& shadows,
+                const glm::dmat4& worldFromView) {
+  for (std::size_t i = 0; i < shadows.size(); ++i) {
+    const glm::dmat4 shadowView = toGlm(shadows[i].viewFromWorld) * worldFromView;
+    constants.shadowViews[i] = {glm::mat4(toGlm(shadows[i].clipFromView) * shadowView),
+                                -glm::vec4(glm::transpose(shadowView)[2])};
+  }
+  if (shadows.empty()) return;
   // The view is 2 / clipFromView[0] wide, at planar distance 1 if it is a perspective.
-  const double texel = 2 / shadow.clipFromView[0] / shadow.size;
-  constants.shadow = glm::vec4(shadow.size, shadow.perspective, texel, 0);
+  const ShadowImage& first = shadows.front();
+  const double texel = 2 / first.clipFromView[0] / first.size;
+  constants.shadow = glm::vec4(first.size, first.perspective, texel, shadows.size());
 }
 
 }  // namespace
@@ -67,12 +85,9 @@ void IrradiancePass::createPipeline() {
   VkSamplerCreateInfo sampler{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
   check(vkCreateSampler(device_.handle(), &sampler, nullptr, sampler_.receive()), "vkCreateSampler");
 
-  const VkDescriptorType types[] = {
-      VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-      VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE};
-  VkDescriptorSetLayoutBinding bindings[std::size(types)]{};
-  for (std::uint32_t i = 0; i < std::size(types); ++i)
-    bindings[i] = {i, types[i], 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr};
+  VkDescriptorSetLayoutBinding bindings[std::size(kTypes)]{};
+  for (std::uint32_t i = 0; i < std::size(kTypes); ++i)
+    bindings[i] = {i, kTypes[i], i == kShadowBinding ? kShadowMaps : 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr};
   VkDescriptorSetLayoutCreateInfo set{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
   set.flags = VK_DESCRIPTOR_SET_LAYOUT_CREATE_PUSH_DESCRIPTOR_BIT_KHR;
   set.bindingCount = static_cast<std::uint32_t>(std::size(bindings));
@@ -103,34 +118,37 @@ void IrradiancePass::createPipeline() {
       vkGetDeviceProcAddr(device_.handle(), "vkCmdPushDescriptorSetKHR"));
 }
 
-void IrradiancePass::add(const Light& light, const ShadowImage* shadow) {
+void IrradiancePass::add(const Light& light, const std::vector<ShadowImage>& shadows) {
   const glm::dmat4 viewFromWorld = toGlm(view_.viewFromWorld);
   Constants constants{};
   constants.viewFromWorld = glm::mat4(viewFromWorld);
   constants.light = lightConstants(light, viewFromWorld);
   const bool perspective = view_.clipFromView[15] == 0;
   constants.eye = glm::vec4(1 / view_.clipFromView[0], 1 / view_.clipFromView[5], perspective, 0);
-  if (shadow) setShadow(constants, *shadow, glm::inverse(viewFromWorld));
+  setShadows(constants, shadows, glm::inverse(viewFromWorld));
   const HostBuffer buffer(device_, sizeof constants, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
   std::memcpy(buffer.mapped(), &constants, sizeof constants);
 
-  const GpuImage* images[] = {&normalPlanar_, shadow ? shadow->planar : &normalPlanar_, &irradiance_};
-  VkDescriptorImageInfo imageInfos[std::size(images)];
+  const auto imageInfo = [&](const GpuImage& image) {
+    return VkDescriptorImageInfo{sampler_, image.use().view, image.use().layout};
+  };
   const VkDescriptorBufferInfo bufferInfo{buffer.handle(), 0, VK_WHOLE_SIZE};
-  VkWriteDescriptorSet writes[1 + std::size(images)];
+  const VkDescriptorImageInfo surface = imageInfo(normalPlanar_), target = imageInfo(irradiance_);
+  // A descriptor that is not read must be valid all the same.
+  VkDescriptorImageInfo maps[kShadowMaps];
+  for (std::size_t i = 0; i < kShadowMaps; ++i)
+    maps[i] = imageInfo(i < shadows.size() ? *shadows[i].planar : normalPlanar_);
+  VkWriteDescriptorSet writes[std::size(kTypes)];
   for (std::uint32_t i = 0; i < std::size(writes); ++i) {
     writes[i] = {VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
     writes[i].dstBinding = i;
-    writes[i].descriptorCount = 1;
+    writes[i].descriptorCount = i == kShadowBinding ? kShadowMaps : 1;
+    writes[i].descriptorType = kTypes[i];
   }
-  writes[0].descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
   writes[0].pBufferInfo = &bufferInfo;
-  for (std::uint32_t i = 0; i < std::size(images); ++i) {
-    imageInfos[i] = {sampler_, images[i]->use().view, images[i]->use().layout};
-    writes[1 + i].descriptorType = images[i] == &irradiance_ ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE
-                                                             : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-    writes[1 + i].pImageInfo = &imageInfos[i];
-  }
+  writes[1].pImageInfo = &surface;
+  writes[kShadowBinding].pImageInfo = maps;
+  writes[kIrradianceBinding].pImageInfo = &target;
   device_.run([&](VkCommandBuffer commandBuffer) {
     vkCmdBindPipeline(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_);
     pushDescriptors_(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, layout_, 0,

@@ -1,8 +1,7 @@
 // Irradiance of the visible surfaces, light by light.
 #pragma once
 
-#include <memory>
-#include <optional>
+#include <vector>
 
 #include "common/device.h"
 #include "common/gpu_image.h"
@@ -25,8 +24,9 @@ public:
   IrradiancePass(Device& device, const GpuImage& normalPlanar, int width, int height, const DrawView& view);
 
   // Adds color * intensity * max(N.L, 0) and the attenuation of KHR_lights_punctual, times the part of the
-  // shadow map's texels that see the surface. Outside the map, or without one, nothing shadows.
-  void add(const Light& light, const ShadowImage* shadow);
+  // shadow maps' texels that see the surface. Outside the map, or without one, nothing shadows.
+  // shadows: none, one, or the six of a cube, which have the same size and projection.
+  void add(const Light& light, const std::vector<ShadowImage>& shadows);
 
   Image irradiance() const;  // RGB
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "common/error.h"
 #include "raster/draw.h"
@@ -89,25 +90,28 @@ DepthImage encodeShadow(const RenderTarget& target, const ShadowImage& view, Pel
   return depth;
 }
 
-// Adds the light to `irradiance` and returns it with its shadow map.
+// Adds the light to `irradiance` and returns it with its shadow maps.
 Light drawLight(Device& device, const Model& model, const UploadedModel& uploaded, const Light& light,
                 const RasterOptions& options, IrradiancePass& irradiance) {
   Light result = light;
-  const std::optional<LightView> view = options.shadowSize > 0 ? frameLight(model, light) : std::nullopt;
-  if (!view) {
-    irradiance.add(light, nullptr);
+  if (options.shadowSize == 0) {
+    irradiance.add(light, {});
     return result;
   }
   constexpr bool kReversed = true;
-  const RenderTarget target(device, options.shadowSize, options.shadowSize, depthColors(kReversed),
-                            farDepth(kReversed));
-  uploaded.draw(target, {view->clipFromView, view->viewFromWorld, kReversed},
-                {FragmentShader::Depth, VK_CULL_MODE_NONE, nearer(kReversed), false}, VK_CULL_MODE_NONE);
-  const ShadowImage shadow{&target.image(kPlanar), options.shadowSize, view->clipFromView,
-                           view->viewFromWorld, light.type != PELLUCID_LIGHT_DIRECTIONAL};
-  irradiance.add(light, &shadow);
-  result.shadowMap = {encodeShadow(target, shadow, options.shadowEncoding),
-                      multiply(view->clipFromView, view->viewFromWorld), view->viewFromWorld};
+  std::vector<std::unique_ptr<RenderTarget>> targets;
+  std::vector<ShadowImage> shadows;
+  for (const LightView& view : frameLight(model, light, options.pointMaps, options.shadowSize)) {
+    const RenderTarget& target = *targets.emplace_back(std::make_unique<RenderTarget>(
+        device, options.shadowSize, options.shadowSize, depthColors(kReversed), farDepth(kReversed)));
+    uploaded.draw(target, {view.clipFromView, view.viewFromWorld, kReversed},
+                  {FragmentShader::Depth, VK_CULL_MODE_NONE, nearer(kReversed), false}, VK_CULL_MODE_NONE);
+    shadows.push_back({&target.image(kPlanar), options.shadowSize, view.clipFromView, view.viewFromWorld,
+                       light.type != PELLUCID_LIGHT_DIRECTIONAL});
+    result.shadowMaps.push_back({encodeShadow(target, shadows.back(), options.shadowEncoding),
+                                 multiply(view.clipFromView, view.viewFromWorld), view.viewFromWorld});
+  }
+  irradiance.add(light, shadows);
   return result;
 }
 
@@ -154,10 +158,10 @@ void addWarnings(RasterResult& result, const RasterOptions& options) {
                               " material pixels look through an open or single-sided mesh: they have no "
                               "back depth");
   for (std::size_t i = 0; i < capture.lights.size() && options.shadowSize > 0; ++i)
-    if (!capture.lights[i].shadowMap)
+    if (capture.lights[i].shadowMaps.empty())
       result.warnings.push_back("lights[" + std::to_string(i) +
-                                "] stands within or too close to the model for one perspective: it has no "
-                                "shadow map and nothing shadows it");
+                                "] stands within or too close to the model for one shadow map: it has none "
+                                "and nothing shadows it");
 }
 
 }  // namespace

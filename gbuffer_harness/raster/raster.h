@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/device.h"
+#include "raster/framing.h"
 #include "raster/model.h"
 
 namespace pellucid::harness {
@@ -23,11 +24,12 @@ struct RasterOptions {
   BackFace backFace = BackFace::Nearest;
   int shadowSize = 1024;  // texels across a shadow map, 0..8192; 0: no shadow maps and no shadows
   PellucidDepthEncoding shadowEncoding = PELLUCID_DEPTH_DEVICE;
+  PointMaps pointMaps = PointMaps::Auto;
 };
 
 struct RasterResult {
   // With front and back depth, irradiance, normal, albedo and material; materials and lights as the model's,
-  // with shadow maps where frameLight() finds a view.
+  // with the shadow maps of frameLight().
   Capture capture;
   // Pixels of a material through which the front's object is not closed: an open or single-sided mesh, or
   // a hole. They have no back depth.

@@ -13,7 +13,7 @@ Translucency::Translucency(const Capture& capture, const SurfaceReader& surfaces
     : capture_(capture), surfaces_(surfaces), settings_(settings) {
   for (const Light& light : capture.lights) {
     shadows_.emplace_back();
-    if (light.shadowMap) shadows_.back().emplace(light, *light.shadowMap);
+    for (const ShadowMap& map : light.shadowMaps) shadows_.back().emplace_back(light, map);
     minimumDots_.push_back(minimumDot(settings_, light));
   }
 }
@@ -59,22 +59,29 @@ double Translucency::hiddenCosine(const Receiver& r, std::size_t light, const gl
 }
 
 bool Translucency::usesLightSpace(std::size_t light) const {
-  return shadows_[light] && settings_.thicknessSource == PELLUCID_THICKNESS_LIGHT;
+  return !shadows_[light].empty() && settings_.thicknessSource == PELLUCID_THICKNESS_LIGHT;
+}
+
+ShadowView::Lookup Translucency::shadowLookup(std::size_t light, const glm::dvec3& point) const {
+  for (const ShadowView& map : shadows_[light])
+    if (const ShadowView::Lookup lookup = map.at(point); lookup.kind != ShadowView::Kind::Outside)
+      return lookup;
+  return {ShadowView::Kind::Outside, 0};
 }
 
 Translucency::LightPath Translucency::lightSpacePath(std::size_t light, const Receiver& r) const {
   const Arrival arrival = arrivalAt(capture_.lights[light], r.position);
   LightPath path;
   path.arriving = arrival.irradiance * hiddenCosine(r, light, arrival.toLight);
-  const ShadowView::Lookup lookup = shadows_[light]->at(r.position);
+  const ShadowView::Lookup lookup = shadowLookup(light, r.position);
   path.reaches = lookup.kind == ShadowView::Kind::Surface;
   path.thickness = std::max(0.0, lookup.distance - double(settings_.shadowBias));
   return path;
 }
 
 bool Translucency::backPointLit(std::size_t light, const glm::dvec3& backPoint) const {
-  if (!shadows_[light]) return true;
-  const ShadowView::Lookup lookup = shadows_[light]->at(backPoint);
+  if (shadows_[light].empty()) return true;
+  const ShadowView::Lookup lookup = shadowLookup(light, backPoint);
   return lookup.kind == ShadowView::Kind::Surface && lookup.distance <= double(settings_.shadowBias);
 }
 
@@ -91,9 +98,8 @@ Translucency::LightPath Translucency::cameraSpacePath(std::size_t light, const R
 }
 
 std::optional<double> Translucency::firstLightDistance(const Receiver& r) const {
-  for (const std::optional<ShadowView>& shadow : shadows_) {
-    if (!shadow) continue;
-    const ShadowView::Lookup lookup = shadow->at(r.position);
+  for (std::size_t i = 0; i < shadows_.size(); ++i) {
+    const ShadowView::Lookup lookup = shadowLookup(i, r.position);
     if (lookup.kind == ShadowView::Kind::Surface)
       return std::max(0.0, lookup.distance - double(settings_.shadowBias));
     if (lookup.kind == ShadowView::Kind::Empty) return std::nullopt;

@@ -49,13 +49,15 @@ private:
   LightPath cameraSpacePath(std::size_t light, const Receiver& r) const;
   std::optional<double> firstLightDistance(const Receiver& r) const;  // scene units
   bool usesLightSpace(std::size_t light) const;
+  // In the first of the light's maps that contains the point.
+  ShadowView::Lookup shadowLookup(std::size_t light, const glm::dvec3& point) const;
   bool backPointLit(std::size_t light, const glm::dvec3& backPoint) const;
 
   const Capture& capture_;
   const SurfaceReader& surfaces_;
   TranslucencySettings settings_;
-  std::vector<std::optional<ShadowView>> shadows_;  // one per light
-  std::vector<double> minimumDots_;                 // one per light
+  std::vector<std::vector<ShadowView>> shadows_;  // per light
+  std::vector<double> minimumDots_;               // one per light
 };
 
 }  // namespace pellucid::harness::reference

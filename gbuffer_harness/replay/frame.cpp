@@ -27,8 +27,9 @@ void addLight(const Light& light, float shadowBias, FrameData& data) {
   l.range = static_cast<float>(light.range);
   l.innerConeAngle = static_cast<float>(light.innerConeAngle);
   l.outerConeAngle = static_cast<float>(light.outerConeAngle);
-  if (light.shadowMap) {
-    const ShadowMap& map = *light.shadowMap;
+  l.firstShadowMap = static_cast<uint32_t>(data.shadowMaps.size());
+  l.shadowMapCount = static_cast<uint32_t>(light.shadowMaps.size());
+  for (const ShadowMap& map : light.shadowMaps) {
     PellucidShadowMap s{};
     s.image = static_cast<uint32_t>(data.shadowDepths.size());
     s.extent[0] = static_cast<uint32_t>(map.depth.image.width);
@@ -37,8 +38,6 @@ void addLight(const Light& light, float shadowBias, FrameData& data) {
     s.bias = shadowBias;
     copy(map.clipFromWorld, s.clipFromWorld);
     copy(map.viewFromWorld.value_or(kIdentity), s.viewFromWorld);
-    l.firstShadowMap = static_cast<uint32_t>(data.shadowMaps.size());
-    l.shadowMapCount = 1;
     data.shadowMaps.push_back(s);
     data.shadowDepths.push_back(&map.depth.image);
   }

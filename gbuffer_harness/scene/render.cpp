@@ -182,7 +182,7 @@ Capture Renderer::render(Image* exactThickness) const {
     progress.advance();
   });
   if (parameters_.shadowSize > 0) {
-    for (Light& light : capture.lights) light.shadowMap = shadowMap(light);
+    for (Light& light : capture.lights) light.shadowMaps = {shadowMap(light)};
   }
   return capture;
 }
@@ -199,10 +199,11 @@ void makeLeftHanded(Capture& capture) {
   for (Light& light : capture.lights) {
     light.position[2] *= -1;
     light.direction[2] *= -1;
-    if (!light.shadowMap) continue;
-    light.shadowMap->clipFromWorld = multiply(light.shadowMap->clipFromWorld, flip);
-    // Shadow views stay right-handed whatever the world is: viewZ is along -z of this matrix.
-    light.shadowMap->viewFromWorld = multiply(*light.shadowMap->viewFromWorld, flip);
+    for (ShadowMap& map : light.shadowMaps) {
+      map.clipFromWorld = multiply(map.clipFromWorld, flip);
+      // Shadow views stay right-handed whatever the world is: viewZ is along -z of this matrix.
+      map.viewFromWorld = multiply(*map.viewFromWorld, flip);
+    }
   }
 }
 

@@ -25,7 +25,7 @@ Matrix turnedView(const Matrix& viewFromWorld, const Vector3& center, double ang
 
 Light turnedLight(const Light& light, const Vector3& center, double angle) {
   Light turned = light;
-  turned.shadowMap.reset();
+  turned.shadowMaps.clear();
   if (angle == 0) return turned;
   const glm::dmat3 rotation(aboutY(angle));
   turned.position = fromGlm(toGlm(center) + rotation * (toGlm(light.position) - toGlm(center)));

@@ -18,7 +18,7 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 Capture backlitSlab(double thickness, PellucidDepthEncoding encoding) {
   Capture c = flatCapture(8, 8, thickness);
   c.lights = {backLight()};
-  c.lights[0].shadowMap = flatShadowMap(-10 - thickness, encoding, 2048);
+  c.lights[0].shadowMaps = {flatShadowMap(-10 - thickness, encoding, 2048)};
   return c;
 }
 
@@ -80,7 +80,7 @@ TEST_F(Gather, WhatTheCameraSeesIsLeftOut) {
   map.viewFromWorld = kIdentity;
   map.depth.encoding = PELLUCID_DEPTH_VIEW_Z;
   map.depth.image = Image(2048, 2048, 1, 10);
-  front.shadowMap = map;
+  front.shadowMaps = {map};
   c.lights = {front};
   const Image out = replay(c, testMaterial(), settings(32));
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(out.at(4, 4)[k], c.irradiance.at(4, 4)[k], 1e-5);
@@ -89,11 +89,11 @@ TEST_F(Gather, WhatTheCameraSeesIsLeftOut) {
 TEST_F(Gather, NothingFromOutsideOrEmptyTexels) {
   Capture c = backlitSlab(1, PELLUCID_DEPTH_VIEW_Z);
   for (const float nothing : {pellucid::harness::kNoDepth, 0.0f, kNan}) {
-    for (float& v : c.lights[0].shadowMap->depth.image.data) v = nothing;
+    for (float& v : c.lights[0].shadowMaps[0].depth.image.data) v = nothing;
     EXPECT_NEAR(replay(c, testMaterial(), settings(16)).at(4, 4)[0], 1, 1e-5) << nothing;
   }
   c = backlitSlab(1, PELLUCID_DEPTH_VIEW_Z);
-  c.lights[0].shadowMap->clipFromWorld[12] = 5;
+  c.lights[0].shadowMaps[0].clipFromWorld[12] = 5;
   EXPECT_NEAR(replay(c, testMaterial(), settings(16)).at(4, 4)[0], 1, 1e-5);
 }
 
@@ -101,7 +101,7 @@ TEST_F(Gather, StaysFinite) {
   Capture c = backlitSlab(1, PELLUCID_DEPTH_VIEW_Z);
   const float bad[] = {kNan, INFINITY, -1, 0, 60, 60.0001f, 1e8f, 1e-8f, 59};
   size_t i = 0;
-  for (float& v : c.lights[0].shadowMap->depth.image.data) v = bad[i++ % std::size(bad)];
+  for (float& v : c.lights[0].shadowMaps[0].depth.image.data) v = bad[i++ % std::size(bad)];
   for (int x = 0; x < 8; ++x) {
     c.normal.at(x, 2)[2] = kNan;
     c.frontDepth.image.at(x, 3)[0] = bad[static_cast<size_t>(x)];

@@ -14,6 +14,7 @@
 #include "gltf/gltf.h"
 #include "gltf_builder.h"
 #include "gpu/gpu_fixture.h"
+#include "gpu/model_builder.h"
 #include "raster/framing.h"
 #include "raster/raster.h"
 #include "scene/vector.h"
@@ -23,145 +24,12 @@ namespace {
 using namespace pellucid::harness;
 using namespace pellucid::test;
 
-constexpr double kPi = std::numbers::pi;
-
 class Raster : public GpuTest {
 protected:
   static RasterResult rasterize(const Model& model, const ModelCamera& camera, const RasterOptions& options) {
     return pellucid::harness::rasterize(device(), model, camera, options);
   }
 };
-
-Vertex vertexAt(const Vector3& position, const Vector3& normal) {
-  Vertex v{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    v.position[i] = static_cast<float>(position[i]);
-    v.normal[i] = static_cast<float>(normal[i]);
-  }
-  return v;
-}
-
-// Model of one surface of material 1, "skin1"; 1 unit is 1 mm.
-Model emptyModel() {
-  Model model;
-  model.name = "test";
-  model.metersPerUnit = 0.001;
-  model.surfaces.resize(1);
-  model.surfaces[0].baseColor = {0.5, 0.25, 0.125};
-  model.surfaces[0].material = 1;
-  model.materials = {PresetMaterial{"skin1"}};
-  return model;
-}
-
-// A part of everything that was added since the last one.
-void endPart(Model& model, std::uint32_t object, std::uint32_t surface = 0) {
-  const std::uint32_t first =
-      model.parts.empty() ? 0 : model.parts.back().firstIndex + model.parts.back().indexCount;
-  model.parts.push_back({first, static_cast<std::uint32_t>(model.indices.size()) - first, surface, object});
-}
-
-// Corners counterclockwise as seen from the side the normal points to.
-void addQuad(Model& model, const Vector3 (&corners)[4], const Vector3& normal) {
-  const auto first = static_cast<std::uint32_t>(model.vertices.size());
-  for (const Vector3& corner : corners) model.vertices.push_back(vertexAt(corner, normal));
-  for (const std::uint32_t i : {0u, 1u, 2u, 0u, 2u, 3u}) model.indices.push_back(first + i);
-}
-
-// Axis-aligned square facing +z.
-void addSquare(Model& model, double x, double y, double z, double half) {
-  addQuad(
-      model,
-      {{x - half, y - half, z}, {x + half, y - half, z}, {x + half, y + half, z}, {x - half, y + half, z}},
-      {0, 0, 1});
-}
-
-void addCube(Model& model, double half) {
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    for (const double sign : {-1.0, 1.0}) {
-      Vector3 n{}, u{}, v{};
-      n[axis] = sign;
-      u[(axis + 1) % 3] = sign;
-      v[(axis + 2) % 3] = 1;
-      const auto corner = [&](double a, double b) {
-        Vector3 p;
-        for (std::size_t i = 0; i < 3; ++i) p[i] = half * (n[i] + a * u[i] + b * v[i]);
-        return p;
-      };
-      addQuad(model, {corner(-1, -1), corner(1, -1), corner(1, 1), corner(-1, 1)}, n);
-    }
-}
-
-void addSphere(Model& model, const Vector3& center, double radius, std::uint32_t rings) {
-  const auto first = static_cast<std::uint32_t>(model.vertices.size());
-  const std::uint32_t segments = 2 * rings;
-  for (std::uint32_t i = 0; i <= rings; ++i)
-    for (std::uint32_t j = 0; j < segments; ++j) {
-      const double theta = kPi * i / rings, phi = 2 * kPi * j / segments;
-      const Vector3 n{std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)};
-      model.vertices.push_back(
-          vertexAt({center[0] + radius * n[0], center[1] + radius * n[1], center[2] + radius * n[2]}, n));
-    }
-  for (std::uint32_t i = 0; i < rings; ++i)
-    for (std::uint32_t j = 0; j < segments; ++j) {
-      const std::uint32_t next = (j + 1) % segments;
-      const std::uint32_t a = first + i * segments + j, b = first + i * segments + next;
-      for (const std::uint32_t k : {a, b, a + segments, b, b + segments, a + segments})
-        model.indices.push_back(k);
-    }
-}
-
-// Looks along -z from z = 100; 20 mm tall.
-ModelCamera frontCamera(bool orthographic) {
-  ModelCamera camera;
-  camera.viewFromWorld = lookAt({0, 0, 100}, {0, 0, 0}, {0, 1, 0});
-  camera.orthographic = orthographic;
-  camera.verticalFov = 2 * std::atan(0.1);
-  camera.height = 20;
-  camera.range = {50, 150};
-  return camera;
-}
-
-Light directional(const Vector3& direction, double intensity = 1) {
-  Light light;
-  light.direction = direction;
-  light.intensity = intensity;
-  return light;
-}
-
-// Planar distances of a capture's depth image through its matrix; < 0: nothing there.
-double planar(const Capture& capture, const DepthImage& depth, int x, int y) {
-  const double d = *depth.image.at(x, y);
-  if (depth.encoding == PELLUCID_DEPTH_VIEW_Z) return d < 1e9 ? d : -1;
-  if (d == clearDepth(capture.clipFromView)) return -1;
-  const Matrix& m = capture.clipFromView;
-  return -(d * m[15] - m[14]) / (m[10] - d * m[11]);
-}
-
-// The view ray through a pixel of frontCamera: world position at planar distance 0 and 1.
-struct PixelRay {
-  Vector3 origin, direction;
-};
-PixelRay rayOf(const Capture& capture, int x, int y) {
-  const double u = ((x + 0.5) / capture.width * 2 - 1) / capture.clipFromView[0];
-  const double v = ((y + 0.5) / capture.height * 2 - 1) / capture.clipFromView[5];
-  if (capture.clipFromView[15] == 0) return {{0, 0, 100}, {u, v, -1}};
-  return {{u, v, 100}, {0, 0, -1}};
-}
-
-// Planar distances where the ray meets a sphere about the origin; false: it misses.
-bool meetSphere(const PixelRay& ray, double radius, double (&t)[2]) {
-  double a = 0, b = 0, c = -radius * radius;
-  for (std::size_t i = 0; i < 3; ++i) {
-    a += ray.direction[i] * ray.direction[i];
-    b += ray.origin[i] * ray.direction[i];
-    c += ray.origin[i] * ray.origin[i];
-  }
-  if (b * b < a * c) return false;
-  const double root = std::sqrt(b * b - a * c);
-  t[0] = (-b - root) / a;
-  t[1] = (-b + root) / a;
-  return true;
-}
 
 struct Convention {
   const char* name;
@@ -388,7 +256,7 @@ TEST_F(Raster, IrradianceIsLambert) {
   for (const Light& light : {sun, point, spot}) {
     model.lights = {light};
     const Capture c = rasterize(model, frontCamera(false), options).capture;
-    ASSERT_TRUE(c.lights[0].shadowMap);
+    ASSERT_FALSE(c.lights[0].shadowMaps.empty());
     double worst = 0, brightest = 0;
     for (int y = 0; y < c.height; ++y)
       for (int x = 0; x < c.width; ++x) {
@@ -437,7 +305,7 @@ TEST_F(Raster, ShadowsFallWhereTheyShould) {
   for (const Case& k : cases) {
     model.lights = {k.light};
     const Capture c = rasterize(model, frontCamera(true), options).capture;
-    ASSERT_TRUE(c.lights[0].shadowMap);
+    ASSERT_FALSE(c.lights[0].shadowMaps.empty());
     int compared = 0;
     for (int y = 0; y < 200; ++y)
       for (int x = 0; x < 200; ++x) {
@@ -473,7 +341,7 @@ TEST_F(Raster, ShadowMapEncodings) {
       options.shadowEncoding = encoding;
       model.lights = {light};
       const Capture capture = rasterize(model, frontCamera(true), options).capture;
-      const ShadowMap& map = *capture.lights[0].shadowMap;
+      const ShadowMap& map = capture.lights[0].shadowMaps[0];
       EXPECT_EQ(map.depth.encoding, encoding);
       // From the texel back to the world through clipFromWorld: the plane is z = 0.
       const auto clipOf = [&](double x, double y, double z) {
@@ -515,9 +383,10 @@ TEST_F(Raster, PointLightWithinTheModelHasNoMapAndSaysSo) {
   RasterOptions options;
   options.width = options.height = 17;
   options.depthEncoding = PELLUCID_DEPTH_VIEW_Z;
+  options.pointMaps = PointMaps::One;
   const RasterResult result = rasterize(model, frontCamera(true), options);
-  EXPECT_TRUE(result.capture.lights[0].shadowMap);
-  EXPECT_FALSE(result.capture.lights[1].shadowMap);
+  EXPECT_FALSE(result.capture.lights[0].shadowMaps.empty());
+  EXPECT_TRUE(result.capture.lights[1].shadowMaps.empty());
   EXPECT_NEAR(result.capture.irradiance.at(8, 8)[0], 2, 1e-5) << "both lights arrive";
   ASSERT_EQ(result.warnings.size(), 2u);
   EXPECT_NE(result.warnings[1].find("lights[1]"), std::string::npos) << result.warnings[1];
@@ -700,7 +569,7 @@ TEST_F(Raster, CommandMakesACaptureOfAFile) {
   EXPECT_EQ(c.metersPerUnit, 0.01);
   EXPECT_NEAR(planar(c, c.backDepth, 16, 16) - planar(c, c.frontDepth, 16, 16), 1, 1e-5);
   ASSERT_EQ(c.lights.size(), 1u);
-  EXPECT_TRUE(c.lights[0].shadowMap);
+  EXPECT_FALSE(c.lights[0].shadowMaps.empty());
   EXPECT_EQ(c.irradiance.at(16, 16)[0], 0) << "the light comes from behind";
   EXPECT_EQ(c.material[16 * 32 + 16], 1);
 }

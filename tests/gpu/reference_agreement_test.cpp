@@ -254,7 +254,7 @@ TEST_F(GpuTest, ManyLightsAgreeWithTheReference) {
         Light light = lit[i % 4].lights.at(0);
         light.intensity *= (1 + 0.1 * static_cast<double>(i % 7)) / static_cast<double>(lights);
         light.color = {1, 0.3 + 0.1 * static_cast<double>(i % 5), 0.5};
-        if (i >= maps) light.shadowMap.reset();
+        if (i >= maps) light.shadowMaps.clear();
         c.lights.push_back(light);
       }
       ReplaySettings s;

@@ -55,7 +55,7 @@ TEST_F(Replay, ShadowMapThicknessEqualsCameraThicknessOnASlab) {
   for (const auto encoding : {PELLUCID_DEPTH_DEVICE, PELLUCID_DEPTH_VIEW_Z, PELLUCID_DEPTH_DISTANCE}) {
     Capture c = flatCapture(16, 16, 2);
     c.lights = {backLight()};
-    c.lights[0].shadowMap = flatShadowMap(-12, encoding);
+    c.lights[0].shadowMaps = {flatShadowMap(-12, encoding)};
     ReplaySettings s;
     s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
     s.debugView = PELLUCID_DEBUG_THICKNESS;
@@ -68,7 +68,7 @@ TEST_F(Replay, ShadowMapThicknessEqualsCameraThicknessOnASlab) {
 TEST_F(Replay, OccludedBackIsDark) {
   Capture c = flatCapture(16, 16, 2);
   c.lights = {backLight()};
-  c.lights[0].shadowMap = flatShadowMap(-42, PELLUCID_DEPTH_VIEW_Z);  // a body 30 mm behind the slab
+  c.lights[0].shadowMaps = {flatShadowMap(-42, PELLUCID_DEPTH_VIEW_Z)};  // a body 30 mm behind the slab
   ReplaySettings s;
   s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
   s.translucency.thicknessSource = PELLUCID_THICKNESS_CAMERA;
@@ -85,16 +85,16 @@ TEST_F(Replay, OutsideTheMapAndEmptyTexelsGiveNoLight) {
     s.translucency.thicknessSource = source;
     Capture c = flatCapture(8, 8, 2);
     c.lights = {backLight()};
-    c.lights[0].shadowMap = flatShadowMap(-12, PELLUCID_DEPTH_VIEW_Z);
-    c.lights[0].shadowMap->clipFromWorld[12] = 5;  // the receiver is at ndc x = 5
+    c.lights[0].shadowMaps = {flatShadowMap(-12, PELLUCID_DEPTH_VIEW_Z)};
+    c.lights[0].shadowMaps[0].clipFromWorld[12] = 5;  // the receiver is at ndc x = 5
     expectPixel(replay(c, testMaterial(), s), 4, 4, 1, 0.5, 0.25, kConstant);
     for (const float nothing : {pellucid::harness::kNoDepth, 0.0f, -1.0f, kNan, INFINITY}) {
-      c.lights[0].shadowMap = flatShadowMap(-12, PELLUCID_DEPTH_VIEW_Z);
-      for (float& v : c.lights[0].shadowMap->depth.image.data) v = nothing;
+      c.lights[0].shadowMaps = {flatShadowMap(-12, PELLUCID_DEPTH_VIEW_Z)};
+      for (float& v : c.lights[0].shadowMaps[0].depth.image.data) v = nothing;
       expectPixel(replay(c, testMaterial(), s), 4, 4, 1, 0.5, 0.25, kConstant);
     }
-    c.lights[0].shadowMap = flatShadowMap(-12, PELLUCID_DEPTH_DEVICE);
-    for (float& v : c.lights[0].shadowMap->depth.image.data) v = 1;  // cleared
+    c.lights[0].shadowMaps = {flatShadowMap(-12, PELLUCID_DEPTH_DEVICE)};
+    for (float& v : c.lights[0].shadowMaps[0].depth.image.data) v = 1;  // cleared
     expectPixel(replay(c, testMaterial(), s), 4, 4, 1, 0.5, 0.25, kConstant);
   }
 }
@@ -117,7 +117,7 @@ TEST_F(Replay, LightsAddUp) {
       if (mapped > lights) continue;
       c.lights.assign(static_cast<size_t>(lights), backLight());
       for (int i = 0; i < mapped; ++i)
-        c.lights[static_cast<size_t>(i)].shadowMap = flatShadowMap(-12, PELLUCID_DEPTH_VIEW_Z, 4);
+        c.lights[static_cast<size_t>(i)].shadowMaps = {flatShadowMap(-12, PELLUCID_DEPTH_VIEW_Z, 4)};
       const Image out = replay(c, testMaterial(), s);
       EXPECT_NEAR(out.at(4, 4)[0], 1 + lights * through, 1e-5 * lights * through)
           << lights << " lights, " << mapped << " maps";
@@ -216,7 +216,7 @@ TEST_F(Replay, PoisonNeverReachesTheOutput) {
 TEST_F(Replay, BadValuesAtMaterialPixelsStayFinite) {
   Capture c = busyCapture(32, 32);
   c.lights.push_back(backLight());
-  c.lights[1].shadowMap = flatShadowMap(-12, PELLUCID_DEPTH_VIEW_Z);
+  c.lights[1].shadowMaps = {flatShadowMap(-12, PELLUCID_DEPTH_VIEW_Z)};
   const float bad[] = {kNan, INFINITY, -INFINITY, -1, 0, 1e38f, 1e-38f};
   int i = 0;
   const auto next = [&] { return bad[static_cast<size_t>(i++) % std::size(bad)]; };
@@ -226,7 +226,7 @@ TEST_F(Replay, BadValuesAtMaterialPixelsStayFinite) {
       c.frontDepth.image.at(x, y)[0] = next();
       c.backDepth.image.at(31 - x, y)[0] = next();
       c.normal.at(x, 31 - y)[x % 3] = next();
-      c.lights[1].shadowMap->depth.image.at(x, y)[0] = next();
+      c.lights[1].shadowMaps[0].depth.image.at(x, y)[0] = next();
     }
   ReplaySettings s;
   for (const auto source : {PELLUCID_THICKNESS_LIGHT, PELLUCID_THICKNESS_CAMERA}) {
@@ -355,7 +355,7 @@ TEST_F(Replay, EveryDepthConventionGivesTheSamePicture) {
 TEST_F(Replay, DebugViews) {
   Capture c = flatCapture(8, 8, 2);
   c.lights = {backLight()};
-  c.lights[0].shadowMap = flatShadowMap(-12, PELLUCID_DEPTH_VIEW_Z);
+  c.lights[0].shadowMaps = {flatShadowMap(-12, PELLUCID_DEPTH_VIEW_Z)};
   ReplaySettings s;
   s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
   s.debugView = PELLUCID_DEBUG_TRANSMITTANCE;

@@ -97,7 +97,7 @@ TEST_F(ThesisFigure, ThinPartWhoseLightIsBlocked) {
   expectNothing(c, middle, middle);
   expectThrough(c, corner, corner);
   // Without the map nothing knows of the body.
-  c.lights[0].shadowMap.reset();
+  c.lights[0].shadowMaps.clear();
   expectThrough(c, middle, middle);
 }
 
@@ -176,7 +176,7 @@ TEST_F(GpuTest, ReuseOverATurningLight) {
           Light light = backLight();
           light.direction = {std::sin(angle), 0, std::cos(angle)};
           light.intensity = 1;
-          light.shadowMap = flatShadowMap(-12, PELLUCID_DEPTH_VIEW_Z, 4);
+          light.shadowMaps = {flatShadowMap(-12, PELLUCID_DEPTH_VIEW_Z, 4)};
           c.lights.push_back(light);
         }
         auto run =

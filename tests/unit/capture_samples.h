@@ -83,10 +83,10 @@ inline Capture sampleCapture() {
   sun.direction = {0.1, -0.7, 1.0 / 3.0};
   sun.color = {1, 0.5, 0.25};
   sun.intensity = 12.566370614359172;
-  sun.shadowMap =
+  sun.shadowMaps = {
       ShadowMap{{sampleImage(kSampleShadowSize, kSampleShadowSize, 1, 0.2f), PELLUCID_DEPTH_DEVICE},
                 {0.1, 0, 0, 0, 0, 0.1, 0, 0, 0, 0, -0.01, 0, 0, 0, 0.5, 1},
-                std::nullopt};
+                std::nullopt}};
   Light lamp;
   lamp.type = PELLUCID_LIGHT_POINT;
   lamp.position = {1.5, 2.5, -3.5};
@@ -96,10 +96,15 @@ inline Capture sampleCapture() {
   spot.position = {0, 0, -9};
   spot.innerConeAngle = 0.25;
   spot.outerConeAngle = 0.5;
-  spot.shadowMap = ShadowMap{{sampleImage(11, 13, 1, 4.0f), PELLUCID_DEPTH_DISTANCE},
-                             {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, -1, 0, 0, -0.1, 0},
-                             kIdentity};
-  capture.lights = {sun, lamp, spot};
+  spot.shadowMaps = {ShadowMap{{sampleImage(11, 13, 1, 4.0f), PELLUCID_DEPTH_DISTANCE},
+                               {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, -1, 0, 0, -0.1, 0},
+                               kIdentity}};
+  Light around = lamp;  // two maps of different sizes
+  around.shadowMaps = {spot.shadowMaps[0],
+                       {{sampleImage(3, 2, 1, 7.0f), PELLUCID_DEPTH_VIEW_Z},
+                        {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0, 0, -0.1, 0},
+                        kIdentity}};
+  capture.lights = {sun, lamp, spot, around};
   capture.materials = {
       PresetMaterial{"skin1"}, CoefficientMaterial{{0.74, 0.88, 1.01}, {0.032, 0.17, 0.48}, 0.1, 1.3},
       BurleyMaterial{
@@ -131,7 +136,7 @@ inline nlohmann::json writeSampleFiles(const TemporaryDirectory& directory) {
       pixel[5] = *capture.backDepth.image.at(x, y);
     }
   writeExr(directory / "g.exr", all, {"Z", "E.R", "E.G", "E.B", "id", "ZBack"});
-  writeExr(directory / "s.exr", capture.lights[0].shadowMap->depth.image, {"ViewLayer.Depth.Z"});
+  writeExr(directory / "s.exr", capture.lights[0].shadowMaps[0].depth.image, {"ViewLayer.Depth.Z"});
   return nlohmann::json::parse(R"({
     "pellucid": 1, "metersPerUnit": 0.001,
     "camera": {"clipFromView": [2,0,0,0, 0,-2,0,0, 0,0,-1.01,-1, 0,0,-0.1,0],
@@ -147,7 +152,13 @@ inline nlohmann::json writeSampleFiles(const TemporaryDirectory& directory) {
                 "range": 0, "innerConeAngle": 0.1, "outerConeAngle": 0.7,
                 "shadowMap": {"file": "s.exr", "channel": "ViewLayer.Depth.Z", "encoding": "distance",
                               "clipFromWorld": [1,0,0,0, 0,1,0,0, 0,0,-1,-1, 0,0,-0.1,0],
-                              "viewFromWorld": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]}}],
+                              "viewFromWorld": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]}},
+               {"type": "point", "position": [0, 0, 0], "shadowMaps": [
+                 {"file": "s.exr", "channel": "ViewLayer.Depth.Z", "encoding": "distance",
+                  "clipFromWorld": [1,0,0,0, 0,1,0,0, 0,0,-1,-1, 0,0,-0.1,0],
+                  "viewFromWorld": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]},
+                 {"constant": [5], "encoding": "device",
+                  "clipFromWorld": [1,0,0,0, 0,-1,0,0, 0,0,1,1, 0,0,-0.1,0]}]}],
     "materials": [{"scattering": [7.4, 8.8, 10.1], "absorption": [0.32, 1.7, 4.8], "g": 0, "ior": 1.4,
                    "unit": "1/cm"}],
     "truth": {"file": "g.exr", "channels": ["E.R", "E.G", "E.B"], "scale": 2}

@@ -49,11 +49,12 @@ TEST(CaptureRoundTrip, IsBitExactWithFloat) {
     EXPECT_EQ(a.range, b.range);
     EXPECT_EQ(a.innerConeAngle, b.innerConeAngle);
     EXPECT_EQ(a.outerConeAngle, b.outerConeAngle);
-    ASSERT_EQ(a.shadowMap.has_value(), b.shadowMap.has_value());
-    if (!a.shadowMap) continue;
-    expectSame(a.shadowMap->depth, b.shadowMap->depth);
-    EXPECT_EQ(a.shadowMap->clipFromWorld, b.shadowMap->clipFromWorld);
-    EXPECT_EQ(a.shadowMap->viewFromWorld, b.shadowMap->viewFromWorld);
+    ASSERT_EQ(a.shadowMaps.size(), b.shadowMaps.size());
+    for (std::size_t k = 0; k < a.shadowMaps.size(); ++k) {
+      expectSame(a.shadowMaps[k].depth, b.shadowMaps[k].depth);
+      EXPECT_EQ(a.shadowMaps[k].clipFromWorld, b.shadowMaps[k].clipFromWorld);
+      EXPECT_EQ(a.shadowMaps[k].viewFromWorld, b.shadowMaps[k].viewFromWorld);
+    }
   }
 
   ASSERT_EQ(read.materials.size(), 4u);
@@ -137,8 +138,9 @@ TEST_F(Manifests, EveryBufferArrives) {
   EXPECT_EQ(capture.material[1], 1);
   ASSERT_EQ(capture.lights.size(), 1u);
   EXPECT_EQ(capture.lights[0].type, PELLUCID_LIGHT_SPOT);
-  EXPECT_EQ(capture.lights[0].shadowMap->depth.encoding, PELLUCID_DEPTH_DISTANCE);
-  EXPECT_TRUE(sameBits(capture.lights[0].shadowMap->depth.image, sample.lights[0].shadowMap->depth.image));
+  EXPECT_EQ(capture.lights[0].shadowMaps[0].depth.encoding, PELLUCID_DEPTH_DISTANCE);
+  EXPECT_TRUE(
+      sameBits(capture.lights[0].shadowMaps[0].depth.image, sample.lights[0].shadowMaps[0].depth.image));
   EXPECT_EQ(capture.truth->image.at(2, 1)[0], 2 * sample.irradiance.at(2, 1)[0]);
 }
 
@@ -158,7 +160,26 @@ TEST_F(Manifests, DefaultsAreThoseOfTheStructures) {
   EXPECT_EQ(light.color, (std::array<double, 3>{1, 1, 1}));
   EXPECT_EQ(light.intensity, 1);
   EXPECT_EQ(light.range, 0);
-  EXPECT_FALSE(light.shadowMap.has_value());
+  EXPECT_TRUE(light.shadowMaps.empty());
+}
+
+TEST_F(Manifests, SeveralShadowMapsKeepTheirOrder) {
+  const Capture capture = read();
+  ASSERT_EQ(capture.lights[1].shadowMaps.size(), 2u);
+  EXPECT_TRUE(
+      sameBits(capture.lights[1].shadowMaps[0].depth.image, sample.lights[0].shadowMaps[0].depth.image));
+  EXPECT_EQ(capture.lights[1].shadowMaps[1].depth.image.data, std::vector<float>{5});
+  EXPECT_EQ(capture.lights[1].shadowMaps[1].depth.encoding, PELLUCID_DEPTH_DEVICE);
+  EXPECT_EQ(capture.lights[1].shadowMaps[1].clipFromWorld[10], 1);
+}
+
+TEST_F(Manifests, CountOfShadowMapsIsLimited) {
+  json& maps = manifest["lights"][1]["shadowMaps"];
+  const json one = maps[1];
+  while (maps.size() < PELLUCID_MAX_LIGHT_SHADOW_MAPS) maps.push_back(one);
+  EXPECT_EQ(read().lights[1].shadowMaps.size(), std::size_t{PELLUCID_MAX_LIGHT_SHADOW_MAPS});
+  maps.push_back(one);
+  expectNames(error(), {"lights[1].shadowMaps", "1 to 8", "has 9"});
 }
 
 TEST_F(Manifests, ConstantShadowMapIsOneTexel) {
@@ -167,8 +188,8 @@ TEST_F(Manifests, ConstantShadowMapIsOneTexel) {
   map.erase("channel");
   map["constant"] = {5};
   const Capture capture = read();
-  EXPECT_EQ(capture.lights[0].shadowMap->depth.image.pixels(), 1u);
-  EXPECT_EQ(capture.lights[0].shadowMap->depth.image.data[0], 5.0f);
+  EXPECT_EQ(capture.lights[0].shadowMaps[0].depth.image.pixels(), 1u);
+  EXPECT_EQ(capture.lights[0].shadowMaps[0].depth.image.data[0], 5.0f);
 }
 
 TEST_F(Manifests, OneChannelMayServeTwice) {
@@ -298,7 +319,10 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"/lights/0/position", "", {"lights[0].position", "missing"}},
         Mistake{"/lights/0/direction", "", {"lights[0].direction", "missing"}},
         Mistake{"/lights/0/shadowMap/clipFromWorld", "", {"lights[0].shadowMap.clipFromWorld", "missing"}},
-        Mistake{"/lights/0/shadowMap/viewFromWorld", "", {"lights[0].shadowMap.viewFromWorld", "missing"}}));
+        Mistake{"/lights/0/shadowMap/viewFromWorld", "", {"lights[0].shadowMap.viewFromWorld", "missing"}},
+        Mistake{"/lights/1/shadowMaps/1/clipFromWorld",
+                "",
+                {"lights[1].shadowMaps[1].clipFromWorld", "missing"}}));
 
 INSTANTIATE_TEST_SUITE_P(
     Unknown, Mistakes,
@@ -309,12 +333,17 @@ INSTANTIATE_TEST_SUITE_P(
                     Mistake{"/buffers/material/channels", "[]", {"buffers.material.channels", "unknown key"}},
                     Mistake{"/lights/0/radius", "1", {"lights[0].radius", "unknown key"}},
                     Mistake{"/lights/0/shadowMap/bias", "1", {"lights[0].shadowMap.bias", "unknown key"}},
+                    Mistake{
+                        "/lights/1/shadowMaps/0/bias", "1", {"lights[1].shadowMaps[0].bias", "unknown key"}},
                     Mistake{"/materials/0/name", "\"x\"", {"materials[0].name", "unknown key"}},
                     Mistake{"/truth/exposure", "1", {"truth.exposure", "unknown key"}}));
 
 INSTANTIATE_TEST_SUITE_P(
     Values, Mistakes,
     testing::Values(
+        Mistake{"/lights/1/shadowMap", "{}", {"lights[1].shadowMaps", "not both"}},
+        Mistake{"/lights/1/shadowMaps", "[]", {"lights[1].shadowMaps", "has 0"}},
+        Mistake{"/lights/1/shadowMaps", "{}", {"lights[1].shadowMaps", "array"}},
         Mistake{"/pellucid", "2", {"m.json", "pellucid", "version 2"}},
         Mistake{"/metersPerUnit", "0", {"metersPerUnit", "positive", "0"}},
         Mistake{"/metersPerUnit", "\"1\"", {"metersPerUnit", "number", "\"1\""}},
@@ -402,13 +431,13 @@ TEST(SharedCaptures, AreReadAndSurviveARoundTrip) {
     const Capture copy = readCapture(directory / "c.exr");
     expectSame(copy.frontDepth, original.frontDepth);
     expectSame(copy.backDepth, original.backDepth);
-    expectSame(copy.lights[0].shadowMap->depth, original.lights[0].shadowMap->depth);
+    expectSame(copy.lights[0].shadowMaps[0].depth, original.lights[0].shadowMaps[0].depth);
     EXPECT_TRUE(sameBits(copy.irradiance, original.irradiance));
     EXPECT_TRUE(sameBits(copy.normal, original.normal));
     EXPECT_TRUE(sameBits(copy.albedo, original.albedo));
     EXPECT_TRUE(sameBits(copy.truth->image, original.truth->image));
     EXPECT_EQ(copy.material, original.material);
-    EXPECT_EQ(copy.lights[0].shadowMap->clipFromWorld, original.lights[0].shadowMap->clipFromWorld);
+    EXPECT_EQ(copy.lights[0].shadowMaps[0].clipFromWorld, original.lights[0].shadowMaps[0].clipFromWorld);
   }
   EXPECT_GT(count, 0);
 }

@@ -94,7 +94,7 @@ struct View {
     map.clipFromWorld =
         multiply(point ? perspective(2.8, 1, {0.01, 1000, true}) : orthographic(400, 400, {1, 1000, true}),
                  *map.viewFromWorld);
-    l.shadowMap = map;
+    l.shadowMaps = {map};
   }
 
   std::array<uint32_t, 4> rect = {0, 0, kSide, kSide};
@@ -154,10 +154,10 @@ TEST(Cull, DroppedLightsAddNothing) {
     ++lights;
     const bool nothing = isDark(view, s);
     // A map adds darkness that no plan looks for.
-    dark += nothing && !light.shadowMap;
+    dark += nothing && light.shadowMaps.empty();
     const std::string reason = reasonOf(view.capture, s);
     if (reason.empty()) continue;
-    dropped += !light.shadowMap;
+    dropped += light.shadowMaps.empty();
     ++reasons[reason];
     EXPECT_TRUE(nothing) << view.capture.name << ": " << reason;
   }
@@ -240,7 +240,7 @@ TEST(Cull, FrontLightsAreDropped) {
   map.clipFromWorld = {0.01, 0, 0, 0, 0, 0.01, 0, 0, 0, 0, 0.01, 0, 0, 0, 0.5, 1};
   map.depth.encoding = PELLUCID_DEPTH_DEVICE;
   map.depth.image = Image(1, 1, 1, 0.5f);
-  view.capture.lights[0].shadowMap = map;
+  view.capture.lights[0].shadowMaps = {map};
   EXPECT_EQ(reasonOf(view.capture, s), "");
 }
 

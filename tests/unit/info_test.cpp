@@ -58,9 +58,12 @@ TEST_F(InfoCommand, SaysWhatIsThere) {
   EXPECT_EQ(capture["buffers"]["normal"]["space"], "view");
   EXPECT_EQ(capture["buffers"]["material"]["pixels"], 15);  // the odd columns
   EXPECT_EQ(capture["buffers"]["truth"]["scale"], 2);
-  ASSERT_EQ(capture["lights"].size(), 1u);
+  ASSERT_EQ(capture["lights"].size(), 2u);
   EXPECT_EQ(capture["lights"][0]["type"], "spot");
-  EXPECT_EQ(capture["lights"][0]["shadowMap"]["size"], json({kSampleShadowSize, kSampleShadowSize}));
+  ASSERT_EQ(capture["lights"][0]["shadowMaps"].size(), 1u);
+  EXPECT_EQ(capture["lights"][0]["shadowMaps"][0]["size"], json({kSampleShadowSize, kSampleShadowSize}));
+  ASSERT_EQ(capture["lights"][1]["shadowMaps"].size(), 2u);
+  EXPECT_EQ(capture["lights"][1]["shadowMaps"][1]["size"], json({1, 1}));
   EXPECT_EQ(capture["materials"][0]["kind"], "coefficients");
   EXPECT_EQ(capture["materials"][0]["pixels"], 15);
   EXPECT_TRUE(capture["missing"].empty()) << capture["missing"];

@@ -237,7 +237,7 @@ TEST(Reference, MeanTransmittanceOfASphere) {
 TEST(Reference, SlabTransmitsThroughTheReflectance) {
   Capture c = backLitSlab();
   for (const bool withMap : {false, true}) {
-    if (withMap) c.lights[0].shadowMap = mapBehindSlab();
+    if (withMap) c.lights[0].shadowMaps = {mapBehindSlab()};
     const Image view = debugView(c, PELLUCID_DEBUG_IRRADIANCE);
     EXPECT_NEAR(view.at(2, 1)[0], 3 * std::exp(-2 * 4) / 0.5, 1e-7) << withMap;  // E T / rho
   }
@@ -257,7 +257,7 @@ TEST(Reference, ObliqueLightGoesTheLongWay) {
   map.depth.image = Image(8, 8, 1, 0.25f);  // z = -104
   map.clipFromWorld[8] = -0.1 * std::tan(angle);
   map.clipFromWorld[12] = -0.1 * std::tan(angle) * 100;
-  c.lights[0].shadowMap = map;
+  c.lights[0].shadowMaps = {map};
   EXPECT_NEAR(debugView(c, PELLUCID_DEBUG_THICKNESS).at(1, 1)[1], 4 / std::cos(angle), 1e-5);
   const double expected = 3 * std::cos(angle) * std::exp(-2 * 4 / std::cos(angle)) / 0.5;
   EXPECT_NEAR(debugView(c, PELLUCID_DEBUG_IRRADIANCE).at(1, 1)[0], expected, 1e-7);
@@ -280,29 +280,29 @@ TEST(Reference, CameraThicknessIsTurnedToTheNormal) {
 TEST(Reference, EmptyOutsideOrBehindTheMapMeansNoLight) {
   Capture c = backLitSlab();
   for (const PellucidThicknessSource source : {PELLUCID_THICKNESS_LIGHT, PELLUCID_THICKNESS_CAMERA}) {
-    c.lights[0].shadowMap = mapBehindSlab();
-    c.lights[0].shadowMap->depth.image = Image(8, 8, 1, kNoDepth);
+    c.lights[0].shadowMaps = {mapBehindSlab()};
+    c.lights[0].shadowMaps[0].depth.image = Image(8, 8, 1, kNoDepth);
     EXPECT_EQ(debugView(c, PELLUCID_DEBUG_IRRADIANCE, source).at(1, 1)[0], 0);
     EXPECT_EQ(debugView(c, PELLUCID_DEBUG_OCCLUSION, source).at(1, 1)[0], 0);
 
-    c.lights[0].shadowMap = mapBehindSlab();
-    c.lights[0].shadowMap->clipFromWorld[12] = 5;
+    c.lights[0].shadowMaps = {mapBehindSlab()};
+    c.lights[0].shadowMaps[0].clipFromWorld[12] = 5;
     EXPECT_EQ(debugView(c, PELLUCID_DEBUG_IRRADIANCE, source).at(1, 1)[0], 0);
     EXPECT_EQ(debugView(c, PELLUCID_DEBUG_THICKNESS, source).at(1, 1)[1], -1);
   }
   // A perspective map that looks the other way: w < 0 at the slab.
   c.lights[0].type = PELLUCID_LIGHT_POINT;
   c.lights[0].position = {0, 0, -204};
-  c.lights[0].shadowMap = mapBehindSlab();
-  c.lights[0].shadowMap->clipFromWorld = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, -1, 0, 0, 1, -204};
+  c.lights[0].shadowMaps = {mapBehindSlab()};
+  c.lights[0].shadowMaps[0].clipFromWorld = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, -1, 0, 0, 1, -204};
   EXPECT_EQ(debugView(c, PELLUCID_DEBUG_IRRADIANCE).at(1, 1)[0], 0);
 }
 
 TEST(Reference, OccluderInFrontOfTheBackFace) {
   Capture c = backLitSlab();
-  c.lights[0].shadowMap = mapBehindSlab();
+  c.lights[0].shadowMaps = {mapBehindSlab()};
   // Nearer to the light than the slab's back face at 100: an occluder 10 mm behind the slab.
-  *c.lights[0].shadowMap->depth.image.at(4, 3) = 90;
+  *c.lights[0].shadowMaps[0].depth.image.at(4, 3) = 90;
   const Image light = debugView(c, PELLUCID_DEBUG_THICKNESS);
   EXPECT_NEAR(light.at(2, 2)[1], 14, 1e-4);
   const Image camera = debugView(c, PELLUCID_DEBUG_OCCLUSION, PELLUCID_THICKNESS_CAMERA, 1e-3f);
@@ -312,8 +312,8 @@ TEST(Reference, OccluderInFrontOfTheBackFace) {
 
 TEST(Reference, SurfaceNearerThanTheMapHasThicknessZero) {
   Capture c = backLitSlab();
-  c.lights[0].shadowMap = mapBehindSlab();
-  c.lights[0].shadowMap->depth.image = Image(8, 8, 1, 105.0f);
+  c.lights[0].shadowMaps = {mapBehindSlab()};
+  c.lights[0].shadowMaps[0].depth.image = Image(8, 8, 1, 105.0f);
   EXPECT_EQ(debugView(c, PELLUCID_DEBUG_THICKNESS).at(1, 1)[1], 0);
   EXPECT_NEAR(debugView(c, PELLUCID_DEBUG_IRRADIANCE).at(1, 1)[0], 3 / 0.5, 1e-6);
 }
@@ -326,8 +326,8 @@ TEST(Reference, PointLightMapEncodingsAgree) {
     Light& light = c.lights[0];
     light.type = PELLUCID_LIGHT_POINT;
     light.position = {0, 0, -204};
-    light.shadowMap = mapBehindSlab();
-    ShadowMap& map = *light.shadowMap;
+    light.shadowMaps = {mapBehindSlab()};
+    ShadowMap& map = light.shadowMaps[0];
     const double nearPlane = 10;
     map.clipFromWorld = {-8, 0, 0, 0, 0, 8, 0, 0, 0, 0, 0, 1, 0, 0, nearPlane, 204};
     map.depth.encoding = encoding;
@@ -472,8 +472,8 @@ TEST(Reference, BadInputIsNamed) {
   c.clipFromView[0] = 0;
   EXPECT_THROW(compute(c, {burleyMaterial(1)}, Settings{}), InputError);
   c = backLitSlab();
-  c.lights[0].shadowMap = mapBehindSlab();
-  c.lights[0].shadowMap->viewFromWorld.reset();
+  c.lights[0].shadowMaps = {mapBehindSlab()};
+  c.lights[0].shadowMaps[0].viewFromWorld.reset();
   EXPECT_THROW(compute(c, {burleyMaterial(1)}, Settings{}), InputError);
 }
 

@@ -311,8 +311,8 @@ TEST(Scene, LeftHandedCaptureIsTheMirroredWorld) {
       const glm::dvec3 b = worldPosition(left, x, y, viewZ, true);
       EXPECT_NEAR(glm::length(a * mirror - b), 0, 1e-9);
       EXPECT_EQ(left.normal.at(x, y)[2], -right.normal.at(x, y)[2]);
-      const ShadowMap& rightMap = *right.lights[0].shadowMap;
-      const ShadowMap& leftMap = *left.lights[0].shadowMap;
+      const ShadowMap& rightMap = right.lights[0].shadowMaps[0];
+      const ShadowMap& leftMap = left.lights[0].shadowMaps[0];
       const auto seenAlike = [&](const Matrix& fromRight, const Matrix& fromLeft) {
         return glm::length(toGlm(fromRight) * glm::dvec4(a, 1) - toGlm(fromLeft) * glm::dvec4(b, 1)) < 1e-9;
       };
@@ -405,13 +405,13 @@ TEST_P(SceneShadow, MapAgreesWithShadowRays) {
     glm::dvec3 toLight = -toGlm(light.direction);
     if (light.type != PELLUCID_LIGHT_DIRECTIONAL) toLight = glm::normalize(toGlm(light.position) - point);
     const double cosine = glm::dot(normal, toLight);
-    const std::optional<Lookup> at = lookUp(*light.shadowMap, point);
+    const std::optional<Lookup> at = lookUp(light.shadowMaps[0], point);
     if (cosine < 0.3 || !at) return;
     const double slack = 2.5 * texel / cosine;
     int blocked = 0;
     for (int dy = -1; dy <= 1; ++dy) {
       for (int dx = -1; dx <= 1; ++dx) {
-        blocked += storedViewZ(*light.shadowMap, *at, at->x + dx, at->y + dy) < at->pointViewZ - slack;
+        blocked += storedViewZ(light.shadowMaps[0], *at, at->x + dx, at->y + dy) < at->pointViewZ - slack;
       }
     }
     if (blocked != 0 && blocked != 9) return;
@@ -554,7 +554,7 @@ TEST(Scene, EverySceneIsAConsistentCapture) {
       }
     }
     EXPECT_GT(covered, 24) << info.name;
-    for (const Light& light : capture.lights) EXPECT_TRUE(light.shadowMap) << info.name;
+    for (const Light& light : capture.lights) EXPECT_FALSE(light.shadowMaps.empty()) << info.name;
     EXPECT_EQ(capture.metersPerUnit, 0.001);
   }
 }
@@ -567,7 +567,7 @@ TEST(Scene, SameParametersSameBits) {
   EXPECT_EQ(a.frontDepth.image.data, b.frontDepth.image.data);
   EXPECT_EQ(a.backDepth.image.data, b.backDepth.image.data);
   EXPECT_EQ(a.irradiance.data, b.irradiance.data);
-  EXPECT_EQ(a.lights[0].shadowMap->depth.image.data, b.lights[0].shadowMap->depth.image.data);
+  EXPECT_EQ(a.lights[0].shadowMaps[0].depth.image.data, b.lights[0].shadowMaps[0].depth.image.data);
   parameters.seed = 2;
   EXPECT_NE(a.frontDepth.image.data, makeScene(parameters).frontDepth.image.data);
 }

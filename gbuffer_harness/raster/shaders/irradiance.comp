@@ -5,31 +5,59 @@
 
 layout(local_size_x = PELLUCID_GROUP_X, local_size_y = PELLUCID_GROUP_Y) in;
 
+#define SHADOW_MAPS 6
+
+struct ShadowView {
+  mat4 clipFromView; // clip space of the shadow map from the camera's view space
+  vec4 planar;       // dot(planar, (x, 1)): planar distance from the light
+};
 layout(set = 0, binding = 0) uniform Constants {
   mat4 viewFromWorld;
-  mat4 shadowFromView; // clip space of the shadow map
-  vec4 shadowPlanar;   // dot(shadowPlanar, (x, 1)): planar distance from the light
-  vec4 shadow;         // x: texels across, 0: no map; y: 1 perspective; z: size of a texel, at planar
-                       // distance 1 if perspective
-  vec4 eye;            // ndc to view at planar distance 1: x, y; z: 1 perspective
+  ShadowView shadowViews[SHADOW_MAPS];
+  vec4 shadow; // x: texels across; y: 1 perspective; z: size of a texel, at planar distance 1 if
+               // perspective; w: maps
+  vec4 eye;    // ndc to view at planar distance 1: x, y; z: 1 perspective
   LightConstants light;
 };
 layout(set = 0, binding = 1) uniform sampler2D normalPlanar;
-layout(set = 0, binding = 2) uniform sampler2D shadowMap; // planar distances
+layout(set = 0, binding = 2) uniform sampler2D shadowMaps[SHADOW_MAPS]; // planar distances
 layout(set = 0, binding = 3, rgba32f) uniform image2D irradiance;
 
+// Constant indices: not every device can index samplers otherwise.
+float shadowTexel(int map, ivec2 t) {
+  switch (map) {
+    case 0: return texelFetch(shadowMaps[0], t, 0).r;
+    case 1: return texelFetch(shadowMaps[1], t, 0).r;
+    case 2: return texelFetch(shadowMaps[2], t, 0).r;
+    case 3: return texelFetch(shadowMaps[3], t, 0).r;
+    case 4: return texelFetch(shadowMaps[4], t, 0).r;
+    default: return texelFetch(shadowMaps[5], t, 0).r;
+  }
+}
+
 // Fraction of the four texels around x that see it, weighted bilinearly.
-float visibility(vec3 x, vec3 n, vec3 toLight) {
-  if (shadow.x == 0.0) return 1.0;
-  float planar = dot(shadowPlanar, vec4(x, 1.0));
+float visibility(vec3 x, vec3 n) {
+  if (shadow.w == 0.0) return 1.0;
+  // Of a cube's faces, that in whose middle x lies: it is farthest along that face's axis.
+  int map = 0;
+  float planar = dot(shadowViews[0].planar, vec4(x, 1.0));
+  for (int i = 1; i < int(shadow.w); ++i) {
+    float other = dot(shadowViews[i].planar, vec4(x, 1.0));
+    if (other > planar) {
+      map = i;
+      planar = other;
+    }
+  }
   float texel = shadow.z * (shadow.y != 0.0 ? planar : 1.0);
-  // A texel away, a plane at angle a to the light is texel tan(a) nearer; moving by h along the normal
-  // gains h / cos(a). 1.5 covers the diagonal of the four texels; the rest covers rounding.
-  float cosine = dot(n, toLight);
-  float offset = texel * 1.5 * sqrt(max(1.0 - cosine * cosine, 0.0)) + 4.0e-6 * planar;
+  // One texel along the map, the planar distance of a surface to which the map's axis stands at angle a
+  // changes by texel sin(a) / d, where the ray goes d along the normal per planar distance; moving by h along
+  // the normal gains h / d. 1.5 covers the diagonal of the four texels. 0.05 covers hollows of more than 22
+  // texels' radius and interpolated normals 2 degrees off; the rest covers rounding.
+  float axial = dot(shadowViews[map].planar.xyz, n);
+  float offset = texel * (1.5 * sqrt(max(1.0 - axial * axial, 0.0)) + 0.05) + 4.0e-6 * planar;
   x += n * offset;
-  planar = dot(shadowPlanar, vec4(x, 1.0)) - 4.0e-6 * planar;
-  vec4 clip = shadowFromView * vec4(x, 1.0);
+  planar = dot(shadowViews[map].planar, vec4(x, 1.0)) - 4.0e-6 * planar;
+  vec4 clip = shadowViews[map].clipFromView * vec4(x, 1.0);
   if (!(clip.w > 0.0)) return 1.0;
   vec2 position = (clip.xy / clip.w * 0.5 + 0.5) * shadow.x - 0.5;
   ivec2 base = ivec2(floor(position));
@@ -39,7 +67,7 @@ float visibility(vec3 x, vec3 n, vec3 toLight) {
     ivec2 corner = ivec2(i & 1, i >> 1);
     ivec2 t = base + corner;
     bool outside = any(lessThan(t, ivec2(0))) || any(greaterThanEqual(t, ivec2(shadow.x)));
-    bool seen = outside || texelFetch(shadowMap, t, 0).r >= planar;
+    bool seen = outside || shadowTexel(map, t) >= planar;
     vec2 w = mix(1.0 - f, f, vec2(corner));
     lit += seen ? w.x * w.y : 0.0;
   }
@@ -58,6 +86,6 @@ void main() {
   Incident incident = incidentLight(light, x);
   float cosine = dot(n, incident.toLight);
   if (!(cosine > 0.0)) return;
-  vec3 e = incident.irradiance * cosine * visibility(x, n, incident.toLight);
+  vec3 e = incident.irradiance * cosine * visibility(x, n);
   imageStore(irradiance, pixel, imageLoad(irradiance, pixel) + vec4(e, 0.0));
 }

@@ -1,0 +1,284 @@
+// Point lights that shine all around: six shadow maps, from the rasterizer to the passes that read them.
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <glm/glm.hpp>
+
+#include "capture/read.h"
+#include "capture/write.h"
+#include "common/error.h"
+#include "gpu/gpu_fixture.h"
+#include "gpu/model_builder.h"
+#include "raster/framing.h"
+#include "raster/raster.h"
+#include "reference/reference.h"
+#include "scene/vector.h"
+
+namespace {
+
+using namespace pellucid::test;
+namespace reference = pellucid::harness::reference;
+
+constexpr double kInner = 6, kOuter = 8;  // mm
+// Off the center, so that no face of the cube is like another.
+const glm::dvec3 kLight(0.9, -0.6, 0.4);
+
+Light lamp(const glm::dvec3& position) {
+  Light light;
+  light.type = PELLUCID_LIGHT_POINT;
+  light.position = fromGlm(position);
+  light.intensity = 50;
+  return light;
+}
+
+// A sphere whose surface faces its center.
+void addHollow(Model& model, double radius, std::uint32_t rings) {
+  const std::size_t firstVertex = model.vertices.size(), firstIndex = model.indices.size();
+  addSphere(model, {0, 0, 0}, radius, rings);
+  for (std::size_t i = firstVertex; i < model.vertices.size(); ++i)
+    for (float& n : model.vertices[i].normal) n = -n;
+  for (std::size_t i = firstIndex; i < model.indices.size(); i += 3)
+    std::swap(model.indices[i + 1], model.indices[i + 2]);
+}
+
+// A shell of 2 mm with a light in it.
+Model shell() {
+  Model model = emptyModel();
+  addSphere(model, {0, 0, 0}, kOuter, 256);
+  addHollow(model, kInner, 256);
+  endPart(model, 0);
+  model.lights = {lamp(kLight)};
+  return model;
+}
+
+RasterOptions smallOptions() {
+  RasterOptions options;
+  options.width = options.height = 160;
+  options.depthEncoding = PELLUCID_DEPTH_VIEW_Z;
+  options.shadowSize = 512;
+  return options;
+}
+
+ModelCamera cameraAt(const Vector3& eye, const Vector3& target, double fov) {
+  ModelCamera camera;
+  camera.viewFromWorld = lookAt(eye, target, {0, 1, 0});
+  camera.verticalFov = fov;
+  camera.range = {0.1, 200};
+  return camera;
+}
+
+// World position of a pixel's front; empty: nothing there.
+std::optional<glm::dvec3> positionAt(const Capture& c, int x, int y) {
+  const double z = *c.frontDepth.image.at(x, y);
+  if (!(z < 1e9)) return std::nullopt;
+  const double u = ((x + 0.5) / c.width * 2 - 1) / c.clipFromView[0];
+  const double v = ((y + 0.5) / c.height * 2 - 1) / c.clipFromView[5];
+  return glm::dvec3(glm::inverse(toGlm(c.viewFromWorld)) * glm::dvec4(u * z, v * z, -z, 1));
+}
+
+// Distance from the light to the inner wall in the direction of x.
+double toInnerWall(const glm::dvec3& x) {
+  const glm::dvec3 d = glm::normalize(x - kLight);
+  const double b = glm::dot(kLight, d);
+  return -b + std::sqrt(b * b - glm::dot(kLight, kLight) + kInner * kInner);
+}
+
+class PointLights : public GpuTest {
+protected:
+  static RasterResult rasterize(const Model& model, const ModelCamera& camera, const RasterOptions& options) {
+    return pellucid::harness::rasterize(device(), model, camera, options);
+  }
+};
+
+// Face of the cube about the light in which a point lies, and how close to a seam: 1 on it.
+struct Face {
+  int index;
+  double seam;
+};
+Face faceOf(const glm::dvec3& x) {
+  const glm::dvec3 d = x - kLight, a = glm::abs(d);
+  const int axis = a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
+  const double second = axis == 0 ? std::max(a.y, a.z) : axis == 1 ? std::max(a.x, a.z) : std::max(a.x, a.y);
+  return {2 * axis + (d[axis] < 0), second / a[axis]};
+}
+
+// The wall along each light ray is what geometry says, on every face and across their seams.
+TEST_F(PointLights, ThicknessOfAShellAroundTheLight) {
+  const Model model = shell();
+  for (const auto encoding : {PELLUCID_DEPTH_DEVICE, PELLUCID_DEPTH_VIEW_Z, PELLUCID_DEPTH_DISTANCE}) {
+    int pixels[6] = {}, seams = 0;
+    for (const double side : {1.0, -1.0}) {
+      RasterOptions options = smallOptions();
+      options.shadowEncoding = encoding;
+      const RasterResult result =
+          rasterize(model, cameraAt({40 * side, 50 * side, 60 * side}, {0, 0, 0}, 0.2), options);
+      const Capture& c = result.capture;
+      EXPECT_TRUE(result.warnings.empty()) << result.warnings[0];
+      ASSERT_EQ(c.lights[0].shadowMaps.size(), 6u);
+      ReplaySettings settings;
+      settings.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+      settings.debugView = PELLUCID_DEBUG_THICKNESS;
+      const Image thickness = replay(c, testMaterial(), settings);
+      double worst = 0;
+      for (int y = 0; y < c.height; ++y)
+        for (int x = 0; x < c.width; ++x) {
+          const std::optional<glm::dvec3> position = positionAt(c, x, y);
+          if (!position) continue;
+          const Face face = faceOf(*position);
+          ++pixels[face.index];
+          seams += face.seam > 0.99;
+          const double exact = glm::distance(*position, kLight) - toInnerWall(*position);
+          worst = std::max(worst, std::abs(double(thickness.at(x, y)[1]) - exact));
+        }
+      // A texel is 2 / 512 of the planar distance, at most 7 mm, and the wall leans by at most 55 degrees
+      // from a face's plane: half a diagonal of 0.02 mm times 1.4, along a ray 1.7 times as long.
+      EXPECT_LT(worst, 0.05) << "encoding " << encoding;
+    }
+    for (const int n : pixels) EXPECT_GT(n, 500);
+    EXPECT_GT(seams, 100);
+  }
+}
+
+// Seen from within, the wall gets I cos / r^2 everywhere: no seam shows and the wall does not shadow itself.
+TEST_F(PointLights, LightsAllAroundWithoutASeam) {
+  const Model model = shell();
+  int seams = 0;
+  for (const Vector3& target :
+       {Vector3{3, 2, 1}, Vector3{-2, 3, -1}, Vector3{1, -2, 3}, Vector3{-1, -2, -3}}) {
+    const Capture c = rasterize(model, cameraAt({0, 0, 0}, target, 2.2), smallOptions()).capture;
+    double worst = 0;
+    for (int y = 0; y < c.height; ++y)
+      for (int x = 0; x < c.width; ++x) {
+        const std::optional<glm::dvec3> position = positionAt(c, x, y);
+        ASSERT_TRUE(position);
+        seams += faceOf(*position).seam > 0.99;
+        const glm::dvec3 toLight = kLight - *position;
+        const double squared = glm::dot(toLight, toLight);
+        const double cosine = glm::dot(toLight, -glm::normalize(*position)) / std::sqrt(squared);
+        const double exact = 50 * cosine / squared;
+        worst = std::max(worst, std::abs(c.irradiance.at(x, y)[0] / exact - 1));
+      }
+    // As in IrradianceIsLambert: the triangles' dip and their interpolated normals.
+    EXPECT_LT(worst, 5e-4);
+  }
+  EXPECT_GT(seams, 500);
+}
+
+// Nothing gets out of a closed shell, not through its seams either.
+TEST_F(PointLights, NoLightLeaksOutOfAShell) {
+  Model model = shell();
+  addHollow(model, 20, 64);
+  endPart(model, 1);
+  for (const int size : {512, 65, 8}) {
+    RasterOptions options = smallOptions();
+    options.shadowSize = size;
+    for (const Vector3& target : {Vector3{1, 0, 0}, Vector3{-1, 1, -1}, Vector3{0, -1, 0.1}}) {
+      const Vector3 eye = {10 * target[0], 10 * target[1], 10 * target[2]};
+      const Vector3 ahead = {20 * target[0], 20 * target[1], 20 * target[2]};
+      const Capture c = rasterize(model, cameraAt(eye, ahead, 2), options).capture;
+      EXPECT_EQ(*std::max_element(c.irradiance.data.begin(), c.irradiance.data.end()), 0)
+          << size << " texels";
+    }
+  }
+}
+
+TEST_F(PointLights, AgreeWithTheReference) {
+  Model model = shell();
+  model.lights.push_back(lamp({-2, 1, 3}));  // its six maps need a dispatch of their own
+  model.lights.back().color = {0.2, 0.5, 1};
+  RasterOptions options = smallOptions();
+  for (const auto encoding : {PELLUCID_DEPTH_DEVICE, PELLUCID_DEPTH_VIEW_Z, PELLUCID_DEPTH_DISTANCE}) {
+    options.shadowEncoding = encoding;
+    const Capture c = rasterize(model, cameraAt({60, 50, 40}, {0, 0, 0}, 0.2), options).capture;
+    ReplaySettings settings;
+    settings.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+    settings.features = PELLUCID_FEATURE_TRANSLUCENCY;
+    reference::Settings exact;
+    exact.features = settings.features;
+    const Image gpu = replay(c, testMaterial(), settings);
+    const Image ref = reference::compute(c, {testMaterial()}, exact).image;
+    int differ = 0, lit = 0;
+    for (std::size_t i = 0; i < gpu.pixels(); ++i) {
+      if (c.material[i] == 0) continue;
+      lit += ref.data[3 * i] > 0.01f;
+      for (std::size_t k = 0; k < 3; ++k)
+        differ += std::abs(gpu.data[4 * i + k] - ref.data[3 * i + k]) > 1e-3f * ref.data[3 * i + k] + 1e-6f;
+    }
+    EXPECT_GT(lit, 10000);
+    // Rounding may move a point to the next texel, or across a seam to the next map.
+    EXPECT_LT(differ, lit / 500);
+  }
+}
+
+TEST_F(PointLights, CaptureReplaysBitIdentically) {
+  const Capture direct = rasterize(shell(), cameraAt({60, 50, 40}, {0, 0, 0}, 0.2), smallOptions()).capture;
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() / ("pellucid_lamp_" + std::to_string(::getpid()) + ".exr");
+  writeCapture(direct, file);
+  const Capture read = readCapture(file);
+  std::filesystem::remove(file);
+  ASSERT_EQ(read.lights[0].shadowMaps.size(), 6u);
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_TRUE(
+        sameBits(read.lights[0].shadowMaps[i].depth.image, direct.lights[0].shadowMaps[i].depth.image));
+    EXPECT_EQ(read.lights[0].shadowMaps[i].clipFromWorld, direct.lights[0].shadowMaps[i].clipFromWorld);
+  }
+  EXPECT_TRUE(sameBits(replay(read, testMaterial()), replay(direct, testMaterial())));
+}
+
+TEST_F(PointLights, MapsAreAsFewAsSuffice) {
+  const Model model = shell();
+  const auto count = [&](const Light& light, PointMaps maps) {
+    return frameLight(model, light, maps, 64).size();
+  };
+  const Light inside = lamp(kLight), outside = lamp({0, 0, 40});
+  EXPECT_EQ(count(inside, PointMaps::Auto), 6u);
+  EXPECT_EQ(count(inside, PointMaps::One), 0u);
+  EXPECT_EQ(count(inside, PointMaps::Six), 6u);
+  EXPECT_EQ(count(outside, PointMaps::Auto), 1u);
+  EXPECT_EQ(count(outside, PointMaps::One), 1u);
+  EXPECT_EQ(count(outside, PointMaps::Six), 6u);
+  // A little outside of the bounding sphere, beside a corner.
+  Model cube = emptyModel();
+  addCube(cube, 8);
+  endPart(cube, 0);
+  EXPECT_EQ(frameLight(cube, lamp({8.3, 7.7, 8}), PointMaps::Auto, 64).size(), 6u);
+  Light spot = inside;
+  spot.type = PELLUCID_LIGHT_SPOT;
+  spot.outerConeAngle = 0.5;
+  EXPECT_EQ(count(spot, PointMaps::Auto), 1u);
+  EXPECT_EQ(count(spot, PointMaps::Six), 1u);
+  spot.outerConeAngle = std::numbers::pi / 2;
+  EXPECT_EQ(count(spot, PointMaps::Auto), 6u) << "half a sphere is too wide for one";
+}
+
+std::string refusal(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST_F(PointLights, MoreMapsThanAPlanBindsAreRefusedByName) {
+  Capture c = flatCapture(8, 8);
+  Light light = lamp({0, 0, -20});
+  ShadowMap map;
+  map.clipFromWorld = multiply(perspective(1, 1, {1, 50, true}), lookAt({0, 0, -20}, {0, 0, 0}, {0, 1, 0}));
+  map.depth = {Image(1, 1, 1, 5.0f), PELLUCID_DEPTH_DISTANCE};
+  light.shadowMaps.assign(9, map);
+  c.lights = {light};
+  EXPECT_NE(refusal([&] { replay(c, testMaterial()); }).find("lights[0].shadowMapCount is 9"),
+            std::string::npos);
+  light.shadowMaps.resize(6);
+  c.lights.assign(30, light);  // with add-nothing and output, as many dispatches as a plan has
+  EXPECT_EQ(refusal([&] { replay(c, testMaterial()); }), "");
+  c.lights.push_back(light);
+  const std::string error = refusal([&] { replay(c, testMaterial()); });
+  EXPECT_NE(error.find("shadowImages are more than the plan's 32 dispatches"), std::string::npos) << error;
+}
+
+}  // namespace
