@@ -31,6 +31,13 @@ private:
   }
 };
 
+inline Image channel(const Image& image, int c) {
+  Image result(image.width, image.height, 1);
+  const auto stride = static_cast<std::size_t>(image.channels), first = static_cast<std::size_t>(c);
+  for (std::size_t i = 0; i < image.pixels(); ++i) result.data[i] = image.data[i * stride + first];
+  return result;
+}
+
 // The first three channels of an image of four.
 inline Image rgb(const Image& rgba) {
   Image result(rgba.width, rgba.height, 3);

@@ -7,6 +7,7 @@
 #include <map>
 #include <numbers>
 #include <set>
+#include <utility>
 
 #include "gltf/document.h"
 #include "gltf/material.h"
@@ -49,14 +50,15 @@ private:
   void addCamera(std::size_t node, const glm::dmat4& world);
   void addLight(std::size_t node, const glm::dmat4& world);
   std::uint32_t surfaceOf(int material);
+  int textureOf(int texture, bool isNormalMap, const std::string& field);
   void checkPresetNames();
 
   const GltfDocument& document_;
   const GltfOptions& options_;
   GltfScene scene_;
-  std::map<int, std::uint32_t> surfaces_;  // by glTF material
-  std::map<int, int> textures_;            // by glTF texture
-  std::map<int, int> texCoords_;           // by glTF material
+  std::map<int, std::uint32_t> surfaces_;         // by glTF material
+  std::map<std::pair<int, bool>, int> textures_;  // by glTF texture and whether it is a normal map
+  std::map<int, TexCoords> texCoords_;            // by glTF material
 };
 
 void Loader::checkExtensions() {
@@ -78,25 +80,35 @@ void Loader::checkPresetNames() {
       document_.fail("materials", "none is named \"" + name + "\"; there are " + list);
 }
 
+// Into Model::textures; -1 for -1.
+int Loader::textureOf(int texture, bool isNormalMap, const std::string& field) {
+  if (texture == -1) return -1;
+  std::vector<Texture>& textures = scene_.model.textures;
+  const auto [entry, isNew] =
+      textures_.try_emplace({texture, isNormalMap}, static_cast<int>(textures.size()));
+  if (isNew) {
+    textures.push_back(readTexture(document_, texture, field));
+    textures.back().isNormalMap = isNormalMap;
+  }
+  return entry->second;
+}
+
 std::uint32_t Loader::surfaceOf(int material) {
   if (const auto known = surfaces_.find(material); known != surfaces_.end()) return known->second;
   Model& model = scene_.model;
   GltfMaterial read = readMaterial(document_, material, options_, scene_.warnings);
-  if (read.texture != -1) {
-    const auto [entry, isNew] = textures_.try_emplace(read.texture, static_cast<int>(model.textures.size()));
-    if (isNew)
-      model.textures.push_back(readTexture(
-          document_, read.texture,
-          "materials[" + std::to_string(material) + "].pbrMetallicRoughness.baseColorTexture.index"));
-    read.surface.texture = entry->second;
-  }
+  const std::string field = "materials[" + std::to_string(material) + "].";
+  read.surface.texture =
+      textureOf(read.texture, false, field + "pbrMetallicRoughness.baseColorTexture.index");
+  read.surface.normalMap = textureOf(read.normalTexture, true, field + "normalTexture.index");
   if (read.medium) {
     if (model.materials.size() == kMaxMaterials)
       document_.fail("materials", "more than 255 of them are translucent");
     model.materials.push_back(*read.medium);
     read.surface.material = static_cast<std::uint8_t>(model.materials.size());
   }
-  texCoords_[material] = read.texture >= 0 ? read.texCoord : -1;
+  texCoords_[material] = {read.texture >= 0 ? read.texCoord : -1,
+                          read.normalTexture >= 0 ? read.normalTexCoord : -1};
   model.surfaces.push_back(read.surface);
   return surfaces_[material] = static_cast<std::uint32_t>(model.surfaces.size() - 1);
 }

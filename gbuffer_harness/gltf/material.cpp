@@ -22,6 +22,9 @@ constexpr double kNoDiffusion = 1e-3;
 // T(d) has to fall to 0 in the end, 1/mm.
 constexpr double kSlowestDecay = 1e-6;
 
+// Far steeper than any map, and its square still is a float.
+constexpr double kLargestNormalScale = 1000;
+
 // The numbers of one extension object.
 class Extension {
 public:
@@ -219,6 +222,13 @@ GltfMaterial readMaterial(const GltfDocument& document, int index, const GltfOpt
     }
     result.texture = material.pbrMetallicRoughness.baseColorTexture.index;
     result.texCoord = material.pbrMetallicRoughness.baseColorTexture.texCoord;
+    const tinygltf::NormalTextureInfo& normal = material.normalTexture;
+    if (!(std::abs(normal.scale) <= kLargestNormalScale))
+      document.fail(field + ".normalTexture.scale",
+                    std::to_string(normal.scale) + " is outside -1000 .. 1000");
+    result.normalTexture = normal.index;
+    result.normalTexCoord = normal.texCoord;
+    result.surface.normalScale = normal.scale;
     if (!presetFor(name, options))
       setMedium(result, readVolume(document, material, field, name, warnings), name, options.metersPerUnit,
                 warnings);

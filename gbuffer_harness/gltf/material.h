@@ -11,10 +11,11 @@
 namespace pellucid::harness {
 
 struct GltfMaterial {
-  Surface surface;  // without its material index and texture
+  Surface surface;  // without its material index and textures
   std::optional<MaterialSource> medium;
   int texture = -1;  // into the document's textures: the base color
   int texCoord = 0;  // its TEXCOORD_n
+  int normalTexture = -1, normalTexCoord = 0;
 };
 
 // What glTF's KHR_materials_volume, _volume_scatter and _diffuse_transmission say, in Pellucid's terms;

@@ -22,11 +22,11 @@ constexpr double kLargestCoordinate = 1e18;
 
 struct Attributes {
   AccessorValues position;
-  std::optional<AccessorValues> normal, uv, color, mark;
+  std::optional<AccessorValues> normal, uv, color, mark, normalUv, tangent;
 };
 
 Attributes readAttributes(const GltfDocument& document, const tinygltf::Primitive& primitive,
-                          const std::string& field, int texCoord) {
+                          const std::string& field, const TexCoords& texCoords) {
   const std::string where = field + ".attributes.";
   const auto find = [&](const std::string& name, int least, int most) -> std::optional<AccessorValues> {
     const auto found = primitive.attributes.find(name);
@@ -37,8 +37,14 @@ Attributes readAttributes(const GltfDocument& document, const tinygltf::Primitiv
   if (!position) document.fail(where + "POSITION", "is missing");
   Attributes attributes{std::move(*position), find("NORMAL", 3, 3), std::nullopt, find("COLOR_0", 3, 4),
                         find("_TRANSLUCENT", 1, 1)};
-  if (texCoord >= 0) attributes.uv = find("TEXCOORD_" + std::to_string(texCoord), 2, 2);
-  for (const auto* other : {&attributes.normal, &attributes.uv, &attributes.color, &attributes.mark})
+  const auto findUv = [&](int texCoord) { return find("TEXCOORD_" + std::to_string(texCoord), 2, 2); };
+  if (texCoords.color >= 0) attributes.uv = findUv(texCoords.color);
+  if (texCoords.normal >= 0) {
+    attributes.normalUv = findUv(texCoords.normal);
+    attributes.tangent = find("TANGENT", 4, 4);
+  }
+  for (const auto* other : {&attributes.normal, &attributes.uv, &attributes.color, &attributes.mark,
+                            &attributes.normalUv, &attributes.tangent})
     if (*other && (*other)->count() != attributes.position.count())
       document.fail(field + ".attributes", "have " + std::to_string(attributes.position.count()) + " and " +
                                                std::to_string((*other)->count()) + " elements");
@@ -87,6 +93,7 @@ void makeFlat(std::vector<Vertex>& vertices, std::vector<std::uint32_t>& indices
     for (std::size_t k = i; k < i + 3; ++k) {
       flat.push_back(vertices[indices[k]]);
       flat.back().normal = normal;
+      flat.back().tangent = {0, 0, 0, 0};  // glTF 2.0, 3.7.2.1: not to be used without normals
     }
   }
   vertices = std::move(flat);
@@ -128,6 +135,14 @@ std::vector<Vertex> toWorld(const GltfDocument& document, const Attributes& attr
       if (length > 0) v.normal = toArray(glm::vec3(n / length));
     }
     if (attributes.uv) std::copy_n((*attributes.uv)[i], 2, v.uv.begin());
+    if (attributes.normalUv) std::copy_n((*attributes.normalUv)[i], 2, v.normalUv.begin());
+    if (attributes.tangent) {
+      const float* tangent = (*attributes.tangent)[i];
+      const glm::dvec3 t = linear * glm::dvec3(toVec3(tangent));
+      const double length = glm::length(t);
+      const std::array<float, 3> along = length > 0 ? toArray(glm::vec3(t / length)) : std::array<float, 3>{};
+      v.tangent = {along[0], along[1], along[2], static_cast<float>(sign) * tangent[3]};
+    }
     if (attributes.color) std::copy_n((*attributes.color)[i], 3, v.color.begin());
     if (attributes.mark) v.mark = *(*attributes.mark)[i];
   }
@@ -137,15 +152,18 @@ std::vector<Vertex> toWorld(const GltfDocument& document, const Attributes& attr
 }  // namespace
 
 bool appendPrimitive(const GltfDocument& document, const tinygltf::Primitive& primitive,
-                     const std::string& field, const glm::dmat4& worldFromMesh, int texCoord, Model& model,
-                     std::vector<std::string>& warnings) {
+                     const std::string& field, const glm::dmat4& worldFromMesh, const TexCoords& texCoords,
+                     Model& model, std::vector<std::string>& warnings) {
   if (primitive.mode < TINYGLTF_MODE_TRIANGLES || primitive.mode > TINYGLTF_MODE_TRIANGLE_FAN) {
     if (primitive.mode < 0 || primitive.mode > TINYGLTF_MODE_TRIANGLE_FAN)
       document.fail(field + ".mode", std::to_string(primitive.mode) + " is not a mode of glTF");
     warnings.push_back(field + ": points and lines are not drawn");
     return false;
   }
-  const Attributes attributes = readAttributes(document, primitive, field, texCoord);
+  const Attributes attributes = readAttributes(document, primitive, field, texCoords);
+  if (texCoords.normal >= 0 && !attributes.normalUv)
+    warnings.push_back(field + ": has no TEXCOORD_" + std::to_string(texCoords.normal) +
+                       " for its normal map, which is ignored");
   std::vector<std::uint32_t> indices;
   if (primitive.indices != -1) {
     indices = readIndices(document, primitive.indices, attributes.position.count(), field + ".indices");

@@ -1,6 +1,7 @@
 #include "raster/draw.h"
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -21,7 +22,7 @@ namespace pellucid::harness {
 namespace {
 
 constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
-constexpr std::uint32_t kOwnBindings = 3;  // of shaders/draw.glsl
+constexpr std::uint32_t kOwnBindings = 4;  // of shaders/draw.glsl
 
 using ShaderModule = Owned<VkShaderModule, vkDestroyShaderModule>;
 
@@ -70,7 +71,9 @@ float linearOf(std::uint8_t srgb) {
 
 Image linearImage(const Texture& texture) {
   std::array<float, 256> linear;
-  for (std::size_t i = 0; i < linear.size(); ++i) linear[i] = linearOf(static_cast<std::uint8_t>(i));
+  for (std::size_t i = 0; i < linear.size(); ++i)
+    linear[i] =
+        texture.isNormalMap ? static_cast<float>(i) / 127.5f - 1 : linearOf(static_cast<std::uint8_t>(i));
   Image image(texture.width, texture.height, 4);
   for (std::size_t i = 0; i < image.data.size(); ++i)
     image.data[i] = i % 4 == 3 ? static_cast<float>(texture.rgba[i]) / 255.0f : linear[texture.rgba[i]];
@@ -328,7 +331,9 @@ void UploadedModel::createPipeline(Pipeline& pipeline, const RenderTarget& targe
       {1, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, normal)},
       {2, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(Vertex, uv)},
       {3, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, color)},
-      {4, 0, VK_FORMAT_R32_SFLOAT, offsetof(Vertex, mark)}};
+      {4, 0, VK_FORMAT_R32_SFLOAT, offsetof(Vertex, mark)},
+      {5, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(Vertex, normalUv)},
+      {6, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Vertex, tangent)}};
   VkPipelineVertexInputStateCreateInfo input{VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
   input.vertexBindingDescriptionCount = 1;
   input.pVertexBindingDescriptions = &binding;
@@ -404,22 +409,25 @@ void UploadedModel::draw(const RenderTarget& target, const DrawView& view, const
       const Surface& surface = model_.surfaces[part.surface];
       vkCmdBindPipeline(commandBuffer, VK_PIPELINE_BIND_POINT_GRAPHICS,
                         surface.doubleSided ? doubleSided : singleSided);
-      const std::size_t texture =
-          surface.texture < 0 ? textures_.size() - 1 : static_cast<std::size_t>(surface.texture);
-      const GpuImage* images[kOwnBindings] = {textures_[texture].get(),
-                                              earlier.depth ? earlier.depth : &white,
-                                              earlier.albedoObject ? earlier.albedoObject : &white};
+      const std::size_t none = textures_.size() - 1;
+      const auto textureOr = [none](int index) { return index < 0 ? none : static_cast<std::size_t>(index); };
+      const std::size_t color = textureOr(surface.texture), normal = textureOr(surface.normalMap);
+      const GpuImage* images[kOwnBindings] = {textures_[color].get(), earlier.depth ? earlier.depth : &white,
+                                              earlier.albedoObject ? earlier.albedoObject : &white,
+                                              textures_[normal].get()};
+      const std::size_t samplers[kOwnBindings] = {color, none, none, normal};
       DescriptorWrites writes;
       for (std::uint32_t i = 0; i < kOwnBindings; ++i)
-        writes.image(i, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-                     *samplers_[i == 0 ? texture : samplers_.size() - 1], images[i]->use());
+        writes.image(i, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, *samplers_[samplers[i]], images[i]->use());
       if (earlier.planned) addPlanned(*earlier.planned, writes);
       pushDescriptors_(commandBuffer, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0,
                        static_cast<std::uint32_t>(writes.all().size()), writes.all().data());
       constants.baseColor = vec4(surface.baseColor, surface.alphaCutoff);
       constants.addedColor = vec4(surface.addedColor, part.object);
+      const float normalScale = surface.normalMap < 0 ? 0 : static_cast<float>(surface.normalScale);
       constants.ids = {surface.material, view.reversedDepth, earlier.depth != nullptr,
-                       earlier.planned ? earlier.planned->dispatch.pushConstants[1] : 0};
+                       earlier.planned ? earlier.planned->dispatch.pushConstants[1]
+                                       : std::bit_cast<std::uint32_t>(normalScale)};
       vkCmdPushConstants(commandBuffer, layout_, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
                          sizeof constants, &constants);
       vkCmdDrawIndexed(commandBuffer, part.indexCount, 1, part.firstIndex, 0, 0);

@@ -18,12 +18,13 @@ struct FrontTarget {
                {{VK_FORMAT_R32G32B32A32_SFLOAT, clearTo(0)},
                 {VK_FORMAT_R32G32B32A32_SFLOAT, clearTo(-1)},  // no object
                 {VK_FORMAT_R8_UINT, {}},
-                {VK_FORMAT_R32_SFLOAT, clearTo(farDepth(options.reversedZ))}},
+                {VK_FORMAT_R32G32B32A32_SFLOAT, clearTo(farDepth(options.reversedZ))}},
                farDepth(options.reversedZ)) {}
   const GpuImage& normalPlanar() const { return target.image(0); }
   const GpuImage& albedoObject() const { return target.image(1); }
   const GpuImage& material() const { return target.image(2); }
-  const GpuImage& deviceDepth() const { return target.image(3); }
+  // Device depth, and the world normal without the normal map.
+  const GpuImage& depthNormal() const { return target.image(3); }
 
   void draw(const UploadedModel& model, const DrawView& view) const {
     model.draw(target, view,

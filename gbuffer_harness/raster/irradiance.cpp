@@ -15,7 +15,8 @@ namespace {
 // The bindings of shaders/irradiance.comp.
 constexpr VkDescriptorType kTypes[] = {
     VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-    VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE};
+    VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
+    VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER};
 constexpr std::uint32_t kShadowBinding = 2, kIrradianceBinding = 3;
 
 static_assert(PELLUCID_SHADER_LIGHT_DIRECTIONAL == PELLUCID_LIGHT_DIRECTIONAL);
@@ -65,10 +66,11 @@ void setShadows(Constants& constants, const std::vector<ShadowImage>& shadows,
 
 }  // namespace
 
-IrradiancePass::IrradiancePass(Device& device, const GpuImage& normalPlanar, int width, int height,
-                               const DrawView& view)
+IrradiancePass::IrradiancePass(Device& device, const GpuImage& normalPlanar, const GpuImage& depthNormal,
+                               int width, int height, const DrawView& view)
     : device_(device),
       normalPlanar_(normalPlanar),
+      depthNormal_(depthNormal),
       width_(width),
       height_(height),
       view_(view),
@@ -133,7 +135,8 @@ void IrradiancePass::add(const Light& light, const std::vector<ShadowImage>& sha
     return VkDescriptorImageInfo{sampler_, image.use().view, image.use().layout};
   };
   const VkDescriptorBufferInfo bufferInfo{buffer.handle(), 0, VK_WHOLE_SIZE};
-  const VkDescriptorImageInfo surface = imageInfo(normalPlanar_), target = imageInfo(irradiance_);
+  const VkDescriptorImageInfo surface = imageInfo(normalPlanar_), triangles = imageInfo(depthNormal_),
+                              target = imageInfo(irradiance_);
   // A descriptor that is not read must be valid all the same.
   VkDescriptorImageInfo maps[kShadowMaps];
   for (std::size_t i = 0; i < kShadowMaps; ++i)
@@ -149,6 +152,7 @@ void IrradiancePass::add(const Light& light, const std::vector<ShadowImage>& sha
   writes[1].pImageInfo = &surface;
   writes[kShadowBinding].pImageInfo = maps;
   writes[kIrradianceBinding].pImageInfo = &target;
+  writes[4].pImageInfo = &triangles;
   device_.run([&](VkCommandBuffer commandBuffer) {
     vkCmdBindPipeline(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_);
     pushDescriptors_(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, layout_, 0,

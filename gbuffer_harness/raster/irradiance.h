@@ -20,8 +20,10 @@ struct ShadowImage {
 class IrradiancePass {
 public:
   // normalPlanar: world normal and planar distance in front of `view`, which is symmetric about its axis;
-  // a distance <= 0 holds nothing and gets no light. The image must outlive this.
-  IrradiancePass(Device& device, const GpuImage& normalPlanar, int width, int height, const DrawView& view);
+  // a distance <= 0 holds nothing and gets no light. depthNormal: in yzw the normal of the triangles, by
+  // which shadows are offset. The images must outlive this.
+  IrradiancePass(Device& device, const GpuImage& normalPlanar, const GpuImage& depthNormal, int width,
+                 int height, const DrawView& view);
 
   // Adds color * intensity * max(N.L, 0) and the attenuation of KHR_lights_punctual, times the part of the
   // shadow maps' texels that see the surface. Outside the map, or without one, nothing shadows.
@@ -34,7 +36,7 @@ private:
   void createPipeline();
 
   Device& device_;
-  const GpuImage& normalPlanar_;
+  const GpuImage &normalPlanar_, &depthNormal_;
   int width_, height_;
   DrawView view_;
   GpuImage irradiance_;

@@ -18,6 +18,10 @@ struct Vertex {
   std::array<float, 2> uv = {0, 0};
   std::array<float, 3> color = {1, 1, 1};  // linear; multiplies the base color
   float mark = 1;                          // pixels where it interpolates to less than 0.5 get material 0
+  std::array<float, 2> normalUv = {0, 0};  // of the normal map
+  // World, unit, along which u grows; the map's +y is along w cross(normal, tangent), w = 1 or -1. 0: both
+  // follow from positions and normalUv.
+  std::array<float, 4> tangent = {0, 0, 0, 0};
 };
 
 enum class TextureWrap { Repeat, Clamp, Mirror };
@@ -26,6 +30,7 @@ struct Texture {
   int width = 0, height = 0;
   std::vector<std::uint8_t> rgba;  // row 0 first; sRGB color, linear alpha
   TextureWrap wrapU = TextureWrap::Repeat, wrapV = TextureWrap::Repeat;
+  bool isNormalMap = false;  // rgb are vectors, 0 .. 255 for -1 .. 1
 };
 
 // How a part is drawn: albedo = texture * baseColor * vertex color + addedColor.
@@ -37,6 +42,8 @@ struct Surface {
   double alphaCutoff = 0;                        // texels of less alpha are holes; 0: none are
   bool doubleSided = false;                      // drawn from behind too, with the normal turned round
   std::uint8_t material = 0;                     // index in the material image; 0: not translucent
+  int normalMap = -1;                            // into Model::textures; -1: none
+  double normalScale = 1;                        // of the map's x and y
 };
 
 struct Part {

@@ -59,7 +59,7 @@ BackImages drawBack(Device& device, const UploadedModel& model, const DrawView& 
   const RenderTarget back(device, options.width, options.height, depthColors(options.reversedZ),
                           farDepth(keepGreater));
   model.draw(back, view, {FragmentShader::Depth, VK_CULL_MODE_FRONT_BIT, nearer(keepGreater), false},
-             VK_CULL_MODE_FRONT_BIT, {&front.deviceDepth(), &front.albedoObject()});
+             VK_CULL_MODE_FRONT_BIT, {&front.depthNormal(), &front.albedoObject()});
   // Half floats count to 2048 and every device can blend them.
   const RenderTarget count(device, options.width, options.height,
                            {{VK_FORMAT_R16G16B16A16_SFLOAT, clearTo(0)}}, std::nullopt);
@@ -123,7 +123,7 @@ void fillCapture(const FrontTarget& front, const BackImages& back, const RasterO
   const Image normalPlanar = front.normalPlanar().download();
   const Image albedo = front.albedoObject().download();
   const Image material = front.material().download();
-  capture.frontDepth = {front.deviceDepth().download(), options.depthEncoding};
+  capture.frontDepth = {channel(front.depthNormal().download(), 0), options.depthEncoding};
   capture.backDepth = {device ? back.deviceDepth : back.planar, options.depthEncoding};
   capture.normal = Image(capture.width, capture.height, 3);
   capture.albedo = Image(capture.width, capture.height, 3);
@@ -192,7 +192,8 @@ RasterResult rasterize(Device& device, const Model& model, const ModelCamera& ca
   front.draw(uploaded, view);
   fillCapture(front, drawBack(device, uploaded, view, front, options), options, result);
 
-  IrradiancePass irradiance(device, front.normalPlanar(), options.width, options.height, view);
+  IrradiancePass irradiance(device, front.normalPlanar(), front.depthNormal(), options.width, options.height,
+                            view);
   for (const Light& light : model.lights)
     capture.lights.push_back(drawLight(device, model, uploaded, light, options, irradiance));
   capture.irradiance = irradiance.irradiance();

@@ -43,7 +43,7 @@ Image rasterizeTransmitted(Device& device, const Model& model, const Capture& ca
                             {{VK_FORMAT_R32G32B32A32_SFLOAT, clearTo(0)}}, farDepth(keepGreater));
   const PlannedInputs planned{dispatch, frame, constants.handle()};
   uploaded.draw(target, view, {FragmentShader::Transmit, VK_CULL_MODE_FRONT_BIT, nearer(keepGreater), false},
-                VK_CULL_MODE_FRONT_BIT, {&front.deviceDepth(), &front.albedoObject(), &planned});
+                VK_CULL_MODE_FRONT_BIT, {&front.depthNormal(), &front.albedoObject(), &planned});
   return rgb(target.image(0).download());
 }
 

@@ -136,7 +136,7 @@ TEST_F(Manifests, EveryBufferArrives) {
   EXPECT_EQ(capture.albedo.at(6, 4)[1], 0.38f);
   EXPECT_EQ(capture.material[0], 0);
   EXPECT_EQ(capture.material[1], 1);
-  ASSERT_EQ(capture.lights.size(), 1u);
+  ASSERT_EQ(capture.lights.size(), 2u);
   EXPECT_EQ(capture.lights[0].type, PELLUCID_LIGHT_SPOT);
   EXPECT_EQ(capture.lights[0].shadowMaps[0].depth.encoding, PELLUCID_DEPTH_DISTANCE);
   EXPECT_TRUE(

@@ -292,6 +292,45 @@ TEST_F(Gltf, TexturesAreDecoded) {
   expectRefused(b.glb(), {"bufferViews[", "leave the"});
 }
 
+TEST_F(Gltf, NormalMapsAreRead) {
+  writePng(folder_ / "n.png", 1, 1, {128, 128, 255});
+  GltfBuilder b = square();
+  // Not a reference: accessors move the document's members.
+  const auto attributes = [&b]() -> Json& { return b.json["meshes"][0]["primitives"][0]["attributes"]; };
+  const int uv0 = b.accessor(std::vector<float>{0, 1, 1, 1, 1, 0, 0, 0}, 5126, "VEC2", 2);
+  attributes()["TEXCOORD_0"] = uv0;
+  const int uv1 = b.accessor(std::vector<float>{0, 2, 2, 2, 2, 0, 0, 0}, 5126, "VEC2", 2);
+  attributes()["TEXCOORD_1"] = uv1;
+  const int tangent =
+      b.accessor(std::vector<float>{1, 0, 0, -1, 1, 0, 0, -1, 1, 0, 0, -1, 1, 0, 0, -1}, 5126, "VEC4", 4);
+  attributes()["TANGENT"] = tangent;
+  b.json["images"] = {{{"uri", "n.png"}}};
+  b.json["textures"] = {{{"source", 0}}};
+  b.json["materials"][0]["pbrMetallicRoughness"] = {{"baseColorTexture", {{"index", 0}}}};
+  b.json["materials"][0]["normalTexture"] = {{"index", 0}, {"texCoord", 1}, {"scale", 0.5}};
+  // Mirrored in x and stretched: the tangent turns round, and so does the side of the bitangent.
+  b.json["nodes"] = {{{"mesh", 0}, {"scale", {-3, 1, 1}}}};
+  const GltfScene scene = loadGltf(write("t.glb", b.glb()));
+  const Model& m = scene.model;
+  ASSERT_EQ(m.textures.size(), 2u) << "as a color and as vectors";
+  EXPECT_FALSE(m.textures[static_cast<std::size_t>(m.surfaces[0].texture)].isNormalMap);
+  EXPECT_TRUE(m.textures[static_cast<std::size_t>(m.surfaces[0].normalMap)].isNormalMap);
+  EXPECT_EQ(m.surfaces[0].normalScale, 0.5);
+  EXPECT_EQ(m.vertices[1].uv, (std::array<float, 2>{1, 1}));
+  EXPECT_EQ(m.vertices[1].normalUv, (std::array<float, 2>{2, 2}));
+  EXPECT_EQ(m.vertices[1].tangent, (std::array<float, 4>{-1, 0, 0, 1}));
+
+  attributes().erase("TEXCOORD_1");
+  const std::vector<std::string> warnings = loadGltf(write("t.glb", b.glb())).warnings;
+  EXPECT_TRUE(std::any_of(warnings.begin(), warnings.end(), [](const std::string& w) {
+    return w.find("TEXCOORD_1 for its normal map") != std::string::npos;
+  }));
+  b.json["materials"][0]["normalTexture"]["scale"] = 1e300;
+  expectRefused(b.glb(), {"materials[0].normalTexture.scale", "-1000 .. 1000"});
+  b.json["materials"][0]["normalTexture"] = {{"index", 7}};
+  expectRefused(b.glb(), {"materials[0].normalTexture.index", "7"});
+}
+
 // ---- Materials
 
 Json scatterExtensions() {

@@ -8,13 +8,14 @@ layout(push_constant) uniform Draw {
   vec4 baseColor;  // a: alpha below this is a hole
   vec4 addedColor; // a: object
   uvec4 ids;       // x: material; y: 1 reversed depth; z: 1 where only back faces behind the front count;
-                   // w: lights
+                   // w: lights in transmit.frag, else bits of the normal map's scale, 0: no map
 } draw;
 
 layout(set = 0, binding = 0) uniform sampler2D baseColorTexture;
 // Device depth that an earlier pass wrote: of the front faces, or in count.frag of the back faces.
 layout(set = 0, binding = 1) uniform sampler2D earlierDepth;
 layout(set = 0, binding = 2) uniform sampler2D frontAlbedoObject;
+layout(set = 0, binding = 3) uniform sampler2D normalMap; // vectors
 
 bool isNearer(float depth, float other) {
   return draw.ids.y != 0u ? depth > other : depth < other;

@@ -22,6 +22,7 @@ layout(set = 0, binding = 0) uniform Constants {
 layout(set = 0, binding = 1) uniform sampler2D normalPlanar;
 layout(set = 0, binding = 2) uniform sampler2D shadowMaps[SHADOW_MAPS]; // planar distances
 layout(set = 0, binding = 3, rgba32f) uniform image2D irradiance;
+layout(set = 0, binding = 4) uniform sampler2D depthNormal; // yzw: the triangles' normal
 
 // Constant indices: not every device can index samplers otherwise.
 float shadowTexel(int map, ivec2 t) {
@@ -86,6 +87,6 @@ void main() {
   Incident incident = incidentLight(light, x);
   float cosine = dot(n, incident.toLight);
   if (!(cosine > 0.0)) return;
-  vec3 e = incident.irradiance * cosine * visibility(x, n);
+  vec3 e = incident.irradiance * cosine * visibility(x, mat3(viewFromWorld) * texelFetch(depthNormal, pixel, 0).yzw);
   imageStore(irradiance, pixel, imageLoad(irradiance, pixel) + vec4(e, 0.0));
 }

@@ -7,11 +7,16 @@ layout(location = 1) in vec3 normal;
 layout(location = 2) in vec2 uv;
 layout(location = 3) in vec3 color;
 layout(location = 4) in float mark;
+layout(location = 5) in vec2 normalUv;
+layout(location = 6) in vec4 tangent;
 
 layout(location = 0) out vec3 outNormal;
 layout(location = 1) out vec2 outUv;
 layout(location = 2) out vec4 outColorMark;
 layout(location = 3) out float outPlanar;
+layout(location = 4) out vec2 outNormalUv;
+layout(location = 5) out vec4 outTangent;
+layout(location = 6) out vec3 outPosition;
 
 // Passes compare depths of the same triangle for equality.
 invariant gl_Position;
@@ -22,4 +27,7 @@ void main() {
   outUv = uv;
   outColorMark = vec4(color, mark);
   outPlanar = dot(draw.planar, vec4(position, 1.0));
+  outNormalUv = normalUv;
+  outTangent = tangent;
+  outPosition = position;
 }
