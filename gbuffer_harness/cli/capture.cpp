@@ -13,6 +13,7 @@
 #include "cli/commands.h"
 #include "cli/frames.h"
 #include "cli/numbers.h"
+#include "cli/output.h"
 #include "common/error.h"
 #include "common/progress.h"
 #include "common/whole_file.h"
@@ -39,9 +40,11 @@ struct Options {
   std::string frames;
 
   GltfCapture gltf;
-  std::string unit = "m", view;
+  std::string unit = "m", view, pointMaps = "auto";
   std::vector<std::string> presets;
 };
+
+constexpr const char *kModelGroup = "Models", *kSceneGroup = "Procedural scenes";
 
 void printScenes() {
   for (const SceneInfo& scene : listScenes()) {
@@ -139,6 +142,9 @@ void captureModel(const Options& options) {
   const int turns = std::min(options.turntable, 360);
   for (int i = 1; i < turns; ++i) gltf.cameraTurns.push_back(2 * std::numbers::pi * i / turns);
   gltf.orthographic = options.orthographic.value_or(false);
+  gltf.raster.pointMaps = options.pointMaps == "1"   ? PointMaps::One
+                          : options.pointMaps == "6" ? PointMaps::Six
+                                                     : PointMaps::Auto;
   gltf.lights = options.lights;
   gltf.gltf.metersPerUnit = parseUnit(options.unit);
   for (const std::string& text : options.presets) {
@@ -153,12 +159,25 @@ void captureModel(const Options& options) {
   captureGltf(gltf);
 }
 
-void capture(const Options& options) {
+// An option without effect is a mistake of who gave it.
+void refuseOptionsOf(const CLI::App& command, const char* group, const char* needs) {
+  for (const CLI::Option* option : command.get_options())
+    if (option->get_group() == group && option->count() > 0)
+      throw UsageError(option->get_name() + ": needs " + needs);
+}
+
+void capture(const CLI::App& command, const Options& options) {
   if (options.scene.name == "list") return printScenes();
   if (options.scene.name.empty() == options.gltf.model.empty())
     throw UsageError("capture: either a model or --procedural is required");
   if (options.output.empty()) throw UsageError("capture: -o is required");
-  return options.gltf.model.empty() ? captureProcedural(options) : captureModel(options);
+  requireExr("-o", options.output);
+  const bool procedural = options.gltf.model.empty();
+  if (procedural)
+    refuseOptionsOf(command, kModelGroup, "a model");
+  else
+    refuseOptionsOf(command, kSceneGroup, "--procedural");
+  return procedural ? captureProcedural(options) : captureModel(options);
 }
 
 void addCommonOptions(CLI::App& command, Options& options) {
@@ -212,7 +231,7 @@ void addTurntableOptions(CLI::App& command, Options& options) {
 
 void addModelOptions(CLI::App& command, Options& options) {
   GltfCapture& gltf = options.gltf;
-  const char* const group = "Models";
+  const char* const group = kModelGroup;
   command.add_option("model", gltf.model, "glTF file, .glb or .gltf");
   command.add_option("--material", options.presets, "NAME=PRESET, repeatable; NAME * means all others")
       ->take_all()
@@ -232,19 +251,18 @@ void addModelOptions(CLI::App& command, Options& options) {
   command.add_option("--back", gltf.raster.backFace, "which back face behind the front: nearest or farthest")
       ->transform(CLI::CheckedTransformer(faces, CLI::ignore_case))
       ->group(group);
-  const std::map<std::string, PointMaps> pointMaps = {
-      {"auto", PointMaps::Auto}, {"1", PointMaps::One}, {"6", PointMaps::Six}};
   command
-      .add_option("--point-maps", gltf.raster.pointMaps,
+      .add_option("--point-maps", options.pointMaps,
                   "shadow maps of a point light: 1, 6 or auto, 6 where 1 cannot see the whole model")
-      ->transform(CLI::CheckedTransformer(pointMaps, CLI::ignore_case))
+      ->check(CLI::IsMember({"auto", "1", "6"}))
+      ->capture_default_str()
       ->group(group);
   command.add_option("--device", gltf.device, "part of the Vulkan device's name; default: the fastest kind")
       ->group(group);
 }
 
 void addSceneOptions(CLI::App& command, Options& options) {
-  const char* const group = "Procedural scenes";
+  const char* const group = kSceneGroup;
   command
       .add_option("--procedural", options.scene.name, "name of the scene; list: print all with their options")
       ->group(group);
@@ -265,7 +283,7 @@ void addCaptureCommand(CLI::App& app) {
   addTurntableOptions(*command, *options);
   addModelOptions(*command, *options);
   addSceneOptions(*command, *options);
-  command->callback([options] { capture(*options); });
+  command->callback([options, command] { capture(*command, *options); });
 }
 
 }  // namespace pellucid::harness

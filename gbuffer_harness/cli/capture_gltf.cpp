@@ -75,6 +75,9 @@ Light parseLight(const std::string& text, const Model& model, const ModelCamera&
     light.type = parts[0] == "spot" ? PELLUCID_LIGHT_SPOT : PELLUCID_LIGHT_POINT;
     light.position = where;
     light.intensity = away * away;
+    if (away == 0 && parts.size() < 3)
+      throw UsageError("--light: \"" + text +
+                       "\" stands at the center, where no intensity makes 1 arrive; add :I");
     if (light.type == PELLUCID_LIGHT_SPOT) {
       if (away == 0) throw UsageError("--light: \"" + text + "\" stands at the center it looks at");
       for (std::size_t i = 0; i < 3; ++i) light.direction[i] = (bounds.center[i] - where[i]) / away;

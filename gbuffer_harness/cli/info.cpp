@@ -245,12 +245,13 @@ Json describe(const std::filesystem::path& path, ManifestPreset preset) {
   return json;
 }
 
-// "key value, key value" of an object's scalars and arrays; lists without brackets.
+// "key value, key value" of an object's scalars and lists of them; lists without brackets.
 std::string line(const Json& object) {
   std::ostringstream text;
   text.precision(6);
   for (const auto& [key, value] : object.items()) {
-    if (value.is_object()) continue;
+    const auto isObject = [](const Json& item) { return item.is_object(); };
+    if (isObject(value) || (value.is_array() && std::any_of(value.begin(), value.end(), isObject))) continue;
     text << (text.str().empty() ? "" : ", ") << key;
     const auto print = [&](const Json& item) {
       if (item.is_string())

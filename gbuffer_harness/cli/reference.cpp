@@ -12,6 +12,7 @@
 #include "capture/material.h"
 #include "capture/read.h"
 #include "cli/commands.h"
+#include "cli/output.h"
 #include "cli/preset.h"
 #include "cli/settings.h"
 #include "common/error.h"
@@ -47,6 +48,7 @@ reference::Settings toSettings(const Options& options) {
 
 void runReference(const Options& options) {
   const reference::Settings settings = toSettings(options);
+  requireExr("-o", options.output);
   const Capture capture = readCapture(options.input, options.preset);
   const auto start = std::chrono::steady_clock::now();
   const reference::Result result = reference::compute(

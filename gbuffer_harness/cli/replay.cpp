@@ -10,6 +10,7 @@
 #include "capture/read.h"
 #include "cli/commands.h"
 #include "cli/frames.h"
+#include "cli/output.h"
 #include "cli/plan_text.h"
 #include "cli/preset.h"
 #include "cli/settings.h"
@@ -181,6 +182,7 @@ void replaySequence(const Options& options, const ReplaySettings& settings) {
 
 void replay(const Options& options) {
   const ReplaySettings settings = options.settings.parse();
+  requireExr("-o", options.output);
   if (!options.triptych.empty() && settings.debugView != PELLUCID_DEBUG_NONE)
     throw UsageError("--triptych shows results and cannot be combined with --debug");
   if (options.frames.empty()) {

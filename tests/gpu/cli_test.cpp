@@ -126,6 +126,11 @@ TEST_F(Cli, SequenceUsage) {
   expect(2, "replay in.#.exr -o o.#.exr --frames 1-2 --triptych t.png", "--triptych");
   expect(2, "capture --procedural ear --turntable 3 -o x.exr", "one run of #");
   expect(2, "capture --procedural ear --orbit -o x.exr", "--orbit: needs --turntable");
+  expect(2, "capture --procedural ear --point-maps 6 -o x.exr", "--point-maps: needs a model");
+  expect(2, "capture x.glb --seed 3 -o x.exr", "--seed: needs --procedural");
+  expect(2, "capture x.glb --point-maps 2 -o x.exr", "--point-maps");
+  for (const char* command : {"capture --procedural ear", "replay x.exr", "reference x.exr"})
+    expect(2, std::string(command) + " -o x.png", "\"x.png\" is written as EXR");
   expect(2, "capture --procedural ear --frames 1-3 -o x.#.exr", "--frames: needs --turntable");
   expect(3, "capture --procedural slab --turntable 3 -o " + path("x.#.exr"), "scene \"slab\": has no end");
 }

@@ -715,11 +715,12 @@ TEST_F(Gltf, UnitsAndLightsOfTheCommandLine) {
   const Light point = parseLight("point:1,1,-5", model, camera);
   EXPECT_EQ(point.type, PELLUCID_LIGHT_POINT);
   EXPECT_EQ(point.intensity, 25) << "E = 1 at the center";
+  EXPECT_EQ(parseLight("point:1,1,0:3", model, camera).intensity, 3);
   const Light spot = parseLight("spot:1,1,-5:7", model, camera);
   EXPECT_EQ(spot.direction, (std::array<double, 3>{0, 0, 1}));
   EXPECT_NEAR(std::sin(spot.outerConeAngle), std::sqrt(2.0) / 5, 1e-9) << "the cone holds the model";
   EXPECT_GT(parseLight("back", model, camera).direction[2], 0) << "towards the camera";
-  for (const char* bad : {"", "sun", "point", "point:1,2", "point:1,2,x", "point:1,2,3:-1",
+  for (const char* bad : {"", "sun", "point", "point:1,1,0", "point:1,2", "point:1,2,x", "point:1,2,3:-1",
                           "directional:0,0,0", "spot:1,1,0", "point:1,2,3:4:5", "point:1,2,inf"})
     EXPECT_THROW(parseLight(bad, model, camera), UsageError) << bad;
 }
