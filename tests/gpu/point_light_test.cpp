@@ -46,8 +46,8 @@ void addHollow(Model& model, double radius, std::uint32_t rings) {
 // A shell of 2 mm with a light in it.
 Model shell() {
   Model model = emptyModel();
-  addSphere(model, {0, 0, 0}, kOuter, 256);
-  addHollow(model, kInner, 256);
+  addSphere(model, {0, 0, 0}, kOuter, 128);
+  addHollow(model, kInner, 128);
   endPart(model, 0);
   model.lights = {lamp(kLight)};
   return model;
@@ -184,6 +184,34 @@ TEST_F(PointLights, NoLightLeaksOutOfAShell) {
   }
 }
 
+// A gather's samples go on across seams: about the center of a shell every direction is like any other.
+TEST_F(PointLights, GatherDoesNotEndAtSeams) {
+  Model model = shell();
+  model.lights = {lamp({0, 0, 0})};
+  const Capture c = rasterize(model, cameraAt({60, 50, 40}, {0, 0, 0}, 0.2), smallOptions()).capture;
+  ReplaySettings settings;
+  settings.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  settings.features = PELLUCID_FEATURE_TRANSLUCENCY;
+  settings.translucency.gatherSamples = 64;
+  const Image image = replay(c, testMaterial(), settings);
+  double least[2] = {1e30, 1e30}, most[2] = {0, 0};  // away from seams and near them
+  for (int y = 0; y < c.height; ++y)
+    for (int x = 0; x < c.width; ++x) {
+      const std::optional<glm::dvec3> position = positionAt(c, x, y);
+      if (!position) continue;
+      const glm::dvec3 a = glm::abs(*position);
+      const double largest = std::max({a.x, a.y, a.z});
+      const double second = a.x + a.y + a.z - largest - std::min({a.x, a.y, a.z});
+      const std::size_t seam = second > 0.8 * largest;
+      const double exitance = double(image.at(x, y)[0]) / double(c.albedo.at(x, y)[0]);
+      least[seam] = std::min(least[seam], exitance);
+      most[seam] = std::max(most[seam], exitance);
+    }
+  EXPECT_GT(least[0], 0.01);
+  EXPECT_GT(least[1], 0.97 * least[0]);
+  EXPECT_LT(most[1], 1.03 * most[0]);  // 64 samples scatter by 6 %
+}
+
 TEST_F(PointLights, AgreeWithTheReference) {
   Model model = shell();
   model.lights.push_back(lamp({-2, 1, 3}));  // its six maps need a dispatch of their own
@@ -274,9 +302,9 @@ TEST_F(PointLights, MoreMapsThanAPlanBindsAreRefusedByName) {
   EXPECT_NE(refusal([&] { replay(c, testMaterial()); }).find("lights[0].shadowMapCount is 9"),
             std::string::npos);
   light.shadowMaps.resize(6);
-  c.lights.assign(30, light);  // with add-nothing and output, as many dispatches as a plan has
+  c.lights.assign(PELLUCID_MAX_DISPATCHES - 8, light);  // each has a dispatch, and the diffusion has some
   EXPECT_EQ(refusal([&] { replay(c, testMaterial()); }), "");
-  c.lights.push_back(light);
+  c.lights.assign(PELLUCID_MAX_DISPATCHES, light);
   const std::string error = refusal([&] { replay(c, testMaterial()); });
   EXPECT_NE(error.find("shadowImages are more than the plan's 32 dispatches"), std::string::npos) << error;
 }
