@@ -146,6 +146,9 @@ void fillCapture(const FrontTarget& front, const BackImages& back, const RasterO
     if (!isClosed(&back.count.data[4 * i], options.backFace)) capture.backDepth.image.data[i] = nothing;
     result.openPixels += capture.material[i] != 0 && capture.backDepth.image.data[i] == nothing;
   }
+  const std::vector<float>& backs = capture.backDepth.image.data;
+  if (result.openPixels > 0 && std::all_of(backs.begin(), backs.end(), [&](float d) { return d == nothing; }))
+    capture.backDepth.image = {};
 }
 
 void addWarnings(RasterResult& result, const RasterOptions& options) {
@@ -156,7 +159,8 @@ void addWarnings(RasterResult& result, const RasterOptions& options) {
   if (result.openPixels > 0)
     result.warnings.push_back(std::to_string(result.openPixels) + " of " + std::to_string(covered) +
                               " material pixels look through an open or single-sided mesh: they have no "
-                              "back depth");
+                              "back depth" +
+                              (capture.backDepth.image.empty() ? ", and the capture no backDepth" : ""));
   for (std::size_t i = 0; i < capture.lights.size() && options.shadowSize > 0; ++i)
     if (capture.lights[i].shadowMaps.empty())
       result.warnings.push_back("lights[" + std::to_string(i) +

@@ -28,8 +28,8 @@ struct RasterOptions {
 };
 
 struct RasterResult {
-  // With front and back depth, irradiance, normal, albedo and material; materials and lights as the model's,
-  // with the shadow maps of frameLight().
+  // With front depth, back depth unless every pixel is open, irradiance, normal, albedo and material;
+  // materials and lights as the model's, with the shadow maps of frameLight().
   Capture capture;
   // Pixels of a material through which the front's object is not closed: an open or single-sided mesh, or
   // a hole. They have no back depth.

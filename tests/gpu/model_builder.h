@@ -110,6 +110,7 @@ inline Light directional(const Vector3& direction, double intensity = 1) {
 
 // Planar distances of a capture's depth image through its matrix; < 0: nothing there.
 inline double planar(const Capture& capture, const DepthImage& depth, int x, int y) {
+  if (depth.image.empty()) return -1;
   const double d = *depth.image.at(x, y);
   if (depth.encoding == PELLUCID_DEPTH_VIEW_Z) return d < 1e9 ? d : -1;
   if (d == clearDepth(capture.clipFromView)) return -1;

@@ -99,7 +99,7 @@ TEST_F(Raster, SphereHasExactThickness) {
     int compared = 0;
     for (int y = 0; y < c.height; ++y)
       for (int x = 0; x < c.width; ++x) {
-        double t[2];
+        double t[2] = {};
         const bool hit = meetSphere(rayOf(c, x, y), kRadius, t);
         const double front = planar(c, c.frontDepth, x, y), back = planar(c, c.backDepth, x, y);
         if (!hit) {
@@ -157,6 +157,21 @@ TEST_F(Raster, OpenMeshHasNoThickness) {
     EXPECT_EQ(result.openPixels, 32u * 32u);
     ASSERT_EQ(result.warnings.size(), 1u);
     EXPECT_NE(result.warnings[0].find("1024 of "), std::string::npos) << result.warnings[0];
+  }
+}
+
+TEST_F(Raster, CaptureOfOpenMeshesHasNoBackDepth) {
+  Model model = emptyModel();
+  addSquare(model, 0, 0, 0, 5);
+  endPart(model, 0);
+  for (const auto encoding : {PELLUCID_DEPTH_DEVICE, PELLUCID_DEPTH_VIEW_Z}) {
+    RasterOptions options;
+    options.width = options.height = 16;
+    options.depthEncoding = encoding;
+    const RasterResult result = rasterize(model, frontCamera(true), options);
+    EXPECT_TRUE(result.capture.backDepth.image.empty());
+    ASSERT_EQ(result.warnings.size(), 1u);
+    EXPECT_NE(result.warnings[0].find("the capture no backDepth"), std::string::npos) << result.warnings[0];
   }
 }
 
