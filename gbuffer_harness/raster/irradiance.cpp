@@ -17,7 +17,7 @@ constexpr VkDescriptorType kTypes[] = {
     VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
     VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
     VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER};
-constexpr std::uint32_t kShadowBinding = 2, kIrradianceBinding = 3;
+constexpr std::uint32_t kShadowBinding = 2, kIrradianceBinding = 3, kTrianglesBinding = 4;
 
 static_assert(PELLUCID_SHADER_LIGHT_DIRECTIONAL == PELLUCID_LIGHT_DIRECTIONAL);
 static_assert(PELLUCID_SHADER_LIGHT_SPOT == PELLUCID_LIGHT_SPOT);
@@ -152,7 +152,7 @@ void IrradiancePass::add(const Light& light, const std::vector<ShadowImage>& sha
   writes[1].pImageInfo = &surface;
   writes[kShadowBinding].pImageInfo = maps;
   writes[kIrradianceBinding].pImageInfo = &target;
-  writes[4].pImageInfo = &triangles;
+  writes[kTrianglesBinding].pImageInfo = &triangles;
   device_.run([&](VkCommandBuffer commandBuffer) {
     vkCmdBindPipeline(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_);
     pushDescriptors_(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, layout_, 0,
