@@ -1,6 +1,7 @@
 #include "measure.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <vector>
 
@@ -28,11 +29,11 @@ Time measure(harness::Device& device, int repeat, const std::function<void(VkCom
   const double once = run(1);
   const int passes = static_cast<int>(std::clamp(std::ceil(kSpan / std::max(once, 1.0)), 1.0, kMost));
   std::vector<double> times;
-  const int warmUp = repeat / 5 + 2;
-  for (int i = 0; i < warmUp + repeat; ++i) {
-    const double time = run(passes);
-    if (i >= warmUp) times.push_back(time);
-  }
+  // Devices lower their clocks while images are being made and take a moment of work to raise them.
+  constexpr std::chrono::milliseconds kWarmUp(300);
+  const auto start = std::chrono::steady_clock::now();
+  for (int i = 0; i < 2 || std::chrono::steady_clock::now() - start < kWarmUp; ++i) run(passes);
+  for (int i = 0; i < repeat; ++i) times.push_back(run(passes));
   std::sort(times.begin(), times.end());
   const auto at = [&](double share) {
     return times[static_cast<size_t>(share * static_cast<double>(times.size() - 1) + 0.5)];

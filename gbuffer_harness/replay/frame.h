@@ -23,6 +23,7 @@ struct ReplaySettings {
   TransmittanceChoice transmittance = TransmittanceChoice::Material;
   PellucidDebugView debugView = PELLUCID_DEBUG_NONE;
   VkFormat outputFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
+  VkFormat normalFormat = VK_FORMAT_R32G32B32A32_SFLOAT;  // of the image that normals are uploaded to
   PellucidReuse reuse = PELLUCID_REUSE_NONE;
   float coherenceThreshold = 0.005f;
   float frameLoad = 0;

@@ -17,7 +17,7 @@ public:
     GpuImage& irradiance = create(width_, height_, settings.outputFormat);
     irradiance.upload(capture.irradiance);
     f.irradiance = irradiance.use();
-    if (!capture.normal.empty()) f.normal = add(capture.normal, VK_FORMAT_R32G32B32A32_SFLOAT);
+    if (!capture.normal.empty()) f.normal = add(capture.normal, settings.normalFormat);
     if (!capture.albedo.empty()) f.albedo = add(capture.albedo, VK_FORMAT_R32G32B32A32_SFLOAT);
     GpuImage& material = create(width_, height_, VK_FORMAT_R8_UINT);
     material.upload(capture.material);
