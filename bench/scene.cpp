@@ -60,6 +60,44 @@ Capture slab(int width, int height, double coverage, double pixel) {
   return c;
 }
 
+std::vector<ErrorScene> errorScenes() {
+  const double plane = 40;
+  const std::map<std::string, double> tilted = {{"tilt", 60}};
+  return {{"checker of 1/8 of the width, at 17 degrees", "checker", {{"cell", plane / 8}, {"angle", 17}}, plane},
+          {"step at 30 degrees", "step", {{"angle", 30}}, plane},
+          {"tilted by 60 degrees, step", "tilted", tilted, plane},
+          {"tilted by 60 degrees, step at 30 degrees", "tilted", {{"tilt", 60}, {"angle", 30}}, plane},
+          {"sphere, lit from the side", "sphere", {{"lightAngle", 110}}, plane},
+          {"ear", "ear", {}, 92}};
+}
+
+Capture makeErrorCapture(const ErrorScene& scene, int size) {
+  SceneParameters p;
+  p.name = scene.scene;
+  p.width = p.height = size;
+  p.options = scene.options;
+  if (scene.scene == "checker" || scene.scene == "step" || scene.scene == "tilted") p.options["samples"] = 4;
+  p.shadowSize = 0;
+  Capture capture = makeScene(p);
+  capture.albedo = {};  // the error is the diffusion's
+  return capture;
+}
+
+PellucidMaterial burleyMaterial(double radius) {
+  PellucidMaterialDesc desc;
+  pellucidInitMaterialDesc(&desc);
+  desc.kind = PELLUCID_MATERIAL_BURLEY;
+  // 3/4 e^{-r / 3d} = .001 - 1/4 e^{-r / d} holds at r = 19.86 d (Christensen & Burley 2015, the cdf).
+  const double d = radius / 19.86;
+  desc.burleyDistance[0] = d;
+  desc.burleyDistance[1] = d / 1.4;
+  desc.burleyDistance[2] = d / 2;
+  PellucidMaterial material;
+  if (pellucidCompileMaterial(&desc, &material, nullptr, nullptr, nullptr) != PELLUCID_OK)
+    throw InputError("", "burleyDistance", "does not compile");
+  return material;
+}
+
 std::vector<Capture> patterns(int size, double pixel) {
   const auto make = [&](const char* name, std::map<std::string, double> options) {
     SceneParameters p;

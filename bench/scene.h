@@ -1,6 +1,8 @@
 // What the benchmarks run on.
 #pragma once
 
+#include <map>
+#include <string>
 #include <vector>
 
 #include "capture/capture.h"
@@ -21,5 +23,20 @@ harness::Capture slab(int width, int height, double coverage, double pixel);
 // Irradiance patterns that tell diffusion methods apart: a checker, a step at 30 degrees, a step on a plane
 // tilted by 45. `size` pixels of `pixel` mm a side.
 std::vector<harness::Capture> patterns(int size, double pixel);
+
+// A scene that the diffusion's error is stated for.
+struct ErrorScene {
+  std::string title, scene;
+  std::map<std::string, double> options;
+  double width;  // visible, mm
+};
+
+std::vector<ErrorScene> errorScenes();
+
+harness::Capture makeErrorCapture(const ErrorScene& scene, int size);
+
+// Burley's profile (Christensen & Burley 2015) with 99.9 % of the energy within `radius` mm in red, and distances
+// 1/1.4 and 1/2 of that in green and blue.
+PellucidMaterial burleyMaterial(double radius);
 
 }  // namespace pellucid::bench

@@ -7,7 +7,10 @@
 #include "lib/sanitize.glsl"
 #include "shared/pellucid_shared.h"
 
-layout(local_size_x = PELLUCID_GROUP_X, local_size_y = PELLUCID_GROUP_Y) in;
+#ifndef GROUP_SIDE
+#define GROUP_SIDE PELLUCID_GROUP_X
+#endif
+layout(local_size_x = GROUP_SIDE, local_size_y = GROUP_SIDE) in;
 
 layout(push_constant) uniform Pass { PassConstants pass; };
 layout(set = 0, binding = PELLUCID_BINDING_FRAME) uniform Frame { FrameConstants frame; };

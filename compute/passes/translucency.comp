@@ -6,8 +6,8 @@
 
 #include "passes/bindings.glsl"
 
-layout(set = 0, binding = PELLUCID_BINDING_LIGHTS) readonly buffer Lights { LightConstants lights[]; };
-layout(set = 0, binding = PELLUCID_BINDING_SHADOWS) readonly buffer Shadows { ShadowConstants shadows[]; };
+layout(set = 0, binding = PELLUCID_BINDING_LIGHTS) uniform Lights { LightConstants lights[PELLUCID_DISPATCH_LIGHTS]; };
+layout(set = 0, binding = PELLUCID_BINDING_SHADOWS) uniform Shadows { ShadowConstants shadows[PELLUCID_DISPATCH_SHADOWS]; };
 layout(set = 0, binding = PELLUCID_BINDING_MATERIALS) readonly buffer Materials { MaterialConstants materials[]; };
 layout(set = 0, binding = PELLUCID_BINDING_BACK_DEPTH) uniform texture2D backDepthImage;
 layout(set = 0, binding = PELLUCID_BINDING_NORMAL) uniform texture2D normalImage;
@@ -39,7 +39,7 @@ float shadowTexel(uint image, ivec2 texel) {
 Surface surfaceAt(ivec2 pixel, float front, float frontStored, float backStored, vec4 normalTexel) {
   ViewRay ray = viewRay(frame.camera, pixel);
   float along = -1.0;
-  if (hasFlag(PELLUCID_FLAG_BACK_DEPTH)) {
+  if (hasFlag(PELLUCID_FLAG_CHORD) && hasFlag(PELLUCID_FLAG_BACK_DEPTH)) {
     bool backViewZ = hasFlag(PELLUCID_FLAG_BACK_VIEW_Z);
     float back = backViewZ ? planarDistanceViewZ(backStored) : planarDistance(frame.camera, backStored);
     bool device = !backViewZ && !hasFlag(PELLUCID_FLAG_FRONT_VIEW_Z);
@@ -58,7 +58,13 @@ Surface surfaceAt(ivec2 pixel, float front, float frontStored, float backStored,
 void main() {
   ivec2 pixel = invocationPixel();
   if (!insideRect(pixel)) return;
+  // All at once and whatever the flags say (a stand-in is bound where an image is missing), so that their
+  // latencies overlap: the pass waits for memory more than it computes.
   uint value = materialValueAt(pixel);
+  vec4 source = texelFetch(sourceImage, pixel, 0);
+  float frontStored = texelFetch(frontDepthImage, pixel, 0).x;
+  float backStored = hasFlag(PELLUCID_FLAG_CHORD) ? texelFetch(backDepthImage, pixel, 0).x : 0.0;
+  vec4 normalTexel = texelFetch(normalImage, pixel, 0);
   uint material = materialIndex(value);
   // A history that starts is 0 wherever nothing came through: the next frame's pixels may lie there.
   bool starts = pass.value.z == PELLUCID_WRITE_STARTS;
@@ -68,18 +74,9 @@ void main() {
   }
   uint m = material - 1u;
 
-  // All at once and whatever the flags say (a stand-in is bound where an image is missing), so that their
-  // latencies overlap: the pass waits for memory more than it computes.
-  vec4 source = starts ? vec4(0.0) : texelFetch(sourceImage, pixel, 0);
-  // Marked pixels keep their irradiance, and read nothing else.
+  if (starts) source = vec4(0.0);
+  // Marked pixels keep their irradiance.
   bool marked = (value & frame.marks.x) != 0u;
-  float frontStored = 0.0, backStored = 0.0;
-  vec4 normalTexel = vec4(0.0);
-  if (!marked) {
-    frontStored = texelFetch(frontDepthImage, pixel, 0).x;
-    backStored = texelFetch(backDepthImage, pixel, 0).x;
-    normalTexel = texelFetch(normalImage, pixel, 0);
-  }
   vec3 irradiance = sanitize(source.rgb);
   float front = marked ? -1.0 : frontDistanceOf(frontStored);
   vec3 arriving = vec3(0.0), visible = vec3(0.0), transmitted = vec3(0.0);
@@ -89,7 +86,7 @@ void main() {
     float mm = frame.camera.range.w;
     if (s.chord >= 0.0) thickness.r = s.chord * mm;
     for (uint i = 0u; i < pass.value.y; ++i) {
-      LightConstants light = lights[pass.value.x + i];
+      LightConstants light = lights[i];
 #ifdef GATHER
       if (pass.value.w > 0u && light.meta.z != 0u) {
         transmitted += gatherLight(m, light, s, pass.value.w);

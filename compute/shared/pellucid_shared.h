@@ -8,6 +8,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
 namespace pellucid::shared {
+using glm::ivec4;
 using glm::mat4;
 using glm::uvec4;
 using glm::vec4;
@@ -15,6 +16,8 @@ using glm::vec4;
 
 #define PELLUCID_GROUP_X 8
 #define PELLUCID_GROUP_Y 8
+#define PELLUCID_DIFFUSE_GROUP 8 // a side; an invocation does 2 x 2 pixels
+#define PELLUCID_REDUCE_GROUP 16 // a side, of the pyramid's reductions
 
 #define PELLUCID_BINDING_FRAME 0
 #define PELLUCID_BINDING_LIGHTS 1
@@ -31,7 +34,15 @@ using glm::vec4;
 #define PELLUCID_BINDING_DESTINATION 11
 #define PELLUCID_BINDING_SHADOW_IMAGES 12 // and the next SHADOW_IMAGE_COUNT - 1
 #define PELLUCID_SHADOW_IMAGE_COUNT 8     // 14 sampled images in all; every device has 16
-#define PELLUCID_BINDING_COUNT 20
+#define PELLUCID_BINDING_LEVELS 20        // written by the diffusion's passes, which read no shadow images:
+#define PELLUCID_BINDING_PYRAMID PELLUCID_BINDING_SHADOW_IMAGES
+#define PELLUCID_BINDING_RESOLVED (PELLUCID_BINDING_SHADOW_IMAGES + 1)
+#define PELLUCID_BINDING_COUNT 21
+
+// Lights and shadow maps of one dispatch are uniform buffers, which are cached apart from what images pass
+// through. 16 KiB is what every device binds.
+#define PELLUCID_DISPATCH_LIGHTS 128
+#define PELLUCID_DISPATCH_SHADOWS 128
 
 // FrameConstants::flags.x
 #define PELLUCID_FLAG_BACK_DEPTH 1u
@@ -42,6 +53,7 @@ using glm::vec4;
 #define PELLUCID_FLAG_CAMERA_THICKNESS 32u
 #define PELLUCID_FLAG_CONSTANT_VIEW 64u
 #define PELLUCID_FLAG_CHORD_THICKNESS 128u
+#define PELLUCID_FLAG_CHORD 256u // some light, or a debug view, needs camera-space thickness
 
 // Values of the public enums the shaders branch on; constants.cpp asserts that they agree.
 #define PELLUCID_SHADER_LIGHT_DIRECTIONAL 0u
@@ -64,7 +76,13 @@ using glm::vec4;
 #define PELLUCID_WRITE_STARTS 2u // of a history, from 0
 
 #define PELLUCID_GAUSSIANS 8
-#define PELLUCID_KERNEL_TAPS 25 // one side, center included
+
+// The diffusion pyramid's levels are 2..LAST_LEVEL; a texel of the last one is 256 pixels wide.
+#define PELLUCID_LAST_LEVEL 8
+// KernelConstants::share: levels 2 and 3, and all coarser ones.
+#define PELLUCID_SHARE_COARSER 2
+#define PELLUCID_SHARE_TABLES 3
+#define PELLUCID_SHARE_ENTRIES 128
 
 // The camera as the shaders use it. With s = +1 or -1 the sign of view z in front of the eye, p = s z
 // is the planar distance and a pixel's view ray is point(p) = origin + p direction.
@@ -84,6 +102,7 @@ struct FrameConstants {
   vec4 anglePolynomial;
   uvec4 marks;         // x: bit of material values without translucency; 0: none
   vec4 filterAndLimit;        // rgb: factor of T; w: largest thickness, mm
+  ivec4 level[PELLUCID_LAST_LEVEL + 1]; // xy: where texel (0, 0) of the level lies in the pyramid's image
 };
 
 struct LightConstants {
@@ -113,15 +132,20 @@ struct MaterialConstants {
   vec4 gaussianWeight[PELLUCID_GAUSSIANS];  // rgb
 };
 
-// The 1-D kernel of the two-dispatch diffusion; taps 1.. stand on both sides of the center.
+// A profile over the pyramid, at equal steps of log2 of a side in mm.
 struct KernelConstants {
-  vec4 tap[PELLUCID_KERNEL_TAPS];        // rgb: weight of one side; w: offset, mm
-  vec4 tapFalloff[PELLUCID_KERNEL_TAPS]; // rgb: 1/(2 v) of the Gaussians that reach the offset
+  vec4 range; // x: log2 of the first side; y: entries per octave
+  vec4 share[PELLUCID_SHARE_TABLES * PELLUCID_SHARE_ENTRIES]; // rgb: which part of the energy at a level and
+                                                              // coarser ones the coarser ones have
+  // Two for each side of a pixel. First: which part of all energy level 2 and coarser ones have. Second: which
+  // part of the rest the binomial 1 2 1 of the pixel and its neighbors has.
+  vec4 pixelShare[2 * PELLUCID_SHARE_ENTRIES];
 };
 
-// Push constants. translucency: first light, lights, PELLUCID_WRITE_*, gather samples.
+// Push constants. translucency: unused, lights, PELLUCID_WRITE_*, gather samples.
 // add: unused, unused, 1 if this is the last dispatch.
-// diffuse: step x, step y, 1 if this is the last dispatch.
+// reduce: finer level; unused from pixels. resolve: last level, first level, 1 if that one is
+// resolved already, coarsest level. diffuse: unused, unused, unused, 1 if this is the last dispatch.
 struct PassConstants {
   uvec4 value;
 };

@@ -20,6 +20,7 @@ Texel texelOf(VkFormat format) {
       return {1, 4};
     case VK_FORMAT_R16G16B16A16_SFLOAT:
       return {4, 2};
+    case VK_FORMAT_R32G32B32A32_UINT:
     case VK_FORMAT_R32G32B32A32_SFLOAT:
       return {4, 4};
     case VK_FORMAT_R8_UINT:

@@ -4,8 +4,10 @@
 #include <cstring>
 
 #include "camera.h"
+#include "diffusion_profile.h"
 #include "frame.h"
 #include "minimum_dot.h"
+#include "pyramid.h"
 #include "validate.h"
 
 namespace pellucid {
@@ -48,11 +50,16 @@ shared::FrameConstants frameConstants(const PellucidFrame& f) {
   if (f.thicknessSource == PELLUCID_THICKNESS_CAMERA) flags |= PELLUCID_FLAG_CAMERA_THICKNESS;
   if (f.constantViewDirection) flags |= PELLUCID_FLAG_CONSTANT_VIEW;
   if (f.chordThickness) flags |= PELLUCID_FLAG_CHORD_THICKNESS;
+  if (needsChord(f)) flags |= PELLUCID_FLAG_CHORD;
   c.flags = {flags, f.materialCount, f.debugView, f.angleModel};
   const float* p = f.anglePolynomial;
   c.anglePolynomial = {p[0], p[1], p[2], p[3]};
   c.marks.x = f.materialMarkBit;
   c.filterAndLimit = rgb(f.transmittanceFilter, f.maximumThickness > 0 ? f.maximumThickness : INFINITY);
+  for (uint32_t level = kFirstLevel; level <= PELLUCID_LAST_LEVEL; ++level) {
+    const PyramidPlace place = placeOf(f, level);
+    c.level[level] = {place.x - place.rect.x, place.y - place.rect.y, 0, 0};
+  }
   return c;
 }
 
@@ -163,37 +170,6 @@ shared::MaterialConstants materialConstants(const PellucidMaterial& m, bool gath
   return c;
 }
 
-// Taps at R (i/N)^2, R the radius that holds 99.9 %: dense where the profile is steep. A tap's weight is
-// the 1-D profile's integral over the cell between the midpoints to its neighbors, so the weights add to
-// the energy inside R however few there are.
-shared::KernelConstants kernelConstants(const PellucidMaterial& m) {
-  shared::KernelConstants c{};
-  c.tap[0] = glm::vec4(1, 1, 1, 0);
-  if (m.gaussianCount == 0) return c;
-  const double radius = std::max({m.radius[0], m.radius[1], m.radius[2]});
-  constexpr int last = PELLUCID_KERNEL_TAPS - 1;
-  const auto offset = [&](int i) { return radius * i * i / (static_cast<double>(last) * last); };
-  for (int i = 0; i <= last; ++i) {
-    const double from = i == 0 ? 0 : 0.5 * (offset(i - 1) + offset(i));
-    const double to = i == last ? radius : 0.5 * (offset(i) + offset(i + 1));
-    c.tap[i].w = static_cast<float>(offset(i));
-    for (int channel = 0; channel < 3; ++channel) {
-      double weight = 0, falloff = 0;
-      for (uint32_t k = 0; k < m.gaussianCount; ++k) {
-        const double sigma = std::sqrt(2.0 * m.gaussianVariance[channel][k]);
-        const double part =
-            0.5 * m.gaussianWeight[channel][k] * (std::erf(to / sigma) - std::erf(from / sigma));
-        weight += part;
-        falloff += part / (sigma * sigma);
-      }
-      c.tapFalloff[i][channel] = static_cast<float>(weight > 0 ? falloff / weight : 0);
-      // The center tap has both its halves; the others are applied once on each side.
-      c.tap[i][channel] = static_cast<float>(i == 0 ? 2 * weight : weight);
-    }
-  }
-  return c;
-}
-
 template <class T>
 void put(void* slice, VkDeviceSize offset, const T& value) {
   std::memcpy(static_cast<char*>(slice) + offset, &value, sizeof value);
@@ -219,17 +195,17 @@ extern "C" PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const
   put(mapped, layout.frame.offset, frameConstants(f));
   const glm::dmat4 viewFromWorld = toMatrix(f.viewFromWorld);
   const glm::dmat4 worldFromView = glm::inverse(viewFromWorld);
-  uint32_t light = 0, shadow = 0;
   const auto eachLight = [&](const LightGroup& group, const PellucidLight& l) {
-    put(mapped, layout.lights.offset + light * sizeof(shared::LightConstants),
+    // addLight ran before this call: the group counts the light, its maps and its images already.
+    uint32_t shadow = group.shadowCount - l.shadowMapCount;
+    put(mapped,
+        layout.lights.offset + group.lightBytes + (group.lightCount - 1) * sizeof(shared::LightConstants),
         lightConstants(f, l, viewFromWorld, shadow));
-    // addLight ran before this call, so the group already has a slot for each of the light's images.
     for (uint32_t i = 0; i < l.shadowMapCount; ++i, ++shadow) {
       const PellucidShadowMap& s = f.shadowMaps[l.firstShadowMap + i];
-      put(mapped, layout.shadows.offset + shadow * sizeof(shared::ShadowConstants),
+      put(mapped, layout.shadows.offset + group.shadowBytes + shadow * sizeof(shared::ShadowConstants),
           shadowConstants(s, l, worldFromView, group.slot(s.image)));
     }
-    ++light;
   };
   forEachLightGroup(f, eachLight, [](const LightGroup&) {});
   for (uint32_t i = 0; i < f.materialCount; ++i) {

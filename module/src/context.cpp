@@ -28,13 +28,14 @@ PellucidResult vulkanError(const PellucidContextDesc& desc, const char* call, Vk
 VkDescriptorType descriptorType(uint32_t binding) {
   switch (binding) {
     case PELLUCID_BINDING_FRAME:
-      return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
     case PELLUCID_BINDING_LIGHTS:
     case PELLUCID_BINDING_SHADOWS:
+      return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
     case PELLUCID_BINDING_MATERIALS:
     case PELLUCID_BINDING_KERNELS:
       return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     case PELLUCID_BINDING_DESTINATION:
+    case PELLUCID_BINDING_LEVELS:
       return VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
     default:
       return VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;

@@ -15,6 +15,9 @@ bool anyMaterialDiffuses(const PellucidFrame& frame) {
 
 bool addLight(const PellucidFrame& frame, const PellucidLight& light, LightGroup* group) {
   LightGroup grown = *group;
+  grown.shadowCount += light.shadowMapCount;
+  if (group->lightCount == PELLUCID_DISPATCH_LIGHTS || grown.shadowCount > PELLUCID_DISPATCH_SHADOWS)
+    return false;
   for (uint32_t i = 0; i < light.shadowMapCount; ++i) {
     const uint32_t image = frame.shadowMaps[light.firstShadowMap + i].image;
     if (grown.slot(image) < PELLUCID_SHADOW_IMAGE_COUNT) continue;
@@ -26,6 +29,13 @@ bool addLight(const PellucidFrame& frame, const PellucidLight& light, LightGroup
   return true;
 }
 
+bool needsChord(const PellucidFrame& frame) {
+  if (frame.thicknessSource == PELLUCID_THICKNESS_CAMERA || frame.debugView == PELLUCID_DEBUG_THICKNESS) return true;
+  for (uint32_t i = 0; i < frame.lightCount; ++i)
+    if (frame.lights[i].shadowMapCount == 0) return true;
+  return false;
+}
+
 uint32_t lightGroupCount(const PellucidFrame& frame) {
   uint32_t count = 0;
   forEachLightGroup(
@@ -35,24 +45,24 @@ uint32_t lightGroupCount(const PellucidFrame& frame) {
 
 ConstantsLayout constantsLayout(const PellucidFrame& frame) {
   ConstantsLayout layout{};
+  VkDeviceSize lightBytes = 0, shadowBytes = 0;
   forEachLightGroup(
-      frame,
-      [&](const LightGroup&, const PellucidLight& light) {
-        ++layout.lightCount;
-        layout.shadowCount += light.shadowMapCount;
-      },
-      [](const LightGroup&) {});
-  const auto place = [&layout](ConstantsLayout::Range* range, VkDeviceSize elements, VkDeviceSize bytes) {
-    // A binding of zero bytes is not valid; an unused one still has room for one element.
-    range->size = (elements > 0 ? elements : 1) * bytes;
+      frame, [&](const LightGroup&, const PellucidLight&) { ++layout.lightCount; },
+      [&](const LightGroup& group) {
+        lightBytes = group.lightBytes;
+        shadowBytes = group.shadowBytes;
+      });
+  const auto place = [&layout](ConstantsLayout::Range* range, VkDeviceSize bytes) {
+    range->size = bytes;
     range->offset = layout.size;
-    layout.size += (range->size + 255) / 256 * 256;
+    layout.size += aligned(bytes);
   };
-  place(&layout.frame, 1, sizeof(shared::FrameConstants));
-  place(&layout.lights, layout.lightCount, sizeof(shared::LightConstants));
-  place(&layout.shadows, layout.shadowCount, sizeof(shared::ShadowConstants));
-  place(&layout.materials, frame.materialCount, sizeof(shared::MaterialConstants));
-  place(&layout.kernels, frame.materialCount, sizeof(shared::KernelConstants));
+  place(&layout.frame, sizeof(shared::FrameConstants));
+  // The last group's window reaches as far as the first one's.
+  place(&layout.lights, lightBytes + kLightWindow);
+  place(&layout.shadows, shadowBytes + kShadowWindow);
+  place(&layout.materials, frame.materialCount * sizeof(shared::MaterialConstants));
+  place(&layout.kernels, frame.materialCount * sizeof(shared::KernelConstants));
   return layout;
 }
 

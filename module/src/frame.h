@@ -19,10 +19,20 @@ inline bool given(const PellucidImage& image) { return image.view != VK_NULL_HAN
 
 bool anyMaterialDiffuses(const PellucidFrame& frame);
 
-// One fused dispatch binds PELLUCID_SHADOW_IMAGE_COUNT shadow images, so lights are taken in order into
-// groups that need no more. Shadow constants are laid out light by light within the groups.
+// One fused dispatch binds PELLUCID_SHADOW_IMAGE_COUNT shadow images and windows of fixed size on the
+// constants of lights and shadow maps, so lights are taken in order into groups that need no more. Constants
+// are laid out light by light within the groups.
+constexpr VkDeviceSize kLightWindow = PELLUCID_DISPATCH_LIGHTS * sizeof(shared::LightConstants);
+constexpr VkDeviceSize kShadowWindow = PELLUCID_DISPATCH_SHADOWS * sizeof(shared::ShadowConstants);
+static_assert(kLightWindow <= 16384 && kShadowWindow <= 16384);  // least maxUniformBufferRange
+
+// The largest offset alignment that Vulkan allows a device to ask for.
+constexpr VkDeviceSize aligned(VkDeviceSize bytes) { return (bytes + 255) / 256 * 256; }
+
 struct LightGroup {
-  uint32_t firstLight = 0, lightCount = 0;  // among the lights that are not skipped
+  uint32_t firstLight = 0, lightCount = 0;       // among the lights that are not skipped
+  uint32_t shadowCount = 0;                      // shadow maps
+  VkDeviceSize lightBytes = 0, shadowBytes = 0;  // of the groups before, in the constants
   uint32_t imageCount = 0;
   std::array<uint32_t, PELLUCID_SHADOW_IMAGE_COUNT> images{};  // into frame.shadowImages
 
@@ -49,6 +59,8 @@ void forEachLightGroup(const PellucidFrame& frame, OnLight&& light, OnGroup&& gr
       group(static_cast<const LightGroup&>(current));
       LightGroup next;
       next.firstLight = current.firstLight + current.lightCount;
+      next.lightBytes = current.lightBytes + aligned(current.lightCount * sizeof(shared::LightConstants));
+      next.shadowBytes = current.shadowBytes + aligned(current.shadowCount * sizeof(shared::ShadowConstants));
       current = next;
       addLight(frame, frame.lights[i], &current);
     }
@@ -57,17 +69,21 @@ void forEachLightGroup(const PellucidFrame& frame, OnLight&& light, OnGroup&& gr
   if (current.lightCount > 0) group(static_cast<const LightGroup&>(current));
 }
 
+// Whether thickness along view rays is asked for: lights without shadow maps have no other, and the debug view
+// of thickness shows it.
+bool needsChord(const PellucidFrame& frame);
+
 // How many fused dispatches the lights need; 0 without lights.
 uint32_t lightGroupCount(const PellucidFrame& frame);
 
-// Byte ranges of the constants slice. 256: the largest offset alignment Vulkan allows a device to ask.
+// Byte ranges of the constants slice.
 struct ConstantsLayout {
   struct Range {
     VkDeviceSize offset, size;
   };
   Range frame, lights, shadows, materials, kernels;
   VkDeviceSize size;
-  uint32_t lightCount, shadowCount;
+  uint32_t lightCount;
 };
 
 ConstantsLayout constantsLayout(const PellucidFrame& frame);

@@ -1,5 +1,8 @@
 // Frame -> plan. Pure: no device, no allocation.
+#include <algorithm>
+
 #include "frame.h"
+#include "pyramid.h"
 #include "reuse.h"
 #include "validate.h"
 
@@ -8,16 +11,21 @@ namespace {
 
 constexpr uint32_t kShadow0 = PELLUCID_RESOURCE_SHADOW0;
 constexpr uint32_t kTransient0 = PELLUCID_RESOURCE_TRANSIENT0;
+constexpr uint32_t kSharedLevel = 4;        // of the two resolving dispatches
+constexpr uint64_t kTexelBytes = 16;        // of the pyramid, as packed by compute/lib/pyramid.glsl
 constexpr uint64_t kUnknownDepthBytes = 4;  // the module does not know the format; 4 is the common one
 
 struct Builder {
   const PellucidFrame& frame;
   const ConstantsLayout layout;
   const Rect rect;
+  const uint32_t colorTransients;
   PellucidPlan& plan;
 
   bool wide() const { return frame.outputFormat == VK_FORMAT_R32G32B32A32_SFLOAT; }
   uint64_t pixels() const { return static_cast<uint64_t>(rect.width) * rect.height; }
+  uint32_t pyramidImage() const { return kTransient0 + colorTransients; }
+  uint32_t resolvedImage() const { return kTransient0 + colorTransients + 1; }
   uint64_t colorBytes() const { return wide() ? 16 : 8; }
 
   void skip(const char* what, const char* reason) {
@@ -34,9 +42,7 @@ struct Builder {
     PellucidDispatch& d = plan.dispatches[plan.dispatchCount];
     d.name = name;
     d.pipeline = pipeline;
-    d.groups[0] = (rect.width + PELLUCID_GROUP_X - 1) / PELLUCID_GROUP_X;
-    d.groups[1] = (rect.height + PELLUCID_GROUP_Y - 1) / PELLUCID_GROUP_Y;
-    d.groups[2] = 1;
+    groups(&d, rect.width, rect.height, PELLUCID_GROUP_X, PELLUCID_GROUP_Y);
     // Every dispatch after the first reads what the one before wrote.
     // The first of a frame that reuses comes after the last frame's use of the history.
     d.barrierBefore = plan.dispatchCount > 0 || plan.history.valid ? 1 : 0;
@@ -45,12 +51,18 @@ struct Builder {
     return &d;
   }
 
+  static void groups(PellucidDispatch* d, uint32_t width, uint32_t height, uint32_t tileX, uint32_t tileY) {
+    d->groups[0] = (width + tileX - 1) / tileX;
+    d->groups[1] = (height + tileY - 1) / tileY;
+    d->groups[2] = 1;
+  }
+
   static void bind(PellucidDispatch* d, uint32_t binding, VkDescriptorType type, uint32_t resource,
                    ConstantsLayout::Range range = {}) {
     d->bindings[d->bindingCount++] = {binding, type, resource, 0, range.offset, range.size};
   }
   void constants(PellucidDispatch* d, uint32_t binding, ConstantsLayout::Range range) const {
-    const bool uniform = binding == PELLUCID_BINDING_FRAME;
+    const bool uniform = binding <= PELLUCID_BINDING_SHADOWS;
     bind(d, binding, uniform ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
          PELLUCID_RESOURCE_CONSTANTS, range);
   }
@@ -86,7 +98,6 @@ struct Builder {
     const uint32_t pipeline = half + (wide() ? 1 : 0);  // the 32F variant follows the 16F one
     PellucidDispatch* d = dispatch(debug ? "debug view" : "translucency", pipeline);
     if (!d) return false;
-    d->pushConstants[0] = group.firstLight;
     d->pushConstants[1] = group.lightCount;
     d->pushConstants[2] = destination == PELLUCID_RESOURCE_OUTPUT;
     if (destination == PELLUCID_RESOURCE_HISTORY && group.firstLight == 0)
@@ -95,11 +106,11 @@ struct Builder {
     common(d, source, destination);
     if (d->pushConstants[2] == PELLUCID_WRITE_STARTS)
       d->modeledBytes -= colorBytes() * pixels();  // what is there is not read
-    constants(d, PELLUCID_BINDING_LIGHTS, layout.lights);
-    constants(d, PELLUCID_BINDING_SHADOWS, layout.shadows);
+    constants(d, PELLUCID_BINDING_LIGHTS, {layout.lights.offset + group.lightBytes, kLightWindow});
+    constants(d, PELLUCID_BINDING_SHADOWS, {layout.shadows.offset + group.shadowBytes, kShadowWindow});
     constants(d, PELLUCID_BINDING_MATERIALS, layout.materials);
     optional(d, PELLUCID_BINDING_BACK_DEPTH, frame.backDepth, PELLUCID_RESOURCE_BACK_DEPTH,
-             kUnknownDepthBytes);
+             needsChord(frame) ? kUnknownDepthBytes : 0);
     optional(d, PELLUCID_BINDING_NORMAL, frame.normal, PELLUCID_RESOURCE_NORMAL, 4);
     for (uint32_t slot = 0; slot < PELLUCID_SHADOW_IMAGE_COUNT; ++slot) {
       const bool used = slot < group.imageCount;
@@ -120,28 +131,98 @@ struct Builder {
     return true;
   }
 
-  bool diffuse(const char* name, uint32_t x, uint32_t y, uint32_t source, uint32_t destination) {
-    PellucidDispatch* d =
-        dispatch(name, wide() ? PELLUCID_PIPELINE_DIFFUSE_32F : PELLUCID_PIPELINE_DIFFUSE_16F);
+  // Texels of a level that the rect needs.
+  uint64_t texels(uint32_t level) const {
+    const PyramidPlace place = placeOf(frame, level);
+    return static_cast<uint64_t>(place.rect.width) * static_cast<uint64_t>(place.rect.height);
+  }
+
+  PellucidDispatch* pyramid(const char* name, uint32_t pipeline, uint32_t level, uint32_t tile,
+                            uint32_t writes) {
+    PellucidDispatch* d = dispatch(name, pipeline);
+    if (!d) return nullptr;
+    const PyramidPlace place = placeOf(frame, level);
+    groups(d, static_cast<uint32_t>(place.rect.width), static_cast<uint32_t>(place.rect.height), tile, tile);
+    constants(d, PELLUCID_BINDING_FRAME, layout.frame);
+    bind(d, PELLUCID_BINDING_LEVELS, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, writes);
+    d->modeledBytes += kTexelBytes * texels(level);
+    return d;
+  }
+
+  bool reducePixels(uint32_t source, uint32_t copy) {
+    const bool copies = copy != source;
+    PellucidDispatch* d = pyramid("reduce pixels",
+                                  !copies  ? PELLUCID_PIPELINE_REDUCE_PIXELS
+                                  : wide() ? PELLUCID_PIPELINE_REDUCE_AND_COPY_32F
+                                           : PELLUCID_PIPELINE_REDUCE_AND_COPY_16F,
+                                  kFirstLevel, PELLUCID_REDUCE_GROUP, pyramidImage());
     if (!d) return false;
-    d->pushConstants[0] = x;
-    d->pushConstants[1] = y;
-    d->pushConstants[2] = destination == PELLUCID_RESOURCE_OUTPUT;
-    common(d, source, destination);
+    image(d, PELLUCID_BINDING_FRONT_DEPTH, PELLUCID_RESOURCE_FRONT_DEPTH, kUnknownDepthBytes);
+    image(d, PELLUCID_BINDING_SOURCE, source, colorBytes());
+    image(d, PELLUCID_BINDING_MATERIAL, PELLUCID_RESOURCE_MATERIAL, 1);
+    if (copies) {
+      bind(d, PELLUCID_BINDING_DESTINATION, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, copy);
+      d->modeledBytes += colorBytes() * pixels();
+    }
+    return true;
+  }
+
+  bool reduceLevels(uint32_t finer) {
+    PellucidDispatch* d = pyramid("reduce levels", PELLUCID_PIPELINE_REDUCE_LEVELS, finer + 2,
+                                  PELLUCID_REDUCE_GROUP / 2, pyramidImage());
+    if (!d) return false;
+    d->pushConstants[0] = finer;
+    bind(d, PELLUCID_BINDING_PYRAMID, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, pyramidImage());
+    d->modeledBytes += kTexelBytes * (texels(finer) + texels(finer + 1));
+    return true;
+  }
+
+  bool resolve(uint32_t last, uint32_t first) {
+    PellucidDispatch* d =
+        pyramid("resolve levels", PELLUCID_PIPELINE_RESOLVE_LEVELS, last, PELLUCID_GROUP_X, resolvedImage());
+    if (!d) return false;
+    const uint32_t coarsest = coarsestLevel(frame);
+    d->pushConstants[0] = last;
+    d->pushConstants[1] = first;
+    d->pushConstants[2] = first < coarsest;
+    d->pushConstants[3] = coarsest;
+    bind(d, PELLUCID_BINDING_PYRAMID, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, pyramidImage());
+    bind(d, PELLUCID_BINDING_RESOLVED, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, resolvedImage());
     constants(d, PELLUCID_BINDING_KERNELS, layout.kernels);
+    for (uint32_t level = last; level <= first; ++level) d->modeledBytes += kTexelBytes * texels(level);
+    return true;
+  }
+
+  bool diffuse(uint32_t source, uint32_t destination) {
+    PellucidDispatch* d =
+        dispatch("diffuse", wide() ? PELLUCID_PIPELINE_DIFFUSE_32F : PELLUCID_PIPELINE_DIFFUSE_16F);
+    if (!d) return false;
+    // Groups start at even pixels and take two in each direction.
+    groups(d, rect.width + (rect.x & 1), rect.height + (rect.y & 1), 2 * PELLUCID_DIFFUSE_GROUP,
+           2 * PELLUCID_DIFFUSE_GROUP);
+    d->pushConstants[3] = destination == PELLUCID_RESOURCE_OUTPUT;
+    common(d, source, destination);
+    bind(d, PELLUCID_BINDING_PYRAMID, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, pyramidImage());
+    bind(d, PELLUCID_BINDING_RESOLVED, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, resolvedImage());
+    constants(d, PELLUCID_BINDING_KERNELS, layout.kernels);
+    d->modeledBytes += 2 * kTexelBytes * texels(kFirstLevel);
     return true;
   }
 };
 
-// What runs; shared by the plan and the image needs.
+// What runs.
 struct Stages {
   bool lights;  // the fused dispatches carry lights
   bool diffusion;
   uint32_t fused;  // fused dispatches
   bool history;    // these write the history, and one more adds it
+  // The diffusion is all there is: it copies the irradiance before it writes the output, which may be the
+  // same image and whose pixels read their neighbors.
+  bool copies;
 
-  // That write a transient or the output.
-  uint32_t writers() const { return (history ? 1 : fused) + (diffusion ? 2 : 0); }
+  // Dispatches that write a color transient or the output.
+  uint32_t writers() const { return (history ? 1 : fused) + (diffusion ? 1 : 0) + (copies ? 1 : 0); }
+  uint32_t colorTransients() const { return std::min(writers() - 1, 2u); }
 };
 
 Stages stagesOf(const PellucidFrame& frame) {
@@ -150,6 +231,7 @@ Stages stagesOf(const PellucidFrame& frame) {
   if (frame.features & PELLUCID_FEATURE_TRANSLUCENCY || debug) s.fused = lightGroupCount(frame);
   s.lights = s.fused > 0;
   s.diffusion = frame.features & PELLUCID_FEATURE_DIFFUSION && !debug && anyMaterialDiffuses(frame);
+  s.copies = s.diffusion && !s.lights;
   // Without diffusion the fused pass still has to bring irradiance (times albedo) to the output.
   if (s.writers() == 0) s.fused = 1;
   s.history = keepsHistory(frame);
@@ -157,8 +239,8 @@ Stages stagesOf(const PellucidFrame& frame) {
 }
 
 bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan& plan) {
-  Builder b{frame, constantsLayout(frame), renderRect(frame), plan};
   const Stages stages = stagesOf(frame);
+  Builder b{frame, constantsLayout(frame), renderRect(frame), stages.colorTransients(), plan};
   plan.activeLights = b.layout.lightCount;
   plan.constantsSize = b.layout.size;
 
@@ -213,12 +295,22 @@ bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan
   };
   const auto diffusion = [&] {
     if (!stages.diffusion) return;
-    for (const uint32_t vertical : {0u, 1u}) {
-      const uint32_t to = destination();
-      fits = fits && b.diffuse(vertical ? "diffuse vertically" : "diffuse horizontally", 1 - vertical,
-                               vertical, source, to);
-      source = to;
+    if (stages.copies) {
+      const uint32_t copy = destination();
+      fits = fits && b.reducePixels(source, copy);
+      source = copy;
+    } else {
+      fits = fits && b.reducePixels(source, source);
     }
+    const uint32_t coarsest = coarsestLevel(frame);
+    for (uint32_t finer = kFirstLevel; finer < coarsest; finer += 2) fits = fits && b.reduceLevels(finer);
+    // Coarse levels are made again by every tile that needs them, so a second dispatch takes over where there
+    // are many.
+    if (coarsest > kSharedLevel) fits = fits && b.resolve(kSharedLevel, coarsest);
+    fits = fits && b.resolve(kFirstLevel, std::min(coarsest, kSharedLevel));
+    const uint32_t to = destination();
+    fits = fits && b.diffuse(source, to);
+    source = to;
   };
   // Gathered light has already spread on its way through; diffusing it again would spread it twice.
   if (frame.gatherSamples > 0) {
@@ -256,25 +348,35 @@ extern "C" PellucidResult pellucidGetImageNeeds(const PellucidFrame* frame, uint
   if (!count) return PELLUCID_ERROR_INVALID_ARGUMENT;
   const PellucidResult result = checkFrame(frame, nullptr, nullptr);
   if (result != PELLUCID_OK) return result;
+  // Without a plan before it, that of a frame that refreshes a history: every image is in use.
+  PellucidPlan plan{};
+  if (!build(*frame, {}, plan)) return PELLUCID_ERROR_CAPACITY;
   const Stages stages = stagesOf(*frame);
-  const uint32_t writers = stages.writers();
+  const uint32_t colors = stages.colorTransients(), transients = colors + (stages.diffusion ? 2 : 0);
   const uint32_t room = *count;
-  const uint32_t transients = writers - 1 < 2 ? writers - 1 : 2;
   *count = transients + (stages.history ? 1 : 0);
-  const uint64_t texel = frame->outputFormat == VK_FORMAT_R32G32B32A32_SFLOAT ? 16 : 8;
-  const uint64_t bytes = texel * frame->imageExtent[0] * frame->imageExtent[1];
-  // Frames that refresh a history have its dispatches in front of those that write transients.
-  const uint32_t before = stages.history ? stages.fused : 0;
+  const uint64_t colorBytes = frame->outputFormat == VK_FORMAT_R32G32B32A32_SFLOAT ? 16 : 8;
   for (uint32_t i = 0; needs && i < *count && i < room; ++i) {
-    needs[i] = {frame->outputFormat, {frame->imageExtent[0], frame->imageExtent[1]}, 0, before, bytes, 0};
-    if (i == transients) {
-      needs[i].persistent = 1;
-      continue;
-    }
-    // Writers 0 .. n - 2 write the transients in turn, so the last to write transient i has i's parity;
-    // the dispatch after it reads.
-    needs[i].firstDispatch = i;
-    needs[i].lastDispatch = before + writers - 2 - ((writers - 2 - i) & 1u) + 1;
+    const bool persistent = i == transients, pyramid = !persistent && i >= colors;
+    const PyramidExtent size =
+        pyramid ? pyramidExtent(*frame) : PyramidExtent{frame->imageExtent[0], frame->imageExtent[1]};
+    PellucidImageNeed& need = needs[i];
+    need = {};
+    need.format = pyramid ? VK_FORMAT_R32G32B32A32_UINT : frame->outputFormat;
+    need.extent[0] = size.width;
+    need.extent[1] = size.height;
+    need.bytes = (pyramid ? kTexelBytes : colorBytes) * size.width * size.height;
+    need.persistent = persistent;
+    const uint32_t resource = persistent ? static_cast<uint32_t>(PELLUCID_RESOURCE_HISTORY) : kTransient0 + i;
+    need.firstDispatch = UINT32_MAX;
+    for (uint32_t d = 0; d < plan.dispatchCount; ++d)
+      for (uint32_t b = 0; b < plan.dispatches[d].bindingCount; ++b)
+        if (plan.dispatches[d].bindings[b].resource == resource) {
+          need.firstDispatch = std::min(need.firstDispatch, d);
+          need.lastDispatch = d;
+        }
+    // Frames that reuse the history lack the dispatches that refresh it.
+    if (stages.history) need.firstDispatch -= std::min(need.firstDispatch, stages.fused);
   }
   return PELLUCID_OK;
 }

@@ -10,6 +10,11 @@
 #include "kDiffuse32f.h"
 #include "kGather16f.h"
 #include "kGather32f.h"
+#include "kReduce.h"
+#include "kReduceAndCopy16f.h"
+#include "kReduceAndCopy32f.h"
+#include "kReducePixels.h"
+#include "kResolve.h"
 #include "kTranslucency16f.h"
 #include "kTranslucency32f.h"
 #include "pellucid/pellucid.h"
@@ -23,11 +28,12 @@ constexpr Shader shader(const uint32_t (&words)[N]) {
 }
 
 // In the order of PellucidPipeline.
-const std::array kShaders = {shader(kTranslucency16f), shader(kTranslucency32f), shader(kDebug16f),
-                             shader(kDebug32f),        shader(kDiffuse16f),      shader(kDiffuse32f),
-                             shader(kGather16f),       shader(kGather32f),
+const std::array kShaders = {
+    shader(kTranslucency16f), shader(kTranslucency32f), shader(kDebug16f),         shader(kDebug32f),
+    shader(kDiffuse16f),      shader(kDiffuse32f),      shader(kGather16f),        shader(kGather32f),
 
-                             shader(kAddHistory16f),   shader(kAddHistory32f)};
+    shader(kAddHistory16f),   shader(kAddHistory32f),   shader(kReduceAndCopy16f), shader(kReduceAndCopy32f),
+    shader(kReducePixels),    shader(kReduce),          shader(kResolve)};
 static_assert(kShaders.size() == PELLUCID_PIPELINE_COUNT);
 
 }  // namespace

@@ -12,7 +12,7 @@ struct GBuffer {
   uint32_t width, height;
   float metersPerUnit;
   float projection[16], view[16];
-  VkImageView depth, backFaceDepth, irradiance, normal, materialId, scratch[2];
+  VkImageView depth, backFaceDepth, irradiance, normal, materialId, scratch[3];
   uint32_t lightCount;
   const PellucidLight* lights;
   VkBuffer uploadBuffer;
@@ -43,8 +43,6 @@ TEST(Readme, SnippetMakesASlabGlow) {
   const auto back = image(VK_FORMAT_R32_SFLOAT, Image(kSize, kSize, 1, 0.1f / 12));  // 2 units behind
   const auto irradiance = image(VK_FORMAT_R16G16B16A16_SFLOAT, Image(kSize, kSize, 3, 0.0f));
   const auto normal = image(VK_FORMAT_R32G32B32A32_SFLOAT, facing);
-  const auto scratch0 = image(VK_FORMAT_R16G16B16A16_SFLOAT, Image(kSize, kSize, 3, 0.0f));
-  const auto scratch1 = image(VK_FORMAT_R16G16B16A16_SFLOAT, Image(kSize, kSize, 3, 0.0f));
   GpuImage material(device, kSize, kSize, VK_FORMAT_R8_UINT);
   material.upload(std::vector<std::uint8_t>(kSize * kSize, 1));
   HostBuffer upload(device, 64 * 1024,
@@ -65,13 +63,25 @@ TEST(Readme, SnippetMakesASlabGlow) {
   g.irradiance = irradiance->use().view;
   g.normal = normal->use().view;
   g.materialId = material.use().view;
-  g.scratch[0] = scratch0->use().view;
-  g.scratch[1] = scratch1->use().view;
   g.lightCount = 1;
   g.lights = &light;
   g.uploadBuffer = upload.handle();
   g.uploadSize = upload.size();
   g.uploadMapped = upload.mapped();
+
+  PellucidFrame frame;
+  describeFrame(g, t, frame);
+  PellucidImageNeed needs[3];
+  uint32_t count = 3;
+  ASSERT_EQ(pellucidGetImageNeeds(&frame, &count, needs), PELLUCID_OK);
+  ASSERT_EQ(count, std::size(g.scratch));
+  std::vector<std::unique_ptr<GpuImage>> scratch;
+  for (uint32_t i = 0; i < count; ++i) {
+    scratch.push_back(std::make_unique<GpuImage>(device, static_cast<int>(needs[i].extent[0]),
+                                                 static_cast<int>(needs[i].extent[1]), needs[i].format));
+    scratch[i]->clear();
+    g.scratch[i] = scratch[i]->use().view;
+  }
 
   device.run([&](VkCommandBuffer commandBuffer) { EXPECT_TRUE(recordTranslucency(commandBuffer, g, t)); });
   const Image out = irradiance->download();

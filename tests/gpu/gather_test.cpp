@@ -115,10 +115,11 @@ TEST_F(Gather, StaysFinite) {
 TEST_F(Gather, PlanDiffusesBeforeItGathers) {
   const Capture c = backlitSlab(1, PELLUCID_DEPTH_VIEW_Z);
   const PellucidPlan plan = replayer().run(c, {testMaterial()}, settings(8)).plan;
-  ASSERT_EQ(plan.dispatchCount, 3u);
-  EXPECT_STREQ(plan.dispatches[0].name, "diffuse horizontally");
-  EXPECT_STREQ(plan.dispatches[2].name, "translucency");
-  EXPECT_EQ(plan.dispatches[2].pipeline, static_cast<uint32_t>(PELLUCID_PIPELINE_GATHER_32F));
+  ASSERT_GT(plan.dispatchCount, 2u);
+  const PellucidDispatch* last = plan.dispatches + plan.dispatchCount - 1;
+  EXPECT_STREQ(last[-1].name, "diffuse");
+  EXPECT_STREQ(last->name, "translucency");
+  EXPECT_EQ(last->pipeline, static_cast<uint32_t>(PELLUCID_PIPELINE_GATHER_32F));
 }
 
 TEST_F(Gather, RefusesWhatItCannotSample) {

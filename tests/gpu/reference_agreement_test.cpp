@@ -333,8 +333,7 @@ TEST_P(ThesisOptions, AgreeWithTheReference) {
 INSTANTIATE_TEST_SUITE_P(Reference, ThesisOptions, testing::ValuesIn(kOptions),
                          [](const auto& test) { return std::string(test.param.name); });
 
-// The two-dispatch diffusion is another algorithm than the reference's sum over all pixels; this is how
-// far it is, for a later one to lower.
+// The pyramid is another algorithm than the reference's sum over all pixels; this is how far it is.
 TEST_F(GpuTest, DiffusionDistanceToBruteForce) {
   // A wrong profile or a missing renormalization shows as tens of percent. Of the sphere only the limb is
   // lit, where every pixel is a silhouette.

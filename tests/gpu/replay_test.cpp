@@ -43,6 +43,7 @@ TEST_F(Replay, SlabTransmitsTOfItsThickness) {
   Capture c = flatCapture(16, 16, 2);
   c.lights = {backLight()};
   ReplaySettings s;
+  s.features = PELLUCID_FEATURE_TRANSLUCENCY;  // the diffusion's pyramid holds halves
   s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
   const Image out = replay(c, testMaterial(), s);
   // E + T(2 mm) E_back / rho, with E_back = 3 and rho = 1/2.
@@ -70,6 +71,7 @@ TEST_F(Replay, OccludedBackIsDark) {
   c.lights = {backLight()};
   c.lights[0].shadowMaps = {flatShadowMap(-42, PELLUCID_DEPTH_VIEW_Z)};  // a body 30 mm behind the slab
   ReplaySettings s;
+  s.features = PELLUCID_FEATURE_TRANSLUCENCY;  // the diffusion's pyramid holds halves
   s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
   s.translucency.thicknessSource = PELLUCID_THICKNESS_CAMERA;
   expectPixel(replay(c, testMaterial(), s), 5, 5, 1, 0.5, 0.25, 1e-5);
@@ -110,6 +112,7 @@ TEST_F(Replay, NoBackDepthAndNoMapIsNeverBright) {
 TEST_F(Replay, LightsAddUp) {
   Capture c = flatCapture(8, 8, 2);
   ReplaySettings s;
+  s.features = PELLUCID_FEATURE_TRANSLUCENCY;  // the diffusion's pyramid holds halves
   s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
   const double through = 6 * std::exp(-1.0);  // of one light, red
   for (const int mapped : {0, 1, 4, 19}) {
@@ -132,6 +135,7 @@ TEST_F(Replay, PointAndSpotLightsFollowTheInverseSquare) {
   light.position = {0, 0, -32};  // 20 mm behind the back face
   light.intensity = 1200;
   ReplaySettings s;
+  s.features = PELLUCID_FEATURE_TRANSLUCENCY;  // the diffusion's pyramid holds halves
   s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
   const double red = 2 * std::exp(-1.0) * 1200 / 400;
   c.lights = {light};

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "frame_fixture.h"
+#include "shared/pellucid_shared.h"
 
 namespace {
 
@@ -25,12 +26,13 @@ bool skips(const PellucidPlan& plan, const std::string& what, const std::string&
   return false;
 }
 
-TEST(Plan, WholeFrameIsThreeDispatches) {
+TEST(Plan, WholeFrameIsFusedDispatchAndPyramid) {
   Frame f;
   const PellucidPlan plan = f.plan();
   EXPECT_EQ(names(plan),
-            (std::vector<std::string>{"translucency", "diffuse horizontally", "diffuse vertically"}));
-  EXPECT_EQ(plan.barrierCount, 2u);
+            (std::vector<std::string>{"translucency", "reduce pixels", "reduce levels", "reduce levels",
+                                      "resolve levels", "resolve levels", "diffuse"}));
+  EXPECT_EQ(plan.barrierCount, 6u);
   EXPECT_EQ(plan.skipCount, 0u);
   EXPECT_EQ(plan.dispatches[0].barrierBefore, 0u);
   EXPECT_EQ(plan.dispatches[0].groups[0], 13u) << "100 pixels in groups of 8";
@@ -68,21 +70,24 @@ TEST(Plan, EveryReadIsOfSomethingWritten) {
       ASSERT_GT(plan.dispatchCount, 0u);
       std::set<uint32_t> written;
       for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
-        uint32_t destination = 0;
+        std::set<uint32_t> destinations;
         for (uint32_t b = 0; b < plan.dispatches[i].bindingCount; ++b) {
           const PellucidBinding& binding = plan.dispatches[i].bindings[b];
           const bool write = binding.type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
-          if (write) destination = binding.resource;
+          if (write) destinations.insert(binding.resource);
           const bool transient = binding.resource >= PELLUCID_RESOURCE_TRANSIENT0 &&
                                  binding.resource < PELLUCID_RESOURCE_SHADOW0;
-          EXPECT_TRUE(!transient || write || written.count(binding.resource)) << "dispatch " << i;
+          // The first resolving dispatch binds what the second reads.
+          const bool unread =
+              binding.binding == PELLUCID_BINDING_RESOLVED && plan.dispatches[i].pushConstants[2] == 0;
+          EXPECT_TRUE(!transient || write || unread || written.count(binding.resource)) << "dispatch " << i;
           EXPECT_TRUE(binding.resource != PELLUCID_RESOURCE_IRRADIANCE || i == 0)
               << "irradiance is read by the first dispatch only";
         }
         const bool last = i + 1 == plan.dispatchCount;
-        EXPECT_EQ(destination == PELLUCID_RESOURCE_OUTPUT, last)
+        EXPECT_EQ(destinations.count(PELLUCID_RESOURCE_OUTPUT) == 1, last)
             << "output is written by the last dispatch only";
-        written.insert(destination);
+        written.insert(destinations.begin(), destinations.end());
       }
     }
 }
@@ -91,7 +96,9 @@ TEST(Plan, NoLightNoTranslucency) {
   Frame f;
   f.frame.lightCount = 0;
   const PellucidPlan plan = f.plan();
-  EXPECT_EQ(names(plan), (std::vector<std::string>{"diffuse horizontally", "diffuse vertically"}));
+  EXPECT_EQ(names(plan), (std::vector<std::string>{"reduce pixels", "reduce levels", "reduce levels",
+                                                   "resolve levels", "resolve levels", "diffuse"}));
+  EXPECT_EQ(plan.dispatches[0].pipeline, static_cast<uint32_t>(PELLUCID_PIPELINE_REDUCE_AND_COPY_16F));
   EXPECT_TRUE(skips(plan, "translucency", "no light can contribute"));
 }
 
@@ -120,14 +127,37 @@ TEST(Plan, DiffusionNeedsAMaterialThatDiffuses) {
 TEST(Plan, ManyShadowImagesBecomeSeveralDispatches) {
   Frame f(20);  // 8 a dispatch
   const PellucidPlan plan = f.plan();
-  EXPECT_EQ(plan.dispatchCount, 5u);
   EXPECT_EQ(plan.activeLights, 20u);
   uint32_t lights = 0;
   for (int i = 0; i < 3; ++i) {
-    EXPECT_EQ(plan.dispatches[i].pushConstants[0], lights);
+    EXPECT_STREQ(plan.dispatches[i].name, "translucency");
+    EXPECT_LE(plan.dispatches[i].pushConstants[1], 8u);
     lights += plan.dispatches[i].pushConstants[1];
   }
   EXPECT_EQ(lights, 20u);
+  EXPECT_STREQ(plan.dispatches[3].name, "reduce pixels");
+}
+
+// Constants of a dispatch's lights are one window of a uniform buffer.
+TEST(Plan, ManyLightsBecomeSeveralDispatches) {
+  Frame f(0);
+  f.lights.resize(300, f.lights[0]);
+  f.use();
+  f.frame.features = PELLUCID_FEATURE_TRANSLUCENCY;
+  const PellucidPlan plan = f.plan();
+  ASSERT_EQ(plan.dispatchCount, 3u);
+  VkDeviceSize end = 0;
+  for (int i = 0; i < 3; ++i) {
+    const PellucidDispatch& d = plan.dispatches[i];
+    EXPECT_EQ(d.pushConstants[1], i < 2 ? 128u : 44u);
+    for (uint32_t b = 0; b < d.bindingCount; ++b) {
+      if (d.bindings[b].type != VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER) continue;
+      EXPECT_EQ(d.bindings[b].offset % 256, 0u);
+      EXPECT_LE(d.bindings[b].size, 16384u);
+      end = std::max(end, d.bindings[b].offset + d.bindings[b].size);
+    }
+  }
+  EXPECT_LE(end, plan.constantsSize);
 }
 
 TEST(Plan, ImageNeedsCoverThePlan) {
@@ -137,7 +167,7 @@ TEST(Plan, ImageNeedsCoverThePlan) {
     PellucidImageNeed needs[PELLUCID_MAX_TRANSIENTS];
     uint32_t count = PELLUCID_MAX_TRANSIENTS;
     ASSERT_EQ(pellucidGetImageNeeds(&f.frame, &count, needs), PELLUCID_OK);
-    EXPECT_EQ(count, features == 3 ? 2u : features == 2 ? 1u : 0u);
+    EXPECT_EQ(count, features == 1 ? 0u : 3u) << "a color, the pyramid, its resolved levels";
     const PellucidPlan plan = f.plan();
     for (uint32_t d = 0; d < plan.dispatchCount; ++d)
       for (uint32_t b = 0; b < plan.dispatches[d].bindingCount; ++b) {
@@ -147,7 +177,12 @@ TEST(Plan, ImageNeedsCoverThePlan) {
         ASSERT_LT(transient, count);
         EXPECT_GE(d, needs[transient].firstDispatch);
         EXPECT_LE(d, needs[transient].lastDispatch);
-        EXPECT_EQ(needs[transient].bytes, 100u * 50u * 8u);
+        const bool pyramid = needs[transient].format == VK_FORMAT_R32G32B32A32_UINT;
+        EXPECT_EQ(needs[transient].bytes,
+                  needs[transient].extent[0] * needs[transient].extent[1] * (pyramid ? 16u : 8u));
+        if (!pyramid) {
+          EXPECT_EQ(needs[transient].bytes, 100u * 50u * 8u);
+        }
       }
   }
 }
@@ -161,7 +196,7 @@ TEST(Plan, JsonParses) {
   ASSERT_EQ(pellucidPlanToJson(&plan, text.data(), &size), PELLUCID_OK);
   text.pop_back();
   const nlohmann::json json = nlohmann::json::parse(text);
-  EXPECT_EQ(json.at("dispatchCount"), 3);
+  EXPECT_EQ(json.at("dispatchCount"), plan.dispatchCount);
   EXPECT_EQ(json.at("dispatches").at(0).at("groups"), nlohmann::json::array({13, 7, 1}));
   size = 10;
   char small[10];

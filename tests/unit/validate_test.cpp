@@ -113,7 +113,7 @@ class Validate : public testing::TestWithParam<Violation> {};
 
 TEST_P(Validate, NamesFieldAndValue) {
   Frame f;
-  f.frame.transients[0] = f.frame.transients[1] = Frame::view();
+  for (PellucidImage& image : f.frame.transients) image = Frame::view();
   ASSERT_EQ(f.problems(), "");
   GetParam().commit(f);
   const std::string problems = f.problems();
@@ -137,7 +137,7 @@ TEST(Validate, MissingViewsAreNamed) {
 
 TEST(Validate, WarnsOfLightsThatAddNothing) {
   Frame f;
-  f.frame.transients[0] = f.frame.transients[1] = Frame::view();
+  for (PellucidImage& image : f.frame.transients) image = Frame::view();
   f.lights[0].intensity = 0;
   EXPECT_NE(f.problems(PELLUCID_SEVERITY_WARNING).find("lights[0] adds nothing: no intensity"),
             std::string::npos);

@@ -198,7 +198,7 @@ typedef struct PellucidFrame {
                                Pixels of material 0 are not written; alpha is the irradiance's */
   PellucidImage transients[PELLUCID_MAX_TRANSIENTS]; /* as listed by pellucidGetImageNeeds */
   VkFormat outputFormat;    /* VK_FORMAT_R16G16B16A16_SFLOAT (default) or R32G32B32A32_SFLOAT; also
-                               of the transients */
+                               of the transients that hold colors */
   uint32_t frontDepthEncoding, backDepthEncoding; /* PELLUCID_DEPTH_DEVICE (default) or VIEW_Z */
   uint32_t normalsInViewSpace; /* 0: world (default) */
 
@@ -283,7 +283,12 @@ typedef enum PellucidPipeline {
   PELLUCID_PIPELINE_GATHER_32F = 7,
   PELLUCID_PIPELINE_ADD_HISTORY_16F = 8,
   PELLUCID_PIPELINE_ADD_HISTORY_32F = 9,
-  PELLUCID_PIPELINE_COUNT = 10
+  PELLUCID_PIPELINE_REDUCE_AND_COPY_16F = 10,
+  PELLUCID_PIPELINE_REDUCE_AND_COPY_32F = 11,
+  PELLUCID_PIPELINE_REDUCE_PIXELS = 12,
+  PELLUCID_PIPELINE_REDUCE_LEVELS = 13,
+  PELLUCID_PIPELINE_RESOLVE_LEVELS = 14,
+  PELLUCID_PIPELINE_COUNT = 15
 } PellucidPipeline;
 
 enum {
@@ -343,8 +348,9 @@ typedef struct PellucidPlan {
   PellucidHistory history;
 } PellucidPlan;
 
-/* One transient the caller creates: 2D, one mip, imageExtent, usage SAMPLED | STORAGE. It holds
- * nothing between frames, so it may alias any memory not used during dispatches first..last. */
+/* One transient the caller creates: 2D, one mip, of this format and extent, usage SAMPLED | STORAGE. It holds
+ * nothing between frames, so it may alias any memory not used during dispatches first..last. The extents hold for
+ * every render rect. */
 typedef struct PellucidImageNeed {
   VkFormat format;
   uint32_t extent[2];

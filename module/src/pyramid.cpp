@@ -1,0 +1,40 @@
+#include "pyramid.h"
+
+#include <algorithm>
+
+namespace pellucid {
+namespace {
+
+// Texels of a level under `pixels` in a row, wherever they start, and one more on each side.
+uint32_t most(uint32_t pixels, uint32_t level) { return ((pixels - 1) >> level) + 3; }
+
+}  // namespace
+
+uint32_t coarsestLevel(const PellucidFrame& frame) {
+  uint32_t level = kFirstLevel;
+  while (level < PELLUCID_LAST_LEVEL && std::max(frame.imageExtent[0], frame.imageExtent[1]) >> level > 1)
+    level += 2;
+  return level;
+}
+
+PyramidPlace placeOf(const PellucidFrame& frame, uint32_t level) {
+  PyramidPlace place{};
+  if (level > kFirstLevel) place.x = static_cast<int32_t>(most(frame.imageExtent[0], kFirstLevel));
+  for (uint32_t l = kFirstLevel + 1; l < level; ++l)
+    place.y += static_cast<int32_t>(most(frame.imageExtent[1], l));
+  const Rect r = renderRect(frame);
+  const auto first = [level](uint32_t pixel) { return static_cast<int32_t>(pixel >> level) - 1; };
+  const auto end = [level](uint32_t pixels) { return static_cast<int32_t>((pixels - 1) >> level) + 2; };
+  place.rect = {first(r.x), first(r.y), end(r.x + r.width) - first(r.x), end(r.y + r.height) - first(r.y)};
+  return place;
+}
+
+PyramidExtent pyramidExtent(const PellucidFrame& frame) {
+  const uint32_t last = coarsestLevel(frame);
+  uint32_t width = most(frame.imageExtent[0], kFirstLevel), height = 0;
+  if (last > kFirstLevel) width += most(frame.imageExtent[0], kFirstLevel + 1);
+  for (uint32_t l = kFirstLevel + 1; l <= last; ++l) height += most(frame.imageExtent[1], l);
+  return {width, std::max(height, most(frame.imageExtent[1], kFirstLevel))};
+}
+
+}  // namespace pellucid

@@ -1,0 +1,34 @@
+// Where the levels of the diffusion pyramid lie in its image. Level 2 is at the left, the coarser ones are below
+// each other beside it.
+#pragma once
+
+#include "frame.h"
+
+namespace pellucid {
+
+constexpr uint32_t kFirstLevel = 2;
+
+// The coarsest level in use: even, because reductions make two levels at a time, and no coarser than it takes for
+// the image to lie on 2 x 2 texels.
+uint32_t coarsestLevel(const PellucidFrame& frame);
+
+struct PyramidPlace {
+  int32_t x, y;  // in the image
+  struct {
+    int32_t x, y, width, height;
+  } rect;  // texels of the level that the render rect needs, as levelRect of compute/lib/pyramid.glsl
+};
+
+PyramidPlace placeOf(const PellucidFrame& frame, uint32_t level);
+
+// Of an image for any render rect.
+struct PyramidExtent {
+  uint32_t width, height;
+};
+
+PyramidExtent pyramidExtent(const PellucidFrame& frame);
+
+// Of an image with the resolved levels that are kept.
+PyramidExtent resolvedExtent(const PellucidFrame& frame);
+
+}  // namespace pellucid

@@ -1,0 +1,143 @@
+// What the diffusion promises about pixels.
+#include "gpu_fixture.h"
+
+#include <cmath>
+
+namespace {
+
+using namespace pellucid::test;
+
+using Diffusion = GpuTest;
+
+// Gaussians of these standard deviations in pixels of flatCapture's width, equal weights, in all channels.
+PellucidMaterial gaussians(std::initializer_list<double> deviations, double pixel) {
+  PellucidMaterial m = testMaterial();
+  m.gaussianCount = 0;
+  for (const double s : deviations) {
+    for (int c = 0; c < 3; ++c) {
+      m.gaussianVariance[c][m.gaussianCount] = static_cast<float>(s * s * pixel * pixel);
+      m.gaussianWeight[c][m.gaussianCount] = 1 / static_cast<float>(deviations.size());
+      m.radius[c] = static_cast<float>(3.8 * s * pixel);
+    }
+    ++m.gaussianCount;
+  }
+  return m;
+}
+
+double pixelOf(const Capture& c) { return 2 / (c.clipFromView[0] * c.width); }
+
+Capture dark(int width, int height) {
+  Capture c = flatCapture(width, height);
+  std::fill(c.irradiance.data.begin(), c.irradiance.data.end(), 0.0f);
+  return c;
+}
+
+void light(Capture& c, int x, int y, float value) {
+  for (int k = 0; k < 3; ++k) c.irradiance.at(x, y)[k] = value;
+}
+
+ReplaySettings diffusionOnly() {
+  ReplaySettings s;
+  s.features = PELLUCID_FEATURE_DIFFUSION;
+  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  return s;
+}
+
+double sum(const Image& image, int channel) {
+  double total = 0;
+  for (size_t i = 0; i < image.pixels(); ++i) total += image.data[4 * i + static_cast<size_t>(channel)];
+  return total;
+}
+
+// Wherever the spot lies against the pyramid, and far enough from the rim that all of it stays inside.
+TEST_F(Diffusion, IsolatedSpotKeepsItsEnergy) {
+  for (const auto& deviations : {std::initializer_list<double>{0.7}, {1.5}, {1, 4}, {0.5, 6}}) {
+    double total = 0, worst = 0;
+    for (const auto& [x, y] : {std::pair(64, 64), std::pair(65, 67), std::pair(70, 66), std::pair(63, 61)}) {
+      Capture c = dark(128, 128);
+      light(c, x, y, 1000);
+      const double energy = sum(replay(c, gaussians(deviations, pixelOf(c)), diffusionOnly()), 0) / 1000;
+      total += energy / 4;
+      worst = std::max(worst, std::abs(energy - 1));
+    }
+    EXPECT_NEAR(total, 1, 5e-3);
+    EXPECT_LT(worst, 5e-3);
+  }
+}
+
+TEST_F(Diffusion, BlackStaysBlack) {
+  const Image out = replay(dark(40, 30), testMaterial(), diffusionOnly());
+  for (int k = 0; k < 3; ++k) EXPECT_EQ(sum(out, k), 0);
+}
+
+// The result belongs to the image and not to the workgroups: a rect at any offset gives the same pixels, away
+// from its own rim.
+TEST_F(Diffusion, ShiftedRectGivesTheSamePixels) {
+  Capture c = dark(128, 128);
+  for (int y = 56; y < 72; ++y)
+    for (int x = 56; x < 72; ++x) light(c, x, y, static_cast<float>((x * 7 + y * 13) % 5));
+  const PellucidMaterial m = gaussians({1, 4}, pixelOf(c));
+  const Image whole = replay(c, m, diffusionOnly());
+  for (const auto& rect :
+       {std::array<uint32_t, 4>{1, 0, 127, 128}, {2, 3, 120, 119}, {7, 5, 114, 116}, {13, 11, 110, 101}}) {
+    ReplaySettings s = diffusionOnly();
+    s.renderRect = rect;
+    const Image part = replay(c, m, s);
+    for (int y = 44; y < 84; ++y)
+      for (int x = 44; x < 84; ++x)
+        EXPECT_NEAR(part.at(x, y)[0], whole.at(x, y)[0], 1e-3 * (1 + whole.at(x, y)[0])) << x << ", " << y;
+  }
+}
+
+// An edge of depth 30 times the kernel's reach lets nothing over.
+TEST_F(Diffusion, NoHaloAtASilhouette) {
+  Capture c = dark(64, 64);
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 64; ++x) {
+      const bool front = x + y / 3 < 37;
+      c.frontDepth.image.at(x, y)[0] = front ? 10.0f : 60.0f;
+      if (front) light(c, x, y, 1);
+    }
+  const Image out = replay(c, gaussians({1, 3}, pixelOf(c)), diffusionOnly());
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 64; ++x) EXPECT_NEAR(out.at(x, y)[0], x + y / 3 < 37 ? 1 : 0, 1e-3) << x << ", " << y;
+}
+
+TEST_F(Diffusion, MaterialsDoNotBleed) {
+  Capture c = dark(64, 64);
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 64; ++x) {
+      const bool lit = (x + 2 * y) % 97 < 53;
+      c.material[static_cast<size_t>(y * 64 + x)] = lit ? 1 : 2;
+      if (lit) light(c, x, y, 1);
+    }
+  c.materials.resize(2);
+  const double pixel = pixelOf(c);
+  const Image out =
+      replayer().run(c, {gaussians({1, 3}, pixel), gaussians({6}, pixel)}, diffusionOnly()).output;
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 64; ++x)
+      EXPECT_NEAR(out.at(x, y)[0], (x + 2 * y) % 97 < 53 ? 1 : 0, 1e-3) << x << ", " << y;
+}
+
+TEST_F(Diffusion, SubpixelRadiusReturnsTheInput) {
+  Capture c = dark(32, 32);
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 32; ++x) light(c, x, y, static_cast<float>((x * 7 + y * 13) % 5));
+  const Image out = replay(c, gaussians({0.03, 0.12}, pixelOf(c)), diffusionOnly());
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 32; ++x)
+      EXPECT_NEAR(out.at(x, y)[0], c.irradiance.at(x, y)[0], 1e-3) << x << ", " << y;
+}
+
+// Wider than the image: the mean of all of it, as far as the coarsest level (256 pixels a texel) reaches.
+TEST_F(Diffusion, RadiusBeyondTheScreenGivesTheMean) {
+  Capture c = dark(64, 64);
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 32; ++x) light(c, x, y, 1);
+  const Image out = replay(c, gaussians({1e4}, pixelOf(c)), diffusionOnly());
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 64; ++x) EXPECT_NEAR(out.at(x, y)[0], 0.5, 0.1) << x << ", " << y;
+}
+
+}  // namespace
