@@ -2,6 +2,7 @@
 #ifndef PELLUCID_LIGHT_GLSL
 #define PELLUCID_LIGHT_GLSL
 
+#include "lib/common_case.glsl"
 #include "shared/pellucid_shared.h"
 
 struct Incident {
@@ -11,7 +12,7 @@ struct Incident {
 };
 
 Incident incidentLight(LightConstants light, vec3 x) {
-  if (light.meta.x == PELLUCID_SHADER_LIGHT_DIRECTIONAL)
+  if (kDirectional || light.meta.x == PELLUCID_SHADER_LIGHT_DIRECTIONAL)
     return Incident(light.radiance.rgb, -light.direction.xyz, 0.0);
   vec3 offset = light.position.xyz - x;
   // The floor keeps a point at the light finite; 1e-12 is far below any squared depth resolution.

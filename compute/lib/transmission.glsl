@@ -14,7 +14,7 @@
 
 vec3 materialTransmittance(uint m, float d) {
   vec3 t = vec3(0.0);
-  if (materials[m].meta.x == PELLUCID_SHADER_TRANSMITTANCE_EXP2) {
+  if (kDirectional || materials[m].meta.x == PELLUCID_SHADER_TRANSMITTANCE_EXP2) {
     t = vec3(transmittanceExp2(materials[m].transmittance[0], d), transmittanceExp2(materials[m].transmittance[1], d),
              transmittanceExp2(materials[m].transmittance[2], d));
   } else if (materials[m].meta.x == PELLUCID_SHADER_TRANSMITTANCE_SINH_EXP) {
@@ -59,7 +59,8 @@ struct LightSpace {
 
 // The first of the light's maps that contains x.
 LightSpace lightSpace(LightConstants light, Incident incident, vec3 x) {
-  for (uint i = 0u; i < light.meta.z; ++i) {
+  uint maps = kDirectional ? 1u : light.meta.z;
+  for (uint i = 0u; i < maps; ++i) {
     ShadowConstants shadow = shadows[light.meta.y + i];
     ShadowReceiver receiver = projectReceiver(shadow, x);
     if (!receiver.inside) continue;
@@ -77,7 +78,7 @@ struct Transmitted {
 };
 
 float hiddenCosine(LightConstants light, Surface s, vec3 toLight) {
-  uint model = frame.flags.w;
+  uint model = angleModel();
   if (model == PELLUCID_SHADER_ANGLE_NORMAL && s.hasNormal) return max(-dot(s.normal, toLight), 0.0);
   vec3 view = hasFlag(PELLUCID_FLAG_CONSTANT_VIEW) ? vec3(0.0, 0.0, frame.camera.range.x) : s.view;
   float x = dot(view, toLight) * light.cone.z + light.cone.w; // from the minimum dot on, if the model has one
@@ -89,7 +90,7 @@ float hiddenCosine(LightConstants light, Surface s, vec3 toLight) {
 // docs/design.md says why each source is what it is.
 Transmitted lightTransmission(LightConstants light, Surface s) {
   Incident incident = incidentLight(light, s.position);
-  bool mapped = light.meta.z != 0u;
+  bool mapped = kDirectional || light.meta.z != 0u;
   if (mapped && !hasFlag(PELLUCID_FLAG_CAMERA_THICKNESS)) {
     LightSpace l = lightSpace(light, incident, s.position);
     vec3 arriving = incident.irradiance * hiddenCosine(light, s, incident.toLight);

@@ -155,6 +155,10 @@ void main() {
       coarserShare = mix(kernels[m].pixelShare[2u * i].rgb, kernels[m].pixelShare[2u * i + 2u].rgb, part);
       binomialShare = mix(kernels[m].pixelShare[2u * i + 1u].rgb, kernels[m].pixelShare[2u * i + 3u].rgb, part);
     }
+    // Shares are weighted with the densities that were found, 4 for all four pixels. The pixel itself is there, so
+    // the divisor is 0 only where all of the share is the coarser one's.
+    vec3 theirs = coarserShare * (0.25 * weights);
+    coarserShare = theirs / max(1.0 - coarserShare + theirs, vec3(1.0e-6));
     for (int i = 0; i < 4; ++i) {
       if ((here & 1u << i) == 0u) continue;
       ivec2 pixel = group + local + ivec2(i & 1, i >> 1);
@@ -162,12 +166,8 @@ void main() {
       vec3 color = sanitize(source.rgb);
       // The pixel counts in its binomial, so the divisor is 0 only where the anchor's surface has no slope to go by.
       color = mix(color, fine[i].rgb / max(fine[i].a, 1.0e-6), binomialShare * min(4.0 * fine[i].a, 1.0));
-      // Shares are weighted with the densities that were found. The pixel itself is there, so the divisor is 0
-      // only where all of the share is the coarser one's.
-      vec3 theirs = coarserShare * coarser[i].a;
-      vec3 mean = coarser[i].rgb / max(coarser[i].a, 1.0e-6);
-      color = mix(color, mean, theirs / max(1.0 - coarserShare + theirs, vec3(1.0e-6)));
-      writeResult(pixel, max(color, vec3(0.0)), source.a, pass.value.w != 0u);
+      color = mix(color, coarser[i].rgb / max(coarser[i].a, 1.0e-6), coarserShare);
+      writeResult(pixel, color, source.a, pass.value.w != 0u);
     }
   }
 }

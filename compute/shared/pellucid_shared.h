@@ -17,7 +17,7 @@ using glm::vec4;
 #define PELLUCID_GROUP_X 8
 #define PELLUCID_GROUP_Y 8
 #define PELLUCID_DIFFUSE_GROUP 8 // a side; an invocation does 2 x 2 pixels
-#define PELLUCID_REDUCE_GROUP 16 // a side, of the pyramid's reductions
+#define PELLUCID_REDUCE_GROUP 8 // a side, of the pyramid's reductions
 
 #define PELLUCID_BINDING_FRAME 0
 #define PELLUCID_BINDING_LIGHTS 1

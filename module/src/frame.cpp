@@ -24,13 +24,17 @@ bool addLight(const PellucidFrame& frame, const PellucidLight& light, LightGroup
     if (grown.imageCount == PELLUCID_SHADOW_IMAGE_COUNT) return false;
     grown.images[grown.imageCount++] = image;
   }
+  grown.directional = grown.directional && light.type == PELLUCID_LIGHT_DIRECTIONAL &&
+                      light.shadowMapCount == 1 &&
+                      frame.shadowMaps[light.firstShadowMap].encoding == PELLUCID_DEPTH_DEVICE;
   ++grown.lightCount;
   *group = grown;
   return true;
 }
 
 bool needsChord(const PellucidFrame& frame) {
-  if (frame.thicknessSource == PELLUCID_THICKNESS_CAMERA || frame.debugView == PELLUCID_DEBUG_THICKNESS) return true;
+  if (frame.thicknessSource == PELLUCID_THICKNESS_CAMERA || frame.debugView == PELLUCID_DEBUG_THICKNESS)
+    return true;
   for (uint32_t i = 0; i < frame.lightCount; ++i)
     if (frame.lights[i].shadowMapCount == 0) return true;
   return false;

@@ -31,6 +31,7 @@ constexpr VkDeviceSize aligned(VkDeviceSize bytes) { return (bytes + 255) / 256 
 
 struct LightGroup {
   uint32_t firstLight = 0, lightCount = 0;       // among the lights that are not skipped
+  bool directional = true;   // every light is directional with one shadow map of device depth
   uint32_t shadowCount = 0;                      // shadow maps
   VkDeviceSize lightBytes = 0, shadowBytes = 0;  // of the groups before, in the constants
   uint32_t imageCount = 0;

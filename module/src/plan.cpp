@@ -90,11 +90,22 @@ struct Builder {
     d->modeledBytes += colorBytes() * pixels();
   }
 
+  // What compute/lib/common_case.glsl takes for granted besides the lights.
+  bool directionalFrame() const {
+    bool exponentials = true;
+    for (uint32_t i = 0; i < frame.materialCount; ++i)
+      exponentials = exponentials && frame.materials[i].transmittanceModel == PELLUCID_TRANSMITTANCE_EXP2;
+    return exponentials && given(frame.normal) && frame.frontDepthEncoding == PELLUCID_DEPTH_DEVICE &&
+           frame.thicknessSource == PELLUCID_THICKNESS_LIGHT && frame.angleModel == PELLUCID_ANGLE_NORMAL &&
+           frame.constantViewDirection == 0;
+  }
+
   bool translucency(const LightGroup& group, uint32_t source, uint32_t destination) {
     const bool debug = frame.debugView != PELLUCID_DEBUG_NONE;
-    const uint32_t half = debug                     ? PELLUCID_PIPELINE_DEBUG_16F
-                          : frame.gatherSamples > 0 ? PELLUCID_PIPELINE_GATHER_16F
-                                                    : PELLUCID_PIPELINE_TRANSLUCENCY_16F;
+    const uint32_t half = debug                                     ? PELLUCID_PIPELINE_DEBUG_16F
+                          : frame.gatherSamples > 0                 ? PELLUCID_PIPELINE_GATHER_16F
+                          : group.directional && directionalFrame() ? PELLUCID_PIPELINE_DIRECTIONAL_16F
+                                                                    : PELLUCID_PIPELINE_TRANSLUCENCY_16F;
     const uint32_t pipeline = half + (wide() ? 1 : 0);  // the 32F variant follows the 16F one
     PellucidDispatch* d = dispatch(debug ? "debug view" : "translucency", pipeline);
     if (!d) return false;

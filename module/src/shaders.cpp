@@ -8,6 +8,8 @@
 #include "kDebug32f.h"
 #include "kDiffuse16f.h"
 #include "kDiffuse32f.h"
+#include "kDirectional16f.h"
+#include "kDirectional32f.h"
 #include "kGather16f.h"
 #include "kGather32f.h"
 #include "kReduce.h"
@@ -28,12 +30,13 @@ constexpr Shader shader(const uint32_t (&words)[N]) {
 }
 
 // In the order of PellucidPipeline.
-const std::array kShaders = {
-    shader(kTranslucency16f), shader(kTranslucency32f), shader(kDebug16f),         shader(kDebug32f),
-    shader(kDiffuse16f),      shader(kDiffuse32f),      shader(kGather16f),        shader(kGather32f),
+const std::array kShaders = {shader(kTranslucency16f),  shader(kTranslucency32f), shader(kDebug16f),
+                             shader(kDebug32f),         shader(kDiffuse16f),      shader(kDiffuse32f),
+                             shader(kGather16f),        shader(kGather32f),
 
-    shader(kAddHistory16f),   shader(kAddHistory32f),   shader(kReduceAndCopy16f), shader(kReduceAndCopy32f),
-    shader(kReducePixels),    shader(kReduce),          shader(kResolve)};
+                             shader(kAddHistory16f),    shader(kAddHistory32f),   shader(kReduceAndCopy16f),
+                             shader(kReduceAndCopy32f), shader(kReducePixels),    shader(kReduce),
+                             shader(kResolve),          shader(kDirectional16f),  shader(kDirectional32f)};
 static_assert(kShaders.size() == PELLUCID_PIPELINE_COUNT);
 
 }  // namespace

@@ -53,12 +53,24 @@ extern "C" const char* pellucidResourceName(uint32_t resource) {
 }
 
 extern "C" const char* pellucidPipelineName(uint32_t pipeline) {
-  static constexpr std::array names = {
-      "translucency_rgba16f", "translucency_rgba32f", "debug_rgba16f",           "debug_rgba32f",
-      "diffuse_rgba16f",      "diffuse_rgba32f",      "gather_rgba16f",          "gather_rgba32f",
+  static constexpr std::array names = {"translucency_rgba16f",
+                                       "translucency_rgba32f",
+                                       "debug_rgba16f",
+                                       "debug_rgba32f",
+                                       "diffuse_rgba16f",
+                                       "diffuse_rgba32f",
+                                       "gather_rgba16f",
+                                       "gather_rgba32f",
 
-      "add_history_rgba16f",  "add_history_rgba32f",  "reduce_and_copy_rgba16f", "reduce_and_copy_rgba32f",
-      "reduce_pixels",        "reduce_levels",        "resolve_levels"};
+                                       "add_history_rgba16f",
+                                       "add_history_rgba32f",
+                                       "reduce_and_copy_rgba16f",
+                                       "reduce_and_copy_rgba32f",
+                                       "reduce_pixels",
+                                       "reduce_levels",
+                                       "resolve_levels",
+                                       "translucency_directional_rgba16f",
+                                       "translucency_directional_rgba32f"};
   static_assert(names.size() == PELLUCID_PIPELINE_COUNT);
   return pipeline < names.size() ? names[pipeline] : "unknown pipeline";
 }

@@ -128,6 +128,32 @@ TEST_F(Replay, LightsAddUp) {
   }
 }
 
+// A light too weak to show takes the frame out of the directional variant and must change nothing else.
+TEST_F(Replay, DirectionalVariantGivesTheSamePixels) {
+  Capture c = flatCapture(24, 16, 2);
+  c.frontDepth = {Image(24, 16, 1, 0.1f), PELLUCID_DEPTH_DEVICE};
+  for (int x = 0; x < 24; ++x) c.normal.at(x, 3)[0] = 0.1f * static_cast<float>(x);
+  for (int k = 0; k < 3; ++k) c.normal.at(5, 5)[k] = 0;
+  c.irradiance.at(7, 7)[0] = kNan;
+  c.lights = {backLight(), backLight()};
+  c.lights[0].shadowMaps = {flatShadowMap(-12, PELLUCID_DEPTH_DEVICE)};
+  c.lights[1].shadowMaps = {flatShadowMap(-13, PELLUCID_DEPTH_DEVICE)};
+  c.lights[1].direction = {0.3, 0.1, 0.9};
+  ReplaySettings s;
+  s.features = PELLUCID_FEATURE_TRANSLUCENCY;
+  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  const ReplayResult common = replayer().run(c, {testMaterial()}, s);
+  Light weak;
+  weak.type = PELLUCID_LIGHT_POINT;
+  weak.position = {0, 0, -300};
+  weak.intensity = 1e-20;
+  c.lights.push_back(weak);
+  const ReplayResult general = replayer().run(c, {testMaterial()}, s);
+  ASSERT_NE(common.plan.dispatches[0].pipeline, general.plan.dispatches[0].pipeline);
+  for (size_t i = 0; i < common.output.data.size(); ++i)
+    EXPECT_NEAR(common.output.data[i], general.output.data[i], 1e-6 * (1 + common.output.data[i])) << i;
+}
+
 TEST_F(Replay, PointAndSpotLightsFollowTheInverseSquare) {
   Capture c = flatCapture(1, 1, 2);
   Light light;

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstring>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -158,6 +159,37 @@ TEST(Plan, ManyLightsBecomeSeveralDispatches) {
     }
   }
   EXPECT_LE(end, plan.constantsSize);
+}
+
+// The variant for directional lights is chosen only where everything that it takes for granted holds.
+TEST(Plan, DirectionalVariantNeedsTheCommonCase) {
+  const auto pipeline = [](const std::function<void(Frame&)>& change) {
+    Frame f;
+    f.frame.normal = Frame::view();
+    change(f);
+    f.use();
+    return f.plan().dispatches[0].pipeline;
+  };
+  const auto directional = [&](const std::function<void(Frame&)>& change) {
+    return pipeline(change) == static_cast<uint32_t>(PELLUCID_PIPELINE_DIRECTIONAL_16F);
+  };
+  ASSERT_TRUE(directional([](Frame&) {}));
+  EXPECT_FALSE(directional([](Frame& f) { f.frame.normal = {}; }));
+  EXPECT_FALSE(directional([](Frame& f) { f.frame.frontDepthEncoding = PELLUCID_DEPTH_VIEW_Z; }));
+  EXPECT_FALSE(directional([](Frame& f) { f.frame.thicknessSource = PELLUCID_THICKNESS_CAMERA; }));
+  EXPECT_FALSE(directional([](Frame& f) { f.frame.angleModel = PELLUCID_ANGLE_COSINE; }));
+  EXPECT_FALSE(directional([](Frame& f) { f.frame.constantViewDirection = 1; }));
+  EXPECT_FALSE(directional([](Frame& f) { f.material.transmittanceModel = PELLUCID_TRANSMITTANCE_LINEAR; }));
+  EXPECT_FALSE(directional([](Frame& f) { f.lights[0].shadowMapCount = 0; }));
+  EXPECT_FALSE(directional([](Frame& f) {
+    f.maps[0].encoding = PELLUCID_DEPTH_VIEW_Z;
+    for (int i = 0; i < 4; ++i) f.maps[0].viewFromWorld[5 * i] = 1;
+  }));
+  EXPECT_FALSE(directional([](Frame& f) {
+    f.lights.push_back(f.lights[0]);
+    f.lights[1].type = PELLUCID_LIGHT_POINT;
+    f.lights[1].shadowMapCount = 0;
+  }));
 }
 
 TEST(Plan, ImageNeedsCoverThePlan) {

@@ -288,7 +288,10 @@ typedef enum PellucidPipeline {
   PELLUCID_PIPELINE_REDUCE_PIXELS = 12,
   PELLUCID_PIPELINE_REDUCE_LEVELS = 13,
   PELLUCID_PIPELINE_RESOLVE_LEVELS = 14,
-  PELLUCID_PIPELINE_COUNT = 15
+  PELLUCID_PIPELINE_DIRECTIONAL_16F = 15, /* translucency where all lights are directional with one map of device
+                                             depth, with normals, EXP2 materials and the default models */
+  PELLUCID_PIPELINE_DIRECTIONAL_32F = 16,
+  PELLUCID_PIPELINE_COUNT = 17
 } PellucidPipeline;
 
 enum {

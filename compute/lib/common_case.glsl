@@ -1,0 +1,13 @@
+// What a shader may take for granted, so that the compiler drops the rest: half of the fused dispatch's instructions.
+#ifndef PELLUCID_COMMON_CASE_GLSL
+#define PELLUCID_COMMON_CASE_GLSL
+
+// DIRECTIONAL: all lights are directional with one shadow map of device depth each, thickness is light-space, front
+// depth is device depth, normals are given and stand for the angle, and all materials are EXP2.
+#ifdef DIRECTIONAL
+const bool kDirectional = true;
+#else
+const bool kDirectional = false;
+#endif
+
+#endif
