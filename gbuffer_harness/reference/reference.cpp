@@ -10,6 +10,7 @@
 #include "common/error.h"
 #include "common/parallel.h"
 #include "common/progress.h"
+#include "reference/gather.h"
 #include "reference/surface.h"
 #include "reference/translucency.h"
 
@@ -71,7 +72,7 @@ public:
       case PELLUCID_DEBUG_NONE:
         return diffused();
       case PELLUCID_DEBUG_IRRADIANCE:
-        gatherIrradiance();
+        gatherIrradiance(true);
         return {toImage(values_), 0, 0};
       default:
         gatherDebugView();
@@ -105,13 +106,33 @@ private:
   }
 
   // E + transmitted / rho.
-  void gatherIrradiance() {
+  void gatherIrradiance(bool through) {
     forEachPixel("translucency", [&](int x, int y, std::size_t i) {
       const float* e = capture_.irradiance.at(x, y);
       values_[i] = {sanitized(e[0]), sanitized(e[1]), sanitized(e[2])};
-      if (!(settings_.features & PELLUCID_FEATURE_TRANSLUCENCY)) return;
+      if (through && settings_.features & PELLUCID_FEATURE_TRANSLUCENCY) values_[i] += transmitted(x, y, i);
+    });
+  }
+
+  // As irradiance that albedo = rho turns into the exitance.
+  glm::dvec3 transmitted(int x, int y, std::size_t i) const {
+    const float* rho = material(i).reflectance;
+    return transmission(x, y, i).transmitted / glm::dvec3(rho[0], rho[1], rho[2]);
+  }
+
+  // Adds to the diffused irradiance what all texels of the shadow maps bring, and the lights without one.
+  void gather(std::vector<glm::dvec3>& output) const {
+    const Gather all(capture_, surfaces_, materials_, double(settings_.translucency.shadowBias));
+    const auto& f = settings_.translucency.transmittanceFilter;
+    const bool spreads = settings_.features & PELLUCID_FEATURE_DIFFUSION;
+    forEachPixel("gather", [&](int x, int y, std::size_t i) {
+      const std::optional<Surface> surface = surfaces_.at(x, y);
+      if (!surface || marks_.count(i) != 0) return;
+      const Gathered g = all.at(*surface, capture_.material[i] - 1u);
       const float* rho = material(i).reflectance;
-      values_[i] += transmission(x, y, i).transmitted / glm::dvec3(rho[0], rho[1], rho[2]);
+      if (spreads) output[i] = (1.0 - g.displaced) * output[i] + g.entering;
+      output[i] += g.transmitted * glm::dvec3(f[0], f[1], f[2]) / glm::dvec3(rho[0], rho[1], rho[2]) +
+                   transmitted(x, y, i);
     });
   }
 
@@ -121,8 +142,11 @@ private:
     });
   }
 
+  // What comes through is diffused with the irradiance; gathered light has already spread, so it comes after.
   Result diffused() {
-    gatherIrradiance();
+    const bool gathers =
+        settings_.translucency.gatherSamples > 0 && settings_.features & PELLUCID_FEATURE_TRANSLUCENCY;
+    gatherIrradiance(!gathers);
     Result result;
     std::vector<glm::dvec3> output = values_;
     if (settings_.features & PELLUCID_FEATURE_DIFFUSION) {
@@ -131,6 +155,7 @@ private:
       result.radius = diffusion.radius();
       result.discardedEnergy = settings_.diffusion.discardedEnergy;
     }
+    if (gathers) gather(output);
     if (!capture_.albedo.empty())
       forEachPixel("albedo", [&](int x, int y, std::size_t i) {
         const float* albedo = capture_.albedo.at(x, y);

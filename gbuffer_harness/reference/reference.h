@@ -28,7 +28,8 @@ struct Result {
 // The output of the pass, albedo * diffused(E + transmitted / rho), or the debug view; computed in
 // double, rounded to float at the end. `materials` belong to the capture's in order. Pixels of
 // material 0, which the pass leaves alone, are 0. Irradiance that is NaN or negative counts as 0 and
-// above 65504 (largest half) as 65504. A material pixel without front depth only gets its albedo.
+// above 65504 (largest half) as 65504. gatherSamples > 0 gathers over all texels, however many samples that
+// asks for. A material pixel without front depth only gets its albedo.
 // Debug views have the layouts of PellucidDebugView, TRANSMITTANCE and OCCLUSION per channel:
 // transmitted / unoccluded and unoccluded / arriving irradiance, 0 where the divisor is 0.
 // Throws InputError naming the capture, field and value.

@@ -1,0 +1,123 @@
+#include "reference/gather_kernel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "common/error.h"
+#include "reference/transmittance.h"
+
+namespace pellucid::harness::reference {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr std::size_t kTable = 4096;
+
+// Burley's d of the same mean radius, 5/2 d, where a material has Gaussians only: w sqrt(pi v / 2) each.
+double profileLength(const PellucidMaterial& m, int channel) {
+  if (m.gaussianCount == 0) return 0;
+  if (m.burleyDistance[channel] > 0) return m.burleyDistance[channel];
+  double mean = 0, weight = 0;
+  for (unsigned i = 0; i < m.gaussianCount; ++i) {
+    const double w = m.gaussianWeight[channel][i];
+    mean += w * std::sqrt(kPi / 2 * m.gaussianVariance[channel][i]);
+    weight += w;
+  }
+  return mean / weight / 2.5;
+}
+
+}  // namespace
+
+GatherPath gatherPath(const glm::dvec3& to, const glm::dvec3& exitNormal, const glm::dvec3& entryNormal) {
+  const double distance = glm::length(to);
+  const double facing = 0.5 + 0.5 * std::clamp(glm::dot(exitNormal, entryNormal), -1.0, 1.0);
+  const double out = std::max(0.0, glm::dot(exitNormal, to)), in = std::max(0.0, -glm::dot(entryNormal, to));
+  const double square = facing < 1 ? out * in / (1 - facing) : 0;
+  return {distance, std::min(distance, std::sqrt(square)), facing};
+}
+
+GatherKernel::GatherKernel(const PellucidMaterial& material) : material_(material) {
+  const bool sinhExp = material.transmittanceModel == PELLUCID_TRANSMITTANCE_SINH_EXP;
+  if (!sinhExp && material.transmittanceModel != PELLUCID_TRANSMITTANCE_EXP2)
+    throw InputError("", "transmittanceModel",
+                     std::to_string(material.transmittanceModel) + " has no gather kernel");
+  for (int c = 0; c < 3; ++c) {
+    const auto i = static_cast<std::size_t>(c);
+    const float* p = material.transmittance[c];
+    profile_[i] = profileLength(material, c);
+    if (sinhExp) {
+      slowest_[i] = p[1];
+      extrapolation_[i] = double(p[2]) / double(p[1]);
+      continue;
+    }
+    // In a slab T goes like 1 / sinh(kappa (d + e)), whose rate kappa coth(kappa (d + e)) at half depth
+    // gives e; one exponential has none.
+    slowest_[i] = p[2] > 0 ? std::min(p[1], p[3]) : p[1];
+    double low = 0, high = 100 / slowest_[i];
+    for (int step = 0; step < 100; ++step) {
+      const double middle = 0.5 * (low + high);
+      (transmittance(c, middle) > 0.5 * transmittance(c, 0) ? low : high) = middle;
+    }
+    const double a1 = p[0] * std::exp(-p[1] * low), a2 = p[2] * std::exp(-p[3] * low);
+    const double rate = (a1 * double(p[1]) + a2 * double(p[3])) / (a1 + a2);
+    const double excess = rate / slowest_[i] - 1;
+    extrapolation_[i] =
+        excess > 1e-6 ? std::max(0.5 * std::log((2 + excess) / excess) / slowest_[i] - low, 0.0) : INFINITY;
+  }
+  longest_ = radius(1e-9);
+  table_.resize(kTable);
+  for (std::size_t i = 0; i < kTable; ++i) {
+    const double depth = longest_ * std::pow(static_cast<double>(i) / (kTable - 1), 2);
+    for (int c = 0; c < 3; ++c) {
+      table_[i].decay[c] = decay(c, depth);
+      table_[i].weight[c] = transmittance(c, depth) * table_[i].decay[c] / (2 * kPi);
+    }
+  }
+}
+
+double GatherKernel::transmittance(int channel, double depth) const {
+  return reference::transmittance(material_, depth)[channel];
+}
+
+double GatherKernel::decay(int channel, double depth) const {
+  const auto i = static_cast<std::size_t>(channel);
+  // The floor keeps a slab without thickness and extrapolation finite.
+  return std::hypot(slowest_[i], kPi / std::max(depth + extrapolation_[i], 1e-3));
+}
+
+glm::dvec3 GatherKernel::transmitted(double distance, double depth) const {
+  const double at = std::sqrt(std::min(depth / longest_, 1.0)) * (kTable - 1);
+  const auto cell = std::min(static_cast<std::size_t>(at), kTable - 2);
+  const double f = at - static_cast<double>(cell);
+  const Slab &a = table_[cell], &b = table_[cell + 1];
+  const glm::dvec3 weight = a.weight + f * (b.weight - a.weight);
+  const glm::dvec3 decay = a.decay + f * (b.decay - a.decay);
+  return weight * glm::exp((depth - distance) * decay) / distance;
+}
+
+glm::dvec3 GatherKernel::reflected(double r) const {
+  glm::dvec3 result(0);
+  for (int c = 0; c < 3; ++c) {
+    const double d = profile_[static_cast<std::size_t>(c)];
+    if (!(d > 0)) continue;
+    const double e = std::exp(-r / (3 * d));
+    result[c] = (e * e * e + e) / (8 * kPi * d * r);
+  }
+  return result;
+}
+
+double GatherKernel::radius(double share) const {
+  double radius = 0;
+  for (int c = 0; c < 3; ++c) {
+    double low = 0, high = -std::log(share) / slowest_[static_cast<std::size_t>(c)];
+    for (int step = 0; step < 40; ++step) {
+      const double middle = 0.5 * (low + high);
+      (transmittance(c, middle) > share * transmittance(c, 0) ? low : high) = middle;
+    }
+    radius = std::max({radius, high, -3 * std::log(share) * profile_[static_cast<std::size_t>(c)]});
+  }
+  return radius;
+}
+
+}  // namespace pellucid::harness::reference

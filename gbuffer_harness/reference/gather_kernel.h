@@ -1,0 +1,54 @@
+// The kernels of the light-space gather (docs/gather.md) in double precision. Lengths in mm.
+#pragma once
+
+#include <array>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "pellucid/pellucid.h"
+
+namespace pellucid::harness::reference {
+
+// Where light entered, seen from where it leaves: the segment between them and the outward normals.
+struct GatherPath {
+  double distance;  // |x - y|
+  double depth;     // thickness of the slab that the pair looks like, 0..distance
+  double facing;    // m = (1 + N_x . N_y) / 2: 1 same way, 0 opposite
+};
+
+// to: x - y. Normals are unit.
+GatherPath gatherPath(const glm::dvec3& to, const glm::dvec3& exitNormal, const glm::dvec3& entryNormal);
+
+class GatherKernel {
+public:
+  // Throws InputError when T(d) is not one of the models the gather takes.
+  explicit GatherKernel(const PellucidMaterial& material);
+
+  // Exitance per flux, 1/mm^2: T(h) q(h) e^{-q(h) (r - h)} / (2 pi r).
+  glm::dvec3 transmitted(double distance, double depth) const;
+
+  // Normalized reflectance profile, 1/mm^2; 0 in channels that do not diffuse.
+  glm::dvec3 reflected(double distance) const;
+
+  // Sideways decay of a slab, 1/mm: sqrt(kappa^2 + (pi / (h + extrapolation))^2).
+  double decay(int channel, double depth) const;
+
+  // Distance beyond which `transmitted` of every channel integrates to less than `share` of T(0) over a
+  // plane.
+  double radius(double share) const;
+
+private:
+  // T(h) q(h) / (2 pi) and q(h) at one depth.
+  struct Slab {
+    glm::dvec3 weight, decay;
+  };
+
+  double transmittance(int channel, double depth) const;
+
+  PellucidMaterial material_;
+  double longest_;           // depth of the last table entry, mm
+  std::vector<Slab> table_;  // uniform in sqrt(depth), linear in between: below 1e-5 of the value
+  std::array<double, 3> slowest_, extrapolation_, profile_;
+};
+
+}  // namespace pellucid::harness::reference
