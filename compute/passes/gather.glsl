@@ -1,113 +1,162 @@
-// The gather over one light's shadow maps; included by translucency.comp after its bindings.
+// The gather over one light's shadow maps; gather.comp includes it after its bindings.
 #ifndef PELLUCID_PASS_GATHER_GLSL
 #define PELLUCID_PASS_GATHER_GLSL
 
 #include "lib/gather.glsl"
 
-// -T'(r), 1/mm.
-vec3 transmittanceSlope(uint m, float r) {
-  vec4 red = materials[m].transmittance[0], green = materials[m].transmittance[1], blue = materials[m].transmittance[2];
-  vec3 c = materials[m].transmittance4.rgb;
-  vec3 slope = materials[m].meta.x == PELLUCID_SHADER_TRANSMITTANCE_EXP2
-                   ? vec3(transmittanceExp2Slope(red, r), transmittanceExp2Slope(green, r),
-                          transmittanceExp2Slope(blue, r))
-                   : vec3(transmittanceSinhExpSlope(red, c.r, r), transmittanceSinhExpSlope(green, c.g, r),
-                          transmittanceSinhExpSlope(blue, c.b, r));
-  return max(slope, vec3(0.0)) * frame.filterAndLimit.rgb;
-}
+// The camera may miss a texel's point by the slope of the surface within the texel and the pixel.
+const float kSeenTolerance = 2.0; // texels
+// A surface that the light sees more obliquely counts as if it did not.
+const float kLeastCosine = 0.05;
 
-// True where the camera sees the point: what it sees is in the irradiance that diffusion spreads.
+struct Gathered {
+  vec3 transmitted; // exitance
+  vec3 entering;    // irradiance that reaches x as diffusion does
+  vec3 displaced;   // share of the diffusion's profile that lies on hidden texels
+};
+
+// Where the camera has a surface at y or in front of it: what it sees is in the irradiance that diffusion
+// spreads. Call it for points that face the camera.
 bool cameraSees(vec3 y, float tolerance) {
-  float p = y.z * frame.camera.range.x;
   ivec2 pixel;
-  if (!projectToPixel(frame.camera, y, pixel) || !insideRect(pixel) || materialAt(pixel) == 0u) return false;
+  if (!projectToPixel(frame.camera, y, pixel) || !insideRect(pixel)) return false;
   float front = frontDistance(pixel);
-  return front > 0.0 && p <= front + tolerance;
+  return front > 0.0 && y.z * frame.camera.range.x <= front + tolerance;
 }
 
-struct MapPoint {
-  bool holds;
-  vec3 position;
-};
-
-// Where the light ray through x meets the map's surface.
-MapPoint mapPoint(ShadowConstants shadow, LightConstants light, vec3 x) {
-  ShadowReceiver receiver = projectReceiver(shadow, x);
-  if (!receiver.inside) return MapPoint(false, x);
-  float stored = shadowTexel(shadow.meta.x, receiver.texel);
-  Incident incident = incidentLight(light, x);
-  float thickness = lightThickness(shadow, receiver, x, incident, stored);
-  return MapPoint(shadowHolds(shadow, stored), x + thickness * incident.toLight);
-}
-
-// The plane across the light ray in which samples are drawn.
-struct GatherPlane {
-  vec3 across, along; // along the map's rows and columns
-  float t;            // mm from the point to the map's surface
-  float texel;        // scene units
-};
-
-GatherPlane gatherPlane(ShadowConstants shadow, ShadowReceiver receiver, LightConstants light, vec3 x, float slowest) {
-  Incident incident = incidentLight(light, x);
-  float stored = shadowTexel(shadow.meta.x, receiver.texel);
-  float t = shadowHolds(shadow, stored)
-                ? max(lightThickness(shadow, receiver, x, incident, stored), 0.0) * frame.camera.range.w : 0.0;
-  vec3 row = vec3(shadow.clipFromView[0].x, shadow.clipFromView[1].x, shadow.clipFromView[2].x);
-  vec3 across = normalize(row - dot(row, incident.toLight) * incident.toLight);
-  // Beyond a few lengths the density from the slab would fall below float's range; nothing comes
-  // through there but from nearer texels, which the densities from 0 find.
-  return GatherPlane(across, cross(incident.toLight, across), min(t, 8.0 / slowest),
-                     2.0 * receiver.clip.w / (length(row) * shadow.depth.z));
-}
-
-// The samples whose light ray meets the light's map number `map` and none before it.
-vec3 gatherMap(uint m, LightConstants light, uint map, Surface s, GatherPlane plane, uint samples) {
-  float mm = frame.camera.range.w;
-  vec2 rates = materials[m].gatherRates.xy;
-  ShadowConstants shadow = shadows[light.meta.y + map];
-  vec3 sum = vec3(0.0);
-  for (uint i = 0u; i < samples; ++i) {
-    vec2 offset = gatherOffset(i, samples, plane.t, rates);
-    vec3 x = s.position + (offset.x * plane.across + offset.y * plane.along) / mm;
-    MapPoint y = mapPoint(shadow, light, x);
-    bool isFirst = y.holds;
-    for (uint before = 0u; before < map && isFirst; ++before)
-      isFirst = !projectReceiver(shadows[light.meta.y + before], x).inside;
-    if (!isFirst || cameraSees(y.position, plane.texel + shadow.depth.y)) continue;
-    vec3 toY = y.position - s.position;
-    float r = length(toY) * mm;
-    // 1 - m, m = 1/2 + 1/2 N_x.N_y: an entry facing the same way as the exit gives nothing.
-    float weight = 1.0;
-    if (s.hasNormal) {
-      MapPoint right = mapPoint(shadow, light, x + plane.across * plane.texel);
-      MapPoint below = mapPoint(shadow, light, x + plane.along * plane.texel);
-      vec3 normal = cross(right.position - y.position, below.position - y.position);
-      normal *= sign(dot(normal, incidentLight(light, s.position).toLight)); // it faces the light
-      float size = length(normal);
-      if (right.holds && below.holds && size > 0.0) weight = 0.5 - 0.5 * dot(s.normal, normal) / size;
+// Where the light ray through s meets the surface that a texel stores.
+vec3 entryPoint(ShadowConstants shadow, LightConstants light, ShadowReceiver receiver, vec3 s, float stored) {
+  Incident ray = Incident(vec3(0.0), -light.direction.xyz, 1.0);
+  float perDistance = 1.0;
+  if (shadow.meta.z != 0u) {
+    // As a fraction of the way to the light, which saves the square root where the map is planar.
+    ray.toLight = light.position.xyz - s;
+    if (shadow.meta.y == PELLUCID_SHADER_DEPTH_DISTANCE) {
+      ray.distanceTo = length(ray.toLight);
+      perDistance = 1.0 / max(ray.distanceTo, 1.0e-12);
     }
-    float rho = length(offset);
-    vec3 kernel = transmittanceSlope(m, r) / (kTwoPi * max(r, 1.0e-4));
-    sum += incidentLight(light, x).irradiance * kernel * (weight / gatherMixture(rho, plane.t, rates));
+  }
+  return s + lightThickness(shadow, receiver, s, ray, stored) * perDistance * ray.toLight;
+}
+
+// One texel's step along an axis of the map from y, towards whichever neighbor is nearer: the other may lie
+// across an edge. `across`: the step at s, across the light.
+vec3 entrySlope(ShadowConstants shadow, LightConstants light, ShadowReceiver receiver, vec3 s, vec3 y,
+                ivec2 axis, vec3 across) {
+  vec3 best = vec3(0.0);
+  float least = 3.0e38;
+  for (int side = 1; side >= -1; side -= 2) {
+    ivec2 texel = receiver.texel + side * axis;
+    vec3 neighbor = s + float(side) * across;
+    vec4 clip = shadow.clipFromView * vec4(neighbor, 1.0);
+    if (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, ivec2(shadow.depth.zw)))) continue;
+    float stored = shadowTexel(shadow.meta.x, texel);
+    if (!shadowHolds(shadow, stored)) continue;
+    vec3 toward = float(side) * (entryPoint(shadow, light, ShadowReceiver(clip, texel, true), neighbor, stored) - y);
+    float squared = dot(toward, toward);
+    if (squared < least) {
+      least = squared;
+      best = toward;
+    }
+    // Less steep than 60 degrees: no edge, and the other side need not be read.
+    if (squared < 4.0 * dot(across, across)) break;
+  }
+  return best;
+}
+
+// From `samples` points of the light's first map that contains x. `turn` and `within`, [0, 1): which of the
+// patterns this pixel takes; neighbors take others, and share what they find.
+Gathered gatherLight(uint m, LightConstants light, Surface x, uint samples, float turn, float within) {
+  float mm = frame.camera.range.w;
+  Gathered sum = Gathered(vec3(0.0), vec3(0.0), vec3(0.0));
+  uint map = light.meta.y, end = map + light.meta.z;
+  ShadowReceiver receiver;
+  for (; map < end; ++map) {
+    receiver = projectReceiver(shadows[map], x.position);
+    if (receiver.inside) break;
+  }
+  if (map >= end) return sum;
+  ShadowConstants shadow = shadows[map];
+  GatherConstants material = materials[m].gather;
+  Incident incident = incidentLight(light, x.position);
+
+  // Rings around an axis between the light's ray and the normal inwards, the one that suits a slab: there
+  // they are around the foot of the perpendicular. `t`: along it, from x to the lit surface.
+  float facing = x.hasNormal ? max(-dot(x.normal, incident.toLight), 0.0) : 0.0;
+  vec3 axis = normalize(incident.toLight - facing * x.normal); // the two are within 90 degrees
+  float axisCosine = dot(axis, incident.toLight);
+  float longest = material.lengths.z / mm, t = 0.0;
+  float stored = shadowTexel(shadow.meta.x, receiver.texel);
+  if (shadowHolds(shadow, stored)) {
+    vec3 y = entryPoint(shadow, light, receiver, x.position, stored);
+    t = clamp(dot(y - x.position, incident.toLight), 0.0, longest);
+    ShadowReceiver along = projectReceiver(shadow, x.position + t * axis);
+    if (along.inside) {
+      stored = shadowTexel(shadow.meta.x, along.texel);
+      if (shadowHolds(shadow, stored))
+        t = clamp(dot(entryPoint(shadow, light, along, x.position + t * axis, stored) - x.position, axis), 0.0, longest);
+    }
+  }
+  vec3 center = x.position + t * axis;
+  t *= mm;
+
+  // Steps of one texel across the light: the inverse of the map's derivative.
+  vec3 side = abs(incident.toLight.x) < 0.7 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
+  vec3 u = normalize(cross(incident.toLight, side)), v = cross(incident.toLight, u);
+  vec4 clipU = shadow.clipFromView * vec4(u, 0.0), clipV = shadow.clipFromView * vec4(v, 0.0);
+  vec2 ndc = receiver.clip.xy / receiver.clip.w; // inside the map: w > 0
+  vec2 perU = (clipU.xy - ndc * clipU.w) * shadow.depth.zw, perV = (clipV.xy - ndc * clipV.w) * shadow.depth.zw;
+  float determinant = perU.x * perV.y - perU.y * perV.x;
+  // A map that is not singular has one; texels of no size would leave the normals out.
+  float scale = abs(determinant) > 0.0 ? 2.0 * receiver.clip.w / determinant : 0.0;
+  vec3 stepX = scale * (perV.y * u - perU.y * v), stepY = scale * (perU.x * v - perV.x * u);
+  float texel = sqrt(length(stepX) * length(stepY));
+  float tolerance = kSeenTolerance * texel + shadow.depth.y;
+
+  vec3 across = normalize(cross(axis, abs(axis.x) < 0.7 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0)));
+  vec3 along = cross(axis, across);
+  vec2 direction = vec2(cos(6.28318531 * turn), sin(6.28318531 * turn));
+  float inner = 0.0, perSample = 1.0 / float(samples);
+  for (uint i = 0u; i < samples; ++i) {
+    float outer = i + 1u == samples ? 1.0e6 : gatherRadius(material, t, float(i + 1u) * perSample);
+    float rho = gatherRadius(material, t, (float(i) + within) * perSample);
+    vec3 s = center + (rho / mm) * (direction.x * across + direction.y * along);
+    float from = inner;
+    inner = outer;
+    direction = mat2(-0.73736888, 0.67549029, -0.67549029, -0.73736888) * direction; // the golden angle
+    receiver = projectReceiver(shadow, s);
+    if (!receiver.inside) continue;
+    stored = shadowTexel(shadow.meta.x, receiver.texel);
+    if (!shadowHolds(shadow, stored)) continue;
+    vec3 y = entryPoint(shadow, light, receiver, s, stored);
+
+    vec3 normal = cross(entrySlope(shadow, light, receiver, s, y, ivec2(1, 0), stepX),
+                        entrySlope(shadow, light, receiver, s, y, ivec2(0, 1), stepY));
+    float size = length(normal);
+    float cosine = dot(normal, incident.toLight);
+    normal = size > 0.0 ? normal * (sign(cosine) / size) : incident.toLight; // towards the light
+    cosine = size > 0.0 ? max(abs(cosine) / size, kLeastCosine) : 1.0;
+    // What faces away cannot be seen, however thin the part is.
+    if (dot(normal, x.view) < 0.0 && cameraSees(y, tolerance)) continue;
+
+    vec3 to = (x.position - y) * mm;
+    float squared = dot(to, to), r = sqrt(squared);
+    float opposite = x.hasNormal ? 0.5 - 0.5 * dot(x.normal, normal) : 1.0; // 1 - m
+    float through = max(-dot(normal, to), 0.0);
+    float h = x.hasNormal ? sqrt(through * max(dot(x.normal, to), 0.0) / max(opposite, 1.0e-4)) : through;
+    h = min(h, r);
+    // The ring, seen as if all of it lay in y's plane across the axis.
+    float plane = max(squared - rho * rho, 0.0);
+    float near = sqrt(plane + from * from), far = sqrt(plane + outer * outer);
+    vec3 flux = incidentLight(light, s).irradiance * axisCosine;
+    sum.transmitted += flux * opposite * gatherTransmitted(gatherSlab(material, h), h, near, far);
+    if (opposite < 0.99) {
+      vec3 reflected = (1.0 - opposite) * gatherReflected(material.profile.rgb, near, far);
+      sum.entering += flux * reflected;
+      sum.displaced += reflected * (axisCosine / cosine);
+    }
   }
   return sum;
-}
-
-// Transmitted exitance at the surface from `samples` points of the light's maps, spread about the first that
-// contains it. A cube's seams are no borders.
-vec3 gatherLight(uint m, LightConstants light, Surface s, uint samples) {
-  GatherPlane plane;
-  bool inside = false;
-  for (uint map = 0u; map < light.meta.z && !inside; ++map) {
-    ShadowConstants shadow = shadows[light.meta.y + map];
-    ShadowReceiver receiver = projectReceiver(shadow, s.position);
-    inside = receiver.inside;
-    if (inside) plane = gatherPlane(shadow, receiver, light, s.position, materials[m].gatherRates.x);
-  }
-  vec3 sum = vec3(0.0);
-  if (!inside) return sum;
-  for (uint map = 0u; map < light.meta.z; ++map) sum += gatherMap(m, light, map, s, plane, samples);
-  return sum / float(samples);
 }
 
 #endif

@@ -52,9 +52,8 @@ Surface surfaceAt(ivec2 pixel, float front, float frontStored, float backStored,
 }
 
 #ifdef GATHER
-#include "passes/gather.glsl"
-#endif
-
+#include "passes/gather_tile.glsl"
+#else
 void main() {
   ivec2 pixel = invocationPixel();
   if (!insideRect(pixel)) return;
@@ -87,12 +86,6 @@ void main() {
     if (s.chord >= 0.0) thickness.r = s.chord * mm;
     for (uint i = 0u; i < pass.value.y; ++i) {
       LightConstants light = lights[i];
-#ifdef GATHER
-      if (pass.value.w > 0u && light.meta.z != 0u) {
-        transmitted += gatherLight(m, light, s, pass.value.w);
-        continue;
-      }
-#endif
       Transmitted t = lightTransmission(light, s);
       vec3 through = t.arriving * t.visible;
       // Most pixels face some lights; T is the expensive part.
@@ -120,3 +113,4 @@ void main() {
   writeResult(pixel, result, source.a, pass.value.z == PELLUCID_WRITE_LAST);
 #endif
 }
+#endif

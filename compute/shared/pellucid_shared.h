@@ -18,6 +18,7 @@ using glm::vec4;
 #define PELLUCID_GROUP_Y 8
 #define PELLUCID_DIFFUSE_GROUP 8 // a side; an invocation does 2 x 2 pixels
 #define PELLUCID_REDUCE_GROUP 8 // a side, of the pyramid's reductions
+#define PELLUCID_GATHER_GROUP 16 // threads a side; a tile of the gather is twice as wide
 
 #define PELLUCID_BINDING_FRAME 0
 #define PELLUCID_BINDING_LIGHTS 1
@@ -54,12 +55,14 @@ using glm::vec4;
 #define PELLUCID_FLAG_CONSTANT_VIEW 64u
 #define PELLUCID_FLAG_CHORD_THICKNESS 128u
 #define PELLUCID_FLAG_CHORD 256u // some light, or a debug view, needs camera-space thickness
+#define PELLUCID_FLAG_DIFFUSED 512u // what the gather adds to has been diffused
 
 // Values of the public enums the shaders branch on; constants.cpp asserts that they agree.
 #define PELLUCID_SHADER_LIGHT_DIRECTIONAL 0u
 #define PELLUCID_SHADER_LIGHT_SPOT 2u
 #define PELLUCID_SHADER_DEPTH_DEVICE 0u
 #define PELLUCID_SHADER_DEPTH_VIEW_Z 1u
+#define PELLUCID_SHADER_DEPTH_DISTANCE 2u
 #define PELLUCID_SHADER_TRANSMITTANCE_EXP2 0u
 #define PELLUCID_SHADER_TRANSMITTANCE_SINH_EXP 1u
 #define PELLUCID_SHADER_TRANSMITTANCE_LINEAR 4u
@@ -76,6 +79,7 @@ using glm::vec4;
 #define PELLUCID_WRITE_STARTS 2u // of a history, from 0
 
 #define PELLUCID_GAUSSIANS 8
+#define PELLUCID_GATHER_TERMS 7
 
 // The diffusion pyramid's levels are 2..LAST_LEVEL; a texel of the last one is 256 pixels wide.
 #define PELLUCID_LAST_LEVEL 8
@@ -122,14 +126,22 @@ struct ShadowConstants {
   uvec4 meta;        // x: image; y: encoding; z: 1 perspective; w: texel value that holds nothing (bits)
 };
 
+// Of the light-space gather; see lib/gather.glsl. rgb: per channel.
+struct GatherConstants {
+  vec4 lengths; // mm; x: shortest; y: log2(longest / shortest); z: largest distance looked for; w: depth scale
+  vec4 profile; // rgb: 1/(3 d) of Burley's profile, 0: none, 1/mm; w: sharing between points, 1/mm^2
+  vec4 slab[PELLUCID_GATHER_TERMS];
+  vec4 decay[PELLUCID_GATHER_TERMS];
+};
+
 struct MaterialConstants {
   vec4 transmittance[3]; // per channel, the model's first four parameters
   vec4 transmittance4;   // rgb: the fifth
   vec4 inverseReflectance; // rgb: 1/rho
-  vec4 gatherRates;        // x: slow, y: fast; 1/mm
   uvec4 meta;            // x: model; y: Gaussians
   vec4 gaussianFalloff[PELLUCID_GAUSSIANS]; // rgb: 1/(2 v), 1/mm^2; 1/v for the printed form
   vec4 gaussianWeight[PELLUCID_GAUSSIANS];  // rgb
+  GatherConstants gather;
 };
 
 // A profile over the pyramid, at equal steps of log2 of a side in mm.

@@ -6,8 +6,10 @@
 #include "camera.h"
 #include "diffusion_profile.h"
 #include "frame.h"
+#include "gather.h"
 #include "minimum_dot.h"
 #include "pyramid.h"
+#include "reuse.h"
 #include "validate.h"
 
 namespace pellucid {
@@ -17,6 +19,7 @@ static_assert(PELLUCID_SHADER_LIGHT_DIRECTIONAL == PELLUCID_LIGHT_DIRECTIONAL);
 static_assert(PELLUCID_SHADER_LIGHT_SPOT == PELLUCID_LIGHT_SPOT);
 static_assert(PELLUCID_SHADER_DEPTH_DEVICE == PELLUCID_DEPTH_DEVICE);
 static_assert(PELLUCID_SHADER_DEPTH_VIEW_Z == PELLUCID_DEPTH_VIEW_Z);
+static_assert(PELLUCID_SHADER_DEPTH_DISTANCE == PELLUCID_DEPTH_DISTANCE);
 static_assert(PELLUCID_SHADER_TRANSMITTANCE_EXP2 == PELLUCID_TRANSMITTANCE_EXP2);
 static_assert(PELLUCID_SHADER_TRANSMITTANCE_SINH_EXP == PELLUCID_TRANSMITTANCE_SINH_EXP);
 static_assert(PELLUCID_SHADER_TRANSMITTANCE_LINEAR == PELLUCID_TRANSMITTANCE_LINEAR);
@@ -51,6 +54,9 @@ shared::FrameConstants frameConstants(const PellucidFrame& f) {
   if (f.constantViewDirection) flags |= PELLUCID_FLAG_CONSTANT_VIEW;
   if (f.chordThickness) flags |= PELLUCID_FLAG_CHORD_THICKNESS;
   if (needsChord(f)) flags |= PELLUCID_FLAG_CHORD;
+  // A history is added to the diffused light later, so nothing in it can be displaced here.
+  if (f.features & PELLUCID_FEATURE_DIFFUSION && anyMaterialDiffuses(f) && !keepsHistory(f))
+    flags |= PELLUCID_FLAG_DIFFUSED;
   c.flags = {flags, f.materialCount, f.debugView, f.angleModel};
   const float* p = f.anglePolynomial;
   c.anglePolynomial = {p[0], p[1], p[2], p[3]};
@@ -127,34 +133,11 @@ shared::ShadowConstants shadowConstants(const PellucidShadowMap& s, const Pelluc
   return c;
 }
 
-// Rates (1/mm) that the gather draws distances with: the slow one is the last to decay in any channel, the
-// fast one that of the channel with the least mean depth.
-glm::vec4 gatherRates(const PellucidMaterial& m) {
-  double slow = INFINITY, fast = 0;
-  for (const auto& t : m.transmittance) {
-    const bool exp2 = m.transmittanceModel == PELLUCID_TRANSMITTANCE_EXP2;
-    const auto p = [&](int i) { return static_cast<double>(t[i]); };
-    const auto transmittance = [&](double d) {
-      return exp2 ? p(0) * std::exp(-p(1) * d) + p(2) * std::exp(-p(3) * d)
-                  : p(0) / std::sinh(p(1) * d + p(2)) + p(3) * std::exp(-p(4) * d);
-    };
-    // A floor of 1/km keeps media without absorption finite.
-    const double rate = std::max(exp2 && p(2) > 0 ? std::min(p(1), p(3)) : p(1), 1e-6);
-    slow = std::min(slow, rate);
-    // Mean depth over ten lengths of the slow term; 200 steps give it to a percent, more than it needs.
-    double sum = 0;
-    constexpr int steps = 200;
-    for (int i = 0; i < steps; ++i) sum += transmittance(10 / rate * (i + 0.5) / steps);
-    fast = std::max(fast, transmittance(0) / (sum * 10 / rate / steps));
-  }
-  return {static_cast<float>(slow), static_cast<float>(std::max(fast, slow)), 0, 0};
-}
-
 shared::MaterialConstants materialConstants(const PellucidMaterial& m, bool gathers) {
   shared::MaterialConstants c{};
   c.meta = {m.transmittanceModel, m.gaussianCount, 0, 0};
   const float exponent = m.transmittanceModel == PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED ? 1.0f : 0.5f;
-  if (gathers) c.gatherRates = gatherRates(m);
+  if (gathers) c.gather = gatherConstants(m);
   for (int channel = 0; channel < 3; ++channel) {
     const float* t = m.transmittance[channel];
     // The shader reads a, kappa, z, b and c of SINH_EXP as xyzw and the fifth.

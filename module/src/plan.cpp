@@ -109,6 +109,11 @@ struct Builder {
     const uint32_t pipeline = half + (wide() ? 1 : 0);  // the 32F variant follows the 16F one
     PellucidDispatch* d = dispatch(debug ? "debug view" : "translucency", pipeline);
     if (!d) return false;
+    if (!debug && frame.gatherSamples > 0) {
+      constexpr uint32_t tile = 2 * PELLUCID_GATHER_GROUP;
+      d->groups[0] = (rect.width + tile - 1) / tile;
+      d->groups[1] = (rect.height + tile - 1) / tile;
+    }
     d->pushConstants[1] = group.lightCount;
     d->pushConstants[2] = destination == PELLUCID_RESOURCE_OUTPUT;
     if (destination == PELLUCID_RESOURCE_HISTORY && group.firstLight == 0)

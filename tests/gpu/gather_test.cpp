@@ -35,44 +35,42 @@ double transmittance(int channel, double d) {
                         : 0.7 * std::exp(-2 * d) + 0.3 * std::exp(-d / 4);
 }
 
+// What the polynomials in place of T(h) and q(h) are off by, at most.
+constexpr double kFitted = 0.02;
+
 TEST_F(Gather, IsTheSlabsTransmittance) {
-  for (const auto encoding : {PELLUCID_DEPTH_DEVICE, PELLUCID_DEPTH_VIEW_Z})
+  for (const auto encoding : {PELLUCID_DEPTH_DEVICE, PELLUCID_DEPTH_VIEW_Z, PELLUCID_DEPTH_DISTANCE})
     for (const double d : {0.5, 1.0, 2.0, 4.0}) {
       const Capture c = backlitSlab(d, encoding);
       const Image out = replay(c, testMaterial(), settings(64));
       for (int k = 0; k < 3; ++k) {
         const double added = static_cast<double>(out.at(4, 4)[k] - c.irradiance.at(4, 4)[k]);
         const double exact = 6 * transmittance(k, d);
-        // 64 samples drawn for four densities at once: the quadrature's own error is a few percent.
-        EXPECT_NEAR(added, exact, 0.06 * exact) << "d " << d << " channel " << k;
+        EXPECT_NEAR(added, exact, kFitted * exact) << "d " << d << " channel " << k;
       }
     }
 }
 
-TEST_F(Gather, SamplesConverge) {
-  // RMS over thicknesses and channels, relative to the exact slab.
-  const auto error = [&](uint32_t samples) {
-    double sum = 0;
+// Rings are integrated, so that the number of samples does not matter where depth is constant.
+TEST_F(Gather, SlabsAreRightWithFewSamples) {
+  for (const uint32_t samples : {4u, 8u, 16u})
     for (const double d : {0.5, 1.0, 2.0, 4.0}) {
       const Capture c = backlitSlab(d, PELLUCID_DEPTH_VIEW_Z);
       const Image out = replay(c, testMaterial(), settings(samples));
       for (int k = 0; k < 3; ++k) {
         const double exact = 6 * transmittance(k, d);
-        sum += std::pow((static_cast<double>(out.at(4, 4)[k] - c.irradiance.at(4, 4)[k]) - exact) / exact, 2);
+        EXPECT_NEAR(static_cast<double>(out.at(4, 4)[k] - c.irradiance.at(4, 4)[k]), exact, kFitted * exact)
+            << samples << " samples, d " << d << " channel " << k;
       }
     }
-    return std::sqrt(sum / 12);
-  };
-  const double at8 = error(8), at64 = error(64);
-  std::printf("slab error: 8 samples %.3f, 16 %.3f, 32 %.3f, 64 %.3f\n", at8, error(16), error(32), at64);
-  EXPECT_LT(at64, 0.5 * at8);
 }
 
-TEST_F(Gather, WhatTheCameraSeesIsLeftOut) {
-  // Lit from the front: every texel is one the camera sees, so irradiance alone remains.
+// Lit from the front: the camera sees what it sees, and beyond the image's edges lies more of the same.
+TEST_F(Gather, ConstantLightStaysConstant) {
   Capture c = flatCapture(8, 8, 2);
   Light front = backLight();
   front.direction = {0, 0, -1};
+  for (size_t i = 0; i < c.irradiance.data.size(); ++i) c.irradiance.data[i] = 3;
   ShadowMap map;
   map.clipFromWorld = kIdentity;
   map.clipFromWorld[0] = map.clipFromWorld[5] = 0.01;
@@ -83,7 +81,8 @@ TEST_F(Gather, WhatTheCameraSeesIsLeftOut) {
   front.shadowMaps = {map};
   c.lights = {front};
   const Image out = replay(c, testMaterial(), settings(32));
-  for (int k = 0; k < 3; ++k) EXPECT_NEAR(out.at(4, 4)[k], c.irradiance.at(4, 4)[k], 1e-5);
+  // Halves carry the shared light: 5e-4 of it.
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(out.at(4, 4)[k], 3, 3e-3);
 }
 
 TEST_F(Gather, NothingFromOutsideOrEmptyTexels) {

@@ -1,0 +1,120 @@
+#include "gather.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace pellucid {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr int kTerms = PELLUCID_GATHER_TERMS;
+
+// T(d) of one channel and how fast it spreads sideways.
+struct Channel {
+  bool exp2;
+  std::array<double, 5> p;
+  double slowest;        // kappa, 1/mm
+  double extrapolation;  // e: T goes like 1 / sinh(kappa (d + e)); mm, INFINITY for one exponential
+
+  double transmittance(double d) const {
+    return exp2 ? p[0] * std::exp(-p[1] * d) + p[2] * std::exp(-p[3] * d)
+                : p[0] / std::sinh(p[1] * d + p[2]) + p[3] * std::exp(-p[4] * d);
+  }
+  // Of the lowest mode of a slab of thickness d, 1/mm.
+  double decay(double d) const { return std::hypot(slowest, kPi / std::max(d + extrapolation, 1e-3)); }
+};
+
+Channel channelOf(const PellucidMaterial& m, int index) {
+  Channel c{m.transmittanceModel == PELLUCID_TRANSMITTANCE_EXP2, {}, 0, 0};
+  std::copy_n(m.transmittance[index], c.p.size(), c.p.begin());
+  // A floor of 1/km keeps media without absorption finite.
+  c.slowest = std::max(c.exp2 && c.p[2] > 0 ? std::min(c.p[1], c.p[3]) : c.p[1], 1e-6);
+  if (!c.exp2) {
+    c.extrapolation = c.p[2] / c.slowest;
+    return c;
+  }
+  // kappa coth(kappa (d + e)) is the rate of T at half depth.
+  double low = 0, high = 100 / c.slowest;
+  for (int step = 0; step < 60; ++step) {
+    const double middle = 0.5 * (low + high);
+    (c.transmittance(middle) > 0.5 * c.transmittance(0) ? low : high) = middle;
+  }
+  const double a1 = c.p[0] * std::exp(-c.p[1] * low), a2 = c.p[2] * std::exp(-c.p[3] * low);
+  const double excess = (a1 * c.p[1] + a2 * c.p[3]) / (a1 + a2) / c.slowest - 1;
+  c.extrapolation =
+      excess > 1e-6 ? std::max(0.5 * std::log((2 + excess) / excess) / c.slowest - low, 0.0) : INFINITY;
+  return c;
+}
+
+// Burley's d, or that of the same mean radius: 5/2 d = sum w sqrt(pi v / 2). 0: no profile.
+double profileLength(const PellucidMaterial& m, int channel) {
+  if (m.gaussianCount == 0) return 0;
+  if (m.burleyDistance[channel] > 0) return static_cast<double>(m.burleyDistance[channel]);
+  double mean = 0, weight = 0;
+  for (uint32_t i = 0; i < m.gaussianCount; ++i) {
+    const double w = m.gaussianWeight[channel][i];
+    mean += w * std::sqrt(kPi / 2 * static_cast<double>(m.gaussianVariance[channel][i]));
+    weight += w;
+  }
+  return weight > 0 ? mean / weight / 2.5 : 0;
+}
+
+// Coefficients of 1, v, v^2, .. of the polynomial through kTerms points.
+std::array<double, kTerms> interpolate(const std::array<double, kTerms>& at,
+                                       std::array<double, kTerms> value) {
+  for (int order = 1; order < kTerms; ++order)
+    for (int i = kTerms - 1; i >= order; --i) value[i] = (value[i] - value[i - 1]) / (at[i] - at[i - order]);
+  std::array<double, kTerms> c{};
+  for (int i = kTerms - 1; i >= 0; --i) {
+    for (int k = kTerms - 1; k > 0; --k) c[k] = c[k - 1] - at[i] * c[k];
+    c[0] = value[i] - at[i] * c[0];
+  }
+  return c;
+}
+
+}  // namespace
+
+shared::GatherConstants gatherConstants(const PellucidMaterial& m) {
+  shared::GatherConstants g{};
+  std::array<Channel, 3> channels;
+  double slowest = INFINITY, fastest = 0;
+  for (int c = 0; c < 3; ++c) {
+    channels[c] = channelOf(m, c);
+    slowest = std::min(slowest, channels[c].slowest);
+    fastest = std::max(fastest, channels[c].decay(0));
+  }
+  // Measured: samples spread between these lengths err least on ears and spheres.
+  const double shortest = 1 / fastest, longest = std::max(2.0 / 3 / slowest, shortest);
+  const double depthScale = 0.5 / slowest;
+  g.lengths = {static_cast<float>(shortest), static_cast<float>(std::log2(longest / shortest)),
+               static_cast<float>(2 / slowest), static_cast<float>(depthScale)};
+  // Chebyshev's points in v = h / (h + scale), 0..1: the error is .9 % at most for skin.
+  std::array<double, kTerms> at;
+  for (int i = 0; i < kTerms; ++i) at[i] = 0.5 - 0.5 * std::cos(kPi * (i + 0.5) / kTerms);
+  for (int c = 0; c < 3; ++c) {
+    const double d = profileLength(m, c);
+    g.profile[c] = static_cast<float>(d > 0 ? 1 / (3 * d) : 0);
+    std::array<double, kTerms> slab, decay;
+    for (int i = 0; i < kTerms; ++i) {
+      // Beyond 500 decay lengths T is below the least double; its logarithm goes on as a line.
+      const double h = std::min(depthScale * at[i] / (1 - at[i]), 500 / channels[c].slowest);
+      const double q = channels[c].decay(h);
+      slab[i] = (std::log(std::max(channels[c].transmittance(h), 1e-300)) + q * h) / std::numbers::ln2;
+      decay[i] = q / std::numbers::ln2;
+    }
+    slab = interpolate(at, slab);
+    decay = interpolate(at, decay);
+    for (int i = 0; i < kTerms; ++i) {
+      g.slab[i][c] = static_cast<float>(slab[i]);
+      g.decay[i][c] = static_cast<float>(decay[i]);
+    }
+  }
+  // Points share what they gather as far as red light of skin moves sideways within .6 mm of depth.
+  const double reach = longest / 4;
+  g.profile.w = static_cast<float>(1 / (reach * reach));
+  return g;
+}
+
+}  // namespace pellucid
