@@ -111,8 +111,8 @@ shared::GatherConstants gatherConstants(const PellucidMaterial& m) {
       g.decay[i][c] = static_cast<float>(decay[i]);
     }
   }
-  // Points share what they gather as far as red light of skin moves sideways within .6 mm of depth.
-  const double reach = longest / 4;
+  // Points share what they gather as far as the light that comes through thin parts spreads sideways.
+  const double reach = longest / 2;
   g.profile.w = static_cast<float>(1 / (reach * reach));
   return g;
 }

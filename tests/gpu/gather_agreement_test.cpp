@@ -1,0 +1,259 @@
+// The GPU's samples against the float64 gather over all texels, and what maps and conventions cost.
+#include "gpu_fixture.h"
+
+#include <cstdio>
+#include <functional>
+
+#include "common/compare.h"
+#include "common/parallel.h"
+#include "pellucid/pellucid_material.h"
+#include "reference/gather.h"
+#include "scene/scene.h"
+
+namespace {
+
+using namespace pellucid::test;
+namespace reference = pellucid::harness::reference;
+
+PellucidMaterial skin() {
+  PellucidMaterial m;
+  PellucidMaterialDesc desc;
+  pellucidInitMaterialDesc(&desc);
+  desc.kind = PELLUCID_MATERIAL_PRESET;
+  desc.preset = "skin1";
+  EXPECT_EQ(pellucidCompileMaterial(&desc, &m, nullptr, nullptr, nullptr), PELLUCID_OK);
+  return m;
+}
+
+// Diffusion leaves constant irradiance alone on both sides, so that what remains is the gather.
+Capture evenlyLit(SceneParameters p, float irradiance = 0.2f) {
+  Capture c = makeScene(p);
+  std::fill(c.irradiance.data.begin(), c.irradiance.data.end(), irradiance);
+  c.albedo = {};
+  return c;
+}
+
+Image gpuGather(Replayer& replayer, const Capture& c, uint32_t samples) {
+  ReplaySettings s;
+  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  s.translucency.gatherSamples = samples;
+  return rgb(replayer.run(c, std::vector<PellucidMaterial>(c.materials.size(), skin()), s).output);
+}
+
+// The same, over all texels, at the pixels that `wanted` names; 0 elsewhere. Diffusion, where any, is the
+// GPU's own: what is compared is the gather.
+Image allTexels(const Capture& c, const Image& diffused, const std::function<bool(int, int)>& wanted) {
+  const PellucidMaterial material = skin();
+  const reference::SurfaceReader surfaces(c);
+  const reference::Gather gather(c, surfaces, std::vector<PellucidMaterial>(c.materials.size(), material), 0);
+  Image out(c.width, c.height, 3);
+  parallelRows(c.height, 0, [&](int y) {
+    for (int x = 0; x < c.width; ++x) {
+      const size_t i = static_cast<size_t>(y * c.width + x);
+      const auto surface = surfaces.at(x, y);
+      if (c.material[i] == 0 || !surface || !wanted(x, y)) continue;
+      const reference::Gathered g = gather.at(*surface, c.material[i] - 1u);
+      for (int k = 0; k < 3; ++k)
+        out.at(x, y)[k] =
+            static_cast<float>((1 - g.displaced[k]) * double(diffused.at(x, y)[k]) + g.entering[k] +
+                               g.transmitted[k] / double(material.reflectance[k]));
+    }
+  });
+  return out;
+}
+
+// Relative RMSE of 4x4 averages, the worst channel.
+double error(const Capture& c, const Image& a, const Image& b) {
+  double worst = 0;
+  for (const auto& channel :
+       compareImages(a, b, comparisonMask(c.material, c.irradiance, Subset::All), 4).channels)
+    worst = std::max(worst, channel.relativeRmse);
+  return worst;
+}
+
+class GatherAgreement : public GpuTest {};
+
+struct Convention {
+  const char* scene;
+  std::map<std::string, double> options;
+  bool reversedZ, infiniteFar, orthographic;
+  PellucidDepthEncoding depth, shadow;
+  PellucidLightType light;
+};
+
+TEST_F(GatherAgreement, SixteenSamplesAreNearAllTexels) {
+  const Convention conventions[] = {{"sphere",
+                                     {{"radius", 8}, {"extent", 20}},
+                                     true,
+                                     true,
+                                     false,
+                                     PELLUCID_DEPTH_DEVICE,
+                                     PELLUCID_DEPTH_DEVICE,
+                                     PELLUCID_LIGHT_POINT},
+                                    {"torus",
+                                     {{"majorRadius", 8}, {"extent", 26}},
+                                     false,
+                                     false,
+                                     true,
+                                     PELLUCID_DEPTH_VIEW_Z,
+                                     PELLUCID_DEPTH_VIEW_Z,
+                                     PELLUCID_LIGHT_DIRECTIONAL},
+                                    {"wedge",
+                                     {{"extent", 24}},
+                                     true,
+                                     false,
+                                     true,
+                                     PELLUCID_DEPTH_DEVICE,
+                                     PELLUCID_DEPTH_DEVICE,
+                                     PELLUCID_LIGHT_DIRECTIONAL},
+                                    {"slab",
+                                     {{"thickness", 2}, {"tilt", 35}, {"extent", 24}},
+                                     false,
+                                     false,
+                                     false,
+                                     PELLUCID_DEPTH_VIEW_Z,
+                                     PELLUCID_DEPTH_DISTANCE,
+                                     PELLUCID_LIGHT_SPOT}};
+  for (const Convention& k : conventions) {
+    SceneParameters p;
+    p.name = k.scene;
+    p.options = k.options;
+    p.width = p.height = 64;
+    p.shadowSize = 192;
+    p.reversedZ = k.reversedZ;
+    p.infiniteFar = k.infiniteFar;
+    p.orthographic = k.orthographic;
+    p.depthEncoding = k.depth;
+    p.shadowEncoding = k.shadow;
+    p.lightType = k.light;
+    const Capture c = evenlyLit(p);
+    const Image all = allTexels(c, c.irradiance, [](int, int) { return true; });
+    double at[3];
+    for (int i = 0; i < 3; ++i) at[i] = error(c, gpuGather(replayer(), c, 8u << i), all);
+    std::printf("%s: 8 samples %.4f, 16 %.4f, 32 %.4f of all texels\n", k.scene, at[0], at[1], at[2]);
+    EXPECT_LT(at[1], 0.03) << k.scene;
+  }
+}
+
+// Texels of 1/4 to 4 mean free paths: what a map of 8 texels a path would give is the truth here.
+TEST_F(GatherAgreement, ErrorGrowsWithTheMapsTexels) {
+  const double meanFreePath = 1 / (0.88 + 0.17);  // mm, of skin1 in green
+  SceneParameters p;
+  p.name = "sphere";
+  p.options = {{"radius", 8}, {"extent", 20}};
+  p.width = p.height = 96;
+  const double across = 2 * 1.1 * 8;  // mm that the map covers
+  const auto render = [&](double texelsPerPath) {
+    p.shadowSize = static_cast<int>(std::lround(across / meanFreePath * texelsPerPath));
+    return gpuGather(replayer(), evenlyLit(p), 16);
+  };
+  const Capture c = evenlyLit(p);
+  const Image fine = render(8);
+  // 2 and 4 mm on a ball of 16: the map has lost the shape itself.
+  const double limits[] = {0.015, 0.04, 0.6, 0.6};
+  const double densities[] = {4, 1, 0.5, 0.25};
+  for (int i = 0; i < 4; ++i) {
+    const double e = error(c, render(densities[i]), fine);
+    std::printf("%.2f texels a mean free path: %.4f\n", densities[i], e);
+    EXPECT_LT(e, limits[i]) << densities[i];
+  }
+}
+
+// A plane that faces the light and the camera gets nothing from itself, at grazing light, with coarse maps
+// and rounded depths, with and without a bias.
+TEST_F(GatherAgreement, LitPlanesDoNotGlow) {
+  for (const double angle : {120.0, 150.0, 100.0})
+    for (const int shadowSize : {64, 512}) {
+      SceneParameters p;
+      p.name = "slab";
+      p.options = {{"thickness", 20}, {"lightAngle", angle}, {"extent", 24}};
+      p.width = p.height = 64;
+      p.shadowSize = shadowSize;
+      p.depthEncoding = p.shadowEncoding = PELLUCID_DEPTH_DEVICE;
+      p.orthographic = true;
+      Capture c = evenlyLit(p, static_cast<float>(std::cos((180 - angle) * M_PI / 180)));
+      for (float& v : c.lights.at(0).shadowMap->depth.image.data) v = std::round(v * 65535) / 65535;
+      for (float& v : c.frontDepth.image.data) v = std::round(v * 65535) / 65535;
+      const Image out = gpuGather(replayer(), c, 16);
+      for (int x = 24; x < 40; ++x)
+        for (int k = 0; k < 3; ++k)
+          EXPECT_NEAR(out.at(x, 32)[k], c.irradiance.at(x, 32)[k], 0.01f * c.irradiance.at(x, 32)[k])
+              << angle << " degrees, " << shadowSize << " texels";
+    }
+}
+
+// No grain: neighbors take other samples, and flat parts must not show it.
+TEST_F(GatherAgreement, FlatPartsAreSmooth) {
+  for (const double tilt : {0.0, 40.0}) {
+    SceneParameters p;
+    p.name = "slab";
+    p.options = {{"thickness", 2}, {"tilt", tilt}, {"extent", 24}};
+    p.width = p.height = 96;
+    p.shadowSize = 512;
+    const Capture c = evenlyLit(p, 0);
+    const Image out = gpuGather(replayer(), c, 8);
+    for (int k = 0; k < 3; ++k) {
+      double sum = 0, square = 0;
+      for (int y = 40; y < 48; ++y)
+        for (int x = 40; x < 48; ++x) {
+          const double v = out.at(x, y)[k];
+          sum += v;
+          square += v * v;
+        }
+      const double mean = sum / 64, deviation = std::sqrt(std::max(0.0, square / 64 - mean * mean));
+      std::printf("tilt %.0f channel %d: deviation %.5f of the mean\n", tilt, k, deviation / mean);
+      // Light at 60 degrees to the tilted plane: rings around an axis between the two are not quite even.
+      EXPECT_LT(deviation, (tilt > 0 ? 0.02 : 0.002) * mean) << tilt;
+    }
+  }
+}
+
+// From lit to unlit across the terminator, in light from all around: no gap and no seam.
+TEST_F(GatherAgreement, TerminatorIsContinuous) {
+  for (const char* name : {"sphere", "torus"})
+    for (const double angle : {30.0, 60.0, 90.0, 120.0, 150.0}) {
+      SceneParameters p;
+      p.name = name;
+      p.options["extent"] = 24;
+      p.options["lightAngle"] = angle;
+      if (p.name == "sphere")
+        p.options["radius"] = 8;
+      else
+        p.options["majorRadius"] = 8;
+      p.width = p.height = 96;
+      p.shadowSize = 512;
+      p.orthographic = true;
+      Capture c = makeScene(p);
+      c.albedo = {};
+      ReplaySettings spread;
+      spread.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+      spread.features = PELLUCID_FEATURE_DIFFUSION;
+      const Image all = allTexels(c, rgb(replay(c, skin(), spread)), [](int, int y) { return y == 48; });
+      const Image gpu = gpuGather(replayer(), c, 16);
+      // Along the middle row, inside the outline: the largest second difference relative to the peak.
+      double worstGpu[3] = {}, worstAll[3] = {}, peak[3] = {};
+      for (int x = 2; x < 94; ++x) {
+        bool inside = true;
+        for (int i = -2; i <= 2; ++i)
+          inside = inside && c.material[static_cast<size_t>(48 * 96 + x + i)] != 0;
+        if (!inside) continue;
+        for (int k = 0; k < 3; ++k) {
+          const auto second = [&](const Image& image) {
+            return std::abs(static_cast<double>(image.at(x - 1, 48)[k]) -
+                            2 * static_cast<double>(image.at(x, 48)[k]) +
+                            static_cast<double>(image.at(x + 1, 48)[k]));
+          };
+          worstGpu[k] = std::max(worstGpu[k], second(gpu));
+          worstAll[k] = std::max(worstAll[k], second(all));
+          peak[k] = std::max(peak[k], static_cast<double>(all.at(x, 48)[k]));
+        }
+      }
+      std::printf("%s %.0f: second differences", name, angle);
+      for (int k = 0; k < 3; ++k)
+        std::printf(" %.4f (all texels %.4f)", worstGpu[k] / peak[k], worstAll[k] / peak[k]);
+      std::printf("\n");
+      for (int k = 0; k < 3; ++k) EXPECT_LT(worstGpu[k], 1.5 * worstAll[k] + 0.02 * peak[k]) << name << angle;
+    }
+}
+
+}  // namespace
