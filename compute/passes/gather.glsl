@@ -40,19 +40,19 @@ vec3 entryPoint(ShadowConstants shadow, LightConstants light, ShadowReceiver rec
 }
 
 // One texel's step along an axis of the map from y, towards whichever neighbor is nearer: the other may lie
-// across an edge. `across`: the step at s, across the light.
+// across an edge. `across`: the step at s, across the light; clipAcross: the same in clip space.
 vec3 entrySlope(ShadowConstants shadow, LightConstants light, ShadowReceiver receiver, vec3 s, vec3 y,
-                ivec2 axis, vec3 across) {
+                ivec2 axis, vec3 across, vec4 clipAcross) {
   vec3 best = vec3(0.0);
   float least = 3.0e38;
   for (int side = 1; side >= -1; side -= 2) {
     ivec2 texel = receiver.texel + side * axis;
     vec3 neighbor = s + float(side) * across;
-    vec4 clip = shadow.clipFromView * vec4(neighbor, 1.0);
+    ShadowReceiver at = ShadowReceiver(receiver.clip + float(side) * clipAcross, texel, true);
     if (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, ivec2(shadow.depth.zw)))) continue;
     float stored = shadowTexel(shadow.meta.x, texel);
     if (!shadowHolds(shadow, stored)) continue;
-    vec3 toward = float(side) * (entryPoint(shadow, light, ShadowReceiver(clip, texel, true), neighbor, stored) - y);
+    vec3 toward = float(side) * (entryPoint(shadow, light, at, neighbor, stored) - y);
     float squared = dot(toward, toward);
     if (squared < least) {
       least = squared;
@@ -110,6 +110,7 @@ Gathered gatherLight(uint m, LightConstants light, Surface x, uint samples, floa
   // A map that is not singular has one; texels of no size would leave the normals out.
   float scale = abs(determinant) > 0.0 ? 2.0 * receiver.clip.w / determinant : 0.0;
   vec3 stepX = scale * (perV.y * u - perU.y * v), stepY = scale * (perU.x * v - perV.x * u);
+  vec4 clipX = shadow.clipFromView * vec4(stepX, 0.0), clipY = shadow.clipFromView * vec4(stepY, 0.0);
   float texel = sqrt(length(stepX) * length(stepY));
   float tolerance = kSeenTolerance * texel + shadow.depth.y;
 
@@ -130,8 +131,8 @@ Gathered gatherLight(uint m, LightConstants light, Surface x, uint samples, floa
     if (!shadowHolds(shadow, stored)) continue;
     vec3 y = entryPoint(shadow, light, receiver, s, stored);
 
-    vec3 normal = cross(entrySlope(shadow, light, receiver, s, y, ivec2(1, 0), stepX),
-                        entrySlope(shadow, light, receiver, s, y, ivec2(0, 1), stepY));
+    vec3 normal = cross(entrySlope(shadow, light, receiver, s, y, ivec2(1, 0), stepX, clipX),
+                        entrySlope(shadow, light, receiver, s, y, ivec2(0, 1), stepY, clipY));
     float size = length(normal);
     float cosine = dot(normal, incident.toLight);
     normal = size > 0.0 ? normal * (sign(cosine) / size) : incident.toLight; // towards the light

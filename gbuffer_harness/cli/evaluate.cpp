@@ -9,6 +9,9 @@
 #include "cli/commands.h"
 #include "common/compare.h"
 #include "common/error.h"
+#include "common/plot.h"
+#include "common/png.h"
+#include "reference/reference.h"
 #include "replay/replay.h"
 
 namespace pellucid::harness {
@@ -16,8 +19,9 @@ namespace {
 
 struct Options {
   std::vector<std::string> captures;
-  std::string output, device;
+  std::string output, device, picture, plot;
   int box = 4;
+  bool reference = false;
 };
 
 struct Model {
@@ -38,7 +42,8 @@ std::vector<Model> models() {
   camera.translucency.shadowBias = thesisSettings().translucency.shadowBias;
   return {{"no translucency", none},          {"thesis", thesisSettings()},
           {"camera-space thickness", camera}, {"light-space thickness", light},
-          {"gather, 16 samples", gather(16)}, {"gather, 64 samples", gather(64)}};
+          {"gather, 8 samples", gather(8)},   {"gather, 16 samples", gather(16)},
+          {"gather, 64 samples", gather(64)}};
 }
 
 std::string cells(const Comparison& c) {
@@ -55,10 +60,59 @@ std::string compared(const Capture& capture, const Image& image, Subset subset, 
   return cells(compareImages(image, capture.truth->image, mask, box));
 }
 
+// What the samples converge to, over brute-force diffusion.
+Image allTexels(const Capture& capture, const std::vector<PellucidMaterial>& materials) {
+  reference::Settings settings;
+  settings.translucency.gatherSamples = 64;
+  settings.diffusion.discardedEnergy = 1e-3;
+  return reference::compute(capture, materials, settings).image;
+}
+
+// thesis | light-space thickness | gather, 16 samples | truth, under one exposure.
+void writePicture(const std::string& path, const Capture& capture,
+                  const std::vector<PellucidMaterial>& materials, Replayer& replayer) {
+  std::vector<Image> images;
+  for (const ReplaySettings& settings : {thesisSettings(), ReplaySettings(), gather(16)})
+    images.push_back(rgb(replayer.run(capture, materials, settings).output));
+  images.push_back(capture.truth->image);
+  std::vector<const Image*> pointers;
+  for (Image& image : images) {
+    for (std::size_t i = 0; i < capture.material.size(); ++i)
+      if (capture.material[i] == 0) std::fill_n(&image.data[3 * i], 3, 0.0f);
+    pointers.push_back(&image);
+  }
+  const Image picture = contactSheet(pointers, static_cast<int>(images.size()));
+  writePng(path, picture.width, picture.height, toSrgb(picture, autoExposure(images.back())));
+}
+
+// Relative RMSE of the unlit pixels against samples, one line a capture and channel.
+std::vector<Series> samplesAgainstError(const std::string& name, const Capture& capture,
+                                        const std::vector<PellucidMaterial>& materials, Replayer& replayer,
+                                        int box) {
+  const auto mask = comparisonMask(capture.material, capture.irradiance, Subset::Unlit);
+  if (std::find(mask.begin(), mask.end(), 1) == mask.end()) return {};
+  std::vector<Series> lines(3);
+  constexpr Color colors[] = {{200, 40, 40}, {40, 140, 60}, {50, 80, 200}};
+  for (std::size_t c = 0; c < 3; ++c) {
+    lines[c].color = colors[c];
+    lines[c].name = name + std::string(" ") + "RGB"[c];
+  }
+  for (const std::uint32_t samples : {4u, 8u, 16u, 32u, 64u}) {
+    const Image image = rgb(replayer.run(capture, materials, gather(samples)).output);
+    const Comparison comparison = compareImages(image, capture.truth->image, mask, box);
+    for (std::size_t c = 0; c < 3; ++c) {
+      lines[c].x.push_back(samples);
+      lines[c].y.push_back(comparison.channels[c].relativeRmse);
+    }
+  }
+  return lines;
+}
+
 void evaluate(const Options& options) {
   Device device({options.device, false});
   Replayer replayer(device);
   std::ostringstream table;
+  std::vector<Plot> plots;
   table << "Relative RMSE and mean bias (R G B) against path-traced truth, " << options.box << "x"
         << options.box << " averages; unlit: pixels without front irradiance.\n\n"
         << "| capture | model | all | bias | unlit | bias |\n|-|-|-|-|-|-|\n";
@@ -75,7 +129,21 @@ void evaluate(const Options& options) {
             << compared(capture, image, Subset::All, options.box) << " | "
             << compared(capture, image, Subset::Unlit, options.box) << " |\n";
     }
+    if (options.reference) {
+      const Image image = allTexels(capture, materials);
+      table << "| " << name << " | float64: all texels, exact diffusion | "
+            << compared(capture, image, Subset::All, options.box) << " | "
+            << compared(capture, image, Subset::Unlit, options.box) << " |\n";
+    }
+    if (!options.picture.empty() && &path == &options.captures.front())
+      writePicture(options.picture, capture, materials, replayer);
+    if (!options.plot.empty()) {
+      Plot plot{name + ", unlit pixels", {"samples", true, {}, {}}, {"relative RMSE", false, 0.0, 0.6}, {}};
+      plot.series = samplesAgainstError(name, capture, materials, replayer, options.box);
+      plots.push_back(std::move(plot));
+    }
   }
+  if (!options.plot.empty()) writePlot(options.plot, plots, 480, 360);
   if (options.output.empty()) {
     std::fputs(table.str().c_str(), stdout);
     return;
@@ -96,6 +164,11 @@ void addEvaluateCommand(CLI::App& app) {
   command->add_option("--box", options->box, "average NxN pixels first")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
+  command->add_flag("--reference", options->reference,
+                    "also the float64 gather over all texels with brute-force diffusion; minutes");
+  command->add_option("--picture", options->picture,
+                      "PNG of the first capture: thesis, light-space thickness, gather, truth");
+  command->add_option("--plot", options->plot, "PNG of the error against the samples of the gather");
   command->add_option("--device", options->device, "part of the Vulkan device's name");
   command->callback([options] { evaluate(*options); });
 }

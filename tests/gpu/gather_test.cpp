@@ -83,6 +83,11 @@ TEST_F(Gather, ConstantLightStaysConstant) {
   const Image out = replay(c, testMaterial(), settings(32));
   // Halves carry the shared light: 5e-4 of it.
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(out.at(4, 4)[k], 3, 3e-3);
+  // Nothing to displace where nothing diffuses.
+  ReplaySettings undiffused = settings(32);
+  undiffused.features = PELLUCID_FEATURE_TRANSLUCENCY;
+  const Image alone = replay(c, testMaterial(), undiffused);
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(alone.at(4, 4)[k], 3, 1e-5);
 }
 
 TEST_F(Gather, NothingFromOutsideOrEmptyTexels) {

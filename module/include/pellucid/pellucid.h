@@ -223,8 +223,9 @@ typedef struct PellucidFrame {
                                between N and the view ray */
   float maximumThickness;   /* mm; thicker parts let nothing through; 0: no limit */
   float transmittanceFilter[3]; /* multiplies T, [0, 1]; default 1 (Whelan 2009, 4.5: .55 .29 .28) */
-  uint32_t gatherSamples;   /* 0..64, a multiple of 4: points of the shadow map a pixel gathers light from, for lights with
-                               one and materials of EXP2 or SINH_EXP; 0: one light-space thickness */
+  uint32_t gatherSamples;   /* 0..64, a multiple of 4: points of the shadow map that each point of 2x2 pixels
+                               gathers light from, for lights with a map and materials of EXP2 or SINH_EXP;
+                               0: one light-space thickness */
 
   /* Minimum dots by the direction from the object to a light, each [-1, 0]. AZIMUTH: minimumDotTableSize
    * entries, 1..360 (Whelan: 36), at equal angles about upAxis, the first where the face looks and the next
