@@ -64,21 +64,57 @@ vec3 entrySlope(ShadowConstants shadow, LightConstants light, ShadowReceiver rec
   return best;
 }
 
-// From `samples` points of the light's first map that contains x. `turn` and `within`, [0, 1): which of the
-// patterns this pixel takes; neighbors take others, and share what they find.
+// One of a light's maps as the gather reads it: steps of one texel across the light around a point.
+struct GatherMap {
+  ShadowConstants shadow;
+  vec3 stepX, stepY;
+  vec4 clipX, clipY; // of the steps
+  float tolerance;
+};
+
+// The steps are the inverse of the map's derivative; `clip`: the point's, inside the map.
+GatherMap gatherMap(uint index, vec4 clip, vec3 toLight) {
+  GatherMap map;
+  map.shadow = shadows[index];
+  vec3 side = abs(toLight.x) < 0.7 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
+  vec3 u = normalize(cross(toLight, side)), v = cross(toLight, u);
+  vec4 clipU = map.shadow.clipFromView * vec4(u, 0.0), clipV = map.shadow.clipFromView * vec4(v, 0.0);
+  vec2 ndc = clip.xy / clip.w; // inside: w > 0
+  vec2 perU = (clipU.xy - ndc * clipU.w) * map.shadow.depth.zw;
+  vec2 perV = (clipV.xy - ndc * clipV.w) * map.shadow.depth.zw;
+  float determinant = perU.x * perV.y - perU.y * perV.x;
+  // A map that is not singular has one; texels of no size would leave the normals out.
+  float scale = abs(determinant) > 0.0 ? 2.0 * clip.w / determinant : 0.0;
+  map.stepX = scale * (perV.y * u - perU.y * v);
+  map.stepY = scale * (perU.x * v - perV.x * u);
+  map.clipX = map.shadow.clipFromView * vec4(map.stepX, 0.0);
+  map.clipY = map.shadow.clipFromView * vec4(map.stepY, 0.0);
+  map.tolerance = kSeenTolerance * sqrt(length(map.stepX) * length(map.stepY)) + map.shadow.depth.y;
+  return map;
+}
+
+// Index into shadows[] of the light's first map that contains s; the number beyond the light's last: none.
+uint findMap(LightConstants light, vec3 s, out ShadowReceiver receiver) {
+  uint map = light.meta.y, end = map + light.meta.z;
+  for (; map < end; ++map) {
+    receiver = projectReceiver(shadows[map], s);
+    if (receiver.inside) break;
+  }
+  return map;
+}
+
+// From `samples` points of the light's maps, around the first that contains x; a cube's seams are no borders.
+// `turn` and `within`, [0, 1): which of the patterns this point takes; neighbors take others, and share what
+// they find.
 Gathered gatherLight(uint m, LightConstants light, Surface x, uint samples, float turn, float within) {
   float mm = frame.camera.range.w;
   Gathered sum = Gathered(vec3(0.0), vec3(0.0), vec3(0.0));
-  uint map = light.meta.y, end = map + light.meta.z;
   ShadowReceiver receiver;
-  for (; map < end; ++map) {
-    receiver = projectReceiver(shadows[map], x.position);
-    if (receiver.inside) break;
-  }
-  if (map >= end) return sum;
-  ShadowConstants shadow = shadows[map];
-  GatherConstants material = materials[m].gather;
+  uint current = findMap(light, x.position, receiver), none = light.meta.y + light.meta.z;
+  if (current == none) return sum;
   Incident incident = incidentLight(light, x.position);
+  GatherMap map = gatherMap(current, receiver.clip, incident.toLight);
+  GatherConstants material = materials[m].gather;
 
   // Rings around an axis between the light's ray and the normal inwards, the one that suits a slab: there
   // they are around the foot of the perpendicular. `t`: along it, from x to the lit surface.
@@ -86,33 +122,20 @@ Gathered gatherLight(uint m, LightConstants light, Surface x, uint samples, floa
   vec3 axis = normalize(incident.toLight - facing * x.normal); // the two are within 90 degrees
   float axisCosine = dot(axis, incident.toLight);
   float longest = material.lengths.z / mm, t = 0.0;
-  float stored = shadowTexel(shadow.meta.x, receiver.texel);
-  if (shadowHolds(shadow, stored)) {
-    vec3 y = entryPoint(shadow, light, receiver, x.position, stored);
+  float stored = shadowTexel(map.shadow.meta.x, receiver.texel);
+  if (shadowHolds(map.shadow, stored)) {
+    vec3 y = entryPoint(map.shadow, light, receiver, x.position, stored);
     t = clamp(dot(y - x.position, incident.toLight), 0.0, longest);
-    ShadowReceiver along = projectReceiver(shadow, x.position + t * axis);
+    ShadowReceiver along = projectReceiver(map.shadow, x.position + t * axis);
     if (along.inside) {
-      stored = shadowTexel(shadow.meta.x, along.texel);
-      if (shadowHolds(shadow, stored))
-        t = clamp(dot(entryPoint(shadow, light, along, x.position + t * axis, stored) - x.position, axis), 0.0, longest);
+      stored = shadowTexel(map.shadow.meta.x, along.texel);
+      if (shadowHolds(map.shadow, stored))
+        t = clamp(dot(entryPoint(map.shadow, light, along, x.position + t * axis, stored) - x.position, axis), 0.0,
+                  longest);
     }
   }
   vec3 center = x.position + t * axis;
   t *= mm;
-
-  // Steps of one texel across the light: the inverse of the map's derivative.
-  vec3 side = abs(incident.toLight.x) < 0.7 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
-  vec3 u = normalize(cross(incident.toLight, side)), v = cross(incident.toLight, u);
-  vec4 clipU = shadow.clipFromView * vec4(u, 0.0), clipV = shadow.clipFromView * vec4(v, 0.0);
-  vec2 ndc = receiver.clip.xy / receiver.clip.w; // inside the map: w > 0
-  vec2 perU = (clipU.xy - ndc * clipU.w) * shadow.depth.zw, perV = (clipV.xy - ndc * clipV.w) * shadow.depth.zw;
-  float determinant = perU.x * perV.y - perU.y * perV.x;
-  // A map that is not singular has one; texels of no size would leave the normals out.
-  float scale = abs(determinant) > 0.0 ? 2.0 * receiver.clip.w / determinant : 0.0;
-  vec3 stepX = scale * (perV.y * u - perU.y * v), stepY = scale * (perU.x * v - perV.x * u);
-  vec4 clipX = shadow.clipFromView * vec4(stepX, 0.0), clipY = shadow.clipFromView * vec4(stepY, 0.0);
-  float texel = sqrt(length(stepX) * length(stepY));
-  float tolerance = kSeenTolerance * texel + shadow.depth.y;
 
   vec3 across = normalize(cross(axis, abs(axis.x) < 0.7 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0)));
   vec3 along = cross(axis, across);
@@ -125,20 +148,22 @@ Gathered gatherLight(uint m, LightConstants light, Surface x, uint samples, floa
     float from = inner;
     inner = outer;
     direction = mat2(-0.73736888, 0.67549029, -0.67549029, -0.73736888) * direction; // the golden angle
-    receiver = projectReceiver(shadow, s);
-    if (!receiver.inside) continue;
-    stored = shadowTexel(shadow.meta.x, receiver.texel);
-    if (!shadowHolds(shadow, stored)) continue;
-    vec3 y = entryPoint(shadow, light, receiver, s, stored);
+    uint found = findMap(light, s, receiver);
+    if (found == none) continue;
+    if (found != current) map = gatherMap(found, receiver.clip, incident.toLight);
+    current = found;
+    stored = shadowTexel(map.shadow.meta.x, receiver.texel);
+    if (!shadowHolds(map.shadow, stored)) continue;
+    vec3 y = entryPoint(map.shadow, light, receiver, s, stored);
 
-    vec3 normal = cross(entrySlope(shadow, light, receiver, s, y, ivec2(1, 0), stepX, clipX),
-                        entrySlope(shadow, light, receiver, s, y, ivec2(0, 1), stepY, clipY));
+    vec3 normal = cross(entrySlope(map.shadow, light, receiver, s, y, ivec2(1, 0), map.stepX, map.clipX),
+                        entrySlope(map.shadow, light, receiver, s, y, ivec2(0, 1), map.stepY, map.clipY));
     float size = length(normal);
     float cosine = dot(normal, incident.toLight);
     normal = size > 0.0 ? normal * (sign(cosine) / size) : incident.toLight; // towards the light
     cosine = size > 0.0 ? max(abs(cosine) / size, kLeastCosine) : 1.0;
     // What faces away cannot be seen, however thin the part is.
-    if (dot(normal, x.view) < 0.0 && cameraSees(y, tolerance)) continue;
+    if (dot(normal, x.view) < 0.0 && cameraSees(y, map.tolerance)) continue;
 
     vec3 to = (x.position - y) * mm;
     float squared = dot(to, to), r = sqrt(squared);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_access.hpp>
+#include <iterator>
 #include <optional>
 
 #include "common/error.h"
@@ -19,6 +20,11 @@ constexpr int kBlock = 16;
 constexpr double kLeastCosine = 0.05;
 // Texels: a point on a surface and the pixel that shows it are apart by the slope within them.
 constexpr double kSeenTolerance = 2;
+
+bool contains(const ShadowMap& map, const glm::dvec3& point) {
+  const glm::dvec4 clip = toMatrix(map.clipFromWorld) * glm::dvec4(point, 1);
+  return clip.w > 0 && std::abs(clip.x) <= clip.w && std::abs(clip.y) <= clip.w;
+}
 
 // Positions of a map's texels, world, scene units.
 class Unprojected {
@@ -108,8 +114,13 @@ Gather::Gather(const Capture& capture, const SurfaceReader& surfaces,
     kernels_.emplace_back(m);
     radii_.push_back(kernels_.back().radius(kTail));
   }
-  for (const Light& light : capture.lights)
-    lights_.push_back(light.shadowMap ? collect(light, shadowBias) : Blocks{});
+  for (const Light& light : capture.lights) {
+    Blocks& blocks = lights_.emplace_back();
+    for (std::size_t map = 0; map < light.shadowMaps.size(); ++map) {
+      Blocks more = collect(light, map, shadowBias);
+      std::move(more.begin(), more.end(), std::back_inserter(blocks));
+    }
+  }
 }
 
 // What faces away cannot be seen, however thin the part is; what faces the camera is seen unless
@@ -129,8 +140,8 @@ bool Gather::cameraSees(const glm::dvec3& world, const glm::dvec3& normal, doubl
   return front && planar <= *front + tolerance;
 }
 
-Gather::Blocks Gather::collect(const Light& light, double bias) const {
-  const ShadowMap& map = *light.shadowMap;
+Gather::Blocks Gather::collect(const Light& light, std::size_t mapIndex, double bias) const {
+  const ShadowMap& map = light.shadowMaps[mapIndex];
   const int width = map.depth.image.width, height = map.depth.image.height;
   const Unprojected unprojected(light, map);
   std::vector<std::optional<glm::dvec3>> points;
@@ -160,6 +171,10 @@ Gather::Blocks Gather::collect(const Light& light, double bias) const {
         for (int x = left; x < std::min(left + kBlock, width); ++x) {
           const std::optional<glm::dvec3>& p = point(x, y);
           if (!p) continue;
+          if (std::any_of(light.shadowMaps.begin(),
+                          light.shadowMaps.begin() + static_cast<std::ptrdiff_t>(mapIndex),
+                          [&](const ShadowMap& earlier) { return contains(earlier, *p); }))
+            continue;
           const Arrival arrival = arrivalAt(light, *p);
           glm::dvec3 normal = arrival.toLight;
           const auto right = slope(x, y, 1, 0), below = slope(x, y, 0, 1);

@@ -45,7 +45,8 @@ private:
   };
   using Blocks = std::vector<Block>;
 
-  Blocks collect(const Light& light, double bias) const;
+  // Of one of the light's maps; a texel that an earlier one contains counts there.
+  Blocks collect(const Light& light, std::size_t map, double bias) const;
   bool cameraSees(const glm::dvec3& world, const glm::dvec3& normal, double tolerance) const;
 
   const Capture& capture_;

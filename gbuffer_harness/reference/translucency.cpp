@@ -116,7 +116,7 @@ Transmission Translucency::at(const Surface& surface, const PellucidMaterial& ma
   if (receiver.chord) t.cameraThickness = *receiver.chord * mmPerUnit;
   if (const auto distance = firstLightDistance(receiver)) t.lightThickness = *distance * mmPerUnit;
   for (std::size_t i = 0; i < capture_.lights.size(); ++i) {
-    if (settings_.gatherSamples > 0 && shadows_[i]) continue;  // reference/gather.h
+    if (settings_.gatherSamples > 0 && !shadows_[i].empty()) continue;  // reference/gather.h
     const LightPath path = usesLightSpace(i) ? lightSpacePath(i, receiver) : cameraSpacePath(i, receiver);
     t.arriving += path.arriving;
     if (!path.reaches) continue;

@@ -172,7 +172,7 @@ TEST_F(GatherAgreement, LitPlanesDoNotGlow) {
       p.depthEncoding = p.shadowEncoding = PELLUCID_DEPTH_DEVICE;
       p.orthographic = true;
       Capture c = evenlyLit(p, static_cast<float>(std::cos((180 - angle) * M_PI / 180)));
-      for (float& v : c.lights.at(0).shadowMap->depth.image.data) v = std::round(v * 65535) / 65535;
+      for (float& v : c.lights.at(0).shadowMaps.at(0).depth.image.data) v = std::round(v * 65535) / 65535;
       for (float& v : c.frontDepth.image.data) v = std::round(v * 65535) / 65535;
       const Image out = gpuGather(replayer(), c, 16);
       for (int x = 24; x < 40; ++x)
