@@ -64,106 +64,104 @@ vec3 entrySlope(ShadowConstants shadow, LightConstants light, ShadowReceiver rec
   return best;
 }
 
-// One of a light's maps as the gather reads it: steps of one texel across the light around a point.
-struct GatherMap {
-  ShadowConstants shadow;
-  vec3 stepX, stepY;
-  vec4 clipX, clipY; // of the steps
+// Steps of one texel across the light around a point; the same in clip space; how far from the front depth a
+// texel's point may be and still be seen.
+struct GatherSteps {
+  vec3 x, y;
+  vec4 clipX, clipY;
   float tolerance;
 };
 
-// The steps are the inverse of the map's derivative; `clip`: the point's, inside the map.
-GatherMap gatherMap(uint index, vec4 clip, vec3 toLight) {
-  GatherMap map;
-  map.shadow = shadows[index];
+// The inverse of the map's derivative at a point in front of it. clip: the point's, w > 0.
+GatherSteps gatherSteps(ShadowConstants shadow, vec4 clip, vec3 toLight) {
   vec3 side = abs(toLight.x) < 0.7 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
   vec3 u = normalize(cross(toLight, side)), v = cross(toLight, u);
-  vec4 clipU = map.shadow.clipFromView * vec4(u, 0.0), clipV = map.shadow.clipFromView * vec4(v, 0.0);
-  vec2 ndc = clip.xy / clip.w; // inside: w > 0
-  vec2 perU = (clipU.xy - ndc * clipU.w) * map.shadow.depth.zw;
-  vec2 perV = (clipV.xy - ndc * clipV.w) * map.shadow.depth.zw;
+  vec4 clipU = shadow.clipFromView * vec4(u, 0.0), clipV = shadow.clipFromView * vec4(v, 0.0);
+  vec2 ndc = clip.xy / clip.w;
+  vec2 perU = (clipU.xy - ndc * clipU.w) * shadow.depth.zw, perV = (clipV.xy - ndc * clipV.w) * shadow.depth.zw;
   float determinant = perU.x * perV.y - perU.y * perV.x;
   // A map that is not singular has one; texels of no size would leave the normals out.
   float scale = abs(determinant) > 0.0 ? 2.0 * clip.w / determinant : 0.0;
-  map.stepX = scale * (perV.y * u - perU.y * v);
-  map.stepY = scale * (perU.x * v - perV.x * u);
-  map.clipX = map.shadow.clipFromView * vec4(map.stepX, 0.0);
-  map.clipY = map.shadow.clipFromView * vec4(map.stepY, 0.0);
-  map.tolerance = kSeenTolerance * sqrt(length(map.stepX) * length(map.stepY)) + map.shadow.depth.y;
-  return map;
+  GatherSteps steps;
+  steps.x = scale * (perV.y * u - perU.y * v);
+  steps.y = scale * (perU.x * v - perV.x * u);
+  steps.clipX = shadow.clipFromView * vec4(steps.x, 0.0);
+  steps.clipY = shadow.clipFromView * vec4(steps.y, 0.0);
+  steps.tolerance = kSeenTolerance * sqrt(length(steps.x) * length(steps.y)) + shadow.depth.y;
+  return steps;
 }
 
-// Index into shadows[] of the light's first map that contains s; the number beyond the light's last: none.
-uint findMap(LightConstants light, vec3 s, out ShadowReceiver receiver) {
-  uint map = light.meta.y, end = map + light.meta.z;
-  for (; map < end; ++map) {
-    receiver = projectReceiver(shadows[map], s);
-    if (receiver.inside) break;
-  }
-  return map;
-}
+// The rings around an axis through x; t, mm: along it, from x to the lit surface.
+struct GatherRings {
+  vec3 axis, across, along, center;
+  float t, axisCosine; // of the axis with the light's ray
+};
 
-// From `samples` points of the light's maps, around the first that contains x; a cube's seams are no borders.
-// `turn` and `within`, [0, 1): which of the patterns this point takes; neighbors take others, and share what
-// they find.
-Gathered gatherLight(uint m, LightConstants light, Surface x, uint samples, float turn, float within) {
+// An axis between the light's ray and the normal inwards suits slabs: their rings are around the foot of the
+// perpendicular. The receiver is inside the map.
+GatherRings gatherRings(ShadowConstants shadow, ShadowReceiver receiver, LightConstants light, Surface x,
+                        float longest) {
   float mm = frame.camera.range.w;
-  Gathered sum = Gathered(vec3(0.0), vec3(0.0), vec3(0.0));
-  ShadowReceiver receiver;
-  uint current = findMap(light, x.position, receiver), none = light.meta.y + light.meta.z;
-  if (current == none) return sum;
-  Incident incident = incidentLight(light, x.position);
-  GatherMap map = gatherMap(current, receiver.clip, incident.toLight);
-  GatherConstants material = materials[m].gather;
-
-  // Rings around an axis between the light's ray and the normal inwards, the one that suits a slab: there
-  // they are around the foot of the perpendicular. `t`: along it, from x to the lit surface.
-  float facing = x.hasNormal ? max(-dot(x.normal, incident.toLight), 0.0) : 0.0;
-  vec3 axis = normalize(incident.toLight - facing * x.normal); // the two are within 90 degrees
-  float axisCosine = dot(axis, incident.toLight);
-  float longest = material.lengths.z / mm, t = 0.0;
-  float stored = shadowTexel(map.shadow.meta.x, receiver.texel);
-  if (shadowHolds(map.shadow, stored)) {
-    vec3 y = entryPoint(map.shadow, light, receiver, x.position, stored);
-    t = clamp(dot(y - x.position, incident.toLight), 0.0, longest);
-    ShadowReceiver along = projectReceiver(map.shadow, x.position + t * axis);
-    if (along.inside) {
-      stored = shadowTexel(map.shadow.meta.x, along.texel);
-      if (shadowHolds(map.shadow, stored))
-        t = clamp(dot(entryPoint(map.shadow, light, along, x.position + t * axis, stored) - x.position, axis), 0.0,
-                  longest);
+  vec3 toLight = incidentLight(light, x.position).toLight;
+  float facing = x.hasNormal ? max(-dot(x.normal, toLight), 0.0) : 0.0;
+  GatherRings rings;
+  rings.axis = normalize(toLight - facing * x.normal); // the two are within 90 degrees
+  rings.axisCosine = dot(rings.axis, toLight);
+  float t = 0.0, stored = shadowTexel(shadow.meta.x, receiver.texel);
+  if (shadowHolds(shadow, stored)) {
+    vec3 y = entryPoint(shadow, light, receiver, x.position, stored);
+    t = clamp(dot(y - x.position, toLight), 0.0, longest / mm);
+    vec3 guess = x.position + t * rings.axis;
+    ShadowReceiver below = projectReceiver(shadow, guess);
+    stored = below.inside ? shadowTexel(shadow.meta.x, below.texel) : stored;
+    if (below.inside && shadowHolds(shadow, stored)) {
+      y = entryPoint(shadow, light, below, guess, stored);
+      t = clamp(dot(y - x.position, rings.axis), 0.0, longest / mm);
     }
   }
-  vec3 center = x.position + t * axis;
-  t *= mm;
+  rings.center = x.position + t * rings.axis;
+  rings.t = t * mm;
+  rings.across = normalize(cross(rings.axis, abs(rings.axis.x) < 0.7 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0)));
+  rings.along = cross(rings.axis, rings.across);
+  return rings;
+}
 
-  vec3 across = normalize(cross(axis, abs(axis.x) < 0.7 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0)));
-  vec3 along = cross(axis, across);
+// Adds the samples whose light ray meets the map `index` of shadows[] and none of the light's before it.
+void gatherMap(uint m, LightConstants light, uint index, Surface x, GatherRings rings, uint samples, float turn,
+               float within, inout Gathered sum) {
+  float mm = frame.camera.range.w;
+  ShadowConstants shadow = shadows[index];
+  vec4 clip = shadow.clipFromView * vec4(x.position, 1.0);
+  if (!(clip.w > 0.0)) return; // a face of a cube that looks away
+  vec3 toLight = incidentLight(light, x.position).toLight;
+  GatherSteps steps = gatherSteps(shadow, clip, toLight);
+  GatherConstants material = materials[m].gather;
   vec2 direction = vec2(cos(6.28318531 * turn), sin(6.28318531 * turn));
   float inner = 0.0, perSample = 1.0 / float(samples);
   for (uint i = 0u; i < samples; ++i) {
-    float outer = i + 1u == samples ? 1.0e6 : gatherRadius(material, t, float(i + 1u) * perSample);
-    float rho = gatherRadius(material, t, (float(i) + within) * perSample);
-    vec3 s = center + (rho / mm) * (direction.x * across + direction.y * along);
+    float outer = i + 1u == samples ? 1.0e6 : gatherRadius(material, rings.t, float(i + 1u) * perSample);
+    float rho = gatherRadius(material, rings.t, (float(i) + within) * perSample);
+    vec3 s = rings.center + (rho / mm) * (direction.x * rings.across + direction.y * rings.along);
     float from = inner;
     inner = outer;
     direction = mat2(-0.73736888, 0.67549029, -0.67549029, -0.73736888) * direction; // the golden angle
-    uint found = findMap(light, s, receiver);
-    if (found == none) continue;
-    if (found != current) map = gatherMap(found, receiver.clip, incident.toLight);
-    current = found;
-    stored = shadowTexel(map.shadow.meta.x, receiver.texel);
-    if (!shadowHolds(map.shadow, stored)) continue;
-    vec3 y = entryPoint(map.shadow, light, receiver, s, stored);
+    ShadowReceiver receiver = projectReceiver(shadow, s);
+    bool first = receiver.inside;
+    for (uint before = light.meta.y; before < index && first; ++before)
+      first = !projectReceiver(shadows[before], s).inside;
+    if (!first) continue;
+    float stored = shadowTexel(shadow.meta.x, receiver.texel);
+    if (!shadowHolds(shadow, stored)) continue;
+    vec3 y = entryPoint(shadow, light, receiver, s, stored);
 
-    vec3 normal = cross(entrySlope(map.shadow, light, receiver, s, y, ivec2(1, 0), map.stepX, map.clipX),
-                        entrySlope(map.shadow, light, receiver, s, y, ivec2(0, 1), map.stepY, map.clipY));
+    vec3 normal = cross(entrySlope(shadow, light, receiver, s, y, ivec2(1, 0), steps.x, steps.clipX),
+                        entrySlope(shadow, light, receiver, s, y, ivec2(0, 1), steps.y, steps.clipY));
     float size = length(normal);
-    float cosine = dot(normal, incident.toLight);
-    normal = size > 0.0 ? normal * (sign(cosine) / size) : incident.toLight; // towards the light
+    float cosine = dot(normal, toLight);
+    normal = size > 0.0 ? normal * (sign(cosine) / size) : toLight; // towards the light
     cosine = size > 0.0 ? max(abs(cosine) / size, kLeastCosine) : 1.0;
     // What faces away cannot be seen, however thin the part is.
-    if (dot(normal, x.view) < 0.0 && cameraSees(y, map.tolerance)) continue;
+    if (dot(normal, x.view) < 0.0 && cameraSees(y, steps.tolerance)) continue;
 
     vec3 to = (x.position - y) * mm;
     float squared = dot(to, to), r = sqrt(squared);
@@ -174,14 +172,32 @@ Gathered gatherLight(uint m, LightConstants light, Surface x, uint samples, floa
     // The ring, seen as if all of it lay in y's plane across the axis.
     float plane = max(squared - rho * rho, 0.0);
     float near = sqrt(plane + from * from), far = sqrt(plane + outer * outer);
-    vec3 flux = incidentLight(light, s).irradiance * axisCosine;
+    vec3 flux = incidentLight(light, s).irradiance * rings.axisCosine;
     sum.transmitted += flux * opposite * gatherTransmitted(gatherSlab(material, h), h, near, far);
     if (opposite < 0.99) {
       vec3 reflected = (1.0 - opposite) * gatherReflected(material.profile.rgb, near, far);
       sum.entering += flux * reflected;
-      sum.displaced += reflected * (axisCosine / cosine);
+      sum.displaced += reflected * (rings.axisCosine / cosine);
     }
   }
+}
+
+// From `samples` points of the light's maps, around the first that contains x; a cube's seams are no borders.
+// `turn` and `within`, [0, 1): which of the patterns this point takes; neighbors take others, and share what
+// they find.
+Gathered gatherLight(uint m, LightConstants light, Surface x, uint samples, float turn, float within) {
+  Gathered sum = Gathered(vec3(0.0), vec3(0.0), vec3(0.0));
+  uint end = light.meta.y + light.meta.z;
+  GatherRings rings;
+  bool inside = false;
+  for (uint index = light.meta.y; index < end && !inside; ++index) {
+    ShadowReceiver receiver = projectReceiver(shadows[index], x.position);
+    inside = receiver.inside;
+    if (inside) rings = gatherRings(shadows[index], receiver, light, x, materials[m].gather.lengths.z);
+  }
+  if (!inside) return sum;
+  for (uint index = light.meta.y; index < end; ++index)
+    gatherMap(m, light, index, x, rings, samples, turn, within, sum);
   return sum;
 }
 
