@@ -40,9 +40,8 @@ uint lightAt(ivec2 pixel, out float front) {
   return front > 0.0 ? materialIndex(value) : 0u;
 }
 
-// `chord`: with the back depth, which only lights without a map need.
-Surface gatherSurface(ivec2 pixel, float front, bool chord) {
-  float back = chord ? texelFetch(backDepthImage, pixel, 0).x : 0.0;
+Surface gatherSurface(ivec2 pixel, float front) {
+  float back = hasFlag(PELLUCID_FLAG_CHORD) ? texelFetch(backDepthImage, pixel, 0).x : 0.0;
   return surfaceAt(pixel, front, texelFetch(frontDepthImage, pixel, 0).x, back, texelFetch(normalImage, pixel, 0));
 }
 
@@ -78,7 +77,7 @@ void gatherPoint(int index, ivec2 tile) {
   }
   if (material == 0u) return;
   uint m = material - 1u;
-  Surface s = gatherSurface(pixel, front, false);
+  Surface s = gatherSurface(pixel, front);
   pointPosition[index] = s.position;
   pointFacing[index] = packFacing(s, material);
   // Where points are too far apart to share, all take the middle pattern.
@@ -157,9 +156,7 @@ void writePixel(ivec2 pixel, ivec2 local) {
   vec3 result = sanitize(source.rgb);
   float front;
   if (lightAt(pixel, front) != 0u) {
-    bool unmapped = false;
-    for (uint i = 0u; i < pass.value.y; ++i) unmapped = unmapped || lights[pass.value.x + i].meta.z == 0u;
-    Surface s = gatherSurface(pixel, front, unmapped);
+    Surface s = gatherSurface(pixel, front);
     Light l = lightOf(local, s, material);
     result = result * (1.0 - l.displaced) + l.added;
     vec3 transmitted = vec3(0.0);
