@@ -29,11 +29,14 @@ Time measure(harness::Device& device, int repeat, const std::function<void(VkCom
   const double once = run(1);
   const int passes = static_cast<int>(std::clamp(std::ceil(kSpan / std::max(once, 1.0)), 1.0, kMost));
   std::vector<double> times;
-  // Devices lower their clocks while images are being made and take a moment of work to raise them.
-  constexpr std::chrono::milliseconds kWarmUp(300);
-  const auto start = std::chrono::steady_clock::now();
-  for (int i = 0; i < 2 || std::chrono::steady_clock::now() - start < kWarmUp; ++i) run(passes);
+  // Devices lower their clocks while images are being made, and take up to a second of work to raise them.
+  using Clock = std::chrono::steady_clock;
+  static Clock::time_point lastWork{};
+  const Clock::time_point start = Clock::now();
+  const std::chrono::milliseconds warmUp(start - lastWork > std::chrono::milliseconds(100) ? 1000 : 30);
+  for (int i = 0; i < 2 || Clock::now() - start < warmUp; ++i) run(passes);
   for (int i = 0; i < repeat; ++i) times.push_back(run(passes));
+  lastWork = Clock::now();
   std::sort(times.begin(), times.end());
   const auto at = [&](double share) {
     return times[static_cast<size_t>(share * static_cast<double>(times.size() - 1) + 0.5)];

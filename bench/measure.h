@@ -14,7 +14,7 @@ struct Time {
 
 // Records `record` as often in one command buffer, with a compute barrier after each, as fills about two
 // milliseconds (at most 64 times), and divides: the gaps between submissions and clocks that fall while the
-// device waits do not count. `repeat` such command buffers are counted, after 300 ms of some that are not.
+// device waits do not count. `repeat` such command buffers are counted, after a second of some that are not where the device was idle before.
 Time measure(harness::Device& device, int repeat, const std::function<void(VkCommandBuffer)>& record);
 
 }  // namespace pellucid::bench

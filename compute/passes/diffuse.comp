@@ -70,18 +70,22 @@ void main() {
   ivec2 group = (ivec2(frame.rect.xy) & ~1) + ivec2(gl_WorkGroupID.xy) * (2 * PELLUCID_DIFFUSE_GROUP);
   ivec2 local = 2 * ivec2(gl_LocalInvocationID.xy);
   int invocation = int(gl_LocalInvocationIndex);
+  // Texels first and at once: their latency passes while the pixels are loaded.
+  ivec2 firstTexel = (group >> 2) - 1;
+  ivec4 texelRect = levelRect(2u);
+  ivec2 atTexel = firstTexel + ivec2(invocation % kTexels, invocation / kTexels);
+  bool inside = invocation < kTexels * kTexels && insideLevel(texelRect, atTexel);
+  ivec2 reachable = clamp(atTexel, texelRect.xy, texelRect.zw - 1);
+  uvec4 texelBits = levelTexel(2u, reachable), resolvedBits = texelFetch(resolvedImage, inAtlas(2u, reachable), 0);
   for (int i = 0; i < 4; ++i) {
     ivec2 at = local + ivec2(i & 1, i >> 1);
     store(at, fetchPixel(group + at));
   }
   if (invocation < 8 * PELLUCID_DIFFUSE_GROUP) store(sidePixel(invocation), fetchPixel(group + sidePixel(invocation)));
   if (invocation < 4) store(cornerPixel(invocation), fetchPixel(group + cornerPixel(invocation)));
-  ivec2 firstTexel = (group >> 2) - 1;
   if (invocation < kTexels * kTexels) {
-    ivec2 at = firstTexel + ivec2(invocation % kTexels, invocation / kTexels);
-    bool inside = insideLevel(levelRect(2u), at);
-    Texel t = unpackTexel(inside ? levelTexel(2u, at) : uvec4(0u));
-    resolved[invocation] = inside && t.coverage > 0.0 ? texelFetch(resolvedImage, inAtlas(2u, at), 0) : uvec4(0u);
+    Texel t = unpackTexel(texelBits);
+    resolved[invocation] = inside ? resolvedBits : uvec4(0u);
     planes[invocation] = vec4(t.depth, t.slope, inverseSpread(t.slope, texelSize(t.depth, 2u)));
   }
   barrier();
