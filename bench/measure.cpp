@@ -10,8 +10,8 @@
 namespace pellucid::bench {
 
 Time measure(harness::Device& device, int repeat, const std::function<void(VkCommandBuffer)>& record) {
-  constexpr double kSpan = 2000;  // microseconds
-  constexpr double kMost = 64;
+  constexpr double kSpan = 10000;  // microseconds
+  constexpr double kMost = 256;
   const harness::Timestamps timestamps(device, 2);
   const auto run = [&](int times) {
     device.run([&](VkCommandBuffer commandBuffer) {
