@@ -31,7 +31,8 @@ function(pellucid_embed_shaders target)
       list(APPEND format HALF)
     endif()
     pellucid_shader(${target} kTranslucency${bits}f ${passes}/translucency.comp ${format})
-    pellucid_shader(${target} kDirectional${bits}f ${passes}/translucency.comp ${format} DIRECTIONAL)
+    pellucid_shader(${target} kDirectional${bits}f ${passes}/translucency.comp ${format} DIRECTIONAL
+                    GROUP_SIDE=PELLUCID_DIRECTIONAL_GROUP)
     pellucid_shader(${target} kGather${bits}f ${passes}/translucency.comp ${format} GATHER
                     GROUP_SIDE=PELLUCID_GATHER_GROUP)
     pellucid_shader(${target} kDebug${bits}f ${passes}/translucency.comp ${format} DEBUG_VIEWS)

@@ -9,7 +9,8 @@
 
 const int kPixels = 2 * PELLUCID_DIFFUSE_GROUP + 2; // the group's and a border of one
 const int kTexels = PELLUCID_DIFFUSE_GROUP / 2 + 3; // of level 2 under the group, wherever it starts, and around it
-shared uvec2 colors[kPixels * kPixels];       // and material, 0 where there is no surface
+const uint kNoSurface = 0x8000u;               // a material without front depth
+shared uvec2 colors[kPixels * kPixels];       // and material, kNoSurface or 0
 shared float depths[kPixels * kPixels];
 shared uvec4 resolved[kTexels * kTexels];
 shared vec4 planes[kTexels * kTexels];        // depth, slope, inverseSpread of level 2
@@ -36,7 +37,8 @@ int indexOf(ivec2 local) { return (local.y + 1) * kPixels + local.x + 1; }
 
 void store(ivec2 local, Pixel p) {
   uint blue = packHalf2x16(vec2(p.color.b, 0.0)) & 0xFFFFu;
-  colors[indexOf(local)] = uvec2(packHalf2x16(p.color.rg), blue | (p.depth > 0.0 ? p.material : 0u) << 16);
+  uint surface = p.material == 0u ? 0u : p.depth > 0.0 ? p.material : kNoSurface;
+  colors[indexOf(local)] = uvec2(packHalf2x16(p.color.rg), blue | surface << 16);
   depths[indexOf(local)] = p.depth;
 }
 
@@ -96,12 +98,12 @@ void main() {
 
   // Pixels to do, by the surface they lie on: all at once where the four lie on one.
   uint pending = 0u;
-  for (int i = 0; i < 4; ++i)
-    if (colors[indexOf(local + ivec2(i & 1, i >> 1))].y >> 16 != 0u) pending |= 1u << i;
-  // Without a front surface there is no scale to diffuse over.
   for (int i = 0; i < 4; ++i) {
-    ivec2 pixel = group + local + ivec2(i & 1, i >> 1);
-    if ((pending & 1u << i) != 0u || !insideRect(pixel) || materialAt(pixel) == 0u) continue;
+    ivec2 at = local + ivec2(i & 1, i >> 1), pixel = group + at;
+    uint surface = colors[indexOf(at)].y >> 16;
+    if (surface != 0u && surface != kNoSurface) pending |= 1u << i;
+    if (surface != kNoSurface) continue;
+    // No scale to diffuse over.
     vec4 source = texelFetch(sourceImage, pixel, 0);
     writeResult(pixel, sanitize(source.rgb), source.a, pass.value.w != 0u);
   }

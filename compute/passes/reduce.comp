@@ -23,20 +23,21 @@ uvec4 quadTexel(ivec2 quad, bool copies) {
   uint material[4];
   float depth[4];
   vec4 source[4];
-  // All at once, so that the latencies overlap.
+  for (int i = 0; i < 4; ++i) {
+    ivec2 pixel = 2 * quad + ivec2(i & 1, i >> 1);
+    material[i] = insideRect(pixel) ? materialAt(pixel) : 0u;
+  }
+  if ((material[0] | material[1] | material[2] | material[3]) == 0u) return uvec4(0u);
+  // The rest at once, so that the latencies overlap.
   for (int i = 0; i < 4; ++i) {
     ivec2 at = clamp(2 * quad + ivec2(i & 1, i >> 1), ivec2(frame.rect.xy), ivec2(frame.rect.zw) - 1);
-    material[i] = materialAt(at);
     depth[i] = frontDistance(at);
     source[i] = texelFetch(sourceImage, at, 0);
   }
   for (int i = 0; i < 4; ++i) {
     ivec2 pixel = 2 * quad + ivec2(i & 1, i >> 1);
-    bool some = insideRect(pixel) && material[i] != 0u;
-    if (!some) {
-      material[i] = 0u;
-      depth[i] = -1.0;
-    }
+    bool some = material[i] != 0u;
+    if (!some) depth[i] = -1.0;
 #ifdef COPY
     // The quads of a border are the groups' beside.
     if (some && copies) imageStore(destinationImage, pixel, source[i]);

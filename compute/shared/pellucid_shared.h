@@ -16,6 +16,7 @@ using glm::vec4;
 
 #define PELLUCID_GROUP_X 8
 #define PELLUCID_GROUP_Y 8
+#define PELLUCID_DIRECTIONAL_GROUP 16 // a side: launching groups of 8 x 8 takes longer than what this variant does
 #define PELLUCID_DIFFUSE_GROUP 8 // a side; an invocation does 2 x 2 pixels
 #define PELLUCID_REDUCE_GROUP 8 // a side, of the pyramid's reductions
 #define PELLUCID_GATHER_GROUP 16 // threads a side; a tile of the gather is twice as wide

@@ -109,6 +109,8 @@ struct Builder {
     const uint32_t pipeline = half + (wide() ? 1 : 0);  // the 32F variant follows the 16F one
     PellucidDispatch* d = dispatch(debug ? "debug view" : "translucency", pipeline);
     if (!d) return false;
+    if (half == PELLUCID_PIPELINE_DIRECTIONAL_16F)
+      groups(d, rect.width, rect.height, PELLUCID_DIRECTIONAL_GROUP, PELLUCID_DIRECTIONAL_GROUP);
     if (!debug && frame.gatherSamples > 0) {
       constexpr uint32_t tile = 2 * PELLUCID_GATHER_GROUP;
       d->groups[0] = (rect.width + tile - 1) / tile;
