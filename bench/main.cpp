@@ -26,6 +26,7 @@ using namespace pellucid::bench;
 
 struct Options {
   std::string device, json, plot;
+  bool ratios = false;
   std::pair<int, int> size = {1280, 720};
   int repeat = 30;
   std::vector<double> coverage = {100, 25, 0};  // percent
@@ -240,14 +241,19 @@ void bench(const Options& options) {
   const std::vector<Point> points = diffusion(b);
   if (!options.plot.empty()) plotDiffusion(options.plot, points, device.description());
 
-  const nlohmann::json json = {{"device", device.description()},
-                               {"commit", PELLUCID_COMMIT},
-                               {"width", width},
-                               {"height", height},
-                               {"repeat", options.repeat},
-                               {"radius_pixels", options.radius},
-                               {"floor_us", floor.time.median},
-                               {"results", report.rows()}};
+  nlohmann::json json = {{"device", device.description()},
+                         {"commit", PELLUCID_COMMIT},
+                         {"width", width},
+                         {"height", height},
+                         {"repeat", options.repeat},
+                         {"radius_pixels", options.radius},
+                         {"floor_us", floor.time.median},
+                         {"results", report.rows()}};
+  if (options.ratios) {
+    json.erase("floor_us");
+    for (nlohmann::json& row : json["results"])
+      for (const char* time : {"us", "p10_us", "p90_us"}) row.erase(time);
+  }
   if (options.json == "-") {
     std::printf("%s\n", json.dump(1).c_str());
   } else if (!options.json.empty()) {
@@ -276,6 +282,8 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1.0, 1000.0))
       ->capture_default_str();
   app.add_option("--json", options.json, "file to write, - for standard output");
+  app.add_flag("--ratios", options.ratios,
+               "leave times out of the JSON: a software device only ranks variants");
   app.add_option("--plot", options.plot, "folder to write diffusion.png into: time against error");
   CLI11_PARSE(app, argc, argv);
   try {
