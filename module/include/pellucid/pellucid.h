@@ -126,7 +126,7 @@ typedef struct PellucidShadowMap {
   float bias;            /* scene units of thickness; nearer than this counts as the receiver itself */
 } PellucidShadowMap;
 
-/* A fused dispatch binds 8 shadow images; a frame with more gets several such dispatches. */
+/* A fused dispatch binds 8 shadow images and takes 128 lights and 128 shadow maps; a frame with more gets several. */
 enum { PELLUCID_MAX_LIGHT_SHADOW_MAPS = 8, PELLUCID_MAX_TRANSIENTS = 4 };
 
 typedef enum PellucidFeatureBits {
