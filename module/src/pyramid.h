@@ -21,14 +21,11 @@ struct PyramidPlace {
 
 PyramidPlace placeOf(const PellucidFrame& frame, uint32_t level);
 
-// Of an image for any render rect.
+// Of the pyramid's image and that of its resolved levels, for any render rect.
 struct PyramidExtent {
   uint32_t width, height;
 };
 
 PyramidExtent pyramidExtent(const PellucidFrame& frame);
-
-// Of an image with the resolved levels that are kept.
-PyramidExtent resolvedExtent(const PellucidFrame& frame);
 
 }  // namespace pellucid
