@@ -42,7 +42,7 @@ struct Builder {
     PellucidDispatch& d = plan.dispatches[plan.dispatchCount];
     d.name = name;
     d.pipeline = pipeline;
-    groups(&d, rect.width, rect.height, PELLUCID_GROUP_X, PELLUCID_GROUP_Y);
+    groups(&d, rect.width, rect.height, PELLUCID_GROUP_X);
     // Every dispatch after the first reads what the one before wrote.
     // The first of a frame that reuses comes after the last frame's use of the history.
     d.barrierBefore = plan.dispatchCount > 0 || plan.history.valid ? 1 : 0;
@@ -51,9 +51,10 @@ struct Builder {
     return &d;
   }
 
-  static void groups(PellucidDispatch* d, uint32_t width, uint32_t height, uint32_t tileX, uint32_t tileY) {
-    d->groups[0] = (width + tileX - 1) / tileX;
-    d->groups[1] = (height + tileY - 1) / tileY;
+  // `tile`: side of the square that one group makes.
+  static void groups(PellucidDispatch* d, uint32_t width, uint32_t height, uint32_t tile) {
+    d->groups[0] = (width + tile - 1) / tile;
+    d->groups[1] = (height + tile - 1) / tile;
     d->groups[2] = 1;
   }
 
@@ -78,12 +79,16 @@ struct Builder {
     image(d, binding, PELLUCID_RESOURCE_FRONT_DEPTH, 0);
   }
 
-  // Bindings that every pass has.
-  void common(PellucidDispatch* d, uint32_t source, uint32_t destination) const {
-    constants(d, PELLUCID_BINDING_FRAME, layout.frame);
+  // What every pass over pixels reads.
+  void pixelInputs(PellucidDispatch* d, uint32_t source) const {
     image(d, PELLUCID_BINDING_FRONT_DEPTH, PELLUCID_RESOURCE_FRONT_DEPTH, kUnknownDepthBytes);
     image(d, PELLUCID_BINDING_SOURCE, source, colorBytes());
     image(d, PELLUCID_BINDING_MATERIAL, PELLUCID_RESOURCE_MATERIAL, 1);
+  }
+  // Bindings of every pass that writes colors.
+  void common(PellucidDispatch* d, uint32_t source, uint32_t destination) const {
+    constants(d, PELLUCID_BINDING_FRAME, layout.frame);
+    pixelInputs(d, source);
     const bool last = destination == PELLUCID_RESOURCE_OUTPUT;
     optional(d, PELLUCID_BINDING_ALBEDO, frame.albedo, PELLUCID_RESOURCE_ALBEDO, last ? 4 : 0);
     bind(d, PELLUCID_BINDING_DESTINATION, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, destination);
@@ -110,12 +115,8 @@ struct Builder {
     PellucidDispatch* d = dispatch(debug ? "debug view" : "translucency", pipeline);
     if (!d) return false;
     if (half == PELLUCID_PIPELINE_DIRECTIONAL_16F)
-      groups(d, rect.width, rect.height, PELLUCID_DIRECTIONAL_GROUP, PELLUCID_DIRECTIONAL_GROUP);
-    if (!debug && frame.gatherSamples > 0) {
-      constexpr uint32_t tile = 2 * PELLUCID_GATHER_GROUP;
-      d->groups[0] = (rect.width + tile - 1) / tile;
-      d->groups[1] = (rect.height + tile - 1) / tile;
-    }
+      groups(d, rect.width, rect.height, PELLUCID_DIRECTIONAL_GROUP);
+    if (half == PELLUCID_PIPELINE_GATHER_16F) groups(d, rect.width, rect.height, 2 * PELLUCID_GATHER_GROUP);
     d->pushConstants[1] = group.lightCount;
     d->pushConstants[2] = destination == PELLUCID_RESOURCE_OUTPUT;
     if (destination == PELLUCID_RESOURCE_HISTORY && group.firstLight == 0)
@@ -149,6 +150,13 @@ struct Builder {
     return true;
   }
 
+  // What the passes after the reductions read of the pyramid.
+  void pyramidInputs(PellucidDispatch* d) const {
+    bind(d, PELLUCID_BINDING_PYRAMID, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, pyramidImage());
+    bind(d, PELLUCID_BINDING_RESOLVED, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, resolvedImage());
+    constants(d, PELLUCID_BINDING_KERNELS, layout.kernels);
+  }
+
   // Texels of a level that the rect needs.
   uint64_t texels(uint32_t level) const {
     const PyramidPlace place = placeOf(frame, level);
@@ -160,7 +168,7 @@ struct Builder {
     PellucidDispatch* d = dispatch(name, pipeline);
     if (!d) return nullptr;
     const PyramidPlace place = placeOf(frame, level);
-    groups(d, static_cast<uint32_t>(place.rect.width), static_cast<uint32_t>(place.rect.height), tile, tile);
+    groups(d, static_cast<uint32_t>(place.rect.width), static_cast<uint32_t>(place.rect.height), tile);
     constants(d, PELLUCID_BINDING_FRAME, layout.frame);
     bind(d, PELLUCID_BINDING_LEVELS, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, writes);
     d->modeledBytes += kTexelBytes * texels(level);
@@ -175,9 +183,7 @@ struct Builder {
                                            : PELLUCID_PIPELINE_REDUCE_AND_COPY_16F,
                                   kFirstLevel, PELLUCID_REDUCE_GROUP, pyramidImage());
     if (!d) return false;
-    image(d, PELLUCID_BINDING_FRONT_DEPTH, PELLUCID_RESOURCE_FRONT_DEPTH, kUnknownDepthBytes);
-    image(d, PELLUCID_BINDING_SOURCE, source, colorBytes());
-    image(d, PELLUCID_BINDING_MATERIAL, PELLUCID_RESOURCE_MATERIAL, 1);
+    pixelInputs(d, source);
     if (copies) {
       bind(d, PELLUCID_BINDING_DESTINATION, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, copy);
       d->modeledBytes += colorBytes() * pixels();
@@ -204,9 +210,7 @@ struct Builder {
     d->pushConstants[1] = first;
     d->pushConstants[2] = first < coarsest;
     d->pushConstants[3] = coarsest;
-    bind(d, PELLUCID_BINDING_PYRAMID, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, pyramidImage());
-    bind(d, PELLUCID_BINDING_RESOLVED, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, resolvedImage());
-    constants(d, PELLUCID_BINDING_KERNELS, layout.kernels);
+    pyramidInputs(d);
     for (uint32_t level = last; level <= first; ++level) d->modeledBytes += kTexelBytes * texels(level);
     return true;
   }
@@ -216,13 +220,10 @@ struct Builder {
         dispatch("diffuse", wide() ? PELLUCID_PIPELINE_DIFFUSE_32F : PELLUCID_PIPELINE_DIFFUSE_16F);
     if (!d) return false;
     // Groups start at even pixels and take two in each direction.
-    groups(d, rect.width + (rect.x & 1), rect.height + (rect.y & 1), 2 * PELLUCID_DIFFUSE_GROUP,
-           2 * PELLUCID_DIFFUSE_GROUP);
+    groups(d, rect.width + (rect.x & 1), rect.height + (rect.y & 1), 2 * PELLUCID_DIFFUSE_GROUP);
     d->pushConstants[3] = destination == PELLUCID_RESOURCE_OUTPUT;
     common(d, source, destination);
-    bind(d, PELLUCID_BINDING_PYRAMID, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, pyramidImage());
-    bind(d, PELLUCID_BINDING_RESOLVED, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, resolvedImage());
-    constants(d, PELLUCID_BINDING_KERNELS, layout.kernels);
+    pyramidInputs(d);
     d->modeledBytes += 2 * kTexelBytes * texels(kFirstLevel);
     return true;
   }
@@ -366,15 +367,16 @@ extern "C" PellucidResult pellucidGetImageNeeds(const PellucidFrame* frame, uint
   if (!count) return PELLUCID_ERROR_INVALID_ARGUMENT;
   const PellucidResult result = checkFrame(frame, nullptr, nullptr);
   if (result != PELLUCID_OK) return result;
-  // Without a plan before it, that of a frame that refreshes a history: every image is in use.
-  PellucidPlan plan{};
-  if (!build(*frame, {}, plan)) return PELLUCID_ERROR_CAPACITY;
   const Stages stages = stagesOf(*frame);
   const uint32_t colors = stages.colorTransients(), transients = colors + (stages.diffusion ? 2 : 0);
   const uint32_t room = *count;
   *count = transients + (stages.history ? 1 : 0);
+  if (!needs) return PELLUCID_OK;  // validation asks for the number in every frame
+  // Without a plan before it, that of a frame that refreshes a history: every image is in use.
+  PellucidPlan plan{};
+  if (!build(*frame, {}, plan)) return PELLUCID_ERROR_CAPACITY;
   const uint64_t colorBytes = frame->outputFormat == VK_FORMAT_R32G32B32A32_SFLOAT ? 16 : 8;
-  for (uint32_t i = 0; needs && i < *count && i < room; ++i) {
+  for (uint32_t i = 0; i < *count && i < room; ++i) {
     const bool persistent = i == transients, pyramid = !persistent && i >= colors;
     const PyramidExtent size =
         pyramid ? pyramidExtent(*frame) : PyramidExtent{frame->imageExtent[0], frame->imageExtent[1]};

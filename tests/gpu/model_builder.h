@@ -90,10 +90,10 @@ inline void addSphere(Model& model, const Vector3& center, double radius, std::u
     }
 }
 
-// Looks along -z from z = 100; 20 mm tall.
-inline ModelCamera frontCamera(bool orthographic) {
+// Looks at the origin, along -z from z = 100 by default; 20 mm tall.
+inline ModelCamera frontCamera(bool orthographic, const Vector3& eye = {0, 0, 100}) {
   ModelCamera camera;
-  camera.viewFromWorld = lookAt({0, 0, 100}, {0, 0, 0}, {0, 1, 0});
+  camera.viewFromWorld = lookAt(eye, {0, 0, 0}, {0, 1, 0});
   camera.orthographic = orthographic;
   camera.verticalFov = 2 * std::atan(0.1);
   camera.height = 20;

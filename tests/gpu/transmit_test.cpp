@@ -5,6 +5,7 @@
 
 #include "common/error.h"
 #include "gpu/gpu_fixture.h"
+#include "gpu/model_builder.h"
 #include "raster/raster.h"
 #include "raster/transmit.h"
 
@@ -38,12 +39,7 @@ Model blob() {
                                : glm::normalize(glm::cross(point(theta, phi + h) - point(theta, phi - h),
                                                            point(theta + h, phi) - point(theta - h, phi)));
       const double outward = glm::dot(n, p) > 0 ? 1 : -1;
-      Vertex v{};
-      for (int c = 0; c < 3; ++c) {
-        v.position[static_cast<std::size_t>(c)] = static_cast<float>(p[c]);
-        v.normal[static_cast<std::size_t>(c)] = static_cast<float>(outward * n[c]);
-      }
-      model.vertices.push_back(v);
+      model.vertices.push_back(vertexAt({p.x, p.y, p.z}, {outward * n.x, outward * n.y, outward * n.z}));
     }
   for (std::uint32_t i = 0; i < kRings; ++i)
     for (std::uint32_t j = 0; j < kSegments; ++j) {
@@ -69,15 +65,7 @@ Model blob() {
   return model;
 }
 
-ModelCamera camera(bool orthographic) {
-  ModelCamera c;
-  c.viewFromWorld = lookAt({10, 20, 100}, {0, 0, 0}, {0, 1, 0});
-  c.orthographic = orthographic;
-  c.verticalFov = 2 * std::atan(0.1);
-  c.height = 20;
-  c.range = {50, 150};
-  return c;
-}
+const Vector3 kEye = {10, 20, 100};
 
 class Transmit : public GpuTest {
 protected:
@@ -89,7 +77,7 @@ protected:
   // Largest difference of the raster pass and what the dispatch adds to the irradiance.
   static Difference difference(bool orthographic, const RasterOptions& options, ReplaySettings settings) {
     const Model model = blob();
-    RasterResult raster = rasterize(device(), model, camera(orthographic), options);
+    RasterResult raster = rasterize(device(), model, frontCamera(orthographic, kEye), options);
     EXPECT_EQ(raster.openPixels, 0u);
     Capture& capture = raster.capture;
     capture.albedo = {};  // would multiply the sum
@@ -146,7 +134,7 @@ TEST_F(Transmit, BackFacePassEqualsTheFusedDispatch) {
 TEST_F(Transmit, LightSpaceThicknessIsRefused) {
   const Model model = blob();
   const RasterOptions options{.width = 16, .height = 16};
-  const Capture capture = rasterize(device(), model, camera(false), options).capture;
+  const Capture capture = rasterize(device(), model, frontCamera(false, kEye), options).capture;
   const Context context(device());
   const FrameRun run(device(), context, capture, {testMaterial()}, {});
   EXPECT_THROW(rasterizeTransmitted(device(), model, capture, run, options), InputError);
