@@ -59,8 +59,11 @@ void print(const Device& device, const ReplayResult& result) {
 void writeTriptych(const Options& options, const Capture& capture,
                    const std::vector<PellucidMaterial>& materials, ReplaySettings settings,
                    Replayer& replayer, const Image& after, float exposure) {
-  settings.debugView = PELLUCID_DEBUG_IRRADIANCE;
-  Image through = rgb(replayer.run(capture, materials, settings).output);
+  // Not the debug view of what the diffusion reads: gathered light is added after it.
+  settings.features = PELLUCID_FEATURE_TRANSLUCENCY;
+  Capture undiffused = capture;
+  undiffused.albedo = {};
+  Image through = rgb(replayer.run(undiffused, materials, settings).output);
   Image before = capture.irradiance;
   for (size_t i = 0; i < through.data.size(); ++i)
     through.data[i] = std::max(through.data[i] - before.data[i], 0.0f);
