@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <set>
 #include <fstream>
 
 #include "baselines/baselines.h"
@@ -30,6 +31,7 @@ struct Options {
   std::pair<int, int> size = {1280, 720};
   int repeat = 30;
   std::vector<double> coverage = {100, 25, 0};  // percent
+  std::set<std::string> tables = {"module", "fused", "steps", "diffusion"};
   double radius = 40;                           // pixels
 };
 
@@ -235,11 +237,13 @@ void bench(const Options& options) {
                device.description().c_str(), PELLUCID_COMMIT, width, height, options.repeat, options.radius);
   report.section("floor");
   report.add({floor.shape, 1, 0, 24, {}}, floor.time);
-  modulePlans(b);
-  fusedDispatch(b);
-  separateSteps(b);
-  const std::vector<Point> points = diffusion(b);
-  if (!options.plot.empty()) plotDiffusion(options.plot, points, device.description());
+  const auto wanted = [&](const char* name) { return options.tables.count(name) > 0; };
+  if (wanted("module")) modulePlans(b);
+  if (wanted("fused")) fusedDispatch(b);
+  if (wanted("steps")) separateSteps(b);
+  std::vector<Point> points;
+  if (wanted("diffusion")) points = diffusion(b);
+  if (!options.plot.empty() && !points.empty()) plotDiffusion(options.plot, points, device.description());
 
   nlohmann::json json = {{"device", device.description()},
                          {"commit", PELLUCID_COMMIT},
@@ -280,6 +284,10 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--radius", options.radius, "pixels within which 99.9 % of the diffused energy lies")
       ->check(CLI::Range(1.0, 1000.0))
+      ->capture_default_str();
+  app.add_option("--tables", options.tables, "which to measure, with commas")
+      ->delimiter(',')
+      ->check(CLI::IsMember(options.tables))
       ->capture_default_str();
   app.add_option("--json", options.json, "file to write, - for standard output");
   app.add_flag("--ratios", options.ratios,

@@ -1,5 +1,5 @@
-// Texels of the diffusion pyramid. Level l >= 2 covers 2^l x 2^l pixels of the image, not of the rect; a texel
-// stands for one surface. Needs FrameConstants frame in scope.
+// Texels of the diffusion pyramid. One of level l covers 2^l x 2^l pixels of the image, not of the rect, and stands
+// for one surface. Needs FrameConstants frame in scope.
 #ifndef PELLUCID_PYRAMID_LIB_GLSL
 #define PELLUCID_PYRAMID_LIB_GLSL
 
@@ -8,8 +8,8 @@
 
 struct Texel {
   vec3 color;
-  float coverage; // share of the texel's filter that its surface fills; 0: the texel holds nothing
-  uint material;
+  float coverage; // share of the texel's filter that its surface fills; 0: the texel holds no surface
+  uint material;  // where there is no surface, not 0: some of its pixels have this material and no depth
   float depth;    // planar, at the texel's center
   vec2 slope;     // change of depth over that of position, facing the camera: tangents, the same at every level
 };
@@ -37,29 +37,18 @@ Texel unpackTexel(uvec4 u) {
                unpackHalf2x16(u.w));
 }
 
-// A texel with all coarser ones: what the next finer level takes from it.
-struct Resolved {
-  vec3 color;
-  float density;    // share of the kernel that the texel's surface fills
-  float pixelEntry; // place of a pixel's side on the surface in KernelConstants::pixelShare
-  uint material;    // 0: nothing
-};
+const uint kFullCoverage = 255u;
 
-uvec4 packResolved(Resolved r) {
-  uint density = packHalf2x16(vec2(r.density, 0.0)) & 0xFFFFu;
-  return uvec4(packColor(r.color, density), floatBitsToUint(r.pixelEntry), r.material);
-}
+uint coverageBits(uvec4 texel) { return (texel.y >> 16) & 0xFFu; }
 
-Resolved unpackResolved(uvec4 u) {
-  return Resolved(unpackColor(u.xy), unpackHalf2x16(u.y).y, uintBitsToFloat(u.z), u.w);
-}
+uint materialBits(uvec4 texel) { return texel.y >> 24; }
 
-// Texels [xy, zw) of a level: those that the rect touches and a border of one, which keeps what the filter
-// carries over the edge. No others are written or read.
+// Texels [xy, zw) of a level: those that the rect touches and, from level 2 on, a border of one, which keeps what
+// the filter carries over the edge. No others are written or read.
 ivec4 levelRect(uint level) {
   ivec4 rect = ivec4(frame.rect);
-  int l = int(level);
-  return ivec4((rect.xy >> l) - 1, ((rect.zw - 1) >> l) + 2);
+  int l = int(level), border = level > 1u ? 1 : 0;
+  return ivec4((rect.xy >> l) - border, ((rect.zw - 1) >> l) + 1 + border);
 }
 
 bool insideLevel(ivec4 rect, ivec2 texel) {
@@ -83,6 +72,41 @@ float inverseSpread(vec2 slope, vec2 size) {
 float sameSurface(float off, float inverseSpread2) {
   float rest = clamp(1.0 - 0.4 * off * off * inverseSpread2, 0.0, 1.0);
   return rest * rest;
+}
+
+// Texel of level 1 from its four pixels, rows first; depth <= 0: none. One surface if they lie on one plane, else
+// the nearest one.
+uvec4 quadTexel(uint material[4], float depth[4], vec3 color[4]) {
+  float nearest = kNoDepth;
+  uint nearestMaterial = 0u, any = 0u;
+  bool one = true;
+  for (int i = 0; i < 4; ++i) {
+    any = max(any, material[i]);
+    bool some = material[i] != 0u && depth[i] > 0.0;
+    one = one && some && material[i] == material[0];
+    if (!some || depth[i] >= nearest) continue;
+    nearest = depth[i];
+    nearestMaterial = material[i];
+  }
+  if (nearestMaterial == 0u) return uvec4(0u, any << 24, 0u, 0u);
+  vec2 sides = texelSize(nearest, 0u);
+  float side = min(sides.x, sides.y);
+  // A plane up to 76 degrees from facing the camera; steeper pairs count as an edge.
+  float farthest = max(max(depth[0], depth[1]), max(depth[2], depth[3]));
+  bool plane = one && abs(depth[0] - depth[1] - depth[2] + depth[3]) < side && farthest - nearest < 8.0 * side;
+  float reach = plane ? 8.0 * side : 1.5 * side;
+  vec3 mean = vec3(0.0);
+  float sum = 0.0, weights = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    bool counts = depth[i] > 0.0 && material[i] == nearestMaterial && depth[i] - nearest <= reach;
+    float w = counts ? 1.0 : 0.0;
+    mean += w * color[i];
+    sum += counts ? depth[i] : 0.0;
+    weights += w;
+  }
+  // The nearest counts, so weights >= 1.
+  float inverse = 1.0 / weights;
+  return packTexel(Texel(mean * inverse, 0.25 * weights, nearestMaterial, sum * inverse, vec2(0.0)));
 }
 
 // First fundamental form of the surface over a texel, reduced to what the kernel needs.

@@ -9,12 +9,11 @@ vec3 sanitize(vec3 v) {
   return mix(vec3(0.0), min(v, vec3(kLargestHalf)), greaterThan(v, vec3(0.0)));
 }
 
-// v rounded to the nearest half, ties to even. Image stores may truncate (Vulkan leaves it open), which
-// darkens by up to 1e-3 a pass; what is already a half is stored as it is on every device. v >= 0.
+// v rounded to the nearest half, ties up. Image stores may truncate (Vulkan leaves it open), which darkens by up to
+// 1e-3 a pass; what is already a half is stored as it is on every device. v >= 0.
 vec3 roundToHalf(vec3 v) {
-  uvec3 bits = floatBitsToUint(v);
-  bits += 0xFFFu + ((bits >> 13) & 1u); // half keeps 10 of 23 mantissa bits
-  return uintBitsToFloat(bits & 0xFFFFE000u);
+  // Half keeps 10 of 23 mantissa bits.
+  return uintBitsToFloat((floatBitsToUint(v) + 0x1000u) & 0xFFFFE000u);
 }
 
 #endif

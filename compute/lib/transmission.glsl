@@ -61,7 +61,7 @@ struct LightSpace {
 LightSpace lightSpace(LightConstants light, Incident incident, vec3 x) {
   uint maps = kDirectional ? 1u : light.meta.z;
   for (uint i = 0u; i < maps; ++i) {
-    ShadowConstants shadow = shadows[light.meta.y + i];
+    ShadowConstants shadow = shadows[kDirectional ? 0u : light.meta.y + i];
     ShadowReceiver receiver = projectReceiver(shadow, x);
     if (!receiver.inside) continue;
     float stored = shadowTexel(shadow.meta.x, receiver.texel);

@@ -46,14 +46,20 @@ float frontDistanceOf(float stored) {
 
 float frontDistance(ivec2 pixel) { return frontDistanceOf(texelFetch(frontDepthImage, pixel, 0).x); }
 
-// `last`: this is the frame's final write, so the post-scatter albedo applies.
-void writeResult(ivec2 pixel, vec3 color, float alpha, bool last) {
-  if (last && hasFlag(PELLUCID_FLAG_ALBEDO)) color *= sanitize(texelFetch(albedoImage, pixel, 0).rgb);
-  color = sanitize(color);
+vec3 asStored(vec3 color) {
 #ifdef HALF
-  color = roundToHalf(color);
+  return roundToHalf(color);
+#else
+  return color;
 #endif
+}
+
+// `last`: this is the frame's final write, so the post-scatter albedo applies. Returns what the image holds then.
+vec3 writeResult(ivec2 pixel, vec3 color, float alpha, bool last) {
+  if (last && hasFlag(PELLUCID_FLAG_ALBEDO)) color *= sanitize(texelFetch(albedoImage, pixel, 0).rgb);
+  color = asStored(sanitize(color));
   imageStore(destinationImage, pixel, vec4(color, alpha));
+  return color;
 }
 
 #endif

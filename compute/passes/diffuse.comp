@@ -1,179 +1,206 @@
-// The pixels' own share of the profile plus the resolved pyramid. An invocation does 2 x 2 pixels, which lie in one
-// texel of level 2.
+// The pixels' own shares of the profile plus the resolved pyramid's. Where a texel of level 2 lies on one plane with all
+// around it, its 4 x 4 pixels are filtered without looking at their depths; the rest, edges, are collected and done a
+// pixel an invocation.
 #version 460
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
 #define GROUP_SIDE PELLUCID_DIFFUSE_GROUP
-#include "passes/pyramid.glsl"
+#include "passes/resolved.glsl"
 
-const int kPixels = 2 * PELLUCID_DIFFUSE_GROUP + 2; // the group's and a border of one
-const int kTexels = PELLUCID_DIFFUSE_GROUP / 2 + 3; // of level 2 under the group, wherever it starts, and around it
-const uint kNoSurface = 0x8000u;               // a material without front depth
-shared uvec2 colors[kPixels * kPixels];       // and material, kNoSurface or 0
-shared float depths[kPixels * kPixels];
-shared uvec4 resolved[kTexels * kTexels];
-shared vec4 planes[kTexels * kTexels];        // depth, slope, inverseSpread of level 2
+const int kInvocations = PELLUCID_DIFFUSE_GROUP * PELLUCID_DIFFUSE_GROUP;
+// Texels of level 2 that a group does, and with a border of one.
+const ivec2 kTexels = ivec2(PELLUCID_DIFFUSE_TEXELS_X, PELLUCID_DIFFUSE_TEXELS_Y), kWindow = kTexels + 2;
+// An invocation does some rows of a column, the outer columns only what their neighbors need.
+const int kRing = 2, kColumns = 4 * kTexels.x + 2 * kRing, kRows = 4 * kTexels.y * kColumns / kInvocations;
 
-struct Pixel {
-  vec4 color;
-  float depth;
-  uint material;
-};
+shared uvec2 vertical[4 * kTexels.y * kColumns];   // colors after the fine filter's vertical half
+shared uvec4 resolved[kWindow.x * kWindow.y];
+shared uvec4 shares[kWindow.x * kWindow.y];
+shared uint planes[kTexels.y];                     // a bit a texel that is filtered as a plane
+shared uint edges[kTexels.x * kTexels.y];
+shared uint edgeCount, anySurface;
 
-// All at once, so that the latencies overlap.
-Pixel fetchPixel(ivec2 pixel) {
-  ivec2 at = clamp(pixel, ivec2(frame.rect.xy), ivec2(frame.rect.zw) - 1);
-  Pixel p;
-  p.material = materialAt(at);
-  p.color = texelFetch(sourceImage, at, 0);
-  p.depth = frontDistance(at);
-  p.color.rgb = sanitize(p.color.rgb);
-  if (at != pixel) p.material = 0u;
-  return p;
+// The quadratic B-spline at -1, 0 and 1 for a point at most half a texel from 0.
+vec3 spline(float at) {
+  return vec3(0.5 * (0.5 - at) * (0.5 - at), 0.75 - at * at, 0.5 * (0.5 + at) * (0.5 + at));
 }
 
-int indexOf(ivec2 local) { return (local.y + 1) * kPixels + local.x + 1; }
+// The fine filter, 1 4 9 4 1 in each direction.
+float fineWeight(int i) { return i == 0 ? 9.0 / 19.0 : abs(i) == 1 ? 4.0 / 19.0 : 1.0 / 19.0; }
 
-void store(ivec2 local, Pixel p) {
-  uint blue = packHalf2x16(vec2(p.color.b, 0.0)) & 0xFFFFu;
-  uint surface = p.material == 0u ? 0u : p.depth > 0.0 ? p.material : kNoSurface;
-  colors[indexOf(local)] = uvec2(packHalf2x16(p.color.rg), blue | surface << 16);
-  depths[indexOf(local)] = p.depth;
+vec3 fineSum(vec3 a, vec3 b, vec3 c, vec3 d, vec3 e) {
+  return fineWeight(0) * c + fineWeight(1) * (b + d) + fineWeight(2) * (a + e);
 }
 
-// The border pixels that an invocation loads besides its own: one along the sides and, four of them, a corner.
-ivec2 sidePixel(int invocation) {
-  const int side = 2 * PELLUCID_DIFFUSE_GROUP;
-  int at = invocation % side;
-  switch (invocation / side) {
-    case 0: return ivec2(at, -1);
-    case 1: return ivec2(at, side);
-    case 2: return ivec2(-1, at);
-    default: return ivec2(side, at);
+// Above it, something at a texel's neighbor counts 1 % less than on its plane.
+const float kPlaneOffset = 0.0125;
+
+// Whether a texel and all around it lie on one plane.
+bool isPlane(int index) {
+  uvec4 own = resolved[index];
+  vec2 size = texelSize(uintBitsToFloat(own.z), 2u), slope = unpackHalf2x16(own.w);
+  float most = kPlaneOffset / inverseSpread(slope, size);
+  bool plane = coverageBits(own) == kFullCoverage;
+  for (int i = 0; i < 9; ++i) {
+    ivec2 offset = ivec2(i % 3, i / 3) - 1;
+    uvec4 theirs = resolved[index + offset.y * kWindow.x + offset.x];
+    float off = uintBitsToFloat(theirs.z) - uintBitsToFloat(own.z) - dot(slope, vec2(offset) * size);
+    plane = plane && (theirs.y ^ own.y) >> 16 == 0u && off * off < most;
   }
+  return plane;
 }
 
-ivec2 cornerPixel(int corner) { return ivec2(corner & 1, corner >> 1) * (2 * PELLUCID_DIFFUSE_GROUP + 1) - 1; }
-
-// The quadratic B-spline at `texel` (-1, 0, 1) for the left and the right of two pixels, which are at `from` and a
-// quarter of a texel after it.
-vec2 spline(float from, int texel) {
-  vec2 at = vec2(from, from + 0.25) - float(texel);
-  vec2 outside = 1.5 - abs(at);
-  return texel == 0 ? 0.75 - at * at : 0.5 * outside * outside;
+void store(ivec2 pixel, vec3 color, float alpha) {
+  if (pass.value.w != 0u && hasFlag(PELLUCID_FLAG_ALBEDO))
+    color = sanitize(color * sanitize(texelFetch(albedoImage, pixel, 0).rgb));
+  imageStore(destinationImage, pixel, vec4(asStored(color), alpha));
 }
 
-// 1 2 1 about pixel `at` of the two middle ones of four.
-float binomial121(int i, int at) { return i == at + 1 ? 0.5 : i == at || i == at + 2 ? 0.25 : 0.0; }
-
-void main() {
-  // Groups start at even pixels, so that pairs lie in one texel.
-  ivec2 group = (ivec2(frame.rect.xy) & ~1) + ivec2(gl_WorkGroupID.xy) * (2 * PELLUCID_DIFFUSE_GROUP);
-  ivec2 local = 2 * ivec2(gl_LocalInvocationID.xy);
-  int invocation = int(gl_LocalInvocationIndex);
-  // Texels first and at once: their latency passes while the pixels are loaded.
-  ivec2 firstTexel = (group >> 2) - 1;
-  ivec4 texelRect = levelRect(2u);
-  ivec2 atTexel = firstTexel + ivec2(invocation % kTexels, invocation / kTexels);
-  bool inside = invocation < kTexels * kTexels && insideLevel(texelRect, atTexel);
-  ivec2 reachable = clamp(atTexel, texelRect.xy, texelRect.zw - 1);
-  uvec4 texelBits = levelTexel(2u, reachable), resolvedBits = texelFetch(resolvedImage, inAtlas(2u, reachable), 0);
-  for (int i = 0; i < 4; ++i) {
-    ivec2 at = local + ivec2(i & 1, i >> 1);
-    store(at, fetchPixel(group + at));
-  }
-  if (invocation < 8 * PELLUCID_DIFFUSE_GROUP) store(sidePixel(invocation), fetchPixel(group + sidePixel(invocation)));
-  if (invocation < 4) store(cornerPixel(invocation), fetchPixel(group + cornerPixel(invocation)));
-  if (invocation < kTexels * kTexels) {
-    Texel t = unpackTexel(texelBits);
-    resolved[invocation] = inside ? resolvedBits : uvec4(0u);
-    planes[invocation] = vec4(t.depth, t.slope, inverseSpread(t.slope, texelSize(t.depth, 2u)));
-  }
-  barrier();
-
-  ivec2 texel = (group + local) >> 2, place = ((group + local) >> 1) & 1;
-  int centerTexel = (texel.y - firstTexel.y) * kTexels + texel.x - firstTexel.x;
-  vec2 from = 0.5 * vec2(place) - 0.375;
-
-  // Pixels to do, by the surface they lie on: all at once where the four lie on one.
-  uint pending = 0u;
-  for (int i = 0; i < 4; ++i) {
-    ivec2 at = local + ivec2(i & 1, i >> 1), pixel = group + at;
-    uint surface = colors[indexOf(at)].y >> 16;
-    if (surface != 0u && surface != kNoSurface) pending |= 1u << i;
-    if (surface != kNoSurface) continue;
-    // No scale to diffuse over.
-    vec4 source = texelFetch(sourceImage, pixel, 0);
-    writeResult(pixel, sanitize(source.rgb), source.a, pass.value.w != 0u);
-  }
-  while (pending != 0u) {
-    int anchor = findLSB(pending);
-    ivec2 atAnchor = ivec2(anchor & 1, anchor >> 1);
-    uint material = colors[indexOf(local + atAnchor)].y >> 16;
-    float depth = depths[indexOf(local + atAnchor)];
-    vec2 size = texelSize(depth, 0u);
-
-    vec4 coarser[4] = vec4[4](vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
-    float entry = 0.0, weights = 0.0;
-    vec2 slope = vec2(0.0);
-    vec2 fromCenter = vec2(atAnchor + 2 * place) - 1.5; // of the texel, pixels
-    for (int y = -1; y <= 1; ++y)
-      for (int x = -1; x <= 1; ++x) {
-        int index = centerTexel + y * kTexels + x;
-        Resolved r = unpackResolved(resolved[index]);
-        vec4 plane = planes[index];
-        float expected = plane.x + dot(plane.yz, (fromCenter - 4.0 * vec2(x, y)) * size);
-        float w = r.material == material ? r.density * sameSurface(depth - expected, plane.w) : 0.0;
-        vec2 weightX = spline(from.x, x), weightY = w * spline(from.y, y);
-        vec4 color = vec4(r.color, 1.0);
-        for (int i = 0; i < 4; ++i) coarser[i] += weightX[i & 1] * weightY[i >> 1] * color;
-        w = (weightX.x + weightX.y) * (weightY.x + weightY.y);
-        entry += w * r.pixelEntry;
-        slope += w * plane.yz;
-        weights += w;
-      }
+// A pixel of an edge, all weights by what lies on its surface. `local`: from the group's first pixel.
+void diffuseEdge(ivec2 firstTexel, ivec2 local) {
+  ivec2 pixel = 4 * firstTexel + local;
+  uint material = insideRect(pixel) ? materialAt(pixel) : 0u;
+  if (material == 0u) return;
+  vec4 source = texelFetch(sourceImage, pixel, 0);
+  vec3 color = sanitize(source.rgb);
+  float depth = frontDistance(pixel);
+  if (depth > 0.0) {
+    vec2 size = texelSize(depth, 0u), slope = vec2(0.0);
+    int center = (local.y / 4 + 1) * kWindow.x + local.x / 4 + 1;
+    vec2 from = vec2(local & 3) - 1.5; // the texel's center, pixels
+    vec3 splineX = spline(0.25 * from.x), splineY = spline(0.25 * from.y);
+    vec3 coarser = vec3(0.0), found = vec3(0.0);
+    PixelShares share = PixelShares(vec3(0.0), vec3(0.0));
+    float weights = 0.0;
+    for (int i = 0; i < 9; ++i) {
+      ivec2 offset = ivec2(i % 3, i / 3) - 1;
+      int index = center + offset.y * kWindow.x + offset.x;
+      Texel t = unpackTexel(resolved[index]);
+      if (t.coverage == 0.0 || t.material != material) continue;
+      float off = depth - t.depth - dot(t.slope, (from - 4.0 * vec2(offset)) * size);
+      float w = sameSurface(off, inverseSpread(t.slope, texelSize(t.depth, 2u)));
+      w *= (offset.x < 0 ? splineX.x : offset.x > 0 ? splineX.z : splineX.y) *
+           (offset.y < 0 ? splineY.x : offset.y > 0 ? splineY.z : splineY.y);
+      vec3 density = unpackUnorm4x8(shares[index].w).rgb;
+      coarser += w * density * t.color;
+      found += w * density;
+      w *= t.coverage;
+      slope += w * t.slope;
+      PixelShares s = unpackShares(shares[index].xyz);
+      // Without the texel's density: that of the pixel replaces it.
+      share.coarser += w * s.coarser / max(s.coarser + density * (1.0 - s.coarser), vec3(1.0e-6));
+      share.fine += w * s.fine;
+      weights += w;
+    }
     float inverse = weights > 0.0 ? 1.0 / weights : 0.0;
     slope *= inverse;
-
-    // The surface's part of the 4 x 4 pixels around.
+    share.coarser *= inverse;
+    vec3 fineShare = (1.0 - share.coarser) * share.fine * inverse;
     vec2 depthStep = slope * size;
     float spread2 = inverseSpread(slope, 2.0 * size);
-    vec4 fine[4] = vec4[4](vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
-    uint here = 1u << anchor;
-    for (int y = 0; y < 4; ++y)
-      for (int x = 0; x < 4; ++x) {
-        int index = indexOf(local + ivec2(x, y) - 1);
-        uvec2 packed = colors[index];
-        float expected = depth + dot(depthStep, vec2(ivec2(x, y) - 1 - atAnchor));
-        float w = packed.y >> 16 == material ? sameSurface(depths[index] - expected, spread2) : 0.0;
-        vec4 color = w * vec4(unpackColor(packed), 1.0);
-        for (int i = 0; i < 4; ++i) fine[i] += binomial121(x, i & 1) * binomial121(y, i >> 1) * color;
-        if (x > 0 && x < 3 && y > 0 && y < 3 && w > 0.5) here |= 1u << (x - 1 + 2 * (y - 1));
+    vec4 fine = vec4(0.0);
+    for (int y = -2; y <= 2; ++y) {
+      // A row's loads at once, so that their latencies overlap.
+      [[unroll]] for (int x = -2; x <= 2; ++x) {
+        ivec2 offset = ivec2(x, y), at = clamp(pixel + offset, ivec2(frame.rect.xy), ivec2(frame.rect.zw) - 1);
+        uint theirs = materialAt(at);
+        float theirDepth = frontDistance(at);
+        vec3 theirColor = sanitize(texelFetch(sourceImage, at, 0).rgb);
+        float w = sameSurface(theirDepth - depth - dot(depthStep, vec2(offset)), spread2);
+        bool counts = at == pixel + offset && theirs == material && theirDepth > 0.0;
+        fine += (counts ? w * fineWeight(x) * fineWeight(y) : 0.0) * vec4(theirColor, 1.0);
       }
-    here &= pending;
-    pending &= ~here;
-
-    vec3 coarserShare = vec3(0.0), binomialShare = vec3(0.0);
-    if (weights > 0.0) {
-      uint m = material - 1u, i = min(uint(entry * inverse), uint(PELLUCID_SHARE_ENTRIES - 2));
-      float part = entry * inverse - float(i);
-      coarserShare = mix(kernels[m].pixelShare[2u * i].rgb, kernels[m].pixelShare[2u * i + 2u].rgb, part);
-      binomialShare = mix(kernels[m].pixelShare[2u * i + 1u].rgb, kernels[m].pixelShare[2u * i + 3u].rgb, part);
     }
-    // Shares are weighted with the densities that were found, 4 for all four pixels. The pixel itself is there, so
-    // the divisor is 0 only where all of the share is the coarser one's.
-    vec3 theirs = coarserShare * (0.25 * weights);
-    coarserShare = theirs / max(1.0 - coarserShare + theirs, vec3(1.0e-6));
-    for (int i = 0; i < 4; ++i) {
-      if ((here & 1u << i) == 0u) continue;
-      ivec2 pixel = group + local + ivec2(i & 1, i >> 1);
-      vec4 source = texelFetch(sourceImage, pixel, 0);
-      vec3 color = sanitize(source.rgb);
-      // The pixel counts in its binomial, so the divisor is 0 only where the anchor's surface has no slope to go by.
-      color = mix(color, fine[i].rgb / max(fine[i].a, 1.0e-6), binomialShare * min(4.0 * fine[i].a, 1.0));
-      color = mix(color, coarser[i].rgb / max(coarser[i].a, 1.0e-6), coarserShare);
-      writeResult(pixel, color, source.a, pass.value.w != 0u);
+    // Shares are weighted with what of their filters was found. The pixel itself counts in the first and the second,
+    // so the divisor is 0 only where all of the share is the coarser one's and none of it is there.
+    vec3 own = 1.0 - share.coarser - fineShare;
+    vec3 sum = own * color + fineShare * fine.rgb + share.coarser * coarser;
+    vec3 divisor = own + fineShare * fine.a + share.coarser * found;
+    color = mix(color, max(sum, vec3(0.0)) / max(divisor, vec3(1.0e-6)), greaterThan(divisor, vec3(1.0e-6)));
+  }
+  store(pixel, color, source.a);
+}
+
+void main() {
+  int invocation = int(gl_LocalInvocationIndex);
+  // The rect's borders are edges, which take longest: first and last rows come in the middle, not at the end, where
+  // nothing else would run beside them.
+  uvec2 group = uvec2(gl_WorkGroupID.x, (gl_WorkGroupID.y + gl_NumWorkGroups.y / 2u) % gl_NumWorkGroups.y);
+  ivec2 firstTexel = (ivec2(frame.rect.xy) >> 2) + ivec2(group) * kTexels;
+  if (invocation == 0) edgeCount = anySurface = 0u;
+  if (invocation < kTexels.y) planes[invocation] = 0u;
+  uvec4 texel = uvec4(0u), texelShares = uvec4(0u);
+  if (invocation < kWindow.x * kWindow.y) {
+    ivec2 at = firstTexel - 1 + ivec2(invocation % kWindow.x, invocation / kWindow.x);
+    if (insideLevel(levelRect(2u), at)) {
+      texel = texelFetch(pyramidImage, resolvedPlace(at), 0);
+      texelShares = texelFetch(pyramidImage, sharesPlace(at), 0);
+    }
+    resolved[invocation] = texel;
+    shares[invocation] = texelShares;
+  }
+  barrier();
+  if (texel.y >> 16 != 0u) atomicOr(anySurface, 1u);
+  barrier();
+  if (anySurface != 0u) {
+    int column = invocation % kColumns, firstRow = invocation / kColumns * kRows;
+    ivec2 first = 4 * firstTexel + ivec2(column - kRing, firstRow), last = ivec2(frame.rect.zw) - 1;
+    uvec2 own[kRows]; // colors and alphas
+    vec3 rows[5];     // around the current one
+    [[unroll]] for (int i = 0; i < kRows + 4; ++i) {
+      ivec2 at = clamp(first + ivec2(0, i - 2), ivec2(frame.rect.xy), last);
+      vec4 source = texelFetch(sourceImage, at, 0);
+      if (pass.value.y != 0u) source.rgb = sanitize(source.rgb);
+      [[unroll]] for (int j = 0; j < 4; ++j) rows[j] = rows[j + 1];
+      rows[4] = source.rgb;
+      if (i >= 2 && i < kRows + 2)
+        own[i - 2] = uvec2(packHalf2x16(source.rg), packHalf2x16(source.ba));
+      if (i < 4) continue;
+      vec3 sum = fineSum(rows[0], rows[1], rows[2], rows[3], rows[4]);
+      vertical[(firstRow + i - 4) * kColumns + column] = uvec2(packHalf2x16(sum.rg), packHalf2x16(vec2(sum.b, 0.0)));
+    }
+    if (invocation < kTexels.x * kTexels.y) {
+      ivec2 local = ivec2(invocation % kTexels.x, invocation / kTexels.x);
+      int index = (local.y + 1) * kWindow.x + local.x + 1;
+      if (isPlane(index))
+        atomicOr(planes[local.y], 1u << local.x);
+      else if (resolved[index].y >> 16 != 0u)
+        edges[atomicAdd(edgeCount, 1u)] = uint(invocation);
+    }
+    barrier();
+
+    int x = column - kRing;
+    if (x >= 0 && x < 4 * kTexels.x) {
+      vec3 splineX = spline(0.25 * (float(x & 3) - 1.5));
+      [[unroll]] for (int block = 0; block < kRows / 4; ++block) {
+        int texelRow = firstRow / 4 + block;
+        if ((planes[texelRow] >> (x / 4) & 1u) == 0u) continue;
+        int index = texelRow * kWindow.x + x / 4;
+        vec3 coarser[3];
+        [[unroll]] for (int y = 0; y < 3; ++y) {
+          int row = index + y * kWindow.x;
+          coarser[y] = splineX.x * unpackColor(resolved[row].xy) + splineX.y * unpackColor(resolved[row + 1].xy) +
+                       splineX.z * unpackColor(resolved[row + 2].xy);
+        }
+        PixelShares share = unpackShares(shares[index + kWindow.x + 1].xyz);
+        [[unroll]] for (int i = 0; i < 4; ++i) {
+          int at = (4 * texelRow + i) * kColumns + column;
+          vec3 fine = fineSum(unpackColor(vertical[at - 2]), unpackColor(vertical[at - 1]), unpackColor(vertical[at]),
+                              unpackColor(vertical[at + 1]), unpackColor(vertical[at + 2]));
+          vec3 splineY = spline(0.25 * (float(i) - 1.5));
+          vec3 smoothed = splineY.x * coarser[0] + splineY.y * coarser[1] + splineY.z * coarser[2];
+          uvec2 packed = own[4 * block + i];
+          vec2 blue = unpackHalf2x16(packed.y);
+          vec3 color = mix(vec3(unpackHalf2x16(packed.x), blue.x), fine, share.fine);
+          store(4 * firstTexel + ivec2(x, 4 * texelRow + i), mix(color, smoothed, share.coarser), blue.y);
+        }
+      }
+    }
+    for (int i = invocation; i < int(16u * edgeCount); i += kInvocations) {
+      int edge = int(edges[i >> 4]), at = i & 15;
+      diffuseEdge(firstTexel, 4 * ivec2(edge % kTexels.x, edge / kTexels.x) + ivec2(at & 3, at >> 2));
     }
   }
 }

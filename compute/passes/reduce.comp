@@ -1,120 +1,77 @@
-// Levels of the diffusion pyramid: level 2 from the pixels (PIXELS), or two levels from the one before. A texel
-// takes the nearest of the four surfaces under it and averages those of 4 x 4 texels that lie on it with the
-// binomial 1 3 3 1, whose triple zero at the coarser level's sampling frequency leaves hardly any aliasing.
+// Coarser levels of the diffusion pyramid: pass.value.y, 2 or 4, from level pass.value.x on. A texel takes the nearest of
+// the four surfaces under it and averages those of 4 x 4 texels that lie on it by 3 5 5 3 in each direction. A group makes 10 x 10 texels of the
+// second level, or one of the fourth, and before them what they need of each level.
 #version 460
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
 #define GROUP_SIDE PELLUCID_REDUCE_GROUP
 #include "passes/pyramid.glsl"
 
-#ifdef PIXELS
-const int kFiner = 2 * PELLUCID_REDUCE_GROUP + 2; // pairs of pixels, and a border of one
-const int kMiddle = 0;
-#else
-const int kMiddle = PELLUCID_REDUCE_GROUP + 2;    // the level between: half a group of the last level, and a border
-const int kFiner = 2 * kMiddle + 2;
-#endif
-shared uvec4 texels[kFiner * kFiner + kMiddle * kMiddle];
+layout(set = 0, binding = PELLUCID_BINDING_PYRAMID) uniform utexture2D pyramidImage;
 
-#ifdef PIXELS
-// Four pixels as a texel of level 1, without its slope. One surface if they lie on one plane, else the nearest.
-uvec4 quadTexel(ivec2 quad, bool copies) {
-  uint material[4];
-  float depth[4];
-  vec4 source[4];
-  for (int i = 0; i < 4; ++i) {
-    ivec2 pixel = 2 * quad + ivec2(i & 1, i >> 1);
-    material[i] = insideRect(pixel) ? materialAt(pixel) : 0u;
-  }
-  if ((material[0] | material[1] | material[2] | material[3]) == 0u) return uvec4(0u);
-  // The rest at once, so that the latencies overlap.
-  for (int i = 0; i < 4; ++i) {
-    ivec2 at = clamp(2 * quad + ivec2(i & 1, i >> 1), ivec2(frame.rect.xy), ivec2(frame.rect.zw) - 1);
-    depth[i] = frontDistance(at);
-    source[i] = texelFetch(sourceImage, at, 0);
-  }
-  for (int i = 0; i < 4; ++i) {
-    ivec2 pixel = 2 * quad + ivec2(i & 1, i >> 1);
-    bool some = material[i] != 0u;
-    if (!some) depth[i] = -1.0;
-#ifdef COPY
-    // The quads of a border are the groups' beside.
-    if (some && copies) imageStore(destinationImage, pixel, source[i]);
-#endif
-  }
-  float nearest = kNoDepth;
-  uint nearestMaterial = 0u;
-  bool one = true;
-  for (int i = 0; i < 4; ++i) {
-    one = one && depth[i] > 0.0 && material[i] == material[0];
-    if (!(depth[i] > 0.0) || depth[i] >= nearest) continue;
-    nearest = depth[i];
-    nearestMaterial = material[i];
-  }
-  if (nearestMaterial == 0u) return uvec4(0u);
-  vec2 sides = texelSize(nearest, 0u);
-  float side = min(sides.x, sides.y);
-  // A plane up to 76 degrees from facing the camera; steeper pairs count as an edge.
-  float farthest = max(max(depth[0], depth[1]), max(depth[2], depth[3]));
-  bool plane = one && abs(depth[0] - depth[1] - depth[2] + depth[3]) < side && farthest - nearest < 8.0 * side;
-  float reach = plane ? 8.0 * side : 1.5 * side;
-  vec3 color = vec3(0.0);
-  float sum = 0.0, weights = 0.0;
-  for (int i = 0; i < 4; ++i) {
-    bool counts = depth[i] > 0.0 && material[i] == nearestMaterial && depth[i] - nearest <= reach;
-    float w = counts ? 1.0 : 0.0;
-    color += w * sanitize(source[i].rgb);
-    sum += counts ? depth[i] : 0.0;
-    weights += w;
-  }
-  // The nearest counts, so weights >= 1.
-  return packTexel(Texel(color / weights, 0.25 * weights, nearestMaterial, sum / weights, vec2(0.0)));
+const uint kInvocations = uint(PELLUCID_REDUCE_GROUP * PELLUCID_REDUCE_GROUP);
+// Sides of what one texel of the fourth level needs: 4 of the third, 10 of the second, and so on.
+const int kInput = 46, kFirst = 22;
+const int kLoads = (kInput * kInput + int(kInvocations) - 1) / int(kInvocations);
+// Two levels at a time, each after the other in turn: without slopes, to fit.
+shared uvec2 colors[kInput * kInput + kFirst * kFirst]; // and coverage and material, as packed
+shared float depths[kInput * kInput + kFirst * kFirst];
+
+// 3 5 5 3, variance 1.
+float weight(int i) { return i == 0 || i == 3 ? 0.1875 : 0.3125; }
+
+// Above it, the weights of texels are within .2 % of those of a plane.
+const float kPlaneResidual = 0.002;
+
+// Even columns of a row come before the odd ones: reads of every other column meet no bank twice.
+int slot(ivec2 at, int width) { return at.y * width + (at.x >> 1) + (at.x & 1) * (width >> 1); }
+
+// Of the 4 x 4 texels whose first one is in an even column, at `first`.
+int tap(int first, int width, int x, int y) { return first + slot(ivec2(x, y), width); }
+
+struct Source {
+  float coverage, depth;
+  uint material;
+};
+
+Source sourceAt(int index) {
+  uint bits = colors[index].y;
+  return Source(float((bits >> 16) & 0xFFu) / 255.0, depths[index], bits >> 24);
 }
-#else
-uvec4 finerTexel(uint finer, ivec2 texel) {
-  return insideLevel(levelRect(finer), texel) ? levelTexel(finer, texel) : uvec4(0u);
-}
-#endif
 
-Texel texelAt(int first, int stride, ivec2 at) { return unpackTexel(texels[first + at.y * stride + at.x]); }
-
-// The surface that a texel stands for: the nearest to the camera of the four under it or, beyond an edge, the
-// one of the others that the filter weights most.
-Texel surfaceOf(int first, int stride, ivec2 corner, out ivec2 at) {
-  Texel surface = kNothing;
-  at = ivec2(1);
+// Which texel's surface is taken: the nearest to the camera of the four in the middle or, beyond an edge, the one
+// of the others that the filter weights most. -1: none.
+int surfaceOf(int first, int stride) {
+  int surface = -1;
+  float nearest = kNoDepth, most = 0.0;
   for (int i = 0; i < 4; ++i) {
-    ivec2 candidate = 1 + ivec2(i & 1, i >> 1);
-    Texel t = texelAt(first, stride, corner + candidate);
-    if (t.coverage == 0.0 || (surface.coverage > 0.0 && t.depth >= surface.depth)) continue;
-    surface = t;
-    at = candidate;
+    int index = tap(first, stride, 1 + (i & 1), 1 + (i >> 1));
+    Source t = sourceAt(index);
+    if (t.coverage == 0.0 || t.depth >= nearest) continue;
+    nearest = t.depth;
+    surface = 5 + 4 * (i >> 1) + (i & 1);
   }
-  if (surface.coverage > 0.0) return surface;
-  float most = 0.0;
+  if (surface >= 0) return surface;
   for (int i = 0; i < 16; ++i) {
-    ivec2 candidate = ivec2(i & 3, i >> 2);
-    Texel t = texelAt(first, stride, corner + candidate);
-    float w = binomial(candidate.x) * binomial(candidate.y) * t.coverage;
+    float w = weight(i & 3) * weight(i >> 2) * sourceAt(tap(first, stride, i & 3, i >> 2)).coverage;
     if (!(w > most)) continue;
     most = w;
-    surface = t;
-    at = candidate;
+    surface = i;
   }
   return surface;
 }
 
-#ifdef PIXELS
 // Depth change per texel in one direction, to whichever neighbor of the same material is nearer in depth:
 // the other one may lie across an edge.
-float depthStep(Texel center, int stride, ivec2 corner, ivec2 at, ivec2 direction) {
+float depthStep(int first, int stride, Source center, ivec2 at, ivec2 direction) {
   float best = 0.0;
   bool found = false;
   for (int side = -1; side <= 1; side += 2) {
     ivec2 neighbor = at + side * direction;
     if (any(lessThan(neighbor, ivec2(0))) || any(greaterThan(neighbor, ivec2(3)))) continue;
-    Texel t = texelAt(0, stride, corner + neighbor);
+    Source t = sourceAt(tap(first, stride, neighbor.x, neighbor.y));
     if (t.coverage == 0.0 || t.material != center.material) continue;
     float difference = float(side) * (t.depth - center.depth);
     if (!found || abs(difference) < abs(best)) best = difference;
@@ -122,30 +79,34 @@ float depthStep(Texel center, int stride, ivec2 corner, ivec2 at, ivec2 directio
   }
   return best;
 }
-#endif
 
-// From the 4 x 4 texels of level `finer` at `corner` of the array that starts at `first`.
-uvec4 reduced(uint finer, int first, int stride, ivec2 corner) {
-  ivec2 nearest;
-  Texel surface = surfaceOf(first, stride, corner, nearest);
-  if (surface.coverage == 0.0) return uvec4(0u);
+// Where the 4 x 4 texels are not one plane.
+uvec4 reducedEdge(uint finer, int first, int stride) {
+  int chosen = surfaceOf(first, stride);
+  if (chosen < 0) {
+    uint orphans = 0u;
+    for (int i = 0; i < 4; ++i)
+      orphans = max(orphans, sourceAt(tap(first, stride, 1 + (i & 1), 1 + (i >> 1))).material);
+    return uvec4(0u, orphans << 24, 0u, 0u);
+  }
+  ivec2 nearest = ivec2(chosen & 3, chosen >> 2);
+  Source surface = sourceAt(tap(first, stride, nearest.x, nearest.y));
   vec2 size = texelSize(surface.depth, finer);
-#ifdef PIXELS
-  surface.slope = vec2(depthStep(surface, stride, corner, nearest, ivec2(1, 0)),
-                       depthStep(surface, stride, corner, nearest, ivec2(0, 1))) / max(size, vec2(1.0e-30));
-#endif
-  float spread2 = inverseSpread(surface.slope, 2.0 * size);
+  vec2 slope = vec2(depthStep(first, stride, surface, nearest, ivec2(1, 0)),
+                    depthStep(first, stride, surface, nearest, ivec2(0, 1))) / max(size, vec2(1.0e-30));
+  float spread2 = inverseSpread(slope, 2.0 * size);
   vec3 color = vec3(0.0);
   float weights = 0.0, off = 0.0;
   vec2 tilt = vec2(0.0), spread = vec2(0.0);
   for (int i = 0; i < 16; ++i) {
     ivec2 at = ivec2(i & 3, i >> 2);
-    Texel t = texelAt(first, stride, corner + at);
+    int index = tap(first, stride, at.x, at.y);
+    Source t = sourceAt(index);
     if (t.coverage == 0.0 || t.material != surface.material) continue;
-    float difference = t.depth - surface.depth - dot(surface.slope, vec2(at - nearest) * size);
-    float w = binomial(at.x) * binomial(at.y) * t.coverage * sameSurface(difference, spread2);
+    float difference = t.depth - surface.depth - dot(slope, vec2(at - nearest) * size);
+    float w = weight(at.x) * weight(at.y) * t.coverage * sameSurface(difference, spread2);
     vec2 offset = (vec2(at) - 1.5) * size;
-    color += w * t.color;
+    color += w * unpackColor(colors[index]);
     off += w * difference;
     tilt += w * difference * offset;
     spread += w * offset * offset;
@@ -154,47 +115,80 @@ uvec4 reduced(uint finer, int first, int stride, ivec2 corner) {
   // The nearest one counts, so weights > 0; spread is 0 only where it is alone.
   float inverse = 1.0 / weights;
   vec2 center = vec2(1.5) - vec2(nearest);
-  float depth = surface.depth + dot(surface.slope, center * size) + off * inverse;
-  vec2 slope = surface.slope + tilt / max(spread, 1.0e-6 * size * size + 1.0e-30);
+  float depth = surface.depth + dot(slope, center * size) + off * inverse;
+  slope += tilt / max(spread, 1.0e-6 * size * size + 1.0e-30);
   return packTexel(Texel(color * inverse, weights, surface.material, depth, slope));
 }
 
+// From the 4 x 4 texels of level `finer` at `first`.
+uvec4 reduced(uint finer, int first, int stride) {
+  uint upper = colors[first].y >> 16, different = 0u;
+  float base = depths[first], off = 0.0, square = 0.0;
+  vec2 tilt = vec2(0.0);
+  vec3 color = vec3(0.0);
+  for (int y = 0; y < 4; ++y)
+    for (int x = 0; x < 4; ++x) {
+      int index = tap(first, stride, x, y);
+      uvec2 packed = colors[index];
+      float w = weight(x) * weight(y), difference = depths[index] - base;
+      different |= (packed.y >> 16) ^ upper;
+      color += w * unpackColor(packed);
+      off += w * difference;
+      tilt += w * difference * (vec2(x, y) - 1.5);
+      square += w * difference * difference;
+    }
+  if ((upper | different) == 0u) return uvec4(0u);
+  // The plane of least squares, because the filter's variance is 1: its slope is the tilt.
+  vec2 size = texelSize(base, finer);
+  float residual = square - off * off - dot(tilt, tilt);
+  vec2 slope = tilt / max(size, vec2(1.0e-30));
+  bool plane = different == 0u && (upper & 0xFFu) == kFullCoverage &&
+               residual * inverseSpread(slope, 2.0 * size) < kPlaneResidual;
+  if (!plane) return reducedEdge(finer, first, stride);
+  return packTexel(Texel(color, 1.0, upper >> 8, base + off, slope));
+}
+
 void main() {
-  uint finer = pass.value.x;
-  ivec2 local = ivec2(gl_LocalInvocationID.xy);
+  uint finer = pass.value.x, count = pass.value.y, last = finer + count;
   int invocation = int(gl_LocalInvocationIndex);
-  const int invocations = PELLUCID_REDUCE_GROUP * PELLUCID_REDUCE_GROUP;
-#ifdef PIXELS
-  ivec4 rect = levelRect(2u);
-  ivec2 group = rect.xy + ivec2(gl_WorkGroupID.xy) * PELLUCID_REDUCE_GROUP;
-  ivec2 start = 2 * group - 1;
-  for (int i = invocation; i < kFiner * kFiner; i += invocations)
-{
-    ivec2 at = ivec2(i % kFiner, i / kFiner);
-    texels[i] = quadTexel(start + at, all(greaterThan(at, ivec2(0))) && all(lessThan(at, ivec2(kFiner - 1))));
+  int tile = count == 2u ? PELLUCID_REDUCE_TILE : 1;
+  ivec2 own = levelRect(last).xy + tile * ivec2(gl_WorkGroupID.xy);
+  ivec2 start = count == 2u ? own : 4 * own - 3; // of the second level
+  start = 2 * start - 1;                         // of the first
+  ivec4 finerRect = levelRect(finer);
+  // All loads before the first is used, so that their latencies overlap.
+  uvec4 loaded[kLoads];
+  [[unroll]] for (int j = 0; j < kLoads; ++j) {
+    int i = invocation + j * int(kInvocations);
+    ivec2 texel = 2 * start - 1 + ivec2(i % kInput, i / kInput);
+    loaded[j] = insideLevel(finerRect, texel) ? texelFetch(pyramidImage, inAtlas(finer, texel), 0) : uvec4(0u);
+  }
+  [[unroll]] for (int j = 0; j < kLoads; ++j) {
+    int i = invocation + j * int(kInvocations);
+    if (i >= kInput * kInput) continue;
+    int index = slot(ivec2(i % kInput, i / kInput), kInput);
+    colors[index] = loaded[j].xy;
+    depths[index] = uintBitsToFloat(loaded[j].z);
   }
   barrier();
-  ivec2 texel = group + local;
-  if (insideLevel(rect, texel)) writeLevel(2u, texel, reduced(1u, 0, kFiner, 2 * local));
-#else
-  ivec4 middleRect = levelRect(finer + 1u), rect = levelRect(finer + 2u);
-  ivec2 group = rect.xy + ivec2(gl_WorkGroupID.xy) * (PELLUCID_REDUCE_GROUP / 2);
-  ivec2 middleStart = 2 * group - 1, start = 2 * middleStart - 1;
-  for (int i = invocation; i < kFiner * kFiner; i += invocations)
-    texels[i] = finerTexel(finer, start + ivec2(i % kFiner, i / kFiner));
-  barrier();
-  for (int i = invocation; i < kMiddle * kMiddle; i += invocations) {
-    ivec2 at = ivec2(i % kMiddle, i / kMiddle), texel = middleStart + at;
-    bool inside = insideLevel(middleRect, texel);
-    uvec4 result = inside ? reduced(finer, 0, kFiner, 2 * at) : uvec4(0u);
-    texels[kFiner * kFiner + i] = result;
-    // Borders belong to the groups beside.
-    bool own = all(greaterThan(at, ivec2(0))) && all(lessThan(at, ivec2(kMiddle - 1)));
-    if (inside && own) writeLevel(finer + 1u, texel, result);
+  int from = 0, to = kInput * kInput, stride = kInput;
+  for (uint level = finer + 1u; level <= last; ++level) {
+    ivec4 rect = levelRect(level);
+    int width = stride / 2 - 1, left = int(last - level);
+    for (int i = invocation; i < width * width; i += int(kInvocations)) {
+      ivec2 at = ivec2(i % width, i / width), texel = start + at;
+      bool inside = insideLevel(rect, texel);
+      uvec4 bits = inside ? reduced(level - 1u, from + 2 * at.y * stride + at.x, stride) : uvec4(0u);
+      int index = to + slot(at, width);
+      colors[index] = bits.xy;
+      depths[index] = uintBitsToFloat(bits.z);
+      // The rest are the groups' beside.
+      if (inside && insideLevel(ivec4(own << left, (own + tile) << left), texel)) writeLevel(level, texel, bits);
+    }
+    barrier();
+    from = to;
+    to = from == 0 ? kInput * kInput : 0;
+    stride = width;
+    start = (start + 1) >> 1;
   }
-  barrier();
-  ivec2 texel = group + local;
-  if (all(lessThan(local, ivec2(PELLUCID_REDUCE_GROUP / 2))) && insideLevel(rect, texel))
-    writeLevel(finer + 2u, texel, reduced(finer + 1u, kFiner * kFiner, kMiddle, 2 * local));
-#endif
 }

@@ -1,25 +1,49 @@
-// R_l = (1 - s) E_l + s R_(l+1) from the coarsest level of the pyramid to the one that is asked for, s the profile's
-// share of the coarser levels at the texel. A group makes one tile of the last level and, before it, as much of
-// each coarser one as the tile needs.
+// R_l = (1 - s) E_l + s R_(l+1) from the coarsest level of the pyramid to level 2, s the profile's share of the coarser
+// levels at the texel, and the shares of the pixels under level 2. A group makes 32 x 32 texels of level 2 and, before
+// them, as much of each coarser level as they need.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
-#include "passes/pyramid.glsl"
+#define GROUP_SIDE PELLUCID_RESOLVE_GROUP
+#include "passes/resolved.glsl"
 
-// A tile of 8 lies on up to 5 parents and needs one more on each side; 7 of those lie on 4, and so on.
-const int kWindow = 8;
-shared vec4 planes[2][kWindow * kWindow]; // depth, slope, inverseSpread
-shared uint materials[2][kWindow * kWindow]; // 0: nothing
-shared vec4 colors[2][kWindow * kWindow]; // a: density
+layout(set = 0, binding = PELLUCID_BINDING_KERNELS) readonly buffer Kernels { KernelConstants kernels[]; };
+
+const int kInvocations = PELLUCID_RESOLVE_GROUP * PELLUCID_RESOLVE_GROUP;
+// Of 32 texels in a row, what level 3 needs, and level 4. Coarser levels need less.
+const int kOdd = 18, kEven = 11;
+// Resolved texels: color and material as packed, depth, and the share of the kernel that the surface fills, of each
+// channel, in place of the slope.
+shared uvec4 odd[kOdd * kOdd];
+shared uvec4 even[kEven * kEven];
+
+void writeResolved(ivec2 texel, uvec4 color, uvec4 shares) {
+  imageStore(levelsDestination, resolvedPlace(texel), color);
+  imageStore(levelsDestination, sharesPlace(texel), shares);
+}
+
+// Place of a length on the surface among a material's shares, see KernelConstants.
+float shareEntry(uint m, float lengthMm) {
+  // The floor keeps log2 finite where the camera gives a pixel no size.
+  float at = (log2(max(lengthMm, 1.0e-30)) - kernels[m].range.x) * kernels[m].range.y;
+  return clamp(at, 0.0, float(PELLUCID_SHARE_ENTRIES - 1));
+}
+
+// Of level `level` and coarser ones, the share of the coarser ones at texels with this entry.
+vec3 coarserShare(uint m, uint level, float entry) {
+  uint i = min(uint(entry), uint(PELLUCID_SHARE_ENTRIES - 2));
+  uint first = min(level - 2u, uint(PELLUCID_SHARE_COARSER)) * uint(PELLUCID_SHARE_ENTRIES) + i;
+  return mix(kernels[m].share[first].rgb, kernels[m].share[first + 1u].rgb, entry - float(i));
+}
 
 const int kReach = 4; // of the stretch, texels
 
-// The level's kernel has variance 2/3 - 41/12 4^-level squared texels of an axis; foreshortened surfaces need it
+// A level's kernel has variance 7/12 - 13/12 4^-level squared texels of an axis; foreshortened surfaces need it
 // longer along one axis: a 1-D Gaussian of what is missing, at the texels nearest to the axis.
-vec4 stretched(ivec4 rect, ivec2 texel, uint level, Texel own, Foreshortening f) {
+vec4 stretched(ivec2 texel, uint level, Texel own, Foreshortening f) {
   vec4 sum = own.coverage * vec4(own.color, 1.0);
-  float variance = (2.0 / 3.0 - 41.0 / 12.0 * exp2(-2.0 * float(level))) * f.stretch;
+  float variance = (7.0 / 12.0 - 13.0 / 12.0 * exp2(-2.0 * float(level))) * f.stretch;
   bool alongX = abs(f.axis.x) >= abs(f.axis.y);
   float dominant = alongX ? f.axis.x : f.axis.y; // its square is at least 1/2
   float gradient = (alongX ? f.axis.y : f.axis.x) / dominant;
@@ -28,14 +52,17 @@ vec4 stretched(ivec4 rect, ivec2 texel, uint level, Texel own, Foreshortening f)
   float weights = 1.0;
   vec2 size = texelSize(own.depth, level);
   float spread2 = inverseSpread(own.slope, size);
-  for (int i = -kReach; i <= kReach; ++i) {
+  ivec4 rect = levelRect(level);
+  // Three standard deviations.
+  int reach = min(int(ceil(3.0 * sqrt(variance))), kReach);
+  for (int i = -reach; i <= reach; ++i) {
     if (i == 0) continue;
     int across = int(floor(gradient * float(i) + 0.5));
     ivec2 offset = alongX ? ivec2(i, across) : ivec2(across, i);
     float w = exp(-0.5 * float(i * i) / variance);
     weights += w;
     if (!insideLevel(rect, texel + offset)) continue;
-    Texel t = unpackTexel(levelTexel(level, texel + offset));
+    Texel t = unpackTexel(texelFetch(pyramidImage, inAtlas(level, texel + offset), 0));
     if (t.coverage == 0.0 || t.material != own.material) continue;
     w *= t.coverage * sameSurface(t.depth - own.depth - dot(own.slope, vec2(offset) * size), spread2);
     sum += w * vec4(t.color, 1.0);
@@ -43,73 +70,85 @@ vec4 stretched(ivec4 rect, ivec2 texel, uint level, Texel own, Foreshortening f)
   return sum / weights;
 }
 
-// Texels [xy, zw) of `level` that the tile of `last` needs.
-ivec4 windowOf(uint level, uint last, ivec2 tile) {
-  ivec4 window = ivec4(tile, tile + 8);
-  for (uint l = last; l < level; ++l) window = ivec4((window.xy >> 1) - 1, ((window.zw - 1) >> 1) + 2);
-  return window;
+struct Level {
+  vec3 color, density; // share of the kernel that the surface fills, of each channel
+  float lengthMm;      // of the texel, see Foreshortening
+};
+
+// `window`: texels of the coarser level, whose texels are in shared memory.
+Level resolvedLevel(uint level, ivec2 texel, Texel own, bool coarsest, ivec4 window) {
+  Foreshortening f = foreshortening(vec2(texel), level, own.depth, own.slope);
+  vec4 here = stretched(texel, level, own, f);
+  if (coarsest) return Level(here.a > 0.0 ? here.rgb / here.a : own.color, vec3(here.a), f.lengthMm);
+  // 9, 3, 3 and 1 sixteenths of the four nearest: the refinement of the quadratic B-spline.
+  ivec2 nearest = texel >> 1, toward = 2 * (texel & 1) - 1;
+  vec2 size = texelSize(own.depth, level + 1u);
+  float spread2 = inverseSpread(own.slope, size);
+  vec3 coarser = vec3(0.0), found = vec3(0.0);
+  for (int i = 0; i < 4; ++i) {
+    ivec2 at = nearest + toward * ivec2(i & 1, i >> 1);
+    int index = (at.y - window.y) * (window.z - window.x) + at.x - window.x;
+    uvec4 theirs = (level & 1u) == 0u ? odd[index] : even[index];
+    if (materialBits(theirs) != own.material) continue;
+    vec2 off = vec2(at) + 0.5 - 0.5 * (vec2(texel) + 0.5);
+    float w = i == 0 ? 9.0 / 16.0 : i == 3 ? 1.0 / 16.0 : 3.0 / 16.0;
+    w *= sameSurface(uintBitsToFloat(theirs.z) - own.depth - dot(own.slope, off * size), spread2);
+    vec3 density = w * unpackUnorm4x8(theirs.w).rgb;
+    coarser += density * unpackColor(theirs.xy);
+    found += density;
+  }
+  vec3 share = coarserShare(own.material - 1u, level, shareEntry(own.material - 1u, f.lengthMm));
+  // Both are weighted with the density that they found, which renormalizes at silhouettes and borders.
+  vec3 density = (1.0 - share) * here.a + share * found;
+  // Where a channel has nothing here, the level's own color stands in: the finer level weights it with 0.
+  vec3 color = mix(own.color, ((1.0 - share) * here.rgb + share * coarser) / max(density, vec3(1.0e-6)),
+                   greaterThan(density, vec3(1.0e-6)));
+  return Level(color, density, f.lengthMm);
+}
+
+PixelShares pixelShares(uint m, float lengthMm, vec3 density) {
+  float entry = shareEntry(m, lengthMm);
+  uint i = min(uint(entry), uint(PELLUCID_SHARE_ENTRIES - 2));
+  float part = entry - float(i);
+  PixelShares s;
+  s.coarser = mix(kernels[m].pixelShare[2u * i].rgb, kernels[m].pixelShare[2u * i + 2u].rgb, part);
+  s.fine = mix(kernels[m].pixelShare[2u * i + 1u].rgb, kernels[m].pixelShare[2u * i + 3u].rgb, part);
+  s.coarser = s.coarser * density / max(1.0 - s.coarser + s.coarser * density, vec3(1.0e-6));
+  return s;
 }
 
 void main() {
-  uint last = pass.value.x, first = pass.value.y;
-  ivec2 tile = levelRect(last).xy + ivec2(gl_WorkGroupID.xy) * 8;
   int invocation = int(gl_LocalInvocationIndex);
-  ivec4 coarserWindow = ivec4(0);
-  for (uint level = first; level >= last; --level) {
-    uint current = level & 1u, above = current ^ 1u;
-    ivec4 rect = levelRect(level), window = windowOf(level, last, tile);
-    int width = window.z - window.x;
-    ivec2 texel = window.xy + ivec2(invocation % width, invocation / width);
-    bool inside = texel.y < window.w && insideLevel(rect, texel);
-    Texel own = unpackTexel(inside ? levelTexel(level, texel) : uvec4(0u));
-    vec4 color = vec4(0.0);
-    float sideMm = 0.0;
-    if (own.coverage > 0.0) {
-      Foreshortening f = foreshortening(vec2(texel), level, own.depth, own.slope);
-      sideMm = f.lengthMm;
-      vec4 here = stretched(rect, texel, level, own, f);
-      color = vec4(own.color, own.coverage);
-      if (here.a > 0.0) color = vec4(here.rgb / here.a, here.a);
-      if (pass.value.z != 0u && level == first) {
-        Resolved r = unpackResolved(texelFetch(resolvedImage, inAtlas(level, texel), 0));
-        color = vec4(r.color, r.density);
-      } else if (level < pass.value.w) {
-        vec4 coarser = vec4(0.0);
-        vec2 size = texelSize(own.depth, level + 1u);
-        int stride = coarserWindow.z - coarserWindow.x;
-        for (int i = 0; i < 9; ++i) {
-          ivec2 at = (texel >> 1) + ivec2(i % 3, i / 3) - 1;
-          int index = (at.y - coarserWindow.y) * stride + at.x - coarserWindow.x;
-          if (materials[above][index] != own.material) continue;
-          vec4 plane = planes[above][index];
-          // 10, 5 or 1 sixteenths at distances of 1/4, 3/4 and 5/4 texels: the refinement of the quintic B-spline.
-          vec2 off = 0.5 * (vec2(texel) + 0.5) - (vec2(at) + 0.5);
-          vec2 part = mix(mix(vec2(0.0625), vec2(0.3125), lessThan(abs(off), vec2(1.0))), vec2(0.625), lessThan(abs(off), vec2(0.5)));
-          vec4 resolved = colors[above][index];
-          float w = part.x * part.y * resolved.a *
-                    sameSurface(own.depth - plane.x - dot(plane.yz, off * size), plane.w);
-          coarser += w * vec4(resolved.rgb, 1.0);
-        }
-        coarser.rgb /= max(coarser.a, 1.0e-6);
-        vec3 share = coarserShare(own.material - 1u, level, shareEntry(own.material - 1u, f.lengthMm));
-        // Both are weighted with the density that they found, which renormalizes at silhouettes and borders.
-        vec3 theirs = share * coarser.a;
-        vec3 density = (1.0 - share) * here.a + theirs;
-        // Where a channel has nothing here, the level's own color stands in: the finer level weights it with 0.
-        color.rgb = mix(own.color, ((1.0 - share) * here.rgb + theirs * coarser.rgb) / max(density, vec3(1.0e-6)),
-                        greaterThan(density, vec3(1.0e-6)));
-        color.a = dot(density, vec3(1.0 / 3.0));
+  uint coarsest = pass.value.x;
+  ivec2 tile = levelRect(2u).xy + PELLUCID_RESOLVE_TILE * ivec2(gl_WorkGroupID.xy);
+  ivec4 coarser = ivec4(0);
+  for (uint level = coarsest; level >= 2u; --level) {
+    ivec4 window = ivec4(tile, tile + PELLUCID_RESOLVE_TILE), rect = levelRect(level);
+    for (uint l = 2u; l < level; ++l) window = ivec4((window.xy - 1) >> 1, (window.zw >> 1) + 1);
+    int width = window.z - window.x, count = width * (window.w - window.y);
+    for (int i = invocation; i < count; i += kInvocations) {
+      ivec2 texel = window.xy + ivec2(i % width, i / width);
+      bool inside = insideLevel(rect, texel);
+      uvec4 bits = inside ? texelFetch(pyramidImage, inAtlas(level, texel), 0) : uvec4(0u);
+      bool some = coverageBits(bits) != 0u;
+      Level r = Level(vec3(0.0), vec3(0.0), 0.0);
+      if (some) r = resolvedLevel(level, texel, unpackTexel(bits), level == coarsest, coarser);
+      uvec2 color = packColor(r.color, bits.y >> 16);
+      uint density = packUnorm4x8(vec4(r.density, 0.0));
+      if (level > 2u) {
+        uvec4 packed = some ? uvec4(color, bits.z, density) : uvec4(0u);
+        if ((level & 1u) != 0u)
+          odd[i] = packed;
+        else
+          even[i] = packed;
+      } else if (inside) {
+        uint m = materialBits(bits);
+        // A length of a pixel is a quarter of a texel's.
+        uvec3 shares = some ? packShares(pixelShares(m - 1u, 0.25 * r.lengthMm, r.density)) : uvec3(0u);
+        writeResolved(texel, uvec4(color, bits.zw), uvec4(shares, density));
       }
     }
-    planes[current][invocation] = vec4(own.depth, own.slope, inverseSpread(own.slope, texelSize(own.depth, level)));
-    materials[current][invocation] = own.coverage > 0.0 ? own.material : 0u;
-    colors[current][invocation] = color;
-    if (level == last && inside) {
-      Resolved r = Resolved(color.rgb, color.a, 0.0, own.coverage > 0.0 ? own.material : 0u);
-      if (level == 2u && r.material != 0u) r.pixelEntry = shareEntry(r.material - 1u, 0.25 * sideMm);
-      writeLevel(level, texel, packResolved(r));
-    }
-    coarserWindow = window;
+    coarser = window;
     barrier();
   }
 }

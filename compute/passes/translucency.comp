@@ -2,9 +2,21 @@
 // T(d) E_back is added as T(d)/rho E_back, so that albedo times the diffused sum is T E_back.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_GOOGLE_include_directive : require
 
+// Four times the body is worth it where the body is short.
+#ifdef DIRECTIONAL
+#define UNROLL [[unroll]]
+#else
+#define UNROLL
+#endif
+
+#ifdef QUADS
+#include "passes/pyramid.glsl"
+#else
 #include "passes/bindings.glsl"
+#endif
 
 layout(set = 0, binding = PELLUCID_BINDING_LIGHTS) uniform Lights { LightConstants lights[PELLUCID_DISPATCH_LIGHTS]; };
 layout(set = 0, binding = PELLUCID_BINDING_SHADOWS) uniform Shadows { ShadowConstants shadows[PELLUCID_DISPATCH_SHADOWS]; };
@@ -22,6 +34,7 @@ layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 7) uniform texture2D 
 
 // A switch over constant bindings needs no shaderSampledImageArrayDynamicIndexing.
 float shadowTexel(uint image, ivec2 texel) {
+  if (kDirectional) return texelFetch(shadowImage0, texel, 0).x;
   switch (image) {
     case 0u: return texelFetch(shadowImage0, texel, 0).x;
     case 1u: return texelFetch(shadowImage1, texel, 0).x;
@@ -54,63 +67,91 @@ Surface surfaceAt(ivec2 pixel, float front, float frontStored, float backStored,
 #ifdef GATHER
 #include "passes/gather_tile.glsl"
 #else
-void main() {
-  ivec2 pixel = invocationPixel();
-  if (!insideRect(pixel)) return;
-  // All at once and whatever the flags say (a stand-in is bound where an image is missing), so that their
-  // latencies overlap: the pass waits for memory more than it computes.
-  uint value = materialValueAt(pixel);
-  vec4 source = texelFetch(sourceImage, pixel, 0);
-  float frontStored = texelFetch(frontDepthImage, pixel, 0).x;
-  float backStored = hasFlag(PELLUCID_FLAG_CHORD) ? texelFetch(backDepthImage, pixel, 0).x : 0.0;
-  vec4 normalTexel = texelFetch(normalImage, pixel, 0);
-  uint material = materialIndex(value);
-  // A history that starts is 0 wherever nothing came through: the next frame's pixels may lie there.
-  bool starts = pass.value.z == PELLUCID_WRITE_STARTS;
-  if (material == 0u) {
-    if (starts) imageStore(destinationImage, pixel, vec4(0.0));
-    return;
-  }
-  uint m = material - 1u;
 
-  if (starts) source = vec4(0.0);
-  // Marked pixels keep their irradiance.
-  bool marked = (value & frame.marks.x) != 0u;
-  vec3 irradiance = sanitize(source.rgb);
-  float front = marked ? -1.0 : frontDistanceOf(frontStored);
+struct Texels {
+  uint value;
+  vec4 source, normal;
+  float front, back; // as stored
+};
+
+// All at once and whatever the flags say (a stand-in is bound where an image is missing), so that their
+// latencies overlap: the pass waits for memory more than it computes.
+Texels fetch(ivec2 pixel) {
+  Texels t;
+  t.value = materialValueAt(pixel);
+  t.source = texelFetch(sourceImage, pixel, 0);
+  t.front = texelFetch(frontDepthImage, pixel, 0).x;
+  t.back = hasFlag(PELLUCID_FLAG_CHORD) ? texelFetch(backDepthImage, pixel, 0).x : 0.0;
+  t.normal = texelFetch(normalImage, pixel, 0);
+  return t;
+}
+
+// Irradiance and the light that comes through, or what a debug view shows.
+vec3 resultAt(ivec2 pixel, Texels t, float front, uint m) {
   vec3 arriving = vec3(0.0), visible = vec3(0.0), transmitted = vec3(0.0);
   vec3 thickness = vec3(-1.0);
-  if (front > 0.0) {
-    Surface s = surfaceAt(pixel, front, frontStored, backStored, normalTexel);
+  // Marked pixels keep their irradiance.
+  if (front > 0.0 && (t.value & frame.marks.x) == 0u) {
+    Surface s = surfaceAt(pixel, front, t.front, t.back, t.normal);
     float mm = frame.camera.range.w;
     if (s.chord >= 0.0) thickness.r = s.chord * mm;
-    for (uint i = 0u; i < pass.value.y; ++i) {
+    for (uint i = 0u; i < (kDirectional ? 1u : pass.value.y); ++i) {
       LightConstants light = lights[i];
-      Transmitted t = lightTransmission(light, s);
-      vec3 through = t.arriving * t.visible;
+      Transmitted through = lightTransmission(light, s);
+      vec3 entering = through.arriving * through.visible;
       // Most pixels face some lights; T is the expensive part.
-      if (t.thickness >= 0.0 && max(through.r, max(through.g, through.b)) > 0.0)
-        transmitted += through * materialTransmittance(m, t.thickness * mm);
+      if (through.thickness >= 0.0 && max(entering.r, max(entering.g, entering.b)) > 0.0)
+        transmitted += entering * materialTransmittance(m, through.thickness * mm);
 #ifdef DEBUG_VIEWS
-      arriving += t.arriving;
-      visible += through;
-      if (t.visible > 0.0 && thickness.b < 0.0) thickness.b = t.thickness * mm;
+      arriving += through.arriving;
+      visible += entering;
+      if (through.visible > 0.0 && thickness.b < 0.0) thickness.b = through.thickness * mm;
       LightSpace l = lightSpace(light, incidentLight(light, s.position), s.position);
       if (l.inside && l.holds && thickness.g < 0.0) thickness.g = max(l.thickness - l.bias, 0.0) * mm;
 #endif
     }
   }
-  vec3 result = irradiance + transmitted * materials[m].inverseReflectance.rgb;
 #ifdef DEBUG_VIEWS
-  uint view = frame.flags.z;
   // The divisors are positive where they are used; nothing arriving shows as 0.
   vec3 some = vec3(greaterThan(arriving, vec3(0.0)));
-  if (view == PELLUCID_SHADER_DEBUG_THICKNESS) result = thickness;
-  if (view == PELLUCID_SHADER_DEBUG_TRANSMITTANCE) result = some * transmitted / max(visible, vec3(1.0e-30));
-  if (view == PELLUCID_SHADER_DEBUG_OCCLUSION) result = some * visible / max(arriving, vec3(1.0e-30));
-  imageStore(destinationImage, pixel, vec4(result, source.a));
+  if (frame.flags.z == PELLUCID_SHADER_DEBUG_THICKNESS) return thickness;
+  if (frame.flags.z == PELLUCID_SHADER_DEBUG_TRANSMITTANCE) return some * transmitted / max(visible, vec3(1.0e-30));
+  if (frame.flags.z == PELLUCID_SHADER_DEBUG_OCCLUSION) return some * visible / max(arriving, vec3(1.0e-30));
+#endif
+  return sanitize(t.source.rgb) + transmitted * materials[m].inverseReflectance.rgb;
+}
+
+// An invocation does 2 x 2 pixels: a texel of the pyramid's level 1, which QUADS writes.
+void main() {
+  ivec2 quad = (ivec2(frame.rect.xy) >> 1) + ivec2(gl_GlobalInvocationID.xy);
+  // A history that starts is 0 wherever nothing came through: the next frame's pixels may lie there.
+  bool starts = pass.value.z == PELLUCID_WRITE_STARTS;
+  Texels texels[4];
+  UNROLL for (int i = 0; i < 4; ++i)
+    texels[i] = fetch(clamp(2 * quad + ivec2(i & 1, i >> 1), ivec2(frame.rect.xy), ivec2(frame.rect.zw) - 1));
+  uint material[4];
+  float depth[4];
+  vec3 color[4];
+  UNROLL for (int i = 0; i < 4; ++i) {
+    ivec2 pixel = 2 * quad + ivec2(i & 1, i >> 1);
+    Texels t = texels[i];
+    material[i] = insideRect(pixel) ? materialIndex(t.value) : 0u;
+    depth[i] = frontDistanceOf(t.front);
+    color[i] = vec3(0.0);
+    if (starts) t.source = vec4(0.0);
+    if (material[i] != 0u) {
+      vec3 result = resultAt(pixel, t, depth[i], material[i] - 1u);
+#ifdef DEBUG_VIEWS
+      imageStore(destinationImage, pixel, vec4(result, t.source.a));
 #else
-  writeResult(pixel, result, source.a, pass.value.z == PELLUCID_WRITE_LAST);
+      color[i] = writeResult(pixel, result, t.source.a, pass.value.z == PELLUCID_WRITE_LAST);
+#endif
+    } else if (starts && insideRect(pixel)) {
+      imageStore(destinationImage, pixel, vec4(0.0));
+    }
+  }
+#ifdef QUADS
+  if (insideLevel(levelRect(1u), quad)) writeLevel(1u, quad, quadTexel(material, depth, color));
 #endif
 }
 #endif

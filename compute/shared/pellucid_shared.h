@@ -16,9 +16,13 @@ using glm::vec4;
 
 #define PELLUCID_GROUP_X 8
 #define PELLUCID_GROUP_Y 8
-#define PELLUCID_DIRECTIONAL_GROUP 16 // a side: launching groups of 8 x 8 takes longer than what this variant does
-#define PELLUCID_DIFFUSE_GROUP 8 // a side; an invocation does 2 x 2 pixels
-#define PELLUCID_REDUCE_GROUP 8 // a side, of the pyramid's reductions
+#define PELLUCID_DIFFUSE_GROUP 16 // a side
+#define PELLUCID_DIFFUSE_TEXELS_X 15 // of level 2, 4 x 4 pixels each, that a group of the diffusion does
+#define PELLUCID_DIFFUSE_TEXELS_Y 8
+#define PELLUCID_RESOLVE_GROUP 16 // a side
+#define PELLUCID_RESOLVE_TILE 32  // texels of level 2, a side
+#define PELLUCID_REDUCE_GROUP 16 // a side, of the pyramid's reductions
+#define PELLUCID_REDUCE_TILE 10  // a side, texels of the second of two levels that a group makes
 #define PELLUCID_GATHER_GROUP 16 // threads a side; a tile of the gather is twice as wide
 
 #define PELLUCID_BINDING_FRAME 0
@@ -38,7 +42,6 @@ using glm::vec4;
 #define PELLUCID_SHADOW_IMAGE_COUNT 8     // 14 sampled images in all; every device has 16
 #define PELLUCID_BINDING_LEVELS 20        // written by the diffusion's passes, which read no shadow images:
 #define PELLUCID_BINDING_PYRAMID PELLUCID_BINDING_SHADOW_IMAGES
-#define PELLUCID_BINDING_RESOLVED (PELLUCID_BINDING_SHADOW_IMAGES + 1)
 #define PELLUCID_BINDING_COUNT 21
 
 // Lights and shadow maps of one dispatch are uniform buffers, which are cached apart from what images pass
@@ -82,8 +85,8 @@ using glm::vec4;
 #define PELLUCID_GAUSSIANS 8
 #define PELLUCID_GATHER_TERMS 7
 
-// The diffusion pyramid's levels are 2..LAST_LEVEL; a texel of the last one is 256 pixels wide.
-#define PELLUCID_LAST_LEVEL 8
+// The diffusion pyramid's levels are 1..LAST_LEVEL; a texel of the last one is 128 pixels wide.
+#define PELLUCID_LAST_LEVEL 7
 // KernelConstants::share: levels 2 and 3, and all coarser ones.
 #define PELLUCID_SHARE_COARSER 2
 #define PELLUCID_SHARE_TABLES 3
@@ -107,7 +110,8 @@ struct FrameConstants {
   vec4 anglePolynomial;
   uvec4 marks;         // x: bit of material values without translucency; 0: none
   vec4 filterAndLimit;        // rgb: factor of T; w: largest thickness, mm
-  ivec4 level[PELLUCID_LAST_LEVEL + 1]; // xy: where texel (0, 0) of the level lies in the pyramid's image
+  ivec4 level[PELLUCID_LAST_LEVEL + 1]; // xy: where texel (0, 0) of the level lies in the pyramid's image; of
+                                        // level 0, that of the resolved level 2, zw: of its shares
 };
 
 struct LightConstants {
@@ -151,14 +155,14 @@ struct KernelConstants {
   vec4 share[PELLUCID_SHARE_TABLES * PELLUCID_SHARE_ENTRIES]; // rgb: which part of the energy at a level and
                                                               // coarser ones the coarser ones have
   // Two for each side of a pixel. First: which part of all energy level 2 and coarser ones have. Second: which
-  // part of the rest the binomial 1 2 1 of the pixel and its neighbors has.
+  // part of the rest the fine filter of the pixel and its neighbors has.
   vec4 pixelShare[2 * PELLUCID_SHARE_ENTRIES];
 };
 
 // Push constants. translucency: unused, lights, PELLUCID_WRITE_*, gather samples.
 // add: unused, unused, 1 if this is the last dispatch.
-// reduce: finer level; unused from pixels. resolve: last level, first level, 1 if that one is
-// resolved already, coarsest level. diffuse: unused, unused, unused, 1 if this is the last dispatch.
+// reduce: finer level, levels to make. resolve: coarsest level.
+// diffuse: unused, 1 if the source may hold anything, unused, 1 if this is the last dispatch.
 struct PassConstants {
   uvec4 value;
 };

@@ -66,6 +66,9 @@ shared::FrameConstants frameConstants(const PellucidFrame& f) {
     const PyramidPlace place = placeOf(f, level);
     c.level[level] = {place.x - place.rect.x, place.y - place.rect.y, 0, 0};
   }
+  // The resolved level 2 and its shares lie beside each other where level 1 was: half as wide and high.
+  const PyramidPlace resolved = placeOf(f, 2);
+  c.level[0] = {-resolved.rect.x, -resolved.rect.y, resolved.rect.width - resolved.rect.x, -resolved.rect.y};
   return c;
 }
 

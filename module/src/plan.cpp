@@ -11,7 +11,6 @@ namespace {
 
 constexpr uint32_t kShadow0 = PELLUCID_RESOURCE_SHADOW0;
 constexpr uint32_t kTransient0 = PELLUCID_RESOURCE_TRANSIENT0;
-constexpr uint32_t kSharedLevel = 4;        // of the two resolving dispatches
 constexpr uint64_t kTexelBytes = 16;        // of the pyramid, as packed by compute/lib/pyramid.glsl
 constexpr uint64_t kUnknownDepthBytes = 4;  // the module does not know the format; 4 is the common one
 
@@ -25,7 +24,6 @@ struct Builder {
   bool wide() const { return frame.outputFormat == VK_FORMAT_R32G32B32A32_SFLOAT; }
   uint64_t pixels() const { return static_cast<uint64_t>(rect.width) * rect.height; }
   uint32_t pyramidImage() const { return kTransient0 + colorTransients; }
-  uint32_t resolvedImage() const { return kTransient0 + colorTransients + 1; }
   uint64_t colorBytes() const { return wide() ? 16 : 8; }
 
   void skip(const char* what, const char* reason) {
@@ -105,18 +103,27 @@ struct Builder {
            frame.constantViewDirection == 0;
   }
 
-  bool translucency(const LightGroup& group, uint32_t source, uint32_t destination) {
+  // `quads`: the pyramid's level 1 is written too.
+  bool translucency(const LightGroup& group, uint32_t source, uint32_t destination, bool quads) {
     const bool debug = frame.debugView != PELLUCID_DEBUG_NONE;
-    const uint32_t half = debug                                     ? PELLUCID_PIPELINE_DEBUG_16F
-                          : frame.gatherSamples > 0                 ? PELLUCID_PIPELINE_GATHER_16F
-                          : group.directional && directionalFrame() ? PELLUCID_PIPELINE_DIRECTIONAL_16F
-                                                                    : PELLUCID_PIPELINE_TRANSLUCENCY_16F;
+    const bool directional = group.lightCount == 1 && group.directional && directionalFrame();
+    const uint32_t half = debug                     ? PELLUCID_PIPELINE_DEBUG_16F
+                          : frame.gatherSamples > 0 ? PELLUCID_PIPELINE_GATHER_16F
+                          : directional && quads    ? PELLUCID_PIPELINE_DIRECTIONAL_QUADS_16F
+                          : directional             ? PELLUCID_PIPELINE_DIRECTIONAL_16F
+                          : quads                   ? PELLUCID_PIPELINE_TRANSLUCENCY_QUADS_16F
+                                                    : PELLUCID_PIPELINE_TRANSLUCENCY_16F;
     const uint32_t pipeline = half + (wide() ? 1 : 0);  // the 32F variant follows the 16F one
     PellucidDispatch* d = dispatch(debug ? "debug view" : "translucency", pipeline);
     if (!d) return false;
-    if (half == PELLUCID_PIPELINE_DIRECTIONAL_16F)
-      groups(d, rect.width, rect.height, PELLUCID_DIRECTIONAL_GROUP);
-    if (half == PELLUCID_PIPELINE_GATHER_16F) groups(d, rect.width, rect.height, 2 * PELLUCID_GATHER_GROUP);
+    if (half == PELLUCID_PIPELINE_GATHER_16F)
+      groups(d, rect.width, rect.height, 2 * PELLUCID_GATHER_GROUP);
+    else  // pairs of pixels in each direction, from even ones on
+      groups(d, rect.width + (rect.x & 1), rect.height + (rect.y & 1), 2 * PELLUCID_GROUP_X);
+    if (quads) {
+      writesPyramid(d);
+      writesLevel(d, kFirstLevel);
+    }
     d->pushConstants[1] = group.lightCount;
     d->pushConstants[2] = destination == PELLUCID_RESOURCE_OUTPUT;
     if (destination == PELLUCID_RESOURCE_HISTORY && group.firstLight == 0)
@@ -150,11 +157,9 @@ struct Builder {
     return true;
   }
 
-  // What the passes after the reductions read of the pyramid.
-  void pyramidInputs(PellucidDispatch* d) const {
-    bind(d, PELLUCID_BINDING_PYRAMID, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, pyramidImage());
-    bind(d, PELLUCID_BINDING_RESOLVED, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, resolvedImage());
-    constants(d, PELLUCID_BINDING_KERNELS, layout.kernels);
+  void levelGroups(PellucidDispatch* d, uint32_t level, uint32_t tile) const {
+    const PyramidPlace place = placeOf(frame, level);
+    groups(d, static_cast<uint32_t>(place.rect.width), static_cast<uint32_t>(place.rect.height), tile);
   }
 
   // Texels of a level that the rect needs.
@@ -163,26 +168,24 @@ struct Builder {
     return static_cast<uint64_t>(place.rect.width) * static_cast<uint64_t>(place.rect.height);
   }
 
-  PellucidDispatch* pyramid(const char* name, uint32_t pipeline, uint32_t level, uint32_t tile,
-                            uint32_t writes) {
-    PellucidDispatch* d = dispatch(name, pipeline);
-    if (!d) return nullptr;
-    const PyramidPlace place = placeOf(frame, level);
-    groups(d, static_cast<uint32_t>(place.rect.width), static_cast<uint32_t>(place.rect.height), tile);
-    constants(d, PELLUCID_BINDING_FRAME, layout.frame);
-    bind(d, PELLUCID_BINDING_LEVELS, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, writes);
+  void writesLevel(PellucidDispatch* d, uint32_t level) const {
     d->modeledBytes += kTexelBytes * texels(level);
-    return d;
+  }
+  void writesPyramid(PellucidDispatch* d) const {
+    bind(d, PELLUCID_BINDING_LEVELS, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, pyramidImage());
   }
 
-  bool reducePixels(uint32_t source, uint32_t copy) {
+  // Level 1 from the pixels of an image, which are copied on the way if `copy` is another one.
+  bool quads(uint32_t source, uint32_t copy) {
     const bool copies = copy != source;
-    PellucidDispatch* d = pyramid("reduce pixels",
-                                  !copies  ? PELLUCID_PIPELINE_REDUCE_PIXELS
-                                  : wide() ? PELLUCID_PIPELINE_REDUCE_AND_COPY_32F
-                                           : PELLUCID_PIPELINE_REDUCE_AND_COPY_16F,
-                                  kFirstLevel, PELLUCID_REDUCE_GROUP, pyramidImage());
+    PellucidDispatch* d = dispatch("quads", !copies  ? PELLUCID_PIPELINE_QUADS
+                                            : wide() ? PELLUCID_PIPELINE_QUADS_AND_COPY_32F
+                                                     : PELLUCID_PIPELINE_QUADS_AND_COPY_16F);
     if (!d) return false;
+    levelGroups(d, kFirstLevel, PELLUCID_GROUP_X);
+    constants(d, PELLUCID_BINDING_FRAME, layout.frame);
+    writesPyramid(d);
+    writesLevel(d, kFirstLevel);
     pixelInputs(d, source);
     if (copies) {
       bind(d, PELLUCID_BINDING_DESTINATION, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, copy);
@@ -191,27 +194,30 @@ struct Builder {
     return true;
   }
 
-  bool reduceLevels(uint32_t finer) {
-    PellucidDispatch* d = pyramid("reduce levels", PELLUCID_PIPELINE_REDUCE_LEVELS, finer + 2,
-                                  PELLUCID_REDUCE_GROUP / 2, pyramidImage());
+  bool reduce(uint32_t finer, uint32_t last) {
+    PellucidDispatch* d = dispatch("reduce", PELLUCID_PIPELINE_REDUCE_LEVELS);
     if (!d) return false;
+    levelGroups(d, last, last - finer == 2 ? PELLUCID_REDUCE_TILE : 1);
     d->pushConstants[0] = finer;
+    d->pushConstants[1] = last - finer;
+    constants(d, PELLUCID_BINDING_FRAME, layout.frame);
+    writesPyramid(d);
     bind(d, PELLUCID_BINDING_PYRAMID, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, pyramidImage());
-    d->modeledBytes += kTexelBytes * (texels(finer) + texels(finer + 1));
+    for (uint32_t level = finer; level <= last; ++level) writesLevel(d, level);
     return true;
   }
 
-  bool resolve(uint32_t last, uint32_t first) {
-    PellucidDispatch* d =
-        pyramid("resolve levels", PELLUCID_PIPELINE_RESOLVE_LEVELS, last, PELLUCID_GROUP_X, resolvedImage());
+  bool resolve(uint32_t coarsest) {
+    PellucidDispatch* d = dispatch("resolve", PELLUCID_PIPELINE_RESOLVE_LEVELS);
     if (!d) return false;
-    const uint32_t coarsest = coarsestLevel(frame);
-    d->pushConstants[0] = last;
-    d->pushConstants[1] = first;
-    d->pushConstants[2] = first < coarsest;
-    d->pushConstants[3] = coarsest;
-    pyramidInputs(d);
-    for (uint32_t level = last; level <= first; ++level) d->modeledBytes += kTexelBytes * texels(level);
+    levelGroups(d, 2, PELLUCID_RESOLVE_TILE);
+    d->pushConstants[0] = coarsest;
+    constants(d, PELLUCID_BINDING_FRAME, layout.frame);
+    constants(d, PELLUCID_BINDING_KERNELS, layout.kernels);
+    writesPyramid(d);
+    bind(d, PELLUCID_BINDING_PYRAMID, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, pyramidImage());
+    for (uint32_t level = 2; level <= coarsest; ++level) writesLevel(d, level);
+    d->modeledBytes += 2 * kTexelBytes * texels(2);
     return true;
   }
 
@@ -219,12 +225,18 @@ struct Builder {
     PellucidDispatch* d =
         dispatch("diffuse", wide() ? PELLUCID_PIPELINE_DIFFUSE_32F : PELLUCID_PIPELINE_DIFFUSE_16F);
     if (!d) return false;
-    // Groups start at even pixels and take two in each direction.
-    groups(d, rect.width + (rect.x & 1), rect.height + (rect.y & 1), 2 * PELLUCID_DIFFUSE_GROUP);
+    // Groups start at texels of level 2, whose rect has a border of one.
+    const PyramidPlace place = placeOf(frame, 2);
+    const auto across = [](int32_t texels, uint32_t side) {
+      return (static_cast<uint32_t>(texels) - 2 + side - 1) / side;
+    };
+    d->groups[0] = across(place.rect.width, PELLUCID_DIFFUSE_TEXELS_X);
+    d->groups[1] = across(place.rect.height, PELLUCID_DIFFUSE_TEXELS_Y);
+    d->pushConstants[1] = source < kTransient0;  // the passes write nothing that would have to be sanitized
     d->pushConstants[3] = destination == PELLUCID_RESOURCE_OUTPUT;
     common(d, source, destination);
-    pyramidInputs(d);
-    d->modeledBytes += 2 * kTexelBytes * texels(kFirstLevel);
+    bind(d, PELLUCID_BINDING_PYRAMID, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, pyramidImage());
+    d->modeledBytes += 2 * kTexelBytes * texels(2);
     return true;
   }
 };
@@ -238,6 +250,7 @@ struct Stages {
   // The diffusion is all there is: it copies the irradiance before it writes the output, which may be the
   // same image and whose pixels read their neighbors.
   bool copies;
+  bool fusesQuads;  // the last fused dispatch makes the pyramid's level 1 of what it writes
 
   // Dispatches that write a color transient or the output.
   uint32_t writers() const { return (history ? 1 : fused) + (diffusion ? 1 : 0) + (copies ? 1 : 0); }
@@ -254,6 +267,7 @@ Stages stagesOf(const PellucidFrame& frame) {
   // Without diffusion the fused pass still has to bring irradiance (times albedo) to the output.
   if (s.writers() == 0) s.fused = 1;
   s.history = keepsHistory(frame);
+  s.fusesQuads = s.diffusion && s.lights && !s.history && frame.gatherSamples == 0;
   return s;
 }
 
@@ -290,9 +304,10 @@ bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan
     return transient;
   };
   bool fits = true;
+  uint32_t left = stages.fused;
   const auto translucency = [&](const LightGroup& group) {
     const uint32_t to = destination();
-    fits = fits && b.translucency(group, source, to);
+    fits = fits && b.translucency(group, source, to, stages.fusesQuads && --left == 0);
     source = to;
   };
   const auto translucencies = [&] {
@@ -301,7 +316,8 @@ bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan
         forEachLightGroup(
             frame, [](const LightGroup&, const PellucidLight&) {},
             [&](const LightGroup& group) {
-              fits = fits && b.translucency(group, PELLUCID_RESOURCE_HISTORY, PELLUCID_RESOURCE_HISTORY);
+              fits =
+                  fits && b.translucency(group, PELLUCID_RESOURCE_HISTORY, PELLUCID_RESOURCE_HISTORY, false);
             });
       const uint32_t to = destination();
       fits = fits && b.addHistory(source, to);
@@ -314,19 +330,13 @@ bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan
   };
   const auto diffusion = [&] {
     if (!stages.diffusion) return;
-    if (stages.copies) {
-      const uint32_t copy = destination();
-      fits = fits && b.reducePixels(source, copy);
-      source = copy;
-    } else {
-      fits = fits && b.reducePixels(source, source);
-    }
+    const uint32_t copy = stages.copies ? destination() : source;
+    if (!stages.fusesQuads) fits = fits && b.quads(source, copy);
+    source = copy;
     const uint32_t coarsest = coarsestLevel(frame);
-    for (uint32_t finer = kFirstLevel; finer < coarsest; finer += 2) fits = fits && b.reduceLevels(finer);
-    // Coarse levels are made again by every tile that needs them, so a second dispatch takes over where there
-    // are many.
-    if (coarsest > kSharedLevel) fits = fits && b.resolve(kSharedLevel, coarsest);
-    fits = fits && b.resolve(kFirstLevel, std::min(coarsest, kSharedLevel));
+    fits = fits && b.reduce(kFirstLevel, kMiddleLevel);
+    if (coarsest > kMiddleLevel) fits = fits && b.reduce(kMiddleLevel, coarsest);
+    fits = fits && b.resolve(coarsest);
     const uint32_t to = destination();
     fits = fits && b.diffuse(source, to);
     source = to;
@@ -368,7 +378,7 @@ extern "C" PellucidResult pellucidGetImageNeeds(const PellucidFrame* frame, uint
   const PellucidResult result = checkFrame(frame, nullptr, nullptr);
   if (result != PELLUCID_OK) return result;
   const Stages stages = stagesOf(*frame);
-  const uint32_t colors = stages.colorTransients(), transients = colors + (stages.diffusion ? 2 : 0);
+  const uint32_t colors = stages.colorTransients(), transients = colors + (stages.diffusion ? 1 : 0);
   const uint32_t room = *count;
   *count = transients + (stages.history ? 1 : 0);
   if (!needs) return PELLUCID_OK;  // validation asks for the number in every frame

@@ -11,10 +11,8 @@ uint32_t most(uint32_t pixels, uint32_t level) { return ((pixels - 1) >> level) 
 }  // namespace
 
 uint32_t coarsestLevel(const PellucidFrame& frame) {
-  uint32_t level = kFirstLevel;
-  while (level < PELLUCID_LAST_LEVEL && std::max(frame.imageExtent[0], frame.imageExtent[1]) >> level > 1)
-    level += 2;
-  return level;
+  const bool few = std::max(frame.imageExtent[0], frame.imageExtent[1]) >> kMiddleLevel <= 1;
+  return few ? kMiddleLevel : PELLUCID_LAST_LEVEL;
 }
 
 PyramidPlace placeOf(const PellucidFrame& frame, uint32_t level) {
@@ -23,8 +21,9 @@ PyramidPlace placeOf(const PellucidFrame& frame, uint32_t level) {
   for (uint32_t l = kFirstLevel + 1; l < level; ++l)
     place.y += static_cast<int32_t>(most(frame.imageExtent[1], l));
   const Rect r = renderRect(frame);
-  const auto first = [level](uint32_t pixel) { return static_cast<int32_t>(pixel >> level) - 1; };
-  const auto end = [level](uint32_t pixels) { return static_cast<int32_t>((pixels - 1) >> level) + 2; };
+  const int32_t border = level > kFirstLevel ? 1 : 0;
+  const auto first = [&](uint32_t pixel) { return static_cast<int32_t>(pixel >> level) - border; };
+  const auto end = [&](uint32_t pixels) { return static_cast<int32_t>((pixels - 1) >> level) + 1 + border; };
   place.rect = {first(r.x), first(r.y), end(r.x + r.width) - first(r.x), end(r.y + r.height) - first(r.y)};
   return place;
 }
@@ -34,7 +33,9 @@ PyramidExtent pyramidExtent(const PellucidFrame& frame) {
   uint32_t width = most(frame.imageExtent[0], kFirstLevel), height = 0;
   if (last > kFirstLevel) width += most(frame.imageExtent[0], kFirstLevel + 1);
   for (uint32_t l = kFirstLevel + 1; l <= last; ++l) height += most(frame.imageExtent[1], l);
-  return {width, std::max(height, most(frame.imageExtent[1], kFirstLevel))};
+  // The resolved level 2 and its shares take the place of level 1.
+  width = std::max(width, 2 * most(frame.imageExtent[0], 2));
+  return {width, std::max({height, most(frame.imageExtent[1], kFirstLevel), most(frame.imageExtent[1], 2)})};
 }
 
 }  // namespace pellucid

@@ -1,4 +1,4 @@
-// Where the levels of the diffusion pyramid lie in its image. Level 2 is at the left, the coarser ones are below
+// Where the levels of the diffusion pyramid lie in its image. Level 1 is at the left, the coarser ones are below
 // each other beside it.
 #pragma once
 
@@ -6,10 +6,11 @@
 
 namespace pellucid {
 
-constexpr uint32_t kFirstLevel = 2;
+constexpr uint32_t kFirstLevel = 1;
+constexpr uint32_t kMiddleLevel = 3;  // the last one of the first reduction
 
-// The coarsest level in use: even, because reductions make two levels at a time, and no coarser than it takes for
-// the image to lie on 2 x 2 texels.
+// The coarsest level in use: 3 or 7, because the first reduction makes two levels and the second four; no coarser
+// than it takes for the image to lie on 2 x 2 texels.
 uint32_t coarsestLevel(const PellucidFrame& frame);
 
 struct PyramidPlace {
@@ -21,7 +22,7 @@ struct PyramidPlace {
 
 PyramidPlace placeOf(const PellucidFrame& frame, uint32_t level);
 
-// Of the pyramid's image and that of its resolved levels, for any render rect.
+// Of the pyramid's image, for any render rect.
 struct PyramidExtent {
   uint32_t width, height;
 };

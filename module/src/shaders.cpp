@@ -10,15 +10,19 @@
 #include "kDiffuse32f.h"
 #include "kDirectional16f.h"
 #include "kDirectional32f.h"
+#include "kDirectionalQuads16f.h"
+#include "kDirectionalQuads32f.h"
 #include "kGather16f.h"
 #include "kGather32f.h"
+#include "kQuads.h"
+#include "kQuadsAndCopy16f.h"
+#include "kQuadsAndCopy32f.h"
 #include "kReduce.h"
-#include "kReduceAndCopy16f.h"
-#include "kReduceAndCopy32f.h"
-#include "kReducePixels.h"
 #include "kResolve.h"
 #include "kTranslucency16f.h"
 #include "kTranslucency32f.h"
+#include "kTranslucencyQuads16f.h"
+#include "kTranslucencyQuads32f.h"
 #include "pellucid/pellucid.h"
 
 namespace pellucid {
@@ -30,13 +34,28 @@ constexpr Shader shader(const uint32_t (&words)[N]) {
 }
 
 // In the order of PellucidPipeline.
-const std::array kShaders = {shader(kTranslucency16f),  shader(kTranslucency32f), shader(kDebug16f),
-                             shader(kDebug32f),         shader(kDiffuse16f),      shader(kDiffuse32f),
-                             shader(kGather16f),        shader(kGather32f),
+const std::array kShaders = {shader(kTranslucency16f),
+                             shader(kTranslucency32f),
+                             shader(kDebug16f),
+                             shader(kDebug32f),
+                             shader(kDiffuse16f),
+                             shader(kDiffuse32f),
+                             shader(kGather16f),
+                             shader(kGather32f),
 
-                             shader(kAddHistory16f),    shader(kAddHistory32f),   shader(kReduceAndCopy16f),
-                             shader(kReduceAndCopy32f), shader(kReducePixels),    shader(kReduce),
-                             shader(kResolve),          shader(kDirectional16f),  shader(kDirectional32f)};
+                             shader(kAddHistory16f),
+                             shader(kAddHistory32f),
+                             shader(kQuadsAndCopy16f),
+                             shader(kQuadsAndCopy32f),
+                             shader(kQuads),
+                             shader(kReduce),
+                             shader(kDirectional16f),
+                             shader(kDirectional32f),
+                             shader(kTranslucencyQuads16f),
+                             shader(kTranslucencyQuads32f),
+                             shader(kDirectionalQuads16f),
+                             shader(kDirectionalQuads32f),
+                             shader(kResolve)};
 static_assert(kShaders.size() == PELLUCID_PIPELINE_COUNT);
 
 }  // namespace

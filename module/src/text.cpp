@@ -64,13 +64,17 @@ extern "C" const char* pellucidPipelineName(uint32_t pipeline) {
 
                                        "add_history_rgba16f",
                                        "add_history_rgba32f",
-                                       "reduce_and_copy_rgba16f",
-                                       "reduce_and_copy_rgba32f",
-                                       "reduce_pixels",
+                                       "quads_and_copy_rgba16f",
+                                       "quads_and_copy_rgba32f",
+                                       "quads",
                                        "reduce_levels",
-                                       "resolve_levels",
                                        "translucency_directional_rgba16f",
-                                       "translucency_directional_rgba32f"};
+                                       "translucency_directional_rgba32f",
+                                       "translucency_quads_rgba16f",
+                                       "translucency_quads_rgba32f",
+                                       "translucency_directional_quads_rgba16f",
+                                       "translucency_directional_quads_rgba32f",
+                                       "resolve_levels"};
   static_assert(names.size() == PELLUCID_PIPELINE_COUNT);
   return pipeline < names.size() ? names[pipeline] : "unknown pipeline";
 }

@@ -31,13 +31,12 @@ TEST(Plan, WholeFrameIsFusedDispatchAndPyramid) {
   Frame f;
   const PellucidPlan plan = f.plan();
   EXPECT_EQ(names(plan),
-            (std::vector<std::string>{"translucency", "reduce pixels", "reduce levels", "reduce levels",
-                                      "resolve levels", "resolve levels", "diffuse"}));
-  EXPECT_EQ(plan.barrierCount, 6u);
+            (std::vector<std::string>{"translucency", "reduce", "reduce", "resolve", "diffuse"}));
+  EXPECT_EQ(plan.barrierCount, 4u);
   EXPECT_EQ(plan.skipCount, 0u);
   EXPECT_EQ(plan.dispatches[0].barrierBefore, 0u);
-  EXPECT_EQ(plan.dispatches[0].groups[0], 13u) << "100 pixels in groups of 8";
-  EXPECT_EQ(plan.dispatches[0].groups[1], 7u) << "50 pixels in groups of 8";
+  EXPECT_EQ(plan.dispatches[0].groups[0], 7u) << "100 pixels in groups of 16";
+  EXPECT_EQ(plan.dispatches[0].groups[1], 4u) << "50 pixels in groups of 16";
 }
 
 TEST(Plan, SameInputSamePlan) {
@@ -78,10 +77,7 @@ TEST(Plan, EveryReadIsOfSomethingWritten) {
           if (write) destinations.insert(binding.resource);
           const bool transient = binding.resource >= PELLUCID_RESOURCE_TRANSIENT0 &&
                                  binding.resource < PELLUCID_RESOURCE_SHADOW0;
-          // The first resolving dispatch binds what the second reads.
-          const bool unread =
-              binding.binding == PELLUCID_BINDING_RESOLVED && plan.dispatches[i].pushConstants[2] == 0;
-          EXPECT_TRUE(!transient || write || unread || written.count(binding.resource)) << "dispatch " << i;
+          EXPECT_TRUE(!transient || write || written.count(binding.resource)) << "dispatch " << i;
           EXPECT_TRUE(binding.resource != PELLUCID_RESOURCE_IRRADIANCE || i == 0)
               << "irradiance is read by the first dispatch only";
         }
@@ -97,9 +93,8 @@ TEST(Plan, NoLightNoTranslucency) {
   Frame f;
   f.frame.lightCount = 0;
   const PellucidPlan plan = f.plan();
-  EXPECT_EQ(names(plan), (std::vector<std::string>{"reduce pixels", "reduce levels", "reduce levels",
-                                                   "resolve levels", "resolve levels", "diffuse"}));
-  EXPECT_EQ(plan.dispatches[0].pipeline, static_cast<uint32_t>(PELLUCID_PIPELINE_REDUCE_AND_COPY_16F));
+  EXPECT_EQ(names(plan), (std::vector<std::string>{"quads", "reduce", "reduce", "resolve", "diffuse"}));
+  EXPECT_EQ(plan.dispatches[0].pipeline, static_cast<uint32_t>(PELLUCID_PIPELINE_QUADS_AND_COPY_16F));
   EXPECT_TRUE(skips(plan, "translucency", "no light can contribute"));
 }
 
@@ -136,7 +131,7 @@ TEST(Plan, ManyShadowImagesBecomeSeveralDispatches) {
     lights += plan.dispatches[i].pushConstants[1];
   }
   EXPECT_EQ(lights, 20u);
-  EXPECT_STREQ(plan.dispatches[3].name, "reduce pixels");
+  EXPECT_STREQ(plan.dispatches[3].name, "reduce");
 }
 
 // Constants of a dispatch's lights are one window of a uniform buffer.
@@ -171,7 +166,7 @@ TEST(Plan, DirectionalVariantNeedsTheCommonCase) {
     return f.plan().dispatches[0].pipeline;
   };
   const auto directional = [&](const std::function<void(Frame&)>& change) {
-    return pipeline(change) == static_cast<uint32_t>(PELLUCID_PIPELINE_DIRECTIONAL_16F);
+    return pipeline(change) == static_cast<uint32_t>(PELLUCID_PIPELINE_DIRECTIONAL_QUADS_16F);
   };
   ASSERT_TRUE(directional([](Frame&) {}));
   EXPECT_FALSE(directional([](Frame& f) { f.frame.normal = {}; }));
@@ -185,6 +180,7 @@ TEST(Plan, DirectionalVariantNeedsTheCommonCase) {
     f.maps[0].encoding = PELLUCID_DEPTH_VIEW_Z;
     for (int i = 0; i < 4; ++i) f.maps[0].viewFromWorld[5 * i] = 1;
   }));
+  EXPECT_FALSE(directional([](Frame& f) { f.lights.push_back(f.lights[0]); }));
   EXPECT_FALSE(directional([](Frame& f) {
     f.lights.push_back(f.lights[0]);
     f.lights[1].type = PELLUCID_LIGHT_POINT;
@@ -199,7 +195,7 @@ TEST(Plan, ImageNeedsCoverThePlan) {
     PellucidImageNeed needs[PELLUCID_MAX_TRANSIENTS];
     uint32_t count = PELLUCID_MAX_TRANSIENTS;
     ASSERT_EQ(pellucidGetImageNeeds(&f.frame, &count, needs), PELLUCID_OK);
-    EXPECT_EQ(count, features == 1 ? 0u : 3u) << "a color, the pyramid, its resolved levels";
+    EXPECT_EQ(count, features == 1 ? 0u : 2u) << "a color and the pyramid";
     const PellucidPlan plan = f.plan();
     for (uint32_t d = 0; d < plan.dispatchCount; ++d)
       for (uint32_t b = 0; b < plan.dispatches[d].bindingCount; ++b) {
@@ -229,7 +225,7 @@ TEST(Plan, JsonParses) {
   text.pop_back();
   const nlohmann::json json = nlohmann::json::parse(text);
   EXPECT_EQ(json.at("dispatchCount"), plan.dispatchCount);
-  EXPECT_EQ(json.at("dispatches").at(0).at("groups"), nlohmann::json::array({13, 7, 1}));
+  EXPECT_EQ(json.at("dispatches").at(0).at("groups"), nlohmann::json::array({7, 4, 1}));
   size = 10;
   char small[10];
   EXPECT_EQ(pellucidPlanToJson(&plan, small, &size), PELLUCID_ERROR_BUFFER_TOO_SMALL);

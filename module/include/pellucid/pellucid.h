@@ -284,15 +284,19 @@ typedef enum PellucidPipeline {
   PELLUCID_PIPELINE_GATHER_32F = 7,
   PELLUCID_PIPELINE_ADD_HISTORY_16F = 8,
   PELLUCID_PIPELINE_ADD_HISTORY_32F = 9,
-  PELLUCID_PIPELINE_REDUCE_AND_COPY_16F = 10,
-  PELLUCID_PIPELINE_REDUCE_AND_COPY_32F = 11,
-  PELLUCID_PIPELINE_REDUCE_PIXELS = 12,
+  PELLUCID_PIPELINE_QUADS_AND_COPY_16F = 10,
+  PELLUCID_PIPELINE_QUADS_AND_COPY_32F = 11,
+  PELLUCID_PIPELINE_QUADS = 12,
   PELLUCID_PIPELINE_REDUCE_LEVELS = 13,
-  PELLUCID_PIPELINE_RESOLVE_LEVELS = 14,
-  PELLUCID_PIPELINE_DIRECTIONAL_16F = 15, /* translucency where all lights are directional with one map of device
-                                             depth, with normals, EXP2 materials and the default models */
-  PELLUCID_PIPELINE_DIRECTIONAL_32F = 16,
-  PELLUCID_PIPELINE_COUNT = 17
+  PELLUCID_PIPELINE_DIRECTIONAL_16F = 14, /* translucency where the one light is directional with one map of
+                                             device depth, with normals, EXP2 materials and the default models */
+  PELLUCID_PIPELINE_DIRECTIONAL_32F = 15,
+  PELLUCID_PIPELINE_TRANSLUCENCY_QUADS_16F = 16, /* with level 1 of the diffusion's pyramid */
+  PELLUCID_PIPELINE_TRANSLUCENCY_QUADS_32F = 17,
+  PELLUCID_PIPELINE_DIRECTIONAL_QUADS_16F = 18,
+  PELLUCID_PIPELINE_DIRECTIONAL_QUADS_32F = 19,
+  PELLUCID_PIPELINE_RESOLVE_LEVELS = 20,
+  PELLUCID_PIPELINE_COUNT = 21
 } PellucidPipeline;
 
 enum {

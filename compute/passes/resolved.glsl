@@ -1,0 +1,29 @@
+// Level 2 of the pyramid with all coarser ones in it, and the shares of the pixels under its texels: two texels each, where
+// level 1 was.
+#ifndef PELLUCID_RESOLVED_GLSL
+#define PELLUCID_RESOLVED_GLSL
+
+#include "passes/pyramid.glsl"
+
+layout(set = 0, binding = PELLUCID_BINDING_PYRAMID) uniform utexture2D pyramidImage;
+
+ivec2 resolvedPlace(ivec2 texel) { return frame.level[0].xy + texel; }
+
+ivec2 sharesPlace(ivec2 texel) { return frame.level[0].zw + texel; }
+
+// Shares of a pixel on the surface of a texel: what level 2 and coarser ones have, with the texel's density already
+// in it, and of the rest the fine filter.
+struct PixelShares {
+  vec3 coarser, fine;
+};
+
+uvec3 packShares(PixelShares s) {
+  return uvec3(packHalf2x16(s.coarser.rg), packHalf2x16(vec2(s.coarser.b, s.fine.r)), packHalf2x16(s.fine.gb));
+}
+
+PixelShares unpackShares(uvec3 u) {
+  vec2 middle = unpackHalf2x16(u.y);
+  return PixelShares(vec3(unpackHalf2x16(u.x), middle.x), vec3(middle.y, unpackHalf2x16(u.z)));
+}
+
+#endif
