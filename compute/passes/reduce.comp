@@ -1,6 +1,6 @@
-// Coarser levels of the diffusion pyramid: pass.value.y, 2 or 4, from level pass.value.x on. A texel takes the nearest of
-// the four surfaces under it and averages those of 4 x 4 texels that lie on it by 3 5 5 3 in each direction. A group makes 10 x 10 texels of the
-// second level, or one of the fourth, and before them what they need of each level.
+// The two levels of the diffusion pyramid after level pass.value.x. A texel takes the nearest of the four surfaces under
+// it and averages those of 4 x 4 texels that lie on it by 3 5 5 3 in each direction. A group makes 10 x 10 texels of
+// the second level and, before them, what they need of the first.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -12,10 +12,10 @@
 layout(set = 0, binding = PELLUCID_BINDING_PYRAMID) uniform utexture2D pyramidImage;
 
 const uint kInvocations = uint(PELLUCID_REDUCE_GROUP * PELLUCID_REDUCE_GROUP);
-// Sides of what one texel of the fourth level needs: 4 of the third, 10 of the second, and so on.
-const int kInput = 46, kFirst = 22;
+// Sides of what a tile needs of the level before, and of its input.
+const int kFirst = 2 * PELLUCID_REDUCE_TILE + 2, kInput = 2 * kFirst + 2;
 const int kLoads = (kInput * kInput + int(kInvocations) - 1) / int(kInvocations);
-// Two levels at a time, each after the other in turn: without slopes, to fit.
+// The input, then the first level: without slopes, to fit.
 shared uvec2 colors[kInput * kInput + kFirst * kFirst]; // and coverage and material, as packed
 shared float depths[kInput * kInput + kFirst * kFirst];
 
@@ -149,13 +149,10 @@ uvec4 reduced(uint finer, int first, int stride) {
 }
 
 void main() {
-  uint finer = pass.value.x, count = pass.value.y, last = finer + count;
+  uint finer = pass.value.x;
   int invocation = int(gl_LocalInvocationIndex);
-  int tile = count == 2u ? PELLUCID_REDUCE_TILE : 1;
-  ivec2 own = levelRect(last).xy + tile * ivec2(gl_WorkGroupID.xy);
-  ivec2 start = count == 2u ? own : 4 * own - 3; // of the second level
-  start = 2 * start - 1;                         // of the first
-  ivec4 finerRect = levelRect(finer);
+  ivec4 finerRect = levelRect(finer), rect = levelRect(finer + 1u), lastRect = levelRect(finer + 2u);
+  ivec2 own = lastRect.xy + PELLUCID_REDUCE_TILE * ivec2(gl_WorkGroupID.xy), start = 2 * own - 1;
   // All loads before the first is used, so that their latencies overlap.
   uvec4 loaded[kLoads];
   [[unroll]] for (int j = 0; j < kLoads; ++j) {
@@ -171,24 +168,21 @@ void main() {
     depths[index] = uintBitsToFloat(loaded[j].z);
   }
   barrier();
-  int from = 0, to = kInput * kInput, stride = kInput;
-  for (uint level = finer + 1u; level <= last; ++level) {
-    ivec4 rect = levelRect(level);
-    int width = stride / 2 - 1, left = int(last - level);
-    for (int i = invocation; i < width * width; i += int(kInvocations)) {
-      ivec2 at = ivec2(i % width, i / width), texel = start + at;
-      bool inside = insideLevel(rect, texel);
-      uvec4 bits = inside ? reduced(level - 1u, from + 2 * at.y * stride + at.x, stride) : uvec4(0u);
-      int index = to + slot(at, width);
-      colors[index] = bits.xy;
-      depths[index] = uintBitsToFloat(bits.z);
-      // The rest are the groups' beside.
-      if (inside && insideLevel(ivec4(own << left, (own + tile) << left), texel)) writeLevel(level, texel, bits);
-    }
-    barrier();
-    from = to;
-    to = from == 0 ? kInput * kInput : 0;
-    stride = width;
-    start = (start + 1) >> 1;
+  for (int i = invocation; i < kFirst * kFirst; i += int(kInvocations)) {
+    ivec2 at = ivec2(i % kFirst, i / kFirst), texel = start + at;
+    bool inside = insideLevel(rect, texel);
+    uvec4 bits = inside ? reduced(finer, 2 * at.y * kInput + at.x, kInput) : uvec4(0u);
+    int index = kInput * kInput + slot(at, kFirst);
+    colors[index] = bits.xy;
+    depths[index] = uintBitsToFloat(bits.z);
+    // The outer ones are the groups' beside.
+    bool owned = all(greaterThan(at, ivec2(0))) && all(lessThan(at, ivec2(kFirst - 1)));
+    if (inside && owned) writeLevel(finer + 1u, texel, bits);
+  }
+  barrier();
+  for (int i = invocation; i < PELLUCID_REDUCE_TILE * PELLUCID_REDUCE_TILE; i += int(kInvocations)) {
+    ivec2 at = ivec2(i % PELLUCID_REDUCE_TILE, i / PELLUCID_REDUCE_TILE), texel = own + at;
+    if (insideLevel(lastRect, texel))
+      writeLevel(finer + 2u, texel, reduced(finer + 1u, kInput * kInput + 2 * at.y * kFirst + at.x, kFirst));
   }
 }

@@ -121,36 +121,58 @@ vec3 resultAt(ivec2 pixel, Texels t, float front, uint m) {
   return sanitize(t.source.rgb) + transmitted * materials[m].inverseReflectance.rgb;
 }
 
-// An invocation does 2 x 2 pixels: a texel of the pyramid's level 1, which QUADS writes.
+const int kTile = 2 * GROUP_SIDE; // pixels
+#ifdef QUADS
+shared uvec2 tileColors[kTile * kTile]; // and material
+shared float tileDepths[kTile * kTile];
+#endif
+
+// An invocation does four pixels, half a tile apart so that neighbors load neighbors. QUADS: then a texel of the pyramid's
+// level 1.
 void main() {
-  ivec2 quad = (ivec2(frame.rect.xy) >> 1) + ivec2(gl_GlobalInvocationID.xy);
+  ivec2 tile = (ivec2(frame.rect.xy) & ~1) + ivec2(gl_WorkGroupID.xy) * kTile, local = ivec2(gl_LocalInvocationID.xy);
   // A history that starts is 0 wherever nothing came through: the next frame's pixels may lie there.
   bool starts = pass.value.z == PELLUCID_WRITE_STARTS;
   Texels texels[4];
-  UNROLL for (int i = 0; i < 4; ++i)
-    texels[i] = fetch(clamp(2 * quad + ivec2(i & 1, i >> 1), ivec2(frame.rect.xy), ivec2(frame.rect.zw) - 1));
-  uint material[4];
-  float depth[4];
-  vec3 color[4];
   UNROLL for (int i = 0; i < 4; ++i) {
-    ivec2 pixel = 2 * quad + ivec2(i & 1, i >> 1);
+    ivec2 pixel = tile + local + GROUP_SIDE * ivec2(i & 1, i >> 1);
+    texels[i] = fetch(clamp(pixel, ivec2(frame.rect.xy), ivec2(frame.rect.zw) - 1));
+  }
+  UNROLL for (int i = 0; i < 4; ++i) {
+    ivec2 inTile = local + GROUP_SIDE * ivec2(i & 1, i >> 1), pixel = tile + inTile;
     Texels t = texels[i];
-    material[i] = insideRect(pixel) ? materialIndex(t.value) : 0u;
-    depth[i] = frontDistanceOf(t.front);
-    color[i] = vec3(0.0);
+    uint material = insideRect(pixel) ? materialIndex(t.value) : 0u;
+    float depth = frontDistanceOf(t.front);
+    vec3 color = vec3(0.0);
     if (starts) t.source = vec4(0.0);
-    if (material[i] != 0u) {
-      vec3 result = resultAt(pixel, t, depth[i], material[i] - 1u);
+    if (material != 0u) {
+      vec3 result = resultAt(pixel, t, depth, material - 1u);
 #ifdef DEBUG_VIEWS
       imageStore(destinationImage, pixel, vec4(result, t.source.a));
 #else
-      color[i] = writeResult(pixel, result, t.source.a, pass.value.z == PELLUCID_WRITE_LAST);
+      color = writeResult(pixel, result, t.source.a, pass.value.z == PELLUCID_WRITE_LAST);
 #endif
     } else if (starts && insideRect(pixel)) {
       imageStore(destinationImage, pixel, vec4(0.0));
     }
+#ifdef QUADS
+    tileColors[inTile.y * kTile + inTile.x] = packColor(color, material);
+    tileDepths[inTile.y * kTile + inTile.x] = depth;
+#endif
   }
 #ifdef QUADS
+  barrier();
+  uint material[4];
+  float depth[4];
+  vec3 color[4];
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    int at = (2 * local.y + (i >> 1)) * kTile + 2 * local.x + (i & 1);
+    uvec2 packed = tileColors[at];
+    material[i] = packed.y >> 16;
+    depth[i] = tileDepths[at];
+    color[i] = unpackColor(packed);
+  }
+  ivec2 quad = (tile >> 1) + local;
   if (insideLevel(levelRect(1u), quad)) writeLevel(1u, quad, quadTexel(material, depth, color));
 #endif
 }

@@ -22,7 +22,7 @@ using glm::vec4;
 #define PELLUCID_RESOLVE_GROUP 16 // a side
 #define PELLUCID_RESOLVE_TILE 32  // texels of level 2, a side
 #define PELLUCID_REDUCE_GROUP 16 // a side, of the pyramid's reductions
-#define PELLUCID_REDUCE_TILE 10  // a side, texels of the second of two levels that a group makes
+#define PELLUCID_REDUCE_TILE 10  // a side, texels of the second of the two levels that a group makes
 #define PELLUCID_GATHER_GROUP 16 // threads a side; a tile of the gather is twice as wide
 
 #define PELLUCID_BINDING_FRAME 0
@@ -161,7 +161,7 @@ struct KernelConstants {
 
 // Push constants. translucency: unused, lights, PELLUCID_WRITE_*, gather samples.
 // add: unused, unused, 1 if this is the last dispatch.
-// reduce: finer level, levels to make. resolve: coarsest level.
+// reduce: finer level. resolve: coarsest level.
 // diffuse: unused, 1 if the source may hold anything, unused, 1 if this is the last dispatch.
 struct PassConstants {
   uvec4 value;

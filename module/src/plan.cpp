@@ -194,16 +194,15 @@ struct Builder {
     return true;
   }
 
-  bool reduce(uint32_t finer, uint32_t last) {
+  bool reduce(uint32_t finer) {
     PellucidDispatch* d = dispatch("reduce", PELLUCID_PIPELINE_REDUCE_LEVELS);
     if (!d) return false;
-    levelGroups(d, last, last - finer == 2 ? PELLUCID_REDUCE_TILE : 1);
+    levelGroups(d, finer + 2, PELLUCID_REDUCE_TILE);
     d->pushConstants[0] = finer;
-    d->pushConstants[1] = last - finer;
     constants(d, PELLUCID_BINDING_FRAME, layout.frame);
     writesPyramid(d);
     bind(d, PELLUCID_BINDING_PYRAMID, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, pyramidImage());
-    for (uint32_t level = finer; level <= last; ++level) writesLevel(d, level);
+    for (uint32_t level = finer; level <= finer + 2; ++level) writesLevel(d, level);
     return true;
   }
 
@@ -334,8 +333,7 @@ bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan
     if (!stages.fusesQuads) fits = fits && b.quads(source, copy);
     source = copy;
     const uint32_t coarsest = coarsestLevel(frame);
-    fits = fits && b.reduce(kFirstLevel, kMiddleLevel);
-    if (coarsest > kMiddleLevel) fits = fits && b.reduce(kMiddleLevel, coarsest);
+    for (uint32_t finer = kFirstLevel; finer < coarsest; finer += 2) fits = fits && b.reduce(finer);
     fits = fits && b.resolve(coarsest);
     const uint32_t to = destination();
     fits = fits && b.diffuse(source, to);

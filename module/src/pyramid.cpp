@@ -11,8 +11,10 @@ uint32_t most(uint32_t pixels, uint32_t level) { return ((pixels - 1) >> level) 
 }  // namespace
 
 uint32_t coarsestLevel(const PellucidFrame& frame) {
-  const bool few = std::max(frame.imageExtent[0], frame.imageExtent[1]) >> kMiddleLevel <= 1;
-  return few ? kMiddleLevel : PELLUCID_LAST_LEVEL;
+  uint32_t level = kFirstLevel + 2;
+  while (level < PELLUCID_LAST_LEVEL && std::max(frame.imageExtent[0], frame.imageExtent[1]) >> level > 1)
+    level += 2;
+  return level;
 }
 
 PyramidPlace placeOf(const PellucidFrame& frame, uint32_t level) {

@@ -7,10 +7,9 @@
 namespace pellucid {
 
 constexpr uint32_t kFirstLevel = 1;
-constexpr uint32_t kMiddleLevel = 3;  // the last one of the first reduction
 
-// The coarsest level in use: 3 or 7, because the first reduction makes two levels and the second four; no coarser
-// than it takes for the image to lie on 2 x 2 texels.
+// The coarsest level in use: odd, because a reduction makes two levels, and no coarser than it takes for the image to
+// lie on 2 x 2 texels.
 uint32_t coarsestLevel(const PellucidFrame& frame);
 
 struct PyramidPlace {
