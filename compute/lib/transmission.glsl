@@ -59,9 +59,8 @@ struct LightSpace {
 
 // The first of the light's maps that contains x.
 LightSpace lightSpace(LightConstants light, Incident incident, vec3 x) {
-  uint maps = kDirectional ? 1u : light.meta.z;
-  for (uint i = 0u; i < maps; ++i) {
-    ShadowConstants shadow = shadows[kDirectional ? 0u : light.meta.y + i];
+  for (uint i = 0u; i < light.meta.z; ++i) {
+    ShadowConstants shadow = shadows[light.meta.y + i];
     ShadowReceiver receiver = projectReceiver(shadow, x);
     if (!receiver.inside) continue;
     float stored = shadowTexel(shadow.meta.x, receiver.texel);
@@ -90,7 +89,7 @@ float hiddenCosine(LightConstants light, Surface s, vec3 toLight) {
 // docs/design.md says why each source is what it is.
 Transmitted lightTransmission(LightConstants light, Surface s) {
   Incident incident = incidentLight(light, s.position);
-  bool mapped = kDirectional || light.meta.z != 0u;
+  bool mapped = light.meta.z != 0u;
   if (mapped && !hasFlag(PELLUCID_FLAG_CAMERA_THICKNESS)) {
     LightSpace l = lightSpace(light, incident, s.position);
     vec3 arriving = incident.irradiance * hiddenCosine(light, s, incident.toLight);

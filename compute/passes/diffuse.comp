@@ -34,24 +34,6 @@ vec3 fineSum(vec3 a, vec3 b, vec3 c, vec3 d, vec3 e) {
   return fineWeight(0) * c + fineWeight(1) * (b + d) + fineWeight(2) * (a + e);
 }
 
-// Above it, something at a texel's neighbor counts 1 % less than on its plane.
-const float kPlaneOffset = 0.0125;
-
-// Whether a texel and all around it lie on one plane.
-bool isPlane(int index) {
-  uvec4 own = resolved[index];
-  vec2 size = texelSize(uintBitsToFloat(own.z), 2u), slope = unpackHalf2x16(own.w);
-  float most = kPlaneOffset / inverseSpread(slope, size);
-  bool plane = coverageBits(own) == kFullCoverage;
-  for (int i = 0; i < 9; ++i) {
-    ivec2 offset = ivec2(i % 3, i / 3) - 1;
-    uvec4 theirs = resolved[index + offset.y * kWindow.x + offset.x];
-    float off = uintBitsToFloat(theirs.z) - uintBitsToFloat(own.z) - dot(slope, vec2(offset) * size);
-    plane = plane && (theirs.y ^ own.y) >> 16 == 0u && off * off < most;
-  }
-  return plane;
-}
-
 void store(ivec2 pixel, vec3 color, float alpha) {
   if (pass.value.w != 0u && hasFlag(PELLUCID_FLAG_ALBEDO))
     color = sanitize(color * sanitize(texelFetch(albedoImage, pixel, 0).rgb));
@@ -131,18 +113,25 @@ void main() {
   ivec2 firstTexel = (ivec2(frame.rect.xy) >> 2) + ivec2(group) * kTexels;
   if (invocation == 0) edgeCount = anySurface = 0u;
   if (invocation < kTexels.y) planes[invocation] = 0u;
-  uvec4 texel = uvec4(0u), texelShares = uvec4(0u);
+  barrier();
   if (invocation < kWindow.x * kWindow.y) {
-    ivec2 at = firstTexel - 1 + ivec2(invocation % kWindow.x, invocation / kWindow.x);
+    ivec2 local = ivec2(invocation % kWindow.x, invocation / kWindow.x) - 1, at = firstTexel + local;
+    uvec4 texel = uvec4(0u), texelShares = uvec4(0u);
     if (insideLevel(levelRect(2u), at)) {
       texel = texelFetch(pyramidImage, resolvedPlace(at), 0);
       texelShares = texelFetch(pyramidImage, sharesPlace(at), 0);
     }
     resolved[invocation] = texel;
     shares[invocation] = texelShares;
+    bool own = all(greaterThanEqual(local, ivec2(0))) && all(lessThan(local, kTexels));
+    if (own && texel.y >> 16 != 0u) {
+      anySurface = 1u; // whoever writes, writes this
+      if ((texelShares.w & kPlaneBit) != 0u)
+        atomicOr(planes[local.y], 1u << local.x);
+      else
+        edges[atomicAdd(edgeCount, 1u)] = uint(local.y * kTexels.x + local.x);
+    }
   }
-  barrier();
-  if (texel.y >> 16 != 0u) atomicOr(anySurface, 1u);
   barrier();
   if (anySurface != 0u) {
     int column = invocation % kColumns, firstRow = invocation / kColumns * kRows;
@@ -160,14 +149,6 @@ void main() {
       if (i < 4) continue;
       vec3 sum = fineSum(rows[0], rows[1], rows[2], rows[3], rows[4]);
       vertical[(firstRow + i - 4) * kColumns + column] = uvec2(packHalf2x16(sum.rg), packHalf2x16(vec2(sum.b, 0.0)));
-    }
-    if (invocation < kTexels.x * kTexels.y) {
-      ivec2 local = ivec2(invocation % kTexels.x, invocation / kTexels.x);
-      int index = (local.y + 1) * kWindow.x + local.x + 1;
-      if (isPlane(index))
-        atomicOr(planes[local.y], 1u << local.x);
-      else if (resolved[index].y >> 16 != 0u)
-        edges[atomicAdd(edgeCount, 1u)] = uint(invocation);
     }
     barrier();
 

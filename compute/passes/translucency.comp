@@ -34,7 +34,6 @@ layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 7) uniform texture2D 
 
 // A switch over constant bindings needs no shaderSampledImageArrayDynamicIndexing.
 float shadowTexel(uint image, ivec2 texel) {
-  if (kDirectional) return texelFetch(shadowImage0, texel, 0).x;
   switch (image) {
     case 0u: return texelFetch(shadowImage0, texel, 0).x;
     case 1u: return texelFetch(shadowImage1, texel, 0).x;
@@ -86,6 +85,41 @@ Texels fetch(ivec2 pixel) {
   return t;
 }
 
+#ifdef DIRECTIONAL
+// Where the light's ray through a pixel's surface meets the map.
+struct Receiver {
+  Surface surface;
+  ShadowReceiver shadow;
+  float stored;
+};
+
+// Whatever will be needed of it, so that the maps' latencies overlap too.
+Receiver receiverAt(ivec2 pixel, Texels t, float front) {
+  Receiver r;
+  r.surface = surfaceAt(pixel, max(front, 0.0), t.front, t.back, t.normal);
+  r.shadow = projectReceiver(shadows[0], r.surface.position);
+  ivec2 texel = clamp(r.shadow.texel, ivec2(0), ivec2(shadows[0].depth.zw) - 1);
+  r.stored = texelFetch(shadowImage0, texel, 0).x;
+  return r;
+}
+
+// Irradiance and the light that comes through.
+vec3 resultAt(Receiver r, Texels t, float front, uint m) {
+  ShadowConstants shadow = shadows[0];
+  LightConstants light = lights[0];
+  Incident incident = incidentLight(light, r.surface.position);
+  vec3 entering = incident.irradiance * hiddenCosine(light, r.surface, incident.toLight);
+  float thickness = lightThickness(shadow, r.shadow, r.surface.position, incident, r.stored) - shadow.depth.y;
+  // Marked pixels keep their irradiance.
+  bool through = front > 0.0 && (t.value & frame.marks.x) == 0u && r.shadow.inside && shadowHolds(shadow, r.stored);
+  vec3 result = sanitize(t.source.rgb);
+  // Most pixels face the light; T is the expensive part.
+  if (through && max(entering.r, max(entering.g, entering.b)) > 0.0)
+    result += entering * materialTransmittance(m, max(thickness, 0.0) * frame.camera.range.w) *
+              materials[m].inverseReflectance.rgb;
+  return result;
+}
+#else
 // Irradiance and the light that comes through, or what a debug view shows.
 vec3 resultAt(ivec2 pixel, Texels t, float front, uint m) {
   vec3 arriving = vec3(0.0), visible = vec3(0.0), transmitted = vec3(0.0);
@@ -95,7 +129,7 @@ vec3 resultAt(ivec2 pixel, Texels t, float front, uint m) {
     Surface s = surfaceAt(pixel, front, t.front, t.back, t.normal);
     float mm = frame.camera.range.w;
     if (s.chord >= 0.0) thickness.r = s.chord * mm;
-    for (uint i = 0u; i < (kDirectional ? 1u : pass.value.y); ++i) {
+    for (uint i = 0u; i < pass.value.y; ++i) {
       LightConstants light = lights[i];
       Transmitted through = lightTransmission(light, s);
       vec3 entering = through.arriving * through.visible;
@@ -120,6 +154,7 @@ vec3 resultAt(ivec2 pixel, Texels t, float front, uint m) {
 #endif
   return sanitize(t.source.rgb) + transmitted * materials[m].inverseReflectance.rgb;
 }
+#endif
 
 const int kTile = 2 * GROUP_SIDE; // pixels
 #ifdef QUADS
@@ -138,6 +173,11 @@ void main() {
     ivec2 pixel = tile + local + GROUP_SIDE * ivec2(i & 1, i >> 1);
     texels[i] = fetch(clamp(pixel, ivec2(frame.rect.xy), ivec2(frame.rect.zw) - 1));
   }
+#ifdef DIRECTIONAL
+  Receiver receivers[4];
+  [[unroll]] for (int i = 0; i < 4; ++i)
+    receivers[i] = receiverAt(tile + local + GROUP_SIDE * ivec2(i & 1, i >> 1), texels[i], frontDistanceOf(texels[i].front));
+#endif
   UNROLL for (int i = 0; i < 4; ++i) {
     ivec2 inTile = local + GROUP_SIDE * ivec2(i & 1, i >> 1), pixel = tile + inTile;
     Texels t = texels[i];
@@ -146,7 +186,11 @@ void main() {
     vec3 color = vec3(0.0);
     if (starts) t.source = vec4(0.0);
     if (material != 0u) {
+#ifdef DIRECTIONAL
+      vec3 result = resultAt(receivers[i], t, depth, material - 1u);
+#else
       vec3 result = resultAt(pixel, t, depth, material - 1u);
+#endif
 #ifdef DEBUG_VIEWS
       imageStore(destinationImage, pixel, vec4(result, t.source.a));
 #else
