@@ -34,6 +34,25 @@ vec3 fineSum(vec3 a, vec3 b, vec3 c, vec3 d, vec3 e) {
   return fineWeight(0) * c + fineWeight(1) * (b + d) + fineWeight(2) * (a + e);
 }
 
+// Above it, something at a texel's neighbor counts 1 % less than on its plane.
+const float kPlaneOffset = 0.0125;
+
+// Whether a texel and all around it lie on one plane.
+bool isPlane(int index) {
+  uvec4 own = resolved[index];
+  vec2 size = texelSize(uintBitsToFloat(own.z), 2u), slope = unpackHalf2x16(own.w);
+  float most = kPlaneOffset / inverseSpread(slope, size);
+  uint material = shares[index].w >> 24;
+  bool plane = material != 0u;
+  for (int i = 0; i < 9; ++i) {
+    ivec2 offset = ivec2(i % 3, i / 3) - 1;
+    int at = index + offset.y * kWindow.x + offset.x;
+    float off = uintBitsToFloat(resolved[at].z) - uintBitsToFloat(own.z) - dot(slope, vec2(offset) * size);
+    plane = plane && shares[at].w >> 24 == material && off * off < most;
+  }
+  return plane;
+}
+
 void store(ivec2 pixel, vec3 color, float alpha) {
   if (pass.value.w != 0u && hasFlag(PELLUCID_FLAG_ALBEDO))
     color = sanitize(color * sanitize(texelFetch(albedoImage, pixel, 0).rgb));
@@ -123,14 +142,7 @@ void main() {
     }
     resolved[invocation] = texel;
     shares[invocation] = texelShares;
-    bool own = all(greaterThanEqual(local, ivec2(0))) && all(lessThan(local, kTexels));
-    if (own && texel.y >> 16 != 0u) {
-      anySurface = 1u; // whoever writes, writes this
-      if ((texelShares.w & kPlaneBit) != 0u)
-        atomicOr(planes[local.y], 1u << local.x);
-      else
-        edges[atomicAdd(edgeCount, 1u)] = uint(local.y * kTexels.x + local.x);
-    }
+    if (texel.y >> 16 != 0u) anySurface = 1u; // whoever writes, writes this
   }
   barrier();
   if (anySurface != 0u) {
@@ -149,6 +161,14 @@ void main() {
       if (i < 4) continue;
       vec3 sum = fineSum(rows[0], rows[1], rows[2], rows[3], rows[4]);
       vertical[(firstRow + i - 4) * kColumns + column] = uvec2(packHalf2x16(sum.rg), packHalf2x16(vec2(sum.b, 0.0)));
+    }
+    if (invocation < kTexels.x * kTexels.y) {
+      ivec2 local = ivec2(invocation % kTexels.x, invocation / kTexels.x);
+      int index = (local.y + 1) * kWindow.x + local.x + 1;
+      if (isPlane(index))
+        atomicOr(planes[local.y], 1u << local.x);
+      else if (resolved[index].y >> 16 != 0u)
+        edges[atomicAdd(edgeCount, 1u)] = uint(invocation);
     }
     barrier();
 

@@ -17,9 +17,6 @@ const int kOdd = 18, kEven = 11;
 // channel, in place of the slope.
 shared uvec4 odd[kOdd * kOdd];
 shared uvec4 even[kEven * kEven];
-// Coverage and material, depth and slope of level 2, with a border of one.
-const int kFlat = PELLUCID_RESOLVE_TILE + 2;
-shared uvec3 flat2[kFlat * kFlat];
 
 void writeResolved(ivec2 texel, uvec4 color, uvec4 shares) {
   imageStore(levelsDestination, resolvedPlace(texel), color);
@@ -120,33 +117,10 @@ PixelShares pixelShares(uint m, float lengthMm, vec3 density) {
   return s;
 }
 
-// Above it, something at a texel's neighbor counts 1 % less than on its plane.
-const float kPlaneOffset = 0.0125;
-
-// Whether a texel and all around it lie on one plane.
-bool isPlane(int index) {
-  uvec3 own = flat2[index];
-  vec2 size = texelSize(uintBitsToFloat(own.y), 2u), slope = unpackHalf2x16(own.z);
-  float most = kPlaneOffset / inverseSpread(slope, size);
-  bool plane = (own.x & 0xFFu) == kFullCoverage;
-  for (int i = 0; i < 9; ++i) {
-    ivec2 offset = ivec2(i % 3, i / 3) - 1;
-    uvec3 theirs = flat2[index + offset.y * kFlat + offset.x];
-    float off = uintBitsToFloat(theirs.y) - uintBitsToFloat(own.y) - dot(slope, vec2(offset) * size);
-    plane = plane && theirs.x == own.x && off * off < most;
-  }
-  return plane;
-}
-
 void main() {
   int invocation = int(gl_LocalInvocationIndex);
   uint coarsest = pass.value.x;
   ivec2 tile = levelRect(2u).xy + PELLUCID_RESOLVE_TILE * ivec2(gl_WorkGroupID.xy);
-  for (int i = invocation; i < kFlat * kFlat; i += kInvocations) {
-    ivec2 texel = tile - 1 + ivec2(i % kFlat, i / kFlat);
-    uvec4 bits = insideLevel(levelRect(2u), texel) ? texelFetch(pyramidImage, inAtlas(2u, texel), 0) : uvec4(0u);
-    flat2[i] = uvec3(bits.y >> 16, bits.zw);
-  }
   ivec4 coarser = ivec4(0);
   for (uint level = coarsest; level >= 2u; --level) {
     ivec4 window = ivec4(tile, tile + PELLUCID_RESOLVE_TILE), rect = levelRect(level);
@@ -171,8 +145,8 @@ void main() {
         uint m = materialBits(bits);
         // A length of a pixel is a quarter of a texel's.
         uvec3 shares = some ? packShares(pixelShares(m - 1u, 0.25 * r.lengthMm, r.density)) : uvec3(0u);
-        ivec2 local = texel - tile + 1;
-        uint plane = some && isPlane(local.y * kFlat + local.x) ? kPlaneBit : 0u;
+        // The material where the texel is one plane of it.
+        uint plane = coverageBits(bits) == kFullCoverage ? m << 24 : 0u;
         writeResolved(texel, uvec4(color, bits.zw), uvec4(shares, density | plane));
       }
     }

@@ -1,15 +1,12 @@
 // Level 2 of the pyramid with all coarser ones in it: two texels each, where level 1 was. One is packed as a texel of
-// the pyramid; the other holds the shares of the pixels under it, in w the share of the kernel that the surface fills, a
-// byte a channel, and kPlaneBit.
+// the pyramid. The other holds the shares of the pixels under it and in w the share of the kernel that the surface
+// fills, a byte a channel, and the material where it fills all that the texel covers.
 #ifndef PELLUCID_RESOLVED_GLSL
 #define PELLUCID_RESOLVED_GLSL
 
 #include "passes/pyramid.glsl"
 
 layout(set = 0, binding = PELLUCID_BINDING_PYRAMID) uniform utexture2D pyramidImage;
-
-// The texel lies on one plane with all around it.
-const uint kPlaneBit = 1u << 24;
 
 ivec2 resolvedPlace(ivec2 texel) { return frame.level[0].xy + texel; }
 
