@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <set>
 #include <fstream>
+#include <set>
 
 #include "baselines/baselines.h"
 #include "commit.h"
@@ -32,7 +32,7 @@ struct Options {
   int repeat = 30;
   std::vector<double> coverage = {100, 25, 0};  // percent
   std::set<std::string> tables = {"module", "fused", "steps", "diffusion"};
-  double radius = 40;                           // pixels
+  double radius = 40;  // pixels
 };
 
 struct Bench {

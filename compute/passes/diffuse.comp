@@ -59,6 +59,32 @@ void store(ivec2 pixel, vec3 color, float alpha) {
   imageStore(destinationImage, pixel, vec4(asStored(color), alpha));
 }
 
+// The fine filter, its vertical half done.
+vec3 fineOf(int at) {
+  return fineSum(unpackColor(vertical[at - 2]), unpackColor(vertical[at - 1]), unpackColor(vertical[at]),
+                 unpackColor(vertical[at + 1]), unpackColor(vertical[at + 2]));
+}
+
+// The fine filter of a pixel on a surface of that slope, and what of it lies on the surface.
+vec4 fineOfEdge(ivec2 pixel, uint material, float depth, vec2 slope, vec2 size) {
+  vec2 depthStep = slope * size;
+  float spread2 = inverseSpread(slope, 2.0 * size);
+  vec4 fine = vec4(0.0);
+  for (int y = -2; y <= 2; ++y) {
+    // A row's loads at once, so that their latencies overlap.
+    [[unroll]] for (int x = -2; x <= 2; ++x) {
+      ivec2 offset = ivec2(x, y), at = clamp(pixel + offset, ivec2(frame.rect.xy), ivec2(frame.rect.zw) - 1);
+      uint theirs = materialAt(at);
+      float theirDepth = frontDistance(at);
+      vec3 theirColor = sanitize(texelFetch(sourceImage, at, 0).rgb);
+      float w = sameSurface(theirDepth - depth - dot(depthStep, vec2(offset)), spread2);
+      bool counts = at == pixel + offset && theirs == material && theirDepth > 0.0;
+      fine += (counts ? w * fineWeight(x) * fineWeight(y) : 0.0) * vec4(theirColor, 1.0);
+    }
+  }
+  return fine;
+}
+
 // A pixel of an edge, all weights by what lies on its surface. `local`: from the group's first pixel.
 void diffuseEdge(ivec2 firstTexel, ivec2 local) {
   ivec2 pixel = 4 * firstTexel + local;
@@ -99,21 +125,10 @@ void diffuseEdge(ivec2 firstTexel, ivec2 local) {
     slope *= inverse;
     share.coarser *= inverse;
     vec3 fineShare = (1.0 - share.coarser) * share.fine * inverse;
-    vec2 depthStep = slope * size;
-    float spread2 = inverseSpread(slope, 2.0 * size);
-    vec4 fine = vec4(0.0);
-    for (int y = -2; y <= 2; ++y) {
-      // A row's loads at once, so that their latencies overlap.
-      [[unroll]] for (int x = -2; x <= 2; ++x) {
-        ivec2 offset = ivec2(x, y), at = clamp(pixel + offset, ivec2(frame.rect.xy), ivec2(frame.rect.zw) - 1);
-        uint theirs = materialAt(at);
-        float theirDepth = frontDistance(at);
-        vec3 theirColor = sanitize(texelFetch(sourceImage, at, 0).rgb);
-        float w = sameSurface(theirDepth - depth - dot(depthStep, vec2(offset)), spread2);
-        bool counts = at == pixel + offset && theirs == material && theirDepth > 0.0;
-        fine += (counts ? w * fineWeight(x) * fineWeight(y) : 0.0) * vec4(theirColor, 1.0);
-      }
-    }
+    // All pixels around are one plane where the texel is, though its neighbors are not.
+    bool full = shares[center].w >> 24 != 0u;
+    int at = local.y * kColumns + local.x + kRing;
+    vec4 fine = full ? vec4(fineOf(at), 1.0) : fineOfEdge(pixel, material, depth, slope, size);
     // Shares are weighted with what of their filters was found. The pixel itself counts in the first and the second,
     // so the divisor is 0 only where all of the share is the coarser one's and none of it is there.
     vec3 own = 1.0 - share.coarser - fineShare;
@@ -188,8 +203,7 @@ void main() {
         PixelShares share = unpackShares(shares[index + kWindow.x + 1].xyz);
         [[unroll]] for (int i = 0; i < 4; ++i) {
           int at = (4 * texelRow + i) * kColumns + column;
-          vec3 fine = fineSum(unpackColor(vertical[at - 2]), unpackColor(vertical[at - 1]), unpackColor(vertical[at]),
-                              unpackColor(vertical[at + 1]), unpackColor(vertical[at + 2]));
+          vec3 fine = fineOf(at);
           vec3 splineY = spline(0.25 * (float(i) - 1.5));
           vec3 smoothed = splineY.x * coarser[0] + splineY.y * coarser[1] + splineY.z * coarser[2];
           uvec2 packed = own[4 * block + i];

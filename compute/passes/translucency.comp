@@ -175,7 +175,9 @@ void main() {
   }
 #ifdef DIRECTIONAL
   Receiver receivers[4];
-  [[unroll]] for (int i = 0; i < 4; ++i)
+  bool some = (materialIndex(texels[0].value) | materialIndex(texels[1].value) | materialIndex(texels[2].value) |
+               materialIndex(texels[3].value)) != 0u;
+  if (some) [[unroll]] for (int i = 0; i < 4; ++i)
     receivers[i] = receiverAt(tile + local + GROUP_SIDE * ivec2(i & 1, i >> 1), texels[i], frontDistanceOf(texels[i].front));
 #endif
   UNROLL for (int i = 0; i < 4; ++i) {

@@ -12,7 +12,7 @@ struct GBuffer {
   uint32_t width, height;
   float metersPerUnit;
   float projection[16], view[16];
-  VkImageView depth, backFaceDepth, irradiance, normal, materialId, scratch[3];
+  VkImageView depth, backFaceDepth, irradiance, normal, materialId, scratch[2];
   uint32_t lightCount;
   const PellucidLight* lights;
   VkBuffer uploadBuffer;

@@ -130,7 +130,7 @@ TEST(Reuse, ImageNeedsCoverBothKindsOfFrame) {
       PellucidImageNeed needs[PELLUCID_MAX_TRANSIENTS];
       uint32_t count = PELLUCID_MAX_TRANSIENTS;
       ASSERT_EQ(pellucidGetImageNeeds(&s.frame, &count, needs), PELLUCID_OK);
-      ASSERT_EQ(count, features == 3 ? 4u : 1u);
+      ASSERT_EQ(count, features == 3 ? 3u : 1u);
       for (uint32_t i = 0; i < count; ++i) EXPECT_EQ(needs[i].persistent, i + 1 == count);
       for (int frame = 0; frame < 2; ++frame) {
         s.refreshes();
