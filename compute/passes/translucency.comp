@@ -13,7 +13,7 @@
 #endif
 
 #ifdef QUADS
-#include "passes/pyramid.glsl"
+#include "passes/quad_tile.glsl"
 #else
 #include "passes/bindings.glsl"
 #endif
@@ -156,16 +156,11 @@ vec3 resultAt(ivec2 pixel, Texels t, float front, uint m) {
 }
 #endif
 
-const int kTile = 2 * GROUP_SIDE; // pixels
-#ifdef QUADS
-shared uvec2 tileColors[kTile * kTile]; // and material
-shared float tileDepths[kTile * kTile];
-#endif
-
 // An invocation does four pixels, half a tile apart so that neighbors load neighbors. QUADS: then a texel of the pyramid's
 // level 1.
 void main() {
-  ivec2 tile = (ivec2(frame.rect.xy) & ~1) + ivec2(gl_WorkGroupID.xy) * kTile, local = ivec2(gl_LocalInvocationID.xy);
+  ivec2 tile = (ivec2(frame.rect.xy) & ~1) + ivec2(gl_WorkGroupID.xy) * (2 * GROUP_SIDE);
+  ivec2 local = ivec2(gl_LocalInvocationID.xy);
   // A history that starts is 0 wherever nothing came through: the next frame's pixels may lie there.
   bool starts = pass.value.z == PELLUCID_WRITE_STARTS;
   Texels texels[4];
@@ -202,24 +197,12 @@ void main() {
       imageStore(destinationImage, pixel, vec4(0.0));
     }
 #ifdef QUADS
-    tileColors[inTile.y * kTile + inTile.x] = packColor(color, material);
-    tileDepths[inTile.y * kTile + inTile.x] = depth;
+    keepPixel(inTile, color, depth, material);
 #endif
   }
 #ifdef QUADS
   barrier();
-  uint material[4];
-  float depth[4];
-  vec3 color[4];
-  [[unroll]] for (int i = 0; i < 4; ++i) {
-    int at = (2 * local.y + (i >> 1)) * kTile + 2 * local.x + (i & 1);
-    uvec2 packed = tileColors[at];
-    material[i] = packed.y >> 16;
-    depth[i] = tileDepths[at];
-    color[i] = unpackColor(packed);
-  }
-  ivec2 quad = (tile >> 1) + local;
-  if (insideLevel(levelRect(1u), quad)) writeLevel(1u, quad, quadTexel(material, depth, color));
+  writeQuad();
 #endif
 }
 #endif

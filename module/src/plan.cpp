@@ -56,6 +56,11 @@ struct Builder {
     d->groups[2] = 1;
   }
 
+  // Of four pixels an invocation, from even ones on.
+  void tiles(PellucidDispatch* d) const {
+    groups(d, rect.width + (rect.x & 1), rect.height + (rect.y & 1), 2 * PELLUCID_GROUP_X);
+  }
+
   static void bind(PellucidDispatch* d, uint32_t binding, VkDescriptorType type, uint32_t resource,
                    ConstantsLayout::Range range = {}) {
     d->bindings[d->bindingCount++] = {binding, type, resource, 0, range.offset, range.size};
@@ -118,8 +123,8 @@ struct Builder {
     if (!d) return false;
     if (half == PELLUCID_PIPELINE_GATHER_16F)
       groups(d, rect.width, rect.height, 2 * PELLUCID_GATHER_GROUP);
-    else  // pairs of pixels in each direction, from even ones on
-      groups(d, rect.width + (rect.x & 1), rect.height + (rect.y & 1), 2 * PELLUCID_GROUP_X);
+    else
+      tiles(d);
     if (quads) {
       writesPyramid(d);
       writesLevel(d, kFirstLevel);
@@ -182,7 +187,7 @@ struct Builder {
                                             : wide() ? PELLUCID_PIPELINE_QUADS_AND_COPY_32F
                                                      : PELLUCID_PIPELINE_QUADS_AND_COPY_16F);
     if (!d) return false;
-    levelGroups(d, kFirstLevel, PELLUCID_GROUP_X);
+    tiles(d);
     constants(d, PELLUCID_BINDING_FRAME, layout.frame);
     writesPyramid(d);
     writesLevel(d, kFirstLevel);

@@ -1,0 +1,39 @@
+// Level 1 of the pyramid from a tile of pixels that a group has in shared memory. An invocation does four pixels, half a tile
+// apart so that neighbors load neighbors, and then a texel.
+#ifndef PELLUCID_QUAD_TILE_GLSL
+#define PELLUCID_QUAD_TILE_GLSL
+
+#include "passes/pyramid.glsl"
+
+const int kTile = 2 * GROUP_SIDE; // pixels
+shared uvec2 tileColors[kTile * kTile]; // and material
+shared float tileDepths[kTile * kTile];
+
+// Of the tile, the i-th pixel of an invocation.
+ivec2 pixelInTile(int i) { return ivec2(gl_LocalInvocationID.xy) + GROUP_SIDE * ivec2(i & 1, i >> 1); }
+
+// Tiles start at even pixels, so that quads are the image's.
+ivec2 tileStart() { return (ivec2(frame.rect.xy) & ~1) + ivec2(gl_WorkGroupID.xy) * kTile; }
+
+void keepPixel(ivec2 inTile, vec3 color, float depth, uint material) {
+  tileColors[inTile.y * kTile + inTile.x] = packColor(color, material);
+  tileDepths[inTile.y * kTile + inTile.x] = depth;
+}
+
+// After a barrier.
+void writeQuad() {
+  ivec2 local = ivec2(gl_LocalInvocationID.xy), quad = (tileStart() >> 1) + local;
+  uint material[4];
+  float depth[4];
+  vec3 color[4];
+  for (int i = 0; i < 4; ++i) {
+    int at = (2 * local.y + (i >> 1)) * kTile + 2 * local.x + (i & 1);
+    uvec2 packed = tileColors[at];
+    material[i] = packed.y >> 16;
+    depth[i] = tileDepths[at];
+    color[i] = unpackColor(packed);
+  }
+  if (insideLevel(levelRect(1u), quad)) writeLevel(1u, quad, quadTexel(material, depth, color));
+}
+
+#endif
