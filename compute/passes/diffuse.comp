@@ -10,12 +10,20 @@
 #include "passes/resolved.glsl"
 
 const int kInvocations = PELLUCID_DIFFUSE_GROUP * PELLUCID_DIFFUSE_GROUP;
+// COARSE: without the fine filter, whose share the material's table gives to the pixel and level 2.
+#ifdef COARSE
+const int kRing = 0, kTexelsX = PELLUCID_DIFFUSE_COARSE_TEXELS_X;
+#else
+const int kRing = 2, kTexelsX = PELLUCID_DIFFUSE_TEXELS_X;
+#endif
 // Texels of level 2 that a group does, and with a border of one.
-const ivec2 kTexels = ivec2(PELLUCID_DIFFUSE_TEXELS_X, PELLUCID_DIFFUSE_TEXELS_Y), kWindow = kTexels + 2;
+const ivec2 kTexels = ivec2(kTexelsX, PELLUCID_DIFFUSE_TEXELS_Y), kWindow = kTexels + 2;
 // An invocation does some rows of a column, the outer columns only what their neighbors need.
-const int kRing = 2, kColumns = 4 * kTexels.x + 2 * kRing, kRows = 4 * kTexels.y * kColumns / kInvocations;
+const int kColumns = 4 * kTexels.x + 2 * kRing, kRows = 4 * kTexels.y * kColumns / kInvocations;
 
+#ifndef COARSE
 shared uvec2 vertical[4 * kTexels.y * kColumns];   // colors after the fine filter's vertical half
+#endif
 shared uvec4 resolved[kWindow.x * kWindow.y];
 shared uvec4 shares[kWindow.x * kWindow.y];
 shared uint planes[kTexels.y];                     // a bit a texel that is filtered as a plane
@@ -59,6 +67,7 @@ void store(ivec2 pixel, vec3 color, float alpha) {
   imageStore(destinationImage, pixel, vec4(asStored(color), alpha));
 }
 
+#ifndef COARSE
 // The fine filter, its vertical half done.
 vec3 fineOf(int at) {
   return fineSum(unpackColor(vertical[at - 2]), unpackColor(vertical[at - 1]), unpackColor(vertical[at]),
@@ -84,6 +93,7 @@ vec4 fineOfEdge(ivec2 pixel, uint material, float depth, vec2 slope, vec2 size) 
   }
   return fine;
 }
+#endif
 
 // A pixel of an edge, all weights by what lies on its surface. `local`: from the group's first pixel.
 void diffuseEdge(ivec2 firstTexel, ivec2 local) {
@@ -125,10 +135,13 @@ void diffuseEdge(ivec2 firstTexel, ivec2 local) {
     slope *= inverse;
     share.coarser *= inverse;
     vec3 fineShare = (1.0 - share.coarser) * share.fine * inverse;
+    vec4 fine = vec4(0.0);
+#ifndef COARSE
     // All pixels around are one plane where the texel is, though its neighbors are not.
     bool full = shares[center].w >> 24 != 0u;
     int at = local.y * kColumns + local.x + kRing;
-    vec4 fine = full ? vec4(fineOf(at), 1.0) : fineOfEdge(pixel, material, depth, slope, size);
+    fine = full ? vec4(fineOf(at), 1.0) : fineOfEdge(pixel, material, depth, slope, size);
+#endif
     // Shares are weighted with what of their filters was found. The pixel itself counts in the first and the second,
     // so the divisor is 0 only where all of the share is the coarser one's and none of it is there.
     vec3 own = 1.0 - share.coarser - fineShare;
@@ -165,17 +178,19 @@ void main() {
     ivec2 first = 4 * firstTexel + ivec2(column - kRing, firstRow), last = ivec2(frame.rect.zw) - 1;
     uvec2 own[kRows]; // colors and alphas
     vec3 rows[5];     // around the current one
-    [[unroll]] for (int i = 0; i < kRows + 4; ++i) {
+    [[unroll]] for (int i = 2 - kRing; i < kRows + 2 + kRing; ++i) {
       ivec2 at = clamp(first + ivec2(0, i - 2), ivec2(frame.rect.xy), last);
       vec4 source = texelFetch(sourceImage, at, 0);
       if (pass.value.y != 0u) source.rgb = sanitize(source.rgb);
-      [[unroll]] for (int j = 0; j < 4; ++j) rows[j] = rows[j + 1];
-      rows[4] = source.rgb;
       if (i >= 2 && i < kRows + 2)
         own[i - 2] = uvec2(packHalf2x16(source.rg), packHalf2x16(source.ba));
+#ifndef COARSE
+      [[unroll]] for (int j = 0; j < 4; ++j) rows[j] = rows[j + 1];
+      rows[4] = source.rgb;
       if (i < 4) continue;
       vec3 sum = fineSum(rows[0], rows[1], rows[2], rows[3], rows[4]);
       vertical[(firstRow + i - 4) * kColumns + column] = uvec2(packHalf2x16(sum.rg), packHalf2x16(vec2(sum.b, 0.0)));
+#endif
     }
     if (invocation < kTexels.x * kTexels.y) {
       ivec2 local = ivec2(invocation % kTexels.x, invocation / kTexels.x);
@@ -202,13 +217,14 @@ void main() {
         }
         PixelShares share = unpackShares(shares[index + kWindow.x + 1].xyz);
         [[unroll]] for (int i = 0; i < 4; ++i) {
-          int at = (4 * texelRow + i) * kColumns + column;
-          vec3 fine = fineOf(at);
           vec3 splineY = spline(0.25 * (float(i) - 1.5));
           vec3 smoothed = splineY.x * coarser[0] + splineY.y * coarser[1] + splineY.z * coarser[2];
           uvec2 packed = own[4 * block + i];
           vec2 blue = unpackHalf2x16(packed.y);
-          vec3 color = mix(vec3(unpackHalf2x16(packed.x), blue.x), fine, share.fine);
+          vec3 color = vec3(unpackHalf2x16(packed.x), blue.x);
+#ifndef COARSE
+          color = mix(color, fineOf((4 * texelRow + i) * kColumns + column), share.fine);
+#endif
           store(4 * firstTexel + ivec2(x, 4 * texelRow + i), mix(color, smoothed, share.coarser), blue.y);
         }
       }

@@ -18,6 +18,7 @@ using glm::vec4;
 #define PELLUCID_GROUP_Y 8
 #define PELLUCID_DIFFUSE_GROUP 16 // a side
 #define PELLUCID_DIFFUSE_TEXELS_X 15 // of level 2, 4 x 4 pixels each, that a group of the diffusion does
+#define PELLUCID_DIFFUSE_COARSE_TEXELS_X 16 // without the fine filter
 #define PELLUCID_DIFFUSE_TEXELS_Y 4
 #define PELLUCID_RESOLVE_GROUP 16 // a side
 #define PELLUCID_RESOLVE_TILE 32  // texels of level 2, a side

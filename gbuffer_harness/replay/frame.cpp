@@ -166,6 +166,9 @@ void makeFrame(const Capture& capture, const std::vector<PellucidMaterial>& mate
   f.reuse = settings.reuse;
   f.coherenceThreshold = settings.coherenceThreshold;
   f.frameLoad = settings.frameLoad;
+  f.quality = settings.quality;
+  f.targetError = settings.targetError;
+  f.nearestDistance = settings.nearestDistance;
   f.debugView = settings.debugView;
 }
 

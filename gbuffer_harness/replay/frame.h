@@ -27,6 +27,8 @@ struct ReplaySettings {
   PellucidReuse reuse = PELLUCID_REUSE_NONE;
   float coherenceThreshold = 0.005f;
   float frameLoad = 0;
+  uint32_t quality = 2;
+  float targetError = 0, nearestDistance = 0;  // see PellucidFrame
   bool aliasOutput = false;  // output is the irradiance image; ignored for debug views
   std::array<uint32_t, 4> renderRect = {0, 0, 0, 0};  // width 0: everything
 };

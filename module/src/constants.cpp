@@ -197,7 +197,8 @@ extern "C" PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const
   for (uint32_t i = 0; i < f.materialCount; ++i) {
     put(mapped, layout.materials.offset + i * sizeof(shared::MaterialConstants),
         materialConstants(f.materials[i], f.gatherSamples > 0));
-    put(mapped, layout.kernels.offset + i * sizeof(shared::KernelConstants), kernelConstants(f.materials[i]));
+    put(mapped, layout.kernels.offset + i * sizeof(shared::KernelConstants),
+        kernelConstants(f.materials[i], plan->quality > 0));
   }
   return PELLUCID_OK;
 }

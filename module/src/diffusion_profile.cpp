@@ -32,6 +32,9 @@ constexpr double kEnergyFrom[kElements][kSamples] = {
      1.056, 1.049, 1.035, 1.02, 1.008, 1.004, 1.008, 1.014, 1.017, 1.017, 1.013, 1.007, 1.002, 0.9992,
      0.9988, 1},
 };
+// Without the fine filter level 2 takes this part of its energy and the pixel the rest.
+constexpr double kFineAtLevel2 = 0.3;
+
 double sample(Element element, double x) {
   const double at = std::clamp((x - kFirst[element]) / kStep, 0.0, kSamples - 1.0);
   const int i = std::min(static_cast<int>(at), kSamples - 2);
@@ -47,7 +50,7 @@ double shareOf(double coarser, double all) {
 
 }  // namespace
 
-shared::KernelConstants kernelConstants(const PellucidMaterial& m) {
+shared::KernelConstants kernelConstants(const PellucidMaterial& m, bool fine) {
   shared::KernelConstants c{};
   if (m.gaussianCount == 0) return c;
   double deviation[3][PELLUCID_MAX_GAUSSIANS];  // log2, mm
@@ -82,10 +85,11 @@ shared::KernelConstants kernelConstants(const PellucidMaterial& m) {
       put(1, shareOf(coarser, energy(kLevel3, 0)));
       put(PELLUCID_SHARE_COARSER, shareOf(coarser, energy(kCoarser, 0)));
       // Here the side is a pixel's.
-      const double level2 = std::clamp(energy(kLevel2, 2), 0.0, 1.0);
+      double level2 = std::clamp(energy(kLevel2, 2), 0.0, 1.0), neighbors = energy(kFine, 0);
+      if (!fine) level2 = neighbors = std::clamp(std::lerp(level2, neighbors, kFineAtLevel2), 0.0, 1.0);
       c.pixelShare[2 * i][channel] = static_cast<float>(level2);
-      const double fine = (energy(kFine, 0) - level2) / std::max(1 - level2, 1e-3);
-      c.pixelShare[2 * i + 1][channel] = static_cast<float>(std::clamp(fine, 0.0, 1.2));
+      const double share = (neighbors - level2) / std::max(1 - level2, 1e-3);
+      c.pixelShare[2 * i + 1][channel] = static_cast<float>(std::clamp(share, 0.0, 1.2));
     }
   }
   return c;

@@ -6,7 +6,8 @@
 
 namespace pellucid {
 
-// All zeros (the pixel keeps everything) for a material without Gaussians. docs/diffusion.md has the fit.
-shared::KernelConstants kernelConstants(const PellucidMaterial& material);
+// All zeros (the pixel keeps everything) for a material without Gaussians. `fine`: the diffusion has its fine
+// filter. docs/diffusion.md has the fit.
+shared::KernelConstants kernelConstants(const PellucidMaterial& material, bool fine);
 
 }  // namespace pellucid

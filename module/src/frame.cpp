@@ -84,4 +84,5 @@ extern "C" void pellucidInitFrame(PellucidFrame* frame) {
   frame->faceVector[2] = 1;
   frame->upAxis[1] = 1;
   frame->coherenceThreshold = 0.005f;
+  frame->quality = 2;
 }

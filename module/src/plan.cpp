@@ -3,6 +3,7 @@
 
 #include "frame.h"
 #include "pyramid.h"
+#include "quality.h"
 #include "reuse.h"
 #include "validate.h"
 
@@ -226,15 +227,17 @@ struct Builder {
   }
 
   bool diffuse(uint32_t source, uint32_t destination) {
-    PellucidDispatch* d =
-        dispatch("diffuse", wide() ? PELLUCID_PIPELINE_DIFFUSE_32F : PELLUCID_PIPELINE_DIFFUSE_16F);
+    const bool coarse = plan.quality == 0;
+    const uint32_t half = coarse ? PELLUCID_PIPELINE_DIFFUSE_COARSE_16F : PELLUCID_PIPELINE_DIFFUSE_16F;
+    PellucidDispatch* d = dispatch("diffuse", half + (wide() ? 1 : 0));
     if (!d) return false;
     // Groups start at texels of level 2, whose rect has a border of one.
     const PyramidPlace place = placeOf(frame, 2);
     const auto across = [](int32_t texels, uint32_t side) {
       return (static_cast<uint32_t>(texels) - 2 + side - 1) / side;
     };
-    d->groups[0] = across(place.rect.width, PELLUCID_DIFFUSE_TEXELS_X);
+    d->groups[0] =
+        across(place.rect.width, coarse ? PELLUCID_DIFFUSE_COARSE_TEXELS_X : PELLUCID_DIFFUSE_TEXELS_X);
     d->groups[1] = across(place.rect.height, PELLUCID_DIFFUSE_TEXELS_Y);
     d->pushConstants[1] = source < kTransient0;  // the passes write nothing that would have to be sanitized
     d->pushConstants[3] = destination == PELLUCID_RESOURCE_OUTPUT;
@@ -295,6 +298,21 @@ bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan
   else if (!stages.diffusion)
     b.skip("diffusion", "no material diffuses");
 
+  uint32_t coarsest = coarsestLevel(frame);
+  if (stages.diffusion) {
+    const DiffusionReach reach = diffusionReach(frame);
+    plan.largestRadius = static_cast<float>(reach.radius);
+    plan.quality = frame.quality;
+    if (frame.targetError > 0 && !qualityFor(frame.targetError, reach.radius, &plan.quality))
+      b.skip("targetError", "no quality is that exact");
+    for (uint32_t i = 0; i < frame.materialCount; ++i)
+      if (reach.pixelsPerMm * widestDeviation(frame.materials[i]) > levelDeviation(coarsest))
+        b.skip("diffusion radius", "wider than the pyramid holds");
+    while (reach.deviation > 0 && coarsest > kFirstLevel + 2 &&
+           reach.deviation <= deviationWithin(coarsest - 2))
+      coarsest -= 2;
+  }
+
   const bool reused = stages.history && decideReuse(frame, kept, &plan.history);
   if (reused) b.skip("translucency", "reused from an earlier frame");
 
@@ -337,7 +355,6 @@ bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan
     const uint32_t copy = stages.copies ? destination() : source;
     if (!stages.fusesQuads) fits = fits && b.quads(source, copy);
     source = copy;
-    const uint32_t coarsest = coarsestLevel(frame);
     for (uint32_t finer = kFirstLevel; finer < coarsest; finer += 2) fits = fits && b.reduce(finer);
     fits = fits && b.resolve(coarsest);
     const uint32_t to = destination();

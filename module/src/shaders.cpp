@@ -8,6 +8,8 @@
 #include "kDebug32f.h"
 #include "kDiffuse16f.h"
 #include "kDiffuse32f.h"
+#include "kDiffuseCoarse16f.h"
+#include "kDiffuseCoarse32f.h"
 #include "kDirectional16f.h"
 #include "kDirectional32f.h"
 #include "kDirectionalQuads16f.h"
@@ -55,7 +57,9 @@ const std::array kShaders = {shader(kTranslucency16f),
                              shader(kTranslucencyQuads32f),
                              shader(kDirectionalQuads16f),
                              shader(kDirectionalQuads32f),
-                             shader(kResolve)};
+                             shader(kResolve),
+                             shader(kDiffuseCoarse16f),
+                             shader(kDiffuseCoarse32f)};
 static_assert(kShaders.size() == PELLUCID_PIPELINE_COUNT);
 
 }  // namespace

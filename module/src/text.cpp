@@ -74,7 +74,9 @@ extern "C" const char* pellucidPipelineName(uint32_t pipeline) {
                                        "translucency_quads_rgba32f",
                                        "translucency_directional_quads_rgba16f",
                                        "translucency_directional_quads_rgba32f",
-                                       "resolve_levels"};
+                                       "resolve_levels",
+                                       "diffuse_coarse_rgba16f",
+                                       "diffuse_coarse_rgba32f"};
   static_assert(names.size() == PELLUCID_PIPELINE_COUNT);
   return pipeline < names.size() ? names[pipeline] : "unknown pipeline";
 }
@@ -133,7 +135,8 @@ extern "C" PellucidResult pellucidPlanToJson(const PellucidPlan* plan, char* tex
   if (!plan || !size) return PELLUCID_ERROR_INVALID_ARGUMENT;
   Text out(text, *size);
   out << "{\"dispatchCount\":" << plan->dispatchCount << ",\"barrierCount\":" << plan->barrierCount
-      << ",\"activeLights\":" << plan->activeLights << ",\"constantsSize\":" << plan->constantsSize
+      << ",\"activeLights\":" << plan->activeLights << ",\"quality\":" << plan->quality
+      << ",\"largestRadius\":" << plan->largestRadius << ",\"constantsSize\":" << plan->constantsSize
       << ",\"dispatches\":[";
   for (uint32_t i = 0; i < plan->dispatchCount; ++i) {
     if (i) out << ",";

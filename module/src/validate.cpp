@@ -295,6 +295,11 @@ PellucidResult checkFrame(const PellucidFrame* frame, PellucidMessageFn fn, void
     out.error("coherenceThreshold", "is ", f.coherenceThreshold, "; must be >= 0");
   if (!(f.frameLoad >= 0 && std::isfinite(f.frameLoad)))
     out.error("frameLoad", "is ", f.frameLoad, "; must be >= 0");
+  if (f.quality > 3) out.error("quality", "is ", f.quality, ", outside 0..3");
+  if (!(f.targetError >= 0 && std::isfinite(f.targetError)))
+    out.error("targetError", "is ", f.targetError, "; must be >= 0");
+  if (!(f.nearestDistance >= 0 && std::isfinite(f.nearestDistance)))
+    out.error("nearestDistance", "is ", f.nearestDistance, "; must be >= 0");
   if (out.result() != PELLUCID_OK) return out.result();
 
   for (uint32_t i = 0; i < f.materialCount; ++i) {

@@ -140,4 +140,57 @@ TEST_F(Diffusion, RadiusBeyondTheScreenGivesTheMean) {
     for (int x = 0; x < 64; ++x) EXPECT_NEAR(out.at(x, y)[0], 0.5, 0.1) << x << ", " << y;
 }
 
+// Unlike flatCapture a perspective camera, whose pixels are 0.5 mm at the slab; some texture everywhere.
+Capture perspective(int size) {
+  Capture c = dark(size, size);
+  c.clipFromView = {};
+  c.clipFromView[0] = 2 * 10 / (0.5 * size);
+  c.clipFromView[5] = -c.clipFromView[0];
+  c.clipFromView[11] = -1;
+  c.clipFromView[14] = 0.1;
+  for (int y = 0; y < size; ++y)
+    for (int x = 0; x < size; ++x)
+      light(c, x, y,
+            static_cast<float>((x / 9 + y / 7) % 2) + 0.1f * static_cast<float>((x * 7 + y * 13) % 5));
+  return c;
+}
+
+// What the distance leaves out is not missed: levels that no Gaussian reaches.
+TEST_F(Diffusion, SmallRadiiAreTheSameWithFewerDispatches) {
+  const Capture c = perspective(96);
+  struct Row {
+    std::initializer_list<double> deviations;
+    uint32_t dropped;
+  };
+  for (const Row& row :
+       {Row{{0.5}, 2}, {{2}, 2}, {{4}, 2}, {{5.6}, 2}, {{0.7, 1.5, 3, 5.6}, 2}, {{7}, 1}, {{1, 22}, 1}}) {
+    const PellucidMaterial m = gaussians(row.deviations, 0.5);
+    ReplaySettings s = diffusionOnly();
+    const ReplayResult all = replayer().run(c, {m}, s);
+    s.nearestDistance = 10;
+    const ReplayResult fewer = replayer().run(c, {m}, s);
+    EXPECT_EQ(fewer.plan.dispatchCount + row.dropped, all.plan.dispatchCount);
+    double most = 0;
+    for (size_t i = 0; i < all.output.data.size(); ++i)
+      most = std::max(most, static_cast<double>(std::abs(all.output.data[i] - fewer.output.data[i])));
+    EXPECT_LT(most, 1e-3) << row.deviations.size() << " Gaussians, the first " << *row.deviations.begin();
+  }
+}
+
+// The promises that do not depend on how the profile is filtered.
+TEST_F(Diffusion, CheapestQualityKeepsEnergyAndSubpixelRadii) {
+  ReplaySettings s = diffusionOnly();
+  s.quality = 0;
+  Capture spot = dark(128, 128);
+  light(spot, 65, 67, 1000);
+  EXPECT_NEAR(sum(replay(spot, gaussians({0.5, 6}, pixelOf(spot)), s), 0) / 1000, 1, 5e-3);
+  Capture c = dark(32, 32);
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 32; ++x) light(c, x, y, static_cast<float>((x * 7 + y * 13) % 5));
+  const Image out = replay(c, gaussians({0.03, 0.12}, pixelOf(c)), s);
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 32; ++x)
+      EXPECT_NEAR(out.at(x, y)[0], c.irradiance.at(x, y)[0], 1e-3) << x << ", " << y;
+}
+
 }  // namespace

@@ -1,4 +1,5 @@
-// What a plan costs, for every feature, output and kind of lights, against a file that says what it should.
+// What a plan costs, for every feature, output, kind of lights and quality, against a file that says what it
+// should.
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -26,6 +27,18 @@ const Choice kDebug[] = {{"", PELLUCID_DEBUG_NONE}, {" debug view", PELLUCID_DEB
 // value: lights with a shadow map each; 0: one without.
 const Choice kLights[] = {
     {"1 light without a map", 0}, {"1 light", 1}, {"8 lights", 8}, {"9 lights", 9}, {"20 lights", 20}};
+// nearestDistance: at the far one all radii are small.
+struct Detail {
+  const char* name;
+  uint32_t quality;
+  float nearestDistance;
+};
+const Detail kDetails[] = {{"", 2, 0},
+                           {", quality 0", 0, 0},
+                           {", quality 1", 1, 0},
+                           {", quality 3", 3, 0},
+                           {", far away", 2, 1000},
+                           {", quality 0, far away", 0, 1000}};
 
 nlohmann::json countsOf(const Frame& f) {
   const PellucidPlan plan = f.plan();
@@ -51,8 +64,12 @@ nlohmann::json allCounts() {
           f.frame.features = features.value;
           f.frame.outputFormat = static_cast<VkFormat>(output.value);
           f.frame.debugView = debug.value;
-          all[std::string(features.name) + ", " + output.name + debug.name + ", " + lights.name] =
-              countsOf(f);
+          for (const Detail& detail : kDetails) {
+            f.frame.quality = detail.quality;
+            f.frame.nearestDistance = detail.nearestDistance;
+            all[std::string(features.name) + ", " + output.name + debug.name + ", " + lights.name +
+                detail.name] = countsOf(f);
+          }
         }
   }
   return all;

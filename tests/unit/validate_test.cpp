@@ -43,6 +43,9 @@ const std::vector<Violation> kViolations = {
     {"CoherenceThreshold", "coherenceThreshold", "nan", [](Frame& f) { f.frame.coherenceThreshold = NAN; }},
     {"PrescaleAngle", "prescaleAngle", "2", [](Frame& f) { f.frame.prescaleAngle = 2; }},
     {"FrameLoad", "frameLoad", "-1", [](Frame& f) { f.frame.frameLoad = -1; }},
+    {"Quality", "quality", "4, outside 0..3", [](Frame& f) { f.frame.quality = 4; }},
+    {"TargetError", "targetError", "inf", [](Frame& f) { f.frame.targetError = INFINITY; }},
+    {"NearestDistance", "nearestDistance", "-1", [](Frame& f) { f.frame.nearestDistance = -1; }},
     {"NoMinimumDots", "minimumDotTable", "NULL",
      [](Frame& f) {
        f.frame.angleModel = PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH;

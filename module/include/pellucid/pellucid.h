@@ -253,6 +253,15 @@ typedef struct PellucidFrame {
   uint32_t prescaleAngle;   /* 1: COSINE, INVERSE_COSINE and POLYNOMIAL take (m + x) / (m + 1), m = minimumDot,
                                in place of x, so that they begin at the minimum dot and still reach their
                                value at 1 (our reading of Whelan 2009's pre-scaling); 0 (default): x itself */
+
+  uint32_t quality;       /* of the diffusion, 0..3 (default 2, 3 best): docs/diffusion.md says what each does */
+  float targetError;      /* > 0: in place of quality, the least one whose measured error stays below it: relative
+                             RMSE from brute force, the worst of several scenes, at the radii that the frame has;
+                             3 and a skip if none does; 0 (default): off */
+  float nearestDistance;  /* planar distance of the nearest surface that diffuses, scene units, or less: radii in
+                             pixels follow from it, and where they are small a dispatch is left out; surfaces that
+                             are nearer still are then diffused too little. Orthographic cameras need none.
+                             0 (default): not known, and radii count as being as large as the pyramid holds */
 } PellucidFrame;
 
 /* ---- Plan ------------------------------------------------------------------------------------ */
@@ -296,7 +305,9 @@ typedef enum PellucidPipeline {
   PELLUCID_PIPELINE_DIRECTIONAL_QUADS_16F = 18,
   PELLUCID_PIPELINE_DIRECTIONAL_QUADS_32F = 19,
   PELLUCID_PIPELINE_RESOLVE_LEVELS = 20,
-  PELLUCID_PIPELINE_COUNT = 21
+  PELLUCID_PIPELINE_DIFFUSE_COARSE_16F = 21, /* without the filter of each pixel's neighbors: quality 0 */
+  PELLUCID_PIPELINE_DIFFUSE_COARSE_32F = 22,
+  PELLUCID_PIPELINE_COUNT = 23
 } PellucidPipeline;
 
 enum {
@@ -354,6 +365,10 @@ typedef struct PellucidPlan {
   PellucidDispatch dispatches[PELLUCID_MAX_DISPATCHES];
   PellucidSkip skips[PELLUCID_MAX_SKIPS];
   PellucidHistory history;
+  float largestRadius; /* pixels within which 99.9 % of the diffused energy lies, of the widest channel of all
+                          materials at frame.nearestDistance; 0: not known, or nothing diffuses */
+  uint32_t quality;    /* that the diffusion runs at: frame.quality, or what frame.targetError chose; 0 where
+                          nothing diffuses */
 } PellucidPlan;
 
 /* One transient the caller creates: 2D, one mip, of this format and extent, usage SAMPLED | STORAGE. It holds
@@ -417,8 +432,9 @@ PellucidResult pellucidBuildPlan(const PellucidFrame* frame, const PellucidPlan*
 
 /* ---- Frame budget ---------------------------------------------------------------------------- */
 
-/* A setting that holds a frame time, and what it was decided from. What a quality stands for is the
- * caller's (resolution, lights, diffusion); `reuse` asks for reuse of results between frames. */
+/* A setting that holds a frame time, and what it was decided from. `quality` is frame.quality, to which the
+ * caller may add what else it can lower (resolution, lights, gatherSamples); `reuse` asks for reuse of results
+ * between frames, frame.reuse. */
 typedef struct PellucidBudgetState {
   uint32_t quality; /* 3 best .. 0 cheapest */
   uint32_t reuse;   /* 1: reuse; given up last when there is room again */

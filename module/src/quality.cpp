@@ -1,0 +1,73 @@
+#include "quality.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "camera.h"
+#include "diffusion_error_table.h"
+
+namespace pellucid {
+namespace {
+
+// Pixels per mm on a facing surface at the nearest distance, along the finer side; 0: not known. All that is
+// farther or tilted has fewer.
+double pixelsPerMm(const PellucidFrame& f) {
+  const glm::dmat4 clip = toMatrix(f.clipFromView);
+  DepthRange range;
+  if (readDepthRange(clip, &range)) return 0;
+  if (range.perspective && f.nearestDistance == 0) return 0;
+  // clip.xy / w spans 2 over the image; see makeCamera.
+  const double w = range.c * static_cast<double>(f.nearestDistance) + range.d;
+  const glm::dmat2 inverse = glm::inverse(glm::dmat2(clip[0][0], clip[0][1], clip[1][0], clip[1][1]));
+  const double side = std::min(glm::length(inverse[0]) * 2 / f.imageExtent[0],
+                               glm::length(inverse[1]) * 2 / f.imageExtent[1]);
+  const double mm = side * std::abs(w) * static_cast<double>(f.metersPerUnit) * 1000;
+  return mm > 0 ? 1 / mm : 0;
+}
+
+}  // namespace
+
+double widestDeviation(const PellucidMaterial& m) {
+  double variance = 0;
+  for (int c = 0; c < 3; ++c)
+    for (uint32_t i = 0; i < m.gaussianCount; ++i)
+      if (m.gaussianWeight[c][i] > 0)
+        variance = std::max(variance, static_cast<double>(m.gaussianVariance[c][i]));
+  return std::sqrt(variance);
+}
+
+double levelDeviation(uint32_t level) { return std::sqrt(7.0 / 12 * std::exp2(2.0 * level) - 13.0 / 12); }
+
+// Where the energy beyond a level begins in the table of diffusion_profile.cpp: 1.5 octaves below its texels.
+double deviationWithin(uint32_t level) { return std::exp2(level - 0.5); }
+
+DiffusionReach diffusionReach(const PellucidFrame& frame) {
+  // No infinity may reach the plan's text.
+  DiffusionReach reach{std::min(pixelsPerMm(frame), 1e30), 0, 0};
+  const auto pixels = [&](double mm) { return std::min(mm * reach.pixelsPerMm, 1e30); };
+  for (uint32_t i = 0; i < frame.materialCount; ++i) {
+    const PellucidMaterial& m = frame.materials[i];
+    if (m.gaussianCount == 0) continue;
+    const double radius = static_cast<double>(*std::max_element(m.radius, m.radius + 3));
+    reach.radius = std::max(reach.radius, pixels(radius));
+    reach.deviation = std::max(reach.deviation, pixels(widestDeviation(m)));
+  }
+  return reach;
+}
+
+bool qualityFor(float error, double radius, uint32_t* quality) {
+  // Errors were measured at some radii; up to the first one that is not less than the frame's.
+  size_t count = std::size(kErrorRadii);
+  if (radius > 0)
+    count = std::min(
+        count, static_cast<size_t>(std::lower_bound(std::begin(kErrorRadii), std::end(kErrorRadii), radius) -
+                                   kErrorRadii) +
+                   1);
+  for (*quality = 0; *quality < std::size(kWorstError); ++*quality)
+    if (*std::max_element(kWorstError[*quality], kWorstError[*quality] + count) < error) return true;
+  *quality = std::size(kWorstError) - 1;
+  return false;
+}
+
+}  // namespace pellucid

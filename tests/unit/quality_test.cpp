@@ -1,0 +1,179 @@
+// What a plan does with frame.quality, targetError and nearestDistance.
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "diffusion_error_table.h"
+#include "frame_fixture.h"
+#include "shared/pellucid_shared.h"
+
+namespace {
+
+using pellucid::kErrorRadii;
+using pellucid::kWorstError;
+using pellucid::test::Frame;
+
+constexpr uint32_t kQualities = std::size(kWorstError);
+
+uint32_t skipped(const PellucidPlan& plan, const std::string& what) {
+  for (uint32_t i = 0; i < plan.skipCount; ++i)
+    if (plan.skips[i].what == what) return plan.skips[i].count;
+  return 0;
+}
+
+const PellucidDispatch* find(const PellucidPlan& plan, const std::string& name) {
+  for (uint32_t i = 0; i < plan.dispatchCount; ++i)
+    if (plan.dispatches[i].name == name) return &plan.dispatches[i];
+  return nullptr;
+}
+
+uint32_t reductions(const PellucidPlan& plan) {
+  return static_cast<uint32_t>(
+      std::count_if(plan.dispatches, plan.dispatches + plan.dispatchCount,
+                    [](const PellucidDispatch& d) { return d.pipeline == PELLUCID_PIPELINE_REDUCE_LEVELS; }));
+}
+
+// A pixel of the fixture's camera, 100 x 50 pixels over 2 p x 2 p mm at distance p, is 2 p / 100 mm at its
+// shorter side; the material's radius is 5 mm.
+TEST(Quality, RadiusIsProjected) {
+  Frame f;
+  EXPECT_EQ(f.plan().largestRadius, 0) << "a perspective camera without a distance";
+  f.frame.nearestDistance = 50;
+  EXPECT_FLOAT_EQ(f.plan().largestRadius, 5);
+  f.frame.nearestDistance = 25;
+  EXPECT_FLOAT_EQ(f.plan().largestRadius, 10);
+  f.frame.metersPerUnit = 0.01f;
+  EXPECT_FLOAT_EQ(f.plan().largestRadius, 1);
+  f.material.radius[2] = 15;
+  EXPECT_FLOAT_EQ(f.plan().largestRadius, 3) << "the widest channel";
+  f.frame.features = PELLUCID_FEATURE_TRANSLUCENCY;
+  EXPECT_EQ(f.plan().largestRadius, 0) << "nothing diffuses";
+}
+
+TEST(Quality, OrthographicRadiusNeedsNoDistance) {
+  Frame f;
+  const float projection[16] = {0.1f, 0, 0, 0, 0, -0.1f, 0, 0, 0, 0, -0.01f, 0, 0, 0, 0, 1};
+  std::copy(projection, projection + 16, f.frame.clipFromView);
+  EXPECT_FLOAT_EQ(f.plan().largestRadius, 25);  // 20 mm over 100 pixels
+  f.frame.nearestDistance = 7;
+  EXPECT_FLOAT_EQ(f.plan().largestRadius, 25);
+}
+
+// The widest Gaussian of the fixture's material has a deviation of 1.41 mm.
+TEST(Quality, SmallRadiiDropReductions) {
+  Frame f;
+  EXPECT_EQ(reductions(f.plan()), 3u) << "not known";
+  struct Row {
+    float distance;
+    uint32_t reductions;
+  };
+  for (const Row& row :
+       {Row{3, 3}, {3.2f, 2}, {12, 2}, {13, 1}, {1000, 1}}) {  // 23.6, 22.1, 5.9, 5.4, .07 pixels
+    f.frame.nearestDistance = row.distance;
+    const PellucidPlan plan = f.plan();
+    EXPECT_EQ(reductions(plan), row.reductions) << row.distance;
+    EXPECT_EQ(plan.dispatchCount, 3 + row.reductions);
+    EXPECT_EQ(find(plan, "resolve")->pushConstants[0], 1 + 2 * row.reductions) << "the coarsest level";
+  }
+  f.frame.nearestDistance = 13;
+  f.material.gaussianVariance[1][0] = 4;  // 7.7 pixels
+  EXPECT_EQ(reductions(f.plan()), 2u) << "any Gaussian of any channel";
+  f.material.gaussianWeight[1][0] = 0;
+  f.material.gaussianWeight[1][1] = 1;
+  EXPECT_EQ(reductions(f.plan()), 1u) << "that has a weight";
+}
+
+// The images that the caller creates do not follow a distance that changes every frame.
+TEST(Quality, ImageNeedsDoNotDependOnTheDistance) {
+  Frame f;
+  PellucidImageNeed unknown[PELLUCID_MAX_TRANSIENTS], known[PELLUCID_MAX_TRANSIENTS];
+  uint32_t count = PELLUCID_MAX_TRANSIENTS, same = PELLUCID_MAX_TRANSIENTS;
+  ASSERT_EQ(pellucidGetImageNeeds(&f.frame, &count, unknown), PELLUCID_OK);
+  f.frame.nearestDistance = 50;
+  ASSERT_EQ(pellucidGetImageNeeds(&f.frame, &same, known), PELLUCID_OK);
+  ASSERT_EQ(count, same);
+  for (uint32_t i = 0; i < count; ++i) {
+    EXPECT_EQ(unknown[i].extent[0], known[i].extent[0]);
+    EXPECT_EQ(unknown[i].extent[1], known[i].extent[1]);
+  }
+}
+
+TEST(Quality, RadiiBeyondThePyramidAreReported) {
+  Frame f;
+  PellucidMaterial materials[3] = {f.material, f.material, f.material};
+  materials[1].gaussianVariance[0][1] = 16;  // 4 mm
+  materials[2].gaussianCount = 0;
+  f.frame.materials = materials;
+  f.frame.materialCount = 3;
+  f.frame.nearestDistance = 1;  // 50 pixels a mm; level 7 is 97.8 pixels
+  EXPECT_EQ(skipped(f.plan(), "diffusion radius"), 1u);
+  f.frame.nearestDistance = 0.7f;
+  EXPECT_EQ(skipped(f.plan(), "diffusion radius"), 2u);
+  f.frame.nearestDistance = 3;
+  EXPECT_EQ(skipped(f.plan(), "diffusion radius"), 0u);
+  f.frame.nearestDistance = 1e-38f;
+  EXPECT_TRUE(std::isfinite(f.plan().largestRadius));
+  f.frame.nearestDistance = 0;
+  EXPECT_EQ(skipped(f.plan(), "diffusion radius"), 0u) << "not known";
+}
+
+TEST(Quality, ZeroLeavesTheFineFilterOut) {
+  Frame f;
+  EXPECT_EQ(f.plan().quality, 2u) << "default";
+  for (uint32_t quality = 0; quality < kQualities; ++quality) {
+    f.frame.quality = quality;
+    for (const bool wide : {false, true}) {
+      f.frame.outputFormat = wide ? VK_FORMAT_R32G32B32A32_SFLOAT : VK_FORMAT_R16G16B16A16_SFLOAT;
+      const PellucidPlan plan = f.plan();
+      EXPECT_EQ(plan.quality, quality);
+      const uint32_t half =
+          quality == 0 ? PELLUCID_PIPELINE_DIFFUSE_COARSE_16F : PELLUCID_PIPELINE_DIFFUSE_16F;
+      EXPECT_EQ(find(plan, "diffuse")->pipeline, half + wide);
+    }
+  }
+}
+
+// Against the table: the least quality that is below the target at every radius up to the frame's.
+TEST(Quality, TargetErrorChoosesTheLeastThatHolds) {
+  Frame f;
+  f.frame.quality = 1;
+  uint32_t chosen[kQualities] = {}, none = 0;
+  for (const float radius : {0.0f, 0.4f, 0.5f, 1.9f, 7.0f, 30.0f, 128.0f, 400.0f}) {
+    // 5 mm are 250 / p pixels. 0: not known, as good as the largest.
+    f.frame.nearestDistance = radius > 0 ? 250 / radius * 1.0001f : 0;
+    for (const float target : {1e-5f, 3e-4f, 0.007f, 0.02f, 0.03f, 0.05f, 0.07f, 0.5f}) {
+      f.frame.targetError = target;
+      uint32_t expected = kQualities;
+      for (uint32_t q = 0; q < kQualities && expected == kQualities; ++q) {
+        bool holds = true;
+        for (size_t i = 0; i < std::size(kErrorRadii); ++i) {
+          const bool reached = radius == 0 || i == 0 || kErrorRadii[i - 1] < radius;
+          holds = holds && (!reached || kWorstError[q][i] < target);
+        }
+        if (holds) expected = q;
+      }
+      const PellucidPlan plan = f.plan();
+      EXPECT_EQ(plan.quality, std::min(expected, kQualities - 1)) << radius << " pixels, " << target;
+      EXPECT_EQ(skipped(plan, "targetError"), expected == kQualities ? 1u : 0u) << radius << ", " << target;
+      ++(expected < kQualities ? chosen[expected] : none);
+    }
+  }
+  EXPECT_GT(chosen[0], 0u);
+  EXPECT_GT(chosen[1], 0u);
+  EXPECT_GT(none, 0u);
+}
+
+TEST(Quality, IsInThePlansText) {
+  Frame f;
+  f.frame.nearestDistance = 50;
+  const PellucidPlan plan = f.plan();
+  char text[65536];
+  size_t size = sizeof text;
+  ASSERT_EQ(pellucidPlanToJson(&plan, text, &size), PELLUCID_OK);
+  const nlohmann::json json = nlohmann::json::parse(text);
+  EXPECT_EQ(json.at("quality"), 2);
+  EXPECT_NEAR(json.at("largestRadius").get<double>(), 5, 1e-5);
+}
+
+}  // namespace
