@@ -165,23 +165,26 @@ std::vector<Variant> diffusions(const Bench& bench, const Capture& capture) {
   ReplaySettings settings;
   settings.features = PELLUCID_FEATURE_DIFFUSION;
   const auto frame = bench.frame(capture, settings);
-  std::vector<Variant> all = {moduleVariant(frame, "Pellucid")};
+  settings.quality = 0;
+  std::vector<Variant> all = {moduleVariant(bench.frame(capture, settings), "Pellucid, quality 0"),
+                              moduleVariant(frame, "Pellucid, qualities 1 to 3")};
   for (Variant& v : baselines(frame)) all.push_back(std::move(v));
   return all;
 }
 
-// Errors against the float64 reference, the largest of the patterns'.
+// Errors against the float64 reference, the largest of the scenes'.
 std::vector<Point> diffusion(const Bench& bench) {
   bench.report.section("diffusion; error: from brute force");
   std::vector<double> errors;
-  for (const Capture& pattern : patterns(128, bench.pixel)) {
+  for (const ErrorScene& scene : errorScenes()) {
+    const Capture capture = makeErrorCapture(scene, 96, bench.pixel);
     reference::Settings settings;
     settings.features = PELLUCID_FEATURE_DIFFUSION;
-    const Image truth = reference::compute(pattern, {bench.material}, settings).image;
-    const std::vector<Variant> variants = diffusions(bench, pattern);
+    const Image truth = reference::compute(capture, {bench.material}, settings).image;
+    const std::vector<Variant> variants = diffusions(bench, capture);
     errors.resize(variants.size());
     for (size_t i = 0; i < variants.size(); ++i)
-      errors[i] = std::max(errors[i], requireNear(variants[i], bench.run(variants[i]), truth, pattern, 0.5));
+      errors[i] = std::max(errors[i], requireNear(variants[i], bench.run(variants[i]), truth, capture, 0.5));
   }
   std::vector<Point> points;
   const std::vector<Variant> timed = diffusions(bench, bench.fullSlab());

@@ -71,7 +71,7 @@ std::vector<ErrorScene> errorScenes() {
           {"ear", "ear", {}, 92}};
 }
 
-Capture makeErrorCapture(const ErrorScene& scene, int size) {
+Capture makeErrorCapture(const ErrorScene& scene, int size, double pixel) {
   SceneParameters p;
   p.name = scene.scene;
   p.width = p.height = size;
@@ -79,6 +79,7 @@ Capture makeErrorCapture(const ErrorScene& scene, int size) {
   if (scene.scene == "checker" || scene.scene == "step" || scene.scene == "tilted") p.options["samples"] = 4;
   p.shadowSize = 0;
   Capture capture = makeScene(p);
+  capture.metersPerUnit = 0.001 * pixel * size / scene.width;
   capture.albedo = {};  // the error is the diffusion's
   return capture;
 }
@@ -96,20 +97,6 @@ PellucidMaterial burleyMaterial(double radius) {
   if (pellucidCompileMaterial(&desc, &material, nullptr, nullptr, nullptr) != PELLUCID_OK)
     throw InputError("", "burleyDistance", "does not compile");
   return material;
-}
-
-std::vector<Capture> patterns(int size, double pixel) {
-  const auto make = [&](const char* name, std::map<std::string, double> options) {
-    SceneParameters p;
-    p.name = name;
-    p.width = p.height = size;
-    p.options = std::move(options);
-    p.options["extent"] = size * pixel;
-    p.options["samples"] = 4;
-    p.shadowSize = 0;
-    return makeScene(p);
-  };
-  return {make("checker", {{"cell", size * pixel / 7}}), make("step", {{"angle", 30}}), make("tilted", {})};
 }
 
 }  // namespace pellucid::bench

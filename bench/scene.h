@@ -20,20 +20,17 @@ double pixelSizeFor(const PellucidMaterial& material, double radius);
 // upper `coverage` of the image has the material. A pixel is `pixel` mm wide.
 harness::Capture slab(int width, int height, double coverage, double pixel);
 
-// Irradiance patterns that tell diffusion methods apart: a checker, a step at 30 degrees, a step on a plane
-// tilted by 45. `size` pixels of `pixel` mm a side.
-std::vector<harness::Capture> patterns(int size, double pixel);
-
-// A scene that the diffusion's error is stated for.
+// A scene that diffusions' errors are stated for.
 struct ErrorScene {
   std::string title, scene;
   std::map<std::string, double> options;
-  double width;  // visible, mm
+  double width;  // visible, scene units
 };
 
 std::vector<ErrorScene> errorScenes();
 
-harness::Capture makeErrorCapture(const ErrorScene& scene, int size);
+// `size` pixels a side; all lengths scaled so that a pixel is `pixel` mm wide where the scene has its width.
+harness::Capture makeErrorCapture(const ErrorScene& scene, int size, double pixel);
 
 // Burley's profile (Christensen & Burley 2015) with 99.9 % of the energy within `radius` mm in red, and distances
 // 1/1.4 and 1/2 of that in green and blue.
