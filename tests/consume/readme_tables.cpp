@@ -1,10 +1,13 @@
 // Prints the README's tables from the code, or checks or rewrites them in a file:
 //   pellucid_readme_tables [--check | --update README.md]
+// and likewise with the word quality after the file, docs/diffusion.md, the table of qualities.
 #include <cstdio>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 #include <string>
 
+#include "diffusion_error_table.h"
 #include "pellucid/pellucid.h"
 
 namespace {
@@ -40,32 +43,41 @@ std::string imagesTable() {
   return table;
 }
 
-// A valid frame of 3840 x 2160 with one light, with or without a shadow map.
-std::string featuresTable() {
+// A valid frame of 3840 x 2160 with one light without a shadow map.
+struct Example {
   PellucidMaterial material{};
-  material.structSize = sizeof material;
-  material.gaussianCount = 1;
-  for (int c = 0; c < 3; ++c) {
-    material.transmittance[c][0] = 1;
-    material.transmittance[c][1] = 1;
-    material.reflectance[c] = material.gaussianVariance[c][0] = material.gaussianWeight[c][0] =
-        material.radius[c] = 1;
-  }
   PellucidLight light{};
-  light.direction[2] = 1;
-  light.color[0] = light.intensity = 1;
-  PellucidFrame f;
-  pellucidInitFrame(&f);
-  f.imageExtent[0] = 3840;
-  f.imageExtent[1] = 2160;
-  f.clipFromView[0] = 1;
-  f.clipFromView[5] = f.clipFromView[11] = -1;
-  f.clipFromView[14] = 0.1f;
-  f.frontDepth = f.backDepth = f.irradiance = f.material = f.output = placeholder();
-  f.materialCount = 1;
-  f.materials = &material;
-  f.lights = &light;
+  PellucidFrame frame;
 
+  Example() {
+    material.structSize = sizeof material;
+    material.gaussianCount = 1;
+    for (int c = 0; c < 3; ++c) {
+      material.transmittance[c][0] = 1;
+      material.transmittance[c][1] = 1;
+      material.reflectance[c] = material.gaussianVariance[c][0] = material.gaussianWeight[c][0] =
+          material.radius[c] = 1;
+    }
+    light.direction[2] = 1;
+    light.color[0] = light.intensity = 1;
+    PellucidFrame& f = frame;
+    pellucidInitFrame(&f);
+    f.imageExtent[0] = 3840;
+    f.imageExtent[1] = 2160;
+    f.clipFromView[0] = 1;
+    f.clipFromView[5] = f.clipFromView[11] = -1;
+    f.clipFromView[14] = 0.1f;
+    f.frontDepth = f.backDepth = f.irradiance = f.material = f.output = placeholder();
+    f.materialCount = 1;
+    f.materials = &material;
+    f.lights = &light;
+  }
+  Example(const Example&) = delete;
+};
+
+std::string featuresTable() {
+  Example example;
+  PellucidFrame& f = example.frame;
   struct Row {
     const char* name;
     uint32_t features, lights;
@@ -99,11 +111,39 @@ std::string featuresTable() {
   return table;
 }
 
+// Errors as the module states them.
+std::string qualityTable() {
+  std::string table = "| quality | last pass |", rule = "|-|-|";
+  char text[32];
+  for (const float radius : pellucid::kErrorRadii) {
+    std::snprintf(text, sizeof text, " %g px |", static_cast<double>(radius));
+    table += text;
+    rule += "-|";
+  }
+  table += "\n" + rule + "\n";
+  Example example;
+  for (uint32_t quality = 0; quality < std::size(pellucid::kWorstError); ++quality) {
+    example.frame.quality = quality;
+    static PellucidPlan plan;
+    if (pellucidBuildPlan(&example.frame, nullptr, &plan) != PELLUCID_OK)
+      return "the example frame is not valid\n";
+    table += "| " + std::to_string(quality) + " | `" +
+             pellucidPipelineName(plan.dispatches[plan.dispatchCount - 1].pipeline) + "` |";
+    for (const float error : pellucid::kWorstError[quality]) {
+      std::snprintf(text, sizeof text, " %.4f |", static_cast<double>(error));
+      table += text;
+    }
+    table += "\n";
+  }
+  return table;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  const std::string tables = imagesTable() + "\n" + featuresTable();
-  if (argc != 3) {
+  const bool quality = argc == 4 && std::string(argv[3]) == "quality";
+  const std::string tables = quality ? qualityTable() : imagesTable() + "\n" + featuresTable();
+  if (argc < 3) {
     std::fputs(tables.c_str(), stdout);
     return 0;
   }
