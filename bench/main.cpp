@@ -31,7 +31,7 @@ struct Options {
   std::pair<int, int> size = {1280, 720};
   int repeat = 30;
   std::vector<double> coverage = {100, 25, 0};  // percent
-  std::set<std::string> tables = {"module", "fused", "steps", "diffusion"};
+  std::set<std::string> tables = {"module", "fused", "gather", "steps", "diffusion"};
   double radius = 40;  // pixels
 };
 
@@ -98,6 +98,18 @@ double requireNear(const Variant& v, const Image& image, const Image& truth, con
   return error;
 }
 
+// One row for each dispatch of the frame's plan.
+void dispatches(const Bench& bench, const BenchFrame& frame) {
+  const PellucidPlan& plan = frame.run().plan();
+  for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
+    const PellucidDispatch& d = plan.dispatches[i];
+    const double bytes =
+        static_cast<double>(d.modeledBytes) / (static_cast<double>(frame.width()) * frame.height());
+    bench.report.add({d.name, 1, d.barrierBefore, bytes, {}},
+                     bench.time([&](VkCommandBuffer c) { frame.run().record(c, i); }));
+  }
+}
+
 void modulePlans(const Bench& bench) {
   const auto [width, height] = bench.options.size;
   for (const double coverage : bench.options.coverage) {
@@ -105,33 +117,55 @@ void modulePlans(const Bench& bench) {
     std::snprintf(title, sizeof title, "module, %g %% covered", coverage);
     bench.report.section(title);
     const auto frame = bench.frame(slab(width, height, coverage / 100, bench.pixel), {});
-    const PellucidPlan& plan = frame->run().plan();
-    for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
-      const PellucidDispatch& d = plan.dispatches[i];
-      const double bytes = static_cast<double>(d.modeledBytes) / (static_cast<double>(width) * height);
-      bench.report.add({d.name, 1, d.barrierBefore, bytes, {}},
-                       bench.time([&](VkCommandBuffer c) { frame->run().record(c, i); }));
-    }
+    dispatches(bench, *frame);
     bench.row(moduleVariant(frame, "whole frame"), {});
   }
 }
 
-// The fused dispatch alone: by lights, by how many of them have a shadow map, by samples of the gather.
+// The fused dispatch alone: by lights and by how many of them have a shadow map.
 void fusedDispatch(const Bench& bench) {
   bench.report.section("fused dispatch");
-  const auto row = [&](const std::string& name, const Capture& capture, uint32_t samples) {
+  const auto row = [&](const std::string& name, const Capture& capture) {
     ReplaySettings settings;
     settings.features = PELLUCID_FEATURE_TRANSLUCENCY;
-    settings.translucency.gatherSamples = samples;
     bench.row(moduleVariant(bench.frame(capture, settings), name), {});
   };
   for (const int lights : {1, 8, 64})
     for (const int mapped : {0, 1, 4})
       if (mapped <= lights)
         row(std::to_string(lights) + " lights, " + std::to_string(mapped) + " maps",
-            litBy(bench.fullSlab(), lights, mapped), 0);
+            litBy(bench.fullSlab(), lights, mapped));
+}
+
+// What the gather adds to a frame, in place of the fused dispatch: over a frame without it that is otherwise
+// the same.
+void gathered(const Bench& bench) {
+  const auto frame = [&](const Capture& capture, uint32_t samples, uint32_t spacing) {
+    ReplaySettings settings;
+    settings.translucency.gatherSamples = samples;
+    settings.translucency.gatherSpacing = spacing;
+    return bench.frame(capture, settings);
+  };
+  const auto added = [&](const std::string& name, const Capture& capture, uint32_t samples,
+                         uint32_t spacing) {
+    const Variant without = moduleVariant(frame(capture, 0, 0), ""),
+                  with = moduleVariant(frame(capture, samples, spacing), "");
+    const Time a = bench.time(without.record), b = bench.time(with.record);
+    bench.report.add({name,
+                      with.dispatches - without.dispatches,
+                      with.barriers - without.barriers,
+                      with.bytesPerPixel - without.bytesPerPixel,
+                      {}},
+                     {b.median - a.median, b.low - a.high, b.high - a.low});
+  };
+  bench.report.section("gather, added to the frame");
   for (const uint32_t samples : {4u, 8u, 16u, 32u})
-    row("1 light, gather " + std::to_string(samples), bench.fullSlab(), samples);
+    added(std::to_string(samples) + " samples", bench.fullSlab(), samples, 0);
+  added("8 samples, a point in 2 x 2 pixels", bench.fullSlab(), 8, 2);
+  added("8 samples, nothing transmitted", litFromTheFront(bench.fullSlab()), 8, 0);
+  bench.report.section("gather, 8 samples");
+  const auto whole = frame(bench.fullSlab(), 8, 0);
+  dispatches(bench, *whole);
 }
 
 // Errors against the module, on the ear.
@@ -243,6 +277,7 @@ void bench(const Options& options) {
   const auto wanted = [&](const char* name) { return options.tables.count(name) > 0; };
   if (wanted("module")) modulePlans(b);
   if (wanted("fused")) fusedDispatch(b);
+  if (wanted("gather")) gathered(b);
   if (wanted("steps")) separateSteps(b);
   std::vector<Point> points;
   if (wanted("diffusion")) points = diffusion(b);

@@ -60,6 +60,16 @@ Capture slab(int width, int height, double coverage, double pixel) {
   return c;
 }
 
+Capture litFromTheFront(Capture slab) {
+  Light& light = slab.lights.at(0);
+  light.direction = {0, 0, -1};
+  ShadowMap& map = light.shadowMaps.at(0);
+  map.clipFromWorld[10] = -0.01;
+  map.clipFromWorld[14] = 0;
+  std::fill(map.depth.image.data.begin(), map.depth.image.data.end(), 0.50f);
+  return slab;
+}
+
 std::vector<ErrorScene> errorScenes() {
   const double plane = 40;
   const std::map<std::string, double> tilted = {{"tilt", 60}};

@@ -20,6 +20,9 @@ double pixelSizeFor(const PellucidMaterial& material, double radius);
 // upper `coverage` of the image has the material. A pixel is `pixel` mm wide.
 harness::Capture slab(int width, int height, double coverage, double pixel);
 
+// The same, with the light in front of it, so that its map shows what the camera sees.
+harness::Capture litFromTheFront(harness::Capture slab);
+
 // A scene that diffusions' errors are stated for.
 struct ErrorScene {
   std::string title, scene;

@@ -2,12 +2,19 @@
 #ifndef PELLUCID_COMMON_CASE_GLSL
 #define PELLUCID_COMMON_CASE_GLSL
 
-// DIRECTIONAL: the one light is directional with one shadow map, of device depth; thickness is light-space, front depth is
+// DIRECTIONAL: the one light (of the gather: every light) is directional with one shadow map, of device depth; thickness is light-space, front depth is
 // device depth, normals are given and stand for the angle, and all materials are EXP2.
 #ifdef DIRECTIONAL
 const bool kDirectional = true;
 #else
 const bool kDirectional = false;
+#endif
+
+// GATHER: lights with a shadow map are gathered from, and the pass does the others.
+#ifdef GATHER
+const bool kUnmapped = true;
+#else
+const bool kUnmapped = false;
 #endif
 
 #endif

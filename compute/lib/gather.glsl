@@ -6,20 +6,28 @@
 
 #include "shared/pellucid_shared.h"
 
-// A slab of thickness h: log2 of T(h) e^{q h}, and q in powers of 2 per mm, both polynomials in
-// v = h / (h + scale). T(h) itself has no bound in its logarithm.
+// A slab of thickness h: log2 of T(h) e^{q h}, and q in powers of 2 per mm. T(h) itself has no bound in its logarithm.
 struct GatherSlab {
   vec3 logarithm, decay;
 };
 
-GatherSlab gatherSlab(GatherConstants g, float h) {
-  float v = h / (h + g.lengths.w); // scale > 0
-  vec3 logarithm = g.slab[PELLUCID_GATHER_TERMS - 1].rgb, decay = g.decay[PELLUCID_GATHER_TERMS - 1].rgb;
-  for (int i = PELLUCID_GATHER_TERMS - 2; i >= 0; --i) {
-    logarithm = logarithm * v + g.slab[i].rgb;
-    decay = decay * v + g.decay[i].rgb;
-  }
-  return GatherSlab(logarithm, decay);
+// Linear between an entry of GatherConstants and the next: both, and what the next has more.
+struct GatherEntry {
+  vec4 a, b, c; // logarithm and its step, decay and its step
+};
+
+GatherEntry gatherEntry(vec3 logarithm, vec3 nextLogarithm, vec3 decay, vec3 nextDecay) {
+  vec3 step = nextLogarithm - logarithm, decayStep = nextDecay - decay;
+  return GatherEntry(vec4(logarithm, step.r), vec4(step.gb, decay.rg), vec4(decay.b, decayStep));
+}
+
+// Place of a thickness among the entries, which are at equal steps of h / (h + scale).
+float gatherPlace(vec4 lengths, float h) {
+  return h / (h + lengths.w) * float(PELLUCID_GATHER_ENTRIES - 1); // scale > 0
+}
+
+GatherSlab gatherSlab(GatherEntry e, float fraction) {
+  return GatherSlab(e.a.rgb + fraction * vec3(e.a.w, e.b.rg), vec3(e.b.zw, e.c.x) + fraction * e.c.yzw);
 }
 
 // Integral of K(r, h) over the ring that a plane with x at distance 0 from its center shows between the
@@ -38,11 +46,11 @@ vec3 gatherReflected(vec3 inverse3d, float near, float far) {
   return 0.25 * (a * a * a - b * b * b) + 0.75 * (a - b);
 }
 
-// Radius at which the share u of the samples lies inside, for a slab at distance t. Distances beyond t
-// are exponential, of a length that grows with u from the material's shortest to its longest; u < 1.
-float gatherRadius(GatherConstants g, float t, float u) {
-  float s = -log(1.0 - u) * g.lengths.x * exp2(g.lengths.y * u);
-  return sqrt(s * s + 2.0 * t * s);
-}
+// How much further than the nearest point of the lit surface the share u of the samples lies, at most:
+// exponential, of a length that grows with u from the material's shortest to its longest. u < 1.
+float gatherSpread(vec4 lengths, float u) { return -log(1.0 - u) * lengths.x * exp2(lengths.y * u); }
+
+// Square of the radius around a foot at distance t where the distance is t + spread.
+float gatherSquaredRadius(float t, float spread) { return spread * (spread + 2.0 * t); }
 
 #endif

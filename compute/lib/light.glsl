@@ -11,6 +11,18 @@ struct Incident {
   float distanceTo; // scene units; 0 for a directional light
 };
 
+// Which part of the light goes the way to a point: 1 inside the range and the cone. toLight: unit.
+float lightShare(LightConstants light, vec3 toLight, float distanceTo) {
+  if (kDirectional || light.meta.x == PELLUCID_SHADER_LIGHT_DIRECTIONAL) return 1.0;
+  float ratio = distanceTo * light.position.w;
+  float share = clamp(1.0 - ratio * ratio * ratio * ratio, 0.0, 1.0);
+  if (light.meta.x == PELLUCID_SHADER_LIGHT_SPOT) {
+    float cone = clamp(dot(-toLight, light.direction.xyz) * light.cone.x + light.cone.y, 0.0, 1.0);
+    share *= cone * cone;
+  }
+  return share;
+}
+
 Incident incidentLight(LightConstants light, vec3 x) {
   if (kDirectional || light.meta.x == PELLUCID_SHADER_LIGHT_DIRECTIONAL)
     return Incident(light.radiance.rgb, -light.direction.xyz, 0.0);
@@ -19,13 +31,7 @@ Incident incidentLight(LightConstants light, vec3 x) {
   float squared = max(dot(offset, offset), 1.0e-12);
   float distanceTo = sqrt(squared);
   vec3 toLight = offset / distanceTo;
-  float ratio = distanceTo * light.position.w;
-  float window = clamp(1.0 - ratio * ratio * ratio * ratio, 0.0, 1.0);
-  float attenuation = window / squared;
-  if (light.meta.x == PELLUCID_SHADER_LIGHT_SPOT) {
-    float cone = clamp(dot(-toLight, light.direction.xyz) * light.cone.x + light.cone.y, 0.0, 1.0);
-    attenuation *= cone * cone;
-  }
+  float attenuation = lightShare(light, toLight, distanceTo) / squared;
   return Incident(light.radiance.rgb * attenuation, toLight, distanceTo);
 }
 

@@ -9,6 +9,7 @@
 #include "lib/flags.glsl"
 #include "lib/light.glsl"
 #include "lib/shadow.glsl"
+#include "lib/surface.glsl"
 #include "lib/thickness.glsl"
 #include "lib/transmittance.glsl"
 
@@ -31,26 +32,6 @@ vec3 materialTransmittance(uint m, float d) {
   return d <= frame.filterAndLimit.w ? clamp(t, vec3(0.0), vec3(1.0)) * frame.filterAndLimit.rgb : vec3(0.0);
 }
 
-// What one pixel knows of its surface. View space, scene units.
-struct Surface {
-  vec3 position, normal, view; // view: unit, from the eye
-  float chord;                 // along the view ray; -1: unknown
-  bool hasNormal;
-};
-
-// `normal`: any length, view space; (0, 0, 0): none.
-Surface makeSurface(ViewRay ray, float planar, float chord, vec3 normal) {
-  Surface s;
-  s.position = ray.origin + planar * ray.direction;
-  s.view = normalize(ray.direction);
-  s.chord = chord;
-  s.normal = normal;
-  float squared = dot(s.normal, s.normal);
-  s.hasNormal = squared > 1.0e-8 && squared < 1.0e8; // false for NaN too
-  if (s.hasNormal) s.normal *= inversesqrt(squared);
-  return s;
-}
-
 struct LightSpace {
   bool inside, holds; // the map contains the point; its texel has a surface
   float thickness;    // scene units along the light ray; negative: the surface is beyond the point
@@ -64,7 +45,7 @@ LightSpace lightSpace(LightConstants light, Incident incident, vec3 x) {
     ShadowReceiver receiver = projectReceiver(shadow, x);
     if (!receiver.inside) continue;
     float stored = shadowTexel(shadow.meta.x, receiver.texel);
-    return LightSpace(true, shadowHolds(shadow, stored), lightThickness(shadow, receiver, x, incident, stored),
+    return LightSpace(true, shadowHolds(shadow.meta, stored), lightThickness(shadow, receiver, x, incident, stored),
                       shadow.depth.y);
   }
   return LightSpace(false, false, -1.0, 0.0);
@@ -89,7 +70,7 @@ float hiddenCosine(LightConstants light, Surface s, vec3 toLight) {
 // docs/design.md says why each source is what it is.
 Transmitted lightTransmission(LightConstants light, Surface s) {
   Incident incident = incidentLight(light, s.position);
-  bool mapped = light.meta.z != 0u;
+  bool mapped = !kUnmapped && light.meta.z != 0u;
   if (mapped && !hasFlag(PELLUCID_FLAG_CAMERA_THICKNESS)) {
     LightSpace l = lightSpace(light, incident, s.position);
     vec3 arriving = incident.irradiance * hiddenCosine(light, s, incident.toLight);

@@ -1,187 +1,137 @@
-// main() of the gather. Light that has gone through a part is smooth, so one point in 2x2 pixels gathers;
-// neighbors among these take samples of their own, nine patterns in 3x3, and share what they found with
-// those that lie near on the same side. A tile's points are in shared memory, with a border.
+// main() of the pass that adds gathered light to the pixels, which take what the four points around them have.
 #ifndef PELLUCID_PASS_GATHER_TILE_GLSL
 #define PELLUCID_PASS_GATHER_TILE_GLSL
 
-#include "passes/gather.glsl"
+#include "passes/points.glsl"
 
-const int kSide = PELLUCID_GATHER_GROUP;
-const int kPoints = kSide + 3;  // one before the tile and two behind: 3x3 around the points that pixels read
-const int kShared = kSide + 1;
-const uint kThreads = uint(kSide * kSide);
+layout(set = 0, binding = PELLUCID_BINDING_POINTS, rgba32ui) uniform readonly uimage2D pointsImage;
 
-shared vec3 pointPosition[kPoints * kPoints];
-shared uint pointFacing[kPoints * kPoints]; // normal in three bytes, material in the highest; 0: nothing there
-shared uvec3 pointLight[kPoints * kPoints]; // halves: added irradiance, displaced share
-shared uvec3 sharedLight[kShared * kShared];
+const int kTile = 2 * PELLUCID_GATHER_GROUP; // an invocation does four pixels, whose loads overlap
+// The points around all pixels of a tile, of cells of 2 x 2 pixels.
+const int kMostRow = kTile / 2 + 1;
+const int kThreads = PELLUCID_GATHER_GROUP * PELLUCID_GATHER_GROUP;
 
-struct Light {
-  vec3 added, displaced;
-};
+shared vec4 planes[kMostRow * kMostRow]; // see tangentPlane
+shared uvec4 points[kMostRow * kMostRow]; // halves: added, displaced; w: material, 0: nothing there
+shared uint someLight; // 0: no point has any
 
-uvec3 packLight(Light l) {
-  vec3 a = min(l.added, vec3(kLargestHalf));
-  return uvec3(packHalf2x16(a.xy), packHalf2x16(vec2(a.z, l.displaced.x)), packHalf2x16(l.displaced.yz));
+// A pixel that is a quarter of its side off a point's tangent plane is not of its surface. Measured: half and a
+// tenth err more on heads.
+const float kPerPixelOff = 4.0;
+
+// Planar distance of a point's tangent plane: x: in the tile's corner, y, z: its steps, per pixel. w: quarters of
+// a pixel off the plane, per distance along the view ray.
+vec4 tangentPlane(Point p, ivec2 pixel, ivec2 tile) {
+  Camera c = frame.camera;
+  vec2 sideX = c.rayX.zw + p.front * c.rayX.xy, sideY = c.rayY.zw + p.front * c.rayY.xy;
+  // Facing the camera; planes seen edge-on would have no slope.
+  float facing = min(dot(p.normal, viewRay(c, pixel).direction), -0.1);
+  vec2 steps = -vec2(dot(p.normal.xy, sideX), dot(p.normal.xy, sideY)) / facing;
+  // Pixels have a size in front of the eye.
+  float perSide = inversesqrt(max(dot(sideX, sideX), 1.0e-30));
+  return vec4(p.front - dot(steps, vec2(pixel - tile)), steps, -facing * kPerPixelOff * perSide);
 }
 
-Light unpackLight(uvec3 bits) {
-  vec2 middle = unpackHalf2x16(bits.y), last = unpackHalf2x16(bits.z);
-  return Light(vec3(unpackHalf2x16(bits.x), middle.x), vec3(middle.y, last));
+void loadPoint(int index, ivec2 cell, int side, ivec2 tile) {
+  points[index] = uvec4(0u);
+  ivec4 cells = cellsOf(frame.rect, side);
+  if (any(greaterThanEqual(cell, cells.zw)) || any(lessThan(cell, cells.xy))) return;
+  uvec4 bits = imageLoad(pointsImage, cell);
+  if (bits == kNoPoint) return;
+  Point p = unpackPoint(bits);
+  planes[index] = tangentPlane(p, pixelInCell(cell, side, p.index), tile);
+  points[index] = uvec4(bits.x, (bits.y & 0xFFFFu) | packHalf2x16(vec2(0.0, p.displaced.r)),
+                        packHalf2x16(p.displaced.gb), p.material);
+  if (any(notEqual(points[index].xyz, uvec3(0u)))) someLight = 1u;
 }
 
-// Index of the material where light comes through a surface at the pixel, 0 elsewhere.
-uint lightAt(ivec2 pixel, out float front) {
-  front = -1.0;
-  if (!insideRect(pixel)) return 0u;
-  uint value = materialValueAt(pixel);
-  if (materialIndex(value) == 0u || (value & frame.marks.x) != 0u) return 0u;
-  front = frontDistance(pixel);
-  return front > 0.0 ? materialIndex(value) : 0u;
-}
-
-Surface gatherSurface(ivec2 pixel, float front) {
-  float back = hasFlag(PELLUCID_FLAG_CHORD) ? texelFetch(backDepthImage, pixel, 0).x : 0.0;
-  return surfaceAt(pixel, front, texelFetch(frontDepthImage, pixel, 0).x, back, texelFetch(normalImage, pixel, 0));
-}
-
-uint packFacing(Surface s, uint material) {
-  return packSnorm4x8(vec4(s.hasNormal ? s.normal : -s.view, 0.0)) & 0xFFFFFFu | material << 24;
-}
-
-// How much of a neighbor's light is also light here, (0, 1]; 0 for other materials. The floor leaves a pixel
-// without a like neighbor the most alike.
-float likeness(vec3 x, uint facing, int other, float perSquare) {
-  if ((facing ^ pointFacing[other]) >> 24 != 0u) return 0.0;
-  vec3 apart = pointPosition[other] - x;
-  vec3 a = unpackSnorm4x8(facing).xyz, b = unpackSnorm4x8(pointFacing[other]).xyz;
-  return exp2(-dot(apart, apart) * perSquare) * max(dot(a, b), 0.0) + 1.0e-4;
-}
-
-float perSquareOf(uint m) {
-  float mm = frame.camera.range.w;
-  return materials[m].gather.profile.w * mm * mm;
-}
-
-// The nine patterns fill the strata and the turn between a sample and its like in the next ring.
-void gatherPoint(int index, ivec2 tile) {
-  ivec2 cell = ivec2(index % kPoints, index / kPoints) - 1;
-  ivec2 corner = tile + 2 * cell;
-  pointFacing[index] = 0u;
-  float front;
-  uint material = 0u;
-  ivec2 pixel = corner;
-  for (int i = 0; i < 4 && material == 0u; ++i) {
-    pixel = corner + ivec2((i ^ (i >> 1)) & 1, i >> 1); // the corner, then around
-    material = lightAt(pixel, front);
-  }
-  if (material == 0u) return;
-  uint m = material - 1u;
-  Surface s = gatherSurface(pixel, front);
-  pointPosition[index] = s.position;
-  pointFacing[index] = packFacing(s, material);
-  // Where points are too far apart to share, all take the middle pattern.
-  vec2 spacing = 2.0 * pixelSize(frame.camera, front);
-  float vary = clamp(2.0 - dot(spacing, spacing) * materials[m].gather.profile.w, 0.0, 1.0);
-  ivec2 at = (tile / 2 + cell + 3) % 3;
-  int pattern = (at.x + 3 * at.y) * 4 % 9;
-  float within = 0.5 + vary * (float(pattern) - 4.0) / 9.0;
-  float turn = vary * float(at.x + 3 * at.y) / 9.0;
-  vec3 transmitted = vec3(0.0), entering = vec3(0.0), displaced = vec3(0.0);
-  for (uint i = 0u; i < pass.value.y; ++i) {
-    LightConstants light = lights[i];
-    if (light.meta.z == 0u) continue;
-    Gathered g = gatherLight(m, light, s, pass.value.w, turn, within);
-    transmitted += g.transmitted;
-    entering += g.entering;
-    displaced = max(displaced, g.displaced); // of the same surface, whatever the light
-  }
-  transmitted *= frame.filterAndLimit.rgb * materials[m].inverseReflectance.rgb;
-  bool spreads = hasFlag(PELLUCID_FLAG_DIFFUSED);
-  pointLight[index] = packLight(Light(transmitted + (spreads ? entering : vec3(0.0)),
-                                      spreads ? min(displaced, vec3(1.0)) : vec3(0.0)));
-}
-
-void sharePoint(int index) {
-  ivec2 cell = ivec2(index % kShared, index / kShared) + 1;
-  int center = cell.y * kPoints + cell.x;
-  uint facing = pointFacing[center];
-  if (facing == 0u) return;
-  float perSquare = perSquareOf((facing >> 24) - 1u), total = 0.0;
-  Light sum = Light(vec3(0.0), vec3(0.0));
-  for (int y = -1; y <= 1; ++y)
-    for (int x = -1; x <= 1; ++x) {
-      int other = center + y * kPoints + x;
-      float weight = likeness(pointPosition[center], facing, other, perSquare);
-      if (weight == 0.0) continue;
-      Light l = unpackLight(pointLight[other]);
-      sum.added += weight * l.added;
-      sum.displaced += weight * l.displaced;
-      total += weight;
-    }
-  // The point itself is among them.
-  sharedLight[index] = packLight(Light(sum.added / total, sum.displaced / total));
-}
-
-// Linear between the four points around the pixel, as far as they are of its kind.
-Light lightOf(ivec2 local, Surface s, uint material) {
-  uint facing = packFacing(s, material);
-  float perSquare = perSquareOf(material - 1u), total = 0.0;
-  Light sum = Light(vec3(0.0), vec3(0.0));
-  vec2 fraction = 0.5 * vec2(local & 1);
+// What D becomes: linear between the four points around the pixel, as far as they are of its material and it lies
+// on their planes.
+vec3 withGathered(vec3 diffused, ivec2 local, int side, float front, uint material) {
+  float total = 0.0, perSide = side == 2 ? 0.5 : 0.25;
+  vec3 added = vec3(0.0), displaced = vec3(0.0);
+  vec2 fraction = vec2(local & (side - 1)) * perSide;
+  int shift = shiftOf(side);
+  int row = (kTile >> shift) + 1, first = (local.y >> shift) * row + (local.x >> shift);
   for (int i = 0; i < 4; ++i) {
-    ivec2 corner = ivec2(i & 1, i >> 1), cell = local / 2 + corner;
+    ivec2 corner = ivec2(i & 1, i >> 1);
     vec2 linear = mix(1.0 - fraction, fraction, vec2(corner));
-    int point = (cell.y + 1) * kPoints + cell.x + 1;
-    float weight = likeness(s.position, facing, point, perSquare) * (linear.x * linear.y + 1.0e-4);
-    if (weight == 0.0) continue;
-    Light l = unpackLight(sharedLight[cell.y * kShared + cell.x]);
-    sum.added += weight * l.added;
-    sum.displaced += weight * l.displaced;
+    int at = first + corner.y * row + corner.x;
+    uvec4 point = points[at];
+    if (point.w != material) continue;
+    vec4 plane = planes[at];
+    float off = (front - plane.x - dot(plane.yz, vec2(local))) * plane.w;
+    // The floors leave a pixel without a like neighbor the most alike.
+    float weight = (exp2(-off * off) + 1.0e-4) * (linear.x * linear.y + 1.0e-4);
+    vec2 middle = unpackHalf2x16(point.y);
+    added += weight * vec3(unpackHalf2x16(point.x), middle.x);
+    displaced += weight * vec3(middle.y, unpackHalf2x16(point.z));
     total += weight;
   }
-  // The quad's own point is of its material, unless the quad has several.
-  return total > 0.0 ? Light(sum.added / total, sum.displaced / total) : sum;
+  // The cell's own point is of its material, unless the cell has several.
+  return total > 0.0 ? diffused + (added - diffused * displaced) / total : diffused;
 }
 
-void writePixel(ivec2 pixel, ivec2 local) {
-  if (!insideRect(pixel)) return;
-  uint value = materialValueAt(pixel), material = materialIndex(value);
-  bool starts = pass.value.z == PELLUCID_WRITE_STARTS;
-  if (material == 0u) {
-    if (starts) imageStore(destinationImage, pixel, vec4(0.0));
-    return;
+// What came through of the lights without a map, which come last.
+vec3 otherLight(ivec2 pixel, float front, float frontStored, uint m) {
+  float back = hasFlag(PELLUCID_FLAG_CHORD) ? texelFetch(backDepthImage, pixel, 0).x : 0.0;
+  Surface s = surfaceAt(pixel, front, frontStored, back, texelFetch(normalImage, pixel, 0));
+  vec3 transmitted = vec3(0.0);
+  for (uint i = pass.value.w; i < pass.value.y; ++i) {
+    Transmitted t = lightTransmission(lights[i], s);
+    vec3 through = t.arriving * t.visible;
+    if (t.thickness >= 0.0) transmitted += through * materialTransmittance(m, t.thickness * frame.camera.range.w);
   }
-  vec4 source = starts ? vec4(0.0) : texelFetch(sourceImage, pixel, 0);
+  return transmitted * materials[m].inverseReflectance.rgb;
+}
+
+// `others`: there are lights without a map.
+void writePixel(ivec2 pixel, ivec2 local, int side, uint value, vec4 source, float frontStored, bool others) {
+  uint material = materialIndex(value);
+  if (material == 0u) return;
   vec3 result = sanitize(source.rgb);
-  float front;
-  if (lightAt(pixel, front) != 0u) {
-    Surface s = gatherSurface(pixel, front);
-    Light l = lightOf(local, s, material);
-    result = result * (1.0 - l.displaced) + l.added;
-    vec3 transmitted = vec3(0.0);
-    for (uint i = 0u; i < pass.value.y; ++i) {
-      LightConstants light = lights[i];
-      if (light.meta.z != 0u) continue;
-      Transmitted t = lightTransmission(light, s);
-      vec3 through = t.arriving * t.visible;
-      if (t.thickness >= 0.0)
-        transmitted += through * materialTransmittance(material - 1u, t.thickness * frame.camera.range.w);
-    }
-    result += transmitted * materials[material - 1u].inverseReflectance.rgb;
-  }
+  float front = (value & frame.marks.x) != 0u ? -1.0 : frontDistanceOf(frontStored);
+  if (front > 0.0 && someLight != 0u) result = withGathered(result, local, side, front, material);
+  if (front > 0.0 && others) result += otherLight(pixel, front, frontStored, material - 1u);
   writeResult(pixel, result, source.a, pass.value.z == PELLUCID_WRITE_LAST);
 }
 
 void main() {
-  ivec2 tile = ivec2(frame.rect.xy) + ivec2(gl_WorkGroupID.xy) * (2 * kSide);
-  for (uint i = gl_LocalInvocationIndex; i < uint(kPoints * kPoints); i += kThreads) gatherPoint(int(i), tile);
+  int side = int(pass.value.x), index = int(gl_LocalInvocationIndex);
+  ivec2 tile = (ivec2(frame.rect.xy) / kTile + ivec2(gl_WorkGroupID.xy)) * kTile;
+  uint value[4];
+  vec4 source[4];
+  float front[4];
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    // Within the rect, where the loads need no branch.
+    ivec2 pixel = tile + ivec2(gl_LocalInvocationID.xy) + PELLUCID_GATHER_GROUP * ivec2(i & 1, i >> 1);
+    pixel = clamp(pixel, ivec2(frame.rect.xy), ivec2(frame.rect.zw) - 1);
+    value[i] = materialValueAt(pixel);
+    source[i] = texelFetch(sourceImage, pixel, 0);
+    front[i] = texelFetch(frontDepthImage, pixel, 0).x;
+  }
+  if (index == 0) someLight = 0u;
   barrier();
-  for (uint i = gl_LocalInvocationIndex; i < uint(kShared * kShared); i += kThreads) sharePoint(int(i));
+  int shift = shiftOf(side), row = (kTile >> shift) + 1;
+  for (int i = index; i < row * row; i += kThreads) {
+    int y = side == 2 ? i / kMostRow : i / (kTile / 4 + 1);
+    loadPoint(i, (tile >> shift) + ivec2(i - y * row, y), side, tile);
+  }
   barrier();
-  for (int i = 0; i < 4; ++i) {
-    ivec2 local = ivec2(gl_LocalInvocationID.xy) + kSide * ivec2(i & 1, i >> 1);
-    writePixel(tile + local, local);
+  if (pass.value.w == pass.value.y) {
+    // Unrolled, so that the arrays stay in registers.
+    [[unroll]] for (int i = 0; i < 4; ++i) {
+      ivec2 local = ivec2(gl_LocalInvocationID.xy) + PELLUCID_GATHER_GROUP * ivec2(i & 1, i >> 1);
+      if (insideRect(tile + local)) writePixel(tile + local, local, side, value[i], source[i], front[i], false);
+    }
+  } else {
+    // The code of other lights once.
+    [[dont_unroll]] for (int i = 0; i < 4; ++i) {
+      ivec2 local = ivec2(gl_LocalInvocationID.xy) + PELLUCID_GATHER_GROUP * ivec2(i & 1, i >> 1), pixel = tile + local;
+      if (insideRect(pixel))
+        writePixel(pixel, local, side, materialValueAt(pixel), texelFetch(sourceImage, pixel, 0),
+                   texelFetch(frontDepthImage, pixel, 0).x, true);
+    }
   }
 }
 

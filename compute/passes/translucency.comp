@@ -23,29 +23,7 @@ layout(set = 0, binding = PELLUCID_BINDING_SHADOWS) uniform Shadows { ShadowCons
 layout(set = 0, binding = PELLUCID_BINDING_MATERIALS) readonly buffer Materials { MaterialConstants materials[]; };
 layout(set = 0, binding = PELLUCID_BINDING_BACK_DEPTH) uniform texture2D backDepthImage;
 layout(set = 0, binding = PELLUCID_BINDING_NORMAL) uniform texture2D normalImage;
-layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 0) uniform texture2D shadowImage0;
-layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 1) uniform texture2D shadowImage1;
-layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 2) uniform texture2D shadowImage2;
-layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 3) uniform texture2D shadowImage3;
-layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 4) uniform texture2D shadowImage4;
-layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 5) uniform texture2D shadowImage5;
-layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 6) uniform texture2D shadowImage6;
-layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 7) uniform texture2D shadowImage7;
-
-// A switch over constant bindings needs no shaderSampledImageArrayDynamicIndexing.
-float shadowTexel(uint image, ivec2 texel) {
-  switch (image) {
-    case 0u: return texelFetch(shadowImage0, texel, 0).x;
-    case 1u: return texelFetch(shadowImage1, texel, 0).x;
-    case 2u: return texelFetch(shadowImage2, texel, 0).x;
-    case 3u: return texelFetch(shadowImage3, texel, 0).x;
-    case 4u: return texelFetch(shadowImage4, texel, 0).x;
-    case 5u: return texelFetch(shadowImage5, texel, 0).x;
-    case 6u: return texelFetch(shadowImage6, texel, 0).x;
-    default: return texelFetch(shadowImage7, texel, 0).x;
-  }
-}
-
+#include "passes/shadow_images.glsl"
 #include "lib/transmission.glsl"
 
 Surface surfaceAt(ivec2 pixel, float front, float frontStored, float backStored, vec4 normalTexel) {
@@ -111,7 +89,7 @@ vec3 resultAt(Receiver r, Texels t, float front, uint m) {
   vec3 entering = incident.irradiance * hiddenCosine(light, r.surface, incident.toLight);
   float thickness = lightThickness(shadow, r.shadow, r.surface.position, incident, r.stored) - shadow.depth.y;
   // Marked pixels keep their irradiance.
-  bool through = front > 0.0 && (t.value & frame.marks.x) == 0u && r.shadow.inside && shadowHolds(shadow, r.stored);
+  bool through = front > 0.0 && (t.value & frame.marks.x) == 0u && r.shadow.inside && shadowHolds(shadow.meta, r.stored);
   vec3 result = sanitize(t.source.rgb);
   // Most pixels face the light; T is the expensive part.
   if (through && max(entering.r, max(entering.g, entering.b)) > 0.0)

@@ -24,7 +24,9 @@ using glm::vec4;
 #define PELLUCID_RESOLVE_TILE 32  // texels of level 2, a side
 #define PELLUCID_REDUCE_GROUP 16 // a side, of the pyramid's reductions
 #define PELLUCID_REDUCE_TILE 10  // a side, texels of the second of the two levels that a group makes
-#define PELLUCID_GATHER_GROUP 16 // threads a side; a tile of the gather is twice as wide
+#define PELLUCID_GATHER_GROUP 16 // a side, of the pass that adds gathered light; an invocation does 2 x 2 pixels
+#define PELLUCID_RECORDS_GROUP 8 // a side, of the gather's records and points
+#define PELLUCID_SHARE_GROUP 16  // a side, where points share
 
 #define PELLUCID_BINDING_FRAME 0
 #define PELLUCID_BINDING_LIGHTS 1
@@ -43,6 +45,11 @@ using glm::vec4;
 #define PELLUCID_SHADOW_IMAGE_COUNT 8     // 14 sampled images in all; every device has 16
 #define PELLUCID_BINDING_LEVELS 20        // written by the diffusion's passes, which read no shadow images:
 #define PELLUCID_BINDING_PYRAMID PELLUCID_BINDING_SHADOW_IMAGES
+// The gather's passes know lights, maps and materials, and no kernels:
+#define PELLUCID_BINDING_GATHER_MAPS PELLUCID_BINDING_SHADOWS
+#define PELLUCID_BINDING_RECORD_MAPS PELLUCID_BINDING_KERNELS
+#define PELLUCID_BINDING_RECORDS PELLUCID_BINDING_SHADOW_IMAGES
+#define PELLUCID_BINDING_POINTS PELLUCID_BINDING_LEVELS
 #define PELLUCID_BINDING_COUNT 21
 
 // Lights and shadow maps of one dispatch are uniform buffers, which are cached apart from what images pass
@@ -84,7 +91,7 @@ using glm::vec4;
 #define PELLUCID_WRITE_STARTS 2u // of a history, from 0
 
 #define PELLUCID_GAUSSIANS 8
-#define PELLUCID_GATHER_TERMS 7
+#define PELLUCID_GATHER_ENTRIES 64
 
 // The diffusion pyramid's levels are 1..LAST_LEVEL; a texel of the last one is 128 pixels wide.
 #define PELLUCID_LAST_LEVEL 7
@@ -136,8 +143,26 @@ struct ShadowConstants {
 struct GatherConstants {
   vec4 lengths; // mm; x: shortest; y: log2(longest / shortest); z: largest distance looked for; w: depth scale
   vec4 profile; // rgb: 1/(3 d) of Burley's profile, 0: none, 1/mm; w: sharing between points, 1/mm^2
-  vec4 slab[PELLUCID_GATHER_TERMS];
-  vec4 decay[PELLUCID_GATHER_TERMS];
+  vec4 slab[PELLUCID_GATHER_ENTRIES]; // see GatherSlab
+  vec4 decay[PELLUCID_GATHER_ENTRIES];
+};
+
+// A shadow map where its records lie; compute/passes/records.glsl. Of a view-space point (x, 1):
+struct GatherMapConstants {
+  vec4 column, row; // in records from the map's first one; perspective: times depth
+  vec4 depth;       // what records store. Directional: scene units towards the light; perspective: clip w
+  ivec4 place;      // x, y: of the first record in the image; z, w: how many
+};
+
+// Where light enters, by texel coordinates p of the map. Affine in p:
+struct RecordMapConstants {
+  vec4 origin, stepX, stepY; // xyz: directional: a point of the light's ray; perspective: its direction, of clip w 1.
+                             // w: of depth, see ray
+  vec4 ray;    // xyz: directional: towards the light, scene units; perspective: the light. w, directional: depth is
+               // stored w + affine; perspective: w / (stored - affine), or stored / affine where planar
+  uvec4 meta;  // as ShadowConstants::meta
+  uvec4 map;   // x, y: texels; z: how many a side for one record; w: the light, of lights[]
+  vec4 bias;   // x: scene units
 };
 
 struct MaterialConstants {
@@ -160,7 +185,9 @@ struct KernelConstants {
   vec4 pixelShare[2 * PELLUCID_SHARE_ENTRIES];
 };
 
-// Push constants. translucency: unused, lights, PELLUCID_WRITE_*, gather samples.
+// Push constants. translucency: pixels a side of a cell of the gather, lights, PELLUCID_WRITE_*, lights of the gather.
+// gather records: maps. gather points: pixels a side of a cell, lights with maps, 1 to add to what is there, samples.
+// gather share: pixels a side of a cell.
 // add: unused, unused, 1 if this is the last dispatch.
 // reduce: finer level. resolve: coarsest level.
 // diffuse: unused, 1 if the source may hold anything, unused, 1 if this is the last dispatch.

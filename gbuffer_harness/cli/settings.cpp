@@ -163,6 +163,11 @@ const std::map<std::string, Key> kKeys = {
       [](const auto& key, const auto& value, ReplaySettings& s) {
         s.translucency.gatherSamples = number(key, value);
       }}},
+    {"gather-spacing",
+     {"pixels a side of what a point of the gather stands for: 2, 4, or 0: by the image's size",
+      [](const auto& key, const auto& value, ReplaySettings& s) {
+        s.translucency.gatherSpacing = number(key, value);
+      }}},
     {"minimum-dots",
      {"m0,m1,.. of angle=minimum-dot-azimuth (thesis: 36) or -sphere (rows of a square)",
       [](const auto& key, const auto& value, ReplaySettings& s) {

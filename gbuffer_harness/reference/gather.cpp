@@ -19,7 +19,7 @@ constexpr int kBlock = 16;
 // A surface seen more obliquely by the light than this counts as if it were not.
 constexpr double kLeastCosine = 0.05;
 // Texels: a point on a surface and the pixel that shows it are apart by the slope within them.
-constexpr double kSeenTolerance = 2;
+constexpr double kSeenTolerance = 0.5;
 
 bool contains(const ShadowMap& map, const glm::dvec3& point) {
   const glm::dvec4 clip = toMatrix(map.clipFromWorld) * glm::dvec4(point, 1);

@@ -147,6 +147,7 @@ void makeFrame(const Capture& capture, const std::vector<PellucidMaterial>& mate
   std::copy(t.anglePolynomial.begin(), t.anglePolynomial.end(), f.anglePolynomial);
   f.minimumDot = t.minimumDot;
   f.gatherSamples = t.gatherSamples;
+  f.gatherSpacing = t.gatherSpacing;
   f.constantViewDirection = t.constantViewDirection;
   f.chordThickness = t.chordThickness;
   f.maximumThickness = t.maximumThickness;

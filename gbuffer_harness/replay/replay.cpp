@@ -37,14 +37,15 @@ public:
       else
         output_->upload(composited(capture));
     }
-    PellucidImageNeed needs[PELLUCID_MAX_TRANSIENTS];
-    uint32_t count = PELLUCID_MAX_TRANSIENTS;
+    PellucidImageNeed needs[PELLUCID_MAX_TRANSIENTS + 1];  // and a history
+    uint32_t count = PELLUCID_MAX_TRANSIENTS + 1;
     requireOk(pellucidGetImageNeeds(&f, &count, needs), f, capture.name);
     for (uint32_t i = 0; i < count; ++i) {
       if (needs[i].persistent) {
         history_ = previous ? previous->history_ : nullptr;
         if (!history_) {
-          history_ = std::make_shared<GpuImage>(device, width_, height_, needs[i].format);
+          history_ = std::make_shared<GpuImage>(device, static_cast<int>(needs[i].extent[0]),
+                                                static_cast<int>(needs[i].extent[1]), needs[i].format);
           history_->clear();
         }
         f.history = history_->use();

@@ -9,6 +9,7 @@
 #include "gather.h"
 #include "minimum_dot.h"
 #include "pyramid.h"
+#include "records.h"
 #include "reuse.h"
 #include "validate.h"
 
@@ -54,9 +55,7 @@ shared::FrameConstants frameConstants(const PellucidFrame& f) {
   if (f.constantViewDirection) flags |= PELLUCID_FLAG_CONSTANT_VIEW;
   if (f.chordThickness) flags |= PELLUCID_FLAG_CHORD_THICKNESS;
   if (needsChord(f)) flags |= PELLUCID_FLAG_CHORD;
-  // A history is added to the diffused light later, so nothing in it can be displaced here.
-  if (f.features & PELLUCID_FEATURE_DIFFUSION && anyMaterialDiffuses(f) && !keepsHistory(f))
-    flags |= PELLUCID_FLAG_DIFFUSED;
+  if (f.features & PELLUCID_FEATURE_DIFFUSION && anyMaterialDiffuses(f)) flags |= PELLUCID_FLAG_DIFFUSED;
   c.flags = {flags, f.materialCount, f.debugView, f.angleModel};
   const float* p = f.anglePolynomial;
   c.anglePolynomial = {p[0], p[1], p[2], p[3]};
@@ -183,20 +182,31 @@ extern "C" PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const
   const glm::dmat4 worldFromView = glm::inverse(viewFromWorld);
   const auto eachLight = [&](const LightGroup& group, const PellucidLight& l) {
     // addLight ran before this call: the group counts the light, its maps and its images already.
-    uint32_t shadow = group.shadowCount - l.shadowMapCount;
+    uint32_t shadow = group.shadowCount - l.shadowMapCount, row = group.recordRows;
+    if (isGathered(f, l))
+      for (uint32_t i = 0; i < l.shadowMapCount; ++i) row -= recordExtent(f, l, i).height;
     put(mapped,
         layout.lights.offset + group.lightBytes + (group.lightCount - 1) * sizeof(shared::LightConstants),
         lightConstants(f, l, viewFromWorld, shadow));
     for (uint32_t i = 0; i < l.shadowMapCount; ++i, ++shadow) {
       const PellucidShadowMap& s = f.shadowMaps[l.firstShadowMap + i];
-      put(mapped, layout.shadows.offset + group.shadowBytes + shadow * sizeof(shared::ShadowConstants),
-          shadowConstants(s, l, worldFromView, group.slot(s.image)));
+      const shared::ShadowConstants constants = shadowConstants(s, l, worldFromView, group.slot(s.image));
+      put(mapped, layout.shadows.offset + group.shadowBytes + shadow * sizeof constants, constants);
+      if (!isGathered(f, l)) continue;
+      const RecordExtent extent = recordExtent(f, l, i);
+      const RecordConstants records =
+          recordConstants(s, l, constants, viewFromWorld, extent, row, group.lightCount - 1);
+      row += extent.height;
+      put(mapped, layout.gatherMaps.offset + group.gatherMapBytes + shadow * sizeof records.gather,
+          records.gather);
+      put(mapped, layout.recordMaps.offset + group.recordMapBytes + shadow * sizeof records.record,
+          records.record);
     }
   };
   forEachLightGroup(f, eachLight, [](const LightGroup&) {});
   for (uint32_t i = 0; i < f.materialCount; ++i) {
     put(mapped, layout.materials.offset + i * sizeof(shared::MaterialConstants),
-        materialConstants(f.materials[i], f.gatherSamples > 0));
+        materialConstants(f.materials[i], gathers(f)));
     put(mapped, layout.kernels.offset + i * sizeof(shared::KernelConstants),
         kernelConstants(f.materials[i], plan->quality > 0));
   }

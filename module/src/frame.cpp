@@ -1,5 +1,9 @@
 #include "frame.h"
 
+#include <algorithm>
+
+#include "records.h"
+
 namespace pellucid {
 
 Rect renderRect(const PellucidFrame& frame) {
@@ -24,9 +28,19 @@ bool addLight(const PellucidFrame& frame, const PellucidLight& light, LightGroup
     if (grown.imageCount == PELLUCID_SHADOW_IMAGE_COUNT) return false;
     grown.images[grown.imageCount++] = image;
   }
-  grown.directional = grown.directional && light.type == PELLUCID_LIGHT_DIRECTIONAL &&
-                      light.shadowMapCount == 1 &&
-                      frame.shadowMaps[light.firstShadowMap].encoding == PELLUCID_DEPTH_DEVICE;
+  if (isGathered(frame, light)) {
+    for (uint32_t i = 0; i < light.shadowMapCount; ++i) {
+      const RecordExtent extent = recordExtent(frame, light, i);
+      grown.recordColumns = std::max(grown.recordColumns, extent.width);
+      grown.recordRows += extent.height;
+    }
+    if (grown.recordRows > kRecordRows) return false;
+    ++grown.gathered;
+  }
+  const bool directional = light.type == PELLUCID_LIGHT_DIRECTIONAL && light.shadowMapCount == 1 &&
+                           frame.shadowMaps[light.firstShadowMap].encoding == PELLUCID_DEPTH_DEVICE;
+  grown.directional = grown.directional && directional;
+  if (isGathered(frame, light)) grown.gatheredDirectional = grown.gatheredDirectional && directional;
   ++grown.lightCount;
   *group = grown;
   return true;
@@ -40,22 +54,30 @@ bool needsChord(const PellucidFrame& frame) {
   return false;
 }
 
-uint32_t lightGroupCount(const PellucidFrame& frame) {
-  uint32_t count = 0;
+uint32_t gatherSpacing(const PellucidFrame& frame) {
+  if (frame.gatherSpacing != 0) return frame.gatherSpacing;
+  return static_cast<uint64_t>(frame.imageExtent[0]) * frame.imageExtent[1] > 1u << 20 ? 4 : 2;
+}
+
+LightGroups lightGroups(const PellucidFrame& frame) {
+  LightGroups groups;
   forEachLightGroup(
-      frame, [](const LightGroup&, const PellucidLight&) {}, [&](const LightGroup&) { ++count; });
-  return count;
+      frame, [](const LightGroup&, const PellucidLight&) {},
+      [&](const LightGroup& group) {
+        ++groups.count;
+        if (group.gathered > 0) ++groups.gathered;
+        groups.recordColumns = std::max(groups.recordColumns, group.recordColumns);
+        groups.recordRows = std::max(groups.recordRows, group.recordRows);
+      });
+  return groups;
 }
 
 ConstantsLayout constantsLayout(const PellucidFrame& frame) {
   ConstantsLayout layout{};
-  VkDeviceSize lightBytes = 0, shadowBytes = 0;
+  LightGroup last;
   forEachLightGroup(
       frame, [&](const LightGroup&, const PellucidLight&) { ++layout.lightCount; },
-      [&](const LightGroup& group) {
-        lightBytes = group.lightBytes;
-        shadowBytes = group.shadowBytes;
-      });
+      [&](const LightGroup& group) { last = group; });
   const auto place = [&layout](ConstantsLayout::Range* range, VkDeviceSize bytes) {
     range->size = bytes;
     range->offset = layout.size;
@@ -63,10 +85,15 @@ ConstantsLayout constantsLayout(const PellucidFrame& frame) {
   };
   place(&layout.frame, sizeof(shared::FrameConstants));
   // The last group's window reaches as far as the first one's.
-  place(&layout.lights, lightBytes + kLightWindow);
-  place(&layout.shadows, shadowBytes + kShadowWindow);
+  place(&layout.lights, last.lightBytes + kLightWindow);
+  place(&layout.shadows, last.shadowBytes + kShadowWindow);
   place(&layout.materials, frame.materialCount * sizeof(shared::MaterialConstants));
   place(&layout.kernels, frame.materialCount * sizeof(shared::KernelConstants));
+  if (gathers(frame)) {
+    place(&layout.gatherMaps, last.gatherMapBytes + kGatherMapWindow);
+    place(&layout.recordMaps,
+          last.recordMapBytes + PELLUCID_DISPATCH_SHADOWS * sizeof(shared::RecordMapConstants));
+  }
   return layout;
 }
 

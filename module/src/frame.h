@@ -24,7 +24,9 @@ bool anyMaterialDiffuses(const PellucidFrame& frame);
 // are laid out light by light within the groups.
 constexpr VkDeviceSize kLightWindow = PELLUCID_DISPATCH_LIGHTS * sizeof(shared::LightConstants);
 constexpr VkDeviceSize kShadowWindow = PELLUCID_DISPATCH_SHADOWS * sizeof(shared::ShadowConstants);
-static_assert(kLightWindow <= 16384 && kShadowWindow <= 16384);  // least maxUniformBufferRange
+constexpr VkDeviceSize kGatherMapWindow = PELLUCID_DISPATCH_SHADOWS * sizeof(shared::GatherMapConstants);
+static_assert(kLightWindow <= 16384 && kShadowWindow <= 16384 &&
+              kGatherMapWindow <= kShadowWindow);  // least maxUniformBufferRange
 
 // The largest offset alignment that Vulkan allows a device to ask for.
 constexpr VkDeviceSize aligned(VkDeviceSize bytes) { return (bytes + 255) / 256 * 256; }
@@ -34,6 +36,10 @@ struct LightGroup {
   bool directional = true;   // every light is directional with one shadow map of device depth
   uint32_t shadowCount = 0;                      // shadow maps
   VkDeviceSize lightBytes = 0, shadowBytes = 0;  // of the groups before, in the constants
+  VkDeviceSize gatherMapBytes = 0, recordMapBytes = 0;
+  uint32_t gathered = 0;                       // lights that are gathered from; the first ones
+  bool gatheredDirectional = true;             // as `directional`, of these
+  uint32_t recordColumns = 0, recordRows = 0;  // of their maps' records
   uint32_t imageCount = 0;
   std::array<uint32_t, PELLUCID_SHADOW_IMAGE_COUNT> images{};  // into frame.shadowImages
 
@@ -45,28 +51,46 @@ struct LightGroup {
   }
 };
 
+// Whether lights with a map are gathered from.
+inline bool gathers(const PellucidFrame& frame) {
+  return frame.gatherSamples > 0 && frame.debugView == PELLUCID_DEBUG_NONE;
+}
+inline bool isGathered(const PellucidFrame& frame, const PellucidLight& light) {
+  return gathers(frame) && light.shadowMapCount > 0;
+}
+
+// Pixels a side of what one point of the gather stands for.
+uint32_t gatherSpacing(const PellucidFrame& frame);
+
 // Adds the light's maps to the group; false (and no change) if they do not fit.
 bool addLight(const PellucidFrame& frame, const PellucidLight& light, LightGroup* group);
 
 // Calls group(const LightGroup&) for each group in order, and light(const LightGroup&, const
-// PellucidLight&) for each light as it is placed.
+// PellucidLight&) for each light as it is placed. Those that are gathered from come first: all of them are
+// added to the pixels at once.
 template <class OnLight, class OnGroup>
 void forEachLightGroup(const PellucidFrame& frame, OnLight&& light, OnGroup&& group) {
   LightGroup current;
   const ViewBounds view(frame);
-  for (uint32_t i = 0; i < frame.lightCount; ++i) {
-    if (view.whySkipped(frame.lights[i])) continue;
-    if (!addLight(frame, frame.lights[i], &current)) {
-      group(static_cast<const LightGroup&>(current));
-      LightGroup next;
-      next.firstLight = current.firstLight + current.lightCount;
-      next.lightBytes = current.lightBytes + aligned(current.lightCount * sizeof(shared::LightConstants));
-      next.shadowBytes = current.shadowBytes + aligned(current.shadowCount * sizeof(shared::ShadowConstants));
-      current = next;
-      addLight(frame, frame.lights[i], &current);
+  for (const bool gathered : {true, false})
+    for (uint32_t i = 0; i < frame.lightCount; ++i) {
+      if (isGathered(frame, frame.lights[i]) != gathered || view.whySkipped(frame.lights[i])) continue;
+      if (!addLight(frame, frame.lights[i], &current)) {
+        group(static_cast<const LightGroup&>(current));
+        LightGroup next;
+        next.firstLight = current.firstLight + current.lightCount;
+        next.lightBytes = current.lightBytes + aligned(current.lightCount * sizeof(shared::LightConstants));
+        next.shadowBytes =
+            current.shadowBytes + aligned(current.shadowCount * sizeof(shared::ShadowConstants));
+        next.gatherMapBytes =
+            current.gatherMapBytes + aligned(current.shadowCount * sizeof(shared::GatherMapConstants));
+        next.recordMapBytes =
+            current.recordMapBytes + aligned(current.shadowCount * sizeof(shared::RecordMapConstants));
+        current = next;
+        addLight(frame, frame.lights[i], &current);
+      }
+      light(static_cast<const LightGroup&>(current), frame.lights[i]);
     }
-    light(static_cast<const LightGroup&>(current), frame.lights[i]);
-  }
   if (current.lightCount > 0) group(static_cast<const LightGroup&>(current));
 }
 
@@ -74,8 +98,16 @@ void forEachLightGroup(const PellucidFrame& frame, OnLight&& light, OnGroup&& gr
 // of thickness shows it.
 bool needsChord(const PellucidFrame& frame);
 
-// How many fused dispatches the lights need; 0 without lights.
-uint32_t lightGroupCount(const PellucidFrame& frame);
+struct LightGroups {
+  uint32_t count = 0, gathered = 0;            // gathered: with lights that are gathered from
+  uint32_t recordColumns = 0, recordRows = 0;  // the most of a group
+  // Dispatches besides those over all pixels.
+  uint32_t gatherDispatches() const { return gathered > 0 ? 2 * gathered + 1 : 0; }
+  // Dispatches over all pixels. What is gathered in several groups is added at once.
+  uint32_t fused() const { return count - (gathered > 0 ? gathered - 1 : 0); }
+};
+
+LightGroups lightGroups(const PellucidFrame& frame);
 
 // Byte ranges of the constants slice.
 struct ConstantsLayout {
@@ -83,6 +115,7 @@ struct ConstantsLayout {
     VkDeviceSize offset, size;
   };
   Range frame, lights, shadows, materials, kernels;
+  Range gatherMaps, recordMaps;  // of frames that gather
   VkDeviceSize size;
   uint32_t lightCount;
 };

@@ -9,7 +9,7 @@ namespace pellucid {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr int kTerms = PELLUCID_GATHER_TERMS;
+constexpr int kEntries = PELLUCID_GATHER_ENTRIES;
 
 // T(d) of one channel and how fast it spreads sideways.
 struct Channel {
@@ -61,19 +61,6 @@ double profileLength(const PellucidMaterial& m, int channel) {
   return weight > 0 ? mean / weight / 2.5 : 0;
 }
 
-// Coefficients of 1, v, v^2, .. of the polynomial through kTerms points.
-std::array<double, kTerms> interpolate(const std::array<double, kTerms>& at,
-                                       std::array<double, kTerms> value) {
-  for (int order = 1; order < kTerms; ++order)
-    for (int i = kTerms - 1; i >= order; --i) value[i] = (value[i] - value[i - 1]) / (at[i] - at[i - order]);
-  std::array<double, kTerms> c{};
-  for (int i = kTerms - 1; i >= 0; --i) {
-    for (int k = kTerms - 1; k > 0; --k) c[k] = c[k - 1] - at[i] * c[k];
-    c[0] = value[i] - at[i] * c[0];
-  }
-  return c;
-}
-
 }  // namespace
 
 shared::GatherConstants gatherConstants(const PellucidMaterial& m) {
@@ -90,25 +77,17 @@ shared::GatherConstants gatherConstants(const PellucidMaterial& m) {
   const double depthScale = 0.5 / slowest;
   g.lengths = {static_cast<float>(shortest), static_cast<float>(std::log2(longest / shortest)),
                static_cast<float>(2 / slowest), static_cast<float>(depthScale)};
-  // Chebyshev's points in v = h / (h + scale), 0..1: the error is .9 % at most for skin.
-  std::array<double, kTerms> at;
-  for (int i = 0; i < kTerms; ++i) at[i] = 0.5 - 0.5 * std::cos(kPi * (i + 0.5) / kTerms);
   for (int c = 0; c < 3; ++c) {
     const double d = profileLength(m, c);
     g.profile[c] = static_cast<float>(d > 0 ? 1 / (3 * d) : 0);
-    std::array<double, kTerms> slab, decay;
-    for (int i = 0; i < kTerms; ++i) {
+    for (int i = 0; i < kEntries; ++i) {
       // Beyond 500 decay lengths T is below the least double; its logarithm goes on as a line.
-      const double h = std::min(depthScale * at[i] / (1 - at[i]), 500 / channels[c].slowest);
+      const double v = static_cast<double>(i) / (kEntries - 1), farthest = 500 / channels[c].slowest;
+      const double h = v < 1 ? std::min(depthScale * v / (1 - v), farthest) : farthest;
       const double q = channels[c].decay(h);
-      slab[i] = (std::log(std::max(channels[c].transmittance(h), 1e-300)) + q * h) / std::numbers::ln2;
-      decay[i] = q / std::numbers::ln2;
-    }
-    slab = interpolate(at, slab);
-    decay = interpolate(at, decay);
-    for (int i = 0; i < kTerms; ++i) {
-      g.slab[i][c] = static_cast<float>(slab[i]);
-      g.decay[i][c] = static_cast<float>(decay[i]);
+      g.slab[i][c] = static_cast<float>((std::log(std::max(channels[c].transmittance(h), 1e-300)) + q * h) /
+                                        std::numbers::ln2);
+      g.decay[i][c] = static_cast<float>(q / std::numbers::ln2);
     }
   }
   // Points share what they gather as far as the light that comes through thin parts spreads sideways.

@@ -4,6 +4,7 @@
 #include "frame.h"
 #include "pyramid.h"
 #include "quality.h"
+#include "records.h"
 #include "reuse.h"
 #include "validate.h"
 
@@ -20,11 +21,17 @@ struct Builder {
   const ConstantsLayout layout;
   const Rect rect;
   const uint32_t colorTransients;
+  const bool keepsPoints;
   PellucidPlan& plan;
 
   bool wide() const { return frame.outputFormat == VK_FORMAT_R32G32B32A32_SFLOAT; }
   uint64_t pixels() const { return static_cast<uint64_t>(rect.width) * rect.height; }
   uint32_t pyramidImage() const { return kTransient0 + colorTransients; }
+  // What points of the gather find, and what they share; records lie where the pyramid did.
+  uint32_t pointsImage() const { return pyramidImage() + 1; }
+  uint32_t sharedImage() const {
+    return keepsPoints ? static_cast<uint32_t>(PELLUCID_RESOURCE_HISTORY) : pyramidImage();
+  }
   uint64_t colorBytes() const { return wide() ? 16 : 8; }
 
   void skip(const char* what, const char* reason) {
@@ -109,12 +116,93 @@ struct Builder {
            frame.constantViewDirection == 0;
   }
 
+  // Cells of the gather that the rect touches.
+  struct Cells {
+    uint32_t width, height;
+  };
+  Cells cells() const {
+    const uint32_t side = gatherSpacing(frame);
+    const auto count = [side](uint32_t first, uint32_t pixels) {
+      return (first + pixels - 1) / side - first / side + 1;
+    };
+    return {count(rect.x, rect.width), count(rect.y, rect.height)};
+  }
+
+  bool gather(const LightGroup& group, bool adds) {
+    const uint64_t recordBytes = kTexelBytes * group.recordColumns * group.recordRows;
+    const bool directional = group.gatheredDirectional && directionalFrame();
+    PellucidDispatch* d =
+        dispatch("gather records", directional ? PELLUCID_PIPELINE_GATHER_RECORDS_DIRECTIONAL
+                                               : PELLUCID_PIPELINE_GATHER_RECORDS);
+    if (!d) return false;
+    groups(d, group.recordColumns, group.recordRows, PELLUCID_RECORDS_GROUP);
+    d->pushConstants[0] = group.shadowCount;
+    constants(d, PELLUCID_BINDING_FRAME, layout.frame);
+    constants(d, PELLUCID_BINDING_LIGHTS, {layout.lights.offset + group.lightBytes, kLightWindow});
+    constants(d, PELLUCID_BINDING_GATHER_MAPS,
+              {layout.gatherMaps.offset + group.gatherMapBytes, kGatherMapWindow});
+    constants(d, PELLUCID_BINDING_RECORD_MAPS,
+              {layout.recordMaps.offset + group.recordMapBytes,
+               group.shadowCount * sizeof(shared::RecordMapConstants)});
+    image(d, PELLUCID_BINDING_FRONT_DEPTH, PELLUCID_RESOURCE_FRONT_DEPTH, kUnknownDepthBytes);
+    shadowImages(d, group);
+    bind(d, PELLUCID_BINDING_LEVELS, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, pyramidImage());
+    d->modeledBytes += recordBytes;
+
+    d = dispatch("gather points",
+                 directional ? PELLUCID_PIPELINE_GATHER_POINTS_DIRECTIONAL : PELLUCID_PIPELINE_GATHER_POINTS);
+    if (!d) return false;
+    const Cells size = cells();
+    groups(d, size.width, size.height, PELLUCID_RECORDS_GROUP);
+    d->pushConstants[0] = gatherSpacing(frame);
+    d->pushConstants[1] = group.gathered;
+    d->pushConstants[2] = adds;
+    d->pushConstants[3] = frame.gatherSamples;
+    constants(d, PELLUCID_BINDING_FRAME, layout.frame);
+    constants(d, PELLUCID_BINDING_LIGHTS, {layout.lights.offset + group.lightBytes, kLightWindow});
+    constants(d, PELLUCID_BINDING_GATHER_MAPS,
+              {layout.gatherMaps.offset + group.gatherMapBytes, kGatherMapWindow});
+    constants(d, PELLUCID_BINDING_MATERIALS, layout.materials);
+    bind(d, PELLUCID_BINDING_FRONT_DEPTH, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, PELLUCID_RESOURCE_FRONT_DEPTH);
+    bind(d, PELLUCID_BINDING_MATERIAL, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, PELLUCID_RESOURCE_MATERIAL);
+    optional(d, PELLUCID_BINDING_NORMAL, frame.normal, PELLUCID_RESOURCE_NORMAL, 0);
+    bind(d, PELLUCID_BINDING_RECORDS, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, pyramidImage());
+    bind(d, PELLUCID_BINDING_POINTS, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, pointsImage());
+    // Of each cell one pixel's depth, material and normal.
+    constexpr uint64_t kCellBytes = kUnknownDepthBytes + 1 + 4 + kTexelBytes;
+    d->modeledBytes = recordBytes + (kCellBytes + (adds ? kTexelBytes : 0)) * size.width * size.height;
+    return true;
+  }
+
+  bool share() {
+    PellucidDispatch* d = dispatch("gather share", PELLUCID_PIPELINE_GATHER_SHARE);
+    if (!d) return false;
+    const Cells size = cells();
+    groups(d, size.width, size.height, PELLUCID_SHARE_GROUP);
+    d->pushConstants[0] = gatherSpacing(frame);
+    constants(d, PELLUCID_BINDING_FRAME, layout.frame);
+    constants(d, PELLUCID_BINDING_MATERIALS, layout.materials);
+    bind(d, PELLUCID_BINDING_RECORDS, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, pointsImage());
+    bind(d, PELLUCID_BINDING_POINTS, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, sharedImage());
+    d->modeledBytes = 2 * kTexelBytes * size.width * size.height;
+    return true;
+  }
+
+  void shadowImages(PellucidDispatch* d, const LightGroup& group) const {
+    for (uint32_t slot = 0; slot < PELLUCID_SHADOW_IMAGE_COUNT; ++slot) {
+      const bool used = slot < group.imageCount;
+      image(d, PELLUCID_BINDING_SHADOW_IMAGES + slot,
+            used ? kShadow0 + group.images[slot] : static_cast<uint32_t>(PELLUCID_RESOURCE_FRONT_DEPTH),
+            used ? kUnknownDepthBytes : 0);
+    }
+  }
+
   // `quads`: the pyramid's level 1 is written too.
   bool translucency(const LightGroup& group, uint32_t source, uint32_t destination, bool quads) {
     const bool debug = frame.debugView != PELLUCID_DEBUG_NONE;
     const bool directional = group.lightCount == 1 && group.directional && directionalFrame();
     const uint32_t half = debug                     ? PELLUCID_PIPELINE_DEBUG_16F
-                          : frame.gatherSamples > 0 ? PELLUCID_PIPELINE_GATHER_16F
+                          : group.gathered > 0      ? PELLUCID_PIPELINE_GATHER_16F
                           : directional && quads    ? PELLUCID_PIPELINE_DIRECTIONAL_QUADS_16F
                           : directional             ? PELLUCID_PIPELINE_DIRECTIONAL_16F
                           : quads                   ? PELLUCID_PIPELINE_TRANSLUCENCY_QUADS_16F
@@ -122,10 +210,17 @@ struct Builder {
     const uint32_t pipeline = half + (wide() ? 1 : 0);  // the 32F variant follows the 16F one
     PellucidDispatch* d = dispatch(debug ? "debug view" : "translucency", pipeline);
     if (!d) return false;
-    if (half == PELLUCID_PIPELINE_GATHER_16F)
-      groups(d, rect.width, rect.height, 2 * PELLUCID_GATHER_GROUP);
-    else
+    if (half == PELLUCID_PIPELINE_GATHER_16F) {
+      // Tiles are the image's.
+      constexpr uint32_t kTile = 2 * PELLUCID_GATHER_GROUP;
+      groups(d, rect.x % kTile + rect.width, rect.y % kTile + rect.height, kTile);
+      d->pushConstants[0] = gatherSpacing(frame);
+      d->pushConstants[3] = group.gathered;
+      bind(d, PELLUCID_BINDING_POINTS, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, sharedImage());
+      d->modeledBytes += kTexelBytes * cells().width * cells().height;
+    } else {
       tiles(d);
+    }
     if (quads) {
       writesPyramid(d);
       writesLevel(d, kFirstLevel);
@@ -134,7 +229,6 @@ struct Builder {
     d->pushConstants[2] = destination == PELLUCID_RESOURCE_OUTPUT;
     if (destination == PELLUCID_RESOURCE_HISTORY && group.firstLight == 0)
       d->pushConstants[2] = PELLUCID_WRITE_STARTS;
-    d->pushConstants[3] = frame.gatherSamples;
     common(d, source, destination);
     if (d->pushConstants[2] == PELLUCID_WRITE_STARTS)
       d->modeledBytes -= colorBytes() * pixels();  // what is there is not read
@@ -144,12 +238,8 @@ struct Builder {
     optional(d, PELLUCID_BINDING_BACK_DEPTH, frame.backDepth, PELLUCID_RESOURCE_BACK_DEPTH,
              needsChord(frame) ? kUnknownDepthBytes : 0);
     optional(d, PELLUCID_BINDING_NORMAL, frame.normal, PELLUCID_RESOURCE_NORMAL, 4);
-    for (uint32_t slot = 0; slot < PELLUCID_SHADOW_IMAGE_COUNT; ++slot) {
-      const bool used = slot < group.imageCount;
-      image(d, PELLUCID_BINDING_SHADOW_IMAGES + slot,
-            used ? kShadow0 + group.images[slot] : static_cast<uint32_t>(PELLUCID_RESOURCE_FRONT_DEPTH),
-            used ? kUnknownDepthBytes : 0);
-    }
+    // Lights that are gathered from have been.
+    shadowImages(d, group.gathered > 0 ? LightGroup{} : group);
     return true;
   }
 
@@ -254,33 +344,41 @@ struct Stages {
   bool diffusion;
   uint32_t fused;  // fused dispatches
   bool history;    // these write the history, and one more adds it
+  bool keepsPoints;  // the history is what the gather's points share: these read it
   // The diffusion is all there is: it copies the irradiance before it writes the output, which may be the
   // same image and whose pixels read their neighbors.
   bool copies;
   bool fusesQuads;  // the last fused dispatch makes the pyramid's level 1 of what it writes
+  LightGroups groups;  // of lights
 
   // Dispatches that write a color transient or the output.
   uint32_t writers() const { return (history ? 1 : fused) + (diffusion ? 1 : 0) + (copies ? 1 : 0); }
   uint32_t colorTransients() const { return std::min(writers() - 1, 2u); }
+  // Of packed texels: the pyramid, in its place later the gather's records and then what its points share; what
+  // they find.
+  uint32_t texelTransients() const { return groups.gathered > 0 ? 2 : diffusion ? 1 : 0; }
 };
 
 Stages stagesOf(const PellucidFrame& frame) {
   const bool debug = frame.debugView != PELLUCID_DEBUG_NONE;
   Stages s{};
-  if (frame.features & PELLUCID_FEATURE_TRANSLUCENCY || debug) s.fused = lightGroupCount(frame);
+  if (frame.features & PELLUCID_FEATURE_TRANSLUCENCY || debug) s.groups = lightGroups(frame);
+  s.fused = s.groups.fused();
   s.lights = s.fused > 0;
   s.diffusion = frame.features & PELLUCID_FEATURE_DIFFUSION && !debug && anyMaterialDiffuses(frame);
   s.copies = s.diffusion && !s.lights;
   // Without diffusion the fused pass still has to bring irradiance (times albedo) to the output.
   if (s.writers() == 0) s.fused = 1;
-  s.history = keepsHistory(frame);
+  s.keepsPoints = keepsPoints(frame);
+  s.history = keepsHistory(frame) && !s.keepsPoints;
   s.fusesQuads = s.diffusion && s.lights && !s.history && frame.gatherSamples == 0;
   return s;
 }
 
 bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan& plan) {
   const Stages stages = stagesOf(frame);
-  Builder b{frame, constantsLayout(frame), renderRect(frame), stages.colorTransients(), plan};
+  Builder b{frame, constantsLayout(frame), renderRect(frame), stages.colorTransients(), stages.keepsPoints,
+            plan};
   plan.activeLights = b.layout.lightCount;
   plan.constantsSize = b.layout.size;
 
@@ -313,8 +411,8 @@ bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan
       coarsest -= 2;
   }
 
-  const bool reused = stages.history && decideReuse(frame, kept, &plan.history);
-  if (reused) b.skip("translucency", "reused from an earlier frame");
+  const bool reused = (stages.history || stages.keepsPoints) && decideReuse(frame, kept, &plan.history);
+  if (reused) b.skip(stages.keepsPoints ? "gather" : "translucency", "reused from an earlier frame");
 
   // Images alternate between the two transients; the last write goes to the output.
   uint32_t source = PELLUCID_RESOURCE_IRRADIANCE, next = 0;
@@ -332,21 +430,29 @@ bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan
     fits = fits && b.translucency(group, source, to, stages.fusesQuads && --left == 0);
     source = to;
   };
+  const auto forEachFused = [&](auto&& fused) {
+    uint32_t index = 0;
+    forEachLightGroup(
+        frame, [](const LightGroup&, const PellucidLight&) {},
+        [&](const LightGroup& group) {
+          const bool gathers = group.gathered > 0 && !reused;
+          if (gathers) fits = fits && b.gather(group, index > 0);
+          if (++index < stages.groups.gathered) return;
+          if (gathers) fits = fits && b.share();
+          fused(group);
+        });
+  };
   const auto translucencies = [&] {
     if (stages.history) {
       if (!reused)
-        forEachLightGroup(
-            frame, [](const LightGroup&, const PellucidLight&) {},
-            [&](const LightGroup& group) {
-              fits =
-                  fits && b.translucency(group, PELLUCID_RESOURCE_HISTORY, PELLUCID_RESOURCE_HISTORY, false);
-            });
+        forEachFused([&](const LightGroup& group) {
+          fits = fits && b.translucency(group, PELLUCID_RESOURCE_HISTORY, PELLUCID_RESOURCE_HISTORY, false);
+        });
       const uint32_t to = destination();
       fits = fits && b.addHistory(source, to);
       source = to;
     } else if (stages.lights)
-      forEachLightGroup(
-          frame, [](const LightGroup&, const PellucidLight&) {}, translucency);
+      forEachFused(translucency);
     else if (stages.fused > 0)
       translucency(LightGroup{});
   };
@@ -398,24 +504,35 @@ extern "C" PellucidResult pellucidGetImageNeeds(const PellucidFrame* frame, uint
   const PellucidResult result = checkFrame(frame, nullptr, nullptr);
   if (result != PELLUCID_OK) return result;
   const Stages stages = stagesOf(*frame);
-  const uint32_t colors = stages.colorTransients(), transients = colors + (stages.diffusion ? 1 : 0);
+  const uint32_t colors = stages.colorTransients(), transients = colors + stages.texelTransients();
   const uint32_t room = *count;
-  *count = transients + (stages.history ? 1 : 0);
+  *count = transients + (stages.history || stages.keepsPoints ? 1 : 0);
   if (!needs) return PELLUCID_OK;  // validation asks for the number in every frame
   // Without a plan before it, that of a frame that refreshes a history: every image is in use.
   PellucidPlan plan{};
   if (!build(*frame, {}, plan)) return PELLUCID_ERROR_CAPACITY;
   const uint64_t colorBytes = frame->outputFormat == VK_FORMAT_R32G32B32A32_SFLOAT ? 16 : 8;
   for (uint32_t i = 0; i < *count && i < room; ++i) {
-    const bool persistent = i == transients, pyramid = !persistent && i >= colors;
-    const PyramidExtent size =
-        pyramid ? pyramidExtent(*frame) : PyramidExtent{frame->imageExtent[0], frame->imageExtent[1]};
+    const bool persistent = i == transients, texels = !persistent && i >= colors;
+    PyramidExtent size{frame->imageExtent[0], frame->imageExtent[1]};
+    if (texels) size = stages.diffusion ? pyramidExtent(*frame) : PyramidExtent{1, 1};
+    // The gather comes when the pyramid has been used.
+    const bool points = persistent && stages.keepsPoints;
+    if (points) size = {1, 1};
+    if (points || (texels && stages.groups.gathered > 0)) {
+      const uint32_t side = gatherSpacing(*frame);
+      const auto fit = [&](uint32_t* most, uint32_t pixels, uint32_t records) {
+        *most = std::max({*most, (pixels - 1) / side + 1, i == colors ? records : 0});
+      };
+      fit(&size.width, frame->imageExtent[0], stages.groups.recordColumns);
+      fit(&size.height, frame->imageExtent[1], stages.groups.recordRows);
+    }
     PellucidImageNeed& need = needs[i];
     need = {};
-    need.format = pyramid ? VK_FORMAT_R32G32B32A32_UINT : frame->outputFormat;
+    need.format = texels || points ? VK_FORMAT_R32G32B32A32_UINT : frame->outputFormat;
     need.extent[0] = size.width;
     need.extent[1] = size.height;
-    need.bytes = (pyramid ? kTexelBytes : colorBytes) * size.width * size.height;
+    need.bytes = (texels || points ? kTexelBytes : colorBytes) * size.width * size.height;
     need.persistent = persistent;
     const uint32_t resource = persistent ? static_cast<uint32_t>(PELLUCID_RESOURCE_HISTORY) : kTransient0 + i;
     need.firstDispatch = UINT32_MAX;
@@ -426,7 +543,10 @@ extern "C" PellucidResult pellucidGetImageNeeds(const PellucidFrame* frame, uint
           need.lastDispatch = d;
         }
     // Frames that reuse the history lack the dispatches that refresh it.
-    if (stages.history) need.firstDispatch -= std::min(need.firstDispatch, stages.fused);
+    const uint32_t refreshing = stages.keepsPoints ? stages.groups.gatherDispatches()
+                                : stages.history   ? stages.fused
+                                                   : 0;
+    need.firstDispatch -= std::min(need.firstDispatch, refreshing);
   }
   return PELLUCID_OK;
 }

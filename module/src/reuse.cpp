@@ -27,7 +27,7 @@ float cameraLightDot(const PellucidFrame& f, const PellucidLight& light) {
 // What was kept is of the same pixels and as many lights.
 bool fits(const PellucidHistory& kept, const PellucidHistory& now) {
   return kept.valid != 0 && kept.lightCount == now.lightCount && kept.format == now.format &&
-         std::equal(kept.extent, kept.extent + 2, now.extent) &&
+         kept.gatherSpacing == now.gatherSpacing && std::equal(kept.extent, kept.extent + 2, now.extent) &&
          std::equal(kept.rect, kept.rect + 4, now.rect);
 }
 
@@ -43,14 +43,17 @@ bool coherent(const PellucidFrame& f, const PellucidHistory& kept, const Pelluci
 
 bool keepsHistory(const PellucidFrame& f) {
   return f.reuse != PELLUCID_REUSE_NONE && f.debugView == PELLUCID_DEBUG_NONE &&
-         (f.features & PELLUCID_FEATURE_TRANSLUCENCY) != 0 && lightGroupCount(f) > 0;
+         (f.features & PELLUCID_FEATURE_TRANSLUCENCY) != 0 && lightGroups(f).count > 0;
 }
+
+bool keepsPoints(const PellucidFrame& f) { return keepsHistory(f) && lightGroups(f).gathered > 0; }
 
 bool decideReuse(const PellucidFrame& f, const PellucidHistory& kept, PellucidHistory* result) {
   PellucidHistory& now = *result;
   now = {};
   now.valid = 1;
-  now.format = f.outputFormat;
+  now.format = keepsPoints(f) ? VK_FORMAT_R32G32B32A32_UINT : f.outputFormat;
+  now.gatherSpacing = keepsPoints(f) ? gatherSpacing(f) : 0;
   const Rect r = renderRect(f);
   const uint32_t rect[4] = {r.x, r.y, r.width, r.height};
   std::copy(f.imageExtent, f.imageExtent + 2, now.extent);

@@ -16,6 +16,11 @@
 #include "kDirectionalQuads32f.h"
 #include "kGather16f.h"
 #include "kGather32f.h"
+#include "kGatherPoints.h"
+#include "kGatherPointsDirectional.h"
+#include "kGatherRecords.h"
+#include "kGatherRecordsDirectional.h"
+#include "kGatherShare.h"
 #include "kQuads.h"
 #include "kQuadsAndCopy16f.h"
 #include "kQuadsAndCopy32f.h"
@@ -59,7 +64,12 @@ const std::array kShaders = {shader(kTranslucency16f),
                              shader(kDirectionalQuads32f),
                              shader(kResolve),
                              shader(kDiffuseCoarse16f),
-                             shader(kDiffuseCoarse32f)};
+                             shader(kDiffuseCoarse32f),
+                             shader(kGatherRecords),
+                             shader(kGatherPoints),
+                             shader(kGatherShare),
+                             shader(kGatherRecordsDirectional),
+                             shader(kGatherPointsDirectional)};
 static_assert(kShaders.size() == PELLUCID_PIPELINE_COUNT);
 
 }  // namespace

@@ -76,7 +76,12 @@ extern "C" const char* pellucidPipelineName(uint32_t pipeline) {
                                        "translucency_directional_quads_rgba32f",
                                        "resolve_levels",
                                        "diffuse_coarse_rgba16f",
-                                       "diffuse_coarse_rgba32f"};
+                                       "diffuse_coarse_rgba32f",
+                                       "gather_records",
+                                       "gather_points",
+                                       "gather_share",
+                                       "gather_records_directional",
+                                       "gather_points_directional"};
   static_assert(names.size() == PELLUCID_PIPELINE_COUNT);
   return pipeline < names.size() ? names[pipeline] : "unknown pipeline";
 }

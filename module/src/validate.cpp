@@ -272,6 +272,8 @@ PellucidResult checkFrame(const PellucidFrame* frame, PellucidMessageFn fn, void
     if (!(f.transmittanceFilter[c] >= 0 && f.transmittanceFilter[c] <= 1))
       out.error("transmittanceFilter", "[", c, "] is ", f.transmittanceFilter[c], ", outside [0, 1]");
 
+  if (f.gatherSpacing != 0 && f.gatherSpacing != 2 && f.gatherSpacing != 4)
+    out.error("gatherSpacing", "is ", f.gatherSpacing, "; use 2 or 4, or 0 to choose by the image's size");
   if (f.gatherSamples > 64 || f.gatherSamples % 4 != 0)
     out.error("gatherSamples", "is ", f.gatherSamples, "; needs a multiple of 4, at most 64");
 
@@ -318,10 +320,11 @@ PellucidResult checkFrame(const PellucidFrame* frame, PellucidMessageFn fn, void
   for (uint32_t i = 0; i < f.lightCount; ++i)
     if (const char* reason = view.whySkipped(f.lights[i]))
       out.warning(Field("lights[", i, "]"), "adds nothing: ", reason);
-  const uint32_t groups = lightGroupCount(f);
-  if (groups > 1 && f.debugView != PELLUCID_DEBUG_NONE && f.debugView != PELLUCID_DEBUG_IRRADIANCE)
-    out.error("debugView", "is ", f.debugView, ", which needs all lights in one dispatch; they use ", groups);
-  if (groups + (keepsHistory(f) ? 3 : 2) > PELLUCID_MAX_DISPATCHES) {
+  const LightGroups groups = lightGroups(f);
+  if (groups.count > 1 && f.debugView != PELLUCID_DEBUG_NONE && f.debugView != PELLUCID_DEBUG_IRRADIANCE)
+    out.error("debugView", "is ", f.debugView, ", which needs all lights in one dispatch; they use ",
+              groups.count);
+  if (groups.fused() + groups.gatherDispatches() + (keepsHistory(f) ? 3 : 2) > PELLUCID_MAX_DISPATCHES) {
     out.error("shadowImages", "are more than the plan's ", static_cast<int>(PELLUCID_MAX_DISPATCHES),
               " dispatches can bind");
     return PELLUCID_ERROR_CAPACITY;

@@ -208,6 +208,48 @@ TEST_F(GatherAgreement, FlatPartsAreSmooth) {
   }
 }
 
+Capture litSphere() {
+  SceneParameters p;
+  p.name = "sphere";
+  p.options = {{"radius", 8}, {"extent", 20}, {"lightAngle", 60}};
+  p.width = p.height = 64;
+  p.shadowSize = 192;
+  return evenlyLit(p);
+}
+
+// Lights that need several dispatches displace what one of their sum does.
+TEST_F(GatherAgreement, DisplacesOnceForAllLights) {
+  const Capture one = litSphere();
+  Capture nine = one;  // images; a dispatch binds eight
+  nine.lights.assign(9, one.lights.at(0));
+  for (Light& light : nine.lights) light.intensity /= 9;
+  const Image a = gpuGather(replayer(), nine, 8), b = gpuGather(replayer(), one, 8);
+  // Points hold halves and shares of nine bits, in another order.
+  for (size_t i = 0; i < a.data.size(); ++i)
+    ASSERT_NEAR(a.data[i], b.data[i], 3e-3f * (0.2f + b.data[i])) << i;
+}
+
+// With reuse, frames that compute and frames that keep are what frames without it are.
+TEST_F(GatherAgreement, KeptPointsDisplaceToo) {
+  const Context context(device());
+  const Capture c = litSphere();
+  ReplaySettings s;
+  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  s.translucency.gatherSamples = 8;
+  s.reuse = PELLUCID_REUSE_ALTERNATE;
+  const Image expected = gpuGather(replayer(), c, 8);
+  std::unique_ptr<FrameRun> last;
+  for (int i = 0; i < 2; ++i) {
+    auto run = std::make_unique<FrameRun>(device(), context, c, std::vector{skin()}, s, last.get());
+    device().run([&](VkCommandBuffer commands) { run->record(commands); });
+    EXPECT_EQ(run->plan().history.age, static_cast<uint32_t>(i));
+    const Image out = rgb(run->output());
+    for (size_t k = 0; k < out.data.size(); ++k)
+      ASSERT_NEAR(out.data[k], expected.data[k], 1e-6f) << "frame " << i;
+    last = std::move(run);
+  }
+}
+
 // From lit to unlit across the terminator, in light from all around: no gap and no seam.
 TEST_F(GatherAgreement, TerminatorIsContinuous) {
   for (const char* name : {"sphere", "torus"})

@@ -192,6 +192,8 @@ TEST_F(GpuTest, ReuseOverATurningLight) {
           const size_t e = p / 4 * 3 + p % 4;
           if (p % 4 == 3 || c.material[p / 4] == 0) continue;
           const bool seen = kept.data[p] != keptIrradiance.data[e];  // was material at the refresh
+          // The points of a gather are those of their cells' new pixels too.
+          if (!seen && maps == 1) continue;
           const float through = seen ? kept.data[p] - keptIrradiance.data[e] : 0;
           ASSERT_NEAR(out.data[p], c.irradiance.data[e] + through, 1e-5) << "frame " << i;
         }

@@ -23,7 +23,13 @@ const Choice kFeatures[] = {{"none", 0},
                             {"both", PELLUCID_FEATURE_TRANSLUCENCY | PELLUCID_FEATURE_DIFFUSION}};
 const Choice kOutputs[] = {{"rgba16f", VK_FORMAT_R16G16B16A16_SFLOAT},
                            {"rgba32f", VK_FORMAT_R32G32B32A32_SFLOAT}};
-const Choice kDebug[] = {{"", PELLUCID_DEBUG_NONE}, {" debug view", PELLUCID_DEBUG_THICKNESS}};
+struct Way {
+  const char* name;
+  uint32_t debugView, gatherSamples;
+};
+const Way kWays[] = {{"", PELLUCID_DEBUG_NONE, 0},
+                     {" debug view", PELLUCID_DEBUG_THICKNESS, 0},
+                     {" gather", PELLUCID_DEBUG_NONE, 8}};
 // value: lights with a shadow map each; 0: one without.
 const Choice kLights[] = {
     {"1 light without a map", 0}, {"1 light", 1}, {"8 lights", 8}, {"9 lights", 9}, {"20 lights", 20}};
@@ -58,16 +64,18 @@ nlohmann::json allCounts() {
     Frame f(lights.value);
     for (const Choice& features : kFeatures)
       for (const Choice& output : kOutputs)
-        for (const Choice& debug : kDebug) {
+        for (const Way& way : kWays) {
           // Debug views need all lights in one dispatch, which binds eight maps.
-          if (debug.value != PELLUCID_DEBUG_NONE && lights.value > 8) continue;
+          if (way.debugView != PELLUCID_DEBUG_NONE && lights.value > 8) continue;
+          if (way.gatherSamples > 0 && !(features.value & PELLUCID_FEATURE_TRANSLUCENCY)) continue;
           f.frame.features = features.value;
           f.frame.outputFormat = static_cast<VkFormat>(output.value);
-          f.frame.debugView = debug.value;
+          f.frame.debugView = way.debugView;
+          f.frame.gatherSamples = way.gatherSamples;
           for (const Detail& detail : kDetails) {
             f.frame.quality = detail.quality;
             f.frame.nearestDistance = detail.nearestDistance;
-            all[std::string(features.name) + ", " + output.name + debug.name + ", " + lights.name +
+            all[std::string(features.name) + ", " + output.name + way.name + ", " + lights.name +
                 detail.name] = countsOf(f);
           }
         }

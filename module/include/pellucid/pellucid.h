@@ -223,7 +223,7 @@ typedef struct PellucidFrame {
                                between N and the view ray */
   float maximumThickness;   /* mm; thicker parts let nothing through; 0: no limit */
   float transmittanceFilter[3]; /* multiplies T, [0, 1]; default 1 (Whelan 2009, 4.5: .55 .29 .28) */
-  uint32_t gatherSamples;   /* 0..64, a multiple of 4: points of the shadow map that each point of 2x2 pixels
+  uint32_t gatherSamples;   /* 0..64, a multiple of 4: points of the shadow map that each point of gatherSpacing
                                gathers light from, for lights with a map and materials of EXP2 or SINH_EXP;
                                0: one light-space thickness */
 
@@ -262,6 +262,9 @@ typedef struct PellucidFrame {
                              pixels follow from it, and where they are small a dispatch is left out; surfaces that
                              are nearer still are then diffused too little. Orthographic cameras need none.
                              0 (default): not known, and radii count as being as large as the pyramid holds */
+  uint32_t gatherSpacing;   /* one point gathers for 2x2 or 4x4 pixels: 2 or 4; 0 (default): 4 in images of more than
+                               2^20 pixels, else 2. 4 costs a quarter, and asks for pixels well below a mean free
+                               path */
 } PellucidFrame;
 
 /* ---- Plan ------------------------------------------------------------------------------------ */
@@ -307,7 +310,13 @@ typedef enum PellucidPipeline {
   PELLUCID_PIPELINE_RESOLVE_LEVELS = 20,
   PELLUCID_PIPELINE_DIFFUSE_COARSE_16F = 21, /* without the filter of each pixel's neighbors: quality 0 */
   PELLUCID_PIPELINE_DIFFUSE_COARSE_32F = 22,
-  PELLUCID_PIPELINE_COUNT = 23
+  PELLUCID_PIPELINE_GATHER_RECORDS = 23,
+  PELLUCID_PIPELINE_GATHER_POINTS = 24,
+  PELLUCID_PIPELINE_GATHER_SHARE = 25,
+  PELLUCID_PIPELINE_GATHER_RECORDS_DIRECTIONAL = 26, /* where all lights that are gathered from are, in frames as
+                                                        for DIRECTIONAL */
+  PELLUCID_PIPELINE_GATHER_POINTS_DIRECTIONAL = 27,
+  PELLUCID_PIPELINE_COUNT = 28
 } PellucidPipeline;
 
 enum {
@@ -355,6 +364,7 @@ typedef struct PellucidHistory {
   uint32_t extent[2], rect[4];
   uint32_t lightCount; /* above PELLUCID_MAX_COHERENT_LIGHTS, COHERENCE refreshes every frame */
   float lightDots[PELLUCID_MAX_COHERENT_LIGHTS]; /* camera axis and direction to the light, when written */
+  uint32_t gatherSpacing; /* of the points of a gather; 0: it holds the light of pixels */
 } PellucidHistory;
 
 typedef struct PellucidPlan {

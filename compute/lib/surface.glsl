@@ -1,0 +1,26 @@
+#ifndef PELLUCID_SURFACE_GLSL
+#define PELLUCID_SURFACE_GLSL
+
+#include "lib/camera.glsl"
+
+// What one pixel knows of its surface. View space, scene units.
+struct Surface {
+  vec3 position, normal, view; // view: unit, from the eye
+  float chord;                 // along the view ray; -1: unknown
+  bool hasNormal;
+};
+
+// `normal`: any length, view space; (0, 0, 0): none.
+Surface makeSurface(ViewRay ray, float planar, float chord, vec3 normal) {
+  Surface s;
+  s.position = ray.origin + planar * ray.direction;
+  s.view = normalize(ray.direction);
+  s.chord = chord;
+  s.normal = normal;
+  float squared = dot(s.normal, s.normal);
+  s.hasNormal = squared > 1.0e-8 && squared < 1.0e8; // false for NaN too
+  if (s.hasNormal) s.normal *= inversesqrt(squared);
+  return s;
+}
+
+#endif

@@ -1,0 +1,262 @@
+// Points of the gather: in each cell of 2x2 or 4x4 pixels one gathers what light has gone through a part, from
+// records. Neighbors take samples of their own, nine patterns in 3x3 cells; gather_share.comp shares what they find.
+#version 460
+#extension GL_EXT_samplerless_texture_functions : require
+#extension GL_GOOGLE_include_directive : require
+
+#define GROUP_SIDE PELLUCID_RECORDS_GROUP
+#include "passes/bindings.glsl"
+#include "passes/points.glsl"
+#include "passes/records.glsl"
+#include "lib/light.glsl"
+#include "lib/surface.glsl"
+
+layout(set = 0, binding = PELLUCID_BINDING_MATERIALS) readonly buffer Materials { MaterialConstants materials[]; };
+layout(set = 0, binding = PELLUCID_BINDING_NORMAL) uniform texture2D normalImage;
+layout(set = 0, binding = PELLUCID_BINDING_RECORDS) uniform utexture2D recordsImage;
+layout(set = 0, binding = PELLUCID_BINDING_POINTS, rgba32ui) uniform uimage2D pointsImage;
+
+#include "lib/gather.glsl"
+
+const float kLastRing = 1.0e12; // squared radius of what lies beyond all samples
+
+struct Gathered {
+  vec3 transmitted; // exitance
+  vec3 entering;    // irradiance that reaches x as diffusion does
+  vec3 displaced;   // share of the diffusion's profile that lies on hidden texels
+};
+
+bool directional(LightConstants light) { return kDirectional || light.meta.x == PELLUCID_SHADER_LIGHT_DIRECTIONAL; }
+
+// A view-space point in a map: where its record lies, and its depth.
+vec3 mapPoint(uint map, vec4 position) {
+  return vec3(dot(maps[map].column, position), dot(maps[map].row, position), dot(maps[map].depth, position));
+}
+
+// The record of the light ray through a point of the map; false: the map does not contain the point.
+bool fetchRecord(uint map, bool parallel, vec3 point, out uvec4 bits) {
+  bits = kNoRecord;
+  if (!parallel && !(point.z > 0.0)) return false;
+  vec2 at = parallel ? point.xy : point.xy / point.z;
+  ivec4 place = maps[map].place;
+  // As floats, where far outside stays outside.
+  if (!(all(greaterThanEqual(at, vec2(0.0))) && all(lessThan(at, vec2(place.zw))))) return false;
+  bits = texelFetch(recordsImage, place.xy + ivec2(at), 0);
+  return true;
+}
+
+// Of the first of the light's maps that contains the position.
+bool fetchRecord(LightConstants light, vec3 position, out vec3 point, out uvec4 bits) {
+  for (uint map = light.meta.y; map < light.meta.y + light.meta.z; ++map) {
+    point = mapPoint(map, vec4(position, 1.0));
+    if (fetchRecord(map, directional(light), point, bits)) return true;
+  }
+  bits = kNoRecord;
+  return false;
+}
+
+// How far the lit surface is from a point along its light ray: scene units, or a fraction of the way to the light.
+float distanceAhead(bool parallel, float depth, float own) { return parallel ? depth - own : 1.0 - depth / own; }
+
+// The rings around an axis through x; t, mm: along it, from x to the lit surface.
+struct GatherRings {
+  vec3 axis;
+  float t, axisCosine; // of the axis with the light's ray
+  uint map;            // that contains x
+};
+
+// An axis between the light's ray and the normal inwards suits slabs: their rings are around the foot of the
+// perpendicular. false: no map contains x, so that no light comes through it.
+bool gatherRings(LightConstants light, Surface x, vec3 toLight, float distanceTo, float longest,
+                 out GatherRings rings) {
+  float mm = frame.camera.range.w;
+  bool parallel = directional(light);
+  float facing = x.hasNormal ? max(-dot(x.normal, toLight), 0.0) : 0.0;
+  rings.axis = normalize(toLight - facing * x.normal); // the two are within 90 degrees
+  rings.axisCosine = dot(rings.axis, toLight);
+  rings.t = 0.0;
+  vec3 point;
+  uvec4 bits;
+  uint end = light.meta.y + light.meta.z;
+  for (rings.map = light.meta.y; rings.map < end; ++rings.map) {
+    point = mapPoint(rings.map, vec4(x.position, 1.0));
+    if (fetchRecord(rings.map, parallel, point, bits)) break;
+  }
+  if (rings.map == end) return false;
+  if (!holdsSurface(bits)) return true;
+  float perAhead = parallel ? 1.0 : distanceTo;
+  float t = clamp(distanceAhead(parallel, unpackRecord(bits).depth, point.z) * perAhead, 0.0, longest / mm);
+  vec3 guess = x.position + t * rings.axis;
+  if (fetchRecord(light, guess, point, bits) && holdsSurface(bits)) {
+    vec3 y = guess + distanceAhead(parallel, unpackRecord(bits).depth, point.z) *
+                         (parallel ? toLight : light.position.xyz - guess);
+    t = clamp(dot(y - x.position, rings.axis), 0.0, longest / mm);
+  }
+  rings.t = t * mm;
+  return true;
+}
+
+// The material that the group's points have in turn.
+shared uint groupMaterial;
+shared vec4 entries[3 * PELLUCID_GATHER_ENTRIES];
+
+void loadEntries(uint m) {
+  for (uint i = gl_LocalInvocationIndex; i < uint(PELLUCID_GATHER_ENTRIES); i += uint(GROUP_SIDE * GROUP_SIDE)) {
+    uint next = min(i + 1u, uint(PELLUCID_GATHER_ENTRIES - 1));
+    GatherEntry e = gatherEntry(materials[m].gather.slab[i].rgb, materials[m].gather.slab[next].rgb,
+                                materials[m].gather.decay[i].rgb, materials[m].gather.decay[next].rgb);
+    entries[3u * i] = e.a;
+    entries[3u * i + 1u] = e.b;
+    entries[3u * i + 2u] = e.c;
+  }
+}
+
+GatherSlab slabOf(vec4 lengths, float h) {
+  float place = gatherPlace(lengths, h);
+  int i = 3 * int(place);
+  return gatherSlab(GatherEntry(entries[i], entries[i + 1], entries[i + 2]), fract(place));
+}
+
+struct Sample {
+  vec3 s;            // mm, from x; on its light ray beside the foot
+  float squaredRho;  // of the ring it is on
+  float depth;       // of s in its map
+  uvec4 bits;        // of its record
+};
+
+// From `samples` points of the light's maps. `turn` and `within`, [0, 1): which of the patterns this point takes.
+Gathered gatherLight(uint m, LightConstants light, Surface x, uint samples, float turn, float within) {
+  Gathered sum = Gathered(vec3(0.0), vec3(0.0), vec3(0.0));
+  float mm = frame.camera.range.w;
+  bool parallel = directional(light);
+  Incident incident = incidentLight(light, x.position);
+  vec4 lengths = materials[m].gather.lengths;
+  GatherRings rings;
+  if (!gatherRings(light, x, incident.toLight, incident.distanceTo, lengths.z, rings)) return sum;
+  vec3 across = normalize(cross(rings.axis, abs(rings.axis.x) < 0.7 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0)));
+  vec3 along = cross(rings.axis, across), profile = materials[m].gather.profile.rgb;
+  // Positions and what maps make of them are affine in mm across and along the rings.
+  vec3 center = rings.t * rings.axis;
+  vec3 point = mapPoint(rings.map, vec4(x.position + center / mm, 1.0));
+  vec3 pointAcross = mapPoint(rings.map, vec4(across / mm, 0.0)), pointAlong = mapPoint(rings.map, vec4(along / mm, 0.0));
+  vec2 direction = vec2(cos(6.28318531 * turn), sin(6.28318531 * turn));
+  float perSample = 1.0 / float(samples), inner = 0.0;
+  Sample next;
+  for (uint i = 0u; i <= samples; ++i) {
+    // One ahead, so that its latency is hidden.
+    Sample now = next;
+    if (i < samples) {
+      next.squaredRho = gatherSquaredRadius(rings.t, gatherSpread(lengths, (float(i) + within) * perSample));
+      vec2 offset = sqrt(next.squaredRho) * direction;
+      direction = mat2(-0.73736888, 0.67549029, -0.67549029, -0.73736888) * direction; // the golden angle
+      vec3 at = point + offset.x * pointAcross + offset.y * pointAlong;
+      next.s = center + offset.x * across + offset.y * along;
+      // A cube's seams are no borders.
+      if (!fetchRecord(rings.map, parallel, at, next.bits) && !kDirectional && light.meta.z > 1u)
+        fetchRecord(light, x.position + next.s / mm, at, next.bits);
+      next.depth = at.z;
+    }
+    if (i == 0u) continue;
+    float from = inner;
+    inner = i == samples ? kLastRing : gatherSquaredRadius(rings.t, gatherSpread(lengths, float(i) * perSample));
+    if (!lightEnters(now.bits)) continue;
+    Record record = unpackRecord(now.bits);
+    float ahead = distanceAhead(parallel, record.depth, now.depth);
+    vec3 toLight = parallel ? incident.toLight * mm : (light.position.xyz - x.position) * mm - now.s;
+    vec3 to = -(now.s + ahead * toLight); // from the lit point to x
+    float squared = dot(to, to);
+    float opposite = x.hasNormal ? 0.5 - 0.5 * dot(x.normal, record.normal) : 1.0; // 1 - m
+    float through = max(-dot(record.normal, to), 0.0);
+    float squaredH = x.hasNormal ? through * max(dot(x.normal, to), 0.0) / max(opposite, 1.0e-4) : through * through;
+    float h = sqrt(min(squaredH, squared));
+    // The ring, seen as if all of it lay in the lit point's plane across the axis.
+    float plane = max(squared - now.squaredRho, 0.0);
+    float near = sqrt(plane + from), far = sqrt(plane + inner);
+    float share = record.enters * rings.axisCosine;
+    // A point light's is its intensity: per square scene unit at s. At the light itself any finite value will do.
+    if (!parallel) share *= mm * mm / max(dot(toLight, toLight), 1.0e-12 * mm * mm);
+    sum.transmitted += share * opposite * gatherTransmitted(slabOf(lengths, h), h, near, far);
+    if (opposite < 0.99) {
+      vec3 reflected = (1.0 - opposite) * gatherReflected(profile, near, far);
+      sum.entering += share * reflected;
+      sum.displaced += reflected * (rings.axisCosine * record.inverseCosine);
+    }
+  }
+  sum.transmitted *= light.radiance.rgb;
+  sum.entering *= light.radiance.rgb;
+  return sum;
+}
+
+// The first pixel of the cell with a surface that light comes through. Its texels are fetched at once, so that the
+// latencies overlap.
+bool pixelOf(ivec2 cell, int side, out int index, out uint material, out float front, out vec4 normal) {
+  for (index = 0; index < side * side; ++index) {
+    ivec2 pixel = pixelInCell(cell, side, index);
+    if (!insideRect(pixel)) continue;
+    uint value = materialValueAt(pixel);
+    front = frontDistance(pixel);
+    normal = texelFetch(normalImage, pixel, 0);
+    material = materialIndex(value);
+    if (material != 0u && (value & frame.marks.x) == 0u && front > 0.0) return true;
+  }
+  return false;
+}
+
+Point gatherPoint(ivec2 cell, ivec2 pixel, Point result, vec4 normalTexel) {
+  int side = int(pass.value.x);
+  uint m = result.material - 1u;
+  vec3 normal = vec3(0.0);
+  if (hasFlag(PELLUCID_FLAG_NORMAL)) normal = mat3(frame.viewFromNormal) * decodeNormal(normalTexel);
+  Surface x = makeSurface(viewRay(frame.camera, pixel), result.front, -1.0, normal);
+  result.normal = x.hasNormal ? x.normal : -x.view;
+  // Where points are too far apart to share, all take the middle pattern.
+  vec2 spacing = float(side) * pixelSize(frame.camera, result.front);
+  float vary = clamp(2.0 - dot(spacing, spacing) * materials[m].gather.profile.w, 0.0, 1.0);
+  ivec2 at = cell % 3;
+  int pattern = (at.x + 3 * at.y) * 4 % 9; // fills the strata, and the turn between a sample and its like
+  float within = 0.5 + vary * (float(pattern) - 4.0) / 9.0;
+  float turn = vary * float(at.x + 3 * at.y) / 9.0;
+  vec3 transmitted = vec3(0.0), entering = vec3(0.0), displaced = vec3(0.0);
+  for (uint i = 0u; i < pass.value.y; ++i) {
+    Gathered g = gatherLight(m, lights[i], x, pass.value.w, turn, within);
+    transmitted += g.transmitted;
+    entering += g.entering;
+    displaced = max(displaced, g.displaced); // of the same surface, whatever the light
+  }
+  bool spreads = hasFlag(PELLUCID_FLAG_DIFFUSED);
+  result.added = transmitted * frame.filterAndLimit.rgb * materials[m].inverseReflectance.rgb;
+  if (spreads) result.added += entering;
+  result.displaced = spreads ? displaced : vec3(0.0);
+  return result;
+}
+
+void main() {
+  int side = int(pass.value.x);
+  ivec4 cells = cellsOf(frame.rect, side);
+  ivec2 cell = cells.xy + ivec2(gl_GlobalInvocationID.xy);
+  bool inside = all(lessThan(cell, cells.zw));
+  Point result = unpackPoint(kNoPoint);
+  vec4 normal;
+  bool waits = inside && pixelOf(cell, side, result.index, result.material, result.front, normal);
+  if (inside && !waits) imageStore(pointsImage, cell, kNoPoint);
+  for (;;) {
+    if (gl_LocalInvocationIndex == 0u) groupMaterial = 0u;
+    barrier();
+    if (waits) groupMaterial = result.material; // any of those that wait
+    barrier();
+    uint material = groupMaterial;
+    if (material == 0u) break; // for all at once
+    loadEntries(material - 1u);
+    barrier();
+    if (waits && result.material == material) {
+      waits = false;
+      Point found = gatherPoint(cell, pixelInCell(cell, side, result.index), result, normal);
+      if (pass.value.z != 0u) {
+        Point before = unpackPoint(imageLoad(pointsImage, cell));
+        found.added += before.added;
+        found.displaced = max(found.displaced, before.displaced);
+      }
+      imageStore(pointsImage, cell, packPoint(found));
+    }
+  }
+}

@@ -1,0 +1,65 @@
+// Points of the gather as one pass leaves them for the next. Cells are aligned to the image, not to the rect.
+#ifndef PELLUCID_POINTS_GLSL
+#define PELLUCID_POINTS_GLSL
+
+struct Point {
+  vec3 added;     // irradiance
+  vec3 displaced; // share of the diffused irradiance, 0..1
+  vec3 normal;    // unit
+  float front;    // planar distance
+  uint material;  // index + 1; 0: nothing there
+  int index;      // of its pixel in the cell, rows first
+};
+
+const uvec4 kNoPoint = uvec4(0u);
+
+// Octahedral map of a unit vector; Cigolle et al. 2014, "oct".
+vec2 octahedral(vec3 n) {
+  vec2 p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
+  vec2 sides = vec2(p.x < 0.0 ? -1.0 : 1.0, p.y < 0.0 ? -1.0 : 1.0);
+  return n.z < 0.0 ? (1.0 - abs(p.yx)) * sides : p;
+}
+
+vec3 fromOctahedral(vec2 p) {
+  vec3 n = vec3(p, 1.0 - abs(p.x) - abs(p.y));
+  float fold = max(-n.z, 0.0);
+  n.xy -= vec2(n.x < 0.0 ? -fold : fold, n.y < 0.0 ? -fold : fold);
+  return normalize(n);
+}
+
+// 16 bits hold a direction to a degree, 9 a share to .1 %; the depth leaves its 8 lowest bits to the material.
+uvec4 packPoint(Point p) {
+  vec3 added = min(p.added, vec3(kLargestHalf));
+  uvec3 displaced = uvec3(clamp(p.displaced, vec3(0.0), vec3(1.0)) * 511.0 + 0.5);
+  uint normal = packSnorm4x8(vec4(octahedral(p.normal), 0.0, 0.0));
+  return uvec4(packHalf2x16(added.rg), (packHalf2x16(vec2(added.b, 0.0)) & 0xFFFFu) | normal << 16,
+               (floatBitsToUint(p.front) & 0xFFFFFF00u) | p.material,
+               displaced.r | displaced.g << 9 | displaced.b << 18 | uint(p.index) << 27);
+}
+
+Point unpackPoint(uvec4 bits) {
+  uvec3 displaced = (bits.www >> uvec3(0u, 9u, 18u)) & 511u;
+  return Point(vec3(unpackHalf2x16(bits.x), unpackHalf2x16(bits.y).x), vec3(displaced) / 511.0,
+               fromOctahedral(unpackSnorm4x8(bits.y >> 16).xy), uintBitsToFloat(bits.z & 0xFFFFFF00u),
+               bits.z & 0xFFu, int(bits.w >> 27));
+}
+
+// Cells have 2 or 4 pixels a side: shifts in place of divisions, which take as long as the rest.
+int shiftOf(int side) { return side >> 1; }
+
+ivec2 pixelInCell(ivec2 cell, int side, int index) {
+  return side * cell + ivec2(index & (side - 1), index >> shiftOf(side));
+}
+
+vec3 viewPosition(ivec2 cell, int side, Point p) {
+  ViewRay ray = viewRay(frame.camera, pixelInCell(cell, side, p.index));
+  return ray.origin + p.front * ray.direction;
+}
+
+// Cells [xy, zw) that the rect touches.
+ivec4 cellsOf(uvec4 rect, int side) {
+  int shift = shiftOf(side);
+  return ivec4(ivec2(rect.xy) >> shift, ((ivec2(rect.zw) - 1) >> shift) + 1);
+}
+
+#endif

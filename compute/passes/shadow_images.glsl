@@ -1,0 +1,36 @@
+// The shadow images of one dispatch.
+#ifndef PELLUCID_SHADOW_IMAGES_GLSL
+#define PELLUCID_SHADOW_IMAGES_GLSL
+
+layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 0) uniform texture2D shadowImage0;
+layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 1) uniform texture2D shadowImage1;
+layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 2) uniform texture2D shadowImage2;
+layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 3) uniform texture2D shadowImage3;
+layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 4) uniform texture2D shadowImage4;
+layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 5) uniform texture2D shadowImage5;
+layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 6) uniform texture2D shadowImage6;
+layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 7) uniform texture2D shadowImage7;
+
+// A switch over constant bindings needs no shaderSampledImageArrayDynamicIndexing.
+float shadowTexel(uint image, ivec2 texel) {
+  switch (image) {
+    case 0u: return texelFetch(shadowImage0, texel, 0).x;
+    case 1u: return texelFetch(shadowImage1, texel, 0).x;
+    case 2u: return texelFetch(shadowImage2, texel, 0).x;
+    case 3u: return texelFetch(shadowImage3, texel, 0).x;
+    case 4u: return texelFetch(shadowImage4, texel, 0).x;
+    case 5u: return texelFetch(shadowImage5, texel, 0).x;
+    case 6u: return texelFetch(shadowImage6, texel, 0).x;
+    default: return texelFetch(shadowImage7, texel, 0).x;
+  }
+}
+
+// A texel (x) and its neighbors to the right, to the left, below and above; `most`: the last texel of the image.
+float[5] shadowTexels(uint image, ivec2 texel, ivec2 most) {
+  ivec2 right = ivec2(min(texel.x + 1, most.x), texel.y), left = ivec2(max(texel.x - 1, 0), texel.y);
+  ivec2 below = ivec2(texel.x, min(texel.y + 1, most.y)), above = ivec2(texel.x, max(texel.y - 1, 0));
+  return float[5](shadowTexel(image, texel), shadowTexel(image, right), shadowTexel(image, left),
+                  shadowTexel(image, below), shadowTexel(image, above));
+}
+
+#endif
