@@ -133,7 +133,8 @@ int main(int argc, char** argv) {
   uint32_t quality = 2;
   bool table = false, check = false;
   std::vector<double> radii(std::begin(pellucid::kErrorRadii), std::end(pellucid::kErrorRadii));
-  CLI::App app("Relative RMSE of the module's diffusion from brute force, worst channel.", "pellucid_diffusion_error");
+  CLI::App app("Relative RMSE of the module's diffusion from brute force, worst channel.",
+               "pellucid_diffusion_error");
   app.add_option("--device", device, "part of the Vulkan device's name");
   app.add_option("--size", size, "pixels a side")->check(CLI::Range(16, 512))->capture_default_str();
   app.add_option("--quality", quality, "PellucidFrame::quality")

@@ -73,12 +73,13 @@ Capture litFromTheFront(Capture slab) {
 std::vector<ErrorScene> errorScenes() {
   const double plane = 40;
   const std::map<std::string, double> tilted = {{"tilt", 60}};
-  return {{"checker of 1/8 of the width, at 17 degrees", "checker", {{"cell", plane / 8}, {"angle", 17}}, plane},
-          {"step at 30 degrees", "step", {{"angle", 30}}, plane},
-          {"tilted by 60 degrees, step", "tilted", tilted, plane},
-          {"tilted by 60 degrees, step at 30 degrees", "tilted", {{"tilt", 60}, {"angle", 30}}, plane},
-          {"sphere, lit from the side", "sphere", {{"lightAngle", 110}}, plane},
-          {"ear", "ear", {}, 92}};
+  return {
+      {"checker of 1/8 of the width, at 17 degrees", "checker", {{"cell", plane / 8}, {"angle", 17}}, plane},
+      {"step at 30 degrees", "step", {{"angle", 30}}, plane},
+      {"tilted by 60 degrees, step", "tilted", tilted, plane},
+      {"tilted by 60 degrees, step at 30 degrees", "tilted", {{"tilt", 60}, {"angle", 30}}, plane},
+      {"sphere, lit from the side", "sphere", {{"lightAngle", 110}}, plane},
+      {"ear", "ear", {}, 92}};
 }
 
 Capture makeErrorCapture(const ErrorScene& scene, int size, double pixel) {

@@ -21,16 +21,19 @@ struct Builder {
   const ConstantsLayout layout;
   const Rect rect;
   const uint32_t colorTransients;
-  const bool keepsPoints;
+  const bool keepsPoints, overlaps;
   PellucidPlan& plan;
+  bool alongside = false;  // dispatches run beside the one before, with which they share nothing
 
   bool wide() const { return frame.outputFormat == VK_FORMAT_R32G32B32A32_SFLOAT; }
   uint64_t pixels() const { return static_cast<uint64_t>(rect.width) * rect.height; }
   uint32_t pyramidImage() const { return kTransient0 + colorTransients; }
-  // What points of the gather find, and what they share; records lie where the pyramid did.
+  // What points of the gather find; the records of the maps and, in their place, what points share. Records
+  // lie where the pyramid was unless both are in use at once.
   uint32_t pointsImage() const { return pyramidImage() + 1; }
+  uint32_t recordsImage() const { return overlaps ? pyramidImage() + 2 : pyramidImage(); }
   uint32_t sharedImage() const {
-    return keepsPoints ? static_cast<uint32_t>(PELLUCID_RESOURCE_HISTORY) : pyramidImage();
+    return keepsPoints ? static_cast<uint32_t>(PELLUCID_RESOURCE_HISTORY) : recordsImage();
   }
   uint64_t colorBytes() const { return wide() ? 16 : 8; }
 
@@ -51,7 +54,7 @@ struct Builder {
     groups(&d, rect.width, rect.height, PELLUCID_GROUP_X);
     // Every dispatch after the first reads what the one before wrote.
     // The first of a frame that reuses comes after the last frame's use of the history.
-    d.barrierBefore = plan.dispatchCount > 0 || plan.history.valid ? 1 : 0;
+    d.barrierBefore = !alongside && (plan.dispatchCount > 0 || plan.history.valid) ? 1 : 0;
     plan.barrierCount += d.barrierBefore;
     ++plan.dispatchCount;
     return &d;
@@ -128,8 +131,11 @@ struct Builder {
     return {count(rect.x, rect.width), count(rect.y, rect.height)};
   }
 
-  bool gather(const LightGroup& group, bool adds) {
-    const uint64_t recordBytes = kTexelBytes * group.recordColumns * group.recordRows;
+  static uint64_t recordBytes(const LightGroup& group) {
+    return kTexelBytes * group.recordColumns * group.recordRows;
+  }
+
+  bool records(const LightGroup& group) {
     const bool directional = group.gatheredDirectional && directionalFrame();
     PellucidDispatch* d =
         dispatch("gather records", directional ? PELLUCID_PIPELINE_GATHER_RECORDS_DIRECTIONAL
@@ -146,11 +152,16 @@ struct Builder {
                group.shadowCount * sizeof(shared::RecordMapConstants)});
     image(d, PELLUCID_BINDING_FRONT_DEPTH, PELLUCID_RESOURCE_FRONT_DEPTH, kUnknownDepthBytes);
     shadowImages(d, group);
-    bind(d, PELLUCID_BINDING_LEVELS, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, pyramidImage());
-    d->modeledBytes += recordBytes;
+    bind(d, PELLUCID_BINDING_LEVELS, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, recordsImage());
+    d->modeledBytes += recordBytes(group);
+    return true;
+  }
 
-    d = dispatch("gather points",
-                 directional ? PELLUCID_PIPELINE_GATHER_POINTS_DIRECTIONAL : PELLUCID_PIPELINE_GATHER_POINTS);
+  // `adds`: to what points found in an earlier dispatch.
+  bool points(const LightGroup& group, bool adds) {
+    const bool directional = group.gatheredDirectional && directionalFrame();
+    PellucidDispatch* d = dispatch("gather points", directional ? PELLUCID_PIPELINE_GATHER_POINTS_DIRECTIONAL
+                                                                : PELLUCID_PIPELINE_GATHER_POINTS);
     if (!d) return false;
     const Cells size = cells();
     groups(d, size.width, size.height, PELLUCID_RECORDS_GROUP);
@@ -166,11 +177,11 @@ struct Builder {
     bind(d, PELLUCID_BINDING_FRONT_DEPTH, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, PELLUCID_RESOURCE_FRONT_DEPTH);
     bind(d, PELLUCID_BINDING_MATERIAL, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, PELLUCID_RESOURCE_MATERIAL);
     optional(d, PELLUCID_BINDING_NORMAL, frame.normal, PELLUCID_RESOURCE_NORMAL, 0);
-    bind(d, PELLUCID_BINDING_RECORDS, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, pyramidImage());
+    bind(d, PELLUCID_BINDING_RECORDS, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, recordsImage());
     bind(d, PELLUCID_BINDING_POINTS, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, pointsImage());
     // Of each cell one pixel's depth, material and normal.
     constexpr uint64_t kCellBytes = kUnknownDepthBytes + 1 + 4 + kTexelBytes;
-    d->modeledBytes = recordBytes + (kCellBytes + (adds ? kTexelBytes : 0)) * size.width * size.height;
+    d->modeledBytes = recordBytes(group) + (kCellBytes + (adds ? kTexelBytes : 0)) * size.width * size.height;
     return true;
   }
 
@@ -201,12 +212,12 @@ struct Builder {
   bool translucency(const LightGroup& group, uint32_t source, uint32_t destination, bool quads) {
     const bool debug = frame.debugView != PELLUCID_DEBUG_NONE;
     const bool directional = group.lightCount == 1 && group.directional && directionalFrame();
-    const uint32_t half = debug                     ? PELLUCID_PIPELINE_DEBUG_16F
-                          : group.gathered > 0      ? PELLUCID_PIPELINE_GATHER_16F
-                          : directional && quads    ? PELLUCID_PIPELINE_DIRECTIONAL_QUADS_16F
-                          : directional             ? PELLUCID_PIPELINE_DIRECTIONAL_16F
-                          : quads                   ? PELLUCID_PIPELINE_TRANSLUCENCY_QUADS_16F
-                                                    : PELLUCID_PIPELINE_TRANSLUCENCY_16F;
+    const uint32_t half = debug                  ? PELLUCID_PIPELINE_DEBUG_16F
+                          : group.gathered > 0   ? PELLUCID_PIPELINE_GATHER_16F
+                          : directional && quads ? PELLUCID_PIPELINE_DIRECTIONAL_QUADS_16F
+                          : directional          ? PELLUCID_PIPELINE_DIRECTIONAL_16F
+                          : quads                ? PELLUCID_PIPELINE_TRANSLUCENCY_QUADS_16F
+                                                 : PELLUCID_PIPELINE_TRANSLUCENCY_16F;
     const uint32_t pipeline = half + (wide() ? 1 : 0);  // the 32F variant follows the 16F one
     PellucidDispatch* d = dispatch(debug ? "debug view" : "translucency", pipeline);
     if (!d) return false;
@@ -342,21 +353,22 @@ struct Builder {
 struct Stages {
   bool lights;  // the fused dispatches carry lights
   bool diffusion;
-  uint32_t fused;  // fused dispatches
-  bool history;    // these write the history, and one more adds it
+  uint32_t fused;    // fused dispatches
+  bool history;      // these write the history, and one more adds it
   bool keepsPoints;  // the history is what the gather's points share: these read it
   // The diffusion is all there is: it copies the irradiance before it writes the output, which may be the
   // same image and whose pixels read their neighbors.
   bool copies;
-  bool fusesQuads;  // the last fused dispatch makes the pyramid's level 1 of what it writes
+  bool fusesQuads;     // the last fused dispatch makes the pyramid's level 1 of what it writes
   LightGroups groups;  // of lights
+  bool overlaps;  // the gather runs beside the diffusion, which it does not wait for, with images of its own
 
   // Dispatches that write a color transient or the output.
   uint32_t writers() const { return (history ? 1 : fused) + (diffusion ? 1 : 0) + (copies ? 1 : 0); }
   uint32_t colorTransients() const { return std::min(writers() - 1, 2u); }
-  // Of packed texels: the pyramid, in its place later the gather's records and then what its points share; what
-  // they find.
-  uint32_t texelTransients() const { return groups.gathered > 0 ? 2 : diffusion ? 1 : 0; }
+  // Of packed texels: the pyramid; what the gather's points find; records, if they do not lie where the
+  // pyramid was.
+  uint32_t texelTransients() const { return groups.gathered > 0 ? (overlaps ? 3 : 2) : diffusion ? 1 : 0; }
 };
 
 Stages stagesOf(const PellucidFrame& frame) {
@@ -372,12 +384,19 @@ Stages stagesOf(const PellucidFrame& frame) {
   s.keepsPoints = keepsPoints(frame);
   s.history = keepsHistory(frame) && !s.keepsPoints;
   s.fusesQuads = s.diffusion && s.lights && !s.history && frame.gatherSamples == 0;
+  // More would be more transients than there are.
+  s.overlaps = s.diffusion && s.groups.gathered == 1 && s.colorTransients() == 1 && !s.history;
   return s;
 }
 
 bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan& plan) {
   const Stages stages = stagesOf(frame);
-  Builder b{frame, constantsLayout(frame), renderRect(frame), stages.colorTransients(), stages.keepsPoints,
+  Builder b{frame,
+            constantsLayout(frame),
+            renderRect(frame),
+            stages.colorTransients(),
+            stages.keepsPoints,
+            stages.overlaps,
             plan};
   plan.activeLights = b.layout.lightCount;
   plan.constantsSize = b.layout.size;
@@ -435,8 +454,8 @@ bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan
     forEachLightGroup(
         frame, [](const LightGroup&, const PellucidLight&) {},
         [&](const LightGroup& group) {
-          const bool gathers = group.gathered > 0 && !reused;
-          if (gathers) fits = fits && b.gather(group, index > 0);
+          const bool gathers = group.gathered > 0 && !reused && !stages.overlaps;
+          if (gathers) fits = fits && b.records(group) && b.points(group, index > 0);
           if (++index < stages.groups.gathered) return;
           if (gathers) fits = fits && b.share();
           fused(group);
@@ -458,11 +477,32 @@ bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan
   };
   const auto diffusion = [&] {
     if (!stages.diffusion) return;
+    LightGroup gathered;
+    if (stages.overlaps && !reused)
+      forEachLightGroup(
+          frame, [](const LightGroup&, const PellucidLight&) {},
+          [&](const LightGroup& group) {
+            if (group.gathered > 0) gathered = group;
+          });
+    // Records, points and sharing, each beside a dispatch of the diffusion.
+    uint32_t step = 0;
+    const auto alongside = [&] {
+      if (gathered.gathered == 0 || step == 3) return;
+      b.alongside = true;
+      fits = fits && (step == 0 ? b.records(gathered) : step == 1 ? b.points(gathered, false) : b.share());
+      b.alongside = false;
+      ++step;
+    };
     const uint32_t copy = stages.copies ? destination() : source;
     if (!stages.fusesQuads) fits = fits && b.quads(source, copy);
+    alongside();
     source = copy;
-    for (uint32_t finer = kFirstLevel; finer < coarsest; finer += 2) fits = fits && b.reduce(finer);
+    for (uint32_t finer = kFirstLevel; finer < coarsest; finer += 2) {
+      fits = fits && b.reduce(finer);
+      alongside();
+    }
     fits = fits && b.resolve(coarsest);
+    alongside();
     const uint32_t to = destination();
     fits = fits && b.diffuse(source, to);
     source = to;
@@ -515,24 +555,25 @@ extern "C" PellucidResult pellucidGetImageNeeds(const PellucidFrame* frame, uint
   for (uint32_t i = 0; i < *count && i < room; ++i) {
     const bool persistent = i == transients, texels = !persistent && i >= colors;
     PyramidExtent size{frame->imageExtent[0], frame->imageExtent[1]};
-    if (texels) size = stages.diffusion ? pyramidExtent(*frame) : PyramidExtent{1, 1};
-    // The gather comes when the pyramid has been used.
-    const bool points = persistent && stages.keepsPoints;
-    if (points) size = {1, 1};
-    if (points || (texels && stages.groups.gathered > 0)) {
+    const uint32_t texel = i - colors;  // the pyramid, points, records
+    const bool kept = persistent && stages.keepsPoints;
+    if (texels || kept)
+      size = texels && texel == 0 && stages.diffusion ? pyramidExtent(*frame) : PyramidExtent{1, 1};
+    const bool records = texels && stages.groups.gathered > 0 && texel == (stages.overlaps ? 2u : 0u);
+    if (kept || records || (texels && texel == 1)) {
       const uint32_t side = gatherSpacing(*frame);
-      const auto fit = [&](uint32_t* most, uint32_t pixels, uint32_t records) {
-        *most = std::max({*most, (pixels - 1) / side + 1, i == colors ? records : 0});
+      const auto fit = [&](uint32_t* most, uint32_t pixels, uint32_t ofMaps) {
+        *most = std::max({*most, (pixels - 1) / side + 1, records ? ofMaps : 0});
       };
       fit(&size.width, frame->imageExtent[0], stages.groups.recordColumns);
       fit(&size.height, frame->imageExtent[1], stages.groups.recordRows);
     }
     PellucidImageNeed& need = needs[i];
     need = {};
-    need.format = texels || points ? VK_FORMAT_R32G32B32A32_UINT : frame->outputFormat;
+    need.format = texels || kept ? VK_FORMAT_R32G32B32A32_UINT : frame->outputFormat;
     need.extent[0] = size.width;
     need.extent[1] = size.height;
-    need.bytes = (texels || points ? kTexelBytes : colorBytes) * size.width * size.height;
+    need.bytes = (texels || kept ? kTexelBytes : colorBytes) * size.width * size.height;
     need.persistent = persistent;
     const uint32_t resource = persistent ? static_cast<uint32_t>(PELLUCID_RESOURCE_HISTORY) : kTransient0 + i;
     need.firstDispatch = UINT32_MAX;
