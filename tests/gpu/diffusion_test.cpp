@@ -130,7 +130,7 @@ TEST_F(Diffusion, SubpixelRadiusReturnsTheInput) {
       EXPECT_NEAR(out.at(x, y)[0], c.irradiance.at(x, y)[0], 1e-3) << x << ", " << y;
 }
 
-// Wider than the image: the mean of all of it, as far as the coarsest level (256 pixels a texel) reaches.
+// Wider than the image: the mean of all of it, as far as the coarsest level (128 pixels a texel) reaches.
 TEST_F(Diffusion, RadiusBeyondTheScreenGivesTheMean) {
   Capture c = dark(64, 64);
   for (int y = 0; y < 64; ++y)
@@ -138,6 +138,50 @@ TEST_F(Diffusion, RadiusBeyondTheScreenGivesTheMean) {
   const Image out = replay(c, gaussians({1e4}, pixelOf(c)), diffusionOnly());
   for (int y = 0; y < 64; ++y)
     for (int x = 0; x < 64; ++x) EXPECT_NEAR(out.at(x, y)[0], 0.5, 0.1) << x << ", " << y;
+}
+
+// Pixels of one plane are filtered without their depths, those near an edge one by one. A hole makes edges of
+// what was a plane; where the kernel does not reach it, nothing else may change.
+TEST_F(Diffusion, PlanesAndEdgesAreFilteredAlike) {
+  Capture c = dark(96, 96);
+  for (int y = 0; y < 96; ++y)
+    for (int x = 0; x < 96; ++x)
+      light(c, x, y, static_cast<float>(1 + 0.8 * std::sin(x * 0.26) * std::cos(y * 0.21)));
+  const PellucidMaterial m = gaussians({0.4, 1}, pixelOf(c));
+  const Image plane = replay(c, m, diffusionOnly());
+  c.material[48 * 96 + 48] = 0;
+  const Image holed = replay(c, m, diffusionOnly());
+  double most = 0;
+  int compared = 0;
+  for (int y = 36; y < 62; ++y)
+    for (int x = 36; x < 62; ++x) {
+      if (std::max(std::abs(x - 48), std::abs(y - 48)) < 6) continue;  // six deviations and more
+      most = std::max(most, static_cast<double>(std::abs(plane.at(x, y)[0] - holed.at(x, y)[0])));
+      ++compared;
+    }
+  EXPECT_GT(compared, 500);
+  EXPECT_LT(most, 2e-3) << "level 2 reaches further than the kernel, with little";
+}
+
+// Without a depth there is no scale to diffuse over: the pixel keeps its irradiance, alone or on a plane.
+TEST_F(Diffusion, PixelsWithoutADepthKeepTheirIrradiance) {
+  for (const bool alone : {true, false}) {
+    Capture c = dark(32, 32);
+    for (int y = 0; y < 32; ++y)
+      for (int x = 0; x < 32; ++x) light(c, x, y, 1);
+    if (alone) std::fill(c.material.begin(), c.material.end(), 0u);
+    for (const auto& [x, y] : {std::pair(5, 6), std::pair(20, 17)}) {
+      c.material[static_cast<size_t>(32 * y + x)] = 1;
+      c.frontDepth.image.at(x, y)[0] = 0;
+      light(c, x, y, 7);
+    }
+    const Image out = replay(c, gaussians({1, 3}, pixelOf(c)), diffusionOnly());
+    EXPECT_EQ(out.at(5, 6)[0], 7);
+    EXPECT_EQ(out.at(20, 17)[0], 7);
+    if (alone) continue;
+    for (const auto& [x, y] : {std::pair(4, 6), std::pair(21, 18), std::pair(12, 12)})
+      EXPECT_NEAR(out.at(x, y)[0], 1, 1e-3) << x << ", " << y;
+  }
 }
 
 // Unlike flatCapture a perspective camera, whose pixels are 0.5 mm at the slab; some texture everywhere.
