@@ -6,7 +6,8 @@
 #include "shared/pellucid_shared.h"
 
 bool hasFlag(uint flag) {
-  uint flags = kDirectional ? (frame.flags.x & (PELLUCID_FLAG_ALBEDO | PELLUCID_FLAG_DIFFUSED)) | PELLUCID_FLAG_NORMAL : frame.flags.x;
+  uint flags = frame.flags.x;
+  if (kDirectional) flags = (flags & (PELLUCID_FLAG_ALBEDO | PELLUCID_FLAG_DIFFUSED)) | PELLUCID_FLAG_NORMAL;
   return (flags & flag) != 0u;
 }
 

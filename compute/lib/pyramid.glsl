@@ -14,8 +14,6 @@ struct Texel {
   vec2 slope;     // change of depth over that of position, facing the camera: tangents, the same at every level
 };
 
-const Texel kNothing = Texel(vec3(0.0), 0.0, 0u, 0.0, vec2(0.0));
-
 uvec2 packColor(vec3 color, uint upper) {
   color = roundToHalf(color);
   return uvec2(packHalf2x16(color.rg), (packHalf2x16(vec2(color.b, 0.0)) & 0xFFFFu) | upper << 16);

@@ -1,0 +1,350 @@
+// What each dispatch of a plan runs and binds, in the order in which it is asked for.
+#pragma once
+
+#include <algorithm>
+
+#include "frame.h"
+#include "pyramid.h"
+#include "records.h"
+
+namespace pellucid {
+
+inline constexpr uint32_t kShadow0 = PELLUCID_RESOURCE_SHADOW0;
+inline constexpr uint32_t kTransient0 = PELLUCID_RESOURCE_TRANSIENT0;
+inline constexpr uint64_t kTexelBytes = 16;        // of the pyramid, as packed by compute/lib/pyramid.glsl
+inline constexpr uint64_t kUnknownDepthBytes = 4;  // the module does not know the format; 4 is the common one
+
+struct Builder {
+  const PellucidFrame& frame;
+  const ConstantsLayout layout;
+  const Rect rect;
+  const uint32_t colorTransients;
+  const bool keepsPoints, overlaps;
+  PellucidPlan& plan;
+  bool alongside = false;  // dispatches run beside the one before, with which they share nothing
+
+  bool wide() const { return frame.outputFormat == VK_FORMAT_R32G32B32A32_SFLOAT; }
+  uint64_t pixels() const { return static_cast<uint64_t>(rect.width) * rect.height; }
+  uint32_t pyramidImage() const { return kTransient0 + colorTransients; }
+  // What points of the gather find; the records of the maps and, in their place, what points share. Records
+  // lie where the pyramid was unless both are in use at once.
+  uint32_t pointsImage() const { return pyramidImage() + 1; }
+  uint32_t recordsImage() const { return overlaps ? pyramidImage() + 2 : pyramidImage(); }
+  uint32_t sharedImage() const {
+    return keepsPoints ? static_cast<uint32_t>(PELLUCID_RESOURCE_HISTORY) : recordsImage();
+  }
+  uint64_t colorBytes() const { return wide() ? 16 : 8; }
+
+  void skip(const char* what, const char* reason) {
+    for (uint32_t i = 0; i < plan.skipCount; ++i)
+      if (plan.skips[i].what == what && plan.skips[i].reason == reason) {
+        ++plan.skips[i].count;
+        return;
+      }
+    if (plan.skipCount < PELLUCID_MAX_SKIPS) plan.skips[plan.skipCount++] = {what, reason, 1};
+  }
+
+  PellucidDispatch* dispatch(const char* name, uint32_t pipeline) {
+    if (plan.dispatchCount == PELLUCID_MAX_DISPATCHES) return nullptr;
+    PellucidDispatch& d = plan.dispatches[plan.dispatchCount];
+    d.name = name;
+    d.pipeline = pipeline;
+    groups(&d, rect.width, rect.height, PELLUCID_GROUP_X);
+    // Every dispatch after the first reads what the one before wrote.
+    // The first of a frame that reuses comes after the last frame's use of the history.
+    d.barrierBefore = !alongside && (plan.dispatchCount > 0 || plan.history.valid) ? 1 : 0;
+    plan.barrierCount += d.barrierBefore;
+    ++plan.dispatchCount;
+    return &d;
+  }
+
+  // `tile`: side of the square that one group makes.
+  static void groups(PellucidDispatch* d, uint32_t width, uint32_t height, uint32_t tile) {
+    d->groups[0] = (width + tile - 1) / tile;
+    d->groups[1] = (height + tile - 1) / tile;
+    d->groups[2] = 1;
+  }
+
+  // Of four pixels an invocation, from even ones on.
+  void tiles(PellucidDispatch* d) const {
+    groups(d, rect.width + (rect.x & 1), rect.height + (rect.y & 1), 2 * PELLUCID_GROUP_X);
+  }
+
+  static void bind(PellucidDispatch* d, uint32_t binding, VkDescriptorType type, uint32_t resource,
+                   ConstantsLayout::Range range = {}) {
+    d->bindings[d->bindingCount++] = {binding, type, resource, 0, range.offset, range.size};
+  }
+  void constants(PellucidDispatch* d, uint32_t binding, ConstantsLayout::Range range) const {
+    const bool uniform = binding <= PELLUCID_BINDING_SHADOWS;
+    bind(d, binding, uniform ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+         PELLUCID_RESOURCE_CONSTANTS, range);
+  }
+  void image(PellucidDispatch* d, uint32_t binding, uint32_t resource, uint64_t bytes) const {
+    bind(d, binding, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, resource);
+    d->modeledBytes += bytes * pixels();
+  }
+  // An input the frame may lack. The shader's flag keeps it unread, but every statically used binding
+  // must hold a view: the front depth stands in.
+  void optional(PellucidDispatch* d, uint32_t binding, const PellucidImage& view, uint32_t resource,
+                uint64_t bytes) const {
+    if (given(view)) return image(d, binding, resource, bytes);
+    image(d, binding, PELLUCID_RESOURCE_FRONT_DEPTH, 0);
+  }
+
+  // What every pass over pixels reads.
+  void pixelInputs(PellucidDispatch* d, uint32_t source) const {
+    image(d, PELLUCID_BINDING_FRONT_DEPTH, PELLUCID_RESOURCE_FRONT_DEPTH, kUnknownDepthBytes);
+    image(d, PELLUCID_BINDING_SOURCE, source, colorBytes());
+    image(d, PELLUCID_BINDING_MATERIAL, PELLUCID_RESOURCE_MATERIAL, 1);
+  }
+  // Bindings of every pass that writes colors.
+  void common(PellucidDispatch* d, uint32_t source, uint32_t destination) const {
+    constants(d, PELLUCID_BINDING_FRAME, layout.frame);
+    pixelInputs(d, source);
+    const bool last = destination == PELLUCID_RESOURCE_OUTPUT;
+    optional(d, PELLUCID_BINDING_ALBEDO, frame.albedo, PELLUCID_RESOURCE_ALBEDO, last ? 4 : 0);
+    bind(d, PELLUCID_BINDING_DESTINATION, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, destination);
+    d->modeledBytes += colorBytes() * pixels();
+  }
+
+  // What compute/lib/common_case.glsl takes for granted besides the lights.
+  bool directionalFrame() const {
+    bool exponentials = true;
+    for (uint32_t i = 0; i < frame.materialCount; ++i)
+      exponentials = exponentials && frame.materials[i].transmittanceModel == PELLUCID_TRANSMITTANCE_EXP2;
+    return exponentials && given(frame.normal) && frame.frontDepthEncoding == PELLUCID_DEPTH_DEVICE &&
+           frame.thicknessSource == PELLUCID_THICKNESS_LIGHT && frame.angleModel == PELLUCID_ANGLE_NORMAL &&
+           frame.constantViewDirection == 0;
+  }
+
+  // Cells of the gather that the rect touches.
+  struct Cells {
+    uint32_t width, height;
+  };
+  Cells cells() const {
+    const uint32_t side = gatherSpacing(frame);
+    const auto count = [side](uint32_t first, uint32_t pixels) {
+      return (first + pixels - 1) / side - first / side + 1;
+    };
+    return {count(rect.x, rect.width), count(rect.y, rect.height)};
+  }
+
+  static uint64_t recordBytes(const LightGroup& group) {
+    return kTexelBytes * group.recordColumns * group.recordRows;
+  }
+
+  bool records(const LightGroup& group) {
+    const bool directional = group.gatheredDirectional && directionalFrame();
+    PellucidDispatch* d =
+        dispatch("gather records", directional ? PELLUCID_PIPELINE_GATHER_RECORDS_DIRECTIONAL
+                                               : PELLUCID_PIPELINE_GATHER_RECORDS);
+    if (!d) return false;
+    groups(d, group.recordColumns, group.recordRows, PELLUCID_RECORDS_GROUP);
+    d->pushConstants[0] = group.shadowCount;
+    constants(d, PELLUCID_BINDING_FRAME, layout.frame);
+    constants(d, PELLUCID_BINDING_LIGHTS, {layout.lights.offset + group.lightBytes, kLightWindow});
+    constants(d, PELLUCID_BINDING_GATHER_MAPS,
+              {layout.gatherMaps.offset + group.gatherMapBytes, kGatherMapWindow});
+    constants(d, PELLUCID_BINDING_RECORD_MAPS,
+              {layout.recordMaps.offset + group.recordMapBytes,
+               group.shadowCount * sizeof(shared::RecordMapConstants)});
+    image(d, PELLUCID_BINDING_FRONT_DEPTH, PELLUCID_RESOURCE_FRONT_DEPTH, kUnknownDepthBytes);
+    shadowImages(d, group);
+    bind(d, PELLUCID_BINDING_LEVELS, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, recordsImage());
+    d->modeledBytes += recordBytes(group);
+    return true;
+  }
+
+  // `adds`: to what points found in an earlier dispatch.
+  bool points(const LightGroup& group, bool adds) {
+    const bool directional = group.gatheredDirectional && directionalFrame();
+    PellucidDispatch* d = dispatch("gather points", directional ? PELLUCID_PIPELINE_GATHER_POINTS_DIRECTIONAL
+                                                                : PELLUCID_PIPELINE_GATHER_POINTS);
+    if (!d) return false;
+    const Cells size = cells();
+    groups(d, size.width, size.height, PELLUCID_RECORDS_GROUP);
+    d->pushConstants[0] = gatherSpacing(frame);
+    d->pushConstants[1] = group.gathered;
+    d->pushConstants[2] = adds;
+    d->pushConstants[3] = frame.gatherSamples;
+    constants(d, PELLUCID_BINDING_FRAME, layout.frame);
+    constants(d, PELLUCID_BINDING_LIGHTS, {layout.lights.offset + group.lightBytes, kLightWindow});
+    constants(d, PELLUCID_BINDING_GATHER_MAPS,
+              {layout.gatherMaps.offset + group.gatherMapBytes, kGatherMapWindow});
+    constants(d, PELLUCID_BINDING_MATERIALS, layout.materials);
+    bind(d, PELLUCID_BINDING_FRONT_DEPTH, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, PELLUCID_RESOURCE_FRONT_DEPTH);
+    bind(d, PELLUCID_BINDING_MATERIAL, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, PELLUCID_RESOURCE_MATERIAL);
+    optional(d, PELLUCID_BINDING_NORMAL, frame.normal, PELLUCID_RESOURCE_NORMAL, 0);
+    bind(d, PELLUCID_BINDING_RECORDS, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, recordsImage());
+    bind(d, PELLUCID_BINDING_POINTS, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, pointsImage());
+    // Of each cell one pixel's depth, material and normal.
+    constexpr uint64_t kCellBytes = kUnknownDepthBytes + 1 + 4 + kTexelBytes;
+    d->modeledBytes = recordBytes(group) + (kCellBytes + (adds ? kTexelBytes : 0)) * size.width * size.height;
+    return true;
+  }
+
+  bool share() {
+    PellucidDispatch* d = dispatch("gather share", PELLUCID_PIPELINE_GATHER_SHARE);
+    if (!d) return false;
+    const Cells size = cells();
+    groups(d, size.width, size.height, PELLUCID_SHARE_GROUP);
+    d->pushConstants[0] = gatherSpacing(frame);
+    constants(d, PELLUCID_BINDING_FRAME, layout.frame);
+    constants(d, PELLUCID_BINDING_MATERIALS, layout.materials);
+    bind(d, PELLUCID_BINDING_RECORDS, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, pointsImage());
+    bind(d, PELLUCID_BINDING_POINTS, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, sharedImage());
+    d->modeledBytes = 2 * kTexelBytes * size.width * size.height;
+    return true;
+  }
+
+  void shadowImages(PellucidDispatch* d, const LightGroup& group) const {
+    for (uint32_t slot = 0; slot < PELLUCID_SHADOW_IMAGE_COUNT; ++slot) {
+      const bool used = slot < group.imageCount;
+      image(d, PELLUCID_BINDING_SHADOW_IMAGES + slot,
+            used ? kShadow0 + group.images[slot] : static_cast<uint32_t>(PELLUCID_RESOURCE_FRONT_DEPTH),
+            used ? kUnknownDepthBytes : 0);
+    }
+  }
+
+  // `quads`: the pyramid's level 1 is written too.
+  bool translucency(const LightGroup& group, uint32_t source, uint32_t destination, bool quads) {
+    const bool debug = frame.debugView != PELLUCID_DEBUG_NONE;
+    const bool directional = group.lightCount == 1 && group.directional && directionalFrame();
+    const uint32_t half = debug                  ? PELLUCID_PIPELINE_DEBUG_16F
+                          : group.gathered > 0   ? PELLUCID_PIPELINE_GATHER_16F
+                          : directional && quads ? PELLUCID_PIPELINE_DIRECTIONAL_QUADS_16F
+                          : directional          ? PELLUCID_PIPELINE_DIRECTIONAL_16F
+                          : quads                ? PELLUCID_PIPELINE_TRANSLUCENCY_QUADS_16F
+                                                 : PELLUCID_PIPELINE_TRANSLUCENCY_16F;
+    const uint32_t pipeline = half + (wide() ? 1 : 0);  // the 32F variant follows the 16F one
+    PellucidDispatch* d = dispatch(debug ? "debug view" : "translucency", pipeline);
+    if (!d) return false;
+    if (half == PELLUCID_PIPELINE_GATHER_16F) {
+      // Tiles are the image's.
+      constexpr uint32_t kTile = 2 * PELLUCID_GATHER_GROUP;
+      groups(d, rect.x % kTile + rect.width, rect.y % kTile + rect.height, kTile);
+      d->pushConstants[0] = gatherSpacing(frame);
+      d->pushConstants[3] = group.gathered;
+      bind(d, PELLUCID_BINDING_POINTS, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, sharedImage());
+      d->modeledBytes += kTexelBytes * cells().width * cells().height;
+    } else {
+      tiles(d);
+    }
+    if (quads) {
+      writesPyramid(d);
+      writesLevel(d, kFirstLevel);
+    }
+    d->pushConstants[1] = group.lightCount;
+    d->pushConstants[2] = destination == PELLUCID_RESOURCE_OUTPUT;
+    if (destination == PELLUCID_RESOURCE_HISTORY && group.firstLight == 0)
+      d->pushConstants[2] = PELLUCID_WRITE_STARTS;
+    common(d, source, destination);
+    if (d->pushConstants[2] == PELLUCID_WRITE_STARTS)
+      d->modeledBytes -= colorBytes() * pixels();  // what is there is not read
+    constants(d, PELLUCID_BINDING_LIGHTS, {layout.lights.offset + group.lightBytes, kLightWindow});
+    constants(d, PELLUCID_BINDING_SHADOWS, {layout.shadows.offset + group.shadowBytes, kShadowWindow});
+    constants(d, PELLUCID_BINDING_MATERIALS, layout.materials);
+    optional(d, PELLUCID_BINDING_BACK_DEPTH, frame.backDepth, PELLUCID_RESOURCE_BACK_DEPTH,
+             needsChord(frame) ? kUnknownDepthBytes : 0);
+    optional(d, PELLUCID_BINDING_NORMAL, frame.normal, PELLUCID_RESOURCE_NORMAL, 4);
+    // Lights that are gathered from have been.
+    shadowImages(d, group.gathered > 0 ? LightGroup{} : group);
+    return true;
+  }
+
+  bool addHistory(uint32_t source, uint32_t destination) {
+    PellucidDispatch* d = dispatch(
+        "add history", wide() ? PELLUCID_PIPELINE_ADD_HISTORY_32F : PELLUCID_PIPELINE_ADD_HISTORY_16F);
+    if (!d) return false;
+    d->pushConstants[2] = destination == PELLUCID_RESOURCE_OUTPUT;
+    common(d, source, destination);
+    image(d, PELLUCID_BINDING_HISTORY, PELLUCID_RESOURCE_HISTORY, colorBytes());
+    return true;
+  }
+
+  void levelGroups(PellucidDispatch* d, uint32_t level, uint32_t tile) const {
+    const PyramidPlace place = placeOf(frame, level);
+    groups(d, static_cast<uint32_t>(place.rect.width), static_cast<uint32_t>(place.rect.height), tile);
+  }
+
+  // Texels of a level that the rect needs.
+  uint64_t texels(uint32_t level) const {
+    const PyramidPlace place = placeOf(frame, level);
+    return static_cast<uint64_t>(place.rect.width) * static_cast<uint64_t>(place.rect.height);
+  }
+
+  void writesLevel(PellucidDispatch* d, uint32_t level) const {
+    d->modeledBytes += kTexelBytes * texels(level);
+  }
+  void writesPyramid(PellucidDispatch* d) const {
+    bind(d, PELLUCID_BINDING_LEVELS, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, pyramidImage());
+  }
+
+  // Level 1 from the pixels of an image, which are copied on the way if `copy` is another one.
+  bool quads(uint32_t source, uint32_t copy) {
+    const bool copies = copy != source;
+    PellucidDispatch* d = dispatch("quads", !copies  ? PELLUCID_PIPELINE_QUADS
+                                            : wide() ? PELLUCID_PIPELINE_QUADS_AND_COPY_32F
+                                                     : PELLUCID_PIPELINE_QUADS_AND_COPY_16F);
+    if (!d) return false;
+    tiles(d);
+    constants(d, PELLUCID_BINDING_FRAME, layout.frame);
+    writesPyramid(d);
+    writesLevel(d, kFirstLevel);
+    pixelInputs(d, source);
+    if (copies) {
+      bind(d, PELLUCID_BINDING_DESTINATION, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, copy);
+      d->modeledBytes += colorBytes() * pixels();
+    }
+    return true;
+  }
+
+  bool reduce(uint32_t finer) {
+    PellucidDispatch* d = dispatch("reduce", PELLUCID_PIPELINE_REDUCE_LEVELS);
+    if (!d) return false;
+    levelGroups(d, finer + 2, PELLUCID_REDUCE_TILE);
+    d->pushConstants[0] = finer;
+    constants(d, PELLUCID_BINDING_FRAME, layout.frame);
+    writesPyramid(d);
+    bind(d, PELLUCID_BINDING_PYRAMID, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, pyramidImage());
+    for (uint32_t level = finer; level <= finer + 2; ++level) writesLevel(d, level);
+    return true;
+  }
+
+  bool resolve(uint32_t coarsest) {
+    PellucidDispatch* d = dispatch("resolve", PELLUCID_PIPELINE_RESOLVE_LEVELS);
+    if (!d) return false;
+    levelGroups(d, 2, PELLUCID_RESOLVE_TILE);
+    d->pushConstants[0] = coarsest;
+    constants(d, PELLUCID_BINDING_FRAME, layout.frame);
+    constants(d, PELLUCID_BINDING_KERNELS, layout.kernels);
+    writesPyramid(d);
+    bind(d, PELLUCID_BINDING_PYRAMID, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, pyramidImage());
+    for (uint32_t level = 2; level <= coarsest; ++level) writesLevel(d, level);
+    d->modeledBytes += 2 * kTexelBytes * texels(2);
+    return true;
+  }
+
+  bool diffuse(uint32_t source, uint32_t destination) {
+    const bool coarse = plan.quality == 0;
+    const uint32_t half = coarse ? PELLUCID_PIPELINE_DIFFUSE_COARSE_16F : PELLUCID_PIPELINE_DIFFUSE_16F;
+    PellucidDispatch* d = dispatch("diffuse", half + (wide() ? 1 : 0));
+    if (!d) return false;
+    // Groups start at texels of level 2, whose rect has a border of one.
+    const PyramidPlace place = placeOf(frame, 2);
+    const auto across = [](int32_t texels, uint32_t side) {
+      return (static_cast<uint32_t>(texels) - 2 + side - 1) / side;
+    };
+    d->groups[0] =
+        across(place.rect.width, coarse ? PELLUCID_DIFFUSE_COARSE_TEXELS_X : PELLUCID_DIFFUSE_TEXELS_X);
+    d->groups[1] = across(place.rect.height, PELLUCID_DIFFUSE_TEXELS_Y);
+    d->pushConstants[1] = source < kTransient0;  // the passes write nothing that would have to be sanitized
+    d->pushConstants[3] = destination == PELLUCID_RESOURCE_OUTPUT;
+    common(d, source, destination);
+    bind(d, PELLUCID_BINDING_PYRAMID, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, pyramidImage());
+    d->modeledBytes += 2 * kTexelBytes * texels(2);
+    return true;
+  }
+};
+
+}  // namespace pellucid
