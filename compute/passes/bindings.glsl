@@ -22,6 +22,13 @@ layout(set = 0, binding = PELLUCID_BINDING_DESTINATION, FORMAT) uniform writeonl
 
 #include "lib/flags.glsl"
 
+// Where an invocation does four pixels, the i-th in the group's tile: half a tile apart, so that neighbors load
+// neighbors.
+ivec2 pixelInTile(int i) { return ivec2(gl_LocalInvocationID.xy) + GROUP_SIDE * ivec2(i & 1, i >> 1); }
+
+// Of tiles that start at even pixels, so that quads of pixels are the image's.
+ivec2 evenTile() { return (ivec2(frame.rect.xy) & ~1) + ivec2(gl_WorkGroupID.xy) * (2 * GROUP_SIDE); }
+
 ivec2 invocationPixel() { return ivec2(frame.rect.xy) + ivec2(gl_GlobalInvocationID.xy); }
 
 bool insideRect(ivec2 pixel) {

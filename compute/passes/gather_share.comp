@@ -15,7 +15,7 @@ const int kRow = PELLUCID_SHARE_GROUP + 2; // a border of one
 const int kThreads = PELLUCID_SHARE_GROUP * PELLUCID_SHARE_GROUP;
 
 shared vec4 places[kRow * kRow];  // position; w: bits of the material, 0: nothing there
-shared uvec4 found[kRow * kRow];  // halves: added, displaced; w: normal in three bytes
+shared uvec4 found[kRow * kRow];  // light; w: normal in three bytes
 
 vec3 normalOf(uvec4 bits) { return unpackSnorm4x8(bits.w).xyz; }
 
@@ -30,8 +30,7 @@ void main() {
     bool inside = all(greaterThanEqual(at, cells.xy)) && all(lessThan(at, cells.zw));
     Point p = unpackPoint(inside ? texelFetch(foundImage, at, 0) : kNoPoint);
     places[i] = vec4(viewPosition(at, side, p), uintBitsToFloat(p.material));
-    found[i] = uvec4(packHalf2x16(p.added.rg), packHalf2x16(vec2(p.added.b, p.displaced.r)),
-                     packHalf2x16(p.displaced.gb), packSnorm4x8(vec4(p.normal, 0.0)));
+    found[i] = uvec4(packLight(p.added, p.displaced), packSnorm4x8(vec4(p.normal, 0.0)));
   }
   barrier();
   if (any(greaterThanEqual(cell, cells.zw))) return;
@@ -52,9 +51,7 @@ void main() {
     uvec4 bits = found[other];
     vec3 apart = theirs.xyz - place.xyz;
     float weight = exp2(-dot(apart, apart) * perSquare) * max(dot(normalOf(bits), normal), 0.0);
-    vec2 middle = unpackHalf2x16(bits.y);
-    added += weight * vec3(unpackHalf2x16(bits.x), middle.x);
-    displaced += weight * vec3(middle.y, unpackHalf2x16(bits.z));
+    addLight(bits.xyz, weight, added, displaced);
     total += weight;
   }
   // The point itself is among them.

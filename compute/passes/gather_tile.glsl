@@ -12,7 +12,7 @@ const int kMostRow = kTile / 2 + 1;
 const int kThreads = PELLUCID_GATHER_GROUP * PELLUCID_GATHER_GROUP;
 
 shared vec4 planes[kMostRow * kMostRow]; // see tangentPlane
-shared uvec4 points[kMostRow * kMostRow]; // halves: added, displaced; w: material, 0: nothing there
+shared uvec4 points[kMostRow * kMostRow]; // light; w: material, 0: nothing there
 shared uint someLight; // 0: no point has any
 
 // A pixel that is a quarter of its side off a point's tangent plane is not of its surface. Measured: half and a
@@ -40,8 +40,7 @@ void loadPoint(int index, ivec2 cell, int side, ivec2 tile) {
   if (bits == kNoPoint) return;
   Point p = unpackPoint(bits);
   planes[index] = tangentPlane(p, pixelInCell(cell, side, p.index), tile);
-  points[index] = uvec4(bits.x, (bits.y & 0xFFFFu) | packHalf2x16(vec2(0.0, p.displaced.r)),
-                        packHalf2x16(p.displaced.gb), p.material);
+  points[index] = uvec4(packLight(p.added, p.displaced), p.material);
   if (any(notEqual(points[index].xyz, uvec3(0u)))) someLight = 1u;
 }
 
@@ -63,9 +62,7 @@ vec3 withGathered(vec3 diffused, ivec2 local, int side, float front, uint materi
     float off = (front - plane.x - dot(plane.yz, vec2(local))) * plane.w;
     // The floors leave a pixel without a like neighbor the most alike.
     float weight = (exp2(-off * off) + 1.0e-4) * (linear.x * linear.y + 1.0e-4);
-    vec2 middle = unpackHalf2x16(point.y);
-    added += weight * vec3(unpackHalf2x16(point.x), middle.x);
-    displaced += weight * vec3(middle.y, unpackHalf2x16(point.z));
+    addLight(point.xyz, weight, added, displaced);
     total += weight;
   }
   // The cell's own point is of its material, unless the cell has several.
@@ -104,8 +101,7 @@ void main() {
   float front[4];
   [[unroll]] for (int i = 0; i < 4; ++i) {
     // Within the rect, where the loads need no branch.
-    ivec2 pixel = tile + ivec2(gl_LocalInvocationID.xy) + PELLUCID_GATHER_GROUP * ivec2(i & 1, i >> 1);
-    pixel = clamp(pixel, ivec2(frame.rect.xy), ivec2(frame.rect.zw) - 1);
+    ivec2 pixel = clamp(tile + pixelInTile(i), ivec2(frame.rect.xy), ivec2(frame.rect.zw) - 1);
     value[i] = materialValueAt(pixel);
     source[i] = texelFetch(sourceImage, pixel, 0);
     front[i] = texelFetch(frontDepthImage, pixel, 0).x;
@@ -121,13 +117,13 @@ void main() {
   if (pass.value.w == pass.value.y) {
     // Unrolled, so that the arrays stay in registers.
     [[unroll]] for (int i = 0; i < 4; ++i) {
-      ivec2 local = ivec2(gl_LocalInvocationID.xy) + PELLUCID_GATHER_GROUP * ivec2(i & 1, i >> 1);
+      ivec2 local = pixelInTile(i);
       if (insideRect(tile + local)) writePixel(tile + local, local, side, value[i], source[i], front[i], false);
     }
   } else {
     // The code of other lights once.
     [[dont_unroll]] for (int i = 0; i < 4; ++i) {
-      ivec2 local = ivec2(gl_LocalInvocationID.xy) + PELLUCID_GATHER_GROUP * ivec2(i & 1, i >> 1), pixel = tile + local;
+      ivec2 local = pixelInTile(i), pixel = tile + local;
       if (insideRect(pixel))
         writePixel(pixel, local, side, materialValueAt(pixel), texelFetch(sourceImage, pixel, 0),
                    texelFetch(frontDepthImage, pixel, 0).x, true);

@@ -44,6 +44,17 @@ Point unpackPoint(uvec4 bits) {
                bits.z & 0xFFu, int(bits.w >> 27));
 }
 
+// Added and displaced light alone, in halves.
+uvec3 packLight(vec3 added, vec3 displaced) {
+  return uvec3(packHalf2x16(added.rg), packHalf2x16(vec2(added.b, displaced.r)), packHalf2x16(displaced.gb));
+}
+
+void addLight(uvec3 bits, float weight, inout vec3 added, inout vec3 displaced) {
+  vec2 middle = unpackHalf2x16(bits.y);
+  added += weight * vec3(unpackHalf2x16(bits.x), middle.x);
+  displaced += weight * vec3(middle.y, unpackHalf2x16(bits.z));
+}
+
 // Cells have 2 or 4 pixels a side: shifts in place of divisions, which take as long as the rest.
 int shiftOf(int side) { return side >> 1; }
 

@@ -1,5 +1,5 @@
-// Level 1 of the pyramid from a tile of pixels that a group has in shared memory. An invocation does four pixels, half a tile
-// apart so that neighbors load neighbors, and then a texel.
+// Level 1 of the pyramid from a tile of pixels that a group has in shared memory. An invocation does four pixels and then
+// a texel.
 #ifndef PELLUCID_QUAD_TILE_GLSL
 #define PELLUCID_QUAD_TILE_GLSL
 
@@ -9,12 +9,6 @@ const int kTile = 2 * GROUP_SIDE; // pixels
 shared uvec2 tileColors[kTile * kTile]; // and material
 shared float tileDepths[kTile * kTile];
 
-// Of the tile, the i-th pixel of an invocation.
-ivec2 pixelInTile(int i) { return ivec2(gl_LocalInvocationID.xy) + GROUP_SIDE * ivec2(i & 1, i >> 1); }
-
-// Tiles start at even pixels, so that quads are the image's.
-ivec2 tileStart() { return (ivec2(frame.rect.xy) & ~1) + ivec2(gl_WorkGroupID.xy) * kTile; }
-
 void keepPixel(ivec2 inTile, vec3 color, float depth, uint material) {
   tileColors[inTile.y * kTile + inTile.x] = packColor(color, material);
   tileDepths[inTile.y * kTile + inTile.x] = depth;
@@ -22,7 +16,7 @@ void keepPixel(ivec2 inTile, vec3 color, float depth, uint material) {
 
 // After a barrier.
 void writeQuad() {
-  ivec2 local = ivec2(gl_LocalInvocationID.xy), quad = (tileStart() >> 1) + local;
+  ivec2 local = ivec2(gl_LocalInvocationID.xy), quad = (evenTile() >> 1) + local;
   uint material[4];
   float depth[4];
   vec3 color[4];

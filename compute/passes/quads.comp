@@ -11,7 +11,7 @@ void main() {
   vec4 source[4];
   // All at once, so that the latencies overlap.
   for (int i = 0; i < 4; ++i) {
-    ivec2 pixel = tileStart() + pixelInTile(i);
+    ivec2 pixel = evenTile() + pixelInTile(i);
     ivec2 at = clamp(pixel, ivec2(frame.rect.xy), ivec2(frame.rect.zw) - 1);
     material[i] = at == pixel ? materialAt(at) : 0u;
     depth[i] = frontDistance(at);
@@ -21,7 +21,7 @@ void main() {
     vec3 color = sanitize(source[i].rgb);
 #ifdef COPY
     color = asStored(color);
-    if (material[i] != 0u) imageStore(destinationImage, tileStart() + pixelInTile(i), vec4(color, source[i].a));
+    if (material[i] != 0u) imageStore(destinationImage, evenTile() + pixelInTile(i), vec4(color, source[i].a));
 #endif
     keepPixel(pixelInTile(i), color, depth[i], material[i]);
   }

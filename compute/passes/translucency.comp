@@ -134,27 +134,23 @@ vec3 resultAt(ivec2 pixel, Texels t, float front, uint m) {
 }
 #endif
 
-// An invocation does four pixels, half a tile apart so that neighbors load neighbors. QUADS: then a texel of the pyramid's
-// level 1.
+// An invocation does four pixels. QUADS: then a texel of the pyramid's level 1.
 void main() {
-  ivec2 tile = (ivec2(frame.rect.xy) & ~1) + ivec2(gl_WorkGroupID.xy) * (2 * GROUP_SIDE);
-  ivec2 local = ivec2(gl_LocalInvocationID.xy);
+  ivec2 tile = evenTile();
   // A history that starts is 0 wherever nothing came through: the next frame's pixels may lie there.
   bool starts = pass.value.z == PELLUCID_WRITE_STARTS;
   Texels texels[4];
-  UNROLL for (int i = 0; i < 4; ++i) {
-    ivec2 pixel = tile + local + GROUP_SIDE * ivec2(i & 1, i >> 1);
-    texels[i] = fetch(clamp(pixel, ivec2(frame.rect.xy), ivec2(frame.rect.zw) - 1));
-  }
+  UNROLL for (int i = 0; i < 4; ++i)
+    texels[i] = fetch(clamp(tile + pixelInTile(i), ivec2(frame.rect.xy), ivec2(frame.rect.zw) - 1));
 #ifdef DIRECTIONAL
   Receiver receivers[4];
   bool some = (materialIndex(texels[0].value) | materialIndex(texels[1].value) | materialIndex(texels[2].value) |
                materialIndex(texels[3].value)) != 0u;
   if (some) [[unroll]] for (int i = 0; i < 4; ++i)
-    receivers[i] = receiverAt(tile + local + GROUP_SIDE * ivec2(i & 1, i >> 1), texels[i], frontDistanceOf(texels[i].front));
+    receivers[i] = receiverAt(tile + pixelInTile(i), texels[i], frontDistanceOf(texels[i].front));
 #endif
   UNROLL for (int i = 0; i < 4; ++i) {
-    ivec2 inTile = local + GROUP_SIDE * ivec2(i & 1, i >> 1), pixel = tile + inTile;
+    ivec2 pixel = tile + pixelInTile(i);
     Texels t = texels[i];
     uint material = insideRect(pixel) ? materialIndex(t.value) : 0u;
     float depth = frontDistanceOf(t.front);
@@ -175,7 +171,7 @@ void main() {
       imageStore(destinationImage, pixel, vec4(0.0));
     }
 #ifdef QUADS
-    keepPixel(inTile, color, depth, material);
+    keepPixel(pixelInTile(i), color, depth, material);
 #endif
   }
 #ifdef QUADS

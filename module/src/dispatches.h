@@ -50,7 +50,7 @@ struct Builder {
     d.name = name;
     d.pipeline = pipeline;
     groups(&d, rect.width, rect.height, PELLUCID_GROUP_X);
-    // Every dispatch after the first reads what the one before wrote.
+    // Every dispatch after the first reads what the one before wrote, unless it runs beside that.
     // The first of a frame that reuses comes after the last frame's use of the history.
     d.barrierBefore = !alongside && (plan.dispatchCount > 0 || plan.history.valid) ? 1 : 0;
     plan.barrierCount += d.barrierBefore;
@@ -232,7 +232,7 @@ struct Builder {
     }
     if (quads) {
       writesPyramid(d);
-      writesLevel(d, kFirstLevel);
+      levelTraffic(d, kFirstLevel);
     }
     d->pushConstants[1] = group.lightCount;
     d->pushConstants[2] = destination == PELLUCID_RESOURCE_OUTPUT;
@@ -273,8 +273,12 @@ struct Builder {
     return static_cast<uint64_t>(place.rect.width) * static_cast<uint64_t>(place.rect.height);
   }
 
-  void writesLevel(PellucidDispatch* d, uint32_t level) const {
+  // A level is read or written once.
+  void levelTraffic(PellucidDispatch* d, uint32_t level) const {
     d->modeledBytes += kTexelBytes * texels(level);
+  }
+  void readsPyramid(PellucidDispatch* d) const {
+    bind(d, PELLUCID_BINDING_PYRAMID, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, pyramidImage());
   }
   void writesPyramid(PellucidDispatch* d) const {
     bind(d, PELLUCID_BINDING_LEVELS, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, pyramidImage());
@@ -290,7 +294,7 @@ struct Builder {
     tiles(d);
     constants(d, PELLUCID_BINDING_FRAME, layout.frame);
     writesPyramid(d);
-    writesLevel(d, kFirstLevel);
+    levelTraffic(d, kFirstLevel);
     pixelInputs(d, source);
     if (copies) {
       bind(d, PELLUCID_BINDING_DESTINATION, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, copy);
@@ -306,8 +310,8 @@ struct Builder {
     d->pushConstants[0] = finer;
     constants(d, PELLUCID_BINDING_FRAME, layout.frame);
     writesPyramid(d);
-    bind(d, PELLUCID_BINDING_PYRAMID, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, pyramidImage());
-    for (uint32_t level = finer; level <= finer + 2; ++level) writesLevel(d, level);
+    readsPyramid(d);
+    for (uint32_t level = finer; level <= finer + 2; ++level) levelTraffic(d, level);
     return true;
   }
 
@@ -319,8 +323,8 @@ struct Builder {
     constants(d, PELLUCID_BINDING_FRAME, layout.frame);
     constants(d, PELLUCID_BINDING_KERNELS, layout.kernels);
     writesPyramid(d);
-    bind(d, PELLUCID_BINDING_PYRAMID, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, pyramidImage());
-    for (uint32_t level = 2; level <= coarsest; ++level) writesLevel(d, level);
+    readsPyramid(d);
+    for (uint32_t level = 2; level <= coarsest; ++level) levelTraffic(d, level);
     d->modeledBytes += 2 * kTexelBytes * texels(2);
     return true;
   }
@@ -341,7 +345,7 @@ struct Builder {
     d->pushConstants[1] = source < kTransient0;  // the passes write nothing that would have to be sanitized
     d->pushConstants[3] = destination == PELLUCID_RESOURCE_OUTPUT;
     common(d, source, destination);
-    bind(d, PELLUCID_BINDING_PYRAMID, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, pyramidImage());
+    readsPyramid(d);
     d->modeledBytes += 2 * kTexelBytes * texels(2);
     return true;
   }

@@ -61,14 +61,12 @@ uint32_t gatherSpacing(const PellucidFrame& frame) {
 
 LightGroups lightGroups(const PellucidFrame& frame) {
   LightGroups groups;
-  forEachLightGroup(
-      frame, [](const LightGroup&, const PellucidLight&) {},
-      [&](const LightGroup& group) {
-        ++groups.count;
-        if (group.gathered > 0) ++groups.gathered;
-        groups.recordColumns = std::max(groups.recordColumns, group.recordColumns);
-        groups.recordRows = std::max(groups.recordRows, group.recordRows);
-      });
+  forEachLightGroup(frame, [&](const LightGroup& group) {
+    ++groups.count;
+    if (group.gathered > 0) ++groups.gathered;
+    groups.recordColumns = std::max(groups.recordColumns, group.recordColumns);
+    groups.recordRows = std::max(groups.recordRows, group.recordRows);
+  });
   return groups;
 }
 

@@ -32,9 +32,9 @@ static_assert(kLightWindow <= 16384 && kShadowWindow <= 16384 &&
 constexpr VkDeviceSize aligned(VkDeviceSize bytes) { return (bytes + 255) / 256 * 256; }
 
 struct LightGroup {
-  uint32_t firstLight = 0, lightCount = 0;       // among the lights that are not skipped
-  bool directional = true;   // every light is directional with one shadow map of device depth
-  uint32_t shadowCount = 0;                      // shadow maps
+  uint32_t firstLight = 0, lightCount = 0;  // among the lights that are not skipped
+  bool directional = true;                  // every light is directional with one shadow map of device depth
+  uint32_t shadowCount = 0;                 // shadow maps
   VkDeviceSize lightBytes = 0, shadowBytes = 0;  // of the groups before, in the constants
   VkDeviceSize gatherMapBytes = 0, recordMapBytes = 0;
   uint32_t gathered = 0;                       // lights that are gathered from; the first ones
@@ -93,9 +93,14 @@ void forEachLightGroup(const PellucidFrame& frame, OnLight&& light, OnGroup&& gr
     }
   if (current.lightCount > 0) group(static_cast<const LightGroup&>(current));
 }
+template <class OnGroup>
+void forEachLightGroup(const PellucidFrame& frame, OnGroup&& group) {
+  forEachLightGroup(
+      frame, [](const LightGroup&, const PellucidLight&) {}, group);
+}
 
-// Whether thickness along view rays is asked for: lights without shadow maps have no other, and the debug view
-// of thickness shows it.
+// Whether thickness along view rays is asked for: lights without shadow maps have no other, and the debug
+// view of thickness shows it.
 bool needsChord(const PellucidFrame& frame);
 
 struct LightGroups {

@@ -112,15 +112,13 @@ bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan
   };
   const auto forEachFused = [&](auto&& fused) {
     uint32_t index = 0;
-    forEachLightGroup(
-        frame, [](const LightGroup&, const PellucidLight&) {},
-        [&](const LightGroup& group) {
-          const bool gathers = group.gathered > 0 && !reused && !stages.overlaps;
-          if (gathers) fits = fits && b.records(group) && b.points(group, index > 0);
-          if (++index < stages.groups.gathered) return;
-          if (gathers) fits = fits && b.share();
-          fused(group);
-        });
+    forEachLightGroup(frame, [&](const LightGroup& group) {
+      const bool gathers = group.gathered > 0 && !reused && !stages.overlaps;
+      if (gathers) fits = fits && b.records(group) && b.points(group, index > 0);
+      if (++index < stages.groups.gathered) return;
+      if (gathers) fits = fits && b.share();
+      fused(group);
+    });
   };
   const auto translucencies = [&] {
     if (stages.history) {
@@ -140,11 +138,9 @@ bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan
     if (!stages.diffusion) return;
     LightGroup gathered;
     if (stages.overlaps && !reused)
-      forEachLightGroup(
-          frame, [](const LightGroup&, const PellucidLight&) {},
-          [&](const LightGroup& group) {
-            if (group.gathered > 0) gathered = group;
-          });
+      forEachLightGroup(frame, [&](const LightGroup& group) {
+        if (group.gathered > 0) gathered = group;
+      });
     // Records, points and sharing, each beside a dispatch of the diffusion.
     uint32_t step = 0;
     const auto alongside = [&] {

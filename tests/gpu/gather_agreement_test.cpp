@@ -73,65 +73,43 @@ double error(const Capture& c, const Image& a, const Image& b) {
 
 class GatherAgreement : public GpuTest {};
 
-struct Convention {
-  const char* scene;
-  std::map<std::string, double> options;
-  bool reversedZ, infiniteFar, orthographic;
-  PellucidDepthEncoding depth, shadow;
-  PellucidLightType light;
-};
-
 TEST_F(GatherAgreement, SixteenSamplesAreNearAllTexels) {
-  const Convention conventions[] = {{"sphere",
-                                     {{"radius", 8}, {"extent", 20}},
-                                     true,
-                                     true,
-                                     false,
-                                     PELLUCID_DEPTH_DEVICE,
-                                     PELLUCID_DEPTH_DEVICE,
-                                     PELLUCID_LIGHT_POINT},
-                                    {"torus",
-                                     {{"majorRadius", 8}, {"extent", 26}},
-                                     false,
-                                     false,
-                                     true,
-                                     PELLUCID_DEPTH_VIEW_Z,
-                                     PELLUCID_DEPTH_VIEW_Z,
-                                     PELLUCID_LIGHT_DIRECTIONAL},
-                                    {"wedge",
-                                     {{"extent", 24}},
-                                     true,
-                                     false,
-                                     true,
-                                     PELLUCID_DEPTH_DEVICE,
-                                     PELLUCID_DEPTH_DEVICE,
-                                     PELLUCID_LIGHT_DIRECTIONAL},
-                                    {"slab",
-                                     {{"thickness", 2}, {"tilt", 35}, {"extent", 24}},
-                                     false,
-                                     false,
-                                     false,
-                                     PELLUCID_DEPTH_VIEW_Z,
-                                     PELLUCID_DEPTH_DISTANCE,
-                                     PELLUCID_LIGHT_SPOT}};
-  for (const Convention& k : conventions) {
-    SceneParameters p;
-    p.name = k.scene;
-    p.options = k.options;
+  const SceneParameters conventions[] = {{.name = "sphere",
+                                          .options = {{"radius", 8}, {"extent", 20}},
+                                          .orthographic = false,
+                                          .reversedZ = true,
+                                          .infiniteFar = true,
+                                          .depthEncoding = PELLUCID_DEPTH_DEVICE,
+                                          .lightType = PELLUCID_LIGHT_POINT,
+                                          .shadowEncoding = PELLUCID_DEPTH_DEVICE},
+                                         {.name = "torus",
+                                          .options = {{"majorRadius", 8}, {"extent", 26}},
+                                          .orthographic = true,
+                                          .depthEncoding = PELLUCID_DEPTH_VIEW_Z,
+                                          .lightType = PELLUCID_LIGHT_DIRECTIONAL,
+                                          .shadowEncoding = PELLUCID_DEPTH_VIEW_Z},
+                                         {.name = "wedge",
+                                          .options = {{"extent", 24}},
+                                          .orthographic = true,
+                                          .reversedZ = true,
+                                          .depthEncoding = PELLUCID_DEPTH_DEVICE,
+                                          .lightType = PELLUCID_LIGHT_DIRECTIONAL,
+                                          .shadowEncoding = PELLUCID_DEPTH_DEVICE},
+                                         {.name = "slab",
+                                          .options = {{"thickness", 2}, {"tilt", 35}, {"extent", 24}},
+                                          .orthographic = false,
+                                          .depthEncoding = PELLUCID_DEPTH_VIEW_Z,
+                                          .lightType = PELLUCID_LIGHT_SPOT,
+                                          .shadowEncoding = PELLUCID_DEPTH_DISTANCE}};
+  for (SceneParameters p : conventions) {
     p.width = p.height = 64;
     p.shadowSize = 192;
-    p.reversedZ = k.reversedZ;
-    p.infiniteFar = k.infiniteFar;
-    p.orthographic = k.orthographic;
-    p.depthEncoding = k.depth;
-    p.shadowEncoding = k.shadow;
-    p.lightType = k.light;
     const Capture c = evenlyLit(p);
     const Image all = allTexels(c, c.irradiance, [](int, int) { return true; });
     double at[3];
     for (int i = 0; i < 3; ++i) at[i] = error(c, gpuGather(replayer(), c, 8u << i), all);
-    std::printf("%s: 8 samples %.4f, 16 %.4f, 32 %.4f of all texels\n", k.scene, at[0], at[1], at[2]);
-    EXPECT_LT(at[1], 0.03) << k.scene;
+    std::printf("%s: 8 samples %.4f, 16 %.4f, 32 %.4f of all texels\n", p.name.c_str(), at[0], at[1], at[2]);
+    EXPECT_LT(at[1], 0.03) << p.name;
   }
 }
 
