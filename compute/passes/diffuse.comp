@@ -28,7 +28,7 @@ shared uvec4 resolved[kWindow.x * kWindow.y];
 shared uvec4 shares[kWindow.x * kWindow.y];
 shared uint planes[kTexels.y];                     // a bit a texel that is filtered as a plane
 shared uint edges[kTexels.x * kTexels.y];
-shared uint edgeCount, anySurface;
+shared uint edgeCount;
 
 // The quadratic B-spline at -1, 0 and 1 for a point at most half a texel from 0.
 vec3 spline(float at) {
@@ -158,80 +158,77 @@ void main() {
   // nothing else would run beside them.
   uvec2 group = uvec2(gl_WorkGroupID.x, (gl_WorkGroupID.y + gl_NumWorkGroups.y / 2u) % gl_NumWorkGroups.y);
   ivec2 firstTexel = (ivec2(frame.rect.xy) >> 2) + ivec2(group) * kTexels;
-  if (invocation == 0) edgeCount = anySurface = 0u;
-  if (invocation < kTexels.y) planes[invocation] = 0u;
-  barrier();
+  // All loads before the first barrier, so that a group waits for memory once.
+  uvec4 texel = uvec4(0u), texelShares = uvec4(0u);
   if (invocation < kWindow.x * kWindow.y) {
-    ivec2 local = ivec2(invocation % kWindow.x, invocation / kWindow.x) - 1, at = firstTexel + local;
-    uvec4 texel = uvec4(0u), texelShares = uvec4(0u);
+    ivec2 at = firstTexel + ivec2(invocation % kWindow.x, invocation / kWindow.x) - 1;
     if (insideLevel(levelRect(2u), at)) {
       texel = texelFetch(pyramidImage, resolvedPlace(at), 0);
       texelShares = texelFetch(pyramidImage, sharesPlace(at), 0);
     }
+  }
+  int column = invocation % kColumns, firstRow = invocation / kColumns * kRows;
+  ivec2 first = 4 * firstTexel + ivec2(column - kRing, firstRow), last = ivec2(frame.rect.zw) - 1;
+  vec4 sources[kRows + 2 * kRing];
+  [[unroll]] for (int i = 0; i < kRows + 2 * kRing; ++i)
+    sources[i] = texelFetch(sourceImage, clamp(first + ivec2(0, i - kRing), ivec2(frame.rect.xy), last), 0);
+  if (invocation == 0) edgeCount = 0u;
+  if (invocation < kTexels.y) planes[invocation] = 0u;
+  if (invocation < kWindow.x * kWindow.y) {
     resolved[invocation] = texel;
     shares[invocation] = texelShares;
-    if (texel.y >> 16 != 0u) anySurface = 1u; // whoever writes, writes this
   }
   barrier();
-  if (anySurface != 0u) {
-    int column = invocation % kColumns, firstRow = invocation / kColumns * kRows;
-    ivec2 first = 4 * firstTexel + ivec2(column - kRing, firstRow), last = ivec2(frame.rect.zw) - 1;
-    uvec2 own[kRows]; // colors and alphas
-    vec3 rows[5];     // around the current one
-    [[unroll]] for (int i = 2 - kRing; i < kRows + 2 + kRing; ++i) {
-      ivec2 at = clamp(first + ivec2(0, i - 2), ivec2(frame.rect.xy), last);
-      vec4 source = texelFetch(sourceImage, at, 0);
-      if (pass.value.y != 0u) source.rgb = sanitize(source.rgb);
-      if (i >= 2 && i < kRows + 2)
-        own[i - 2] = uvec2(packHalf2x16(source.rg), packHalf2x16(source.ba));
+  if (invocation < kTexels.x * kTexels.y) {
+    ivec2 local = ivec2(invocation % kTexels.x, invocation / kTexels.x);
+    int index = (local.y + 1) * kWindow.x + local.x + 1;
+    if (isPlane(index))
+      atomicOr(planes[local.y], 1u << local.x);
+    else if (resolved[index].y >> 16 != 0u)
+      edges[atomicAdd(edgeCount, 1u)] = uint(invocation);
+  }
+  uvec2 own[kRows]; // colors and alphas
+  [[unroll]] for (int i = 0; i < kRows + 2 * kRing; ++i)
+    if (pass.value.y != 0u) sources[i].rgb = sanitize(sources[i].rgb);
+  [[unroll]] for (int i = 0; i < kRows; ++i) {
+    vec4 source = sources[i + kRing];
+    own[i] = uvec2(packHalf2x16(source.rg), packHalf2x16(source.ba));
 #ifndef COARSE
-      [[unroll]] for (int j = 0; j < 4; ++j) rows[j] = rows[j + 1];
-      rows[4] = source.rgb;
-      if (i < 4) continue;
-      vec3 sum = fineSum(rows[0], rows[1], rows[2], rows[3], rows[4]);
-      vertical[(firstRow + i - 4) * kColumns + column] = uvec2(packHalf2x16(sum.rg), packHalf2x16(vec2(sum.b, 0.0)));
+    vec3 sum = fineSum(sources[i].rgb, sources[i + 1].rgb, source.rgb, sources[i + 3].rgb, sources[i + 4].rgb);
+    vertical[(firstRow + i) * kColumns + column] = uvec2(packHalf2x16(sum.rg), packHalf2x16(vec2(sum.b, 0.0)));
 #endif
-    }
-    if (invocation < kTexels.x * kTexels.y) {
-      ivec2 local = ivec2(invocation % kTexels.x, invocation / kTexels.x);
-      int index = (local.y + 1) * kWindow.x + local.x + 1;
-      if (isPlane(index))
-        atomicOr(planes[local.y], 1u << local.x);
-      else if (resolved[index].y >> 16 != 0u)
-        edges[atomicAdd(edgeCount, 1u)] = uint(invocation);
-    }
-    barrier();
+  }
+  barrier();
 
-    int x = column - kRing;
-    if (x >= 0 && x < 4 * kTexels.x) {
-      vec3 splineX = spline(0.25 * (float(x & 3) - 1.5));
-      [[unroll]] for (int block = 0; block < kRows / 4; ++block) {
-        int texelRow = firstRow / 4 + block;
-        if ((planes[texelRow] >> (x / 4) & 1u) == 0u) continue;
-        int index = texelRow * kWindow.x + x / 4;
-        vec3 coarser[3];
-        [[unroll]] for (int y = 0; y < 3; ++y) {
-          int row = index + y * kWindow.x;
-          coarser[y] = splineX.x * unpackColor(resolved[row].xy) + splineX.y * unpackColor(resolved[row + 1].xy) +
-                       splineX.z * unpackColor(resolved[row + 2].xy);
-        }
-        PixelShares share = unpackShares(shares[index + kWindow.x + 1].xyz);
-        [[unroll]] for (int i = 0; i < 4; ++i) {
-          vec3 splineY = spline(0.25 * (float(i) - 1.5));
-          vec3 smoothed = splineY.x * coarser[0] + splineY.y * coarser[1] + splineY.z * coarser[2];
-          uvec2 packed = own[4 * block + i];
-          vec2 blue = unpackHalf2x16(packed.y);
-          vec3 color = vec3(unpackHalf2x16(packed.x), blue.x);
+  int x = column - kRing;
+  if (x >= 0 && x < 4 * kTexels.x) {
+    vec3 splineX = spline(0.25 * (float(x & 3) - 1.5));
+    [[unroll]] for (int block = 0; block < kRows / 4; ++block) {
+      int texelRow = firstRow / 4 + block;
+      if ((planes[texelRow] >> (x / 4) & 1u) == 0u) continue;
+      int index = texelRow * kWindow.x + x / 4;
+      vec3 coarser[3];
+      [[unroll]] for (int y = 0; y < 3; ++y) {
+        int row = index + y * kWindow.x;
+        coarser[y] = splineX.x * unpackColor(resolved[row].xy) + splineX.y * unpackColor(resolved[row + 1].xy) +
+                     splineX.z * unpackColor(resolved[row + 2].xy);
+      }
+      PixelShares share = unpackShares(shares[index + kWindow.x + 1].xyz);
+      [[unroll]] for (int i = 0; i < 4; ++i) {
+        vec3 splineY = spline(0.25 * (float(i) - 1.5));
+        vec3 smoothed = splineY.x * coarser[0] + splineY.y * coarser[1] + splineY.z * coarser[2];
+        uvec2 packed = own[4 * block + i];
+        vec2 blue = unpackHalf2x16(packed.y);
+        vec3 color = vec3(unpackHalf2x16(packed.x), blue.x);
 #ifndef COARSE
-          color = mix(color, fineOf((4 * texelRow + i) * kColumns + column), share.fine);
+        color = mix(color, fineOf((4 * texelRow + i) * kColumns + column), share.fine);
 #endif
-          store(4 * firstTexel + ivec2(x, 4 * texelRow + i), mix(color, smoothed, share.coarser), blue.y);
-        }
+        store(4 * firstTexel + ivec2(x, 4 * texelRow + i), mix(color, smoothed, share.coarser), blue.y);
       }
     }
-    for (int i = invocation; i < int(16u * edgeCount); i += kInvocations) {
-      int edge = int(edges[i >> 4]), at = i & 15;
-      diffuseEdge(firstTexel, 4 * ivec2(edge % kTexels.x, edge / kTexels.x) + ivec2(at & 3, at >> 2));
-    }
+  }
+  for (int i = invocation; i < int(16u * edgeCount); i += kInvocations) {
+    int edge = int(edges[i >> 4]), at = i & 15;
+    diffuseEdge(firstTexel, 4 * ivec2(edge % kTexels.x, edge / kTexels.x) + ivec2(at & 3, at >> 2));
   }
 }

@@ -5,13 +5,6 @@
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_GOOGLE_include_directive : require
 
-// Four times the body is worth it where the body is short.
-#ifdef DIRECTIONAL
-#define UNROLL [[unroll]]
-#else
-#define UNROLL
-#endif
-
 #ifdef QUADS
 #include "passes/quad_tile.glsl"
 #else
@@ -63,41 +56,6 @@ Texels fetch(ivec2 pixel) {
   return t;
 }
 
-#ifdef DIRECTIONAL
-// Where the light's ray through a pixel's surface meets the map.
-struct Receiver {
-  Surface surface;
-  ShadowReceiver shadow;
-  float stored;
-};
-
-// Whatever will be needed of it, so that the maps' latencies overlap too.
-Receiver receiverAt(ivec2 pixel, Texels t, float front) {
-  Receiver r;
-  r.surface = surfaceAt(pixel, max(front, 0.0), t.front, t.back, t.normal);
-  r.shadow = projectReceiver(shadows[0], r.surface.position);
-  ivec2 texel = clamp(r.shadow.texel, ivec2(0), ivec2(shadows[0].depth.zw) - 1);
-  r.stored = texelFetch(shadowImage0, texel, 0).x;
-  return r;
-}
-
-// Irradiance and the light that comes through.
-vec3 resultAt(Receiver r, Texels t, float front, uint m) {
-  ShadowConstants shadow = shadows[0];
-  LightConstants light = lights[0];
-  Incident incident = incidentLight(light, r.surface.position);
-  vec3 entering = incident.irradiance * hiddenCosine(light, r.surface, incident.toLight);
-  float thickness = lightThickness(shadow, r.shadow, r.surface.position, incident, r.stored) - shadow.depth.y;
-  // Marked pixels keep their irradiance.
-  bool through = front > 0.0 && (t.value & frame.marks.x) == 0u && r.shadow.inside && shadowHolds(shadow.meta, r.stored);
-  vec3 result = sanitize(t.source.rgb);
-  // Most pixels face the light; T is the expensive part.
-  if (through && max(entering.r, max(entering.g, entering.b)) > 0.0)
-    result += entering * materialTransmittance(m, max(thickness, 0.0) * frame.camera.range.w) *
-              materials[m].inverseReflectance.rgb;
-  return result;
-}
-#else
 // Irradiance and the light that comes through, or what a debug view shows.
 vec3 resultAt(ivec2 pixel, Texels t, float front, uint m) {
   vec3 arriving = vec3(0.0), visible = vec3(0.0), transmitted = vec3(0.0);
@@ -132,7 +90,6 @@ vec3 resultAt(ivec2 pixel, Texels t, float front, uint m) {
 #endif
   return sanitize(t.source.rgb) + transmitted * materials[m].inverseReflectance.rgb;
 }
-#endif
 
 // An invocation does four pixels. QUADS: then a texel of the pyramid's level 1.
 void main() {
@@ -140,16 +97,9 @@ void main() {
   // A history that starts is 0 wherever nothing came through: the next frame's pixels may lie there.
   bool starts = pass.value.z == PELLUCID_WRITE_STARTS;
   Texels texels[4];
-  UNROLL for (int i = 0; i < 4; ++i)
+  for (int i = 0; i < 4; ++i)
     texels[i] = fetch(clamp(tile + pixelInTile(i), ivec2(frame.rect.xy), ivec2(frame.rect.zw) - 1));
-#ifdef DIRECTIONAL
-  Receiver receivers[4];
-  bool some = (materialIndex(texels[0].value) | materialIndex(texels[1].value) | materialIndex(texels[2].value) |
-               materialIndex(texels[3].value)) != 0u;
-  if (some) [[unroll]] for (int i = 0; i < 4; ++i)
-    receivers[i] = receiverAt(tile + pixelInTile(i), texels[i], frontDistanceOf(texels[i].front));
-#endif
-  UNROLL for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < 4; ++i) {
     ivec2 pixel = tile + pixelInTile(i);
     Texels t = texels[i];
     uint material = insideRect(pixel) ? materialIndex(t.value) : 0u;
@@ -157,11 +107,7 @@ void main() {
     vec3 color = vec3(0.0);
     if (starts) t.source = vec4(0.0);
     if (material != 0u) {
-#ifdef DIRECTIONAL
-      vec3 result = resultAt(receivers[i], t, depth, material - 1u);
-#else
       vec3 result = resultAt(pixel, t, depth, material - 1u);
-#endif
 #ifdef DEBUG_VIEWS
       imageStore(destinationImage, pixel, vec4(result, t.source.a));
 #else

@@ -139,6 +139,19 @@ struct ShadowConstants {
   uvec4 meta;        // x: image; y: encoding; z: 1 perspective; w: texel value that holds nothing (bits)
 };
 
+// One directional light with one map of device depth, as passes/directional.comp sees it. Texels of the map (x, y) and
+// its clip z are o + p d at planar distance p, with o = originBase + x originX + y originY of a pixel and d likewise.
+struct DirectionalConstants {
+  vec4 originBase, originX, originY;
+  vec4 directionBase, directionX, directionY;
+  vec4 toLight;           // xyz: unit, view space
+  vec4 toLightFromNormal; // xyz: unit, the normal image's space
+  vec4 entering;          // rgb: irradiance at normal incidence times the factor of T
+  vec4 depth;             // x: mm along the light per clip z; y: bias, mm; z: texel value that holds nothing
+  vec4 texels;            // xy: the largest coordinates inside the map
+  vec4 cone;              // see LightConstants: x: its z; y: its w
+};
+
 // Of the light-space gather; see lib/gather.glsl. rgb: per channel.
 struct GatherConstants {
   vec4 lengths; // mm; x: shortest; y: log2(longest / shortest); z: largest distance looked for; w: depth scale

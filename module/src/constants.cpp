@@ -135,6 +135,40 @@ shared::ShadowConstants shadowConstants(const PellucidShadowMap& s, const Pelluc
   return c;
 }
 
+// For passes/directional.comp. `light` and `shadow`: the light's and its map's constants.
+shared::DirectionalConstants directionalConstants(const shared::FrameConstants& frame,
+                                                  const shared::LightConstants& light,
+                                                  const shared::ShadowConstants& shadow) {
+  shared::DirectionalConstants c{};
+  // An orthographic map has w = 1.
+  const glm::dmat4 clip(shadow.clipFromView);
+  const glm::dvec2 half = 0.5 * glm::dvec2(shadow.depth.z, shadow.depth.w);
+  const glm::dvec3 scale(half, 1), offset(half, 0);
+  const auto direction = [&](glm::dvec3 v) { return glm::vec4(scale * (glm::dmat3(clip) * v), 0); };
+  const auto point = [&](glm::dvec3 v) {
+    return glm::vec4(scale * glm::dvec3(clip * glm::dvec4(v, 1)) + offset, 0);
+  };
+  const shared::Camera& camera = frame.camera;
+  c.originBase = point({camera.rayBase.z, camera.rayBase.w, 0});
+  c.originX = direction({camera.rayX.z, camera.rayX.w, 0});
+  c.originY = direction({camera.rayY.z, camera.rayY.w, 0});
+  c.directionBase = direction({camera.rayBase.x, camera.rayBase.y, camera.range.x});
+  c.directionX = direction({camera.rayX.x, camera.rayX.y, 0});
+  c.directionY = direction({camera.rayY.x, camera.rayY.y, 0});
+  const glm::vec3 toLight = -glm::vec3(light.direction);
+  c.toLight = glm::vec4(toLight, 0);
+  // The normal image's space is a rotation away.
+  c.toLightFromNormal = glm::vec4(glm::transpose(glm::mat3(frame.viewFromNormal)) * toLight, 0);
+  c.entering = light.radiance * glm::vec4(glm::vec3(frame.filterAndLimit), 0);
+  const float mm = camera.range.w;
+  float nothing;
+  std::memcpy(&nothing, &shadow.meta.w, sizeof nothing);
+  c.depth = {shadow.depth.x * mm, shadow.depth.y * mm, nothing, 0};
+  c.texels = {std::nextafter(shadow.depth.z, 0.0f), std::nextafter(shadow.depth.w, 0.0f), 0, 0};
+  c.cone = {light.cone.z, light.cone.w, 0, 0};
+  return c;
+}
+
 shared::MaterialConstants materialConstants(const PellucidMaterial& m, bool gathers) {
   shared::MaterialConstants c{};
   c.meta = {m.transmittanceModel, m.gaussianCount, 0, 0};
@@ -177,7 +211,8 @@ extern "C" PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const
   if (size < layout.size) return PELLUCID_ERROR_BUFFER_TOO_SMALL;
 
   std::memset(mapped, 0, static_cast<size_t>(layout.size));
-  put(mapped, layout.frame.offset, frameConstants(f));
+  const shared::FrameConstants frameValues = frameConstants(f);
+  put(mapped, layout.frame.offset, frameValues);
   const glm::dmat4 viewFromWorld = toMatrix(f.viewFromWorld);
   const glm::dmat4 worldFromView = glm::inverse(viewFromWorld);
   const auto eachLight = [&](const LightGroup& group, const PellucidLight& l) {
@@ -185,13 +220,17 @@ extern "C" PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const
     uint32_t shadow = group.shadowCount - l.shadowMapCount, row = group.recordRows;
     if (isGathered(f, l))
       for (uint32_t i = 0; i < l.shadowMapCount; ++i) row -= recordExtent(f, l, i).height;
+    const shared::LightConstants light = lightConstants(f, l, viewFromWorld, shadow);
     put(mapped,
         layout.lights.offset + group.lightBytes + (group.lightCount - 1) * sizeof(shared::LightConstants),
-        lightConstants(f, l, viewFromWorld, shadow));
+        light);
     for (uint32_t i = 0; i < l.shadowMapCount; ++i, ++shadow) {
       const PellucidShadowMap& s = f.shadowMaps[l.firstShadowMap + i];
       const shared::ShadowConstants constants = shadowConstants(s, l, worldFromView, group.slot(s.image));
       put(mapped, layout.shadows.offset + group.shadowBytes + shadow * sizeof constants, constants);
+      if (group.directional)  // read where it is the only light
+        put(mapped, layout.directional.offset + group.index * kDirectionalWindow,
+            directionalConstants(frameValues, light, constants));
       if (!isGathered(f, l)) continue;
       const RecordExtent extent = recordExtent(f, l, i);
       const RecordConstants records =

@@ -206,17 +206,45 @@ struct Builder {
     }
   }
 
-  // `quads`: the pyramid's level 1 is written too.
+  // What the fused dispatches have in common. `quads`: the pyramid's level 1 is written too.
+  void fused(PellucidDispatch* d, const LightGroup& group, uint32_t source, uint32_t destination,
+             bool quads) const {
+    if (quads) {
+      writesPyramid(d);
+      levelTraffic(d, kFirstLevel);
+    }
+    d->pushConstants[1] = group.lightCount;
+    d->pushConstants[2] = destination == PELLUCID_RESOURCE_OUTPUT;
+    common(d, source, destination);
+    if (destination == PELLUCID_RESOURCE_HISTORY && group.firstLight == 0) {
+      d->pushConstants[2] = PELLUCID_WRITE_STARTS;
+      d->modeledBytes -= colorBytes() * pixels();  // what is there is not read
+    }
+    constants(d, PELLUCID_BINDING_MATERIALS, layout.materials);
+    optional(d, PELLUCID_BINDING_NORMAL, frame.normal, PELLUCID_RESOURCE_NORMAL, 4);
+  }
+
+  bool directional(const LightGroup& group, uint32_t source, uint32_t destination, bool quads) {
+    const uint32_t half = quads ? PELLUCID_PIPELINE_DIRECTIONAL_QUADS_16F : PELLUCID_PIPELINE_DIRECTIONAL_16F;
+    PellucidDispatch* d = dispatch("translucency", half + (wide() ? 1 : 0));  // the 32F variant follows
+    if (!d) return false;
+    tiles(d);
+    fused(d, group, source, destination, quads);
+    constants(d, PELLUCID_BINDING_LIGHTS,
+              {layout.directional.offset + group.index * kDirectionalWindow, kDirectionalWindow});
+    image(d, PELLUCID_BINDING_SHADOW_IMAGES, kShadow0 + group.images[0], kUnknownDepthBytes);
+    return true;
+  }
+
   bool translucency(const LightGroup& group, uint32_t source, uint32_t destination, bool quads) {
     const bool debug = frame.debugView != PELLUCID_DEBUG_NONE;
-    const bool directional = group.lightCount == 1 && group.directional && directionalFrame();
-    const uint32_t half = debug                  ? PELLUCID_PIPELINE_DEBUG_16F
-                          : group.gathered > 0   ? PELLUCID_PIPELINE_GATHER_16F
-                          : directional && quads ? PELLUCID_PIPELINE_DIRECTIONAL_QUADS_16F
-                          : directional          ? PELLUCID_PIPELINE_DIRECTIONAL_16F
-                          : quads                ? PELLUCID_PIPELINE_TRANSLUCENCY_QUADS_16F
-                                                 : PELLUCID_PIPELINE_TRANSLUCENCY_16F;
-    const uint32_t pipeline = half + (wide() ? 1 : 0);  // the 32F variant follows the 16F one
+    if (!debug && group.lightCount == 1 && group.gathered == 0 && group.directional && directionalFrame())
+      return directional(group, source, destination, quads);
+    const uint32_t half = debug                ? PELLUCID_PIPELINE_DEBUG_16F
+                          : group.gathered > 0 ? PELLUCID_PIPELINE_GATHER_16F
+                          : quads              ? PELLUCID_PIPELINE_TRANSLUCENCY_QUADS_16F
+                                               : PELLUCID_PIPELINE_TRANSLUCENCY_16F;
+    const uint32_t pipeline = half + (wide() ? 1 : 0);
     PellucidDispatch* d = dispatch(debug ? "debug view" : "translucency", pipeline);
     if (!d) return false;
     if (half == PELLUCID_PIPELINE_GATHER_16F) {
@@ -230,23 +258,11 @@ struct Builder {
     } else {
       tiles(d);
     }
-    if (quads) {
-      writesPyramid(d);
-      levelTraffic(d, kFirstLevel);
-    }
-    d->pushConstants[1] = group.lightCount;
-    d->pushConstants[2] = destination == PELLUCID_RESOURCE_OUTPUT;
-    if (destination == PELLUCID_RESOURCE_HISTORY && group.firstLight == 0)
-      d->pushConstants[2] = PELLUCID_WRITE_STARTS;
-    common(d, source, destination);
-    if (d->pushConstants[2] == PELLUCID_WRITE_STARTS)
-      d->modeledBytes -= colorBytes() * pixels();  // what is there is not read
+    fused(d, group, source, destination, quads);
     constants(d, PELLUCID_BINDING_LIGHTS, {layout.lights.offset + group.lightBytes, kLightWindow});
     constants(d, PELLUCID_BINDING_SHADOWS, {layout.shadows.offset + group.shadowBytes, kShadowWindow});
-    constants(d, PELLUCID_BINDING_MATERIALS, layout.materials);
     optional(d, PELLUCID_BINDING_BACK_DEPTH, frame.backDepth, PELLUCID_RESOURCE_BACK_DEPTH,
              needsChord(frame) ? kUnknownDepthBytes : 0);
-    optional(d, PELLUCID_BINDING_NORMAL, frame.normal, PELLUCID_RESOURCE_NORMAL, 4);
     // Lights that are gathered from have been.
     shadowImages(d, group.gathered > 0 ? LightGroup{} : group);
     return true;

@@ -85,6 +85,7 @@ ConstantsLayout constantsLayout(const PellucidFrame& frame) {
   // The last group's window reaches as far as the first one's.
   place(&layout.lights, last.lightBytes + kLightWindow);
   place(&layout.shadows, last.shadowBytes + kShadowWindow);
+  place(&layout.directional, (last.index + 1) * kDirectionalWindow);
   place(&layout.materials, frame.materialCount * sizeof(shared::MaterialConstants));
   place(&layout.kernels, frame.materialCount * sizeof(shared::KernelConstants));
   if (gathers(frame)) {

@@ -19,19 +19,21 @@ inline bool given(const PellucidImage& image) { return image.view != VK_NULL_HAN
 
 bool anyMaterialDiffuses(const PellucidFrame& frame);
 
+// The largest offset alignment that Vulkan allows a device to ask for.
+constexpr VkDeviceSize aligned(VkDeviceSize bytes) { return (bytes + 255) / 256 * 256; }
+
 // One fused dispatch binds PELLUCID_SHADOW_IMAGE_COUNT shadow images and windows of fixed size on the
 // constants of lights and shadow maps, so lights are taken in order into groups that need no more. Constants
 // are laid out light by light within the groups.
 constexpr VkDeviceSize kLightWindow = PELLUCID_DISPATCH_LIGHTS * sizeof(shared::LightConstants);
+constexpr VkDeviceSize kDirectionalWindow = aligned(sizeof(shared::DirectionalConstants));
 constexpr VkDeviceSize kShadowWindow = PELLUCID_DISPATCH_SHADOWS * sizeof(shared::ShadowConstants);
 constexpr VkDeviceSize kGatherMapWindow = PELLUCID_DISPATCH_SHADOWS * sizeof(shared::GatherMapConstants);
 static_assert(kLightWindow <= 16384 && kShadowWindow <= 16384 &&
               kGatherMapWindow <= kShadowWindow);  // least maxUniformBufferRange
 
-// The largest offset alignment that Vulkan allows a device to ask for.
-constexpr VkDeviceSize aligned(VkDeviceSize bytes) { return (bytes + 255) / 256 * 256; }
-
 struct LightGroup {
+  uint32_t index = 0;
   uint32_t firstLight = 0, lightCount = 0;  // among the lights that are not skipped
   bool directional = true;                  // every light is directional with one shadow map of device depth
   uint32_t shadowCount = 0;                 // shadow maps
@@ -78,6 +80,7 @@ void forEachLightGroup(const PellucidFrame& frame, OnLight&& light, OnGroup&& gr
       if (!addLight(frame, frame.lights[i], &current)) {
         group(static_cast<const LightGroup&>(current));
         LightGroup next;
+        next.index = current.index + 1;
         next.firstLight = current.firstLight + current.lightCount;
         next.lightBytes = current.lightBytes + aligned(current.lightCount * sizeof(shared::LightConstants));
         next.shadowBytes =
@@ -120,6 +123,7 @@ struct ConstantsLayout {
     VkDeviceSize offset, size;
   };
   Range frame, lights, shadows, materials, kernels;
+  Range directional;             // kDirectionalWindow for each group of lights
   Range gatherMaps, recordMaps;  // of frames that gather
   VkDeviceSize size;
   uint32_t lightCount;

@@ -1,0 +1,122 @@
+// The fused dispatch where all there is to add is the light of one directional light with a shadow map of device depth,
+// through materials of two exponentials, on surfaces with normals and device depth. Texel and depth in the map are affine
+// in the pixel and, along its ray, in the planar distance, so that no position is needed. It is translucency.comp with
+// what never happens taken out: this pass is bound by how many instructions it runs.
+#version 460
+#extension GL_EXT_control_flow_attributes : require
+#extension GL_EXT_samplerless_texture_functions : require
+#extension GL_GOOGLE_include_directive : require
+
+#ifdef QUADS
+#include "passes/quad_tile.glsl"
+#else
+#include "passes/bindings.glsl"
+#endif
+#include "lib/transmittance.glsl"
+
+layout(set = 0, binding = PELLUCID_BINDING_LIGHTS) uniform Light { DirectionalConstants light; };
+layout(set = 0, binding = PELLUCID_BINDING_MATERIALS) readonly buffer Materials { MaterialConstants materials[]; };
+layout(set = 0, binding = PELLUCID_BINDING_NORMAL) uniform texture2D normalImage;
+layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES) uniform texture2D shadowImage;
+
+const int kPixels = 4; // of an invocation; see pixelInTile
+
+// Where the light enters, without a normal: the view ray stands in, as in lib/transmission.glsl.
+float cosineOfView(ivec2 pixel) {
+  float x = dot(normalize(viewRay(frame.camera, pixel).direction), light.toLight.xyz);
+  return clamp(x * light.cone.x + light.cone.y, 0.0, 1.0);
+}
+
+float hiddenCosine(ivec2 pixel, vec3 normal) {
+  float squared = dot(normal, normal);
+  if (squared > 1.0e-8 && squared < 1.0e8) // false for NaN too
+    return max(-dot(normal, light.toLightFromNormal.xyz) * inversesqrt(squared), 0.0);
+  return cosineOfView(pixel);
+}
+
+void main() {
+  ivec2 tile = evenTile(), last = ivec2(frame.rect.zw) - 1;
+  // All loads whatever they will be needed for, so that their latencies overlap.
+  uint value[kPixels];
+  vec4 source[kPixels];
+  vec3 normal[kPixels];
+  float front[kPixels], stored[kPixels];
+  [[unroll]] for (int i = 0; i < kPixels; ++i) {
+    ivec2 at = clamp(tile + pixelInTile(i), ivec2(frame.rect.xy), last);
+    value[i] = materialValueAt(at);
+    source[i] = texelFetch(sourceImage, at, 0);
+    front[i] = texelFetch(frontDepthImage, at, 0).x;
+    normal[i] = decodeNormal(texelFetch(normalImage, at, 0));
+  }
+  // Where rays start and how they run, in the map's texels and depth.
+  vec2 first = vec2(tile + pixelInTile(0));
+  vec3 origin = light.originBase.xyz + first.x * light.originX.xyz + first.y * light.originY.xyz;
+  vec3 direction = light.directionBase.xyz + first.x * light.directionX.xyz + first.y * light.directionY.xyz;
+  vec3 inMap[kPixels];
+  bool inside[kPixels];
+  [[unroll]] for (int i = 0; i < kPixels; ++i) {
+    front[i] = planarDistance(frame.camera, front[i]);
+    vec3 from = origin, along = direction;
+    if ((i & 1) != 0) {
+      from += float(GROUP_SIDE) * light.originX.xyz;
+      along += float(GROUP_SIDE) * light.directionX.xyz;
+    }
+    if ((i >> 1) != 0) {
+      from += float(GROUP_SIDE) * light.originY.xyz;
+      along += float(GROUP_SIDE) * light.directionY.xyz;
+    }
+    inMap[i] = from + front[i] * along;
+    vec2 at = clamp(inMap[i].xy, vec2(0.0), light.texels.xy);
+    inside[i] = at == inMap[i].xy; // false for NaN
+    stored[i] = texelFetch(shadowImage, ivec2(at), 0).x;
+  }
+
+  // A history that starts is 0 wherever nothing came through: the next frame's pixels may lie there.
+  bool starts = pass.value.z == PELLUCID_WRITE_STARTS;
+  uint material[kPixels];
+  vec3 color[kPixels];
+  float thickness[kPixels], cosine[kPixels];
+  [[unroll]] for (int i = 0; i < kPixels; ++i) {
+    ivec2 pixel = tile + pixelInTile(i);
+    material[i] = insideRect(pixel) ? materialIndex(value[i]) : 0u;
+    color[i] = starts ? vec3(0.0) : sanitize(source[i].rgb);
+    thickness[i] = max((inMap[i].z - stored[i]) * light.depth.x - light.depth.y, 0.0); // mm
+    bool holds = stored[i] >= 0.0 && stored[i] <= 1.0 && stored[i] != light.depth.z;
+    // Marked pixels keep their irradiance.
+    bool through = material[i] != 0u && (value[i] & frame.marks.x) == 0u && front[i] > 0.0 && inside[i] && holds &&
+                   thickness[i] <= frame.filterAndLimit.w;
+    cosine[i] = through ? hiddenCosine(pixel, normal[i]) : 0.0;
+  }
+  // Material by material of these pixels, which mostly have one: its constants are loaded once.
+  for (;;) {
+    uint m = 0u;
+    [[unroll]] for (int i = 0; i < kPixels; ++i)
+      if (cosine[i] > 0.0) m = max(m, material[i]);
+    if (m == 0u) break;
+    vec4 r = materials[m - 1u].transmittance[0], g = materials[m - 1u].transmittance[1],
+         b = materials[m - 1u].transmittance[2];
+    vec3 entering = light.entering.rgb * materials[m - 1u].inverseReflectance.rgb;
+    [[unroll]] for (int i = 0; i < kPixels; ++i) {
+      if (material[i] != m) continue;
+      float d = thickness[i];
+      vec3 t = vec3(transmittanceExp2(r, d), transmittanceExp2(g, d), transmittanceExp2(b, d));
+      color[i] += cosine[i] * entering * clamp(t, vec3(0.0), vec3(1.0));
+      cosine[i] = 0.0;
+    }
+  }
+
+  [[unroll]] for (int i = 0; i < kPixels; ++i) {
+    ivec2 pixel = tile + pixelInTile(i);
+    if (material[i] != 0u)
+      color[i] = writeResult(pixel, color[i], starts ? 0.0 : source[i].a, pass.value.z == PELLUCID_WRITE_LAST);
+    else if (starts && insideRect(pixel))
+      imageStore(destinationImage, pixel, vec4(0.0));
+#ifdef QUADS
+    keepPixel(pixelInTile(i), color[i], front[i], material[i]);
+#endif
+  }
+#ifdef QUADS
+  barrier();
+  writeQuad();
+#endif
+}
