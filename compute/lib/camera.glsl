@@ -49,11 +49,13 @@ bool projectToPixel(Camera camera, vec3 position, out ivec2 pixel) {
   return true;
 }
 
-// Lengths in mm that one pixel step in x and y covers at planar distance p, facing the camera.
-vec2 pixelSize(Camera camera, float p) {
-  vec2 x = camera.rayX.xy * p + camera.rayX.zw;
-  vec2 y = camera.rayY.xy * p + camera.rayY.zw;
-  return vec2(length(x), length(y)) * camera.range.w;
+// Squares of the lengths, scene units, that one pixel step in x and y covers at planar distance p, facing the camera.
+vec2 squaredPixelSize(Camera camera, float p) {
+  vec2 x = camera.rayX.xy * p + camera.rayX.zw, y = camera.rayY.xy * p + camera.rayY.zw;
+  return vec2(dot(x, x), dot(y, y));
 }
+
+// These lengths in mm.
+vec2 pixelSize(Camera camera, float p) { return sqrt(squaredPixelSize(camera, p)) * camera.range.w; }
 
 #endif

@@ -4,7 +4,9 @@
 
 // a1 e^{-k1 d} + a2 e^{-k2 d}
 float transmittanceExp2(vec4 p, float d) {
-  return p.x * exp(-p.y * d) + p.z * exp(-p.w * d);
+  const float kLog2E = 1.44269504;
+  float e = kLog2E * d; // once for all channels
+  return p.x * exp2(-p.y * e) + p.z * exp2(-p.w * e);
 }
 
 // a / sinh(kappa d + z) + b e^{-c d}; z > 0 by construction. Written with e^{-y} so that a thick slab

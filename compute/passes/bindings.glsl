@@ -61,10 +61,22 @@ vec3 asStored(vec3 color) {
 #endif
 }
 
-// `last`: this is the frame's final write, so the post-scatter albedo applies. Returns what the image holds then.
+// A color that asStored returned.
+vec3 asHalves(vec3 color) {
+#ifdef HALF
+  return color;
+#else
+  return roundToHalf(color);
+#endif
+}
+
+// `color`: >= 0. `last`: this is the frame's final write, so the post-scatter albedo applies. Returns what the image
+// holds then.
 vec3 writeResult(ivec2 pixel, vec3 color, float alpha, bool last) {
-  if (last && hasFlag(PELLUCID_FLAG_ALBEDO)) color *= sanitize(texelFetch(albedoImage, pixel, 0).rgb);
-  color = asStored(sanitize(color));
+  color = min(color, vec3(kLargestHalf));
+  if (last && hasFlag(PELLUCID_FLAG_ALBEDO))
+    color = min(color * sanitize(texelFetch(albedoImage, pixel, 0).rgb), vec3(kLargestHalf));
+  color = asStored(color);
   imageStore(destinationImage, pixel, vec4(color, alpha));
   return color;
 }

@@ -97,11 +97,11 @@ void main() {
          b = materials[m - 1u].transmittance[2];
     vec3 entering = light.entering.rgb * materials[m - 1u].inverseReflectance.rgb;
     [[unroll]] for (int i = 0; i < kPixels; ++i) {
-      if (material[i] != m) continue;
+      bool mine = material[i] == m;
       float d = thickness[i];
       vec3 t = vec3(transmittanceExp2(r, d), transmittanceExp2(g, d), transmittanceExp2(b, d));
-      color[i] += cosine[i] * entering * clamp(t, vec3(0.0), vec3(1.0));
-      cosine[i] = 0.0;
+      color[i] += (mine ? cosine[i] : 0.0) * clamp(t, vec3(0.0), vec3(1.0)) * entering;
+      cosine[i] = mine ? 0.0 : cosine[i];
     }
   }
 
@@ -112,7 +112,7 @@ void main() {
     else if (starts && insideRect(pixel))
       imageStore(destinationImage, pixel, vec4(0.0));
 #ifdef QUADS
-    keepPixel(pixelInTile(i), color[i], front[i], material[i]);
+    keepPixel(pixelInTile(i), asHalves(color[i]), front[i], material[i]);
 #endif
   }
 #ifdef QUADS

@@ -9,8 +9,9 @@ const int kTile = 2 * GROUP_SIDE; // pixels
 shared uvec2 tileColors[kTile * kTile]; // and material
 shared float tileDepths[kTile * kTile];
 
+// `color`: of halves.
 void keepPixel(ivec2 inTile, vec3 color, float depth, uint material) {
-  tileColors[inTile.y * kTile + inTile.x] = packColor(color, material);
+  tileColors[inTile.y * kTile + inTile.x] = packHalves(color, material);
   tileDepths[inTile.y * kTile + inTile.x] = depth;
 }
 

@@ -23,7 +23,7 @@ void main() {
     color = asStored(color);
     if (material[i] != 0u) imageStore(destinationImage, evenTile() + pixelInTile(i), vec4(color, source[i].a));
 #endif
-    keepPixel(pixelInTile(i), color, depth[i], material[i]);
+    keepPixel(pixelInTile(i), roundToHalf(color), depth[i], material[i]);
   }
   barrier();
   writeQuad();

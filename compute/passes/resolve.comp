@@ -1,5 +1,5 @@
 // R_l = (1 - s) E_l + s R_(l+1) from the coarsest level of the pyramid to level 2, s the profile's share of the coarser
-// levels at the texel, and the shares of the pixels under level 2. A group makes 32 x 32 texels of level 2 and, before
+// levels at the texel, and the shares of the pixels under level 2. A group makes 16 x 16 texels of level 2 and, before
 // them, as much of each coarser level as they need.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
@@ -10,13 +10,29 @@
 
 layout(set = 0, binding = PELLUCID_BINDING_KERNELS) readonly buffer Kernels { KernelConstants kernels[]; };
 
-const int kInvocations = PELLUCID_RESOLVE_GROUP * PELLUCID_RESOLVE_GROUP;
-// Of 32 texels in a row, what level 3 needs, and level 4. Coarser levels need less.
-const int kOdd = 18, kEven = 11;
-// Resolved texels: color and material as packed, depth, and the share of the kernel that the surface fills, of each
+// What level 3 and coarser ones need under a tile fits into a group: 10 x 10 texels of level 3 at most, then 7 x 7,
+// 5 x 5, 4 x 4 and 4 x 4. Color and material as packed, depth, and the share of the kernel that the surface fills, of each
 // channel, in place of the slope.
-shared uvec4 odd[kOdd * kOdd];
-shared uvec4 even[kEven * kEven];
+shared uvec4 resolved[PELLUCID_RESOLVE_GROUP * PELLUCID_RESOLVE_GROUP];
+
+// Texels of a level that a group needs, row by row in resolved[] from `first` on.
+struct Window {
+  ivec4 texels; // [xy, zw)
+  int first;
+};
+
+int columns(Window w) { return w.texels.z - w.texels.x; }
+
+int count(Window w) { return columns(w) * (w.texels.w - w.texels.y); }
+
+// Of the next coarser level.
+Window under(Window w) {
+  return Window(ivec4((w.texels.xy - 1) >> 1, (w.texels.zw >> 1) + 1), w.first + count(w));
+}
+
+int indexIn(Window w, ivec2 texel) {
+  return w.first + (texel.y - w.texels.y) * columns(w) + texel.x - w.texels.x;
+}
 
 void writeResolved(ivec2 texel, uvec4 color, uvec4 shares) {
   imageStore(levelsDestination, resolvedPlace(texel), color);
@@ -70,87 +86,121 @@ vec4 stretched(ivec2 texel, uint level, Texel own, Foreshortening f) {
   return sum / weights;
 }
 
-struct Level {
-  vec3 color, density; // share of the kernel that the surface fills, of each channel
-  float lengthMm;      // of the texel, see Foreshortening
+// What a texel's level says of it, without the coarser ones.
+struct Own {
+  Texel texel;
+  vec4 here;      // the level's own part, times the share of its kernel that the surface fills, which is in a
+  vec3 share;     // of the coarser levels
+  float lengthMm; // of the texel, see Foreshortening
 };
 
-// `window`: texels of the coarser level, whose texels are in shared memory.
-Level resolvedLevel(uint level, ivec2 texel, Texel own, bool coarsest, ivec4 window) {
-  Foreshortening f = foreshortening(vec2(texel), level, own.depth, own.slope);
-  vec4 here = stretched(texel, level, own, f);
-  if (coarsest) return Level(here.a > 0.0 ? here.rgb / here.a : own.color, vec3(here.a), f.lengthMm);
+Own ownPart(uint level, ivec2 texel, uvec4 bits, bool coarsest) {
+  Own own;
+  own.texel = unpackTexel(bits);
+  own.here = vec4(0.0);
+  own.share = vec3(0.0);
+  own.lengthMm = 0.0;
+  if (own.texel.coverage == 0.0) return own;
+  Foreshortening f = foreshortening(vec2(texel), level, own.texel.depth, own.texel.slope);
+  own.here = stretched(texel, level, own.texel, f);
+  own.lengthMm = f.lengthMm;
+  uint m = own.texel.material - 1u;
+  if (!coarsest) own.share = coarserShare(m, level, shareEntry(m, f.lengthMm));
+  return own;
+}
+
+struct Level {
+  vec3 color, density; // share of the kernel that the surface fills, of each channel
+};
+
+Level alone(Own own) {
+  return Level(own.here.a > 0.0 ? own.here.rgb / own.here.a : own.texel.color, vec3(own.here.a));
+}
+
+// `window`: of the coarser level, which is resolved.
+Level withCoarser(Own own, uint level, ivec2 texel, Window window) {
   // 9, 3, 3 and 1 sixteenths of the four nearest: the refinement of the quadratic B-spline.
   ivec2 nearest = texel >> 1, toward = 2 * (texel & 1) - 1;
-  vec2 size = texelSize(own.depth, level + 1u);
-  float spread2 = inverseSpread(own.slope, size);
+  vec2 size = texelSize(own.texel.depth, level + 1u);
+  float spread2 = inverseSpread(own.texel.slope, size);
   vec3 coarser = vec3(0.0), found = vec3(0.0);
   for (int i = 0; i < 4; ++i) {
     ivec2 at = nearest + toward * ivec2(i & 1, i >> 1);
-    int index = (at.y - window.y) * (window.z - window.x) + at.x - window.x;
-    uvec4 theirs = (level & 1u) == 0u ? odd[index] : even[index];
-    if (materialBits(theirs) != own.material) continue;
+    uvec4 theirs = resolved[indexIn(window, at)];
+    if (materialBits(theirs) != own.texel.material) continue;
     vec2 off = vec2(at) + 0.5 - 0.5 * (vec2(texel) + 0.5);
     float w = i == 0 ? 9.0 / 16.0 : i == 3 ? 1.0 / 16.0 : 3.0 / 16.0;
-    w *= sameSurface(uintBitsToFloat(theirs.z) - own.depth - dot(own.slope, off * size), spread2);
+    w *= sameSurface(uintBitsToFloat(theirs.z) - own.texel.depth - dot(own.texel.slope, off * size), spread2);
     vec3 density = w * unpackUnorm4x8(theirs.w).rgb;
     coarser += density * unpackColor(theirs.xy);
     found += density;
   }
-  vec3 share = coarserShare(own.material - 1u, level, shareEntry(own.material - 1u, f.lengthMm));
   // Both are weighted with the density that they found, which renormalizes at silhouettes and borders.
-  vec3 density = (1.0 - share) * here.a + share * found;
+  vec3 density = (1.0 - own.share) * own.here.a + own.share * found;
   // Where a channel has nothing here, the level's own color stands in: the finer level weights it with 0.
-  vec3 color = mix(own.color, ((1.0 - share) * here.rgb + share * coarser) / max(density, vec3(1.0e-6)),
+  vec3 color = mix(own.texel.color, ((1.0 - own.share) * own.here.rgb + own.share * coarser) / max(density, vec3(1.0e-6)),
                    greaterThan(density, vec3(1.0e-6)));
-  return Level(color, density, f.lengthMm);
+  return Level(color, density);
 }
 
-PixelShares pixelShares(uint m, float lengthMm, vec3 density) {
+// Of pixels with that side, on a surface that fills all of the kernel.
+PixelShares pixelShares(uint m, float lengthMm) {
   float entry = shareEntry(m, lengthMm);
   uint i = min(uint(entry), uint(PELLUCID_SHARE_ENTRIES - 2));
   float part = entry - float(i);
-  PixelShares s;
-  s.coarser = mix(kernels[m].pixelShare[2u * i].rgb, kernels[m].pixelShare[2u * i + 2u].rgb, part);
-  s.fine = mix(kernels[m].pixelShare[2u * i + 1u].rgb, kernels[m].pixelShare[2u * i + 3u].rgb, part);
-  s.coarser = s.coarser * density / max(1.0 - s.coarser + s.coarser * density, vec3(1.0e-6));
-  return s;
+  return PixelShares(mix(kernels[m].pixelShare[2u * i].rgb, kernels[m].pixelShare[2u * i + 2u].rgb, part),
+                     mix(kernels[m].pixelShare[2u * i + 1u].rgb, kernels[m].pixelShare[2u * i + 3u].rgb, part));
 }
 
 void main() {
   int invocation = int(gl_LocalInvocationIndex);
   uint coarsest = pass.value.x;
-  ivec2 tile = levelRect(2u).xy + PELLUCID_RESOLVE_TILE * ivec2(gl_WorkGroupID.xy);
-  ivec4 coarser = ivec4(0);
-  for (uint level = coarsest; level >= 2u; --level) {
-    ivec4 window = ivec4(tile, tile + PELLUCID_RESOLVE_TILE), rect = levelRect(level);
-    for (uint l = 2u; l < level; ++l) window = ivec4((window.xy - 1) >> 1, (window.zw >> 1) + 1);
-    int width = window.z - window.x, count = width * (window.w - window.y);
-    for (int i = invocation; i < count; i += kInvocations) {
-      ivec2 texel = window.xy + ivec2(i % width, i / width);
-      bool inside = insideLevel(rect, texel);
-      uvec4 bits = inside ? texelFetch(pyramidImage, inAtlas(level, texel), 0) : uvec4(0u);
-      bool some = coverageBits(bits) != 0u;
-      Level r = Level(vec3(0.0), vec3(0.0), 0.0);
-      if (some) r = resolvedLevel(level, texel, unpackTexel(bits), level == coarsest, coarser);
-      uvec2 color = packColor(r.color, bits.y >> 16);
-      uint density = packUnorm4x8(vec4(r.density, 0.0));
-      if (level > 2u) {
-        uvec4 packed = some ? uvec4(color, bits.z, density) : uvec4(0u);
-        if ((level & 1u) != 0u)
-          odd[i] = packed;
-        else
-          even[i] = packed;
-      } else if (inside) {
-        uint m = materialBits(bits);
-        // A length of a pixel is a quarter of a texel's.
-        uvec3 shares = some ? packShares(pixelShares(m - 1u, 0.25 * r.lengthMm, r.density)) : uvec3(0u);
-        // The material where the texel is one plane of it.
-        uint plane = coverageBits(bits) == kFullCoverage ? m << 24 : 0u;
-        writeResolved(texel, uvec4(color, bits.zw), uvec4(shares, density | plane));
-      }
+  // An invocation does one texel of level 2 and, before that, one of a coarser level.
+  ivec2 tile = levelRect(2u).xy + PELLUCID_RESOLVE_GROUP * ivec2(gl_WorkGroupID.xy);
+  // Level 2 itself is not kept.
+  Window third = under(Window(ivec4(tile, tile + PELLUCID_RESOLVE_GROUP), -PELLUCID_RESOLVE_GROUP * PELLUCID_RESOLVE_GROUP));
+  Window window = third, coarser = third;
+  uint level = 0u;
+  ivec2 texel = ivec2(0), fineTexel = tile + ivec2(gl_LocalInvocationID.xy);
+  for (uint l = 3u; l <= coarsest; ++l) {
+    Window next = under(window);
+    int index = invocation - window.first;
+    if (index >= 0 && index < count(window)) {
+      level = l;
+      texel = window.texels.xy + ivec2(index % columns(window), index / columns(window));
+      coarser = next;
     }
-    coarser = window;
+    window = next;
+  }
+  bool inside = level != 0u && insideLevel(levelRect(level), texel), fineInside = insideLevel(levelRect(2u), fineTexel);
+  // Both before the first is used, and all that needs no coarser level before the first barrier.
+  uvec4 bits = inside ? texelFetch(pyramidImage, inAtlas(level, texel), 0) : uvec4(0u);
+  uvec4 fineBits = fineInside ? texelFetch(pyramidImage, inAtlas(2u, fineTexel), 0) : uvec4(0u);
+  Own own = ownPart(level, texel, bits, level == coarsest), fine = ownPart(2u, fineTexel, fineBits, false);
+  bool some = fine.texel.coverage > 0.0;
+  PixelShares share = PixelShares(vec3(0.0), vec3(0.0));
+  // A length of a pixel is a quarter of a texel's.
+  if (some) share = pixelShares(fine.texel.material - 1u, 0.25 * fine.lengthMm);
+
+  for (uint l = coarsest; l > 2u; --l) {
+    if (level == l) {
+      uvec4 packed = uvec4(0u);
+      if (own.texel.coverage > 0.0) {
+        Level r = level == coarsest ? alone(own) : withCoarser(own, level, texel, coarser);
+        packed = uvec4(packColor(r.color, bits.y >> 16), bits.z, packUnorm4x8(vec4(r.density, 0.0)));
+      }
+      resolved[invocation] = packed;
+    }
     barrier();
   }
+  uvec4 color = uvec4(0u, fineBits.y & 0xFFFF0000u, 0u, 0u), shares = uvec4(0u);
+  if (some) {
+    Level r = withCoarser(fine, 2u, fineTexel, third);
+    color = uvec4(packColor(r.color, fineBits.y >> 16), fineBits.zw);
+    share.coarser = share.coarser * r.density / max(1.0 - share.coarser + share.coarser * r.density, vec3(1.0e-6));
+    // The material where the texel is one plane of it.
+    uint plane = coverageBits(fineBits) == kFullCoverage ? fine.texel.material << 24 : 0u;
+    shares = uvec4(packShares(share), packUnorm4x8(vec4(r.density, 0.0)) | plane);
+  }
+  if (fineInside) writeResolved(fineTexel, color, shares);
 }

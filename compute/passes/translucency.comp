@@ -117,7 +117,7 @@ void main() {
       imageStore(destinationImage, pixel, vec4(0.0));
     }
 #ifdef QUADS
-    keepPixel(pixelInTile(i), color, depth, material);
+    keepPixel(pixelInTile(i), asHalves(color), depth, material);
 #endif
   }
 #ifdef QUADS

@@ -334,7 +334,7 @@ struct Builder {
   bool resolve(uint32_t coarsest) {
     PellucidDispatch* d = dispatch("resolve", PELLUCID_PIPELINE_RESOLVE_LEVELS);
     if (!d) return false;
-    levelGroups(d, 2, PELLUCID_RESOLVE_TILE);
+    levelGroups(d, 2, PELLUCID_RESOLVE_GROUP);
     d->pushConstants[0] = coarsest;
     constants(d, PELLUCID_BINDING_FRAME, layout.frame);
     constants(d, PELLUCID_BINDING_KERNELS, layout.kernels);

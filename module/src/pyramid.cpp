@@ -8,6 +8,9 @@ namespace {
 // Texels of a level under `pixels` in a row, wherever they start, and one more on each side.
 uint32_t most(uint32_t pixels, uint32_t level) { return ((pixels - 1) >> level) + 3; }
 
+// What level 1 takes in a row, and in its place the resolved level 2 beside its shares.
+uint32_t firstColumns(uint32_t pixels) { return std::max(most(pixels, kFirstLevel), 2 * most(pixels, 2)); }
+
 }  // namespace
 
 uint32_t coarsestLevel(const PellucidFrame& frame) {
@@ -19,7 +22,7 @@ uint32_t coarsestLevel(const PellucidFrame& frame) {
 
 PyramidPlace placeOf(const PellucidFrame& frame, uint32_t level) {
   PyramidPlace place{};
-  if (level > kFirstLevel) place.x = static_cast<int32_t>(most(frame.imageExtent[0], kFirstLevel));
+  if (level > kFirstLevel) place.x = static_cast<int32_t>(firstColumns(frame.imageExtent[0]));
   for (uint32_t l = kFirstLevel + 1; l < level; ++l)
     place.y += static_cast<int32_t>(most(frame.imageExtent[1], l));
   const Rect r = renderRect(frame);
@@ -32,11 +35,9 @@ PyramidPlace placeOf(const PellucidFrame& frame, uint32_t level) {
 
 PyramidExtent pyramidExtent(const PellucidFrame& frame) {
   const uint32_t last = coarsestLevel(frame);
-  uint32_t width = most(frame.imageExtent[0], kFirstLevel), height = 0;
-  if (last > kFirstLevel) width += most(frame.imageExtent[0], kFirstLevel + 1);
+  const uint32_t width = firstColumns(frame.imageExtent[0]) + most(frame.imageExtent[0], kFirstLevel + 1);
+  uint32_t height = 0;
   for (uint32_t l = kFirstLevel + 1; l <= last; ++l) height += most(frame.imageExtent[1], l);
-  // The resolved level 2 and its shares take the place of level 1.
-  width = std::max(width, 2 * most(frame.imageExtent[0], 2));
   return {width, std::max({height, most(frame.imageExtent[1], kFirstLevel), most(frame.imageExtent[1], 2)})};
 }
 
