@@ -26,18 +26,21 @@ vec3 unpackColor(uvec2 u) { return vec3(unpackHalf2x16(u.x), unpackHalf2x16(u.y)
 // A slope of 1000 is 0.06 degrees from edge-on.
 uint packSlope(vec2 slope) { return packHalf2x16(clamp(slope, vec2(-1.0e3), vec2(1.0e3))); }
 
+// Bits of a coverage of 1. In level 2, one more says that all around lies on the texel's plane, too.
+const uint kFullCoverage = 254u, kFlatCoverage = 255u;
+
 uvec4 packTexel(Texel t) {
   // Anything there at all must not round to nothing.
-  uint coverage = uint(clamp(ceil(t.coverage * 255.0 - 0.5), t.coverage > 0.0 ? 1.0 : 0.0, 255.0));
+  float full = float(kFullCoverage);
+  uint coverage = uint(clamp(ceil(t.coverage * full - 0.5), t.coverage > 0.0 ? 1.0 : 0.0, full));
   return uvec4(packColor(t.color, coverage | t.material << 8), floatBitsToUint(t.depth), packSlope(t.slope));
 }
 
 Texel unpackTexel(uvec4 u) {
-  return Texel(unpackColor(u.xy), float((u.y >> 16) & 0xFFu) / 255.0, u.y >> 24, uintBitsToFloat(u.z),
+  float coverage = min(float((u.y >> 16) & 0xFFu) / float(kFullCoverage), 1.0);
+  return Texel(unpackColor(u.xy), coverage, u.y >> 24, uintBitsToFloat(u.z),
                unpackHalf2x16(u.w));
 }
-
-const uint kFullCoverage = 255u;
 
 uint coverageBits(uvec4 texel) { return (texel.y >> 16) & 0xFFu; }
 

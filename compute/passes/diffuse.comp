@@ -26,9 +26,8 @@ shared uvec2 vertical[4 * kTexels.y * kColumns];   // colors after the fine filt
 #endif
 shared uvec4 resolved[kWindow.x * kWindow.y];
 shared uvec4 shares[kWindow.x * kWindow.y];
-shared uint planes[kTexels.y];                     // a bit a texel that is filtered as a plane
 shared uint edges[kTexels.x * kTexels.y];
-shared uint edgeCount;
+shared uint edgeCount, anySurface;
 
 // The quadratic B-spline at -1, 0 and 1 for a point at most half a texel from 0.
 vec3 spline(float at) {
@@ -42,24 +41,8 @@ vec3 fineSum(vec3 a, vec3 b, vec3 c, vec3 d, vec3 e) {
   return fineWeight(0) * c + fineWeight(1) * (b + d) + fineWeight(2) * (a + e);
 }
 
-// Above it, something at a texel's neighbor counts 1 % less than on its plane.
-const float kPlaneOffset = 0.0125;
-
 // Whether a texel and all around it lie on one plane.
-bool isPlane(int index) {
-  uvec4 own = resolved[index];
-  vec2 size = texelSize(uintBitsToFloat(own.z), 2u), slope = unpackHalf2x16(own.w);
-  float most = kPlaneOffset / inverseSpread(slope, size);
-  uint material = shares[index].w >> 24;
-  bool plane = material != 0u;
-  for (int i = 0; i < 9; ++i) {
-    ivec2 offset = ivec2(i % 3, i / 3) - 1;
-    int at = index + offset.y * kWindow.x + offset.x;
-    float off = uintBitsToFloat(resolved[at].z) - uintBitsToFloat(own.z) - dot(slope, vec2(offset) * size);
-    plane = plane && shares[at].w >> 24 == material && off * off < most;
-  }
-  return plane;
-}
+bool isFlat(uvec4 texel) { return coverageBits(texel) == kFlatCoverage; }
 
 void store(ivec2 pixel, vec3 color, float alpha) {
   if (pass.value.w != 0u && hasFlag(PELLUCID_FLAG_ALBEDO))
@@ -172,63 +155,63 @@ void main() {
   vec4 sources[kRows + 2 * kRing];
   [[unroll]] for (int i = 0; i < kRows + 2 * kRing; ++i)
     sources[i] = texelFetch(sourceImage, clamp(first + ivec2(0, i - kRing), ivec2(frame.rect.xy), last), 0);
-  if (invocation == 0) edgeCount = 0u;
-  if (invocation < kTexels.y) planes[invocation] = 0u;
+  if (invocation == 0) edgeCount = anySurface = 0u;
+  barrier();
   if (invocation < kWindow.x * kWindow.y) {
     resolved[invocation] = texel;
     shares[invocation] = texelShares;
+    if (texel.y >> 16 != 0u) anySurface = 1u; // whoever writes, writes this
   }
   barrier();
-  if (invocation < kTexels.x * kTexels.y) {
-    ivec2 local = ivec2(invocation % kTexels.x, invocation / kTexels.x);
-    int index = (local.y + 1) * kWindow.x + local.x + 1;
-    if (isPlane(index))
-      atomicOr(planes[local.y], 1u << local.x);
-    else if (resolved[index].y >> 16 != 0u)
-      edges[atomicAdd(edgeCount, 1u)] = uint(invocation);
-  }
-  uvec2 own[kRows]; // colors and alphas
-  [[unroll]] for (int i = 0; i < kRows + 2 * kRing; ++i)
-    if (pass.value.y != 0u) sources[i].rgb = sanitize(sources[i].rgb);
-  [[unroll]] for (int i = 0; i < kRows; ++i) {
-    vec4 source = sources[i + kRing];
-    own[i] = uvec2(packHalf2x16(source.rg), packHalf2x16(source.ba));
+  if (anySurface != 0u) {
+    if (invocation < kTexels.x * kTexels.y) {
+      ivec2 local = ivec2(invocation % kTexels.x, invocation / kTexels.x);
+      uvec4 its = resolved[(local.y + 1) * kWindow.x + local.x + 1];
+      if (its.y >> 16 != 0u && !isFlat(its)) edges[atomicAdd(edgeCount, 1u)] = uint(invocation);
+    }
+    uvec2 own[kRows]; // colors and alphas
+    [[unroll]] for (int i = 0; i < kRows + 2 * kRing; ++i)
+      if (pass.value.y != 0u) sources[i].rgb = sanitize(sources[i].rgb);
+    [[unroll]] for (int i = 0; i < kRows; ++i) {
+      vec4 source = sources[i + kRing];
+      own[i] = uvec2(packHalf2x16(source.rg), packHalf2x16(source.ba));
 #ifndef COARSE
-    vec3 sum = fineSum(sources[i].rgb, sources[i + 1].rgb, source.rgb, sources[i + 3].rgb, sources[i + 4].rgb);
-    vertical[(firstRow + i) * kColumns + column] = uvec2(packHalf2x16(sum.rg), packHalf2x16(vec2(sum.b, 0.0)));
+      vec3 sum = fineSum(sources[i].rgb, sources[i + 1].rgb, source.rgb, sources[i + 3].rgb, sources[i + 4].rgb);
+      vertical[(firstRow + i) * kColumns + column] = uvec2(packHalf2x16(sum.rg), packHalf2x16(vec2(sum.b, 0.0)));
 #endif
-  }
-  barrier();
+    }
+    barrier();
 
-  int x = column - kRing;
-  if (x >= 0 && x < 4 * kTexels.x) {
-    vec3 splineX = spline(0.25 * (float(x & 3) - 1.5));
-    [[unroll]] for (int block = 0; block < kRows / 4; ++block) {
-      int texelRow = firstRow / 4 + block;
-      if ((planes[texelRow] >> (x / 4) & 1u) == 0u) continue;
-      int index = texelRow * kWindow.x + x / 4;
-      vec3 coarser[3];
-      [[unroll]] for (int y = 0; y < 3; ++y) {
-        int row = index + y * kWindow.x;
-        coarser[y] = splineX.x * unpackColor(resolved[row].xy) + splineX.y * unpackColor(resolved[row + 1].xy) +
-                     splineX.z * unpackColor(resolved[row + 2].xy);
-      }
-      PixelShares share = unpackShares(shares[index + kWindow.x + 1].xyz);
-      [[unroll]] for (int i = 0; i < 4; ++i) {
-        vec3 splineY = spline(0.25 * (float(i) - 1.5));
-        vec3 smoothed = splineY.x * coarser[0] + splineY.y * coarser[1] + splineY.z * coarser[2];
-        uvec2 packed = own[4 * block + i];
-        vec2 blue = unpackHalf2x16(packed.y);
-        vec3 color = vec3(unpackHalf2x16(packed.x), blue.x);
+    int x = column - kRing;
+    if (x >= 0 && x < 4 * kTexels.x) {
+      vec3 splineX = spline(0.25 * (float(x & 3) - 1.5));
+      [[unroll]] for (int block = 0; block < kRows / 4; ++block) {
+        int texelRow = firstRow / 4 + block;
+        int index = texelRow * kWindow.x + x / 4;
+        if (!isFlat(resolved[index + kWindow.x + 1])) continue;
+        vec3 coarser[3];
+        [[unroll]] for (int y = 0; y < 3; ++y) {
+          int row = index + y * kWindow.x;
+          coarser[y] = splineX.x * unpackColor(resolved[row].xy) + splineX.y * unpackColor(resolved[row + 1].xy) +
+                       splineX.z * unpackColor(resolved[row + 2].xy);
+        }
+        PixelShares share = unpackShares(shares[index + kWindow.x + 1].xyz);
+        [[unroll]] for (int i = 0; i < 4; ++i) {
+          vec3 splineY = spline(0.25 * (float(i) - 1.5));
+          vec3 smoothed = splineY.x * coarser[0] + splineY.y * coarser[1] + splineY.z * coarser[2];
+          uvec2 packed = own[4 * block + i];
+          vec2 blue = unpackHalf2x16(packed.y);
+          vec3 color = vec3(unpackHalf2x16(packed.x), blue.x);
 #ifndef COARSE
-        color = mix(color, fineOf((4 * texelRow + i) * kColumns + column), share.fine);
+          color = mix(color, fineOf((4 * texelRow + i) * kColumns + column), share.fine);
 #endif
-        store(4 * firstTexel + ivec2(x, 4 * texelRow + i), mix(color, smoothed, share.coarser), blue.y);
+          store(4 * firstTexel + ivec2(x, 4 * texelRow + i), mix(color, smoothed, share.coarser), blue.y);
+        }
       }
     }
-  }
-  for (int i = invocation; i < int(16u * edgeCount); i += kInvocations) {
-    int edge = int(edges[i >> 4]), at = i & 15;
-    diffuseEdge(firstTexel, 4 * ivec2(edge % kTexels.x, edge / kTexels.x) + ivec2(at & 3, at >> 2));
+    for (int i = invocation; i < int(16u * edgeCount); i += kInvocations) {
+      int edge = int(edges[i >> 4]), at = i & 15;
+      diffuseEdge(firstTexel, 4 * ivec2(edge % kTexels.x, edge / kTexels.x) + ivec2(at & 3, at >> 2));
+    }
   }
 }

@@ -1,6 +1,6 @@
 // The two levels of the diffusion pyramid after level pass.value.x. A texel takes the nearest of the four surfaces under
-// it and averages those of 4 x 4 texels that lie on it by 3 5 5 3 in each direction. A group makes 10 x 10 texels of
-// the second level and, before them, what they need of the first.
+// it and averages those of 4 x 4 texels that lie on it by 3 5 5 3 in each direction. A group makes 7 x 7 texels of the
+// second level and, before them, the 16 x 16 of the first that they need: one an invocation.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -13,7 +13,7 @@ layout(set = 0, binding = PELLUCID_BINDING_PYRAMID) uniform utexture2D pyramidIm
 
 const uint kInvocations = uint(PELLUCID_REDUCE_GROUP * PELLUCID_REDUCE_GROUP);
 // Sides of what a tile needs of the level before, and of its input.
-const int kFirst = 2 * PELLUCID_REDUCE_TILE + 2, kInput = 2 * kFirst + 2;
+const int kFirst = PELLUCID_REDUCE_GROUP, kInput = 2 * kFirst + 2;
 const int kLoads = (kInput * kInput + int(kInvocations) - 1) / int(kInvocations);
 // The input, then the first level: without slopes, to fit.
 shared uvec2 colors[kInput * kInput + kFirst * kFirst]; // and coverage and material, as packed
@@ -21,6 +21,10 @@ shared float depths[kInput * kInput + kFirst * kFirst];
 
 // 3 5 5 3, variance 1.
 float weight(int i) { return i == 0 || i == 3 ? 0.1875 : 0.3125; }
+
+// Of a texel's input. From the push constants because compilers would unroll the loops over a number that they know,
+// which takes twice the registers: half as many groups at a time.
+int rows() { return int(pass.value.y); }
 
 // Above it, the weights of texels are within .2 % of those of a plane.
 const float kPlaneResidual = 0.002;
@@ -38,7 +42,7 @@ struct Source {
 
 Source sourceAt(int index) {
   uint bits = colors[index].y;
-  return Source(float((bits >> 16) & 0xFFu) / 255.0, depths[index], bits >> 24);
+  return Source(float((bits >> 16) & 0xFFu) / float(kFullCoverage), depths[index], bits >> 24);
 }
 
 // Which texel's surface is taken: the nearest to the camera of the four in the middle or, beyond an edge, the one
@@ -54,7 +58,7 @@ int surfaceOf(int first, int stride) {
     surface = 5 + 4 * (i >> 1) + (i & 1);
   }
   if (surface >= 0) return surface;
-  for (int i = 0; i < 16; ++i) {
+  for (int i = 0; i < 4 * rows(); ++i) {
     float w = weight(i & 3) * weight(i >> 2) * sourceAt(tap(first, stride, i & 3, i >> 2)).coverage;
     if (!(w > most)) continue;
     most = w;
@@ -98,7 +102,7 @@ uvec4 reducedEdge(uint finer, int first, int stride) {
   vec3 color = vec3(0.0);
   float weights = 0.0, off = 0.0;
   vec2 tilt = vec2(0.0), spread = vec2(0.0);
-  for (int i = 0; i < 16; ++i) {
+  for (int i = 0; i < 4 * rows(); ++i) {
     ivec2 at = ivec2(i & 3, i >> 2);
     int index = tap(first, stride, at.x, at.y);
     Source t = sourceAt(index);
@@ -126,8 +130,8 @@ uvec4 reduced(uint finer, int first, int stride) {
   float base = depths[first], off = 0.0, square = 0.0;
   vec2 tilt = vec2(0.0);
   vec3 color = vec3(0.0);
-  for (int y = 0; y < 4; ++y)
-    for (int x = 0; x < 4; ++x) {
+  for (int y = 0; y < rows(); ++y)
+    [[unroll]] for (int x = 0; x < 4; ++x) {
       int index = tap(first, stride, x, y);
       uvec2 packed = colors[index];
       float w = weight(x) * weight(y), difference = depths[index] - base;
@@ -148,11 +152,31 @@ uvec4 reduced(uint finer, int first, int stride) {
   return packTexel(Texel(color, 1.0, upper >> 8, base + off, slope));
 }
 
+// Above it, something at a texel's neighbor counts 1 % less than on its plane.
+const float kPlaneOffset = 0.0125;
+
+// Whether a texel and all around it are full and lie on one plane. `at`: not in the outermost rows and columns.
+bool isFlat(uvec4 bits, ivec2 at, uint level) {
+  float depth = uintBitsToFloat(bits.z);
+  vec2 size = texelSize(depth, level), slope = unpackHalf2x16(bits.w);
+  float most = kPlaneOffset / inverseSpread(slope, size);
+  bool plane = coverageBits(bits) == kFullCoverage;
+  for (int y = 1 - rows() / 2; y < rows() / 2; ++y)
+    [[unroll]] for (int x = -1; x <= 1; ++x) {
+      int index = kInput * kInput + slot(at + ivec2(x, y), kFirst);
+      float off = depths[index] - depth - dot(slope, vec2(x, y) * size);
+      plane = plane && colors[index].y >> 16 == bits.y >> 16 && off * off < most;
+    }
+  return plane;
+}
+
 void main() {
   uint finer = pass.value.x;
   int invocation = int(gl_LocalInvocationIndex);
+  // The rect's borders are edges, which take longest: first and last rows come in the middle.
+  uvec2 group = uvec2(gl_WorkGroupID.x, (gl_WorkGroupID.y + gl_NumWorkGroups.y / 2u) % gl_NumWorkGroups.y);
   ivec4 finerRect = levelRect(finer), rect = levelRect(finer + 1u), lastRect = levelRect(finer + 2u);
-  ivec2 own = lastRect.xy + PELLUCID_REDUCE_TILE * ivec2(gl_WorkGroupID.xy), start = 2 * own - 1;
+  ivec2 own = lastRect.xy + PELLUCID_REDUCE_TILE * ivec2(group), start = 2 * own - 1;
   // All loads before the first is used, so that their latencies overlap.
   uvec4 loaded[kLoads];
   [[unroll]] for (int j = 0; j < kLoads; ++j) {
@@ -162,27 +186,27 @@ void main() {
   }
   [[unroll]] for (int j = 0; j < kLoads; ++j) {
     int i = invocation + j * int(kInvocations);
-    if (i >= kInput * kInput) continue;
     int index = slot(ivec2(i % kInput, i / kInput), kInput);
-    colors[index] = loaded[j].xy;
-    depths[index] = uintBitsToFloat(loaded[j].z);
+    if (i < kInput * kInput) {
+      colors[index] = loaded[j].xy;
+      depths[index] = uintBitsToFloat(loaded[j].z);
+    }
   }
   barrier();
-  for (int i = invocation; i < kFirst * kFirst; i += int(kInvocations)) {
-    ivec2 at = ivec2(i % kFirst, i / kFirst), texel = start + at;
-    bool inside = insideLevel(rect, texel);
-    uvec4 bits = inside ? reduced(finer, 2 * at.y * kInput + at.x, kInput) : uvec4(0u);
-    int index = kInput * kInput + slot(at, kFirst);
-    colors[index] = bits.xy;
-    depths[index] = uintBitsToFloat(bits.z);
-    // The outer ones are the groups' beside.
-    bool owned = all(greaterThan(at, ivec2(0))) && all(lessThan(at, ivec2(kFirst - 1)));
-    if (inside && owned) writeLevel(finer + 1u, texel, bits);
-  }
+  ivec2 at = ivec2(gl_LocalInvocationID.xy), texel = start + at;
+  bool inside = insideLevel(rect, texel);
+  uvec4 bits = inside ? reduced(finer, 2 * at.y * kInput + at.x, kInput) : uvec4(0u);
+  int index = kInput * kInput + slot(at, kFirst);
+  colors[index] = bits.xy;
+  depths[index] = uintBitsToFloat(bits.z);
   barrier();
-  for (int i = invocation; i < PELLUCID_REDUCE_TILE * PELLUCID_REDUCE_TILE; i += int(kInvocations)) {
-    ivec2 at = ivec2(i % PELLUCID_REDUCE_TILE, i / PELLUCID_REDUCE_TILE), texel = own + at;
-    if (insideLevel(lastRect, texel))
-      writeLevel(finer + 2u, texel, reduced(finer + 1u, kInput * kInput + 2 * at.y * kFirst + at.x, kFirst));
+  // The outer ones are the groups' beside.
+  if (inside && all(greaterThan(at, ivec2(0))) && all(lessThan(at, ivec2(kFirst - 1)))) {
+    if (finer == 1u && isFlat(bits, at, finer + 1u)) bits.y += 1u << 16;
+    writeLevel(finer + 1u, texel, bits);
   }
+  at = ivec2(invocation % PELLUCID_REDUCE_TILE, invocation / PELLUCID_REDUCE_TILE);
+  texel = own + at;
+  if (at.y < PELLUCID_REDUCE_TILE && insideLevel(lastRect, texel))
+    writeLevel(finer + 2u, texel, reduced(finer + 1u, kInput * kInput + 2 * at.y * kFirst + at.x, kFirst));
 }

@@ -199,7 +199,7 @@ void main() {
     color = uvec4(packColor(r.color, fineBits.y >> 16), fineBits.zw);
     share.coarser = share.coarser * r.density / max(1.0 - share.coarser + share.coarser * r.density, vec3(1.0e-6));
     // The material where the texel is one plane of it.
-    uint plane = coverageBits(fineBits) == kFullCoverage ? fine.texel.material << 24 : 0u;
+    uint plane = coverageBits(fineBits) >= kFullCoverage ? fine.texel.material << 24 : 0u;
     shares = uvec4(packShares(share), packUnorm4x8(vec4(r.density, 0.0)) | plane);
   }
   if (fineInside) writeResolved(fineTexel, color, shares);

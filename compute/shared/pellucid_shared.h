@@ -22,7 +22,7 @@ using glm::vec4;
 #define PELLUCID_DIFFUSE_TEXELS_Y 4
 #define PELLUCID_RESOLVE_GROUP 16 // a side, texels of level 2
 #define PELLUCID_REDUCE_GROUP 16 // a side, of the pyramid's reductions
-#define PELLUCID_REDUCE_TILE 10  // a side, texels of the second of the two levels that a group makes
+#define PELLUCID_REDUCE_TILE 7   // a side, texels of the second of the two levels that a group makes
 #define PELLUCID_GATHER_GROUP 16 // a side, of the pass that adds gathered light; an invocation does 2 x 2 pixels
 #define PELLUCID_RECORDS_GROUP 8 // a side, of the gather's records and points
 #define PELLUCID_SHARE_GROUP 16  // a side, where points share
@@ -201,7 +201,7 @@ struct KernelConstants {
 // gather records: maps. gather points: pixels a side of a cell, lights with maps, 1 to add to what is there, samples.
 // gather share: pixels a side of a cell.
 // add: unused, unused, 1 if this is the last dispatch.
-// reduce: finer level. resolve: coarsest level.
+// reduce: finer level, 4. resolve: coarsest level.
 // diffuse: unused, 1 if the source may hold anything, unused, 1 if this is the last dispatch.
 struct PassConstants {
   uvec4 value;
