@@ -80,28 +80,24 @@ float sameSurface(float off, float inverseSpread2) {
 // Texel of level 1 from its four pixels, rows first; depth <= 0: none. One surface if they lie on one plane, else
 // the nearest one.
 uvec4 quadTexel(uint material[4], float depth[4], vec3 color[4]) {
-  vec4 depths = vec4(depth[0], depth[1], depth[2], depth[3]);
-  float nearest = min(min(depth[0], depth[1]), min(depth[2], depth[3]));
-  float farthest = max(max(depth[0], depth[1]), max(depth[2], depth[3]));
-  bool one = nearest > 0.0 && material[0] != 0u && material[1] == material[0] && material[2] == material[0] &&
-             material[3] == material[0];
-  // A plane up to 76 degrees from facing the camera; steeper pairs count as an edge.
-  vec2 sides = squaredPixelSize(frame.camera, nearest);
-  float side2 = min(sides.x, sides.y), bend = depth[0] - depth[1] - depth[2] + depth[3], span = farthest - nearest;
-  if (one && bend * bend < side2 && span * span < 64.0 * side2)
-    return packTexel(Texel(0.25 * (color[0] + color[1] + color[2] + color[3]), 1.0, material[0],
-                           dot(depths, vec4(0.25)), vec2(0.0)));
+  float nearest = kNoDepth;
   uint nearestMaterial = 0u, any = 0u;
-  nearest = kNoDepth;
+  bool one = true;
   for (int i = 0; i < 4; ++i) {
     any = max(any, material[i]);
-    if (material[i] == 0u || !(depth[i] > 0.0) || depth[i] >= nearest) continue;
+    bool some = material[i] != 0u && depth[i] > 0.0;
+    one = one && some && material[i] == material[0];
+    if (!some || depth[i] >= nearest) continue;
     nearest = depth[i];
     nearestMaterial = material[i];
   }
   if (nearestMaterial == 0u) return uvec4(0u, any << 24, 0u, 0u);
-  sides = squaredPixelSize(frame.camera, nearest);
-  float reach = 1.5 * sqrt(min(sides.x, sides.y));
+  vec2 sides = squaredPixelSize(frame.camera, nearest);
+  float side = sqrt(min(sides.x, sides.y));
+  // A plane up to 76 degrees from facing the camera; steeper pairs count as an edge.
+  float farthest = max(max(depth[0], depth[1]), max(depth[2], depth[3]));
+  bool plane = one && abs(depth[0] - depth[1] - depth[2] + depth[3]) < side && farthest - nearest < 8.0 * side;
+  float reach = plane ? 8.0 * side : 1.5 * side;
   vec3 mean = vec3(0.0);
   float sum = 0.0, weights = 0.0;
   for (int i = 0; i < 4; ++i) {

@@ -15,16 +15,13 @@ const uint kInvocations = uint(PELLUCID_REDUCE_GROUP * PELLUCID_REDUCE_GROUP);
 // Sides of what a tile needs of the level before, and of its input.
 const int kFirst = PELLUCID_REDUCE_GROUP, kInput = 2 * kFirst + 2;
 const int kLoads = (kInput * kInput + int(kInvocations) - 1) / int(kInvocations);
-// The input, then the first level: without slopes, to fit.
-shared uvec2 colors[kInput * kInput + kFirst * kFirst]; // and coverage and material, as packed
-shared float depths[kInput * kInput + kFirst * kFirst];
+// The input and, once that has been used, the first level: as many groups run at a time as these fit into a
+// processor. Slopes are not needed.
+shared uvec2 colors[kInput * kInput]; // and coverage and material, as packed
+shared float depths[kInput * kInput];
 
 // 3 5 5 3, variance 1.
 float weight(int i) { return i == 0 || i == 3 ? 0.1875 : 0.3125; }
-
-// Of a texel's input. From the push constants because compilers would unroll the loops over a number that they know,
-// which takes twice the registers: half as many groups at a time.
-int rows() { return int(pass.value.y); }
 
 // Above it, the weights of texels are within .2 % of those of a plane.
 const float kPlaneResidual = 0.002;
@@ -58,7 +55,7 @@ int surfaceOf(int first, int stride) {
     surface = 5 + 4 * (i >> 1) + (i & 1);
   }
   if (surface >= 0) return surface;
-  for (int i = 0; i < 4 * rows(); ++i) {
+  for (int i = 0; i < 16; ++i) {
     float w = weight(i & 3) * weight(i >> 2) * sourceAt(tap(first, stride, i & 3, i >> 2)).coverage;
     if (!(w > most)) continue;
     most = w;
@@ -102,7 +99,7 @@ uvec4 reducedEdge(uint finer, int first, int stride) {
   vec3 color = vec3(0.0);
   float weights = 0.0, off = 0.0;
   vec2 tilt = vec2(0.0), spread = vec2(0.0);
-  for (int i = 0; i < 4 * rows(); ++i) {
+  for (int i = 0; i < 16; ++i) {
     ivec2 at = ivec2(i & 3, i >> 2);
     int index = tap(first, stride, at.x, at.y);
     Source t = sourceAt(index);
@@ -130,8 +127,8 @@ uvec4 reduced(uint finer, int first, int stride) {
   float base = depths[first], off = 0.0, square = 0.0;
   vec2 tilt = vec2(0.0);
   vec3 color = vec3(0.0);
-  for (int y = 0; y < rows(); ++y)
-    [[unroll]] for (int x = 0; x < 4; ++x) {
+  for (int y = 0; y < 4; ++y)
+    for (int x = 0; x < 4; ++x) {
       int index = tap(first, stride, x, y);
       uvec2 packed = colors[index];
       float w = weight(x) * weight(y), difference = depths[index] - base;
@@ -161,9 +158,9 @@ bool isFlat(uvec4 bits, ivec2 at, uint level) {
   vec2 size = texelSize(depth, level), slope = unpackHalf2x16(bits.w);
   float most = kPlaneOffset / inverseSpread(slope, size);
   bool plane = coverageBits(bits) == kFullCoverage;
-  for (int y = 1 - rows() / 2; y < rows() / 2; ++y)
-    [[unroll]] for (int x = -1; x <= 1; ++x) {
-      int index = kInput * kInput + slot(at + ivec2(x, y), kFirst);
+  for (int y = -1; y <= 1; ++y)
+    for (int x = -1; x <= 1; ++x) {
+      int index = slot(at + ivec2(x, y), kFirst);
       float off = depths[index] - depth - dot(slope, vec2(x, y) * size);
       plane = plane && colors[index].y >> 16 == bits.y >> 16 && off * off < most;
     }
@@ -196,7 +193,8 @@ void main() {
   ivec2 at = ivec2(gl_LocalInvocationID.xy), texel = start + at;
   bool inside = insideLevel(rect, texel);
   uvec4 bits = inside ? reduced(finer, 2 * at.y * kInput + at.x, kInput) : uvec4(0u);
-  int index = kInput * kInput + slot(at, kFirst);
+  barrier();
+  int index = slot(at, kFirst);
   colors[index] = bits.xy;
   depths[index] = uintBitsToFloat(bits.z);
   barrier();
@@ -208,5 +206,5 @@ void main() {
   at = ivec2(invocation % PELLUCID_REDUCE_TILE, invocation / PELLUCID_REDUCE_TILE);
   texel = own + at;
   if (at.y < PELLUCID_REDUCE_TILE && insideLevel(lastRect, texel))
-    writeLevel(finer + 2u, texel, reduced(finer + 1u, kInput * kInput + 2 * at.y * kFirst + at.x, kFirst));
+    writeLevel(finer + 2u, texel, reduced(finer + 1u, 2 * at.y * kFirst + at.x, kFirst));
 }

@@ -64,7 +64,7 @@ vec4 stretched(ivec2 texel, uint level, Texel own, Foreshortening f) {
   float dominant = alongX ? f.axis.x : f.axis.y; // its square is at least 1/2
   float gradient = (alongX ? f.axis.y : f.axis.x) / dominant;
   variance = min(variance * dominant * dominant, float(kReach));
-  if (variance < 0.02) return sum;
+  if (own.coverage == 0.0 || variance < 0.02) return sum;
   float weights = 1.0;
   vec2 size = texelSize(own.depth, level);
   float spread2 = inverseSpread(own.slope, size);
@@ -89,25 +89,9 @@ vec4 stretched(ivec2 texel, uint level, Texel own, Foreshortening f) {
 // What a texel's level says of it, without the coarser ones.
 struct Own {
   Texel texel;
-  vec4 here;      // the level's own part, times the share of its kernel that the surface fills, which is in a
-  vec3 share;     // of the coarser levels
-  float lengthMm; // of the texel, see Foreshortening
+  vec4 here;  // the level's own part, times the share of its kernel that the surface fills, which is in a
+  vec3 share; // of the coarser levels
 };
-
-Own ownPart(uint level, ivec2 texel, uvec4 bits, bool coarsest) {
-  Own own;
-  own.texel = unpackTexel(bits);
-  own.here = vec4(0.0);
-  own.share = vec3(0.0);
-  own.lengthMm = 0.0;
-  if (own.texel.coverage == 0.0) return own;
-  Foreshortening f = foreshortening(vec2(texel), level, own.texel.depth, own.texel.slope);
-  own.here = stretched(texel, level, own.texel, f);
-  own.lengthMm = f.lengthMm;
-  uint m = own.texel.material - 1u;
-  if (!coarsest) own.share = coarserShare(m, level, shareEntry(m, f.lengthMm));
-  return own;
-}
 
 struct Level {
   vec3 color, density; // share of the kernel that the surface fills, of each channel
@@ -144,8 +128,7 @@ Level withCoarser(Own own, uint level, ivec2 texel, Window window) {
 }
 
 // Of pixels with that side, on a surface that fills all of the kernel.
-PixelShares pixelShares(uint m, float lengthMm) {
-  float entry = shareEntry(m, lengthMm);
+PixelShares pixelShares(uint m, float entry) {
   uint i = min(uint(entry), uint(PELLUCID_SHARE_ENTRIES - 2));
   float part = entry - float(i);
   return PixelShares(mix(kernels[m].pixelShare[2u * i].rgb, kernels[m].pixelShare[2u * i + 2u].rgb, part),
@@ -173,14 +156,24 @@ void main() {
     window = next;
   }
   bool inside = level != 0u && insideLevel(levelRect(level), texel), fineInside = insideLevel(levelRect(2u), fineTexel);
-  // Both before the first is used, and all that needs no coarser level before the first barrier.
+  // Both before the first is used, and all that needs no coarser level before the first barrier. Without branches, so
+  // that what is looked up is waited for once.
   uvec4 bits = inside ? texelFetch(pyramidImage, inAtlas(level, texel), 0) : uvec4(0u);
   uvec4 fineBits = fineInside ? texelFetch(pyramidImage, inAtlas(2u, fineTexel), 0) : uvec4(0u);
-  Own own = ownPart(level, texel, bits, level == coarsest), fine = ownPart(2u, fineTexel, fineBits, false);
-  bool some = fine.texel.coverage > 0.0;
-  PixelShares share = PixelShares(vec3(0.0), vec3(0.0));
+  Own own, fine;
+  own.texel = unpackTexel(bits);
+  fine.texel = unpackTexel(fineBits);
+  Foreshortening f = foreshortening(vec2(texel), level, own.texel.depth, own.texel.slope),
+                 fineF = foreshortening(vec2(fineTexel), 2u, fine.texel.depth, fine.texel.slope);
+  // Material 0 looks at what it does not use.
+  uint m = max(own.texel.material, 1u) - 1u, fineM = max(fine.texel.material, 1u) - 1u;
+  own.share = coarserShare(m, max(level, 2u), shareEntry(m, f.lengthMm));
+  fine.share = coarserShare(fineM, 2u, shareEntry(fineM, fineF.lengthMm));
   // A length of a pixel is a quarter of a texel's.
-  if (some) share = pixelShares(fine.texel.material - 1u, 0.25 * fine.lengthMm);
+  PixelShares share = pixelShares(fineM, shareEntry(fineM, 0.25 * fineF.lengthMm));
+  own.here = stretched(texel, level, own.texel, f);
+  fine.here = stretched(fineTexel, 2u, fine.texel, fineF);
+  bool some = fine.texel.coverage > 0.0;
 
   for (uint l = coarsest; l > 2u; --l) {
     if (level == l) {

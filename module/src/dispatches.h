@@ -324,7 +324,6 @@ struct Builder {
     if (!d) return false;
     levelGroups(d, finer + 2, PELLUCID_REDUCE_TILE);
     d->pushConstants[0] = finer;
-    d->pushConstants[1] = 4;  // rows of the filter
     constants(d, PELLUCID_BINDING_FRAME, layout.frame);
     writesPyramid(d);
     readsPyramid(d);
