@@ -137,11 +137,9 @@ void diffuseEdge(ivec2 firstTexel, ivec2 local) {
 
 void main() {
   int invocation = int(gl_LocalInvocationIndex);
-  // The rect's borders are edges, which take longest: the outer columns come first and the outer rows in the middle of
-  // each, where other groups run beside them.
-  uvec2 groups = gl_NumWorkGroups.xy;
-  uint order = gl_WorkGroupID.y * groups.x + gl_WorkGroupID.x;
-  uvec2 group = uvec2((order / groups.y + groups.x - 1u) % groups.x, (order + groups.y / 2u) % groups.y);
+  // The rect's borders are edges, which take longest: first and last rows come in the middle, not at the end, where
+  // nothing else would run beside them.
+  uvec2 group = uvec2(gl_WorkGroupID.x, (gl_WorkGroupID.y + gl_NumWorkGroups.y / 2u) % gl_NumWorkGroups.y);
   ivec2 firstTexel = (ivec2(frame.rect.xy) >> 2) + ivec2(group) * kTexels;
   // All loads before the first barrier, so that a group waits for memory once.
   uvec4 texel = uvec4(0u), texelShares = uvec4(0u);

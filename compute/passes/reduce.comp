@@ -23,6 +23,10 @@ shared float depths[kInput * kInput];
 // 3 5 5 3, variance 1.
 float weight(int i) { return i == 0 || i == 3 ? 0.1875 : 0.3125; }
 
+// Texels under a texel, from the push constants: compilers would unroll the loops of edges over a number that they know,
+// which takes half as many registers again.
+int taps() { return int(pass.value.y); }
+
 // Above it, the weights of texels are within .2 % of those of a plane.
 const float kPlaneResidual = 0.002;
 
@@ -55,7 +59,7 @@ int surfaceOf(int first, int stride) {
     surface = 5 + 4 * (i >> 1) + (i & 1);
   }
   if (surface >= 0) return surface;
-  for (int i = 0; i < 16; ++i) {
+  for (int i = 0; i < taps(); ++i) {
     float w = weight(i & 3) * weight(i >> 2) * sourceAt(tap(first, stride, i & 3, i >> 2)).coverage;
     if (!(w > most)) continue;
     most = w;
@@ -99,7 +103,7 @@ uvec4 reducedEdge(uint finer, int first, int stride) {
   vec3 color = vec3(0.0);
   float weights = 0.0, off = 0.0;
   vec2 tilt = vec2(0.0), spread = vec2(0.0);
-  for (int i = 0; i < 16; ++i) {
+  for (int i = 0; i < taps(); ++i) {
     ivec2 at = ivec2(i & 3, i >> 2);
     int index = tap(first, stride, at.x, at.y);
     Source t = sourceAt(index);

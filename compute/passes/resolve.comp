@@ -10,28 +10,23 @@
 
 layout(set = 0, binding = PELLUCID_BINDING_KERNELS) readonly buffer Kernels { KernelConstants kernels[]; };
 
-// What level 3 and coarser ones need under a tile fits into a group: 10 x 10 texels of level 3 at most, then 7 x 7,
-// 5 x 5, 4 x 4 and 4 x 4. Color and material as packed, depth, and the share of the kernel that the surface fills, of each
-// channel, in place of the slope.
-shared uvec4 resolved[PELLUCID_RESOLVE_GROUP * PELLUCID_RESOLVE_GROUP];
+// Resolved texels of level 3 and coarser ones, level after level; see Window. Color and material as packed, depth, and the
+// share of the kernel that the surface fills, of each channel, in place of the slope.
+shared uvec4 resolved[81 + 36 + 16 + 9 + 9];
 
-// Texels of a level that a group needs, row by row in resolved[] from `first` on.
+// What a group needs of a level. Groups start at texels 16 k - 1 of level 2, so that these are the same everywhere.
 struct Window {
-  ivec4 texels; // [xy, zw)
-  int first;
+  ivec2 corner; // first texel
+  int side;     // texels
+  int first;    // in resolved[]
 };
 
-int columns(Window w) { return w.texels.z - w.texels.x; }
-
-int count(Window w) { return columns(w) * (w.texels.w - w.texels.y); }
-
-// Of the next coarser level.
-Window under(Window w) {
-  return Window(ivec4((w.texels.xy - 1) >> 1, (w.texels.zw >> 1) + 1), w.first + count(w));
-}
-
-int indexIn(Window w, ivec2 texel) {
-  return w.first + (texel.y - w.texels.y) * columns(w) + texel.x - w.texels.x;
+Window windowOf(uint level, ivec2 k) {
+  if (level == 3u) return Window(8 * k - 1, 9, 0);
+  if (level == 4u) return Window(4 * k - 1, 6, 81);
+  if (level == 5u) return Window(2 * k - 1, 4, 117);
+  if (level == 6u) return Window(k - 1, 3, 133);
+  return Window((k - 2) >> 1, 3, 142);
 }
 
 void writeResolved(ivec2 texel, uvec4 color, uvec4 shares) {
@@ -93,6 +88,19 @@ struct Own {
   vec3 share; // of the coarser levels
 };
 
+// Without branches, so that what is looked up is waited for once.
+Own ownPart(uint level, ivec2 texel, uvec4 bits, out float lengthMm) {
+  Own own;
+  own.texel = unpackTexel(bits);
+  Foreshortening f = foreshortening(vec2(texel), level, own.texel.depth, own.texel.slope);
+  own.here = stretched(texel, level, own.texel, f);
+  // Material 0 looks at what it does not use.
+  uint m = max(own.texel.material, 1u) - 1u;
+  own.share = coarserShare(m, level, shareEntry(m, f.lengthMm));
+  lengthMm = f.lengthMm;
+  return own;
+}
+
 struct Level {
   vec3 color, density; // share of the kernel that the surface fills, of each channel
 };
@@ -110,7 +118,8 @@ Level withCoarser(Own own, uint level, ivec2 texel, Window window) {
   vec3 coarser = vec3(0.0), found = vec3(0.0);
   for (int i = 0; i < 4; ++i) {
     ivec2 at = nearest + toward * ivec2(i & 1, i >> 1);
-    uvec4 theirs = resolved[indexIn(window, at)];
+    ivec2 inWindow = at - window.corner;
+    uvec4 theirs = resolved[window.first + inWindow.y * window.side + inWindow.x];
     if (materialBits(theirs) != own.texel.material) continue;
     vec2 off = vec2(at) + 0.5 - 0.5 * (vec2(texel) + 0.5);
     float w = i == 0 ? 9.0 / 16.0 : i == 3 ? 1.0 / 16.0 : 3.0 / 16.0;
@@ -139,47 +148,23 @@ void main() {
   int invocation = int(gl_LocalInvocationIndex);
   uint coarsest = pass.value.x;
   // An invocation does one texel of level 2 and, before that, one of a coarser level.
-  ivec2 tile = levelRect(2u).xy + PELLUCID_RESOLVE_GROUP * ivec2(gl_WorkGroupID.xy);
-  // Level 2 itself is not kept.
-  Window third = under(Window(ivec4(tile, tile + PELLUCID_RESOLVE_GROUP), -PELLUCID_RESOLVE_GROUP * PELLUCID_RESOLVE_GROUP));
-  Window window = third, coarser = third;
-  uint level = 0u;
-  ivec2 texel = ivec2(0), fineTexel = tile + ivec2(gl_LocalInvocationID.xy);
-  for (uint l = 3u; l <= coarsest; ++l) {
-    Window next = under(window);
-    int index = invocation - window.first;
-    if (index >= 0 && index < count(window)) {
-      level = l;
-      texel = window.texels.xy + ivec2(index % columns(window), index / columns(window));
-      coarser = next;
-    }
-    window = next;
-  }
-  bool inside = level != 0u && insideLevel(levelRect(level), texel), fineInside = insideLevel(levelRect(2u), fineTexel);
-  // Both before the first is used, and all that needs no coarser level before the first barrier. Without branches, so
-  // that what is looked up is waited for once.
+  ivec2 k = ((levelRect(2u).xy + 1) >> 4) + ivec2(gl_WorkGroupID.xy), fineTexel = 16 * k - 1 + ivec2(gl_LocalInvocationID.xy);
+  uint level = 3u + uint(invocation >= 81) + uint(invocation >= 117) + uint(invocation >= 133) + uint(invocation >= 142);
+  Window window = windowOf(level, k);
+  int index = invocation - window.first, row = int((float(index) + 0.5) / float(window.side));
+  ivec2 texel = window.corner + ivec2(index - row * window.side, row);
+  bool fineInside = insideLevel(levelRect(2u), fineTexel);
+  bool inside = level <= coarsest && invocation < resolved.length() && insideLevel(levelRect(level), texel);
+  // Both before the first is used.
   uvec4 bits = inside ? texelFetch(pyramidImage, inAtlas(level, texel), 0) : uvec4(0u);
   uvec4 fineBits = fineInside ? texelFetch(pyramidImage, inAtlas(2u, fineTexel), 0) : uvec4(0u);
-  Own own, fine;
-  own.texel = unpackTexel(bits);
-  fine.texel = unpackTexel(fineBits);
-  Foreshortening f = foreshortening(vec2(texel), level, own.texel.depth, own.texel.slope),
-                 fineF = foreshortening(vec2(fineTexel), 2u, fine.texel.depth, fine.texel.slope);
-  // Material 0 looks at what it does not use.
-  uint m = max(own.texel.material, 1u) - 1u, fineM = max(fine.texel.material, 1u) - 1u;
-  own.share = coarserShare(m, max(level, 2u), shareEntry(m, f.lengthMm));
-  fine.share = coarserShare(fineM, 2u, shareEntry(fineM, fineF.lengthMm));
-  // A length of a pixel is a quarter of a texel's.
-  PixelShares share = pixelShares(fineM, shareEntry(fineM, 0.25 * fineF.lengthMm));
-  own.here = stretched(texel, level, own.texel, f);
-  fine.here = stretched(fineTexel, 2u, fine.texel, fineF);
-  bool some = fine.texel.coverage > 0.0;
-
+  float lengthMm;
+  Own own = ownPart(level, texel, bits, lengthMm);
   for (uint l = coarsest; l > 2u; --l) {
-    if (level == l) {
+    if (level == l && invocation < resolved.length()) {
       uvec4 packed = uvec4(0u);
       if (own.texel.coverage > 0.0) {
-        Level r = level == coarsest ? alone(own) : withCoarser(own, level, texel, coarser);
+        Level r = level == coarsest ? alone(own) : withCoarser(own, level, texel, windowOf(level + 1u, k));
         packed = uvec4(packColor(r.color, bits.y >> 16), bits.z, packUnorm4x8(vec4(r.density, 0.0)));
       }
       resolved[invocation] = packed;
@@ -187,8 +172,12 @@ void main() {
     barrier();
   }
   uvec4 color = uvec4(0u, fineBits.y & 0xFFFF0000u, 0u, 0u), shares = uvec4(0u);
-  if (some) {
-    Level r = withCoarser(fine, 2u, fineTexel, third);
+  if (coverageBits(fineBits) != 0u) {
+    Own fine = ownPart(2u, fineTexel, fineBits, lengthMm);
+    uint m = fine.texel.material - 1u;
+    // A length of a pixel is a quarter of a texel's.
+    PixelShares share = pixelShares(m, shareEntry(m, 0.25 * lengthMm));
+    Level r = withCoarser(fine, 2u, fineTexel, windowOf(3u, k));
     color = uvec4(packColor(r.color, fineBits.y >> 16), fineBits.zw);
     share.coarser = share.coarser * r.density / max(1.0 - share.coarser + share.coarser * r.density, vec3(1.0e-6));
     // The material where the texel is one plane of it.

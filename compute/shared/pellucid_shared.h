@@ -201,7 +201,7 @@ struct KernelConstants {
 // gather records: maps. gather points: pixels a side of a cell, lights with maps, 1 to add to what is there, samples.
 // gather share: pixels a side of a cell.
 // add: unused, unused, 1 if this is the last dispatch.
-// reduce: finer level. resolve: coarsest level.
+// reduce: finer level, 16. resolve: coarsest level.
 // diffuse: unused, 1 if the source may hold anything, unused, 1 if this is the last dispatch.
 struct PassConstants {
   uvec4 value;

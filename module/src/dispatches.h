@@ -324,6 +324,7 @@ struct Builder {
     if (!d) return false;
     levelGroups(d, finer + 2, PELLUCID_REDUCE_TILE);
     d->pushConstants[0] = finer;
+    d->pushConstants[1] = 16;  // texels under a texel
     constants(d, PELLUCID_BINDING_FRAME, layout.frame);
     writesPyramid(d);
     readsPyramid(d);
@@ -334,7 +335,14 @@ struct Builder {
   bool resolve(uint32_t coarsest) {
     PellucidDispatch* d = dispatch("resolve", PELLUCID_PIPELINE_RESOLVE_LEVELS);
     if (!d) return false;
-    levelGroups(d, 2, PELLUCID_RESOLVE_GROUP);
+    // Groups start at texels 16 k - 1.
+    const PyramidPlace place = placeOf(frame, 2);
+    const auto across = [](int32_t first, int32_t texels) {
+      constexpr int32_t kSide = PELLUCID_RESOLVE_GROUP;
+      return static_cast<uint32_t>((first + texels) / kSide - (first + 1) / kSide + 1);
+    };
+    d->groups[0] = across(place.rect.x, place.rect.width);
+    d->groups[1] = across(place.rect.y, place.rect.height);
     d->pushConstants[0] = coarsest;
     constants(d, PELLUCID_BINDING_FRAME, layout.frame);
     constants(d, PELLUCID_BINDING_KERNELS, layout.kernels);
