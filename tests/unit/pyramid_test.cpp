@@ -1,0 +1,69 @@
+// Where the diffusion pyramid's levels lie: apart, and inside the image that the plan asks for.
+#include "pyramid.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace pellucid {
+namespace {
+
+struct Box {
+  int32_t x, y, width, height;
+};
+
+bool apart(const Box& a, const Box& b) {
+  return a.x + a.width <= b.x || b.x + b.width <= a.x || a.y + a.height <= b.y || b.y + b.height <= a.y;
+}
+
+PellucidFrame frameOf(uint32_t width, uint32_t height, const Rect& rect) {
+  PellucidFrame f;
+  pellucidInitFrame(&f);
+  f.imageExtent[0] = width;
+  f.imageExtent[1] = height;
+  f.renderRect[0] = rect.x;
+  f.renderRect[1] = rect.y;
+  f.renderRect[2] = rect.width;
+  f.renderRect[3] = rect.height;
+  return f;
+}
+
+void expectApart(const PellucidFrame& f) {
+  SCOPED_TRACE(std::to_string(f.imageExtent[0]) + " x " + std::to_string(f.imageExtent[1]));
+  const auto box = [&](uint32_t level) {
+    const PyramidPlace p = placeOf(f, level);
+    return Box{p.x, p.y, p.rect.width, p.rect.height};
+  };
+  // Resolved texels of level 2 and, beside them, their shares are written while the levels from 2 on are
+  // read.
+  const Box second = box(2), resolved{0, 0, 2 * second.width, second.height};
+  std::vector<Box> boxes = {resolved};
+  for (uint32_t level = 2; level <= coarsestLevel(f); ++level) boxes.push_back(box(level));
+  const PyramidExtent extent = pyramidExtent(f);
+  for (size_t i = 0; i < boxes.size(); ++i) {
+    for (size_t j = 0; j < i; ++j) EXPECT_TRUE(apart(boxes[i], boxes[j])) << i << " and " << j;
+    EXPECT_LE(boxes[i].x + boxes[i].width, static_cast<int32_t>(extent.width)) << i;
+    EXPECT_LE(boxes[i].y + boxes[i].height, static_cast<int32_t>(extent.height)) << i;
+    // Level 1 is read while the next two are written.
+    if (i > 0) {
+      EXPECT_TRUE(apart(box(kFirstLevel), boxes[i])) << i;
+    }
+  }
+}
+
+TEST(Pyramid, LevelsLieApart) {
+  for (uint32_t width = 1; width <= 140; ++width)
+    for (const uint32_t height : {1u, 2u, 47u, 64u, 139u}) expectApart(frameOf(width, height, {}));
+  expectApart(frameOf(1920, 1080, {}));
+  expectApart(frameOf(1921, 1081, {}));
+  expectApart(frameOf(3840, 2160, {}));
+}
+
+TEST(Pyramid, LevelsOfPartsLieApart) {
+  for (uint32_t x = 0; x < 9; ++x)
+    for (uint32_t width = 1; width <= 61 - x; width += 3) expectApart(frameOf(61, 47, {x, x / 2, width, 41}));
+}
+
+}  // namespace
+}  // namespace pellucid
