@@ -1,9 +1,8 @@
-// What a shader may take for granted, so that the compiler drops the rest: half of the fused dispatch's instructions.
+// What a shader may take for granted, so that the compiler drops the rest.
 #ifndef PELLUCID_COMMON_CASE_GLSL
 #define PELLUCID_COMMON_CASE_GLSL
 
-// DIRECTIONAL: the one light (of the gather: every light) is directional with one shadow map, of device depth;
-// thickness is light-space, front depth is device depth, normals are given and stand for the angle, and all materials
+// DIRECTIONAL: every light of the gather is directional with one shadow map, of device depth; thickness is light-space, front depth is device depth, normals are given and stand for the angle, and all materials
 // are EXP2.
 #ifdef DIRECTIONAL
 const bool kDirectional = true;
