@@ -16,11 +16,6 @@ struct GatherEntry {
   vec4 a, b, c; // logarithm and its step, decay and its step
 };
 
-GatherEntry gatherEntry(vec3 logarithm, vec3 nextLogarithm, vec3 decay, vec3 nextDecay) {
-  vec3 step = nextLogarithm - logarithm, decayStep = nextDecay - decay;
-  return GatherEntry(vec4(logarithm, step.r), vec4(step.gb, decay.rg), vec4(decay.b, decayStep));
-}
-
 // Place of a thickness among the entries, which are at equal steps of h / (h + scale).
 float gatherPlace(vec4 lengths, float h) {
   return h / (h + lengths.w) * float(PELLUCID_GATHER_ENTRIES - 1); // scale > 0

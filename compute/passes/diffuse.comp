@@ -29,6 +29,11 @@ shared uvec4 shares[kWindow.x * kWindow.y];
 shared uint edges[kTexels.x * kTexels.y];
 shared uint edgeCount, anySurface;
 
+#ifdef GATHER
+const ivec2 kPointPixels = 4 * kTexels;
+#include "passes/gathered.glsl"
+#endif
+
 // The quadratic B-spline at -1, 0 and 1 for a point at most half a texel from 0.
 vec3 spline(float at) {
   return vec3(0.5 * (0.5 - at) * (0.5 - at), 0.75 - at * at, 0.5 * (0.5 + at) * (0.5 + at));
@@ -131,6 +136,9 @@ void diffuseEdge(ivec2 firstTexel, ivec2 local) {
     vec3 sum = own * color + fineShare * fine.rgb + share.coarser * coarser;
     vec3 divisor = own + fineShare * fine.a + share.coarser * found;
     color = mix(color, max(sum, vec3(0.0)) / max(divisor, vec3(1.0e-6)), greaterThan(divisor, vec3(1.0e-6)));
+#ifdef GATHER
+    if (someLight != 0u) color = withGathered(color, local, int(pass.value.x), depth, material);
+#endif
   }
   store(pixel, color, source.a);
 }
@@ -155,8 +163,16 @@ void main() {
   vec4 sources[kRows + 2 * kRing];
   [[unroll]] for (int i = 0; i < kRows + 2 * kRing; ++i)
     sources[i] = texelFetch(sourceImage, clamp(first + ivec2(0, i - kRing), ivec2(frame.rect.xy), last), 0);
+#ifdef GATHER
+  // By the last invocations, which load the least besides.
+  uint light = loadPoints(kInvocations - 1 - invocation, kInvocations, int(pass.value.x), 4 * firstTexel);
+  if (invocation == 0) someLight = 0u;
+#endif
   if (invocation == 0) edgeCount = anySurface = 0u;
   barrier();
+#ifdef GATHER
+  if (light != 0u) atomicOr(someLight, light);
+#endif
   if (invocation < kWindow.x * kWindow.y) {
     resolved[invocation] = texel;
     shares[invocation] = texelShares;
@@ -196,6 +212,9 @@ void main() {
                        splineX.z * unpackColor(resolved[row + 2].xy);
         }
         PixelShares share = unpackShares(shares[index + kWindow.x + 1].xyz);
+#ifdef GATHER
+        vec3 results[4];
+#endif
         [[unroll]] for (int i = 0; i < 4; ++i) {
           vec3 splineY = spline(0.25 * (float(i) - 1.5));
           vec3 smoothed = splineY.x * coarser[0] + splineY.y * coarser[1] + splineY.z * coarser[2];
@@ -205,10 +224,27 @@ void main() {
 #ifndef COARSE
           color = mix(color, fineOf((4 * texelRow + i) * kColumns + column), share.fine);
 #endif
-          store(4 * firstTexel + ivec2(x, 4 * texelRow + i), mix(color, smoothed, share.coarser), blue.y);
+          color = mix(color, smoothed, share.coarser);
+#ifdef GATHER
+          results[i] = color;
+#else
+          store(4 * firstTexel + ivec2(x, 4 * texelRow + i), color, blue.y);
+#endif
         }
+#ifdef GATHER
+        if (someLight != 0u) addToPlane(ivec2(x, 4 * texelRow), int(pass.value.x), results);
+        [[unroll]] for (int i = 0; i < 4; ++i)
+          store(4 * firstTexel + ivec2(x, 4 * texelRow + i), results[i], unpackHalf2x16(own[4 * block + i].y).y);
+#endif
       }
     }
+#ifdef GATHER
+    if (someLight != 0u && edgeCount != 0u) {
+      barrier();
+      unpackPoints(invocation, kInvocations, int(pass.value.x), 4 * firstTexel);
+      barrier();
+    }
+#endif
     for (int i = invocation; i < int(16u * edgeCount); i += kInvocations) {
       int edge = int(edges[i >> 4]), at = i & 15;
       diffuseEdge(firstTexel, 4 * ivec2(edge % kTexels.x, edge / kTexels.x) + ivec2(at & 3, at >> 2));

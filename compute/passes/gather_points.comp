@@ -1,10 +1,11 @@
 // Points of the gather: in each cell of 2x2 or 4x4 pixels one gathers what light has gone through a part, from
 // records. Neighbors take samples of their own, nine patterns in 3x3 cells; gather_share.comp shares what they find.
 #version 460
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
-#define GROUP_SIDE PELLUCID_RECORDS_GROUP
+#define GROUP_SIDE PELLUCID_POINTS_GROUP
 #include "passes/bindings.glsl"
 #include "passes/points.glsl"
 #include "passes/records.glsl"
@@ -96,33 +97,22 @@ bool gatherRings(LightConstants light, Surface x, vec3 toLight, float distanceTo
   return true;
 }
 
-// The material that the group's points have in turn.
-shared uint groupMaterial;
-shared vec4 entries[3 * PELLUCID_GATHER_ENTRIES];
-
-void loadEntries(uint m) {
-  for (uint i = gl_LocalInvocationIndex; i < uint(PELLUCID_GATHER_ENTRIES); i += uint(GROUP_SIDE * GROUP_SIDE)) {
-    uint next = min(i + 1u, uint(PELLUCID_GATHER_ENTRIES - 1));
-    GatherEntry e = gatherEntry(materials[m].gather.slab[i].rgb, materials[m].gather.slab[next].rgb,
-                                materials[m].gather.decay[i].rgb, materials[m].gather.decay[next].rgb);
-    entries[3u * i] = e.a;
-    entries[3u * i + 1u] = e.b;
-    entries[3u * i + 2u] = e.c;
-  }
-}
-
-GatherSlab slabOf(vec4 lengths, float h) {
+GatherSlab slabOf(uint m, vec4 lengths, float h) {
   float place = gatherPlace(lengths, h);
   int i = 3 * int(place);
-  return gatherSlab(GatherEntry(entries[i], entries[i + 1], entries[i + 2]), fract(place));
+  return gatherSlab(GatherEntry(materials[m].gather.entries[i], materials[m].gather.entries[i + 1],
+                                materials[m].gather.entries[i + 2]),
+                    fract(place));
 }
 
 struct Sample {
-  vec3 s;            // mm, from x; on its light ray beside the foot
-  float squaredRho;  // of the ring it is on
-  float depth;       // of s in its map
-  uvec4 bits;        // of its record
+  vec2 offset; // mm, of s from the foot, across and along its ring
+  float depth; // of s in its map
+  uvec4 bits;  // of its record
 };
+
+// From x, mm.
+vec3 onRing(vec3 center, vec3 across, vec3 along, vec2 offset) { return center + offset.x * across + offset.y * along; }
 
 // From `samples` points of the light's maps. `turn` and `within`, [0, 1): which of the patterns this point takes.
 Gathered gatherLight(uint m, LightConstants light, Surface x, uint samples, float turn, float within) {
@@ -142,18 +132,16 @@ Gathered gatherLight(uint m, LightConstants light, Surface x, uint samples, floa
   vec2 direction = vec2(cos(6.28318531 * turn), sin(6.28318531 * turn));
   float perSample = 1.0 / float(samples), inner = 0.0;
   Sample next;
-  for (uint i = 0u; i <= samples; ++i) {
+  [[dont_unroll]] for (uint i = 0u; i <= samples; ++i) {
     // One ahead, so that its latency is hidden.
     Sample now = next;
     if (i < samples) {
-      next.squaredRho = gatherSquaredRadius(rings.t, gatherSpread(lengths, (float(i) + within) * perSample));
-      vec2 offset = sqrt(next.squaredRho) * direction;
+      next.offset = sqrt(gatherSquaredRadius(rings.t, gatherSpread(lengths, (float(i) + within) * perSample))) * direction;
       direction = mat2(-0.73736888, 0.67549029, -0.67549029, -0.73736888) * direction; // the golden angle
-      vec3 at = point + offset.x * pointAcross + offset.y * pointAlong;
-      next.s = center + offset.x * across + offset.y * along;
+      vec3 at = point + next.offset.x * pointAcross + next.offset.y * pointAlong;
       // A cube's seams are no borders.
       if (!fetchRecord(rings.map, parallel, at, next.bits) && !kDirectional && light.meta.z > 1u)
-        fetchRecord(light, x.position + next.s / mm, at, next.bits);
+        fetchRecord(light, x.position + onRing(center, across, along, next.offset) / mm, at, next.bits);
       next.depth = at.z;
     }
     if (i == 0u) continue;
@@ -162,20 +150,21 @@ Gathered gatherLight(uint m, LightConstants light, Surface x, uint samples, floa
     if (!lightEnters(now.bits)) continue;
     Record record = unpackRecord(now.bits);
     float ahead = distanceAhead(parallel, record.depth, now.depth);
-    vec3 toLight = parallel ? incident.toLight * mm : (light.position.xyz - x.position) * mm - now.s;
-    vec3 to = -(now.s + ahead * toLight); // from the lit point to x
+    vec3 s = onRing(center, across, along, now.offset);
+    vec3 toLight = parallel ? incident.toLight * mm : (light.position.xyz - x.position) * mm - s;
+    vec3 to = -(s + ahead * toLight); // from the lit point to x
     float squared = dot(to, to);
     float opposite = x.hasNormal ? 0.5 - 0.5 * dot(x.normal, record.normal) : 1.0; // 1 - m
     float through = max(-dot(record.normal, to), 0.0);
     float squaredH = x.hasNormal ? through * max(dot(x.normal, to), 0.0) / max(opposite, 1.0e-4) : through * through;
     float h = sqrt(min(squaredH, squared));
     // The ring, seen as if all of it lay in the lit point's plane across the axis.
-    float plane = max(squared - now.squaredRho, 0.0);
+    float plane = max(squared - dot(now.offset, now.offset), 0.0);
     float near = sqrt(plane + from), far = sqrt(plane + inner);
     float share = record.enters * rings.axisCosine;
     // A point light's is its intensity: per square scene unit at s. At the light itself any finite value will do.
     if (!parallel) share *= mm * mm / max(dot(toLight, toLight), 1.0e-12 * mm * mm);
-    sum.transmitted += share * opposite * gatherTransmitted(slabOf(lengths, h), h, near, far);
+    sum.transmitted += share * opposite * gatherTransmitted(slabOf(m, lengths, h), h, near, far);
     if (opposite < 0.99) {
       vec3 reflected = (1.0 - opposite) * gatherReflected(profile, near, far);
       sum.entering += share * reflected;
@@ -202,23 +191,24 @@ bool pixelOf(ivec2 cell, int side, out int index, out uint material, out float f
   return false;
 }
 
-Point gatherPoint(ivec2 cell, ivec2 pixel, Point result, vec4 normalTexel) {
-  int side = int(pass.value.x);
-  uint m = result.material - 1u;
-  vec3 normal = vec3(0.0);
-  if (hasFlag(PELLUCID_FLAG_NORMAL)) normal = mat3(frame.viewFromNormal) * decodeNormal(normalTexel);
-  Surface x = makeSurface(viewRay(frame.camera, pixel), result.front, -1.0, normal);
-  result.normal = x.hasNormal ? x.normal : -x.view;
-  // Where points are too far apart to share, all take the middle pattern.
-  vec2 spacing = float(side) * pixelSize(frame.camera, result.front);
+// Which of the patterns a cell takes. Where points are too far apart to share, all take the middle one.
+struct Pattern {
+  float within, turn; // [0, 1): place in a ring, turn of the first sample
+};
+
+Pattern patternOf(ivec2 cell, uint m, float front) {
+  vec2 spacing = float(pass.value.x) * pixelSize(frame.camera, front);
   float vary = clamp(2.0 - dot(spacing, spacing) * materials[m].gather.profile.w, 0.0, 1.0);
   ivec2 at = cell % 3;
   int pattern = (at.x + 3 * at.y) * 4 % 9; // fills the strata, and the turn between a sample and its like
-  float within = 0.5 + vary * (float(pattern) - 4.0) / 9.0;
-  float turn = vary * float(at.x + 3 * at.y) / 9.0;
+  return Pattern(0.5 + vary * (float(pattern) - 4.0) / 9.0, vary * float(at.x + 3 * at.y) / 9.0);
+}
+
+void gatherLights(Surface x, Pattern pattern, inout Point result) {
+  uint m = result.material - 1u;
   vec3 transmitted = vec3(0.0), entering = vec3(0.0), displaced = vec3(0.0);
   for (uint i = 0u; i < pass.value.y; ++i) {
-    Gathered g = gatherLight(m, lights[i], x, pass.value.w, turn, within);
+    Gathered g = gatherLight(m, lights[i], x, pass.value.w, pattern.turn, pattern.within);
     transmitted += g.transmitted;
     entering += g.entering;
     displaced = max(displaced, g.displaced); // of the same surface, whatever the light
@@ -227,8 +217,49 @@ Point gatherPoint(ivec2 cell, ivec2 pixel, Point result, vec4 normalTexel) {
   result.added = transmitted * frame.filterAndLimit.rgb * materials[m].inverseReflectance.rgb;
   if (spreads) result.added += entering;
   result.displaced = spreads ? displaced : vec3(0.0);
-  return result;
 }
+
+#ifdef DIRECTIONAL
+// The summaries around one that a point of the group is in, a bit each.
+shared uint summaryPlace;
+shared uint summaries[GROUP_SIDE];
+
+// For all of the group at once: whether light enters anywhere that the samples of x may lie, of the only light's map.
+// true if they may lie too far away to say. `some`: there is an x.
+bool lightEntersNear(bool some, Surface x, uint m, Pattern pattern) {
+  const uint kNowhere = ~0u;
+  ivec2 local = ivec2(gl_LocalInvocationID.xy);
+  vec3 point = mapPoint(0u, vec4(x.position, 1.0));
+  uvec4 bits;
+  bool contained = fetchRecord(0u, true, point, bits) && some;
+  ivec2 square = ivec2(point.xy) / kSummarySide;
+  if (local.y == 0) summaries[local.x] = 0u;
+  if (gl_LocalInvocationIndex == 0u) summaryPlace = kNowhere;
+  barrier();
+  if (contained) summaryPlace = uint(square.x) | uint(square.y) << 16; // any of them
+  barrier();
+  bool anywhere = summaryPlace != kNowhere;
+  ivec2 corner = ivec2(summaryPlace & 0xFFFFu, summaryPlace >> 16) - (GROUP_SIDE / 2 - 1), at = corner + local;
+  bool exists = anywhere && all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at * kSummarySide, maps[0].place.zw));
+  if (exists && texelFetch(recordsImage, ivec2(pass.value.z >> 1, 0) + at, 0).x != 0u)
+    atomicOr(summaries[local.y], 1u << local.x);
+  barrier();
+  if (!contained) return false;
+  // The furthest sample, mm: around x itself where that is lit, else around whatever axis.
+  vec4 lengths = materials[m].gather.lengths;
+  float samples = float(pass.value.w), spread = gatherSpread(lengths, (samples - 1.0 + pattern.within) / samples);
+  bool lit = !holdsSurface(bits) || distanceAhead(true, unpackRecord(bits).depth, point.z) <= 0.0;
+  float t = lit ? 0.0 : lengths.z, reach = t + sqrt(gatherSquaredRadius(t, spread));
+  vec3 column = maps[0].column.xyz, row = maps[0].row.xyz;
+  reach *= sqrt(max(dot(column, column), dot(row, row))) / frame.camera.range.w;
+  ivec2 low = ivec2(floor((point.xy - reach) / float(kSummarySide))) - corner;
+  ivec2 high = ivec2(floor((point.xy + reach) / float(kSummarySide))) - corner;
+  if (any(lessThan(low, ivec2(0))) || any(greaterThanEqual(high, ivec2(GROUP_SIDE)))) return true;
+  uint found = 0u;
+  for (int y = low.y; y <= high.y; ++y) found |= summaries[y];
+  return (found & ((2u << high.x) - (1u << low.x))) != 0u;
+}
+#endif
 
 void main() {
   int side = int(pass.value.x);
@@ -236,27 +267,26 @@ void main() {
   ivec2 cell = cells.xy + ivec2(gl_GlobalInvocationID.xy);
   bool inside = all(lessThan(cell, cells.zw));
   Point result = unpackPoint(kNoPoint);
-  vec4 normal;
-  bool waits = inside && pixelOf(cell, side, result.index, result.material, result.front, normal);
-  if (inside && !waits) imageStore(pointsImage, cell, kNoPoint);
-  for (;;) {
-    if (gl_LocalInvocationIndex == 0u) groupMaterial = 0u;
-    barrier();
-    if (waits) groupMaterial = result.material; // any of those that wait
-    barrier();
-    uint material = groupMaterial;
-    if (material == 0u) break; // for all at once
-    loadEntries(material - 1u);
-    barrier();
-    if (waits && result.material == material) {
-      waits = false;
-      Point found = gatherPoint(cell, pixelInCell(cell, side, result.index), result, normal);
-      if (pass.value.z != 0u) {
-        Point before = unpackPoint(imageLoad(pointsImage, cell));
-        found.added += before.added;
-        found.displaced = max(found.displaced, before.displaced);
-      }
-      imageStore(pointsImage, cell, packPoint(found));
-    }
+  vec4 normalTexel;
+  bool some = inside && pixelOf(cell, side, result.index, result.material, result.front, normalTexel);
+  Surface x;
+  Pattern pattern;
+  if (some) {
+    vec3 normal = vec3(0.0);
+    if (hasFlag(PELLUCID_FLAG_NORMAL)) normal = mat3(frame.viewFromNormal) * decodeNormal(normalTexel);
+    x = makeSurface(viewRay(frame.camera, pixelInCell(cell, side, result.index)), result.front, -1.0, normal);
+    result.normal = x.hasNormal ? x.normal : -x.view;
+    pattern = patternOf(cell, result.material - 1u, result.front);
   }
+  bool gathers = some;
+#ifdef DIRECTIONAL
+  if (pass.value.y == 1u) gathers = lightEntersNear(some, x, max(result.material, 1u) - 1u, pattern);
+#endif
+  if (gathers) gatherLights(x, pattern, result);
+  if (some && (pass.value.z & 1u) != 0u) {
+    Point before = unpackPoint(imageLoad(pointsImage, cell));
+    result.added += before.added;
+    result.displaced = max(result.displaced, before.displaced);
+  }
+  if (inside) imageStore(pointsImage, cell, some ? packPoint(result) : kNoPoint);
 }

@@ -74,34 +74,72 @@ vec3 entrySlope(RecordMapConstants map, ivec2 texel, vec3 y, ivec2 axis, vec2 st
   return best;
 }
 
+// Where rays are parallel, steps along an axis of the map are `along` and a multiple of the ray: which, of whichever
+// neighbor is nearer, kNoDepth if there is none. `at`, `texels`: of the axis. along.w: of depth, see RecordMapConstants.
+float parallelSlope(RecordMapConstants map, int at, int texels, vec4 along, float own, vec2 stored) {
+  vec2 change = vec2(1.0, -1.0) * (stored - own) * map.ray.w + along.w;
+  float least = dot(along.xyz, along.xyz), across = 2.0 * dot(along.xyz, map.ray.xyz);
+  vec2 squared = least + change * (across + change * dot(map.ray.xyz, map.ray.xyz));
+  bool forward = at + 1 < texels && shadowHolds(map.meta, stored.x);
+  bool backward = at > 0 && shadowHolds(map.meta, stored.y);
+  // Less steep than 60 degrees: no edge.
+  if (forward && (!backward || squared.x < 4.0 * least || squared.x <= squared.y)) return change.x;
+  return backward ? change.y : kNoDepth;
+}
+
+// Not normalized; 0: no neighbor says. `stored`: as of shadowTexels.
+vec3 entryNormal(RecordMapConstants map, ivec2 texel, vec3 y, float stored[5], float squareX, float squareY) {
+  vec2 besideX = vec2(stored[1], stored[2]), besideY = vec2(stored[3], stored[4]);
+  if (perspective(map))
+    return cross(entrySlope(map, texel, y, ivec2(1, 0), besideX, squareX),
+                 entrySlope(map, texel, y, ivec2(0, 1), besideY, squareY));
+  vec3 stepX = map.stepX.xyz, stepY = map.stepY.xyz, ray = map.ray.xyz;
+  float x = parallelSlope(map, texel.x, int(map.map.x), map.stepX, stored[0], besideX);
+  float yy = parallelSlope(map, texel.y, int(map.map.y), map.stepY, stored[0], besideY);
+  if (x >= kNoDepth || yy >= kNoDepth) return vec3(0.0);
+  // (stepX + x ray) x (stepY + y ray)
+  return cross(stepX, stepY) + yy * cross(stepX, ray) + x * cross(ray, stepY);
+}
+
 uvec4 recordOf(RecordMapConstants map, ivec2 texel) {
   float stored[5] = shadowTexels(map.meta.x, texel, ivec2(map.map.xy) - 1);
   if (!shadowHolds(map.meta, stored[0])) return kNoRecord;
   Record r;
   vec3 y = entryPoint(map, texel, stored[0], r.depth);
   if (!(abs(r.depth) < kNoDepth)) return kNoRecord;
-  vec3 toLight = map.ray.xyz - y;
-  float distanceTo = length(toLight), scale = 1.0;
+  LightConstants light = lights[map.map.w];
+  vec3 toLight = -light.direction.xyz;
+  float distanceTo = 0.0, scale = 1.0;
   if (perspective(map)) {
+    toLight = map.ray.xyz - y;
+    distanceTo = length(toLight);
     toLight /= max(distanceTo, 1.0e-12);
     scale = r.depth * r.depth;
-  } else {
-    toLight = -lights[map.map.w].direction.xyz;
   }
   float squareX = scale * dot(map.stepX.xyz, map.stepX.xyz), squareY = scale * dot(map.stepY.xyz, map.stepY.xyz);
-  vec3 normal = cross(entrySlope(map, texel, y, ivec2(1, 0), vec2(stored[1], stored[2]), squareX),
-                      entrySlope(map, texel, y, ivec2(0, 1), vec2(stored[3], stored[4]), squareY));
-  float size = length(normal), cosine = dot(normal, toLight);
-  r.normal = size > 0.0 ? normal * ((cosine < 0.0 ? -1.0 : 1.0) / size) : toLight;
-  r.inverseCosine = size > 0.0 ? 1.0 / max(abs(cosine) / size, kLeastCosine) : 1.0;
-  r.enters = lightShare(lights[map.map.w], toLight, distanceTo);
+  vec3 normal = entryNormal(map, texel, y, stored, squareX, squareY);
+  float squared = dot(normal, normal);
+  if (squared > 0.0) {
+    normal *= inversesqrt(squared);
+    float cosine = dot(normal, toLight);
+    r.normal = cosine < 0.0 ? -normal : normal;
+    r.inverseCosine = 1.0 / max(abs(cosine), kLeastCosine);
+  } else {
+    r.normal = toLight;
+    r.inverseCosine = 1.0;
+  }
+  r.enters = lightShare(light, toLight, distanceTo);
   float tolerance = kSeenTolerance * sqrt(sqrt(squareX * squareY)) + map.bias.x;
   if (cameraSees(y, r.normal, tolerance)) r.enters = 0.0;
   return packRecord(r);
 }
 
+shared uint someEnters;
+
 void main() {
   ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+  if (gl_LocalInvocationIndex == 0u) someEnters = 0u;
+  barrier();
   for (uint i = 0u; i < pass.value.x; ++i) {
     ivec4 place = maps[i].place;
     ivec2 own = at - place.xy;
@@ -110,7 +148,12 @@ void main() {
     // The texel in the middle of those that the record stands for.
     int side = int(map.map.z);
     ivec2 texel = min(own * side + side / 2, ivec2(map.map.xy) - 1);
-    imageStore(recordsDestination, at, recordOf(map, texel));
-    return;
+    uvec4 record = recordOf(map, texel);
+    imageStore(recordsDestination, at, record);
+    if (lightEnters(record)) someEnters = 1u;
+    break;
   }
+  barrier();
+  if (gl_LocalInvocationIndex == 0u)
+    imageStore(recordsDestination, ivec2(pass.value.y, 0) + ivec2(gl_WorkGroupID.xy), uvec4(someEnters));
 }

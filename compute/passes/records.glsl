@@ -14,6 +14,9 @@ struct Record {
 
 const uvec4 kNoRecord = uvec4(0u);
 
+// Beside the records lie their summaries, one for each square of this side: whether light enters anywhere in it.
+const int kSummarySide = PELLUCID_RECORDS_GROUP;
+
 uvec4 packRecord(Record r) {
   return uvec4(floatBitsToUint(r.depth), packHalf2x16(r.normal.xy), packHalf2x16(vec2(r.normal.z, r.enters)),
                packHalf2x16(vec2(r.inverseCosine, 1.0)));

@@ -24,7 +24,8 @@ using glm::vec4;
 #define PELLUCID_REDUCE_GROUP 16 // a side, of the pyramid's reductions
 #define PELLUCID_REDUCE_TILE 7   // a side, texels of the second of the two levels that a group makes
 #define PELLUCID_GATHER_GROUP 16 // a side, of the pass that adds gathered light; an invocation does 2 x 2 pixels
-#define PELLUCID_RECORDS_GROUP 8 // a side, of the gather's records and points
+#define PELLUCID_RECORDS_GROUP 16 // a side, of the gather's records; of what one of them summarizes
+#define PELLUCID_POINTS_GROUP 8   // a side, of the gather's points
 #define PELLUCID_SHARE_GROUP 16  // a side, where points share
 
 #define PELLUCID_BINDING_FRAME 0
@@ -155,8 +156,7 @@ struct DirectionalConstants {
 struct GatherConstants {
   vec4 lengths; // mm; x: shortest; y: log2(longest / shortest); z: largest distance looked for; w: depth scale
   vec4 profile; // rgb: 1/(3 d) of Burley's profile, 0: none, 1/mm; w: sharing between points, 1/mm^2
-  vec4 slab[PELLUCID_GATHER_ENTRIES]; // see GatherSlab
-  vec4 decay[PELLUCID_GATHER_ENTRIES];
+  vec4 entries[3 * PELLUCID_GATHER_ENTRIES]; // see GatherEntry
 };
 
 // A shadow map where its records lie; compute/passes/records.glsl. Of a view-space point (x, 1):
@@ -198,7 +198,8 @@ struct KernelConstants {
 };
 
 // Push constants. translucency: pixels a side of a cell of the gather, lights, PELLUCID_WRITE_*, lights of the gather.
-// gather records: maps. gather points: pixels a side of a cell, lights with maps, 1 to add to what is there, samples.
+// gather records: maps, column of the summaries. gather points: pixels a side of a cell, lights with maps, twice the
+// column of the summaries and 1 to add to what is there, samples.
 // gather share: pixels a side of a cell.
 // add: unused, unused, 1 if this is the last dispatch.
 // reduce: finer level, 16. resolve: coarsest level.

@@ -141,6 +141,7 @@ struct Builder {
     if (!d) return false;
     groups(d, group.recordColumns, group.recordRows, PELLUCID_RECORDS_GROUP);
     d->pushConstants[0] = group.shadowCount;
+    d->pushConstants[1] = group.recordColumns;
     constants(d, PELLUCID_BINDING_FRAME, layout.frame);
     constants(d, PELLUCID_BINDING_LIGHTS, {layout.lights.offset + group.lightBytes, kLightWindow});
     constants(d, PELLUCID_BINDING_GATHER_MAPS,
@@ -162,10 +163,10 @@ struct Builder {
                                                                 : PELLUCID_PIPELINE_GATHER_POINTS);
     if (!d) return false;
     const Cells size = cells();
-    groups(d, size.width, size.height, PELLUCID_RECORDS_GROUP);
+    groups(d, size.width, size.height, PELLUCID_POINTS_GROUP);
     d->pushConstants[0] = gatherSpacing(frame);
     d->pushConstants[1] = group.gathered;
-    d->pushConstants[2] = adds;
+    d->pushConstants[2] = 2 * group.recordColumns + (adds ? 1 : 0);
     d->pushConstants[3] = frame.gatherSamples;
     constants(d, PELLUCID_BINDING_FRAME, layout.frame);
     constants(d, PELLUCID_BINDING_LIGHTS, {layout.lights.offset + group.lightBytes, kLightWindow});
@@ -195,6 +196,13 @@ struct Builder {
     bind(d, PELLUCID_BINDING_POINTS, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, sharedImage());
     d->modeledBytes = 2 * kTexelBytes * size.width * size.height;
     return true;
+  }
+
+  // What points share.
+  void readsPoints(PellucidDispatch* d) const {
+    d->pushConstants[0] = gatherSpacing(frame);
+    bind(d, PELLUCID_BINDING_POINTS, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, sharedImage());
+    d->modeledBytes += kTexelBytes * cells().width * cells().height;
   }
 
   void shadowImages(PellucidDispatch* d, const LightGroup& group) const {
@@ -251,10 +259,8 @@ struct Builder {
       // Tiles are the image's.
       constexpr uint32_t kTile = 2 * PELLUCID_GATHER_GROUP;
       groups(d, rect.x % kTile + rect.width, rect.y % kTile + rect.height, kTile);
-      d->pushConstants[0] = gatherSpacing(frame);
+      readsPoints(d);
       d->pushConstants[3] = group.gathered;
-      bind(d, PELLUCID_BINDING_POINTS, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, sharedImage());
-      d->modeledBytes += kTexelBytes * cells().width * cells().height;
     } else {
       tiles(d);
     }
@@ -353,9 +359,13 @@ struct Builder {
     return true;
   }
 
-  bool diffuse(uint32_t source, uint32_t destination) {
+  // `addsPoints`: what points of the gather share is added.
+  bool diffuse(uint32_t source, uint32_t destination, bool addsPoints) {
     const bool coarse = plan.quality == 0;
-    const uint32_t half = coarse ? PELLUCID_PIPELINE_DIFFUSE_COARSE_16F : PELLUCID_PIPELINE_DIFFUSE_16F;
+    const uint32_t half = coarse && addsPoints ? PELLUCID_PIPELINE_DIFFUSE_COARSE_GATHER_16F
+                          : coarse             ? PELLUCID_PIPELINE_DIFFUSE_COARSE_16F
+                          : addsPoints         ? PELLUCID_PIPELINE_DIFFUSE_GATHER_16F
+                                               : PELLUCID_PIPELINE_DIFFUSE_16F;
     PellucidDispatch* d = dispatch("diffuse", half + (wide() ? 1 : 0));
     if (!d) return false;
     // Groups start at texels of level 2, whose rect has a border of one.
@@ -371,6 +381,7 @@ struct Builder {
     common(d, source, destination);
     readsPyramid(d);
     d->modeledBytes += 2 * kTexelBytes * texels(2);
+    if (addsPoints) readsPoints(d);
     return true;
   }
 };

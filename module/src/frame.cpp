@@ -70,6 +70,15 @@ LightGroups lightGroups(const PellucidFrame& frame) {
   return groups;
 }
 
+bool addsPoints(const PellucidFrame& frame) {
+  uint32_t groups = 0, others = 0;
+  forEachLightGroup(frame, [&](const LightGroup& group) {
+    ++groups;
+    others += group.lightCount - group.gathered;
+  });
+  return groups == 1 && others == 0 && frame.materialMarkBit == 0;
+}
+
 ConstantsLayout constantsLayout(const PellucidFrame& frame) {
   ConstantsLayout layout{};
   LightGroup last;

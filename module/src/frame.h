@@ -117,6 +117,10 @@ struct LightGroups {
 
 LightGroups lightGroups(const PellucidFrame& frame);
 
+// Whether all light that comes through is gathered, in one group and for every pixel with a material: then
+// what adds it needs nothing else of the pixels.
+bool addsPoints(const PellucidFrame& frame);
+
 // Byte ranges of the constants slice.
 struct ConstantsLayout {
   struct Range {

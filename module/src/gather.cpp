@@ -77,6 +77,7 @@ shared::GatherConstants gatherConstants(const PellucidMaterial& m) {
   const double depthScale = 0.5 / slowest;
   g.lengths = {static_cast<float>(shortest), static_cast<float>(std::log2(longest / shortest)),
                static_cast<float>(2 / slowest), static_cast<float>(depthScale)};
+  std::array<glm::vec4, kEntries> slab{}, decay{};
   for (int c = 0; c < 3; ++c) {
     const double d = profileLength(m, c);
     g.profile[c] = static_cast<float>(d > 0 ? 1 / (3 * d) : 0);
@@ -85,10 +86,17 @@ shared::GatherConstants gatherConstants(const PellucidMaterial& m) {
       const double v = static_cast<double>(i) / (kEntries - 1), farthest = 500 / channels[c].slowest;
       const double h = v < 1 ? std::min(depthScale * v / (1 - v), farthest) : farthest;
       const double q = channels[c].decay(h);
-      g.slab[i][c] = static_cast<float>((std::log(std::max(channels[c].transmittance(h), 1e-300)) + q * h) /
+      slab[i][c] = static_cast<float>((std::log(std::max(channels[c].transmittance(h), 1e-300)) + q * h) /
                                         std::numbers::ln2);
-      g.decay[i][c] = static_cast<float>(q / std::numbers::ln2);
+      decay[i][c] = static_cast<float>(q / std::numbers::ln2);
     }
+  }
+  for (int i = 0; i < kEntries; ++i) {
+    const int next = std::min(i + 1, kEntries - 1);
+    const glm::vec4 step = slab[next] - slab[i], decayStep = decay[next] - decay[i];
+    g.entries[3 * i] = glm::vec4(glm::vec3(slab[i]), step.r);
+    g.entries[3 * i + 1] = {step.g, step.b, decay[i].r, decay[i].g};
+    g.entries[3 * i + 2] = {decay[i].b, decayStep.r, decayStep.g, decayStep.b};
   }
   // Points share what they gather as far as the light that comes through thin parts spreads sideways.
   const double reach = longest / 2;

@@ -23,6 +23,7 @@ struct Stages {
   bool fusesQuads;     // the last fused dispatch makes the pyramid's level 1 of what it writes
   LightGroups groups;  // of lights
   bool overlaps;  // the gather runs beside the diffusion, which it does not wait for, with images of its own
+  bool addsPoints;  // the diffusion's last dispatch adds what was gathered: no other light comes through
 
   // Dispatches that write a color transient or the output.
   uint32_t writers() const { return (history ? 1 : fused) + (diffusion ? 1 : 0) + (copies ? 1 : 0); }
@@ -36,9 +37,10 @@ Stages stagesOf(const PellucidFrame& frame) {
   const bool debug = frame.debugView != PELLUCID_DEBUG_NONE;
   Stages s{};
   if (frame.features & PELLUCID_FEATURE_TRANSLUCENCY || debug) s.groups = lightGroups(frame);
-  s.fused = s.groups.fused();
-  s.lights = s.fused > 0;
   s.diffusion = frame.features & PELLUCID_FEATURE_DIFFUSION && !debug && anyMaterialDiffuses(frame);
+  s.addsPoints = s.diffusion && addsPoints(frame);
+  s.fused = s.addsPoints ? 0 : s.groups.fused();
+  s.lights = s.fused > 0;
   s.copies = s.diffusion && !s.lights;
   // Without diffusion the fused pass still has to bring irradiance (times albedo) to the output.
   if (s.writers() == 0) s.fused = 1;
@@ -161,7 +163,7 @@ bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan
     fits = fits && b.resolve(coarsest);
     alongside();
     const uint32_t to = destination();
-    fits = fits && b.diffuse(source, to);
+    fits = fits && b.diffuse(source, to, stages.addsPoints);
     source = to;
   };
   // Gathered light has already spread on its way through; diffusing it again would spread it twice.
@@ -222,7 +224,7 @@ extern "C" PellucidResult pellucidGetImageNeeds(const PellucidFrame* frame, uint
       const auto fit = [&](uint32_t* most, uint32_t pixels, uint32_t ofMaps) {
         *most = std::max({*most, (pixels - 1) / side + 1, records ? ofMaps : 0});
       };
-      fit(&size.width, frame->imageExtent[0], stages.groups.recordColumns);
+      fit(&size.width, frame->imageExtent[0], withSummaries(stages.groups.recordColumns));
       fit(&size.height, frame->imageExtent[1], stages.groups.recordRows);
     }
     PellucidImageNeed& need = needs[i];

@@ -10,6 +10,11 @@ namespace pellucid {
 // limit.
 constexpr uint32_t kRecordColumns = 2048, kRecordRows = 4096;
 
+// Columns with the summaries beside them, of compute/passes/records.glsl.
+constexpr uint32_t withSummaries(uint32_t columns) {
+  return columns + (columns + PELLUCID_RECORDS_GROUP - 1) / PELLUCID_RECORDS_GROUP;
+}
+
 struct RecordExtent {
   uint32_t width, height;
   uint32_t side;  // texels of the map that a record stands for, a side

@@ -10,6 +10,10 @@
 #include "kDiffuse32f.h"
 #include "kDiffuseCoarse16f.h"
 #include "kDiffuseCoarse32f.h"
+#include "kDiffuseCoarseGather16f.h"
+#include "kDiffuseCoarseGather32f.h"
+#include "kDiffuseGather16f.h"
+#include "kDiffuseGather32f.h"
 #include "kDirectional16f.h"
 #include "kDirectional32f.h"
 #include "kDirectionalQuads16f.h"
@@ -69,7 +73,11 @@ const std::array kShaders = {shader(kTranslucency16f),
                              shader(kGatherPoints),
                              shader(kGatherShare),
                              shader(kGatherRecordsDirectional),
-                             shader(kGatherPointsDirectional)};
+                             shader(kGatherPointsDirectional),
+                             shader(kDiffuseGather16f),
+                             shader(kDiffuseGather32f),
+                             shader(kDiffuseCoarseGather16f),
+                             shader(kDiffuseCoarseGather32f)};
 static_assert(kShaders.size() == PELLUCID_PIPELINE_COUNT);
 
 }  // namespace

@@ -81,7 +81,11 @@ extern "C" const char* pellucidPipelineName(uint32_t pipeline) {
                                        "gather_points",
                                        "gather_share",
                                        "gather_records_directional",
-                                       "gather_points_directional"};
+                                       "gather_points_directional",
+                                       "diffuse_gather_rgba16f",
+                                       "diffuse_gather_rgba32f",
+                                       "diffuse_coarse_gather_rgba16f",
+                                       "diffuse_coarse_gather_rgba32f"};
   static_assert(names.size() == PELLUCID_PIPELINE_COUNT);
   return pipeline < names.size() ? names[pipeline] : "unknown pipeline";
 }

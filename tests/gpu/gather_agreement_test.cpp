@@ -113,6 +113,36 @@ TEST_F(GatherAgreement, SixteenSamplesAreNearAllTexels) {
   }
 }
 
+// The diffusion's last dispatch adds light as the dispatch of its own does, which marked pixels ask for.
+// Where a texel and all around it lie on one plane, it is linear between points without a look at depths.
+TEST_F(GatherAgreement, TheDiffusionAddsTheSame) {
+  for (const char* scene : {"ear", "wedge"}) {
+    SceneParameters p;
+    p.name = scene;
+    p.width = 190;
+    p.height = 130;
+    p.shadowSize = 256;
+    p.lightType = PELLUCID_LIGHT_POINT;
+    const Capture c = makeScene(p);
+    const std::vector<PellucidMaterial> materials(c.materials.size(), skin());
+    for (const uint32_t spacing : {2u, 4u})
+      for (const uint32_t quality : {0u, 2u})
+        for (const bool part : {false, true}) {
+          ReplaySettings s;
+          s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+          s.quality = quality;
+          s.translucency.gatherSamples = 8;
+          s.translucency.gatherSpacing = spacing;
+          s.aliasOutput = part;
+          if (part) s.renderRect = {11, 7, 150, 101};
+          const Image together = rgb(replayer().run(c, materials, s).output);
+          s.translucency.materialMarkBit = 128;
+          const double off = error(c, together, rgb(replayer().run(c, materials, s).output));
+          EXPECT_LT(off, 1e-4) << scene << ", spacing " << spacing << ", quality " << quality << ", " << part;
+        }
+  }
+}
+
 // Texels of 1/4 to 4 mean free paths: what a map of 8 texels a path would give is the truth here.
 TEST_F(GatherAgreement, ErrorGrowsWithTheMapsTexels) {
   const double meanFreePath = 1 / (0.88 + 0.17);  // mm, of skin1 in green

@@ -115,9 +115,8 @@ TEST_F(Gather, StaysFinite) {
     EXPECT_TRUE(std::isfinite(out.data[p]) && out.data[p] >= 0) << p;
 }
 
-// Diffusion comes first: gathered light has already spread.
-// What points find does not wait for the diffusion, which does not wait for them: only the last dispatch
-// needs both.
+// What points find does not wait for the diffusion, which does not wait for them: only the last dispatch, the
+// diffusion's own, needs both.
 TEST_F(Gather, PlanGathersBesideTheDiffusion) {
   const Capture c = backlitSlab(1, PELLUCID_DEPTH_VIEW_Z);
   const PellucidPlan plan = replayer().run(c, {testMaterial()}, settings(8)).plan;
@@ -126,9 +125,23 @@ TEST_F(Gather, PlanGathersBesideTheDiffusion) {
     if (i > 0 && !plan.dispatches[i].barrierBefore) beside.push_back(plan.dispatches[i].name);
   EXPECT_EQ(beside, (std::vector<std::string>{"gather records", "gather points", "gather share"}));
   const PellucidDispatch& last = plan.dispatches[plan.dispatchCount - 1];
-  EXPECT_STREQ(plan.dispatches[plan.dispatchCount - 2].name, "diffuse");
-  EXPECT_STREQ(last.name, "translucency");
-  EXPECT_EQ(last.pipeline, static_cast<uint32_t>(PELLUCID_PIPELINE_GATHER_32F));
+  EXPECT_STREQ(last.name, "diffuse");
+  EXPECT_EQ(last.pipeline, static_cast<uint32_t>(PELLUCID_PIPELINE_DIFFUSE_GATHER_32F));
+}
+
+// Gathered light has already spread: lights without a map and marked pixels need a dispatch after the
+// diffusion.
+TEST_F(Gather, OtherLightsAreAddedAfterTheDiffusion) {
+  Capture c = backlitSlab(1, PELLUCID_DEPTH_VIEW_Z);
+  const auto last = [&](const ReplaySettings& s) {
+    const PellucidPlan plan = replayer().run(c, {testMaterial()}, s).plan;
+    return plan.dispatches[plan.dispatchCount - 1].pipeline;
+  };
+  ReplaySettings marked = settings(8);
+  marked.translucency.materialMarkBit = 128;
+  EXPECT_EQ(last(marked), static_cast<uint32_t>(PELLUCID_PIPELINE_GATHER_32F));
+  c.lights.push_back(backLight());
+  EXPECT_EQ(last(settings(8)), static_cast<uint32_t>(PELLUCID_PIPELINE_GATHER_32F));
 }
 
 TEST_F(Gather, RefusesWhatItCannotSample) {

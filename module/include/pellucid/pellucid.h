@@ -316,7 +316,11 @@ typedef enum PellucidPipeline {
   PELLUCID_PIPELINE_GATHER_RECORDS_DIRECTIONAL = 26, /* where all lights that are gathered from are, in frames as
                                                         for DIRECTIONAL */
   PELLUCID_PIPELINE_GATHER_POINTS_DIRECTIONAL = 27,
-  PELLUCID_PIPELINE_COUNT = 28
+  PELLUCID_PIPELINE_DIFFUSE_GATHER_16F = 28, /* with what the gather's points share */
+  PELLUCID_PIPELINE_DIFFUSE_GATHER_32F = 29,
+  PELLUCID_PIPELINE_DIFFUSE_COARSE_GATHER_16F = 30,
+  PELLUCID_PIPELINE_DIFFUSE_COARSE_GATHER_32F = 31,
+  PELLUCID_PIPELINE_COUNT = 32
 } PellucidPipeline;
 
 enum {
