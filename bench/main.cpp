@@ -164,8 +164,9 @@ void gathered(const Bench& bench) {
   added("8 samples, a point in 2 x 2 pixels", bench.fullSlab(), 8, 2);
   added("8 samples, nothing transmitted", litFromTheFront(bench.fullSlab()), 8, 0);
   bench.report.section("gather, 8 samples");
-  const auto whole = frame(bench.fullSlab(), 8, 0);
-  dispatches(bench, *whole);
+  dispatches(bench, *frame(bench.fullSlab(), 8, 0));
+  bench.report.section("gather, 8 samples, nothing transmitted");
+  dispatches(bench, *frame(litFromTheFront(bench.fullSlab()), 8, 0));
 }
 
 // Errors against the module, on the ear.

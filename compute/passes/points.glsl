@@ -37,12 +37,6 @@ uvec4 packPoint(Point p) {
                displaced.r | displaced.g << 9 | displaced.b << 18 | uint(p.index) << 27);
 }
 
-Point unpackPoint(uvec4 bits) {
-  return Point(addedOf(bits), displacedOf(bits),
-               fromOctahedral(unpackSnorm4x8(bits.y >> 16).xy), uintBitsToFloat(bits.z & 0xFFFFFF00u),
-               bits.z & 0xFFu, int(bits.w >> 27));
-}
-
 vec3 addedOf(uvec4 bits) { return vec3(unpackHalf2x16(bits.x), unpackHalf2x16(bits.y).x); }
 
 vec3 displacedOf(uvec4 bits) { return vec3((bits.www >> uvec3(0u, 9u, 18u)) & 511u) / 511.0; }
@@ -51,6 +45,12 @@ bool displaces(uvec4 bits) { return (bits.w & 0x7FFFFFFu) != 0u; }
 
 // Whether anything is added or displaced.
 bool hasLight(uvec4 bits) { return (bits.x | bits.y & 0xFFFFu) != 0u || displaces(bits); }
+
+Point unpackPoint(uvec4 bits) {
+  return Point(addedOf(bits), displacedOf(bits),
+               fromOctahedral(unpackSnorm4x8(bits.y >> 16).xy), uintBitsToFloat(bits.z & 0xFFFFFF00u),
+               bits.z & 0xFFu, int(bits.w >> 27));
+}
 
 // Added and displaced light alone, in halves.
 uvec3 packLight(vec3 added, vec3 displaced) {
