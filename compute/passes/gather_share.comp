@@ -1,5 +1,6 @@
 // Points of the gather share what they found with those that lie near on the same side.
 #version 460
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
@@ -14,10 +15,8 @@ layout(set = 0, binding = PELLUCID_BINDING_POINTS, rgba32ui) uniform writeonly u
 const int kRow = PELLUCID_SHARE_GROUP + 2; // a border of one
 
 shared vec4 places[kRow * kRow];  // position; w: bits of the material, 0: nothing there
-shared uvec4 found[kRow * kRow];  // light; w: normal in three bytes
-shared uint someLight;            // 0: no point has any
-
-vec3 normalOf(uvec4 bits) { return unpackSnorm4x8(bits.w).xyz; }
+shared uvec4 found[kRow * kRow];  // as points have light; the normal in halves, in place of the points' own
+shared uint someLight, someDisplaced;
 
 uvec4 pointAt(ivec2 cell, ivec4 cells) {
   bool inside = all(greaterThanEqual(cell, cells.xy)) && all(lessThan(cell, cells.zw));
@@ -25,10 +24,10 @@ uvec4 pointAt(ivec2 cell, ivec4 cells) {
 }
 
 void keepPoint(ivec2 local, ivec2 cell, int side, uvec4 bits) {
-  Point p = unpackPoint(bits);
   int at = (local.y + 1) * kRow + local.x + 1;
-  places[at] = vec4(viewPosition(cell, side, p), uintBitsToFloat(p.material));
-  found[at] = uvec4(packLight(p.added, p.displaced), packSnorm4x8(vec4(p.normal, 0.0)));
+  vec3 normal = normalOf(bits);
+  places[at] = vec4(viewPosition(cell, side, unpackPoint(bits)), uintBitsToFloat(bits.z & 0xFFu));
+  found[at] = uvec4(bits.x, (bits.y & 0xFFFFu) | packHalf2x16(vec2(0.0, normal.x)), packHalf2x16(normal.yz), bits.w);
 }
 
 // The i-th cell of the border: above, below, then by rows.
@@ -45,9 +44,10 @@ void main() {
   bool hasBorder = index < 4 * kRow - 4;
   uvec4 own = pointAt(cell, cells), beside = kNoPoint;
   if (hasBorder) beside = pointAt(first + border, cells);
-  if (index == 0) someLight = 0u;
+  if (index == 0) someLight = someDisplaced = 0u;
   barrier();
   if (hasLight(own) || hasLight(beside)) someLight = 1u;
+  if (displaces(own) || displaces(beside)) someDisplaced = 1u;
   barrier();
   bool shares = someLight != 0u;
   if (shares) {
@@ -56,28 +56,28 @@ void main() {
   }
   barrier();
   if (any(greaterThanEqual(cell, cells.zw))) return;
-  Point result = unpackPoint(own);
-  if (!shares || result.material == 0u) {
+  uint material = own.z & 0xFFu;
+  if (!shares || material == 0u) {
     imageStore(sharedImage, cell, own);
     return;
   }
   int center = (local.y + 1) * kRow + local.x + 1;
-  vec4 place = places[center];
+  vec3 place = places[center].xyz, normal = vec3(unpackHalf2x16(found[center].y).y, unpackHalf2x16(found[center].z));
   float mm = frame.camera.range.w;
-  float perSquare = materials[result.material - 1u].gather.profile.w * mm * mm, total = 0.0;
-  vec3 normal = normalOf(found[center]), added = vec3(0.0), displaced = vec3(0.0);
-  for (int i = 0; i < 9; ++i) {
+  float perSquare = materials[material - 1u].gather.profile.w * mm * mm, total = 0.0;
+  vec3 added = vec3(0.0), displaced = vec3(0.0);
+  [[unroll]] for (int i = 0; i < 9; ++i) {
     int other = center + (i / 3 - 1) * kRow + i % 3 - 1;
     vec4 theirs = places[other];
-    if (floatBitsToUint(theirs.w) != result.material) continue;
     uvec4 bits = found[other];
-    vec3 apart = theirs.xyz - place.xyz;
-    float weight = exp2(-dot(apart, apart) * perSquare) * max(dot(normalOf(bits), normal), 0.0);
-    addLight(bits.xyz, weight, added, displaced);
+    vec3 apart = theirs.xyz - place;
+    vec2 middle = unpackHalf2x16(bits.y);
+    float facing = max(dot(vec3(middle.y, unpackHalf2x16(bits.z)), normal), 0.0);
+    float weight = floatBitsToUint(theirs.w) == material ? exp2(-dot(apart, apart) * perSquare) * facing : 0.0;
+    added += weight * vec3(unpackHalf2x16(bits.x), middle.x);
+    if (someDisplaced != 0u) displaced += weight * displacedOf(bits);
     total += weight;
   }
   // The point itself is among them.
-  result.added = added / total;
-  result.displaced = displaced / total;
-  imageStore(sharedImage, cell, packPoint(result));
+  imageStore(sharedImage, cell, replaceLight(own, added / total, displaced / total));
 }

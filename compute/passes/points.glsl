@@ -4,7 +4,7 @@
 
 struct Point {
   vec3 added;     // irradiance
-  vec3 displaced; // share of the diffused irradiance, 0..1
+  vec3 displaced; // share of the diffused irradiance, -1/3..1; below 0: more of it comes back
   vec3 normal;    // unit
   float front;    // planar distance
   uint material;  // index + 1; 0: nothing there
@@ -27,29 +27,42 @@ vec3 fromOctahedral(vec2 p) {
   return normalize(n);
 }
 
-// 16 bits hold a direction to a degree, 9 a share to .1 %; the depth leaves its 8 lowest bits to the material.
+// Shares of -1/3 to 1 in 9 bits, 0 as 0.
+const int kMostDisplaced = 383, kLeastDisplaced = -128;
+
+// A point with other light.
+uvec4 replaceLight(uvec4 bits, vec3 added, vec3 displaced) {
+  added = min(added, vec3(kLargestHalf));
+  float most = float(kMostDisplaced);
+  uvec3 shares = uvec3(ivec3(floor(clamp(displaced * most, vec3(kLeastDisplaced), vec3(most)) + 0.5))) & 511u;
+  return uvec4(packHalf2x16(added.rg), (packHalf2x16(vec2(added.b, 0.0)) & 0xFFFFu) | (bits.y & 0xFFFF0000u), bits.z,
+               shares.r | shares.g << 9 | shares.b << 18 | (bits.w & 0xF8000000u));
+}
+
+// 16 bits hold a direction to a degree; the depth leaves its 8 lowest bits to the material.
 uvec4 packPoint(Point p) {
-  vec3 added = min(p.added, vec3(kLargestHalf));
-  uvec3 displaced = uvec3(clamp(p.displaced, vec3(0.0), vec3(1.0)) * 511.0 + 0.5);
-  uint normal = packSnorm4x8(vec4(octahedral(p.normal), 0.0, 0.0));
-  return uvec4(packHalf2x16(added.rg), (packHalf2x16(vec2(added.b, 0.0)) & 0xFFFFu) | normal << 16,
-               (floatBitsToUint(p.front) & 0xFFFFFF00u) | p.material,
-               displaced.r | displaced.g << 9 | displaced.b << 18 | uint(p.index) << 27);
+  uvec4 bits = uvec4(0u, packSnorm4x8(vec4(octahedral(p.normal), 0.0, 0.0)) << 16,
+                     (floatBitsToUint(p.front) & 0xFFFFFF00u) | p.material, uint(p.index) << 27);
+  return replaceLight(bits, p.added, p.displaced);
 }
 
 vec3 addedOf(uvec4 bits) { return vec3(unpackHalf2x16(bits.x), unpackHalf2x16(bits.y).x); }
 
-vec3 displacedOf(uvec4 bits) { return vec3((bits.www >> uvec3(0u, 9u, 18u)) & 511u) / 511.0; }
+vec3 displacedOf(uvec4 bits) {
+  uvec3 shares = (bits.www >> uvec3(0u, 9u, 18u)) - uint(kLeastDisplaced) & 511u;
+  return vec3(ivec3(shares) + kLeastDisplaced) / float(kMostDisplaced);
+}
 
 bool displaces(uvec4 bits) { return (bits.w & 0x7FFFFFFu) != 0u; }
 
 // Whether anything is added or displaced.
 bool hasLight(uvec4 bits) { return (bits.x | bits.y & 0xFFFFu) != 0u || displaces(bits); }
 
+vec3 normalOf(uvec4 bits) { return fromOctahedral(unpackSnorm4x8(bits.y >> 16).xy); }
+
 Point unpackPoint(uvec4 bits) {
-  return Point(addedOf(bits), displacedOf(bits),
-               fromOctahedral(unpackSnorm4x8(bits.y >> 16).xy), uintBitsToFloat(bits.z & 0xFFFFFF00u),
-               bits.z & 0xFFu, int(bits.w >> 27));
+  return Point(addedOf(bits), displacedOf(bits), normalOf(bits), uintBitsToFloat(bits.z & 0xFFFFFF00u), bits.z & 0xFFu,
+               int(bits.w >> 27));
 }
 
 // Added and displaced light alone, in halves.
