@@ -204,6 +204,41 @@ Pattern patternOf(ivec2 cell, uint m, float front) {
   return Pattern(0.5 + vary * (float(pattern) - 4.0) / 9.0, vary * float(at.x + 3 * at.y) / 9.0);
 }
 
+struct Beside {
+  bool exists;
+  vec3 apart, turn; // change of position, scene units, and of the normal
+};
+
+// The surface that many pixels from x, if it goes on there.
+Beside besideOf(ivec2 pixel, Surface x, float reach) {
+  Beside b = Beside(false, vec3(0.0), vec3(0.0));
+  if (!insideRect(pixel)) return b;
+  float front = frontDistance(pixel);
+  vec3 normal = mat3(frame.viewFromNormal) * decodeNormal(texelFetch(normalImage, pixel, 0));
+  Surface s = makeSurface(viewRay(frame.camera, pixel), front, -1.0, normal);
+  b.apart = s.position - x.position;
+  b.turn = s.normal - x.normal;
+  b.exists = front > 0.0 && s.hasNormal && dot(b.apart, b.apart) < 9.0 * reach * reach;
+  return b;
+}
+
+// Of the surface around x, 1/mm, positive where convex; 0 where it does not go on. Neighboring cells look to opposite
+// sides, so that what they share is centered.
+float meanCurvature(ivec2 cell, ivec2 pixel, Surface x, float front, float reachMm) {
+  float mm = frame.camera.range.w;
+  vec2 steps = clamp(reachMm / pixelSize(frame.camera, front) + 0.5, vec2(1.0), vec2(1.0e4));
+  ivec2 across = ivec2(steps) * (1 - 2 * (cell & 1));
+  float reach = max(reachMm / mm, 1.0e-30);
+  Beside a = besideOf(pixel + ivec2(across.x, 0), x, reach), b = besideOf(pixel + ivec2(0, across.y), x, reach);
+  if (!a.exists) a = besideOf(pixel - ivec2(across.x, 0), x, reach);
+  if (!b.exists) b = besideOf(pixel - ivec2(0, across.y), x, reach);
+  // Trace of the map from steps to turns.
+  float area = dot(x.normal, cross(a.apart, b.apart));
+  float least = 0.1 * sqrt(dot(a.apart, a.apart) * dot(b.apart, b.apart));
+  if (!a.exists || !b.exists || !(abs(area) > least)) return 0.0;
+  return 0.5 * dot(x.normal, cross(a.turn, b.apart) + cross(a.apart, b.turn)) / (area * mm);
+}
+
 void gatherLights(Surface x, Pattern pattern, inout Point result) {
   uint m = result.material - 1u;
   vec3 transmitted = vec3(0.0), entering = vec3(0.0), displaced = vec3(0.0);
@@ -213,10 +248,10 @@ void gatherLights(Surface x, Pattern pattern, inout Point result) {
     entering += g.entering;
     displaced = max(displaced, g.displaced); // of the same surface, whatever the light
   }
-  bool spreads = hasFlag(PELLUCID_FLAG_DIFFUSED);
   result.added = transmitted * frame.filterAndLimit.rgb * materials[m].inverseReflectance.rgb;
-  if (spreads) result.added += entering;
-  result.displaced = spreads ? displaced : vec3(0.0);
+  if (!hasFlag(PELLUCID_FLAG_DIFFUSED)) return;
+  result.added += entering;
+  result.displaced += displaced;
 }
 
 #ifdef DIRECTIONAL
@@ -277,6 +312,11 @@ void main() {
     x = makeSurface(viewRay(frame.camera, pixelInCell(cell, side, result.index)), result.front, -1.0, normal);
     result.normal = x.hasNormal ? x.normal : -x.view;
     pattern = patternOf(cell, result.material - 1u, result.front);
+  }
+  if (some && x.hasNormal && hasFlag(PELLUCID_FLAG_DIFFUSED)) {
+    vec4 convexity = materials[result.material - 1u].gather.convexity;
+    ivec2 pixel = pixelInCell(cell, side, result.index);
+    result.displaced = -convexity.rgb * meanCurvature(cell, pixel, x, result.front, convexity.w);
   }
   bool gathers = some;
 #ifdef DIRECTIONAL

@@ -205,6 +205,42 @@ std::size_t Gather::hiddenTexels() const {
   return count;
 }
 
+double Gather::meanCurvature(const Surface& surface, double reach) const {
+  const Camera& camera = surfaces_.camera();
+  const glm::dvec2 pixel = glm::floor(camera.project(surface.position));
+  const double planar = camera.planarDepth(surface.position);
+  const auto side = [&](glm::dvec2 step) {
+    return mm_ * glm::distance(camera.position(pixel + step, planar), camera.position(pixel, planar));
+  };
+  const glm::dvec2 steps = glm::max(glm::floor(reach / glm::dvec2(side({1, 0}), side({0, 1})) + 0.5), 1.0);
+  struct Beside {
+    glm::dvec3 apart, turn;  // mm; of the normal
+  };
+  const auto beside = [&](glm::dvec2 step) -> std::optional<Beside> {
+    const glm::dvec2 at = pixel + step * steps;
+    if (!(at.x >= 0 && at.y >= 0 && at.x < capture_.width && at.y < capture_.height)) return std::nullopt;
+    const std::optional<Surface> other = surfaces_.at(static_cast<int>(at.x), static_cast<int>(at.y));
+    if (!other || !other->normal) return std::nullopt;
+    const glm::dvec3 apart = mm_ * (other->position - surface.position);
+    if (!(glm::length(apart) < 3 * reach)) return std::nullopt;
+    return Beside{apart, *other->normal - *surface.normal};
+  };
+  double sum = 0;
+  int count = 0;
+  for (const double x : {1, -1})
+    for (const double y : {1, -1}) {
+      const std::optional<Beside> a = beside({x, 0}), b = beside({0, y});
+      if (!a || !b) continue;
+      // The trace of the map from steps to turns of the normal.
+      const double area = glm::dot(*surface.normal, glm::cross(a->apart, b->apart));
+      if (!(std::abs(area) > 0.1 * glm::length(a->apart) * glm::length(b->apart))) continue;
+      sum += 0.5 * glm::dot(*surface.normal, glm::cross(a->turn, b->apart) + glm::cross(a->apart, b->turn)) /
+             area;
+      ++count;
+    }
+  return count > 0 ? sum / count : 0;
+}
+
 Gathered Gather::at(const Surface& surface, std::size_t material) const {
   const GatherKernel& kernel = kernels_[material];
   const double radius = radii_[material];
@@ -231,6 +267,11 @@ Gathered Gather::at(const Surface& surface, std::size_t material) const {
     }
     result.displaced = glm::max(result.displaced, glm::min(displaced, glm::dvec3(1)));
   }
+  const glm::dvec3 convexity = kernel.convexity();
+  const double reach = 2 * std::max({convexity.r, convexity.g, convexity.b});
+  if (surface.normal && reach > 0)
+    result.displaced =
+        glm::max(result.displaced - convexity * meanCurvature(surface, reach), glm::dvec3(-1.0 / 3));
   return result;
 }
 

@@ -107,6 +107,17 @@ glm::dvec3 GatherKernel::reflected(double r) const {
   return result;
 }
 
+glm::dvec3 GatherKernel::convexity() const {
+  glm::dvec3 result(0);
+  for (int c = 0; c < 3; ++c) {
+    const auto i = static_cast<std::size_t>(c);
+    const double rho = std::min(double(material_.reflectance[c]), 1.0);
+    if (profile_[i] > 0)
+      result[c] = std::min(2 * (1 - rho) / ((1 + rho) * slowest_[i]), extrapolation_[i]);
+  }
+  return result;
+}
+
 double GatherKernel::radius(double share) const {
   double radius = 0;
   for (int c = 0; c < 3; ++c) {

@@ -48,6 +48,14 @@ Channel channelOf(const PellucidMaterial& m, int index) {
   return c;
 }
 
+// -d ln rho / d kappa, mm. On a convex surface what diffuses decays like that of a plane with kappa - H, H the mean
+// curvature: of a sphere kappa coth(kappa R) - 1 / R. (1 - rho) / (1 + rho) goes like kappa; without absorption
+// 1 - rho = kappa e at matched indices, and less otherwise.
+double convexity(const Channel& c, double rho) {
+  const double most = std::clamp(1 - rho, 0.0, 1.0) / (1 + rho) * 2 / c.slowest;
+  return std::min(most, c.extrapolation);
+}
+
 // Burley's d, or that of the same mean radius: 5/2 d = sum w sqrt(pi v / 2). 0: no profile.
 double profileLength(const PellucidMaterial& m, int channel) {
   if (m.gaussianCount == 0) return 0;
@@ -81,6 +89,10 @@ shared::GatherConstants gatherConstants(const PellucidMaterial& m) {
   for (int c = 0; c < 3; ++c) {
     const double d = profileLength(m, c);
     g.profile[c] = static_cast<float>(d > 0 ? 1 / (3 * d) : 0);
+    const double more = d > 0 ? convexity(channels[c], static_cast<double>(m.reflectance[c])) : 0;
+    g.convexity[c] = static_cast<float>(more);
+    // As far as the light comes from.
+    g.convexity.w = std::max(g.convexity.w, static_cast<float>(2 * more));
     for (int i = 0; i < kEntries; ++i) {
       // Beyond 500 decay lengths T is below the least double; its logarithm goes on as a line.
       const double v = static_cast<double>(i) / (kEntries - 1), farthest = 500 / channels[c].slowest;
