@@ -15,8 +15,8 @@ namespace pellucid::harness::reference {
 struct Gathered {
   glm::dvec3 transmitted{0};  // exitance
   glm::dvec3 entering{0};     // irradiance that reaches the pixel as diffusion does
-  // Share of the diffusion's profile that lies there, the most of any light, less what the surface's curvature
-  // adds: down to -1/3.
+  // Share of the diffusion's profile that lies there, the most of any light, less what the surface's
+  // curvature adds: down to -1/3.
   glm::dvec3 displaced{0};
 };
 
@@ -49,8 +49,8 @@ private:
 
   // Of one of the light's maps; a texel that an earlier one contains counts there.
   Blocks collect(const Light& light, std::size_t map, double bias) const;
-  // Around a surface with a normal, 1/mm, positive where convex: from what lies `reach` mm beside it in the image.
-  // 0 where it does not go on.
+  // Around a surface with a normal, 1/mm, positive where convex: from what lies `reach` mm beside it in the
+  // image. 0 where it does not go on.
   double meanCurvature(const Surface& surface, double reach) const;
   bool cameraSees(const glm::dvec3& world, const glm::dvec3& normal, double tolerance) const;
 

@@ -111,9 +111,10 @@ glm::dvec3 GatherKernel::convexity() const {
   glm::dvec3 result(0);
   for (int c = 0; c < 3; ++c) {
     const auto i = static_cast<std::size_t>(c);
+    if (!(profile_[i] > 0)) continue;
     const double rho = std::min(double(material_.reflectance[c]), 1.0);
-    if (profile_[i] > 0)
-      result[c] = std::min(2 * (1 - rho) / ((1 + rho) * slowest_[i]), extrapolation_[i]);
+    const double thin = std::clamp(transmittance(c, 0), 0.5, 1.0), boundary = (1 - thin) / (1 + thin);
+    result[c] = std::max((1 - rho) / (1 + rho) - boundary / (2 - boundary), 0.0) * 2 / slowest_[i];
   }
   return result;
 }

@@ -48,12 +48,15 @@ Channel channelOf(const PellucidMaterial& m, int index) {
   return c;
 }
 
-// -d ln rho / d kappa, mm. On a convex surface what diffuses decays like that of a plane with kappa - H, H the mean
-// curvature: of a sphere kappa coth(kappa R) - 1 / R. (1 - rho) / (1 + rho) goes like kappa; without absorption
-// 1 - rho = kappa e at matched indices, and less otherwise.
+// (1 - rho) / (1 + rho)
+double lossOf(double rho) { return (1 - rho) / (1 + rho); }
+
+// -d ln rho / d kappa, mm. On a convex surface what diffuses decays like that of a plane with kappa - H, H
+// the mean curvature: of a sphere kappa coth(kappa R) - 1 / R. The loss of a half-space goes like kappa, but
+// for what the boundary keeps out: a slab without thickness says how much that is.
 double convexity(const Channel& c, double rho) {
-  const double most = std::clamp(1 - rho, 0.0, 1.0) / (1 + rho) * 2 / c.slowest;
-  return std::min(most, c.extrapolation);
+  const double outside = lossOf(std::clamp(c.transmittance(0), 0.5, 1.0));
+  return std::max(lossOf(std::clamp(rho, 0.0, 1.0)) - lossOf(1 - outside), 0.0) * 2 / c.slowest;
 }
 
 // Burley's d, or that of the same mean radius: 5/2 d = sum w sqrt(pi v / 2). 0: no profile.
@@ -99,7 +102,7 @@ shared::GatherConstants gatherConstants(const PellucidMaterial& m) {
       const double h = v < 1 ? std::min(depthScale * v / (1 - v), farthest) : farthest;
       const double q = channels[c].decay(h);
       slab[i][c] = static_cast<float>((std::log(std::max(channels[c].transmittance(h), 1e-300)) + q * h) /
-                                        std::numbers::ln2);
+                                      std::numbers::ln2);
       decay[i][c] = static_cast<float>(q / std::numbers::ln2);
     }
   }

@@ -68,6 +68,40 @@ TEST(RandomWalk, IsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(run(1).standardError, run(3).standardError);
 }
 
+// Evenly lit from all sides, a sphere returns more than a half-space.
+TEST(GatherConvexity, IsWhatSpheresReturnMore) {
+  PellucidMaterialDesc desc;
+  pellucidInitMaterialDesc(&desc);
+  desc.kind = PELLUCID_MATERIAL_COEFFICIENTS;
+  std::copy_n(kScattering, 3, desc.scattering);
+  std::copy_n(kAbsorption, 3, desc.absorption);
+  std::uint64_t seed = 100;
+  for (const double ior : {1.0, 1.4}) {
+    desc.ior = ior;
+    PellucidMaterial material;
+    ASSERT_EQ(pellucidCompileMaterial(&desc, &material, nullptr, nullptr, nullptr), PELLUCID_OK);
+    const glm::dvec3 convexity = reference::GatherKernel(material).convexity();
+    for (const double radius : {12.0, 24.0})
+      for (int c = 0; c < 3; ++c) {
+        const reference::WalkSphere sphere(radius);
+        constexpr int kDirections = 64;
+        double sum = 0;
+        for (int i = 0; i < kDirections; ++i) {
+          // Equal areas of the sphere of directions (Fibonacci lattice); a quarter of its light is each
+          // point's.
+          const double z = (2 * i + 1.0) / kDirections - 1, s = std::sqrt(1 - z * z), turn = 2.39996323 * i;
+          sum += 4 * reference::exitance(sphere, {kScattering[c], kAbsorption[c], ior}, {0, 0, radius},
+                                         {s * std::cos(turn), s * std::sin(turn), z}, 10000, seed++)
+                         .mean;
+        }
+        const double more = sum / kDirections / double(material.reflectance[c]) - 1;
+        // First order in mean free paths over the radius, and diffusion theory where absorption is strong.
+        EXPECT_NEAR(more, convexity[c] / radius, ior > 1 ? 0.03 : 0.015)
+            << "ior " << ior << " radius " << radius << " channel " << c;
+      }
+  }
+}
+
 // One pixel's exitance from all texels, against walks from the same point.
 struct Shape {
   const char* scene;
