@@ -25,12 +25,26 @@ float shadowTexel(uint image, ivec2 texel) {
   }
 }
 
+#define PELLUCID_TEXELS(image)                                                                                      \
+  float[5](texelFetch(image, texel, 0).x, texelFetch(image, right, 0).x, texelFetch(image, left, 0).x,               \
+           texelFetch(image, below, 0).x, texelFetch(image, above, 0).x)
+
 // A texel (x) and its neighbors to the right, to the left, below and above; `most`: the last texel of the image.
 float[5] shadowTexels(uint image, ivec2 texel, ivec2 most) {
   ivec2 right = ivec2(min(texel.x + 1, most.x), texel.y), left = ivec2(max(texel.x - 1, 0), texel.y);
   ivec2 below = ivec2(texel.x, min(texel.y + 1, most.y)), above = ivec2(texel.x, max(texel.y - 1, 0));
-  return float[5](shadowTexel(image, texel), shadowTexel(image, right), shadowTexel(image, left),
-                  shadowTexel(image, below), shadowTexel(image, above));
+  switch (image) {
+    case 0u: return PELLUCID_TEXELS(shadowImage0);
+    case 1u: return PELLUCID_TEXELS(shadowImage1);
+    case 2u: return PELLUCID_TEXELS(shadowImage2);
+    case 3u: return PELLUCID_TEXELS(shadowImage3);
+    case 4u: return PELLUCID_TEXELS(shadowImage4);
+    case 5u: return PELLUCID_TEXELS(shadowImage5);
+    case 6u: return PELLUCID_TEXELS(shadowImage6);
+    default: return PELLUCID_TEXELS(shadowImage7);
+  }
 }
+
+#undef PELLUCID_TEXELS
 
 #endif
