@@ -143,6 +143,27 @@ TEST_F(GatherAgreement, TheDiffusionAddsTheSame) {
   }
 }
 
+// Of a directional light with a device-depth map, points far from all light leave early. Of the same map in
+// view depth none does.
+TEST_F(GatherAgreement, LeavingEarlyLosesNoLight) {
+  SceneParameters p;
+  p.name = "sphere";
+  p.options = {{"radius", 80}, {"extent", 200}, {"lightAngle", 60}};
+  p.width = p.height = 160;
+  p.shadowSize = 256;
+  p.orthographic = true;
+  p.depthEncoding = PELLUCID_DEPTH_DEVICE;
+  p.lightType = PELLUCID_LIGHT_DIRECTIONAL;
+  const auto image = [&](PellucidDepthEncoding encoding, uint32_t samples) {
+    p.shadowEncoding = encoding;
+    return gpuGather(replayer(), makeScene(p), samples);
+  };
+  const Image early = image(PELLUCID_DEPTH_DEVICE, 8), all = image(PELLUCID_DEPTH_VIEW_Z, 8);
+  const Capture c = makeScene(p);
+  EXPECT_LT(error(c, early, all), 1e-3);
+  EXPECT_GT(error(c, image(PELLUCID_DEPTH_DEVICE, 0), all), 0.01) << "no light to lose";
+}
+
 // Texels of 1/4 to 4 mean free paths: what a map of 8 texels a path would give is the truth here.
 TEST_F(GatherAgreement, ErrorGrowsWithTheMapsTexels) {
   const double meanFreePath = 1 / (0.88 + 0.17);  // mm, of skin1 in green
