@@ -31,6 +31,7 @@ shared uint edgeCount, anySurface;
 
 #ifdef GATHER
 const ivec2 kPointPixels = 4 * kTexels;
+const int kLeastSide = PELLUCID_DIFFUSE_CELL;
 #include "passes/gathered.glsl"
 #endif
 
@@ -137,7 +138,7 @@ void diffuseEdge(ivec2 firstTexel, ivec2 local) {
     vec3 divisor = own + fineShare * fine.a + share.coarser * found;
     color = mix(color, max(sum, vec3(0.0)) / max(divisor, vec3(1.0e-6)), greaterThan(divisor, vec3(1.0e-6)));
 #ifdef GATHER
-    if (someLight != 0u) color = withGathered(color, local, int(pass.value.x), depth, material);
+    if (someLight != 0u) color = withGathered(color, local, kLeastSide, depth, material);
 #endif
   }
   store(pixel, color, source.a);
@@ -165,7 +166,7 @@ void main() {
     sources[i] = texelFetch(sourceImage, clamp(first + ivec2(0, i - kRing), ivec2(frame.rect.xy), last), 0);
 #ifdef GATHER
   // By the last invocations, which load the least besides.
-  uint light = loadPoints(kInvocations - 1 - invocation, kInvocations, int(pass.value.x), 4 * firstTexel);
+  uint light = loadPoints(kInvocations - 1 - invocation, kInvocations, kLeastSide, 4 * firstTexel);
   if (invocation == 0) someLight = 0u;
 #endif
   if (invocation == 0) edgeCount = anySurface = 0u;
@@ -232,7 +233,7 @@ void main() {
 #endif
         }
 #ifdef GATHER
-        if (someLight != 0u) addToPlane(ivec2(x, 4 * texelRow), int(pass.value.x), results);
+        if (someLight != 0u) addToPlane(ivec2(x, 4 * texelRow), results);
         [[unroll]] for (int i = 0; i < 4; ++i)
           store(4 * firstTexel + ivec2(x, 4 * texelRow + i), results[i], unpackHalf2x16(own[4 * block + i].y).y);
 #endif
@@ -241,7 +242,7 @@ void main() {
 #ifdef GATHER
     if (someLight != 0u && edgeCount != 0u) {
       barrier();
-      unpackPoints(invocation, kInvocations, int(pass.value.x), 4 * firstTexel);
+      unpackPoints(invocation, kInvocations, kLeastSide, 4 * firstTexel);
       barrier();
     }
 #endif

@@ -5,6 +5,7 @@
 const int kTile = 2 * PELLUCID_GATHER_GROUP; // an invocation does four pixels, whose loads overlap
 const int kThreads = PELLUCID_GATHER_GROUP * PELLUCID_GATHER_GROUP;
 const ivec2 kPointPixels = ivec2(kTile);
+const int kLeastSide = 2;
 #include "passes/gathered.glsl"
 
 // What came through of the lights without a map, which come last.

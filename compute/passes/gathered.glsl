@@ -1,5 +1,5 @@
 // Gathered light of a group's pixels, which take what the four points around them have. Needs kPointPixels: how many
-// pixels there are, from a multiple of 4 in the image on.
+// pixels there are, from a multiple of 4 in the image on; and kLeastSide: of the cells, pixels.
 #ifndef PELLUCID_GATHERED_GLSL
 #define PELLUCID_GATHERED_GLSL
 
@@ -7,8 +7,8 @@
 
 layout(set = 0, binding = PELLUCID_BINDING_POINTS, rgba32ui) uniform readonly uimage2D pointsImage;
 
-// The points around all pixels, of cells of 2 x 2 pixels.
-const int kMostPoints = (kPointPixels.x / 2 + 1) * (kPointPixels.y / 2 + 1);
+// The points around all pixels.
+const int kMostPoints = (kPointPixels.x / kLeastSide + 1) * (kPointPixels.y / kLeastSide + 1);
 
 shared vec4 pointPlanes[kMostPoints]; // see tangentPlane
 shared uvec4 points[kMostPoints];     // unpacked: light; w: material, 0: nothing there
@@ -81,26 +81,17 @@ vec3 displacedBetween(int at, float fraction) {
   return mix(displacedOf(points[at]), displacedOf(points[at + 1]), fraction);
 }
 
-// Four pixels below each other, from `local` on, whose cells and those around are one surface, so that points need no
-// test. They are as they were loaded.
-void addToPlane(ivec2 local, int side, inout vec3 diffused[4]) {
-  int shift = shiftOf(side), row = pointRow(side), at = (local.y >> shift) * row + (local.x >> shift);
-  float across = float(local.x & (side - 1)) * (side == 2 ? 0.5 : 0.25);
+// Four pixels below each other, the column of cells of 4 x 4 pixels from `local` on. They and those around are one
+// surface, so that points need no test. Points are as they were loaded.
+void addToPlane(ivec2 local, inout vec3 diffused[4]) {
+  int at = (local.y >> 2) * pointRow(4) + (local.x >> 2), next = at + pointRow(4);
+  float across = 0.25 * float(local.x & 3);
   if ((someLight & kSomeDisplaced) != 0u) {
-    vec3 first = displacedBetween(at, across), last = displacedBetween(at + (4 >> shift) * row, across);
-    vec3 middle = side == 2 ? displacedBetween(at + row, across) : 0.5 * (first + last);
-    diffused[0] -= diffused[0] * first;
-    diffused[1] -= diffused[1] * (0.5 * (first + middle));
-    diffused[2] -= diffused[2] * middle;
-    diffused[3] -= diffused[3] * (0.5 * (middle + last));
+    vec3 share = displacedBetween(at, across), step = 0.25 * (displacedBetween(next, across) - share);
+    [[unroll]] for (int i = 0; i < 4; ++i) diffused[i] -= diffused[i] * (share + float(i) * step);
   }
-  vec3 first = addedBetween(at, across), last = addedBetween(at + (4 >> shift) * row, across);
-  vec3 middle = side == 2 ? addedBetween(at + row, across) : 0.5 * (first + last);
-  vec3 most = vec3(kLargestHalf);
-  diffused[0] = min(diffused[0] + first, most);
-  diffused[1] = min(diffused[1] + 0.5 * (first + middle), most);
-  diffused[2] = min(diffused[2] + middle, most);
-  diffused[3] = min(diffused[3] + 0.5 * (middle + last), most);
+  vec3 light = addedBetween(at, across), step = 0.25 * (addedBetween(next, across) - light);
+  [[unroll]] for (int i = 0; i < 4; ++i) diffused[i] = min(diffused[i] + light + float(i) * step, vec3(kLargestHalf));
 }
 
 // D with what is linear between the four points around the pixel `local`, as far as they are of its material and it

@@ -20,6 +20,7 @@ using glm::vec4;
 #define PELLUCID_DIFFUSE_TEXELS_X 15 // of level 2, 4 x 4 pixels each, that a group of the diffusion does
 #define PELLUCID_DIFFUSE_COARSE_TEXELS_X 16 // without the fine filter
 #define PELLUCID_DIFFUSE_TEXELS_Y 4
+#define PELLUCID_DIFFUSE_CELL 4 // pixels a side of the gather's cells where the diffusion adds what it found
 #define PELLUCID_RESOLVE_GROUP 16 // a side, texels of level 2
 #define PELLUCID_REDUCE_GROUP 16 // a side, of the pyramid's reductions
 #define PELLUCID_REDUCE_TILE 7   // a side, texels of the second of the two levels that a group makes

@@ -76,7 +76,8 @@ bool addsPoints(const PellucidFrame& frame) {
     ++groups;
     others += group.lightCount - group.gathered;
   });
-  return groups == 1 && others == 0 && frame.materialMarkBit == 0;
+  return groups == 1 && others == 0 && frame.materialMarkBit == 0 &&
+         gatherSpacing(frame) == PELLUCID_DIFFUSE_CELL;
 }
 
 ConstantsLayout constantsLayout(const PellucidFrame& frame) {

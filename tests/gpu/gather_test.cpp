@@ -119,7 +119,9 @@ TEST_F(Gather, StaysFinite) {
 // diffusion's own, needs both.
 TEST_F(Gather, PlanGathersBesideTheDiffusion) {
   const Capture c = backlitSlab(1, PELLUCID_DEPTH_VIEW_Z);
-  const PellucidPlan plan = replayer().run(c, {testMaterial()}, settings(8)).plan;
+  ReplaySettings coarse = settings(8);
+  coarse.translucency.gatherSpacing = 4;
+  const PellucidPlan plan = replayer().run(c, {testMaterial()}, coarse).plan;
   std::vector<std::string> beside;
   for (uint32_t i = 0; i < plan.dispatchCount; ++i)
     if (i > 0 && !plan.dispatches[i].barrierBefore) beside.push_back(plan.dispatches[i].name);
@@ -137,11 +139,16 @@ TEST_F(Gather, OtherLightsAreAddedAfterTheDiffusion) {
     const PellucidPlan plan = replayer().run(c, {testMaterial()}, s).plan;
     return plan.dispatches[plan.dispatchCount - 1].pipeline;
   };
-  ReplaySettings marked = settings(8);
-  marked.translucency.materialMarkBit = 128;
-  EXPECT_EQ(last(marked), static_cast<uint32_t>(PELLUCID_PIPELINE_GATHER_32F));
+  ReplaySettings s = settings(8);
+  s.translucency.gatherSpacing = 2;
+  EXPECT_EQ(last(s), static_cast<uint32_t>(PELLUCID_PIPELINE_GATHER_32F));
+  s.translucency.gatherSpacing = 4;
+  s.translucency.materialMarkBit = 128;
+  EXPECT_EQ(last(s), static_cast<uint32_t>(PELLUCID_PIPELINE_GATHER_32F));
+  s.translucency.materialMarkBit = 0;
+  EXPECT_EQ(last(s), static_cast<uint32_t>(PELLUCID_PIPELINE_DIFFUSE_GATHER_32F));
   c.lights.push_back(backLight());
-  EXPECT_EQ(last(settings(8)), static_cast<uint32_t>(PELLUCID_PIPELINE_GATHER_32F));
+  EXPECT_EQ(last(s), static_cast<uint32_t>(PELLUCID_PIPELINE_GATHER_32F));
 }
 
 TEST_F(Gather, RefusesWhatItCannotSample) {
