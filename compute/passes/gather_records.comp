@@ -1,5 +1,6 @@
 // Records of a dispatch's shadow maps, below each other in one image.
 #version 460
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
@@ -17,26 +18,20 @@ const float kSeenTolerance = 0.5; // texels
 // A surface that the light sees more obliquely counts as if it did not.
 const float kLeastCosine = 0.05;
 
-// Where the camera has a surface at y or in front of it: what it sees is in the irradiance that diffusion
-// spreads. What faces away cannot be seen, however thin the part is.
-bool cameraSees(vec3 y, vec3 normal, float tolerance) {
-  ivec2 pixel;
-  if (!projectToPixel(frame.camera, y, pixel) || !insideRect(pixel)) return false;
-  if (dot(normal, viewRay(frame.camera, pixel).direction) >= 0.0) return false;
+// Where the camera has a surface on the pixel that a point is seen on, at the point or in front of it: what it sees is
+// in the irradiance that diffusion spreads. What faces away cannot be seen, however thin the part is.
+bool cameraSees(ivec2 pixel, float planar, vec3 normal, float tolerance) {
+  if (!insideRect(pixel) || dot(normal, viewRay(frame.camera, pixel).direction) >= 0.0) return false;
   float front = frontDistance(pixel);
-  return front > 0.0 && y.z * frame.camera.range.x <= front + tolerance;
+  return front > 0.0 && planar <= front + tolerance;
 }
 
 bool perspective(RecordMapConstants map) { return !kDirectional && map.meta.z != 0u; }
 
-// The surface that a texel stores, as RecordMapConstants says; depth: as records store it.
+// The surface that a texel of a perspective map stores, as RecordMapConstants says; depth: as records store it.
 vec3 entryPoint(RecordMapConstants map, ivec2 texel, float stored, out float depth) {
   vec2 p = vec2(texel) + 0.5;
   vec4 at = map.origin + p.x * map.stepX + p.y * map.stepY;
-  if (!perspective(map)) {
-    depth = stored * map.ray.w + at.w;
-    return at.xyz + depth * map.ray.xyz;
-  }
   float divisor = at.w;
   float dividend = stored;
   if (map.meta.y == PELLUCID_SHADER_DEPTH_DEVICE) {
@@ -74,64 +69,83 @@ vec3 entrySlope(RecordMapConstants map, ivec2 texel, vec3 y, ivec2 axis, vec2 st
   return best;
 }
 
-// Where rays are parallel, steps along an axis of the map are `along` and a multiple of the ray: which, of whichever
-// neighbor is nearer, kNoDepth if there is none. `at`, `texels`: of the axis. along.w: of depth, see RecordMapConstants.
-float parallelSlope(RecordMapConstants map, int at, int texels, vec4 along, float own, vec2 stored) {
-  vec2 change = vec2(1.0, -1.0) * (stored - own) * map.ray.w + along.w;
-  float least = dot(along.xyz, along.xyz), across = 2.0 * dot(along.xyz, map.ray.xyz);
-  vec2 squared = least + change * (across + change * dot(map.ray.xyz, map.ray.xyz));
-  bool forward = at + 1 < texels && shadowHolds(map.meta, stored.x);
-  bool backward = at > 0 && shadowHolds(map.meta, stored.y);
+// Where rays are parallel, how much depth grows along a texel's step beyond what it does on a plane across the light,
+// to whichever neighbor is nearer; kNoDepth if there is none. `at`, `texels`: of the step's axis; `plane`: what depth
+// grows on a plane; `across`: twice the step times the ray; `grows`: to the neighbors forwards and backwards.
+float parallelSlope(int at, int texels, float plane, float squaredStep, float across, float ray2, vec2 grows) {
+  vec2 change = vec2(1.0, -1.0) * grows + plane;
+  vec2 squared = squaredStep + change * (across + change * ray2);
+  bool forward = at + 1 < texels && grows.x < kNoDepth, backward = at > 0 && grows.y < kNoDepth;
   // Less steep than 60 degrees: no edge.
-  if (forward && (!backward || squared.x < 4.0 * least || squared.x <= squared.y)) return change.x;
+  if (forward && (!backward || squared.x < 4.0 * squaredStep || squared.x <= squared.y)) return change.x;
   return backward ? change.y : kNoDepth;
 }
 
-// Not normalized; 0: no neighbor says. `stored`: as of shadowTexels.
-vec3 entryNormal(RecordMapConstants map, ivec2 texel, vec3 y, float stored[5], float squareX, float squareY) {
-  vec2 besideX = vec2(stored[1], stored[2]), besideY = vec2(stored[3], stored[4]);
-  if (perspective(map))
-    return cross(entrySlope(map, texel, y, ivec2(1, 0), besideX, squareX),
-                 entrySlope(map, texel, y, ivec2(0, 1), besideY, squareY));
-  vec3 stepX = map.stepX.xyz, stepY = map.stepY.xyz, ray = map.ray.xyz;
-  float x = parallelSlope(map, texel.x, int(map.map.x), map.stepX, stored[0], besideX);
-  float yy = parallelSlope(map, texel.y, int(map.map.y), map.stepY, stored[0], besideY);
-  if (x >= kNoDepth || yy >= kNoDepth) return vec3(0.0);
-  // (stepX + x ray) x (stepY + y ray)
-  return cross(stepX, stepY) + yy * cross(stepX, ray) + x * cross(ray, stepY);
-}
-
-uvec4 recordOf(RecordMapConstants map, ivec2 texel) {
-  float stored[5] = shadowTexels(map.meta.x, texel, ivec2(map.map.xy) - 1);
-  if (!shadowHolds(map.meta, stored[0])) return kNoRecord;
-  Record r;
-  vec3 y = entryPoint(map, texel, stored[0], r.depth);
-  if (!(abs(r.depth) < kNoDepth)) return kNoRecord;
-  LightConstants light = lights[map.map.w];
-  vec3 toLight = -light.direction.xyz;
-  float distanceTo = 0.0, scale = 1.0;
-  if (perspective(map)) {
-    toLight = map.ray.xyz - y;
-    distanceTo = length(toLight);
-    toLight /= max(distanceTo, 1.0e-12);
-    scale = r.depth * r.depth;
-  }
-  float squareX = scale * dot(map.stepX.xyz, map.stepX.xyz), squareY = scale * dot(map.stepY.xyz, map.stepY.xyz);
-  vec3 normal = entryNormal(map, texel, y, stored, squareX, squareY);
+// A record of what is known of its surface; normal: not normalized, 0 where no neighbor says.
+uvec4 recordOf(Record r, vec3 normal, vec3 toLight, ivec2 pixel, float planar, float tolerance) {
   float squared = dot(normal, normal);
+  r.normal = toLight;
+  r.inverseCosine = 1.0;
   if (squared > 0.0) {
     normal *= inversesqrt(squared);
     float cosine = dot(normal, toLight);
     r.normal = cosine < 0.0 ? -normal : normal;
     r.inverseCosine = 1.0 / max(abs(cosine), kLeastCosine);
-  } else {
-    r.normal = toLight;
-    r.inverseCosine = 1.0;
   }
-  r.enters = lightShare(light, toLight, distanceTo);
-  float tolerance = kSeenTolerance * sqrt(sqrt(squareX * squareY)) + map.bias.x;
-  if (cameraSees(y, r.normal, tolerance)) r.enters = 0.0;
+  if (cameraSees(pixel, planar, r.normal, tolerance)) r.enters = 0.0;
   return packRecord(r);
+}
+
+float toleranceOf(RecordMapConstants map, float squareX, float squareY) {
+  return kSeenTolerance * sqrt(sqrt(squareX * squareY)) + map.bias.x;
+}
+
+const ivec2 kNoPixel = ivec2(-1);
+
+uvec4 parallelRecord(RecordMapConstants map, ivec2 texel, float stored[5]) {
+  float grows[4];
+  [[unroll]] for (int i = 0; i < 4; ++i)
+    grows[i] = shadowHolds(map.meta, stored[i + 1]) ? (stored[i + 1] - stored[0]) * map.ray.w : 2.0 * kNoDepth;
+  vec2 p = vec2(texel) + 0.5;
+  Record r;
+  r.depth = stored[0] * map.ray.w + (map.origin.w + p.x * map.stepX.w + p.y * map.stepY.w);
+  r.enters = 1.0;
+  if (!(abs(r.depth) < kNoDepth)) return kNoRecord;
+  float squareX = dot(map.stepX.xyz, map.stepX.xyz), squareY = dot(map.stepY.xyz, map.stepY.xyz);
+  float ray2 = map.across[1].w;
+  float x = parallelSlope(texel.x, int(map.map.x), map.stepX.w, squareX, map.normal.w, ray2, vec2(grows[0], grows[1]));
+  float y = parallelSlope(texel.y, int(map.map.y), map.stepY.w, squareY, map.across[0].w, ray2, vec2(grows[2], grows[3]));
+  vec3 normal = vec3(0.0);
+  if (x < kNoDepth && y < kNoDepth) normal = map.normal.xyz + x * map.across[0].xyz + y * map.across[1].xyz;
+  vec4 q = vec4(p, r.depth, 1.0);
+  float w = dot(map.pixelW, q), planar = dot(map.planar, q);
+  ivec2 pixel = kNoPixel;
+  // Far outside stays outside after the conversion.
+  if (abs(w) > 0.0 && planar > 0.0)
+    pixel = ivec2(floor(clamp(vec2(dot(map.pixelX, q), dot(map.pixelY, q)) / w, vec2(-1.0e6), vec2(1.0e6))));
+  return recordOf(r, normal, -lights[map.map.w].direction.xyz, pixel, planar, toleranceOf(map, squareX, squareY));
+}
+
+uvec4 perspectiveRecord(RecordMapConstants map, ivec2 texel, float stored[5]) {
+  Record r;
+  vec3 y = entryPoint(map, texel, stored[0], r.depth);
+  if (!(abs(r.depth) < kNoDepth)) return kNoRecord;
+  vec3 toLight = map.ray.xyz - y;
+  float distanceTo = length(toLight), scale = r.depth * r.depth;
+  toLight /= max(distanceTo, 1.0e-12);
+  r.enters = lightShare(lights[map.map.w], toLight, distanceTo);
+  float squareX = scale * dot(map.stepX.xyz, map.stepX.xyz), squareY = scale * dot(map.stepY.xyz, map.stepY.xyz);
+  vec3 normal = cross(entrySlope(map, texel, y, ivec2(1, 0), vec2(stored[1], stored[2]), squareX),
+                      entrySlope(map, texel, y, ivec2(0, 1), vec2(stored[3], stored[4]), squareY));
+  ivec2 pixel;
+  if (!projectToPixel(frame.camera, y, pixel)) pixel = kNoPixel;
+  return recordOf(r, normal, toLight, pixel, y.z * frame.camera.range.x, toleranceOf(map, squareX, squareY));
+}
+
+uvec4 recordOf(RecordMapConstants map, ivec2 texel) {
+  float stored[5] = shadowTexels(map.meta.x, texel, ivec2(map.map.xy) - 1);
+  if (!shadowHolds(map.meta, stored[0])) return kNoRecord;
+  return perspective(map) ? perspectiveRecord(map, texel, stored) : parallelRecord(map, texel, stored);
 }
 
 shared uint someEnters;

@@ -180,6 +180,10 @@ struct RecordMapConstants {
   uvec4 meta;  // as ShadowConstants::meta
   uvec4 map;   // x, y: texels; z: how many a side for one record; w: the light, of lights[]
   vec4 bias;   // x: scene units
+  // Directional: dot products with (p, depth, 1) say what the camera sees it on: pixelX / pixelW, pixelY / pixelW and
+  // the planar distance. normal + x across[0] + y across[1] is the normal where depth grows by x and y beyond a plane's
+  // along the steps of p. w, normal: 2 stepX ray, across: 2 stepY ray and ray^2.
+  vec4 pixelX, pixelY, pixelW, planar, normal, across[2];
 };
 
 struct MaterialConstants {

@@ -235,7 +235,7 @@ extern "C" PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const
       if (!isGathered(f, l)) continue;
       const RecordExtent extent = recordExtent(f, l, i);
       const RecordConstants records =
-          recordConstants(s, l, constants, viewFromWorld, extent, row, group.lightCount - 1);
+          recordConstants(f, s, l, constants, viewFromWorld, extent, row, group.lightCount - 1);
       row += extent.height;
       put(mapped, layout.gatherMaps.offset + group.gatherMapBytes + shadow * sizeof records.gather,
           records.gather);

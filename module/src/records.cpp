@@ -29,9 +29,10 @@ RecordExtent recordExtent(const PellucidFrame& frame, const PellucidLight& light
   return {parts(maps[map].extent[0], side), parts(maps[map].extent[1], side), side};
 }
 
-RecordConstants recordConstants(const PellucidShadowMap& s, const PellucidLight& l,
-                                const shared::ShadowConstants& shadow, const glm::dmat4& viewFromWorld,
-                                RecordExtent extent, uint32_t row, uint32_t lightIndex) {
+RecordConstants recordConstants(const PellucidFrame& frame, const PellucidShadowMap& s,
+                                const PellucidLight& l, const shared::ShadowConstants& shadow,
+                                const glm::dmat4& viewFromWorld, RecordExtent extent, uint32_t row,
+                                uint32_t lightIndex) {
   const bool perspective = l.type != PELLUCID_LIGHT_DIRECTIONAL;
   const uint32_t encoding = shadow.meta.y;
   glm::dmat4 clip = toMatrix(s.clipFromWorld) * glm::inverse(viewFromWorld);
@@ -81,6 +82,20 @@ RecordConstants recordConstants(const PellucidShadowMap& s, const PellucidLight&
     affine(of, device ? clip[3][2] : static_cast<double>(shadow.planar.w), -scale);
     r.ray = glm::vec4(g[2], scale);
     c.gather.depth = glm::vec4(toLight, 0);
+    const glm::dvec3 ray = g[2];
+    r.normal = glm::vec4(glm::cross(stepX, stepY), 2 * glm::dot(stepX, ray));
+    r.across[0] = glm::vec4(glm::cross(ray, stepY), 2 * glm::dot(stepY, ray));
+    r.across[1] = glm::vec4(glm::cross(stepX, ray), glm::dot(ray, ray));
+    const glm::dmat4 clipFromView = toMatrix(frame.clipFromView);
+    DepthRange range{};
+    readDepthRange(clipFromView, &range);
+    const glm::dmat4 viewFromMap(glm::dvec4(stepX, 0), glm::dvec4(stepY, 0), glm::dvec4(ray, 0),
+                                 glm::dvec4(origin, 1));
+    const glm::dmat4 seen = glm::transpose(clipFromView * viewFromMap);
+    r.pixelX = glm::vec4(0.5 * frame.imageExtent[0] * (seen[0] + seen[3]));
+    r.pixelY = glm::vec4(0.5 * frame.imageExtent[1] * (seen[1] + seen[3]));
+    r.pixelW = glm::vec4(seen[3]);
+    r.planar = glm::vec4(range.forward * glm::transpose(viewFromMap)[2]);
   }
   r.meta = shadow.meta;
   r.map = {s.extent[0], s.extent[1], extent.side, lightIndex};

@@ -28,8 +28,9 @@ struct RecordConstants {
   shared::GatherMapConstants gather;
   shared::RecordMapConstants record;
 };
-RecordConstants recordConstants(const PellucidShadowMap& map, const PellucidLight& light,
-                                const shared::ShadowConstants& shadow, const glm::dmat4& viewFromWorld,
-                                RecordExtent extent, uint32_t row, uint32_t lightIndex);
+RecordConstants recordConstants(const PellucidFrame& frame, const PellucidShadowMap& map,
+                                const PellucidLight& light, const shared::ShadowConstants& shadow,
+                                const glm::dmat4& viewFromWorld, RecordExtent extent, uint32_t row,
+                                uint32_t lightIndex);
 
 }  // namespace pellucid
