@@ -16,6 +16,7 @@ void Report::add(const Row& row, const Time& time) {
     std::fprintf(table_, "%9.2g\n", *row.error);
   else
     std::fprintf(table_, "%9s\n", "-");
+  std::fflush(table_);  // a run that is stopped has shown what it measured
   nlohmann::json json = {{"section", section_},
                          {"name", row.name},
                          {"us", time.median},

@@ -165,15 +165,10 @@ void main() {
   [[unroll]] for (int i = 0; i < kRows + 2 * kRing; ++i)
     sources[i] = texelFetch(sourceImage, clamp(first + ivec2(0, i - kRing), ivec2(frame.rect.xy), last), 0);
 #ifdef GATHER
-  // By the last invocations, which load the least besides.
-  uint light = loadPoints(kInvocations - 1 - invocation, kInvocations, kLeastSide, 4 * firstTexel);
   if (invocation == 0) someLight = 0u;
 #endif
   if (invocation == 0) edgeCount = anySurface = 0u;
   barrier();
-#ifdef GATHER
-  if (light != 0u) atomicOr(someLight, light);
-#endif
   if (invocation < kWindow.x * kWindow.y) {
     resolved[invocation] = texel;
     shares[invocation] = texelShares;
@@ -197,6 +192,11 @@ void main() {
       vertical[(firstRow + i) * kColumns + column] = uvec2(packHalf2x16(sum.rg), packHalf2x16(vec2(sum.b, 0.0)));
 #endif
     }
+#ifdef GATHER
+    // Only now: beside all sources they would take registers, of which fewer groups would run.
+    uint light = loadPoints(kInvocations - 1 - invocation, kInvocations, kLeastSide, 4 * firstTexel);
+    if (light != 0u) atomicOr(someLight, light);
+#endif
     barrier();
 
     int x = column - kRing;

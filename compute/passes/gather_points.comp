@@ -214,38 +214,42 @@ bool pixelOf(ivec2 cell, int side, out int index, out uint material, out float f
 }
 
 struct Beside {
-  bool exists;
-  vec3 apart, turn; // change of position, scene units, and of the normal
+  ivec2 pixel;
+  float front;
+  vec4 normal; // as stored
 };
 
-// The surface that many pixels from x, if it goes on there.
-Beside besideOf(ivec2 pixel, Surface x, float reach) {
-  Beside b = Beside(false, vec3(0.0), vec3(0.0));
-  if (!insideRect(pixel)) return b;
-  float front = frontDistance(pixel);
-  vec3 normal = mat3(frame.viewFromNormal) * decodeNormal(texelFetch(normalImage, pixel, 0));
-  Surface s = makeSurface(viewRay(frame.camera, pixel), front, -1.0, normal);
-  b.apart = s.position - x.position;
-  b.turn = s.normal - x.normal;
-  b.exists = front > 0.0 && s.hasNormal && dot(b.apart, b.apart) < 9.0 * reach * reach;
-  return b;
+Beside besideAt(ivec2 pixel) {
+  ivec2 at = clamp(pixel, ivec2(frame.rect.xy), ivec2(frame.rect.zw) - 1);
+  return Beside(pixel, frontDistance(at), texelFetch(normalImage, at, 0));
 }
 
-// Of the surface around x, 1/mm, positive where convex; 0 where it does not go on. Neighboring cells look to opposite
+// Whether the surface goes on there; changes of position, scene units, and of the normal.
+bool goesOn(Beside b, Surface x, float reach, out vec3 apart, out vec3 turn) {
+  vec3 normal = mat3(frame.viewFromNormal) * decodeNormal(b.normal);
+  Surface s = makeSurface(viewRay(frame.camera, b.pixel), b.front, -1.0, normal);
+  apart = s.position - x.position;
+  turn = s.normal - x.normal;
+  return insideRect(b.pixel) && b.front > 0.0 && s.hasNormal && dot(apart, apart) < 9.0 * reach * reach;
+}
+
+// Pixels from one to those beside it from which its surface's curvature is known. Neighboring cells look to opposite
 // sides, so that what they share is centered.
-float meanCurvature(ivec2 cell, ivec2 pixel, Surface x, float front, float reachMm) {
-  float mm = frame.camera.range.w;
+ivec2 besideSteps(ivec2 cell, float front, float reachMm) {
   vec2 steps = clamp(reachMm / pixelSize(frame.camera, front) + 0.5, vec2(1.0), vec2(1.0e4));
-  ivec2 across = ivec2(steps) * (1 - 2 * (cell & 1));
-  float reach = max(reachMm / mm, 1.0e-30);
-  Beside a = besideOf(pixel + ivec2(across.x, 0), x, reach), b = besideOf(pixel + ivec2(0, across.y), x, reach);
-  if (!a.exists) a = besideOf(pixel - ivec2(across.x, 0), x, reach);
-  if (!b.exists) b = besideOf(pixel - ivec2(0, across.y), x, reach);
+  return ivec2(steps) * (1 - 2 * (cell & 1));
+}
+
+// Of the surface around x, 1/mm, positive where convex; 0 where it does not go on.
+float meanCurvature(ivec2 pixel, ivec2 steps, Beside across, Beside along, Surface x, float reachMm) {
+  float mm = frame.camera.range.w, reach = max(reachMm / mm, 1.0e-30);
+  vec3 a, turnA, b, turnB;
+  bool known = goesOn(across, x, reach, a, turnA) || goesOn(besideAt(pixel - ivec2(steps.x, 0)), x, reach, a, turnA);
+  known = known && (goesOn(along, x, reach, b, turnB) || goesOn(besideAt(pixel - ivec2(0, steps.y)), x, reach, b, turnB));
+  if (!known) return 0.0;
   // Trace of the map from steps to turns.
-  float area = dot(x.normal, cross(a.apart, b.apart));
-  float least = 0.1 * sqrt(dot(a.apart, a.apart) * dot(b.apart, b.apart));
-  if (!a.exists || !b.exists || !(abs(area) > least)) return 0.0;
-  return 0.5 * dot(x.normal, cross(a.turn, b.apart) + cross(a.apart, b.turn)) / (area * mm);
+  float area = dot(x.normal, cross(a, b)), least = 0.1 * sqrt(dot(a, a) * dot(b, b));
+  return abs(area) > least ? 0.5 * dot(x.normal, cross(turnA, b) + cross(a, turnB)) / (area * mm) : 0.0;
 }
 
 void gatherLights(Surface x, Pattern pattern, inout Point result) {
@@ -322,15 +326,22 @@ void main() {
     result.normal = x.hasNormal ? x.normal : -x.view;
     pattern = patternOf(cell, result.material - 1u, result.front);
   }
-  if (some && x.hasNormal && hasFlag(PELLUCID_FLAG_DIFFUSED)) {
-    vec4 convexity = materials[result.material - 1u].gather.convexity;
-    ivec2 pixel = pixelInCell(cell, side, result.index);
-    result.displaced = -convexity.rgb * meanCurvature(cell, pixel, x, result.front, convexity.w);
+  // Fetched before what is waited for.
+  bool curves = some && x.hasNormal && hasFlag(PELLUCID_FLAG_DIFFUSED);
+  ivec2 pixel = pixelInCell(cell, side, result.index), steps = ivec2(0);
+  vec4 convexity = vec4(0.0);
+  Beside across, along;
+  if (curves) {
+    convexity = materials[result.material - 1u].gather.convexity;
+    steps = besideSteps(cell, result.front, convexity.w);
+    across = besideAt(pixel + ivec2(steps.x, 0));
+    along = besideAt(pixel + ivec2(0, steps.y));
   }
   bool gathers = some;
 #ifdef DIRECTIONAL
   if (pass.value.y == 1u) gathers = lightEntersNear(some, x, max(result.material, 1u) - 1u, pattern);
 #endif
+  if (curves) result.displaced = -convexity.rgb * meanCurvature(pixel, steps, across, along, x, convexity.w);
   if (gathers) gatherLights(x, pattern, result);
   if (some && (pass.value.z & 1u) != 0u) {
     Point before = unpackPoint(imageLoad(pointsImage, cell));
