@@ -33,9 +33,9 @@ public:
   // Sideways decay of a slab, 1/mm: sqrt(kappa^2 + (pi / (h + extrapolation))^2).
   double decay(int channel, double depth) const;
 
-  // How much more of the diffused light comes back per mean curvature, mm: -d ln rho / d kappa, as the light
-  // under a convex surface decays with kappa - H. From (1 - rho) / (1 + rho) ~ kappa, less what the boundary
-  // reflects, which T(0) = (1 - F) / (1 + F) gives.
+  // How much more of the diffused light comes back per mean curvature, mm: -d ln rho / d kappa of small
+  // losses, as the light under a convex surface decays with kappa - H. From (1 - rho) / (1 + rho) ~ kappa,
+  // less what the boundary reflects, which T(0) = (1 - F) / (1 + F) gives.
   glm::dvec3 convexity() const;
 
   // Distance beyond which `transmitted` of every channel integrates to less than `share` of T(0) over a

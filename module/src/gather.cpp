@@ -51,9 +51,10 @@ Channel channelOf(const PellucidMaterial& m, int index) {
 // (1 - rho) / (1 + rho)
 double lossOf(double rho) { return (1 - rho) / (1 + rho); }
 
-// -d ln rho / d kappa, mm. On a convex surface what diffuses decays like that of a plane with kappa - H, H
-// the mean curvature: of a sphere kappa coth(kappa R) - 1 / R. The loss of a half-space goes like kappa, but
-// for what the boundary keeps out: a slab without thickness says how much that is.
+// How much more of the light comes back per mean curvature, mm: -d ln rho / d kappa of small losses. On a
+// convex surface what diffuses decays like that of a plane with kappa - H, H the mean curvature: of a sphere
+// kappa coth(kappa R) - 1 / R. The loss of a half-space goes like kappa, but for what the boundary keeps out:
+// a slab without thickness says how much that is.
 double convexity(const Channel& c, double rho) {
   const double outside = lossOf(std::clamp(c.transmittance(0), 0.5, 1.0));
   return std::max(lossOf(std::clamp(rho, 0.0, 1.0)) - lossOf(1 - outside), 0.0) * 2 / c.slowest;
@@ -87,8 +88,8 @@ shared::GatherConstants gatherConstants(const PellucidMaterial& m, uint32_t samp
   const double shortest = 1 / fastest, longest = std::max(2.0 / 3 / slowest, shortest);
   const double depthScale = 0.5 / slowest;
   g.lengths = {0, 0, static_cast<float>(2 / slowest), static_cast<float>(depthScale)};
-  // How much further than the nearest point of the lit surface the share u of the samples lies, at most: exponential,
-  // of a length that grows with u.
+  // How much further than the nearest point of the lit surface the share u of the samples lies, at most:
+  // exponential, of a length that grows with u.
   const auto spread = [&](double u) {
     return static_cast<float>(-std::log(1 - u) * shortest * std::pow(longest / shortest, u));
   };
