@@ -299,7 +299,7 @@ bool lightEntersNear(bool some, Surface x, uint m, Pattern pattern) {
   bool lit = !holdsSurface(bits) || distanceAhead(true, unpackRecord(bits).depth, point.z) <= 0.0;
   float t = lit ? 0.0 : lengths.z, reach = t + sqrt(gatherSquaredRadius(t, spread));
   vec3 column = maps[0].column.xyz, row = maps[0].row.xyz;
-  reach *= sqrt(max(dot(column, column), dot(row, row))) / frame.camera.range.w;
+  reach = min(reach * sqrt(max(dot(column, column), dot(row, row))) / frame.camera.range.w, 1.0e6);
   ivec2 low = ivec2(floor((point.xy - reach) / float(kSummarySide))) - corner;
   ivec2 high = ivec2(floor((point.xy + reach) / float(kSummarySide))) - corner;
   if (any(lessThan(low, ivec2(0))) || any(greaterThanEqual(high, ivec2(GROUP_SIDE)))) return true;
