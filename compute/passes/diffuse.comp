@@ -50,6 +50,16 @@ vec3 fineSum(vec3 a, vec3 b, vec3 c, vec3 d, vec3 e) {
 // Whether a texel and all around it lie on one plane.
 bool isFlat(uvec4 texel) { return coverageBits(texel) == kFlatCoverage; }
 
+#ifdef GATHER
+// A pixel before light is added to it: as halves, since the light comes when the registers of all else are free.
+uvec2 packedColor(vec3 color, float alpha) {
+  color = roundToHalf(color);
+  return uvec2(packHalf2x16(color.rg), packHalf2x16(vec2(color.b, alpha)));
+}
+
+vec4 unpackedColor(uvec2 packed) { return vec4(unpackHalf2x16(packed.x), unpackHalf2x16(packed.y)); }
+#endif
+
 void store(ivec2 pixel, vec3 color, float alpha) {
   if (pass.value.w != 0u && hasFlag(PELLUCID_FLAG_ALBEDO))
     color = sanitize(color * sanitize(texelFetch(albedoImage, pixel, 0).rgb));
@@ -213,9 +223,6 @@ void main() {
                        splineX.z * unpackColor(resolved[row + 2].xy);
         }
         PixelShares share = unpackShares(shares[index + kWindow.x + 1].xyz);
-#ifdef GATHER
-        vec3 results[4];
-#endif
         [[unroll]] for (int i = 0; i < 4; ++i) {
           vec3 splineY = spline(0.25 * (float(i) - 1.5));
           vec3 smoothed = splineY.x * coarser[0] + splineY.y * coarser[1] + splineY.z * coarser[2];
@@ -227,15 +234,27 @@ void main() {
 #endif
           color = mix(color, smoothed, share.coarser);
 #ifdef GATHER
-          results[i] = color;
+          own[4 * block + i] = packedColor(color, blue.y);
 #else
           store(4 * firstTexel + ivec2(x, 4 * texelRow + i), color, blue.y);
 #endif
         }
 #ifdef GATHER
-        if (someLight != 0u) addToPlane(ivec2(x, 4 * texelRow), results);
-        [[unroll]] for (int i = 0; i < 4; ++i)
-          store(4 * firstTexel + ivec2(x, 4 * texelRow + i), results[i], unpackHalf2x16(own[4 * block + i].y).y);
+        ivec2 local = ivec2(x, 4 * texelRow);
+        vec3 first = vec3(0.0), step = vec3(0.0);
+        if ((someLight & kSomeDisplaced) != 0u) {
+          displacedOfPlane(local, first, step);
+          [[unroll]] for (int i = 0; i < 4; ++i) {
+            vec4 color = unpackedColor(own[4 * block + i]);
+            own[4 * block + i] = packedColor(color.rgb - color.rgb * (first + float(i) * step), color.a);
+          }
+        }
+        first = step = vec3(0.0);
+        if (someLight != 0u) addedOfPlane(local, first, step);
+        [[unroll]] for (int i = 0; i < 4; ++i) {
+          vec4 color = unpackedColor(own[4 * block + i]);
+          store(4 * firstTexel + local + ivec2(0, i), min(color.rgb + first + float(i) * step, vec3(kLargestHalf)), color.a);
+        }
 #endif
       }
     }

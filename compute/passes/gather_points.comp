@@ -116,8 +116,7 @@ vec3 onRing(vec3 center, vec3 across, vec3 along, vec2 offset) { return center +
 
 // Which of the patterns a cell takes. Where points are too far apart to share, all take the middle one.
 struct Pattern {
-  uint index;
-  float turn; // [0, 1): of the first sample
+  float within, turn; // [0, 1): place in a ring, turn of the first sample
 };
 
 Pattern patternOf(ivec2 cell, uint m, float front) {
@@ -125,14 +124,7 @@ Pattern patternOf(ivec2 cell, uint m, float front) {
   float vary = clamp(2.0 - dot(spacing, spacing) * materials[m].gather.profile.w, 0.0, 1.0);
   ivec2 at = cell % 3;
   int pattern = (at.x + 3 * at.y) * 4 % 9; // fills the strata, and the turn between a sample and its like
-  return Pattern(uint(4.5 + vary * (float(pattern) - 4.0)), vary * float(at.x + 3 * at.y) / 9.0);
-}
-
-// How much further than the nearest point of the lit surface the sample of a ring lies, or its end, mm.
-const uint kRingEnd = PELLUCID_GATHER_PATTERNS;
-
-float gatherSpread(uint m, uint ring, uint pattern) {
-  return materials[m].gather.spread[3u * ring + (pattern >> 2)][pattern & 3u];
+  return Pattern(0.5 + vary * (float(pattern) - 4.0) / 9.0, vary * float(at.x + 3 * at.y) / 9.0);
 }
 
 // From points of the light's maps.
@@ -152,13 +144,13 @@ Gathered gatherLight(uint m, LightConstants light, Surface x, Pattern pattern) {
   vec3 pointAcross = mapPoint(rings.map, vec4(across / mm, 0.0)), pointAlong = mapPoint(rings.map, vec4(along / mm, 0.0));
   vec2 direction = vec2(cos(6.28318531 * pattern.turn), sin(6.28318531 * pattern.turn));
   uint samples = pass.value.w;
-  float inner = 0.0;
+  float perSample = 1.0 / float(samples), inner = 0.0;
   Sample next;
   [[dont_unroll]] for (uint i = 0u; i <= samples; ++i) {
     // One ahead, so that its latency is hidden.
     Sample now = next;
     if (i < samples) {
-      next.offset = sqrt(gatherSquaredRadius(rings.t, gatherSpread(m, i, pattern.index))) * direction;
+      next.offset = sqrt(gatherSquaredRadius(rings.t, gatherSpread(lengths, (float(i) + pattern.within) * perSample))) * direction;
       direction = mat2(-0.73736888, 0.67549029, -0.67549029, -0.73736888) * direction; // the golden angle
       vec3 at = point + next.offset.x * pointAcross + next.offset.y * pointAlong;
       // A cube's seams are no borders.
@@ -168,7 +160,7 @@ Gathered gatherLight(uint m, LightConstants light, Surface x, Pattern pattern) {
     }
     if (i == 0u) continue;
     float from = inner;
-    inner = i == samples ? kLastRing : gatherSquaredRadius(rings.t, gatherSpread(m, i - 1u, kRingEnd));
+    inner = i == samples ? kLastRing : gatherSquaredRadius(rings.t, gatherSpread(lengths, float(i) * perSample));
     if (!lightEnters(now.bits)) continue;
     Record record = unpackRecord(now.bits);
     float ahead = distanceAhead(parallel, record.depth, now.depth);
@@ -295,7 +287,7 @@ bool lightEntersNear(bool some, Surface x, uint m, Pattern pattern) {
   if (!contained) return false;
   // The furthest sample, mm: around x itself where that is lit, else around whatever axis.
   vec4 lengths = materials[m].gather.lengths;
-  float spread = gatherSpread(m, pass.value.w - 1u, pattern.index);
+  float samples = float(pass.value.w), spread = gatherSpread(lengths, (samples - 1.0 + pattern.within) / samples);
   bool lit = !holdsSurface(bits) || distanceAhead(true, unpackRecord(bits).depth, point.z) <= 0.0;
   float t = lit ? 0.0 : lengths.z, reach = t + sqrt(gatherSquaredRadius(t, spread));
   vec3 column = maps[0].column.xyz, row = maps[0].row.xyz;

@@ -1,6 +1,5 @@
 // Records of a dispatch's shadow maps, below each other in one image.
 #version 460
-#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
@@ -102,19 +101,20 @@ float toleranceOf(RecordMapConstants map, float squareX, float squareY) {
 
 const ivec2 kNoPixel = ivec2(-1);
 
-uvec4 parallelRecord(RecordMapConstants map, ivec2 texel, float stored[5]) {
-  float grows[4];
-  [[unroll]] for (int i = 0; i < 4; ++i)
-    grows[i] = shadowHolds(map.meta, stored[i + 1]) ? (stored[i + 1] - stored[0]) * map.ray.w : 2.0 * kNoDepth;
+uvec4 parallelRecord(RecordMapConstants map, ivec2 texel, ShadowTexels stored) {
+  vec4 beside = stored.beside;
+  bvec4 holds = bvec4(shadowHolds(map.meta, beside.x), shadowHolds(map.meta, beside.y), shadowHolds(map.meta, beside.z),
+                      shadowHolds(map.meta, beside.w));
+  vec4 grows = mix(vec4(2.0 * kNoDepth), (beside - stored.own) * map.ray.w, holds);
   vec2 p = vec2(texel) + 0.5;
   Record r;
-  r.depth = stored[0] * map.ray.w + (map.origin.w + p.x * map.stepX.w + p.y * map.stepY.w);
+  r.depth = stored.own * map.ray.w + (map.origin.w + p.x * map.stepX.w + p.y * map.stepY.w);
   r.enters = 1.0;
   if (!(abs(r.depth) < kNoDepth)) return kNoRecord;
   float squareX = dot(map.stepX.xyz, map.stepX.xyz), squareY = dot(map.stepY.xyz, map.stepY.xyz);
   float ray2 = map.across[1].w;
-  float x = parallelSlope(texel.x, int(map.map.x), map.stepX.w, squareX, map.normal.w, ray2, vec2(grows[0], grows[1]));
-  float y = parallelSlope(texel.y, int(map.map.y), map.stepY.w, squareY, map.across[0].w, ray2, vec2(grows[2], grows[3]));
+  float x = parallelSlope(texel.x, int(map.map.x), map.stepX.w, squareX, map.normal.w, ray2, grows.xy);
+  float y = parallelSlope(texel.y, int(map.map.y), map.stepY.w, squareY, map.across[0].w, ray2, grows.zw);
   vec3 normal = vec3(0.0);
   if (x < kNoDepth && y < kNoDepth) normal = map.normal.xyz + x * map.across[0].xyz + y * map.across[1].xyz;
   vec4 q = vec4(p, r.depth, 1.0);
@@ -126,25 +126,25 @@ uvec4 parallelRecord(RecordMapConstants map, ivec2 texel, float stored[5]) {
   return recordOf(r, normal, -lights[map.map.w].direction.xyz, pixel, planar, toleranceOf(map, squareX, squareY));
 }
 
-uvec4 perspectiveRecord(RecordMapConstants map, ivec2 texel, float stored[5]) {
+uvec4 perspectiveRecord(RecordMapConstants map, ivec2 texel, ShadowTexels stored) {
   Record r;
-  vec3 y = entryPoint(map, texel, stored[0], r.depth);
+  vec3 y = entryPoint(map, texel, stored.own, r.depth);
   if (!(abs(r.depth) < kNoDepth)) return kNoRecord;
   vec3 toLight = map.ray.xyz - y;
   float distanceTo = length(toLight), scale = r.depth * r.depth;
   toLight /= max(distanceTo, 1.0e-12);
   r.enters = lightShare(lights[map.map.w], toLight, distanceTo);
   float squareX = scale * dot(map.stepX.xyz, map.stepX.xyz), squareY = scale * dot(map.stepY.xyz, map.stepY.xyz);
-  vec3 normal = cross(entrySlope(map, texel, y, ivec2(1, 0), vec2(stored[1], stored[2]), squareX),
-                      entrySlope(map, texel, y, ivec2(0, 1), vec2(stored[3], stored[4]), squareY));
+  vec3 normal = cross(entrySlope(map, texel, y, ivec2(1, 0), stored.beside.xy, squareX),
+                      entrySlope(map, texel, y, ivec2(0, 1), stored.beside.zw, squareY));
   ivec2 pixel;
   if (!projectToPixel(frame.camera, y, pixel)) pixel = kNoPixel;
   return recordOf(r, normal, toLight, pixel, y.z * frame.camera.range.x, toleranceOf(map, squareX, squareY));
 }
 
 uvec4 recordOf(RecordMapConstants map, ivec2 texel) {
-  float stored[5] = shadowTexels(map.meta.x, texel, ivec2(map.map.xy) - 1);
-  if (!shadowHolds(map.meta, stored[0])) return kNoRecord;
+  ShadowTexels stored = shadowTexels(map.meta.x, texel, ivec2(map.map.xy) - 1);
+  if (!shadowHolds(map.meta, stored.own)) return kNoRecord;
   return perspective(map) ? perspectiveRecord(map, texel, stored) : parallelRecord(map, texel, stored);
 }
 

@@ -81,17 +81,22 @@ vec3 displacedBetween(int at, float fraction) {
   return mix(displacedOf(points[at]), displacedOf(points[at + 1]), fraction);
 }
 
-// Four pixels below each other, the column of cells of 4 x 4 pixels from `local` on. They and those around are one
-// surface, so that points need no test. Points are as they were loaded.
-void addToPlane(ivec2 local, inout vec3 diffused[4]) {
-  int at = (local.y >> 2) * pointRow(4) + (local.x >> 2), next = at + pointRow(4);
+// Of four pixels below each other, the column of a cell of 4 x 4 pixels: that of the first one at `local`, and steps. The
+// cell and those around are one surface, so that points need no test. They are as they were loaded.
+int planePoint(ivec2 local) { return (local.y >> 2) * pointRow(4) + (local.x >> 2); }
+
+void addedOfPlane(ivec2 local, out vec3 first, out vec3 step) {
+  int at = planePoint(local);
   float across = 0.25 * float(local.x & 3);
-  if ((someLight & kSomeDisplaced) != 0u) {
-    vec3 share = displacedBetween(at, across), step = 0.25 * (displacedBetween(next, across) - share);
-    [[unroll]] for (int i = 0; i < 4; ++i) diffused[i] -= diffused[i] * (share + float(i) * step);
-  }
-  vec3 light = addedBetween(at, across), step = 0.25 * (addedBetween(next, across) - light);
-  [[unroll]] for (int i = 0; i < 4; ++i) diffused[i] = min(diffused[i] + light + float(i) * step, vec3(kLargestHalf));
+  first = addedBetween(at, across);
+  step = 0.25 * (addedBetween(at + pointRow(4), across) - first);
+}
+
+void displacedOfPlane(ivec2 local, out vec3 first, out vec3 step) {
+  int at = planePoint(local);
+  float across = 0.25 * float(local.x & 3);
+  first = displacedBetween(at, across);
+  step = 0.25 * (displacedBetween(at + pointRow(4), across) - first);
 }
 
 // D with what is linear between the four points around the pixel `local`, as far as they are of its material and it

@@ -25,12 +25,18 @@ float shadowTexel(uint image, ivec2 texel) {
   }
 }
 
-#define PELLUCID_TEXELS(image)                                                                                      \
-  float[5](texelFetch(image, texel, 0).x, texelFetch(image, right, 0).x, texelFetch(image, left, 0).x,               \
-           texelFetch(image, below, 0).x, texelFetch(image, above, 0).x)
+// A texel, and those to the right, to the left, below and above it.
+struct ShadowTexels {
+  float own;
+  vec4 beside;
+};
 
-// A texel (x) and its neighbors to the right, to the left, below and above; `most`: the last texel of the image.
-float[5] shadowTexels(uint image, ivec2 texel, ivec2 most) {
+#define PELLUCID_TEXELS(image)                                                                                       \
+  ShadowTexels(texelFetch(image, texel, 0).x, vec4(texelFetch(image, right, 0).x, texelFetch(image, left, 0).x,      \
+                                                   texelFetch(image, below, 0).x, texelFetch(image, above, 0).x))
+
+// `most`: the last texel of the image.
+ShadowTexels shadowTexels(uint image, ivec2 texel, ivec2 most) {
   ivec2 right = ivec2(min(texel.x + 1, most.x), texel.y), left = ivec2(max(texel.x - 1, 0), texel.y);
   ivec2 below = ivec2(texel.x, min(texel.y + 1, most.y)), above = ivec2(texel.x, max(texel.y - 1, 0));
   switch (image) {

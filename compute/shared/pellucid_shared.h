@@ -93,8 +93,6 @@ using glm::vec4;
 
 #define PELLUCID_GAUSSIANS 8
 #define PELLUCID_GATHER_ENTRIES 64
-#define PELLUCID_GATHER_SAMPLES 64  // the most
-#define PELLUCID_GATHER_PATTERNS 9 // of points that share
 
 // The diffusion pyramid's levels are 1..LAST_LEVEL; a texel of the last one is 128 pixels wide.
 #define PELLUCID_LAST_LEVEL 7
@@ -157,11 +155,10 @@ struct DirectionalConstants {
 
 // Of the light-space gather; see lib/gather.glsl. rgb: per channel.
 struct GatherConstants {
-  vec4 lengths; // mm; z: largest distance looked for; w: depth scale
+  vec4 lengths; // mm; x: shortest; y: log2(longest / shortest); z: largest distance looked for; w: depth scale
   vec4 profile; // rgb: 1/(3 d) of Burley's profile, 0: none, 1/mm; w: sharing between points, 1/mm^2
   vec4 convexity; // rgb: how much more of the light comes back, per mean curvature, mm; w: where that is measured, mm
   vec4 entries[3 * PELLUCID_GATHER_ENTRIES]; // see GatherEntry
-  vec4 spread[3 * PELLUCID_GATHER_SAMPLES]; // of the frame's samples, see gatherSpread in gather_points.comp
 };
 
 // A shadow map where its records lie; compute/passes/records.glsl. Of a view-space point (x, 1):

@@ -31,7 +31,6 @@ static_assert(PELLUCID_SHADER_ANGLE_POLYNOMIAL == PELLUCID_ANGLE_POLYNOMIAL);
 static_assert(PELLUCID_SHADER_DEBUG_THICKNESS == PELLUCID_DEBUG_THICKNESS);
 static_assert(PELLUCID_SHADER_DEBUG_TRANSMITTANCE == PELLUCID_DEBUG_TRANSMITTANCE);
 static_assert(PELLUCID_SHADER_DEBUG_OCCLUSION == PELLUCID_DEBUG_OCCLUSION);
-static_assert(PELLUCID_GATHER_PATTERNS == 9, "and one more number in GatherConstants::spread");
 static_assert(PELLUCID_GAUSSIANS == PELLUCID_MAX_GAUSSIANS);
 static_assert(PELLUCID_MAX_LIGHT_SHADOW_MAPS <= PELLUCID_SHADOW_IMAGE_COUNT);
 
@@ -170,11 +169,11 @@ shared::DirectionalConstants directionalConstants(const shared::FrameConstants& 
   return c;
 }
 
-shared::MaterialConstants materialConstants(const PellucidMaterial& m, uint32_t gatherSamples) {
+shared::MaterialConstants materialConstants(const PellucidMaterial& m, bool gathers) {
   shared::MaterialConstants c{};
   c.meta = {m.transmittanceModel, m.gaussianCount, 0, 0};
   const float exponent = m.transmittanceModel == PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED ? 1.0f : 0.5f;
-  if (gatherSamples > 0) c.gather = gatherConstants(m, gatherSamples);
+  if (gathers) c.gather = gatherConstants(m);
   for (int channel = 0; channel < 3; ++channel) {
     const float* t = m.transmittance[channel];
     // The shader reads a, kappa, z, b and c of SINH_EXP as xyzw and the fifth.
@@ -246,7 +245,7 @@ extern "C" PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const
   forEachLightGroup(f, eachLight, [](const LightGroup&) {});
   for (uint32_t i = 0; i < f.materialCount; ++i) {
     put(mapped, layout.materials.offset + i * sizeof(shared::MaterialConstants),
-        materialConstants(f.materials[i], gathers(f) ? f.gatherSamples : 0));
+        materialConstants(f.materials[i], gathers(f)));
     put(mapped, layout.kernels.offset + i * sizeof(shared::KernelConstants),
         kernelConstants(f.materials[i], plan->quality > 0));
   }

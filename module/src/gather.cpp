@@ -75,7 +75,7 @@ double profileLength(const PellucidMaterial& m, int channel) {
 
 }  // namespace
 
-shared::GatherConstants gatherConstants(const PellucidMaterial& m, uint32_t samples) {
+shared::GatherConstants gatherConstants(const PellucidMaterial& m) {
   shared::GatherConstants g{};
   std::array<Channel, 3> channels;
   double slowest = INFINITY, fastest = 0;
@@ -87,18 +87,8 @@ shared::GatherConstants gatherConstants(const PellucidMaterial& m, uint32_t samp
   // Measured: samples spread between these lengths err least on ears and spheres.
   const double shortest = 1 / fastest, longest = std::max(2.0 / 3 / slowest, shortest);
   const double depthScale = 0.5 / slowest;
-  g.lengths = {0, 0, static_cast<float>(2 / slowest), static_cast<float>(depthScale)};
-  // How much further than the nearest point of the lit surface the share u of the samples lies, at most:
-  // exponential, of a length that grows with u.
-  const auto spread = [&](double u) {
-    return static_cast<float>(-std::log(1 - u) * shortest * std::pow(longest / shortest, u));
-  };
-  for (uint32_t i = 0; i < samples; ++i) {
-    for (uint32_t k = 0; k < PELLUCID_GATHER_PATTERNS; ++k)
-      g.spread[3 * i + k / 4][k % 4] = spread((i + (k + 0.5) / PELLUCID_GATHER_PATTERNS) / samples);
-    // The ring's own end; the last one has none.
-    if (i + 1 < samples) g.spread[3 * i + 2][1] = spread((i + 1.0) / samples);
-  }
+  g.lengths = {static_cast<float>(shortest), static_cast<float>(std::log2(longest / shortest)),
+               static_cast<float>(2 / slowest), static_cast<float>(depthScale)};
   std::array<glm::vec4, kEntries> slab{}, decay{};
   for (int c = 0; c < 3; ++c) {
     const double d = profileLength(m, c);

@@ -7,6 +7,6 @@
 namespace pellucid {
 
 // Of a material whose transmittance is EXP2 or SINH_EXP.
-shared::GatherConstants gatherConstants(const PellucidMaterial& material, uint32_t samples);
+shared::GatherConstants gatherConstants(const PellucidMaterial& material);
 
 }  // namespace pellucid
