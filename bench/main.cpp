@@ -7,18 +7,16 @@
 #include <fstream>
 #include <set>
 
-#include "baselines/baselines.h"
 #include "commit.h"
-#include "common/compare.h"
 #include "common/error.h"
-#include "common/plot.h"
+#include "diffusions.h"
 #include "floor.h"
 #include "pellucid/pellucid_material.h"
-#include "reference/reference.h"
 #include "report.h"
 #include "scene.h"
 #include "scene/scene.h"
 #include "steps.h"
+#include "sweep.h"
 
 namespace {
 
@@ -26,34 +24,29 @@ using namespace pellucid::harness;
 using namespace pellucid::bench;
 
 struct Options {
-  std::string device, json, plot;
+  std::string device, json;
+  std::filesystem::path plot;
   bool ratios = false;
   std::pair<int, int> size = {1280, 720};
   int repeat = 30;
   std::vector<double> coverage = {100, 25, 0};  // percent
   std::set<std::string> tables = {"module", "fused", "gather", "steps", "diffusion"};
   double radius = 40;  // pixels
+  SweepOptions sweep;
 };
 
 struct Bench {
   const Options& options;
-  Device& device;
-  const Context& context;
-  PellucidMaterial material;
-  double pixel;  // mm
+  const Site& site;
   Report& report;
 
-  std::shared_ptr<const BenchFrame> frame(const Capture& capture, ReplaySettings settings) const {
-    settings.normalFormat = VK_FORMAT_R16G16B16A16_SFLOAT;  // no engine keeps floats
-    return std::make_shared<BenchFrame>(device, context, capture, material, settings);
+  std::shared_ptr<const BenchFrame> frame(const Capture& capture, const ReplaySettings& settings) const {
+    return site.frame(capture, settings);
   }
-  Capture fullSlab() const { return slab(options.size.first, options.size.second, 1, pixel); }
-  Image run(const Variant& variant) const {
-    device.run(variant.record);
-    return variant.output();
-  }
+  Capture fullSlab() const { return slab(options.size.first, options.size.second, 1, site.pixel); }
+  Image run(const Variant& variant) const { return site.run(variant); }
   Time time(const std::function<void(VkCommandBuffer)>& record) const {
-    return measure(device, options.repeat, record);
+    return measure(site.device, options.repeat, record);
   }
   Time row(const Variant& v, std::optional<double> error) const {
     const Time t = time(v.record);
@@ -77,25 +70,11 @@ void requireRightAnswer(const Bench& bench) {
   const Capture c = slab(64, 48, 1, 0.1);
   const Image out = bench.run(moduleVariant(bench.frame(c, settings), ""));
   const double expected =
-      static_cast<double>(c.irradiance.data[0]) + pellucidEvaluateTransmittance(&bench.material, 0, 2) /
-                                                      static_cast<double>(bench.material.reflectance[0]);
+      static_cast<double>(c.irradiance.data[0]) + pellucidEvaluateTransmittance(&bench.site.material, 0, 2) /
+                                                      static_cast<double>(bench.site.material.reflectance[0]);
   if (!(std::abs(static_cast<double>(out.data[0]) - expected) < 1e-4))
     throw DeviceError("the fused dispatch gives " + std::to_string(out.data[0]) + " and not " +
                       std::to_string(expected));
-}
-
-// Root mean square over the channels of the relative RMSE of `image`, where there is a material. Throws
-// DeviceError beyond `limit`: a wrong pass is not worth timing.
-double requireNear(const Variant& v, const Image& image, const Image& truth, const Capture& capture,
-                   double limit) {
-  const Comparison c =
-      compareImages(image, truth, comparisonMask(capture.material, capture.irradiance, Subset::All));
-  double sum = 0;
-  for (const ChannelDifference& k : c.channels) sum += k.relativeRmse * k.relativeRmse;
-  const double error = std::sqrt(sum / static_cast<double>(c.channels.size()));
-  if (!(error <= limit) || c.nonFiniteA > 0)
-    throw DeviceError(v.name + " on \"" + capture.name + "\" is off by " + std::to_string(error));
-  return error;
 }
 
 // One row for each dispatch of the frame's plan.
@@ -116,7 +95,7 @@ void modulePlans(const Bench& bench) {
     char title[64];
     std::snprintf(title, sizeof title, "module, %g %% covered", coverage);
     bench.report.section(title);
-    const auto frame = bench.frame(slab(width, height, coverage / 100, bench.pixel), {});
+    const auto frame = bench.frame(slab(width, height, coverage / 100, bench.site.pixel), {});
     dispatches(bench, *frame);
     bench.row(moduleVariant(frame, "whole frame"), {});
   }
@@ -191,73 +170,14 @@ void separateSteps(const Bench& bench) {
     bench.row(timed[i], requireNear(checked[i], bench.run(checked[i]), truth, ear, 2e-3));
 }
 
-struct Point {
-  std::string name;
-  double error, time;
-};
-
-std::vector<Variant> diffusions(const Bench& bench, const Capture& capture) {
-  ReplaySettings settings;
-  settings.features = PELLUCID_FEATURE_DIFFUSION;
-  const auto frame = bench.frame(capture, settings);
-  settings.quality = 0;
-  std::vector<Variant> all = {moduleVariant(bench.frame(capture, settings), "Pellucid, quality 0"),
-                              moduleVariant(frame, "Pellucid, qualities 1 to 3")};
-  for (Variant& v : baselines(frame)) all.push_back(std::move(v));
-  return all;
-}
-
-// Errors against the float64 reference, the largest of the scenes'.
-std::vector<Point> diffusion(const Bench& bench) {
+std::vector<TimedError> diffusion(const Bench& bench) {
   bench.report.section("diffusion; error: from brute force");
-  std::vector<double> errors;
-  for (const ErrorScene& scene : errorScenes()) {
-    const Capture capture = makeErrorCapture(scene, 96, bench.pixel);
-    reference::Settings settings;
-    settings.features = PELLUCID_FEATURE_DIFFUSION;
-    const Image truth = reference::compute(capture, {bench.material}, settings).image;
-    const std::vector<Variant> variants = diffusions(bench, capture);
-    errors.resize(variants.size());
-    for (size_t i = 0; i < variants.size(); ++i)
-      errors[i] = std::max(errors[i], requireNear(variants[i], bench.run(variants[i]), truth, capture, 0.5));
-  }
-  std::vector<Point> points;
-  const std::vector<Variant> timed = diffusions(bench, bench.fullSlab());
+  const std::vector<double> errors = diffusionErrors(bench.site);
+  std::vector<TimedError> points;
+  const std::vector<Variant> timed = diffusions(bench.site, bench.fullSlab());
   for (size_t i = 0; i < timed.size(); ++i)
     points.push_back({timed[i].name, errors[i], bench.row(timed[i], errors[i]).median});
   return points;
-}
-
-// A logarithmic axis from decade to decade.
-Axis decades(const std::string& label, const std::vector<Point>& points, double Point::*value) {
-  const auto [low, high] = std::minmax_element(
-      points.begin(), points.end(), [&](const Point& a, const Point& b) { return a.*value < b.*value; });
-  return {label, true, std::pow(10, std::floor(std::log10(*low.*value))),
-          std::pow(10, std::ceil(std::log10(*high.*value)))};
-}
-
-// A family of variants is a color: what stands before the comma of its members' names.
-void plotDiffusion(const std::filesystem::path& folder, const std::vector<Point>& points,
-                   const std::string& device) {
-  const Color colors[] = {{200, 30, 30}, {30, 90, 200}, {20, 140, 60}, {150, 80, 160}};
-  Plot plot;
-  plot.title = device;
-  plot.x = decades("relative RMSE from brute force", points, &Point::error);
-  plot.y = decades("microseconds", points, &Point::time);
-  for (const Point& p : points) {
-    const std::string family = p.name.substr(0, p.name.find(','));
-    if (plot.series.empty() || plot.series.back().name != family) {
-      Series s;
-      s.name = family;
-      s.color = colors[plot.series.size() % std::size(colors)];
-      s.points = true;
-      plot.series.push_back(s);
-    }
-    plot.series.back().x.push_back(p.error);
-    plot.series.back().y.push_back(p.time);
-  }
-  std::filesystem::create_directories(folder);
-  writePlot(folder / "diffusion.png", {plot});
 }
 
 void bench(const Options& options) {
@@ -269,7 +189,8 @@ void bench(const Options& options) {
   std::FILE* table = options.json == "-" ? stderr : stdout;
   Report report(table, floor.time.median);
   const PellucidMaterial material = benchMaterial();
-  const Bench b{options, device, context, material, pixelSizeFor(material, options.radius), report};
+  const Site site{device, context, material, pixelSizeFor(material, options.radius)};
+  const Bench b{options, site, report};
   requireRightAnswer(b);
   std::fprintf(table, "%s, commit %s, %d x %d, median of %d, radius %g pixels\n",
                device.description().c_str(), PELLUCID_COMMIT, width, height, options.repeat, options.radius);
@@ -280,9 +201,15 @@ void bench(const Options& options) {
   if (wanted("fused")) fusedDispatch(b);
   if (wanted("gather")) gathered(b);
   if (wanted("steps")) separateSteps(b);
-  std::vector<Point> points;
-  if (wanted("diffusion")) points = diffusion(b);
-  if (!options.plot.empty() && !points.empty()) plotDiffusion(options.plot, points, device.description());
+  std::vector<Plot> plots, sweepPlots;
+  if (wanted("diffusion")) plots = {timeAgainstError(device.description(), diffusion(b))};
+  nlohmann::json rows;
+  if (wanted("sweep")) rows = sweep(site, options.sweep, options.repeat, table, &sweepPlots);
+  if (!options.plot.empty()) {
+    std::filesystem::create_directories(options.plot);
+    if (!plots.empty()) writePlot(options.plot / "diffusion.png", plots);
+    if (!sweepPlots.empty()) writePlot(options.plot / "sweep.png", sweepPlots);
+  }
 
   nlohmann::json json = {{"device", device.description()},
                          {"commit", PELLUCID_COMMIT},
@@ -292,6 +219,7 @@ void bench(const Options& options) {
                          {"radius_pixels", options.radius},
                          {"floor_us", floor.time.median},
                          {"results", report.rows()}};
+  json["results"].insert(json["results"].end(), rows.begin(), rows.end());
   if (options.ratios) {
     json.erase("floor_us");
     for (nlohmann::json& row : json["results"])
@@ -324,14 +252,25 @@ int main(int argc, char** argv) {
   app.add_option("--radius", options.radius, "pixels within which 99.9 % of the diffused energy lies")
       ->check(CLI::Range(1.0, 1000.0))
       ->capture_default_str();
+  std::set<std::string> tables = options.tables;
+  tables.insert("sweep");
   app.add_option("--tables", options.tables, "which to measure, with commas")
       ->delimiter(',')
-      ->check(CLI::IsMember(options.tables))
+      ->check(CLI::IsMember(tables))
+      ->capture_default_str();
+  app.add_option("--sweep-heights", options.sweep.heights,
+                 "of images of 16:9 in the table sweep, with commas")
+      ->delimiter(',')
+      ->check(CLI::Range(9, 8640))
+      ->capture_default_str();
+  app.add_option("--sweep-radii", options.sweep.radii, "like --radius, of the table sweep, with commas")
+      ->delimiter(',')
+      ->check(CLI::Range(1.0, 1000.0))
       ->capture_default_str();
   app.add_option("--json", options.json, "file to write, - for standard output");
   app.add_flag("--ratios", options.ratios,
                "leave times out of the JSON: a software device only ranks variants");
-  app.add_option("--plot", options.plot, "folder to write diffusion.png into: time against error");
+  app.add_option("--plot", options.plot, "folder for diffusion.png and sweep.png: time against error");
   CLI11_PARSE(app, argc, argv);
   try {
     bench(options);

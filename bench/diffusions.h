@@ -1,0 +1,46 @@
+// The module's diffusion and the published ones: how far each is from brute force, and the plot of that
+// against time.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "baselines/baselines.h"
+#include "capture/capture.h"
+#include "common/plot.h"
+
+namespace pellucid::bench {
+
+// Where frames run, and what of.
+struct Site {
+  harness::Device& device;
+  const harness::Context& context;
+  PellucidMaterial material;
+  double pixel;  // mm
+
+  std::shared_ptr<const BenchFrame> frame(const harness::Capture& capture,
+                                          harness::ReplaySettings settings) const;
+  harness::Image run(const Variant& variant) const;
+};
+
+// Root mean square over the channels of the relative RMSE of `image`, where there is a material. Throws
+// DeviceError beyond `limit`: a wrong pass is not worth timing.
+double requireNear(const Variant& v, const harness::Image& image, const harness::Image& truth,
+                   const harness::Capture& capture, double limit);
+
+// The module's, of each quality that differs (1 is 2), and then the baselines.
+std::vector<Variant> diffusions(const Site& site, const harness::Capture& capture);
+inline constexpr size_t kModuleDiffusions = 3;
+
+// Of these: against the float64 reference, the largest of the scenes'.
+std::vector<double> diffusionErrors(const Site& site);
+
+struct TimedError {
+  std::string name;
+  double error, time;  // relative RMSE; microseconds
+};
+
+// A family of variants is a color: what stands before the comma of its members' names.
+harness::Plot timeAgainstError(const std::string& title, const std::vector<TimedError>& points);
+
+}  // namespace pellucid::bench
