@@ -7,11 +7,11 @@
 #include "lib/sanitize.glsl"
 
 struct Texel {
-  vec3 color;
-  float coverage; // share of the texel's filter that its surface fills; 0: the texel holds no surface
-  uint material;  // where there is no surface, not 0: some of its pixels have this material and no depth
-  float depth;    // planar, at the texel's center
-  vec2 slope;     // change of depth over that of position, facing the camera: tangents, the same at every level
+  vec3 color;    // mean over the surface's area
+  float mass;    // area of surface under the texel's filter over that of one facing the camera; 0: there is none
+  uint material; // where there is no surface, not 0: some of its pixels have this material and no depth
+  float depth;   // planar, at the texel's center
+  vec2 slope;    // change of depth over that of position, facing the camera: tangents, the same at every level
 };
 
 // Of halves.
@@ -23,26 +23,46 @@ uvec2 packColor(vec3 color, uint upper) { return packHalves(roundToHalf(color), 
 
 vec3 unpackColor(uvec2 u) { return vec3(unpackHalf2x16(u.x), unpackHalf2x16(u.y).x); }
 
+const float kMostArea = 16.0;
+
+// Areas over those facing the camera, 0 to 16 in 7 bits. The root makes it exact to 1.6 % at 1.
+uint packArea(float area) {
+  return uint(clamp(32.0 * sqrt(area) + 0.5, area > 0.0 ? 1.0 : 0.0, 127.0)); // anything at all must not round to 0
+}
+
+float unpackArea(uint u) { return float(u * u) / 1024.0; }
+
+const float kDensityOne = 128.0;
+
+// The share of a kernel that a surface fills, over what a plane would, of each channel. A plane's is exact.
+uint packDensity(vec3 density) { return packUnorm4x8(vec4(density * (kDensityOne / 255.0), 0.0)); }
+
+// Times kDensityOne.
+vec3 unpackDensity(uint u) { return vec3(u & 0xFFu, (u >> 8) & 0xFFu, (u >> 16) & 0xFFu); }
+
 // A slope of 1000 is 0.06 degrees from edge-on.
 uint packSlope(vec2 slope) { return packHalf2x16(clamp(slope, vec2(-1.0e3), vec2(1.0e3))); }
 
-// Bits of a coverage of 1. In level 2, one more says that all around lies on the texel's plane, too.
-const uint kFullCoverage = 254u, kFlatCoverage = 255u;
+// Of y: all under the texel's filter is one plane.
+const uint kPlane = 0x800000u;
+// Of x, where the sign of green is and only in level 2: all around the texel lies on that plane, too.
+const uint kFlat = 0x80000000u;
 
-uvec4 packTexel(Texel t) {
-  // Anything there at all must not round to nothing.
-  float full = float(kFullCoverage);
-  uint coverage = uint(clamp(ceil(t.coverage * full - 0.5), t.coverage > 0.0 ? 1.0 : 0.0, full));
-  return uvec4(packColor(t.color, coverage | t.material << 8), floatBitsToUint(t.depth), packSlope(t.slope));
+// `plane`: kPlane or 0.
+uvec4 packTexel(Texel t, uint plane) {
+  uvec2 color = packColor(t.color, packArea(t.mass) | t.material << 8);
+  return uvec4(color.x, color.y | plane, floatBitsToUint(t.depth), packSlope(t.slope));
 }
+
+float massOf(uint y) { return unpackArea((y >> 16) & 0x7Fu); }
 
 Texel unpackTexel(uvec4 u) {
-  float coverage = min(float((u.y >> 16) & 0xFFu) / float(kFullCoverage), 1.0);
-  return Texel(unpackColor(u.xy), coverage, u.y >> 24, uintBitsToFloat(u.z),
-               unpackHalf2x16(u.w));
+  return Texel(unpackColor(uvec2(u.x & ~kFlat, u.y)), massOf(u.y), u.y >> 24, uintBitsToFloat(u.z), unpackHalf2x16(u.w));
 }
 
-uint coverageBits(uvec4 texel) { return (texel.y >> 16) & 0xFFu; }
+bool hasSurface(uvec4 texel) { return (texel.y & 0x7F0000u) != 0u; }
+
+bool isPlane(uvec4 texel) { return (texel.y & kPlane) != 0u; }
 
 uint materialBits(uvec4 texel) { return texel.y >> 24; }
 
@@ -65,51 +85,95 @@ vec2 texelSize(float p, uint level) {
 
 // 1 / s^2 for sameSurface: s is the longest side of a texel of facing sides `size` on a surface of that slope.
 float inverseSpread(vec2 slope, vec2 size) {
-  float cosine2 = 1.0 / (1.0 + dot(slope, slope));
   // Sides are positive in front of the eye; the floor keeps their product normal.
-  return cosine2 * cosine2 / max(size.x * size.y, 1.0e-30);
+  return 1.0 / max((1.0 + dot(slope, slope)) * size.x * size.y, 1.0e-30);
 }
 
-// Whether what is `off` in depth from a texel's tangent plane belongs to its surface: 1 on the plane, 0 beyond
-// 1.6 texels, near e^{-(off/s)^2}, so that what lies as far behind as the kernel is wide does not count.
-float sameSurface(float off, float inverseSpread2) {
-  float rest = clamp(1.0 - 0.4 * off * off * inverseSpread2, 0.0, 1.0);
+// How much less of a kernel reaches what is not on a texel's tangent plane but `off` in depth from it, `along` in depth
+// from the texel's center on the plane: with d = along + off, the squared distance differs by d^2 - along^2 =
+// off (off + 2 along). The two terms have factors of their own, x and y of `falloff`: the first says how far a kernel
+// bridges gaps, the second how it shifts on curved surfaces, which filters of few taps do less than Gaussians.
+float sameSurface(float off, float along, float inverseSpread2, vec2 falloff) {
+  float rest = clamp(1.0 - off * (falloff.x * off + falloff.y * along) * inverseSpread2, 0.0, 1.4);
   return rest * rest;
 }
 
-// Texel of level 1 from its four pixels, rows first; depth <= 0: none. One surface if they lie on one plane, else
-// the nearest one.
-uvec4 quadTexel(uint material[4], float depth[4], vec3 color[4]) {
-  float nearest = kNoDepth;
+// Of the reductions, the stretch and the coarser levels of resolves, and the last pass: those with the least errors on
+// the scenes and captures of docs/diffusion.md that let no more light over a gap than the profile does.
+const vec2 kReduceFalloff = vec2(0.2, 0.5), kStretchFalloff = vec2(0.5, 2.5), kResolveFalloff = vec2(0.55, 3.5),
+           kPixelFalloff = vec2(0.45, 1.2);
+
+// The pixel that a texel's center lies at.
+vec2 pixelOf(uint level, ivec2 texel) { return (vec2(texel) + 0.5) * exp2(float(level)) - 0.5; }
+
+// Area of a texel's surface over that of one facing the camera: the normal is (-slope, 1 + slope . ray) of a pixel's
+// columns, its rows and the depth.
+float areaOf(uint level, ivec2 texel, vec2 slope) {
+  vec2 pixel = pixelOf(level, texel);
+  vec2 ray = frame.facingRay[0].xy + pixel.x * frame.facingRay[0].zw + pixel.y * frame.facingRay[1].xy;
+  float facing = 1.0 + dot(slope, ray);
+  return min(sqrt(dot(slope, slope) + facing * facing), kMostArea);
+}
+
+// The same of a pixel with a normal, of any length > 0; 0: it has none.
+float areaOf(vec2 pixel, vec3 normal) {
+  // In the normal's space.
+  vec3 ray = frame.normalRay[0].xyz + pixel.x * frame.normalRay[1].xyz + pixel.y * frame.normalRay[2].xyz;
+  float squared = dot(normal, normal), along = dot(normal, ray);
+  // False for NaN too. The floor keeps the root of what is edge-on finite.
+  return squared > 1.0e-8 ? min(inversesqrt(max(along * along * (1.0 / squared), 1.0e-6)), kMostArea) : 0.0;
+}
+
+// Texel of level 1 from its four pixels, rows first; depth <= 0: none. The nearest surface and all behind it within
+// what a surface 83 degrees from facing the camera has. `area`: of the pixels' surfaces, 0: as the depths say.
+uvec4 quadTexel(ivec2 quad, uint material[4], float depth[4], vec3 color[4], vec4 area) {
   uint nearestMaterial = 0u, any = 0u;
-  bool one = true;
+  float nearest = kNoDepth;
   for (int i = 0; i < 4; ++i) {
     any = max(any, material[i]);
-    bool some = material[i] != 0u && depth[i] > 0.0;
-    one = one && some && material[i] == material[0];
-    if (!some || depth[i] >= nearest) continue;
+    if (material[i] == 0u || !(depth[i] > 0.0) || depth[i] >= nearest) continue;
     nearest = depth[i];
     nearestMaterial = material[i];
   }
   if (nearestMaterial == 0u) return uvec4(0u, any << 24, 0u, 0u);
   vec2 sides = squaredPixelSize(frame.camera, nearest);
-  float side = sqrt(min(sides.x, sides.y));
-  // A plane up to 76 degrees from facing the camera; steeper pairs count as an edge.
-  float farthest = max(max(depth[0], depth[1]), max(depth[2], depth[3]));
-  bool plane = one && abs(depth[0] - depth[1] - depth[2] + depth[3]) < side && farthest - nearest < 8.0 * side;
-  float reach = plane ? 8.0 * side : 1.5 * side;
+  float reach = 8.0 * sqrt(min(sides.x, sides.y));
   vec3 mean = vec3(0.0);
-  float sum = 0.0, weights = 0.0;
+  float sum = 0.0, weights = 0.0, mass = 0.0;
   for (int i = 0; i < 4; ++i) {
     bool counts = depth[i] > 0.0 && material[i] == nearestMaterial && depth[i] - nearest <= reach;
-    float w = counts ? 1.0 : 0.0;
-    mean += w * color[i];
+    // Across an edge depths say nothing of slopes.
+    float w = counts ? 1.0 : 0.0, a = w * (area[i] > 0.0 ? area[i] : 1.0);
+    mean += a * color[i];
     sum += counts ? depth[i] : 0.0;
     weights += w;
+    mass += a;
   }
-  // The nearest counts, so weights >= 1.
-  float inverse = 1.0 / weights;
-  return packTexel(Texel(mean * inverse, 0.25 * weights, nearestMaterial, sum * inverse, vec2(0.0)));
+  // The nearest counts, so weights >= 1; areas are positive.
+  return packTexel(Texel(mean / mass, 0.25 * mass, nearestMaterial, sum / weights, vec2(0.0)), 0u);
+}
+
+// The same where it is one surface, of that area.
+uvec4 wholeQuadTexel(uint material, float depth[4], vec3 color[4], float area) {
+  return packTexel(Texel(0.25 * (color[0] + color[1] + color[2] + color[3]), area, material,
+                         0.25 * (depth[0] + depth[1] + depth[2] + depth[3]), vec2(0.0)), kPlane);
+}
+
+// Whether four pixels are one surface.
+bool isWholeQuad(uint material[4], float depth[4]) {
+  float nearest = min(min(depth[0], depth[1]), min(depth[2], depth[3]));
+  float farthest = max(max(depth[0], depth[1]), max(depth[2], depth[3]));
+  bool one = nearest > 0.0 && material[0] != 0u && material[1] == material[0] && material[2] == material[0] &&
+             material[3] == material[0];
+  vec2 sides = squaredPixelSize(frame.camera, nearest);
+  float span = farthest - nearest;
+  return one && span * span < 64.0 * min(sides.x, sides.y);
+}
+
+// Area of a whole quad's surface as its depths say.
+float areaOfQuad(ivec2 quad, float depth[4]) {
+  vec2 rise = 0.5 * vec2(depth[1] - depth[0] + depth[3] - depth[2], depth[2] - depth[0] + depth[3] - depth[1]);
+  return areaOf(1u, quad, rise * inversesqrt(max(squaredPixelSize(frame.camera, depth[0]), vec2(1.0e-30))));
 }
 
 // First fundamental form of the surface over a texel, reduced to what the kernel needs.
@@ -119,10 +183,10 @@ struct Foreshortening {
   vec2 axis;      // unit, in texels: direction of the shortest, in which the kernel is longest
 };
 
-Foreshortening foreshortening(vec2 texel, uint level, float depth, vec2 slope) {
+Foreshortening foreshortening(ivec2 texel, uint level, float depth, vec2 slope) {
   float scale = exp2(float(level));
-  vec2 pixel = (texel + 0.5) * scale - 0.5;
   Camera c = frame.camera;
+  vec2 pixel = pixelOf(level, texel);
   vec2 direction = c.rayBase.xy + pixel.x * c.rayX.xy + pixel.y * c.rayY.xy;
   vec2 facingX = (c.rayX.xy * depth + c.rayX.zw) * scale, facingY = (c.rayY.xy * depth + c.rayY.zw) * scale;
   float dx = slope.x * length(facingX), dy = slope.y * length(facingY);

@@ -8,8 +8,12 @@
 
 #define GROUP_SIDE PELLUCID_DIFFUSE_GROUP
 #include "passes/resolved.glsl"
+#ifdef NORMALS
+#include "passes/normal_image.glsl"
+#endif
 
 const int kInvocations = PELLUCID_DIFFUSE_GROUP * PELLUCID_DIFFUSE_GROUP;
+// NORMALS: pixels at edges count by the area of their surface.
 // COARSE: without the fine filter, whose share the material's table gives to the pixel and level 2.
 #ifdef COARSE
 const int kRing = 0, kTexelsX = PELLUCID_DIFFUSE_COARSE_TEXELS_X;
@@ -47,9 +51,6 @@ vec3 fineSum(vec3 a, vec3 b, vec3 c, vec3 d, vec3 e) {
   return fineWeight(0) * c + fineWeight(1) * (b + d) + fineWeight(2) * (a + e);
 }
 
-// Whether a texel and all around it lie on one plane.
-bool isFlat(uvec4 texel) { return coverageBits(texel) == kFlatCoverage; }
-
 #ifdef GATHER
 // A pixel before light is added to it: as halves, since the light comes when the registers of all else are free.
 uvec2 packedColor(vec3 color, float alpha) {
@@ -76,6 +77,9 @@ vec3 fineOf(int at) {
 // The fine filter of a pixel on a surface of that slope, and what of it lies on the surface.
 vec4 fineOfEdge(ivec2 pixel, uint material, float depth, vec2 slope, vec2 size) {
   vec2 depthStep = slope * size;
+#ifdef NORMALS
+  float area = areaOf(vec2(pixel), normalAt(pixel));
+#endif
   float spread2 = inverseSpread(slope, 2.0 * size);
   vec4 fine = vec4(0.0);
   for (int y = -2; y <= 2; ++y) {
@@ -85,7 +89,12 @@ vec4 fineOfEdge(ivec2 pixel, uint material, float depth, vec2 slope, vec2 size) 
       uint theirs = materialAt(at);
       float theirDepth = frontDistance(at);
       vec3 theirColor = sanitize(texelFetch(sourceImage, at, 0).rgb);
-      float w = sameSurface(theirDepth - depth - dot(depthStep, vec2(offset)), spread2);
+      float along = dot(depthStep, vec2(offset));
+      float w = sameSurface(theirDepth - depth - along, along, spread2, kPixelFalloff);
+#ifdef NORMALS
+      float theirArea = areaOf(vec2(at), normalAt(at));
+      if (area > 0.0 && theirArea > 0.0) w *= theirArea / area;
+#endif
       bool counts = at == pixel + offset && theirs == material && theirDepth > 0.0;
       fine += (counts ? w * fineWeight(x) * fineWeight(y) : 0.0) * vec4(theirColor, 1.0);
     }
@@ -114,15 +123,16 @@ void diffuseEdge(ivec2 firstTexel, ivec2 local) {
       ivec2 offset = ivec2(i % 3, i / 3) - 1;
       int index = center + offset.y * kWindow.x + offset.x;
       Texel t = unpackTexel(resolved[index]);
-      if (t.coverage == 0.0 || t.material != material) continue;
-      float off = depth - t.depth - dot(t.slope, (from - 4.0 * vec2(offset)) * size);
-      float w = sameSurface(off, inverseSpread(t.slope, texelSize(t.depth, 2u)));
+      if (t.mass == 0.0 || t.material != material) continue;
+      float along = dot(t.slope, (from - 4.0 * vec2(offset)) * size);
+      float spread2 = inverseSpread(t.slope, texelSize(t.depth, 2u));
+      float w = sameSurface(depth - t.depth - along, along, spread2, kPixelFalloff);
       w *= (offset.x < 0 ? splineX.x : offset.x > 0 ? splineX.z : splineX.y) *
            (offset.y < 0 ? splineY.x : offset.y > 0 ? splineY.z : splineY.y);
-      vec3 density = unpackUnorm4x8(shares[index].w).rgb;
+      vec3 density = unpackDensity(shares[index].w) * (1.0 / kDensityOne);
       coarser += w * density * t.color;
       found += w * density;
-      w *= t.coverage;
+      w *= min(t.mass, 1.0);
       slope += w * t.slope;
       PixelShares s = unpackShares(shares[index].xyz);
       // Without the texel's density: that of the pixel replaces it.
@@ -189,7 +199,7 @@ void main() {
     if (invocation < kTexels.x * kTexels.y) {
       ivec2 local = ivec2(invocation % kTexels.x, invocation / kTexels.x);
       uvec4 its = resolved[(local.y + 1) * kWindow.x + local.x + 1];
-      if (its.y >> 16 != 0u && !isFlat(its)) edges[atomicAdd(edgeCount, 1u)] = uint(invocation);
+      if (its.y >> 16 != 0u && !isPlane(its)) edges[atomicAdd(edgeCount, 1u)] = uint(invocation);
     }
     uvec2 own[kRows]; // colors and alphas
     [[unroll]] for (int i = 0; i < kRows + 2 * kRing; ++i)
@@ -215,7 +225,7 @@ void main() {
       [[unroll]] for (int block = 0; block < kRows / 4; ++block) {
         int texelRow = firstRow / 4 + block;
         int index = texelRow * kWindow.x + x / 4;
-        if (!isFlat(resolved[index + kWindow.x + 1])) continue;
+        if (!isPlane(resolved[index + kWindow.x + 1])) continue;
         vec3 coarser[3];
         [[unroll]] for (int y = 0; y < 3; ++y) {
           int row = index + y * kWindow.x;

@@ -13,10 +13,10 @@
 #include "passes/bindings.glsl"
 #endif
 #include "lib/transmittance.glsl"
+#include "passes/normal_image.glsl"
 
 layout(set = 0, binding = PELLUCID_BINDING_LIGHTS) uniform Light { DirectionalConstants light; };
 layout(set = 0, binding = PELLUCID_BINDING_MATERIALS) readonly buffer Materials { MaterialConstants materials[]; };
-layout(set = 0, binding = PELLUCID_BINDING_NORMAL) uniform texture2D normalImage;
 layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES) uniform texture2D shadowImage;
 
 const int kPixels = 4; // of an invocation; see pixelInTile
@@ -48,6 +48,9 @@ void main() {
     front[i] = texelFetch(frontDepthImage, at, 0).x;
     normal[i] = decodeNormal(texelFetch(normalImage, at, 0));
   }
+#ifdef QUADS
+  vec3 quadNormal = normalOfQuad();
+#endif
   // Where rays start and how they run, in the map's texels and depth.
   vec2 first = vec2(tile + pixelInTile(0));
   vec3 origin = light.originBase.xyz + first.x * light.originX.xyz + first.y * light.originY.xyz;
@@ -117,6 +120,6 @@ void main() {
   }
 #ifdef QUADS
   barrier();
-  writeQuad();
+  writeQuad(quadNormal);
 #endif
 }

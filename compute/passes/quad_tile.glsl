@@ -3,6 +3,7 @@
 #ifndef PELLUCID_QUAD_TILE_GLSL
 #define PELLUCID_QUAD_TILE_GLSL
 
+#include "passes/normal_image.glsl"
 #include "passes/pyramid.glsl"
 
 const int kTile = 2 * GROUP_SIDE; // pixels
@@ -15,9 +16,19 @@ void keepPixel(ivec2 inTile, vec3 color, float depth, uint material) {
   tileDepths[inTile.y * kTile + inTile.x] = depth;
 }
 
-// After a barrier.
-void writeQuad() {
-  ivec2 local = ivec2(gl_LocalInvocationID.xy), quad = (evenTile() >> 1) + local;
+ivec2 ownQuad() { return (evenTile() >> 1) + ivec2(gl_LocalInvocationID.xy); }
+
+// The pixel whose normal stands for a quad that is one surface: any of the four, by turns.
+ivec2 pixelOfQuad(ivec2 quad) { return 2 * quad + (quad.yx & 1); }
+
+// Of the invocation's quad, to be loaded with all the rest.
+vec3 normalOfQuad() {
+  return normalAt(clamp(pixelOfQuad(ownQuad()), ivec2(frame.rect.xy), ivec2(frame.rect.zw) - 1));
+}
+
+// After a barrier. `normal`: normalOfQuad().
+void writeQuad(vec3 normal) {
+  ivec2 local = ivec2(gl_LocalInvocationID.xy), quad = ownQuad();
   uint material[4];
   float depth[4];
   vec3 color[4];
@@ -28,7 +39,19 @@ void writeQuad() {
     depth[i] = tileDepths[at];
     color[i] = unpackColor(packed);
   }
-  if (insideLevel(levelRect(1u), quad)) writeLevel(1u, quad, quadTexel(material, depth, color));
+  if (!insideLevel(levelRect(1u), quad)) return;
+  if (isWholeQuad(material, depth)) {
+    float area = areaOf(vec2(pixelOfQuad(quad)), normal);
+    if (area == 0.0) area = areaOfQuad(quad, depth);
+    writeLevel(1u, quad, wholeQuadTexel(material[0], depth, color, area));
+    return;
+  }
+  vec4 area;
+  for (int i = 0; i < 4; ++i) {
+    ivec2 pixel = clamp(2 * quad + ivec2(i & 1, i >> 1), ivec2(frame.rect.xy), ivec2(frame.rect.zw) - 1);
+    area[i] = areaOf(vec2(pixel), normalAt(pixel));
+  }
+  writeLevel(1u, quad, quadTexel(quad, material, depth, color, area));
 }
 
 #endif

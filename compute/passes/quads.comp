@@ -9,6 +9,7 @@ void main() {
   uint material[4];
   float depth[4];
   vec4 source[4];
+  vec3 normal = normalOfQuad();
   // All at once, so that the latencies overlap.
   for (int i = 0; i < 4; ++i) {
     ivec2 pixel = evenTile() + pixelInTile(i);
@@ -26,5 +27,5 @@ void main() {
     keepPixel(pixelInTile(i), roundToHalf(color), depth[i], material[i]);
   }
   barrier();
-  writeQuad();
+  writeQuad(normal);
 }

@@ -17,7 +17,7 @@ const int kFirst = PELLUCID_REDUCE_GROUP, kInput = 2 * kFirst + 2;
 const int kLoads = (kInput * kInput + int(kInvocations) - 1) / int(kInvocations);
 // The input and, once that has been used, the first level: as many groups run at a time as these fit into a
 // processor. Slopes are not needed.
-shared uvec2 colors[kInput * kInput]; // and coverage and material, as packed
+shared uvec2 colors[kInput * kInput]; // and mass, material and plane, as packed
 shared float depths[kInput * kInput];
 
 // 3 5 5 3, variance 1.
@@ -27,8 +27,11 @@ float weight(int i) { return i == 0 || i == 3 ? 0.1875 : 0.3125; }
 // which takes half as many registers again.
 int taps() { return int(pass.value.y); }
 
-// Above it, the weights of texels are within .2 % of those of a plane.
-const float kPlaneResidual = 0.002;
+// Of the squared length of a texel's side. Curved surfaces below it gain nothing from weights of their own.
+const float kPlaneResidual = 0.01;
+
+// What the bits of texels of one plane have in common: the material, and that they are planes.
+const uint kSamePlane = 0xFF000000u | kPlane;
 
 // Even columns of a row come before the odd ones: reads of every other column meet no bank twice.
 int slot(ivec2 at, int width) { return at.y * width + (at.x >> 1) + (at.x & 1) * (width >> 1); }
@@ -37,13 +40,13 @@ int slot(ivec2 at, int width) { return at.y * width + (at.x >> 1) + (at.x & 1) *
 int tap(int first, int width, int x, int y) { return first + slot(ivec2(x, y), width); }
 
 struct Source {
-  float coverage, depth;
+  float mass, depth;
   uint material;
 };
 
 Source sourceAt(int index) {
   uint bits = colors[index].y;
-  return Source(float((bits >> 16) & 0xFFu) / float(kFullCoverage), depths[index], bits >> 24);
+  return Source(massOf(bits), depths[index], bits >> 24);
 }
 
 // Which texel's surface is taken: the nearest to the camera of the four in the middle or, beyond an edge, the one
@@ -54,13 +57,13 @@ int surfaceOf(int first, int stride) {
   for (int i = 0; i < 4; ++i) {
     int index = tap(first, stride, 1 + (i & 1), 1 + (i >> 1));
     Source t = sourceAt(index);
-    if (t.coverage == 0.0 || t.depth >= nearest) continue;
+    if (t.mass == 0.0 || t.depth >= nearest) continue;
     nearest = t.depth;
     surface = 5 + 4 * (i >> 1) + (i & 1);
   }
   if (surface >= 0) return surface;
   for (int i = 0; i < taps(); ++i) {
-    float w = weight(i & 3) * weight(i >> 2) * sourceAt(tap(first, stride, i & 3, i >> 2)).coverage;
+    float w = weight(i & 3) * weight(i >> 2) * sourceAt(tap(first, stride, i & 3, i >> 2)).mass;
     if (!(w > most)) continue;
     most = w;
     surface = i;
@@ -77,7 +80,7 @@ float depthStep(int first, int stride, Source center, ivec2 at, ivec2 direction)
     ivec2 neighbor = at + side * direction;
     if (any(lessThan(neighbor, ivec2(0))) || any(greaterThan(neighbor, ivec2(3)))) continue;
     Source t = sourceAt(tap(first, stride, neighbor.x, neighbor.y));
-    if (t.coverage == 0.0 || t.material != center.material) continue;
+    if (t.mass == 0.0 || t.material != center.material) continue;
     float difference = float(side) * (t.depth - center.depth);
     if (!found || abs(difference) < abs(best)) best = difference;
     found = true;
@@ -101,33 +104,36 @@ uvec4 reducedEdge(uint finer, int first, int stride) {
                     depthStep(first, stride, surface, nearest, ivec2(0, 1))) / max(size, vec2(1.0e-30));
   float spread2 = inverseSpread(slope, 2.0 * size);
   vec3 color = vec3(0.0);
-  float weights = 0.0, off = 0.0;
+  float mass = 0.0, weights = 0.0, off = 0.0;
   vec2 tilt = vec2(0.0), spread = vec2(0.0);
   for (int i = 0; i < taps(); ++i) {
     ivec2 at = ivec2(i & 3, i >> 2);
     int index = tap(first, stride, at.x, at.y);
     Source t = sourceAt(index);
-    if (t.coverage == 0.0 || t.material != surface.material) continue;
-    float difference = t.depth - surface.depth - dot(slope, vec2(at - nearest) * size);
-    float w = weight(at.x) * weight(at.y) * t.coverage * sameSurface(difference, spread2);
+    if (t.mass == 0.0 || t.material != surface.material) continue;
     vec2 offset = (vec2(at) - 1.5) * size;
-    color += w * unpackColor(colors[index]);
+    float difference = t.depth - surface.depth - dot(slope, vec2(at - nearest) * size);
+    float w = weight(at.x) * weight(at.y) * sameSurface(difference, dot(slope, offset), spread2, kReduceFalloff);
+    color += w * t.mass * unpackColor(colors[index]);
+    mass += w * t.mass;
+    // Where it is seen edge-on, a surface says no more about its depth than elsewhere.
+    w *= min(t.mass, 1.0);
     off += w * difference;
     tilt += w * difference * offset;
     spread += w * offset * offset;
     weights += w;
   }
-  // The nearest one counts, so weights > 0; spread is 0 only where it is alone.
+  // The nearest one counts, so mass and weights are positive; spread is 0 only where it is alone.
   float inverse = 1.0 / weights;
   vec2 center = vec2(1.5) - vec2(nearest);
   float depth = surface.depth + dot(slope, center * size) + off * inverse;
   slope += tilt / max(spread, 1.0e-6 * size * size + 1.0e-30);
-  return packTexel(Texel(color * inverse, weights, surface.material, depth, slope));
+  return packTexel(Texel(color / mass, mass, surface.material, depth, slope), 0u);
 }
 
-// From the 4 x 4 texels of level `finer` at `first`.
-uvec4 reduced(uint finer, int first, int stride) {
-  uint upper = colors[first].y >> 16, different = 0u;
+// Texel of the level after `finer` from the 4 x 4 at `first`.
+uvec4 reduced(uint finer, ivec2 texel, int first, int stride) {
+  uint bits = colors[first].y, different = 0u;
   float base = depths[first], off = 0.0, square = 0.0;
   vec2 tilt = vec2(0.0);
   vec3 color = vec3(0.0);
@@ -136,37 +142,37 @@ uvec4 reduced(uint finer, int first, int stride) {
       int index = tap(first, stride, x, y);
       uvec2 packed = colors[index];
       float w = weight(x) * weight(y), difference = depths[index] - base;
-      different |= (packed.y >> 16) ^ upper;
+      different |= packed.y ^ bits;
       color += w * unpackColor(packed);
       off += w * difference;
       tilt += w * difference * (vec2(x, y) - 1.5);
       square += w * difference * difference;
     }
-  if ((upper | different) == 0u) return uvec4(0u);
+  if ((bits | different) >> 16 == 0u) return uvec4(0u);
   // The plane of least squares, because the filter's variance is 1: its slope is the tilt.
   vec2 size = texelSize(base, finer);
   float residual = square - off * off - dot(tilt, tilt);
   vec2 slope = tilt / max(size, vec2(1.0e-30));
-  bool plane = different == 0u && (upper & 0xFFu) == kFullCoverage &&
+  bool plane = (different & kSamePlane) == 0u && (bits & kPlane) != 0u &&
                residual * inverseSpread(slope, 2.0 * size) < kPlaneResidual;
   if (!plane) return reducedEdge(finer, first, stride);
-  return packTexel(Texel(color, 1.0, upper >> 8, base + off, slope));
+  return packTexel(Texel(color, areaOf(finer + 1u, texel, slope), bits >> 24, base + off, slope), kPlane);
 }
 
-// Above it, something at a texel's neighbor counts 1 % less than on its plane.
-const float kPlaneOffset = 0.0125;
+// Of the squared length of a texel's side; see kPlaneResidual.
+const float kPlaneOffset = 0.1;
 
 // Whether a texel and all around it are full and lie on one plane. `at`: not in the outermost rows and columns.
-bool isFlat(uvec4 bits, ivec2 at, uint level) {
+bool isFlatAround(uvec4 bits, ivec2 at, uint level) {
   float depth = uintBitsToFloat(bits.z);
   vec2 size = texelSize(depth, level), slope = unpackHalf2x16(bits.w);
   float most = kPlaneOffset / inverseSpread(slope, size);
-  bool plane = coverageBits(bits) == kFullCoverage;
+  bool plane = isPlane(bits);
   for (int y = -1; y <= 1; ++y)
     for (int x = -1; x <= 1; ++x) {
       int index = slot(at + ivec2(x, y), kFirst);
       float off = depths[index] - depth - dot(slope, vec2(x, y) * size);
-      plane = plane && colors[index].y >> 16 == bits.y >> 16 && off * off < most;
+      plane = plane && ((colors[index].y ^ bits.y) & kSamePlane) == 0u && off * off < most;
     }
   return plane;
 }
@@ -196,7 +202,7 @@ void main() {
   barrier();
   ivec2 at = ivec2(gl_LocalInvocationID.xy), texel = start + at;
   bool inside = insideLevel(rect, texel);
-  uvec4 bits = inside ? reduced(finer, 2 * at.y * kInput + at.x, kInput) : uvec4(0u);
+  uvec4 bits = inside ? reduced(finer, texel, 2 * at.y * kInput + at.x, kInput) : uvec4(0u);
   barrier();
   int index = slot(at, kFirst);
   colors[index] = bits.xy;
@@ -204,11 +210,11 @@ void main() {
   barrier();
   // The outer ones are the groups' beside.
   if (inside && all(greaterThan(at, ivec2(0))) && all(lessThan(at, ivec2(kFirst - 1)))) {
-    if (finer == 1u && isFlat(bits, at, finer + 1u)) bits.y += 1u << 16;
+    if (finer == 1u && isFlatAround(bits, at, finer + 1u)) bits.x |= kFlat;
     writeLevel(finer + 1u, texel, bits);
   }
   at = ivec2(invocation % PELLUCID_REDUCE_TILE, invocation / PELLUCID_REDUCE_TILE);
   texel = own + at;
   if (at.y < PELLUCID_REDUCE_TILE && insideLevel(lastRect, texel))
-    writeLevel(finer + 2u, texel, reduced(finer + 1u, 2 * at.y * kFirst + at.x, kFirst));
+    writeLevel(finer + 2u, texel, reduced(finer + 1u, texel, 2 * at.y * kFirst + at.x, kFirst));
 }

@@ -53,13 +53,13 @@ const int kReach = 4; // of the stretch, texels
 // A level's kernel has variance 7/12 - 13/12 4^-level squared texels of an axis; foreshortened surfaces need it
 // longer along one axis: a 1-D Gaussian of what is missing, at the texels nearest to the axis.
 vec4 stretched(ivec2 texel, uint level, Texel own, Foreshortening f) {
-  vec4 sum = own.coverage * vec4(own.color, 1.0);
+  vec4 sum = own.mass * vec4(own.color, 1.0);
   float variance = (7.0 / 12.0 - 13.0 / 12.0 * exp2(-2.0 * float(level))) * f.stretch;
   bool alongX = abs(f.axis.x) >= abs(f.axis.y);
   float dominant = alongX ? f.axis.x : f.axis.y; // its square is at least 1/2
   float gradient = (alongX ? f.axis.y : f.axis.x) / dominant;
   variance = min(variance * dominant * dominant, float(kReach));
-  if (own.coverage == 0.0 || variance < 0.02) return sum;
+  if (own.mass == 0.0 || variance < 0.02) return sum;
   float weights = 1.0;
   vec2 size = texelSize(own.depth, level);
   float spread2 = inverseSpread(own.slope, size);
@@ -74,8 +74,9 @@ vec4 stretched(ivec2 texel, uint level, Texel own, Foreshortening f) {
     weights += w;
     if (!insideLevel(rect, texel + offset)) continue;
     Texel t = unpackTexel(texelFetch(pyramidImage, inAtlas(level, texel + offset), 0));
-    if (t.coverage == 0.0 || t.material != own.material) continue;
-    w *= t.coverage * sameSurface(t.depth - own.depth - dot(own.slope, vec2(offset) * size), spread2);
+    if (t.mass == 0.0 || t.material != own.material) continue;
+    float along = dot(own.slope, vec2(offset) * size);
+    w *= t.mass * sameSurface(t.depth - own.depth - along, along, spread2, kStretchFalloff);
     sum += w * vec4(t.color, 1.0);
   }
   return sum / weights;
@@ -92,8 +93,8 @@ struct Own {
 Own ownPart(uint level, ivec2 texel, uvec4 bits, out float lengthMm) {
   Own own;
   own.texel = unpackTexel(bits);
-  Foreshortening f = foreshortening(vec2(texel), level, own.texel.depth, own.texel.slope);
-  own.here = stretched(texel, level, own.texel, f);
+  Foreshortening f = foreshortening(texel, level, own.texel.depth, own.texel.slope);
+  own.here = stretched(texel, level, own.texel, f) / areaOf(level, texel, own.texel.slope);
   // Material 0 looks at what it does not use.
   uint m = max(own.texel.material, 1u) - 1u;
   own.share = coarserShare(m, level, shareEntry(m, f.lengthMm));
@@ -122,9 +123,10 @@ Level withCoarser(Own own, uint level, ivec2 texel, Window window) {
     uvec4 theirs = resolved[window.first + inWindow.y * window.side + inWindow.x];
     if (materialBits(theirs) != own.texel.material) continue;
     vec2 off = vec2(at) + 0.5 - 0.5 * (vec2(texel) + 0.5);
-    float w = i == 0 ? 9.0 / 16.0 : i == 3 ? 1.0 / 16.0 : 3.0 / 16.0;
-    w *= sameSurface(uintBitsToFloat(theirs.z) - own.texel.depth - dot(own.texel.slope, off * size), spread2);
-    vec3 density = w * unpackUnorm4x8(theirs.w).rgb;
+    float w = (i == 0 ? 9.0 / 16.0 : i == 3 ? 1.0 / 16.0 : 3.0 / 16.0) / kDensityOne;
+    float along = dot(own.texel.slope, off * size);
+    w *= sameSurface(uintBitsToFloat(theirs.z) - own.texel.depth - along, along, spread2, kResolveFalloff);
+    vec3 density = w * unpackDensity(theirs.w);
     coarser += density * unpackColor(theirs.xy);
     found += density;
   }
@@ -163,26 +165,27 @@ void main() {
   for (uint l = coarsest; l > 2u; --l) {
     if (level == l && invocation < resolved.length()) {
       uvec4 packed = uvec4(0u);
-      if (own.texel.coverage > 0.0) {
+      if (own.texel.mass > 0.0) {
         Level r = level == coarsest ? alone(own) : withCoarser(own, level, texel, windowOf(level + 1u, k));
-        packed = uvec4(packColor(r.color, bits.y >> 16), bits.z, packUnorm4x8(vec4(r.density, 0.0)));
+        packed = uvec4(packColor(r.color, bits.y >> 16), bits.z, packDensity(r.density));
       }
       resolved[invocation] = packed;
     }
     barrier();
   }
   uvec4 color = uvec4(0u, fineBits.y & 0xFFFF0000u, 0u, 0u), shares = uvec4(0u);
-  if (coverageBits(fineBits) != 0u) {
+  if (hasSurface(fineBits)) {
     Own fine = ownPart(2u, fineTexel, fineBits, lengthMm);
     uint m = fine.texel.material - 1u;
     // A length of a pixel is a quarter of a texel's.
     PixelShares share = pixelShares(m, shareEntry(m, 0.25 * lengthMm));
     Level r = withCoarser(fine, 2u, fineTexel, windowOf(3u, k));
-    color = uvec4(packColor(r.color, fineBits.y >> 16), fineBits.zw);
+    uint upper = fineBits.y >> 16 & ~(kPlane >> 16);
+    color = uvec4(packColor(r.color, (fineBits.x & kFlat) != 0u ? upper | kPlane >> 16 : upper), fineBits.zw);
     share.coarser = share.coarser * r.density / max(1.0 - share.coarser + share.coarser * r.density, vec3(1.0e-6));
     // The material where the texel is one plane of it.
-    uint plane = coverageBits(fineBits) >= kFullCoverage ? fine.texel.material << 24 : 0u;
-    shares = uvec4(packShares(share), packUnorm4x8(vec4(r.density, 0.0)) | plane);
+    uint plane = isPlane(fineBits) ? fine.texel.material << 24 : 0u;
+    shares = uvec4(packShares(share), packDensity(r.density) | plane);
   }
   if (fineInside) writeResolved(fineTexel, color, shares);
 }

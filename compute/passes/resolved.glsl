@@ -1,6 +1,6 @@
 // Level 2 of the pyramid with all coarser ones in it: two texels each, where level 1 was. One is packed as a texel of
-// the pyramid. The other holds the shares of the pixels under it and in w the share of the kernel that the surface
-// fills, a byte a channel, and the material where it fills all that the texel covers.
+// the pyramid, whose kPlane says that all around lies on its plane, too. The other holds the shares of the pixels under it
+// and in w the share of the kernel that the surface fills, a byte a channel, and the material where it is one plane.
 #ifndef PELLUCID_RESOLVED_GLSL
 #define PELLUCID_RESOLVED_GLSL
 

@@ -15,7 +15,7 @@ layout(set = 0, binding = PELLUCID_BINDING_LIGHTS) uniform Lights { LightConstan
 layout(set = 0, binding = PELLUCID_BINDING_SHADOWS) uniform Shadows { ShadowConstants shadows[PELLUCID_DISPATCH_SHADOWS]; };
 layout(set = 0, binding = PELLUCID_BINDING_MATERIALS) readonly buffer Materials { MaterialConstants materials[]; };
 layout(set = 0, binding = PELLUCID_BINDING_BACK_DEPTH) uniform texture2D backDepthImage;
-layout(set = 0, binding = PELLUCID_BINDING_NORMAL) uniform texture2D normalImage;
+#include "passes/normal_image.glsl"
 #include "passes/shadow_images.glsl"
 #include "lib/transmission.glsl"
 
@@ -96,6 +96,9 @@ void main() {
   ivec2 tile = evenTile();
   // A history that starts is 0 wherever nothing came through: the next frame's pixels may lie there.
   bool starts = pass.value.z == PELLUCID_WRITE_STARTS;
+#ifdef QUADS
+  vec3 quadNormal = normalOfQuad();
+#endif
   Texels texels[4];
   for (int i = 0; i < 4; ++i)
     texels[i] = fetch(clamp(tile + pixelInTile(i), ivec2(frame.rect.xy), ivec2(frame.rect.zw) - 1));
@@ -122,7 +125,7 @@ void main() {
   }
 #ifdef QUADS
   barrier();
-  writeQuad();
+  writeQuad(quadNormal);
 #endif
 }
 #endif

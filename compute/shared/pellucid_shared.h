@@ -121,6 +121,9 @@ struct FrameConstants {
   vec4 filterAndLimit;        // rgb: factor of T; w: largest thickness, mm
   ivec4 level[PELLUCID_LAST_LEVEL + 1]; // xy: where texel (0, 0) of the level lies in the pyramid's image; of
                                         // level 0, that of the resolved level 2, zw: of its shares
+  // View ray of planar length 1: of pixel (0, 0), changes per pixel in x and y.
+  vec4 normalRay[3]; // xyz: in the normal image's space
+  vec4 facingRay[2]; // along pixels' columns and rows; xy, zw, xy
 };
 
 struct LightConstants {

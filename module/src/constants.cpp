@@ -43,6 +43,21 @@ shared::FrameConstants frameConstants(const PellucidFrame& f) {
   readDepthRange(clip, &range);
   c.camera = makeCamera(clip, range, {f.imageExtent[0], f.imageExtent[1]}, f.metersPerUnit);
   c.viewFromNormal = f.normalsInViewSpace ? glm::mat4(1) : glm::mat4(glm::mat3(toMatrix(f.viewFromWorld)));
+  const glm::mat3 normalFromView = glm::transpose(glm::mat3(c.viewFromNormal));
+  const shared::Camera& camera = c.camera;
+  c.normalRay[0] = {normalFromView * glm::vec3(camera.rayBase.x, camera.rayBase.y, camera.range.x), 0};
+  c.normalRay[1] = {normalFromView * glm::vec3(camera.rayX.x, camera.rayX.y, 0), 0};
+  c.normalRay[2] = {normalFromView * glm::vec3(camera.rayY.x, camera.rayY.y, 0), 0};
+  const auto along = [](const glm::vec4& ray) {
+    const glm::vec2 step = glm::vec2(ray.x + ray.z, ray.y + ray.w);  // at distance 1, as anywhere
+    return glm::length(step) > 0 ? glm::normalize(step) : glm::vec2(0);
+  };
+  const glm::vec2 column = along(camera.rayX), row = along(camera.rayY);
+  const auto facing = [&](const glm::vec4& ray) {
+    return glm::vec2(glm::dot(glm::vec2(ray.x, ray.y), column), glm::dot(glm::vec2(ray.x, ray.y), row));
+  };
+  c.facingRay[0] = {facing(camera.rayBase), facing(camera.rayX)};
+  c.facingRay[1] = {facing(camera.rayY), 0, 0};
   const Rect r = renderRect(f);
   c.rect = {r.x, r.y, r.x + r.width, r.y + r.height};
   uint32_t flags = 0;

@@ -318,6 +318,7 @@ struct Builder {
     writesPyramid(d);
     levelTraffic(d, kFirstLevel);
     pixelInputs(d, source);
+    optional(d, PELLUCID_BINDING_NORMAL, frame.normal, PELLUCID_RESOURCE_NORMAL, 4);
     if (copies) {
       bind(d, PELLUCID_BINDING_DESTINATION, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, copy);
       d->modeledBytes += colorBytes() * pixels();
@@ -362,10 +363,13 @@ struct Builder {
   // `addsPoints`: what points of the gather share is added.
   bool diffuse(uint32_t source, uint32_t destination, bool addsPoints) {
     const bool coarse = plan.quality == 0;
-    const uint32_t half = coarse && addsPoints ? PELLUCID_PIPELINE_DIFFUSE_COARSE_GATHER_16F
-                          : coarse             ? PELLUCID_PIPELINE_DIFFUSE_COARSE_16F
-                          : addsPoints         ? PELLUCID_PIPELINE_DIFFUSE_GATHER_16F
-                                               : PELLUCID_PIPELINE_DIFFUSE_16F;
+    const bool normals = plan.quality == 3 && given(frame.normal);
+    const uint32_t half = coarse && addsPoints    ? PELLUCID_PIPELINE_DIFFUSE_COARSE_GATHER_16F
+                          : coarse                ? PELLUCID_PIPELINE_DIFFUSE_COARSE_16F
+                          : normals && addsPoints ? PELLUCID_PIPELINE_DIFFUSE_NORMALS_GATHER_16F
+                          : normals               ? PELLUCID_PIPELINE_DIFFUSE_NORMALS_16F
+                          : addsPoints            ? PELLUCID_PIPELINE_DIFFUSE_GATHER_16F
+                                                  : PELLUCID_PIPELINE_DIFFUSE_16F;
     PellucidDispatch* d = dispatch("diffuse", half + (wide() ? 1 : 0));
     if (!d) return false;
     // Groups start at texels of level 2, whose rect has a border of one.
@@ -379,6 +383,8 @@ struct Builder {
     d->pushConstants[1] = source < kTransient0;  // the passes write nothing that would have to be sanitized
     d->pushConstants[3] = destination == PELLUCID_RESOURCE_OUTPUT;
     common(d, source, destination);
+    // Of edges; the plan does not know how many there are.
+    if (normals) image(d, PELLUCID_BINDING_NORMAL, PELLUCID_RESOURCE_NORMAL, 0);
     readsPyramid(d);
     d->modeledBytes += 2 * kTexelBytes * texels(2);
     if (addsPoints) readsPoints(d);

@@ -14,6 +14,10 @@
 #include "kDiffuseCoarseGather32f.h"
 #include "kDiffuseGather16f.h"
 #include "kDiffuseGather32f.h"
+#include "kDiffuseNormals16f.h"
+#include "kDiffuseNormals32f.h"
+#include "kDiffuseNormalsGather16f.h"
+#include "kDiffuseNormalsGather32f.h"
 #include "kDirectional16f.h"
 #include "kDirectional32f.h"
 #include "kDirectionalQuads16f.h"
@@ -77,7 +81,11 @@ const std::array kShaders = {shader(kTranslucency16f),
                              shader(kDiffuseGather16f),
                              shader(kDiffuseGather32f),
                              shader(kDiffuseCoarseGather16f),
-                             shader(kDiffuseCoarseGather32f)};
+                             shader(kDiffuseCoarseGather32f),
+                             shader(kDiffuseNormals16f),
+                             shader(kDiffuseNormals32f),
+                             shader(kDiffuseNormalsGather16f),
+                             shader(kDiffuseNormalsGather32f)};
 static_assert(kShaders.size() == PELLUCID_PIPELINE_COUNT);
 
 }  // namespace

@@ -85,7 +85,11 @@ extern "C" const char* pellucidPipelineName(uint32_t pipeline) {
                                        "diffuse_gather_rgba16f",
                                        "diffuse_gather_rgba32f",
                                        "diffuse_coarse_gather_rgba16f",
-                                       "diffuse_coarse_gather_rgba32f"};
+                                       "diffuse_coarse_gather_rgba32f",
+                                       "diffuse_normals_rgba16f",
+                                       "diffuse_normals_rgba32f",
+                                       "diffuse_normals_gather_rgba16f",
+                                       "diffuse_normals_gather_rgba32f"};
   static_assert(names.size() == PELLUCID_PIPELINE_COUNT);
   return pipeline < names.size() ? names[pipeline] : "unknown pipeline";
 }

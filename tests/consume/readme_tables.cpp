@@ -29,7 +29,7 @@ std::string imagesTable() {
        "lights without a shadow map give no translucency"},
       {PELLUCID_RESOURCE_IRRADIANCE, "linear irradiance E", ""},
       {PELLUCID_RESOURCE_NORMAL, "outward normal, world or view space",
-       "the angle between view and light replaces -N.L"},
+       "the angle between view and light replaces -N.L, depths say how large surfaces are"},
       {PELLUCID_RESOURCE_ALBEDO, "post-scatter albedo", "the output is not multiplied"},
       {PELLUCID_RESOURCE_MATERIAL, "unsigned integer: 0 none, i for materials[i - 1]", ""},
       {PELLUCID_RESOURCE_OUTPUT, "rgba16f or rgba32f storage image; may be the irradiance image", ""},
@@ -122,6 +122,7 @@ std::string qualityTable() {
   }
   table += "\n" + rule + "\n";
   Example example;
+  example.frame.normal = placeholder();
   for (uint32_t quality = 0; quality < std::size(pellucid::kWorstError); ++quality) {
     example.frame.quality = quality;
     static PellucidPlan plan;

@@ -118,8 +118,9 @@ TEST(Quality, RadiiBeyondThePyramidAreReported) {
   EXPECT_EQ(skipped(f.plan(), "diffusion radius"), 0u) << "not known";
 }
 
-TEST(Quality, ZeroLeavesTheFineFilterOut) {
+TEST(Quality, ChoosesTheLastPass) {
   Frame f;
+  f.frame.normal = f.frame.irradiance;
   EXPECT_EQ(f.plan().quality, 2u) << "default";
   for (uint32_t quality = 0; quality < kQualities; ++quality) {
     f.frame.quality = quality;
@@ -127,11 +128,15 @@ TEST(Quality, ZeroLeavesTheFineFilterOut) {
       f.frame.outputFormat = wide ? VK_FORMAT_R32G32B32A32_SFLOAT : VK_FORMAT_R16G16B16A16_SFLOAT;
       const PellucidPlan plan = f.plan();
       EXPECT_EQ(plan.quality, quality);
-      const uint32_t half =
-          quality == 0 ? PELLUCID_PIPELINE_DIFFUSE_COARSE_16F : PELLUCID_PIPELINE_DIFFUSE_16F;
+      const uint32_t half = quality == 0   ? PELLUCID_PIPELINE_DIFFUSE_COARSE_16F
+                            : quality == 3 ? PELLUCID_PIPELINE_DIFFUSE_NORMALS_16F
+                                           : PELLUCID_PIPELINE_DIFFUSE_16F;
       EXPECT_EQ(find(plan, "diffuse")->pipeline, half + wide);
     }
   }
+  f.frame.normal = {};
+  f.frame.outputFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
+  EXPECT_EQ(find(f.plan(), "diffuse")->pipeline, PELLUCID_PIPELINE_DIFFUSE_16F) << "there are none";
 }
 
 // Against the table: the least quality that is below the target at every radius up to the frame's.
