@@ -38,11 +38,29 @@ constexpr double kEnergyFrom[kElements][kSamples] = {
 // Without the fine filter level 2 takes this part of its energy and the pixel the rest.
 constexpr double kFineAtLevel2 = 0.3;
 
-double sample(Element element, double x) {
-  const double at = std::clamp((x - kFirst[element]) / kStep, 0.0, kSamples - 1.0);
-  const int i = std::min(static_cast<int>(at), kSamples - 2);
-  return std::lerp(kEnergyFrom[element][i], kEnergyFrom[element][i + 1], at - i);
-}
+// Entries that are not 0; the last one is.
+constexpr int kEntries = PELLUCID_SHARE_ENTRIES - 1;
+
+// Energy at an element and coarser ones, of entries whose sides grow by `step` octaves, and what one Gaussian
+// adds: x is log2 of its deviation over the first side.
+struct Energy {
+  Element element;
+  int octaves;  // a texel is 2^octaves times the entry's side
+  double sum[kEntries] = {};
+
+  void add(double weight, double x, double step) {
+    const double first = (x - octaves - kFirst[element]) / kStep, down = step / kStep;
+    int i = 0;
+    for (; i < kEntries && first - down * i >= kSamples - 1; ++i) sum[i] += weight;
+    for (; i < kEntries; ++i) {
+      const double at = first - down * i;
+      if (at <= 0) break;  // nor has any wider side
+      const int j = static_cast<int>(at);
+      const double low = kEnergyFrom[element][j];
+      sum[i] += weight * (low + (kEnergyFrom[element][j + 1] - low) * (at - j));
+    }
+  }
+};
 
 // Few Gaussians can ask for a negative weight of an element; it counts as 0.
 double shareOf(double coarser, double all) {
@@ -66,32 +84,27 @@ shared::KernelConstants kernelConstants(const PellucidMaterial& m, bool fine) {
     }
   // With texels 3 octaves finer than the narrowest Gaussian all is coarser; 6 octaves beyond the widest
   // nothing is.
-  constexpr int last = PELLUCID_SHARE_ENTRIES - 1;
-  const double from = least - 3, to = most + 6;
-  c.range = {static_cast<float>(from), static_cast<float>(last / (to - from)), 0, 0};
-  for (int i = 0; i < last; ++i) {  // the last entry stays 0
-    const double side = from + (to - from) * i / last;
-    for (int channel = 0; channel < 3; ++channel) {
-      // Energy at an element and coarser ones with texels of 2^`octaves` times this side.
-      const auto energy = [&](Element element, int octaves) {
-        double sum = 0;
-        for (uint32_t k = 0; k < m.gaussianCount; ++k)
-          sum += static_cast<double>(m.gaussianWeight[channel][k]) *
-                 sample(element, deviation[channel][k] - side - octaves);
-        return sum;
-      };
+  const double from = least - 3, step = (most + 6 - from) / kEntries;
+  c.range = {static_cast<float>(from), static_cast<float>(1 / step), 0, 0};
+  for (int channel = 0; channel < 3; ++channel) {
+    Energy level2{kLevel2, 0}, level3{kLevel3, 0}, level3Above{kLevel3, 1}, coarser{kCoarser, 0},
+        coarserAbove{kCoarser, 1};
+    // Of a pixel with that side.
+    Energy pixelLevel2{kLevel2, 2}, pixelFine{kFine, 0};
+    for (uint32_t k = 0; k < m.gaussianCount; ++k)
+      for (Energy* e : {&level2, &level3, &level3Above, &coarser, &coarserAbove, &pixelLevel2, &pixelFine})
+        e->add(static_cast<double>(m.gaussianWeight[channel][k]), deviation[channel][k] - from, step);
+    for (int i = 0; i < kEntries; ++i) {
       const auto put = [&](int table, double share) {
         c.share[table * PELLUCID_SHARE_ENTRIES + i][channel] = static_cast<float>(share);
       };
-      const double coarser = energy(kCoarser, 1), level3 = energy(kLevel3, 1);
-      put(0, shareOf(level3, energy(kLevel2, 0)));
-      put(1, shareOf(coarser, energy(kLevel3, 0)));
-      put(PELLUCID_SHARE_COARSER, shareOf(coarser, energy(kCoarser, 0)));
-      // Here the side is a pixel's.
-      double level2 = std::clamp(energy(kLevel2, 2), 0.0, 1.0), neighbors = energy(kFine, 0);
-      if (!fine) level2 = neighbors = std::clamp(std::lerp(level2, neighbors, kFineAtLevel2), 0.0, 1.0);
-      c.pixelShare[2 * i][channel] = static_cast<float>(level2);
-      const double share = (neighbors - level2) / std::max(1 - level2, 1e-3);
+      put(0, shareOf(level3Above.sum[i], level2.sum[i]));
+      put(1, shareOf(coarserAbove.sum[i], level3.sum[i]));
+      put(PELLUCID_SHARE_COARSER, shareOf(coarserAbove.sum[i], coarser.sum[i]));
+      double second = std::clamp(pixelLevel2.sum[i], 0.0, 1.0), neighbors = pixelFine.sum[i];
+      if (!fine) second = neighbors = std::clamp(std::lerp(second, neighbors, kFineAtLevel2), 0.0, 1.0);
+      c.pixelShare[2 * i][channel] = static_cast<float>(second);
+      const double share = (neighbors - second) / std::max(1 - second, 1e-3);
       c.pixelShare[2 * i + 1][channel] = static_cast<float>(std::clamp(share, 0.0, 1.2));
     }
   }
