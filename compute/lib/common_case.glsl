@@ -2,8 +2,8 @@
 #ifndef PELLUCID_COMMON_CASE_GLSL
 #define PELLUCID_COMMON_CASE_GLSL
 
-// DIRECTIONAL: every light of the gather is directional with one shadow map, of device depth; thickness is light-space, front depth is device depth, normals are given and stand for the angle, and all materials
-// are EXP2.
+// DIRECTIONAL: every light of the gather is directional with one shadow map, of device depth; thickness is light-space,
+// front depth is device depth, normals are given and stand for the angle, and all materials are EXP2.
 #ifdef DIRECTIONAL
 const bool kDirectional = true;
 #else

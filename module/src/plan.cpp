@@ -83,7 +83,8 @@ bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan
     const DiffusionReach reach = diffusionReach(frame);
     plan.largestRadius = static_cast<float>(reach.radius);
     plan.quality = frame.quality;
-    if (frame.targetError > 0 && !qualityFor(frame.targetError, reach.radius, &plan.quality))
+    if (frame.targetError > 0 &&
+        !qualityFor(frame.targetError, reach.radius, given(frame.normal), &plan.quality))
       b.skip("targetError", "no quality is that exact");
     for (uint32_t i = 0; i < frame.materialCount; ++i)
       if (reach.pixelsPerMm * widestDeviation(frame.materials[i]) > levelDeviation(coarsest))

@@ -56,7 +56,7 @@ DiffusionReach diffusionReach(const PellucidFrame& frame) {
   return reach;
 }
 
-bool qualityFor(float error, double radius, uint32_t* quality) {
+bool qualityFor(float error, double radius, bool normals, uint32_t* quality) {
   // Errors were measured at some radii; up to the first one that is not less than the frame's.
   size_t count = std::size(kErrorRadii);
   if (radius > 0)
@@ -64,9 +64,10 @@ bool qualityFor(float error, double radius, uint32_t* quality) {
         count, static_cast<size_t>(std::lower_bound(std::begin(kErrorRadii), std::end(kErrorRadii), radius) -
                                    kErrorRadii) +
                    1);
-  for (*quality = 0; *quality < std::size(kWorstError); ++*quality)
+  constexpr uint32_t kBest = std::size(kWorstError) - 1;
+  for (*quality = 0; *quality < kBest + (normals ? 1 : 0); ++*quality)
     if (*std::max_element(kWorstError[*quality], kWorstError[*quality] + count) < error) return true;
-  *quality = std::size(kWorstError) - 1;
+  *quality = kBest;
   return false;
 }
 

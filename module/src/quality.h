@@ -25,7 +25,7 @@ double levelDeviation(uint32_t level);
 double deviationWithin(uint32_t level);
 
 // The least quality whose measured error at radii up to `radius` pixels (0: all) is below `error`. False, and
-// the best quality, if there is none.
-bool qualityFor(float error, double radius, uint32_t* quality);
+// the best quality, if there is none. The best one is what it is by the frame's normals.
+bool qualityFor(float error, double radius, bool normals, uint32_t* quality);
 
 }  // namespace pellucid

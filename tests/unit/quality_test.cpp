@@ -139,33 +139,40 @@ TEST(Quality, ChoosesTheLastPass) {
   EXPECT_EQ(find(f.plan(), "diffuse")->pipeline, PELLUCID_PIPELINE_DIFFUSE_16F) << "there are none";
 }
 
-// Against the table: the least quality that is below the target at every radius up to the frame's.
+// Against the table: the least quality that is below the target at every radius up to the frame's. Without
+// normals the best one is no better than the one before.
 TEST(Quality, TargetErrorChoosesTheLeastThatHolds) {
   Frame f;
   f.frame.quality = 1;
   uint32_t chosen[kQualities] = {}, none = 0;
-  for (const float radius : {0.0f, 0.4f, 0.5f, 1.9f, 7.0f, 30.0f, 128.0f, 400.0f}) {
-    // 5 mm are 250 / p pixels. 0: not known, as good as the largest.
-    f.frame.nearestDistance = radius > 0 ? 250 / radius * 1.0001f : 0;
-    for (const float target : {1e-5f, 3e-4f, 0.007f, 0.02f, 0.03f, 0.05f, 0.07f, 0.5f}) {
-      f.frame.targetError = target;
-      uint32_t expected = kQualities;
-      for (uint32_t q = 0; q < kQualities && expected == kQualities; ++q) {
-        bool holds = true;
-        for (size_t i = 0; i < std::size(kErrorRadii); ++i) {
-          const bool reached = radius == 0 || i == 0 || kErrorRadii[i - 1] < radius;
-          holds = holds && (!reached || kWorstError[q][i] < target);
+  for (const bool normals : {false, true}) {
+    f.frame.normal = normals ? Frame::view() : PellucidImage{};
+    const uint32_t qualities = normals ? kQualities : kQualities - 1;
+    for (const float radius : {0.0f, 0.4f, 0.5f, 1.9f, 7.0f, 30.0f, 128.0f, 400.0f}) {
+      // 5 mm are 250 / p pixels. 0: not known, as good as the largest.
+      f.frame.nearestDistance = radius > 0 ? 250 / radius * 1.0001f : 0;
+      for (const float target : {1e-5f, 3e-4f, 0.007f, 0.02f, 0.03f, 0.05f, 0.07f, 0.5f}) {
+        f.frame.targetError = target;
+        uint32_t expected = qualities;
+        for (uint32_t q = 0; q < qualities && expected == qualities; ++q) {
+          bool holds = true;
+          for (size_t i = 0; i < std::size(kErrorRadii); ++i) {
+            const bool reached = radius == 0 || i == 0 || kErrorRadii[i - 1] < radius;
+            holds = holds && (!reached || kWorstError[q][i] < target);
+          }
+          if (holds) expected = q;
         }
-        if (holds) expected = q;
+        const bool found = expected < qualities;
+        const PellucidPlan plan = f.plan();
+        EXPECT_EQ(plan.quality, found ? expected : kQualities - 1) << radius << " pixels, " << target;
+        EXPECT_EQ(skipped(plan, "targetError"), found ? 0u : 1u) << radius << ", " << target;
+        ++(found ? chosen[expected] : none);
       }
-      const PellucidPlan plan = f.plan();
-      EXPECT_EQ(plan.quality, std::min(expected, kQualities - 1)) << radius << " pixels, " << target;
-      EXPECT_EQ(skipped(plan, "targetError"), expected == kQualities ? 1u : 0u) << radius << ", " << target;
-      ++(expected < kQualities ? chosen[expected] : none);
     }
   }
   EXPECT_GT(chosen[0], 0u);
   EXPECT_GT(chosen[1], 0u);
+  EXPECT_GT(chosen[3], 0u);
   EXPECT_GT(none, 0u);
 }
 
