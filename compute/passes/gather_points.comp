@@ -246,13 +246,17 @@ float meanCurvature(ivec2 pixel, ivec2 steps, Beside across, Beside along, Surfa
 
 void gatherLights(Surface x, Pattern pattern, inout Point result) {
   uint m = result.material - 1u;
-  vec3 transmitted = vec3(0.0), entering = vec3(0.0), displaced = vec3(0.0);
+  vec3 transmitted = vec3(0.0), entering = vec3(0.0), irradiance = vec3(0.0);
   for (uint i = 0u; i < pass.value.y; ++i) {
     Gathered g = gatherLight(m, lights[i], x, pattern);
     transmitted += g.transmitted;
     entering += g.entering;
-    displaced = max(displaced, g.displaced); // of the same surface, whatever the light
+    // Mean of what is displaced; where nothing is, nothing enters.
+    irradiance += g.entering / max(g.displaced, vec3(1.0e-12));
   }
+  // Lights light the same surface: the mean of what each displaces, by how strongly it lights that. A weak one that grazes the
+  // surface sees little of it, and that little badly.
+  vec3 displaced = entering / max(irradiance, vec3(1.0e-12));
   result.added = transmitted * frame.filterAndLimit.rgb * materials[m].inverseReflectance.rgb;
   if (!hasFlag(PELLUCID_FLAG_DIFFUSED)) return;
   result.added += entering;

@@ -249,8 +249,9 @@ Gathered Gather::at(const Surface& surface, std::size_t material) const {
   const std::optional<glm::dvec3> normal =
       surface.normal ? std::optional(glm::dmat3(worldFromView) * *surface.normal) : std::nullopt;
   Gathered result;
+  glm::dvec3 irradiance(0);  // mean of what is displaced, of all lights
   for (const Blocks& blocks : lights_) {
-    glm::dvec3 displaced(0);
+    glm::dvec3 displaced(0), entering(0);
     for (const Block& block : blocks) {
       if (glm::distance(block.center, x) > block.radius + radius) continue;
       for (const Texel& y : block.texels) {
@@ -261,12 +262,14 @@ Gathered Gather::at(const Surface& surface, std::size_t material) const {
         if (path.distance > radius) continue;
         result.transmitted += (1 - path.facing) * kernel.transmitted(path.distance, path.depth) * y.flux;
         const glm::dvec3 reflected = path.facing * kernel.reflected(path.distance);
-        result.entering += reflected * y.flux;
+        entering += reflected * y.flux;
         displaced += reflected * y.area;
       }
     }
-    result.displaced = glm::max(result.displaced, glm::min(displaced, glm::dvec3(1)));
+    result.entering += entering;
+    irradiance += entering / glm::max(glm::min(displaced, glm::dvec3(1)), glm::dvec3(1e-12));
   }
+  result.displaced = result.entering / glm::max(irradiance, glm::dvec3(1e-12));
   const glm::dvec3 convexity = kernel.convexity();
   const double reach = 2 * std::max({convexity.r, convexity.g, convexity.b});
   if (surface.normal && reach > 0)
