@@ -11,6 +11,4 @@ bool hasFlag(uint flag) {
   return (flags & flag) != 0u;
 }
 
-uint angleModel() { return kDirectional ? PELLUCID_SHADER_ANGLE_NORMAL : frame.flags.w; }
-
 #endif

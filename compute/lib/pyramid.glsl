@@ -126,7 +126,7 @@ float areaOf(vec2 pixel, vec3 normal) {
 
 // Texel of level 1 from its four pixels, rows first; depth <= 0: none. The nearest surface and all behind it within
 // what a surface 83 degrees from facing the camera has. `area`: of the pixels' surfaces, 0: as the depths say.
-uvec4 quadTexel(ivec2 quad, uint material[4], float depth[4], vec3 color[4], vec4 area) {
+uvec4 quadTexel(uint material[4], float depth[4], vec3 color[4], vec4 area) {
   uint nearestMaterial = 0u, any = 0u;
   float nearest = kNoDepth;
   for (int i = 0; i < 4; ++i) {

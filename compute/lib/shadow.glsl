@@ -13,9 +13,8 @@ struct ShadowReceiver {
 
 ShadowReceiver projectReceiver(ShadowConstants shadow, vec3 x) {
   vec4 clip = shadow.clipFromView * vec4(x, 1.0);
-  // An orthographic map has w = 1.
-  bool inFront = kDirectional || clip.w > 0.0;
-  vec2 ndc = kDirectional ? clip.xy : clip.xy / (inFront ? clip.w : 1.0);
+  bool inFront = clip.w > 0.0;
+  vec2 ndc = clip.xy / (inFront ? clip.w : 1.0);
   ivec2 texel = ivec2(floor((ndc * 0.5 + 0.5) * shadow.depth.zw));
   bool inside = inFront && all(lessThanEqual(abs(ndc), vec2(1.0))) &&
                 all(lessThan(texel, ivec2(shadow.depth.zw)));
@@ -32,9 +31,9 @@ bool shadowHolds(uvec4 meta, float stored) {
 // Scene units along the light ray from the stored surface to the receiver x; negative: the surface is
 // beyond x. Each form subtracts before it scales, so equal depths give exactly 0.
 float lightThickness(ShadowConstants shadow, ShadowReceiver receiver, vec3 x, Incident light, float stored) {
-  bool perspective = !kDirectional && shadow.meta.z != 0u;
-  if (kDirectional || shadow.meta.y == PELLUCID_SHADER_DEPTH_DEVICE) {
-    float gap = (kDirectional ? stored : stored * receiver.clip.w) - receiver.clip.z;
+  bool perspective = shadow.meta.z != 0u;
+  if (shadow.meta.y == PELLUCID_SHADER_DEPTH_DEVICE) {
+    float gap = stored * receiver.clip.w - receiver.clip.z;
     if (!perspective) return -gap * shadow.depth.x;
     // On the ray from the light, clip = (0,0,zL,0) + t (clip(x) - (0,0,zL,0)); the stored depth is at
     // t = zL / (zL + gap). zL + gap = zL / t has zL's sign for every t > 0.

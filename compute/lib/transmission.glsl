@@ -15,7 +15,7 @@
 
 vec3 materialTransmittance(uint m, float d) {
   vec3 t = vec3(0.0);
-  if (kDirectional || materials[m].meta.x == PELLUCID_SHADER_TRANSMITTANCE_EXP2) {
+  if (materials[m].meta.x == PELLUCID_SHADER_TRANSMITTANCE_EXP2) {
     t = vec3(transmittanceExp2(materials[m].transmittance[0], d), transmittanceExp2(materials[m].transmittance[1], d),
              transmittanceExp2(materials[m].transmittance[2], d));
   } else if (materials[m].meta.x == PELLUCID_SHADER_TRANSMITTANCE_SINH_EXP) {
@@ -58,7 +58,7 @@ struct Transmitted {
 };
 
 float hiddenCosine(LightConstants light, Surface s, vec3 toLight) {
-  uint model = angleModel();
+  uint model = frame.flags.w;
   if (model == PELLUCID_SHADER_ANGLE_NORMAL && s.hasNormal) return max(-dot(s.normal, toLight), 0.0);
   vec3 view = hasFlag(PELLUCID_FLAG_CONSTANT_VIEW) ? vec3(0.0, 0.0, frame.camera.range.x) : s.view;
   float x = dot(view, toLight) * light.cone.z + light.cone.w; // from the minimum dot on, if the model has one

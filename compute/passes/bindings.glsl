@@ -35,6 +35,9 @@ bool insideRect(ivec2 pixel) {
   return all(greaterThanEqual(pixel, ivec2(frame.rect.xy))) && all(lessThan(pixel, ivec2(frame.rect.zw)));
 }
 
+// The nearest pixel of the rect, where loads need no branch.
+ivec2 withinRect(ivec2 pixel) { return clamp(pixel, ivec2(frame.rect.xy), ivec2(frame.rect.zw) - 1); }
+
 // Index without the mark bit. 0 for none and for values beyond the material list, so that a stray id
 // cannot read past it.
 uint materialIndex(uint value) {

@@ -85,7 +85,7 @@ vec4 fineOfEdge(ivec2 pixel, uint material, float depth, vec2 slope, vec2 size) 
   for (int y = -2; y <= 2; ++y) {
     // A row's loads at once, so that their latencies overlap.
     [[unroll]] for (int x = -2; x <= 2; ++x) {
-      ivec2 offset = ivec2(x, y), at = clamp(pixel + offset, ivec2(frame.rect.xy), ivec2(frame.rect.zw) - 1);
+      ivec2 offset = ivec2(x, y), at = withinRect(pixel + offset);
       uint theirs = materialAt(at);
       float theirDepth = frontDistance(at);
       vec3 theirColor = sanitize(texelFetch(sourceImage, at, 0).rgb);
@@ -180,10 +180,10 @@ void main() {
     }
   }
   int column = invocation % kColumns, firstRow = invocation / kColumns * kRows;
-  ivec2 first = 4 * firstTexel + ivec2(column - kRing, firstRow), last = ivec2(frame.rect.zw) - 1;
+  ivec2 first = 4 * firstTexel + ivec2(column - kRing, firstRow);
   vec4 sources[kRows + 2 * kRing];
   [[unroll]] for (int i = 0; i < kRows + 2 * kRing; ++i)
-    sources[i] = texelFetch(sourceImage, clamp(first + ivec2(0, i - kRing), ivec2(frame.rect.xy), last), 0);
+    sources[i] = texelFetch(sourceImage, withinRect(first + ivec2(0, i - kRing)), 0);
 #ifdef GATHER
   if (invocation == 0) someLight = 0u;
 #endif

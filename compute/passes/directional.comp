@@ -35,14 +35,14 @@ float hiddenCosine(ivec2 pixel, vec3 normal) {
 }
 
 void main() {
-  ivec2 tile = evenTile(), last = ivec2(frame.rect.zw) - 1;
+  ivec2 tile = evenTile();
   // All loads whatever they will be needed for, so that their latencies overlap.
   uint value[kPixels];
   vec4 source[kPixels];
   vec3 normal[kPixels];
   float front[kPixels], stored[kPixels];
   [[unroll]] for (int i = 0; i < kPixels; ++i) {
-    ivec2 at = clamp(tile + pixelInTile(i), ivec2(frame.rect.xy), last);
+    ivec2 at = withinRect(tile + pixelInTile(i));
     value[i] = materialValueAt(at);
     source[i] = texelFetch(sourceImage, at, 0);
     front[i] = texelFetch(frontDepthImage, at, 0).x;

@@ -212,7 +212,7 @@ struct Beside {
 };
 
 Beside besideAt(ivec2 pixel) {
-  ivec2 at = clamp(pixel, ivec2(frame.rect.xy), ivec2(frame.rect.zw) - 1);
+  ivec2 at = withinRect(pixel);
   return Beside(pixel, frontDistance(at), texelFetch(normalImage, at, 0));
 }
 

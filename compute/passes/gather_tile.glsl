@@ -39,8 +39,7 @@ void main() {
   vec4 source[4];
   float front[4];
   [[unroll]] for (int i = 0; i < 4; ++i) {
-    // Within the rect, where the loads need no branch.
-    ivec2 pixel = clamp(tile + pixelInTile(i), ivec2(frame.rect.xy), ivec2(frame.rect.zw) - 1);
+    ivec2 pixel = withinRect(tile + pixelInTile(i));
     value[i] = materialValueAt(pixel);
     source[i] = texelFetch(sourceImage, pixel, 0);
     front[i] = texelFetch(frontDepthImage, pixel, 0).x;

@@ -23,7 +23,7 @@ ivec2 pixelOfQuad(ivec2 quad) { return 2 * quad + (quad.yx & 1); }
 
 // Of the invocation's quad, to be loaded with all the rest.
 vec3 normalOfQuad() {
-  return normalAt(clamp(pixelOfQuad(ownQuad()), ivec2(frame.rect.xy), ivec2(frame.rect.zw) - 1));
+  return normalAt(withinRect(pixelOfQuad(ownQuad())));
 }
 
 // After a barrier. `normal`: normalOfQuad().
@@ -48,10 +48,10 @@ void writeQuad(vec3 normal) {
   }
   vec4 area;
   for (int i = 0; i < 4; ++i) {
-    ivec2 pixel = clamp(2 * quad + ivec2(i & 1, i >> 1), ivec2(frame.rect.xy), ivec2(frame.rect.zw) - 1);
+    ivec2 pixel = withinRect(2 * quad + ivec2(i & 1, i >> 1));
     area[i] = areaOf(vec2(pixel), normalAt(pixel));
   }
-  writeLevel(1u, quad, quadTexel(quad, material, depth, color, area));
+  writeLevel(1u, quad, quadTexel(material, depth, color, area));
 }
 
 #endif

@@ -13,7 +13,7 @@ void main() {
   // All at once, so that the latencies overlap.
   for (int i = 0; i < 4; ++i) {
     ivec2 pixel = evenTile() + pixelInTile(i);
-    ivec2 at = clamp(pixel, ivec2(frame.rect.xy), ivec2(frame.rect.zw) - 1);
+    ivec2 at = withinRect(pixel);
     material[i] = at == pixel ? materialAt(at) : 0u;
     depth[i] = frontDistance(at);
     source[i] = texelFetch(sourceImage, at, 0);

@@ -101,7 +101,7 @@ void main() {
 #endif
   Texels texels[4];
   for (int i = 0; i < 4; ++i)
-    texels[i] = fetch(clamp(tile + pixelInTile(i), ivec2(frame.rect.xy), ivec2(frame.rect.zw) - 1));
+    texels[i] = fetch(withinRect(tile + pixelInTile(i)));
   for (int i = 0; i < 4; ++i) {
     ivec2 pixel = tile + pixelInTile(i);
     Texels t = texels[i];

@@ -243,7 +243,7 @@ extern "C" PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const
       const PellucidShadowMap& s = f.shadowMaps[l.firstShadowMap + i];
       const shared::ShadowConstants constants = shadowConstants(s, l, worldFromView, group.slot(s.image));
       put(mapped, layout.shadows.offset + group.shadowBytes + shadow * sizeof constants, constants);
-      if (group.directional)  // read where it is the only light
+      if (group.directional && group.lightCount == 1)  // read where no other follows
         put(mapped, layout.directional.offset + group.index * kDirectionalWindow,
             directionalConstants(frameValues, light, constants));
       if (!isGathered(f, l)) continue;
