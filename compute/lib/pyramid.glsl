@@ -153,18 +153,19 @@ uvec4 quadTexel(uint material[4], float depth[4], vec3 color[4], vec4 area) {
   return packTexel(Texel(mean / mass, 0.25 * mass, nearestMaterial, sum / weights, vec2(0.0)), 0u);
 }
 
-// The same where it is one surface, of that area.
-uvec4 wholeQuadTexel(uint material, float depth[4], vec3 color[4], float area) {
-  return packTexel(Texel(0.25 * (color[0] + color[1] + color[2] + color[3]), area, material,
-                         0.25 * (depth[0] + depth[1] + depth[2] + depth[3]), vec2(0.0)), kPlane);
+// The same where it is one surface, of that area. `packed`: by packHalves(color, material).
+uvec4 wholeQuadTexel(uvec2 packed[4], float depth[4], float area) {
+  vec3 color = unpackColor(packed[0]) + unpackColor(packed[1]) + unpackColor(packed[2]) + unpackColor(packed[3]);
+  return packTexel(Texel(0.25 * color, area, packed[0].y >> 16, 0.25 * (depth[0] + depth[1] + depth[2] + depth[3]),
+                         vec2(0.0)), kPlane);
 }
 
-// Whether four pixels are one surface.
-bool isWholeQuad(uint material[4], float depth[4]) {
+// Whether four pixels, packed alike, are one surface.
+bool isWholeQuad(uvec2 packed[4], float depth[4]) {
+  uint first = packed[0].y, different = (first ^ packed[1].y) | (first ^ packed[2].y) | (first ^ packed[3].y);
   float nearest = min(min(depth[0], depth[1]), min(depth[2], depth[3]));
   float farthest = max(max(depth[0], depth[1]), max(depth[2], depth[3]));
-  bool one = nearest > 0.0 && material[0] != 0u && material[1] == material[0] && material[2] == material[0] &&
-             material[3] == material[0];
+  bool one = nearest > 0.0 && first >> 16 != 0u && different >> 16 == 0u;
   vec2 sides = squaredPixelSize(frame.camera, nearest);
   float span = farthest - nearest;
   return one && span * span < 64.0 * min(sides.x, sides.y);

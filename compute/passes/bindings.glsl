@@ -10,7 +10,10 @@
 #ifndef GROUP_SIDE
 #define GROUP_SIDE PELLUCID_GROUP_X
 #endif
-layout(local_size_x = GROUP_SIDE, local_size_y = GROUP_SIDE) in;
+#ifndef GROUP_ROWS
+#define GROUP_ROWS GROUP_SIDE
+#endif
+layout(local_size_x = GROUP_SIDE, local_size_y = GROUP_ROWS) in;
 
 layout(push_constant) uniform Pass { PassConstants pass; };
 layout(set = 0, binding = PELLUCID_BINDING_FRAME) uniform Frame { FrameConstants frame; };
@@ -21,13 +24,6 @@ layout(set = 0, binding = PELLUCID_BINDING_MATERIAL) uniform utexture2D material
 layout(set = 0, binding = PELLUCID_BINDING_DESTINATION, FORMAT) uniform writeonly image2D destinationImage;
 
 #include "lib/flags.glsl"
-
-// Where an invocation does four pixels, the i-th in the group's tile: half a tile apart, so that neighbors load
-// neighbors.
-ivec2 pixelInTile(int i) { return ivec2(gl_LocalInvocationID.xy) + GROUP_SIDE * ivec2(i & 1, i >> 1); }
-
-// Of tiles that start at even pixels, so that quads of pixels are the image's.
-ivec2 evenTile() { return (ivec2(frame.rect.xy) & ~1) + ivec2(gl_WorkGroupID.xy) * (2 * GROUP_SIDE); }
 
 ivec2 invocationPixel() { return ivec2(frame.rect.xy) + ivec2(gl_GlobalInvocationID.xy); }
 
@@ -73,10 +69,9 @@ vec3 asHalves(vec3 color) {
 #endif
 }
 
-// `color`: >= 0. `last`: this is the frame's final write, so the post-scatter albedo applies. Returns what the image
-// holds then.
+// `color`: 0 to kLargestHalf. `last`: this is the frame's final write, so the post-scatter albedo applies. Returns what
+// the image holds then.
 vec3 writeResult(ivec2 pixel, vec3 color, float alpha, bool last) {
-  color = min(color, vec3(kLargestHalf));
   if (last && hasFlag(PELLUCID_FLAG_ALBEDO))
     color = min(color * sanitize(texelFetch(albedoImage, pixel, 0).rgb), vec3(kLargestHalf));
   color = asStored(color);

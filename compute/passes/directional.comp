@@ -5,21 +5,21 @@
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
+#extension GL_EXT_spirv_intrinsics : require
 #extension GL_GOOGLE_include_directive : require
 
 #ifdef QUADS
 #include "passes/quad_tile.glsl"
 #else
-#include "passes/bindings.glsl"
+#include "passes/tile.glsl"
 #endif
+#include "lib/saturate.glsl"
 #include "lib/transmittance.glsl"
 #include "passes/normal_image.glsl"
 
 layout(set = 0, binding = PELLUCID_BINDING_LIGHTS) uniform Light { DirectionalConstants light; };
 layout(set = 0, binding = PELLUCID_BINDING_MATERIALS) readonly buffer Materials { MaterialConstants materials[]; };
 layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES) uniform texture2D shadowImage;
-
-const int kPixels = 4; // of an invocation; see pixelInTile
 
 // Where the light enters, without a normal: the view ray stands in, as in lib/transmission.glsl.
 float cosineOfView(ivec2 pixel) {
@@ -30,7 +30,7 @@ float cosineOfView(ivec2 pixel) {
 float hiddenCosine(ivec2 pixel, vec3 normal) {
   float squared = dot(normal, normal);
   if (squared > 1.0e-8 && squared < 1.0e8) // false for NaN too
-    return max(-dot(normal, light.toLightFromNormal.xyz) * inversesqrt(squared), 0.0);
+    return clamp(-dot(normal, light.toLightFromNormal.xyz) * inversesqrt(squared), 0.0, 1.0);
   return cosineOfView(pixel);
 }
 
@@ -59,16 +59,8 @@ void main() {
   bool inside[kPixels];
   [[unroll]] for (int i = 0; i < kPixels; ++i) {
     front[i] = planarDistance(frame.camera, front[i]);
-    vec3 from = origin, along = direction;
-    if ((i & 1) != 0) {
-      from += float(GROUP_SIDE) * light.originX.xyz;
-      along += float(GROUP_SIDE) * light.directionX.xyz;
-    }
-    if ((i >> 1) != 0) {
-      from += float(GROUP_SIDE) * light.originY.xyz;
-      along += float(GROUP_SIDE) * light.directionY.xyz;
-    }
-    inMap[i] = from + front[i] * along;
+    float rows = float(GROUP_ROWS * i);
+    inMap[i] = origin + rows * light.originY.xyz + front[i] * (direction + rows * light.directionY.xyz);
     vec2 at = clamp(inMap[i].xy, vec2(0.0), light.texels.xy);
     inside[i] = at == inMap[i].xy; // false for NaN
     stored[i] = texelFetch(shadowImage, ivec2(at), 0).x;
@@ -76,40 +68,45 @@ void main() {
 
   // A history that starts is 0 wherever nothing came through: the next frame's pixels may lie there.
   bool starts = pass.value.z == PELLUCID_WRITE_STARTS;
-  uint material[kPixels];
+  // Colors in units of the largest half: what is clamped to 1 is clamped to that, at no cost.
+  float unit = starts ? 0.0 : 1.0 / kLargestHalf;
+  uint material[kPixels], lit[kPixels];
   vec3 color[kPixels];
   float thickness[kPixels], cosine[kPixels];
   [[unroll]] for (int i = 0; i < kPixels; ++i) {
     ivec2 pixel = tile + pixelInTile(i);
     material[i] = insideRect(pixel) ? materialIndex(value[i]) : 0u;
-    color[i] = starts ? vec3(0.0) : sanitize(source[i].rgb);
+    color[i] = saturate(unit * source[i].rgb);
     thickness[i] = max((inMap[i].z - stored[i]) * light.depth.x - light.depth.y, 0.0); // mm
     bool holds = stored[i] >= 0.0 && stored[i] <= 1.0 && stored[i] != light.depth.z;
     // Marked pixels keep their irradiance.
     bool through = material[i] != 0u && (value[i] & frame.marks.x) == 0u && front[i] > 0.0 && inside[i] && holds &&
                    thickness[i] <= frame.filterAndLimit.w;
-    cosine[i] = through ? hiddenCosine(pixel, normal[i]) : 0.0;
+    cosine[i] = hiddenCosine(pixel, normal[i]);
+    lit[i] = through ? material[i] : 0u;
   }
   // Material by material of these pixels, which mostly have one: its constants are loaded once.
   for (;;) {
     uint m = 0u;
     [[unroll]] for (int i = 0; i < kPixels; ++i)
-      if (cosine[i] > 0.0) m = max(m, material[i]);
+      m = max(m, lit[i]);
     if (m == 0u) break;
     vec4 r = materials[m - 1u].transmittance[0], g = materials[m - 1u].transmittance[1],
          b = materials[m - 1u].transmittance[2];
-    vec3 entering = light.entering.rgb * materials[m - 1u].inverseReflectance.rgb;
+    vec3 entering = (1.0 / kLargestHalf) * light.entering.rgb * materials[m - 1u].inverseReflectance.rgb;
     [[unroll]] for (int i = 0; i < kPixels; ++i) {
-      bool mine = material[i] == m;
+      bool mine = lit[i] == m;
       float d = thickness[i];
       vec3 t = vec3(transmittanceExp2(r, d), transmittanceExp2(g, d), transmittanceExp2(b, d));
-      color[i] += (mine ? cosine[i] : 0.0) * clamp(t, vec3(0.0), vec3(1.0)) * entering;
-      cosine[i] = mine ? 0.0 : cosine[i];
+      vec3 arriving = (mine ? cosine[i] : 0.0) * entering;
+      color[i] = clamp(color[i] + arriving * clamp(t, vec3(0.0), vec3(1.0)), vec3(0.0), vec3(1.0));
+      lit[i] = mine ? 0u : lit[i];
     }
   }
 
   [[unroll]] for (int i = 0; i < kPixels; ++i) {
     ivec2 pixel = tile + pixelInTile(i);
+    color[i] *= kLargestHalf;
     if (material[i] != 0u)
       color[i] = writeResult(pixel, color[i], starts ? 0.0 : source[i].a, pass.value.z == PELLUCID_WRITE_LAST);
     else if (starts && insideRect(pixel))

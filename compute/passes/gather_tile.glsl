@@ -8,6 +8,9 @@ const ivec2 kPointPixels = ivec2(kTile);
 const int kLeastSide = 2;
 #include "passes/gathered.glsl"
 
+// The i-th pixel of an invocation: half a tile apart, so that neighbors load neighbors.
+ivec2 pixelInTile(int i) { return ivec2(gl_LocalInvocationID.xy) + PELLUCID_GATHER_GROUP * ivec2(i & 1, i >> 1); }
+
 // What came through of the lights without a map, which come last.
 vec3 otherLight(ivec2 pixel, float front, float frontStored, uint m) {
   float back = hasFlag(PELLUCID_FLAG_CHORD) ? texelFetch(backDepthImage, pixel, 0).x : 0.0;
@@ -29,7 +32,7 @@ void writePixel(ivec2 pixel, ivec2 local, int side, uint value, vec4 source, flo
   float front = (value & frame.marks.x) != 0u ? -1.0 : frontDistanceOf(frontStored);
   if (front > 0.0 && someLight != 0u) result = withGathered(result, local, side, front, material);
   if (front > 0.0 && others) result += otherLight(pixel, front, frontStored, material - 1u);
-  writeResult(pixel, max(result, vec3(0.0)), source.a, pass.value.z == PELLUCID_WRITE_LAST);
+  writeResult(pixel, clamp(result, vec3(0.0), vec3(kLargestHalf)), source.a, pass.value.z == PELLUCID_WRITE_LAST);
 }
 
 void main() {

@@ -1,12 +1,12 @@
-// Level 1 of the pyramid from a tile of pixels that a group has in shared memory. An invocation does four pixels and then
-// a texel.
+// Level 1 of the pyramid from a tile of pixels that a group has in shared memory, once its pixels are done.
 #ifndef PELLUCID_QUAD_TILE_GLSL
 #define PELLUCID_QUAD_TILE_GLSL
 
+#include "passes/tile.glsl"
 #include "passes/normal_image.glsl"
 #include "passes/pyramid.glsl"
 
-const int kTile = 2 * GROUP_SIDE; // pixels
+const int kTile = PELLUCID_TILE, kQuads = kTile / 2; // a side
 shared uvec2 tileColors[kTile * kTile]; // and material
 shared float tileDepths[kTile * kTile];
 
@@ -16,38 +16,41 @@ void keepPixel(ivec2 inTile, vec3 color, float depth, uint material) {
   tileDepths[inTile.y * kTile + inTile.x] = depth;
 }
 
-ivec2 ownQuad() { return (evenTile() >> 1) + ivec2(gl_LocalInvocationID.xy); }
+// The first invocations do a quad each.
+bool hasQuad() { return gl_LocalInvocationIndex < uint(kQuads * kQuads); }
+ivec2 quadInTile() { return ivec2(gl_LocalInvocationIndex % uint(kQuads), gl_LocalInvocationIndex / uint(kQuads)); }
 
 // The pixel whose normal stands for a quad that is one surface: any of the four, by turns.
 ivec2 pixelOfQuad(ivec2 quad) { return 2 * quad + (quad.yx & 1); }
 
 // Of the invocation's quad, to be loaded with all the rest.
 vec3 normalOfQuad() {
-  return normalAt(withinRect(pixelOfQuad(ownQuad())));
+  return hasQuad() ? normalAt(withinRect(pixelOfQuad((evenTile() >> 1) + quadInTile()))) : vec3(0.0);
 }
 
 // After a barrier. `normal`: normalOfQuad().
 void writeQuad(vec3 normal) {
-  ivec2 local = ivec2(gl_LocalInvocationID.xy), quad = ownQuad();
-  uint material[4];
+  ivec2 local = quadInTile(), quad = (evenTile() >> 1) + local;
+  if (!hasQuad() || !insideLevel(levelRect(1u), quad)) return;
   float depth[4];
-  vec3 color[4];
+  uvec2 packed[4];
   for (int i = 0; i < 4; ++i) {
     int at = (2 * local.y + (i >> 1)) * kTile + 2 * local.x + (i & 1);
-    uvec2 packed = tileColors[at];
-    material[i] = packed.y >> 16;
+    packed[i] = tileColors[at];
     depth[i] = tileDepths[at];
-    color[i] = unpackColor(packed);
   }
-  if (!insideLevel(levelRect(1u), quad)) return;
-  if (isWholeQuad(material, depth)) {
+  if (isWholeQuad(packed, depth)) {
     float area = areaOf(vec2(pixelOfQuad(quad)), normal);
     if (area == 0.0) area = areaOfQuad(quad, depth);
-    writeLevel(1u, quad, wholeQuadTexel(material[0], depth, color, area));
+    writeLevel(1u, quad, wholeQuadTexel(packed, depth, area));
     return;
   }
+  uint material[4];
+  vec3 color[4];
   vec4 area;
   for (int i = 0; i < 4; ++i) {
+    material[i] = packed[i].y >> 16;
+    color[i] = unpackColor(packed[i]);
     ivec2 pixel = withinRect(2 * quad + ivec2(i & 1, i >> 1));
     area[i] = areaOf(vec2(pixel), normalAt(pixel));
   }

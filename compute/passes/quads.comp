@@ -6,19 +6,19 @@
 #include "passes/quad_tile.glsl"
 
 void main() {
-  uint material[4];
-  float depth[4];
-  vec4 source[4];
+  uint material[kPixels];
+  float depth[kPixels];
+  vec4 source[kPixels];
   vec3 normal = normalOfQuad();
   // All at once, so that the latencies overlap.
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < kPixels; ++i) {
     ivec2 pixel = evenTile() + pixelInTile(i);
     ivec2 at = withinRect(pixel);
     material[i] = at == pixel ? materialAt(at) : 0u;
     depth[i] = frontDistance(at);
     source[i] = texelFetch(sourceImage, at, 0);
   }
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < kPixels; ++i) {
     vec3 color = sanitize(source[i].rgb);
 #ifdef COPY
     color = asStored(color);

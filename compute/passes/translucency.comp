@@ -7,8 +7,10 @@
 
 #ifdef QUADS
 #include "passes/quad_tile.glsl"
-#else
+#elif defined(GATHER)
 #include "passes/bindings.glsl"
+#else
+#include "passes/tile.glsl"
 #endif
 
 layout(set = 0, binding = PELLUCID_BINDING_LIGHTS) uniform Lights { LightConstants lights[PELLUCID_DISPATCH_LIGHTS]; };
@@ -91,7 +93,7 @@ vec3 resultAt(ivec2 pixel, Texels t, float front, uint m) {
   return sanitize(t.source.rgb) + transmitted * materials[m].inverseReflectance.rgb;
 }
 
-// An invocation does four pixels. QUADS: then a texel of the pyramid's level 1.
+// QUADS: then a texel of the pyramid's level 1.
 void main() {
   ivec2 tile = evenTile();
   // A history that starts is 0 wherever nothing came through: the next frame's pixels may lie there.
@@ -99,10 +101,10 @@ void main() {
 #ifdef QUADS
   vec3 quadNormal = normalOfQuad();
 #endif
-  Texels texels[4];
-  for (int i = 0; i < 4; ++i)
+  Texels texels[kPixels];
+  for (int i = 0; i < kPixels; ++i)
     texels[i] = fetch(withinRect(tile + pixelInTile(i)));
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < kPixels; ++i) {
     ivec2 pixel = tile + pixelInTile(i);
     Texels t = texels[i];
     uint material = insideRect(pixel) ? materialIndex(t.value) : 0u;
@@ -114,7 +116,7 @@ void main() {
 #ifdef DEBUG_VIEWS
       imageStore(destinationImage, pixel, vec4(result, t.source.a));
 #else
-      color = writeResult(pixel, result, t.source.a, pass.value.z == PELLUCID_WRITE_LAST);
+      color = writeResult(pixel, min(result, vec3(kLargestHalf)), t.source.a, pass.value.z == PELLUCID_WRITE_LAST);
 #endif
     } else if (starts && insideRect(pixel)) {
       imageStore(destinationImage, pixel, vec4(0.0));

@@ -65,9 +65,9 @@ struct Builder {
     d->groups[2] = 1;
   }
 
-  // Of four pixels an invocation, from even ones on.
+  // From even pixels on.
   void tiles(PellucidDispatch* d) const {
-    groups(d, rect.width + (rect.x & 1), rect.height + (rect.y & 1), 2 * PELLUCID_GROUP_X);
+    groups(d, rect.width + (rect.x & 1), rect.height + (rect.y & 1), PELLUCID_TILE);
   }
 
   static void bind(PellucidDispatch* d, uint32_t binding, VkDescriptorType type, uint32_t resource,

@@ -1,0 +1,18 @@
+// Passes whose groups do a tile of pixels, an invocation two of them: one leaves too much to do for each pixel again, four
+// hold so many registers that too few groups run at a time.
+#ifndef PELLUCID_TILE_GLSL
+#define PELLUCID_TILE_GLSL
+
+#define GROUP_SIDE PELLUCID_TILE
+#define GROUP_ROWS (PELLUCID_TILE / 2)
+#include "passes/bindings.glsl"
+
+const int kPixels = 2; // of an invocation
+
+// The i-th of them: half a tile apart, so that neighbors load neighbors.
+ivec2 pixelInTile(int i) { return ivec2(gl_LocalInvocationID.xy) + ivec2(0, GROUP_ROWS * i); }
+
+// Of tiles that start at even pixels, so that quads of pixels are the image's.
+ivec2 evenTile() { return (ivec2(frame.rect.xy) & ~1) + ivec2(gl_WorkGroupID.xy) * PELLUCID_TILE; }
+
+#endif
