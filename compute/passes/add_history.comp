@@ -12,5 +12,5 @@ void main() {
   if (!insideRect(pixel) || materialAt(pixel) == 0u) return;
   vec4 source = texelFetch(sourceImage, pixel, 0);
   vec3 through = sanitize(texelFetch(historyImage, pixel, 0).rgb);
-  writeResult(pixel, min(sanitize(source.rgb) + through, vec3(kLargestHalf)), source.a, pass.value.z != 0u);
+  writeResult(pixel, sanitize(source.rgb) + through, source.a, pass.value.z != 0u);
 }

@@ -69,11 +69,15 @@ vec3 asHalves(vec3 color) {
 #endif
 }
 
-// `color`: 0 to kLargestHalf. `last`: this is the frame's final write, so the post-scatter albedo applies. Returns what
-// the image holds then.
+// Whether the post-scatter albedo applies. `last`: this is the frame's final write.
+bool tinted(bool last) { return last && hasFlag(PELLUCID_FLAG_ALBEDO); }
+
+vec3 albedoAt(ivec2 pixel) { return sanitize(texelFetch(albedoImage, pixel, 0).rgb); }
+
+// `color`: >= 0. Returns what the image holds then.
 vec3 writeResult(ivec2 pixel, vec3 color, float alpha, bool last) {
-  if (last && hasFlag(PELLUCID_FLAG_ALBEDO))
-    color = min(color * sanitize(texelFetch(albedoImage, pixel, 0).rgb), vec3(kLargestHalf));
+  color = min(color, vec3(kLargestHalf));
+  if (tinted(last)) color = min(color * albedoAt(pixel), vec3(kLargestHalf));
   color = asStored(color);
   imageStore(destinationImage, pixel, vec4(color, alpha));
   return color;

@@ -62,8 +62,7 @@ vec4 unpackedColor(uvec2 packed) { return vec4(unpackHalf2x16(packed.x), unpackH
 #endif
 
 void store(ivec2 pixel, vec3 color, float alpha) {
-  if (pass.value.w != 0u && hasFlag(PELLUCID_FLAG_ALBEDO))
-    color = sanitize(color * sanitize(texelFetch(albedoImage, pixel, 0).rgb));
+  if (tinted(pass.value.w != 0u)) color = sanitize(color * albedoAt(pixel));
   imageStore(destinationImage, pixel, vec4(asStored(color), alpha));
 }
 
@@ -233,6 +232,9 @@ void main() {
                        splineX.z * unpackColor(resolved[row + 2].xy);
         }
         PixelShares share = unpackShares(shares[index + kWindow.x + 1].xyz);
+#ifndef GATHER
+        vec4 result[4];
+#endif
         [[unroll]] for (int i = 0; i < 4; ++i) {
           vec3 splineY = spline(0.25 * (float(i) - 1.5));
           vec3 smoothed = splineY.x * coarser[0] + splineY.y * coarser[1] + splineY.z * coarser[2];
@@ -246,9 +248,18 @@ void main() {
 #ifdef GATHER
           own[4 * block + i] = packedColor(color, blue.y);
 #else
-          store(4 * firstTexel + ivec2(x, 4 * texelRow + i), color, blue.y);
+          result[i] = vec4(color, blue.y);
 #endif
         }
+#ifndef GATHER
+        // One branch for all pixels, as branches cost more than what is in them.
+        ivec2 top = 4 * firstTexel + ivec2(x, 4 * texelRow);
+        if (tinted(pass.value.w != 0u))
+          [[unroll]] for (int i = 0; i < 4; ++i)
+            result[i].rgb = sanitize(result[i].rgb * albedoAt(top + ivec2(0, i)));
+        [[unroll]] for (int i = 0; i < 4; ++i)
+          imageStore(destinationImage, top + ivec2(0, i), vec4(asStored(result[i].rgb), result[i].a));
+#endif
 #ifdef GATHER
         ivec2 local = ivec2(x, 4 * texelRow);
         vec3 first = vec3(0.0), step = vec3(0.0);

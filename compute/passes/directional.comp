@@ -11,6 +11,7 @@
 #ifdef QUADS
 #include "passes/quad_tile.glsl"
 #else
+#define TILE_ROWS PELLUCID_DIRECTIONAL_ROWS
 #include "passes/tile.glsl"
 #endif
 #include "lib/saturate.glsl"
@@ -71,11 +72,14 @@ void main() {
   // Colors in units of the largest half: what is clamped to 1 is clamped to that, at no cost.
   float unit = starts ? 0.0 : 1.0 / kLargestHalf;
   uint material[kPixels], lit[kPixels];
+  bool writes[kPixels];
   vec3 color[kPixels];
   float thickness[kPixels], cosine[kPixels];
   [[unroll]] for (int i = 0; i < kPixels; ++i) {
     ivec2 pixel = tile + pixelInTile(i);
-    material[i] = insideRect(pixel) ? materialIndex(value[i]) : 0u;
+    bool within = pixel == withinRect(pixel);
+    material[i] = within ? materialIndex(value[i]) : 0u;
+    writes[i] = material[i] != 0u || (starts && within);
     color[i] = saturate(unit * source[i].rgb);
     thickness[i] = max((inMap[i].z - stored[i]) * light.depth.x - light.depth.y, 0.0); // mm
     bool holds = stored[i] >= 0.0 && stored[i] <= 1.0 && stored[i] != light.depth.z;
@@ -99,18 +103,19 @@ void main() {
       float d = thickness[i];
       vec3 t = vec3(transmittanceExp2(r, d), transmittanceExp2(g, d), transmittanceExp2(b, d));
       vec3 arriving = (mine ? cosine[i] : 0.0) * entering;
-      color[i] = clamp(color[i] + arriving * clamp(t, vec3(0.0), vec3(1.0)), vec3(0.0), vec3(1.0));
+      color[i] = saturate(color[i] + arriving * saturate(t));
       lit[i] = mine ? 0u : lit[i];
     }
   }
 
+  // One branch for all pixels, as branches cost more than what is in them.
+  if (tinted(pass.value.z == PELLUCID_WRITE_LAST))
+    [[unroll]] for (int i = 0; i < kPixels; ++i)
+      color[i] = min(color[i] * albedoAt(withinRect(tile + pixelInTile(i))), vec3(1.0));
   [[unroll]] for (int i = 0; i < kPixels; ++i) {
-    ivec2 pixel = tile + pixelInTile(i);
-    color[i] *= kLargestHalf;
-    if (material[i] != 0u)
-      color[i] = writeResult(pixel, color[i], starts ? 0.0 : source[i].a, pass.value.z == PELLUCID_WRITE_LAST);
-    else if (starts && insideRect(pixel))
-      imageStore(destinationImage, pixel, vec4(0.0));
+    color[i] = asStored(kLargestHalf * color[i]);
+    if (writes[i])
+      imageStore(destinationImage, tile + pixelInTile(i), vec4(color[i], starts ? 0.0 : source[i].a));
 #ifdef QUADS
     keepPixel(pixelInTile(i), asHalves(color[i]), front[i], material[i]);
 #endif

@@ -32,7 +32,7 @@ void writePixel(ivec2 pixel, ivec2 local, int side, uint value, vec4 source, flo
   float front = (value & frame.marks.x) != 0u ? -1.0 : frontDistanceOf(frontStored);
   if (front > 0.0 && someLight != 0u) result = withGathered(result, local, side, front, material);
   if (front > 0.0 && others) result += otherLight(pixel, front, frontStored, material - 1u);
-  writeResult(pixel, clamp(result, vec3(0.0), vec3(kLargestHalf)), source.a, pass.value.z == PELLUCID_WRITE_LAST);
+  writeResult(pixel, max(result, vec3(0.0)), source.a, pass.value.z == PELLUCID_WRITE_LAST);
 }
 
 void main() {

@@ -3,8 +3,11 @@
 #ifndef PELLUCID_TILE_GLSL
 #define PELLUCID_TILE_GLSL
 
+#ifndef TILE_ROWS
+#define TILE_ROWS PELLUCID_TILE
+#endif
 #define GROUP_SIDE PELLUCID_TILE
-#define GROUP_ROWS (PELLUCID_TILE / 2)
+#define GROUP_ROWS (TILE_ROWS / 2)
 #include "passes/bindings.glsl"
 
 const int kPixels = 2; // of an invocation
@@ -13,6 +16,6 @@ const int kPixels = 2; // of an invocation
 ivec2 pixelInTile(int i) { return ivec2(gl_LocalInvocationID.xy) + ivec2(0, GROUP_ROWS * i); }
 
 // Of tiles that start at even pixels, so that quads of pixels are the image's.
-ivec2 evenTile() { return (ivec2(frame.rect.xy) & ~1) + ivec2(gl_WorkGroupID.xy) * PELLUCID_TILE; }
+ivec2 evenTile() { return (ivec2(frame.rect.xy) & ~1) + ivec2(gl_WorkGroupID.xy) * ivec2(PELLUCID_TILE, TILE_ROWS); }
 
 #endif

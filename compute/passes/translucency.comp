@@ -116,7 +116,7 @@ void main() {
 #ifdef DEBUG_VIEWS
       imageStore(destinationImage, pixel, vec4(result, t.source.a));
 #else
-      color = writeResult(pixel, min(result, vec3(kLargestHalf)), t.source.a, pass.value.z == PELLUCID_WRITE_LAST);
+      color = writeResult(pixel, result, t.source.a, pass.value.z == PELLUCID_WRITE_LAST);
 #endif
     } else if (starts && insideRect(pixel)) {
       imageStore(destinationImage, pixel, vec4(0.0));

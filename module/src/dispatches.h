@@ -58,16 +58,19 @@ struct Builder {
     return &d;
   }
 
-  // `tile`: side of the square that one group makes.
-  static void groups(PellucidDispatch* d, uint32_t width, uint32_t height, uint32_t tile) {
-    d->groups[0] = (width + tile - 1) / tile;
-    d->groups[1] = (height + tile - 1) / tile;
+  // `columns`, `rows`: of what one group makes.
+  static void groups(PellucidDispatch* d, uint32_t width, uint32_t height, uint32_t columns, uint32_t rows) {
+    d->groups[0] = (width + columns - 1) / columns;
+    d->groups[1] = (height + rows - 1) / rows;
     d->groups[2] = 1;
   }
+  static void groups(PellucidDispatch* d, uint32_t width, uint32_t height, uint32_t tile) {
+    groups(d, width, height, tile, tile);
+  }
 
-  // From even pixels on.
-  void tiles(PellucidDispatch* d) const {
-    groups(d, rect.width + (rect.x & 1), rect.height + (rect.y & 1), PELLUCID_TILE);
+  // Of PELLUCID_TILE columns, from even pixels on.
+  void tiles(PellucidDispatch* d, uint32_t rows = PELLUCID_TILE) const {
+    groups(d, rect.width + (rect.x & 1), rect.height + (rect.y & 1), PELLUCID_TILE, rows);
   }
 
   static void bind(PellucidDispatch* d, uint32_t binding, VkDescriptorType type, uint32_t resource,
@@ -236,7 +239,7 @@ struct Builder {
     const uint32_t half = quads ? PELLUCID_PIPELINE_DIRECTIONAL_QUADS_16F : PELLUCID_PIPELINE_DIRECTIONAL_16F;
     PellucidDispatch* d = dispatch("translucency", half + (wide() ? 1 : 0));  // the 32F variant follows
     if (!d) return false;
-    tiles(d);
+    tiles(d, quads ? PELLUCID_TILE : PELLUCID_DIRECTIONAL_ROWS);
     fused(d, group, source, destination, quads);
     constants(d, PELLUCID_BINDING_LIGHTS,
               {layout.directional.offset + group.index * kDirectionalWindow, kDirectionalWindow});
