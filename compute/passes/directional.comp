@@ -100,10 +100,10 @@ void main() {
     vec3 entering = (1.0 / kLargestHalf) * light.entering.rgb * materials[m - 1u].inverseReflectance.rgb;
     [[unroll]] for (int i = 0; i < kPixels; ++i) {
       bool mine = lit[i] == m;
-      float d = thickness[i];
+      float d = mine ? thickness[i] : 0.0; // of others it may be anything
       vec3 t = vec3(transmittanceExp2(r, d), transmittanceExp2(g, d), transmittanceExp2(b, d));
       vec3 arriving = (mine ? cosine[i] : 0.0) * entering;
-      color[i] = saturate(color[i] + arriving * saturate(t));
+      color[i] = clamp(color[i] + arriving * clamp(t, vec3(0.0), vec3(1.0)), vec3(0.0), vec3(1.0));
       lit[i] = mine ? 0u : lit[i];
     }
   }

@@ -31,7 +31,8 @@ vec3 normalOfQuad() {
 // After a barrier. `normal`: normalOfQuad().
 void writeQuad(vec3 normal) {
   ivec2 local = quadInTile(), quad = (evenTile() >> 1) + local;
-  if (!hasQuad() || !insideLevel(levelRect(1u), quad)) return;
+  if (!hasQuad()) return;
+  bool inside = insideLevel(levelRect(1u), quad);
   float depth[4];
   uvec2 packed[4];
   for (int i = 0; i < 4; ++i) {
@@ -42,7 +43,7 @@ void writeQuad(vec3 normal) {
   if (isWholeQuad(packed, depth)) {
     float area = areaOf(vec2(pixelOfQuad(quad)), normal);
     if (area == 0.0) area = areaOfQuad(quad, depth);
-    writeLevel(1u, quad, wholeQuadTexel(packed, depth, area));
+    if (inside) writeLevel(1u, quad, wholeQuadTexel(packed, depth, area));
     return;
   }
   uint material[4];
@@ -54,7 +55,7 @@ void writeQuad(vec3 normal) {
     ivec2 pixel = withinRect(2 * quad + ivec2(i & 1, i >> 1));
     area[i] = areaOf(vec2(pixel), normalAt(pixel));
   }
-  writeLevel(1u, quad, quadTexel(material, depth, color, area));
+  if (inside) writeLevel(1u, quad, quadTexel(material, depth, color, area));
 }
 
 #endif

@@ -14,7 +14,8 @@ layout(set = 0, binding = PELLUCID_BINDING_PYRAMID) uniform utexture2D pyramidIm
 const uint kInvocations = uint(PELLUCID_REDUCE_GROUP * PELLUCID_REDUCE_GROUP);
 // Sides of what a tile needs of the level before, and of its input.
 const int kFirst = PELLUCID_REDUCE_GROUP, kInput = 2 * kFirst + 2;
-const int kLoads = (kInput * kInput + int(kInvocations) - 1) / int(kInvocations);
+// Rows of the input that the invocations load at a time, and how often.
+const int kLoadRows = int(kInvocations) / kInput, kLoads = (kInput + kLoadRows - 1) / kLoadRows;
 // The input and, once that has been used, the first level: as many groups run at a time as these fit into a
 // processor. Slopes are not needed.
 shared uvec2 colors[kInput * kInput]; // and mass, material and plane, as packed
@@ -148,15 +149,16 @@ uvec4 reduced(uint finer, ivec2 texel, int first, int stride) {
       tilt += w * difference * (vec2(x, y) - 1.5);
       square += w * difference * difference;
     }
-  if ((bits | different) >> 16 == 0u) return uvec4(0u);
   // The plane of least squares, because the filter's variance is 1: its slope is the tilt.
   vec2 size = texelSize(base, finer);
   float residual = square - off * off - dot(tilt, tilt);
   vec2 slope = tilt / max(size, vec2(1.0e-30));
   bool plane = (different & kSamePlane) == 0u && (bits & kPlane) != 0u &&
                residual * inverseSpread(slope, 2.0 * size) < kPlaneResidual;
-  if (!plane) return reducedEdge(finer, first, stride);
-  return packTexel(Texel(color, areaOf(finer + 1u, texel, slope), bits >> 24, base + off, slope), kPlane);
+  uvec4 result = packTexel(Texel(color, areaOf(finer + 1u, texel, slope), bits >> 24, base + off, slope), kPlane);
+  // One branch, for nothing is there more seldom than branches cost.
+  if (!plane) result = (bits | different) >> 16 == 0u ? uvec4(0u) : reducedEdge(finer, first, stride);
+  return result;
 }
 
 // Of the squared length of a texel's side; see kPlaneResidual.
@@ -164,17 +166,17 @@ const float kPlaneOffset = 0.1;
 
 // Whether a texel and all around it are full and lie on one plane. `at`: not in the outermost rows and columns.
 bool isFlatAround(uvec4 bits, ivec2 at, uint level) {
-  float depth = uintBitsToFloat(bits.z);
+  float depth = uintBitsToFloat(bits.z), most = 0.0;
   vec2 size = texelSize(depth, level), slope = unpackHalf2x16(bits.w);
-  float most = kPlaneOffset / inverseSpread(slope, size);
-  bool plane = isPlane(bits);
+  uint different = 0u;
   for (int y = -1; y <= 1; ++y)
     for (int x = -1; x <= 1; ++x) {
+      if (x == 0 && y == 0) continue;
       int index = slot(at + ivec2(x, y), kFirst);
-      float off = depths[index] - depth - dot(slope, vec2(x, y) * size);
-      plane = plane && ((colors[index].y ^ bits.y) & kSamePlane) == 0u && off * off < most;
+      most = max(most, abs(depths[index] - depth - dot(slope, vec2(x, y) * size)));
+      different |= colors[index].y ^ bits.y;
     }
-  return plane;
+  return isPlane(bits) && (different & kSamePlane) == 0u && most * most < kPlaneOffset / inverseSpread(slope, size);
 }
 
 void main() {
@@ -184,25 +186,27 @@ void main() {
   uvec2 group = uvec2(gl_WorkGroupID.x, (gl_WorkGroupID.y + gl_NumWorkGroups.y / 2u) % gl_NumWorkGroups.y);
   ivec4 finerRect = levelRect(finer), rect = levelRect(finer + 1u), lastRect = levelRect(finer + 2u);
   ivec2 own = lastRect.xy + PELLUCID_REDUCE_TILE * ivec2(group), start = 2 * own - 1;
+  ivec2 mine = ivec2(invocation % kInput, invocation / kInput), firstLoad = 2 * start - 1 + mine;
+  // How many rows of the level there are from its first one on, in this column and where the invocation has a row.
+  bool loads = mine.y < kLoadRows && firstLoad.x >= finerRect.x && firstLoad.x < finerRect.z;
+  uint rows = loads ? uint(finerRect.w - finerRect.y) : 0u, row = uint(firstLoad.y - finerRect.y);
   // All loads before the first is used, so that their latencies overlap.
   uvec4 loaded[kLoads];
-  [[unroll]] for (int j = 0; j < kLoads; ++j) {
-    int i = invocation + j * int(kInvocations);
-    ivec2 texel = 2 * start - 1 + ivec2(i % kInput, i / kInput);
-    loaded[j] = insideLevel(finerRect, texel) ? texelFetch(pyramidImage, inAtlas(finer, texel), 0) : uvec4(0u);
-  }
-  [[unroll]] for (int j = 0; j < kLoads; ++j) {
-    int i = invocation + j * int(kInvocations);
-    int index = slot(ivec2(i % kInput, i / kInput), kInput);
-    if (i < kInput * kInput) {
-      colors[index] = loaded[j].xy;
-      depths[index] = uintBitsToFloat(loaded[j].z);
+  [[unroll]] for (int j = 0; j < kLoads; ++j)
+    loaded[j] = row + uint(j * kLoadRows) < rows
+                    ? texelFetch(pyramidImage, inAtlas(finer, firstLoad + ivec2(0, j * kLoadRows)), 0)
+                    : uvec4(0u);
+  int place = slot(mine, kInput);
+  [[unroll]] for (int j = 0; j < kLoads; ++j)
+    if (mine.y < kLoadRows && mine.y + j * kLoadRows < kInput) {
+      colors[place + j * kLoadRows * kInput] = loaded[j].xy;
+      depths[place + j * kLoadRows * kInput] = uintBitsToFloat(loaded[j].z);
     }
-  }
   barrier();
   ivec2 at = ivec2(gl_LocalInvocationID.xy), texel = start + at;
   bool inside = insideLevel(rect, texel);
-  uvec4 bits = inside ? reduced(finer, texel, 2 * at.y * kInput + at.x, kInput) : uvec4(0u);
+  uvec4 bits = reduced(finer, texel, 2 * at.y * kInput + at.x, kInput);
+  if (!inside) bits = uvec4(0u);
   barrier();
   int index = slot(at, kFirst);
   colors[index] = bits.xy;
