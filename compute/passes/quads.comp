@@ -3,6 +3,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
+#define FOUR_PIXELS
 #include "passes/quad_tile.glsl"
 
 void main() {

@@ -2,6 +2,7 @@
 // levels at the texel, and the shares of the pixels under level 2. A group makes 16 x 16 texels of level 2 and, before
 // them, as much of each coarser level as they need.
 #version 460
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
@@ -117,15 +118,15 @@ Level withCoarser(Own own, uint level, ivec2 texel, Window window) {
   vec2 size = texelSize(own.texel.depth, level + 1u);
   float spread2 = inverseSpread(own.texel.slope, size);
   vec3 coarser = vec3(0.0), found = vec3(0.0);
-  for (int i = 0; i < 4; ++i) {
+  [[unroll]] for (int i = 0; i < 4; ++i) {
     ivec2 at = nearest + toward * ivec2(i & 1, i >> 1);
     ivec2 inWindow = at - window.corner;
     uvec4 theirs = resolved[window.first + inWindow.y * window.side + inWindow.x];
-    if (materialBits(theirs) != own.texel.material) continue;
     vec2 off = vec2(at) + 0.5 - 0.5 * (vec2(texel) + 0.5);
     float w = (i == 0 ? 9.0 / 16.0 : i == 3 ? 1.0 / 16.0 : 3.0 / 16.0) / kDensityOne;
     float along = dot(own.texel.slope, off * size);
     w *= sameSurface(uintBitsToFloat(theirs.z) - own.texel.depth - along, along, spread2, kResolveFalloff);
+    w = materialBits(theirs) == own.texel.material ? w : 0.0;
     vec3 density = w * unpackDensity(theirs.w);
     coarser += density * unpackColor(theirs.xy);
     found += density;
