@@ -68,11 +68,11 @@ nlohmann::json sweep(const Site& site, const SweepOptions& options, int repeat, 
                         {"name", named[i].name},
                         {"size", sizes[s].text()},
                         {"radius", radius},
-                        {"error", errors[i]},
+                        {"relative_rmse", errors[i]},
                         {"us", t.median},
                         {"p10_us", t.low},
                         {"p90_us", t.high},
-                        {"x_floor", t.median / floors[s]}});
+                        {"floor_ratio", t.median / floors[s]}});
       }
       std::fprintf(table, "\n");
     }

@@ -1,0 +1,128 @@
+// Prints the README's tables of measured times from the results of a run, or checks or rewrites them in a
+// file:
+//   pellucid_bench_tables bench/baselines/DEVICE.json measured|sweep [--check | --update README.md]
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "generated_block.h"
+
+namespace {
+
+using Json = nlohmann::json;
+
+template <class... Values>
+std::string format(const char* pattern, Values... values) {
+  char text[256];
+  std::snprintf(text, sizeof text, pattern, values...);
+  return text;
+}
+
+std::string run(const Json& results) {
+  return format("%s, commit `%s`, median of %d runs", results.at("device").get<std::string>().c_str(),
+                results.at("commit").get<std::string>().c_str(), results.at("repeat").get<int>());
+}
+
+// Throws where the run lacks it.
+const Json& row(const Json& results, const std::string& section, const std::string& name) {
+  for (const Json& r : results.at("results"))
+    if (r.at("section") == section && r.at("name") == name) return r;
+  throw std::runtime_error("no \"" + name + "\" in section \"" + section + "\"");
+}
+
+std::string timesAndError(const Json& r) {
+  std::string cells =
+      format(" %.0f us | %.3g |", r.at("us").get<double>(), r.at("floor_ratio").get<double>());
+  const auto error = r.find("relative_rmse");
+  return cells + (error == r.end() || error->is_null() ? " |" : format(" %.2g |", error->get<double>()));
+}
+
+std::string measured(const Json& results) {
+  struct Row {
+    const char* label;
+    const char* section;
+    const char* name;
+  };
+  const char* const module = "module, 100 % covered";
+  const char* const diffusion = "diffusion; error: from brute force";
+  const char* const gather = "gather, added to the frame";
+  const Row rows[] = {
+      {"whole frame", module, "whole frame"},
+      {"whole frame, a quarter covered", "module, 25 % covered", "whole frame"},
+      {"fused translucency dispatch alone", "fused dispatch", "1 lights, 1 maps"},
+      {"diffusion alone, quality 0", diffusion, "Pellucid, quality 0"},
+      {"quality 2", diffusion, "Pellucid, quality 2"},
+      {"quality 3", diffusion, "Pellucid, quality 3"},
+      {"Separable (Jimenez et al. 2015), 11 taps", diffusion, "Separable 2015, 11 taps"},
+      {"Gaussian sum (d'Eon & Luebke 2007, Jimenez et al. 2009)", diffusion, "Gaussian sum 2009, 6 x 7"},
+      {"Burley disk (Golubev 2018), 20 samples", diffusion, "Burley disk 2018, 20 samples"},
+      {"80 samples", diffusion, "Burley disk 2018, 80 samples"},
+      {"gather of transmitted light, 8 samples, added to the frame", gather, "8 samples"},
+      {"the same where nothing is transmitted", gather, "8 samples, nothing transmitted"},
+  };
+  std::string table = format("%s; %d x %d, radius %g pixels, floor %.1f us:\n\n", run(results).c_str(),
+                             results.at("width").get<int>(), results.at("height").get<int>(),
+                             results.at("radius_pixels").get<double>(), results.at("floor_us").get<double>());
+  table += "| | time | x | error |\n|-|-|-|-|\n";
+  for (const Row& r : rows)
+    table += std::string("| ") + r.label + " |" + timesAndError(row(results, r.section, r.name)) + "\n";
+  return table;
+}
+
+// One row a radius and diffusion, one column a size; of variants of one algorithm the extremes.
+std::string sweep(const Json& results) {
+  const std::vector<std::string> between = {"Separable 2015, 17 taps", "Burley disk 2018, 40 samples"};
+  std::vector<std::string> sizes;
+  struct Row {
+    std::string name;
+    double radius, error;
+    std::vector<std::string> cells;
+  };
+  std::vector<Row> rows;
+  for (const Json& r : results.at("results")) {
+    if (r.at("section") != "sweep") continue;
+    const std::string name = r.at("name"), size = r.at("size");
+    if (std::count(between.begin(), between.end(), name) > 0) continue;
+    if (std::count(sizes.begin(), sizes.end(), size) == 0) sizes.push_back(size);
+    const double radius = r.at("radius");
+    if (rows.empty() || rows.back().name != name || rows.back().radius != radius)
+      rows.push_back({name, radius, r.at("relative_rmse"), {}});
+    rows.back().cells.push_back(
+        format(" %.0f (%.1f) |", r.at("us").get<double>(), r.at("floor_ratio").get<double>()));
+  }
+  if (rows.empty()) throw std::runtime_error("no section \"sweep\"");
+  std::string table = run(results) + "; us (x):\n\n| radius, px | diffusion | error |", rule = "|-|-|-|";
+  for (const std::string& size : sizes) {
+    table += " " + size + " |";
+    rule += "-|";
+  }
+  table += "\n" + rule + "\n";
+  for (const Row& r : rows) {
+    table += format("| %g | %s | %.2g |", r.radius, r.name.c_str(), r.error);
+    for (const std::string& cell : r.cells) table += cell;
+    table += "\n";
+  }
+  return table;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string name = argc > 2 ? argv[2] : "";
+  if (name != "measured" && name != "sweep") {
+    std::fputs("usage: pellucid_bench_tables RESULTS.json measured|sweep [--check|--update FILE]\n", stderr);
+    return 2;
+  }
+  try {
+    std::ifstream file(argv[1]);
+    const Json results = Json::parse(file);
+    return generatedBlock(argc - 3, argv + 3, name, name == "measured" ? measured(results) : sweep(results));
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "%s: %s\n", argv[1], e.what());
+    return 1;
+  }
+}
