@@ -128,10 +128,11 @@ void GpuImage::upload(const std::vector<std::uint8_t>& source) {
   transfer(source.data());
 }
 
-void GpuImage::clear() {
+void GpuImage::clear(std::uint8_t byte) {
   const Texel texel = texelOf(format_);
   transfer(std::vector<std::uint8_t>(static_cast<size_t>(width_) * static_cast<size_t>(height_) *
-                                     static_cast<size_t>(texel.channels * texel.bytes))
+                                         static_cast<size_t>(texel.channels * texel.bytes),
+                                     byte)
                .data());
 }
 

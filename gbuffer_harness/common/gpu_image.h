@@ -19,7 +19,7 @@ public:
   // Converts to the image's format. Channels that the source lacks become 0, alpha 1.
   void upload(const Image& source);
   void upload(const std::vector<std::uint8_t>& source);  // R8_UINT
-  void clear();                                          // all bits of every texel 0
+  void clear(std::uint8_t byte = 0);                     // every byte of every texel
   Image download() const;
 
   // How an engine hands it to Pellucid.

@@ -53,7 +53,7 @@ public:
       }
       GpuImage& image =
           create(static_cast<int>(needs[i].extent[0]), static_cast<int>(needs[i].extent[1]), needs[i].format);
-      image.clear();  // brings it into GENERAL
+      image.clear(0xFF);  // brings it into GENERAL; what it holds must not matter
       f.transients[i] = image.use();
     }
   }
