@@ -201,9 +201,6 @@ void main() {
       if (its.y >> 16 != 0u && !isPlane(its)) edges[atomicAdd(edgeCount, 1u)] = uint(invocation);
     }
     uvec2 own[kRows]; // colors and alphas
-    if (pass.value.y != 0u)
-      [[unroll]] for (int i = 0; i < kRows + 2 * kRing; ++i)
-        sources[i].rgb = sanitize(sources[i].rgb);
     [[unroll]] for (int i = 0; i < kRows; ++i) {
       vec4 source = sources[i + kRing];
       own[i] = uvec2(packHalf2x16(source.rg), packHalf2x16(source.ba));

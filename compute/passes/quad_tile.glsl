@@ -23,6 +23,9 @@ ivec2 quadInTile() { return ivec2(gl_LocalInvocationIndex % uint(kQuads), gl_Loc
 // The pixel whose normal stands for a quad that is one surface: any of the four, by turns.
 ivec2 pixelOfQuad(ivec2 quad) { return 2 * quad + (quad.yx & 1); }
 
+// Beside a pixel's material: keeps it from being one surface with the others of its quad, each of which has a bit of its own.
+uint apartFromQuad() { return 0x100u << (gl_LocalInvocationID.x & 1u | (gl_LocalInvocationID.y & 1u) << 1); }
+
 // Of the invocation's quad, to be loaded with all the rest.
 vec3 normalOfQuad() {
   return hasQuad() ? normalAt(withinRect(pixelOfQuad((evenTile() >> 1) + quadInTile()))) : vec3(0.0);
@@ -50,7 +53,7 @@ void writeQuad(vec3 normal) {
   vec3 color[4];
   vec4 area;
   for (int i = 0; i < 4; ++i) {
-    material[i] = packed[i].y >> 16;
+    material[i] = packed[i].y >> 16 & 0xFFu;
     color[i] = unpackColor(packed[i]);
     ivec2 pixel = withinRect(2 * quad + ivec2(i & 1, i >> 1));
     area[i] = areaOf(vec2(pixel), normalAt(pixel));

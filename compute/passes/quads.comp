@@ -21,11 +21,13 @@ void main() {
   }
   for (int i = 0; i < kPixels; ++i) {
     vec3 color = sanitize(source[i].rgb);
+    // The last pass filters planes without sanitizing: what would need it is none.
+    uint apart = any(notEqual(color, source[i].rgb)) ? apartFromQuad() : 0u;
 #ifdef COPY
     color = asStored(color);
     if (material[i] != 0u) imageStore(destinationImage, evenTile() + pixelInTile(i), vec4(color, source[i].a));
 #endif
-    keepPixel(pixelInTile(i), roundToHalf(color), depth[i], material[i]);
+    keepPixel(pixelInTile(i), roundToHalf(color), depth[i], material[i] | apart);
   }
   barrier();
   writeQuad(normal);

@@ -214,7 +214,7 @@ struct KernelConstants {
 // gather share: pixels a side of a cell.
 // add: unused, unused, 1 if this is the last dispatch.
 // reduce: finer level, 16. resolve: coarsest level.
-// diffuse: unused, 1 if the source may hold anything, unused, 1 if this is the last dispatch.
+// diffuse: unused, unused, unused, 1 if this is the last dispatch.
 struct PassConstants {
   uvec4 value;
 };

@@ -383,7 +383,6 @@ struct Builder {
     d->groups[0] =
         across(place.rect.width, coarse ? PELLUCID_DIFFUSE_COARSE_TEXELS_X : PELLUCID_DIFFUSE_TEXELS_X);
     d->groups[1] = across(place.rect.height, PELLUCID_DIFFUSE_TEXELS_Y);
-    d->pushConstants[1] = source < kTransient0;  // the passes write nothing that would have to be sanitized
     d->pushConstants[3] = destination == PELLUCID_RESOURCE_OUTPUT;
     common(d, source, destination);
     // Of edges; the plan does not know how many there are.

@@ -204,14 +204,44 @@ TEST_F(Replay, SameRunSameBits) {
 }
 
 TEST_F(Replay, OutputMayBeTheIrradianceImage) {
-  const Capture c = busyCapture(61, 47);
+  Capture c = busyCapture(61, 47);
+  c.lights[0].shadowMaps = {flatShadowMap(-12, PELLUCID_DEPTH_DEVICE)};
   ReplaySettings s;
-  for (const uint32_t features : {1u, 2u, 3u}) {
-    s.features = features;
-    s.aliasOutput = false;
-    const Image apart = replay(c, testMaterial(), s);
-    s.aliasOutput = true;
-    EXPECT_TRUE(sameBits(apart, replay(c, testMaterial(), s))) << "features " << features;
+  s.translucency.gatherSpacing = 4;
+  for (const uint32_t gatherSamples : {0u, 8u})
+    for (const uint32_t features : {1u, 2u, 3u}) {
+      s.translucency.gatherSamples = gatherSamples;
+      s.features = features;
+      s.aliasOutput = false;
+      const Image apart = replay(c, testMaterial(), s);
+      s.aliasOutput = true;
+      EXPECT_TRUE(sameBits(apart, replay(c, testMaterial(), s)))
+          << "features " << features << ", samples " << gatherSamples;
+    }
+}
+
+// What one pass reads raw, another has looked at.
+TEST_F(Replay, DiffusionCountsBadIrradianceAsNone) {
+  Capture bad = flatCapture(64, 48), good = bad;
+  const float values[] = {kNan, -INFINITY, -1};
+  int i = 0;
+  const auto spoil = [&](int x, int y, int channel) {
+    bad.irradiance.at(x, y)[channel] = values[static_cast<size_t>(i++) % std::size(values)];
+    good.irradiance.at(x, y)[channel] = 0;
+  };
+  for (int y = 3; y < 48; y += 19)
+    for (int x = 2; x < 64; x += 17) spoil(x, y, i % 3);
+  for (int k = 0; k < 3; ++k)  // a whole quad
+    for (const int y : {30, 31})
+      for (const int x : {40, 41}) spoil(x, y, k);
+  ReplaySettings s;
+  s.features = PELLUCID_FEATURE_DIFFUSION;
+  for (const uint32_t quality : {0u, 2u}) {
+    s.quality = quality;
+    const Image expected = replay(good, testMaterial(), s), out = replay(bad, testMaterial(), s);
+    for (size_t at = 0; at < out.data.size(); ++at)
+      ASSERT_NEAR(out.data[at], expected.data[at], 2e-3 * static_cast<double>(expected.data[at]) + 1e-6)
+          << at << ", quality " << quality;
   }
 }
 

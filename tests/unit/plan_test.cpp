@@ -1,6 +1,7 @@
 // BuildPlan and what goes with it, without a device.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstring>
 #include <functional>
@@ -97,6 +98,44 @@ TEST(Plan, NoLightNoTranslucency) {
             (std::vector<std::string>{"quads", "reduce", "reduce", "reduce", "resolve", "diffuse"}));
   EXPECT_EQ(plan.dispatches[0].pipeline, static_cast<uint32_t>(PELLUCID_PIPELINE_QUADS_AND_COPY_16F));
   EXPECT_TRUE(skips(plan, "translucency", "no light can contribute"));
+}
+
+TEST(Plan, DiffusionAloneCopiesTheIrradianceWhereTheOutputIsTheSameView) {
+  for (const uint32_t gatherSamples : {0u, 8u}) {
+    Frame f;
+    f.frame.gatherSamples = gatherSamples;
+    f.frame.gatherSpacing = 4;
+    if (gatherSamples == 0) f.frame.lightCount = 0;
+    const auto reads = [](const PellucidDispatch& d, uint32_t resource) {
+      return std::any_of(d.bindings, d.bindings + d.bindingCount,
+                         [&](const PellucidBinding& b) { return b.resource == resource; });
+    };
+    const auto needs = [&] {
+      PellucidImageNeed result[PELLUCID_MAX_TRANSIENTS] = {};
+      uint32_t count = PELLUCID_MAX_TRANSIENTS;
+      EXPECT_EQ(pellucidGetImageNeeds(&f.frame, &count, result), PELLUCID_OK);
+      return std::vector<PellucidImageNeed>(result, result + count);
+    };
+    const PellucidPlan same = f.plan();
+    const std::vector<PellucidImageNeed> before = needs();
+    EXPECT_EQ(same.dispatches[0].pipeline, static_cast<uint32_t>(PELLUCID_PIPELINE_QUADS_AND_COPY_16F));
+    EXPECT_FALSE(reads(same.dispatches[same.dispatchCount - 1], PELLUCID_RESOURCE_IRRADIANCE));
+    f.frame.output.view = reinterpret_cast<VkImageView>(uintptr_t{2});
+    const PellucidPlan apart = f.plan();
+    EXPECT_EQ(apart.dispatches[0].pipeline, static_cast<uint32_t>(PELLUCID_PIPELINE_QUADS));
+    EXPECT_TRUE(reads(apart.dispatches[apart.dispatchCount - 1], PELLUCID_RESOURCE_IRRADIANCE));
+    EXPECT_EQ(names(apart), names(same));
+    // Needs hold for either.
+    const std::vector<PellucidImageNeed> after = needs();
+    ASSERT_EQ(before.size(), after.size());
+    for (size_t i = 0; i < before.size(); ++i) {
+      EXPECT_EQ(after[i].bytes, before[i].bytes) << i;
+      EXPECT_EQ(after[i].firstDispatch, before[i].firstDispatch) << i;
+      EXPECT_EQ(after[i].lastDispatch, before[i].lastDispatch) << i;
+    }
+    for (uint32_t i = 0; i < apart.dispatchCount; ++i)
+      EXPECT_FALSE(reads(apart.dispatches[i], PELLUCID_RESOURCE_TRANSIENT0)) << "what would be the copy";
+  }
 }
 
 TEST(Plan, DropsLightsThatCannotContribute) {
