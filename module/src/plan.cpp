@@ -148,13 +148,16 @@ bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan
       forEachLightGroup(frame, [&](const LightGroup& group) {
         if (group.gathered > 0) gathered = group;
       });
-    // Records, points and sharing, each beside a dispatch of the diffusion.
-    uint32_t step = 0;
+    // Records, points and sharing, each beside one of the last three dispatches before the one that adds
+    // points: the coarser reductions leave most of a device free.
+    const int32_t reductions = static_cast<int32_t>(coarsest + 1 - kFirstLevel) / 2;
+    int32_t step = 1 - reductions;
     const auto alongside = [&] {
-      if (gathered.gathered == 0 || step == 3) return;
-      b.alongside = true;
-      fits = fits && (step == 0 ? b.records(gathered) : step == 1 ? b.points(gathered, false) : b.share());
-      b.alongside = false;
+      if (gathered.gathered > 0 && step >= 0) {
+        b.alongside = true;
+        fits = fits && (step == 0 ? b.records(gathered) : step == 1 ? b.points(gathered, false) : b.share());
+        b.alongside = false;
+      }
       ++step;
     };
     const uint32_t copy = stages.copies ? destination() : source;
