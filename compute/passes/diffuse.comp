@@ -34,9 +34,27 @@ shared uint edges[kTexels.x * kTexels.y];
 shared uint edgeCount, anySurface;
 
 #ifdef GATHER
-const ivec2 kPointPixels = 4 * kTexels;
-const int kLeastSide = PELLUCID_DIFFUSE_CELL;
 #include "passes/gathered.glsl"
+
+layout(set = 0, binding = PELLUCID_BINDING_SHARED_POINTS) uniform utexture2D pointsImage;
+
+// The points around all pixels. Cells are texels of level 2.
+const ivec2 kPoints = kTexels + 1;
+
+shared uint someLight; // kSome* of them
+
+uvec4 pointBits(ivec2 cell) {
+  ivec4 cells = cellsOf(frame.rect, PELLUCID_DIFFUSE_CELL);
+  bool inside = all(greaterThanEqual(cell, cells.xy)) && all(lessThan(cell, cells.zw));
+  return inside ? texelFetch(pointsImage, cell, 0) : kNoPoint;
+}
+
+uvec4 pointOf(ivec2 cell, ivec2 pixel, float front, out float off) {
+  Point p = unpackPoint(pointBits(cell));
+  vec4 plane = tangentPlane(p, pixelInCell(cell, PELLUCID_DIFFUSE_CELL, p.index), pixel);
+  off = (front - plane.x) * plane.w;
+  return uvec4(packLight(p.added, p.displaced), p.material);
+}
 #endif
 
 // The quadratic B-spline at -1, 0 and 1 for a point at most half a texel from 0.
@@ -52,13 +70,22 @@ vec3 fineSum(vec3 a, vec3 b, vec3 c, vec3 d, vec3 e) {
 }
 
 #ifdef GATHER
-// A pixel before light is added to it: as halves, since the light comes when the registers of all else are free.
-uvec2 packedColor(vec3 color, float alpha) {
-  color = roundToHalf(color);
-  return uvec2(packHalf2x16(color.rg), packHalf2x16(vec2(color.b, alpha)));
+// Four pixels below each other, a column of a cell, with what is linear between the four points around it. The cell and
+// those around are one surface, so that points need no test.
+void addLightOfPlane(ivec2 pixel, inout vec4 colors[4]) {
+  ivec2 cell = pixel >> 2;
+  float across = 0.25 * float(pixel.x & 3);
+  uvec4 a = texelFetch(pointsImage, cell, 0), b = texelFetch(pointsImage, cell + ivec2(1, 0), 0);
+  uvec4 c = texelFetch(pointsImage, cell + ivec2(0, 1), 0), d = texelFetch(pointsImage, cell + ivec2(1, 1), 0);
+  vec3 added = mix(addedOf(a), addedOf(b), across), displaced = vec3(0.0);
+  vec3 addedStep = 0.25 * (mix(addedOf(c), addedOf(d), across) - added), displacedStep = vec3(0.0);
+  if ((someLight & kSomeDisplaced) != 0u) {
+    displaced = mix(displacedOf(a), displacedOf(b), across);
+    displacedStep = 0.25 * (mix(displacedOf(c), displacedOf(d), across) - displaced);
+  }
+  [[unroll]] for (int i = 0; i < 4; ++i)
+    colors[i].rgb = withLight(colors[i].rgb, added + float(i) * addedStep, displaced + float(i) * displacedStep);
 }
-
-vec4 unpackedColor(uvec2 packed) { return vec4(unpackHalf2x16(packed.x), unpackHalf2x16(packed.y)); }
 #endif
 
 void store(ivec2 pixel, vec3 color, float alpha) {
@@ -157,7 +184,7 @@ void diffuseEdge(ivec2 firstTexel, ivec2 local) {
     vec3 divisor = own + fineShare * fine.a + share.coarser * found;
     color = mix(color, max(sum, vec3(0.0)) / max(divisor, vec3(1.0e-6)), greaterThan(divisor, vec3(1.0e-6)));
 #ifdef GATHER
-    if (someLight != 0u) color = withGathered(color, local, kLeastSide, depth, material);
+    if (someLight != 0u) color = withGathered(color, pixel, PELLUCID_DIFFUSE_CELL, depth, material);
 #endif
   }
   store(pixel, color, source.a);
@@ -178,6 +205,12 @@ void main() {
       texelShares = texelFetch(pyramidImage, sharesPlace(at), 0);
     }
   }
+#ifdef GATHER
+  // By invocations that hold no texel.
+  int point = kInvocations - 1 - invocation;
+  bool hasPoint = point < kPoints.x * kPoints.y;
+  if (hasPoint) texel = pointBits(firstTexel + ivec2(point % kPoints.x, point / kPoints.x));
+#endif
   int column = invocation % kColumns, firstRow = invocation / kColumns * kRows;
   ivec2 first = 4 * firstTexel + ivec2(column - kRing, firstRow);
   vec4 sources[kRows + 2 * kRing];
@@ -193,6 +226,10 @@ void main() {
     shares[invocation] = texelShares;
     if (texel.y >> 16 != 0u) anySurface = 1u; // whoever writes, writes this
   }
+#ifdef GATHER
+  uint light = hasPoint ? kindsOfLight(texel) : 0u;
+  if (light != 0u) atomicOr(someLight, light);
+#endif
   barrier();
   if (anySurface != 0u) {
     if (invocation < kTexels.x * kTexels.y) {
@@ -209,11 +246,6 @@ void main() {
       vertical[(firstRow + i) * kColumns + column] = uvec2(packHalf2x16(sum.rg), packHalf2x16(vec2(sum.b, 0.0)));
 #endif
     }
-#ifdef GATHER
-    // Only now: beside all sources they would take registers, of which fewer groups would run.
-    uint light = loadPoints(kInvocations - 1 - invocation, kInvocations, kLeastSide, 4 * firstTexel);
-    if (light != 0u) atomicOr(someLight, light);
-#endif
     barrier();
 
     int x = column - kRing;
@@ -230,9 +262,7 @@ void main() {
                        splineX.z * unpackColor(resolved[row + 2].xy);
         }
         PixelShares share = unpackShares(shares[index + kWindow.x + 1].xyz);
-#ifndef GATHER
         vec4 result[4];
-#endif
         [[unroll]] for (int i = 0; i < 4; ++i) {
           vec3 splineY = spline(0.25 * (float(i) - 1.5));
           vec3 smoothed = splineY.x * coarser[0] + splineY.y * coarser[1] + splineY.z * coarser[2];
@@ -243,47 +273,20 @@ void main() {
           color = mix(color, fineOf((4 * texelRow + i) * kColumns + column), share.fine);
 #endif
           color = mix(color, smoothed, share.coarser);
-#ifdef GATHER
-          own[4 * block + i] = packedColor(color, blue.y);
-#else
           result[i] = vec4(color, blue.y);
-#endif
         }
-#ifndef GATHER
         // One branch for all pixels, as branches cost more than what is in them.
         ivec2 top = 4 * firstTexel + ivec2(x, 4 * texelRow);
+#ifdef GATHER
+        if (someLight != 0u) addLightOfPlane(top, result);
+#endif
         if (tinted(pass.value.w != 0u))
           [[unroll]] for (int i = 0; i < 4; ++i)
             result[i].rgb = sanitize(result[i].rgb * albedoAt(top + ivec2(0, i)));
         [[unroll]] for (int i = 0; i < 4; ++i)
           imageStore(destinationImage, top + ivec2(0, i), vec4(asStored(result[i].rgb), result[i].a));
-#endif
-#ifdef GATHER
-        ivec2 local = ivec2(x, 4 * texelRow);
-        vec3 first = vec3(0.0), step = vec3(0.0);
-        if ((someLight & kSomeDisplaced) != 0u) {
-          displacedOfPlane(local, first, step);
-          [[unroll]] for (int i = 0; i < 4; ++i) {
-            vec4 color = unpackedColor(own[4 * block + i]);
-            own[4 * block + i] = packedColor(color.rgb - color.rgb * (first + float(i) * step), color.a);
-          }
-        }
-        first = step = vec3(0.0);
-        if (someLight != 0u) addedOfPlane(local, first, step);
-        [[unroll]] for (int i = 0; i < 4; ++i) {
-          vec4 color = unpackedColor(own[4 * block + i]);
-          store(4 * firstTexel + local + ivec2(0, i), min(color.rgb + first + float(i) * step, vec3(kLargestHalf)), color.a);
-        }
-#endif
       }
     }
-#ifdef GATHER
-    if (someLight != 0u && edgeCount != 0u) {
-      barrier();
-      unpackPoints(invocation, kInvocations, kLeastSide, 4 * firstTexel);
-      barrier();
-    }
-#endif
     for (int i = invocation; i < int(16u * edgeCount); i += kInvocations) {
       int edge = int(edges[i >> 4]), at = i & 15;
       diffuseEdge(firstTexel, 4 * ivec2(edge % kTexels.x, edge / kTexels.x) + ivec2(at & 3, at >> 2));

@@ -34,15 +34,18 @@ vec3 mapPoint(uint map, vec4 position) {
   return vec3(dot(maps[map].column, position), dot(maps[map].row, position), dot(maps[map].depth, position));
 }
 
+// As floats, where far outside stays outside.
+bool isInMap(uint map, vec2 at) {
+  return all(greaterThanEqual(at, vec2(0.0))) && all(lessThan(at, vec2(maps[map].place.zw)));
+}
+
 // The record of the light ray through a point of the map; false: the map does not contain the point.
 bool fetchRecord(uint map, bool parallel, vec3 point, out uvec4 bits) {
   bits = kNoRecord;
   if (!parallel && !(point.z > 0.0)) return false;
   vec2 at = parallel ? point.xy : point.xy / point.z;
-  ivec4 place = maps[map].place;
-  // As floats, where far outside stays outside.
-  if (!(all(greaterThanEqual(at, vec2(0.0))) && all(lessThan(at, vec2(place.zw))))) return false;
-  bits = texelFetch(recordsImage, place.xy + ivec2(at), 0);
+  if (!isInMap(map, at)) return false;
+  bits = texelFetch(recordsImage, maps[map].place.xy + ivec2(at), 0);
   return true;
 }
 
@@ -105,12 +108,6 @@ GatherSlab slabOf(uint m, vec4 lengths, float h) {
                     fract(place));
 }
 
-struct Sample {
-  vec2 offset; // mm, of s from the foot, across and along its ring
-  float depth; // of s in its map
-  uvec4 bits;  // of its record
-};
-
 // From x, mm.
 vec3 onRing(vec3 center, vec3 across, vec3 along, vec2 offset) { return center + offset.x * across + offset.y * along; }
 
@@ -118,6 +115,7 @@ vec3 onRing(vec3 center, vec3 across, vec3 along, vec2 offset) { return center +
 struct Pattern {
   float within, turn; // [0, 1): place in a ring, turn of the first sample
 };
+const float kMostWithin = 0.5 + 4.0 / 9.0;
 
 Pattern patternOf(ivec2 cell, uint m, float front) {
   vec2 spacing = float(pass.value.x) * pixelSize(frame.camera, front);
@@ -145,26 +143,23 @@ Gathered gatherLight(uint m, LightConstants light, Surface x, Pattern pattern) {
   vec2 direction = vec2(cos(6.28318531 * pattern.turn), sin(6.28318531 * pattern.turn));
   uint samples = pass.value.w;
   float perSample = 1.0 / float(samples), inner = 0.0;
-  Sample next;
-  [[dont_unroll]] for (uint i = 0u; i <= samples; ++i) {
-    // One ahead, so that its latency is hidden.
-    Sample now = next;
-    if (i < samples) {
-      next.offset = sqrt(gatherSquaredRadius(rings.t, gatherSpread(lengths, (float(i) + pattern.within) * perSample))) * direction;
-      direction = mat2(-0.73736888, 0.67549029, -0.67549029, -0.73736888) * direction; // the golden angle
-      vec3 at = point + next.offset.x * pointAcross + next.offset.y * pointAlong;
-      // A cube's seams are no borders.
-      if (!fetchRecord(rings.map, parallel, at, next.bits) && !kDirectional && light.meta.z > 1u)
-        fetchRecord(light, x.position + onRing(center, across, along, next.offset) / mm, at, next.bits);
-      next.depth = at.z;
-    }
-    if (i == 0u) continue;
+  [[dont_unroll]] for (uint i = 0u; i < samples; ++i) {
+    // mm, from the foot, across and along the ring.
+    float spread = gatherSpread(lengths, (float(i) + pattern.within) * perSample);
+    vec2 offset = sqrt(gatherSquaredRadius(rings.t, spread)) * direction;
+    direction = mat2(-0.73736888, 0.67549029, -0.67549029, -0.73736888) * direction; // the golden angle
+    vec3 at = point + offset.x * pointAcross + offset.y * pointAlong;
+    uvec4 bits;
+    // A cube's seams are no borders.
+    if (!fetchRecord(rings.map, parallel, at, bits) && !kDirectional && light.meta.z > 1u)
+      fetchRecord(light, x.position + onRing(center, across, along, offset) / mm, at, bits);
     float from = inner;
-    inner = i == samples ? kLastRing : gatherSquaredRadius(rings.t, gatherSpread(lengths, float(i) * perSample));
-    if (!lightEnters(now.bits)) continue;
-    Record record = unpackRecord(now.bits);
-    float ahead = distanceAhead(parallel, record.depth, now.depth);
-    vec3 s = onRing(center, across, along, now.offset);
+    spread = gatherSpread(lengths, float(i + 1u) * perSample);
+    inner = i + 1u == samples ? kLastRing : gatherSquaredRadius(rings.t, spread);
+    if (!lightEnters(bits)) continue;
+    Record record = unpackRecord(bits);
+    float ahead = distanceAhead(parallel, record.depth, at.z);
+    vec3 s = onRing(center, across, along, offset);
     vec3 toLight = parallel ? incident.toLight * mm : (light.position.xyz - x.position) * mm - s;
     vec3 to = -(s + ahead * toLight); // from the lit point to x
     float squared = dot(to, to);
@@ -173,7 +168,7 @@ Gathered gatherLight(uint m, LightConstants light, Surface x, Pattern pattern) {
     float squaredH = x.hasNormal ? through * max(dot(x.normal, to), 0.0) / max(opposite, 1.0e-4) : through * through;
     float h = sqrt(min(squaredH, squared));
     // The ring, seen as if all of it lay in the lit point's plane across the axis.
-    float plane = max(squared - dot(now.offset, now.offset), 0.0);
+    float plane = max(squared - dot(offset, offset), 0.0);
     float near = sqrt(plane + from), far = sqrt(plane + inner);
     float share = record.enters * rings.axisCosine;
     // A point light's is its intensity: per square scene unit at s. At the light itself any finite value will do.
@@ -244,6 +239,14 @@ float meanCurvature(ivec2 pixel, ivec2 steps, Beside across, Beside along, Surfa
   return abs(area) > least ? 0.5 * dot(x.normal, cross(turnA, b) + cross(a, turnB)) / (area * mm) : 0.0;
 }
 
+// By how much more light comes back, of each channel, from the surface of the cell's point as it is curved.
+vec3 convexity(ivec2 cell, int side, Point p, Surface x) {
+  vec4 perCurvature = materials[p.material - 1u].gather.convexity;
+  ivec2 steps = besideSteps(cell, p.front, perCurvature.w), pixel = pixelInCell(cell, side, p.index);
+  Beside across = besideAt(pixel + ivec2(steps.x, 0)), along = besideAt(pixel + ivec2(0, steps.y));
+  return perCurvature.rgb * meanCurvature(pixel, steps, across, along, x, perCurvature.w);
+}
+
 void gatherLights(Surface x, Pattern pattern, inout Point result) {
   uint m = result.material - 1u;
   vec3 transmitted = vec3(0.0), entering = vec3(0.0), irradiance = vec3(0.0);
@@ -268,14 +271,25 @@ void gatherLights(Surface x, Pattern pattern, inout Point result) {
 shared uint summaryPlace;
 shared uint summaries[GROUP_SIDE];
 
+// Whether light enters within `reach`, records, or further than summaries say. `corner`: of the summaries.
+bool entersWithin(float reach, vec2 at, ivec2 corner) {
+  reach = min(reach, 1.0e6);
+  ivec2 low = ivec2(floor((at - reach) / float(kSummarySide))) - corner;
+  ivec2 high = ivec2(floor((at + reach) / float(kSummarySide))) - corner;
+  if (any(lessThan(low, ivec2(0))) || any(greaterThanEqual(high, ivec2(GROUP_SIDE)))) return true;
+  uint found = 0u;
+  for (int y = low.y; y <= high.y; ++y) found |= summaries[y];
+  return (found & ((2u << high.x) - (1u << low.x))) != 0u;
+}
+
 // For all of the group at once: whether light enters anywhere that the samples of x may lie, of the only light's map.
 // true if they may lie too far away to say. `some`: there is an x.
-bool lightEntersNear(bool some, Surface x, uint m, Pattern pattern) {
+bool lightEntersNear(bool some, Surface x, uint m) {
   const uint kNowhere = ~0u;
   ivec2 local = ivec2(gl_LocalInvocationID.xy);
   vec3 point = mapPoint(0u, vec4(x.position, 1.0));
-  uvec4 bits;
-  bool contained = fetchRecord(0u, true, point, bits) && some;
+  vec4 lengths = materials[m].gather.lengths;
+  bool contained = some && isInMap(0u, point.xy);
   ivec2 square = ivec2(point.xy) / kSummarySide;
   if (local.y == 0) summaries[local.x] = 0u;
   if (gl_LocalInvocationIndex == 0u) summaryPlace = kNowhere;
@@ -289,19 +303,16 @@ bool lightEntersNear(bool some, Surface x, uint m, Pattern pattern) {
     atomicOr(summaries[local.y], 1u << local.x);
   barrier();
   if (!contained) return false;
-  // The furthest sample, mm: around x itself where that is lit, else around whatever axis.
-  vec4 lengths = materials[m].gather.lengths;
-  float samples = float(pass.value.w), spread = gatherSpread(lengths, (samples - 1.0 + pattern.within) / samples);
-  bool lit = !holdsSurface(bits) || distanceAhead(true, unpackRecord(bits).depth, point.z) <= 0.0;
-  float t = lit ? 0.0 : lengths.z, reach = t + sqrt(gatherSquaredRadius(t, spread));
+  float samples = float(pass.value.w), spread = gatherSpread(lengths, (samples - 1.0 + kMostWithin) / samples);
   vec3 column = maps[0].column.xyz, row = maps[0].row.xyz;
-  reach = min(reach * sqrt(max(dot(column, column), dot(row, row))) / frame.camera.range.w, 1.0e6);
-  ivec2 low = ivec2(floor((point.xy - reach) / float(kSummarySide))) - corner;
-  ivec2 high = ivec2(floor((point.xy + reach) / float(kSummarySide))) - corner;
-  if (any(lessThan(low, ivec2(0))) || any(greaterThanEqual(high, ivec2(GROUP_SIDE)))) return true;
-  uint found = 0u;
-  for (int y = low.y; y <= high.y; ++y) found |= summaries[y];
-  return (found & ((2u << high.x) - (1u << low.x))) != 0u;
+  float perMm = sqrt(max(dot(column, column), dot(row, row))) / frame.camera.range.w;
+  // The furthest sample around whatever axis, then around x itself where that is lit.
+  float furthest = lengths.z + sqrt(gatherSquaredRadius(lengths.z, spread));
+  if (!entersWithin(furthest * perMm, point.xy, corner)) return false;
+  uvec4 bits;
+  fetchRecord(0u, true, point, bits);
+  bool lit = !holdsSurface(bits) || distanceAhead(true, unpackRecord(bits).depth, point.z) <= 0.0;
+  return !lit || entersWithin(spread * perMm, point.xy, corner);
 }
 #endif
 
@@ -314,31 +325,19 @@ void main() {
   vec4 normalTexel;
   bool some = inside && pixelOf(cell, side, result.index, result.material, result.front, normalTexel);
   Surface x;
-  Pattern pattern;
   if (some) {
     vec3 normal = vec3(0.0);
     if (hasFlag(PELLUCID_FLAG_NORMAL)) normal = mat3(frame.viewFromNormal) * decodeNormal(normalTexel);
     x = makeSurface(viewRay(frame.camera, pixelInCell(cell, side, result.index)), result.front, -1.0, normal);
     result.normal = x.hasNormal ? x.normal : -x.view;
-    pattern = patternOf(cell, result.material - 1u, result.front);
-  }
-  // Fetched before what is waited for.
-  bool curves = some && x.hasNormal && hasFlag(PELLUCID_FLAG_DIFFUSED);
-  ivec2 pixel = pixelInCell(cell, side, result.index), steps = ivec2(0);
-  vec4 convexity = vec4(0.0);
-  Beside across, along;
-  if (curves) {
-    convexity = materials[result.material - 1u].gather.convexity;
-    steps = besideSteps(cell, result.front, convexity.w);
-    across = besideAt(pixel + ivec2(steps.x, 0));
-    along = besideAt(pixel + ivec2(0, steps.y));
   }
   bool gathers = some;
 #ifdef DIRECTIONAL
-  if (pass.value.y == 1u) gathers = lightEntersNear(some, x, max(result.material, 1u) - 1u, pattern);
+  if (pass.value.y == 1u) gathers = lightEntersNear(some, x, max(result.material, 1u) - 1u);
 #endif
-  if (curves) result.displaced = -convexity.rgb * meanCurvature(pixel, steps, across, along, x, convexity.w);
-  if (gathers) gatherLights(x, pattern, result);
+  // Only now: what it holds would take registers from what is waited for above.
+  if (some && x.hasNormal && hasFlag(PELLUCID_FLAG_DIFFUSED)) result.displaced = -convexity(cell, side, result, x);
+  if (gathers) gatherLights(x, patternOf(cell, result.material - 1u, result.front), result);
   if (some && (pass.value.z & 1u) != 0u) {
     Point before = unpackPoint(imageLoad(pointsImage, cell));
     result.added += before.added;

@@ -9,11 +9,15 @@
 #include "passes/shadow_images.glsl"
 #include "lib/shadow.glsl"
 
+#ifdef DIRECTIONAL
+layout(set = 0, binding = PELLUCID_BINDING_DIRECTIONAL_RECORD_MAPS) uniform RecordMaps {
+  RecordMapConstants recordMaps[PELLUCID_RECORD_MAPS];
+};
+#else
 layout(set = 0, binding = PELLUCID_BINDING_RECORD_MAPS) readonly buffer RecordMaps { RecordMapConstants recordMaps[]; };
+#endif
 layout(set = 0, binding = PELLUCID_BINDING_LEVELS, rgba32ui) uniform writeonly uimage2D recordsDestination;
 
-// The camera may miss a texel's point by the slope of the surface within the texel and the pixel.
-const float kSeenTolerance = 0.5; // texels
 // A surface that the light sees more obliquely counts as if it did not.
 const float kLeastCosine = 0.05;
 
@@ -24,8 +28,6 @@ bool cameraSees(ivec2 pixel, float planar, vec3 normal, float tolerance) {
   float front = frontDistance(pixel);
   return front > 0.0 && planar <= front + tolerance;
 }
-
-bool perspective(RecordMapConstants map) { return !kDirectional && map.meta.z != 0u; }
 
 // The surface that a texel of a perspective map stores, as RecordMapConstants says; depth: as records store it.
 vec3 entryPoint(RecordMapConstants map, ivec2 texel, float stored, out float depth) {
@@ -95,10 +97,6 @@ uvec4 recordOf(Record r, vec3 normal, vec3 toLight, ivec2 pixel, float planar, f
   return packRecord(r);
 }
 
-float toleranceOf(RecordMapConstants map, float squareX, float squareY) {
-  return kSeenTolerance * sqrt(sqrt(squareX * squareY)) + map.bias.x;
-}
-
 const ivec2 kNoPixel = ivec2(-1);
 
 uvec4 parallelRecord(RecordMapConstants map, ivec2 texel, ShadowTexels stored) {
@@ -123,9 +121,10 @@ uvec4 parallelRecord(RecordMapConstants map, ivec2 texel, ShadowTexels stored) {
   // Far outside stays outside after the conversion.
   if (abs(w) > 0.0 && planar > 0.0)
     pixel = ivec2(floor(clamp(vec2(dot(map.pixelX, q), dot(map.pixelY, q)) / w, vec2(-1.0e6), vec2(1.0e6))));
-  return recordOf(r, normal, -lights[map.map.w].direction.xyz, pixel, planar, toleranceOf(map, squareX, squareY));
+  return recordOf(r, normal, map.toLight.xyz, pixel, planar, map.seen.x + map.seen.y);
 }
 
+#ifndef DIRECTIONAL
 uvec4 perspectiveRecord(RecordMapConstants map, ivec2 texel, ShadowTexels stored) {
   Record r;
   vec3 y = entryPoint(map, texel, stored.own, r.depth);
@@ -139,13 +138,17 @@ uvec4 perspectiveRecord(RecordMapConstants map, ivec2 texel, ShadowTexels stored
                       entrySlope(map, texel, y, ivec2(0, 1), stored.beside.zw, squareY));
   ivec2 pixel;
   if (!projectToPixel(frame.camera, y, pixel)) pixel = kNoPixel;
-  return recordOf(r, normal, toLight, pixel, y.z * frame.camera.range.x, toleranceOf(map, squareX, squareY));
+  return recordOf(r, normal, toLight, pixel, y.z * frame.camera.range.x, abs(r.depth) * map.seen.x + map.seen.y);
 }
+#endif
 
 uvec4 recordOf(RecordMapConstants map, ivec2 texel) {
   ShadowTexels stored = shadowTexels(map.meta.x, texel, ivec2(map.map.xy) - 1);
   if (!shadowHolds(map.meta, stored.own)) return kNoRecord;
-  return perspective(map) ? perspectiveRecord(map, texel, stored) : parallelRecord(map, texel, stored);
+#ifndef DIRECTIONAL
+  if (map.meta.z != 0u) return perspectiveRecord(map, texel, stored);
+#endif
+  return parallelRecord(map, texel, stored);
 }
 
 shared uint someEnters;

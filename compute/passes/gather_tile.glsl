@@ -4,12 +4,63 @@
 
 const int kTile = 2 * PELLUCID_GATHER_GROUP; // an invocation does four pixels, whose loads overlap
 const int kThreads = PELLUCID_GATHER_GROUP * PELLUCID_GATHER_GROUP;
-const ivec2 kPointPixels = ivec2(kTile);
-const int kLeastSide = 2;
 #include "passes/gathered.glsl"
 
 // The i-th pixel of an invocation: half a tile apart, so that neighbors load neighbors.
 ivec2 pixelInTile(int i) { return ivec2(gl_LocalInvocationID.xy) + PELLUCID_GATHER_GROUP * ivec2(i & 1, i >> 1); }
+
+layout(set = 0, binding = PELLUCID_BINDING_POINTS, rgba32ui) uniform readonly uimage2D pointsImage;
+
+const int kMostPoints = (kTile / 2 + 1) * (kTile / 2 + 1); // around all pixels
+
+shared vec4 pointPlanes[kMostPoints]; // see tangentPlane
+shared uvec4 points[kMostPoints];     // as pointOf has them
+shared uint someLight;                // kSome* of all
+
+ivec2 tileStart() { return (ivec2(frame.rect.xy) / kTile + ivec2(gl_WorkGroupID.xy)) * kTile; }
+
+// Points of a row.
+int pointRow(int side) { return (kTile >> shiftOf(side)) + 1; }
+
+ivec2 cellOfPoint(int index, int side) {
+  // Divisions by constants.
+  int y = side == 2 ? index / (kTile / 2 + 1) : index / (kTile / 4 + 1);
+  return (tileStart() >> shiftOf(side)) + ivec2(index - y * pointRow(side), y);
+}
+
+// All, as they are. Returns kSome* of the invocation's.
+uint loadPoints(int index, int side) {
+  int count = pointRow(side) * pointRow(side);
+  ivec4 cells = cellsOf(frame.rect, side);
+  uint some = 0u;
+  [[dont_unroll]] for (int i = index; i < count; i += kThreads) {
+    ivec2 cell = cellOfPoint(i, side);
+    bool inside = all(lessThan(cell, cells.zw)) && all(greaterThanEqual(cell, cells.xy));
+    uvec4 bits = inside ? imageLoad(pointsImage, cell) : kNoPoint;
+    points[i] = bits;
+    some |= kindsOfLight(bits);
+  }
+  return some;
+}
+
+// After a barrier and before another.
+void unpackPoints(int index, int side) {
+  int count = pointRow(side) * pointRow(side);
+  [[dont_unroll]] for (int i = index; i < count; i += kThreads) {
+    Point p = unpackPoint(points[i]);
+    pointPlanes[i] = tangentPlane(p, pixelInCell(cellOfPoint(i, side), side, p.index), tileStart());
+    points[i] = uvec4(packLight(p.added, p.displaced), p.material);
+  }
+}
+
+uvec4 pointOf(ivec2 cell, ivec2 pixel, float front, out float off) {
+  int side = int(pass.value.x);
+  ivec2 place = cell - (tileStart() >> shiftOf(side));
+  int at = place.y * pointRow(side) + place.x;
+  vec4 plane = pointPlanes[at];
+  off = (front - plane.x - dot(plane.yz, vec2(pixel - tileStart()))) * plane.w;
+  return points[at];
+}
 
 // What came through of the lights without a map, which come last.
 vec3 otherLight(ivec2 pixel, float front, float frontStored, uint m) {
@@ -25,19 +76,19 @@ vec3 otherLight(ivec2 pixel, float front, float frontStored, uint m) {
 }
 
 // `others`: there are lights without a map.
-void writePixel(ivec2 pixel, ivec2 local, int side, uint value, vec4 source, float frontStored, bool others) {
+void writePixel(ivec2 pixel, int side, uint value, vec4 source, float frontStored, bool others) {
   uint material = materialIndex(value);
   if (material == 0u) return;
   vec3 result = sanitize(source.rgb);
   float front = (value & frame.marks.x) != 0u ? -1.0 : frontDistanceOf(frontStored);
-  if (front > 0.0 && someLight != 0u) result = withGathered(result, local, side, front, material);
+  if (front > 0.0 && someLight != 0u) result = withGathered(result, pixel, side, front, material);
   if (front > 0.0 && others) result += otherLight(pixel, front, frontStored, material - 1u);
   writeResult(pixel, max(result, vec3(0.0)), source.a, pass.value.z == PELLUCID_WRITE_LAST);
 }
 
 void main() {
   int side = int(pass.value.x), index = int(gl_LocalInvocationIndex);
-  ivec2 tile = (ivec2(frame.rect.xy) / kTile + ivec2(gl_WorkGroupID.xy)) * kTile;
+  ivec2 tile = tileStart();
   uint value[4];
   vec4 source[4];
   float front[4];
@@ -49,23 +100,23 @@ void main() {
   }
   if (index == 0) someLight = 0u;
   barrier();
-  uint light = loadPoints(index, kThreads, side, tile);
+  uint light = loadPoints(index, side);
   if (light != 0u) atomicOr(someLight, light);
   barrier();
-  if (someLight != 0u) unpackPoints(index, kThreads, side, tile);
+  if (someLight != 0u) unpackPoints(index, side);
   barrier();
   if (pass.value.w == pass.value.y) {
     // Unrolled, so that the arrays stay in registers.
     [[unroll]] for (int i = 0; i < 4; ++i) {
-      ivec2 local = pixelInTile(i);
-      if (insideRect(tile + local)) writePixel(tile + local, local, side, value[i], source[i], front[i], false);
+      ivec2 pixel = tile + pixelInTile(i);
+      if (insideRect(pixel)) writePixel(pixel, side, value[i], source[i], front[i], false);
     }
   } else {
     // The code of other lights once.
     [[dont_unroll]] for (int i = 0; i < 4; ++i) {
-      ivec2 local = pixelInTile(i), pixel = tile + local;
+      ivec2 pixel = tile + pixelInTile(i);
       if (insideRect(pixel))
-        writePixel(pixel, local, side, materialValueAt(pixel), texelFetch(sourceImage, pixel, 0),
+        writePixel(pixel, side, materialValueAt(pixel), texelFetch(sourceImage, pixel, 0),
                    texelFetch(frontDepthImage, pixel, 0).x, true);
     }
   }

@@ -23,7 +23,8 @@ ivec2 quadInTile() { return ivec2(gl_LocalInvocationIndex % uint(kQuads), gl_Loc
 // The pixel whose normal stands for a quad that is one surface: any of the four, by turns.
 ivec2 pixelOfQuad(ivec2 quad) { return 2 * quad + (quad.yx & 1); }
 
-// Beside a pixel's material: keeps it from being one surface with the others of its quad, each of which has a bit of its own.
+// Beside a pixel's material: keeps it from being one surface with the others of its quad, each of which has a bit of its
+// own.
 uint apartFromQuad() { return 0x100u << (gl_LocalInvocationID.x & 1u | (gl_LocalInvocationID.y & 1u) << 1); }
 
 // Of the invocation's quad, to be loaded with all the rest.

@@ -51,14 +51,17 @@ using glm::vec4;
 // The gather's passes know lights, maps and materials, and no kernels:
 #define PELLUCID_BINDING_GATHER_MAPS PELLUCID_BINDING_SHADOWS
 #define PELLUCID_BINDING_RECORD_MAPS PELLUCID_BINDING_KERNELS
+#define PELLUCID_BINDING_DIRECTIONAL_RECORD_MAPS PELLUCID_BINDING_LIGHTS
 #define PELLUCID_BINDING_RECORDS PELLUCID_BINDING_SHADOW_IMAGES
 #define PELLUCID_BINDING_POINTS PELLUCID_BINDING_LEVELS
+#define PELLUCID_BINDING_SHARED_POINTS (PELLUCID_BINDING_SHADOW_IMAGES + 1) // of the diffusion, beside the pyramid
 #define PELLUCID_BINDING_COUNT 21
 
 // Lights and shadow maps of one dispatch are uniform buffers, which are cached apart from what images pass
 // through. 16 KiB is what every device binds.
 #define PELLUCID_DISPATCH_LIGHTS 128
 #define PELLUCID_DISPATCH_SHADOWS 128
+#define PELLUCID_RECORD_MAPS 64 // of directional lights whose records a dispatch makes from a uniform buffer
 
 // FrameConstants::flags.x
 #define PELLUCID_FLAG_BACK_DEPTH 1u
@@ -181,7 +184,8 @@ struct RecordMapConstants {
                // stored w + affine; perspective: w / (stored - affine), or stored / affine where planar
   uvec4 meta;  // as ShadowConstants::meta
   uvec4 map;   // x, y: texels; z: how many a side for one record; w: the light, of lights[]
-  vec4 bias;   // x: scene units
+  vec4 seen;   // x + y: how far behind what the camera sees a point may lie, scene units; perspective: x times depth
+  vec4 toLight; // xyz: directional: unit
   // Directional: dot products with (p, depth, 1) say what the camera sees it on: pixelX / pixelW, pixelY / pixelW and
   // the planar distance. normal + x across[0] + y across[1] is the normal where depth grows by x and y beyond a plane's
   // along the steps of p. w, normal: 2 stepX ray, across: 2 stepY ray and ray^2.

@@ -137,7 +137,8 @@ struct Builder {
   }
 
   bool records(const LightGroup& group) {
-    const bool directional = group.gatheredDirectional && directionalFrame();
+    const bool directional =
+        group.gatheredDirectional && directionalFrame() && group.shadowCount <= PELLUCID_RECORD_MAPS;
     PellucidDispatch* d =
         dispatch("gather records", directional ? PELLUCID_PIPELINE_GATHER_RECORDS_DIRECTIONAL
                                                : PELLUCID_PIPELINE_GATHER_RECORDS);
@@ -146,12 +147,16 @@ struct Builder {
     d->pushConstants[0] = group.shadowCount;
     d->pushConstants[1] = group.recordColumns;
     constants(d, PELLUCID_BINDING_FRAME, layout.frame);
-    constants(d, PELLUCID_BINDING_LIGHTS, {layout.lights.offset + group.lightBytes, kLightWindow});
     constants(d, PELLUCID_BINDING_GATHER_MAPS,
               {layout.gatherMaps.offset + group.gatherMapBytes, kGatherMapWindow});
-    constants(d, PELLUCID_BINDING_RECORD_MAPS,
-              {layout.recordMaps.offset + group.recordMapBytes,
-               group.shadowCount * sizeof(shared::RecordMapConstants)});
+    const VkDeviceSize maps = layout.recordMaps.offset + group.recordMapBytes;
+    if (directional) {
+      constants(d, PELLUCID_BINDING_DIRECTIONAL_RECORD_MAPS, {maps, kRecordMapWindow});
+    } else {
+      constants(d, PELLUCID_BINDING_LIGHTS, {layout.lights.offset + group.lightBytes, kLightWindow});
+      constants(d, PELLUCID_BINDING_RECORD_MAPS,
+                {maps, group.shadowCount * sizeof(shared::RecordMapConstants)});
+    }
     image(d, PELLUCID_BINDING_FRONT_DEPTH, PELLUCID_RESOURCE_FRONT_DEPTH, kUnknownDepthBytes);
     shadowImages(d, group);
     bind(d, PELLUCID_BINDING_LEVELS, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, recordsImage());
@@ -202,9 +207,8 @@ struct Builder {
   }
 
   // What points share.
-  void readsPoints(PellucidDispatch* d) const {
-    d->pushConstants[0] = gatherSpacing(frame);
-    bind(d, PELLUCID_BINDING_POINTS, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, sharedImage());
+  void readsPoints(PellucidDispatch* d, uint32_t binding, VkDescriptorType type) const {
+    bind(d, binding, type, sharedImage());
     d->modeledBytes += kTexelBytes * cells().width * cells().height;
   }
 
@@ -262,7 +266,8 @@ struct Builder {
       // Tiles are the image's.
       constexpr uint32_t kTile = 2 * PELLUCID_GATHER_GROUP;
       groups(d, rect.x % kTile + rect.width, rect.y % kTile + rect.height, kTile);
-      readsPoints(d);
+      d->pushConstants[0] = gatherSpacing(frame);
+      readsPoints(d, PELLUCID_BINDING_POINTS, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE);
       d->pushConstants[3] = group.gathered;
     } else {
       tiles(d);
@@ -389,7 +394,7 @@ struct Builder {
     if (normals) image(d, PELLUCID_BINDING_NORMAL, PELLUCID_RESOURCE_NORMAL, 0);
     readsPyramid(d);
     d->modeledBytes += 2 * kTexelBytes * texels(2);
-    if (addsPoints) readsPoints(d);
+    if (addsPoints) readsPoints(d, PELLUCID_BINDING_SHARED_POINTS, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE);
     return true;
   }
 };

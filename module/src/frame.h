@@ -29,8 +29,9 @@ constexpr VkDeviceSize kLightWindow = PELLUCID_DISPATCH_LIGHTS * sizeof(shared::
 constexpr VkDeviceSize kDirectionalWindow = aligned(sizeof(shared::DirectionalConstants));
 constexpr VkDeviceSize kShadowWindow = PELLUCID_DISPATCH_SHADOWS * sizeof(shared::ShadowConstants);
 constexpr VkDeviceSize kGatherMapWindow = PELLUCID_DISPATCH_SHADOWS * sizeof(shared::GatherMapConstants);
-static_assert(kLightWindow <= 16384 && kShadowWindow <= 16384 &&
-              kGatherMapWindow <= kShadowWindow);  // least maxUniformBufferRange
+constexpr VkDeviceSize kRecordMapWindow = PELLUCID_RECORD_MAPS * sizeof(shared::RecordMapConstants);
+static_assert(kLightWindow <= 16384 && kShadowWindow <= 16384 && kGatherMapWindow <= kShadowWindow &&
+              kRecordMapWindow <= 16384);  // least maxUniformBufferRange
 
 struct LightGroup {
   uint32_t index = 0;

@@ -1,6 +1,7 @@
 #include "records.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "camera.h"
 
@@ -82,6 +83,7 @@ RecordConstants recordConstants(const PellucidFrame& frame, const PellucidShadow
     affine(of, device ? clip[3][2] : static_cast<double>(shadow.planar.w), -scale);
     r.ray = glm::vec4(g[2], scale);
     c.gather.depth = glm::vec4(toLight, 0);
+    r.toLight = c.gather.depth;
     const glm::dvec3 ray = g[2];
     r.normal = glm::vec4(glm::cross(stepX, stepY), 2 * glm::dot(stepX, ray));
     r.across[0] = glm::vec4(glm::cross(ray, stepY), 2 * glm::dot(stepY, ray));
@@ -99,7 +101,8 @@ RecordConstants recordConstants(const PellucidFrame& frame, const PellucidShadow
   }
   r.meta = shadow.meta;
   r.map = {s.extent[0], s.extent[1], extent.side, lightIndex};
-  r.bias.x = s.bias;
+  // The camera may miss a texel's point by the slope of the surface within half a texel and the pixel.
+  r.seen = {static_cast<float>(0.5 * std::sqrt(glm::length(stepX) * glm::length(stepY))), s.bias, 0, 0};
   return c;
 }
 

@@ -228,6 +228,33 @@ TEST(Plan, DirectionalVariantNeedsTheCommonCase) {
   }));
 }
 
+// What the directional records read is a uniform buffer.
+TEST(Plan, RecordsOfMoreMapsThanAUniformBufferHoldsAreTheGeneralOnes) {
+  const auto records = [](size_t lights) {
+    Frame f;
+    f.frame.normal = Frame::view();
+    f.frame.gatherSamples = 8;
+    f.maps[0].extent[0] = f.maps[0].extent[1] = 16;
+    f.lights.resize(lights, f.lights[0]);
+    f.use();
+    const PellucidPlan plan = f.plan();
+    for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
+      if (names(plan)[i] != "gather records") continue;
+      const PellucidDispatch& d = plan.dispatches[i];
+      for (uint32_t b = 0; b < d.bindingCount; ++b) {
+        const PellucidBinding& binding = d.bindings[b];
+        EXPECT_LE(binding.offset + binding.size, plan.constantsSize);
+        EXPECT_TRUE(binding.type != VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER || binding.size <= 16384);
+      }
+      return d.pipeline;
+    }
+    return uint32_t{PELLUCID_PIPELINE_COUNT};
+  };
+  EXPECT_EQ(records(PELLUCID_RECORD_MAPS),
+            static_cast<uint32_t>(PELLUCID_PIPELINE_GATHER_RECORDS_DIRECTIONAL));
+  EXPECT_EQ(records(PELLUCID_RECORD_MAPS + 1), static_cast<uint32_t>(PELLUCID_PIPELINE_GATHER_RECORDS));
+}
+
 TEST(Plan, ImageNeedsCoverThePlan) {
   Frame f;
   for (uint32_t features : {1u, 2u, 3u}) {
