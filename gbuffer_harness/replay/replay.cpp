@@ -32,6 +32,7 @@ public:
     } else {
       output_ = &create(width_, height_, settings.outputFormat);
       f.output = output_->use();
+      f.separateOutput = 1;
       if (debug)
         output_->clear();
       else

@@ -17,20 +17,16 @@ struct Stages {
   uint32_t fused;    // fused dispatches
   bool history;      // these write the history, and one more adds it
   bool keepsPoints;  // the history is what the gather's points share: these read it
-  bool diffuses;     // the diffusion is all there is: it reads the irradiance and writes the output
-  bool copies;       // then first copies the irradiance, because the output is the same image and pixels read
-                     // their neighbors
-  bool fusesQuads;   // the last fused dispatch makes the pyramid's level 1 of what it writes
+  bool copies;  // the diffusion is all there is: it copies the irradiance before it writes the output, which
+                // may be the same image and whose pixels read their neighbors
+  bool fusesQuads;     // the last fused dispatch makes the pyramid's level 1 of what it writes
   LightGroups groups;  // of lights
   bool overlaps;  // the gather runs beside the diffusion, which it does not wait for, with images of its own
   bool addsPoints;  // the diffusion's last dispatch adds what was gathered: no other light comes through
 
   // Dispatches that write a color transient or the output.
   uint32_t writers() const { return (history ? 1 : fused) + (diffusion ? 1 : 0) + (copies ? 1 : 0); }
-  // Whether or not there is a copy, which views say: needs do not look at them.
-  uint32_t colorTransients() const {
-    return std::min(writers() - (copies ? 1 : 0) + (diffuses ? 1 : 0) - 1, 2u);
-  }
+  uint32_t colorTransients() const { return std::min(writers() - 1, 2u); }
   // Of packed texels: the pyramid; what the gather's points find; records, if they do not lie where the
   // pyramid was.
   uint32_t texelTransients() const { return groups.gathered > 0 ? (overlaps ? 3 : 2) : diffusion ? 1 : 0; }
@@ -44,15 +40,14 @@ Stages stagesOf(const PellucidFrame& frame) {
   s.addsPoints = s.diffusion && addsPoints(frame);
   s.fused = s.addsPoints ? 0 : s.groups.fused();
   s.lights = s.fused > 0;
-  s.diffuses = s.diffusion && !s.lights;
-  s.copies = s.diffuses && frame.output.view == frame.irradiance.view;
+  s.copies = s.diffusion && !s.lights && !frame.separateOutput;
   // Without diffusion the fused pass still has to bring irradiance (times albedo) to the output.
   if (s.writers() == 0) s.fused = 1;
   s.keepsPoints = keepsPoints(frame);
   s.history = keepsHistory(frame) && !s.keepsPoints;
   s.fusesQuads = s.diffusion && s.lights && !s.history && frame.gatherSamples == 0;
   // More would be more transients than there are.
-  s.overlaps = s.diffusion && s.groups.gathered == 1 && s.colorTransients() == 1 && !s.history;
+  s.overlaps = s.diffusion && s.groups.gathered == 1 && s.colorTransients() <= 1 && !s.history;
   return s;
 }
 
@@ -215,11 +210,9 @@ extern "C" PellucidResult pellucidGetImageNeeds(const PellucidFrame* frame, uint
   const uint32_t room = *count;
   *count = transients + (stages.history || stages.keepsPoints ? 1 : 0);
   if (!needs) return PELLUCID_OK;  // validation asks for the number in every frame
-  // Without a plan before it, that of a frame that refreshes a history, in place: every image is in use.
+  // Without a plan before it, that of a frame that refreshes a history: every image is in use.
   PellucidPlan plan{};
-  PellucidFrame inPlace = *frame;
-  inPlace.output = inPlace.irradiance;
-  if (!build(inPlace, {}, plan)) return PELLUCID_ERROR_CAPACITY;
+  if (!build(*frame, {}, plan)) return PELLUCID_ERROR_CAPACITY;
   const uint64_t colorBytes = frame->outputFormat == VK_FORMAT_R32G32B32A32_SFLOAT ? 16 : 8;
   for (uint32_t i = 0; i < *count && i < room; ++i) {
     const bool persistent = i == transients, texels = !persistent && i >= colors;

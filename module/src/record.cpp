@@ -1,6 +1,5 @@
 // Plan -> command buffer. The only file that calls vkCmd*.
 #include "context.h"
-#include "shared/pellucid_shared.h"
 #include "validate.h"
 
 namespace pellucid {
@@ -52,23 +51,6 @@ void pushBindings(const PellucidContext& c, VkCommandBuffer commandBuffer, const
                                  d.bindingCount, writes);
 }
 
-// Whether a dispatch of the plan's diffusion reads the irradiance while it writes the same image: not if the
-// plan was made for these views.
-bool diffusesInPlace(const PellucidPlan& plan, const PellucidFrame& f) {
-  for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
-    bool reads = false, writes = false, pyramid = false;
-    for (uint32_t j = 0; j < plan.dispatches[i].bindingCount; ++j) {
-      const uint32_t resource = plan.dispatches[i].bindings[j].resource;
-      reads = reads || resource == PELLUCID_RESOURCE_IRRADIANCE;
-      writes = writes || resource == PELLUCID_RESOURCE_OUTPUT;
-      pyramid = pyramid || (plan.dispatches[i].bindings[j].binding == PELLUCID_BINDING_PYRAMID &&
-                            resource >= PELLUCID_RESOURCE_TRANSIENT0 && resource < PELLUCID_RESOURCE_HISTORY);
-    }
-    if (reads && writes && pyramid) return f.output.view == f.irradiance.view;
-  }
-  return false;
-}
-
 }  // namespace
 }  // namespace pellucid
 
@@ -89,12 +71,6 @@ extern "C" PellucidResult pellucidRecordPlan(const PellucidContext* c, VkCommand
   if (result != PELLUCID_OK) return result;
   result = checkViews(*frame, c->message, c->messageUser);
   if (result != PELLUCID_OK) return result;
-  if (diffusesInPlace(*plan, *frame)) {
-    if (c->message)
-      c->message(c->messageUser, PELLUCID_SEVERITY_ERROR, "output",
-                 "is the irradiance's view, but was another one when the plan was made");
-    return PELLUCID_ERROR_INVALID_ARGUMENT;
-  }
 
   for (uint32_t i = 0; i < plan->dispatchCount; ++i) {
     const PellucidDispatch& d = plan->dispatches[i];

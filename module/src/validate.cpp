@@ -266,6 +266,7 @@ PellucidResult checkFrame(const PellucidFrame* frame, PellucidMessageFn fn, void
   if (!(f.minimumDot >= -1 && f.minimumDot <= 0))
     out.error("minimumDot", "is ", f.minimumDot, ", outside [-1, 0]");
   if (f.prescaleAngle > 1) out.error("prescaleAngle", "is ", f.prescaleAngle, ", neither 0 nor 1");
+  if (f.separateOutput > 1) out.error("separateOutput", "is ", f.separateOutput, ", neither 0 nor 1");
   checkMinimumDotTable(f, out);
   if (!(f.maximumThickness >= 0)) out.error("maximumThickness", "is ", f.maximumThickness, "; must be >= 0");
   for (int c = 0; c < 3; ++c)
@@ -352,6 +353,8 @@ PellucidResult checkViews(const PellucidFrame& f, PellucidMessageFn fn, void* us
   for (uint32_t i = 0; i < needed; ++i)
     if (!given(f.transients[i]))
       out.error(Field("transients[", i, "]"), "has no view; see pellucidGetImageNeeds");
+  if (f.separateOutput && given(f.output) && f.output.view == f.irradiance.view)
+    out.error("separateOutput", "is 1, but the output is the irradiance's view");
   if (f.output.layout != VK_IMAGE_LAYOUT_GENERAL && given(f.output))
     out.error("output", "is in VkImageLayout ", static_cast<int>(f.output.layout),
               "; storage writes need GENERAL");

@@ -42,6 +42,7 @@ const std::vector<Violation> kViolations = {
     {"BothReuses", "reuse", "is both", [](Frame& f) { f.frame.reuse = 3; }},
     {"CoherenceThreshold", "coherenceThreshold", "nan", [](Frame& f) { f.frame.coherenceThreshold = NAN; }},
     {"PrescaleAngle", "prescaleAngle", "2", [](Frame& f) { f.frame.prescaleAngle = 2; }},
+    {"SeparateOutput", "separateOutput", "2", [](Frame& f) { f.frame.separateOutput = 2; }},
     {"FrameLoad", "frameLoad", "-1", [](Frame& f) { f.frame.frameLoad = -1; }},
     {"Quality", "quality", "4, outside 0..3", [](Frame& f) { f.frame.quality = 4; }},
     {"TargetError", "targetError", "inf", [](Frame& f) { f.frame.targetError = INFINITY; }},
@@ -144,6 +145,18 @@ TEST(Validate, WarnsOfLightsThatAddNothing) {
   f.lights[0].intensity = 0;
   EXPECT_NE(f.problems(PELLUCID_SEVERITY_WARNING).find("lights[0] adds nothing: no intensity"),
             std::string::npos);
+  EXPECT_EQ(f.problems(), "");
+}
+
+TEST(Validate, SeparateOutputIsNotTheIrradiance) {
+  Frame f;
+  for (PellucidImage& image : f.frame.transients) image = Frame::view();
+  f.frame.separateOutput = 1;
+  f.frame.output.view = f.frame.irradiance.view;
+  EXPECT_NE(f.problems().find("separateOutput is 1, but the output is the irradiance's view"),
+            std::string::npos)
+      << f.problems();
+  f.frame.output.view = reinterpret_cast<VkImageView>(uintptr_t{2});
   EXPECT_EQ(f.problems(), "");
 }
 

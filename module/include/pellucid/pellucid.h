@@ -194,9 +194,8 @@ typedef struct PellucidFrame {
   PellucidImage normal;     /* outward unit vectors, components -1..1 */
   PellucidImage albedo;     /* multiplied after scattering */
   PellucidImage material;   /* required; unsigned integer, 0 none, i: materials[i - 1] */
-  PellucidImage output;     /* required; storage image of outputFormat; may be the irradiance image, as the same
-                               view: other views count as other images, whose irradiance is then read while the
-                               output is written. Pixels of material 0 are not written; alpha is the irradiance's */
+  PellucidImage output;     /* required; storage image of outputFormat; may be the irradiance image.
+                               Pixels of material 0 are not written; alpha is the irradiance's */
   PellucidImage transients[PELLUCID_MAX_TRANSIENTS]; /* as listed by pellucidGetImageNeeds */
   VkFormat outputFormat;    /* VK_FORMAT_R16G16B16A16_SFLOAT (default) or R32G32B32A32_SFLOAT; also
                                of the transients that hold colors */
@@ -266,6 +265,9 @@ typedef struct PellucidFrame {
   uint32_t gatherSpacing;   /* one point gathers for 2x2 or 4x4 pixels: 2 or 4; 0 (default): 4 in images of more than
                                2^20 pixels, else 2. 4 costs a quarter, and asks for pixels well below a mean free
                                path */
+  uint32_t separateOutput;  /* 1: the output shares no memory with the irradiance, which diffusion without a fused
+                               dispatch before it (a gather, or no light) then reads itself and not a copy; 0
+                               (default): it may be the same image */
 } PellucidFrame;
 
 /* ---- Plan ------------------------------------------------------------------------------------ */
@@ -445,7 +447,7 @@ PellucidResult pellucidValidateFrame(const PellucidFrame* frame, PellucidMessage
 
 /* Same frame and previous plan, same plan. `previous` is the last recorded frame's plan or NULL; history
  * comes in here and nowhere else; see PellucidReuse. The plan keeps no pointer to the frame.
- * Of the views only whether the optional inputs are given and whether output and irradiance are the same is read. */
+ * Of the views only whether the optional inputs are given is read. */
 PellucidResult pellucidBuildPlan(const PellucidFrame* frame, const PellucidPlan* previous,
                                  PellucidPlan* plan);
 
