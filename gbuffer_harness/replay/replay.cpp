@@ -88,13 +88,13 @@ private:
 namespace {
 
 void onContextMessage(void* user, PellucidSeverity, const char* field, const char* message) {
-  *static_cast<std::string*>(user) += std::string(field) + " " + message;
+  auto& all = *static_cast<std::string*>(user);
+  all += (all.empty() ? "" : "; ") + std::string(field) + " " + message;
 }
 
 }  // namespace
 
 Context::Context(Device& device) {
-  std::string message;
   PellucidContextDesc desc;
   pellucidInitContextDesc(&desc);
   desc.instance = device.instance();
@@ -102,9 +102,9 @@ Context::Context(Device& device) {
   desc.device = device.handle();
   desc.getInstanceProcAddr = &vkGetInstanceProcAddr;
   desc.message = &onContextMessage;
-  desc.messageUser = &message;
+  desc.messageUser = &message_;
   const PellucidResult result = pellucidCreateContext(&desc, &context_);
-  if (result != PELLUCID_OK) throw DeviceError(std::string(pellucidResultName(result)) + ": " + message);
+  if (result != PELLUCID_OK) throw DeviceError(std::string(pellucidResultName(result)) + ": " + message_);
 }
 
 Context::~Context() { pellucidDestroyContext(context_); }
@@ -127,8 +127,10 @@ FrameRun::~FrameRun() = default;
 
 void FrameRun::record(VkCommandBuffer commandBuffer, const PellucidPlan& plan) const {
   const PellucidConstantsSlice slice{constants_->handle(), 0, constants_->size(), constants_->mapped()};
-  requireOk(pellucidRecordPlan(context_.handle(), commandBuffer, &plan, &data_.frame, &slice), data_.frame,
-            name_);
+  const PellucidResult result =
+      pellucidRecordPlan(context_.handle(), commandBuffer, &plan, &data_.frame, &slice);
+  if (result == PELLUCID_OK) return;
+  throw InputError(name_, "", context_.message().empty() ? pellucidResultName(result) : context_.message());
 }
 
 void FrameRun::record(VkCommandBuffer commandBuffer) const { record(commandBuffer, *plan_); }

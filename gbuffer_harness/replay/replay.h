@@ -19,9 +19,11 @@ public:
   Context& operator=(const Context&) = delete;
 
   const PellucidContext* handle() const { return context_; }
+  const std::string& message() const { return message_; }  // the module's sentences since creation
 
 private:
   PellucidContext* context_ = nullptr;
+  std::string message_;
 };
 
 // One capture on the device, planned and ready to record as often as wanted.

@@ -203,6 +203,16 @@ TEST_F(Replay, SameRunSameBits) {
   EXPECT_TRUE(sameBits(replay(c, testMaterial()), replay(c, testMaterial())));
 }
 
+TEST_F(Replay, ContextKeepsWhatTheModuleSays) {
+  const Context context(device());
+  const FrameRun run(device(), context, flatCapture(8, 8), {testMaterial()}, {});
+  const PellucidConstantsSlice noBuffer{};
+  const auto unused = reinterpret_cast<VkCommandBuffer>(uintptr_t{1});
+  EXPECT_EQ(pellucidRecordPlan(context.handle(), unused, &run.plan(), &run.frame(), &noBuffer),
+            PELLUCID_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(context.message(), "constants needs a buffer and an offset that is a multiple of 256");
+}
+
 TEST_F(Replay, OutputMayBeTheIrradianceImage) {
   Capture c = busyCapture(61, 47);
   c.lights[0].shadowMaps = {flatShadowMap(-12, PELLUCID_DEPTH_DEVICE)};
