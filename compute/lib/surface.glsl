@@ -10,6 +10,9 @@ struct Surface {
   bool hasNormal;
 };
 
+// Whether a vector of that squared length has a direction; false for NaN, too.
+bool hasDirection(float squared) { return squared > 1.0e-8 && squared < 1.0e8; }
+
 // `normal`: any length, view space; (0, 0, 0): none.
 Surface makeSurface(ViewRay ray, float planar, float chord, vec3 normal) {
   Surface s;
@@ -18,7 +21,7 @@ Surface makeSurface(ViewRay ray, float planar, float chord, vec3 normal) {
   s.chord = chord;
   s.normal = normal;
   float squared = dot(s.normal, s.normal);
-  s.hasNormal = squared > 1.0e-8 && squared < 1.0e8; // false for NaN too
+  s.hasNormal = hasDirection(squared);
   if (s.hasNormal) s.normal *= inversesqrt(squared);
   return s;
 }

@@ -1,7 +1,7 @@
 // The fused dispatch where all there is to add is the light of one directional light with a shadow map of device depth,
 // through materials of two exponentials, on surfaces with normals and device depth. Texel and depth in the map are affine
 // in the pixel and, along its ray, in the planar distance, so that no position is needed. It is translucency.comp with
-// what never happens taken out: this pass is bound by how many instructions it runs.
+// what never happens taken out, and few branches.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -15,6 +15,7 @@
 #include "passes/tile.glsl"
 #endif
 #include "lib/saturate.glsl"
+#include "lib/surface.glsl"
 #include "lib/transmittance.glsl"
 #include "passes/normal_image.glsl"
 
@@ -30,7 +31,7 @@ float cosineOfView(ivec2 pixel) {
 
 float hiddenCosine(ivec2 pixel, vec3 normal) {
   float squared = dot(normal, normal);
-  if (squared > 1.0e-8 && squared < 1.0e8) // false for NaN too
+  if (hasDirection(squared))
     return clamp(-dot(normal, light.toLightFromNormal.xyz) * inversesqrt(squared), 0.0, 1.0);
   return cosineOfView(pixel);
 }
