@@ -74,10 +74,6 @@ ivec4 levelRect(uint level) {
   return ivec4((rect.xy >> l) - border, ((rect.zw - 1) >> l) + 1 + border);
 }
 
-bool insideLevel(ivec4 rect, ivec2 texel) {
-  return all(greaterThanEqual(texel, rect.xy)) && all(lessThan(texel, rect.zw));
-}
-
 // Scene units that a texel of the level covers in x and y at planar distance p, facing the camera.
 vec2 texelSize(float p, uint level) {
   return pixelSize(frame.camera, p) * (exp2(float(level)) / frame.camera.range.w);

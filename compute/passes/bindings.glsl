@@ -4,6 +4,7 @@
 
 #include "gbuffer_decode.glsl"
 #include "lib/camera.glsl"
+#include "lib/rect.glsl"
 #include "lib/sanitize.glsl"
 #include "shared/pellucid_shared.h"
 
@@ -27,9 +28,7 @@ layout(set = 0, binding = PELLUCID_BINDING_DESTINATION, FORMAT) uniform writeonl
 
 ivec2 invocationPixel() { return ivec2(frame.rect.xy) + ivec2(gl_GlobalInvocationID.xy); }
 
-bool insideRect(ivec2 pixel) {
-  return all(greaterThanEqual(pixel, ivec2(frame.rect.xy))) && all(lessThan(pixel, ivec2(frame.rect.zw)));
-}
+bool insideRect(ivec2 pixel) { return contains(ivec4(frame.rect), pixel); }
 
 // The nearest pixel of the rect, where loads need no branch.
 ivec2 withinRect(ivec2 pixel) { return clamp(pixel, ivec2(frame.rect.xy), ivec2(frame.rect.zw) - 1); }

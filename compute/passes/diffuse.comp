@@ -44,9 +44,7 @@ const ivec2 kPoints = kTexels + 1;
 shared uint someLight; // kSome* of them
 
 uvec4 pointBits(ivec2 cell) {
-  ivec4 cells = cellsOf(frame.rect, PELLUCID_DIFFUSE_CELL);
-  bool inside = all(greaterThanEqual(cell, cells.xy)) && all(lessThan(cell, cells.zw));
-  return inside ? texelFetch(pointsImage, cell, 0) : kNoPoint;
+  return contains(cellsOf(frame.rect, PELLUCID_DIFFUSE_CELL), cell) ? texelFetch(pointsImage, cell, 0) : kNoPoint;
 }
 
 uvec4 pointOf(ivec2 cell, ivec2 pixel, float front, out float off) {
@@ -200,7 +198,7 @@ void main() {
   uvec4 texel = uvec4(0u), texelShares = uvec4(0u);
   if (invocation < kWindow.x * kWindow.y) {
     ivec2 at = firstTexel + ivec2(invocation % kWindow.x, invocation / kWindow.x) - 1;
-    if (insideLevel(levelRect(2u), at)) {
+    if (contains(levelRect(2u), at)) {
       texel = texelFetch(pyramidImage, resolvedPlace(at), 0);
       texelShares = texelFetch(pyramidImage, sharesPlace(at), 0);
     }

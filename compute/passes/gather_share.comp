@@ -19,8 +19,7 @@ shared uvec4 found[kRow * kRow];  // as points have light; the normal in halves,
 shared uint someLight, someDisplaced;
 
 uvec4 pointAt(ivec2 cell, ivec4 cells) {
-  bool inside = all(greaterThanEqual(cell, cells.xy)) && all(lessThan(cell, cells.zw));
-  return inside ? texelFetch(foundImage, cell, 0) : kNoPoint;
+  return contains(cells, cell) ? texelFetch(foundImage, cell, 0) : kNoPoint;
 }
 
 void keepPoint(ivec2 local, ivec2 cell, int side, uvec4 bits) {

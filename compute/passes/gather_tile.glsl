@@ -2,12 +2,9 @@
 #ifndef PELLUCID_PASS_GATHER_TILE_GLSL
 #define PELLUCID_PASS_GATHER_TILE_GLSL
 
-const int kTile = 2 * PELLUCID_GATHER_GROUP; // an invocation does four pixels, whose loads overlap
+const int kTile = TILE_COLUMNS;
 const int kThreads = PELLUCID_GATHER_GROUP * PELLUCID_GATHER_GROUP;
 #include "passes/gathered.glsl"
-
-// The i-th pixel of an invocation: half a tile apart, so that neighbors load neighbors.
-ivec2 pixelInTile(int i) { return ivec2(gl_LocalInvocationID.xy) + PELLUCID_GATHER_GROUP * ivec2(i & 1, i >> 1); }
 
 layout(set = 0, binding = PELLUCID_BINDING_POINTS, rgba32ui) uniform readonly uimage2D pointsImage;
 
@@ -35,8 +32,7 @@ uint loadPoints(int index, int side) {
   uint some = 0u;
   [[dont_unroll]] for (int i = index; i < count; i += kThreads) {
     ivec2 cell = cellOfPoint(i, side);
-    bool inside = all(lessThan(cell, cells.zw)) && all(greaterThanEqual(cell, cells.xy));
-    uvec4 bits = inside ? imageLoad(pointsImage, cell) : kNoPoint;
+    uvec4 bits = contains(cells, cell) ? imageLoad(pointsImage, cell) : kNoPoint;
     points[i] = bits;
     some |= kindsOfLight(bits);
   }
@@ -89,10 +85,10 @@ void writePixel(ivec2 pixel, int side, uint value, vec4 source, float frontStore
 void main() {
   int side = int(pass.value.x), index = int(gl_LocalInvocationIndex);
   ivec2 tile = tileStart();
-  uint value[4];
-  vec4 source[4];
-  float front[4];
-  [[unroll]] for (int i = 0; i < 4; ++i) {
+  uint value[kPixels];
+  vec4 source[kPixels];
+  float front[kPixels];
+  [[unroll]] for (int i = 0; i < kPixels; ++i) {
     ivec2 pixel = withinRect(tile + pixelInTile(i));
     value[i] = materialValueAt(pixel);
     source[i] = texelFetch(sourceImage, pixel, 0);
@@ -107,13 +103,13 @@ void main() {
   barrier();
   if (pass.value.w == pass.value.y) {
     // Unrolled, so that the arrays stay in registers.
-    [[unroll]] for (int i = 0; i < 4; ++i) {
+    [[unroll]] for (int i = 0; i < kPixels; ++i) {
       ivec2 pixel = tile + pixelInTile(i);
       if (insideRect(pixel)) writePixel(pixel, side, value[i], source[i], front[i], false);
     }
   } else {
     // The code of other lights once.
-    [[dont_unroll]] for (int i = 0; i < 4; ++i) {
+    [[dont_unroll]] for (int i = 0; i < kPixels; ++i) {
       ivec2 pixel = tile + pixelInTile(i);
       if (insideRect(pixel))
         writePixel(pixel, side, materialValueAt(pixel), texelFetch(sourceImage, pixel, 0),

@@ -36,7 +36,7 @@ vec3 normalOfQuad() {
 void writeQuad(vec3 normal) {
   ivec2 local = quadInTile(), quad = (evenTile() >> 1) + local;
   if (!hasQuad()) return;
-  bool inside = insideLevel(levelRect(1u), quad);
+  bool inside = contains(levelRect(1u), quad);
   float depth[4];
   uvec2 packed[4];
   for (int i = 0; i < 4; ++i) {

@@ -159,7 +159,7 @@ uvec4 reduced(uint finer, ivec2 texel, int first, int stride) {
   bool plane = (different & kSamePlane) == 0u && (bits & kPlane) != 0u &&
                residual * inverseSpread(slope, 2.0 * size) < kPlaneResidual;
   uvec4 result = packTexel(Texel(color, areaOf(finer + 1u, texel, slope), bits >> 24, base + off, slope), kPlane);
-  // One branch, for nothing is there more seldom than branches cost.
+  // That nothing is there is too rare for a branch of its own.
   if (!plane) result = (bits | different) >> 16 == 0u ? uvec4(0u) : reducedEdge(finer, first, stride);
   return result;
 }
@@ -207,7 +207,7 @@ void main() {
     }
   barrier();
   ivec2 at = ivec2(gl_LocalInvocationID.xy), texel = start + at;
-  bool inside = insideLevel(rect, texel);
+  bool inside = contains(rect, texel);
   uvec4 bits = reduced(finer, texel, 2 * at.y * kInput + at.x, kInput);
   if (!inside) bits = uvec4(0u);
   barrier();
@@ -222,6 +222,6 @@ void main() {
   }
   at = ivec2(invocation % PELLUCID_REDUCE_TILE, invocation / PELLUCID_REDUCE_TILE);
   texel = own + at;
-  if (at.y < PELLUCID_REDUCE_TILE && insideLevel(lastRect, texel))
+  if (at.y < PELLUCID_REDUCE_TILE && contains(lastRect, texel))
     writeLevel(finer + 2u, texel, reduced(finer + 1u, texel, 2 * at.y * kFirst + at.x, kFirst));
 }

@@ -73,7 +73,7 @@ vec4 stretched(ivec2 texel, uint level, Texel own, Foreshortening f) {
     ivec2 offset = alongX ? ivec2(i, across) : ivec2(across, i);
     float w = exp(-0.5 * float(i * i) / variance);
     weights += w;
-    if (!insideLevel(rect, texel + offset)) continue;
+    if (!contains(rect, texel + offset)) continue;
     Texel t = unpackTexel(texelFetch(pyramidImage, inAtlas(level, texel + offset), 0));
     if (t.mass == 0.0 || t.material != own.material) continue;
     float along = dot(own.slope, vec2(offset) * size);
@@ -156,8 +156,8 @@ void main() {
   Window window = windowOf(level, k);
   int index = invocation - window.first, row = int((float(index) + 0.5) / float(window.side));
   ivec2 texel = window.corner + ivec2(index - row * window.side, row);
-  bool fineInside = insideLevel(levelRect(2u), fineTexel);
-  bool inside = level <= coarsest && invocation < resolved.length() && insideLevel(levelRect(level), texel);
+  bool fineInside = contains(levelRect(2u), fineTexel);
+  bool inside = level <= coarsest && invocation < resolved.length() && contains(levelRect(level), texel);
   // Both before the first is used.
   uvec4 bits = inside ? texelFetch(pyramidImage, inAtlas(level, texel), 0) : uvec4(0u);
   uvec4 fineBits = fineInside ? texelFetch(pyramidImage, inAtlas(2u, fineTexel), 0) : uvec4(0u);

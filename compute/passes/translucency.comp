@@ -7,9 +7,11 @@
 
 #ifdef QUADS
 #include "passes/quad_tile.glsl"
-#elif defined(GATHER)
-#include "passes/bindings.glsl"
 #else
+#ifdef GATHER
+#define FOUR_PIXELS // their loads overlap
+#define TILE_COLUMNS (2 * PELLUCID_GATHER_GROUP)
+#endif
 #include "passes/tile.glsl"
 #endif
 

@@ -185,17 +185,16 @@ const PellucidImage& imageOf(const PellucidFrame& frame, uint32_t resource) {
                                                : frame.transients[resource - PELLUCID_RESOURCE_TRANSIENT0];
 }
 
+void appendError(void* user, PellucidSeverity severity, const char* field, const char* message) {
+  if (severity != PELLUCID_SEVERITY_ERROR) return;
+  auto& all = *static_cast<std::string*>(user);
+  all += (all.empty() ? "" : "; ") + std::string(field) + " " + message;
+}
+
 void requireOk(PellucidResult result, const PellucidFrame& frame, const std::string& name) {
   if (result == PELLUCID_OK) return;
   std::string sentences;
-  pellucidValidateFrame(
-      &frame,
-      [](void* user, PellucidSeverity severity, const char* field, const char* message) {
-        if (severity != PELLUCID_SEVERITY_ERROR) return;
-        auto& all = *static_cast<std::string*>(user);
-        all += (all.empty() ? "" : "; ") + std::string(field) + " " + message;
-      },
-      &sentences);
+  pellucidValidateFrame(&frame, &appendError, &sentences);
   throw InputError(name, "", sentences.empty() ? pellucidResultName(result) : sentences);
 }
 

@@ -29,7 +29,7 @@ struct ReplaySettings {
   float frameLoad = 0;
   uint32_t quality = 2;
   float targetError = 0, nearestDistance = 0;  // see PellucidFrame
-  bool aliasOutput = false;  // output is the irradiance image; ignored for debug views
+  bool aliasOutput = false;                    // output is the irradiance image; ignored for debug views
   std::array<uint32_t, 4> renderRect = {0, 0, 0, 0};  // width 0: everything
 };
 
@@ -64,6 +64,9 @@ void makeFrame(const Capture& capture, const std::vector<PellucidMaterial>& mate
 
 // The image that a PellucidBinding of an image resource means, for passes that bind what a plan does.
 const PellucidImage& imageOf(const PellucidFrame& frame, uint32_t resource);
+
+// A PellucidMessageFn that collects errors. `user`: the std::string that they are added to.
+void appendError(void* user, PellucidSeverity severity, const char* field, const char* message);
 
 // Throws InputError with every sentence of pellucidValidateFrame's errors when `result` is not OK.
 void requireOk(PellucidResult result, const PellucidFrame& frame, const std::string& name);

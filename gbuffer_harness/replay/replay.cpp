@@ -85,15 +85,6 @@ private:
   std::shared_ptr<GpuImage> history_;  // of all frames of a sequence
 };
 
-namespace {
-
-void onContextMessage(void* user, PellucidSeverity, const char* field, const char* message) {
-  auto& all = *static_cast<std::string*>(user);
-  all += (all.empty() ? "" : "; ") + std::string(field) + " " + message;
-}
-
-}  // namespace
-
 Context::Context(Device& device) {
   PellucidContextDesc desc;
   pellucidInitContextDesc(&desc);
@@ -101,7 +92,7 @@ Context::Context(Device& device) {
   desc.physicalDevice = device.physicalDevice();
   desc.device = device.handle();
   desc.getInstanceProcAddr = &vkGetInstanceProcAddr;
-  desc.message = &onContextMessage;
+  desc.message = &appendError;
   desc.messageUser = &message_;
   const PellucidResult result = pellucidCreateContext(&desc, &context_);
   if (result != PELLUCID_OK) throw DeviceError(std::string(pellucidResultName(result)) + ": " + message_);

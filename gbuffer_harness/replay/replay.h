@@ -19,7 +19,7 @@ public:
   Context& operator=(const Context&) = delete;
 
   const PellucidContext* handle() const { return context_; }
-  const std::string& message() const { return message_; }  // the module's sentences since creation
+  const std::string& message() const { return message_; }  // the module's errors since creation
 
 private:
   PellucidContext* context_ = nullptr;
