@@ -30,7 +30,7 @@ struct Options {
   std::pair<int, int> size = {1280, 720};
   int repeat = 30;
   std::vector<double> coverage = {100, 25, 0};  // percent
-  std::set<std::string> tables = {"module", "fused", "gather", "steps", "diffusion"};
+  std::set<std::string> tables = {"module", "edges", "fused", "gather", "steps", "diffusion"};
   double radius = 40;  // pixels
   SweepOptions sweep;
 };
@@ -96,6 +96,19 @@ void modulePlans(const Bench& bench) {
     std::snprintf(title, sizeof title, "module, %g %% covered", coverage);
     bench.report.section(title);
     const auto frame = bench.frame(slab(width, height, coverage / 100, bench.site.pixel), {});
+    dispatches(bench, *frame);
+    bench.row(moduleVariant(frame, "whole frame"), {});
+  }
+}
+
+// Where surfaces end and curve, which takes longer than planes.
+void edges(const Bench& bench) {
+  const auto [width, height] = bench.options.size;
+  for (const double radius : {400.0, 100.0, 25.0}) {
+    char title[64];
+    std::snprintf(title, sizeof title, "edges, balls of %g pixels", radius);
+    bench.report.section(title);
+    const auto frame = bench.frame(balls(width, height, radius, bench.site.pixel), {});
     dispatches(bench, *frame);
     bench.row(moduleVariant(frame, "whole frame"), {});
   }
@@ -198,6 +211,7 @@ void bench(const Options& options) {
   report.add({floor.shape, 1, 0, 24, {}}, floor.time);
   const auto wanted = [&](const char* name) { return options.tables.count(name) > 0; };
   if (wanted("module")) modulePlans(b);
+  if (wanted("edges")) edges(b);
   if (wanted("fused")) fusedDispatch(b);
   if (wanted("gather")) gathered(b);
   if (wanted("steps")) separateSteps(b);

@@ -1,6 +1,7 @@
 #include "scene.h"
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 
 #include "common/error.h"
@@ -68,6 +69,34 @@ Capture litFromTheFront(Capture slab) {
   map.clipFromWorld[14] = 0;
   std::fill(map.depth.image.data.begin(), map.depth.image.data.end(), 0.50f);
   return slab;
+}
+
+Capture balls(int width, int height, double radius, double pixel) {
+  Capture c = slab(width, height, 1, pixel);
+  // The slab lies three radii behind the nearest a ball may be, in front of a camera plane with room for any.
+  const double mm = radius * pixel, far = 100 + 4 * mm, slabDepth = 50 + 3 * mm,
+               center = slabDepth - 1.5 * mm;
+  c.clipFromView[10] = -1 / far;
+  const double spacing =
+      radius * std::sqrt(3 * 3.14159265358979);  // of a square grid, a third of which they cover
+  const auto across = [&](int i) { return std::remainder(i + 0.5 - spacing / 2, spacing) / radius; };
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const size_t i = static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
+      const double nx = across(x), ny = across(y), rest = 1 - nx * nx - ny * ny;
+      const double nz = rest > 0 ? std::sqrt(rest) : 0;
+      c.frontDepth.image.data[i] = static_cast<float>((rest > 0 ? center - nz * mm : slabDepth) / far);
+      c.backDepth.image.data[i] = static_cast<float>((slabDepth + 2) / far);
+      if (rest <= 0) continue;
+      c.normal.data[3 * i] = static_cast<float>(nx);
+      c.normal.data[3 * i + 1] = static_cast<float>(-ny);  // rows run down
+      c.normal.data[3 * i + 2] = static_cast<float>(nz);
+    }
+  ShadowMap& map = c.lights.at(0).shadowMaps.at(0);
+  map.clipFromWorld[10] = 1 / far;
+  std::fill(map.depth.image.data.begin(), map.depth.image.data.end(),
+            static_cast<float>(1 - (slabDepth + 2) / far));
+  return c;
 }
 
 std::vector<ErrorScene> errorScenes() {

@@ -23,6 +23,10 @@ harness::Capture slab(int width, int height, double coverage, double pixel);
 // The same, with the light in front of it, so that its map shows what the camera sees.
 harness::Capture litFromTheFront(harness::Capture slab);
 
+// The same with balls of `radius` pixels in front of the slab, of the same material, on a third of the image:
+// silhouettes and curved surfaces.
+harness::Capture balls(int width, int height, double radius, double pixel);
+
 // A scene that diffusions' errors are stated for.
 struct ErrorScene {
   std::string title, scene;
@@ -35,8 +39,8 @@ std::vector<ErrorScene> errorScenes();
 // `size` pixels a side; all lengths scaled so that a pixel is `pixel` mm wide where the scene has its width.
 harness::Capture makeErrorCapture(const ErrorScene& scene, int size, double pixel);
 
-// Burley's profile (Christensen & Burley 2015) with 99.9 % of the energy within `radius` mm in red, and distances
-// 1/1.4 and 1/2 of that in green and blue.
+// Burley's profile (Christensen & Burley 2015) with 99.9 % of the energy within `radius` mm in red, and
+// distances 1/1.4 and 1/2 of that in green and blue.
 PellucidMaterial burleyMaterial(double radius);
 
 }  // namespace pellucid::bench

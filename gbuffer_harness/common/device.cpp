@@ -243,11 +243,13 @@ void Device::run(const std::function<void(VkCommandBuffer)>& record) {
   release();
 }
 
-uint32_t Device::memoryType(uint32_t typeBits, VkMemoryPropertyFlags flags) const {
+uint32_t Device::memoryType(uint32_t typeBits, VkMemoryPropertyFlags flags,
+                            VkMemoryPropertyFlags preferred) const {
   VkPhysicalDeviceMemoryProperties memory;
   vkGetPhysicalDeviceMemoryProperties(physicalDevice_, &memory);
-  for (uint32_t i = 0; i < memory.memoryTypeCount; ++i)
-    if (typeBits & (1u << i) && (memory.memoryTypes[i].propertyFlags & flags) == flags) return i;
+  for (const VkMemoryPropertyFlags wanted : {flags | preferred, flags})
+    for (uint32_t i = 0; i < memory.memoryTypeCount; ++i)
+      if (typeBits & (1u << i) && (memory.memoryTypes[i].propertyFlags & wanted) == wanted) return i;
   throw DeviceError("the device has no memory type with VkMemoryPropertyFlags " + std::to_string(flags));
 }
 
@@ -274,8 +276,12 @@ HostBuffer::HostBuffer(const Device& device, VkDeviceSize size, VkBufferUsageFla
   vkGetBufferMemoryRequirements(device.handle(), buffer_, &needs);
   VkMemoryAllocateInfo allocate{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
   allocate.allocationSize = needs.size;
+  // What shaders read lies beside them: across a bus each group would wait for it anew.
+  constexpr VkBufferUsageFlags kShaders =
+      VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
   allocate.memoryTypeIndex = device.memoryType(
-      needs.memoryTypeBits, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
+      needs.memoryTypeBits, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT,
+      usage & kShaders ? VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT : 0);
   check(vkAllocateMemory(device.handle(), &allocate, nullptr, &memory_), "vkAllocateMemory");
   check(vkBindBufferMemory(device.handle(), buffer_, memory_, 0), "vkBindBufferMemory");
   check(vkMapMemory(device.handle(), memory_, 0, VK_WHOLE_SIZE, 0, &mapped_), "vkMapMemory");

@@ -30,13 +30,14 @@ public:
   VkPhysicalDevice physicalDevice() const { return physicalDevice_; }
   VkDevice handle() const { return device_; }
   const VkPhysicalDeviceProperties& properties() const { return properties_; }
-  std::string description() const;  // "name, driver and version"
+  std::string description() const;           // "name, driver and version"
   bool canDraw() const { return canDraw_; }  // the queue does graphics besides compute
 
   // Records with `record`, submits and waits.
   void run(const std::function<void(VkCommandBuffer)>& record);
 
-  uint32_t memoryType(uint32_t typeBits, VkMemoryPropertyFlags flags) const;
+  uint32_t memoryType(uint32_t typeBits, VkMemoryPropertyFlags flags,
+                      VkMemoryPropertyFlags preferred = 0) const;
 
   // What the validation layers have said so far; warnings and errors.
   std::vector<std::string> validationMessages() const;
@@ -64,7 +65,7 @@ private:
   std::vector<std::string> messages_;
 };
 
-// Host-visible, coherent, mapped.
+// Host-visible, coherent, mapped; what shaders read is device-local where there is such memory.
 class HostBuffer {
 public:
   HostBuffer(const Device& device, VkDeviceSize size, VkBufferUsageFlags usage);
