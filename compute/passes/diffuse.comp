@@ -7,6 +7,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define GROUP_SIDE PELLUCID_DIFFUSE_GROUP
+#include "passes/group_order.glsl"
 #include "passes/resolved.glsl"
 #ifdef NORMALS
 #include "passes/normal_image.glsl"
@@ -26,12 +27,19 @@ const ivec2 kTexels = ivec2(kTexelsX, PELLUCID_DIFFUSE_TEXELS_Y), kWindow = kTex
 const int kColumns = 4 * kTexels.x + 2 * kRing, kRows = 4 * kTexels.y * kColumns / kInvocations;
 
 #ifndef COARSE
-shared uvec2 vertical[4 * kTexels.y * kColumns];   // colors after the fine filter's vertical half
+// Colors after the fine filter's vertical half. Later, of a row of texels with edges, its pixels with a ring: colors and
+// materials, then depths and areas.
+shared uvec2 vertical[4 * kTexels.y * kColumns];
+const int kRowPixels = (4 + 2 * kRing) * kColumns;
 #endif
 shared uvec4 resolved[kWindow.x * kWindow.y];
 shared uvec4 shares[kWindow.x * kWindow.y];
+shared float spreads[kWindow.x * kWindow.y]; // inverseSpread of resolved[], in groups with edges
+// Columns of edges, row by row of texels: first those around whose pixels all is one plane, though their neighbors are not,
+// from the end on the others; their numbers, in 16 bits each; a bit for each row that has any.
 shared uint edges[kTexels.x * kTexels.y];
-shared uint edgeCount, anySurface;
+shared uint edgeCounts[kTexels.y];
+shared uint edgeRows, anySurface;
 
 #ifdef GATHER
 #include "passes/gathered.glsl"
@@ -91,6 +99,20 @@ void store(ivec2 pixel, vec3 color, float alpha) {
   imageStore(destinationImage, pixel, vec4(asStored(color), alpha));
 }
 
+// Of texels' shares: all under the texel's filter is one plane.
+bool isFull(uvec4 its) { return its.w >> 24 != 0u; }
+
+// What pixels of edges ask of a texel and is the same for all of them. Shares without the texel's density: that of the
+// pixel replaces it, and a plane's is 1.
+void prepareForEdges(int index) {
+  Texel t = unpackTexel(resolved[index]);
+  spreads[index] = inverseSpread(t.slope, texelSize(t.depth, 2u));
+  PixelShares s = unpackShares(shares[index].xyz);
+  vec3 density = unpackDensity(shares[index].w) * (1.0 / kDensityOne);
+  s.coarser /= max(s.coarser + density * (1.0 - s.coarser), vec3(1.0e-6));
+  shares[index].xyz = packShares(s);
+}
+
 #ifndef COARSE
 // The fine filter, its vertical half done.
 vec3 fineOf(int at) {
@@ -98,31 +120,58 @@ vec3 fineOf(int at) {
                  unpackColor(vertical[at + 1]), unpackColor(vertical[at + 2]));
 }
 
-// The fine filter of a pixel on a surface of that slope, and what of it lies on the surface.
-vec4 fineOfEdge(ivec2 pixel, uint material, float depth, vec2 slope, vec2 size) {
-  vec2 depthStep = slope * size;
+// `first`: of the row's pixels and their ring.
+void keepRow(ivec2 first) {
+  const int kEach = kRowPixels / kInvocations;
+  uvec2 colors[kEach], surfaces[kEach];
+  // All loads at once, so that their latencies overlap.
+  [[unroll]] for (int i = 0; i < kEach; ++i) {
+    int place = int(gl_LocalInvocationIndex) + i * kInvocations;
+    ivec2 pixel = first + ivec2(place % kColumns, place / kColumns), at = withinRect(pixel);
+    float area = 0.0;
 #ifdef NORMALS
-  float area = areaOf(vec2(pixel), normalAt(pixel));
+    area = areaOf(vec2(at), normalAt(at));
 #endif
+    colors[i] = packColor(sanitize(texelFetch(sourceImage, at, 0).rgb), at == pixel ? materialAt(at) : 0u);
+    surfaces[i] = floatBitsToUint(vec2(frontDistance(at), area));
+  }
+  [[unroll]] for (int i = 0; i < kEach; ++i) {
+    int place = int(gl_LocalInvocationIndex) + i * kInvocations;
+    vertical[place] = colors[i];
+    vertical[kRowPixels + place] = surfaces[i];
+  }
+}
+
+// The fine filter where all around the pixel is one plane.
+vec3 fineOfPlane(int place) {
+  vec3 fine = vec3(0.0);
+  for (int y = -2; y <= 2; ++y)
+    [[unroll]] for (int x = -2; x <= 2; ++x)
+      fine += fineWeight(x) * fineWeight(y) * unpackColor(vertical[place + y * kColumns + x]);
+  return fine;
+}
+
+// The fine filter of a pixel on a surface of that slope, and what of it lies on the surface. `place`: of the pixel in
+// what keepRow kept.
+vec4 fineOfEdge(int place, vec2 slope, vec2 size) {
+  uint material = vertical[place].y >> 16;
+  vec2 own = uintBitsToFloat(vertical[kRowPixels + place]), depthStep = slope * size;
   float spread2 = inverseSpread(slope, 2.0 * size);
   vec4 fine = vec4(0.0);
-  for (int y = -2; y <= 2; ++y) {
-    // A row's loads at once, so that their latencies overlap.
+  for (int y = -2; y <= 2; ++y)
+    // A row without a branch, so that latencies overlap.
     [[unroll]] for (int x = -2; x <= 2; ++x) {
-      ivec2 offset = ivec2(x, y), at = withinRect(pixel + offset);
-      uint theirs = materialAt(at);
-      float theirDepth = frontDistance(at);
-      vec3 theirColor = sanitize(texelFetch(sourceImage, at, 0).rgb);
-      float along = dot(depthStep, vec2(offset));
-      float w = sameSurface(theirDepth - depth - along, along, spread2, kPixelFalloff);
+      int at = place + y * kColumns + x;
+      uvec2 packed = vertical[at];
+      vec2 theirs = uintBitsToFloat(vertical[kRowPixels + at]);
+      float along = dot(depthStep, vec2(x, y));
+      float w = sameSurface(theirs.x - own.x - along, along, spread2, kPixelFalloff);
 #ifdef NORMALS
-      float theirArea = areaOf(vec2(at), normalAt(at));
-      if (area > 0.0 && theirArea > 0.0) w *= theirArea / area;
+      w *= own.y > 0.0 && theirs.y > 0.0 ? theirs.y / own.y : 1.0;
 #endif
-      bool counts = at == pixel + offset && theirs == material && theirDepth > 0.0;
-      fine += (counts ? w * fineWeight(x) * fineWeight(y) : 0.0) * vec4(theirColor, 1.0);
+      bool counts = packed.y >> 16 == material && theirs.x > 0.0;
+      fine += (counts ? w * fineWeight(x) * fineWeight(y) : 0.0) * vec4(unpackColor(packed), 1.0);
     }
-  }
   return fine;
 }
 #endif
@@ -130,11 +179,17 @@ vec4 fineOfEdge(ivec2 pixel, uint material, float depth, vec2 slope, vec2 size) 
 // A pixel of an edge, all weights by what lies on its surface. `local`: from the group's first pixel.
 void diffuseEdge(ivec2 firstTexel, ivec2 local) {
   ivec2 pixel = 4 * firstTexel + local;
+#ifdef COARSE
   uint material = insideRect(pixel) ? materialAt(pixel) : 0u;
+  float depth = frontDistance(withinRect(pixel));
+#else
+  int place = ((local.y & 3) + kRing) * kColumns + local.x + kRing;
+  uint material = vertical[place].y >> 16;
+  float depth = uintBitsToFloat(vertical[kRowPixels + place].x);
+#endif
   if (material == 0u) return;
   vec4 source = texelFetch(sourceImage, pixel, 0);
   vec3 color = sanitize(source.rgb);
-  float depth = frontDistance(pixel);
   if (depth > 0.0) {
     vec2 size = texelSize(depth, 0u), slope = vec2(0.0);
     int center = (local.y / 4 + 1) * kWindow.x + local.x / 4 + 1;
@@ -143,26 +198,26 @@ void diffuseEdge(ivec2 firstTexel, ivec2 local) {
     vec3 coarser = vec3(0.0), found = vec3(0.0);
     PixelShares share = PixelShares(vec3(0.0), vec3(0.0));
     float weights = 0.0;
-    for (int i = 0; i < 9; ++i) {
-      ivec2 offset = ivec2(i % 3, i / 3) - 1;
-      int index = center + offset.y * kWindow.x + offset.x;
-      Texel t = unpackTexel(resolved[index]);
-      if (t.mass == 0.0 || t.material != material) continue;
-      float along = dot(t.slope, (from - 4.0 * vec2(offset)) * size);
-      float spread2 = inverseSpread(t.slope, texelSize(t.depth, 2u));
-      float w = sameSurface(depth - t.depth - along, along, spread2, kPixelFalloff);
-      w *= (offset.x < 0 ? splineX.x : offset.x > 0 ? splineX.z : splineX.y) *
-           (offset.y < 0 ? splineY.x : offset.y > 0 ? splineY.z : splineY.y);
-      vec3 density = unpackDensity(shares[index].w) * (1.0 / kDensityOne);
-      coarser += w * density * t.color;
-      found += w * density;
-      w *= min(t.mass, 1.0);
-      slope += w * t.slope;
-      PixelShares s = unpackShares(shares[index].xyz);
-      // Without the texel's density: that of the pixel replaces it.
-      share.coarser += w * s.coarser / max(s.coarser + density * (1.0 - s.coarser), vec3(1.0e-6));
-      share.fine += w * s.fine;
-      weights += w;
+    for (int y = -1; y <= 1; ++y) {
+      float weightY = y < 0 ? splineY.x : y > 0 ? splineY.z : splineY.y;
+      // A row without a branch, so that latencies overlap.
+      [[unroll]] for (int x = -1; x <= 1; ++x) {
+        int index = center + y * kWindow.x + x;
+        Texel t = unpackTexel(resolved[index]);
+        float along = dot(t.slope, (from - 4.0 * vec2(x, y)) * size);
+        float w = sameSurface(depth - t.depth - along, along, spreads[index], kPixelFalloff);
+        w *= weightY * (x < 0 ? splineX.x : x > 0 ? splineX.z : splineX.y);
+        w = t.mass != 0.0 && t.material == material ? w : 0.0;
+        vec3 density = w * (1.0 / kDensityOne) * unpackDensity(shares[index].w);
+        coarser += density * t.color;
+        found += density;
+        w *= min(t.mass, 1.0);
+        slope += w * t.slope;
+        PixelShares s = unpackShares(shares[index].xyz);
+        share.coarser += w * s.coarser;
+        share.fine += w * s.fine;
+        weights += w;
+      }
     }
     float inverse = weights > 0.0 ? 1.0 / weights : 0.0;
     slope *= inverse;
@@ -170,10 +225,7 @@ void diffuseEdge(ivec2 firstTexel, ivec2 local) {
     vec3 fineShare = (1.0 - share.coarser) * share.fine * inverse;
     vec4 fine = vec4(0.0);
 #ifndef COARSE
-    // All pixels around are one plane where the texel is, though its neighbors are not.
-    bool full = shares[center].w >> 24 != 0u;
-    int at = local.y * kColumns + local.x + kRing;
-    fine = full ? vec4(fineOf(at), 1.0) : fineOfEdge(pixel, material, depth, slope, size);
+    fine = isFull(shares[center]) ? vec4(fineOfPlane(place), 1.0) : fineOfEdge(place, slope, size);
 #endif
     // Shares are weighted with what of their filters was found. The pixel itself counts in the first and the second,
     // so the divisor is 0 only where all of the share is the coarser one's and none of it is there.
@@ -190,14 +242,12 @@ void diffuseEdge(ivec2 firstTexel, ivec2 local) {
 
 void main() {
   int invocation = int(gl_LocalInvocationIndex);
-  // The rect's borders are edges, which take longest: first and last rows come in the middle, not at the end, where
-  // nothing else would run beside them.
-  uvec2 group = uvec2(gl_WorkGroupID.x, (gl_WorkGroupID.y + gl_NumWorkGroups.y / 2u) % gl_NumWorkGroups.y);
-  ivec2 firstTexel = (ivec2(frame.rect.xy) >> 2) + ivec2(group) * kTexels;
+  ivec2 firstTexel = (ivec2(frame.rect.xy) >> 2) + ivec2(bordersFirst()) * kTexels;
   // All loads before the first barrier, so that a group waits for memory once.
   uvec4 texel = uvec4(0u), texelShares = uvec4(0u);
+  ivec2 inWindow = ivec2(invocation % kWindow.x, invocation / kWindow.x);
   if (invocation < kWindow.x * kWindow.y) {
-    ivec2 at = firstTexel + ivec2(invocation % kWindow.x, invocation / kWindow.x) - 1;
+    ivec2 at = firstTexel + inWindow - 1;
     if (contains(levelRect(2u), at)) {
       texel = texelFetch(pyramidImage, resolvedPlace(at), 0);
       texelShares = texelFetch(pyramidImage, sharesPlace(at), 0);
@@ -217,12 +267,17 @@ void main() {
 #ifdef GATHER
   if (invocation == 0) someLight = 0u;
 #endif
-  if (invocation == 0) edgeCount = anySurface = 0u;
+  if (invocation < kTexels.y) edgeCounts[invocation] = 0u;
+  if (invocation == 0) anySurface = edgeRows = 0u;
   barrier();
   if (invocation < kWindow.x * kWindow.y) {
     resolved[invocation] = texel;
     shares[invocation] = texelShares;
-    if (texel.y >> 16 != 0u) anySurface = 1u; // whoever writes, writes this
+    if (texel.y >> 16 != 0u) {
+      anySurface = 1u; // whoever writes, writes this
+      if (!isPlane(texel) && contains(ivec4(0, 0, kTexels), inWindow - 1))
+        atomicOr(edgeRows, 1u << (inWindow.y - 1));
+    }
   }
 #ifdef GATHER
   uint light = hasPoint ? kindsOfLight(texel) : 0u;
@@ -233,7 +288,12 @@ void main() {
     if (invocation < kTexels.x * kTexels.y) {
       ivec2 local = ivec2(invocation % kTexels.x, invocation / kTexels.x);
       uvec4 its = resolved[(local.y + 1) * kWindow.x + local.x + 1];
-      if (its.y >> 16 != 0u && !isPlane(its)) edges[atomicAdd(edgeCount, 1u)] = uint(invocation);
+      if (its.y >> 16 != 0u && !isPlane(its)) {
+        bool full = isFull(shares[(local.y + 1) * kWindow.x + local.x + 1]);
+        uint before = atomicAdd(edgeCounts[local.y], full ? 1u : 0x10000u);
+        int place = full ? int(before & 0xFFFFu) : kTexels.x - 1 - int(before >> 16);
+        edges[kTexels.x * local.y + place] = uint(local.x);
+      }
     }
     uvec2 own[kRows]; // colors and alphas
     [[unroll]] for (int i = 0; i < kRows; ++i) {
@@ -244,6 +304,7 @@ void main() {
       vertical[(firstRow + i) * kColumns + column] = uvec2(packHalf2x16(sum.rg), packHalf2x16(vec2(sum.b, 0.0)));
 #endif
     }
+    if (edgeRows != 0u && invocation < kWindow.x * kWindow.y) prepareForEdges(invocation);
     barrier();
 
     int x = column - kRing;
@@ -285,9 +346,20 @@ void main() {
           imageStore(destinationImage, top + ivec2(0, i), vec4(asStored(result[i].rgb), result[i].a));
       }
     }
-    for (int i = invocation; i < int(16u * edgeCount); i += kInvocations) {
-      int edge = int(edges[i >> 4]), at = i & 15;
-      diffuseEdge(firstTexel, 4 * ivec2(edge % kTexels.x, edge / kTexels.x) + ivec2(at & 3, at >> 2));
+    // The same rows for all invocations.
+    for (uint rows = edgeRows; rows != 0u; rows &= rows - 1u) {
+      int row = findLSB(rows), full = int(edgeCounts[row] & 0xFFFFu), count = full + int(edgeCounts[row] >> 16);
+#ifndef COARSE
+      barrier(); // what was there has been read
+      keepRow(4 * firstTexel + ivec2(-kRing, 4 * row - kRing));
+      barrier();
+#endif
+      int edge = invocation >> 4, at = invocation & 15;
+      if (edge < count) {
+        int place = edge < full ? edge : kTexels.x - 1 - (edge - full);
+        int texelX = int(edges[kTexels.x * row + place]);
+        diffuseEdge(firstTexel, ivec2(4 * texelX + (at & 3), 4 * row + (at >> 2)));
+      }
     }
   }
 }

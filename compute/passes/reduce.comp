@@ -7,6 +7,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define GROUP_SIDE PELLUCID_REDUCE_GROUP
+#include "passes/group_order.glsl"
 #include "passes/pyramid.glsl"
 
 layout(set = 0, binding = PELLUCID_BINDING_PYRAMID) uniform utexture2D pyramidImage;
@@ -55,12 +56,11 @@ Source sourceAt(int index) {
 int surfaceOf(int first, int stride) {
   int surface = -1;
   float nearest = kNoDepth, most = 0.0;
-  for (int i = 0; i < 4; ++i) {
-    int index = tap(first, stride, 1 + (i & 1), 1 + (i >> 1));
-    Source t = sourceAt(index);
-    if (t.mass == 0.0 || t.depth >= nearest) continue;
-    nearest = t.depth;
-    surface = 5 + 4 * (i >> 1) + (i & 1);
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    Source t = sourceAt(tap(first, stride, 1 + (i & 1), 1 + (i >> 1)));
+    bool nearer = t.mass != 0.0 && t.depth < nearest;
+    nearest = nearer ? t.depth : nearest;
+    surface = nearer ? 5 + 4 * (i >> 1) + (i & 1) : surface;
   }
   if (surface >= 0) return surface;
   for (int i = 0; i < taps(); ++i) {
@@ -77,14 +77,14 @@ int surfaceOf(int first, int stride) {
 float depthStep(int first, int stride, Source center, ivec2 at, ivec2 direction) {
   float best = 0.0;
   bool found = false;
-  for (int side = -1; side <= 1; side += 2) {
-    ivec2 neighbor = at + side * direction;
-    if (any(lessThan(neighbor, ivec2(0))) || any(greaterThan(neighbor, ivec2(3)))) continue;
-    Source t = sourceAt(tap(first, stride, neighbor.x, neighbor.y));
-    if (t.mass == 0.0 || t.material != center.material) continue;
+  [[unroll]] for (int side = -1; side <= 1; side += 2) {
+    ivec2 neighbor = at + side * direction, within = clamp(neighbor, ivec2(0), ivec2(3));
+    Source t = sourceAt(tap(first, stride, within.x, within.y));
     float difference = float(side) * (t.depth - center.depth);
-    if (!found || abs(difference) < abs(best)) best = difference;
-    found = true;
+    bool counts = neighbor == within && t.mass != 0.0 && t.material == center.material;
+    bool better = counts && (!found || abs(difference) < abs(best));
+    best = better ? difference : best;
+    found = found || counts;
   }
   return best;
 }
@@ -185,10 +185,8 @@ bool isFlatAround(uvec4 bits, ivec2 at, uint level) {
 void main() {
   uint finer = pass.value.x;
   int invocation = int(gl_LocalInvocationIndex);
-  // The rect's borders are edges, which take longest: first and last rows come in the middle.
-  uvec2 group = uvec2(gl_WorkGroupID.x, (gl_WorkGroupID.y + gl_NumWorkGroups.y / 2u) % gl_NumWorkGroups.y);
   ivec4 finerRect = levelRect(finer), rect = levelRect(finer + 1u), lastRect = levelRect(finer + 2u);
-  ivec2 own = lastRect.xy + PELLUCID_REDUCE_TILE * ivec2(group), start = 2 * own - 1;
+  ivec2 own = lastRect.xy + PELLUCID_REDUCE_TILE * ivec2(bordersFirst()), start = 2 * own - 1;
   ivec2 mine = ivec2(invocation % kInput, invocation / kInput), firstLoad = 2 * start - 1 + mine;
   // How many rows of the level there are from its first one on, in this column and where the invocation has a row.
   bool loads = mine.y < kLoadRows && firstLoad.x >= finerRect.x && firstLoad.x < finerRect.z;

@@ -67,18 +67,23 @@ vec4 stretched(ivec2 texel, uint level, Texel own, Foreshortening f) {
   ivec4 rect = levelRect(level);
   // Three standard deviations.
   int reach = min(int(ceil(3.0 * sqrt(variance))), kReach);
-  for (int i = -reach; i <= reach; ++i) {
-    if (i == 0) continue;
+  for (int i = 1; i <= reach; ++i) {
+    float weight = exp(-0.5 * float(i * i) / variance);
+    weights += 2.0 * weight;
     int across = int(floor(gradient * float(i) + 0.5));
     ivec2 offset = alongX ? ivec2(i, across) : ivec2(across, i);
-    float w = exp(-0.5 * float(i * i) / variance);
-    weights += w;
-    if (!contains(rect, texel + offset)) continue;
-    Texel t = unpackTexel(texelFetch(pyramidImage, inAtlas(level, texel + offset), 0));
-    if (t.mass == 0.0 || t.material != own.material) continue;
-    float along = dot(own.slope, vec2(offset) * size);
-    w *= t.mass * sameSurface(t.depth - own.depth - along, along, spread2, kStretchFalloff);
-    sum += w * vec4(t.color, 1.0);
+    // Both sides at once, so that their latencies overlap.
+    uvec4 bits[2];
+    [[unroll]] for (int side = 0; side < 2; ++side) {
+      ivec2 at = texel + (1 - 2 * side) * offset;
+      bits[side] = contains(rect, at) ? texelFetch(pyramidImage, inAtlas(level, at), 0) : uvec4(0u);
+    }
+    [[unroll]] for (int side = 0; side < 2; ++side) {
+      Texel t = unpackTexel(bits[side]);
+      float along = dot(own.slope, vec2((1 - 2 * side) * offset) * size);
+      float w = weight * t.mass * sameSurface(t.depth - own.depth - along, along, spread2, kStretchFalloff);
+      sum += (t.mass != 0.0 && t.material == own.material ? w : 0.0) * vec4(t.color, 1.0);
+    }
   }
   return sum / weights;
 }
