@@ -27,7 +27,7 @@ Axis decades(const std::string& label, const std::vector<TimedError>& points, do
 }  // namespace
 
 std::shared_ptr<const BenchFrame> Site::frame(const Capture& capture, ReplaySettings settings) const {
-  settings.normalFormat = VK_FORMAT_R16G16B16A16_SFLOAT;  // no engine keeps floats
+  settings.normalFormat = VK_FORMAT_R8G8B8A8_SNORM;  // four bytes, as those of engines' G-buffers
   return std::make_shared<BenchFrame>(device, context, capture, material, settings);
 }
 

@@ -23,6 +23,8 @@ Texel texelOf(VkFormat format) {
     case VK_FORMAT_R32G32B32A32_UINT:
     case VK_FORMAT_R32G32B32A32_SFLOAT:
       return {4, 4};
+    case VK_FORMAT_R8G8B8A8_SNORM:
+      return {4, 1};
     case VK_FORMAT_R8_UINT:
       return {1, 1};
     default:
@@ -116,6 +118,11 @@ void GpuImage::upload(const Image& source) {
           c < source.channels ? source.data[i * static_cast<size_t>(source.channels) + static_cast<size_t>(c)]
                               : (c == 3 ? 1.0f : 0.0f);
   if (texel.bytes == 4) return transfer(full.data());
+  if (format_ == VK_FORMAT_R8G8B8A8_SNORM) {
+    std::vector<glm::uint8> bytes(full.size());
+    std::transform(full.begin(), full.end(), bytes.begin(), [](float v) { return glm::packSnorm1x8(v); });
+    return transfer(bytes.data());
+  }
   std::vector<glm::uint16> half(full.size());
   std::transform(full.begin(), full.end(), half.begin(), [](float v) { return glm::packHalf1x16(v); });
   transfer(half.data());
@@ -158,8 +165,10 @@ Image GpuImage::download() const {
                    [](glm::uint16 v) { return glm::unpackHalf1x16(v); });
   } else {
     const auto* bytes = static_cast<const std::uint8_t*>(staging.mapped());
-    std::transform(bytes, bytes + result.data.size(), result.data.begin(),
-                   [](std::uint8_t v) { return static_cast<float>(v); });
+    const bool isSigned = format_ == VK_FORMAT_R8G8B8A8_SNORM;
+    std::transform(bytes, bytes + result.data.size(), result.data.begin(), [=](std::uint8_t v) {
+      return isSigned ? glm::unpackSnorm1x8(v) : static_cast<float>(v);
+    });
   }
   return result;
 }
