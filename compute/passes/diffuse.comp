@@ -242,7 +242,7 @@ void diffuseEdge(ivec2 firstTexel, ivec2 local) {
 
 void main() {
   int invocation = int(gl_LocalInvocationIndex);
-  ivec2 firstTexel = (ivec2(frame.rect.xy) >> 2) + ivec2(bordersFirst(pass.value.z)) * kTexels;
+  ivec2 firstTexel = (ivec2(frame.rect.xy) >> 2) + ivec2(bordersFirst()) * kTexels;
   // All loads before the first barrier, so that a group waits for memory once.
   uvec4 texel = uvec4(0u), texelShares = uvec4(0u);
   ivec2 inWindow = ivec2(invocation % kWindow.x, invocation / kWindow.x);

@@ -3,14 +3,13 @@
 
 // Groups start in the order of their indices, so what takes longest comes first and ends while others still run: the
 // rect's borders, which are edges. Left and right columns, then the last row and the first.
-// `inverse`: of the number of columns, at least 3, without those two; bits of a float.
-uvec2 bordersFirst(uint inverse) {
+uvec2 bordersFirst() {
   uvec2 count = gl_NumWorkGroups.xy;
   uint inner = max(count.x, 3u) - 2u, columns = 2u * count.y, index = gl_WorkGroupID.y * count.x + gl_WorkGroupID.x;
   uint rest = max(index, columns) - columns;
-  // Not by a division, for which all loads would wait. Exact: the quotient errs by less than 1e-6 of some thousand rows,
-  // and the half keeps it 1 / (2 inner) away from the next row.
-  uint row = uint((float(rest) + 0.5) * uintBitsToFloat(inverse));
+  // By floats, because all loads wait for it and integers take several times as long. Exact: the quotient errs by less
+  // than 1e-6 of some thousand rows, and the half keeps it 1 / (2 inner) away from the next row.
+  uint row = uint((float(rest) + 0.5) / float(inner));
   uvec2 inRow = uvec2(1u + rest - row * inner, row == 0u ? count.y - 1u : row - 1u);
   uvec2 inColumn = uvec2((index & 1u) * (count.x - 1u), index >> 1);
   return count.x < 3u ? gl_WorkGroupID.xy : index < columns ? inColumn : inRow;

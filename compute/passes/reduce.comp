@@ -186,7 +186,7 @@ void main() {
   uint finer = pass.value.x;
   int invocation = int(gl_LocalInvocationIndex);
   ivec4 finerRect = levelRect(finer), rect = levelRect(finer + 1u), lastRect = levelRect(finer + 2u);
-  ivec2 own = lastRect.xy + PELLUCID_REDUCE_TILE * ivec2(bordersFirst(pass.value.z)), start = 2 * own - 1;
+  ivec2 own = lastRect.xy + PELLUCID_REDUCE_TILE * ivec2(bordersFirst()), start = 2 * own - 1;
   ivec2 mine = ivec2(invocation % kInput, invocation / kInput), firstLoad = 2 * start - 1 + mine;
   // How many rows of the level there are from its first one on, in this column and where the invocation has a row.
   bool loads = mine.y < kLoadRows && firstLoad.x >= finerRect.x && firstLoad.x < finerRect.z;

@@ -217,8 +217,8 @@ struct KernelConstants {
 // column of the summaries and 1 to add to what is there, samples.
 // gather share: pixels a side of a cell.
 // add: unused, unused, 1 if this is the last dispatch.
-// reduce: finer level, 16, see bordersFirst. resolve: coarsest level.
-// diffuse: unused, unused, see bordersFirst, 1 if this is the last dispatch.
+// reduce: finer level, 16. resolve: coarsest level.
+// diffuse: unused, unused, unused, 1 if this is the last dispatch.
 struct PassConstants {
   uvec4 value;
 };

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
 
 #include "frame.h"
 #include "pyramid.h"
@@ -72,11 +71,6 @@ struct Builder {
   // Of PELLUCID_TILE columns, from even pixels on.
   void tiles(PellucidDispatch* d, uint32_t rows = PELLUCID_TILE) const {
     groups(d, rect.width + (rect.x & 1), rect.height + (rect.y & 1), PELLUCID_TILE, rows);
-  }
-
-  // What compute/passes/group_order.glsl divides by, for a dispatch whose groups are known.
-  static void bordersFirst(PellucidDispatch* d) {
-    d->pushConstants[2] = std::bit_cast<uint32_t>(1.0f / static_cast<float>(std::max(d->groups[0], 3u) - 2));
   }
 
   static void bind(PellucidDispatch* d, uint32_t binding, VkDescriptorType type, uint32_t resource,
@@ -344,7 +338,6 @@ struct Builder {
     PellucidDispatch* d = dispatch("reduce", PELLUCID_PIPELINE_REDUCE_LEVELS);
     if (!d) return false;
     levelGroups(d, finer + 2, PELLUCID_REDUCE_TILE);
-    bordersFirst(d);
     d->pushConstants[0] = finer;
     d->pushConstants[1] = 16;  // texels under a texel
     constants(d, PELLUCID_BINDING_FRAME, layout.frame);
@@ -395,7 +388,6 @@ struct Builder {
     d->groups[0] =
         across(place.rect.width, coarse ? PELLUCID_DIFFUSE_COARSE_TEXELS_X : PELLUCID_DIFFUSE_TEXELS_X);
     d->groups[1] = across(place.rect.height, PELLUCID_DIFFUSE_TEXELS_Y);
-    bordersFirst(d);
     d->pushConstants[3] = destination == PELLUCID_RESOURCE_OUTPUT;
     common(d, source, destination);
     // Of edges; the plan does not know how many there are.
