@@ -53,6 +53,9 @@ std::string measured(const Json& results) {
   const Row rows[] = {
       {"whole frame", module, "whole frame"},
       {"whole frame, a quarter covered", "module, 25 % covered", "whole frame"},
+      {"whole frame, balls of 400 pixels on a third of it", "edges, balls of 400 pixels", "whole frame"},
+      {"balls of 100 pixels", "edges, balls of 100 pixels", "whole frame"},
+      {"balls of 25 pixels", "edges, balls of 25 pixels", "whole frame"},
       {"fused translucency dispatch alone", "fused dispatch", "1 lights, 1 maps"},
       {"diffusion alone, quality 0", diffusion, "Pellucid, quality 0"},
       {"quality 2", diffusion, "Pellucid, quality 2"},

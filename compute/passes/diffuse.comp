@@ -105,13 +105,19 @@ bool isFull(uvec4 its) { return its.w >> 24 != 0u; }
 // What pixels of edges ask of a texel and is the same for all of them. Shares without the texel's density: that of the
 // pixel replaces it, and a plane's is 1.
 void prepareForEdges(int index) {
-  Texel t = unpackTexel(resolved[index]);
+  uvec4 bits = resolved[index];
+  Texel t = unpackTexel(bits);
   spreads[index] = inverseSpread(t.slope, texelSize(t.depth, 2u));
+  if (isPlane(bits)) return;
   PixelShares s = unpackShares(shares[index].xyz);
   vec3 density = unpackDensity(shares[index].w) * (1.0 / kDensityOne);
   s.coarser /= max(s.coarser + density * (1.0 - s.coarser), vec3(1.0e-6));
+  // Less 1 from a half on: halves are too coarse near 1 for what is left of it.
+  s.coarser = mix(s.coarser, min(s.coarser - 1.0, vec3(-6.0e-8)), greaterThan(s.coarser, vec3(0.5)));
   shares[index].xyz = packShares(s);
 }
+
+vec3 coarserOfEdge(vec3 coarser) { return mix(coarser, coarser + 1.0, lessThan(coarser, vec3(0.0))); }
 
 #ifndef COARSE
 // The fine filter, its vertical half done.
@@ -214,7 +220,7 @@ void diffuseEdge(ivec2 firstTexel, ivec2 local) {
         w *= min(t.mass, 1.0);
         slope += w * t.slope;
         PixelShares s = unpackShares(shares[index].xyz);
-        share.coarser += w * s.coarser;
+        share.coarser += w * coarserOfEdge(s.coarser);
         share.fine += w * s.fine;
         weights += w;
       }
