@@ -166,9 +166,8 @@ Image GpuImage::download() const {
   } else {
     const auto* bytes = static_cast<const std::uint8_t*>(staging.mapped());
     const bool isSigned = format_ == VK_FORMAT_R8G8B8A8_SNORM;
-    std::transform(bytes, bytes + result.data.size(), result.data.begin(), [=](std::uint8_t v) {
-      return isSigned ? glm::unpackSnorm1x8(v) : static_cast<float>(v);
-    });
+    std::transform(bytes, bytes + result.data.size(), result.data.begin(),
+                   [=](std::uint8_t v) { return isSigned ? glm::unpackSnorm1x8(v) : static_cast<float>(v); });
   }
   return result;
 }

@@ -35,8 +35,11 @@ TEST_P(Sizes, ConstantIrradianceStays) {
   check(width - 1, height - 1);
 }
 
+// 121 to 500: three columns of groups and more, whose order is not that of their indices; all rows are looked
+// at.
 INSTANTIATE_TEST_SUITE_P(Replay, Sizes,
                          testing::Values(std::pair(1, 1), std::pair(3, 5), std::pair(64, 64),
+                                         std::pair(121, 17), std::pair(244, 50), std::pair(500, 33),
                                          std::pair(1921, 1081)));
 
 TEST_F(Replay, SlabTransmitsTOfItsThickness) {
