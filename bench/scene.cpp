@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include "common/error.h"
@@ -73,12 +74,12 @@ Capture litFromTheFront(Capture slab) {
 
 Capture balls(int width, int height, double radius, double pixel) {
   Capture c = slab(width, height, 1, pixel);
-  // The slab lies three radii behind the nearest a ball may be, in front of a camera plane with room for any.
+  // Balls end half a radius before the slab and 50 mm and more behind the near plane.
   const double mm = radius * pixel, far = 100 + 4 * mm, slabDepth = 50 + 3 * mm,
                center = slabDepth - 1.5 * mm;
   c.clipFromView[10] = -1 / far;
-  const double spacing =
-      radius * std::sqrt(3 * 3.14159265358979);  // of a square grid, a third of which they cover
+  // Of a square grid, a third of which they cover.
+  const double spacing = radius * std::sqrt(3 * std::numbers::pi);
   const auto across = [&](int i) { return std::remainder(i + 0.5 - spacing / 2, spacing) / radius; };
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {

@@ -114,9 +114,14 @@ void prepareForEdges(int index) {
   s.coarser /= max(s.coarser + density * (1.0 - s.coarser), vec3(1.0e-6));
   // Less 1 from a half on: halves are too coarse near 1 for what is left of it.
   s.coarser = mix(s.coarser, min(s.coarser - 1.0, vec3(-6.0e-8)), greaterThan(s.coarser, vec3(0.5)));
-  shares[index].xyz = packShares(s);
+  uvec3 packed = packShares(s);
+  // One by one: others read w meanwhile, which a store of a part of a vector may store, too.
+  shares[index].x = packed.x;
+  shares[index].y = packed.y;
+  shares[index].z = packed.z;
 }
 
+// What prepareForEdges did not take from it.
 vec3 coarserOfEdge(vec3 coarser) { return mix(coarser, coarser + 1.0, lessThan(coarser, vec3(0.0))); }
 
 #ifndef COARSE
