@@ -200,7 +200,12 @@ void diffuseEdge(ivec2 firstTexel, ivec2 local) {
 #endif
   if (material == 0u) return;
   vec4 source = texelFetch(sourceImage, pixel, 0);
-  vec3 color = sanitize(source.rgb);
+#if defined(HALF) && !defined(COARSE)
+  vec3 own = unpackColor(vertical[place]); // the same, in fewer registers
+#else
+  vec3 own = sanitize(source.rgb);
+#endif
+  vec3 color = own;
   if (depth > 0.0) {
     vec2 size = texelSize(depth, 0u), slope = vec2(0.0);
     int center = (local.y / 4 + 1) * kWindow.x + local.x / 4 + 1;
@@ -212,7 +217,12 @@ void diffuseEdge(ivec2 firstTexel, ivec2 local) {
     for (int y = -1; y <= 1; ++y) {
       float weightY = y < 0 ? splineY.x : y > 0 ? splineY.z : splineY.y;
       // A row without a branch, so that latencies overlap.
+#ifdef GATHER
+      // Compilers would unroll over a number that they know, which takes more registers than four groups have.
+      for (int x = -1; x <= int(pass.value.y); ++x) {
+#else
       [[unroll]] for (int x = -1; x <= 1; ++x) {
+#endif
         int index = center + y * kWindow.x + x;
         Texel t = unpackTexel(resolved[index]);
         float along = dot(t.slope, (from - 4.0 * vec2(x, y)) * size);
@@ -234,16 +244,16 @@ void diffuseEdge(ivec2 firstTexel, ivec2 local) {
     slope *= inverse;
     share.coarser *= inverse;
     vec3 fineShare = (1.0 - share.coarser) * share.fine * inverse;
-    vec4 fine = vec4(0.0);
-#ifndef COARSE
-    fine = isFull(shares[center]) ? vec4(fineOfPlane(place), 1.0) : fineOfEdge(place, slope, size);
-#endif
     // Shares are weighted with what of their filters was found. The pixel itself counts in the first and the second,
     // so the divisor is 0 only where all of the share is the coarser one's and none of it is there.
-    vec3 own = 1.0 - share.coarser - fineShare;
-    vec3 sum = own * color + fineShare * fine.rgb + share.coarser * coarser;
-    vec3 divisor = own + fineShare * fine.a + share.coarser * found;
-    color = mix(color, max(sum, vec3(0.0)) / max(divisor, vec3(1.0e-6)), greaterThan(divisor, vec3(1.0e-6)));
+    vec3 ownShare = 1.0 - share.coarser - fineShare;
+    vec3 sum = ownShare * own + share.coarser * coarser, divisor = ownShare + share.coarser * found;
+#ifndef COARSE
+    vec4 fine = isFull(shares[center]) ? vec4(fineOfPlane(place), 1.0) : fineOfEdge(place, slope, size);
+    sum += fineShare * fine.rgb;
+    divisor += fineShare * fine.a;
+#endif
+    color = mix(own, max(sum, vec3(0.0)) / max(divisor, vec3(1.0e-6)), greaterThan(divisor, vec3(1.0e-6)));
 #ifdef GATHER
     if (someLight != 0u) color = withGathered(color, pixel, PELLUCID_DIFFUSE_CELL, depth, material);
 #endif

@@ -243,7 +243,7 @@ struct Builder {
     const uint32_t half = quads ? PELLUCID_PIPELINE_DIRECTIONAL_QUADS_16F : PELLUCID_PIPELINE_DIRECTIONAL_16F;
     PellucidDispatch* d = dispatch("translucency", half + (wide() ? 1 : 0));  // the 32F variant follows
     if (!d) return false;
-    tiles(d, quads ? PELLUCID_TILE : PELLUCID_DIRECTIONAL_ROWS);
+    tiles(d, PELLUCID_DIRECTIONAL_ROWS);
     fused(d, group, source, destination, quads);
     constants(d, PELLUCID_BINDING_LIGHTS,
               {layout.directional.offset + group.index * kDirectionalWindow, kDirectionalWindow});
@@ -388,6 +388,7 @@ struct Builder {
     d->groups[0] =
         across(place.rect.width, coarse ? PELLUCID_DIFFUSE_COARSE_TEXELS_X : PELLUCID_DIFFUSE_TEXELS_X);
     d->groups[1] = across(place.rect.height, PELLUCID_DIFFUSE_TEXELS_Y);
+    d->pushConstants[1] = 1;  // texels to each side of an edge's that its pixels look at
     d->pushConstants[3] = destination == PELLUCID_RESOURCE_OUTPUT;
     common(d, source, destination);
     // Of edges; the plan does not know how many there are.
