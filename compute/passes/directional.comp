@@ -8,10 +8,10 @@
 #extension GL_EXT_spirv_intrinsics : require
 #extension GL_GOOGLE_include_directive : require
 
-#define TILE_ROWS PELLUCID_DIRECTIONAL_ROWS
 #ifdef QUADS
 #include "passes/quad_tile.glsl"
 #else
+#define TILE_ROWS PELLUCID_DIRECTIONAL_ROWS
 #include "passes/tile.glsl"
 #endif
 #include "lib/saturate.glsl"

@@ -6,19 +6,19 @@
 #include "passes/normal_image.glsl"
 #include "passes/pyramid.glsl"
 
-const ivec2 kTile = ivec2(TILE_COLUMNS, TILE_ROWS), kQuads = kTile / 2;
-shared uvec2 tileColors[kTile.x * kTile.y]; // and material
-shared float tileDepths[kTile.x * kTile.y];
+const int kTile = PELLUCID_TILE, kQuads = kTile / 2; // a side
+shared uvec2 tileColors[kTile * kTile]; // and material
+shared float tileDepths[kTile * kTile];
 
 // `color`: of halves.
 void keepPixel(ivec2 inTile, vec3 color, float depth, uint material) {
-  tileColors[inTile.y * kTile.x + inTile.x] = packHalves(color, material);
-  tileDepths[inTile.y * kTile.x + inTile.x] = depth;
+  tileColors[inTile.y * kTile + inTile.x] = packHalves(color, material);
+  tileDepths[inTile.y * kTile + inTile.x] = depth;
 }
 
 // The first invocations do a quad each.
-bool hasQuad() { return gl_LocalInvocationIndex < uint(kQuads.x * kQuads.y); }
-ivec2 quadInTile() { return ivec2(gl_LocalInvocationIndex % uint(kQuads.x), gl_LocalInvocationIndex / uint(kQuads.x)); }
+bool hasQuad() { return gl_LocalInvocationIndex < uint(kQuads * kQuads); }
+ivec2 quadInTile() { return ivec2(gl_LocalInvocationIndex % uint(kQuads), gl_LocalInvocationIndex / uint(kQuads)); }
 
 // The pixel whose normal stands for a quad that is one surface: any of the four, by turns.
 ivec2 pixelOfQuad(ivec2 quad) { return 2 * quad + (quad.yx & 1); }
@@ -40,7 +40,7 @@ void writeQuad(vec3 normal) {
   float depth[4];
   uvec2 packed[4];
   for (int i = 0; i < 4; ++i) {
-    int at = (2 * local.y + (i >> 1)) * kTile.x + 2 * local.x + (i & 1);
+    int at = (2 * local.y + (i >> 1)) * kTile + 2 * local.x + (i & 1);
     packed[i] = tileColors[at];
     depth[i] = tileDepths[at];
   }

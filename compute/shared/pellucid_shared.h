@@ -17,7 +17,7 @@ using glm::vec4;
 #define PELLUCID_GROUP_X 8
 #define PELLUCID_GROUP_Y 8
 #define PELLUCID_TILE 16 // a side, pixels that a group does whose invocations do two each
-#define PELLUCID_DIRECTIONAL_ROWS 8 // of a tile of the directional pass
+#define PELLUCID_DIRECTIONAL_ROWS 8 // of a tile of the directional pass that makes no quads
 #define PELLUCID_DIFFUSE_GROUP 16 // a side
 #define PELLUCID_DIFFUSE_TEXELS_X 15 // of level 2, 4 x 4 pixels each, that a group of the diffusion does
 #define PELLUCID_DIFFUSE_COARSE_TEXELS_X 16 // without the fine filter

@@ -243,7 +243,7 @@ struct Builder {
     const uint32_t half = quads ? PELLUCID_PIPELINE_DIRECTIONAL_QUADS_16F : PELLUCID_PIPELINE_DIRECTIONAL_16F;
     PellucidDispatch* d = dispatch("translucency", half + (wide() ? 1 : 0));  // the 32F variant follows
     if (!d) return false;
-    tiles(d, PELLUCID_DIRECTIONAL_ROWS);
+    tiles(d, quads ? PELLUCID_TILE : PELLUCID_DIRECTIONAL_ROWS);
     fused(d, group, source, destination, quads);
     constants(d, PELLUCID_BINDING_LIGHTS,
               {layout.directional.offset + group.index * kDirectionalWindow, kDirectionalWindow});
