@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstring>
 #include <functional>
@@ -9,6 +10,7 @@
 #include <thread>
 
 #include "frame_fixture.h"
+#include "shaders.h"
 #include "shared/pellucid_shared.h"
 
 namespace {
@@ -216,6 +218,34 @@ TEST(Plan, DirectionalVariantNeedsTheCommonCase) {
     f.lights[1].type = PELLUCID_LIGHT_POINT;
     f.lights[1].shadowMapCount = 0;
   }));
+}
+
+// Of a shader's workgroups, as its SPIR-V states it: columns, rows.
+std::array<uint32_t, 2> workgroupOf(uint32_t pipeline) {
+  const pellucid::Shader shader = pellucid::shaderOf(pipeline);
+  constexpr size_t kHeaderWords = 5;
+  constexpr uint32_t kOpExecutionMode = 16, kLocalSize = 17;
+  for (size_t i = kHeaderWords; i < shader.wordCount; i += shader.words[i] >> 16)
+    if ((shader.words[i] & 0xFFFF) == kOpExecutionMode && shader.words[i + 2] == kLocalSize)
+      return {shader.words[i + 3], shader.words[i + 4]};
+  return {};
+}
+
+// Tiles that overlap would be done twice, and no pixel would say so.
+TEST(Plan, TilesAreThoseOfTheShader) {
+  for (const bool directional : {false, true})
+    for (const bool diffuses : {false, true}) {
+      Frame f;
+      if (directional) f.frame.normal = Frame::view();
+      if (!diffuses) f.frame.features = PELLUCID_FEATURE_TRANSLUCENCY;
+      const PellucidPlan plan = f.plan();
+      const PellucidDispatch& d = plan.dispatches[0];
+      const auto [columns, rows] = workgroupOf(d.pipeline);
+      ASSERT_GT(columns * rows, 0u);
+      // An invocation does two pixels below each other.
+      EXPECT_EQ(d.groups[0], (f.frame.imageExtent[0] + columns - 1) / columns) << d.pipeline;
+      EXPECT_EQ(d.groups[1], (f.frame.imageExtent[1] + 2 * rows - 1) / (2 * rows)) << d.pipeline;
+    }
 }
 
 // What the directional records read is a uniform buffer.
