@@ -1,7 +1,6 @@
 #include "floor.h"
 
 #include <algorithm>
-#include <optional>
 
 #include "common/error.h"
 #include "compute_pass.h"
@@ -21,7 +20,7 @@ constexpr Shape kShapes[] = {{8, 8, 1}, {16, 16, 1}, {32, 8, 1}, {8, 8, 2}, {16,
 
 }  // namespace
 
-Floor measureFloor(harness::Device& device, int width, int height, int repeat) {
+std::vector<Floor> measureFloors(harness::Device& device, int width, int height, int repeat) {
   GpuImage front(device, width, height, VK_FORMAT_R32_SFLOAT);
   GpuImage back(device, width, height, VK_FORMAT_R32_SFLOAT);
   GpuImage irradiance(device, width, height, VK_FORMAT_R16G16B16A16_SFLOAT);
@@ -30,7 +29,7 @@ Floor measureFloor(harness::Device& device, int width, int height, int repeat) {
   back.upload(Image(width, height, 1, 3.0f));
   irradiance.upload(Image(width, height, 4, 0.5f));
   constexpr VkDescriptorType kRead = VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
-  std::optional<Floor> fastest;
+  std::vector<Floor> floors;
   for (const Shape& s : kShapes) {
     const ComputePass pass(
         device, kFloor, {kRead, kRead, kRead, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
@@ -44,9 +43,11 @@ Floor measureFloor(harness::Device& device, int width, int height, int repeat) {
     const Image written = result.download();
     if (!std::all_of(written.data.begin(), written.data.end(), [](float v) { return v == 2.5f; }))
       throw harness::DeviceError("the floor pass (" + shape + ") wrote something else than its inputs say");
-    if (!fastest || time.median < fastest->time.median) fastest = Floor{time, shape};
+    floors.push_back({time, shape});
   }
-  return *fastest;
+  std::stable_sort(floors.begin(), floors.end(),
+                   [](const Floor& a, const Floor& b) { return a.time.median < b.time.median; });
+  return floors;
 }
 
 }  // namespace pellucid::bench

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "common/gpu_image.h"
 #include "measure.h"
@@ -9,12 +10,12 @@
 namespace pellucid::bench {
 
 struct Floor {
-  Time time;          // of the fastest shape
+  Time time;
   std::string shape;  // "16x16, 2 pixels a thread"
 };
 
-// The fastest of several workgroup shapes. Throws DeviceError when a pass wrote something else than its
-// inputs say: a floor that skips work would be no floor.
-Floor measureFloor(harness::Device& device, int width, int height, int repeat);
+// Of several workgroup shapes, the fastest, which all ratios are to, first. Throws DeviceError when a pass wrote
+// something else than its inputs say: a floor that skips work would be no floor.
+std::vector<Floor> measureFloors(harness::Device& device, int width, int height, int repeat);
 
 }  // namespace pellucid::bench

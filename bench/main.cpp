@@ -197,10 +197,10 @@ void bench(const Options& options) {
   const auto [width, height] = options.size;
   Device device({options.device, false});
   const Context context(device);
-  const Floor floor = measureFloor(device, width, height, options.repeat);
+  const std::vector<Floor> floors = measureFloors(device, width, height, options.repeat);
 
   std::FILE* table = options.json == "-" ? stderr : stdout;
-  Report report(table, floor.time.median);
+  Report report(table, floors.front().time.median);
   const PellucidMaterial material = benchMaterial();
   const Site site{device, context, material, pixelSizeFor(material, options.radius)};
   const Bench b{options, site, report};
@@ -208,7 +208,7 @@ void bench(const Options& options) {
   std::fprintf(table, "%s, commit %s, %d x %d, median of %d, radius %g pixels\n",
                device.description().c_str(), PELLUCID_COMMIT, width, height, options.repeat, options.radius);
   report.section("floor");
-  report.add({floor.shape, 1, 0, 24, {}}, floor.time);
+  for (const Floor& floor : floors) report.add({floor.shape, 1, 0, 24, {}}, floor.time);
   const auto wanted = [&](const char* name) { return options.tables.count(name) > 0; };
   if (wanted("module")) modulePlans(b);
   if (wanted("edges")) edges(b);
@@ -231,7 +231,7 @@ void bench(const Options& options) {
                          {"height", height},
                          {"repeat", options.repeat},
                          {"radius_pixels", options.radius},
-                         {"floor_us", floor.time.median},
+                         {"floor_us", floors.front().time.median},
                          {"results", report.rows()}};
   json["results"].insert(json["results"].end(), rows.begin(), rows.end());
   if (options.ratios) {

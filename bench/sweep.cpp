@@ -38,7 +38,7 @@ nlohmann::json sweep(const Site& site, const SweepOptions& options, int repeat, 
   std::vector<double> floors;
   std::fprintf(table, "\n%-32s %7s %9s", "sweep: us (x floor)", "radius", "error");
   for (const Size& size : sizes) {
-    floors.push_back(measureFloor(site.device, size.width, size.height, repeat).time.median);
+    floors.push_back(measureFloors(site.device, size.width, size.height, repeat).front().time.median);
     std::fprintf(table, " %18s", size.text().c_str());
   }
   std::fprintf(table, "\n");
