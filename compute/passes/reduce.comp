@@ -1,6 +1,7 @@
 // The two levels of the diffusion pyramid after level pass.value.x. A texel takes the nearest of the four surfaces under
 // it and averages those of 4 x 4 texels that lie on it by 3 5 5 3 in each direction. A group makes 7 x 7 texels of the
-// second level and, before them, the 16 x 16 of the first that they need: one an invocation.
+// second level and, before them, the 16 x 16 of the first that they need: one an invocation. Beside levels 2 and 3 some
+// groups make 4 and 5, which need not wait for them: averages of 4 x 4 texels of level 1 stand for level 3.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -34,6 +35,8 @@ const float kPlaneResidual = 0.01;
 
 // What the bits of texels of one plane have in common: the material, and that they are planes.
 const uint kSamePlane = 0xFF000000u | kPlane;
+
+#include "passes/boxes.glsl"
 
 // Even columns of a row come before the odd ones: reads of every other column meet no bank twice.
 int slot(ivec2 at, int width) { return at.y * width + (at.x >> 1) + (at.x & 1) * (width >> 1); }
@@ -183,35 +186,54 @@ bool isFlatAround(uvec4 bits, ivec2 at, uint level) {
 }
 
 void main() {
-  uint finer = pass.value.x;
   int invocation = int(gl_LocalInvocationIndex);
-  ivec4 finerRect = levelRect(finer), rect = levelRect(finer + 1u), lastRect = levelRect(finer + 2u);
-  ivec2 own = lastRect.xy + PELLUCID_REDUCE_TILE * ivec2(bordersFirst()), start = 2 * own - 1;
+  // Groups of boxes come after some others, because those that start a dispatch take longest.
+  uint before = pass.value.w >> 16, boxes = pass.value.z >> 16, index = groupIndex(), box = index - before;
+  bool ofBoxes = box < boxes; // before them the difference is huge
+  uint finer = ofBoxes ? 3u : pass.value.x;
+  uvec2 place;
+  if (ofBoxes) {
+    uint columns = pass.value.z & 0xFFFFu;
+    place = uvec2(box % columns, box / columns);
+  } else {
+    place = bordersFirst(uvec2(gl_NumWorkGroups.x, pass.value.w & 0xFFFFu), index < before ? index : index - boxes);
+  }
+  ivec4 rect = levelRect(finer + 1u), lastRect = levelRect(finer + 2u);
+  ivec2 own = lastRect.xy + PELLUCID_REDUCE_TILE * ivec2(place), start = 2 * own - 1;
   ivec2 mine = ivec2(invocation % kInput, invocation / kInput), firstLoad = 2 * start - 1 + mine;
-  // How many rows of the level there are from its first one on, in this column and where the invocation has a row.
-  bool loads = mine.y < kLoadRows && firstLoad.x >= finerRect.x && firstLoad.x < finerRect.z;
-  uint rows = loads ? uint(finerRect.w - finerRect.y) : 0u, row = uint(firstLoad.y - finerRect.y);
-  // All loads before the first is used, so that their latencies overlap.
-  uvec4 loaded[kLoads];
-  [[unroll]] for (int j = 0; j < kLoads; ++j)
-    loaded[j] = row + uint(j * kLoadRows) < rows
-                    ? texelFetch(pyramidImage, inAtlas(finer, firstLoad + ivec2(0, j * kLoadRows)), 0)
-                    : uvec4(0u);
-  int place = slot(mine, kInput);
-  [[unroll]] for (int j = 0; j < kLoads; ++j)
-    if (mine.y < kLoadRows && mine.y + j * kLoadRows < kInput) {
-      colors[place + j * kLoadRows * kInput] = loaded[j].xy;
-      depths[place + j * kLoadRows * kInput] = uintBitsToFloat(loaded[j].z);
-    }
+  int slotOfMine = slot(mine, kInput);
+  if (ofBoxes) {
+    for (int y = 0; y < kLoads * kLoadRows; y += kLoadRows)
+      if (mine.y < kLoadRows && mine.y + y < kInput) {
+        Box box = boxOf(firstLoad + ivec2(0, y));
+        colors[slotOfMine + y * kInput] = box.bits;
+        depths[slotOfMine + y * kInput] = box.depth;
+      }
+  } else {
+    ivec4 finerRect = levelRect(finer);
+    // How many rows of the level there are from its first one on, in this column and where the invocation has a row.
+    bool loads = mine.y < kLoadRows && firstLoad.x >= finerRect.x && firstLoad.x < finerRect.z;
+    uint rows = loads ? uint(finerRect.w - finerRect.y) : 0u, row = uint(firstLoad.y - finerRect.y);
+    // All loads before the first is used, so that their latencies overlap.
+    uvec4 loaded[kLoads];
+    [[unroll]] for (int j = 0; j < kLoads; ++j)
+      loaded[j] = row + uint(j * kLoadRows) < rows
+                      ? texelFetch(pyramidImage, inAtlas(finer, firstLoad + ivec2(0, j * kLoadRows)), 0)
+                      : uvec4(0u);
+    [[unroll]] for (int j = 0; j < kLoads; ++j)
+      if (mine.y < kLoadRows && mine.y + j * kLoadRows < kInput) {
+        colors[slotOfMine + j * kLoadRows * kInput] = loaded[j].xy;
+        depths[slotOfMine + j * kLoadRows * kInput] = uintBitsToFloat(loaded[j].z);
+      }
+  }
   barrier();
   ivec2 at = ivec2(gl_LocalInvocationID.xy), texel = start + at;
   bool inside = contains(rect, texel);
   uvec4 bits = reduced(finer, texel, 2 * at.y * kInput + at.x, kInput);
   if (!inside) bits = uvec4(0u);
   barrier();
-  int index = slot(at, kFirst);
-  colors[index] = bits.xy;
-  depths[index] = uintBitsToFloat(bits.z);
+  colors[slot(at, kFirst)] = bits.xy;
+  depths[slot(at, kFirst)] = uintBitsToFloat(bits.z);
   barrier();
   // The outer ones are the groups' beside.
   if (inside && all(greaterThan(at, ivec2(0))) && all(lessThan(at, ivec2(kFirst - 1)))) {

@@ -12,7 +12,7 @@ namespace {
 enum Element { kFine, kLevel2, kLevel3, kCoarser, kElements };
 constexpr int kSamples = 49;
 constexpr double kStep = 0.125;
-constexpr double kFirst[kElements] = {-3, -4, -4, -4};
+constexpr double kFirst[kElements] = {-3, -4, -4, -4.03};
 constexpr double kEnergyFrom[kElements][kSamples] = {
     {0,      0,      0.0006638, 0.003575, 0.009764, 0.02009, 0.03606, 0.05961, 0.09098, 0.1304,
      0.175,  0.2248, 0.2839,    0.3504,   0.4224,   0.4982,  0.5799,  0.6655,  0.7515,  0.8292,

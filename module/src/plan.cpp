@@ -143,8 +143,10 @@ bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan
       forEachLightGroup(frame, [&](const LightGroup& group) {
         if (group.gathered > 0) gathered = group;
       });
+    // Levels 4 and 5 beside 2 and 3 save a dispatch that leaves most of a device free, which points of the gather can use.
+    const bool boxes = !stages.overlaps && coarsest >= kFirstLevel + 4;
     // Records, points and sharing, each beside one of the last three dispatches before the one that adds
-    // points: the coarser reductions leave most of a device free.
+    // points.
     const int32_t reductions = static_cast<int32_t>(coarsest + 1 - kFirstLevel) / 2;
     int32_t step = 1 - reductions;
     const auto alongside = [&] {
@@ -160,7 +162,9 @@ bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan
     alongside();
     source = copy;
     for (uint32_t finer = kFirstLevel; finer < coarsest; finer += 2) {
-      fits = fits && b.reduce(finer);
+      const bool withBoxes = boxes && finer == kFirstLevel;
+      fits = fits && b.reduce(finer, withBoxes);
+      if (withBoxes) finer += 2;
       alongside();
     }
     fits = fits && b.resolve(coarsest);

@@ -61,27 +61,28 @@ TEST(Quality, OrthographicRadiusNeedsNoDistance) {
 }
 
 // The widest Gaussian of the fixture's material has a deviation of 1.41 mm.
-TEST(Quality, SmallRadiiDropReductions) {
+TEST(Quality, SmallRadiiDropLevels) {
   Frame f;
-  EXPECT_EQ(reductions(f.plan()), 3u) << "not known";
+  const auto coarsest = [](const PellucidPlan& plan) { return find(plan, "resolve")->pushConstants[0]; };
+  EXPECT_EQ(coarsest(f.plan()), 7u) << "not known";
   struct Row {
     float distance;
-    uint32_t reductions;
+    uint32_t coarsest, reductions;
   };
-  for (const Row& row :
-       {Row{3, 3}, {3.2f, 2}, {12, 2}, {13, 1}, {1000, 1}}) {  // 23.6, 22.1, 5.9, 5.4, .07 pixels
+  // 23.6, 21.4, 5.9, 5.4, .07 pixels; levels 4 and 5 are made beside 2 and 3
+  for (const Row& row : {Row{3, 7, 2}, {3.3f, 5, 1}, {12, 5, 1}, {13, 3, 1}, {1000, 3, 1}}) {
     f.frame.nearestDistance = row.distance;
     const PellucidPlan plan = f.plan();
     EXPECT_EQ(reductions(plan), row.reductions) << row.distance;
     EXPECT_EQ(plan.dispatchCount, 3 + row.reductions);
-    EXPECT_EQ(find(plan, "resolve")->pushConstants[0], 1 + 2 * row.reductions) << "the coarsest level";
+    EXPECT_EQ(coarsest(plan), row.coarsest) << row.distance;
   }
   f.frame.nearestDistance = 13;
   f.material.gaussianVariance[1][0] = 4;  // 7.7 pixels
-  EXPECT_EQ(reductions(f.plan()), 2u) << "any Gaussian of any channel";
+  EXPECT_EQ(coarsest(f.plan()), 5u) << "any Gaussian of any channel";
   f.material.gaussianWeight[1][0] = 0;
   f.material.gaussianWeight[1][1] = 1;
-  EXPECT_EQ(reductions(f.plan()), 1u) << "that has a weight";
+  EXPECT_EQ(coarsest(f.plan()), 3u) << "that has a weight";
 }
 
 // The images that the caller creates do not follow a distance that changes every frame.
