@@ -296,9 +296,11 @@ struct Builder {
     return true;
   }
 
-  void levelGroups(PellucidDispatch* d, uint32_t level, uint32_t tile) const {
+  // Of a reduction whose second level it is.
+  void levelGroups(PellucidDispatch* d, uint32_t level) const {
     const PyramidPlace place = placeOf(frame, level);
-    groups(d, static_cast<uint32_t>(place.rect.width), static_cast<uint32_t>(place.rect.height), tile);
+    groups(d, static_cast<uint32_t>(place.rect.width), static_cast<uint32_t>(place.rect.height),
+           PELLUCID_REDUCE_TILE_X, PELLUCID_REDUCE_TILE_Y);
   }
 
   // Texels of a level that the rect needs.
@@ -344,11 +346,11 @@ struct Builder {
     if (!d) return false;
     uint32_t boxGroups = 0;
     if (boxes) {
-      levelGroups(d, finer + 4, PELLUCID_REDUCE_TILE);
+      levelGroups(d, finer + 4);
       boxGroups = d->groups[0] * d->groups[1];
       d->pushConstants[2] = d->groups[0] | boxGroups << 16;
     }
-    levelGroups(d, finer + 2, PELLUCID_REDUCE_TILE);
+    levelGroups(d, finer + 2);
     d->pushConstants[0] = finer;
     d->pushConstants[1] = 16;  // texels under a texel
     d->pushConstants[3] = d->groups[1] | std::min(d->groups[0] * d->groups[1] / kBoxesAfter, 0xFFFFu) << 16;
