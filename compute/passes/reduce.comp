@@ -188,16 +188,16 @@ bool isFlatAround(uvec4 bits, ivec2 at, uint level) {
 
 void main() {
   int invocation = int(gl_LocalInvocationIndex);
-  // Groups of boxes come after some others, because those that start a dispatch take longest.
-  uint before = pass.value.w >> 16, boxes = pass.value.z >> 16, index = groupIndex(), box = index - before;
-  bool ofBoxes = box < boxes; // before them the difference is huge
+  // Groups of boxes take longest and come first.
+  uint boxes = pass.value.z >> 16, index = groupIndex();
+  bool ofBoxes = index < boxes;
   uint finer = ofBoxes ? 3u : pass.value.x;
   uvec2 place;
   if (ofBoxes) {
     uint columns = pass.value.z & 0xFFFFu;
-    place = uvec2(box % columns, box / columns);
+    place = uvec2(index % columns, index / columns);
   } else {
-    place = bordersFirst(uvec2(gl_NumWorkGroups.x, pass.value.w & 0xFFFFu), index < before ? index : index - boxes);
+    place = bordersFirst(uvec2(gl_NumWorkGroups.x, pass.value.w), index - boxes);
   }
   ivec4 rect = levelRect(finer + 1u), lastRect = levelRect(finer + 2u);
   ivec2 own = lastRect.xy + kTile * ivec2(place), start = 2 * own - 1;

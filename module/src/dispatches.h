@@ -14,10 +14,6 @@ inline constexpr uint32_t kTransient0 = PELLUCID_RESOURCE_TRANSIENT0;
 inline constexpr uint64_t kTexelBytes = 16;        // of the pyramid, as packed by compute/lib/pyramid.glsl
 inline constexpr uint64_t kUnknownDepthBytes = 4;  // the module does not know the format; 4 is the common one
 
-// Groups of boxes come after this part of the others. The first groups of a dispatch take longest, and these take long
-// themselves: of 0, 1/25, 1/10, 1/7, 1/5, 1/3 and later the fastest on an H200 at 3840 x 2160.
-inline constexpr uint32_t kBoxesAfter = 10;
-
 struct Builder {
   const PellucidFrame& frame;
   const ConstantsLayout layout;
@@ -353,7 +349,7 @@ struct Builder {
     levelGroups(d, finer + 2);
     d->pushConstants[0] = finer;
     d->pushConstants[1] = 16;  // texels under a texel
-    d->pushConstants[3] = d->groups[1] | std::min(d->groups[0] * d->groups[1] / kBoxesAfter, 0xFFFFu) << 16;
+    d->pushConstants[3] = d->groups[1];
     d->groups[1] += (boxGroups + d->groups[0] - 1) / d->groups[0];
     constants(d, PELLUCID_BINDING_FRAME, layout.frame);
     writesPyramid(d);
