@@ -1,28 +1,27 @@
 // The two levels of the diffusion pyramid after level pass.value.x. A texel takes the nearest of the four surfaces under
-// it and averages those of 4 x 4 texels that lie on it by 3 5 5 3 in each direction. A group makes 7 x 6 texels of the
-// second level and, before them, the 16 x 14 of the first that they need: one an invocation. Beside levels 2 and 3 some
+// it and averages those of 4 x 4 texels that lie on it by 3 5 5 3 in each direction. A group makes 7 x 7 texels of the
+// second level and, before them, the 16 x 16 of the first that they need: one an invocation. Beside levels 2 and 3 some
 // groups make 4 and 5, which need not wait for them: averages of 4 x 4 texels of level 1 stand for level 3.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
-#define GROUP_SIDE PELLUCID_REDUCE_COLUMNS
-#define GROUP_ROWS PELLUCID_REDUCE_ROWS
+#define GROUP_SIDE PELLUCID_REDUCE_GROUP
 #include "passes/group_order.glsl"
 #include "passes/pyramid.glsl"
 
 layout(set = 0, binding = PELLUCID_BINDING_PYRAMID) uniform utexture2D pyramidImage;
 
-const ivec2 kTile = ivec2(PELLUCID_REDUCE_TILE_X, PELLUCID_REDUCE_TILE_Y);
-// What a tile needs of the level before, and of its input.
-const ivec2 kFirst = 2 * kTile + 2, kInput = 2 * kFirst + 2;
+const uint kInvocations = uint(PELLUCID_REDUCE_GROUP * PELLUCID_REDUCE_GROUP);
+// Sides of what a tile needs of the level before, and of its input.
+const int kFirst = PELLUCID_REDUCE_GROUP, kInput = 2 * kFirst + 2;
 // Rows of the input that the invocations load at a time, and how often.
-const int kLoadRows = kFirst.x * kFirst.y / kInput.x, kLoads = (kInput.y + kLoadRows - 1) / kLoadRows;
-// The input and, once that has been used, the first level. A row of tiles less, 12240 bytes: four groups run at a time on
-// an H200 and not three. Slopes are not needed.
-shared uvec2 colors[kInput.x * kInput.y]; // and mass, material and plane, as packed
-shared float depths[kInput.x * kInput.y];
+const int kLoadRows = int(kInvocations) / kInput, kLoads = (kInput + kLoadRows - 1) / kLoadRows;
+// The input and, once that has been used, the first level: as many groups run at a time as these fit into a
+// processor. Slopes are not needed.
+shared uvec2 colors[kInput * kInput]; // and mass, material and plane, as packed
+shared float depths[kInput * kInput];
 
 // 3 5 5 3, variance 1.
 float weight(int i) { return i == 0 || i == 3 ? 0.1875 : 0.3125; }
@@ -179,7 +178,7 @@ bool isFlatAround(uvec4 bits, ivec2 at, uint level) {
   for (int y = -1; y <= 1; ++y)
     for (int x = -1; x <= 1; ++x) {
       if (x == 0 && y == 0) continue;
-      int index = slot(at + ivec2(x, y), kFirst.x);
+      int index = slot(at + ivec2(x, y), kFirst);
       most = max(most, abs(depths[index] - depth - dot(slope, vec2(x, y) * size)));
       different |= colors[index].y ^ bits.y;
     }
@@ -200,15 +199,15 @@ void main() {
     place = bordersFirst(uvec2(gl_NumWorkGroups.x, pass.value.w), index - boxes);
   }
   ivec4 rect = levelRect(finer + 1u), lastRect = levelRect(finer + 2u);
-  ivec2 own = lastRect.xy + kTile * ivec2(place), start = 2 * own - 1;
-  ivec2 mine = ivec2(invocation % kInput.x, invocation / kInput.x), firstLoad = 2 * start - 1 + mine;
-  int slotOfMine = slot(mine, kInput.x);
+  ivec2 own = lastRect.xy + PELLUCID_REDUCE_TILE * ivec2(place), start = 2 * own - 1;
+  ivec2 mine = ivec2(invocation % kInput, invocation / kInput), firstLoad = 2 * start - 1 + mine;
+  int slotOfMine = slot(mine, kInput);
   if (ofBoxes) {
     for (int y = 0; y < kLoads * kLoadRows; y += kLoadRows)
-      if (mine.y < kLoadRows && mine.y + y < kInput.y) {
+      if (mine.y < kLoadRows && mine.y + y < kInput) {
         Box box = boxOf(firstLoad + ivec2(0, y));
-        colors[slotOfMine + y * kInput.x] = box.bits;
-        depths[slotOfMine + y * kInput.x] = box.depth;
+        colors[slotOfMine + y * kInput] = box.bits;
+        depths[slotOfMine + y * kInput] = box.depth;
       }
   } else {
     ivec4 finerRect = levelRect(finer);
@@ -222,27 +221,27 @@ void main() {
                       ? texelFetch(pyramidImage, inAtlas(finer, firstLoad + ivec2(0, j * kLoadRows)), 0)
                       : uvec4(0u);
     [[unroll]] for (int j = 0; j < kLoads; ++j)
-      if (mine.y < kLoadRows && mine.y + j * kLoadRows < kInput.y) {
-        colors[slotOfMine + j * kLoadRows * kInput.x] = loaded[j].xy;
-        depths[slotOfMine + j * kLoadRows * kInput.x] = uintBitsToFloat(loaded[j].z);
+      if (mine.y < kLoadRows && mine.y + j * kLoadRows < kInput) {
+        colors[slotOfMine + j * kLoadRows * kInput] = loaded[j].xy;
+        depths[slotOfMine + j * kLoadRows * kInput] = uintBitsToFloat(loaded[j].z);
       }
   }
   barrier();
   ivec2 at = ivec2(gl_LocalInvocationID.xy), texel = start + at;
   bool inside = contains(rect, texel);
-  uvec4 bits = reduced(finer, texel, 2 * at.y * kInput.x + at.x, kInput.x);
+  uvec4 bits = reduced(finer, texel, 2 * at.y * kInput + at.x, kInput);
   if (!inside) bits = uvec4(0u);
   barrier();
-  colors[slot(at, kFirst.x)] = bits.xy;
-  depths[slot(at, kFirst.x)] = uintBitsToFloat(bits.z);
+  colors[slot(at, kFirst)] = bits.xy;
+  depths[slot(at, kFirst)] = uintBitsToFloat(bits.z);
   barrier();
   // The outer ones are the groups' beside.
-  if (inside && all(greaterThan(at, ivec2(0))) && all(lessThan(at, kFirst - 1))) {
+  if (inside && all(greaterThan(at, ivec2(0))) && all(lessThan(at, ivec2(kFirst - 1)))) {
     if (finer == 1u && isFlatAround(bits, at, finer + 1u)) bits.x |= kFlat;
     writeLevel(finer + 1u, texel, bits);
   }
-  at = ivec2(invocation % kTile.x, invocation / kTile.x);
+  at = ivec2(invocation % PELLUCID_REDUCE_TILE, invocation / PELLUCID_REDUCE_TILE);
   texel = own + at;
-  if (at.y < kTile.y && contains(lastRect, texel))
-    writeLevel(finer + 2u, texel, reduced(finer + 1u, texel, 2 * at.y * kFirst.x + at.x, kFirst.x));
+  if (at.y < PELLUCID_REDUCE_TILE && contains(lastRect, texel))
+    writeLevel(finer + 2u, texel, reduced(finer + 1u, texel, 2 * at.y * kFirst + at.x, kFirst));
 }

@@ -24,10 +24,8 @@ using glm::vec4;
 #define PELLUCID_DIFFUSE_TEXELS_Y 4
 #define PELLUCID_DIFFUSE_CELL 4 // pixels a side of the gather's cells where the diffusion adds what it found
 #define PELLUCID_RESOLVE_GROUP 16 // a side, texels of level 2
-#define PELLUCID_REDUCE_TILE_X 7 // of the pyramid's reductions: texels of the second of the two levels that a group makes
-#define PELLUCID_REDUCE_TILE_Y 6
-#define PELLUCID_REDUCE_COLUMNS (2 * PELLUCID_REDUCE_TILE_X + 2) // of the first level, one an invocation
-#define PELLUCID_REDUCE_ROWS (2 * PELLUCID_REDUCE_TILE_Y + 2)
+#define PELLUCID_REDUCE_GROUP 16 // a side, of the pyramid's reductions
+#define PELLUCID_REDUCE_TILE 7   // a side, texels of the second of the two levels that a group makes
 #define PELLUCID_GATHER_GROUP 16 // a side, of the pass that adds gathered light; an invocation does 2 x 2 pixels
 #define PELLUCID_RECORDS_GROUP 16 // a side, of the gather's records; of what one of them summarizes
 #define PELLUCID_POINTS_GROUP 8   // a side, of the gather's points

@@ -292,11 +292,9 @@ struct Builder {
     return true;
   }
 
-  // Of a reduction whose second level it is.
-  void levelGroups(PellucidDispatch* d, uint32_t level) const {
+  void levelGroups(PellucidDispatch* d, uint32_t level, uint32_t tile) const {
     const PyramidPlace place = placeOf(frame, level);
-    groups(d, static_cast<uint32_t>(place.rect.width), static_cast<uint32_t>(place.rect.height),
-           PELLUCID_REDUCE_TILE_X, PELLUCID_REDUCE_TILE_Y);
+    groups(d, static_cast<uint32_t>(place.rect.width), static_cast<uint32_t>(place.rect.height), tile);
   }
 
   // Texels of a level that the rect needs.
@@ -336,17 +334,18 @@ struct Builder {
     return true;
   }
 
-  // The two levels after `finer`. `boxes`: and, by groups of their own, the two after those, from averages of level 1.
+  // The two levels after `finer`. `boxes`: and, by groups of their own, the two after those, from averages of
+  // level 1.
   bool reduce(uint32_t finer, bool boxes) {
     PellucidDispatch* d = dispatch("reduce", PELLUCID_PIPELINE_REDUCE_LEVELS);
     if (!d) return false;
     uint32_t boxGroups = 0;
     if (boxes) {
-      levelGroups(d, finer + 4);
+      levelGroups(d, finer + 4, PELLUCID_REDUCE_TILE);
       boxGroups = d->groups[0] * d->groups[1];
       d->pushConstants[2] = d->groups[0] | boxGroups << 16;
     }
-    levelGroups(d, finer + 2);
+    levelGroups(d, finer + 2, PELLUCID_REDUCE_TILE);
     d->pushConstants[0] = finer;
     d->pushConstants[1] = 16;  // texels under a texel
     d->pushConstants[3] = d->groups[1];

@@ -143,7 +143,8 @@ bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan
       forEachLightGroup(frame, [&](const LightGroup& group) {
         if (group.gathered > 0) gathered = group;
       });
-    // Levels 4 and 5 beside 2 and 3 save a dispatch that leaves most of a device free, which points of the gather can use.
+    // Levels 4 and 5 beside 2 and 3 save a dispatch that leaves most of a device free, which points of the
+    // gather can use.
     const bool boxes = !stages.overlaps && coarsest >= kFirstLevel + 4;
     // Records, points and sharing, each beside one of the last three dispatches before the one that adds
     // points.

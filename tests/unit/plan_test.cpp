@@ -96,8 +96,7 @@ TEST(Plan, NoLightNoTranslucency) {
   Frame f;
   f.frame.lightCount = 0;
   const PellucidPlan plan = f.plan();
-  EXPECT_EQ(names(plan),
-            (std::vector<std::string>{"quads", "reduce", "reduce", "resolve", "diffuse"}));
+  EXPECT_EQ(names(plan), (std::vector<std::string>{"quads", "reduce", "reduce", "resolve", "diffuse"}));
   EXPECT_EQ(plan.dispatches[0].pipeline, static_cast<uint32_t>(PELLUCID_PIPELINE_QUADS_AND_COPY_16F));
   EXPECT_TRUE(skips(plan, "translucency", "no light can contribute"));
 }
