@@ -8,7 +8,8 @@ namespace {
 
 // The energy that a Gaussian has at an element of the pyramid and the coarser ones: the fine filter, level
 // 2, level 3, and level l > 3. Sampled over log2 of its standard deviation in pixels; for levels, in texels.
-// docs/diffusion.md says how they were fitted.
+// docs/diffusion.md says how they were fitted. The last one was for levels from 3 5 5 3 alone; levels 4 and
+// coarser begin with averages of level 1, which are narrower, so that they take more of the same Gaussian.
 enum Element { kFine, kLevel2, kLevel3, kCoarser, kElements };
 constexpr int kSamples = 49;
 constexpr double kStep = 0.125;

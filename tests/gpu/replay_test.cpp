@@ -339,8 +339,8 @@ TEST_F(Replay, SubPixelKernelReturnsTheInput) {
       for (int k = 0; k < 3; ++k) EXPECT_NEAR(out.at(x, y)[k], c.irradiance.at(x, y)[k], 1e-5);
 }
 
-// Two sheets with a gap in depth of 8 mm: Gaussians of at most 4.5 mm^2 let e^{-64/9} across, wherever the gap lies
-// against the pyramid.
+// Two sheets with a gap in depth of 8 mm: Gaussians of at most 4.5 mm^2 let e^{-64/9} across, wherever the
+// gap lies against the pyramid.
 TEST_F(Replay, DepthGapStopsDiffusion) {
   for (int first = 28; first <= 36; ++first) {
     Capture c = flatCapture(64, 8);
