@@ -6,6 +6,7 @@
 #include "capture/material.h"
 #include "capture/read.h"
 #include "cli/commands.h"
+#include "cli/nearest_distance.h"
 #include "cli/plan_text.h"
 #include "cli/preset.h"
 #include "cli/settings.h"
@@ -36,7 +37,10 @@ void addPlanCommand(CLI::App& app) {
   command->callback([options] {
     const Capture capture = readCapture(options->input, options->preset);
     FrameData data;
-    makeFrame(capture, compileMaterials(capture), options->settings.parse(), data);
+    const std::vector<PellucidMaterial> materials = compileMaterials(capture);
+    const ReplaySettings settings = options->settings.parse();
+    requireNearestDistance(capture, materials, settings);
+    makeFrame(capture, materials, settings, data);
     PellucidPlan plan;
     requireOk(pellucidBuildPlan(&data.frame, nullptr, &plan), data.frame, capture.name);
     std::printf("%s\n", nlohmann::json::parse(planJson(plan)).dump(2).c_str());

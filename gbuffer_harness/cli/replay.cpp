@@ -10,6 +10,7 @@
 #include "capture/read.h"
 #include "cli/commands.h"
 #include "cli/frames.h"
+#include "cli/nearest_distance.h"
 #include "cli/output.h"
 #include "cli/plan_text.h"
 #include "cli/preset.h"
@@ -98,6 +99,7 @@ void writeFrame(const Options& options, const std::filesystem::path& output, con
 void replayOne(const Options& options, const ReplaySettings& settings) {
   const Capture capture = readCapture(options.input, options.preset);
   const std::vector<PellucidMaterial> materials = compileMaterials(capture);
+  requireNearestDistance(capture, materials, settings);
   Device device({options.device, false});
   Replayer replayer(device);
   const ReplayResult result = replayer.run(capture, materials, settings);
@@ -156,6 +158,7 @@ void replaySequence(const Options& options, const ReplaySettings& settings) {
       } else {
         const Capture capture = readCapture(input(frame), options.preset);
         const std::vector<PellucidMaterial> materials = compileMaterials(capture);
+        requireNearestDistance(capture, materials, settings);
         std::unique_lock lock(deviceMutex);
         const ReplayResult result = replayer.run(capture, materials, settings);
         lock.unlock();

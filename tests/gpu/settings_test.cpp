@@ -131,6 +131,7 @@ const std::vector<Row> kRows = {
      "10",
      Effect::Keeps,
      {{"-1", 3, "nearestDistance is -1; must be >= 0"},
+      {"10000", 3, "nearest-distance: is 10000, but at pixel "},
       {"nan", 2, "--set nearest-distance: \"nan\" is not a number"}}},
     {"polynomial",
      "--set angle=polynomial",
