@@ -29,9 +29,9 @@ Box boxOfEdge(ivec2 first) {
       any = max(any, materialBits(bits));
     }
   if (material == 0u) return Box(uvec2(0u, any << 24), 0.0);
-  // Half of what lies 2.4 sides of the box behind counts, and nothing beyond 4.5: more lets light over gaps. Tangents of
-  // single texels, by which reductions go, are too uncertain for so large a box.
-  float spread2 = inverseSpread(vec2(0.0), 2.0 * texelSize(nearest, 3u));
+  // As far behind as a texel of level 4 reaches: more lets light over gaps. Tangents of single texels, by which reductions
+  // go, are too uncertain for so large a box.
+  float spread2 = inverseSpread(vec2(0.0), texelSize(nearest, 4u));
   vec3 color = vec3(0.0);
   float mass = 0.0, weights = 0.0, off = 0.0;
   for (int i = 0; i < kBoxTexels; i += kBox)
