@@ -81,8 +81,7 @@ Box boxOf(ivec2 texel) {
   tilt *= kInverse / kVariance;
   float residual = kInverse * square - off * off - kVariance * dot(tilt, tilt);
   vec2 size = texelSize(depth, 1u), slope = tilt / max(size, vec2(1.0e-30));
-  bool plane = (different & kSamePlane) == 0u && isPlane(base) &&
-               residual * inverseSpread(slope, float(kBox) * size) < kPlaneResidual;
+  bool plane = onePlane(base.y, different, residual, slope, float(kBox) * size);
   if ((base.y | different) >> 16 == 0u) return Box(uvec2(0u), 0.0);
   if (!plane) return boxOfEdge(first);
   return Box(packColor(kInverse * color, packArea(areaOf(3u, texel, slope)) | base.y >> 16 & 0xFF00u | kPlane >> 16),

@@ -36,6 +36,13 @@ const float kPlaneResidual = 0.01;
 // What the bits of texels of one plane have in common: the material, and that they are planes.
 const uint kSamePlane = 0xFF000000u | kPlane;
 
+// Whether texels are one plane: one's bits, in which the others differ, their mean squared distance from the plane of
+// least squares, its slope, and the side that they make together.
+bool onePlane(uint bits, uint different, float residual, vec2 slope, vec2 side) {
+  return (different & kSamePlane) == 0u && (bits & kPlane) != 0u &&
+         residual * inverseSpread(slope, side) < kPlaneResidual;
+}
+
 #include "passes/boxes.glsl"
 
 // Even columns of a row come before the odd ones: reads of every other column meet no bank twice.
@@ -159,8 +166,7 @@ uvec4 reduced(uint finer, ivec2 texel, int first, int stride) {
   vec2 size = texelSize(base, finer);
   float residual = square - off * off - dot(tilt, tilt);
   vec2 slope = tilt / max(size, vec2(1.0e-30));
-  bool plane = (different & kSamePlane) == 0u && (bits & kPlane) != 0u &&
-               residual * inverseSpread(slope, 2.0 * size) < kPlaneResidual;
+  bool plane = onePlane(bits, different, residual, slope, 2.0 * size);
   uvec4 result = packTexel(Texel(color, areaOf(finer + 1u, texel, slope), bits >> 24, base + off, slope), kPlane);
   // That nothing is there is too rare for a branch of its own.
   if (!plane) result = (bits | different) >> 16 == 0u ? uvec4(0u) : reducedEdge(finer, first, stride);

@@ -8,12 +8,11 @@ namespace {
 
 // The energy that a Gaussian has at an element of the pyramid and the coarser ones: the fine filter, level
 // 2, level 3, and level l > 3. Sampled over log2 of its standard deviation in pixels; for levels, in texels.
-// docs/diffusion.md says how they were fitted. The last one was for levels from 3 5 5 3 alone; levels 4 and
-// coarser begin with averages of level 1, which are narrower, so that they take more of the same Gaussian.
+// docs/diffusion.md says how they were fitted.
 enum Element { kFine, kLevel2, kLevel3, kCoarser, kElements };
 constexpr int kSamples = 49;
 constexpr double kStep = 0.125;
-constexpr double kFirst[kElements] = {-3, -4, -4, -4.03};
+constexpr double kFirst[kElements] = {-3, -4, -4, -4 - kCoarserShift};
 constexpr double kEnergyFrom[kElements][kSamples] = {
     {0,      0,      0.0006638, 0.003575, 0.009764, 0.02009, 0.03606, 0.05961, 0.09098, 0.1304,
      0.175,  0.2248, 0.2839,    0.3504,   0.4224,   0.4982,  0.5799,  0.6655,  0.7515,  0.8292,

@@ -334,13 +334,15 @@ struct Builder {
     return true;
   }
 
-  // The two levels after `finer`. `boxes`: and, by groups of their own, the two after those, from averages of
-  // level 1.
-  bool reduce(uint32_t finer, bool boxes) {
+  // The `levels` after `finer`: 2, or 4 after level 1, the last two of them by groups of their own from
+  // boxes.
+  bool reduce(uint32_t finer, uint32_t levels) {
     PellucidDispatch* d = dispatch("reduce", PELLUCID_PIPELINE_REDUCE_LEVELS);
     if (!d) return false;
+    // Groups of boxes, whose columns and number the shader is told, lie in rows before the others, of whose
+    // rows it is told.
     uint32_t boxGroups = 0;
-    if (boxes) {
+    if (levels == 4) {
       levelGroups(d, finer + 4, PELLUCID_REDUCE_TILE);
       boxGroups = d->groups[0] * d->groups[1];
       d->pushConstants[2] = d->groups[0] | boxGroups << 16;
@@ -353,8 +355,8 @@ struct Builder {
     constants(d, PELLUCID_BINDING_FRAME, layout.frame);
     writesPyramid(d);
     readsPyramid(d);
-    for (uint32_t level = finer; level <= finer + (boxes ? 4 : 2); ++level) levelTraffic(d, level);
-    if (boxes) levelTraffic(d, finer);  // is read twice
+    for (uint32_t level = finer; level <= finer + levels; ++level) levelTraffic(d, level);
+    if (boxGroups > 0) levelTraffic(d, finer);  // is read twice
     return true;
   }
 

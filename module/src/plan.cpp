@@ -162,10 +162,9 @@ bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan
     if (!stages.fusesQuads) fits = fits && b.quads(source, copy);
     alongside();
     source = copy;
-    for (uint32_t finer = kFirstLevel; finer < coarsest; finer += 2) {
-      const bool withBoxes = boxes && finer == kFirstLevel;
-      fits = fits && b.reduce(finer, withBoxes);
-      if (withBoxes) finer += 2;
+    for (uint32_t finer = kFirstLevel, levels; finer < coarsest; finer += levels) {
+      levels = boxes && finer == kFirstLevel ? 4 : 2;
+      fits = fits && b.reduce(finer, levels);
       alongside();
     }
     fits = fits && b.resolve(coarsest);

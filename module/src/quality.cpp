@@ -6,6 +6,7 @@
 
 #include "camera.h"
 #include "diffusion_error_table.h"
+#include "diffusion_profile.h"
 
 namespace pellucid {
 namespace {
@@ -39,8 +40,9 @@ double widestDeviation(const PellucidMaterial& m) {
 
 double levelDeviation(uint32_t level) { return std::sqrt(7.0 / 12 * std::exp2(2.0 * level) - 13.0 / 12); }
 
-// Where the energy beyond a level begins in the table of diffusion_profile.cpp: 1.53 octaves below its texels.
-double deviationWithin(uint32_t level) { return std::exp2(level - 0.53); }
+// Where the energy beyond a level begins in the table of diffusion_profile.cpp: 1.5 octaves below its texels,
+// and further by what that is shifted.
+double deviationWithin(uint32_t level) { return std::exp2(level - 0.5 - kCoarserShift); }
 
 DiffusionReach diffusionReach(const PellucidFrame& frame) {
   // No infinity may reach the plan's text.
