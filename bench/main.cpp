@@ -85,7 +85,7 @@ void dispatches(const Bench& bench, const BenchFrame& frame) {
     const double bytes =
         static_cast<double>(d.modeledBytes) / (static_cast<double>(frame.width()) * frame.height());
     bench.report.add({d.name, 1, d.barrierBefore, bytes, {}},
-                     bench.time([&](VkCommandBuffer c) { frame.run().record(c, i); }));
+                     bench.time([&](VkCommandBuffer c) { frame.run().recordAlone(c, i); }));
   }
 }
 

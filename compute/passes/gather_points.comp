@@ -16,6 +16,7 @@ layout(set = 0, binding = PELLUCID_BINDING_MATERIALS) readonly buffer Materials 
 layout(set = 0, binding = PELLUCID_BINDING_NORMAL) uniform texture2D normalImage;
 layout(set = 0, binding = PELLUCID_BINDING_RECORDS) uniform utexture2D recordsImage;
 layout(set = 0, binding = PELLUCID_BINDING_POINTS, rgba32ui) uniform uimage2D pointsImage;
+layout(set = 0, binding = PELLUCID_BINDING_GATHER_DISPATCHES) coherent buffer Dispatches { GatherDispatches dispatches; };
 
 #include "lib/gather.glsl"
 
@@ -239,12 +240,15 @@ float meanCurvature(ivec2 pixel, ivec2 steps, Beside across, Beside along, Surfa
   return abs(area) > least ? 0.5 * dot(x.normal, cross(turnA, b) + cross(a, turnB)) / (area * mm) : 0.0;
 }
 
+// More light than this comes back only where the first order in the curvature does not hold.
+const float kMostConvexity = 1.0 / 3.0;
+
 // By how much more light comes back, of each channel, from the surface of the cell's point as it is curved.
 vec3 convexity(ivec2 cell, int side, Point p, Surface x) {
   vec4 perCurvature = materials[p.material - 1u].gather.convexity;
   ivec2 steps = besideSteps(cell, p.front, perCurvature.w), pixel = pixelInCell(cell, side, p.index);
   Beside across = besideAt(pixel + ivec2(steps.x, 0)), along = besideAt(pixel + ivec2(0, steps.y));
-  return perCurvature.rgb * meanCurvature(pixel, steps, across, along, x, perCurvature.w);
+  return min(perCurvature.rgb * meanCurvature(pixel, steps, across, along, x, perCurvature.w), vec3(kMostConvexity));
 }
 
 void gatherLights(Surface x, Pattern pattern, inout Point result) {
@@ -316,6 +320,14 @@ bool lightEntersNear(bool some, Surface x, uint m) {
 }
 #endif
 
+// Decides about the dispatches that follow.
+void somePointHasLight() {
+  // Read first: atomics of all points would queue at the same place. Where the plan does not go by them, both are 0.
+  if (dispatches.light.x == dispatches.light.w || atomicMax(dispatches.light.x, dispatches.light.w) != 0u) return;
+  atomicMax(dispatches.share.x, dispatches.share.w);
+  atomicMin(dispatches.noLight.x, 0u);
+}
+
 void main() {
   int side = int(pass.value.x);
   ivec4 cells = cellsOf(frame.rect, side);
@@ -343,5 +355,7 @@ void main() {
     result.added += before.added;
     result.displaced = max(result.displaced, before.displaced);
   }
-  if (inside) imageStore(pointsImage, cell, some ? packPoint(result) : kNoPoint);
+  uvec4 bits = some ? packPoint(result) : kNoPoint;
+  if (inside) imageStore(pointsImage, cell, bits);
+  if (hasLight(bits)) somePointHasLight();
 }

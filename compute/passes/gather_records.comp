@@ -9,6 +9,13 @@
 #include "passes/shadow_images.glsl"
 #include "lib/shadow.glsl"
 
+// ONE_MAP: there is only one, in the first image, which the compiler makes more of than of a loop with one turn.
+#ifdef ONE_MAP
+const bool kOneMap = true;
+#else
+const bool kOneMap = false;
+#endif
+
 #ifdef DIRECTIONAL
 layout(set = 0, binding = PELLUCID_BINDING_DIRECTIONAL_RECORD_MAPS) uniform RecordMaps {
   RecordMapConstants recordMaps[PELLUCID_RECORD_MAPS];
@@ -23,11 +30,14 @@ const float kLeastCosine = 0.05;
 
 // Where the camera has a surface on the pixel that a point is seen on, at the point or in front of it: what it sees is
 // in the irradiance that diffusion spreads. What faces away cannot be seen, however thin the part is.
-bool cameraSees(ivec2 pixel, float planar, vec3 normal, float tolerance) {
-  if (!insideRect(pixel) || dot(normal, viewRay(frame.camera, pixel).direction) >= 0.0) return false;
-  float front = frontDistance(pixel);
-  return front > 0.0 && planar <= front + tolerance;
+// `front`: of the pixel.
+bool cameraSees(ivec2 pixel, float front, float planar, vec3 normal, float tolerance) {
+  return insideRect(pixel) && dot(normal, viewRay(frame.camera, pixel).direction) < 0.0 && front > 0.0 &&
+         planar <= front + tolerance;
 }
+
+// To be fetched before what need not wait for it.
+float frontAround(ivec2 pixel) { return frontDistance(withinRect(pixel)); }
 
 // The surface that a texel of a perspective map stores, as RecordMapConstants says; depth: as records store it.
 vec3 entryPoint(RecordMapConstants map, ivec2 texel, float stored, out float depth) {
@@ -83,7 +93,7 @@ float parallelSlope(int at, int texels, float plane, float squaredStep, float ac
 }
 
 // A record of what is known of its surface; normal: not normalized, 0 where no neighbor says.
-uvec4 recordOf(Record r, vec3 normal, vec3 toLight, ivec2 pixel, float planar, float tolerance) {
+uvec4 recordOf(Record r, vec3 normal, vec3 toLight, ivec2 pixel, float front, float planar, float tolerance) {
   float squared = dot(normal, normal);
   r.normal = toLight;
   r.inverseCosine = 1.0;
@@ -93,7 +103,7 @@ uvec4 recordOf(Record r, vec3 normal, vec3 toLight, ivec2 pixel, float planar, f
     r.normal = cosine < 0.0 ? -normal : normal;
     r.inverseCosine = 1.0 / max(abs(cosine), kLeastCosine);
   }
-  if (cameraSees(pixel, planar, r.normal, tolerance)) r.enters = 0.0;
+  if (cameraSees(pixel, front, planar, r.normal, tolerance)) r.enters = 0.0;
   return packRecord(r);
 }
 
@@ -109,19 +119,20 @@ uvec4 parallelRecord(RecordMapConstants map, ivec2 texel, ShadowTexels stored) {
   r.depth = stored.own * map.ray.w + (map.origin.w + p.x * map.stepX.w + p.y * map.stepY.w);
   r.enters = 1.0;
   if (!(abs(r.depth) < kNoDepth)) return kNoRecord;
-  float squareX = dot(map.stepX.xyz, map.stepX.xyz), squareY = dot(map.stepY.xyz, map.stepY.xyz);
-  float ray2 = map.across[1].w;
-  float x = parallelSlope(texel.x, int(map.map.x), map.stepX.w, squareX, map.normal.w, ray2, grows.xy);
-  float y = parallelSlope(texel.y, int(map.map.y), map.stepY.w, squareY, map.across[0].w, ray2, grows.zw);
-  vec3 normal = vec3(0.0);
-  if (x < kNoDepth && y < kNoDepth) normal = map.normal.xyz + x * map.across[0].xyz + y * map.across[1].xyz;
   vec4 q = vec4(p, r.depth, 1.0);
   float w = dot(map.pixelW, q), planar = dot(map.planar, q);
   ivec2 pixel = kNoPixel;
   // Far outside stays outside after the conversion.
   if (abs(w) > 0.0 && planar > 0.0)
     pixel = ivec2(floor(clamp(vec2(dot(map.pixelX, q), dot(map.pixelY, q)) / w, vec2(-1.0e6), vec2(1.0e6))));
-  return recordOf(r, normal, map.toLight.xyz, pixel, planar, map.seen.x + map.seen.y);
+  float front = frontAround(pixel);
+  float squareX = dot(map.stepX.xyz, map.stepX.xyz), squareY = dot(map.stepY.xyz, map.stepY.xyz);
+  float ray2 = map.across[1].w;
+  float x = parallelSlope(texel.x, int(map.map.x), map.stepX.w, squareX, map.normal.w, ray2, grows.xy);
+  float y = parallelSlope(texel.y, int(map.map.y), map.stepY.w, squareY, map.across[0].w, ray2, grows.zw);
+  vec3 normal = vec3(0.0);
+  if (x < kNoDepth && y < kNoDepth) normal = map.normal.xyz + x * map.across[0].xyz + y * map.across[1].xyz;
+  return recordOf(r, normal, map.toLight.xyz, pixel, front, planar, map.seen.x + map.seen.y);
 }
 
 #ifndef DIRECTIONAL
@@ -129,6 +140,9 @@ uvec4 perspectiveRecord(RecordMapConstants map, ivec2 texel, ShadowTexels stored
   Record r;
   vec3 y = entryPoint(map, texel, stored.own, r.depth);
   if (!(abs(r.depth) < kNoDepth)) return kNoRecord;
+  ivec2 pixel;
+  if (!projectToPixel(frame.camera, y, pixel)) pixel = kNoPixel;
+  float front = frontAround(pixel);
   vec3 toLight = map.ray.xyz - y;
   float distanceTo = length(toLight), scale = r.depth * r.depth;
   toLight /= max(distanceTo, 1.0e-12);
@@ -136,14 +150,12 @@ uvec4 perspectiveRecord(RecordMapConstants map, ivec2 texel, ShadowTexels stored
   float squareX = scale * dot(map.stepX.xyz, map.stepX.xyz), squareY = scale * dot(map.stepY.xyz, map.stepY.xyz);
   vec3 normal = cross(entrySlope(map, texel, y, ivec2(1, 0), stored.beside.xy, squareX),
                       entrySlope(map, texel, y, ivec2(0, 1), stored.beside.zw, squareY));
-  ivec2 pixel;
-  if (!projectToPixel(frame.camera, y, pixel)) pixel = kNoPixel;
-  return recordOf(r, normal, toLight, pixel, y.z * frame.camera.range.x, abs(r.depth) * map.seen.x + map.seen.y);
+  return recordOf(r, normal, toLight, pixel, front, y.z * frame.camera.range.x, abs(r.depth) * map.seen.x + map.seen.y);
 }
 #endif
 
 uvec4 recordOf(RecordMapConstants map, ivec2 texel) {
-  ShadowTexels stored = shadowTexels(map.meta.x, texel, ivec2(map.map.xy) - 1);
+  ShadowTexels stored = shadowTexels(kOneMap ? 0u : map.meta.x, texel, ivec2(map.map.xy) - 1);
   if (!shadowHolds(map.meta, stored.own)) return kNoRecord;
 #ifndef DIRECTIONAL
   if (map.meta.z != 0u) return perspectiveRecord(map, texel, stored);
@@ -157,7 +169,7 @@ void main() {
   ivec2 at = ivec2(gl_GlobalInvocationID.xy);
   if (gl_LocalInvocationIndex == 0u) someEnters = 0u;
   barrier();
-  for (uint i = 0u; i < pass.value.x; ++i) {
+  for (uint i = 0u; i < (kOneMap ? 1u : pass.value.x); ++i) {
     ivec4 place = maps[i].place;
     ivec2 own = at - place.xy;
     if (any(lessThan(own, ivec2(0))) || any(greaterThanEqual(own, place.zw))) continue;

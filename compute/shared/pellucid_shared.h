@@ -52,6 +52,7 @@ using glm::vec4;
 #define PELLUCID_BINDING_GATHER_MAPS PELLUCID_BINDING_SHADOWS
 #define PELLUCID_BINDING_RECORD_MAPS PELLUCID_BINDING_KERNELS
 #define PELLUCID_BINDING_DIRECTIONAL_RECORD_MAPS PELLUCID_BINDING_LIGHTS
+#define PELLUCID_BINDING_GATHER_DISPATCHES PELLUCID_BINDING_KERNELS
 #define PELLUCID_BINDING_RECORDS PELLUCID_BINDING_SHADOW_IMAGES
 #define PELLUCID_BINDING_POINTS PELLUCID_BINDING_LEVELS
 #define PELLUCID_BINDING_SHARED_POINTS (PELLUCID_BINDING_SHADOW_IMAGES + 1) // of the diffusion, beside the pyramid
@@ -210,6 +211,13 @@ struct KernelConstants {
   // Two for each side of a pixel. First: which part of all energy level 2 and coarser ones have. Second: which
   // part of the rest the fine filter of the pixel and its neighbors has.
   vec4 pixelShare[2 * PELLUCID_SHARE_ENTRIES];
+};
+
+// VkDispatchIndirectCommands of what follows the gather's points; x: columns of groups, 0 where it does not run; w: where it
+// does.
+struct GatherDispatches {
+  uvec4 share, light; // if some point has light, which the diffusion adds
+  uvec4 noLight;      // the diffusion alone, if none has
 };
 
 // Push constants. translucency: pixels a side of a cell of the gather, lights, PELLUCID_WRITE_*, lights of the gather.

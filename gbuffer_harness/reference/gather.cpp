@@ -273,8 +273,7 @@ Gathered Gather::at(const Surface& surface, std::size_t material) const {
   const glm::dvec3 convexity = kernel.convexity();
   const double reach = 2 * std::max({convexity.r, convexity.g, convexity.b});
   if (surface.normal && reach > 0)
-    result.displaced =
-        glm::max(result.displaced - convexity * meanCurvature(surface, reach), glm::dvec3(-1.0 / 3));
+    result.displaced += glm::max(-convexity * meanCurvature(surface, reach), glm::dvec3(-1.0 / 3));
   return result;
 }
 

@@ -25,6 +25,7 @@ public:
     for (size_t i = 0; i < data.shadowDepths.size(); ++i)
       data.shadowImages[i] = add(*data.shadowDepths[i], VK_FORMAT_R32_SFLOAT);
 
+    f.indirectDispatches = settings.indirectDispatches;
     const bool debug = settings.debugView != PELLUCID_DEBUG_NONE;
     if (settings.aliasOutput && !debug) {
       f.output = f.irradiance;
@@ -110,8 +111,10 @@ FrameRun::FrameRun(Device& device, const Context& context, const Capture& captur
   const PellucidFrame& frame = data_.frame;
   requireOk(pellucidValidateFrame(&frame, nullptr, nullptr), frame, name_);
   requireOk(pellucidBuildPlan(&frame, previous ? previous->plan_.get() : nullptr, plan_.get()), frame, name_);
-  constants_ = std::make_unique<HostBuffer>(
-      device, plan_->constantsSize, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+  constants_ =
+      std::make_unique<HostBuffer>(device, plan_->constantsSize,
+                                   VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
+                                       VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
 }
 
 FrameRun::~FrameRun() = default;
@@ -131,7 +134,21 @@ void FrameRun::record(VkCommandBuffer commandBuffer, uint32_t dispatch) const {
   single.dispatchCount = 1;
   single.dispatches[0] = plan_->dispatches[dispatch];
   record(commandBuffer, single);
+  // Of all dispatches, that the GPU decides by.
+  requireOk(pellucidWriteConstants(plan_.get(), &data_.frame, constants_->mapped(),
+                                   static_cast<size_t>(constants_->size())),
+            data_.frame, name_);
 }
+
+void FrameRun::recordAlone(VkCommandBuffer commandBuffer, uint32_t dispatch) const {
+  PellucidPlan single = *plan_;
+  single.dispatchCount = 1;
+  single.dispatches[0] = plan_->dispatches[dispatch];
+  single.dispatches[0].indirect = 0;
+  record(commandBuffer, single);
+}
+
+const void* FrameRun::constants() const { return constants_->mapped(); }
 
 Image FrameRun::output() const { return images_->output(); }
 

@@ -39,9 +39,13 @@ public:
 
   const PellucidPlan& plan() const { return *plan_; }
   const PellucidFrame& frame() const { return data_.frame; }
+  // The slice as the device left it: with what it decided about indirect dispatches.
+  const void* constants() const;
 
   void record(VkCommandBuffer commandBuffer) const;                     // the whole plan
-  void record(VkCommandBuffer commandBuffer, uint32_t dispatch) const;  // one dispatch of it
+  void record(VkCommandBuffer commandBuffer, uint32_t dispatch) const;  // one dispatch of it, in its turn
+  // One dispatch of it, also where the GPU would find nothing to do for it.
+  void recordAlone(VkCommandBuffer commandBuffer, uint32_t dispatch) const;
 
   // RGBA. Outside the rect and at material 0: irradiance times albedo, as an engine that composites in
   // place would have there; 0 for debug views.

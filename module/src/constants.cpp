@@ -258,6 +258,15 @@ extern "C" PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const
     }
   };
   forEachLightGroup(f, eachLight, [](const LightGroup&) {});
+  for (uint32_t i = 0; i < plan->dispatchCount; ++i) {
+    const PellucidDispatch& d = plan->dispatches[i];
+    if (!d.indirect) continue;
+    // Until the GPU finds light there is none.
+    const bool starts =
+        d.indirectOffset == layout.gatherDispatches.offset + offsetof(shared::GatherDispatches, noLight);
+    put(mapped, d.indirectOffset,
+        glm::uvec4(starts ? d.groups[0] : 0, d.groups[1], d.groups[2], d.groups[0]));
+  }
   for (uint32_t i = 0; i < f.materialCount; ++i) {
     put(mapped, layout.materials.offset + i * sizeof(shared::MaterialConstants),
         materialConstants(f.materials[i], gathers(f)));

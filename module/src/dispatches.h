@@ -20,6 +20,7 @@ struct Builder {
   const Rect rect;
   const uint32_t colorTransients;
   const bool keepsPoints, overlaps;
+  const bool skipsLight;  // of the gather's dispatches those that the GPU finds nothing to do for are empty
   PellucidPlan& plan;
   bool alongside = false;  // dispatches run beside the one before, with which they share nothing
 
@@ -140,8 +141,9 @@ struct Builder {
     const bool directional =
         group.gatheredDirectional && directionalFrame() && group.shadowCount <= PELLUCID_RECORD_MAPS;
     PellucidDispatch* d =
-        dispatch("gather records", directional ? PELLUCID_PIPELINE_GATHER_RECORDS_DIRECTIONAL
-                                               : PELLUCID_PIPELINE_GATHER_RECORDS);
+        dispatch("gather records", !directional             ? PELLUCID_PIPELINE_GATHER_RECORDS
+                                   : group.shadowCount == 1 ? PELLUCID_PIPELINE_GATHER_RECORDS_ONE_MAP
+                                                            : PELLUCID_PIPELINE_GATHER_RECORDS_DIRECTIONAL);
     if (!d) return false;
     groups(d, group.recordColumns, group.recordRows, PELLUCID_RECORDS_GROUP);
     d->pushConstants[0] = group.shadowCount;
@@ -162,6 +164,20 @@ struct Builder {
     bind(d, PELLUCID_BINDING_LEVELS, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, recordsImage());
     d->modeledBytes += recordBytes(group);
     return true;
+  }
+
+  // Runs if earlier dispatches say so at `offset` of shared::GatherDispatches. They are done before the first
+  // of these.
+  void indirect(PellucidDispatch* d, size_t offset) const {
+    const auto isIndirect = [](const PellucidDispatch& other) { return other.indirect != 0; };
+    if (std::none_of(plan.dispatches, d, isIndirect)) {
+      PellucidDispatch* waits = d;
+      while (waits > plan.dispatches && !waits->barrierBefore) --waits;
+      waits->barrierIndirect = 1;
+    }
+    d->indirect = 1;
+    d->indirectResource = PELLUCID_RESOURCE_CONSTANTS;
+    d->indirectOffset = layout.gatherDispatches.offset + offset;
   }
 
   // `adds`: to what points found in an earlier dispatch.
@@ -186,6 +202,7 @@ struct Builder {
     optional(d, PELLUCID_BINDING_NORMAL, frame.normal, PELLUCID_RESOURCE_NORMAL, 0);
     bind(d, PELLUCID_BINDING_RECORDS, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, recordsImage());
     bind(d, PELLUCID_BINDING_POINTS, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, pointsImage());
+    constants(d, PELLUCID_BINDING_GATHER_DISPATCHES, layout.gatherDispatches);
     // Of each cell one pixel's depth, material and normal.
     constexpr uint64_t kCellBytes = kUnknownDepthBytes + 1 + 4 + kTexelBytes;
     d->modeledBytes = recordBytes(group) + (kCellBytes + (adds ? kTexelBytes : 0)) * size.width * size.height;
@@ -203,6 +220,7 @@ struct Builder {
     bind(d, PELLUCID_BINDING_RECORDS, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, pointsImage());
     bind(d, PELLUCID_BINDING_POINTS, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, sharedImage());
     d->modeledBytes = 2 * kTexelBytes * size.width * size.height;
+    if (skipsLight) indirect(d, offsetof(shared::GatherDispatches, share));
     return true;
   }
 
@@ -391,7 +409,9 @@ struct Builder {
                           : normals               ? PELLUCID_PIPELINE_DIFFUSE_NORMALS_16F
                           : addsPoints            ? PELLUCID_PIPELINE_DIFFUSE_GATHER_16F
                                                   : PELLUCID_PIPELINE_DIFFUSE_16F;
-    PellucidDispatch* d = dispatch("diffuse", half + (wide() ? 1 : 0));
+    // With the gather both are in the plan, and one of them runs.
+    PellucidDispatch* d =
+        dispatch(skipsLight && !addsPoints ? "diffuse, none gathered" : "diffuse", half + (wide() ? 1 : 0));
     if (!d) return false;
     // Groups start at texels of level 2, whose rect has a border of one.
     const PyramidPlace place = placeOf(frame, 2);
@@ -409,6 +429,10 @@ struct Builder {
     readsPyramid(d);
     d->modeledBytes += 2 * kTexelBytes * texels(2);
     if (addsPoints) readsPoints(d, PELLUCID_BINDING_SHARED_POINTS, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE);
+    if (!skipsLight) return true;
+    if (!addsPoints) d->modeledBytes = 0;  // one of the two runs
+    indirect(d, addsPoints ? offsetof(shared::GatherDispatches, light)
+                           : offsetof(shared::GatherDispatches, noLight));
     return true;
   }
 };

@@ -102,6 +102,7 @@ ConstantsLayout constantsLayout(const PellucidFrame& frame) {
     place(&layout.gatherMaps, last.gatherMapBytes + kGatherMapWindow);
     place(&layout.recordMaps,
           last.recordMapBytes + PELLUCID_DISPATCH_SHADOWS * sizeof(shared::RecordMapConstants));
+    place(&layout.gatherDispatches, sizeof(shared::GatherDispatches));
   }
   return layout;
 }

@@ -128,8 +128,8 @@ struct ConstantsLayout {
     VkDeviceSize offset, size;
   };
   Range frame, lights, shadows, materials, kernels;
-  Range directional;             // kDirectionalWindow for each group of lights
-  Range gatherMaps, recordMaps;  // of frames that gather
+  Range directional;                               // kDirectionalWindow for each group of lights
+  Range gatherMaps, recordMaps, gatherDispatches;  // of frames that gather
   VkDeviceSize size;
   uint32_t lightCount;
 };

@@ -23,6 +23,7 @@ struct Stages {
   LightGroups groups;  // of lights
   bool overlaps;  // the gather runs beside the diffusion, which it does not wait for, with images of its own
   bool addsPoints;  // the diffusion's last dispatch adds what was gathered: no other light comes through
+  bool skipsLight;  // the GPU says whether anything was gathered
 
   // Dispatches that write a color transient or the output.
   uint32_t writers() const { return (history ? 1 : fused) + (diffusion ? 1 : 0) + (copies ? 1 : 0); }
@@ -48,6 +49,8 @@ Stages stagesOf(const PellucidFrame& frame) {
   s.fusesQuads = s.diffusion && s.lights && !s.history && frame.gatherSamples == 0;
   // More would be more transients than there are.
   s.overlaps = s.diffusion && s.groups.gathered == 1 && s.colorTransients() <= 1 && !s.history;
+  // Points that are kept are read where none is found, too.
+  s.skipsLight = s.overlaps && s.addsPoints && !s.keepsPoints && frame.indirectDispatches;
   return s;
 }
 
@@ -59,6 +62,7 @@ bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan
             stages.colorTransients(),
             stages.keepsPoints,
             stages.overlaps,
+            stages.skipsLight,
             plan};
   plan.activeLights = b.layout.lightCount;
   plan.constantsSize = b.layout.size;
@@ -171,6 +175,7 @@ bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan
     alongside();
     const uint32_t to = destination();
     fits = fits && b.diffuse(source, to, stages.addsPoints);
+    if (stages.skipsLight) fits = fits && b.diffuse(source, to, false);
     source = to;
   };
   // Gathered light has already spread on its way through; diffusing it again would spread it twice.

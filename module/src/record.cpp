@@ -79,7 +79,7 @@ extern "C" PellucidResult pellucidRecordPlan(const PellucidContext* c, VkCommand
       barrier.srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT;
       barrier.dstAccessMask = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT;
       VkPipelineStageFlags destination = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT;
-      if (d.indirect) {
+      if (d.barrierIndirect) {
         barrier.dstAccessMask |= VK_ACCESS_INDIRECT_COMMAND_READ_BIT;
         destination |= VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT;
       }

@@ -28,6 +28,7 @@
 #include "kGatherPointsDirectional.h"
 #include "kGatherRecords.h"
 #include "kGatherRecordsDirectional.h"
+#include "kGatherRecordsOneMap.h"
 #include "kGatherShare.h"
 #include "kQuads.h"
 #include "kQuadsAndCopy16f.h"
@@ -85,7 +86,8 @@ const std::array kShaders = {shader(kTranslucency16f),
                              shader(kDiffuseNormals16f),
                              shader(kDiffuseNormals32f),
                              shader(kDiffuseNormalsGather16f),
-                             shader(kDiffuseNormalsGather32f)};
+                             shader(kDiffuseNormalsGather32f),
+                             shader(kGatherRecordsOneMap)};
 static_assert(kShaders.size() == PELLUCID_PIPELINE_COUNT);
 
 }  // namespace

@@ -89,7 +89,8 @@ extern "C" const char* pellucidPipelineName(uint32_t pipeline) {
                                        "diffuse_normals_rgba16f",
                                        "diffuse_normals_rgba32f",
                                        "diffuse_normals_gather_rgba16f",
-                                       "diffuse_normals_gather_rgba32f"};
+                                       "diffuse_normals_gather_rgba32f",
+                                       "gather_records_one_map"};
   static_assert(names.size() == PELLUCID_PIPELINE_COUNT);
   return pipeline < names.size() ? names[pipeline] : "unknown pipeline";
 }
@@ -126,6 +127,7 @@ void dispatch(Text& out, const PellucidDispatch& d) {
   } else {
     out << "\"groups\":[" << d.groups[0] << "," << d.groups[1] << "," << d.groups[2] << "],";
   }
+  if (d.barrierIndirect) out << "\"barrierIndirect\":true,";
   out << "\"barrierBefore\":" << (d.barrierBefore ? "true" : "false")
       << ",\"modeledBytes\":" << d.modeledBytes << ",\"pushConstants\":[";
   for (std::size_t i = 0; i < std::size(d.pushConstants); ++i) out << (i ? "," : "") << d.pushConstants[i];

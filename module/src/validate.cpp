@@ -266,6 +266,8 @@ PellucidResult checkFrame(const PellucidFrame* frame, PellucidMessageFn fn, void
   if (!(f.minimumDot >= -1 && f.minimumDot <= 0))
     out.error("minimumDot", "is ", f.minimumDot, ", outside [-1, 0]");
   if (f.prescaleAngle > 1) out.error("prescaleAngle", "is ", f.prescaleAngle, ", neither 0 nor 1");
+  if (f.indirectDispatches > 1)
+    out.error("indirectDispatches", "is ", f.indirectDispatches, ", neither 0 nor 1");
   if (f.separateOutput > 1) out.error("separateOutput", "is ", f.separateOutput, ", neither 0 nor 1");
   checkMinimumDotTable(f, out);
   if (!(f.maximumThickness >= 0)) out.error("maximumThickness", "is ", f.maximumThickness, "; must be >= 0");

@@ -121,14 +121,72 @@ TEST_F(Gather, PlanGathersBesideTheDiffusion) {
   const Capture c = backlitSlab(1, PELLUCID_DEPTH_VIEW_Z);
   ReplaySettings coarse = settings(8);
   coarse.translucency.gatherSpacing = 4;
-  const PellucidPlan plan = replayer().run(c, {testMaterial()}, coarse).plan;
-  std::vector<std::string> beside;
-  for (uint32_t i = 0; i < plan.dispatchCount; ++i)
-    if (i > 0 && !plan.dispatches[i].barrierBefore) beside.push_back(plan.dispatches[i].name);
-  EXPECT_EQ(beside, (std::vector<std::string>{"gather records", "gather points", "gather share"}));
-  const PellucidDispatch& last = plan.dispatches[plan.dispatchCount - 1];
-  EXPECT_STREQ(last.name, "diffuse");
-  EXPECT_EQ(last.pipeline, static_cast<uint32_t>(PELLUCID_PIPELINE_DIFFUSE_GATHER_32F));
+  for (const bool indirect : {false, true}) {
+    coarse.indirectDispatches = indirect;
+    const PellucidPlan plan = replayer().run(c, {testMaterial()}, coarse).plan;
+    std::vector<std::string> beside, decided;
+    for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
+      const PellucidDispatch& d = plan.dispatches[i];
+      if (i > 0 && !d.barrierBefore) beside.push_back(d.name);
+      if (d.indirect) decided.push_back(d.name);
+      EXPECT_EQ(d.barrierIndirect != 0, indirect && d.name == std::string("resolve"))
+          << "share, the first that the GPU decides about, runs beside the resolve";
+    }
+    EXPECT_EQ(beside, (std::vector<std::string>{"gather records", "gather points", "gather share"}));
+    using Names = std::vector<std::string>;
+    EXPECT_EQ(decided, indirect ? Names({"gather share", "diffuse", "diffuse, none gathered"}) : Names());
+    EXPECT_EQ(plan.dispatches[plan.dispatchCount - (indirect ? 2 : 1)].pipeline,
+              static_cast<uint32_t>(PELLUCID_PIPELINE_DIFFUSE_GATHER_32F));
+  }
+}
+
+// The GPU leaves out what no point has light for, and finds the same pixels.
+TEST_F(Gather, SkipsWhatFindsNoLight) {
+  struct Case {
+    const char* name;
+    Capture capture;
+    bool light;
+  };
+  Case fromBehind{"slab lit from behind", flatCapture(64, 64, 1), true};
+  fromBehind.capture.lights = {backLight()};
+  fromBehind.capture.lights[0].shadowMaps = {flatShadowMap(-11, PELLUCID_DEPTH_VIEW_Z, 1024)};
+  Case fromTheFront{"slab lit from the front", flatCapture(64, 64, 1), false};
+  Light light = backLight();
+  light.direction = {0, 0, -1};
+  // What the camera sees, and no more.
+  light.shadowMaps = {flatShadowMap(0, PELLUCID_DEPTH_DEVICE)};
+  light.shadowMaps[0].clipFromWorld = fromTheFront.capture.clipFromView;
+  light.shadowMaps[0].depth.image = Image(64, 64, 1, 0.1f);
+  fromTheFront.capture.lights = {light};
+  Case curved{"the same, its normals turned", fromTheFront.capture, true};
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 64; ++x) {
+      const float tilt = 0.02f * static_cast<float>(x - 32), scale = 1 / std::hypot(tilt, 1.0f);
+      curved.capture.normal.at(x, y)[0] = scale * tilt;
+      curved.capture.normal.at(x, y)[2] = scale;
+    }
+
+  const Context context(device());
+  for (const Case& c : {fromBehind, fromTheFront, curved}) {
+    SCOPED_TRACE(c.name);
+    ReplaySettings s = settings(8);
+    s.translucency.gatherSpacing = 4;
+    const std::vector<PellucidMaterial> materials(c.capture.materials.size(), testMaterial());
+    const FrameRun run(device(), context, c.capture, materials, s);
+    device().run([&](VkCommandBuffer commands) { run.record(commands); });
+    for (uint32_t i = 0; i < run.plan().dispatchCount; ++i) {
+      const PellucidDispatch& d = run.plan().dispatches[i];
+      if (!d.indirect) continue;
+      VkDispatchIndirectCommand command;
+      std::memcpy(&command, static_cast<const char*>(run.constants()) + d.indirectOffset, sizeof command);
+      const bool runs = (d.name == std::string("diffuse, none gathered")) != c.light;
+      EXPECT_EQ(command.x, runs ? d.groups[0] : 0) << d.name;
+      EXPECT_EQ(command.y, d.groups[1]) << d.name;
+      EXPECT_EQ(command.z, 1u) << d.name;
+    }
+    s.indirectDispatches = false;
+    EXPECT_TRUE(sameBits(run.output(), replayer().run(c.capture, materials, s).output));
+  }
 }
 
 // Gathered light has already spread: lights without a map and marked pixels need a dispatch after the
@@ -140,6 +198,7 @@ TEST_F(Gather, OtherLightsAreAddedAfterTheDiffusion) {
     return plan.dispatches[plan.dispatchCount - 1].pipeline;
   };
   ReplaySettings s = settings(8);
+  s.indirectDispatches = false;
   s.translucency.gatherSpacing = 2;
   EXPECT_EQ(last(s), static_cast<uint32_t>(PELLUCID_PIPELINE_GATHER_32F));
   s.translucency.gatherSpacing = 4;

@@ -43,6 +43,7 @@ const std::vector<Violation> kViolations = {
     {"CoherenceThreshold", "coherenceThreshold", "nan", [](Frame& f) { f.frame.coherenceThreshold = NAN; }},
     {"PrescaleAngle", "prescaleAngle", "2", [](Frame& f) { f.frame.prescaleAngle = 2; }},
     {"SeparateOutput", "separateOutput", "2", [](Frame& f) { f.frame.separateOutput = 2; }},
+    {"IndirectDispatches", "indirectDispatches", "2", [](Frame& f) { f.frame.indirectDispatches = 2; }},
     {"FrameLoad", "frameLoad", "-1", [](Frame& f) { f.frame.frameLoad = -1; }},
     {"Quality", "quality", "4, outside 0..3", [](Frame& f) { f.frame.quality = 4; }},
     {"TargetError", "targetError", "inf", [](Frame& f) { f.frame.targetError = INFINITY; }},

@@ -268,6 +268,8 @@ typedef struct PellucidFrame {
   uint32_t separateOutput;  /* 1: the output shares no memory with the irradiance, which diffusion without a fused
                                dispatch before it (a gather, or no light) then reads itself and not a copy; 0
                                (default): it may be the same image */
+  uint32_t indirectDispatches; /* 1: the constants' buffer has usage INDIRECT_BUFFER, too: of a gather's dispatches
+                               those that the GPU finds nothing to do for are then empty. 0 (default): all run */
 } PellucidFrame;
 
 /* ---- Plan ------------------------------------------------------------------------------------ */
@@ -327,7 +329,8 @@ typedef enum PellucidPipeline {
   PELLUCID_PIPELINE_DIFFUSE_NORMALS_32F = 33,
   PELLUCID_PIPELINE_DIFFUSE_NORMALS_GATHER_16F = 34,
   PELLUCID_PIPELINE_DIFFUSE_NORMALS_GATHER_32F = 35,
-  PELLUCID_PIPELINE_COUNT = 36
+  PELLUCID_PIPELINE_GATHER_RECORDS_ONE_MAP = 36, /* as DIRECTIONAL, of one light with one map */
+  PELLUCID_PIPELINE_COUNT = 37
 } PellucidPipeline;
 
 enum {
@@ -348,11 +351,13 @@ typedef struct PellucidBinding {
 typedef struct PellucidDispatch {
   const char* name;             /* static string */
   uint32_t pipeline;            /* PellucidPipeline */
-  uint32_t groups[3];           /* workgroups; unused when indirect */
-  uint32_t indirect;            /* 1: VkDispatchIndirectCommand at indirectOffset of indirectResource */
+  uint32_t groups[3];           /* workgroups; the most there may be when indirect */
+  uint32_t indirect;            /* 1: VkDispatchIndirectCommand at indirectOffset of indirectResource, which earlier
+                                   dispatches decide */
   uint32_t indirectResource;
   VkDeviceSize indirectOffset;
   uint32_t barrierBefore;       /* 1: a compute-to-compute memory barrier precedes the dispatch */
+  uint32_t barrierIndirect;     /* 1: DRAW_INDIRECT / INDIRECT_COMMAND_READ waits for that barrier, too */
   uint32_t pushConstants[PELLUCID_PUSH_CONSTANT_BYTES / 4];
   uint32_t bindingCount;
   PellucidBinding bindings[PELLUCID_MAX_BINDINGS];
@@ -478,7 +483,8 @@ void pellucidStepBudget(PellucidBudgetState* state, float measuredMs, float budg
 
 /* ---- Recording ------------------------------------------------------------------------------- */
 
-/* Host-visible, host-coherent memory for one recording, usage STORAGE_BUFFER | UNIFORM_BUFFER. All
+/* Host-visible, host-coherent memory for one recording, usage STORAGE_BUFFER | UNIFORM_BUFFER, with
+ * frame.indirectDispatches INDIRECT_BUFFER, too: then the device writes to it. All
  * passes read it, so it should be device-local, too, where there is such memory: in the host's a frame
  * of 3840 x 2160 takes 3 us longer on an NVIDIA H200. */
 typedef struct PellucidConstantsSlice {
