@@ -44,6 +44,7 @@ constexpr std::array<const char*, 3> kChannelNames = {"R", "G", "B"};
 struct Options {
   std::string a, b, mask, diff, subset = "all";
   int box = 1;
+  double boxCoverage = 0.5;
   std::vector<std::string> limits;
   bool json = false;
 };
@@ -105,6 +106,7 @@ Json toJson(const Comparison& comparison, const Options& options) {
   Json json = {{"a", options.a},
                {"b", options.b},
                {"box", options.box},
+               {"boxCoverage", options.boxCoverage},
                {"pixels", comparison.pixels},
                {"samples", comparison.samples},
                {"nonFinite", {{"a", comparison.nonFiniteA}, {"b", comparison.nonFiniteB}}}};
@@ -168,7 +170,7 @@ void compare(const Options& options) {
       capture ? comparisonMask(capture->material, capture->irradiance, subset) : std::vector<std::uint8_t>();
   Comparison comparison;
   try {
-    comparison = compareImages(a, b, mask, options.box);
+    comparison = compareImages(a, b, mask, options.box, options.boxCoverage);
   } catch (const InputError& error) {
     throw InputError(options.a + " (A), " + options.b + " (B)", "", error.what());
   }
@@ -187,8 +189,13 @@ void addCompareCommand(CLI::App& app) {
       ->required();
   command->add_option("--mask", options->mask,
                       "capture whose material pixels count (default: B's, else all pixels)");
-  command->add_option("--box", options->box, "average blocks of NxN pixels first; half of a block must count")
+  command->add_option("--box", options->box, "average blocks of NxN pixels first")
       ->check(CLI::Range(1, 4096))
+      ->capture_default_str();
+  command
+      ->add_option("--box-coverage", options->boxCoverage,
+                   "part of a block's pixels that must count, else it is left out")
+      ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
   command
       ->add_option("--subset", options->subset,

@@ -21,6 +21,7 @@ struct Options {
   std::vector<std::string> captures;
   std::string output, device, picture, plot;
   int box = 4;
+  double boxCoverage = 0.5;
   bool reference = false;
 };
 
@@ -54,10 +55,10 @@ std::string cells(const Comparison& c) {
   return text;
 }
 
-std::string compared(const Capture& capture, const Image& image, Subset subset, int box) {
+std::string compared(const Capture& capture, const Image& image, Subset subset, const Options& options) {
   const auto mask = comparisonMask(capture.material, capture.irradiance, subset);
   if (std::find(mask.begin(), mask.end(), 1) == mask.end()) return "no such pixels | ";
-  return cells(compareImages(image, capture.truth->image, mask, box));
+  return cells(compareImages(image, capture.truth->image, mask, options.box, options.boxCoverage));
 }
 
 // What the samples converge to, over brute-force diffusion.
@@ -88,7 +89,7 @@ void writePicture(const std::string& path, const Capture& capture,
 // Relative RMSE of the unlit pixels against samples, one line a capture and channel.
 std::vector<Series> samplesAgainstError(const std::string& name, const Capture& capture,
                                         const std::vector<PellucidMaterial>& materials, Replayer& replayer,
-                                        int box) {
+                                        const Options& options) {
   const auto mask = comparisonMask(capture.material, capture.irradiance, Subset::Unlit);
   if (std::find(mask.begin(), mask.end(), 1) == mask.end()) return {};
   std::vector<Series> lines(3);
@@ -99,7 +100,8 @@ std::vector<Series> samplesAgainstError(const std::string& name, const Capture& 
   }
   for (const std::uint32_t samples : {4u, 8u, 16u, 32u, 64u}) {
     const Image image = rgb(replayer.run(capture, materials, gather(samples)).output);
-    const Comparison comparison = compareImages(image, capture.truth->image, mask, box);
+    const Comparison comparison =
+        compareImages(image, capture.truth->image, mask, options.box, options.boxCoverage);
     for (std::size_t c = 0; c < 3; ++c) {
       lines[c].x.push_back(samples);
       lines[c].y.push_back(comparison.channels[c].relativeRmse);
@@ -114,7 +116,8 @@ void evaluate(const Options& options) {
   std::ostringstream table;
   std::vector<Plot> plots;
   table << "Relative RMSE and mean bias (R G B) against path-traced truth, " << options.box << "x"
-        << options.box << " averages; unlit: pixels without front irradiance.\n\n"
+        << options.box << " averages of which " << 100 * options.boxCoverage
+        << " % and more are surface; unlit: pixels without front irradiance.\n\n"
         << "| capture | model | all | bias | unlit | bias |\n|-|-|-|-|-|-|\n";
   for (const std::string& path : options.captures) {
     const Capture capture = readCapture(path);
@@ -125,21 +128,20 @@ void evaluate(const Options& options) {
         file.extension() == ".json" ? file.parent_path().filename().string() : file.stem().string();
     for (const Model& model : models()) {
       const Image image = rgb(replayer.run(capture, materials, model.settings).output);
-      table << "| " << name << " | " << model.name << " | "
-            << compared(capture, image, Subset::All, options.box) << " | "
-            << compared(capture, image, Subset::Unlit, options.box) << " |\n";
+      table << "| " << name << " | " << model.name << " | " << compared(capture, image, Subset::All, options)
+            << " | " << compared(capture, image, Subset::Unlit, options) << " |\n";
     }
     if (options.reference) {
       const Image image = allTexels(capture, materials);
       table << "| " << name << " | float64: all texels, exact diffusion | "
-            << compared(capture, image, Subset::All, options.box) << " | "
-            << compared(capture, image, Subset::Unlit, options.box) << " |\n";
+            << compared(capture, image, Subset::All, options) << " | "
+            << compared(capture, image, Subset::Unlit, options) << " |\n";
     }
     if (!options.picture.empty() && &path == &options.captures.front())
       writePicture(options.picture, capture, materials, replayer);
     if (!options.plot.empty()) {
       Plot plot{name + ", unlit pixels", {"samples", true, {}, {}}, {"relative RMSE", false, 0.0, 0.6}, {}};
-      plot.series = samplesAgainstError(name, capture, materials, replayer, options.box);
+      plot.series = samplesAgainstError(name, capture, materials, replayer, options);
       plots.push_back(std::move(plot));
     }
   }
@@ -163,6 +165,11 @@ void addEvaluateCommand(CLI::App& app) {
   command->add_option("-o,--output", options->output, "Markdown file; default: standard output");
   command->add_option("--box", options->box, "average NxN pixels first")
       ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+  command
+      ->add_option("--box-coverage", options->boxCoverage,
+                   "part of an average's pixels that must be surface, else it is left out")
+      ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
   command->add_flag("--reference", options->reference,
                     "also the float64 gather over all texels with brute-force diffusion; minutes");

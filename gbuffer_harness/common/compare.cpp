@@ -72,7 +72,8 @@ std::vector<std::uint8_t> comparisonMask(const std::vector<std::uint8_t>& materi
   return mask;
 }
 
-Comparison compareImages(const Image& a, const Image& b, const std::vector<std::uint8_t>& mask, int box) {
+Comparison compareImages(const Image& a, const Image& b, const std::vector<std::uint8_t>& mask, int box,
+                         double coverage) {
   const auto size = [](const Image& image) {
     return std::to_string(image.width) + "x" + std::to_string(image.height);
   };
@@ -107,7 +108,7 @@ Comparison compareImages(const Image& a, const Image& b, const std::vector<std::
           }
         }
       }
-      if (used == 0 || 2 * used < (bottom - top) * (right - left)) continue;
+      if (used == 0 || used < coverage * ((bottom - top) * (right - left))) continue;
       ++result.samples;
       for (int c = 0; c < channels; ++c) {
         samples[static_cast<std::size_t>(c)].a.push_back(sumA[c] / used);

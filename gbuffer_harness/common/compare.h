@@ -38,9 +38,10 @@ struct Comparison {
 
 // Compares the channels that both images have, at most three. `mask`: one value per pixel, 0 leaves it
 // out; empty: all pixels. box > 1: a sample is the mean over the masked pixels of a box x box block,
-// blocks counted from pixel (0, 0); blocks with fewer than half of their pixels (those inside the
-// image) left are not samples. Dividing by an RMS(B) or mean of 0 gives 0 for equal channels, else
-// infinity. Throws InputError when the sizes differ or no sample is left.
-Comparison compareImages(const Image& a, const Image& b, const std::vector<std::uint8_t>& mask, int box = 1);
+// blocks counted from pixel (0, 0); blocks of whose pixels (those inside the image) less than the part
+// `coverage` is left, or none, are not samples. Dividing by an RMS(B) or mean of 0 gives 0 for equal
+// channels, else infinity. Throws InputError when the sizes differ or no sample is left.
+Comparison compareImages(const Image& a, const Image& b, const std::vector<std::uint8_t>& mask, int box = 1,
+                         double coverage = 0.5);
 
 }  // namespace pellucid::harness

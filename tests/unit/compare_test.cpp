@@ -107,6 +107,9 @@ TEST(Compare, BoxesNeedHalfOfTheirPixels) {
   EXPECT_EQ(compareImages(a, b, {1, 0, 1, 0, 0, 0}, 2).samples, 1u);         // 1 of 4, 1 of 2
   EXPECT_EQ(compareImages(a, b, {1, 0, 1, 0, 0, 0}, 2).channels[0].max, 8);  // the 9
   EXPECT_EQ(compareImages(a, b, {}, 100).samples, 1u);
+  // Or all of them: the whole block, and of the half one what is inside the image.
+  EXPECT_EQ(compareImages(a, b, {1, 1, 0, 1, 1, 1}, 2, 1).samples, 1u);
+  EXPECT_EQ(compareImages(a, b, {1, 0, 1, 1, 1, 1}, 2, 1).channels[0].max, 8);
 }
 
 TEST(Compare, NonFinitePixelsAreCountedAndLeftOut) {
