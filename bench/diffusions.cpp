@@ -76,11 +76,12 @@ std::vector<double> diffusionErrors(const Site& site) {
   return errors;
 }
 
-Plot timeAgainstError(const std::string& title, const std::vector<TimedError>& points) {
+Plot timeAgainstError(const std::string& title, const std::vector<TimedError>& points,
+                      const std::string& from) {
   const Color colors[] = {{200, 30, 30}, {30, 90, 200}, {20, 140, 60}, {150, 80, 160}};
   Plot plot;
   plot.title = title;
-  plot.x = decades("relative RMSE from brute force", points, &TimedError::error);
+  plot.x = decades("relative RMSE from " + from, points, &TimedError::error);
   plot.y = decades("microseconds", points, &TimedError::time);
   for (const TimedError& p : points) {
     const std::string family = p.name.substr(0, p.name.find(','));

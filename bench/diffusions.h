@@ -40,7 +40,9 @@ struct TimedError {
   double error, time;  // relative RMSE; microseconds
 };
 
-// A family of variants is a color: what stands before the comma of its members' names.
-harness::Plot timeAgainstError(const std::string& title, const std::vector<TimedError>& points);
+// A family of variants is a color: what stands before the comma of its members' names. `from`: what errors
+// are from.
+harness::Plot timeAgainstError(const std::string& title, const std::vector<TimedError>& points,
+                               const std::string& from = "brute force");
 
 }  // namespace pellucid::bench

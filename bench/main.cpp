@@ -11,6 +11,7 @@
 #include "common/error.h"
 #include "diffusions.h"
 #include "floor.h"
+#include "gather_error.h"
 #include "pellucid/pellucid_material.h"
 #include "report.h"
 #include "scene.h"
@@ -131,34 +132,39 @@ void fusedDispatch(const Bench& bench) {
 
 // What the gather adds to a frame, in place of the fused dispatch: over a frame without it that is otherwise
 // the same.
-void gathered(const Bench& bench) {
+std::vector<TimedError> gathered(const Bench& bench) {
   const auto frame = [&](const Capture& capture, uint32_t samples, uint32_t spacing) {
     ReplaySettings settings;
     settings.translucency.gatherSamples = samples;
     settings.translucency.gatherSpacing = spacing;
     return bench.frame(capture, settings);
   };
-  const auto added = [&](const std::string& name, const Capture& capture, uint32_t samples,
-                         uint32_t spacing) {
+  const auto added = [&](const std::string& name, const Capture& capture, uint32_t samples, uint32_t spacing,
+                         std::optional<double> error) {
     const Variant without = moduleVariant(frame(capture, 0, 0), ""),
                   with = moduleVariant(frame(capture, samples, spacing), "");
     const Time a = bench.time(without.record), b = bench.time(with.record);
-    bench.report.add({name,
-                      with.dispatches - without.dispatches,
-                      with.barriers - without.barriers,
-                      with.bytesPerPixel - without.bytesPerPixel,
-                      {}},
+    bench.report.add({name, with.dispatches - without.dispatches, with.barriers - without.barriers,
+                      with.bytesPerPixel - without.bytesPerPixel, error},
                      {b.median - a.median, b.low - a.high, b.high - a.low});
+    return b.median - a.median;
   };
-  bench.report.section("gather, added to the frame");
-  for (const uint32_t samples : {4u, 8u, 16u, 32u})
-    added(std::to_string(samples) + " samples", bench.fullSlab(), samples, 0);
-  added("8 samples, a point in 2 x 2 pixels", bench.fullSlab(), 8, 2);
-  added("8 samples, nothing transmitted", litFromTheFront(bench.fullSlab()), 8, 0);
+  bench.report.section("gather, added to the frame; error: from all texels");
+  const std::vector<uint32_t> samples = {4, 8, 16, 32};
+  const std::vector<double> errors = gatherErrors(bench.site, samples);
+  std::vector<TimedError> points;
+  for (size_t i = 0; i < samples.size(); ++i) {
+    const std::string name = std::to_string(samples[i]) + " samples";
+    const double time = added(name, bench.fullSlab(), samples[i], 0, errors[i]);
+    points.push_back({"gather, " + name, errors[i], std::max(time, 1.0)});  // the axis is logarithmic
+  }
+  added("8 samples, a point in 2 x 2 pixels", bench.fullSlab(), 8, 2, {});
+  added("8 samples, nothing transmitted", litFromTheFront(bench.fullSlab()), 8, 0, {});
   bench.report.section("gather, 8 samples");
   dispatches(bench, *frame(bench.fullSlab(), 8, 0));
   bench.report.section("gather, 8 samples, nothing transmitted");
   dispatches(bench, *frame(litFromTheFront(bench.fullSlab()), 8, 0));
+  return points;
 }
 
 // Errors against the module, on the ear.
@@ -213,15 +219,17 @@ void bench(const Options& options) {
   if (wanted("module")) modulePlans(b);
   if (wanted("edges")) edges(b);
   if (wanted("fused")) fusedDispatch(b);
-  if (wanted("gather")) gathered(b);
+  std::vector<Plot> plots, gatherPlots, sweepPlots;
+  if (wanted("gather"))
+    gatherPlots = {timeAgainstError("added, " + device.description(), gathered(b), "all texels")};
   if (wanted("steps")) separateSteps(b);
-  std::vector<Plot> plots, sweepPlots;
   if (wanted("diffusion")) plots = {timeAgainstError(device.description(), diffusion(b))};
   nlohmann::json rows;
   if (wanted("sweep")) rows = sweep(site, options.sweep, options.repeat, table, &sweepPlots);
   if (!options.plot.empty()) {
     std::filesystem::create_directories(options.plot);
     if (!plots.empty()) writePlot(options.plot / "diffusion.png", plots);
+    if (!gatherPlots.empty()) writePlot(options.plot / "gather.png", gatherPlots);
     if (!sweepPlots.empty()) writePlot(options.plot / "sweep.png", sweepPlots);
   }
 
@@ -284,7 +292,8 @@ int main(int argc, char** argv) {
   app.add_option("--json", options.json, "file to write, - for standard output");
   app.add_flag("--ratios", options.ratios,
                "leave times out of the JSON: a software device only ranks variants");
-  app.add_option("--plot", options.plot, "folder for diffusion.png and sweep.png: time against error");
+  app.add_option("--plot", options.plot,
+                 "folder for diffusion.png, gather.png and sweep.png: time against error");
   CLI11_PARSE(app, argc, argv);
   try {
     bench(options);

@@ -49,7 +49,7 @@ std::string measured(const Json& results) {
   };
   const char* const module = "module, 100 % covered";
   const char* const diffusion = "diffusion; error: from brute force";
-  const char* const gather = "gather, added to the frame";
+  const char* const gather = "gather, added to the frame; error: from all texels";
   const Row rows[] = {
       {"whole frame", module, "whole frame"},
       {"whole frame, a quarter covered", "module, 25 % covered", "whole frame"},

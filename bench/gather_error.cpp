@@ -1,0 +1,43 @@
+#include "gather_error.h"
+
+#include <algorithm>
+
+#include "bench_frame.h"
+#include "common/compare.h"
+#include "reference/reference.h"
+#include "scene/scene.h"
+
+namespace pellucid::bench {
+
+using namespace harness;
+
+std::vector<double> gatherErrors(const Site& site, const std::vector<uint32_t>& samples) {
+  SceneParameters p;
+  p.name = "ear";
+  p.width = p.height = 128;
+  p.shadowSize = 384;
+  Capture capture = makeScene(p);
+  capture.albedo = {};
+  capture.lights.resize(1);
+  ReplaySettings settings;
+  settings.features = PELLUCID_FEATURE_TRANSLUCENCY;
+  settings.translucency.gatherSamples = samples.front();
+  reference::Settings all;
+  all.features = settings.features;
+  all.translucency = settings.translucency;
+  const std::vector<PellucidMaterial> materials(capture.materials.size(), site.material);
+  const Image truth = reference::compute(capture, materials, all).image;
+  const auto mask = comparisonMask(capture.material, capture.irradiance, Subset::All);
+  std::vector<double> errors;
+  for (const uint32_t n : samples) {
+    settings.translucency.gatherSamples = n;
+    const Image image = site.run(moduleVariant(site.frame(capture, settings), ""));
+    double worst = 0;
+    for (const ChannelDifference& channel : compareImages(image, truth, mask, 4).channels)
+      worst = std::max(worst, channel.relativeRmse);
+    errors.push_back(worst);
+  }
+  return errors;
+}
+
+}  // namespace pellucid::bench
