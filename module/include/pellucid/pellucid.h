@@ -484,9 +484,9 @@ void pellucidStepBudget(PellucidBudgetState* state, float measuredMs, float budg
 /* ---- Recording ------------------------------------------------------------------------------- */
 
 /* Host-visible, host-coherent memory for one recording, usage STORAGE_BUFFER | UNIFORM_BUFFER, with
- * frame.indirectDispatches INDIRECT_BUFFER, too: then the device writes to it. All
- * passes read it, so it should be device-local, too, where there is such memory: in the host's a frame
- * of 3840 x 2160 takes 3 us longer on an NVIDIA H200. */
+ * frame.indirectDispatches INDIRECT_BUFFER, too: then the device writes there what it decides, which
+ * holds until the constants are written again. All passes read it, so it should be device-local, too,
+ * where there is such memory: in the host's a frame of 3840 x 2160 takes 3 us longer on an NVIDIA H200. */
 typedef struct PellucidConstantsSlice {
   VkBuffer buffer;
   VkDeviceSize offset; /* multiple of 256, the largest alignment Vulkan lets a device ask for */
