@@ -170,6 +170,8 @@ void makeFrame(const Capture& capture, const std::vector<PellucidMaterial>& mate
   f.quality = settings.quality;
   f.targetError = settings.targetError;
   f.nearestDistance = settings.nearestDistance;
+  f.separateOutput = !settings.aliasOutput || settings.debugView != PELLUCID_DEBUG_NONE;
+  f.indirectDispatches = settings.indirectDispatches;
   f.debugView = settings.debugView;
 }
 

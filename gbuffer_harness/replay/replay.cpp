@@ -25,15 +25,13 @@ public:
     for (size_t i = 0; i < data.shadowDepths.size(); ++i)
       data.shadowImages[i] = add(*data.shadowDepths[i], VK_FORMAT_R32_SFLOAT);
 
-    f.indirectDispatches = settings.indirectDispatches;
     const bool debug = settings.debugView != PELLUCID_DEBUG_NONE;
-    if (settings.aliasOutput && !debug) {
+    if (!f.separateOutput) {
       f.output = f.irradiance;
       output_ = &irradiance;
     } else {
       output_ = &create(width_, height_, settings.outputFormat);
       f.output = output_->use();
-      f.separateOutput = 1;
       if (debug)
         output_->clear();
       else
