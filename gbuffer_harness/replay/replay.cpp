@@ -127,11 +127,15 @@ void FrameRun::record(VkCommandBuffer commandBuffer, const PellucidPlan& plan) c
 
 void FrameRun::record(VkCommandBuffer commandBuffer) const { record(commandBuffer, *plan_); }
 
-void FrameRun::record(VkCommandBuffer commandBuffer, uint32_t dispatch) const {
+PellucidPlan FrameRun::only(uint32_t dispatch) const {
   PellucidPlan single = *plan_;
   single.dispatchCount = 1;
   single.dispatches[0] = plan_->dispatches[dispatch];
-  record(commandBuffer, single);
+  return single;
+}
+
+void FrameRun::record(VkCommandBuffer commandBuffer, uint32_t dispatch) const {
+  record(commandBuffer, only(dispatch));
   // Of all dispatches, that the GPU decides by.
   requireOk(pellucidWriteConstants(plan_.get(), &data_.frame, constants_->mapped(),
                                    static_cast<size_t>(constants_->size())),
@@ -139,9 +143,7 @@ void FrameRun::record(VkCommandBuffer commandBuffer, uint32_t dispatch) const {
 }
 
 void FrameRun::recordAlone(VkCommandBuffer commandBuffer, uint32_t dispatch) const {
-  PellucidPlan single = *plan_;
-  single.dispatchCount = 1;
-  single.dispatches[0] = plan_->dispatches[dispatch];
+  PellucidPlan single = only(dispatch);
   single.dispatches[0].indirect = 0;
   record(commandBuffer, single);
 }

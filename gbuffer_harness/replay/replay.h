@@ -55,6 +55,7 @@ private:
   class Images;
 
   void record(VkCommandBuffer commandBuffer, const PellucidPlan& plan) const;
+  PellucidPlan only(uint32_t dispatch) const;
 
   const Context& context_;
   std::string name_;
