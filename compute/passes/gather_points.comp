@@ -1,5 +1,5 @@
 // Points of the gather: in each cell of 2x2 or 4x4 pixels one gathers what light has gone through a part, from
-// records. Neighbors take samples of their own, nine patterns in 3x3 cells; gather_share.comp shares what they find.
+// records. Neighbors take samples of their own, by thirteen patterns; gather_share.comp shares what they find.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -116,14 +116,15 @@ vec3 onRing(vec3 center, vec3 across, vec3 along, vec2 offset) { return center +
 struct Pattern {
   float within, turn; // [0, 1): place in a ring, turn of the first sample
 };
-const float kMostWithin = 0.5 + 4.0 / 9.0;
+const float kMostWithin = 0.5 + 6.0 / 13.0;
 
 Pattern patternOf(ivec2 cell, uint m, float front) {
   vec2 spacing = float(pass.value.x) * pixelSize(frame.camera, front);
   float vary = clamp(2.0 - dot(spacing, spacing) * materials[m].gather.profile.w, 0.0, 1.0);
-  ivec2 at = cell % 3;
-  int pattern = (at.x + 3 * at.y) * 4 % 9; // fills the strata, and the turn between a sample and its like
-  return Pattern(0.5 + vary * (float(pattern) - 4.0) / 9.0, vary * float(at.x + 3 * at.y) / 9.0);
+  // A cell and the twelve that it shares with have one of thirteen each. A lattice fills the strata, and the turn between a
+  // sample and its like. It begins off the axes, along which edges often lie: of eight turns the one that errs least.
+  int turn = (cell.x + 5 * cell.y) % 13, within = turn * 5 % 13;
+  return Pattern(0.5 + vary * (float(within) - 6.0) / 13.0, vary * (float(turn) / 13.0 + 0.025));
 }
 
 // From points of the light's maps.
@@ -174,7 +175,8 @@ Gathered gatherLight(uint m, LightConstants light, Surface x, Pattern pattern) {
     float share = record.enters * rings.axisCosine;
     // A point light's is its intensity: per square scene unit at s. At the light itself any finite value will do.
     if (!parallel) share *= mm * mm / max(dot(toLight, toLight), 1.0e-12 * mm * mm);
-    sum.transmitted += share * opposite * gatherTransmitted(slabOf(m, lengths, h), h, near, far);
+    float curved = (1.0 - opposite) * min(squaredH / max(squared, 1.0e-12), 1.0);
+    sum.transmitted += share * opposite * gatherTransmitted(lengths, slabOf(m, lengths, h), curved, h, near, far);
     if (opposite < 0.99) {
       vec3 reflected = (1.0 - opposite) * gatherReflected(profile, near, far);
       sum.entering += share * reflected;

@@ -12,7 +12,9 @@ layout(set = 0, binding = PELLUCID_BINDING_MATERIALS) readonly buffer Materials 
 layout(set = 0, binding = PELLUCID_BINDING_RECORDS) uniform utexture2D foundImage;
 layout(set = 0, binding = PELLUCID_BINDING_POINTS, rgba32ui) uniform writeonly uimage2D sharedImage;
 
-const int kRow = PELLUCID_SHARE_GROUP + 2; // a border of one
+const int kReach = 2; // cells, across and along together
+const int kSquare = 2 * kReach + 1, kRow = PELLUCID_SHARE_GROUP + 2 * kReach;
+const int kBorder = kRow * kRow - PELLUCID_SHARE_GROUP * PELLUCID_SHARE_GROUP;
 
 shared vec4 places[kRow * kRow];  // position; w: bits of the material, 0: nothing there
 shared uvec4 found[kRow * kRow];  // as points have light; the normal in halves, in place of the points' own
@@ -23,16 +25,19 @@ uvec4 pointAt(ivec2 cell, ivec4 cells) {
 }
 
 void keepPoint(ivec2 local, ivec2 cell, int side, uvec4 bits) {
-  int at = (local.y + 1) * kRow + local.x + 1;
+  int at = (local.y + kReach) * kRow + local.x + kReach;
   vec3 normal = normalOf(bits);
   places[at] = vec4(viewPosition(cell, side, unpackPoint(bits)), uintBitsToFloat(bits.z & 0xFFu));
   found[at] = uvec4(bits.x, (bits.y & 0xFFFFu) | packHalf2x16(vec2(0.0, normal.x)), packHalf2x16(normal.yz), bits.w);
 }
 
-// The i-th cell of the border: above, below, then by rows.
+// The i-th cell of the border: whole rows above and below, then by rows.
 ivec2 borderCell(int i) {
-  if (i < 2 * kRow) return i < kRow ? ivec2(i - 1, -1) : ivec2(i - kRow - 1, kRow - 2);
-  return ivec2((i & 1) * (kRow - 1) - 1, (i - 2 * kRow) >> 1);
+  bool whole = i < 2 * kReach * kRow;
+  if (!whole) i -= 2 * kReach * kRow;
+  int columns = whole ? kRow : 2 * kReach, across = i % columns, along = i / columns;
+  int skips = (whole ? along : across) < kReach ? 0 : PELLUCID_SHARE_GROUP;
+  return (whole ? ivec2(across, along + skips) : ivec2(across + skips, along + kReach)) - kReach;
 }
 
 void main() {
@@ -40,7 +45,7 @@ void main() {
   ivec4 cells = cellsOf(frame.rect, side);
   ivec2 local = ivec2(gl_LocalInvocationID.xy), first = cells.xy + ivec2(gl_WorkGroupID.xy) * PELLUCID_SHARE_GROUP;
   ivec2 cell = first + local, border = borderCell(index);
-  bool hasBorder = index < 4 * kRow - 4;
+  bool hasBorder = index < kBorder;
   uvec4 own = pointAt(cell, cells), beside = kNoPoint;
   if (hasBorder) beside = pointAt(first + border, cells);
   if (index == 0) someLight = someDisplaced = 0u;
@@ -60,19 +65,23 @@ void main() {
     imageStore(sharedImage, cell, own);
     return;
   }
-  int center = (local.y + 1) * kRow + local.x + 1;
+  int center = (local.y + kReach) * kRow + local.x + kReach;
   vec3 place = places[center].xyz, normal = vec3(unpackHalf2x16(found[center].y).y, unpackHalf2x16(found[center].z));
   float mm = frame.camera.range.w;
   float perSquare = materials[material - 1u].gather.profile.w * mm * mm, total = 0.0;
   vec3 added = vec3(0.0), displaced = vec3(0.0);
-  [[unroll]] for (int i = 0; i < 9; ++i) {
-    int other = center + (i / 3 - 1) * kRow + i % 3 - 1;
+  [[unroll]] for (int i = 0; i < kSquare * kSquare; ++i) {
+    ivec2 away = ivec2(i % kSquare, i / kSquare) - kReach;
+    if (abs(away.x) + abs(away.y) > kReach) continue; // known when compiled
+    int other = center + away.y * kRow + away.x;
     vec4 theirs = places[other];
     uvec4 bits = found[other];
     vec3 apart = theirs.xyz - place;
     vec2 middle = unpackHalf2x16(bits.y);
     float facing = max(dot(vec3(middle.y, unpackHalf2x16(bits.z)), normal), 0.0);
-    float weight = floatBitsToUint(theirs.w) == material ? exp2(-dot(apart, apart) * perSquare) * facing : 0.0;
+    // To the fourth: alike on planes, and what surfaces turn over is not evened out.
+    facing *= facing;
+    float weight = floatBitsToUint(theirs.w) == material ? exp2(-dot(apart, apart) * perSquare) * facing * facing : 0.0;
     added += weight * vec3(unpackHalf2x16(bits.x), middle.x);
     if (someDisplaced != 0u) displaced += weight * displacedOf(bits);
     total += weight;
