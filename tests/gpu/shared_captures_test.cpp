@@ -92,13 +92,19 @@ TEST_P(SharedCaptureGather, IsNearAllTexels) {
   ReplaySettings s;
   s.features = PELLUCID_FEATURE_TRANSLUCENCY;
   s.translucency.gatherSamples = 16;
+  const Image image = rgb(replayer().run(capture, materials, s).output);
+  // One average in 16: the sum of all takes minutes.
+  Capture some = capture;
+  for (int y = 0; y < capture.height; ++y)
+    for (int x = 0; x < capture.width; ++x)
+      if (x / 4 % 4 != 1 || y / 4 % 4 != 1) some.material[static_cast<size_t>(y * capture.width + x)] = 0;
   pellucid::harness::reference::Settings all;
   all.features = s.features;
   all.translucency = s.translucency;
-  const auto channels = compareImages(rgb(replayer().run(capture, materials, s).output),
-                                      pellucid::harness::reference::compute(capture, materials, all).image,
-                                      comparisonMask(capture.material, capture.irradiance, Subset::All), 4)
-                            .channels;
+  const auto channels =
+      compareImages(image, pellucid::harness::reference::compute(some, materials, all).image,
+                    comparisonMask(some.material, some.irradiance, Subset::All), 4)
+          .channels;
   for (size_t c = 0; c < 3; ++c) EXPECT_LT(channels[c].relativeRmse, GetParam().ofAllTexels[c]) << c;
 }
 
