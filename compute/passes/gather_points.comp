@@ -242,15 +242,16 @@ float meanCurvature(ivec2 pixel, ivec2 steps, Beside across, Beside along, Surfa
   return abs(area) > least ? 0.5 * dot(x.normal, cross(turnA, b) + cross(a, turnB)) / (area * mm) : 0.0;
 }
 
-// More light than this comes back only where the first order in the curvature does not hold.
-const float kMostConvexity = 1.0 / 3.0;
+// Where surfaces curve more, what comes back more has entered where it is darker, or is gathered.
+const float kMostConvexity = 0.1;
 
 // By how much more light comes back, of each channel, from the surface of the cell's point as it is curved.
 vec3 convexity(ivec2 cell, int side, Point p, Surface x) {
   vec4 perCurvature = materials[p.material - 1u].gather.convexity;
   ivec2 steps = besideSteps(cell, p.front, perCurvature.w), pixel = pixelInCell(cell, side, p.index);
   Beside across = besideAt(pixel + ivec2(steps.x, 0)), along = besideAt(pixel + ivec2(0, steps.y));
-  return min(perCurvature.rgb * meanCurvature(pixel, steps, across, along, x, perCurvature.w), vec3(kMostConvexity));
+  vec3 more = perCurvature.rgb * meanCurvature(pixel, steps, across, along, x, perCurvature.w);
+  return clamp(more, vec3(-kMostConvexity), vec3(kMostConvexity));
 }
 
 void gatherLights(Surface x, Pattern pattern, inout Point result) {

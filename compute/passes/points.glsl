@@ -4,7 +4,7 @@
 
 struct Point {
   vec3 added;     // irradiance
-  vec3 displaced; // share of the diffused irradiance, -1/3..1; below 0: more of it comes back
+  vec3 displaced; // share of the diffused irradiance, -1/10..1; below 0: more of it comes back
   vec3 normal;    // unit
   float front;    // planar distance
   uint material;  // index + 1; 0: nothing there
@@ -27,8 +27,8 @@ vec3 fromOctahedral(vec2 p) {
   return normalize(n);
 }
 
-// Shares of -1/3 to 1 in 9 bits, 0 as 0.
-const int kMostDisplaced = 383, kLeastDisplaced = -128;
+// Shares of -1/10 to 1 in 9 bits, 0 as 0.
+const int kMostDisplaced = 460, kLeastDisplaced = -46;
 
 // A point with other light.
 uvec4 replaceLight(uvec4 bits, vec3 added, vec3 displaced) {

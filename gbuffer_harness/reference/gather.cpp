@@ -18,6 +18,8 @@ constexpr double kTail = 1e-4;
 constexpr int kBlock = 16;
 // A surface seen more obliquely by the light than this counts as if it were not.
 constexpr double kLeastCosine = 0.05;
+// What curvature adds to the diffusion, or takes from it, at most.
+constexpr double kMostConvexity = 0.1;
 // Texels: a point on a surface and the pixel that shows it are apart by the slope within them.
 constexpr double kSeenTolerance = 0.5;
 
@@ -273,7 +275,7 @@ Gathered Gather::at(const Surface& surface, std::size_t material) const {
   const glm::dvec3 convexity = kernel.convexity();
   const double reach = 2 * std::max({convexity.r, convexity.g, convexity.b});
   if (surface.normal && reach > 0)
-    result.displaced += glm::max(-convexity * meanCurvature(surface, reach), glm::dvec3(-1.0 / 3));
+    result.displaced += glm::clamp(-convexity * meanCurvature(surface, reach), -kMostConvexity, kMostConvexity);
   return result;
 }
 

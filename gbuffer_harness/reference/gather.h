@@ -16,7 +16,7 @@ struct Gathered {
   glm::dvec3 transmitted{0};  // exitance
   glm::dvec3 entering{0};     // irradiance that reaches the pixel as diffusion does
   // Share of the diffusion's profile that lies there, the mean of all lights by how strongly they light it,
-  // less what the surface's curvature adds: down to -1/3.
+  // less what the surface's curvature adds: down to -1/10.
   glm::dvec3 displaced{0};
 };
 
