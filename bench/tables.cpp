@@ -2,6 +2,7 @@
 // file:
 //   pellucid_bench_tables bench/baselines/DEVICE.json measured|sweep [--check | --update README.md]
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <fstream>
@@ -35,8 +36,9 @@ const Json& row(const Json& results, const std::string& section, const std::stri
 }
 
 std::string timesAndError(const Json& r) {
-  std::string cells =
-      format(" %.0f us | %.3g |", r.at("us").get<double>(), r.at("floor_ratio").get<double>());
+  // Differences of times may round to -0.
+  const double us = std::round(r.at("us").get<double>()) + 0.0;
+  std::string cells = format(" %.0f us | %.3g |", us, r.at("floor_ratio").get<double>());
   const auto error = r.find("relative_rmse");
   return cells + (error == r.end() || error->is_null() ? " |" : format(" %.2g |", error->get<double>()));
 }
