@@ -28,13 +28,13 @@ GatherSlab gatherSlab(GatherEntry e, float fraction) {
 // Integral of K(r, h) over the ring that a plane with x at distance 0 from its center shows between the
 // distances `near` and `far` from x, T [e^{-q (near - h)} - e^{-q (far - h)}]: slabs are exact however wide
 // the rings are. Where h grows with r, as on spheres (h = r), K goes like T(r) instead. Its logarithm falls by
-// kappa coth(kappa (h + e)) per mm: within 5 % a line in q, for q up to 5 kappa. It does so before h where that reaches
-// into the ring, to second order, and beyond by the part `curved`, 0 to 1. The channel that spreads furthest decides, as
-// light of the others comes from rings that are small beside it.
+// kappa coth(kappa (h + e)) per mm: within 14 % a line in q, for q up to 5 kappa. It does so before h where that reaches
+// into the ring, to second order, and beyond by the part `curved`, 0 to 1. The channel that spreads furthest decides how
+// much slower than by q, as light of the others comes from rings that are small beside it.
 vec3 gatherTransmitted(vec4 lengths, GatherSlab slab, float curved, float h, float near, float far) {
   float begins = max(near, h), before = 0.69314718 * (begins - near);
   vec3 q = slab.decay;
-  float kappa = 2.0 / 0.69314718 / lengths.z; // at most the least q
+  float kappa = 2.0 / 0.69314718 / lengths.z; // of that channel, in powers of 2: at most the least q, above 0
   float slope = 0.2 + 0.8 * kappa / min(min(q.r, q.g), q.b), decay = mix(1.0, slope, curved);
   vec3 logarithm = slab.logarithm - q * h;
   vec3 begin = exp2(logarithm - q * (decay * (begins - h))), end = exp2(logarithm - q * (decay * (far - h)));
