@@ -242,8 +242,9 @@ float meanCurvature(ivec2 pixel, ivec2 steps, Beside across, Beside along, Surfa
   return abs(area) > least ? 0.5 * dot(x.normal, cross(turnA, b) + cross(a, turnB)) / (area * mm) : 0.0;
 }
 
-// Where surfaces curve more, what comes back more has entered where it is darker, or is gathered.
-const float kMostConvexity = 0.1;
+// Where surfaces curve more, what comes back more has entered where it is darker, or is gathered: a tenth, the
+// least share that a point holds.
+const float kMostConvexity = -float(kLeastDisplaced) / float(kMostDisplaced);
 
 // By how much more light comes back, of each channel, from the surface of the cell's point as it is curved.
 vec3 convexity(ivec2 cell, int side, Point p, Surface x) {
