@@ -109,9 +109,14 @@ void edges(const Bench& bench) {
     char title[64];
     std::snprintf(title, sizeof title, "edges, balls of %g pixels", radius);
     bench.report.section(title);
-    const auto frame = bench.frame(balls(width, height, radius, bench.site.pixel), {});
-    dispatches(bench, *frame);
-    bench.row(moduleVariant(frame, "whole frame"), {});
+    const Capture capture = balls(width, height, radius, bench.site.pixel);
+    for (const uint32_t quality : {2u, 3u}) {
+      ReplaySettings settings;
+      settings.quality = quality;
+      const auto frame = bench.frame(capture, settings);
+      dispatches(bench, *frame);
+      bench.row(moduleVariant(frame, quality == 2 ? "whole frame" : "whole frame, quality 3"), {});
+    }
   }
 }
 

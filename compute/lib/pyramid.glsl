@@ -94,6 +94,9 @@ float sameSurface(float off, float along, float inverseSpread2, vec2 falloff) {
   return rest * rest;
 }
 
+// Of the squared length of a texel's side: how far from its plane texels around it are and still lie on it.
+const float kPlaneOffset = 0.1;
+
 // Of the reductions, the stretch and the coarser levels of resolves, and the last pass: those with the least errors on
 // the scenes and captures of docs/diffusion.md that let no more light over a gap than the profile does.
 const vec2 kReduceFalloff = vec2(0.2, 0.5), kStretchFalloff = vec2(0.5, 2.5), kResolveFalloff = vec2(0.55, 3.5),

@@ -9,12 +9,8 @@
 #define GROUP_SIDE PELLUCID_DIFFUSE_GROUP
 #include "passes/group_order.glsl"
 #include "passes/resolved.glsl"
-#ifdef NORMALS
-#include "passes/normal_image.glsl"
-#endif
 
 const int kInvocations = PELLUCID_DIFFUSE_GROUP * PELLUCID_DIFFUSE_GROUP;
-// NORMALS: pixels at edges count by the area of their surface.
 // COARSE: without the fine filter, whose share the material's table gives to the pixel and level 2.
 #ifdef COARSE
 const int kRing = 0, kTexelsX = PELLUCID_DIFFUSE_COARSE_TEXELS_X;
@@ -28,7 +24,7 @@ const int kColumns = 4 * kTexels.x + 2 * kRing, kRows = 4 * kTexels.y * kColumns
 
 #ifndef COARSE
 // Colors after the fine filter's vertical half. Later, of a row of texels with edges, its pixels with a ring: colors and
-// materials, then depths and areas.
+// materials, then depths.
 shared uvec2 vertical[4 * kTexels.y * kColumns];
 const int kRowPixels = (4 + 2 * kRing) * kColumns;
 #endif
@@ -42,25 +38,12 @@ shared uint edgeCounts[kTexels.y];
 shared uint edgeRows, anySurface;
 
 #ifdef GATHER
-#include "passes/gathered.glsl"
-
-layout(set = 0, binding = PELLUCID_BINDING_SHARED_POINTS) uniform utexture2D pointsImage;
+#include "passes/shared_points.glsl"
 
 // The points around all pixels. Cells are texels of level 2.
 const ivec2 kPoints = kTexels + 1;
 
 shared uint someLight; // kSome* of them
-
-uvec4 pointBits(ivec2 cell) {
-  return contains(cellsOf(frame.rect, PELLUCID_DIFFUSE_CELL), cell) ? texelFetch(pointsImage, cell, 0) : kNoPoint;
-}
-
-uvec4 pointOf(ivec2 cell, ivec2 pixel, float front, out float off) {
-  Point p = unpackPoint(pointBits(cell));
-  vec4 plane = tangentPlane(p, pixelInCell(cell, PELLUCID_DIFFUSE_CELL, p.index), pixel);
-  off = (front - plane.x) * plane.w;
-  return uvec4(packLight(p.added, p.displaced), p.material);
-}
 #endif
 
 // The quadratic B-spline at -1, 0 and 1 for a point at most half a texel from 0.
@@ -99,9 +82,6 @@ void store(ivec2 pixel, vec3 color, float alpha) {
   imageStore(destinationImage, pixel, vec4(asStored(color), alpha));
 }
 
-// Of texels' shares: all under the texel's filter is one plane.
-bool isFull(uvec4 its) { return its.w >> 24 != 0u; }
-
 // What pixels of edges ask of a texel and is the same for all of them. Shares without the texel's density: that of the
 // pixel replaces it, and a plane's is 1.
 void prepareForEdges(int index) {
@@ -134,22 +114,19 @@ vec3 fineOf(int at) {
 // `first`: of the row's pixels and their ring.
 void keepRow(ivec2 first) {
   const int kEach = kRowPixels / kInvocations;
-  uvec2 colors[kEach], surfaces[kEach];
+  uvec2 colors[kEach];
+  uint depths[kEach];
   // All loads at once, so that their latencies overlap.
   [[unroll]] for (int i = 0; i < kEach; ++i) {
     int place = int(gl_LocalInvocationIndex) + i * kInvocations;
     ivec2 pixel = first + ivec2(place % kColumns, place / kColumns), at = withinRect(pixel);
-    float area = 0.0;
-#ifdef NORMALS
-    area = areaOf(vec2(at), normalAt(at));
-#endif
     colors[i] = packColor(sanitize(texelFetch(sourceImage, at, 0).rgb), at == pixel ? materialAt(at) : 0u);
-    surfaces[i] = floatBitsToUint(vec2(frontDistance(at), area));
+    depths[i] = floatBitsToUint(frontDistance(at));
   }
   [[unroll]] for (int i = 0; i < kEach; ++i) {
     int place = int(gl_LocalInvocationIndex) + i * kInvocations;
     vertical[place] = colors[i];
-    vertical[kRowPixels + place] = surfaces[i];
+    vertical[kRowPixels + place].x = depths[i];
   }
 }
 
@@ -166,7 +143,8 @@ vec3 fineOfPlane(int place) {
 // what keepRow kept.
 vec4 fineOfEdge(int place, vec2 slope, vec2 size) {
   uint material = vertical[place].y >> 16;
-  vec2 own = uintBitsToFloat(vertical[kRowPixels + place]), depthStep = slope * size;
+  float own = uintBitsToFloat(vertical[kRowPixels + place].x);
+  vec2 depthStep = slope * size;
   float spread2 = inverseSpread(slope, 2.0 * size);
   vec4 fine = vec4(0.0);
   for (int y = -2; y <= 2; ++y)
@@ -174,13 +152,10 @@ vec4 fineOfEdge(int place, vec2 slope, vec2 size) {
     [[unroll]] for (int x = -2; x <= 2; ++x) {
       int at = place + y * kColumns + x;
       uvec2 packed = vertical[at];
-      vec2 theirs = uintBitsToFloat(vertical[kRowPixels + at]);
+      float theirs = uintBitsToFloat(vertical[kRowPixels + at].x);
       float along = dot(depthStep, vec2(x, y));
-      float w = sameSurface(theirs.x - own.x - along, along, spread2, kPixelFalloff);
-#ifdef NORMALS
-      w *= own.y > 0.0 && theirs.y > 0.0 ? theirs.y / own.y : 1.0;
-#endif
-      bool counts = packed.y >> 16 == material && theirs.x > 0.0;
+      float w = sameSurface(theirs - own - along, along, spread2, kPixelFalloff);
+      bool counts = packed.y >> 16 == material && theirs > 0.0;
       fine += (counts ? w * fineWeight(x) * fineWeight(y) : 0.0) * vec4(unpackColor(packed), 1.0);
     }
   return fine;
@@ -296,7 +271,7 @@ void main() {
     shares[invocation] = texelShares;
     if (texel.y >> 16 != 0u) {
       anySurface = 1u; // whoever writes, writes this
-      if (!isPlane(texel) && contains(ivec4(0, 0, kTexels), inWindow - 1))
+      if (!isPlane(texel) && !isSummed(texelShares) && contains(ivec4(0, 0, kTexels), inWindow - 1))
         atomicOr(edgeRows, 1u << (inWindow.y - 1));
     }
   }
@@ -308,9 +283,10 @@ void main() {
   if (anySurface != 0u) {
     if (invocation < kTexels.x * kTexels.y) {
       ivec2 local = ivec2(invocation % kTexels.x, invocation / kTexels.x);
-      uvec4 its = resolved[(local.y + 1) * kWindow.x + local.x + 1];
-      if (its.y >> 16 != 0u && !isPlane(its)) {
-        bool full = isFull(shares[(local.y + 1) * kWindow.x + local.x + 1]);
+      int index = (local.y + 1) * kWindow.x + local.x + 1;
+      uvec4 its = resolved[index];
+      if (its.y >> 16 != 0u && !isPlane(its) && !isSummed(shares[index])) {
+        bool full = isFull(shares[index]);
         uint before = atomicAdd(edgeCounts[local.y], full ? 1u : 0x10000u);
         int place = full ? int(before & 0xFFFFu) : kTexels.x - 1 - int(before >> 16);
         edges[kTexels.x * local.y + place] = uint(local.x);

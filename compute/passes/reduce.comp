@@ -173,9 +173,6 @@ uvec4 reduced(uint finer, ivec2 texel, int first, int stride) {
   return result;
 }
 
-// Of the squared length of a texel's side; see kPlaneResidual.
-const float kPlaneOffset = 0.1;
-
 // Whether a texel and all around it are full and lie on one plane. `at`: not in the outermost rows and columns.
 bool isFlatAround(uvec4 bits, ivec2 at, uint level) {
   float depth = uintBitsToFloat(bits.z), most = 0.0;

@@ -152,6 +152,29 @@ PixelShares pixelShares(uint m, float entry) {
                      mix(kernels[m].pixelShare[2u * i + 1u].rgb, kernels[m].pixelShare[2u * i + 3u].rgb, part));
 }
 
+// Whether a texel of level 2 is an edge because the rect ends beside it: all around it in the rect lies on its plane, as
+// coarser texels do.
+bool endsAtRect(ivec2 texel, uvec4 bits) {
+  ivec4 inside = levelRect(2u) + ivec4(1, 1, -1, -1);
+  if (contains(inside + ivec4(2, 2, -2, -2), texel)) return false;
+  float depth = uintBitsToFloat(bits.z);
+  vec2 slope = unpackHalf2x16(bits.w), size = texelSize(depth, 2u);
+  float spread2 = inverseSpread(slope, size);
+  bool plane = true;
+  for (uint i = 0u; i < 7u + pass.value.x; ++i) {
+    uint level = i < 9u ? 2u : i - 6u;
+    float side = exp2(float(level) - 2.0);
+    ivec2 at = i < 9u ? texel + ivec2(i % 3u, i / 3u) - 1 : texel >> int(level - 2u);
+    if (level == 2u && !contains(inside, at)) continue;
+    uvec4 theirs = texelFetch(pyramidImage, inAtlas(level, at), 0);
+    vec2 offset = (vec2(at) + 0.5) * side - (vec2(texel) + 0.5);
+    float off = uintBitsToFloat(theirs.z) - depth - dot(slope, offset * size);
+    plane = plane && hasSurface(theirs) && materialBits(theirs) == materialBits(bits) &&
+            off * off * spread2 < kPlaneOffset * side * side;
+  }
+  return plane;
+}
+
 void main() {
   int invocation = int(gl_LocalInvocationIndex);
   uint coarsest = pass.value.x;
@@ -189,9 +212,9 @@ void main() {
     uint upper = fineBits.y >> 16 & ~(kPlane >> 16);
     color = uvec4(packColor(r.color, (fineBits.x & kFlat) != 0u ? upper | kPlane >> 16 : upper), fineBits.zw);
     share.coarser = share.coarser * r.density / max(1.0 - share.coarser + share.coarser * r.density, vec3(1.0e-6));
-    // The material where the texel is one plane of it.
-    uint plane = isPlane(fineBits) ? fine.texel.material << 24 : 0u;
-    shares = uvec4(packShares(share), packDensity(r.density) | plane);
+    uint flags = isPlane(fineBits) ? kFull : 0u;
+    if (pass.value.y != 0u && (fineBits.x & kFlat) == 0u && !endsAtRect(fineTexel, fineBits)) flags |= kSummed;
+    shares = uvec4(packShares(share), packDensity(r.density) | flags);
   }
   if (fineInside) writeResolved(fineTexel, color, shares);
 }

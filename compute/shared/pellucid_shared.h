@@ -23,6 +23,8 @@ using glm::vec4;
 #define PELLUCID_DIFFUSE_COARSE_TEXELS_X 16 // without the fine filter
 #define PELLUCID_DIFFUSE_TEXELS_Y 4
 #define PELLUCID_DIFFUSE_CELL 4 // pixels a side of the gather's cells where the diffusion adds what it found
+#define PELLUCID_EDGES_GROUP 16 // a side, pixels, of a tile of the pass that does edges by distances in space
+#define PELLUCID_EDGES_TILES 8  // of a group, in a column
 #define PELLUCID_RESOLVE_GROUP 16 // a side, texels of level 2
 #define PELLUCID_REDUCE_GROUP 16 // a side, of the pyramid's reductions
 #define PELLUCID_REDUCE_TILE 7   // a side, texels of the second of the two levels that a group makes
@@ -106,6 +108,7 @@ using glm::vec4;
 #define PELLUCID_SHARE_COARSER 2
 #define PELLUCID_SHARE_TABLES 3
 #define PELLUCID_SHARE_ENTRIES 128
+#define PELLUCID_DISTANCE_ENTRIES 128
 
 // The camera as the shaders use it. With s = +1 or -1 the sign of view z in front of the eye, p = s z
 // is the planar distance and a pixel's view ray is point(p) = origin + p direction.
@@ -211,6 +214,11 @@ struct KernelConstants {
   // Two for each side of a pixel. First: which part of all energy level 2 and coarser ones have. Second: which
   // part of the rest the fine filter of the pixel and its neighbors has.
   vec4 pixelShare[2 * PELLUCID_SHARE_ENTRIES];
+  // Of quality 3, the profile R over squared distances r^2 in mm^2; before the first entry R does not change.
+  vec4 reach; // x: distance within which 99.9 % of the energy lies, mm, 0: none; y: r^2 of the first entry; z: its log2;
+              // w: entries per octave
+  uvec4 distance[PELLUCID_DISTANCE_ENTRIES]; // halves: r^2 R, rgb, and by how much the next entry has more, rgb
+  vec4 enclosed[PELLUCID_DISTANCE_ENTRIES];  // rgb: which part of the energy lies within r
 };
 
 // VkDispatchIndirectCommands of what follows the gather's points; x: columns of groups, 0 where it does not run; w: where it
@@ -225,8 +233,9 @@ struct GatherDispatches {
 // column of the summaries and 1 to add to what is there, samples.
 // gather share: pixels a side of a cell.
 // add: unused, unused, 1 if this is the last dispatch.
-// reduce: finer level, 16. resolve: coarsest level.
-// diffuse: unused, unused, unused, 1 if this is the last dispatch.
+// reduce: finer level, 16. resolve: coarsest level, 1 if edges have a dispatch of their own.
+// diffuse: unused, 1, unused, 1 if this is the last dispatch. diffuse edges: coarsest level, unused, unused,
+// likewise.
 struct PassConstants {
   uvec4 value;
 };

@@ -80,9 +80,10 @@ shared::FrameConstants frameConstants(const PellucidFrame& f) {
     const PyramidPlace place = placeOf(f, level);
     c.level[level] = {place.x - place.rect.x, place.y - place.rect.y, 0, 0};
   }
-  // The resolved level 2 and its shares lie beside each other where level 1 was: half as wide and high.
   const PyramidPlace resolved = placeOf(f, 2);
-  c.level[0] = {-resolved.rect.x, -resolved.rect.y, resolved.rect.width - resolved.rect.x, -resolved.rect.y};
+  const ResolvedPlace place = resolvedPlaceOf(f);
+  c.level[0] = {place.x - resolved.rect.x, place.y - resolved.rect.y, place.sharesX - resolved.rect.x,
+                place.sharesY - resolved.rect.y};
   return c;
 }
 
@@ -271,7 +272,7 @@ extern "C" PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const
     put(mapped, layout.materials.offset + i * sizeof(shared::MaterialConstants),
         materialConstants(f.materials[i], gathers(f)));
     put(mapped, layout.kernels.offset + i * sizeof(shared::KernelConstants),
-        kernelConstants(f.materials[i], plan->quality > 0));
+        kernelConstants(f.materials[i], plan->quality > 0, plan->quality == 3));
   }
   return PELLUCID_OK;
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/packing.hpp>
+#include <numbers>
 
 namespace pellucid {
 namespace {
@@ -69,9 +71,37 @@ double shareOf(double coarser, double all) {
   return all > 1e-9 ? coarser / all : 0;
 }
 
+// The profile over distances, from where the narrowest Gaussian is flat to where the widest has nothing left.
+void addDistances(const PellucidMaterial& m, double least, double most, shared::KernelConstants& c) {
+  constexpr int kLast = PELLUCID_DISTANCE_ENTRIES - 1;
+  const double from = least - 8, step = (most + 6 - from) / kLast;  // log2 of squared mm
+  c.reach = {*std::max_element(m.radius, m.radius + 3), static_cast<float>(std::exp2(from)),
+             static_cast<float>(from), static_cast<float>(1 / step)};
+  glm::vec3 before(0);
+  for (int i = kLast; i >= 0; --i) {
+    const double squared = std::exp2(from + step * i);
+    glm::vec3 profile(0);
+    for (int channel = 0; channel < 3; ++channel) {
+      double value = 0, within = 0;
+      for (uint32_t k = 0; k < m.gaussianCount; ++k) {
+        const double q = squared / static_cast<double>(m.gaussianVariance[channel][k]) / 2;
+        const double weight = static_cast<double>(m.gaussianWeight[channel][k]);
+        value += weight * q * std::exp(-q) / std::numbers::pi;
+        within -= weight * std::expm1(-q);
+      }
+      profile[channel] = static_cast<float>(value);
+      c.enclosed[i][channel] = static_cast<float>(within);
+    }
+    const glm::vec3 more = before - profile;
+    c.distance[i] = {glm::packHalf2x16({profile.x, profile.y}), glm::packHalf2x16({profile.z, more.x}),
+                     glm::packHalf2x16({more.y, more.z}), 0};
+    before = profile;
+  }
+}
+
 }  // namespace
 
-shared::KernelConstants kernelConstants(const PellucidMaterial& m, bool fine) {
+shared::KernelConstants kernelConstants(const PellucidMaterial& m, bool fine, bool distances) {
   shared::KernelConstants c{};
   if (m.gaussianCount == 0) return c;
   double deviation[3][PELLUCID_MAX_GAUSSIANS];  // log2, mm
@@ -108,6 +138,7 @@ shared::KernelConstants kernelConstants(const PellucidMaterial& m, bool fine) {
       c.pixelShare[2 * i + 1][channel] = static_cast<float>(std::clamp(share, 0.0, 1.2));
     }
   }
+  if (distances) addDistances(m, 2 * least, 2 * most, c);
   return c;
 }
 

@@ -11,7 +11,7 @@ namespace pellucid {
 constexpr double kCoarserShift = 0.03;
 
 // All zeros (the pixel keeps everything) for a material without Gaussians. `fine`: the diffusion has its fine
-// filter. docs/diffusion.md has the fit.
-shared::KernelConstants kernelConstants(const PellucidMaterial& material, bool fine);
+// filter. `distances`: it sums edges by their distances. docs/diffusion.md has the fit.
+shared::KernelConstants kernelConstants(const PellucidMaterial& material, bool fine, bool distances);
 
 }  // namespace pellucid

@@ -390,6 +390,7 @@ struct Builder {
     d->groups[0] = across(place.rect.x, place.rect.width);
     d->groups[1] = across(place.rect.y, place.rect.height);
     d->pushConstants[0] = coarsest;
+    d->pushConstants[1] = sumsEdges() ? 1 : 0;
     constants(d, PELLUCID_BINDING_FRAME, layout.frame);
     constants(d, PELLUCID_BINDING_KERNELS, layout.kernels);
     writesPyramid(d);
@@ -399,16 +400,38 @@ struct Builder {
     return true;
   }
 
+  // Whether edges, by their distances in space, have a dispatch of their own.
+  bool sumsEdges() const { return plan.quality == 3 && given(frame.normal); }
+
+  // After the one of all other pixels, with the same arguments.
+  bool diffuseEdges(uint32_t coarsest, uint32_t source, uint32_t destination, bool addsPoints) {
+    const uint32_t half =
+        addsPoints ? PELLUCID_PIPELINE_DIFFUSE_EDGES_GATHER_16F : PELLUCID_PIPELINE_DIFFUSE_EDGES_16F;
+    PellucidDispatch* d = dispatch("diffuse edges", half + (wide() ? 1 : 0));
+    if (!d) return false;
+    const PyramidPlace place = placeOf(frame, 2);  // with a border of one
+    groups(d, static_cast<uint32_t>(place.rect.width) - 2, static_cast<uint32_t>(place.rect.height) - 2,
+           PELLUCID_EDGES_GROUP / 4);
+    d->pushConstants[0] = coarsest;
+    d->groups[1] = (d->groups[1] + PELLUCID_EDGES_TILES - 1) / PELLUCID_EDGES_TILES;
+    d->pushConstants[3] = destination == PELLUCID_RESOURCE_OUTPUT;
+    common(d, source, destination);
+    constants(d, PELLUCID_BINDING_KERNELS, layout.kernels);
+    image(d, PELLUCID_BINDING_NORMAL, PELLUCID_RESOURCE_NORMAL, 0);
+    readsPyramid(d);
+    if (addsPoints) readsPoints(d, PELLUCID_BINDING_SHARED_POINTS, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE);
+    // The plan does not know how many edges there are: whether a texel is one is all that is read anywhere.
+    d->modeledBytes = kTexelBytes * texels(2);
+    return true;
+  }
+
   // `addsPoints`: what points of the gather share is added.
   bool diffuse(uint32_t source, uint32_t destination, bool addsPoints) {
     const bool coarse = plan.quality == 0;
-    const bool normals = plan.quality == 3 && given(frame.normal);
-    const uint32_t half = coarse && addsPoints    ? PELLUCID_PIPELINE_DIFFUSE_COARSE_GATHER_16F
-                          : coarse                ? PELLUCID_PIPELINE_DIFFUSE_COARSE_16F
-                          : normals && addsPoints ? PELLUCID_PIPELINE_DIFFUSE_NORMALS_GATHER_16F
-                          : normals               ? PELLUCID_PIPELINE_DIFFUSE_NORMALS_16F
-                          : addsPoints            ? PELLUCID_PIPELINE_DIFFUSE_GATHER_16F
-                                                  : PELLUCID_PIPELINE_DIFFUSE_16F;
+    const uint32_t half = coarse && addsPoints ? PELLUCID_PIPELINE_DIFFUSE_COARSE_GATHER_16F
+                          : coarse             ? PELLUCID_PIPELINE_DIFFUSE_COARSE_16F
+                          : addsPoints         ? PELLUCID_PIPELINE_DIFFUSE_GATHER_16F
+                                               : PELLUCID_PIPELINE_DIFFUSE_16F;
     // With the gather both are in the plan, and one of them runs.
     PellucidDispatch* d =
         dispatch(skipsLight && !addsPoints ? "diffuse, none gathered" : "diffuse", half + (wide() ? 1 : 0));
@@ -424,8 +447,6 @@ struct Builder {
     d->pushConstants[1] = 1;  // texels to each side of an edge's that its pixels look at
     d->pushConstants[3] = destination == PELLUCID_RESOURCE_OUTPUT;
     common(d, source, destination);
-    // Of edges; the plan does not know how many there are.
-    if (normals) image(d, PELLUCID_BINDING_NORMAL, PELLUCID_RESOURCE_NORMAL, 0);
     readsPyramid(d);
     d->modeledBytes += 2 * kTexelBytes * texels(2);
     if (addsPoints) readsPoints(d, PELLUCID_BINDING_SHARED_POINTS, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE);

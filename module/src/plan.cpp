@@ -49,8 +49,9 @@ Stages stagesOf(const PellucidFrame& frame) {
   s.fusesQuads = s.diffusion && s.lights && !s.history && frame.gatherSamples == 0;
   // More would be more transients than there are.
   s.overlaps = s.diffusion && s.groups.gathered == 1 && s.colorTransients() <= 1 && !s.history;
-  // Points that are kept are read where none is found, too.
-  s.skipsLight = s.overlaps && s.addsPoints && !s.keepsPoints && frame.indirectDispatches;
+  // Points that are kept are read where none is found, too, and so are those of edges that are summed.
+  s.skipsLight =
+      s.overlaps && s.addsPoints && !s.keepsPoints && frame.indirectDispatches && !keepsFirstLevel(frame);
   return s;
 }
 
@@ -175,6 +176,8 @@ bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan
     alongside();
     const uint32_t to = destination();
     fits = fits && b.diffuse(source, to, stages.addsPoints);
+    // A barrier though they write other pixels: synchronization validation knows images, not pixels.
+    if (b.sumsEdges()) fits = fits && b.diffuseEdges(coarsest, source, to, stages.addsPoints);
     if (stages.skipsLight) fits = fits && b.diffuse(source, to, false);
     source = to;
   };

@@ -13,6 +13,10 @@ uint32_t firstColumns(uint32_t pixels) { return std::max(most(pixels, kFirstLeve
 
 }  // namespace
 
+bool keepsFirstLevel(const PellucidFrame& frame) {
+  return given(frame.normal) && (frame.quality == 3 || frame.targetError > 0);
+}
+
 uint32_t coarsestLevel(const PellucidFrame& frame) {
   uint32_t level = kFirstLevel + 2;
   while (level < PELLUCID_LAST_LEVEL && std::max(frame.imageExtent[0], frame.imageExtent[1]) >> level > 1)
@@ -33,12 +37,20 @@ PyramidPlace placeOf(const PellucidFrame& frame, uint32_t level) {
   return place;
 }
 
+ResolvedPlace resolvedPlaceOf(const PellucidFrame& frame) {
+  const PyramidPlace second = placeOf(frame, 2);
+  if (!keepsFirstLevel(frame)) return {0, 0, second.rect.width, 0};
+  const auto x = second.x + static_cast<int32_t>(most(frame.imageExtent[0], 2));
+  return {x, 0, x, static_cast<int32_t>(most(frame.imageExtent[1], 2))};
+}
+
 PyramidExtent pyramidExtent(const PellucidFrame& frame) {
-  const uint32_t last = coarsestLevel(frame);
-  const uint32_t width = firstColumns(frame.imageExtent[0]) + most(frame.imageExtent[0], kFirstLevel + 1);
+  const uint32_t last = coarsestLevel(frame), columns = most(frame.imageExtent[0], 2);
+  const uint32_t resolvedRows = most(frame.imageExtent[1], 2) * (keepsFirstLevel(frame) ? 2 : 1);
+  const uint32_t width = firstColumns(frame.imageExtent[0]) + (keepsFirstLevel(frame) ? 2 : 1) * columns;
   uint32_t height = 0;
   for (uint32_t l = kFirstLevel + 1; l <= last; ++l) height += most(frame.imageExtent[1], l);
-  return {width, std::max({height, most(frame.imageExtent[1], kFirstLevel), most(frame.imageExtent[1], 2)})};
+  return {width, std::max({height, most(frame.imageExtent[1], kFirstLevel), resolvedRows})};
 }
 
 }  // namespace pellucid

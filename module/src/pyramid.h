@@ -1,5 +1,5 @@
-// Where the levels of the diffusion pyramid lie in its image. Level 1 is at the left, the coarser ones are below
-// each other beside it.
+// Where the levels of the diffusion pyramid lie in its image. Level 1 is at the left, the coarser ones are
+// below each other beside it.
 #pragma once
 
 #include "frame.h"
@@ -8,9 +8,13 @@ namespace pellucid {
 
 constexpr uint32_t kFirstLevel = 1;
 
-// The coarsest level in use: odd, because a reduction makes two levels, and no coarser than it takes for the image to
-// lie on 2 x 2 texels.
+// The coarsest level in use: odd, because a reduction makes two levels, and no coarser than it takes for the
+// image to lie on 2 x 2 texels.
 uint32_t coarsestLevel(const PellucidFrame& frame);
+
+// Whether level 1 is still read when level 2 has been resolved: at the quality that sums edges by their
+// distances, which a target error may choose.
+bool keepsFirstLevel(const PellucidFrame& frame);
 
 struct PyramidPlace {
   int32_t x, y;  // in the image
@@ -20,6 +24,14 @@ struct PyramidPlace {
 };
 
 PyramidPlace placeOf(const PellucidFrame& frame, uint32_t level);
+
+// Where the resolved level 2 and its shares begin: beside each other where level 1 was or, where edges still
+// read that, below each other beside the coarser levels.
+struct ResolvedPlace {
+  int32_t x, y, sharesX, sharesY;
+};
+
+ResolvedPlace resolvedPlaceOf(const PellucidFrame& frame);
 
 // Of the pyramid's image, for any render rect.
 struct PyramidExtent {

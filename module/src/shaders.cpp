@@ -12,12 +12,12 @@
 #include "kDiffuseCoarse32f.h"
 #include "kDiffuseCoarseGather16f.h"
 #include "kDiffuseCoarseGather32f.h"
+#include "kDiffuseEdges16f.h"
+#include "kDiffuseEdges32f.h"
+#include "kDiffuseEdgesGather16f.h"
+#include "kDiffuseEdgesGather32f.h"
 #include "kDiffuseGather16f.h"
 #include "kDiffuseGather32f.h"
-#include "kDiffuseNormals16f.h"
-#include "kDiffuseNormals32f.h"
-#include "kDiffuseNormalsGather16f.h"
-#include "kDiffuseNormalsGather32f.h"
 #include "kDirectional16f.h"
 #include "kDirectional32f.h"
 #include "kDirectionalQuads16f.h"
@@ -83,10 +83,10 @@ const std::array kShaders = {shader(kTranslucency16f),
                              shader(kDiffuseGather32f),
                              shader(kDiffuseCoarseGather16f),
                              shader(kDiffuseCoarseGather32f),
-                             shader(kDiffuseNormals16f),
-                             shader(kDiffuseNormals32f),
-                             shader(kDiffuseNormalsGather16f),
-                             shader(kDiffuseNormalsGather32f),
+                             shader(kDiffuseEdges16f),
+                             shader(kDiffuseEdges32f),
+                             shader(kDiffuseEdgesGather16f),
+                             shader(kDiffuseEdgesGather32f),
                              shader(kGatherRecordsOneMap)};
 static_assert(kShaders.size() == PELLUCID_PIPELINE_COUNT);
 

@@ -86,10 +86,10 @@ extern "C" const char* pellucidPipelineName(uint32_t pipeline) {
                                        "diffuse_gather_rgba32f",
                                        "diffuse_coarse_gather_rgba16f",
                                        "diffuse_coarse_gather_rgba32f",
-                                       "diffuse_normals_rgba16f",
-                                       "diffuse_normals_rgba32f",
-                                       "diffuse_normals_gather_rgba16f",
-                                       "diffuse_normals_gather_rgba32f",
+                                       "diffuse_edges_rgba16f",
+                                       "diffuse_edges_rgba32f",
+                                       "diffuse_edges_gather_rgba16f",
+                                       "diffuse_edges_gather_rgba32f",
                                        "gather_records_one_map"};
   static_assert(names.size() == PELLUCID_PIPELINE_COUNT);
   return pipeline < names.size() ? names[pipeline] : "unknown pipeline";

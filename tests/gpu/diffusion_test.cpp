@@ -1,6 +1,7 @@
 // What the diffusion promises about pixels.
 #include "gpu_fixture.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -8,7 +9,23 @@ namespace {
 
 using namespace pellucid::test;
 
-using Diffusion = GpuTest;
+ReplaySettings ofQuality(uint32_t quality) {
+  ReplaySettings s;
+  s.features = PELLUCID_FEATURE_DIFFUSION;
+  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  s.quality = quality;
+  return s;
+}
+
+using DefaultDiffusion = GpuTest;
+
+// Of the default and the best quality.
+class Diffusion : public GpuTest, public testing::WithParamInterface<uint32_t> {
+protected:
+  ReplaySettings diffusionOnly() const { return ofQuality(GetParam()); }
+};
+
+INSTANTIATE_TEST_SUITE_P(Quality, Diffusion, testing::Values(2u, 3u));
 
 // Gaussians of these standard deviations in pixels of flatCapture's width, equal weights, in all channels.
 PellucidMaterial gaussians(std::initializer_list<double> deviations, double pixel) {
@@ -37,13 +54,6 @@ void light(Capture& c, int x, int y, float value) {
   for (int k = 0; k < 3; ++k) c.irradiance.at(x, y)[k] = value;
 }
 
-ReplaySettings diffusionOnly() {
-  ReplaySettings s;
-  s.features = PELLUCID_FEATURE_DIFFUSION;
-  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
-  return s;
-}
-
 double sum(const Image& image, int channel) {
   double total = 0;
   for (size_t i = 0; i < image.pixels(); ++i) total += image.data[4 * i + static_cast<size_t>(channel)];
@@ -51,7 +61,7 @@ double sum(const Image& image, int channel) {
 }
 
 // Wherever the spot lies against the pyramid, and far enough from the rim that all of it stays inside.
-TEST_F(Diffusion, IsolatedSpotKeepsItsEnergy) {
+TEST_P(Diffusion, IsolatedSpotKeepsItsEnergy) {
   for (const auto& deviations : {std::initializer_list<double>{0.7}, {1.5}, {1, 4}, {0.5, 6}, {14}}) {
     double total = 0, worst = 0;
     for (const auto& [x, y] : {std::pair(96, 96), std::pair(97, 99), std::pair(102, 98), std::pair(95, 93)}) {
@@ -66,14 +76,14 @@ TEST_F(Diffusion, IsolatedSpotKeepsItsEnergy) {
   }
 }
 
-TEST_F(Diffusion, BlackStaysBlack) {
+TEST_P(Diffusion, BlackStaysBlack) {
   const Image out = replay(dark(40, 30), testMaterial(), diffusionOnly());
   for (int k = 0; k < 3; ++k) EXPECT_EQ(sum(out, k), 0);
 }
 
 // The result belongs to the image and not to the workgroups: a rect at any offset gives the same pixels, away
 // from its own rim.
-TEST_F(Diffusion, ShiftedRectGivesTheSamePixels) {
+TEST_P(Diffusion, ShiftedRectGivesTheSamePixels) {
   Capture c = dark(128, 128);
   for (int y = 56; y < 72; ++y)
     for (int x = 56; x < 72; ++x) light(c, x, y, static_cast<float>((x * 7 + y * 13) % 5));
@@ -93,7 +103,7 @@ TEST_F(Diffusion, ShiftedRectGivesTheSamePixels) {
 }
 
 // An edge of depth 30 times the kernel's reach lets nothing over.
-TEST_F(Diffusion, NoHaloAtASilhouette) {
+TEST_P(Diffusion, NoHaloAtASilhouette) {
   Capture c = dark(64, 64);
   for (int y = 0; y < 64; ++y)
     for (int x = 0; x < 64; ++x) {
@@ -106,7 +116,7 @@ TEST_F(Diffusion, NoHaloAtASilhouette) {
     for (int x = 0; x < 64; ++x) EXPECT_NEAR(out.at(x, y)[0], x + y / 3 < 37 ? 1 : 0, 1e-3) << x << ", " << y;
 }
 
-TEST_F(Diffusion, MaterialsDoNotBleed) {
+TEST_P(Diffusion, MaterialsDoNotBleed) {
   Capture c = dark(64, 64);
   for (int y = 0; y < 64; ++y)
     for (int x = 0; x < 64; ++x) {
@@ -123,7 +133,7 @@ TEST_F(Diffusion, MaterialsDoNotBleed) {
       EXPECT_NEAR(out.at(x, y)[0], (x + 2 * y) % 97 < 53 ? 1 : 0, 1e-3) << x << ", " << y;
 }
 
-TEST_F(Diffusion, SubpixelRadiusReturnsTheInput) {
+TEST_P(Diffusion, SubpixelRadiusReturnsTheInput) {
   Capture c = dark(32, 32);
   for (int y = 0; y < 32; ++y)
     for (int x = 0; x < 32; ++x) light(c, x, y, static_cast<float>((x * 7 + y * 13) % 5));
@@ -134,7 +144,7 @@ TEST_F(Diffusion, SubpixelRadiusReturnsTheInput) {
 }
 
 // Wider than the image: the mean of all of it, as far as the coarsest level (128 pixels a texel) reaches.
-TEST_F(Diffusion, RadiusBeyondTheScreenGivesTheMean) {
+TEST_P(Diffusion, RadiusBeyondTheScreenGivesTheMean) {
   Capture c = dark(64, 64);
   for (int y = 0; y < 64; ++y)
     for (int x = 0; x < 32; ++x) light(c, x, y, 1);
@@ -145,7 +155,7 @@ TEST_F(Diffusion, RadiusBeyondTheScreenGivesTheMean) {
 
 // A kernel that reaches everything averages over the area of the surface, not over pixels: a third, where
 // the dark half is folds of 60 degrees and so twice as large as it looks. With normals and with depths.
-TEST_F(Diffusion, SurfacesCountByTheirArea) {
+TEST_P(Diffusion, SurfacesCountByTheirArea) {
   for (const bool normals : {true, false}) {
     Capture c = dark(64, 64);
     for (int y = 0; y < 64; ++y)
@@ -165,12 +175,14 @@ TEST_F(Diffusion, SurfacesCountByTheirArea) {
     double sum = 0;
     for (int y = 0; y < 64; ++y)
       for (int x = 0; x < 64; ++x) sum += out.at(x, y)[0] / 4096;
-    EXPECT_NEAR(sum, 1.0 / 3, 0.05) << (normals ? "normals" : "depths");
+    // Texels of folds hold what lies near one of their planes, which tells more where they are summed.
+    EXPECT_NEAR(sum, 1.0 / 3, GetParam() == 3 ? 0.1 : 0.05) << (normals ? "normals" : "depths");
   }
 }
 
-// A pixel whose normal is none has the area that the depths say, as all have without an image of normals.
-TEST_F(Diffusion, NormalsThatAreNoneAreLeftOut) {
+// A pixel whose normal is none has the area that the depths say, as all have without an image of normals: at
+// the default quality, as the best one needs normals.
+TEST_F(DefaultDiffusion, NormalsThatAreNoneAreLeftOut) {
   Capture c = dark(48, 48);
   for (int y = 0; y < 48; ++y)
     for (int x = 0; x < 48; ++x) {
@@ -179,16 +191,16 @@ TEST_F(Diffusion, NormalsThatAreNoneAreLeftOut) {
     }
   c.normal = {};
   const PellucidMaterial m = gaussians({1, 4}, pixelOf(c));
-  const Image without = replay(c, m, diffusionOnly());
+  const Image without = replay(c, m, ofQuality(2));
   for (const float none : {0.0f, std::numeric_limits<float>::quiet_NaN()}) {
     c.normal = Image(48, 48, 3, none);
-    EXPECT_EQ(replay(c, m, diffusionOnly()).data, without.data) << none;
+    EXPECT_EQ(replay(c, m, ofQuality(2)).data, without.data) << none;
   }
 }
 
 // Pixels of one plane are filtered without their depths, those near an edge one by one. A hole makes edges of
 // what was a plane; where the kernel does not reach it, nothing else may change.
-TEST_F(Diffusion, PlanesAndEdgesAreFilteredAlike) {
+TEST_P(Diffusion, PlanesAndEdgesAreFilteredAlike) {
   Capture c = dark(96, 96);
   for (int y = 0; y < 96; ++y)
     for (int x = 0; x < 96; ++x)
@@ -206,11 +218,13 @@ TEST_F(Diffusion, PlanesAndEdgesAreFilteredAlike) {
       ++compared;
     }
   EXPECT_GT(compared, 500);
-  EXPECT_LT(most, 2e-3) << "level 2 reaches further than the kernel, with little";
+  // Level 2 reaches further than the kernel, with little. Edges that are summed lack what the pyramid errs by
+  // on planes.
+  EXPECT_LT(most, GetParam() == 3 ? 1e-2 : 2e-3);
 }
 
 // Without a depth there is no scale to diffuse over: the pixel keeps its irradiance, alone or on a plane.
-TEST_F(Diffusion, PixelsWithoutADepthKeepTheirIrradiance) {
+TEST_P(Diffusion, PixelsWithoutADepthKeepTheirIrradiance) {
   for (const bool alone : {true, false}) {
     Capture c = dark(32, 32);
     for (int y = 0; y < 32; ++y)
@@ -246,7 +260,7 @@ Capture perspective(int size) {
 }
 
 // What the distance leaves out is not missed: levels that no Gaussian reaches.
-TEST_F(Diffusion, SmallRadiiAreTheSameWithFewerDispatches) {
+TEST_P(Diffusion, SmallRadiiAreTheSameWithFewerDispatches) {
   const Capture c = perspective(96);
   struct Row {
     std::initializer_list<double> deviations;
@@ -260,7 +274,11 @@ TEST_F(Diffusion, SmallRadiiAreTheSameWithFewerDispatches) {
     s.nearestDistance = 10;
     const ReplayResult fewer = replayer().run(c, {m}, s);
     const auto resolved = [](const PellucidPlan& plan) {
-      return plan.dispatches[plan.dispatchCount - 2].pushConstants[0];
+      const auto* end = plan.dispatches + plan.dispatchCount;
+      return std::find_if(
+                 plan.dispatches, end,
+                 [](const PellucidDispatch& d) { return d.pipeline == PELLUCID_PIPELINE_RESOLVE_LEVELS; })
+          ->pushConstants[0];
     };
     EXPECT_EQ(resolved(fewer.plan) + row.dropped, resolved(all.plan));
     EXPECT_EQ(fewer.plan.dispatchCount + 1, all.plan.dispatchCount);
@@ -272,9 +290,12 @@ TEST_F(Diffusion, SmallRadiiAreTheSameWithFewerDispatches) {
 }
 
 // The promises that do not depend on how the profile is filtered.
-TEST_F(Diffusion, CheapestQualityKeepsEnergyAndSubpixelRadii) {
-  ReplaySettings s = diffusionOnly();
-  s.quality = 0;
+using CheapestDiffusion = Diffusion;
+
+INSTANTIATE_TEST_SUITE_P(Quality, CheapestDiffusion, testing::Values(0u));
+
+TEST_P(CheapestDiffusion, KeepsEnergyAndSubpixelRadii) {
+  const ReplaySettings s = diffusionOnly();
   Capture spot = dark(128, 128);
   light(spot, 65, 67, 1000);
   EXPECT_NEAR(sum(replay(spot, gaussians({0.5, 6}, pixelOf(spot)), s), 0) / 1000, 1, 5e-3);

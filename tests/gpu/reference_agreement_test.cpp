@@ -344,8 +344,8 @@ TEST_F(GpuTest, DiffusionDistanceToBruteForce) {
   for (const auto& [name, limit, best] : {Row{"checker", 0.1, 0.1},
                                           {"step", 0.02, 0.02},
                                           {"tilted", 0.02, 0.02},
-                                          {"sphere", 0.35, 0.25},
-                                          {"ear", 0.06, 0.04}}) {
+                                          {"sphere", 0.35, 0.06},
+                                          {"ear", 0.06, 0.016}}) {
     const Capture c = make({name});
     const std::vector<PellucidMaterial> materials(std::max<size_t>(c.materials.size(), 1), testMaterial());
     ReplaySettings s;

@@ -42,7 +42,7 @@ struct Detail {
 const Detail kDetails[] = {{"", 2, 0},
                            {", quality 0", 0, 0},
                            {", quality 1", 1, 0},
-                           {", quality 3", 3, 0},
+                           {", quality 3, normals", 3, 0},
                            {", far away", 2, 1000},
                            {", quality 0, far away", 0, 1000}};
 
@@ -75,6 +75,7 @@ nlohmann::json allCounts() {
           for (const Detail& detail : kDetails) {
             f.frame.quality = detail.quality;
             f.frame.nearestDistance = detail.nearestDistance;
+            f.frame.normal = detail.quality == 3 ? Frame::view() : PellucidImage{};
             all[std::string(features.name) + ", " + output.name + way.name + ", " + lights.name +
                 detail.name] = countsOf(f);
           }
