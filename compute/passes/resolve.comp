@@ -1,6 +1,6 @@
 // R_l = (1 - s) E_l + s R_(l+1) from the coarsest level of the pyramid to level 2, s the profile's share of the coarser
 // levels at the texel, and the shares of the pixels under level 2. A group makes 16 x 16 texels of level 2 and, before
-// them, as much of each coarser level as they need.
+// them, as much of each coarser level as they need. REDUCES: it makes levels 6 and 7 as well, from level 5.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -15,6 +15,19 @@ layout(set = 0, binding = PELLUCID_BINDING_KERNELS) readonly buffer Kernels { Ke
 // share of the kernel that the surface fills, of each channel, in place of the slope.
 shared uvec4 resolved[81 + 36 + 16 + 9 + 9];
 
+#ifdef REDUCES
+// Sides of what a group needs of level 5 to make level 6, and of that to make level 7.
+const int kSide5 = 18, kSide6 = 8;
+
+shared uvec2 colors[kSide5 * kSide5];
+shared float depths[kSide5 * kSide5];
+shared uvec4 made[kSide6 * kSide6 + 9]; // texels of level 6 and then, 3 x 3, of level 7
+
+#include "passes/reduced.glsl"
+
+int taps() { return int(pass.value.z); }
+#endif
+
 // What a group needs of a level. Groups start at texels 16 k - 1 of level 2, so that these are the same everywhere.
 struct Window {
   ivec2 corner; // first texel
@@ -28,6 +41,35 @@ Window windowOf(uint level, ivec2 k) {
   if (level == 5u) return Window(2 * k - 1, 4, 117);
   if (level == 6u) return Window(k - 1, 3, 133);
   return Window((k - 2) >> 1, 3, 142);
+}
+
+#ifdef REDUCES
+// First texel of level 6 or 7 that the group makes.
+ivec2 firstMade(uint level, ivec2 k) {
+  ivec2 last = windowOf(7u, k).corner;
+  return level == 6u ? 2 * last - 1 : last;
+}
+#endif
+
+// Whether the group can tell what a texel around its window is. Of levels that it makes it knows few others.
+bool known(uint level, ivec2 texel, ivec2 k) {
+#ifdef REDUCES
+  if (level > 5u) {
+    ivec2 at = texel - firstMade(level, k);
+    return all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, ivec2(level == 6u ? kSide6 : 3)));
+  }
+#endif
+  return true;
+}
+
+uvec4 texelAt(uint level, ivec2 texel, ivec2 k) {
+#ifdef REDUCES
+  if (level > 5u) {
+    ivec2 at = texel - firstMade(level, k);
+    return made[level == 6u ? at.y * kSide6 + at.x : kSide6 * kSide6 + at.y * 3 + at.x];
+  }
+#endif
+  return texelFetch(pyramidImage, inAtlas(level, texel), 0);
 }
 
 void writeResolved(ivec2 texel, uvec4 color, uvec4 shares) {
@@ -53,7 +95,7 @@ const int kReach = 4; // of the stretch, texels
 
 // A level's kernel has variance 7/12 - 13/12 4^-level squared texels of an axis; foreshortened surfaces need it
 // longer along one axis: a 1-D Gaussian of what is missing, at the texels nearest to the axis.
-vec4 stretched(ivec2 texel, uint level, Texel own, Foreshortening f) {
+vec4 stretched(ivec2 texel, uint level, ivec2 k, Texel own, Foreshortening f) {
   vec4 sum = own.mass * vec4(own.color, 1.0);
   float variance = (7.0 / 12.0 - 13.0 / 12.0 * exp2(-2.0 * float(level))) * f.stretch;
   bool alongX = abs(f.axis.x) >= abs(f.axis.y);
@@ -69,14 +111,15 @@ vec4 stretched(ivec2 texel, uint level, Texel own, Foreshortening f) {
   int reach = min(int(ceil(3.0 * sqrt(variance))), kReach);
   for (int i = 1; i <= reach; ++i) {
     float weight = exp(-0.5 * float(i * i) / variance);
-    weights += 2.0 * weight;
     int across = int(floor(gradient * float(i) + 0.5));
     ivec2 offset = alongX ? ivec2(i, across) : ivec2(across, i);
     // Both sides at once, so that their latencies overlap.
     uvec4 bits[2];
     [[unroll]] for (int side = 0; side < 2; ++side) {
       ivec2 at = texel + (1 - 2 * side) * offset;
-      bits[side] = contains(rect, at) ? texelFetch(pyramidImage, inAtlas(level, at), 0) : uvec4(0u);
+      bool isKnown = known(level, at, k);
+      weights += isKnown ? weight : 0.0;
+      bits[side] = isKnown && contains(rect, at) ? texelAt(level, at, k) : uvec4(0u);
     }
     [[unroll]] for (int side = 0; side < 2; ++side) {
       Texel t = unpackTexel(bits[side]);
@@ -96,11 +139,11 @@ struct Own {
 };
 
 // Without branches, so that what is looked up is waited for once.
-Own ownPart(uint level, ivec2 texel, uvec4 bits, out float lengthMm) {
+Own ownPart(uint level, ivec2 texel, ivec2 k, uvec4 bits, out float lengthMm) {
   Own own;
   own.texel = unpackTexel(bits);
   Foreshortening f = foreshortening(texel, level, own.texel.depth, own.texel.slope);
-  own.here = stretched(texel, level, own.texel, f) / areaOf(level, texel, own.texel.slope);
+  own.here = stretched(texel, level, k, own.texel, f) / areaOf(level, texel, own.texel.slope);
   // Material 0 looks at what it does not use.
   uint m = max(own.texel.material, 1u) - 1u;
   own.share = coarserShare(m, level, shareEntry(m, f.lengthMm));
@@ -175,6 +218,36 @@ bool endsAtRect(ivec2 texel, uvec4 bits) {
   return plane;
 }
 
+#ifdef REDUCES
+// Levels 6 and 7 where windows of group k are, before others need them.
+void makeLevels(ivec2 k, int invocation) {
+  ivec2 first7 = firstMade(7u, k), first6 = firstMade(6u, k), first5 = 2 * first6 - 1;
+  for (int i = invocation; i < kSide5 * kSide5; i += PELLUCID_RESOLVE_GROUP * PELLUCID_RESOLVE_GROUP) {
+    ivec2 at = ivec2(i % kSide5, i / kSide5), texel = first5 + at;
+    uvec4 bits = contains(levelRect(5u), texel) ? texelFetch(pyramidImage, inAtlas(5u, texel), 0) : uvec4(0u);
+    colors[slot(at, kSide5)] = bits.xy;
+    depths[slot(at, kSide5)] = uintBitsToFloat(bits.z);
+  }
+  barrier();
+  ivec2 at = ivec2(invocation % kSide6, invocation / kSide6);
+  bool makes = at.y < kSide6 && contains(levelRect(6u), first6 + at);
+  uvec4 bits = makes ? reduced(5u, first6 + at, 2 * at.y * kSide5 + at.x, kSide5) : uvec4(0u);
+  barrier();
+  if (at.y < kSide6) {
+    made[invocation] = bits;
+    colors[slot(at, kSide6)] = bits.xy;
+    depths[slot(at, kSide6)] = uintBitsToFloat(bits.z);
+  }
+  barrier();
+  at = ivec2(invocation % 3, invocation / 3);
+  if (at.y < 3) {
+    makes = contains(levelRect(7u), first7 + at);
+    made[kSide6 * kSide6 + invocation] = makes ? reduced(6u, first7 + at, 2 * at.y * kSide6 + at.x, kSide6) : uvec4(0u);
+  }
+  barrier();
+}
+#endif
+
 void main() {
   int invocation = int(gl_LocalInvocationIndex);
   uint coarsest = pass.value.x;
@@ -187,10 +260,13 @@ void main() {
   bool fineInside = contains(levelRect(2u), fineTexel);
   bool inside = level <= coarsest && invocation < resolved.length() && contains(levelRect(level), texel);
   // Both before the first is used.
-  uvec4 bits = inside ? texelFetch(pyramidImage, inAtlas(level, texel), 0) : uvec4(0u);
+#ifdef REDUCES
+  makeLevels(k, invocation);
+#endif
+  uvec4 bits = inside ? texelAt(level, texel, k) : uvec4(0u);
   uvec4 fineBits = fineInside ? texelFetch(pyramidImage, inAtlas(2u, fineTexel), 0) : uvec4(0u);
   float lengthMm;
-  Own own = ownPart(level, texel, bits, lengthMm);
+  Own own = ownPart(level, texel, k, bits, lengthMm);
   for (uint l = coarsest; l > 2u; --l) {
     if (level == l && invocation < resolved.length()) {
       uvec4 packed = uvec4(0u);
@@ -204,7 +280,7 @@ void main() {
   }
   uvec4 color = uvec4(0u, fineBits.y & 0xFFFF0000u, 0u, 0u), shares = uvec4(0u);
   if (hasSurface(fineBits)) {
-    Own fine = ownPart(2u, fineTexel, fineBits, lengthMm);
+    Own fine = ownPart(2u, fineTexel, k, fineBits, lengthMm);
     uint m = fine.texel.material - 1u;
     // A length of a pixel is a quarter of a texel's.
     PixelShares share = pixelShares(m, shareEntry(m, 0.25 * lengthMm));

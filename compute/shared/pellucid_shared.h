@@ -233,7 +233,7 @@ struct GatherDispatches {
 // column of the summaries and 1 to add to what is there, samples.
 // gather share: pixels a side of a cell.
 // add: unused, unused, 1 if this is the last dispatch.
-// reduce: finer level, 16. resolve: coarsest level, 1 if edges have a dispatch of their own.
+// reduce: finer level, 16. resolve: coarsest level, 1 if edges have a dispatch of their own, 16.
 // diffuse: unused, 1, unused, 1 if this is the last dispatch. diffuse edges: coarsest level, unused, unused,
 // likewise.
 struct PassConstants {

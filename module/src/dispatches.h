@@ -378,8 +378,10 @@ struct Builder {
     return true;
   }
 
-  bool resolve(uint32_t coarsest) {
-    PellucidDispatch* d = dispatch("resolve", PELLUCID_PIPELINE_RESOLVE_LEVELS);
+  // `reduces`: it makes levels 6 and 7 from level 5.
+  bool resolve(uint32_t coarsest, bool reduces) {
+    PellucidDispatch* d = dispatch(
+        "resolve", reduces ? PELLUCID_PIPELINE_REDUCE_AND_RESOLVE : PELLUCID_PIPELINE_RESOLVE_LEVELS);
     if (!d) return false;
     // Groups start at texels 16 k - 1.
     const PyramidPlace place = placeOf(frame, 2);
@@ -391,11 +393,12 @@ struct Builder {
     d->groups[1] = across(place.rect.y, place.rect.height);
     d->pushConstants[0] = coarsest;
     d->pushConstants[1] = sumsEdges() ? 1 : 0;
+    d->pushConstants[2] = 16;  // texels under a texel
     constants(d, PELLUCID_BINDING_FRAME, layout.frame);
     constants(d, PELLUCID_BINDING_KERNELS, layout.kernels);
     writesPyramid(d);
     readsPyramid(d);
-    for (uint32_t level = 2; level <= coarsest; ++level) levelTraffic(d, level);
+    for (uint32_t level = 2; level <= (reduces ? 5 : coarsest); ++level) levelTraffic(d, level);
     d->modeledBytes += 2 * kTexelBytes * texels(2);
     return true;
   }

@@ -151,6 +151,8 @@ bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan
     // Levels 4 and 5 beside 2 and 3 save a dispatch that leaves most of a device free, which points of the
     // gather can use.
     const bool boxes = !stages.overlaps && coarsest >= kFirstLevel + 4;
+    // Sums of edges read levels 6 and 7, which a resolve that makes them keeps for itself.
+    const bool makesLast = boxes && coarsest == PELLUCID_LAST_LEVEL && !b.sumsEdges();
     // Records, points and sharing, each beside one of the last three dispatches before the one that adds
     // points.
     const int32_t reductions = static_cast<int32_t>(coarsest + 1 - kFirstLevel) / 2;
@@ -167,12 +169,12 @@ bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan
     if (!stages.fusesQuads) fits = fits && b.quads(source, copy);
     alongside();
     source = copy;
-    for (uint32_t finer = kFirstLevel, levels; finer < coarsest; finer += levels) {
+    for (uint32_t finer = kFirstLevel, levels; finer < coarsest - (makesLast ? 2 : 0); finer += levels) {
       levels = boxes && finer == kFirstLevel ? 4 : 2;
       fits = fits && b.reduce(finer, levels);
       alongside();
     }
-    fits = fits && b.resolve(coarsest);
+    fits = fits && b.resolve(coarsest, makesLast);
     alongside();
     const uint32_t to = destination();
     fits = fits && b.diffuse(source, to, stages.addsPoints);

@@ -34,6 +34,7 @@
 #include "kQuadsAndCopy16f.h"
 #include "kQuadsAndCopy32f.h"
 #include "kReduce.h"
+#include "kReduceAndResolve.h"
 #include "kResolve.h"
 #include "kTranslucency16f.h"
 #include "kTranslucency32f.h"
@@ -87,7 +88,8 @@ const std::array kShaders = {shader(kTranslucency16f),
                              shader(kDiffuseEdges32f),
                              shader(kDiffuseEdgesGather16f),
                              shader(kDiffuseEdgesGather32f),
-                             shader(kGatherRecordsOneMap)};
+                             shader(kGatherRecordsOneMap),
+                             shader(kReduceAndResolve)};
 static_assert(kShaders.size() == PELLUCID_PIPELINE_COUNT);
 
 }  // namespace

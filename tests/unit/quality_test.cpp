@@ -67,16 +67,23 @@ TEST(Quality, SmallRadiiDropLevels) {
   EXPECT_EQ(coarsest(f.plan()), 7u) << "not known";
   struct Row {
     float distance;
-    uint32_t coarsest, reductions;
+    uint32_t coarsest;
   };
-  // 23.6, 21.4, 5.9, 5.4, .07 pixels; levels 4 and 5 are made beside 2 and 3
-  for (const Row& row : {Row{3, 7, 2}, {3.3f, 5, 1}, {12, 5, 1}, {13, 3, 1}, {1000, 3, 1}}) {
-    f.frame.nearestDistance = row.distance;
-    const PellucidPlan plan = f.plan();
-    EXPECT_EQ(reductions(plan), row.reductions) << row.distance;
-    EXPECT_EQ(plan.dispatchCount, 3 + row.reductions);
-    EXPECT_EQ(coarsest(plan), row.coarsest) << row.distance;
-  }
+  // 23.6, 21.4, 5.9, 5.4, .07 pixels
+  for (const Row& row : {Row{3, 7}, {3.3f, 5}, {12, 5}, {13, 3}, {1000, 3}})
+    for (const uint32_t quality : {2u, 3u}) {
+      f.frame.nearestDistance = row.distance;
+      f.frame.quality = quality;
+      f.frame.normal = Frame::view();
+      const PellucidPlan plan = f.plan();
+      // Levels 4 and 5 are made beside 2 and 3; levels 6 and 7 by the resolve, unless edges are summed.
+      const bool makesLast = row.coarsest == 7 && quality == 2;
+      EXPECT_EQ(find(plan, "resolve")->pipeline,
+                makesLast ? PELLUCID_PIPELINE_REDUCE_AND_RESOLVE : PELLUCID_PIPELINE_RESOLVE_LEVELS);
+      EXPECT_EQ(reductions(plan), row.coarsest == 7 && quality == 3 ? 2u : 1u) << row.distance;
+      EXPECT_EQ(plan.dispatchCount, 3 + reductions(plan) + (quality == 3 ? 1 : 0));
+      EXPECT_EQ(coarsest(plan), row.coarsest) << row.distance;
+    }
   f.frame.nearestDistance = 13;
   f.material.gaussianVariance[1][0] = 4;  // 7.7 pixels
   EXPECT_EQ(coarsest(f.plan()), 5u) << "any Gaussian of any channel";

@@ -259,8 +259,8 @@ typedef struct PellucidFrame {
                              RMSE from brute force, the worst of several scenes, at the radii that the frame has;
                              3 and a skip if none does; 0 (default): off */
   float nearestDistance;  /* planar distance of the nearest surface that diffuses, scene units, or less: radii in
-                             pixels follow from it, and where they are small a dispatch is left out; surfaces that
-                             are nearer still are then diffused too little. Orthographic cameras need none.
+                             pixels follow from it, and where they are small levels are left out; surfaces that are
+                             nearer still are then diffused too little. Orthographic cameras need none.
                              0 (default): not known, and radii count as being as large as the pyramid holds */
   uint32_t gatherSpacing;   /* one point gathers for 2x2 or 4x4 pixels: 2 or 4; 0 (default): 4 in images of more than
                                2^20 pixels, else 2. 4 costs a quarter, and asks for pixels well below a mean free
@@ -330,7 +330,8 @@ typedef enum PellucidPipeline {
   PELLUCID_PIPELINE_DIFFUSE_EDGES_GATHER_16F = 34,
   PELLUCID_PIPELINE_DIFFUSE_EDGES_GATHER_32F = 35,
   PELLUCID_PIPELINE_GATHER_RECORDS_ONE_MAP = 36, /* as DIRECTIONAL, of one light with one map */
-  PELLUCID_PIPELINE_COUNT = 37
+  PELLUCID_PIPELINE_REDUCE_AND_RESOLVE = 37, /* resolves levels of which it makes the last two */
+  PELLUCID_PIPELINE_COUNT = 38
 } PellucidPipeline;
 
 enum {
