@@ -58,6 +58,8 @@ std::string measured(const Json& results) {
       {"whole frame, balls of 400 pixels on a third of it", "edges, balls of 400 pixels", "whole frame"},
       {"balls of 100 pixels", "edges, balls of 100 pixels", "whole frame"},
       {"balls of 25 pixels", "edges, balls of 25 pixels", "whole frame"},
+      {"balls of 400 pixels, quality 3", "edges, balls of 400 pixels", "whole frame, quality 3"},
+      {"balls of 100 pixels, quality 3", "edges, balls of 100 pixels", "whole frame, quality 3"},
       {"fused translucency dispatch alone", "fused dispatch", "1 lights, 1 maps"},
       {"diffusion alone, quality 0", diffusion, "Pellucid, quality 0"},
       {"quality 2", diffusion, "Pellucid, quality 2"},

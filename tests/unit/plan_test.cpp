@@ -34,8 +34,8 @@ TEST(Plan, WholeFrameIsFusedDispatchAndPyramid) {
   Frame f;
   const PellucidPlan plan = f.plan();
   EXPECT_EQ(names(plan),
-            (std::vector<std::string>{"translucency", "reduce", "reduce", "resolve", "diffuse"}));
-  EXPECT_EQ(plan.barrierCount, 4u);
+            (std::vector<std::string>{"translucency", "reduce", "resolve", "diffuse"}));
+  EXPECT_EQ(plan.barrierCount, 3u);
   EXPECT_EQ(plan.skipCount, 0u);
   EXPECT_EQ(plan.dispatches[0].barrierBefore, 0u);
   EXPECT_EQ(plan.dispatches[0].groups[0], 7u) << "100 pixels in groups of 16";
@@ -96,7 +96,7 @@ TEST(Plan, NoLightNoTranslucency) {
   Frame f;
   f.frame.lightCount = 0;
   const PellucidPlan plan = f.plan();
-  EXPECT_EQ(names(plan), (std::vector<std::string>{"quads", "reduce", "reduce", "resolve", "diffuse"}));
+  EXPECT_EQ(names(plan), (std::vector<std::string>{"quads", "reduce", "resolve", "diffuse"}));
   EXPECT_EQ(plan.dispatches[0].pipeline, static_cast<uint32_t>(PELLUCID_PIPELINE_QUADS_AND_COPY_16F));
   EXPECT_TRUE(skips(plan, "translucency", "no light can contribute"));
 }
