@@ -234,20 +234,22 @@ void diffuseTile(ivec2 firstPixel, uint edgeTexels) {
   bool diffuses = isEdge && k.reach.x > 0.0;
   vec3 center = places[own].xyz;
   Sums sums = Sums(vec3(0.0), vec3(0.0));
+  uint last = 0u; // of the pixel's levels
   if (diffuses) {
     float facing = max(pixelArea(center.z / frame.camera.range.w), 1.0e-30);
     // The coarsest level whose window holds most of the radius.
     float level = ceil(log2(max(0.8 * k.reach.x * inversesqrt(facing) / float(2 * kAround), 1.0)));
-    atomicMax(coarsest, uint(clamp(level, 1.0, float(pass.value.x))));
+    last = uint(clamp(level, 1.0, float(pass.value.x)));
+    atomicMax(coarsest, last);
     add(sums, colors[own], ownPart(k, facing, max(places[own].w / facing, 1.0)));
     addPixels(sums, local, k, center, facing);
   }
   barrier();
-  uint last = coarsest;
-  for (uint level = 1u; level <= last; ++level) {
+  uint levels = coarsest;
+  for (uint level = 1u; level <= levels; ++level) {
     loadTexels(level, firstPixel);
     barrier();
-    if (diffuses) addTexels(sums, level, firstPixel, local, k, center);
+    if (level <= last) addTexels(sums, level, firstPixel, local, k, center);
     barrier();
   }
   if (isEdge && insideRect(pixel) && materialAt(pixel) != 0u) {

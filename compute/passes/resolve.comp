@@ -21,6 +21,7 @@ const int kSide5 = 18, kSide6 = 8;
 
 shared uvec2 colors[kSide5 * kSide5];
 shared float depths[kSide5 * kSide5];
+shared uint needsMade;
 shared uvec4 made[kSide6 * kSide6 + 9]; // texels of level 6 and then, 3 x 3, of level 7
 
 #include "passes/reduced.glsl"
@@ -219,6 +220,14 @@ bool endsAtRect(ivec2 texel, uvec4 bits) {
 }
 
 #ifdef REDUCES
+// Whether a texel of level 5 has energy at coarser levels. Where the plan does not know how large radii are, most have none.
+bool reachesBeyond(ivec2 texel, uvec4 bits) {
+  if (!hasSurface(bits)) return false;
+  uint m = materialBits(bits) - 1u;
+  Foreshortening f = foreshortening(texel, 5u, uintBitsToFloat(bits.z), unpackHalf2x16(bits.w));
+  return any(greaterThan(coarserShare(m, 5u, shareEntry(m, f.lengthMm)), vec3(0.0)));
+}
+
 // Levels 6 and 7 where windows of group k are, before others need them.
 void makeLevels(ivec2 k, int invocation) {
   ivec2 first7 = firstMade(7u, k), first6 = firstMade(6u, k), first5 = 2 * first6 - 1;
@@ -259,12 +268,25 @@ void main() {
   ivec2 texel = window.corner + ivec2(index - row * window.side, row);
   bool fineInside = contains(levelRect(2u), fineTexel);
   bool inside = level <= coarsest && invocation < resolved.length() && contains(levelRect(level), texel);
-  // Both before the first is used.
 #ifdef REDUCES
-  makeLevels(k, invocation);
+  if (invocation == 0) needsMade = 0u;
+  bool isMade = level > 5u;
+  inside = inside && !isMade;
 #endif
-  uvec4 bits = inside ? texelAt(level, texel, k) : uvec4(0u);
+  // Both before the first is used.
+  uvec4 bits = inside ? texelFetch(pyramidImage, inAtlas(level, texel), 0) : uvec4(0u);
   uvec4 fineBits = fineInside ? texelFetch(pyramidImage, inAtlas(2u, fineTexel), 0) : uvec4(0u);
+#ifdef REDUCES
+  barrier();
+  if (level == 5u && reachesBeyond(texel, bits)) needsMade = 1u; // whoever writes, writes this
+  barrier();
+  if (needsMade != 0u) {
+    makeLevels(k, invocation);
+    if (isMade && invocation < resolved.length() && contains(levelRect(level), texel)) bits = texelAt(level, texel, k);
+  } else {
+    coarsest = 5u;
+  }
+#endif
   float lengthMm;
   Own own = ownPart(level, texel, k, bits, lengthMm);
   for (uint l = coarsest; l > 2u; --l) {

@@ -88,14 +88,21 @@ TEST_P(Diffusion, ShiftedRectGivesTheSamePixels) {
   Capture c = dark(128, 128);
   for (int y = 56; y < 72; ++y)
     for (int x = 56; x < 72; ++x) light(c, x, y, static_cast<float>((x * 7 + y * 13) % 5));
+  // A step in depth and, of a material that reaches less far, a disc.
+  c.materials.resize(2);
+  for (int y = 0; y < 128; ++y)
+    for (int x = 0; x < 128; ++x) {
+      if (x + y / 4 > 82) c.frontDepth.image.at(x, y)[0] += 5;
+      if (std::hypot(x - 60, y - 64) < 5) c.material[static_cast<size_t>(128 * y + x)] = 2;
+    }
   for (const auto& deviations : {std::initializer_list<double>{1, 4}, {7}}) {
-    const PellucidMaterial m = gaussians(deviations, pixelOf(c));
-    const Image whole = replay(c, m, diffusionOnly());
+    const std::vector<PellucidMaterial> m = {gaussians(deviations, pixelOf(c)), gaussians({1}, pixelOf(c))};
+    const Image whole = replayer().run(c, m, diffusionOnly()).output;
     for (const auto& rect :
          {std::array<uint32_t, 4>{1, 0, 127, 128}, {2, 3, 120, 119}, {7, 5, 114, 116}, {13, 11, 110, 101}}) {
       ReplaySettings s = diffusionOnly();
       s.renderRect = rect;
-      const Image part = replay(c, m, s);
+      const Image part = replayer().run(c, m, s).output;
       for (int y = 44; y < 84; ++y)
         for (int x = 44; x < 84; ++x)
           EXPECT_NEAR(part.at(x, y)[0], whole.at(x, y)[0], 1e-3 * (1 + whole.at(x, y)[0])) << x << ", " << y;
