@@ -196,11 +196,25 @@ PixelShares pixelShares(uint m, float entry) {
                      mix(kernels[m].pixelShare[2u * i + 1u].rgb, kernels[m].pixelShare[2u * i + 3u].rgb, part));
 }
 
+// Of energy, what levels from non-planes on may have of planes: more shows where they meet edges that are summed.
+const float kLeastFromEdges = 0.02;
+
+// Whether a texel of level 2 lies on one plane with all that much of its light comes from.
+bool isFlatFor(Own fine, uvec4 bits, ivec2 texel, ivec2 k) {
+  Window third = windowOf(3u, k), fourth = windowOf(4u, k);
+  ivec2 at = (texel >> 1) - third.corner, next = (texel >> 2) - fourth.corner;
+  float share = max(fine.share.r, max(fine.share.g, fine.share.b));
+  bool plane3 = isPlane(resolved[third.first + at.y * third.side + at.x]);
+  bool plane4 = pass.value.x < 4u || isPlane(resolved[fourth.first + next.y * fourth.side + next.x]);
+  return (bits.x & kFlat) != 0u && (share < kLeastFromEdges || (plane3 && plane4));
+}
+
 // Whether a texel of level 2 is an edge because the rect ends beside it: all around it in the rect lies on its plane, as
 // coarser texels do.
 bool endsAtRect(ivec2 texel, uvec4 bits) {
   ivec4 inside = levelRect(2u) + ivec4(1, 1, -1, -1);
-  if (contains(inside + ivec4(2, 2, -2, -2), texel)) return false;
+  // As far as texels of level 4 reach over it.
+  if (contains(inside + ivec4(4, 4, -4, -4), texel)) return false;
   float depth = uintBitsToFloat(bits.z);
   vec2 slope = unpackHalf2x16(bits.w), size = texelSize(depth, 2u);
   float spread2 = inverseSpread(slope, size);
@@ -311,7 +325,7 @@ void main() {
     color = uvec4(packColor(r.color, (fineBits.x & kFlat) != 0u ? upper | kPlane >> 16 : upper), fineBits.zw);
     share.coarser = share.coarser * r.density / max(1.0 - share.coarser + share.coarser * r.density, vec3(1.0e-6));
     uint flags = isPlane(fineBits) ? kFull : 0u;
-    if (pass.value.y != 0u && (fineBits.x & kFlat) == 0u && !endsAtRect(fineTexel, fineBits)) flags |= kSummed;
+    if (pass.value.y != 0u && !isFlatFor(fine, fineBits, fineTexel, k) && !endsAtRect(fineTexel, fineBits)) flags |= kSummed;
     shares = uvec4(packShares(share), packDensity(r.density) | flags);
   }
   if (fineInside) writeResolved(fineTexel, color, shares);
