@@ -9,6 +9,7 @@
 #include "gather.h"
 #include "minimum_dot.h"
 #include "pyramid.h"
+#include "quality.h"
 #include "records.h"
 #include "reuse.h"
 #include "validate.h"
@@ -272,7 +273,7 @@ extern "C" PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const
     put(mapped, layout.materials.offset + i * sizeof(shared::MaterialConstants),
         materialConstants(f.materials[i], gathers(f)));
     put(mapped, layout.kernels.offset + i * sizeof(shared::KernelConstants),
-        kernelConstants(f.materials[i], plan->quality > 0, plan->quality == 3));
+        kernelConstants(f.materials[i], plan->quality > 0, sumsEdges(f, plan->quality)));
   }
   return PELLUCID_OK;
 }

@@ -5,6 +5,7 @@
 
 #include "frame.h"
 #include "pyramid.h"
+#include "quality.h"
 #include "records.h"
 
 namespace pellucid {
@@ -403,8 +404,7 @@ struct Builder {
     return true;
   }
 
-  // Whether edges, by their distances in space, have a dispatch of their own.
-  bool sumsEdges() const { return plan.quality == 3 && given(frame.normal); }
+  bool sumsEdges() const { return pellucid::sumsEdges(frame, plan.quality); }
 
   // After the one of all other pixels, with the same arguments.
   bool diffuseEdges(uint32_t coarsest, uint32_t source, uint32_t destination, bool addsPoints) {

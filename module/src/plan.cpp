@@ -169,7 +169,8 @@ bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan
     if (!stages.fusesQuads) fits = fits && b.quads(source, copy);
     alongside();
     source = copy;
-    for (uint32_t finer = kFirstLevel, levels; finer < coarsest - (makesLast ? 2 : 0); finer += levels) {
+    const uint32_t reduced = coarsest - (makesLast ? 2 : 0);
+    for (uint32_t finer = kFirstLevel, levels; finer < reduced; finer += levels) {
       levels = boxes && finer == kFirstLevel ? 4 : 2;
       fits = fits && b.reduce(finer, levels);
       alongside();

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "quality.h"
+
 namespace pellucid {
 namespace {
 
@@ -14,7 +16,7 @@ uint32_t firstColumns(uint32_t pixels) { return std::max(most(pixels, kFirstLeve
 }  // namespace
 
 bool keepsFirstLevel(const PellucidFrame& frame) {
-  return given(frame.normal) && (frame.quality == 3 || frame.targetError > 0);
+  return sumsEdges(frame, frame.targetError > 0 ? 3 : frame.quality);
 }
 
 uint32_t coarsestLevel(const PellucidFrame& frame) {

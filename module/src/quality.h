@@ -24,6 +24,11 @@ double levelDeviation(uint32_t level);
 // The widest Gaussian that has nothing in coarser levels than this one, from 3 on; pixels.
 double deviationWithin(uint32_t level);
 
+// Whether a frame at this quality sums edges by their distances in space, in a dispatch of its own.
+inline bool sumsEdges(const PellucidFrame& frame, uint32_t quality) {
+  return quality == 3 && given(frame.normal);
+}
+
 // The least quality whose measured error at radii up to `radius` pixels (0: all) is below `error`. False, and
 // the best quality, if there is none. The best one is what it is by the frame's normals.
 bool qualityFor(float error, double radius, bool normals, uint32_t* quality);
