@@ -26,8 +26,6 @@ shared float depths[kInput * kInput];
 #include "passes/reduced.glsl"
 #include "passes/boxes.glsl"
 
-int taps() { return int(pass.value.y); }
-
 // Whether a texel and all around it are full and lie on one plane. `at`: not in the outermost rows and columns.
 bool isFlatAround(uvec4 bits, ivec2 at, uint level) {
   float depth = uintBitsToFloat(bits.z), most = 0.0;

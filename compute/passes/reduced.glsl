@@ -9,7 +9,7 @@ float weight(int i) { return i == 0 || i == 3 ? 0.1875 : 0.3125; }
 
 // Texels under a texel, from the push constants: compilers would unroll the loops of edges over a number that they know,
 // which takes half as many registers again.
-int taps();
+int taps() { return int(pass.value.y); }
 
 // Of the squared length of a texel's side. Curved surfaces below it gain nothing from weights of their own.
 const float kPlaneResidual = 0.01;

@@ -1,5 +1,5 @@
 // R_l = (1 - s) E_l + s R_(l+1) from the coarsest level of the pyramid to level 2, s the profile's share of the coarser
-// levels at the texel, and the shares of the pixels under level 2. A group makes 16 x 16 texels of level 2 and, before
+// levels at the texel, and the shares of the pixels under level 2. A group makes 32 x 16 texels of level 2 and, before
 // them, as much of each coarser level as they need. REDUCES: it makes levels 6 and 7 as well, from level 5.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
@@ -13,7 +13,7 @@ layout(set = 0, binding = PELLUCID_BINDING_KERNELS) readonly buffer Kernels { Ke
 
 // Resolved texels of level 3 and coarser ones, level after level; see Window. Color and material as packed, depth, and the
 // share of the kernel that the surface fills, of each channel, in place of the slope.
-shared uvec4 resolved[81 + 36 + 16 + 9 + 9];
+shared uvec4 resolved[153 + 60 + 24 + 12 + 9];
 
 #ifdef REDUCES
 // Sides of what a group needs of level 5 to make level 6, and of that to make level 7.
@@ -25,23 +25,27 @@ shared uint needsMade;
 shared uvec4 made[kSide6 * kSide6 + 9]; // texels of level 6 and then, 3 x 3, of level 7
 
 #include "passes/reduced.glsl"
-
-int taps() { return int(pass.value.z); }
 #endif
 
-// What a group needs of a level. Groups start at texels 16 k - 1 of level 2, so that these are the same everywhere.
+// What a group needs of a level. Groups start at texels 16 k - 1 of level 2, k.x even, so that these are the same
+// everywhere.
 struct Window {
   ivec2 corner; // first texel
-  int side;     // texels
+  int columns;  // texels
   int first;    // in resolved[]
 };
 
 Window windowOf(uint level, ivec2 k) {
-  if (level == 3u) return Window(8 * k - 1, 9, 0);
-  if (level == 4u) return Window(4 * k - 1, 6, 81);
-  if (level == 5u) return Window(2 * k - 1, 4, 117);
-  if (level == 6u) return Window(k - 1, 3, 133);
-  return Window((k - 2) >> 1, 3, 142);
+  if (level == 3u) return Window(8 * k - 1, 17, 0);
+  if (level == 4u) return Window(4 * k - 1, 10, 153);
+  if (level == 5u) return Window(2 * k - 1, 6, 213);
+  if (level == 6u) return Window(k - 1, 4, 237);
+  return Window((k - 2) >> 1, 3, 249);
+}
+
+ivec2 texelOf(Window window, int index) {
+  int row = int((float(index) + 0.5) / float(window.columns));
+  return window.corner + ivec2(index - row * window.columns, row);
 }
 
 #ifdef REDUCES
@@ -170,7 +174,7 @@ Level withCoarser(Own own, uint level, ivec2 texel, Window window) {
   [[unroll]] for (int i = 0; i < 4; ++i) {
     ivec2 at = nearest + toward * ivec2(i & 1, i >> 1);
     ivec2 inWindow = at - window.corner;
-    uvec4 theirs = resolved[window.first + inWindow.y * window.side + inWindow.x];
+    uvec4 theirs = resolved[window.first + inWindow.y * window.columns + inWindow.x];
     vec2 off = vec2(at) + 0.5 - 0.5 * (vec2(texel) + 0.5);
     float w = (i == 0 ? 9.0 / 16.0 : i == 3 ? 1.0 / 16.0 : 3.0 / 16.0) / kDensityOne;
     float along = dot(own.texel.slope, off * size);
@@ -204,8 +208,8 @@ bool isFlatFor(Own fine, uvec4 bits, ivec2 texel, ivec2 k) {
   Window third = windowOf(3u, k), fourth = windowOf(4u, k);
   ivec2 at = (texel >> 1) - third.corner, next = (texel >> 2) - fourth.corner;
   float share = max(fine.share.r, max(fine.share.g, fine.share.b));
-  bool plane3 = isPlane(resolved[third.first + at.y * third.side + at.x]);
-  bool plane4 = pass.value.x < 4u || isPlane(resolved[fourth.first + next.y * fourth.side + next.x]);
+  bool plane3 = isPlane(resolved[third.first + at.y * third.columns + at.x]);
+  bool plane4 = pass.value.x < 4u || isPlane(resolved[fourth.first + next.y * fourth.columns + next.x]);
   return (bits.x & kFlat) != 0u && (share < kLeastFromEdges || (plane3 && plane4));
 }
 
@@ -271,62 +275,82 @@ void makeLevels(ivec2 k, int invocation) {
 }
 #endif
 
+uvec4 packLevel(Level r, uvec4 bits) { return uvec4(packColor(r.color, bits.y >> 16), bits.z, packDensity(r.density)); }
+
+// A texel of level 2 and its pixels' shares.
+void resolveFine(ivec2 texel, ivec2 k, uvec4 bits) {
+  if (!contains(levelRect(2u), texel)) return;
+  uvec4 color = uvec4(0u, bits.y & 0xFFFF0000u, 0u, 0u), shares = uvec4(0u);
+  if (hasSurface(bits)) {
+    float lengthMm;
+    Own own = ownPart(2u, texel, k, bits, lengthMm);
+    uint m = own.texel.material - 1u;
+    // A length of a pixel is a quarter of a texel's.
+    PixelShares share = pixelShares(m, shareEntry(m, 0.25 * lengthMm));
+    Level r = withCoarser(own, 2u, texel, windowOf(3u, k));
+    uint upper = bits.y >> 16 & ~(kPlane >> 16);
+    color = uvec4(packColor(r.color, (bits.x & kFlat) != 0u ? upper | kPlane >> 16 : upper), bits.zw);
+    share.coarser = share.coarser * r.density / max(1.0 - share.coarser + share.coarser * r.density, vec3(1.0e-6));
+    uint flags = isPlane(bits) ? kFull : 0u;
+    if (hasFlag(PELLUCID_FLAG_SUMS_EDGES) && !isFlatFor(own, bits, texel, k) && !endsAtRect(texel, bits)) flags |= kSummed;
+    shares = uvec4(packShares(share), packDensity(r.density) | flags);
+  }
+  writeResolved(texel, color, shares);
+}
+
 void main() {
   int invocation = int(gl_LocalInvocationIndex);
   uint coarsest = pass.value.x;
-  // An invocation does one texel of level 2 and, before that, one of a coarser level.
-  ivec2 k = ((levelRect(2u).xy + 1) >> 4) + ivec2(gl_WorkGroupID.xy), fineTexel = 16 * k - 1 + ivec2(gl_LocalInvocationID.xy);
-  uint level = 3u + uint(invocation >= 81) + uint(invocation >= 117) + uint(invocation >= 133) + uint(invocation >= 142);
-  Window window = windowOf(level, k);
-  int index = invocation - window.first, row = int((float(index) + 0.5) / float(window.side));
-  ivec2 texel = window.corner + ivec2(index - row * window.side, row);
-  bool fineInside = contains(levelRect(2u), fineTexel);
-  bool inside = level <= coarsest && invocation < resolved.length() && contains(levelRect(level), texel);
+  // An invocation does two texels of level 2 and, before them, one of levels 3 to 6. The first ones have level 7, too.
+  ivec2 k = (((levelRect(2u).xy + 1) >> ivec2(5, 4)) + ivec2(gl_WorkGroupID.xy)) * ivec2(2, 1);
+  ivec2 fine = 16 * k - 1 + ivec2(gl_LocalInvocationID.xy), nextFine = fine + ivec2(PELLUCID_RESOLVE_GROUP, 0);
+  uint level = 3u + uint(invocation >= 153) + uint(invocation >= 213) + uint(invocation >= 237);
+  Window window = windowOf(level, k), last = windowOf(7u, k);
+  bool within = invocation < last.first;
+  ivec2 texel = texelOf(window, invocation - window.first), lastTexel = texelOf(last, invocation);
+  bool inside = level <= coarsest && within && contains(levelRect(level), texel);
+  bool lastInside = coarsest == 7u && last.first + invocation < resolved.length() && contains(levelRect(7u), lastTexel);
+  bool fetches = inside, fetchesLast = lastInside;
 #ifdef REDUCES
   if (invocation == 0) needsMade = 0u;
-  bool isMade = level > 5u;
-  inside = inside && !isMade;
+  fetches = fetches && level <= 5u;
+  fetchesLast = false;
 #endif
-  // Both before the first is used.
-  uvec4 bits = inside ? texelFetch(pyramidImage, inAtlas(level, texel), 0) : uvec4(0u);
-  uvec4 fineBits = fineInside ? texelFetch(pyramidImage, inAtlas(2u, fineTexel), 0) : uvec4(0u);
+  // All before the first is used.
+  uvec4 bits = fetches ? texelFetch(pyramidImage, inAtlas(level, texel), 0) : uvec4(0u);
+  uvec4 lastBits = fetchesLast ? texelFetch(pyramidImage, inAtlas(7u, lastTexel), 0) : uvec4(0u);
+  uvec4 fineBits = contains(levelRect(2u), fine) ? texelFetch(pyramidImage, inAtlas(2u, fine), 0) : uvec4(0u);
+  uvec4 nextBits = contains(levelRect(2u), nextFine) ? texelFetch(pyramidImage, inAtlas(2u, nextFine), 0) : uvec4(0u);
 #ifdef REDUCES
   barrier();
   if (level == 5u && reachesBeyond(texel, bits)) needsMade = 1u; // whoever writes, writes this
   barrier();
   if (needsMade != 0u) {
     makeLevels(k, invocation);
-    if (isMade && invocation < resolved.length() && contains(levelRect(level), texel)) bits = texelAt(level, texel, k);
+    if (inside && level == 6u) bits = texelAt(6u, texel, k);
+    if (lastInside) lastBits = texelAt(7u, lastTexel, k);
   } else {
     coarsest = 5u;
   }
 #endif
   float lengthMm;
+  if (coarsest == 7u && last.first + invocation < resolved.length()) {
+    Own own = ownPart(7u, lastTexel, k, lastBits, lengthMm);
+    resolved[last.first + invocation] = own.texel.mass > 0.0 ? packLevel(alone(own), lastBits) : uvec4(0u);
+  }
   Own own = ownPart(level, texel, k, bits, lengthMm);
-  for (uint l = coarsest; l > 2u; --l) {
-    if (level == l && invocation < resolved.length()) {
-      uvec4 packed = uvec4(0u);
-      if (own.texel.mass > 0.0) {
-        Level r = level == coarsest ? alone(own) : withCoarser(own, level, texel, windowOf(level + 1u, k));
-        packed = uvec4(packColor(r.color, bits.y >> 16), bits.z, packDensity(r.density));
-      }
-      resolved[invocation] = packed;
-    }
+  for (uint l = min(coarsest, 6u); l > 2u; --l) {
     barrier();
+    if (level == l && within) {
+      Level r = l == coarsest ? alone(own) : withCoarser(own, level, texel, windowOf(level + 1u, k));
+      resolved[invocation] = own.texel.mass > 0.0 ? packLevel(r, bits) : uvec4(0u);
+    }
   }
-  uvec4 color = uvec4(0u, fineBits.y & 0xFFFF0000u, 0u, 0u), shares = uvec4(0u);
-  if (hasSurface(fineBits)) {
-    Own fine = ownPart(2u, fineTexel, k, fineBits, lengthMm);
-    uint m = fine.texel.material - 1u;
-    // A length of a pixel is a quarter of a texel's.
-    PixelShares share = pixelShares(m, shareEntry(m, 0.25 * lengthMm));
-    Level r = withCoarser(fine, 2u, fineTexel, windowOf(3u, k));
-    uint upper = fineBits.y >> 16 & ~(kPlane >> 16);
-    color = uvec4(packColor(r.color, (fineBits.x & kFlat) != 0u ? upper | kPlane >> 16 : upper), fineBits.zw);
-    share.coarser = share.coarser * r.density / max(1.0 - share.coarser + share.coarser * r.density, vec3(1.0e-6));
-    uint flags = isPlane(fineBits) ? kFull : 0u;
-    if (pass.value.y != 0u && !isFlatFor(fine, fineBits, fineTexel, k) && !endsAtRect(fineTexel, fineBits)) flags |= kSummed;
-    shares = uvec4(packShares(share), packDensity(r.density) | flags);
+  barrier();
+  // One after the other: both at once would hold more registers than four groups have.
+  for (int i = 0; i < 2; ++i) {
+    resolveFine(fine, k, fineBits);
+    fine = nextFine;
+    fineBits = nextBits;
   }
-  if (fineInside) writeResolved(fineTexel, color, shares);
 }

@@ -25,7 +25,7 @@ using glm::vec4;
 #define PELLUCID_DIFFUSE_CELL 4 // pixels a side of the gather's cells where the diffusion adds what it found
 #define PELLUCID_EDGES_GROUP 16 // a side, pixels, of a tile of the pass that does edges by distances in space
 #define PELLUCID_EDGES_TILES 8  // of a group, in a column
-#define PELLUCID_RESOLVE_GROUP 16 // a side, texels of level 2
+#define PELLUCID_RESOLVE_GROUP 16 // a side, texels of level 2, of which an invocation does two beside each other
 #define PELLUCID_REDUCE_GROUP 16 // a side, of the pyramid's reductions
 #define PELLUCID_REDUCE_TILE 7   // a side, texels of the second of the two levels that a group makes
 #define PELLUCID_GATHER_GROUP 16 // a side, of the pass that adds gathered light; an invocation does 2 x 2 pixels
@@ -77,6 +77,7 @@ using glm::vec4;
 #define PELLUCID_FLAG_CHORD_THICKNESS 128u
 #define PELLUCID_FLAG_CHORD 256u // some light, or a debug view, needs camera-space thickness
 #define PELLUCID_FLAG_DIFFUSED 512u // what the gather adds to has been diffused
+#define PELLUCID_FLAG_SUMS_EDGES 1024u // pixels of edges have a dispatch that sums over the pyramid
 
 // Values of the public enums the shaders branch on; constants.cpp asserts that they agree.
 #define PELLUCID_SHADER_LIGHT_DIRECTIONAL 0u
@@ -233,7 +234,7 @@ struct GatherDispatches {
 // column of the summaries and 1 to add to what is there, samples.
 // gather share: pixels a side of a cell.
 // add: unused, unused, 1 if this is the last dispatch.
-// reduce: finer level, 16. resolve: coarsest level, 1 if edges have a dispatch of their own, 16.
+// reduce: finer level, 16. resolve: coarsest level, 16.
 // diffuse: unused, 1, unused, 1 if this is the last dispatch. diffuse edges: coarsest level, unused, unused,
 // likewise.
 struct PassConstants {

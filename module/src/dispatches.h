@@ -384,17 +384,15 @@ struct Builder {
     PellucidDispatch* d = dispatch(
         "resolve", reduces ? PELLUCID_PIPELINE_REDUCE_AND_RESOLVE : PELLUCID_PIPELINE_RESOLVE_LEVELS);
     if (!d) return false;
-    // Groups start at texels 16 k - 1.
+    // Groups start at texels 32 k - 1, in y 16 k - 1.
     const PyramidPlace place = placeOf(frame, 2);
-    const auto across = [](int32_t first, int32_t texels) {
-      constexpr int32_t kSide = PELLUCID_RESOLVE_GROUP;
-      return static_cast<uint32_t>((first + texels) / kSide - (first + 1) / kSide + 1);
+    const auto across = [](int32_t first, int32_t texels, int32_t side) {
+      return static_cast<uint32_t>((first + texels) / side - (first + 1) / side + 1);
     };
-    d->groups[0] = across(place.rect.x, place.rect.width);
-    d->groups[1] = across(place.rect.y, place.rect.height);
+    d->groups[0] = across(place.rect.x, place.rect.width, 2 * PELLUCID_RESOLVE_GROUP);
+    d->groups[1] = across(place.rect.y, place.rect.height, PELLUCID_RESOLVE_GROUP);
     d->pushConstants[0] = coarsest;
-    d->pushConstants[1] = sumsEdges() ? 1 : 0;
-    d->pushConstants[2] = 16;  // texels under a texel
+    d->pushConstants[1] = 16;  // texels under a texel
     constants(d, PELLUCID_BINDING_FRAME, layout.frame);
     constants(d, PELLUCID_BINDING_KERNELS, layout.kernels);
     writesPyramid(d);
