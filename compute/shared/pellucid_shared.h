@@ -1,6 +1,6 @@
 // Structs, binding numbers and group sizes, read by C++ and GLSL alike. Only 16-byte members, so
-// std140, std430 and C++ agree without padding rules. View space is the camera's; lengths in scene
-// units unless said otherwise.
+// std140, std430 and C++ agree without padding rules; in std430 alone, even arrays of 8-byte ones, too. View space is
+// the camera's; lengths in scene units unless said otherwise.
 #ifndef PELLUCID_SHARED_H
 #define PELLUCID_SHARED_H
 
@@ -10,6 +10,7 @@
 namespace pellucid::shared {
 using glm::ivec4;
 using glm::mat4;
+using glm::uvec2;
 using glm::uvec4;
 using glm::vec4;
 #endif
@@ -109,7 +110,7 @@ using glm::vec4;
 #define PELLUCID_SHARE_COARSER 2
 #define PELLUCID_SHARE_TABLES 3
 #define PELLUCID_SHARE_ENTRIES 128
-#define PELLUCID_DISTANCE_ENTRIES 128
+#define PELLUCID_DISTANCE_ENTRIES 256
 
 // The camera as the shaders use it. With s = +1 or -1 the sign of view z in front of the eye, p = s z
 // is the planar distance and a pixel's view ray is point(p) = origin + p direction.
@@ -218,7 +219,7 @@ struct KernelConstants {
   // Of quality 3, the profile R over squared distances r^2 in mm^2; before the first entry R does not change.
   vec4 reach; // x: distance within which 99.9 % of the energy lies, mm, 0: none; y: r^2 of the first entry; z: its log2;
               // w: entries per octave
-  uvec4 distance[PELLUCID_DISTANCE_ENTRIES]; // halves: r^2 R, rgb, and by how much the next entry has more, rgb
+  uvec2 distance[PELLUCID_DISTANCE_ENTRIES]; // halves: r^2 R, rgb
   vec4 enclosed[PELLUCID_DISTANCE_ENTRIES];  // rgb: which part of the energy lies within r
 };
 
