@@ -7,6 +7,16 @@
 // 3 5 5 3, variance 1.
 float weight(int i) { return i == 0 || i == 3 ? 0.1875 : 0.3125; }
 
+// Of the squared length of a texel's side: how far from its plane what a texel stands for may lie where edges are summed.
+const float kSummedOffset = 4.0;
+
+// How much of a texel `off` its surface's plane counts, see sameSurface. Sums of edges take distances in space, so all that
+// a texel can stand for counts by its area.
+float reducedWeight(float off, float along, float spread2) {
+  if (hasFlag(PELLUCID_FLAG_SUMS_EDGES)) return off * off * spread2 < kSummedOffset ? 1.0 : 0.0;
+  return sameSurface(off, along, spread2, kReduceFalloff);
+}
+
 // Texels under a texel, from the push constants: compilers would unroll the loops of edges over a number that they know,
 // which takes half as many registers again.
 int taps() { return int(pass.value.y); }
@@ -105,7 +115,7 @@ uvec4 reducedEdge(uint finer, int first, int stride) {
       bool counts = t.mass != 0.0 && t.material == surface.material;
       vec2 offset = (vec2(at) - 1.5) * size;
       float difference = t.depth - surface.depth - dot(slope, vec2(at - nearest) * size);
-      float w = weight(at.x) * weight(at.y) * sameSurface(difference, dot(slope, offset), spread2, kReduceFalloff);
+      float w = weight(at.x) * weight(at.y) * reducedWeight(difference, dot(slope, offset), spread2);
       w = counts ? w : 0.0;
       color += w * t.mass * unpackColor(colors[index]);
       mass += w * t.mass;
