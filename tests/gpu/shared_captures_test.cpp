@@ -8,7 +8,9 @@
 #include "capture/material.h"
 #include "capture/read.h"
 #include "common/compare.h"
+#include "reference/diffusion.h"
 #include "reference/reference.h"
+#include "reference/surface.h"
 
 namespace {
 
@@ -31,13 +33,25 @@ std::filesystem::path sharedCaptures() {
          "captures";
 }
 
-class SharedCapture : public GpuTest, public testing::WithParamInterface<Expectation> {};
+// Of the capture with the parameter's name; skipped where there is none.
+template <class Parameter>
+class CaptureTest : public GpuTest, public testing::WithParamInterface<Parameter> {
+protected:
+  void SetUp() override {
+    GpuTest::SetUp();
+    const std::filesystem::path manifest = sharedCaptures() / this->GetParam().name / "manifest.json";
+    if (!std::filesystem::exists(manifest)) GTEST_SKIP() << "no capture at " << manifest;
+    capture = readCapture(manifest);
+    materials = compileMaterials(capture);
+  }
+
+  Capture capture;
+  std::vector<PellucidMaterial> materials;
+};
+
+using SharedCapture = CaptureTest<Expectation>;
 
 TEST_P(SharedCapture, IsAsNearToTheTruthAsDocumented) {
-  const std::filesystem::path manifest = sharedCaptures() / GetParam().name / "manifest.json";
-  if (!std::filesystem::exists(manifest)) GTEST_SKIP() << "no capture at " << manifest;
-  const Capture capture = readCapture(manifest);
-  const std::vector<PellucidMaterial> materials = compileMaterials(capture);
   const auto error = [&](uint32_t features) {
     ReplaySettings s;
     s.features = features;
@@ -49,7 +63,7 @@ TEST_P(SharedCapture, IsAsNearToTheTruthAsDocumented) {
   const auto whole = error(PELLUCID_FEATURE_TRANSLUCENCY | PELLUCID_FEATURE_DIFFUSION);
   const auto without = error(PELLUCID_FEATURE_DIFFUSION);
   for (size_t c = 0; c < 3; ++c) {
-    // 2 %: the truth is one noisy image, so only the device's rounding may differ.
+    // 2 %, here and below: only the device's rounding may differ.
     EXPECT_LT(whole[c].relativeRmse, GetParam().all[c] * 1.02) << c;
     EXPECT_LT(whole[c].relativeRmse, without[c].relativeRmse * GetParam().ofNone[c])
         << "worse than no translucency in " << c;
@@ -66,15 +80,12 @@ struct GatherExpectation {
 
 void PrintTo(const GatherExpectation& value, std::ostream* out) { *out << value.name; }
 
-class SharedCaptureGather : public GpuTest, public testing::WithParamInterface<GatherExpectation> {};
+using SharedCaptureGather = CaptureTest<GatherExpectation>;
 
 TEST_P(SharedCaptureGather, IsAsNearToTheTruthAsDocumented) {
-  const std::filesystem::path manifest = sharedCaptures() / GetParam().name / "manifest.json";
-  if (!std::filesystem::exists(manifest)) GTEST_SKIP() << "no capture at " << manifest;
-  const Capture capture = readCapture(manifest);
   ReplaySettings s;
   s.translucency.gatherSamples = 16;
-  const Image image = rgb(replayer().run(capture, compileMaterials(capture), s).output);
+  const Image image = rgb(replayer().run(capture, materials, s).output);
   const auto check = [&](Subset subset, const double(&limits)[3]) {
     const auto mask = comparisonMask(capture.material, capture.irradiance, subset);
     const auto channels = compareImages(image, capture.truth->image, mask, 4).channels;
@@ -85,10 +96,6 @@ TEST_P(SharedCaptureGather, IsAsNearToTheTruthAsDocumented) {
 }
 
 TEST_P(SharedCaptureGather, IsNearAllTexels) {
-  const std::filesystem::path manifest = sharedCaptures() / GetParam().name / "manifest.json";
-  if (!std::filesystem::exists(manifest)) GTEST_SKIP() << "no capture at " << manifest;
-  const Capture capture = readCapture(manifest);
-  const std::vector<PellucidMaterial> materials = compileMaterials(capture);
   ReplaySettings s;
   s.features = PELLUCID_FEATURE_TRANSLUCENCY;
   s.translucency.gatherSamples = 16;
@@ -107,6 +114,64 @@ TEST_P(SharedCaptureGather, IsNearAllTexels) {
           .channels;
   for (size_t c = 0; c < 3; ++c) EXPECT_LT(channels[c].relativeRmse, GetParam().ofAllTexels[c]) << c;
 }
+
+// Diffusion alone from brute force: relative RMSE R G B of the default quality and of the best.
+struct DiffusionExpectation {
+  const char* name;
+  double normal[3], best[3];
+};
+
+void PrintTo(const DiffusionExpectation& value, std::ostream* out) { *out << value.name; }
+
+using SharedCaptureDiffusion = CaptureTest<DiffusionExpectation>;
+
+TEST_P(SharedCaptureDiffusion, IsAsNearToBruteForceAsDocumented) {
+  namespace reference = pellucid::harness::reference;
+  std::vector<glm::dvec3> irradiance;
+  for (size_t i = 0; i < capture.irradiance.pixels(); ++i) {
+    const float* e = &capture.irradiance.data[3 * i];
+    irradiance.emplace_back(e[0], e[1], e[2]);
+  }
+  const reference::SurfaceReader surfaces(capture);
+  const reference::Diffusion diffusion(capture, surfaces, materials, {}, irradiance);
+  // One pixel in 29: all of them take minutes.
+  std::vector<std::pair<int, int>> pixels;
+  std::vector<glm::dvec3> truth;
+  for (int i = 0; i < capture.width * capture.height; i += 29) {
+    const int x = i % capture.width, y = i / capture.width;
+    if (capture.material[static_cast<size_t>(i)] == 0) continue;
+    pixels.emplace_back(x, y);
+    glm::dvec3 value = diffusion.at(x, y);
+    if (!capture.albedo.empty())
+      for (int k = 0; k < 3; ++k) value[k] *= static_cast<double>(capture.albedo.at(x, y)[k]);
+    truth.push_back(value);
+  }
+  ASSERT_GT(pixels.size(), 200u);
+  for (const uint32_t quality : {2u, 3u}) {
+    ReplaySettings s;
+    s.features = PELLUCID_FEATURE_DIFFUSION;
+    s.quality = quality;
+    const Image image = replayer().run(capture, materials, s).output;
+    glm::dvec3 squares(0), total(0);
+    for (size_t i = 0; i < pixels.size(); ++i) {
+      const float* v = image.at(pixels[i].first, pixels[i].second);
+      const glm::dvec3 off = glm::dvec3(v[0], v[1], v[2]) - truth[i];
+      squares += off * off;
+      total += truth[i] * truth[i];
+    }
+    for (int k = 0; k < 3; ++k)
+      EXPECT_LT(std::sqrt(squares[k] / total[k]),
+                1.02 * (quality == 3 ? GetParam().best : GetParam().normal)[k])
+          << "channel " << k << ", quality " << quality;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Truth, SharedCaptureDiffusion,
+    testing::Values(DiffusionExpectation{"ear_backlit", {.0175, .0145, .0136}, {.0056, .0040, .0041}},
+                    DiffusionExpectation{"head_sidelit", {.0117, .0073, .0054}, {.0025, .0017, .0017}},
+                    DiffusionExpectation{"sphere_backlit", {.0953, .0397, .0263}, {.0444, .0240, .0111}}),
+    [](const auto& test) { return std::string(test.param.name); });
 
 INSTANTIATE_TEST_SUITE_P(
     Truth, SharedCaptureGather,
