@@ -17,4 +17,11 @@ const bool kUnmapped = true;
 const bool kUnmapped = false;
 #endif
 
+// SUMS_EDGES: pixels of edges have a dispatch of their own, which sums over the pyramid.
+#ifdef SUMS_EDGES
+const bool kSumsEdges = true;
+#else
+const bool kSumsEdges = false;
+#endif
+
 #endif

@@ -8,13 +8,13 @@
 float weight(int i) { return i == 0 || i == 3 ? 0.1875 : 0.3125; }
 
 // Of the squared length of a texel's side: how far from its plane what a texel stands for may lie where edges are summed.
-const float kSummedOffset = 4.0;
+const float kSummedOffset = 8.0;
 
 // How much of a texel `off` its surface's plane counts, see sameSurface. Sums of edges take distances in space, so all that
 // a texel can stand for counts by its area.
 float reducedWeight(float off, float along, float spread2) {
-  if (hasFlag(PELLUCID_FLAG_SUMS_EDGES)) return off * off * spread2 < kSummedOffset ? 1.0 : 0.0;
-  return sameSurface(off, along, spread2, kReduceFalloff);
+  return kSumsEdges ? (off * off * spread2 < kSummedOffset ? 1.0 : 0.0)
+                    : sameSurface(off, along, spread2, kReduceFalloff);
 }
 
 // Texels under a texel, from the push constants: compilers would unroll the loops of edges over a number that they know,
@@ -50,9 +50,15 @@ Source sourceAt(int index) {
   return Source(massOf(bits), depths[index], bits >> 24);
 }
 
-// Which texel's surface is taken: the nearest to the camera of the four in the middle or, beyond an edge, the one
-// of the others that the filter weights most. -1: none.
-int surfaceOf(int first, int stride) {
+// Whether a texel, no plane, stands for the four in the middle alone. Where edges are summed, nothing that a finer texel
+// stands for may be in a coarser one beside it, too. Not where the rect ends: its planes are filtered there.
+bool isApart(uint finer, ivec2 texel) {
+  return kSumsEdges && contains(levelRect(finer + 1u) + ivec4(2, 2, -2, -2), texel);
+}
+
+// Which texel's surface is taken: the nearest to the camera of the four in the middle or, beyond an edge and if not
+// `apart`, the one of the others that the filter weights most. -1: none.
+int surfaceOf(int first, int stride, bool apart) {
   int surface = -1;
   float nearest = kNoDepth, most = 0.0;
   [[unroll]] for (int i = 0; i < 4; ++i) {
@@ -61,7 +67,7 @@ int surfaceOf(int first, int stride) {
     nearest = nearer ? t.depth : nearest;
     surface = nearer ? 5 + 4 * (i >> 1) + (i & 1) : surface;
   }
-  if (surface >= 0) return surface;
+  if (surface >= 0 || apart) return surface;
   for (int i = 0; i < taps(); ++i) {
     float w = weight(i & 3) * weight(i >> 2) * sourceAt(tap(first, stride, i & 3, i >> 2)).mass;
     if (!(w > most)) continue;
@@ -89,8 +95,9 @@ float depthStep(int first, int stride, Source center, ivec2 at, ivec2 direction)
 }
 
 // Where the 4 x 4 texels are not one plane.
-uvec4 reducedEdge(uint finer, int first, int stride) {
-  int chosen = surfaceOf(first, stride);
+uvec4 reducedEdge(uint finer, ivec2 texel, int first, int stride) {
+  bool apart = isApart(finer, texel);
+  int chosen = surfaceOf(first, stride, apart);
   if (chosen < 0) {
     uint orphans = 0u;
     for (int i = 0; i < 4; ++i)
@@ -115,8 +122,9 @@ uvec4 reducedEdge(uint finer, int first, int stride) {
       bool counts = t.mass != 0.0 && t.material == surface.material;
       vec2 offset = (vec2(at) - 1.5) * size;
       float difference = t.depth - surface.depth - dot(slope, vec2(at - nearest) * size);
-      float w = weight(at.x) * weight(at.y) * reducedWeight(difference, dot(slope, offset), spread2);
-      w = counts ? w : 0.0;
+      bool inMiddle = (at + 1) >> 1 == ivec2(1);
+      float w = apart ? (inMiddle ? 0.25 : 0.0) : weight(at.x) * weight(at.y);
+      w = counts ? w * reducedWeight(difference, dot(slope, offset), spread2) : 0.0;
       color += w * t.mass * unpackColor(colors[index]);
       mass += w * t.mass;
       // Where it is seen edge-on, a surface says no more about its depth than elsewhere.
@@ -158,7 +166,7 @@ uvec4 reduced(uint finer, ivec2 texel, int first, int stride) {
   bool plane = onePlane(bits, different, residual, slope, 2.0 * size);
   uvec4 result = packTexel(Texel(color, areaOf(finer + 1u, texel, slope), bits >> 24, base + off, slope), kPlane);
   // That nothing is there is too rare for a branch of its own.
-  if (!plane) result = (bits | different) >> 16 == 0u ? uvec4(0u) : reducedEdge(finer, first, stride);
+  if (!plane) result = (bits | different) >> 16 == 0u ? uvec4(0u) : reducedEdge(finer, texel, first, stride);
   return result;
 }
 

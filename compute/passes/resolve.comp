@@ -292,7 +292,7 @@ void resolveFine(ivec2 texel, ivec2 k, uvec4 bits) {
     color = uvec4(packColor(r.color, (bits.x & kFlat) != 0u ? upper | kPlane >> 16 : upper), bits.zw);
     share.coarser = share.coarser * r.density / max(1.0 - share.coarser + share.coarser * r.density, vec3(1.0e-6));
     uint flags = isPlane(bits) ? kFull : 0u;
-    if (hasFlag(PELLUCID_FLAG_SUMS_EDGES) && !isFlatFor(own, bits, texel, k) && !endsAtRect(texel, bits)) flags |= kSummed;
+    if (kSumsEdges && !isFlatFor(own, bits, texel, k) && !endsAtRect(texel, bits)) flags |= kSummed;
     shares = uvec4(packShares(share), packDensity(r.density) | flags);
   }
   writeResolved(texel, color, shares);

@@ -37,7 +37,7 @@ static_assert(PELLUCID_MAX_LIGHT_SHADOW_MAPS <= PELLUCID_SHADOW_IMAGE_COUNT);
 
 glm::vec4 rgb(const float (&v)[3], float w = 0) { return {v[0], v[1], v[2], w}; }
 
-shared::FrameConstants frameConstants(const PellucidFrame& f, uint32_t quality) {
+shared::FrameConstants frameConstants(const PellucidFrame& f) {
   shared::FrameConstants c{};
   const glm::dmat4 clip = toMatrix(f.clipFromView);
   DepthRange range;
@@ -72,7 +72,6 @@ shared::FrameConstants frameConstants(const PellucidFrame& f, uint32_t quality) 
   if (f.chordThickness) flags |= PELLUCID_FLAG_CHORD_THICKNESS;
   if (needsChord(f)) flags |= PELLUCID_FLAG_CHORD;
   if (f.features & PELLUCID_FEATURE_DIFFUSION && anyMaterialDiffuses(f)) flags |= PELLUCID_FLAG_DIFFUSED;
-  if (sumsEdges(f, quality)) flags |= PELLUCID_FLAG_SUMS_EDGES;
   c.flags = {flags, f.materialCount, f.debugView, f.angleModel};
   const float* p = f.anglePolynomial;
   c.anglePolynomial = {p[0], p[1], p[2], p[3]};
@@ -229,7 +228,7 @@ extern "C" PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const
   if (size < layout.size) return PELLUCID_ERROR_BUFFER_TOO_SMALL;
 
   std::memset(mapped, 0, static_cast<size_t>(layout.size));
-  const shared::FrameConstants frameValues = frameConstants(f, plan->quality);
+  const shared::FrameConstants frameValues = frameConstants(f);
   put(mapped, layout.frame.offset, frameValues);
   const glm::dmat4 viewFromWorld = toMatrix(f.viewFromWorld);
   const glm::dmat4 worldFromView = glm::inverse(viewFromWorld);

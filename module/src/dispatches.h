@@ -356,7 +356,8 @@ struct Builder {
   // The `levels` after `finer`: 2, or 4 after level 1, the last two of them by groups of their own from
   // boxes.
   bool reduce(uint32_t finer, uint32_t levels) {
-    PellucidDispatch* d = dispatch("reduce", PELLUCID_PIPELINE_REDUCE_LEVELS);
+    PellucidDispatch* d = dispatch(
+        "reduce", sumsEdges() ? PELLUCID_PIPELINE_REDUCE_FOR_EDGES : PELLUCID_PIPELINE_REDUCE_LEVELS);
     if (!d) return false;
     // Groups of boxes, whose columns and number the shader is told, lie in rows before the others, of whose
     // rows it is told.
@@ -381,8 +382,9 @@ struct Builder {
 
   // `reduces`: it makes levels 6 and 7 from level 5.
   bool resolve(uint32_t coarsest, bool reduces) {
-    PellucidDispatch* d = dispatch(
-        "resolve", reduces ? PELLUCID_PIPELINE_REDUCE_AND_RESOLVE : PELLUCID_PIPELINE_RESOLVE_LEVELS);
+    PellucidDispatch* d = dispatch("resolve", reduces       ? PELLUCID_PIPELINE_REDUCE_AND_RESOLVE
+                                              : sumsEdges() ? PELLUCID_PIPELINE_RESOLVE_FOR_EDGES
+                                                            : PELLUCID_PIPELINE_RESOLVE_LEVELS);
     if (!d) return false;
     // Groups start at texels 32 k - 1, in y 16 k - 1.
     const PyramidPlace place = placeOf(frame, 2);

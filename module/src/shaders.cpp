@@ -35,7 +35,9 @@
 #include "kQuadsAndCopy32f.h"
 #include "kReduce.h"
 #include "kReduceAndResolve.h"
+#include "kReduceForEdges.h"
 #include "kResolve.h"
+#include "kResolveForEdges.h"
 #include "kTranslucency16f.h"
 #include "kTranslucency32f.h"
 #include "kTranslucencyQuads16f.h"
@@ -89,7 +91,9 @@ const std::array kShaders = {shader(kTranslucency16f),
                              shader(kDiffuseEdgesGather16f),
                              shader(kDiffuseEdgesGather32f),
                              shader(kGatherRecordsOneMap),
-                             shader(kReduceAndResolve)};
+                             shader(kReduceAndResolve),
+                             shader(kReduceForEdges),
+                             shader(kResolveForEdges)};
 static_assert(kShaders.size() == PELLUCID_PIPELINE_COUNT);
 
 }  // namespace

@@ -91,7 +91,9 @@ extern "C" const char* pellucidPipelineName(uint32_t pipeline) {
                                        "diffuse_edges_gather_rgba16f",
                                        "diffuse_edges_gather_rgba32f",
                                        "gather_records_one_map",
-                                       "reduce_and_resolve"};
+                                       "reduce_and_resolve",
+                                       "reduce_for_edges",
+                                       "resolve_for_edges"};
   static_assert(names.size() == PELLUCID_PIPELINE_COUNT);
   return pipeline < names.size() ? names[pipeline] : "unknown pipeline";
 }

@@ -31,7 +31,7 @@ const PellucidDispatch* find(const PellucidPlan& plan, const std::string& name) 
 uint32_t reductions(const PellucidPlan& plan) {
   return static_cast<uint32_t>(
       std::count_if(plan.dispatches, plan.dispatches + plan.dispatchCount,
-                    [](const PellucidDispatch& d) { return d.pipeline == PELLUCID_PIPELINE_REDUCE_LEVELS; }));
+                    [](const PellucidDispatch& d) { return d.name == std::string("reduce"); }));
 }
 
 // A pixel of the fixture's camera, 100 x 50 pixels over 2 p x 2 p mm at distance p, is 2 p / 100 mm at its
@@ -78,8 +78,11 @@ TEST(Quality, SmallRadiiDropLevels) {
       const PellucidPlan plan = f.plan();
       // Levels 4 and 5 are made beside 2 and 3; levels 6 and 7 by the resolve, unless edges are summed.
       const bool makesLast = row.coarsest == 7 && quality == 2;
-      EXPECT_EQ(find(plan, "resolve")->pipeline,
-                makesLast ? PELLUCID_PIPELINE_REDUCE_AND_RESOLVE : PELLUCID_PIPELINE_RESOLVE_LEVELS);
+      EXPECT_EQ(find(plan, "reduce")->pipeline,
+                quality == 3 ? PELLUCID_PIPELINE_REDUCE_FOR_EDGES : PELLUCID_PIPELINE_REDUCE_LEVELS);
+      EXPECT_EQ(find(plan, "resolve")->pipeline, makesLast      ? PELLUCID_PIPELINE_REDUCE_AND_RESOLVE
+                                                 : quality == 3 ? PELLUCID_PIPELINE_RESOLVE_FOR_EDGES
+                                                                : PELLUCID_PIPELINE_RESOLVE_LEVELS);
       EXPECT_EQ(reductions(plan), row.coarsest == 7 && quality == 3 ? 2u : 1u) << row.distance;
       EXPECT_EQ(plan.dispatchCount, 3 + reductions(plan) + (quality == 3 ? 1 : 0));
       EXPECT_EQ(coarsest(plan), row.coarsest) << row.distance;
