@@ -49,8 +49,8 @@ vec3 pointAt(vec2 pixel, float p) {
 
 // Facing the camera, mm^2.
 float pixelArea(float p) {
-  vec2 sides = squaredPixelSize(frame.camera, p);
-  return sqrt(sides.x * sides.y) * frame.camera.range.w * frame.camera.range.w;
+  vec2 size = pixelSize(frame.camera, p);
+  return size.x * size.y;
 }
 
 // Of a surface with that normal: xy: slope, as of texels; z: area over that of one facing the camera.

@@ -11,8 +11,9 @@
 
 layout(set = 0, binding = PELLUCID_BINDING_KERNELS) readonly buffer Kernels { KernelConstants kernels[]; };
 
-// Resolved texels of level 3 and coarser ones, level after level; see Window. Color and material as packed, depth, and the
-// share of the kernel that the surface fills, of each channel, in place of the slope.
+// Resolved texels of level 3 and coarser ones, level after level; see Window. Color and material as packed, depth, and in
+// place of the slope the share of the kernel that the surface fills, of each channel, and in the last byte how much of the
+// light comes from edges.
 shared uvec4 resolved[153 + 60 + 24 + 12 + 9];
 
 #ifdef REDUCES
@@ -158,19 +159,25 @@ Own ownPart(uint level, ivec2 texel, ivec2 k, uvec4 bits, out float lengthMm) {
 
 struct Level {
   vec3 color, density; // share of the kernel that the surface fills, of each channel
+  float fromEdges;     // part of the light that comes from texels which are no planes, where edges are summed
 };
 
-Level alone(Own own) {
-  return Level(own.here.a > 0.0 ? own.here.rgb / own.here.a : own.texel.color, vec3(own.here.a));
+// Whether a texel is no plane, and not because the rect ends beside it. Of frames whose edges are summed.
+bool isEdgeInside(uint level, ivec2 texel, uvec4 bits) {
+  return kSumsEdges && !isPlane(bits) && contains(levelRect(level) + ivec4(3, 3, -3, -3), texel);
 }
 
-// `window`: of the coarser level, which is resolved.
-Level withCoarser(Own own, uint level, ivec2 texel, Window window) {
+Level alone(Own own, bool edge) {
+  return Level(own.here.a > 0.0 ? own.here.rgb / own.here.a : own.texel.color, vec3(own.here.a), edge ? 1.0 : 0.0);
+}
+
+// `window`: of the coarser level, which is resolved. `edge`: isEdgeInside().
+Level withCoarser(Own own, uint level, ivec2 texel, Window window, bool edge) {
   // 9, 3, 3 and 1 sixteenths of the four nearest: the refinement of the quadratic B-spline.
   ivec2 nearest = texel >> 1, toward = 2 * (texel & 1) - 1;
   vec2 size = texelSize(own.texel.depth, level + 1u);
   float spread2 = inverseSpread(own.texel.slope, size);
-  vec3 coarser = vec3(0.0), found = vec3(0.0);
+  vec3 coarser = vec3(0.0), found = vec3(0.0), edges = vec3(0.0);
   [[unroll]] for (int i = 0; i < 4; ++i) {
     ivec2 at = nearest + toward * ivec2(i & 1, i >> 1);
     ivec2 inWindow = at - window.corner;
@@ -181,15 +188,22 @@ Level withCoarser(Own own, uint level, ivec2 texel, Window window) {
     w *= sameSurface(uintBitsToFloat(theirs.z) - own.texel.depth - along, along, spread2, kResolveFalloff);
     w = materialBits(theirs) == own.texel.material ? w : 0.0;
     vec3 density = w * unpackDensity(theirs.w);
-    coarser += density * unpackColor(theirs.xy);
+    vec3 light = density * unpackColor(theirs.xy);
+    coarser += light;
     found += density;
+    if (kSumsEdges) edges += light * unpackUnorm4x8(theirs.w).w;
   }
   // Both are weighted with the density that they found, which renormalizes at silhouettes and borders.
   vec3 density = (1.0 - own.share) * own.here.a + own.share * found;
   // Where a channel has nothing here, the level's own color stands in: the finer level weights it with 0.
   vec3 color = mix(own.texel.color, ((1.0 - own.share) * own.here.rgb + own.share * coarser) / max(density, vec3(1.0e-6)),
                    greaterThan(density, vec3(1.0e-6)));
-  return Level(color, density);
+  if (!kSumsEdges) return Level(color, density, 0.0);
+  vec3 here = (1.0 - own.share) * own.here.rgb, all = here + own.share * coarser;
+  edges = own.share * edges + (edge ? here : vec3(0.0));
+  // Of the channel in which it is most. At most 1, but for rounding.
+  vec3 part = edges / max(all, vec3(1.0e-6));
+  return Level(color, density, max(part.r, max(part.g, part.b)));
 }
 
 // Of pixels with that side, on a surface that fills all of the kernel.
@@ -200,17 +214,18 @@ PixelShares pixelShares(uint m, float entry) {
                      mix(kernels[m].pixelShare[2u * i + 1u].rgb, kernels[m].pixelShare[2u * i + 3u].rgb, part));
 }
 
-// Of energy, what levels from non-planes on may have of planes: more shows where they meet edges that are summed.
-const float kLeastFromEdges = 0.02;
+// What may come from edges to a plane that is not summed, as more shows where it meets edges that are: of its energy, from
+// levels 3 and 4, and of its light, which may be much more where it is dark and near a bright rim.
+const float kMostEnergy = 0.02, kMostLight = 0.5;
 
 // Whether a texel of level 2 lies on one plane with all that much of its light comes from.
-bool isFlatFor(Own fine, uvec4 bits, ivec2 texel, ivec2 k) {
+bool isFlatFor(Own fine, Level r, uvec4 bits, ivec2 texel, ivec2 k) {
   Window third = windowOf(3u, k), fourth = windowOf(4u, k);
   ivec2 at = (texel >> 1) - third.corner, next = (texel >> 2) - fourth.corner;
   float share = max(fine.share.r, max(fine.share.g, fine.share.b));
   bool plane3 = isPlane(resolved[third.first + at.y * third.columns + at.x]);
   bool plane4 = pass.value.x < 4u || isPlane(resolved[fourth.first + next.y * fourth.columns + next.x]);
-  return (bits.x & kFlat) != 0u && (share < kLeastFromEdges || (plane3 && plane4));
+  return (bits.x & kFlat) != 0u && r.fromEdges < kMostLight && (share < kMostEnergy || (plane3 && plane4));
 }
 
 // Whether a texel of level 2 is an edge because the rect ends beside it: all around it in the rect lies on its plane, as
@@ -275,7 +290,10 @@ void makeLevels(ivec2 k, int invocation) {
 }
 #endif
 
-uvec4 packLevel(Level r, uvec4 bits) { return uvec4(packColor(r.color, bits.y >> 16), bits.z, packDensity(r.density)); }
+uvec4 packLevel(Level r, uvec4 bits) {
+  uint density = packDensity(r.density) | packUnorm4x8(vec4(0.0, 0.0, 0.0, r.fromEdges));
+  return uvec4(packColor(r.color, bits.y >> 16), bits.z, density);
+}
 
 // A texel of level 2 and its pixels' shares.
 void resolveFine(ivec2 texel, ivec2 k, uvec4 bits) {
@@ -287,12 +305,12 @@ void resolveFine(ivec2 texel, ivec2 k, uvec4 bits) {
     uint m = own.texel.material - 1u;
     // A length of a pixel is a quarter of a texel's.
     PixelShares share = pixelShares(m, shareEntry(m, 0.25 * lengthMm));
-    Level r = withCoarser(own, 2u, texel, windowOf(3u, k));
+    Level r = withCoarser(own, 2u, texel, windowOf(3u, k), false);
     uint upper = bits.y >> 16 & ~(kPlane >> 16);
     color = uvec4(packColor(r.color, (bits.x & kFlat) != 0u ? upper | kPlane >> 16 : upper), bits.zw);
     share.coarser = share.coarser * r.density / max(1.0 - share.coarser + share.coarser * r.density, vec3(1.0e-6));
     uint flags = isPlane(bits) ? kFull : 0u;
-    if (kSumsEdges && !isFlatFor(own, bits, texel, k) && !endsAtRect(texel, bits)) flags |= kSummed;
+    if (kSumsEdges && !isFlatFor(own, r, bits, texel, k) && !endsAtRect(texel, bits)) flags |= kSummed;
     shares = uvec4(packShares(share), packDensity(r.density) | flags);
   }
   writeResolved(texel, color, shares);
@@ -336,13 +354,15 @@ void main() {
   float lengthMm;
   if (coarsest == 7u && last.first + invocation < resolved.length()) {
     Own own = ownPart(7u, lastTexel, k, lastBits, lengthMm);
-    resolved[last.first + invocation] = own.texel.mass > 0.0 ? packLevel(alone(own), lastBits) : uvec4(0u);
+    bool edge = isEdgeInside(7u, lastTexel, lastBits);
+    resolved[last.first + invocation] = own.texel.mass > 0.0 ? packLevel(alone(own, edge), lastBits) : uvec4(0u);
   }
   Own own = ownPart(level, texel, k, bits, lengthMm);
   for (uint l = min(coarsest, 6u); l > 2u; --l) {
     barrier();
     if (level == l && within) {
-      Level r = l == coarsest ? alone(own) : withCoarser(own, level, texel, windowOf(level + 1u, k));
+      bool edge = isEdgeInside(level, texel, bits);
+      Level r = l == coarsest ? alone(own, edge) : withCoarser(own, level, texel, windowOf(level + 1u, k), edge);
       resolved[invocation] = own.texel.mass > 0.0 ? packLevel(r, bits) : uvec4(0u);
     }
   }

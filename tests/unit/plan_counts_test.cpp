@@ -25,11 +25,12 @@ const Choice kOutputs[] = {{"rgba16f", VK_FORMAT_R16G16B16A16_SFLOAT},
                            {"rgba32f", VK_FORMAT_R32G32B32A32_SFLOAT}};
 struct Way {
   const char* name;
-  uint32_t debugView, gatherSamples;
+  uint32_t debugView, gatherSamples, indirectDispatches;
 };
-const Way kWays[] = {{"", PELLUCID_DEBUG_NONE, 0},
-                     {" debug view", PELLUCID_DEBUG_THICKNESS, 0},
-                     {" gather", PELLUCID_DEBUG_NONE, 8}};
+const Way kWays[] = {{"", PELLUCID_DEBUG_NONE, 0, 0},
+                     {" debug view", PELLUCID_DEBUG_THICKNESS, 0, 0},
+                     {" gather", PELLUCID_DEBUG_NONE, 8, 0},
+                     {" gather, indirect", PELLUCID_DEBUG_NONE, 8, 1}};
 // value: lights with a shadow map each; 0: one without.
 const Choice kLights[] = {
     {"1 light without a map", 0}, {"1 light", 1}, {"8 lights", 8}, {"9 lights", 9}, {"20 lights", 20}};
@@ -72,6 +73,7 @@ nlohmann::json allCounts() {
           f.frame.outputFormat = static_cast<VkFormat>(output.value);
           f.frame.debugView = way.debugView;
           f.frame.gatherSamples = way.gatherSamples;
+          f.frame.indirectDispatches = way.indirectDispatches;
           for (const Detail& detail : kDetails) {
             f.frame.quality = detail.quality;
             f.frame.nearestDistance = detail.nearestDistance;
