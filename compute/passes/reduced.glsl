@@ -53,7 +53,7 @@ Source sourceAt(int index) {
 // Whether a texel, no plane, stands for the four in the middle alone. Where edges are summed, nothing that a finer texel
 // stands for may be in a coarser one beside it, too. Not where the rect ends: its planes are filtered there.
 bool isApart(uint finer, ivec2 texel) {
-  return kSumsEdges && contains(levelRect(finer + 1u) + ivec4(2, 2, -2, -2), texel);
+  return kSumsEdges && contains(inset(levelRect(finer + 1u), 2), texel);
 }
 
 // Which texel's surface is taken: the nearest to the camera of the four in the middle or, beyond an edge and if not

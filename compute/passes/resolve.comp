@@ -44,6 +44,13 @@ Window windowOf(uint level, ivec2 k) {
   return Window((k - 2) >> 1, 3, 249);
 }
 
+// In resolved[], of a texel in the window.
+int indexOf(Window window, ivec2 texel) {
+  ivec2 at = texel - window.corner;
+  return window.first + at.y * window.columns + at.x;
+}
+
+// The other way round, from the window's first one on.
 ivec2 texelOf(Window window, int index) {
   int row = int((float(index) + 0.5) / float(window.columns));
   return window.corner + ivec2(index - row * window.columns, row);
@@ -164,7 +171,7 @@ struct Level {
 
 // Whether a texel is no plane, and not because the rect ends beside it. Of frames whose edges are summed.
 bool isEdgeInside(uint level, ivec2 texel, uvec4 bits) {
-  return kSumsEdges && !isPlane(bits) && contains(levelRect(level) + ivec4(3, 3, -3, -3), texel);
+  return kSumsEdges && !isPlane(bits) && contains(inset(levelRect(level), 3), texel);
 }
 
 Level alone(Own own, bool edge) {
@@ -180,29 +187,27 @@ Level withCoarser(Own own, uint level, ivec2 texel, Window window, bool edge) {
   vec3 coarser = vec3(0.0), found = vec3(0.0), edges = vec3(0.0);
   [[unroll]] for (int i = 0; i < 4; ++i) {
     ivec2 at = nearest + toward * ivec2(i & 1, i >> 1);
-    ivec2 inWindow = at - window.corner;
-    uvec4 theirs = resolved[window.first + inWindow.y * window.columns + inWindow.x];
+    uvec4 theirs = resolved[indexOf(window, at)];
     vec2 off = vec2(at) + 0.5 - 0.5 * (vec2(texel) + 0.5);
     float w = (i == 0 ? 9.0 / 16.0 : i == 3 ? 1.0 / 16.0 : 3.0 / 16.0) / kDensityOne;
     float along = dot(own.texel.slope, off * size);
     w *= sameSurface(uintBitsToFloat(theirs.z) - own.texel.depth - along, along, spread2, kResolveFalloff);
     w = materialBits(theirs) == own.texel.material ? w : 0.0;
     vec3 density = w * unpackDensity(theirs.w);
-    vec3 light = density * unpackColor(theirs.xy);
-    coarser += light;
+    vec3 theirLight = density * unpackColor(theirs.xy);
+    coarser += theirLight;
     found += density;
-    if (kSumsEdges) edges += light * unpackUnorm4x8(theirs.w).w;
+    if (kSumsEdges) edges += theirLight * unpackUnorm4x8(theirs.w).w;
   }
   // Both are weighted with the density that they found, which renormalizes at silhouettes and borders.
   vec3 density = (1.0 - own.share) * own.here.a + own.share * found;
+  vec3 here = (1.0 - own.share) * own.here.rgb, light = here + own.share * coarser;
   // Where a channel has nothing here, the level's own color stands in: the finer level weights it with 0.
-  vec3 color = mix(own.texel.color, ((1.0 - own.share) * own.here.rgb + own.share * coarser) / max(density, vec3(1.0e-6)),
-                   greaterThan(density, vec3(1.0e-6)));
+  vec3 color = mix(own.texel.color, light / max(density, vec3(1.0e-6)), greaterThan(density, vec3(1.0e-6)));
   if (!kSumsEdges) return Level(color, density, 0.0);
-  vec3 here = (1.0 - own.share) * own.here.rgb, all = here + own.share * coarser;
   edges = own.share * edges + (edge ? here : vec3(0.0));
   // Of the channel in which it is most. At most 1, but for rounding.
-  vec3 part = edges / max(all, vec3(1.0e-6));
+  vec3 part = edges / max(light, vec3(1.0e-6));
   return Level(color, density, max(part.r, max(part.g, part.b)));
 }
 
@@ -220,20 +225,18 @@ const float kMostEnergy = 0.02, kMostLight = 0.5;
 
 // Whether a texel of level 2 lies on one plane with all that much of its light comes from.
 bool isFlatFor(Own fine, Level r, uvec4 bits, ivec2 texel, ivec2 k) {
-  Window third = windowOf(3u, k), fourth = windowOf(4u, k);
-  ivec2 at = (texel >> 1) - third.corner, next = (texel >> 2) - fourth.corner;
   float share = max(fine.share.r, max(fine.share.g, fine.share.b));
-  bool plane3 = isPlane(resolved[third.first + at.y * third.columns + at.x]);
-  bool plane4 = pass.value.x < 4u || isPlane(resolved[fourth.first + next.y * fourth.columns + next.x]);
+  bool plane3 = isPlane(resolved[indexOf(windowOf(3u, k), texel >> 1)]);
+  bool plane4 = pass.value.x < 4u || isPlane(resolved[indexOf(windowOf(4u, k), texel >> 2)]);
   return (bits.x & kFlat) != 0u && r.fromEdges < kMostLight && (share < kMostEnergy || (plane3 && plane4));
 }
 
 // Whether a texel of level 2 is an edge because the rect ends beside it: all around it in the rect lies on its plane, as
 // coarser texels do.
 bool endsAtRect(ivec2 texel, uvec4 bits) {
-  ivec4 inside = levelRect(2u) + ivec4(1, 1, -1, -1);
+  ivec4 inside = inset(levelRect(2u), 1);
   // As far as texels of level 4 reach over it.
-  if (contains(inside + ivec4(4, 4, -4, -4), texel)) return false;
+  if (contains(inset(inside, 4), texel)) return false;
   float depth = uintBitsToFloat(bits.z);
   vec2 slope = unpackHalf2x16(bits.w), size = texelSize(depth, 2u);
   float spread2 = inverseSpread(slope, size);
@@ -324,10 +327,10 @@ void main() {
   ivec2 fine = 16 * k - 1 + ivec2(gl_LocalInvocationID.xy), nextFine = fine + ivec2(PELLUCID_RESOLVE_GROUP, 0);
   uint level = 3u + uint(invocation >= 153) + uint(invocation >= 213) + uint(invocation >= 237);
   Window window = windowOf(level, k), last = windowOf(7u, k);
-  bool within = invocation < last.first;
+  bool within = invocation < last.first, hasLast = last.first + invocation < resolved.length();
   ivec2 texel = texelOf(window, invocation - window.first), lastTexel = texelOf(last, invocation);
   bool inside = level <= coarsest && within && contains(levelRect(level), texel);
-  bool lastInside = coarsest == 7u && last.first + invocation < resolved.length() && contains(levelRect(7u), lastTexel);
+  bool lastInside = coarsest == 7u && hasLast && contains(levelRect(7u), lastTexel);
   bool fetches = inside, fetchesLast = lastInside;
 #ifdef REDUCES
   if (invocation == 0) needsMade = 0u;
@@ -352,7 +355,7 @@ void main() {
   }
 #endif
   float lengthMm;
-  if (coarsest == 7u && last.first + invocation < resolved.length()) {
+  if (coarsest == 7u && hasLast) {
     Own own = ownPart(7u, lastTexel, k, lastBits, lengthMm);
     bool edge = isEdgeInside(7u, lastTexel, lastBits);
     resolved[last.first + invocation] = own.texel.mass > 0.0 ? packLevel(alone(own, edge), lastBits) : uvec4(0u);
@@ -367,7 +370,7 @@ void main() {
     }
   }
   barrier();
-  // One after the other: both at once would hold more registers than four groups have.
+  // In a loop, because both in a row are a third more code and no faster.
   for (int i = 0; i < 2; ++i) {
     resolveFine(fine, k, fineBits);
     fine = nextFine;
