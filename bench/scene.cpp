@@ -108,9 +108,37 @@ std::vector<ErrorScene> errorScenes() {
       {"step at 30 degrees", "step", {{"angle", 30}}, plane},
       {"tilted by 60 degrees, step", "tilted", tilted, plane},
       {"tilted by 60 degrees, step at 30 degrees", "tilted", {{"tilt", 60}, {"angle", 30}}, plane},
+      {"tilted by 60 degrees, checker at 17 degrees",
+       "checker",
+       {{"cell", plane / 8}, {"angle", 17}, {"tilt", 60}},
+       plane},
       {"sphere, lit from the side", "sphere", {{"lightAngle", 110}}, plane},
+      {"sphere, checker at 17 degrees", "sphere", {}, plane, plane / 8},
       {"ear", "ear", {}, 92}};
 }
+
+namespace {
+
+// Of each pixel with a material, from 4 x 4 points of it.
+void paintChecker(Capture& capture, double side) {
+  constexpr double kAngle = 17 * std::numbers::pi / 180;
+  constexpr int kPoints = 4;
+  const double c = std::cos(kAngle) / side, s = std::sin(kAngle) / side;
+  for (int y = 0; y < capture.height; ++y)
+    for (int x = 0; x < capture.width; ++x) {
+      int lit = 0;
+      for (int i = 0; i < kPoints * kPoints; ++i) {
+        const double u = x + (i % kPoints + 0.5) / kPoints, v = y + (i / kPoints + 0.5) / kPoints;
+        lit += static_cast<int>(std::floor(c * u + s * v) + std::floor(c * v - s * u)) % 2 == 0 ? 1 : 0;
+      }
+      const bool covered = capture.material[static_cast<size_t>(y) * static_cast<size_t>(capture.width) +
+                                            static_cast<size_t>(x)] != 0;
+      for (int k = 0; k < 3; ++k)
+        capture.irradiance.at(x, y)[k] = covered ? static_cast<float>(lit) / (kPoints * kPoints) : 0;
+    }
+}
+
+}  // namespace
 
 Capture makeErrorCapture(const ErrorScene& scene, int size, double pixel) {
   SceneParameters p;
@@ -121,6 +149,7 @@ Capture makeErrorCapture(const ErrorScene& scene, int size, double pixel) {
   p.shadowSize = 0;
   Capture capture = makeScene(p);
   capture.metersPerUnit = 0.001 * pixel * size / scene.width;
+  if (scene.checker > 0) paintChecker(capture, scene.checker * size / scene.width);
   capture.albedo = {};  // the error is the diffusion's
   return capture;
 }

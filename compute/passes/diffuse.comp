@@ -35,7 +35,7 @@ shared float spreads[kWindow.x * kWindow.y]; // inverseSpread of resolved[], in 
 // from the end on the others; their numbers, in 16 bits each; a bit for each row that has any.
 shared uint edges[kTexels.x * kTexels.y];
 shared uint edgeCounts[kTexels.y];
-shared uint edgeRows, anySurface;
+shared uint edgeRows, anySurface, anyShape; // anyShape: whether a texel has a FineShape
 
 #ifdef GATHER
 #include "passes/shared_points.glsl"
@@ -51,12 +51,40 @@ vec3 spline(float at) {
   return vec3(0.5 * (0.5 - at) * (0.5 - at), 0.75 - at * at, 0.5 * (0.5 + at) * (0.5 + at));
 }
 
-// The fine filter, 1 4 9 4 1 in each direction.
-float fineWeight(int i) { return i == 0 ? 9.0 / 19.0 : abs(i) == 1 ? 4.0 / 19.0 : 1.0 / 19.0; }
+#ifndef COARSE
+// Weights of the fine filter in one direction: of the pixel, of its neighbors and of theirs.
+const vec3 kFine = vec3(9.0, 4.0, 1.0) / 19.0, kWideFine = vec3(2.0, 2.0, 1.0) / 8.0;
 
-vec3 fineSum(vec3 a, vec3 b, vec3 c, vec3 d, vec3 e) {
-  return fineWeight(0) * c + fineWeight(1) * (b + d) + fineWeight(2) * (a + e);
+// `wider`: FineShape's, negative in the other direction.
+vec3 fineWeights(float wider) { return mix(kFine, kWideFine, max(wider, 0.0)); }
+
+float weightAt(vec3 weights, int i) { return i == 0 ? weights.x : abs(i) == 1 ? weights.y : weights.z; }
+
+// The same of each channel, `direct` of which goes through unfiltered.
+struct FineFilter {
+  vec3 own, next, last;
+};
+
+FineFilter fineFilter(float wider, vec3 direct) {
+  vec3 weights = fineWeights(wider), rest = 1.0 - direct;
+  return FineFilter(direct + weights.x * rest, weights.y * rest, weights.z * rest);
 }
+
+vec3 fineSum(FineFilter f, vec3 a, vec3 b, vec3 c, vec3 d, vec3 e) {
+  return f.own * c + f.next * (b + d) + f.last * (a + e);
+}
+
+// Of those along columns, then rows: what is thin along one passes the other unfiltered. `shape`: a texel's shares' z.
+FineFilter columnFilter(uint shape, bool shaped) {
+  FineShape s = shaped ? unpackShape(shape) : kNoShape;
+  return fineFilter(-s.wider, s.wider > 0.0 ? s.thin : vec3(0.0));
+}
+
+FineFilter rowFilter(uint shape, bool shaped) {
+  FineShape s = shaped ? unpackShape(shape) : kNoShape;
+  return fineFilter(s.wider, s.wider > 0.0 ? vec3(0.0) : s.thin);
+}
+#endif
 
 #ifdef GATHER
 // Four pixels below each other, a column of a cell, with what is linear between the four points around it. The cell and
@@ -98,10 +126,9 @@ void prepareForEdges(int index) {
   // Less 1 from a half on: halves are too coarse near 1 for what is left of it.
   s.coarser = mix(s.coarser, min(s.coarser - 1.0, vec3(-6.0e-8)), greaterThan(s.coarser, vec3(0.5)));
   uvec3 packed = packShares(s);
-  // One by one: others read w meanwhile, which a store of a part of a vector may store, too.
+  // One by one: others read z and w meanwhile, which a store of a part of a vector may store, too.
   shares[index].x = packed.x;
   shares[index].y = packed.y;
-  shares[index].z = packed.z;
 }
 
 // What prepareForEdges did not take from it.
@@ -109,8 +136,8 @@ vec3 coarserOfEdge(vec3 coarser) { return mix(coarser, coarser + 1.0, lessThan(c
 
 #ifndef COARSE
 // The fine filter, its vertical half done.
-vec3 fineOf(int at) {
-  return fineSum(unpackColor(vertical[at - 2]), unpackColor(vertical[at - 1]), unpackColor(vertical[at]),
+vec3 fineOf(FineFilter f, int at) {
+  return fineSum(f, unpackColor(vertical[at - 2]), unpackColor(vertical[at - 1]), unpackColor(vertical[at]),
                  unpackColor(vertical[at + 1]), unpackColor(vertical[at + 2]));
 }
 
@@ -134,23 +161,28 @@ void keepRow(ivec2 first) {
 }
 
 // The fine filter where all around the pixel is one plane.
-vec3 fineOfPlane(int place) {
+vec3 fineOfPlane(int place, uint shape) {
+  FineFilter columns = columnFilter(shape, true), rows = rowFilter(shape, true);
   vec3 fine = vec3(0.0);
-  for (int y = -2; y <= 2; ++y)
-    [[unroll]] for (int x = -2; x <= 2; ++x)
-      fine += fineWeight(x) * fineWeight(y) * unpackColor(vertical[place + y * kColumns + x]);
+  for (int y = -2; y <= 2; ++y) {
+    int at = place + y * kColumns;
+    vec3 weight = y == 0 ? columns.own : abs(y) == 1 ? columns.next : columns.last;
+    fine += weight * fineOf(rows, at);
+  }
   return fine;
 }
 
 // The fine filter of a pixel on a surface of that slope, and what of it lies on the surface. `place`: of the pixel in
-// what keepRow kept.
-vec4 fineOfEdge(int place, vec2 slope, vec2 size) {
+// what keepRow kept; `wider`: FineShape's. What is thin is left to planes, as it makes edges no better.
+vec4 fineOfEdge(int place, vec2 slope, vec2 size, float wider) {
   uint material = vertical[place].y >> 16;
   float own = uintBitsToFloat(vertical[kRowPixels + place].x);
   vec2 depthStep = slope * size;
   float spread2 = inverseSpread(slope, 2.0 * size);
+  vec3 columns = fineWeights(-wider), rows = fineWeights(wider);
   vec4 fine = vec4(0.0);
-  for (int y = -2; y <= 2; ++y)
+  for (int y = -2; y <= 2; ++y) {
+    float weightY = weightAt(columns, y);
     // A row without a branch, so that latencies overlap.
     [[unroll]] for (int x = -2; x <= 2; ++x) {
       int at = place + y * kColumns + x;
@@ -159,8 +191,9 @@ vec4 fineOfEdge(int place, vec2 slope, vec2 size) {
       float along = dot(depthStep, vec2(x, y));
       float w = sameSurface(theirs - own - along, along, spread2, kPixelFalloff);
       bool counts = packed.y >> 16 == material && theirs > 0.0;
-      fine += (counts ? w * fineWeight(x) * fineWeight(y) : 0.0) * vec4(unpackColor(packed), 1.0);
+      fine += (counts ? w * weightAt(rows, x) * weightY : 0.0) * vec4(unpackColor(packed), 1.0);
     }
+  }
   return fine;
 }
 #endif
@@ -190,7 +223,7 @@ void diffuseEdge(ivec2 firstTexel, ivec2 local) {
     vec2 from = vec2(local & 3) - 1.5; // the texel's center, pixels
     vec3 splineX = spline(0.25 * from.x), splineY = spline(0.25 * from.y);
     vec3 coarser = vec3(0.0), found = vec3(0.0);
-    PixelShares share = PixelShares(vec3(0.0), vec3(0.0));
+    vec3 coarserShare = vec3(0.0), fineShare = vec3(0.0);
     float weights = 0.0;
     for (int y = -1; y <= 1; ++y) {
       float weightY = y < 0 ? splineY.x : y > 0 ? splineY.z : splineY.y;
@@ -213,21 +246,23 @@ void diffuseEdge(ivec2 firstTexel, ivec2 local) {
         w *= min(t.mass, 1.0);
         slope += w * t.slope;
         PixelShares s = unpackShares(shares[index].xyz);
-        share.coarser += w * coarserOfEdge(s.coarser);
-        share.fine += w * s.fine;
+        coarserShare += w * coarserOfEdge(s.coarser);
+        fineShare += w * s.fine;
         weights += w;
       }
     }
     float inverse = weights > 0.0 ? 1.0 / weights : 0.0;
     slope *= inverse;
-    share.coarser *= inverse;
-    vec3 fineShare = (1.0 - share.coarser) * share.fine * inverse;
+    coarserShare *= inverse;
+    fineShare *= (1.0 - coarserShare) * inverse;
     // Shares are weighted with what of their filters was found. The pixel itself counts in the first and the second,
     // so the divisor is 0 only where all of the share is the coarser one's and none of it is there.
-    vec3 ownShare = 1.0 - share.coarser - fineShare;
-    vec3 sum = ownShare * own + share.coarser * coarser, divisor = ownShare + share.coarser * found;
+    vec3 ownShare = 1.0 - coarserShare - fineShare;
+    vec3 sum = ownShare * own + coarserShare * coarser, divisor = ownShare + coarserShare * found;
 #ifndef COARSE
-    vec4 fine = isFull(shares[center]) ? vec4(fineOfPlane(place), 1.0) : fineOfEdge(place, slope, size);
+    uint shape = shares[center].z;
+    vec4 fine = isFull(shares[center]) ? vec4(fineOfPlane(place, shape), 1.0)
+                                       : fineOfEdge(place, slope, size, unpackShape(shape).wider);
     sum += fineShare * fine.rgb;
     divisor += fineShare * fine.a;
 #endif
@@ -237,6 +272,70 @@ void diffuseEdge(ivec2 firstTexel, ivec2 local) {
 #endif
   }
   store(pixel, color, source.a);
+}
+
+// Pixels of planes, four of a column. `sources`: of the invocation's column of pixels; `shaped`: whether texels have shapes.
+// For all invocations, as it waits for them.
+void diffusePlanes(ivec2 firstTexel, vec4 sources[kRows + 2 * kRing], bool shaped) {
+  int invocation = int(gl_LocalInvocationIndex), column = invocation % kColumns, firstRow = invocation / kColumns * kRows;
+  uvec2 own[kRows]; // colors and alphas
+#ifndef COARSE
+  // An invocation's rows are those of one texel.
+  FineFilter columns = columnFilter(shares[(firstRow / 4 + 1) * kWindow.x + (column - kRing + 4) / 4].z, shaped);
+#endif
+  [[unroll]] for (int i = 0; i < kRows; ++i) {
+    vec4 source = sources[i + kRing];
+    own[i] = uvec2(packHalf2x16(source.rg), packHalf2x16(source.ba));
+#ifndef COARSE
+    vec3 sum = fineSum(columns, sources[i].rgb, sources[i + 1].rgb, source.rgb, sources[i + 3].rgb, sources[i + 4].rgb);
+    vertical[(firstRow + i) * kColumns + column] = uvec2(packHalf2x16(sum.rg), packHalf2x16(vec2(sum.b, 0.0)));
+#endif
+  }
+  if (edgeRows != 0u && invocation < kWindow.x * kWindow.y) prepareForEdges(invocation);
+  barrier();
+
+  int x = column - kRing;
+  if (x < 0 || x >= 4 * kTexels.x) return;
+  vec3 splineX = spline(0.25 * (float(x & 3) - 1.5));
+  [[unroll]] for (int block = 0; block < kRows / 4; ++block) {
+    int texelRow = firstRow / 4 + block;
+    int index = texelRow * kWindow.x + x / 4;
+    if (!isPlane(resolved[index + kWindow.x + 1])) continue;
+    vec3 coarser[3];
+    [[unroll]] for (int y = 0; y < 3; ++y) {
+      int row = index + y * kWindow.x;
+      coarser[y] = splineX.x * unpackColor(resolved[row].xy) + splineX.y * unpackColor(resolved[row + 1].xy) +
+                   splineX.z * unpackColor(resolved[row + 2].xy);
+    }
+    uvec3 bits = shares[index + kWindow.x + 1].xyz;
+    PixelShares share = unpackShares(bits);
+#ifndef COARSE
+    FineFilter rows = rowFilter(bits.z, shaped);
+#endif
+    vec4 result[4];
+    [[unroll]] for (int i = 0; i < 4; ++i) {
+      vec3 splineY = spline(0.25 * (float(i) - 1.5));
+      vec3 smoothed = splineY.x * coarser[0] + splineY.y * coarser[1] + splineY.z * coarser[2];
+      uvec2 packed = own[4 * block + i];
+      vec2 blue = unpackHalf2x16(packed.y);
+      vec3 color = vec3(unpackHalf2x16(packed.x), blue.x);
+#ifndef COARSE
+      color = mix(color, fineOf(rows, (4 * texelRow + i) * kColumns + column), share.fine);
+#endif
+      color = mix(color, smoothed, share.coarser);
+      result[i] = vec4(color, blue.y);
+    }
+    // One branch for all pixels, as branches cost more than what is in them.
+    ivec2 top = 4 * firstTexel + ivec2(x, 4 * texelRow);
+#ifdef GATHER
+    if (someLight != 0u) addLightOfPlane(top, result);
+#endif
+    if (tinted(pass.value.w != 0u))
+      [[unroll]] for (int i = 0; i < 4; ++i)
+        result[i].rgb = sanitize(result[i].rgb * albedoAt(top + ivec2(0, i)));
+    [[unroll]] for (int i = 0; i < 4; ++i)
+      imageStore(destinationImage, top + ivec2(0, i), vec4(asStored(result[i].rgb), result[i].a));
+  }
 }
 
 void main() {
@@ -267,13 +366,14 @@ void main() {
   if (invocation == 0) someLight = 0u;
 #endif
   if (invocation < kTexels.y) edgeCounts[invocation] = 0u;
-  if (invocation == 0) anySurface = edgeRows = 0u;
+  if (invocation == 0) anySurface = edgeRows = anyShape = 0u;
   barrier();
   if (invocation < kWindow.x * kWindow.y) {
     resolved[invocation] = texel;
     shares[invocation] = texelShares;
     if (texel.y >> 16 != 0u) {
       anySurface = 1u; // whoever writes, writes this
+      if (hasShape(texelShares.z)) anyShape = 1u;
       if (isEdge(texel, texelShares) && contains(ivec4(0, 0, kTexels), inWindow - 1))
         atomicOr(edgeRows, 1u << (inWindow.y - 1));
     }
@@ -295,57 +395,15 @@ void main() {
         edges[kTexels.x * local.y + place] = uint(local.x);
       }
     }
-    uvec2 own[kRows]; // colors and alphas
-    [[unroll]] for (int i = 0; i < kRows; ++i) {
-      vec4 source = sources[i + kRing];
-      own[i] = uvec2(packHalf2x16(source.rg), packHalf2x16(source.ba));
-#ifndef COARSE
-      vec3 sum = fineSum(sources[i].rgb, sources[i + 1].rgb, source.rgb, sources[i + 3].rgb, sources[i + 4].rgb);
-      vertical[(firstRow + i) * kColumns + column] = uvec2(packHalf2x16(sum.rg), packHalf2x16(vec2(sum.b, 0.0)));
+#ifdef COARSE
+    diffusePlanes(firstTexel, sources, false);
+#else
+    // Twice the code, so that what faces the camera has filters of constants.
+    if (anyShape != 0u)
+      diffusePlanes(firstTexel, sources, true);
+    else
+      diffusePlanes(firstTexel, sources, false);
 #endif
-    }
-    if (edgeRows != 0u && invocation < kWindow.x * kWindow.y) prepareForEdges(invocation);
-    barrier();
-
-    int x = column - kRing;
-    if (x >= 0 && x < 4 * kTexels.x) {
-      vec3 splineX = spline(0.25 * (float(x & 3) - 1.5));
-      [[unroll]] for (int block = 0; block < kRows / 4; ++block) {
-        int texelRow = firstRow / 4 + block;
-        int index = texelRow * kWindow.x + x / 4;
-        if (!isPlane(resolved[index + kWindow.x + 1])) continue;
-        vec3 coarser[3];
-        [[unroll]] for (int y = 0; y < 3; ++y) {
-          int row = index + y * kWindow.x;
-          coarser[y] = splineX.x * unpackColor(resolved[row].xy) + splineX.y * unpackColor(resolved[row + 1].xy) +
-                       splineX.z * unpackColor(resolved[row + 2].xy);
-        }
-        PixelShares share = unpackShares(shares[index + kWindow.x + 1].xyz);
-        vec4 result[4];
-        [[unroll]] for (int i = 0; i < 4; ++i) {
-          vec3 splineY = spline(0.25 * (float(i) - 1.5));
-          vec3 smoothed = splineY.x * coarser[0] + splineY.y * coarser[1] + splineY.z * coarser[2];
-          uvec2 packed = own[4 * block + i];
-          vec2 blue = unpackHalf2x16(packed.y);
-          vec3 color = vec3(unpackHalf2x16(packed.x), blue.x);
-#ifndef COARSE
-          color = mix(color, fineOf((4 * texelRow + i) * kColumns + column), share.fine);
-#endif
-          color = mix(color, smoothed, share.coarser);
-          result[i] = vec4(color, blue.y);
-        }
-        // One branch for all pixels, as branches cost more than what is in them.
-        ivec2 top = 4 * firstTexel + ivec2(x, 4 * texelRow);
-#ifdef GATHER
-        if (someLight != 0u) addLightOfPlane(top, result);
-#endif
-        if (tinted(pass.value.w != 0u))
-          [[unroll]] for (int i = 0; i < 4; ++i)
-            result[i].rgb = sanitize(result[i].rgb * albedoAt(top + ivec2(0, i)));
-        [[unroll]] for (int i = 0; i < 4; ++i)
-          imageStore(destinationImage, top + ivec2(0, i), vec4(asStored(result[i].rgb), result[i].a));
-      }
-    }
     // The same rows for all invocations.
     for (uint rows = edgeRows; rows != 0u; rows &= rows - 1u) {
       int row = findLSB(rows), full = int(edgeCounts[row] & 0xFFFFu), count = full + int(edgeCounts[row] >> 16);

@@ -144,8 +144,9 @@ vec3 ofPixel(Kernel k, vec4 place, vec3 offset, float facing) {
   if (area < 1.5 * facing) return profileAt(k, meanSquare(squared, area), area);
   vec3 axis = placeAxis(place);
   float width = sqrt(facing), halfLength = 0.5 * area / width;
-  // From a distance of its length on, one segment does.
-  float parts = squared > 4.0 * halfLength * halfLength ? 1.0 : clamp(floor(halfLength / width), 1.0, kMostParts);
+  // As long as wide, each; from three pixels and its length on, one does.
+  bool far = squared > 9.0 * facing + 4.0 * halfLength * halfLength;
+  float parts = far ? 1.0 : clamp(floor(2.0 * halfLength / width + 0.5), 1.0, kMostParts);
   vec3 weight = vec3(0.0);
   for (float part = 0.5; part < parts; part += 1.0) {
     float at = halfLength * (2.0 * part / parts - 1.0);

@@ -152,15 +152,14 @@ struct Own {
 };
 
 // Without branches, so that what is looked up is waited for once.
-Own ownPart(uint level, ivec2 texel, ivec2 k, uvec4 bits, out float lengthMm) {
+Own ownPart(uint level, ivec2 texel, ivec2 k, uvec4 bits, out Foreshortening f) {
   Own own;
   own.texel = unpackTexel(bits);
-  Foreshortening f = foreshortening(texel, level, own.texel.depth, own.texel.slope);
+  f = foreshortening(texel, level, own.texel.depth, own.texel.slope);
   own.here = stretched(texel, level, k, own.texel, f) / areaOf(level, texel, own.texel.slope);
   // Material 0 looks at what it does not use.
   uint m = max(own.texel.material, 1u) - 1u;
   own.share = coarserShare(m, level, shareEntry(m, f.lengthMm));
-  lengthMm = f.lengthMm;
   return own;
 }
 
@@ -211,17 +210,41 @@ Level withCoarser(Own own, uint level, ivec2 texel, Window window, bool edge) {
   return Level(color, density, max(part.r, max(part.g, part.b)));
 }
 
-// Of pixels with that side, on a surface that fills all of the kernel.
-PixelShares pixelShares(uint m, float entry) {
-  uint i = min(uint(entry), uint(PELLUCID_SHARE_ENTRIES - 2));
-  float part = entry - float(i);
-  return PixelShares(mix(kernels[m].pixelShare[2u * i].rgb, kernels[m].pixelShare[2u * i + 2u].rgb, part),
-                     mix(kernels[m].pixelShare[2u * i + 1u].rgb, kernels[m].pixelShare[2u * i + 3u].rgb, part));
+// Which part of all energy pixels with this entry do not have, `element` 1, or level 2 and coarser ones have, 0.
+vec3 beyondPixel(uint m, uint element, float entry) {
+  entry = max(entry, 0.0);
+  uint i = min(uint(entry), uint(PELLUCID_SHARE_ENTRIES - 2)), first = 2u * i + element;
+  return mix(kernels[m].pixelShare[first].rgb, kernels[m].pixelShare[first + 2u].rgb, entry - float(i));
+}
+
+// Of pixels of a texel of level 2, on a surface that fills all of the kernel. By how many octaves the kernel's longest side is
+// longer than its shortest, which the level goes by, and how much of that goes for the pixel, its neighbors and level 2, was
+// fitted on tilted planes, for kernels along rows or columns and along diagonals. Next to silhouettes, where surfaces bend
+// away from their tangent planes, it is none.
+PixelShares pixelShares(uint m, Foreshortening f) {
+  // The stretch is >= 0 but for rounding.
+  float longer = 0.5 * log2(1.0 + max(f.stretch, 0.0)), octaves = clamp(2.5 - longer, 0.0, min(longer, 1.0));
+  // A length of a pixel is a quarter of a texel's.
+  float entry = shareEntry(m, 0.25 * f.lengthMm), perOctave = kernels[m].range.y * octaves;
+  // 1: along rows or columns, 0: along a diagonal.
+  float straight = abs(f.axis.x * f.axis.x - f.axis.y * f.axis.y);
+  vec3 coarser = beyondPixel(m, 0u, entry - perOctave * (0.3 - 0.15 * straight));
+  vec3 both = max(beyondPixel(m, 1u, entry - perOctave * (0.5 - 0.5 * straight)), coarser);
+  vec3 beyond = max(beyondPixel(m, 1u, entry - 0.5 * perOctave), both);
+  // What one Gaussian asks for may be more than all.
+  vec3 fine = min((beyond - coarser) / max(1.0 - coarser, vec3(1.0e-3)), vec3(kMostFine));
+  float wider = min(exp2(octaves) - 1.0, 1.0) * straight;
+  FineShape shape = FineShape(abs(f.axis.x) < abs(f.axis.y) ? -wider : wider,
+                              (beyond - both) / max(beyond - coarser, vec3(1.0e-6)));
+  return PixelShares(coarser, fine, shape);
 }
 
 // What may come from edges to a plane that is not summed, as more shows where it meets edges that are: of its energy, from
 // levels 3 and 4, and of its light, which may be much more where it is dark and near a bright rim.
 const float kMostEnergy = 0.02, kMostLight = 0.5;
+
+// Nor are planes as tilted as that, for whose kernels the fine filter is too short.
+const float kMostStretch = 0.5;
 
 // Whether a texel of level 2 lies on one plane with all that much of its light comes from.
 bool isFlatFor(Own fine, Level r, uvec4 bits, ivec2 texel, ivec2 k) {
@@ -303,17 +326,16 @@ void resolveFine(ivec2 texel, ivec2 k, uvec4 bits) {
   if (!contains(levelRect(2u), texel)) return;
   uvec4 color = uvec4(0u, bits.y & 0xFFFF0000u, 0u, 0u), shares = uvec4(0u);
   if (hasSurface(bits)) {
-    float lengthMm;
-    Own own = ownPart(2u, texel, k, bits, lengthMm);
-    uint m = own.texel.material - 1u;
-    // A length of a pixel is a quarter of a texel's.
-    PixelShares share = pixelShares(m, shareEntry(m, 0.25 * lengthMm));
+    Foreshortening f;
+    Own own = ownPart(2u, texel, k, bits, f);
+    PixelShares share = pixelShares(own.texel.material - 1u, f);
     Level r = withCoarser(own, 2u, texel, windowOf(3u, k), false);
     uint upper = bits.y >> 16 & ~(kPlane >> 16);
     color = uvec4(packColor(r.color, (bits.x & kFlat) != 0u ? upper | kPlane >> 16 : upper), bits.zw);
     share.coarser = share.coarser * r.density / max(1.0 - share.coarser + share.coarser * r.density, vec3(1.0e-6));
     uint flags = isPlane(bits) ? kFull : 0u;
-    if (kSumsEdges && !isFlatFor(own, r, bits, texel, k) && !endsAtRect(texel, bits)) flags |= kSummed;
+    bool filtered = f.stretch < kMostStretch && (isFlatFor(own, r, bits, texel, k) || endsAtRect(texel, bits));
+    if (kSumsEdges && !filtered) flags |= kSummed;
     shares = uvec4(packShares(share), packDensity(r.density) | flags);
   }
   writeResolved(texel, color, shares);
@@ -354,13 +376,13 @@ void main() {
     coarsest = 5u;
   }
 #endif
-  float lengthMm;
+  Foreshortening unused;
   if (coarsest == 7u && hasLast) {
-    Own own = ownPart(7u, lastTexel, k, lastBits, lengthMm);
+    Own own = ownPart(7u, lastTexel, k, lastBits, unused);
     bool edge = isEdgeInside(7u, lastTexel, lastBits);
     resolved[last.first + invocation] = own.texel.mass > 0.0 ? packLevel(alone(own, edge), lastBits) : uvec4(0u);
   }
-  Own own = ownPart(level, texel, k, bits, lengthMm);
+  Own own = ownPart(level, texel, k, bits, unused);
   for (uint l = min(coarsest, 6u); l > 2u; --l) {
     barrier();
     if (level == l && within) {

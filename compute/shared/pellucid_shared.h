@@ -212,8 +212,8 @@ struct KernelConstants {
   vec4 range; // x: log2 of the first side; y: entries per octave
   vec4 share[PELLUCID_SHARE_TABLES * PELLUCID_SHARE_ENTRIES]; // rgb: which part of the energy at a level and
                                                               // coarser ones the coarser ones have
-  // Two for each side of a pixel. First: which part of all energy level 2 and coarser ones have. Second: which
-  // part of the rest the fine filter of the pixel and its neighbors has.
+  // Two for each side of a pixel: which part of all energy level 2 and coarser ones have, and these and the fine filter of
+  // the pixel and its neighbors.
   vec4 pixelShare[2 * PELLUCID_SHARE_ENTRIES];
   // Of quality 3, the profile R over squared distances r^2 in mm^2; before the first entry R does not change.
   vec4 reach; // x: distance within which 99.9 % of the energy lies, mm, 0: none; y: r^2 of the first entry; z: its log2;

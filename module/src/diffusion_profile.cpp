@@ -146,8 +146,7 @@ shared::KernelConstants kernelConstants(const PellucidMaterial& m, bool fine, bo
       double second = std::clamp(pixelLevel2.sum[i], 0.0, 1.0), neighbors = pixelFine.sum[i];
       if (!fine) second = neighbors = std::clamp(std::lerp(second, neighbors, kFineAtLevel2), 0.0, 1.0);
       c.pixelShare[2 * i][channel] = static_cast<float>(second);
-      const double share = (neighbors - second) / std::max(1 - second, 1e-3);
-      c.pixelShare[2 * i + 1][channel] = static_cast<float>(std::clamp(share, 0.0, 1.2));
+      c.pixelShare[2 * i + 1][channel] = static_cast<float>(std::max(second, neighbors));
     }
   }
   if (distances) addDistances(m, 2 * least, 2 * most, c);

@@ -162,27 +162,27 @@ TEST_P(SharedCaptureDiffusion, IsAsNearToBruteForceAsDocumented) {
 
 INSTANTIATE_TEST_SUITE_P(
     Truth, SharedCaptureDiffusion,
-    testing::Values(DiffusionExpectation{"ear_backlit", {.0175, .0145, .0136}, {.0046, .0038, .0041}},
-                    DiffusionExpectation{"head_sidelit", {.0117, .0073, .0054}, {.0025, .0017, .0017}},
-                    DiffusionExpectation{"sphere_backlit", {.0953, .0397, .0263}, {.0389, .0187, .0092}}),
+    testing::Values(DiffusionExpectation{"ear_backlit", {.0188, .0161, .0146}, {.0034, .0024, .0019}},
+                    DiffusionExpectation{"head_sidelit", {.0112, .0073, .0053}, {.0024, .0017, .0017}},
+                    DiffusionExpectation{"sphere_backlit", {.0992, .0427, .0289}, {.0352, .0184, .0091}}),
     [](const auto& test) { return std::string(test.param.name); });
 
 INSTANTIATE_TEST_SUITE_P(
     Truth, SharedCaptureGather,
     testing::Values(
-        GatherExpectation{"ear_backlit", {.0640, .0370, .0345}, {.189, .122, .223}},
-        GatherExpectation{"head_sidelit", {.0340, .0260, .0260}, {.343, .251, .374}},
+        GatherExpectation{"ear_backlit", {.0635, .0370, .0340}, {.191, .125, .241}},
+        GatherExpectation{"head_sidelit", {.0341, .0260, .0260}, {.349, .251, .354}},
         // Next to no blue comes through but at the rims, where light enters by the side faces, too.
         GatherExpectation{"slab_backlit", {.0465, .0715, .246}, {.0465, .0715, .246}, {.03, .03, .11}},
-        GatherExpectation{"sphere_backlit", {.0460, .0360, .0460}, {.103, .111, .240}},
+        GatherExpectation{"sphere_backlit", {.0460, .0362, .0470}, {.101, .109, .268}},
         GatherExpectation{"two_sheets", {.0435, .0400, .0770}, {.0435, .0400, .0770}}),
     [](const auto& test) { return std::string(test.param.name); });
 
 INSTANTIATE_TEST_SUITE_P(Truth, SharedCapture,
-                         testing::Values(Expectation{"ear_backlit", {.178, .109, .0540}},
-                                         Expectation{"head_sidelit", {.0515, .0475, .0415}},
+                         testing::Values(Expectation{"ear_backlit", {.176, .1105, .0554}},
+                                         Expectation{"head_sidelit", {.0495, .0475, .0417}},
                                          Expectation{"slab_backlit", {.191, .271, .562}},
-                                         Expectation{"sphere_backlit", {.385, .240, .145}, {1, 1.15, 1.31}},
+                                         Expectation{"sphere_backlit", {.385, .237, .1474}, {1, 1.15, 1.31}},
                                          Expectation{"two_sheets", {.146, .157, .232}}),
                          [](const auto& test) { return std::string(test.param.name); });
 
