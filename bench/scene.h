@@ -32,8 +32,8 @@ struct ErrorScene {
   std::string title, scene;
   std::map<std::string, double> options;
   double width;  // visible, scene units
-  double checker =
-      0;  // if not 0, irradiance is a checker of that side in the image, scene units, at 17 degrees
+  // If > 0, the irradiance is a checker of that side in the image, scene units, at 17 degrees.
+  double checker = 0;
 };
 
 std::vector<ErrorScene> errorScenes();

@@ -409,9 +409,8 @@ TEST_F(GpuTest, DiffusionOnTiltedPlanesIsNearBruteForceInEveryDirection) {
     for (const uint32_t quality : {2u, 3u}) {
       s.quality = quality;
       const Comparison d = compareImages(rgb(replayer().run(c, {m}, s).output), truth, middle);
-      for (const ChannelDifference& k : d.channels) {
+      for (const ChannelDifference& k : d.channels)
         EXPECT_LT(k.relativeRmse, quality == 3 ? best : normal) << dx << " " << dy << ", quality " << quality;
-      }
     }
   }
 }
