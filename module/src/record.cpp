@@ -51,6 +51,25 @@ void pushBindings(const PellucidContext& c, VkCommandBuffer commandBuffer, const
                                  d.bindingCount, writes);
 }
 
+PellucidResult refuse(const PellucidContext& c, const char* field, const char* sentence) {
+  if (c.message) c.message(c.messageUser, PELLUCID_SEVERITY_ERROR, field, sentence);
+  return PELLUCID_ERROR_INVALID_ARGUMENT;
+}
+
+// Whether the frame has what a plan uses, which a plan made from another frame may not find.
+PellucidResult checkPlan(const PellucidContext& c, const PellucidPlan& plan, const PellucidFrame& f) {
+  for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
+    const PellucidDispatch& d = plan.dispatches[i];
+    for (uint32_t b = 0; b < d.bindingCount; ++b) {
+      const uint32_t resource = d.bindings[b].resource;
+      if (resource != PELLUCID_RESOURCE_CONSTANTS && imageOf(f, resource).view == VK_NULL_HANDLE)
+        return refuse(c, "plan",
+                      "uses an image that the frame has no view of: it was made from another frame");
+    }
+  }
+  return PELLUCID_OK;
+}
+
 }  // namespace
 }  // namespace pellucid
 
@@ -60,16 +79,12 @@ extern "C" PellucidResult pellucidRecordPlan(const PellucidContext* c, VkCommand
                                              const PellucidPlan* plan, const PellucidFrame* frame,
                                              const PellucidConstantsSlice* constants) {
   if (!c || !commandBuffer || !plan || !frame || !constants) return PELLUCID_ERROR_INVALID_ARGUMENT;
-  if (constants->offset % 256 != 0 || !constants->buffer) {
-    if (c->message)
-      c->message(c->messageUser, PELLUCID_SEVERITY_ERROR, "constants",
-                 "needs a buffer and an offset that is a multiple of 256");
-    return PELLUCID_ERROR_INVALID_ARGUMENT;
-  }
-  PellucidResult result =
-      pellucidWriteConstants(plan, frame, constants->mapped, static_cast<size_t>(constants->size));
-  if (result != PELLUCID_OK) return result;
-  result = checkViews(*frame, c->message, c->messageUser);
+  if (constants->offset % 256 != 0 || !constants->buffer)
+    return refuse(*c, "constants", "needs a buffer and an offset that is a multiple of 256");
+  PellucidResult result = checkViews(*frame, c->message, c->messageUser);
+  if (result == PELLUCID_OK) result = checkPlan(*c, *plan, *frame);
+  if (result == PELLUCID_OK)
+    result = pellucidWriteConstants(plan, frame, constants->mapped, static_cast<size_t>(constants->size));
   if (result != PELLUCID_OK) return result;
 
   for (uint32_t i = 0; i < plan->dispatchCount; ++i) {

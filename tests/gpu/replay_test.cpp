@@ -216,6 +216,21 @@ TEST_F(Replay, ContextKeepsWhatTheModuleSays) {
   EXPECT_EQ(context.message(), "constants needs a buffer and an offset that is a multiple of 256");
 }
 
+// A plan knows images by their places in the frame, where another frame may have none.
+TEST_F(Replay, PlansOfFramesWithMoreImagesAreRefused) {
+  const Context context(device());
+  const FrameRun run(device(), context, flatCapture(8, 8), {testMaterial()}, {});
+  PellucidFrame lacking = run.frame();
+  lacking.features = PELLUCID_FEATURE_TRANSLUCENCY;
+  for (PellucidImage& image : lacking.transients) image = {};
+  const auto unused = reinterpret_cast<VkCommandBuffer>(uintptr_t{1});
+  const PellucidConstantsSlice constants{reinterpret_cast<VkBuffer>(uintptr_t{1}), 0, 0, nullptr};
+  EXPECT_EQ(pellucidRecordPlan(context.handle(), unused, &run.plan(), &lacking, &constants),
+            PELLUCID_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(context.message(),
+            "plan uses an image that the frame has no view of: it was made from another frame");
+}
+
 TEST_F(Replay, OutputMayBeTheIrradianceImage) {
   Capture c = busyCapture(61, 47);
   c.lights[0].shadowMaps = {flatShadowMap(-12, PELLUCID_DEPTH_DEVICE)};

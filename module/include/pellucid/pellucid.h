@@ -500,7 +500,8 @@ typedef struct PellucidConstantsSlice {
 /* Writes the slice and records every dispatch and the barriers between them. Before: the inputs
  * are readable by, and the output and transients free for, COMPUTE_SHADER. After: `output` was
  * written by COMPUTE_SHADER / SHADER_WRITE. Compute pipeline, push constants and set 0 are left
- * changed. `frame` is the one that made the plan, with its views filled in. */
+ * changed. `frame` is the one that made the plan, with its views filled in; one that lacks an image of the
+ * plan's is PELLUCID_ERROR_INVALID_ARGUMENT. */
 PellucidResult pellucidRecordPlan(const PellucidContext* context, VkCommandBuffer commandBuffer,
                                   const PellucidPlan* plan, const PellucidFrame* frame,
                                   const PellucidConstantsSlice* constants);
