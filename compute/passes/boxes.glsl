@@ -76,10 +76,10 @@ Box boxOf(ivec2 texel) {
     }
   }
   // The plane of least squares: its slope is the covariance over the variance, 5/4.
-  const float kInverse = 1.0 / float(kBoxTexels), kVariance = 1.25;
+  const float kInverse = 1.0 / float(kBoxTexels), kBoxVariance = 1.25;
   off *= kInverse;
-  tilt *= kInverse / kVariance;
-  float residual = kInverse * square - off * off - kVariance * dot(tilt, tilt);
+  tilt *= kInverse / kBoxVariance;
+  float residual = kInverse * square - off * off - kBoxVariance * dot(tilt, tilt);
   vec2 size = texelSize(depth, 1u), slope = tilt / max(size, vec2(1.0e-30));
   bool plane = onePlane(base.y, different, residual, slope, float(kBox) * size);
   if ((base.y | different) >> 16 == 0u) return Box(uvec2(0u), 0.0);

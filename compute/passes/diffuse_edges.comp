@@ -70,23 +70,34 @@ vec3 tilt(vec2 pixel, vec3 normal) {
 struct Kernel {
   uint m;
   vec4 reach;
+  int first; // bits of the first entry's squared distance
 };
 
-// Entry of the material's tables at a squared distance, mm^2.
-float entryAt(Kernel k, float squared) {
-  return clamp((log2(squared) - k.reach.z) * k.reach.w, 0.0, float(PELLUCID_DISTANCE_ENTRIES) - 1.001);
-}
+const int kLastEntry = PELLUCID_DISTANCE_ENTRIES - 1;
 
-// The profile, 1/mm^2, at a squared distance > 0, mm^2, times an area.
-vec3 profileAt(Kernel k, float squared, float area) {
+// Of the profile's curvature over an area, how much counts. That of texels, whose light comes from around them, too: with
+// all of it checkers err less, but smooth light more.
+const float kPixelCurvature = 1.0, kTexelCurvature = 0.5;
+
+// Of an area over the squared distance. Nearer than that the second order says too much.
+const float kMostRelative = 0.8;
+
+// The profile's mean over a square of that area, mm^2, times the area. `squared`: the squared distance > 0, mm^2, at which 1/r
+// is its mean there. With R = g / r, that makes up for 1/r and, to second order, for the slope of g; its curvature adds
+// area / (24 r^2) times r^2 laplace(R) - R + g' = r g''.
+vec3 profileAt(Kernel k, float squared, float area, float curvature) {
   // The nearest entry is off by 2 %, or more where hardly anything is left, but by turns above and below: sums of hundreds
   // err by 1e-4 of themselves.
-  return (area / max(squared, k.reach.y)) * unpackColor(kernels[k.m].distance[uint(entryAt(k, squared) + 0.5)]);
+  int entry = (floatBitsToInt(squared) - k.first + (1 << (PELLUCID_DISTANCE_SHIFT - 1))) >> PELLUCID_DISTANCE_SHIFT;
+  uvec3 bits = kernels[k.m].distance[clamp(entry, 0, kLastEntry)].xyz;
+  float curved = min(area, kMostRelative * squared) * curvature * (1.0 / 24.0);
+  return area * (uintBitsToFloat(bits) + curved * uintBitsToFloat(bits << 16));
 }
 
 // Part of the energy within a squared distance. Before the first entry it is like the area.
 vec3 enclosed(Kernel k, float squared) {
-  float at = entryAt(k, squared);
+  float at = float(floatBitsToInt(squared) - k.first) * exp2(-float(PELLUCID_DISTANCE_SHIFT));
+  at = clamp(at, 0.0, float(kLastEntry) - 1.0e-3);
   uint i = uint(at);
   return mix(kernels[k.m].enclosed[i].rgb, kernels[k.m].enclosed[i + 1u].rgb, fract(at)) * min(squared / k.reach.y, 1.0);
 }
@@ -141,16 +152,18 @@ const float kMostParts = 4.0;
 // The profile's mean over a pixel's surface times its area, `facing`: that of one facing the camera.
 vec3 ofPixel(Kernel k, vec4 place, vec3 offset, float facing) {
   float squared = dot(offset, offset), area = placeArea(place);
-  if (area < 1.5 * facing) return profileAt(k, meanSquare(squared, area), area);
+  // From three pixels and its length on it does not matter that it is longer than wide.
+  bool far = squared > 9.0 * facing + area * area / facing;
+  if (far || area < 1.5 * facing) return profileAt(k, meanSquare(squared, area), area, kPixelCurvature);
   vec3 axis = placeAxis(place);
   float width = sqrt(facing), halfLength = 0.5 * area / width;
-  // As long as wide, each; from three pixels and its length on, one does.
-  bool far = squared > 9.0 * facing + 4.0 * halfLength * halfLength;
-  float parts = far ? 1.0 : clamp(floor(2.0 * halfLength / width + 0.5), 1.0, kMostParts);
+  // As long as wide, each.
+  float parts = clamp(floor(2.0 * halfLength / width + 0.5), 1.0, kMostParts);
   vec3 weight = vec3(0.0);
   for (float part = 0.5; part < parts; part += 1.0) {
     float at = halfLength * (2.0 * part / parts - 1.0);
-    weight += profileAt(k, meanSquare(offset + at * axis, vec4(axis, halfLength / parts), facing), area / parts);
+    vec4 segment = vec4(axis, halfLength / parts);
+    weight += profileAt(k, meanSquare(offset + at * axis, segment, facing), area / parts, kPixelCurvature);
   }
   return weight;
 }
@@ -198,7 +211,7 @@ void loadTexels(uint level, ivec2 firstPixel) {
 void addPixels(inout Sums sums, ivec2 local, Kernel k, vec3 center, float facing) {
   int own = ownPlace(local), first = (local.y & ~1) * kSide + (local.x & ~1);
   for (int y = 0; y < kWindow; ++y)
-    for (int x = 0; x < kWindow; ++x) {
+    [[unroll]] for (int x = 0; x < kWindow; ++x) {
       int i = first + y * kSide + x;
       vec4 place = places[i];
       uvec2 color = colors[i];
@@ -212,22 +225,23 @@ void addTexel(inout Sums sums, int i, Kernel k, vec3 center) {
   vec4 place = places[i];
   uvec2 color = colors[i];
   vec3 offset = place.xyz - center;
-  vec3 weight = profileAt(k, meanSquare(dot(offset, offset), place.w), place.w);
-  add(sums, color, color.y >> 16 == k.m + 1u ? weight : vec3(0.0));
+  float area = color.y >> 16 == k.m + 1u ? place.w : 0.0;
+  add(sums, color, profileAt(k, meanSquare(dot(offset, offset), area), area, kTexelCurvature));
 }
 
 void addTexels(inout Sums sums, uint level, ivec2 firstPixel, ivec2 local, Kernel k, vec3 center) {
   ivec2 origin = windowOf(level, firstPixel).first, texel = (firstPixel + local) >> int(level), odd = texel & 1;
   ivec2 parent = 2 * ((texel >> 1) - kAround) - origin;
   int first = parent.y * kSide + parent.x;
-  // Rows and columns beside what the finer level does: two and three of them, or three and two.
+  // Rows and columns beside what the finer level does: two and three of them, or three and two. Rows at once, so that their
+  // latencies overlap.
   for (int i = 0; i <= 2 * kAround; ++i) {
     int y = i < kAround ? i : i > kAround ? i + 2 * kAround + 1 : odd.y == 0 ? 3 * kAround + 1 : kAround;
-    for (int x = 0; x < kWindow; ++x) addTexel(sums, first + y * kSide + x, k, center);
+    [[unroll]] for (int x = 0; x < kWindow; ++x) addTexel(sums, first + y * kSide + x, k, center);
   }
   for (int i = 0; i <= 2 * kAround; ++i) {
     int y = kAround + odd.y + i;
-    for (int j = 0; j <= 2 * kAround; ++j) {
+    [[unroll]] for (int j = 0; j <= 2 * kAround; ++j) {
       int x = j < kAround ? j : j > kAround ? j + 2 * kAround + 1 : odd.x == 0 ? 3 * kAround + 1 : kAround;
       addTexel(sums, first + y * kSide + x, k, center);
     }
@@ -247,8 +261,9 @@ void diffuseTile(ivec2 firstPixel, uint edgeTexels) {
   ivec2 local = 4 * ivec2(texel % kTexels, texel / kTexels) + ivec2(inTexel % 4, inTexel / 4), pixel = firstPixel + local;
   int own = ownPlace(local);
   uint material = colors[own].y >> 16;
-  Kernel k = Kernel(max(material, 1u) - 1u, vec4(0.0));
+  Kernel k = Kernel(max(material, 1u) - 1u, vec4(0.0), 0);
   if (material != 0u) k.reach = kernels[k.m].reach;
+  k.first = floatBitsToInt(k.reach.y);
   bool diffuses = isEdge && k.reach.x > 0.0;
   vec3 center = places[own].xyz;
   Sums sums = Sums(vec3(0.0), vec3(0.0));

@@ -1,11 +1,13 @@
-// A texel of the pyramid from 4 x 4 of the finer level, by 3 5 5 3 in each direction: it takes the nearest of the four
+// A texel of the pyramid from 4 x 4 of the finer level, by 3 5 5 3 in each direction, or 1 2 2 1 where edges are summed: it takes the nearest of the four
 // surfaces under it and averages those that lie on it. The finer level is in the including pass's shared colors[], with mass,
 // material and plane as packed, and depths[]; slopes are not needed.
 #ifndef PELLUCID_REDUCED_GLSL
 #define PELLUCID_REDUCED_GLSL
 
-// 3 5 5 3, variance 1.
-float weight(int i) { return i == 0 || i == 3 ? 0.1875 : 0.3125; }
+// 3 5 5 3, variance 1, or 1 2 2 1, which errs less with the wider filters after it.
+const float kOuterWeight = kSumsEdges ? 1.0 / 6.0 : 3.0 / 16.0, kVariance = 0.25 + 4.0 * kOuterWeight;
+
+float weight(int i) { return i == 0 || i == 3 ? kOuterWeight : 0.5 - kOuterWeight; }
 
 // Of the squared length of a texel's side: how far from its plane what a texel stands for may lie where edges are summed.
 const float kSummedOffset = 8.0;
@@ -159,9 +161,10 @@ uvec4 reduced(uint finer, ivec2 texel, int first, int stride) {
       tilt += w * difference * (vec2(x, y) - 1.5);
       square += w * difference * difference;
     }
-  // The plane of least squares, because the filter's variance is 1: its slope is the tilt.
+  // The plane of least squares: its slope is the covariance over the variance.
+  tilt *= 1.0 / kVariance;
   vec2 size = texelSize(base, finer);
-  float residual = square - off * off - dot(tilt, tilt);
+  float residual = square - off * off - kVariance * dot(tilt, tilt);
   vec2 slope = tilt / max(size, vec2(1.0e-30));
   bool plane = onePlane(bits, different, residual, slope, 2.0 * size);
   uvec4 result = packTexel(Texel(color, areaOf(finer + 1u, texel, slope), bits >> 24, base + off, slope), kPlane);

@@ -144,6 +144,44 @@ vec4 stretched(ivec2 texel, uint level, ivec2 k, Texel own, Foreshortening f) {
   return sum / weights;
 }
 
+// Where edges are summed a level is filtered with 1 2 1 in each direction before the coarser ones are added, and foreshortened
+// planes, which are little tilted, by as much more along their axis as 3 x 3 texels can hold, by their moments. `isFlat`: these
+// are one plane.
+vec4 smoothed(ivec2 texel, uint level, Texel own, Foreshortening f, bool isFlat) {
+  if (own.mass == 0.0) return vec4(0.0);
+  float longer = clamp((19.0 / 18.0 - exp2(-2.0 * float(level))) * f.stretch, 0.0, 0.3);
+  vec2 moments = 0.5 + longer * f.axis * f.axis, middle = 1.0 - moments, side = 0.5 * moments;
+  float corner = 0.25 * longer * f.axis.x * f.axis.y;
+  ivec2 first = inAtlas(level, texel) - 1;
+  if (isFlat) {
+    vec3 color[9];
+    [[unroll]] for (int i = 0; i < 9; ++i) color[i] = unpackColor(texelFetch(pyramidImage, first + ivec2(i % 3, i / 3), 0).xy & ~uvec2(kFlat, 0u));
+    vec3 sum = middle.x * middle.y * color[4] + side.x * middle.y * (color[3] + color[5]) + middle.x * side.y * (color[1] + color[7]) +
+               (side.x * side.y + corner) * (color[0] + color[8]) + (side.x * side.y - corner) * (color[2] + color[6]);
+    return own.mass * vec4(sum, 1.0);
+  }
+  vec2 size = texelSize(own.depth, level);
+  float spread2 = inverseSpread(own.slope, size);
+  ivec4 rect = levelRect(level);
+  vec4 sum = vec4(0.0);
+  [[dont_unroll]] for (int y = -1; y <= 1; ++y) {
+    uvec4 bits[3];
+    // A row at once, so that its latencies overlap.
+    [[unroll]] for (int x = -1; x <= 1; ++x) {
+      ivec2 offset = ivec2(x, y);
+      bits[x + 1] = contains(rect, texel + offset) ? texelFetch(pyramidImage, first + offset + 1, 0) : uvec4(0u);
+    }
+    [[unroll]] for (int x = -1; x <= 1; ++x) {
+      Texel t = unpackTexel(bits[x + 1]);
+      float along = dot(own.slope, vec2(x, y) * size);
+      float w = (x == 0 ? middle.x : side.x) * (y == 0 ? middle.y : side.y) + float(x * y) * corner;
+      w *= t.mass * sameSurface(t.depth - own.depth - along, along, spread2, kStretchFalloff);
+      sum += (t.mass != 0.0 && t.material == own.material ? w : 0.0) * vec4(t.color, 1.0);
+    }
+  }
+  return sum;
+}
+
 // What a texel's level says of it, without the coarser ones.
 struct Own {
   Texel texel;
@@ -156,7 +194,9 @@ Own ownPart(uint level, ivec2 texel, ivec2 k, uvec4 bits, out Foreshortening f) 
   Own own;
   own.texel = unpackTexel(bits);
   f = foreshortening(texel, level, own.texel.depth, own.texel.slope);
-  own.here = stretched(texel, level, k, own.texel, f) / areaOf(level, texel, own.texel.slope);
+  bool isFlat = level == 2u && (bits.x & kFlat) != 0u;
+  own.here = (kSumsEdges ? smoothed(texel, level, own.texel, f, isFlat) : stretched(texel, level, k, own.texel, f)) /
+             areaOf(level, texel, own.texel.slope);
   // Material 0 looks at what it does not use.
   uint m = max(own.texel.material, 1u) - 1u;
   own.share = coarserShare(m, level, shareEntry(m, f.lengthMm));
@@ -210,11 +250,11 @@ Level withCoarser(Own own, uint level, ivec2 texel, Window window, bool edge) {
   return Level(color, density, max(part.r, max(part.g, part.b)));
 }
 
-// Which part of all energy pixels with this entry do not have, `element` 1, or level 2 and coarser ones have, 0.
+// Which part of all energy coarser filters have than `element` - 1, at pixels with this entry; see KernelConstants.
 vec3 beyondPixel(uint m, uint element, float entry) {
   entry = max(entry, 0.0);
-  uint i = min(uint(entry), uint(PELLUCID_SHARE_ENTRIES - 2)), first = 2u * i + element;
-  return mix(kernels[m].pixelShare[first].rgb, kernels[m].pixelShare[first + 2u].rgb, entry - float(i));
+  uint i = min(uint(entry), uint(PELLUCID_SHARE_ENTRIES - 2)), first = uint(PELLUCID_PIXEL_SHARES) * i + element;
+  return mix(kernels[m].pixelShare[first].rgb, kernels[m].pixelShare[first + uint(PELLUCID_PIXEL_SHARES)].rgb, entry - float(i));
 }
 
 // Of pixels of a texel of level 2, on a surface that fills all of the kernel. By how many octaves the kernel's longest side is
@@ -239,12 +279,25 @@ PixelShares pixelShares(uint m, Foreshortening f) {
   return PixelShares(coarser, fine, shape);
 }
 
+// The same where edges are summed and planes little tilted. Level 2 follows foreshortening; filters of pixels go by the
+// geometric mean of the kernel's lengths.
+PixelEnergies pixelEnergies(uint m, Foreshortening f) {
+  float entry = shareEntry(m, 0.25 * f.lengthMm), mean = entry - 0.25 * log2(1.0 + max(f.stretch, 0.0)) * kernels[m].range.y;
+  return PixelEnergies(beyondPixel(m, 0u, entry), beyondPixel(m, 1u, mean), beyondPixel(m, 2u, mean));
+}
+
+// Level 2 has `density` times its part, and all parts together are 1 again.
+PixelEnergies withDensity(PixelEnergies e, vec3 density) {
+  vec3 less = e.coarser * (1.0 - density), scale = 1.0 / max(1.0 - less, vec3(1.0e-6));
+  return PixelEnergies((e.coarser - less) * scale, (e.wide - less) * scale, (e.narrow - less) * scale);
+}
+
 // What may come from edges to a plane that is not summed, as more shows where it meets edges that are: of its energy, from
 // levels 3 and 4, and of its light, which may be much more where it is dark and near a bright rim.
 const float kMostEnergy = 0.02, kMostLight = 0.5;
 
-// Nor are planes as tilted as that, for whose kernels the fine filter is too short.
-const float kMostStretch = 0.5;
+// Nor are planes as tilted as that, 20 degrees, as filters of pixels are as long as wide.
+const float kMostStretch = 0.13;
 
 // Whether a texel of level 2 lies on one plane with all that much of its light comes from.
 bool isFlatFor(Own fine, Level r, uvec4 bits, ivec2 texel, ivec2 k) {
@@ -254,26 +307,52 @@ bool isFlatFor(Own fine, Level r, uvec4 bits, ivec2 texel, ivec2 k) {
   return (bits.x & kFlat) != 0u && r.fromEdges < kMostLight && (share < kMostEnergy || (plane3 && plane4));
 }
 
+// Of the squared length of level 2's side: how far from a texel's plane texels `side` as long may lie.
+bool isOnPlane(uvec4 texel, float side, vec2 offset, vec2 size, uvec4 theirs) {
+  vec2 slope = unpackHalf2x16(texel.w);
+  float off = uintBitsToFloat(theirs.z) - uintBitsToFloat(texel.z) - dot(slope, offset * size);
+  return hasSurface(theirs) && materialBits(theirs) == materialBits(texel) &&
+         off * off * inverseSpread(slope, size) < kPlaneOffset * side * side;
+}
+
+// Whether all pixels of the rect around a texel of level 2 lie on its plane, by level 1, whose areas tell of holes.
+bool isPlaneInRect(ivec2 texel, uvec4 bits, vec2 size) {
+  ivec4 rect = ivec4(frame.rect);
+  float area = areaOf(2u, texel, unpackHalf2x16(bits.w));
+  bool plane = true;
+  for (int row = 0; row < 6; row += 3) {
+    uvec4 theirs[18];
+    // Half of them at once, so that their latencies overlap.
+    [[unroll]] for (int i = 0; i < 18; ++i) {
+      ivec2 quad = 2 * texel + ivec2(i % 6, row + i / 6) - 2;
+      theirs[i] = contains(levelRect(1u), quad) ? texelFetch(pyramidImage, inAtlas(1u, quad), 0) : uvec4(0u);
+    }
+    [[unroll]] for (int i = 0; i < 18; ++i) {
+      ivec2 quad = 2 * texel + ivec2(i % 6, row + i / 6) - 2;
+      ivec2 first = max(2 * quad, rect.xy), end = min(2 * quad + 2, rect.zw);
+      vec2 offset = 0.125 * vec2(first + end) - (vec2(texel) + 0.5);
+      float expected = 0.25 * float((end.x - first.x) * (end.y - first.y)) * area;
+      bool alike = isOnPlane(bits, 0.5, offset, size, theirs[i]) && abs(massOf(theirs[i].y) - expected) < 0.2 * expected;
+      plane = plane && (alike || !contains(levelRect(1u), quad));
+    }
+  }
+  return plane;
+}
+
 // Whether a texel of level 2 is an edge because the rect ends beside it: all around it in the rect lies on its plane, as
 // coarser texels do.
 bool endsAtRect(ivec2 texel, uvec4 bits) {
-  ivec4 inside = inset(levelRect(2u), 1);
   // As far as texels of level 4 reach over it.
-  if (contains(inset(inside, 4), texel)) return false;
-  float depth = uintBitsToFloat(bits.z);
-  vec2 slope = unpackHalf2x16(bits.w), size = texelSize(depth, 2u);
-  float spread2 = inverseSpread(slope, size);
-  bool plane = true;
-  for (uint i = 0u; i < 7u + pass.value.x; ++i) {
-    uint level = i < 9u ? 2u : i - 6u;
-    float side = exp2(float(level) - 2.0);
-    ivec2 at = i < 9u ? texel + ivec2(i % 3u, i / 3u) - 1 : texel >> int(level - 2u);
-    if (level == 2u && !contains(inside, at)) continue;
-    uvec4 theirs = texelFetch(pyramidImage, inAtlas(level, at), 0);
-    vec2 offset = (vec2(at) + 0.5) * side - (vec2(texel) + 0.5);
-    float off = uintBitsToFloat(theirs.z) - depth - dot(slope, offset * size);
-    plane = plane && hasSurface(theirs) && materialBits(theirs) == materialBits(bits) &&
-            off * off * spread2 < kPlaneOffset * side * side;
+  if (contains(inset(levelRect(2u), 5), texel)) return false;
+  vec2 size = texelSize(uintBitsToFloat(bits.z), 2u);
+  bool plane = (bits.x & kFlat) != 0u || isPlaneInRect(texel, bits, size);
+  uvec4 coarser[PELLUCID_LAST_LEVEL - 2];
+  [[unroll]] for (uint i = 0u; i < uint(coarser.length()); ++i)
+    coarser[i] = i + 3u <= pass.value.x ? texelFetch(pyramidImage, inAtlas(i + 3u, texel >> int(i + 1u)), 0) : uvec4(0u);
+  [[unroll]] for (uint i = 0u; i < uint(coarser.length()); ++i) {
+    float side = exp2(float(i) + 1.0);
+    vec2 offset = (vec2(texel >> int(i + 1u)) + 0.5) * side - (vec2(texel) + 0.5);
+    plane = plane && (i + 3u > pass.value.x || isOnPlane(bits, side, offset, size, coarser[i]));
   }
   return plane;
 }
@@ -328,15 +407,21 @@ void resolveFine(ivec2 texel, ivec2 k, uvec4 bits) {
   if (hasSurface(bits)) {
     Foreshortening f;
     Own own = ownPart(2u, texel, k, bits, f);
-    PixelShares share = pixelShares(own.texel.material - 1u, f);
+    uint m = own.texel.material - 1u;
     Level r = withCoarser(own, 2u, texel, windowOf(3u, k), false);
     uint upper = bits.y >> 16 & ~(kPlane >> 16);
     color = uvec4(packColor(r.color, (bits.x & kFlat) != 0u ? upper | kPlane >> 16 : upper), bits.zw);
-    share.coarser = share.coarser * r.density / max(1.0 - share.coarser + share.coarser * r.density, vec3(1.0e-6));
     uint flags = isPlane(bits) ? kFull : 0u;
-    bool filtered = f.stretch < kMostStretch && (isFlatFor(own, r, bits, texel, k) || endsAtRect(texel, bits));
-    if (kSumsEdges && !filtered) flags |= kSummed;
-    shares = uvec4(packShares(share), packDensity(r.density) | flags);
+    if (kSumsEdges) {
+      bool filtered = f.stretch < kMostStretch && (isFlatFor(own, r, bits, texel, k) || endsAtRect(texel, bits));
+      if (!filtered) flags |= kSummed;
+      shares.xyz = packEnergies(withDensity(pixelEnergies(m, f), r.density));
+    } else {
+      PixelShares share = pixelShares(m, f);
+      share.coarser = share.coarser * r.density / max(1.0 - share.coarser + share.coarser * r.density, vec3(1.0e-6));
+      shares.xyz = packShares(share);
+    }
+    shares.w = packDensity(r.density) | flags;
   }
   writeResolved(texel, color, shares);
 }

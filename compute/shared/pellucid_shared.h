@@ -22,6 +22,7 @@ using glm::vec4;
 #define PELLUCID_DIFFUSE_GROUP 16 // a side
 #define PELLUCID_DIFFUSE_TEXELS_X 15 // of level 2, 4 x 4 pixels each, that a group of the diffusion does
 #define PELLUCID_DIFFUSE_COARSE_TEXELS_X 16 // without the fine filter
+#define PELLUCID_DIFFUSE_PLANES_TEXELS_X 14 // with two fine filters, of planes alone
 #define PELLUCID_DIFFUSE_TEXELS_Y 4
 #define PELLUCID_DIFFUSE_CELL 4 // pixels a side of the gather's cells where the diffusion adds what it found
 #define PELLUCID_EDGES_GROUP 16 // a side, pixels, of a tile of the pass that does edges by distances in space
@@ -109,7 +110,11 @@ using glm::vec4;
 #define PELLUCID_SHARE_COARSER 2
 #define PELLUCID_SHARE_TABLES 3
 #define PELLUCID_SHARE_ENTRIES 128
-#define PELLUCID_DISTANCE_ENTRIES 256
+#define PELLUCID_PIXEL_SHARES 3
+// Of KernelConstants::distance: 16 an octave of squared distances, which are floats' first bits.
+#define PELLUCID_DISTANCE_SHIFT 19
+#define PELLUCID_DISTANCE_OCTAVES 24
+#define PELLUCID_DISTANCE_ENTRIES (PELLUCID_DISTANCE_OCTAVES << (23 - PELLUCID_DISTANCE_SHIFT))
 
 // The camera as the shaders use it. With s = +1 or -1 the sign of view z in front of the eye, p = s z
 // is the planar distance and a pixel's view ray is point(p) = origin + p direction.
@@ -212,14 +217,14 @@ struct KernelConstants {
   vec4 range; // x: log2 of the first side; y: entries per octave
   vec4 share[PELLUCID_SHARE_TABLES * PELLUCID_SHARE_ENTRIES]; // rgb: which part of the energy at a level and
                                                               // coarser ones the coarser ones have
-  // Two for each side of a pixel: which part of all energy level 2 and coarser ones have, and these and the fine filter of
-  // the pixel and its neighbors.
-  vec4 pixelShare[2 * PELLUCID_SHARE_ENTRIES];
-  // Of quality 3, the profile R over squared distances r^2 in mm^2; before the first entry R does not change.
-  vec4 reach; // x: distance within which 99.9 % of the energy lies, mm, 0: none; y: r^2 of the first entry; z: its log2;
-              // w: entries per octave
-  uvec2 distance[PELLUCID_DISTANCE_ENTRIES]; // halves: r^2 R, rgb
-  vec4 enclosed[PELLUCID_DISTANCE_ENTRIES];  // rgb: which part of the energy lies within r
+  // For each side of a pixel: which part of all energy level 2 and coarser ones have, these and the (wider) fine filter of
+  // the pixel and its neighbors, and, of quality 3, these and the narrow one.
+  vec4 pixelShare[PELLUCID_PIXEL_SHARES * PELLUCID_SHARE_ENTRIES];
+  // Of quality 3, the profile R over squared distances r^2 in mm^2. Before the first entry R does not change.
+  vec4 reach; // x: distance within which 99.9 % of the energy lies, mm, 0: none; y: r^2 of the first entry
+  // rgb: R, 1/mm^2, as a float whose last 16 bits are the first of (r R)'' / r, 1/mm^4.
+  uvec4 distance[PELLUCID_DISTANCE_ENTRIES];
+  vec4 enclosed[PELLUCID_DISTANCE_ENTRIES]; // rgb: which part of the energy lies within r
 };
 
 // VkDispatchIndirectCommands of what follows the gather's points; x: columns of groups, 0 where it does not run; w: where it
@@ -235,8 +240,8 @@ struct GatherDispatches {
 // gather share: pixels a side of a cell.
 // add: unused, unused, 1 if this is the last dispatch.
 // reduce: finer level, 16. resolve: coarsest level, 16.
-// diffuse: unused, 1, unused, 1 if this is the last dispatch. diffuse edges: coarsest level, unused, unused,
-// likewise.
+// diffuse: unused, 1, unused, 1 if this is the last dispatch. diffuse planes: unused, 4, unused, likewise. diffuse
+// edges: coarsest level, unused, unused, likewise.
 struct PassConstants {
   uvec4 value;
 };

@@ -40,7 +40,7 @@ double widestDeviation(const PellucidMaterial& m) {
 
 double levelDeviation(uint32_t level) { return std::sqrt(7.0 / 12 * std::exp2(2.0 * level) - 13.0 / 12); }
 
-// Where the energy beyond a level begins in the table of diffusion_profile.cpp: 1.5 octaves below its texels,
+// Where the energy beyond a level begins in the table of pyramid_energy.cpp: 1.5 octaves below its texels,
 // and further by what that is shifted.
 double deviationWithin(uint32_t level) { return std::exp2(level - 0.5 - kCoarserShift); }
 

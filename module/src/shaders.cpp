@@ -18,6 +18,10 @@
 #include "kDiffuseEdgesGather32f.h"
 #include "kDiffuseGather16f.h"
 #include "kDiffuseGather32f.h"
+#include "kDiffusePlanes16f.h"
+#include "kDiffusePlanes32f.h"
+#include "kDiffusePlanesGather16f.h"
+#include "kDiffusePlanesGather32f.h"
 #include "kDirectional16f.h"
 #include "kDirectional32f.h"
 #include "kDirectionalQuads16f.h"
@@ -93,7 +97,11 @@ const std::array kShaders = {shader(kTranslucency16f),
                              shader(kGatherRecordsOneMap),
                              shader(kReduceAndResolve),
                              shader(kReduceForEdges),
-                             shader(kResolveForEdges)};
+                             shader(kResolveForEdges),
+                             shader(kDiffusePlanes16f),
+                             shader(kDiffusePlanes32f),
+                             shader(kDiffusePlanesGather16f),
+                             shader(kDiffusePlanesGather32f)};
 static_assert(kShaders.size() == PELLUCID_PIPELINE_COUNT);
 
 }  // namespace

@@ -93,7 +93,11 @@ extern "C" const char* pellucidPipelineName(uint32_t pipeline) {
                                        "gather_records_one_map",
                                        "reduce_and_resolve",
                                        "reduce_for_edges",
-                                       "resolve_for_edges"};
+                                       "resolve_for_edges",
+                                       "diffuse_planes_rgba16f",
+                                       "diffuse_planes_rgba32f",
+                                       "diffuse_planes_gather_rgba16f",
+                                       "diffuse_planes_gather_rgba32f"};
   static_assert(names.size() == PELLUCID_PIPELINE_COUNT);
   return pipeline < names.size() ? names[pipeline] : "unknown pipeline";
 }

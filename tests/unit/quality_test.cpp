@@ -139,8 +139,9 @@ TEST(Quality, ChoosesTheLastPass) {
       f.frame.outputFormat = wide ? VK_FORMAT_R32G32B32A32_SFLOAT : VK_FORMAT_R16G16B16A16_SFLOAT;
       const PellucidPlan plan = f.plan();
       EXPECT_EQ(plan.quality, quality);
-      const uint32_t half =
-          quality == 0 ? PELLUCID_PIPELINE_DIFFUSE_COARSE_16F : PELLUCID_PIPELINE_DIFFUSE_16F;
+      const uint32_t half = quality == 0   ? PELLUCID_PIPELINE_DIFFUSE_COARSE_16F
+                            : quality == 3 ? PELLUCID_PIPELINE_DIFFUSE_PLANES_16F
+                                           : PELLUCID_PIPELINE_DIFFUSE_16F;
       EXPECT_EQ(find(plan, "diffuse")->pipeline, half + wide);
       const PellucidDispatch* edges = find(plan, "diffuse edges");
       ASSERT_EQ(edges != nullptr, quality == 3);
@@ -151,6 +152,7 @@ TEST(Quality, ChoosesTheLastPass) {
   f.frame.normal = {};
   f.frame.outputFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
   EXPECT_EQ(find(f.plan(), "diffuse edges"), nullptr) << "there are none";
+  EXPECT_EQ(find(f.plan(), "diffuse")->pipeline, PELLUCID_PIPELINE_DIFFUSE_16F);
 }
 
 // Against the table: the least quality that is below the target at every radius up to the frame's. Without
