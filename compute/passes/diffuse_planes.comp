@@ -85,7 +85,8 @@ void store(ivec2 pixel, vec3 color, float alpha) {
   imageStore(destinationImage, pixel, vec4(asStored(color), alpha));
 }
 
-// A pixel of a plane that ends at the rect: of each filter, what lies in it. `texel`: its own in the window; `place`: in wide[].
+// A pixel of a plane that ends at the rect: of each filter, what lies in it. `texel`: its own in the window; `place`: in
+// wide[].
 void diffuseAtBorder(ivec2 pixel, int texel, int place) {
   if (!insideRect(pixel)) return;
   Parts parts = partsOf(shares[texel].xyz);
@@ -132,7 +133,8 @@ void diffuseColumn(ivec2 top, int texel, int place, uvec2 own[4], uvec4 alphas) 
     vec3 splineY = spline(0.25 * (float(i) - 1.5));
     vec3 smoothed = splineY.x * coarser[0] + splineY.y * coarser[1] + splineY.z * coarser[2];
     Filtered f = filtered(place + i * kColumns);
-    vec3 color = parts.own * unpackColor(own[i]) + parts.narrow * f.narrow + parts.wide * f.wide + parts.coarser * smoothed;
+    vec3 color = parts.own * unpackColor(own[i]) + parts.narrow * f.narrow + parts.wide * f.wide;
+    color += parts.coarser * smoothed;
     result[i] = vec4(max(color, vec3(0.0)), uintBitsToFloat(alphas[i]));
   }
 #ifdef GATHER
@@ -144,6 +146,12 @@ void diffuseColumn(ivec2 top, int texel, int place, uvec2 own[4], uvec4 alphas) 
       result[i].rgb = sanitize(result[i].rgb * albedoAt(top + ivec2(0, i)));
   [[unroll]] for (int i = 0; i < 4; ++i)
     imageStore(destinationImage, top + ivec2(0, i), vec4(asStored(result[i].rgb), result[i].a));
+}
+
+// Whether a group's filters reach the rect's border.
+bool bordersRect(ivec2 firstTexel) {
+  return !contains(inset(ivec4(frame.rect), 4 + kRing), 4 * firstTexel) ||
+         !contains(inset(ivec4(frame.rect), 4 + kRing), 4 * (firstTexel + kTexels) - 1);
 }
 
 void main() {
@@ -192,6 +200,9 @@ void main() {
 #endif
   barrier();
   if (anySurface == 0u) return; // of all invocations
+  // Planes have nothing that needs it, but may end at the rect beside what does.
+  if (bordersRect(firstTexel))
+    [[unroll]] for (int i = 0; i < kRows + 2 * kRing; ++i) pixels[i] = packHalves(sanitize(unpackColor(pixels[i])), 0u);
   [[unroll]] for (int i = 0; i < kRows; ++i) keepVertical((firstRow + i) * kColumns + column, pixels, i);
   barrier();
   int x = column - kRing;

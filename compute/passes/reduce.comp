@@ -1,7 +1,7 @@
 // The two levels of the diffusion pyramid after level pass.value.x. A texel takes the nearest of the four surfaces under
-// it and averages those of 4 x 4 texels that lie on it by 3 5 5 3 in each direction. A group makes 7 x 7 texels of the
-// second level and, before them, the 16 x 16 of the first that they need: one an invocation. Beside levels 2 and 3 some
-// groups make 4 and 5, which need not wait for them: averages of 4 x 4 texels of level 1 stand for level 3.
+// it and averages those of 4 x 4 texels that lie on it. A group makes 7 x 7 texels of the second level and, before them, the
+// 16 x 16 of the first that they need: one an invocation. Beside levels 2 and 3 some groups make 4 and 5, which need not
+// wait for them: averages of 4 x 4 texels of level 1 stand for level 3.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require

@@ -1,6 +1,6 @@
-// A texel of the pyramid from 4 x 4 of the finer level, by 3 5 5 3 in each direction, or 1 2 2 1 where edges are summed: it takes the nearest of the four
-// surfaces under it and averages those that lie on it. The finer level is in the including pass's shared colors[], with mass,
-// material and plane as packed, and depths[]; slopes are not needed.
+// A texel of the pyramid from 4 x 4 of the finer level, by 3 5 5 3 in each direction or, where edges are summed, 1 2 2 1: it
+// takes the nearest of the four surfaces under it and averages those that lie on it. The finer level is in the including
+// pass's shared colors[], with mass, material and plane as packed, and depths[]; slopes are not needed.
 #ifndef PELLUCID_REDUCED_GLSL
 #define PELLUCID_REDUCED_GLSL
 

@@ -145,19 +145,23 @@ vec4 stretched(ivec2 texel, uint level, ivec2 k, Texel own, Foreshortening f) {
 }
 
 // Where edges are summed a level is filtered with 1 2 1 in each direction before the coarser ones are added, and foreshortened
-// planes, which are little tilted, by as much more along their axis as 3 x 3 texels can hold, by their moments. `isFlat`: these
-// are one plane.
+// planes, which are little tilted, by more along their axis, by the moments of 3 x 3 texels. `isFlat`: these are one plane.
 vec4 smoothed(ivec2 texel, uint level, Texel own, Foreshortening f, bool isFlat) {
   if (own.mass == 0.0) return vec4(0.0);
+  // The variance of a level's kernel, squared texels, times the stretch, as far as all weights are positive.
   float longer = clamp((19.0 / 18.0 - exp2(-2.0 * float(level))) * f.stretch, 0.0, 0.3);
   vec2 moments = 0.5 + longer * f.axis * f.axis, middle = 1.0 - moments, side = 0.5 * moments;
   float corner = 0.25 * longer * f.axis.x * f.axis.y;
   ivec2 first = inAtlas(level, texel) - 1;
   if (isFlat) {
     vec3 color[9];
-    [[unroll]] for (int i = 0; i < 9; ++i) color[i] = unpackColor(texelFetch(pyramidImage, first + ivec2(i % 3, i / 3), 0).xy & ~uvec2(kFlat, 0u));
-    vec3 sum = middle.x * middle.y * color[4] + side.x * middle.y * (color[3] + color[5]) + middle.x * side.y * (color[1] + color[7]) +
-               (side.x * side.y + corner) * (color[0] + color[8]) + (side.x * side.y - corner) * (color[2] + color[6]);
+    [[unroll]] for (int i = 0; i < 9; ++i) {
+      uvec4 bits = texelFetch(pyramidImage, first + ivec2(i % 3, i / 3), 0);
+      color[i] = unpackColor(uvec2(bits.x & ~kFlat, bits.y));
+    }
+    vec3 sum = middle.x * middle.y * color[4] + (side.x * side.y + corner) * (color[0] + color[8]);
+    sum += side.x * middle.y * (color[3] + color[5]) + middle.x * side.y * (color[1] + color[7]);
+    sum += (side.x * side.y - corner) * (color[2] + color[6]);
     return own.mass * vec4(sum, 1.0);
   }
   vec2 size = texelSize(own.depth, level);
@@ -250,11 +254,12 @@ Level withCoarser(Own own, uint level, ivec2 texel, Window window, bool edge) {
   return Level(color, density, max(part.r, max(part.g, part.b)));
 }
 
-// Which part of all energy coarser filters have than `element` - 1, at pixels with this entry; see KernelConstants.
+// Parts of all energy at pixels with this entry, `element` as in KernelConstants::pixelShare.
 vec3 beyondPixel(uint m, uint element, float entry) {
   entry = max(entry, 0.0);
   uint i = min(uint(entry), uint(PELLUCID_SHARE_ENTRIES - 2)), first = uint(PELLUCID_PIXEL_SHARES) * i + element;
-  return mix(kernels[m].pixelShare[first].rgb, kernels[m].pixelShare[first + uint(PELLUCID_PIXEL_SHARES)].rgb, entry - float(i));
+  vec3 next = kernels[m].pixelShare[first + uint(PELLUCID_PIXEL_SHARES)].rgb;
+  return mix(kernels[m].pixelShare[first].rgb, next, entry - float(i));
 }
 
 // Of pixels of a texel of level 2, on a surface that fills all of the kernel. By how many octaves the kernel's longest side is
@@ -332,8 +337,8 @@ bool isPlaneInRect(ivec2 texel, uvec4 bits, vec2 size) {
       ivec2 first = max(2 * quad, rect.xy), end = min(2 * quad + 2, rect.zw);
       vec2 offset = 0.125 * vec2(first + end) - (vec2(texel) + 0.5);
       float expected = 0.25 * float((end.x - first.x) * (end.y - first.y)) * area;
-      bool alike = isOnPlane(bits, 0.5, offset, size, theirs[i]) && abs(massOf(theirs[i].y) - expected) < 0.2 * expected;
-      plane = plane && (alike || !contains(levelRect(1u), quad));
+      bool full = abs(massOf(theirs[i].y) - expected) < 0.2 * expected;
+      plane = plane && (!contains(levelRect(1u), quad) || (full && isOnPlane(bits, 0.5, offset, size, theirs[i])));
     }
   }
   return plane;

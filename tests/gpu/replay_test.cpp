@@ -262,22 +262,32 @@ TEST_F(Replay, DiffusionCountsBadIrradianceAsNone) {
   for (int k = 0; k < 3; ++k)  // a whole quad
     for (const int y : {30, 31})
       for (const int x : {40, 41}) spoil(x, y, k);
+  for (int k = 0; k < 3; ++k) {  // at the rect's border, in whole quads and in others
+    spoil(0, 13, k);
+    spoil(10 + k, 1, k);
+    spoil(62, 30 + k, k);
+    spoil(33, 46, k);
+  }
   ReplaySettings s;
   s.features = PELLUCID_FEATURE_DIFFUSION;
-  for (const uint32_t quality : {0u, 2u}) {
-    s.quality = quality;
-    const Image expected = replay(good, testMaterial(), s), out = replay(bad, testMaterial(), s);
-    for (size_t at = 0; at < out.data.size(); ++at)
-      ASSERT_NEAR(out.data[at], expected.data[at], 2e-3 * static_cast<double>(expected.data[at]) + 1e-6)
-          << at << ", quality " << quality;
-  }
+  for (const std::array<uint32_t, 4>& rect : {std::array<uint32_t, 4>{}, {1, 1, 62, 46}})
+    for (const uint32_t quality : {0u, 2u, 3u}) {
+      s.quality = quality;
+      s.renderRect = rect;
+      const Image expected = replay(good, testMaterial(), s), out = replay(bad, testMaterial(), s);
+      // What is bad is no plane, which quality 3 does not filter but sums.
+      const double near = quality == 3 ? 2e-2 : 2e-3;
+      for (int y = 1; y < 47; ++y)
+        for (int x = 1; x < 63; ++x)
+          for (int k = 0; k < 3; ++k)
+            ASSERT_NEAR(out.at(x, y)[k], expected.at(x, y)[k],
+                        near * static_cast<double>(expected.at(x, y)[k]) + 1e-6)
+                << x << ", " << y << ", quality " << quality;
+    }
 }
 
 TEST_F(Replay, PoisonNeverReachesTheOutput) {
   Capture c = busyCapture(64, 48);
-  ReplaySettings s;
-  s.renderRect = {10, 7, 37, 29};
-  const Image clean = replay(c, testMaterial(), s);
   const auto inside = [&](int x, int y) { return x >= 10 && x < 47 && y >= 7 && y < 36; };
   Capture poisoned = c;
   for (int y = 0; y < c.height; ++y)
@@ -286,17 +296,22 @@ TEST_F(Replay, PoisonNeverReachesTheOutput) {
       for (int k = 0; k < 3; ++k) poisoned.irradiance.at(x, y)[k] = poisoned.normal.at(x, y)[k] = kNan;
       poisoned.frontDepth.image.at(x, y)[0] = poisoned.backDepth.image.at(x, y)[0] = kNan;
     }
-  const Image out = replay(poisoned, testMaterial(), s);
-  for (int y = 0; y < c.height; ++y)
-    for (int x = 0; x < c.width; ++x) {
-      const bool owned = inside(x, y) && c.material[static_cast<size_t>(y * c.width + x)] != 0;
-      for (int k = 0; k < 3; ++k) {
-        if (owned)
-          EXPECT_EQ(out.at(x, y)[k], clean.at(x, y)[k]) << x << ", " << y;
-        else
-          EXPECT_TRUE(std::isnan(out.at(x, y)[k])) << "written at " << x << ", " << y;
+  for (const uint32_t quality : {2u, 3u}) {
+    ReplaySettings s;
+    s.renderRect = {10, 7, 37, 29};
+    s.quality = quality;
+    const Image clean = replay(c, testMaterial(), s), out = replay(poisoned, testMaterial(), s);
+    for (int y = 0; y < c.height; ++y)
+      for (int x = 0; x < c.width; ++x) {
+        const bool owned = inside(x, y) && c.material[static_cast<size_t>(y * c.width + x)] != 0;
+        for (int k = 0; k < 3; ++k) {
+          if (owned)
+            EXPECT_EQ(out.at(x, y)[k], clean.at(x, y)[k]) << x << ", " << y << ", quality " << quality;
+          else
+            EXPECT_TRUE(std::isnan(out.at(x, y)[k])) << "written at " << x << ", " << y;
+        }
       }
-    }
+  }
 }
 
 TEST_F(Replay, BadValuesAtMaterialPixelsStayFinite) {
@@ -317,6 +332,7 @@ TEST_F(Replay, BadValuesAtMaterialPixelsStayFinite) {
   ReplaySettings s;
   for (const auto source : {PELLUCID_THICKNESS_LIGHT, PELLUCID_THICKNESS_CAMERA}) {
     s.translucency.thicknessSource = source;
+    s.quality = source == PELLUCID_THICKNESS_LIGHT ? 2 : 3;
     const Image out = replay(c, testMaterial(), s);
     for (int y = 0; y < 32; ++y)
       for (int x = 0; x < 32; ++x)

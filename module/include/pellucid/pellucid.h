@@ -75,7 +75,8 @@ typedef struct PellucidMaterial {
   float gaussianVariance[3][PELLUCID_MAX_GAUSSIANS]; /* mm^2, > 0, of one axis: w/(2 pi v) e^{-r^2/2v} */
   float gaussianWeight[3][PELLUCID_MAX_GAUSSIANS];   /* each channel sums to 1 */
   float radius[3];            /* mm; 99.9 % of the diffused energy lies within */
-  float burleyDistance[3];    /* mm; d of Christensen & Burley 2015 eq. 3 that the Gaussians fit, or 0 */
+  float burleyDistance[3];    /* mm; d of Christensen & Burley 2015 eq. 3 that the Gaussians fit and the diffusion
+                                 takes in their place, or 0 */
 } PellucidMaterial;
 
 /* ---- Frame ----------------------------------------------------------------------------------- */
