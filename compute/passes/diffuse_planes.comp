@@ -47,7 +47,8 @@ vec2 within(int at, uint first, uint end) {
 void keepVertical(int place, uvec2 pixels[kRows + 2 * kRing], int row) {
   vec3 wideSum = vec3(0.0), narrowSum = vec3(0.0);
   [[unroll]] for (int y = -kRing; y <= kRing; ++y) {
-    vec3 color = unpackColor(pixels[row + kRing + y]);
+    // Planes have nothing that needs it, but may end at the rect beside what does.
+    vec3 color = sanitize(unpackColor(pixels[row + kRing + y]));
     wideSum += wideWeight(y) * color;
     if (abs(y) <= 1) narrowSum += narrowWeight(y) * color;
   }
@@ -148,12 +149,6 @@ void diffuseColumn(ivec2 top, int texel, int place, uvec2 own[4], uvec4 alphas) 
     imageStore(destinationImage, top + ivec2(0, i), vec4(asStored(result[i].rgb), result[i].a));
 }
 
-// Whether a group's filters reach the rect's border.
-bool bordersRect(ivec2 firstTexel) {
-  return !contains(inset(ivec4(frame.rect), 4 + kRing), 4 * firstTexel) ||
-         !contains(inset(ivec4(frame.rect), 4 + kRing), 4 * (firstTexel + kTexels) - 1);
-}
-
 void main() {
   int invocation = int(gl_LocalInvocationIndex);
   ivec2 firstTexel = (ivec2(frame.rect.xy) >> 2) + ivec2(bordersFirst()) * kTexels;
@@ -200,9 +195,6 @@ void main() {
 #endif
   barrier();
   if (anySurface == 0u) return; // of all invocations
-  // Planes have nothing that needs it, but may end at the rect beside what does.
-  if (bordersRect(firstTexel))
-    [[unroll]] for (int i = 0; i < kRows + 2 * kRing; ++i) pixels[i] = packHalves(sanitize(unpackColor(pixels[i])), 0u);
   [[unroll]] for (int i = 0; i < kRows; ++i) keepVertical((firstRow + i) * kColumns + column, pixels, i);
   barrier();
   int x = column - kRing;

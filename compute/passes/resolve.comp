@@ -7,6 +7,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define GROUP_SIDE PELLUCID_RESOLVE_GROUP
+#include "passes/group_order.glsl"
 #include "passes/resolved.glsl"
 
 layout(set = 0, binding = PELLUCID_BINDING_KERNELS) readonly buffer Kernels { KernelConstants kernels[]; };
@@ -435,7 +436,9 @@ void main() {
   int invocation = int(gl_LocalInvocationIndex);
   uint coarsest = pass.value.x;
   // An invocation does two texels of level 2 and, before them, one of levels 3 to 6. The first ones have level 7, too.
-  ivec2 k = (((levelRect(2u).xy + 1) >> ivec2(5, 4)) + ivec2(gl_WorkGroupID.xy)) * ivec2(2, 1);
+  // Where edges are summed, borders take longer.
+  ivec2 group = ivec2(kSumsEdges ? bordersFirst() : gl_WorkGroupID.xy);
+  ivec2 k = (((levelRect(2u).xy + 1) >> ivec2(5, 4)) + group) * ivec2(2, 1);
   ivec2 fine = 16 * k - 1 + ivec2(gl_LocalInvocationID.xy), nextFine = fine + ivec2(PELLUCID_RESOLVE_GROUP, 0);
   uint level = 3u + uint(invocation >= 153) + uint(invocation >= 213) + uint(invocation >= 237);
   Window window = windowOf(level, k), last = windowOf(7u, k);
