@@ -81,15 +81,12 @@ Parts partsOf(uvec3 bits) {
   return Parts(1.0 - e.narrow, e.narrow - e.wide, e.wide - e.coarser, e.coarser);
 }
 
-void store(ivec2 pixel, vec3 color, float alpha) {
-  if (tinted(pass.value.w != 0u)) color = sanitize(color * albedoAt(pixel));
-  imageStore(destinationImage, pixel, vec4(asStored(color), alpha));
-}
-
 // A pixel of a plane that ends at the rect: of each filter, what lies in it. `texel`: its own in the window; `place`: in
 // wide[].
 void diffuseAtBorder(ivec2 pixel, int texel, int place) {
-  if (!insideRect(pixel)) return;
+  uint material = insideRect(pixel) ? materialAt(pixel) : 0u;
+  if (material == 0u) return;
+  float depth = frontDistance(pixel);
   Parts parts = partsOf(shares[texel].xyz);
   Filtered f = filtered(place);
   vec4 source = texelFetch(sourceImage, pixel, 0);
@@ -110,13 +107,13 @@ void diffuseAtBorder(ivec2 pixel, int texel, int place) {
   vec3 own = sanitize(source.rgb);
   vec3 sum = parts.own * own + parts.narrow * f.narrow + parts.wide * f.wide + part * coarser;
   vec3 divisor = parts.own + parts.narrow * inRect.x + parts.wide * inRect.y + part * found;
+  vec3 color = own;
   // Parts of filters may be below 0, but little.
-  vec3 color = mix(own, max(sum, vec3(0.0)) / max(divisor, vec3(1.0e-6)), greaterThan(divisor, vec3(0.1)));
+  if (depth > 0.0) color = mix(own, max(sum, vec3(0.0)) / max(divisor, vec3(1.0e-6)), greaterThan(divisor, vec3(0.1)));
 #ifdef GATHER
-  if (someLight != 0u)
-    color = withGathered(color, pixel, PELLUCID_DIFFUSE_CELL, frontDistance(pixel), resolved[texel].y >> 24);
+  if (someLight != 0u && depth > 0.0) color = withGathered(color, pixel, PELLUCID_DIFFUSE_CELL, depth, material);
 #endif
-  store(pixel, color, source.a);
+  writeResult(pixel, color, source.a, pass.value.w != 0u);
 }
 
 // Four pixels below each other of texel `texel` of the window; `top`: the first; `place`: of it in wide[].

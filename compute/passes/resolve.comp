@@ -321,7 +321,8 @@ bool isOnPlane(uvec4 texel, float side, vec2 offset, vec2 size, uvec4 theirs) {
          off * off * inverseSpread(slope, size) < kPlaneOffset * side * side;
 }
 
-// Whether all pixels of the rect around a texel of level 2 lie on its plane, by level 1, whose areas tell of holes.
+// Whether all pixels of the rect around a texel of level 2 lie on its plane, by level 1. Where the rect cuts quads their areas
+// tell of holes.
 bool isPlaneInRect(ivec2 texel, uvec4 bits, vec2 size) {
   ivec4 rect = ivec4(frame.rect);
   float area = areaOf(2u, texel, unpackHalf2x16(bits.w));
@@ -338,7 +339,8 @@ bool isPlaneInRect(ivec2 texel, uvec4 bits, vec2 size) {
       ivec2 first = max(2 * quad, rect.xy), end = min(2 * quad + 2, rect.zw);
       vec2 offset = 0.125 * vec2(first + end) - (vec2(texel) + 0.5);
       float expected = 0.25 * float((end.x - first.x) * (end.y - first.y)) * area;
-      bool full = abs(massOf(theirs[i].y) - expected) < 0.2 * expected;
+      bool cut = end - first != ivec2(2);
+      bool full = cut ? abs(massOf(theirs[i].y) - expected) < 0.2 * expected : isPlane(theirs[i]);
       plane = plane && (!contains(levelRect(1u), quad) || (full && isOnPlane(bits, 0.5, offset, size, theirs[i])));
     }
   }

@@ -239,17 +239,24 @@ TEST_P(Diffusion, PixelsWithoutADepthKeepTheirIrradiance) {
     for (int y = 0; y < 32; ++y)
       for (int x = 0; x < 32; ++x) light(c, x, y, 1);
     if (alone) std::fill(c.material.begin(), c.material.end(), 0u);
-    for (const auto& [x, y] : {std::pair(5, 6), std::pair(20, 17)}) {
+    // The last three at the rect's border, in quads that it cuts and in others.
+    const std::pair<int, int> without[] = {{5, 6}, {20, 17}, {1, 11}, {16, 2}, {30, 30}};
+    for (const auto& [x, y] : without) {
       c.material[static_cast<size_t>(32 * y + x)] = 1;
       c.frontDepth.image.at(x, y)[0] = 0;
       light(c, x, y, 7);
     }
-    const Image out = replay(c, gaussians({1, 3}, pixelOf(c)), diffusionOnly());
-    EXPECT_EQ(out.at(5, 6)[0], 7);
-    EXPECT_EQ(out.at(20, 17)[0], 7);
-    if (alone) continue;
-    for (const auto& [x, y] : {std::pair(4, 6), std::pair(21, 18), std::pair(12, 12)})
-      EXPECT_NEAR(out.at(x, y)[0], 1, 1e-3) << x << ", " << y;
+    for (const std::array<uint32_t, 4>& rect :
+         {std::array<uint32_t, 4>{}, {1, 1, 30, 30}, {0, 2, 31, 29}, {1, 2, 30, 29}}) {
+      ReplaySettings s = diffusionOnly();
+      s.renderRect = rect;
+      const Image out = replay(c, gaussians({1, 3}, pixelOf(c)), s);
+      for (const auto& [x, y] : without) EXPECT_EQ(out.at(x, y)[0], 7) << x << ", " << y;
+      if (alone) continue;
+      for (const auto& [x, y] : {std::pair(4, 6), std::pair(21, 18), std::pair(12, 12), std::pair(1, 12),
+                                 std::pair(2, 11), std::pair(15, 2), std::pair(16, 3), std::pair(30, 29)})
+        EXPECT_NEAR(out.at(x, y)[0], 1, 1e-3) << x << ", " << y;
+    }
   }
 }
 
