@@ -272,17 +272,13 @@ void diffusePlanes(ivec2 firstTexel, vec4 sources[kRows + 2 * kRing], bool shape
 
   int x = column - kRing;
   if (x < 0 || x >= 4 * kTexels.x) return;
-  vec3 splineX = spline(0.25 * (float(x & 3) - 1.5));
+  vec3 splineX = splineAt(x);
   [[unroll]] for (int block = 0; block < kRows / 4; ++block) {
     int texelRow = firstRow / 4 + block;
     int index = texelRow * kWindow.x + x / 4;
     if (!isPlane(resolved[index + kWindow.x + 1])) continue;
     vec3 coarser[3];
-    [[unroll]] for (int y = 0; y < 3; ++y) {
-      int row = index + y * kWindow.x;
-      coarser[y] = splineX.x * unpackColor(resolved[row].xy) + splineX.y * unpackColor(resolved[row + 1].xy) +
-                   splineX.z * unpackColor(resolved[row + 2].xy);
-    }
+    coarserRows(index + kWindow.x + 1, splineX, coarser);
     uvec3 bits = shares[index + kWindow.x + 1].xyz;
     PixelShares share = unpackShares(bits);
 #ifndef COARSE
@@ -290,8 +286,7 @@ void diffusePlanes(ivec2 firstTexel, vec4 sources[kRows + 2 * kRing], bool shape
 #endif
     vec4 result[4];
     [[unroll]] for (int i = 0; i < 4; ++i) {
-      vec3 splineY = spline(0.25 * (float(i) - 1.5));
-      vec3 smoothed = splineY.x * coarser[0] + splineY.y * coarser[1] + splineY.z * coarser[2];
+      vec3 smoothed = coarserAt(coarser, i);
       uvec2 packed = own[4 * block + i];
       vec2 blue = unpackHalf2x16(packed.y);
       vec3 color = vec3(unpackHalf2x16(packed.x), blue.x);
@@ -301,16 +296,7 @@ void diffusePlanes(ivec2 firstTexel, vec4 sources[kRows + 2 * kRing], bool shape
       color = mix(color, smoothed, share.coarser);
       result[i] = vec4(color, blue.y);
     }
-    // One branch for all pixels, as branches cost more than what is in them.
-    ivec2 top = 4 * firstTexel + ivec2(x, 4 * texelRow);
-#ifdef GATHER
-    if (someLight != 0u) addLightOfPlane(top, result);
-#endif
-    if (tinted(pass.value.w != 0u))
-      [[unroll]] for (int i = 0; i < 4; ++i)
-        result[i].rgb = sanitize(result[i].rgb * albedoAt(top + ivec2(0, i)));
-    [[unroll]] for (int i = 0; i < 4; ++i)
-      imageStore(destinationImage, top + ivec2(0, i), vec4(asStored(result[i].rgb), result[i].a));
+    storeColumn(4 * firstTexel + ivec2(x, 4 * texelRow), result);
   }
 }
 

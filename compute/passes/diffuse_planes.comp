@@ -92,7 +92,7 @@ void diffuseAtBorder(ivec2 pixel, int texel, int place) {
   vec4 source = texelFetch(sourceImage, pixel, 0);
   vec2 inRect = within(pixel.x, frame.rect.x, frame.rect.z) * within(pixel.y, frame.rect.y, frame.rect.w);
   vec3 coarser = vec3(0.0), found = vec3(0.0);
-  vec3 splineX = spline(0.25 * (float(pixel.x & 3) - 1.5)), splineY = spline(0.25 * (float(pixel.y & 3) - 1.5));
+  vec3 splineX = splineAt(pixel.x), splineY = splineAt(pixel.y);
   for (int y = 0; y < 3; ++y)
     for (int x = 0; x < 3; ++x) {
       int index = texel + (y - 1) * kWindow.x + x - 1;
@@ -119,31 +119,17 @@ void diffuseAtBorder(ivec2 pixel, int texel, int place) {
 // Four pixels below each other of texel `texel` of the window; `top`: the first; `place`: of it in wide[].
 void diffuseColumn(ivec2 top, int texel, int place, uvec2 own[4], uvec4 alphas) {
   Parts parts = partsOf(shares[texel].xyz);
-  vec3 splineX = spline(0.25 * (float(top.x & 3) - 1.5));
   vec3 coarser[3];
-  [[unroll]] for (int y = 0; y < 3; ++y) {
-    int row = texel + (y - 1) * kWindow.x;
-    coarser[y] = splineX.x * unpackColor(resolved[row - 1].xy) + splineX.y * unpackColor(resolved[row].xy) +
-                 splineX.z * unpackColor(resolved[row + 1].xy);
-  }
+  coarserRows(texel, splineAt(top.x), coarser);
   vec4 result[4];
   [[unroll]] for (int i = 0; i < 4; ++i) {
-    vec3 splineY = spline(0.25 * (float(i) - 1.5));
-    vec3 smoothed = splineY.x * coarser[0] + splineY.y * coarser[1] + splineY.z * coarser[2];
+    vec3 smoothed = coarserAt(coarser, i);
     Filtered f = filtered(place + i * kColumns);
     vec3 color = parts.own * unpackColor(own[i]) + parts.narrow * f.narrow + parts.wide * f.wide;
     color += parts.coarser * smoothed;
     result[i] = vec4(max(color, vec3(0.0)), uintBitsToFloat(alphas[i]));
   }
-#ifdef GATHER
-  if (someLight != 0u) addLightOfPlane(top, result);
-#endif
-  // One branch for all pixels, as branches cost more than what is in them.
-  if (tinted(pass.value.w != 0u))
-    [[unroll]] for (int i = 0; i < 4; ++i)
-      result[i].rgb = sanitize(result[i].rgb * albedoAt(top + ivec2(0, i)));
-  [[unroll]] for (int i = 0; i < 4; ++i)
-    imageStore(destinationImage, top + ivec2(0, i), vec4(asStored(result[i].rgb), result[i].a));
+  storeColumn(top, result);
 }
 
 void main() {

@@ -1,4 +1,5 @@
-// Pixels of planes, of which an invocation does four below each other.
+// Pixels of planes, of which an invocation does four below each other. Of the including pass: the texels of level 2 in
+// resolved[], rows of kWindow.x.
 #ifndef PELLUCID_PLANES_GLSL
 #define PELLUCID_PLANES_GLSL
 
@@ -27,5 +28,36 @@ void addLightOfPlane(ivec2 pixel, inout vec4 colors[4]) {
     colors[i].rgb = withLight(colors[i].rgb, added + float(i) * addedStep, displaced + float(i) * displacedStep);
 }
 #endif
+
+// The spline at a pixel of a texel of level 2, in one direction.
+vec3 splineAt(int pixel) { return spline(0.25 * (float(pixel & 3) - 1.5)); }
+
+// Level 2 at a pixel's column, `splineX` splineAt it, in the rows of its texel `texel` of the window and of those beside it.
+void coarserRows(int texel, vec3 splineX, out vec3 rows[3]) {
+  [[unroll]] for (int y = 0; y < 3; ++y) {
+    int row = texel + (y - 1) * kWindow.x;
+    rows[y] = splineX.x * unpackColor(resolved[row - 1].xy) + splineX.y * unpackColor(resolved[row].xy) +
+              splineX.z * unpackColor(resolved[row + 1].xy);
+  }
+}
+
+// The same at the pixel's row.
+vec3 coarserAt(vec3 rows[3], int y) {
+  vec3 splineY = splineAt(y);
+  return splineY.x * rows[0] + splineY.y * rows[1] + splineY.z * rows[2];
+}
+
+// With what light was gathered; `top`: the first of the pixels.
+void storeColumn(ivec2 top, vec4 result[4]) {
+#ifdef GATHER
+  if (someLight != 0u) addLightOfPlane(top, result);
+#endif
+  // One branch for all pixels, as branches cost more than what is in them.
+  if (tinted(pass.value.w != 0u))
+    [[unroll]] for (int i = 0; i < 4; ++i)
+      result[i].rgb = sanitize(result[i].rgb * albedoAt(top + ivec2(0, i)));
+  [[unroll]] for (int i = 0; i < 4; ++i)
+    imageStore(destinationImage, top + ivec2(0, i), vec4(asStored(result[i].rgb), result[i].a));
+}
 
 #endif

@@ -269,14 +269,11 @@ extern "C" PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const
     put(mapped, d.indirectOffset,
         glm::uvec4(starts ? d.groups[0] : 0, d.groups[1], d.groups[2], d.groups[0]));
   }
-  const FineFilters filters = sumsEdges(f, plan->quality) ? FineFilters::TwoOfPlanes
-                              : plan->quality > 0         ? FineFilters::One
-                                                          : FineFilters::None;
   for (uint32_t i = 0; i < f.materialCount; ++i) {
     put(mapped, layout.materials.offset + i * sizeof(shared::MaterialConstants),
         materialConstants(f.materials[i], gathers(f)));
     put(mapped, layout.kernels.offset + i * sizeof(shared::KernelConstants),
-        kernelConstants(f.materials[i], filters));
+        kernelConstants(f.materials[i], fineFilters(f, plan->quality)));
   }
   return PELLUCID_OK;
 }

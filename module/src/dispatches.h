@@ -430,17 +430,19 @@ struct Builder {
 
   // `addsPoints`: what points of the gather share is added.
   bool diffuse(uint32_t source, uint32_t destination, bool addsPoints) {
-    const bool coarse = plan.quality == 0;
-    const uint32_t with = coarse        ? PELLUCID_PIPELINE_DIFFUSE_COARSE_GATHER_16F
-                          : sumsEdges() ? PELLUCID_PIPELINE_DIFFUSE_PLANES_GATHER_16F
-                                        : PELLUCID_PIPELINE_DIFFUSE_GATHER_16F;
-    const uint32_t without = coarse        ? PELLUCID_PIPELINE_DIFFUSE_COARSE_16F
-                             : sumsEdges() ? PELLUCID_PIPELINE_DIFFUSE_PLANES_16F
-                                           : PELLUCID_PIPELINE_DIFFUSE_16F;
-    const uint32_t half = addsPoints ? with : without;
-    const uint32_t columns = coarse        ? PELLUCID_DIFFUSE_COARSE_TEXELS_X
-                             : sumsEdges() ? PELLUCID_DIFFUSE_PLANES_TEXELS_X
-                                           : PELLUCID_DIFFUSE_TEXELS_X;
+    // In the order of FineFilters.
+    struct Variant {
+      uint32_t without, with;  // points
+      uint32_t columns;        // texels of a group
+    };
+    constexpr Variant kVariants[] = {
+        {PELLUCID_PIPELINE_DIFFUSE_COARSE_16F, PELLUCID_PIPELINE_DIFFUSE_COARSE_GATHER_16F,
+         PELLUCID_DIFFUSE_COARSE_TEXELS_X},
+        {PELLUCID_PIPELINE_DIFFUSE_16F, PELLUCID_PIPELINE_DIFFUSE_GATHER_16F, PELLUCID_DIFFUSE_TEXELS_X},
+        {PELLUCID_PIPELINE_DIFFUSE_PLANES_16F, PELLUCID_PIPELINE_DIFFUSE_PLANES_GATHER_16F,
+         PELLUCID_DIFFUSE_PLANES_TEXELS_X}};
+    const Variant& variant = kVariants[static_cast<size_t>(fineFilters(frame, plan.quality))];
+    const uint32_t half = addsPoints ? variant.with : variant.without;
     // With the gather both are in the plan, and one of them runs.
     PellucidDispatch* d =
         dispatch(skipsLight && !addsPoints ? "diffuse, none gathered" : "diffuse", half + (wide() ? 1 : 0));
@@ -450,9 +452,10 @@ struct Builder {
     const auto across = [](int32_t texels, uint32_t side) {
       return (static_cast<uint32_t>(texels) - 2 + side - 1) / side;
     };
-    d->groups[0] = across(place.rect.width, columns);
+    d->groups[0] = across(place.rect.width, variant.columns);
     d->groups[1] = across(place.rect.height, PELLUCID_DIFFUSE_TEXELS_Y);
-    // Texels to each side of an edge's that its pixels look at; pixels of a column of a texel at the rect's border.
+    // Texels to each side of an edge's that its pixels look at; pixels of a column of a texel at the rect's
+    // border.
     d->pushConstants[1] = sumsEdges() ? 4 : 1;
     d->pushConstants[3] = destination == PELLUCID_RESOURCE_OUTPUT;
     common(d, source, destination);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "frame.h"
+#include "pyramid_energy.h"
 
 namespace pellucid {
 
@@ -27,6 +28,11 @@ double deviationWithin(uint32_t level);
 // Whether a frame at this quality sums edges by their distances in space, in a dispatch of its own.
 inline bool sumsEdges(const PellucidFrame& frame, uint32_t quality) {
   return quality == 3 && given(frame.normal);
+}
+
+inline FineFilters fineFilters(const PellucidFrame& frame, uint32_t quality) {
+  if (sumsEdges(frame, quality)) return FineFilters::TwoOfPlanes;
+  return quality > 0 ? FineFilters::One : FineFilters::None;
 }
 
 // The least quality whose measured error at radii up to `radius` pixels (0: all) is below `error`. False, and
