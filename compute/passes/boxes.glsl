@@ -39,7 +39,7 @@ Box boxOfEdge(ivec2 first) {
       uvec4 bits = boxTexel(first + inBox(i + j));
       float behind = uintBitsToFloat(bits.z) - nearest;
       bool counts = hasSurface(bits) && materialBits(bits) == material;
-      float w = counts ? reducedWeight(behind, 0.0, spread2) : 0.0, m = w * massOf(bits.y);
+      float w = counts ? sameSurface(behind, 0.0, spread2, kReduceFalloff) : 0.0, m = w * massOf(bits.y);
       color += m * unpackColor(bits.xy);
       mass += m;
       off += counts ? w * behind : 0.0;

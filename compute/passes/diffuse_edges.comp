@@ -1,6 +1,5 @@
-// Pixels of edges by the profile itself over distances in space: pixels around them one by one, others as texels of the
-// pyramid, coarser with their distance (Barnes and Hut 1986, on a grid). A group loads what its pixels need of one level
-// after the other.
+// Pixels of edges by the profile itself over distances in space: pixels around them one by one, others as clusters, coarser
+// with their distance (Barnes and Hut 1986, on a grid). A group loads what its pixels need of one level after the other.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -9,6 +8,7 @@
 #define GROUP_SIDE PELLUCID_EDGES_GROUP
 #include "passes/normal_image.glsl"
 #include "passes/resolved.glsl"
+#include "passes/clusters.glsl"
 
 #ifdef GATHER
 #include "passes/shared_points.glsl"
@@ -23,22 +23,28 @@ const float kLeastCosine = 0.05;
 // Pixels of a tile, its texels of level 2, and pixels with all around them that are summed one by one: the largest window.
 const int kPixels = PELLUCID_EDGES_GROUP, kTexels = kPixels / 4, kSide = kPixels + 4 * kAround;
 const int kInvocations = kPixels * kPixels;
+// Of clusters the largest window, of level 1, and what lies in a window of that side.
+const int kClusterSide = 2 * (kTexels + 2 * kAround), kClusters = kClusterSide * kClusterSide;
 
-// Of a level, what stands for the surface in its texels: center, mm, and area, mm^2, of pixels with an axis; color and
-// material. All that a group holds decides how many run at a time.
-shared vec4 places[kSide * kSide];
+// Pixels, then clusters of a level: center, mm, and area, mm^2, of pixels with an axis; color and material. After the places of
+// clusters their moments: those of red, green and blue over the root of the area, three halves each. The last of them is in
+// lasts[], which has the slope of pixels. All that a group holds decides how many run at a time.
+shared uvec4 places[kSide * kSide];
 shared uvec2 colors[kSide * kSide];
+shared uint lasts[kSide * kSide];
 shared uint edges[PELLUCID_EDGES_TILES]; // of tiles, a bit for each texel
 shared uint coarsest;
 
 // Window of a level around a tile.
 struct Window {
-  ivec2 first, size;
+  ivec2 first;
+  int rows;
 };
 
 Window windowOf(uint level, ivec2 firstPixel) {
   ivec2 first = 2 * ((firstPixel >> int(level + 1u)) - kAround);
-  return Window(first, 2 * (((firstPixel + kPixels - 1) >> int(level + 1u)) + kAround + 1) - first);
+  int end = 2 * (((firstPixel.y + kPixels - 1) >> int(level + 1u)) + kAround + 1);
+  return Window(first, end - first.y);
 }
 
 // A point of the view ray, mm; z: planar distance.
@@ -75,23 +81,29 @@ struct Kernel {
 
 const int kLastEntry = PELLUCID_DISTANCE_ENTRIES - 1;
 
-// Of the profile's curvature over an area, how much counts. That of texels, whose light comes from around them, too: with
-// all of it checkers err less, but smooth light more.
-const float kPixelCurvature = 1.0, kTexelCurvature = 0.5;
-
 // Of an area over the squared distance. Nearer than that the second order says too much.
 const float kMostRelative = 0.8;
 
-// The profile's mean over a square of that area, mm^2, times the area. `squared`: the squared distance > 0, mm^2, at which 1/r
-// is its mean there. With R = g / r, that makes up for 1/r and, to second order, for the slope of g; its curvature adds
-// area / (24 r^2) times r^2 laplace(R) - R + g' = r g''.
-vec3 profileAt(Kernel k, float squared, float area, float curvature) {
-  // The nearest entry is off by 2 %, or more where hardly anything is left, but by turns above and below: sums of hundreds
-  // err by 1e-4 of themselves.
+// The table's nearest entry is off by 2 %, or more where hardly anything is left, but by turns above and below: sums of
+// hundreds err by 1e-4 of themselves.
+uvec4 entryAt(Kernel k, float squared) {
   int entry = (floatBitsToInt(squared) - k.first + (1 << (PELLUCID_DISTANCE_SHIFT - 1))) >> PELLUCID_DISTANCE_SHIFT;
-  uvec3 bits = kernels[k.m].distance[clamp(entry, 0, kLastEntry)].xyz;
-  float curved = min(area, kMostRelative * squared) * curvature * (1.0 / 24.0);
-  return area * (uintBitsToFloat(bits) + curved * uintBitsToFloat(bits << 16));
+  return kernels[k.m].distance[clamp(entry, 0, kLastEntry)];
+}
+
+// The profile's mean over a square of that area, mm^2, times the area. `squared`: the squared distance > 0, mm^2, at which 1/r
+// is its mean there, `entry`: of the table. With R = g / r, that makes up for 1/r and, to second order, for the slope of g; its
+// curvature adds area / (24 r^2) times r^2 laplace(R) - R + g' = r g''.
+vec3 profileOf(uvec4 entry, float squared, float area) {
+  float curved = min(area, kMostRelative * squared) * (1.0 / 24.0);
+  return area * (uintBitsToFloat(entry.xyz) + curved * uintBitsToFloat(entry.xyz << 16));
+}
+
+vec3 profileAt(Kernel k, float squared, float area) { return profileOf(entryAt(k, squared), squared, area); }
+
+// -d ln R / d ln r^2.
+vec3 fallOf(uvec4 entry) {
+  return vec3(entry.w & 1023u, (entry.w >> 10) & 1023u, entry.w >> 20) * (float(PELLUCID_MOST_FALL) / 1023.0);
 }
 
 // Part of the energy within a squared distance. Before the first entry it is like the area.
@@ -137,6 +149,11 @@ float withAxis(float area, vec3 axis) {
   return uintBitsToFloat((floatBitsToUint(area) & ~kAxisBits) | q.x | q.y << 7);
 }
 
+// With the axis of another.
+float withAxisOf(float area, vec4 place) {
+  return uintBitsToFloat((floatBitsToUint(area) & ~kAxisBits) | (floatBitsToUint(place.w) & kAxisBits));
+}
+
 float placeArea(vec4 place) { return uintBitsToFloat(floatBitsToUint(place.w) & ~kAxisBits); }
 
 vec3 placeAxis(vec4 place) {
@@ -146,15 +163,15 @@ vec3 placeAxis(vec4 place) {
   return normalize(vec3(p, 1.0 - abs(p.x) - abs(p.y))); // of a length of 0.57 at least
 }
 
-// In how many segments at most a pixel's surface is taken.
-const float kMostParts = 4.0;
+// From how many times as long as wide on a pixel's surface is taken in segments, and in how many at most.
+const float kLong = 1.5, kMostParts = 4.0;
 
-// The profile's mean over a pixel's surface times its area, `facing`: that of one facing the camera.
+// The profile's mean over a pixel's surface, or a quarter of it, times its area, `facing`: that of one facing the camera.
 vec3 ofPixel(Kernel k, vec4 place, vec3 offset, float facing) {
   float squared = dot(offset, offset), area = placeArea(place);
   // From three pixels and its length on it does not matter that it is longer than wide.
   bool far = squared > 9.0 * facing + area * area / facing;
-  if (far || area < 1.5 * facing) return profileAt(k, meanSquare(squared, area), area, kPixelCurvature);
+  if (far || area < kLong * facing) return profileAt(k, meanSquare(squared, area), area);
   vec3 axis = placeAxis(place);
   float width = sqrt(facing), halfLength = 0.5 * area / width;
   // As long as wide, each.
@@ -163,7 +180,19 @@ vec3 ofPixel(Kernel k, vec4 place, vec3 offset, float facing) {
   for (float part = 0.5; part < parts; part += 1.0) {
     float at = halfLength * (2.0 * part / parts - 1.0);
     vec4 segment = vec4(axis, halfLength / parts);
-    weight += profileAt(k, meanSquare(offset + at * axis, segment, facing), area / parts, kPixelCurvature);
+    weight += profileAt(k, meanSquare(offset + at * axis, segment, facing), area / parts);
+  }
+  return weight;
+}
+
+// The same of one near the pixel, where the profile falls too steeply for that: of its quarters. `x`, `y`: the sides of its
+// surface.
+vec3 ofNeighbor(Kernel k, vec4 place, vec3 offset, float facing, vec3 x, vec3 y) {
+  vec4 quarter = vec4(place.xyz, withAxisOf(0.25 * placeArea(place), place));
+  vec3 weight = vec3(0.0);
+  for (int i = 0; i < 4; ++i) {
+    vec2 to = 0.5 * vec2(i & 1, i >> 1) - 0.25;
+    weight += ofPixel(k, quarter, offset + to.x * x + to.y * y, 0.25 * facing);
   }
   return weight;
 }
@@ -177,11 +206,13 @@ void add(inout Sums sums, uvec2 color, vec3 weight) {
   sums.weight += weight;
 }
 
+vec4 placeAt(int i) { return uintBitsToFloat(places[i]); }
+
 int ownPlace(ivec2 local) { return (local.y + 2 * kAround) * kSide + local.x + 2 * kAround; }
 
 void loadPixels(ivec2 firstPixel) {
   Window window = windowOf(0u, firstPixel);
-  for (int i = int(gl_LocalInvocationIndex); i < kSide * window.size.y; i += kInvocations) {
+  for (int i = int(gl_LocalInvocationIndex); i < kSide * window.rows; i += kInvocations) {
     ivec2 pixel = window.first + ivec2(i % kSide, i / kSide), at = withinRect(pixel);
     float depth = frontDistance(at), facing = pixelArea(depth);
     uint material = at == pixel && depth > 0.0 ? materialAt(at) : 0u;
@@ -189,61 +220,127 @@ void loadPixels(ivec2 firstPixel) {
     float steep = length(tilted.xy), rise = steep * sqrt(facing) / frame.camera.range.w;
     vec2 toward = steep > 0.0 ? tilted.xy / steep : vec2(1.0, 0.0);
     vec3 center = pointAt(vec2(at), depth), axis = pointAt(vec2(at) + toward, depth + rise) - center;
-    places[i] = vec4(center, withAxis(facing * tilted.z, axis));
+    places[i] = floatBitsToUint(vec4(center, withAxis(facing * tilted.z, axis)));
+    lasts[i] = packHalf2x16(tilted.xy);
     colors[i] = packColor(sanitize(texelFetch(sourceImage, at, 0).rgb), material);
   }
 }
 
-void loadTexels(uint level, ivec2 firstPixel) {
+// The slope of the pyramid's texel at a cluster, if that is its surface.
+vec2 slopeAt(uint level, ivec2 texel, uint material) {
+  ivec2 place = level > 2u ? inAtlas(level, texel) : resolvedPlace(level == 2u ? texel : texel >> 1);
+  uvec4 bits = texelFetch(pyramidImage, place, 0);
+  return materialBits(bits) == material && hasSurface(bits) ? unpackHalf2x16(bits.w) : vec2(0.0);
+}
+
+Cluster clusterAt(uint level, ivec2 texel) {
+  ivec2 place = level >= uint(PELLUCID_FIRST_BESIDE) ? clusterPlace(level, texel) : inAtlas(level, texel);
+  uvec4 bits = texelFetch(pyramidImage, place, 0);
+  // Of quads those that are no planes facing the camera.
+  if (!isPlane(bits)) return unpackCluster(bits);
+  Cluster c = clusterOfTexel(bits);
+  vec3 light[4];
+  [[unroll]] for (int i = 0; i < 4; ++i)
+    light[i] = sanitize(texelFetch(sourceImage, 2 * texel + ivec2(i & 1, i >> 1), 0).rgb);
+  vec3 inverse = 0.25 / max(light[0] + light[1] + light[2] + light[3], vec3(1.0e-20));
+  c.momentX = (light[1] + light[3] - light[0] - light[2]) * inverse;
+  c.momentY = (light[2] + light[3] - light[0] - light[1]) * inverse;
+  return c;
+}
+
+void loadClusters(uint level, ivec2 firstPixel) {
   Window window = windowOf(level, firstPixel);
-  ivec4 rect = levelRect(level);
-  for (int i = int(gl_LocalInvocationIndex); i < kSide * window.size.y; i += kInvocations) {
-    ivec2 at = ivec2(i % kSide, i / kSide), texel = window.first + at;
-    if (at.x >= window.size.x) continue;
-    uvec4 bits = contains(rect, texel) ? texelFetch(pyramidImage, inAtlas(level, texel), 0) : uvec4(0u);
-    Texel t = unpackTexel(bits);
-    places[i] = vec4(pointAt(pixelOf(level, texel), t.depth), t.mass * pixelArea(t.depth) * exp2(2.0 * float(level)));
-    colors[i] = packColor(t.color, t.mass > 0.0 ? t.material : 0u);
+  ivec4 rect = clusterRect(level);
+  float side = exp2(float(level));
+  for (int i = int(gl_LocalInvocationIndex); i < kClusterSide * window.rows; i += kInvocations) {
+    ivec2 texel = window.first + ivec2(i % kClusterSide, i / kClusterSide);
+    Cluster c = kNoCluster;
+    if (contains(rect, texel)) c = clusterAt(level, texel);
+    // Depths are positive where something is.
+    vec2 rise = c.mass > 0.0 ? slopeAt(level, texel, c.material) * texelSize(c.depth, level) : vec2(0.0);
+    vec2 pixel = pixelOf(level, texel) + side * c.center;
+    vec3 center = pointAt(pixel, c.depth);
+    float area = c.mass * pixelArea(c.depth) * side * side;
+    float scale = inversesqrt(max(area, 1.0e-30));
+    vec3 x = scale * (pointAt(pixel + vec2(side, 0.0), c.depth + rise.x) - center);
+    vec3 y = scale * (pointAt(pixel + vec2(0.0, side), c.depth + rise.y) - center);
+    vec3 r = c.momentX.r * x + c.momentY.r * y, g = c.momentX.g * x + c.momentY.g * y, b = c.momentX.b * x + c.momentY.b * y;
+    places[i] = floatBitsToUint(vec4(center, area));
+    colors[i] = packColor(c.color, c.mass > 0.0 ? c.material : 0u);
+    places[kClusters + i] = uvec4(packHalf2x16(r.xy), packHalf2x16(vec2(r.z, g.x)), packHalf2x16(g.yz), packHalf2x16(b.xy));
+    lasts[i] = packHalf2x16(vec2(b.z, 0.0));
   }
 }
 
-// `local`: the pixel, from the tile's first; `facing`: area of one that faces the camera.
-void addPixels(inout Sums sums, ivec2 local, Kernel k, vec3 center, float facing) {
-  int own = ownPlace(local), first = (local.y & ~1) * kSide + (local.x & ~1);
+// How far to each side pixels are summed by quarters, at that distance long ones alone, and how many these are in a row.
+const int kNear = 2, kNearRow = 2 * kNear + 1;
+
+// Pixels around the one `local` from the tile's first, `pixel` of the image; `facing`: area of one that faces the camera.
+void addPixels(inout Sums sums, ivec2 local, ivec2 pixel, Kernel k, vec3 center, float facing) {
+  int first = (local.y & ~1) * kSide + (local.x & ~1);
+  ivec2 own = (local & 1) + 2 * kAround;
   for (int y = 0; y < kWindow; ++y)
     [[unroll]] for (int x = 0; x < kWindow; ++x) {
       int i = first + y * kSide + x;
-      vec4 place = places[i];
+      vec4 place = placeAt(i);
       uvec2 color = colors[i];
-      bool counts = color.y >> 16 == k.m + 1u && i != own;
+      bool counts = color.y >> 16 == k.m + 1u && any(greaterThan(abs(ivec2(x, y) - own), ivec2(kNear)));
       vec3 weight = ofPixel(k, place, place.xyz - center, facing);
       add(sums, color, counts ? weight : vec3(0.0));
     }
+  for (int j = 0; j < kNearRow * kNearRow; ++j) {
+    ivec2 to = ivec2(j % kNearRow, j / kNearRow) - kNear;
+    int i = ownPlace(local + to);
+    vec4 place = placeAt(i);
+    uvec2 color = colors[i];
+    if (to == ivec2(0) || color.y >> 16 != k.m + 1u) continue;
+    vec3 offset = place.xyz - center;
+    if (any(equal(abs(to), ivec2(kNear))) && placeArea(place) < kLong * facing) {
+      add(sums, color, ofPixel(k, place, offset, facing));
+      continue;
+    }
+    float depth = place.z / frame.camera.range.w;
+    vec2 at = vec2(pixel + to), rise = unpackHalf2x16(lasts[i]) * texelSize(depth, 0u);
+    vec3 x = pointAt(at + vec2(1.0, 0.0), depth + rise.x) - place.xyz;
+    vec3 y = pointAt(at + vec2(0.0, 1.0), depth + rise.y) - place.xyz;
+    add(sums, color, ofNeighbor(k, place, offset, facing, x, y));
+  }
 }
 
-void addTexel(inout Sums sums, int i, Kernel k, vec3 center) {
-  vec4 place = places[i];
+void addCluster(inout Sums sums, int i, Kernel k, vec3 center) {
+  vec4 place = placeAt(i);
   uvec2 color = colors[i];
   vec3 offset = place.xyz - center;
   float area = color.y >> 16 == k.m + 1u ? place.w : 0.0;
-  add(sums, color, profileAt(k, meanSquare(dot(offset, offset), area), area, kTexelCurvature));
+  // The floor keeps what follows finite.
+  float squared = max(meanSquare(dot(offset, offset), area), 1.0e-6 * area);
+  uvec4 entry = entryAt(k, squared), bits = places[kClusters + i];
+  vec3 weight = profileOf(entry, squared, area);
+  vec2 both = unpackHalf2x16(bits.y);
+  vec3 red = vec3(unpackHalf2x16(bits.x), both.x), green = vec3(both.y, unpackHalf2x16(bits.z));
+  vec3 blue = vec3(unpackHalf2x16(bits.w), unpackHalf2x16(lasts[i]).x);
+  // To first order each channel's light is where its moments say; the profile changes by 2 R' / R of r^2 times how much nearer
+  // that is.
+  vec3 nearer = vec3(dot(offset, red), dot(offset, green), dot(offset, blue)) * (-2.0 * sqrt(area) / squared);
+  sums.color += weight * max(1.0 + fallOf(entry) * nearer, vec3(0.0)) * unpackColor(color);
+  sums.weight += weight;
 }
 
-void addTexels(inout Sums sums, uint level, ivec2 firstPixel, ivec2 local, Kernel k, vec3 center) {
+void addClusters(inout Sums sums, uint level, ivec2 firstPixel, ivec2 local, Kernel k, vec3 center) {
   ivec2 origin = windowOf(level, firstPixel).first, texel = (firstPixel + local) >> int(level), odd = texel & 1;
   ivec2 parent = 2 * ((texel >> 1) - kAround) - origin;
-  int first = parent.y * kSide + parent.x;
+  int first = parent.y * kClusterSide + parent.x;
   // Rows and columns beside what the finer level does: two and three of them, or three and two. Rows at once, so that their
   // latencies overlap.
   for (int i = 0; i <= 2 * kAround; ++i) {
     int y = i < kAround ? i : i > kAround ? i + 2 * kAround + 1 : odd.y == 0 ? 3 * kAround + 1 : kAround;
-    [[unroll]] for (int x = 0; x < kWindow; ++x) addTexel(sums, first + y * kSide + x, k, center);
+    [[unroll]] for (int x = 0; x < kWindow; ++x) addCluster(sums, first + y * kClusterSide + x, k, center);
   }
   for (int i = 0; i <= 2 * kAround; ++i) {
     int y = kAround + odd.y + i;
     [[unroll]] for (int j = 0; j <= 2 * kAround; ++j) {
       int x = j < kAround ? j : j > kAround ? j + 2 * kAround + 1 : odd.x == 0 ? 3 * kAround + 1 : kAround;
-      addTexel(sums, first + y * kSide + x, k, center);
+      addCluster(sums, first + y * kClusterSide + x, k, center);
     }
   }
 }
@@ -265,7 +362,7 @@ void diffuseTile(ivec2 firstPixel, uint edgeTexels) {
   if (material != 0u) k.reach = kernels[k.m].reach;
   k.first = floatBitsToInt(k.reach.y);
   bool diffuses = isEdge && k.reach.x > 0.0;
-  vec3 center = places[own].xyz;
+  vec3 center = placeAt(own).xyz;
   Sums sums = Sums(vec3(0.0), vec3(0.0));
   uint last = 0u; // of the pixel's levels
   if (diffuses) {
@@ -274,15 +371,15 @@ void diffuseTile(ivec2 firstPixel, uint edgeTexels) {
     float level = ceil(log2(max(0.8 * k.reach.x * inversesqrt(facing) / float(2 * kAround), 1.0)));
     last = uint(clamp(level, 1.0, float(pass.value.x)));
     atomicMax(coarsest, last);
-    add(sums, colors[own], ownPart(k, facing, max(placeArea(places[own]) / facing, 1.0)));
-    addPixels(sums, local, k, center, facing);
+    add(sums, colors[own], ownPart(k, facing, max(placeArea(placeAt(own)) / facing, 1.0)));
+    addPixels(sums, local, pixel, k, center, facing);
   }
   barrier();
   uint levels = coarsest;
   for (uint level = 1u; level <= levels; ++level) {
-    loadTexels(level, firstPixel);
+    loadClusters(level, firstPixel);
     barrier();
-    if (level <= last) addTexels(sums, level, firstPixel, local, k, center);
+    if (level <= last) addClusters(sums, level, firstPixel, local, k, center);
     barrier();
   }
   if (isEdge && insideRect(pixel) && materialAt(pixel) != 0u) {

@@ -9,16 +9,6 @@ const float kOuterWeight = kSumsEdges ? 1.0 / 6.0 : 3.0 / 16.0, kVariance = 0.25
 
 float weight(int i) { return i == 0 || i == 3 ? kOuterWeight : 0.5 - kOuterWeight; }
 
-// Of the squared length of a texel's side: how far from its plane what a texel stands for may lie where edges are summed.
-const float kSummedOffset = 8.0;
-
-// How much of a texel `off` its surface's plane counts, see sameSurface. Sums of edges take distances in space, so all that
-// a texel can stand for counts by its area.
-float reducedWeight(float off, float along, float spread2) {
-  return kSumsEdges ? (off * off * spread2 < kSummedOffset ? 1.0 : 0.0)
-                    : sameSurface(off, along, spread2, kReduceFalloff);
-}
-
 // Texels under a texel, from the push constants: compilers would unroll the loops of edges over a number that they know,
 // which takes half as many registers again.
 int taps() { return int(pass.value.y); }
@@ -52,15 +42,9 @@ Source sourceAt(int index) {
   return Source(massOf(bits), depths[index], bits >> 24);
 }
 
-// Whether a texel, no plane, stands for the four in the middle alone. Where edges are summed, nothing that a finer texel
-// stands for may be in a coarser one beside it, too. Not where the rect ends: its planes are filtered there.
-bool isApart(uint finer, ivec2 texel) {
-  return kSumsEdges && contains(inset(levelRect(finer + 1u), 2), texel);
-}
-
-// Which texel's surface is taken: the nearest to the camera of the four in the middle or, beyond an edge and if not
-// `apart`, the one of the others that the filter weights most. -1: none.
-int surfaceOf(int first, int stride, bool apart) {
+// Which texel's surface is taken: the nearest to the camera of the four in the middle or, beyond an edge, the one of the others
+// that the filter weights most. -1: none.
+int surfaceOf(int first, int stride) {
   int surface = -1;
   float nearest = kNoDepth, most = 0.0;
   [[unroll]] for (int i = 0; i < 4; ++i) {
@@ -69,7 +53,7 @@ int surfaceOf(int first, int stride, bool apart) {
     nearest = nearer ? t.depth : nearest;
     surface = nearer ? 5 + 4 * (i >> 1) + (i & 1) : surface;
   }
-  if (surface >= 0 || apart) return surface;
+  if (surface >= 0) return surface;
   for (int i = 0; i < taps(); ++i) {
     float w = weight(i & 3) * weight(i >> 2) * sourceAt(tap(first, stride, i & 3, i >> 2)).mass;
     if (!(w > most)) continue;
@@ -98,8 +82,7 @@ float depthStep(int first, int stride, Source center, ivec2 at, ivec2 direction)
 
 // Where the 4 x 4 texels are not one plane.
 uvec4 reducedEdge(uint finer, ivec2 texel, int first, int stride) {
-  bool apart = isApart(finer, texel);
-  int chosen = surfaceOf(first, stride, apart);
+  int chosen = surfaceOf(first, stride);
   if (chosen < 0) {
     uint orphans = 0u;
     for (int i = 0; i < 4; ++i)
@@ -124,9 +107,8 @@ uvec4 reducedEdge(uint finer, ivec2 texel, int first, int stride) {
       bool counts = t.mass != 0.0 && t.material == surface.material;
       vec2 offset = (vec2(at) - 1.5) * size;
       float difference = t.depth - surface.depth - dot(slope, vec2(at - nearest) * size);
-      bool inMiddle = (at + 1) >> 1 == ivec2(1);
-      float w = apart ? (inMiddle ? 0.25 : 0.0) : weight(at.x) * weight(at.y);
-      w = counts ? w * reducedWeight(difference, dot(slope, offset), spread2) : 0.0;
+      float w = weight(at.x) * weight(at.y);
+      w = counts ? w * sameSurface(difference, dot(slope, offset), spread2, kReduceFalloff) : 0.0;
       color += w * t.mass * unpackColor(colors[index]);
       mass += w * t.mass;
       // Where it is seen edge-on, a surface says no more about its depth than elsewhere.

@@ -26,6 +26,7 @@ using glm::vec4;
 #define PELLUCID_DIFFUSE_TEXELS_Y 4
 #define PELLUCID_DIFFUSE_CELL 4 // pixels a side of the gather's cells where the diffusion adds what it found
 #define PELLUCID_EDGES_GROUP 16 // a side, pixels, of a tile of the pass that does edges by distances in space
+#define PELLUCID_CLUSTERS_GROUP 16 // a side, of what does a texel of the last level: as many texels of level 3
 #define PELLUCID_EDGES_TILES 8  // of a group, in a column
 #define PELLUCID_RESOLVE_GROUP 16 // a side, texels of level 2, of which an invocation does two beside each other
 #define PELLUCID_REDUCE_GROUP 16 // a side, of the pyramid's reductions
@@ -106,6 +107,8 @@ using glm::vec4;
 
 // The diffusion pyramid's levels are 1..LAST_LEVEL; a texel of the last one is 128 pixels wide.
 #define PELLUCID_LAST_LEVEL 7
+// The first whose clusters do not lie where the level was.
+#define PELLUCID_FIRST_BESIDE 3
 // KernelConstants::share: levels 2 and 3, and all coarser ones.
 #define PELLUCID_SHARE_COARSER 2
 #define PELLUCID_SHARE_TABLES 3
@@ -114,6 +117,7 @@ using glm::vec4;
 // Of KernelConstants::distance: 16 an octave of squared distances, which are floats' first bits.
 #define PELLUCID_DISTANCE_SHIFT 19
 #define PELLUCID_DISTANCE_OCTAVES 24
+#define PELLUCID_MOST_FALL 32
 #define PELLUCID_DISTANCE_ENTRIES (PELLUCID_DISTANCE_OCTAVES << (23 - PELLUCID_DISTANCE_SHIFT))
 
 // The camera as the shaders use it. With s = +1 or -1 the sign of view z in front of the eye, p = s z
@@ -134,8 +138,8 @@ struct FrameConstants {
   vec4 anglePolynomial;
   uvec4 marks;         // x: bit of material values without translucency; 0: none
   vec4 filterAndLimit;        // rgb: factor of T; w: largest thickness, mm
-  ivec4 level[PELLUCID_LAST_LEVEL + 1]; // xy: where texel (0, 0) of the level lies in the pyramid's image; of
-                                        // level 0, that of the resolved level 2, zw: of its shares
+  ivec4 level[PELLUCID_LAST_LEVEL + 1]; // xy: where texel (0, 0) of the level lies in the pyramid's image, zw: of its
+                                        // clusters; of level 0, that of the resolved level 2, zw: of its shares
   // View ray of planar length 1: of pixel (0, 0), changes per pixel in x and y.
   vec4 normalRay[3]; // xyz: in the normal image's space
   vec4 facingRay[2]; // along pixels' columns and rows; xy, zw, xy
@@ -222,7 +226,8 @@ struct KernelConstants {
   vec4 pixelShare[PELLUCID_PIXEL_SHARES * PELLUCID_SHARE_ENTRIES];
   // Of quality 3, the profile R over squared distances r^2 in mm^2. Before the first entry R does not change.
   vec4 reach; // x: distance within which 99.9 % of the energy lies, mm, 0: none; y: r^2 of the first entry
-  // rgb: R, 1/mm^2, as a float whose last 16 bits are the first of (r R)'' / r, 1/mm^4.
+  // rgb: R, 1/mm^2, as a float whose last 16 bits are the first of (r R)'' / r, 1/mm^4. a: -d ln R / d ln r^2, 0 to
+  // PELLUCID_MOST_FALL, in 10 bits each.
   uvec4 distance[PELLUCID_DISTANCE_ENTRIES];
   vec4 enclosed[PELLUCID_DISTANCE_ENTRIES]; // rgb: which part of the energy lies within r
 };

@@ -79,7 +79,8 @@ shared::FrameConstants frameConstants(const PellucidFrame& f) {
   c.filterAndLimit = rgb(f.transmittanceFilter, f.maximumThickness > 0 ? f.maximumThickness : INFINITY);
   for (uint32_t level = kFirstLevel; level <= PELLUCID_LAST_LEVEL; ++level) {
     const PyramidPlace place = placeOf(f, level);
-    c.level[level] = {place.x - place.rect.x, place.y - place.rect.y, 0, 0};
+    c.level[level] = {place.x - place.rect.x, place.y - place.rect.y, clusterColumn(f, level) - place.rect.x,
+                      place.y - place.rect.y};
   }
   const PyramidPlace resolved = placeOf(f, 2);
   const ResolvedPlace place = resolvedPlaceOf(f);

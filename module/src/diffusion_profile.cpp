@@ -47,6 +47,7 @@ double shareOf(double coarser, double all) {
 struct ProfileAt {
   double value;   // R, 1/mm^2
   double curved;  // (r R)'' / r, 1/mm^4
+  double fall;    // -d ln R / d ln r^2
   double within;  // part of the energy
 };
 
@@ -56,7 +57,9 @@ ProfileAt profileAt(const PellucidMaterial& m, int channel, double squared) {
   if (const double d = static_cast<double>(m.burleyDistance[channel]); d > 0) {
     const double r = std::sqrt(squared), near = std::exp(-r / d), far = std::exp(-r / (3 * d));
     const double scale = 1 / (8 * std::numbers::pi * d * r);
-    return {(near + far) * scale, (near + far / 9) / (d * d) * scale, 1 - 0.25 * near - 0.75 * far};
+    // Where near and far have become 0 far is the larger.
+    const double fall = 0.5 + r / (2 * d) * (far > 0 ? (near + far / 3) / (near + far) : 1.0 / 3);
+    return {(near + far) * scale, (near + far / 9) / (d * d) * scale, fall, 1 - 0.25 * near - 0.75 * far};
   }
   ProfileAt sum{};
   for (uint32_t k = 0; k < m.gaussianCount; ++k) {
@@ -65,8 +68,10 @@ ProfileAt profileAt(const PellucidMaterial& m, int channel, double squared) {
     const double value = weight * beyond / (2 * std::numbers::pi * v);
     sum.value += value;
     sum.curved += value * (2 * q - 3) / v;
+    sum.fall += value * q;
     sum.within += weight * (1 - beyond);
   }
+  sum.fall = sum.value > 0 ? sum.fall / sum.value : PELLUCID_MOST_FALL;
   return sum;
 }
 
@@ -93,6 +98,8 @@ void addDistances(const PellucidMaterial& m, shared::KernelConstants& c) {
     for (int channel = 0; channel < 3; ++channel) {
       const ProfileAt p = profileAt(m, channel, static_cast<double>(squared));
       c.distance[i][channel] = i < kLast ? packPair(p.value, std::clamp(p.curved, -1e30, 1e30)) : 0;
+      const double fall = std::clamp(p.fall / PELLUCID_MOST_FALL, 0.0, 1.0);
+      c.distance[i].w |= static_cast<uint32_t>(1023 * fall + 0.5) << 10 * channel;
       c.enclosed[i][channel] = static_cast<float>(p.within);
     }
   }

@@ -404,6 +404,27 @@ struct Builder {
     return true;
   }
 
+  // Of levels up to `coarsest`, from them and the pixels, when they have been resolved.
+  bool clusters(uint32_t coarsest, uint32_t source) {
+    PellucidDispatch* d = dispatch("clusters", PELLUCID_PIPELINE_CLUSTERS);
+    if (!d) return false;
+    const auto across = [](uint32_t first, uint32_t pixels) {
+      return ((first + pixels - 1) >> PELLUCID_LAST_LEVEL) - (first >> PELLUCID_LAST_LEVEL) + 1;
+    };
+    d->groups[0] = across(rect.x, rect.width);
+    d->groups[1] = across(rect.y, rect.height);
+    d->pushConstants[0] = coarsest;
+    constants(d, PELLUCID_BINDING_FRAME, layout.frame);
+    writesPyramid(d);
+    readsPyramid(d);
+    pixelInputs(d, source);
+    image(d, PELLUCID_BINDING_NORMAL, PELLUCID_RESOURCE_NORMAL, 0);
+    // The plan does not know how much is tilted, of which pixels are read and level 1 is written.
+    d->modeledBytes = 0;
+    for (uint32_t level = 1; level <= coarsest; ++level) levelTraffic(d, level);
+    return true;
+  }
+
   bool sumsEdges() const { return pellucid::sumsEdges(frame, plan.quality); }
 
   // After the one of all other pixels, with the same arguments.

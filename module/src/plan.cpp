@@ -177,6 +177,7 @@ bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan
     }
     fits = fits && b.resolve(coarsest, makesLast);
     alongside();
+    if (b.sumsEdges()) fits = fits && b.clusters(coarsest, source);
     const uint32_t to = destination();
     fits = fits && b.diffuse(source, to, stages.addsPoints);
     // A barrier though they write other pixels: synchronization validation knows images, not pixels.

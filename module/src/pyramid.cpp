@@ -13,6 +13,11 @@ uint32_t most(uint32_t pixels, uint32_t level) { return ((pixels - 1) >> level) 
 // What level 1 takes in a row, and in its place the resolved level 2 beside its shares.
 uint32_t firstColumns(uint32_t pixels) { return std::max(most(pixels, kFirstLevel), 2 * most(pixels, 2)); }
 
+// What levels from 2 on take in a row: the second one alone, or the third and its clusters.
+uint32_t coarserColumns(uint32_t pixels) {
+  return std::max(most(pixels, 2), 2 * most(pixels, PELLUCID_FIRST_BESIDE));
+}
+
 }  // namespace
 
 bool keepsFirstLevel(const PellucidFrame& frame) {
@@ -39,17 +44,22 @@ PyramidPlace placeOf(const PellucidFrame& frame, uint32_t level) {
   return place;
 }
 
+int32_t clusterColumn(const PellucidFrame& frame, uint32_t level) {
+  return placeOf(frame, level).x + static_cast<int32_t>(most(frame.imageExtent[0], level));
+}
+
 ResolvedPlace resolvedPlaceOf(const PellucidFrame& frame) {
   const PyramidPlace second = placeOf(frame, 2);
   if (!keepsFirstLevel(frame)) return {0, 0, second.rect.width, 0};
-  const auto x = second.x + static_cast<int32_t>(most(frame.imageExtent[0], 2));
+  const auto x = second.x + static_cast<int32_t>(coarserColumns(frame.imageExtent[0]));
   return {x, 0, x, static_cast<int32_t>(most(frame.imageExtent[1], 2))};
 }
 
 PyramidExtent pyramidExtent(const PellucidFrame& frame) {
   const uint32_t last = coarsestLevel(frame), columns = most(frame.imageExtent[0], 2);
+  const uint32_t coarser = keepsFirstLevel(frame) ? coarserColumns(frame.imageExtent[0]) + columns : columns;
   const uint32_t resolvedRows = most(frame.imageExtent[1], 2) * (keepsFirstLevel(frame) ? 2 : 1);
-  const uint32_t width = firstColumns(frame.imageExtent[0]) + (keepsFirstLevel(frame) ? 2 : 1) * columns;
+  const uint32_t width = firstColumns(frame.imageExtent[0]) + coarser;
   uint32_t height = 0;
   for (uint32_t l = kFirstLevel + 1; l <= last; ++l) height += most(frame.imageExtent[1], l);
   return {width, std::max({height, most(frame.imageExtent[1], kFirstLevel), resolvedRows})};

@@ -33,6 +33,10 @@ struct ResolvedPlace {
 
 ResolvedPlace resolvedPlaceOf(const PellucidFrame& frame);
 
+// Where the clusters of a level begin: beside the level, which as all coarser ones is at most half as wide as
+// level 2.
+int32_t clusterColumn(const PellucidFrame& frame, uint32_t level);
+
 // Of the pyramid's image, for any render rect.
 struct PyramidExtent {
   uint32_t width, height;

@@ -4,6 +4,7 @@
 
 #include "kAddHistory16f.h"
 #include "kAddHistory32f.h"
+#include "kClusters.h"
 #include "kDebug16f.h"
 #include "kDebug32f.h"
 #include "kDiffuse16f.h"
@@ -101,7 +102,8 @@ const std::array kShaders = {shader(kTranslucency16f),
                              shader(kDiffusePlanes16f),
                              shader(kDiffusePlanes32f),
                              shader(kDiffusePlanesGather16f),
-                             shader(kDiffusePlanesGather32f)};
+                             shader(kDiffusePlanesGather32f),
+                             shader(kClusters)};
 static_assert(kShaders.size() == PELLUCID_PIPELINE_COUNT);
 
 }  // namespace

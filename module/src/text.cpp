@@ -97,7 +97,8 @@ extern "C" const char* pellucidPipelineName(uint32_t pipeline) {
                                        "diffuse_planes_rgba16f",
                                        "diffuse_planes_rgba32f",
                                        "diffuse_planes_gather_rgba16f",
-                                       "diffuse_planes_gather_rgba32f"};
+                                       "diffuse_planes_gather_rgba32f",
+                                       "clusters"};
   static_assert(names.size() == PELLUCID_PIPELINE_COUNT);
   return pipeline < names.size() ? names[pipeline] : "unknown pipeline";
 }
