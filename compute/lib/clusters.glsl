@@ -32,7 +32,7 @@ vec3 unpackMoments(uint u) { return (vec3(u & 31u, (u >> 5) & 31u, (u >> 10) & 3
 uvec4 packCluster(Cluster c) {
   uvec2 center = uvec2(clamp(floor(c.center * 16.0 + 8.5), vec2(0.0), vec2(15.0)));
   return uvec4(packColor(c.color, packArea(c.mass) | c.material << 8),
-               (floatBitsToUint(c.depth) + 0x80u & ~0xFFu) | center.x | center.y << 4,
+               ((floatBitsToUint(c.depth) + 0x80u) & ~0xFFu) | center.x | center.y << 4,
                packMoments(c.momentX) | packMoments(c.momentY) << 15);
 }
 

@@ -59,11 +59,15 @@ void main() {
     if (invocation < side * side) {
       ivec2 at = ivec2(invocation % side, invocation / side), texel = side * last + at;
       Cluster children[4];
-      for (int i = 0; i < 4; ++i) {
-        ivec2 child = childOf(at, i);
+      if (level == 3u) {
+        for (int i = 0; i < 4; ++i) children[i] = clusterOfQuads(childOf(texel, i));
+      } else {
         // The level before has twice as many to a side.
-        int before = first - 4 * side * side + child.y * 2 * side + child.x;
-        children[i] = level == 3u ? clusterOfQuads(childOf(texel, i)) : unpackCluster(kept[max(before, 0)]);
+        int before = first - 4 * side * side;
+        for (int i = 0; i < 4; ++i) {
+          ivec2 child = childOf(at, i);
+          children[i] = unpackCluster(kept[before + child.y * 2 * side + child.x]);
+        }
       }
       uvec4 bits = packCluster(merged(children, level));
       kept[first + invocation] = bits;
