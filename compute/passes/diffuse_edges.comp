@@ -236,8 +236,8 @@ vec2 slopeAt(uint level, ivec2 texel, uint material) {
 Cluster clusterAt(uint level, ivec2 texel) {
   ivec2 place = level >= uint(PELLUCID_FIRST_BESIDE) ? clusterPlace(level, texel) : inAtlas(level, texel);
   uvec4 bits = texelFetch(pyramidImage, place, 0);
-  // Of quads those that are no planes facing the camera.
   if (!isPlane(bits)) return unpackCluster(bits);
+  // A quad of a plane that faces the camera, which is as the pyramid has it and whole.
   Cluster c = clusterOfTexel(bits);
   vec3 light[4];
   [[unroll]] for (int i = 0; i < 4; ++i)
