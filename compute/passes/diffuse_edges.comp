@@ -84,27 +84,30 @@ const int kLastEntry = PELLUCID_DISTANCE_ENTRIES - 1;
 // Of an area over the squared distance. Nearer than that the second order says too much.
 const float kMostRelative = 0.8;
 
-// The table's nearest entry is off by 2 %, or more where hardly anything is left, but by turns above and below: sums of
-// hundreds err by 1e-4 of themselves.
-uvec4 entryAt(Kernel k, float squared) {
-  int entry = (floatBitsToInt(squared) - k.first + (1 << (PELLUCID_DISTANCE_SHIFT - 1))) >> PELLUCID_DISTANCE_SHIFT;
-  return kernels[k.m].distance[clamp(entry, 0, kLastEntry)];
+// Of the profile at a squared distance. What the table's nearest entry is off by, 2 % and more, would show where few clusters
+// light a pixel: the first order of it is taken out, which leaves .05 %.
+struct Profile {
+  vec3 value, curved, fall; // R, (r R)'' / r, -d ln R / d ln r^2
+};
+
+Profile profileAt(Kernel k, float squared) {
+  int i = (floatBitsToInt(squared) - k.first + (1 << (PELLUCID_DISTANCE_SHIFT - 1))) >> PELLUCID_DISTANCE_SHIFT;
+  i = clamp(i, 0, kLastEntry);
+  uvec4 entry = kernels[k.m].distance[i];
+  vec3 fall = vec3(entry.w & 1023u, (entry.w >> 10) & 1023u, entry.w >> 20) * (float(PELLUCID_MOST_FALL) / 1023.0);
+  // Entries are positive; before the first one R does not change.
+  float beyond = clamp(squared / intBitsToFloat(k.first + (i << PELLUCID_DISTANCE_SHIFT)) - 1.0, -0.04, 0.04);
+  return Profile(uintBitsToFloat(entry.xyz) * max(1.0 - fall * beyond, vec3(0.0)), uintBitsToFloat(entry.xyz << 16), fall);
 }
 
 // The profile's mean over a square of that area, mm^2, times the area. `squared`: the squared distance > 0, mm^2, at which 1/r
-// is its mean there, `entry`: of the table. With R = g / r, that makes up for 1/r and, to second order, for the slope of g; its
+// is its mean there and `at` the profile. With R = g / r, that makes up for 1/r and, to second order, for the slope of g; its
 // curvature adds area / (24 r^2) times r^2 laplace(R) - R + g' = r g''.
-vec3 profileOf(uvec4 entry, float squared, float area) {
-  float curved = min(area, kMostRelative * squared) * (1.0 / 24.0);
-  return area * (uintBitsToFloat(entry.xyz) + curved * uintBitsToFloat(entry.xyz << 16));
+vec3 meanOf(Profile at, float squared, float area) {
+  return area * (at.value + min(area, kMostRelative * squared) * (1.0 / 24.0) * at.curved);
 }
 
-vec3 profileAt(Kernel k, float squared, float area) { return profileOf(entryAt(k, squared), squared, area); }
-
-// -d ln R / d ln r^2.
-vec3 fallOf(uvec4 entry) {
-  return vec3(entry.w & 1023u, (entry.w >> 10) & 1023u, entry.w >> 20) * (float(PELLUCID_MOST_FALL) / 1023.0);
-}
+vec3 meanAt(Kernel k, float squared, float area) { return meanOf(profileAt(k, squared), squared, area); }
 
 // Part of the energy within a squared distance. Before the first entry it is like the area.
 vec3 enclosed(Kernel k, float squared) {
@@ -171,7 +174,7 @@ vec3 ofPixel(Kernel k, vec4 place, vec3 offset, float facing) {
   float squared = dot(offset, offset), area = placeArea(place);
   // From three pixels and its length on it does not matter that it is longer than wide.
   bool far = squared > 9.0 * facing + area * area / facing;
-  if (far || area < kLong * facing) return profileAt(k, meanSquare(squared, area), area);
+  if (far || area < kLong * facing) return meanAt(k, meanSquare(squared, area), area);
   vec3 axis = placeAxis(place);
   float width = sqrt(facing), halfLength = 0.5 * area / width;
   // As long as wide, each.
@@ -180,7 +183,7 @@ vec3 ofPixel(Kernel k, vec4 place, vec3 offset, float facing) {
   for (float part = 0.5; part < parts; part += 1.0) {
     float at = halfLength * (2.0 * part / parts - 1.0);
     vec4 segment = vec4(axis, halfLength / parts);
-    weight += profileAt(k, meanSquare(offset + at * axis, segment, facing), area / parts);
+    weight += meanAt(k, meanSquare(offset + at * axis, segment, facing), area / parts);
   }
   return weight;
 }
@@ -314,15 +317,16 @@ void addCluster(inout Sums sums, int i, Kernel k, vec3 center) {
   float area = color.y >> 16 == k.m + 1u ? place.w : 0.0;
   // The floor keeps what follows finite.
   float squared = max(meanSquare(dot(offset, offset), area), 1.0e-6 * area);
-  uvec4 entry = entryAt(k, squared), bits = places[kClusters + i];
-  vec3 weight = profileOf(entry, squared, area);
+  Profile profile = profileAt(k, squared);
+  vec3 weight = meanOf(profile, squared, area);
+  uvec4 bits = places[kClusters + i];
   vec2 both = unpackHalf2x16(bits.y);
   vec3 red = vec3(unpackHalf2x16(bits.x), both.x), green = vec3(both.y, unpackHalf2x16(bits.z));
   vec3 blue = vec3(unpackHalf2x16(bits.w), unpackHalf2x16(lasts[i]).x);
   // To first order each channel's light is where its moments say; the profile changes by 2 R' / R of r^2 times how much nearer
   // that is.
   vec3 nearer = vec3(dot(offset, red), dot(offset, green), dot(offset, blue)) * (-2.0 * sqrt(area) / squared);
-  sums.color += weight * max(1.0 + fallOf(entry) * nearer, vec3(0.0)) * unpackColor(color);
+  sums.color += weight * max(1.0 + profile.fall * nearer, vec3(0.0)) * unpackColor(color);
   sums.weight += weight;
 }
 

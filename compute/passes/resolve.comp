@@ -300,7 +300,7 @@ PixelEnergies withDensity(PixelEnergies e, vec3 density) {
 
 // What may come from edges to a plane that is not summed, as more shows where it meets edges that are: of its energy, from
 // levels 3 and 4, and of its light, which may be much more where it is dark and near a bright rim.
-const float kMostEnergy = 0.02, kMostLight = 0.5;
+const float kMostFromEdges = 0.02;
 
 // Nor are planes as tilted as that, 20 degrees, as filters of pixels are as long as wide.
 const float kMostStretch = 0.13;
@@ -310,7 +310,7 @@ bool isFlatFor(Own fine, Level r, uvec4 bits, ivec2 texel, ivec2 k) {
   float share = max(fine.share.r, max(fine.share.g, fine.share.b));
   bool plane3 = isPlane(resolved[indexOf(windowOf(3u, k), texel >> 1)]);
   bool plane4 = pass.value.x < 4u || isPlane(resolved[indexOf(windowOf(4u, k), texel >> 2)]);
-  return (bits.x & kFlat) != 0u && r.fromEdges < kMostLight && (share < kMostEnergy || (plane3 && plane4));
+  return (bits.x & kFlat) != 0u && r.fromEdges < kMostFromEdges && (share < kMostFromEdges || (plane3 && plane4));
 }
 
 // Of the squared length of level 2's side: how far from a texel's plane texels `side` as long may lie.
