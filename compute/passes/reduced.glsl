@@ -13,8 +13,8 @@ float weight(int i) { return i == 0 || i == 3 ? kOuterWeight : 0.5 - kOuterWeigh
 // which takes half as many registers again.
 int taps() { return int(pass.value.y); }
 
-// Of the squared length of a texel's side. Curved surfaces below it gain nothing from weights of their own; where edges are
-// summed, planes that take light from what is curved as little as that are, too, and more would show at their border.
+// Of the squared length of a texel's side. Curved surfaces below it gain nothing from weights of their own. Where edges are
+// summed, planes are filtered only if their light comes from planes, and less curved ones would show there already.
 const float kPlaneResidual = kSumsEdges ? 0.001 : 0.01;
 
 // What the bits of texels of one plane have in common: the material, and that they are planes.
