@@ -40,7 +40,7 @@ Cluster unpackCluster(uvec4 u) {
   Cluster c;
   c.color = unpackColor(u.xy);
   c.mass = massOf(u.y);
-  c.material = u.y >> 24;
+  c.material = materialBits(u);
   c.depth = uintBitsToFloat(u.z & ~0xFFu);
   c.center = (vec2(u.z & 15u, (u.z >> 4) & 15u) - 8.0) * (1.0 / 16.0);
   c.momentX = unpackMoments(u.w);
@@ -50,13 +50,12 @@ Cluster unpackCluster(uvec4 u) {
 
 // A texel of level 1 of the pyramid, without moments.
 Cluster clusterOfTexel(uvec4 bits) {
-  Cluster c = kNoCluster;
-  c.color = unpackColor(bits.xy);
-  c.mass = massOf(bits.y);
-  c.material = bits.y >> 24;
-  c.depth = uintBitsToFloat(bits.z);
-  return c;
+  Texel t = unpackTexel(bits);
+  return Cluster(t.color, t.mass, t.material, t.depth, vec2(0.0), vec3(0.0), vec3(0.0));
 }
+
+// The four under a texel, rows first.
+ivec2 childOf(ivec2 texel, int i) { return 2 * texel + ivec2(i & 1, i >> 1); }
 
 // How far behind the nearest one, in sides of the merged cluster, what belongs to it may lie: surfaces 85 degrees from facing
 // the camera do. Smaller limits lose light at the limbs of round things, larger ones join what lies far behind others.

@@ -17,7 +17,7 @@ const bool kUnmapped = true;
 const bool kUnmapped = false;
 #endif
 
-// SUMS_EDGES: pixels of edges have a dispatch of their own, which sums over the pyramid, and planes one with two fine filters.
+// SUMS_EDGES: pixels of edges have a dispatch of their own, which sums over clusters, and planes one with two fine filters.
 #ifdef SUMS_EDGES
 const bool kSumsEdges = true;
 #else

@@ -17,8 +17,6 @@ shared uvec4 kept[256 + 64 + 16 + 4 + 1];
 // Planes that much larger than facing the camera, 25 degrees from it, have an area for each pixel.
 const float kMostFacing = 1.1;
 
-ivec2 childOf(ivec2 texel, int i) { return 2 * texel + ivec2(i & 1, i >> 1); }
-
 // Of four pixels, each with the area of its own normal, in place of the level's texel, which has that of one of them.
 Cluster clusterOfPixels(ivec2 quad) {
   Cluster pixels[4];

@@ -244,7 +244,7 @@ Cluster clusterAt(uint level, ivec2 texel) {
   Cluster c = clusterOfTexel(bits);
   vec3 light[4];
   [[unroll]] for (int i = 0; i < 4; ++i)
-    light[i] = sanitize(texelFetch(sourceImage, 2 * texel + ivec2(i & 1, i >> 1), 0).rgb);
+    light[i] = sanitize(texelFetch(sourceImage, childOf(texel, i), 0).rgb);
   vec3 inverse = 0.25 / max(light[0] + light[1] + light[2] + light[3], vec3(1.0e-20));
   c.momentX = (light[1] + light[3] - light[0] - light[2]) * inverse;
   c.momentY = (light[2] + light[3] - light[0] - light[1]) * inverse;

@@ -332,7 +332,7 @@ typedef enum PellucidPipeline {
   PELLUCID_PIPELINE_DIFFUSE_EDGES_GATHER_32F = 35,
   PELLUCID_PIPELINE_GATHER_RECORDS_ONE_MAP = 36, /* as DIRECTIONAL, of one light with one map */
   PELLUCID_PIPELINE_REDUCE_AND_RESOLVE = 37, /* resolves levels of which it makes the last two */
-  PELLUCID_PIPELINE_REDUCE_FOR_EDGES = 38,   /* the pyramid where DIFFUSE_EDGES sums over it */
+  PELLUCID_PIPELINE_REDUCE_FOR_EDGES = 38,   /* the pyramid where DIFFUSE_EDGES runs */
   PELLUCID_PIPELINE_RESOLVE_FOR_EDGES = 39,
   PELLUCID_PIPELINE_DIFFUSE_PLANES_16F = 40, /* pixels that DIFFUSE_EDGES leaves, in place of DIFFUSE */
   PELLUCID_PIPELINE_DIFFUSE_PLANES_32F = 41,
