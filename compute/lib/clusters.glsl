@@ -28,20 +28,30 @@ uint packMoments(vec3 moment) {
 
 vec3 unpackMoments(uint u) { return (vec3(u & 31u, (u >> 5) & 31u, (u >> 10) & 31u) - 15.0) * (1.0 / kMomentOne); }
 
-// As texels of the pyramid; in the last 8 bits of the depth the center in sixteenths, in place of the slope the moments.
+// As texels of the pyramid; in the last 8 bits of the depth the center in sixteenths, in place of the slope the moments and two
+// more bits of the area.
 uvec4 packCluster(Cluster c) {
+  // Anything at all must not round to 0, of the first seven bits either.
+  uint mass = uint(clamp(128.0 * sqrt(c.mass) + 0.5, c.mass > 0.0 ? 4.0 : 0.0, 511.0));
   uvec2 center = uvec2(clamp(floor(c.center * 16.0 + 8.5), vec2(0.0), vec2(15.0)));
-  return uvec4(packColor(c.color, packArea(c.mass) | c.material << 8),
+  return uvec4(packColor(c.color, mass >> 2 | c.material << 8),
                ((floatBitsToUint(c.depth) + 0x80u) & ~0xFFu) | center.x | center.y << 4,
-               packMoments(c.momentX) | packMoments(c.momentY) << 15);
+               packMoments(c.momentX) | packMoments(c.momentY) << 15 | mass << 30);
+}
+
+float clusterDepth(uvec4 u) { return uintBitsToFloat(u.z & ~0xFFu); }
+
+float clusterMass(uvec4 u) {
+  float root = float((u.y >> 14 & 0x1FCu) | u.w >> 30);
+  return root * root * (1.0 / 16384.0);
 }
 
 Cluster unpackCluster(uvec4 u) {
   Cluster c;
   c.color = unpackColor(u.xy);
-  c.mass = massOf(u.y);
+  c.mass = clusterMass(u);
   c.material = materialBits(u);
-  c.depth = uintBitsToFloat(u.z & ~0xFFu);
+  c.depth = clusterDepth(u);
   c.center = (vec2(u.z & 15u, (u.z >> 4) & 15u) - 8.0) * (1.0 / 16.0);
   c.momentX = unpackMoments(u.w);
   c.momentY = unpackMoments(u.w >> 15);
@@ -57,42 +67,48 @@ Cluster clusterOfTexel(uvec4 bits) {
 // The four under a texel, rows first.
 ivec2 childOf(ivec2 texel, int i) { return 2 * texel + ivec2(i & 1, i >> 1); }
 
+// The center of child `i` of a cluster from the cluster's, in the cluster's sides.
+vec2 placeInParent(int i, vec2 center) { return 0.5 * (vec2(i & 1, i >> 1) - 0.5 + center); }
+
 // How far behind the nearest one, in sides of the merged cluster, what belongs to it may lie: surfaces 85 degrees from facing
 // the camera do. Smaller limits lose light at the limbs of round things, larger ones join what lies far behind others.
 const float kClusterReach = 12.0;
 
-// Four of a level, rows first, as one of level `level`: of the nearest one's material, those that lie not far behind it.
-Cluster merged(Cluster from[4], uint level) {
+// Four packed ones of a level, rows first, as one of level `level`: of the nearest one's material, those that lie not far behind
+// it. `mass`: theirs, 0 where there is none, which would be rounded once a level if it were taken from the packed ones.
+Cluster merged(uvec4 from[4], float mass[4], uint level) {
   Cluster c = kNoCluster;
   float nearest = kNoDepth;
-  for (int i = 0; i < 4; ++i) {
-    bool nearer = from[i].mass > 0.0 && from[i].depth < nearest;
-    nearest = nearer ? from[i].depth : nearest;
-    c.material = nearer ? from[i].material : c.material;
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    float depth = clusterDepth(from[i]);
+    bool nearer = mass[i] > 0.0 && depth < nearest;
+    nearest = nearer ? depth : nearest;
+    c.material = nearer ? materialBits(from[i]) : c.material;
   }
   if (c.material == 0u) return c;
   vec2 side = texelSize(nearest, level);
   float reach = kClusterReach * sqrt(side.x * side.y);
-  vec2 place[4];
   float masses[4];
-  for (int i = 0; i < 4; ++i) {
-    bool counts = from[i].mass > 0.0 && from[i].material == c.material && from[i].depth - nearest <= reach;
-    masses[i] = counts ? from[i].mass : 0.0;
-    place[i] = 0.5 * (vec2(i & 1, i >> 1) - 0.5 + from[i].center);
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    Cluster f = unpackCluster(from[i]);
+    bool counts = mass[i] > 0.0 && f.material == c.material && f.depth - nearest <= reach;
+    masses[i] = counts ? mass[i] : 0.0;
     c.mass += masses[i];
-    c.color += masses[i] * from[i].color;
-    c.depth += counts ? masses[i] * (from[i].depth - nearest) : 0.0;
-    c.center += masses[i] * place[i];
+    c.color += masses[i] * f.color;
+    c.depth += counts ? masses[i] * (f.depth - nearest) : 0.0;
+    c.center += masses[i] * placeInParent(i, f.center);
   }
   // The nearest one counts, so the mass is positive.
   float inverse = 1.0 / c.mass;
   c.color *= inverse;
   c.depth = nearest + c.depth * inverse;
   c.center *= inverse;
-  for (int i = 0; i < 4; ++i) {
-    vec3 light = masses[i] * from[i].color;
-    c.momentX += light * (place[i].x - c.center.x + 0.5 * from[i].momentX);
-    c.momentY += light * (place[i].y - c.center.y + 0.5 * from[i].momentY);
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    Cluster f = unpackCluster(from[i]);
+    vec3 light = masses[i] * f.color;
+    vec2 place = placeInParent(i, f.center) - c.center;
+    c.momentX += light * (place.x + 0.5 * f.momentX);
+    c.momentY += light * (place.y + 0.5 * f.momentY);
   }
   // Where a channel has no light its moments do not matter.
   vec3 scale = inverse / max(c.color, vec3(1.0e-20));

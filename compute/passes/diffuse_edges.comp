@@ -94,10 +94,13 @@ Profile profileAt(Kernel k, float squared) {
   int i = (floatBitsToInt(squared) - k.first + (1 << (PELLUCID_DISTANCE_SHIFT - 1))) >> PELLUCID_DISTANCE_SHIFT;
   i = clamp(i, 0, kLastEntry);
   uvec4 entry = kernels[k.m].distance[i];
-  vec3 fall = vec3(entry.w & 1023u, (entry.w >> 10) & 1023u, entry.w >> 20) * (float(PELLUCID_MOST_FALL) / 1023.0);
-  // Entries are positive; before the first one R does not change.
-  float beyond = clamp(squared / intBitsToFloat(k.first + (i << PELLUCID_DISTANCE_SHIFT)) - 1.0, -0.04, 0.04);
-  return Profile(uintBitsToFloat(entry.xyz) * max(1.0 - fall * beyond, vec3(0.0)), uintBitsToFloat(entry.xyz << 16), fall);
+  // As floats from 2^23 on, since conversions of integers take several times as long as what they would save.
+  uvec3 falls = uvec3(entry.w, entry.w >> 10, entry.w >> 20) & 1023u;
+  vec3 fall = (uintBitsToFloat(0x4B000000u | falls) - 8388608.0) * (float(PELLUCID_MOST_FALL) / 1023.0);
+  // Entries are positive; before the first one R does not change. Half of what entries are apart, less than 1 over the most
+  // that R falls.
+  float beyond = clamp(squared / intBitsToFloat(k.first + (i << PELLUCID_DISTANCE_SHIFT)) - 1.0, -0.031, 0.031);
+  return Profile(uintBitsToFloat(entry.xyz) * (1.0 - fall * beyond), uintBitsToFloat(entry.xyz << 16), fall);
 }
 
 // The profile's mean over a square of that area, mm^2, times the area. `squared`: the squared distance > 0, mm^2, at which 1/r
@@ -236,9 +239,22 @@ vec2 slopeAt(uint level, ivec2 texel, uint material) {
   return materialBits(bits) == material && hasSurface(bits) ? unpackHalf2x16(bits.w) : vec2(0.0);
 }
 
-Cluster clusterAt(uint level, ivec2 texel) {
+uvec4 clusterBits(uint level, ivec2 texel) {
   ivec2 place = level >= uint(PELLUCID_FIRST_BESIDE) ? clusterPlace(level, texel) : inAtlas(level, texel);
-  uvec4 bits = texelFetch(pyramidImage, place, 0);
+  return contains(clusterRect(level), texel) ? texelFetch(pyramidImage, place, 0) : uvec4(0u);
+}
+
+Cluster clusterAt(uint level, ivec2 texel) {
+  if (level == uint(PELLUCID_LAST_LEVEL)) {
+    uvec4 children[4];
+    float masses[4];
+    [[unroll]] for (int i = 0; i < 4; ++i) {
+      children[i] = clusterBits(level - 1u, childOf(texel, i));
+      masses[i] = clusterMass(children[i]);
+    }
+    return merged(children, masses, level);
+  }
+  uvec4 bits = clusterBits(level, texel);
   if (!isPlane(bits)) return unpackCluster(bits);
   // A quad of a plane that faces the camera, which is as the pyramid has it and whole.
   Cluster c = clusterOfTexel(bits);
@@ -253,12 +269,10 @@ Cluster clusterAt(uint level, ivec2 texel) {
 
 void loadClusters(uint level, ivec2 firstPixel) {
   Window window = windowOf(level, firstPixel);
-  ivec4 rect = clusterRect(level);
   float side = exp2(float(level));
   for (int i = int(gl_LocalInvocationIndex); i < kClusterSide * window.rows; i += kInvocations) {
     ivec2 texel = window.first + ivec2(i % kClusterSide, i / kClusterSide);
-    Cluster c = kNoCluster;
-    if (contains(rect, texel)) c = clusterAt(level, texel);
+    Cluster c = clusterAt(level, texel);
     // Depths are positive where something is.
     vec2 rise = c.mass > 0.0 ? slopeAt(level, texel, c.material) * texelSize(c.depth, level) : vec2(0.0);
     vec2 pixel = pixelOf(level, texel) + side * c.center;
@@ -281,16 +295,17 @@ const int kNear = 2, kNearRow = 2 * kNear + 1;
 // Pixels around the one `local` from the tile's first, `pixel` of the image; `facing`: area of one that faces the camera.
 void addPixels(inout Sums sums, ivec2 local, ivec2 pixel, Kernel k, vec3 center, float facing) {
   int first = (local.y & ~1) * kSide + (local.x & ~1);
-  ivec2 own = (local & 1) + 2 * kAround;
-  for (int y = 0; y < kWindow; ++y)
-    [[unroll]] for (int x = 0; x < kWindow; ++x) {
-      int i = first + y * kSide + x;
+  ivec2 near = 2 * kAround + (local & 1) - kNear; // the first of those below
+  for (int y = 0; y < kWindow; ++y) {
+    int skipped = y < near.y || y >= near.y + kNearRow ? 0 : kNearRow;
+    for (int j = 0; j < kWindow - skipped; ++j) {
+      int i = first + y * kSide + (j < near.x ? j : j + skipped);
       vec4 place = placeAt(i);
       uvec2 color = colors[i];
-      bool counts = color.y >> 16 == k.m + 1u && any(greaterThan(abs(ivec2(x, y) - own), ivec2(kNear)));
       vec3 weight = ofPixel(k, place, place.xyz - center, facing);
-      add(sums, color, counts ? weight : vec3(0.0));
+      add(sums, color, color.y >> 16 == k.m + 1u ? weight : vec3(0.0));
     }
+  }
   for (int j = 0; j < kNearRow * kNearRow; ++j) {
     ivec2 to = ivec2(j % kNearRow, j / kNearRow) - kNear;
     int i = ownPlace(local + to);
@@ -405,6 +420,7 @@ ivec2 tileOf(uint i) {
 }
 
 void main() {
+  if (texelFetch(pyramidImage, summedPlace(), 0).x == 0u) return; // of all invocations
   uint invocation = gl_LocalInvocationIndex;
   if (invocation < uint(PELLUCID_EDGES_TILES)) edges[invocation] = 0u;
   barrier();

@@ -17,6 +17,8 @@ layout(set = 0, binding = PELLUCID_BINDING_KERNELS) readonly buffer Kernels { Ke
 // light comes from edges.
 shared uvec4 resolved[153 + 60 + 24 + 12 + 9];
 
+shared uint anySummed; // of the pixels under the group's texels
+
 #ifdef REDUCES
 // Sides of what a group needs of level 5 to make level 6, and of that to make level 7.
 const int kSide5 = 18, kSide6 = 8;
@@ -422,7 +424,10 @@ void resolveFine(ivec2 texel, ivec2 k, uvec4 bits) {
     uint flags = isPlane(bits) ? kFull : 0u;
     if (kSumsEdges) {
       bool filtered = f.stretch < kMostStretch && (isFlatFor(own, r, bits, texel, k) || endsAtRect(texel, bits));
-      if (!filtered) flags |= kSummed;
+      if (!filtered) {
+        flags |= kSummed;
+        anySummed = 1u; // whoever writes, writes this
+      }
       shares.xyz = packEnergies(withDensity(pixelEnergies(m, f), r.density));
     } else {
       PixelShares share = pixelShares(m, f);
@@ -449,6 +454,7 @@ void main() {
   bool inside = level <= coarsest && within && contains(levelRect(level), texel);
   bool lastInside = coarsest == 7u && hasLast && contains(levelRect(7u), lastTexel);
   bool fetches = inside, fetchesLast = lastInside;
+  if (kSumsEdges && invocation == 0) anySummed = 0u;
 #ifdef REDUCES
   if (invocation == 0) needsMade = 0u;
   fetches = fetches && level <= 5u;
@@ -492,5 +498,9 @@ void main() {
     resolveFine(fine, k, fineBits);
     fine = nextFine;
     fineBits = nextBits;
+  }
+  if (kSumsEdges) {
+    barrier();
+    if (invocation == 0 && anySummed != 0u) imageStore(levelsDestination, summedPlace(), uvec4(1u));
   }
 }

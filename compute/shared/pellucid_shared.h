@@ -26,8 +26,8 @@ using glm::vec4;
 #define PELLUCID_DIFFUSE_TEXELS_Y 4
 #define PELLUCID_DIFFUSE_CELL 4 // pixels a side of the gather's cells where the diffusion adds what it found
 #define PELLUCID_EDGES_GROUP 16 // a side, pixels, of a tile of the pass that does edges by distances in space
-#define PELLUCID_CLUSTERS_GROUP 16 // a side, of what does a texel of the last level: as many texels of level 3
-#define PELLUCID_EDGES_TILES 8  // of a group, in a column
+#define PELLUCID_CLUSTERS_GROUP 16 // a side, texels of level 2: what lies under one of level 6
+#define PELLUCID_EDGES_TILES 4 // of a group, in a column
 #define PELLUCID_RESOLVE_GROUP 16 // a side, texels of level 2, of which an invocation does two beside each other
 #define PELLUCID_REDUCE_GROUP 16 // a side, of the pyramid's reductions
 #define PELLUCID_REDUCE_TILE 7   // a side, texels of the second of the two levels that a group makes
@@ -139,7 +139,8 @@ struct FrameConstants {
   uvec4 marks;         // x: bit of material values without translucency; 0: none
   vec4 filterAndLimit;        // rgb: factor of T; w: largest thickness, mm
   ivec4 level[PELLUCID_LAST_LEVEL + 1]; // xy: where texel (0, 0) of the level lies in the pyramid's image, zw: of its
-                                        // clusters; of level 0, that of the resolved level 2, zw: of its shares
+                                        // clusters; of level 0, that of the resolved level 2, zw: of its shares; zw of
+                                        // level 1: the texel that says whether edges are summed
   // View ray of planar length 1: of pixel (0, 0), changes per pixel in x and y.
   vec4 normalRay[3]; // xyz: in the normal image's space
   vec4 facingRay[2]; // along pixels' columns and rows; xy, zw, xy

@@ -82,6 +82,9 @@ shared::FrameConstants frameConstants(const PellucidFrame& f) {
     c.level[level] = {place.x - place.rect.x, place.y - place.rect.y, clusterColumn(f, level) - place.rect.x,
                       place.y - place.rect.y};
   }
+  const PyramidTexel summed = summedPlace(f);
+  c.level[kFirstLevel].z = summed.x;
+  c.level[kFirstLevel].w = summed.y;
   const PyramidPlace resolved = placeOf(f, 2);
   const ResolvedPlace place = resolvedPlaceOf(f);
   c.level[0] = {place.x - resolved.rect.x, place.y - resolved.rect.y, place.sharesX - resolved.rect.x,

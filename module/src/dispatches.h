@@ -404,12 +404,14 @@ struct Builder {
     return true;
   }
 
-  // Of levels up to `coarsest`, from them and the pixels, when they have been resolved.
+  // Of levels up to `coarsest`, from them and the pixels, when they have been resolved. Those of the last one
+  // are made where they are summed.
   bool clusters(uint32_t coarsest, uint32_t source) {
     PellucidDispatch* d = dispatch("clusters", PELLUCID_PIPELINE_CLUSTERS);
     if (!d) return false;
     const auto across = [](uint32_t first, uint32_t pixels) {
-      return ((first + pixels - 1) >> PELLUCID_LAST_LEVEL) - (first >> PELLUCID_LAST_LEVEL) + 1;
+      constexpr uint32_t kSide = 4 * PELLUCID_CLUSTERS_GROUP;  // pixels
+      return (first + pixels - 1) / kSide - first / kSide + 1;
     };
     d->groups[0] = across(rect.x, rect.width);
     d->groups[1] = across(rect.y, rect.height);
@@ -421,7 +423,8 @@ struct Builder {
     image(d, PELLUCID_BINDING_NORMAL, PELLUCID_RESOURCE_NORMAL, 0);
     // The plan does not know how much is tilted, of which pixels are read and level 1 is written.
     d->modeledBytes = 0;
-    for (uint32_t level = 1; level <= coarsest; ++level) levelTraffic(d, level);
+    for (uint32_t level = 1; level <= std::min(coarsest, PELLUCID_LAST_LEVEL - 1u); ++level)
+      levelTraffic(d, level);
     return true;
   }
 

@@ -48,6 +48,10 @@ int32_t clusterColumn(const PellucidFrame& frame, uint32_t level) {
   return placeOf(frame, level).x + static_cast<int32_t>(most(frame.imageExtent[0], level));
 }
 
+PyramidTexel summedPlace(const PellucidFrame& frame) {
+  return {static_cast<int32_t>(firstColumns(frame.imageExtent[0])) - 1, 0};
+}
+
 ResolvedPlace resolvedPlaceOf(const PellucidFrame& frame) {
   const PyramidPlace second = placeOf(frame, 2);
   if (!keepsFirstLevel(frame)) return {0, 0, second.rect.width, 0};

@@ -37,6 +37,14 @@ ResolvedPlace resolvedPlaceOf(const PellucidFrame& frame);
 // level 2.
 int32_t clusterColumn(const PellucidFrame& frame, uint32_t level);
 
+// Where edges are summed, of the texel that says whether any is: right of level 1, whose rows have two more
+// texels than it needs.
+struct PyramidTexel {
+  int32_t x, y;
+};
+
+PyramidTexel summedPlace(const PellucidFrame& frame);
+
 // Of the pyramid's image, for any render rect.
 struct PyramidExtent {
   uint32_t width, height;

@@ -53,6 +53,10 @@ void expectApart(PellucidFrame f, bool keepsFirst = false) {
     if (keepsFirstLevel(f) && level >= PELLUCID_FIRST_BESIDE)
       boxes.push_back({clusterColumn(f, level), b.y, b.width, b.height});
   }
+  if (keepsFirst) {
+    const PyramidTexel summed = summedPlace(f);
+    boxes.push_back({summed.x, summed.y, 1, 1});
+  }
   const PyramidExtent extent = pyramidExtent(f);
   for (size_t i = 0; i < boxes.size(); ++i) {
     for (size_t j = 0; j < i; ++j) EXPECT_TRUE(apart(boxes[i], boxes[j])) << i << " and " << j;
