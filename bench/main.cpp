@@ -100,6 +100,12 @@ void modulePlans(const Bench& bench) {
     dispatches(bench, *frame);
     bench.row(moduleVariant(frame, "whole frame"), {});
   }
+  ReplaySettings best;
+  best.quality = 3;
+  bench.report.section("module, quality 3");
+  const auto frame = bench.frame(bench.fullSlab(), best);
+  dispatches(bench, *frame);
+  bench.row(moduleVariant(frame, "whole frame"), {});
 }
 
 // Where surfaces end and curve, which takes longer than planes.

@@ -60,6 +60,7 @@ std::string measured(const Json& results) {
       {"balls of 25 pixels", "edges, balls of 25 pixels", "whole frame"},
       {"balls of 400 pixels, quality 3", "edges, balls of 400 pixels", "whole frame, quality 3"},
       {"balls of 100 pixels, quality 3", "edges, balls of 100 pixels", "whole frame, quality 3"},
+      {"whole frame, quality 3", "module, quality 3", "whole frame"},
       {"fused translucency dispatch alone", "fused dispatch", "1 lights, 1 maps"},
       {"diffusion alone, quality 0", diffusion, "Pellucid, quality 0"},
       {"quality 2", diffusion, "Pellucid, quality 2"},

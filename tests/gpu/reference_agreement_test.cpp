@@ -466,4 +466,38 @@ TEST_F(GpuTest, MiddleOfABallIsSummedWithItsRim) {
   EXPECT_LT(seam, 0.05);
 }
 
+// A long tilted plane lit at one end: what reaches the other comes from clusters of the last level alone,
+// which are merged where they are summed.
+TEST_F(GpuTest, SumsReachAsFarAsTheLastLevel) {
+  constexpr int kWidth = 520, kHeight = 16, kLit = 448, kFar = 100;
+  Capture c = flatCapture(kWidth, kHeight);
+  const double pixel = 2 / (c.clipFromView[0] * kWidth), tilt = glm::radians(60.0);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      c.frontDepth.image.at(x, y)[0] = static_cast<float>(100 + std::tan(tilt) * y * pixel);
+      c.normal.at(x, y)[1] = static_cast<float>(-std::sin(tilt));
+      c.normal.at(x, y)[2] = static_cast<float>(std::cos(tilt));
+      for (int k = 0; k < 3; ++k) c.irradiance.at(x, y)[k] = x >= kLit ? 1.0f : 0.0f;
+    }
+  PellucidMaterial m = testMaterial();
+  const double deviation = 300 * pixel;
+  m.gaussianCount = 1;
+  for (int k = 0; k < 3; ++k) {
+    m.gaussianVariance[k][0] = static_cast<float>(deviation * deviation);
+    m.gaussianWeight[k][0] = 1;
+    m.radius[k] = static_cast<float>(3.8 * deviation);
+  }
+  ReplaySettings s;
+  s.features = PELLUCID_FEATURE_DIFFUSION;
+  s.quality = 3;
+  reference::Settings r;
+  r.features = s.features;
+  const Image truth = reference::compute(c, {m}, r).image, out = rgb(replayer().run(c, {m}, s).output);
+  double worst = 0;
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kFar; ++x)
+      worst = std::max(worst, std::abs(out.at(x, y)[0] / truth.at(x, y)[0] - 1.0));
+  EXPECT_LT(worst, 0.02);
+}
+
 }  // namespace
