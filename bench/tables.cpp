@@ -54,13 +54,13 @@ std::string measured(const Json& results) {
   const char* const gather = "gather, added to the frame; error: from all texels";
   const Row rows[] = {
       {"whole frame", module, "whole frame"},
+      {"whole frame, quality 3", "module, quality 3", "whole frame"},
       {"whole frame, a quarter covered", "module, 25 % covered", "whole frame"},
       {"whole frame, balls of 400 pixels on a third of it", "edges, balls of 400 pixels", "whole frame"},
       {"balls of 100 pixels", "edges, balls of 100 pixels", "whole frame"},
       {"balls of 25 pixels", "edges, balls of 25 pixels", "whole frame"},
       {"balls of 400 pixels, quality 3", "edges, balls of 400 pixels", "whole frame, quality 3"},
       {"balls of 100 pixels, quality 3", "edges, balls of 100 pixels", "whole frame, quality 3"},
-      {"whole frame, quality 3", "module, quality 3", "whole frame"},
       {"fused translucency dispatch alone", "fused dispatch", "1 lights, 1 maps"},
       {"diffusion alone, quality 0", diffusion, "Pellucid, quality 0"},
       {"quality 2", diffusion, "Pellucid, quality 2"},
