@@ -15,6 +15,7 @@
 #endif
 
 layout(set = 0, binding = PELLUCID_BINDING_KERNELS) readonly buffer Kernels { KernelConstants kernels[]; };
+#include "passes/profile.glsl"
 
 // A level sums what is under texels of the next coarser one so far to each side, where the finer level does not.
 const int kAround = 2, kWindow = 2 * (2 * kAround + 1);
@@ -26,9 +27,9 @@ const int kInvocations = kPixels * kPixels;
 // Of clusters the largest window, of level 1, and what lies in a window of that side.
 const int kClusterSide = 2 * (kTexels + 2 * kAround), kClusters = kClusterSide * kClusterSide;
 
-// Pixels, then clusters of a level: center, mm, and area, mm^2, of pixels with an axis; color and material. After the places of
-// clusters their moments: those of red, green and blue over the root of the area, three halves each. The last of them is in
-// lasts[], which has the slope of pixels. All that a group holds decides how many run at a time.
+// Pixels, then clusters of a level: center, mm, and area, mm^2, of pixels with an axis; color and material. After the places
+// of clusters, in halves, the sides of their surface and along each of them the moments of red, green and blue, in roots of the
+// area; the last four in lasts[], which has the slope of pixels. All that a group holds decides how many run at a time.
 shared uvec4 places[kSide * kSide];
 shared uvec2 colors[kSide * kSide];
 shared uint lasts[kSide * kSide];
@@ -72,137 +73,6 @@ vec3 tilt(vec2 pixel, vec3 normal) {
               dot(n.xy, row) * inversesqrt(max(dot(row, row), 1.0e-30)), 1.0) * inverse;
 }
 
-// A pixel's material, and what its taps take from it.
-struct Kernel {
-  uint m;
-  vec4 reach;
-  int first; // bits of the first entry's squared distance
-};
-
-const int kLastEntry = PELLUCID_DISTANCE_ENTRIES - 1;
-
-// Of an area over the squared distance. Nearer than that the second order says too much.
-const float kMostRelative = 0.8;
-
-// Of the profile at a squared distance. What the table's nearest entry is off by, 2 % and more, would show where few clusters
-// light a pixel: the first order of it is taken out, which leaves .05 %.
-struct Profile {
-  vec3 value, curved, fall; // R, (r R)'' / r, -d ln R / d ln r^2
-};
-
-Profile profileAt(Kernel k, float squared) {
-  int i = (floatBitsToInt(squared) - k.first + (1 << (PELLUCID_DISTANCE_SHIFT - 1))) >> PELLUCID_DISTANCE_SHIFT;
-  i = clamp(i, 0, kLastEntry);
-  uvec4 entry = kernels[k.m].distance[i];
-  // As floats from 2^23 on, since conversions of integers take several times as long as what they would save.
-  uvec3 falls = uvec3(entry.w, entry.w >> 10, entry.w >> 20) & 1023u;
-  vec3 fall = (uintBitsToFloat(0x4B000000u | falls) - 8388608.0) * (float(PELLUCID_MOST_FALL) / 1023.0);
-  // Entries are positive; before the first one R does not change. Half of what entries are apart, less than 1 over the most
-  // that R falls.
-  float beyond = clamp(squared / intBitsToFloat(k.first + (i << PELLUCID_DISTANCE_SHIFT)) - 1.0, -0.031, 0.031);
-  return Profile(uintBitsToFloat(entry.xyz) * (1.0 - fall * beyond), uintBitsToFloat(entry.xyz << 16), fall);
-}
-
-// The profile's mean over a square of that area, mm^2, times the area. `squared`: the squared distance > 0, mm^2, at which 1/r
-// is its mean there and `at` the profile. With R = g / r, that makes up for 1/r and, to second order, for the slope of g; its
-// curvature adds area / (24 r^2) times r^2 laplace(R) - R + g' = r g''.
-vec3 meanOf(Profile at, float squared, float area) {
-  return area * (at.value + min(area, kMostRelative * squared) * (1.0 / 24.0) * at.curved);
-}
-
-vec3 meanAt(Kernel k, float squared, float area) { return meanOf(profileAt(k, squared), squared, area); }
-
-// Part of the energy within a squared distance. Before the first entry it is like the area.
-vec3 enclosed(Kernel k, float squared) {
-  float at = float(floatBitsToInt(squared) - k.first) * exp2(-float(PELLUCID_DISTANCE_SHIFT));
-  at = clamp(at, 0.0, float(kLastEntry) - 1.0e-3);
-  uint i = uint(at);
-  return mix(kernels[k.m].enclosed[i].rgb, kernels[k.m].enclosed[i + 1u].rgb, fract(at)) * min(squared / k.reach.y, 1.0);
-}
-
-// What a pixel has of its own, its surface `area` times as large as one facing the camera: of a disc whose mean of 1/r,
-// which the profile is like near 0, is that of a rectangle so long.
-vec3 ownPart(Kernel k, float facing, float area) {
-  float radius = (area * asinh(1.0 / area) + asinh(area)) * (1.0 / 3.14159265);
-  return enclosed(k, max(radius * radius * facing, 1.0e-30));
-}
-
-// The squared distance at which 1/r is its mean over a square of that area, to second order.
-float meanSquare(float squared, float area) { return max(squared - area * (1.0 / 12.0), max(0.25 * squared, 1.0e-30)); }
-
-// The same over a pixel's surface: a segment of the axis along which it is longer, exactly, and across it to second order.
-// `offset`: of its center, `axis`: unit and half of the length, `facing`: the square of its width.
-float meanSquare(vec3 offset, vec4 axis, float facing) {
-  float squared = max(dot(offset, offset), 1.0e-30), along = min(abs(dot(offset, axis.xyz)), sqrt(squared));
-  float across = squared - along * along, width = facing * (1.0 / 12.0);
-  across = max(across + width * (1.0 - 3.0 * across / squared), 0.03 * facing);
-  float begin = along - axis.w, end = along + axis.w;
-  // across > 0, so both are positive, the first less than the second.
-  float mean = log((end + sqrt(end * end + across)) / (begin + sqrt(begin * begin + across)));
-  float distance = 2.0 * axis.w / max(mean, 1.0e-6);
-  return distance * distance;
-}
-
-// The direction in which a pixel's surface is longer, of either sign, in the last bits of its area: octahedral, to a
-// degree, which moves the end of the longest by a fifth of a pixel. The area keeps .1 %.
-const uint kAxisBits = 0x3FFFu;
-const float kAxisMost = 127.0;
-
-float withAxis(float area, vec3 axis) {
-  vec3 v = axis.z < 0.0 ? -axis : axis;
-  vec2 p = v.xy / max(abs(v.x) + abs(v.y) + v.z, 1.0e-30);
-  uvec2 q = uvec2((0.5 + 0.5 * vec2(p.x + p.y, p.x - p.y)) * kAxisMost + 0.5);
-  return uintBitsToFloat((floatBitsToUint(area) & ~kAxisBits) | q.x | q.y << 7);
-}
-
-// With the axis of another.
-float withAxisOf(float area, vec4 place) {
-  return uintBitsToFloat((floatBitsToUint(area) & ~kAxisBits) | (floatBitsToUint(place.w) & kAxisBits));
-}
-
-float placeArea(vec4 place) { return uintBitsToFloat(floatBitsToUint(place.w) & ~kAxisBits); }
-
-vec3 placeAxis(vec4 place) {
-  uint bits = floatBitsToUint(place.w);
-  vec2 q = vec2(bits & 0x7Fu, bits >> 7 & 0x7Fu) * (1.0 / kAxisMost) - 0.5;
-  vec2 p = vec2(q.x + q.y, q.x - q.y);
-  return normalize(vec3(p, 1.0 - abs(p.x) - abs(p.y))); // of a length of 0.57 at least
-}
-
-// From how many times as long as wide on a pixel's surface is taken in segments, and in how many at most.
-const float kLong = 1.5, kMostParts = 4.0;
-
-// The profile's mean over a pixel's surface, or a quarter of it, times its area, `facing`: that of one facing the camera.
-vec3 ofPixel(Kernel k, vec4 place, vec3 offset, float facing) {
-  float squared = dot(offset, offset), area = placeArea(place);
-  // From three pixels and its length on it does not matter that it is longer than wide.
-  bool far = squared > 9.0 * facing + area * area / facing;
-  if (far || area < kLong * facing) return meanAt(k, meanSquare(squared, area), area);
-  vec3 axis = placeAxis(place);
-  float width = sqrt(facing), halfLength = 0.5 * area / width;
-  // As long as wide, each.
-  float parts = clamp(floor(2.0 * halfLength / width + 0.5), 1.0, kMostParts);
-  vec3 weight = vec3(0.0);
-  for (float part = 0.5; part < parts; part += 1.0) {
-    float at = halfLength * (2.0 * part / parts - 1.0);
-    vec4 segment = vec4(axis, halfLength / parts);
-    weight += meanAt(k, meanSquare(offset + at * axis, segment, facing), area / parts);
-  }
-  return weight;
-}
-
-// The same of one near the pixel, where the profile falls too steeply for that: of its quarters. `x`, `y`: the sides of its
-// surface.
-vec3 ofNeighbor(Kernel k, vec4 place, vec3 offset, float facing, vec3 x, vec3 y) {
-  vec4 quarter = vec4(place.xyz, withAxisOf(0.25 * placeArea(place), place));
-  vec3 weight = vec3(0.0);
-  for (int i = 0; i < 4; ++i) {
-    vec2 to = 0.5 * vec2(i & 1, i >> 1) - 0.25;
-    weight += ofPixel(k, quarter, offset + to.x * x + to.y * y, 0.25 * facing);
-  }
-  return weight;
-}
-
 struct Sums {
   vec3 color, weight;
 };
@@ -226,7 +96,7 @@ void loadPixels(ivec2 firstPixel) {
     float steep = length(tilted.xy), rise = steep * sqrt(facing) / frame.camera.range.w;
     vec2 toward = steep > 0.0 ? tilted.xy / steep : vec2(1.0, 0.0);
     vec3 center = pointAt(vec2(at), depth), axis = pointAt(vec2(at) + toward, depth + rise) - center;
-    places[i] = floatBitsToUint(vec4(center, withAxis(facing * tilted.z, axis)));
+    places[i] = floatBitsToUint(vec4(center, withAxis(facing * tilted.z, axisBits(axis))));
     lasts[i] = packHalf2x16(tilted.xy);
     colors[i] = packColor(sanitize(texelFetch(sourceImage, at, 0).rgb), material);
   }
@@ -278,42 +148,40 @@ void loadClusters(uint level, ivec2 firstPixel) {
     vec2 pixel = pixelOf(level, texel) + side * c.center;
     vec3 center = pointAt(pixel, c.depth);
     float area = c.mass * pixelArea(c.depth) * side * side;
-    float scale = inversesqrt(max(area, 1.0e-30));
-    vec3 x = scale * (pointAt(pixel + vec2(side, 0.0), c.depth + rise.x) - center);
-    vec3 y = scale * (pointAt(pixel + vec2(0.0, side), c.depth + rise.y) - center);
-    vec3 r = c.momentX.r * x + c.momentY.r * y, g = c.momentX.g * x + c.momentY.g * y, b = c.momentX.b * x + c.momentY.b * y;
+    vec3 x = pointAt(pixel + vec2(side, 0.0), c.depth + rise.x) - center;
+    vec3 y = pointAt(pixel + vec2(0.0, side), c.depth + rise.y) - center;
+    // Of the whole texel. What there is of it is taken to be as much smaller along both.
+    float whole = max(length(cross(x, y)), 1.0e-30), scale = inversesqrt(whole);
+    x *= scale;
+    y *= scale;
+    float larger = area > 0.0 ? sqrt(whole / area) : 0.0;
+    vec3 momentX = larger * c.momentX, momentY = larger * c.momentY;
     places[i] = floatBitsToUint(vec4(center, area));
     colors[i] = packColor(c.color, c.mass > 0.0 ? c.material : 0u);
-    places[kClusters + i] = uvec4(packHalf2x16(r.xy), packHalf2x16(vec2(r.z, g.x)), packHalf2x16(g.yz), packHalf2x16(b.xy));
-    lasts[i] = packHalf2x16(vec2(b.z, 0.0));
+    places[kClusters + i] = uvec4(packHalf2x16(x.xy), packHalf2x16(vec2(x.z, y.x)), packHalf2x16(y.yz),
+                                  packHalf2x16(momentX.xy));
+    lasts[i] = packHalf2x16(vec2(momentX.z, momentY.x));
+    lasts[kClusters + i] = packHalf2x16(momentY.yz);
   }
 }
 
-// How far to each side pixels are summed by quarters, at that distance long ones alone, and how many these are in a row.
-const int kNear = 2, kNearRow = 2 * kNear + 1;
+// How far to each side long pixels are summed by quarters; next to the pixel all are. In a window of as many and those of the
+// quad's other pixels each pixel has weights of its own.
+const int kNear = 2, kOwnWindow = 2 * kNear + 2;
 
 // Pixels around the one `local` from the tile's first, `pixel` of the image; `facing`: area of one that faces the camera.
 void addPixels(inout Sums sums, ivec2 local, ivec2 pixel, Kernel k, vec3 center, float facing) {
-  int first = (local.y & ~1) * kSide + (local.x & ~1);
-  ivec2 near = 2 * kAround + (local & 1) - kNear; // the first of those below
-  for (int y = 0; y < kWindow; ++y) {
-    int skipped = y < near.y || y >= near.y + kNearRow ? 0 : kNearRow;
-    for (int j = 0; j < kWindow - skipped; ++j) {
-      int i = first + y * kSide + (j < near.x ? j : j + skipped);
-      vec4 place = placeAt(i);
-      uvec2 color = colors[i];
-      vec3 weight = ofPixel(k, place, place.xyz - center, facing);
-      add(sums, color, color.y >> 16 == k.m + 1u ? weight : vec3(0.0));
-    }
-  }
-  for (int j = 0; j < kNearRow * kNearRow; ++j) {
-    ivec2 to = ivec2(j % kNearRow, j / kNearRow) - kNear;
+  // From the quad's other pixels on, so that all four have their neighbors in the same turn.
+  ivec2 away = 2 * (local & 1) - 1;
+  for (int j = 0; j < kOwnWindow * kOwnWindow; ++j) {
+    ivec2 to = away * (ivec2(j % kOwnWindow, j / kOwnWindow) - kNear - 1), steps = abs(to);
     int i = ownPlace(local + to);
     vec4 place = placeAt(i);
     uvec2 color = colors[i];
     if (to == ivec2(0) || color.y >> 16 != k.m + 1u) continue;
     vec3 offset = place.xyz - center;
-    if (any(equal(abs(to), ivec2(kNear))) && placeArea(place) < kLong * facing) {
+    bool isNear = max(steps.x, steps.y) <= kNear && placeArea(place) >= kLong * facing;
+    if (!isNear && steps.x + steps.y != 1) {
       add(sums, color, ofPixel(k, place, offset, facing));
       continue;
     }
@@ -325,43 +193,130 @@ void addPixels(inout Sums sums, ivec2 local, ivec2 pixel, Kernel k, vec3 center,
   }
 }
 
-void addCluster(inout Sums sums, int i, Kernel k, vec3 center) {
-  vec4 place = placeAt(i);
-  uvec2 color = colors[i];
-  vec3 offset = place.xyz - center;
-  float area = color.y >> 16 == k.m + 1u ? place.w : 0.0;
-  // The floor keeps what follows finite.
-  float squared = max(meanSquare(dot(offset, offset), area), 1.0e-6 * area);
-  Profile profile = profileAt(k, squared);
-  vec3 weight = meanOf(profile, squared, area);
-  uvec4 bits = places[kClusters + i];
-  vec2 both = unpackHalf2x16(bits.y);
-  vec3 red = vec3(unpackHalf2x16(bits.x), both.x), green = vec3(both.y, unpackHalf2x16(bits.z));
-  vec3 blue = vec3(unpackHalf2x16(bits.w), unpackHalf2x16(lasts[i]).x);
-  // To first order each channel's light is where its moments say; the profile changes by 2 R' / R of r^2 times how much nearer
-  // that is.
-  vec3 nearer = vec3(dot(offset, red), dot(offset, green), dot(offset, blue)) * (-2.0 * sqrt(area) / squared);
-  sums.color += weight * max(1.0 + profile.fall * nearer, vec3(0.0)) * unpackColor(color);
-  sums.weight += weight;
+// Pixels of a quad that light from farther away is found for together: of one material and near each other. For the others of
+// the quad's all is 0.
+struct Targets {
+  vec3 center;     // mean of theirs
+  vec4 from[4];    // xyz: -2 times each one's offset from it, w: that offset's square
+  float counts[4]; // 1 or 0
+};
+
+// How far from one of them others of a level may be, in squared sides of a texel: three pixels of level 1, as planes tilted by
+// 60 degrees have them in a quad.
+const float kMostApart = 2.25;
+
+// Those of `left` that go with its first one, `leader`, which leave it.
+Targets targetsOf(inout uint left, uint level, int leader, uint material, vec3 first, vec3 centers[4], uint materials[4]) {
+  float most = kMostApart * exp2(2.0 * float(max(level, 1u))) * pixelArea(first.z / frame.camera.range.w), count = 0.0;
+  Targets targets;
+  targets.center = vec3(0.0);
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    vec3 to = centers[i] - first;
+    bool counts = (left >> i & 1u) != 0u && materials[i] == material && (i == leader || dot(to, to) <= most);
+    targets.counts[i] = counts ? 1.0 : 0.0;
+    targets.center += counts ? to : vec3(0.0);
+    count += targets.counts[i];
+    left &= counts ? ~(1u << i) : ~0u;
+  }
+  targets.center = first + targets.center / count; // the leader counts
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    vec3 to = targets.counts[i] != 0.0 ? centers[i] - targets.center : vec3(0.0);
+    targets.from[i] = vec4(-2.0 * to, dot(to, to));
+  }
+  return targets;
 }
 
-void addClusters(inout Sums sums, uint level, ivec2 firstPixel, ivec2 local, Kernel k, vec3 center) {
-  ivec2 origin = windowOf(level, firstPixel).first, texel = (firstPixel + local) >> int(level), odd = texel & 1;
-  ivec2 parent = 2 * ((texel >> 1) - kAround) - origin;
-  int first = parent.y * kClusterSide + parent.x;
-  // Rows and columns beside what the finer level does: two and three of them, or three and two. Rows at once, so that their
-  // latencies overlap.
-  for (int i = 0; i <= 2 * kAround; ++i) {
-    int y = i < kAround ? i : i > kAround ? i + 2 * kAround + 1 : odd.y == 0 ? 3 * kAround + 1 : kAround;
-    [[unroll]] for (int x = 0; x < kWindow; ++x) addCluster(sums, first + y * kClusterSide + x, k, center);
+// To each target, a source whose `weight`, and that times its color, are found for their center. `squared`: of the distance at
+// which `fall` is the profile's. A target's is 1 + u times as large, |u| mostly below .6, and its profile (1 + u)^-fall times:
+// the square of half of that exponent to third order, which is never negative.
+void addToTargets(inout Sums sums[4], Targets targets, vec3 offset, float squared, vec3 fall, vec3 weight, vec3 light) {
+  float inverse = 1.0 / squared;
+  vec3 first = 0.5 * fall, second = first * (first + 1.0) * 0.5, third = second * (first + 2.0) * (1.0 / 3.0);
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    float u = clamp((targets.from[i].w + dot(offset, targets.from[i].xyz)) * inverse, -1.0, 1.0);
+    // Where it is no target u is 0.
+    vec3 root = targets.counts[i] + u * (u * (second - u * third) - first), part = root * root;
+    sums[i].color += light * part;
+    sums[i].weight += weight * part;
   }
-  for (int i = 0; i <= 2 * kAround; ++i) {
-    int y = kAround + odd.y + i;
-    [[unroll]] for (int j = 0; j <= 2 * kAround; ++j) {
-      int x = j < kAround ? j : j > kAround ? j + 2 * kAround + 1 : odd.x == 0 ? 3 * kAround + 1 : kAround;
-      addCluster(sums, first + y * kClusterSide + x, k, center);
-    }
+}
+
+// n / d for n below 100 and d of 4, 5 and 10, without a division's instructions.
+uint divided(uint n, uint d) { return (n * (1023u / d + 1u)) >> 10; }
+
+// The place `i` of a window of kWindow to a side but for a hole, `hole` wide and kAround from the first row and column; whole
+// rows come first.
+ivec2 aroundHole(uint i, uint hole) {
+  const uint side = uint(kWindow), before = uint(kAround);
+  uint kept = side - hole, inWhole = kept * side;
+  bool isWhole = i < inWhole;
+  uint inRow = isWhole ? side : kept, j = isWhole ? i : i - inWhole;
+  uint row = isWhole ? divided(j, side) : divided(j, kept), column = j - row * inRow;
+  return ivec2(isWhole || column < before ? column : column + hole,
+               isWhole ? (row < before ? row : row + hole) : row + before);
+}
+
+// Pixels beyond those that each pixel has weights of its own for. Of them, and of clusters, each of the quad's four
+// invocations takes every fourth, from `first` on.
+void addFarPixels(inout Sums sums[4], ivec2 local, Kernel k, Targets targets, uint first) {
+  const uint hole = uint(kOwnWindow), count = uint(kWindow * kWindow) - hole * hole;
+  int origin = (local.y & ~1) * kSide + (local.x & ~1);
+  float facing = max(pixelArea(targets.center.z / frame.camera.range.w), 1.0e-30);
+  for (uint i = first; i < count; i += 4u) {
+    ivec2 at = aroundHole(i, hole);
+    int from = origin + at.y * kSide + at.x;
+    uvec2 color = colors[from];
+    // Where nothing of the material is, depths may be anything.
+    vec4 place = color.y >> 16 == k.m + 1u ? placeAt(from) : vec4(targets.center, 0.0);
+    vec3 offset = place.xyz - targets.center;
+    float area = placeArea(place), distance2 = dot(offset, offset);
+    Extent extent = extentOf(place, offset, facing);
+    float squared = meanSquare(distance2, extent);
+    Profile profile = profileAt(k, squared);
+    vec3 weight = area * meanOf(profile, squared, extent);
+    if (isLong(area, distance2, facing)) weight = ofPixel(k, place, offset, facing);
+    addToTargets(sums, targets, offset, squared, profile.fall, weight, weight * unpackColor(color));
   }
+}
+
+void addCluster(inout Sums sums[4], int i, Kernel k, Targets targets) {
+  vec4 place = placeAt(i);
+  uvec2 color = colors[i];
+  uvec4 bits = places[kClusters + i];
+  vec2 two = unpackHalf2x16(bits.y), four = unpackHalf2x16(lasts[i]);
+  vec3 x = vec3(unpackHalf2x16(bits.x), two.x), y = vec3(two.y, unpackHalf2x16(bits.z));
+  vec3 momentX = vec3(unpackHalf2x16(bits.w), four.x), momentY = vec3(four.y, unpackHalf2x16(lasts[kClusters + i]));
+  vec3 offset = place.xyz - targets.center;
+  float area = color.y >> 16 == k.m + 1u ? place.w : 0.0, distance2 = max(dot(offset, offset), 1.0e-30);
+  vec2 along = vec2(dot(offset, x), dot(offset, y));
+  Extent extent = Extent(area * dot(along, along) / distance2, area * (dot(x, x) + dot(y, y)));
+  // The floor keeps what follows finite.
+  float squared = max(meanSquare(distance2, extent), 1.0e-6 * area);
+  Profile profile = profileAt(k, squared);
+  vec3 weight = area * meanOf(profile, squared, extent);
+  // To first order each channel's light is where its moments say; the profile changes by 2 R' / R of r^2 times how much nearer
+  // that is.
+  vec3 nearer = (along.x * momentX + along.y * momentY) * (-2.0 * sqrt(area) / squared);
+  vec3 light = weight * max(1.0 + profile.fall * nearer, vec3(0.0)) * unpackColor(color);
+  addToTargets(sums, targets, offset, squared, profile.fall, weight, light);
+}
+
+// The hole, of what the finer level does, is at a place of an odd texel as of an even one mirrored.
+void addClusters(inout Sums sums[4], uint level, ivec2 firstPixel, ivec2 local, Kernel k, Targets targets, uint first) {
+  const uint hole = uint(2 * kAround + 1), count = uint(kWindow * kWindow) - hole * hole;
+  ivec2 texel = (firstPixel + local) >> int(level), odd = texel & 1;
+  ivec2 origin = 2 * ((texel >> 1) - kAround) - windowOf(level, firstPixel).first + odd * (kWindow - 1);
+  for (uint i = first; i < count; i += 4u) {
+    ivec2 at = origin + (1 - 2 * odd) * aroundHole(i, hole);
+    addCluster(sums, at.y * kClusterSide + at.x, k, targets);
+  }
+}
+
+// The coarsest level whose window holds most of a material's radius.
+uint lastLevel(Kernel k, vec3 center) {
+  float facing = max(pixelArea(center.z / frame.camera.range.w), 1.0e-30);
+  float level = ceil(log2(max(0.8 * k.reach.x * inversesqrt(facing) / float(2 * kAround), 1.0)));
+  return uint(clamp(level, 1.0, float(pass.value.x)));
 }
 
 // Pixels of a tile's edges; a bit for each of its texels says which are.
@@ -376,29 +331,58 @@ void diffuseTile(ivec2 firstPixel, uint edgeTexels) {
   int texel = max(findLSB(edgeTexels), 0), inTexel = invocation % 16;
   ivec2 local = 4 * ivec2(texel % kTexels, texel / kTexels) + ivec2(inTexel % 4, inTexel / 4), pixel = firstPixel + local;
   int own = ownPlace(local);
-  uint material = colors[own].y >> 16;
-  Kernel k = Kernel(max(material, 1u) - 1u, vec4(0.0), 0);
-  if (material != 0u) k.reach = kernels[k.m].reach;
-  k.first = floatBitsToInt(k.reach.y);
+  uint material = colors[own].y >> 16, inQuad = uint((local.x & 1) + 2 * (local.y & 1));
+  Kernel k = kernelOf(material);
   bool diffuses = isEdge && k.reach.x > 0.0;
-  vec3 center = placeAt(own).xyz;
-  Sums sums = Sums(vec3(0.0), vec3(0.0));
-  uint last = 0u; // of the pixel's levels
+  vec3 center = placeAt(own).xyz, centers[4];
+  uint materials[4];
+  Sums sums = Sums(vec3(0.0), vec3(0.0)), ofQuad[4];
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    int at = ownPlace(childOf(local >> 1, i));
+    centers[i] = placeAt(at).xyz;
+    materials[i] = isEdge ? colors[at].y >> 16 : 0u;
+    ofQuad[i] = Sums(vec3(0.0), vec3(0.0));
+  }
   if (diffuses) {
     float facing = max(pixelArea(center.z / frame.camera.range.w), 1.0e-30);
-    // The coarsest level whose window holds most of the radius.
-    float level = ceil(log2(max(0.8 * k.reach.x * inversesqrt(facing) / float(2 * kAround), 1.0)));
-    last = uint(clamp(level, 1.0, float(pass.value.x)));
-    atomicMax(coarsest, last);
+    atomicMax(coarsest, lastLevel(k, center));
     add(sums, colors[own], ownPart(k, facing, max(placeArea(placeAt(own)) / facing, 1.0)));
     addPixels(sums, local, pixel, k, center, facing);
   }
   barrier();
   uint levels = coarsest;
-  for (uint level = 1u; level <= levels; ++level) {
-    loadClusters(level, firstPixel);
+  for (uint level = 0u; level <= levels; ++level) {
+    if (level > 0u) {
+      loadClusters(level, firstPixel);
+      barrier();
+    }
+    uint left = 0u;
+    [[unroll]] for (int i = 0; i < 4; ++i) left |= materials[i] != 0u ? 1u << i : 0u;
+    while (left != 0u) {
+      int leader = findLSB(left);
+      vec3 first = leader == 0 ? centers[0] : leader == 1 ? centers[1] : leader == 2 ? centers[2] : centers[3];
+      uint theirs = leader == 0 ? materials[0] : leader == 1 ? materials[1] : leader == 2 ? materials[2] : materials[3];
+      Targets targets = targetsOf(left, level, leader, theirs, first, centers, materials);
+      Kernel kernel = kernelOf(theirs);
+      if (kernel.reach.x <= 0.0 || level > lastLevel(kernel, first)) continue;
+      if (level == 0u)
+        addFarPixels(ofQuad, local, kernel, targets, inQuad);
+      else
+        addClusters(ofQuad, level, firstPixel, local, kernel, targets, inQuad);
+    }
     barrier();
-    if (level <= last) addClusters(sums, level, firstPixel, local, k, center);
+  }
+  // Each invocation has a fourth of the sums of the quad's four.
+  [[unroll]] for (uint i = 0u; i < 4u; ++i) {
+    places[2 * invocation] = floatBitsToUint(vec4(ofQuad[i].color, ofQuad[i].weight.x));
+    places[2 * invocation + 1] = uvec4(floatBitsToUint(ofQuad[i].weight.yz), 0u, 0u);
+    barrier();
+    // Bits 0 and 2 of an invocation are its pixel's place in the quad.
+    for (int j = 0; j < 4 && inQuad == i; ++j) {
+      int from = 2 * ((invocation & ~5) | (j & 1) | (j & 2) << 1);
+      sums.color += placeAt(from).xyz;
+      sums.weight += vec3(placeAt(from).w, placeAt(from + 1).xy);
+    }
     barrier();
   }
   if (isEdge && insideRect(pixel) && materialAt(pixel) != 0u) {
