@@ -165,23 +165,31 @@ void loadClusters(uint level, ivec2 firstPixel) {
   }
 }
 
-// How far to each side long pixels are summed by quarters; next to the pixel all are. In a window of as many and those of the
-// quad's other pixels each pixel has weights of its own.
-const int kNear = 2, kOwnWindow = 2 * kNear + 2;
+// How far to each side long pixels are summed by quarters, and how many these are in a row; next to the pixel all are.
+const int kNear = 2, kNearRow = 2 * kNear + 1;
 
 // Pixels around the one `local` from the tile's first, `pixel` of the image; `facing`: area of one that faces the camera.
 void addPixels(inout Sums sums, ivec2 local, ivec2 pixel, Kernel k, vec3 center, float facing) {
-  // From the quad's other pixels on, so that all four have their neighbors in the same turn.
-  ivec2 away = 2 * (local & 1) - 1;
-  for (int j = 0; j < kOwnWindow * kOwnWindow; ++j) {
-    ivec2 to = away * (ivec2(j % kOwnWindow, j / kOwnWindow) - kNear - 1), steps = abs(to);
+  int first = (local.y & ~1) * kSide + (local.x & ~1);
+  ivec2 near = 2 * kAround + (local & 1) - kNear; // the first of those below
+  for (int y = 0; y < kWindow; ++y) {
+    int skipped = y < near.y || y >= near.y + kNearRow ? 0 : kNearRow;
+    for (int j = 0; j < kWindow - skipped; ++j) {
+      int i = first + y * kSide + (j < near.x ? j : j + skipped);
+      vec4 place = placeAt(i);
+      uvec2 color = colors[i];
+      vec3 weight = ofPixel(k, place, place.xyz - center, facing);
+      add(sums, color, color.y >> 16 == k.m + 1u ? weight : vec3(0.0));
+    }
+  }
+  for (int j = 0; j < kNearRow * kNearRow; ++j) {
+    ivec2 to = ivec2(j % kNearRow, j / kNearRow) - kNear;
     int i = ownPlace(local + to);
     vec4 place = placeAt(i);
     uvec2 color = colors[i];
     if (to == ivec2(0) || color.y >> 16 != k.m + 1u) continue;
     vec3 offset = place.xyz - center;
-    bool isNear = max(steps.x, steps.y) <= kNear && placeArea(place) >= kLong * facing;
-    if (!isNear && steps.x + steps.y != 1) {
+    if (abs(to.x) + abs(to.y) > 1 && placeArea(place) < kLong * facing) {
       add(sums, color, ofPixel(k, place, offset, facing));
       continue;
     }
@@ -193,100 +201,14 @@ void addPixels(inout Sums sums, ivec2 local, ivec2 pixel, Kernel k, vec3 center,
   }
 }
 
-// Pixels of a quad that light from farther away is found for together: of one material and near each other. For the others of
-// the quad's all is 0.
-struct Targets {
-  vec3 center;     // mean of theirs
-  vec4 from[4];    // xyz: -2 times each one's offset from it, w: that offset's square
-  float counts[4]; // 1 or 0
-};
-
-// How far from one of them others of a level may be, in squared sides of a texel: three pixels of level 1, as planes tilted by
-// 60 degrees have them in a quad.
-const float kMostApart = 2.25;
-
-// Those of `left` that go with its first one, `leader`, which leave it.
-Targets targetsOf(inout uint left, uint level, int leader, uint material, vec3 first, vec3 centers[4], uint materials[4]) {
-  float most = kMostApart * exp2(2.0 * float(max(level, 1u))) * pixelArea(first.z / frame.camera.range.w), count = 0.0;
-  Targets targets;
-  targets.center = vec3(0.0);
-  [[unroll]] for (int i = 0; i < 4; ++i) {
-    vec3 to = centers[i] - first;
-    bool counts = (left >> i & 1u) != 0u && materials[i] == material && (i == leader || dot(to, to) <= most);
-    targets.counts[i] = counts ? 1.0 : 0.0;
-    targets.center += counts ? to : vec3(0.0);
-    count += targets.counts[i];
-    left &= counts ? ~(1u << i) : ~0u;
-  }
-  targets.center = first + targets.center / count; // the leader counts
-  [[unroll]] for (int i = 0; i < 4; ++i) {
-    vec3 to = targets.counts[i] != 0.0 ? centers[i] - targets.center : vec3(0.0);
-    targets.from[i] = vec4(-2.0 * to, dot(to, to));
-  }
-  return targets;
-}
-
-// To each target, a source whose `weight`, and that times its color, are found for their center. `squared`: of the distance at
-// which `fall` is the profile's. A target's is 1 + u times as large, |u| mostly below .6, and its profile (1 + u)^-fall times:
-// the square of half of that exponent to third order, which is never negative.
-void addToTargets(inout Sums sums[4], Targets targets, vec3 offset, float squared, vec3 fall, vec3 weight, vec3 light) {
-  float inverse = 1.0 / squared;
-  vec3 first = 0.5 * fall, second = first * (first + 1.0) * 0.5, third = second * (first + 2.0) * (1.0 / 3.0);
-  [[unroll]] for (int i = 0; i < 4; ++i) {
-    float u = clamp((targets.from[i].w + dot(offset, targets.from[i].xyz)) * inverse, -1.0, 1.0);
-    // Where it is no target u is 0.
-    vec3 root = targets.counts[i] + u * (u * (second - u * third) - first), part = root * root;
-    sums[i].color += light * part;
-    sums[i].weight += weight * part;
-  }
-}
-
-// n / d for n below 100 and d of 4, 5 and 10, without a division's instructions.
-uint divided(uint n, uint d) { return (n * (1023u / d + 1u)) >> 10; }
-
-// The place `i` of a window of kWindow to a side but for a hole, `hole` wide and kAround from the first row and column; whole
-// rows come first.
-ivec2 aroundHole(uint i, uint hole) {
-  const uint side = uint(kWindow), before = uint(kAround);
-  uint kept = side - hole, inWhole = kept * side;
-  bool isWhole = i < inWhole;
-  uint inRow = isWhole ? side : kept, j = isWhole ? i : i - inWhole;
-  uint row = isWhole ? divided(j, side) : divided(j, kept), column = j - row * inRow;
-  return ivec2(isWhole || column < before ? column : column + hole,
-               isWhole ? (row < before ? row : row + hole) : row + before);
-}
-
-// Pixels beyond those that each pixel has weights of its own for. Of them, and of clusters, each of the quad's four
-// invocations takes every fourth, from `first` on.
-void addFarPixels(inout Sums sums[4], ivec2 local, Kernel k, Targets targets, uint first) {
-  const uint hole = uint(kOwnWindow), count = uint(kWindow * kWindow) - hole * hole;
-  int origin = (local.y & ~1) * kSide + (local.x & ~1);
-  float facing = max(pixelArea(targets.center.z / frame.camera.range.w), 1.0e-30);
-  for (uint i = first; i < count; i += 4u) {
-    ivec2 at = aroundHole(i, hole);
-    int from = origin + at.y * kSide + at.x;
-    uvec2 color = colors[from];
-    // Where nothing of the material is, depths may be anything.
-    vec4 place = color.y >> 16 == k.m + 1u ? placeAt(from) : vec4(targets.center, 0.0);
-    vec3 offset = place.xyz - targets.center;
-    float area = placeArea(place), distance2 = dot(offset, offset);
-    Extent extent = extentOf(place, offset, facing);
-    float squared = meanSquare(distance2, extent);
-    Profile profile = profileAt(k, squared);
-    vec3 weight = area * meanOf(profile, squared, extent);
-    if (isLong(area, distance2, facing)) weight = ofPixel(k, place, offset, facing);
-    addToTargets(sums, targets, offset, squared, profile.fall, weight, weight * unpackColor(color));
-  }
-}
-
-void addCluster(inout Sums sums[4], int i, Kernel k, Targets targets) {
+void addCluster(inout Sums sums, int i, Kernel k, vec3 center) {
   vec4 place = placeAt(i);
   uvec2 color = colors[i];
   uvec4 bits = places[kClusters + i];
   vec2 two = unpackHalf2x16(bits.y), four = unpackHalf2x16(lasts[i]);
   vec3 x = vec3(unpackHalf2x16(bits.x), two.x), y = vec3(two.y, unpackHalf2x16(bits.z));
   vec3 momentX = vec3(unpackHalf2x16(bits.w), four.x), momentY = vec3(four.y, unpackHalf2x16(lasts[kClusters + i]));
-  vec3 offset = place.xyz - targets.center;
+  vec3 offset = place.xyz - center;
   float area = color.y >> 16 == k.m + 1u ? place.w : 0.0, distance2 = max(dot(offset, offset), 1.0e-30);
   vec2 along = vec2(dot(offset, x), dot(offset, y));
   Extent extent = Extent(area * dot(along, along) / distance2, area * (dot(x, x) + dot(y, y)));
@@ -297,26 +219,27 @@ void addCluster(inout Sums sums[4], int i, Kernel k, Targets targets) {
   // To first order each channel's light is where its moments say; the profile changes by 2 R' / R of r^2 times how much nearer
   // that is.
   vec3 nearer = (along.x * momentX + along.y * momentY) * (-2.0 * sqrt(area) / squared);
-  vec3 light = weight * max(1.0 + profile.fall * nearer, vec3(0.0)) * unpackColor(color);
-  addToTargets(sums, targets, offset, squared, profile.fall, weight, light);
+  sums.color += weight * max(1.0 + profile.fall * nearer, vec3(0.0)) * unpackColor(color);
+  sums.weight += weight;
 }
 
-// The hole, of what the finer level does, is at a place of an odd texel as of an even one mirrored.
-void addClusters(inout Sums sums[4], uint level, ivec2 firstPixel, ivec2 local, Kernel k, Targets targets, uint first) {
-  const uint hole = uint(2 * kAround + 1), count = uint(kWindow * kWindow) - hole * hole;
-  ivec2 texel = (firstPixel + local) >> int(level), odd = texel & 1;
-  ivec2 origin = 2 * ((texel >> 1) - kAround) - windowOf(level, firstPixel).first + odd * (kWindow - 1);
-  for (uint i = first; i < count; i += 4u) {
-    ivec2 at = origin + (1 - 2 * odd) * aroundHole(i, hole);
-    addCluster(sums, at.y * kClusterSide + at.x, k, targets);
+void addClusters(inout Sums sums, uint level, ivec2 firstPixel, ivec2 local, Kernel k, vec3 center) {
+  ivec2 origin = windowOf(level, firstPixel).first, texel = (firstPixel + local) >> int(level), odd = texel & 1;
+  ivec2 parent = 2 * ((texel >> 1) - kAround) - origin;
+  int first = parent.y * kClusterSide + parent.x;
+  // Rows and columns beside what the finer level does: two and three of them, or three and two. Rows at once, so that their
+  // latencies overlap.
+  for (int i = 0; i <= 2 * kAround; ++i) {
+    int y = i < kAround ? i : i > kAround ? i + 2 * kAround + 1 : odd.y == 0 ? 3 * kAround + 1 : kAround;
+    [[unroll]] for (int x = 0; x < kWindow; ++x) addCluster(sums, first + y * kClusterSide + x, k, center);
   }
-}
-
-// The coarsest level whose window holds most of a material's radius.
-uint lastLevel(Kernel k, vec3 center) {
-  float facing = max(pixelArea(center.z / frame.camera.range.w), 1.0e-30);
-  float level = ceil(log2(max(0.8 * k.reach.x * inversesqrt(facing) / float(2 * kAround), 1.0)));
-  return uint(clamp(level, 1.0, float(pass.value.x)));
+  for (int i = 0; i <= 2 * kAround; ++i) {
+    int y = kAround + odd.y + i;
+    [[unroll]] for (int j = 0; j <= 2 * kAround; ++j) {
+      int x = j < kAround ? j : j > kAround ? j + 2 * kAround + 1 : odd.x == 0 ? 3 * kAround + 1 : kAround;
+      addCluster(sums, first + y * kClusterSide + x, k, center);
+    }
+  }
 }
 
 // Pixels of a tile's edges; a bit for each of its texels says which are.
@@ -331,58 +254,27 @@ void diffuseTile(ivec2 firstPixel, uint edgeTexels) {
   int texel = max(findLSB(edgeTexels), 0), inTexel = invocation % 16;
   ivec2 local = 4 * ivec2(texel % kTexels, texel / kTexels) + ivec2(inTexel % 4, inTexel / 4), pixel = firstPixel + local;
   int own = ownPlace(local);
-  uint material = colors[own].y >> 16, inQuad = uint((local.x & 1) + 2 * (local.y & 1));
+  uint material = colors[own].y >> 16;
   Kernel k = kernelOf(material);
   bool diffuses = isEdge && k.reach.x > 0.0;
-  vec3 center = placeAt(own).xyz, centers[4];
-  uint materials[4];
-  Sums sums = Sums(vec3(0.0), vec3(0.0)), ofQuad[4];
-  [[unroll]] for (int i = 0; i < 4; ++i) {
-    int at = ownPlace(childOf(local >> 1, i));
-    centers[i] = placeAt(at).xyz;
-    materials[i] = isEdge ? colors[at].y >> 16 : 0u;
-    ofQuad[i] = Sums(vec3(0.0), vec3(0.0));
-  }
+  vec3 center = placeAt(own).xyz;
+  Sums sums = Sums(vec3(0.0), vec3(0.0));
+  uint last = 0u; // of the pixel's levels
   if (diffuses) {
     float facing = max(pixelArea(center.z / frame.camera.range.w), 1.0e-30);
-    atomicMax(coarsest, lastLevel(k, center));
+    // The coarsest level whose window holds most of the radius.
+    float level = ceil(log2(max(0.8 * k.reach.x * inversesqrt(facing) / float(2 * kAround), 1.0)));
+    last = uint(clamp(level, 1.0, float(pass.value.x)));
+    atomicMax(coarsest, last);
     add(sums, colors[own], ownPart(k, facing, max(placeArea(placeAt(own)) / facing, 1.0)));
     addPixels(sums, local, pixel, k, center, facing);
   }
   barrier();
   uint levels = coarsest;
-  for (uint level = 0u; level <= levels; ++level) {
-    if (level > 0u) {
-      loadClusters(level, firstPixel);
-      barrier();
-    }
-    uint left = 0u;
-    [[unroll]] for (int i = 0; i < 4; ++i) left |= materials[i] != 0u ? 1u << i : 0u;
-    while (left != 0u) {
-      int leader = findLSB(left);
-      vec3 first = leader == 0 ? centers[0] : leader == 1 ? centers[1] : leader == 2 ? centers[2] : centers[3];
-      uint theirs = leader == 0 ? materials[0] : leader == 1 ? materials[1] : leader == 2 ? materials[2] : materials[3];
-      Targets targets = targetsOf(left, level, leader, theirs, first, centers, materials);
-      Kernel kernel = kernelOf(theirs);
-      if (kernel.reach.x <= 0.0 || level > lastLevel(kernel, first)) continue;
-      if (level == 0u)
-        addFarPixels(ofQuad, local, kernel, targets, inQuad);
-      else
-        addClusters(ofQuad, level, firstPixel, local, kernel, targets, inQuad);
-    }
+  for (uint level = 1u; level <= levels; ++level) {
+    loadClusters(level, firstPixel);
     barrier();
-  }
-  // Each invocation has a fourth of the sums of the quad's four.
-  [[unroll]] for (uint i = 0u; i < 4u; ++i) {
-    places[2 * invocation] = floatBitsToUint(vec4(ofQuad[i].color, ofQuad[i].weight.x));
-    places[2 * invocation + 1] = uvec4(floatBitsToUint(ofQuad[i].weight.yz), 0u, 0u);
-    barrier();
-    // Bits 0 and 2 of an invocation are its pixel's place in the quad.
-    for (int j = 0; j < 4 && inQuad == i; ++j) {
-      int from = 2 * ((invocation & ~5) | (j & 1) | (j & 2) << 1);
-      sums.color += placeAt(from).xyz;
-      sums.weight += vec3(placeAt(from).w, placeAt(from + 1).xy);
-    }
+    if (level <= last) addClusters(sums, level, firstPixel, local, k, center);
     barrier();
   }
   if (isEdge && insideRect(pixel) && materialAt(pixel) != 0u) {

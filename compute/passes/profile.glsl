@@ -104,40 +104,38 @@ float withAxis(float area, uint bits) {
 
 float placeArea(vec4 place) { return uintBitsToFloat(floatBitsToUint(place.w) & ~kAxisBits); }
 
+// Of a length from 0.57 to 1.
 vec3 placeAxis(vec4 place) {
   uint bits = floatBitsToUint(place.w);
   vec2 q = vec2(bits & 0x7Fu, bits >> 7 & 0x7Fu) * (1.0 / kAxisMost) - 0.5;
   vec2 p = vec2(q.x + q.y, q.x - q.y);
-  return normalize(vec3(p, 1.0 - abs(p.x) - abs(p.y))); // of a length of 0.57 at least
+  return vec3(p, 1.0 - abs(p.x) - abs(p.y));
 }
 
 // From how many times as long as wide on a pixel's surface is taken in segments, and in how many at most.
-const float kLong = 1.5, kMostParts = 4.0;
+const float kLong = 2.0, kMostParts = 4.0;
 // Nor is it longer than that to second order.
 const float kLongest = 5.0;
-
-// Whether a pixel's surface is taken in segments: from three pixels and its length on the second order is enough. `squared`:
-// of its distance; `facing`: area of one that faces the camera.
-bool isLong(float area, float squared, float facing) {
-  return squared <= 9.0 * facing + area * area / facing && area >= kLong * facing;
-}
 
 // A pixel's surface, which is as wide as one that faces the camera.
 Extent extentOf(vec4 place, vec3 offset, float facing) {
   float area = placeArea(place), length2 = min(area * area / facing, kLongest * kLongest * facing);
-  float along = dot(placeAxis(place), offset), part = min(along * along / max(dot(offset, offset), 1.0e-30), 1.0);
+  vec3 axis = placeAxis(place);
+  float along = dot(axis, offset), part = min(along * along / max(dot(offset, offset) * dot(axis, axis), 1.0e-30), 1.0);
   return Extent(mix(facing, length2, part), length2 + facing);
 }
 
-// The profile's mean over a pixel's surface, or a quarter of it, times its area.
+// The profile's mean over a pixel's surface, or a quarter of it, times its area, `facing`: that of one facing the camera.
 vec3 ofPixel(Kernel k, vec4 place, vec3 offset, float facing) {
   float squared = dot(offset, offset), area = placeArea(place);
-  if (!isLong(area, squared, facing)) {
+  // From three pixels and its length on the second order is enough.
+  bool far = squared > 9.0 * facing + area * area / facing;
+  if (far || area < kLong * facing) {
     Extent extent = extentOf(place, offset, facing);
     float mean = meanSquare(squared, extent);
     return area * meanOf(profileAt(k, mean), mean, extent);
   }
-  vec3 axis = placeAxis(place), weight = vec3(0.0);
+  vec3 axis = normalize(placeAxis(place)), weight = vec3(0.0);
   float width = sqrt(facing), halfLength = 0.5 * area / width;
   // As long as wide, each.
   float parts = clamp(floor(2.0 * halfLength / width + 0.5), 1.0, kMostParts), part = area / parts;
