@@ -44,6 +44,8 @@ shared uint edgeRows, anySurface, anyShape; // anyShape: whether a texel has a F
 const ivec2 kPoints = kTexels + 1;
 #endif
 
+const float kWider = 0.0;
+
 #include "passes/planes.glsl"
 
 #ifndef COARSE

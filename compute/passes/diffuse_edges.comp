@@ -102,6 +102,14 @@ void loadPixels(ivec2 firstPixel) {
   }
 }
 
+// Sides of a texel's surface, mm, around `center`, which lies at `pixel`.
+void sidesOf(vec2 pixel, vec3 center, vec2 slope, float side, out vec3 x, out vec3 y) {
+  float depth = center.z / frame.camera.range.w;
+  vec2 rise = slope * texelSize(depth, 0u) * side;
+  x = pointAt(pixel + vec2(side, 0.0), depth + rise.x) - center;
+  y = pointAt(pixel + vec2(0.0, side), depth + rise.y) - center;
+}
+
 // The slope of the pyramid's texel at a cluster, if that is its surface.
 vec2 slopeAt(uint level, ivec2 texel, uint material) {
   ivec2 place = level > 2u ? inAtlas(level, texel) : resolvedPlace(level == 2u ? texel : texel >> 1);
@@ -137,19 +145,55 @@ Cluster clusterAt(uint level, ivec2 texel) {
   return c;
 }
 
+// The mean slope of a quad's pixels, of which few at silhouettes are much steeper than the others.
+vec2 slopeOfQuad(ivec2 quad, uint material) {
+  const float kMost = 10.0;
+  vec3 sum = vec3(0.0);
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    ivec2 pixel = childOf(quad, i), at = withinRect(pixel);
+    bool counts = at == pixel && frontDistance(at) > 0.0 && materialAt(at) == material;
+    sum += counts ? vec3(tilt(vec2(at), normalAt(at)).xy, 1.0) : vec3(0.0);
+  }
+  vec2 mean = sum.xy / max(sum.z, 1.0);
+  return mean * min(1.0, kMost * inversesqrt(max(dot(mean, mean), 1.0e-30)));
+}
+
+// A cluster's center, mm, times its area.
+vec4 weightedCenter(uint level, ivec2 texel) {
+  uvec4 bits = clusterBits(level, texel);
+  Cluster c = isPlane(bits) ? clusterOfTexel(bits) : unpackCluster(bits);
+  float side = exp2(float(level)), area = c.mass * pixelArea(c.depth) * side * side;
+  return c.mass > 0.0 ? vec4(area * pointAt(pixelOf(level, texel) + side * c.center, c.depth), area) : vec4(0.0);
+}
+
+// Sides of a cluster's surface by its children: twice what the halves' centers are apart. Not where they are missing or so far
+// apart that one lies behind the other.
+void sidesByChildren(uint level, ivec2 texel, float mostSquared, inout vec3 x, inout vec3 y) {
+  vec4 left = vec4(0.0), right = vec4(0.0), top = vec4(0.0), bottom = vec4(0.0);
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    vec4 child = weightedCenter(level - 1u, childOf(texel, i));
+    if ((i & 1) == 0) left += child; else right += child;
+    if (i < 2) top += child; else bottom += child;
+  }
+  vec3 across = 2.0 * (right.xyz / max(right.w, 1.0e-30) - left.xyz / max(left.w, 1.0e-30));
+  vec3 down = 2.0 * (bottom.xyz / max(bottom.w, 1.0e-30) - top.xyz / max(top.w, 1.0e-30));
+  if (min(left.w, right.w) > 0.0 && dot(across, across) < mostSquared) x = across;
+  if (min(top.w, bottom.w) > 0.0 && dot(down, down) < mostSquared) y = down;
+}
+
 void loadClusters(uint level, ivec2 firstPixel) {
+  const float kMostApart = 16.0; // of what a texel facing the camera has, squared
   Window window = windowOf(level, firstPixel);
   float side = exp2(float(level));
   for (int i = int(gl_LocalInvocationIndex); i < kClusterSide * window.rows; i += kInvocations) {
     ivec2 texel = window.first + ivec2(i % kClusterSide, i / kClusterSide);
     Cluster c = clusterAt(level, texel);
-    // Depths are positive where something is.
-    vec2 rise = c.mass > 0.0 ? slopeAt(level, texel, c.material) * texelSize(c.depth, level) : vec2(0.0);
-    vec2 pixel = pixelOf(level, texel) + side * c.center;
-    vec3 center = pointAt(pixel, c.depth);
-    float area = c.mass * pixelArea(c.depth) * side * side;
-    vec3 x = pointAt(pixel + vec2(side, 0.0), c.depth + rise.x) - center;
-    vec3 y = pointAt(pixel + vec2(0.0, side), c.depth + rise.y) - center;
+    vec2 slope = vec2(0.0), pixel = pixelOf(level, texel) + side * c.center;
+    if (c.mass > 0.0) slope = level == 1u ? slopeOfQuad(texel, c.material) : slopeAt(level, texel, c.material);
+    vec3 center = pointAt(pixel, c.depth), x, y;
+    float facing = pixelArea(c.depth) * side * side, area = c.mass * facing;
+    sidesOf(pixel, center, slope, side, x, y);
+    if (level > 1u && c.mass > 0.0) sidesByChildren(level, texel, kMostApart * facing, x, y);
     // Of the whole texel. What there is of it is taken to be as much smaller along both.
     float whole = max(length(cross(x, y)), 1.0e-30), scale = inversesqrt(whole);
     x *= scale;
@@ -193,10 +237,8 @@ void addPixels(inout Sums sums, ivec2 local, ivec2 pixel, Kernel k, vec3 center,
       add(sums, color, ofPixel(k, place, offset, facing));
       continue;
     }
-    float depth = place.z / frame.camera.range.w;
-    vec2 at = vec2(pixel + to), rise = unpackHalf2x16(lasts[i]) * texelSize(depth, 0u);
-    vec3 x = pointAt(at + vec2(1.0, 0.0), depth + rise.x) - place.xyz;
-    vec3 y = pointAt(at + vec2(0.0, 1.0), depth + rise.y) - place.xyz;
+    vec3 x, y;
+    sidesOf(vec2(pixel + to), place.xyz, unpackHalf2x16(lasts[i]), 1.0, x, y);
     add(sums, color, ofNeighbor(k, place, offset, facing, x, y));
   }
 }
@@ -266,7 +308,9 @@ void diffuseTile(ivec2 firstPixel, uint edgeTexels) {
     float level = ceil(log2(max(0.8 * k.reach.x * inversesqrt(facing) / float(2 * kAround), 1.0)));
     last = uint(clamp(level, 1.0, float(pass.value.x)));
     atomicMax(coarsest, last);
-    add(sums, colors[own], ownPart(k, facing, max(placeArea(placeAt(own)) / facing, 1.0)));
+    vec3 x, y;
+    sidesOf(vec2(pixel), center, unpackHalf2x16(lasts[own]), 1.0, x, y);
+    add(sums, colors[own], ownPart(k, 0.5 * x, 0.5 * y));
     addPixels(sums, local, pixel, k, center, facing);
   }
   barrier();

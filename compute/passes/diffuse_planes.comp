@@ -1,4 +1,4 @@
-// Pixels of planes where edges are summed: two fine filters, of 3 x 3 and of 9 x 9 pixels, and the resolved pyramid.
+// Pixels of planes where edges are summed: two fine filters, of 5 x 5 and of 9 x 9 pixels, and the resolved pyramid.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -21,6 +21,7 @@ shared uint narrow[4 * kTexels.y * kColumns];
 shared uvec4 resolved[kWindow.x * kWindow.y];
 shared uvec4 shares[kWindow.x * kWindow.y];
 shared uint anySurface;
+shared uint anyPartial; // of kernels that the rect cuts
 
 #ifdef GATHER
 #include "passes/shared_points.glsl"
@@ -29,18 +30,21 @@ shared uint anySurface;
 const ivec2 kPoints = kTexels + 1;
 #endif
 
+// Towards the cubic B-spline, whose fourth texel has next to nothing.
+const float kWider = 0.027;
+
 #include "passes/planes.glsl"
 
-// 3 10 3 and 1 4 9 16 19 16 9 4 1, near Gaussians of .61 and 1.62 pixels.
-float narrowWeight(int i) { return i == 0 ? 10.0 / 16.0 : abs(i) == 1 ? 3.0 / 16.0 : 0.0; }
-
-float wideWeight(int i) { return float(i == 0 ? 19 : (5 - abs(i)) * (5 - abs(i))) / 79.0; }
+// 1 14 44 14 1 and 1 2 5 9 10 9 5 2 1, near Gaussians of .7 and 1.7 pixels.
+const float kNarrow[] = {44.0 / 74.0, 14.0 / 74.0, 1.0 / 74.0, 0.0, 0.0};
+const float kWide[] = {10.0 / 44.0, 9.0 / 44.0, 5.0 / 44.0, 2.0 / 44.0, 1.0 / 44.0};
+const int kNarrowRing = 2;
 
 // What of both filters lies in [first, end) in one direction. x: narrow, y: wide.
 vec2 within(int at, uint first, uint end) {
   vec2 sum = vec2(0.0);
   for (int i = -kRing; i <= kRing; ++i)
-    if (at + i >= int(first) && at + i < int(end)) sum += vec2(narrowWeight(i), wideWeight(i));
+    if (at + i >= int(first) && at + i < int(end)) sum += vec2(kNarrow[abs(i)], kWide[abs(i)]);
   return sum;
 }
 
@@ -49,11 +53,21 @@ void keepVertical(int place, uvec2 pixels[kRows + 2 * kRing], int row) {
   [[unroll]] for (int y = -kRing; y <= kRing; ++y) {
     // Planes have nothing that needs it, but may end at the rect beside what does.
     vec3 color = sanitize(unpackColor(pixels[row + kRing + y]));
-    wideSum += wideWeight(y) * color;
-    if (abs(y) <= 1) narrowSum += narrowWeight(y) * color;
+    wideSum += kWide[abs(y)] * color;
+    if (abs(y) <= kNarrowRing) narrowSum += kNarrow[abs(y)] * color;
   }
   wide[place] = uvec2(packHalf2x16(wideSum.rg), packHalf2x16(vec2(wideSum.b, narrowSum.b)));
   narrow[place] = packHalf2x16(narrowSum.rg);
+}
+
+// By how much the parts of two texels' kernels that lie in the rect may differ and still be taken as the same, 3 %.
+const float kMostUneven = 4.5;
+
+bool isEvenAround(int texel) {
+  vec3 own = unpackDensity(shares[texel].w), most = vec3(0.0);
+  for (int y = -1; y <= 1; ++y)
+    for (int x = -1; x <= 1; ++x) most = max(most, abs(unpackDensity(shares[texel + y * kWindow.x + x].w) - own));
+  return max(most.r, max(most.g, most.b)) < kMostUneven;
 }
 
 struct Filtered {
@@ -65,8 +79,8 @@ Filtered filtered(int place) {
   [[unroll]] for (int x = -kRing; x <= kRing; ++x) {
     uvec2 bits = wide[place + x];
     vec2 blue = unpackHalf2x16(bits.y);
-    f.wide += wideWeight(x) * vec3(unpackHalf2x16(bits.x), blue.x);
-    if (abs(x) <= 1) f.narrow += narrowWeight(x) * vec3(unpackHalf2x16(narrow[place + x]), blue.y);
+    f.wide += kWide[abs(x)] * vec3(unpackHalf2x16(bits.x), blue.x);
+    if (abs(x) <= kNarrowRing) f.narrow += kNarrow[abs(x)] * vec3(unpackHalf2x16(narrow[place + x]), blue.y);
   }
   return f;
 }
@@ -165,12 +179,14 @@ void main() {
 #ifdef GATHER
   if (invocation == 0) someLight = 0u;
 #endif
-  if (invocation == 0) anySurface = 0u;
+  if (invocation == 0) anySurface = anyPartial = 0u;
   barrier();
   if (invocation < kWindow.x * kWindow.y) {
     resolved[invocation] = texel;
     shares[invocation] = texelShares;
-    if (texel.y >> 16 != 0u) anySurface = 1u; // whoever writes, writes this
+    // Whoever writes, writes this.
+    if (texel.y >> 16 != 0u) anySurface = 1u;
+    if (hasSurface(texel) && (texelShares.w & kDensityBits) != kFullDensity) anyPartial = 1u;
   }
 #ifdef GATHER
   uint light = hasPoint ? kindsOfLight(texel) : 0u;
@@ -186,7 +202,7 @@ void main() {
   if (!hasSurface(resolved[inWindow]) || isSummed(shares[inWindow])) return;
   ivec2 top = 4 * firstTexel + ivec2(x, firstRow);
   int place = firstRow * kColumns + column;
-  if (isPlane(resolved[inWindow])) {
+  if (isPlane(resolved[inWindow]) && (anyPartial == 0u || isEvenAround(inWindow))) {
     uvec2 own[4];
     [[unroll]] for (int i = 0; i < 4; ++i) own[i] = pixels[i + kRing];
     diffuseColumn(top, inWindow, place, own, alphas);

@@ -66,12 +66,26 @@ vec3 enclosed(Kernel k, float squared) {
   return mix(kernels[k.m].enclosed[i].rgb, kernels[k.m].enclosed[i + 1u].rgb, fract(at)) * min(squared / k.reach.y, 1.0);
 }
 
-// What a pixel has of its own, its surface `area` times as large as one facing the camera: of a disc whose mean of 1/r,
-// which the profile is like near 0, is that of a rectangle so long.
-vec3 ownPart(Kernel k, float facing, float area) {
-  float radius = (area * asinh(1.0 / area) + asinh(area)) * (1.0 / 3.14159265);
-  return enclosed(k, max(radius * radius * facing, 1.0e-30));
+// What a pixel has of its own between its center and two of its surface's sides. `x`: from the center to one of them, `y`: half
+// of it, mm. In polar coordinates 1/pi times the integral of enclosed() over the angle; with the distance h of the side and
+// h sinh u along it the angle's differential is du / cosh u, and what is integrated as good as constant where the profile is
+// like 1/r.
+vec3 toSides(Kernel k, vec3 x, vec3 y) {
+  const int kSteps = 4;
+  float length2 = max(dot(y, y), 1.0e-30), along = dot(x, y) * inversesqrt(length2);
+  float height2 = max(dot(x, x) - along * along, 1.0e-4 * length2), perHeight = inversesqrt(height2);
+  float begin = asinh((along - sqrt(length2)) * perHeight), end = asinh((along + sqrt(length2)) * perHeight);
+  float u = end - begin;
+  vec3 sum = vec3(0.0);
+  for (int i = 0; i < kSteps; ++i) {
+    float e = exp(begin + u * ((float(i) + 0.5) / float(kSteps))), cosh2 = 0.5 * (e + 1.0 / e);
+    sum += enclosed(k, height2 * cosh2 * cosh2) / cosh2;
+  }
+  return sum * (u / (float(kSteps) * 3.14159265));
 }
+
+// All of it; `x` and `y`: halves of its sides.
+vec3 ownPart(Kernel k, vec3 x, vec3 y) { return toSides(k, x, y) + toSides(k, y, x); }
 
 // The same of a segment of a pixel's surface: along its axis exactly, and across it to second order.
 // `offset`: of its center, `axis`: unit and half of the length, `facing`: the square of its width.

@@ -46,7 +46,7 @@ void main() {
   if (kSumsEdges && invocation == 0 && groupIndex() == 0u) imageStore(levelsDestination, summedPlace(), uvec4(0u));
   // Groups of boxes take longest and come first.
   uint boxes = pass.value.z >> 16, index = groupIndex();
-  bool ofBoxes = index < boxes;
+  bool ofBoxes = !kSumsEdges && index < boxes;
   uint finer = ofBoxes ? 3u : pass.value.x;
   uvec2 place;
   if (ofBoxes) {

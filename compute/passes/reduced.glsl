@@ -1,11 +1,11 @@
-// A texel of the pyramid from 4 x 4 of the finer level, by 3 5 5 3 in each direction or, where edges are summed, 1 2 2 1: it
+// A texel of the pyramid from 4 x 4 of the finer level, by 3 5 5 3 in each direction or, where edges are summed, 3 8 8 3: it
 // takes the nearest of the four surfaces under it and averages those that lie on it. The finer level is in the including
 // pass's shared colors[], with mass, material and plane as packed, and depths[]; slopes are not needed.
 #ifndef PELLUCID_REDUCED_GLSL
 #define PELLUCID_REDUCED_GLSL
 
-// 3 5 5 3, variance 1, or 1 2 2 1, which errs less with the wider filters after it.
-const float kOuterWeight = kSumsEdges ? 1.0 / 6.0 : 3.0 / 16.0, kVariance = 0.25 + 4.0 * kOuterWeight;
+// 3 5 5 3, variance 1, or 3 8 8 3, which errs less with the wider filters after it.
+const float kOuterWeight = kSumsEdges ? 3.0 / 22.0 : 3.0 / 16.0, kVariance = 0.25 + 4.0 * kOuterWeight;
 
 float weight(int i) { return i == 0 || i == 3 ? kOuterWeight : 0.5 - kOuterWeight; }
 

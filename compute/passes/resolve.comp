@@ -147,13 +147,13 @@ vec4 stretched(ivec2 texel, uint level, ivec2 k, Texel own, Foreshortening f) {
   return sum / weights;
 }
 
-// Where edges are summed a level is filtered with 1 2 1 in each direction before the coarser ones are added, and foreshortened
+// Where edges are summed a level is filtered with 3 7 3 in each direction before the coarser ones are added, and foreshortened
 // planes, which are little tilted, by more along their axis, by the moments of 3 x 3 texels. `isFlat`: these are one plane.
 vec4 smoothed(ivec2 texel, uint level, Texel own, Foreshortening f, bool isFlat) {
   if (own.mass == 0.0) return vec4(0.0);
   // The variance of a level's kernel, squared texels, times the stretch, as far as all weights are positive.
-  float longer = clamp((19.0 / 18.0 - exp2(-2.0 * float(level))) * f.stretch, 0.0, 0.3);
-  vec2 moments = 0.5 + longer * f.axis * f.axis, middle = 1.0 - moments, side = 0.5 * moments;
+  float longer = clamp(0.98 * f.stretch, 0.0, 0.3);
+  vec2 moments = 6.0 / 13.0 + longer * f.axis * f.axis, middle = 1.0 - moments, side = 0.5 * moments;
   float corner = 0.25 * longer * f.axis.x * f.axis.y;
   ivec2 first = inAtlas(level, texel) - 1;
   if (isFlat) {
@@ -180,6 +180,7 @@ vec4 smoothed(ivec2 texel, uint level, Texel own, Foreshortening f, bool isFlat)
     }
     [[unroll]] for (int x = -1; x <= 1; ++x) {
       Texel t = unpackTexel(bits[x + 1]);
+      if (isPlane(bits[x + 1])) t.mass = areaOf(level, texel + ivec2(x, y), t.slope);
       float along = dot(own.slope, vec2(x, y) * size);
       float w = (x == 0 ? middle.x : side.x) * (y == 0 ? middle.y : side.y) + float(x * y) * corner;
       w *= t.mass * sameSurface(t.depth - own.depth - along, along, spread2, kStretchFalloff);
@@ -200,6 +201,8 @@ struct Own {
 Own ownPart(uint level, ivec2 texel, ivec2 k, uvec4 bits, out Foreshortening f) {
   Own own;
   own.texel = unpackTexel(bits);
+  // Not as packed, to 1.6 %.
+  if (kSumsEdges && isPlane(bits)) own.texel.mass = areaOf(level, texel, own.texel.slope);
   f = foreshortening(texel, level, own.texel.depth, own.texel.slope);
   bool isFlat = level == 2u && (bits.x & kFlat) != 0u;
   own.here = (kSumsEdges ? smoothed(texel, level, own.texel, f, isFlat) : stretched(texel, level, k, own.texel, f)) /

@@ -149,10 +149,9 @@ bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan
         if (group.gathered > 0) gathered = group;
       });
     // Levels 4 and 5 beside 2 and 3 save a dispatch that leaves most of a device free, which points of the
-    // gather can use.
-    const bool boxes = !stages.overlaps && coarsest >= kFirstLevel + 4;
-    // Sums of edges read levels 6 and 7, which a resolve that makes them keeps for itself.
-    const bool makesLast = boxes && coarsest == PELLUCID_LAST_LEVEL && !b.sumsEdges();
+    // gather can use, and err by more than sums of edges do.
+    const bool boxes = !stages.overlaps && !b.sumsEdges() && coarsest >= kFirstLevel + 4;
+    const bool makesLast = boxes && coarsest == PELLUCID_LAST_LEVEL;
     // Records, points and sharing, each beside one of the last three dispatches before the one that adds
     // points.
     const int32_t reductions = static_cast<int32_t>(coarsest + 1 - kFirstLevel) / 2;
