@@ -72,7 +72,7 @@ vec2 placeInParent(int i, vec2 center) { return 0.5 * (vec2(i & 1, i >> 1) - 0.5
 
 // How far behind the nearest one, in sides of the merged cluster, what belongs to it may lie: surfaces 85 degrees from facing
 // the camera do. Smaller limits lose light at the limbs of round things, larger ones join what lies far behind others.
-const float kClusterReach = 12.0;
+float clusterReach(uint level) { return level == 1u ? 12.0 : 16.0; }
 
 // Four packed ones of a level, rows first, as one of level `level`: of the nearest one's material, those that lie not far behind
 // it. `mass`: theirs, 0 where there is none, which would be rounded once a level if it were taken from the packed ones.
@@ -87,7 +87,7 @@ Cluster merged(uvec4 from[4], float mass[4], uint level) {
   }
   if (c.material == 0u) return c;
   vec2 side = texelSize(nearest, level);
-  float reach = kClusterReach * sqrt(side.x * side.y);
+  float reach = clusterReach(level) * sqrt(side.x * side.y);
   float masses[4];
   [[unroll]] for (int i = 0; i < 4; ++i) {
     Cluster f = unpackCluster(from[i]);

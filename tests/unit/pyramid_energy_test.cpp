@@ -46,15 +46,40 @@ TEST(PyramidEnergy, MixtureIsBurleysProfile) {
 }
 
 TEST(PyramidEnergy, OfBurleyIsThatOfItsGaussians) {
-  for (const FineFilters filters : {FineFilters::One, FineFilters::TwoOfPlanes})
-    for (int i = filters == FineFilters::One ? kFine : kNarrow; i < kElements; ++i) {
-      const auto element = static_cast<Element>(i);
-      const EnergyFrom gaussian = gaussianEnergy(filters, element), burley = burleyEnergy(filters, element);
-      // Between samples, too.
-      for (double x = -9; x < 10; x += 0.3)
-        EXPECT_NEAR(at(burley, x), mixed([&](double, double s) { return at(gaussian, s + x); }), 2e-3)
-            << i << " at " << x;
+  for (int i = kFine; i < kElements; ++i) {
+    const auto element = static_cast<Element>(i);
+    const EnergyFrom gaussian = gaussianEnergy(FineFilters::One, element),
+                     burley = burleyEnergy(FineFilters::One, element);
+    // Between samples, too.
+    for (double x = -9; x < 10; x += 0.3)
+      EXPECT_NEAR(at(burley, x), mixed([&](double, double s) { return at(gaussian, s + x); }), 2e-3)
+          << i << " at " << x;
+  }
+}
+
+// What is fitted to Burley's profile as a whole is near what its Gaussians ask for, but no level has less
+// than nothing, and where the fit ends what lies beyond a radius goes on as it was.
+TEST(PyramidEnergy, FitOfBurleyAsksForNothingBelowZero) {
+  for (int i = kNarrow; i < kElements; ++i) {
+    const auto element = static_cast<Element>(i);
+    const EnergyFrom gaussian = gaussianEnergy(FineFilters::TwoOfPlanes, element),
+                     burley = burleyEnergy(FineFilters::TwoOfPlanes, element);
+    for (double x = -9; x < 7; x += 0.3)
+      EXPECT_NEAR(at(burley, x), mixed([&](double, double s) { return at(gaussian, s + x); }), 0.04)
+          << i << " at " << x;
+    EXPECT_NEAR(burley.first + EnergyFrom::kStep * static_cast<double>(burley.samples.size() - 1), 7, 1e-9);
+    for (size_t k = 1; k < burley.samples.size(); ++k) {
+      const double x = burley.first + EnergyFrom::kStep * static_cast<double>(k);
+      if (element >= kLevel2) {
+        EXPECT_GE(burley.samples[k], 0) << i << " at " << x;
+      }
+      if (x > 0) {
+        EXPECT_GE(burley.samples[k], burley.samples[k - 1]) << i << " at " << x;
+      }
+      // The steepest slope is .41 an octave.
+      EXPECT_LT(burley.samples[k] - burley.samples[k - 1], 0.055) << i << " at " << x;
     }
+  }
 }
 
 // Far from all elements in width nothing or everything lies there.
