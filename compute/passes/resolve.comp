@@ -355,8 +355,8 @@ bool isPlaneInRect(ivec2 texel, uvec4 bits, vec2 size) {
 // Whether a texel of level 2 is an edge because the rect ends beside it: all around it in the rect lies on its plane, as
 // coarser texels do.
 bool endsAtRect(ivec2 texel, uvec4 bits) {
-  // As far as texels of level 4 reach over it.
-  if (contains(inset(levelRect(2u), 5), texel)) return false;
+  // Texels of level 4 that have something from outside begin up to 1 + 4 + 8 + 16 pixels before the rect's end.
+  if (contains(inset(levelRect(2u), 9), texel)) return false;
   vec2 size = texelSize(uintBitsToFloat(bits.z), 2u);
   bool plane = (bits.x & kFlat) != 0u || isPlaneInRect(texel, bits, size);
   uvec4 coarser[PELLUCID_LAST_LEVEL - 2];

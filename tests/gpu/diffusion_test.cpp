@@ -273,6 +273,30 @@ Capture perspective(int size) {
   return c;
 }
 
+// However the rect cuts texels: where all is one plane, the last dispatch, which sums edges, changes nothing.
+TEST_F(GpuTest, NothingIsSummedWhereAllIsOnePlane) {
+  const Context context(device());
+  Capture c = dark(208, 192);
+  for (int y = 0; y < c.height; ++y)
+    for (int x = 0; x < c.width; ++x) light(c, x, y, static_cast<float>((x * 7 + y * 13) % 5));
+  ReplaySettings s = ofQuality(3);
+  for (uint32_t i = 0; i < 16; ++i) {
+    // Ends at each pixel of a texel of level 4, begins at some.
+    const uint32_t x = 3 * i % 16, y = 5 * i % 16;
+    s.renderRect = {x, y, 208 - i - x, 192 - (7 * i + 3) % 16 - y};
+    const auto output = [&](uint32_t without) {
+      const FrameRun run(device(), context, c, {gaussians({1, 5, 12}, pixelOf(c))}, s);
+      const PellucidPlan& plan = run.plan();
+      EXPECT_STREQ(plan.dispatches[plan.dispatchCount - 1].name, "diffuse edges");
+      device().run([&](VkCommandBuffer commands) {
+        for (uint32_t d = 0; d + without < plan.dispatchCount; ++d) run.record(commands, d);
+      });
+      return run.output();
+    };
+    EXPECT_TRUE(sameBits(output(0), output(1))) << i;
+  }
+}
+
 // What the distance leaves out is not missed: levels that no Gaussian reaches.
 TEST_P(Diffusion, SmallRadiiAreTheSameWithFewerLevels) {
   const Capture c = perspective(96);
@@ -294,7 +318,8 @@ TEST_P(Diffusion, SmallRadiiAreTheSameWithFewerLevels) {
           ->pushConstants[0];
     };
     EXPECT_EQ(resolved(fewer.plan) + row.dropped, resolved(all.plan));
-    // Where edges are summed a reduction makes two levels; else the first makes four and the resolve the others.
+    // Where edges are summed a reduction makes two levels; else the first makes four and the resolve the
+    // others.
     EXPECT_EQ(fewer.plan.dispatchCount + (GetParam() == 3 ? row.dropped / 2 : 0), all.plan.dispatchCount);
     double most = 0;
     for (size_t i = 0; i < all.output.data.size(); ++i)

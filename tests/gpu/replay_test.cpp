@@ -275,8 +275,8 @@ TEST_F(Replay, DiffusionCountsBadIrradianceAsNone) {
       s.quality = quality;
       s.renderRect = rect;
       const Image expected = replay(good, testMaterial(), s), out = replay(bad, testMaterial(), s);
-      // What is bad is no plane, which quality 3 does not filter but sums.
-      const double near = quality == 3 ? 1e-2 : 2e-3;
+      // What is bad is no plane, which quality 3 does not filter but sums: as far off as filters of planes are.
+      const double near = quality == 3 ? 1.5e-2 : 2e-3;
       const int border = rect[0] == 0 ? 0 : 1;
       for (int y = border; y < 48 - border; ++y)
         for (int x = border; x < 64 - border; ++x)
