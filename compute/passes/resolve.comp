@@ -353,12 +353,15 @@ bool isPlaneInRect(ivec2 texel, uvec4 bits, vec2 size) {
 }
 
 // Whether a texel of level 2 is an edge because the rect ends beside it: all around it in the rect lies on its plane, as
-// coarser texels do.
-bool endsAtRect(ivec2 texel, uvec4 bits) {
+// coarser texels do. `fromEdges`: of its light.
+bool endsAtRect(ivec2 texel, uvec4 bits, float fromEdges) {
   // Texels of level 4 that have something from outside begin up to 1 + 4 + 8 + 16 pixels before the rect's end.
   if (contains(inset(levelRect(2u), 9), texel)) return false;
+  bool flatAround = (bits.x & kFlat) != 0u;
+  // Those of level 3 begin 1 + 4 + 8 pixels before it.
+  if (contains(inset(levelRect(2u), 5), texel) && (!flatAround || fromEdges >= kMostFromEdges)) return false;
   vec2 size = texelSize(uintBitsToFloat(bits.z), 2u);
-  bool plane = (bits.x & kFlat) != 0u || isPlaneInRect(texel, bits, size);
+  bool plane = flatAround || isPlaneInRect(texel, bits, size);
   uvec4 coarser[PELLUCID_LAST_LEVEL - 2];
   [[unroll]] for (uint i = 0u; i < uint(coarser.length()); ++i)
     coarser[i] = i + 3u <= pass.value.x ? texelFetch(pyramidImage, inAtlas(i + 3u, texel >> int(i + 1u)), 0) : uvec4(0u);
@@ -426,7 +429,8 @@ void resolveFine(ivec2 texel, ivec2 k, uvec4 bits) {
     color = uvec4(packColor(r.color, (bits.x & kFlat) != 0u ? upper | kPlane >> 16 : upper), bits.zw);
     uint flags = isPlane(bits) ? kFull : 0u;
     if (kSumsEdges) {
-      bool filtered = f.stretch < kMostStretch && (isFlatFor(own, r, bits, texel, k) || endsAtRect(texel, bits));
+      bool filtered = f.stretch < kMostStretch &&
+                      (isFlatFor(own, r, bits, texel, k) || endsAtRect(texel, bits, r.fromEdges));
       if (!filtered) {
         flags |= kSummed;
         anySummed = 1u; // whoever writes, writes this
