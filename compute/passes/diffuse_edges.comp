@@ -18,7 +18,7 @@ layout(set = 0, binding = PELLUCID_BINDING_KERNELS) readonly buffer Kernels { Ke
 #include "passes/profile.glsl"
 
 // A level sums what is under texels of the next coarser one so far to each side, where the finer level does not.
-const int kAround = 2, kWindow = 2 * (2 * kAround + 1);
+const int kAround = 2, kRows = 2 * kAround + 1, kWindow = 2 * kRows;
 // Edge-on surfaces show no more area than one so far from it.
 const float kLeastCosine = 0.05;
 // Pixels of a tile, its texels of level 2, and pixels with all around them that are summed one by one: the largest window.
@@ -34,7 +34,7 @@ shared uvec4 places[kSide * kSide];
 shared uvec2 colors[kSide * kSide];
 shared uint lasts[kSide * kSide];
 shared uint edges[PELLUCID_EDGES_TILES]; // of tiles, a bit for each texel
-shared uint coarsest;
+shared uint coarsest, rough; // rough: a bit for each texel that is not summed by quads
 
 // Window of a level around a tile.
 struct Window {
@@ -209,8 +209,8 @@ void loadClusters(uint level, ivec2 firstPixel) {
   }
 }
 
-// How far to each side long pixels are summed by quarters, and how many these are in a row; next to the pixel all are.
-const int kNear = 2, kNearRow = 2 * kNear + 1;
+// How far to each side long pixels are summed by quarters, and how many these are in a row; those next to the pixel all are.
+const int kNear = 1, kNearRow = 2 * kNear + 1;
 
 // Pixels around the one `local` from the tile's first, `pixel` of the image; `facing`: area of one that faces the camera.
 void addPixels(inout Sums sums, ivec2 local, ivec2 pixel, Kernel k, vec3 center, float facing) {
@@ -265,69 +265,140 @@ void addCluster(inout Sums sums, int i, Kernel k, vec3 center) {
   sums.weight += weight;
 }
 
-void addClusters(inout Sums sums, uint level, ivec2 firstPixel, ivec2 local, Kernel k, vec3 center) {
-  ivec2 origin = windowOf(level, firstPixel).first, texel = (firstPixel + local) >> int(level), odd = texel & 1;
+// Of the clusters around `texel` of a level runs of kRows in a row, from number `from` on every `step`th.
+void addClusters(inout Sums sums, uint level, ivec2 firstPixel, ivec2 texel, Kernel k, vec3 center, int from, int step) {
+  ivec2 origin = windowOf(level, firstPixel).first, odd = texel & 1;
   ivec2 parent = 2 * ((texel >> 1) - kAround) - origin;
   int first = parent.y * kClusterSide + parent.x;
-  // Rows and columns beside what the finer level does: two and three of them, or three and two. Rows at once, so that their
-  // latencies overlap.
-  for (int i = 0; i <= 2 * kAround; ++i) {
-    int y = i < kAround ? i : i > kAround ? i + 2 * kAround + 1 : odd.y == 0 ? 3 * kAround + 1 : kAround;
-    [[unroll]] for (int x = 0; x < kWindow; ++x) addCluster(sums, first + y * kClusterSide + x, k, center);
+  // Beside the kRows x kRows texels that the finer level does are kAround rows before them and one more after them, or the
+  // other way round: two runs each. Then what is left and right of them.
+  const int kAfter = 3 * kAround + 1;
+  for (int i = from; i < 3 * kRows; i += step) {
+    bool beside = i < 2 * kRows;
+    int row = i >> 1, outer = row < kAround ? row : row > kAround ? row + kRows : odd.y == 0 ? kAfter : kAround;
+    int run = first + (beside ? outer : i - 2 * kRows + kAround + odd.y) * kClusterSide;
+    run += beside && (i & 1) != 0 ? kRows : 0;
+    int skipped = beside ? 0 : kRows, middle = beside || odd.x != 0 ? kAround : kAfter;
+    // At once, so that their latencies overlap.
+    [[unroll]] for (int j = 0; j < kRows; ++j)
+      addCluster(sums, run + (j < kAround ? j : j > kAround ? j + skipped : middle), k, center);
   }
-  for (int i = 0; i <= 2 * kAround; ++i) {
-    int y = kAround + odd.y + i;
-    [[unroll]] for (int j = 0; j <= 2 * kAround; ++j) {
-      int x = j < kAround ? j : j > kAround ? j + 2 * kAround + 1 : odd.x == 0 ? 3 * kAround + 1 : kAround;
-      addCluster(sums, first + y * kClusterSide + x, k, center);
+}
+
+// From level 2 on a texel's pixels, which have the same windows, are summed by its quads: each of a quad's invocations does a
+// fourth of the clusters for the quad's center, and pixels take what is linear between the four quads. Not where one lies
+// farther from where these say, as the square of so many sides of a pixel that faces the camera.
+const float kMostOff = 0.25;
+
+// Centers of a texel's quads, rows first, from those of its pixels.
+void quadsOf(int firstOfTexel, out vec3 center[4]) {
+  [[unroll]] for (int q = 0; q < 4; ++q) {
+    center[q] = vec3(0.0);
+    [[unroll]] for (int i = 0; i < 4; ++i)
+      center[q] += 0.25 * placeAt(firstOfTexel + 8 * (q >> 1) + 4 * (i >> 1) + 2 * (q & 1) + (i & 1)).xyz;
+  }
+}
+
+// Parts of the four quads at one of the texel's pixels.
+vec4 ofQuads(ivec2 inTexel) {
+  vec2 to = 0.5 * vec2(inTexel) - 0.25; // from the first one's center to the next one's
+  return vec4((1.0 - to.x) * (1.0 - to.y), to.x * (1.0 - to.y), (1.0 - to.x) * to.y, to.x * to.y);
+}
+
+// The coarsest level whose window holds most of the radius.
+uint lastLevel(Kernel k, float facing) {
+  float level = ceil(log2(max(0.8 * k.reach.x * inversesqrt(facing) / float(2 * kAround), 1.0)));
+  return uint(clamp(level, 1.0, float(pass.value.x)));
+}
+
+// What all of a quad's pixels find at a pixel, `sums` what an invocation found of its quad's fourth.
+void exchange(inout Sums sums, int invocation, bool byQuads) {
+  places[invocation] = floatBitsToUint(vec4(sums.color, sums.weight.r));
+  colors[invocation] = floatBitsToUint(sums.weight.gb);
+  barrier();
+  if (byQuads) {
+    int inTexel = invocation % 16;
+    vec4 parts = ofQuads(ivec2(inTexel % 4, inTexel / 4));
+    sums = Sums(vec3(0.0), vec3(0.0));
+    for (int i = 0; i < 16; ++i) {
+      int from = invocation - inTexel + i;
+      float part = parts[(i >> 1 & 1) + (i >> 2 & 2)];
+      sums.color += part * placeAt(from).rgb;
+      sums.weight += part * vec3(placeAt(from).a, uintBitsToFloat(colors[from]));
     }
   }
+  barrier();
 }
 
 // Pixels of a tile's edges; a bit for each of its texels says which are.
 void diffuseTile(ivec2 firstPixel, uint edgeTexels) {
   int invocation = int(gl_LocalInvocationIndex);
-  if (invocation == 0) coarsest = 0u;
-  loadPixels(firstPixel);
-  barrier();
+  if (invocation == 0) coarsest = rough = 0u;
   // 16 invocations to a texel, so that those without one are whole subgroups.
   for (int before = invocation / 16; before > 0; --before) edgeTexels &= edgeTexels - 1u;
   bool isEdge = edgeTexels != 0u;
   int texel = max(findLSB(edgeTexels), 0), inTexel = invocation % 16;
   ivec2 local = 4 * ivec2(texel % kTexels, texel / kTexels) + ivec2(inTexel % 4, inTexel / 4), pixel = firstPixel + local;
-  int own = ownPlace(local);
-  uint material = colors[own].y >> 16;
+  ivec2 at = withinRect(pixel);
+  float depth = frontDistance(at);
+  uint material = at == pixel && depth > 0.0 ? materialAt(at) : 0u;
+  vec3 center = pointAt(vec2(at), depth), ofQuad = center;
+  places[invocation] = uvec4(floatBitsToUint(center), material);
+  barrier();
   Kernel k = kernelOf(material);
   bool diffuses = isEdge && k.reach.x > 0.0;
-  vec3 center = placeAt(own).xyz;
-  Sums sums = Sums(vec3(0.0), vec3(0.0));
-  uint last = 0u; // of the pixel's levels
+  uint last = 0u, lastOfTexel = 0u; // of the levels that are summed
   if (diffuses) {
-    float facing = max(pixelArea(center.z / frame.camera.range.w), 1.0e-30);
-    // The coarsest level whose window holds most of the radius.
-    float level = ceil(log2(max(0.8 * k.reach.x * inversesqrt(facing) / float(2 * kAround), 1.0)));
-    last = uint(clamp(level, 1.0, float(pass.value.x)));
+    float facing = max(pixelArea(depth), 1.0e-30);
+    last = lastLevel(k, facing);
     atomicMax(coarsest, last);
-    vec3 x, y;
-    sidesOf(vec2(pixel), center, unpackHalf2x16(lasts[own]), 1.0, x, y);
-    add(sums, colors[own], ownPart(k, 0.5 * x, 0.5 * y));
-    addPixels(sums, local, pixel, k, center, facing);
+  }
+  if (isEdge) {
+    vec3 quads[4];
+    quadsOf(invocation - inTexel, quads);
+    vec4 parts = ofQuads(local & 3);
+    vec3 mean = 0.25 * (quads[0] + quads[1] + quads[2] + quads[3]);
+    vec3 off = parts.x * quads[0] + parts.y * quads[1] + parts.z * quads[2] + parts.w * quads[3] - center;
+    float facing = max(pixelArea(mean.z / frame.camera.range.w), 1.0e-30);
+    ofQuad = quads[(local.x >> 1 & 1) + (local.y & 2)];
+    bool isSmooth = places[invocation - inTexel].w == material && dot(off, off) < kMostOff * facing;
+    if (!isSmooth) atomicOr(rough, 1u << texel);
+    lastOfTexel = diffuses && isSmooth ? lastLevel(k, facing) : 0u;
+    atomicMax(coarsest, lastOfTexel);
   }
   barrier();
   uint levels = coarsest;
-  for (uint level = 1u; level <= levels; ++level) {
+  bool byQuads = (rough >> texel & 1u) == 0u;
+  if (byQuads) last = lastOfTexel;
+  Sums sums = Sums(vec3(0.0), vec3(0.0));
+  // Pixels last, so that only one of the sums is kept while others are made.
+  for (uint level = levels; level > 0u; --level) {
+    if (level == 1u) exchange(sums, invocation, byQuads);
     loadClusters(level, firstPixel);
     barrier();
-    if (level <= last) addClusters(sums, level, firstPixel, local, k, center);
+    bool shares = level > 1u && byQuads;
+    if (level <= last)
+      addClusters(sums, level, firstPixel, pixel >> int(level), k, shares ? ofQuad : center,
+                  shares ? (local.x & 1) + 2 * (local.y & 1) : 0, shares ? 4 : 1);
     barrier();
   }
+  loadPixels(firstPixel);
+  barrier();
+  if (diffuses) {
+    int own = ownPlace(local);
+    vec3 x, y;
+    sidesOf(vec2(pixel), center, unpackHalf2x16(lasts[own]), 1.0, x, y);
+    add(sums, colors[own], ownPart(k, 0.5 * x, 0.5 * y));
+    addPixels(sums, local, pixel, k, center, max(pixelArea(depth), 1.0e-30));
+  }
+  barrier();
   if (isEdge && insideRect(pixel) && materialAt(pixel) != 0u) {
     vec4 color = texelFetch(sourceImage, pixel, 0);
     // Of what is found, the pixel itself has a weight. Those that diffuse nothing keep their color.
     color.rgb = diffuses ? sums.color / max(sums.weight, vec3(1.0e-20)) : sanitize(color.rgb);
 #ifdef GATHER
     if (material != 0u)
-      color.rgb = withGathered(color.rgb, pixel, PELLUCID_DIFFUSE_CELL, center.z / frame.camera.range.w, material);
+      color.rgb = withGathered(color.rgb, pixel, PELLUCID_DIFFUSE_CELL, depth, material);
 #endif
     writeResult(pixel, color.rgb, color.a, pass.value.w != 0u);
   }
