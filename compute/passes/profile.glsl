@@ -127,7 +127,7 @@ vec3 placeAxis(vec4 place) {
 }
 
 // From how many times as long as wide on a pixel's surface is taken in segments, and in how many at most.
-const float kLong = 4.0, kMostParts = 4.0;
+const float kLong = 2.0, kMostParts = 4.0;
 // Nor is it longer than that to second order.
 const float kLongest = 5.0;
 
