@@ -116,13 +116,16 @@ float areaOf(uint level, ivec2 texel, vec2 slope) {
   return min(sqrt(dot(slope, slope) + facing * facing), kMostArea);
 }
 
+// Edge-on surfaces show no more area than one that far from it, 87 degrees from facing the camera: the cosine.
+const float kLeastCosine = 0.05;
+
 // The same of a pixel with a normal, of any length > 0; 0: it has none.
 float areaOf(vec2 pixel, vec3 normal) {
   // In the normal's space.
   vec3 ray = frame.normalRay[0].xyz + pixel.x * frame.normalRay[1].xyz + pixel.y * frame.normalRay[2].xyz;
   float squared = dot(normal, normal), along = dot(normal, ray);
-  // False for NaN too. The floor keeps the root of what is edge-on finite.
-  return squared > 1.0e-8 ? min(inversesqrt(max(along * along * (1.0 / squared), 1.0e-6)), kMostArea) : 0.0;
+  // False for NaN too.
+  return squared > 1.0e-8 ? inversesqrt(max(along * along * (1.0 / squared), kLeastCosine * kLeastCosine)) : 0.0;
 }
 
 // Texel of level 1 from its four pixels, rows first; depth <= 0: none. The nearest surface and all behind it within

@@ -19,8 +19,6 @@ layout(set = 0, binding = PELLUCID_BINDING_KERNELS) readonly buffer Kernels { Ke
 
 // A level sums what is under texels of the next coarser one so far to each side, where the finer level does not.
 const int kAround = 2, kRows = 2 * kAround + 1, kWindow = 2 * kRows;
-// Edge-on surfaces show no more area than one so far from it.
-const float kLeastCosine = 0.05;
 // Pixels of a tile, its texels of level 2, and pixels with all around them that are summed one by one: the largest window.
 const int kPixels = PELLUCID_EDGES_GROUP, kTexels = kPixels / 4, kSide = kPixels + 4 * kAround;
 const int kInvocations = kPixels * kPixels;
