@@ -109,6 +109,7 @@ uvec4 reducedEdge(uint finer, ivec2 texel, int first, int stride) {
       ivec2 at = ivec2(x, i >> 2);
       int index = tap(first, stride, at.x, at.y);
       Source t = sourceAt(index);
+      if (kSumsEdges && finer > 1u && (colors[index].y & kPlane) == 0u) t.mass = fineMassOf(colors[index].y, t.depth);
       bool counts = t.mass != 0.0 && t.material == surface.material;
       vec2 offset = (vec2(at) - 1.5) * size;
       float difference = t.depth - surface.depth - dot(slope, vec2(at - nearest) * size);
@@ -128,7 +129,8 @@ uvec4 reducedEdge(uint finer, ivec2 texel, int first, int stride) {
   vec2 center = vec2(1.5) - vec2(nearest);
   float depth = surface.depth + dot(slope, center * size) + off * inverse;
   slope += tilt / max(spread, 1.0e-6 * size * size + 1.0e-30);
-  return packTexel(Texel(color / mass, mass, surface.material, depth, slope), 0u);
+  Texel made = Texel(color / mass, mass, surface.material, depth, slope);
+  return kSumsEdges ? packFineTexel(made) : packTexel(made, 0u);
 }
 
 // Texel of the level after `finer` from the 4 x 4 at `first`.

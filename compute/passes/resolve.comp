@@ -180,7 +180,7 @@ vec4 smoothed(ivec2 texel, uint level, Texel own, Foreshortening f, bool isFlat)
     }
     [[unroll]] for (int x = -1; x <= 1; ++x) {
       Texel t = unpackTexel(bits[x + 1]);
-      if (isPlane(bits[x + 1])) t.mass = areaOf(level, texel + ivec2(x, y), t.slope);
+      t.mass = isPlane(bits[x + 1]) ? areaOf(level, texel + ivec2(x, y), t.slope) : fineMassOf(bits[x + 1].y, t.depth);
       float along = dot(own.slope, vec2(x, y) * size);
       float w = (x == 0 ? middle.x : side.x) * (y == 0 ? middle.y : side.y) + float(x * y) * corner;
       w *= t.mass * sameSurface(t.depth - own.depth - along, along, spread2, kStretchFalloff);
@@ -202,7 +202,8 @@ Own ownPart(uint level, ivec2 texel, ivec2 k, uvec4 bits, out Foreshortening f) 
   Own own;
   own.texel = unpackTexel(bits);
   // Not as packed, to 1.6 %.
-  if (kSumsEdges && isPlane(bits)) own.texel.mass = areaOf(level, texel, own.texel.slope);
+  if (kSumsEdges)
+    own.texel.mass = isPlane(bits) ? areaOf(level, texel, own.texel.slope) : fineMassOf(bits.y, own.texel.depth);
   f = foreshortening(texel, level, own.texel.depth, own.texel.slope);
   bool isFlat = level == 2u && (bits.x & kFlat) != 0u;
   own.here = (kSumsEdges ? smoothed(texel, level, own.texel, f, isFlat) : stretched(texel, level, k, own.texel, f)) /
