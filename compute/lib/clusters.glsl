@@ -74,34 +74,58 @@ vec2 placeInParent(int i, vec2 center) { return 0.5 * (vec2(i & 1, i >> 1) - 0.5
 // the camera do. Smaller limits lose light at the limbs of round things, larger ones join what lies far behind others.
 float clusterReach(uint level) { return level == 1u ? 12.0 : 16.0; }
 
-// Four packed ones of a level, rows first, as one of level `level`: of the nearest one's material, those that lie not far behind
-// it. `mass`: theirs, 0 where there is none, which would be rounded once a level if it were taken from the packed ones.
-Cluster merged(uvec4 from[4], float mass[4], uint level) {
-  Cluster c = kNoCluster;
-  float nearest = kNoDepth;
+// The nearest of four: what belongs to it has its material and lies not far behind it.
+struct Nearest {
+  float depth;   // 0 where there is none
+  uint material; // the same
+  float reach;
+};
+
+// `material`: 0 where there is none.
+Nearest nearestOf(float depth[4], uint material[4], uint level) {
+  Nearest n = Nearest(kNoDepth, 0u, 0.0);
   [[unroll]] for (int i = 0; i < 4; ++i) {
-    float depth = clusterDepth(from[i]);
-    bool nearer = mass[i] > 0.0 && depth < nearest;
-    nearest = nearer ? depth : nearest;
-    c.material = nearer ? materialBits(from[i]) : c.material;
+    bool nearer = material[i] != 0u && depth[i] < n.depth;
+    n.depth = nearer ? depth[i] : n.depth;
+    n.material = nearer ? material[i] : n.material;
   }
-  if (c.material == 0u) return c;
-  vec2 side = texelSize(nearest, level);
-  float reach = clusterReach(level) * sqrt(side.x * side.y);
+  n.depth = n.material != 0u ? n.depth : 0.0;
+  vec2 side = texelSize(n.depth, level);
+  n.reach = clusterReach(level) * sqrt(side.x * side.y);
+  return n;
+}
+
+bool belongs(Nearest n, float depth, uint material) {
+  return n.material != 0u && material == n.material && depth - n.depth <= n.reach;
+}
+
+// Four packed ones of a level, rows first, as one of level `level`. `mass`: theirs, 0 where there is none, which would be rounded
+// once a level if it were taken from the packed ones.
+Cluster merged(uvec4 from[4], float mass[4], uint level) {
+  float depths[4];
+  uint materials[4];
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    depths[i] = clusterDepth(from[i]);
+    materials[i] = mass[i] > 0.0 ? materialBits(from[i]) : 0u;
+  }
+  Nearest nearest = nearestOf(depths, materials, level);
+  Cluster c = kNoCluster;
+  if (nearest.material == 0u) return c;
+  c.material = nearest.material;
   float masses[4];
   [[unroll]] for (int i = 0; i < 4; ++i) {
     Cluster f = unpackCluster(from[i]);
-    bool counts = mass[i] > 0.0 && f.material == c.material && f.depth - nearest <= reach;
+    bool counts = belongs(nearest, f.depth, materials[i]);
     masses[i] = counts ? mass[i] : 0.0;
     c.mass += masses[i];
     c.color += masses[i] * f.color;
-    c.depth += counts ? masses[i] * (f.depth - nearest) : 0.0;
+    c.depth += counts ? masses[i] * (f.depth - nearest.depth) : 0.0;
     c.center += masses[i] * placeInParent(i, f.center);
   }
   // The nearest one counts, so the mass is positive.
   float inverse = 1.0 / c.mass;
   c.color *= inverse;
-  c.depth = nearest + c.depth * inverse;
+  c.depth = nearest.depth + c.depth * inverse;
   c.center *= inverse;
   [[unroll]] for (int i = 0; i < 4; ++i) {
     Cluster f = unpackCluster(from[i]);

@@ -1,6 +1,6 @@
 // Clusters, which edges are summed from, of what the pyramid has resolved: levels 1 and 2 where these levels were, coarser ones
-// beside them. An invocation does what lies under a texel of level 2, a group what lies under one of level 6. Those of level 7
-// are merged where they are summed.
+// beside them. An invocation does what lies under a texel of level 2, a group what lies under one of level 6. What is summed
+// are four of them together, so the coarsest level has none.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -65,7 +65,7 @@ void main() {
   kept[invocation] = bits;
   masses[invocation] = c.mass;
   if (contains(clusterRect(2u), texel)) writeLevel(2u, texel, bits);
-  uint last = min(pass.value.x, uint(PELLUCID_LAST_LEVEL - 1));
+  uint last = pass.value.x - 1u;
   for (uint level = 3u; level <= last; ++level) {
     barrier();
     // The level before has twice as many to a side.

@@ -8,6 +8,7 @@
 #define GROUP_SIDE PELLUCID_EDGES_GROUP
 #include "passes/normal_image.glsl"
 #include "passes/resolved.glsl"
+#include "lib/moments.glsl"
 #include "passes/clusters.glsl"
 
 #ifdef GATHER
@@ -108,9 +109,9 @@ void sidesOf(vec2 pixel, vec3 center, vec2 slope, float side, out vec3 x, out ve
   y = pointAt(pixel + vec2(0.0, side), depth + rise.y) - center;
 }
 
-// The slope of the pyramid's texel at a cluster, if that is its surface.
+// The slope of the pyramid's texel at a cluster of level 2 and coarser, if that is its surface.
 vec2 slopeAt(uint level, ivec2 texel, uint material) {
-  ivec2 place = level > 2u ? inAtlas(level, texel) : resolvedPlace(level == 2u ? texel : texel >> 1);
+  ivec2 place = level > 2u ? inAtlas(level, texel) : resolvedPlace(texel);
   uvec4 bits = texelFetch(pyramidImage, place, 0);
   return materialBits(bits) == material && hasSurface(bits) ? unpackHalf2x16(bits.w) : vec2(0.0);
 }
@@ -120,90 +121,94 @@ uvec4 clusterBits(uint level, ivec2 texel) {
   return contains(clusterRect(level), texel) ? texelFetch(pyramidImage, place, 0) : uvec4(0u);
 }
 
-Cluster clusterAt(uint level, ivec2 texel) {
-  if (level == uint(PELLUCID_LAST_LEVEL)) {
-    uvec4 children[4];
-    float masses[4];
-    [[unroll]] for (int i = 0; i < 4; ++i) {
-      children[i] = clusterBits(level - 1u, childOf(texel, i));
-      masses[i] = clusterMass(children[i]);
-    }
-    return merged(children, masses, level);
-  }
-  uvec4 bits = clusterBits(level, texel);
-  if (!isPlane(bits)) return unpackCluster(bits);
-  // A quad of a plane that faces the camera, which is as the pyramid has it and whole.
-  Cluster c = clusterOfTexel(bits);
-  vec3 light[4];
-  [[unroll]] for (int i = 0; i < 4; ++i)
-    light[i] = sanitize(texelFetch(sourceImage, childOf(texel, i), 0).rgb);
-  vec3 inverse = 0.25 / max(light[0] + light[1] + light[2] + light[3], vec3(1.0e-20));
-  c.momentX = (light[1] + light[3] - light[0] - light[2]) * inverse;
-  c.momentY = (light[2] + light[3] - light[0] - light[1]) * inverse;
-  return c;
+// A pixel's surface. What does not count has no area, and a depth that keeps it finite.
+Part partOfPixel(ivec2 pixel, float depth, bool counts) {
+  ivec2 at = withinRect(pixel);
+  vec3 tilted = tilt(vec2(at), normalAt(at));
+  Part p;
+  p.area = counts ? pixelArea(depth) * tilted.z : 0.0;
+  p.center = pointAt(vec2(at), depth);
+  sidesOf(vec2(at), p.center, tilted.xy, 1.0, p.x, p.y);
+  p.color = sanitize(texelFetch(sourceImage, at, 0).rgb);
+  p.momentX = p.momentY = vec3(0.0);
+  return p;
 }
 
-// The mean slope of a quad's pixels, of which few at silhouettes are much steeper than the others.
-vec2 slopeOfQuad(ivec2 quad, uint material) {
-  const float kMost = 10.0;
-  vec3 sum = vec3(0.0);
+// The same of a cluster. `slope`: of the coarser texel.
+Part partOfCluster(uint level, ivec2 texel, Cluster c, vec2 slope, bool counts) {
+  float side = exp2(float(level));
+  vec2 pixel = pixelOf(level, texel) + side * c.center;
+  Part p;
+  p.area = counts ? c.mass * pixelArea(c.depth) * side * side : 0.0;
+  p.center = pointAt(pixel, c.depth);
+  sidesOf(pixel, p.center, slope, side, p.x, p.y);
+  p.color = c.color;
+  p.momentX = c.momentX;
+  p.momentY = c.momentY;
+  return p;
+}
+
+Part quadAt(ivec2 quad, out uint material) {
+  float depths[4];
+  uint materials[4];
   [[unroll]] for (int i = 0; i < 4; ++i) {
     ivec2 pixel = childOf(quad, i), at = withinRect(pixel);
-    bool counts = at == pixel && frontDistance(at) > 0.0 && materialAt(at) == material;
-    sum += counts ? vec3(tilt(vec2(at), normalAt(at)).xy, 1.0) : vec3(0.0);
+    depths[i] = frontDistance(at);
+    materials[i] = at == pixel && depths[i] > 0.0 ? materialAt(at) : 0u;
   }
-  vec2 mean = sum.xy / max(sum.z, 1.0);
-  return mean * min(1.0, kMost * inversesqrt(max(dot(mean, mean), 1.0e-30)));
-}
-
-// A cluster's center, mm, times its area.
-vec4 weightedCenter(uint level, ivec2 texel) {
-  uvec4 bits = clusterBits(level, texel);
-  Cluster c = isPlane(bits) ? clusterOfTexel(bits) : unpackCluster(bits);
-  float side = exp2(float(level)), area = c.mass * pixelArea(c.depth) * side * side;
-  return c.mass > 0.0 ? vec4(area * pointAt(pixelOf(level, texel) + side * c.center, c.depth), area) : vec4(0.0);
-}
-
-// Sides of a cluster's surface by its children: twice what the halves' centers are apart. Not where they are missing or so far
-// apart that one lies behind the other.
-void sidesByChildren(uint level, ivec2 texel, float mostSquared, inout vec3 x, inout vec3 y) {
-  vec4 left = vec4(0.0), right = vec4(0.0), top = vec4(0.0), bottom = vec4(0.0);
+  Nearest nearest = nearestOf(depths, materials, 1u);
+  material = nearest.material;
+  vec3 point = pointAt(pixelOf(1u, quad), nearest.depth);
+  PartSums sums = kNoParts;
   [[unroll]] for (int i = 0; i < 4; ++i) {
-    vec4 child = weightedCenter(level - 1u, childOf(texel, i));
-    if ((i & 1) == 0) left += child; else right += child;
-    if (i < 2) top += child; else bottom += child;
+    bool counts = belongs(nearest, depths[i], materials[i]);
+    addPart(sums, partOfPixel(childOf(quad, i), counts ? depths[i] : nearest.depth, counts), point);
   }
-  vec3 across = 2.0 * (right.xyz / max(right.w, 1.0e-30) - left.xyz / max(left.w, 1.0e-30));
-  vec3 down = 2.0 * (bottom.xyz / max(bottom.w, 1.0e-30) - top.xyz / max(top.w, 1.0e-30));
-  if (min(left.w, right.w) > 0.0 && dot(across, across) < mostSquared) x = across;
-  if (min(top.w, bottom.w) > 0.0 && dot(down, down) < mostSquared) y = down;
+  return together(sums, point);
+}
+
+// Of levels 2 and coarser, by the clusters of the finer level.
+Part clusterAt(uint level, ivec2 texel, out uint material) {
+  uvec4 bits[4];
+  float depths[4];
+  uint materials[4];
+  [[unroll]] for (int i = 0; i < 4; ++i) bits[i] = clusterBits(level - 1u, childOf(texel, i));
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    depths[i] = isPlane(bits[i]) ? uintBitsToFloat(bits[i].z) : clusterDepth(bits[i]);
+    materials[i] = hasSurface(bits[i]) ? materialBits(bits[i]) : 0u;
+  }
+  Nearest nearest = nearestOf(depths, materials, level);
+  material = nearest.material;
+  vec3 point = pointAt(pixelOf(level, texel), nearest.depth);
+  vec2 slope = slopeAt(level, texel, material);
+  PartSums sums = kNoParts;
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    Cluster c = isPlane(bits[i]) ? clusterOfTexel(bits[i]) : unpackCluster(bits[i]);
+    bool counts = belongs(nearest, depths[i], materials[i]);
+    c.depth = counts ? c.depth : nearest.depth;
+    addPart(sums, partOfCluster(level - 1u, childOf(texel, i), c, slope, counts), point);
+  }
+  return together(sums, point);
 }
 
 void loadClusters(uint level, ivec2 firstPixel) {
-  const float kMostApart = 16.0; // of what a texel facing the camera has, squared
   Window window = windowOf(level, firstPixel);
-  float side = exp2(float(level));
   for (int i = int(gl_LocalInvocationIndex); i < kClusterSide * window.rows; i += kInvocations) {
     ivec2 texel = window.first + ivec2(i % kClusterSide, i / kClusterSide);
-    Cluster c = clusterAt(level, texel);
-    vec2 slope = vec2(0.0), pixel = pixelOf(level, texel) + side * c.center;
-    if (c.mass > 0.0) slope = level == 1u ? slopeOfQuad(texel, c.material) : slopeAt(level, texel, c.material);
-    vec3 center = pointAt(pixel, c.depth), x, y;
-    float facing = pixelArea(c.depth) * side * side, area = c.mass * facing;
-    sidesOf(pixel, center, slope, side, x, y);
-    if (level > 1u && c.mass > 0.0) sidesByChildren(level, texel, kMostApart * facing, x, y);
-    // Of the whole texel. What there is of it is taken to be as much smaller along both.
-    float whole = max(length(cross(x, y)), 1.0e-30), scale = inversesqrt(whole);
-    x *= scale;
-    y *= scale;
-    float larger = area > 0.0 ? sqrt(whole / area) : 0.0;
-    vec3 momentX = larger * c.momentX, momentY = larger * c.momentY;
-    places[i] = floatBitsToUint(vec4(center, area));
-    colors[i] = packColor(c.color, c.mass > 0.0 ? c.material : 0u);
+    uint material;
+    Part p;
+    if (level == 1u)
+      p = quadAt(texel, material);
+    else
+      p = clusterAt(level, texel, material);
+    float scale = p.area > 0.0 ? inversesqrt(p.area) : 0.0;
+    vec3 x = scale * p.x, y = scale * p.y;
+    places[i] = floatBitsToUint(vec4(p.center, p.area));
+    colors[i] = packColor(p.color, material);
     places[kClusters + i] = uvec4(packHalf2x16(x.xy), packHalf2x16(vec2(x.z, y.x)), packHalf2x16(y.yz),
-                                  packHalf2x16(momentX.xy));
-    lasts[i] = packHalf2x16(vec2(momentX.z, momentY.x));
-    lasts[kClusters + i] = packHalf2x16(momentY.yz);
+                                  packHalf2x16(p.momentX.xy));
+    lasts[i] = packHalf2x16(vec2(p.momentX.z, p.momentY.x));
+    lasts[kClusters + i] = packHalf2x16(p.momentY.yz);
   }
 }
 
@@ -241,6 +246,9 @@ void addPixels(inout Sums sums, ivec2 local, ivec2 pixel, Kernel k, vec3 center,
   }
 }
 
+// Of the squared distance: how long clusters may be, squared, to second order. Longer ones lie beside the pixel.
+const float kMostLength2 = 4.0;
+
 void addCluster(inout Sums sums, int i, Kernel k, vec3 center) {
   vec4 place = placeAt(i);
   uvec2 color = colors[i];
@@ -251,9 +259,13 @@ void addCluster(inout Sums sums, int i, Kernel k, vec3 center) {
   vec3 offset = place.xyz - center;
   float area = color.y >> 16 == k.m + 1u ? place.w : 0.0, distance2 = max(dot(offset, offset), 1.0e-30);
   vec2 along = vec2(dot(offset, x), dot(offset, y));
-  Extent extent = Extent(area * dot(along, along) / distance2, area * (dot(x, x) + dot(y, y)));
+  float xx = dot(x, x), yy = dot(y, y), longest = area * max(xx, yy);
+  Extent extent = Extent(area * dot(along, along) / distance2, area * (xx + yy));
+  // Beside what is long the second order says too little.
+  bool isLong = longest > kMostLength2 * distance2;
+  vec4 axis = vec4((xx > yy ? x : y) * inversesqrt(max(max(xx, yy), 1.0e-30)), 0.5 * sqrt(longest));
   // The floor keeps what follows finite.
-  float squared = max(meanSquare(distance2, extent), 1.0e-6 * area);
+  float squared = max(isLong ? meanSquare(offset, axis, area * min(xx, yy)) : meanSquare(distance2, extent), 1.0e-6 * area);
   Profile profile = profileAt(k, squared);
   vec3 weight = area * meanOf(profile, squared, extent);
   // To first order each channel's light is where its moments say; the profile changes by 2 R' / R of r^2 times how much nearer

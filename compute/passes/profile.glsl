@@ -128,12 +128,10 @@ vec3 placeAxis(vec4 place) {
 
 // From how many times as long as wide on a pixel's surface is taken in segments, and in how many at most.
 const float kLong = 2.0, kMostParts = 4.0;
-// Nor is it longer than that to second order.
-const float kLongest = 5.0;
 
 // A pixel's surface, which is as wide as one that faces the camera.
 Extent extentOf(vec4 place, vec3 offset, float facing) {
-  float area = placeArea(place), length2 = min(area * area / facing, kLongest * kLongest * facing);
+  float area = placeArea(place), length2 = area * area / facing;
   vec3 axis = placeAxis(place);
   float along = dot(axis, offset), part = min(along * along / max(dot(offset, offset) * dot(axis, axis), 1.0e-30), 1.0);
   return Extent(mix(facing, length2, part), length2 + facing);
