@@ -24,7 +24,9 @@ vec3 takeSide(inout Tensor t) {
     side = vec3(t.other.z, d.y, t.other.x);
   else
     side = vec3(t.other.yx, d.z);
-  side *= inversesqrt(max(max(d.x, max(d.y, d.z)), 1.0e-30));
+  // None is larger than the largest square; what rounding leaves of a long side's may say so.
+  float largest = max(max(d.x, max(d.y, d.z)), 0.0);
+  side = clamp(side, vec3(-largest), vec3(largest)) * inversesqrt(max(largest, 1.0e-30));
   addSide(t, -1.0, side);
   return side;
 }

@@ -187,6 +187,31 @@ TEST_P(Diffusion, SurfacesCountByTheirArea) {
   }
 }
 
+// Seen edge-on and away from the middle of a wide view, where rounding leaves least of the other side of what
+// is steep.
+TEST_P(Diffusion, SteepSurfacesKeepConstants) {
+  for (const double slope : {10.0, 1e3, 1e5}) {
+    Capture c = flatCapture(64, 64);
+    c.clipFromView = {0.2, 0, 0, 0, 0, -0.2, 0, 0, 0, 0, 0, -1, 0, 0, 0.1, 0};  // 157 degrees
+    for (int y = 0; y < 64; ++y)
+      for (int x = 0; x < 64; ++x) {
+        const int along = x + y / 2, fold = along % 32;
+        const double steps = fold < 16 ? fold : 31 - fold;
+        c.frontDepth.image.at(x, y)[0] = static_cast<float>(10 + slope * steps * 10 / 0.2 / 32);
+        for (int k = 0; k < 3; ++k) c.irradiance.at(x, y)[k] = 0.5f;
+        c.normal.at(x, y)[0] = fold < 16 ? 0.999f : -0.999f;
+        c.normal.at(x, y)[2] = 0.0f;
+      }
+    for (const double deviation : {3.0, 1e3}) {
+      const Image out = replay(c, gaussians({deviation}, 10 / 0.2 / 32), diffusionOnly());
+      for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 64; ++x)
+          for (int k = 0; k < 3; ++k)
+            ASSERT_NEAR(out.at(x, y)[k], 0.5, 5e-4) << slope << ", " << x << ", " << y;
+    }
+  }
+}
+
 // A pixel whose normal is none has the area that the depths say, as all have without an image of normals: at
 // the default quality, as the best one needs normals.
 TEST_F(DefaultDiffusion, NormalsThatAreNoneAreLeftOut) {

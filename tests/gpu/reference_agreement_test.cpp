@@ -523,8 +523,9 @@ TEST_F(GpuTest, KernelLargerThanTheImageKeepsItsContrast) {
   s.quality = 3;
   reference::Settings r;
   r.features = s.features;
-  const Comparison d = compareImages(rgb(replayer().run(c, {m}, s).output), reference::compute(c, {m}, r).image,
-                                     comparisonMask(c.material, c.irradiance, Subset::All));
+  const Comparison d =
+      compareImages(rgb(replayer().run(c, {m}, s).output), reference::compute(c, {m}, r).image,
+                    comparisonMask(c.material, c.irradiance, Subset::All));
   // .0022; .0032 with areas of texels to 3 %.
   for (const ChannelDifference& k : d.channels) EXPECT_LT(k.relativeRmse, 0.0025);
 }
