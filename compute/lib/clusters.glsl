@@ -1,6 +1,6 @@
-// Clusters: what stands for all that lies under a texel of a level where edges are summed (Barnes and Hut 1986, on a grid). One
-// has the mean color, the center of the area and the first moments of the light around it, exact to the order of the side
-// over the distance.
+// Clusters: what stands for all that lies under a texel of a level where edges are summed (Barnes and Hut 1986, on a grid):
+// one, or two where that is two surfaces, the second behind the first or of another material. Each has the mean color, the
+// center of the area and the first moments of the light around it, exact to the order of the side over the distance.
 #ifndef PELLUCID_CLUSTERS_LIB_GLSL
 #define PELLUCID_CLUSTERS_LIB_GLSL
 
@@ -28,6 +28,11 @@ uint packMoments(vec3 moment) {
 
 vec3 unpackMoments(uint u) { return (vec3(u & 31u, (u >> 5) & 31u, (u >> 10) & 31u) - 15.0) * (1.0 / kMomentOne); }
 
+// Of x, where the sign of green is: of two, the first.
+const uint kIsSplit = 0x80000000u;
+
+bool isSplit(uvec4 u) { return (u.x & kIsSplit) != 0u; }
+
 // As texels of the pyramid; in the last 8 bits of the depth the center in sixteenths, in place of the slope the moments and two
 // more bits of the area.
 uvec4 packCluster(Cluster c) {
@@ -48,7 +53,7 @@ float clusterMass(uvec4 u) {
 
 Cluster unpackCluster(uvec4 u) {
   Cluster c;
-  c.color = unpackColor(u.xy);
+  c.color = unpackColor(uvec2(u.x & ~kIsSplit, u.y));
   c.mass = clusterMass(u);
   c.material = materialBits(u);
   c.depth = clusterDepth(u);
@@ -67,78 +72,96 @@ Cluster clusterOfTexel(uvec4 bits) {
 // The four under a texel, rows first.
 ivec2 childOf(ivec2 texel, int i) { return 2 * texel + ivec2(i & 1, i >> 1); }
 
-// The center of child `i` of a cluster from the cluster's, in the cluster's sides.
-vec2 placeInParent(int i, vec2 center) { return 0.5 * (vec2(i & 1, i >> 1) - 0.5 + center); }
+// The center of child `i` from the texel's, in the texel's sides.
+vec2 placeInParent(int i) { return 0.5 * vec2(i & 1, i >> 1) - 0.25; }
 
-// How far behind the nearest one, in sides of the merged cluster, what belongs to it may lie: surfaces 85 degrees from facing
-// the camera do. Smaller limits lose light at the limbs of round things, larger ones join what lies far behind others.
-float clusterReach(uint level) { return level == 1u ? 12.0 : 16.0; }
-
-// The nearest of four: what belongs to it has its material and lies not far behind it.
-struct Nearest {
-  float depth;   // 0 where there is none
-  uint material; // the same
-  float reach;
+// What is known of all that lies under a texel before it is one or two.
+struct Range {
+  float nearest, farthest; // depths of the nearest material
+  uint material;           // 0: nothing is there
+  uint other;              // the nearest one of others; 0: none
+  float otherNearest;
 };
 
-// `material`: 0 where there is none.
-Nearest nearestOf(float depth[4], uint material[4], uint level) {
-  Nearest n = Nearest(kNoDepth, 0u, 0.0);
-  [[unroll]] for (int i = 0; i < 4; ++i) {
-    bool nearer = material[i] != 0u && depth[i] < n.depth;
-    n.depth = nearer ? depth[i] : n.depth;
-    n.material = nearer ? material[i] : n.material;
+const Range kNoRange = Range(kNoDepth, 0.0, 0u, 0u, kNoDepth);
+
+// `material`: 0 where there is nothing.
+void extend(inout Range r, float depth, uint material) {
+  if (material == 0u) return;
+  if (material == r.material) {
+    r.nearest = min(r.nearest, depth);
+    r.farthest = max(r.farthest, depth);
+  } else if (depth < r.nearest) {
+    // What it was is behind it.
+    if (r.material != 0u) r.other = r.material, r.otherNearest = r.nearest;
+    r.nearest = r.farthest = depth;
+    r.material = material;
+  } else if (depth < r.otherNearest) {
+    r.other = material;
+    r.otherNearest = depth;
   }
-  n.depth = n.material != 0u ? n.depth : 0.0;
-  vec2 side = texelSize(n.depth, level);
-  n.reach = clusterReach(level) * sqrt(side.x * side.y);
-  return n;
 }
 
-bool belongs(Nearest n, float depth, uint material) {
-  return n.material != 0u && material == n.material && depth - n.depth <= n.reach;
+// How one differs from the other.
+struct Split {
+  uint first, second; // materials; second 0: there is one alone
+  float depth;        // where both have the same material: the second lies beyond it
+};
+
+// In sides of the texel, over which depths surfaces of one material are two. Coarser ones are made of those of level 2: .7 has
+// half the error of 2 with an ear before a head, at other levels both have the same.
+float leastApart(uint level) { return level == 2u ? 0.7 : 2.0; }
+
+Split splitOf(Range r, uint level) {
+  if (r.other != 0u) return Split(r.material, r.other, 0.0);
+  vec2 side = texelSize(r.material != 0u ? r.nearest : 0.0, level);
+  float apart = r.farthest - r.nearest, least = leastApart(level);
+  bool two = r.material != 0u && apart * apart > least * least * side.x * side.y;
+  return Split(r.material, two ? r.material : 0u, 0.5 * (r.nearest + r.farthest));
 }
 
-// Four packed ones of a level, rows first, as one of level `level`. `mass`: theirs, 0 where there is none, which would be rounded
-// once a level if it were taken from the packed ones.
-Cluster merged(uvec4 from[4], float mass[4], uint level) {
-  float depths[4];
-  uint materials[4];
-  [[unroll]] for (int i = 0; i < 4; ++i) {
-    depths[i] = clusterDepth(from[i]);
-    materials[i] = mass[i] > 0.0 ? materialBits(from[i]) : 0u;
-  }
-  Nearest nearest = nearestOf(depths, materials, level);
+// Whether something is part of the first or the second. Of three materials and more, all but two are lost.
+bool belongs(Split s, bool second, float depth, uint material) {
+  uint its = second ? s.second : s.first;
+  return its != 0u && material == its && (s.first != s.second || (depth > s.depth) == second);
+}
+
+// Sums of clusters times their masses: places from a texel's center in its sides, depths from one that all have, near them.
+struct ClusterSums {
+  float mass, depth;
+  vec3 color;
+  vec2 center;
+  vec3 momentX, momentY;
+};
+
+const ClusterSums kNoSums = ClusterSums(0.0, 0.0, vec3(0.0), vec2(0.0), vec3(0.0), vec3(0.0));
+
+// `mass`: the packed one would be rounded once a level. `place`, `side`: of the texel that it stands for.
+void addCluster(inout ClusterSums sums, Cluster c, float mass, float near, vec2 place, float side) {
+  vec2 center = place + side * c.center;
+  vec3 light = mass * c.color;
+  sums.mass += mass;
+  sums.depth += mass * (c.depth - near);
+  sums.color += light;
+  sums.center += mass * center;
+  sums.momentX += light * (center.x + side * c.momentX);
+  sums.momentY += light * (center.y + side * c.momentY);
+}
+
+// `texels`: how many it stands for, that have those masses.
+Cluster together(ClusterSums sums, float near, uint material, float texels) {
   Cluster c = kNoCluster;
-  if (nearest.material == 0u) return c;
-  c.material = nearest.material;
-  float masses[4];
-  [[unroll]] for (int i = 0; i < 4; ++i) {
-    Cluster f = unpackCluster(from[i]);
-    bool counts = belongs(nearest, f.depth, materials[i]);
-    masses[i] = counts ? mass[i] : 0.0;
-    c.mass += masses[i];
-    c.color += masses[i] * f.color;
-    c.depth += counts ? masses[i] * (f.depth - nearest.depth) : 0.0;
-    c.center += masses[i] * placeInParent(i, f.center);
-  }
-  // The nearest one counts, so the mass is positive.
-  float inverse = 1.0 / c.mass;
-  c.color *= inverse;
-  c.depth = nearest.depth + c.depth * inverse;
-  c.center *= inverse;
-  [[unroll]] for (int i = 0; i < 4; ++i) {
-    Cluster f = unpackCluster(from[i]);
-    vec3 light = masses[i] * f.color;
-    vec2 place = placeInParent(i, f.center) - c.center;
-    c.momentX += light * (place.x + 0.5 * f.momentX);
-    c.momentY += light * (place.y + 0.5 * f.momentY);
-  }
+  if (!(sums.mass > 0.0)) return c;
+  float inverse = 1.0 / sums.mass;
+  c.color = inverse * sums.color;
+  c.mass = sums.mass / texels;
+  c.material = material;
+  c.depth = near + inverse * sums.depth;
+  c.center = inverse * sums.center;
   // Where a channel has no light its moments do not matter.
-  vec3 scale = inverse / max(c.color, vec3(1.0e-20));
-  c.momentX *= scale;
-  c.momentY *= scale;
-  c.mass *= 0.25;
+  vec3 scale = 1.0 / max(sums.color, vec3(1.0e-20));
+  c.momentX = scale * sums.momentX - c.center.x;
+  c.momentY = scale * sums.momentY - c.center.y;
   return c;
 }
 

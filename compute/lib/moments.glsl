@@ -12,8 +12,6 @@ void addSide(inout Tensor t, float weight, vec3 side) {
   t.other += weight * side.yzx * side.zxy;
 }
 
-float trace(Tensor t) { return t.diagonal.x + t.diagonal.y + t.diagonal.z; }
-
 // Takes a side out of the tensor, that along which it is largest, by a step of Cholesky's decomposition with pivots. Two of them
 // are the sides of what is flat.
 vec3 takeSide(inout Tensor t) {
@@ -42,13 +40,12 @@ struct Part {
 struct PartSums {
   float area;
   vec3 center, color;
-  Tensor within, between; // of the parts, and of their centers alone, a twelfth of it
-  vec3 light[3], lightWithin[3]; // moments of red, green and blue, of parts' centers and from these
+  Tensor tensor;
+  vec3 light[3]; // moments of red, green and blue
 };
 
-const Tensor kNoTensor = Tensor(vec3(0.0), vec3(0.0));
-const vec3 kNoLight[3] = vec3[3](vec3(0.0), vec3(0.0), vec3(0.0));
-const PartSums kNoParts = PartSums(0.0, vec3(0.0), vec3(0.0), kNoTensor, kNoTensor, kNoLight, kNoLight);
+const PartSums kNoParts =
+    PartSums(0.0, vec3(0.0), vec3(0.0), Tensor(vec3(0.0), vec3(0.0)), vec3[3](vec3(0.0), vec3(0.0), vec3(0.0)));
 
 // `point`: that from which places are.
 void addPart(inout PartSums sums, Part p, vec3 point) {
@@ -56,18 +53,12 @@ void addPart(inout PartSums sums, Part p, vec3 point) {
   sums.area += p.area;
   sums.center += p.area * center;
   sums.color += light;
-  addSide(sums.within, p.area, p.x);
-  addSide(sums.within, p.area, p.y);
-  addSide(sums.between, p.area, center);
-  [[unroll]] for (int c = 0; c < 3; ++c) {
-    sums.light[c] += light[c] * center;
-    sums.lightWithin[c] += light[c] * (p.momentX[c] * p.x + p.momentY[c] * p.y);
-  }
+  addSide(sums.tensor, p.area, p.x);
+  addSide(sums.tensor, p.area, p.y);
+  addSide(sums.tensor, 12.0 * p.area, center);
+  [[unroll]] for (int c = 0; c < 3; ++c)
+    sums.light[c] += light[c] * (center + p.momentX[c] * p.x + p.momentY[c] * p.y);
 }
-
-// Centers of four parts that join have three times the moments of the parts themselves. Twice as far apart than that one lies
-// behind the other with nothing between, and only so much counts.
-const float kMostBetween = 12.0;
 
 // All parts as one. Its area is 0 where there are none.
 Part together(PartSums sums, vec3 point) {
@@ -77,18 +68,17 @@ Part together(PartSums sums, vec3 point) {
   p.area = sums.area;
   p.center = point + center;
   p.color = inverse * sums.color;
-  Tensor tensor = sums.between;
-  addSide(tensor, -sums.area, center);
-  float most = kMostBetween * trace(sums.within), apart = min(1.0, sqrt(most / max(12.0 * trace(tensor), 1.0e-30)));
-  tensor.diagonal = inverse * (sums.within.diagonal + 12.0 * apart * apart * tensor.diagonal);
-  tensor.other = inverse * (sums.within.other + 12.0 * apart * apart * tensor.other);
+  Tensor tensor = sums.tensor;
+  addSide(tensor, -12.0 * sums.area, center);
+  tensor.diagonal *= inverse;
+  tensor.other *= inverse;
   p.x = takeSide(tensor);
   p.y = takeSide(tensor);
   // The second has nothing along that axis on which the first is longest, so the sine of their angle is at least .57.
   float xx = dot(p.x, p.x), xy = dot(p.x, p.y), yy = dot(p.y, p.y), perSquare = 1.0 / max(xx * yy - xy * xy, 1.0e-30);
   [[unroll]] for (int c = 0; c < 3; ++c) {
     // Where a channel has no light its moments do not matter.
-    vec3 to = (apart * (sums.light[c] - sums.color[c] * center) + sums.lightWithin[c]) / max(sums.color[c], 1.0e-20);
+    vec3 to = sums.light[c] / max(sums.color[c], 1.0e-20) - (sums.color[c] > 0.0 ? center : vec3(0.0));
     float alongX = dot(to, p.x), alongY = dot(to, p.y);
     p.momentX[c] = (yy * alongX - xy * alongY) * perSquare;
     p.momentY[c] = (xx * alongY - xy * alongX) * perSquare;

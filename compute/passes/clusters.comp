@@ -1,6 +1,6 @@
 // Clusters, which edges are summed from, of what the pyramid has resolved: levels 1 and 2 where these levels were, coarser ones
-// beside them. An invocation does what lies under a texel of level 2, a group what lies under one of level 6. What is summed
-// are four of them together, so the coarsest level has none.
+// beside them, the second of two elsewhere. An invocation does what lies under a texel of level 2, a group what lies under one
+// of level 6. What is summed are those of four texels together, so the coarsest level has none.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -12,39 +12,74 @@
 
 layout(set = 0, binding = PELLUCID_BINDING_PYRAMID) uniform utexture2D pyramidImage;
 
-// Of levels 2 to 5, one after the other.
+// Of levels 2 to 5, one after the other. Masses: x of the first, y of the second of two, 0 where there is none.
 const int kSide = PELLUCID_CLUSTERS_GROUP, kKept = kSide * kSide * (64 + 16 + 4 + 1) / 64;
-shared uvec4 kept[kKept];
-shared float masses[kKept];
+shared uvec4 kept[kKept], seconds[kKept];
+shared vec2 masses[kKept];
 
 // Planes that much larger than facing the camera, 25 degrees from it, have an area for each pixel.
 const float kMostFacing = 1.1;
 
 // A pixel with the area of its own normal.
-uvec4 clusterOfPixel(ivec2 pixel, out float mass) {
+Cluster clusterOfPixel(ivec2 pixel) {
   ivec2 at = withinRect(pixel);
-  float depth = frontDistance(at), area = areaOf(vec2(at), normalAt(at));
-  uint material = at == pixel && depth > 0.0 ? materialAt(at) : 0u;
-  mass = material == 0u ? 0.0 : area > 0.0 ? area : 1.0;
+  float area = areaOf(vec2(at), normalAt(at));
   Cluster c = kNoCluster;
+  c.depth = frontDistance(at);
+  c.material = materialOf(pixel, c.depth);
+  c.mass = c.material == 0u ? 0.0 : area > 0.0 ? area : 1.0;
   c.color = sanitize(texelFetch(sourceImage, at, 0).rgb);
-  c.material = material;
-  c.depth = depth;
-  return packCluster(c);
+  return c;
 }
 
 // Quads that are no planes or tilted are averaged from their pixels, in place of the level's texel, which has the area of one.
-uvec4 clusterOfQuad(ivec2 quad, uvec4 bits, out float mass) {
-  mass = massOf(bits.y);
-  if (mass == 0.0 || (isPlane(bits) && mass < kMostFacing)) return packCluster(clusterOfTexel(bits));
-  uvec4 pixels[4];
-  float areas[4];
-  [[unroll]] for (int i = 0; i < 4; ++i) pixels[i] = clusterOfPixel(childOf(quad, i), areas[i]);
-  Cluster c = merged(pixels, areas, 1u);
-  mass = c.mass;
-  uvec4 cluster = packCluster(c);
-  writeLevel(1u, quad, cluster);
-  return cluster;
+// `range`: of all that the quad's texel of level 2 has.
+Cluster clusterOfQuad(ivec2 quad, uvec4 bits, inout Range range) {
+  Cluster c = clusterOfTexel(bits);
+  if (c.mass == 0.0 || (isPlane(bits) && c.mass < kMostFacing)) {
+    extend(range, c.depth, c.mass > 0.0 ? c.material : 0u);
+    return c;
+  }
+  Cluster pixels[4];
+  Range of = kNoRange;
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    pixels[i] = clusterOfPixel(childOf(quad, i));
+    extend(of, pixels[i].depth, pixels[i].material);
+    extend(range, pixels[i].depth, pixels[i].material);
+  }
+  ClusterSums sums = kNoSums;
+  [[unroll]] for (int i = 0; i < 4; ++i)
+    if (pixels[i].material != 0u && pixels[i].material == of.material)
+      addCluster(sums, pixels[i], pixels[i].mass, of.nearest, placeInParent(i), 0.5);
+  c = together(sums, of.nearest, of.material, 4.0);
+  writeLevel(1u, quad, packCluster(c));
+  return c;
+}
+
+// One of two of level 2, from its pixels.
+Cluster clusterOfPixels(ivec2 texel, Split split, bool second, float nearest) {
+  ClusterSums sums = kNoSums;
+  for (int i = 0; i < 16; ++i) {
+    ivec2 inTexel = ivec2(i % 4, i / 4);
+    Cluster c = clusterOfPixel(4 * texel + inTexel);
+    if (belongs(split, second, c.depth, c.material))
+      addCluster(sums, c, c.mass, nearest, 0.25 * vec2(inTexel) - 0.375, 0.25);
+  }
+  return together(sums, nearest, second ? split.second : split.first, 16.0);
+}
+
+// Writes a texel's only one or one of two, and keeps it for the next level. `place`: in kept[].
+void writeCluster(uint level, ivec2 texel, int place, Cluster c, bool second, bool ofTwo) {
+  uvec4 bits = packCluster(c);
+  bits.x |= ofTwo && !second ? kIsSplit : 0u;
+  if (level < pass.value.x - 1u) {
+    if (second)
+      seconds[place] = bits, masses[place].y = c.mass;
+    else
+      kept[place] = bits, masses[place] = vec2(c.mass, 0.0);
+  }
+  if (contains(clusterRect(level), texel))
+    imageStore(levelsDestination, second ? secondPlace(level, texel) : clusterPlace(level, texel), bits);
 }
 
 void main() {
@@ -52,40 +87,62 @@ void main() {
   int invocation = int(gl_LocalInvocationIndex), side = kSide, before = 0;
   ivec2 group = ivec2(frame.rect.xy) / (4 * kSide) + ivec2(gl_WorkGroupID.xy);
   ivec2 texel = side * group + ivec2(gl_LocalInvocationID.xy);
-  uvec4 children[4];
-  float areas[4];
+  uvec4 quads[4];
   // All before the first is used.
   [[unroll]] for (int i = 0; i < 4; ++i) {
     ivec2 quad = childOf(texel, i);
-    children[i] = contains(clusterRect(1u), quad) ? texelFetch(pyramidImage, inAtlas(1u, quad), 0) : uvec4(0u);
+    quads[i] = contains(clusterRect(1u), quad) ? texelFetch(pyramidImage, inAtlas(1u, quad), 0) : uvec4(0u);
   }
-  [[unroll]] for (int i = 0; i < 4; ++i) children[i] = clusterOfQuad(childOf(texel, i), children[i], areas[i]);
-  Cluster c = merged(children, areas, 2u);
-  uvec4 bits = packCluster(c);
-  kept[invocation] = bits;
-  masses[invocation] = c.mass;
-  if (contains(clusterRect(2u), texel)) writeLevel(2u, texel, bits);
-  uint last = pass.value.x - 1u;
-  for (uint level = 3u; level <= last; ++level) {
+  Range range = kNoRange;
+  ClusterSums sums = kNoSums;
+  float from = 0.0; // a depth near which the texel's are
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    Cluster c = clusterOfQuad(childOf(texel, i), quads[i], range);
+    if (c.mass > 0.0) {
+      from = from > 0.0 ? from : c.depth;
+      addCluster(sums, c, c.mass, from, placeInParent(i), 0.5);
+    }
+  }
+  Split split = splitOf(range, 2u);
+  bool two = split.second != 0u;
+  if (!two)
+    writeCluster(2u, texel, invocation, together(sums, from, split.first, 4.0), false, false);
+  else
+    [[dont_unroll]] for (int i = 0; i < 2; ++i) {
+      bool second = i != 0;
+      writeCluster(2u, texel, invocation, clusterOfPixels(texel, split, second, range.nearest), second, true);
+    }
+  for (uint level = 3u; level < pass.value.x; ++level) {
     barrier();
     // The level before has twice as many to a side.
     int finer = side;
     side /= 2;
     if (invocation < side * side) {
       ivec2 at = ivec2(invocation % side, invocation / side);
-      texel = side * group + at;
-      [[unroll]] for (int i = 0; i < 4; ++i) {
-        ivec2 child = childOf(at, i);
-        children[i] = kept[before + child.y * finer + child.x];
-        areas[i] = masses[before + child.y * finer + child.x];
+      range = kNoRange;
+      for (int i = 0; i < 8; ++i) {
+        ivec2 child = childOf(at, i & 3);
+        int place = before + child.y * finer + child.x;
+        uvec4 bits = i < 4 ? kept[place] : seconds[place];
+        float mass = i < 4 ? masses[place].x : masses[place].y;
+        extend(range, clusterDepth(bits), mass > 0.0 ? materialBits(bits) : 0u);
       }
-      c = merged(children, areas, level);
-      bits = packCluster(c);
-      if (level < last) {
-        kept[before + finer * finer + invocation] = bits;
-        masses[before + finer * finer + invocation] = c.mass;
+      split = splitOf(range, level);
+      two = split.second != 0u;
+      [[dont_unroll]] for (int j = 0; j < (two ? 2 : 1); ++j) {
+        bool second = j != 0;
+        sums = kNoSums;
+        [[dont_unroll]] for (int i = 0; i < 8; ++i) {
+          ivec2 child = childOf(at, i & 3);
+          int place = before + child.y * finer + child.x;
+          Cluster c = unpackCluster(i < 4 ? kept[place] : seconds[place]);
+          float mass = i < 4 ? masses[place].x : masses[place].y;
+          if (mass > 0.0 && belongs(split, second, c.depth, c.material))
+            addCluster(sums, c, mass, range.nearest, placeInParent(i & 3), 0.5);
+        }
+        writeCluster(level, side * group + at, before + finer * finer + invocation,
+                     together(sums, range.nearest, second ? split.second : split.first, 4.0), second, two);
       }
-      if (contains(clusterRect(level), texel)) imageStore(levelsDestination, clusterPlace(level, texel), bits);
     }
     before += finer * finer;
   }

@@ -25,14 +25,18 @@ const int kPixels = PELLUCID_EDGES_GROUP, kTexels = kPixels / 4, kSide = kPixels
 const int kInvocations = kPixels * kPixels;
 // Of clusters the largest window, of level 1, and what lies in a window of that side.
 const int kClusterSide = 2 * (kTexels + 2 * kAround), kClusters = kClusterSide * kClusterSide;
+// Of these the first may be two, which all are from level 2 on, where windows are two less wide; quads after them are one
+// surface. With all of them one group alone would run at a time where 48 KB are shared among groups.
+const int kSeconds = (kClusterSide - 2) * kClusterSide - 2, kKept = kClusters + kSeconds;
 
-// Pixels, then clusters of a level: center, mm, and area, mm^2, of pixels with an axis; color and material. After the places
-// of clusters, in halves, the sides of their surface and along each of them the moments of red, green and blue, in roots of the
+// Pixels, then clusters of a level, the second of two after all others: center, mm, and area, mm^2, of pixels with an axis;
+// color and material. After the places of clusters, in halves, the sides of their surface and along each of them the moments of red, green and blue, in roots of the
 // area; the last four in lasts[], which has the slope of pixels. All that a group holds decides how many run at a time.
-shared uvec4 places[kSide * kSide];
+shared uvec4 places[2 * kKept];
 shared uvec2 colors[kSide * kSide];
-shared uint lasts[kSide * kSide];
+shared uint lasts[2 * kKept];
 shared uint edges[PELLUCID_EDGES_TILES]; // of tiles, a bit for each texel
+shared uint splits[PELLUCID_LAST_LEVEL + 1][kClusterSide]; // of the rows of each level, a bit for each texel of two
 shared uint coarsest, rough; // rough: a bit for each texel that is not summed by quads
 
 // Window of a level around a tile.
@@ -90,7 +94,7 @@ void loadPixels(ivec2 firstPixel) {
   for (int i = int(gl_LocalInvocationIndex); i < kSide * window.rows; i += kInvocations) {
     ivec2 pixel = window.first + ivec2(i % kSide, i / kSide), at = withinRect(pixel);
     float depth = frontDistance(at), facing = pixelArea(depth);
-    uint material = at == pixel && depth > 0.0 ? materialAt(at) : 0u;
+    uint material = materialOf(pixel, depth);
     vec3 tilted = tilt(vec2(at), normalAt(at));
     float steep = length(tilted.xy), rise = steep * sqrt(facing) / frame.camera.range.w;
     vec2 toward = steep > 0.0 ? tilted.xy / steep : vec2(1.0, 0.0);
@@ -117,16 +121,18 @@ vec2 slopeAt(uint level, ivec2 texel, uint material) {
 }
 
 uvec4 clusterBits(uint level, ivec2 texel) {
-  ivec2 place = level >= uint(PELLUCID_FIRST_BESIDE) ? clusterPlace(level, texel) : inAtlas(level, texel);
-  return contains(clusterRect(level), texel) ? texelFetch(pyramidImage, place, 0) : uvec4(0u);
+  return contains(clusterRect(level), texel) ? texelFetch(pyramidImage, clusterPlace(level, texel), 0) : uvec4(0u);
 }
 
-// A pixel's surface. What does not count has no area, and a depth that keeps it finite.
-Part partOfPixel(ivec2 pixel, float depth, bool counts) {
+// Of two, the second.
+uvec4 secondBits(uint level, ivec2 texel) { return texelFetch(pyramidImage, secondPlace(level, texel), 0); }
+
+// A pixel's surface.
+Part partOfPixel(ivec2 pixel, float depth) {
   ivec2 at = withinRect(pixel);
   vec3 tilted = tilt(vec2(at), normalAt(at));
   Part p;
-  p.area = counts ? pixelArea(depth) * tilted.z : 0.0;
+  p.area = pixelArea(depth) * tilted.z;
   p.center = pointAt(vec2(at), depth);
   sidesOf(vec2(at), p.center, tilted.xy, 1.0, p.x, p.y);
   p.color = sanitize(texelFetch(sourceImage, at, 0).rgb);
@@ -135,11 +141,11 @@ Part partOfPixel(ivec2 pixel, float depth, bool counts) {
 }
 
 // The same of a cluster. `slope`: of the coarser texel.
-Part partOfCluster(uint level, ivec2 texel, Cluster c, vec2 slope, bool counts) {
+Part partOfCluster(uint level, ivec2 texel, Cluster c, vec2 slope) {
   float side = exp2(float(level));
   vec2 pixel = pixelOf(level, texel) + side * c.center;
   Part p;
-  p.area = counts ? c.mass * pixelArea(c.depth) * side * side : 0.0;
+  p.area = c.mass * pixelArea(c.depth) * side * side;
   p.center = pointAt(pixel, c.depth);
   sidesOf(pixel, p.center, slope, side, p.x, p.y);
   p.color = c.color;
@@ -148,67 +154,107 @@ Part partOfCluster(uint level, ivec2 texel, Cluster c, vec2 slope, bool counts) 
   return p;
 }
 
-Part quadAt(ivec2 quad, out uint material) {
-  float depths[4];
-  uint materials[4];
-  [[unroll]] for (int i = 0; i < 4; ++i) {
-    ivec2 pixel = childOf(quad, i), at = withinRect(pixel);
-    depths[i] = frontDistance(at);
-    materials[i] = at == pixel && depths[i] > 0.0 ? materialAt(at) : 0u;
-  }
-  Nearest nearest = nearestOf(depths, materials, 1u);
-  material = nearest.material;
-  vec3 point = pointAt(pixelOf(1u, quad), nearest.depth);
-  PartSums sums = kNoParts;
-  [[unroll]] for (int i = 0; i < 4; ++i) {
-    bool counts = belongs(nearest, depths[i], materials[i]);
-    addPart(sums, partOfPixel(childOf(quad, i), counts ? depths[i] : nearest.depth, counts), point);
-  }
-  return together(sums, point);
+void extendByCluster(inout Range range, uvec4 bits) {
+  extend(range, isPlane(bits) ? uintBitsToFloat(bits.z) : clusterDepth(bits), hasSurface(bits) ? materialBits(bits) : 0u);
 }
 
-// Of levels 2 and coarser, by the clusters of the finer level.
-Part clusterAt(uint level, ivec2 texel, out uint material) {
-  uvec4 bits[4];
-  float depths[4];
-  uint materials[4];
-  [[unroll]] for (int i = 0; i < 4; ++i) bits[i] = clusterBits(level - 1u, childOf(texel, i));
-  [[unroll]] for (int i = 0; i < 4; ++i) {
-    depths[i] = isPlane(bits[i]) ? uintBitsToFloat(bits[i].z) : clusterDepth(bits[i]);
-    materials[i] = hasSurface(bits[i]) ? materialBits(bits[i]) : 0u;
+// Which of what lies under a texel is summed.
+struct Which {
+  Split split;
+  bool second;
+  vec3 point; // from which places are
+};
+
+void addPixel(inout PartSums sums, ivec2 pixel, Which w) {
+  float depth = frontDistance(withinRect(pixel));
+  if (belongs(w.split, w.second, depth, materialOf(pixel, depth))) addPart(sums, partOfPixel(pixel, depth), w.point);
+}
+
+void addBits(inout PartSums sums, uint level, ivec2 texel, uvec4 bits, vec2 slope, Which w) {
+  Cluster c = isPlane(bits) ? clusterOfTexel(bits) : unpackCluster(bits);
+  if (hasSurface(bits) && belongs(w.split, w.second, c.depth, c.material))
+    addPart(sums, partOfCluster(level, texel, c, slope), w.point);
+}
+
+void keepCluster(int i, Part p, uint upper) {
+  float scale = p.area > 0.0 ? inversesqrt(p.area) : 0.0;
+  vec3 x = scale * p.x, y = scale * p.y;
+  places[i] = floatBitsToUint(vec4(p.center, p.area));
+  colors[i] = packColor(p.color, upper);
+  places[kKept + i] =
+      uvec4(packHalf2x16(x.xy), packHalf2x16(vec2(x.z, y.x)), packHalf2x16(y.yz), packHalf2x16(p.momentX.xy));
+  lasts[i] = packHalf2x16(vec2(p.momentX.z, p.momentY.x));
+  lasts[kKept + i] = packHalf2x16(p.momentY.yz);
+}
+
+// Whether a texel's are made of its pixels: of quads and, where it is two surfaces and has no quads, of level 2.
+bool isOfPixels(uint level, ivec2 texel) { return level == 1u || (level == 2u && isSplit(clusterBits(2u, texel))); }
+
+Range rangeOf(uint level, ivec2 texel) {
+  Range range = kNoRange;
+  if (isOfPixels(level, texel)) {
+    int side = 1 << int(level);
+    for (int i = 0; i < side * side; ++i) {
+      ivec2 pixel = side * texel + ivec2(i % side, i / side);
+      float depth = frontDistance(withinRect(pixel));
+      extend(range, depth, materialOf(pixel, depth));
+    }
+  } else {
+    for (int i = 0; i < 4; ++i) {
+      ivec2 child = childOf(texel, i);
+      uvec4 bits = clusterBits(level - 1u, child);
+      extendByCluster(range, bits);
+      if (isSplit(bits)) extendByCluster(range, secondBits(level - 1u, child));
+    }
   }
-  Nearest nearest = nearestOf(depths, materials, level);
-  material = nearest.material;
-  vec3 point = pointAt(pixelOf(level, texel), nearest.depth);
-  vec2 slope = slopeAt(level, texel, material);
+  return range;
+}
+
+// A texel's only cluster or one of two. Loops that are not unrolled leave registers for two groups at a time.
+void loadCluster(uint level, ivec2 texel, int i, bool second) {
+  Range range = rangeOf(level, texel);
+  Which w = Which(splitOf(range, level), second,
+                  pointAt(pixelOf(level, texel), range.material != 0u ? range.nearest : 0.0));
+  if (i >= kSeconds) w.split.second = 0u;
+  uint material = second ? w.split.second : w.split.first;
   PartSums sums = kNoParts;
-  [[unroll]] for (int i = 0; i < 4; ++i) {
-    Cluster c = isPlane(bits[i]) ? clusterOfTexel(bits[i]) : unpackCluster(bits[i]);
-    bool counts = belongs(nearest, depths[i], materials[i]);
-    c.depth = counts ? c.depth : nearest.depth;
-    addPart(sums, partOfCluster(level - 1u, childOf(texel, i), c, slope, counts), point);
+  if (isOfPixels(level, texel)) {
+    int side = 1 << int(level);
+    [[dont_unroll]] for (int j = 0; j < side * side; ++j) addPixel(sums, side * texel + ivec2(j % side, j / side), w);
+  } else {
+    vec2 slope = second ? vec2(0.0) : slopeAt(level, texel, material);
+    [[dont_unroll]] for (int j = 0; j < 8; ++j) {
+      ivec2 child = childOf(texel, j >> 1);
+      uvec4 bits = clusterBits(level - 1u, child);
+      if ((j & 1) != 0) bits = isSplit(bits) ? secondBits(level - 1u, child) : uvec4(0u);
+      addBits(sums, level - 1u, child, bits, slope, w);
+    }
   }
-  return together(sums, point);
+  keepCluster(second ? kClusters + i : i, together(sums, w.point), material);
 }
 
 void loadClusters(uint level, ivec2 firstPixel) {
   Window window = windowOf(level, firstPixel);
-  for (int i = int(gl_LocalInvocationIndex); i < kClusterSide * window.rows; i += kInvocations) {
-    ivec2 texel = window.first + ivec2(i % kClusterSide, i / kClusterSide);
-    uint material;
-    Part p;
-    if (level == 1u)
-      p = quadAt(texel, material);
-    else
-      p = clusterAt(level, texel, material);
-    float scale = p.area > 0.0 ? inversesqrt(p.area) : 0.0;
-    vec3 x = scale * p.x, y = scale * p.y;
-    places[i] = floatBitsToUint(vec4(p.center, p.area));
-    colors[i] = packColor(p.color, material);
-    places[kClusters + i] = uvec4(packHalf2x16(x.xy), packHalf2x16(vec2(x.z, y.x)), packHalf2x16(y.yz),
-                                  packHalf2x16(p.momentX.xy));
-    lasts[i] = packHalf2x16(vec2(p.momentX.z, p.momentY.x));
-    lasts[kClusters + i] = packHalf2x16(p.momentY.yz);
+  int invocation = int(gl_LocalInvocationIndex), count = kClusterSide * window.rows;
+  for (int i = invocation; i < min(count, kSeconds); i += kInvocations) {
+    ivec2 inWindow = ivec2(i % kClusterSide, i / kClusterSide);
+    if (splitOf(rangeOf(level, window.first + inWindow), level).second != 0u)
+      atomicOr(splits[level][inWindow.y], 1u << inWindow.x);
+  }
+  barrier();
+  int all = count; // with the seconds after the others, so that no invocation does both of a texel while others wait
+  for (int row = 0; row < window.rows; ++row) all += bitCount(splits[level][row]);
+  for (int i = invocation; i < all; i += kInvocations) {
+    int at = i;
+    if (i >= count) {
+      // The bit of that number.
+      int row = 0, left = i - count, inRow;
+      while (left >= (inRow = bitCount(splits[level][row]))) left -= inRow, ++row;
+      uint bits = splits[level][row];
+      for (; left > 0; --left) bits &= bits - 1u;
+      at = row * kClusterSide + findLSB(bits);
+    }
+    loadCluster(level, window.first + ivec2(at % kClusterSide, at / kClusterSide), at, i >= count);
   }
 }
 
@@ -252,10 +298,10 @@ const float kMostLength2 = 4.0;
 void addCluster(inout Sums sums, int i, Kernel k, vec3 center) {
   vec4 place = placeAt(i);
   uvec2 color = colors[i];
-  uvec4 bits = places[kClusters + i];
+  uvec4 bits = places[kKept + i];
   vec2 two = unpackHalf2x16(bits.y), four = unpackHalf2x16(lasts[i]);
   vec3 x = vec3(unpackHalf2x16(bits.x), two.x), y = vec3(two.y, unpackHalf2x16(bits.z));
-  vec3 momentX = vec3(unpackHalf2x16(bits.w), four.x), momentY = vec3(four.y, unpackHalf2x16(lasts[kClusters + i]));
+  vec3 momentX = vec3(unpackHalf2x16(bits.w), four.x), momentY = vec3(four.y, unpackHalf2x16(lasts[kKept + i]));
   vec3 offset = place.xyz - center;
   float area = color.y >> 16 == k.m + 1u ? place.w : 0.0, distance2 = max(dot(offset, offset), 1.0e-30);
   vec2 along = vec2(dot(offset, x), dot(offset, y));
@@ -275,23 +321,59 @@ void addCluster(inout Sums sums, int i, Kernel k, vec3 center) {
   sums.weight += weight;
 }
 
-// Of the clusters around `texel` of a level runs of kRows in a row, from number `from` on every `step`th.
-void addClusters(inout Sums sums, uint level, ivec2 firstPixel, ivec2 texel, Kernel k, vec3 center, int from, int step) {
-  ivec2 origin = windowOf(level, firstPixel).first, odd = texel & 1;
-  ivec2 parent = 2 * ((texel >> 1) - kAround) - origin;
-  int first = parent.y * kClusterSide + parent.x;
-  // Beside the kRows x kRows texels that the finer level does are kAround rows before them and one more after them, or the
-  // other way round: two runs each. Then what is left and right of them.
+// Clusters around a texel that are summed for it, in runs of kRows.
+struct Around {
+  ivec2 first, odd; // the first of the window's kWindow x kWindow
+};
+
+Around aroundOf(uint level, ivec2 firstPixel, ivec2 texel) {
+  return Around(2 * ((texel >> 1) - kAround) - windowOf(level, firstPixel).first, texel & 1);
+}
+
+// Of a run: where its row begins and its middle one lies, and how many columns are left out before those after that.
+struct Run {
+  ivec2 first;
+  int middle, skipped;
+};
+
+// Beside the kRows x kRows texels that the finer level does are kAround rows before them and one more after them, or the other
+// way round: two runs each. Then what is left and right of them.
+Run runOf(Around a, int run) {
   const int kAfter = 3 * kAround + 1;
+  bool beside = run < 2 * kRows;
+  int row = run >> 1, outer = row < kAround ? row : row > kAround ? row + kRows : a.odd.y == 0 ? kAfter : kAround;
+  ivec2 first = a.first + ivec2(beside && (run & 1) != 0 ? kRows : 0, beside ? outer : run - 2 * kRows + kAround + a.odd.y);
+  return Run(first, beside || a.odd.x != 0 ? kAround : kAfter, beside ? 0 : kRows);
+}
+
+int columnOf(Run r, int j) { return r.first.x + (j < kAround ? j : j > kAround ? j + r.skipped : r.middle); }
+
+// Runs from number `from` on, every `step`th.
+void addClusters(inout Sums sums, Around a, Kernel k, vec3 center, int from, int step) {
   for (int i = from; i < 3 * kRows; i += step) {
-    bool beside = i < 2 * kRows;
-    int row = i >> 1, outer = row < kAround ? row : row > kAround ? row + kRows : odd.y == 0 ? kAfter : kAround;
-    int run = first + (beside ? outer : i - 2 * kRows + kAround + odd.y) * kClusterSide;
-    run += beside && (i & 1) != 0 ? kRows : 0;
-    int skipped = beside ? 0 : kRows, middle = beside || odd.x != 0 ? kAround : kAfter;
+    Run run = runOf(a, i);
+    int first = run.first.y * kClusterSide;
     // At once, so that their latencies overlap.
-    [[unroll]] for (int j = 0; j < kRows; ++j)
-      addCluster(sums, run + (j < kAround ? j : j > kAround ? j + skipped : middle), k, center);
+    [[unroll]] for (int j = 0; j < kRows; ++j) addCluster(sums, first + columnOf(run, j), k, center);
+  }
+}
+
+// The second of two of those.
+void addSeconds(inout Sums sums, uint level, Around a, Kernel k, vec3 center, int from, int step) {
+  const int kRuns = 6; // whose clusters have a bit each
+  for (int begin = from; begin < 3 * kRows; begin += kRuns * step) {
+    uint bits = 0u;
+    for (int i = 0; i < kRuns && begin + i * step < 3 * kRows; ++i) {
+      Run run = runOf(a, begin + i * step);
+      uint row = splits[level][run.first.y];
+      for (int j = 0; j < kRows; ++j) bits |= (row >> columnOf(run, j) & 1u) << (i * kRows + j);
+    }
+    // As often as some invocation has any, wherever they are.
+    for (; bits != 0u; bits &= bits - 1u) {
+      int bit = findLSB(bits);
+      Run run = runOf(a, begin + bit / kRows * step);
+      addCluster(sums, kClusters + run.first.y * kClusterSide + columnOf(run, bit % kRows), k, center);
+    }
   }
 }
 
@@ -317,7 +399,7 @@ vec4 ofQuads(ivec2 inTexel) {
 
 // The coarsest level whose window holds most of the radius.
 uint lastLevel(Kernel k, float facing) {
-  float level = ceil(log2(max(0.8 * k.reach.x * inversesqrt(facing) / float(2 * kAround), 1.0)));
+  float level = ceil(log2(max(0.8 * kernels[k.m].reach.x * inversesqrt(facing) / float(2 * kAround), 1.0)));
   return uint(clamp(level, 1.0, float(pass.value.x)));
 }
 
@@ -344,6 +426,8 @@ void exchange(inout Sums sums, int invocation, bool byQuads) {
 void diffuseTile(ivec2 firstPixel, uint edgeTexels) {
   int invocation = int(gl_LocalInvocationIndex);
   if (invocation == 0) coarsest = rough = 0u;
+  if (invocation < (PELLUCID_LAST_LEVEL + 1) * kClusterSide)
+    splits[invocation / kClusterSide][invocation % kClusterSide] = 0u;
   // 16 invocations to a texel, so that those without one are whole subgroups.
   for (int before = invocation / 16; before > 0; --before) edgeTexels &= edgeTexels - 1u;
   bool isEdge = edgeTexels != 0u;
@@ -351,12 +435,12 @@ void diffuseTile(ivec2 firstPixel, uint edgeTexels) {
   ivec2 local = 4 * ivec2(texel % kTexels, texel / kTexels) + ivec2(inTexel % 4, inTexel / 4), pixel = firstPixel + local;
   ivec2 at = withinRect(pixel);
   float depth = frontDistance(at);
-  uint material = at == pixel && depth > 0.0 ? materialAt(at) : 0u;
+  uint material = materialOf(pixel, depth);
   vec3 center = pointAt(vec2(at), depth), ofQuad = center;
   places[invocation] = uvec4(floatBitsToUint(center), material);
   barrier();
   Kernel k = kernelOf(material);
-  bool diffuses = isEdge && k.reach.x > 0.0;
+  bool diffuses = isEdge && material != 0u && kernels[k.m].reach.x > 0.0;
   uint last = 0u, lastOfTexel = 0u; // of the levels that are summed
   if (diffuses) {
     float facing = max(pixelArea(depth), 1.0e-30);
@@ -387,9 +471,12 @@ void diffuseTile(ivec2 firstPixel, uint edgeTexels) {
     loadClusters(level, firstPixel);
     barrier();
     bool shares = level > 1u && byQuads;
-    if (level <= last)
-      addClusters(sums, level, firstPixel, pixel >> int(level), k, shares ? ofQuad : center,
-                  shares ? (local.x & 1) + 2 * (local.y & 1) : 0, shares ? 4 : 1);
+    if (level <= last) {
+      Around around = aroundOf(level, firstPixel, pixel >> int(level));
+      int from = shares ? (local.x & 1) + 2 * (local.y & 1) : 0, step = shares ? 4 : 1;
+      addClusters(sums, around, k, shares ? ofQuad : center, from, step);
+      addSeconds(sums, level, around, k, shares ? ofQuad : center, from, step);
+    }
     barrier();
   }
   loadPixels(firstPixel);

@@ -5,14 +5,12 @@
 // A pixel's material, and what its taps take from it.
 struct Kernel {
   uint m;
-  vec4 reach;
   int first; // bits of the first entry's squared distance
 };
 
 Kernel kernelOf(uint material) {
-  Kernel k = Kernel(max(material, 1u) - 1u, vec4(0.0), 0);
-  if (material != 0u) k.reach = kernels[k.m].reach;
-  k.first = floatBitsToInt(k.reach.y);
+  Kernel k = Kernel(max(material, 1u) - 1u, 0);
+  if (material != 0u) k.first = floatBitsToInt(kernels[k.m].reach.y);
   return k;
 }
 
@@ -63,7 +61,8 @@ vec3 enclosed(Kernel k, float squared) {
   float at = float(floatBitsToInt(squared) - k.first) * exp2(-float(PELLUCID_DISTANCE_SHIFT));
   at = clamp(at, 0.0, float(kLastEntry) - 1.0e-3);
   uint i = uint(at);
-  return mix(kernels[k.m].enclosed[i].rgb, kernels[k.m].enclosed[i + 1u].rgb, fract(at)) * min(squared / k.reach.y, 1.0);
+  vec3 part = mix(kernels[k.m].enclosed[i].rgb, kernels[k.m].enclosed[i + 1u].rgb, fract(at));
+  return part * min(squared / intBitsToFloat(k.first), 1.0);
 }
 
 // What a pixel has of its own between its center and two of its surface's sides. `x`: from the center to one of them, `y`: half

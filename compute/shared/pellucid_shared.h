@@ -28,6 +28,8 @@ using glm::vec4;
 #define PELLUCID_EDGES_GROUP 16 // a side, pixels, of a tile of the pass that does edges by distances in space
 #define PELLUCID_CLUSTERS_GROUP 16 // a side, texels of level 2: what lies under one of level 6
 #define PELLUCID_EDGES_TILES 4 // of a group, in a column
+// Of shared memory, the most that a group has: those of edges.
+#define PELLUCID_SHARED_BYTES 24576
 #define PELLUCID_RESOLVE_GROUP 16 // a side, texels of level 2, of which an invocation does two beside each other
 #define PELLUCID_REDUCE_GROUP 16 // a side, of the pyramid's reductions
 #define PELLUCID_REDUCE_TILE 7   // a side, texels of the second of the two levels that a group makes
@@ -141,6 +143,7 @@ struct FrameConstants {
   ivec4 level[PELLUCID_LAST_LEVEL + 1]; // xy: where texel (0, 0) of the level lies in the pyramid's image, zw: of its
                                         // clusters; of level 0, that of the resolved level 2, zw: of its shares; zw of
                                         // level 1: the texel that says whether edges are summed
+  ivec4 second[PELLUCID_LAST_LEVEL + 1]; // xy: the same of the second of two clusters, from level 3 on
   // View ray of planar length 1: of pixel (0, 0), changes per pixel in x and y.
   vec4 normalRay[3]; // xyz: in the normal image's space
   vec4 facingRay[2]; // along pixels' columns and rows; xy, zw, xy

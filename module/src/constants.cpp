@@ -81,6 +81,8 @@ shared::FrameConstants frameConstants(const PellucidFrame& f) {
     const PyramidPlace place = placeOf(f, level);
     c.level[level] = {place.x - place.rect.x, place.y - place.rect.y, clusterColumn(f, level) - place.rect.x,
                       place.y - place.rect.y};
+    const PyramidTexel second = secondPlace(f, level);
+    c.second[level] = {second.x - place.rect.x, second.y - place.rect.y, 0, 0};
   }
   const PyramidTexel summed = summedPlace(f);
   c.level[kFirstLevel].z = summed.x;

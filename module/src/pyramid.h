@@ -37,12 +37,16 @@ ResolvedPlace resolvedPlaceOf(const PellucidFrame& frame);
 // level 2.
 int32_t clusterColumn(const PellucidFrame& frame, uint32_t level);
 
-// Where edges are summed, of the texel that says whether any is: right of level 1, whose rows have two more
-// texels than it needs.
 struct PyramidTexel {
   int32_t x, y;
 };
 
+// Where the second ones of two begin, of levels 3 and coarser: below the level, right of what the next one
+// has.
+PyramidTexel secondPlace(const PellucidFrame& frame, uint32_t level);
+
+// Where edges are summed, of the texel that says whether any is: right of level 1, whose rows have two more
+// texels than it needs.
 PyramidTexel summedPlace(const PellucidFrame& frame);
 
 // Of the pyramid's image, for any render rect.

@@ -52,6 +52,11 @@ void expectApart(PellucidFrame f, bool keepsFirst = false) {
     // Clusters read slopes of the levels beside them.
     if (keepsFirstLevel(f) && level >= PELLUCID_FIRST_BESIDE)
       boxes.push_back({clusterColumn(f, level), b.y, b.width, b.height});
+    // The coarsest level has no clusters.
+    if (keepsFirstLevel(f) && level >= PELLUCID_FIRST_BESIDE && level < coarsestLevel(f)) {
+      const PyramidTexel seconds = secondPlace(f, level);
+      boxes.push_back({seconds.x, seconds.y, b.width, b.height});
+    }
   }
   if (keepsFirst) {
     const PyramidTexel summed = summedPlace(f);

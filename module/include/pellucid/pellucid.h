@@ -31,7 +31,8 @@ enum {
   PELLUCID_OK = 0,
   PELLUCID_ERROR_INVALID_ARGUMENT = -1, /* a field is wrong; the message names it */
   PELLUCID_ERROR_VERSION = -2,          /* structSize or headerVersion unknown to this library */
-  PELLUCID_ERROR_MISSING_FEATURE = -3,  /* the device lacks Vulkan 1.1 or push descriptors */
+  PELLUCID_ERROR_MISSING_FEATURE = -3,  /* the device lacks Vulkan 1.1, push descriptors or 24 KiB of
+                                           shared memory a group */
   PELLUCID_ERROR_OUT_OF_MEMORY = -4,
   PELLUCID_ERROR_VULKAN = -5,        /* a Vulkan call failed; the message has the VkResult */
   PELLUCID_ERROR_CAPACITY = -6,      /* more dispatches or shadow images than a plan holds */
