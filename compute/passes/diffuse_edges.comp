@@ -25,18 +25,20 @@ const int kPixels = PELLUCID_EDGES_GROUP, kTexels = kPixels / 4, kSide = kPixels
 const int kInvocations = kPixels * kPixels;
 // Of clusters the largest window, of level 1, and what lies in a window of that side.
 const int kClusterSide = 2 * (kTexels + 2 * kAround), kClusters = kClusterSide * kClusterSide;
-// Of these the first may be two, which all are from level 2 on, where windows are two less wide; quads after them are one
-// surface. With all of them one group alone would run at a time where 48 KB are shared among groups.
-const int kSeconds = (kClusterSide - 2) * kClusterSide - 2, kKept = kClusters + kSeconds;
+// Of two clusters of a texel the seconds are held so many at a time: more than windows have but where all is edges, and few
+// enough for as many groups at once as there are registers for.
+const int kSeconds = 96, kKept = kClusters + kSeconds;
 
-// Pixels, then clusters of a level, the second of two after all others: center, mm, and area, mm^2, of pixels with an axis;
-// color and material. After the places of clusters, in halves, the sides of their surface and along each of them the moments of red, green and blue, in roots of the
-// area; the last four in lasts[], which has the slope of pixels. All that a group holds decides how many run at a time.
+// Pixels, then clusters of a level, the seconds after all others: center, mm, and area, mm^2, of pixels with an axis; color
+// and material. After the places of clusters, in halves, the sides of their surface and along each of them the moments of red,
+// green and blue, in roots of the area; the last four in lasts[], which has the slope of pixels. All that a group holds decides
+// how many run at a time.
 shared uvec4 places[2 * kKept];
 shared uvec2 colors[kSide * kSide];
 shared uint lasts[2 * kKept];
 shared uint edges[PELLUCID_EDGES_TILES]; // of tiles, a bit for each texel
 shared uint splits[PELLUCID_LAST_LEVEL + 1][kClusterSide]; // of the rows of each level, a bit for each texel of two
+shared int secondsBefore[kClusterSide]; // of the level's rows, in those before
 shared uint coarsest, rough; // rough: a bit for each texel that is not summed by quads
 
 // Window of a level around a tile.
@@ -210,12 +212,11 @@ Range rangeOf(uint level, ivec2 texel) {
   return range;
 }
 
-// A texel's only cluster or one of two. Loops that are not unrolled leave registers for two groups at a time.
+// A texel's only cluster or one of two, to keep at `i`. Loops that are not unrolled leave registers for two groups at a time.
 void loadCluster(uint level, ivec2 texel, int i, bool second) {
   Range range = rangeOf(level, texel);
   Which w = Which(splitOf(range, level), second,
                   pointAt(pixelOf(level, texel), range.material != 0u ? range.nearest : 0.0));
-  if (i >= kSeconds) w.split.second = 0u;
   uint material = second ? w.split.second : w.split.first;
   PartSums sums = kNoParts;
   if (isOfPixels(level, texel)) {
@@ -230,32 +231,44 @@ void loadCluster(uint level, ivec2 texel, int i, bool second) {
       addBits(sums, level - 1u, child, bits, slope, w);
     }
   }
-  keepCluster(second ? kClusters + i : i, together(sums, w.point), material);
+  keepCluster(i, together(sums, w.point), material);
 }
 
-void loadClusters(uint level, ivec2 firstPixel) {
+// Of a level all firsts, if `from` is 0, and the seconds from that number on. Returns how many seconds there are.
+int loadClusters(uint level, ivec2 firstPixel, int from) {
   Window window = windowOf(level, firstPixel);
-  int invocation = int(gl_LocalInvocationIndex), count = kClusterSide * window.rows;
-  for (int i = invocation; i < min(count, kSeconds); i += kInvocations) {
-    ivec2 inWindow = ivec2(i % kClusterSide, i / kClusterSide);
-    if (splitOf(rangeOf(level, window.first + inWindow), level).second != 0u)
-      atomicOr(splits[level][inWindow.y], 1u << inWindow.x);
+  int invocation = int(gl_LocalInvocationIndex), firsts = 0;
+  if (from == 0) {
+    firsts = kClusterSide * window.rows;
+    for (int i = invocation; i < firsts; i += kInvocations) {
+      ivec2 inWindow = ivec2(i % kClusterSide, i / kClusterSide);
+      if (splitOf(rangeOf(level, window.first + inWindow), level).second != 0u)
+        atomicOr(splits[level][inWindow.y], 1u << inWindow.x);
+    }
+    barrier();
   }
-  barrier();
-  int all = count; // with the seconds after the others, so that no invocation does both of a texel while others wait
-  for (int row = 0; row < window.rows; ++row) all += bitCount(splits[level][row]);
+  int seconds = 0;
+  for (int row = 0; row < window.rows; ++row) {
+    if (row == invocation) secondsBefore[row] = seconds;
+    seconds += bitCount(splits[level][row]);
+  }
+  // Seconds after the others, so that no invocation does both of a texel while others wait.
+  int all = firsts + min(seconds - from, kSeconds);
   for (int i = invocation; i < all; i += kInvocations) {
-    int at = i;
-    if (i >= count) {
+    bool second = i >= firsts;
+    int at = i, place = i;
+    if (second) {
       // The bit of that number.
-      int row = 0, left = i - count, inRow;
+      int row = 0, left = from + i - firsts, inRow;
+      place = kClusters + i - firsts;
       while (left >= (inRow = bitCount(splits[level][row]))) left -= inRow, ++row;
       uint bits = splits[level][row];
       for (; left > 0; --left) bits &= bits - 1u;
       at = row * kClusterSide + findLSB(bits);
     }
-    loadCluster(level, window.first + ivec2(at % kClusterSide, at / kClusterSide), at, i >= count);
+    loadCluster(level, window.first + ivec2(at % kClusterSide, at / kClusterSide), place, second);
   }
+  return seconds;
 }
 
 // How far to each side long pixels are summed by quarters, and how many these are in a row; those next to the pixel all are.
@@ -358,8 +371,8 @@ void addClusters(inout Sums sums, Around a, Kernel k, vec3 center, int from, int
   }
 }
 
-// The second of two of those.
-void addSeconds(inout Sums sums, uint level, Around a, Kernel k, vec3 center, int from, int step) {
+// The seconds of those, of which the ones from number `held` on are kept.
+void addSeconds(inout Sums sums, uint level, int held, Around a, Kernel k, vec3 center, int from, int step) {
   const int kRuns = 6; // whose clusters have a bit each
   for (int begin = from; begin < 3 * kRows; begin += kRuns * step) {
     uint bits = 0u;
@@ -372,7 +385,9 @@ void addSeconds(inout Sums sums, uint level, Around a, Kernel k, vec3 center, in
     for (; bits != 0u; bits &= bits - 1u) {
       int bit = findLSB(bits);
       Run run = runOf(a, begin + bit / kRows * step);
-      addCluster(sums, kClusters + run.first.y * kClusterSide + columnOf(run, bit % kRows), k, center);
+      uint before = splits[level][run.first.y] & ((1u << columnOf(run, bit % kRows)) - 1u);
+      int place = secondsBefore[run.first.y] + bitCount(before) - held;
+      if (place >= 0 && place < kSeconds) addCluster(sums, kClusters + place, k, center);
     }
   }
 }
@@ -468,16 +483,19 @@ void diffuseTile(ivec2 firstPixel, uint edgeTexels) {
   // Pixels last, so that only one of the sums is kept while others are made.
   for (uint level = levels; level > 0u; --level) {
     if (level == 1u) exchange(sums, invocation, byQuads);
-    loadClusters(level, firstPixel);
-    barrier();
     bool shares = level > 1u && byQuads;
-    if (level <= last) {
-      Around around = aroundOf(level, firstPixel, pixel >> int(level));
-      int from = shares ? (local.x & 1) + 2 * (local.y & 1) : 0, step = shares ? 4 : 1;
-      addClusters(sums, around, k, shares ? ofQuad : center, from, step);
-      addSeconds(sums, level, around, k, shares ? ofQuad : center, from, step);
-    }
-    barrier();
+    Around around = aroundOf(level, firstPixel, pixel >> int(level));
+    int from = shares ? (local.x & 1) + 2 * (local.y & 1) : 0, step = shares ? 4 : 1, held = 0, seconds;
+    do {
+      seconds = loadClusters(level, firstPixel, held);
+      barrier();
+      if (level <= last) {
+        if (held == 0) addClusters(sums, around, k, shares ? ofQuad : center, from, step);
+        addSeconds(sums, level, held, around, k, shares ? ofQuad : center, from, step);
+      }
+      barrier();
+      held += kSeconds;
+    } while (held < seconds);
   }
   loadPixels(firstPixel);
   barrier();

@@ -85,29 +85,37 @@ TEST_P(Diffusion, BlackStaysBlack) {
 // The result belongs to the image and not to the workgroups: a rect at any offset gives the same pixels, away
 // from its own rim.
 TEST_P(Diffusion, ShiftedRectGivesTheSamePixels) {
-  Capture c = dark(128, 128);
+  Capture step = dark(128, 128);
   for (int y = 56; y < 72; ++y)
-    for (int x = 56; x < 72; ++x) light(c, x, y, static_cast<float>((x * 7 + y * 13) % 5));
-  // A step in depth and, of a material that reaches less far, a disc.
-  c.materials.resize(2);
+    for (int x = 56; x < 72; ++x) light(step, x, y, static_cast<float>((x * 7 + y * 13) % 5));
+  // A step in depth and, of a material that reaches less far, a disc. Then bars before what is behind: edges
+  // wherever one looks.
+  step.materials.resize(2);
+  Capture bars = step;
   for (int y = 0; y < 128; ++y)
     for (int x = 0; x < 128; ++x) {
-      if (x + y / 4 > 82) c.frontDepth.image.at(x, y)[0] += 5;
-      if (std::hypot(x - 60, y - 64) < 5) c.material[static_cast<size_t>(128 * y + x)] = 2;
+      if (x + y / 4 > 82) step.frontDepth.image.at(x, y)[0] += 5;
+      if (std::hypot(x - 60, y - 64) < 5) step.material[static_cast<size_t>(128 * y + x)] = 2;
+      if (x % 3 == 0) bars.frontDepth.image.at(x, y)[0] += 5;
     }
-  for (const auto& deviations : {std::initializer_list<double>{1, 4}, {7}}) {
-    const std::vector<PellucidMaterial> m = {gaussians(deviations, pixelOf(c)), gaussians({1}, pixelOf(c))};
-    const Image whole = replayer().run(c, m, diffusionOnly()).output;
-    for (const auto& rect :
-         {std::array<uint32_t, 4>{1, 0, 127, 128}, {2, 3, 120, 119}, {7, 5, 114, 116}, {13, 11, 110, 101}}) {
-      ReplaySettings s = diffusionOnly();
-      s.renderRect = rect;
-      const Image part = replayer().run(c, m, s).output;
-      for (int y = 44; y < 84; ++y)
-        for (int x = 44; x < 84; ++x)
-          EXPECT_NEAR(part.at(x, y)[0], whole.at(x, y)[0], 1e-3 * (1 + whole.at(x, y)[0])) << x << ", " << y;
+  for (const auto& deviations : {std::initializer_list<double>{1, 4}, {7}})
+    for (const Capture* c : {&step, &bars}) {
+      const double pixel = pixelOf(*c);
+      const std::vector<PellucidMaterial> m = {gaussians(deviations, pixel), gaussians({1}, pixel)};
+      const Image whole = replayer().run(*c, m, diffusionOnly()).output;
+      for (const auto& rect : {std::array<uint32_t, 4>{1, 0, 127, 128},
+                               {2, 3, 120, 119},
+                               {7, 5, 114, 116},
+                               {13, 11, 110, 101}}) {
+        ReplaySettings s = diffusionOnly();
+        s.renderRect = rect;
+        const Image part = replayer().run(*c, m, s).output;
+        for (int y = 44; y < 84; ++y)
+          for (int x = 44; x < 84; ++x)
+            EXPECT_NEAR(part.at(x, y)[0], whole.at(x, y)[0], 1e-3 * (1 + whole.at(x, y)[0]))
+                << (c == &step ? "step " : "bars ") << x << ", " << y;
+      }
     }
-  }
 }
 
 // An edge of depth 30 times the kernel's reach lets nothing over.
