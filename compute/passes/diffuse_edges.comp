@@ -25,21 +25,17 @@ const int kPixels = PELLUCID_EDGES_GROUP, kTexels = kPixels / 4, kSide = kPixels
 const int kInvocations = kPixels * kPixels;
 // Of clusters the largest window, of level 1, and what lies in a window of that side.
 const int kClusterSide = 2 * (kTexels + 2 * kAround), kClusters = kClusterSide * kClusterSide;
-// Of two clusters of a texel the seconds are held so many at a time: more than windows have but where all is edges, and few
-// enough for as many groups at once as there are registers for.
-const int kSeconds = 96, kKept = kClusters + kSeconds;
 
-// Pixels, then clusters of a level, the seconds after all others: center, mm, and area, mm^2, of pixels with an axis; color
-// and material. After the places of clusters, in halves, the sides of their surface and along each of them the moments of red,
-// green and blue, in roots of the area; the last four in lasts[], which has the slope of pixels. All that a group holds decides
-// how many run at a time.
-shared uvec4 places[2 * kKept];
+// Pixels, then clusters of a level, then second ones of its texels: center, mm, and area, mm^2, of pixels with an axis; color and
+// material. After the places of clusters, in halves, the sides of their surface and along each of them the moments of red, green
+// and blue, in roots of the area; the last four in lasts[], which has the slope of pixels. All that a group holds decides how
+// many run at a time, and is less than the 16 KB that every device has.
+shared uvec4 places[kSide * kSide];
 shared uvec2 colors[kSide * kSide];
-shared uint lasts[2 * kKept];
+shared uint lasts[kSide * kSide];
 shared uint edges[PELLUCID_EDGES_TILES]; // of tiles, a bit for each texel
-shared uint splits[PELLUCID_LAST_LEVEL + 1][kClusterSide]; // of the rows of each level, a bit for each texel of two
-shared int secondsBefore[kClusterSide]; // of the level's rows, in those before
-shared uint coarsest, rough; // rough: a bit for each texel that is not summed by quads
+shared uint splits[2][kClusterSide]; // of the rows of a level, even or odd, a bit for each texel of two
+shared uint coarsest, rough, splitLevels; // rough: a bit for each texel that is not summed by quads
 
 // Window of a level around a tile.
 struct Window {
@@ -183,10 +179,10 @@ void keepCluster(int i, Part p, uint upper) {
   vec3 x = scale * p.x, y = scale * p.y;
   places[i] = floatBitsToUint(vec4(p.center, p.area));
   colors[i] = packColor(p.color, upper);
-  places[kKept + i] =
+  places[kClusters + i] =
       uvec4(packHalf2x16(x.xy), packHalf2x16(vec2(x.z, y.x)), packHalf2x16(y.yz), packHalf2x16(p.momentX.xy));
   lasts[i] = packHalf2x16(vec2(p.momentX.z, p.momentY.x));
-  lasts[kKept + i] = packHalf2x16(p.momentY.yz);
+  lasts[kClusters + i] = packHalf2x16(p.momentY.yz);
 }
 
 // Whether a texel's are made of its pixels: of quads and, where it is two surfaces and has no quads, of level 2.
@@ -212,12 +208,25 @@ Range rangeOf(uint level, ivec2 texel) {
   return range;
 }
 
-// A texel's only cluster or one of two, to keep at `i`. Loops that are not unrolled leave registers for two groups at a time.
-void loadCluster(uint level, ivec2 texel, int i, bool second) {
+// How a texel is split, and a depth near it. Of levels with clusters it is known which are not.
+Split splitAt(uint level, ivec2 texel, out float near) {
+  if (level > 1u && level < pass.value.x) {
+    uvec4 bits = clusterBits(level, texel);
+    near = clusterDepth(bits);
+    if (!isSplit(bits)) return Split(materialBits(bits), 0u, 0.0);
+  }
   Range range = rangeOf(level, texel);
-  Which w = Which(splitOf(range, level), second,
-                  pointAt(pixelOf(level, texel), range.material != 0u ? range.nearest : 0.0));
-  uint material = second ? w.split.second : w.split.first;
+  near = range.material != 0u ? range.nearest : 0.0;
+  return splitOf(range, level);
+}
+
+// A texel's only cluster, the first of two or the second, to keep at `i`. Returns whether there are two. Loops that are not
+// unrolled leave registers for two groups at a time.
+bool loadCluster(uint level, ivec2 texel, int i, bool second) {
+  float near;
+  Split split = splitAt(level, texel, near);
+  Which w = Which(split, second, pointAt(pixelOf(level, texel), near));
+  uint material = second ? split.second : split.first;
   PartSums sums = kNoParts;
   if (isOfPixels(level, texel)) {
     int side = 1 << int(level);
@@ -232,43 +241,24 @@ void loadCluster(uint level, ivec2 texel, int i, bool second) {
     }
   }
   keepCluster(i, together(sums, w.point), material);
+  return split.second != 0u;
 }
 
-// Of a level all firsts, if `from` is 0, and the seconds from that number on. Returns how many seconds there are.
-int loadClusters(uint level, ivec2 firstPixel, int from) {
+// All that are alone or first, which says where there are two, or then the second ones in their places.
+void loadClusters(uint level, ivec2 firstPixel, bool second) {
   Window window = windowOf(level, firstPixel);
-  int invocation = int(gl_LocalInvocationIndex), firsts = 0;
-  if (from == 0) {
-    firsts = kClusterSide * window.rows;
-    for (int i = invocation; i < firsts; i += kInvocations) {
-      ivec2 inWindow = ivec2(i % kClusterSide, i / kClusterSide);
-      if (splitOf(rangeOf(level, window.first + inWindow), level).second != 0u)
-        atomicOr(splits[level][inWindow.y], 1u << inWindow.x);
+  int invocation = int(gl_LocalInvocationIndex);
+  uint parity = level & 1u;
+  if (!second && invocation < kClusterSide) splits[1u - parity][invocation] = 0u; // for the next level
+  for (int i = invocation; i < kClusterSide * window.rows; i += kInvocations) {
+    ivec2 inWindow = ivec2(i % kClusterSide, i / kClusterSide);
+    uint bit = 1u << inWindow.x;
+    if (second && (splits[parity][inWindow.y] & bit) == 0u) continue;
+    if (loadCluster(level, window.first + inWindow, i, second) && !second) {
+      atomicOr(splits[parity][inWindow.y], bit);
+      atomicOr(splitLevels, 1u << level);
     }
-    barrier();
   }
-  int seconds = 0;
-  for (int row = 0; row < window.rows; ++row) {
-    if (row == invocation) secondsBefore[row] = seconds;
-    seconds += bitCount(splits[level][row]);
-  }
-  // Seconds after the others, so that no invocation does both of a texel while others wait.
-  int all = firsts + min(seconds - from, kSeconds);
-  for (int i = invocation; i < all; i += kInvocations) {
-    bool second = i >= firsts;
-    int at = i, place = i;
-    if (second) {
-      // The bit of that number.
-      int row = 0, left = from + i - firsts, inRow;
-      place = kClusters + i - firsts;
-      while (left >= (inRow = bitCount(splits[level][row]))) left -= inRow, ++row;
-      uint bits = splits[level][row];
-      for (; left > 0; --left) bits &= bits - 1u;
-      at = row * kClusterSide + findLSB(bits);
-    }
-    loadCluster(level, window.first + ivec2(at % kClusterSide, at / kClusterSide), place, second);
-  }
-  return seconds;
 }
 
 // How far to each side long pixels are summed by quarters, and how many these are in a row; those next to the pixel all are.
@@ -311,10 +301,10 @@ const float kMostLength2 = 4.0;
 void addCluster(inout Sums sums, int i, Kernel k, vec3 center) {
   vec4 place = placeAt(i);
   uvec2 color = colors[i];
-  uvec4 bits = places[kKept + i];
+  uvec4 bits = places[kClusters + i];
   vec2 two = unpackHalf2x16(bits.y), four = unpackHalf2x16(lasts[i]);
   vec3 x = vec3(unpackHalf2x16(bits.x), two.x), y = vec3(two.y, unpackHalf2x16(bits.z));
-  vec3 momentX = vec3(unpackHalf2x16(bits.w), four.x), momentY = vec3(four.y, unpackHalf2x16(lasts[kKept + i]));
+  vec3 momentX = vec3(unpackHalf2x16(bits.w), four.x), momentY = vec3(four.y, unpackHalf2x16(lasts[kClusters + i]));
   vec3 offset = place.xyz - center;
   float area = color.y >> 16 == k.m + 1u ? place.w : 0.0, distance2 = max(dot(offset, offset), 1.0e-30);
   vec2 along = vec2(dot(offset, x), dot(offset, y));
@@ -371,23 +361,21 @@ void addClusters(inout Sums sums, Around a, Kernel k, vec3 center, int from, int
   }
 }
 
-// The seconds of those, of which the ones from number `held` on are kept.
-void addSeconds(inout Sums sums, uint level, int held, Around a, Kernel k, vec3 center, int from, int step) {
+// The second of two of those.
+void addSeconds(inout Sums sums, uint level, Around a, Kernel k, vec3 center, int from, int step) {
   const int kRuns = 6; // whose clusters have a bit each
   for (int begin = from; begin < 3 * kRows; begin += kRuns * step) {
     uint bits = 0u;
     for (int i = 0; i < kRuns && begin + i * step < 3 * kRows; ++i) {
       Run run = runOf(a, begin + i * step);
-      uint row = splits[level][run.first.y];
+      uint row = splits[level & 1u][run.first.y];
       for (int j = 0; j < kRows; ++j) bits |= (row >> columnOf(run, j) & 1u) << (i * kRows + j);
     }
     // As often as some invocation has any, wherever they are.
     for (; bits != 0u; bits &= bits - 1u) {
       int bit = findLSB(bits);
       Run run = runOf(a, begin + bit / kRows * step);
-      uint before = splits[level][run.first.y] & ((1u << columnOf(run, bit % kRows)) - 1u);
-      int place = secondsBefore[run.first.y] + bitCount(before) - held;
-      if (place >= 0 && place < kSeconds) addCluster(sums, kClusters + place, k, center);
+      addCluster(sums, run.first.y * kClusterSide + columnOf(run, bit % kRows), k, center);
     }
   }
 }
@@ -440,9 +428,8 @@ void exchange(inout Sums sums, int invocation, bool byQuads) {
 // Pixels of a tile's edges; a bit for each of its texels says which are.
 void diffuseTile(ivec2 firstPixel, uint edgeTexels) {
   int invocation = int(gl_LocalInvocationIndex);
-  if (invocation == 0) coarsest = rough = 0u;
-  if (invocation < (PELLUCID_LAST_LEVEL + 1) * kClusterSide)
-    splits[invocation / kClusterSide][invocation % kClusterSide] = 0u;
+  if (invocation == 0) coarsest = rough = splitLevels = 0u;
+  if (invocation < 2 * kClusterSide) splits[invocation / kClusterSide][invocation % kClusterSide] = 0u;
   // 16 invocations to a texel, so that those without one are whole subgroups.
   for (int before = invocation / 16; before > 0; --before) edgeTexels &= edgeTexels - 1u;
   bool isEdge = edgeTexels != 0u;
@@ -485,17 +472,16 @@ void diffuseTile(ivec2 firstPixel, uint edgeTexels) {
     if (level == 1u) exchange(sums, invocation, byQuads);
     bool shares = level > 1u && byQuads;
     Around around = aroundOf(level, firstPixel, pixel >> int(level));
-    int from = shares ? (local.x & 1) + 2 * (local.y & 1) : 0, step = shares ? 4 : 1, held = 0, seconds;
-    do {
-      seconds = loadClusters(level, firstPixel, held);
-      barrier();
-      if (level <= last) {
-        if (held == 0) addClusters(sums, around, k, shares ? ofQuad : center, from, step);
-        addSeconds(sums, level, held, around, k, shares ? ofQuad : center, from, step);
-      }
-      barrier();
-      held += kSeconds;
-    } while (held < seconds);
+    int from = shares ? (local.x & 1) + 2 * (local.y & 1) : 0, step = shares ? 4 : 1;
+    loadClusters(level, firstPixel, false);
+    barrier();
+    if (level <= last) addClusters(sums, around, k, shares ? ofQuad : center, from, step);
+    barrier();
+    if ((splitLevels >> level & 1u) == 0u) continue; // of all invocations
+    loadClusters(level, firstPixel, true);
+    barrier();
+    if (level <= last) addSeconds(sums, level, around, k, shares ? ofQuad : center, from, step);
+    barrier();
   }
   loadPixels(firstPixel);
   barrier();

@@ -28,8 +28,6 @@ using glm::vec4;
 #define PELLUCID_EDGES_GROUP 16 // a side, pixels, of a tile of the pass that does edges by distances in space
 #define PELLUCID_CLUSTERS_GROUP 16 // a side, texels of level 2: what lies under one of level 6
 #define PELLUCID_EDGES_TILES 4 // of a group, in a column
-// Of shared memory, the most that a group has: those of edges.
-#define PELLUCID_SHARED_BYTES 20480
 #define PELLUCID_RESOLVE_GROUP 16 // a side, texels of level 2, of which an invocation does two beside each other
 #define PELLUCID_REDUCE_GROUP 16 // a side, of the pyramid's reductions
 #define PELLUCID_REDUCE_TILE 7   // a side, texels of the second of the two levels that a group makes

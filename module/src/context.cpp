@@ -76,11 +76,6 @@ PellucidResult checkDesc(const PellucidContextDesc& desc) {
         "; 1.1 is required");
     return PELLUCID_ERROR_MISSING_FEATURE;
   }
-  if (const uint32_t bytes = properties.limits.maxComputeSharedMemorySize; bytes < PELLUCID_SHARED_BYTES) {
-    say(desc, "physicalDevice", properties.deviceName, " has ", bytes, " bytes of shared memory a group; ",
-        PELLUCID_SHARED_BYTES, " are required");
-    return PELLUCID_ERROR_MISSING_FEATURE;
-  }
   return PELLUCID_OK;
 }
 
