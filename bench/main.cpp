@@ -111,12 +111,12 @@ void modulePlans(const Bench& bench) {
 // Where surfaces end and curve, which takes longer than planes.
 void edges(const Bench& bench) {
   const auto [width, height] = bench.options.size;
-  for (const double radius : {400.0, 100.0, 25.0}) {
+  for (const double radius : {400.0, 100.0}) {
     char title[64];
     std::snprintf(title, sizeof title, "edges, balls of %g pixels", radius);
     bench.report.section(title);
     const Capture capture = balls(width, height, radius, bench.site.pixel);
-    for (const uint32_t quality : {2u, 3u}) {
+    for (const uint32_t quality : {2u}) {
       ReplaySettings settings;
       settings.quality = quality;
       const auto frame = bench.frame(capture, settings);

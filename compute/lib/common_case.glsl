@@ -24,4 +24,11 @@ const bool kSumsEdges = true;
 const bool kSumsEdges = false;
 #endif
 
+// MARKS_EDGES: pixels of edges have a dispatch of their own, which sums over the pyramid; all others are as without it.
+#ifdef MARKS_EDGES
+const bool kMarksEdges = true;
+#else
+const bool kMarksEdges = kSumsEdges;
+#endif
+
 #endif

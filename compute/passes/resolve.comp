@@ -15,7 +15,17 @@ layout(set = 0, binding = PELLUCID_BINDING_KERNELS) readonly buffer Kernels { Ke
 // Resolved texels of level 3 and coarser ones, level after level; see Window. Color and material as packed, depth, and in
 // place of the slope the share of the kernel that the surface fills, of each channel, and in the last byte how much of the
 // light comes from edges.
-shared uvec4 resolved[153 + 60 + 24 + 12 + 9];
+const int kResolved = 153 + 60 + 24 + 12 + 9;
+#ifdef SUMS_FAST
+const int kSources = PELLUCID_FAST_EDGES_SOURCES;
+shared uvec4 resolved[kSources];
+shared uvec2 colors[kSources];
+shared float depths[kSources];
+#define places resolved
+#include "passes/fast_edges.glsl"
+#else
+shared uvec4 resolved[kResolved + 73]; // and what REDUCES makes
+#endif
 
 shared uint anySummed; // of the pixels under the group's texels
 
@@ -23,12 +33,17 @@ shared uint anySummed; // of the pixels under the group's texels
 // Sides of what a group needs of level 5 to make level 6, and of that to make level 7.
 const int kSide5 = 18, kSide6 = 8;
 
+#ifndef SUMS_FAST
 shared uvec2 colors[kSide5 * kSide5];
 shared float depths[kSide5 * kSide5];
+#endif
 shared uint needsMade;
-shared uvec4 made[kSide6 * kSide6 + 9]; // texels of level 6 and then, 3 x 3, of level 7
+const int kMade = kResolved; // in resolved[], texels of level 6 and then, 3 x 3, of level 7
+const bool kReduces = true;
 
 #include "passes/reduced.glsl"
+#else
+const bool kReduces = false;
 #endif
 
 // What a group needs of a level. Groups start at texels 16 k - 1 of level 2, k.x even, so that these are the same
@@ -82,7 +97,7 @@ uvec4 texelAt(uint level, ivec2 texel, ivec2 k) {
 #ifdef REDUCES
   if (level > 5u) {
     ivec2 at = texel - firstMade(level, k);
-    return made[level == 6u ? at.y * kSide6 + at.x : kSide6 * kSide6 + at.y * 3 + at.x];
+    return resolved[kMade + (level == 6u ? at.y * kSide6 + at.x : kSide6 * kSide6 + at.y * 3 + at.x)];
   }
 #endif
   return texelFetch(pyramidImage, inAtlas(level, texel), 0);
@@ -398,7 +413,7 @@ void makeLevels(ivec2 k, int invocation) {
   uvec4 bits = makes ? reduced(5u, first6 + at, 2 * at.y * kSide5 + at.x, kSide5) : uvec4(0u);
   barrier();
   if (at.y < kSide6) {
-    made[invocation] = bits;
+    resolved[kMade + invocation] = bits;
     colors[slot(at, kSide6)] = bits.xy;
     depths[slot(at, kSide6)] = uintBitsToFloat(bits.z);
   }
@@ -406,7 +421,7 @@ void makeLevels(ivec2 k, int invocation) {
   at = ivec2(invocation % 3, invocation / 3);
   if (at.y < 3) {
     makes = contains(levelRect(7u), first7 + at);
-    made[kSide6 * kSide6 + invocation] = makes ? reduced(6u, first7 + at, 2 * at.y * kSide6 + at.x, kSide6) : uvec4(0u);
+    resolved[kMade + kSide6 * kSide6 + invocation] = makes ? reduced(6u, first7 + at, 2 * at.y * kSide6 + at.x, kSide6) : uvec4(0u);
   }
   barrier();
 }
@@ -416,6 +431,49 @@ uvec4 packLevel(Level r, uvec4 bits) {
   uint density = packDensity(r.density) | packUnorm4x8(vec4(0.0, 0.0, 0.0, r.fromEdges));
   return uvec4(packColor(r.color, bits.y >> 16), bits.z, density);
 }
+
+// Of planes that are summed fast: how tilted they are, 35 degrees, and how much of their energy comes from levels that are none.
+const float kMostFastStretch = 0.49, kMostFastShare = 0.02;
+
+// Whether a texel of level 2 is no plane because the rect ends beside it: farther in is one, on which it lies.
+bool continuesPlane(ivec2 texel, uvec4 bits) {
+  ivec4 inner = inset(levelRect(2u), 3);
+  ivec2 nearest = clamp(texel, inner.xy, inner.zw - 1);
+  if (nearest == texel || any(lessThanEqual(inner.zw, inner.xy))) return false;
+  uvec4 theirs = texelFetch(pyramidImage, inAtlas(2u, nearest), 0);
+  vec2 slope = unpackHalf2x16(theirs.w), size = texelSize(uintBitsToFloat(theirs.z), 2u);
+  float off = uintBitsToFloat(bits.z) - uintBitsToFloat(theirs.z) - dot(slope, vec2(texel - nearest) * size);
+  return (theirs.x & kFlat) != 0u && materialBits(theirs) == materialBits(bits) &&
+         off * off * inverseSpread(slope, size) < kPlaneOffset;
+}
+
+// Whether the pixels under a texel of level 2 are summed fast. `planes`: whether those of levels 3 and 4 that it lies in are some.
+// `margin`: for a second evaluation, which may round differently and must find all that the first one does.
+bool isSummedFast(ivec2 texel, uvec4 bits, Foreshortening f, bool planes, float margin) {
+  if (!hasSurface(bits)) return false;
+  if (f.stretch > kMostFastStretch * (1.0 - margin)) return true;
+  if ((bits.x & kFlat) == 0u && !continuesPlane(texel, bits)) return true;
+  uint m = materialBits(bits) - 1u;
+  vec3 share = coarserShare(m, 2u, shareEntry(m, f.lengthMm));
+  return !planes && max(share.r, max(share.g, share.b)) > kMostFastShare * (1.0 - margin);
+}
+
+// Texels near the rect's border are no planes, whatever is there, and count as if they were, as do levels that are not there.
+bool countsAsPlane(uint level, ivec2 texel, uvec4 bits) {
+  return isPlane(bits) || level > pass.value.x || !contains(inset(levelRect(level), 3), texel);
+}
+
+#ifdef SUMS_FAST
+bool sums(ivec2 texel) {
+  // All before the first is used. Of a level that is not there it is not looked at.
+  uvec4 bits = texelFetch(pyramidImage, inAtlas(2u, texel), 0), third = texelFetch(pyramidImage, inAtlas(3u, texel >> 1), 0);
+  uvec4 fourth = texelFetch(pyramidImage, inAtlas(min(pass.value.x, 4u), texel >> 2), 0);
+  bool planes = countsAsPlane(3u, texel >> 1, third) && countsAsPlane(4u, texel >> 2, fourth);
+  return isSummedFast(texel, bits, foreshortening(texel, 2u, uintBitsToFloat(bits.z), unpackHalf2x16(bits.w)), planes, 1.0e-3);
+}
+
+#include "passes/fast_edges_tiles.glsl"
+#endif
 
 // A texel of level 2 and its pixels' shares.
 void resolveFine(ivec2 texel, ivec2 k, uvec4 bits) {
@@ -438,6 +496,13 @@ void resolveFine(ivec2 texel, ivec2 k, uvec4 bits) {
       }
       shares.xyz = packEnergies(withDensity(pixelEnergies(m, f), r.density));
     } else {
+      bool planes = countsAsPlane(3u, texel >> 1, resolved[indexOf(windowOf(3u, k), texel >> 1)]) &&
+                    countsAsPlane(4u, texel >> 2, resolved[indexOf(windowOf(4u, k), texel >> 2)]);
+      if (kMarksEdges && isSummedFast(texel, bits, f, planes, 0.0)) {
+        flags |= kSummed;
+        anySummed = 1u; // whoever writes, writes this
+        color.y &= ~kPlane;
+      }
       PixelShares share = pixelShares(m, f);
       share.coarser = share.coarser * r.density / max(1.0 - share.coarser + share.coarser * r.density, vec3(1.0e-6));
       shares.xyz = packShares(share);
@@ -447,22 +512,22 @@ void resolveFine(ivec2 texel, ivec2 k, uvec4 bits) {
   writeResolved(texel, color, shares);
 }
 
-void main() {
+// `group`: which of the groups that resolve.
+void resolveGroup(ivec2 group) {
   int invocation = int(gl_LocalInvocationIndex);
   uint coarsest = pass.value.x;
   // An invocation does two texels of level 2 and, before them, one of levels 3 to 6. The first ones have level 7, too.
   // Where edges are summed, borders take longer.
-  ivec2 group = ivec2(kSumsEdges ? bordersFirst() : gl_WorkGroupID.xy);
   ivec2 k = (((levelRect(2u).xy + 1) >> ivec2(5, 4)) + group) * ivec2(2, 1);
   ivec2 fine = 16 * k - 1 + ivec2(gl_LocalInvocationID.xy), nextFine = fine + ivec2(PELLUCID_RESOLVE_GROUP, 0);
   uint level = 3u + uint(invocation >= 153) + uint(invocation >= 213) + uint(invocation >= 237);
   Window window = windowOf(level, k), last = windowOf(7u, k);
-  bool within = invocation < last.first, hasLast = last.first + invocation < resolved.length();
+  bool within = invocation < last.first, hasLast = last.first + invocation < kResolved;
   ivec2 texel = texelOf(window, invocation - window.first), lastTexel = texelOf(last, invocation);
   bool inside = level <= coarsest && within && contains(levelRect(level), texel);
   bool lastInside = coarsest == 7u && hasLast && contains(levelRect(7u), lastTexel);
   bool fetches = inside, fetchesLast = lastInside;
-  if (kSumsEdges && invocation == 0) anySummed = 0u;
+  if (kMarksEdges && invocation == 0) anySummed = 0u;
 #ifdef REDUCES
   if (invocation == 0) needsMade = 0u;
   fetches = fetches && level <= 5u;
@@ -507,8 +572,21 @@ void main() {
     fine = nextFine;
     fineBits = nextBits;
   }
-  if (kSumsEdges) {
+  if (kMarksEdges) {
     barrier();
     if (invocation == 0 && anySummed != 0u) imageStore(levelsDestination, summedPlace(), uvec4(1u));
   }
+}
+
+void main() {
+#ifdef SUMS_FAST
+  // Groups that sum take longest and come first, in rows of their own, some of which lie beyond all tiles.
+  uint rows = pass.value.z;
+  if (gl_WorkGroupID.y < rows)
+    sumTiles(groupIndex(), rows * gl_NumWorkGroups.x, kReduces ? 5u : pass.value.x, pass.value.w != 0u);
+  else
+    resolveGroup(ivec2(gl_WorkGroupID.xy) - ivec2(0, rows));
+#else
+  resolveGroup(ivec2(kSumsEdges ? bordersFirst() : gl_WorkGroupID.xy));
+#endif
 }

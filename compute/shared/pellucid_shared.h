@@ -26,6 +26,8 @@ using glm::vec4;
 #define PELLUCID_DIFFUSE_TEXELS_Y 4
 #define PELLUCID_DIFFUSE_CELL 4 // pixels a side of the gather's cells where the diffusion adds what it found
 #define PELLUCID_EDGES_GROUP 16 // a side, pixels, of a tile of the pass that does edges by distances in space
+#define PELLUCID_FAST_EDGES_TILES 16 // of a group that sums edges fast
+#define PELLUCID_FAST_EDGES_SOURCES 576 // which it has at a time: 24 x 24 pixels
 #define PELLUCID_CLUSTERS_GROUP 16 // a side, texels of level 2: what lies under one of level 6
 #define PELLUCID_EDGES_TILES 4 // of a group, in a column
 #define PELLUCID_RESOLVE_GROUP 16 // a side, texels of level 2, of which an invocation does two beside each other
@@ -231,6 +233,7 @@ struct KernelConstants {
   // rgb: R, 1/mm^2, as a float whose last 16 bits are the first of (r R)'' / r, 1/mm^4. a: -d ln R / d ln r^2, 0 to
   // PELLUCID_MOST_FALL, in 10 bits each.
   uvec4 distance[PELLUCID_DISTANCE_ENTRIES];
+  vec4 burley; // rgb: log2(e) / (3 d) of Burley's profile, 1/mm; a: 1 if all channels have it
   vec4 enclosed[PELLUCID_DISTANCE_ENTRIES]; // rgb: which part of the energy lies within r
 };
 

@@ -91,6 +91,14 @@ void addDistances(const PellucidMaterial& m, shared::KernelConstants& c) {
   const int last = static_cast<int>(std::ceil(2 * std::log2(within))) + 3;
   const auto first = static_cast<float>(std::exp2(last - PELLUCID_DISTANCE_OCTAVES));
   c.reach = {radius, first, 0, 0};
+  c.burley.w = 1;
+  for (int channel = 0; channel < 3; ++channel) {
+    const double d = static_cast<double>(m.burleyDistance[channel]);
+    if (d > 0)
+      c.burley[channel] = static_cast<float>(std::numbers::log2e / (3 * d));
+    else
+      c.burley.w = 0;
+  }
   constexpr uint32_t kLast = PELLUCID_DISTANCE_ENTRIES - 1;
   for (uint32_t i = 0; i <= kLast; ++i) {
     const auto squared =
@@ -157,7 +165,7 @@ shared::KernelConstants kernelConstants(const PellucidMaterial& m, FineFilters f
         c.pixelShare[PELLUCID_PIXEL_SHARES * i + k][channel] = static_cast<float>(shares[k]);
     }
   }
-  if (two) addDistances(m, c);
+  addDistances(m, c);
   return c;
 }
 

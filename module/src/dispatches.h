@@ -357,7 +357,9 @@ struct Builder {
   // boxes.
   bool reduce(uint32_t finer, uint32_t levels) {
     PellucidDispatch* d = dispatch(
-        "reduce", sumsEdges() ? PELLUCID_PIPELINE_REDUCE_FOR_EDGES : PELLUCID_PIPELINE_REDUCE_LEVELS);
+        "reduce", sumsEdges()       ? PELLUCID_PIPELINE_REDUCE_FOR_EDGES
+                  : sumsEdgesFast() ? PELLUCID_PIPELINE_REDUCE_MARKING_EDGES
+                                    : PELLUCID_PIPELINE_REDUCE_LEVELS);
     if (!d) return false;
     // Groups of boxes, whose columns and number the shader is told, lie in rows before the others, of whose
     // rows it is told.
@@ -380,11 +382,18 @@ struct Builder {
     return true;
   }
 
-  // `reduces`: it makes levels 6 and 7 from level 5.
-  bool resolve(uint32_t coarsest, bool reduces) {
-    PellucidDispatch* d = dispatch("resolve", reduces       ? PELLUCID_PIPELINE_REDUCE_AND_RESOLVE
-                                              : sumsEdges() ? PELLUCID_PIPELINE_RESOLVE_FOR_EDGES
-                                                            : PELLUCID_PIPELINE_RESOLVE_LEVELS);
+  // `reduces`: it makes levels 6 and 7 from level 5. Where edges are summed fast and nothing is added to them,
+  // that is done here, from `source` to `destination`.
+  bool resolve(uint32_t coarsest, bool reduces, uint32_t source, uint32_t destination, bool addsPoints) {
+    const bool fast = sumsEdgesFast(), sums = fast && !addsPoints;
+    const uint32_t pipeline = sums && reduces   ? PELLUCID_PIPELINE_REDUCE_RESOLVE_AND_SUM_16F
+                              : sums            ? PELLUCID_PIPELINE_RESOLVE_AND_SUM_16F
+                              : fast && reduces ? PELLUCID_PIPELINE_REDUCE_AND_RESOLVE_MARKING_EDGES
+                              : fast            ? PELLUCID_PIPELINE_RESOLVE_MARKING_EDGES
+                              : reduces         ? PELLUCID_PIPELINE_REDUCE_AND_RESOLVE
+                              : sumsEdges()     ? PELLUCID_PIPELINE_RESOLVE_FOR_EDGES
+                                                : PELLUCID_PIPELINE_RESOLVE_LEVELS;
+    PellucidDispatch* d = dispatch("resolve", pipeline + (sums && wide() ? 1 : 0));
     if (!d) return false;
     // Groups start at texels 32 k - 1, in y 16 k - 1.
     const PyramidPlace place = placeOf(frame, 2);
@@ -395,13 +404,35 @@ struct Builder {
     d->groups[1] = across(place.rect.y, place.rect.height, PELLUCID_RESOLVE_GROUP);
     d->pushConstants[0] = coarsest;
     d->pushConstants[1] = 16;  // texels under a texel
-    constants(d, PELLUCID_BINDING_FRAME, layout.frame);
+    if (sums) {
+      // In rows before the others, of which the shader is told.
+      const uint32_t rows = (fastEdgesGroups() + d->groups[0] - 1) / d->groups[0];
+      d->groups[1] += rows;
+      d->pushConstants[2] = rows;
+      d->pushConstants[3] = destination == PELLUCID_RESOURCE_OUTPUT;
+      common(d, source, destination);
+      image(d, PELLUCID_BINDING_NORMAL, PELLUCID_RESOURCE_NORMAL, 0);
+      // The plan does not know how many edges there are: what says so is all that is read anywhere.
+      d->modeledBytes = kTexelBytes * texels(2);
+    } else {
+      constants(d, PELLUCID_BINDING_FRAME, layout.frame);
+    }
     constants(d, PELLUCID_BINDING_KERNELS, layout.kernels);
     writesPyramid(d);
     readsPyramid(d);
     for (uint32_t level = 2; level <= (reduces ? 5 : coarsest); ++level) levelTraffic(d, level);
     d->modeledBytes += 2 * kTexelBytes * texels(2);
     return true;
+  }
+
+  // That sum edges fast.
+  uint32_t fastEdgesGroups() const {
+    const auto across = [](uint32_t first, uint32_t pixels) {
+      constexpr uint32_t kTile = PELLUCID_EDGES_GROUP;
+      return (first + pixels - 1) / kTile - first / kTile + 1;
+    };
+    const uint32_t tiles = across(rect.x, rect.width) * across(rect.y, rect.height);
+    return (tiles + PELLUCID_FAST_EDGES_TILES - 1) / PELLUCID_FAST_EDGES_TILES;
   }
 
   // Of levels up to `coarsest`, from them and the pixels, when they have been resolved. Those of the last one
@@ -428,19 +459,27 @@ struct Builder {
     return true;
   }
 
+  bool sumsEdgesFast() const { return pellucid::sumsEdgesFast(frame, plan.quality); }
   bool sumsEdges() const { return pellucid::sumsEdges(frame, plan.quality); }
 
-  // After the one of all other pixels, with the same arguments.
-  bool diffuseEdges(uint32_t coarsest, uint32_t source, uint32_t destination, bool addsPoints) {
-    const uint32_t half =
-        addsPoints ? PELLUCID_PIPELINE_DIFFUSE_EDGES_GATHER_16F : PELLUCID_PIPELINE_DIFFUSE_EDGES_16F;
+  // After the one of all other pixels, with the same arguments. `made`: the coarsest level in the image.
+  bool diffuseEdges(uint32_t coarsest, uint32_t made, uint32_t source, uint32_t destination, bool addsPoints) {
+    const bool fast = sumsEdgesFast();
+    const uint32_t half = fast         ? PELLUCID_PIPELINE_DIFFUSE_EDGES_FAST_GATHER_16F
+                          : addsPoints ? PELLUCID_PIPELINE_DIFFUSE_EDGES_GATHER_16F
+                                       : PELLUCID_PIPELINE_DIFFUSE_EDGES_16F;
     PellucidDispatch* d = dispatch("diffuse edges", half + (wide() ? 1 : 0));
     if (!d) return false;
-    const PyramidPlace place = placeOf(frame, 2);  // with a border of one
-    groups(d, static_cast<uint32_t>(place.rect.width) - 2, static_cast<uint32_t>(place.rect.height) - 2,
-           PELLUCID_EDGES_GROUP / 4);
+    if (fast) {
+      groups(d, fastEdgesGroups(), 1, 1);
+    } else {
+      const PyramidPlace place = placeOf(frame, 2);  // with a border of one
+      groups(d, static_cast<uint32_t>(place.rect.width) - 2, static_cast<uint32_t>(place.rect.height) - 2,
+             PELLUCID_EDGES_GROUP / 4);
+      d->groups[1] = (d->groups[1] + PELLUCID_EDGES_TILES - 1) / PELLUCID_EDGES_TILES;
+    }
     d->pushConstants[0] = coarsest;
-    d->groups[1] = (d->groups[1] + PELLUCID_EDGES_TILES - 1) / PELLUCID_EDGES_TILES;
+    d->pushConstants[1] = made;
     d->pushConstants[3] = destination == PELLUCID_RESOURCE_OUTPUT;
     common(d, source, destination);
     constants(d, PELLUCID_BINDING_KERNELS, layout.kernels);

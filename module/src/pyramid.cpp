@@ -32,7 +32,8 @@ uint32_t coarserColumns(uint32_t pixels) {
 }  // namespace
 
 bool keepsFirstLevel(const PellucidFrame& frame) {
-  return sumsEdges(frame, frame.targetError > 0 ? 3 : frame.quality);
+  const uint32_t best = frame.targetError > 0 ? 3 : frame.quality;
+  return sumsEdges(frame, best) || sumsEdgesFast(frame, best);
 }
 
 uint32_t coarsestLevel(const PellucidFrame& frame) {

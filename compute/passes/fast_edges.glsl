@@ -1,0 +1,455 @@
+// Edges by the profile itself over distances in space, as where they are summed best (passes/diffuse_edges.comp) but with less to
+// do for each pixel: sources are the pixels of 3 x 3 quads around a pixel's own, quads of 3 x 3 texels of level 2, 4 x 4 pixels of
+// 5 x 5 texels of level 3, and beyond that texels of the pyramid. What is near is not filtered, as light would count in two of
+// them. Of the including pass: places[], colors[] and depths[] of kSources, in
+// shared memory, and kernels[].
+#ifndef PELLUCID_FAST_EDGES_GLSL
+#define PELLUCID_FAST_EDGES_GLSL
+
+#include "passes/normal_image.glsl"
+#include "passes/clusters.glsl"
+#include "passes/profile.glsl"
+#include "passes/surfaces.glsl"
+
+// After a level's own texel those of so many coarser ones to each side are summed, in squares.
+const int kTile = PELLUCID_EDGES_GROUP, kInvocations = kTile * kTile, kTexels = kTile / 4;
+const int kRing = 4, kSide = kTile + 2 * kRing, kQuadSide = kSide / 2; // of pixels and their quads
+const int kAround = 2, kWindow = 2 * (2 * kAround + 1), kSecondSide = kWindow + 2;
+const int kSecond = kSecondSide * kSecondSide, kCoarser = kWindow * kWindow; // of level 2 and of each from 3 on
+const int kLastSummed = PELLUCID_LAST_LEVEL - 1;
+
+shared uint edges[PELLUCID_FAST_EDGES_TILES]; // of tiles, a bit for each texel
+shared uint splits[kQuadSide];                // of rows of quads, a bit for each of two surfaces
+shared uint rough, anySplit;                  // rough: a bit for each texel that is not summed by quads
+
+// A surface: its center and its area, mm, and its light.
+struct Surfel {
+  vec3 center;
+  float area; // 0 unless of the material that is asked for
+  vec3 color;
+};
+
+// Areas have the material in their last bits and keep 1e-4.
+const uint kMaterialBits = 0xFFu;
+
+uint withMaterial(float area, uint material) {
+  return (floatBitsToUint(area) & ~kMaterialBits) | (area > 0.0 ? material : 0u);
+}
+
+uint materialOfSurfel(int i) { return places[i].w & kMaterialBits; }
+
+Surfel surfelAt(int i, uint material) {
+  uvec4 place = places[i];
+  return Surfel(uintBitsToFloat(place.xyz), (place.w & kMaterialBits) == material ? uintBitsToFloat(place.w) : 0.0,
+                unpackColor(colors[i]));
+}
+
+// Sums of surfaces times their areas.
+struct Together {
+  vec3 center, color;
+  float area;
+};
+
+const Together kNothing = Together(vec3(0.0), vec3(0.0), 0.0);
+
+void addPart(inout Together t, Surfel part) {
+  t.center += part.area * part.center;
+  t.color += part.area * part.color;
+  t.area += part.area;
+}
+
+void keep(int i, Together t, uint material) {
+  float inverse = t.area > 0.0 ? 1.0 / t.area : 0.0;
+  places[i] = uvec4(floatBitsToUint(inverse * t.center), withMaterial(t.area, material));
+  colors[i] = packColor(inverse * t.color, 0u);
+}
+
+// By how much a pixel's surface is longer than wide: its second moments are those of a square that faces the camera and of this.
+// In widths; two halves of it in depths[], the third beside the color.
+vec3 longerOf(int i) { return vec3(unpackHalf2x16(floatBitsToUint(depths[i])), unpackHalf2x16(colors[i].y >> 16).x); }
+
+void keepPixel(int i, ivec2 at, float depth, uint material, vec3 normal, vec3 color) {
+  float facing = pixelArea(depth);
+  vec3 tilted = tilt(vec2(at), normal), center = pointAt(vec2(at), depth);
+  float steep = length(tilted.xy), rise = steep * sqrt(facing) / frame.camera.range.w;
+  vec2 toward = steep > 0.0 ? tilted.xy / steep : vec2(1.0, 0.0);
+  vec3 axis = pointAt(vec2(at) + toward, depth + rise) - center;
+  float area = facing * tilted.z;
+  float longer2 = max(tilted.z * tilted.z - 1.0, 0.0) / max(dot(axis, axis), 1.0e-30);
+  vec3 longer = axis * sqrt(longer2);
+  places[i] = uvec4(floatBitsToUint(center), withMaterial(area, material));
+  depths[i] = uintBitsToFloat(packHalf2x16(longer.xy));
+  colors[i] = packColor(color, packHalf2x16(vec2(longer.z, 0.0)));
+}
+
+void loadPixels(ivec2 firstPixel) {
+  const int kLoads = (kSources + kInvocations - 1) / kInvocations;
+  float depth[kLoads];
+  uint material[kLoads];
+  vec3 normal[kLoads], color[kLoads];
+  // All before the first is used, so that their latencies overlap.
+  [[unroll]] for (int j = 0; j < kLoads; ++j) {
+    int i = int(gl_LocalInvocationIndex) + j * kInvocations;
+    ivec2 pixel = firstPixel - kRing + ivec2(i % kSide, i / kSide), at = withinRect(pixel);
+    depth[j] = frontDistance(at);
+    material[j] = at == pixel ? materialAt(at) : 0u;
+    normal[j] = normalAt(at);
+    color[j] = texelFetch(sourceImage, at, 0).rgb;
+  }
+  [[unroll]] for (int j = 0; j < kLoads; ++j) {
+    int i = int(gl_LocalInvocationIndex) + j * kInvocations;
+    if (i >= kSources) continue;
+    ivec2 at = withinRect(firstPixel - kRing + ivec2(i % kSide, i / kSide));
+    keepPixel(i, at, depth[j], depth[j] > 0.0 ? material[j] : 0u, normal[j], sanitize(color[j]));
+  }
+}
+
+// First texel of a level's window.
+ivec2 firstOf(uint level, ivec2 firstPixel) {
+  return 2 * ((firstPixel >> int(level + 1u)) - kAround);
+}
+
+uvec4 texelOf(uint level, ivec2 texel) {
+  return contains(levelRect(level), texel) ? texelFetch(pyramidImage, inAtlas(level, texel), 0) : uvec4(0u);
+}
+
+Surfel surfelOf(uint level, ivec2 texel, uvec4 bits) {
+  Texel t = unpackTexel(bits);
+  float side = exp2(float(level));
+  return Surfel(pointAt(pixelOf(level, texel), t.depth), t.mass * pixelArea(t.depth) * side * side, t.color);
+}
+
+// How far behind the nearest of four texels others are the same surface, sides.
+const float kReachBehind = 16.0;
+
+// What lies under a texel, from the four of the finer level.
+void keepFour(int i, uint level, ivec2 texel, uvec4 bits[4]) {
+  uint material = 0u;
+  float nearest = kNoDepth;
+  [[unroll]] for (int j = 0; j < 4; ++j)
+    if (hasSurface(bits[j]) && uintBitsToFloat(bits[j].z) < nearest) {
+      nearest = uintBitsToFloat(bits[j].z);
+      material = materialBits(bits[j]);
+    }
+  vec2 side = texelSize(nearest, level - 1u);
+  float farthest = nearest + kReachBehind * sqrt(side.x * side.y);
+  Together t = kNothing;
+  [[unroll]] for (int j = 0; j < 4; ++j)
+    if (hasSurface(bits[j]) && materialBits(bits[j]) == material && uintBitsToFloat(bits[j].z) < farthest)
+      addPart(t, surfelOf(level - 1u, 2 * texel + ivec2(j & 1, j >> 1), bits[j]));
+  keep(i, t, material);
+}
+
+// Of all levels, one after the other. `made`: the coarsest level that is in the image; one more is made of it.
+void loadLevels(ivec2 firstPixel, uint made) {
+  for (int i = int(gl_LocalInvocationIndex); i < kSecond; i += kInvocations) {
+    ivec2 texel = firstOf(2u, firstPixel) + ivec2(i % kSecondSide, i / kSecondSide);
+    uvec4 bits[4];
+    [[unroll]] for (int j = 0; j < 4; ++j) bits[j] = texelOf(1u, 2 * texel + ivec2(j & 1, j >> 1));
+    keepFour(i, 2u, texel, bits);
+  }
+  for (int i = int(gl_LocalInvocationIndex); i < (kLastSummed - 2) * kCoarser; i += kInvocations) {
+    uint level = 3u + uint(i / kCoarser);
+    int inWindow = i % kCoarser;
+    ivec2 texel = firstOf(level, firstPixel) + ivec2(inWindow % kWindow, inWindow / kWindow);
+    if (level <= made) {
+      uvec4 bits = texelOf(level, texel);
+      Surfel s = surfelOf(level, texel, bits);
+      places[kSecond + i] =
+          uvec4(floatBitsToUint(s.center), withMaterial(s.area, materialBits(bits)));
+      colors[kSecond + i] = uvec2(bits.x & ~kFlat, bits.y);
+    } else {
+      uvec4 bits[4];
+      [[unroll]] for (int j = 0; j < 4; ++j)
+        bits[j] = level == made + 1u ? texelOf(made, 2 * texel + ivec2(j & 1, j >> 1)) : uvec4(0u);
+      keepFour(kSecond + i, level, texel, bits);
+    }
+  }
+}
+
+// A material's profile, up to a factor.
+struct Falloff {
+  uint material; // 0: nothing is diffused
+  vec3 rate;     // of Burley's, log2(e) / (3 d), 1/mm; x < 0: it has another
+};
+
+Falloff falloffOf(uint material) {
+  Falloff f = Falloff(material, vec3(0.0));
+  if (material != 0u) {
+    vec4 burley = kernels[material - 1u].burley;
+    f.rate = burley.a > 0.0 ? burley.rgb : vec3(-1.0);
+  }
+  return f;
+}
+
+Kernel tableOf(Falloff f) {
+  return Kernel(f.material - 1u, floatBitsToInt(kernels[f.material - 1u].reach.y));
+}
+
+vec3 falloffAt(Falloff f, float squared) {
+  if (f.rate.x < 0.0) return profileAt(tableOf(f), squared).value;
+  // Christensen & Burley 2015, eq. 3 times 8 pi d.
+  float inverse = inversesqrt(squared);
+  vec3 far = exp2(-squared * inverse * f.rate);
+  return (far * far * far + far) * inverse;
+}
+
+// Part of the energy within a distance, over the same factor.
+vec3 enclosedBy(Falloff f, float r) {
+  if (f.rate.x < 0.0) return enclosed(tableOf(f), r * r);
+  vec3 far = exp2(-r * f.rate);
+  return (1.0 - 0.25 * far * far * far - 0.75 * far) * (8.0 / 3.0 * 3.14159265 * 1.44269504) / f.rate;
+}
+
+struct Sums {
+  vec3 color, weight;
+};
+
+void add(inout Sums sums, vec3 color, vec3 weight) {
+  sums.color += weight * color;
+  sums.weight += weight;
+}
+
+// At a squared distance, where 1/r is its mean over a surface to second order: of a square of area `facing` that faces the camera
+// and, squared, how much longer it is, all of it and in the direction of the distance.
+float meanOf(float squared, float facing, float longer2, float along2) {
+  return max(squared - (facing - longer2) * (1.0 / 12.0) - 0.25 * along2, 0.5 * squared);
+}
+
+// `facing`: area of a square that faces the camera. What is larger is longer, next to along the view.
+void addSurfel(inout Sums sums, int i, Falloff f, vec3 center, float facing) {
+  Surfel surfel = surfelAt(i, f.material);
+  vec3 offset = surfel.center - center;
+  float squared = max(dot(offset, offset), 1.0e-30), longer2 = max(surfel.area * surfel.area / facing - facing, 0.0);
+  float mean = meanOf(squared, facing, longer2, longer2 * offset.z * offset.z / squared);
+  add(sums, surfel.color, surfel.area * falloffAt(f, mean));
+}
+
+// From how many times as long as wide on pixels near by are taken in segments.
+const float kLongPixel = 3.0;
+
+vec3 ofLong(Falloff f, float area, vec3 longer, vec3 offset, float facing) {
+  float width = sqrt(facing), halfLength = 0.5 * area / width;
+  vec3 axis = normalize(longer), weight = vec3(0.0);
+  const float parts = 2.0;
+  float part = area / parts;
+  [[unroll]] for (float i = 0.5; i < parts; i += 1.0) {
+    float at = halfLength * (2.0 * i / parts - 1.0);
+    weight += part * falloffAt(f, meanSquare(offset + at * axis, vec4(axis, halfLength / parts), facing));
+  }
+  return weight;
+}
+
+// The pixel's own and those under the 3 x 3 quads around it. `local`: from the tile's first.
+void addPixels(inout Sums sums, ivec2 local, Falloff f, vec3 center, float facing) {
+  ivec2 corner = (local & ~1) + kRing - 2;
+  int own = (local.y + kRing) * kSide + local.x + kRing, first = corner.y * kSide + corner.x;
+  Surfel mine = surfelAt(own, f.material);
+  // The disc over which 1/r has the same integral.
+  float ratio = max(mine.area / facing, 1.0);
+  float radius = sqrt(facing) * (ratio * asinh(1.0 / ratio) + asinh(ratio)) * (1.0 / 3.14159265);
+  add(sums, mine.color, enclosedBy(f, radius));
+  for (int y = 0; y < 6; ++y)
+    [[unroll]] for (int x = 0; x < 6; ++x) {
+      int i = first + y * kSide + x;
+      Surfel surfel = surfelAt(i, f.material);
+      vec3 offset = surfel.center - center, longer = longerOf(i);
+      float squared = max(dot(offset, offset), 1.0e-30), along = dot(longer, offset);
+      float mean = meanOf(squared, facing, facing * dot(longer, longer), facing * along * along / squared);
+      vec3 weight = surfel.area * falloffAt(f, mean);
+      if (surfel.area > kLongPixel * facing && i != own) weight = ofLong(f, surfel.area, longer, offset, facing);
+      add(sums, surfel.color, i == own ? vec3(0.0) : weight);
+    }
+}
+
+// Quads of the pixels that are kept, in their place; the second of two surfaces after all first ones.
+void makeQuads() {
+  int i = int(gl_LocalInvocationIndex);
+  bool makes = i < kQuadSide * kQuadSide;
+  Together first = kNothing, second = kNothing;
+  uint material = 0u, other = 0u;
+  if (makes) {
+    int start = i / kQuadSide * 2 * kSide + i % kQuadSide * 2;
+    float nearest = kNoDepth, farthest = 0.0;
+    [[unroll]] for (int j = 0; j < 4; ++j) {
+      int at = start + (j >> 1) * kSide + (j & 1);
+      uint its = materialOfSurfel(at);
+      float z = uintBitsToFloat(places[at].z);
+      if (its != 0u && z < nearest) nearest = z, material = its;
+      if (its != 0u && z > farthest) farthest = z, other = its;
+    }
+    // Farther apart than a quad is wide they are two.
+    float apart = farthest - nearest;
+    bool one = other == material && apart * apart < 4.0 * pixelArea(nearest / frame.camera.range.w);
+    float limit = one ? kNoDepth : 0.5 * (nearest + farthest);
+    [[unroll]] for (int j = 0; j < 4; ++j) {
+      int at = start + (j >> 1) * kSide + (j & 1);
+      uint its = materialOfSurfel(at);
+      Surfel part = surfelAt(at, its);
+      if (its == 0u) continue;
+      if (other == material ? part.center.z < limit : its == material)
+        addPart(first, part);
+      else if (its == other)
+        addPart(second, part);
+    }
+  }
+  if (i < kQuadSide) splits[i] = 0u;
+  if (i == 0) anySplit = 0u;
+  barrier();
+  if (makes) {
+    keep(i, first, material);
+    if (second.area > 0.0) {
+      keep(kQuadSide * kQuadSide + i, second, other);
+      atomicOr(splits[i / kQuadSide], 1u << i % kQuadSide);
+      anySplit = 1u; // whoever writes, writes this
+    }
+  }
+  barrier();
+}
+
+// Of 6 x 6 those that are not of the 3 x 3 around the one at 2 + odd, in 9 runs of 3.
+ivec2 outside(int run, int j, ivec2 odd) {
+  if (run < 6) {
+    int row = run >> 1;
+    return ivec2(3 * (run & 1) + j, row <= odd.y ? row : row + 3);
+  }
+  return ivec2(j <= odd.x ? j : j + 3, run - 5 + odd.y);
+}
+
+void addQuads(inout Sums sums, ivec2 local, Falloff f, vec3 center, float facing) {
+  ivec2 quad = local >> 1, first = 2 * (quad >> 1), odd = quad & 1;
+  for (int run = 0; run < 9; ++run)
+    [[unroll]] for (int j = 0; j < 3; ++j) {
+      ivec2 at = first + outside(run, j, odd);
+      addSurfel(sums, at.y * kQuadSide + at.x, f, center, 4.0 * facing);
+    }
+  if (anySplit == 0u) return;
+  for (int run = 0; run < 9; ++run)
+    for (int j = 0; j < 3; ++j) {
+      ivec2 at = first + outside(run, j, odd);
+      if ((splits[at.y] >> at.x & 1u) != 0u) addSurfel(sums, kQuadSide * kQuadSide + at.y * kQuadSide + at.x, f, center, 4.0 * facing);
+    }
+}
+
+// Every `step`th from number `from` on, 1 or 4, of what is around a pixel at levels up to `last`.
+void addLevels(inout Sums sums, ivec2 firstPixel, ivec2 pixel, uint last, Falloff f, vec3 center, float facing, int from, int step) {
+  ivec2 first = 2 * ((pixel >> 3) - kAround) - firstOf(2u, firstPixel), own = 2 * kAround + ((pixel >> 2) & 1);
+  int start = first.y * kSecondSide + first.x;
+  for (int i = from; i < kCoarser; i += step) {
+    ivec2 at = ivec2(i % kWindow, i / kWindow), away = abs(at - own);
+    if (max(away.x, away.y) > 1) addSurfel(sums, start + at.y * kSecondSide + at.x, f, center, 16.0 * facing);
+  }
+  // A window of these levels is one texel's that is at least as large as the tile.
+  for (uint level = 3u; level <= last; ++level) {
+    float side2 = facing * exp2(float(2u * level));
+    own = 2 * kAround + ((pixel >> int(level)) & 1);
+    start = kSecond + int(level - 3u) * kCoarser;
+    for (int i = from; i < kCoarser; i += step) {
+      ivec2 at = ivec2(i % kWindow, i / kWindow), away = abs(at - own);
+      if (max(away.x, away.y) > kAround) addSurfel(sums, start + i, f, center, side2);
+    }
+  }
+}
+
+// A texel's pixels sum levels by its quads where it is one surface: each of a quad's invocations a fourth of them for the quad's
+// center, and pixels take what is linear between the four. Not where one lies farther from where these say, as the square of so
+// many sides of a pixel.
+const float kMostOff = 0.25;
+
+// Centers of a texel's quads, rows first, from those of its pixels.
+void quadsOf(int firstOfTexel, out vec3 center[4]) {
+  [[unroll]] for (int q = 0; q < 4; ++q) {
+    center[q] = vec3(0.0);
+    [[unroll]] for (int i = 0; i < 4; ++i)
+      center[q] += 0.25 * uintBitsToFloat(places[firstOfTexel + 8 * (q >> 1) + 4 * (i >> 1) + 2 * (q & 1) + (i & 1)].xyz);
+  }
+}
+
+// Parts of the four quads at one of the texel's pixels.
+vec4 ofQuads(ivec2 inTexel) {
+  vec2 to = 0.5 * vec2(inTexel) - 0.25; // from the first one's center to the next one's
+  return vec4((1.0 - to.x) * (1.0 - to.y), to.x * (1.0 - to.y), (1.0 - to.x) * to.y, to.x * to.y);
+}
+
+// The coarsest level whose window holds most of the radius.
+uint lastLevel(uint material, float facing) {
+  float level = ceil(log2(max(0.2 * kernels[material - 1u].reach.x * inversesqrt(facing), 1.0)));
+  return uint(clamp(level, 2.0, float(min(pass.value.x - 1u, uint(kLastSummed)))));
+}
+
+// What all of a quad's pixels find at a pixel, `sums` what an invocation found of its quad's fourth.
+void exchange(inout Sums sums, int invocation, bool byQuads) {
+  places[invocation] = floatBitsToUint(vec4(sums.color, sums.weight.r));
+  colors[invocation] = floatBitsToUint(sums.weight.gb);
+  barrier();
+  if (byQuads) {
+    int inTexel = invocation % 16;
+    vec4 parts = ofQuads(ivec2(inTexel % 4, inTexel / 4));
+    sums = Sums(vec3(0.0), vec3(0.0));
+    [[unroll]] for (int i = 0; i < 16; ++i) {
+      int from = invocation - inTexel + i;
+      float part = parts[(i >> 1 & 1) + (i >> 2 & 2)];
+      vec4 its = uintBitsToFloat(places[from]);
+      sums.color += part * its.rgb;
+      sums.weight += part * vec3(its.a, uintBitsToFloat(colors[from]));
+    }
+  }
+  barrier();
+}
+
+// Pixels of a tile's edges; a bit for each of its texels says which are. `made`: see loadLevels.
+void diffuseTile(ivec2 firstPixel, uint edgeTexels, uint made, bool isLast) {
+  int invocation = int(gl_LocalInvocationIndex);
+  barrier(); // what was there has been read
+  if (invocation == 0) rough = 0u;
+  // 16 invocations to a texel, so that those without one are whole subgroups.
+  for (int before = invocation / 16; before > 0; --before) edgeTexels &= edgeTexels - 1u;
+  bool isEdge = edgeTexels != 0u;
+  int texel = max(findLSB(edgeTexels), 0), inTexel = invocation % 16;
+  ivec2 local = 4 * ivec2(texel % kTexels, texel / kTexels) + ivec2(inTexel % 4, inTexel / 4), pixel = firstPixel + local;
+  ivec2 at = withinRect(pixel);
+  float depth = frontDistance(at), facing = max(pixelArea(depth), 1.0e-30);
+  uint material = materialOf(pixel, depth), last = 0u;
+  vec3 center = pointAt(vec2(at), depth), ofQuad = center;
+  places[invocation] = uvec4(floatBitsToUint(center), material);
+  barrier();
+  bool diffuses = isEdge && material != 0u && kernels[max(material, 1u) - 1u].reach.x > 0.0;
+  Falloff f = falloffOf(diffuses ? material : 0u);
+  if (isEdge) {
+    vec3 quads[4];
+    quadsOf(invocation - inTexel, quads);
+    vec4 parts = ofQuads(local & 3);
+    vec3 off = parts.x * quads[0] + parts.y * quads[1] + parts.z * quads[2] + parts.w * quads[3] - center;
+    ofQuad = quads[(local.x >> 1 & 1) + (local.y & 2)];
+    if (places[invocation - inTexel].w != material || !(dot(off, off) < kMostOff * facing)) atomicOr(rough, 1u << texel);
+    if (diffuses) last = lastLevel(material, max(pixelArea(quads[0].z / frame.camera.range.w), 1.0e-30));
+  }
+  barrier();
+  bool byQuads = (rough >> texel & 1u) == 0u;
+  if (!byQuads && diffuses) last = lastLevel(material, facing);
+  loadLevels(firstPixel, made);
+  barrier();
+  Sums sums = Sums(vec3(0.0), vec3(0.0));
+  if (diffuses)
+    addLevels(sums, firstPixel, pixel, last, f, byQuads ? ofQuad : center, facing, byQuads ? (local.x & 1) + 2 * (local.y & 1) : 0,
+              byQuads ? 4 : 1);
+  barrier();
+  exchange(sums, invocation, byQuads);
+  loadPixels(firstPixel);
+  barrier();
+  if (diffuses) addPixels(sums, local, f, center, facing);
+  barrier();
+  makeQuads();
+  if (diffuses) addQuads(sums, local, f, center, facing);
+  if (isEdge && insideRect(pixel) && materialAt(pixel) != 0u) {
+    vec4 color = texelFetch(sourceImage, pixel, 0);
+    // Of what is found, the pixel itself has a weight. Those that diffuse nothing keep their color.
+    color.rgb = diffuses ? sums.color / max(sums.weight, vec3(1.0e-20)) : sanitize(color.rgb);
+#ifdef GATHER
+    if (material != 0u) color.rgb = withGathered(color.rgb, pixel, PELLUCID_DIFFUSE_CELL, depth, material);
+#endif
+    writeResult(pixel, color.rgb, color.a, isLast);
+  }
+}
+
+#endif
