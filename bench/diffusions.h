@@ -28,7 +28,7 @@ struct Site {
 double requireNear(const Variant& v, const harness::Image& image, const harness::Image& truth,
                    const harness::Capture& capture, double limit);
 
-// The module's, of each quality that differs (1 is 2), and then the baselines.
+// The module's, of each quality, and then the baselines.
 std::vector<Variant> diffusions(const Site& site, const harness::Capture& capture);
 inline constexpr size_t kModuleDiffusions = 3;
 

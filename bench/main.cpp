@@ -100,28 +100,32 @@ void modulePlans(const Bench& bench) {
     dispatches(bench, *frame);
     bench.row(moduleVariant(frame, "whole frame"), {});
   }
-  ReplaySettings best;
-  best.quality = 3;
-  bench.report.section("module, quality 3");
-  const auto frame = bench.frame(bench.fullSlab(), best);
-  dispatches(bench, *frame);
-  bench.row(moduleVariant(frame, "whole frame"), {});
+  for (const uint32_t quality : {1u, 3u}) {
+    ReplaySettings settings;
+    settings.quality = quality;
+    bench.report.section("module, quality " + std::to_string(quality));
+    const auto frame = bench.frame(bench.fullSlab(), settings);
+    dispatches(bench, *frame);
+    bench.row(moduleVariant(frame, "whole frame"), {});
+  }
 }
 
 // Where surfaces end and curve, which takes longer than planes.
 void edges(const Bench& bench) {
   const auto [width, height] = bench.options.size;
-  for (const double radius : {400.0, 100.0}) {
+  for (const double radius : {400.0, 100.0, 25.0}) {
     char title[64];
     std::snprintf(title, sizeof title, "edges, balls of %g pixels", radius);
     bench.report.section(title);
     const Capture capture = balls(width, height, radius, bench.site.pixel);
-    for (const uint32_t quality : {2u}) {
+    for (const uint32_t quality : {1u, 2u, 3u}) {
       ReplaySettings settings;
       settings.quality = quality;
       const auto frame = bench.frame(capture, settings);
       dispatches(bench, *frame);
-      bench.row(moduleVariant(frame, quality == 2 ? "whole frame" : "whole frame, quality 3"), {});
+      bench.row(moduleVariant(
+                    frame, quality == 2 ? "whole frame" : "whole frame, quality " + std::to_string(quality)),
+                {});
     }
   }
 }

@@ -24,11 +24,11 @@ const bool kSumsEdges = true;
 const bool kSumsEdges = false;
 #endif
 
-// MARKS_EDGES: pixels of edges have a dispatch of their own, which sums over the pyramid; all others are as without it.
-#ifdef MARKS_EDGES
-const bool kMarksEdges = true;
+// SUMS_FAST: those are summed over the pyramid, with less to do for each, beside its resolve, and planes are as without it.
+#ifdef SUMS_FAST
+const bool kSumsFast = true;
 #else
-const bool kMarksEdges = kSumsEdges;
+const bool kSumsFast = false;
 #endif
 
 #endif

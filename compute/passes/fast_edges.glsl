@@ -240,15 +240,15 @@ vec3 ofLong(Falloff f, float area, vec3 longer, vec3 offset, float facing) {
   return weight;
 }
 
-// The pixel's own and those under the 3 x 3 quads around it. `local`: from the tile's first.
-void addPixels(inout Sums sums, ivec2 local, Falloff f, vec3 center, float facing) {
+// The pixel's own, of that color, and those under the 3 x 3 quads around it. `local`: from the tile's first.
+void addPixels(inout Sums sums, ivec2 local, Falloff f, vec3 center, float facing, vec3 color) {
   ivec2 corner = (local & ~1) + kRing - 2;
   int own = (local.y + kRing) * kSide + local.x + kRing, first = corner.y * kSide + corner.x;
   Surfel mine = surfelAt(own, f.material);
   // The disc over which 1/r has the same integral.
   float ratio = max(mine.area / facing, 1.0);
   float radius = sqrt(facing) * (ratio * asinh(1.0 / ratio) + asinh(ratio)) * (1.0 / 3.14159265);
-  add(sums, mine.color, enclosedBy(f, radius));
+  add(sums, color, enclosedBy(f, radius)); // not as kept, in halves: narrow kernels return the input
   for (int y = 0; y < 6; ++y)
     [[unroll]] for (int x = 0; x < 6; ++x) {
       int i = first + y * kSide + x;
@@ -276,12 +276,16 @@ void makeQuads() {
       uint its = materialOfSurfel(at);
       float z = uintBitsToFloat(places[at].z);
       if (its != 0u && z < nearest) nearest = z, material = its;
-      if (its != 0u && z > farthest) farthest = z, other = its;
+      farthest = its != 0u ? max(farthest, z) : farthest;
     }
-    // Farther apart than a quad is wide they are two.
-    float apart = farthest - nearest;
-    bool one = other == material && apart * apart < 4.0 * pixelArea(nearest / frame.camera.range.w);
-    float limit = one ? kNoDepth : 0.5 * (nearest + farthest);
+    // Two are of two materials or farther apart than a quad is wide. Of three materials one is lost.
+    other = material;
+    [[unroll]] for (int j = 0; j < 4; ++j) {
+      uint its = materialOfSurfel(start + (j >> 1) * kSide + (j & 1));
+      if (its != 0u && its != material) other = its;
+    }
+    float apart = farthest - nearest, limit = 0.5 * (nearest + farthest);
+    if (apart * apart < 4.0 * pixelArea(nearest / frame.camera.range.w)) limit = kNoDepth;
     [[unroll]] for (int j = 0; j < 4; ++j) {
       int at = start + (j >> 1) * kSide + (j & 1);
       uint its = materialOfSurfel(at);
@@ -437,18 +441,16 @@ void diffuseTile(ivec2 firstPixel, uint edgeTexels, uint made, bool isLast) {
   exchange(sums, invocation, byQuads);
   loadPixels(firstPixel);
   barrier();
-  if (diffuses) addPixels(sums, local, f, center, facing);
+  vec4 color = texelFetch(sourceImage, at, 0);
+  vec3 own = sanitize(color.rgb);
+  if (diffuses) addPixels(sums, local, f, center, facing, own);
   barrier();
   makeQuads();
   if (diffuses) addQuads(sums, local, f, center, facing);
   if (isEdge && insideRect(pixel) && materialAt(pixel) != 0u) {
-    vec4 color = texelFetch(sourceImage, pixel, 0);
     // Of what is found, the pixel itself has a weight. Those that diffuse nothing keep their color.
-    color.rgb = diffuses ? sums.color / max(sums.weight, vec3(1.0e-20)) : sanitize(color.rgb);
-#ifdef GATHER
-    if (material != 0u) color.rgb = withGathered(color.rgb, pixel, PELLUCID_DIFFUSE_CELL, depth, material);
-#endif
-    writeResult(pixel, color.rgb, color.a, isLast);
+    vec3 result = diffuses ? sums.color / max(sums.weight, vec3(1.0e-20)) : own;
+    writeResult(pixel, result, color.a, isLast);
   }
 }
 

@@ -43,7 +43,7 @@ bool isFlatAround(uvec4 bits, ivec2 at, uint level) {
 
 void main() {
   int invocation = int(gl_LocalInvocationIndex);
-  if (kMarksEdges && invocation == 0 && groupIndex() == 0u) imageStore(levelsDestination, summedPlace(), uvec4(0u));
+  if (kSumsEdges && invocation == 0 && groupIndex() == 0u) imageStore(levelsDestination, summedPlace(), uvec4(0u));
   // Groups of boxes take longest and come first.
   uint boxes = pass.value.z >> 16, index = groupIndex();
   bool ofBoxes = !kSumsEdges && index < boxes;

@@ -96,10 +96,10 @@ uvec4 reducedEdge(uint finer, ivec2 texel, int first, int stride) {
   // Where edges are summed, planes take little from here, but that of all that is near: tangents of single texels lose what is
   // folded.
   vec2 slope = vec2(0.0);
-  if (!kMarksEdges)
+  if (!kSumsEdges && !kSumsFast)
     slope = vec2(depthStep(first, stride, surface, nearest, ivec2(1, 0)),
                  depthStep(first, stride, surface, nearest, ivec2(0, 1))) / max(size, vec2(1.0e-30));
-  float spread2 = inverseSpread(slope, (kMarksEdges ? 8.0 : 2.0) * size);
+  float spread2 = inverseSpread(slope, (kSumsEdges || kSumsFast ? 8.0 : 2.0) * size);
   vec3 color = vec3(0.0);
   float mass = 0.0, weights = 0.0, off = 0.0;
   vec2 tilt = vec2(0.0), spread = vec2(0.0);

@@ -458,9 +458,13 @@ bool isSummedFast(ivec2 texel, uvec4 bits, Foreshortening f, bool planes, float 
   return !planes && max(share.r, max(share.g, share.b)) > kMostFastShare * (1.0 - margin);
 }
 
-// Texels near the rect's border are no planes, whatever is there, and count as if they were, as do levels that are not there.
+// Texels of levels 3 and 4 that have something from beyond the rect's border, up to a side less two pixels around them, are no
+// planes, whatever is there, and count as if they were, as do levels that are not there.
 bool countsAsPlane(uint level, ivec2 texel, uvec4 bits) {
-  return isPlane(bits) || level > pass.value.x || !contains(inset(levelRect(level), 3), texel);
+  int side = 1 << int(level);
+  ivec2 first = side * (texel - 1) + 2, end = side * (texel + 2) - 2;
+  bool inside = all(greaterThanEqual(first, ivec2(frame.rect.xy))) && all(lessThanEqual(end, ivec2(frame.rect.zw)));
+  return isPlane(bits) || level > pass.value.x || !inside;
 }
 
 #ifdef SUMS_FAST
@@ -472,7 +476,27 @@ bool sums(ivec2 texel) {
   return isSummedFast(texel, bits, foreshortening(texel, 2u, uintBitsToFloat(bits.z), unpackHalf2x16(bits.w)), planes, 1.0e-3);
 }
 
-#include "passes/fast_edges_tiles.glsl"
+// Tiles of a group lie far from each other, so that all groups have as much to do: `index` of `groups`.
+ivec2 tileOf(uint i, uint index, uint groups) {
+  ivec2 first = ivec2(frame.rect.xy) / kTile, size = (ivec2(frame.rect.zw) - 1) / kTile - first + 1;
+  int tile = int(index + i * groups);
+  return kTile * (first + ivec2(tile % size.x, tile / size.x));
+}
+
+void sumTiles(uint index, uint groups, uint made, bool isLast) {
+  uint invocation = gl_LocalInvocationIndex;
+  if (invocation < uint(PELLUCID_FAST_EDGES_TILES)) edges[invocation] = 0u;
+  barrier();
+  uint tile = invocation / uint(kTexels * kTexels), inTile = invocation % uint(kTexels * kTexels);
+  if (tile < uint(PELLUCID_FAST_EDGES_TILES)) {
+    ivec2 texel = (tileOf(tile, index, groups) >> 2) + ivec2(inTile % uint(kTexels), inTile / uint(kTexels));
+    // Those of the border have no pixels.
+    if (contains(inset(levelRect(2u), 1), texel) && sums(texel)) atomicOr(edges[tile], 1u << inTile);
+  }
+  barrier();
+  for (uint i = 0u; i < uint(PELLUCID_FAST_EDGES_TILES); ++i)
+    if (edges[i] != 0u) diffuseTile(tileOf(i, index, groups), edges[i], made, isLast);
+}
 #endif
 
 // A texel of level 2 and its pixels' shares.
@@ -498,9 +522,8 @@ void resolveFine(ivec2 texel, ivec2 k, uvec4 bits) {
     } else {
       bool planes = countsAsPlane(3u, texel >> 1, resolved[indexOf(windowOf(3u, k), texel >> 1)]) &&
                     countsAsPlane(4u, texel >> 2, resolved[indexOf(windowOf(4u, k), texel >> 2)]);
-      if (kMarksEdges && isSummedFast(texel, bits, f, planes, 0.0)) {
+      if (kSumsFast && isSummedFast(texel, bits, f, planes, 0.0)) {
         flags |= kSummed;
-        anySummed = 1u; // whoever writes, writes this
         color.y &= ~kPlane;
       }
       PixelShares share = pixelShares(m, f);
@@ -527,7 +550,7 @@ void resolveGroup(ivec2 group) {
   bool inside = level <= coarsest && within && contains(levelRect(level), texel);
   bool lastInside = coarsest == 7u && hasLast && contains(levelRect(7u), lastTexel);
   bool fetches = inside, fetchesLast = lastInside;
-  if (kMarksEdges && invocation == 0) anySummed = 0u;
+  if (kSumsEdges && invocation == 0) anySummed = 0u;
 #ifdef REDUCES
   if (invocation == 0) needsMade = 0u;
   fetches = fetches && level <= 5u;
@@ -572,7 +595,7 @@ void resolveGroup(ivec2 group) {
     fine = nextFine;
     fineBits = nextBits;
   }
-  if (kMarksEdges) {
+  if (kSumsEdges) {
     barrier();
     if (invocation == 0 && anySummed != 0u) imageStore(levelsDestination, summedPlace(), uvec4(1u));
   }

@@ -279,7 +279,8 @@ extern "C" PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const
     put(mapped, layout.materials.offset + i * sizeof(shared::MaterialConstants),
         materialConstants(f.materials[i], gathers(f)));
     put(mapped, layout.kernels.offset + i * sizeof(shared::KernelConstants),
-        kernelConstants(f.materials[i], fineFilters(f, plan->quality)));
+        kernelConstants(f.materials[i], fineFilters(f, plan->quality),
+                        sumsEdges(f, plan->quality) || sumsEdgesFast(f, plan->quality)));
   }
   return PELLUCID_OK;
 }

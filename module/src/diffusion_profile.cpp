@@ -115,7 +115,7 @@ void addDistances(const PellucidMaterial& m, shared::KernelConstants& c) {
 
 }  // namespace
 
-shared::KernelConstants kernelConstants(const PellucidMaterial& m, FineFilters filters) {
+shared::KernelConstants kernelConstants(const PellucidMaterial& m, FineFilters filters, bool distances) {
   shared::KernelConstants c{};
   if (m.gaussianCount == 0) return c;
   const bool two = filters == FineFilters::TwoOfPlanes;
@@ -165,7 +165,7 @@ shared::KernelConstants kernelConstants(const PellucidMaterial& m, FineFilters f
         c.pixelShare[PELLUCID_PIXEL_SHARES * i + k][channel] = static_cast<float>(shares[k]);
     }
   }
-  addDistances(m, c);
+  if (distances) addDistances(m, c);
   return c;
 }
 

@@ -7,7 +7,9 @@
 
 namespace pellucid {
 
-// All zeros (the pixel keeps everything) for a material without Gaussians.
-shared::KernelConstants kernelConstants(const PellucidMaterial& material, FineFilters filters);
+// All zeros (the pixel keeps everything) for a material without Gaussians. `distances`: with what sums over
+// distances in space take.
+shared::KernelConstants kernelConstants(const PellucidMaterial& material, FineFilters filters,
+                                        bool distances);
 
 }  // namespace pellucid

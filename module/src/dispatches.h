@@ -356,10 +356,9 @@ struct Builder {
   // The `levels` after `finer`: 2, or 4 after level 1, the last two of them by groups of their own from
   // boxes.
   bool reduce(uint32_t finer, uint32_t levels) {
-    PellucidDispatch* d = dispatch(
-        "reduce", sumsEdges()       ? PELLUCID_PIPELINE_REDUCE_FOR_EDGES
-                  : sumsEdgesFast() ? PELLUCID_PIPELINE_REDUCE_MARKING_EDGES
-                                    : PELLUCID_PIPELINE_REDUCE_LEVELS);
+    PellucidDispatch* d = dispatch("reduce", sumsEdges()       ? PELLUCID_PIPELINE_REDUCE_FOR_EDGES
+                                             : sumsEdgesFast() ? PELLUCID_PIPELINE_REDUCE_FOR_SUMS
+                                                               : PELLUCID_PIPELINE_REDUCE_LEVELS);
     if (!d) return false;
     // Groups of boxes, whose columns and number the shader is told, lie in rows before the others, of whose
     // rows it is told.
@@ -382,17 +381,15 @@ struct Builder {
     return true;
   }
 
-  // `reduces`: it makes levels 6 and 7 from level 5. Where edges are summed fast and nothing is added to them,
-  // that is done here, from `source` to `destination`.
-  bool resolve(uint32_t coarsest, bool reduces, uint32_t source, uint32_t destination, bool addsPoints) {
-    const bool fast = sumsEdgesFast(), sums = fast && !addsPoints;
-    const uint32_t pipeline = sums && reduces   ? PELLUCID_PIPELINE_REDUCE_RESOLVE_AND_SUM_16F
-                              : sums            ? PELLUCID_PIPELINE_RESOLVE_AND_SUM_16F
-                              : fast && reduces ? PELLUCID_PIPELINE_REDUCE_AND_RESOLVE_MARKING_EDGES
-                              : fast            ? PELLUCID_PIPELINE_RESOLVE_MARKING_EDGES
-                              : reduces         ? PELLUCID_PIPELINE_REDUCE_AND_RESOLVE
-                              : sumsEdges()     ? PELLUCID_PIPELINE_RESOLVE_FOR_EDGES
-                                                : PELLUCID_PIPELINE_RESOLVE_LEVELS;
+  // `reduces`: it makes levels 6 and 7 from level 5. Where edges are summed fast that is done beside it, from
+  // `source` to `destination`.
+  bool resolve(uint32_t coarsest, bool reduces, uint32_t source, uint32_t destination) {
+    const bool sums = sumsEdgesFast();
+    const uint32_t pipeline = sums && reduces ? PELLUCID_PIPELINE_REDUCE_RESOLVE_AND_SUM_16F
+                              : sums          ? PELLUCID_PIPELINE_RESOLVE_AND_SUM_16F
+                              : reduces       ? PELLUCID_PIPELINE_REDUCE_AND_RESOLVE
+                              : sumsEdges()   ? PELLUCID_PIPELINE_RESOLVE_FOR_EDGES
+                                              : PELLUCID_PIPELINE_RESOLVE_LEVELS;
     PellucidDispatch* d = dispatch("resolve", pipeline + (sums && wide() ? 1 : 0));
     if (!d) return false;
     // Groups start at texels 32 k - 1, in y 16 k - 1.
@@ -462,24 +459,17 @@ struct Builder {
   bool sumsEdgesFast() const { return pellucid::sumsEdgesFast(frame, plan.quality); }
   bool sumsEdges() const { return pellucid::sumsEdges(frame, plan.quality); }
 
-  // After the one of all other pixels, with the same arguments. `made`: the coarsest level in the image.
-  bool diffuseEdges(uint32_t coarsest, uint32_t made, uint32_t source, uint32_t destination, bool addsPoints) {
-    const bool fast = sumsEdgesFast();
-    const uint32_t half = fast         ? PELLUCID_PIPELINE_DIFFUSE_EDGES_FAST_GATHER_16F
-                          : addsPoints ? PELLUCID_PIPELINE_DIFFUSE_EDGES_GATHER_16F
-                                       : PELLUCID_PIPELINE_DIFFUSE_EDGES_16F;
+  // After the one of all other pixels, with the same arguments.
+  bool diffuseEdges(uint32_t coarsest, uint32_t source, uint32_t destination, bool addsPoints) {
+    const uint32_t half =
+        addsPoints ? PELLUCID_PIPELINE_DIFFUSE_EDGES_GATHER_16F : PELLUCID_PIPELINE_DIFFUSE_EDGES_16F;
     PellucidDispatch* d = dispatch("diffuse edges", half + (wide() ? 1 : 0));
     if (!d) return false;
-    if (fast) {
-      groups(d, fastEdgesGroups(), 1, 1);
-    } else {
-      const PyramidPlace place = placeOf(frame, 2);  // with a border of one
-      groups(d, static_cast<uint32_t>(place.rect.width) - 2, static_cast<uint32_t>(place.rect.height) - 2,
-             PELLUCID_EDGES_GROUP / 4);
-      d->groups[1] = (d->groups[1] + PELLUCID_EDGES_TILES - 1) / PELLUCID_EDGES_TILES;
-    }
+    const PyramidPlace place = placeOf(frame, 2);  // with a border of one
+    groups(d, static_cast<uint32_t>(place.rect.width) - 2, static_cast<uint32_t>(place.rect.height) - 2,
+           PELLUCID_EDGES_GROUP / 4);
     d->pushConstants[0] = coarsest;
-    d->pushConstants[1] = made;
+    d->groups[1] = (d->groups[1] + PELLUCID_EDGES_TILES - 1) / PELLUCID_EDGES_TILES;
     d->pushConstants[3] = destination == PELLUCID_RESOURCE_OUTPUT;
     common(d, source, destination);
     constants(d, PELLUCID_BINDING_KERNELS, layout.kernels);

@@ -175,13 +175,12 @@ bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan
       alongside();
     }
     const uint32_t to = destination();
-    fits = fits && b.resolve(coarsest, makesLast, source, to, stages.addsPoints);
+    fits = fits && b.resolve(coarsest, makesLast, source, to);
     alongside();
     if (b.sumsEdges()) fits = fits && b.clusters(coarsest, source);
     fits = fits && b.diffuse(source, to, stages.addsPoints);
     // A barrier though they write other pixels: synchronization validation knows images, not pixels.
-    if (b.sumsEdges() || (b.sumsEdgesFast() && stages.addsPoints))
-      fits = fits && b.diffuseEdges(coarsest, reduced, source, to, stages.addsPoints);
+    if (b.sumsEdges()) fits = fits && b.diffuseEdges(coarsest, source, to, stages.addsPoints);
     if (stages.skipsLight) fits = fits && b.diffuse(source, to, false);
     source = to;
   };

@@ -66,8 +66,9 @@ bool qualityFor(float error, double radius, bool normals, uint32_t* quality) {
         count, static_cast<size_t>(std::lower_bound(std::begin(kErrorRadii), std::end(kErrorRadii), radius) -
                                    kErrorRadii) +
                    1);
-  constexpr uint32_t kBest = std::size(kWorstError) - 1;
-  for (*quality = 0; *quality < kBest + (normals ? 1 : 0); ++*quality)
+  constexpr uint32_t kBest = std::size(kWorstError) - 1, kFilters = 2;
+  // Without normals those that sum edges are like the one before.
+  for (*quality = 0; *quality < (normals ? kBest + 1 : kFilters); ++*quality)
     if (*std::max_element(kWorstError[*quality], kWorstError[*quality] + count) < error) return true;
   *quality = kBest;
   return false;

@@ -30,9 +30,10 @@ inline bool sumsEdges(const PellucidFrame& frame, uint32_t quality) {
   return quality == 3 && given(frame.normal);
 }
 
-// The same over the pyramid itself, with less to do for each pixel.
+// Whether it sums them over the pyramid, with less to do for each pixel, beside the resolve: not where what a
+// gather found, which is not known by then, is added to them.
 inline bool sumsEdgesFast(const PellucidFrame& frame, uint32_t quality) {
-  return quality == 2 && given(frame.normal);
+  return quality == 2 && given(frame.normal) && frame.gatherSamples == 0;
 }
 
 inline FineFilters fineFilters(const PellucidFrame& frame, uint32_t quality) {

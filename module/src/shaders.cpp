@@ -15,8 +15,6 @@
 #include "kDiffuseCoarseGather32f.h"
 #include "kDiffuseEdges16f.h"
 #include "kDiffuseEdges32f.h"
-#include "kDiffuseEdgesFastGather16f.h"
-#include "kDiffuseEdgesFastGather32f.h"
 #include "kDiffuseEdgesGather16f.h"
 #include "kDiffuseEdgesGather32f.h"
 #include "kDiffuseGather16f.h"
@@ -42,16 +40,14 @@
 #include "kQuadsAndCopy32f.h"
 #include "kReduce.h"
 #include "kReduceAndResolve.h"
-#include "kReduceAndResolveMarkingEdges.h"
 #include "kReduceForEdges.h"
-#include "kReduceMarkingEdges.h"
+#include "kReduceForSums.h"
 #include "kReduceResolveAndSum16f.h"
 #include "kReduceResolveAndSum32f.h"
 #include "kResolve.h"
 #include "kResolveAndSum16f.h"
 #include "kResolveAndSum32f.h"
 #include "kResolveForEdges.h"
-#include "kResolveMarkingEdges.h"
 #include "kTranslucency16f.h"
 #include "kTranslucency32f.h"
 #include "kTranslucencyQuads16f.h"
@@ -113,15 +109,11 @@ const std::array kShaders = {shader(kTranslucency16f),
                              shader(kDiffusePlanesGather16f),
                              shader(kDiffusePlanesGather32f),
                              shader(kClusters),
-                             shader(kReduceMarkingEdges),
+                             shader(kReduceForSums),
                              shader(kResolveAndSum16f),
                              shader(kResolveAndSum32f),
                              shader(kReduceResolveAndSum16f),
-                             shader(kReduceResolveAndSum32f),
-                             shader(kResolveMarkingEdges),
-                             shader(kReduceAndResolveMarkingEdges),
-                             shader(kDiffuseEdgesFastGather16f),
-                             shader(kDiffuseEdgesFastGather32f)};
+                             shader(kReduceResolveAndSum32f)};
 static_assert(kShaders.size() == PELLUCID_PIPELINE_COUNT);
 
 }  // namespace

@@ -99,15 +99,11 @@ extern "C" const char* pellucidPipelineName(uint32_t pipeline) {
                                        "diffuse_planes_gather_rgba16f",
                                        "diffuse_planes_gather_rgba32f",
                                        "clusters",
-                                       "reduce_marking_edges",
+                                       "reduce_for_sums",
                                        "resolve_and_sum_rgba16f",
                                        "resolve_and_sum_rgba32f",
                                        "reduce_resolve_and_sum_rgba16f",
-                                       "reduce_resolve_and_sum_rgba32f",
-                                       "resolve_marking_edges",
-                                       "reduce_and_resolve_marking_edges",
-                                       "diffuse_edges_fast_gather_rgba16f",
-                                       "diffuse_edges_fast_gather_rgba32f"};
+                                       "reduce_resolve_and_sum_rgba32f"};
   static_assert(names.size() == PELLUCID_PIPELINE_COUNT);
   return pipeline < names.size() ? names[pipeline] : "unknown pipeline";
 }

@@ -44,7 +44,7 @@ double fallOf(uint32_t bits, int c) { return ((bits >> 10 * c) & 1023u) / 1023.0
 
 TEST(DiffusionProfile, DistancesHaveTheProfileAndItsDerivatives) {
   const PellucidMaterial m = mixedMaterial();
-  const shared::KernelConstants k = kernelConstants(m, FineFilters::TwoOfPlanes);
+  const shared::KernelConstants k = kernelConstants(m, FineFilters::TwoOfPlanes, true);
   EXPECT_FLOAT_EQ(k.reach.x, 8);
   int compared = 0;
   for (uint32_t i = 0; i < PELLUCID_DISTANCE_ENTRIES - 1; i += 5) {
@@ -75,7 +75,7 @@ TEST(DiffusionProfile, DistancesHaveTheProfileAndItsDerivatives) {
 // An integral over rings, which the table of what lies within a distance must be.
 TEST(DiffusionProfile, EnergyWithinADistanceIsTheIntegral) {
   const PellucidMaterial m = mixedMaterial();
-  const shared::KernelConstants k = kernelConstants(m, FineFilters::TwoOfPlanes);
+  const shared::KernelConstants k = kernelConstants(m, FineFilters::TwoOfPlanes, true);
   for (int c = 0; c < 3; ++c) {
     double within = 0, r = 0;
     for (uint32_t i = 0; i < PELLUCID_DISTANCE_ENTRIES; i += 12) {
@@ -92,10 +92,23 @@ TEST(DiffusionProfile, EnergyWithinADistanceIsTheIntegral) {
   }
 }
 
+// Burley's profile is evaluated where all channels have it: its rate is that of e^(-r / 3d) in base 2.
+TEST(DiffusionProfile, RatesAreOfBurleyAlone) {
+  PellucidMaterial m = mixedMaterial();
+  EXPECT_EQ(kernelConstants(m, FineFilters::One, true).burley.w, 0) << "a channel of Gaussians";
+  for (int c = 0; c < 3; ++c) m.burleyDistance[c] = 0.5f + static_cast<float>(c);
+  const shared::KernelConstants k = kernelConstants(m, FineFilters::One, true);
+  EXPECT_EQ(k.burley.w, 1);
+  for (int c = 0; c < 3; ++c) {
+    const double d = static_cast<double>(m.burleyDistance[c]), r = 2.5;
+    EXPECT_NEAR(std::exp2(-static_cast<double>(k.burley[c]) * r), std::exp(-r / (3 * d)), 1e-6) << c;
+  }
+}
+
 // Planes alone need none, and neither does what does not diffuse.
 TEST(DiffusionProfile, DistancesAreOfSumsAlone) {
-  EXPECT_EQ(kernelConstants(mixedMaterial(), FineFilters::One).reach.x, 0);
-  EXPECT_EQ(kernelConstants(PellucidMaterial{}, FineFilters::TwoOfPlanes).reach.x, 0);
+  EXPECT_EQ(kernelConstants(mixedMaterial(), FineFilters::One, false).reach.x, 0);
+  EXPECT_EQ(kernelConstants(PellucidMaterial{}, FineFilters::TwoOfPlanes, true).reach.x, 0);
 }
 
 }  // namespace

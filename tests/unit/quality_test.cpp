@@ -71,17 +71,21 @@ TEST(Quality, SmallRadiiDropLevels) {
   };
   // 23.6, 21.4, 5.9, 5.4, .07 pixels
   for (const Row& row : {Row{3, 7}, {3.3f, 5}, {12, 5}, {13, 3}, {1000, 3}})
-    for (const uint32_t quality : {2u, 3u}) {
+    for (const uint32_t quality : {1u, 2u, 3u}) {
       f.frame.nearestDistance = row.distance;
       f.frame.quality = quality;
       f.frame.normal = Frame::view();
       const PellucidPlan plan = f.plan();
       // Levels 4 and 5 are made beside 2 and 3, levels 6 and 7 by the resolve, unless edges are summed.
-      const bool makesLast = row.coarsest == 7 && quality == 2;
-      EXPECT_EQ(find(plan, "reduce")->pipeline,
-                quality == 3 ? PELLUCID_PIPELINE_REDUCE_FOR_EDGES : PELLUCID_PIPELINE_REDUCE_LEVELS);
-      EXPECT_EQ(find(plan, "resolve")->pipeline, makesLast      ? PELLUCID_PIPELINE_REDUCE_AND_RESOLVE
+      const bool makesLast = row.coarsest == 7 && quality < 3;
+      EXPECT_EQ(find(plan, "reduce")->pipeline, quality == 3   ? PELLUCID_PIPELINE_REDUCE_FOR_EDGES
+                                                : quality == 2 ? PELLUCID_PIPELINE_REDUCE_FOR_SUMS
+                                                               : PELLUCID_PIPELINE_REDUCE_LEVELS);
+      const uint32_t last =
+          quality == 2 ? PELLUCID_PIPELINE_REDUCE_RESOLVE_AND_SUM_16F : PELLUCID_PIPELINE_REDUCE_AND_RESOLVE;
+      EXPECT_EQ(find(plan, "resolve")->pipeline, makesLast      ? last
                                                  : quality == 3 ? PELLUCID_PIPELINE_RESOLVE_FOR_EDGES
+                                                 : quality == 2 ? PELLUCID_PIPELINE_RESOLVE_AND_SUM_16F
                                                                 : PELLUCID_PIPELINE_RESOLVE_LEVELS);
       EXPECT_EQ(reductions(plan), quality == 3 ? row.coarsest / 2 : 1) << row.distance;
       // Clusters and edges.
@@ -146,6 +150,9 @@ TEST(Quality, ChoosesTheLastPass) {
       EXPECT_EQ(find(plan, "diffuse")->pipeline, half + wide);
       const PellucidDispatch* edges = find(plan, "diffuse edges");
       ASSERT_EQ(edges != nullptr, quality == 3);
+      // At quality 2 they are summed beside the resolve, which then writes the output.
+      const uint32_t sums = PELLUCID_PIPELINE_REDUCE_RESOLVE_AND_SUM_16F;
+      EXPECT_EQ(find(plan, "resolve")->pipeline == sums + wide, quality == 2);
       if (!edges) continue;
       EXPECT_EQ(edges->pipeline, PELLUCID_PIPELINE_DIFFUSE_EDGES_16F + wide);
     }
@@ -156,15 +163,25 @@ TEST(Quality, ChoosesTheLastPass) {
   EXPECT_EQ(find(f.plan(), "diffuse")->pipeline, PELLUCID_PIPELINE_DIFFUSE_16F);
 }
 
+// Gathered light is added when the resolve is done.
+TEST(Quality, EdgesAreNotSummedBesideTheResolveWithAGather) {
+  Frame f(1);
+  f.frame.normal = Frame::view();
+  f.frame.gatherSamples = 8;
+  EXPECT_EQ(find(f.plan(), "reduce")->pipeline, PELLUCID_PIPELINE_REDUCE_LEVELS);
+  f.frame.gatherSamples = 0;
+  EXPECT_EQ(find(f.plan(), "reduce")->pipeline, PELLUCID_PIPELINE_REDUCE_FOR_SUMS);
+}
+
 // Against the table: the least quality that is below the target at every radius up to the frame's. Without
-// normals the best one is no better than the one before.
+// normals those that sum edges are no better than the one before.
 TEST(Quality, TargetErrorChoosesTheLeastThatHolds) {
   Frame f;
   f.frame.quality = 1;
   uint32_t chosen[kQualities] = {}, none = 0;
   for (const bool normals : {false, true}) {
     f.frame.normal = normals ? Frame::view() : PellucidImage{};
-    const uint32_t qualities = normals ? kQualities : kQualities - 1;
+    const uint32_t qualities = normals ? kQualities : 2;
     for (const float radius : {0.0f, 0.4f, 0.5f, 1.9f, 7.0f, 30.0f, 128.0f, 400.0f}) {
       // 5 mm are 250 / p pixels. 0: not known, as good as the largest.
       f.frame.nearestDistance = radius > 0 ? 250 / radius * 1.0001f : 0;
@@ -189,6 +206,7 @@ TEST(Quality, TargetErrorChoosesTheLeastThatHolds) {
   }
   EXPECT_GT(chosen[0], 0u);
   EXPECT_GT(chosen[1], 0u);
+  EXPECT_GT(chosen[2], 0u);
   EXPECT_GT(chosen[3], 0u);
   EXPECT_GT(none, 0u);
 }

@@ -340,16 +340,13 @@ typedef enum PellucidPipeline {
   PELLUCID_PIPELINE_DIFFUSE_PLANES_GATHER_16F = 42,
   PELLUCID_PIPELINE_DIFFUSE_PLANES_GATHER_32F = 43,
   PELLUCID_PIPELINE_CLUSTERS = 44, /* what DIFFUSE_EDGES sums over, from the resolved pyramid and the pixels */
-  PELLUCID_PIPELINE_REDUCE_MARKING_EDGES = 45, /* the pyramid where edges are summed fast: quality 2 with normals */
-  PELLUCID_PIPELINE_RESOLVE_AND_SUM_16F = 46,  /* RESOLVE_LEVELS, beside groups that sum edges */
+  PELLUCID_PIPELINE_REDUCE_FOR_SUMS = 45,     /* the pyramid where edges are summed beside its resolve: quality 2 with
+                                                 normals and without a gather */
+  PELLUCID_PIPELINE_RESOLVE_AND_SUM_16F = 46, /* RESOLVE_LEVELS, beside groups that sum edges */
   PELLUCID_PIPELINE_RESOLVE_AND_SUM_32F = 47,
   PELLUCID_PIPELINE_REDUCE_RESOLVE_AND_SUM_16F = 48, /* the same of REDUCE_AND_RESOLVE */
   PELLUCID_PIPELINE_REDUCE_RESOLVE_AND_SUM_32F = 49,
-  PELLUCID_PIPELINE_RESOLVE_MARKING_EDGES = 50, /* where the gather's points are added, edges are summed later */
-  PELLUCID_PIPELINE_REDUCE_AND_RESOLVE_MARKING_EDGES = 51,
-  PELLUCID_PIPELINE_DIFFUSE_EDGES_FAST_GATHER_16F = 52,
-  PELLUCID_PIPELINE_DIFFUSE_EDGES_FAST_GATHER_32F = 53,
-  PELLUCID_PIPELINE_COUNT = 54
+  PELLUCID_PIPELINE_COUNT = 50
 } PellucidPipeline;
 
 enum {
