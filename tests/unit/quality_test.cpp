@@ -78,12 +78,12 @@ TEST(Quality, SmallRadiiDropLevels) {
       const PellucidPlan plan = f.plan();
       // Levels 4 and 5 are made beside 2 and 3, levels 6 and 7 by the resolve, unless edges are summed.
       const bool makesLast = row.coarsest == 7 && quality < 3;
-      EXPECT_EQ(find(plan, "reduce")->pipeline, quality == 3   ? PELLUCID_PIPELINE_REDUCE_FOR_EDGES
-                                                : quality == 2 ? PELLUCID_PIPELINE_REDUCE_FOR_SUMS
-                                                               : PELLUCID_PIPELINE_REDUCE_LEVELS);
-      const uint32_t last =
-          quality == 2 ? PELLUCID_PIPELINE_REDUCE_RESOLVE_AND_SUM_16F : PELLUCID_PIPELINE_REDUCE_AND_RESOLVE;
-      EXPECT_EQ(find(plan, "resolve")->pipeline, makesLast      ? last
+      const uint32_t reduce[] = {PELLUCID_PIPELINE_REDUCE_LEVELS, PELLUCID_PIPELINE_REDUCE_FOR_SUMS,
+                                 PELLUCID_PIPELINE_REDUCE_FOR_EDGES};
+      EXPECT_EQ(find(plan, "reduce")->pipeline, reduce[quality - 1]);
+      const uint32_t last[] = {PELLUCID_PIPELINE_REDUCE_AND_RESOLVE,
+                               PELLUCID_PIPELINE_REDUCE_RESOLVE_AND_SUM_16F};
+      EXPECT_EQ(find(plan, "resolve")->pipeline, makesLast      ? last[quality - 1]
                                                  : quality == 3 ? PELLUCID_PIPELINE_RESOLVE_FOR_EDGES
                                                  : quality == 2 ? PELLUCID_PIPELINE_RESOLVE_AND_SUM_16F
                                                                 : PELLUCID_PIPELINE_RESOLVE_LEVELS);
