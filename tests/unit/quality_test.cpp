@@ -83,10 +83,9 @@ TEST(Quality, SmallRadiiDropLevels) {
       EXPECT_EQ(find(plan, "reduce")->pipeline, reduce[quality - 1]);
       const uint32_t last[] = {PELLUCID_PIPELINE_REDUCE_AND_RESOLVE,
                                PELLUCID_PIPELINE_REDUCE_RESOLVE_AND_SUM_16F};
-      EXPECT_EQ(find(plan, "resolve")->pipeline, makesLast      ? last[quality - 1]
-                                                 : quality == 3 ? PELLUCID_PIPELINE_RESOLVE_FOR_EDGES
-                                                 : quality == 2 ? PELLUCID_PIPELINE_RESOLVE_AND_SUM_16F
-                                                                : PELLUCID_PIPELINE_RESOLVE_LEVELS);
+      const uint32_t resolve[] = {PELLUCID_PIPELINE_RESOLVE_LEVELS, PELLUCID_PIPELINE_RESOLVE_AND_SUM_16F,
+                                  PELLUCID_PIPELINE_RESOLVE_FOR_EDGES};
+      EXPECT_EQ(find(plan, "resolve")->pipeline, makesLast ? last[quality - 1] : resolve[quality - 1]);
       EXPECT_EQ(reductions(plan), quality == 3 ? row.coarsest / 2 : 1) << row.distance;
       // Clusters and edges.
       EXPECT_EQ(plan.dispatchCount, 3 + reductions(plan) + (quality == 3 ? 2 : 0));
