@@ -38,6 +38,8 @@ shared uint edges[PELLUCID_EDGES_TILES]; // of tiles, a bit for each texel
 shared uint splits[2][kClusterSide]; // of the rows of a level, even or odd, a bit for each texel of two
 shared uint coarsest, rough, splitLevels; // rough: a bit for each texel that is not summed by quads
 
+#include "passes/by_quads.glsl"
+
 // Window of a level around a tile.
 struct Window {
   ivec2 first;
@@ -49,10 +51,6 @@ Window windowOf(uint level, ivec2 firstPixel) {
   int end = 2 * (((firstPixel.y + kPixels - 1) >> int(level + 1u)) + kAround + 1);
   return Window(first, end - first.y);
 }
-
-struct Sums {
-  vec3 color, weight;
-};
 
 void add(inout Sums sums, uvec2 color, vec3 weight) {
   sums.color += weight * unpackColor(color);
@@ -354,26 +352,6 @@ void addSeconds(inout Sums sums, uint level, Around a, Kernel k, vec3 center, in
       addCluster(sums, run.first.y * kClusterSide + columnOf(run, bit % kRows), k, center);
     }
   }
-}
-
-// From level 2 on a texel's pixels, which have the same windows, are summed by its quads: each of a quad's invocations does a
-// fourth of the clusters for the quad's center, and pixels take what is linear between the four quads. Not where one lies
-// farther from where these say, as the square of so many sides of a pixel that faces the camera.
-const float kMostOff = 0.25;
-
-// Centers of a texel's quads, rows first, from those of its pixels.
-void quadsOf(int firstOfTexel, out vec3 center[4]) {
-  [[unroll]] for (int q = 0; q < 4; ++q) {
-    center[q] = vec3(0.0);
-    [[unroll]] for (int i = 0; i < 4; ++i)
-      center[q] += 0.25 * placeAt(firstOfTexel + 8 * (q >> 1) + 4 * (i >> 1) + 2 * (q & 1) + (i & 1)).xyz;
-  }
-}
-
-// Parts of the four quads at one of the texel's pixels.
-vec4 ofQuads(ivec2 inTexel) {
-  vec2 to = 0.5 * vec2(inTexel) - 0.25; // from the first one's center to the next one's
-  return vec4((1.0 - to.x) * (1.0 - to.y), to.x * (1.0 - to.y), (1.0 - to.x) * to.y, to.x * to.y);
 }
 
 // The coarsest level whose window holds most of the radius.

@@ -1,8 +1,8 @@
 // Edges by the profile itself over distances in space, as where they are summed best (passes/diffuse_edges.comp) but with less to
 // do for each pixel: sources are the pixels of 3 x 3 quads around a pixel's own, quads of 3 x 3 texels of level 2, 4 x 4 pixels of
 // 5 x 5 texels of level 3, and beyond that texels of the pyramid. What is near is not filtered, as light would count in two of
-// them. Of the including pass: places[], colors[] and depths[] of kSources, in
-// shared memory, and kernels[].
+// them. Of the including pass: places[], colors[] and depths[] of kSources, in shared memory,
+// and kernels[].
 #ifndef PELLUCID_FAST_EDGES_GLSL
 #define PELLUCID_FAST_EDGES_GLSL
 
@@ -10,6 +10,7 @@
 #include "passes/clusters.glsl"
 #include "passes/profile.glsl"
 #include "passes/surfaces.glsl"
+#include "passes/by_quads.glsl"
 
 // After a level's own texel those of so many coarser ones to each side are summed, in squares.
 const int kTile = PELLUCID_EDGES_GROUP, kInvocations = kTile * kTile, kTexels = kTile / 4;
@@ -201,10 +202,6 @@ vec3 enclosedBy(Falloff f, float r) {
   return (1.0 - 0.25 * far * far * far - 0.75 * far) * (8.0 / 3.0 * 3.14159265 * 1.44269504) / f.rate;
 }
 
-struct Sums {
-  vec3 color, weight;
-};
-
 void add(inout Sums sums, vec3 color, vec3 weight) {
   sums.color += weight * color;
   sums.weight += weight;
@@ -353,26 +350,6 @@ void addLevels(inout Sums sums, ivec2 firstPixel, ivec2 pixel, uint last, Fallof
       if (max(away.x, away.y) > kAround) addSurfel(sums, start + i, f, center, side2);
     }
   }
-}
-
-// A texel's pixels sum levels by its quads where it is one surface: each of a quad's invocations a fourth of them for the quad's
-// center, and pixels take what is linear between the four. Not where one lies farther from where these say, as the square of so
-// many sides of a pixel.
-const float kMostOff = 0.25;
-
-// Centers of a texel's quads, rows first, from those of its pixels.
-void quadsOf(int firstOfTexel, out vec3 center[4]) {
-  [[unroll]] for (int q = 0; q < 4; ++q) {
-    center[q] = vec3(0.0);
-    [[unroll]] for (int i = 0; i < 4; ++i)
-      center[q] += 0.25 * uintBitsToFloat(places[firstOfTexel + 8 * (q >> 1) + 4 * (i >> 1) + 2 * (q & 1) + (i & 1)].xyz);
-  }
-}
-
-// Parts of the four quads at one of the texel's pixels.
-vec4 ofQuads(ivec2 inTexel) {
-  vec2 to = 0.5 * vec2(inTexel) - 0.25; // from the first one's center to the next one's
-  return vec4((1.0 - to.x) * (1.0 - to.y), to.x * (1.0 - to.y), (1.0 - to.x) * to.y, to.x * to.y);
 }
 
 // The coarsest level whose window holds most of the radius.

@@ -24,7 +24,11 @@ shared float depths[kSources];
 #define places resolved
 #include "passes/fast_edges.glsl"
 #else
-shared uvec4 resolved[kResolved + 73]; // and what REDUCES makes
+#ifdef REDUCES
+shared uvec4 resolved[kResolved + 73]; // and what is made
+#else
+shared uvec4 resolved[kResolved];
+#endif
 #endif
 
 shared uint anySummed; // of the pixels under the group's texels
@@ -520,11 +524,13 @@ void resolveFine(ivec2 texel, ivec2 k, uvec4 bits) {
       }
       shares.xyz = packEnergies(withDensity(pixelEnergies(m, f), r.density));
     } else {
-      bool planes = countsAsPlane(3u, texel >> 1, resolved[indexOf(windowOf(3u, k), texel >> 1)]) &&
-                    countsAsPlane(4u, texel >> 2, resolved[indexOf(windowOf(4u, k), texel >> 2)]);
-      if (kSumsFast && isSummedFast(texel, bits, f, planes, 0.0)) {
-        flags |= kSummed;
-        color.y &= ~kPlane;
+      if (kSumsFast) {
+        bool planes = countsAsPlane(3u, texel >> 1, resolved[indexOf(windowOf(3u, k), texel >> 1)]) &&
+                      countsAsPlane(4u, texel >> 2, resolved[indexOf(windowOf(4u, k), texel >> 2)]);
+        if (isSummedFast(texel, bits, f, planes, 0.0)) {
+          flags |= kSummed;
+          color.y &= ~kPlane;
+        }
       }
       PixelShares share = pixelShares(m, f);
       share.coarser = share.coarser * r.density / max(1.0 - share.coarser + share.coarser * r.density, vec3(1.0e-6));

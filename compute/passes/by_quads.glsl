@@ -1,0 +1,29 @@
+// Sums over distances in space of a texel's 4 x 4 pixels. Of the including pass: places[], in shared memory.
+#ifndef PELLUCID_BY_QUADS_GLSL
+#define PELLUCID_BY_QUADS_GLSL
+
+struct Sums {
+  vec3 color, weight;
+};
+
+// From level 2 on a texel's pixels, which have the same windows, are summed by its quads: each of a quad's invocations does a
+// fourth of what is summed for the quad's center, and pixels take what is linear between the four quads. Not where one lies
+// farther from where these say, as the square of so many sides of a pixel that faces the camera.
+const float kMostOff = 0.25;
+
+// Centers of a texel's quads, rows first, from those of its pixels.
+void quadsOf(int firstOfTexel, out vec3 center[4]) {
+  [[unroll]] for (int q = 0; q < 4; ++q) {
+    center[q] = vec3(0.0);
+    [[unroll]] for (int i = 0; i < 4; ++i)
+      center[q] += 0.25 * uintBitsToFloat(places[firstOfTexel + 8 * (q >> 1) + 4 * (i >> 1) + 2 * (q & 1) + (i & 1)].xyz);
+  }
+}
+
+// Parts of the four quads at one of the texel's pixels.
+vec4 ofQuads(ivec2 inTexel) {
+  vec2 to = 0.5 * vec2(inTexel) - 0.25; // from the first one's center to the next one's
+  return vec4((1.0 - to.x) * (1.0 - to.y), to.x * (1.0 - to.y), (1.0 - to.x) * to.y, to.x * to.y);
+}
+
+#endif
