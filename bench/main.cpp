@@ -150,6 +150,7 @@ void fusedDispatch(const Bench& bench) {
 std::vector<TimedError> gathered(const Bench& bench) {
   const auto frame = [&](const Capture& capture, uint32_t samples, uint32_t spacing) {
     ReplaySettings settings;
+    settings.quality = 1;  // which the default is with a gather: the frames differ by that alone
     settings.translucency.gatherSamples = samples;
     settings.translucency.gatherSpacing = spacing;
     return bench.frame(capture, settings);
