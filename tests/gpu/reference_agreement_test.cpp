@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <functional>
+#include <limits>
 #include <ostream>
 
 #include "common/compare.h"
@@ -417,6 +418,32 @@ TEST_F(GpuTest, DiffusionOnPlanesIsNearBruteForceInEveryDirection) {
       for (const ChannelDifference& k : d.channels)
         EXPECT_LT(k.relativeRmse, quality == 3 ? best : normal)
             << tilt << " degrees, " << dx << " " << dy << ", quality " << quality;
+    }
+  }
+}
+
+// Pixels whose irradiance is none are black to the others, at every quality: those that sum edges sum around
+// them, on what else is a plane.
+TEST_F(GpuTest, BadIrradianceIsBlackToBruteForce) {
+  Capture c = flatCapture(64, 48);
+  const float values[] = {std::numeric_limits<float>::quiet_NaN(), -std::numeric_limits<float>::infinity(),
+                          -1};
+  int i = 0;
+  for (int y = 3; y < c.height; y += 9)
+    for (int x = 2; x < c.width; x += 7, ++i) c.irradiance.at(x, y)[i / 3 % 3] = values[i % 3];
+  reference::Settings r;
+  r.features = PELLUCID_FEATURE_DIFFUSION;
+  const Image truth = reference::compute(c, {testMaterial()}, r).image;
+  ReplaySettings s;
+  s.features = r.features;
+  // Of quality 0 to 3, a quarter above what is measured: relative RMSE and the worst pixel.
+  const double limits[][2] = {{0.011, 0.19}, {0.003, 0.022}, {0.0013, 0.0065}, {0.0002, 0.0013}};
+  for (s.quality = 0; s.quality < 4; ++s.quality) {
+    const Comparison d = compareImages(rgb(replay(c, testMaterial(), s)), truth, {});
+    for (const ChannelDifference& k : d.channels) {
+      std::printf("quality %u: relative RMSE %.4f, worst %.4f\n", s.quality, k.relativeRmse, k.max);
+      EXPECT_LT(k.relativeRmse, limits[s.quality][0]) << "quality " << s.quality;
+      EXPECT_LT(k.max, limits[s.quality][1]) << "quality " << s.quality;
     }
   }
 }
