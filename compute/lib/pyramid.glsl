@@ -140,7 +140,8 @@ float areaOf(vec2 pixel, vec3 normal) {
   return squared > 1.0e-8 ? inversesqrt(max(along * along * (1.0 / squared), kLeastCosine * kLeastCosine)) : 0.0;
 }
 
-// Texel of level 1 from its four pixels, rows first; depth <= 0: none. The nearest surface and all behind it within
+// Texel of level 1 from its four pixels, rows first; depth <= 0: none. The nearest surface and what lies behind it by no more than its
+// own slope over a pixel, or within
 // what a surface 83 degrees from facing the camera has. `area`: of the pixels' surfaces, 0: as the depths say.
 uvec4 quadTexel(uint material[4], float depth[4], vec3 color[4], vec4 area) {
   uint nearestMaterial = 0u, any = 0u;
@@ -153,11 +154,11 @@ uvec4 quadTexel(uint material[4], float depth[4], vec3 color[4], vec4 area) {
   }
   if (nearestMaterial == 0u) return uvec4(0u, any << 24, 0u, 0u);
   vec2 sides = squaredPixelSize(frame.camera, nearest);
-  float reach = 8.0 * sqrt(min(sides.x, sides.y));
+  float side = sqrt(min(sides.x, sides.y));
   vec3 mean = vec3(0.0);
   float sum = 0.0, weights = 0.0, mass = 0.0;
   for (int i = 0; i < 4; ++i) {
-    bool counts = depth[i] > 0.0 && material[i] == nearestMaterial && depth[i] - nearest <= reach;
+    bool counts = depth[i] > 0.0 && material[i] == nearestMaterial && depth[i] - nearest <= side * max(8.0, area[i]);
     // Across an edge depths say nothing of slopes.
     float w = counts ? 1.0 : 0.0, a = w * (area[i] > 0.0 ? area[i] : 1.0);
     mean += a * color[i];

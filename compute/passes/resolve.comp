@@ -142,10 +142,13 @@ vec4 stretched(ivec2 texel, uint level, ivec2 k, Texel own, Foreshortening f) {
   vec2 size = texelSize(own.depth, level);
   float spread2 = inverseSpread(own.slope, size);
   ivec4 rect = levelRect(level);
+  // Of the next texels. A narrow Gaussian at texels' centers alone has next to none of its variance; two taps beside one have all
+  // of it, up to where both are alike.
+  float next = max(exp(-0.5 / variance), min(0.5 * variance / (1.0 - min(variance, 0.5)), 0.17));
   // Three standard deviations.
   int reach = min(int(ceil(3.0 * sqrt(variance))), kReach);
   for (int i = 1; i <= reach; ++i) {
-    float weight = exp(-0.5 * float(i * i) / variance);
+    float weight = pow(next, float(i * i));
     int across = int(floor(gradient * float(i) + 0.5));
     ivec2 offset = alongX ? ivec2(i, across) : ivec2(across, i);
     // Both sides at once, so that their latencies overlap.
@@ -225,8 +228,9 @@ Own ownPart(uint level, ivec2 texel, ivec2 k, uvec4 bits, out Foreshortening f) 
     own.texel.mass = isPlane(bits) ? areaOf(level, texel, own.texel.slope) : fineMassOf(bits.y, own.texel.depth);
   f = foreshortening(texel, level, own.texel.depth, own.texel.slope);
   bool isFlat = level == 2u && (bits.x & kFlat) != 0u;
-  own.here = (kSumsEdges ? smoothed(texel, level, own.texel, f, isFlat) : stretched(texel, level, k, own.texel, f)) /
-             areaOf(level, texel, own.texel.slope);
+  // A plane fills all of its kernel, however its area was rounded.
+  float area = isPlane(bits) ? own.texel.mass : areaOf(level, texel, own.texel.slope);
+  own.here = (kSumsEdges ? smoothed(texel, level, own.texel, f, isFlat) : stretched(texel, level, k, own.texel, f)) / area;
   // Material 0 looks at what it does not use.
   uint m = max(own.texel.material, 1u) - 1u;
   own.share = coarserShare(m, level, shareEntry(m, f.lengthMm));
