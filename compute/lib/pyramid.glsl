@@ -56,6 +56,11 @@ uvec4 packTexel(Texel t, uint plane) {
   return uvec4(color.x, color.y | plane, floatBitsToUint(t.depth), packSlope(t.slope));
 }
 
+// Of z, the depth's last bit, from level 2 on where edges are summed fast: light under the texel's filter is not alike.
+const uint kVaried = 1u;
+
+bool isVaried(uvec4 texel) { return (texel.z & kVaried) != 0u; }
+
 float massOf(uint y) { return unpackArea((y >> 16) & 0x7Fu); }
 
 // The same with three more bits of the area, in the last ones of the depth, for what is no plane.

@@ -20,6 +20,7 @@ const int kSecond = kSecondSide * kSecondSide, kCoarser = kWindow * kWindow; // 
 const int kLastSummed = PELLUCID_LAST_LEVEL - 1;
 
 shared uint edges[PELLUCID_FAST_EDGES_TILES]; // of tiles, a bit for each texel
+shared uint edgeTiles;                        // a bit for each tile that has any
 shared uint splits[kQuadSide];                // of rows of quads, a bit for each of two surfaces
 shared uint rough, anySplit;                  // rough: a bit for each texel that is not summed by quads
 
@@ -121,7 +122,7 @@ Surfel surfelOf(uint level, ivec2 texel, uvec4 bits) {
 }
 
 // How far behind the nearest of four texels others are the same surface, sides.
-const float kReachBehind = 16.0;
+const float kReachBehind = 32.0;
 
 // What lies under a texel, from the four of the finer level.
 void keepFour(int i, uint level, ivec2 texel, uvec4 bits[4]) {

@@ -15,7 +15,7 @@ int taps() { return int(pass.value.y); }
 
 // Of the squared length of a texel's side. Curved surfaces below it gain nothing from weights of their own. Where edges are
 // summed, planes are filtered only if their light comes from planes, and less curved ones would show there already.
-const float kPlaneResidual = kSumsEdges ? 0.001 : 0.01;
+const float kPlaneResidual = kSumsEdges ? 0.001 : kSumsFast ? 0.003 : 0.01;
 
 // What the bits of texels of one plane have in common: the material, and that they are planes.
 const uint kSamePlane = 0xFF000000u | kPlane;
@@ -32,6 +32,19 @@ int slot(ivec2 at, int width) { return at.y * width + (at.x >> 1) + (at.x & 1) *
 
 // Of the 4 x 4 texels whose first one is in an even column, at `first`.
 int tap(int first, int width, int x, int y) { return first + slot(ivec2(x, y), width); }
+
+// By what part of the middle of its range light may range under a texel's filter and be alike. Filters of planes err by less than a
+// tenth of what it ranges by: with .1 and .2 errors are the same and with .2 a fifth less of a head is summed.
+const float kAlike = 0.2;
+
+float lightOf(vec3 color) { return color.r + color.g + color.b; }
+
+// Where edges are summed fast a texel says whether light is alike; `least` and `most`: of lightOf().
+uvec4 withVariation(uvec4 texel, float least, float most) {
+  if (!kSumsFast) return texel;
+  bool varied = most - least > kAlike * 0.5 * (most + least);
+  return uvec4(texel.xy, (texel.z & ~kVaried) | (varied ? kVaried : 0u), texel.w);
+}
 
 struct Source {
   float mass, depth;
@@ -103,6 +116,7 @@ uvec4 reducedEdge(uint finer, ivec2 texel, int first, int stride) {
   vec3 color = vec3(0.0);
   float mass = 0.0, weights = 0.0, off = 0.0;
   vec2 tilt = vec2(0.0), spread = vec2(0.0);
+  float least = 1.0e30, most = 0.0;
   // A row at a time, and without a branch, so that the taps' latencies overlap. Those that do not count are finite, too.
   for (int i = 0; i < taps(); i += 4)
     [[unroll]] for (int x = 0; x < 4; ++x) {
@@ -115,7 +129,10 @@ uvec4 reducedEdge(uint finer, ivec2 texel, int first, int stride) {
       float difference = t.depth - surface.depth - dot(slope, vec2(at - nearest) * size);
       float w = weight(at.x) * weight(at.y);
       w = counts ? w * sameSurface(difference, dot(slope, offset), spread2, kReduceFalloff) : 0.0;
-      color += w * t.mass * unpackColor(colors[index]);
+      vec3 its = unpackColor(colors[index]);
+      least = counts ? min(least, lightOf(its)) : least;
+      most = counts ? max(most, lightOf(its)) : most;
+      color += w * t.mass * its;
       mass += w * t.mass;
       // Where it is seen edge-on, a surface says no more about its depth than elsewhere.
       w *= min(t.mass, 1.0);
@@ -130,7 +147,7 @@ uvec4 reducedEdge(uint finer, ivec2 texel, int first, int stride) {
   float depth = surface.depth + dot(slope, center * size) + off * inverse;
   slope += tilt / max(spread, 1.0e-6 * size * size + 1.0e-30);
   Texel made = Texel(color / mass, mass, surface.material, depth, slope);
-  return kSumsEdges ? packFineTexel(made) : packTexel(made, 0u);
+  return kSumsEdges ? packFineTexel(made) : withVariation(packTexel(made, 0u), least, most);
 }
 
 // Texel of the level after `finer` from the 4 x 4 at `first`.
@@ -139,13 +156,17 @@ uvec4 reduced(uint finer, ivec2 texel, int first, int stride) {
   float base = depths[first], off = 0.0, square = 0.0;
   vec2 tilt = vec2(0.0);
   vec3 color = vec3(0.0);
+  float least = 1.0e30, most = 0.0;
   for (int y = 0; y < 4; ++y)
     for (int x = 0; x < 4; ++x) {
       int index = tap(first, stride, x, y);
       uvec2 packed = colors[index];
       float w = weight(x) * weight(y), difference = depths[index] - base;
       different |= packed.y ^ bits;
-      color += w * unpackColor(packed);
+      vec3 its = unpackColor(packed);
+      least = min(least, lightOf(its));
+      most = max(most, lightOf(its));
+      color += w * its;
       off += w * difference;
       tilt += w * difference * (vec2(x, y) - 1.5);
       square += w * difference * difference;
@@ -157,6 +178,7 @@ uvec4 reduced(uint finer, ivec2 texel, int first, int stride) {
   vec2 slope = tilt / max(size, vec2(1.0e-30));
   bool plane = onePlane(bits, different, residual, slope, 2.0 * size);
   uvec4 result = packTexel(Texel(color, areaOf(finer + 1u, texel, slope), bits >> 24, base + off, slope), kPlane);
+  result = withVariation(result, least, most);
   // That nothing is there is too rare for a branch of its own.
   if (!plane) result = (bits | different) >> 16 == 0u ? uvec4(0u) : reducedEdge(finer, texel, first, stride);
   return result;

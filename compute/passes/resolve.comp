@@ -440,50 +440,9 @@ uvec4 packLevel(Level r, uvec4 bits) {
   return uvec4(packColor(r.color, bits.y >> 16), bits.z, density);
 }
 
-// Of planes that are summed fast: how tilted they are, 35 degrees, and how much of their energy comes from levels that are none.
-const float kMostFastStretch = 0.49, kMostFastShare = 0.02;
-
-// Whether a texel of level 2 is no plane because the rect ends beside it: farther in is one, on which it lies.
-bool continuesPlane(ivec2 texel, uvec4 bits) {
-  ivec4 inner = inset(levelRect(2u), 3);
-  ivec2 nearest = clamp(texel, inner.xy, inner.zw - 1);
-  if (nearest == texel || any(lessThanEqual(inner.zw, inner.xy))) return false;
-  uvec4 theirs = texelFetch(pyramidImage, inAtlas(2u, nearest), 0);
-  vec2 slope = unpackHalf2x16(theirs.w), size = texelSize(uintBitsToFloat(theirs.z), 2u);
-  float off = uintBitsToFloat(bits.z) - uintBitsToFloat(theirs.z) - dot(slope, vec2(texel - nearest) * size);
-  return (theirs.x & kFlat) != 0u && materialBits(theirs) == materialBits(bits) &&
-         off * off * inverseSpread(slope, size) < kPlaneOffset;
-}
-
-// Whether the pixels under a texel of level 2 are summed fast. `planes`: whether those of levels 3 and 4 that it lies in are some.
-// `margin`: for a second evaluation, which may round differently and must find all that the first one does.
-bool isSummedFast(ivec2 texel, uvec4 bits, Foreshortening f, bool planes, float margin) {
-  if (!hasSurface(bits)) return false;
-  if (f.stretch > kMostFastStretch * (1.0 - margin)) return true;
-  if ((bits.x & kFlat) == 0u && !continuesPlane(texel, bits)) return true;
-  uint m = materialBits(bits) - 1u;
-  vec3 share = coarserShare(m, 2u, shareEntry(m, f.lengthMm));
-  return !planes && max(share.r, max(share.g, share.b)) > kMostFastShare * (1.0 - margin);
-}
-
-// Texels of levels 3 and 4 that have something from beyond the rect's border, up to a side less two pixels around them, are no
-// planes, whatever is there, and count as if they were, as do levels that are not there.
-bool countsAsPlane(uint level, ivec2 texel, uvec4 bits) {
-  int side = 1 << int(level);
-  ivec2 first = side * (texel - 1) + 2, end = side * (texel + 2) - 2;
-  bool inside = all(greaterThanEqual(first, ivec2(frame.rect.xy))) && all(lessThanEqual(end, ivec2(frame.rect.zw)));
-  return isPlane(bits) || level > pass.value.x || !inside;
-}
+#include "passes/summed_fast.glsl"
 
 #ifdef SUMS_FAST
-bool sums(ivec2 texel) {
-  // All before the first is used. Of a level that is not there it is not looked at.
-  uvec4 bits = texelFetch(pyramidImage, inAtlas(2u, texel), 0), third = texelFetch(pyramidImage, inAtlas(3u, texel >> 1), 0);
-  uvec4 fourth = texelFetch(pyramidImage, inAtlas(min(pass.value.x, 4u), texel >> 2), 0);
-  bool planes = countsAsPlane(3u, texel >> 1, third) && countsAsPlane(4u, texel >> 2, fourth);
-  return isSummedFast(texel, bits, foreshortening(texel, 2u, uintBitsToFloat(bits.z), unpackHalf2x16(bits.w)), planes, 1.0e-3);
-}
-
 // Tiles of a group lie far from each other, so that all groups have as much to do: `index` of `groups`.
 ivec2 tileOf(uint i, uint index, uint groups) {
   ivec2 first = ivec2(frame.rect.xy) / kTile, size = (ivec2(frame.rect.zw) - 1) / kTile - first + 1;
@@ -494,16 +453,23 @@ ivec2 tileOf(uint i, uint index, uint groups) {
 void sumTiles(uint index, uint groups, uint made, bool isLast) {
   uint invocation = gl_LocalInvocationIndex;
   if (invocation < uint(PELLUCID_FAST_EDGES_TILES)) edges[invocation] = 0u;
+  if (invocation == 0u) edgeTiles = 0u;
   barrier();
   uint tile = invocation / uint(kTexels * kTexels), inTile = invocation % uint(kTexels * kTexels);
   if (tile < uint(PELLUCID_FAST_EDGES_TILES)) {
     ivec2 texel = (tileOf(tile, index, groups) >> 2) + ivec2(inTile % uint(kTexels), inTile / uint(kTexels));
     // Those of the border have no pixels.
-    if (contains(inset(levelRect(2u), 1), texel) && sums(texel)) atomicOr(edges[tile], 1u << inTile);
+    if (contains(inset(levelRect(2u), 1), texel) && isSummedFast(texel)) {
+      atomicOr(edges[tile], 1u << inTile);
+      atomicOr(edgeTiles, 1u << tile);
+    }
   }
   barrier();
-  for (uint i = 0u; i < uint(PELLUCID_FAST_EDGES_TILES); ++i)
-    if (edges[i] != 0u) diffuseTile(tileOf(i, index, groups), edges[i], made, isLast);
+  // Not over all tiles with a test for edges: software devices run through what such a test leaves out.
+  for (uint tiles = edgeTiles; tiles != 0u; tiles &= tiles - 1u) {
+    uint i = uint(findLSB(tiles));
+    diffuseTile(tileOf(i, index, groups), edges[i], made, isLast);
+  }
 }
 #endif
 
@@ -529,9 +495,12 @@ void resolveFine(ivec2 texel, ivec2 k, uvec4 bits) {
       shares.xyz = packEnergies(withDensity(pixelEnergies(m, f), r.density));
     } else {
       if (kSumsFast) {
-        bool planes = countsAsPlane(3u, texel >> 1, resolved[indexOf(windowOf(3u, k), texel >> 1)]) &&
-                      countsAsPlane(4u, texel >> 2, resolved[indexOf(windowOf(4u, k), texel >> 2)]);
-        if (isSummedFast(texel, bits, f, planes, 0.0)) {
+        bool planes = isPlaneFast(texel, bits, f, 0.0);
+        [[unroll]] for (uint level = 3u; level <= kLastLooked; ++level) {
+          uvec4 coarser = resolved[indexOf(windowOf(level, k), texel >> int(level - 2u))];
+          planes = planes && (level > pass.value.x || isPlane(coarser));
+        }
+        if (!planes && isSummedFast(texel, bits, f, 0.0)) {
           flags |= kSummed;
           color.y &= ~kPlane;
         }

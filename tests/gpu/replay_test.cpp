@@ -271,7 +271,7 @@ void spoil(Capture& bad, Capture& good) {
 }
 
 // What one pass reads raw, another has looked at. Quads with bad irradiance are no planes: qualities that sum
-// edges are asked where they sum everything, on a slope of 60 degrees.
+// edges are asked where they sum everything, on a slope of 60 degrees with light that is nowhere alike.
 TEST_F(Replay, DiffusionCountsBadIrradianceAsNone) {
   Capture bad = flatCapture(64, 48), good = bad;
   spoil(bad, good);
@@ -281,6 +281,8 @@ TEST_F(Replay, DiffusionCountsBadIrradianceAsNone) {
         c.frontDepth.image.at(x, y)[0] += static_cast<float>(std::sqrt(3) * 0.25 * x);
         c.normal.at(x, y)[0] = static_cast<float>(std::sqrt(0.75));
         c.normal.at(x, y)[2] = 0.5f;
+        if ((x / 2 + y / 2) % 2 == 0)
+          for (int k = 0; k < 3; ++k) c.irradiance.at(x, y)[k] *= 2;
       }
     return c;
   };
