@@ -33,8 +33,8 @@ int slot(ivec2 at, int width) { return at.y * width + (at.x >> 1) + (at.x & 1) *
 // Of the 4 x 4 texels whose first one is in an even column, at `first`.
 int tap(int first, int width, int x, int y) { return first + slot(ivec2(x, y), width); }
 
-// By what part of the middle of its range light may range under a texel's filter and be alike. Filters of planes err by less than a
-// tenth of what it ranges by: with .1 and .2 errors are the same and with .2 a fifth less of a head is summed.
+// By what part of the middle of its range light may range under a texel's filter and be alike. Checkers of that range that are
+// filtered err by .008 on a sphere and an ear, within what planes do.
 const float kAlike = 0.2;
 
 float lightOf(vec3 color) { return color.r + color.g + color.b; }
