@@ -110,7 +110,7 @@ void modulePlans(const Bench& bench) {
   }
 }
 
-// Where surfaces end and curve, which takes longer than planes.
+// Where surfaces end and curve, which takes longer than planes where light varies.
 void edges(const Bench& bench) {
   const auto [width, height] = bench.options.size;
   for (const double radius : {400.0, 100.0, 25.0}) {
@@ -127,6 +127,7 @@ void edges(const Bench& bench) {
                     frame, quality == 2 ? "whole frame" : "whole frame, quality " + std::to_string(quality)),
                 {});
     }
+    bench.row(moduleVariant(bench.frame(litSmoothly(capture), {}), "whole frame, lit smoothly"), {});
   }
 }
 

@@ -100,6 +100,17 @@ Capture balls(int width, int height, double radius, double pixel) {
   return c;
 }
 
+Capture litSmoothly(Capture c) {
+  // From the upper right front and from all around.
+  constexpr float kLight[] = {0.5f, 0.5f, 0.707f}, kAround = 0.1f;
+  for (size_t i = 0; i < c.irradiance.pixels(); ++i) {
+    const float* n = &c.normal.data[3 * i];
+    const float cosine = n[0] * kLight[0] + n[1] * kLight[1] + n[2] * kLight[2];
+    std::fill_n(&c.irradiance.data[3 * i], 3, kAround + std::max(cosine, 0.0f));
+  }
+  return c;
+}
+
 std::vector<ErrorScene> errorScenes() {
   const double plane = 40;
   const std::map<std::string, double> tilted = {{"tilt", 60}};
