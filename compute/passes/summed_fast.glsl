@@ -10,9 +10,10 @@ const float kMostFastStretch = 0.49;
 // nothing of the energy where it is dark and near a bright rim.
 const float kLeastPart = 0.02;
 
-// How far up levels are looked at. What comes from beyond is not alike if it is that much of the energy, and from planes.
+// The coarsest level that is looked at. What comes from beyond it counts as planes and, if it is that much of the energy, as
+// light that is not alike.
 const uint kLastLooked = 5u;
-const float kLeastBeyond = 0.0001;
+const float kLeastBeyond = 0.0005;
 
 // Whether a texel of level 2 is no plane because the rect ends beside it: farther in is one, on which it lies.
 bool continuesPlane(ivec2 texel, uvec4 bits) {
@@ -48,9 +49,11 @@ bool isSummedFast(ivec2 texel, uvec4 bits, Foreshortening f, float margin) {
   if (!hasSurface(bits)) return false;
   const int kLevels = int(kLastLooked) - 2;
   uvec4 coarser[kLevels];
-  // All before the first is used. Of a level that is not there it is not looked at.
-  [[unroll]] for (int i = 0; i < kLevels; ++i)
-    coarser[i] = texelFetch(pyramidImage, inAtlas(min(pass.value.x, uint(i) + 3u), texel >> (i + 1)), 0);
+  // All before the first is used. What stands for a level that is not there is not looked at.
+  [[unroll]] for (int i = 0; i < kLevels; ++i) {
+    uint level = min(pass.value.x, uint(i) + 3u);
+    coarser[i] = texelFetch(pyramidImage, inAtlas(level, texel >> int(level - 2u)), 0);
+  }
   bool plane = isPlaneFast(texel, bits, f, margin), planes[kLevels], allPlanes = plane;
   [[unroll]] for (int i = 0; i < kLevels; ++i) {
     planes[i] = countsAsPlane(uint(i) + 3u, texel >> (i + 1), coarser[i]);
