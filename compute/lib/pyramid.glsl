@@ -145,9 +145,9 @@ float areaOf(vec2 pixel, vec3 normal) {
   return squared > 1.0e-8 ? inversesqrt(max(along * along * (1.0 / squared), kLeastCosine * kLeastCosine)) : 0.0;
 }
 
-// Texel of level 1 from its four pixels, rows first; depth <= 0: none. The nearest surface and what lies behind it by no more than its
-// own slope over a pixel, or within
-// what a surface 83 degrees from facing the camera has. `area`: of the pixels' surfaces, 0: as the depths say.
+// Texel of level 1 from its four pixels, rows first; depth <= 0: none. The nearest surface and what lies behind it by no more
+// than its own slope over a pixel, or within what a surface 83 degrees from facing the camera has. `area`: of the pixels'
+// surfaces, 0: as the depths say.
 uvec4 quadTexel(uint material[4], float depth[4], vec3 color[4], vec4 area) {
   uint nearestMaterial = 0u, any = 0u;
   float nearest = kNoDepth;

@@ -1,8 +1,7 @@
 // Edges by the profile itself over distances in space, as where they are summed best (passes/diffuse_edges.comp) but with less to
 // do for each pixel: sources are the pixels of 3 x 3 quads around a pixel's own, quads of 3 x 3 texels of level 2, 4 x 4 pixels of
 // 5 x 5 texels of level 3, and beyond that texels of the pyramid. What is near is not filtered, as light would count in two of
-// them. Of the including pass: places[], colors[] and depths[] of kSources, in shared memory,
-// and kernels[].
+// them. Of the including pass: places[], colors[] and depths[] of kSources, in shared memory, and kernels[].
 #ifndef PELLUCID_FAST_EDGES_GLSL
 #define PELLUCID_FAST_EDGES_GLSL
 

@@ -495,6 +495,7 @@ void resolveFine(ivec2 texel, ivec2 k, uvec4 bits) {
       shares.xyz = packEnergies(withDensity(pixelEnergies(m, f), r.density));
     } else {
       if (kSumsFast) {
+        // From what the group has, so that planes, which are most, fetch nothing.
         bool planes = isPlaneFast(texel, bits, f, 0.0);
         [[unroll]] for (uint level = 3u; level <= kLastLooked; ++level) {
           uvec4 coarser = resolved[indexOf(windowOf(level, k), texel >> int(level - 2u))];

@@ -248,9 +248,9 @@ TEST_F(Replay, OutputMayBeTheIrradianceImage) {
     }
 }
 
-// Not a number, infinity and below 0 here and there in `bad`, where `good` has 0: in a rect, at its border in
-// whole quads and in others.
-void spoil(Capture& bad, Capture& good) {
+// Not a number, infinity and below 0 here and there in `bad`, where `good` has 0: inside, and at the borders
+// of the rects that are tested, in quads that these cut and in others.
+void spoilIrradiance(Capture& bad, Capture& good) {
   const float values[] = {kNan, -INFINITY, -1};
   int i = 0;
   const auto spoil = [&](int x, int y, int channel) {
@@ -274,7 +274,7 @@ void spoil(Capture& bad, Capture& good) {
 // edges are asked where they sum everything, on a slope of 60 degrees with light that is nowhere alike.
 TEST_F(Replay, DiffusionCountsBadIrradianceAsNone) {
   Capture bad = flatCapture(64, 48), good = bad;
-  spoil(bad, good);
+  spoilIrradiance(bad, good);
   const auto slope = [](Capture c) {
     for (int y = 0; y < c.height; ++y)
       for (int x = 0; x < c.width; ++x) {
