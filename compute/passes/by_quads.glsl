@@ -1,4 +1,4 @@
-// Sums over distances in space of a texel's 4 x 4 pixels. Of the including pass: places[], in shared memory.
+// Sums over distances in space of a texel's 4 x 4 pixels. Of the including pass: places[], in shared memory, and kMostOff.
 #ifndef PELLUCID_BY_QUADS_GLSL
 #define PELLUCID_BY_QUADS_GLSL
 
@@ -8,8 +8,7 @@ struct Sums {
 
 // From level 2 on a texel's pixels, which have the same windows, are summed by its quads: each of a quad's invocations does a
 // fourth of what is summed for the quad's center, and pixels take what is linear between the four quads. Not where one lies
-// farther from where these say, as the square of so many sides of a pixel that faces the camera.
-const float kMostOff = 0.25;
+// farther from where these say than kMostOff, the including pass's, allows: the square of sides of a pixel that faces the camera.
 
 // Centers of a texel's quads, rows first, from those of its pixels.
 void quadsOf(int firstOfTexel, out vec3 center[4]) {

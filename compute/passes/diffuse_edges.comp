@@ -38,6 +38,7 @@ shared uint edges[PELLUCID_EDGES_TILES]; // of tiles, a bit for each texel
 shared uint splits[2][kClusterSide]; // of the rows of a level, even or odd, a bit for each texel of two
 shared uint coarsest, rough, splitLevels; // rough: a bit for each texel that is not summed by quads
 
+const float kMostOff = 0.25;
 #include "passes/by_quads.glsl"
 
 // Window of a level around a tile.

@@ -9,6 +9,9 @@
 #include "passes/clusters.glsl"
 #include "passes/profile.glsl"
 #include "passes/surfaces.glsl"
+
+// As far as windows of level 2 have what is next to them: errors are the same with any less.
+const float kMostOff = 16.0;
 #include "passes/by_quads.glsl"
 
 // After a level's own texel those of so many coarser ones to each side are summed, in squares.
@@ -20,8 +23,8 @@ const int kLastSummed = PELLUCID_LAST_LEVEL - 1;
 
 shared uint edges[PELLUCID_FAST_EDGES_TILES]; // of tiles, a bit for each texel
 shared uint edgeTiles;                        // a bit for each tile that has any
-shared uint splits[kQuadSide];                // of rows of quads, a bit for each of two surfaces
-shared uint rough, anySplit;                  // rough: a bit for each texel that is not summed by quads
+shared uint marks[kSide];                     // of rows, a bit for each texel, then pixel, then quad that has more to sum
+shared uint rough, tileLast;                  // a bit for each texel that is not summed by quads; coarsest level
 
 // A surface: its center and its area, mm, and its light.
 struct Surfel {
@@ -69,6 +72,9 @@ void keep(int i, Together t, uint material) {
 // In widths; two halves of it in depths[], the third beside the color.
 vec3 longerOf(int i) { return vec3(unpackHalf2x16(floatBitsToUint(depths[i])), unpackHalf2x16(colors[i].y >> 16).x); }
 
+// From how many times as long as wide on pixels near by are taken in segments.
+const float kLongPixel = 4.0;
+
 void keepPixel(int i, ivec2 at, float depth, uint material, vec3 normal, vec3 color) {
   float facing = pixelArea(depth);
   vec3 tilted = tilt(vec2(at), normal), center = pointAt(vec2(at), depth);
@@ -77,6 +83,7 @@ void keepPixel(int i, ivec2 at, float depth, uint material, vec3 normal, vec3 co
   vec3 axis = pointAt(vec2(at) + toward, depth + rise) - center;
   float area = facing * tilted.z;
   float longer2 = max(tilted.z * tilted.z - 1.0, 0.0) / max(dot(axis, axis), 1.0e-30);
+  if (material != 0u && tilted.z > kLongPixel) atomicOr(marks[i / kSide], 1u << i % kSide);
   vec3 longer = axis * sqrt(longer2);
   places[i] = uvec4(floatBitsToUint(center), withMaterial(area, material));
   depths[i] = uintBitsToFloat(packHalf2x16(longer.xy));
@@ -123,8 +130,29 @@ Surfel surfelOf(uint level, ivec2 texel, uvec4 bits) {
 // How far behind the nearest of four texels others are the same surface, sides.
 const float kReachBehind = 32.0;
 
-// What lies under a texel, from the four of the finer level.
-void keepFour(int i, uint level, ivec2 texel, uvec4 bits[4]) {
+// From how many sides of the finer level on what lies under a texel is two parts, the nearer and the farther half of it.
+const float kDeep = 3.0;
+
+// Beside a texel of level 2, in depths[], its second part: the distance in roots of the first one's area, its area over that, and
+// its color, in halves, which the reach and the range of texels' areas keep finite.
+void keepSecond(int i, Together first, Together second) {
+  vec3 offset = (second.center / second.area - first.center / first.area) * inversesqrt(first.area);
+  vec3 color = roundToHalf(second.color / second.area);
+  depths[4 * i] = uintBitsToFloat(packHalf2x16(offset.xy));
+  depths[4 * i + 1] = uintBitsToFloat(packHalf2x16(vec2(offset.z, second.area / first.area)));
+  depths[4 * i + 2] = uintBitsToFloat(packHalf2x16(color.rg));
+  depths[4 * i + 3] = uintBitsToFloat(packHalf2x16(vec2(color.b, 0.0)));
+}
+
+Surfel secondAt(int i, uint material) {
+  Surfel first = surfelAt(i, material);
+  vec2 bits[4];
+  [[unroll]] for (int j = 0; j < 4; ++j) bits[j] = unpackHalf2x16(floatBitsToUint(depths[4 * i + j]));
+  return Surfel(first.center + sqrt(first.area) * vec3(bits[0], bits[1].x), first.area * bits[1].y, vec3(bits[2], bits[3].x));
+}
+
+// What lies under a texel, from the four of the finer level. Returns whether there is a second part, of level 2 alone.
+bool keepFour(int i, uint level, ivec2 texel, uvec4 bits[4]) {
   uint material = 0u;
   float nearest = kNoDepth;
   [[unroll]] for (int j = 0; j < 4; ++j)
@@ -132,24 +160,40 @@ void keepFour(int i, uint level, ivec2 texel, uvec4 bits[4]) {
       nearest = uintBitsToFloat(bits[j].z);
       material = materialBits(bits[j]);
     }
-  vec2 side = texelSize(nearest, level - 1u);
-  float farthest = nearest + kReachBehind * sqrt(side.x * side.y);
-  Together t = kNothing;
-  [[unroll]] for (int j = 0; j < 4; ++j)
-    if (hasSurface(bits[j]) && materialBits(bits[j]) == material && uintBitsToFloat(bits[j].z) < farthest)
-      addPart(t, surfelOf(level - 1u, 2 * texel + ivec2(j & 1, j >> 1), bits[j]));
-  keep(i, t, material);
+  vec2 sides = texelSize(nearest, level - 1u);
+  float side = sqrt(sides.x * sides.y), farthest = nearest;
+  bool counts[4];
+  [[unroll]] for (int j = 0; j < 4; ++j) {
+    float depth = uintBitsToFloat(bits[j].z);
+    counts[j] = hasSurface(bits[j]) && materialBits(bits[j]) == material && depth < nearest + kReachBehind * side;
+    farthest = counts[j] ? max(farthest, depth) : farthest;
+  }
+  bool two = level == 2u && farthest - nearest > kDeep * side;
+  float limit = two ? 0.5 * (nearest + farthest) : kNoDepth;
+  Together first = kNothing, second = kNothing;
+  [[unroll]] for (int j = 0; j < 4; ++j) {
+    if (!counts[j]) continue;
+    Surfel part = surfelOf(level - 1u, 2 * texel + ivec2(j & 1, j >> 1), bits[j]);
+    if (uintBitsToFloat(bits[j].z) < limit)
+      addPart(first, part);
+    else
+      addPart(second, part);
+  }
+  keep(i, first, material);
+  two = two && first.area > 0.0 && second.area > 0.0;
+  if (two) keepSecond(i, first, second);
+  return two;
 }
 
 // Of all levels, one after the other. `made`: the coarsest level that is in the image; one more is made of it.
-void loadLevels(ivec2 firstPixel, uint made) {
+void loadLevels(ivec2 firstPixel, uint made, uint last) {
   for (int i = int(gl_LocalInvocationIndex); i < kSecond; i += kInvocations) {
     ivec2 texel = firstOf(2u, firstPixel) + ivec2(i % kSecondSide, i / kSecondSide);
     uvec4 bits[4];
     [[unroll]] for (int j = 0; j < 4; ++j) bits[j] = texelOf(1u, 2 * texel + ivec2(j & 1, j >> 1));
-    keepFour(i, 2u, texel, bits);
+    if (keepFour(i, 2u, texel, bits)) atomicOr(marks[i / kSecondSide], 1u << i % kSecondSide);
   }
-  for (int i = int(gl_LocalInvocationIndex); i < (kLastSummed - 2) * kCoarser; i += kInvocations) {
+  for (int i = int(gl_LocalInvocationIndex); i < (int(last) - 2) * kCoarser; i += kInvocations) {
     uint level = 3u + uint(i / kCoarser);
     int inWindow = i % kCoarser;
     ivec2 texel = firstOf(level, firstPixel) + ivec2(inWindow % kWindow, inWindow / kWindow);
@@ -213,17 +257,18 @@ float meanOf(float squared, float facing, float longer2, float along2) {
   return max(squared - (facing - longer2) * (1.0 / 12.0) - 0.25 * along2, 0.5 * squared);
 }
 
-// `facing`: area of a square that faces the camera. What is larger is longer, next to along the view.
-void addSurfel(inout Sums sums, int i, Falloff f, vec3 center, float facing) {
-  Surfel surfel = surfelAt(i, f.material);
+// Without a branch, so that sources' latencies overlap. `facing`: area of a square that faces the camera. What is larger is
+// longer, next to along the view.
+void addSurfel(inout Sums sums, Surfel surfel, bool counts, Falloff f, vec3 center, float facing) {
   vec3 offset = surfel.center - center;
   float squared = max(dot(offset, offset), 1.0e-30), longer2 = max(surfel.area * surfel.area / facing - facing, 0.0);
   float mean = meanOf(squared, facing, longer2, longer2 * offset.z * offset.z / squared);
-  add(sums, surfel.color, surfel.area * falloffAt(f, mean));
+  add(sums, surfel.color, (counts ? surfel.area : 0.0) * falloffAt(f, mean));
 }
 
-// From how many times as long as wide on pixels near by are taken in segments.
-const float kLongPixel = 3.0;
+void addSurfel(inout Sums sums, int i, bool counts, Falloff f, vec3 center, float facing) {
+  addSurfel(sums, surfelAt(i, f.material), counts, f, center, facing);
+}
 
 vec3 ofLong(Falloff f, float area, vec3 longer, vec3 offset, float facing) {
   float width = sqrt(facing), halfLength = 0.5 * area / width;
@@ -246,16 +291,22 @@ void addPixels(inout Sums sums, ivec2 local, Falloff f, vec3 center, float facin
   float ratio = max(mine.area / facing, 1.0);
   float radius = sqrt(facing) * (ratio * asinh(1.0 / ratio) + asinh(ratio)) * (1.0 / 3.14159265);
   add(sums, color, enclosedBy(f, radius)); // not as kept, in halves: narrow kernels return the input
-  for (int y = 0; y < 6; ++y)
-    [[unroll]] for (int x = 0; x < 6; ++x) {
-      int i = first + y * kSide + x;
+  // Half of a row without a branch, so that latencies overlap; more takes too many registers. Long ones after that.
+  [[dont_unroll]] for (int run = 0; run < 12; ++run)
+    [[unroll]] for (int j = 0; j < 3; ++j) {
+      int x = 3 * (run & 1) + j, y = run >> 1, i = first + y * kSide + x;
       Surfel surfel = surfelAt(i, f.material);
       vec3 offset = surfel.center - center, longer = longerOf(i);
       float squared = max(dot(offset, offset), 1.0e-30), along = dot(longer, offset);
       float mean = meanOf(squared, facing, facing * dot(longer, longer), facing * along * along / squared);
-      vec3 weight = surfel.area * falloffAt(f, mean);
-      if (surfel.area > kLongPixel * facing && i != own) weight = ofLong(f, surfel.area, longer, offset, facing);
-      add(sums, surfel.color, i == own ? vec3(0.0) : weight);
+      bool counts = i != own && (marks[corner.y + y] >> corner.x + x & 1u) == 0u;
+      add(sums, surfel.color, (counts ? surfel.area : 0.0) * falloffAt(f, mean));
+    }
+  for (int y = 0; y < 6; ++y)
+    for (uint left = marks[corner.y + y] >> corner.x & 0x3Fu; left != 0u; left &= left - 1u) {
+      int i = first + y * kSide + findLSB(left);
+      Surfel surfel = surfelAt(i, f.material);
+      if (i != own) add(sums, surfel.color, ofLong(f, surfel.area, longerOf(i), surfel.center - center, facing));
     }
 }
 
@@ -294,61 +345,69 @@ void makeQuads() {
         addPart(second, part);
     }
   }
-  if (i < kQuadSide) splits[i] = 0u;
-  if (i == 0) anySplit = 0u;
+  if (i < kQuadSide) marks[i] = 0u;
   barrier();
   if (makes) {
     keep(i, first, material);
     if (second.area > 0.0) {
       keep(kQuadSide * kQuadSide + i, second, other);
-      atomicOr(splits[i / kQuadSide], 1u << i % kQuadSide);
-      anySplit = 1u; // whoever writes, writes this
+      atomicOr(marks[i / kQuadSide], 1u << i % kQuadSide);
     }
   }
   barrier();
 }
 
-// Of 6 x 6 those that are not of the 3 x 3 around the one at 2 + odd, in 9 runs of 3.
-ivec2 outside(int run, int j, ivec2 odd) {
-  if (run < 6) {
+// Of 2 n x 2 n those that are not of the n x n from n / 2 + odd on, in 3 n runs of n.
+ivec2 outside(int n, int run, int j, ivec2 odd) {
+  ivec2 first = n / 2 + odd;
+  if (run < 2 * n) {
     int row = run >> 1;
-    return ivec2(3 * (run & 1) + j, row <= odd.y ? row : row + 3);
+    return ivec2(n * (run & 1) + j, row < first.y ? row : row + n);
   }
-  return ivec2(j <= odd.x ? j : j + 3, run - 5 + odd.y);
+  return ivec2(j < first.x ? j : j + n, run - 2 * n + first.y);
 }
 
 void addQuads(inout Sums sums, ivec2 local, Falloff f, vec3 center, float facing) {
   ivec2 quad = local >> 1, first = 2 * (quad >> 1), odd = quad & 1;
   for (int run = 0; run < 9; ++run)
     [[unroll]] for (int j = 0; j < 3; ++j) {
-      ivec2 at = first + outside(run, j, odd);
-      addSurfel(sums, at.y * kQuadSide + at.x, f, center, 4.0 * facing);
+      ivec2 at = first + outside(3, run, j, odd);
+      addSurfel(sums, at.y * kQuadSide + at.x, true, f, center, 4.0 * facing);
     }
-  if (anySplit == 0u) return;
-  for (int run = 0; run < 9; ++run)
-    for (int j = 0; j < 3; ++j) {
-      ivec2 at = first + outside(run, j, odd);
-      if ((splits[at.y] >> at.x & 1u) != 0u) addSurfel(sums, kQuadSide * kQuadSide + at.y * kQuadSide + at.x, f, center, 4.0 * facing);
-    }
+  for (int y = 0; y < 6; ++y) {
+    uint second = marks[first.y + y] >> first.x & (y > odd.y && y < odd.y + 4 ? 0x3Fu ^ 0xEu << odd.x : 0x3Fu);
+    for (; second != 0u; second &= second - 1u)
+      addSurfel(sums, kQuadSide * (kQuadSide + first.y + y) + first.x + findLSB(second), true, f, center, 4.0 * facing);
+  }
 }
 
-// Every `step`th from number `from` on, 1 or 4, of what is around a pixel at levels up to `last`.
+// What is around a pixel at levels up to `last`, every `step`th run of sources from number `from` on, 1 or 4.
 void addLevels(inout Sums sums, ivec2 firstPixel, ivec2 pixel, uint last, Falloff f, vec3 center, float facing, int from, int step) {
+  const int kRun = kWindow / 2;
   ivec2 first = 2 * ((pixel >> 3) - kAround) - firstOf(2u, firstPixel), own = 2 * kAround + ((pixel >> 2) & 1);
   int start = first.y * kSecondSide + first.x;
-  for (int i = from; i < kCoarser; i += step) {
-    ivec2 at = ivec2(i % kWindow, i / kWindow), away = abs(at - own);
-    if (max(away.x, away.y) > 1) addSurfel(sums, start + at.y * kSecondSide + at.x, f, center, 16.0 * facing);
+  for (int run = from; run < 2 * kWindow; run += step)
+    [[unroll]] for (int j = 0; j < kRun; ++j) {
+      ivec2 at = ivec2(kRun * (run & 1) + j, run >> 1), away = abs(at - own);
+      addSurfel(sums, start + at.y * kSecondSide + at.x, max(away.x, away.y) > 1, f, center, 16.0 * facing);
+    }
+  for (int y = from; y < kWindow; y += step) {
+    uint second = marks[first.y + y] >> first.x & (abs(y - own.y) > 1 ? 0x3FFu : 0x3FFu ^ 7u << (own.x - 1));
+    for (; second != 0u; second &= second - 1u) {
+      int i = start + y * kSecondSide + findLSB(second);
+      addSurfel(sums, secondAt(i, f.material), true, f, center, 16.0 * facing);
+    }
   }
   // A window of these levels is one texel's that is at least as large as the tile.
   for (uint level = 3u; level <= last; ++level) {
     float side2 = facing * exp2(float(2u * level));
-    own = 2 * kAround + ((pixel >> int(level)) & 1);
+    ivec2 odd = (pixel >> int(level)) & 1;
     start = kSecond + int(level - 3u) * kCoarser;
-    for (int i = from; i < kCoarser; i += step) {
-      ivec2 at = ivec2(i % kWindow, i / kWindow), away = abs(at - own);
-      if (max(away.x, away.y) > kAround) addSurfel(sums, start + i, f, center, side2);
-    }
+    for (int run = from; run < 3 * kRun; run += step)
+      [[unroll]] for (int j = 0; j < kRun; ++j) {
+        ivec2 at = outside(kRun, run, j, odd);
+        addSurfel(sums, start + at.y * kWindow + at.x, true, f, center, side2);
+      }
   }
 }
 
@@ -382,7 +441,8 @@ void exchange(inout Sums sums, int invocation, bool byQuads) {
 void diffuseTile(ivec2 firstPixel, uint edgeTexels, uint made, bool isLast) {
   int invocation = int(gl_LocalInvocationIndex);
   barrier(); // what was there has been read
-  if (invocation == 0) rough = 0u;
+  if (invocation == 0) rough = tileLast = 0u;
+  if (invocation < kSide) marks[invocation] = 0u;
   // 16 invocations to a texel, so that those without one are whole subgroups.
   for (int before = invocation / 16; before > 0; --before) edgeTexels &= edgeTexels - 1u;
   bool isEdge = edgeTexels != 0u;
@@ -390,7 +450,7 @@ void diffuseTile(ivec2 firstPixel, uint edgeTexels, uint made, bool isLast) {
   ivec2 local = 4 * ivec2(texel % kTexels, texel / kTexels) + ivec2(inTexel % 4, inTexel / 4), pixel = firstPixel + local;
   ivec2 at = withinRect(pixel);
   float depth = frontDistance(at), facing = max(pixelArea(depth), 1.0e-30);
-  uint material = materialOf(pixel, depth), last = 0u;
+  uint material = materialOf(pixel, depth), last = 2u, ofPixel = 2u;
   vec3 center = pointAt(vec2(at), depth), ofQuad = center;
   places[invocation] = uvec4(floatBitsToUint(center), material);
   barrier();
@@ -401,20 +461,27 @@ void diffuseTile(ivec2 firstPixel, uint edgeTexels, uint made, bool isLast) {
     quadsOf(invocation - inTexel, quads);
     vec4 parts = ofQuads(local & 3);
     vec3 off = parts.x * quads[0] + parts.y * quads[1] + parts.z * quads[2] + parts.w * quads[3] - center;
-    ofQuad = quads[(local.x >> 1 & 1) + (local.y & 2)];
+    // An index that is not known would put them into memory.
+    vec3 upper = (local.x & 2) == 0 ? quads[0] : quads[1], lower = (local.x & 2) == 0 ? quads[2] : quads[3];
+    ofQuad = (local.y & 2) == 0 ? upper : lower;
     if (places[invocation - inTexel].w != material || !(dot(off, off) < kMostOff * facing)) atomicOr(rough, 1u << texel);
-    if (diffuses) last = lastLevel(material, max(pixelArea(quads[0].z / frame.camera.range.w), 1.0e-30));
+    if (diffuses) {
+      last = lastLevel(material, max(pixelArea(quads[0].z / frame.camera.range.w), 1.0e-30));
+      ofPixel = lastLevel(material, facing);
+      atomicMax(tileLast, max(last, ofPixel));
+    }
   }
   barrier();
   bool byQuads = (rough >> texel & 1u) == 0u;
-  if (!byQuads && diffuses) last = lastLevel(material, facing);
-  loadLevels(firstPixel, made);
+  if (!byQuads) last = ofPixel;
+  loadLevels(firstPixel, made, max(tileLast, 2u));
   barrier();
   Sums sums = Sums(vec3(0.0), vec3(0.0));
   if (diffuses)
     addLevels(sums, firstPixel, pixel, last, f, byQuads ? ofQuad : center, facing, byQuads ? (local.x & 1) + 2 * (local.y & 1) : 0,
               byQuads ? 4 : 1);
   barrier();
+  if (invocation < kSide) marks[invocation] = 0u;
   exchange(sums, invocation, byQuads);
   loadPixels(firstPixel);
   barrier();

@@ -447,7 +447,8 @@ uvec4 packLevel(Level r, uvec4 bits) {
 ivec2 tileOf(uint i, uint index, uint groups) {
   ivec2 first = ivec2(frame.rect.xy) / kTile, size = (ivec2(frame.rect.zw) - 1) / kTile - first + 1;
   int tile = int(index + i * groups);
-  return kTile * (first + ivec2(tile % size.x, tile / size.x));
+  int row = int((float(tile) + 0.5) / float(size.x));
+  return kTile * (first + ivec2(tile - row * size.x, row));
 }
 
 void sumTiles(uint index, uint groups, uint made, bool isLast) {
@@ -496,11 +497,7 @@ void resolveFine(ivec2 texel, ivec2 k, uvec4 bits) {
     } else {
       if (kSumsFast) {
         // From what the group has, so that planes, which are most, fetch nothing.
-        bool planes = isPlaneFast(texel, bits, f, 0.0);
-        [[unroll]] for (uint level = 3u; level <= kLastLooked; ++level) {
-          uvec4 coarser = resolved[indexOf(windowOf(level, k), texel >> int(level - 2u))];
-          planes = planes && (level > pass.value.x || isPlane(coarser));
-        }
+        bool planes = isPlaneFast(texel, bits, f, 0.0) && isPlane(resolved[indexOf(windowOf(3u, k), texel >> 1)]);
         if (!planes && isSummedFast(texel, bits, f, 0.0)) {
           flags |= kSummed;
           color.y &= ~kPlane;
@@ -564,6 +561,10 @@ void resolveGroup(ivec2 group) {
     barrier();
     if (level == l && within) {
       bool edge = isEdgeInside(level, texel, bits);
+      // Where edges are summed fast, those that are resolved say whether they and what is above them are planes.
+      bool above = !kSumsFast || level >= kLastLooked || l == coarsest ||
+                   isPlane(resolved[indexOf(windowOf(level + 1u, k), texel >> 1)]);
+      bits.y &= above ? ~0u : ~kPlane;
       Level r = l == coarsest ? alone(own, edge) : withCoarser(own, level, texel, windowOf(level + 1u, k), edge);
       resolved[invocation] = own.texel.mass > 0.0 ? packLevel(r, bits) : uvec4(0u);
     }
