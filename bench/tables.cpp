@@ -60,6 +60,8 @@ std::string measured(const Json& results) {
       {"whole frame, balls of 400 pixels on a third of it", "edges, balls of 400 pixels", "whole frame"},
       {"balls of 100 pixels", "edges, balls of 100 pixels", "whole frame"},
       {"balls of 25 pixels", "edges, balls of 25 pixels", "whole frame"},
+      {"balls of 400 pixels, lit smoothly", "edges, balls of 400 pixels", "whole frame, lit smoothly"},
+      {"balls of 100 pixels, lit smoothly", "edges, balls of 100 pixels", "whole frame, lit smoothly"},
       {"balls of 400 pixels, quality 1", "edges, balls of 400 pixels", "whole frame, quality 1"},
       {"balls of 100 pixels, quality 1", "edges, balls of 100 pixels", "whole frame, quality 1"},
       {"balls of 25 pixels, quality 1", "edges, balls of 25 pixels", "whole frame, quality 1"},
