@@ -361,25 +361,6 @@ uint lastLevel(Kernel k, float facing) {
   return uint(clamp(level, 1.0, float(pass.value.x)));
 }
 
-// What all of a quad's pixels find at a pixel, `sums` what an invocation found of its quad's fourth.
-void exchange(inout Sums sums, int invocation, bool byQuads) {
-  places[invocation] = floatBitsToUint(vec4(sums.color, sums.weight.r));
-  colors[invocation] = floatBitsToUint(sums.weight.gb);
-  barrier();
-  if (byQuads) {
-    int inTexel = invocation % 16;
-    vec4 parts = ofQuads(ivec2(inTexel % 4, inTexel / 4));
-    sums = Sums(vec3(0.0), vec3(0.0));
-    for (int i = 0; i < 16; ++i) {
-      int from = invocation - inTexel + i;
-      float part = parts[(i >> 1 & 1) + (i >> 2 & 2)];
-      sums.color += part * placeAt(from).rgb;
-      sums.weight += part * vec3(placeAt(from).a, uintBitsToFloat(colors[from]));
-    }
-  }
-  barrier();
-}
-
 // Pixels of a tile's edges; a bit for each of its texels says which are.
 void diffuseTile(ivec2 firstPixel, uint edgeTexels) {
   int invocation = int(gl_LocalInvocationIndex);
@@ -411,7 +392,7 @@ void diffuseTile(ivec2 firstPixel, uint edgeTexels) {
     vec3 mean = 0.25 * (quads[0] + quads[1] + quads[2] + quads[3]);
     vec3 off = parts.x * quads[0] + parts.y * quads[1] + parts.z * quads[2] + parts.w * quads[3] - center;
     float facing = max(pixelArea(mean.z / frame.camera.range.w), 1.0e-30);
-    ofQuad = quads[(local.x >> 1 & 1) + (local.y & 2)];
+    ofQuad = quadAt(quads, local & 3);
     bool isSmooth = places[invocation - inTexel].w == material && dot(off, off) < kMostOff * facing;
     if (!isSmooth) atomicOr(rough, 1u << texel);
     lastOfTexel = diffuses && isSmooth ? lastLevel(k, facing) : 0u;

@@ -239,6 +239,14 @@ vec3 falloffAt(Falloff f, float squared) {
   return (far * far * far + far) * inverse;
 }
 
+// Which of `width` in a row, from the first one's place on, are marked.
+uint marked(ivec2 first, int width) { return marks[first.y] >> first.x & (1u << width) - 1u; }
+
+// The same without the 3 x 3 around a place: its column, from the first one on, and how many rows before it lies.
+uint markedOutside(ivec2 first, int width, ivec2 middle) {
+  return marked(first, width) & ~(abs(middle.y) > 1 ? 0u : 7u << (middle.x - 1));
+}
+
 // Part of the energy within a distance, over the same factor.
 vec3 enclosedBy(Falloff f, float r) {
   if (f.rate.x < 0.0) return enclosed(tableOf(f), r * r);
@@ -303,7 +311,7 @@ void addPixels(inout Sums sums, ivec2 local, Falloff f, vec3 center, float facin
       add(sums, surfel.color, (counts ? surfel.area : 0.0) * falloffAt(f, mean));
     }
   for (int y = 0; y < 6; ++y)
-    for (uint left = marks[corner.y + y] >> corner.x & 0x3Fu; left != 0u; left &= left - 1u) {
+    for (uint left = marked(corner + ivec2(0, y), 6); left != 0u; left &= left - 1u) {
       int i = first + y * kSide + findLSB(left);
       Surfel surfel = surfelAt(i, f.material);
       if (i != own) add(sums, surfel.color, ofLong(f, surfel.area, longerOf(i), surfel.center - center, facing));
@@ -375,7 +383,7 @@ void addQuads(inout Sums sums, ivec2 local, Falloff f, vec3 center, float facing
       addSurfel(sums, at.y * kQuadSide + at.x, true, f, center, 4.0 * facing);
     }
   for (int y = 0; y < 6; ++y) {
-    uint second = marks[first.y + y] >> first.x & (y > odd.y && y < odd.y + 4 ? 0x3Fu ^ 0xEu << odd.x : 0x3Fu);
+    uint second = markedOutside(first + ivec2(0, y), 6, ivec2(2 + odd.x, y - 2 - odd.y));
     for (; second != 0u; second &= second - 1u)
       addSurfel(sums, kQuadSide * (kQuadSide + first.y + y) + first.x + findLSB(second), true, f, center, 4.0 * facing);
   }
@@ -392,7 +400,7 @@ void addLevels(inout Sums sums, ivec2 firstPixel, ivec2 pixel, uint last, Fallof
       addSurfel(sums, start + at.y * kSecondSide + at.x, max(away.x, away.y) > 1, f, center, 16.0 * facing);
     }
   for (int y = from; y < kWindow; y += step) {
-    uint second = marks[first.y + y] >> first.x & (abs(y - own.y) > 1 ? 0x3FFu : 0x3FFu ^ 7u << (own.x - 1));
+    uint second = markedOutside(first + ivec2(0, y), kWindow, ivec2(own.x, y - own.y));
     for (; second != 0u; second &= second - 1u) {
       int i = start + y * kSecondSide + findLSB(second);
       addSurfel(sums, secondAt(i, f.material), true, f, center, 16.0 * facing);
@@ -417,31 +425,11 @@ uint lastLevel(uint material, float facing) {
   return uint(clamp(level, 2.0, float(min(pass.value.x - 1u, uint(kLastSummed)))));
 }
 
-// What all of a quad's pixels find at a pixel, `sums` what an invocation found of its quad's fourth.
-void exchange(inout Sums sums, int invocation, bool byQuads) {
-  places[invocation] = floatBitsToUint(vec4(sums.color, sums.weight.r));
-  colors[invocation] = floatBitsToUint(sums.weight.gb);
-  barrier();
-  if (byQuads) {
-    int inTexel = invocation % 16;
-    vec4 parts = ofQuads(ivec2(inTexel % 4, inTexel / 4));
-    sums = Sums(vec3(0.0), vec3(0.0));
-    [[unroll]] for (int i = 0; i < 16; ++i) {
-      int from = invocation - inTexel + i;
-      float part = parts[(i >> 1 & 1) + (i >> 2 & 2)];
-      vec4 its = uintBitsToFloat(places[from]);
-      sums.color += part * its.rgb;
-      sums.weight += part * vec3(its.a, uintBitsToFloat(colors[from]));
-    }
-  }
-  barrier();
-}
-
 // Pixels of a tile's edges; a bit for each of its texels says which are. `made`: see loadLevels.
 void diffuseTile(ivec2 firstPixel, uint edgeTexels, uint made, bool isLast) {
   int invocation = int(gl_LocalInvocationIndex);
   barrier(); // what was there has been read
-  if (invocation == 0) rough = tileLast = 0u;
+  if (invocation == 0) rough = 0u, tileLast = 2u;
   if (invocation < kSide) marks[invocation] = 0u;
   // 16 invocations to a texel, so that those without one are whole subgroups.
   for (int before = invocation / 16; before > 0; --before) edgeTexels &= edgeTexels - 1u;
@@ -461,9 +449,7 @@ void diffuseTile(ivec2 firstPixel, uint edgeTexels, uint made, bool isLast) {
     quadsOf(invocation - inTexel, quads);
     vec4 parts = ofQuads(local & 3);
     vec3 off = parts.x * quads[0] + parts.y * quads[1] + parts.z * quads[2] + parts.w * quads[3] - center;
-    // An index that is not known would put them into memory.
-    vec3 upper = (local.x & 2) == 0 ? quads[0] : quads[1], lower = (local.x & 2) == 0 ? quads[2] : quads[3];
-    ofQuad = (local.y & 2) == 0 ? upper : lower;
+    ofQuad = quadAt(quads, local & 3);
     if (places[invocation - inTexel].w != material || !(dot(off, off) < kMostOff * facing)) atomicOr(rough, 1u << texel);
     if (diffuses) {
       last = lastLevel(material, max(pixelArea(quads[0].z / frame.camera.range.w), 1.0e-30));
@@ -474,7 +460,7 @@ void diffuseTile(ivec2 firstPixel, uint edgeTexels, uint made, bool isLast) {
   barrier();
   bool byQuads = (rough >> texel & 1u) == 0u;
   if (!byQuads) last = ofPixel;
-  loadLevels(firstPixel, made, max(tileLast, 2u));
+  loadLevels(firstPixel, made, tileLast);
   barrier();
   Sums sums = Sums(vec3(0.0), vec3(0.0));
   if (diffuses)

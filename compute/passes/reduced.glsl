@@ -13,6 +13,13 @@ float weight(int i) { return i == 0 || i == 3 ? kOuterWeight : 0.5 - kOuterWeigh
 // which takes half as many registers again.
 int taps() { return int(pass.value.y); }
 
+// Those of planes: passes that only reduce have registers for all at once.
+#ifdef REDUCES
+int tapsOfPlane() { return taps(); }
+#else
+int tapsOfPlane() { return 16; }
+#endif
+
 // Of the squared length of a texel's side. Curved surfaces below it gain nothing from weights of their own. Where edges are
 // summed, planes are filtered only if their light comes from planes, and less curved ones would show there already.
 const float kPlaneResidual = kSumsEdges ? 0.001 : kSumsFast ? 0.003 : 0.01;
@@ -157,9 +164,9 @@ uvec4 reduced(uint finer, ivec2 texel, int first, int stride) {
   vec2 tilt = vec2(0.0);
   vec3 color = vec3(0.0);
   float least = 1.0e30, most = 0.0;
-  for (int y = 0; y < 4; ++y)
-    for (int x = 0; x < 4; ++x) {
-      int index = tap(first, stride, x, y);
+  for (int i = 0; i < tapsOfPlane(); i += 4)
+    [[unroll]] for (int x = 0; x < 4; ++x) {
+      int y = i >> 2, index = tap(first, stride, x, y);
       uvec2 packed = colors[index];
       float w = weight(x) * weight(y), difference = depths[index] - base;
       different |= packed.y ^ bits;

@@ -398,12 +398,19 @@ bool endsAtRect(ivec2 texel, uvec4 bits, float fromEdges) {
 }
 
 #ifdef REDUCES
-// Whether a texel of level 5 has energy at coarser levels. Where the plan does not know how large radii are, most have none.
+// Of all energy: what a plane of 82 pixels' radius has beyond level 5, where a plan that knows radii begins to use level 6.
+const float kLeastBeyondMade = 0.004;
+
+// Whether a texel of level 5 has energy at coarser levels. Where the plan does not know how large radii are, most have next to
+// none.
 bool reachesBeyond(ivec2 texel, uvec4 bits) {
   if (!hasSurface(bits)) return false;
   uint m = materialBits(bits) - 1u;
   Foreshortening f = foreshortening(texel, 5u, uintBitsToFloat(bits.z), unpackHalf2x16(bits.w));
-  return any(greaterThan(coarserShare(m, 5u, shareEntry(m, f.lengthMm)), vec3(0.0)));
+  vec3 beyond = vec3(1.0);
+  [[unroll]] for (uint level = 2u; level <= 5u; ++level)
+    beyond *= coarserShare(m, level, shareEntry(m, f.lengthMm * exp2(float(level) - 5.0)));
+  return any(greaterThan(beyond, vec3(kLeastBeyondMade)));
 }
 
 // Levels 6 and 7 where windows of group k are, before others need them.
@@ -416,22 +423,21 @@ void makeLevels(ivec2 k, int invocation) {
     depths[slot(at, kSide5)] = uintBitsToFloat(bits.z);
   }
   barrier();
-  ivec2 at = ivec2(invocation % kSide6, invocation / kSide6);
-  bool makes = at.y < kSide6 && contains(levelRect(6u), first6 + at);
-  uvec4 bits = makes ? reduced(5u, first6 + at, 2 * at.y * kSide5 + at.x, kSide5) : uvec4(0u);
-  barrier();
-  if (at.y < kSide6) {
-    resolved[kMade + invocation] = bits;
-    colors[slot(at, kSide6)] = bits.xy;
-    depths[slot(at, kSide6)] = uintBitsToFloat(bits.z);
+  // In a loop, as one reduction in the code takes fewer registers than two.
+  for (uint finer = 5u; finer < 7u; ++finer) {
+    bool isFirst = finer == 5u;
+    int side = isFirst ? kSide6 : 3, width = isFirst ? kSide5 : kSide6;
+    ivec2 at = ivec2(invocation % side, invocation / side), texel = (isFirst ? first6 : first7) + at;
+    bool makes = at.y < side && contains(levelRect(finer + 1u), texel);
+    uvec4 bits = makes ? reduced(finer, texel, 2 * at.y * width + at.x, width) : uvec4(0u);
+    barrier();
+    if (at.y < side) {
+      resolved[(isFirst ? kMade : kMade + kSide6 * kSide6) + invocation] = bits;
+      colors[slot(at, side)] = bits.xy;
+      depths[slot(at, side)] = uintBitsToFloat(bits.z);
+    }
+    barrier();
   }
-  barrier();
-  at = ivec2(invocation % 3, invocation / 3);
-  if (at.y < 3) {
-    makes = contains(levelRect(7u), first7 + at);
-    resolved[kMade + kSide6 * kSide6 + invocation] = makes ? reduced(6u, first7 + at, 2 * at.y * kSide6 + at.x, kSide6) : uvec4(0u);
-  }
-  barrier();
 }
 #endif
 
