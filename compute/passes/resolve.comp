@@ -433,8 +433,10 @@ void makeLevels(ivec2 k, int invocation) {
     barrier();
     if (at.y < side) {
       resolved[(isFirst ? kMade : kMade + kSide6 * kSide6) + invocation] = bits;
-      colors[slot(at, side)] = bits.xy;
-      depths[slot(at, side)] = uintBitsToFloat(bits.z);
+      if (isFirst) {
+        colors[slot(at, side)] = bits.xy;
+        depths[slot(at, side)] = uintBitsToFloat(bits.z);
+      }
     }
     barrier();
   }
