@@ -68,9 +68,9 @@ void keep(int i, Together t, uint material) {
   colors[i] = packColor(inverse * t.color, 0u);
 }
 
-// By how much a pixel's surface is longer than wide: its second moments are those of a square that faces the camera and of this.
-// In widths; two halves of it in depths[], the third beside the color.
-vec3 longerOf(int i) { return vec3(unpackHalf2x16(floatBitsToUint(depths[i])), unpackHalf2x16(colors[i].y >> 16).x); }
+// The direction in which a pixel's surface is longer than wide, of length 1: two halves of it in depths[], the third beside the
+// color.
+vec3 axisOf(int i) { return vec3(unpackHalf2x16(floatBitsToUint(depths[i])), unpackHalf2x16(colors[i].y >> 16).x); }
 
 // From how many times as long as wide on pixels near by are taken in segments.
 const float kLongPixel = 4.0;
@@ -81,13 +81,11 @@ void keepPixel(int i, ivec2 at, float depth, uint material, vec3 normal, vec3 co
   float steep = length(tilted.xy), rise = steep * sqrt(facing) / frame.camera.range.w;
   vec2 toward = steep > 0.0 ? tilted.xy / steep : vec2(1.0, 0.0);
   vec3 axis = pointAt(vec2(at) + toward, depth + rise) - center;
-  float area = facing * tilted.z;
-  float longer2 = max(tilted.z * tilted.z - 1.0, 0.0) / max(dot(axis, axis), 1.0e-30);
   if (material != 0u && tilted.z > kLongPixel) atomicOr(marks[i / kSide], 1u << i % kSide);
-  vec3 longer = axis * sqrt(longer2);
-  places[i] = uvec4(floatBitsToUint(center), withMaterial(area, material));
-  depths[i] = uintBitsToFloat(packHalf2x16(longer.xy));
-  colors[i] = packColor(color, packHalf2x16(vec2(longer.z, 0.0)));
+  axis *= inversesqrt(max(dot(axis, axis), 1.0e-30));
+  places[i] = uvec4(floatBitsToUint(center), withMaterial(facing * tilted.z, material));
+  depths[i] = uintBitsToFloat(packHalf2x16(axis.xy));
+  colors[i] = packColor(color, packHalf2x16(vec2(axis.z, 0.0)));
 }
 
 void loadPixels(ivec2 firstPixel) {
@@ -231,12 +229,13 @@ Kernel tableOf(Falloff f) {
   return Kernel(f.material - 1u, floatBitsToInt(kernels[f.material - 1u].reach.y));
 }
 
-vec3 falloffAt(Falloff f, float squared) {
-  if (f.rate.x < 0.0) return profileAt(tableOf(f), squared).value;
+// At a squared distance, times an area.
+vec3 falloffAt(Falloff f, float squared, float area) {
+  if (f.rate.x < 0.0) return area * profileAt(tableOf(f), squared).value;
   // Christensen & Burley 2015, eq. 3 times 8 pi d.
   float inverse = inversesqrt(squared);
   vec3 far = exp2(-squared * inverse * f.rate);
-  return (far * far * far + far) * inverse;
+  return area * inverse * (far * far * far + far);
 }
 
 // Which of `width` in a row, from the first one's place on, are marked.
@@ -259,33 +258,38 @@ void add(inout Sums sums, vec3 color, vec3 weight) {
   sums.weight += weight;
 }
 
-// At a squared distance, where 1/r is its mean over a surface to second order: of a square of area `facing` that faces the camera
-// and, squared, how much longer it is, all of it and in the direction of the distance.
-float meanOf(float squared, float facing, float longer2, float along2) {
-  return max(squared - (facing - longer2) * (1.0 / 12.0) - 0.25 * along2, 0.5 * squared);
+// At a squared distance, where 1/r is its mean over a surface to second order: of an area longer than the square `facing` that
+// faces the camera, `along2`: the square of the part of the distance in that direction.
+float meanOf(float squared, float facing, float area, float along2) {
+  float longer2 = max(area * area / facing - facing, 0.0), part = along2 / squared;
+  return max(squared - facing * (1.0 / 12.0) + longer2 * (1.0 / 12.0 - 0.25 * part), 0.5 * squared);
+}
+
+// `squared`: of the distance at which 1/r is meant.
+void addAt(inout Sums sums, Surfel surfel, bool counts, Falloff f, float squared) {
+  add(sums, surfel.color, falloffAt(f, squared, counts ? surfel.area : 0.0));
 }
 
 // Without a branch, so that sources' latencies overlap. `facing`: area of a square that faces the camera. What is larger is
 // longer, next to along the view.
 void addSurfel(inout Sums sums, Surfel surfel, bool counts, Falloff f, vec3 center, float facing) {
   vec3 offset = surfel.center - center;
-  float squared = max(dot(offset, offset), 1.0e-30), longer2 = max(surfel.area * surfel.area / facing - facing, 0.0);
-  float mean = meanOf(squared, facing, longer2, longer2 * offset.z * offset.z / squared);
-  add(sums, surfel.color, (counts ? surfel.area : 0.0) * falloffAt(f, mean));
+  float squared = max(dot(offset, offset), 1.0e-30);
+  addAt(sums, surfel, counts, f, meanOf(squared, facing, surfel.area, offset.z * offset.z));
 }
 
 void addSurfel(inout Sums sums, int i, bool counts, Falloff f, vec3 center, float facing) {
   addSurfel(sums, surfelAt(i, f.material), counts, f, center, facing);
 }
 
-vec3 ofLong(Falloff f, float area, vec3 longer, vec3 offset, float facing) {
+vec3 ofLong(Falloff f, float area, vec3 axis, vec3 offset, float facing) {
   float width = sqrt(facing), halfLength = 0.5 * area / width;
-  vec3 axis = normalize(longer), weight = vec3(0.0);
+  vec3 weight = vec3(0.0);
   const float parts = 2.0;
   float part = area / parts;
   [[unroll]] for (float i = 0.5; i < parts; i += 1.0) {
     float at = halfLength * (2.0 * i / parts - 1.0);
-    weight += part * falloffAt(f, meanSquare(offset + at * axis, vec4(axis, halfLength / parts), facing));
+    weight += falloffAt(f, meanSquare(offset + at * axis, vec4(axis, halfLength / parts), facing), part);
   }
   return weight;
 }
@@ -300,21 +304,23 @@ void addPixels(inout Sums sums, ivec2 local, Falloff f, vec3 center, float facin
   float radius = sqrt(facing) * (ratio * asinh(1.0 / ratio) + asinh(ratio)) * (1.0 / 3.14159265);
   add(sums, color, enclosedBy(f, radius)); // not as kept, in halves: narrow kernels return the input
   // Half of a row without a branch, so that latencies overlap; more takes too many registers. Long ones after that.
-  [[dont_unroll]] for (int run = 0; run < 12; ++run)
+  [[dont_unroll]] for (int run = 0; run < 12; ++run) {
+    int x = 3 * (run & 1), y = run >> 1;
+    uint skipped = (marks[corner.y + y] >> corner.x | (y == 2 + (local.y & 1) ? 4u << (local.x & 1) : 0u)) >> x;
     [[unroll]] for (int j = 0; j < 3; ++j) {
-      int x = 3 * (run & 1) + j, y = run >> 1, i = first + y * kSide + x;
+      int i = first + y * kSide + x + j;
       Surfel surfel = surfelAt(i, f.material);
-      vec3 offset = surfel.center - center, longer = longerOf(i);
-      float squared = max(dot(offset, offset), 1.0e-30), along = dot(longer, offset);
-      float mean = meanOf(squared, facing, facing * dot(longer, longer), facing * along * along / squared);
-      bool counts = i != own && (marks[corner.y + y] >> corner.x + x & 1u) == 0u;
-      add(sums, surfel.color, (counts ? surfel.area : 0.0) * falloffAt(f, mean));
+      vec3 offset = surfel.center - center;
+      float squared = max(dot(offset, offset), 1.0e-30), along = dot(axisOf(i), offset);
+      float mean = meanOf(squared, facing, surfel.area, along * along);
+      addAt(sums, surfel, (skipped & 1u << j) == 0u, f, mean);
     }
+  }
   for (int y = 0; y < 6; ++y)
     for (uint left = marked(corner + ivec2(0, y), 6); left != 0u; left &= left - 1u) {
       int i = first + y * kSide + findLSB(left);
       Surfel surfel = surfelAt(i, f.material);
-      if (i != own) add(sums, surfel.color, ofLong(f, surfel.area, longerOf(i), surfel.center - center, facing));
+      if (i != own) add(sums, surfel.color, ofLong(f, surfel.area, axisOf(i), surfel.center - center, facing));
     }
 }
 
@@ -365,23 +371,26 @@ void makeQuads() {
   barrier();
 }
 
-// Of 2 n x 2 n those that are not of the n x n from n / 2 + odd on, in 3 n runs of n.
-ivec2 outside(int n, int run, int j, ivec2 odd) {
+// Of 2 n x 2 n, in rows of `width`, those that are not of the n x n from n / 2 + odd on, in 3 n runs of n: the place of a run's
+// first one and how many lie there; the others lie n farther.
+ivec2 runOutside(int n, int run, ivec2 odd, int width) {
   ivec2 first = n / 2 + odd;
-  if (run < 2 * n) {
-    int row = run >> 1;
-    return ivec2(n * (run & 1) + j, row < first.y ? row : row + n);
-  }
-  return ivec2(j < first.x ? j : j + n, run - 2 * n + first.y);
+  int row = run >> 1;
+  bool isWhole = run < 2 * n;
+  row = !isWhole ? run - 2 * n + first.y : row < first.y ? row : row + n;
+  return ivec2(row * width + (isWhole ? n * (run & 1) : 0), isWhole ? n : first.x);
 }
+
+int placeIn(ivec2 run, int n, int j) { return run.x + (j < run.y ? j : j + n); }
 
 void addQuads(inout Sums sums, ivec2 local, Falloff f, vec3 center, float facing) {
   ivec2 quad = local >> 1, first = 2 * (quad >> 1), odd = quad & 1;
-  for (int run = 0; run < 9; ++run)
-    [[unroll]] for (int j = 0; j < 3; ++j) {
-      ivec2 at = first + outside(3, run, j, odd);
-      addSurfel(sums, at.y * kQuadSide + at.x, true, f, center, 4.0 * facing);
-    }
+  int start = first.y * kQuadSide + first.x;
+  for (int i = 0; i < 9; ++i) {
+    ivec2 run = runOutside(3, i, odd, kQuadSide);
+    [[unroll]] for (int j = 0; j < 3; ++j)
+      addSurfel(sums, start + placeIn(run, 3, j), true, f, center, 4.0 * facing);
+  }
   for (int y = 0; y < 6; ++y) {
     uint second = markedOutside(first + ivec2(0, y), 6, ivec2(2 + odd.x, y - 2 - odd.y));
     for (; second != 0u; second &= second - 1u)
@@ -394,11 +403,12 @@ void addLevels(inout Sums sums, ivec2 firstPixel, ivec2 pixel, uint last, Fallof
   const int kRun = kWindow / 2;
   ivec2 first = 2 * ((pixel >> 3) - kAround) - firstOf(2u, firstPixel), own = 2 * kAround + ((pixel >> 2) & 1);
   int start = first.y * kSecondSide + first.x;
-  for (int run = from; run < 2 * kWindow; run += step)
-    [[unroll]] for (int j = 0; j < kRun; ++j) {
-      ivec2 at = ivec2(kRun * (run & 1) + j, run >> 1), away = abs(at - own);
-      addSurfel(sums, start + at.y * kSecondSide + at.x, max(away.x, away.y) > 1, f, center, 16.0 * facing);
-    }
+  for (int run = from; run < 2 * kWindow; run += step) {
+    int x = kRun * (run & 1), y = run >> 1;
+    uint skipped = (abs(y - own.y) > 1 ? 0u : 7u << (own.x - 1)) >> x;
+    [[unroll]] for (int j = 0; j < kRun; ++j)
+      addSurfel(sums, start + y * kSecondSide + x + j, (skipped & 1u << j) == 0u, f, center, 16.0 * facing);
+  }
   for (int y = from; y < kWindow; y += step) {
     uint second = markedOutside(first + ivec2(0, y), kWindow, ivec2(own.x, y - own.y));
     for (; second != 0u; second &= second - 1u) {
@@ -411,11 +421,11 @@ void addLevels(inout Sums sums, ivec2 firstPixel, ivec2 pixel, uint last, Fallof
     float side2 = facing * exp2(float(2u * level));
     ivec2 odd = (pixel >> int(level)) & 1;
     start = kSecond + int(level - 3u) * kCoarser;
-    for (int run = from; run < 3 * kRun; run += step)
-      [[unroll]] for (int j = 0; j < kRun; ++j) {
-        ivec2 at = outside(kRun, run, j, odd);
-        addSurfel(sums, start + at.y * kWindow + at.x, true, f, center, side2);
-      }
+    for (int i = from; i < 3 * kRun; i += step) {
+      ivec2 run = runOutside(kRun, i, odd, kWindow);
+      [[unroll]] for (int j = 0; j < kRun; ++j)
+        addSurfel(sums, start + placeIn(run, kRun, j), true, f, center, side2);
+    }
   }
 }
 
