@@ -8,10 +8,10 @@
 #extension GL_EXT_spirv_intrinsics : require
 #extension GL_GOOGLE_include_directive : require
 
+#define TILE_ROWS PELLUCID_DIRECTIONAL_ROWS
 #ifdef QUADS
 #include "passes/quad_tile.glsl"
 #else
-#define TILE_ROWS PELLUCID_DIRECTIONAL_ROWS
 #include "passes/tile.glsl"
 #endif
 #include "lib/saturate.glsl"
@@ -79,14 +79,17 @@ void main() {
   [[unroll]] for (int i = 0; i < kPixels; ++i) {
     ivec2 pixel = tile + pixelInTile(i);
     bool within = pixel == withinRect(pixel);
-    material[i] = within ? materialIndex(value[i]) : 0u;
-    writes[i] = material[i] != 0u || (starts && within);
+    uint index = materialIndex(value[i]);
+    material[i] = within ? index : 0u;
+    writes[i] = within && (starts || index != 0u);
     color[i] = saturate(unit * source[i].rgb);
     thickness[i] = max((inMap[i].z - stored[i]) * light.depth.x - light.depth.y, 0.0); // mm
-    bool holds = stored[i] >= 0.0 && stored[i] <= 1.0 && stored[i] != light.depth.z;
+    // By all(), as each && may become a branch.
+    bool holds = all(bvec3(stored[i] >= 0.0, stored[i] <= 1.0, stored[i] != light.depth.z));
+    bool thin = thickness[i] <= frame.filterAndLimit.w;
     // Marked pixels keep their irradiance.
-    bool through = material[i] != 0u && (value[i] & frame.marks.x) == 0u && front[i] > 0.0 && inside[i] && holds &&
-                   thickness[i] <= frame.filterAndLimit.w;
+    bool marked = (value[i] & frame.marks.x) != 0u;
+    bool through = !marked && all(bvec4(front[i] > 0.0, inside[i], holds, thin));
     cosine[i] = hiddenCosine(pixel, normal[i]);
     lit[i] = through ? material[i] : 0u;
   }

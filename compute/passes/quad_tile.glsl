@@ -6,9 +6,9 @@
 #include "passes/normal_image.glsl"
 #include "passes/pyramid.glsl"
 
-const int kTile = PELLUCID_TILE, kQuads = kTile / 2; // a side
-shared uvec2 tileColors[kTile * kTile]; // and material
-shared float tileDepths[kTile * kTile];
+const int kTile = TILE_COLUMNS, kQuads = kTile / 2; // of a row
+shared uvec2 tileColors[kTile * TILE_ROWS]; // and material
+shared float tileDepths[kTile * TILE_ROWS];
 
 // `color`: of halves.
 void keepPixel(ivec2 inTile, vec3 color, float depth, uint material) {
@@ -17,7 +17,7 @@ void keepPixel(ivec2 inTile, vec3 color, float depth, uint material) {
 }
 
 // The first invocations do a quad each.
-bool hasQuad() { return gl_LocalInvocationIndex < uint(kQuads * kQuads); }
+bool hasQuad() { return gl_LocalInvocationIndex < uint(kQuads * TILE_ROWS / 2); }
 ivec2 quadInTile() { return ivec2(gl_LocalInvocationIndex % uint(kQuads), gl_LocalInvocationIndex / uint(kQuads)); }
 
 // The pixel whose normal stands for a quad that is one surface: any of the four, by turns.

@@ -459,13 +459,13 @@ ivec2 tileOf(uint i, uint index, uint groups) {
   return kTile * (first + ivec2(tile - row * size.x, row));
 }
 
-void sumTiles(uint index, uint groups, uint made, bool isLast) {
+void sumTiles(uint index, uint groups, uint tilesOfGroup, uint made, bool isLast) {
   uint invocation = gl_LocalInvocationIndex;
   if (invocation < uint(PELLUCID_FAST_EDGES_TILES)) edges[invocation] = 0u;
   if (invocation == 0u) edgeTiles = 0u;
   barrier();
   uint tile = invocation / uint(kTexels * kTexels), inTile = invocation % uint(kTexels * kTexels);
-  if (tile < uint(PELLUCID_FAST_EDGES_TILES)) {
+  if (tile < tilesOfGroup) {
     ivec2 texel = (tileOf(tile, index, groups) >> 2) + ivec2(inTile % uint(kTexels), inTile / uint(kTexels));
     // Those of the border have no pixels.
     if (contains(inset(levelRect(2u), 1), texel) && isSummedFast(texel)) {
@@ -593,9 +593,9 @@ void resolveGroup(ivec2 group) {
 void main() {
 #ifdef SUMS_FAST
   // Groups that sum take longest and come first, in rows of their own, some of which lie beyond all tiles.
-  uint rows = pass.value.z;
+  uint rows = pass.value.z & 0xFFFFu;
   if (gl_WorkGroupID.y < rows)
-    sumTiles(groupIndex(), rows * gl_NumWorkGroups.x, kReduces ? 5u : pass.value.x, pass.value.w != 0u);
+    sumTiles(groupIndex(), rows * gl_NumWorkGroups.x, pass.value.z >> 16, kReduces ? 5u : pass.value.x, pass.value.w != 0u);
   else
     resolveGroup(ivec2(gl_WorkGroupID.xy) - ivec2(0, rows));
 #else

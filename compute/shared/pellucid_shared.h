@@ -18,7 +18,7 @@ using glm::vec4;
 #define PELLUCID_GROUP_X 8
 #define PELLUCID_GROUP_Y 8
 #define PELLUCID_TILE 16 // a side, pixels that a group does whose invocations do two each
-#define PELLUCID_DIRECTIONAL_ROWS 8 // of a tile of the directional pass that makes no quads
+#define PELLUCID_DIRECTIONAL_ROWS 8 // of a tile of the directional pass
 #define PELLUCID_DIFFUSE_GROUP 16 // a side
 #define PELLUCID_DIFFUSE_TEXELS_X 15 // of level 2, 4 x 4 pixels each, that a group of the diffusion does
 #define PELLUCID_DIFFUSE_COARSE_TEXELS_X 16 // without the fine filter
@@ -26,7 +26,7 @@ using glm::vec4;
 #define PELLUCID_DIFFUSE_TEXELS_Y 4
 #define PELLUCID_DIFFUSE_CELL 4 // pixels a side of the gather's cells where the diffusion adds what it found
 #define PELLUCID_EDGES_GROUP 16 // a side, pixels, of a tile of the pass that does edges by distances in space
-#define PELLUCID_FAST_EDGES_TILES 16 // of a group that sums edges fast
+#define PELLUCID_FAST_EDGES_TILES 16 // at most, of a group that sums edges fast
 #define PELLUCID_FAST_EDGES_SOURCES 576 // which it has at a time: 24 x 24 pixels
 #define PELLUCID_CLUSTERS_GROUP 16 // a side, texels of level 2: what lies under one of level 6
 #define PELLUCID_EDGES_TILES 4 // of a group, in a column

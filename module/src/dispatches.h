@@ -262,7 +262,7 @@ struct Builder {
     const uint32_t half = quads ? PELLUCID_PIPELINE_DIRECTIONAL_QUADS_16F : PELLUCID_PIPELINE_DIRECTIONAL_16F;
     PellucidDispatch* d = dispatch("translucency", half + (wide() ? 1 : 0));  // the 32F variant follows
     if (!d) return false;
-    tiles(d, quads ? PELLUCID_TILE : PELLUCID_DIRECTIONAL_ROWS);
+    tiles(d, PELLUCID_DIRECTIONAL_ROWS);
     fused(d, group, source, destination, quads);
     constants(d, PELLUCID_BINDING_LIGHTS,
               {layout.directional.offset + group.index * kDirectionalWindow, kDirectionalWindow});
@@ -403,9 +403,10 @@ struct Builder {
     d->pushConstants[1] = 16;  // texels under a texel
     if (sums) {
       // In rows before the others, of which the shader is told.
-      const uint32_t rows = (fastEdgesGroups() + d->groups[0] - 1) / d->groups[0];
+      const uint32_t tiles = fastEdgesTiles(), ofGroup = fastEdgesTilesOfGroup();
+      const uint32_t columns = d->groups[0] * ofGroup, rows = (tiles + columns - 1) / columns;
       d->groups[1] += rows;
-      d->pushConstants[2] = rows;
+      d->pushConstants[2] = rows | ofGroup << 16;
       d->pushConstants[3] = destination == PELLUCID_RESOURCE_OUTPUT;
       common(d, source, destination);
       image(d, PELLUCID_BINDING_NORMAL, PELLUCID_RESOURCE_NORMAL, 0);
@@ -422,14 +423,20 @@ struct Builder {
     return true;
   }
 
-  // That sum edges fast.
-  uint32_t fastEdgesGroups() const {
+  // Where edges are summed fast.
+  uint32_t fastEdgesTiles() const {
     const auto across = [](uint32_t first, uint32_t pixels) {
       constexpr uint32_t kTile = PELLUCID_EDGES_GROUP;
       return (first + pixels - 1) / kTile - first / kTile + 1;
     };
-    const uint32_t tiles = across(rect.x, rect.width) * across(rect.y, rect.height);
-    return (tiles + PELLUCID_FAST_EDGES_TILES - 1) / PELLUCID_FAST_EDGES_TILES;
+    return across(rect.x, rect.width) * across(rect.y, rect.height);
+  }
+
+  // A group costs some time though it finds nothing to sum, while large devices that run a few hundred at a
+  // time wait for the last ones where there are as few: as many tiles as leave a thousand groups.
+  uint32_t fastEdgesTilesOfGroup() const {
+    constexpr uint32_t kGroups = 1024;
+    return std::clamp(fastEdgesTiles() / kGroups, 1u, static_cast<uint32_t>(PELLUCID_FAST_EDGES_TILES));
   }
 
   // Of levels up to `coarsest`, from them and the pixels, when they have been resolved. Those of the last one
