@@ -592,12 +592,13 @@ void resolveGroup(ivec2 group) {
 
 void main() {
 #ifdef SUMS_FAST
-  // Groups that sum take longest and come first, in rows of their own, some of which lie beyond all tiles.
-  uint rows = pass.value.z & 0xFFFFu;
-  if (gl_WorkGroupID.y < rows)
-    sumTiles(groupIndex(), rows * gl_NumWorkGroups.x, pass.value.z >> 16, kReduces ? 5u : pass.value.x, pass.value.w != 0u);
+  // Groups that sum come last, in rows of their own: those that find nothing to sum run while the others' last ones do.
+  uint rows = pass.value.z & 0xFFFFu, first = rows * gl_NumWorkGroups.x;
+  if (gl_WorkGroupID.y >= rows)
+    sumTiles(groupIndex() - first, gl_NumWorkGroups.x * gl_NumWorkGroups.y - first, pass.value.z >> 16,
+             kReduces ? 5u : pass.value.x, pass.value.w != 0u);
   else
-    resolveGroup(ivec2(gl_WorkGroupID.xy) - ivec2(0, rows));
+    resolveGroup(ivec2(gl_WorkGroupID.xy));
 #else
   resolveGroup(ivec2(kSumsEdges ? bordersFirst() : gl_WorkGroupID.xy));
 #endif

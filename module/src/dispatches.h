@@ -402,11 +402,11 @@ struct Builder {
     d->pushConstants[0] = coarsest;
     d->pushConstants[1] = 16;  // texels under a texel
     if (sums) {
-      // In rows before the others, of which the shader is told.
+      // In rows after the others, of which the shader is told.
       const uint32_t tiles = fastEdgesTiles(), ofGroup = fastEdgesTilesOfGroup();
       const uint32_t columns = d->groups[0] * ofGroup, rows = (tiles + columns - 1) / columns;
+      d->pushConstants[2] = d->groups[1] | ofGroup << 16;
       d->groups[1] += rows;
-      d->pushConstants[2] = rows | ofGroup << 16;
       d->pushConstants[3] = destination == PELLUCID_RESOURCE_OUTPUT;
       common(d, source, destination);
       image(d, PELLUCID_BINDING_NORMAL, PELLUCID_RESOURCE_NORMAL, 0);
