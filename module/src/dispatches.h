@@ -432,11 +432,12 @@ struct Builder {
     return across(rect.x, rect.width) * across(rect.y, rect.height);
   }
 
-  // A group costs some time though it finds nothing to sum, while large devices that run a few hundred at a
-  // time wait for the last ones where there are as few: as many tiles as leave a thousand groups.
+  // A group costs some time though it finds nothing to sum, on software devices much, while large devices
+  // that run a few hundred at a time wait for the last ones where there are as few: as many tiles as leave a
+  // thousand groups.
   uint32_t fastEdgesTilesOfGroup() const {
-    constexpr uint32_t kGroups = 1024;
-    return std::clamp(fastEdgesTiles() / kGroups, 1u, static_cast<uint32_t>(PELLUCID_FAST_EDGES_TILES));
+    constexpr uint32_t kGroups = 1024, kLeast = 4;
+    return std::clamp(fastEdgesTiles() / kGroups, kLeast, static_cast<uint32_t>(PELLUCID_FAST_EDGES_TILES));
   }
 
   // Of levels up to `coarsest`, from them and the pixels, when they have been resolved. Those of the last one
