@@ -569,4 +569,48 @@ TEST_F(GpuTest, KernelLargerThanTheImageKeepsItsContrast) {
   for (const ChannelDifference& k : d.channels) EXPECT_LT(k.relativeRmse, 0.0019);
 }
 
+// Where no distance says how large radii are, levels 6 and 7 are not made for smaller ones than 82 pixels,
+// though Burley's profile has something everywhere.
+TEST_F(GpuTest, RadiiNeedNotBeKnown) {
+  constexpr int kSize = 192;
+  constexpr double kPixel = 0.5, kDistance = 10;
+  Capture c = flatCapture(kSize, kSize);
+  c.clipFromView = {};
+  c.clipFromView[0] = 2 * kDistance / (kPixel * kSize);
+  c.clipFromView[5] = -c.clipFromView[0];
+  c.clipFromView[11] = -1;
+  c.clipFromView[14] = 0.1;
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x)
+      for (int k = 0; k < 3; ++k)
+        c.irradiance.at(x, y)[k] = x < kSize / 2 ? 0.0f : 2 + 0.1f * static_cast<float>((x * 7 + y * 13) % 5);
+  const auto coarsest = [](const PellucidPlan& plan) {
+    for (uint32_t i = 0; i < plan.dispatchCount; ++i)
+      if (std::string(plan.dispatches[i].name) == "resolve") return plan.dispatches[i].pushConstants[0];
+    return 0u;
+  };
+  for (const uint32_t quality : {1u, 2u})
+    for (const double radius : {10.0, 40.0, 70.0}) {
+      PellucidMaterialDesc desc;
+      pellucidInitMaterialDesc(&desc);
+      desc.kind = PELLUCID_MATERIAL_BURLEY;
+      for (double& d : desc.burleyDistance) d = radius / 19.86 * kPixel;
+      PellucidMaterial m;
+      ASSERT_EQ(pellucidCompileMaterial(&desc, &m, nullptr, nullptr, nullptr), PELLUCID_OK);
+      ReplaySettings s = diffusionOf(quality);
+      const ReplayResult unknown = replayer().run(c, {m}, s);
+      s.nearestDistance = kDistance;
+      const ReplayResult known = replayer().run(c, {m}, s);
+      EXPECT_EQ(coarsest(unknown.plan), 7u);
+      EXPECT_LE(coarsest(known.plan), 5u);
+      double sum = 0;
+      for (size_t i = 0; i < known.output.data.size(); ++i)
+        sum +=
+            std::abs(static_cast<double>(known.output.data[i]) - static_cast<double>(unknown.output.data[i]));
+      // Few pixels are rounded to another half; with levels 6 and 7 it would be 4e-5 and 7e-5.
+      EXPECT_LT(sum / static_cast<double>(known.output.data.size()), 1e-5)
+          << "radius " << radius << ", quality " << quality;
+    }
+}
+
 }  // namespace
