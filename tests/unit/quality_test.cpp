@@ -162,6 +162,34 @@ TEST(Quality, ChoosesTheLastPass) {
   EXPECT_EQ(find(f.plan(), "diffuse")->pipeline, PELLUCID_PIPELINE_DIFFUSE_16F);
 }
 
+// Tiles of 16 x 16 pixels of the image, four to sixteen of a group, so that there are a thousand groups if
+// that is enough.
+TEST(Quality, GroupsThatSumHaveAllTiles) {
+  struct Row {
+    uint32_t x, y, width, height, tiles, ofGroup;
+  };
+  for (const Row& row :
+       {Row{0, 0, 3840, 2160, 240 * 135, 16}, Row{0, 0, 1920, 1080, 120 * 68, 7},
+        Row{0, 0, 7680, 4320, 480 * 270, 16}, Row{0, 0, 100, 50, 7 * 4, 4}, Row{15, 31, 2, 2, 4, 4}}) {
+    Frame f;
+    f.frame.normal = f.frame.irradiance;
+    f.frame.imageExtent[0] = row.x + row.width;
+    f.frame.imageExtent[1] = row.y + row.height;
+    f.frame.renderRect[0] = row.x;
+    f.frame.renderRect[1] = row.y;
+    f.frame.renderRect[2] = row.width;
+    f.frame.renderRect[3] = row.height;
+    const PellucidPlan plan = f.plan();
+    const PellucidDispatch* resolve = find(plan, "resolve");
+    ASSERT_NE(resolve, nullptr);
+    const uint32_t before = resolve->pushConstants[2] & 0xFFFF, ofGroup = resolve->pushConstants[2] >> 16;
+    EXPECT_EQ(ofGroup, row.ofGroup);
+    const uint32_t columns = resolve->groups[0], groups = (resolve->groups[1] - before) * columns;
+    EXPECT_GE(groups * ofGroup, row.tiles) << row.width;
+    EXPECT_LT((groups - columns) * ofGroup, row.tiles) << "a row of groups has nothing to do";
+  }
+}
+
 // Gathered light is added when the resolve is done.
 TEST(Quality, EdgesAreNotSummedBesideTheResolveWithAGather) {
   Frame f(1);
