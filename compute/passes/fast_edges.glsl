@@ -241,10 +241,11 @@ vec3 falloffAt(Falloff f, float squared, float area) {
 // Which of `width` in a row, from the first one's place on, are marked.
 uint marked(ivec2 first, int width) { return marks[first.y] >> first.x & (1u << width) - 1u; }
 
-// The same without the 3 x 3 around a place: its column, from the first one on, and how many rows before it lies.
-uint markedOutside(ivec2 first, int width, ivec2 middle) {
-  return marked(first, width) & ~(abs(middle.y) > 1 ? 0u : 7u << (middle.x - 1));
-}
+// Which of a row lie in the 3 x 3 around a place: its column, and how many rows before it the row lies.
+uint around(ivec2 middle) { return abs(middle.y) > 1 ? 0u : 7u << (middle.x - 1); }
+
+// Of those marked the others; `middle`: from the first one's column on.
+uint markedOutside(ivec2 first, int width, ivec2 middle) { return marked(first, width) & ~around(middle); }
 
 // Part of the energy within a distance, over the same factor.
 vec3 enclosedBy(Falloff f, float r) {
@@ -405,7 +406,7 @@ void addLevels(inout Sums sums, ivec2 firstPixel, ivec2 pixel, uint last, Fallof
   int start = first.y * kSecondSide + first.x;
   for (int run = from; run < 2 * kWindow; run += step) {
     int x = kRun * (run & 1), y = run >> 1;
-    uint skipped = (abs(y - own.y) > 1 ? 0u : 7u << (own.x - 1)) >> x;
+    uint skipped = around(ivec2(own.x, y - own.y)) >> x;
     [[unroll]] for (int j = 0; j < kRun; ++j)
       addSurfel(sums, start + y * kSecondSide + x + j, (skipped & 1u << j) == 0u, f, center, 16.0 * facing);
   }

@@ -423,13 +423,15 @@ struct Builder {
     return true;
   }
 
+  // Tiles of the image of which pixels from `first` on have some.
+  static uint32_t tilesAcross(uint32_t first, uint32_t pixels, uint32_t side) {
+    return (first + pixels - 1) / side - first / side + 1;
+  }
+
   // Where edges are summed fast.
   uint32_t fastEdgesTiles() const {
-    const auto across = [](uint32_t first, uint32_t pixels) {
-      constexpr uint32_t kTile = PELLUCID_EDGES_GROUP;
-      return (first + pixels - 1) / kTile - first / kTile + 1;
-    };
-    return across(rect.x, rect.width) * across(rect.y, rect.height);
+    return tilesAcross(rect.x, rect.width, PELLUCID_EDGES_GROUP) *
+           tilesAcross(rect.y, rect.height, PELLUCID_EDGES_GROUP);
   }
 
   // A group costs some time though it finds nothing to sum, on software devices much, while large devices
@@ -445,12 +447,9 @@ struct Builder {
   bool clusters(uint32_t coarsest, uint32_t source) {
     PellucidDispatch* d = dispatch("clusters", PELLUCID_PIPELINE_CLUSTERS);
     if (!d) return false;
-    const auto across = [](uint32_t first, uint32_t pixels) {
-      constexpr uint32_t kSide = 4 * PELLUCID_CLUSTERS_GROUP;  // pixels
-      return (first + pixels - 1) / kSide - first / kSide + 1;
-    };
-    d->groups[0] = across(rect.x, rect.width);
-    d->groups[1] = across(rect.y, rect.height);
+    constexpr uint32_t kSide = 4 * PELLUCID_CLUSTERS_GROUP;  // pixels
+    d->groups[0] = tilesAcross(rect.x, rect.width, kSide);
+    d->groups[1] = tilesAcross(rect.y, rect.height, kSide);
     d->pushConstants[0] = coarsest;
     constants(d, PELLUCID_BINDING_FRAME, layout.frame);
     writesPyramid(d);

@@ -291,14 +291,9 @@ TEST_P(Diffusion, PixelsWithoutADepthKeepTheirIrradiance) {
   }
 }
 
-// Unlike flatCapture a perspective camera, whose pixels are 0.5 mm at the slab; some texture everywhere.
+// Some texture everywhere.
 Capture perspective(int size) {
-  Capture c = dark(size, size);
-  c.clipFromView = {};
-  c.clipFromView[0] = 2 * 10 / (0.5 * size);
-  c.clipFromView[5] = -c.clipFromView[0];
-  c.clipFromView[11] = -1;
-  c.clipFromView[14] = 0.1;
+  Capture c = perspectiveCapture(size);
   for (int y = 0; y < size; ++y)
     for (int x = 0; x < size; ++x)
       light(c, x, y,
@@ -344,13 +339,7 @@ TEST_P(Diffusion, SmallRadiiAreTheSameWithFewerLevels) {
     const ReplayResult all = replayer().run(c, {m}, s);
     s.nearestDistance = 10;
     const ReplayResult fewer = replayer().run(c, {m}, s);
-    const auto resolved = [](const PellucidPlan& plan) {
-      const auto* end = plan.dispatches + plan.dispatchCount;
-      return std::find_if(plan.dispatches, end,
-                          [](const PellucidDispatch& d) { return std::string(d.name) == "resolve"; })
-          ->pushConstants[0];
-    };
-    EXPECT_EQ(resolved(fewer.plan) + row.dropped, resolved(all.plan));
+    EXPECT_EQ(coarsestResolved(fewer.plan) + row.dropped, coarsestResolved(all.plan));
     // Where edges are summed a reduction makes two levels; else the first makes four and the resolve the
     // others.
     EXPECT_EQ(fewer.plan.dispatchCount + (GetParam() == 3 ? row.dropped / 2 : 0), all.plan.dispatchCount);

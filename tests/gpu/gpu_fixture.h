@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <memory>
+#include <string>
 
 #include "common/device.h"
 #include "replay/replay.h"
@@ -85,6 +86,24 @@ inline Capture flatCapture(int width, int height, double thickness = 1) {
   c.material.assign(c.irradiance.pixels(), 1);
   c.materials.resize(1);
   return c;
+}
+
+// The same with a perspective camera, whose pixels are 0.5 mm at the slab.
+inline Capture perspectiveCapture(int size) {
+  Capture c = flatCapture(size, size);
+  c.clipFromView = {};
+  c.clipFromView[0] = 2 * 10 / (0.5 * size);
+  c.clipFromView[5] = -c.clipFromView[0];
+  c.clipFromView[11] = -1;
+  c.clipFromView[14] = 0.1;
+  return c;
+}
+
+// Of the pyramid's levels, the one that the resolve begins at.
+inline uint32_t coarsestResolved(const PellucidPlan& plan) {
+  for (uint32_t i = 0; i < plan.dispatchCount; ++i)
+    if (plan.dispatches[i].name == std::string("resolve")) return plan.dispatches[i].pushConstants[0];
+  return 0;
 }
 
 // Straight from behind, E = 3.
