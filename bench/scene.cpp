@@ -28,6 +28,20 @@ double pixelSizeFor(const PellucidMaterial& material, double radius) {
   return static_cast<double>(*std::max_element(material.radius, material.radius + 3)) / radius;
 }
 
+namespace {
+
+constexpr double kFar = 100;  // mm, of the slab's camera
+
+// Random, up to half a hundredth of a pixel to either side: memory that compresses what is constant, which depths of
+// G-buffers are not, would be read faster than real data.
+void addGrain(Image& depth, double pixel, double far, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> grain(-0.005 * pixel / far, 0.005 * pixel / far);
+  for (float& d : depth.data) d = static_cast<float>(static_cast<double>(d) + grain(random));
+}
+
+}  // namespace
+
 Capture slab(int width, int height, double coverage, double pixel) {
   Capture c;
   c.name = "slab";
@@ -36,9 +50,11 @@ Capture slab(int width, int height, double coverage, double pixel) {
   c.metersPerUnit = 0.001;
   c.clipFromView[0] = 2 / (pixel * width);
   c.clipFromView[5] = -2 / (pixel * height);
-  c.clipFromView[10] = -1.0 / 100;
+  c.clipFromView[10] = -1 / kFar;
   c.frontDepth = {Image(width, height, 1, 0.50f), PELLUCID_DEPTH_DEVICE};
   c.backDepth = {Image(width, height, 1, 0.52f), PELLUCID_DEPTH_DEVICE};
+  addGrain(c.frontDepth.image, pixel, kFar, 2);
+  addGrain(c.backDepth.image, pixel, kFar, 3);
   c.normal = Image(width, height, 3);
   c.irradiance = Image(width, height, 3);
   std::mt19937 random(1);  // zeros would run faster than real data
@@ -60,6 +76,12 @@ Capture slab(int width, int height, double coverage, double pixel) {
   light.shadowMaps[0].depth.image = Image(1024, 1024, 1, 0.48f);
   c.lights = {light};
   return c;
+}
+
+double slabThickness(const Capture& slab) {
+  // To where the light enters, by the shadow map, which runs towards the camera.
+  const double back = 1 - static_cast<double>(slab.lights.at(0).shadowMaps.at(0).depth.image.data[0]);
+  return kFar * (back - static_cast<double>(slab.frontDepth.image.data[0]));
 }
 
 Capture litFromTheFront(Capture slab) {
@@ -93,6 +115,8 @@ Capture balls(int width, int height, double radius, double pixel) {
       c.normal.data[3 * i + 1] = static_cast<float>(-ny);  // rows run down
       c.normal.data[3 * i + 2] = static_cast<float>(nz);
     }
+  addGrain(c.frontDepth.image, pixel, far, 2);
+  addGrain(c.backDepth.image, pixel, far, 3);
   ShadowMap& map = c.lights.at(0).shadowMaps.at(0);
   map.clipFromWorld[10] = 1 / far;
   std::fill(map.depth.image.data.begin(), map.depth.image.data.end(),

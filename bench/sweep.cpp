@@ -38,7 +38,8 @@ nlohmann::json sweep(const Site& site, const SweepOptions& options, int repeat, 
   std::vector<double> floors;
   std::fprintf(table, "\n%-32s %7s %9s", "sweep: us (x floor)", "radius", "error");
   for (const Size& size : sizes) {
-    floors.push_back(measureFloors(site.device, size.width, size.height, repeat).front().time.median);
+    const harness::Capture scene = slab(size.width, size.height, 1, site.pixel);
+    floors.push_back(measureFloors(site.device, scene, repeat).front().time.median);
     std::fprintf(table, " %18s", size.text().c_str());
   }
   std::fprintf(table, "\n");
