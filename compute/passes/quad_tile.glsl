@@ -44,6 +44,11 @@ void writeQuad(vec3 normal) {
     packed[i] = tileColors[at];
     depth[i] = tileDepths[at];
   }
+  // Where nothing is, nothing is looked up.
+  if ((packed[0].y | packed[1].y | packed[2].y | packed[3].y) >> 16 == 0u) {
+    if (inside) writeLevel(1u, quad, uvec4(0u));
+    return;
+  }
   if (isWholeQuad(packed, depth)) {
     float area = areaOf(vec2(pixelOfQuad(quad)), normal);
     if (area == 0.0) area = areaOfQuad(quad, depth);

@@ -22,6 +22,7 @@ const int kLoadRows = int(kInvocations) / kInput, kLoads = (kInput + kLoadRows -
 // processor. Slopes are not needed.
 shared uvec2 colors[kInput * kInput]; // and mass, material and plane, as packed
 shared float depths[kInput * kInput];
+shared uint anySurface;
 
 #include "passes/reduced.glsl"
 #include "passes/boxes.glsl"
@@ -44,6 +45,8 @@ bool isFlatAround(uvec4 bits, ivec2 at, uint level) {
 void main() {
   int invocation = int(gl_LocalInvocationIndex);
   if (kSumsEdges && invocation == 0 && groupIndex() == 0u) imageStore(levelsDestination, summedPlace(), uvec4(0u));
+  if (invocation == 0) anySurface = 0u;
+  barrier();
   // Groups of boxes take longest and come first.
   uint boxes = pass.value.z >> 16, index = groupIndex();
   bool ofBoxes = !kSumsEdges && index < boxes;
@@ -63,6 +66,7 @@ void main() {
     for (int y = 0; y < kLoads * kLoadRows; y += kLoadRows)
       if (mine.y < kLoadRows && mine.y + y < kInput) {
         Box box = boxOf(firstLoad + ivec2(0, y));
+        if (box.bits.y >> 16 != 0u) anySurface = 1u; // whoever writes, writes this
         colors[slotOfMine + y * kInput] = box.bits;
         depths[slotOfMine + y * kInput] = box.depth;
       }
@@ -79,6 +83,7 @@ void main() {
                       : uvec4(0u);
     [[unroll]] for (int j = 0; j < kLoads; ++j)
       if (mine.y < kLoadRows && mine.y + j * kLoadRows < kInput) {
+        if (loaded[j].y >> 16 != 0u) anySurface = 1u;
         colors[slotOfMine + j * kLoadRows * kInput] = loaded[j].xy;
         depths[slotOfMine + j * kLoadRows * kInput] = uintBitsToFloat(loaded[j].z);
       }
@@ -86,8 +91,10 @@ void main() {
   barrier();
   ivec2 at = ivec2(gl_LocalInvocationID.xy), texel = start + at;
   bool inside = contains(rect, texel);
-  uvec4 bits = reduced(finer, texel, 2 * at.y * kInput + at.x, kInput);
-  if (!inside) bits = uvec4(0u);
+  // The same for all invocations; what nothing is made of is nothing.
+  bool some = anySurface != 0u;
+  uvec4 bits = uvec4(0u);
+  if (some && inside) bits = reduced(finer, texel, 2 * at.y * kInput + at.x, kInput);
   barrier();
   colors[slot(at, kFirst)] = bits.xy;
   depths[slot(at, kFirst)] = uintBitsToFloat(bits.z);
@@ -100,5 +107,5 @@ void main() {
   at = ivec2(invocation % PELLUCID_REDUCE_TILE, invocation / PELLUCID_REDUCE_TILE);
   texel = own + at;
   if (at.y < PELLUCID_REDUCE_TILE && contains(lastRect, texel))
-    writeLevel(finer + 2u, texel, reduced(finer + 1u, texel, 2 * at.y * kFirst + at.x, kFirst));
+    writeLevel(finer + 2u, texel, some ? reduced(finer + 1u, texel, 2 * at.y * kFirst + at.x, kFirst) : uvec4(0u));
 }
