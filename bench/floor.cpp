@@ -51,7 +51,8 @@ std::vector<Floor> measureFloors(harness::Device& device, const harness::Capture
       for (int x = 0; x < width; ++x) {
         const float span = backDepth.at(x, y)[0] - frontDepth.at(x, y)[0];
         for (int k = 0; k < 3; ++k)
-          right = right && std::abs(written.at(x, y)[k] - (capture.irradiance.at(x, y)[k] + span)) < kRounding;
+          right =
+              right && std::abs(written.at(x, y)[k] - (capture.irradiance.at(x, y)[k] + span)) < kRounding;
       }
     if (!right)
       throw harness::DeviceError("the floor pass (" + shape + ") wrote something else than its inputs say");

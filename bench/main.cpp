@@ -223,8 +223,7 @@ void bench(const Options& options) {
   const Context context(device);
   const PellucidMaterial material = benchMaterial();
   const Site site{device, context, material, pixelSizeFor(material, options.radius)};
-  const std::vector<Floor> floors =
-      measureFloors(device, slab(width, height, 1, site.pixel), options.repeat);
+  const std::vector<Floor> floors = measureFloors(device, slab(width, height, 1, site.pixel), options.repeat);
 
   std::FILE* table = options.json == "-" ? stderr : stdout;
   Report report(table, floors.front().time.median);

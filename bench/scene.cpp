@@ -32,8 +32,8 @@ namespace {
 
 constexpr double kFar = 100;  // mm, of the slab's camera
 
-// Random, up to half a hundredth of a pixel to either side: memory that compresses what is constant, which depths of
-// G-buffers are not, would be read faster than real data.
+// Random, up to half a hundredth of a pixel to either side: memory that compresses what is constant, which
+// depths of G-buffers are not, would be read faster than real data.
 void addGrain(Image& depth, double pixel, double far, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> grain(-0.005 * pixel / far, 0.005 * pixel / far);

@@ -40,17 +40,35 @@ int slot(ivec2 at, int width) { return at.y * width + (at.x >> 1) + (at.x & 1) *
 // Of the 4 x 4 texels whose first one is in an even column, at `first`.
 int tap(int first, int width, int x, int y) { return first + slot(ivec2(x, y), width); }
 
-// By what part of the middle of its range light may range under a texel's filter and be alike. Checkers of that range that are
-// filtered err by .008 on a sphere and an ear, within what planes do.
+// By what part of its mean light may bend under a texel's filter, from one texel to the next, and be alike. What changes evenly
+// is not shifted by a symmetric filter. Checkers of that range that are filtered err by .008 on a sphere and an ear, within
+// what planes do.
 const float kAlike = 0.2;
 
 float lightOf(vec3 color) { return color.r + color.g + color.b; }
 
-// Where edges are summed fast a texel says whether light is alike; `least` and `most`: of lightOf().
-uvec4 withVariation(uvec4 texel, float least, float most) {
+// The most that light bends along the two rows and columns in the middle of 4 x 4 texels, of rows from the first on: what is
+// in the corners is in the middle of texels beside. `some`: 1 where there is light, else 0.
+struct Bend {
+  vec2 light[2], some[2]; // of the last two rows, in the middle
+  float most;
+};
+
+const Bend kNoBend = Bend(vec2[](vec2(0.0), vec2(0.0)), vec2[](vec2(0.0), vec2(0.0)), 0.0);
+
+void addRow(inout Bend bend, int row, vec4 light, vec4 some) {
+  vec2 along = abs(light.xy - 2.0 * light.yz + light.zw) * some.xy * some.yz * some.zw;
+  vec2 down = abs(bend.light[0] - 2.0 * bend.light[1] + light.yz) * bend.some[0] * bend.some[1] * some.yz;
+  if (row == 1 || row == 2) bend.most = max(bend.most, max(along.x, along.y));
+  bend.most = max(bend.most, max(down.x, down.y));
+  bend.light = vec2[](bend.light[1], light.yz);
+  bend.some = vec2[](bend.some[1], some.yz);
+}
+
+// Where edges are summed fast a texel says whether light is alike; `mean`: of lightOf().
+uvec4 withVariation(uvec4 texel, float bend, float mean) {
   if (!kSumsFast) return texel;
-  bool varied = most - least > kAlike * 0.5 * (most + least);
-  return uvec4(texel.xy, (texel.z & ~kVaried) | (varied ? kVaried : 0u), texel.w);
+  return uvec4(texel.xy, (texel.z & ~kVaried) | (bend > kAlike * mean ? kVaried : 0u), texel.w);
 }
 
 struct Source {
@@ -123,9 +141,10 @@ uvec4 reducedEdge(uint finer, ivec2 texel, int first, int stride) {
   vec3 color = vec3(0.0);
   float mass = 0.0, weights = 0.0, off = 0.0;
   vec2 tilt = vec2(0.0), spread = vec2(0.0);
-  float least = 1.0e30, most = 0.0;
+  Bend bend = kNoBend;
   // A row at a time, and without a branch, so that the taps' latencies overlap. Those that do not count are finite, too.
-  for (int i = 0; i < taps(); i += 4)
+  for (int i = 0; i < taps(); i += 4) {
+    vec4 light, some;
     [[unroll]] for (int x = 0; x < 4; ++x) {
       ivec2 at = ivec2(x, i >> 2);
       int index = tap(first, stride, at.x, at.y);
@@ -136,9 +155,9 @@ uvec4 reducedEdge(uint finer, ivec2 texel, int first, int stride) {
       float difference = t.depth - surface.depth - dot(slope, vec2(at - nearest) * size);
       float w = weight(at.x) * weight(at.y);
       w = counts ? w * sameSurface(difference, dot(slope, offset), spread2, kReduceFalloff) : 0.0;
+      some[x] = w > 0.0 ? 1.0 : 0.0;
       vec3 its = unpackColor(colors[index]);
-      least = counts ? min(least, lightOf(its)) : least;
-      most = counts ? max(most, lightOf(its)) : most;
+      light[x] = lightOf(its);
       color += w * t.mass * its;
       mass += w * t.mass;
       // Where it is seen edge-on, a surface says no more about its depth than elsewhere.
@@ -148,13 +167,15 @@ uvec4 reducedEdge(uint finer, ivec2 texel, int first, int stride) {
       spread += w * offset * offset;
       weights += w;
     }
+    addRow(bend, i >> 2, light, some);
+  }
   // The nearest one counts, so mass and weights are positive; spread is 0 only where it is alone.
   float inverse = 1.0 / weights;
   vec2 center = vec2(1.5) - vec2(nearest);
   float depth = surface.depth + dot(slope, center * size) + off * inverse;
   slope += tilt / max(spread, 1.0e-6 * size * size + 1.0e-30);
   Texel made = Texel(color / mass, mass, surface.material, depth, slope);
-  return kSumsEdges ? packFineTexel(made) : withVariation(packTexel(made, 0u), least, most);
+  return kSumsEdges ? packFineTexel(made) : withVariation(packTexel(made, 0u), bend.most, lightOf(made.color));
 }
 
 // Texel of the level after `finer` from the 4 x 4 at `first`.
@@ -163,21 +184,23 @@ uvec4 reduced(uint finer, ivec2 texel, int first, int stride) {
   float base = depths[first], off = 0.0, square = 0.0;
   vec2 tilt = vec2(0.0);
   vec3 color = vec3(0.0);
-  float least = 1.0e30, most = 0.0;
-  for (int i = 0; i < tapsOfPlane(); i += 4)
+  Bend bend = kNoBend;
+  for (int i = 0; i < tapsOfPlane(); i += 4) {
+    vec4 light;
     [[unroll]] for (int x = 0; x < 4; ++x) {
       int y = i >> 2, index = tap(first, stride, x, y);
       uvec2 packed = colors[index];
       float w = weight(x) * weight(y), difference = depths[index] - base;
       different |= packed.y ^ bits;
       vec3 its = unpackColor(packed);
-      least = min(least, lightOf(its));
-      most = max(most, lightOf(its));
+      light[x] = lightOf(its);
       color += w * its;
       off += w * difference;
       tilt += w * difference * (vec2(x, y) - 1.5);
       square += w * difference * difference;
     }
+    addRow(bend, i >> 2, light, vec4(1.0));
+  }
   // The plane of least squares: its slope is the covariance over the variance.
   tilt *= 1.0 / kVariance;
   vec2 size = texelSize(base, finer);
@@ -185,7 +208,7 @@ uvec4 reduced(uint finer, ivec2 texel, int first, int stride) {
   vec2 slope = tilt / max(size, vec2(1.0e-30));
   bool plane = onePlane(bits, different, residual, slope, 2.0 * size);
   uvec4 result = packTexel(Texel(color, areaOf(finer + 1u, texel, slope), bits >> 24, base + off, slope), kPlane);
-  result = withVariation(result, least, most);
+  result = withVariation(result, bend.most, lightOf(color));
   // That nothing is there is too rare for a branch of its own.
   if (!plane) result = (bits | different) >> 16 == 0u ? uvec4(0u) : reducedEdge(finer, texel, first, stride);
   return result;
