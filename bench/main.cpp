@@ -101,6 +101,10 @@ void modulePlans(const Bench& bench) {
     dispatches(bench, *frame);
     bench.row(moduleVariant(frame, "whole frame"), {});
   }
+  bench.report.section("module, radii not known");
+  const auto perspective = bench.frame(inPerspective(bench.fullSlab()), {});
+  dispatches(bench, *perspective);
+  bench.row(moduleVariant(perspective, "whole frame"), {});
   for (const uint32_t quality : {1u, 3u}) {
     ReplaySettings settings;
     settings.quality = quality;

@@ -94,6 +94,21 @@ Capture litFromTheFront(Capture slab) {
   return slab;
 }
 
+Capture inPerspective(Capture slab) {
+  constexpr double kNear = 1;  // mm, of device depth 1; there is no far plane
+  // As far away as the image is high. The map keeps its distance to the slab.
+  const double behind = 2 / std::abs(slab.clipFromView[5]), front = kFar / 2 + behind;
+  for (Image* depth : {&slab.frontDepth.image, &slab.backDepth.image})
+    for (float& d : depth->data) d = static_cast<float>(kNear / (kFar * static_cast<double>(d) + behind));
+  slab.clipFromView[0] *= front;
+  slab.clipFromView[5] *= front;
+  slab.clipFromView[10] = slab.clipFromView[15] = 0;
+  slab.clipFromView[11] = -1;
+  slab.clipFromView[14] = kNear;
+  slab.lights.at(0).shadowMaps.at(0).clipFromWorld[14] += behind / kFar;
+  return slab;
+}
+
 Capture balls(int width, int height, double radius, double pixel) {
   Capture c = slab(width, height, 1, pixel);
   // Balls end half a radius before the slab and 50 mm and more behind the near plane.

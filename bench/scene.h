@@ -27,6 +27,10 @@ double slabThickness(const harness::Capture& slab);
 // The same, with the light in front of it, so that its map shows what the camera sees.
 harness::Capture litFromTheFront(harness::Capture slab);
 
+// The same through a pinhole, reversed and without a far plane, as engines have it: radii are not known to
+// the plan.
+harness::Capture inPerspective(harness::Capture slab);
+
 // The same with balls of `radius` pixels in front of the slab, of the same material, on a third of the image:
 // silhouettes and curved surfaces.
 harness::Capture balls(int width, int height, double radius, double pixel);

@@ -56,6 +56,8 @@ std::string measured(const Json& results) {
       {"whole frame", module, "whole frame"},
       {"whole frame, quality 1", "module, quality 1", "whole frame"},
       {"whole frame, quality 3", "module, quality 3", "whole frame"},
+      {"whole frame, radii not known, as through a perspective camera", "module, radii not known",
+       "whole frame"},
       {"whole frame, a quarter covered", "module, 25 % covered", "whole frame"},
       {"whole frame, balls of 400 pixels on a third of it", "edges, balls of 400 pixels", "whole frame"},
       {"balls of 100 pixels", "edges, balls of 100 pixels", "whole frame"},
