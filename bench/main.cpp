@@ -63,7 +63,7 @@ Capture litBy(Capture c, int lights, int mapped) {
   return c;
 }
 
-// The fused dispatch on the slab, where the answer is closed: its T at some 2 mm.
+// The fused dispatch on the slab, where the answer is closed: its T at its thickness.
 void requireRightAnswer(const Bench& bench) {
   ReplaySettings settings;
   settings.features = PELLUCID_FEATURE_TRANSLUCENCY;

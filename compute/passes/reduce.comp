@@ -22,7 +22,7 @@ const int kLoadRows = int(kInvocations) / kInput, kLoads = (kInput + kLoadRows -
 // processor. Slopes are not needed.
 shared uvec2 colors[kInput * kInput]; // and mass, material and plane, as packed
 shared float depths[kInput * kInput];
-shared uint anySurface;
+shared uint anySurface; // in the input
 
 #include "passes/reduced.glsl"
 #include "passes/boxes.glsl"

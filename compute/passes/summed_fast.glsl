@@ -1,5 +1,5 @@
 // Which pixels are summed fast (passes/fast_edges.glsl) and not filtered: those that filters of planes err on, where the light
-// that they take is not alike, as any average of what is alike is the same.
+// that they take is not alike, as any average of what is alike is the same, and does not change evenly, which averages keep.
 #ifndef PELLUCID_SUMMED_FAST_GLSL
 #define PELLUCID_SUMMED_FAST_GLSL
 
