@@ -93,25 +93,22 @@ void dispatches(const Bench& bench, const BenchFrame& frame) {
 
 void modulePlans(const Bench& bench) {
   const auto [width, height] = bench.options.size;
+  const auto rows = [&](const std::string& title, const Capture& capture, const ReplaySettings& settings) {
+    bench.report.section(title);
+    const auto frame = bench.frame(capture, settings);
+    dispatches(bench, *frame);
+    bench.row(moduleVariant(frame, "whole frame"), {});
+  };
   for (const double coverage : bench.options.coverage) {
     char title[64];
     std::snprintf(title, sizeof title, "module, %g %% covered", coverage);
-    bench.report.section(title);
-    const auto frame = bench.frame(slab(width, height, coverage / 100, bench.site.pixel), {});
-    dispatches(bench, *frame);
-    bench.row(moduleVariant(frame, "whole frame"), {});
+    rows(title, slab(width, height, coverage / 100, bench.site.pixel), {});
   }
-  bench.report.section("module, radii not known");
-  const auto perspective = bench.frame(inPerspective(bench.fullSlab()), {});
-  dispatches(bench, *perspective);
-  bench.row(moduleVariant(perspective, "whole frame"), {});
+  rows("module, radii not known", inPerspective(bench.fullSlab()), {});
   for (const uint32_t quality : {1u, 3u}) {
     ReplaySettings settings;
     settings.quality = quality;
-    bench.report.section("module, quality " + std::to_string(quality));
-    const auto frame = bench.frame(bench.fullSlab(), settings);
-    dispatches(bench, *frame);
-    bench.row(moduleVariant(frame, "whole frame"), {});
+    rows("module, quality " + std::to_string(quality), bench.fullSlab(), settings);
   }
 }
 

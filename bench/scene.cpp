@@ -32,17 +32,19 @@ namespace {
 
 constexpr double kFar = 100;  // mm, of the slab's camera
 
-// Random, up to half a hundredth of a pixel to either side: memory that compresses what is constant, which
-// depths of G-buffers are not, would be read faster than real data.
-void addGrain(Image& depth, double pixel, double far, unsigned seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> grain(-0.005 * pixel / far, 0.005 * pixel / far);
-  for (float& d : depth.data) d = static_cast<float>(static_cast<double>(d) + grain(random));
+// In device depths of which 1 is `far` mm away: random, up to half a hundredth of a pixel to either side.
+// Memory that compresses what is constant, which depths of G-buffers are not, would be read faster than real
+// data.
+void addGrain(Capture& c, double pixel, double far) {
+  unsigned seed = 2;
+  for (Image* depth : {&c.frontDepth.image, &c.backDepth.image}) {
+    std::mt19937 random(seed++);
+    std::uniform_real_distribution<double> grain(-0.005 * pixel / far, 0.005 * pixel / far);
+    for (float& d : depth->data) d = static_cast<float>(static_cast<double>(d) + grain(random));
+  }
 }
 
-}  // namespace
-
-Capture slab(int width, int height, double coverage, double pixel) {
+Capture slabWithoutGrain(int width, int height, double coverage, double pixel) {
   Capture c;
   c.name = "slab";
   c.width = width;
@@ -53,8 +55,6 @@ Capture slab(int width, int height, double coverage, double pixel) {
   c.clipFromView[10] = -1 / kFar;
   c.frontDepth = {Image(width, height, 1, 0.50f), PELLUCID_DEPTH_DEVICE};
   c.backDepth = {Image(width, height, 1, 0.52f), PELLUCID_DEPTH_DEVICE};
-  addGrain(c.frontDepth.image, pixel, kFar, 2);
-  addGrain(c.backDepth.image, pixel, kFar, 3);
   c.normal = Image(width, height, 3);
   c.irradiance = Image(width, height, 3);
   std::mt19937 random(1);  // zeros would run faster than real data
@@ -71,10 +71,18 @@ Capture slab(int width, int height, double coverage, double pixel) {
   light.direction = {0, 0, 1};
   light.shadowMaps.emplace_back();
   light.shadowMaps[0].clipFromWorld = {
-      2 / (pixel * width), 0, 0, 0, 0, 2 / (pixel * height), 0, 0, 0, 0, 0.01, 0, 0, 0, 1, 1};
+      2 / (pixel * width), 0, 0, 0, 0, 2 / (pixel * height), 0, 0, 0, 0, 1 / kFar, 0, 0, 0, 1, 1};
   light.shadowMaps[0].depth.encoding = PELLUCID_DEPTH_DEVICE;
   light.shadowMaps[0].depth.image = Image(1024, 1024, 1, 0.48f);
   c.lights = {light};
+  return c;
+}
+
+}  // namespace
+
+Capture slab(int width, int height, double coverage, double pixel) {
+  Capture c = slabWithoutGrain(width, height, coverage, pixel);
+  addGrain(c, pixel, kFar);
   return c;
 }
 
@@ -88,7 +96,7 @@ Capture litFromTheFront(Capture slab) {
   Light& light = slab.lights.at(0);
   light.direction = {0, 0, -1};
   ShadowMap& map = light.shadowMaps.at(0);
-  map.clipFromWorld[10] = -0.01;
+  map.clipFromWorld[10] = -1 / kFar;
   map.clipFromWorld[14] = 0;
   std::fill(map.depth.image.data.begin(), map.depth.image.data.end(), 0.50f);
   return slab;
@@ -110,7 +118,7 @@ Capture inPerspective(Capture slab) {
 }
 
 Capture balls(int width, int height, double radius, double pixel) {
-  Capture c = slab(width, height, 1, pixel);
+  Capture c = slabWithoutGrain(width, height, 1, pixel);
   // Balls end half a radius before the slab and 50 mm and more behind the near plane.
   const double mm = radius * pixel, far = 100 + 4 * mm, slabDepth = 50 + 3 * mm,
                center = slabDepth - 1.5 * mm;
@@ -130,8 +138,7 @@ Capture balls(int width, int height, double radius, double pixel) {
       c.normal.data[3 * i + 1] = static_cast<float>(-ny);  // rows run down
       c.normal.data[3 * i + 2] = static_cast<float>(nz);
     }
-  addGrain(c.frontDepth.image, pixel, far, 2);
-  addGrain(c.backDepth.image, pixel, far, 3);
+  addGrain(c, pixel, far);
   ShadowMap& map = c.lights.at(0).shadowMaps.at(0);
   map.clipFromWorld[10] = 1 / far;
   std::fill(map.depth.image.data.begin(), map.depth.image.data.end(),
