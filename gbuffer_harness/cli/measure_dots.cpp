@@ -10,14 +10,16 @@
 #include <optional>
 
 #include "capture/material.h"
-#include "cli/capture_gltf.h"
 #include "cli/commands.h"
+#include "cli/light_option.h"
 #include "cli/minimum_dot_table.h"
 #include "cli/numbers.h"
 #include "cli/settings.h"
 #include "common/progress.h"
 #include "common/whole_file.h"
+#include "gltf/gltf.h"
 #include "raster/framing.h"
+#include "raster/raster.h"
 #include "replay/replay.h"
 #include "scene/scene.h"
 

@@ -9,7 +9,7 @@
 #include "capture/material.h"
 #include "capture/read.h"
 #include "capture/write.h"
-#include "cli/capture_gltf.h"
+#include "cli/capture_options.h"
 #include "common/error.h"
 #include "gltf/gltf.h"
 #include "gltf_builder.h"
@@ -546,7 +546,7 @@ TEST_F(Raster, WrittenCaptureReplaysBitIdentically) {
 }
 
 // A file on disk to a capture on disk, with the light that the command adds.
-TEST_F(Raster, CommandMakesACaptureOfAFile) {
+TEST_F(Raster, OptionsMakeACaptureOfAFile) {
   const std::filesystem::path folder =
       std::filesystem::temp_directory_path() / ("pellucid_command_" + std::to_string(::getpid()));
   std::filesystem::create_directory(folder);
@@ -564,24 +564,22 @@ TEST_F(Raster, CommandMakesACaptureOfAFile) {
         {{{"attributes", {{"POSITION", b.vectors(positions)}, {"NORMAL", b.vectors(normals)}}},
           {"indices", b.indices(indices)}}}}}};
   b.json["nodes"] = {{{"mesh", 0}}};
-  GltfCapture options;
+  CaptureOptions options;
   options.model = (folder / "cube.glb").string();
-  const std::filesystem::path output = folder / "cube.exr";
-  options.frames = {{output, {}}};
   std::ofstream(options.model, std::ios::binary) << b.glb();
-  options.gltf.metersPerUnit = 0.01;
-  options.gltf.presets = {{"default", "skin1"}};
-  options.raster.width = options.raster.height = 32;
+  options.unit = "cm";
+  options.presets = {"default=skin1"};
+  options.size = "32x32";
   options.orthographic = true;
-  testing::internal::CaptureStdout();
-  testing::internal::CaptureStderr();
-  captureGltf(options);
-  const std::string said = testing::internal::GetCapturedStdout();
-  const std::string warned = testing::internal::GetCapturedStderr();
+  const CaptureModel scene = captureModel(options);
+  const std::filesystem::path output = folder / "cube.exr";
+  writeCapture(pellucid::harness::rasterize(device(), scene.model, scene.camera, scene.raster).capture,
+               output);
   const Capture c = readCapture(output);
   std::filesystem::remove_all(folder);
-  EXPECT_NE(said.find("12 triangles"), std::string::npos) << said;
-  EXPECT_NE(warned.find("no lights"), std::string::npos) << warned;
+  EXPECT_EQ(scene.model.indices.size(), 36u);
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_NE(scene.warnings[0].find("no lights"), std::string::npos) << scene.warnings[0];
   EXPECT_EQ(c.metersPerUnit, 0.01);
   EXPECT_NEAR(planar(c, c.backDepth, 16, 16) - planar(c, c.frontDepth, 16, 16), 1, 1e-5);
   ASSERT_EQ(c.lights.size(), 1u);

@@ -12,7 +12,7 @@
 #include <random>
 
 #include "capture/material.h"
-#include "cli/capture_gltf.h"
+#include "cli/light_option.h"
 #include "common/error.h"
 #include "common/png.h"
 #include "gltf/gltf.h"

@@ -1,0 +1,207 @@
+#include "cli/capture_options.h"
+
+#include <map>
+#include <numbers>
+
+#include "cli/light_option.h"
+#include "cli/numbers.h"
+#include "common/error.h"
+#include "raster/framing.h"
+
+namespace pellucid::harness {
+
+namespace {
+
+constexpr const char *kModelGroup = "Models", *kSceneGroup = "Procedural scenes";
+
+// Fields that SceneParameters and RasterOptions have in common.
+template <class Parameters>
+void setCommon(const CaptureOptions& options, Parameters& to) {
+  const std::vector<std::string> size = split(options.size, 'x');
+  if (size.size() != 2) throw UsageError("--size: \"" + options.size + "\" is not WIDTHxHEIGHT");
+  to.width = parseNumber<int>("--size", size[0]);
+  to.height = parseNumber<int>("--size", size[1]);
+  to.infiniteFar = options.infiniteFar;
+  to.normalsInViewSpace = options.viewNormals;
+  to.reversedZ = options.reversedZ.value_or(to.reversedZ);
+  to.depthEncoding = options.depth.value_or(to.depthEncoding);
+  to.shadowEncoding = options.shadowDepth.value_or(to.shadowEncoding);
+  to.shadowSize = options.shadowSize.value_or(to.shadowSize);
+}
+
+PellucidLightType parseLightType(const std::string& text) {
+  const std::map<std::string, PellucidLightType> types = {{"directional", PELLUCID_LIGHT_DIRECTIONAL},
+                                                          {"point", PELLUCID_LIGHT_POINT},
+                                                          {"spot", PELLUCID_LIGHT_SPOT}};
+  const auto found = types.find(text);
+  if (found == types.end())
+    throw UsageError("--light: \"" + text +
+                     "\" is not directional, point or spot; a scene has its own position");
+  return found->second;
+}
+
+ModelCamera chooseCamera(const CaptureOptions& options, const Model& model, const RasterOptions& raster,
+                         const std::vector<double>& turns) {
+  const std::vector<ModelCamera>& cameras = model.cameras;
+  if (options.camera.empty() && !cameras.empty()) return cameras.front();
+  if (options.camera.empty() || options.camera == "auto") {
+    Vector3 toCamera = {0, 0, 1};
+    if (!options.view.empty()) {
+      const std::vector<std::string> parts = split(options.view, ',');
+      if (parts.size() != 3) throw UsageError("--view: \"" + options.view + "\" is not X,Y,Z");
+      for (std::size_t i = 0; i < 3; ++i) toCamera[i] = parseNumber<double>("--view", parts[i]);
+    }
+    return frameModel(model, toCamera, options.verticalFov * std::numbers::pi / 180,
+                      static_cast<double>(raster.width) / raster.height, options.orthographic.value_or(false),
+                      turns);
+  }
+  std::string names = "auto";
+  for (const ModelCamera& camera : cameras) {
+    if (camera.name == options.camera) return camera;
+    names += ", " + camera.name;
+  }
+  throw UsageError("--camera: there is no \"" + options.camera + "\" but " + names);
+}
+
+void refuseOptionsOf(const CLI::App& command, const char* group, const char* needs) {
+  for (const CLI::Option* option : command.get_options())
+    if (option->get_group() == group && option->count() > 0)
+      throw UsageError(option->get_name() + ": needs " + needs);
+}
+
+void addCommonOptions(CLI::App& command, CaptureOptions& options) {
+  command.add_option("--size", options.size, "WIDTHxHEIGHT in pixels")->capture_default_str();
+  const std::map<std::string, bool> projections = {{"perspective", false}, {"orthographic", true}};
+  command
+      .add_option("--projection", options.orthographic,
+                  "perspective or orthographic (default: the scene's; of a model's auto camera: perspective)")
+      ->transform(CLI::CheckedTransformer(projections, CLI::ignore_case));
+  command.add_flag("--reversed-z,!--forward-z", options.reversedZ,
+                   "device depth 1 at the near plane (default: a model yes, a scene no)");
+  command.add_flag("--infinite-far", options.infiniteFar, "no far plane (perspective only)");
+  command.add_flag("--view-normals", options.viewNormals, "normals in view instead of world space");
+  const std::map<std::string, PellucidDepthEncoding> encodings = {{"viewz", PELLUCID_DEPTH_VIEW_Z},
+                                                                  {"device", PELLUCID_DEPTH_DEVICE}};
+  command.add_option("--depth", options.depth, "viewz or device (default: a model device, a scene viewz)")
+      ->transform(CLI::CheckedTransformer(encodings, CLI::ignore_case));
+  std::map<std::string, PellucidDepthEncoding> shadowEncodings = encodings;
+  shadowEncodings["distance"] = PELLUCID_DEPTH_DISTANCE;
+  command
+      .add_option("--shadow-depth", options.shadowDepth,
+                  "viewz, device or distance (default: a model device, a scene viewz)")
+      ->transform(CLI::CheckedTransformer(shadowEncodings, CLI::ignore_case));
+  command.add_option("--shadow-size", options.shadowSize,
+                     "texels across a shadow map; 0: none (default: a model 1024, a scene 512)");
+  command
+      .add_option(
+          "--light", options.lights,
+          std::string("of a scene: directional, point or spot; of a model, repeatable: ") + kLightSyntax)
+      ->take_all();
+}
+
+void addModelOptions(CLI::App& command, CaptureOptions& options) {
+  const char* const group = kModelGroup;
+  command.add_option("model", options.model, "glTF file, .glb or .gltf");
+  command.add_option("--material", options.presets, "NAME=PRESET, repeatable; NAME * means all others")
+      ->take_all()
+      ->group(group);
+  command.add_option("--unit", options.unit, "mm, cm, m or meters: the length of the file's unit")
+      ->capture_default_str()
+      ->group(group);
+  command.add_option("--camera", options.camera, "name of one of the file's cameras, or auto")->group(group);
+  command.add_option("--view", options.view, "X,Y,Z: where the auto camera stands from the center")
+      ->group(group);
+  command.add_option("--fov", options.verticalFov, "vertical field of view of the auto camera, degrees")
+      ->check(CLI::Range(1.0, 170.0))
+      ->capture_default_str()
+      ->group(group);
+  const std::map<std::string, BackFace> faces = {{"nearest", BackFace::Nearest},
+                                                 {"farthest", BackFace::Farthest}};
+  command.add_option("--back", options.backFace, "which back face behind the front: nearest or farthest")
+      ->transform(CLI::CheckedTransformer(faces, CLI::ignore_case))
+      ->group(group);
+  command
+      .add_option("--point-maps", options.pointMaps,
+                  "shadow maps of a point light: 1, 6 or auto, 6 where 1 cannot see the whole model")
+      ->check(CLI::IsMember({"auto", "1", "6"}))
+      ->capture_default_str()
+      ->group(group);
+  command
+      .add_option("--device", options.device, "part of the Vulkan device's name; default: the fastest kind")
+      ->group(group);
+}
+
+void addSceneOptions(CLI::App& command, CaptureOptions& options) {
+  const char* const group = kSceneGroup;
+  command
+      .add_option("--procedural", options.scene.name, "name of the scene; list: print all with their options")
+      ->group(group);
+  command.add_option("--seed", options.scene.seed, "of scenes that scatter things")
+      ->capture_default_str()
+      ->group(group);
+  command.add_option("--set", options.set, "key=value, repeatable: an option of the scene")
+      ->take_all()
+      ->group(group);
+}
+
+}  // namespace
+
+void addCaptureOptions(CLI::App& command, CaptureOptions& options) {
+  addCommonOptions(command, options);
+  addModelOptions(command, options);
+  addSceneOptions(command, options);
+}
+
+bool isProcedural(const CLI::App& command, const CaptureOptions& options) {
+  if (options.scene.name.empty() == options.model.empty())
+    throw UsageError(command.get_name() + ": either a model or --procedural is required");
+  const bool procedural = options.model.empty();
+  if (procedural)
+    refuseOptionsOf(command, kModelGroup, "a model");
+  else
+    refuseOptionsOf(command, kSceneGroup, "--procedural");
+  return procedural;
+}
+
+SceneParameters procedural(const CaptureOptions& options) {
+  SceneParameters scene = options.scene;
+  setCommon(options, scene);
+  scene.orthographic = options.orthographic;
+  if (options.lights.size() > 1) throw UsageError("--light: a procedural scene has one light");
+  if (!options.lights.empty()) scene.lightType = parseLightType(options.lights.front());
+  for (const std::string& text : options.set) {
+    const Assignment set = parseAssignment("--set", text);
+    scene.options[set.key] = parseNumber<double>("--set " + set.key, set.value);
+  }
+  return scene;
+}
+
+CaptureModel captureModel(const CaptureOptions& options, const std::vector<double>& turns) {
+  CaptureModel result;
+  setCommon(options, result.raster);
+  result.raster.backFace = options.backFace;
+  result.raster.pointMaps = options.pointMaps == "1"   ? PointMaps::One
+                            : options.pointMaps == "6" ? PointMaps::Six
+                                                       : PointMaps::Auto;
+  GltfOptions gltf;
+  gltf.metersPerUnit = parseUnit(options.unit);
+  for (const std::string& text : options.presets) {
+    const Assignment set = parseAssignment("--material", text);
+    gltf.presets[set.key] = set.value;
+  }
+  GltfScene scene = loadGltf(options.model, gltf);
+  result.model = std::move(scene.model);
+  result.warnings = std::move(scene.warnings);
+  result.camera = chooseCamera(options, result.model, result.raster, turns);
+  std::vector<std::string> lights = options.lights;
+  if (lights.empty() && result.model.lights.empty()) {
+    lights = {kBackLight};
+    result.warnings.push_back("the file has no lights: --light back is added");
+  }
+  if (!lights.empty()) result.model.lights.clear();
+  for (const std::string& light : lights)
+    result.model.lights.push_back(parseLight(light, result.model, result.camera));
+  return result;
+}
+
+}  // namespace pellucid::harness

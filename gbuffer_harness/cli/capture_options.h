@@ -1,0 +1,56 @@
+// The options that say what to capture: those of `pellucid capture`, and of every other command that takes a
+// scene.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gltf/gltf.h"
+#include "raster/raster.h"
+#include "scene/scene.h"
+
+namespace pellucid::harness {
+
+// As given. Options of both kinds of scene stand before the two; absent ones have each kind's own default.
+struct CaptureOptions {
+  std::string size = "512x512", device;
+  bool infiniteFar = false, viewNormals = false;
+  std::optional<bool> reversedZ, orthographic;
+  std::optional<PellucidDepthEncoding> depth, shadowDepth;
+  std::optional<int> shadowSize;
+  std::vector<std::string> lights;  // of a model: kLightSyntax; empty: the file's, and "back" without any
+
+  SceneParameters scene;
+  std::vector<std::string> set;
+
+  std::string model, unit = "m", camera, view, pointMaps = "auto";
+  std::vector<std::string> presets;
+  double verticalFov = 30;  // of the auto camera, degrees
+  BackFace backFace = BackFace::Nearest;
+};
+
+// A glTF file made ready for rasterize(): its lights are those to capture with.
+struct CaptureModel {
+  Model model;
+  ModelCamera camera;
+  RasterOptions raster;
+  std::vector<std::string> warnings;  // sentences for a person
+};
+
+// Adds all of them to a command, but for its output.
+void addCaptureOptions(CLI::App& command, CaptureOptions& options);
+
+// Whether they name a procedural scene; else they name a model. Throws UsageError when they name both or
+// neither, and for an option of the other kind: one without effect is a mistake of who gave it.
+bool isProcedural(const CLI::App& command, const CaptureOptions& options);
+
+// Throws UsageError.
+SceneParameters procedural(const CaptureOptions& options);
+
+// Reads the file. `turns` (radians): of the turntable's cameras, all of which the auto camera fits. Throws
+// UsageError and InputError.
+CaptureModel captureModel(const CaptureOptions& options, const std::vector<double>& turns = {0});
+
+}  // namespace pellucid::harness
