@@ -39,6 +39,7 @@ struct Light {
   std::array<double, 3> color = {1, 1, 1};
   double intensity = 1;
   double range = 0;
+  double radius = 0;  // scene units; > 0: a point light that is a sphere, which only truth sees as one
   double innerConeAngle = 0, outerConeAngle = 0.785;
   // A receiver's is the first that contains it: six of a cube, or cascades. Up to
   // PELLUCID_MAX_LIGHT_SHADOW_MAPS; none: nothing shadows the light.
@@ -65,8 +66,13 @@ struct GaussianMaterial {
 };
 using MaterialSource = std::variant<PresetMaterial, CoefficientMaterial, BurleyMaterial, GaussianMaterial>;
 
+// A result to compare with.
 struct Truth {
-  Image image;  // RGB, already times scale
+  Image image;          // RGB, already times scale
+  Image standardError;  // of image, RGB, likewise; empty: not known
+  // How `pellucid truth` made it, so that it can go on: samples of each pixel, and what they are of.
+  std::uint64_t samples = 0, seed = 0;
+  std::string scene;  // empty: made elsewhere
 };
 
 struct Capture {

@@ -1,6 +1,7 @@
 #include "capture/manifest.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <glm/glm.hpp>
@@ -237,7 +238,7 @@ std::vector<Field> shadowMapsOf(const Field& light) {
 }
 
 Light readLight(const Field& field) {
-  field.allowKeys({"type", "position", "direction", "color", "intensity", "range", "innerConeAngle",
+  field.allowKeys({"type", "position", "direction", "color", "intensity", "range", "radius", "innerConeAngle",
                    "outerConeAngle", "shadowMap", "shadowMaps"});
   constexpr double kMost = 1e30;  // its square times a scene's extent still fits a float64
   Light light;
@@ -259,6 +260,11 @@ Light readLight(const Field& field) {
   }
   if (const auto intensity = field.find("intensity")) light.intensity = intensity->number(0, kMost);
   if (const auto range = field.find("range")) light.range = range->number(0, kMost);
+  if (const auto radius = field.find("radius")) {
+    light.radius = radius->number(0, kMost);
+    if (light.radius > 0 && light.type != PELLUCID_LIGHT_POINT)
+      radius->fail("only a point light has one, is " + radius->shown());
+  }
   if (const auto inner = field.find("innerConeAngle")) light.innerConeAngle = inner->number();
   if (const auto outer = field.find("outerConeAngle")) light.outerConeAngle = outer->number();
   if (light.type == PELLUCID_LIGHT_SPOT) {
@@ -307,6 +313,24 @@ void readBuffers(const Field& buffers, const BufferReader& read, Manifest& manif
     manifest.materialMap = readMaterialMap(*map, static_cast<int>(manifest.capture.materials.size()));
 }
 
+// A whole number as text: JSON's own lose digits above 2^53 on their way through other tools.
+std::uint64_t wholeNumber(const Field& field) {
+  const std::string text = field.text();
+  std::uint64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size())
+    field.fail("must be a whole number in quotes, is " + field.shown());
+  return value;
+}
+
+Truth readTruth(const Field& field) {
+  Truth truth;
+  if (const auto samples = field.find("samples")) truth.samples = wholeNumber(*samples);
+  if (const auto seed = field.find("seed")) truth.seed = wholeNumber(*seed);
+  if (const auto scene = field.find("scene")) truth.scene = scene->text();
+  return truth;
+}
+
 void parse(const Field& root, const BufferReader& read, Manifest& manifest) {
   // The version comes first: another version's keys are not "unknown".
   if (const Field version = root["pellucid"]; version.number() != kVersion)
@@ -337,8 +361,14 @@ void parse(const Field& root, const BufferReader& read, Manifest& manifest) {
     }
   }
   if (const auto truth = root.find("truth")) {
-    truth->allowKeys({"file", "part", "channels", "constant", "scale"});
+    truth->allowKeys(
+        {"file", "part", "channels", "constant", "scale", "standardError", "samples", "seed", "scene"});
     manifest.truth = read(*truth, 3);
+    manifest.capture.truth = readTruth(*truth);
+    if (const auto error = truth->find("standardError")) {
+      error->allowKeys({"file", "part", "channels", "constant"});
+      manifest.truthStandardError = read(*error, 3);
+    }
     if (const auto scale = truth->find("scale")) manifest.truthScale = scale->number();
   }
 }

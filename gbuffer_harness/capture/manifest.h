@@ -34,7 +34,7 @@ struct Manifest {
   Capture capture;  // everything but the images and the size
 
   BufferSource frontDepth, irradiance, material;
-  std::optional<BufferSource> backDepth, normal, albedo, truth;
+  std::optional<BufferSource> backDepth, normal, albedo, truth, truthStandardError;
   std::vector<std::vector<BufferSource>> shadowMaps;  // per light, as Light::shadowMaps
   std::map<int, int> materialMap;  // stored value -> material index; empty: the value is the index
   double truthScale = 1;

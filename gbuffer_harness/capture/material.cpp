@@ -72,6 +72,33 @@ PellucidMaterial compileMaterial(const MaterialSource& source, const std::string
   return material;
 }
 
+CoefficientMaterial coefficientsOf(const MaterialSource& source, const std::string& where) {
+  if (const auto* given = std::get_if<CoefficientMaterial>(&source)) return *given;
+  const auto* preset = std::get_if<PresetMaterial>(&source);
+  if (!preset) throw InputError(where, "", "is a profile, which no scattering coefficients define");
+  PellucidMaterialDesc desc;
+  if (pellucidFindPreset(preset->preset.c_str(), &desc) != PELLUCID_OK)
+    throw InputError(where, "preset", "there is no \"" + preset->preset + "\"");
+  if (desc.kind != PELLUCID_MATERIAL_COEFFICIENTS)
+    throw InputError(where, "preset",
+                     "\"" + preset->preset + "\" has layers, which no single set of coefficients defines");
+  CoefficientMaterial material{};
+  const double millimeters = desc.millimetersPerUnit > 0 ? desc.millimetersPerUnit : 1;
+  for (std::size_t c = 0; c < 3; ++c) {
+    material.scattering[c] = desc.scattering[c] / millimeters;
+    material.absorption[c] = desc.absorption[c] / millimeters;
+  }
+  material.g = desc.g;
+  if (desc.ior > 0) material.ior = desc.ior;
+  return material;
+}
+
+CoefficientMaterial withIor(const MaterialSource& source, double ior, const std::string& where) {
+  CoefficientMaterial material = coefficientsOf(source, where);
+  material.ior = ior;
+  return material;
+}
+
 std::vector<PellucidMaterial> compileMaterials(const Capture& capture) {
   std::vector<PellucidMaterial> materials;
   for (std::size_t i = 0; i < capture.materials.size(); ++i)

@@ -145,7 +145,9 @@ Capture readCapture(const Manifest& manifest) {
   if (manifest.normal) loader.want(*manifest.normal, capture.normal, 3, 0, true);
   if (manifest.albedo) loader.want(*manifest.albedo, capture.albedo, 3, 0, true);
   loader.want(manifest.material, material, 1, kOutside, true);
-  if (manifest.truth) loader.want(*manifest.truth, capture.truth.emplace().image, 3, 0, true);
+  if (manifest.truth) loader.want(*manifest.truth, capture.truth->image, 3, 0, true);
+  if (manifest.truthStandardError)
+    loader.want(*manifest.truthStandardError, capture.truth->standardError, 3, 0, true);
   for (std::size_t i = 0; i < capture.lights.size(); ++i)
     for (std::size_t k = 0; k < capture.lights[i].shadowMaps.size(); ++k)
       loader.wantDepth(manifest.shadowMaps[i][k], capture.lights[i].shadowMaps[k].depth, false);
@@ -155,7 +157,8 @@ Capture readCapture(const Manifest& manifest) {
   if (manifest.irradianceScale != 1)
     for (float& value : capture.irradiance.data) value *= static_cast<float>(manifest.irradianceScale);
   if (capture.truth)
-    for (float& value : capture.truth->image.data) value *= static_cast<float>(manifest.truthScale);
+    for (Image* image : {&capture.truth->image, &capture.truth->standardError})
+      for (float& value : image->data) value *= static_cast<float>(manifest.truthScale);
   return capture;
 }
 

@@ -83,9 +83,22 @@ Json lightJson(const Light& light) {
   const char* const types[] = {"directional", "point", "spot"};
   Json json = {{"type", types[light.type]}, {"position", light.position},   {"direction", light.direction},
                {"color", light.color},      {"intensity", light.intensity}, {"range", light.range}};
+  if (light.radius > 0) json["radius"] = light.radius;
   if (light.type == PELLUCID_LIGHT_SPOT) {
     json["innerConeAngle"] = light.innerConeAngle;
     json["outerConeAngle"] = light.outerConeAngle;
+  }
+  return json;
+}
+
+Json truthJson(const Truth& truth, PartWriter& screen, ExrFormat format) {
+  Json json = screen.add(truth.image, "truth", "RGB", format);
+  if (!truth.standardError.empty())
+    json["standardError"] = screen.add(truth.standardError, "truthStandardError", "RGB", format);
+  if (!truth.scene.empty()) {
+    json["samples"] = std::to_string(truth.samples);
+    json["seed"] = std::to_string(truth.seed);
+    json["scene"] = truth.scene;
   }
   return json;
 }
@@ -112,7 +125,7 @@ void writeCapture(const Capture& capture, const std::filesystem::path& exr, Colo
   }
   if (!capture.albedo.empty()) buffers["albedo"] = screen.add(capture.albedo, "albedo", "RGB", format);
   buffers["material"] = screen.add(material, "material", "I", ExrFormat::Uint);
-  if (capture.truth) manifest["truth"] = screen.add(capture.truth->image, "truth", "RGB", format);
+  if (capture.truth) manifest["truth"] = truthJson(*capture.truth, screen, format);
 
   std::vector<ExrPart> parts = {std::move(screen.part)};
   manifest["lights"] = Json::array();

@@ -13,10 +13,14 @@
 #include "cli/commands.h"
 #include "cli/frames.h"
 #include "cli/output.h"
+#include "cli/traced_light.h"
 #include "common/error.h"
 #include "common/progress.h"
 #include "common/whole_file.h"
 #include "raster/framing.h"
+#include "reference/path_tracer/mesh_scene.h"
+#include "reference/path_tracer/solid_scene.h"
+#include "scene/model.h"
 #include "scene/scene.h"
 #include "scene/turn.h"
 
@@ -90,11 +94,17 @@ void warn(const std::vector<std::string>& warnings) {
 
 void captureProcedural(const Options& options) {
   SceneParameters scene = procedural(options.scene);
+  const std::optional<Environment> sky = environment(options.scene);
   const std::vector<CaptureFrame> frames = framesOf(options.turntable, options.output);
   Progress progress("capturing", frames.size());
   for (const CaptureFrame& frame : frames) {
     scene.turn = frame.turn;
-    const Capture capture = makeScene(scene);
+    Capture capture = makeScene(scene);
+    setIor(capture.materials, options.scene);
+    if (sky) {
+      const SceneModel model = sceneModel(scene);
+      addTracedLight(capture, *reference::makeSolidScene(model), sky);
+    }
     writeWhole(frame.output, [&](const auto& file) { writeCapture(capture, file); });
     progress.advance();
   }
@@ -109,6 +119,9 @@ void captureGltf(const Options& options) {
   CaptureModel scene = captureModel(options.scene, angles);
   warn(scene.warnings);
 
+  const std::optional<Environment> sky = environment(options.scene);
+  const std::unique_ptr<reference::TraceScene> traced =
+      needsTracing(scene.model.lights, sky) ? reference::makeMeshScene(scene.model) : nullptr;
   Device device({options.scene.device, false});
   const Vector3 center = boundsOf(scene.model).center;
   const std::vector<Light> still = scene.model.lights;
@@ -119,7 +132,8 @@ void captureGltf(const Options& options) {
     turned.viewFromWorld = turnedView(scene.camera.viewFromWorld, center, frame.turn.camera.value_or(0));
     for (std::size_t i = 0; i < still.size(); ++i)
       scene.model.lights[i] = turnedLight(still[i], center, frame.turn.lights.value_or(0));
-    const RasterResult result = rasterize(device, scene.model, turned, scene.raster);
+    RasterResult result = rasterize(device, scene.model, turned, scene.raster);
+    if (traced) addTracedLight(result.capture, *traced, sky);
     for (const std::string& warning : result.warnings)
       if (said.insert(warning).second) warn({frame.output.string() + ": " + warning});
     writeWhole(frame.output, [&](const auto& file) { writeCapture(result.capture, file); });

@@ -3,9 +3,11 @@
 #include <map>
 #include <numbers>
 
+#include "capture/material.h"
 #include "cli/light_option.h"
 #include "cli/numbers.h"
 #include "common/error.h"
+#include "raster/close_mesh.h"
 #include "raster/framing.h"
 
 namespace pellucid::harness {
@@ -90,6 +92,10 @@ void addCommonOptions(CLI::App& command, CaptureOptions& options) {
       .add_option("--shadow-depth", options.shadowDepth,
                   "viewz, device or distance (default: a model device, a scene viewz)")
       ->transform(CLI::CheckedTransformer(shadowEncodings, CLI::ignore_case));
+  command.add_option("--ior", options.ior, "index of refraction of all materials, in place of their own")
+      ->check(CLI::Range(1.0, 3.0));
+  command.add_option("--environment", options.environment,
+                     std::string("radiance from all around: ") + kEnvironmentSyntax);
   command.add_option("--shadow-size", options.shadowSize,
                      "texels across a shadow map; 0: none (default: a model 1024, a scene 512)");
   command
@@ -107,6 +113,8 @@ void addModelOptions(CLI::App& command, CaptureOptions& options) {
       ->group(group);
   command.add_option("--unit", options.unit, "mm, cm, m or meters: the length of the file's unit")
       ->capture_default_str()
+      ->group(group);
+  command.add_flag("--fill-holes", options.fillHoles, "close the holes of bodies that have a material")
       ->group(group);
   command.add_option("--camera", options.camera, "name of one of the file's cameras, or auto")->group(group);
   command.add_option("--view", options.view, "X,Y,Z: where the auto camera stands from the center")
@@ -176,6 +184,34 @@ SceneParameters procedural(const CaptureOptions& options) {
   return scene;
 }
 
+void setIor(std::vector<MaterialSource>& materials, const CaptureOptions& options) {
+  if (!options.ior) return;
+  for (std::size_t i = 0; i < materials.size(); ++i)
+    materials[i] = withIor(materials[i], *options.ior,
+                           options.scene.name + ": materials[" + std::to_string(i) + "]");
+}
+
+std::optional<Environment> environment(const CaptureOptions& options) {
+  if (options.environment.empty()) return std::nullopt;
+  const std::vector<std::string> parts = split(options.environment, ':');
+  const auto fail = [&] {
+    throw UsageError("--environment: \"" + options.environment + "\" is not " + kEnvironmentSyntax);
+  };
+  const auto color = [&](const std::string& text) {
+    const std::vector<std::string> numbers = split(text, ',');
+    if (numbers.size() != 3) fail();
+    std::array<double, 3> result;
+    for (std::size_t c = 0; c < 3; ++c) {
+      result[c] = parseNumber<double>("--environment", numbers[c]);
+      if (!(result[c] >= 0)) fail();
+    }
+    return result;
+  };
+  if (parts[0] == "uniform" && parts.size() == 2) return Environment{color(parts[1]), color(parts[1])};
+  if (parts[0] != "gradient" || parts.size() != 3) fail();
+  return Environment{color(parts[1]), color(parts[2])};
+}
+
 CaptureModel captureModel(const CaptureOptions& options, const std::vector<double>& turns) {
   CaptureModel result;
   setCommon(options, result.raster);
@@ -189,9 +225,14 @@ CaptureModel captureModel(const CaptureOptions& options, const std::vector<doubl
     const Assignment set = parseAssignment("--material", text);
     gltf.presets[set.key] = set.value;
   }
+  gltf.ior = options.ior.value_or(0);
   GltfScene scene = loadGltf(options.model, gltf);
   result.model = std::move(scene.model);
   result.warnings = std::move(scene.warnings);
+  if (options.fillHoles) {
+    const std::size_t filled = fillHoles(result.model);
+    result.warnings.push_back("--fill-holes: " + std::to_string(filled) + " holes filled");
+  }
   result.camera = chooseCamera(options, result.model, result.raster, turns);
   std::vector<std::string> lights = options.lights;
   if (lights.empty() && result.model.lights.empty()) {

@@ -9,6 +9,7 @@
 
 #include "gltf/gltf.h"
 #include "raster/raster.h"
+#include "scene/environment.h"
 #include "scene/scene.h"
 
 namespace pellucid::harness {
@@ -28,6 +29,9 @@ struct CaptureOptions {
   std::string model, unit = "m", camera, view, pointMaps = "auto";
   std::vector<std::string> presets;
   double verticalFov = 30;  // of the auto camera, degrees
+  bool fillHoles = false;
+  std::optional<double> ior;  // of all materials
+  std::string environment;    // "": none
   BackFace backFace = BackFace::Nearest;
 };
 
@@ -48,6 +52,14 @@ bool isProcedural(const CLI::App& command, const CaptureOptions& options);
 
 // Throws UsageError.
 SceneParameters procedural(const CaptureOptions& options);
+
+// Applies --ior to the materials of a procedural scene; a glTF file is read with it. Throws InputError.
+void setIor(std::vector<MaterialSource>& materials, const CaptureOptions& options);
+
+inline constexpr const char* kEnvironmentSyntax = "uniform:R,G,B or gradient:R,G,B:R,G,B (from +y, from -y)";
+
+// Throws UsageError.
+std::optional<Environment> environment(const CaptureOptions& options);
 
 // Reads the file. `turns` (radians): of the turntable's cameras, all of which the auto camera fits. Throws
 // UsageError and InputError.

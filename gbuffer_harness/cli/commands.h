@@ -14,6 +14,7 @@ void addPlanCommand(CLI::App& app);
 void addMaterialCommand(CLI::App& app);
 void addReferenceCommand(CLI::App& app);
 void addCompareCommand(CLI::App& app);
+void addTruthCommand(CLI::App& app);
 void addEvaluateCommand(CLI::App& app);
 void addCaptureCommand(CLI::App& app);
 void addSheetCommand(CLI::App& app);

@@ -33,9 +33,15 @@ Light parseLight(const std::string& text, const Model& model, const ModelCamera&
     for (std::size_t i = 0; i < 3; ++i) light.direction[i] = m[4 * i + 2] - 0.4 * m[4 * i + 1];
     return light;
   }
-  const std::vector<std::string> parts = split(text, ':');
+  std::vector<std::string> parts = split(text, ':');
+  const bool sphere = parts[0] == "sphere" && parts.size() >= 3;
+  if (sphere) {
+    light.radius = parseNumber<double>("--light", parts[2]);
+    if (!(light.radius > 0)) throw UsageError("--light: \"" + text + "\": the radius is not above 0");
+    parts.erase(parts.begin() + 2);
+  }
   const std::vector<std::string> numbers = split(parts.size() > 1 ? parts[1] : "", ',');
-  const bool known = parts[0] == "directional" || parts[0] == "point" || parts[0] == "spot";
+  const bool known = parts[0] == "directional" || parts[0] == "point" || parts[0] == "spot" || sphere;
   if (!known || parts.size() > 3 || numbers.size() != 3)
     throw UsageError("--light: \"" + text + "\" is not " + kLightSyntax);
   Vector3 where;
@@ -52,6 +58,8 @@ Light parseLight(const std::string& text, const Model& model, const ModelCamera&
     if (away == 0 && parts.size() < 3)
       throw UsageError("--light: \"" + text +
                        "\" stands at the center, where no intensity makes 1 arrive; add :I");
+    if (light.radius > 0 && away < bounds.radius + light.radius)
+      throw UsageError("--light: \"" + text + "\" reaches into the model's surroundings");
     if (light.type == PELLUCID_LIGHT_SPOT) {
       if (away == 0) throw UsageError("--light: \"" + text + "\" stands at the center it looks at");
       for (std::size_t i = 0; i < 3; ++i) light.direction[i] = (bounds.center[i] - where[i]) / away;

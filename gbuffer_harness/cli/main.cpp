@@ -27,6 +27,7 @@ int main(int argc, char** argv) {
   addPlanCommand(app);
   addMaterialCommand(app);
   addReferenceCommand(app);
+  addTruthCommand(app);
   addCompareCommand(app);
   addEvaluateCommand(app);
   addCaptureCommand(app);

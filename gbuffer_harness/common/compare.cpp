@@ -125,4 +125,36 @@ Comparison compareImages(const Image& a, const Image& b, const std::vector<std::
   return result;
 }
 
+std::vector<double> relativeNoise(const Image& image, const Image& standardError,
+                                  const std::vector<std::uint8_t>& mask, int box) {
+  const auto channels = static_cast<std::size_t>(image.channels);
+  std::vector<double> squares(channels), errors(channels);
+  std::size_t blocks = 0;
+  for (int top = 0; top + box <= image.height; top += box)
+    for (int left = 0; left + box <= image.width; left += box) {
+      std::vector<double> sum(channels), variance(channels);
+      bool whole = true;
+      for (int y = top; y < top + box && whole; ++y)
+        for (int x = left; x < left + box && whole; ++x) {
+          whole = mask[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+                       static_cast<std::size_t>(x)] != 0;
+          for (std::size_t c = 0; c < channels; ++c) {
+            const double error = standardError.at(x, y)[c];
+            sum[c] += image.at(x, y)[c];
+            variance[c] += error * error;
+          }
+        }
+      if (!whole) continue;
+      ++blocks;
+      for (std::size_t c = 0; c < channels; ++c) {
+        squares[c] += sum[c] * sum[c];
+        errors[c] += variance[c];
+      }
+    }
+  if (blocks == 0) return {};
+  std::vector<double> noise;
+  for (std::size_t c = 0; c < channels; ++c) noise.push_back(std::sqrt(ratio(errors[c], squares[c])));
+  return noise;
+}
+
 }  // namespace pellucid::harness

@@ -44,4 +44,10 @@ struct Comparison {
 Comparison compareImages(const Image& a, const Image& b, const std::vector<std::uint8_t>& mask, int box = 1,
                          double coverage = 0.5);
 
+// Noise of an image, R G B: the root mean square of the standard errors of its samples over that of the
+// samples themselves. Samples are blocks wholly of mask, of box x box pixels whose errors are independent,
+// counted from pixel (0, 0). Empty without such a block; a channel that is 0 everywhere has no noise.
+std::vector<double> relativeNoise(const Image& image, const Image& standardError,
+                                  const std::vector<std::uint8_t>& mask, int box);
+
 }  // namespace pellucid::harness

@@ -36,14 +36,19 @@ void Progress::advance(std::uint64_t steps) {
   draw(std::min(done, total_));
 }
 
+void Progress::note(std::string text) {
+  const std::scoped_lock lock(drawing_);
+  note_ = std::move(text);
+}
+
 void Progress::draw(std::uint64_t done) {
   const double fraction = static_cast<double>(done) / static_cast<double>(total_);
   const int filled = static_cast<int>(fraction * kBarWidth);
   const double elapsed = std::chrono::duration<double>(drawn_ - start_).count();
   const double left = fraction > 0 ? elapsed * (1 - fraction) / fraction : 0;
-  std::fprintf(stderr, "\r%s [%s%s] %3.0f %%, %.0f s left\x1b[K", label_.c_str(),
+  std::fprintf(stderr, "\r%s [%s%s] %3.0f %%, %.0f s left%s%s\x1b[K", label_.c_str(),
                std::string(filled, '#').c_str(), std::string(kBarWidth - filled, '.').c_str(), 100 * fraction,
-               left);
+               left, note_.empty() ? "" : ", ", note_.c_str());
   std::fflush(stderr);
 }
 

@@ -20,6 +20,9 @@ public:
 
   void advance(std::uint64_t steps = 1);
 
+  // Text after the bar from its next drawing on.
+  void note(std::string text);
+
 private:
   void draw(std::uint64_t done);
 
@@ -28,7 +31,8 @@ private:
   const bool terminal_;
   const std::chrono::steady_clock::time_point start_;
   std::atomic<std::uint64_t> done_ = 0;
-  std::mutex drawing_;
+  std::mutex drawing_;  // of what follows
+  std::string note_;
   std::chrono::steady_clock::time_point drawn_;
 };
 

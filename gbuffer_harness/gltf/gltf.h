@@ -15,6 +15,7 @@ struct GltfOptions {
   // glTF material name -> preset of the material compiler, instead of what the file says. "*": every
   // material that is not named; "default": triangles without a material.
   std::map<std::string, std::string> presets;
+  double ior = 0;  // of all media, in place of their own, [1, 3]; 0: their own
 };
 
 struct GltfScene {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "capture/material.h"
 #include "pellucid/pellucid_material.h"
 
 namespace pellucid::harness {
@@ -239,6 +240,8 @@ GltfMaterial readMaterial(const GltfDocument& document, int index, const GltfOpt
       document.fail("material \"" + name + "\"", "there is no preset \"" + *preset + "\"");
     result.medium = PresetMaterial{*preset};
   }
+  if (result.medium && options.ior > 0)
+    result.medium = withIor(*result.medium, options.ior, document.file + ": material \"" + name + "\"");
   return result;
 }
 

@@ -95,7 +95,7 @@ Light drawLight(Device& device, const Model& model, const UploadedModel& uploade
                 const RasterOptions& options, IrradiancePass& irradiance) {
   Light result = light;
   if (options.shadowSize == 0) {
-    irradiance.add(light, {});
+    if (light.radius == 0) irradiance.add(light, {});
     return result;
   }
   constexpr bool kReversed = true;
@@ -111,7 +111,7 @@ Light drawLight(Device& device, const Model& model, const UploadedModel& uploade
     result.shadowMaps.push_back({encodeShadow(target, shadows.back(), options.shadowEncoding),
                                  multiply(view.clipFromView, view.viewFromWorld), view.viewFromWorld});
   }
-  irradiance.add(light, shadows);
+  if (light.radius == 0) irradiance.add(light, shadows);
   return result;
 }
 

@@ -29,7 +29,8 @@ struct RasterOptions {
 
 struct RasterResult {
   // With front depth, back depth unless every pixel is open, irradiance, normal, albedo and material;
-  // materials and lights as the model's, with the shadow maps of frameLight().
+  // materials and lights as the model's, with the shadow maps of frameLight(). A light that has a radius
+  // gets its map, of its center, and brings no irradiance: shadow maps draw no soft shadows.
   Capture capture;
   // Pixels of a material through which the front's object is not closed: an open or single-sided mesh, or
   // a hole. They have no back depth.

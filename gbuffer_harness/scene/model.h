@@ -71,6 +71,9 @@ struct SceneDefinition {
 // Throws InputError listing the scenes there are.
 const SceneDefinition& findScene(const std::string& name);
 
+// The scene with its camera and lights aimed and turned, ready to be cast; makeScene() throws likewise.
+SceneModel sceneModel(const SceneParameters& parameters);
+
 // One list per file of builders.
 std::vector<SceneDefinition> solidScenes();
 std::vector<SceneDefinition> patternScenes();

@@ -21,6 +21,7 @@ bool reaches(const std::vector<Object>& objects, const Light& light, const glm::
 // E of a light that nothing blocks, at a point of the given outward normal (KHR_lights_punctual).
 glm::dvec3 unshadowedIrradiance(const Light& light, const glm::dvec3& point, const glm::dvec3& normal);
 
+// The capture of a scene model, whose parameters say size and encodings.
 Capture renderCapture(const SceneModel& model, const SceneParameters& parameters, Image* exactThickness);
 
 }  // namespace pellucid::harness

@@ -76,7 +76,7 @@ const SceneDefinition& findScene(const std::string& name) {
   throw InputError("", "scene", "no scene \"" + name + "\"; there are " + names);
 }
 
-Capture makeScene(const SceneParameters& parameters, Image* exactThickness) {
+SceneModel sceneModel(const SceneParameters& parameters) {
   const SceneDefinition& scene = findScene(parameters.name);
   checkSide("width", parameters.width, 1);
   checkSide("height", parameters.height, 1);
@@ -84,11 +84,14 @@ Capture makeScene(const SceneParameters& parameters, Image* exactThickness) {
   if (parameters.depthEncoding == PELLUCID_DEPTH_DISTANCE) {
     throw InputError("", "depthEncoding", "distance is an encoding of shadow maps only");
   }
-  const OptionValues options(scene.info, parameters.options);
-  SceneModel model = scene.build(parameters, options);
+  SceneModel model = scene.build(parameters, OptionValues(scene.info, parameters.options));
   applyAim(parameters, model);
   applyTurn(parameters, model);
-  return renderCapture(model, parameters, exactThickness);
+  return model;
+}
+
+Capture makeScene(const SceneParameters& parameters, Image* exactThickness) {
+  return renderCapture(sceneModel(parameters), parameters, exactThickness);
 }
 
 Vector3 sceneCenter(const SceneParameters& parameters) {

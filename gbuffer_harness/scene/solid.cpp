@@ -26,6 +26,27 @@ bool Solid::blocks(const Ray& ray, double tMin, double tMax) const {
   return span && span->enter <= tMax;
 }
 
+namespace {
+
+// The span that holds the ray's origin.
+std::optional<Span> spanAround(const Solid& solid, const Ray& ray) {
+  std::optional<Span> span = solid.firstSpan(ray, -kInfinity);
+  while (span && span->exit <= 0) span = solid.firstSpan(ray, span->exit);
+  return span && span->enter <= 0 ? span : std::nullopt;
+}
+
+}  // namespace
+
+std::optional<double> Solid::exit(const Ray& ray, double limit) const {
+  const std::optional<Span> span = spanAround(*this, ray);
+  if (!span) return 0;
+  return span->exit < limit ? std::optional(span->exit) : std::nullopt;
+}
+
+bool Solid::contains(const glm::dvec3& point) const {
+  return spanAround(*this, {point, glm::dvec3(0, 0, 1)}).has_value();
+}
+
 Polyhedron Polyhedron::box(const glm::dvec3& center, const glm::dmat3& axes, const glm::dvec3& halfExtent) {
   std::vector<Plane> planes;
   for (int i = 0; i < 3; ++i) {
@@ -197,6 +218,20 @@ bool DistanceField::blocks(const Ray& ray, double tMin, double tMax) const {
   if (!box || box->exit <= tMin || box->enter >= tMax) return false;
   const double end = std::min(box->exit, tMax);
   return findEntry(ray, *box, tMin, end) < end;
+}
+
+std::optional<double> DistanceField::exit(const Ray& ray, double limit) const {
+  const std::optional<Span> box = clipToBox(ray);
+  if (!box || box->exit <= 0) return 0;
+  const double end = std::min(limit, box->exit);
+  const double t = march(ray, 0, end, -1);
+  return t < limit ? std::optional(t) : std::nullopt;
+}
+
+bool DistanceField::contains(const glm::dvec3& point) const {
+  for (int i = 0; i < 3; ++i)
+    if (point[i] < boxMin_[i] || point[i] > boxMax_[i]) return false;
+  return distance(point) < 0;
 }
 
 glm::dvec3 DistanceField::normal(const glm::dvec3& point) const {

@@ -28,6 +28,11 @@ public:
   // Whether a span begins in [tMin, tMax]; cheaper than firstSpan where the exit costs extra.
   virtual bool blocks(const Ray& ray, double tMin, double tMax) const;
 
+  // Where a ray that begins inside leaves, if that is nearer than `limit`; 0 when it begins outside.
+  virtual std::optional<double> exit(const Ray& ray, double limit) const;
+
+  virtual bool contains(const glm::dvec3& point) const;
+
   // Outward unit normal at a point of the surface.
   virtual glm::dvec3 normal(const glm::dvec3& point) const = 0;
 };
@@ -94,6 +99,8 @@ class DistanceField : public Solid {
 public:
   std::optional<Span> firstSpan(const Ray& ray, double tMin) const override;
   bool blocks(const Ray& ray, double tMin, double tMax) const override;
+  std::optional<double> exit(const Ray& ray, double limit) const override;
+  bool contains(const glm::dvec3& point) const override;
   glm::dvec3 normal(const glm::dvec3& point) const override;
 
   // At most the distance to the surface times a constant the field has been scaled for.

@@ -1,0 +1,276 @@
+// `pellucid truth`: a capture with its path-traced truth.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "capture/read.h"
+#include "capture/write.h"
+#include "cli/capture_options.h"
+#include "cli/commands.h"
+#include "cli/output.h"
+#include "cli/scene_hash.h"
+#include "cli/traced_light.h"
+#include "common/compare.h"
+#include "common/error.h"
+#include "common/progress.h"
+#include "common/whole_file.h"
+#include "raster/close_mesh.h"
+#include "reference/path_tracer/mesh_scene.h"
+#include "reference/path_tracer/solid_scene.h"
+#include "reference/path_tracer/truth.h"
+#include "scene/model.h"
+#include "scene/render.h"
+
+namespace pellucid::harness {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct Options {
+  CaptureOptions scene;
+  std::string output, like;
+  std::uint64_t samples = 64, seed = 1;
+  double seconds = 0;
+  int jobs = 0;
+  bool overwrite = false;
+};
+
+// The scene, seen twice: as a G-buffer, and as what rays meet.
+struct Scene {
+  Capture capture;
+  std::unique_ptr<SceneModel> solids;  // that the traced scene refers to
+  std::unique_ptr<reference::TraceScene> traced;
+  reference::Emitters emitters;
+  std::string hash;  // of everything that the truth depends on, but for samples and seed
+};
+
+void requireClosed(const Model& model) {
+  for (const OpenObject& open : openObjects(model)) {
+    const std::string where = "object " + std::to_string(open.object) + " (\"" + open.surface + "\")";
+    if (open.looseEdges > 0)
+      throw InputError(model.name, where,
+                       std::to_string(open.looseEdges) +
+                           " edges are not shared by two faces turned the same way; no light can be walked "
+                           "through it");
+    throw InputError(model.name, where,
+                     "has " + std::to_string(open.holes) + " holes; --fill-holes closes them");
+  }
+}
+
+void warn(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+}
+
+// So that the model's coordinates are those of a capture whose unit has this length.
+void scaleTo(double metersPerUnit, Model& model) {
+  const auto scale = static_cast<float>(model.metersPerUnit / metersPerUnit);
+  for (Vertex& vertex : model.vertices)
+    for (float& x : vertex.position) x *= scale;
+  model.metersPerUnit = metersPerUnit;
+}
+
+Scene modelScene(const Options& options, SceneHash& hash) {
+  CaptureModel model = captureModel(options.scene);
+  warn(model.warnings);
+  requireClosed(model.model);
+  for (const Surface& surface : model.model.surfaces) {
+    if (surface.material == 0) continue;
+    if (surface.alphaCutoff > 0)
+      warn({"surface \"" + surface.name + "\": the truth knows nothing of alpha and has no holes there"});
+    if (surface.normalMap >= 0)
+      warn({"surface \"" + surface.name +
+            "\": the truth's light falls on interpolated normals, the "
+            "capture's on the normal map"});
+  }
+  Scene scene;
+  if (!options.like.empty()) {
+    scene.capture = readCapture(options.like);
+    scaleTo(scene.capture.metersPerUnit, model.model);
+    hash.add(model.model);
+    scene.traced = reference::makeMeshScene(model.model);
+    return scene;
+  }
+  hash.add(model.model);
+  Device device({options.scene.device, false});
+  RasterResult result = rasterize(device, model.model, model.camera, model.raster);
+  warn(result.warnings);
+  scene.capture = std::move(result.capture);
+  scene.traced = reference::makeMeshScene(model.model);
+  return scene;
+}
+
+Scene proceduralScene(const Options& options, SceneHash& hash) {
+  const SceneParameters parameters = procedural(options.scene);
+  Scene scene;
+  scene.solids = std::make_unique<SceneModel>(sceneModel(parameters));
+  setIor(scene.solids->materials, options.scene);
+  hash.add(parameters);
+  scene.capture =
+      options.like.empty() ? renderCapture(*scene.solids, parameters, nullptr) : readCapture(options.like);
+  if (scene.capture.metersPerUnit != 0.001)
+    throw InputError(options.like, "metersPerUnit", "is not 0.001: a procedural scene is in millimeters");
+  scene.emitters.paint = scene.solids->paint;
+  scene.traced = reference::makeSolidScene(*scene.solids);
+  return scene;
+}
+
+Scene makeScene(const CLI::App& command, const Options& options) {
+  SceneHash hash;
+  Scene scene =
+      isProcedural(command, options.scene) ? proceduralScene(options, hash) : modelScene(options, hash);
+  scene.emitters.environment = environment(options.scene);
+  if (options.like.empty()) addTracedLight(scene.capture, *scene.traced, scene.emitters.environment);
+  scene.emitters.lights = scene.capture.lights;
+  for (Light& light : scene.emitters.lights) light.shadowMaps.clear();
+  hash.add(scene.emitters, scene.capture);
+  scene.hash = hash.text();
+  return scene;
+}
+
+// What is in the file already; nothing when it is not there.
+reference::TruthSums earlier(const Options& options, const Scene& scene) {
+  if (options.overwrite || !std::filesystem::exists(options.output)) return {};
+  const Capture old = readCapture(options.output);
+  const auto refuse = [&](const std::string& why) {
+    throw InputError(options.output, "truth", why + "; --overwrite begins anew");
+  };
+  if (!old.truth || old.truth->scene.empty() || old.truth->standardError.empty())
+    refuse("the file has none that this command made");
+  if (old.truth->scene != scene.hash) refuse("was made of another scene or with other options");
+  if (old.truth->seed != options.seed)
+    refuse("was made with --truth-seed " + std::to_string(old.truth->seed) + ", not " +
+           std::to_string(options.seed));
+  return reference::sumsOf(*old.truth);
+}
+
+std::string noiseText(const Truth& truth, const std::vector<std::uint8_t>& mask, int box) {
+  char text[96];
+  const std::vector<double> noise = relativeNoise(truth.image, truth.standardError, mask, box);
+  if (noise.empty()) return "no block wholly of surface";
+  std::snprintf(text, sizeof text, "%.2f %.2f %.2f %%", 100 * noise[0], 100 * noise[1], 100 * noise[2]);
+  return text;
+}
+
+// Traces until `samples` more are there or the time is over, and writes the file now and then: what is
+// killed goes on from there.
+class Run {
+public:
+  Run(const Options& options, Scene& scene, reference::TruthSums sums)
+      : options_(options), scene_(scene), sums_(std::move(sums)), begin_(Clock::now()), written_(begin_) {}
+
+  void trace(const reference::TruthTracer& tracer) {
+    const std::uint64_t first = sums_.samples;
+    const bool timed = options_.seconds > 0;
+    const auto rows = static_cast<std::uint64_t>(scene_.capture.height);
+    Progress progress("tracing",
+                      timed ? static_cast<std::uint64_t>(1000 * options_.seconds) : rows * options_.samples);
+    std::uint64_t millisecondsShown = 0;
+    while (timed ? seconds(begin_) < options_.seconds || sums_.samples == first
+                 : sums_.samples - first < options_.samples) {
+      const std::uint64_t left = options_.samples - (sums_.samples - first);
+      const std::uint64_t count = timed ? kPass : std::min(kPass, left);
+      tracer.trace(sums_, count, options_.seed, options_.jobs, [&] {
+        if (!timed) progress.advance(count);
+      });
+      if (timed) {
+        const auto now = static_cast<std::uint64_t>(1000 * seconds(begin_));
+        progress.advance(now - millisecondsShown);
+        millisecondsShown = now;
+      }
+      progress.note(noiseText(reference::truthOf(sums_), scene_.capture.material, 8) + " noise of 8x8");
+      if (seconds(written_) > kWriteEvery) write();
+    }
+    write();
+  }
+
+  const reference::TruthSums& sums() const { return sums_; }
+  double seconds() const { return seconds(begin_); }
+
+private:
+  static constexpr std::uint64_t kPass = 8;  // samples between looks at the clock
+  static constexpr double kWriteEvery = 60;  // seconds
+
+  static double seconds(Clock::time_point since) {
+    return std::chrono::duration<double>(Clock::now() - since).count();
+  }
+  void write() {
+    Truth truth = reference::truthOf(sums_);
+    truth.seed = options_.seed;
+    truth.scene = scene_.hash;
+    scene_.capture.truth = std::move(truth);
+    writeWhole(options_.output,
+               [&](const auto& file) { writeCapture(scene_.capture, file, ColorFormat::Float); });
+    written_ = Clock::now();
+  }
+
+  const Options& options_;
+  Scene& scene_;
+  reference::TruthSums sums_;
+  Clock::time_point begin_, written_;
+};
+
+// What a capture given by --like says itself.
+void refuseScene(const CLI::App& command) {
+  for (const char* name : {"--size", "--camera", "--view", "--light", "--material", "--ior", "--environment",
+                           "--shadow-size", "--projection"})
+    if (command.count(name) > 0)
+      throw UsageError(std::string(name) +
+                       ": --like takes camera, size, lights and materials of the capture");
+}
+
+void truth(const CLI::App& command, const Options& options) {
+  if (options.output.empty()) throw UsageError("truth: -o is required");
+  requireExr("-o", options.output);
+  if (!options.like.empty()) refuseScene(command);
+  Scene scene = makeScene(command, options);
+  const std::vector<reference::TraceMedium> media =
+      reference::traceMedia(scene.capture.materials, scene.capture.name);
+  reference::TruthSums sums = earlier(options, scene);
+  const std::uint64_t before = sums.samples;
+  const reference::VisibleSurface surface = reference::visibleSurface(scene.capture, *scene.traced);
+  const auto pixels = static_cast<std::size_t>(std::count_if(surface.points.begin(), surface.points.end(),
+                                                             [](const auto& p) { return p.has_value(); }));
+  if (pixels == 0)
+    throw InputError(scene.capture.name, "material", "no pixel has one: there is nothing to trace");
+  if (surface.missed > 0)
+    warn({std::to_string(surface.missed) + " pixels show a surface that no ray met; their truth is 0"});
+  Run run(options, scene, std::move(sums));
+  run.trace(reference::TruthTracer(scene.capture, surface, *scene.traced, media, scene.emitters));
+  const std::uint64_t added = run.sums().samples - before;
+  std::printf("%s: %zu pixels, %llu samples each, %.0f paths a second\n", options.output.c_str(), pixels,
+              static_cast<unsigned long long>(run.sums().samples),
+              static_cast<double>(added) * static_cast<double>(pixels) / run.seconds());
+  for (const int box : {1, 4, 8})
+    std::printf("noise of %dx%d averages, R G B: %s\n", box, box,
+                noiseText(*scene.capture.truth, scene.capture.material, box).c_str());
+}
+
+}  // namespace
+
+void addTruthCommand(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "truth", "Make a capture with the light that paths through its bodies bring, and its noise");
+  command->add_option("-o,--output", options->output, "EXR to write; one that is there gets more samples");
+  const auto samples = command->add_option("--spp", options->samples, "samples to add to each pixel")
+                           ->check(CLI::Range(1, 1 << 24))
+                           ->capture_default_str();
+  command->add_option("--seconds", options->seconds, "add samples for so long instead")
+      ->check(CLI::Range(0.001, 1e7))
+      ->excludes(samples);
+  command->add_option("--like", options->like,
+                      "capture of this model or scene, made anywhere: its camera, G-buffer, lights and "
+                      "materials; the file gets them with another truth");
+  command->add_option("--truth-seed", options->seed, "of the random numbers of paths")->capture_default_str();
+  command->add_option("--jobs", options->jobs, "threads; 0: all. The result does not depend on them")
+      ->check(CLI::Range(0, 4096));
+  command->add_flag("--overwrite", options->overwrite, "begin anew where the file is there");
+  addCaptureOptions(*command, options->scene);
+  command->callback([options, command] { truth(*command, *options); });
+}
+
+}  // namespace pellucid::harness

@@ -1,0 +1,27 @@
+// What lights a traced scene.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "capture/capture.h"
+#include "reference/path_tracer/random.h"
+#include "reference/path_tracer/trace_scene.h"
+#include "scene/environment.h"
+
+namespace pellucid::harness::reference {
+
+struct Emitters {
+  std::vector<Light> lights;  // world, as in captures; those with a radius are spheres
+  std::optional<Environment> environment;
+  // Irradiance by world position in place of both: painted test patterns.
+  std::function<glm::dvec3(const glm::dvec3&)> paint;
+};
+
+// An unbiased estimate of the irradiance that arrives at a point of a surface, R, G, B: shadow rays to every
+// light, to a random point of those that are spheres, and one ray into the environment.
+glm::dvec3 sampleIrradiance(const TraceScene& scene, const Emitters& emitters, const SurfacePoint& point,
+                            PathRandom& random);
+
+}  // namespace pellucid::harness::reference

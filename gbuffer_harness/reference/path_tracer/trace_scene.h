@@ -1,0 +1,51 @@
+// What paths are traced through: closed bodies, some filled with a medium, some opaque. Lengths in mm, in
+// coordinates of the scene's own.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+
+#include "scene/solid.h"
+
+namespace pellucid::harness::reference {
+
+struct SurfacePoint {
+  glm::dvec3 position;
+  glm::dvec3 face;        // outward unit normal of the surface itself
+  glm::dvec3 normal;      // outward unit normal to shade with; interpolated on meshes
+  int body;               // to hand to exit()
+  std::uint8_t material;  // as in the material image; 0: opaque
+};
+
+class TraceScene {
+public:
+  virtual ~TraceScene() = default;
+
+  // First surface that the ray meets from outside, at a distance >= `from`.
+  virtual std::optional<SurfacePoint> first(const Ray& ray, double from) const = 0;
+
+  // Whether anything stands within `distance` of the ray's origin.
+  virtual bool occluded(const Ray& ray, double distance) const = 0;
+
+  // Where a ray that starts inside a body leaves it, if that is nearer than `limit`.
+  virtual std::optional<SurfacePoint> exit(int body, const Ray& ray, double limit) const = 0;
+
+  // How far rays start off a surface: what rounding may shift a point by.
+  virtual double offset() const = 0;
+
+  // World units are scaled about `center()`, so that a scene far from the origin keeps its digits.
+  glm::dvec3 fromWorld(const glm::dvec3& world) const { return (world - center_) * millimetersPerUnit_; }
+  glm::dvec3 toWorld(const glm::dvec3& point) const { return point / millimetersPerUnit_ + center_; }
+  double millimetersPerUnit() const { return millimetersPerUnit_; }
+
+protected:
+  TraceScene(const glm::dvec3& center, double millimetersPerUnit)
+      : center_(center), millimetersPerUnit_(millimetersPerUnit) {}
+
+private:
+  glm::dvec3 center_;
+  double millimetersPerUnit_;  // > 0
+};
+
+}  // namespace pellucid::harness::reference

@@ -1,0 +1,100 @@
+#include "reference/path_tracer/truth.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/error.h"
+#include "common/parallel.h"
+#include "reference/path_tracer/walk.h"
+
+namespace pellucid::harness::reference {
+
+TruthTracer::TruthTracer(const Capture& capture, const VisibleSurface& surface, const TraceScene& scene,
+                         const std::vector<TraceMedium>& media, const Emitters& emitters)
+    : surface_(surface),
+      scene_(scene),
+      media_(media),
+      emitters_(emitters),
+      material_(capture.material),
+      scale_(capture.material.size()) {
+  std::vector<glm::dvec3> rho;
+  for (std::size_t i = 0; i < media.size(); ++i) {
+    rho.push_back(halfSpaceReflectance(media[i]));
+    if (!glm::all(glm::greaterThan(rho[i], glm::dvec3(0))))
+      throw InputError(capture.name, "materials[" + std::to_string(i) + "]",
+                       "scatters nothing back in one of the channels");
+  }
+  for (std::size_t i = 0; i < scale_.size(); ++i) {
+    if (material_[i] == 0) continue;
+    glm::dvec3 albedo(1);
+    if (!capture.albedo.empty())
+      for (int c = 0; c < 3; ++c) albedo[c] = capture.albedo.data[3 * i + static_cast<std::size_t>(c)];
+    scale_[i] = albedo / rho[material_[i] - 1u];
+  }
+}
+
+glm::dvec3 TruthTracer::sample(std::size_t pixel, std::uint64_t number, std::uint64_t seed) const {
+  PathRandom random(seed, pixel, number);
+  const TraceMedium& medium = media_[material_[pixel] - 1u];
+  const std::optional<WalkExit> exit = walk(scene_, medium, *surface_.points[pixel], random);
+  // Light does not enter where the body is opaque.
+  if (!exit || exit->surface.material == 0) return glm::dvec3(0);
+  return scale_[pixel] * exit->weight * sampleIrradiance(scene_, emitters_, exit->surface, random);
+}
+
+void TruthTracer::trace(TruthSums& sums, std::uint64_t count, std::uint64_t seed, int jobs,
+                        const std::function<void()>& progress) const {
+  sums.width = surface_.width;
+  sums.height = surface_.height;
+  sums.sum.resize(scale_.size(), glm::dvec3(0));
+  sums.sumOfSquares.resize(scale_.size(), glm::dvec3(0));
+  const auto width = static_cast<std::size_t>(surface_.width);
+  parallelRows(surface_.height, jobs, [&](int y) {
+    const std::size_t begin = static_cast<std::size_t>(y) * width;
+    for (std::size_t i = begin; i < begin + width; ++i) {
+      if (!surface_.points[i]) continue;
+      for (std::uint64_t s = sums.samples; s < sums.samples + count; ++s) {
+        const glm::dvec3 value = sample(i, s, seed);
+        sums.sum[i] += value;
+        sums.sumOfSquares[i] += value * value;
+      }
+    }
+    progress();
+  });
+  sums.samples += count;
+}
+
+Truth truthOf(const TruthSums& sums) {
+  Truth truth;
+  truth.image = truth.standardError = Image(sums.width, sums.height, 3);
+  truth.samples = sums.samples;
+  const double n = static_cast<double>(std::max<std::uint64_t>(sums.samples, 1));
+  for (std::size_t i = 0; i < sums.sum.size(); ++i)
+    for (int c = 0; c < 3; ++c) {
+      const double mean = sums.sum[i][c] / n;
+      const double variance = std::max(0.0, sums.sumOfSquares[i][c] / n - mean * mean);
+      const std::size_t k = 3 * i + static_cast<std::size_t>(c);
+      truth.image.data[k] = static_cast<float>(mean);
+      truth.standardError.data[k] = static_cast<float>(std::sqrt(variance / std::max(1.0, n - 1)));
+    }
+  return truth;
+}
+
+TruthSums sumsOf(const Truth& truth) {
+  TruthSums sums{truth.image.width, truth.image.height, truth.samples, {}, {}};
+  const double n = static_cast<double>(truth.samples);
+  for (std::size_t i = 0; i < truth.image.pixels(); ++i) {
+    glm::dvec3 sum, squares;
+    for (int c = 0; c < 3; ++c) {
+      const double mean = truth.image.data[3 * i + static_cast<std::size_t>(c)];
+      const double error = truth.standardError.data[3 * i + static_cast<std::size_t>(c)];
+      sum[c] = n * mean;
+      squares[c] = n * (mean * mean + error * error * std::max(1.0, n - 1));
+    }
+    sums.sum.push_back(sum);
+    sums.sumOfSquares.push_back(squares);
+  }
+  return sums;
+}
+
+}  // namespace pellucid::harness::reference

@@ -1,0 +1,28 @@
+// The surface points that a capture's pixels show.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "capture/capture.h"
+#include "reference/path_tracer/emitters.h"
+#include "reference/path_tracer/trace_scene.h"
+
+namespace pellucid::harness::reference {
+
+struct VisibleSurface {
+  int width = 0, height = 0;
+  std::vector<std::optional<SurfacePoint>> points;  // row 0 first; absent: no material
+  std::size_t missed = 0;                           // pixels with a material where no ray met the surface
+};
+
+// Rays through the centers of the capture's pixels that have a material: where its G-buffer was sampled.
+VisibleSurface visibleSurface(const Capture& capture, const TraceScene& scene);
+
+// Irradiance (R, G, B) at each pixel, the mean of `count` samples: for lights that a rasterizer cannot draw.
+// 0 where there is no point. Same input, same bits.
+Image tracedIrradiance(const VisibleSurface& surface, const TraceScene& scene, const Emitters& emitters,
+                       int count);
+
+}  // namespace pellucid::harness::reference

@@ -1,0 +1,21 @@
+// Light from all around.
+#pragma once
+
+#include <array>
+
+namespace pellucid::harness {
+
+// Radiance (R, G, B, linear) that is linear in y of the direction it comes from: `up` from +y, `down` from
+// -y.
+struct Environment {
+  std::array<double, 3> up = {1, 1, 1}, down = {1, 1, 1};
+
+  // y: of a unit direction, -1 .. 1.
+  std::array<double, 3> radiance(double y) const {
+    std::array<double, 3> result;
+    for (std::size_t c = 0; c < 3; ++c) result[c] = down[c] + (up[c] - down[c]) * (0.5 + 0.5 * y);
+    return result;
+  }
+};
+
+}  // namespace pellucid::harness
