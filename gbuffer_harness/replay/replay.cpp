@@ -37,8 +37,8 @@ public:
       else
         output_->upload(composited(capture));
     }
-    PellucidImageNeed needs[PELLUCID_MAX_TRANSIENTS + 1];  // and a history
-    uint32_t count = PELLUCID_MAX_TRANSIENTS + 1;
+    PellucidImageNeed needs[kMaxImageNeeds];
+    uint32_t count = kMaxImageNeeds;
     requireOk(pellucidGetImageNeeds(&f, &count, needs), f, capture.name);
     for (uint32_t i = 0; i < count; ++i) {
       if (needs[i].persistent) {
