@@ -93,6 +93,7 @@ Light parseLight(const std::string& text, const Model& model, const ModelCamera&
 
 void captureGltf(const GltfCapture& options) {
   GltfScene scene = loadGltf(options.model, options.gltf);
+  for (const std::string& note : scene.notes) std::fprintf(stderr, "note: %s\n", note.c_str());
   warn(scene.warnings);
   const ModelCamera camera = chooseCamera(options, scene.model);
   std::vector<std::string> lights = options.lights;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "pellucid/pellucid_material.h"
@@ -21,6 +22,10 @@ constexpr double kDarkest = 1e-4, kClearest = 0.999;
 constexpr double kNoDiffusion = 1e-3;
 // T(d) has to fall to 0 in the end, 1/mm.
 constexpr double kSlowestDecay = 1e-6;
+
+// Base colors that nobody chose: glTF's default, and that of Blender's Principled BSDF, which its exporter
+// writes.
+constexpr double kDefaultBaseColors[] = {1, 0.8};
 
 // Far steeper than any map, and its square still is a float.
 constexpr double kLargestNormalScale = 1000;
@@ -178,6 +183,15 @@ void setMedium(GltfMaterial& result, const Volume& volume, const std::string& na
   }
 }
 
+bool hasColor(const GltfMaterial& material) {
+  const Rgb& color = material.surface.baseColor;
+  const auto isGray = [&](double gray) {
+    return std::all_of(color.begin(), color.end(), [&](double v) { return std::abs(v - gray) < 1e-6; });
+  };
+  return material.texture >= 0 ||
+         std::none_of(std::begin(kDefaultBaseColors), std::end(kDefaultBaseColors), isGray);
+}
+
 const std::string* presetFor(const std::string& name, const GltfOptions& options) {
   for (const std::string& key : {name, std::string("*")})
     if (const auto found = options.presets.find(key); found != options.presets.end()) return &found->second;
@@ -238,6 +252,13 @@ GltfMaterial readMaterial(const GltfDocument& document, int index, const GltfOpt
     if (pellucidFindPreset(preset->c_str(), &desc) != PELLUCID_OK)
       document.fail("material \"" + name + "\"", "there is no preset \"" + *preset + "\"");
     result.medium = PresetMaterial{*preset};
+    if (!hasColor(result)) {
+      PellucidMaterial compiled;
+      const PellucidResult outcome = pellucidCompileMaterial(&desc, &compiled, nullptr, nullptr, nullptr);
+      if (outcome != PELLUCID_OK) document.fail("material \"" + name + "\"", pellucidResultName(outcome));
+      result.reflectance.emplace();
+      std::copy_n(compiled.reflectance, 3, result.reflectance->begin());
+    }
   }
   return result;
 }

@@ -582,6 +582,11 @@ TEST_F(Raster, CommandMakesACaptureOfAFile) {
   std::filesystem::remove_all(folder);
   EXPECT_NE(said.find("12 triangles"), std::string::npos) << said;
   EXPECT_NE(warned.find("no lights"), std::string::npos) << warned;
+  // skin1's reflectance, half floats.
+  EXPECT_NE(warned.find("note: material \"default\" has no color in the file"), std::string::npos) << warned;
+  const PellucidMaterial compiled = compileMaterial(PresetMaterial{"skin1"}, "test");
+  for (int i = 0; i < 3; ++i)
+    EXPECT_NEAR(c.albedo.at(16, 16)[i], compiled.reflectance[i], 1e-3 * compiled.reflectance[i]) << i;
   EXPECT_EQ(c.metersPerUnit, 0.01);
   EXPECT_NEAR(planar(c, c.backDepth, 16, 16) - planar(c, c.frontDepth, 16, 16), 1, 1e-5);
   ASSERT_EQ(c.lights.size(), 1u);
