@@ -117,7 +117,7 @@ void captureGltf(const Options& options) {
   std::vector<double> angles = {0};
   for (int i = 1; i < turns; ++i) angles.push_back(2 * std::numbers::pi * i / turns);
   CaptureModel scene = captureModel(options.scene, angles);
-  warn(scene.warnings);
+  say(scene);
 
   const std::optional<Environment> sky = environment(options.scene);
   const std::unique_ptr<reference::TraceScene> traced =

@@ -1,5 +1,6 @@
 #include "cli/capture_options.h"
 
+#include <cstdio>
 #include <map>
 #include <numbers>
 
@@ -184,11 +185,16 @@ SceneParameters procedural(const CaptureOptions& options) {
   return scene;
 }
 
+void say(const CaptureModel& model) {
+  for (const std::string& note : model.notes) std::fprintf(stderr, "note: %s\n", note.c_str());
+  for (const std::string& warning : model.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+}
+
 void setIor(std::vector<MaterialSource>& materials, const CaptureOptions& options) {
   if (!options.ior) return;
   for (std::size_t i = 0; i < materials.size(); ++i)
-    materials[i] = withIor(materials[i], *options.ior,
-                           options.scene.name + ": materials[" + std::to_string(i) + "]");
+    materials[i] =
+        withIor(materials[i], *options.ior, options.scene.name + ": materials[" + std::to_string(i) + "]");
 }
 
 std::optional<Environment> environment(const CaptureOptions& options) {
@@ -228,6 +234,7 @@ CaptureModel captureModel(const CaptureOptions& options, const std::vector<doubl
   gltf.ior = options.ior.value_or(0);
   GltfScene scene = loadGltf(options.model, gltf);
   result.model = std::move(scene.model);
+  result.notes = std::move(scene.notes);
   result.warnings = std::move(scene.warnings);
   if (options.fillHoles) {
     const std::size_t filled = fillHoles(result.model);

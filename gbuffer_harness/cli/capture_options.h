@@ -40,8 +40,11 @@ struct CaptureModel {
   Model model;
   ModelCamera camera;
   RasterOptions raster;
-  std::vector<std::string> warnings;  // sentences for a person
+  std::vector<std::string> notes, warnings;  // sentences for a person
 };
+
+// Prints both on stderr.
+void say(const CaptureModel& model);
 
 // Adds all of them to a command, but for its output.
 void addCaptureOptions(CLI::App& command, CaptureOptions& options);

@@ -186,13 +186,11 @@ void checkPixels(const Capture& capture, const Camera& camera, std::vector<std::
   warnings.count(badAlbedo, total, "material pixels have an albedo outside 0..1");
 }
 
-// The module's own findings about the frame.
+// The module's own findings about the frame that a replay without options records.
 void checkConventions(const Capture& capture, const std::vector<PellucidMaterial>& materials,
                       std::vector<std::string>& sentences) {
   FrameData data;
   makeFrame(capture, materials, {}, data);
-  // Transients are the replay's business: a view stands in for each.
-  std::fill(std::begin(data.frame.transients), std::end(data.frame.transients), data.frame.output);
   pellucidValidateFrame(
       &data.frame,
       [](void* user, PellucidSeverity severity, const char* field, const char* message) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <mutex>
+#include <optional>
 
 #include "capture/exr.h"
 #include "capture/material.h"
@@ -27,12 +28,14 @@ namespace {
 
 constexpr const char* kSettingsAttribute = "pellucid.settings";
 constexpr const char* kDebugAttribute = "pellucid.debug";
+constexpr uint32_t kDefaultRepeat = 3;
 
 struct Options {
   std::string input, output, device, triptych, frames;
   bool png = false, overwrite = false;
   float exposure = 0;
   int jobs = 2;
+  std::optional<uint32_t> repeat;
   ManifestPreset preset = ManifestPreset::None;
   SettingsOptions settings;
 };
@@ -41,16 +44,23 @@ void multiply(Image& image, const Image& by) {
   for (size_t i = 0; i < image.data.size() && !by.empty(); ++i) image.data[i] *= by.data[i];
 }
 
-void print(const Device& device, const ReplayResult& result) {
+void print(const Device& device, const ReplayResult& result, uint32_t repeat) {
   std::printf("%s\n%-22s %-22s %12s %14s %10s\n", device.description().c_str(), "dispatch", "pipeline",
-              "groups", "modeled bytes", "time us");
+              "groups", "modeled bytes", repeat > 0 ? "time us" : "");
+  double sum = 0;
   for (uint32_t i = 0; i < result.plan.dispatchCount; ++i) {
     const PellucidDispatch& d = result.plan.dispatches[i];
     const std::string groups =
         std::to_string(d.groups[0]) + "x" + std::to_string(d.groups[1]) + "x" + std::to_string(d.groups[2]);
-    std::printf("%-22s %-22s %12s %14llu %10.1f\n", d.name, pellucidPipelineName(d.pipeline), groups.c_str(),
-                static_cast<unsigned long long>(d.modeledBytes), result.times[i].microseconds);
+    std::printf("%-22s %-22s %12s %14llu", d.name, pellucidPipelineName(d.pipeline), groups.c_str(),
+                static_cast<unsigned long long>(d.modeledBytes));
+    if (repeat > 0) std::printf(" %10.1f", result.times[i].microseconds);
+    std::printf("\n");
+    if (repeat > 0) sum += result.times[i].microseconds;
   }
+  if (repeat > 0)
+    std::printf("%-22s %61.1f\ntimes: median of %u %s after a first one, which compiles shaders\n", "all",
+                sum, repeat, repeat == 1 ? "frame" : "frames");
   for (uint32_t i = 0; i < result.plan.skipCount; ++i)
     std::printf("skipped: %u x %s (%s)\n", result.plan.skips[i].count, result.plan.skips[i].what,
                 result.plan.skips[i].reason);
@@ -102,8 +112,9 @@ void replayOne(const Options& options, const ReplaySettings& settings) {
   requireNearestDistance(capture, materials, settings);
   Device device({options.device, false});
   Replayer replayer(device);
-  const ReplayResult result = replayer.run(capture, materials, settings);
-  print(device, result);
+  const uint32_t repeat = options.repeat.value_or(kDefaultRepeat);
+  const ReplayResult result = replayer.run(capture, materials, settings, repeat);
+  print(device, result, repeat);
 
   std::filesystem::path output = options.output;
   if (output.empty()) output = std::filesystem::path(options.input).stem().string() + ".pellucid.exr";
@@ -197,6 +208,7 @@ void replay(const Options& options) {
     return replayOne(options, settings);
   }
   if (!options.triptych.empty()) throw UsageError("--triptych shows one capture, not --frames");
+  if (options.repeat) throw UsageError("--repeat times one capture, not --frames");
   if (options.output.empty()) throw UsageError("--frames: -o with #### is required");
   if (wantsPng(options, settings) && !(options.exposure > 0))
     throw UsageError("--frames: PNGs need --exposure, one for the whole sequence");
@@ -220,6 +232,12 @@ void addReplayCommand(CLI::App& app) {
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
   command->add_flag("--overwrite", options->overwrite, "of a sequence: make finished frames again");
+  command
+      ->add_option(
+          "--repeat", options->repeat,
+          "frames that are timed, after a first one that compiles shaders: the median is printed; 0: "
+          "no times; default: 3, without --frames")
+      ->check(CLI::Range(0, 1000));
   command->add_flag("--png", options->png, "also write a PNG beside the EXR (--debug always does)");
   command->add_option("--triptych", options->triptych, "write a PNG of before | translucency | after");
   command->add_option("--exposure", options->exposure, "factor for PNGs; default: from the picture")

@@ -75,7 +75,7 @@ void scaleTo(double metersPerUnit, Model& model) {
 
 Scene modelScene(const Options& options, SceneHash& hash) {
   CaptureModel model = captureModel(options.scene);
-  warn(model.warnings);
+  if (options.like.empty()) say(model);
   requireClosed(model.model);
   for (const Surface& surface : model.model.surfaces) {
     if (surface.material == 0) continue;
@@ -90,6 +90,7 @@ Scene modelScene(const Options& options, SceneHash& hash) {
   if (!options.like.empty()) {
     scene.capture = readCapture(options.like);
     scaleTo(scene.capture.metersPerUnit, model.model);
+    for (Surface& surface : model.model.surfaces) surface.material = 1;  // the capture says which, by pixel
     hash.add(model.model);
     scene.traced = reference::makeMeshScene(model.model);
     return scene;

@@ -12,17 +12,21 @@ namespace {
 
 constexpr int kBarWidth = 30;
 
+bool onTerminal() { return isatty(STDERR_FILENO) == 1; }
+
+void eraseLine() { std::fputs("\r\x1b[K", stderr); }
+
 }  // namespace
 
 Progress::Progress(std::string label, std::uint64_t total)
     : label_(std::move(label)),
       total_(std::max<std::uint64_t>(total, 1)),
-      terminal_(isatty(STDERR_FILENO) == 1),
+      terminal_(onTerminal()),
       start_(std::chrono::steady_clock::now()),
       drawn_(start_) {}
 
 Progress::~Progress() {
-  if (terminal_) std::fputs("\r\x1b[K", stderr);
+  if (terminal_) eraseLine();
 }
 
 void Progress::advance(std::uint64_t steps) {
@@ -50,6 +54,16 @@ void Progress::draw(std::uint64_t done) {
                std::string(filled, '#').c_str(), std::string(kBarWidth - filled, '.').c_str(), 100 * fraction,
                left, note_.empty() ? "" : ", ", note_.c_str());
   std::fflush(stderr);
+}
+
+ProgressLine::ProgressLine(const std::string& sentence) : terminal_(onTerminal()) {
+  if (!terminal_) return;
+  std::fprintf(stderr, "\r%s\x1b[K", sentence.c_str());
+  std::fflush(stderr);
+}
+
+ProgressLine::~ProgressLine() {
+  if (terminal_) eraseLine();
 }
 
 }  // namespace pellucid::harness

@@ -1,4 +1,4 @@
-// A progress bar for long work.
+// What long work shows on a terminal.
 #pragma once
 
 #include <atomic>
@@ -34,6 +34,18 @@ private:
   std::mutex drawing_;  // of what follows
   std::string note_;
   std::chrono::steady_clock::time_point drawn_;
+};
+
+// A sentence on stderr while it is in scope, for work without steps to count; only when stderr is a terminal.
+class ProgressLine {
+public:
+  explicit ProgressLine(const std::string& sentence);
+  ~ProgressLine();
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
+private:
+  const bool terminal_;
 };
 
 }  // namespace pellucid::harness

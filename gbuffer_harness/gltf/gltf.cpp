@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <glm/glm.hpp>
 #include <limits>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -38,6 +40,15 @@ Pose poseOf(const glm::dmat4& world) {
   return {glm::dvec3(world[3]), glm::dvec3(world[1]), glm::dvec3(world[2])};
 }
 
+// A glTF material, read.
+struct Drawn {
+  Surface surface;
+  TexCoords texCoords;
+  std::optional<std::array<double, 3>> reflectance;  // see GltfMaterial
+  // Into Model::surfaces: of primitives in the file's color, and in that of the reflectance.
+  std::optional<std::uint32_t> colored, reflecting;
+};
+
 class Loader {
 public:
   Loader(const GltfDocument& document, const GltfOptions& options) : document_(document), options_(options) {}
@@ -49,16 +60,16 @@ private:
   void addMesh(std::size_t node, const glm::dmat4& world);
   void addCamera(std::size_t node, const glm::dmat4& world);
   void addLight(std::size_t node, const glm::dmat4& world);
-  std::uint32_t surfaceOf(int material);
+  Drawn& read(int material);
+  std::uint32_t surfaceOf(Drawn& drawn, bool hasVertexColors);
   int textureOf(int texture, bool isNormalMap, const std::string& field);
   void checkPresetNames();
 
   const GltfDocument& document_;
   const GltfOptions& options_;
   GltfScene scene_;
-  std::map<int, std::uint32_t> surfaces_;         // by glTF material
+  std::map<int, Drawn> drawn_;                    // by glTF material
   std::map<std::pair<int, bool>, int> textures_;  // by glTF texture and whether it is a normal map
-  std::map<int, TexCoords> texCoords_;            // by glTF material
 };
 
 void Loader::checkExtensions() {
@@ -93,8 +104,8 @@ int Loader::textureOf(int texture, bool isNormalMap, const std::string& field) {
   return entry->second;
 }
 
-std::uint32_t Loader::surfaceOf(int material) {
-  if (const auto known = surfaces_.find(material); known != surfaces_.end()) return known->second;
+Drawn& Loader::read(int material) {
+  if (const auto known = drawn_.find(material); known != drawn_.end()) return known->second;
   Model& model = scene_.model;
   GltfMaterial read = readMaterial(document_, material, options_, scene_.warnings);
   const std::string field = "materials[" + std::to_string(material) + "].";
@@ -107,10 +118,31 @@ std::uint32_t Loader::surfaceOf(int material) {
     model.materials.push_back(*read.medium);
     read.surface.material = static_cast<std::uint8_t>(model.materials.size());
   }
-  texCoords_[material] = {read.texture >= 0 ? read.texCoord : -1,
-                          read.normalTexture >= 0 ? read.normalTexCoord : -1};
-  model.surfaces.push_back(read.surface);
-  return surfaces_[material] = static_cast<std::uint32_t>(model.surfaces.size() - 1);
+  Drawn& drawn = drawn_[material];
+  drawn.surface = read.surface;
+  drawn.texCoords = {read.texture >= 0 ? read.texCoord : -1,
+                     read.normalTexture >= 0 ? read.normalTexCoord : -1};
+  drawn.reflectance = read.reflectance;
+  return drawn;
+}
+
+std::uint32_t Loader::surfaceOf(Drawn& drawn, bool hasVertexColors) {
+  const bool reflecting = drawn.reflectance && !hasVertexColors;
+  std::optional<std::uint32_t>& index = reflecting ? drawn.reflecting : drawn.colored;
+  if (index) return *index;
+  Model& model = scene_.model;
+  index = static_cast<std::uint32_t>(model.surfaces.size());
+  model.surfaces.push_back(drawn.surface);
+  if (reflecting) {
+    const std::array<double, 3>& rho = *drawn.reflectance;
+    model.surfaces.back().baseColor = rho;
+    char numbers[64];
+    std::snprintf(numbers, sizeof numbers, "%.3g %.3g %.3g", rho[0], rho[1], rho[2]);
+    scene_.notes.push_back("material \"" + drawn.surface.name +
+                           "\" has no color in the file: its albedo is " + numbers +
+                           ", the reflectance of its medium");
+  }
+  return *index;
 }
 
 void Loader::addMesh(std::size_t node, const glm::dmat4& world) {
@@ -132,11 +164,14 @@ void Loader::addMesh(std::size_t node, const glm::dmat4& world) {
       document_.fail(field + ".targets", "morph targets in use are not supported; bake the shape");
     if (primitive.material != -1)
       document_.index(primitive.material, document_.model.materials.size(), field + ".material", "materials");
-    const std::uint32_t surface = surfaceOf(primitive.material);
+    Drawn& drawn = read(primitive.material);
     const auto first = static_cast<std::uint32_t>(model.indices.size());
-    if (!appendPrimitive(document_, primitive, field, world, texCoords_[primitive.material], model,
-                         scene_.warnings))
+    const auto firstVertex = static_cast<std::ptrdiff_t>(model.vertices.size());
+    if (!appendPrimitive(document_, primitive, field, world, drawn.texCoords, model, scene_.warnings))
       continue;
+    const bool hasVertexColors = std::any_of(model.vertices.begin() + firstVertex, model.vertices.end(),
+                                             [](const Vertex& v) { return v.color != Vertex{}.color; });
+    const std::uint32_t surface = surfaceOf(drawn, hasVertexColors);
     model.parts.push_back({first, static_cast<std::uint32_t>(model.indices.size()) - first, surface,
                            static_cast<std::uint32_t>(node)});
   }

@@ -21,6 +21,7 @@ struct GltfOptions {
 struct GltfScene {
   Model model;
   std::vector<std::string> materialNames;  // as `presets` takes them
+  std::vector<std::string> notes;          // sentences for a person: what stands in for what the file lacks
   std::vector<std::string> warnings;       // sentences for a person: what is drawn otherwise than asked
 };
 

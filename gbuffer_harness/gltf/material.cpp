@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "capture/material.h"
@@ -22,6 +23,10 @@ constexpr double kDarkest = 1e-4, kClearest = 0.999;
 constexpr double kNoDiffusion = 1e-3;
 // T(d) has to fall to 0 in the end, 1/mm.
 constexpr double kSlowestDecay = 1e-6;
+
+// Base colors that nobody chose: glTF's default, and that of Blender's Principled BSDF, which its exporter
+// writes.
+constexpr double kDefaultBaseColors[] = {1, 0.8};
 
 // Far steeper than any map, and its square still is a float.
 constexpr double kLargestNormalScale = 1000;
@@ -179,6 +184,15 @@ void setMedium(GltfMaterial& result, const Volume& volume, const std::string& na
   }
 }
 
+bool hasColor(const GltfMaterial& material) {
+  const Rgb& color = material.surface.baseColor;
+  const auto isGray = [&](double gray) {
+    return std::all_of(color.begin(), color.end(), [&](double v) { return std::abs(v - gray) < 1e-6; });
+  };
+  return material.texture >= 0 ||
+         std::none_of(std::begin(kDefaultBaseColors), std::end(kDefaultBaseColors), isGray);
+}
+
 const std::string* presetFor(const std::string& name, const GltfOptions& options) {
   for (const std::string& key : {name, std::string("*")})
     if (const auto found = options.presets.find(key); found != options.presets.end()) return &found->second;
@@ -240,8 +254,13 @@ GltfMaterial readMaterial(const GltfDocument& document, int index, const GltfOpt
       document.fail("material \"" + name + "\"", "there is no preset \"" + *preset + "\"");
     result.medium = PresetMaterial{*preset};
   }
-  if (result.medium && options.ior > 0)
-    result.medium = withIor(*result.medium, options.ior, document.file + ": material \"" + name + "\"");
+  const std::string where = document.file + ": material \"" + name + "\"";
+  if (result.medium && options.ior > 0) result.medium = withIor(*result.medium, options.ior, where);
+  if (presetFor(name, options) && !hasColor(result)) {
+    const PellucidMaterial compiled = compileMaterial(*result.medium, where);
+    result.reflectance.emplace();
+    std::copy_n(compiled.reflectance, 3, result.reflectance->begin());
+  }
   return result;
 }
 

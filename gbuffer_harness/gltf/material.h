@@ -1,6 +1,7 @@
 // glTF materials as surfaces to draw and media for the material compiler.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,6 +17,9 @@ struct GltfMaterial {
   int texture = -1;  // into the document's textures: the base color
   int texCoord = 0;  // its TEXCOORD_n
   int normalTexture = -1, normalTexCoord = 0;
+  // The preset's diffuse reflectance, linear, where the file gives the material no color: the albedo of the
+  // primitives that have no vertex colors either.
+  std::optional<std::array<double, 3>> reflectance;
 };
 
 // What glTF's KHR_materials_volume, _volume_scatter and _diffuse_transmission say, in Pellucid's terms;

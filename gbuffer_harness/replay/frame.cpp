@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 
 #include "common/error.h"
@@ -75,6 +76,34 @@ float nearestLine(const PellucidMaterial& m, int channel) {
   return static_cast<float>(bestLength);
 }
 
+// Views of different images that are never dereferenced: planning and validation only ask whether a view is
+// there and which are of one image.
+class Placeholders {
+public:
+  PellucidImage operator()() { return {reinterpret_cast<VkImageView>(++count_), VK_IMAGE_LAYOUT_GENERAL}; }
+
+private:
+  std::uintptr_t count_ = 0;
+};
+
+void fillPlaceholders(const Capture& capture, FrameData& data) {
+  PellucidFrame& f = data.frame;
+  Placeholders next;
+  for (PellucidImage& map : data.shadowImages) map = next();
+  f.frontDepth = next();
+  if (!capture.backDepth.image.empty()) f.backDepth = next();
+  f.irradiance = next();
+  if (!capture.normal.empty()) f.normal = next();
+  if (!capture.albedo.empty()) f.albedo = next();
+  f.material = next();
+  f.output = f.separateOutput ? next() : f.irradiance;
+  PellucidImageNeed needs[kMaxImageNeeds];
+  uint32_t count = kMaxImageNeeds;
+  // Where the frame is wrong there are none, and validation says what is.
+  if (pellucidGetImageNeeds(&f, &count, needs) != PELLUCID_OK) return;
+  for (uint32_t i = 0; i < count; ++i) (needs[i].persistent ? f.history : f.transients[i]) = next();
+}
+
 }  // namespace
 
 ReplaySettings thesisSettings() {
@@ -112,9 +141,7 @@ void makeFrame(const Capture& capture, const std::vector<PellucidMaterial>& mate
                const ReplaySettings& settings, FrameData& data) {
   data.materials = withTransmittance(materials, settings.transmittance);
   for (const Light& light : capture.lights) addLight(light, settings.translucency.shadowBias, data);
-  // Never dereferenced: planning only asks whether a view is there.
-  const PellucidImage placeholder{reinterpret_cast<VkImageView>(uintptr_t{1}), VK_IMAGE_LAYOUT_GENERAL};
-  data.shadowImages.assign(data.shadowDepths.size(), placeholder);
+  data.shadowImages.resize(data.shadowDepths.size());
 
   PellucidFrame& f = data.frame;
   pellucidInitFrame(&f);
@@ -125,10 +152,6 @@ void makeFrame(const Capture& capture, const std::vector<PellucidMaterial>& mate
   f.metersPerUnit = static_cast<float>(capture.metersPerUnit);
   copy(capture.clipFromView, f.clipFromView);
   copy(capture.viewFromWorld, f.viewFromWorld);
-  f.frontDepth = f.irradiance = f.material = f.output = placeholder;
-  if (!capture.backDepth.image.empty()) f.backDepth = placeholder;
-  if (!capture.normal.empty()) f.normal = placeholder;
-  if (!capture.albedo.empty()) f.albedo = placeholder;
   f.outputFormat = settings.outputFormat;
   f.frontDepthEncoding = capture.frontDepth.encoding;
   f.backDepthEncoding = capture.backDepth.encoding;
@@ -173,6 +196,7 @@ void makeFrame(const Capture& capture, const std::vector<PellucidMaterial>& mate
   f.separateOutput = !settings.aliasOutput || settings.debugView != PELLUCID_DEBUG_NONE;
   f.indirectDispatches = settings.indirectDispatches;
   f.debugView = settings.debugView;
+  fillPlaceholders(capture, data);
 }
 
 const PellucidImage& imageOf(const PellucidFrame& frame, uint32_t resource) {

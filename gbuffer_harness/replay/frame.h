@@ -58,8 +58,11 @@ struct FrameData {
   FrameData& operator=(const FrameData&) = delete;
 };
 
-// Fills all but the views; gives optional inputs that the capture has a placeholder view, so that the
-// frame can be planned without a device. `capture` must outlive `data`.
+// What pellucidGetImageNeeds lists at most: transients and a history.
+inline constexpr uint32_t kMaxImageNeeds = PELLUCID_MAX_TRANSIENTS + 1;
+
+// The frame that a replay of the capture records, complete but for its views: each image has a placeholder,
+// so that the frame can be planned and validated without a device. `capture` must outlive `data`.
 void makeFrame(const Capture& capture, const std::vector<PellucidMaterial>& materials,
                const ReplaySettings& settings, FrameData& data);
 

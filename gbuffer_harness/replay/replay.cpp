@@ -1,9 +1,22 @@
 #include "replay/replay.h"
 
+#include <algorithm>
+
 #include "common/error.h"
 #include "common/gpu_image.h"
+#include "common/progress.h"
 
 namespace pellucid::harness {
+
+namespace {
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const size_t half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
+}
+
+}  // namespace
 
 // The device images of one frame, uploaded.
 class FrameRun::Images {
@@ -26,7 +39,8 @@ public:
       data.shadowImages[i] = add(*data.shadowDepths[i], VK_FORMAT_R32_SFLOAT);
 
     const bool debug = settings.debugView != PELLUCID_DEBUG_NONE;
-    if (!f.separateOutput) {
+    outputIsIrradiance_ = f.separateOutput == 0;
+    if (outputIsIrradiance_) {
       f.output = f.irradiance;
       output_ = &irradiance;
     } else {
@@ -37,8 +51,8 @@ public:
       else
         output_->upload(composited(capture));
     }
-    PellucidImageNeed needs[PELLUCID_MAX_TRANSIENTS + 1];  // and a history
-    uint32_t count = PELLUCID_MAX_TRANSIENTS + 1;
+    PellucidImageNeed needs[kMaxImageNeeds];
+    uint32_t count = kMaxImageNeeds;
     requireOk(pellucidGetImageNeeds(&f, &count, needs), f, capture.name);
     for (uint32_t i = 0; i < count; ++i) {
       if (needs[i].persistent) {
@@ -59,6 +73,9 @@ public:
   }
 
   Image output() const { return output_->download(); }
+  void restoreIrradiance(const Capture& capture) const {
+    if (outputIsIrradiance_) output_->upload(capture.irradiance);
+  }
 
 private:
   GpuImage& create(int width, int height, VkFormat format) {
@@ -81,6 +98,7 @@ private:
   int width_, height_;
   std::vector<std::unique_ptr<GpuImage>> images_;
   GpuImage* output_ = nullptr;
+  bool outputIsIrradiance_ = false;
   std::shared_ptr<GpuImage> history_;  // of all frames of a sequence
 };
 
@@ -93,6 +111,7 @@ Context::Context(Device& device) {
   desc.getInstanceProcAddr = &vkGetInstanceProcAddr;
   desc.message = &appendError;
   desc.messageUser = &message_;
+  const ProgressLine progress("compiling " + std::to_string(PELLUCID_PIPELINE_COUNT) + " shaders");
   const PellucidResult result = pellucidCreateContext(&desc, &context_);
   if (result != PELLUCID_OK) throw DeviceError(std::string(pellucidResultName(result)) + ": " + message_);
 }
@@ -152,24 +171,44 @@ const void* FrameRun::constants() const { return constants_->mapped(); }
 
 Image FrameRun::output() const { return images_->output(); }
 
+void FrameRun::restoreIrradiance(const Capture& capture) const { images_->restoreIrradiance(capture); }
+
 ReplayResult Replayer::run(const Capture& capture, const std::vector<PellucidMaterial>& materials,
-                           const ReplaySettings& settings) {
+                           const ReplaySettings& settings, uint32_t timedFrames) {
   const FrameRun run(device_, context_, capture, materials, settings);
   ReplayResult result;
   result.plan = run.plan();
-  Timestamps timestamps(device_, result.plan.dispatchCount + 1);
-  device_.run([&](VkCommandBuffer commandBuffer) {
-    timestamps.reset(commandBuffer);
-    timestamps.mark(commandBuffer, 0);
-    for (uint32_t i = 0; i < result.plan.dispatchCount; ++i) {
-      run.record(commandBuffer, i);
-      timestamps.mark(commandBuffer, i + 1);
-    }
-  });
-  const std::vector<double> intervals = timestamps.intervals();
-  for (uint32_t i = 0; i < result.plan.dispatchCount; ++i)
-    result.times.push_back({result.plan.dispatches[i].name, intervals[i]});
-  result.output = run.output();
+  const auto recordFirst = [&] {
+    device_.run([&](VkCommandBuffer commandBuffer) { run.record(commandBuffer); });
+    result.output = run.output();
+  };
+  if (timedFrames == 0) {
+    recordFirst();
+    return result;
+  }
+  {
+    const ProgressLine progress("rendering a first frame, in which the driver may compile shaders, too");
+    recordFirst();
+  }
+
+  const uint32_t count = result.plan.dispatchCount;
+  Timestamps timestamps(device_, count + 1);
+  std::vector<std::vector<double>> times(count);
+  for (uint32_t frame = 0; frame < timedFrames; ++frame) {
+    run.restoreIrradiance(capture);
+    device_.run([&](VkCommandBuffer commandBuffer) {
+      timestamps.reset(commandBuffer);
+      timestamps.mark(commandBuffer, 0);
+      for (uint32_t i = 0; i < count; ++i) {
+        run.record(commandBuffer, i);
+        timestamps.mark(commandBuffer, i + 1);
+      }
+    });
+    const std::vector<double> intervals = timestamps.intervals();
+    for (uint32_t i = 0; i < count; ++i) times[i].push_back(intervals[i]);
+  }
+  for (uint32_t i = 0; i < count; ++i)
+    result.times.push_back({result.plan.dispatches[i].name, median(times[i])});
   return result;
 }
 

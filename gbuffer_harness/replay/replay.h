@@ -47,6 +47,9 @@ public:
   // One dispatch of it, also where the GPU would find nothing to do for it.
   void recordAlone(VkCommandBuffer commandBuffer, uint32_t dispatch) const;
 
+  // Gives an irradiance image that is the output, too, its content before the first recording again.
+  void restoreIrradiance(const Capture& capture) const;
+
   // RGBA. Outside the rect and at material 0: irradiance times albedo, as an engine that composites in
   // place would have there; 0 for debug views.
   Image output() const;
@@ -73,15 +76,19 @@ struct DispatchTime {
 struct ReplayResult {
   Image output;  // as FrameRun::output
   PellucidPlan plan;
-  std::vector<DispatchTime> times;  // GPU timestamps, one per dispatch
+  std::vector<DispatchTime> times;  // one per dispatch; none without timed frames
 };
 
 class Replayer {
 public:
   explicit Replayer(Device& device) : device_(device), context_(device) {}
 
+  const Context& context() const { return context_; }
+
+  // `timedFrames`: recordings of the frame after the one that makes the output, in which drivers may still
+  // compile shaders. Times are medians of their GPU timestamps, microseconds.
   ReplayResult run(const Capture& capture, const std::vector<PellucidMaterial>& materials,
-                   const ReplaySettings& settings);
+                   const ReplaySettings& settings, uint32_t timedFrames = 0);
 
 private:
   Device& device_;

@@ -4,12 +4,17 @@
 
 #include <algorithm>
 #include <fstream>
+#include <iterator>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
 
 #include "common/gpu_image.h"
 
 // What the snippet expects of an engine.
 struct GBuffer {
-  uint32_t width, height;
+  uint32_t width, height, frameIndex, framesInFlight;
   float metersPerUnit;
   float projection[16], view[16];
   VkImageView depth, backFaceDepth, irradiance, normal, materialId, scratch[2];
@@ -41,11 +46,14 @@ TEST(Readme, SnippetMakesASlabGlow) {
   for (size_t i = 2; i < facing.data.size(); i += 3) facing.data[i] = 1;
   const auto depth = image(VK_FORMAT_R32_SFLOAT, Image(kSize, kSize, 1, 0.01f));     // 10 units away
   const auto back = image(VK_FORMAT_R32_SFLOAT, Image(kSize, kSize, 1, 0.1f / 12));  // 2 units behind
-  const auto irradiance = image(VK_FORMAT_R16G16B16A16_SFLOAT, Image(kSize, kSize, 3, 0.0f));
+  // Of two frames in flight.
+  const Image black(kSize, kSize, 3, 0.0f);
+  const std::unique_ptr<GpuImage> irradiance[] = {image(VK_FORMAT_R16G16B16A16_SFLOAT, black),
+                                                  image(VK_FORMAT_R16G16B16A16_SFLOAT, black)};
   const auto normal = image(VK_FORMAT_R32G32B32A32_SFLOAT, facing);
   GpuImage material(device, kSize, kSize, VK_FORMAT_R8_UINT);
   material.upload(std::vector<std::uint8_t>(kSize * kSize, 1));
-  HostBuffer upload(device, 64 * 1024,
+  HostBuffer upload(device, 128 * 1024,
                     VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
 
   PellucidLight light{};
@@ -54,13 +62,14 @@ TEST(Readme, SnippetMakesASlabGlow) {
   light.intensity = 10;
   GBuffer g{};
   g.width = g.height = kSize;
+  g.framesInFlight = 2;
   g.metersPerUnit = 0.001f;
   const float projection[16] = {1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 0, -1, 0, 0, 0.1f, 0};  // reversed, infinite
   std::copy_n(projection, 16, g.projection);
   for (int i = 0; i < 4; ++i) g.view[i * 5] = 1;
   g.depth = depth->use().view;
   g.backFaceDepth = back->use().view;
-  g.irradiance = irradiance->use().view;
+  g.irradiance = irradiance[0]->use().view;
   g.normal = normal->use().view;
   g.materialId = material.use().view;
   g.lightCount = 1;
@@ -83,19 +92,65 @@ TEST(Readme, SnippetMakesASlabGlow) {
     g.scratch[i] = scratch[i]->use().view;
   }
 
-  device.run([&](VkCommandBuffer commandBuffer) { EXPECT_TRUE(recordTranslucency(commandBuffer, g, t)); });
-  const Image out = irradiance->download();
-  const float* center = out.at(kSize / 2, kSize / 2);
+  // Both are recorded before the GPU runs either, so the second must not write the first one's constants.
+  const float intensity[] = {10, 20};
+  device.run([&](VkCommandBuffer commandBuffer) {
+    for (g.frameIndex = 0; g.frameIndex < g.framesInFlight; ++g.frameIndex) {
+      light.intensity = intensity[g.frameIndex];
+      g.irradiance = irradiance[g.frameIndex]->use().view;
+      EXPECT_TRUE(recordTranslucency(commandBuffer, g, t));
+      const VkMemoryBarrier scratchIsFree{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr,
+                                          VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT,
+                                          VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT};
+      vkCmdPipelineBarrier(commandBuffer, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
+                           VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, 0, 1, &scratchIsFree, 0, nullptr, 0,
+                           nullptr);
+    }
+  });
   // skin1 of Jensen et al. 2001, 1/mm: the slab's exact transmittance is known. 5e-3: the fit is good to
   // 1e-3, half floats to 5e-4, and 10 units in a 0.1-near infinite float depth to 1e-6.
   const double scattering[3] = {0.74, 0.88, 1.01}, absorption[3] = {0.032, 0.17, 0.48};
   for (int c = 0; c < 3; ++c) {
     PellucidSlab slab;
-    ASSERT_EQ(pellucidSlabTransport(scattering[c], absorption[c], 1.4, 2, &slab, nullptr, nullptr), PELLUCID_OK);
-    EXPECT_NEAR(center[c] * t.skin.reflectance[c], 10 * slab.transmittance, 0.05 * slab.transmittance) << c;
+    ASSERT_EQ(pellucidSlabTransport(scattering[c], absorption[c], 1.4, 2, &slab, nullptr, nullptr),
+              PELLUCID_OK);
+    for (int i = 0; i < 2; ++i) {
+      const double expected = static_cast<double>(intensity[i]) * slab.transmittance;
+      EXPECT_NEAR(irradiance[i]->download().at(kSize / 2, kSize / 2)[c] * t.skin.reflectance[c], expected,
+                  5e-3 * expected)
+          << "frame " << i << ", channel " << c;
+    }
   }
   pellucidDestroyContext(t.context);
   for (const std::string& message : device.validationMessages()) ADD_FAILURE() << message;
+}
+
+std::string textOf(const std::string& file) {
+  std::ifstream stream(std::string(PELLUCID_SOURCE_DIR) + "/" + file);
+  EXPECT_TRUE(stream) << file;
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+// Everything that the library's build looks for, in the words of the README.
+TEST(Readme, NamesWhatTheBuildNeeds) {
+  const std::map<std::string, std::string> words = {{"glm", "GLM"},
+                                                    {"Eigen3", "Eigen"},
+                                                    {"PELLUCID_VULKAN_INCLUDE", "the Vulkan headers"},
+                                                    {"PELLUCID_GLSLANG", "`glslangValidator`"}};
+  const std::string readme = textOf("README.md");
+  const std::regex search(R"(find_(?:package|path|program|library)\((\w+))");
+  std::set<std::string> found;
+  for (const char* file : {"CMakeLists.txt", "cmake/shaders.cmake", "cmake/pellucid_target.cmake",
+                           "module/CMakeLists.txt", "module/material/CMakeLists.txt"}) {
+    const std::string text = textOf(file);
+    for (std::sregex_iterator match(text.begin(), text.end(), search), end; match != end; ++match) {
+      const std::string name = (*match)[1];
+      found.insert(name);
+      ASSERT_TRUE(words.count(name)) << file << " looks for " << name;
+      EXPECT_NE(readme.find(words.at(name)), std::string::npos) << "the README does not name " << name;
+    }
+  }
+  EXPECT_EQ(found.size(), words.size());
 }
 
 TEST(Readme, SnippetIsUnder60Lines) {

@@ -11,9 +11,8 @@ TEST_F(Cli, CaptureReplayComparePlan) {
   expect(0, "capture --procedural slab --size 48x32 -o " + capture, "");
   expect(0, "info " + capture, "shadow");
   expect(0, "plan " + capture, "\"dispatchCount\": 4");
-  expect(0, "replay " + capture + " -o " + out + " --triptych " + path("t.png") + " --png",
-         "resolve");
-  expect(0, "replay " + capture + " -o " + again, "wrote");
+  expect(0, "replay " + capture + " -o " + out + " --triptych " + path("t.png") + " --png", "resolve");
+  expect(0, "replay " + capture + " -o " + again, "median of 3 frames after a first one");
   expect(0, "compare " + out + " " + again + " --mask " + capture + " --limit max=0", "rel_rmse");
   for (const char* file : {"out.exr", "out.png", "t.png"}) EXPECT_GT(fs::file_size(path(file)), 100u) << file;
   // Without translucency the picture is another one, and compare says so with its own exit code.
@@ -24,7 +23,8 @@ TEST_F(Cli, CaptureReplayComparePlan) {
     EXPECT_TRUE(fs::exists(path("d.png"))) << view;
     fs::remove(path("d.png"));
   }
-  expect(0, "replay " + capture + " --mode thesis -o " + again, "translucency");
+  expect(0, "replay " + capture + " --mode thesis --repeat 1 -o " + again, "median of 1 frame after");
+  EXPECT_EQ(run("replay " + capture + " --repeat 0 -o " + again).text.find("time"), std::string::npos);
   expect(0, "reference " + capture + " -o " + again, "wrote");
   expect(0, "compare " + out + " " + again + " --mask " + capture + " --limit rel_rmse=0.05", "rel_rmse");
 }
@@ -124,6 +124,8 @@ TEST_F(Cli, SequenceUsage) {
   expect(2, "replay in.#.exr -o o.#.exr --frames 2-1", "\"2-1\" ends before it begins");
   expect(2, "replay in.#.exr -o o.#.exr --frames 1-2 --png", "--exposure");
   expect(2, "replay in.#.exr -o o.#.exr --frames 1-2 --triptych t.png", "--triptych");
+  expect(2, "replay in.#.exr -o o.#.exr --frames 1-2 --repeat 2", "--repeat times one capture, not --frames");
+  expect(2, "replay in.exr --repeat -1", "--repeat");
   expect(2, "capture --procedural ear --turntable 3 -o x.exr", "one run of #");
   expect(2, "capture --procedural ear --orbit -o x.exr", "--orbit: needs --turntable");
   expect(2, "capture --procedural ear --point-maps 6 -o x.exr", "--point-maps: needs a model");

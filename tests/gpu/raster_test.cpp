@@ -580,6 +580,12 @@ TEST_F(Raster, OptionsMakeACaptureOfAFile) {
   EXPECT_EQ(scene.model.indices.size(), 36u);
   ASSERT_EQ(scene.warnings.size(), 1u);
   EXPECT_NE(scene.warnings[0].find("no lights"), std::string::npos) << scene.warnings[0];
+  // skin1's reflectance, half floats.
+  ASSERT_EQ(scene.notes.size(), 1u);
+  EXPECT_NE(scene.notes[0].find("material \"default\" has no color in the file"), std::string::npos);
+  const PellucidMaterial compiled = compileMaterial(PresetMaterial{"skin1"}, "test");
+  for (int i = 0; i < 3; ++i)
+    EXPECT_NEAR(c.albedo.at(16, 16)[i], compiled.reflectance[i], 1e-3 * compiled.reflectance[i]) << i;
   EXPECT_EQ(c.metersPerUnit, 0.01);
   EXPECT_NEAR(planar(c, c.backDepth, 16, 16) - planar(c, c.frontDepth, 16, 16), 1, 1e-5);
   ASSERT_EQ(c.lights.size(), 1u);

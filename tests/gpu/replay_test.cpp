@@ -206,6 +206,32 @@ TEST_F(Replay, SameRunSameBits) {
   EXPECT_TRUE(sameBits(replay(c, testMaterial()), replay(c, testMaterial())));
 }
 
+// The frames that are timed come after the one that is returned, and find its inputs.
+TEST_F(Replay, TimedFramesChangeNothing) {
+  Capture c = flatCapture(24, 16, 2);
+  c.lights = {backLight()};
+  ReplaySettings aliased;
+  aliased.aliasOutput = true;
+  aliased.features = PELLUCID_FEATURE_TRANSLUCENCY;
+  for (const ReplaySettings& s : {ReplaySettings{}, aliased}) {
+    const ReplayResult once = replayer().run(c, {testMaterial()}, s);
+    const ReplayResult timed = replayer().run(c, {testMaterial()}, s, 2);
+    EXPECT_TRUE(sameBits(once.output, timed.output));
+    EXPECT_TRUE(once.times.empty());
+    ASSERT_EQ(timed.times.size(), timed.plan.dispatchCount);
+    for (const DispatchTime& time : timed.times) EXPECT_GT(time.microseconds, 0) << time.name;
+  }
+  const FrameRun frame(device(), replayer().context(), c, {testMaterial()}, aliased);
+  const auto record = [&] {
+    device().run([&](VkCommandBuffer commandBuffer) { frame.record(commandBuffer); });
+    return frame.output();
+  };
+  const Image first = record();
+  EXPECT_FALSE(sameBits(record(), first)) << "an output in place is the next input";
+  frame.restoreIrradiance(c);
+  EXPECT_TRUE(sameBits(record(), first));
+}
+
 TEST_F(Replay, ContextKeepsWhatTheModuleSays) {
   const Context context(device());
   const FrameRun run(device(), context, flatCapture(8, 8), {testMaterial()}, {});

@@ -437,6 +437,72 @@ TEST_F(Gltf, PresetsOverrideByName) {
   expectRefused(b.glb(), {"material \"m\"", "no such thing"}, "t.glb", options);
 }
 
+// The albedo under a preset: the file's color, else the compiler's reflectance, which stands in a note.
+TEST_F(Gltf, PresetsGiveAlbedoToWhatHasNoColor) {
+  const std::array<double, 3> rho = [] {
+    const PellucidMaterial skin = compileMaterial(PresetMaterial{"skin1"}, "test");
+    return std::array<double, 3>{skin.reflectance[0], skin.reflectance[1], skin.reflectance[2]};
+  }();
+  ASSERT_GT(rho[0], 2 * rho[2]) << "skin is not gray";
+  GltfOptions skin;
+  skin.presets = {{"*", "skin1"}};
+  const auto albedoOf = [&](GltfBuilder b, const GltfOptions& options, std::size_t notes) {
+    const GltfScene scene = loadGltf(write("t.glb", b.glb()), options);
+    EXPECT_EQ(scene.notes.size(), notes);
+    for (const std::string& note : scene.notes)
+      EXPECT_NE(note.find("the reflectance of skin1"), std::string::npos) << note;
+    EXPECT_EQ(scene.model.parts.size(), 1u);
+    return scene.model.surfaces[scene.model.parts[0].surface].baseColor;
+  };
+  const auto withFactor = [](const Json& factor) {
+    GltfBuilder b = square();
+    b.json["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = factor;
+    return b;
+  };
+  using Rgb = std::array<double, 3>;
+  EXPECT_EQ(albedoOf(square(), skin, 1), rho);
+  EXPECT_EQ(albedoOf(withFactor({1, 1, 1, 1}), skin, 1), rho);
+  EXPECT_EQ(albedoOf(withFactor({0.800000011920929, 0.800000011920929, 0.800000011920929, 1}), skin, 1), rho);
+  EXPECT_EQ(albedoOf(withFactor({0.5, 0.5, 0.5, 1}), skin, 0), (Rgb{0.5, 0.5, 0.5}));
+  EXPECT_EQ(albedoOf(withFactor({1, 1, 0.9, 1}), skin, 0), (Rgb{1, 1, 0.9}));
+  EXPECT_EQ(albedoOf(square(), {}, 0), (Rgb{1, 1, 1})) << "opaque";
+  GltfBuilder b = square();
+  b.json["meshes"][0]["primitives"][0].erase("material");
+  EXPECT_EQ(albedoOf(b, skin, 1), rho) << "the default material";
+
+  b = square();
+  writePng(folder_ / "c.png", 1, 1, {255, 0, 0});
+  b.json["images"] = {{{"uri", "c.png"}}};
+  b.json["textures"] = {{{"source", 0}}};
+  b.json["materials"][0]["pbrMetallicRoughness"] = {{"baseColorTexture", {{"index", 0}}}};
+  EXPECT_EQ(albedoOf(b, skin, 0), (Rgb{1, 1, 1})) << "the texture's";
+
+  // Vertex colors are a color of the file, too, unless they are white; one material may be drawn both ways.
+  const auto withColors = [](float green) {
+    GltfBuilder c = square();
+    const int color = c.vectors({1, 1, 1, 1, green, 1, 1, 1, 1, 1, 1, 1});
+    c.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = color;
+    return c;
+  };
+  EXPECT_EQ(albedoOf(withColors(1), skin, 1), rho);
+  EXPECT_EQ(albedoOf(withColors(0.5f), skin, 0), (Rgb{1, 1, 1}));
+  b = withColors(0.5f);
+  for (int i = 0; i < 2; ++i) {
+    Json plain = b.json["meshes"][0]["primitives"][0];
+    plain["attributes"].erase("COLOR_0");
+    b.json["meshes"][0]["primitives"].push_back(plain);
+  }
+  const GltfScene both = loadGltf(write("t.glb", b.glb()), skin);
+  EXPECT_EQ(both.notes.size(), 1u);
+  ASSERT_EQ(both.model.parts.size(), 3u);
+  EXPECT_EQ(both.model.materials.size(), 1u);
+  EXPECT_EQ(both.model.surfaces.size(), 2u);
+  EXPECT_EQ(both.model.surfaces[both.model.parts[0].surface].baseColor, (Rgb{1, 1, 1}));
+  EXPECT_EQ(both.model.surfaces[both.model.parts[1].surface].baseColor, rho);
+  EXPECT_EQ(both.model.parts[1].surface, both.model.parts[2].surface);
+  for (const Surface& surface : both.model.surfaces) EXPECT_EQ(surface.material, 1);
+}
+
 TEST_F(Gltf, WhatIsNotAMediumIsSaid) {
   const auto warnings = [&](const Json& extensions) {
     GltfBuilder b = square();

@@ -3,9 +3,12 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdlib>
 
+#include "capture/write.h"
 #include "cli/commands.h"
 #include "common/error.h"
+#include "scene/scene.h"
 #include "unit/capture_samples.h"
 
 namespace pellucid::harness {
@@ -17,10 +20,13 @@ class InfoCommand : public testing::Test {
 protected:
   std::string run(const std::vector<std::string>& flags = {}) {
     writeText(directory / "m.json", manifest.dump());
+    return runOn(directory / "m.json", flags);
+  }
+  static std::string runOn(const std::filesystem::path& capture, const std::vector<std::string>& flags) {
     CLI::App app;
     addInfoCommand(app);
     std::vector<std::string> arguments = flags;  // CLI11 takes them last first
-    arguments.push_back((directory / "m.json").string());
+    arguments.push_back(capture.string());
     arguments.push_back("info");
     testing::internal::CaptureStdout();
     try {
@@ -32,6 +38,9 @@ protected:
     return testing::internal::GetCapturedStdout();
   }
   json info() { return json::parse(run({"--json"})); }
+  static json warningsOf(const std::filesystem::path& capture) {
+    return json::parse(runOn(capture, {"--json"}))["warnings"];
+  }
   static bool has(const json& sentences, const std::string& part) {
     return std::any_of(sentences.begin(), sentences.end(), [&](const json& sentence) {
       return sentence.get<std::string>().find(part) != std::string::npos;
@@ -104,6 +113,47 @@ TEST_F(InfoCommand, CountsWhatLooksWrong) {
 TEST_F(InfoCommand, RepeatsTheModulesFindings) {
   manifest["lights"][0]["type"] = "directional";  // with a perspective shadow map
   EXPECT_TRUE(has(info()["warnings"], "cannot be replayed: lights[0]"));
+  manifest = writeSampleFiles(directory);
+  manifest["lights"] = {{{"type", "point"}, {"position", {0, 0, 1000}}, {"range", 1}}};
+  EXPECT_TRUE(has(info()["warnings"], "lights[0] adds nothing: "));
+}
+
+// A good capture gives no warning: what is validated is the frame that replay records.
+TEST_F(InfoCommand, GoodCapturesGiveNoWarning) {
+  // Without the sample's flaws: infinite front depths, and a spot beside the center of its map's projection.
+  manifest["buffers"]["frontDepth"] = {{"constant", {5}}, {"encoding", "viewZ"}};
+  manifest["buffers"].erase("backDepth");
+  manifest["lights"][0]["position"] = {0, 0, 0};
+  EXPECT_EQ(info()["warnings"], json::array());
+  for (const SceneInfo& scene : listScenes()) {
+    SceneParameters parameters;
+    parameters.name = scene.name;
+    parameters.width = parameters.height = 24;
+    parameters.shadowSize = 32;
+    const std::filesystem::path file = directory / (scene.name + ".exr");
+    writeCapture(makeScene(parameters), file);
+    const json warnings = warningsOf(file);
+    // The far plane cuts this scene's sheet between its two faces.
+    if (scene.name == "near_far")
+      EXPECT_TRUE(warnings.size() == 1 && has(warnings, "have no back depth")) << warnings;
+    else
+      EXPECT_EQ(warnings, json::array()) << scene.name;
+  }
+}
+
+TEST_F(InfoCommand, SharedCapturesGiveNoWarning) {
+  const char* const variable = std::getenv("PELLUCID_SHARED");
+  const std::filesystem::path shared =
+      variable ? variable : std::filesystem::path(PELLUCID_SOURCE_DIR).parent_path() / "shared";
+  if (!std::filesystem::exists(shared / "captures")) GTEST_SKIP() << "no captures at " << shared;
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(shared / "captures")) {
+    const std::filesystem::path file = entry.path() / "manifest.json";
+    if (!std::filesystem::exists(file)) continue;
+    EXPECT_EQ(warningsOf(file), json::array()) << file;
+    ++count;
+  }
+  EXPECT_GT(count, 0) << "in " << shared;
 }
 
 TEST_F(InfoCommand, PrintsForPeople) {
