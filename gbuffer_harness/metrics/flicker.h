@@ -1,0 +1,32 @@
+// What changes between two frames that should look alike.
+#pragma once
+
+#include <array>
+
+#include "metrics/masked_image.h"
+#include "metrics/surface.h"
+
+namespace pellucid::harness {
+
+// Each of three channels, of a difference d between the frames.
+struct Flicker {
+  std::array<double, 3> relativeRmse = {};  // RMS of d over the RMS of the still frame
+  // Of |d| over the mean of the still frame's 5x5 pixels around it that show a surface with material, at
+  // least kDarkestPart of the RMS: what 99.9 % of the pixels are at or below (nearest rank), and the largest.
+  std::array<double, 3> p999 = {}, worst = {};
+  std::array<int, 2> worstPixel = {0, 0};  // x, y in the still frame, of the largest of all channels
+  std::size_t pixels = 0;                  // that were compared; 0: all is 0
+};
+
+// `moved` shows at (x + shiftX, y + shiftY) what `still` shows at (x, y), pixels; d is what is left of the
+// difference. Pixels that do not count, or whose place in `moved` is outside of it or not finite, are left
+// out. Throws InputError when the images are not of one size with three channels.
+Flicker compareShifted(const Image& still, const Image& moved, const Mask& mask, int shiftX, int shiftY);
+
+// Two frames of one camera whose lights turned a little: d is the difference less its mean over the 5x5
+// pixels around it, since diffused light changes evenly along a surface. Pixels whose 5x5 surroundings are
+// not wholly of surface, or do not all count, are left out; edges of hard shadows that move are not. Throws
+// likewise.
+Flicker compareTurned(const Image& still, const Image& turned, const Surfaces& surfaces, const Mask& mask);
+
+}  // namespace pellucid::harness

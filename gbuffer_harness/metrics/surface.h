@@ -1,0 +1,48 @@
+// Which neighboring pixels of a frame show one surface.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "capture/capture.h"
+
+namespace pellucid::harness {
+
+// Two neighboring pixels show one surface when both have the same material, not 0, and their view depths
+// differ by at most what the slope explains. It explains the step of a plane tilted by atan(2) = 63 degrees,
+// and twice the larger of the two steps beside it on the same line (row, column or diagonal) that go the same
+// way.
+class Surfaces {
+public:
+  // Throws InputError for an oblique or singular projection.
+  explicit Surfaces(const Capture& capture);
+  // All pixels show one surface: for images without a capture.
+  Surfaces(int width, int height);
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+
+  // Whether the pixel has a material and a depth. False outside of the image.
+  bool covered(int x, int y) const;
+  // Whether (x, y) and (x + stepX, y + stepY) show one surface; steps in -1 .. 1.
+  bool connected(int x, int y, int stepX, int stepY) const;
+  // Whether all pixels of the block lie within the image and show one surface with the pixels right of and
+  // below them in the block.
+  bool wholeBlock(int left, int top, int side) const;
+
+private:
+  struct Pixel {
+    double depth = 0;  // view depth, scene units
+    double width = 0;  // of the pixel at that depth, scene units
+    std::uint8_t material = 0;
+  };
+  const Pixel& at(int x, int y) const { return pixels_[index(x, y)]; }
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
+  }
+
+  int width_, height_;
+  std::vector<Pixel> pixels_;
+};
+
+}  // namespace pellucid::harness

@@ -1,0 +1,368 @@
+// Metrics of what the eye sees, on images whose answers are known.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "common/error.h"
+#include "metrics/eye.h"
+#include "metrics/flicker.h"
+#include "metrics/isolated.h"
+#include "metrics/ratio_map.h"
+#include "metrics/surface.h"
+#include "metrics/tint.h"
+
+namespace pellucid::harness {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+// Orthographic, a pixel is 1 unit wide and high; material 1, facing the camera at depth 100.
+Capture plane(int width, int height) {
+  Capture c;
+  c.name = "test";
+  c.width = width;
+  c.height = height;
+  c.clipFromView = {2.0 / width, 0, 0, 0, 0, -2.0 / height, 0, 0, 0, 0, -1e-3, 0, 0, 0, 0, 1};
+  c.frontDepth.image = Image(width, height, 1, 100.0f);
+  c.irradiance = Image(width, height, 3, 1.0f);
+  c.material.assign(c.irradiance.pixels(), 1);
+  return c;
+}
+
+template <class Depth>
+Capture shape(int width, int height, const Depth& depth) {
+  Capture c = plane(width, height);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) *c.frontDepth.image.at(x, y) = static_cast<float>(depth(x, y));
+  return c;
+}
+
+Mask everywhere(const Image& image) { return Mask(image.pixels(), 1); }
+
+// ---- Surfaces
+
+TEST(Surfaces, TiltedPlanesAreOneSurface) {
+  // At 63 degrees by the slope itself, at 84 by the steps beside.
+  for (const double slope : {0.0, 1.9, 10.0}) {
+    const Surfaces surfaces(shape(9, 9, [&](int x, int y) { return 100 + slope * (x + y); }));
+    EXPECT_TRUE(surfaces.wholeBlock(0, 0, 9)) << slope;
+    EXPECT_TRUE(surfaces.connected(4, 4, 1, 1)) << slope;
+    EXPECT_TRUE(surfaces.connected(4, 4, -1, 0)) << slope;
+  }
+}
+
+TEST(Surfaces, AStepIsAnEdge) {
+  const Surfaces surfaces(shape(8, 8, [](int x, int) { return x < 4 ? 100 : 105; }));
+  EXPECT_FALSE(surfaces.connected(3, 2, 1, 0));
+  EXPECT_FALSE(surfaces.connected(4, 2, -1, 0));
+  EXPECT_FALSE(surfaces.connected(3, 2, 1, 1));
+  EXPECT_TRUE(surfaces.connected(3, 2, 0, 1));
+  EXPECT_TRUE(surfaces.connected(3, 2, -1, 0));
+  EXPECT_TRUE(surfaces.wholeBlock(0, 0, 4));
+  EXPECT_TRUE(surfaces.wholeBlock(4, 4, 4));
+  EXPECT_FALSE(surfaces.wholeBlock(1, 0, 4));
+}
+
+TEST(Surfaces, ASphereIsOneSurfaceAndEndsBeforeTheWall) {
+  // Radius 30.3 pixels, 100 units before a wall.
+  constexpr double kRadius = 30.3;
+  const auto inside = [](int x, int y) { return std::hypot(x - 32, y - 32) < kRadius; };
+  const Surfaces surfaces(shape(65, 65, [&](int x, int y) {
+    const double d = std::hypot(x - 32, y - 32);
+    return inside(x, y) ? 150 - std::sqrt(kRadius * kRadius - d * d) : 250;
+  }));
+  for (int y = 1; y < 64; ++y)
+    for (int x = 1; x < 64; ++x) {
+      EXPECT_EQ(surfaces.connected(x, y, 1, 0), inside(x, y) == inside(x + 1, y)) << x << ", " << y;
+      EXPECT_EQ(surfaces.connected(x, y, 0, -1), inside(x, y) == inside(x, y - 1)) << x << ", " << y;
+    }
+}
+
+TEST(Surfaces, MaterialsAndNothingEndASurface) {
+  Capture c = plane(6, 4);
+  c.material[1] = 2;  // (1, 0)
+  c.material[3] = 0;  // (3, 0)
+  *c.frontDepth.image.at(5, 0) = kNoDepth;
+  const Surfaces surfaces(c);
+  EXPECT_FALSE(surfaces.connected(0, 0, 1, 0));
+  EXPECT_FALSE(surfaces.connected(2, 0, 1, 0));
+  EXPECT_FALSE(surfaces.connected(4, 0, 1, 0));
+  EXPECT_FALSE(surfaces.covered(3, 0));
+  EXPECT_FALSE(surfaces.covered(5, 0));
+  EXPECT_TRUE(surfaces.covered(1, 0));
+  EXPECT_FALSE(surfaces.covered(-1, 0));
+  EXPECT_FALSE(surfaces.connected(0, 0, 0, -1));
+  EXPECT_FALSE(surfaces.wholeBlock(3, 1, 4));  // reaches out of the image
+  EXPECT_TRUE(surfaces.wholeBlock(0, 1, 3));
+  EXPECT_TRUE(Surfaces(6, 4).connected(2, 0, 1, 0));
+}
+
+TEST(Surfaces, EncodingsOfDepthAgree) {
+  // Reversed infinite perspective: device depth is near / z; a step of one pixel width and one of ten at z
+  // = 50.
+  constexpr double kNear = 0.1, kDepth = 50;
+  Capture c = plane(64, 64);
+  c.clipFromView = {2, 0, 0, 0, 0, -2, 0, 0, 0, 0, 0, -1, 0, 0, kNear, 0};
+  const double pixel = kDepth / 64;  // scene units: the view is z wide
+  c.frontDepth.encoding = PELLUCID_DEPTH_DEVICE;
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 64; ++x) {
+      const double z = kDepth + pixel * (x < 20 ? 0 : x < 40 ? 1 : 11);
+      *c.frontDepth.image.at(x, y) = static_cast<float>(kNear / z);
+    }
+  const Surfaces surfaces(c);
+  EXPECT_TRUE(surfaces.connected(19, 30, 1, 0));
+  EXPECT_FALSE(surfaces.connected(39, 30, 1, 0));
+}
+
+// ---- Isolated pixels
+
+TEST(Isolated, CountsWhatIsPlanted) {
+  Image image(32, 24, 3, 1.0f);
+  image.at(5, 5)[0] = 1.31f;
+  image.at(20, 9)[2] = 0.76f;  // 1/1.3 = 0.769
+  image.at(11, 17)[0] = 1.5f;
+  image.at(11, 17)[1] = 0.5f;
+  image.at(15, 5)[1] = 1.29f;  // not enough
+  image.at(25, 15)[1] = 0.78f;
+  const IsolatedPixels found = findIsolated(image, Surfaces(32, 24), everywhere(image));
+  EXPECT_EQ(found.count, 3u);
+  EXPECT_EQ(found.bright, 2u);
+  EXPECT_EQ(found.dark, 2u);
+  EXPECT_EQ(found.marks[5 * 32 + 5], 1);
+  EXPECT_EQ(found.marks[9 * 32 + 20], 2);
+  EXPECT_EQ(found.marks[17 * 32 + 11], 3);
+  const std::vector<std::uint8_t> picture = markIsolated(image, found, 0.5f);
+  const auto pixel = [&](int x, int y) {
+    const std::size_t i = 3 * static_cast<std::size_t>(y * 32 + x);
+    return std::array<int, 3>{picture[i], picture[i + 1], picture[i + 2]};
+  };
+  EXPECT_EQ(pixel(3, 4), (std::array<int, 3>{255, 40, 40}));
+  EXPECT_EQ(pixel(22, 11), (std::array<int, 3>{60, 120, 255}));
+  EXPECT_EQ(pixel(0, 0), (std::array<int, 3>{94, 94, 94}));  // half of sRGB 188
+}
+
+TEST(Isolated, PairsAndRampsAreNot) {
+  Image image(16, 16, 3, 1.0f);
+  for (int c = 0; c < 3; ++c) image.at(4, 4)[c] = image.at(5, 4)[c] = 2;
+  for (int y = 8; y < 16; ++y)
+    for (int x = 0; x < 16; ++x)
+      for (int c = 0; c < 3; ++c) image.at(x, y)[c] = static_cast<float>(std::pow(1.4, x));
+  EXPECT_EQ(findIsolated(image, Surfaces(16, 16), everywhere(image)).count, 0u);
+}
+
+TEST(Isolated, NeighborsOfOtherSurfacesDoNotCount) {
+  // A strip of surface one pixel wide has two neighbors, a corner three: not judged. Along an edge there
+  // are 5.
+  const Capture c = shape(16, 16, [](int x, int) { return x < 8 ? 100 : 150; });
+  const Surfaces surfaces(c);
+  Image image(16, 16, 3, 1.0f);
+  for (int y = 0; y < 16; ++y)
+    for (int x = 8; x < 16; ++x)
+      for (int k = 0; k < 3; ++k) image.at(x, y)[k] = 5;
+  EXPECT_EQ(findIsolated(image, surfaces, everywhere(image)).count, 0u);
+  image.at(7, 6)[0] = 1.4f;  // bright on its own surface, dark beside the other one
+  image.at(0, 0)[0] = 3;     // a corner
+  EXPECT_EQ(findIsolated(image, surfaces, everywhere(image)).count, 1u);
+}
+
+TEST(Isolated, DarkPartsMaskAndNanAreLeftOut) {
+  Image image(20, 20, 3, 1.0f);
+  for (int y = 10; y < 20; ++y)
+    for (int x = 0; x < 20; ++x)
+      for (int c = 0; c < 3; ++c) image.at(x, y)[c] = 0.001f;
+  image.at(5, 15)[0] = 0.01f;  // below 2 % of the RMS, 0.7
+  EXPECT_EQ(findIsolated(image, Surfaces(20, 20), everywhere(image)).count, 0u);
+  image.at(5, 15)[0] = 0.02f;
+  EXPECT_EQ(findIsolated(image, Surfaces(20, 20), everywhere(image)).bright, 1u);
+  Mask mask = everywhere(image);
+  mask[15 * 20 + 5] = 0;
+  EXPECT_EQ(findIsolated(image, Surfaces(20, 20), mask).count, 0u);
+  image.at(3, 4)[1] = kNan;
+  EXPECT_EQ(findIsolated(image, Surfaces(20, 20), mask).count, 0u);
+  EXPECT_THROW(findIsolated(image, Surfaces(20, 21), mask), InputError);
+  EXPECT_THROW(findIsolated(Image(20, 20, 1), Surfaces(20, 20), mask), InputError);
+}
+
+// ---- Tint
+
+Image varied(int width, int height) {
+  Image image(width, height, 3);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      for (int c = 0; c < 3; ++c)
+        image.at(x, y)[c] = 1 + 0.5f * std::sin(0.3f * static_cast<float>(x + (c + 1) * y));
+  return image;
+}
+
+TEST(Tint, AConstantRatioHasNone) {
+  const Image b = varied(32, 32);
+  Image a = b;
+  for (std::size_t i = 0; i < a.data.size(); ++i) a.data[i] *= i % 3 == 0 ? 1.5f : 0.75f;
+  const Tint tint = measureTint(a, b, Surfaces(32, 32), everywhere(b));
+  EXPECT_EQ(tint.blocks, 16u);
+  for (const double value : tint.channel) EXPECT_NEAR(value, 0, 1e-7);  // floats times a constant
+  EXPECT_NEAR(tint.redOverGreen, 0, 1e-7);
+}
+
+TEST(Tint, StandardDeviationOfBlocks) {
+  // Two blocks, red 1.1 and 0.9 of the truth, green 1.2 and 0.8 of it: red over green 0.9167 and 1.125.
+  const Image b(16, 8, 3, 2.0f);
+  Image a = b;
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 16; ++x) {
+      a.at(x, y)[0] = x < 8 ? 2.2f : 1.8f;
+      a.at(x, y)[1] = x < 8 ? 2.4f : 1.6f;
+    }
+  const Tint tint = measureTint(a, b, Surfaces(16, 8), everywhere(b));
+  EXPECT_EQ(tint.blocks, 2u);
+  EXPECT_NEAR(tint.channel[0], 0.1, 1e-6);
+  EXPECT_NEAR(tint.channel[1], 0.2, 1e-6);
+  EXPECT_EQ(tint.channel[2], 0);
+  EXPECT_NEAR(tint.redOverGreen, (0.9 / 0.8 - 1.1 / 1.2) / 2, 1e-6);
+}
+
+TEST(Tint, OnlyWholeBlocksThatAreBrightEnough) {
+  Image b(40, 8, 3, 1.0f), a = b;
+  const auto fill = [](Image& image, int left, float value) {
+    for (int y = 0; y < 8; ++y)
+      for (int x = left; x < left + 8; ++x)
+        for (int c = 0; c < 3; ++c) image.at(x, y)[c] = value;
+  };
+  Capture capture = plane(40, 8);
+  *capture.frontDepth.image.at(12, 3) = 200;  // a hole in the second block
+  Mask mask = everywhere(b);
+  mask[4 * 40 + 20] = 0;  // in the third
+  fill(b, 24, 0.01f);     // the fourth is too dark to judge
+  for (const int left : {8, 16, 24}) fill(a, left, 3);
+  const Tint tint = measureTint(a, b, Surfaces(capture), mask);
+  EXPECT_EQ(tint.blocks, 2u);
+  EXPECT_EQ(tint.channel[0], 0);
+  EXPECT_EQ(measureTint(a, b, Surfaces(capture), Mask(mask.size())).blocks, 0u);
+}
+
+// ---- Ratio map
+
+TEST(RatioMap, GrayWhereRight) {
+  const Image b = varied(10, 9);
+  Mask mask = everywhere(b);
+  mask[3] = 0;
+  const std::vector<std::uint8_t> picture = ratioMap(b, b, mask);
+  for (std::size_t i = 0; i < picture.size(); ++i) EXPECT_EQ(picture[i], i / 3 == 3 ? 0 : 128) << i;
+}
+
+TEST(RatioMap, FullColorAtTenPercent) {
+  const Image b(8, 4, 3, 1.0f);
+  Image a = b;
+  for (int y = 0; y < 4; ++y)
+    for (int x = 0; x < 4; ++x) {
+      a.at(x, y)[0] = 1.2f;
+      a.at(x, y)[1] = x % 2 ? 1.15f : 0.95f;  // 1.05 after averaging
+      a.at(x, y)[2] = 0.5f;
+    }
+  const std::vector<std::uint8_t> picture = ratioMap(a, b, everywhere(b));
+  EXPECT_EQ(picture[0], 255);
+  EXPECT_EQ(picture[1], 191);  // 127.5 * 1.5
+  EXPECT_EQ(picture[2], 0);
+  EXPECT_EQ(picture[3 * 4], 128);
+}
+
+TEST(RatioMap, LightInTheDarkShows) {
+  Image b(8, 4, 3, 1.0f);
+  for (int y = 0; y < 4; ++y)
+    for (int x = 0; x < 4; ++x) std::fill_n(b.at(x, y), 3, 0.0f);
+  Image a = b;
+  a.at(0, 0)[0] = 1;
+  const std::vector<std::uint8_t> picture = ratioMap(a, b, everywhere(b));
+  EXPECT_EQ(picture[0], 255);
+  EXPECT_EQ(picture[1], 128);
+}
+
+// ---- Flicker
+
+TEST(Flicker, AnImageThatMovedDoesNot) {
+  const Image still = varied(24, 16);
+  Image moved(24, 16, 3, kNan);  // what enters is not looked at
+  for (int y = 0; y < 15; ++y)
+    for (int x = 0; x < 21; ++x) std::copy_n(still.at(x, y), 3, moved.at(x + 3, y + 1));
+  const Flicker flicker = compareShifted(still, moved, everywhere(still), 3, 1);
+  EXPECT_EQ(flicker.pixels, 21u * 15u);
+  for (std::size_t c = 0; c < 3; ++c) {
+    EXPECT_EQ(flicker.relativeRmse[c], 0);
+    EXPECT_EQ(flicker.p999[c], 0);
+    EXPECT_EQ(flicker.worst[c], 0);
+  }
+  EXPECT_GT(compareShifted(still, moved, everywhere(still), 4, 1).relativeRmse[0], 0.01);
+}
+
+TEST(Flicker, OnePixelOfTwoThousand) {
+  // 2 on a plane of 2: relative to the 5x5 mean 1; RMS of d is 2 / sqrt(2000).
+  const Image still(50, 40, 3, 2.0f);
+  Image moved = still;
+  moved.at(21, 12)[1] = 4;
+  const Flicker flicker = compareShifted(still, moved, everywhere(still), 0, 0);
+  EXPECT_NEAR(flicker.relativeRmse[1], 1 / std::sqrt(2000.0), 1e-12);
+  EXPECT_EQ(flicker.relativeRmse[0], 0);
+  EXPECT_EQ(flicker.worst[1], 1);
+  EXPECT_EQ(flicker.p999[1], 0);  // two of 2000 may be above
+  EXPECT_EQ(flicker.worstPixel, (std::array<int, 2>{21, 12}));
+  EXPECT_EQ(compareShifted(still, moved, everywhere(still), 1, 0).worstPixel, (std::array<int, 2>{20, 12}));
+}
+
+TEST(Flicker, WorstIsRelativeToItsSurroundings) {
+  // A bright pixel, 26 among 1: its 5x5 mean is 2. Where there is nothing the RMS holds the scale.
+  Image still(40, 10, 3, 1.0f);
+  for (int c = 0; c < 3; ++c) still.at(6, 5)[c] = 26;
+  Image moved = still;
+  moved.at(6, 5)[0] = 27;
+  EXPECT_NEAR(compareShifted(still, moved, everywhere(still), 0, 0).worst[0], 0.5, 1e-12);
+  Mask mask = everywhere(still);
+  mask[5 * 40 + 6] = 0;
+  EXPECT_EQ(compareShifted(still, moved, mask, 0, 0).worst[0], 0);
+  Image dark(40, 10, 3);
+  dark.at(39, 9)[0] = 20;  // RMS 1
+  Image lit = dark;
+  lit.at(3, 3)[0] = 0.01f;
+  EXPECT_NEAR(compareShifted(dark, lit, everywhere(dark), 0, 0).worst[0], 0.5, 1e-6);  // 0.01 / 0.02
+}
+
+TEST(Flicker, EvenChangeOfTurnedLightsIsNone) {
+  const Image still(32, 32, 3, 1.0f);
+  Image turned = still;
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 32; ++x) turned.at(x, y)[0] += 0.01f * static_cast<float>(x - 2 * y);
+  const Flicker even = compareTurned(still, turned, Surfaces(32, 32), everywhere(still));
+  EXPECT_EQ(even.pixels, 28u * 28u);    // without a rim of two pixels
+  EXPECT_NEAR(even.worst[0], 0, 1e-6);  // rounding of floats near 1
+  turned.at(10, 10)[0] += 1;            // less 1/25, its part of the 5x5 mean
+  EXPECT_NEAR(compareTurned(still, turned, Surfaces(32, 32), everywhere(still)).worst[0], 0.96, 1e-5);
+}
+
+// ---- All of them
+
+TEST(Eye, ATruthIsRight) {
+  Capture c = plane(24, 24);
+  EXPECT_THROW(measureEye(varied(24, 24), c), InputError);
+  c.truth = Truth{varied(24, 24)};
+  for (std::size_t i = 0; i < 24 * 8; ++i)
+    std::fill_n(&c.irradiance.data[3 * i], 3, 0.0f);  // a third is unlit
+  Image result = c.truth->image;
+  const EyeMetrics right = measureEye(result, c);
+  EXPECT_EQ(right.isolated, 0u);
+  EXPECT_EQ(right.flip.mean, 0);
+  EXPECT_EQ(right.flip.p99, 0);
+  EXPECT_EQ(right.tint.blocks, 9u);
+  EXPECT_EQ(right.tintLit.blocks, 6u);
+  std::fill_n(result.at(5, 5), 3, 9.0f);
+  const EyeMetrics wrong = measureEye(result, c, 0.25);
+  EXPECT_EQ(wrong.isolated, 1u);
+  EXPECT_EQ(wrong.isolatedInTruth, 0u);
+  EXPECT_GT(wrong.tint.channel[0], 0.01);
+  EXPECT_NEAR(wrong.tintLit.channel[0], 0, 1e-12);
+  EXPECT_GT(wrong.flip.mean, 0);
+  EXPECT_EQ(wrong.flip.exposure, 0.25);
+}
+
+}  // namespace
+}  // namespace pellucid::harness
