@@ -3,8 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <filesystem>
 #include <iomanip>
 #include <iostream>
@@ -17,8 +15,12 @@
 #include "capture/read.h"
 #include "cli/command.h"
 #include "cli/commands.h"
+#include "cli/limits.h"
+#include "cli/metrics_json.h"
 #include "common/error.h"
 #include "common/png.h"
+#include "metrics/isolated.h"
+#include "metrics/ratio_map.h"
 
 namespace pellucid::harness {
 
@@ -28,7 +30,11 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kDefinitions =
     "rel_rmse: sqrt(mean (A-B)^2) / RMS(B). p999, max: of |A-B| / RMS(B). psnr: 20 log10(max B / RMSE), dB.\n"
-    "bias: mean A / mean B - 1. Each channel by itself, over the samples.\n";
+    "bias: mean A / mean B - 1. Each channel by itself, over the samples.\n"
+    "isolated: pixels 1.3 times above or below all neighbors of their surface. tint: standard deviation of A "
+    "/ B\n"
+    "over 8x8 averages, per channel and of red over green. flip: of images under one exposure, 0 .. 1.\n"
+    "docs/accuracy.md defines all of them.\n";
 
 struct Measure {
   const char* name;
@@ -41,38 +47,23 @@ constexpr std::array<Measure, 5> kMeasures = {{{"rel_rmse", &ChannelDifference::
                                                {"bias", &ChannelDifference::bias}}};
 constexpr std::array<const char*, 3> kChannelNames = {"R", "G", "B"};
 
+const std::vector<LimitKind> kLimitKinds = {{"rel_rmse"}, {"p999"}, {"max"},  {"psnr", true}, {"bias"},
+                                            {"isolated"}, {"tint"}, {"flip"}, {"flip_p99"}};
+
 struct Options {
-  std::string a, b, mask, diff, subset = "all";
+  std::string a, b, mask, diff, ratio, isolated, subset = "all";
   int box = 1;
-  double boxCoverage = 0.5;
+  double boxCoverage = 0.5, exposure = 0;
   std::vector<std::string> limits;
   bool json = false;
 };
 
-struct Limit {
-  const Measure* measure;
-  double value;
-
-  // psnr says how good, the others how bad. A value that is not a number is over.
-  bool allows(double measured) const {
-    return std::string(measure->name) == "psnr" ? measured >= value : std::abs(measured) <= value;
-  }
+struct Result {
+  Comparison comparison;
+  IsolatedPixels isolatedA, isolatedB;
+  Tint tint;
+  Flip flip;
 };
-
-Limit parseLimit(const std::string& text) {
-  const std::size_t equals = text.find('=');
-  const std::string name = text.substr(0, equals);
-  const auto measure =
-      std::find_if(kMeasures.begin(), kMeasures.end(), [&](const Measure& m) { return m.name == name; });
-  if (equals == std::string::npos || measure == kMeasures.end())
-    throw UsageError("--limit \"" + text + "\": must be rel_rmse=, p999=, max=, psnr= or bias= and a number");
-  Limit limit{&*measure, 0};
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data() + equals + 1, end, limit.value);
-  if (error != std::errc() || stop != end || !(limit.value >= 0))
-    throw UsageError("--limit \"" + text + "\": \"" + text.substr(equals + 1) + "\" is not a number >= 0");
-  return limit;
-}
 
 // The capture a path names, or nothing for an EXR that is just an image.
 std::optional<Capture> findCapture(const std::filesystem::path& path) {
@@ -82,13 +73,12 @@ std::optional<Capture> findCapture(const std::filesystem::path& path) {
 
 // A | B | 4 |A - B|, exposed so that the 99th percentile of B is white; pixels that do not count are
 // black in the difference.
-void writeDifference(const std::filesystem::path& path, const Image& a, const Image& b,
-                     const std::vector<std::uint8_t>& mask) {
+void writeDifference(const std::filesystem::path& path, const Image& a, const Image& b, const Mask& mask) {
   constexpr float kAmplification = 4;
   std::vector<float> values;
   Image difference(a.width, a.height, a.channels);
   for (std::size_t i = 0; i < b.data.size(); ++i) {
-    if (!mask.empty() && mask[i / static_cast<std::size_t>(b.channels)] == 0) continue;
+    if (mask[i / static_cast<std::size_t>(b.channels)] == 0) continue;
     difference.data[i] = kAmplification * std::abs(a.data[i] - b.data[i]);
     if (std::isfinite(b.data[i])) values.push_back(b.data[i]);
   }
@@ -102,7 +92,12 @@ void writeDifference(const std::filesystem::path& path, const Image& a, const Im
   writePng(path, panels.width, panels.height, toSrgb(panels, white > 0 ? 1 / white : 1));
 }
 
-Json toJson(const Comparison& comparison, const Options& options) {
+Json toJson(const IsolatedPixels& isolated) {
+  return {{"count", isolated.count}, {"bright", isolated.bright}, {"dark", isolated.dark}};
+}
+
+Json toJson(const Result& result, const Options& options) {
+  const Comparison& comparison = result.comparison;
   Json json = {{"a", options.a},
                {"b", options.b},
                {"box", options.box},
@@ -113,10 +108,14 @@ Json toJson(const Comparison& comparison, const Options& options) {
   for (const Measure& measure : kMeasures)
     for (const ChannelDifference& channel : comparison.channels)
       json[measure.name].push_back(channel.*measure.value);  // infinity becomes null
+  json["isolated"] = {{"a", toJson(result.isolatedA)}, {"b", toJson(result.isolatedB)}};
+  json["tint"] = toJson(result.tint);
+  json["flip"] = toJson(result.flip);
   return json;
 }
 
-std::string toText(const Comparison& comparison, const Options& options) {
+std::string toText(const Result& result, const Options& options) {
+  const Comparison& comparison = result.comparison;
   std::ostringstream text;
   text << options.a << " (A) against " << options.b << " (B): " << comparison.pixels << " pixels";
   if (options.box > 1)
@@ -134,26 +133,40 @@ std::string toText(const Comparison& comparison, const Options& options) {
   if (comparison.nonFiniteA || comparison.nonFiniteB)
     text << "  NaN or infinity in " << comparison.nonFiniteA << " pixels of A and " << comparison.nonFiniteB
          << " of B, left out\n";
-  text << kDefinitions;
+  const auto isolated = [](const IsolatedPixels& pixels) {
+    return std::to_string(pixels.count) + " (" + std::to_string(pixels.bright) + " bright, " +
+           std::to_string(pixels.dark) + " dark)";
+  };
+  text << "  isolated pixels: A has " << isolated(result.isolatedA) << ", B " << isolated(result.isolatedB)
+       << "\n  tint: ";
+  for (const double value : result.tint.channel) text << value << " ";
+  text << "(R G B), red over green " << result.tint.redOverGreen << ", of " << result.tint.blocks
+       << " blocks\n  flip: mean " << result.flip.mean << ", 99th percentile " << result.flip.p99
+       << ", at exposure " << result.flip.exposure << "\n"
+       << kDefinitions;
   return text.str();
 }
 
-void checkLimits(const Comparison& comparison, const std::vector<Limit>& limits) {
-  std::ostringstream over;
-  for (const Limit& limit : limits)
-    for (std::size_t c = 0; c < comparison.channels.size(); ++c)
-      if (const double value = comparison.channels[c].*limit.measure->value; !limit.allows(value))
-        over << (over.str().empty() ? "" : "; ") << limit.measure->name << " of " << kChannelNames[c]
-             << " is " << value << ", the limit " << limit.value;
+void checkLimits(const Result& result, const Limits& limits) {
+  const Comparison& comparison = result.comparison;
+  std::vector<Measured> values = {{"isolated", "A", static_cast<double>(result.isolatedA.count)},
+                                  {"tint", "red over green", result.tint.redOverGreen},
+                                  {"flip", "", result.flip.mean},
+                                  {"flip_p99", "", result.flip.p99}};
+  for (std::size_t c = 0; c < comparison.channels.size(); ++c) {
+    values.push_back({"tint", kChannelNames[c], result.tint.channel[c]});
+    for (const Measure& measure : kMeasures)
+      values.push_back({measure.name, kChannelNames[c], comparison.channels[c].*measure.value});
+  }
+  std::string over = limits.over(values);
   if (!limits.empty() && comparison.nonFiniteA)
-    over << (over.str().empty() ? "" : "; ") << comparison.nonFiniteA << " pixels of A are not finite";
-  if (!over.str().empty()) throw LimitExceeded(over.str());
+    over +=
+        (over.empty() ? "" : "; ") + std::to_string(comparison.nonFiniteA) + " pixels of A are not finite";
+  if (!over.empty()) throw LimitExceeded(over);
 }
 
 void compare(const Options& options) {
-  std::vector<Limit> limits;
-  for (const std::string& limit : options.limits) limits.push_back(parseLimit(limit));
-
+  const Limits limits(kLimitKinds, options.limits);
   const Image a = readExrImage(options.a);
   std::optional<Capture> capture = findCapture(options.b);
   if (capture && !capture->truth)
@@ -166,17 +179,25 @@ void compare(const Options& options) {
   if (subset != Subset::All && !capture)
     throw UsageError("--subset needs a capture, for its irradiance: give --mask, or a manifest as B");
 
-  const std::vector<std::uint8_t> mask =
-      capture ? comparisonMask(capture->material, capture->irradiance, subset) : std::vector<std::uint8_t>();
-  Comparison comparison;
+  Mask mask = capture ? comparisonMask(capture->material, capture->irradiance, subset) : Mask(a.pixels(), 1);
+  Result result;
   try {
-    comparison = compareImages(a, b, mask, options.box, options.boxCoverage);
+    result.comparison = compareImages(a, b, mask, options.box, options.boxCoverage);
   } catch (const InputError& error) {
     throw InputError(options.a + " (A), " + options.b + " (B)", "", error.what());
   }
-  std::cout << (options.json ? toJson(comparison, options).dump(2) + "\n" : toText(comparison, options));
+  const Surfaces surfaces = capture ? Surfaces(*capture) : Surfaces(b.width, b.height);
+  result.isolatedA = findIsolated(a, surfaces, mask);
+  result.isolatedB = findIsolated(b, surfaces, mask);
+  result.tint = measureTint(a, b, mask);
+  result.flip = measureFlip(a, b, mask, options.exposure);
+  std::cout << (options.json ? toJson(result, options).dump(2) + "\n" : toText(result, options));
   if (!options.diff.empty()) writeDifference(options.diff, a, b, mask);
-  checkLimits(comparison, limits);
+  if (!options.ratio.empty()) writePng(options.ratio, b.width, b.height, ratioMap(a, b, mask));
+  if (!options.isolated.empty())
+    writePng(options.isolated, a.width, a.height,
+             markIsolated(a, result.isolatedA, static_cast<float>(result.flip.exposure)));
+  checkLimits(result, limits);
 }
 
 }  // namespace
@@ -205,10 +226,18 @@ void addCompareCommand(CLI::App& app) {
   command
       ->add_option(
           "--limit", options->limits,
-          "exit with 1 when a channel exceeds it: rel_rmse=, p999=, max=, bias= (at most), psnr= (at least)")
+          "exit with 1 when a channel exceeds it: rel_rmse=, p999=, max=, bias=, tint= (at most), psnr= (at "
+          "least); or the whole: isolated=, flip=, flip_p99= (at most)")
       ->delimiter(',')
       ->take_all();
   command->add_option("--diff", options->diff, "write a PNG: A, B, 4 |A-B|");
+  command->add_option("--ratio", options->ratio,
+                      "write a PNG of A / B over 4x4 averages: gray where right, full color at 10 % off");
+  command->add_option("--isolated", options->isolated, "write a PNG of A with its isolated pixels framed");
+  command
+      ->add_option("--exposure", options->exposure,
+                   "factor for flip and --isolated; default: B's 99th percentile to 0.8")
+      ->check(CLI::PositiveNumber);
   command->add_flag("--json", options->json, "print JSON; infinity is null");
   command->footer(kDefinitions);
   command->callback([options] { compare(*options); });

@@ -9,14 +9,12 @@ EyeMetrics measureEye(const Image& result, const Capture& capture, double exposu
   if (!capture.truth) throw InputError(capture.name, "truth", "missing: there is nothing to compare with");
   const Image& truth = capture.truth->image;
   const Surfaces surfaces(capture);
-  const Mask all = comparisonMask(capture.material, capture.irradiance, Subset::All);
-  const Mask lit = comparisonMask(capture.material, capture.irradiance, Subset::Lit);
+  const Mask mask = comparisonMask(capture.material, capture.irradiance, Subset::All);
   EyeMetrics metrics;
-  metrics.isolated = findIsolated(result, surfaces, all).count;
-  metrics.isolatedInTruth = findIsolated(truth, surfaces, all).count;
-  metrics.tint = measureTint(result, truth, surfaces, all);
-  metrics.tintLit = measureTint(result, truth, surfaces, lit);
-  metrics.flip = measureFlip(result, truth, all, exposure);
+  metrics.isolated = findIsolated(result, surfaces, mask).count;
+  metrics.isolatedInTruth = findIsolated(truth, surfaces, mask).count;
+  metrics.tint = measureTint(result, truth, mask);
+  metrics.flip = measureFlip(result, truth, mask, exposure);
   return metrics;
 }
 

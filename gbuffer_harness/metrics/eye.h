@@ -1,4 +1,4 @@
-// All metrics of one result against the truth of its capture.
+// The metrics of one result against the truth of its capture, over the pixels that have a material.
 #pragma once
 
 #include "capture/capture.h"
@@ -9,9 +9,9 @@
 namespace pellucid::harness {
 
 struct EyeMetrics {
-  std::size_t isolated = 0, isolatedInTruth = 0;  // pixels, of all that have a material
-  Tint tint, tintLit;  // of all blocks, and of those all of whose pixels are lit from the front
-  Flip flip;           // over the pixels with a material
+  std::size_t isolated = 0, isolatedInTruth = 0;  // pixels
+  Tint tint;
+  Flip flip;
 };
 
 // `result`: three channels. exposure: as measureFlip(). Throws InputError without a truth, or when the sizes

@@ -143,6 +143,27 @@ TEST(CompareMask, SplitsByFrontIrradiance) {
 
 // ---- The command
 
+// Standard output of `pellucid compare ARGUMENTS`; also in `printed`, when it throws too.
+std::string runCompare(std::vector<std::string> arguments, std::string* printed = nullptr) {
+  CLI::App app;
+  addCompareCommand(app);
+  arguments.insert(arguments.begin(), "compare");
+  std::reverse(arguments.begin(), arguments.end());
+  testing::internal::CaptureStdout();
+  const auto captured = [&] {
+    const std::string text = testing::internal::GetCapturedStdout();
+    if (printed) *printed = text;
+    return text;
+  };
+  try {
+    app.parse(arguments);
+  } catch (...) {
+    captured();
+    throw;
+  }
+  return captured();
+}
+
 class CompareCommand : public testing::Test {
 protected:
   void SetUp() override {
@@ -163,21 +184,7 @@ protected:
   }
   std::string path(const std::string& name) { return (directory / name).string(); }
 
-  // Standard output of `pellucid compare ARGUMENTS`.
-  std::string run(std::vector<std::string> arguments) {
-    CLI::App app;
-    addCompareCommand(app);
-    arguments.insert(arguments.begin(), "compare");
-    std::reverse(arguments.begin(), arguments.end());
-    testing::internal::CaptureStdout();
-    try {
-      app.parse(arguments);
-    } catch (...) {
-      output = testing::internal::GetCapturedStdout();
-      throw;
-    }
-    return output = testing::internal::GetCapturedStdout();
-  }
+  std::string run(const std::vector<std::string>& arguments) { return runCompare(arguments, &output); }
 
   TemporaryDirectory directory;
   nlohmann::json manifest = writeSampleFiles(directory);
@@ -244,6 +251,40 @@ TEST_F(CompareCommand, BadInputIsNamed) {
 TEST_F(CompareCommand, DrawsADifference) {
   run({path("nan.exr"), path("m.json"), "--diff", path("d.png")});
   EXPECT_EQ(readText(directory / "d.png").substr(1, 3), "PNG");
+}
+
+TEST(CompareCommandOfImages, SaysWhatTheEyeSees) {
+  // Without a capture all pixels show one surface. A: a dot, and 10 % too much red in the left half.
+  const TemporaryDirectory directory;
+  const std::string a = (directory / "a.exr").string(), b = (directory / "b.exr").string();
+  const std::string ratio = (directory / "ratio.png").string(), dots = (directory / "dots.png").string();
+  Image image(32, 16, 3, 1.0f);
+  writeExr(b, image, {"R", "G", "B"});
+  for (int y = 0; y < 16; ++y)
+    for (int x = 0; x < 16; ++x) image.at(x, y)[0] = 1.1f;
+  image.at(20, 9)[1] = 2;
+  writeExr(a, image, {"R", "G", "B"});
+  const auto json = nlohmann::json::parse(
+      runCompare({a, b, "--json", "--exposure", "0.5", "--ratio", ratio, "--isolated", dots}));
+  EXPECT_EQ(json["isolated"]["a"]["count"], 1);
+  EXPECT_EQ(json["isolated"]["a"]["bright"], 1);
+  EXPECT_EQ(json["isolated"]["b"]["count"], 0);
+  EXPECT_EQ(json["tint"]["blocks"], 8);
+  EXPECT_NEAR(json["tint"]["channels"][0].get<double>(), 0.05, 1e-6);
+  EXPECT_NEAR(json["tint"]["channels"][2].get<double>(), 0, 1e-12);
+  EXPECT_EQ(json["flip"]["exposure"], 0.5);
+  EXPECT_GT(json["flip"]["mean"].get<double>(), 0.01);
+  EXPECT_GT(json["flip"]["p99"].get<double>(), json["flip"]["mean"].get<double>());
+  for (const std::string& picture : {ratio, dots}) EXPECT_EQ(readText(picture).substr(1, 3), "PNG");
+  const std::string text = runCompare({a, b});
+  for (const char* part : {"A has 1 (1 bright, 0 dark), B 0", "red over green", "99th percentile"})
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+
+  EXPECT_NO_THROW(runCompare({a, b, "--limit", "isolated=1,tint=0.06,flip=0.5,flip_p99=0.9"}));
+  for (const char* limit : {"isolated=0", "tint=0.04", "flip=0.001", "flip_p99=0.001"})
+    EXPECT_THROW(runCompare({a, b, "--limit", limit}), LimitExceeded) << limit;
+  EXPECT_NO_THROW(runCompare({b, b, "--limit", "isolated=0,tint=0,flip=0,flip_p99=0"}));
+  EXPECT_THROW(runCompare({a, b, "--exposure", "0"}), CLI::ValidationError);
 }
 
 // ---- Pictures
