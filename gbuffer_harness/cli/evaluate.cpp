@@ -1,12 +1,12 @@
-// `pellucid evaluate`: every model against the path-traced truth of captures, as a Markdown table.
+// `pellucid evaluate`: models, or qualities, against the path-traced truth of captures.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fstream>
-#include <sstream>
 
 #include "capture/material.h"
 #include "capture/read.h"
 #include "cli/commands.h"
+#include "cli/evaluate_report.h"
 #include "common/compare.h"
 #include "common/error.h"
 #include "common/plot.h"
@@ -19,14 +19,14 @@ namespace {
 
 struct Options {
   std::vector<std::string> captures;
-  std::string output, device, picture, plot;
-  int box = 4;
-  double boxCoverage = 0.5;
-  bool reference = false;
+  std::string output, device, picture, plot, rows = "models";
+  EvaluationBoxes boxes;
+  double exposure = 0;
+  bool reference = false, json = false;
 };
 
 struct Model {
-  const char* name;
+  std::string name;
   ReplaySettings settings;
 };
 
@@ -47,18 +47,16 @@ std::vector<Model> models() {
           {"gather, 64 samples", gather(64)}};
 }
 
-std::string cells(const Comparison& c) {
-  char text[128];
-  const auto& k = c.channels;
-  std::snprintf(text, sizeof text, "%.3f %.3f %.3f | %+.0f %+.0f %+.0f %%", k[0].relativeRmse,
-                k[1].relativeRmse, k[2].relativeRmse, 100 * k[0].bias, 100 * k[1].bias, 100 * k[2].bias);
-  return text;
-}
-
-std::string compared(const Capture& capture, const Image& image, Subset subset, const Options& options) {
-  const auto mask = comparisonMask(capture.material, capture.irradiance, subset);
-  if (std::find(mask.begin(), mask.end(), 1) == mask.end()) return "no such pixels | ";
-  return cells(compareImages(image, capture.truth->image, mask, options.box, options.boxCoverage));
+std::vector<Model> qualities() {
+  std::vector<Model> all;
+  for (std::uint32_t quality = 0; quality <= 3; ++quality)
+    for (const std::uint32_t samples : {0u, 16u}) {
+      const std::string name = "quality " + std::to_string(quality);
+      Model& model = all.emplace_back(
+          Model{samples ? name + ", gather " + std::to_string(samples) : name, gather(samples)});
+      model.settings.quality = quality;
+    }
+  return all;
 }
 
 // What the samples converge to, over brute-force diffusion.
@@ -101,7 +99,7 @@ std::vector<Series> samplesAgainstError(const std::string& name, const Capture& 
   for (const std::uint32_t samples : {4u, 8u, 16u, 32u, 64u}) {
     const Image image = rgb(replayer.run(capture, materials, gather(samples)).output);
     const Comparison comparison =
-        compareImages(image, capture.truth->image, mask, options.box, options.boxCoverage);
+        compareImages(image, capture.truth->image, mask, options.boxes.side, options.boxes.coverage);
     for (std::size_t c = 0; c < 3; ++c) {
       lines[c].x.push_back(samples);
       lines[c].y.push_back(comparison.channels[c].relativeRmse);
@@ -110,15 +108,11 @@ std::vector<Series> samplesAgainstError(const std::string& name, const Capture& 
   return lines;
 }
 
-void evaluate(const Options& options) {
+void run(const Options& options) {
   Device device({options.device, false});
   Replayer replayer(device);
-  std::ostringstream table;
+  std::vector<Evaluation> evaluations;
   std::vector<Plot> plots;
-  table << "Relative RMSE and mean bias (R G B) against path-traced truth, " << options.box << "x"
-        << options.box << " averages of which " << 100 * options.boxCoverage
-        << " % and more are surface; unlit: pixels without front irradiance.\n\n"
-        << "| capture | model | all | bias | unlit | bias |\n|-|-|-|-|-|-|\n";
   for (const std::string& path : options.captures) {
     const Capture capture = readCapture(path);
     if (!capture.truth) throw InputError(path, "truth", "missing: there is nothing to evaluate against");
@@ -126,17 +120,12 @@ void evaluate(const Options& options) {
     const auto file = std::filesystem::absolute(path);
     const std::string name =
         file.extension() == ".json" ? file.parent_path().filename().string() : file.stem().string();
-    for (const Model& model : models()) {
-      const Image image = rgb(replayer.run(capture, materials, model.settings).output);
-      table << "| " << name << " | " << model.name << " | " << compared(capture, image, Subset::All, options)
-            << " | " << compared(capture, image, Subset::Unlit, options) << " |\n";
-    }
-    if (options.reference) {
-      const Image image = allTexels(capture, materials);
-      table << "| " << name << " | float64: all texels, exact diffusion | "
-            << compared(capture, image, Subset::All, options) << " | "
-            << compared(capture, image, Subset::Unlit, options) << " |\n";
-    }
+    const auto add = [&](const std::string& model, const Image& image) {
+      evaluations.push_back(evaluate(name, model, capture, image, options.boxes, options.exposure));
+    };
+    for (const Model& model : options.rows == "models" ? models() : qualities())
+      add(model.name, rgb(replayer.run(capture, materials, model.settings).output));
+    if (options.reference) add("float64: all texels, exact diffusion", allTexels(capture, materials));
     if (!options.picture.empty() && &path == &options.captures.front())
       writePicture(options.picture, capture, materials, replayer);
     if (!options.plot.empty()) {
@@ -146,12 +135,14 @@ void evaluate(const Options& options) {
     }
   }
   if (!options.plot.empty()) writePlot(options.plot, plots, 480, 360);
+  const std::string report = options.json ? evaluationJson(evaluations, options.boxes)
+                                          : evaluationMarkdown(evaluations, options.boxes);
   if (options.output.empty()) {
-    std::fputs(table.str().c_str(), stdout);
+    std::fputs(report.c_str(), stdout);
     return;
   }
   std::ofstream file(options.output);
-  file << table.str();
+  file << report;
   if (!file.flush()) throw InputError(options.output, "", "cannot be written");
 }
 
@@ -160,14 +151,22 @@ void evaluate(const Options& options) {
 void addEvaluateCommand(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* command =
-      app.add_subcommand("evaluate", "Compare every translucency model with captures' truth, as a table");
+      app.add_subcommand("evaluate", "Compare translucency models or qualities with captures' truth");
   command->add_option("captures", options->captures, "captures with truth")->required();
-  command->add_option("-o,--output", options->output, "Markdown file; default: standard output");
-  command->add_option("--box", options->box, "average NxN pixels first")
+  command->add_option("-o,--output", options->output, "file of the tables; default: standard output");
+  command->add_option("--rows", options->rows, "models, or qualities: 0 to 3, without and with the gather")
+      ->check(CLI::IsMember({"models", "qualities"}))
+      ->capture_default_str();
+  command->add_flag("--json", options->json, "JSON instead of Markdown tables");
+  command
+      ->add_option("--exposure", options->exposure,
+                   "factor for FLIP; default: the truth's 99th percentile to 0.8")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--box", options->boxes.side, "average NxN pixels first")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
   command
-      ->add_option("--box-coverage", options->boxCoverage,
+      ->add_option("--box-coverage", options->boxes.coverage,
                    "part of an average's pixels that must be surface, else it is left out")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
@@ -177,7 +176,7 @@ void addEvaluateCommand(CLI::App& app) {
                       "PNG of the first capture: thesis, light-space thickness, gather, truth");
   command->add_option("--plot", options->plot, "PNG of the error against the samples of the gather");
   command->add_option("--device", options->device, "part of the Vulkan device's name");
-  command->callback([options] { evaluate(*options); });
+  command->callback([options] { run(*options); });
 }
 
 }  // namespace pellucid::harness

@@ -1,0 +1,98 @@
+#include "cli/evaluate_report.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <sstream>
+
+#include "cli/metrics_json.h"
+
+namespace pellucid::harness {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::optional<Comparison> compared(const Capture& capture, const Image& result, Subset subset,
+                                   const EvaluationBoxes& boxes) {
+  const Mask mask = comparisonMask(capture.material, capture.irradiance, subset);
+  if (std::find(mask.begin(), mask.end(), 1) == mask.end()) return std::nullopt;
+  return compareImages(result, capture.truth->image, mask, boxes.side, boxes.coverage);
+}
+
+std::string errorCells(const std::optional<Comparison>& comparison) {
+  if (!comparison) return "no such pixels | ";
+  char text[128];
+  const auto& k = comparison->channels;
+  std::snprintf(text, sizeof text, "%.3f %.3f %.3f | %+.0f %+.0f %+.0f %%", k[0].relativeRmse,
+                k[1].relativeRmse, k[2].relativeRmse, 100 * k[0].bias, 100 * k[1].bias, 100 * k[2].bias);
+  return text;
+}
+
+std::string eyeCells(const EyeMetrics& eye) {
+  char text[256];
+  const auto& tint = eye.tint.channel;
+  const std::string tints = eye.tint.blocks > 0
+                                ? (std::snprintf(text, sizeof text, "%.3f %.3f %.3f | %.3f", tint[0], tint[1],
+                                                 tint[2], eye.tint.redOverGreen),
+                                   text)
+                                : "no such blocks | ";
+  std::snprintf(text, sizeof text, "%zu (%zu) | %s | %.3f | %.3f | %.3g", eye.isolated, eye.isolatedInTruth,
+                tints.c_str(), eye.flip.mean, eye.flip.p99, eye.flip.exposure);
+  return text;
+}
+
+Json toJson(const std::optional<Comparison>& comparison) {
+  if (!comparison) return nullptr;
+  Json json;
+  for (const ChannelDifference& channel : comparison->channels) {
+    json["rel_rmse"].push_back(channel.relativeRmse);
+    json["bias"].push_back(channel.bias);
+  }
+  json["blocks"] = comparison->samples;
+  json["nonFinite"] = comparison->nonFiniteA;
+  return json;
+}
+
+}  // namespace
+
+Evaluation evaluate(const std::string& captureName, const std::string& model, const Capture& capture,
+                    const Image& result, const EvaluationBoxes& boxes, double exposure) {
+  return {captureName, model, compared(capture, result, Subset::All, boxes),
+          compared(capture, result, Subset::Unlit, boxes), measureEye(result, capture, exposure)};
+}
+
+std::string evaluationMarkdown(const std::vector<Evaluation>& evaluations, const EvaluationBoxes& boxes) {
+  std::ostringstream text;
+  text << "Relative RMSE and mean bias (R G B) against path-traced truth, " << boxes.side << "x" << boxes.side
+       << " averages of which " << 100 * boxes.coverage
+       << " % and more are surface; unlit: pixels without front irradiance.\n\n"
+       << "| capture | model | all | bias | unlit | bias |\n|-|-|-|-|-|-|\n";
+  for (const Evaluation& e : evaluations)
+    text << "| " << e.capture << " | " << e.model << " | " << errorCells(e.all) << " | "
+         << errorCells(e.unlit) << " |\n";
+  text << "\nWhat the eye sees against path-traced truth: isolated pixels (those of the truth in "
+          "parentheses), "
+          "tint of 8x8 averages (R G B, then red over green), FLIP.\n\n"
+       << "| capture | model | isolated | tint | red/green | FLIP mean | 99th percentile | at exposure |\n"
+       << "|-|-|-|-|-|-|-|-|\n";
+  for (const Evaluation& e : evaluations)
+    text << "| " << e.capture << " | " << e.model << " | " << eyeCells(e.eye) << " |\n";
+  return text.str();
+}
+
+std::string evaluationJson(const std::vector<Evaluation>& evaluations, const EvaluationBoxes& boxes) {
+  Json results = Json::array();
+  for (const Evaluation& e : evaluations)
+    results.push_back({{"capture", e.capture},
+                       {"model", e.model},
+                       {"all", toJson(e.all)},
+                       {"unlit", toJson(e.unlit)},
+                       {"isolated", e.eye.isolated},
+                       {"isolatedInTruth", e.eye.isolatedInTruth},
+                       {"tint", toJson(e.eye.tint)},
+                       {"flip", toJson(e.eye.flip)}});
+  return Json{{"box", boxes.side}, {"boxCoverage", boxes.coverage}, {"results", std::move(results)}}.dump(2) +
+         "\n";
+}
+
+}  // namespace pellucid::harness
