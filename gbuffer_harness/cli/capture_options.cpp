@@ -106,7 +106,7 @@ void addCommonOptions(CLI::App& command, CaptureOptions& options) {
       ->take_all();
 }
 
-void addModelOptions(CLI::App& command, CaptureOptions& options) {
+void addModelOptions(CLI::App& command, CaptureOptions& options, SceneUse use) {
   const char* const group = kModelGroup;
   command.add_option("model", options.model, "glTF file, .glb or .gltf");
   command.add_option("--material", options.presets, "NAME=PRESET, repeatable; NAME * means all others")
@@ -135,12 +135,12 @@ void addModelOptions(CLI::App& command, CaptureOptions& options) {
       ->check(CLI::IsMember({"auto", "1", "6"}))
       ->capture_default_str()
       ->group(group);
-  command
-      .add_option("--device", options.device, "part of the Vulkan device's name; default: the fastest kind")
-      ->group(group);
+  CLI::Option* device = command.add_option("--device", options.device,
+                                           "part of the Vulkan device's name; default: the fastest kind");
+  if (use == SceneUse::Capture) device->group(group);
 }
 
-void addSceneOptions(CLI::App& command, CaptureOptions& options) {
+void addSceneOptions(CLI::App& command, CaptureOptions& options, SceneUse use) {
   const char* const group = kSceneGroup;
   command
       .add_option("--procedural", options.scene.name, "name of the scene; list: print all with their options")
@@ -148,17 +148,19 @@ void addSceneOptions(CLI::App& command, CaptureOptions& options) {
   command.add_option("--seed", options.scene.seed, "of scenes that scatter things")
       ->capture_default_str()
       ->group(group);
-  command.add_option("--set", options.set, "key=value, repeatable: an option of the scene")
+  command
+      .add_option(use == SceneUse::Capture ? "--set" : "--scene-set", options.set,
+                  "key=value, repeatable: an option of the scene")
       ->take_all()
       ->group(group);
 }
 
 }  // namespace
 
-void addCaptureOptions(CLI::App& command, CaptureOptions& options) {
+void addCaptureOptions(CLI::App& command, CaptureOptions& options, SceneUse use) {
   addCommonOptions(command, options);
-  addModelOptions(command, options);
-  addSceneOptions(command, options);
+  addModelOptions(command, options, use);
+  addSceneOptions(command, options, use);
 }
 
 bool isProcedural(const CLI::App& command, const CaptureOptions& options) {

@@ -46,8 +46,12 @@ struct CaptureModel {
 // Prints both on stderr.
 void say(const CaptureModel& model);
 
+// Commands that take a scene: those that capture it, and those that replay it too, whose --set is the
+// replay's: the scene's is --scene-set, and --device is of procedural scenes as well.
+enum class SceneUse { Capture, Replay };
+
 // Adds all of them to a command, but for its output.
-void addCaptureOptions(CLI::App& command, CaptureOptions& options);
+void addCaptureOptions(CLI::App& command, CaptureOptions& options, SceneUse use = SceneUse::Capture);
 
 // Whether they name a procedural scene; else they name a model. Throws UsageError when they name both or
 // neither, and for an option of the other kind: one without effect is a mistake of who gave it.

@@ -16,6 +16,7 @@ void addReferenceCommand(CLI::App& app);
 void addCompareCommand(CLI::App& app);
 void addTruthCommand(CLI::App& app);
 void addEvaluateCommand(CLI::App& app);
+void addFlickerCommand(CLI::App& app);
 void addCaptureCommand(CLI::App& app);
 void addSheetCommand(CLI::App& app);
 void addMeasureDotsCommand(CLI::App& app);

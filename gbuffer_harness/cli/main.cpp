@@ -30,6 +30,7 @@ int main(int argc, char** argv) {
   addTruthCommand(app);
   addCompareCommand(app);
   addEvaluateCommand(app);
+  addFlickerCommand(app);
   addCaptureCommand(app);
   addSheetCommand(app);
   addMeasureDotsCommand(app);

@@ -1,0 +1,246 @@
+// `pellucid flicker`: what changes in a result when the camera moves by whole pixels or lights turn a little.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <numbers>
+#include <optional>
+
+#include "capture/material.h"
+#include "capture/read.h"
+#include "cli/capture_options.h"
+#include "cli/command.h"
+#include "cli/commands.h"
+#include "cli/limits.h"
+#include "cli/metrics_json.h"
+#include "cli/nearest_distance.h"
+#include "cli/numbers.h"
+#include "cli/settings.h"
+#include "common/compare.h"
+#include "common/error.h"
+#include "common/progress.h"
+#include "metrics/moved_capture.h"
+#include "raster/framing.h"
+#include "replay/replay.h"
+
+namespace pellucid::harness {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kDefinitions =
+    "Of the difference between two frames that should look alike, R G B: rel_rmse: RMS over that of the "
+    "still\n"
+    "frame. p999, worst: 99.9th percentile and largest, over the mean of the still frame's 5x5 pixels "
+    "around.\n"
+    "moved: the same view some pixels to the side. lights turned: about the vertical through the scene's "
+    "center;\n"
+    "the difference is the change less its mean over 5x5 pixels, as diffused light changes evenly; edges of "
+    "hard\n"
+    "shadows move and count. irradiance: the same of what is diffused. docs/accuracy.md has the "
+    "definitions.\n";
+
+const std::vector<LimitKind> kLimitKinds = {{"rel_rmse"}, {"p999"}, {"worst"}};
+
+struct Options {
+  CaptureOptions scene;
+  SettingsOptions settings;
+  std::string pixels = "1,2,3,5";
+  double lightDegrees = 0.5;
+  std::vector<std::string> limits;
+  bool json = false;
+};
+
+// A frame, and the same with turned lights where there are any to turn.
+struct Frames {
+  Capture still;
+  std::optional<Capture> turned;
+};
+
+struct Row {
+  std::string change;
+  Flicker flicker;
+};
+
+bool isCaptureFile(const std::string& path) {
+  const std::string extension = std::filesystem::path(path).extension().string();
+  return extension == ".exr" || extension == ".json";
+}
+
+std::vector<int> parsePixels(const std::string& text) {
+  std::vector<int> pixels;
+  for (const std::string& part : split(text, ',')) {
+    pixels.push_back(parseNumber<int>("--pixels", part));
+    if (pixels.back() == 0 || std::abs(pixels.back()) > 1024)
+      throw UsageError("--pixels: \"" + part + "\" is not a number of pixels from 1 to 1024, or -1024 to -1");
+  }
+  return pixels;
+}
+
+Frames proceduralFrames(const Options& options) {
+  SceneParameters scene = procedural(options.scene);
+  Frames frames{makeScene(scene), std::nullopt};
+  if (options.lightDegrees != 0 && !frames.still.lights.empty()) {
+    scene.turn.lights = options.lightDegrees * std::numbers::pi / 180;
+    frames.turned = makeScene(scene);
+  }
+  return frames;
+}
+
+Frames modelFrames(const Options& options, Device& device) {
+  CaptureModel scene = captureModel(options.scene);
+  const RasterResult still = rasterize(device, scene.model, scene.camera, scene.raster);
+  scene.warnings.insert(scene.warnings.end(), still.warnings.begin(), still.warnings.end());
+  for (const std::string& warning : scene.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  Frames frames{still.capture, std::nullopt};
+  if (options.lightDegrees != 0 && !scene.model.lights.empty()) {
+    const Vector3 center = boundsOf(scene.model).center;
+    for (Light& light : scene.model.lights)
+      light = turnedLight(light, center, options.lightDegrees * std::numbers::pi / 180);
+    frames.turned = rasterize(device, scene.model, scene.camera, scene.raster).capture;
+  }
+  return frames;
+}
+
+// The options of a scene have no meaning for a capture.
+void refuseSceneOptions(const std::vector<const CLI::Option*>& sceneOptions) {
+  for (const CLI::Option* option : sceneOptions)
+    if (option->count() > 0 && option->get_name() != "model" && option->get_name() != "--device")
+      throw UsageError(option->get_name() + ": needs a model or --procedural, and not a capture");
+}
+
+std::vector<Row> measure(const Options& options, const Frames& frames, const ReplaySettings& settings,
+                         Device& device) {
+  const std::vector<int> pixels = parsePixels(options.pixels);
+  int rim = 0;
+  for (const int k : pixels) rim = std::max(rim, std::abs(k));
+  const std::vector<PellucidMaterial> materials = compileMaterials(frames.still);
+  requireNearestDistance(frames.still, materials, settings);
+  Replayer replayer(device);
+  Progress progress("replaying", pixels.size() + (frames.turned ? 2 : 1));
+  const auto run = [&](const Capture& capture) {
+    Image image = rgb(replayer.run(capture, materials, settings).output);
+    progress.advance();
+    return image;
+  };
+  const auto maskOf = [](const Capture& capture) {
+    return comparisonMask(capture.material, capture.irradiance, Subset::All);
+  };
+
+  const Capture base = movedCapture(frames.still, 0, 0, rim);
+  const Image still = run(base);
+  const Mask mask = maskOf(base);
+  if (std::find(mask.begin(), mask.end(), 1) == mask.end())
+    throw InputError(frames.still.name, "material",
+                     "is 0 but for a rim of " + std::to_string(rim) + " pixels: there is nothing to compare");
+  std::vector<Row> rows;
+  for (const int k : pixels) {
+    const Image moved = run(movedCapture(frames.still, k, 0, rim));
+    rows.push_back({"moved by " + std::to_string(k) + (std::abs(k) == 1 ? " pixel" : " pixels"),
+                    compareShifted(still, moved, mask, k, 0)});
+  }
+  if (frames.turned) {
+    const Capture turned = movedCapture(*frames.turned, 0, 0, rim);
+    const Surfaces surfaces(base);
+    char degrees[32];
+    std::snprintf(degrees, sizeof degrees, "%g", options.lightDegrees);
+    const std::string change = std::string("lights turned by ") + degrees + " degrees";
+    rows.push_back({change, compareTurned(still, run(turned), surfaces, mask)});
+    rows.push_back(
+        {change + ", irradiance", compareTurned(base.irradiance, turned.irradiance, surfaces, mask)});
+  }
+  return rows;
+}
+
+std::string toMarkdown(const std::vector<Row>& rows) {
+  std::string text = "| change | rel_rmse R G B | p999 R G B | worst R G B | worst at x, y |\n|-|-|-|-|-|\n";
+  for (const Row& row : rows) {
+    char line[256];
+    const auto &e = row.flicker.relativeRmse, &p = row.flicker.p999, &w = row.flicker.worst;
+    std::snprintf(line, sizeof line, "| %s | %.4f %.4f %.4f | %.3f %.3f %.3f | %.3f %.3f %.3f | %d, %d |\n",
+                  row.change.c_str(), e[0], e[1], e[2], p[0], p[1], p[2], w[0], w[1], w[2],
+                  row.flicker.worstPixel[0], row.flicker.worstPixel[1]);
+    text += line;
+  }
+  return text;
+}
+
+void flicker(const CLI::App& command, const std::vector<const CLI::Option*>& sceneOptions,
+             const Options& options) {
+  const Limits limits(kLimitKinds, options.limits);
+  const ReplaySettings settings = options.settings.parse();
+  if (settings.debugView != PELLUCID_DEBUG_NONE)
+    throw UsageError("--debug: flicker compares results and not intermediates");
+  Device device({options.scene.device, false});
+  Frames frames;
+  if (isCaptureFile(options.scene.model)) {
+    refuseSceneOptions(sceneOptions);
+    frames.still = readCapture(options.scene.model);
+  } else {
+    frames = isProcedural(command, options.scene) ? proceduralFrames(options) : modelFrames(options, device);
+  }
+  const std::vector<Row> rows = measure(options, frames, settings, device);
+  if (options.json) {
+    Json changes = Json::array();
+    for (const Row& row : rows) {
+      Json change = toJson(row.flicker);
+      change["change"] = row.change;
+      changes.push_back(std::move(change));
+    }
+    std::cout << Json{{"frame", frames.still.name},
+                      {"size", {frames.still.width, frames.still.height}},
+                      {"device", device.description()},
+                      {"settings", options.settings.text()},
+                      {"changes", std::move(changes)}}
+                     .dump(2)
+              << "\n";
+  } else {
+    std::cout << frames.still.name << ", " << frames.still.width << "x" << frames.still.height << ", "
+              << rows.front().flicker.pixels << " pixels, " << options.settings.text() << ", on "
+              << device.description() << "\n\n"
+              << toMarkdown(rows) << "\n"
+              << kDefinitions;
+  }
+  std::vector<Measured> values;
+  for (const Row& row : rows) {
+    if (row.change.ends_with("irradiance")) continue;  // the input's
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::string of = std::string(1, "RGB"[c]) + " " + row.change;
+      values.push_back({"rel_rmse", of, row.flicker.relativeRmse[c]});
+      values.push_back({"p999", of, row.flicker.p999[c]});
+      values.push_back({"worst", of, row.flicker.worst[c]});
+    }
+  }
+  if (const std::string over = limits.over(values); !over.empty()) throw LimitExceeded(over);
+}
+
+}  // namespace
+
+void addFlickerCommand(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "flicker",
+      "Say what changes when the camera moves by pixels or lights turn: of a model, a capture or a scene");
+  addCaptureOptions(*command, options->scene, SceneUse::Replay);
+  std::vector<const CLI::Option*> sceneOptions;
+  for (const CLI::Option* option : std::as_const(*command).get_options()) sceneOptions.push_back(option);
+  options->settings.addTo(*command);
+  command->add_option("--pixels", options->pixels, "moves to the right, whole pixels; negative: to the left")
+      ->capture_default_str();
+  command->add_option("--light-degrees", options->lightDegrees, "turn of the lights; 0: none; captures: none")
+      ->check(CLI::Range(-10.0, 10.0))
+      ->capture_default_str();
+  command
+      ->add_option("--limit", options->limits,
+                   "exit with 1 when any channel of any change exceeds it: rel_rmse=, p999=, worst=")
+      ->delimiter(',')
+      ->take_all();
+  command->add_flag("--json", options->json, "print JSON");
+  command->footer(kDefinitions);
+  command->callback([options, command, sceneOptions] { flicker(*command, sceneOptions, *options); });
+}
+
+}  // namespace pellucid::harness
