@@ -112,13 +112,18 @@ void refuseSceneOptions(const std::vector<const CLI::Option*>& sceneOptions) {
       throw UsageError(option->get_name() + ": needs a model or --procedural, and not a capture");
 }
 
-std::vector<Row> measure(const Options& options, const Frames& frames, const ReplaySettings& settings,
-                         Device& device) {
-  const std::vector<int> pixels = parsePixels(options.pixels);
+std::vector<Row> measure(const Options& options, const std::vector<int>& pixels, const Frames& frames,
+                         const ReplaySettings& settings, Device& device) {
   int rim = 0;
   for (const int k : pixels) rim = std::max(rim, std::abs(k));
   const std::vector<PellucidMaterial> materials = compileMaterials(frames.still);
   requireNearestDistance(frames.still, materials, settings);
+  const Capture base = movedCapture(frames.still, 0, 0, rim);
+  const Mask mask = comparisonMask(base.material, base.irradiance, Subset::All);
+  if (std::find(mask.begin(), mask.end(), 1) == mask.end())
+    throw InputError(frames.still.name, "material",
+                     "is 0 but for a rim of " + std::to_string(rim) + " pixels: there is nothing to compare");
+
   Replayer replayer(device);
   Progress progress("replaying", pixels.size() + (frames.turned ? 2 : 1));
   const auto run = [&](const Capture& capture) {
@@ -126,16 +131,7 @@ std::vector<Row> measure(const Options& options, const Frames& frames, const Rep
     progress.advance();
     return image;
   };
-  const auto maskOf = [](const Capture& capture) {
-    return comparisonMask(capture.material, capture.irradiance, Subset::All);
-  };
-
-  const Capture base = movedCapture(frames.still, 0, 0, rim);
   const Image still = run(base);
-  const Mask mask = maskOf(base);
-  if (std::find(mask.begin(), mask.end(), 1) == mask.end())
-    throw InputError(frames.still.name, "material",
-                     "is 0 but for a rim of " + std::to_string(rim) + " pixels: there is nothing to compare");
   std::vector<Row> rows;
   for (const int k : pixels) {
     const Image moved = run(movedCapture(frames.still, k, 0, rim));
@@ -174,6 +170,7 @@ void flicker(const CLI::App& command, const std::vector<const CLI::Option*>& sce
   const ReplaySettings settings = options.settings.parse();
   if (settings.debugView != PELLUCID_DEBUG_NONE)
     throw UsageError("--debug: flicker compares results and not intermediates");
+  const std::vector<int> pixels = parsePixels(options.pixels);
   Device device({options.scene.device, false});
   Frames frames;
   if (isCaptureFile(options.scene.model)) {
@@ -182,7 +179,7 @@ void flicker(const CLI::App& command, const std::vector<const CLI::Option*>& sce
   } else {
     frames = isProcedural(command, options.scene) ? proceduralFrames(options) : modelFrames(options, device);
   }
-  const std::vector<Row> rows = measure(options, frames, settings, device);
+  const std::vector<Row> rows = measure(options, pixels, frames, settings, device);
   if (options.json) {
     Json changes = Json::array();
     for (const Row& row : rows) {

@@ -8,9 +8,11 @@
 #include "metrics/eye.h"
 #include "metrics/flicker.h"
 #include "metrics/isolated.h"
+#include "metrics/moved_capture.h"
 #include "metrics/ratio_map.h"
 #include "metrics/surface.h"
 #include "metrics/tint.h"
+#include "reference/camera.h"
 
 namespace pellucid::harness {
 namespace {
@@ -338,6 +340,59 @@ TEST(Flicker, EvenChangeOfTurnedLightsIsNone) {
   EXPECT_NEAR(even.worst[0], 0, 1e-6);  // rounding of floats near 1
   turned.at(10, 10)[0] += 1;            // less 1/25, its part of the 5x5 mean
   EXPECT_NEAR(compareTurned(still, turned, Surfaces(32, 32), everywhere(still)).worst[0], 0.96, 1e-5);
+}
+
+// ---- Moved captures
+
+// Every image of the view says where its pixels come from.
+Capture numbered(int width, int height) {
+  Capture c = plane(width, height);
+  c.backDepth = {Image(width, height, 1), PELLUCID_DEPTH_DEVICE};
+  c.normal = Image(width, height, 3);
+  c.albedo = Image(width, height, 3);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const float number = static_cast<float>(1 + x + width * y);
+      *c.frontDepth.image.at(x, y) = number;
+      *c.backDepth.image.at(x, y) = 0.001f * number;
+      for (Image* image : {&c.irradiance, &c.normal, &c.albedo})
+        for (int k = 0; k < 3; ++k) image->at(x, y)[k] = number + 0.25f * static_cast<float>(k);
+      c.material[pixelIndex(c.irradiance, x, y)] = static_cast<std::uint8_t>(number);
+    }
+  return c;
+}
+
+TEST(MovedCapture, ImagesMoveAndTheRimIsEmpty) {
+  const Capture c = numbered(9, 7);
+  const Capture moved = movedCapture(c, 2, -1, 2);
+  for (int y = 0; y < 7; ++y)
+    for (int x = 0; x < 9; ++x) {
+      const int fromX = x - 2, fromY = y + 1;
+      const bool inside = fromX >= 2 && fromX < 7 && fromY >= 2 && fromY < 5;
+      const std::size_t i = pixelIndex(c.irradiance, x, y);
+      EXPECT_EQ(*moved.frontDepth.image.at(x, y), inside ? *c.frontDepth.image.at(fromX, fromY) : kNoDepth);
+      // The orthographic matrix has device depth 1 far away.
+      EXPECT_EQ(*moved.backDepth.image.at(x, y), inside ? *c.backDepth.image.at(fromX, fromY) : 1);
+      EXPECT_EQ(moved.material[i], inside ? c.material[pixelIndex(c.irradiance, fromX, fromY)] : 0);
+      for (const auto image : {&Capture::irradiance, &Capture::normal, &Capture::albedo})
+        EXPECT_EQ((moved.*image).at(x, y)[2], inside ? (c.*image).at(fromX, fromY)[2] : 0);
+    }
+  EXPECT_THROW(movedCapture(c, 3, 0, 2), InputError);
+  EXPECT_THROW(movedCapture(c, 0, -3, 2), InputError);
+  EXPECT_THROW(movedCapture(c, 0, 0, 4), InputError);
+}
+
+TEST(MovedCapture, PixelsKeepTheirPoints) {
+  Capture perspective = plane(40, 20);
+  perspective.clipFromView = {1, 0, 0, 0, 0, -2, 0, 0, 0.1, 0.2, 0, -1, 0, 0, 0.1, 0};
+  for (const Capture& c : {plane(40, 20), perspective}) {
+    const Capture moved = movedCapture(c, 5, -3, 5);
+    const reference::Camera still(c.clipFromView, 40, 20), shifted(moved.clipFromView, 40, 20);
+    for (const glm::dvec2 pixel : {glm::dvec2(10.5, 9.5), glm::dvec2(33.5, 4.5)}) {
+      const glm::dvec3 a = still.position(pixel, 70), b = shifted.position(pixel + glm::dvec2(5, -3), 70);
+      EXPECT_NEAR(glm::distance(a, b), 0, 1e-12);
+    }
+  }
 }
 
 // ---- All of them

@@ -1,0 +1,78 @@
+// `pellucid evaluate` and `pellucid flicker` as a person runs them.
+#include <nlohmann/json.hpp>
+
+#include "cli_fixture.h"
+
+namespace {
+
+using namespace pellucid::test;
+using Json = nlohmann::json;
+
+TEST_F(Cli, EvaluateFindsNothingInItsOwnTruth) {
+  // A checkered plane, and as its truth what quality 2 makes of it. Seen as the procedural scene has it, but
+  // for its camera: any orthographic one will do, as the truth is made with the same.
+  expect(0, "capture --procedural checker --size 40x40 -o " + path("c.exr"), "");
+  Json manifest = Json::parse(R"({"pellucid": 1, "metersPerUnit": 0.001,
+    "camera": {"clipFromView": [0.1, 0, 0, 0, 0, -0.1, 0, 0, 0, 0, -0.001, 0, 0, 0, 0, 1],
+               "viewFromWorld": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]},
+    "buffers": {"frontDepth": {"constant": [100], "encoding": "viewZ"}, "material": {"constant": [1]},
+                "normal": {"constant": [0, 0, 1], "space": "world"},
+                "irradiance": {"file": "c.exr", "channels": ["irradiance.R", "irradiance.G", "irradiance.B"]}},
+    "lights": [], "materials": [{"preset": "skin1"}]})");
+  std::ofstream(path("m.json")) << manifest.dump();
+  expect(0, "replay " + path("m.json") + " -o " + path("truth.exr"), "wrote");
+  manifest["truth"] = {{"file", "truth.exr"}, {"channels", {"R", "G", "B"}}};
+  std::ofstream(path("m.json")) << manifest.dump();
+
+  expect(0, "evaluate " + path("m.json") + " --rows qualities --json -o " + path("r.json"), "");
+  const Json report = Json::parse(bytes("r.json"));
+  ASSERT_EQ(report["results"].size(), 8u);
+  for (const Json& result : report["results"]) {
+    const bool same = result["model"] == "quality 2";
+    if (!same && result["model"] != "quality 0") continue;
+    EXPECT_EQ(result["tint"]["blocks"], 25);
+    EXPECT_TRUE(!same || result["isolated"] == result["isolatedInTruth"]) << result;
+    EXPECT_EQ(result["all"]["rel_rmse"][0] == 0, same) << result;
+    EXPECT_EQ(result["tint"]["channels"][0] == 0, same) << result;
+    EXPECT_EQ(result["flip"]["mean"] == 0, same) << result;
+  }
+}
+
+TEST_F(Cli, FlickerOfPixelsByThemselves) {
+  // What comes through a pixel is its own: moved, only the rounding of rays is left, at most one step of the
+  // output's half floats, .001. Lights that turn change what comes through, and the limit says so.
+  const Outcome outcome =
+      run("flicker --procedural ear --size 48x40 --shadow-size 64 --pixels 1,-4 --set features=translucency "
+          "--limit worst=0.01 --json");
+  EXPECT_EQ(outcome.code, 1) << outcome.text;
+  EXPECT_NE(outcome.text.find("worst of R lights turned by 0.5 degrees is"), std::string::npos)
+      << outcome.text;
+  const std::size_t begin = outcome.text.find("{\n"), end = outcome.text.rfind("}\n");
+  const Json changes = Json::parse(outcome.text.substr(begin, end + 1 - begin))["changes"];
+  ASSERT_EQ(changes.size(), 4u);
+  EXPECT_EQ(changes[1]["change"], "moved by -4 pixels");
+  EXPECT_EQ(changes[3]["change"], "lights turned by 0.5 degrees, irradiance");
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_LE(changes[0]["worst"][c].get<double>(), 0.002);
+    EXPECT_LE(changes[1]["worst"][c].get<double>(), 0.002);
+    EXPECT_GT(changes[2]["worst"][c].get<double>(), 0.01);
+  }
+  EXPECT_GT(changes[0]["pixels"], 500);
+}
+
+TEST_F(Cli, FlickerUsage) {
+  const std::string plane = "flicker --procedural plane --size 16x16 ";
+  expect(2, "flicker", "either a model or --procedural is required");
+  expect(2, "flicker x.exr --size 16x16", "--size: needs a model or --procedural");
+  expect(2, plane + "--pixels 1,0", "\"0\" is not a number of pixels");
+  expect(2, plane + "--pixels 1,x", "\"x\" is not a number");
+  expect(2, plane + "--debug thickness", "--debug");
+  expect(2, plane + "--limit max=1", "must be one of rel_rmse=, p999=, worst=");
+  expect(2, plane + "--set period=3", "unknown key \"period\"");
+  expect(3, plane + "--scene-set period=3", "period");
+  expect(3, plane + "--pixels 8", "a rim of 8 pixels");
+  expect(3, "flicker " + path("missing.exr"), "missing.exr");
+  expect(2, "evaluate " + path("missing.exr") + " --rows all", "--rows");
+}
+
+}  // namespace
