@@ -13,14 +13,11 @@
 #include "cli/commands.h"
 #include "cli/frames.h"
 #include "cli/output.h"
-#include "cli/traced_light.h"
+#include "cli/scene_capture.h"
 #include "common/error.h"
 #include "common/progress.h"
 #include "common/whole_file.h"
 #include "raster/framing.h"
-#include "reference/path_tracer/mesh_scene.h"
-#include "reference/path_tracer/solid_scene.h"
-#include "scene/model.h"
 #include "scene/scene.h"
 #include "scene/turn.h"
 
@@ -94,17 +91,11 @@ void warn(const std::vector<std::string>& warnings) {
 
 void captureProcedural(const Options& options) {
   SceneParameters scene = procedural(options.scene);
-  const std::optional<Environment> sky = environment(options.scene);
   const std::vector<CaptureFrame> frames = framesOf(options.turntable, options.output);
   Progress progress("capturing", frames.size());
   for (const CaptureFrame& frame : frames) {
     scene.turn = frame.turn;
-    Capture capture = makeScene(scene);
-    setIor(capture.materials, options.scene);
-    if (sky) {
-      const SceneModel model = sceneModel(scene);
-      addTracedLight(capture, *reference::makeSolidScene(model), sky);
-    }
+    const Capture capture = captureScene(scene, options.scene);
     writeWhole(frame.output, [&](const auto& file) { writeCapture(capture, file); });
     progress.advance();
   }
@@ -120,8 +111,6 @@ void captureGltf(const Options& options) {
   say(scene);
 
   const std::optional<Environment> sky = environment(options.scene);
-  const std::unique_ptr<reference::TraceScene> traced =
-      needsTracing(scene.model.lights, sky) ? reference::makeMeshScene(scene.model) : nullptr;
   Device device({options.scene.device, false});
   const Vector3 center = boundsOf(scene.model).center;
   const std::vector<Light> still = scene.model.lights;
@@ -132,8 +121,7 @@ void captureGltf(const Options& options) {
     turned.viewFromWorld = turnedView(scene.camera.viewFromWorld, center, frame.turn.camera.value_or(0));
     for (std::size_t i = 0; i < still.size(); ++i)
       scene.model.lights[i] = turnedLight(still[i], center, frame.turn.lights.value_or(0));
-    RasterResult result = rasterize(device, scene.model, turned, scene.raster);
-    if (traced) addTracedLight(result.capture, *traced, sky);
+    const RasterResult result = captureScene(device, scene.model, turned, scene.raster, sky);
     for (const std::string& warning : result.warnings)
       if (said.insert(warning).second) warn({frame.output.string() + ": " + warning});
     writeWhole(frame.output, [&](const auto& file) { writeCapture(result.capture, file); });

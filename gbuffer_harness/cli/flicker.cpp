@@ -17,6 +17,7 @@
 #include "cli/metrics_json.h"
 #include "cli/nearest_distance.h"
 #include "cli/numbers.h"
+#include "cli/scene_capture.h"
 #include "cli/settings.h"
 #include "common/compare.h"
 #include "common/error.h"
@@ -82,25 +83,26 @@ std::vector<int> parsePixels(const std::string& text) {
 
 Frames proceduralFrames(const Options& options) {
   SceneParameters scene = procedural(options.scene);
-  Frames frames{makeScene(scene), std::nullopt};
+  Frames frames{captureScene(scene, options.scene), std::nullopt};
   if (options.lightDegrees != 0 && !frames.still.lights.empty()) {
     scene.turn.lights = options.lightDegrees * std::numbers::pi / 180;
-    frames.turned = makeScene(scene);
+    frames.turned = captureScene(scene, options.scene);
   }
   return frames;
 }
 
 Frames modelFrames(const Options& options, Device& device) {
   CaptureModel scene = captureModel(options.scene);
-  const RasterResult still = rasterize(device, scene.model, scene.camera, scene.raster);
+  const std::optional<Environment> sky = environment(options.scene);
+  const RasterResult still = captureScene(device, scene.model, scene.camera, scene.raster, sky);
   scene.warnings.insert(scene.warnings.end(), still.warnings.begin(), still.warnings.end());
-  for (const std::string& warning : scene.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  say(scene);
   Frames frames{still.capture, std::nullopt};
   if (options.lightDegrees != 0 && !scene.model.lights.empty()) {
     const Vector3 center = boundsOf(scene.model).center;
     for (Light& light : scene.model.lights)
       light = turnedLight(light, center, options.lightDegrees * std::numbers::pi / 180);
-    frames.turned = rasterize(device, scene.model, scene.camera, scene.raster).capture;
+    frames.turned = captureScene(device, scene.model, scene.camera, scene.raster, sky).capture;
   }
   return frames;
 }
