@@ -2,8 +2,8 @@
 
 namespace pellucid::bench {
 
-void Report::section(const std::string& title) {
-  section_ = title;
+void Report::section(const std::string& title, const std::string& name) {
+  section_ = name.empty() ? title : name;
   std::fprintf(table_, "\n%-36s %9s %9s %9s %8s %11s %11s %9s\n", title.c_str(), "us", "10 %", "90 %",
                "x floor", "bytes/pixel", "dispatches", "error");
 }
@@ -27,7 +27,18 @@ void Report::add(const Row& row, const Time& time) {
                          {"barriers", row.barriers},
                          {"modeled_bytes_per_pixel", row.bytesPerPixel}};
   if (row.error) json["relative_rmse"] = *row.error;
+  if (!row.more.is_null()) json.update(row.more);
   rows_.push_back(std::move(json));
+}
+
+void Report::note(const std::string& text) {
+  std::fprintf(table_, "%s\n", text.c_str());
+  std::fflush(table_);
+}
+
+void Report::record(nlohmann::json row) {
+  row["section"] = section_;
+  rows_.push_back(std::move(row));
 }
 
 }  // namespace pellucid::bench
