@@ -17,7 +17,7 @@ using namespace harness;
 namespace {
 
 constexpr std::pair<int, int> kSizes[] = {{1280, 720}, {1920, 1080}, {2560, 1440}, {3840, 2160}};
-constexpr std::pair<int, int> kSoftwareSizes[] = {{320, 180}};
+constexpr std::pair<int, int> kSoftwareSizes[] = {{256, 144}};
 
 const std::string kNothing = "nothing", kPortrait = "portrait";
 

@@ -29,6 +29,17 @@ Json readResults(const std::filesystem::path& path) {
   return json;
 }
 
+// One line a row, so that files of a thousand rows stay readable, and so do their differences.
+std::string textOf(Json json) {
+  const Json rows = std::move(json["results"]);
+  json.erase("results");
+  std::string text = json.dump(1);
+  text.resize(text.rfind('\n'));
+  text += ",\n \"results\": [";
+  for (size_t i = 0; i < rows.size(); ++i) text += std::string(i == 0 ? "\n  " : ",\n  ").append(rows[i].dump());
+  return text + "\n ]\n}\n";
+}
+
 void write(Json json, const Options& options) {
   if (options.ratios) {
     json.erase("floor_us");
@@ -38,10 +49,10 @@ void write(Json json, const Options& options) {
         row.erase(time);
   }
   if (options.json == "-") {
-    std::printf("%s\n", json.dump(1).c_str());
+    std::fputs(textOf(std::move(json)).c_str(), stdout);
   } else if (!options.json.empty()) {
     std::ofstream file(options.json);
-    file << json.dump(1) << "\n";
+    file << textOf(std::move(json));
     if (!file.flush()) throw InputError(options.json, "", "cannot be written");
   }
 }

@@ -67,7 +67,7 @@ Time measure(harness::Device& device, int repeat, const std::function<void(VkCom
 std::vector<Time> measureParts(harness::Device& device, int repeat, uint32_t parts,
                                const std::function<void(VkCommandBuffer, uint32_t)>& record) {
   // Recording single dispatches costs the host more than whole frames.
-  constexpr int kMost = 32;
+  constexpr int kMost = 8;
   const harness::Timestamps timestamps(device, kMost * parts + 1);
   const auto run = [&](int times) {
     device.run([&](VkCommandBuffer commandBuffer) {

@@ -43,7 +43,7 @@ int readOptions(int argc, char** argv, Options& options) {
            for (const std::string& text : texts) f.sizes.push_back(parseSize(text));
          },
          "WIDTHxHEIGHT of frames that are made, with commas; default 1280x720, 1920x1080, 2560x1440 and 3840x2160, "
-         "on a software device 320x180")
+         "on a software device 256x144")
       ->delimiter(',');
   app.add_option("--frame-names", f.names, "which of the frames that are made, with commas; default all")
       ->delimiter(',')

@@ -1,6 +1,15 @@
 #include "report.h"
 
+#include <cmath>
+
 namespace pellucid::bench {
+
+namespace {
+
+// More digits than any device repeats.
+double rounded(double value) { return std::round(value * 1000) / 1000; }
+
+}  // namespace
 
 void Report::section(const std::string& title, const std::string& name) {
   section_ = name.empty() ? title : name;
@@ -19,13 +28,13 @@ void Report::add(const Row& row, const Time& time) {
   std::fflush(table_);  // a run that is stopped has shown what it measured
   nlohmann::json json = {{"section", section_},
                          {"name", row.name},
-                         {"us", time.median},
-                         {"p10_us", time.low},
-                         {"p90_us", time.high},
-                         {"floor_ratio", time.median / floor_},
+                         {"us", rounded(time.median)},
+                         {"p10_us", rounded(time.low)},
+                         {"p90_us", rounded(time.high)},
+                         {"floor_ratio", rounded(time.median / floor_)},
                          {"dispatches", row.dispatches},
                          {"barriers", row.barriers},
-                         {"modeled_bytes_per_pixel", row.bytesPerPixel}};
+                         {"modeled_bytes_per_pixel", rounded(row.bytesPerPixel)}};
   if (row.error) json["relative_rmse"] = *row.error;
   if (!row.more.is_null()) json.update(row.more);
   rows_.push_back(std::move(json));
