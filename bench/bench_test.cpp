@@ -186,18 +186,25 @@ protected:
   const std::filesystem::path out = folder / "out";
 };
 
-TEST_F(Command, MeasuresACaptureAndComparesRuns) {
+// Frames that are made come after captures where their names are given.
+TEST_F(Command, MeasuresACaptureAndNothingAndComparesRuns) {
   Capture capture = head(64, 36);
   capture.truth = Truth{capture.irradiance};
   const std::string exr = folder / "face.exr", json = folder / "run.json", doctored = folder / "doctored.json";
   writeCapture(capture, exr);
-  ASSERT_EQ(runs("--tables frames --frames " + exr + " --repeat 1 --error-pixels 50 --cache " +
+  ASSERT_EQ(runs("--tables frames --frames " + exr +
+                 " --frame-names nothing --frame-sizes 32x32 --shadow-size 16 --repeat 1 --error-pixels 50 --cache " +
                  (folder / "cache").string() + " --plot " + folder.string() + " --json " + json),
             0)
       << output();
   Json run = Json::parse(std::ifstream(json));
-  int wholes = 0, dispatches = 0, diffusions = 0;
+  int wholes = 0, dispatches = 0, diffusions = 0, nothing = 0;
   for (const Json& r : run["results"]) {
+    if (r["frame"] == "nothing") {
+      nothing += r["kind"] == "whole";
+      EXPECT_FALSE(r.contains("relative_rmse")) << r;
+      continue;
+    }
     EXPECT_EQ(r["frame"], "face");
     EXPECT_EQ(r["size"], "64x36");
     dispatches += r["kind"] == "dispatch";
@@ -212,6 +219,7 @@ TEST_F(Command, MeasuresACaptureAndComparesRuns) {
     EXPECT_GT(r["us"], 0) << r;
   }
   EXPECT_EQ(wholes, 4 + 2 * 3 + 7);  // qualities, with two gathers, others
+  EXPECT_EQ(nothing, wholes);
   EXPECT_EQ(diffusions, 4 + 7);
   EXPECT_GT(dispatches, 4 * 10);
   EXPECT_TRUE(std::filesystem::exists(folder / "frames_64x36.png"));

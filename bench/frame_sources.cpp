@@ -19,7 +19,10 @@ namespace {
 constexpr std::pair<int, int> kSizes[] = {{1280, 720}, {1920, 1080}, {2560, 1440}, {3840, 2160}};
 constexpr std::pair<int, int> kSoftwareSizes[] = {{256, 144}};
 
-const std::string kNothing = "nothing", kPortrait = "portrait";
+const std::string kNothing = "nothing";
+
+// Nothing is a portrait without its material.
+std::string drawnAs(const std::string& name) { return name == kNothing ? "portrait" : name; }
 
 // No material anywhere, which only the image says.
 Capture withoutMaterial(Capture capture) {
@@ -37,21 +40,29 @@ class DrawnFrames {
 public:
   DrawnFrames(Device& device, const FrameOptions& options) : device_(device), options_(options) {}
 
+  // Throws InputError where the files lack the frame.
+  void load(const std::string& name) { camera(name); }
+
   Capture make(const std::string& name, int width, int height) {
-    const Model& model = modelOf(name == "crowd" ? "crowd.glb" : "head_views.glb");
-    const auto camera = std::find_if(model.cameras.begin(), model.cameras.end(),
-                                     [&](const ModelCamera& c) { return c.name == name; });
-    if (camera == model.cameras.end())
-      throw InputError(model.name, "cameras", "there is no \"" + name + "\"");
     RasterOptions raster;
     raster.width = width;
     raster.height = height;
     raster.shadowSize = options_.shadowSize;
-    return rasterize(device_, model, *camera, raster).capture;
+    return rasterize(device_, modelOf(name), camera(name), raster).capture;
   }
 
 private:
-  const Model& modelOf(const std::string& file) {
+  const ModelCamera& camera(const std::string& name) {
+    const Model& model = modelOf(name);
+    const auto found = std::find_if(model.cameras.begin(), model.cameras.end(),
+                                    [&](const ModelCamera& c) { return c.name == name; });
+    if (found == model.cameras.end())
+      throw InputError(model.name, "cameras", "there is no \"" + name + "\"");
+    return *found;
+  }
+
+  const Model& modelOf(const std::string& name) {
+    const std::string file = name == "crowd" ? "crowd.glb" : "head_views.glb";
     const auto [entry, isNew] = models_.try_emplace(file);
     if (isNew) {
       entry->second = readModelFile({options_.models / file, 0.052, {{"*", "skin1"}}});
@@ -110,32 +121,36 @@ std::vector<FrameSource> frameSources(Device& device, const FrameOptions& option
     const std::filesystem::path path = std::filesystem::absolute(file);
     const std::string name =
         path.extension() == ".json" ? path.parent_path().filename().string() : path.stem().string();
-    sources.push_back({name, [=] { return named(readCaptureFile(path), name); }});
+    // Read at once: what is wrong with a file shows before a run of minutes.
+    const auto capture = std::make_shared<const Capture>(named(readCaptureFile(path), name));
+    sources.push_back({name, [=] { return *capture; }});
   }
-  if (!options.captures.empty() && options.models.empty()) return sources;
+  if (!options.captures.empty() && options.models.empty() && options.names.empty()) return sources;
 
   std::vector<std::pair<int, int>> sizes = options.sizes;
   if (sizes.empty() && isSoftware(device)) sizes.assign(std::begin(kSoftwareSizes), std::end(kSoftwareSizes));
   if (sizes.empty()) sizes.assign(std::begin(kSizes), std::end(kSizes));
+  std::vector<std::string> names;
+  for (const std::string name : kFrameNames)
+    if (options.names.empty() || std::count(options.names.begin(), options.names.end(), name) > 0)
+      names.push_back(name);
+
   std::function<Capture(const std::string&, int, int)> made;
-  if (options.models.empty())
+  if (options.models.empty()) {
     made = [all = std::make_shared<StandIns>(options)](const auto& name, int w, int h) {
       return all->make(name, w, h);
     };
-  else
-    made = [all = std::make_shared<DrawnFrames>(device, options)](const auto& name, int w, int h) {
-      return all->make(name, w, h);
-    };
+  } else {
+    const auto all = std::make_shared<DrawnFrames>(device, options);
+    for (const std::string& name : names) all->load(drawnAs(name));
+    made = [all](const auto& name, int w, int h) { return all->make(name, w, h); };
+  }
   for (const auto& [width, height] : sizes)
-    for (const std::string name : kFrameNames) {
-      if (!options.names.empty() && std::count(options.names.begin(), options.names.end(), name) == 0)
-        continue;
-      const bool nothing = name == kNothing;
+    for (const std::string& name : names)
       sources.push_back({name, [=, w = width, h = height] {
-                           const Capture capture = made(nothing ? kPortrait : name, w, h);
-                           return named(nothing ? withoutMaterial(capture) : capture, name);
+                           const Capture capture = made(drawnAs(name), w, h);
+                           return named(name == kNothing ? withoutMaterial(capture) : capture, name);
                          }});
-    }
   return sources;
 }
 

@@ -12,7 +12,6 @@
 #include "diffusions.h"
 #include "floor.h"
 #include "frame_errors.h"
-#include "frame_sources.h"
 #include "measure.h"
 #include "scene.h"
 
@@ -256,12 +255,13 @@ private:
 }  // namespace
 
 std::map<std::string, std::vector<Plot>> measureFrames(Device& device, const Context& context,
+                                                       const std::vector<FrameSource>& sources,
                                                        const FrameOptions& options, int repeat,
                                                        Report& report) {
   requireRightTransmittance(device, context, benchMaterial());
   std::map<std::string, double> floors;  // by size
   std::map<std::string, std::vector<Plot>> plots;
-  for (const FrameSource& source : frameSources(device, options)) {
+  for (const FrameSource& source : sources) {
     FrameBench bench(device, context, options, repeat, source.make(), report);
     const auto [floor, isNew] = floors.try_emplace(bench.size());
     if (isNew)

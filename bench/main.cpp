@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
+#include <set>
 
 #include "commit.h"
 #include "common/error.h"
@@ -57,54 +59,74 @@ void write(Json json, const Options& options) {
   }
 }
 
-Json measureAll(const Options& options) {
-  const auto wanted = [&](const char* name) { return options.tables.count(name) > 0; };
-  Device device({options.device, false});
-  const bool software = device.properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
-  const int repeat = options.repeat.value_or(software ? 3 : 7);
-  const Context context(device);
-  const PellucidMaterial material = benchMaterial();
-  const Site site{device, context, material, pixelSizeFor(material, options.plane.radius)};
+class Run {
+public:
+  explicit Run(const Options& options)
+      : options_(options),
+        device_({options.device, false}),
+        software_(device_.properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU),
+        repeat_(options.repeat.value_or(software_ ? 3 : 7)),
+        table_(options.json == "-" ? stderr : stdout),
+        report_(table_) {}
 
-  std::FILE* table = options.json == "-" ? stderr : stdout;
-  std::fprintf(table, "%s, commit %s, median of %d\n", device.description().c_str(), PELLUCID_COMMIT, repeat);
-  Report report(table, 1);
-  Json json = {{"device", device.description()}, {"commit", PELLUCID_COMMIT}, {"repeat", repeat}};
-  std::map<std::string, std::vector<Plot>> plots;
-  if (std::any_of(std::begin(kPlaneTables), std::end(kPlaneTables), wanted)) {
-    const auto [width, height] = options.plane.size;
-    report.note("planes of " + std::to_string(width) + " x " + std::to_string(height) + ", radius " +
-                std::to_string(std::lround(options.plane.radius)) + " pixels");
-    PlanePlots planes = measurePlanes(site, options.tables, options.plane, repeat, report);
-    plots["diffusion"] = std::move(planes.diffusion);
-    plots["gather"] = std::move(planes.gather);
-    json.update({{"width", width},
-                 {"height", height},
-                 {"radius_pixels", options.plane.radius},
-                 {"floor_us", planes.floor}});
+  Json measure() {
+    std::fprintf(table_, "%s, commit %s, median of %d\n", device_.description().c_str(), PELLUCID_COMMIT, repeat_);
+    json_ = {{"device", device_.description()}, {"commit", PELLUCID_COMMIT}, {"repeat", repeat_}};
+    // Bad files are named before the context takes its time.
+    std::vector<FrameSource> sources;
+    if (wanted("frames")) sources = frameSources(device_, options_.frames);
+    if (options_.tables != std::set<std::string>{"context"}) measureTimes(sources);
+    if (wanted("context")) measureContextCreation(options_.device, repeat_, report_);
+    for (const auto& [name, drawn] : plots_) {
+      if (options_.plot.empty() || drawn.empty()) continue;
+      std::filesystem::create_directories(options_.plot);
+      writePlot(options_.plot / (name + ".png"), drawn);
+    }
+    json_["results"] = report_.rows();
+    json_["results"].insert(json_["results"].end(), swept_.begin(), swept_.end());
+    return std::move(json_);
   }
-  Json swept = Json::array();
-  if (wanted("sweep")) swept = sweep(site, options.sweep, repeat, table, &plots["sweep"]);
-  if (wanted("frames"))
-    for (auto& [size, frames] : measureFrames(device, context, options.frames, repeat, report))
-      plots["frames_" + size] = std::move(frames);
-  if (wanted("context")) measureContextCreation(options.device, repeat, report);
-  for (const auto& [name, drawn] : plots) {
-    if (options.plot.empty() || drawn.empty()) continue;
-    std::filesystem::create_directories(options.plot);
-    writePlot(options.plot / (name + ".png"), drawn);
+
+private:
+  bool wanted(const char* name) const { return options_.tables.count(name) > 0; }
+
+  void measureTimes(const std::vector<FrameSource>& sources) {
+    const Context context(device_);
+    const PellucidMaterial material = benchMaterial();
+    const Site site{device_, context, material, pixelSizeFor(material, options_.plane.radius)};
+    if (std::any_of(std::begin(kPlaneTables), std::end(kPlaneTables),
+                    [&](const char* name) { return wanted(name); })) {
+      const auto [width, height] = options_.plane.size;
+      const double radius = options_.plane.radius;
+      std::fprintf(table_, "planes of %d x %d, radius %g pixels\n", width, height, radius);
+      PlanePlots planes = measurePlanes(site, options_.tables, options_.plane, repeat_, report_);
+      plots_["diffusion"] = std::move(planes.diffusion);
+      plots_["gather"] = std::move(planes.gather);
+      json_.update(
+          {{"width", width}, {"height", height}, {"radius_pixels", radius}, {"floor_us", planes.floor}});
+    }
+    if (wanted("sweep")) swept_ = sweep(site, options_.sweep, repeat_, table_, &plots_["sweep"]);
+    if (wanted("frames"))
+      for (auto& [size, frames] : measureFrames(device_, context, sources, options_.frames, repeat_, report_))
+        plots_["frames_" + size] = std::move(frames);
   }
-  json["results"] = report.rows();
-  json["results"].insert(json["results"].end(), swept.begin(), swept.end());
-  return json;
-}
+
+  const Options& options_;
+  Device device_;
+  bool software_;
+  int repeat_;
+  std::FILE* table_;
+  Report report_;
+  Json json_, swept_ = Json::array();
+  std::map<std::string, std::vector<Plot>> plots_;
+};
 
 int run(const Options& options) {
   if (options.createContext) return createContext(options);
   // Before a run of minutes.
   const Json before = options.compare.empty() ? Json() : readResults(options.compare);
   const bool stored = !options.results.empty();
-  const Json now = stored ? readResults(options.results) : measureAll(options);
+  const Json now = stored ? readResults(options.results) : Run(options).measure();
   if (!stored) write(now, options);
   if (options.compare.empty()) return 0;
   return printWhatGrew(before, now, options.json == "-" ? stderr : stdout) > 0 ? 1 : 0;

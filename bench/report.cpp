@@ -19,8 +19,12 @@ void Report::section(const std::string& title, const std::string& name) {
 
 void Report::add(const Row& row, const Time& time) {
   const std::string dispatches = std::to_string(row.dispatches) + " + " + std::to_string(row.barriers);
-  std::fprintf(table_, "  %-34s %9.1f %9.1f %9.1f %8.2f %11.1f %11s ", row.name.c_str(), time.median,
-               time.low, time.high, time.median / floor_, row.bytesPerPixel, dispatches.c_str());
+  std::fprintf(table_, "  %-34s %9.1f %9.1f %9.1f ", row.name.c_str(), time.median, time.low, time.high);
+  if (floor_ > 0)
+    std::fprintf(table_, "%8.2f", time.median / floor_);
+  else
+    std::fprintf(table_, "%8s", "-");
+  std::fprintf(table_, " %11.1f %11s ", row.bytesPerPixel, dispatches.c_str());
   if (row.error)
     std::fprintf(table_, "%9.2g\n", *row.error);
   else
@@ -31,10 +35,10 @@ void Report::add(const Row& row, const Time& time) {
                          {"us", rounded(time.median)},
                          {"p10_us", rounded(time.low)},
                          {"p90_us", rounded(time.high)},
-                         {"floor_ratio", rounded(time.median / floor_)},
                          {"dispatches", row.dispatches},
                          {"barriers", row.barriers},
                          {"modeled_bytes_per_pixel", rounded(row.bytesPerPixel)}};
+  if (floor_ > 0) json["floor_ratio"] = rounded(time.median / floor_);
   if (row.error) json["relative_rmse"] = *row.error;
   if (!row.more.is_null()) json.update(row.more);
   rows_.push_back(std::move(json));

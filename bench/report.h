@@ -13,11 +13,11 @@ namespace pellucid::bench {
 
 class Report {
 public:
-  // Writes the table to `table`. Times are also stated as multiples of `floor`, microseconds.
-  Report(std::FILE* table, double floor) : table_(table), floor_(floor) {}
+  explicit Report(std::FILE* table) : table_(table) {}
 
   // `name`: of the section in the JSON; default: the title.
   void section(const std::string& title, const std::string& name = "");
+  // From here on times are also stated as multiples of the floor; 0: not.
   void setFloor(double microseconds) { floor_ = microseconds; }
 
   struct Row {
@@ -38,7 +38,7 @@ public:
 
 private:
   std::FILE* table_;
-  double floor_;
+  double floor_ = 0;
   std::string section_;
   nlohmann::json rows_ = nlohmann::json::array();
 };
