@@ -1,5 +1,7 @@
 #include "bench_frame.h"
 
+#include <algorithm>
+
 #include "common/error.h"
 
 namespace pellucid::bench {
@@ -7,29 +9,43 @@ namespace pellucid::bench {
 using namespace harness;
 
 BenchFrame::BenchFrame(Device& device, const Context& context, const Capture& capture,
-                       const PellucidMaterial& material, const ReplaySettings& settings)
+                       const std::vector<PellucidMaterial>& materials, const ReplaySettings& settings,
+                       const std::shared_ptr<const InputImages>& inputs)
     : device_(device),
       width_(capture.width),
       height_(capture.height),
-      material_(material),
-      run_(device, context, capture, {material}, settings),
+      material_(materials.at(0)),
+      run_(inputs ? FrameRun(device, context, capture, materials, settings, inputs)
+                  : FrameRun(device, context, capture, materials, settings)),
       constants_(device, run_.plan().constantsSize,
                  VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT) {
-  requireOk(pellucidWriteConstants(&run_.plan(), &run_.frame(), constants_.mapped(),
-                                   static_cast<size_t>(constants_.size())),
-            run_.frame(), capture.name);
+  writeConstants();
 }
 
+void BenchFrame::writeConstants() const {
+  requireOk(pellucidWriteConstants(&run_.plan(), &run_.frame(), constants_.mapped(),
+                                   static_cast<size_t>(constants_.size())),
+            run_.frame(), "constants");
+}
+
+const PellucidBinding* BenchFrame::find(uint32_t binding) const {
+  const PellucidPlan& plan = run_.plan();
+  if (plan.dispatchCount == 0) return nullptr;
+  const PellucidBinding* first = plan.dispatches[0].bindings;
+  const PellucidBinding* end = first + plan.dispatches[0].bindingCount;
+  const PellucidBinding* found =
+      std::find_if(first, end, [&](const PellucidBinding& b) { return b.binding == binding; });
+  return found == end ? nullptr : found;
+}
+
+bool BenchFrame::isPlanned(uint32_t binding) const { return find(binding) != nullptr; }
+
 Resource BenchFrame::planned(uint32_t binding) const {
-  const PellucidDispatch& dispatch = run_.plan().dispatches[0];
-  for (uint32_t i = 0; i < dispatch.bindingCount; ++i) {
-    const PellucidBinding& b = dispatch.bindings[i];
-    if (b.binding != binding) continue;
-    if (b.resource == PELLUCID_RESOURCE_CONSTANTS)
-      return VkDescriptorBufferInfo{constants_.handle(), b.offset, b.size};
-    return imageOf(run_.frame(), b.resource);
-  }
-  throw DeviceError("the plan's first dispatch has no binding " + std::to_string(binding));
+  const PellucidBinding* b = find(binding);
+  if (!b) throw DeviceError("the plan's first dispatch has no binding " + std::to_string(binding));
+  if (b->resource == PELLUCID_RESOURCE_CONSTANTS)
+    return VkDescriptorBufferInfo{constants_.handle(), b->offset, b->size};
+  return imageOf(run_.frame(), b->resource);
 }
 
 std::shared_ptr<GpuImage> BenchFrame::image(VkFormat format) const {
@@ -41,6 +57,11 @@ std::shared_ptr<GpuImage> BenchFrame::image(VkFormat format) const {
 Variant moduleVariant(const std::shared_ptr<const BenchFrame>& frame, const std::string& name) {
   const PellucidPlan& plan = frame->run().plan();
   double bytes = 0;
+  PellucidImageNeed needs[PELLUCID_MAX_TRANSIENTS];  // no frame of the bench has a history
+  uint32_t count = PELLUCID_MAX_TRANSIENTS;
+  requireOk(pellucidGetImageNeeds(&frame->images(), &count, needs), frame->images(), name);
+  uint64_t transients = 0;
+  for (uint32_t i = 0; i < count; ++i) transients += needs[i].bytes;
   for (uint32_t i = 0; i < plan.dispatchCount; ++i)
     bytes += static_cast<double>(plan.dispatches[i].modeledBytes);
   return {name,
@@ -48,7 +69,8 @@ Variant moduleVariant(const std::shared_ptr<const BenchFrame>& frame, const std:
           plan.barrierCount,
           bytes / (static_cast<double>(frame->width()) * frame->height()),
           [frame](VkCommandBuffer commandBuffer) { frame->run().record(commandBuffer); },
-          [frame] { return rgb(frame->run().output()); }};
+          [frame] { return rgb(frame->run().output()); },
+          transients};
 }
 
 }  // namespace pellucid::bench

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "common/gpu_image.h"
 #include "compute_pass.h"
@@ -13,17 +14,23 @@ namespace pellucid::bench {
 
 class BenchFrame {
 public:
+  // `inputs`: the capture's on the device, if frames share them.
   BenchFrame(harness::Device& device, const harness::Context& context, const harness::Capture& capture,
-             const PellucidMaterial& material, const harness::ReplaySettings& settings);
+             const std::vector<PellucidMaterial>& materials, const harness::ReplaySettings& settings,
+             const std::shared_ptr<const harness::InputImages>& inputs = nullptr);
 
   harness::Device& device() const { return device_; }
   const PellucidFrame& images() const { return run_.frame(); }
-  const PellucidMaterial& material() const { return material_; }
+  const PellucidMaterial& material() const { return material_; }  // the first
   int width() const { return width_; }
   int height() const { return height_; }
 
   // A PELLUCID_BINDING_* of the plan's first dispatch: constants or an image, as the module binds it.
   Resource planned(uint32_t binding) const;
+  bool isPlanned(uint32_t binding) const;
+
+  // What RecordPlan does to the constants.
+  void writeConstants() const;
 
   const harness::FrameRun& run() const { return run_; }
 
@@ -31,6 +38,8 @@ public:
   std::shared_ptr<harness::GpuImage> image(VkFormat format) const;
 
 private:
+  const PellucidBinding* find(uint32_t binding) const;
+
   harness::Device& device_;
   int width_, height_;
   PellucidMaterial material_;

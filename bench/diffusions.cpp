@@ -28,7 +28,7 @@ Axis decades(const std::string& label, const std::vector<TimedError>& points, do
 
 std::shared_ptr<const BenchFrame> Site::frame(const Capture& capture, ReplaySettings settings) const {
   settings.normalFormat = VK_FORMAT_R8G8B8A8_SNORM;  // four bytes, as those of engines' G-buffers
-  return std::make_shared<BenchFrame>(device, context, capture, material, settings);
+  return std::make_shared<BenchFrame>(device, context, capture, std::vector{material}, settings);
 }
 
 Image Site::run(const Variant& variant) const {
@@ -78,7 +78,8 @@ std::vector<double> diffusionErrors(const Site& site) {
 
 Plot timeAgainstError(const std::string& title, const std::vector<TimedError>& points,
                       const std::string& from) {
-  const Color colors[] = {{200, 30, 30}, {30, 90, 200}, {20, 140, 60}, {150, 80, 160}};
+  const Color colors[] = {{200, 30, 30},  {30, 90, 200},  {20, 140, 60},
+                          {150, 80, 160}, {220, 140, 20}, {80, 80, 80}};
   Plot plot;
   plot.title = title;
   plot.x = decades("relative RMSE from " + from, points, &TimedError::error);

@@ -1,321 +1,144 @@
-// pellucid_bench: GPU times as multiples of the bandwidth floor of the same run: the module's plans,
-// translucency as separate dispatches, and the diffusions of others. What is timed is checked first.
-#include <CLI/CLI.hpp>
-#include <cmath>
+// pellucid_bench: GPU times of the module and of others beside their errors. What is timed is checked first.
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <map>
 #include <set>
 
 #include "commit.h"
 #include "common/error.h"
-#include "diffusions.h"
-#include "floor.h"
-#include "gather_error.h"
-#include "pellucid/pellucid_material.h"
-#include "report.h"
+#include "compare_runs.h"
+#include "context_creation.h"
+#include "frames.h"
+#include "options.h"
+#include "plane.h"
 #include "scene.h"
-#include "scene/scene.h"
-#include "steps.h"
 #include "sweep.h"
 
 namespace {
 
 using namespace pellucid::harness;
 using namespace pellucid::bench;
+using Json = nlohmann::json;
 
-struct Options {
-  std::string device, json;
-  std::filesystem::path plot;
-  bool ratios = false;
-  std::pair<int, int> size = {1280, 720};
-  int repeat = 30;
-  std::vector<double> coverage = {100, 25, 0};  // percent
-  std::set<std::string> tables = {"module", "edges", "fused", "gather", "steps", "diffusion"};
-  double radius = 40;  // pixels
-  SweepOptions sweep;
-};
-
-struct Bench {
-  const Options& options;
-  const Site& site;
-  Report& report;
-
-  std::shared_ptr<const BenchFrame> frame(const Capture& capture, const ReplaySettings& settings) const {
-    return site.frame(capture, settings);
-  }
-  Capture fullSlab() const { return slab(options.size.first, options.size.second, 1, site.pixel); }
-  Image run(const Variant& variant) const { return site.run(variant); }
-  Time time(const std::function<void(VkCommandBuffer)>& record) const {
-    return measure(site.device, options.repeat, record);
-  }
-  Time row(const Variant& v, std::optional<double> error) const {
-    const Time t = time(v.record);
-    report.add({v.name, v.dispatches, v.barriers, v.bytesPerPixel, error}, t);
-    return t;
-  }
-};
-
-// Of `lights` copies of the slab's light the first `mapped` keep their shadow map.
-Capture litBy(Capture c, int lights, int mapped) {
-  c.lights.assign(static_cast<size_t>(lights), c.lights[0]);
-  for (int i = mapped; i < lights; ++i) c.lights[static_cast<size_t>(i)].shadowMaps.clear();
-  return c;
+Json readResults(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  if (!file) throw InputError(path.string(), "", "cannot be read");
+  Json json = Json::parse(file, nullptr, false);
+  if (!json.is_object()) throw InputError(path.string(), "", "holds no results of pellucid_bench");
+  return json;
 }
 
-// The fused dispatch on the slab, where the answer is closed: its T at its thickness.
-void requireRightAnswer(const Bench& bench) {
-  ReplaySettings settings;
-  settings.features = PELLUCID_FEATURE_TRANSLUCENCY;
-  settings.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
-  const Capture c = slab(64, 48, 1, 0.1);
-  const Image out = bench.run(moduleVariant(bench.frame(c, settings), ""));
-  const double thickness = slabThickness(c);
-  const double expected = static_cast<double>(c.irradiance.data[0]) +
-                          pellucidEvaluateTransmittance(&bench.site.material, 0, thickness) /
-                              static_cast<double>(bench.site.material.reflectance[0]);
-  if (!(std::abs(static_cast<double>(out.data[0]) - expected) < 1e-4))
-    throw DeviceError("the fused dispatch gives " + std::to_string(out.data[0]) + " and not " +
-                      std::to_string(expected));
+// One line a row, so that files of a thousand rows stay readable, and so do their differences.
+std::string textOf(Json json) {
+  const Json rows = std::move(json["results"]);
+  json.erase("results");
+  std::string text = json.dump(1);
+  text.resize(text.rfind('\n'));
+  text += ",\n \"results\": [";
+  for (size_t i = 0; i < rows.size(); ++i) text += std::string(i == 0 ? "\n  " : ",\n  ").append(rows[i].dump());
+  return text + "\n ]\n}\n";
 }
 
-// One row for each dispatch of the frame's plan.
-void dispatches(const Bench& bench, const BenchFrame& frame) {
-  const PellucidPlan& plan = frame.run().plan();
-  for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
-    const PellucidDispatch& d = plan.dispatches[i];
-    const double bytes =
-        static_cast<double>(d.modeledBytes) / (static_cast<double>(frame.width()) * frame.height());
-    bench.report.add({d.name, 1, d.barrierBefore, bytes, {}},
-                     bench.time([&](VkCommandBuffer c) { frame.run().recordAlone(c, i); }));
-  }
-}
-
-void modulePlans(const Bench& bench) {
-  const auto [width, height] = bench.options.size;
-  const auto rows = [&](const std::string& title, const Capture& capture, const ReplaySettings& settings) {
-    bench.report.section(title);
-    const auto frame = bench.frame(capture, settings);
-    dispatches(bench, *frame);
-    bench.row(moduleVariant(frame, "whole frame"), {});
-  };
-  for (const double coverage : bench.options.coverage) {
-    char title[64];
-    std::snprintf(title, sizeof title, "module, %g %% covered", coverage);
-    rows(title, slab(width, height, coverage / 100, bench.site.pixel), {});
-  }
-  rows("module, radii not known", inPerspective(bench.fullSlab()), {});
-  for (const uint32_t quality : {1u, 3u}) {
-    ReplaySettings settings;
-    settings.quality = quality;
-    rows("module, quality " + std::to_string(quality), bench.fullSlab(), settings);
-  }
-}
-
-// Where surfaces end and curve, which takes longer than planes where light varies.
-void edges(const Bench& bench) {
-  const auto [width, height] = bench.options.size;
-  for (const double radius : {400.0, 100.0, 25.0}) {
-    char title[64];
-    std::snprintf(title, sizeof title, "edges, balls of %g pixels", radius);
-    bench.report.section(title);
-    const Capture capture = balls(width, height, radius, bench.site.pixel);
-    for (const uint32_t quality : {1u, 2u, 3u}) {
-      ReplaySettings settings;
-      settings.quality = quality;
-      const auto frame = bench.frame(capture, settings);
-      dispatches(bench, *frame);
-      bench.row(moduleVariant(
-                    frame, quality == 2 ? "whole frame" : "whole frame, quality " + std::to_string(quality)),
-                {});
-    }
-    bench.row(moduleVariant(bench.frame(litSmoothly(capture), {}), "whole frame, lit smoothly"), {});
-  }
-}
-
-// The fused dispatch alone: by lights and by how many of them have a shadow map.
-void fusedDispatch(const Bench& bench) {
-  bench.report.section("fused dispatch");
-  const auto row = [&](const std::string& name, const Capture& capture) {
-    ReplaySettings settings;
-    settings.features = PELLUCID_FEATURE_TRANSLUCENCY;
-    bench.row(moduleVariant(bench.frame(capture, settings), name), {});
-  };
-  for (const int lights : {1, 8, 64})
-    for (const int mapped : {0, 1, 4})
-      if (mapped <= lights)
-        row(std::to_string(lights) + " lights, " + std::to_string(mapped) + " maps",
-            litBy(bench.fullSlab(), lights, mapped));
-}
-
-// What the gather adds to a frame, in place of the fused dispatch: over a frame without it that is otherwise
-// the same.
-std::vector<TimedError> gathered(const Bench& bench) {
-  const auto frame = [&](const Capture& capture, uint32_t samples, uint32_t spacing) {
-    ReplaySettings settings;
-    settings.quality = 1;  // which the default is with a gather: the frames differ by that alone
-    settings.translucency.gatherSamples = samples;
-    settings.translucency.gatherSpacing = spacing;
-    return bench.frame(capture, settings);
-  };
-  const auto added = [&](const std::string& name, const Capture& capture, uint32_t samples, uint32_t spacing,
-                         std::optional<double> error) {
-    const Variant without = moduleVariant(frame(capture, 0, 0), ""),
-                  with = moduleVariant(frame(capture, samples, spacing), "");
-    const Time a = bench.time(without.record), b = bench.time(with.record);
-    bench.report.add({name, with.dispatches - without.dispatches, with.barriers - without.barriers,
-                      with.bytesPerPixel - without.bytesPerPixel, error},
-                     {b.median - a.median, b.low - a.high, b.high - a.low});
-    return b.median - a.median;
-  };
-  bench.report.section("gather, added to the frame; error: from all texels");
-  const std::vector<uint32_t> samples = {4, 8, 16, 32};
-  const std::vector<double> errors = gatherErrors(bench.site, samples);
-  std::vector<TimedError> points;
-  for (size_t i = 0; i < samples.size(); ++i) {
-    const std::string name = std::to_string(samples[i]) + " samples";
-    const double time = added(name, bench.fullSlab(), samples[i], 0, errors[i]);
-    points.push_back({"gather, " + name, errors[i], std::max(time, 1.0)});  // the axis is logarithmic
-  }
-  added("8 samples, a point in 2 x 2 pixels", bench.fullSlab(), 8, 2, {});
-  added("8 samples, nothing transmitted", litFromTheFront(bench.fullSlab()), 8, 0, {});
-  bench.report.section("gather, 8 samples");
-  dispatches(bench, *frame(bench.fullSlab(), 8, 0));
-  bench.report.section("gather, 8 samples, nothing transmitted");
-  dispatches(bench, *frame(litFromTheFront(bench.fullSlab()), 8, 0));
-  return points;
-}
-
-// Errors against the module, on the ear.
-void separateSteps(const Bench& bench) {
-  bench.report.section("translucency; error: from one dispatch");
-  ReplaySettings settings;
-  settings.features = PELLUCID_FEATURE_TRANSLUCENCY;
-  settings.translucency.thicknessSource = PELLUCID_THICKNESS_CAMERA;
-  settings.translucency.shadowBias = 0.5f;
-  SceneParameters p;
-  p.name = "ear";
-  p.width = p.height = 128;
-  p.depthEncoding = PELLUCID_DEPTH_DEVICE;
-  Capture ear = makeScene(p);
-  ear.albedo = {};       // the module would multiply by it
-  ear.lights.resize(1);  // the separate steps bind one shadow map
-  const std::vector<Variant> checked = translucencyVariants(bench.frame(ear, settings));
-  const std::vector<Variant> timed = translucencyVariants(bench.frame(bench.fullSlab(), settings));
-  const Image truth = bench.run(checked.back());
-  for (size_t i = 0; i < timed.size(); ++i)
-    // Half-float intermediate results round by 5e-4 of themselves.
-    bench.row(timed[i], requireNear(checked[i], bench.run(checked[i]), truth, ear, 2e-3));
-}
-
-std::vector<TimedError> diffusion(const Bench& bench) {
-  bench.report.section("diffusion; error: from brute force");
-  const std::vector<double> errors = diffusionErrors(bench.site);
-  std::vector<TimedError> points;
-  const std::vector<Variant> timed = diffusions(bench.site, bench.fullSlab());
-  for (size_t i = 0; i < timed.size(); ++i)
-    points.push_back({timed[i].name, errors[i], bench.row(timed[i], errors[i]).median});
-  return points;
-}
-
-void bench(const Options& options) {
-  const auto [width, height] = options.size;
-  Device device({options.device, false});
-  const Context context(device);
-  const PellucidMaterial material = benchMaterial();
-  const Site site{device, context, material, pixelSizeFor(material, options.radius)};
-  const std::vector<Floor> floors = measureFloors(device, slab(width, height, 1, site.pixel), options.repeat);
-
-  std::FILE* table = options.json == "-" ? stderr : stdout;
-  Report report(table, floors.front().time.median);
-  const Bench b{options, site, report};
-  requireRightAnswer(b);
-  std::fprintf(table, "%s, commit %s, %d x %d, median of %d, radius %g pixels\n",
-               device.description().c_str(), PELLUCID_COMMIT, width, height, options.repeat, options.radius);
-  report.section("floor");
-  for (const Floor& floor : floors) report.add({floor.shape, 1, 0, 24, {}}, floor.time);
-  const auto wanted = [&](const char* name) { return options.tables.count(name) > 0; };
-  if (wanted("module")) modulePlans(b);
-  if (wanted("edges")) edges(b);
-  if (wanted("fused")) fusedDispatch(b);
-  std::vector<Plot> plots, gatherPlots, sweepPlots;
-  if (wanted("gather"))
-    gatherPlots = {timeAgainstError("added, " + device.description(), gathered(b), "all texels")};
-  if (wanted("steps")) separateSteps(b);
-  if (wanted("diffusion")) plots = {timeAgainstError(device.description(), diffusion(b))};
-  nlohmann::json rows;
-  if (wanted("sweep")) rows = sweep(site, options.sweep, options.repeat, table, &sweepPlots);
-  if (!options.plot.empty()) {
-    std::filesystem::create_directories(options.plot);
-    if (!plots.empty()) writePlot(options.plot / "diffusion.png", plots);
-    if (!gatherPlots.empty()) writePlot(options.plot / "gather.png", gatherPlots);
-    if (!sweepPlots.empty()) writePlot(options.plot / "sweep.png", sweepPlots);
-  }
-
-  nlohmann::json json = {{"device", device.description()},
-                         {"commit", PELLUCID_COMMIT},
-                         {"width", width},
-                         {"height", height},
-                         {"repeat", options.repeat},
-                         {"radius_pixels", options.radius},
-                         {"floor_us", floors.front().time.median},
-                         {"results", report.rows()}};
-  json["results"].insert(json["results"].end(), rows.begin(), rows.end());
+void write(Json json, const Options& options) {
   if (options.ratios) {
     json.erase("floor_us");
-    for (nlohmann::json& row : json["results"])
-      for (const char* time : {"us", "p10_us", "p90_us"}) row.erase(time);
+    for (Json& row : json["results"])
+      for (const char* time : {"us", "p10_us", "p90_us", "floor_us", "cpu_us", "cpu_plan_us",
+                               "cpu_constants_us", "cpu_record_us"})
+        row.erase(time);
   }
   if (options.json == "-") {
-    std::printf("%s\n", json.dump(1).c_str());
+    std::fputs(textOf(std::move(json)).c_str(), stdout);
   } else if (!options.json.empty()) {
     std::ofstream file(options.json);
-    file << json.dump(1) << "\n";
+    file << textOf(std::move(json));
     if (!file.flush()) throw InputError(options.json, "", "cannot be written");
   }
+}
+
+class Run {
+public:
+  explicit Run(const Options& options)
+      : options_(options),
+        device_({options.device, false}),
+        software_(device_.properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU),
+        repeat_(options.repeat.value_or(software_ ? 3 : 7)),
+        table_(options.json == "-" ? stderr : stdout),
+        report_(table_) {}
+
+  Json measure() {
+    std::fprintf(table_, "%s, commit %s, median of %d\n", device_.description().c_str(), PELLUCID_COMMIT, repeat_);
+    json_ = {{"device", device_.description()}, {"commit", PELLUCID_COMMIT}, {"repeat", repeat_}};
+    // Bad files are named before the context takes its time.
+    std::vector<FrameSource> sources;
+    if (wanted("frames")) sources = frameSources(device_, options_.frames);
+    if (options_.tables != std::set<std::string>{"context"}) measureTimes(sources);
+    if (wanted("context")) measureContextCreation(options_.device, repeat_, report_);
+    for (const auto& [name, drawn] : plots_) {
+      if (options_.plot.empty() || drawn.empty()) continue;
+      std::filesystem::create_directories(options_.plot);
+      writePlot(options_.plot / (name + ".png"), drawn);
+    }
+    json_["results"] = report_.rows();
+    json_["results"].insert(json_["results"].end(), swept_.begin(), swept_.end());
+    return std::move(json_);
+  }
+
+private:
+  bool wanted(const char* name) const { return options_.tables.count(name) > 0; }
+
+  void measureTimes(const std::vector<FrameSource>& sources) {
+    const Context context(device_);
+    const PellucidMaterial material = benchMaterial();
+    const Site site{device_, context, material, pixelSizeFor(material, options_.plane.radius)};
+    if (std::any_of(std::begin(kPlaneTables), std::end(kPlaneTables),
+                    [&](const char* name) { return wanted(name); })) {
+      const auto [width, height] = options_.plane.size;
+      const double radius = options_.plane.radius;
+      std::fprintf(table_, "planes of %d x %d, radius %g pixels\n", width, height, radius);
+      PlanePlots planes = measurePlanes(site, options_.tables, options_.plane, repeat_, report_);
+      plots_["diffusion"] = std::move(planes.diffusion);
+      plots_["gather"] = std::move(planes.gather);
+      json_.update(
+          {{"width", width}, {"height", height}, {"radius_pixels", radius}, {"floor_us", planes.floor}});
+    }
+    if (wanted("sweep")) swept_ = sweep(site, options_.sweep, repeat_, table_, &plots_["sweep"]);
+    if (wanted("frames"))
+      for (auto& [size, frames] : measureFrames(device_, context, sources, options_.frames, repeat_, report_))
+        plots_["frames_" + size] = std::move(frames);
+  }
+
+  const Options& options_;
+  Device device_;
+  bool software_;
+  int repeat_;
+  std::FILE* table_;
+  Report report_;
+  Json json_, swept_ = Json::array();
+  std::map<std::string, std::vector<Plot>> plots_;
+};
+
+int run(const Options& options) {
+  if (options.createContext) return createContext(options);
+  // Before a run of minutes.
+  const Json before = options.compare.empty() ? Json() : readResults(options.compare);
+  const bool stored = !options.results.empty();
+  const Json now = stored ? readResults(options.results) : Run(options).measure();
+  if (!stored) write(now, options);
+  if (options.compare.empty()) return 0;
+  return printWhatGrew(before, now, options.json == "-" ? stderr : stdout) > 0 ? 1 : 0;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app("GPU times of Pellucid's dispatches, and of others', as multiples of the bandwidth floor.",
-               "pellucid_bench");
-  app.add_option("--device", options.device, "part of the Vulkan device's name");
-  app.add_option("--size", options.size, "WIDTHxHEIGHT")->delimiter('x')->capture_default_str();
-  app.add_option("--repeat", options.repeat, "counted runs of each")
-      ->check(CLI::Range(1, 10000))
-      ->capture_default_str();
-  app.add_option("--coverage", options.coverage, "percent of the image with a material; several with commas")
-      ->delimiter(',')
-      ->check(CLI::Range(0.0, 100.0))
-      ->capture_default_str();
-  app.add_option("--radius", options.radius, "pixels within which 99.9 % of the diffused energy lies")
-      ->check(CLI::Range(1.0, 1000.0))
-      ->capture_default_str();
-  std::set<std::string> tables = options.tables;
-  tables.insert("sweep");
-  app.add_option("--tables", options.tables, "which to measure, with commas")
-      ->delimiter(',')
-      ->check(CLI::IsMember(tables))
-      ->capture_default_str();
-  app.add_option("--sweep-heights", options.sweep.heights,
-                 "of images of 16:9 in the table sweep, with commas")
-      ->delimiter(',')
-      ->check(CLI::Range(9, 8640))
-      ->capture_default_str();
-  app.add_option("--sweep-radii", options.sweep.radii, "like --radius, of the table sweep, with commas")
-      ->delimiter(',')
-      ->check(CLI::Range(1.0, 1000.0))
-      ->capture_default_str();
-  app.add_option("--json", options.json, "file to write, - for standard output");
-  app.add_flag("--ratios", options.ratios,
-               "leave times out of the JSON: a software device only ranks variants");
-  app.add_option("--plot", options.plot,
-                 "folder for diffusion.png, gather.png and sweep.png: time against error");
-  CLI11_PARSE(app, argc, argv);
+  if (const int status = readOptions(argc, argv, options); status >= 0) return status;
   try {
-    bench(options);
+    return run(options);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "pellucid_bench: %s\n", e.what());
     return dynamic_cast<const DeviceError*>(&e) ? 4 : 3;

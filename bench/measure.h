@@ -1,7 +1,9 @@
 // GPU times of repeated recordings.
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "common/device.h"
 
@@ -17,5 +19,10 @@ struct Time {
 // the device to lower its clocks. `repeat` such command buffers are counted, after a second of some that are not
 // where the device was idle before.
 Time measure(harness::Device& device, int repeat, const std::function<void(VkCommandBuffer)>& record);
+
+// The same of each of `parts`, which are recorded in turn: what one costs where it stands, and nothing where the
+// device finds that it need not run. A part brings its own barrier; all have run before.
+std::vector<Time> measureParts(harness::Device& device, int repeat, uint32_t parts,
+                               const std::function<void(VkCommandBuffer, uint32_t part)>& record);
 
 }  // namespace pellucid::bench

@@ -6,13 +6,9 @@
 #include <vector>
 
 #include "diffusions.h"
+#include "options.h"
 
 namespace pellucid::bench {
-
-struct SweepOptions {
-  std::vector<int> heights = {720, 1080, 1440, 2160};  // pixels; 16 : 9
-  std::vector<double> radii = {2, 8, 32, 128};         // pixels within which 99.9 % of the energy lies
-};
 
 // Prints one row for each radius and diffusion: the error, which does not depend on the size, and the time at
 // each size with its multiple of that size's floor. Returns an object for each of these times and sets a plot

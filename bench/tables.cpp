@@ -1,38 +1,28 @@
-// Prints the README's tables of measured times from the results of a run, or checks or rewrites them in a
-// file:
-//   pellucid_bench_tables bench/baselines/DEVICE.json measured|sweep [--check | --update README.md]
+// Prints the documentation's tables of measured times from the results of a run, or checks or rewrites them in a file:
+//   pellucid_bench_tables RESULTS.json[,RESULTS.json...] TABLE [--check | --update FILE]
+// Of several files the first that has what the table shows.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <exception>
 #include <fstream>
-#include <nlohmann/json.hpp>
+#include <iterator>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "generated_block.h"
+#include "table_text.h"
 
 namespace {
 
-using Json = nlohmann::json;
+using namespace pellucid::bench;
 
-template <class... Values>
-std::string format(const char* pattern, Values... values) {
-  char text[256];
-  std::snprintf(text, sizeof text, pattern, values...);
-  return text;
-}
-
-std::string run(const Json& results) {
-  return format("%s, commit `%s`, median of %d runs", results.at("device").get<std::string>().c_str(),
-                results.at("commit").get<std::string>().c_str(), results.at("repeat").get<int>());
-}
-
-// Throws where the run lacks it.
+// Throws NotMeasured where the run lacks it.
 const Json& row(const Json& results, const std::string& section, const std::string& name) {
   for (const Json& r : results.at("results"))
     if (r.at("section") == section && r.at("name") == name) return r;
-  throw std::runtime_error("no \"" + name + "\" in section \"" + section + "\"");
+  throw NotMeasured("no \"" + name + "\" in section \"" + section + "\"");
 }
 
 std::string timesAndError(const Json& r) {
@@ -81,7 +71,7 @@ std::string measured(const Json& results) {
       {"gather of transmitted light, 8 samples, added to the frame", gather, "8 samples"},
       {"the same where nothing is transmitted", gather, "8 samples, nothing transmitted"},
   };
-  std::string table = format("%s; %d x %d, radius %g pixels, floor %.1f us:\n\n", run(results).c_str(),
+  std::string table = format("%s; %d x %d, radius %g pixels, floor %.1f us:\n\n", runOf(results).c_str(),
                              results.at("width").get<int>(), results.at("height").get<int>(),
                              results.at("radius_pixels").get<double>(), results.at("floor_us").get<double>());
   table += "| | time | x | error |\n|-|-|-|-|\n";
@@ -111,8 +101,8 @@ std::string sweep(const Json& results) {
     rows.back().cells.push_back(
         format(" %.0f (%.1f) |", r.at("us").get<double>(), r.at("floor_ratio").get<double>()));
   }
-  if (rows.empty()) throw std::runtime_error("no section \"sweep\"");
-  std::string table = run(results) + "; us (x):\n\n| radius, px | diffusion | error |", rule = "|-|-|-|";
+  if (rows.empty()) throw NotMeasured("no section \"sweep\"");
+  std::string table = runOf(results) + "; us (x):\n\n| radius, px | diffusion | error |", rule = "|-|-|-|";
   for (const std::string& size : sizes) {
     table += " " + size + " |";
     rule += "-|";
@@ -126,20 +116,61 @@ std::string sweep(const Json& results) {
   return table;
 }
 
+struct Table {
+  const char* name;
+  std::string (*make)(const Json& results);
+};
+
+constexpr Table kTables[] = {{"measured", measured},
+                             {"sweep", sweep},
+                             {"frames", framesTable},
+                             {"frame_sizes", frameSizesTable},
+                             {"frame_parts", framePartsTable},
+                             {"frame_dispatches", frameDispatchesTable},
+                             {"frame_host", frameHostTable},
+                             {"context", contextTable}};
+
+constexpr int kNothingMeasured = 77;  // CTest's word for a test that was skipped
+
+std::vector<std::string> split(const std::string& list) {
+  std::vector<std::string> parts;
+  std::stringstream text(list);
+  for (std::string part; std::getline(text, part, ',');) parts.push_back(part);
+  return parts;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   const std::string name = argc > 2 ? argv[2] : "";
-  if (name != "measured" && name != "sweep") {
-    std::fputs("usage: pellucid_bench_tables RESULTS.json measured|sweep [--check|--update FILE]\n", stderr);
+  const auto table = std::find_if(std::begin(kTables), std::end(kTables),
+                                  [&](const Table& t) { return t.name == name; });
+  if (table == std::end(kTables)) {
+    std::string names;
+    for (const Table& t : kTables) {
+      if (!names.empty()) names += "|";
+      names += t.name;
+    }
+    std::fprintf(stderr, "usage: pellucid_bench_tables RESULTS.json[,...] %s [--check|--update FILE]\n",
+                 names.c_str());
     return 2;
   }
-  try {
-    std::ifstream file(argv[1]);
-    const Json results = Json::parse(file);
-    return generatedBlock(argc - 3, argv + 3, name, name == "measured" ? measured(results) : sweep(results));
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "%s: %s\n", argv[1], e.what());
-    return 1;
+  for (const std::string& path : split(argv[1])) {
+    std::ifstream file(path);
+    if (!file) {
+      std::fprintf(stderr, "%s: not there; passed over\n", path.c_str());
+      continue;
+    }
+    try {
+      const std::string content = table->make(Json::parse(file));
+      return generatedBlock(argc - 3, argv + 3, name, content);
+    } catch (const NotMeasured& e) {
+      std::fprintf(stderr, "%s: %s; passed over\n", path.c_str(), e.what());
+    } catch (const std::exception& e) {
+      std::fprintf(stderr, "%s: %s\n", path.c_str(), e.what());
+      return 1;
+    }
   }
+  std::fprintf(stderr, "table %s: nothing to make it of\n", name.c_str());
+  return kNothingMeasured;
 }

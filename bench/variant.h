@@ -17,6 +17,7 @@ struct Variant {
   double bytesPerPixel;                         // least traffic: what each dispatch reads, once, and writes
   std::function<void(VkCommandBuffer)> record;  // the barriers within, none around
   std::function<harness::Image()> output;       // RGB; after a run
+  std::uint64_t transientBytes = 0;             // of its images between dispatches
 };
 
 }  // namespace pellucid::bench

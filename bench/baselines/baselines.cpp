@@ -61,9 +61,17 @@ private:
   ComputePass pass_;
 };
 
+PellucidImage imageOfSource(const BenchFrame& frame, const Source& source) {
+  return source ? source->use() : frame.images().irradiance;
+}
+
+std::uint64_t bytesOf(const BenchFrame& frame, std::uint64_t images) {
+  return images * 8 * static_cast<std::uint64_t>(frame.width()) * static_cast<std::uint64_t>(frame.height());
+}
+
 }  // namespace
 
-Variant gaussianSum(const std::shared_ptr<const BenchFrame>& frame) {
+Variant gaussianSum(const std::shared_ptr<const BenchFrame>& frame, const Source& source) {
   const std::vector<glm::vec4> kernel = sharedGaussians(frame->material());
   const auto count = static_cast<uint32_t>(kernel.size());
   const auto pass =
@@ -72,38 +80,46 @@ Variant gaussianSum(const std::shared_ptr<const BenchFrame>& frame) {
   const auto record = [=](VkCommandBuffer commandBuffer) {
     for (uint32_t i = 0; i < count; ++i) {
       if (i > 0) computeBarrier(commandBuffer);
-      const PellucidImage source = i == 0 ? frame->images().irradiance : blurred->use();
-      pass->record(commandBuffer, source, *across, {1, 0, i}, {sum->use()});
+      const PellucidImage from = i == 0 ? imageOfSource(*frame, source) : blurred->use();
+      pass->record(commandBuffer, from, *across, {1, 0, i}, {sum->use()});
       computeBarrier(commandBuffer);
       pass->record(commandBuffer, across->use(), *blurred, {0, 1, i}, {sum->use()});
     }
   };
   // The vertical passes also write the sum and, but for the first, read it.
   const double bytes = 2 * count * (kReads + kWrite) + count * 8 + (count - 1) * 8;
-  return {
-      "Gaussian sum 2009, " + std::to_string(count) + " x 7", 2 * count, 2 * count - 1, bytes, record, [sum] {
-        return rgb(sum->download());
-      }};
+  return {"Gaussian sum 2009, " + std::to_string(count) + " x 7",
+          2 * count,
+          2 * count - 1,
+          bytes,
+          record,
+          [sum] { return rgb(sum->download()); },
+          bytesOf(*frame, 2)};
 }
 
-Variant separable(const std::shared_ptr<const BenchFrame>& frame, int taps) {
+Variant separable(const std::shared_ptr<const BenchFrame>& frame, int taps, const Source& source) {
   const auto pass = std::make_shared<Baseline>(frame, kSeparable, separableKernel(frame->material(), taps));
   const auto across = frame->image(kFormat), result = frame->image(kFormat);
   const auto record = [=, n = static_cast<uint32_t>(taps)](VkCommandBuffer commandBuffer) {
-    pass->record(commandBuffer, frame->images().irradiance, *across, {1, 0, n});
+    pass->record(commandBuffer, imageOfSource(*frame, source), *across, {1, 0, n});
     computeBarrier(commandBuffer);
     pass->record(commandBuffer, across->use(), *result, {0, 1, n});
   };
-  return {"Separable 2015, " + std::to_string(taps) + " taps", 2, 1, 2 * (kReads + kWrite), record,
-          [result] { return rgb(result->download()); }};
+  return {"Separable 2015, " + std::to_string(taps) + " taps",
+          2,
+          1,
+          2 * (kReads + kWrite),
+          record,
+          [result] { return rgb(result->download()); },
+          bytesOf(*frame, 1)};
 }
 
-Variant burleyDisk(const std::shared_ptr<const BenchFrame>& frame, int samples) {
+Variant burleyDisk(const std::shared_ptr<const BenchFrame>& frame, int samples, const Source& source) {
   const auto pass =
       std::make_shared<Baseline>(frame, kBurleyDisk, burleyDiskKernel(frame->material(), samples));
   const auto result = frame->image(kFormat);
   const auto record = [=, n = static_cast<uint32_t>(samples)](VkCommandBuffer commandBuffer) {
-    pass->record(commandBuffer, frame->images().irradiance, *result, {n});
+    pass->record(commandBuffer, imageOfSource(*frame, source), *result, {n});
   };
   return {
       "Burley disk 2018, " + std::to_string(samples) + " samples", 1, 0, kReads + kWrite, record, [result] {
@@ -113,8 +129,8 @@ Variant burleyDisk(const std::shared_ptr<const BenchFrame>& frame, int samples) 
 
 std::vector<Variant> baselines(const std::shared_ptr<const BenchFrame>& frame) {
   std::vector<Variant> all = {gaussianSum(frame)};
-  for (const int taps : {11, 17, 25}) all.push_back(separable(frame, taps));
-  for (const int samples : {20, 40, 80}) all.push_back(burleyDisk(frame, samples));
+  for (const int taps : kSeparableTaps) all.push_back(separable(frame, taps));
+  for (const int samples : kBurleySamples) all.push_back(burleyDisk(frame, samples));
   return all;
 }
 

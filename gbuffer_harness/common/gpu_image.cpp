@@ -92,18 +92,22 @@ GpuImage::~GpuImage() {
   vkFreeMemory(device_.handle(), memory_, nullptr);
 }
 
-void GpuImage::transfer(const void* bytes) {
+VkDeviceSize GpuImage::bytes() const {
   const Texel texel = texelOf(format_);
-  const auto size =
-      static_cast<VkDeviceSize>(width_) * static_cast<VkDeviceSize>(height_ * texel.channels * texel.bytes);
-  HostBuffer staging(device_, size, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
-  std::memcpy(staging.mapped(), bytes, static_cast<size_t>(size));
-  device_.run([&](VkCommandBuffer commandBuffer) {
-    barrier(commandBuffer, image_, VK_IMAGE_LAYOUT_UNDEFINED);
-    const VkBufferImageCopy region = wholeImage(width_, height_);
-    vkCmdCopyBufferToImage(commandBuffer, staging.handle(), image_, VK_IMAGE_LAYOUT_GENERAL, 1, &region);
-    barrier(commandBuffer, image_, VK_IMAGE_LAYOUT_GENERAL);
-  });
+  return static_cast<VkDeviceSize>(width_) * static_cast<VkDeviceSize>(height_ * texel.channels * texel.bytes);
+}
+
+void GpuImage::copyFrom(VkCommandBuffer commandBuffer, VkBuffer buffer) const {
+  barrier(commandBuffer, image_, VK_IMAGE_LAYOUT_UNDEFINED);
+  const VkBufferImageCopy region = wholeImage(width_, height_);
+  vkCmdCopyBufferToImage(commandBuffer, buffer, image_, VK_IMAGE_LAYOUT_GENERAL, 1, &region);
+  barrier(commandBuffer, image_, VK_IMAGE_LAYOUT_GENERAL);
+}
+
+void GpuImage::transfer(const void* source) {
+  const HostBuffer staging(device_, bytes(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+  std::memcpy(staging.mapped(), source, static_cast<size_t>(bytes()));
+  device_.run([&](VkCommandBuffer commandBuffer) { copyFrom(commandBuffer, staging.handle()); });
 }
 
 void GpuImage::upload(const Image& source) {
@@ -136,11 +140,17 @@ void GpuImage::upload(const std::vector<std::uint8_t>& source) {
 }
 
 void GpuImage::clear(std::uint8_t byte) {
-  const Texel texel = texelOf(format_);
-  transfer(std::vector<std::uint8_t>(static_cast<size_t>(width_) * static_cast<size_t>(height_) *
-                                         static_cast<size_t>(texel.channels * texel.bytes),
-                                     byte)
-               .data());
+  // Fills go by whole words.
+  const HostBuffer staging(device_, (bytes() + 3) / 4 * 4,
+                           VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+  device_.run([&](VkCommandBuffer commandBuffer) {
+    vkCmdFillBuffer(commandBuffer, staging.handle(), 0, VK_WHOLE_SIZE, byte * 0x01010101u);
+    const VkMemoryBarrier filled{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr, VK_ACCESS_TRANSFER_WRITE_BIT,
+                                 VK_ACCESS_TRANSFER_READ_BIT};
+    vkCmdPipelineBarrier(commandBuffer, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 1,
+                         &filled, 0, nullptr, 0, nullptr);
+    copyFrom(commandBuffer, staging.handle());
+  });
 }
 
 Image GpuImage::download() const {

@@ -27,7 +27,9 @@ public:
   VkImage handle() const { return image_; }
 
 private:
-  void transfer(const void* bytes);
+  VkDeviceSize bytes() const;
+  void transfer(const void* source);
+  void copyFrom(VkCommandBuffer commandBuffer, VkBuffer buffer) const;
 
   Device& device_;
   int width_, height_;

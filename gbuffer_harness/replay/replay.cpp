@@ -1,9 +1,9 @@
 #include "replay/replay.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "common/error.h"
-#include "common/gpu_image.h"
 #include "common/progress.h"
 
 namespace pellucid::harness {
@@ -18,38 +18,61 @@ double median(std::vector<double> values) {
 
 }  // namespace
 
-// The device images of one frame, uploaded.
+InputImages::InputImages(Device& device, const Capture& capture, const ReplaySettings& settings) {
+  frontDepth_ = add(device, capture.frontDepth.image, VK_FORMAT_R32_SFLOAT);
+  if (!capture.backDepth.image.empty())
+    backDepth_ = add(device, capture.backDepth.image, VK_FORMAT_R32_SFLOAT);
+  add(device, capture.irradiance, settings.outputFormat);
+  irradiance_ = images_.back().get();
+  if (!capture.normal.empty()) normal_ = add(device, capture.normal, settings.normalFormat);
+  if (!capture.albedo.empty()) albedo_ = add(device, capture.albedo, VK_FORMAT_R32G32B32A32_SFLOAT);
+  images_.push_back(std::make_unique<GpuImage>(device, capture.width, capture.height, VK_FORMAT_R8_UINT));
+  images_.back()->upload(capture.material);
+  material_ = images_.back()->use();
+  for (const Light& light : capture.lights)
+    for (const ShadowMap& map : light.shadowMaps)
+      shadows_.push_back(add(device, map.depth.image, VK_FORMAT_R32_SFLOAT));
+}
+
+PellucidImage InputImages::add(Device& device, const Image& image, VkFormat format) {
+  images_.push_back(std::make_unique<GpuImage>(device, image.width, image.height, format));
+  images_.back()->upload(image);
+  return images_.back()->use();
+}
+
+void InputImages::bind(FrameData& data) const {
+  PellucidFrame& f = data.frame;
+  f.frontDepth = frontDepth_;
+  f.backDepth = backDepth_;
+  f.irradiance = irradiance_->use();
+  f.normal = normal_;
+  f.albedo = albedo_;
+  f.material = material_;
+  std::copy(shadows_.begin(), shadows_.end(), data.shadowImages.begin());
+}
+
+// The device images of one frame.
 class FrameRun::Images {
 public:
   Images(Device& device, const Capture& capture, const ReplaySettings& settings, FrameData& data,
-         const Images* previous)
-      : device_(device), width_(capture.width), height_(capture.height) {
+         std::shared_ptr<const InputImages> inputs, const Images* previous)
+      : device_(device), inputs_(std::move(inputs)) {
+    const bool shared = inputs_ != nullptr;
+    if (!shared) inputs_ = std::make_shared<InputImages>(device, capture, settings);
+    inputs_->bind(data);
     PellucidFrame& f = data.frame;
-    f.frontDepth = add(capture.frontDepth.image, VK_FORMAT_R32_SFLOAT);
-    if (!capture.backDepth.image.empty()) f.backDepth = add(capture.backDepth.image, VK_FORMAT_R32_SFLOAT);
-    GpuImage& irradiance = create(width_, height_, settings.outputFormat);
-    irradiance.upload(capture.irradiance);
-    f.irradiance = irradiance.use();
-    if (!capture.normal.empty()) f.normal = add(capture.normal, settings.normalFormat);
-    if (!capture.albedo.empty()) f.albedo = add(capture.albedo, VK_FORMAT_R32G32B32A32_SFLOAT);
-    GpuImage& material = create(width_, height_, VK_FORMAT_R8_UINT);
-    material.upload(capture.material);
-    f.material = material.use();
-    for (size_t i = 0; i < data.shadowDepths.size(); ++i)
-      data.shadowImages[i] = add(*data.shadowDepths[i], VK_FORMAT_R32_SFLOAT);
-
-    const bool debug = settings.debugView != PELLUCID_DEBUG_NONE;
     outputIsIrradiance_ = f.separateOutput == 0;
     if (outputIsIrradiance_) {
       f.output = f.irradiance;
-      output_ = &irradiance;
+      output_ = &inputs_->irradiance();
     } else {
-      output_ = &create(width_, height_, settings.outputFormat);
-      f.output = output_->use();
-      if (debug)
-        output_->clear();
+      GpuImage& output = create(capture.width, capture.height, settings.outputFormat);
+      f.output = output.use();
+      output_ = &output;
+      if (shared || settings.debugView != PELLUCID_DEBUG_NONE)
+        output.clear();
       else
-        output_->upload(composited(capture));
+        output.upload(composited(capture));
     }
     PellucidImageNeed needs[kMaxImageNeeds];
     uint32_t count = kMaxImageNeeds;
@@ -74,18 +97,13 @@ public:
 
   Image output() const { return output_->download(); }
   void restoreIrradiance(const Capture& capture) const {
-    if (outputIsIrradiance_) output_->upload(capture.irradiance);
+    if (outputIsIrradiance_) inputs_->irradiance().upload(capture.irradiance);
   }
 
 private:
   GpuImage& create(int width, int height, VkFormat format) {
     images_.push_back(std::make_unique<GpuImage>(device_, width, height, format));
     return *images_.back();
-  }
-  PellucidImage add(const Image& image, VkFormat format) {
-    GpuImage& gpu = create(image.width, image.height, format);
-    gpu.upload(image);
-    return gpu.use();
   }
   static Image composited(const Capture& capture) {
     Image result = capture.irradiance;
@@ -95,20 +113,21 @@ private:
   }
 
   Device& device_;
-  int width_, height_;
+  std::shared_ptr<const InputImages> inputs_;
   std::vector<std::unique_ptr<GpuImage>> images_;
-  GpuImage* output_ = nullptr;
+  const GpuImage* output_ = nullptr;
   bool outputIsIrradiance_ = false;
   std::shared_ptr<GpuImage> history_;  // of all frames of a sequence
 };
 
-Context::Context(Device& device) {
+Context::Context(Device& device, VkPipelineCache pipelineCache) {
   PellucidContextDesc desc;
   pellucidInitContextDesc(&desc);
   desc.instance = device.instance();
   desc.physicalDevice = device.physicalDevice();
   desc.device = device.handle();
   desc.getInstanceProcAddr = &vkGetInstanceProcAddr;
+  desc.pipelineCache = pipelineCache;
   desc.message = &appendError;
   desc.messageUser = &message_;
   const ProgressLine progress("compiling " + std::to_string(PELLUCID_PIPELINE_COUNT) + " shaders");
@@ -123,11 +142,25 @@ FrameRun::FrameRun(Device& device, const Context& context, const Capture& captur
                    const FrameRun* previous)
     : context_(context), name_(capture.name), plan_(std::make_unique<PellucidPlan>()) {
   makeFrame(capture, materials, settings, data_);
-  images_ = std::make_unique<Images>(device, capture, settings, data_,
+  images_ = std::make_unique<Images>(device, capture, settings, data_, nullptr,
                                      previous ? previous->images_.get() : nullptr);
+  plan(device, previous ? previous->plan_.get() : nullptr);
+}
+
+FrameRun::FrameRun(Device& device, const Context& context, const Capture& capture,
+                   const std::vector<PellucidMaterial>& materials, const ReplaySettings& settings,
+                   std::shared_ptr<const InputImages> inputs)
+    : context_(context), name_(capture.name), plan_(std::make_unique<PellucidPlan>()) {
+  makeFrame(capture, materials, settings, data_);
+  if (!data_.frame.separateOutput) throw InputError(name_, "aliasOutput", "the inputs are other frames', too");
+  images_ = std::make_unique<Images>(device, capture, settings, data_, std::move(inputs), nullptr);
+  plan(device, nullptr);
+}
+
+void FrameRun::plan(Device& device, const PellucidPlan* previous) {
   const PellucidFrame& frame = data_.frame;
   requireOk(pellucidValidateFrame(&frame, nullptr, nullptr), frame, name_);
-  requireOk(pellucidBuildPlan(&frame, previous ? previous->plan_.get() : nullptr, plan_.get()), frame, name_);
+  requireOk(pellucidBuildPlan(&frame, previous, plan_.get()), frame, name_);
   constants_ =
       std::make_unique<HostBuffer>(device, plan_->constantsSize,
                                    VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/device.h"
+#include "common/gpu_image.h"
 #include "replay/frame.h"
 
 namespace pellucid::harness {
@@ -13,7 +14,8 @@ namespace pellucid::harness {
 // A module context on a device.
 class Context {
 public:
-  explicit Context(Device& device);  // throws DeviceError with the module's sentence
+  // Throws DeviceError with the module's sentence. The cache may be VK_NULL_HANDLE.
+  explicit Context(Device& device, VkPipelineCache pipelineCache = VK_NULL_HANDLE);
   ~Context();
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
@@ -26,6 +28,24 @@ private:
   std::string message_;
 };
 
+// What frames of one capture read, on the device.
+class InputImages {
+public:
+  // In settings.outputFormat and settings.normalFormat. The capture is not needed afterwards.
+  InputImages(Device& device, const Capture& capture, const ReplaySettings& settings);
+
+  void bind(FrameData& data) const;
+  GpuImage& irradiance() const { return *irradiance_; }
+
+private:
+  PellucidImage add(Device& device, const Image& image, VkFormat format);
+
+  std::vector<std::unique_ptr<GpuImage>> images_;
+  GpuImage* irradiance_ = nullptr;
+  PellucidImage frontDepth_{}, backDepth_{}, normal_{}, albedo_{}, material_{};
+  std::vector<PellucidImage> shadows_;
+};
+
 // One capture on the device, planned and ready to record as often as wanted.
 class FrameRun {
 public:
@@ -35,6 +55,11 @@ public:
   FrameRun(Device& device, const Context& context, const Capture& capture,
            const std::vector<PellucidMaterial>& materials, const ReplaySettings& settings,
            const FrameRun* previous = nullptr);
+  // The same with inputs that other frames of this capture read, too: not where settings.aliasOutput makes the
+  // irradiance the output. Pixels that the pass does not write hold 0.
+  FrameRun(Device& device, const Context& context, const Capture& capture,
+           const std::vector<PellucidMaterial>& materials, const ReplaySettings& settings,
+           std::shared_ptr<const InputImages> inputs);
   ~FrameRun();
 
   const PellucidPlan& plan() const { return *plan_; }
@@ -57,6 +82,7 @@ public:
 private:
   class Images;
 
+  void plan(Device& device, const PellucidPlan* previous);
   void record(VkCommandBuffer commandBuffer, const PellucidPlan& plan) const;
   PellucidPlan only(uint32_t dispatch) const;
 

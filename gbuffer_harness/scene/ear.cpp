@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/field.h"
 #include "scene/model.h"
 #include "scene/spline.h"
 #include "scene/vector.h"
@@ -11,21 +12,6 @@ namespace pellucid::harness {
 namespace {
 
 double square(double x) { return x * x; }
-
-// Union with the crease rounded over a width of about k (Quilez, polynomial smooth minimum).
-double smoothUnion(double a, double b, double k) {
-  const double h = std::max(k - std::abs(a - b), 0.0) / k;
-  return std::min(a, b) - h * h * k / 4;
-}
-
-double smoothIntersection(double a, double b, double k) { return -smoothUnion(-a, -b, k); }
-
-// Bound on the distance to an ellipsoid, exact to first order at its surface (Quilez).
-double ellipsoidDistance(const glm::dvec3& p, const glm::dvec3& radii) {
-  const double k0 = glm::length(p / radii);
-  const double k1 = glm::length(p / (radii * radii));
-  return k1 > 0 ? k0 * (k0 - 1) / k1 : -std::min({radii.x, radii.y, radii.z});
-}
 
 // A value over the xy plane with its gradient.
 struct Height {

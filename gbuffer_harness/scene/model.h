@@ -79,6 +79,7 @@ std::vector<SceneDefinition> solidScenes();
 std::vector<SceneDefinition> patternScenes();
 std::vector<SceneDefinition> clutterScenes();
 std::vector<SceneDefinition> earScenes();
+std::vector<SceneDefinition> headScenes();
 
 // ---- Helpers of the builders
 

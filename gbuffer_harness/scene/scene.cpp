@@ -14,7 +14,7 @@ constexpr int kLargestSide = 8192;
 const std::vector<SceneDefinition>& definitions() {
   static const std::vector<SceneDefinition> all = [] {
     std::vector<SceneDefinition> joined;
-    for (auto list : {earScenes(), solidScenes(), patternScenes(), clutterScenes()}) {
+    for (auto list : {earScenes(), headScenes(), solidScenes(), patternScenes(), clutterScenes()}) {
       joined.insert(joined.end(), list.begin(), list.end());
     }
     return joined;

@@ -1,0 +1,267 @@
+// What the bench says of frames and of runs, and its command line.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "capture/material.h"
+#include "capture/write.h"
+#include "common/error.h"
+#include "compare_runs.h"
+#include "frame_errors.h"
+#include "reference/reference.h"
+#include "scene/scene.h"
+
+namespace pellucid::bench {
+namespace {
+
+using namespace harness;
+using Json = nlohmann::json;
+
+// ---- Runs
+
+Json row(const char* name, double us, double error) {
+  return {{"section", "frames"}, {"frame", "far"},        {"size", "64x36"},     {"kind", "whole"},       {"name", name},
+          {"us", us},            {"p10_us", 0.99 * us}, {"p90_us", 1.01 * us}, {"relative_rmse", error}};
+}
+
+Json run() {
+  return {{"device", "a"}, {"results", {row("Pellucid, quality 1", 100, 0.01), row("HDRP, 20 samples", 50, 0.02)}}};
+}
+
+int grew(const Json& before, const Json& now, std::string* said = nullptr) {
+  std::FILE* file = std::tmpfile();
+  const int result = printWhatGrew(before, now, file);
+  std::rewind(file);
+  char text[4096];
+  const size_t size = std::fread(text, 1, sizeof text, file);
+  std::fclose(file);
+  if (said) *said = std::string(text, size);
+  return result;
+}
+
+TEST(CompareRuns, TheSameRunDidNotGrow) { EXPECT_EQ(grew(run(), run()), 0); }
+
+TEST(CompareRuns, FasterAndMoreExactDidNotGrow) {
+  Json now = run();
+  now["results"][0] = row("Pellucid, quality 1", 80, 0.005);
+  EXPECT_EQ(grew(run(), now), 0);
+}
+
+TEST(CompareRuns, SlowerBeyondTheSpreadIsNamed) {
+  Json now = run();
+  now["results"][1] = row("HDRP, 20 samples", 55, 0.02);
+  std::string said;
+  EXPECT_EQ(grew(run(), now, &said), 1);
+  EXPECT_NE(said.find("slower: frames: far: 64x36: whole: HDRP, 20 samples: 55.0 us"), std::string::npos) << said;
+}
+
+TEST(CompareRuns, SlowerWithinTheSpreadDidNotGrow) {
+  Json before = run(), now = run();
+  before["results"][1]["p90_us"] = 60;  // the median, 55, is a tenth above 50
+  now["results"][1] = row("HDRP, 20 samples", 55, 0.02);
+  EXPECT_EQ(grew(before, now), 0);
+}
+
+TEST(CompareRuns, ErrorsThatGrewAreNamedEvenWithoutTimes) {
+  Json before = run(), now = run();
+  now["results"][0]["relative_rmse"] = 0.012;
+  for (Json* one : {&before, &now})
+    for (Json& r : (*one)["results"])
+      for (const char* time : {"us", "p10_us", "p90_us"}) r.erase(time);
+  now["device"] = "b";
+  std::string said;
+  EXPECT_EQ(grew(before, now, &said), 1);
+  EXPECT_NE(said.find("worse: "), std::string::npos) << said;
+}
+
+TEST(CompareRuns, TimesOfTwoDevicesAreRefused) {
+  Json now = run();
+  now["device"] = "b";
+  EXPECT_THROW(grew(run(), now), InputError);
+}
+
+TEST(CompareRuns, WhatIsNoRunIsRefused) { EXPECT_THROW(grew(Json::object(), run()), InputError); }
+
+// ---- Errors of frames
+
+Capture head(int width, int height) {
+  SceneParameters p;
+  p.name = "head";
+  p.width = width;
+  p.height = height;
+  p.shadowSize = 64;
+  return makeScene(p);
+}
+
+class FrameErrors : public testing::Test {
+protected:
+  FrameErrors() : capture(head(48, 27)), materials(compileMaterials(capture)) { std::filesystem::remove_all(folder); }
+  ~FrameErrors() override { std::filesystem::remove_all(folder); }
+
+  std::filesystem::path onlyFile() const { return std::filesystem::directory_iterator(folder)->path(); }
+
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "pellucid_bench_cache";
+  Capture capture;
+  std::vector<PellucidMaterial> materials;
+};
+
+TEST_F(FrameErrors, SampledPixelsAreTheReferences) {
+  const DiffusionTruth truth = diffusionTruth(capture, materials, 40, {});
+  ASSERT_EQ(truth.pixels.size(), 40u);
+  Capture plain = capture;
+  plain.albedo = {};
+  reference::Settings settings;
+  settings.features = PELLUCID_FEATURE_DIFFUSION;
+  const Image whole = reference::compute(plain, materials, settings).image;
+  for (size_t i = 0; i < truth.pixels.size(); ++i) {
+    EXPECT_NE(capture.material[truth.pixels[i]], 0);
+    for (size_t c = 0; c < 3; ++c)
+      EXPECT_NEAR(truth.values[i][c], static_cast<double>(whole.data[3 * truth.pixels[i] + c]), 2e-4);  // energy left out
+  }
+  // The image itself is that far from them, and one that is 3 % brighter 3 % more.
+  EXPECT_LT(rootMeanSquare(diffusionErrors(whole, truth)), 2e-4);
+  Image brighter = whole;
+  for (float& v : brighter.data) v *= 1.03f;
+  EXPECT_NEAR(rootMeanSquare(diffusionErrors(brighter, truth)), 0.03, 3e-4);
+}
+
+TEST_F(FrameErrors, FewerPixelsThanAskedForAreAllTaken) {
+  const auto covered = static_cast<size_t>(
+      std::count_if(capture.material.begin(), capture.material.end(), [](auto m) { return m != 0; }));
+  EXPECT_EQ(diffusionTruth(capture, materials, 100000, {}).pixels.size(), covered);
+}
+
+TEST_F(FrameErrors, NothingHasNoError) {
+  std::fill(capture.material.begin(), capture.material.end(), std::uint8_t{0});
+  EXPECT_TRUE(diffusionTruth(capture, materials, 40, folder).pixels.empty());
+}
+
+TEST_F(FrameErrors, TheCacheIsReadAndOneThatIsBrokenIsNot) {
+  const DiffusionTruth truth = diffusionTruth(capture, materials, 40, folder);
+  std::ifstream(onlyFile()) >> std::ws;
+  Json stored = Json::parse(std::ifstream(onlyFile()));
+  stored["values"][0][0] = 12345.0;
+  std::ofstream(onlyFile()) << stored;
+  EXPECT_EQ(diffusionTruth(capture, materials, 40, folder).values[0][0], 12345.0);
+  std::ofstream(onlyFile()) << "{";
+  EXPECT_EQ(diffusionTruth(capture, materials, 40, folder).values, truth.values);
+  // Other inputs have other files.
+  capture.irradiance.data[3 * truth.pixels[0]] += 0.5f;
+  EXPECT_NE(diffusionTruth(capture, materials, 40, folder).values, truth.values);
+}
+
+TEST_F(FrameErrors, AlbedoMultipliesBeforeTruthIsCompared) {
+  Image result = capture.irradiance, truth = capture.irradiance;
+  for (size_t i = 0; i < truth.data.size(); ++i) truth.data[i] *= capture.albedo.data[i];
+  EXPECT_EQ(errorFields(result, capture, truth)["truth_relative_rmse"], 0);
+  for (float& v : result.data) v *= 1.1f;
+  EXPECT_NEAR(errorFields(result, capture, truth)["truth_relative_rmse"], 0.1, 1e-5);
+}
+
+// ---- The command
+
+class Command : public testing::Test {
+protected:
+  Command() { std::filesystem::create_directories(folder); }
+  ~Command() override { std::filesystem::remove_all(folder); }
+
+  int runs(const std::string& arguments) {
+    const int status =
+        std::system((std::string(PELLUCID_BENCH) + " " + arguments + " >" + out.string() + " 2>&1").c_str());
+    return WEXITSTATUS(status);
+  }
+  std::string output() const {
+    std::stringstream text;
+    text << std::ifstream(out).rdbuf();
+    return text.str();
+  }
+
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "pellucid_bench_command";
+  const std::filesystem::path out = folder / "out";
+};
+
+// Frames that are made come after captures where their names are given.
+TEST_F(Command, MeasuresACaptureAndNothingAndComparesRuns) {
+  Capture capture = head(64, 36);
+  capture.truth = Truth{capture.irradiance};
+  const std::string exr = folder / "face.exr", json = folder / "run.json", doctored = folder / "doctored.json";
+  writeCapture(capture, exr);
+  ASSERT_EQ(runs("--tables frames --frames " + exr +
+                 " --frame-names nothing --frame-sizes 32x32 --shadow-size 16 --repeat 1 --error-pixels 50 --cache " +
+                 (folder / "cache").string() + " --plot " + folder.string() + " --json " + json),
+            0)
+      << output();
+  Json run = Json::parse(std::ifstream(json));
+  int wholes = 0, dispatches = 0, diffusions = 0, nothing = 0;
+  for (const Json& r : run["results"]) {
+    if (r["frame"] == "nothing") {
+      nothing += r["kind"] == "whole";
+      EXPECT_FALSE(r.contains("relative_rmse")) << r;
+      continue;
+    }
+    EXPECT_EQ(r["frame"], "face");
+    EXPECT_EQ(r["size"], "64x36");
+    dispatches += r["kind"] == "dispatch";
+    diffusions += r["kind"] == "diffusion";
+    if (r["kind"] == "diffusion") {
+      EXPECT_LT(r["relative_rmse"], 0.3) << r;
+      EXPECT_GT(r["relative_rmse"], 0) << r;
+    }
+    if (r["kind"] != "whole") continue;
+    ++wholes;
+    EXPECT_GT(r["truth_relative_rmse"], 0) << r;
+    EXPECT_GT(r["us"], 0) << r;
+  }
+  EXPECT_EQ(wholes, 4 + 2 * 3 + 7);  // qualities, with two gathers, others
+  EXPECT_EQ(nothing, wholes);
+  EXPECT_EQ(diffusions, 4 + 7);
+  EXPECT_GT(dispatches, 4 * 10);
+  EXPECT_TRUE(std::filesystem::exists(folder / "frames_64x36.png"));
+
+  EXPECT_EQ(runs("--compare " + json + " --results " + json), 0) << output();
+  for (Json& r : run["results"])
+    for (const char* time : {"us", "p10_us", "p90_us"})
+      if (r.contains(time)) r[time] = r[time].get<double>() / 2;
+  std::ofstream(doctored) << run;
+  EXPECT_EQ(runs("--compare " + doctored + " --results " + json), 1);
+  EXPECT_NE(output().find("slower: frames: face"), std::string::npos) << output();
+}
+
+TEST_F(Command, BadInputIsNamed) {
+  EXPECT_EQ(runs("--tables frames --frames " + (folder / "none.exr").string()), 3);
+  EXPECT_NE(output().find("none.exr"), std::string::npos) << output();
+  EXPECT_EQ(runs("--compare " + (folder / "none.json").string() + " --results x"), 3);
+  EXPECT_NE(output().find("none.json: cannot be read"), std::string::npos) << output();
+  EXPECT_NE(runs("--frame-sizes 64"), 0);
+  EXPECT_NE(output().find("\"64\" is not WIDTHxHEIGHT"), std::string::npos) << output();
+}
+
+TEST_F(Command, WithoutItsLibraryOnlyFilesAreRefused) {
+  // A copy stands alone.
+  const std::filesystem::path alone = folder / "pellucid_bench";
+  std::filesystem::copy_file(PELLUCID_BENCH, alone);
+  std::filesystem::permissions(alone, std::filesystem::perms::owner_all);
+  const int status = std::system(
+      (alone.string() + " --tables frames --models . >" + out.string() + " 2>&1").c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 3);
+  EXPECT_NE(output().find("pellucid_bench_models.so: cannot be loaded"), std::string::npos) << output();
+}
+
+TEST_F(Command, AContextIsCreatedInAProcessThatSavesItsPipelines) {
+  const std::filesystem::path file = folder / "pipelines";
+  ASSERT_EQ(runs("--create-context --save-cache " + file.string()), 0) << output();
+  double wall = 0, cpu = 0;
+  std::istringstream(output()) >> wall >> cpu;
+  EXPECT_GT(wall, 0) << output();
+  EXPECT_GT(cpu, 0) << output();
+  EXPECT_GT(std::filesystem::file_size(file), 0u);
+}
+
+}  // namespace
+}  // namespace pellucid::bench

@@ -1,0 +1,206 @@
+#include "frame_errors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <random>
+#include <type_traits>
+
+#include "common/compare.h"
+#include "common/error.h"
+#include "common/parallel.h"
+#include "common/whole_file.h"
+#include "reference/diffusion.h"
+#include "reference/surface.h"
+
+namespace pellucid::bench {
+
+using namespace harness;
+
+namespace {
+
+constexpr unsigned kSeed = 37;
+// Of the profile's energy, a tenth of the least error that a row of the table has.
+constexpr double kDiscarded = 1e-4;
+constexpr int kBox = 4;  // pixels a side of the averages that `pellucid evaluate` compares
+constexpr int kVersion = 1;  // of what the hash stands for
+
+// FNV-1a over words.
+class Hash {
+public:
+  template <class Value>
+  void add(const Value& value) {
+    static_assert(std::is_trivially_copyable_v<Value>);
+    bytes(&value, sizeof value);
+  }
+  template <class Value>
+  void add(const std::vector<Value>& values) {
+    add(values.size());
+    bytes(values.data(), values.size() * sizeof(Value));
+  }
+  std::uint64_t value() const { return value_; }
+
+private:
+  void bytes(const void* data, size_t size) {
+    const auto* p = static_cast<const unsigned char*>(data);
+    for (; size >= 8; size -= 8, p += 8) {
+      std::uint64_t word;
+      std::memcpy(&word, p, 8);
+      word_(word);
+    }
+    for (; size > 0; --size) word_(*p++);
+  }
+  void word_(std::uint64_t word) {
+    value_ = (value_ ^ word) * 1099511628211u;
+    value_ ^= value_ >> 29;  // a multiplication alone never moves high bits down
+  }
+
+  std::uint64_t value_ = 14695981039346656037u;
+};
+
+std::uint64_t hashOf(const Capture& c, const std::vector<PellucidMaterial>& materials, int count) {
+  Hash hash;
+  hash.add(kVersion);
+  hash.add(kSeed);
+  hash.add(kDiscarded);
+  hash.add(count);
+  hash.add(c.width);
+  hash.add(c.height);
+  hash.add(c.metersPerUnit);
+  hash.add(c.clipFromView);
+  hash.add(c.viewFromWorld);
+  hash.add(c.frontDepth.encoding);
+  hash.add(c.frontDepth.image.data);
+  hash.add(c.normalsInViewSpace);
+  hash.add(c.normal.data);
+  hash.add(c.irradiance.data);
+  hash.add(c.material);
+  hash.add(materials);
+  return hash.value();
+}
+
+std::vector<std::uint32_t> choosePixels(const Capture& c, int count) {
+  constexpr int kTile = 32;
+  std::vector<std::uint32_t> covered;
+  for (int top = 0; top < c.height; top += kTile)
+    for (int left = 0; left < c.width; left += kTile)
+      for (int y = top; y < std::min(top + kTile, c.height); ++y)
+        for (int x = left; x < std::min(left + kTile, c.width); ++x) {
+          const auto pixel = static_cast<std::uint32_t>(y * c.width + x);
+          if (c.material[pixel] != 0) covered.push_back(pixel);
+        }
+  const size_t wanted = static_cast<size_t>(count);
+  if (covered.size() > wanted) {
+    std::mt19937 random(kSeed);
+    std::vector<std::uint32_t> chosen;
+    for (size_t i = 0; i < wanted; ++i) {
+      const size_t first = i * covered.size() / wanted, end = (i + 1) * covered.size() / wanted;
+      chosen.push_back(covered[first + random() % (end - first)]);
+    }
+    covered = std::move(chosen);
+  }
+  std::sort(covered.begin(), covered.end());
+  return covered;
+}
+
+std::vector<std::array<double, 3>> bruteForce(const Capture& c,
+                                              const std::vector<PellucidMaterial>& materials,
+                                              const std::vector<std::uint32_t>& pixels) {
+  const reference::SurfaceReader surfaces(c);
+  std::vector<glm::dvec3> irradiance(c.material.size());
+  for (size_t i = 0; i < irradiance.size(); ++i)
+    for (int k = 0; k < 3; ++k) {
+      const float e = c.irradiance.data[3 * i + static_cast<size_t>(k)];
+      irradiance[i][k] = e > 0 ? std::min(static_cast<double>(e), 65504.0) : 0;  // as the reference has it
+    }
+  reference::DiffusionSettings settings;
+  settings.discardedEnergy = kDiscarded;
+  const reference::Diffusion diffusion(c, surfaces, materials, settings, irradiance);
+  std::vector<std::array<double, 3>> values(pixels.size());
+  parallelRows(static_cast<int>(pixels.size()), 0, [&](int i) {
+    const auto pixel = static_cast<int>(pixels[static_cast<size_t>(i)]);
+    const glm::dvec3 v = diffusion.at(pixel % c.width, pixel / c.width);
+    values[static_cast<size_t>(i)] = {v.x, v.y, v.z};
+  });
+  return values;
+}
+
+// Nothing where there is no such file, or one of other pixels.
+std::optional<DiffusionTruth> readCached(const std::filesystem::path& path,
+                                         const std::vector<std::uint32_t>& pixels) {
+  std::ifstream file(path);
+  if (!file) return std::nullopt;
+  const nlohmann::json json = nlohmann::json::parse(file, nullptr, false);
+  try {
+    DiffusionTruth truth{json.at("pixels"), json.at("values")};
+    if (truth.pixels == pixels && truth.values.size() == pixels.size()) return truth;
+  } catch (const nlohmann::json::exception&) {
+  }
+  std::fprintf(stderr, "%s: is not what brute force wrote; it is computed again\n", path.c_str());
+  return std::nullopt;
+}
+
+}  // namespace
+
+DiffusionTruth diffusionTruth(const Capture& capture, const std::vector<PellucidMaterial>& materials,
+                              int count, const std::filesystem::path& cache) {
+  DiffusionTruth truth;
+  truth.pixels = choosePixels(capture, count);
+  if (truth.pixels.empty()) return truth;
+  std::filesystem::path path;
+  if (!cache.empty()) {
+    char name[64];
+    std::snprintf(name, sizeof name, "diffusion-%016llx.json",
+                  static_cast<unsigned long long>(hashOf(capture, materials, count)));
+    path = cache / name;
+    if (const auto cached = readCached(path, truth.pixels)) return *cached;
+  }
+  truth.values = bruteForce(capture, materials, truth.pixels);
+  if (!cache.empty()) {
+    std::filesystem::create_directories(cache);
+    writeWhole(path, [&](const std::filesystem::path& file) {
+      std::ofstream out(file);
+      out << nlohmann::json{{"pixels", truth.pixels}, {"values", truth.values}};
+      if (!out.flush()) throw InputError(path.string(), "", "cannot be written");
+    });
+  }
+  return truth;
+}
+
+ChannelErrors diffusionErrors(const Image& result, const DiffusionTruth& truth) {
+  std::array<double, 3> squared{}, power{};
+  for (size_t i = 0; i < truth.pixels.size(); ++i)
+    for (size_t c = 0; c < 3; ++c) {
+      const double right = truth.values[i][c];
+      const double off =
+          static_cast<double>(result.data[static_cast<size_t>(result.channels) * truth.pixels[i] + c]) - right;
+      squared[c] += off * off;
+      power[c] += right * right;
+    }
+  ChannelErrors errors{};
+  for (size_t c = 0; c < 3; ++c) {
+    if (squared[c] == 0) continue;
+    errors[c] = power[c] > 0 ? std::sqrt(squared[c] / power[c]) : INFINITY;
+  }
+  return errors;
+}
+
+double rootMeanSquare(const ChannelErrors& errors) {
+  double sum = 0;
+  for (const double e : errors) sum += e * e;
+  return std::sqrt(sum / static_cast<double>(errors.size()));
+}
+
+nlohmann::json errorFields(Image result, const Capture& capture, const Image& truth) {
+  for (size_t i = 0; i < result.data.size() && !capture.albedo.empty(); ++i)
+    result.data[i] *= capture.albedo.data[i];
+  const Comparison comparison = compareImages(
+      result, truth, comparisonMask(capture.material, capture.irradiance, Subset::All), kBox);
+  ChannelErrors errors{};
+  for (size_t c = 0; c < 3; ++c) errors[c] = comparison.channels[c].relativeRmse;
+  return {{"truth_relative_rmse", rootMeanSquare(errors)}, {"truth_relative_rmse_rgb", errors}};
+}
+
+}  // namespace pellucid::bench

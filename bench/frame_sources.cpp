@@ -1,0 +1,157 @@
+#include "frame_sources.h"
+
+#include <algorithm>
+#include <iterator>
+#include <memory>
+#include <optional>
+
+#include "common/error.h"
+#include "frame_files.h"
+#include "raster/raster.h"
+#include "scene/scene.h"
+
+namespace pellucid::bench {
+
+using namespace harness;
+
+namespace {
+
+constexpr std::pair<int, int> kSizes[] = {{1280, 720}, {1920, 1080}, {2560, 1440}, {3840, 2160}};
+constexpr std::pair<int, int> kSoftwareSizes[] = {{256, 144}};
+
+const std::string kNothing = "nothing";
+
+// Nothing is a portrait without its material.
+std::string drawnAs(const std::string& name) { return name == kNothing ? "portrait" : name; }
+
+// No material anywhere, which only the image says.
+Capture withoutMaterial(Capture capture) {
+  std::fill(capture.material.begin(), capture.material.end(), std::uint8_t{0});
+  return capture;
+}
+
+Capture named(Capture capture, const std::string& name) {
+  capture.name = name;
+  return capture;
+}
+
+// A scan of a head under a key and a rim light, as the harness's rasterizer draws it.
+class DrawnFrames {
+public:
+  DrawnFrames(Device& device, const FrameOptions& options) : device_(device), options_(options) {}
+
+  // Throws InputError where the files lack the frame.
+  void load(const std::string& name) { camera(name); }
+
+  Capture make(const std::string& name, int width, int height) {
+    RasterOptions raster;
+    raster.width = width;
+    raster.height = height;
+    raster.shadowSize = options_.shadowSize;
+    return rasterize(device_, modelOf(name), camera(name), raster).capture;
+  }
+
+private:
+  const ModelCamera& camera(const std::string& name) {
+    const Model& model = modelOf(name);
+    const auto found = std::find_if(model.cameras.begin(), model.cameras.end(),
+                                    [&](const ModelCamera& c) { return c.name == name; });
+    if (found == model.cameras.end())
+      throw InputError(model.name, "cameras", "there is no \"" + name + "\"");
+    return *found;
+  }
+
+  const Model& modelOf(const std::string& name) {
+    const std::string file = name == "crowd" ? "crowd.glb" : "head_views.glb";
+    const auto [entry, isNew] = models_.try_emplace(file);
+    if (isNew) {
+      entry->second = readModelFile({options_.models / file, 0.052, {{"*", "skin1"}}});
+      Light key, rim;
+      key.direction = {0.6, -0.4, -0.7};
+      rim.direction = {0.5, -0.2, 0.85};
+      key.intensity = rim.intensity = 2;
+      entry->second.lights = {key, rim};
+    }
+    return entry->second;
+  }
+
+  Device& device_;
+  const FrameOptions& options_;
+  std::map<std::string, Model> models_;
+};
+
+// The procedural scene "head".
+class StandIns {
+public:
+  explicit StandIns(const FrameOptions& options) : options_(options) {}
+
+  Capture make(const std::string& name, int width, int height) {
+    const double view = static_cast<double>(
+        std::find(std::begin(kFrameNames), std::end(kFrameNames), name) - std::begin(kFrameNames));
+    SceneParameters p;
+    p.name = "head";
+    p.width = width;
+    p.height = height;
+    p.options = {{"view", view}};
+    p.depthEncoding = p.shadowEncoding = PELLUCID_DEPTH_DEVICE;
+    p.reversedZ = true;
+    // Every view of one head has the same shadow maps, at any size, and casting them takes longer than the image.
+    std::vector<Light>& lights = lights_[name == "crowd"];
+    p.shadowSize = lights.empty() ? options_.shadowSize : 0;
+    Capture capture = makeScene(p);
+    if (lights.empty()) lights = capture.lights;
+    capture.lights = lights;
+    return capture;
+  }
+
+private:
+  const FrameOptions& options_;
+  std::vector<Light> lights_[2];  // of one head; of a crowd
+};
+
+bool isSoftware(const Device& device) {
+  return device.properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+}
+
+}  // namespace
+
+std::vector<FrameSource> frameSources(Device& device, const FrameOptions& options) {
+  std::vector<FrameSource> sources;
+  for (const std::string& file : options.captures) {
+    const std::filesystem::path path = std::filesystem::absolute(file);
+    const std::string name =
+        path.extension() == ".json" ? path.parent_path().filename().string() : path.stem().string();
+    // Read at once: what is wrong with a file shows before a run of minutes.
+    const auto capture = std::make_shared<const Capture>(named(readCaptureFile(path), name));
+    sources.push_back({name, [=] { return *capture; }});
+  }
+  if (!options.captures.empty() && options.models.empty() && options.names.empty()) return sources;
+
+  std::vector<std::pair<int, int>> sizes = options.sizes;
+  if (sizes.empty() && isSoftware(device)) sizes.assign(std::begin(kSoftwareSizes), std::end(kSoftwareSizes));
+  if (sizes.empty()) sizes.assign(std::begin(kSizes), std::end(kSizes));
+  std::vector<std::string> names;
+  for (const std::string name : kFrameNames)
+    if (options.names.empty() || std::count(options.names.begin(), options.names.end(), name) > 0)
+      names.push_back(name);
+
+  std::function<Capture(const std::string&, int, int)> made;
+  if (options.models.empty()) {
+    made = [all = std::make_shared<StandIns>(options)](const auto& name, int w, int h) {
+      return all->make(name, w, h);
+    };
+  } else {
+    const auto all = std::make_shared<DrawnFrames>(device, options);
+    for (const std::string& name : names) all->load(drawnAs(name));
+    made = [all](const auto& name, int w, int h) { return all->make(name, w, h); };
+  }
+  for (const auto& [width, height] : sizes)
+    for (const std::string& name : names)
+      sources.push_back({name, [=, w = width, h = height] {
+                           const Capture capture = made(drawnAs(name), w, h);
+                           return named(name == kNothing ? withoutMaterial(capture) : capture, name);
+                         }});
+  return sources;
+}
+
+}  // namespace pellucid::bench

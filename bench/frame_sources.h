@@ -1,0 +1,25 @@
+// The frames that somebody renders: of files, drawn from models, or procedural stand-ins.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "capture/capture.h"
+#include "common/device.h"
+#include "options.h"
+
+namespace pellucid::bench {
+
+inline constexpr const char* kFrameNames[] = {"portrait", "closeup", "crowd", "far", "nothing"};
+
+struct FrameSource {
+  std::string name;
+  std::function<harness::Capture()> make;  // seconds
+};
+
+// Captures of files come first, then every name at each size; only the former where there are some and neither models nor
+// names are given. The device draws models. Throws InputError for what cannot be read.
+std::vector<FrameSource> frameSources(harness::Device& device, const FrameOptions& options);
+
+}  // namespace pellucid::bench

@@ -1,0 +1,222 @@
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "table_text.h"
+
+namespace pellucid::bench {
+
+namespace {
+
+const std::string kDefault = "Pellucid, quality 2", kGather = "Pellucid gather 8, quality 1";
+
+template <class Value>
+void addNew(std::vector<Value>& values, const Value& value) {
+  if (std::find(values.begin(), values.end(), value) == values.end()) values.push_back(value);
+}
+
+// Rows of the section frames, by what they measure, in the run's order.
+class Frames {
+public:
+  explicit Frames(const Json& results) : results_(results) {
+    for (const Json& r : results.at("results")) {
+      if (r.at("section") != "frames") continue;
+      const Key key{r.at("frame"), r.at("size"), r.at("kind"), r.at("name"), r.value("of", "")};
+      rows_[key] = &r;
+      addNew(frames_, key.frame);
+      addNew(sizes_, key.size);
+      if (key.kind != "frame") addNew(names_[key.kind + key.of], key.name);
+    }
+    if (rows_.empty()) throw NotMeasured("no section \"frames\"");
+  }
+
+  const std::vector<std::string>& frames() const { return frames_; }
+  const std::vector<std::string>& sizes() const { return sizes_; }
+  std::vector<std::string> names(const std::string& kind, const std::string& of = "") const {
+    const auto found = names_.find(kind + of);
+    return found == names_.end() ? std::vector<std::string>() : found->second;
+  }
+  const Json* find(const std::string& frame, const std::string& size, const std::string& kind,
+                   const std::string& name, const std::string& of = "") const {
+    const auto row = rows_.find({frame, size, kind, name, of});
+    return row == rows_.end() ? nullptr : row->second;
+  }
+  bool hasTimes() const {
+    return std::any_of(rows_.begin(), rows_.end(), [](const auto& row) { return row.second->contains("us"); });
+  }
+  // "portrait (.139)", by the first size.
+  std::string covered(const std::string& frame) const {
+    for (const std::string& size : sizes_)
+      if (const Json* row = find(frame, size, "frame", "frame"))
+        return format("%s (%.3f)", frame.c_str(), row->at("covered").get<double>());
+    return frame;
+  }
+  std::string heading(const std::string& what) const {
+    return runOf(results_) + "; " + (hasTimes() ? what : "times in floors, as a software device only ranks") +
+           ":\n\n";
+  }
+
+private:
+  struct Key {
+    std::string frame, size, kind, name, of;
+    auto operator<=>(const Key&) const = default;
+  };
+  const Json& results_;
+  std::map<Key, const Json*> rows_;
+  std::vector<std::string> frames_, sizes_;
+  std::map<std::string, std::vector<std::string>> names_;
+};
+
+std::string timeOf(const Json& row) {
+  if (row.contains("us")) return format("%.0f", row["us"].get<double>());
+  const double floors = row.at("floor_ratio");
+  return format(floors < 100 ? "%.3gx" : "%.0fx", floors);
+}
+
+// Path-traced truth says the error where there is some, else brute force of the diffusion.
+std::optional<double> errorOf(const Json& row) {
+  for (const char* field : {"truth_relative_rmse", "relative_rmse"})
+    if (row.contains(field)) return row[field].get<double>();
+  return std::nullopt;
+}
+
+std::string header(const std::string& first, const std::vector<std::string>& columns) {
+  std::string text = "| " + first + " |", rule = "|-|";
+  for (const std::string& column : columns) {
+    text += " " + column + " |";
+    rule += "-|";
+  }
+  return text + "\n" + rule + "\n";
+}
+
+// One row a name, one column a frame; a cell has the times of the sizes, and then the error of the first.
+std::string byFrame(const Frames& all, const std::string& kind, const std::vector<std::string>& sizes) {
+  std::vector<std::string> columns;
+  for (const std::string& frame : all.frames()) columns.push_back(all.covered(frame));
+  std::string table = header("", columns);
+  for (const std::string& name : all.names(kind)) {
+    table += "| " + name + " |";
+    for (const std::string& frame : all.frames()) {
+      std::string times;
+      std::optional<double> error;
+      for (const std::string& size : sizes) {
+        const Json* row = all.find(frame, size, kind, name);
+        if (!row) continue;
+        if (!times.empty()) times += " / ";
+        times += timeOf(*row);
+        if (!error) error = errorOf(*row);
+      }
+      if (error) times += format(", %.2g", *error);
+      table += " " + times + " |";
+    }
+    table += "\n";
+  }
+  return table;
+}
+
+std::string listed(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : " / ") + word;
+  return text;
+}
+
+}  // namespace
+
+std::string framesTable(const Json& results) {
+  const Frames all(results);
+  std::vector<std::string> sizes;
+  for (const std::string& size : all.sizes())
+    if (size == "1920x1080" || size == "3840x2160") sizes.push_back(size);
+  if (sizes.empty()) sizes = all.sizes();
+  return all.heading("microseconds at " + listed(sizes) + ", then the error; in brackets: the covered part") +
+         byFrame(all, "whole", sizes);
+}
+
+std::string frameSizesTable(const Json& results) {
+  const Frames all(results);
+  std::string text = all.heading("microseconds (floors)");
+  for (const std::string& frame : all.frames()) {
+    std::vector<std::string> sizes;  // that it was measured at
+    for (const std::string& size : all.sizes())
+      if (all.find(frame, size, "frame", "frame")) sizes.push_back(size);
+    std::vector<std::string> columns = sizes;
+    columns.push_back("error");
+    text += header(all.covered(frame), columns);
+    for (const std::string& name : all.names("whole")) {
+      std::string cells;
+      std::optional<double> error;
+      for (const std::string& size : sizes) {
+        const Json* row = all.find(frame, size, "whole", name);
+        if (row && !error) error = errorOf(*row);
+        cells += " ";
+        if (row) cells += timeOf(*row);
+        if (row && row->contains("us")) cells += format(" (%.1f)", row->at("floor_ratio").get<double>());
+        cells += " |";
+      }
+      text += "| " + name + " |" + cells + (error ? format(" %.2g |", *error) : " |") + "\n";
+    }
+    text += "\n";
+  }
+  text.pop_back();
+  return text;
+}
+
+std::string framePartsTable(const Json& results) {
+  const Frames all(results);
+  const std::string unit = "microseconds at " + listed(all.sizes()) + ", then the error of the diffusion";
+  return all.heading(unit) + "Translucency alone:\n\n" + byFrame(all, "translucency", all.sizes()) +
+         "\nDiffusion alone:\n\n" + byFrame(all, "diffusion", all.sizes());
+}
+
+std::string frameDispatchesTable(const Json& results) {
+  const Frames all(results);
+  std::string text = all.heading("microseconds at " + listed(all.sizes()));
+  for (const std::string& whole : {kDefault, kGather}) {
+    text += header(whole, all.frames());
+    for (const std::string& name : all.names("dispatch", whole)) {
+      text += "| " + name.substr(name.find_first_not_of(' ')) + " |";
+      for (const std::string& frame : all.frames()) {
+        std::vector<std::string> times;
+        for (const std::string& size : all.sizes())
+          if (const Json* row = all.find(frame, size, "dispatch", name, whole)) times.push_back(timeOf(*row));
+        text += std::string(" ") + listed(times) + " |";
+      }
+      text += "\n";
+    }
+    text += "\n";
+  }
+  text.pop_back();
+  return text;
+}
+
+std::string frameHostTable(const Json& results) {
+  const Frames all(results);
+  const std::string& frame = all.frames().front();
+  const std::string& size = all.sizes().back();
+  std::string text =
+      runOf(results) + "; " + frame + " at " + size + ", CPU times in microseconds:\n\n" +
+      header("", {"dispatches", "barriers", "transients, MB", "plan", "constants", "record, with constants"});
+  for (const std::string& name : all.names("whole")) {
+    const Json* row = all.find(frame, size, "whole", name);
+    if (!row) continue;
+    text += format("| %s | %d | %d | %.1f |", name.c_str(), row->at("dispatches").get<int>(),
+                   row->at("barriers").get<int>(), row->at("transient_bytes").get<double>() / 1e6);
+    for (const char* field : {"cpu_plan_us", "cpu_constants_us", "cpu_record_us"})
+      text += row->contains(field) ? format(" %.1f |", row->at(field).get<double>()) : " |";
+    text += "\n";
+  }
+  return text;
+}
+
+std::string contextTable(const Json& results) {
+  std::string rows;
+  for (const Json& r : results.at("results"))
+    if (r.at("section") == "context creation" && r.contains("us"))
+      rows += format("| %s | %.2f | %.2f |\n", r.at("name").get<std::string>().c_str(),
+                     r["us"].get<double>() / 1e6, r.at("cpu_us").get<double>() / 1e6);
+  if (rows.empty()) throw NotMeasured("no times in section \"context creation\"");
+  return runOf(results) + "; seconds:\n\n" + header("", {"wall clock", "CPU, all threads"}) + rows;
+}
+
+}  // namespace pellucid::bench

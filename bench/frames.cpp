@@ -1,0 +1,282 @@
+#include "frames.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "baselines/whole_frames.h"
+#include "bench_frame.h"
+#include "capture/material.h"
+#include "diffusions.h"
+#include "floor.h"
+#include "frame_errors.h"
+#include "measure.h"
+#include "scene.h"
+
+namespace pellucid::bench {
+
+using namespace harness;
+
+namespace {
+
+constexpr uint32_t kGathers[] = {8, 16};
+
+// Microseconds.
+template <class Call>
+double hostTime(const Call& call) {
+  const auto start = std::chrono::steady_clock::now();
+  call();
+  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// One frame at one size.
+class FrameBench {
+public:
+  FrameBench(Device& device, const Context& context, const FrameOptions& options, int repeat, Capture capture,
+             Report& report)
+      : device_(device),
+        context_(context),
+        repeat_(repeat),
+        capture_(std::move(capture)),
+        materials_(compileMaterials(capture_)),
+        truth_(diffusionTruth(capture_, materials_, options.errorPixels, options.cache)),
+        report_(report) {
+    // Every frame would multiply by it once; the errors do.
+    withoutAlbedo_ = capture_;
+    withoutAlbedo_.albedo = {};
+    ReplaySettings formats;
+    formats.normalFormat = VK_FORMAT_R8G8B8A8_SNORM;  // four bytes, as those of engines' G-buffers
+    inputs_ = std::make_shared<InputImages>(device, withoutAlbedo_, formats);
+    why_ = whyNotRendered(capture_, materials_);
+    if (why_.empty()) others_ = frame(transmittanceSettings());
+  }
+
+  std::string size() const { return std::to_string(capture_.width) + "x" + std::to_string(capture_.height); }
+  const Capture& capture() const { return capture_; }
+
+  // Rows of everything. Returns times against errors of whole frames.
+  std::vector<TimedError> run(double floor) {
+    head(floor);
+    // Downloads leave the device idle: errors first, then times without a gap.
+    measureErrors();
+    wholeFramesOfModule();
+    parts();
+    if (why_.empty())
+      wholeFramesOfOthers();
+    else
+      report_.note("  others are left out: " + why_);
+    return std::move(points_);
+  }
+
+private:
+  std::shared_ptr<const BenchFrame> frame(ReplaySettings settings) const {
+    settings.normalFormat = VK_FORMAT_R8G8B8A8_SNORM;
+    return std::make_shared<BenchFrame>(device_, context_, withoutAlbedo_, materials_, settings, inputs_);
+  }
+  static ReplaySettings settings(uint32_t features, uint32_t quality, uint32_t gather) {
+    ReplaySettings s;
+    s.features = features;
+    s.quality = quality;
+    s.translucency.gatherSamples = gather;
+    return s;
+  }
+  static std::string moduleName(uint32_t gather, uint32_t quality) {
+    return (gather ? "Pellucid gather " + std::to_string(gather) : std::string("Pellucid")) + ", quality " +
+           std::to_string(quality);
+  }
+
+  void head(double floor) {
+    const size_t covered = capture_.material.size() - static_cast<size_t>(std::count(
+                                                          capture_.material.begin(), capture_.material.end(), 0));
+    const double share = static_cast<double>(covered) / static_cast<double>(capture_.material.size());
+    char text[160];
+    std::snprintf(text, sizeof text, "%s, %s, %.3f covered, floor %.1f us", capture_.name.c_str(),
+                  size().c_str(), share, floor);
+    report_.section(text, "frames");
+    if (!truth_.pixels.empty())
+      report_.note("  error: of the diffusion, from brute force at " + std::to_string(truth_.pixels.size()) +
+                   " pixels");
+    report_.record({{"frame", capture_.name},
+                    {"size", size()},
+                    {"kind", "frame"},
+                    {"name", "frame"},
+                    {"covered", share},
+                    {"lights", capture_.lights.size()},
+                    {"error_pixels", truth_.pixels.size()},
+                    {"floor_us", floor}});
+  }
+
+  void measureErrors() {
+    const auto add = [&](const Variant& v) {
+      if (truth_.pixels.empty()) return;
+      device_.run(v.record);
+      errors_[v.name] = diffusionErrors(v.output(), truth_);
+    };
+    for (uint32_t q = 0; q < kModuleDiffusions; ++q)
+      add(moduleVariant(frame(settings(PELLUCID_FEATURE_DIFFUSION, q, 0)), moduleName(0, q)));
+    if (!why_.empty()) return;
+    for (const Variant& v : baselines(others_)) add(v);
+  }
+
+  void row(const std::string& kind, const Variant& v, const std::string& diffusion) {
+    add(kind, v, measure(device_, repeat_, v.record), diffusion);
+  }
+
+  // `diffusion`: the variant whose error the row has; empty: none. Whole images are compared with the capture's truth.
+  void add(const std::string& kind, const Variant& v, const Time& time, const std::string& diffusion,
+           nlohmann::json more = nlohmann::json::object()) {
+    more.update({{"frame", capture_.name},
+                 {"size", size()},
+                 {"kind", kind},
+                 {"transient_bytes", v.transientBytes}});
+    std::optional<double> error;
+    if (const auto found = errors_.find(diffusion); found != errors_.end()) {
+      error = rootMeanSquare(found->second);
+      more["relative_rmse_rgb"] = found->second;
+    }
+    if (kind == "whole" && capture_.truth) {
+      device_.run(v.record);
+      more.update(errorFields(v.output(), capture_, capture_.truth->image));
+    }
+    if (kind == "whole") {
+      const auto against = more.find("truth_relative_rmse");
+      const std::optional<double> shown = against != more.end() ? against->get<double>() : error;
+      if (shown) points_.push_back({v.name, *shown, std::max(time.median, 1.0)});
+    }
+    report_.add({v.name, v.dispatches, v.barriers, v.bytesPerPixel, error, more}, time);
+  }
+
+  nlohmann::json hostTimes(const BenchFrame& f, std::vector<double> recordings) const {
+    constexpr int kCalls = 101;
+    const auto plan = std::make_unique<PellucidPlan>();
+    std::vector<double> plans, constants;
+    for (int i = 0; i < kCalls; ++i) {
+      plans.push_back(hostTime([&] { pellucidBuildPlan(&f.images(), nullptr, plan.get()); }));
+      constants.push_back(hostTime([&] { f.writeConstants(); }));
+    }
+    return {{"cpu_plan_us", median(std::move(plans))},
+            {"cpu_constants_us", median(std::move(constants))},
+            {"cpu_record_us", median(std::move(recordings))}};
+  }
+
+  void dispatches(const BenchFrame& f, const std::string& whole) {
+    const PellucidPlan& plan = f.run().plan();
+    if (plan.dispatchCount == 0) return;
+    const std::vector<Time> times =
+        measureParts(device_, repeat_, plan.dispatchCount, [&](VkCommandBuffer commandBuffer, uint32_t i) {
+          f.run().record(commandBuffer, i);
+        });
+    for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
+      const PellucidDispatch& d = plan.dispatches[i];
+      const double bytes =
+          static_cast<double>(d.modeledBytes) / static_cast<double>(capture_.material.size());
+      report_.add({"  " + std::to_string(i) + " " + d.name, 1, d.barrierBefore, bytes, {},
+                   {{"frame", capture_.name}, {"size", size()}, {"kind", "dispatch"}, {"of", whole}}},
+                  times[i]);
+    }
+  }
+
+  void wholeFrame(uint32_t gather, uint32_t quality) {
+    const auto f = frame(
+        settings(PELLUCID_FEATURE_TRANSLUCENCY | PELLUCID_FEATURE_DIFFUSION, quality, gather));
+    const Variant v = moduleVariant(f, moduleName(gather, quality));
+    std::vector<double> recordings;
+    const Time time = measure(device_, repeat_, [&](VkCommandBuffer commandBuffer) {
+      recordings.push_back(hostTime([&] { v.record(commandBuffer); }));
+    });
+    const nlohmann::json host = hostTimes(*f, std::move(recordings));
+    add("whole", v, time, moduleName(0, quality), host);
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  "    transients %.1f bytes/pixel; CPU: plan %.1f us, constants %.1f us, record with them %.1f us",
+                  static_cast<double>(v.transientBytes) / static_cast<double>(capture_.material.size()),
+                  host["cpu_plan_us"].get<double>(), host["cpu_constants_us"].get<double>(),
+                  host["cpu_record_us"].get<double>());
+    report_.note(text);
+    dispatches(*f, v.name);
+  }
+
+  void wholeFramesOfModule() {
+    for (uint32_t q = 0; q < kModuleDiffusions; ++q) wholeFrame(0, q);
+    // With a gather quality 2 is quality 1.
+    for (const uint32_t gather : kGathers)
+      for (const uint32_t q : {0u, 1u, 3u}) wholeFrame(gather, q);
+  }
+
+  // Translucency and diffusion alone.
+  void parts() {
+    report_.note("  translucency alone");
+    row("translucency", moduleVariant(frame(settings(PELLUCID_FEATURE_TRANSLUCENCY, 2, 0)), "Pellucid"), "");
+    for (const uint32_t gather : kGathers)
+      row("translucency",
+          moduleVariant(frame(settings(PELLUCID_FEATURE_TRANSLUCENCY, 1, gather)),
+                        "Pellucid gather " + std::to_string(gather)),
+          "");
+    if (why_.empty()) {
+      row("translucency", gaussianTransmittance(others_).variant, "");
+      row("translucency", burleyTransmittance(others_).variant, "");
+    }
+    report_.note("  diffusion alone");
+    for (uint32_t q = 0; q < kModuleDiffusions; ++q) {
+      const std::string name = moduleName(0, q);
+      row("diffusion", moduleVariant(frame(settings(PELLUCID_FEATURE_DIFFUSION, q, 0)), name), name);
+    }
+    if (!why_.empty()) return;
+    for (const Variant& v : baselines(others_)) row("diffusion", v, v.name);
+  }
+
+  void wholeFramesOfOthers() {
+    report_.note("  whole frames of others");
+    for (const WholeFrame& w : wholeFrames(others_)) row("whole", w.variant, w.diffusion);
+  }
+
+  Device& device_;
+  const Context& context_;
+  int repeat_;
+  Capture capture_, withoutAlbedo_;
+  std::vector<PellucidMaterial> materials_;
+  DiffusionTruth truth_;
+  Report& report_;
+  std::shared_ptr<const InputImages> inputs_;
+  std::string why_;
+  std::shared_ptr<const BenchFrame> others_;
+  std::map<std::string, ChannelErrors> errors_;  // of diffusions, by name
+  std::vector<TimedError> points_;
+};
+
+}  // namespace
+
+std::map<std::string, std::vector<Plot>> measureFrames(Device& device, const Context& context,
+                                                       const std::vector<FrameSource>& sources,
+                                                       const FrameOptions& options, int repeat,
+                                                       Report& report) {
+  requireRightTransmittance(device, context, benchMaterial());
+  std::map<std::string, double> floors;  // by size
+  std::map<std::string, std::vector<Plot>> plots;
+  for (const FrameSource& source : sources) {
+    FrameBench bench(device, context, options, repeat, source.make(), report);
+    const auto [floor, isNew] = floors.try_emplace(bench.size());
+    if (isNew)
+      floor->second =
+          measureFloors(device, slab(bench.capture().width, bench.capture().height, 1, 0.1), repeat)
+              .front()
+              .time.median;
+    report.setFloor(floor->second);
+    const std::vector<TimedError> points = bench.run(floor->second);
+    if (!points.empty())
+      plots[bench.size()].push_back(
+          timeAgainstError(bench.capture().name + ", " + bench.size(), points,
+                           bench.capture().truth ? "path tracing" : "brute force, of the diffusion"));
+  }
+  return plots;
+}
+
+}  // namespace pellucid::bench

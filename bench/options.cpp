@@ -1,0 +1,97 @@
+#include "options.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "frame_sources.h"
+
+namespace pellucid::bench {
+
+namespace {
+
+std::pair<int, int> parseSize(const std::string& text) {
+  int width = 0, height = 0, end = 0;
+  const bool whole = std::sscanf(text.c_str(), "%5dx%5d%n", &width, &height, &end) == 2 &&
+                     static_cast<size_t>(end) == text.size();
+  if (!whole || width < 16 || height < 16 || width > 8192 || height > 8192)
+    throw CLI::ValidationError("--frame-sizes", "\"" + text + "\" is not WIDTHxHEIGHT of 16 to 8192 pixels");
+  return {width, height};
+}
+
+}  // namespace
+
+int readOptions(int argc, char** argv, Options& options) {
+  CLI::App app("GPU times of Pellucid's frames, and of others', beside their errors.", "pellucid_bench");
+  app.add_option("--device", options.device, "part of the Vulkan device's name");
+  app.add_option("--tables", options.tables, "which sections to measure, with commas")
+      ->delimiter(',')
+      ->check(CLI::IsMember(std::set<std::string>{"frames", "context", "module", "edges", "fused", "gather",
+                                                  "steps", "diffusion", "sweep"}))
+      ->capture_default_str();
+  app.add_option("--repeat", options.repeat, "counted runs of each; default 7, on a software device 3")
+      ->check(CLI::Range(1, 10000));
+
+  FrameOptions& f = options.frames;
+  app.add_option("--frames", f.captures, "captures that the section frames measures, with commas")
+      ->delimiter(',');
+  app.add_option("--models", f.models,
+                 "folder of head_views.glb and crowd.glb, which the section frames draws in place of stand-ins");
+  app.add_option_function<std::vector<std::string>>(
+         "--frame-sizes",
+         [&f](const std::vector<std::string>& texts) {
+           f.sizes.clear();
+           for (const std::string& text : texts) f.sizes.push_back(parseSize(text));
+         },
+         "WIDTHxHEIGHT of frames that are made, with commas; default 1280x720, 1920x1080, 2560x1440 and 3840x2160, "
+         "on a software device 256x144")
+      ->delimiter(',');
+  app.add_option("--frame-names", f.names, "which of the frames that are made, with commas; default all")
+      ->delimiter(',')
+      ->check(CLI::IsMember(std::set<std::string>(std::begin(kFrameNames), std::end(kFrameNames))));
+  app.add_option("--shadow-size", f.shadowSize, "texels across a shadow map of frames that are made")
+      ->check(CLI::Range(16, 8192))
+      ->capture_default_str();
+  app.add_option("--error-pixels", f.errorPixels, "of a frame, at most, where brute force says the error")
+      ->check(CLI::Range(16, 1000000))
+      ->capture_default_str();
+  app.add_option("--cache", f.cache, "folder that keeps what brute force gave");
+
+  PlaneOptions& p = options.plane;
+  app.add_option("--size", p.size, "WIDTHxHEIGHT of the planes")->delimiter('x')->capture_default_str();
+  app.add_option("--coverage", p.coverage, "percent of a plane with a material; several with commas")
+      ->delimiter(',')
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
+  app.add_option("--radius", p.radius, "pixels of a plane within which 99.9 % of the diffused energy lies")
+      ->check(CLI::Range(1.0, 1000.0))
+      ->capture_default_str();
+  app.add_option("--sweep-heights", options.sweep.heights, "of images of 16:9 in the table sweep, with commas")
+      ->delimiter(',')
+      ->check(CLI::Range(9, 8640))
+      ->capture_default_str();
+  app.add_option("--sweep-radii", options.sweep.radii, "like --radius, of the table sweep, with commas")
+      ->delimiter(',')
+      ->check(CLI::Range(1.0, 1000.0))
+      ->capture_default_str();
+
+  app.add_option("--json", options.json, "file to write, - for standard output");
+  app.add_flag("--ratios", options.ratios,
+               "leave times out of the JSON: a software device only ranks variants");
+  app.add_option("--plot", options.plot, "folder for plots of time against error");
+  app.add_option("--compare", options.compare,
+                 "JSON of another run: says what is slower or worse now, and exits with 1 if something is");
+  app.add_option("--results", options.results, "JSON to compare in place of a run")
+      ->needs("--compare");
+
+  app.add_flag("--create-context", options.createContext)->group("");
+  app.add_option("--load-cache", options.loadCache)->group("");
+  app.add_option("--save-cache", options.saveCache)->group("");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e);
+  }
+  return -1;
+}
+
+}  // namespace pellucid::bench

@@ -1,0 +1,53 @@
+// What the command line asks for.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace pellucid::bench {
+
+// Sections on planes and patterns, whose every pixel may be covered.
+struct PlaneOptions {
+  std::pair<int, int> size = {1280, 720};
+  std::vector<double> coverage = {100, 25, 0};  // percent
+  double radius = 40;                           // pixels
+};
+
+struct FrameOptions {
+  std::vector<std::string> captures;               // files
+  std::filesystem::path models;                    // folder of head_views.glb and crowd.glb; empty: stand-ins
+  std::vector<std::pair<int, int>> sizes;          // of the made ones; empty: by the kind of device
+  std::vector<std::string> names;                  // of the made ones; empty: all
+  int shadowSize = 2048;                           // texels a side
+  int errorPixels = 4096;                          // at most, that brute force is computed at
+  std::filesystem::path cache;                     // folder; empty: brute force is computed each time
+};
+
+struct SweepOptions {
+  std::vector<int> heights = {720, 1080, 1440, 2160};  // pixels; 16 : 9
+  std::vector<double> radii = {2, 8, 32, 128};         // pixels within which 99.9 % of the energy lies
+};
+
+struct Options {
+  std::string device, json;
+  std::filesystem::path plot;
+  bool ratios = false;
+  std::optional<int> repeat;  // absent: 7, or 3 on a software device
+  std::set<std::string> tables = {"frames", "context"};
+  PlaneOptions plane;
+  FrameOptions frames;
+  SweepOptions sweep;
+  std::filesystem::path compare, results;
+  // Of the processes that the section context starts.
+  bool createContext = false;
+  std::filesystem::path loadCache, saveCache;
+};
+
+// The exit status where the command line ends the program, else -1.
+int readOptions(int argc, char** argv, Options& options);
+
+}  // namespace pellucid::bench

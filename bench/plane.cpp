@@ -1,0 +1,228 @@
+// Sections on planes, where every pixel may be covered: the module's plans, its steps, and diffusions of others.
+#include "plane.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include "common/error.h"
+#include "floor.h"
+#include "gather_error.h"
+#include "pellucid/pellucid_material.h"
+#include "scene.h"
+#include "scene/scene.h"
+#include "steps.h"
+
+namespace pellucid::bench {
+
+using namespace harness;
+
+namespace {
+
+struct Bench {
+  const PlaneOptions& options;
+  const Site& site;
+  int repeat;
+  Report& report;
+
+  std::shared_ptr<const BenchFrame> frame(const Capture& capture, const ReplaySettings& settings) const {
+    return site.frame(capture, settings);
+  }
+  Capture fullSlab() const { return slab(options.size.first, options.size.second, 1, site.pixel); }
+  Image run(const Variant& variant) const { return site.run(variant); }
+  Time time(const std::function<void(VkCommandBuffer)>& record) const {
+    return measure(site.device, repeat, record);
+  }
+  Time row(const Variant& v, std::optional<double> error) const {
+    const Time t = time(v.record);
+    report.add({v.name, v.dispatches, v.barriers, v.bytesPerPixel, error}, t);
+    return t;
+  }
+};
+
+// Of `lights` copies of the slab's light the first `mapped` keep their shadow map.
+Capture litBy(Capture c, int lights, int mapped) {
+  c.lights.assign(static_cast<size_t>(lights), c.lights[0]);
+  for (int i = mapped; i < lights; ++i) c.lights[static_cast<size_t>(i)].shadowMaps.clear();
+  return c;
+}
+
+// The fused dispatch on the slab, where the answer is closed: its T at its thickness.
+void requireRightAnswer(const Bench& bench) {
+  ReplaySettings settings;
+  settings.features = PELLUCID_FEATURE_TRANSLUCENCY;
+  settings.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  const Capture c = slab(64, 48, 1, 0.1);
+  const Image out = bench.run(moduleVariant(bench.frame(c, settings), ""));
+  const double thickness = slabThickness(c);
+  const double expected = static_cast<double>(c.irradiance.data[0]) +
+                          pellucidEvaluateTransmittance(&bench.site.material, 0, thickness) /
+                              static_cast<double>(bench.site.material.reflectance[0]);
+  if (!(std::abs(static_cast<double>(out.data[0]) - expected) < 1e-4))
+    throw DeviceError("the fused dispatch gives " + std::to_string(out.data[0]) + " and not " +
+                      std::to_string(expected));
+}
+
+// One row for each dispatch of the frame's plan.
+void dispatches(const Bench& bench, const BenchFrame& frame) {
+  const PellucidPlan& plan = frame.run().plan();
+  for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
+    const PellucidDispatch& d = plan.dispatches[i];
+    const double bytes =
+        static_cast<double>(d.modeledBytes) / (static_cast<double>(frame.width()) * frame.height());
+    bench.report.add({d.name, 1, d.barrierBefore, bytes, {}},
+                     bench.time([&](VkCommandBuffer c) { frame.run().recordAlone(c, i); }));
+  }
+}
+
+void modulePlans(const Bench& bench) {
+  const auto [width, height] = bench.options.size;
+  const auto rows = [&](const std::string& title, const Capture& capture, const ReplaySettings& settings) {
+    bench.report.section(title);
+    const auto frame = bench.frame(capture, settings);
+    dispatches(bench, *frame);
+    bench.row(moduleVariant(frame, "whole frame"), {});
+  };
+  for (const double coverage : bench.options.coverage) {
+    char title[64];
+    std::snprintf(title, sizeof title, "module, %g %% covered", coverage);
+    rows(title, slab(width, height, coverage / 100, bench.site.pixel), {});
+  }
+  rows("module, radii not known", inPerspective(bench.fullSlab()), {});
+  for (const uint32_t quality : {1u, 3u}) {
+    ReplaySettings settings;
+    settings.quality = quality;
+    rows("module, quality " + std::to_string(quality), bench.fullSlab(), settings);
+  }
+}
+
+// Where surfaces end and curve, which takes longer than planes where light varies.
+void edges(const Bench& bench) {
+  const auto [width, height] = bench.options.size;
+  for (const double radius : {400.0, 100.0, 25.0}) {
+    char title[64];
+    std::snprintf(title, sizeof title, "edges, balls of %g pixels", radius);
+    bench.report.section(title);
+    const Capture capture = balls(width, height, radius, bench.site.pixel);
+    for (const uint32_t quality : {1u, 2u, 3u}) {
+      ReplaySettings settings;
+      settings.quality = quality;
+      const auto frame = bench.frame(capture, settings);
+      dispatches(bench, *frame);
+      bench.row(moduleVariant(
+                    frame, quality == 2 ? "whole frame" : "whole frame, quality " + std::to_string(quality)),
+                {});
+    }
+    bench.row(moduleVariant(bench.frame(litSmoothly(capture), {}), "whole frame, lit smoothly"), {});
+  }
+}
+
+// The fused dispatch alone: by lights and by how many of them have a shadow map.
+void fusedDispatch(const Bench& bench) {
+  bench.report.section("fused dispatch");
+  const auto row = [&](const std::string& name, const Capture& capture) {
+    ReplaySettings settings;
+    settings.features = PELLUCID_FEATURE_TRANSLUCENCY;
+    bench.row(moduleVariant(bench.frame(capture, settings), name), {});
+  };
+  for (const int lights : {1, 8, 64})
+    for (const int mapped : {0, 1, 4})
+      if (mapped <= lights)
+        row(std::to_string(lights) + " lights, " + std::to_string(mapped) + " maps",
+            litBy(bench.fullSlab(), lights, mapped));
+}
+
+// What the gather adds to a frame, in place of the fused dispatch: over a frame without it that is otherwise
+// the same.
+std::vector<TimedError> gathered(const Bench& bench) {
+  const auto frame = [&](const Capture& capture, uint32_t samples, uint32_t spacing) {
+    ReplaySettings settings;
+    settings.quality = 1;  // which the default is with a gather: the frames differ by that alone
+    settings.translucency.gatherSamples = samples;
+    settings.translucency.gatherSpacing = spacing;
+    return bench.frame(capture, settings);
+  };
+  const auto added = [&](const std::string& name, const Capture& capture, uint32_t samples, uint32_t spacing,
+                         std::optional<double> error) {
+    const Variant without = moduleVariant(frame(capture, 0, 0), ""),
+                  with = moduleVariant(frame(capture, samples, spacing), "");
+    const Time a = bench.time(without.record), b = bench.time(with.record);
+    bench.report.add({name, with.dispatches - without.dispatches, with.barriers - without.barriers,
+                      with.bytesPerPixel - without.bytesPerPixel, error},
+                     {b.median - a.median, b.low - a.high, b.high - a.low});
+    return b.median - a.median;
+  };
+  bench.report.section("gather, added to the frame; error: from all texels");
+  const std::vector<uint32_t> samples = {4, 8, 16, 32};
+  const std::vector<double> errors = gatherErrors(bench.site, samples);
+  std::vector<TimedError> points;
+  for (size_t i = 0; i < samples.size(); ++i) {
+    const std::string name = std::to_string(samples[i]) + " samples";
+    const double time = added(name, bench.fullSlab(), samples[i], 0, errors[i]);
+    points.push_back({"gather, " + name, errors[i], std::max(time, 1.0)});  // the axis is logarithmic
+  }
+  added("8 samples, a point in 2 x 2 pixels", bench.fullSlab(), 8, 2, {});
+  added("8 samples, nothing transmitted", litFromTheFront(bench.fullSlab()), 8, 0, {});
+  bench.report.section("gather, 8 samples");
+  dispatches(bench, *frame(bench.fullSlab(), 8, 0));
+  bench.report.section("gather, 8 samples, nothing transmitted");
+  dispatches(bench, *frame(litFromTheFront(bench.fullSlab()), 8, 0));
+  return points;
+}
+
+// Errors against the module, on the ear.
+void separateSteps(const Bench& bench) {
+  bench.report.section("translucency; error: from one dispatch");
+  ReplaySettings settings;
+  settings.features = PELLUCID_FEATURE_TRANSLUCENCY;
+  settings.translucency.thicknessSource = PELLUCID_THICKNESS_CAMERA;
+  settings.translucency.shadowBias = 0.5f;
+  SceneParameters p;
+  p.name = "ear";
+  p.width = p.height = 128;
+  p.depthEncoding = PELLUCID_DEPTH_DEVICE;
+  Capture ear = makeScene(p);
+  ear.albedo = {};       // the module would multiply by it
+  ear.lights.resize(1);  // the separate steps bind one shadow map
+  const std::vector<Variant> checked = translucencyVariants(bench.frame(ear, settings));
+  const std::vector<Variant> timed = translucencyVariants(bench.frame(bench.fullSlab(), settings));
+  const Image truth = bench.run(checked.back());
+  for (size_t i = 0; i < timed.size(); ++i)
+    // Half-float intermediate results round by 5e-4 of themselves.
+    bench.row(timed[i], requireNear(checked[i], bench.run(checked[i]), truth, ear, 2e-3));
+}
+
+std::vector<TimedError> diffusion(const Bench& bench) {
+  bench.report.section("diffusion; error: from brute force");
+  const std::vector<double> errors = diffusionErrors(bench.site);
+  std::vector<TimedError> points;
+  const std::vector<Variant> timed = diffusions(bench.site, bench.fullSlab());
+  for (size_t i = 0; i < timed.size(); ++i)
+    points.push_back({timed[i].name, errors[i], bench.row(timed[i], errors[i]).median});
+  return points;
+}
+
+}  // namespace
+
+PlanePlots measurePlanes(const Site& site, const std::set<std::string>& tables, const PlaneOptions& options,
+                         int repeat, Report& report) {
+  const auto [width, height] = options.size;
+  const std::vector<Floor> floors = measureFloors(site.device, slab(width, height, 1, site.pixel), repeat);
+  report.setFloor(floors.front().time.median);
+  const Bench b{options, site, repeat, report};
+  requireRightAnswer(b);
+  report.section("floor");
+  for (const Floor& floor : floors) report.add({floor.shape, 1, 0, 24, {}}, floor.time);
+  const auto wanted = [&](const char* name) { return tables.count(name) > 0; };
+  PlanePlots plots;
+  plots.floor = floors.front().time.median;
+  if (wanted("module")) modulePlans(b);
+  if (wanted("edges")) edges(b);
+  if (wanted("fused")) fusedDispatch(b);
+  const std::string device = site.device.description();
+  if (wanted("gather")) plots.gather = {timeAgainstError("added, " + device, gathered(b), "all texels")};
+  if (wanted("steps")) separateSteps(b);
+  if (wanted("diffusion")) plots.diffusion = {timeAgainstError(device, diffusion(b))};
+  return plots;
+}
+
+}  // namespace pellucid::bench

@@ -1,0 +1,25 @@
+// Sections on planes and patterns.
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "diffusions.h"
+#include "options.h"
+#include "report.h"
+
+namespace pellucid::bench {
+
+inline constexpr const char* kPlaneTables[] = {"module", "edges", "fused", "gather", "steps", "diffusion"};
+
+struct PlanePlots {
+  double floor;  // microseconds
+  std::vector<harness::Plot> diffusion, gather;
+};
+
+// Adds the rows of `tables` to `report`, after those of the floor, which becomes the report's.
+PlanePlots measurePlanes(const Site& site, const std::set<std::string>& tables, const PlaneOptions& options,
+                         int repeat, Report& report);
+
+}  // namespace pellucid::bench

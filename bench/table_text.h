@@ -1,0 +1,39 @@
+// What the makers of the documentation's tables share.
+#pragma once
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+
+namespace pellucid::bench {
+
+using Json = nlohmann::json;
+
+// The run has no rows of that kind.
+struct NotMeasured : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+template <class... Values>
+std::string format(const char* pattern, Values... values) {
+  char text[256];
+  std::snprintf(text, sizeof text, pattern, values...);
+  return text;
+}
+
+// Device, commit and repeats, for a table's heading.
+inline std::string runOf(const Json& results) {
+  return format("%s, commit `%s`, median of %d runs", results.at("device").get<std::string>().c_str(),
+                results.at("commit").get<std::string>().c_str(), results.at("repeat").get<int>());
+}
+
+// Tables of the section "frames", and of "context creation". Throw NotMeasured.
+std::string framesTable(const Json& results);           // whole frames at two sizes beside their errors
+std::string frameSizesTable(const Json& results);       // whole frames at all sizes
+std::string framePartsTable(const Json& results);       // translucency and diffusion alone
+std::string frameDispatchesTable(const Json& results);  // of two settings, dispatch by dispatch
+std::string frameHostTable(const Json& results);        // CPU times, memory, dispatches
+std::string contextTable(const Json& results);
+
+}  // namespace pellucid::bench
