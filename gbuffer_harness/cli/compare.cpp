@@ -34,6 +34,9 @@ constexpr const char* kDefinitions =
     "isolated: pixels 1.3 times above or below all neighbors of their surface. tint: standard deviation of A "
     "/ B\n"
     "over 8x8 averages, per channel and of red over green. flip: of images under one exposure, 0 .. 1.\n"
+    "noise: of B's samples, standard errors over RMS. chi2: of samples wholly of mask, the sum of (A-B)^2 "
+    "over\n"
+    "that of squared standard errors: 1 where noise is all that differs. Both where files hold errors.\n"
     "docs/accuracy.md defines all of them.\n";
 
 struct Measure {
@@ -59,6 +62,7 @@ struct Options {
 };
 
 struct Result {
+  std::vector<double> noise, chi2;  // of B; empty where no standard errors are known
   Comparison comparison;
   IsolatedPixels isolatedA, isolatedB;
   Tint tint;
@@ -69,6 +73,13 @@ struct Result {
 std::optional<Capture> findCapture(const std::filesystem::path& path) {
   if (isExr(path) && !ExrFile(path).findText(kManifestAttribute)) return std::nullopt;
   return readCapture(path);
+}
+
+// An image to compare: of a capture its truth, with what is known of its noise.
+Truth readTruth(const std::string& path, const std::optional<Capture>& capture) {
+  if (!capture) return {readExrImage(path), {}};
+  if (!capture->truth) throw InputError(path, "truth", "missing: the capture has no image to compare with");
+  return *capture->truth;
 }
 
 // A | B | 4 |A - B|, exposed so that the 99th percentile of B is white; pixels that do not count are
@@ -108,6 +119,8 @@ Json toJson(const Result& result, const Options& options) {
   for (const Measure& measure : kMeasures)
     for (const ChannelDifference& channel : comparison.channels)
       json[measure.name].push_back(channel.*measure.value);  // infinity becomes null
+  if (!result.noise.empty()) json["noise"] = result.noise;
+  if (!result.chi2.empty()) json["chi2"] = result.chi2;
   json["isolated"] = {{"a", toJson(result.isolatedA)}, {"b", toJson(result.isolatedB)}};
   json["tint"] = toJson(result.tint);
   json["flip"] = toJson(result.flip);
@@ -133,6 +146,14 @@ std::string toText(const Result& result, const Options& options) {
   if (comparison.nonFiniteA || comparison.nonFiniteB)
     text << "  NaN or infinity in " << comparison.nonFiniteA << " pixels of A and " << comparison.nonFiniteB
          << " of B, left out\n";
+  const auto numbers = [&](const char* name, const std::vector<double>& values) {
+    if (values.empty()) return;
+    text << "  " << name << ": ";
+    for (const double value : values) text << value << " ";
+    text << "(R G B)\n";
+  };
+  numbers("noise of B", result.noise);
+  numbers("chi2", result.chi2);
   const auto isolated = [](const IsolatedPixels& pixels) {
     return std::to_string(pixels.count) + " (" + std::to_string(pixels.bright) + " bright, " +
            std::to_string(pixels.dark) + " dark)";
@@ -167,11 +188,10 @@ void checkLimits(const Result& result, const Limits& limits) {
 
 void compare(const Options& options) {
   const Limits limits(kLimitKinds, options.limits);
-  const Image a = readExrImage(options.a);
+  const Truth truthA = readTruth(options.a, findCapture(options.a));
   std::optional<Capture> capture = findCapture(options.b);
-  if (capture && !capture->truth)
-    throw InputError(options.b, "truth", "missing: the capture has no image to compare with");
-  const Image b = capture ? std::move(capture->truth->image) : readExrImage(options.b);
+  const Truth truthB = readTruth(options.b, capture);
+  const Image &a = truthA.image, &b = truthB.image;
   if (!options.mask.empty()) capture = readCapture(options.mask);
   const Subset subset = options.subset == "lit"     ? Subset::Lit
                         : options.subset == "unlit" ? Subset::Unlit
@@ -186,6 +206,9 @@ void compare(const Options& options) {
   } catch (const InputError& error) {
     throw InputError(options.a + " (A), " + options.b + " (B)", "", error.what());
   }
+  if (!truthB.standardError.empty()) result.noise = relativeNoise(b, truthB.standardError, mask, options.box);
+  if (!truthA.standardError.empty() || !truthB.standardError.empty())
+    result.chi2 = chiSquared(a, truthA.standardError, b, truthB.standardError, mask, options.box);
   const Surfaces surfaces = capture ? Surfaces(*capture) : Surfaces(b.width, b.height);
   result.isolatedA = findIsolated(a, surfaces, mask);
   result.isolatedB = findIsolated(b, surfaces, mask);
@@ -205,7 +228,7 @@ void compare(const Options& options) {
 void addCompareCommand(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("compare", "Say how far image A is from image B, per channel");
-  command->add_option("A", options->a, "EXR image")->required();
+  command->add_option("A", options->a, "EXR image, or a capture: its truth")->required();
   command->add_option("B", options->b, "EXR image, or a capture: its truth, over its material pixels")
       ->required();
   command->add_option("--mask", options->mask,

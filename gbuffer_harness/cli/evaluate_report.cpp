@@ -57,9 +57,48 @@ Json toJson(const std::optional<Comparison>& comparison) {
 
 Evaluation evaluate(const std::string& captureName, const std::string& model, const Capture& capture,
                     const Image& result, const EvaluationBoxes& boxes, double exposure) {
-  return {captureName, model, compared(capture, result, Subset::All, boxes),
-          compared(capture, result, Subset::Unlit, boxes), measureEye(result, capture, exposure)};
+  Evaluation e{captureName,
+               model,
+               compared(capture, result, Subset::All, boxes),
+               compared(capture, result, Subset::Unlit, boxes),
+               measureEye(result, capture, exposure),
+               {},
+               {}};
+  if (const Truth& truth = *capture.truth; !truth.standardError.empty()) {
+    e.noise = relativeNoise(truth.image, truth.standardError, capture.material, boxes.side);
+    e.noiseOf8 = relativeNoise(truth.image, truth.standardError, capture.material, 8);
+  }
+  return e;
 }
+
+namespace {
+
+std::string noiseCells(const std::vector<double>& noise) {
+  if (noise.empty()) return "no such block";
+  char text[64];
+  std::snprintf(text, sizeof text, "%.4f %.4f %.4f", noise[0], noise[1], noise[2]);
+  return text;
+}
+
+// One row a capture whose truth says its noise.
+std::string noiseTable(const std::vector<Evaluation>& evaluations, const EvaluationBoxes& boxes) {
+  std::ostringstream rows;
+  const std::string* last = nullptr;
+  for (const Evaluation& e : evaluations) {
+    if ((e.noise.empty() && e.noiseOf8.empty()) || (last && *last == e.capture)) continue;
+    last = &e.capture;
+    rows << "| " << e.capture << " | " << noiseCells(e.noise) << " | " << noiseCells(e.noiseOf8) << " |\n";
+  }
+  if (rows.str().empty()) return "";
+  std::ostringstream text;
+  text
+      << "\nNoise of the truths: standard error over RMS (R G B), averages wholly of surface.\n\n| capture | "
+      << boxes.side << "x" << boxes.side << " | 8x8 |\n|-|-|-|\n"
+      << rows.str();
+  return text.str();
+}
+
+}  // namespace
 
 std::string evaluationMarkdown(const std::vector<Evaluation>& evaluations, const EvaluationBoxes& boxes) {
   std::ostringstream text;
@@ -77,6 +116,7 @@ std::string evaluationMarkdown(const std::vector<Evaluation>& evaluations, const
        << "|-|-|-|-|-|-|-|-|\n";
   for (const Evaluation& e : evaluations)
     text << "| " << e.capture << " | " << e.model << " | " << eyeCells(e.eye) << " |\n";
+  text << noiseTable(evaluations, boxes);
   return text.str();
 }
 
@@ -90,7 +130,9 @@ std::string evaluationJson(const std::vector<Evaluation>& evaluations, const Eva
                        {"isolated", e.eye.isolated},
                        {"isolatedInTruth", e.eye.isolatedInTruth},
                        {"tint", toJson(e.eye.tint)},
-                       {"flip", toJson(e.eye.flip)}});
+                       {"flip", toJson(e.eye.flip)},
+                       {"truthNoise", e.noise},
+                       {"truthNoise8x8", e.noiseOf8}});
   return Json{{"box", boxes.side}, {"boxCoverage", boxes.coverage}, {"results", std::move(results)}}.dump(2) +
          "\n";
 }

@@ -21,13 +21,15 @@ struct Evaluation {
   std::string capture, model;
   std::optional<Comparison> all, unlit;  // absent: no such pixels; unlit: without front irradiance
   EyeMetrics eye;
+  // relativeNoise() of the truth over averages as above, wholly of surface, and over 8x8; empty: not known.
+  std::vector<double> noise, noiseOf8;
 };
 
 // exposure: of FLIP, as measureFlip(). Throws InputError when sizes differ.
 Evaluation evaluate(const std::string& captureName, const std::string& model, const Capture& capture,
                     const Image& result, const EvaluationBoxes& boxes, double exposure);
 
-// Two tables: error and bias, and what the eye sees.
+// Tables of error and bias, of what the eye sees, and of the truths' noise where it is known.
 std::string evaluationMarkdown(const std::vector<Evaluation>& evaluations, const EvaluationBoxes& boxes);
 
 // An object with `boxes` and an array of all numbers, one object a result.

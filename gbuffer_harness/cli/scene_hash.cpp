@@ -34,9 +34,9 @@ void SceneHash::add(const Model& model) {
 }
 
 void SceneHash::add(const SceneParameters& parameters) {
-  bytes(parameters.name.data(), parameters.name.size());
+  add(parameters.name);
   for (const auto& [name, number] : parameters.options) {
-    bytes(name.data(), name.size());
+    add(name);
     value(number);
   }
   value(parameters.seed);
@@ -66,6 +66,8 @@ void SceneHash::add(const reference::Emitters& emitters, const Capture& capture)
     value(material.ior);
   }
 }
+
+void SceneHash::add(const std::string& option) { bytes(option.data(), option.size()); }
 
 std::string SceneHash::text() const {
   char text[17];

@@ -16,7 +16,8 @@ public:
   void add(const Model& model);  // triangles and surfaces
   void add(const SceneParameters& parameters);
   void add(const reference::Emitters& emitters, const Capture& capture);  // of it size, camera, materials
-  std::string text() const;                                               // 16 hexadecimal digits
+  void add(const std::string& option);
+  std::string text() const;  // 16 hexadecimal digits
 
 private:
   template <class T>

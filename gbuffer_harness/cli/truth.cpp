@@ -18,6 +18,7 @@
 #include "common/progress.h"
 #include "common/whole_file.h"
 #include "raster/close_mesh.h"
+#include "reference/path_tracer/light_paths.h"
 #include "reference/path_tracer/mesh_scene.h"
 #include "reference/path_tracer/solid_scene.h"
 #include "reference/path_tracer/truth.h"
@@ -37,6 +38,7 @@ struct Options {
   double seconds = 0;
   int jobs = 0;
   bool overwrite = false;
+  std::string entry = "lambert";
 };
 
 // The scene, seen twice: as a G-buffer, and as what rays meet.
@@ -128,6 +130,7 @@ Scene makeScene(const CLI::App& command, const Options& options) {
   scene.emitters.lights = scene.capture.lights;
   for (Light& light : scene.emitters.lights) light.shadowMaps.clear();
   hash.add(scene.emitters, scene.capture);
+  hash.add(options.entry);
   scene.hash = hash.text();
   return scene;
 }
@@ -163,7 +166,8 @@ public:
   Run(const Options& options, Scene& scene, reference::TruthSums sums)
       : options_(options), scene_(scene), sums_(std::move(sums)), begin_(Clock::now()), written_(begin_) {}
 
-  void trace(const reference::TruthTracer& tracer) {
+  template <class Tracer>
+  void trace(const Tracer& tracer) {
     const std::uint64_t first = sums_.samples;
     const bool timed = options_.seconds > 0;
     const auto rows = static_cast<std::uint64_t>(scene_.capture.height);
@@ -240,7 +244,10 @@ void truth(const CLI::App& command, const Options& options) {
   if (surface.missed > 0)
     warn({std::to_string(surface.missed) + " pixels show a surface that no ray met; their truth is 0"});
   Run run(options, scene, std::move(sums));
-  run.trace(reference::TruthTracer(scene.capture, surface, *scene.traced, media, scene.emitters));
+  if (options.entry == "lambert")
+    run.trace(reference::TruthTracer(scene.capture, surface, *scene.traced, media, scene.emitters));
+  else
+    run.trace(reference::LightPaths(scene.capture, *scene.traced, media, scene.emitters));
   const std::uint64_t added = run.sums().samples - before;
   std::printf("%s: %zu pixels, %llu samples each, %.0f paths a second\n", options.output.c_str(), pixels,
               static_cast<unsigned long long>(run.sums().samples),
@@ -266,6 +273,12 @@ void addTruthCommand(CLI::App& app) {
   command->add_option("--like", options->like,
                       "capture of this model or scene, made anywhere: its camera, G-buffer, lights and "
                       "materials; the file gets them with another truth");
+  command
+      ->add_option("--entry", options->entry,
+                   "lambert: light enters diffusely, as a G-buffer's irradiance has no direction; refracted: "
+                   "in its own direction, by Fresnel's equations")
+      ->check(CLI::IsMember({"lambert", "refracted"}))
+      ->capture_default_str();
   command->add_option("--truth-seed", options->seed, "of the random numbers of paths")->capture_default_str();
   command->add_option("--jobs", options->jobs, "threads; 0: all. The result does not depend on them")
       ->check(CLI::Range(0, 4096));

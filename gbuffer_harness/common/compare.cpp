@@ -125,36 +125,69 @@ Comparison compareImages(const Image& a, const Image& b, const std::vector<std::
   return result;
 }
 
-std::vector<double> relativeNoise(const Image& image, const Image& standardError,
-                                  const std::vector<std::uint8_t>& mask, int box) {
-  const auto channels = static_cast<std::size_t>(image.channels);
-  std::vector<double> squares(channels), errors(channels);
-  std::size_t blocks = 0;
+namespace {
+
+// Calls block(left, top) for every block of box x box pixels that is wholly of mask.
+template <class Block>
+void forWholeBlocks(const Image& image, const std::vector<std::uint8_t>& mask, int box, const Block& block) {
   for (int top = 0; top + box <= image.height; top += box)
     for (int left = 0; left + box <= image.width; left += box) {
-      std::vector<double> sum(channels), variance(channels);
       bool whole = true;
       for (int y = top; y < top + box && whole; ++y)
-        for (int x = left; x < left + box && whole; ++x) {
+        for (int x = left; x < left + box && whole; ++x)
           whole = mask[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
                        static_cast<std::size_t>(x)] != 0;
-          for (std::size_t c = 0; c < channels; ++c) {
-            const double error = standardError.at(x, y)[c];
-            sum[c] += image.at(x, y)[c];
-            variance[c] += error * error;
-          }
-        }
-      if (!whole) continue;
-      ++blocks;
-      for (std::size_t c = 0; c < channels; ++c) {
-        squares[c] += sum[c] * sum[c];
-        errors[c] += variance[c];
-      }
+      if (whole) block(left, top);
     }
-  if (blocks == 0) return {};
+}
+
+// Sum over a block of power(value); 0 for no image.
+template <class Power>
+double blockSum(const Image& image, int left, int top, int box, int channel, const Power& power) {
+  double sum = 0;
+  if (image.empty()) return sum;
+  for (int y = top; y < top + box; ++y)
+    for (int x = left; x < left + box; ++x) sum += power(static_cast<double>(image.at(x, y)[channel]));
+  return sum;
+}
+
+double itself(double x) { return x; }
+double squared(double x) { return x * x; }
+
+}  // namespace
+
+std::vector<double> relativeNoise(const Image& image, const Image& standardError,
+                                  const std::vector<std::uint8_t>& mask, int box) {
   std::vector<double> noise;
-  for (std::size_t c = 0; c < channels; ++c) noise.push_back(std::sqrt(ratio(errors[c], squares[c])));
+  for (int c = 0; c < image.channels; ++c) {
+    double squares = 0, variance = 0;
+    std::size_t blocks = 0;
+    forWholeBlocks(image, mask, box, [&](int left, int top) {
+      ++blocks;
+      squares += squared(blockSum(image, left, top, box, c, itself));
+      variance += blockSum(standardError, left, top, box, c, squared);
+    });
+    if (blocks == 0) return {};
+    noise.push_back(std::sqrt(ratio(variance, squares)));
+  }
   return noise;
+}
+
+std::vector<double> chiSquared(const Image& a, const Image& errorA, const Image& b, const Image& errorB,
+                               const std::vector<std::uint8_t>& mask, int box) {
+  std::vector<double> result;
+  for (int c = 0; c < std::min(a.channels, b.channels); ++c) {
+    double squares = 0, variance = 0;
+    std::size_t blocks = 0;
+    forWholeBlocks(a, mask, box, [&](int left, int top) {
+      ++blocks;
+      squares += squared(blockSum(a, left, top, box, c, itself) - blockSum(b, left, top, box, c, itself));
+      variance += blockSum(errorA, left, top, box, c, squared) + blockSum(errorB, left, top, box, c, squared);
+    });
+    if (blocks == 0) return {};
+    result.push_back(ratio(squares, variance));
+  }
+  return result;
 }
 
 }  // namespace pellucid::harness

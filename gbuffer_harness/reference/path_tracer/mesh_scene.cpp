@@ -105,7 +105,8 @@ class MeshScene : public TraceScene {
 public:
   MeshScene(const Model& model, const Bounds& bounds)
       : TraceScene(toGlm(bounds.center), model.metersPerUnit * 1000),
-        offset_(kOffset * bounds.radius * millimetersPerUnit()),
+        radius_(bounds.radius * millimetersPerUnit()),
+        offset_(kOffset * radius_),
         device_(rtcNewDevice("threads=1")) {
     if (!device_) throw InputError(model.name, "", "Embree could not be started");
     std::map<std::uint32_t, int> bodies;
@@ -162,6 +163,7 @@ public:
     }
   }
 
+  std::optional<Sphere> bounds() const override { return Sphere{glm::dvec3(0), radius_}; }
   double offset() const override { return offset_; }
 
 private:
@@ -190,7 +192,7 @@ private:
     }
   }
 
-  double offset_;
+  double radius_, offset_;
   EmbreeDevice device_;
   std::vector<TriangleScene> bodies_;
   TriangleScene all_;

@@ -42,6 +42,10 @@ public:
     }
   }
 
+  std::optional<Sphere> bounds() const override {
+    if (model_.endless) return std::nullopt;
+    return Sphere{model_.center, model_.radius};
+  }
   double offset() const override { return offset_; }
 
 private:

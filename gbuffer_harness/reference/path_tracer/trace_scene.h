@@ -31,6 +31,13 @@ public:
   // Where a ray that starts inside a body leaves it, if that is nearer than `limit`.
   virtual std::optional<SurfacePoint> exit(int body, const Ray& ray, double limit) const = 0;
 
+  // A sphere around all of it; nothing for scenes without end.
+  struct Sphere {
+    glm::dvec3 center;
+    double radius;
+  };
+  virtual std::optional<Sphere> bounds() const = 0;
+
   // How far rays start off a surface: what rounding may shift a point by.
   virtual double offset() const = 0;
 

@@ -16,7 +16,10 @@ TruthTracer::TruthTracer(const Capture& capture, const VisibleSurface& surface, 
       media_(media),
       emitters_(emitters),
       material_(capture.material),
-      scale_(capture.material.size()) {
+      scale_(albedoOverRho(capture, media)) {}
+
+std::vector<glm::dvec3> albedoOverRho(const Capture& capture, const std::vector<TraceMedium>& media) {
+  std::vector<glm::dvec3> scale(capture.material.size());
   std::vector<glm::dvec3> rho;
   for (std::size_t i = 0; i < media.size(); ++i) {
     rho.push_back(halfSpaceReflectance(media[i]));
@@ -24,13 +27,14 @@ TruthTracer::TruthTracer(const Capture& capture, const VisibleSurface& surface, 
       throw InputError(capture.name, "materials[" + std::to_string(i) + "]",
                        "scatters nothing back in one of the channels");
   }
-  for (std::size_t i = 0; i < scale_.size(); ++i) {
-    if (material_[i] == 0) continue;
+  for (std::size_t i = 0; i < scale.size(); ++i) {
+    if (capture.material[i] == 0) continue;
     glm::dvec3 albedo(1);
     if (!capture.albedo.empty())
       for (int c = 0; c < 3; ++c) albedo[c] = capture.albedo.data[3 * i + static_cast<std::size_t>(c)];
-    scale_[i] = albedo / rho[material_[i] - 1u];
+    scale[i] = albedo / rho[capture.material[i] - 1u];
   }
+  return scale;
 }
 
 glm::dvec3 TruthTracer::sample(std::size_t pixel, std::uint64_t number, std::uint64_t seed) const {

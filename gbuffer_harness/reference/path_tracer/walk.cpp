@@ -60,18 +60,19 @@ struct Chooser {
 
 }  // namespace
 
+WalkEntry enter(const TraceMedium& medium, const SurfacePoint& at, const glm::dvec3& direction,
+                PathRandom& random) {
+  if (medium.ior == 1) return {-random.lambertian(at.face), 1};
+  const double cosine = std::clamp(-glm::dot(direction, at.face), 0.0, 1.0);
+  return {refracted(direction, at.face, medium.ior), 1 - fresnel(cosine, medium.ior)};
+}
+
 std::optional<WalkExit> walk(const TraceScene& scene, const TraceMedium& medium, const SurfacePoint& start,
                              PathRandom& random) {
-  const glm::dvec3 from = random.lambertian(start.face);
-  glm::dvec3 direction = -from;
-  double entered = 1;
-  if (medium.ior != 1) {
-    entered = 1 - fresnel(glm::dot(from, start.face), medium.ior);
-    direction = refracted(-from, start.face, medium.ior);
-  }
-  std::optional<WalkExit> exit =
-      walkFrom(scene, medium, start.body, start.position - scene.offset() * start.face, direction, random);
-  if (exit) exit->weight *= entered;
+  const WalkEntry entry = enter(medium, start, -random.lambertian(start.face), random);
+  std::optional<WalkExit> exit = walkFrom(
+      scene, medium, start.body, start.position - scene.offset() * start.face, entry.direction, random);
+  if (exit) exit->weight *= entry.weight;
   return exit;
 }
 
