@@ -26,12 +26,14 @@ using Json = nlohmann::json;
 // ---- Runs
 
 Json row(const char* name, double us, double error) {
-  return {{"section", "frames"}, {"frame", "far"},        {"size", "64x36"},     {"kind", "whole"},       {"name", name},
-          {"us", us},            {"p10_us", 0.99 * us}, {"p90_us", 1.01 * us}, {"relative_rmse", error}};
+  return {{"section", "frames"}, {"frame", "far"},      {"size", "64x36"},
+          {"kind", "whole"},     {"name", name},        {"us", us},
+          {"p10_us", 0.99 * us}, {"p90_us", 1.01 * us}, {"relative_rmse", error}};
 }
 
 Json run() {
-  return {{"device", "a"}, {"results", {row("Pellucid, quality 1", 100, 0.01), row("HDRP, 20 samples", 50, 0.02)}}};
+  return {{"device", "a"},
+          {"results", {row("Pellucid, quality 1", 100, 0.01), row("HDRP, 20 samples", 50, 0.02)}}};
 }
 
 int grew(const Json& before, const Json& now, std::string* said = nullptr) {
@@ -58,7 +60,8 @@ TEST(CompareRuns, SlowerBeyondTheSpreadIsNamed) {
   now["results"][1] = row("HDRP, 20 samples", 55, 0.02);
   std::string said;
   EXPECT_EQ(grew(run(), now, &said), 1);
-  EXPECT_NE(said.find("slower: frames: far: 64x36: whole: HDRP, 20 samples: 55.0 us"), std::string::npos) << said;
+  EXPECT_NE(said.find("slower: frames: far: 64x36: whole: HDRP, 20 samples: 55.0 us"), std::string::npos)
+      << said;
 }
 
 TEST(CompareRuns, SlowerWithinTheSpreadDidNotGrow) {
@@ -101,7 +104,9 @@ Capture head(int width, int height) {
 
 class FrameErrors : public testing::Test {
 protected:
-  FrameErrors() : capture(head(48, 27)), materials(compileMaterials(capture)) { std::filesystem::remove_all(folder); }
+  FrameErrors() : capture(head(48, 27)), materials(compileMaterials(capture)) {
+    std::filesystem::remove_all(folder);
+  }
   ~FrameErrors() override { std::filesystem::remove_all(folder); }
 
   std::filesystem::path onlyFile() const { return std::filesystem::directory_iterator(folder)->path(); }
@@ -122,7 +127,8 @@ TEST_F(FrameErrors, SampledPixelsAreTheReferences) {
   for (size_t i = 0; i < truth.pixels.size(); ++i) {
     EXPECT_NE(capture.material[truth.pixels[i]], 0);
     for (size_t c = 0; c < 3; ++c)
-      EXPECT_NEAR(truth.values[i][c], static_cast<double>(whole.data[3 * truth.pixels[i] + c]), 2e-4);  // energy left out
+      EXPECT_NEAR(truth.values[i][c], static_cast<double>(whole.data[3 * truth.pixels[i] + c]),
+                  2e-4);  // energy left out
   }
   // The image itself is that far from them, and one that is 3 % brighter 3 % more.
   EXPECT_LT(rootMeanSquare(diffusionErrors(whole, truth)), 2e-4);
@@ -190,10 +196,12 @@ protected:
 TEST_F(Command, MeasuresACaptureAndNothingAndComparesRuns) {
   Capture capture = head(64, 36);
   capture.truth = Truth{capture.irradiance};
-  const std::string exr = folder / "face.exr", json = folder / "run.json", doctored = folder / "doctored.json";
+  const std::string exr = folder / "face.exr", json = folder / "run.json",
+                    doctored = folder / "doctored.json";
   writeCapture(capture, exr);
   ASSERT_EQ(runs("--tables frames --frames " + exr +
-                 " --frame-names nothing --frame-sizes 32x32 --shadow-size 16 --repeat 1 --error-pixels 50 --cache " +
+                 " --frame-names nothing --frame-sizes 32x32 --shadow-size 16 --repeat 1 --error-pixels 50 "
+                 "--cache " +
                  (folder / "cache").string() + " --plot " + folder.string() + " --json " + json),
             0)
       << output();
@@ -247,10 +255,18 @@ TEST_F(Command, WithoutItsLibraryOnlyFilesAreRefused) {
   const std::filesystem::path alone = folder / "pellucid_bench";
   std::filesystem::copy_file(PELLUCID_BENCH, alone);
   std::filesystem::permissions(alone, std::filesystem::perms::owner_all);
-  const int status = std::system(
-      (alone.string() + " --tables frames --models . >" + out.string() + " 2>&1").c_str());
+  const int status =
+      std::system((alone.string() + " --tables frames --models . >" + out.string() + " 2>&1").c_str());
   EXPECT_EQ(WEXITSTATUS(status), 3);
   EXPECT_NE(output().find("pellucid_bench_models.so: cannot be loaded"), std::string::npos) << output();
+}
+
+TEST_F(Command, NeedsNoLibraryOfFiles) {
+  const int status = std::system(("ldd " + std::string(PELLUCID_BENCH) + " >" + out.string()).c_str());
+  if (WEXITSTATUS(status) != 0) GTEST_SKIP() << "ldd is not there or does not know the executable";
+  EXPECT_NE(output().find("libvulkan"), std::string::npos) << output();
+  for (const char* library : {"OpenEXR", "Imath", "tinygltf"})
+    EXPECT_EQ(output().find(library), std::string::npos) << output();
 }
 
 TEST_F(Command, AContextIsCreatedInAProcessThatSavesItsPipelines) {

@@ -105,7 +105,8 @@ Cost createdBy(std::vector<std::string> arguments, const std::string& device, co
   if (!device.empty()) arguments.insert(arguments.end(), {"--device", device});
   std::istringstream text(output(arguments, variables));
   Cost cost{};
-  if (!(text >> cost.wall >> cost.cpu)) throw DeviceError("a process that creates a context did not say its time");
+  if (!(text >> cost.wall >> cost.cpu))
+    throw DeviceError("a process that creates a context did not say its time");
   return cost;
 }
 

@@ -6,9 +6,10 @@
 
 namespace pellucid::bench {
 
-// In processes of their own, since drivers also keep compiled shaders in memory: without a driver cache, with one that a
-// process before has filled, and from a VkPipelineCache that a process before has saved, without a driver cache. Adds the
-// rows of the section "context creation", wall-clock time, of `repeat` processes each; the first kind is measured once.
+// In processes of their own, since drivers also keep compiled shaders in memory: without a driver cache, with
+// one that a process before has filled, and from a VkPipelineCache that a process before has saved, without a
+// driver cache. Adds the rows of the section "context creation", wall-clock time, of `repeat` processes each;
+// the first kind is measured once.
 void measureContextCreation(const std::string& device, int repeat, Report& report);
 
 // What such a process does: creates the context once and prints wall-clock and CPU microseconds.

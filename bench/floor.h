@@ -15,9 +15,9 @@ struct Floor {
   std::string shape;  // "16x16, 2 pixels a thread"
 };
 
-// Over the depths and the irradiance of a capture, as a device may read constants faster than what a frame reads. Of
-// several workgroup shapes, the fastest, which all ratios are to, first. Throws DeviceError when a pass wrote something
-// else than its inputs say: a floor that skips work would be no floor.
+// Over the depths and the irradiance of a capture, as a device may read constants faster than what a frame
+// reads. Of several workgroup shapes, the fastest, which all ratios are to, first. Throws DeviceError when a
+// pass wrote something else than its inputs say: a floor that skips work would be no floor.
 std::vector<Floor> measureFloors(harness::Device& device, const harness::Capture& capture, int repeat);
 
 }  // namespace pellucid::bench

@@ -24,7 +24,7 @@ namespace {
 constexpr unsigned kSeed = 37;
 // Of the profile's energy, a tenth of the least error that a row of the table has.
 constexpr double kDiscarded = 1e-4;
-constexpr int kBox = 4;  // pixels a side of the averages that `pellucid evaluate` compares
+constexpr int kBox = 4;      // pixels a side of the averages that `pellucid evaluate` compares
 constexpr int kVersion = 1;  // of what the hash stands for
 
 // FNV-1a over words.
@@ -175,7 +175,8 @@ ChannelErrors diffusionErrors(const Image& result, const DiffusionTruth& truth) 
     for (size_t c = 0; c < 3; ++c) {
       const double right = truth.values[i][c];
       const double off =
-          static_cast<double>(result.data[static_cast<size_t>(result.channels) * truth.pixels[i] + c]) - right;
+          static_cast<double>(result.data[static_cast<size_t>(result.channels) * truth.pixels[i] + c]) -
+          right;
       squared[c] += off * off;
       power[c] += right * right;
     }
@@ -196,8 +197,8 @@ double rootMeanSquare(const ChannelErrors& errors) {
 nlohmann::json errorFields(Image result, const Capture& capture, const Image& truth) {
   for (size_t i = 0; i < result.data.size() && !capture.albedo.empty(); ++i)
     result.data[i] *= capture.albedo.data[i];
-  const Comparison comparison = compareImages(
-      result, truth, comparisonMask(capture.material, capture.irradiance, Subset::All), kBox);
+  const Comparison comparison =
+      compareImages(result, truth, comparisonMask(capture.material, capture.irradiance, Subset::All), kBox);
   ChannelErrors errors{};
   for (size_t c = 0; c < 3; ++c) errors[c] = comparison.channels[c].relativeRmse;
   return {{"truth_relative_rmse", rootMeanSquare(errors)}, {"truth_relative_rmse_rgb", errors}};

@@ -19,9 +19,9 @@ struct DiffusionTruth {
   std::vector<std::array<double, 3>> values;
 };
 
-// At `count` pixels with a material, or all of them if there are fewer: covered pixels, by tiles, are split into `count`
-// equal runs, of each of which a fixed seed takes one. On all cores. `cache`: folder that results are kept in by a hash of
-// the inputs; empty: none.
+// At `count` pixels with a material, or all of them if there are fewer: covered pixels, by tiles, are split
+// into `count` equal runs, of each of which a fixed seed takes one. On all cores. `cache`: folder that
+// results are kept in by a hash of the inputs; empty: none.
 DiffusionTruth diffusionTruth(const harness::Capture& capture, const std::vector<PellucidMaterial>& materials,
                               int count, const std::filesystem::path& cache);
 
@@ -30,8 +30,9 @@ using ChannelErrors = std::array<double, 3>;
 ChannelErrors diffusionErrors(const harness::Image& result, const DiffusionTruth& truth);
 double rootMeanSquare(const ChannelErrors& errors);
 
-// The error fields that a row gets of its image, which albedo has not multiplied, and the capture's path-traced
-// truth: "truth_relative_rmse" and "truth_relative_rmse_rgb", over 4x4 averages. Every measure of whole images belongs here.
+// The error fields that a row gets of its image, which albedo has not multiplied, and the capture's
+// path-traced truth: "truth_relative_rmse" and "truth_relative_rmse_rgb", over 4x4 averages. Every measure of
+// whole images belongs here.
 nlohmann::json errorFields(harness::Image result, const harness::Capture& capture,
                            const harness::Image& truth);
 

@@ -11,8 +11,7 @@ namespace {
 // Never unloaded: what it returned may live on.
 template <class Function>
 Function* find(const char* library, const char* name) {
-  const std::filesystem::path path =
-      std::filesystem::read_symlink("/proc/self/exe").parent_path() / library;
+  const std::filesystem::path path = std::filesystem::read_symlink("/proc/self/exe").parent_path() / library;
   void* handle = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (!handle)
     throw harness::InputError(path.string(), "",
@@ -20,7 +19,8 @@ Function* find(const char* library, const char* name) {
                                   dlerror() + "; the build makes it where PELLUCID_BUILD_HARNESS is on");
   void* symbol = dlsym(handle, name);
   if (!symbol)
-    throw harness::InputError(path.string(), name, "is not in it: it is of another build than pellucid_bench");
+    throw harness::InputError(path.string(), name,
+                              "is not in it: it is of another build than pellucid_bench");
   return reinterpret_cast<Function*>(symbol);
 }
 

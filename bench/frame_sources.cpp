@@ -56,8 +56,7 @@ private:
     const Model& model = modelOf(name);
     const auto found = std::find_if(model.cameras.begin(), model.cameras.end(),
                                     [&](const ModelCamera& c) { return c.name == name; });
-    if (found == model.cameras.end())
-      throw InputError(model.name, "cameras", "there is no \"" + name + "\"");
+    if (found == model.cameras.end()) throw InputError(model.name, "cameras", "there is no \"" + name + "\"");
     return *found;
   }
 
@@ -86,8 +85,8 @@ public:
   explicit StandIns(const FrameOptions& options) : options_(options) {}
 
   Capture make(const std::string& name, int width, int height) {
-    const double view = static_cast<double>(
-        std::find(std::begin(kFrameNames), std::end(kFrameNames), name) - std::begin(kFrameNames));
+    const double view = static_cast<double>(std::find(std::begin(kFrameNames), std::end(kFrameNames), name) -
+                                            std::begin(kFrameNames));
     SceneParameters p;
     p.name = "head";
     p.width = width;
@@ -95,7 +94,8 @@ public:
     p.options = {{"view", view}};
     p.depthEncoding = p.shadowEncoding = PELLUCID_DEPTH_DEVICE;
     p.reversedZ = true;
-    // Every view of one head has the same shadow maps, at any size, and casting them takes longer than the image.
+    // Every view of one head has the same shadow maps, at any size, and casting them takes longer than the
+    // image.
     std::vector<Light>& lights = lights_[name == "crowd"];
     p.shadowSize = lights.empty() ? options_.shadowSize : 0;
     Capture capture = makeScene(p);

@@ -18,8 +18,8 @@ struct FrameSource {
   std::function<harness::Capture()> make;  // seconds
 };
 
-// Captures of files come first, then every name at each size; only the former where there are some and neither models nor
-// names are given. The device draws models. Throws InputError for what cannot be read.
+// Captures of files come first, then every name at each size; only the former where there are some and
+// neither models nor names are given. The device draws models. Throws InputError for what cannot be read.
 std::vector<FrameSource> frameSources(harness::Device& device, const FrameOptions& options);
 
 }  // namespace pellucid::bench

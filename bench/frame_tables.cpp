@@ -43,7 +43,8 @@ public:
     return row == rows_.end() ? nullptr : row->second;
   }
   bool hasTimes() const {
-    return std::any_of(rows_.begin(), rows_.end(), [](const auto& row) { return row.second->contains("us"); });
+    return std::any_of(rows_.begin(), rows_.end(),
+                       [](const auto& row) { return row.second->contains("us"); });
   }
   // "portrait (.139)", by the first size.
   std::string covered(const std::string& frame) const {

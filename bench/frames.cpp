@@ -56,7 +56,9 @@ public:
     formats.normalFormat = VK_FORMAT_R8G8B8A8_SNORM;  // four bytes, as those of engines' G-buffers
     inputs_ = std::make_shared<InputImages>(device, withoutAlbedo_, formats);
     why_ = whyNotRendered(capture_, materials_);
-    if (why_.empty()) others_ = frame(transmittanceSettings());
+    if (!why_.empty()) return;
+    others_ = frame(transmittanceSettings());
+    diffusionsOfOthers_ = baselines(others_);
   }
 
   std::string size() const { return std::to_string(capture_.width) + "x" + std::to_string(capture_.height); }
@@ -94,8 +96,9 @@ private:
   }
 
   void head(double floor) {
-    const size_t covered = capture_.material.size() - static_cast<size_t>(std::count(
-                                                          capture_.material.begin(), capture_.material.end(), 0));
+    const size_t covered =
+        capture_.material.size() -
+        static_cast<size_t>(std::count(capture_.material.begin(), capture_.material.end(), 0));
     const double share = static_cast<double>(covered) / static_cast<double>(capture_.material.size());
     char text[160];
     std::snprintf(text, sizeof text, "%s, %s, %.3f covered, floor %.1f us", capture_.name.c_str(),
@@ -122,21 +125,19 @@ private:
     };
     for (uint32_t q = 0; q < kModuleDiffusions; ++q)
       add(moduleVariant(frame(settings(PELLUCID_FEATURE_DIFFUSION, q, 0)), moduleName(0, q)));
-    if (!why_.empty()) return;
-    for (const Variant& v : baselines(others_)) add(v);
+    for (const Variant& v : diffusionsOfOthers_) add(v);
   }
 
   void row(const std::string& kind, const Variant& v, const std::string& diffusion) {
     add(kind, v, measure(device_, repeat_, v.record), diffusion);
   }
 
-  // `diffusion`: the variant whose error the row has; empty: none. Whole images are compared with the capture's truth.
+  // `diffusion`: the variant whose error the row has; empty: none. Whole images are compared with the
+  // capture's truth.
   void add(const std::string& kind, const Variant& v, const Time& time, const std::string& diffusion,
            nlohmann::json more = nlohmann::json::object()) {
-    more.update({{"frame", capture_.name},
-                 {"size", size()},
-                 {"kind", kind},
-                 {"transient_bytes", v.transientBytes}});
+    more.update(
+        {{"frame", capture_.name}, {"size", size()}, {"kind", kind}, {"transient_bytes", v.transientBytes}});
     std::optional<double> error;
     if (const auto found = errors_.find(diffusion); found != errors_.end()) {
       error = rootMeanSquare(found->second);
@@ -171,22 +172,25 @@ private:
     const PellucidPlan& plan = f.run().plan();
     if (plan.dispatchCount == 0) return;
     const std::vector<Time> times =
-        measureParts(device_, repeat_, plan.dispatchCount, [&](VkCommandBuffer commandBuffer, uint32_t i) {
-          f.run().record(commandBuffer, i);
-        });
+        measureParts(device_, repeat_, plan.dispatchCount,
+                     [&](VkCommandBuffer commandBuffer, uint32_t i) { f.run().record(commandBuffer, i); });
     for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
       const PellucidDispatch& d = plan.dispatches[i];
       const double bytes =
           static_cast<double>(d.modeledBytes) / static_cast<double>(capture_.material.size());
-      report_.add({"  " + std::to_string(i) + " " + d.name, 1, d.barrierBefore, bytes, {},
+      report_.add({"  " + std::to_string(i) + " " + d.name,
+                   1,
+                   d.barrierBefore,
+                   bytes,
+                   {},
                    {{"frame", capture_.name}, {"size", size()}, {"kind", "dispatch"}, {"of", whole}}},
                   times[i]);
     }
   }
 
   void wholeFrame(uint32_t gather, uint32_t quality) {
-    const auto f = frame(
-        settings(PELLUCID_FEATURE_TRANSLUCENCY | PELLUCID_FEATURE_DIFFUSION, quality, gather));
+    const auto f =
+        frame(settings(PELLUCID_FEATURE_TRANSLUCENCY | PELLUCID_FEATURE_DIFFUSION, quality, gather));
     const Variant v = moduleVariant(f, moduleName(gather, quality));
     std::vector<double> recordings;
     const Time time = measure(device_, repeat_, [&](VkCommandBuffer commandBuffer) {
@@ -195,11 +199,12 @@ private:
     const nlohmann::json host = hostTimes(*f, std::move(recordings));
     add("whole", v, time, moduleName(0, quality), host);
     char text[160];
-    std::snprintf(text, sizeof text,
-                  "    transients %.1f bytes/pixel; CPU: plan %.1f us, constants %.1f us, record with them %.1f us",
-                  static_cast<double>(v.transientBytes) / static_cast<double>(capture_.material.size()),
-                  host["cpu_plan_us"].get<double>(), host["cpu_constants_us"].get<double>(),
-                  host["cpu_record_us"].get<double>());
+    std::snprintf(
+        text, sizeof text,
+        "    transients %.1f bytes/pixel; CPU: plan %.1f us, constants %.1f us, record with them %.1f us",
+        static_cast<double>(v.transientBytes) / static_cast<double>(capture_.material.size()),
+        host["cpu_plan_us"].get<double>(), host["cpu_constants_us"].get<double>(),
+        host["cpu_record_us"].get<double>());
     report_.note(text);
     dispatches(*f, v.name);
   }
@@ -229,8 +234,7 @@ private:
       const std::string name = moduleName(0, q);
       row("diffusion", moduleVariant(frame(settings(PELLUCID_FEATURE_DIFFUSION, q, 0)), name), name);
     }
-    if (!why_.empty()) return;
-    for (const Variant& v : baselines(others_)) row("diffusion", v, v.name);
+    for (const Variant& v : diffusionsOfOthers_) row("diffusion", v, v.name);
   }
 
   void wholeFramesOfOthers() {
@@ -248,6 +252,7 @@ private:
   std::shared_ptr<const InputImages> inputs_;
   std::string why_;
   std::shared_ptr<const BenchFrame> others_;
+  std::vector<Variant> diffusionsOfOthers_;
   std::map<std::string, ChannelErrors> errors_;  // of diffusions, by name
   std::vector<TimedError> points_;
 };

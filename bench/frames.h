@@ -14,7 +14,8 @@
 
 namespace pellucid::bench {
 
-// Adds the rows of every source to `report`, section "frames". Returns a plot a frame, under the frames' size.
+// Adds the rows of every source to `report`, section "frames". Returns a plot a frame, under the frames'
+// size.
 std::map<std::string, std::vector<harness::Plot>> measureFrames(harness::Device& device,
                                                                 const harness::Context& context,
                                                                 const std::vector<FrameSource>& sources,

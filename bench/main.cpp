@@ -38,7 +38,8 @@ std::string textOf(Json json) {
   std::string text = json.dump(1);
   text.resize(text.rfind('\n'));
   text += ",\n \"results\": [";
-  for (size_t i = 0; i < rows.size(); ++i) text += std::string(i == 0 ? "\n  " : ",\n  ").append(rows[i].dump());
+  for (size_t i = 0; i < rows.size(); ++i)
+    text += std::string(i == 0 ? "\n  " : ",\n  ").append(rows[i].dump());
   return text + "\n ]\n}\n";
 }
 
@@ -70,7 +71,8 @@ public:
         report_(table_) {}
 
   Json measure() {
-    std::fprintf(table_, "%s, commit %s, median of %d\n", device_.description().c_str(), PELLUCID_COMMIT, repeat_);
+    std::fprintf(table_, "%s, commit %s, median of %d\n", device_.description().c_str(), PELLUCID_COMMIT,
+                 repeat_);
     json_ = {{"device", device_.description()}, {"commit", PELLUCID_COMMIT}, {"repeat", repeat_}};
     // Bad files are named before the context takes its time.
     std::vector<FrameSource> sources;

@@ -20,8 +20,9 @@ int passesFor(double microseconds, double most) {
   return static_cast<int>(std::clamp(std::ceil(kSpan / std::max(microseconds, 1.0)), 1.0, most));
 }
 
-// Devices lower their clocks while images are being made, and take up to a second of work to raise them. `once`: what a run
-// takes, microseconds; one that takes so long is of a software device, or has warmed it up itself.
+// Devices lower their clocks while images are being made, and take up to a second of work to raise them.
+// `once`: what a run takes, microseconds; one that takes so long is of a software device, or has warmed it up
+// itself.
 template <class Run>
 void warmUp(double once, const Run& run) {
   if (once > 10 * kSpan) return;
@@ -84,7 +85,8 @@ std::vector<Time> measureParts(harness::Device& device, int repeat, uint32_t par
     });
     const std::vector<double> intervals = timestamps.intervals();
     std::vector<double> sums(parts, 0);
-    for (uint32_t i = 0; i < static_cast<uint32_t>(times) * parts; ++i) sums[i % parts] += intervals[i] / times;
+    for (uint32_t i = 0; i < static_cast<uint32_t>(times) * parts; ++i)
+      sums[i % parts] += intervals[i] / times;
     return sums;
   };
   const std::vector<double> first = run(1);

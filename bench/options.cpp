@@ -34,15 +34,17 @@ int readOptions(int argc, char** argv, Options& options) {
   FrameOptions& f = options.frames;
   app.add_option("--frames", f.captures, "captures that the section frames measures, with commas")
       ->delimiter(',');
-  app.add_option("--models", f.models,
-                 "folder of head_views.glb and crowd.glb, which the section frames draws in place of stand-ins");
+  app.add_option(
+      "--models", f.models,
+      "folder of head_views.glb and crowd.glb, which the section frames draws in place of stand-ins");
   app.add_option_function<std::vector<std::string>>(
          "--frame-sizes",
          [&f](const std::vector<std::string>& texts) {
            f.sizes.clear();
            for (const std::string& text : texts) f.sizes.push_back(parseSize(text));
          },
-         "WIDTHxHEIGHT of frames that are made, with commas; default 1280x720, 1920x1080, 2560x1440 and 3840x2160, "
+         "WIDTHxHEIGHT of frames that are made, with commas; default 1280x720, 1920x1080, 2560x1440 and "
+         "3840x2160, "
          "on a software device 256x144")
       ->delimiter(',');
   app.add_option("--frame-names", f.names, "which of the frames that are made, with commas; default all")
@@ -65,7 +67,8 @@ int readOptions(int argc, char** argv, Options& options) {
   app.add_option("--radius", p.radius, "pixels of a plane within which 99.9 % of the diffused energy lies")
       ->check(CLI::Range(1.0, 1000.0))
       ->capture_default_str();
-  app.add_option("--sweep-heights", options.sweep.heights, "of images of 16:9 in the table sweep, with commas")
+  app.add_option("--sweep-heights", options.sweep.heights,
+                 "of images of 16:9 in the table sweep, with commas")
       ->delimiter(',')
       ->check(CLI::Range(9, 8640))
       ->capture_default_str();
@@ -80,8 +83,7 @@ int readOptions(int argc, char** argv, Options& options) {
   app.add_option("--plot", options.plot, "folder for plots of time against error");
   app.add_option("--compare", options.compare,
                  "JSON of another run: says what is slower or worse now, and exits with 1 if something is");
-  app.add_option("--results", options.results, "JSON to compare in place of a run")
-      ->needs("--compare");
+  app.add_option("--results", options.results, "JSON to compare in place of a run")->needs("--compare");
 
   app.add_flag("--create-context", options.createContext)->group("");
   app.add_option("--load-cache", options.loadCache)->group("");

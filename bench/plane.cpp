@@ -1,4 +1,5 @@
-// Sections on planes, where every pixel may be covered: the module's plans, its steps, and diffusions of others.
+// Sections on planes, where every pixel may be covered: the module's plans, its steps, and diffusions of
+// others.
 #include "plane.h"
 
 #include <cmath>

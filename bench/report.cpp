@@ -30,14 +30,11 @@ void Report::add(const Row& row, const Time& time) {
   else
     std::fprintf(table_, "%9s\n", "-");
   std::fflush(table_);  // a run that is stopped has shown what it measured
-  nlohmann::json json = {{"section", section_},
-                         {"name", row.name},
-                         {"us", rounded(time.median)},
-                         {"p10_us", rounded(time.low)},
-                         {"p90_us", rounded(time.high)},
-                         {"dispatches", row.dispatches},
-                         {"barriers", row.barriers},
-                         {"modeled_bytes_per_pixel", rounded(row.bytesPerPixel)}};
+  nlohmann::json json = {
+      {"section", section_},          {"name", row.name},
+      {"us", rounded(time.median)},   {"p10_us", rounded(time.low)},
+      {"p90_us", rounded(time.high)}, {"dispatches", row.dispatches},
+      {"barriers", row.barriers},     {"modeled_bytes_per_pixel", rounded(row.bytesPerPixel)}};
   if (floor_ > 0) json["floor_ratio"] = rounded(time.median / floor_);
   if (row.error) json["relative_rmse"] = *row.error;
   if (!row.more.is_null()) json.update(row.more);

@@ -1,4 +1,5 @@
-// Prints the documentation's tables of measured times from the results of a run, or checks or rewrites them in a file:
+// Prints the documentation's tables of measured times from the results of a run, or checks or rewrites them
+// in a file:
 //   pellucid_bench_tables RESULTS.json[,RESULTS.json...] TABLE [--check | --update FILE]
 // Of several files the first that has what the table shows.
 #include <algorithm>
@@ -121,14 +122,10 @@ struct Table {
   std::string (*make)(const Json& results);
 };
 
-constexpr Table kTables[] = {{"measured", measured},
-                             {"sweep", sweep},
-                             {"frames", framesTable},
-                             {"frame_sizes", frameSizesTable},
-                             {"frame_parts", framePartsTable},
-                             {"frame_dispatches", frameDispatchesTable},
-                             {"frame_host", frameHostTable},
-                             {"context", contextTable}};
+constexpr Table kTables[] = {{"measured", measured},           {"sweep", sweep},
+                             {"frames", framesTable},          {"frame_sizes", frameSizesTable},
+                             {"frame_parts", framePartsTable}, {"frame_dispatches", frameDispatchesTable},
+                             {"frame_host", frameHostTable},   {"context", contextTable}};
 
 constexpr int kNothingMeasured = 77;  // CTest's word for a test that was skipped
 
@@ -143,8 +140,8 @@ std::vector<std::string> split(const std::string& list) {
 
 int main(int argc, char** argv) {
   const std::string name = argc > 2 ? argv[2] : "";
-  const auto table = std::find_if(std::begin(kTables), std::end(kTables),
-                                  [&](const Table& t) { return t.name == name; });
+  const auto table =
+      std::find_if(std::begin(kTables), std::end(kTables), [&](const Table& t) { return t.name == name; });
   if (table == std::end(kTables)) {
     std::string names;
     for (const Table& t : kTables) {

@@ -55,8 +55,9 @@ private:
   static std::vector<VkDescriptorType> types() {
     constexpr VkDescriptorType kBuffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                                kRead = VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
-    std::vector<VkDescriptorType> all = {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, kBuffer, kBuffer, kBuffer, kRead,
-                                         kRead, kRead, kRead, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE};
+    std::vector<VkDescriptorType> all = {
+        VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, kBuffer, kBuffer, kBuffer, kRead, kRead, kRead, kRead,
+        VK_DESCRIPTOR_TYPE_STORAGE_IMAGE};
     all.insert(all.end(), kMaps, kRead);
     return all;
   }
@@ -135,7 +136,8 @@ std::vector<WholeFrame> wholeFrames(const std::shared_ptr<const BenchFrame>& fra
   for (const int samples : kBurleySamples)
     all.push_back(inTurn("HDRP, " + std::to_string(samples) + " samples", slab.variant,
                          burleyDisk(frame, samples, slab.image)));
-  all.push_back(inTurn("Jimenez 2009, six Gaussians", gaussians.variant, gaussianSum(frame, gaussians.image)));
+  all.push_back(
+      inTurn("Jimenez 2009, six Gaussians", gaussians.variant, gaussianSum(frame, gaussians.image)));
   return all;
 }
 

@@ -1,4 +1,5 @@
-// Whole frames as others render them: their light through thin parts, then their diffusion. Own implementations.
+// Whole frames as others render them: their light through thin parts, then their diffusion. Own
+// implementations.
 #pragma once
 
 #include <memory>
@@ -17,7 +18,8 @@ struct TransmittancePass {
   Source image;  // what the pass writes; irradiance where there is no material
 };
 
-// What both passes bind: the frame of `settings` has its lights, maps and normals in the plan's first dispatch.
+// What both passes bind: the frame of `settings` has its lights, maps and normals in the plan's first
+// dispatch.
 harness::ReplaySettings transmittanceSettings();
 
 // Jimenez et al. 2010: T(d) of six Gaussians.
@@ -26,7 +28,8 @@ TransmittancePass gaussianTransmittance(const std::shared_ptr<const BenchFrame>&
 // HDRP: T(d) of Burley's profile (Christensen & Burley 2015).
 TransmittancePass burleyTransmittance(const std::shared_ptr<const BenchFrame>& frame);
 
-// Why these passes cannot do a capture: they have one material, at most four shadow maps, and normals. Empty: they can.
+// Why these passes cannot do a capture: they have one material, at most four shadow maps, and normals. Empty:
+// they can.
 std::string whyNotRendered(const harness::Capture& capture, const std::vector<PellucidMaterial>& materials);
 
 // A whole frame, and which of baselines(), by name, its diffusion is.
@@ -35,12 +38,12 @@ struct WholeFrame {
   std::string diffusion;
 };
 
-// Jimenez et al. 2010 and 2015, the six Gaussians of 2009 in place of the latter, and HDRP's, in the sizes that are in
-// use. `frame`: of transmittanceSettings().
+// Jimenez et al. 2010 and 2015, the six Gaussians of 2009 in place of the latter, and HDRP's, in the sizes
+// that are in use. `frame`: of transmittanceSettings().
 std::vector<WholeFrame> wholeFrames(const std::shared_ptr<const BenchFrame>& frame);
 
-// The passes against float64 evaluations of their equations on the CPU, on a slab, whose answer is closed, and on an
-// ear under three lights. Throws DeviceError naming the pass that differs.
+// The passes against float64 evaluations of their equations on the CPU, on a slab, whose answer is closed,
+// and on an ear under three lights. Throws DeviceError naming the pass that differs.
 void requireRightTransmittance(harness::Device& device, const harness::Context& context,
                                const PellucidMaterial& material);
 

@@ -94,7 +94,8 @@ GpuImage::~GpuImage() {
 
 VkDeviceSize GpuImage::bytes() const {
   const Texel texel = texelOf(format_);
-  return static_cast<VkDeviceSize>(width_) * static_cast<VkDeviceSize>(height_ * texel.channels * texel.bytes);
+  return static_cast<VkDeviceSize>(width_) *
+         static_cast<VkDeviceSize>(height_ * texel.channels * texel.bytes);
 }
 
 void GpuImage::copyFrom(VkCommandBuffer commandBuffer, VkBuffer buffer) const {

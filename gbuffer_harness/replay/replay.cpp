@@ -152,7 +152,8 @@ FrameRun::FrameRun(Device& device, const Context& context, const Capture& captur
                    std::shared_ptr<const InputImages> inputs)
     : context_(context), name_(capture.name), plan_(std::make_unique<PellucidPlan>()) {
   makeFrame(capture, materials, settings, data_);
-  if (!data_.frame.separateOutput) throw InputError(name_, "aliasOutput", "the inputs are other frames', too");
+  if (!data_.frame.separateOutput)
+    throw InputError(name_, "aliasOutput", "the inputs are other frames', too");
   images_ = std::make_unique<Images>(device, capture, settings, data_, std::move(inputs), nullptr);
   plan(device, nullptr);
 }

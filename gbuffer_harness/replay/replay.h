@@ -55,8 +55,8 @@ public:
   FrameRun(Device& device, const Context& context, const Capture& capture,
            const std::vector<PellucidMaterial>& materials, const ReplaySettings& settings,
            const FrameRun* previous = nullptr);
-  // The same with inputs that other frames of this capture read, too: not where settings.aliasOutput makes the
-  // irradiance the output. Pixels that the pass does not write hold 0.
+  // The same with inputs that other frames of this capture read, too: not where settings.aliasOutput makes
+  // the irradiance the output. Pixels that the pass does not write hold 0.
   FrameRun(Device& device, const Context& context, const Capture& capture,
            const std::vector<PellucidMaterial>& materials, const ReplaySettings& settings,
            std::shared_ptr<const InputImages> inputs);

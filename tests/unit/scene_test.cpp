@@ -594,6 +594,34 @@ TEST(Scene, NearFarLeavesTheFrustumThroughBothPlanes) {
   EXPECT_EQ(capture.material.back(), 0);
 }
 
+// What the frames of a head scan cover, at 16:9: the bench's stand-ins are as full and as empty.
+TEST(Scene, HeadsCoverAsMuchAsThoseOfAScan) {
+  const double covered[] = {0.139, 0.947, 0.056, 0.003};
+  for (int view = 0; view < 4; ++view) {
+    SceneParameters parameters = sized("head", 90);
+    parameters.width = 160;
+    parameters.shadowSize = 0;
+    parameters.options = {{"view", view}};
+    const Capture capture = makeScene(parameters);
+    const auto none = std::count(capture.material.begin(), capture.material.end(), 0);
+    // A twentieth, and half a row of pixels along the silhouette of one far away.
+    EXPECT_NEAR(1 - static_cast<double>(none) / (160 * 90), covered[view], 0.05 * covered[view] + 5e-4) << view;
+  }
+}
+
+TEST(Scene, TheHeadsEarIsASheetOfThreeMillimeters) {
+  SceneParameters parameters = sized("head", 256);
+  parameters.shadowSize = 0;
+  parameters.orthographic = true;
+  parameters.aim = Aim{{std::sqrt(0.75), 0, 0.5}, {0, 0, 1}};  // along the sheet's normal
+  const Capture capture = makeScene(parameters);
+  const glm::dvec4 middle = toGlm(capture.clipFromView) * toGlm(capture.viewFromWorld) *
+                            glm::dvec4(74 + 7, 2, -8 - 14 * std::sqrt(0.75), 1);
+  const int x = static_cast<int>((middle.x / middle.w + 1) * 128), y = static_cast<int>((middle.y / middle.w + 1) * 128);
+  ASSERT_LT(*capture.frontDepth.image.at(x, y), kNoDepth);
+  EXPECT_NEAR(*capture.backDepth.image.at(x, y) - *capture.frontDepth.image.at(x, y), 3, 0.1);
+}
+
 // ---- Errors
 
 std::string messageOf(const SceneParameters& parameters) {
