@@ -18,6 +18,7 @@ namespace {
 
 constexpr std::pair<int, int> kSizes[] = {{1280, 720}, {1920, 1080}, {2560, 1440}, {3840, 2160}};
 constexpr std::pair<int, int> kSoftwareSizes[] = {{256, 144}};
+constexpr int kShadowSize = 2048, kSoftwareShadowSize = 512;
 
 const std::string kNothing = "nothing";
 
@@ -38,7 +39,8 @@ Capture named(Capture capture, const std::string& name) {
 // A scan of a head under a key and a rim light, as the harness's rasterizer draws it.
 class DrawnFrames {
 public:
-  DrawnFrames(Device& device, const FrameOptions& options) : device_(device), options_(options) {}
+  DrawnFrames(Device& device, const std::filesystem::path& models, int shadowSize)
+      : device_(device), models_(models), shadowSize_(shadowSize) {}
 
   // Throws InputError where the files lack the frame.
   void load(const std::string& name) { camera(name); }
@@ -47,7 +49,7 @@ public:
     RasterOptions raster;
     raster.width = width;
     raster.height = height;
-    raster.shadowSize = options_.shadowSize;
+    raster.shadowSize = shadowSize_;
     return rasterize(device_, modelOf(name), camera(name), raster).capture;
   }
 
@@ -62,9 +64,9 @@ private:
 
   const Model& modelOf(const std::string& name) {
     const std::string file = name == "crowd" ? "crowd.glb" : "head_views.glb";
-    const auto [entry, isNew] = models_.try_emplace(file);
+    const auto [entry, isNew] = loaded_.try_emplace(file);
     if (isNew) {
-      entry->second = readModelFile({options_.models / file, 0.052, {{"*", "skin1"}}});
+      entry->second = readModelFile({models_ / file, 0.052, {{"*", "skin1"}}});
       Light key, rim;
       key.direction = {0.6, -0.4, -0.7};
       rim.direction = {0.5, -0.2, 0.85};
@@ -75,14 +77,15 @@ private:
   }
 
   Device& device_;
-  const FrameOptions& options_;
-  std::map<std::string, Model> models_;
+  std::filesystem::path models_;
+  int shadowSize_;
+  std::map<std::string, Model> loaded_;
 };
 
 // The procedural scene "head".
 class StandIns {
 public:
-  explicit StandIns(const FrameOptions& options) : options_(options) {}
+  explicit StandIns(int shadowSize) : shadowSize_(shadowSize) {}
 
   Capture make(const std::string& name, int width, int height) {
     const double view = static_cast<double>(std::find(std::begin(kFrameNames), std::end(kFrameNames), name) -
@@ -97,7 +100,7 @@ public:
     // Every view of one head has the same shadow maps, at any size, and casting them takes longer than the
     // image.
     std::vector<Light>& lights = lights_[name == "crowd"];
-    p.shadowSize = lights.empty() ? options_.shadowSize : 0;
+    p.shadowSize = lights.empty() ? shadowSize_ : 0;
     Capture capture = makeScene(p);
     if (lights.empty()) lights = capture.lights;
     capture.lights = lights;
@@ -105,13 +108,9 @@ public:
   }
 
 private:
-  const FrameOptions& options_;
+  int shadowSize_;
   std::vector<Light> lights_[2];  // of one head; of a crowd
 };
-
-bool isSoftware(const Device& device) {
-  return device.properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
-}
 
 }  // namespace
 
@@ -128,8 +127,10 @@ std::vector<FrameSource> frameSources(Device& device, const FrameOptions& option
   if (!options.captures.empty() && options.models.empty() && options.names.empty()) return sources;
 
   std::vector<std::pair<int, int>> sizes = options.sizes;
-  if (sizes.empty() && isSoftware(device)) sizes.assign(std::begin(kSoftwareSizes), std::end(kSoftwareSizes));
+  const bool software = device.properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+  if (sizes.empty() && software) sizes.assign(std::begin(kSoftwareSizes), std::end(kSoftwareSizes));
   if (sizes.empty()) sizes.assign(std::begin(kSizes), std::end(kSizes));
+  const int shadowSize = options.shadowSize.value_or(software ? kSoftwareShadowSize : kShadowSize);
   std::vector<std::string> names;
   for (const std::string name : kFrameNames)
     if (options.names.empty() || std::count(options.names.begin(), options.names.end(), name) > 0)
@@ -137,11 +138,11 @@ std::vector<FrameSource> frameSources(Device& device, const FrameOptions& option
 
   std::function<Capture(const std::string&, int, int)> made;
   if (options.models.empty()) {
-    made = [all = std::make_shared<StandIns>(options)](const auto& name, int w, int h) {
+    made = [all = std::make_shared<StandIns>(shadowSize)](const auto& name, int w, int h) {
       return all->make(name, w, h);
     };
   } else {
-    const auto all = std::make_shared<DrawnFrames>(device, options);
+    const auto all = std::make_shared<DrawnFrames>(device, options.models, shadowSize);
     for (const std::string& name : names) all->load(drawnAs(name));
     made = [all](const auto& name, int w, int h) { return all->make(name, w, h); };
   }

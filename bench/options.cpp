@@ -50,9 +50,9 @@ int readOptions(int argc, char** argv, Options& options) {
   app.add_option("--frame-names", f.names, "which of the frames that are made, with commas; default all")
       ->delimiter(',')
       ->check(CLI::IsMember(std::set<std::string>(std::begin(kFrameNames), std::end(kFrameNames))));
-  app.add_option("--shadow-size", f.shadowSize, "texels across a shadow map of frames that are made")
-      ->check(CLI::Range(16, 8192))
-      ->capture_default_str();
+  app.add_option("--shadow-size", f.shadowSize,
+                 "texels across a shadow map of frames that are made; default 2048, on a software device 512")
+      ->check(CLI::Range(16, 8192));
   app.add_option("--error-pixels", f.errorPixels, "of a frame, at most, where brute force says the error")
       ->check(CLI::Range(16, 1000000))
       ->capture_default_str();
