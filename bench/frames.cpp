@@ -263,7 +263,7 @@ std::map<std::string, std::vector<Plot>> measureFrames(Device& device, const Con
                                                        const std::vector<FrameSource>& sources,
                                                        const FrameOptions& options, int repeat,
                                                        Report& report) {
-  requireRightTransmittance(device, context, benchMaterial());
+  requireRightWholeFrames(device, context, benchMaterial());
   std::map<std::string, double> floors;  // by size
   std::map<std::string, std::vector<Plot>> plots;
   for (const FrameSource& source : sources) {

@@ -12,8 +12,9 @@ namespace pellucid::bench {
 
 namespace {
 
-constexpr double kSpan = 10000;   // microseconds of a command buffer
-constexpr double kSlow = 100000;  // of software devices, whose clocks and compilers are not what takes the time
+constexpr double kSpan = 10000;  // microseconds of a command buffer
+// Of software devices, whose clocks and compilers are not what takes the time.
+constexpr double kSlow = 100000;
 using Clock = std::chrono::steady_clock;
 Clock::time_point lastWork{};
 
@@ -21,8 +22,8 @@ int passesFor(double microseconds, double most) {
   return static_cast<int>(std::clamp(std::ceil(kSpan / std::max(microseconds, 1.0)), 1.0, most));
 }
 
-// Devices lower their clocks while images are being made, and take up to a second of work to raise them. `once`: what a
-// run takes, microseconds.
+// Devices lower their clocks while images are being made, and take up to a second of work to raise them.
+// `once`: what a run takes, microseconds.
 template <class Run>
 void warmUp(double once, const Run& run) {
   if (once > kSlow) return;

@@ -22,7 +22,7 @@ struct FrameOptions {
   std::filesystem::path models;            // folder of head_views.glb and crowd.glb; empty: stand-ins
   std::vector<std::pair<int, int>> sizes;  // of the made ones; empty: by the kind of device
   std::vector<std::string> names;          // of the made ones; empty: all
-  std::optional<int> shadowSize;                    // texels a side; absent: by the kind of device
+  std::optional<int> shadowSize;           // texels a side; absent: by the kind of device
   int errorPixels = 4096;                  // at most, that brute force is computed at
   std::filesystem::path cache;             // folder; empty: brute force is computed each time
 };

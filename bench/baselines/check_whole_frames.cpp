@@ -1,5 +1,9 @@
-// The transmittance passes against their equations in float64.
+// Whole frames of others against their equations.
+#include <algorithm>
 #include <cmath>
+#include <functional>
+#include <map>
+#include <optional>
 
 #include "baselines/kernels.h"
 #include "baselines/whole_frames.h"
@@ -50,43 +54,59 @@ Image evaluate(const Capture& capture, const Transmitted& transmitted) {
   return result;
 }
 
-// Jimenez et al. 2010, over six Gaussians fitted to the profile.
-Transmitted sixGaussians(const PellucidMaterial& material) {
-  return [kernel = sharedGaussians(material)](const glm::dvec3& position, const glm::dvec3& normal,
-                                              const Light& light, double mmPerUnit) {
-    const glm::dvec3 inner = position - 0.584 / mmPerUnit * normal;
-    const auto arrival = reference::arrivalAt(light, inner);
-    const std::optional<double> d = thicknessAt(light, inner, mmPerUnit);
+using Slab = std::function<glm::dvec3(double)>;  // T(d), d in mm
+
+// Of six Gaussians fitted to the profile.
+Slab gaussianSlab(const PellucidMaterial& material) {
+  return [kernel = sharedGaussians(material)](double d) {
     glm::dvec3 t(0);
-    if (!d) return t;
     double variance = 0;
     for (const glm::vec4& gaussian : kernel) {
       variance += std::pow(static_cast<double>(gaussian.w), 2);
-      t += glm::dvec3(gaussian) * std::exp(-*d * *d / (2 * variance));
+      t += glm::dvec3(gaussian) * std::exp(-d * d / (2 * variance));
     }
-    return t * arrival.irradiance * std::clamp(0.3 - glm::dot(normal, arrival.toLight), 0.0, 1.0);
+    return t;
   };
 }
 
-// HDRP: e^{-d/l} / 4 + 3/4 e^{-d/3l} under a cosine that wraps around by 15 degrees.
-Transmitted burleySlab(const PellucidMaterial& material) {
-  return [&material](const glm::dvec3& position, const glm::dvec3& normal, const Light& light,
-                     double mmPerUnit) {
-    const auto arrival = reference::arrivalAt(light, position);
-    const std::optional<double> d = thicknessAt(light, position, mmPerUnit);
+// e^{-d/l} / 4 + 3/4 e^{-d/3l}
+Slab burleySlab(const PellucidMaterial& material) {
+  return [&material](double d) {
     glm::dvec3 t(0);
-    if (!d) return t;
     for (int c = 0; c < 3; ++c) {
-      const double x = std::max(*d, 0.0) / static_cast<double>(material.burleyDistance[c]);
+      const double x = d / static_cast<double>(material.burleyDistance[c]);
       t[c] = 0.25 * std::exp(-x) + 0.75 * std::exp(-x / 3);
     }
-    const double w = std::sin(15 * 3.14159265358979 / 180);
-    const double cosine = (w - glm::dot(normal, arrival.toLight)) / ((1 + w) * (1 + w));
-    return t * arrival.irradiance * std::clamp(cosine, 0.0, 1.0);
+    return t;
   };
 }
 
-// Both stages of the slab's answer are closed: its light comes from straight behind, through its thickness.
+struct Case {
+  TransmittancePass (*pass)(const std::shared_ptr<const BenchFrame>&);
+  Slab (*slab)(const PellucidMaterial&);
+  double inwards;         // mm that the point is moved, before its thickness
+  double wrap, wrapped;   // cosine: (wrap - N.L) times `wrapped`, 0 to 1
+  double leastThickness;  // mm
+};
+
+const double kBurleyWrap = std::sin(15 * 3.14159265358979 / 180);
+const Case kCases[] = {
+    {&gaussianTransmittance, &gaussianSlab, 0.584, 0.3, 1, -INFINITY},
+    {&burleyTransmittance, &burleySlab, 0, kBurleyWrap, 1 / std::pow(1 + kBurleyWrap, 2), 0}};
+
+Transmitted equationOf(const Case& c, const Slab& transmittance) {
+  return [&c, &transmittance](const glm::dvec3& position, const glm::dvec3& normal, const Light& light,
+                              double mmPerUnit) {
+    const glm::dvec3 inner = position - c.inwards / mmPerUnit * normal;
+    const auto arrival = reference::arrivalAt(light, inner);
+    const std::optional<double> d = thicknessAt(light, inner, mmPerUnit);
+    if (!d) return glm::dvec3(0);
+    const double cosine = std::clamp((c.wrap - glm::dot(normal, arrival.toLight)) * c.wrapped, 0.0, 1.0);
+    return transmittance(std::max(*d, c.leastThickness)) * arrival.irradiance * cosine;
+  };
+}
+
+// The light of the slab comes from straight behind, through its thickness.
 void requireSlab(const Variant& v, const Image& image, const Capture& c, const glm::dvec3& expected) {
   for (int k = 0; k < 3; ++k) {
     const double got = static_cast<double>(image.data[static_cast<size_t>(k)]),
@@ -104,8 +124,6 @@ Capture ear() {
   p.shadowSize = 512;
   p.depthEncoding = PELLUCID_DEPTH_DEVICE;
   Capture capture = makeScene(p);
-  Light directional;
-  directional.shadowMaps = {};
   p.lightType = PELLUCID_LIGHT_DIRECTIONAL;
   p.shadowEncoding = PELLUCID_DEPTH_DEVICE;
   capture.lights.push_back(makeScene(p).lights.at(0));
@@ -115,41 +133,35 @@ Capture ear() {
 
 }  // namespace
 
-void requireRightTransmittance(Device& device, const Context& context, const PellucidMaterial& material) {
+void requireRightWholeFrames(Device& device, const Context& context, const PellucidMaterial& material) {
   const Site site{device, context, material, 0.1};
-  struct Case {
-    TransmittancePass (*pass)(const std::shared_ptr<const BenchFrame>&);
-    Transmitted equation;
-    double wrappedCosine, innerShift;  // of light from straight behind; mm
-  };
-  const double w = std::sin(15 * 3.14159265358979 / 180);
-  const Case cases[] = {{&gaussianTransmittance, sixGaussians(material), 1, 0.584},
-                        {&burleyTransmittance, burleySlab(material), 1 / (1 + w), 0}};
   const Capture slabCapture = slab(64, 48, 1, site.pixel), earCapture = ear();
-  for (const Case& c : cases) {
+  std::map<std::string, Capture> lit;  // by the pass that lit it from behind
+  for (const Case& c : kCases) {
+    const Slab transmittance = c.slab(material);
     const auto run = [&](const Capture& capture) {
       const TransmittancePass pass = c.pass(site.frame(capture, transmittanceSettings()));
       return std::pair(pass.variant, site.run(pass.variant));
     };
     const auto [onSlab, slabImage] = run(slabCapture);
-    const double d = slabThickness(slabCapture) - c.innerShift;
-    glm::dvec3 t(0);
-    if (c.innerShift > 0) {
-      double variance = 0;
-      for (const glm::vec4& g : sharedGaussians(material)) {
-        variance += std::pow(static_cast<double>(g.w), 2);
-        t += glm::dvec3(g) * std::exp(-d * d / (2 * variance));
-      }
-    } else {
-      for (int k = 0; k < 3; ++k) {
-        const double x = d / static_cast<double>(material.burleyDistance[k]);
-        t[k] = 0.25 * std::exp(-x) + 0.75 * std::exp(-x / 3);
-      }
-    }
-    requireSlab(onSlab, slabImage, slabCapture, c.wrappedCosine * t);
+    const double cosine = std::min(1.0, (c.wrap + 1) * c.wrapped);
+    requireSlab(onSlab, slabImage, slabCapture,
+                cosine * transmittance(slabThickness(slabCapture) - c.inwards));
     const auto [onEar, earImage] = run(earCapture);
     // A pixel in a hundred reads the next texel of a map, by the rounding of floats and normals of 8 bits.
-    requireNear(onEar, earImage, evaluate(earCapture, c.equation), earCapture, 1e-2);
+    requireNear(onEar, earImage, evaluate(earCapture, equationOf(c, transmittance)), earCapture, 1e-2);
+    lit[onEar.name] = earCapture;
+    lit[onEar.name].irradiance = earImage;
+  }
+  std::map<std::string, std::vector<Variant>> diffusions;
+  for (const auto& [name, capture] : lit)
+    diffusions[name] = baselines(site.frame(capture, transmittanceSettings()));
+  for (const WholeFrame& w : wholeFrames(site.frame(earCapture, transmittanceSettings()))) {
+    const std::vector<Variant>& all = diffusions.at(w.transmittance);
+    const auto diffusion =
+        std::find_if(all.begin(), all.end(), [&](const Variant& v) { return v.name == w.diffusion; });
+    // The same passes on the same halves.
+    requireNear(w.variant, site.run(w.variant), site.run(*diffusion), earCapture, 1e-5);
   }
 }
 

@@ -88,6 +88,7 @@ WholeFrame inTurn(const std::string& name, const Variant& first, const Variant& 
              b(commandBuffer);
            },
            second.output, first.transientBytes + second.transientBytes},
+          first.name,
           second.name};
 }
 

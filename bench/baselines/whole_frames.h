@@ -32,19 +32,20 @@ TransmittancePass burleyTransmittance(const std::shared_ptr<const BenchFrame>& f
 // they can.
 std::string whyNotRendered(const harness::Capture& capture, const std::vector<PellucidMaterial>& materials);
 
-// A whole frame, and which of baselines(), by name, its diffusion is.
+// A whole frame, the name of its transmittance pass, and which of baselines(), by name, its diffusion is.
 struct WholeFrame {
   Variant variant;
-  std::string diffusion;
+  std::string transmittance, diffusion;
 };
 
 // Jimenez et al. 2010 and 2015, the six Gaussians of 2009 in place of the latter, and HDRP's, in the sizes
 // that are in use. `frame`: of transmittanceSettings().
 std::vector<WholeFrame> wholeFrames(const std::shared_ptr<const BenchFrame>& frame);
 
-// The passes against float64 evaluations of their equations on the CPU, on a slab, whose answer is closed,
-// and on an ear under three lights. Throws DeviceError naming the pass that differs.
-void requireRightTransmittance(harness::Device& device, const harness::Context& context,
-                               const PellucidMaterial& material);
+// The transmittance passes against float64 evaluations of their equations on the CPU, on a slab, whose answer
+// is closed, and on an ear under three lights; the whole frames against their diffusion of what these passes
+// wrote. Throws DeviceError naming what differs.
+void requireRightWholeFrames(harness::Device& device, const harness::Context& context,
+                             const PellucidMaterial& material);
 
 }  // namespace pellucid::bench
