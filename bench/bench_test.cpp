@@ -165,9 +165,11 @@ TEST_F(FrameErrors, TheCacheIsReadAndOneThatIsBrokenIsNot) {
 TEST_F(FrameErrors, AlbedoMultipliesBeforeTruthIsCompared) {
   Image result = capture.irradiance, truth = capture.irradiance;
   for (size_t i = 0; i < truth.data.size(); ++i) truth.data[i] *= capture.albedo.data[i];
-  EXPECT_EQ(errorFields(result, capture, truth)["truth_relative_rmse"], 0);
+  capture.truth = Truth{truth, {}};
+  EXPECT_EQ(errorFields(result, capture)["truth_relative_rmse"], 0);
+  EXPECT_EQ(errorFields(result, capture)["flip"], 0);
   for (float& v : result.data) v *= 1.1f;
-  EXPECT_NEAR(errorFields(result, capture, truth)["truth_relative_rmse"], 0.1, 1e-5);
+  EXPECT_NEAR(errorFields(result, capture)["truth_relative_rmse"], 0.1, 1e-5);
 }
 
 // ---- The command

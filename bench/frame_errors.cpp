@@ -12,6 +12,7 @@
 #include "common/error.h"
 #include "common/parallel.h"
 #include "common/whole_file.h"
+#include "metrics/eye.h"
 #include "reference/diffusion.h"
 #include "reference/surface.h"
 
@@ -194,14 +195,21 @@ double rootMeanSquare(const ChannelErrors& errors) {
   return std::sqrt(sum / static_cast<double>(errors.size()));
 }
 
-nlohmann::json errorFields(Image result, const Capture& capture, const Image& truth) {
+nlohmann::json errorFields(Image result, const Capture& capture) {
   for (size_t i = 0; i < result.data.size() && !capture.albedo.empty(); ++i)
     result.data[i] *= capture.albedo.data[i];
-  const Comparison comparison =
-      compareImages(result, truth, comparisonMask(capture.material, capture.irradiance, Subset::All), kBox);
+  const Comparison comparison = compareImages(
+      result, capture.truth->image, comparisonMask(capture.material, capture.irradiance, Subset::All), kBox);
   ChannelErrors errors{};
   for (size_t c = 0; c < 3; ++c) errors[c] = comparison.channels[c].relativeRmse;
-  return {{"truth_relative_rmse", rootMeanSquare(errors)}, {"truth_relative_rmse_rgb", errors}};
+  const EyeMetrics eye = measureEye(result, capture);
+  return {{"truth_relative_rmse", rootMeanSquare(errors)},
+          {"truth_relative_rmse_rgb", errors},
+          {"isolated", eye.isolated},
+          {"tint", eye.tint.channel},
+          {"tint_red_green", eye.tint.redOverGreen},
+          {"flip", eye.flip.mean},
+          {"flip_p99", eye.flip.p99}};
 }
 
 }  // namespace pellucid::bench

@@ -30,10 +30,10 @@ using ChannelErrors = std::array<double, 3>;
 ChannelErrors diffusionErrors(const harness::Image& result, const DiffusionTruth& truth);
 double rootMeanSquare(const ChannelErrors& errors);
 
-// The error fields that a row gets of its image, which albedo has not multiplied, and the capture's
-// path-traced truth: "truth_relative_rmse" and "truth_relative_rmse_rgb", over 4x4 averages. Every measure of
-// whole images belongs here.
-nlohmann::json errorFields(harness::Image result, const harness::Capture& capture,
-                           const harness::Image& truth);
+// The fields that a row gets of its image, which albedo has not multiplied, and the capture's path-traced
+// truth: "truth_relative_rmse" and "truth_relative_rmse_rgb", over 4x4 averages, and "isolated", "tint",
+// "tint_red_green", "flip" and "flip_p99" of metrics/eye.h. Every measure of whole images belongs here. The
+// capture has a truth.
+nlohmann::json errorFields(harness::Image result, const harness::Capture& capture);
 
 }  // namespace pellucid::bench

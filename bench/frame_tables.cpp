@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <vector>
@@ -208,6 +209,37 @@ std::string frameHostTable(const Json& results) {
     text += "\n";
   }
   return text;
+}
+
+std::string truthTable(const Json& results) {
+  const Frames all(results);
+  std::string rows;
+  for (const std::string& frame : all.frames())
+    for (const std::string& size : all.sizes())
+      for (const std::string& name : all.names("whole")) {
+        const Json* row = all.find(frame, size, "whole", name);
+        if (!row || !row->contains("truth_relative_rmse_rgb")) continue;
+        const auto rgb = [&](const char* field) {
+          // A JSON null is NaN: no block of a frame shows what is measured.
+          const auto value = [&](size_t c) {
+            const Json& v = row->at(field).at(c);
+            return v.is_null() ? NAN : v.get<double>();
+          };
+          return format(" %.3f %.3f %.3f |", value(0), value(1), value(2));
+        };
+        const Json& redGreen = row->at("tint_red_green");
+        rows += "| " + frame + " " + size + " | " + name + " | " + timeOf(*row) + " |" +
+                rgb("truth_relative_rmse_rgb") + format(" %d |", row->at("isolated").get<int>()) +
+                rgb("tint") +
+                format(" %.3f | %.3f | %.3f |\n", redGreen.is_null() ? NAN : redGreen.get<double>(),
+                       row->at("flip").get<double>(), row->at("flip_p99").get<double>());
+      }
+  if (rows.empty()) throw NotMeasured("no frame with path-traced truth");
+  return all.heading(
+             "time in microseconds, relative RMSE of 4x4 averages (R G B), isolated pixels, tint, FLIP") +
+         header("frame", {"whole frame", "time", "relative RMSE", "isolated", "tint", "red/green",
+                          "FLIP mean", "99th percentile"}) +
+         rows;
 }
 
 std::string contextTable(const Json& results) {

@@ -145,7 +145,7 @@ private:
     }
     if (kind == "whole" && capture_.truth) {
       device_.run(v.record);
-      more.update(errorFields(v.output(), capture_, capture_.truth->image));
+      more.update(errorFields(v.output(), capture_));
     }
     if (kind == "whole") {
       const auto against = more.find("truth_relative_rmse");

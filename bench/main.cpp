@@ -70,27 +70,41 @@ public:
         table_(options.json == "-" ? stderr : stdout),
         report_(table_) {}
 
-  Json measure() {
+  // `keep` gets all results so far after each section: a run that is killed keeps what it has measured.
+  template <class Keep>
+  Json measure(const Keep& keep) {
     std::fprintf(table_, "%s, commit %s, median of %d\n", device_.description().c_str(), PELLUCID_COMMIT,
                  repeat_);
     json_ = {{"device", device_.description()}, {"commit", PELLUCID_COMMIT}, {"repeat", repeat_}};
     // Bad files are named before the context takes its time.
     std::vector<FrameSource> sources;
     if (wanted("frames")) sources = frameSources(device_, options_.frames);
-    if (options_.tables != std::set<std::string>{"context"}) measureTimes(sources);
+    if (options_.tables != std::set<std::string>{"context"}) {
+      measureTimes(sources);
+      writePlots();
+      keep(withResults());
+    }
     if (wanted("context")) measureContextCreation(options_.device, repeat_, report_);
+    return withResults();
+  }
+
+private:
+  bool wanted(const char* name) const { return options_.tables.count(name) > 0; }
+
+  Json withResults() const {
+    Json json = json_;
+    json["results"] = report_.rows();
+    json["results"].insert(json["results"].end(), swept_.begin(), swept_.end());
+    return json;
+  }
+
+  void writePlots() const {
     for (const auto& [name, drawn] : plots_) {
       if (options_.plot.empty() || drawn.empty()) continue;
       std::filesystem::create_directories(options_.plot);
       writePlot(options_.plot / (name + ".png"), drawn);
     }
-    json_["results"] = report_.rows();
-    json_["results"].insert(json_["results"].end(), swept_.begin(), swept_.end());
-    return std::move(json_);
   }
-
-private:
-  bool wanted(const char* name) const { return options_.tables.count(name) > 0; }
 
   void measureTimes(const std::vector<FrameSource>& sources) {
     const Context context(device_);
@@ -128,7 +142,9 @@ int run(const Options& options) {
   // Before a run of minutes.
   const Json before = options.compare.empty() ? Json() : readResults(options.compare);
   const bool stored = !options.results.empty();
-  const Json now = stored ? readResults(options.results) : Run(options).measure();
+  const Json now = stored ? readResults(options.results) : Run(options).measure([&](const Json& json) {
+    if (options.json != "-") write(json, options);
+  });
   if (!stored) write(now, options);
   if (options.compare.empty()) return 0;
   return printWhatGrew(before, now, options.json == "-" ? stderr : stdout) > 0 ? 1 : 0;

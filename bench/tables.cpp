@@ -122,10 +122,15 @@ struct Table {
   std::string (*make)(const Json& results);
 };
 
-constexpr Table kTables[] = {{"measured", measured},           {"sweep", sweep},
-                             {"frames", framesTable},          {"frame_sizes", frameSizesTable},
-                             {"frame_parts", framePartsTable}, {"frame_dispatches", frameDispatchesTable},
-                             {"frame_host", frameHostTable},   {"context", contextTable}};
+constexpr Table kTables[] = {{"measured", measured},
+                             {"sweep", sweep},
+                             {"frames", framesTable},
+                             {"frame_sizes", frameSizesTable},
+                             {"frame_parts", framePartsTable},
+                             {"frame_dispatches", frameDispatchesTable},
+                             {"frame_host", frameHostTable},
+                             {"context", contextTable},
+                             {"truth", truthTable}};
 
 constexpr int kNothingMeasured = 77;  // CTest's word for a test that was skipped
 
