@@ -228,17 +228,15 @@ std::string truthTable(const Json& results) {
           return format(" %.3f %.3f %.3f |", value(0), value(1), value(2));
         };
         const Json& redGreen = row->at("tint_red_green");
-        rows += "| " + frame + " " + size + " | " + name + " | " + timeOf(*row) + " |" +
-                rgb("truth_relative_rmse_rgb") + format(" %d |", row->at("isolated").get<int>()) +
-                rgb("tint") +
+        rows += "| " + frame + " " + size + " | " + name + " |" + rgb("truth_relative_rmse_rgb") +
+                format(" %d |", row->at("isolated").get<int>()) + rgb("tint") +
                 format(" %.3f | %.3f | %.3f |\n", redGreen.is_null() ? NAN : redGreen.get<double>(),
                        row->at("flip").get<double>(), row->at("flip_p99").get<double>());
       }
   if (rows.empty()) throw NotMeasured("no frame with path-traced truth");
-  return all.heading(
-             "time in microseconds, relative RMSE of 4x4 averages (R G B), isolated pixels, tint, FLIP") +
-         header("frame", {"whole frame", "time", "relative RMSE", "isolated", "tint", "red/green",
-                          "FLIP mean", "99th percentile"}) +
+  return all.heading("relative RMSE of 4x4 averages (R G B), isolated pixels, tint, FLIP") +
+         header("frame", {"whole frame", "relative RMSE", "isolated", "tint", "red/green", "FLIP mean",
+                          "99th percentile"}) +
          rows;
 }
 

@@ -75,7 +75,7 @@ inline Capture sampleCapture() {
   capture.normal = screen(3, -0.7f);
   capture.normalsInViewSpace = true;
   capture.albedo = screen(3, 0.3f);
-  capture.truth = Truth{screen(3, 0.9f)};
+  capture.truth = Truth{screen(3, 0.9f), screen(3, 0.01f), 1u << 20, 7, "0123456789abcdef"};
   for (int i = 0; i < kSampleWidth * kSampleHeight; ++i)
     capture.material.push_back(static_cast<std::uint8_t>(i % 5));
 
@@ -91,6 +91,7 @@ inline Capture sampleCapture() {
   lamp.type = PELLUCID_LIGHT_POINT;
   lamp.position = {1.5, 2.5, -3.5};
   lamp.range = 40;
+  lamp.radius = 0.25;
   Light spot;
   spot.type = PELLUCID_LIGHT_SPOT;
   spot.position = {0, 0, -9};

@@ -35,6 +35,10 @@ TEST(CaptureRoundTrip, IsBitExactWithFloat) {
   EXPECT_EQ(read.normalsInViewSpace, written.normalsInViewSpace);
   EXPECT_TRUE(sameBits(read.albedo, written.albedo));
   EXPECT_TRUE(sameBits(read.truth->image, written.truth->image));
+  EXPECT_TRUE(sameBits(read.truth->standardError, written.truth->standardError));
+  EXPECT_EQ(read.truth->samples, written.truth->samples);
+  EXPECT_EQ(read.truth->seed, written.truth->seed);
+  EXPECT_EQ(read.truth->scene, written.truth->scene);
   EXPECT_EQ(read.material, written.material);
 
   ASSERT_EQ(read.lights.size(), written.lights.size());
@@ -47,6 +51,7 @@ TEST(CaptureRoundTrip, IsBitExactWithFloat) {
     EXPECT_EQ(a.color, b.color);
     EXPECT_EQ(a.intensity, b.intensity);
     EXPECT_EQ(a.range, b.range);
+    EXPECT_EQ(a.radius, b.radius);
     EXPECT_EQ(a.innerConeAngle, b.innerConeAngle);
     EXPECT_EQ(a.outerConeAngle, b.outerConeAngle);
     ASSERT_EQ(a.shadowMaps.size(), b.shadowMaps.size());
@@ -331,11 +336,13 @@ INSTANTIATE_TEST_SUITE_P(
                     Mistake{"/buffers/depth", "{}", {"buffers.depth", "unknown key", "frontDepth"}},
                     Mistake{"/buffers/normal/encoding", "\"x\"", {"buffers.normal.encoding", "unknown key"}},
                     Mistake{"/buffers/material/channels", "[]", {"buffers.material.channels", "unknown key"}},
-                    Mistake{"/lights/0/radius", "1", {"lights[0].radius", "unknown key"}},
+                    Mistake{"/lights/0/glow", "1", {"lights[0].glow", "unknown key"}},
+                    Mistake{"/lights/0/radius", "1", {"lights[0].radius", "only a point light"}},
                     Mistake{"/lights/0/shadowMap/bias", "1", {"lights[0].shadowMap.bias", "unknown key"}},
                     Mistake{
                         "/lights/1/shadowMaps/0/bias", "1", {"lights[1].shadowMaps[0].bias", "unknown key"}},
                     Mistake{"/materials/0/name", "\"x\"", {"materials[0].name", "unknown key"}},
+                    Mistake{"/truth/samples", "\"-1\"", {"truth.samples", "whole number in quotes", "-1"}},
                     Mistake{"/truth/exposure", "1", {"truth.exposure", "unknown key"}}));
 
 INSTANTIATE_TEST_SUITE_P(

@@ -332,4 +332,27 @@ TEST(Pictures, UnwritablePathIsNamed) {
 }
 
 }  // namespace
+// Blocks of 2x2 whose pixels err independently: the error of a sum is half of that of four equal ones.
+TEST(Compare, NoiseAndChiSquaredAreOfBlocks) {
+  const Image image = filled(4, 4, {2, 4, 0}), error = filled(4, 4, {0.1f, 0.4f, 0}), none;
+  const std::vector<std::uint8_t> all(16, 1);
+  const std::vector<double> pixels = relativeNoise(image, error, all, 1);
+  EXPECT_NEAR(pixels[0], 0.05, 1e-7);
+  EXPECT_NEAR(pixels[1], 0.1, 1e-7);
+  EXPECT_EQ(pixels[2], 0);
+  EXPECT_NEAR(relativeNoise(image, error, all, 2)[0], 0.025, 1e-7);
+  // A block that is not wholly of mask does not count, and without any there is nothing to say.
+  std::vector<std::uint8_t> some = all;
+  some[5] = 0;
+  EXPECT_NEAR(relativeNoise(image, error, some, 2)[1], 0.05, 1e-7);
+  EXPECT_TRUE(relativeNoise(image, error, some, 4).empty());
+  // One standard error off everywhere, of one image's noise and of both.
+  const Image off = filled(4, 4, {2.1f, 4.4f, 0});
+  EXPECT_NEAR(chiSquared(off, none, image, error, all, 1)[0], 1, 1e-5);
+  EXPECT_NEAR(chiSquared(off, error, image, error, all, 1)[1], 0.5, 1e-5);
+  EXPECT_NEAR(chiSquared(off, none, image, error, all, 2)[0], 4, 1e-4) << "the same in all four is no noise";
+  EXPECT_EQ(chiSquared(off, none, image, error, all, 1)[2], 0);
+  EXPECT_TRUE(chiSquared(off, none, image, error, some, 4).empty());
+}
+
 }  // namespace pellucid::harness

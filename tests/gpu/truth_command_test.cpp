@@ -1,0 +1,75 @@
+// `pellucid truth` as a person runs it.
+#include <cstdlib>
+
+#include "cli_fixture.h"
+#include "gltf_builder.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace pellucid::test;
+
+TEST_F(Cli, TruthIsMadeContinuedAndCompared) {
+  const std::string file = path("truth.exr"), out = path("out.exr");
+  const std::string scene = "truth --procedural sphere --size 24x24 -o " + file;
+  expect(0, scene + " --spp 16", "16 samples each");
+  expect(0, scene + " --spp 8 --jobs 1", "24 samples each");
+  expect(3, scene + " --truth-seed 2", "was made with --truth-seed 1, not 2");
+  expect(3, scene + " --light point", "another scene");
+  expect(0, scene + " --overwrite --seconds 0.01 --environment uniform:1,1,1", "samples each");
+  expect(0, scene + " --overwrite --spp 64", "noise of 8x8 averages");
+  expect(0, "replay " + file + " --repeat 0 -o " + out, "");
+  // The replay is a model of the truth: it is near it and not equal. Noise and chi-squared are there.
+  expect(1, "compare " + out + " " + file + " --box 4 --limit rel_rmse=0.001", "chi2");
+  expect(0, "compare " + file + " " + file + " --limit max=0", "noise of B");
+  expect(0, "evaluate " + file, "Noise of the truths");
+}
+
+TEST_F(Cli, TruthRefusesByName) {
+  expect(2, "truth --procedural sphere", "-o is required");
+  expect(2, "truth -o " + path("t.exr"), "either a model or --procedural");
+  expect(2, "truth --procedural sphere --spp 0 -o " + path("t.exr"), "--spp");
+  expect(2, "truth --procedural sphere --environment blue -o " + path("t.exr"), "\"blue\" is not uniform");
+  expect(2, "truth --procedural sphere --like x.exr --size 8x8 -o " + path("t.exr"), "--size: --like takes");
+  expect(3, "truth --procedural slab --size 8x8 --entry refracted -o " + path("t.exr"), "without an end");
+  EXPECT_FALSE(fs::exists(path("t.exr")));
+}
+
+// A pyramid without its base, then closed.
+TEST_F(Cli, TruthClosesHolesOrNamesThem) {
+  GltfBuilder b;
+  const std::vector<float> corners = {0, 1, 0, -1, 0, -1, -1, 0, 1, 1, 0, 1, 1, 0, -1};
+  const std::vector<std::uint16_t> sides = {0, 1, 2, 0, 2, 3, 0, 3, 4, 0, 4, 1};
+  b.json["meshes"] = {
+      {{"primitives",
+        {{{"attributes", {{"POSITION", b.vectors(corners)}}}, {"indices", b.indices(sides)}}}}}};
+  b.json["nodes"] = {{{"mesh", 0}}};
+  const std::string model = path("pyramid.glb");
+  std::ofstream(model, std::ios::binary) << b.glb();
+  const std::string scene = "truth " + model + " --unit cm --material '*=skin1' --size 24x24 --spp 2 -o " +
+                            path("t.exr") + " --light sphere:0,9,9:2";
+  expect(3, scene, "has 1 holes; --fill-holes closes them");
+  expect(0, scene + " --fill-holes --entry refracted --ior 1.4", "1 holes filled");
+  expect(0, scene + " --fill-holes --overwrite", "paths a second");
+}
+
+// Cycles' truth of the same head, of 2048 samples a pixel, against eight of ours: noise is nearly all that
+// differs. Its albedo is not rho but .99 of it, and its pixels are averages.
+TEST_F(Cli, TruthAgreesWithCycles) {
+  const char* const given = std::getenv("PELLUCID_SHARED");
+  const fs::path shared = given ? fs::path(given) : fs::path(PELLUCID_SOURCE_DIR).parent_path() / "shared";
+  const fs::path model = shared / "models/LeePerrySmith_70k.glb";
+  const fs::path capture = shared / "captures/head_sidelit/manifest.json";
+  if (!fs::exists(model) || !fs::exists(capture)) GTEST_SKIP() << shared << " is not there";
+  expect(
+      0,
+      "truth " + model.string() + " --unit 0.052 --like " + capture.string() + " --spp 8 -o " + path("t.exr"),
+      "8 samples each");
+  expect(0, "compare " + path("t.exr") + " " + capture.string() + " --subset lit --limit bias=0.02", "chi2");
+  expect(0,
+         "compare " + path("t.exr") + " " + capture.string() +
+             " --subset lit --box 16 --box-coverage 1 --limit rel_rmse=0.04",
+         "chi2");
+}
+
+}  // namespace
