@@ -11,7 +11,7 @@ using namespace pellucid::test;
 
 TEST_F(Cli, TruthIsMadeContinuedAndCompared) {
   const std::string file = path("truth.exr"), out = path("out.exr");
-  const std::string scene = "truth --procedural sphere --size 24x24 -o " + file;
+  const std::string scene = "truth --procedural sphere --set extent=18 --size 24x24 -o " + file;
   expect(0, scene + " --spp 16", "16 samples each");
   expect(0, scene + " --spp 8 --jobs 1", "24 samples each");
   expect(3, scene + " --truth-seed 2", "was made with --truth-seed 1, not 2");
@@ -31,7 +31,7 @@ TEST_F(Cli, TruthRefusesByName) {
   expect(2, "truth --procedural sphere --spp 0 -o " + path("t.exr"), "--spp");
   expect(2, "truth --procedural sphere --environment blue -o " + path("t.exr"), "\"blue\" is not uniform");
   expect(2, "truth --procedural sphere --like x.exr --size 8x8 -o " + path("t.exr"), "--size: --like takes");
-  expect(3, "truth --procedural slab --size 8x8 --entry refracted -o " + path("t.exr"), "without an end");
+  expect(3, "truth --procedural slab --size 8x8 --entry refracted -o " + path("t.exr"), "need a scene with an end");
   EXPECT_FALSE(fs::exists(path("t.exr")));
 }
 
