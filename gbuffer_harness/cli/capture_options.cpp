@@ -112,13 +112,14 @@ void addModelOptions(CLI::App& command, CaptureOptions& options, SceneUse use) {
   command.add_option("--material", options.presets, "NAME=PRESET, repeatable; NAME * means all others")
       ->take_all()
       ->group(group);
-  command.add_option("--unit", options.unit, "mm, cm, m or meters: the length of the file's unit")
+  command
+      .add_option("--unit", options.unit, "mm, cm, m or a number of meters: the length of the file's unit")
       ->capture_default_str()
       ->group(group);
   command.add_flag("--fill-holes", options.fillHoles, "close the holes of bodies that have a material")
       ->group(group);
   command.add_option("--camera", options.camera, "name of one of the file's cameras, or auto")->group(group);
-  command.add_option("--view", options.view, "X,Y,Z: where the auto camera stands from the center")
+  command.add_option("--view", options.view, "X,Y,Z: direction from the center to the auto camera")
       ->group(group);
   command.add_option("--fov", options.verticalFov, "vertical field of view of the auto camera, degrees")
       ->check(CLI::Range(1.0, 170.0))
@@ -143,9 +144,10 @@ void addModelOptions(CLI::App& command, CaptureOptions& options, SceneUse use) {
 void addSceneOptions(CLI::App& command, CaptureOptions& options, SceneUse use) {
   const char* const group = kSceneGroup;
   command
-      .add_option("--procedural", options.scene.name, "name of the scene; list: print all with their options")
+      .add_option("--procedural", options.scene.name,
+                  "name of the scene; list: print all scenes with their options")
       ->group(group);
-  command.add_option("--seed", options.scene.seed, "of scenes that scatter things")
+  command.add_option("--seed", options.scene.seed, "seed of scenes that scatter objects")
       ->capture_default_str()
       ->group(group);
   command

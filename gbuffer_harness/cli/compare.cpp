@@ -31,13 +31,11 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kDefinitions =
     "rel_rmse: sqrt(mean (A-B)^2) / RMS(B). p999, max: of |A-B| / RMS(B). psnr: 20 log10(max B / RMSE), dB.\n"
     "bias: mean A / mean B - 1. Each channel by itself, over the samples.\n"
-    "isolated: pixels 1.3 times above or below all neighbors of their surface. tint: standard deviation of A "
-    "/ B\n"
-    "over 8x8 averages, per channel and of red over green. flip: of images under one exposure, 0 .. 1.\n"
-    "noise: of B's samples, standard errors over RMS. chi2: of samples wholly of mask, the sum of (A-B)^2 "
-    "over\n"
-    "that of squared standard errors: 1 where noise is all that differs. Both where files hold errors.\n"
-    "docs/accuracy.md defines all of them.\n";
+    "isolated: pixels 1.3 times above or below all neighbors of their surface. tint: standard deviation of\n"
+    "A / B over 8x8 averages, per channel and of red over green. flip: LDR-FLIP under one exposure, 0 .. 1.\n"
+    "noise: B's standard errors over its RMS. chi2: sum of (A-B)^2 over the sum of squared standard errors,\n"
+    "in samples wholly of mask: 1 where noise is all that differs. Both need files with standard errors.\n"
+    "docs/accuracy.md has the definitions.\n";
 
 struct Measure {
   const char* name;

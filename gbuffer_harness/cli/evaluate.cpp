@@ -153,14 +153,15 @@ void addEvaluateCommand(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("evaluate", "Compare translucency models or qualities with captures' truth");
   command->add_option("captures", options->captures, "captures with truth")->required();
-  command->add_option("-o,--output", options->output, "file of the tables; default: standard output");
+  command->add_option("-o,--output", options->output,
+                      "file to write the tables to; default: standard output");
   command->add_option("--rows", options->rows, "models, or qualities: 0 to 3, without and with the gather")
       ->check(CLI::IsMember({"models", "qualities"}))
       ->capture_default_str();
   command->add_flag("--json", options->json, "JSON instead of Markdown tables");
   command
       ->add_option("--exposure", options->exposure,
-                   "factor for FLIP; default: the truth's 99th percentile to 0.8")
+                   "factor for FLIP; default: brings the truth's 99th percentile to 0.8")
       ->check(CLI::PositiveNumber);
   command->add_option("--box", options->boxes.side, "average NxN pixels first")
       ->check(CLI::Range(1, 64))
@@ -171,7 +172,7 @@ void addEvaluateCommand(CLI::App& app) {
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
   command->add_flag("--reference", options->reference,
-                    "also the float64 gather over all texels with brute-force diffusion; minutes");
+                    "add the float64 gather over all texels with brute-force diffusion; takes minutes");
   command->add_option("--picture", options->picture,
                       "PNG of the first capture: thesis, light-space thickness, gather, truth");
   command->add_option("--plot", options->plot, "PNG of the error against the samples of the gather");

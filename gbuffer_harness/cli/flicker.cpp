@@ -33,16 +33,14 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kDefinitions =
-    "Of the difference between two frames that should look alike, R G B: rel_rmse: RMS over that of the "
-    "still\n"
-    "frame. p999, worst: 99.9th percentile and largest, over the mean of the still frame's 5x5 pixels "
-    "around.\n"
-    "moved: the same view some pixels to the side. lights turned: about the vertical through the scene's "
-    "center;\n"
-    "the difference is the change less its mean over 5x5 pixels, as diffused light changes evenly; edges of "
-    "hard\n"
-    "shadows move and count. irradiance: the same of what is diffused. docs/accuracy.md has the "
-    "definitions.\n";
+    "A row compares two frames that should look alike, by the difference between them, R G B.\n"
+    "rel_rmse: RMS of the difference over the RMS of the still frame. p999, worst: 99.9th percentile and\n"
+    "maximum of the difference over the mean of the still frame's 5x5 pixels around.\n"
+    "moved: the view lies some pixels to the side.\n"
+    "lights turned: the lights turn about the vertical through the scene's center. The difference is the\n"
+    "change less its mean over 5x5 pixels, as diffused light changes evenly; hard shadows' edges count.\n"
+    "irradiance: the input is compared likewise, before any diffusion.\n"
+    "docs/accuracy.md has the definitions.\n";
 
 const std::vector<LimitKind> kLimitKinds = {{"rel_rmse"}, {"p999"}, {"worst"}};
 
@@ -222,14 +220,16 @@ void addFlickerCommand(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand(
       "flicker",
-      "Say what changes when the camera moves by pixels or lights turn: of a model, a capture or a scene");
+      "Say what changes in a model, a capture or a scene when the camera moves by pixels or lights turn");
   addCaptureOptions(*command, options->scene, SceneUse::Replay);
   std::vector<const CLI::Option*> sceneOptions;
   for (const CLI::Option* option : std::as_const(*command).get_options()) sceneOptions.push_back(option);
   options->settings.addTo(*command);
   command->add_option("--pixels", options->pixels, "moves to the right, whole pixels; negative: to the left")
       ->capture_default_str();
-  command->add_option("--light-degrees", options->lightDegrees, "turn of the lights; 0: none; captures: none")
+  command
+      ->add_option("--light-degrees", options->lightDegrees,
+                   "degrees by which lights turn; 0: none; a capture's lights stand still")
       ->check(CLI::Range(-10.0, 10.0))
       ->capture_default_str();
   command

@@ -261,28 +261,29 @@ void truth(const CLI::App& command, const Options& options) {
 
 void addTruthCommand(CLI::App& app) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand(
-      "truth", "Make a capture with the light that paths through its bodies bring, and its noise");
-  command->add_option("-o,--output", options->output, "EXR to write; one that is there gets more samples");
+  CLI::App* command =
+      app.add_subcommand("truth", "Path-trace a scene and write a capture that has this truth and its noise");
+  command->add_option("-o,--output", options->output, "EXR to write; a file that is there gets more samples");
   const auto samples = command->add_option("--spp", options->samples, "samples to add to each pixel")
                            ->check(CLI::Range(1, 1 << 24))
                            ->capture_default_str();
-  command->add_option("--seconds", options->seconds, "add samples for so long instead")
+  command->add_option("--seconds", options->seconds, "add samples for this many seconds instead of --spp")
       ->check(CLI::Range(0.001, 1e7))
       ->excludes(samples);
   command->add_option("--like", options->like,
-                      "capture of this model or scene, made anywhere: its camera, G-buffer, lights and "
-                      "materials; the file gets them with another truth");
+                      "capture of this model or scene, made anywhere, whose camera, G-buffer, lights and "
+                      "materials the output gets");
   command
       ->add_option("--entry", options->entry,
                    "lambert: light enters diffusely, as a G-buffer's irradiance has no direction; refracted: "
-                   "in its own direction, by Fresnel's equations")
+                   "light enters in its own direction, by Fresnel's equations")
       ->check(CLI::IsMember({"lambert", "refracted"}))
       ->capture_default_str();
-  command->add_option("--truth-seed", options->seed, "of the random numbers of paths")->capture_default_str();
-  command->add_option("--jobs", options->jobs, "threads; 0: all. The result does not depend on them")
+  command->add_option("--truth-seed", options->seed, "seed of the paths' random numbers")
+      ->capture_default_str();
+  command->add_option("--jobs", options->jobs, "threads, on which the result does not depend; 0: all")
       ->check(CLI::Range(0, 4096));
-  command->add_flag("--overwrite", options->overwrite, "begin anew where the file is there");
+  command->add_flag("--overwrite", options->overwrite, "begin anew where the output file is there");
   addCaptureOptions(*command, options->scene);
   command->callback([options, command] { truth(*command, *options); });
 }
