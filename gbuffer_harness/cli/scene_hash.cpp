@@ -22,14 +22,26 @@ void SceneHash::add(const Model& model) {
   for (const Vertex& vertex : model.vertices) {
     for (const float x : vertex.position) value(x);
     for (const float x : vertex.normal) value(x);
+    for (const float x : vertex.uv) value(x);
+    for (const float x : vertex.color) value(x);
+    value(vertex.mark);
   }
   for (const std::uint32_t index : model.indices) value(index);
   for (const Part& part : model.parts) {
     value(part.firstIndex);
     value(part.indexCount);
     value(part.object);
-    value(model.surfaces[part.surface].material);
+    value(part.surface);
   }
+  for (const Surface& surface : model.surfaces) {
+    for (const auto& color : {surface.baseColor, surface.addedColor})
+      for (const double x : color) value(x);
+    value(surface.texture);
+    value(surface.alphaCutoff);
+    value(surface.doubleSided);
+    value(surface.material);
+  }
+  for (const Texture& texture : model.textures) bytes(texture.rgba.data(), texture.rgba.size());
   value(model.metersPerUnit);
 }
 
@@ -65,6 +77,11 @@ void SceneHash::add(const reference::Emitters& emitters, const Capture& capture)
     value(material.g);
     value(material.ior);
   }
+}
+
+void SceneHash::addImages(const Capture& capture) {
+  bytes(capture.material.data(), capture.material.size());
+  bytes(capture.albedo.data.data(), capture.albedo.data.size() * sizeof(float));
 }
 
 void SceneHash::add(const std::string& option) { bytes(option.data(), option.size()); }

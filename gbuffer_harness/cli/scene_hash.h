@@ -10,12 +10,14 @@
 
 namespace pellucid::harness {
 
-// FNV-1a (Fowler, Noll & Vo) of the inputs, in order: no images, whose last bits depend on the device.
+// FNV-1a (Fowler, Noll & Vo) of the inputs, in order. Images that a device draws are left out, as their last
+// bits depend on the device.
 class SceneHash {
 public:
   void add(const Model& model);  // triangles and surfaces
   void add(const SceneParameters& parameters);
   void add(const reference::Emitters& emitters, const Capture& capture);  // of it size, camera, materials
+  void addImages(const Capture& capture);  // of one that a file holds: material and albedo
   void add(const std::string& option);
   std::string text() const;  // 16 hexadecimal digits
 

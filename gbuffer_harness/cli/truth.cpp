@@ -59,7 +59,8 @@ void requireClosed(const Model& model) {
                            " edges are not shared by two faces turned the same way; no light can be walked "
                            "through it");
     throw InputError(model.name, where,
-                     "has " + std::to_string(open.holes) + " holes; --fill-holes closes them");
+                     "has " + std::to_string(open.holes) + (open.holes == 1 ? " hole" : " holes") +
+                         "; --fill-holes closes them");
   }
 }
 
@@ -75,24 +76,35 @@ void scaleTo(double metersPerUnit, Model& model) {
   model.metersPerUnit = metersPerUnit;
 }
 
+// A file that names no medium is all of the capture's, whose pixels say which.
+void makeTranslucent(Model& model, bool close) {
+  if (std::any_of(model.surfaces.begin(), model.surfaces.end(),
+                  [](const Surface& surface) { return surface.material != 0; }))
+    return;
+  for (Surface& surface : model.surfaces) surface.material = 1;
+  if (close) warn({"--fill-holes: " + std::to_string(fillHoles(model)) + " holes filled"});
+}
+
 Scene modelScene(const Options& options, SceneHash& hash) {
   CaptureModel model = captureModel(options.scene);
   if (options.like.empty()) say(model);
+  if (!options.like.empty()) makeTranslucent(model.model, options.scene.fillHoles);
   requireClosed(model.model);
   for (const Surface& surface : model.model.surfaces) {
-    if (surface.material == 0) continue;
     if (surface.alphaCutoff > 0)
       warn({"surface \"" + surface.name + "\": the truth knows nothing of alpha and has no holes there"});
-    if (surface.normalMap >= 0)
+    if (surface.material != 0 && surface.normalMap >= 0)
       warn({"surface \"" + surface.name +
             "\": the truth's light falls on interpolated normals, the "
             "capture's on the normal map"});
   }
+  if (std::any_of(model.model.vertices.begin(), model.model.vertices.end(),
+                  [](const Vertex& vertex) { return vertex.mark < 0.5f; }))
+    warn({"the truth's light enters where _TRANSLUCENT says that the surface is none, too"});
   Scene scene;
   if (!options.like.empty()) {
     scene.capture = readCapture(options.like);
     scaleTo(scene.capture.metersPerUnit, model.model);
-    for (Surface& surface : model.model.surfaces) surface.material = 1;  // the capture says which, by pixel
     hash.add(model.model);
     scene.traced = reference::makeMeshScene(model.model);
     return scene;
@@ -114,6 +126,10 @@ Scene proceduralScene(const Options& options, SceneHash& hash) {
   hash.add(parameters);
   scene.capture =
       options.like.empty() ? renderCapture(*scene.solids, parameters, nullptr) : readCapture(options.like);
+  if (scene.solids->materials.size() > scene.capture.materials.size())
+    throw InputError(
+        options.like, "materials",
+        "has fewer than the " + std::to_string(scene.solids->materials.size()) + " of the scene");
   if (scene.capture.metersPerUnit != 0.001)
     throw InputError(options.like, "metersPerUnit", "is not 0.001: a procedural scene is in millimeters");
   scene.emitters.paint = scene.solids->paint;
@@ -130,6 +146,7 @@ Scene makeScene(const CLI::App& command, const Options& options) {
   scene.emitters.lights = scene.capture.lights;
   for (Light& light : scene.emitters.lights) light.shadowMaps.clear();
   hash.add(scene.emitters, scene.capture);
+  if (!options.like.empty()) hash.addImages(scene.capture);
   hash.add(options.entry);
   scene.hash = hash.text();
   return scene;
@@ -220,8 +237,9 @@ private:
 
 // What a capture given by --like says itself.
 void refuseScene(const CLI::App& command) {
-  for (const char* name : {"--size", "--camera", "--view", "--light", "--material", "--ior", "--environment",
-                           "--shadow-size", "--projection"})
+  for (const char* name :
+       {"--size", "--camera", "--view", "--fov", "--projection", "--light", "--ior", "--shadow-size",
+        "--shadow-depth", "--depth", "--back", "--point-maps", "--infinite-far", "--view-normals"})
     if (command.count(name) > 0)
       throw UsageError(std::string(name) +
                        ": --like takes camera, size, lights and materials of the capture");
@@ -230,8 +248,14 @@ void refuseScene(const CLI::App& command) {
 void truth(const CLI::App& command, const Options& options) {
   if (options.output.empty()) throw UsageError("truth: -o is required");
   requireExr("-o", options.output);
+  const std::filesystem::path folder = std::filesystem::absolute(options.output).parent_path();
+  if (!std::filesystem::is_directory(folder))
+    throw InputError(options.output, "", "cannot be written: there is no folder " + folder.string());
   if (!options.like.empty()) refuseScene(command);
   Scene scene = makeScene(command, options);
+  // A model given with a capture has materials of its own numbering.
+  if (!options.like.empty() && options.entry != "lambert" && scene.capture.materials.size() > 1)
+    throw UsageError("--entry: with --like paths can begin at lights for captures of one material only");
   const std::vector<reference::TraceMedium> media =
       reference::traceMedia(scene.capture.materials, scene.capture.name);
   reference::TruthSums sums = earlier(options, scene);
@@ -239,9 +263,13 @@ void truth(const CLI::App& command, const Options& options) {
   const reference::VisibleSurface surface = reference::visibleSurface(scene.capture, *scene.traced);
   const auto pixels = static_cast<std::size_t>(std::count_if(surface.points.begin(), surface.points.end(),
                                                              [](const auto& p) { return p.has_value(); }));
+  if (surface.missed > pixels)
+    throw InputError(scene.capture.name, "camera",
+                     "only " + std::to_string(pixels) + " of the " + std::to_string(pixels + surface.missed) +
+                         " pixels with a material show the scene that is traced; is --unit right?");
   if (pixels == 0)
     throw InputError(scene.capture.name, "material", "no pixel has one: there is nothing to trace");
-  if (surface.missed > 0)
+  if (surface.missed > 0 && options.entry == "lambert")
     warn({std::to_string(surface.missed) + " pixels show a surface that no ray met; their truth is 0"});
   Run run(options, scene, std::move(sums));
   if (options.entry == "lambert")
@@ -265,7 +293,7 @@ void addTruthCommand(CLI::App& app) {
       app.add_subcommand("truth", "Path-trace a scene and write a capture that has this truth and its noise");
   command->add_option("-o,--output", options->output, "EXR to write; a file that is there gets more samples");
   const auto samples = command->add_option("--spp", options->samples, "samples to add to each pixel")
-                           ->check(CLI::Range(1, 1 << 24))
+                           ->check(CLI::Range(2, 1 << 24))  // one sample says nothing of its noise
                            ->capture_default_str();
   command->add_option("--seconds", options->seconds, "add samples for this many seconds instead of --spp")
       ->check(CLI::Range(0.001, 1e7))

@@ -31,7 +31,10 @@ TEST_F(Cli, TruthRefusesByName) {
   expect(2, "truth --procedural sphere --spp 0 -o " + path("t.exr"), "--spp");
   expect(2, "truth --procedural sphere --environment blue -o " + path("t.exr"), "\"blue\" is not uniform");
   expect(2, "truth --procedural sphere --like x.exr --size 8x8 -o " + path("t.exr"), "--size: --like takes");
-  expect(3, "truth --procedural slab --size 8x8 --entry refracted -o " + path("t.exr"), "need a scene with an end");
+  expect(3, "truth --procedural slab --size 8x8 --entry refracted -o " + path("t.exr"),
+         "need a scene with an end");
+  expect(2, "truth --procedural sphere --spp 1 -o " + path("t.exr"), "--spp");
+  expect(3, "truth --procedural sphere --size 8x8 -o " + path("missing/t.exr"), "there is no folder");
   EXPECT_FALSE(fs::exists(path("t.exr")));
 }
 
@@ -48,9 +51,15 @@ TEST_F(Cli, TruthClosesHolesOrNamesThem) {
   std::ofstream(model, std::ios::binary) << b.glb();
   const std::string scene = "truth " + model + " --unit cm --material '*=skin1' --size 24x24 --spp 2 -o " +
                             path("t.exr") + " --light sphere:0,9,9:2";
-  expect(3, scene, "has 1 holes; --fill-holes closes them");
+  expect(3, scene, "has 1 hole; --fill-holes closes them");
   expect(0, scene + " --fill-holes --entry refracted --ior 1.4", "1 holes filled");
   expect(0, scene + " --fill-holes --overwrite", "paths a second");
+  // The same body under another material's capture is another scene; far from the camera it is none.
+  expect(0, "capture " + model + " --unit cm --material '*=marble' --size 24x24 -o " + path("c.exr"), "");
+  const std::string like = "truth " + model + " --like " + path("c.exr") + " --spp 2 -o " + path("l.exr");
+  expect(3, like + " --unit cm", "has 1 hole");
+  expect(0, like + " --unit cm --fill-holes", "1 holes filled");
+  expect(3, like + " --unit mm --fill-holes --overwrite", "is --unit right?");
 }
 
 // Cycles' truth of the same head, of 2048 samples a pixel, against eight of ours: noise is nearly all that

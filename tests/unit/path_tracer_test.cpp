@@ -50,8 +50,10 @@ SceneModel oneSolid(std::unique_ptr<Solid> solid) {
 
 // Faces at z = 0 and z = -thickness.
 SceneModel slab(double thickness) {
-  return oneSolid(
+  SceneModel model = oneSolid(
       std::make_unique<Polyhedron>(std::vector<Polyhedron::Plane>{{{0, 0, 1}, 0}, {{0, 0, -1}, thickness}}));
+  model.endless = true;
+  return model;
 }
 
 const SurfacePoint kTop{{0, 0, 0}, {0, 0, 1}, {0, 0, 1}, 0, 1};

@@ -59,8 +59,8 @@ glm::dvec3 fromLight(const TraceScene& scene, const Light& light, const SurfaceP
 glm::dvec3 sampleIrradiance(const TraceScene& scene, const Emitters& emitters, const SurfacePoint& point,
                             PathRandom& random) {
   const glm::dvec3 world = scene.toWorld(point.position);
-  if (emitters.paint) return emitters.paint(world);
   glm::dvec3 sum(0);
+  if (emitters.paint) sum += emitters.paint(world);
   for (const Light& light : emitters.lights) {
     if (light.radius == 0) {
       sum += fromLight(scene, light, point, world);

@@ -15,7 +15,7 @@ namespace pellucid::harness::reference {
 struct Emitters {
   std::vector<Light> lights;  // world, as in captures; those with a radius are spheres
   std::optional<Environment> environment;
-  // Irradiance by world position in place of both: painted test patterns.
+  // Irradiance by world position on top of both: painted test patterns.
   std::function<glm::dvec3(const glm::dvec3&)> paint;
 };
 

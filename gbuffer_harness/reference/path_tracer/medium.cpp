@@ -39,7 +39,7 @@ std::vector<TraceMedium> traceMedia(const std::vector<MaterialSource>& materials
     }
     medium.g = material.g;
     medium.ior = material.ior;
-    require(std::abs(medium.g) < 1, name, "g", medium.g, "within -1 .. 1");
+    require(std::abs(medium.g) < 1, name, "g", medium.g, "between -1 and 1");
     require(medium.ior >= 1 && medium.ior <= 3, name, "ior", medium.ior, "within 1 .. 3");
     media.push_back(medium);
   }

@@ -3,6 +3,7 @@
 #include <embree3/rtcore.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <vector>
@@ -115,7 +116,9 @@ public:
       if (static_cast<std::size_t>(body) == bodies_.size()) bodies_.emplace_back();
       add(model, part, body);
     }
-    for (TriangleScene& body : bodies_) fill(body, device_.get());
+    for (TriangleScene& body : bodies_)
+      if (!body.triangles.empty()) fill(body, device_.get());
+    if (all_.triangles.empty()) throw InputError(model.name, "", "has no triangle that has an area");
     fill(all_, device_.get());
   }
 
@@ -131,7 +134,7 @@ public:
         point.normal = -point.normal;
         return point;
       }
-      from = hit->ray.tfar + offset_;
+      from = behind(*hit);
     }
   }
 
@@ -158,7 +161,7 @@ public:
       const auto hit = scene.hit(ray, from, limit);
       if (!hit) return std::nullopt;
       if (glm::dot(scene.triangles[hit->hit.primID].face, ray.direction) > 0) return scene.point(*hit);
-      from = hit->ray.tfar + offset_;
+      from = behind(*hit);
       if (from >= limit) return std::nullopt;
     }
   }
@@ -167,6 +170,12 @@ public:
   double offset() const override { return offset_; }
 
 private:
+  // Where the search for the next hit begins: further on even where the offset is below a float's step.
+  double behind(const RTCRayHit& hit) const {
+    return std::max<double>(hit.ray.tfar + offset_,
+                            std::nextafter(hit.ray.tfar, std::numeric_limits<float>::max()));
+  }
+
   void add(const Model& model, const Part& part, int body) {
     const Surface& surface = model.surfaces[part.surface];
     TriangleScene& own = bodies_[static_cast<std::size_t>(body)];

@@ -1,5 +1,6 @@
 #include "reference/path_tracer/visible_surface.h"
 
+#include "common/error.h"
 #include "common/parallel.h"
 #include "common/progress.h"
 #include "scene/model.h"
@@ -26,6 +27,8 @@ std::optional<SurfacePoint> find(const Camera& camera, const Capture& capture, c
 }  // namespace
 
 VisibleSurface visibleSurface(const Capture& capture, const TraceScene& scene) {
+  if (capture.clipFromView[11] > 0)
+    throw InputError(capture.name, "camera.clipFromView", "looks along +z; rays are cast along -z");
   Camera camera;
   camera.clipFromView = capture.clipFromView;
   camera.viewFromWorld = capture.viewFromWorld;

@@ -17,7 +17,9 @@ struct VisibleSurface {
   std::size_t missed = 0;                           // pixels with a material where no ray met the surface
 };
 
-// Rays through the centers of the capture's pixels that have a material: where its G-buffer was sampled.
+// Rays through the centers of the capture's pixels that have a material: where its G-buffer was sampled. A
+// ray that misses at a silhouette is moved by less than half a pixel. Throws InputError for a left-handed
+// camera.
 VisibleSurface visibleSurface(const Capture& capture, const TraceScene& scene);
 
 // Irradiance (R, G, B) at each pixel, the mean of `count` samples: for lights that a rasterizer cannot draw.

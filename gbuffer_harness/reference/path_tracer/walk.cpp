@@ -10,6 +10,9 @@ namespace {
 // Below this throughput a path goes on by Russian roulette alone.
 constexpr double kRoulette = 0.25;
 
+// Radii of the scene: no body reaches as far.
+constexpr double kBeyond = 1.01;
+
 double largest(const glm::dvec3& v) { return std::max({v.x, v.y, v.z}); }
 
 // Unpolarized reflectance seen from where the index is 1, towards `ior`; 1 where reflection is total.
@@ -30,7 +33,7 @@ glm::dvec3 refracted(const glm::dvec3& direction, const glm::dvec3& normal, doub
 
 // A direction at an angle with Henyey-Greenstein's distribution (1941) to `forward`.
 glm::dvec3 scattered(const glm::dvec3& forward, double g, PathRandom& random) {
-  if (g == 0) return random.direction();
+  if (std::abs(g) < 1e-6) return random.direction();                  // below it the quotient cancels
   const double u = (1 - g * g) / (1 - g + 2 * g * random.uniform());  // denominator within 1 - |g| .. 1 + |g|
   const double cosine = std::clamp((1 + g * g - u * u) / (2 * g), -1.0, 1.0);
   const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
@@ -81,7 +84,10 @@ std::optional<WalkExit> walkFrom(const TraceScene& scene, const TraceMedium& med
   const glm::dvec3 extinction = medium.scattering + medium.absorption;
   const glm::dvec3 albedo = medium.scattering / extinction;
   glm::dvec3 throughput(1), position = start, direction = forward;
+  const auto bounds = scene.bounds();
   for (;;) {
+    // Rounding let the path slip out through the surface.
+    if (bounds && glm::distance(position, bounds->center) > kBeyond * bounds->radius) return std::nullopt;
     const Chooser channel(throughput, albedo);
     const double distance = -std::log(1 - random.uniform()) / extinction[channel(random.uniform())];
     const std::optional<SurfacePoint> exit = scene.exit(body, {position, direction}, distance);
