@@ -85,10 +85,6 @@ std::vector<CaptureFrame> framesOf(const Turntable& options, const std::string& 
   return frames;
 }
 
-void warn(const std::vector<std::string>& warnings) {
-  for (const std::string& warning : warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
-}
-
 void captureProcedural(const Options& options) {
   SceneParameters scene = procedural(options.scene);
   const std::vector<CaptureFrame> frames = framesOf(options.turntable, options.output);

@@ -189,9 +189,13 @@ SceneParameters procedural(const CaptureOptions& options) {
   return scene;
 }
 
+void warn(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+}
+
 void say(const CaptureModel& model) {
   for (const std::string& note : model.notes) std::fprintf(stderr, "note: %s\n", note.c_str());
-  for (const std::string& warning : model.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  warn(model.warnings);
 }
 
 void setIor(std::vector<MaterialSource>& materials, const CaptureOptions& options) {

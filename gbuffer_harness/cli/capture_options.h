@@ -43,7 +43,10 @@ struct CaptureModel {
   std::vector<std::string> notes, warnings;  // sentences for a person
 };
 
-// Prints both on stderr.
+// Prints sentences on stderr.
+void warn(const std::vector<std::string>& warnings);
+
+// Prints notes and warnings on stderr.
 void say(const CaptureModel& model);
 
 // Commands that take a scene: those that capture it, and those that replay it too, whose --set is the

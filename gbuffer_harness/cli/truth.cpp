@@ -64,10 +64,6 @@ void requireClosed(const Model& model) {
   }
 }
 
-void warn(const std::vector<std::string>& warnings) {
-  for (const std::string& warning : warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
-}
-
 // So that the model's coordinates are those of a capture whose unit has this length.
 void scaleTo(double metersPerUnit, Model& model) {
   const auto scale = static_cast<float>(model.metersPerUnit / metersPerUnit);

@@ -6,6 +6,8 @@
 #include <random>
 
 #include "common/parallel.h"
+#include "reference/boundary.h"
+#include "reference/sampling.h"
 
 namespace pellucid::harness::reference {
 namespace {
@@ -19,43 +21,16 @@ public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}
   double uniform() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }  // [0, 1)
 
-  glm::dvec3 direction() {
-    const double z = 2 * uniform() - 1, angle = 2 * std::numbers::pi * uniform();
-    const double r = std::sqrt(std::max(0.0, 1 - z * z));
-    return {r * std::cos(angle), r * std::sin(angle), z};
-  }
-  // Cosine-distributed about a unit vector.
-  glm::dvec3 lambertian(const glm::dvec3& about) {
-    const glm::dvec3 v = about + direction();
-    const double length = glm::length(v);
-    return length > 1e-6 ? v / length : about;
-  }
-
 private:
   std::mt19937_64 engine_;
 };
-
-// Unpolarized, from index 1 to `ior` (relative); 1 where reflection is total.
-double fresnel(double cosine, double ior) {
-  const double sine2 = (1 - cosine * cosine) / (ior * ior);
-  if (sine2 >= 1) return 1;
-  const double inner = std::sqrt(1 - sine2);
-  const double s = (cosine - ior * inner) / (cosine + ior * inner);
-  const double p = (ior * cosine - inner) / (ior * cosine + inner);
-  return 0.5 * (s * s + p * p);
-}
-
-glm::dvec3 refracted(const glm::dvec3& direction, const glm::dvec3& normal, double ior) {
-  const glm::dvec3 sideways = (direction - glm::dot(direction, normal) * normal) / ior;
-  return sideways - std::sqrt(std::max(0.0, 1 - glm::dot(sideways, sideways))) * normal;
-}
 
 // Irradiance where one walk leaves; 0 if it is absorbed.
 double walk(const WalkShape& shape, const WalkMedium& medium, const glm::dvec3& point,
             const glm::dvec3& toLight, Random& random) {
   const double extinction = medium.scattering + medium.absorption;
   const glm::dvec3 outward = shape.normal(point);
-  const glm::dvec3 from = random.lambertian(outward);
+  const glm::dvec3 from = lambertian(outward, random);
   if (random.uniform() < fresnel(glm::dot(from, outward), medium.ior)) return 0;
   glm::dvec3 direction = refracted(-from, outward, medium.ior), position = point - kInwards * outward;
   for (;;) {
@@ -73,7 +48,7 @@ double walk(const WalkShape& shape, const WalkMedium& medium, const glm::dvec3& 
     }
     position += length * direction;
     if (random.uniform() * extinction >= medium.scattering) return 0;
-    direction = random.direction();
+    direction = uniformDirection(random);
   }
 }
 

@@ -107,7 +107,7 @@ TEST(PathTracer, AnisotropicSlabIsVanDeHulsts) {
   expectNear(back, glm::dvec3(.09739), 3, "R");
 }
 
-// Exitance under a directional light, against walks of single channels that share no code.
+// Exitance under a directional light, against walks of single channels, which share sampling and boundary alone.
 TEST(PathTracer, BodiesGlowAsSingleChannelWalksSay) {
   const glm::dvec3 toLight = glm::normalize(glm::dvec3(0.5, 0.3, -0.8));
   const SceneModel model = oneSolid(std::make_unique<Ellipsoid>(glm::dvec3(0), glm::dvec3(3)));

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reference/path_tracer/cone.h"
+#include "reference/sampling.h"
 #include "scene/render.h"
 #include "scene/vector.h"
 
@@ -11,13 +13,6 @@ namespace pellucid::harness::reference {
 namespace {
 
 constexpr double kTwoPi = 2 * std::numbers::pi;
-
-struct Frame {
-  glm::dvec3 x, y;
-  explicit Frame(const glm::dvec3& z)
-      : x(glm::normalize(glm::cross(std::abs(z.x) < 0.8 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0), z))),
-        y(glm::cross(z, x)) {}
-};
 
 // Parallel light: through a point of the disc that the sphere shows it.
 Ray throughDisc(const TraceScene::Sphere& bounds, const glm::dvec3& direction, PathRandom& random) {
@@ -36,15 +31,9 @@ struct Aimed {
 };
 Aimed aim(const TraceScene::Sphere& bounds, const glm::dvec3& from, PathRandom& random) {
   const glm::dvec3 toCenter = bounds.center - from;
-  const double distance2 = glm::dot(toCenter, toCenter), radius2 = bounds.radius * bounds.radius;
-  if (!(distance2 > radius2)) return {random.direction(), 2 * kTwoPi};
-  const double cosineMax = std::sqrt(1 - radius2 / distance2);
-  const double part = radius2 / distance2 / (1 + cosineMax);  // 1 - cosineMax, without cancellation
-  const double cosine = 1 - part * random.uniform(), sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
-  const double angle = kTwoPi * random.uniform();
-  const glm::dvec3 axis = toCenter / std::sqrt(distance2);
-  const Frame frame(axis);
-  return {cosine * axis + sine * (std::cos(angle) * frame.x + std::sin(angle) * frame.y), kTwoPi * part};
+  if (!(glm::length(toCenter) > bounds.radius)) return {uniformDirection(random), 2 * kTwoPi};
+  const ConeSample sample = sampleCone(toCenter, bounds.radius, random);
+  return {sample.direction, sample.solidAngle};
 }
 
 std::optional<Emission> fromLight(const TraceScene& scene, const Light& light,
@@ -58,7 +47,7 @@ std::optional<Emission> fromLight(const TraceScene& scene, const Light& light,
   // and range included; both are functions of where the ray goes, so that it is asked for where it arrives.
   glm::dvec3 from = scene.fromWorld(toGlm(light.position));
   if (light.radius > 0) {
-    const glm::dvec3 normal = random.direction();
+    const glm::dvec3 normal = uniformDirection(random);
     from += light.radius * scene.millimetersPerUnit() * normal;
     const Aimed aimed = aim(bounds, from, random);
     const double cosine = glm::dot(normal, aimed.direction);
@@ -89,7 +78,7 @@ std::optional<Emission> emit(const TraceScene& scene, const Emitters& emitters,
   if (chosen < emitters.lights.size()) {
     emission = fromLight(scene, emitters.lights[chosen], bounds, random);
   } else {
-    const glm::dvec3 direction = random.direction();
+    const glm::dvec3 direction = uniformDirection(random);
     const double area = std::numbers::pi * bounds.radius * bounds.radius;
     emission = Emission{throughDisc(bounds, direction, random),
                         2 * kTwoPi * area * toGlm(emitters.environment->radiance(-direction.y))};

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "reference/path_tracer/cone.h"
+#include "reference/sampling.h"
 #include "scene/render.h"
 #include "scene/vector.h"
 
@@ -13,30 +15,20 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // A point light at a random point of the sphere that the surface sees, weighted so that its mean is the
-// sphere's irradiance. Uniform over the cone of the sphere (Pharr et al. 2023, 6.2.4); the sphere's radiance
-// is that which gives the light's intensity from afar: I / (pi radius^2).
+// sphere's irradiance. The sphere's radiance is that which gives the light's intensity from afar: I / (pi
+// radius^2).
 std::optional<Light> pointOf(const Light& sphere, const glm::dvec3& from, PathRandom& random) {
   const glm::dvec3 toCenter = toGlm(sphere.position) - from;
   const double distance = glm::length(toCenter);
-  const double u = random.uniform(), angle = 2 * std::numbers::pi * random.uniform();
-  if (!(distance > sphere.radius)) return std::nullopt;  // within it: captures refuse such lights
-  const double sine2 = sphere.radius * sphere.radius / (distance * distance);
-  const double cosineMax = std::sqrt(1 - sine2);
-  const double cosine = 1 - u * (1 - cosineMax), sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
-  const glm::dvec3 axis = toCenter / distance;
-  const glm::dvec3 x =
-      glm::normalize(glm::cross(std::abs(axis.x) < 0.8 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0), axis));
-  const glm::dvec3 direction =
-      cosine * axis + sine * (std::cos(angle) * x + std::sin(angle) * glm::cross(axis, x));
+  if (!(distance > sphere.radius)) return std::nullopt;  // within it, where --light refuses to put one
+  const ConeSample sample = sampleCone(toCenter, sphere.radius, random);
   // Along the ray to the nearer of its two points on the sphere.
-  const double middle = distance * cosine;
+  const double middle = distance * sample.cosine;
   const double half2 = sphere.radius * sphere.radius - (distance * distance - middle * middle);
   const double length = middle - std::sqrt(std::max(0.0, half2));
-  // Solid angle 2 pi (1 - cos) without cancellation; the radius of a sphere light is above 0.
-  const double solidAngle = 2 * std::numbers::pi * sine2 / (1 + cosineMax);
   Light point = sphere;
-  point.position = fromGlm(from + length * direction);
-  point.intensity *= solidAngle * length * length / (std::numbers::pi * sphere.radius * sphere.radius);
+  point.position = fromGlm(from + length * sample.direction);
+  point.intensity *= sample.solidAngle * length * length / (std::numbers::pi * sphere.radius * sphere.radius);
   return point;
 }
 
@@ -69,7 +61,7 @@ glm::dvec3 sampleIrradiance(const TraceScene& scene, const Emitters& emitters, c
     }
   }
   if (emitters.environment) {
-    const glm::dvec3 direction = random.lambertian(point.normal);
+    const glm::dvec3 direction = lambertian(point.normal, random);
     const Ray ray{point.position + scene.offset() * point.face, direction};
     // Cosine-distributed: the estimate of E is pi times the radiance.
     if (!scene.occluded(ray, kInfinity))

@@ -1,10 +1,7 @@
 // Random numbers of one path: a stream that seed, pixel and sample name, whichever thread walks it.
 #pragma once
 
-#include <cmath>
 #include <cstdint>
-#include <glm/glm.hpp>
-#include <numbers>
 
 namespace pellucid::harness::reference {
 
@@ -15,19 +12,6 @@ public:
 
   // [0, 1)
   double uniform() { return static_cast<double>(next() >> 11) * 0x1p-53; }
-
-  glm::dvec3 direction() {
-    const double z = 2 * uniform() - 1, angle = 2 * std::numbers::pi * uniform();
-    const double r = std::sqrt(std::max(0.0, 1 - z * z));
-    return {r * std::cos(angle), r * std::sin(angle), z};
-  }
-
-  // Cosine-distributed about a unit vector.
-  glm::dvec3 lambertian(const glm::dvec3& about) {
-    const glm::dvec3 v = about + direction();
-    const double length = glm::length(v);
-    return length > 1e-6 ? v / length : about;
-  }
 
 private:
   // SplitMix64 (Steele, Lea & Flood 2014).

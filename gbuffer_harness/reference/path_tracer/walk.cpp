@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+
+#include "reference/boundary.h"
+#include "reference/sampling.h"
 
 namespace pellucid::harness::reference {
 
@@ -15,25 +19,9 @@ constexpr double kBeyond = 1.01;
 
 double largest(const glm::dvec3& v) { return std::max({v.x, v.y, v.z}); }
 
-// Unpolarized reflectance seen from where the index is 1, towards `ior`; 1 where reflection is total.
-double fresnel(double cosine, double ior) {
-  const double sine2 = (1 - cosine * cosine) / (ior * ior);
-  if (sine2 >= 1) return 1;
-  const double inner = std::sqrt(1 - sine2);
-  // Sums of positive terms but at grazing incidence on ior 1, which callers leave out.
-  const double s = (cosine - ior * inner) / (cosine + ior * inner);
-  const double p = (ior * cosine - inner) / (ior * cosine + inner);
-  return 0.5 * (s * s + p * p);
-}
-
-glm::dvec3 refracted(const glm::dvec3& direction, const glm::dvec3& normal, double ior) {
-  const glm::dvec3 sideways = (direction - glm::dot(direction, normal) * normal) / ior;
-  return sideways - std::sqrt(std::max(0.0, 1 - glm::dot(sideways, sideways))) * normal;
-}
-
 // A direction at an angle with Henyey-Greenstein's distribution (1941) to `forward`.
 glm::dvec3 scattered(const glm::dvec3& forward, double g, PathRandom& random) {
-  if (std::abs(g) < 1e-6) return random.direction();                  // below it the quotient cancels
+  if (std::abs(g) < 1e-6) return uniformDirection(random);            // below it the quotient cancels
   const double u = (1 - g * g) / (1 - g + 2 * g * random.uniform());  // denominator within 1 - |g| .. 1 + |g|
   const double cosine = std::clamp((1 + g * g - u * u) / (2 * g), -1.0, 1.0);
   const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
@@ -65,14 +53,14 @@ struct Chooser {
 
 WalkEntry enter(const TraceMedium& medium, const SurfacePoint& at, const glm::dvec3& direction,
                 PathRandom& random) {
-  if (medium.ior == 1) return {-random.lambertian(at.face), 1};
+  if (medium.ior == 1) return {-lambertian(at.face, random), 1};
   const double cosine = std::clamp(-glm::dot(direction, at.face), 0.0, 1.0);
   return {refracted(direction, at.face, medium.ior), 1 - fresnel(cosine, medium.ior)};
 }
 
 std::optional<WalkExit> walk(const TraceScene& scene, const TraceMedium& medium, const SurfacePoint& start,
                              PathRandom& random) {
-  const WalkEntry entry = enter(medium, start, -random.lambertian(start.face), random);
+  const WalkEntry entry = enter(medium, start, -lambertian(start.face, random), random);
   std::optional<WalkExit> exit = walkFrom(
       scene, medium, start.body, start.position - scene.offset() * start.face, entry.direction, random);
   if (exit) exit->weight *= entry.weight;
