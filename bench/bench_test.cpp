@@ -1,4 +1,4 @@
-// What the bench says of frames and of runs, and its command line.
+// Tests of the bench: errors of frames, comparisons of runs, and the command line.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 

@@ -13,7 +13,7 @@ namespace {
 
 const char* const kErrors[] = {"relative_rmse", "truth_relative_rmse"};
 
-// What a row measures, in words that sort.
+// Names what a row measures, in words that sort.
 std::string keyOf(const Json& row) {
   std::string key = row.at("section").get<std::string>();
   for (const char* field : {"frame", "size", "kind", "of", "name"})

@@ -1,4 +1,4 @@
-// Whether a run is slower or less exact than one before.
+// Comparison of a run with an earlier one: slower or less exact rows.
 #pragma once
 
 #include <cstdio>

@@ -12,7 +12,7 @@ namespace pellucid::bench {
 // the first kind is measured once.
 void measureContextCreation(const std::string& device, int repeat, Report& report);
 
-// What such a process does: creates the context once and prints wall-clock and CPU microseconds.
+// Runs in such a process: creates the context once and prints wall-clock and CPU microseconds.
 int createContext(const Options& options);
 
 }  // namespace pellucid::bench

@@ -23,7 +23,7 @@ using namespace harness;
 namespace {
 
 constexpr unsigned kSeed = 37;
-// Of the profile's energy, a tenth of the least error that a row of the table has.
+// Share of the profile's energy that brute force leaves out: a tenth of the least error in the table.
 constexpr double kDiscarded = 1e-4;
 constexpr int kBox = 4;      // pixels a side of the averages that `pellucid evaluate` compares
 constexpr int kVersion = 1;  // of what the hash stands for

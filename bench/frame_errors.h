@@ -25,7 +25,7 @@ struct DiffusionTruth {
 DiffusionTruth diffusionTruth(const harness::Capture& capture, const std::vector<PellucidMaterial>& materials,
                               int count, const std::filesystem::path& cache);
 
-// Of one channel each: root mean square of the difference over that of the truth.
+// One number a channel: root mean square of the difference over that of the truth.
 using ChannelErrors = std::array<double, 3>;
 ChannelErrors diffusionErrors(const harness::Image& result, const DiffusionTruth& truth);
 double rootMeanSquare(const ChannelErrors& errors);

@@ -1,5 +1,5 @@
-// What reads files lies in libraries beside the executable, which are loaded when a file is asked for: the
-// executable runs where OpenEXR and tinygltf are not installed.
+// Libraries beside the executable read files and are loaded when a file is asked for: the executable
+// runs where OpenEXR and tinygltf are not installed.
 #pragma once
 
 #include <filesystem>

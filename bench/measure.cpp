@@ -13,7 +13,7 @@ namespace pellucid::bench {
 namespace {
 
 constexpr double kSpan = 10000;  // microseconds of a command buffer
-// Of software devices, whose clocks and compilers are not what takes the time.
+// Microseconds of a run on software devices, whose clocks and compilers are not what takes the time.
 constexpr double kSlow = 100000;
 using Clock = std::chrono::steady_clock;
 Clock::time_point lastWork{};

@@ -42,7 +42,7 @@ struct Options {
   FrameOptions frames;
   SweepOptions sweep;
   std::filesystem::path compare, results;
-  // Of the processes that the section context starts.
+  // Options of the processes that the section context starts.
   bool createContext = false;
   std::filesystem::path loadCache, saveCache;
 };

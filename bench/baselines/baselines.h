@@ -9,7 +9,7 @@
 
 namespace pellucid::bench {
 
-// What is diffused: the frame's irradiance, or an image of rgba16f in its place.
+// The image to diffuse: the frame's irradiance, or an image of rgba16f in its place.
 using Source = std::shared_ptr<const harness::GpuImage>;
 
 // d'Eon & Luebke 2007 / Jimenez et al. 2009: six Gaussians, two passes each.

@@ -56,7 +56,7 @@ Image evaluate(const Capture& capture, const Transmitted& transmitted) {
 
 using Slab = std::function<glm::dvec3(double)>;  // T(d), d in mm
 
-// Of six Gaussians fitted to the profile.
+// T(d) of six Gaussians fitted to the profile.
 Slab gaussianSlab(const PellucidMaterial& material) {
   return [kernel = sharedGaussians(material)](double d) {
     glm::dvec3 t(0);
@@ -160,7 +160,7 @@ void requireRightWholeFrames(Device& device, const Context& context, const Pellu
     const std::vector<Variant>& all = diffusions.at(w.transmittance);
     const auto diffusion =
         std::find_if(all.begin(), all.end(), [&](const Variant& v) { return v.name == w.diffusion; });
-    // The same passes on the same halves.
+    // Both chains run equal passes on equal halves.
     requireNear(w.variant, site.run(w.variant), site.run(*diffusion), earCapture, 1e-5);
   }
 }

@@ -6,7 +6,7 @@
 
 #include "transmitted.glsl"
 
-// Of the wrapped cosine, as the paper has it.
+// Wrap of the cosine, as the paper has it.
 const float kWrap = 0.3;
 // mm that a point is moved inwards, against the shadow map's steps: the 0.005 units of the authors' code, in mm of its
 // profile by the scale 8.25 (1 - 0.83) / 0.012 that it ships with.

@@ -1,4 +1,4 @@
-// What whole frames of others read to add the light that comes through to the irradiance: all lights with a shadow
+// Inputs of the passes of others that add transmitted light to the irradiance: all lights with a shadow
 // map, whose texels are 32-bit floats and read unfiltered, as no device has to filter these.
 #ifndef PELLUCID_BASELINE_TRANSMITTED_GLSL
 #define PELLUCID_BASELINE_TRANSMITTED_GLSL

@@ -18,8 +18,8 @@ struct TransmittancePass {
   Source image;  // what the pass writes; irradiance where there is no material
 };
 
-// What both passes bind: the frame of `settings` has its lights, maps and normals in the plan's first
-// dispatch.
+// Settings whose frame both passes bind: the frame of `settings` has its lights, maps and normals in the
+// plan's first dispatch.
 harness::ReplaySettings transmittanceSettings();
 
 // Jimenez et al. 2010: T(d) of six Gaussians.

@@ -56,7 +56,7 @@ enum class SceneUse { Capture, Replay };
 // Adds all of them to a command, but for its output.
 void addCaptureOptions(CLI::App& command, CaptureOptions& options, SceneUse use = SceneUse::Capture);
 
-// Whether they name a procedural scene; else they name a model. Throws UsageError when they name both or
+// True when they name a procedural scene; else they name a model. Throws UsageError when they name both or
 // neither, and for an option of the other kind: one without effect is a mistake of who gave it.
 bool isProcedural(const CLI::App& command, const CaptureOptions& options);
 

@@ -10,8 +10,8 @@ namespace pellucid::harness {
 // The capture of a procedural scene with its --ior and --environment. Throws as makeScene() does.
 Capture captureScene(const SceneParameters& scene, const CaptureOptions& options);
 
-// What rasterize() draws, and on top of it the irradiance of the environment and of lights that have a
-// radius, traced by rays.
+// The capture that rasterize() draws, and on top of it the irradiance of the environment and of lights that
+// have a radius, traced by rays.
 RasterResult captureScene(Device& device, const Model& model, const ModelCamera& camera,
                           const RasterOptions& raster, const std::optional<Environment>& environment);
 

@@ -148,7 +148,7 @@ Scene makeScene(const CLI::App& command, const Options& options) {
   return scene;
 }
 
-// What is in the file already; nothing when it is not there.
+// The samples in the file already; nothing when it is not there.
 reference::TruthSums earlier(const Options& options, const Scene& scene) {
   if (options.overwrite || !std::filesystem::exists(options.output)) return {};
   const Capture old = readCapture(options.output);
@@ -231,7 +231,7 @@ private:
   Clock::time_point begin_, written_;
 };
 
-// What a capture given by --like says itself.
+// Refuses options that a capture given by --like answers itself.
 void refuseScene(const CLI::App& command) {
   for (const char* name :
        {"--size", "--camera", "--view", "--fov", "--projection", "--light", "--ior", "--shadow-size",

@@ -14,7 +14,7 @@ std::array<double, 3> meanAround(const Image& image, const Mask& mask, int x, in
   return blockMeans(image, image, mask, x - kSurroundings, y - kSurroundings, 2 * kSurroundings + 1).a;
 }
 
-// Of the difference d, where `mask` says that there is one.
+// Statistics of the difference d, where `mask` says that there is one.
 Flicker measure(const Image& still, const Image& d, const Mask& mask, const Mask& differences) {
   Flicker flicker;
   const std::array<double, 3> rms = rmsOf(still, mask), rmsOfD = rmsOf(d, differences);

@@ -1,4 +1,4 @@
-// What changes between two frames that should look alike.
+// Changes between two frames that should look alike.
 #pragma once
 
 #include <array>
@@ -11,8 +11,9 @@ namespace pellucid::harness {
 // Each of three channels, of a difference d between the frames.
 struct Flicker {
   std::array<double, 3> relativeRmse = {};  // RMS of d over the RMS of the still frame
-  // Of |d| over the mean of the still frame's 5x5 pixels around it that show a surface with material, at
-  // least kDarkestPart of the RMS: what 99.9 % of the pixels are at or below (nearest rank), and the largest.
+  // Statistics of |d| over the mean of the still frame's 5x5 pixels around it that show a surface with
+  // material, at least kDarkestPart of the RMS: what 99.9 % of the pixels are at or below (nearest rank), and
+  // the largest.
   std::array<double, 3> p999 = {}, worst = {};
   std::array<int, 2> worstPixel = {0, 0};  // x, y in the still frame, of the largest of all channels
   std::size_t pixels = 0;                  // that were compared; 0: all is 0

@@ -221,7 +221,7 @@ Plane displayed(const Image& image, double exposure) {
   return plane;
 }
 
-// What the color pipeline compares, and the features.
+// Images that the color pipeline and the features compare.
 std::pair<Plane, Features> seen(const Image& image, double exposure, double pixelsPerDegree) {
   Plane opponent = displayed(image, exposure);
   for (Color& color : opponent.data) color = opponentFromRgb(color);

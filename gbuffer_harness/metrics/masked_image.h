@@ -19,10 +19,10 @@ inline std::size_t pixelIndex(const Image& image, int x, int y) {
   return static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x);
 }
 
-// Whether the first three channels, or those there are, hold numbers.
+// True when the first three channels, or those there are, hold numbers.
 bool finitePixel(const Image& image, int x, int y);
 
-// Whether the pixel is in the mask and finite.
+// True when the pixel is in the mask and finite.
 inline bool counts(const Image& image, const Mask& mask, int x, int y) {
   return mask[pixelIndex(image, x, y)] != 0 && finitePixel(image, x, y);
 }

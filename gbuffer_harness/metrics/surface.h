@@ -22,11 +22,11 @@ public:
   int width() const { return width_; }
   int height() const { return height_; }
 
-  // Whether the pixel has a material and a depth. False outside of the image.
+  // True when the pixel has a material and a depth. False outside of the image.
   bool covered(int x, int y) const;
-  // Whether (x, y) and (x + stepX, y + stepY) show one surface; steps in -1 .. 1.
+  // True when (x, y) and (x + stepX, y + stepY) show one surface; steps in -1 .. 1.
   bool connected(int x, int y, int stepX, int stepY) const;
-  // Whether all pixels of the block lie within the image and show one surface with the pixels right of and
+  // True when all pixels of the block lie within the image and show one surface with the pixels right of and
   // below them in the block.
   bool wholeBlock(int left, int top, int side) const;
 

@@ -1,4 +1,4 @@
-// What lights a traced scene.
+// Lights and environment of a traced scene.
 #pragma once
 
 #include <functional>

@@ -16,7 +16,7 @@ namespace pellucid::harness::reference {
 
 namespace {
 
-// Of the model's radius: some hundred roundings of Embree's single precision there.
+// Share of the model's radius: some hundred roundings of Embree's single precision there.
 constexpr double kOffset = 1e-5;
 
 struct DeviceDeleter {
@@ -170,7 +170,8 @@ public:
   double offset() const override { return offset_; }
 
 private:
-  // Where the search for the next hit begins: further on even where the offset is below a float's step.
+  // Distance at which the search for the next hit begins: further on even where the offset is below a float's
+  // step.
   double behind(const RTCRayHit& hit) const {
     return std::max<double>(hit.ray.tfar + offset_,
                             std::nextafter(hit.ray.tfar, std::numeric_limits<float>::max()));

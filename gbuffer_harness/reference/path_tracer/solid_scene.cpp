@@ -9,7 +9,7 @@ namespace pellucid::harness::reference {
 
 namespace {
 
-// Of the scene's radius; solids find their surfaces to 1e-9 mm.
+// Share of the scene's radius; solids find their surfaces to 1e-9 mm.
 constexpr double kOffset = 1e-6;
 
 class SolidScene : public TraceScene {

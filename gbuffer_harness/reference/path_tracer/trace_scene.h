@@ -1,4 +1,4 @@
-// What paths are traced through: closed bodies, some filled with a medium, some opaque. Lengths in mm, in
+// A scene to trace paths through: closed bodies, some filled with a medium, some opaque. Lengths in mm, in
 // coordinates of the scene's own.
 #pragma once
 
@@ -25,10 +25,10 @@ public:
   // First surface that the ray meets from outside, at a distance >= `from`.
   virtual std::optional<SurfacePoint> first(const Ray& ray, double from) const = 0;
 
-  // Whether anything stands within `distance` of the ray's origin.
+  // True when anything stands within `distance` of the ray's origin.
   virtual bool occluded(const Ray& ray, double distance) const = 0;
 
-  // Where a ray that starts inside a body leaves it, if that is nearer than `limit`.
+  // The point at which a ray that starts inside a body leaves it, if that is nearer than `limit`.
   virtual std::optional<SurfacePoint> exit(int body, const Ray& ray, double limit) const = 0;
 
   // A sphere around all of it; nothing for scenes without end.

@@ -18,7 +18,7 @@ struct TruthSums {
   std::vector<glm::dvec3> sum, sumOfSquares;  // row 0 first; 0 where there is no surface
 };
 
-// What exitance is multiplied by at each pixel: its albedo (absent: 1) over rho of its medium; 0 without a
+// Factor of exitance at each pixel: its albedo (absent: 1) over rho of its medium; 0 without a
 // material. media: one for each of the capture's materials. Throws InputError when rho of one is 0.
 std::vector<glm::dvec3> albedoOverRho(const Capture& capture, const std::vector<TraceMedium>& media);
 
@@ -27,7 +27,7 @@ std::vector<glm::dvec3> albedoOverRho(const Capture& capture, const std::vector<
 // and sample alone.
 class TruthTracer {
 public:
-  // What is referred to must outlive the tracer. Throws as albedoOverRho() does.
+  // All arguments must outlive the tracer. Throws as albedoOverRho() does.
   TruthTracer(const Capture& capture, const VisibleSurface& surface, const TraceScene& scene,
               const std::vector<TraceMedium>& media, const Emitters& emitters);
 

@@ -24,7 +24,7 @@ struct WalkExit {
 std::optional<WalkExit> walk(const TraceScene& scene, const TraceMedium& medium, const SurfacePoint& start,
                              PathRandom& random);
 
-// Where and how light that arrives from outside in this direction (unit) goes on inside: by Fresnel's
+// The way inside of light that arrives from outside in this direction (unit): by Fresnel's
 // refraction with the fraction that enters as weight, or Lambertian where the medium has no boundary.
 struct WalkEntry {
   glm::dvec3 direction;
