@@ -36,6 +36,7 @@ void main() {
 #endif
     vec3 normal = mat3(frame.viewFromNormal) * decodeNormal(texelFetch(normalImage, pixel, 0));
     Surface s = makeSurface(ray, front, through, normal);
+    s.material = material;
     for (uint i = 0u; i < pass.value.x; ++i) {
       Transmitted t = lightTransmission(lights[i], s);
       vec3 light = t.arriving * t.visible;

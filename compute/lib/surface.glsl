@@ -8,6 +8,7 @@ struct Surface {
   vec3 position, normal, view; // view: unit, from the eye
   float chord;                 // along the view ray; -1: unknown
   bool hasNormal;
+  uint material; // index + 1; 0: not known
 };
 
 // Whether a vector of that squared length has a direction; false for NaN, too.
@@ -19,6 +20,7 @@ Surface makeSurface(ViewRay ray, float planar, float chord, vec3 normal) {
   s.position = ray.origin + planar * ray.direction;
   s.view = normalize(ray.direction);
   s.chord = chord;
+  s.material = 0u;
   s.normal = normal;
   float squared = dot(s.normal, s.normal);
   s.hasNormal = hasDirection(squared);

@@ -8,6 +8,7 @@
 #include "lib/angle.glsl"
 #include "lib/flags.glsl"
 #include "lib/light.glsl"
+#include "lib/occluder.glsl"
 #include "lib/shadow.glsl"
 #include "lib/surface.glsl"
 #include "lib/thickness.glsl"
@@ -34,21 +35,34 @@ vec3 materialTransmittance(uint m, float d) {
 
 struct LightSpace {
   bool inside, holds; // the map contains the point; its texel has a surface
+  bool enters;        // there, and nothing but the surface's own medium is known to lie between it and the point
   float thickness;    // scene units along the light ray; negative: the surface is beyond the point
   float bias;
 };
 
-// The first of the light's maps that contains x.
-LightSpace lightSpace(LightConstants light, Incident incident, vec3 x) {
+bool lightEntersMedium(ShadowConstants shadow, ShadowReceiver receiver, Incident incident, Surface s, vec3 x) {
+  if (hasCasterImage(shadow) && !casterIsMedium(shadowTexel(shadow.occluder.y - 1u, receiver.texel),
+                                                uintBitsToFloat(shadow.occluder.z), s.material))
+    return false;
+  if (!hasExitImage(shadow)) return true;
+  float stored = shadowTexel(shadow.occluder.x - 1u, receiver.texel);
+  float cosine = s.hasNormal ? dot(s.normal, incident.toLight) : 0.0;
+  return !shadowHolds(shadow.meta, stored) || !liesBeyondExit(lightThickness(shadow, receiver, x, incident, stored),
+                                                               exitTolerance(shadow, incident.distanceTo, cosine));
+}
+
+// In the first of the light's maps that contains x, a point on or behind the surface s.
+LightSpace lightSpace(LightConstants light, Incident incident, Surface s, vec3 x) {
   for (uint i = 0u; i < light.meta.z; ++i) {
     ShadowConstants shadow = shadows[light.meta.y + i];
     ShadowReceiver receiver = projectReceiver(shadow, x);
     if (!receiver.inside) continue;
     float stored = shadowTexel(shadow.meta.x, receiver.texel);
-    return LightSpace(true, shadowHolds(shadow.meta, stored), lightThickness(shadow, receiver, x, incident, stored),
-                      shadow.depth.y);
+    bool holds = shadowHolds(shadow.meta, stored);
+    return LightSpace(true, holds, holds && lightEntersMedium(shadow, receiver, incident, s, x),
+                      lightThickness(shadow, receiver, x, incident, stored), shadow.depth.y);
   }
-  return LightSpace(false, false, -1.0, 0.0);
+  return LightSpace(false, false, false, -1.0, 0.0);
 }
 
 struct Transmitted {
@@ -72,9 +86,9 @@ Transmitted lightTransmission(LightConstants light, Surface s) {
   Incident incident = incidentLight(light, s.position);
   bool mapped = !kUnmapped && light.meta.z != 0u;
   if (mapped && !hasFlag(PELLUCID_FLAG_CAMERA_THICKNESS)) {
-    LightSpace l = lightSpace(light, incident, s.position);
+    LightSpace l = lightSpace(light, incident, s, s.position);
     vec3 arriving = incident.irradiance * hiddenCosine(light, s, incident.toLight);
-    return Transmitted(max(l.thickness - l.bias, 0.0), arriving, l.inside && l.holds ? 1.0 : 0.0);
+    return Transmitted(max(l.thickness - l.bias, 0.0), arriving, l.enters ? 1.0 : 0.0);
   }
   if (s.chord < 0.0) return Transmitted(-1.0, vec3(0.0), 0.0);
   vec3 back = s.position + s.chord * s.view;
@@ -84,8 +98,8 @@ Transmitted lightTransmission(LightConstants light, Surface s) {
   float thickness = alongNormal ? s.chord * abs(dot(s.normal, s.view)) : s.chord;
   float visible = 1.0;
   if (mapped) {
-    LightSpace l = lightSpace(light, incident, back);
-    visible = l.inside && l.holds && l.thickness <= l.bias ? 1.0 : 0.0;
+    LightSpace l = lightSpace(light, incident, s, back);
+    visible = l.enters && l.thickness <= l.bias ? 1.0 : 0.0;
   }
   return Transmitted(thickness, incident.irradiance * hiddenCosine(light, s, incident.toLight), visible);
 }

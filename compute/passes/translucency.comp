@@ -67,6 +67,7 @@ vec3 resultAt(ivec2 pixel, Texels t, float front, uint m) {
   // Marked pixels keep their irradiance.
   if (front > 0.0 && (t.value & frame.marks.x) == 0u) {
     Surface s = surfaceAt(pixel, front, t.front, t.back, t.normal);
+    s.material = m + 1u;
     float mm = frame.camera.range.w;
     if (s.chord >= 0.0) thickness.r = s.chord * mm;
     for (uint i = 0u; i < pass.value.y; ++i) {
@@ -80,7 +81,7 @@ vec3 resultAt(ivec2 pixel, Texels t, float front, uint m) {
       arriving += through.arriving;
       visible += entering;
       if (through.visible > 0.0 && thickness.b < 0.0) thickness.b = through.thickness * mm;
-      LightSpace l = lightSpace(light, incidentLight(light, s.position), s.position);
+      LightSpace l = lightSpace(light, incidentLight(light, s.position), s, s.position);
       if (l.inside && l.holds && thickness.g < 0.0) thickness.g = max(l.thickness - l.bias, 0.0) * mm;
 #endif
     }

@@ -164,6 +164,8 @@ struct ShadowConstants {
   vec4 depth;        // x: perspective: clip z at the light; orthographic: scene units along the
                      // light per clip z or per planar unit; y: bias; z, w: texels
   uvec4 meta;        // x: image; y: encoding; z: 1 perspective; w: texel value that holds nothing (bits)
+  uvec4 occluder;    // x: image of the exit depth + 1; y: of the caster's material + 1; 0: none. Bits: z: scale of the
+                     // material; w: side of a texel, scene units; perspective: per unit of distance
 };
 
 // One directional light with one map of device depth, as passes/directional.comp sees it. Texels of the map (x, y) and

@@ -30,6 +30,9 @@ struct ShadowMap {
   DepthImage depth;
   Matrix clipFromWorld = kIdentity;
   std::optional<Matrix> viewFromWorld;  // required for VIEW_Z and DISTANCE
+  // Of depth's size, or empty: not given. What the fields of PellucidShadowMap are.
+  Image exitDepth;                           // one channel, in depth's encoding
+  std::vector<std::uint8_t> casterMaterial;  // index; 0: opaque, or nothing there
 };
 
 struct Light {

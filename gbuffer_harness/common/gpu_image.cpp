@@ -26,6 +26,7 @@ Texel texelOf(VkFormat format) {
     case VK_FORMAT_R8G8B8A8_SNORM:
       return {4, 1};
     case VK_FORMAT_R8_UINT:
+    case VK_FORMAT_R8_UNORM:
       return {1, 1};
     default:
       throw DeviceError("GpuImage does not know VkFormat " + std::to_string(format));
@@ -65,7 +66,7 @@ GpuImage::GpuImage(Device& device, int width, int height, VkFormat format, VkIma
   info.samples = VK_SAMPLE_COUNT_1_BIT;
   info.usage =
       VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | more;
-  if (format != VK_FORMAT_R8_UINT) info.usage |= VK_IMAGE_USAGE_STORAGE_BIT;
+  if (format != VK_FORMAT_R8_UINT && format != VK_FORMAT_R8_UNORM) info.usage |= VK_IMAGE_USAGE_STORAGE_BIT;
   const auto limit = static_cast<int>(device.properties().limits.maxImageDimension2D);
   if (width < 1 || height < 1 || width > limit || height > limit)
     throw DeviceError("an image of " + std::to_string(width) + " x " + std::to_string(height) +
@@ -176,9 +177,11 @@ Image GpuImage::download() const {
                    [](glm::uint16 v) { return glm::unpackHalf1x16(v); });
   } else {
     const auto* bytes = static_cast<const std::uint8_t*>(staging.mapped());
-    const bool isSigned = format_ == VK_FORMAT_R8G8B8A8_SNORM;
-    std::transform(bytes, bytes + result.data.size(), result.data.begin(),
-                   [=](std::uint8_t v) { return isSigned ? glm::unpackSnorm1x8(v) : static_cast<float>(v); });
+    std::transform(bytes, bytes + result.data.size(), result.data.begin(), [this](std::uint8_t v) {
+      return format_ == VK_FORMAT_R8G8B8A8_SNORM ? glm::unpackSnorm1x8(v)
+             : format_ == VK_FORMAT_R8_UNORM     ? glm::unpackUnorm1x8(v)
+                                                 : static_cast<float>(v);
+    });
   }
   return result;
 }

@@ -10,7 +10,7 @@ namespace pellucid::harness {
 class GpuImage {
 public:
   // Usable as sampled and storage image, for transfers, and as `more` says. Formats: R32_SFLOAT,
-  // R16G16B16A16_SFLOAT, R32G32B32A32_SFLOAT, R8G8B8A8_SNORM, R8_UINT (not storage).
+  // R16G16B16A16_SFLOAT, R32G32B32A32_SFLOAT, R8G8B8A8_SNORM; not storage: R8_UINT, R8_UNORM.
   GpuImage(Device& device, int width, int height, VkFormat format, VkImageUsageFlags more = 0);
   ~GpuImage();
   GpuImage(const GpuImage&) = delete;
@@ -18,7 +18,7 @@ public:
 
   // Converts to the image's format. Channels that the source lacks become 0, alpha 1.
   void upload(const Image& source);
-  void upload(const std::vector<std::uint8_t>& source);  // R8_UINT
+  void upload(const std::vector<std::uint8_t>& source);  // R8_UINT, R8_UNORM: bytes as they are stored
   void clear(std::uint8_t byte = 0);                     // every byte of every texel
   Image download() const;
 

@@ -18,7 +18,8 @@ void copy(const std::array<double, 3>& from, float (&to)[3]) {
   std::transform(from.begin(), from.end(), to, [](double v) { return static_cast<float>(v); });
 }
 
-void addLight(const Light& light, float shadowBias, FrameData& data) {
+// `images`: shadow images of the lights before.
+void addLight(const Light& light, float shadowBias, uint32_t& images, FrameData& data) {
   PellucidLight l{};
   l.type = light.type;
   copy(light.position, l.position);
@@ -32,7 +33,9 @@ void addLight(const Light& light, float shadowBias, FrameData& data) {
   l.shadowMapCount = static_cast<uint32_t>(light.shadowMaps.size());
   for (const ShadowMap& map : light.shadowMaps) {
     PellucidShadowMap s{};
-    s.image = static_cast<uint32_t>(data.shadowDepths.size());
+    s.image = images++;
+    if (!map.exitDepth.empty()) s.exitImage = ++images;
+    if (!map.casterMaterial.empty()) s.casterMaterialImage = ++images;
     s.extent[0] = static_cast<uint32_t>(map.depth.image.width);
     s.extent[1] = static_cast<uint32_t>(map.depth.image.height);
     s.encoding = map.depth.encoding;
@@ -40,7 +43,6 @@ void addLight(const Light& light, float shadowBias, FrameData& data) {
     copy(map.clipFromWorld, s.clipFromWorld);
     copy(map.viewFromWorld.value_or(kIdentity), s.viewFromWorld);
     data.shadowMaps.push_back(s);
-    data.shadowDepths.push_back(&map.depth.image);
   }
   data.lights.push_back(l);
 }
@@ -137,11 +139,23 @@ std::vector<PellucidMaterial> withTransmittance(std::vector<PellucidMaterial> ma
   return materials;
 }
 
+std::vector<ShadowSource> shadowSources(const std::vector<Light>& lights) {
+  std::vector<ShadowSource> sources;
+  for (const Light& light : lights)
+    for (const ShadowMap& map : light.shadowMaps) {
+      sources.push_back({&map.depth.image});
+      if (!map.exitDepth.empty()) sources.push_back({&map.exitDepth});
+      if (!map.casterMaterial.empty()) sources.push_back({&map.depth.image, &map.casterMaterial});
+    }
+  return sources;
+}
+
 void makeFrame(const Capture& capture, const std::vector<PellucidMaterial>& materials,
                const ReplaySettings& settings, FrameData& data) {
   data.materials = withTransmittance(materials, settings.transmittance);
-  for (const Light& light : capture.lights) addLight(light, settings.translucency.shadowBias, data);
-  data.shadowImages.resize(data.shadowDepths.size());
+  uint32_t images = 0;
+  for (const Light& light : capture.lights) addLight(light, settings.translucency.shadowBias, images, data);
+  data.shadowImages.resize(images);
 
   PellucidFrame& f = data.frame;
   pellucidInitFrame(&f);

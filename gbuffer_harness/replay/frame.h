@@ -43,14 +43,22 @@ ReplaySettings thesisSettings();
 std::vector<PellucidMaterial> withTransmittance(std::vector<PellucidMaterial> materials,
                                                 TransmittanceChoice choice);
 
-// A frame and the arrays it points to. `shadowDepths[i]` is what shadowImages[i] must hold.
+// What a shadow image must hold: depths as floats, or, where `materials` is given, those indices in R8_UNORM.
+struct ShadowSource {
+  const Image* depth;
+  const std::vector<std::uint8_t>* materials = nullptr;  // of depth's size
+};
+
+// Of the lights' maps in order: each map, then its exit depth and its caster material where it has them.
+std::vector<ShadowSource> shadowSources(const std::vector<Light>& lights);
+
+// A frame and the arrays it points to. shadowImages are as shadowSources() of the capture's lights.
 struct FrameData {
   PellucidFrame frame;
   std::vector<PellucidMaterial> materials;
   std::vector<PellucidLight> lights;
   std::vector<PellucidShadowMap> shadowMaps;
   std::vector<PellucidImage> shadowImages;
-  std::vector<const Image*> shadowDepths;
   std::vector<float> minimumDotTable;
 
   FrameData() = default;

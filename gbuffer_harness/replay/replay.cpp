@@ -26,17 +26,23 @@ InputImages::InputImages(Device& device, const Capture& capture, const ReplaySet
   irradiance_ = images_.back().get();
   if (!capture.normal.empty()) normal_ = add(device, capture.normal, settings.normalFormat);
   if (!capture.albedo.empty()) albedo_ = add(device, capture.albedo, VK_FORMAT_R32G32B32A32_SFLOAT);
-  images_.push_back(std::make_unique<GpuImage>(device, capture.width, capture.height, VK_FORMAT_R8_UINT));
-  images_.back()->upload(capture.material);
-  material_ = images_.back()->use();
-  for (const Light& light : capture.lights)
-    for (const ShadowMap& map : light.shadowMaps)
-      shadows_.push_back(add(device, map.depth.image, VK_FORMAT_R32_SFLOAT));
+  material_ = add(device, capture.width, capture.height, capture.material, VK_FORMAT_R8_UINT);
+  for (const ShadowSource& source : shadowSources(capture.lights))
+    shadows_.push_back(source.materials ? add(device, source.depth->width, source.depth->height,
+                                              *source.materials, VK_FORMAT_R8_UNORM)
+                                        : add(device, *source.depth, VK_FORMAT_R32_SFLOAT));
 }
 
 PellucidImage InputImages::add(Device& device, const Image& image, VkFormat format) {
   images_.push_back(std::make_unique<GpuImage>(device, image.width, image.height, format));
   images_.back()->upload(image);
+  return images_.back()->use();
+}
+
+PellucidImage InputImages::add(Device& device, int width, int height,
+                               const std::vector<std::uint8_t>& indices, VkFormat format) {
+  images_.push_back(std::make_unique<GpuImage>(device, width, height, format));
+  images_.back()->upload(indices);
   return images_.back()->use();
 }
 

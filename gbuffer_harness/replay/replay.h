@@ -39,6 +39,8 @@ public:
 
 private:
   PellucidImage add(Device& device, const Image& image, VkFormat format);
+  PellucidImage add(Device& device, int width, int height, const std::vector<std::uint8_t>& indices,
+                    VkFormat format);
 
   std::vector<std::unique_ptr<GpuImage>> images_;
   GpuImage* irradiance_ = nullptr;

@@ -123,8 +123,36 @@ shared::LightConstants lightConstants(const PellucidFrame& f, const PellucidLigh
   return c;
 }
 
+uint32_t bitsOf(float value) {
+  uint32_t bits;
+  std::memcpy(&bits, &value, sizeof bits);
+  return bits;
+}
+
+// Longer side of a map's texel, scene units across the light; perspective: at planar distance 1.
+float texelSide(const glm::dmat4& clipFromWorld, bool perspective, const uint32_t (&extent)[2]) {
+  const auto row = [&](int i) {
+    return glm::dvec3(clipFromWorld[0][i], clipFromWorld[1][i], clipFromWorld[2][i]);
+  };
+  const glm::dvec3 w = row(3);
+  double side = 0;
+  for (int i = 0; i < 2; ++i) {
+    // An axis that is off center leans along the view; that does not make texels smaller.
+    const glm::dvec3 across = perspective ? row(i) - w * (glm::dot(row(i), w) / glm::dot(w, w)) : row(i);
+    side = std::max(side, 2 * (perspective ? glm::length(w) : 1) / (glm::length(across) * extent[i]));
+  }
+  return static_cast<float>(side);
+}
+
+glm::uvec4 occluderConstants(const PellucidShadowMap& s, bool perspective, const LightGroup& group) {
+  const auto slot = [&](uint32_t image) { return image == 0 ? 0 : group.slot(image - 1) + 1; };
+  const float scale = s.casterMaterialScale == 0 ? 255.0f : s.casterMaterialScale;
+  return {slot(s.exitImage), slot(s.casterMaterialImage), bitsOf(scale),
+          bitsOf(texelSide(toMatrix(s.clipFromWorld), perspective, s.extent))};
+}
+
 shared::ShadowConstants shadowConstants(const PellucidShadowMap& s, const PellucidLight& l,
-                                        const glm::dmat4& worldFromView, uint32_t slot) {
+                                        const glm::dmat4& worldFromView, const LightGroup& group) {
   shared::ShadowConstants c{};
   const glm::dmat4 clipFromWorld = toMatrix(s.clipFromWorld);
   c.clipFromView = glm::mat4(clipFromWorld * worldFromView);
@@ -151,10 +179,8 @@ shared::ShadowConstants shadowConstants(const PellucidShadowMap& s, const Pelluc
              static_cast<float>(s.extent[1])};
   // A cleared device-depth map holds its far plane: depth grows away from the light, or is reversed.
   const bool forward = perspective ? depthScale < 0 : depthScale > 0;
-  const float nothing = forward ? 1.0f : 0.0f;
-  uint32_t bits;
-  std::memcpy(&bits, &nothing, sizeof bits);
-  c.meta = {slot, encoding, perspective ? 1u : 0u, bits};
+  c.meta = {group.slot(s.image), encoding, perspective ? 1u : 0u, bitsOf(forward ? 1.0f : 0.0f)};
+  c.occluder = occluderConstants(s, perspective, group);
   return c;
 }
 
@@ -249,7 +275,7 @@ extern "C" PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const
         light);
     for (uint32_t i = 0; i < l.shadowMapCount; ++i, ++shadow) {
       const PellucidShadowMap& s = f.shadowMaps[l.firstShadowMap + i];
-      const shared::ShadowConstants constants = shadowConstants(s, l, worldFromView, group.slot(s.image));
+      const shared::ShadowConstants constants = shadowConstants(s, l, worldFromView, group);
       put(mapped, layout.shadows.offset + group.shadowBytes + shadow * sizeof constants, constants);
       if (group.directional && group.lightCount == 1)  // read where no other follows
         put(mapped, layout.directional.offset + group.index * kDirectionalWindow,

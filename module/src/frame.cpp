@@ -17,16 +17,38 @@ bool anyMaterialDiffuses(const PellucidFrame& frame) {
   return false;
 }
 
+uint32_t LightGroup::slot(uint32_t image) const {
+  for (uint32_t i = 0; i < imageCount; ++i)
+    if (images[i] == image) return i;
+  return PELLUCID_SHADOW_IMAGE_COUNT;
+}
+
+bool LightGroup::addImage(uint32_t image) {
+  if (slot(image) < PELLUCID_SHADOW_IMAGE_COUNT) return true;
+  if (imageCount == PELLUCID_SHADOW_IMAGE_COUNT) return false;
+  images[imageCount++] = image;
+  return true;
+}
+
+bool LightGroup::addImages(const PellucidShadowMap& map) {
+  return addImage(map.image) && (map.exitImage == 0 || addImage(map.exitImage - 1)) &&
+         (map.casterMaterialImage == 0 || addImage(map.casterMaterialImage - 1));
+}
+
+bool hasOccluderImages(const PellucidShadowMap& map) {
+  return map.exitImage != 0 || map.casterMaterialImage != 0;
+}
+
 bool addLight(const PellucidFrame& frame, const PellucidLight& light, LightGroup* group) {
   LightGroup grown = *group;
   grown.shadowCount += light.shadowMapCount;
   if (group->lightCount == PELLUCID_DISPATCH_LIGHTS || grown.shadowCount > PELLUCID_DISPATCH_SHADOWS)
     return false;
+  bool occluderImages = false;
   for (uint32_t i = 0; i < light.shadowMapCount; ++i) {
-    const uint32_t image = frame.shadowMaps[light.firstShadowMap + i].image;
-    if (grown.slot(image) < PELLUCID_SHADOW_IMAGE_COUNT) continue;
-    if (grown.imageCount == PELLUCID_SHADOW_IMAGE_COUNT) return false;
-    grown.images[grown.imageCount++] = image;
+    const PellucidShadowMap& map = frame.shadowMaps[light.firstShadowMap + i];
+    if (!grown.addImages(map)) return false;
+    occluderImages = occluderImages || hasOccluderImages(map);
   }
   if (isGathered(frame, light)) {
     for (uint32_t i = 0; i < light.shadowMapCount; ++i) {
@@ -39,7 +61,8 @@ bool addLight(const PellucidFrame& frame, const PellucidLight& light, LightGroup
   }
   const bool directional = light.type == PELLUCID_LIGHT_DIRECTIONAL && light.shadowMapCount == 1 &&
                            frame.shadowMaps[light.firstShadowMap].encoding == PELLUCID_DEPTH_DEVICE;
-  grown.directional = grown.directional && directional;
+  // passes/directional.comp reads no image besides the map.
+  grown.directional = grown.directional && directional && !occluderImages;
   if (isGathered(frame, light)) grown.gatheredDirectional = grown.gatheredDirectional && directional;
   ++grown.lightCount;
   *group = grown;

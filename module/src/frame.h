@@ -36,23 +36,28 @@ static_assert(kLightWindow <= 16384 && kShadowWindow <= 16384 && kGatherMapWindo
 struct LightGroup {
   uint32_t index = 0;
   uint32_t firstLight = 0, lightCount = 0;  // among the lights that are not skipped
-  bool directional = true;                  // every light is directional with one shadow map of device depth
-  uint32_t shadowCount = 0;                 // shadow maps
+  bool directional = true;  // every light is directional with one shadow map of device depth, which has no
+                            // exit depth and no caster material
+  uint32_t shadowCount = 0;                      // shadow maps
   VkDeviceSize lightBytes = 0, shadowBytes = 0;  // of the groups before, in the constants
   VkDeviceSize gatherMapBytes = 0, recordMapBytes = 0;
   uint32_t gathered = 0;                       // lights that are gathered from; the first ones
-  bool gatheredDirectional = true;             // as `directional`, of these
+  bool gatheredDirectional = true;             // these are directional with one shadow map of device depth
   uint32_t recordColumns = 0, recordRows = 0;  // of their maps' records
   uint32_t imageCount = 0;
   std::array<uint32_t, PELLUCID_SHADOW_IMAGE_COUNT> images{};  // into frame.shadowImages
 
   // Slot of an image, or PELLUCID_SHADOW_IMAGE_COUNT.
-  uint32_t slot(uint32_t image) const {
-    for (uint32_t i = 0; i < imageCount; ++i)
-      if (images[i] == image) return i;
-    return PELLUCID_SHADOW_IMAGE_COUNT;
-  }
+  uint32_t slot(uint32_t image) const;
+  // Gives the map's images slots; false if there are not enough.
+  bool addImages(const PellucidShadowMap& map);
+
+private:
+  bool addImage(uint32_t image);
 };
+
+// Whether the map has an exit depth or a caster material.
+bool hasOccluderImages(const PellucidShadowMap& map);
 
 // Whether lights with a map are gathered from.
 inline bool gathers(const PellucidFrame& frame) {

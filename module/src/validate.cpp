@@ -175,6 +175,19 @@ void checkShadowMap(const PellucidFrame& f, uint32_t index, Findings& out) {
       !(finite(s.viewFromWorld, 16) && rigid(toMatrix(s.viewFromWorld))))
     out.error(field("viewFromWorld"), "is not a rotation and translation, which this encoding needs");
   if (!(s.bias >= 0 && std::isfinite(s.bias))) out.error(field("bias"), "is ", s.bias, "; must be >= 0");
+  const auto checkBeside = [&](const char* name, uint32_t image) {
+    if (image > f.shadowImageCount)
+      out.error(field(name), "is ", image, " (an index plus 1), but there are ", f.shadowImageCount,
+                " shadowImages");
+    else if (image != 0 && image - 1 == s.image)
+      out.error(field(name), "is ", image, " (an index plus 1), the map's own image");
+  };
+  checkBeside("exitImage", s.exitImage);
+  checkBeside("casterMaterialImage", s.casterMaterialImage);
+  if (s.exitImage != 0 && s.exitImage == s.casterMaterialImage)
+    out.error(field("casterMaterialImage"), "is ", s.casterMaterialImage, ", the exitImage");
+  if (!(s.casterMaterialScale >= 0 && std::isfinite(s.casterMaterialScale)))
+    out.error(field("casterMaterialScale"), "is ", s.casterMaterialScale, "; must be >= 0");
 }
 
 void checkLight(const PellucidFrame& f, uint32_t index, Findings& out) {
@@ -205,8 +218,11 @@ void checkLight(const PellucidFrame& f, uint32_t index, Findings& out) {
               static_cast<int>(PELLUCID_MAX_LIGHT_SHADOW_MAPS));
     return;
   }
+  LightGroup images;
+  bool fits = true;
   for (uint32_t i = 0; i < l.shadowMapCount; ++i) {
     const PellucidShadowMap& s = f.shadowMaps[l.firstShadowMap + i];
+    fits = fits && images.addImages(s);
     const glm::dmat4 clip = toMatrix(s.clipFromWorld);
     const bool perspective = clip[0][3] != 0 || clip[1][3] != 0 || clip[2][3] != 0;
     if (perspective == (l.type == PELLUCID_LIGHT_DIRECTIONAL))
@@ -223,6 +239,10 @@ void checkLight(const PellucidFrame& f, uint32_t index, Findings& out) {
                   atLight.w);
     }
   }
+  if (!fits)
+    out.error(field("shadowMapCount"), "is ", l.shadowMapCount,
+              ", whose maps, exit and caster images are more than the ", PELLUCID_SHADOW_IMAGE_COUNT,
+              " images that a dispatch binds");
 }
 
 }  // namespace

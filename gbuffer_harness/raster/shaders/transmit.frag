@@ -65,6 +65,7 @@ void main() {
     normal = mat3(frame.viewFromNormal) * decodeNormal(texelFetch(normalImage, pixel, 0));
   float through = chord(planarDifference(frame.camera, gl_FragCoord.z, front), ray);
   Surface s = makeSurface(ray, planarDistance(frame.camera, front), through, normal);
+  s.material = material;
   vec3 sum = vec3(0.0);
   for (uint i = 0u; i < draw.ids.w; ++i) {
     Transmitted t = lightTransmission(lights[i], s);

@@ -24,7 +24,7 @@ extern "C" {
 #endif
 
 /* Passed in PellucidContextDesc; the library refuses a header it does not know. */
-#define PELLUCID_HEADER_VERSION 1u
+#define PELLUCID_HEADER_VERSION 2u
 
 typedef int32_t PellucidResult;
 enum {
@@ -126,9 +126,22 @@ typedef struct PellucidShadowMap {
   float viewFromWorld[16]; /* right-handed, -z forward; not read for PELLUCID_DEPTH_DEVICE, nor for
                               DISTANCE of point and spot lights */
   float bias;            /* scene units of thickness; nearer than this counts as the receiver itself */
+
+  /* Two optional images of the map's extent say what lies behind the stored surface. Without them everything
+   * between that surface and the receiver counts as the receiver's medium, air behind an occluder included.
+   * Both are indices into frame.shadowImages plus 1; 0 (default): not given. */
+  uint32_t exitImage; /* depth, in the map's encoding and matrices, of the nearest back face behind the stored
+                         surface. Receivers beyond it are in shadow. A texel that holds nothing, or NaN: no back
+                         face is known, and the medium goes on */
+  uint32_t casterMaterialImage; /* one float channel: material of the stored surface, numbered as in
+                                   frame.material without the mark bit; 0: opaque. Light enters receivers of that
+                                   material only */
+  float casterMaterialScale; /* the number is round(value * scale); >= 0; 0 (default): 255, for R8_UNORM; 1 for
+                                formats that hold the number itself */
 } PellucidShadowMap;
 
-/* A fused dispatch binds 8 shadow images and takes 128 lights and 128 shadow maps; a frame with more gets several. */
+/* A fused dispatch binds 8 shadow images and takes 128 lights and 128 shadow maps; a frame with more gets several.
+ * Exit depths and caster materials count; the images of one light must fit into one dispatch. */
 enum { PELLUCID_MAX_LIGHT_SHADOW_MAPS = 8, PELLUCID_MAX_TRANSIENTS = 4 };
 
 typedef enum PellucidFeatureBits {
@@ -211,7 +224,7 @@ typedef struct PellucidFrame {
   uint32_t shadowMapCount;
   const PellucidShadowMap* shadowMaps;
   uint32_t shadowImageCount; /* any number */
-  const PellucidImage* shadowImages; /* depth or one float channel, one 2D view per map */
+  const PellucidImage* shadowImages; /* depth or one float channel, one 2D view each */
 
   uint32_t thicknessSource; /* PellucidThicknessSource */
   uint32_t debugView;       /* PellucidDebugView */
