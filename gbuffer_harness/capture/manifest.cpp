@@ -104,8 +104,8 @@ PellucidDepthEncoding shadowEncoding(const Field& field) {
   return kEncodings[field["encoding"].choice({"device", "viewZ", "distance"})];
 }
 
-std::map<int, int> readMaterialMap(const Field& field, int materialCount) {
-  std::map<int, int> map;
+MaterialMap readMaterialMap(const Field& field, int materialCount) {
+  MaterialMap map;
   for (const auto& [key, value] : field.members()) {
     const bool digits =
         !key.empty() && key.size() <= 8 && key.find_first_not_of("0123456789") == std::string::npos;
@@ -215,13 +215,30 @@ MaterialSource readMaterial(const Field& field) {
 }
 
 ShadowMap readShadowMap(const Field& field) {
-  field.allowKeys({"file", "part", "channel", "constant", "encoding", "clipFromWorld", "viewFromWorld"});
+  field.allowKeys({"file", "part", "channel", "constant", "encoding", "clipFromWorld", "viewFromWorld",
+                   "exit", "casterMaterial"});
   ShadowMap map;
   map.depth.encoding = shadowEncoding(field);
   map.clipFromWorld = invertible(field["clipFromWorld"]);
   if (field.has("viewFromWorld") || map.depth.encoding != PELLUCID_DEPTH_DEVICE)
     map.viewFromWorld = rigid(field["viewFromWorld"]);
   return map;
+}
+
+ShadowSources readShadowSources(const Field& map, const BufferReader& read, int materialCount) {
+  ShadowSources sources;
+  sources.depth = read(map, 1);
+  if (const auto exit = map.find("exit")) {
+    exit->allowKeys({"file", "part", "channel", "constant"});
+    sources.exit = read(*exit, 1);
+  }
+  if (const auto caster = map.find("casterMaterial")) {
+    caster->allowKeys({"file", "part", "channel", "constant", "map"});
+    sources.casterMaterial = read(*caster, 1);
+    if (const auto names = caster->find("map"))
+      sources.casterMaterialMap = readMaterialMap(*names, materialCount);
+  }
+  return sources;
 }
 
 // A light's maps: "shadowMap" is one, "shadowMaps" are several.
@@ -357,7 +374,9 @@ void parse(const Field& root, const BufferReader& read, Manifest& manifest) {
     for (const Field& light : lights->items()) {
       capture.lights.push_back(readLight(light));
       manifest.shadowMaps.emplace_back();
-      for (const Field& map : shadowMapsOf(light)) manifest.shadowMaps.back().push_back(read(map, 1));
+      for (const Field& map : shadowMapsOf(light))
+        manifest.shadowMaps.back().push_back(
+            readShadowSources(map, read, static_cast<int>(capture.materials.size())));
     }
   }
   if (const auto truth = root.find("truth")) {

@@ -29,14 +29,23 @@ inline constexpr int kMaxStoredMaterial = 1 << 24;
 // String attribute of an EXR that embeds its manifest.
 inline constexpr const char* kManifestAttribute = "pellucid.manifest";
 
+using MaterialMap = std::map<int, int>;  // stored value -> material index; empty: the value is the index
+
+// Where a shadow map and what lies beside it come from.
+struct ShadowSources {
+  BufferSource depth;
+  std::optional<BufferSource> exit, casterMaterial;
+  MaterialMap casterMaterialMap;
+};
+
 struct Manifest {
   std::filesystem::path path;
   Capture capture;  // everything but the images and the size
 
   BufferSource frontDepth, irradiance, material;
   std::optional<BufferSource> backDepth, normal, albedo, truth, truthStandardError;
-  std::vector<std::vector<BufferSource>> shadowMaps;  // per light, as Light::shadowMaps
-  std::map<int, int> materialMap;  // stored value -> material index; empty: the value is the index
+  std::vector<std::vector<ShadowSources>> shadowMaps;  // per light, as Light::shadowMaps
+  MaterialMap materialMap;
   double truthScale = 1;
   double irradianceScale = 1;  // of the stored values; not 1 for presets only
 };

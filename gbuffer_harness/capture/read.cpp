@@ -1,6 +1,7 @@
 #include "capture/read.h"
 
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <map>
 #include <sstream>
@@ -21,8 +22,9 @@ struct Request {
   const BufferSource* source;
   Image* image;  // channels set
   float outside;
-  bool screen;     // must have the screen's size
-  bool mustCover;  // pixels outside the data window are an error
+  bool screen;                      // must have the screen's size
+  bool mustCover;                   // pixels outside the data window are an error
+  const Request* beside = nullptr;  // must have that one's size; comes after it
 };
 
 std::string sizeText(int width, int height) { return std::to_string(width) + "x" + std::to_string(height); }
@@ -32,13 +34,20 @@ class Loader {
 public:
   explicit Loader(const Manifest& manifest) : manifest_(manifest) {}
 
-  void want(const BufferSource& source, Image& image, int channels, float outside, bool screen) {
+  Request& want(const BufferSource& source, Image& image, int channels, float outside, bool screen) {
     image.channels = channels;
-    requests_.push_back({&source, &image, outside, screen, false});
+    return requests_.emplace_back(Request{&source, &image, outside, screen, false});
   }
-  void wantDepth(const BufferSource& source, DepthImage& depth, bool screen) {
-    want(source, depth.image, 1, kNoDepth, screen);
-    requests_.back().mustCover = depth.encoding == PELLUCID_DEPTH_DEVICE;
+  Request& wantDepth(const BufferSource& source, DepthImage& depth, bool screen) {
+    Request& request = want(source, depth.image, 1, kNoDepth, screen);
+    request.mustCover = depth.encoding == PELLUCID_DEPTH_DEVICE;
+    return request;
+  }
+  void wantBeside(const Request& map, const BufferSource& source, Image& image, float outside,
+                  bool mustCover) {
+    Request& request = want(source, image, 1, outside, false);
+    request.mustCover = mustCover;
+    request.beside = &map;
   }
 
   void load(int& screenWidth, int& screenHeight) {
@@ -77,8 +86,10 @@ public:
       const auto& [path, part, window] = key;
       files_.at(path).read(part, window, planes);
     }
-    for (const Request& request : requests_)
+    for (const Request& request : requests_) {
       if (request.source->isConstant()) fill(request, screenWidth, screenHeight);
+      if (request.beside) checkBeside(request);
+    }
   }
 
 private:
@@ -88,21 +99,33 @@ private:
     return found->second;
   }
 
-  // A constant shadow map is one texel; screen buffers have the screen's size.
+  void checkBeside(const Request& request) const {
+    const Image &image = *request.image, &map = *request.beside->image;
+    if (image.width == map.width && image.height == map.height) return;
+    throw InputError(
+        (request.source->isConstant() ? manifest_.path : request.source->file).string(),
+        request.source->field,
+        sizeText(image.width, image.height) + " texels, but its map has " + sizeText(map.width, map.height));
+  }
+
+  // A constant shadow map is one texel; screen buffers and what lies beside a map have that one's size.
   static void fill(const Request& request, int width, int height) {
     Image& image = *request.image;
-    image = request.screen ? Image(width, height, image.channels) : Image(1, 1, image.channels);
+    if (request.beside)
+      image = Image(request.beside->image->width, request.beside->image->height, 1);
+    else
+      image = request.screen ? Image(width, height, image.channels) : Image(1, 1, image.channels);
     for (std::size_t i = 0; i < image.data.size(); ++i)
       image.data[i] = static_cast<float>(request.source->constant[i % request.source->constant.size()]);
   }
 
   const Manifest& manifest_;
-  std::vector<Request> requests_;
+  std::deque<Request> requests_;  // its elements stay where they are
   std::map<std::filesystem::path, ExrFile> files_;
 };
 
-std::vector<std::uint8_t> materialIndices(const Manifest& manifest, const Image& stored) {
-  const BufferSource& source = manifest.material;
+std::vector<std::uint8_t> materialIndices(const Manifest& manifest, const BufferSource& source,
+                                          const MaterialMap& map, const Image& stored) {
   const std::size_t count = manifest.capture.materials.size();
   const auto fail = [&](std::size_t pixel, const std::string& why) {
     const auto width = static_cast<std::size_t>(stored.width);
@@ -118,9 +141,9 @@ std::vector<std::uint8_t> materialIndices(const Manifest& manifest, const Image&
     const float value = std::round(stored.data[i]);
     if (!(value >= 0 && value <= kMaxStoredMaterial)) fail(i, ", which is no material");
     int index = static_cast<int>(value);
-    if (const auto mapped = manifest.materialMap.find(index); mapped != manifest.materialMap.end())
+    if (const auto mapped = map.find(index); mapped != map.end())
       index = mapped->second;
-    else if (!manifest.materialMap.empty() && index != 0)
+    else if (!map.empty() && index != 0)
       fail(i, ", which \"map\" does not name");
     if (static_cast<std::size_t>(index) > count)
       fail(i, ", but there are " + std::to_string(count) + " materials");
@@ -148,12 +171,25 @@ Capture readCapture(const Manifest& manifest) {
   if (manifest.truth) loader.want(*manifest.truth, capture.truth->image, 3, 0, true);
   if (manifest.truthStandardError)
     loader.want(*manifest.truthStandardError, capture.truth->standardError, 3, 0, true);
+  std::deque<Image> casters;
   for (std::size_t i = 0; i < capture.lights.size(); ++i)
-    for (std::size_t k = 0; k < capture.lights[i].shadowMaps.size(); ++k)
-      loader.wantDepth(manifest.shadowMaps[i][k], capture.lights[i].shadowMaps[k].depth, false);
+    for (std::size_t k = 0; k < capture.lights[i].shadowMaps.size(); ++k) {
+      const ShadowSources& sources = manifest.shadowMaps[i][k];
+      ShadowMap& map = capture.lights[i].shadowMaps[k];
+      const Request& depth = loader.wantDepth(sources.depth, map.depth, false);
+      if (sources.exit) loader.wantBeside(depth, *sources.exit, map.exitDepth, kNoDepth, depth.mustCover);
+      if (sources.casterMaterial)
+        loader.wantBeside(depth, *sources.casterMaterial, casters.emplace_back(), kOutside, false);
+    }
   loader.load(capture.width, capture.height);
 
-  capture.material = materialIndices(manifest, material);
+  capture.material = materialIndices(manifest, manifest.material, manifest.materialMap, material);
+  auto caster = casters.begin();
+  for (std::size_t i = 0; i < capture.lights.size(); ++i)
+    for (std::size_t k = 0; k < capture.lights[i].shadowMaps.size(); ++k)
+      if (const ShadowSources& sources = manifest.shadowMaps[i][k]; sources.casterMaterial)
+        capture.lights[i].shadowMaps[k].casterMaterial =
+            materialIndices(manifest, *sources.casterMaterial, sources.casterMaterialMap, *caster++);
   if (manifest.irradianceScale != 1)
     for (float& value : capture.irradiance.data) value *= static_cast<float>(manifest.irradianceScale);
   if (capture.truth)

@@ -1,5 +1,6 @@
 #include "capture/write.h"
 
+#include <deque>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -103,12 +104,17 @@ Json truthJson(const Truth& truth, PartWriter& screen, ExrFormat format) {
   return json;
 }
 
+Image imageOf(const std::vector<std::uint8_t>& indices, int width, int height) {
+  Image image(width, height, 1);
+  for (std::size_t i = 0; i < indices.size(); ++i) image.data[i] = indices[i];
+  return image;
+}
+
 }  // namespace
 
 void writeCapture(const Capture& capture, const std::filesystem::path& exr, ColorFormat color) {
   const ExrFormat format = color == ColorFormat::Half ? ExrFormat::Half : ExrFormat::Float;
-  Image material(capture.width, capture.height, 1);
-  for (std::size_t i = 0; i < capture.material.size(); ++i) material.data[i] = capture.material[i];
+  const Image material = imageOf(capture.material, capture.width, capture.height);
 
   PartWriter screen{{"screen", {}, {}}, 0};
   Json manifest = {
@@ -128,6 +134,7 @@ void writeCapture(const Capture& capture, const std::filesystem::path& exr, Colo
   if (capture.truth) manifest["truth"] = truthJson(*capture.truth, screen, format);
 
   std::vector<ExrPart> parts = {std::move(screen.part)};
+  std::deque<Image> casters;  // parts point to them
   manifest["lights"] = Json::array();
   for (std::size_t i = 0; i < capture.lights.size(); ++i) {
     const Light& light = capture.lights[i];
@@ -142,6 +149,11 @@ void writeCapture(const Capture& capture, const std::filesystem::path& exr, Colo
       entry = writer.addDepth(map.depth, "shadow");
       entry["clipFromWorld"] = map.clipFromWorld;
       if (map.viewFromWorld) entry["viewFromWorld"] = *map.viewFromWorld;
+      if (!map.exitDepth.empty()) entry["exit"] = writer.add(map.exitDepth, "exit", "Z", ExrFormat::Float);
+      if (!map.casterMaterial.empty()) {
+        casters.push_back(imageOf(map.casterMaterial, map.depth.image.width, map.depth.image.height));
+        entry["casterMaterial"] = writer.add(casters.back(), "caster", "I", ExrFormat::Uint);
+      }
       parts.push_back(std::move(writer.part));
     }
     manifest["lights"].push_back(std::move(json));

@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <sstream>
 
 #include "capture/exr.h"
@@ -74,15 +75,29 @@ Json depthJson(const BufferSource& source, const DepthImage& depth, const Camera
   return json;
 }
 
-Json shadowJson(const BufferSource& source, const DepthImage& depth) {
-  Json json = sourceJson(source);
-  json["encoding"] = kEncodings[depth.encoding];
-  json["size"] = {depth.image.width, depth.image.height};
+Json storedRange(const Image& depths, PellucidDepthEncoding encoding) {
   Range range;
-  for (const float value : depth.image.data)
-    if (depth.encoding == PELLUCID_DEPTH_DEVICE ? std::isfinite(value) : reference::holdsSurface(value))
+  for (const float value : depths.data)
+    if (encoding == PELLUCID_DEPTH_DEVICE ? std::isfinite(value) : reference::holdsSurface(value))
       range.add(value);
-  json["range"] = range.json();
+  return range.json();
+}
+
+Json shadowJson(const ShadowSources& sources, const ShadowMap& map) {
+  const PellucidDepthEncoding encoding = map.depth.encoding;
+  Json json = sourceJson(sources.depth);
+  json["encoding"] = kEncodings[encoding];
+  json["size"] = {map.depth.image.width, map.depth.image.height};
+  json["range"] = storedRange(map.depth.image, encoding);
+  if (sources.exit) {
+    json["exit"] = sourceJson(*sources.exit);
+    json["exit"]["range"] = storedRange(map.exitDepth, encoding);
+  }
+  if (sources.casterMaterial) {
+    json["casterMaterial"] = sourceJson(*sources.casterMaterial);
+    const std::set<int> indices(map.casterMaterial.begin(), map.casterMaterial.end());
+    json["casterMaterial"]["materials"] = indices;
+  }
   return json;
 }
 
@@ -116,10 +131,21 @@ std::vector<std::string> missingParts(const Capture& capture) {
     missing.push_back("no normal: the angle between view and light takes the place of -N.L");
   if (capture.albedo.empty()) missing.push_back("no albedo: the output is not multiplied by a surface color");
   if (capture.lights.empty()) missing.push_back("no lights: no translucency");
-  for (std::size_t i = 0; i < capture.lights.size(); ++i)
-    if (capture.lights[i].shadowMaps.empty() && !capture.backDepth.image.empty())
-      missing.push_back("lights[" + std::to_string(i) +
-                        "] has no shadow map: thickness from the camera's depths, nothing else shadows it");
+  for (std::size_t i = 0; i < capture.lights.size(); ++i) {
+    const std::vector<ShadowMap>& maps = capture.lights[i].shadowMaps;
+    const std::string light = "lights[" + std::to_string(i) + "]";
+    if (maps.empty() && !capture.backDepth.image.empty())
+      missing.push_back(light +
+                        " has no shadow map: thickness from the camera's depths, nothing else shadows it");
+    const auto some = [&maps](const auto& isMissing) {
+      return std::any_of(maps.begin(), maps.end(), isMissing);
+    };
+    if (some([](const ShadowMap& map) { return map.exitDepth.empty(); }))
+      missing.push_back(light + " has no exit depth: air behind an occluder counts as medium");
+    if (some([](const ShadowMap& map) { return map.casterMaterial.empty(); }))
+      missing.push_back(light +
+                        " has no caster material: light enters through opaque bodies and other materials");
+  }
   if (!capture.truth) missing.push_back("no truth: compare needs another image to compare with");
   return missing;
 }
@@ -231,7 +257,7 @@ Json describe(const std::filesystem::path& path, ManifestPreset preset) {
     const Light& light = capture.lights[i];
     Json entry = {{"type", kLightTypes[light.type]}, {"color", light.color}, {"intensity", light.intensity}};
     for (std::size_t k = 0; k < light.shadowMaps.size(); ++k)
-      entry["shadowMaps"].push_back(shadowJson(manifest.shadowMaps[i][k], light.shadowMaps[k].depth));
+      entry["shadowMaps"].push_back(shadowJson(manifest.shadowMaps[i][k], light.shadowMaps[k]));
     json["lights"].push_back(std::move(entry));
   }
   json["materials"] = materialsJson(capture, materials);
@@ -277,7 +303,11 @@ std::string toText(const Json& json) {
     const Json& light = json["lights"][i];
     text << "  lights[" << i << "]: " << line(light) << "\n";
     if (!light.contains("shadowMaps")) continue;
-    for (const Json& map : light["shadowMaps"]) text << "    shadowMap: " << line(map) << "\n";
+    for (const Json& map : light["shadowMaps"]) {
+      text << "    shadowMap: " << line(map) << "\n";
+      for (const char* beside : {"exit", "casterMaterial"})
+        if (map.contains(beside)) text << "      " << beside << ": " << line(map[beside]) << "\n";
+    }
   }
   for (const Json& material : json["materials"]) text << "  material: " << line(material) << "\n";
   for (const Json& sentence : json["missing"]) text << "missing: " << sentence.get<std::string>() << "\n";

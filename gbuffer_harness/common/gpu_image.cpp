@@ -18,6 +18,8 @@ Texel texelOf(VkFormat format) {
   switch (format) {
     case VK_FORMAT_R32_SFLOAT:
       return {1, 4};
+    case VK_FORMAT_R32G32_SFLOAT:
+      return {2, 4};
     case VK_FORMAT_R16G16B16A16_SFLOAT:
       return {4, 2};
     case VK_FORMAT_R32G32B32A32_UINT:
@@ -66,7 +68,9 @@ GpuImage::GpuImage(Device& device, int width, int height, VkFormat format, VkIma
   info.samples = VK_SAMPLE_COUNT_1_BIT;
   info.usage =
       VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | more;
-  if (format != VK_FORMAT_R8_UINT && format != VK_FORMAT_R8_UNORM) info.usage |= VK_IMAGE_USAGE_STORAGE_BIT;
+  constexpr VkFormat kNotStorage[] = {VK_FORMAT_R32G32_SFLOAT, VK_FORMAT_R8_UINT, VK_FORMAT_R8_UNORM};
+  if (std::find(std::begin(kNotStorage), std::end(kNotStorage), format) == std::end(kNotStorage))
+    info.usage |= VK_IMAGE_USAGE_STORAGE_BIT;
   const auto limit = static_cast<int>(device.properties().limits.maxImageDimension2D);
   if (width < 1 || height < 1 || width > limit || height > limit)
     throw DeviceError("an image of " + std::to_string(width) + " x " + std::to_string(height) +

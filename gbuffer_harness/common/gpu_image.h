@@ -10,7 +10,7 @@ namespace pellucid::harness {
 class GpuImage {
 public:
   // Usable as sampled and storage image, for transfers, and as `more` says. Formats: R32_SFLOAT,
-  // R16G16B16A16_SFLOAT, R32G32B32A32_SFLOAT, R8G8B8A8_SNORM; not storage: R8_UINT, R8_UNORM.
+  // R16G16B16A16_SFLOAT, R32G32B32A32_SFLOAT, R8G8B8A8_SNORM; not storage: R32G32_SFLOAT, R8_UINT, R8_UNORM.
   GpuImage(Device& device, int width, int height, VkFormat format, VkImageUsageFlags more = 0);
   ~GpuImage();
   GpuImage(const GpuImage&) = delete;

@@ -8,6 +8,7 @@
 #include <deque>
 
 #include "common/error.h"
+#include "kRasterCaster.h"
 #include "kRasterCount.h"
 #include "kRasterDepth.h"
 #include "kRasterMesh.h"
@@ -22,7 +23,8 @@ namespace pellucid::harness {
 namespace {
 
 constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
-constexpr std::uint32_t kOwnBindings = 4;  // of shaders/draw.glsl
+// Of shaders/draw.glsl.
+constexpr std::uint32_t kOwnBindings = 4, kBehindFront = 1, kBehindCaster = 2;
 
 using ShaderModule = Owned<VkShaderModule, vkDestroyShaderModule>;
 
@@ -37,6 +39,8 @@ Spirv fragmentSpirv(FragmentShader shader) {
       return {kRasterSurface, sizeof kRasterSurface};
     case FragmentShader::Depth:
       return {kRasterDepth, sizeof kRasterDepth};
+    case FragmentShader::Caster:
+      return {kRasterCaster, sizeof kRasterCaster};
     case FragmentShader::Count:
       return {kRasterCount, sizeof kRasterCount};
     case FragmentShader::Transmit:
@@ -412,9 +416,9 @@ void UploadedModel::draw(const RenderTarget& target, const DrawView& view, const
       const std::size_t none = textures_.size() - 1;
       const auto textureOr = [none](int index) { return index < 0 ? none : static_cast<std::size_t>(index); };
       const std::size_t color = textureOr(surface.texture), normal = textureOr(surface.normalMap);
+      const GpuImage* const object = earlier.caster ? earlier.caster : earlier.albedoObject;
       const GpuImage* images[kOwnBindings] = {textures_[color].get(), earlier.depth ? earlier.depth : &white,
-                                              earlier.albedoObject ? earlier.albedoObject : &white,
-                                              textures_[normal].get()};
+                                              object ? object : &white, textures_[normal].get()};
       const std::size_t samplers[kOwnBindings] = {color, none, none, normal};
       DescriptorWrites writes;
       for (std::uint32_t i = 0; i < kOwnBindings; ++i)
@@ -425,7 +429,10 @@ void UploadedModel::draw(const RenderTarget& target, const DrawView& view, const
       constants.baseColor = vec4(surface.baseColor, surface.alphaCutoff);
       constants.addedColor = vec4(surface.addedColor, part.object);
       const float normalScale = surface.normalMap < 0 ? 0 : static_cast<float>(surface.normalScale);
-      constants.ids = {surface.material, view.reversedDepth, earlier.depth != nullptr,
+      const std::uint32_t behind = earlier.depth == nullptr ? 0
+                                   : earlier.caster         ? kBehindCaster
+                                                            : kBehindFront;
+      constants.ids = {surface.material, view.reversedDepth, behind,
                        earlier.planned ? earlier.planned->dispatch.pushConstants[1]
                                        : std::bit_cast<std::uint32_t>(normalScale)};
       vkCmdPushConstants(commandBuffer, layout_, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,

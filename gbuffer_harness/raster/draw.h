@@ -62,7 +62,7 @@ private:
   Owned<VkFramebuffer, vkDestroyFramebuffer> framebuffer_;
 };
 
-enum class FragmentShader { Surface, Depth, Count, Transmit };
+enum class FragmentShader { Surface, Depth, Caster, Count, Transmit };
 
 struct PipelineState {
   FragmentShader shader = FragmentShader::Surface;
@@ -97,8 +97,9 @@ struct PlannedInputs {
 // What an earlier pass drew of the same view.
 struct EarlierPass {
   const GpuImage* depth = nullptr;
-  const GpuImage* albedoObject = nullptr;
+  const GpuImage* albedoObject = nullptr;  // of shaders/surface.frag
   const PlannedInputs* planned = nullptr;
+  const GpuImage* caster = nullptr;  // of shaders/caster.frag, in place of albedoObject
 };
 
 // A model in device memory.

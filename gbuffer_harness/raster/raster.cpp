@@ -11,6 +11,7 @@
 #include "raster/front.h"
 #include "raster/irradiance.h"
 #include "scene/vector.h"
+#include "shared/pellucid_shared.h"
 
 namespace pellucid::harness {
 
@@ -18,8 +19,8 @@ namespace {
 
 constexpr int kLargestSide = 8192;
 
-// Images of RenderTargets that shaders/depth.frag writes.
-constexpr std::size_t kPlanar = 0, kDeviceDepth = 1;
+// Images of RenderTargets that shaders/depth.frag and shaders/caster.frag write.
+constexpr std::size_t kPlanar = 0, kDeviceDepth = 1, kCaster = 2;
 
 void checkSide(const Model& model, const char* field, int value, int smallest) {
   if (value < smallest || value > kLargestSide)
@@ -90,6 +91,39 @@ DepthImage encodeShadow(const RenderTarget& target, const ShadowImage& view, Pel
   return depth;
 }
 
+// A light's view of the model: its shadow map's surface, and with `casters` what casts the shadow.
+std::unique_ptr<RenderTarget> drawShadow(Device& device, const UploadedModel& model, const DrawView& view,
+                                         int size, bool casters) {
+  std::vector<RenderTarget::Color> colors = depthColors(view.reversedDepth);
+  if (casters) colors.push_back({VK_FORMAT_R32G32_SFLOAT, clearTo(0)});
+  auto target = std::make_unique<RenderTarget>(device, size, size, colors, farDepth(view.reversedDepth));
+  model.draw(*target, view,
+             {casters ? FragmentShader::Caster : FragmentShader::Depth, VK_CULL_MODE_NONE,
+              nearer(view.reversedDepth), false},
+             VK_CULL_MODE_NONE);
+  return target;
+}
+
+// The nearest back face behind the map's surface, of the object that is entered there.
+DepthImage exitDepth(Device& device, const UploadedModel& model, const DrawView& view,
+                     const RenderTarget& shadow, const ShadowImage& image, PellucidDepthEncoding encoding) {
+  const RenderTarget target(device, image.size, image.size, depthColors(view.reversedDepth),
+                            farDepth(view.reversedDepth));
+  EarlierPass earlier{&shadow.image(kDeviceDepth)};
+  earlier.caster = &shadow.image(kCaster);
+  model.draw(target, view, {FragmentShader::Depth, VK_CULL_MODE_FRONT_BIT, nearer(view.reversedDepth), false},
+             VK_CULL_MODE_FRONT_BIT, earlier);
+  return encodeShadow(target, image, encoding);
+}
+
+std::vector<std::uint8_t> casterMaterial(const RenderTarget& shadow) {
+  const Image caster = shadow.image(kCaster).download();
+  std::vector<std::uint8_t> materials(caster.pixels());
+  for (std::size_t i = 0; i < materials.size(); ++i)
+    materials[i] = static_cast<std::uint8_t>(caster.data[2 * i]);
+  return materials;
+}
+
 // Adds the light to `irradiance` and returns it with its shadow maps.
 Light drawLight(Device& device, const Model& model, const UploadedModel& uploaded, const Light& light,
                 const RasterOptions& options, IrradiancePass& irradiance) {
@@ -101,15 +135,22 @@ Light drawLight(Device& device, const Model& model, const UploadedModel& uploade
   constexpr bool kReversed = true;
   std::vector<std::unique_ptr<RenderTarget>> targets;
   std::vector<ShadowImage> shadows;
-  for (const LightView& view : frameLight(model, light, options.pointMaps, options.shadowSize)) {
-    const RenderTarget& target = *targets.emplace_back(std::make_unique<RenderTarget>(
-        device, options.shadowSize, options.shadowSize, depthColors(kReversed), farDepth(kReversed)));
-    uploaded.draw(target, {view.clipFromView, view.viewFromWorld, kReversed},
-                  {FragmentShader::Depth, VK_CULL_MODE_NONE, nearer(kReversed), false}, VK_CULL_MODE_NONE);
+  const std::vector<LightView> views = frameLight(model, light, options.pointMaps, options.shadowSize);
+  // Of six maps they would be more images than a dispatch binds.
+  const bool casters = 3 * views.size() <= PELLUCID_SHADOW_IMAGE_COUNT;
+  for (const LightView& lightView : views) {
+    const DrawView view{lightView.clipFromView, lightView.viewFromWorld, kReversed};
+    targets.push_back(drawShadow(device, uploaded, view, options.shadowSize, casters));
+    const RenderTarget& target = *targets.back();
     shadows.push_back({&target.image(kPlanar), options.shadowSize, view.clipFromView, view.viewFromWorld,
                        light.type != PELLUCID_LIGHT_DIRECTIONAL});
-    result.shadowMaps.push_back({encodeShadow(target, shadows.back(), options.shadowEncoding),
-                                 multiply(view.clipFromView, view.viewFromWorld), view.viewFromWorld});
+    ShadowMap& map = result.shadowMaps.emplace_back();
+    map.depth = encodeShadow(target, shadows.back(), options.shadowEncoding);
+    map.clipFromWorld = multiply(view.clipFromView, view.viewFromWorld);
+    map.viewFromWorld = view.viewFromWorld;
+    if (!casters) continue;
+    map.exitDepth = exitDepth(device, uploaded, view, target, shadows.back(), options.shadowEncoding).image;
+    map.casterMaterial = casterMaterial(target);
   }
   if (light.radius == 0) irradiance.add(light, shadows);
   return result;

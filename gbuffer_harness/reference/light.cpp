@@ -54,18 +54,23 @@ ShadowView::ShadowView(const Light& light, const ShadowMap& map)
   if (needsView && !map.viewFromWorld)
     throw InputError("", "shadowMap.viewFromWorld", "missing, and the depth encoding needs it");
   if (map.viewFromWorld) viewFromWorld_ = toMatrix(*map.viewFromWorld);
+  const std::size_t texels = map.depth.image.pixels();
+  if (!map.exitDepth.empty() && map.exitDepth.pixels() != texels)
+    throw InputError("", "shadowMap.exit", "has another size than the map");
+  if (!map.casterMaterial.empty() && map.casterMaterial.size() != texels)
+    throw InputError("", "shadowMap.casterMaterial", "has another size than the map");
   perspective_ = clipFromWorld_[0][3] != 0 || clipFromWorld_[1][3] != 0 || clipFromWorld_[2][3] != 0;
 }
 
 std::optional<ShadowView::Projected> ShadowView::project(const glm::dvec3& point) const {
   const glm::dvec4 clip = clipFromWorld_ * glm::dvec4(point, 1);
   if (!(clip.w > 0)) return std::nullopt;
-  const glm::dvec2 ndc = glm::dvec2(clip) / clip.w;
+  const glm::dvec3 ndc = glm::dvec3(clip) / clip.w;
   const Image& image = map_.depth.image;
   const double px = std::floor((ndc.x * 0.5 + 0.5) * image.width);
   const double py = std::floor((ndc.y * 0.5 + 0.5) * image.height);
   if (!(px >= 0 && py >= 0 && px < image.width && py < image.height)) return std::nullopt;
-  return Projected{ndc, *image.at(static_cast<int>(px), static_cast<int>(py))};
+  return Projected{ndc, static_cast<int>(px), static_cast<int>(py)};
 }
 
 // Whether a device depth is the end of 0..1 that lies away from the light, which the map was cleared to.
@@ -76,10 +81,11 @@ bool ShadowView::isFarEnd(const glm::dvec3& point, const glm::dvec3& travel, flo
   return stored == (grows ? 1.0f : 0.0f);
 }
 
-ShadowView::Lookup ShadowView::deviceDistance(const glm::dvec3& point, const Projected& p) const {
+ShadowView::Lookup ShadowView::deviceDistance(const glm::dvec3& point, const Projected& p,
+                                              float stored) const {
   const glm::dvec3 travel = -arrivalAt(light_, point).toLight;
-  if (!(p.stored >= 0 && p.stored <= 1) || isFarEnd(point, travel, p.stored)) return {Kind::Empty, 0};
-  const glm::dvec4 surface = worldFromClip_ * glm::dvec4(p.ndc, double(p.stored), 1);
+  if (!(stored >= 0 && stored <= 1) || isFarEnd(point, travel, stored)) return {Kind::Empty, 0};
+  const glm::dvec4 surface = worldFromClip_ * glm::dvec4(p.ndc.x, p.ndc.y, double(stored), 1);
   return {Kind::Surface, glm::dot(point - glm::dvec3(surface) / surface.w, travel)};
 }
 
@@ -100,17 +106,46 @@ ShadowView::Lookup ShadowView::radialDistance(const glm::dvec3& point, float sto
   return {Kind::Surface, distance - double(stored)};
 }
 
+// Where the neighboring texels see the depth of the point.
+double ShadowView::texelAt(const glm::dvec3& point, const Projected& p) const {
+  const auto world = [&](const glm::dvec3& ndc) {
+    const glm::dvec4 unprojected = worldFromClip_ * glm::dvec4(ndc, 1);
+    return glm::dvec3(unprojected) / unprojected.w;
+  };
+  const glm::dvec3 right = p.ndc + glm::dvec3(2.0 / map_.depth.image.width, 0, 0);
+  const glm::dvec3 below = p.ndc + glm::dvec3(0, 2.0 / map_.depth.image.height, 0);
+  const double side = std::max(glm::distance(world(right), point), glm::distance(world(below), point));
+  if (!perspective_) return side;
+  const glm::dvec4 w(clipFromWorld_[0][3], clipFromWorld_[1][3], clipFromWorld_[2][3], clipFromWorld_[3][3]);
+  const double planar = glm::dot(w, glm::dvec4(point, 1)) / glm::length(glm::dvec3(w));
+  return side * glm::distance(point, toVector(light_.position)) / planar;
+}
+
+ShadowView::Lookup ShadowView::lookup(const glm::dvec3& point, const Projected& p, float stored) const {
+  switch (map_.depth.encoding) {
+    case PELLUCID_DEPTH_VIEW_Z:
+      return planarDistance(point, stored);
+    case PELLUCID_DEPTH_DISTANCE:
+      return radialDistance(point, stored);
+    default:
+      return deviceDistance(point, p, stored);
+  }
+}
+
 ShadowView::Lookup ShadowView::at(const glm::dvec3& point) const {
   const std::optional<Projected> p = project(point);
   if (!p) return {Kind::Outside, 0};
-  switch (map_.depth.encoding) {
-    case PELLUCID_DEPTH_VIEW_Z:
-      return planarDistance(point, p->stored);
-    case PELLUCID_DEPTH_DISTANCE:
-      return radialDistance(point, p->stored);
-    default:
-      return deviceDistance(point, *p);
+  Lookup found = lookup(point, *p, *map_.depth.image.at(p->x, p->y));
+  if (found.kind != Kind::Surface) return found;
+  if (!map_.exitDepth.empty()) {
+    const Lookup exit = lookup(point, *p, *map_.exitDepth.at(p->x, p->y));
+    if (exit.kind == Kind::Surface) found.fromExit = exit.distance;
+    found.texel = texelAt(point, *p);
   }
+  if (!map_.casterMaterial.empty())
+    found.casterMaterial =
+        map_.casterMaterial[static_cast<std::size_t>(p->y * map_.depth.image.width + p->x)];
+  return found;
 }
 
 }  // namespace pellucid::harness::reference

@@ -32,17 +32,24 @@ public:
     Kind kind;
     double distance;  // along the light ray from the stored surface to the point; negative when the
                       // point is nearer to the light. Surface only
+    // Of what lies beside the map; Surface only.
+    std::optional<double> fromExit = {};     // as distance, from the exit depth; absent: none is known
+    std::optional<int> casterMaterial = {};  // of the stored surface, 0: opaque; absent: not given
+    double texel = 0;  // longer side of a texel across the light, scene units; perspective: where the ray
+                       // through the map's middle is as long as that to the point
   };
   // Nearest texel. Thickness and occlusion both come from here.
   Lookup at(const glm::dvec3& point) const;
 
 private:
   struct Projected {
-    glm::dvec2 ndc;
-    float stored;
+    glm::dvec3 ndc;
+    int x, y;  // texel
   };
   std::optional<Projected> project(const glm::dvec3& point) const;
-  Lookup deviceDistance(const glm::dvec3& point, const Projected& p) const;
+  Lookup lookup(const glm::dvec3& point, const Projected& p, float stored) const;
+  double texelAt(const glm::dvec3& point, const Projected& p) const;
+  Lookup deviceDistance(const glm::dvec3& point, const Projected& p, float stored) const;
   Lookup planarDistance(const glm::dvec3& point, float stored) const;
   Lookup radialDistance(const glm::dvec3& point, float stored) const;
   bool isFarEnd(const glm::dvec3& point, const glm::dvec3& travel, float stored) const;

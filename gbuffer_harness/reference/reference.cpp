@@ -102,7 +102,7 @@ private:
   Transmission transmission(int x, int y, std::size_t i) const {
     if (marks_.count(i) != 0) return {};
     const std::optional<Surface> surface = surfaces_.at(x, y);
-    return surface ? translucency_.at(*surface, material(i)) : Transmission{};
+    return surface ? translucency_.at(*surface, material(i), capture_.material[i]) : Transmission{};
   }
 
   // E + transmitted / rho.

@@ -18,10 +18,10 @@ Translucency::Translucency(const Capture& capture, const SurfaceReader& surfaces
   }
 }
 
-Translucency::Receiver Translucency::toWorld(const Surface& s) const {
+Translucency::Receiver Translucency::toWorld(const Surface& s, int material) const {
   const glm::dmat4& m = surfaces_.worldFromView();
   const glm::dmat3 rotation(m);
-  Receiver r{glm::dvec3(m * glm::dvec4(s.position, 1)), rotation * s.ray, std::nullopt, s.chord};
+  Receiver r{glm::dvec3(m * glm::dvec4(s.position, 1)), rotation * s.ray, std::nullopt, s.chord, material};
   if (s.normal) r.normal = rotation * *s.normal;
   return r;
 }
@@ -69,20 +69,34 @@ ShadowView::Lookup Translucency::shadowLookup(std::size_t light, const glm::dvec
   return {ShadowView::Kind::Outside, 0};
 }
 
+// A receiver of the exit surface lies off the depth of its own texel by the slope there; half the diagonal of
+// a texel and curvature are one texel each. 8 texels: a cosine of .14, beyond which the light is grazing.
+bool Translucency::entersMedium(const ShadowView::Lookup& lookup, const Receiver& r,
+                                const glm::dvec3& toLight) const {
+  if (lookup.kind != ShadowView::Kind::Surface) return false;
+  if (lookup.casterMaterial && *lookup.casterMaterial != r.material) return false;
+  if (!lookup.fromExit) return true;
+  constexpr double kMostTexels = 8;
+  const double cosine = r.normal ? std::abs(glm::dot(*r.normal, toLight)) : 0;
+  const double slope = cosine > 0 ? std::tan(std::acos(std::min(cosine, 1.0))) : kMostTexels;
+  return *lookup.fromExit <= double(settings_.shadowBias) + lookup.texel * std::min(1 + slope, kMostTexels);
+}
+
 Translucency::LightPath Translucency::lightSpacePath(std::size_t light, const Receiver& r) const {
   const Arrival arrival = arrivalAt(capture_.lights[light], r.position);
   LightPath path;
   path.arriving = arrival.irradiance * hiddenCosine(r, light, arrival.toLight);
   const ShadowView::Lookup lookup = shadowLookup(light, r.position);
-  path.reaches = lookup.kind == ShadowView::Kind::Surface;
+  path.reaches = entersMedium(lookup, r, arrival.toLight);
   path.thickness = std::max(0.0, lookup.distance - double(settings_.shadowBias));
   return path;
 }
 
-bool Translucency::backPointLit(std::size_t light, const glm::dvec3& backPoint) const {
+bool Translucency::backPointLit(std::size_t light, const Receiver& r, const glm::dvec3& backPoint,
+                                const glm::dvec3& toLight) const {
   if (shadows_[light].empty()) return true;
   const ShadowView::Lookup lookup = shadowLookup(light, backPoint);
-  return lookup.kind == ShadowView::Kind::Surface && lookup.distance <= double(settings_.shadowBias);
+  return entersMedium(lookup, r, toLight) && lookup.distance <= double(settings_.shadowBias);
 }
 
 Translucency::LightPath Translucency::cameraSpacePath(std::size_t light, const Receiver& r) const {
@@ -91,7 +105,7 @@ Translucency::LightPath Translucency::cameraSpacePath(std::size_t light, const R
   const glm::dvec3 backPoint = r.position + *r.chord * r.ray;
   const Arrival arrival = arrivalAt(capture_.lights[light], backPoint);
   path.arriving = arrival.irradiance * hiddenCosine(r, light, arrival.toLight);
-  path.reaches = backPointLit(light, backPoint);
+  path.reaches = backPointLit(light, r, backPoint, arrival.toLight);
   path.thickness =
       *r.chord * (r.normal && !settings_.chordThickness ? std::abs(glm::dot(*r.normal, r.ray)) : 1);
   return path;
@@ -107,9 +121,9 @@ std::optional<double> Translucency::firstLightDistance(const Receiver& r) const 
   return std::nullopt;
 }
 
-Transmission Translucency::at(const Surface& surface, const PellucidMaterial& material) const {
+Transmission Translucency::at(const Surface& surface, const PellucidMaterial& material, int index) const {
   const double mmPerUnit = surfaces_.millimetersPerUnit();
-  const Receiver receiver = toWorld(surface);
+  const Receiver receiver = toWorld(surface, index);
   const auto& f = settings_.transmittanceFilter;
   const glm::dvec3 filter(f[0], f[1], f[2]);
   Transmission t;

@@ -27,7 +27,8 @@ public:
   // Keeps references to the capture and the reader.
   Translucency(const Capture& capture, const SurfaceReader& surfaces, const TranslucencySettings& settings);
 
-  Transmission at(const Surface& surface, const PellucidMaterial& material) const;
+  // `index`: of the material, from 1.
+  Transmission at(const Surface& surface, const PellucidMaterial& material, int index) const;
 
 private:
   // A receiver in world space.
@@ -35,6 +36,7 @@ private:
     glm::dvec3 position, ray;
     std::optional<glm::dvec3> normal;
     std::optional<double> chord;  // scene units
+    int material;
   };
   // One light's part of a Transmission.
   struct LightPath {
@@ -43,7 +45,7 @@ private:
     bool reaches = false;
   };
 
-  Receiver toWorld(const Surface& surface) const;
+  Receiver toWorld(const Surface& surface, int material) const;
   double hiddenCosine(const Receiver& r, std::size_t light, const glm::dvec3& toLight) const;
   LightPath lightSpacePath(std::size_t light, const Receiver& r) const;
   LightPath cameraSpacePath(std::size_t light, const Receiver& r) const;
@@ -51,7 +53,10 @@ private:
   bool usesLightSpace(std::size_t light) const;
   // In the first of the light's maps that contains the point.
   ShadowView::Lookup shadowLookup(std::size_t light, const glm::dvec3& point) const;
-  bool backPointLit(std::size_t light, const glm::dvec3& backPoint) const;
+  // Whether light enters the receiver's own medium where the map's surface is, and stays in it.
+  bool entersMedium(const ShadowView::Lookup& lookup, const Receiver& r, const glm::dvec3& toLight) const;
+  bool backPointLit(std::size_t light, const Receiver& r, const glm::dvec3& backPoint,
+                    const glm::dvec3& toLight) const;
 
   const Capture& capture_;
   const SurfaceReader& surfaces_;

@@ -32,6 +32,7 @@ private:
   Cast cast(const Camera& camera, double x, double y, int width, int height) const;
   void writePixel(Capture& capture, int x, int y) const;
   glm::dvec3 irradiance(const Cast& cast, int x, int y) const;
+  static std::uint8_t materialAt(const Cast& cast);  // of the surface that it hits
   float encode(const Camera& camera, PellucidDepthEncoding encoding, const Cast& cast, double t) const;
   float nothing(const Camera& camera, PellucidDepthEncoding encoding) const;
 
@@ -91,6 +92,11 @@ glm::dvec3 Renderer::irradiance(const Cast& cast, int x, int y) const {
   return sum;
 }
 
+std::uint8_t Renderer::materialAt(const Cast& cast) {
+  const Object& object = *cast.hit->object;
+  return object.materialAt ? object.materialAt(cast.ray.at(cast.hit->enter)) : object.material;
+}
+
 void Renderer::writePixel(Capture& capture, int x, int y) const {
   const Cast c = cast(model_.camera, x + 0.5, y + 0.5, capture.width, capture.height);
   if (!c.hit) return;
@@ -110,8 +116,7 @@ void Renderer::writePixel(Capture& capture, int x, int y) const {
     if (model_.albedo) capture.albedo.at(x, y)[i] = static_cast<float>(albedo[i]);
   }
   capture.material[static_cast<std::size_t>(y) * static_cast<std::size_t>(capture.width) +
-                   static_cast<std::size_t>(x)] =
-      object.materialAt ? object.materialAt(point) : object.material;
+                   static_cast<std::size_t>(x)] = materialAt(c);
 }
 
 ShadowMap Renderer::shadowMap(const Light& light) const {
@@ -135,13 +140,18 @@ ShadowMap Renderer::shadowMap(const Light& light) const {
 
   ShadowMap map;
   map.depth = {Image(size, size, 1, nothing(camera, parameters_.shadowEncoding)), parameters_.shadowEncoding};
+  map.exitDepth = map.depth.image;
+  map.casterMaterial.resize(map.depth.image.pixels());
   map.viewFromWorld = camera.viewFromWorld;
   map.clipFromWorld = multiply(camera.clipFromView, camera.viewFromWorld);
   Progress progress("casting a shadow map", static_cast<std::uint64_t>(size));
   parallelRows(size, 0, [&](int y) {
     for (int x = 0; x < size; ++x) {
       const Cast c = cast(camera, x + 0.5, y + 0.5, size, size);
-      if (c.hit) *map.depth.image.at(x, y) = encode(camera, map.depth.encoding, c, c.hit->enter);
+      if (!c.hit) continue;
+      *map.depth.image.at(x, y) = encode(camera, map.depth.encoding, c, c.hit->enter);
+      *map.exitDepth.at(x, y) = encode(camera, map.depth.encoding, c, c.hit->exit);
+      map.casterMaterial[static_cast<std::size_t>(y * size + x)] = materialAt(c);
     }
     progress.advance();
   });

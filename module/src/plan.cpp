@@ -69,12 +69,29 @@ bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan
   plan.constantsSize = b.layout.size;
 
   const ViewBounds view(frame);
-  for (uint32_t i = 0; i < frame.lightCount; ++i)
-    if (const char* reason = view.whySkipped(frame.lights[i])) b.skip("light", reason);
+  bool noExit = false, noCaster = false;
+  for (uint32_t i = 0; i < frame.lightCount; ++i) {
+    const PellucidLight& light = frame.lights[i];
+    if (const char* reason = view.whySkipped(light)) {
+      b.skip("light", reason);
+      continue;
+    }
+    for (uint32_t k = 0; k < light.shadowMapCount; ++k) {
+      const PellucidShadowMap& map = frame.shadowMaps[light.firstShadowMap + k];
+      noExit = noExit || map.exitImage == 0;
+      noCaster = noCaster || map.casterMaterialImage == 0;
+    }
+  }
   if (!(frame.features & PELLUCID_FEATURE_TRANSLUCENCY))
     b.skip("translucency", "not among the features");
   else if (plan.activeLights == 0)
     b.skip("translucency", "no light can contribute");
+  if (plan.activeLights > 0 && frame.features & PELLUCID_FEATURE_TRANSLUCENCY) {
+    if (noExit) b.skip("exit depth", "a shadow map has none: air behind an occluder counts as medium");
+    if (noCaster)
+      b.skip("caster material",
+             "a shadow map has none: light enters through opaque bodies and other materials");
+  }
   if (!(frame.features & PELLUCID_FEATURE_DIFFUSION))
     b.skip("diffusion", "not among the features");
   else if (frame.debugView != PELLUCID_DEBUG_NONE)

@@ -387,6 +387,102 @@ TEST_F(Raster, ShadowMapEncodings) {
     }
 }
 
+// Beside the map of a sphere and an opaque square: where the light leaves the sphere, and what it meets.
+TEST_F(Raster, ShadowMapsKnowWhatCastsAndWhereItEnds) {
+  Model model = emptyModel();
+  addSphere(model, {0, 0, 0}, 8, 256);
+  endPart(model, 0);
+  model.surfaces.push_back(model.surfaces[0]);
+  model.surfaces[1].material = 0;
+  addSquare(model, 0, 0, 20, 2);
+  endPart(model, 1, 1);
+  Light spot;
+  spot.type = PELLUCID_LIGHT_SPOT;
+  spot.position = {0, 0, 60};
+  spot.direction = {0, 0, -1};
+  spot.outerConeAngle = 0.5;
+  RasterOptions options;
+  options.width = options.height = 16;
+  options.shadowSize = 64;
+  for (const Light& light : {directional({0, 0, -1}), spot})
+    for (const auto encoding : {PELLUCID_DEPTH_DEVICE, PELLUCID_DEPTH_VIEW_Z, PELLUCID_DEPTH_DISTANCE}) {
+      SCOPED_TRACE(testing::Message() << "light " << light.type << ", encoding " << encoding);
+      options.shadowEncoding = encoding;
+      model.lights = {light};
+      const Capture capture = rasterize(model, frontCamera(true), options).capture;
+      const ShadowMap& map = capture.lights[0].shadowMaps[0];
+      ASSERT_EQ(map.exitDepth.pixels(), map.depth.image.pixels());
+      ASSERT_EQ(map.casterMaterial.size(), map.depth.image.pixels());
+      const glm::dmat4 worldFromClip = glm::inverse(toGlm(map.clipFromWorld));
+      const float nothing = encoding == PELLUCID_DEPTH_DEVICE ? 0.0f : kNoDepth;
+      const bool perspective = light.type == PELLUCID_LIGHT_SPOT;
+      int chords = 0, opaque = 0;
+      for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 64; ++x) {
+          const glm::dvec2 ndc((x + 0.5) / 32 - 1, (y + 0.5) / 32 - 1);
+          const auto unproject = [&](double depth) {
+            const glm::dvec4 p = worldFromClip * glm::dvec4(ndc, depth, 1);
+            return glm::dvec3(p) / p.w;
+          };
+          const glm::dvec3 start =
+              perspective ? toGlm(light.position) : unproject(1);  // reversed: the near plane
+          const glm::dvec3 along = glm::normalize(unproject(0.5) - start);
+          const double nearest = glm::dot(along, -start);  // to the center
+          const double off = glm::length(start + nearest * along);
+          const float exit = *map.exitDepth.at(x, y);
+          const int material = map.casterMaterial[static_cast<std::size_t>(y * 64 + x)];
+          const double square = std::max(std::abs((start + (20 - start.z) / along.z * along).x),
+                                         std::abs((start + (20 - start.z) / along.z * along).y));
+          if (std::abs(square - 2) < 0.05 || std::abs(off - 8) < 0.05) continue;  // edges
+          if (square < 2) {
+            EXPECT_EQ(material, 0);
+            EXPECT_EQ(exit, nothing) << "a square bounds no volume";
+            ++opaque;
+          } else if (off < 8) {
+            EXPECT_EQ(material, 1);
+            const glm::dvec3 leaves = start + (nearest + std::sqrt(64 - off * off)) * along;
+            const double planar = -(*map.viewFromWorld)[2] * leaves.x - (*map.viewFromWorld)[6] * leaves.y -
+                                  (*map.viewFromWorld)[10] * leaves.z - (*map.viewFromWorld)[14];
+            const glm::dvec4 clip = toGlm(map.clipFromWorld) * glm::dvec4(leaves, 1);
+            const double expected = encoding == PELLUCID_DEPTH_DEVICE ? clip.z / clip.w
+                                    : encoding == PELLUCID_DEPTH_VIEW_Z || !perspective
+                                        ? planar
+                                        : glm::distance(leaves, start);
+            // Chords of the mesh lie 2.4e-3 mm within the sphere at most; at the rim more along the ray.
+            const double tolerance = 0.0024 / std::sqrt(1 - off * off / 64) + 1e-4;
+            EXPECT_NEAR(exit, expected, encoding == PELLUCID_DEPTH_DEVICE ? tolerance / 16 : tolerance);
+            ++chords;
+          } else {
+            EXPECT_EQ(material, 0);
+            EXPECT_EQ(exit, nothing);
+          }
+        }
+      EXPECT_GT(chords, 500);
+      EXPECT_GT(opaque, 10);
+    }
+}
+
+// Their images would be more than a dispatch binds.
+TEST_F(Raster, SixMapsHaveNothingBesideThem) {
+  Model model = emptyModel();
+  addSphere(model, {0, 0, 0}, 8, 16);
+  endPart(model, 0);
+  Light point;
+  point.type = PELLUCID_LIGHT_POINT;
+  point.position = {0, 0, 20};
+  model.lights = {point};
+  RasterOptions options;
+  options.width = options.height = 16;
+  options.shadowSize = 16;
+  options.pointMaps = PointMaps::Six;
+  const Capture capture = rasterize(model, frontCamera(true), options).capture;
+  ASSERT_EQ(capture.lights[0].shadowMaps.size(), 6u);
+  for (const ShadowMap& map : capture.lights[0].shadowMaps) {
+    EXPECT_TRUE(map.exitDepth.empty());
+    EXPECT_TRUE(map.casterMaterial.empty());
+  }
+}
+
 TEST_F(Raster, PointLightWithinTheModelHasNoMapAndSaysSo) {
   Model model = emptyModel();
   addSquare(model, 0, 0, 0, 9);

@@ -87,6 +87,9 @@ inline Capture sampleCapture() {
       ShadowMap{{sampleImage(kSampleShadowSize, kSampleShadowSize, 1, 0.2f), PELLUCID_DEPTH_DEVICE},
                 {0.1, 0, 0, 0, 0, 0.1, 0, 0, 0, 0, -0.01, 0, 0, 0, 0.5, 1},
                 std::nullopt}};
+  sun.shadowMaps[0].exitDepth = sampleImage(kSampleShadowSize, kSampleShadowSize, 1, 0.3f);
+  for (int i = 0; i < kSampleShadowSize * kSampleShadowSize; ++i)
+    sun.shadowMaps[0].casterMaterial.push_back(static_cast<std::uint8_t>(i % 5));
   Light lamp;
   lamp.type = PELLUCID_LIGHT_POINT;
   lamp.position = {1.5, 2.5, -3.5};
@@ -100,6 +103,8 @@ inline Capture sampleCapture() {
   spot.shadowMaps = {ShadowMap{{sampleImage(11, 13, 1, 4.0f), PELLUCID_DEPTH_DISTANCE},
                                {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, -1, 0, 0, -0.1, 0},
                                kIdentity}};
+  spot.shadowMaps[0].exitDepth = sampleImage(11, 13, 1, 5.0f);
+  spot.shadowMaps[0].exitDepth.data[2] = std::numeric_limits<float>::quiet_NaN();
   Light around = lamp;  // two maps of different sizes
   around.shadowMaps = {spot.shadowMaps[0],
                        {{sampleImage(3, 2, 1, 7.0f), PELLUCID_DEPTH_VIEW_Z},
@@ -137,7 +142,14 @@ inline nlohmann::json writeSampleFiles(const TemporaryDirectory& directory) {
       pixel[5] = *capture.backDepth.image.at(x, y);
     }
   writeExr(directory / "g.exr", all, {"Z", "E.R", "E.G", "E.B", "id", "ZBack"});
-  writeExr(directory / "s.exr", capture.lights[0].shadowMaps[0].depth.image, {"ViewLayer.Depth.Z"});
+  const ShadowMap& map = capture.lights[0].shadowMaps[0];
+  Image shadow(kSampleShadowSize, kSampleShadowSize, 3);
+  for (std::size_t i = 0; i < shadow.pixels(); ++i) {
+    shadow.data[3 * i] = map.depth.image.data[i];
+    shadow.data[3 * i + 1] = map.exitDepth.data[i];
+    shadow.data[3 * i + 2] = i % 2 == 0 ? 7.0f : 0.0f;
+  }
+  writeExr(directory / "s.exr", shadow, {"ViewLayer.Depth.Z", "ViewLayer.Exit.Z", "id"});
   return nlohmann::json::parse(R"({
     "pellucid": 1, "metersPerUnit": 0.001,
     "camera": {"clipFromView": [2,0,0,0, 0,-2,0,0, 0,0,-1.01,-1, 0,0,-0.1,0],
@@ -152,13 +164,17 @@ inline nlohmann::json writeSampleFiles(const TemporaryDirectory& directory) {
     "lights": [{"type": "spot", "position": [0, 0, -9], "direction": [0, 0, 1], "color": [1, 1, 1], "intensity": 3,
                 "range": 0, "innerConeAngle": 0.1, "outerConeAngle": 0.7,
                 "shadowMap": {"file": "s.exr", "channel": "ViewLayer.Depth.Z", "encoding": "distance",
+                              "exit": {"file": "s.exr", "part": 0, "channel": "ViewLayer.Exit.Z"},
+                              "casterMaterial": {"file": "s.exr", "channel": "id", "map": {"7": 1}},
                               "clipFromWorld": [1,0,0,0, 0,1,0,0, 0,0,-1,-1, 0,0,-0.1,0],
                               "viewFromWorld": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]}},
                {"type": "point", "position": [0, 0, 0], "shadowMaps": [
                  {"file": "s.exr", "channel": "ViewLayer.Depth.Z", "encoding": "distance",
+                  "exit": {"constant": [6]}, "casterMaterial": {"constant": [1]},
                   "clipFromWorld": [1,0,0,0, 0,1,0,0, 0,0,-1,-1, 0,0,-0.1,0],
                   "viewFromWorld": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]},
                  {"constant": [5], "encoding": "device",
+                  "exit": {"constant": [1]}, "casterMaterial": {"constant": [0]},
                   "clipFromWorld": [1,0,0,0, 0,-1,0,0, 0,0,1,1, 0,0,-0.1,0]}]}],
     "materials": [{"scattering": [7.4, 8.8, 10.1], "absorption": [0.32, 1.7, 4.8], "g": 0, "ior": 1.4,
                    "unit": "1/cm"}],

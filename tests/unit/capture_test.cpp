@@ -57,6 +57,8 @@ TEST(CaptureRoundTrip, IsBitExactWithFloat) {
     ASSERT_EQ(a.shadowMaps.size(), b.shadowMaps.size());
     for (std::size_t k = 0; k < a.shadowMaps.size(); ++k) {
       expectSame(a.shadowMaps[k].depth, b.shadowMaps[k].depth);
+      EXPECT_TRUE(sameBits(a.shadowMaps[k].exitDepth, b.shadowMaps[k].exitDepth));
+      EXPECT_EQ(a.shadowMaps[k].casterMaterial, b.shadowMaps[k].casterMaterial);
       EXPECT_EQ(a.shadowMaps[k].clipFromWorld, b.shadowMaps[k].clipFromWorld);
       EXPECT_EQ(a.shadowMaps[k].viewFromWorld, b.shadowMaps[k].viewFromWorld);
     }
@@ -178,6 +180,39 @@ TEST_F(Manifests, SeveralShadowMapsKeepTheirOrder) {
   EXPECT_EQ(capture.lights[1].shadowMaps[1].clipFromWorld[10], 1);
 }
 
+TEST_F(Manifests, WhatLiesBesideAShadowMapArrives) {
+  const Capture capture = read();
+  const ShadowMap& map = capture.lights[0].shadowMaps[0];
+  EXPECT_TRUE(sameBits(map.exitDepth, sample.lights[0].shadowMaps[0].exitDepth));
+  ASSERT_EQ(map.casterMaterial.size(), map.depth.image.pixels());
+  EXPECT_EQ(map.casterMaterial[0], 1) << "7 by the map";
+  EXPECT_EQ(map.casterMaterial[1], 0);
+  const ShadowMap& constant = capture.lights[1].shadowMaps[0];
+  ASSERT_EQ(constant.exitDepth.pixels(), constant.depth.image.pixels()) << "a constant has the map's size";
+  EXPECT_EQ(constant.exitDepth.data.back(), 6.0f);
+  EXPECT_EQ(constant.casterMaterial, std::vector<std::uint8_t>(constant.depth.image.pixels(), 1));
+}
+
+TEST_F(Manifests, WhatLiesBesideAShadowMapIsOptionalAndHasItsSize) {
+  json& map = manifest["lights"][0]["shadowMap"];
+  const json given = map;
+  map.erase("exit");
+  map.erase("casterMaterial");
+  EXPECT_TRUE(read().lights[0].shadowMaps[0].exitDepth.empty());
+  EXPECT_TRUE(read().lights[0].shadowMaps[0].casterMaterial.empty());
+  map = given;
+  map["exit"] = {{"file", "g.exr"}, {"channel", "Z"}};
+  expectNames(error(), {"g.exr", "lights[0].shadowMap.exit", "texels, but its map has"});
+  map = given;
+  map["casterMaterial"] = {{"file", "g.exr"}, {"channel", "id"}};
+  expectNames(error(), {"g.exr", "lights[0].shadowMap.casterMaterial", "texels, but its map has"});
+  map = given;
+  map["casterMaterial"]["map"] = {{"3", 1}};
+  expectNames(error(), {"s.exr", "lights[0].shadowMap.casterMaterial", "holds 7", "does not name"});
+  map["casterMaterial"].erase("map");
+  expectNames(error(), {"lights[0].shadowMap.casterMaterial", "holds 7", "1 materials"});
+}
+
 TEST_F(Manifests, CountOfShadowMapsIsLimited) {
   json& maps = manifest["lights"][1]["shadowMaps"];
   const json one = maps[1];
@@ -191,6 +226,8 @@ TEST_F(Manifests, ConstantShadowMapIsOneTexel) {
   auto& map = manifest["lights"][0]["shadowMap"];
   map.erase("file");
   map.erase("channel");
+  map.erase("exit");
+  map.erase("casterMaterial");
   map["constant"] = {5};
   const Capture capture = read();
   EXPECT_EQ(capture.lights[0].shadowMaps[0].depth.image.pixels(), 1u);
@@ -339,6 +376,12 @@ INSTANTIATE_TEST_SUITE_P(
                     Mistake{"/lights/0/glow", "1", {"lights[0].glow", "unknown key"}},
                     Mistake{"/lights/0/radius", "1", {"lights[0].radius", "only a point light"}},
                     Mistake{"/lights/0/shadowMap/bias", "1", {"lights[0].shadowMap.bias", "unknown key"}},
+                    Mistake{"/lights/0/shadowMap/exit/encoding",
+                            "\"device\"",
+                            {"lights[0].shadowMap.exit.encoding", "unknown key"}},
+                    Mistake{"/lights/0/shadowMap/casterMaterial/scale",
+                            "255",
+                            {"lights[0].shadowMap.casterMaterial.scale", "unknown key"}},
                     Mistake{
                         "/lights/1/shadowMaps/0/bias", "1", {"lights[1].shadowMaps[0].bias", "unknown key"}},
                     Mistake{"/materials/0/name", "\"x\"", {"materials[0].name", "unknown key"}},

@@ -71,6 +71,8 @@ TEST_F(InfoCommand, SaysWhatIsThere) {
   EXPECT_EQ(capture["lights"][0]["type"], "spot");
   ASSERT_EQ(capture["lights"][0]["shadowMaps"].size(), 1u);
   EXPECT_EQ(capture["lights"][0]["shadowMaps"][0]["size"], json({kSampleShadowSize, kSampleShadowSize}));
+  EXPECT_EQ(capture["lights"][0]["shadowMaps"][0]["exit"]["channels"], json({"ViewLayer.Exit.Z"}));
+  EXPECT_EQ(capture["lights"][0]["shadowMaps"][0]["casterMaterial"]["materials"], json({0, 1}));
   ASSERT_EQ(capture["lights"][1]["shadowMaps"].size(), 2u);
   EXPECT_EQ(capture["lights"][1]["shadowMaps"][1]["size"], json({1, 1}));
   EXPECT_EQ(capture["materials"][0]["kind"], "coefficients");
@@ -85,6 +87,16 @@ TEST_F(InfoCommand, SaysWhatIsMissing) {
   const json missing = info()["missing"];
   for (const char* part : {"backDepth", "normal", "albedo", "lights", "truth"})
     EXPECT_TRUE(has(missing, part)) << part;
+}
+
+TEST_F(InfoCommand, SaysWhatIsMissingBesideAShadowMap) {
+  json& map = manifest["lights"][0]["shadowMap"];
+  map.erase("exit");
+  map.erase("casterMaterial");
+  const json missing = info()["missing"];
+  EXPECT_TRUE(has(missing, "lights[0] has no exit depth")) << missing;
+  EXPECT_TRUE(has(missing, "lights[0] has no caster material")) << missing;
+  EXPECT_FALSE(has(missing, "lights[1]")) << missing;
 }
 
 TEST_F(InfoCommand, CountsWhatLooksWrong) {

@@ -33,10 +33,12 @@ bool skips(const PellucidPlan& plan, const std::string& what, const std::string&
 TEST(Plan, WholeFrameIsFusedDispatchAndPyramid) {
   Frame f;
   const PellucidPlan plan = f.plan();
-  EXPECT_EQ(names(plan),
-            (std::vector<std::string>{"translucency", "reduce", "resolve", "diffuse"}));
+  EXPECT_EQ(names(plan), (std::vector<std::string>{"translucency", "reduce", "resolve", "diffuse"}));
   EXPECT_EQ(plan.barrierCount, 3u);
-  EXPECT_EQ(plan.skipCount, 0u);
+  EXPECT_EQ(plan.skipCount, 2u);
+  EXPECT_TRUE(skips(plan, "exit depth", "a shadow map has none: air behind an occluder counts as medium"));
+  EXPECT_TRUE(skips(plan, "caster material",
+                    "a shadow map has none: light enters through opaque bodies and other materials"));
   EXPECT_EQ(plan.dispatches[0].barrierBefore, 0u);
   EXPECT_EQ(plan.dispatches[0].groups[0], 7u) << "100 pixels in groups of 16";
   EXPECT_EQ(plan.dispatches[0].groups[1], 4u) << "50 pixels in groups of 16";
@@ -165,6 +167,32 @@ TEST(Plan, ManyShadowImagesBecomeSeveralDispatches) {
   EXPECT_STREQ(plan.dispatches[3].name, "reduce");
 }
 
+// Exit depths and caster materials are shadow images, too.
+TEST(Plan, ImagesBesideMapsCount) {
+  Frame f(4);
+  for (uint32_t i = 0; i < 4; ++i) {
+    f.images.resize(f.images.size() + 2, Frame::view());
+    f.maps[i].exitImage = 4 + 2 * i + 1;
+    f.maps[i].casterMaterialImage = 4 + 2 * i + 2;
+  }
+  f.use();
+  const PellucidPlan plan = f.plan();
+  EXPECT_EQ(plan.skipCount, 0u);
+  for (uint32_t i = 0; i < 2; ++i) {
+    const PellucidDispatch& d = plan.dispatches[i];
+    EXPECT_STREQ(d.name, "translucency");
+    EXPECT_EQ(d.pushConstants[1], 2u) << "three images a light, 8 a dispatch";
+    std::vector<uint32_t> images;
+    for (uint32_t b = 0; b < d.bindingCount; ++b)
+      if (d.bindings[b].resource >= PELLUCID_RESOURCE_SHADOW0)
+        images.push_back(d.bindings[b].resource - PELLUCID_RESOURCE_SHADOW0);
+    const uint32_t light = 2 * i;
+    EXPECT_EQ(images, (std::vector<uint32_t>{light, 4 + 2 * light, 5 + 2 * light, light + 1, 6 + 2 * light,
+                                             7 + 2 * light}));
+  }
+  EXPECT_STREQ(plan.dispatches[2].name, "reduce");
+}
+
 // Constants of a dispatch's lights are one window of a uniform buffer.
 TEST(Plan, ManyLightsBecomeSeveralDispatches) {
   Frame f(0);
@@ -211,6 +239,12 @@ TEST(Plan, DirectionalVariantNeedsTheCommonCase) {
     f.maps[0].encoding = PELLUCID_DEPTH_VIEW_Z;
     for (int i = 0; i < 4; ++i) f.maps[0].viewFromWorld[5 * i] = 1;
   }));
+  for (uint32_t PellucidShadowMap::*beside :
+       {&PellucidShadowMap::exitImage, &PellucidShadowMap::casterMaterialImage})
+    EXPECT_FALSE(directional([beside](Frame& f) {
+      f.images.push_back(Frame::view());
+      f.maps[0].*beside = 2;
+    }));
   EXPECT_FALSE(directional([](Frame& f) { f.lights.push_back(f.lights[0]); }));
   EXPECT_FALSE(directional([](Frame& f) {
     f.lights.push_back(f.lights[0]);

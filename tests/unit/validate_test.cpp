@@ -104,6 +104,34 @@ const std::vector<Violation> kViolations = {
     {"ShadowBias", "shadowMaps[0].bias", "-1", [](Frame& f) { f.maps[0].bias = -1; }},
     {"ShadowView", "shadowMaps[0].viewFromWorld", "encoding",
      [](Frame& f) { f.maps[0].encoding = PELLUCID_DEPTH_VIEW_Z; }},
+    {"ExitImage", "shadowMaps[0].exitImage", "is 2 (an index plus 1), but there are 1",
+     [](Frame& f) { f.maps[0].exitImage = 2; }},
+    {"ExitIsTheMap", "shadowMaps[0].exitImage", "the map's own image",
+     [](Frame& f) { f.maps[0].exitImage = 1; }},
+    {"CasterImage", "shadowMaps[0].casterMaterialImage", "is 7",
+     [](Frame& f) { f.maps[0].casterMaterialImage = 7; }},
+    {"CasterIsTheExit", "shadowMaps[0].casterMaterialImage", "the exitImage",
+     [](Frame& f) {
+       f.images.push_back(Frame::view());
+       f.maps[0].exitImage = f.maps[0].casterMaterialImage = 2;
+       f.use();
+     }},
+    {"CasterScale", "shadowMaps[0].casterMaterialScale", "nan",
+     [](Frame& f) { f.maps[0].casterMaterialScale = NAN; }},
+    {"CasterScaleNegative", "shadowMaps[0].casterMaterialScale", "-1",
+     [](Frame& f) { f.maps[0].casterMaterialScale = -1; }},
+    {"LightImages", "lights[0].shadowMapCount", "more than the 8 images",
+     [](Frame& f) {
+       f.images.assign(9, Frame::view());
+       f.maps.assign(3, f.maps[0]);
+       for (uint32_t i = 0; i < 3; ++i) {
+         f.maps[i].image = 3 * i;
+         f.maps[i].exitImage = 3 * i + 2;
+         f.maps[i].casterMaterialImage = 3 * i + 3;
+       }
+       f.lights[0].shadowMapCount = 3;
+       f.use();
+     }},
     {"LightType", "lights[0].type", "9", [](Frame& f) { f.lights[0].type = 9; }},
     {"LightColor", "lights[0].color", "[1] is -1", [](Frame& f) { f.lights[0].color[1] = -1; }},
     {"LightDirection", "lights[0].direction", "length 0", [](Frame& f) { f.lights[0].direction[2] = 0; }},

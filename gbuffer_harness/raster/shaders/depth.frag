@@ -1,5 +1,5 @@
 #version 450
-// Depths only: shadow maps, and the back faces behind the front.
+// Depths only: shadow maps of six, and the back faces behind the front.
 #extension GL_GOOGLE_include_directive : require
 #include "draw.glsl"
 
@@ -13,7 +13,8 @@ void main() {
   if (isHole(uv)) discard;
   if (draw.ids.z != 0u) {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    bool sameObject = texelFetch(frontAlbedoObject, pixel, 0).a == draw.addedColor.a;
+    vec4 front = texelFetch(frontObject, pixel, 0);
+    bool sameObject = (draw.ids.z == BEHIND_CASTER ? front.y : front.a) == draw.addedColor.a;
     if (!sameObject || !isNearer(texelFetch(earlierDepth, pixel, 0).r, gl_FragCoord.z)) discard;
   }
   outPlanar = planar;

@@ -7,14 +7,18 @@ layout(push_constant) uniform Draw {
   vec4 planar;     // dot(planar, (x, 1)): planar distance in front of the eye
   vec4 baseColor;  // a: alpha below this is a hole
   vec4 addedColor; // a: object
-  uvec4 ids;       // x: material; y: 1 reversed depth; z: 1 where only back faces behind the front count;
+  uvec4 ids;       // x: material; y: 1 reversed depth; z: whether only back faces behind the front count, which
+                   // is one of BEHIND_*;
                    // w: lights in transmit.frag, else bits of the normal map's scale, 0: no map
 } draw;
 
 layout(set = 0, binding = 0) uniform sampler2D baseColorTexture;
 // Device depth that an earlier pass wrote: of the front faces, or in count.frag of the back faces.
 layout(set = 0, binding = 1) uniform sampler2D earlierDepth;
-layout(set = 0, binding = 2) uniform sampler2D frontAlbedoObject;
+// Object of the front faces.
+#define BEHIND_FRONT 1u  // a: of surface.frag
+#define BEHIND_CASTER 2u // y: of caster.frag
+layout(set = 0, binding = 2) uniform sampler2D frontObject;
 layout(set = 0, binding = 3) uniform sampler2D normalMap; // vectors
 
 bool isNearer(float depth, float other) {

@@ -55,7 +55,7 @@ void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   float front = texelFetch(earlierDepth, pixel, 0).r;
   uint material = decodeMaterial(texelFetch(materialImage, pixel, 0));
-  bool sameObject = texelFetch(frontAlbedoObject, pixel, 0).a == draw.addedColor.a;
+  bool sameObject = texelFetch(frontObject, pixel, 0).a == draw.addedColor.a;
   if (isHole(uv) || !sameObject || !isNearer(front, gl_FragCoord.z)) discard;
   if (material == 0u || material > frame.flags.y) discard;
 

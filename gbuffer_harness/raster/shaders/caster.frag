@@ -1,0 +1,19 @@
+#version 450
+// A shadow map's surface, and what casts the shadow.
+#extension GL_GOOGLE_include_directive : require
+#include "draw.glsl"
+
+layout(location = 1) in vec2 uv;
+layout(location = 2) in vec4 colorMark;
+layout(location = 3) in float planar;
+
+layout(location = 0) out float outPlanar;
+layout(location = 1) out float outDepth;
+layout(location = 2) out vec2 outCaster; // x: material; y: object; -1: seen from within, so that it has no exit
+
+void main() {
+  if (isHole(uv)) discard;
+  outPlanar = planar;
+  outDepth = gl_FragCoord.z;
+  outCaster = vec2(colorMark.a >= 0.5 ? draw.ids.x : 0u, gl_FrontFacing ? draw.addedColor.a : -1.0);
+}
