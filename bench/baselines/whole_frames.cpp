@@ -104,8 +104,13 @@ ReplaySettings transmittanceSettings() {
 }
 
 std::string whyNotRendered(const Capture& capture, const std::vector<PellucidMaterial>& materials) {
-  size_t maps = 0;
-  for (const Light& light : capture.lights) maps += light.shadowMaps.size();
+  size_t maps = 0, images = 0, last = 0;
+  for (const Light& light : capture.lights)
+    for (const ShadowMap& map : light.shadowMaps) {
+      ++maps;
+      last = images;
+      images += map.casterMaterial.empty() ? 1 : 2;
+    }
   if (materials.size() != 1) return "they have one material, and it has " + std::to_string(materials.size());
   const float* d = materials[0].burleyDistance;
   if (materials[0].gaussianCount == 0 || !(std::min({d[0], d[1], d[2]}) > 0))
@@ -113,6 +118,9 @@ std::string whyNotRendered(const Capture& capture, const std::vector<PellucidMat
   if (capture.normal.empty()) return "they need normals";
   if (maps == 0 || maps > kMaps)
     return "they read one to four shadow maps, and it has " + std::to_string(maps);
+  if (last >= kMaps)
+    return "they read the first four shadow images, and its last map is the " + std::to_string(last + 1) +
+           "th: leave the caster materials out";
   return "";
 }
 

@@ -69,17 +69,20 @@ ShadowView::Lookup Translucency::shadowLookup(std::size_t light, const glm::dvec
   return {ShadowView::Kind::Outside, 0};
 }
 
+bool Translucency::entersMedium(const ShadowView::Lookup& lookup, const Receiver& r) {
+  return lookup.kind == ShadowView::Kind::Surface &&
+         (!lookup.casterMaterial || *lookup.casterMaterial == r.material);
+}
+
 // A receiver of the exit surface lies off the depth of its own texel by the slope there; half the diagonal of
-// a texel and curvature are one texel each. 8 texels: a cosine of .14, beyond which the light is grazing.
-bool Translucency::entersMedium(const ShadowView::Lookup& lookup, const Receiver& r,
-                                const glm::dvec3& toLight) const {
-  if (lookup.kind != ShadowView::Kind::Surface) return false;
-  if (lookup.casterMaterial && *lookup.casterMaterial != r.material) return false;
-  if (!lookup.fromExit) return true;
+// a texel and curvature are one texel each. The light grazes where that would be more than 8 texels.
+bool Translucency::beyondExit(const ShadowView::Lookup& lookup, const Receiver& r,
+                              const glm::dvec3& toLight) const {
+  if (!lookup.fromExit) return false;
   constexpr double kMostTexels = 8;
   const double cosine = r.normal ? std::abs(glm::dot(*r.normal, toLight)) : 0;
   const double slope = cosine > 0 ? std::tan(std::acos(std::min(cosine, 1.0))) : kMostTexels;
-  return *lookup.fromExit <= double(settings_.shadowBias) + lookup.texel * std::min(1 + slope, kMostTexels);
+  return *lookup.fromExit > double(settings_.shadowBias) + lookup.texel * std::min(1 + slope, kMostTexels);
 }
 
 Translucency::LightPath Translucency::lightSpacePath(std::size_t light, const Receiver& r) const {
@@ -87,16 +90,15 @@ Translucency::LightPath Translucency::lightSpacePath(std::size_t light, const Re
   LightPath path;
   path.arriving = arrival.irradiance * hiddenCosine(r, light, arrival.toLight);
   const ShadowView::Lookup lookup = shadowLookup(light, r.position);
-  path.reaches = entersMedium(lookup, r, arrival.toLight);
+  path.reaches = entersMedium(lookup, r) && !beyondExit(lookup, r, arrival.toLight);
   path.thickness = std::max(0.0, lookup.distance - double(settings_.shadowBias));
   return path;
 }
 
-bool Translucency::backPointLit(std::size_t light, const Receiver& r, const glm::dvec3& backPoint,
-                                const glm::dvec3& toLight) const {
+bool Translucency::backPointLit(std::size_t light, const Receiver& r, const glm::dvec3& backPoint) const {
   if (shadows_[light].empty()) return true;
   const ShadowView::Lookup lookup = shadowLookup(light, backPoint);
-  return entersMedium(lookup, r, toLight) && lookup.distance <= double(settings_.shadowBias);
+  return entersMedium(lookup, r) && lookup.distance <= double(settings_.shadowBias);
 }
 
 Translucency::LightPath Translucency::cameraSpacePath(std::size_t light, const Receiver& r) const {
@@ -105,7 +107,7 @@ Translucency::LightPath Translucency::cameraSpacePath(std::size_t light, const R
   const glm::dvec3 backPoint = r.position + *r.chord * r.ray;
   const Arrival arrival = arrivalAt(capture_.lights[light], backPoint);
   path.arriving = arrival.irradiance * hiddenCosine(r, light, arrival.toLight);
-  path.reaches = backPointLit(light, r, backPoint, arrival.toLight);
+  path.reaches = backPointLit(light, r, backPoint);
   path.thickness =
       *r.chord * (r.normal && !settings_.chordThickness ? std::abs(glm::dot(*r.normal, r.ray)) : 1);
   return path;

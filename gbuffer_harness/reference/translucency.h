@@ -53,10 +53,11 @@ private:
   bool usesLightSpace(std::size_t light) const;
   // In the first of the light's maps that contains the point.
   ShadowView::Lookup shadowLookup(std::size_t light, const glm::dvec3& point) const;
-  // Whether light enters the receiver's own medium where the map's surface is, and stays in it.
-  bool entersMedium(const ShadowView::Lookup& lookup, const Receiver& r, const glm::dvec3& toLight) const;
-  bool backPointLit(std::size_t light, const Receiver& r, const glm::dvec3& backPoint,
-                    const glm::dvec3& toLight) const;
+  // Whether light enters the receiver's own medium where the map's surface is.
+  static bool entersMedium(const ShadowView::Lookup& lookup, const Receiver& r);
+  // Whether it has left that medium before it is at the receiver.
+  bool beyondExit(const ShadowView::Lookup& lookup, const Receiver& r, const glm::dvec3& toLight) const;
+  bool backPointLit(std::size_t light, const Receiver& r, const glm::dvec3& backPoint) const;
 
   const Capture& capture_;
   const SurfaceReader& surfaces_;

@@ -144,15 +144,17 @@ float texelSide(const glm::dmat4& clipFromWorld, bool perspective, const uint32_
   return static_cast<float>(side);
 }
 
-glm::uvec4 occluderConstants(const PellucidShadowMap& s, bool perspective, const LightGroup& group) {
-  const auto slot = [&](uint32_t image) { return image == 0 ? 0 : group.slot(image - 1) + 1; };
+glm::uvec4 occluderConstants(const PellucidFrame& f, const PellucidShadowMap& s, const PellucidLight& l,
+                             const LightGroup& group) {
   const float scale = s.casterMaterialScale == 0 ? 255.0f : s.casterMaterialScale;
-  return {slot(s.exitImage), slot(s.casterMaterialImage), bitsOf(scale),
-          bitsOf(texelSide(toMatrix(s.clipFromWorld), perspective, s.extent))};
+  return {readsExit(f, l, s) ? group.slot(s.exitImage - 1) + 1 : 0,
+          s.casterMaterialImage != 0 ? group.slot(s.casterMaterialImage - 1) + 1 : 0, bitsOf(scale),
+          bitsOf(texelSide(toMatrix(s.clipFromWorld), l.type != PELLUCID_LIGHT_DIRECTIONAL, s.extent))};
 }
 
-shared::ShadowConstants shadowConstants(const PellucidShadowMap& s, const PellucidLight& l,
-                                        const glm::dmat4& worldFromView, const LightGroup& group) {
+shared::ShadowConstants shadowConstants(const PellucidFrame& f, const PellucidShadowMap& s,
+                                        const PellucidLight& l, const glm::dmat4& worldFromView,
+                                        const LightGroup& group) {
   shared::ShadowConstants c{};
   const glm::dmat4 clipFromWorld = toMatrix(s.clipFromWorld);
   c.clipFromView = glm::mat4(clipFromWorld * worldFromView);
@@ -180,7 +182,7 @@ shared::ShadowConstants shadowConstants(const PellucidShadowMap& s, const Pelluc
   // A cleared device-depth map holds its far plane: depth grows away from the light, or is reversed.
   const bool forward = perspective ? depthScale < 0 : depthScale > 0;
   c.meta = {group.slot(s.image), encoding, perspective ? 1u : 0u, bitsOf(forward ? 1.0f : 0.0f)};
-  c.occluder = occluderConstants(s, perspective, group);
+  c.occluder = occluderConstants(f, s, l, group);
   return c;
 }
 
@@ -275,7 +277,7 @@ extern "C" PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const
         light);
     for (uint32_t i = 0; i < l.shadowMapCount; ++i, ++shadow) {
       const PellucidShadowMap& s = f.shadowMaps[l.firstShadowMap + i];
-      const shared::ShadowConstants constants = shadowConstants(s, l, worldFromView, group);
+      const shared::ShadowConstants constants = shadowConstants(f, s, l, worldFromView, group);
       put(mapped, layout.shadows.offset + group.shadowBytes + shadow * sizeof constants, constants);
       if (group.directional && group.lightCount == 1)  // read where no other follows
         put(mapped, layout.directional.offset + group.index * kDirectionalWindow,

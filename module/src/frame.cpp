@@ -30,13 +30,10 @@ bool LightGroup::addImage(uint32_t image) {
   return true;
 }
 
-bool LightGroup::addImages(const PellucidShadowMap& map) {
-  return addImage(map.image) && (map.exitImage == 0 || addImage(map.exitImage - 1)) &&
+bool LightGroup::addImages(const PellucidFrame& frame, const PellucidLight& light,
+                           const PellucidShadowMap& map) {
+  return addImage(map.image) && (!readsExit(frame, light, map) || addImage(map.exitImage - 1)) &&
          (map.casterMaterialImage == 0 || addImage(map.casterMaterialImage - 1));
-}
-
-bool hasOccluderImages(const PellucidShadowMap& map) {
-  return map.exitImage != 0 || map.casterMaterialImage != 0;
 }
 
 bool addLight(const PellucidFrame& frame, const PellucidLight& light, LightGroup* group) {
@@ -44,11 +41,11 @@ bool addLight(const PellucidFrame& frame, const PellucidLight& light, LightGroup
   grown.shadowCount += light.shadowMapCount;
   if (group->lightCount == PELLUCID_DISPATCH_LIGHTS || grown.shadowCount > PELLUCID_DISPATCH_SHADOWS)
     return false;
-  bool occluderImages = false;
+  bool besideMaps = false;
   for (uint32_t i = 0; i < light.shadowMapCount; ++i) {
     const PellucidShadowMap& map = frame.shadowMaps[light.firstShadowMap + i];
-    if (!grown.addImages(map)) return false;
-    occluderImages = occluderImages || hasOccluderImages(map);
+    if (!grown.addImages(frame, light, map)) return false;
+    besideMaps = besideMaps || readsExit(frame, light, map) || map.casterMaterialImage != 0;
   }
   if (isGathered(frame, light)) {
     for (uint32_t i = 0; i < light.shadowMapCount; ++i) {
@@ -62,7 +59,7 @@ bool addLight(const PellucidFrame& frame, const PellucidLight& light, LightGroup
   const bool directional = light.type == PELLUCID_LIGHT_DIRECTIONAL && light.shadowMapCount == 1 &&
                            frame.shadowMaps[light.firstShadowMap].encoding == PELLUCID_DEPTH_DEVICE;
   // passes/directional.comp reads no image besides the map.
-  grown.directional = grown.directional && directional && !occluderImages;
+  grown.directional = grown.directional && directional && !besideMaps;
   if (isGathered(frame, light)) grown.gatheredDirectional = grown.gatheredDirectional && directional;
   ++grown.lightCount;
   *group = grown;

@@ -36,9 +36,9 @@ static_assert(kLightWindow <= 16384 && kShadowWindow <= 16384 && kGatherMapWindo
 struct LightGroup {
   uint32_t index = 0;
   uint32_t firstLight = 0, lightCount = 0;  // among the lights that are not skipped
-  bool directional = true;  // every light is directional with one shadow map of device depth, which has no
-                            // exit depth and no caster material
-  uint32_t shadowCount = 0;                      // shadow maps
+  bool directional = true;   // every light is directional with one shadow map of device depth, which has no
+                             // exit depth and no caster material
+  uint32_t shadowCount = 0;  // shadow maps
   VkDeviceSize lightBytes = 0, shadowBytes = 0;  // of the groups before, in the constants
   VkDeviceSize gatherMapBytes = 0, recordMapBytes = 0;
   uint32_t gathered = 0;                       // lights that are gathered from; the first ones
@@ -49,15 +49,12 @@ struct LightGroup {
 
   // Slot of an image, or PELLUCID_SHADOW_IMAGE_COUNT.
   uint32_t slot(uint32_t image) const;
-  // Gives the map's images slots; false if there are not enough.
-  bool addImages(const PellucidShadowMap& map);
+  // Gives the images of a light's map slots; false if there are not enough.
+  bool addImages(const PellucidFrame& frame, const PellucidLight& light, const PellucidShadowMap& map);
 
 private:
   bool addImage(uint32_t image);
 };
-
-// Whether the map has an exit depth or a caster material.
-bool hasOccluderImages(const PellucidShadowMap& map);
 
 // Whether lights with a map are gathered from.
 inline bool gathers(const PellucidFrame& frame) {
@@ -65,6 +62,13 @@ inline bool gathers(const PellucidFrame& frame) {
 }
 inline bool isGathered(const PellucidFrame& frame, const PellucidLight& light) {
   return gathers(frame) && light.shadowMapCount > 0;
+}
+
+// Whether the exit depth beside the light's map is read: thickness from the camera knows nothing of the
+// light's way.
+inline bool readsExit(const PellucidFrame& frame, const PellucidLight& light, const PellucidShadowMap& map) {
+  return map.exitImage != 0 &&
+         (frame.thicknessSource == PELLUCID_THICKNESS_LIGHT || isGathered(frame, light));
 }
 
 // Pixels a side of what one point of the gather stands for.

@@ -78,7 +78,7 @@ bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan
     }
     for (uint32_t k = 0; k < light.shadowMapCount; ++k) {
       const PellucidShadowMap& map = frame.shadowMaps[light.firstShadowMap + k];
-      noExit = noExit || map.exitImage == 0;
+      noExit = noExit || (map.exitImage == 0 && frame.thicknessSource == PELLUCID_THICKNESS_LIGHT);
       noCaster = noCaster || map.casterMaterialImage == 0;
     }
   }

@@ -222,7 +222,7 @@ void checkLight(const PellucidFrame& f, uint32_t index, Findings& out) {
   bool fits = true;
   for (uint32_t i = 0; i < l.shadowMapCount; ++i) {
     const PellucidShadowMap& s = f.shadowMaps[l.firstShadowMap + i];
-    fits = fits && images.addImages(s);
+    fits = fits && images.addImages(f, l, s);
     const glm::dmat4 clip = toMatrix(s.clipFromWorld);
     const bool perspective = clip[0][3] != 0 || clip[1][3] != 0 || clip[2][3] != 0;
     if (perspective == (l.type == PELLUCID_LIGHT_DIRECTIONAL))

@@ -89,6 +89,8 @@ TEST_F(FlatOccluder, LightEntersThroughTheReceiversMaterialOnly) {
   camera.shadowBias = 0.1f;
   setCaster(c, 1);
   EXPECT_NEAR(through(c, camera), std::exp(-0.5f), 1e-5);
+  setExitAt(c, -30);
+  EXPECT_NEAR(through(c, camera), std::exp(-0.5f), 1e-5) << "the exit is of the light's way";
   setCaster(c, 0);
   EXPECT_EQ(through(c, camera), 0);
 }

@@ -132,7 +132,7 @@ typedef struct PellucidShadowMap {
    * Both are indices into frame.shadowImages plus 1; 0 (default): not given. */
   uint32_t exitImage; /* depth, in the map's encoding and matrices, of the nearest back face behind the stored
                          surface. Receivers beyond it are in shadow. A texel that holds nothing, or NaN: no back
-                         face is known, and the medium goes on */
+                         face is known, and the medium goes on. Not read by PELLUCID_THICKNESS_CAMERA */
   uint32_t casterMaterialImage; /* one float channel: material of the stored surface, numbered as in
                                    frame.material without the mark bit; 0: opaque. Light enters receivers of that
                                    material only */
