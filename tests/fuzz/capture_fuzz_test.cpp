@@ -123,7 +123,10 @@ TEST_F(Fuzz, WrongIntegersInNativeCapture) {
 TEST_F(Fuzz, DamagedTiledFile) {
   writeText(directory_ / "m.json", [&] {
     json manifest = writeSampleFiles(directory_);
-    manifest["lights"][0]["shadowMap"]["file"] = "t.exr";
+    json& map = manifest["lights"][0]["shadowMap"];
+    map["file"] = "t.exr";
+    map.erase("exit");  // of another size
+    map.erase("casterMaterial");
     return manifest.dump();
   }());
   Imf::Header header(16, 16);
