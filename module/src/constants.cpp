@@ -147,8 +147,8 @@ float texelSide(const glm::dmat4& clipFromWorld, bool perspective, const uint32_
 glm::uvec4 occluderConstants(const PellucidFrame& f, const PellucidShadowMap& s, const PellucidLight& l,
                              const LightGroup& group) {
   const float scale = s.casterMaterialScale == 0 ? 255.0f : s.casterMaterialScale;
-  return {readsExit(f, l, s) ? group.slot(s.exitImage - 1) + 1 : 0,
-          s.casterMaterialImage != 0 ? group.slot(s.casterMaterialImage - 1) + 1 : 0, bitsOf(scale),
+  return {group.readsExit(f, l, s) ? group.slot(s.exitImage - 1) + 1 : 0,
+          group.readsCaster(s) ? group.slot(s.casterMaterialImage - 1) + 1 : 0, bitsOf(scale),
           bitsOf(texelSide(toMatrix(s.clipFromWorld), l.type != PELLUCID_LIGHT_DIRECTIONAL, s.extent))};
 }
 

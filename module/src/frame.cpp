@@ -33,7 +33,13 @@ bool LightGroup::addImage(uint32_t image) {
 bool LightGroup::addImages(const PellucidFrame& frame, const PellucidLight& light,
                            const PellucidShadowMap& map) {
   return addImage(map.image) && (!readsExit(frame, light, map) || addImage(map.exitImage - 1)) &&
-         (map.casterMaterialImage == 0 || addImage(map.casterMaterialImage - 1));
+         (!readsCaster(map) || addImage(map.casterMaterialImage - 1));
+}
+
+bool LightGroup::readsExit(const PellucidFrame& frame, const PellucidLight& light,
+                           const PellucidShadowMap& map) const {
+  return beside && map.exitImage != 0 &&
+         (frame.thicknessSource == PELLUCID_THICKNESS_LIGHT || isGathered(frame, light));
 }
 
 bool addLight(const PellucidFrame& frame, const PellucidLight& light, LightGroup* group) {
@@ -45,7 +51,7 @@ bool addLight(const PellucidFrame& frame, const PellucidLight& light, LightGroup
   for (uint32_t i = 0; i < light.shadowMapCount; ++i) {
     const PellucidShadowMap& map = frame.shadowMaps[light.firstShadowMap + i];
     if (!grown.addImages(frame, light, map)) return false;
-    besideMaps = besideMaps || readsExit(frame, light, map) || map.casterMaterialImage != 0;
+    besideMaps = besideMaps || grown.readsExit(frame, light, map) || grown.readsCaster(map);
   }
   if (isGathered(frame, light)) {
     for (uint32_t i = 0; i < light.shadowMapCount; ++i) {
@@ -79,16 +85,38 @@ uint32_t gatherSpacing(const PellucidFrame& frame) {
   return static_cast<uint64_t>(frame.imageExtent[0]) * frame.imageExtent[1] > 1u << 20 ? 4 : 2;
 }
 
-LightGroups lightGroups(const PellucidFrame& frame) {
+namespace {
+
+LightGroups countGroups(const PellucidFrame& frame, bool beside) {
   LightGroups groups;
-  forEachLightGroup(frame, [&](const LightGroup& group) {
-    ++groups.count;
-    if (group.gathered > 0) ++groups.gathered;
-    groups.recordColumns = std::max(groups.recordColumns, group.recordColumns);
-    groups.recordRows = std::max(groups.recordRows, group.recordRows);
-  });
+  forEachLightGroup(
+      frame, beside, [](const LightGroup&, const PellucidLight&) {},
+      [&](const LightGroup& group) {
+        ++groups.count;
+        if (group.gathered > 0) ++groups.gathered;
+        groups.recordColumns = std::max(groups.recordColumns, group.recordColumns);
+        groups.recordRows = std::max(groups.recordRows, group.recordRows);
+      });
   return groups;
 }
+
+}  // namespace
+
+bool bindsBeside(const PellucidFrame& frame) {
+  const auto hasNothing = [](const PellucidShadowMap& map) {
+    return map.exitImage == 0 && map.casterMaterialImage == 0;
+  };
+  if (std::all_of(frame.shadowMaps, frame.shadowMaps + frame.shadowMapCount, hasNothing)) return true;
+  const LightGroups groups = countGroups(frame, true);
+  // Debug views of light need all lights in one dispatch.
+  if (frame.debugView != PELLUCID_DEBUG_NONE && frame.debugView != PELLUCID_DEBUG_IRRADIANCE)
+    return groups.count <= 1;
+  // At most: three reductions, quads, resolve, clusters, three dispatches of edges and planes, history.
+  constexpr uint32_t kOthers = 10;
+  return groups.fused() + groups.gatherDispatches() + kOthers <= PELLUCID_MAX_DISPATCHES;
+}
+
+LightGroups lightGroups(const PellucidFrame& frame) { return countGroups(frame, bindsBeside(frame)); }
 
 bool addsPoints(const PellucidFrame& frame) {
   uint32_t groups = 0, others = 0;

@@ -44,6 +44,7 @@ struct LightGroup {
   uint32_t gathered = 0;                       // lights that are gathered from; the first ones
   bool gatheredDirectional = true;             // these are directional with one shadow map of device depth
   uint32_t recordColumns = 0, recordRows = 0;  // of their maps' records
+  bool beside = true;                          // exit depths and caster materials have slots among the images
   uint32_t imageCount = 0;
   std::array<uint32_t, PELLUCID_SHADOW_IMAGE_COUNT> images{};  // into frame.shadowImages
 
@@ -51,6 +52,10 @@ struct LightGroup {
   uint32_t slot(uint32_t image) const;
   // Gives the images of a light's map slots; false if there are not enough.
   bool addImages(const PellucidFrame& frame, const PellucidLight& light, const PellucidShadowMap& map);
+  // Whether what lies beside the light's map is read. Thickness from the camera knows nothing of the light's
+  // way and its exit.
+  bool readsExit(const PellucidFrame& frame, const PellucidLight& light, const PellucidShadowMap& map) const;
+  bool readsCaster(const PellucidShadowMap& map) const { return beside && map.casterMaterialImage != 0; }
 
 private:
   bool addImage(uint32_t image);
@@ -64,25 +69,21 @@ inline bool isGathered(const PellucidFrame& frame, const PellucidLight& light) {
   return gathers(frame) && light.shadowMapCount > 0;
 }
 
-// Whether the exit depth beside the light's map is read: thickness from the camera knows nothing of the
-// light's way.
-inline bool readsExit(const PellucidFrame& frame, const PellucidLight& light, const PellucidShadowMap& map) {
-  return map.exitImage != 0 &&
-         (frame.thicknessSource == PELLUCID_THICKNESS_LIGHT || isGathered(frame, light));
-}
-
 // Pixels a side of what one point of the gather stands for.
 uint32_t gatherSpacing(const PellucidFrame& frame);
 
 // Adds the light's maps to the group; false (and no change) if they do not fit.
 bool addLight(const PellucidFrame& frame, const PellucidLight& light, LightGroup* group);
 
-// Calls group(const LightGroup&) for each group in order, and light(const LightGroup&, const
-// PellucidLight&) for each light as it is placed. Those that are gathered from come first: all of them are
-// added to the pixels at once.
+// Whether the frame's dispatches can bind what lies beside its maps, which makes for more groups: else it is
+// left out as if the frame had only the maps.
+bool bindsBeside(const PellucidFrame& frame);
+
+// forEachLightGroup with what lies beside maps or without.
 template <class OnLight, class OnGroup>
-void forEachLightGroup(const PellucidFrame& frame, OnLight&& light, OnGroup&& group) {
+void forEachLightGroup(const PellucidFrame& frame, bool beside, OnLight&& light, OnGroup&& group) {
   LightGroup current;
+  current.beside = beside;
   const ViewBounds view(frame);
   for (const bool gathered : {true, false})
     for (uint32_t i = 0; i < frame.lightCount; ++i) {
@@ -90,6 +91,7 @@ void forEachLightGroup(const PellucidFrame& frame, OnLight&& light, OnGroup&& gr
       if (!addLight(frame, frame.lights[i], &current)) {
         group(static_cast<const LightGroup&>(current));
         LightGroup next;
+        next.beside = beside;
         next.index = current.index + 1;
         next.firstLight = current.firstLight + current.lightCount;
         next.lightBytes = current.lightBytes + aligned(current.lightCount * sizeof(shared::LightConstants));
@@ -105,6 +107,13 @@ void forEachLightGroup(const PellucidFrame& frame, OnLight&& light, OnGroup&& gr
       light(static_cast<const LightGroup&>(current), frame.lights[i]);
     }
   if (current.lightCount > 0) group(static_cast<const LightGroup&>(current));
+}
+// Calls group(const LightGroup&) for each group in order, and light(const LightGroup&, const
+// PellucidLight&) for each light as it is placed. Those that are gathered from come first: all of them are
+// added to the pixels at once.
+template <class OnLight, class OnGroup>
+void forEachLightGroup(const PellucidFrame& frame, OnLight&& light, OnGroup&& group) {
+  forEachLightGroup(frame, bindsBeside(frame), light, group);
 }
 template <class OnGroup>
 void forEachLightGroup(const PellucidFrame& frame, OnGroup&& group) {

@@ -55,6 +55,25 @@ Stages stagesOf(const PellucidFrame& frame) {
   return s;
 }
 
+// What the maps of lights that contribute lack.
+void skipBeside(const PellucidFrame& frame, const ViewBounds& view, Builder& b) {
+  if (!bindsBeside(frame))
+    b.skip("exit depth and caster material", "more lights have them than the dispatches of a plan can bind");
+  bool noExit = false, noCaster = false;
+  for (uint32_t i = 0; i < frame.lightCount; ++i) {
+    const PellucidLight& light = frame.lights[i];
+    for (uint32_t k = 0; k < light.shadowMapCount && !view.whySkipped(light); ++k) {
+      const PellucidShadowMap& map = frame.shadowMaps[light.firstShadowMap + k];
+      noExit = noExit || (map.exitImage == 0 && frame.thicknessSource == PELLUCID_THICKNESS_LIGHT);
+      noCaster = noCaster || map.casterMaterialImage == 0;
+    }
+  }
+  if (noExit) b.skip("exit depth", "a shadow map has none: air behind an occluder counts as medium");
+  if (noCaster)
+    b.skip("caster material",
+           "a shadow map has none: light enters through opaque bodies and other materials");
+}
+
 bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan& plan) {
   const Stages stages = stagesOf(frame);
   Builder b{frame,
@@ -69,29 +88,14 @@ bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan
   plan.constantsSize = b.layout.size;
 
   const ViewBounds view(frame);
-  bool noExit = false, noCaster = false;
-  for (uint32_t i = 0; i < frame.lightCount; ++i) {
-    const PellucidLight& light = frame.lights[i];
-    if (const char* reason = view.whySkipped(light)) {
-      b.skip("light", reason);
-      continue;
-    }
-    for (uint32_t k = 0; k < light.shadowMapCount; ++k) {
-      const PellucidShadowMap& map = frame.shadowMaps[light.firstShadowMap + k];
-      noExit = noExit || (map.exitImage == 0 && frame.thicknessSource == PELLUCID_THICKNESS_LIGHT);
-      noCaster = noCaster || map.casterMaterialImage == 0;
-    }
-  }
+  for (uint32_t i = 0; i < frame.lightCount; ++i)
+    if (const char* reason = view.whySkipped(frame.lights[i])) b.skip("light", reason);
   if (!(frame.features & PELLUCID_FEATURE_TRANSLUCENCY))
     b.skip("translucency", "not among the features");
   else if (plan.activeLights == 0)
     b.skip("translucency", "no light can contribute");
-  if (plan.activeLights > 0 && frame.features & PELLUCID_FEATURE_TRANSLUCENCY) {
-    if (noExit) b.skip("exit depth", "a shadow map has none: air behind an occluder counts as medium");
-    if (noCaster)
-      b.skip("caster material",
-             "a shadow map has none: light enters through opaque bodies and other materials");
-  }
+  else
+    skipBeside(frame, view, b);
   if (!(frame.features & PELLUCID_FEATURE_DIFFUSION))
     b.skip("diffusion", "not among the features");
   else if (frame.debugView != PELLUCID_DEBUG_NONE)

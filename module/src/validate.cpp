@@ -241,8 +241,8 @@ void checkLight(const PellucidFrame& f, uint32_t index, Findings& out) {
   }
   if (!fits)
     out.error(field("shadowMapCount"), "is ", l.shadowMapCount,
-              ", whose maps, exit and caster images are more than the ", PELLUCID_SHADOW_IMAGE_COUNT,
-              " images that a dispatch binds");
+              ": their maps, exit depths and caster materials are more than the ",
+              PELLUCID_SHADOW_IMAGE_COUNT, " images that a dispatch binds");
 }
 
 }  // namespace

@@ -193,6 +193,29 @@ TEST(Plan, ImagesBesideMapsCount) {
   EXPECT_STREQ(plan.dispatches[2].name, "reduce");
 }
 
+// Many lights leave out what lies beside their maps before a frame fails that has room for the maps.
+TEST(Plan, ImagesBesideMapsAreLeftOutWhereTheyAreTooMany) {
+  for (const uint32_t gather : {0u, 8u}) {
+    SCOPED_TRACE(gather);
+    Frame plain(64), beside(64);
+    beside.images.resize(3 * 64, Frame::view());
+    for (uint32_t i = 0; i < 64; ++i) {
+      beside.maps[i].exitImage = 64 + i + 1;
+      beside.maps[i].casterMaterialImage = 2 * 64 + i + 1;
+    }
+    for (Frame* f : {&plain, &beside}) {
+      f->use();
+      f->frame.gatherSamples = gather;
+    }
+    const PellucidPlan with = beside.plan();
+    EXPECT_EQ(names(with), names(plain.plan()));
+    EXPECT_TRUE(skips(with, "exit depth and caster material",
+                      "more lights have them than the dispatches of a plan can bind"));
+    std::vector<char> constants(static_cast<size_t>(with.constantsSize));
+    EXPECT_EQ(pellucidWriteConstants(&with, &beside.frame, constants.data(), constants.size()), PELLUCID_OK);
+  }
+}
+
 // Constants of a dispatch's lights are one window of a uniform buffer.
 TEST(Plan, ManyLightsBecomeSeveralDispatches) {
   Frame f(0);

@@ -141,7 +141,8 @@ typedef struct PellucidShadowMap {
 } PellucidShadowMap;
 
 /* A fused dispatch binds 8 shadow images and takes 128 lights and 128 shadow maps; a frame with more gets several.
- * Exit depths and caster materials count; the images of one light must fit into one dispatch. */
+ * Exit depths and caster materials count; the images of one light must fit into one dispatch. Where those of all lights
+ * are more than the dispatches of a plan can bind, all exit depths and caster materials are left out, which a skip says. */
 enum { PELLUCID_MAX_LIGHT_SHADOW_MAPS = 8, PELLUCID_MAX_TRANSIENTS = 4 };
 
 typedef enum PellucidFeatureBits {
