@@ -1,5 +1,6 @@
-// Records of a dispatch's shadow maps, below each other in one image.
+// Records of a dispatch's shadow maps, below each other in one image, and their means.
 #version 460
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
@@ -7,6 +8,7 @@
 #include "passes/bindings.glsl"
 #include "passes/records.glsl"
 #include "passes/shadow_images.glsl"
+#include "lib/occluder.glsl"
 #include "lib/shadow.glsl"
 
 // ONE_MAP: there is only one, in the first image, which the compiler makes more of than of a loop with one turn.
@@ -92,18 +94,40 @@ float parallelSlope(int at, int texels, float plane, float squaredStep, float ac
   return backward ? change.y : kNoDepth;
 }
 
-// A record of what is known of its surface; normal: not normalized, 0 where no neighbor says.
-uvec4 recordOf(Record r, vec3 normal, vec3 toLight, ivec2 pixel, float front, float planar, float tolerance) {
+// What lies behind the surface that a texel stores, and what the surface is of.
+struct Behind {
+  float exit; // see Record
+  uint material;
+  bool opaque; // no light enters
+};
+
+Behind behind(RecordMapConstants map, ivec2 texel) {
+  Behind b = Behind(kNoExit, 0u, false);
+  if (map.occluder.y != 0u) {
+    float index = shadowTexel(map.occluder.y - 1u, texel) * uintBitsToFloat(map.occluder.z);
+    // NaN counts as opaque.
+    b.material = index >= 0.5 && index < 255.5 ? uint(index + 0.5) : 0u;
+    b.opaque = b.material == 0u;
+  }
+  return b;
+}
+
+// The record of a surface that part `share` of the light enters. normal: not normalized, 0 where no neighbor says.
+uvec4 recordOf(float depth, float share, vec3 normal, vec3 toLight, ivec2 pixel, float front, float planar,
+               float tolerance, Behind b) {
+  if (b.opaque) share = 0.0;
+  Record r = Record(depth, toLight, share, 0.0, 1.0, b.exit, b.material);
   float squared = dot(normal, normal);
-  r.normal = toLight;
-  r.inverseCosine = 1.0;
   if (squared > 0.0) {
     normal *= inversesqrt(squared);
     float cosine = dot(normal, toLight);
     r.normal = cosine < 0.0 ? -normal : normal;
-    r.inverseCosine = 1.0 / max(abs(cosine), kLeastCosine);
+    r.cosine = max(abs(cosine), kLeastCosine);
   }
-  if (cameraSees(pixel, front, planar, r.normal, tolerance)) r.enters = 0.0;
+  if (cameraSees(pixel, front, planar, r.normal, tolerance)) {
+    r.seen = share;
+    r.hidden = 0.0;
+  }
   return packRecord(r);
 }
 
@@ -115,11 +139,9 @@ uvec4 parallelRecord(RecordMapConstants map, ivec2 texel, ShadowTexels stored) {
                       shadowHolds(map.meta, beside.w));
   vec4 grows = mix(vec4(2.0 * kNoDepth), (beside - stored.own) * map.ray.w, holds);
   vec2 p = vec2(texel) + 0.5;
-  Record r;
-  r.depth = stored.own * map.ray.w + (map.origin.w + p.x * map.stepX.w + p.y * map.stepY.w);
-  r.enters = 1.0;
-  if (!(abs(r.depth) < kNoDepth)) return kNoRecord;
-  vec4 q = vec4(p, r.depth, 1.0);
+  float depth = stored.own * map.ray.w + (map.origin.w + p.x * map.stepX.w + p.y * map.stepY.w);
+  if (!(abs(depth) < kNoDepth)) return kNoRecord;
+  vec4 q = vec4(p, depth, 1.0);
   float w = dot(map.pixelW, q), planar = dot(map.planar, q);
   ivec2 pixel = kNoPixel;
   // Far outside stays outside after the conversion.
@@ -132,25 +154,38 @@ uvec4 parallelRecord(RecordMapConstants map, ivec2 texel, ShadowTexels stored) {
   float y = parallelSlope(texel.y, int(map.map.y), map.stepY.w, squareY, map.across[0].w, ray2, grows.zw);
   vec3 normal = vec3(0.0);
   if (x < kNoDepth && y < kNoDepth) normal = map.normal.xyz + x * map.across[0].xyz + y * map.across[1].xyz;
-  return recordOf(r, normal, map.toLight.xyz, pixel, front, planar, map.seen.x + map.seen.y);
+  Behind b = behind(map, texel);
+  if (map.occluder.x != 0u) {
+    float exit = shadowTexel(map.occluder.x - 1u, texel);
+    // Depths of records grow towards the light.
+    if (shadowHolds(map.meta, exit)) b.exit = max((stored.own - exit) * map.ray.w, 0.0);
+  }
+  return recordOf(depth, 1.0, normal, map.toLight.xyz, pixel, front, planar, map.seen.x + map.seen.y, b);
 }
 
 #ifndef DIRECTIONAL
 uvec4 perspectiveRecord(RecordMapConstants map, ivec2 texel, ShadowTexels stored) {
-  Record r;
-  vec3 y = entryPoint(map, texel, stored.own, r.depth);
-  if (!(abs(r.depth) < kNoDepth)) return kNoRecord;
+  float depth;
+  vec3 y = entryPoint(map, texel, stored.own, depth);
+  if (!(abs(depth) < kNoDepth)) return kNoRecord;
   ivec2 pixel;
   if (!projectToPixel(frame.camera, y, pixel)) pixel = kNoPixel;
   float front = frontAround(pixel);
   vec3 toLight = map.ray.xyz - y;
-  float distanceTo = length(toLight), scale = r.depth * r.depth;
+  float distanceTo = length(toLight), scale = depth * depth;
   toLight /= max(distanceTo, 1.0e-12);
-  r.enters = lightShare(lights[map.map.w], toLight, distanceTo);
+  float share = lightShare(lights[map.map.w], toLight, distanceTo);
   float squareX = scale * dot(map.stepX.xyz, map.stepX.xyz), squareY = scale * dot(map.stepY.xyz, map.stepY.xyz);
   vec3 normal = cross(entrySlope(map, texel, y, ivec2(1, 0), stored.beside.xy, squareX),
                       entrySlope(map, texel, y, ivec2(0, 1), stored.beside.zw, squareY));
-  return recordOf(r, normal, toLight, pixel, front, y.z * frame.camera.range.x, abs(r.depth) * map.seen.x + map.seen.y);
+  float tolerance = abs(depth) * map.seen.x + map.seen.y;
+  Behind b = behind(map, texel);
+  if (map.occluder.x != 0u) {
+    float exit = shadowTexel(map.occluder.x - 1u, texel), exitDepth;
+    vec3 e = entryPoint(map, texel, exit, exitDepth);
+    if (shadowHolds(map.meta, exit) && abs(exitDepth) < kNoDepth) b.exit = distance(e, y);
+  }
+  return recordOf(depth, share, normal, toLight, pixel, front, y.z * frame.camera.range.x, tolerance, b);
 }
 #endif
 
@@ -163,26 +198,98 @@ uvec4 recordOf(RecordMapConstants map, ivec2 texel) {
   return parallelRecord(map, texel, stored);
 }
 
-shared uint someEnters;
-
-void main() {
-  ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-  if (gl_LocalInvocationIndex == 0u) someEnters = 0u;
-  barrier();
-  for (uint i = 0u; i < (kOneMap ? 1u : pass.value.x); ++i) {
-    ivec4 place = maps[i].place;
-    ivec2 own = at - place.xy;
-    if (any(lessThan(own, ivec2(0))) || any(greaterThanEqual(own, place.zw))) continue;
-    RecordMapConstants map = recordMaps[i];
-    // The texel in the middle of those that the record stands for.
-    int side = int(map.map.z);
-    ivec2 texel = min(own * side + side / 2, ivec2(map.map.xy) - 1);
-    uvec4 record = recordOf(map, texel);
-    imageStore(recordsDestination, at, record);
-    if (lightEnters(record)) someEnters = 1u;
-    break;
+// The mean of four records, each of `side` texels; kSeveralSurfaces where their depths are further apart than
+// slopes of 70 degrees make them: a sample then takes the record under it. `nearest`: that of the nearest surface instead.
+uvec4 meanOf(uvec4 bits[4], float texels, RecordMapConstants map, bool nearest) {
+  float hidden = 0.0, seen = 0.0, cosine = 0.0, exit = 0.0, count = 0.0, sum = 0.0, least = kNoDepth, most = -kNoDepth;
+  uint material = 0u;
+  vec3 normal = vec3(0.0);
+  bool several = false;
+  bool perspective = !kDirectional && map.meta.z != 0u;
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    several = several || bits[i] == kSeveralSurfaces;
+    if (!holdsSurface(bits[i])) continue;
+    // A map's records all know their material, or none does. Light enters where it is not 0.
+    uint its = unpackRecord(bits[i]).material;
+    several = several || (material != 0u && its != 0u && its != material);
+    material = max(material, its);
+    // Records of parallel light count towards the light, others from it.
+    float depth = uintBitsToFloat(bits[i].x) * (perspective ? 1.0 : -1.0);
+    least = min(least, depth);
+    most = max(most, depth);
   }
+  // Texels are 2 map.seen.x wide, of perspective maps times depth.
+  float limit = 3.0 * texels * 2.0 * map.seen.x * (perspective ? max(abs(least), abs(most)) : 1.0);
+  several = several || most - least > 2.0 * limit;
+  if (several && !nearest) return kSeveralSurfaces;
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    if (!holdsSurface(bits[i])) continue;
+    Record r = unpackRecord(bits[i]);
+    if (several && r.depth * (perspective ? 1.0 : -1.0) > least + limit) continue;
+    hidden += r.hidden;
+    seen += r.seen;
+    cosine += r.cosine;
+    normal += r.normal;
+    sum += r.depth;
+    exit += r.exit;
+    count += 1.0;
+  }
+  if (count == 0.0) return kNoRecord;
+  float squared = dot(normal, normal), inverse = 1.0 / count;
+  // Normals towards one light cancel only in rounding.
+  if (squared < 1.0e-6) return nearest ? bits[0] : kSeveralSurfaces;
+  return packRecord(Record(sum * inverse, normal * inversesqrt(squared), 0.25 * hidden, 0.25 * seen, cosine * inverse,
+                           exit * inverse, material));
+}
+
+shared uvec4 records[GROUP_SIDE * GROUP_SIDE], means[GROUP_SIDE * GROUP_SIDE / 4];
+shared uint someSurface;
+
+// A group takes 16x16 texels of a map. Records of more than one texel are means of four, from the middles of their quarters.
+void main() {
+  uint map = kOneMap ? 0u : gl_WorkGroupID.z;
+  int side = int(recordMaps[map].map.z), parts = min(side, 2), index = int(gl_LocalInvocationIndex);
+  ivec2 size = ivec2(pass.value.y & 0xFFFFu, pass.value.y >> 16);
+  ivec2 at = ivec2(gl_GlobalInvocationID.xy), last = ivec2(recordMaps[map].map.xy) - 1;
+  // Side 1: the texel itself; 2: quarters are texels; 4, 8, ..: in the middle of quarters.
+  ivec2 texel = at * (side / parts) + side / 4;
+  uvec4 record = all(lessThanEqual(texel, last)) ? recordOf(recordMaps[map], texel) : kNoRecord;
+  records[index] = record;
+  if (index == 0) someSurface = 0u;
   barrier();
-  if (gl_LocalInvocationIndex == 0u)
-    imageStore(recordsDestination, ivec2(pass.value.y, 0) + ivec2(gl_WorkGroupID.xy), uvec4(someEnters));
+  if (holdsSurface(record)) someSurface = 1u;
+  barrier();
+  bool some = someSurface != 0u;
+  ivec2 first = maps[map].place.xy + ivec2(gl_WorkGroupID.xy) * (GROUP_SIDE / parts); // record of the group
+  // Groups beyond the map have nothing to write. Maps begin at whole groups.
+  bool inside = all(lessThan(first - maps[map].place.xy, maps[map].place.zw));
+  if (inside && parts == 1) imageStore(recordsDestination, first + ivec2(index % GROUP_SIDE, index / GROUP_SIDE), record);
+  // Halved again and again, from one array to the first part of the other.
+  int levels = kLastRecordLevel + parts - 1;
+  for (int halved = 1; halved <= levels; ++halved) {
+    int across = GROUP_SIDE >> halved, level = halved - (parts - 1);
+    ivec2 local = ivec2(index % across, index / across);
+    bool makes = inside && index < across * across;
+    if (makes) {
+      record = kNoRecord;
+      if (some) {
+        int from = 4 * local.y * across + 2 * local.x;
+        uvec4 bits[4];
+        [[unroll]] for (int i = 0; i < 4; ++i) {
+          int place = from + (i & 1) + (i >> 1) * 2 * across;
+          bits[i] = (halved & 1) != 0 ? records[place] : means[place];
+        }
+        record = meanOf(bits, float((side / parts) << (halved - 1)), recordMaps[map], level == 0);
+      }
+      imageStore(recordsDestination, recordPlace(first, level, size) + local, record);
+    }
+    barrier(); // what was there has been read
+    if (makes) {
+      if ((halved & 1) != 0)
+        means[index] = record;
+      else
+        records[index] = record;
+    }
+    barrier();
+  }
 }

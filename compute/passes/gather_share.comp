@@ -18,7 +18,7 @@ const int kBorder = kRow * kRow - PELLUCID_SHARE_GROUP * PELLUCID_SHARE_GROUP;
 
 shared vec4 places[kRow * kRow];  // position; w: bits of the material, 0: nothing there
 shared uvec4 found[kRow * kRow];  // as points have light; the normal in halves, in place of the points' own
-shared uint someLight, someDisplaced;
+shared uint someLight, someConvexity;
 
 uvec4 pointAt(ivec2 cell, ivec4 cells) {
   return contains(cells, cell) ? texelFetch(foundImage, cell, 0) : kNoPoint;
@@ -48,10 +48,10 @@ void main() {
   bool hasBorder = index < kBorder;
   uvec4 own = pointAt(cell, cells), beside = kNoPoint;
   if (hasBorder) beside = pointAt(first + border, cells);
-  if (index == 0) someLight = someDisplaced = 0u;
+  if (index == 0) someLight = someConvexity = 0u;
   barrier();
   if (hasLight(own) || hasLight(beside)) someLight = 1u;
-  if (displaces(own) || displaces(beside)) someDisplaced = 1u;
+  if (hasConvexity(own) || hasConvexity(beside)) someConvexity = 1u;
   barrier();
   bool shares = someLight != 0u;
   if (shares) {
@@ -69,7 +69,7 @@ void main() {
   vec3 place = places[center].xyz, normal = vec3(unpackHalf2x16(found[center].y).y, unpackHalf2x16(found[center].z));
   float mm = frame.camera.range.w;
   float perSquare = materials[material - 1u].gather.profile.w * mm * mm, total = 0.0;
-  vec3 added = vec3(0.0), displaced = vec3(0.0);
+  vec3 added = vec3(0.0), convexity = vec3(0.0);
   [[unroll]] for (int i = 0; i < kSquare * kSquare; ++i) {
     ivec2 away = ivec2(i % kSquare, i / kSquare) - kReach;
     if (abs(away.x) + abs(away.y) > kReach) continue; // known when compiled
@@ -83,9 +83,9 @@ void main() {
     facing *= facing;
     float weight = floatBitsToUint(theirs.w) == material ? exp2(-dot(apart, apart) * perSquare) * facing * facing : 0.0;
     added += weight * vec3(unpackHalf2x16(bits.x), middle.x);
-    if (someDisplaced != 0u) displaced += weight * displacedOf(bits);
+    if (someConvexity != 0u) convexity += weight * convexityOf(bits);
     total += weight;
   }
   // The point itself is among them.
-  imageStore(sharedImage, cell, replaceLight(own, added / total, displaced / total));
+  imageStore(sharedImage, cell, replaceLight(own, added / total, convexity / total));
 }

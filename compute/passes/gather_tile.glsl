@@ -45,7 +45,7 @@ void unpackPoints(int index, int side) {
   [[dont_unroll]] for (int i = index; i < count; i += kThreads) {
     Point p = unpackPoint(points[i]);
     pointPlanes[i] = tangentPlane(p, pixelInCell(cellOfPoint(i, side), side, p.index), tileStart());
-    points[i] = uvec4(packLight(p.added, p.displaced), p.material);
+    points[i] = uvec4(packLight(p.added, p.convexity), p.material);
   }
 }
 
@@ -77,7 +77,12 @@ void writePixel(ivec2 pixel, int side, uint value, vec4 source, float frontStore
   if (material == 0u) return;
   vec3 result = sanitize(source.rgb);
   float front = (value & frame.marks.x) != 0u ? -1.0 : frontDistanceOf(frontStored);
-  if (front > 0.0 && someLight != 0u) result = withGathered(result, pixel, side, front, material);
+  if (front > 0.0 && side == 1) {
+    uvec4 own = imageLoad(pointsImage, pixel);
+    result = withLight(result, addedOf(own), convexityOf(own));
+  } else if (front > 0.0 && someLight != 0u) {
+    result = withGathered(result, pixel, side, front, material);
+  }
   if (front > 0.0 && others) result += otherLight(pixel, front, frontStored, material - 1u);
   writeResult(pixel, max(result, vec3(0.0)), source.a, pass.value.z == PELLUCID_WRITE_LAST);
 }
@@ -96,7 +101,7 @@ void main() {
   }
   if (index == 0) someLight = 0u;
   barrier();
-  uint light = loadPoints(index, side);
+  uint light = side == 1 ? 0u : loadPoints(index, side); // a point of its own is what each pixel reads then
   if (light != 0u) atomicOr(someLight, light);
   barrier();
   if (someLight != 0u) unpackPoints(index, side);

@@ -4,9 +4,9 @@
 
 #include "passes/points.glsl"
 
-const uint kSomeLight = 1u, kSomeDisplaced = 2u;
+const uint kSomeLight = 1u, kSomeConvexity = 2u;
 
-uint kindsOfLight(uvec4 bits) { return (hasLight(bits) ? kSomeLight : 0u) | (displaces(bits) ? kSomeDisplaced : 0u); }
+uint kindsOfLight(uvec4 bits) { return (hasLight(bits) ? kSomeLight : 0u) | (hasConvexity(bits) ? kSomeConvexity : 0u); }
 
 // A pixel that is a quarter of its side off a point's tangent plane is not of its surface. Measured: half and a
 // tenth err more on heads.
@@ -30,15 +30,15 @@ vec4 tangentPlane(Point p, ivec2 pixel, ivec2 first) {
 uvec4 pointOf(ivec2 cell, ivec2 pixel, float front, out float off);
 
 // What the diffused irradiance D becomes.
-vec3 withLight(vec3 diffused, vec3 added, vec3 displaced) {
-  return min(diffused - diffused * displaced + added, vec3(kLargestHalf));
+vec3 withLight(vec3 diffused, vec3 added, vec3 convexity) {
+  return clamp(diffused + diffused * convexity + added, vec3(0.0), vec3(kLargestHalf));
 }
 
 // D with what is linear between the four points around the pixel, as far as they are of its material and it lies on their
 // planes.
 vec3 withGathered(vec3 diffused, ivec2 pixel, int side, float front, uint material) {
   float total = 0.0, perSide = side == 2 ? 0.5 : 0.25;
-  vec3 added = vec3(0.0), displaced = vec3(0.0);
+  vec3 added = vec3(0.0), convexity = vec3(0.0);
   vec2 fraction = vec2(pixel & (side - 1)) * perSide;
   ivec2 cell = pixel >> shiftOf(side);
   [[dont_unroll]] for (int i = 0; i < 4; ++i) {
@@ -49,11 +49,11 @@ vec3 withGathered(vec3 diffused, ivec2 pixel, int side, float front, uint materi
     if (point.w != material) continue;
     // The floors leave a pixel without a like neighbor the most alike.
     float weight = (exp2(-off * off) + 1.0e-4) * (linear.x * linear.y + 1.0e-4);
-    addLight(point.xyz, weight, added, displaced);
+    addLight(point.xyz, weight, added, convexity);
     total += weight;
   }
   // The cell's own point is of its material, unless the cell has several.
-  return total > 0.0 ? withLight(diffused, added / total, displaced / total) : diffused;
+  return total > 0.0 ? withLight(diffused, added / total, convexity / total) : diffused;
 }
 
 #endif

@@ -18,14 +18,14 @@ void addLightOfPlane(ivec2 pixel, inout vec4 colors[4]) {
   float across = 0.25 * float(pixel.x & 3);
   uvec4 a = texelFetch(pointsImage, cell, 0), b = texelFetch(pointsImage, cell + ivec2(1, 0), 0);
   uvec4 c = texelFetch(pointsImage, cell + ivec2(0, 1), 0), d = texelFetch(pointsImage, cell + ivec2(1, 1), 0);
-  vec3 added = mix(addedOf(a), addedOf(b), across), displaced = vec3(0.0);
-  vec3 addedStep = 0.25 * (mix(addedOf(c), addedOf(d), across) - added), displacedStep = vec3(0.0);
-  if ((someLight & kSomeDisplaced) != 0u) {
-    displaced = mix(displacedOf(a), displacedOf(b), across);
-    displacedStep = 0.25 * (mix(displacedOf(c), displacedOf(d), across) - displaced);
+  vec3 added = mix(addedOf(a), addedOf(b), across), convexity = vec3(0.0);
+  vec3 addedStep = 0.25 * (mix(addedOf(c), addedOf(d), across) - added), convexityStep = vec3(0.0);
+  if ((someLight & kSomeConvexity) != 0u) {
+    convexity = mix(convexityOf(a), convexityOf(b), across);
+    convexityStep = 0.25 * (mix(convexityOf(c), convexityOf(d), across) - convexity);
   }
   [[unroll]] for (int i = 0; i < 4; ++i)
-    colors[i].rgb = withLight(colors[i].rgb, added + float(i) * addedStep, displaced + float(i) * displacedStep);
+    colors[i].rgb = withLight(colors[i].rgb, added + float(i) * addedStep, convexity + float(i) * convexityStep);
 }
 #endif
 

@@ -14,7 +14,7 @@ uvec4 pointOf(ivec2 cell, ivec2 pixel, float front, out float off) {
   Point p = unpackPoint(pointBits(cell));
   vec4 plane = tangentPlane(p, pixelInCell(cell, PELLUCID_DIFFUSE_CELL, p.index), pixel);
   off = (front - plane.x) * plane.w;
-  return uvec4(packLight(p.added, p.displaced), p.material);
+  return uvec4(packLight(p.added, p.convexity), p.material);
 }
 
 #endif

@@ -22,17 +22,12 @@ layout(set = 0, binding = PELLUCID_BINDING_BACK_DEPTH) uniform texture2D backDep
 #include "passes/normal_image.glsl"
 #include "passes/shadow_images.glsl"
 #include "lib/transmission.glsl"
+#include "passes/chord.glsl"
 
 Surface surfaceAt(ivec2 pixel, float front, float frontStored, float backStored, vec4 normalTexel) {
   ViewRay ray = viewRay(frame.camera, pixel);
   float along = -1.0;
-  if (hasFlag(PELLUCID_FLAG_CHORD) && hasFlag(PELLUCID_FLAG_BACK_DEPTH)) {
-    bool backViewZ = hasFlag(PELLUCID_FLAG_BACK_VIEW_Z);
-    float back = backViewZ ? planarDistanceViewZ(backStored) : planarDistance(frame.camera, backStored);
-    bool device = !backViewZ && !hasFlag(PELLUCID_FLAG_FRONT_VIEW_Z);
-    float difference = device ? planarDifference(frame.camera, backStored, frontStored) : back - front;
-    if (back > 0.0) along = chord(difference, ray);
-  }
+  if (hasFlag(PELLUCID_FLAG_CHORD) && hasFlag(PELLUCID_FLAG_BACK_DEPTH)) along = chordOf(ray, front, frontStored, backStored);
   vec3 normal = vec3(0.0);
   if (hasFlag(PELLUCID_FLAG_NORMAL)) normal = mat3(frame.viewFromNormal) * decodeNormal(normalTexel);
   return makeSurface(ray, front, along, normal);

@@ -134,6 +134,7 @@ struct Camera {
 
 struct FrameConstants {
   Camera camera;
+  vec4 worldFromView[3]; // rows
   mat4 viewFromNormal; // rotation of the normal image's space into view space
   uvec4 rect;          // x, y, end x, end y
   uvec4 flags;         // x: PELLUCID_FLAG_*; y: materials; z: debug view; w: angle model
@@ -186,6 +187,8 @@ struct GatherConstants {
   vec4 lengths; // mm; x: shortest; y: log2(longest / shortest); z: largest distance looked for, 2 / kappa; w: depth scale
   vec4 profile; // rgb: 1/(3 d) of Burley's profile, 0: none, 1/mm; w: sharing between points, 1/mm^2
   vec4 convexity; // rgb: how much more of the light comes back, per mean curvature, mm; w: where that is measured, mm
+  // A slab of thickness h sends back R(h) = x - sqrt(y T(h)^2 + z) of a half-space's light, x, y, z of each channel.
+  vec4 reflectance[3];
   vec4 entries[3 * PELLUCID_GATHER_ENTRIES]; // see GatherEntry
 };
 
@@ -194,6 +197,7 @@ struct GatherMapConstants {
   vec4 column, row; // in records from the map's first one; perspective: times depth
   vec4 depth;       // what records store. Directional: scene units towards the light; perspective: clip w
   ivec4 place;      // x, y: of the first record in the image; z, w: how many
+  vec4 stepX, stepY; // from a record to the next, scene units; perspective: times depth
 };
 
 // Where light enters, by texel coordinates p of the map. Affine in p:
@@ -206,6 +210,7 @@ struct RecordMapConstants {
   uvec4 map;   // x, y: texels; z: how many a side for one record; w: the light, of lights[]
   vec4 seen;   // x + y: how far behind what the camera sees a point may lie, scene units; perspective: x times depth
   vec4 toLight; // xyz: directional: unit
+  uvec4 occluder; // as ShadowConstants::occluder
   // Directional: dot products with (p, depth, 1) say what the camera sees it on: pixelX / pixelW, pixelY / pixelW and
   // the planar distance. normal + x across[0] + y across[1] is the normal where depth grows by x and y beyond a plane's
   // along the steps of p. w, normal: 2 stepX ray, across: 2 stepY ray and ray^2.
@@ -247,8 +252,8 @@ struct GatherDispatches {
 };
 
 // Push constants. translucency: pixels a side of a cell of the gather, lights, PELLUCID_WRITE_*, lights of the gather.
-// gather records: maps, column of the summaries. gather points: pixels a side of a cell, lights with maps, twice the
-// column of the summaries and 1 to add to what is there, samples.
+// gather records: unused, columns and, from bit 16 on, rows of records. gather points: pixels a side of a cell, lights with
+// maps, columns and rows of records and, in bit 31, 1 to add to what is there, samples.
 // gather share: pixels a side of a cell.
 // add: unused, unused, 1 if this is the last dispatch.
 // reduce: finer level, 16. resolve: coarsest level, 16.

@@ -12,6 +12,7 @@
 namespace pellucid::harness::reference {
 namespace {
 
+constexpr double kPi = 3.14159265358979323846;
 // Kernels leave out this share beyond their radius.
 constexpr double kTail = 1e-4;
 // Texels per side of a block that is skipped as a whole where it is out of reach.
@@ -66,8 +67,10 @@ public:
     return {eye, glm::normalize(0.5 * (p + q) - eye)};
   }
 
-  std::optional<glm::dvec3> at(int x, int y) const {
-    const float stored = *map_.depth.image.at(x, y);
+  std::optional<glm::dvec3> at(int x, int y) const { return at(x, y, *map_.depth.image.at(x, y)); }
+
+  // Of a depth that the texel stores.
+  std::optional<glm::dvec3> at(int x, int y, float stored) const {
     const Line ray = rayAt(x + 0.5, y + 0.5);
     if (map_.depth.encoding == PELLUCID_DEPTH_DEVICE) {
       if (!(stored >= 0 && stored <= 1) || stored == nothing_) return std::nullopt;
@@ -110,8 +113,8 @@ private:
 }  // namespace
 
 Gather::Gather(const Capture& capture, const SurfaceReader& surfaces,
-               const std::vector<PellucidMaterial>& materials, double shadowBias)
-    : capture_(capture), surfaces_(surfaces), mm_(surfaces.millimetersPerUnit()) {
+               const std::vector<PellucidMaterial>& materials, double shadowBias, bool diffused)
+    : capture_(capture), surfaces_(surfaces), mm_(surfaces.millimetersPerUnit()), diffused_(diffused) {
   for (const PellucidMaterial& m : materials) {
     kernels_.emplace_back(m);
     radii_.push_back(kernels_.back().radius(kTail));
@@ -185,10 +188,18 @@ Gather::Blocks Gather::collect(const Light& light, std::size_t mapIndex, double 
             if (glm::length(n) > 0) normal = glm::normalize(glm::dot(n, arrival.toLight) < 0 ? -n : n);
           }
           const double across = unprojected.across(x, y, *p);
-          if (cameraSees(*p, normal, kSeenTolerance * std::sqrt(across) + bias)) continue;
+          const std::size_t texel = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                                    static_cast<std::size_t>(x);
+          const std::uint8_t of = map.casterMaterial.empty() ? 0 : map.casterMaterial[texel];
+          if (!map.casterMaterial.empty() && of == 0) continue;
+          double exit = INFINITY;
+          if (!map.exitDepth.empty())
+            if (const auto e = unprojected.at(x, y, *map.exitDepth.at(x, y))) exit = mm_ * glm::distance(*e, *p);
+          const bool seen = cameraSees(*p, normal, kSeenTolerance * std::sqrt(across) + bias);
+          if (seen && !diffused_) continue;
           const double area = across * mm_ * mm_;
           const double cosine = std::max(glm::dot(normal, arrival.toLight), kLeastCosine);
-          block.texels.push_back({*p * mm_, normal, arrival.irradiance * area, area / cosine});
+          block.texels.push_back({*p * mm_, normal, arrival.irradiance * area, area / cosine, seen, exit, of});
           low = glm::min(low, *p * mm_);
           high = glm::max(high, *p * mm_);
         }
@@ -203,7 +214,9 @@ Gather::Blocks Gather::collect(const Light& light, std::size_t mapIndex, double 
 std::size_t Gather::hiddenTexels() const {
   std::size_t count = 0;
   for (const Blocks& blocks : lights_)
-    for (const Block& b : blocks) count += b.texels.size();
+    for (const Block& b : blocks)
+      count += static_cast<std::size_t>(
+          std::count_if(b.texels.begin(), b.texels.end(), [](const Texel& t) { return !t.seen; }));
   return count;
 }
 
@@ -211,71 +224,200 @@ double Gather::meanCurvature(const Surface& surface, double reach) const {
   const Camera& camera = surfaces_.camera();
   const glm::dvec2 pixel = glm::floor(camera.project(surface.position));
   const double planar = camera.planarDepth(surface.position);
-  const auto side = [&](glm::dvec2 step) {
-    return mm_ * glm::distance(camera.position(pixel + step, planar), camera.position(pixel, planar));
+  const glm::dvec3& normal = *surface.normal;
+  // Pixels that `reach` takes on the tangent plane; planes seen edge-on would have no end.
+  const auto stepsAlong = [&](glm::dvec2 step) {
+    glm::dvec3 side = camera.position(pixel + step, planar) - camera.position(pixel, planar);
+    side -= surface.ray * (glm::dot(normal, side) / std::min(glm::dot(normal, surface.ray), -0.1));
+    return std::max(1.0, std::floor(reach / (mm_ * glm::length(side)) + 0.5));
   };
-  const glm::dvec2 steps = glm::max(glm::floor(reach / glm::dvec2(side({1, 0}), side({0, 1})) + 0.5), 1.0);
   struct Beside {
-    glm::dvec3 apart, turn;  // mm; of the normal
+    glm::dvec3 apart{0}, turn{0};  // mm; of the normal
+    double weight = 0;             // 1 where the surface goes on
   };
-  const auto beside = [&](glm::dvec2 step) -> std::optional<Beside> {
-    const glm::dvec2 at = pixel + step * steps;
-    if (!(at.x >= 0 && at.y >= 0 && at.x < capture_.width && at.y < capture_.height)) return std::nullopt;
+  const auto beside = [&](glm::dvec2 step) -> Beside {
+    const glm::dvec2 at = pixel + step;
+    if (!(at.x >= 0 && at.y >= 0 && at.x < capture_.width && at.y < capture_.height)) return {};
     const std::optional<Surface> other = surfaces_.at(static_cast<int>(at.x), static_cast<int>(at.y));
-    if (!other || !other->normal) return std::nullopt;
+    if (!other || !other->normal) return {};
     const glm::dvec3 apart = mm_ * (other->position - surface.position);
-    if (!(glm::length(apart) < 3 * reach)) return std::nullopt;
-    return Beside{apart, *other->normal - *surface.normal};
+    const double ratio = glm::dot(apart, apart) / (reach * reach);
+    return {apart, *other->normal - normal, std::clamp((9 - ratio) / 5, 0.0, 1.0)};
   };
-  double sum = 0;
-  int count = 0;
-  for (const double x : {1, -1})
-    for (const double y : {1, -1}) {
-      const std::optional<Beside> a = beside({x, 0}), b = beside({0, y});
-      if (!a || !b) continue;
-      // The trace of the map from steps to turns of the normal.
-      const double area = glm::dot(*surface.normal, glm::cross(a->apart, b->apart));
-      if (!(std::abs(area) > 0.1 * glm::length(a->apart) * glm::length(b->apart))) continue;
-      sum += 0.5 * glm::dot(*surface.normal, glm::cross(a->turn, b->apart) + glm::cross(a->apart, b->turn)) /
-             area;
-      ++count;
+  const auto across = [&](glm::dvec2 axis) -> Beside {
+    const double steps = stepsAlong(axis);
+    const Beside f = beside(steps * axis), b = beside(-steps * axis);
+    return {f.weight * f.apart - b.weight * b.apart, f.weight * f.turn - b.weight * b.turn,
+            std::max(f.weight, b.weight)};
+  };
+  const Beside a = across({1, 0}), b = across({0, 1});
+  // The trace of the map from steps to turns of the normal.
+  const double area = glm::dot(normal, glm::cross(a.apart, b.apart));
+  if (!(std::abs(area) > 0.1 * glm::length(a.apart) * glm::length(b.apart))) return 0;
+  const double trace = glm::dot(normal, glm::cross(a.turn, b.apart) + glm::cross(a.apart, b.turn));
+  return a.weight * b.weight * 0.5 * trace / area;
+}
+
+glm::dvec3 Gather::thinLoss(const Surface& surface, std::size_t material) const {
+  if (!surface.chord || !surface.normal) return glm::dvec3(0);
+  const glm::dvec2 pixel = glm::floor(surfaces_.camera().project(surface.position));
+  const auto back = [&](glm::dvec2 at) -> std::optional<glm::dvec3> {
+    if (!(at.x >= 0 && at.y >= 0 && at.x < capture_.width && at.y < capture_.height)) return std::nullopt;
+    const std::optional<Surface> s = surfaces_.at(static_cast<int>(at.x), static_cast<int>(at.y));
+    if (!s || !s->chord) return std::nullopt;
+    return s->position + *s->chord * s->ray;
+  };
+  const glm::dvec3 here = surface.position + *surface.chord * surface.ray;
+  // To the nearer side: the other may lie across an edge.
+  const auto slope = [&](glm::dvec2 axis) -> std::optional<glm::dvec3> {
+    const auto f = back(pixel + axis), b = back(pixel - axis);
+    if (f && b) return glm::distance(*b, here) < glm::distance(*f, here) ? here - *b : *f - here;
+    if (f) return *f - here;
+    if (b) return here - *b;
+    return std::nullopt;
+  };
+  glm::dvec3 outward = -*surface.normal;
+  const auto x = slope({1, 0}), y = slope({0, 1});
+  if (x && y) {
+    const glm::dvec3 n = glm::cross(*x, *y);
+    if (glm::length(n) > 0) outward = glm::normalize(glm::dot(n, surface.ray) < 0 ? -n : n);
+  }
+  const double chord = *surface.chord * mm_;
+  const double depth = 0.5 * chord * (std::abs(glm::dot(surface.ray, *surface.normal)) +
+                                      std::abs(glm::dot(surface.ray, outward)));
+  const double opposite = 0.5 - 0.5 * glm::dot(*surface.normal, outward);
+  return opposite * (1.0 - kernels_[material].slabReflectance(depth));
+}
+
+glm::dvec3 Gather::ownIrradiance(const Light& light, const Exit& exit) const {
+  if (!exit.normal) return glm::dvec3(0);
+  const glm::dvec3 world = exit.position / mm_;
+  const Arrival arrival = arrivalAt(light, world);
+  const double cosine = glm::dot(*exit.normal, arrival.toLight);
+  if (!(cosine > 0)) return glm::dvec3(0);
+  for (const ShadowMap& map : light.shadowMaps) {
+    const ShadowView::Lookup found = ShadowView(light, map).at(world);
+    if (found.kind == ShadowView::Kind::Outside) continue;
+    if (found.kind == ShadowView::Kind::Empty) return cosine * arrival.irradiance;
+    // None where the lit surface is further ahead than a texel's side makes of the slope.
+    const Unprojected unprojected(light, map);
+    const glm::dvec4 clip = toMatrix(map.clipFromWorld) * glm::dvec4(world, 1);
+    const auto texel = [&](double ndc, int texels) {
+      return std::clamp(static_cast<int>((ndc / clip.w * 0.5 + 0.5) * texels), 0, texels - 1);
+    };
+    const double side = std::sqrt(unprojected.across(texel(clip.x, map.depth.image.width),
+                                                     texel(clip.y, map.depth.image.height), world));
+    const double slope = std::min(std::sqrt(std::max(1 - cosine * cosine, 0.0)) / cosine, 4.0);
+    return cosine * std::clamp(2 - found.distance / (side * (1 + slope)), 0.0, 1.0) * arrival.irradiance;
+  }
+  return glm::dvec3(0);
+}
+
+// Over the texels of a light's maps.
+struct Gather::Sums {
+  glm::dvec3 transmitted{0};              // exitance of what enters opposite
+  glm::dvec3 entering{0}, hidden{0};      // of what enters hidden and alike: irradiance, part of the profile
+  glm::dvec3 opposite{0};                 // irradiance of what enters seen and opposite, by the profile
+  glm::dvec3 seenEntering{0}, seen{0};    // of what enters seen and alike
+};
+
+Gather::Place Gather::placeOf(const Light& light, const Exit& exit) const {
+  const glm::dvec3 world = exit.position / mm_;
+  Place place;
+  place.toLight = arrivalAt(light, world).toLight;
+  for (const ShadowMap& map : light.shadowMaps) {
+    if (map.exitDepth.empty() || !contains(map, world)) continue;
+    const Unprojected unprojected(light, map);
+    const glm::dvec4 clip = toMatrix(map.clipFromWorld) * glm::dvec4(world, 1);
+    const auto texel = [&](double ndc, int texels) {
+      return std::clamp(static_cast<int>((ndc / clip.w * 0.5 + 0.5) * texels), 0, texels - 1);
+    };
+    const int x = texel(clip.x, map.depth.image.width), y = texel(clip.y, map.depth.image.height);
+    const double cosine = exit.normal ? std::abs(glm::dot(*exit.normal, place.toLight)) : 0;
+    const double slope = std::sqrt(std::max(1 - cosine * cosine, 0.0)) / std::max(cosine, 1e-3);
+    place.tolerance = mm_ * std::sqrt(unprojected.across(x, y, world)) * (2 + std::min(slope, 4.0));
+    const auto e = unprojected.at(x, y, *map.exitDepth.at(x, y));
+    if (e && unprojected.at(x, y))
+      place.shadowed =
+          std::clamp(mm_ * glm::dot(*e - world, place.toLight) / place.tolerance - 1, 0.0, 1.0);
+    break;
+  }
+  return place;
+}
+
+// An exit beyond a texel's back face has air before it. Far sides of one body slope by up to 63 degrees; only where the
+// exit's own ray has air, too, is that no excuse.
+double Gather::inside(const Texel& texel, const Exit& exit, const Place& place) {
+  if (!(texel.exit < INFINITY)) return 1;
+  const glm::dvec3 to = exit.position - texel.position;
+  const double along = -glm::dot(to, place.toLight);
+  const double aside = std::sqrt(std::max(glm::dot(to, to) - along * along, 0.0));
+  const double beyond = along - texel.exit - 2 * (1 - place.shadowed) * aside;
+  return std::clamp(2 - beyond / std::max(place.tolerance, 1e-12), 0.0, 1.0);
+}
+
+Gather::Sums Gather::sums(const Light& light, const Blocks& blocks, const Exit& exit) const {
+  const GatherKernel& kernel = kernels_[exit.material];
+  const double radius = radii_[exit.material];
+  const Place place = placeOf(light, exit);
+  Sums sums;
+  for (const Block& block : blocks) {
+    if (glm::distance(block.center, exit.position) > block.radius + radius) continue;
+    for (const Texel& y : block.texels) {
+      if (y.material != 0 && y.material != exit.material + 1) continue;
+      const glm::dvec3 to = exit.position - y.position;
+      GatherPath path = gatherPath(to, exit.normal.value_or(-y.normal), y.normal);
+      const double side = std::sqrt(y.area);
+      // Half a texel: nearer than that the sum is no integral.
+      const bool own = path.distance < 0.6 * side;
+      path.distance = std::max(path.distance, 0.5 * side);
+      if (path.distance > radius) continue;
+      const double part = inside(y, exit, place), opposite = part * (1 - path.facing),
+                   alike = part * path.facing;
+      sums.transmitted += opposite * kernel.transmitted(path.distance, path.depth) * y.flux;
+      // The texel of the exit itself has all that lies within a disc of its area.
+      const glm::dvec3 profile =
+          own ? kernel.reflectedWithin(side / std::sqrt(kPi)) / y.area : kernel.reflected(path.distance);
+      if (y.seen) {
+        sums.opposite += opposite * profile * y.flux;
+        sums.seenEntering += alike * profile * y.flux;
+        sums.seen += alike * profile * y.area;
+      } else {
+        sums.entering += alike * profile * y.flux;
+        sums.hidden += alike * profile * y.area;
+      }
     }
-  return count > 0 ? sum / count : 0;
+  }
+  return sums;
 }
 
 Gathered Gather::at(const Surface& surface, std::size_t material) const {
   const GatherKernel& kernel = kernels_[material];
-  const double radius = radii_[material];
   const glm::dmat4& worldFromView = surfaces_.worldFromView();
-  const glm::dvec3 x = mm_ * glm::dvec3(worldFromView * glm::dvec4(surface.position, 1));
-  const std::optional<glm::dvec3> normal =
-      surface.normal ? std::optional(glm::dmat3(worldFromView) * *surface.normal) : std::nullopt;
+  Exit exit{mm_ * glm::dvec3(worldFromView * glm::dvec4(surface.position, 1)), std::nullopt, material};
+  if (surface.normal) exit.normal = glm::dmat3(worldFromView) * *surface.normal;
+  const glm::dvec3 loss = diffused_ ? thinLoss(surface, material) : glm::dvec3(0);
+  const glm::dvec3 rho = kernel.reflectance();
   Gathered result;
-  glm::dvec3 irradiance(0);  // mean of what is displaced, of all lights
-  for (const Blocks& blocks : lights_) {
-    glm::dvec3 displaced(0), entering(0);
-    for (const Block& block : blocks) {
-      if (glm::distance(block.center, x) > block.radius + radius) continue;
-      for (const Texel& y : block.texels) {
-        const glm::dvec3 to = x - y.position;
-        GatherPath path = gatherPath(to, normal.value_or(-y.normal), y.normal);
-        // Half a texel: nearer than that the sum is no integral.
-        path.distance = std::max(path.distance, 0.5 * std::sqrt(y.area));
-        if (path.distance > radius) continue;
-        result.transmitted += (1 - path.facing) * kernel.transmitted(path.distance, path.depth) * y.flux;
-        const glm::dvec3 reflected = path.facing * kernel.reflected(path.distance);
-        entering += reflected * y.flux;
-        displaced += reflected * y.area;
-      }
-    }
-    result.entering += entering;
-    irradiance += entering / glm::max(glm::min(displaced, glm::dvec3(1)), glm::dvec3(1e-12));
+  for (std::size_t i = 0; i < lights_.size(); ++i) {
+    if (lights_[i].empty()) continue;
+    const Sums s = sums(capture_.lights[i], lights_[i], exit);
+    result.transmitted += s.transmitted;
+    if (!diffused_) continue;
+    // What is displaced is the light's own: half of what it brings to the exit and half of what it brings
+    // around.
+    const glm::dvec3 own = ownIrradiance(capture_.lights[i], exit);
+    const glm::dvec3 seen = s.seenEntering / glm::max(s.seen, glm::dvec3(1e-12));
+    const glm::dvec3 around = 0.5 * (own + seen), hidden = glm::min(s.hidden, glm::dvec3(1));
+    // Diffused light is no more than what lies around, and a dark point has next to none of its own to lose.
+    const glm::dvec3 lost = loss * glm::min(seen, 2.0 * own);
+    const glm::dvec3 opposite = glm::min(s.opposite, s.transmitted / rho + own);
+    result.returned += s.entering - opposite - hidden * around - (1.0 - hidden) * lost;
   }
-  result.displaced = result.entering / glm::max(irradiance, glm::dvec3(1e-12));
   const glm::dvec3 convexity = kernel.convexity();
-  const double reach = 2 * std::max({convexity.r, convexity.g, convexity.b});
-  if (surface.normal && reach > 0)
-    result.displaced += glm::clamp(-convexity * meanCurvature(surface, reach), -kMostConvexity, kMostConvexity);
+  const double reach = std::max({convexity.r, convexity.g, convexity.b});
+  if (diffused_ && surface.normal && reach > 0)
+    result.convexity = glm::clamp(convexity * meanCurvature(surface, reach), -kMostConvexity, kMostConvexity);
   return result;
 }
 

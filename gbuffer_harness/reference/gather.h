@@ -2,7 +2,9 @@
 // to.
 #pragma once
 
+#include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <vector>
 
 #include "capture/capture.h"
@@ -11,21 +13,22 @@
 
 namespace pellucid::harness::reference {
 
-// Light at one pixel from what is lit and hidden from the camera. RGB.
+// What a pixel gets besides its diffused irradiance. RGB.
 struct Gathered {
-  glm::dvec3 transmitted{0};  // exitance
-  glm::dvec3 entering{0};     // irradiance that reaches the pixel as diffusion does
-  // Share of the diffusion's profile that lies there, the mean of all lights by how strongly they light it,
-  // less what the surface's curvature adds: down to -1/10.
-  glm::dvec3 displaced{0};
+  glm::dvec3 transmitted{0};  // exitance of what came through
+  // Irradiance that enters hidden from the camera and faces the way the pixel does, less what the lights'
+  // diffused irradiance stands for in its place: in each light alone, so that lights add up.
+  glm::dvec3 returned{0};
+  glm::dvec3 convexity{0};  // part of the diffused irradiance that comes back besides, -1/10..1/10
 };
 
 class Gather {
 public:
-  // Keeps references to the camera's surfaces. shadowBias: scene units. Throws InputError when a map lacks a
-  // matrix or a material has no kernel.
+  // Keeps references to the camera's surfaces. shadowBias: scene units. `diffused`: what light the camera sees
+  // has been diffused; else only what enters hidden counts. Throws InputError when a map lacks a matrix or a
+  // material has no kernel.
   Gather(const Capture& capture, const SurfaceReader& surfaces,
-         const std::vector<PellucidMaterial>& materials, double shadowBias);
+         const std::vector<PellucidMaterial>& materials, double shadowBias, bool diffused = true);
 
   // `material`: index into the list. Pixels without a normal see every texel as opposite. Safe from several
   // threads.
@@ -39,6 +42,9 @@ private:
     glm::dvec3 position, normal;  // mm; unit, towards the light's side. World
     glm::dvec3 flux;              // RGB irradiance times mm^2
     double area;                  // of the surface, mm^2
+    bool seen;                    // by the camera
+    double exit;                  // mm along the light to the nearest back face behind; INFINITY: not known
+    std::uint8_t material;        // index + 1 of what light enters; 0: not known
   };
   struct Block {
     glm::dvec3 center;
@@ -46,12 +52,34 @@ private:
     std::vector<Texel> texels;
   };
   using Blocks = std::vector<Block>;
+  struct Sums;
+  // A point that leaves light, world. The normal may be missing.
+  struct Exit {
+    glm::dvec3 position;  // mm
+    std::optional<glm::dvec3> normal;
+    std::size_t material = 0;
+  };
+  // Where an exit lies in a light's maps.
+  struct Place {
+    glm::dvec3 toLight{0, 0, 1};
+    double tolerance = 0;  // mm that an exit of its own may be off by
+    double shadowed = 0;   // 1: air lies before the exit on its own light ray, 0: it does not
+  };
+
 
   // Of one of the light's maps; a texel that an earlier one contains counts there.
   Blocks collect(const Light& light, std::size_t map, double bias) const;
-  // Around a surface with a normal, 1/mm, positive where convex: from what lies `reach` mm beside it in the
-  // image. 0 where it does not go on.
+  Sums sums(const Light& light, const Blocks& blocks, const Exit& exit) const;
+  Place placeOf(const Light& light, const Exit& exit) const;
+  // Part of what enters at a texel that reaches the exit through the medium.
+  static double inside(const Texel& texel, const Exit& exit, const Place& place);
+  // Irradiance that a light itself brings to the exit, as its maps say.
+  glm::dvec3 ownIrradiance(const Light& light, const Exit& exit) const;
+  // Around a surface with a normal, 1/mm, positive where convex: from what lies `reach` mm to both sides in
+  // the image. 0 where it does not go on.
   double meanCurvature(const Surface& surface, double reach) const;
+  // 1 - R(h) / rho of the body there, weighted with how opposite its faces are.
+  glm::dvec3 thinLoss(const Surface& surface, std::size_t material) const;
   bool cameraSees(const glm::dvec3& world, const glm::dvec3& normal, double tolerance) const;
 
   const Capture& capture_;
@@ -60,6 +88,7 @@ private:
   std::vector<GatherKernel> kernels_;
   std::vector<double> radii_;
   std::vector<Blocks> lights_;
+  bool diffused_;
 };
 
 }  // namespace pellucid::harness::reference

@@ -107,6 +107,32 @@ glm::dvec3 GatherKernel::reflected(double r) const {
   return result;
 }
 
+glm::dvec3 GatherKernel::reflectedWithin(double r) const {
+  glm::dvec3 result(0);
+  for (int c = 0; c < 3; ++c) {
+    const double d = profile_[static_cast<std::size_t>(c)];
+    if (d > 0) result[c] = 1 - 0.25 * std::exp(-r / d) - 0.75 * std::exp(-r / (3 * d));
+  }
+  return result;
+}
+
+glm::dvec3 GatherKernel::reflectance() const {
+  return {material_.reflectance[0], material_.reflectance[1], material_.reflectance[2]};
+}
+
+glm::dvec3 GatherKernel::slabReflectance(double depth) const {
+  glm::dvec3 result(1);
+  for (int c = 0; c < 3; ++c) {
+    const double rho = std::clamp(double(material_.reflectance[c]), 1e-3, 1.0);
+    const double thin = std::clamp(transmittance(c, 0), 0.5, 1.0), t = transmittance(c, depth);
+    const double a = 0.5 * (1 / rho + rho), rest = std::max(a * a - 1, 0.0);
+    const double boundary = thin * (1 - thin) / (1 + thin);  // T(0) F of T(0) = (1 - F) / (1 + F)
+    const double scale = std::max(std::pow(a - boundary, 2) - rest, 0.0) / (thin * thin);
+    result[c] = std::clamp((a - std::sqrt(scale * t * t + rest)) / rho, 0.0, 1.0);
+  }
+  return result;
+}
+
 glm::dvec3 GatherKernel::convexity() const {
   glm::dvec3 result(0);
   for (int c = 0; c < 3; ++c) {

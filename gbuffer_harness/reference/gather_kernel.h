@@ -33,6 +33,16 @@ public:
   // Sideways decay of a slab, 1/mm: sqrt(kappa^2 + (pi / (h + extrapolation))^2).
   double decay(int channel, double depth) const;
 
+  // Part of that profile within a distance; 0 in channels that do not diffuse.
+  glm::dvec3 reflectedWithin(double distance) const;
+
+  // rho
+  glm::dvec3 reflectance() const;
+
+  // R(h) / rho of a slab, by Kubelka & Munk 1931 from T(h) and rho: R = a - sqrt(s T^2 + a^2 - 1) with
+  // a = (1 / rho + rho) / 2, and s such that a slab without medium sends back what its boundary does.
+  glm::dvec3 slabReflectance(double depth) const;
+
   // How much more of the diffused light comes back per mean curvature, mm: -d ln rho / d kappa of small
   // losses, as the light under a convex surface decays with kappa - H. From (1 - rho) / (1 + rho) ~ kappa,
   // less what the boundary reflects, which T(0) = (1 - F) / (1 + F) gives.

@@ -122,17 +122,18 @@ private:
 
   // Adds to the diffused irradiance what all texels of the shadow maps bring, and the lights without one.
   void gather(std::vector<glm::dvec3>& output) const {
-    const Gather all(capture_, surfaces_, materials_, double(settings_.translucency.shadowBias));
     const auto& f = settings_.translucency.transmittanceFilter;
     const bool spreads = settings_.features & PELLUCID_FEATURE_DIFFUSION;
+    const Gather all(capture_, surfaces_, materials_, double(settings_.translucency.shadowBias), spreads);
     forEachPixel("gather", [&](int x, int y, std::size_t i) {
       const std::optional<Surface> surface = surfaces_.at(x, y);
       if (!surface || marks_.count(i) != 0) return;
       const Gathered g = all.at(*surface, capture_.material[i] - 1u);
       const float* rho = material(i).reflectance;
-      if (spreads) output[i] = (1.0 - g.displaced) * output[i] + g.entering;
+      output[i] = (1.0 + g.convexity) * output[i] + g.returned;
       output[i] += g.transmitted * glm::dvec3(f[0], f[1], f[2]) / glm::dvec3(rho[0], rho[1], rho[2]) +
                    transmitted(x, y, i);
+      output[i] = glm::max(output[i], glm::dvec3(0));
     });
   }
 

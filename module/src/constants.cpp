@@ -44,6 +44,8 @@ shared::FrameConstants frameConstants(const PellucidFrame& f) {
   readDepthRange(clip, &range);
   c.camera = makeCamera(clip, range, {f.imageExtent[0], f.imageExtent[1]}, f.metersPerUnit);
   c.viewFromNormal = f.normalsInViewSpace ? glm::mat4(1) : glm::mat4(glm::mat3(toMatrix(f.viewFromWorld)));
+  const glm::mat4 worldFromViewRows = glm::mat4(glm::transpose(glm::inverse(toMatrix(f.viewFromWorld))));
+  for (int row = 0; row < 3; ++row) c.worldFromView[row] = worldFromViewRows[row];
   const glm::mat3 normalFromView = glm::transpose(glm::mat3(c.viewFromNormal));
   const shared::Camera& camera = c.camera;
   c.normalRay[0] = {normalFromView * glm::vec3(camera.rayBase.x, camera.rayBase.y, camera.range.x), 0};
@@ -270,7 +272,7 @@ extern "C" PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const
     // addLight ran before this call: the group counts the light, its maps and its images already.
     uint32_t shadow = group.shadowCount - l.shadowMapCount, row = group.recordRows;
     if (isGathered(f, l))
-      for (uint32_t i = 0; i < l.shadowMapCount; ++i) row -= recordExtent(f, l, i).height;
+      for (uint32_t i = 0; i < l.shadowMapCount; ++i) row -= recordGroups(recordExtent(f, l, i).height);
     const shared::LightConstants light = lightConstants(f, l, viewFromWorld, shadow);
     put(mapped,
         layout.lights.offset + group.lightBytes + (group.lightCount - 1) * sizeof(shared::LightConstants),
@@ -286,7 +288,7 @@ extern "C" PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const
       const RecordExtent extent = recordExtent(f, l, i);
       const RecordConstants records =
           recordConstants(f, s, l, constants, viewFromWorld, extent, row, group.lightCount - 1);
-      row += extent.height;
+      row += recordGroups(extent.height);
       put(mapped, layout.gatherMaps.offset + group.gatherMapBytes + shadow * sizeof records.gather,
           records.gather);
       put(mapped, layout.recordMaps.offset + group.recordMapBytes + shadow * sizeof records.record,

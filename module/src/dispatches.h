@@ -146,9 +146,9 @@ struct Builder {
                                    : group.shadowCount == 1 ? PELLUCID_PIPELINE_GATHER_RECORDS_ONE_MAP
                                                             : PELLUCID_PIPELINE_GATHER_RECORDS_DIRECTIONAL);
     if (!d) return false;
-    groups(d, group.recordColumns, group.recordRows, PELLUCID_RECORDS_GROUP);
-    d->pushConstants[0] = group.shadowCount;
-    d->pushConstants[1] = group.recordColumns;
+    groups(d, group.recordWidth, group.recordHeight, PELLUCID_RECORDS_GROUP);
+    d->groups[2] = group.shadowCount;
+    d->pushConstants[1] = group.recordColumns | group.recordRows << 16;
     constants(d, PELLUCID_BINDING_FRAME, layout.frame);
     constants(d, PELLUCID_BINDING_GATHER_MAPS,
               {layout.gatherMaps.offset + group.gatherMapBytes, kGatherMapWindow});
@@ -191,7 +191,7 @@ struct Builder {
     groups(d, size.width, size.height, PELLUCID_POINTS_GROUP);
     d->pushConstants[0] = gatherSpacing(frame);
     d->pushConstants[1] = group.gathered;
-    d->pushConstants[2] = 2 * group.recordColumns + (adds ? 1 : 0);
+    d->pushConstants[2] = group.recordColumns | group.recordRows << 16 | (adds ? 1u << 31 : 0);
     d->pushConstants[3] = frame.gatherSamples;
     constants(d, PELLUCID_BINDING_FRAME, layout.frame);
     constants(d, PELLUCID_BINDING_LIGHTS, {layout.lights.offset + group.lightBytes, kLightWindow});
@@ -201,6 +201,7 @@ struct Builder {
     bind(d, PELLUCID_BINDING_FRONT_DEPTH, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, PELLUCID_RESOURCE_FRONT_DEPTH);
     bind(d, PELLUCID_BINDING_MATERIAL, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, PELLUCID_RESOURCE_MATERIAL);
     optional(d, PELLUCID_BINDING_NORMAL, frame.normal, PELLUCID_RESOURCE_NORMAL, 0);
+    optional(d, PELLUCID_BINDING_BACK_DEPTH, frame.backDepth, PELLUCID_RESOURCE_BACK_DEPTH, 0);
     bind(d, PELLUCID_BINDING_RECORDS, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, recordsImage());
     bind(d, PELLUCID_BINDING_POINTS, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, pointsImage());
     constants(d, PELLUCID_BINDING_GATHER_DISPATCHES, layout.gatherDispatches);

@@ -56,8 +56,11 @@ bool addLight(const PellucidFrame& frame, const PellucidLight& light, LightGroup
   if (isGathered(frame, light)) {
     for (uint32_t i = 0; i < light.shadowMapCount; ++i) {
       const RecordExtent extent = recordExtent(frame, light, i);
-      grown.recordColumns = std::max(grown.recordColumns, extent.width);
-      grown.recordRows += extent.height;
+      grown.recordColumns = std::max(grown.recordColumns, recordGroups(extent.width));
+      grown.recordRows += recordGroups(extent.height);
+      const uint32_t quarters = std::min(extent.side, 2u);
+      grown.recordWidth = std::max(grown.recordWidth, quarters * extent.width);
+      grown.recordHeight = std::max(grown.recordHeight, quarters * extent.height);
     }
     if (grown.recordRows > kRecordRows) return false;
     ++grown.gathered;
@@ -82,7 +85,8 @@ bool needsChord(const PellucidFrame& frame) {
 
 uint32_t gatherSpacing(const PellucidFrame& frame) {
   if (frame.gatherSpacing != 0) return frame.gatherSpacing;
-  return static_cast<uint64_t>(frame.imageExtent[0]) * frame.imageExtent[1] > 1u << 20 ? 4 : 2;
+  const uint64_t pixels = static_cast<uint64_t>(frame.imageExtent[0]) * frame.imageExtent[1];
+  return pixels > 1u << 20 ? 4 : pixels > 1u << 19 ? 2 : 1;
 }
 
 namespace {

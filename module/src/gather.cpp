@@ -60,6 +60,17 @@ double convexity(const Channel& c, double rho) {
   return std::max(lossOf(std::clamp(rho, 0.0, 1.0)) - lossOf(1 - outside), 0.0) * 2 / c.slowest;
 }
 
+// Of R(h) / rho = x - sqrt(y T(h)^2 + z): Kubelka & Munk 1931, R = a - sqrt(T^2 + a^2 - 1) with a = (1 / rho + rho) / 2,
+// where T is scaled so that R(0) is what the boundary of a slab without medium sends back, T(0) (1 - T(0)) / (1 + T(0)).
+glm::vec4 slabReflectance(double thin, double rho) {
+  rho = std::clamp(rho, 1e-3, 1.0);
+  thin = std::clamp(thin, 0.5, 1.0);
+  const double a = 0.5 * (1 / rho + rho), rest = a * a - 1, none = thin * (1 - thin) / (1 + thin);
+  const double scale = std::max((a - none) * (a - none) - rest, 0.0) / (thin * thin);
+  return {static_cast<float>(a / rho), static_cast<float>(scale / (rho * rho)),
+          static_cast<float>(std::max(rest, 0.0) / (rho * rho)), 0};
+}
+
 // Burley's d, or that of the same mean radius: 5/2 d = sum w sqrt(pi v / 2). 0: no profile.
 double profileLength(const PellucidMaterial& m, int channel) {
   if (m.gaussianCount == 0) return 0;
@@ -95,6 +106,7 @@ shared::GatherConstants gatherConstants(const PellucidMaterial& m) {
     g.profile[c] = static_cast<float>(d > 0 ? 1 / (3 * d) : 0);
     const double more = d > 0 ? convexity(channels[c], static_cast<double>(m.reflectance[c])) : 0;
     g.convexity[c] = static_cast<float>(more);
+    g.reflectance[c] = slabReflectance(channels[c].transmittance(0), static_cast<double>(m.reflectance[c]));
     // As far as the light comes from.
     g.convexity.w = std::max(g.convexity.w, static_cast<float>(2 * more));
     for (int i = 0; i < kEntries; ++i) {

@@ -263,7 +263,7 @@ extern "C" PellucidResult pellucidGetImageNeeds(const PellucidFrame* frame, uint
       const auto fit = [&](uint32_t* most, uint32_t pixels, uint32_t ofMaps) {
         *most = std::max({*most, (pixels - 1) / side + 1, records ? ofMaps : 0});
       };
-      fit(&size.width, frame->imageExtent[0], withSummaries(stages.groups.recordColumns));
+      fit(&size.width, frame->imageExtent[0], withCoarserRecords(stages.groups.recordColumns));
       fit(&size.height, frame->imageExtent[1], stages.groups.recordRows);
     }
     PellucidImageNeed& need = needs[i];

@@ -21,7 +21,8 @@ RecordExtent recordExtent(const PellucidFrame& frame, const PellucidLight& light
     uint64_t rows = 0;
     for (uint32_t i = 0; i < light.shadowMapCount; ++i) {
       if (parts(maps[i].extent[0], side) > kRecordColumns) return false;
-      rows += parts(maps[i].extent[1], side);
+      if (parts(maps[i].extent[1], side) > kRecordColumns) return false;
+      rows += recordGroups(parts(maps[i].extent[1], side));
     }
     return rows <= kRecordRows;
   };
@@ -100,6 +101,9 @@ RecordConstants recordConstants(const PellucidFrame& frame, const PellucidShadow
     r.planar = glm::vec4(range.forward * glm::transpose(viewFromMap)[2]);
   }
   r.meta = shadow.meta;
+  r.occluder = shadow.occluder;
+  c.gather.stepX = glm::vec4(glm::vec3(stepX) * static_cast<float>(extent.side), 0);
+  c.gather.stepY = glm::vec4(glm::vec3(stepY) * static_cast<float>(extent.side), 0);
   r.map = {s.extent[0], s.extent[1], extent.side, lightIndex};
   // The camera may miss a texel's point by the slope of the surface within half a texel and the pixel.
   r.seen = {static_cast<float>(0.5 * std::sqrt(glm::length(stepX) * glm::length(stepY))), s.bias, 0, 0};

@@ -6,14 +6,17 @@
 
 namespace pellucid {
 
-// Of the image that holds a dispatch's records: its maps' are below each other. No device has a smaller
-// limit.
-constexpr uint32_t kRecordColumns = 2048, kRecordRows = 4096;
+// Records of a dispatch's maps, which are below each other: at most. Maps that are wider take fewer records than texels, as
+// samples are further apart than their texels.
+constexpr uint32_t kRecordColumns = 1024, kRecordRows = 4096;
 
-// Columns with the summaries beside them, of compute/passes/records.glsl.
-constexpr uint32_t withSummaries(uint32_t columns) {
-  return columns + (columns + PELLUCID_RECORDS_GROUP - 1) / PELLUCID_RECORDS_GROUP;
+// Whole groups of the pass that makes them.
+constexpr uint32_t recordGroups(uint32_t records) {
+  return (records + PELLUCID_RECORDS_GROUP - 1) / PELLUCID_RECORDS_GROUP * PELLUCID_RECORDS_GROUP;
 }
+
+// Columns with the coarser levels beside them, of compute/passes/records.glsl.
+constexpr uint32_t withCoarserRecords(uint32_t columns) { return columns + columns / 2; }
 
 struct RecordExtent {
   uint32_t width, height;

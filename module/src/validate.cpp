@@ -295,8 +295,8 @@ PellucidResult checkFrame(const PellucidFrame* frame, PellucidMessageFn fn, void
     if (!(f.transmittanceFilter[c] >= 0 && f.transmittanceFilter[c] <= 1))
       out.error("transmittanceFilter", "[", c, "] is ", f.transmittanceFilter[c], ", outside [0, 1]");
 
-  if (f.gatherSpacing != 0 && f.gatherSpacing != 2 && f.gatherSpacing != 4)
-    out.error("gatherSpacing", "is ", f.gatherSpacing, "; use 2 or 4, or 0 to choose by the image's size");
+  if (f.gatherSpacing != 0 && f.gatherSpacing != 1 && f.gatherSpacing != 2 && f.gatherSpacing != 4)
+    out.error("gatherSpacing", "is ", f.gatherSpacing, "; use 1, 2 or 4, or 0 to choose by the image's size");
   if (f.gatherSamples > 64 || f.gatherSamples % 4 != 0)
     out.error("gatherSamples", "is ", f.gatherSamples, "; needs a multiple of 4, at most 64");
 

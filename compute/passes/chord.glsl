@@ -1,0 +1,16 @@
+// Camera-space chord of a pixel, from the depths as they are stored.
+#ifndef PELLUCID_CHORD_GLSL
+#define PELLUCID_CHORD_GLSL
+
+#include "lib/thickness.glsl"
+
+// Along the view ray, scene units; -1 where no back face is behind the front one. `front`: planar distance of `frontStored`.
+float chordOf(ViewRay ray, float front, float frontStored, float backStored) {
+  bool backViewZ = hasFlag(PELLUCID_FLAG_BACK_VIEW_Z);
+  float back = backViewZ ? planarDistanceViewZ(backStored) : planarDistance(frame.camera, backStored);
+  bool device = !backViewZ && !hasFlag(PELLUCID_FLAG_FRONT_VIEW_Z);
+  float difference = device ? planarDifference(frame.camera, backStored, frontStored) : back - front;
+  return back > 0.0 ? chord(difference, ray) : -1.0;
+}
+
+#endif
