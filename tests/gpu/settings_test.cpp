@@ -99,7 +99,7 @@ const std::vector<Row> kRows = {
      "--set gather=8",
      "4",
      Effect::Changes,
-     {{"3", 3, "gatherSpacing is 3; use 2 or 4, or 0 to choose by the image's size"},
+     {{"3", 3, "gatherSpacing is 3; use 1, 2 or 4, or 0 to choose by the image's size"},
       {"-2", 2, "--set gather-spacing: \"-2\" is not a whole number"}}},
     {"mark-bit",
      "",

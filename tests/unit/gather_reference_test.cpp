@@ -162,7 +162,7 @@ TEST_P(GatherModel, IsNearTheRandomWalk) {
     for (int k = 0; k < 3; ++k) {
       const reference::WalkResult truth =
           reference::exitance(*walked, {kScattering[k], kAbsorption[k], ior}, point, toLight, kWalks, seed++);
-      const double model = g.transmitted[k] + double(material.reflectance[k]) * g.entering[k];
+      const double model = g.transmitted[k] + double(material.reflectance[k]) * g.returned[k];
       square[k] += std::pow(model - truth.mean, 2);
       noise[k] += std::pow(truth.standardError, 2);
       power[k] += std::pow(truth.mean, 2);
