@@ -199,8 +199,8 @@ uvec4 recordOf(RecordMapConstants map, ivec2 texel) {
 }
 
 // The mean of four records, each of `side` texels; kSeveralSurfaces where their depths are further apart than
-// slopes of 70 degrees make them: a sample then takes the record under it. `nearest`: that of the nearest surface instead.
-uvec4 meanOf(uvec4 bits[4], float texels, RecordMapConstants map, bool nearest) {
+// slopes of 70 degrees make them: a sample then takes the record under it.
+uvec4 meanOf(uvec4 bits[4], float texels, RecordMapConstants map) {
   float hidden = 0.0, seen = 0.0, cosine = 0.0, exit = 0.0, count = 0.0, sum = 0.0, least = kNoDepth, most = -kNoDepth;
   uint material = 0u;
   vec3 normal = vec3(0.0);
@@ -220,12 +220,10 @@ uvec4 meanOf(uvec4 bits[4], float texels, RecordMapConstants map, bool nearest) 
   }
   // Texels are 2 map.seen.x wide, of perspective maps times depth.
   float limit = 3.0 * texels * 2.0 * map.seen.x * (perspective ? max(abs(least), abs(most)) : 1.0);
-  several = several || most - least > 2.0 * limit;
-  if (several && !nearest) return kSeveralSurfaces;
+  if (several || most - least > 2.0 * limit) return kSeveralSurfaces;
   [[unroll]] for (int i = 0; i < 4; ++i) {
     if (!holdsSurface(bits[i])) continue;
     Record r = unpackRecord(bits[i]);
-    if (several && r.depth * (perspective ? 1.0 : -1.0) > least + limit) continue;
     hidden += r.hidden;
     seen += r.seen;
     cosine += r.cosine;
@@ -237,7 +235,7 @@ uvec4 meanOf(uvec4 bits[4], float texels, RecordMapConstants map, bool nearest) 
   if (count == 0.0) return kNoRecord;
   float squared = dot(normal, normal), inverse = 1.0 / count;
   // Normals towards one light cancel only in rounding.
-  if (squared < 1.0e-6) return nearest ? bits[0] : kSeveralSurfaces;
+  if (squared < 1.0e-6) return kSeveralSurfaces;
   return packRecord(Record(sum * inverse, normal * inversesqrt(squared), 0.25 * hidden, 0.25 * seen, cosine * inverse,
                            exit * inverse, material));
 }
@@ -245,29 +243,27 @@ uvec4 meanOf(uvec4 bits[4], float texels, RecordMapConstants map, bool nearest) 
 shared uvec4 records[GROUP_SIDE * GROUP_SIDE], means[GROUP_SIDE * GROUP_SIDE / 4];
 shared uint someSurface;
 
-// A group takes 16x16 texels of a map. Records of more than one texel are means of four, from the middles of their quarters.
+// A group makes 16x16 records of one map, each of the texel in the middle of those that it stands for, and their means.
 void main() {
   uint map = kOneMap ? 0u : gl_WorkGroupID.z;
-  int side = int(recordMaps[map].map.z), parts = min(side, 2), index = int(gl_LocalInvocationIndex);
-  ivec2 size = ivec2(pass.value.y & 0xFFFFu, pass.value.y >> 16);
-  ivec2 at = ivec2(gl_GlobalInvocationID.xy), last = ivec2(recordMaps[map].map.xy) - 1;
-  // Side 1: the texel itself; 2: quarters are texels; 4, 8, ..: in the middle of quarters.
-  ivec2 texel = at * (side / parts) + side / 4;
-  uvec4 record = all(lessThanEqual(texel, last)) ? recordOf(recordMaps[map], texel) : kNoRecord;
+  int side = int(recordMaps[map].map.z), index = int(gl_LocalInvocationIndex);
+  ivec2 size = ivec2(pass.value.y & 0xFFFFu, pass.value.y >> 16), own = ivec2(gl_GlobalInvocationID.xy);
+  bool contained = all(lessThan(own, maps[map].place.zw));
+  ivec2 texel = min(own * side + side / 2, ivec2(recordMaps[map].map.xy) - 1);
+  uvec4 record = contained ? recordOf(recordMaps[map], texel) : kNoRecord;
   records[index] = record;
   if (index == 0) someSurface = 0u;
   barrier();
   if (holdsSurface(record)) someSurface = 1u;
   barrier();
   bool some = someSurface != 0u;
-  ivec2 first = maps[map].place.xy + ivec2(gl_WorkGroupID.xy) * (GROUP_SIDE / parts); // record of the group
   // Groups beyond the map have nothing to write. Maps begin at whole groups.
-  bool inside = all(lessThan(first - maps[map].place.xy, maps[map].place.zw));
-  if (inside && parts == 1) imageStore(recordsDestination, first + ivec2(index % GROUP_SIDE, index / GROUP_SIDE), record);
+  ivec2 start = ivec2(gl_WorkGroupID.xy) * GROUP_SIDE, first = maps[map].place.xy + start;
+  bool inside = all(lessThan(start, maps[map].place.zw));
+  if (inside) imageStore(recordsDestination, first + ivec2(gl_LocalInvocationID.xy), record);
   // Halved again and again, from one array to the first part of the other.
-  int levels = kLastRecordLevel + parts - 1;
-  for (int halved = 1; halved <= levels; ++halved) {
-    int across = GROUP_SIDE >> halved, level = halved - (parts - 1);
+  for (int level = 1; level <= kLastRecordLevel; ++level) {
+    int across = GROUP_SIDE >> level;
     ivec2 local = ivec2(index % across, index / across);
     bool makes = inside && index < across * across;
     if (makes) {
@@ -277,15 +273,15 @@ void main() {
         uvec4 bits[4];
         [[unroll]] for (int i = 0; i < 4; ++i) {
           int place = from + (i & 1) + (i >> 1) * 2 * across;
-          bits[i] = (halved & 1) != 0 ? records[place] : means[place];
+          bits[i] = (level & 1) != 0 ? records[place] : means[place];
         }
-        record = meanOf(bits, float((side / parts) << (halved - 1)), recordMaps[map], level == 0);
+        record = meanOf(bits, float(side << (level - 1)), recordMaps[map]);
       }
       imageStore(recordsDestination, recordPlace(first, level, size) + local, record);
     }
     barrier(); // what was there has been read
     if (makes) {
-      if ((halved & 1) != 0)
+      if ((level & 1) != 0)
         means[index] = record;
       else
         records[index] = record;

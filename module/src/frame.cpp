@@ -58,9 +58,8 @@ bool addLight(const PellucidFrame& frame, const PellucidLight& light, LightGroup
       const RecordExtent extent = recordExtent(frame, light, i);
       grown.recordColumns = std::max(grown.recordColumns, recordGroups(extent.width));
       grown.recordRows += recordGroups(extent.height);
-      const uint32_t quarters = std::min(extent.side, 2u);
-      grown.recordWidth = std::max(grown.recordWidth, quarters * extent.width);
-      grown.recordHeight = std::max(grown.recordHeight, quarters * extent.height);
+      grown.recordWidth = std::max(grown.recordWidth, extent.width);
+      grown.recordHeight = std::max(grown.recordHeight, extent.height);
     }
     if (grown.recordRows > kRecordRows) return false;
     ++grown.gathered;

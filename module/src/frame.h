@@ -44,7 +44,7 @@ struct LightGroup {
   uint32_t gathered = 0;                       // lights that are gathered from; the first ones
   bool gatheredDirectional = true;             // these are directional with one shadow map of device depth
   uint32_t recordColumns = 0, recordRows = 0;  // of their maps' records
-  uint32_t recordWidth = 0, recordHeight = 0;  // the most that one of them has, in texels or quarters of records
+  uint32_t recordWidth = 0, recordHeight = 0;  // the most that one of them has
   bool beside = true;                          // exit depths and caster materials have slots among the images
   uint32_t imageCount = 0;
   std::array<uint32_t, PELLUCID_SHADOW_IMAGE_COUNT> images{};  // into frame.shadowImages
