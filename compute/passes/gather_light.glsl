@@ -131,25 +131,18 @@ float staysInside(GatherRings rings, Record record, vec3 to, vec3 toLight) {
 // From x, mm.
 vec3 onRing(vec3 center, vec3 across, vec3 along, vec2 offset) { return center + offset.x * across + offset.y * along; }
 
-// How a point's samples lie: all points' where they are too far apart to share, else in a way of its own.
+// Which of the patterns a cell takes. Where points are too far apart to share, all take the middle one.
 struct Pattern {
   float within, turn; // [0, 1): place in a ring, turn of the first sample
 };
 
-// Patterns belong to places in the world, so that they stand still on surfaces when the camera or a light moves. A rank-1
-// lattice of the place, in steps of about the distance between points, spreads the patterns of points that share evenly: 13
-// steps are those of the points within two steps of one. `front`: planar distance of x.
-Pattern patternOf(vec3 position, uint m, float front) {
+Pattern patternOf(ivec2 cell, uint m, float front) {
   vec2 spacing = float(pass.value.x) * pixelSize(frame.camera, front);
   float vary = clamp(2.0 - dot(spacing, spacing) * materials[m].gather.profile.w, 0.0, 1.0);
-  vec4 at = vec4(position, 1.0);
-  vec3 world = vec3(dot(frame.worldFromView[0], at), dot(frame.worldFromView[1], at), dot(frame.worldFromView[2], at));
-  // A power of two, so that small changes of the distance do not matter. The floor keeps log2 finite.
-  float side = exp2(floor(log2(max(spacing.x, 1.0e-30)) + 0.5)) / frame.camera.range.w;
-  float place = dot(world / side, vec3(1.0, 5.0, 3.0)) / 13.0;
-  float turn = fract(place), within = fract(5.0 * place);
-  // It begins off the axes, along which edges often lie: of eight turns the one that errs least.
-  return Pattern(0.5 + vary * (12.0 / 13.0) * (within - 0.5), vary * (turn + 0.025));
+  // A cell and the twelve that it shares with have one of thirteen each. A lattice fills the strata, and the turn between a
+  // sample and its like. It begins off the axes, along which edges often lie: of eight turns the one that errs least.
+  int turn = (cell.x + 5 * cell.y) % 13, within = turn * 5 % 13;
+  return Pattern(0.5 + vary * (float(within) - 6.0) / 13.0, vary * (float(turn) / 13.0 + 0.025));
 }
 
 // Sums over samples, of a light of radiance 1; docs/gather.md derives them. hidden, seen: from the camera.

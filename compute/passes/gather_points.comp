@@ -73,7 +73,7 @@ void main() {
       result.convexity = convexityAt(pixel, x, ray, result.front, m);
       loss = thinLoss(pixel, x, m);
     }
-    Pattern pattern = patternOf(x.position, m, result.front);
+    Pattern pattern = patternOf(cell, m, result.front);
     for (uint i = 0u; i < pass.value.y; ++i)
       result.added += lights[i].radiance.rgb * gatherLight(m, lights[i], x, pattern, loss);
     if ((pass.value.z & kAdds) != 0u) result.added += addedOf(imageLoad(pointsImage, cell));

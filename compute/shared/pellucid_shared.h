@@ -134,7 +134,6 @@ struct Camera {
 
 struct FrameConstants {
   Camera camera;
-  vec4 worldFromView[3]; // rows
   mat4 viewFromNormal; // rotation of the normal image's space into view space
   uvec4 rect;          // x, y, end x, end y
   uvec4 flags;         // x: PELLUCID_FLAG_*; y: materials; z: debug view; w: angle model

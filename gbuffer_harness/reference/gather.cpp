@@ -188,18 +188,20 @@ Gather::Blocks Gather::collect(const Light& light, std::size_t mapIndex, double 
             if (glm::length(n) > 0) normal = glm::normalize(glm::dot(n, arrival.toLight) < 0 ? -n : n);
           }
           const double across = unprojected.across(x, y, *p);
-          const std::size_t texel = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                                    static_cast<std::size_t>(x);
+          const std::size_t texel =
+              static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
           const std::uint8_t of = map.casterMaterial.empty() ? 0 : map.casterMaterial[texel];
           if (!map.casterMaterial.empty() && of == 0) continue;
           double exit = INFINITY;
           if (!map.exitDepth.empty())
-            if (const auto e = unprojected.at(x, y, *map.exitDepth.at(x, y))) exit = mm_ * glm::distance(*e, *p);
+            if (const auto e = unprojected.at(x, y, *map.exitDepth.at(x, y)))
+              exit = mm_ * glm::distance(*e, *p);
           const bool seen = cameraSees(*p, normal, kSeenTolerance * std::sqrt(across) + bias);
           if (seen && !diffused_) continue;
           const double area = across * mm_ * mm_;
           const double cosine = std::max(glm::dot(normal, arrival.toLight), kLeastCosine);
-          block.texels.push_back({*p * mm_, normal, arrival.irradiance * area, area / cosine, seen, exit, of});
+          block.texels.push_back(
+              {*p * mm_, normal, arrival.irradiance * area, area / cosine, seen, exit, of});
           low = glm::min(low, *p * mm_);
           high = glm::max(high, *p * mm_);
         }
@@ -283,8 +285,9 @@ glm::dvec3 Gather::thinLoss(const Surface& surface, std::size_t material) const 
     if (glm::length(n) > 0) outward = glm::normalize(glm::dot(n, surface.ray) < 0 ? -n : n);
   }
   const double chord = *surface.chord * mm_;
-  const double depth = 0.5 * chord * (std::abs(glm::dot(surface.ray, *surface.normal)) +
-                                      std::abs(glm::dot(surface.ray, outward)));
+  const double depth =
+      0.5 * chord *
+      (std::abs(glm::dot(surface.ray, *surface.normal)) + std::abs(glm::dot(surface.ray, outward)));
   const double opposite = 0.5 - 0.5 * glm::dot(*surface.normal, outward);
   return opposite * (1.0 - kernels_[material].slabReflectance(depth));
 }
@@ -315,10 +318,10 @@ glm::dvec3 Gather::ownIrradiance(const Light& light, const Exit& exit) const {
 
 // Over the texels of a light's maps.
 struct Gather::Sums {
-  glm::dvec3 transmitted{0};              // exitance of what enters opposite
-  glm::dvec3 entering{0}, hidden{0};      // of what enters hidden and alike: irradiance, part of the profile
-  glm::dvec3 opposite{0};                 // irradiance of what enters seen and opposite, by the profile
-  glm::dvec3 seenEntering{0}, seen{0};    // of what enters seen and alike
+  glm::dvec3 transmitted{0};            // exitance of what enters opposite
+  glm::dvec3 entering{0}, hidden{0};    // of what enters hidden and alike: irradiance, part of the profile
+  glm::dvec3 opposite{0};               // irradiance of what enters seen and opposite, by the profile
+  glm::dvec3 seenEntering{0}, seen{0};  // of what enters seen and alike
 };
 
 Gather::Place Gather::placeOf(const Light& light, const Exit& exit) const {
@@ -338,15 +341,14 @@ Gather::Place Gather::placeOf(const Light& light, const Exit& exit) const {
     place.tolerance = mm_ * std::sqrt(unprojected.across(x, y, world)) * (2 + std::min(slope, 4.0));
     const auto e = unprojected.at(x, y, *map.exitDepth.at(x, y));
     if (e && unprojected.at(x, y))
-      place.shadowed =
-          std::clamp(mm_ * glm::dot(*e - world, place.toLight) / place.tolerance - 1, 0.0, 1.0);
+      place.shadowed = std::clamp(mm_ * glm::dot(*e - world, place.toLight) / place.tolerance - 1, 0.0, 1.0);
     break;
   }
   return place;
 }
 
-// An exit beyond a texel's back face has air before it. Far sides of one body slope by up to 63 degrees; only where the
-// exit's own ray has air, too, is that no excuse.
+// An exit beyond a texel's back face has air before it. Far sides of one body slope by up to 63 degrees; only
+// where the exit's own ray has air, too, is that no excuse.
 double Gather::inside(const Texel& texel, const Exit& exit, const Place& place) {
   if (!(texel.exit < INFINITY)) return 1;
   const glm::dvec3 to = exit.position - texel.position;

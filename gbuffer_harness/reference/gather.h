@@ -24,9 +24,9 @@ struct Gathered {
 
 class Gather {
 public:
-  // Keeps references to the camera's surfaces. shadowBias: scene units. `diffused`: what light the camera sees
-  // has been diffused; else only what enters hidden counts. Throws InputError when a map lacks a matrix or a
-  // material has no kernel.
+  // Keeps references to the camera's surfaces. shadowBias: scene units. `diffused`: what light the camera
+  // sees has been diffused; else only what enters hidden counts. Throws InputError when a map lacks a matrix
+  // or a material has no kernel.
   Gather(const Capture& capture, const SurfaceReader& surfaces,
          const std::vector<PellucidMaterial>& materials, double shadowBias, bool diffused = true);
 
@@ -65,7 +65,6 @@ private:
     double tolerance = 0;  // mm that an exit of its own may be off by
     double shadowed = 0;   // 1: air lies before the exit on its own light ray, 0: it does not
   };
-
 
   // Of one of the light's maps; a texel that an earlier one contains counts there.
   Blocks collect(const Light& light, std::size_t map, double bias) const;

@@ -44,8 +44,6 @@ shared::FrameConstants frameConstants(const PellucidFrame& f) {
   readDepthRange(clip, &range);
   c.camera = makeCamera(clip, range, {f.imageExtent[0], f.imageExtent[1]}, f.metersPerUnit);
   c.viewFromNormal = f.normalsInViewSpace ? glm::mat4(1) : glm::mat4(glm::mat3(toMatrix(f.viewFromWorld)));
-  const glm::mat4 worldFromViewRows = glm::mat4(glm::transpose(glm::inverse(toMatrix(f.viewFromWorld))));
-  for (int row = 0; row < 3; ++row) c.worldFromView[row] = worldFromViewRows[row];
   const glm::mat3 normalFromView = glm::transpose(glm::mat3(c.viewFromNormal));
   const shared::Camera& camera = c.camera;
   c.normalRay[0] = {normalFromView * glm::vec3(camera.rayBase.x, camera.rayBase.y, camera.range.x), 0};

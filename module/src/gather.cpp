@@ -60,8 +60,9 @@ double convexity(const Channel& c, double rho) {
   return std::max(lossOf(std::clamp(rho, 0.0, 1.0)) - lossOf(1 - outside), 0.0) * 2 / c.slowest;
 }
 
-// Of R(h) / rho = x - sqrt(y T(h)^2 + z): Kubelka & Munk 1931, R = a - sqrt(T^2 + a^2 - 1) with a = (1 / rho + rho) / 2,
-// where T is scaled so that R(0) is what the boundary of a slab without medium sends back, T(0) (1 - T(0)) / (1 + T(0)).
+// Of R(h) / rho = x - sqrt(y T(h)^2 + z): Kubelka & Munk 1931, R = a - sqrt(T^2 + a^2 - 1) with a = (1 / rho
+// + rho) / 2, where T is scaled so that R(0) is what the boundary of a slab without medium sends back, T(0)
+// (1 - T(0)) / (1 + T(0)).
 glm::vec4 slabReflectance(double thin, double rho) {
   rho = std::clamp(rho, 1e-3, 1.0);
   thin = std::clamp(thin, 0.5, 1.0);

@@ -6,8 +6,8 @@
 
 namespace pellucid {
 
-// Records of a dispatch's maps, which are below each other: at most. Maps that are wider take fewer records than texels, as
-// samples are further apart than their texels.
+// Records of a dispatch's maps, which are below each other: at most. Maps that are wider take fewer records
+// than texels, as samples are further apart than their texels.
 constexpr uint32_t kRecordColumns = 1024, kRecordRows = 4096;
 
 // Whole groups of the pass that makes them.

@@ -54,10 +54,9 @@ Image allTexels(const Capture& c, const Image& diffused, const std::function<boo
       if (c.material[i] == 0 || !surface || !wanted(x, y)) continue;
       const reference::Gathered g = gather.at(*surface, c.material[i] - 1u);
       for (int k = 0; k < 3; ++k)
-        out.at(x, y)[k] =
-            static_cast<float>(std::max(0.0, (1 + g.convexity[k]) * double(diffused.at(x, y)[k]) +
-                                                 g.returned[k] +
-                                                 g.transmitted[k] / double(material.reflectance[k])));
+        out.at(x, y)[k] = static_cast<float>(
+            std::max(0.0, (1 + g.convexity[k]) * double(diffused.at(x, y)[k]) + g.returned[k] +
+                              g.transmitted[k] / double(material.reflectance[k])));
     }
   });
   return out;
@@ -329,7 +328,8 @@ TEST_F(GatherAgreement, TerminatorIsContinuous) {
       for (int k = 0; k < 3; ++k)
         std::printf(" %.4f (all texels %.4f)", worstGpu[k] / peak[k], worstAll[k] / peak[k]);
       std::printf("\n");
-      // Half as much again for 16 samples, and 4.5 % of the peak for what the samples of pixels beside each other differ by.
+      // Half as much again for 16 samples, and 4.5 % of the peak for what the samples of pixels beside each
+      // other differ by.
       for (int k = 0; k < 3; ++k)
         EXPECT_LT(worstGpu[k], 1.5 * worstAll[k] + 0.045 * peak[k]) << name << angle;
     }

@@ -1,5 +1,5 @@
-// The gather is linear in light: lights add up, light that no gathered light brings stays as it is, and thin parts return
-// what a slab of their thickness does.
+// The gather is linear in light: lights add up, light that no gathered light brings stays as it is, and thin
+// parts return what a slab of their thickness does.
 #include "gpu_fixture.h"
 
 #include <algorithm>
@@ -109,8 +109,8 @@ TEST_F(GatherLinear, ManyLightsInSeveralGroupsAddUp) {
   EXPECT_LT(d.worst, kSumWorst);
 }
 
-// Sky, bounces and lights that are not gathered come back as the diffusion and the surface's curvature say, whatever the
-// gathered lights are.
+// Sky, bounces and lights that are not gathered come back as the diffusion and the surface's curvature say,
+// whatever the gathered lights are.
 TEST_F(GatherLinear, AmbientLightStays) {
   const Capture lit = head({});
   Capture withAmbient = lit, ambient = lit;
@@ -142,53 +142,10 @@ TEST_F(GatherLinear, ThinSlabsReturnLess) {
       ASSERT_EQ(pellucidSlabTransport(scattering[k], absorption[k], 1.4, INFINITY, &half, nullptr, nullptr),
                 PELLUCID_OK);
       const double ratio = double(out.at(24, 24)[k]) / double(c.irradiance.at(24, 24)[k]);
-      // Kubelka & Munk's R of T is within .045 of exact transport for skin of .5 mm and more; the rest is samples.
+      // Kubelka & Munk's R of T is within .045 of exact transport for skin of .5 mm and more; the rest is
+      // samples.
       EXPECT_NEAR(ratio, slab.reflectance / half.reflectance, 0.06) << thickness << " mm, channel " << k;
     }
-  }
-}
-
-// Points' patterns belong to places in the world: a camera that moves by whole pixels sees the same light.
-TEST_F(GatherLinear, StandsStillWhereTheCameraMoves) {
-  SceneParameters p;
-  p.name = "sphere";
-  p.options = {{"radius", 8}, {"extent", 24}, {"lightAngle", 50}};
-  p.width = p.height = 96;
-  p.shadowSize = 256;
-  p.orthographic = true;
-  Capture still = makeScene(p);
-  still.albedo = {};
-  std::fill(still.irradiance.data.begin(), still.irradiance.data.end(), 0.0f);
-  const Image a = gathered(still);
-  for (const int pixels : {1, 2, 3}) {
-    // The view moves to the left in the image: everything lies further to the right.
-    Capture moved = still;
-    const double step = 24.0 / 96 * pixels;
-    moved.viewFromWorld[12] += step;
-    const auto shift = [&](Image* image) {
-      const Image from = *image;
-      for (int y = 0; y < image->height; ++y)
-        for (int x = 0; x < image->width; ++x)
-          for (int k = 0; k < image->channels; ++k)
-            image->at(x, y)[k] = from.at(std::max(x - pixels, 0), y)[k];
-    };
-    shift(&moved.frontDepth.image);
-    shift(&moved.backDepth.image);
-    shift(&moved.normal);
-    for (int y = 0; y < 96; ++y)
-      for (int x = 95; x >= 0; --x)
-        moved.material[static_cast<size_t>(y * 96 + x)] =
-            still.material[static_cast<size_t>(y * 96 + std::max(x - pixels, 0))];
-    Image b = gathered(moved);
-    double square = 0, power = 0;
-    for (int y = 4; y < 92; ++y)
-      for (int x = 8; x < 88; ++x)
-        for (int k = 0; k < 3; ++k) {
-          const double v = double(a.at(x, y)[k]), d = double(b.at(x + pixels, y)[k]) - v;
-          square += d * d;
-          power += v * v;
-        }
-    EXPECT_LT(std::sqrt(square / power), 1e-2) << pixels;
   }
 }
 
