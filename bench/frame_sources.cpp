@@ -8,6 +8,7 @@
 #include "common/error.h"
 #include "frame_files.h"
 #include "raster/raster.h"
+#include "scene.h"
 #include "scene/scene.h"
 
 namespace pellucid::bench {
@@ -111,16 +112,6 @@ private:
   int shadowSize_;
   std::vector<Light> lights_[2];  // of one head; of a crowd
 };
-
-// Exit depths and caster materials are images that few engines have, and the published methods read none.
-Capture withMapsAlone(Capture capture) {
-  for (Light& light : capture.lights)
-    for (ShadowMap& map : light.shadowMaps) {
-      map.exitDepth = {};
-      map.casterMaterial.clear();
-    }
-  return capture;
-}
 
 }  // namespace
 

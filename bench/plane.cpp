@@ -181,9 +181,9 @@ void separateSteps(const Bench& bench) {
   p.name = "ear";
   p.width = p.height = 128;
   p.depthEncoding = PELLUCID_DEPTH_DEVICE;
-  Capture ear = makeScene(p);
+  Capture ear = withMapsAlone(makeScene(p));
   ear.albedo = {};       // the module would multiply by it
-  ear.lights.resize(1);  // the separate steps bind one shadow map
+  ear.lights.resize(1);  // the separate steps bind one image, of one light's shadow map
   const std::vector<Variant> checked = translucencyVariants(bench.frame(ear, settings));
   const std::vector<Variant> timed = translucencyVariants(bench.frame(bench.fullSlab(), settings));
   const Image truth = bench.run(checked.back());

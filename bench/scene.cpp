@@ -80,6 +80,15 @@ Capture slabWithoutGrain(int width, int height, double coverage, double pixel) {
 
 }  // namespace
 
+Capture withMapsAlone(Capture capture) {
+  for (Light& light : capture.lights)
+    for (ShadowMap& map : light.shadowMaps) {
+      map.exitDepth = {};
+      map.casterMaterial.clear();
+    }
+  return capture;
+}
+
 Capture slab(int width, int height, double coverage, double pixel) {
   Capture c = slabWithoutGrain(width, height, coverage, pixel);
   addGrain(c, pixel, kFar);

@@ -16,6 +16,10 @@ PellucidMaterial benchMaterial();
 // Pixel size (mm) at which the material's 99.9 % radius, of its widest channel, is `radius` pixels.
 double pixelSizeFor(const PellucidMaterial& material, double radius);
 
+// The capture without exit depths and caster materials: few engines have them, and the other methods here
+// bind no images for them.
+harness::Capture withMapsAlone(harness::Capture capture);
+
 // A 2 mm slab, noise in the irradiance and of a hundredth of a pixel in the depths, one directional light
 // from behind with a 1024^2 shadow map; the upper `coverage` of the image has the material. A pixel is
 // `pixel` mm wide.

@@ -128,13 +128,7 @@ Capture ear() {
   p.shadowEncoding = PELLUCID_DEPTH_DEVICE;
   capture.lights.push_back(makeScene(p).lights.at(0));
   capture.albedo = {};
-  // Nothing that these methods read; a plan without it binds the maps alone.
-  for (Light& light : capture.lights)
-    for (ShadowMap& map : light.shadowMaps) {
-      map.exitDepth = {};
-      map.casterMaterial.clear();
-    }
-  return capture;
+  return withMapsAlone(std::move(capture));
 }
 
 }  // namespace
