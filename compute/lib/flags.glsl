@@ -7,7 +7,8 @@
 
 bool hasFlag(uint flag) {
   uint flags = frame.flags.x;
-  if (kDirectional) flags = (flags & (PELLUCID_FLAG_ALBEDO | PELLUCID_FLAG_DIFFUSED)) | PELLUCID_FLAG_NORMAL;
+  const uint kOpen = PELLUCID_FLAG_ALBEDO | PELLUCID_FLAG_DIFFUSED | PELLUCID_FLAG_BACK_DEPTH | PELLUCID_FLAG_BACK_VIEW_Z;
+  if (kDirectional) flags = (flags & kOpen) | PELLUCID_FLAG_NORMAL;
   return (flags & flag) != 0u;
 }
 

@@ -1,6 +1,8 @@
-// What a point of the gather gets from one light, by samples of the light's records.
+// A point of the gather and one light: what the light brings, by samples of its records.
 #ifndef PELLUCID_GATHER_LIGHT_GLSL
 #define PELLUCID_GATHER_LIGHT_GLSL
+
+#include "lib/occluder.glsl"
 
 const float kLastRing = 1.0e12; // squared radius of what lies beyond all samples
 
@@ -41,7 +43,7 @@ bool fetchRecord(uint map, bool parallel, vec3 point, int level, out uvec4 bits,
   return true;
 }
 
-// Of the first of the light's maps that contains the position.
+// The same in the first of the light's maps that contains the position.
 bool fetchRecord(LightConstants light, vec3 position, int level, out uint map, out vec3 point, out uvec4 bits,
                  out vec2 off) {
   for (map = light.meta.y; map < light.meta.y + light.meta.z; ++map) {
@@ -66,6 +68,8 @@ struct GatherRings {
   uint map;            // that contains x
 };
 
+const float kSteepestOwn = 4.0; // slope of the surface at x within a record, as of 76 degrees
+
 // An axis between the light's ray and the normal inwards suits slabs: their rings are around the foot of the
 // perpendicular. false: no map contains x, so that no light comes through it.
 bool gatherRings(LightConstants light, Surface x, vec3 toLight, float distanceTo, float longest,
@@ -81,13 +85,12 @@ bool gatherRings(LightConstants light, Surface x, vec3 toLight, float distanceTo
   uvec4 bits;
   if (!fetchRecord(light, x.position, 0, rings.map, point, bits, off)) return false;
   rings.recordSide = length(maps[rings.map].stepX.xyz) * mm * (parallel ? 1.0 : point.z);
+  // The slope of the surface within a record, and one record for its curvature.
+  rings.tolerance = rings.recordSide * (2.0 + min(slopeOf(x.hasNormal ? dot(x.normal, toLight) : 0.0), kSteepestOwn));
   if (!holdsSurface(bits)) return true;
   float perAhead = parallel ? 1.0 : distanceTo;
   Record own = unpackRecord(bits);
   rings.ahead = distanceAhead(parallel, own.depth, point.z) * perAhead * mm;
-  // The slope of the surface within a record, and one record for its curvature.
-  float cosine = x.hasNormal ? abs(dot(x.normal, toLight)) : 0.0;
-  rings.tolerance = rings.recordSide * (2.0 + min(sqrt(max(1.0 - cosine * cosine, 0.0)) / max(cosine, 1.0e-3), 4.0));
   if (own.exit < kNoExit) rings.shadowed = clamp((rings.ahead - own.exit * mm) / rings.tolerance - 1.0, 0.0, 1.0);
   float t = clamp(rings.ahead, 0.0, longest) / mm;
   vec3 guess = x.position + t * rings.axis;
@@ -101,11 +104,10 @@ bool gatherRings(LightConstants light, Surface x, vec3 toLight, float distanceTo
   return true;
 }
 
-// Which part of the light gets to x itself, as its map says: none where the lit surface lies further ahead than a record's
+// The part of the light that gets to x itself, as its map says: none where the lit surface lies further ahead than a record's
 // side makes of the surface's slope. Continuous, as the map is coarse.
 float arrivesAt(GatherRings rings, float cosine) {
-  float slope = min(sqrt(max(1.0 - cosine * cosine, 0.0)) / max(cosine, 1.0e-3), 4.0);
-  float own = rings.recordSide * (1.0 + slope);
+  float own = rings.recordSide * (1.0 + min(slopeOf(cosine), kSteepestOwn));
   return clamp(2.0 - rings.ahead / max(own, 1.0e-12), 0.0, 1.0);
 }
 
@@ -117,7 +119,7 @@ GatherSlab slabOf(uint m, vec4 lengths, float h) {
                     fract(place));
 }
 
-// Which part of the light that enters at a record reaches x through the medium: none where x lies beyond the record's exit,
+// The part of the light that enters at a record and reaches x through the medium: none where x lies beyond the record's exit,
 // with air between. Exits differ by the slope of the body's far side; only where x's own ray has air, too, is that no excuse.
 // `to`: from the lit point to x.
 float staysInside(GatherRings rings, Record record, vec3 to, vec3 toLight) {
@@ -131,7 +133,7 @@ float staysInside(GatherRings rings, Record record, vec3 to, vec3 toLight) {
 // From x, mm.
 vec3 onRing(vec3 center, vec3 across, vec3 along, vec2 offset) { return center + offset.x * across + offset.y * along; }
 
-// Which of the patterns a cell takes. Where points are too far apart to share, all take the middle one.
+// A cell takes one of thirteen patterns. Points that are too far apart to share all take the middle one.
 struct Pattern {
   float within, turn; // [0, 1): place in a ring, turn of the first sample
 };
@@ -232,7 +234,7 @@ Gathered gatherSamples(uint m, LightConstants light, Surface x, Pattern pattern,
   return sum;
 }
 
-// What a light of radiance 1 brings to x beyond its diffused irradiance, as irradiance that albedo = rho turns into exitance.
+// A light of radiance 1 brings this to x beyond its diffused irradiance, as irradiance that albedo = rho turns into exitance.
 // The diffusion is normalized over what the camera sees: what enters hidden from it displaces its part of what the light
 // itself brings to x and to its surroundings. `loss`: see thinLoss.
 vec3 gatherLight(uint m, LightConstants light, Surface x, Pattern pattern, vec3 loss) {
@@ -243,12 +245,13 @@ vec3 gatherLight(uint m, LightConstants light, Surface x, Pattern pattern, vec3 
   vec3 through = g.through * frame.filterAndLimit.rgb * materials[m].inverseReflectance.rgb;
   if (!hasFlag(PELLUCID_FLAG_DIFFUSED)) return through;
   float cosine = x.hasNormal ? max(dot(x.normal, incident.toLight), 0.0) : 0.0;
-  // Of radiance 1, without the light's cone and range: the sums have them.
+  // The light's cone and range are left out: the sums have them.
   float falloff = directional(light) ? 1.0 : 1.0 / max(incident.distanceTo * incident.distanceTo, 1.0e-12);
   float own = falloff * cosine * arrivesAt(rings, cosine);
   vec3 hidden = min(g.hidden, vec3(1.0)), seen = g.seenLight / max(g.seen, vec3(1.0e-12)), around = 0.5 * (own + seen);
   // Diffused light is no more than what lies around, and a dark point has next to none of its own to lose.
-  vec3 opposite = min(g.opposite, through + own), lost = min(seen, vec3(2.0 * own)) * lightShare(light, incident.toLight, incident.distanceTo);
+  vec3 opposite = min(g.opposite, through + own);
+  vec3 lost = min(seen, vec3(2.0 * own)) * lightShare(light, incident.toLight, incident.distanceTo);
   return through + g.entering - opposite - hidden * around - (1.0 - hidden) * loss * lost;
 }
 

@@ -27,8 +27,9 @@ layout(set = 0, binding = PELLUCID_BINDING_RECORD_MAPS) readonly buffer RecordMa
 #endif
 layout(set = 0, binding = PELLUCID_BINDING_LEVELS, rgba32ui) uniform writeonly uimage2D recordsDestination;
 
-// A surface that the light sees more obliquely counts as if it did not.
-const float kLeastCosine = 0.05;
+// A surface that the light sees more obliquely counts as if it did not: a sample that stands for more than five times its own
+// area shows as a dot at terminators.
+const float kLeastCosine = 0.2;
 
 // Where the camera has a surface on the pixel that a point is seen on, at the point or in front of it: what it sees is
 // in the irradiance that diffusion spreads. What faces away cannot be seen, however thin the part is.
@@ -94,7 +95,7 @@ float parallelSlope(int at, int texels, float plane, float squaredStep, float ac
   return backward ? change.y : kNoDepth;
 }
 
-// What lies behind the surface that a texel stores, and what the surface is of.
+// A texel's caster: what lies behind the stored surface, and what the surface is of.
 struct Behind {
   float exit; // see Record
   uint material;
@@ -198,7 +199,7 @@ uvec4 recordOf(RecordMapConstants map, ivec2 texel) {
   return parallelRecord(map, texel, stored);
 }
 
-// The mean of four records, each of `side` texels; kSeveralSurfaces where their depths are further apart than
+// The mean of four records, each `texels` wide; kSeveralSurfaces where their depths are further apart than
 // slopes of 70 degrees make them: a sample then takes the record under it.
 uvec4 meanOf(uvec4 bits[4], float texels, RecordMapConstants map) {
   float hidden = 0.0, seen = 0.0, cosine = 0.0, exit = 0.0, count = 0.0, sum = 0.0, least = kNoDepth, most = -kNoDepth;
@@ -209,21 +210,12 @@ uvec4 meanOf(uvec4 bits[4], float texels, RecordMapConstants map) {
   [[unroll]] for (int i = 0; i < 4; ++i) {
     several = several || bits[i] == kSeveralSurfaces;
     if (!holdsSurface(bits[i])) continue;
-    // A map's records all know their material, or none does. Light enters where it is not 0.
-    uint its = unpackRecord(bits[i]).material;
-    several = several || (material != 0u && its != 0u && its != material);
-    material = max(material, its);
-    // Records of parallel light count towards the light, others from it.
-    float depth = uintBitsToFloat(bits[i].x) * (perspective ? 1.0 : -1.0);
-    least = min(least, depth);
-    most = max(most, depth);
-  }
-  // Texels are 2 map.seen.x wide, of perspective maps times depth.
-  float limit = 3.0 * texels * 2.0 * map.seen.x * (perspective ? max(abs(least), abs(most)) : 1.0);
-  if (several || most - least > 2.0 * limit) return kSeveralSurfaces;
-  [[unroll]] for (int i = 0; i < 4; ++i) {
-    if (!holdsSurface(bits[i])) continue;
     Record r = unpackRecord(bits[i]);
+    // A map's records all know their material, or none does. Light enters where it is not 0.
+    several = several || (material != 0u && r.material != 0u && r.material != material);
+    material = max(material, r.material);
+    least = min(least, r.depth);
+    most = max(most, r.depth);
     hidden += r.hidden;
     seen += r.seen;
     cosine += r.cosine;
@@ -232,6 +224,9 @@ uvec4 meanOf(uvec4 bits[4], float texels, RecordMapConstants map) {
     exit += r.exit;
     count += 1.0;
   }
+  // Texels are 2 map.seen.x wide, of perspective maps times depth.
+  float limit = 3.0 * texels * 2.0 * map.seen.x * (perspective ? max(abs(least), abs(most)) : 1.0);
+  if (several || most - least > 2.0 * limit) return kSeveralSurfaces;
   if (count == 0.0) return kNoRecord;
   float squared = dot(normal, normal), inverse = 1.0 / count;
   // Normals towards one light cancel only in rounding.

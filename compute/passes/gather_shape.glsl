@@ -52,7 +52,7 @@ float meanCurvature(ivec2 pixel, Surface x, ViewRay ray, float front, float reac
 // By how much more of the diffused light comes back, of each channel.
 vec3 convexityAt(ivec2 pixel, Surface x, ViewRay ray, float front, uint m) {
   vec4 perCurvature = materials[m].gather.convexity;
-  vec3 more = perCurvature.rgb * meanCurvature(pixel, x, ray, front, 0.5 * perCurvature.w);
+  vec3 more = perCurvature.rgb * meanCurvature(pixel, x, ray, front, perCurvature.w);
   return clamp(more, vec3(-kMostConvexity), vec3(kMostConvexity));
 }
 
@@ -76,7 +76,7 @@ bool backSlope(ivec2 pixel, ivec2 axis, vec3 back, out vec3 slope) {
   return hasForward || hasBackward;
 }
 
-// Which part of the light that enters at x a half-space sends back and the body does not, as the light leaves by the
+// The part of the light that enters at x which a half-space sends back and the body does not, as the light leaves by the
 // other face: 1 - R(h) / rho of a slab, weighted with how opposite the faces are, as a rim has all of the medium behind it.
 vec3 thinLoss(ivec2 pixel, Surface x, uint m) {
   if (!hasFlag(PELLUCID_FLAG_BACK_DEPTH)) return vec3(0.0);

@@ -45,7 +45,7 @@ vec3 convexityOf(uvec4 bits) {
 
 bool hasConvexity(uvec4 bits) { return (bits.w & 0x7FFFFFFu) != 0u; }
 
-// Whether light is added, or more or less of the diffused one comes back.
+// True where light is added, or more or less of the diffused one comes back.
 bool hasLight(uvec4 bits) { return (bits.x | bits.y & 0xFFFFu) != 0u || hasConvexity(bits); }
 
 vec3 normalOf(uvec4 bits) { return fromOctahedral(unpackSnorm4x8(bits.y >> 16).xy); }

@@ -42,7 +42,7 @@ Record unpackRecord(uvec4 bits) {
                 float(bits.w & 0xFFu) / 255.0, unpackHalf2x16(bits.w >> 16).x, bits.w >> 8 & 0xFFu);
 }
 
-// Where a record of a level lies in the image, from that of the first level. `size`: of the first level, whole groups.
+// Place of a level's record in the image, from that of the first level. `size`: of the first level, whole groups.
 // Level 1 is beside the first, each coarser one below the level before.
 ivec2 recordPlace(ivec2 first, int level, ivec2 size) {
   ivec2 corner = level == 0 ? ivec2(0) : ivec2(size.x, size.y - (size.y >> (level - 1)));

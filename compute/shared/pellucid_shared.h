@@ -185,7 +185,8 @@ struct DirectionalConstants {
 struct GatherConstants {
   vec4 lengths; // mm; x: shortest; y: log2(longest / shortest); z: largest distance looked for, 2 / kappa; w: depth scale
   vec4 profile; // rgb: 1/(3 d) of Burley's profile, 0: none, 1/mm; w: sharing between points, 1/mm^2
-  vec4 convexity; // rgb: how much more of the light comes back, per mean curvature, mm; w: where that is measured, mm
+  vec4 convexity; // rgb: how much more of the light comes back, per mean curvature, mm; w: how far to both sides that
+                  // is measured, mm
   // A slab of thickness h sends back R(h) = x - sqrt(y T(h)^2 + z) of a half-space's light, x, y, z of each channel.
   vec4 reflectance[3];
   vec4 entries[3 * PELLUCID_GATHER_ENTRIES]; // see GatherEntry

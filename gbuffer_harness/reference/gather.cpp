@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/gtc/matrix_access.hpp>
 #include <iterator>
 #include <optional>
 
-#include "common/error.h"
-#include "reference/light.h"
+#include "reference/shadow_texels.h"
 
 namespace pellucid::harness::reference {
 namespace {
@@ -18,7 +16,7 @@ constexpr double kTail = 1e-4;
 // Texels per side of a block that is skipped as a whole where it is out of reach.
 constexpr int kBlock = 16;
 // A surface seen more obliquely by the light than this counts as if it were not.
-constexpr double kLeastCosine = 0.05;
+constexpr double kLeastCosine = 0.2;
 // What curvature adds to the diffusion, or takes from it, at most.
 constexpr double kMostConvexity = 0.1;
 // Texels: a point on a surface and the pixel that shows it are apart by the slope within them.
@@ -28,87 +26,6 @@ bool contains(const ShadowMap& map, const glm::dvec3& point) {
   const glm::dvec4 clip = toMatrix(map.clipFromWorld) * glm::dvec4(point, 1);
   return clip.w > 0 && std::abs(clip.x) <= clip.w && std::abs(clip.y) <= clip.w;
 }
-
-// Positions of a map's texels, world, scene units.
-class Unprojected {
-public:
-  Unprojected(const Light& light, const ShadowMap& map)
-      : light_(light), map_(map), clipFromWorld_(toMatrix(map.clipFromWorld)) {
-    const double determinant = glm::determinant(clipFromWorld_);
-    if (!(std::abs(determinant) > 0))
-      throw InputError("", "shadowMap.clipFromWorld", "the matrix is singular");
-    worldFromClip_ = glm::inverse(clipFromWorld_);
-    perspective_ = light.type != PELLUCID_LIGHT_DIRECTIONAL;
-    if (map.viewFromWorld) viewFromWorld_ = toMatrix(*map.viewFromWorld);
-    const bool planar = map.depth.encoding == PELLUCID_DEPTH_VIEW_Z ||
-                        (map.depth.encoding == PELLUCID_DEPTH_DISTANCE && !perspective_);
-    if (planar && !map.viewFromWorld)
-      throw InputError("", "shadowMap.viewFromWorld", "missing, and the depth encoding needs it");
-    // Depth grows away from the light, or is reversed.
-    const Line ray = rayAt(0.5 * map.depth.image.width, 0.5 * map.depth.image.height);
-    const glm::dvec4 far = clipFromWorld_ * glm::dvec4(ray.at(1), 1),
-                     near = clipFromWorld_ * glm::dvec4(ray.origin, 1);
-    nothing_ = far.z * near.w > near.z * far.w ? 1.0f : 0.0f;
-  }
-
-  struct Line {
-    glm::dvec3 origin, direction;  // direction of travel, unit
-    glm::dvec3 at(double t) const { return origin + t * direction; }
-  };
-  // The light's ray through continuous map coordinates.
-  Line rayAt(double x, double y) const {
-    const glm::dvec2 ndc(x / map_.depth.image.width * 2 - 1, y / map_.depth.image.height * 2 - 1);
-    // Neither end of the depth range: an infinite one has no point there.
-    const glm::dvec4 a = worldFromClip_ * glm::dvec4(ndc, 0.25, 1),
-                     b = worldFromClip_ * glm::dvec4(ndc, 0.75, 1);
-    const glm::dvec3 p = glm::dvec3(a) / a.w, q = glm::dvec3(b) / b.w;
-    if (!perspective_) return {p, glm::normalize(toVector(light_.direction))};
-    const glm::dvec3 eye = toVector(light_.position);
-    return {eye, glm::normalize(0.5 * (p + q) - eye)};
-  }
-
-  std::optional<glm::dvec3> at(int x, int y) const { return at(x, y, *map_.depth.image.at(x, y)); }
-
-  // Of a depth that the texel stores.
-  std::optional<glm::dvec3> at(int x, int y, float stored) const {
-    const Line ray = rayAt(x + 0.5, y + 0.5);
-    if (map_.depth.encoding == PELLUCID_DEPTH_DEVICE) {
-      if (!(stored >= 0 && stored <= 1) || stored == nothing_) return std::nullopt;
-      const Image& image = map_.depth.image;
-      const glm::dvec4 p = worldFromClip_ * glm::dvec4((x + 0.5) / image.width * 2 - 1,
-                                                       (y + 0.5) / image.height * 2 - 1, double(stored), 1);
-      return glm::dvec3(p) / p.w;
-    }
-    if (!holdsSurface(stored)) return std::nullopt;
-    if (map_.depth.encoding == PELLUCID_DEPTH_DISTANCE && perspective_) return ray.at(stored);
-    const glm::dvec4 planar = -glm::row(viewFromWorld_, 2);
-    const double from = glm::dot(planar, glm::dvec4(ray.origin, 1));
-    const double perLength = glm::dot(glm::dvec3(planar), ray.direction);
-    return ray.at((stored - from) / perLength);
-  }
-
-  // Area across the light's ray that a texel covers at a point, square scene units.
-  double across(int x, int y, const glm::dvec3& point) const {
-    const Line center = rayAt(x + 0.5, y + 0.5), right = rayAt(x + 1.5, y + 0.5),
-               below = rayAt(x + 0.5, y + 1.5);
-    if (!perspective_)
-      return std::abs(
-          glm::dot(glm::cross(right.origin - center.origin, below.origin - center.origin), center.direction));
-    const double distance = glm::distance(point, center.origin);
-    const glm::dvec3 solid =
-        glm::cross(right.direction - center.direction, below.direction - center.direction);
-    return std::abs(glm::dot(solid, center.direction)) * distance * distance;
-  }
-
-private:
-  static glm::dvec3 toVector(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
-
-  const Light& light_;
-  const ShadowMap& map_;
-  glm::dmat4 clipFromWorld_, worldFromClip_{1}, viewFromWorld_{1};
-  bool perspective_;
-  float nothing_;
-};
 
 }  // namespace
 
@@ -121,6 +38,8 @@ Gather::Gather(const Capture& capture, const SurfaceReader& surfaces,
   }
   for (const Light& light : capture.lights) {
     Blocks& blocks = lights_.emplace_back();
+    std::vector<ShadowView>& views = views_.emplace_back();
+    for (const ShadowMap& map : light.shadowMaps) views.emplace_back(light, map);
     for (std::size_t map = 0; map < light.shadowMaps.size(); ++map) {
       Blocks more = collect(light, map, shadowBias);
       std::move(more.begin(), more.end(), std::back_inserter(blocks));
@@ -148,10 +67,10 @@ bool Gather::cameraSees(const glm::dvec3& world, const glm::dvec3& normal, doubl
 Gather::Blocks Gather::collect(const Light& light, std::size_t mapIndex, double bias) const {
   const ShadowMap& map = light.shadowMaps[mapIndex];
   const int width = map.depth.image.width, height = map.depth.image.height;
-  const Unprojected unprojected(light, map);
+  const ShadowTexels texels(light, map);
   std::vector<std::optional<glm::dvec3>> points;
   for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) points.push_back(unprojected.at(x, y));
+    for (int x = 0; x < width; ++x) points.push_back(texels.at(x, y));
   const auto point = [&](int x, int y) -> const std::optional<glm::dvec3>& {
     return points[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
                   static_cast<std::size_t>(x)];
@@ -187,15 +106,14 @@ Gather::Blocks Gather::collect(const Light& light, std::size_t mapIndex, double 
             const glm::dvec3 n = glm::cross(*right, *below);
             if (glm::length(n) > 0) normal = glm::normalize(glm::dot(n, arrival.toLight) < 0 ? -n : n);
           }
-          const double across = unprojected.across(x, y, *p);
+          const double across = texels.across(x, y, *p);
           const std::size_t texel =
               static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
           const std::uint8_t of = map.casterMaterial.empty() ? 0 : map.casterMaterial[texel];
           if (!map.casterMaterial.empty() && of == 0) continue;
           double exit = INFINITY;
           if (!map.exitDepth.empty())
-            if (const auto e = unprojected.at(x, y, *map.exitDepth.at(x, y)))
-              exit = mm_ * glm::distance(*e, *p);
+            if (const auto e = texels.at(x, y, *map.exitDepth.at(x, y))) exit = mm_ * glm::distance(*e, *p);
           const bool seen = cameraSees(*p, normal, kSeenTolerance * std::sqrt(across) + bias);
           if (seen && !diffused_) continue;
           const double area = across * mm_ * mm_;
@@ -292,30 +210,6 @@ glm::dvec3 Gather::thinLoss(const Surface& surface, std::size_t material) const 
   return opposite * (1.0 - kernels_[material].slabReflectance(depth));
 }
 
-glm::dvec3 Gather::ownIrradiance(const Light& light, const Exit& exit) const {
-  if (!exit.normal) return glm::dvec3(0);
-  const glm::dvec3 world = exit.position / mm_;
-  const Arrival arrival = arrivalAt(light, world);
-  const double cosine = glm::dot(*exit.normal, arrival.toLight);
-  if (!(cosine > 0)) return glm::dvec3(0);
-  for (const ShadowMap& map : light.shadowMaps) {
-    const ShadowView::Lookup found = ShadowView(light, map).at(world);
-    if (found.kind == ShadowView::Kind::Outside) continue;
-    if (found.kind == ShadowView::Kind::Empty) return cosine * arrival.irradiance;
-    // None where the lit surface is further ahead than a texel's side makes of the slope.
-    const Unprojected unprojected(light, map);
-    const glm::dvec4 clip = toMatrix(map.clipFromWorld) * glm::dvec4(world, 1);
-    const auto texel = [&](double ndc, int texels) {
-      return std::clamp(static_cast<int>((ndc / clip.w * 0.5 + 0.5) * texels), 0, texels - 1);
-    };
-    const double side = std::sqrt(unprojected.across(texel(clip.x, map.depth.image.width),
-                                                     texel(clip.y, map.depth.image.height), world));
-    const double slope = std::min(std::sqrt(std::max(1 - cosine * cosine, 0.0)) / cosine, 4.0);
-    return cosine * std::clamp(2 - found.distance / (side * (1 + slope)), 0.0, 1.0) * arrival.irradiance;
-  }
-  return glm::dvec3(0);
-}
-
 // Over the texels of a light's maps.
 struct Gather::Sums {
   glm::dvec3 transmitted{0};            // exitance of what enters opposite
@@ -324,24 +218,25 @@ struct Gather::Sums {
   glm::dvec3 seenEntering{0}, seen{0};  // of what enters seen and alike
 };
 
-Gather::Place Gather::placeOf(const Light& light, const Exit& exit) const {
+Gather::Place Gather::placeOf(std::size_t light, const Exit& exit) const {
   const glm::dvec3 world = exit.position / mm_;
+  const Arrival arrival = arrivalAt(capture_.lights[light], world);
+  const double cosine = exit.normal ? glm::dot(*exit.normal, arrival.toLight) : 0;
+  const double slope =
+      std::min(std::sqrt(std::max(1 - cosine * cosine, 0.0)) / std::max(std::abs(cosine), 1e-3), 4.0);
   Place place;
-  place.toLight = arrivalAt(light, world).toLight;
-  for (const ShadowMap& map : light.shadowMaps) {
-    if (map.exitDepth.empty() || !contains(map, world)) continue;
-    const Unprojected unprojected(light, map);
-    const glm::dvec4 clip = toMatrix(map.clipFromWorld) * glm::dvec4(world, 1);
-    const auto texel = [&](double ndc, int texels) {
-      return std::clamp(static_cast<int>((ndc / clip.w * 0.5 + 0.5) * texels), 0, texels - 1);
-    };
-    const int x = texel(clip.x, map.depth.image.width), y = texel(clip.y, map.depth.image.height);
-    const double cosine = exit.normal ? std::abs(glm::dot(*exit.normal, place.toLight)) : 0;
-    const double slope = std::sqrt(std::max(1 - cosine * cosine, 0.0)) / std::max(cosine, 1e-3);
-    place.tolerance = mm_ * std::sqrt(unprojected.across(x, y, world)) * (2 + std::min(slope, 4.0));
-    const auto e = unprojected.at(x, y, *map.exitDepth.at(x, y));
-    if (e && unprojected.at(x, y))
-      place.shadowed = std::clamp(mm_ * glm::dot(*e - world, place.toLight) / place.tolerance - 1, 0.0, 1.0);
+  place.toLight = arrival.toLight;
+  for (const ShadowView& view : views_[light]) {
+    const ShadowView::Lookup found = view.at(world);
+    if (found.kind == ShadowView::Kind::Outside) continue;
+    place.tolerance = mm_ * found.texel * (2 + slope);
+    double arrives = 1;
+    if (found.kind == ShadowView::Kind::Surface) {
+      // None where the lit surface is further ahead than a texel's side makes of the slope.
+      arrives = std::clamp(2 - found.distance / (found.texel * (1 + slope)), 0.0, 1.0);
+      if (found.fromExit) place.shadowed = std::clamp(mm_ * *found.fromExit / place.tolerance - 1, 0.0, 1.0);
+    }
+    place.ownIrradiance = std::max(cosine, 0.0) * arrives * arrival.irradiance;
     break;
   }
   return place;
@@ -358,10 +253,9 @@ double Gather::inside(const Texel& texel, const Exit& exit, const Place& place) 
   return std::clamp(2 - beyond / std::max(place.tolerance, 1e-12), 0.0, 1.0);
 }
 
-Gather::Sums Gather::sums(const Light& light, const Blocks& blocks, const Exit& exit) const {
+Gather::Sums Gather::sums(const Blocks& blocks, const Exit& exit, const Place& place) const {
   const GatherKernel& kernel = kernels_[exit.material];
   const double radius = radii_[exit.material];
-  const Place place = placeOf(light, exit);
   Sums sums;
   for (const Block& block : blocks) {
     if (glm::distance(block.center, exit.position) > block.radius + radius) continue;
@@ -403,13 +297,13 @@ Gathered Gather::at(const Surface& surface, std::size_t material) const {
   Gathered result;
   for (std::size_t i = 0; i < lights_.size(); ++i) {
     if (lights_[i].empty()) continue;
-    const Sums s = sums(capture_.lights[i], lights_[i], exit);
+    const Place place = placeOf(i, exit);
+    const Sums s = sums(lights_[i], exit, place);
     result.transmitted += s.transmitted;
     if (!diffused_) continue;
     // What is displaced is the light's own: half of what it brings to the exit and half of what it brings
     // around.
-    const glm::dvec3 own = ownIrradiance(capture_.lights[i], exit);
-    const glm::dvec3 seen = s.seenEntering / glm::max(s.seen, glm::dvec3(1e-12));
+    const glm::dvec3 own = place.ownIrradiance, seen = s.seenEntering / glm::max(s.seen, glm::dvec3(1e-12));
     const glm::dvec3 around = 0.5 * (own + seen), hidden = glm::min(s.hidden, glm::dvec3(1));
     // Diffused light is no more than what lies around, and a dark point has next to none of its own to lose.
     const glm::dvec3 lost = loss * glm::min(seen, 2.0 * own);

@@ -9,6 +9,7 @@
 
 #include "capture/capture.h"
 #include "reference/gather_kernel.h"
+#include "reference/light.h"
 #include "reference/surface.h"
 
 namespace pellucid::harness::reference {
@@ -59,21 +60,20 @@ private:
     std::optional<glm::dvec3> normal;
     std::size_t material = 0;
   };
-  // Where an exit lies in a light's maps.
+  // An exit among a light's rays, as its maps say.
   struct Place {
     glm::dvec3 toLight{0, 0, 1};
-    double tolerance = 0;  // mm that an exit of its own may be off by
-    double shadowed = 0;   // 1: air lies before the exit on its own light ray, 0: it does not
+    glm::dvec3 ownIrradiance{0};  // that the light itself brings to the exit
+    double tolerance = 0;         // mm that an exit depth of its own may be off by
+    double shadowed = 0;          // 1: air lies before the exit on its own light ray, 0: it does not
   };
 
   // Of one of the light's maps; a texel that an earlier one contains counts there.
   Blocks collect(const Light& light, std::size_t map, double bias) const;
-  Sums sums(const Light& light, const Blocks& blocks, const Exit& exit) const;
-  Place placeOf(const Light& light, const Exit& exit) const;
+  Sums sums(const Blocks& blocks, const Exit& exit, const Place& place) const;
+  Place placeOf(std::size_t light, const Exit& exit) const;
   // Part of what enters at a texel that reaches the exit through the medium.
   static double inside(const Texel& texel, const Exit& exit, const Place& place);
-  // Irradiance that a light itself brings to the exit, as its maps say.
-  glm::dvec3 ownIrradiance(const Light& light, const Exit& exit) const;
   // Around a surface with a normal, 1/mm, positive where convex: from what lies `reach` mm to both sides in
   // the image. 0 where it does not go on.
   double meanCurvature(const Surface& surface, double reach) const;
@@ -87,6 +87,7 @@ private:
   std::vector<GatherKernel> kernels_;
   std::vector<double> radii_;
   std::vector<Blocks> lights_;
+  std::vector<std::vector<ShadowView>> views_;  // of the lights' maps
   bool diffused_;
 };
 

@@ -136,11 +136,11 @@ ShadowView::Lookup ShadowView::at(const glm::dvec3& point) const {
   const std::optional<Projected> p = project(point);
   if (!p) return {Kind::Outside, 0};
   Lookup found = lookup(point, *p, *map_.depth.image.at(p->x, p->y));
+  found.texel = texelAt(point, *p);
   if (found.kind != Kind::Surface) return found;
   if (!map_.exitDepth.empty()) {
     const Lookup exit = lookup(point, *p, *map_.exitDepth.at(p->x, p->y));
     if (exit.kind == Kind::Surface) found.fromExit = exit.distance;
-    found.texel = texelAt(point, *p);
   }
   if (!map_.casterMaterial.empty())
     found.casterMaterial =

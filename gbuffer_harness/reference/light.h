@@ -30,13 +30,13 @@ public:
   };
   struct Lookup {
     Kind kind;
-    double distance;  // along the light ray from the stored surface to the point; negative when the
-                      // point is nearer to the light. Surface only
-    // Of what lies beside the map; Surface only.
+    double distance;   // along the light ray from the stored surface to the point; negative when the
+                       // point is nearer to the light. Surface only
+    double texel = 0;  // longer side of a texel across the light, scene units; perspective: where the ray
+                       // through the map's middle is as long as that to the point. Not of Outside
+    // From what lies beside the map; Surface only.
     std::optional<double> fromExit = {};     // as distance, from the exit depth; absent: none is known
     std::optional<int> casterMaterial = {};  // of the stored surface, 0: opaque; absent: not given
-    double texel = 0;  // longer side of a texel across the light, scene units; perspective: where the ray
-                       // through the map's middle is as long as that to the point
   };
   // Nearest texel. Thickness and occlusion both come from here.
   Lookup at(const glm::dvec3& point) const;

@@ -60,9 +60,9 @@ double convexity(const Channel& c, double rho) {
   return std::max(lossOf(std::clamp(rho, 0.0, 1.0)) - lossOf(1 - outside), 0.0) * 2 / c.slowest;
 }
 
-// Of R(h) / rho = x - sqrt(y T(h)^2 + z): Kubelka & Munk 1931, R = a - sqrt(T^2 + a^2 - 1) with a = (1 / rho
-// + rho) / 2, where T is scaled so that R(0) is what the boundary of a slab without medium sends back, T(0)
-// (1 - T(0)) / (1 + T(0)).
+// x, y, z of R(h) / rho = x - sqrt(y T(h)^2 + z): Kubelka & Munk 1931, R = a - sqrt(T^2 + a^2 - 1) with
+// a = (1 / rho + rho) / 2. T is scaled so that R(0) is what the boundary of a slab without medium sends back,
+// T(0) (1 - T(0)) / (1 + T(0)).
 glm::vec4 slabReflectance(double thin, double rho) {
   rho = std::clamp(rho, 1e-3, 1.0);
   thin = std::clamp(thin, 0.5, 1.0);
@@ -108,8 +108,8 @@ shared::GatherConstants gatherConstants(const PellucidMaterial& m) {
     const double more = d > 0 ? convexity(channels[c], static_cast<double>(m.reflectance[c])) : 0;
     g.convexity[c] = static_cast<float>(more);
     g.reflectance[c] = slabReflectance(channels[c].transmittance(0), static_cast<double>(m.reflectance[c]));
-    // As far as the light comes from.
-    g.convexity.w = std::max(g.convexity.w, static_cast<float>(2 * more));
+    // To both sides: as far as the light comes from.
+    g.convexity.w = std::max(g.convexity.w, static_cast<float>(more));
     for (int i = 0; i < kEntries; ++i) {
       // Beyond 500 decay lengths T is below the least double; its logarithm goes on as a line.
       const double v = static_cast<double>(i) / (kEntries - 1), farthest = 500 / channels[c].slowest;

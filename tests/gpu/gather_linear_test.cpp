@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "capture/material.h"
 #include "pellucid/pellucid_material.h"
 #include "scene/scene.h"
 
@@ -12,15 +13,7 @@ namespace {
 
 using namespace pellucid::test;
 
-PellucidMaterial skin() {
-  PellucidMaterial m;
-  PellucidMaterialDesc desc;
-  pellucidInitMaterialDesc(&desc);
-  desc.kind = PELLUCID_MATERIAL_PRESET;
-  desc.preset = "skin1";
-  EXPECT_EQ(pellucidCompileMaterial(&desc, &m, nullptr, nullptr, nullptr), PELLUCID_OK);
-  return m;
-}
+PellucidMaterial skin() { return compileMaterial(PresetMaterial{"skin1"}, "skin1"); }
 
 class GatherLinear : public GpuTest {
 protected:

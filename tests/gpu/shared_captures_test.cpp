@@ -170,12 +170,13 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     Truth, SharedCaptureGather,
     testing::Values(
-        GatherExpectation{"ear_backlit", {.0615, .0360, .0319}, {.194, .120, .192}},
-        GatherExpectation{"head_sidelit", {.0318, .0228, .0219}, {.259, .300, .459}},
+        GatherExpectation{"ear_backlit", {.0607, .0357, .0317}, {.191, .108, .163}},
+        GatherExpectation{"head_sidelit", {.0318, .0228, .0219}, {.260, .300, .452}},
         // Next to no blue comes through but at the rims, where light enters by the side faces, too.
-        GatherExpectation{"slab_backlit", {.0434, .0798, .306}, {.0434, .0798, .306}, {.03, .042, .15}},
-        GatherExpectation{"sphere_backlit", {.0700, .0370, .0470}, {.140, .140, .200}},
-        GatherExpectation{"two_sheets", {.0348, .0294, .0641}, {.0348, .0294, .0641}, {.04, .04, .04}}),
+        GatherExpectation{"slab_backlit", {.0440, .0744, .283}, {.0440, .0744, .283}, {.03, .03, .11}},
+        GatherExpectation{"sphere_backlit", {.0631, .0298, .0483}, {.122, .104, .159}},
+        // A record is a mean of texels, and the front sheet ends within some.
+        GatherExpectation{"two_sheets", {.0345, .0276, .0587}, {.0345, .0276, .0587}, {.031, .03, .03}}),
     [](const auto& test) { return std::string(test.param.name); });
 
 INSTANTIATE_TEST_SUITE_P(Truth, SharedCapture,

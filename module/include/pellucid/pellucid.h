@@ -280,8 +280,7 @@ typedef struct PellucidFrame {
                              0 (default): not known, and radii count as being as large as the pyramid holds */
   uint32_t gatherSpacing;   /* pixels a side that one point gathers for: 1, 2 or 4; 0 (default): 4 in images of more
                                than 2^20 pixels, 2 in those of more than 2^19, else 1. Each step costs a quarter of
-                               the one before. 1 holds still where the camera moves; 4 asks for pixels well below a
-                               mean free path */
+                               the one before. 4 asks for pixels well below a mean free path */
   uint32_t separateOutput;  /* 1: the output shares no memory with the irradiance, which diffusion without a fused
                                dispatch before it (a gather, or no light) then reads itself and not a copy; 0
                                (default): it may be the same image */
