@@ -340,9 +340,9 @@ TEST_F(GatherAgreement, TerminatorIsContinuous) {
       for (int k = 0; k < 3; ++k)
         std::printf(" %.4f (all texels %.4f)", worstGpu[k] / peak[k], worstAll[k] / peak[k]);
       std::printf("\n");
-      // Half as much again for 16 samples, and 2.8 % of the peak for what neighboring points differ by.
+      // Half as much again for 16 samples, and 3 % of the peak for what neighboring points differ by.
       for (int k = 0; k < 3; ++k)
-        EXPECT_LT(worstGpu[k], 1.5 * worstAll[k] + 0.028 * peak[k]) << name << angle;
+        EXPECT_LT(worstGpu[k], 1.5 * worstAll[k] + 0.03 * peak[k]) << name << angle;
     }
 }
 
