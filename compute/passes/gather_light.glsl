@@ -43,7 +43,7 @@ bool fetchRecord(uint map, bool parallel, vec3 point, int level, out uvec4 bits,
   return true;
 }
 
-// The same in the first of the light's maps that contains the position.
+// Reads the first of the light's maps that contains the position.
 bool fetchRecord(LightConstants light, vec3 position, int level, out uint map, out vec3 point, out uvec4 bits,
                  out vec2 off) {
   for (map = light.meta.y; map < light.meta.y + light.meta.z; ++map) {

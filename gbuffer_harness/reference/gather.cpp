@@ -17,6 +17,8 @@ constexpr double kTail = 1e-4;
 constexpr int kBlock = 16;
 // A surface seen more obliquely by the light than this counts as if it were not.
 constexpr double kLeastCosine = 0.2;
+// Slope of an exit's own surface across the light within a texel, at most: as of 76 degrees.
+constexpr double kSteepestOwn = 4;
 // What curvature adds to the diffusion, or takes from it, at most.
 constexpr double kMostConvexity = 0.1;
 // Texels: a point on a surface and the pixel that shows it are apart by the slope within them.
@@ -222,8 +224,8 @@ Gather::Place Gather::placeOf(std::size_t light, const Exit& exit) const {
   const glm::dvec3 world = exit.position / mm_;
   const Arrival arrival = arrivalAt(capture_.lights[light], world);
   const double cosine = exit.normal ? glm::dot(*exit.normal, arrival.toLight) : 0;
-  const double slope =
-      std::min(std::sqrt(std::max(1 - cosine * cosine, 0.0)) / std::max(std::abs(cosine), 1e-3), 4.0);
+  const double slope = std::min(
+      std::sqrt(std::max(1 - cosine * cosine, 0.0)) / std::max(std::abs(cosine), 1e-3), kSteepestOwn);
   Place place;
   place.toLight = arrival.toLight;
   for (const ShadowView& view : views_[light]) {
