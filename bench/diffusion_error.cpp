@@ -83,7 +83,7 @@ void printScenes(Bench& bench, const std::vector<double>& radii, uint32_t qualit
   }
 }
 
-const std::vector<uint32_t> kQualities = {0, 1, 2, 3};
+const std::vector<uint32_t> kQualities = {0, 1, 2};
 
 // module/src/diffusion_error_table.h.
 void printTable(Bench& bench, const std::vector<double>& radii) {
@@ -130,7 +130,7 @@ bool holdsTable(Bench& bench, const std::vector<double>& radii) {
 int main(int argc, char** argv) {
   std::string device;
   int size = 96;
-  uint32_t quality = 2;
+  uint32_t quality = 1;
   bool table = false, check = false;
   std::vector<double> radii(std::begin(pellucid::kErrorRadii), std::end(pellucid::kErrorRadii));
   CLI::App app("Relative RMSE of the module's diffusion from brute force, worst channel.",

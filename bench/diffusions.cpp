@@ -56,7 +56,7 @@ std::vector<Variant> diffusions(const Site& site, const Capture& capture) {
     settings.quality = quality;
     return moduleVariant(site.frame(capture, settings), "Pellucid, quality " + std::to_string(quality));
   };
-  std::vector<Variant> all = {ofQuality(0), ofQuality(1), ofQuality(2), ofQuality(3)};
+  std::vector<Variant> all = {ofQuality(0), ofQuality(1)};
   for (Variant& v : baselines(frame)) all.push_back(std::move(v));
   return all;
 }

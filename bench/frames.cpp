@@ -90,10 +90,7 @@ private:
     s.translucency.gatherSamples = gather;
     return s;
   }
-  static std::string moduleName(uint32_t gather, uint32_t quality) {
-    return (gather ? "Pellucid gather " + std::to_string(gather) : std::string("Pellucid")) + ", quality " +
-           std::to_string(quality);
-  }
+  static std::string qualityName(uint32_t quality) { return "Pellucid, quality " + std::to_string(quality); }
 
   void head(double floor) {
     const size_t covered =
@@ -124,7 +121,7 @@ private:
       errors_[v.name] = diffusionErrors(v.output(), truth_);
     };
     for (uint32_t q = 0; q < kModuleDiffusions; ++q)
-      add(moduleVariant(frame(settings(PELLUCID_FEATURE_DIFFUSION, q, 0)), moduleName(0, q)));
+      add(moduleVariant(frame(settings(PELLUCID_FEATURE_DIFFUSION, q, 0)), qualityName(q)));
     for (const Variant& v : diffusionsOfOthers_) add(v);
   }
 
@@ -188,16 +185,16 @@ private:
     }
   }
 
-  void wholeFrame(uint32_t gather, uint32_t quality) {
+  void wholeFrame(const std::string& name, uint32_t quality, uint32_t gather) {
     const auto f =
         frame(settings(PELLUCID_FEATURE_TRANSLUCENCY | PELLUCID_FEATURE_DIFFUSION, quality, gather));
-    const Variant v = moduleVariant(f, moduleName(gather, quality));
+    const Variant v = moduleVariant(f, name);
     std::vector<double> recordings;
     const Time time = measure(device_, repeat_, [&](VkCommandBuffer commandBuffer) {
       recordings.push_back(hostTime([&] { v.record(commandBuffer); }));
     });
     const nlohmann::json host = hostTimes(*f, std::move(recordings));
-    add("whole", v, time, moduleName(0, quality), host);
+    add("whole", v, time, qualityName(std::min(quality, kModuleDiffusions - 1u)), host);
     char text[160];
     std::snprintf(
         text, sizeof text,
@@ -210,16 +207,15 @@ private:
   }
 
   void wholeFramesOfModule() {
-    for (uint32_t q = 0; q < kModuleDiffusions; ++q) wholeFrame(0, q);
-    // With a gather quality 2 is quality 1.
-    for (const uint32_t gather : kGathers)
-      for (const uint32_t q : {0u, 1u, 3u}) wholeFrame(gather, q);
+    for (const uint32_t quality : {0u, 1u, 2u})
+      wholeFrame(qualityName(quality), quality, PELLUCID_GATHER_BY_QUALITY);
+    wholeFrame("Pellucid, quality 1 without a gather", 1, 0);
   }
 
   // Translucency and diffusion alone.
   void parts() {
     report_.note("  translucency alone");
-    row("translucency", moduleVariant(frame(settings(PELLUCID_FEATURE_TRANSLUCENCY, 2, 0)), "Pellucid"), "");
+    row("translucency", moduleVariant(frame(settings(PELLUCID_FEATURE_TRANSLUCENCY, 1, 0)), "Pellucid"), "");
     for (const uint32_t gather : kGathers)
       row("translucency",
           moduleVariant(frame(settings(PELLUCID_FEATURE_TRANSLUCENCY, 1, gather)),
@@ -231,7 +227,7 @@ private:
     }
     report_.note("  diffusion alone");
     for (uint32_t q = 0; q < kModuleDiffusions; ++q) {
-      const std::string name = moduleName(0, q);
+      const std::string name = qualityName(q);
       row("diffusion", moduleVariant(frame(settings(PELLUCID_FEATURE_DIFFUSION, q, 0)), name), name);
     }
     for (const Variant& v : diffusionsOfOthers_) row("diffusion", v, v.name);

@@ -89,32 +89,9 @@ void modulePlans(const Bench& bench) {
     rows(title, slab(width, height, coverage / 100, bench.site.pixel), {});
   }
   rows("module, radii not known", inPerspective(bench.fullSlab()), {});
-  for (const uint32_t quality : {1u, 3u}) {
-    ReplaySettings settings;
-    settings.quality = quality;
-    rows("module, quality " + std::to_string(quality), bench.fullSlab(), settings);
-  }
-}
-
-// Where surfaces end and curve, which takes longer than planes where light varies.
-void edges(const Bench& bench) {
-  const auto [width, height] = bench.options.size;
-  for (const double radius : {400.0, 100.0, 25.0}) {
-    char title[64];
-    std::snprintf(title, sizeof title, "edges, balls of %g pixels", radius);
-    bench.report.section(title);
-    const Capture capture = balls(width, height, radius, bench.site.pixel);
-    for (const uint32_t quality : {1u, 2u, 3u}) {
-      ReplaySettings settings;
-      settings.quality = quality;
-      const auto frame = bench.frame(capture, settings);
-      dispatches(bench, *frame);
-      bench.row(moduleVariant(
-                    frame, quality == 2 ? "whole frame" : "whole frame, quality " + std::to_string(quality)),
-                {});
-    }
-    bench.row(moduleVariant(bench.frame(litSmoothly(capture), {}), "whole frame, lit smoothly"), {});
-  }
+  ReplaySettings cheapest;
+  cheapest.quality = 0;
+  rows("module, quality 0", bench.fullSlab(), cheapest);
 }
 
 // The fused dispatch alone: by lights and by how many of them have a shadow map.
@@ -137,7 +114,6 @@ void fusedDispatch(const Bench& bench) {
 std::vector<TimedError> gathered(const Bench& bench) {
   const auto frame = [&](const Capture& capture, uint32_t samples, uint32_t spacing) {
     ReplaySettings settings;
-    settings.quality = 1;  // which the default is with a gather: the frames differ by that alone
     settings.translucency.gatherSamples = samples;
     settings.translucency.gatherSpacing = spacing;
     return bench.frame(capture, settings);
@@ -217,7 +193,6 @@ PlanePlots measurePlanes(const Site& site, const std::set<std::string>& tables, 
   PlanePlots plots;
   plots.floor = floors.front().time.median;
   if (wanted("module")) modulePlans(b);
-  if (wanted("edges")) edges(b);
   if (wanted("fused")) fusedDispatch(b);
   const std::string device = site.device.description();
   if (wanted("gather")) plots.gather = {timeAgainstError("added, " + device, gathered(b), "all texels")};

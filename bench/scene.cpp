@@ -126,46 +126,6 @@ Capture inPerspective(Capture slab) {
   return slab;
 }
 
-Capture balls(int width, int height, double radius, double pixel) {
-  Capture c = slabWithoutGrain(width, height, 1, pixel);
-  // Balls end half a radius before the slab and 50 mm and more behind the near plane.
-  const double mm = radius * pixel, far = 100 + 4 * mm, slabDepth = 50 + 3 * mm,
-               center = slabDepth - 1.5 * mm;
-  c.clipFromView[10] = -1 / far;
-  // Of a square grid, a third of which they cover.
-  const double spacing = radius * std::sqrt(3 * std::numbers::pi);
-  const auto across = [&](int i) { return std::remainder(i + 0.5 - spacing / 2, spacing) / radius; };
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) {
-      const size_t i = static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
-      const double nx = across(x), ny = across(y), rest = 1 - nx * nx - ny * ny;
-      const double nz = rest > 0 ? std::sqrt(rest) : 0;
-      c.frontDepth.image.data[i] = static_cast<float>((rest > 0 ? center - nz * mm : slabDepth) / far);
-      c.backDepth.image.data[i] = static_cast<float>((slabDepth + 2) / far);
-      if (rest <= 0) continue;
-      c.normal.data[3 * i] = static_cast<float>(nx);
-      c.normal.data[3 * i + 1] = static_cast<float>(-ny);  // rows run down
-      c.normal.data[3 * i + 2] = static_cast<float>(nz);
-    }
-  addGrain(c, pixel, far);
-  ShadowMap& map = c.lights.at(0).shadowMaps.at(0);
-  map.clipFromWorld[10] = 1 / far;
-  std::fill(map.depth.image.data.begin(), map.depth.image.data.end(),
-            static_cast<float>(1 - (slabDepth + 2) / far));
-  return c;
-}
-
-Capture litSmoothly(Capture c) {
-  // From the upper right front and from all around.
-  constexpr float kLight[] = {0.5f, 0.5f, 0.707f}, kAround = 0.1f;
-  for (size_t i = 0; i < c.irradiance.pixels(); ++i) {
-    const float* n = &c.normal.data[3 * i];
-    const float cosine = n[0] * kLight[0] + n[1] * kLight[1] + n[2] * kLight[2];
-    std::fill_n(&c.irradiance.data[3 * i], 3, kAround + std::max(cosine, 0.0f));
-  }
-  return c;
-}
-
 std::vector<ErrorScene> errorScenes() {
   const double plane = 40;
   const std::map<std::string, double> tilted = {{"tilt", 60}};

@@ -35,13 +35,6 @@ harness::Capture litFromTheFront(harness::Capture slab);
 // the plan.
 harness::Capture inPerspective(harness::Capture slab);
 
-// The same with balls of `radius` pixels in front of the slab, of the same material, on a third of the image:
-// silhouettes and curved surfaces.
-harness::Capture balls(int width, int height, double radius, double pixel);
-
-// The same capture with the irradiance of a light in front of it in place of noise, by its normals.
-harness::Capture litSmoothly(harness::Capture capture);
-
 // A scene that diffusions' errors are stated for.
 struct ErrorScene {
   std::string title, scene;

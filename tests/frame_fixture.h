@@ -40,6 +40,7 @@ struct Frame {
   // One directional light per shadow image; without images one light without a map.
   explicit Frame(uint32_t shadowImages = 1) {
     pellucidInitFrame(&frame);
+    frame.gatherSamples = 0;  // tests of the gather say so
     frame.imageExtent[0] = 100;
     frame.imageExtent[1] = 50;
     frame.metersPerUnit = 0.001f;

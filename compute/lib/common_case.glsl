@@ -17,18 +17,4 @@ const bool kUnmapped = true;
 const bool kUnmapped = false;
 #endif
 
-// SUMS_EDGES: pixels of edges have a dispatch of their own, which sums over clusters, and planes one with two fine filters.
-#ifdef SUMS_EDGES
-const bool kSumsEdges = true;
-#else
-const bool kSumsEdges = false;
-#endif
-
-// SUMS_FAST: those are summed over the pyramid, with less to do for each, beside its resolve, and planes are as without it.
-#ifdef SUMS_FAST
-const bool kSumsFast = true;
-#else
-const bool kSumsFast = false;
-#endif
-
 #endif

@@ -56,24 +56,7 @@ uvec4 packTexel(Texel t, uint plane) {
   return uvec4(color.x, color.y | plane, floatBitsToUint(t.depth), packSlope(t.slope));
 }
 
-// Of z, the depth's last bit, from level 2 on where edges are summed fast: light under the texel's filter is not alike.
-const uint kVaried = 1u;
-
-bool isVaried(uvec4 texel) { return (texel.z & kVaried) != 0u; }
-
 float massOf(uint y) { return unpackArea((y >> 16) & 0x7Fu); }
-
-// The same with three more bits of the area, in the last ones of the depth, for what is no plane.
-uvec4 packFineTexel(Texel t) {
-  uint root = uint(clamp(256.0 * sqrt(t.mass) + 0.5, t.mass > 0.0 ? 8.0 : 0.0, 1023.0));
-  uvec2 color = packColor(t.color, root >> 3 | t.material << 8);
-  return uvec4(color, (floatBitsToUint(t.depth) & ~7u) | (root & 7u), packSlope(t.slope));
-}
-
-float fineMassOf(uint y, float depth) {
-  float root = float((y >> 13 & 0x3F8u) | (floatBitsToUint(depth) & 7u));
-  return root * root * (1.0 / 65536.0);
-}
 
 Texel unpackTexel(uvec4 u) {
   return Texel(unpackColor(uvec2(u.x & ~kFlat, u.y)), massOf(u.y), u.y >> 24, uintBitsToFloat(u.z), unpackHalf2x16(u.w));

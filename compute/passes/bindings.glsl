@@ -59,27 +59,16 @@ vec3 asStored(vec3 color) {
 #endif
 }
 
-// A color that asStored returned.
-vec3 asHalves(vec3 color) {
-#ifdef HALF
-  return color;
-#else
-  return roundToHalf(color);
-#endif
-}
-
 // Whether the post-scatter albedo applies. `last`: this is the frame's final write.
 bool tinted(bool last) { return last && hasFlag(PELLUCID_FLAG_ALBEDO); }
 
 vec3 albedoAt(ivec2 pixel) { return sanitize(texelFetch(albedoImage, pixel, 0).rgb); }
 
-// `color`: >= 0. Returns what the image holds then.
-vec3 writeResult(ivec2 pixel, vec3 color, float alpha, bool last) {
+// `color`: >= 0.
+void writeResult(ivec2 pixel, vec3 color, float alpha, bool last) {
   color = min(color, vec3(kLargestHalf));
   if (tinted(last)) color = min(color * albedoAt(pixel), vec3(kLargestHalf));
-  color = asStored(color);
-  imageStore(destinationImage, pixel, vec4(color, alpha));
-  return color;
+  imageStore(destinationImage, pixel, vec4(asStored(color), alpha));
 }
 
 #endif

@@ -44,8 +44,6 @@ shared uint edgeRows, anySurface, anyShape; // anyShape: whether a texel has a F
 const ivec2 kPoints = kTexels + 1;
 #endif
 
-const float kWider = 0.0;
-
 #include "passes/planes.glsl"
 
 #ifndef COARSE
@@ -87,9 +85,6 @@ void store(ivec2 pixel, vec3 color, float alpha) {
   if (tinted(pass.value.w != 0u)) color = sanitize(color * albedoAt(pixel));
   imageStore(destinationImage, pixel, vec4(asStored(color), alpha));
 }
-
-// Whether a texel's pixels, if it has any, are edges that this dispatch does.
-bool isEdge(uvec4 texel, uvec4 its) { return !isPlane(texel) && !isSummed(its); }
 
 // What pixels of edges ask of a texel and is the same for all of them. Shares without the texel's density: that of the
 // pixel replaces it, and a plane's is 1.
@@ -338,7 +333,7 @@ void main() {
     if (texel.y >> 16 != 0u) {
       anySurface = 1u; // whoever writes, writes this
       if (hasShape(texelShares.z)) anyShape = 1u;
-      if (isEdge(texel, texelShares) && contains(ivec4(0, 0, kTexels), inWindow - 1))
+      if (!isPlane(texel) && contains(ivec4(0, 0, kTexels), inWindow - 1))
         atomicOr(edgeRows, 1u << (inWindow.y - 1));
     }
   }
@@ -352,7 +347,7 @@ void main() {
       ivec2 local = ivec2(invocation % kTexels.x, invocation / kTexels.x);
       int index = (local.y + 1) * kWindow.x + local.x + 1;
       uvec4 its = resolved[index];
-      if (its.y >> 16 != 0u && isEdge(its, shares[index])) {
+      if (its.y >> 16 != 0u && !isPlane(its)) {
         bool full = isFull(shares[index]);
         uint before = atomicAdd(edgeCounts[local.y], full ? 1u : 0x10000u);
         int place = full ? int(before & 0xFFFFu) : kTexels.x - 1 - int(before >> 16);

@@ -1,5 +1,5 @@
 // Pixels of planes, of which an invocation does four below each other. Of the including pass: the texels of level 2 in
-// resolved[], rows of kWindow.x, and kWider.
+// resolved[], rows of kWindow.x.
 #ifndef PELLUCID_PLANES_GLSL
 #define PELLUCID_PLANES_GLSL
 
@@ -29,8 +29,8 @@ void addLightOfPlane(ivec2 pixel, inout vec4 colors[4]) {
 }
 #endif
 
-// The spline at a pixel of a texel of level 2, in one direction, wider by kWider times 1 -2 1.
-vec3 splineAt(int pixel) { return spline(0.25 * (float(pixel & 3) - 1.5)) + kWider * vec3(1.0, -2.0, 1.0); }
+// The spline at a pixel of a texel of level 2, in one direction.
+vec3 splineAt(int pixel) { return spline(0.25 * (float(pixel & 3) - 1.5)); }
 
 // Level 2 at a pixel's column, `splineX` splineAt it, in the rows of its texel `texel` of the window and of those beside it.
 void coarserRows(int texel, vec3 splineX, out vec3 rows[3]) {

@@ -11,7 +11,4 @@ ivec2 inAtlas(uint level, ivec2 texel) { return frame.level[level].xy + texel; }
 
 void writeLevel(uint level, ivec2 texel, uvec4 value) { imageStore(levelsDestination, inAtlas(level, texel), value); }
 
-// Where edges are summed, of the texel that says whether any is: x is 0 or 1. Reductions clear it.
-ivec2 summedPlace() { return frame.level[1].zw; }
-
 #endif

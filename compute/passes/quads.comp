@@ -1,10 +1,73 @@
-// Level 1 of the diffusion pyramid, where no pass before makes it beside its own result.
+// Level 1 of the diffusion pyramid from the pixels.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
 #define FOUR_PIXELS
-#include "passes/quad_tile.glsl"
+#include "passes/tile.glsl"
+#include "passes/normal_image.glsl"
+#include "passes/pyramid.glsl"
+
+const int kTile = TILE_COLUMNS, kQuads = kTile / 2; // of a row
+shared uvec2 tileColors[kTile * TILE_ROWS]; // and material
+shared float tileDepths[kTile * TILE_ROWS];
+
+// `color`: of halves.
+void keepPixel(ivec2 inTile, vec3 color, float depth, uint material) {
+  tileColors[inTile.y * kTile + inTile.x] = packHalves(color, material);
+  tileDepths[inTile.y * kTile + inTile.x] = depth;
+}
+
+// The first invocations do a quad each.
+bool hasQuad() { return gl_LocalInvocationIndex < uint(kQuads * TILE_ROWS / 2); }
+ivec2 quadInTile() { return ivec2(gl_LocalInvocationIndex % uint(kQuads), gl_LocalInvocationIndex / uint(kQuads)); }
+
+// The pixel whose normal stands for a quad that is one surface: any of the four, by turns.
+ivec2 pixelOfQuad(ivec2 quad) { return 2 * quad + (quad.yx & 1); }
+
+// Beside a pixel's material: keeps it from being one surface with the others of its quad, each of which has a bit of its
+// own.
+uint apartFromQuad() { return 0x100u << (gl_LocalInvocationID.x & 1u | (gl_LocalInvocationID.y & 1u) << 1); }
+
+// Of the invocation's quad, to be loaded with all the rest.
+vec3 normalOfQuad() {
+  return hasQuad() ? normalAt(withinRect(pixelOfQuad((evenTile() >> 1) + quadInTile()))) : vec3(0.0);
+}
+
+// After a barrier. `normal`: normalOfQuad().
+void writeQuad(vec3 normal) {
+  ivec2 local = quadInTile(), quad = (evenTile() >> 1) + local;
+  if (!hasQuad()) return;
+  bool inside = contains(levelRect(1u), quad);
+  float depth[4];
+  uvec2 packed[4];
+  for (int i = 0; i < 4; ++i) {
+    int at = (2 * local.y + (i >> 1)) * kTile + 2 * local.x + (i & 1);
+    packed[i] = tileColors[at];
+    depth[i] = tileDepths[at];
+  }
+  // Where nothing is, nothing is looked up.
+  if ((packed[0].y | packed[1].y | packed[2].y | packed[3].y) >> 16 == 0u) {
+    if (inside) writeLevel(1u, quad, uvec4(0u));
+    return;
+  }
+  if (isWholeQuad(packed, depth)) {
+    float area = areaOf(vec2(pixelOfQuad(quad)), normal);
+    if (area == 0.0) area = areaOfQuad(quad, depth);
+    if (inside) writeLevel(1u, quad, wholeQuadTexel(packed, depth, area));
+    return;
+  }
+  uint material[4];
+  vec3 color[4];
+  vec4 area;
+  for (int i = 0; i < 4; ++i) {
+    material[i] = packed[i].y >> 16 & 0xFFu;
+    color[i] = unpackColor(packed[i]);
+    ivec2 pixel = withinRect(2 * quad + ivec2(i & 1, i >> 1));
+    area[i] = areaOf(vec2(pixel), normalAt(pixel));
+  }
+  if (inside) writeLevel(1u, quad, quadTexel(material, depth, color, area));
+}
 
 void main() {
   uint material[kPixels];

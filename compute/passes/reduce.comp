@@ -1,7 +1,6 @@
 // The two levels of the diffusion pyramid after level pass.value.x. A texel takes the nearest of the four surfaces under
 // it and averages those of 4 x 4 texels that lie on it. A group makes 7 x 7 texels of the second level and, before them, the
-// 16 x 16 of the first that they need: one an invocation. Beside levels 2 and 3 some groups make 4 and 5, which need not
-// wait for them: averages of 4 x 4 texels of level 1 stand for level 3.
+// 16 x 16 of the first that they need: one an invocation.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -25,7 +24,6 @@ shared float depths[kInput * kInput];
 shared uint anySurface; // in the input
 
 #include "passes/reduced.glsl"
-#include "passes/boxes.glsl"
 
 // Whether a texel and all around it are full and lie on one plane. `at`: not in the outermost rows and columns.
 bool isFlatAround(uvec4 bits, ivec2 at, uint level) {
@@ -44,50 +42,29 @@ bool isFlatAround(uvec4 bits, ivec2 at, uint level) {
 
 void main() {
   int invocation = int(gl_LocalInvocationIndex);
-  if (kSumsEdges && invocation == 0 && groupIndex() == 0u) imageStore(levelsDestination, summedPlace(), uvec4(0u));
   if (invocation == 0) anySurface = 0u;
   barrier();
-  // Groups of boxes take longest and come first.
-  uint boxes = pass.value.z >> 16, index = groupIndex();
-  bool ofBoxes = !kSumsEdges && index < boxes;
-  uint finer = ofBoxes ? 3u : pass.value.x;
-  uvec2 place;
-  if (ofBoxes) {
-    uint columns = pass.value.z & 0xFFFFu;
-    place = uvec2(index % columns, index / columns);
-  } else {
-    place = bordersFirst(uvec2(gl_NumWorkGroups.x, pass.value.w), index - boxes);
-  }
+  uint finer = pass.value.x;
   ivec4 rect = levelRect(finer + 1u), lastRect = levelRect(finer + 2u);
-  ivec2 own = lastRect.xy + PELLUCID_REDUCE_TILE * ivec2(place), start = 2 * own - 1;
+  ivec2 own = lastRect.xy + PELLUCID_REDUCE_TILE * ivec2(bordersFirst()), start = 2 * own - 1;
   ivec2 mine = ivec2(invocation % kInput, invocation / kInput), firstLoad = 2 * start - 1 + mine;
   int slotOfMine = slot(mine, kInput);
-  if (ofBoxes) {
-    for (int y = 0; y < kLoads * kLoadRows; y += kLoadRows)
-      if (mine.y < kLoadRows && mine.y + y < kInput) {
-        Box box = boxOf(firstLoad + ivec2(0, y));
-        if (box.bits.y >> 16 != 0u) anySurface = 1u; // whoever writes, writes this
-        colors[slotOfMine + y * kInput] = box.bits;
-        depths[slotOfMine + y * kInput] = box.depth;
-      }
-  } else {
-    ivec4 finerRect = levelRect(finer);
-    // How many rows of the level there are from its first one on, in this column and where the invocation has a row.
-    bool loads = mine.y < kLoadRows && firstLoad.x >= finerRect.x && firstLoad.x < finerRect.z;
-    uint rows = loads ? uint(finerRect.w - finerRect.y) : 0u, row = uint(firstLoad.y - finerRect.y);
-    // All loads before the first is used, so that their latencies overlap.
-    uvec4 loaded[kLoads];
-    [[unroll]] for (int j = 0; j < kLoads; ++j)
-      loaded[j] = row + uint(j * kLoadRows) < rows
-                      ? texelFetch(pyramidImage, inAtlas(finer, firstLoad + ivec2(0, j * kLoadRows)), 0)
-                      : uvec4(0u);
-    [[unroll]] for (int j = 0; j < kLoads; ++j)
-      if (mine.y < kLoadRows && mine.y + j * kLoadRows < kInput) {
-        if (loaded[j].y >> 16 != 0u) anySurface = 1u;
-        colors[slotOfMine + j * kLoadRows * kInput] = loaded[j].xy;
-        depths[slotOfMine + j * kLoadRows * kInput] = uintBitsToFloat(loaded[j].z);
-      }
-  }
+  ivec4 finerRect = levelRect(finer);
+  // How many rows of the level there are from its first one on, in this column and where the invocation has a row.
+  bool loads = mine.y < kLoadRows && firstLoad.x >= finerRect.x && firstLoad.x < finerRect.z;
+  uint rows = loads ? uint(finerRect.w - finerRect.y) : 0u, row = uint(firstLoad.y - finerRect.y);
+  // All loads before the first is used, so that their latencies overlap.
+  uvec4 loaded[kLoads];
+  [[unroll]] for (int j = 0; j < kLoads; ++j)
+    loaded[j] = row + uint(j * kLoadRows) < rows
+                    ? texelFetch(pyramidImage, inAtlas(finer, firstLoad + ivec2(0, j * kLoadRows)), 0)
+                    : uvec4(0u);
+  [[unroll]] for (int j = 0; j < kLoads; ++j)
+    if (mine.y < kLoadRows && mine.y + j * kLoadRows < kInput) {
+      if (loaded[j].y >> 16 != 0u) anySurface = 1u;
+      colors[slotOfMine + j * kLoadRows * kInput] = loaded[j].xy;
+      depths[slotOfMine + j * kLoadRows * kInput] = uintBitsToFloat(loaded[j].z);
+    }
   barrier();
   ivec2 at = ivec2(gl_LocalInvocationID.xy), texel = start + at;
   bool inside = contains(rect, texel);

@@ -1,11 +1,11 @@
-// A texel of the pyramid from 4 x 4 of the finer level, by 3 5 5 3 in each direction or, where edges are summed, 3 8 8 3: it
-// takes the nearest of the four surfaces under it and averages those that lie on it. The finer level is in the including
-// pass's shared colors[], with mass, material and plane as packed, and depths[]; slopes are not needed.
+// A texel of the pyramid from 4 x 4 of the finer level, by 3 5 5 3 in each direction: it takes the nearest of
+// the four surfaces under it and averages those that lie on it. The finer level is in the including pass's shared colors[],
+// with mass, material and plane as packed, and depths[]; slopes are not needed.
 #ifndef PELLUCID_REDUCED_GLSL
 #define PELLUCID_REDUCED_GLSL
 
-// 3 5 5 3, variance 1, or 3 8 8 3, which errs less with the wider filters after it.
-const float kOuterWeight = kSumsEdges ? 3.0 / 22.0 : 3.0 / 16.0, kVariance = 0.25 + 4.0 * kOuterWeight;
+// 3 5 5 3, whose variance is 1.
+const float kOuterWeight = 3.0 / 16.0;
 
 float weight(int i) { return i == 0 || i == 3 ? kOuterWeight : 0.5 - kOuterWeight; }
 
@@ -20,9 +20,8 @@ int tapsOfPlane() { return taps(); }
 int tapsOfPlane() { return 16; }
 #endif
 
-// Of the squared length of a texel's side. Curved surfaces below it gain nothing from weights of their own. Where edges are
-// summed, planes are filtered only if their light comes from planes, and less curved ones would show there already.
-const float kPlaneResidual = kSumsEdges ? 0.001 : kSumsFast ? 0.003 : 0.01;
+// Of the squared length of a texel's side. Curved surfaces below it gain nothing from weights of their own.
+const float kPlaneResidual = 0.01;
 
 // What the bits of texels of one plane have in common: the material, and that they are planes.
 const uint kSamePlane = 0xFF000000u | kPlane;
@@ -39,37 +38,6 @@ int slot(ivec2 at, int width) { return at.y * width + (at.x >> 1) + (at.x & 1) *
 
 // Of the 4 x 4 texels whose first one is in an even column, at `first`.
 int tap(int first, int width, int x, int y) { return first + slot(ivec2(x, y), width); }
-
-// By what part of its mean light may bend under a texel's filter, from one texel to the next, and be alike. What changes evenly
-// is not shifted by a symmetric filter. Checkers of that range that are filtered err by .008 on a sphere and an ear, within
-// what planes do.
-const float kAlike = 0.2;
-
-float lightOf(vec3 color) { return color.r + color.g + color.b; }
-
-// The most that light bends along the two rows and columns in the middle of 4 x 4 texels, of rows from the first on: what is
-// in the corners is in the middle of texels beside. `some`: 1 where there is light, else 0.
-struct Bend {
-  vec2 light[2], some[2]; // of the last two rows, in the middle
-  float most;
-};
-
-const Bend kNoBend = Bend(vec2[](vec2(0.0), vec2(0.0)), vec2[](vec2(0.0), vec2(0.0)), 0.0);
-
-void addRow(inout Bend bend, int row, vec4 light, vec4 some) {
-  vec2 along = abs(light.xy - 2.0 * light.yz + light.zw) * some.xy * some.yz * some.zw;
-  vec2 down = abs(bend.light[0] - 2.0 * bend.light[1] + light.yz) * bend.some[0] * bend.some[1] * some.yz;
-  if (row == 1 || row == 2) bend.most = max(bend.most, max(along.x, along.y));
-  bend.most = max(bend.most, max(down.x, down.y));
-  bend.light = vec2[](bend.light[1], light.yz);
-  bend.some = vec2[](bend.some[1], some.yz);
-}
-
-// Where edges are summed fast a texel says whether light is alike; `mean`: of lightOf().
-uvec4 withVariation(uvec4 texel, float bend, float mean) {
-  if (!kSumsFast) return texel;
-  return uvec4(texel.xy, (texel.z & ~kVaried) | (bend > kAlike * mean ? kVaried : 0u), texel.w);
-}
 
 struct Source {
   float mass, depth;
@@ -131,34 +99,24 @@ uvec4 reducedEdge(uint finer, ivec2 texel, int first, int stride) {
   ivec2 nearest = ivec2(chosen & 3, chosen >> 2);
   Source surface = sourceAt(tap(first, stride, nearest.x, nearest.y));
   vec2 size = texelSize(surface.depth, finer);
-  // Where edges are summed, planes take little from here, but that of all that is near: tangents of single texels lose what is
-  // folded.
-  vec2 slope = vec2(0.0);
-  if (!kSumsEdges && !kSumsFast)
-    slope = vec2(depthStep(first, stride, surface, nearest, ivec2(1, 0)),
-                 depthStep(first, stride, surface, nearest, ivec2(0, 1))) / max(size, vec2(1.0e-30));
-  float spread2 = inverseSpread(slope, (kSumsEdges || kSumsFast ? 8.0 : 2.0) * size);
+  vec2 slope = vec2(depthStep(first, stride, surface, nearest, ivec2(1, 0)),
+                    depthStep(first, stride, surface, nearest, ivec2(0, 1))) / max(size, vec2(1.0e-30));
+  float spread2 = inverseSpread(slope, 2.0 * size);
   vec3 color = vec3(0.0);
   float mass = 0.0, weights = 0.0, off = 0.0;
   vec2 tilt = vec2(0.0), spread = vec2(0.0);
-  Bend bend = kNoBend;
   // A row at a time, and without a branch, so that the taps' latencies overlap. Those that do not count are finite, too.
   for (int i = 0; i < taps(); i += 4) {
-    vec4 light, some;
     [[unroll]] for (int x = 0; x < 4; ++x) {
       ivec2 at = ivec2(x, i >> 2);
       int index = tap(first, stride, at.x, at.y);
       Source t = sourceAt(index);
-      if (kSumsEdges && finer > 1u && (colors[index].y & kPlane) == 0u) t.mass = fineMassOf(colors[index].y, t.depth);
       bool counts = t.mass != 0.0 && t.material == surface.material;
       vec2 offset = (vec2(at) - 1.5) * size;
       float difference = t.depth - surface.depth - dot(slope, vec2(at - nearest) * size);
       float w = weight(at.x) * weight(at.y);
       w = counts ? w * sameSurface(difference, dot(slope, offset), spread2, kReduceFalloff) : 0.0;
-      some[x] = w > 0.0 ? 1.0 : 0.0;
-      vec3 its = unpackColor(colors[index]);
-      light[x] = lightOf(its);
-      color += w * t.mass * its;
+      color += w * t.mass * unpackColor(colors[index]);
       mass += w * t.mass;
       // Where it is seen edge-on, a surface says no more about its depth than elsewhere.
       w *= min(t.mass, 1.0);
@@ -167,15 +125,13 @@ uvec4 reducedEdge(uint finer, ivec2 texel, int first, int stride) {
       spread += w * offset * offset;
       weights += w;
     }
-    addRow(bend, i >> 2, light, some);
   }
   // The nearest one counts, so mass and weights are positive; spread is 0 only where it is alone.
   float inverse = 1.0 / weights;
   vec2 center = vec2(1.5) - vec2(nearest);
   float depth = surface.depth + dot(slope, center * size) + off * inverse;
   slope += tilt / max(spread, 1.0e-6 * size * size + 1.0e-30);
-  Texel made = Texel(color / mass, mass, surface.material, depth, slope);
-  return kSumsEdges ? packFineTexel(made) : withVariation(packTexel(made, 0u), bend.most, lightOf(made.color));
+  return packTexel(Texel(color / mass, mass, surface.material, depth, slope), 0u);
 }
 
 // Texel of the level after `finer` from the 4 x 4 at `first`.
@@ -184,31 +140,23 @@ uvec4 reduced(uint finer, ivec2 texel, int first, int stride) {
   float base = depths[first], off = 0.0, square = 0.0;
   vec2 tilt = vec2(0.0);
   vec3 color = vec3(0.0);
-  Bend bend = kNoBend;
-  for (int i = 0; i < tapsOfPlane(); i += 4) {
-    vec4 light;
+  for (int i = 0; i < tapsOfPlane(); i += 4)
     [[unroll]] for (int x = 0; x < 4; ++x) {
       int y = i >> 2, index = tap(first, stride, x, y);
       uvec2 packed = colors[index];
       float w = weight(x) * weight(y), difference = depths[index] - base;
       different |= packed.y ^ bits;
-      vec3 its = unpackColor(packed);
-      light[x] = lightOf(its);
-      color += w * its;
+      color += w * unpackColor(packed);
       off += w * difference;
       tilt += w * difference * (vec2(x, y) - 1.5);
       square += w * difference * difference;
     }
-    addRow(bend, i >> 2, light, vec4(1.0));
-  }
-  // The plane of least squares: its slope is the covariance over the variance.
-  tilt *= 1.0 / kVariance;
+  // The plane of least squares: its slope is the covariance over the variance, 1.
   vec2 size = texelSize(base, finer);
-  float residual = square - off * off - kVariance * dot(tilt, tilt);
+  float residual = square - off * off - dot(tilt, tilt);
   vec2 slope = tilt / max(size, vec2(1.0e-30));
   bool plane = onePlane(bits, different, residual, slope, 2.0 * size);
   uvec4 result = packTexel(Texel(color, areaOf(finer + 1u, texel, slope), bits >> 24, base + off, slope), kPlane);
-  result = withVariation(result, bend.most, lightOf(color));
   // That nothing is there is too rare for a branch of its own.
   if (!plane) result = (bits | different) >> 16 == 0u ? uvec4(0u) : reducedEdge(finer, texel, first, stride);
   return result;

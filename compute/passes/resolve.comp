@@ -7,47 +7,29 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define GROUP_SIDE PELLUCID_RESOLVE_GROUP
-#include "passes/group_order.glsl"
 #include "passes/resolved.glsl"
 
 layout(set = 0, binding = PELLUCID_BINDING_KERNELS) readonly buffer Kernels { KernelConstants kernels[]; };
 
 // Resolved texels of level 3 and coarser ones, level after level; see Window. Color and material as packed, depth, and in
-// place of the slope the share of the kernel that the surface fills, of each channel, and in the last byte how much of the
-// light comes from edges.
+// place of the slope the share of the kernel that the surface fills, of each channel.
 const int kResolved = 153 + 60 + 24 + 12 + 9;
-#ifdef SUMS_FAST
-const int kSources = PELLUCID_FAST_EDGES_SOURCES;
-shared uvec4 resolved[kSources];
-shared uvec2 colors[kSources];
-shared float depths[kSources];
-#define places resolved
-#include "passes/fast_edges.glsl"
-#else
 #ifdef REDUCES
 shared uvec4 resolved[kResolved + 73]; // and what is made
 #else
 shared uvec4 resolved[kResolved];
 #endif
-#endif
-
-shared uint anySummed; // of the pixels under the group's texels
 
 #ifdef REDUCES
 // Sides of what a group needs of level 5 to make level 6, and of that to make level 7.
 const int kSide5 = 18, kSide6 = 8;
 
-#ifndef SUMS_FAST
 shared uvec2 colors[kSide5 * kSide5];
 shared float depths[kSide5 * kSide5];
-#endif
 shared uint needsMade;
 const int kMade = kResolved; // in resolved[], texels of level 6 and then, 3 x 3, of level 7
-const bool kReduces = true;
 
 #include "passes/reduced.glsl"
-#else
-const bool kReduces = false;
 #endif
 
 // What a group needs of a level. Groups start at texels 16 k - 1 of level 2, k.x even, so that these are the same
@@ -169,49 +151,6 @@ vec4 stretched(ivec2 texel, uint level, ivec2 k, Texel own, Foreshortening f) {
   return sum / weights;
 }
 
-// Where edges are summed a level is filtered with 3 7 3 in each direction before the coarser ones are added, and foreshortened
-// planes, which are little tilted, by more along their axis, by the moments of 3 x 3 texels. `isFlat`: these are one plane.
-vec4 smoothed(ivec2 texel, uint level, Texel own, Foreshortening f, bool isFlat) {
-  if (own.mass == 0.0) return vec4(0.0);
-  // The variance of a level's kernel, squared texels, times the stretch, as far as all weights are positive.
-  float longer = clamp(0.98 * f.stretch, 0.0, 0.3);
-  vec2 moments = 6.0 / 13.0 + longer * f.axis * f.axis, middle = 1.0 - moments, side = 0.5 * moments;
-  float corner = 0.25 * longer * f.axis.x * f.axis.y;
-  ivec2 first = inAtlas(level, texel) - 1;
-  if (isFlat) {
-    vec3 color[9];
-    [[unroll]] for (int i = 0; i < 9; ++i) {
-      uvec4 bits = texelFetch(pyramidImage, first + ivec2(i % 3, i / 3), 0);
-      color[i] = unpackColor(uvec2(bits.x & ~kFlat, bits.y));
-    }
-    vec3 sum = middle.x * middle.y * color[4] + (side.x * side.y + corner) * (color[0] + color[8]);
-    sum += side.x * middle.y * (color[3] + color[5]) + middle.x * side.y * (color[1] + color[7]);
-    sum += (side.x * side.y - corner) * (color[2] + color[6]);
-    return own.mass * vec4(sum, 1.0);
-  }
-  vec2 size = texelSize(own.depth, level);
-  float spread2 = inverseSpread(own.slope, size);
-  ivec4 rect = levelRect(level);
-  vec4 sum = vec4(0.0);
-  [[dont_unroll]] for (int y = -1; y <= 1; ++y) {
-    uvec4 bits[3];
-    // A row at once, so that its latencies overlap.
-    [[unroll]] for (int x = -1; x <= 1; ++x) {
-      ivec2 offset = ivec2(x, y);
-      bits[x + 1] = contains(rect, texel + offset) ? texelFetch(pyramidImage, first + offset + 1, 0) : uvec4(0u);
-    }
-    [[unroll]] for (int x = -1; x <= 1; ++x) {
-      Texel t = unpackTexel(bits[x + 1]);
-      t.mass = isPlane(bits[x + 1]) ? areaOf(level, texel + ivec2(x, y), t.slope) : fineMassOf(bits[x + 1].y, t.depth);
-      float along = dot(own.slope, vec2(x, y) * size);
-      float w = (x == 0 ? middle.x : side.x) * (y == 0 ? middle.y : side.y) + float(x * y) * corner;
-      w *= t.mass * sameSurface(t.depth - own.depth - along, along, spread2, kStretchFalloff);
-      sum += (t.mass != 0.0 && t.material == own.material ? w : 0.0) * vec4(t.color, 1.0);
-    }
-  }
-  return sum;
-}
-
 // What a texel's level says of it, without the coarser ones.
 struct Own {
   Texel texel;
@@ -223,14 +162,10 @@ struct Own {
 Own ownPart(uint level, ivec2 texel, ivec2 k, uvec4 bits, out Foreshortening f) {
   Own own;
   own.texel = unpackTexel(bits);
-  // Not as packed, to 1.6 %.
-  if (kSumsEdges)
-    own.texel.mass = isPlane(bits) ? areaOf(level, texel, own.texel.slope) : fineMassOf(bits.y, own.texel.depth);
   f = foreshortening(texel, level, own.texel.depth, own.texel.slope);
-  bool isFlat = level == 2u && (bits.x & kFlat) != 0u;
   // A plane fills all of its kernel, however its area was rounded.
   float area = isPlane(bits) ? own.texel.mass : areaOf(level, texel, own.texel.slope);
-  own.here = (kSumsEdges ? smoothed(texel, level, own.texel, f, isFlat) : stretched(texel, level, k, own.texel, f)) / area;
+  own.here = stretched(texel, level, k, own.texel, f) / area;
   // Material 0 looks at what it does not use.
   uint m = max(own.texel.material, 1u) - 1u;
   own.share = coarserShare(m, level, shareEntry(m, f.lengthMm));
@@ -239,25 +174,19 @@ Own ownPart(uint level, ivec2 texel, ivec2 k, uvec4 bits, out Foreshortening f) 
 
 struct Level {
   vec3 color, density; // share of the kernel that the surface fills, of each channel
-  float fromEdges;     // part of the light that comes from texels which are no planes, where edges are summed
 };
 
-// Whether a texel is no plane, and not because the rect ends beside it. Of frames whose edges are summed.
-bool isEdgeInside(uint level, ivec2 texel, uvec4 bits) {
-  return kSumsEdges && !isPlane(bits) && contains(inset(levelRect(level), 3), texel);
+Level alone(Own own) {
+  return Level(own.here.a > 0.0 ? own.here.rgb / own.here.a : own.texel.color, vec3(own.here.a));
 }
 
-Level alone(Own own, bool edge) {
-  return Level(own.here.a > 0.0 ? own.here.rgb / own.here.a : own.texel.color, vec3(own.here.a), edge ? 1.0 : 0.0);
-}
-
-// `window`: of the coarser level, which is resolved. `edge`: isEdgeInside().
-Level withCoarser(Own own, uint level, ivec2 texel, Window window, bool edge) {
+// `window`: of the coarser level, which is resolved.
+Level withCoarser(Own own, uint level, ivec2 texel, Window window) {
   // 9, 3, 3 and 1 sixteenths of the four nearest: the refinement of the quadratic B-spline.
   ivec2 nearest = texel >> 1, toward = 2 * (texel & 1) - 1;
   vec2 size = texelSize(own.texel.depth, level + 1u);
   float spread2 = inverseSpread(own.texel.slope, size);
-  vec3 coarser = vec3(0.0), found = vec3(0.0), edges = vec3(0.0);
+  vec3 coarser = vec3(0.0), found = vec3(0.0);
   [[unroll]] for (int i = 0; i < 4; ++i) {
     ivec2 at = nearest + toward * ivec2(i & 1, i >> 1);
     uvec4 theirs = resolved[indexOf(window, at)];
@@ -267,21 +196,15 @@ Level withCoarser(Own own, uint level, ivec2 texel, Window window, bool edge) {
     w *= sameSurface(uintBitsToFloat(theirs.z) - own.texel.depth - along, along, spread2, kResolveFalloff);
     w = materialBits(theirs) == own.texel.material ? w : 0.0;
     vec3 density = w * unpackDensity(theirs.w);
-    vec3 theirLight = density * unpackColor(theirs.xy);
-    coarser += theirLight;
+    coarser += density * unpackColor(theirs.xy);
     found += density;
-    if (kSumsEdges) edges += theirLight * unpackUnorm4x8(theirs.w).w;
   }
   // Both are weighted with the density that they found, which renormalizes at silhouettes and borders.
   vec3 density = (1.0 - own.share) * own.here.a + own.share * found;
   vec3 here = (1.0 - own.share) * own.here.rgb, light = here + own.share * coarser;
   // Where a channel has nothing here, the level's own color stands in: the finer level weights it with 0.
   vec3 color = mix(own.texel.color, light / max(density, vec3(1.0e-6)), greaterThan(density, vec3(1.0e-6)));
-  if (!kSumsEdges) return Level(color, density, 0.0);
-  edges = own.share * edges + (edge ? here : vec3(0.0));
-  // Of the channel in which it is most. At most 1, but for rounding.
-  vec3 part = edges / max(light, vec3(1.0e-6));
-  return Level(color, density, max(part.r, max(part.g, part.b)));
+  return Level(color, density);
 }
 
 // Parts of all energy at pixels with this entry, `element` as in KernelConstants::pixelShare.
@@ -312,89 +235,6 @@ PixelShares pixelShares(uint m, Foreshortening f) {
   FineShape shape = FineShape(abs(f.axis.x) < abs(f.axis.y) ? -wider : wider,
                               (beyond - both) / max(beyond - coarser, vec3(1.0e-6)));
   return PixelShares(coarser, fine, shape);
-}
-
-// The same where edges are summed and planes little tilted. Level 2 follows foreshortening; filters of pixels go by the
-// geometric mean of the kernel's lengths.
-PixelEnergies pixelEnergies(uint m, Foreshortening f) {
-  float entry = shareEntry(m, 0.25 * f.lengthMm), mean = entry - 0.25 * log2(1.0 + max(f.stretch, 0.0)) * kernels[m].range.y;
-  return PixelEnergies(beyondPixel(m, 0u, entry), beyondPixel(m, 1u, mean), beyondPixel(m, 2u, mean));
-}
-
-// Level 2 has `density` times its part, and all parts together are 1 again.
-PixelEnergies withDensity(PixelEnergies e, vec3 density) {
-  vec3 less = e.coarser * (1.0 - density), scale = 1.0 / max(1.0 - less, vec3(1.0e-6));
-  return PixelEnergies((e.coarser - less) * scale, (e.wide - less) * scale, (e.narrow - less) * scale);
-}
-
-// What may come from edges to a plane that is not summed, as more shows where it meets edges that are: of its energy, from
-// levels 3 and 4, and of its light, which may be much more where it is dark and near a bright rim.
-const float kMostFromEdges = 0.02;
-
-// Nor are planes as tilted as that, 20 degrees, as filters of pixels are as long as wide.
-const float kMostStretch = 0.13;
-
-// Whether a texel of level 2 lies on one plane with all that much of its light comes from.
-bool isFlatFor(Own fine, Level r, uvec4 bits, ivec2 texel, ivec2 k) {
-  float share = max(fine.share.r, max(fine.share.g, fine.share.b));
-  bool plane3 = isPlane(resolved[indexOf(windowOf(3u, k), texel >> 1)]);
-  bool plane4 = pass.value.x < 4u || isPlane(resolved[indexOf(windowOf(4u, k), texel >> 2)]);
-  return (bits.x & kFlat) != 0u && r.fromEdges < kMostFromEdges && (share < kMostFromEdges || (plane3 && plane4));
-}
-
-// Of the squared length of level 2's side: how far from a texel's plane texels `side` as long may lie.
-bool isOnPlane(uvec4 texel, float side, vec2 offset, vec2 size, uvec4 theirs) {
-  vec2 slope = unpackHalf2x16(texel.w);
-  float off = uintBitsToFloat(theirs.z) - uintBitsToFloat(texel.z) - dot(slope, offset * size);
-  return hasSurface(theirs) && materialBits(theirs) == materialBits(texel) &&
-         off * off * inverseSpread(slope, size) < kPlaneOffset * side * side;
-}
-
-// Whether all pixels of the rect around a texel of level 2 lie on its plane, by level 1. Where the rect cuts quads their areas
-// tell of holes.
-bool isPlaneInRect(ivec2 texel, uvec4 bits, vec2 size) {
-  ivec4 rect = ivec4(frame.rect);
-  float area = areaOf(2u, texel, unpackHalf2x16(bits.w));
-  bool plane = true;
-  for (int row = 0; row < 6; row += 3) {
-    uvec4 theirs[18];
-    // Half of them at once, so that their latencies overlap.
-    [[unroll]] for (int i = 0; i < 18; ++i) {
-      ivec2 quad = 2 * texel + ivec2(i % 6, row + i / 6) - 2;
-      theirs[i] = contains(levelRect(1u), quad) ? texelFetch(pyramidImage, inAtlas(1u, quad), 0) : uvec4(0u);
-    }
-    [[unroll]] for (int i = 0; i < 18; ++i) {
-      ivec2 quad = 2 * texel + ivec2(i % 6, row + i / 6) - 2;
-      ivec2 first = max(2 * quad, rect.xy), end = min(2 * quad + 2, rect.zw);
-      vec2 offset = 0.125 * vec2(first + end) - (vec2(texel) + 0.5);
-      float expected = 0.25 * float((end.x - first.x) * (end.y - first.y)) * area;
-      bool cut = end - first != ivec2(2);
-      bool full = cut ? abs(massOf(theirs[i].y) - expected) < 0.2 * expected : isPlane(theirs[i]);
-      plane = plane && (!contains(levelRect(1u), quad) || (full && isOnPlane(bits, 0.5, offset, size, theirs[i])));
-    }
-  }
-  return plane;
-}
-
-// Whether a texel of level 2 is an edge because the rect ends beside it: all around it in the rect lies on its plane, as
-// coarser texels do. `fromEdges`: of its light.
-bool endsAtRect(ivec2 texel, uvec4 bits, float fromEdges) {
-  // Texels of level 4 that have something from outside begin up to 1 + 4 + 8 + 16 pixels before the rect's end.
-  if (contains(inset(levelRect(2u), 9), texel)) return false;
-  bool flatAround = (bits.x & kFlat) != 0u;
-  // Those of level 3 begin 1 + 4 + 8 pixels before it.
-  if (contains(inset(levelRect(2u), 5), texel) && (!flatAround || fromEdges >= kMostFromEdges)) return false;
-  vec2 size = texelSize(uintBitsToFloat(bits.z), 2u);
-  bool plane = flatAround || isPlaneInRect(texel, bits, size);
-  uvec4 coarser[PELLUCID_LAST_LEVEL - 2];
-  [[unroll]] for (uint i = 0u; i < uint(coarser.length()); ++i)
-    coarser[i] = i + 3u <= pass.value.x ? texelFetch(pyramidImage, inAtlas(i + 3u, texel >> int(i + 1u)), 0) : uvec4(0u);
-  [[unroll]] for (uint i = 0u; i < uint(coarser.length()); ++i) {
-    float side = exp2(float(i) + 1.0);
-    vec2 offset = (vec2(texel >> int(i + 1u)) + 0.5) * side - (vec2(texel) + 0.5);
-    plane = plane && (i + 3u > pass.value.x || isOnPlane(bits, side, offset, size, coarser[i]));
-  }
-  return plane;
 }
 
 #ifdef REDUCES
@@ -444,43 +284,8 @@ void makeLevels(ivec2 k, int invocation) {
 #endif
 
 uvec4 packLevel(Level r, uvec4 bits) {
-  uint density = packDensity(r.density) | packUnorm4x8(vec4(0.0, 0.0, 0.0, r.fromEdges));
-  return uvec4(packColor(r.color, bits.y >> 16), bits.z, density);
+  return uvec4(packColor(r.color, bits.y >> 16), bits.z, packDensity(r.density));
 }
-
-#include "passes/summed_fast.glsl"
-
-#ifdef SUMS_FAST
-// Tiles of a group lie far from each other, so that all groups have as much to do: `index` of `groups`.
-ivec2 tileOf(uint i, uint index, uint groups) {
-  ivec2 first = ivec2(frame.rect.xy) / kTile, size = (ivec2(frame.rect.zw) - 1) / kTile - first + 1;
-  int tile = int(index + i * groups);
-  int row = int((float(tile) + 0.5) / float(size.x));
-  return kTile * (first + ivec2(tile - row * size.x, row));
-}
-
-void sumTiles(uint index, uint groups, uint tilesOfGroup, uint made, bool isLast) {
-  uint invocation = gl_LocalInvocationIndex;
-  if (invocation < uint(PELLUCID_FAST_EDGES_TILES)) edges[invocation] = 0u;
-  if (invocation == 0u) edgeTiles = 0u;
-  barrier();
-  uint tile = invocation / uint(kTexels * kTexels), inTile = invocation % uint(kTexels * kTexels);
-  if (tile < tilesOfGroup) {
-    ivec2 texel = (tileOf(tile, index, groups) >> 2) + ivec2(inTile % uint(kTexels), inTile / uint(kTexels));
-    // Those of the border have no pixels.
-    if (contains(inset(levelRect(2u), 1), texel) && isSummedFast(texel)) {
-      atomicOr(edges[tile], 1u << inTile);
-      atomicOr(edgeTiles, 1u << tile);
-    }
-  }
-  barrier();
-  // Not over all tiles with a test for edges: software devices run through what such a test leaves out.
-  for (uint tiles = edgeTiles; tiles != 0u; tiles &= tiles - 1u) {
-    uint i = uint(findLSB(tiles));
-    diffuseTile(tileOf(i, index, groups), edges[i], made, isLast);
-  }
-}
-#endif
 
 // A texel of level 2 and its pixels' shares.
 void resolveFine(ivec2 texel, ivec2 k, uvec4 bits) {
@@ -490,43 +295,21 @@ void resolveFine(ivec2 texel, ivec2 k, uvec4 bits) {
     Foreshortening f;
     Own own = ownPart(2u, texel, k, bits, f);
     uint m = own.texel.material - 1u;
-    Level r = withCoarser(own, 2u, texel, windowOf(3u, k), false);
+    Level r = withCoarser(own, 2u, texel, windowOf(3u, k));
     uint upper = bits.y >> 16 & ~(kPlane >> 16);
     color = uvec4(packColor(r.color, (bits.x & kFlat) != 0u ? upper | kPlane >> 16 : upper), bits.zw);
-    uint flags = isPlane(bits) ? kFull : 0u;
-    if (kSumsEdges) {
-      bool filtered = f.stretch < kMostStretch &&
-                      (isFlatFor(own, r, bits, texel, k) || endsAtRect(texel, bits, r.fromEdges));
-      if (!filtered) {
-        flags |= kSummed;
-        anySummed = 1u; // whoever writes, writes this
-      }
-      shares.xyz = packEnergies(withDensity(pixelEnergies(m, f), r.density));
-    } else {
-      if (kSumsFast) {
-        // From what the group has, so that planes, which are most, fetch nothing.
-        bool planes = isPlaneFast(texel, bits, f, 0.0) && isPlane(resolved[indexOf(windowOf(3u, k), texel >> 1)]);
-        if (!planes && isSummedFast(texel, bits, f, 0.0)) {
-          flags |= kSummed;
-          color.y &= ~kPlane;
-        }
-      }
-      PixelShares share = pixelShares(m, f);
-      share.coarser = share.coarser * r.density / max(1.0 - share.coarser + share.coarser * r.density, vec3(1.0e-6));
-      shares.xyz = packShares(share);
-    }
-    shares.w = packDensity(r.density) | flags;
+    PixelShares share = pixelShares(m, f);
+    share.coarser = share.coarser * r.density / max(1.0 - share.coarser + share.coarser * r.density, vec3(1.0e-6));
+    shares = uvec4(packShares(share), packDensity(r.density) | (isPlane(bits) ? kFull : 0u));
   }
   writeResolved(texel, color, shares);
 }
 
-// `group`: which of the groups that resolve.
-void resolveGroup(ivec2 group) {
+void main() {
   int invocation = int(gl_LocalInvocationIndex);
   uint coarsest = pass.value.x;
   // An invocation does two texels of level 2 and, before them, one of levels 3 to 6. The first ones have level 7, too.
-  // Where edges are summed, borders take longer.
-  ivec2 k = (((levelRect(2u).xy + 1) >> ivec2(5, 4)) + group) * ivec2(2, 1);
+  ivec2 k = (((levelRect(2u).xy + 1) >> ivec2(5, 4)) + ivec2(gl_WorkGroupID.xy)) * ivec2(2, 1);
   ivec2 fine = 16 * k - 1 + ivec2(gl_LocalInvocationID.xy), nextFine = fine + ivec2(PELLUCID_RESOLVE_GROUP, 0);
   uint level = 3u + uint(invocation >= 153) + uint(invocation >= 213) + uint(invocation >= 237);
   Window window = windowOf(level, k), last = windowOf(7u, k);
@@ -535,7 +318,6 @@ void resolveGroup(ivec2 group) {
   bool inside = level <= coarsest && within && contains(levelRect(level), texel);
   bool lastInside = coarsest == 7u && hasLast && contains(levelRect(7u), lastTexel);
   bool fetches = inside, fetchesLast = lastInside;
-  if (kSumsEdges && invocation == 0) anySummed = 0u;
 #ifdef REDUCES
   if (invocation == 0) needsMade = 0u;
   fetches = fetches && level <= 5u;
@@ -561,19 +343,13 @@ void resolveGroup(ivec2 group) {
   Foreshortening unused;
   if (coarsest == 7u && hasLast) {
     Own own = ownPart(7u, lastTexel, k, lastBits, unused);
-    bool edge = isEdgeInside(7u, lastTexel, lastBits);
-    resolved[last.first + invocation] = own.texel.mass > 0.0 ? packLevel(alone(own, edge), lastBits) : uvec4(0u);
+    resolved[last.first + invocation] = own.texel.mass > 0.0 ? packLevel(alone(own), lastBits) : uvec4(0u);
   }
   Own own = ownPart(level, texel, k, bits, unused);
   for (uint l = min(coarsest, 6u); l > 2u; --l) {
     barrier();
     if (level == l && within) {
-      bool edge = isEdgeInside(level, texel, bits);
-      // Where edges are summed fast, those that are resolved say whether they and what is above them are planes.
-      bool above = !kSumsFast || level >= kLastLooked || l == coarsest ||
-                   isPlane(resolved[indexOf(windowOf(level + 1u, k), texel >> 1)]);
-      bits.y &= above ? ~0u : ~kPlane;
-      Level r = l == coarsest ? alone(own, edge) : withCoarser(own, level, texel, windowOf(level + 1u, k), edge);
+      Level r = l == coarsest ? alone(own) : withCoarser(own, level, texel, windowOf(level + 1u, k));
       resolved[invocation] = own.texel.mass > 0.0 ? packLevel(r, bits) : uvec4(0u);
     }
   }
@@ -584,22 +360,4 @@ void resolveGroup(ivec2 group) {
     fine = nextFine;
     fineBits = nextBits;
   }
-  if (kSumsEdges) {
-    barrier();
-    if (invocation == 0 && anySummed != 0u) imageStore(levelsDestination, summedPlace(), uvec4(1u));
-  }
-}
-
-void main() {
-#ifdef SUMS_FAST
-  // Groups that sum come last, in rows of their own: those that find nothing to sum run while the others' last ones do.
-  uint rows = pass.value.z & 0xFFFFu, first = rows * gl_NumWorkGroups.x;
-  if (gl_WorkGroupID.y >= rows)
-    sumTiles(groupIndex() - first, gl_NumWorkGroups.x * gl_NumWorkGroups.y - first, pass.value.z >> 16,
-             kReduces ? 5u : pass.value.x, pass.value.w != 0u);
-  else
-    resolveGroup(ivec2(gl_WorkGroupID.xy));
-#else
-  resolveGroup(ivec2(kSumsEdges ? bordersFirst() : gl_WorkGroupID.xy));
-#endif
 }

@@ -51,34 +51,9 @@ PixelShares unpackShares(uvec3 u) {
                      vec3((u.y >> 16) & 255u, u.y >> 24, u.z & 255u) * (kMostFine / 255.0), unpackShape(u.z));
 }
 
-// The same where edges are summed, of all energy, what level 2 and coarser ones have, these and the wide filter, and these
-// and the narrow one. One Gaussian between two filters may ask for parts below 0 and for more than all.
-struct PixelEnergies {
-  vec3 coarser, wide, narrow;
-};
-
-// -1/4 to 5/4 in 10 bits, 0 as 0.
-const float kEnergyOne = 682.0;
-const int kEnergyZero = 170;
-
-uint packEnergy(vec3 energy) {
-  uvec3 u = uvec3(ivec3(clamp(floor(energy * kEnergyOne + 0.5), vec3(-kEnergyZero), vec3(1023 - kEnergyZero))) + kEnergyZero);
-  return u.r | u.g << 10 | u.b << 20;
-}
-
-vec3 unpackEnergy(uint u) {
-  return (vec3(u & 1023u, (u >> 10) & 1023u, u >> 20) - float(kEnergyZero)) * (1.0 / kEnergyOne);
-}
-
-uvec3 packEnergies(PixelEnergies e) { return uvec3(packEnergy(e.coarser), packEnergy(e.wide), packEnergy(e.narrow)); }
-
-PixelEnergies unpackEnergies(uvec3 u) { return PixelEnergies(unpackEnergy(u.x), unpackEnergy(u.y), unpackEnergy(u.z)); }
-
-// Of texels' shares: all under the texel's filter is one plane; its pixels are edges that have a dispatch of their own.
-const uint kFull = 0x1000000u, kSummed = 0x2000000u;
+// Of texels' shares: all under the texel's filter is one plane.
+const uint kFull = 0x1000000u;
 
 bool isFull(uvec4 its) { return (its.w & kFull) != 0u; }
-
-bool isSummed(uvec4 its) { return (its.w & kSummed) != 0u; }
 
 #endif

@@ -5,15 +5,11 @@
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_GOOGLE_include_directive : require
 
-#ifdef QUADS
-#include "passes/quad_tile.glsl"
-#else
 #ifdef GATHER
 #define FOUR_PIXELS // their loads overlap
 #define TILE_COLUMNS (2 * PELLUCID_GATHER_GROUP)
 #endif
 #include "passes/tile.glsl"
-#endif
 
 layout(set = 0, binding = PELLUCID_BINDING_LIGHTS) uniform Lights { LightConstants lights[PELLUCID_DISPATCH_LIGHTS]; };
 layout(set = 0, binding = PELLUCID_BINDING_SHADOWS) uniform Shadows { ShadowConstants shadows[PELLUCID_DISPATCH_SHADOWS]; };
@@ -91,14 +87,10 @@ vec3 resultAt(ivec2 pixel, Texels t, float front, uint m) {
   return sanitize(t.source.rgb) + transmitted * materials[m].inverseReflectance.rgb;
 }
 
-// QUADS: then a texel of the pyramid's level 1.
 void main() {
   ivec2 tile = evenTile();
   // A history that starts is 0 wherever nothing came through: the next frame's pixels may lie there.
   bool starts = pass.value.z == PELLUCID_WRITE_STARTS;
-#ifdef QUADS
-  vec3 quadNormal = normalOfQuad();
-#endif
   Texels texels[kPixels];
   for (int i = 0; i < kPixels; ++i)
     texels[i] = fetch(withinRect(tile + pixelInTile(i)));
@@ -107,25 +99,17 @@ void main() {
     Texels t = texels[i];
     uint material = insideRect(pixel) ? materialIndex(t.value) : 0u;
     float depth = frontDistanceOf(t.front);
-    vec3 color = vec3(0.0);
     if (starts) t.source = vec4(0.0);
     if (material != 0u) {
       vec3 result = resultAt(pixel, t, depth, material - 1u);
 #ifdef DEBUG_VIEWS
       imageStore(destinationImage, pixel, vec4(result, t.source.a));
 #else
-      color = writeResult(pixel, result, t.source.a, pass.value.z == PELLUCID_WRITE_LAST);
+      writeResult(pixel, result, t.source.a, pass.value.z == PELLUCID_WRITE_LAST);
 #endif
     } else if (starts && insideRect(pixel)) {
       imageStore(destinationImage, pixel, vec4(0.0));
     }
-#ifdef QUADS
-    keepPixel(pixelInTile(i), asHalves(color), depth, material);
-#endif
   }
-#ifdef QUADS
-  barrier();
-  writeQuad(quadNormal);
-#endif
 }
 #endif

@@ -18,18 +18,11 @@ using glm::vec4;
 #define PELLUCID_GROUP_X 8
 #define PELLUCID_GROUP_Y 8
 #define PELLUCID_TILE 16 // a side, pixels that a group does whose invocations do two each
-#define PELLUCID_DIRECTIONAL_ROWS 8 // of a tile of the directional pass
 #define PELLUCID_DIFFUSE_GROUP 16 // a side
 #define PELLUCID_DIFFUSE_TEXELS_X 15 // of level 2, 4 x 4 pixels each, that a group of the diffusion does
 #define PELLUCID_DIFFUSE_COARSE_TEXELS_X 16 // without the fine filter
-#define PELLUCID_DIFFUSE_PLANES_TEXELS_X 14 // with two fine filters, of planes alone
 #define PELLUCID_DIFFUSE_TEXELS_Y 4
 #define PELLUCID_DIFFUSE_CELL 4 // pixels a side of the gather's cells where the diffusion adds what it found
-#define PELLUCID_EDGES_GROUP 16 // a side, pixels, of a tile of the pass that does edges by distances in space
-#define PELLUCID_FAST_EDGES_TILES 16 // at most, of a group that sums edges fast
-#define PELLUCID_FAST_EDGES_SOURCES 576 // which it has at a time: 24 x 24 pixels
-#define PELLUCID_CLUSTERS_GROUP 16 // a side, texels of level 2: what lies under one of level 6
-#define PELLUCID_EDGES_TILES 4 // of a group, in a column
 #define PELLUCID_RESOLVE_GROUP 16 // a side, texels of level 2, of which an invocation does two beside each other
 #define PELLUCID_REDUCE_GROUP 16 // a side, of the pyramid's reductions
 #define PELLUCID_REDUCE_TILE 7   // a side, texels of the second of the two levels that a group makes
@@ -109,18 +102,11 @@ using glm::vec4;
 
 // The diffusion pyramid's levels are 1..LAST_LEVEL; a texel of the last one is 128 pixels wide.
 #define PELLUCID_LAST_LEVEL 7
-// The first whose clusters do not lie where the level was.
-#define PELLUCID_FIRST_BESIDE 3
 // KernelConstants::share: levels 2 and 3, and all coarser ones.
 #define PELLUCID_SHARE_COARSER 2
 #define PELLUCID_SHARE_TABLES 3
 #define PELLUCID_SHARE_ENTRIES 128
-#define PELLUCID_PIXEL_SHARES 3
-// Of KernelConstants::distance: 16 an octave of squared distances, which are floats' first bits.
-#define PELLUCID_DISTANCE_SHIFT 19
-#define PELLUCID_DISTANCE_OCTAVES 24
-#define PELLUCID_MOST_FALL 32
-#define PELLUCID_DISTANCE_ENTRIES (PELLUCID_DISTANCE_OCTAVES << (23 - PELLUCID_DISTANCE_SHIFT))
+#define PELLUCID_PIXEL_SHARES 2
 
 // The camera as the shaders use it. With s = +1 or -1 the sign of view z in front of the eye, p = s z
 // is the planar distance and a pixel's view ray is point(p) = origin + p direction.
@@ -140,10 +126,8 @@ struct FrameConstants {
   vec4 anglePolynomial;
   uvec4 marks;         // x: bit of material values without translucency; 0: none
   vec4 filterAndLimit;        // rgb: factor of T; w: largest thickness, mm
-  ivec4 level[PELLUCID_LAST_LEVEL + 1]; // xy: where texel (0, 0) of the level lies in the pyramid's image, zw: of its
-                                        // clusters; of level 0, that of the resolved level 2, zw: of its shares; zw of
-                                        // level 1: the texel that says whether edges are summed
-  ivec4 second[PELLUCID_LAST_LEVEL + 1]; // xy: the same of the second of two clusters, from level 3 on
+  ivec4 level[PELLUCID_LAST_LEVEL + 1]; // xy: where texel (0, 0) of the level lies in the pyramid's image; of level 0, that
+                                        // of the resolved level 2, zw: of its shares
   // View ray of planar length 1: of pixel (0, 0), changes per pixel in x and y.
   vec4 normalRay[3]; // xyz: in the normal image's space
   vec4 facingRay[2]; // along pixels' columns and rows; xy, zw, xy
@@ -166,19 +150,6 @@ struct ShadowConstants {
   uvec4 meta;        // x: image; y: encoding; z: 1 perspective; w: texel value that holds nothing (bits)
   uvec4 occluder;    // x: image of the exit depth + 1; y: of the caster's material + 1; 0: none. Bits: z: scale of the
                      // material; w: side of a texel, scene units; perspective: per unit of distance
-};
-
-// One directional light with one map of device depth, as passes/directional.comp sees it. Texels of the map (x, y) and
-// its clip z are o + p d at planar distance p, with o = originBase + x originX + y originY of a pixel and d likewise.
-struct DirectionalConstants {
-  vec4 originBase, originX, originY;
-  vec4 directionBase, directionX, directionY;
-  vec4 toLight;           // xyz: unit, view space
-  vec4 toLightFromNormal; // xyz: unit, the normal image's space
-  vec4 entering;          // rgb: irradiance at normal incidence times the factor of T
-  vec4 depth;             // x: mm along the light per clip z; y: bias, mm; z: texel value that holds nothing
-  vec4 texels;            // xy: the largest coordinates inside the map
-  vec4 cone;              // see LightConstants: x: its z; y: its w
 };
 
 // Of the light-space gather; see lib/gather.glsl. rgb: per channel.
@@ -232,16 +203,9 @@ struct KernelConstants {
   vec4 range; // x: log2 of the first side; y: entries per octave
   vec4 share[PELLUCID_SHARE_TABLES * PELLUCID_SHARE_ENTRIES]; // rgb: which part of the energy at a level and
                                                               // coarser ones the coarser ones have
-  // For each side of a pixel: which part of all energy level 2 and coarser ones have, these and the (wider) fine filter of
-  // the pixel and its neighbors, and, of quality 3, these and the narrow one.
+  // For each side of a pixel: which part of all energy level 2 and coarser ones have, and these and the fine filter of the
+  // pixel and its neighbors.
   vec4 pixelShare[PELLUCID_PIXEL_SHARES * PELLUCID_SHARE_ENTRIES];
-  // Of quality 3, the profile R over squared distances r^2 in mm^2. Before the first entry R does not change.
-  vec4 reach; // x: distance within which 99.9 % of the energy lies, mm, 0: none; y: r^2 of the first entry
-  // rgb: R, 1/mm^2, as a float whose last 16 bits are the first of (r R)'' / r, 1/mm^4. a: -d ln R / d ln r^2, 0 to
-  // PELLUCID_MOST_FALL, in 10 bits each.
-  uvec4 distance[PELLUCID_DISTANCE_ENTRIES];
-  vec4 burley; // rgb: log2(e) / (3 d) of Burley's profile, 1/mm; a: 1 if all channels have it
-  vec4 enclosed[PELLUCID_DISTANCE_ENTRIES]; // rgb: which part of the energy lies within r
 };
 
 // VkDispatchIndirectCommands of what follows the gather's points; x: columns of groups, 0 where it does not run; w: where it
@@ -257,8 +221,7 @@ struct GatherDispatches {
 // gather share: pixels a side of a cell.
 // add: unused, unused, 1 if this is the last dispatch.
 // reduce: finer level, 16. resolve: coarsest level, 16.
-// diffuse: unused, 1, unused, 1 if this is the last dispatch. diffuse planes: unused, 4, unused, likewise. diffuse
-// edges: coarsest level, unused, unused, likewise.
+// diffuse: unused, 1, unused, 1 if this is the last dispatch.
 struct PassConstants {
   uvec4 value;
 };

@@ -49,13 +49,11 @@ std::vector<Model> models() {
 
 std::vector<Model> qualities() {
   std::vector<Model> all;
-  for (std::uint32_t quality = 0; quality <= 3; ++quality)
-    for (const std::uint32_t samples : {0u, 16u}) {
-      const std::string name = "quality " + std::to_string(quality);
-      Model& model = all.emplace_back(
-          Model{samples ? name + ", gather " + std::to_string(samples) : name, gather(samples)});
-      model.settings.quality = quality;
-    }
+  for (std::uint32_t quality = 0; quality <= 2; ++quality) {
+    Model& model =
+        all.emplace_back(Model{"quality " + std::to_string(quality), gather(PELLUCID_GATHER_BY_QUALITY)});
+    model.settings.quality = quality;
+  }
   return all;
 }
 
@@ -155,7 +153,7 @@ void addEvaluateCommand(CLI::App& app) {
   command->add_option("captures", options->captures, "captures with truth")->required();
   command->add_option("-o,--output", options->output,
                       "file to write the tables to; default: standard output");
-  command->add_option("--rows", options->rows, "models, or qualities: 0 to 3, without and with the gather")
+  command->add_option("--rows", options->rows, "models, or qualities: 0 to 2")
       ->check(CLI::IsMember({"models", "qualities"}))
       ->capture_default_str();
   command->add_flag("--json", options->json, "JSON instead of Markdown tables");

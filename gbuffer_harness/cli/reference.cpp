@@ -29,8 +29,7 @@ struct Options {
   ManifestPreset preset = ManifestPreset::None;
 };
 
-reference::Settings toSettings(const Options& options) {
-  const ReplaySettings replay = options.settings.parse();
+reference::Settings toSettings(const Options& options, const ReplaySettings& replay) {
   const ReplaySettings defaults;
   if (replay.outputFormat != defaults.outputFormat || replay.aliasOutput ||
       replay.renderRect != defaults.renderRect)
@@ -47,13 +46,16 @@ reference::Settings toSettings(const Options& options) {
 }
 
 void runReference(const Options& options) {
-  const reference::Settings settings = toSettings(options);
+  ReplaySettings replay = options.settings.parse();
+  toSettings(options, replay);  // what is not of the reference is refused before anything is read
   requireExr("-o", options.output);
   const Capture capture = readCapture(options.input, options.preset);
+  const std::vector<PellucidMaterial> materials =
+      withTransmittance(compileMaterials(capture), replay.transmittance);
+  resolveGather(replay, materials);
+  const reference::Settings settings = toSettings(options, replay);
   const auto start = std::chrono::steady_clock::now();
-  const reference::Result result = reference::compute(
-      capture, withTransmittance(compileMaterials(capture), options.settings.parse().transmittance),
-      settings);
+  const reference::Result result = reference::compute(capture, materials, settings);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
 
   std::filesystem::path output = options.output;

@@ -1,5 +1,6 @@
 #include "cli/settings.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -159,7 +160,7 @@ const std::map<std::string, Key> kKeys = {
         s.translucency.shadowBias = real(key, value);
       }}},
     {"gather",
-     {"samples of the shadow map, 0..64",
+     {"samples of the shadow map, 0..64; default: by the quality",
       [](const auto& key, const auto& value, ReplaySettings& s) {
         s.translucency.gatherSamples = number(key, value);
       }}},
@@ -205,7 +206,7 @@ const std::map<std::string, Key> kKeys = {
      {"frame time / budget, multiplies the coherence threshold above 1",
       [](const auto& key, const auto& value, ReplaySettings& s) { s.frameLoad = real(key, value); }}},
     {"quality",
-     {"of the diffusion, 0..3, 3 best",
+     {"of the frame, 0..2, 2 best; 1 and 2 gather light",
       [](const auto& key, const auto& value, ReplaySettings& s) { s.quality = number(key, value); }}},
     {"target-error",
      {"relative RMSE of the diffusion that chooses the quality, 0 for none",
@@ -283,6 +284,7 @@ void SettingsOptions::addTo(CLI::App& command) {
 
 ReplaySettings SettingsOptions::parse() const {
   ReplaySettings settings;
+  settings.translucency.gatherSamples = PELLUCID_GATHER_BY_QUALITY;
   if (mode == "thesis")
     settings = thesisSettings();
   else if (mode != "physical")
@@ -301,6 +303,20 @@ ReplaySettings SettingsOptions::parse() const {
     found->second.set("--set " + key, assignment.substr(equals + 1), settings);
   }
   return settings;
+}
+
+void resolveGather(ReplaySettings& settings, const std::vector<PellucidMaterial>& materials) {
+  std::uint32_t& samples = settings.translucency.gatherSamples;
+  if (samples != PELLUCID_GATHER_BY_QUALITY) return;
+  const TranslucencySettings& t = settings.translucency;
+  const bool possible = t.thicknessSource == PELLUCID_THICKNESS_LIGHT &&
+                        t.angleModel == PELLUCID_ANGLE_NORMAL && !t.constantViewDirection &&
+                        t.minimumDot == 0 && t.maximumThickness == 0 &&
+                        std::all_of(materials.begin(), materials.end(), [](const PellucidMaterial& m) {
+                          return m.transmittanceModel == PELLUCID_TRANSMITTANCE_EXP2 ||
+                                 m.transmittanceModel == PELLUCID_TRANSMITTANCE_SINH_EXP;
+                        });
+  samples = possible ? 8 * settings.quality : 0;
 }
 
 std::string SettingsOptions::text() const {

@@ -26,4 +26,7 @@ private:
   std::vector<std::string> assignments() const;  // key=value
 };
 
+// Puts a number in the place of PELLUCID_GATHER_BY_QUALITY, as the module does, for what is not the module.
+void resolveGather(ReplaySettings& settings, const std::vector<PellucidMaterial>& materials);
+
 }  // namespace pellucid::harness

@@ -13,7 +13,7 @@ const PellucidDispatch& fusedDispatch(const FrameRun& run, const std::string& na
   const PellucidPlan& plan = run.plan();
   if (run.frame().thicknessSource != PELLUCID_THICKNESS_CAMERA)
     throw InputError(name, "thicknessSource", "light-space thickness does not need the back faces");
-  if (run.frame().gatherSamples > 0)
+  if (run.frame().gatherSamples > 0 && run.frame().gatherSamples != PELLUCID_GATHER_BY_QUALITY)
     throw InputError(name, "gatherSamples", "gathering does not need the back faces");
   if (plan.activeLights == 0) throw InputError(name, "lights", "none can contribute");
   // Lights are read from the first dispatch on, so all are in it when it has as many as are active.

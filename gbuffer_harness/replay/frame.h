@@ -27,7 +27,7 @@ struct ReplaySettings {
   PellucidReuse reuse = PELLUCID_REUSE_NONE;
   float coherenceThreshold = 0.005f;
   float frameLoad = 0;
-  uint32_t quality = 2;
+  uint32_t quality = 1;
   float targetError = 0, nearestDistance = 0;  // see PellucidFrame
   bool aliasOutput = false;                    // output is the irradiance image; ignored for debug views
   bool indirectDispatches = true;              // see PellucidFrame

@@ -2,11 +2,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pellucid/pellucid.h"
+#include "quality.h"
 
 namespace {
 
-constexpr uint32_t kBest = 3;
+constexpr uint32_t kBest = pellucid::kBestQuality;
 constexpr uint32_t kOverFrames = 3;    // a single spike changes nothing
 constexpr uint32_t kSettleFrames = 2;  // GPU times arrive a frame or two late
 constexpr uint32_t kFirstWait = 30;    // frames of room before a better setting is tried

@@ -79,18 +79,10 @@ shared::FrameConstants frameConstants(const PellucidFrame& f) {
   c.filterAndLimit = rgb(f.transmittanceFilter, f.maximumThickness > 0 ? f.maximumThickness : INFINITY);
   for (uint32_t level = kFirstLevel; level <= PELLUCID_LAST_LEVEL; ++level) {
     const PyramidPlace place = placeOf(f, level);
-    c.level[level] = {place.x - place.rect.x, place.y - place.rect.y, clusterColumn(f, level) - place.rect.x,
-                      place.y - place.rect.y};
-    const PyramidTexel second = secondPlace(f, level);
-    c.second[level] = {second.x - place.rect.x, second.y - place.rect.y, 0, 0};
+    c.level[level] = {place.x - place.rect.x, place.y - place.rect.y, 0, 0};
   }
-  const PyramidTexel summed = summedPlace(f);
-  c.level[kFirstLevel].z = summed.x;
-  c.level[kFirstLevel].w = summed.y;
-  const PyramidPlace resolved = placeOf(f, 2);
-  const ResolvedPlace place = resolvedPlaceOf(f);
-  c.level[0] = {place.x - resolved.rect.x, place.y - resolved.rect.y, place.sharesX - resolved.rect.x,
-                place.sharesY - resolved.rect.y};
+  const PyramidPlace second = placeOf(f, 2);
+  c.level[0] = {-second.rect.x, -second.rect.y, sharesColumn(f) - second.rect.x, -second.rect.y};
   return c;
 }
 
@@ -186,40 +178,6 @@ shared::ShadowConstants shadowConstants(const PellucidFrame& f, const PellucidSh
   return c;
 }
 
-// For passes/directional.comp. `light` and `shadow`: the light's and its map's constants.
-shared::DirectionalConstants directionalConstants(const shared::FrameConstants& frame,
-                                                  const shared::LightConstants& light,
-                                                  const shared::ShadowConstants& shadow) {
-  shared::DirectionalConstants c{};
-  // An orthographic map has w = 1.
-  const glm::dmat4 clip(shadow.clipFromView);
-  const glm::dvec2 half = 0.5 * glm::dvec2(shadow.depth.z, shadow.depth.w);
-  const glm::dvec3 scale(half, 1), offset(half, 0);
-  const auto direction = [&](glm::dvec3 v) { return glm::vec4(scale * (glm::dmat3(clip) * v), 0); };
-  const auto point = [&](glm::dvec3 v) {
-    return glm::vec4(scale * glm::dvec3(clip * glm::dvec4(v, 1)) + offset, 0);
-  };
-  const shared::Camera& camera = frame.camera;
-  c.originBase = point({camera.rayBase.z, camera.rayBase.w, 0});
-  c.originX = direction({camera.rayX.z, camera.rayX.w, 0});
-  c.originY = direction({camera.rayY.z, camera.rayY.w, 0});
-  c.directionBase = direction({camera.rayBase.x, camera.rayBase.y, camera.range.x});
-  c.directionX = direction({camera.rayX.x, camera.rayX.y, 0});
-  c.directionY = direction({camera.rayY.x, camera.rayY.y, 0});
-  const glm::vec3 toLight = -glm::vec3(light.direction);
-  c.toLight = glm::vec4(toLight, 0);
-  // The normal image's space is a rotation away.
-  c.toLightFromNormal = glm::vec4(glm::transpose(glm::mat3(frame.viewFromNormal)) * toLight, 0);
-  c.entering = light.radiance * glm::vec4(glm::vec3(frame.filterAndLimit), 0);
-  const float mm = camera.range.w;
-  float nothing;
-  std::memcpy(&nothing, &shadow.meta.w, sizeof nothing);
-  c.depth = {shadow.depth.x * mm, shadow.depth.y * mm, nothing, 0};
-  c.texels = {std::nextafter(shadow.depth.z, 0.0f), std::nextafter(shadow.depth.w, 0.0f), 0, 0};
-  c.cone = {light.cone.z, light.cone.w, 0, 0};
-  return c;
-}
-
 shared::MaterialConstants materialConstants(const PellucidMaterial& m, bool gathers) {
   shared::MaterialConstants c{};
   c.meta = {m.transmittanceModel, m.gaussianCount, 0, 0};
@@ -271,17 +229,13 @@ extern "C" PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const
     uint32_t shadow = group.shadowCount - l.shadowMapCount, row = group.recordRows;
     if (isGathered(f, l))
       for (uint32_t i = 0; i < l.shadowMapCount; ++i) row -= recordGroups(recordExtent(f, l, i).height);
-    const shared::LightConstants light = lightConstants(f, l, viewFromWorld, shadow);
     put(mapped,
         layout.lights.offset + group.lightBytes + (group.lightCount - 1) * sizeof(shared::LightConstants),
-        light);
+        lightConstants(f, l, viewFromWorld, shadow));
     for (uint32_t i = 0; i < l.shadowMapCount; ++i, ++shadow) {
       const PellucidShadowMap& s = f.shadowMaps[l.firstShadowMap + i];
       const shared::ShadowConstants constants = shadowConstants(f, s, l, worldFromView, group);
       put(mapped, layout.shadows.offset + group.shadowBytes + shadow * sizeof constants, constants);
-      if (group.directional && group.lightCount == 1)  // read where no other follows
-        put(mapped, layout.directional.offset + group.index * kDirectionalWindow,
-            directionalConstants(frameValues, light, constants));
       if (!isGathered(f, l)) continue;
       const RecordExtent extent = recordExtent(f, l, i);
       const RecordConstants records =
@@ -307,8 +261,7 @@ extern "C" PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const
     put(mapped, layout.materials.offset + i * sizeof(shared::MaterialConstants),
         materialConstants(f.materials[i], gathers(f)));
     put(mapped, layout.kernels.offset + i * sizeof(shared::KernelConstants),
-        kernelConstants(f.materials[i], fineFilters(f, plan->quality),
-                        sumsEdges(f, plan->quality) || sumsEdgesFast(f, plan->quality)));
+        kernelConstants(f.materials[i], hasFineFilter(plan->quality)));
   }
   return PELLUCID_OK;
 }

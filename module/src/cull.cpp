@@ -114,7 +114,7 @@ const char* ViewBounds::whySkipped(const PellucidLight& light) const {
   const bool needsCamera = light.shadowMapCount == 0 || frame_.thicknessSource == PELLUCID_THICKNESS_CAMERA;
   if (needsCamera && !given(frame_.backDepth)) return "no back depth to take a thickness from";
   // Gathered light comes from around, whatever the angle, and from beyond the view.
-  if (frame_.gatherSamples > 0 && light.shadowMapCount > 0) return nullptr;
+  if (gathers(frame_) && light.shadowMapCount > 0) return nullptr;
   // That view shows thicknesses whether light comes through or not.
   if (!bounded_ || frame_.debugView == PELLUCID_DEBUG_THICKNESS) return nullptr;
   if (angleStops(light)) return "no pixel's view ray passes its angle test";

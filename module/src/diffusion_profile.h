@@ -2,14 +2,11 @@
 #pragma once
 
 #include "pellucid/pellucid.h"
-#include "pyramid_energy.h"
 #include "shared/pellucid_shared.h"
 
 namespace pellucid {
 
-// All zeros (the pixel keeps everything) for a material without Gaussians. `distances`: with what sums over
-// distances in space take.
-shared::KernelConstants kernelConstants(const PellucidMaterial& material, FineFilters filters,
-                                        bool distances);
+// All zeros (the pixel keeps everything) for a material without Gaussians. `fineFilter`: hasFineFilter.
+shared::KernelConstants kernelConstants(const PellucidMaterial& material, bool fineFilter);
 
 }  // namespace pellucid

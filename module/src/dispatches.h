@@ -192,7 +192,7 @@ struct Builder {
     d->pushConstants[0] = gatherSpacing(frame);
     d->pushConstants[1] = group.gathered;
     d->pushConstants[2] = group.recordColumns | group.recordRows << 16 | (adds ? 1u << 31 : 0);
-    d->pushConstants[3] = frame.gatherSamples;
+    d->pushConstants[3] = gatherSamples(frame);
     constants(d, PELLUCID_BINDING_FRAME, layout.frame);
     constants(d, PELLUCID_BINDING_LIGHTS, {layout.lights.offset + group.lightBytes, kLightWindow});
     constants(d, PELLUCID_BINDING_GATHER_MAPS,
@@ -241,43 +241,10 @@ struct Builder {
     }
   }
 
-  // What the fused dispatches have in common. `quads`: the pyramid's level 1 is written too.
-  void fused(PellucidDispatch* d, const LightGroup& group, uint32_t source, uint32_t destination,
-             bool quads) const {
-    if (quads) {
-      writesPyramid(d);
-      levelTraffic(d, kFirstLevel);
-    }
-    d->pushConstants[1] = group.lightCount;
-    d->pushConstants[2] = destination == PELLUCID_RESOURCE_OUTPUT;
-    common(d, source, destination);
-    if (destination == PELLUCID_RESOURCE_HISTORY && group.firstLight == 0) {
-      d->pushConstants[2] = PELLUCID_WRITE_STARTS;
-      d->modeledBytes -= colorBytes() * pixels();  // what is there is not read
-    }
-    constants(d, PELLUCID_BINDING_MATERIALS, layout.materials);
-    optional(d, PELLUCID_BINDING_NORMAL, frame.normal, PELLUCID_RESOURCE_NORMAL, 4);
-  }
-
-  bool directional(const LightGroup& group, uint32_t source, uint32_t destination, bool quads) {
-    const uint32_t half = quads ? PELLUCID_PIPELINE_DIRECTIONAL_QUADS_16F : PELLUCID_PIPELINE_DIRECTIONAL_16F;
-    PellucidDispatch* d = dispatch("translucency", half + (wide() ? 1 : 0));  // the 32F variant follows
-    if (!d) return false;
-    tiles(d, PELLUCID_DIRECTIONAL_ROWS);
-    fused(d, group, source, destination, quads);
-    constants(d, PELLUCID_BINDING_LIGHTS,
-              {layout.directional.offset + group.index * kDirectionalWindow, kDirectionalWindow});
-    image(d, PELLUCID_BINDING_SHADOW_IMAGES, kShadow0 + group.images[0], kUnknownDepthBytes);
-    return true;
-  }
-
-  bool translucency(const LightGroup& group, uint32_t source, uint32_t destination, bool quads) {
+  bool translucency(const LightGroup& group, uint32_t source, uint32_t destination) {
     const bool debug = frame.debugView != PELLUCID_DEBUG_NONE;
-    if (!debug && group.lightCount == 1 && group.gathered == 0 && group.directional && directionalFrame())
-      return directional(group, source, destination, quads);
     const uint32_t half = debug                ? PELLUCID_PIPELINE_DEBUG_16F
                           : group.gathered > 0 ? PELLUCID_PIPELINE_GATHER_16F
-                          : quads              ? PELLUCID_PIPELINE_TRANSLUCENCY_QUADS_16F
                                                : PELLUCID_PIPELINE_TRANSLUCENCY_16F;
     const uint32_t pipeline = half + (wide() ? 1 : 0);
     PellucidDispatch* d = dispatch(debug ? "debug view" : "translucency", pipeline);
@@ -292,7 +259,15 @@ struct Builder {
     } else {
       tiles(d);
     }
-    fused(d, group, source, destination, quads);
+    d->pushConstants[1] = group.lightCount;
+    d->pushConstants[2] = destination == PELLUCID_RESOURCE_OUTPUT;
+    common(d, source, destination);
+    if (destination == PELLUCID_RESOURCE_HISTORY && group.firstLight == 0) {
+      d->pushConstants[2] = PELLUCID_WRITE_STARTS;
+      d->modeledBytes -= colorBytes() * pixels();  // what is there is not read
+    }
+    constants(d, PELLUCID_BINDING_MATERIALS, layout.materials);
+    optional(d, PELLUCID_BINDING_NORMAL, frame.normal, PELLUCID_RESOURCE_NORMAL, 4);
     constants(d, PELLUCID_BINDING_LIGHTS, {layout.lights.offset + group.lightBytes, kLightWindow});
     constants(d, PELLUCID_BINDING_SHADOWS, {layout.shadows.offset + group.shadowBytes, kShadowWindow});
     optional(d, PELLUCID_BINDING_BACK_DEPTH, frame.backDepth, PELLUCID_RESOURCE_BACK_DEPTH,
@@ -354,44 +329,24 @@ struct Builder {
     return true;
   }
 
-  // The `levels` after `finer`: 2, or 4 after level 1, the last two of them by groups of their own from
-  // boxes.
-  bool reduce(uint32_t finer, uint32_t levels) {
-    PellucidDispatch* d = dispatch("reduce", sumsEdges()       ? PELLUCID_PIPELINE_REDUCE_FOR_EDGES
-                                             : sumsEdgesFast() ? PELLUCID_PIPELINE_REDUCE_FOR_SUMS
-                                                               : PELLUCID_PIPELINE_REDUCE_LEVELS);
+  // The two levels after `finer`.
+  bool reduce(uint32_t finer) {
+    PellucidDispatch* d = dispatch("reduce", PELLUCID_PIPELINE_REDUCE_LEVELS);
     if (!d) return false;
-    // Groups of boxes, whose columns and number the shader is told, lie in rows before the others, of whose
-    // rows it is told.
-    uint32_t boxGroups = 0;
-    if (levels == 4) {
-      levelGroups(d, finer + 4, PELLUCID_REDUCE_TILE);
-      boxGroups = d->groups[0] * d->groups[1];
-      d->pushConstants[2] = d->groups[0] | boxGroups << 16;
-    }
     levelGroups(d, finer + 2, PELLUCID_REDUCE_TILE);
     d->pushConstants[0] = finer;
     d->pushConstants[1] = 16;  // texels under a texel
-    d->pushConstants[3] = d->groups[1];
-    d->groups[1] += (boxGroups + d->groups[0] - 1) / d->groups[0];
     constants(d, PELLUCID_BINDING_FRAME, layout.frame);
     writesPyramid(d);
     readsPyramid(d);
-    for (uint32_t level = finer; level <= finer + levels; ++level) levelTraffic(d, level);
-    if (boxGroups > 0) levelTraffic(d, finer);  // is read twice
+    for (uint32_t level = finer; level <= finer + 2; ++level) levelTraffic(d, level);
     return true;
   }
 
-  // `reduces`: it makes levels 6 and 7 from level 5. Where edges are summed fast that is done beside it, from
-  // `source` to `destination`.
-  bool resolve(uint32_t coarsest, bool reduces, uint32_t source, uint32_t destination) {
-    const bool sums = sumsEdgesFast();
-    const uint32_t pipeline = sums && reduces ? PELLUCID_PIPELINE_REDUCE_RESOLVE_AND_SUM_16F
-                              : sums          ? PELLUCID_PIPELINE_RESOLVE_AND_SUM_16F
-                              : reduces       ? PELLUCID_PIPELINE_REDUCE_AND_RESOLVE
-                              : sumsEdges()   ? PELLUCID_PIPELINE_RESOLVE_FOR_EDGES
-                                              : PELLUCID_PIPELINE_RESOLVE_LEVELS;
-    PellucidDispatch* d = dispatch("resolve", pipeline + (sums && wide() ? 1 : 0));
+  // `reduces`: it makes levels 6 and 7 from level 5.
+  bool resolve(uint32_t coarsest, bool reduces) {
+    PellucidDispatch* d = dispatch(
+        "resolve", reduces ? PELLUCID_PIPELINE_REDUCE_AND_RESOLVE : PELLUCID_PIPELINE_RESOLVE_LEVELS);
     if (!d) return false;
     // Groups start at texels 32 k - 1, in y 16 k - 1.
     const PyramidPlace place = placeOf(frame, 2);
@@ -402,20 +357,7 @@ struct Builder {
     d->groups[1] = across(place.rect.y, place.rect.height, PELLUCID_RESOLVE_GROUP);
     d->pushConstants[0] = coarsest;
     d->pushConstants[1] = 16;  // texels under a texel
-    if (sums) {
-      // In rows after the others, of which the shader is told.
-      const uint32_t tiles = fastEdgesTiles(), ofGroup = fastEdgesTilesOfGroup();
-      const uint32_t columns = d->groups[0] * ofGroup, rows = (tiles + columns - 1) / columns;
-      d->pushConstants[2] = d->groups[1] | ofGroup << 16;
-      d->groups[1] += rows;
-      d->pushConstants[3] = destination == PELLUCID_RESOURCE_OUTPUT;
-      common(d, source, destination);
-      image(d, PELLUCID_BINDING_NORMAL, PELLUCID_RESOURCE_NORMAL, 0);
-      // The plan does not know how many edges there are: what says so is all that is read anywhere.
-      d->modeledBytes = kTexelBytes * texels(2);
-    } else {
-      constants(d, PELLUCID_BINDING_FRAME, layout.frame);
-    }
+    constants(d, PELLUCID_BINDING_FRAME, layout.frame);
     constants(d, PELLUCID_BINDING_KERNELS, layout.kernels);
     writesPyramid(d);
     readsPyramid(d);
@@ -424,86 +366,13 @@ struct Builder {
     return true;
   }
 
-  // Tiles of the image of which pixels from `first` on have some.
-  static uint32_t tilesAcross(uint32_t first, uint32_t pixels, uint32_t side) {
-    return (first + pixels - 1) / side - first / side + 1;
-  }
-
-  // Where edges are summed fast.
-  uint32_t fastEdgesTiles() const {
-    return tilesAcross(rect.x, rect.width, PELLUCID_EDGES_GROUP) *
-           tilesAcross(rect.y, rect.height, PELLUCID_EDGES_GROUP);
-  }
-
-  // A group costs some time though it finds nothing to sum, on software devices much, while large devices
-  // that run a few hundred at a time wait for the last ones where there are as few: as many tiles as leave a
-  // thousand groups.
-  uint32_t fastEdgesTilesOfGroup() const {
-    constexpr uint32_t kGroups = 1024, kLeast = 4;
-    return std::clamp(fastEdgesTiles() / kGroups, kLeast, static_cast<uint32_t>(PELLUCID_FAST_EDGES_TILES));
-  }
-
-  // Of levels up to `coarsest`, from them and the pixels, when they have been resolved. Those of the last one
-  // are made where they are summed.
-  bool clusters(uint32_t coarsest, uint32_t source) {
-    PellucidDispatch* d = dispatch("clusters", PELLUCID_PIPELINE_CLUSTERS);
-    if (!d) return false;
-    constexpr uint32_t kSide = 4 * PELLUCID_CLUSTERS_GROUP;  // pixels
-    d->groups[0] = tilesAcross(rect.x, rect.width, kSide);
-    d->groups[1] = tilesAcross(rect.y, rect.height, kSide);
-    d->pushConstants[0] = coarsest;
-    constants(d, PELLUCID_BINDING_FRAME, layout.frame);
-    writesPyramid(d);
-    readsPyramid(d);
-    pixelInputs(d, source);
-    image(d, PELLUCID_BINDING_NORMAL, PELLUCID_RESOURCE_NORMAL, 0);
-    // The plan does not know how much is tilted, of which pixels are read and level 1 is written.
-    d->modeledBytes = 0;
-    for (uint32_t level = 1; level <= std::min(coarsest, PELLUCID_LAST_LEVEL - 1u); ++level)
-      levelTraffic(d, level);
-    return true;
-  }
-
-  bool sumsEdgesFast() const { return pellucid::sumsEdgesFast(frame, plan.quality); }
-  bool sumsEdges() const { return pellucid::sumsEdges(frame, plan.quality); }
-
-  // After the one of all other pixels, with the same arguments.
-  bool diffuseEdges(uint32_t coarsest, uint32_t source, uint32_t destination, bool addsPoints) {
-    const uint32_t half =
-        addsPoints ? PELLUCID_PIPELINE_DIFFUSE_EDGES_GATHER_16F : PELLUCID_PIPELINE_DIFFUSE_EDGES_16F;
-    PellucidDispatch* d = dispatch("diffuse edges", half + (wide() ? 1 : 0));
-    if (!d) return false;
-    const PyramidPlace place = placeOf(frame, 2);  // with a border of one
-    groups(d, static_cast<uint32_t>(place.rect.width) - 2, static_cast<uint32_t>(place.rect.height) - 2,
-           PELLUCID_EDGES_GROUP / 4);
-    d->pushConstants[0] = coarsest;
-    d->groups[1] = (d->groups[1] + PELLUCID_EDGES_TILES - 1) / PELLUCID_EDGES_TILES;
-    d->pushConstants[3] = destination == PELLUCID_RESOURCE_OUTPUT;
-    common(d, source, destination);
-    constants(d, PELLUCID_BINDING_KERNELS, layout.kernels);
-    image(d, PELLUCID_BINDING_NORMAL, PELLUCID_RESOURCE_NORMAL, 0);
-    readsPyramid(d);
-    if (addsPoints) readsPoints(d, PELLUCID_BINDING_SHARED_POINTS, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE);
-    // The plan does not know how many edges there are: whether a texel is one is all that is read anywhere.
-    d->modeledBytes = kTexelBytes * texels(2);
-    return true;
-  }
-
   // `addsPoints`: what points of the gather share is added.
   bool diffuse(uint32_t source, uint32_t destination, bool addsPoints) {
-    // In the order of FineFilters.
-    struct Variant {
-      uint32_t without, with;  // points
-      uint32_t columns;        // texels of a group
-    };
-    constexpr Variant kVariants[] = {
-        {PELLUCID_PIPELINE_DIFFUSE_COARSE_16F, PELLUCID_PIPELINE_DIFFUSE_COARSE_GATHER_16F,
-         PELLUCID_DIFFUSE_COARSE_TEXELS_X},
-        {PELLUCID_PIPELINE_DIFFUSE_16F, PELLUCID_PIPELINE_DIFFUSE_GATHER_16F, PELLUCID_DIFFUSE_TEXELS_X},
-        {PELLUCID_PIPELINE_DIFFUSE_PLANES_16F, PELLUCID_PIPELINE_DIFFUSE_PLANES_GATHER_16F,
-         PELLUCID_DIFFUSE_PLANES_TEXELS_X}};
-    const Variant& variant = kVariants[static_cast<size_t>(fineFilters(frame, plan.quality))];
-    const uint32_t half = addsPoints ? variant.with : variant.without;
+    const bool fine = hasFineFilter(plan.quality);
+    const uint32_t half =
+        fine ? (addsPoints ? PELLUCID_PIPELINE_DIFFUSE_GATHER_16F : PELLUCID_PIPELINE_DIFFUSE_16F)
+             : (addsPoints ? PELLUCID_PIPELINE_DIFFUSE_COARSE_GATHER_16F
+                           : PELLUCID_PIPELINE_DIFFUSE_COARSE_16F);
     // With the gather both are in the plan, and one of them runs.
     PellucidDispatch* d =
         dispatch(skipsLight && !addsPoints ? "diffuse, none gathered" : "diffuse", half + (wide() ? 1 : 0));
@@ -513,11 +382,10 @@ struct Builder {
     const auto across = [](int32_t texels, uint32_t side) {
       return (static_cast<uint32_t>(texels) - 2 + side - 1) / side;
     };
-    d->groups[0] = across(place.rect.width, variant.columns);
+    d->groups[0] =
+        across(place.rect.width, fine ? PELLUCID_DIFFUSE_TEXELS_X : PELLUCID_DIFFUSE_COARSE_TEXELS_X);
     d->groups[1] = across(place.rect.height, PELLUCID_DIFFUSE_TEXELS_Y);
-    // Texels to each side of an edge's that its pixels look at; pixels of a column of a texel at the rect's
-    // border.
-    d->pushConstants[1] = sumsEdges() ? 4 : 1;
+    d->pushConstants[1] = 1;  // texels to each side of an edge's that its pixels look at
     d->pushConstants[3] = destination == PELLUCID_RESOURCE_OUTPUT;
     common(d, source, destination);
     readsPyramid(d);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "quality.h"
 #include "records.h"
 
 namespace pellucid {
@@ -47,11 +48,9 @@ bool addLight(const PellucidFrame& frame, const PellucidLight& light, LightGroup
   grown.shadowCount += light.shadowMapCount;
   if (group->lightCount == PELLUCID_DISPATCH_LIGHTS || grown.shadowCount > PELLUCID_DISPATCH_SHADOWS)
     return false;
-  bool besideMaps = false;
   for (uint32_t i = 0; i < light.shadowMapCount; ++i) {
     const PellucidShadowMap& map = frame.shadowMaps[light.firstShadowMap + i];
     if (!grown.addImages(frame, light, map)) return false;
-    besideMaps = besideMaps || grown.readsExit(frame, light, map) || grown.readsCaster(map);
   }
   if (isGathered(frame, light)) {
     for (uint32_t i = 0; i < light.shadowMapCount; ++i) {
@@ -66,8 +65,6 @@ bool addLight(const PellucidFrame& frame, const PellucidLight& light, LightGroup
   }
   const bool directional = light.type == PELLUCID_LIGHT_DIRECTIONAL && light.shadowMapCount == 1 &&
                            frame.shadowMaps[light.firstShadowMap].encoding == PELLUCID_DEPTH_DEVICE;
-  // passes/directional.comp reads no image besides the map.
-  grown.directional = grown.directional && directional && !besideMaps;
   if (isGathered(frame, light)) grown.gatheredDirectional = grown.gatheredDirectional && directional;
   ++grown.lightCount;
   *group = grown;
@@ -82,10 +79,30 @@ bool needsChord(const PellucidFrame& frame) {
   return false;
 }
 
+const char* whyNotGathered(const PellucidFrame& frame) {
+  if (frame.thicknessSource == PELLUCID_THICKNESS_CAMERA) return "thickness comes from the camera";
+  if (frame.angleModel != PELLUCID_ANGLE_NORMAL || frame.constantViewDirection != 0 ||
+      frame.minimumDot != 0 || frame.maximumThickness > 0)
+    return "angleModel, constantViewDirection, minimumDot and maximumThickness are of one thickness a pixel";
+  for (uint32_t i = 0; i < frame.materialCount; ++i) {
+    const uint32_t model = frame.materials[i].transmittanceModel;
+    if (model != PELLUCID_TRANSMITTANCE_EXP2 && model != PELLUCID_TRANSMITTANCE_SINH_EXP)
+      return "a material's transmittance model has no profile";
+  }
+  return nullptr;
+}
+
+uint32_t gatherSamples(const PellucidFrame& frame) {
+  if (frame.gatherSamples != PELLUCID_GATHER_BY_QUALITY) return frame.gatherSamples;
+  constexpr uint32_t kSamples[] = {0, 8, 16};
+  return whyNotGathered(frame) ? 0 : kSamples[frame.quality];
+}
+
 uint32_t gatherSpacing(const PellucidFrame& frame) {
   if (frame.gatherSpacing != 0) return frame.gatherSpacing;
   const uint64_t pixels = static_cast<uint64_t>(frame.imageExtent[0]) * frame.imageExtent[1];
-  return pixels > 1u << 20 ? 4 : pixels > 1u << 19 ? 2 : 1;
+  const uint32_t spacing = pixels > 1u << 20 ? 4 : pixels > 1u << 19 ? 2 : 1;
+  return frame.quality == kBestQuality ? std::max(spacing / 2, 1u) : spacing;
 }
 
 namespace {
@@ -114,8 +131,8 @@ bool bindsBeside(const PellucidFrame& frame) {
   // Debug views of light need all lights in one dispatch.
   if (frame.debugView != PELLUCID_DEBUG_NONE && frame.debugView != PELLUCID_DEBUG_IRRADIANCE)
     return groups.count <= 1;
-  // At most: three reductions, quads, resolve, clusters, three dispatches of edges and planes, history.
-  constexpr uint32_t kOthers = 10;
+  // At most: three reductions, quads, resolve, two that diffuse, history.
+  constexpr uint32_t kOthers = 8;
   return groups.fused() + groups.gatherDispatches() + kOthers <= PELLUCID_MAX_DISPATCHES;
 }
 
@@ -146,7 +163,6 @@ ConstantsLayout constantsLayout(const PellucidFrame& frame) {
   // The last group's window reaches as far as the first one's.
   place(&layout.lights, last.lightBytes + kLightWindow);
   place(&layout.shadows, last.shadowBytes + kShadowWindow);
-  place(&layout.directional, (last.index + 1) * kDirectionalWindow);
   place(&layout.materials, frame.materialCount * sizeof(shared::MaterialConstants));
   place(&layout.kernels, frame.materialCount * sizeof(shared::KernelConstants));
   if (gathers(frame)) {
@@ -172,5 +188,6 @@ extern "C" void pellucidInitFrame(PellucidFrame* frame) {
   frame->faceVector[2] = 1;
   frame->upAxis[1] = 1;
   frame->coherenceThreshold = 0.005f;
-  frame->quality = 2;
+  frame->quality = 1;
+  frame->gatherSamples = PELLUCID_GATHER_BY_QUALITY;
 }

@@ -26,7 +26,6 @@ constexpr VkDeviceSize aligned(VkDeviceSize bytes) { return (bytes + 255) / 256 
 // constants of lights and shadow maps, so lights are taken in order into groups that need no more. Constants
 // are laid out light by light within the groups.
 constexpr VkDeviceSize kLightWindow = PELLUCID_DISPATCH_LIGHTS * sizeof(shared::LightConstants);
-constexpr VkDeviceSize kDirectionalWindow = aligned(sizeof(shared::DirectionalConstants));
 constexpr VkDeviceSize kShadowWindow = PELLUCID_DISPATCH_SHADOWS * sizeof(shared::ShadowConstants);
 constexpr VkDeviceSize kGatherMapWindow = PELLUCID_DISPATCH_SHADOWS * sizeof(shared::GatherMapConstants);
 constexpr VkDeviceSize kRecordMapWindow = PELLUCID_RECORD_MAPS * sizeof(shared::RecordMapConstants);
@@ -35,10 +34,8 @@ static_assert(kLightWindow <= 16384 && kShadowWindow <= 16384 && kGatherMapWindo
 
 struct LightGroup {
   uint32_t index = 0;
-  uint32_t firstLight = 0, lightCount = 0;  // among the lights that are not skipped
-  bool directional = true;   // every light is directional with one shadow map of device depth, which has no
-                             // exit depth and no caster material
-  uint32_t shadowCount = 0;  // shadow maps
+  uint32_t firstLight = 0, lightCount = 0;       // among the lights that are not skipped
+  uint32_t shadowCount = 0;                      // shadow maps
   VkDeviceSize lightBytes = 0, shadowBytes = 0;  // of the groups before, in the constants
   VkDeviceSize gatherMapBytes = 0, recordMapBytes = 0;
   uint32_t gathered = 0;                       // lights that are gathered from; the first ones
@@ -62,9 +59,16 @@ private:
   bool addImage(uint32_t image);
 };
 
+// Of each point, with what frame.quality chooses.
+uint32_t gatherSamples(const PellucidFrame& frame);
+
+// Why frame.quality cannot choose a gather, for the plan's skips; NULL: it can.
+const char* whyNotGathered(const PellucidFrame& frame);
+
 // Whether lights with a map are gathered from.
 inline bool gathers(const PellucidFrame& frame) {
-  return frame.gatherSamples > 0 && frame.debugView == PELLUCID_DEBUG_NONE;
+  return (frame.features & PELLUCID_FEATURE_TRANSLUCENCY) != 0 && gatherSamples(frame) > 0 &&
+         frame.debugView == PELLUCID_DEBUG_NONE;
 }
 inline bool isGathered(const PellucidFrame& frame, const PellucidLight& light) {
   return gathers(frame) && light.shadowMapCount > 0;
@@ -147,7 +151,6 @@ struct ConstantsLayout {
     VkDeviceSize offset, size;
   };
   Range frame, lights, shadows, materials, kernels;
-  Range directional;                               // kDirectionalWindow for each group of lights
   Range gatherMaps, recordMaps, gatherDispatches;  // of frames that gather
   VkDeviceSize size;
   uint32_t lightCount;

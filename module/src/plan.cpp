@@ -19,7 +19,6 @@ struct Stages {
   bool keepsPoints;  // the history is what the gather's points share: these read it
   bool copies;  // the diffusion is all there is: it copies the irradiance before it writes the output, which
                 // may be the same image and whose pixels read their neighbors
-  bool fusesQuads;     // the last fused dispatch makes the pyramid's level 1 of what it writes
   LightGroups groups;  // of lights
   bool overlaps;  // the gather runs beside the diffusion, which it does not wait for, with images of its own
   bool addsPoints;  // the diffusion's last dispatch adds what was gathered: no other light comes through
@@ -46,12 +45,10 @@ Stages stagesOf(const PellucidFrame& frame) {
   if (s.writers() == 0) s.fused = 1;
   s.keepsPoints = keepsPoints(frame);
   s.history = keepsHistory(frame) && !s.keepsPoints;
-  s.fusesQuads = s.diffusion && s.lights && !s.history && frame.gatherSamples == 0;
   // More would be more transients than there are.
   s.overlaps = s.diffusion && s.groups.gathered == 1 && s.colorTransients() <= 1 && !s.history;
-  // Points that are kept are read where none is found, too, and so are those of edges that are summed.
-  s.skipsLight =
-      s.overlaps && s.addsPoints && !s.keepsPoints && frame.indirectDispatches && !keepsFirstLevel(frame);
+  // Points that are kept are read where none is found, too.
+  s.skipsLight = s.overlaps && s.addsPoints && !s.keepsPoints && frame.indirectDispatches;
   return s;
 }
 
@@ -96,6 +93,8 @@ bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan
     b.skip("translucency", "no light can contribute");
   else
     skipBeside(frame, view, b);
+  if (frame.gatherSamples == PELLUCID_GATHER_BY_QUALITY && frame.quality > 0)
+    if (const char* reason = whyNotGathered(frame)) b.skip("gather", reason);
   if (!(frame.features & PELLUCID_FEATURE_DIFFUSION))
     b.skip("diffusion", "not among the features");
   else if (frame.debugView != PELLUCID_DEBUG_NONE)
@@ -108,8 +107,7 @@ bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan
     const DiffusionReach reach = diffusionReach(frame);
     plan.largestRadius = static_cast<float>(reach.radius);
     plan.quality = frame.quality;
-    if (frame.targetError > 0 &&
-        !qualityFor(frame.targetError, reach.radius, given(frame.normal), &plan.quality))
+    if (frame.targetError > 0 && !qualityFor(frame.targetError, reach.radius, &plan.quality))
       b.skip("targetError", "no quality is that exact");
     for (uint32_t i = 0; i < frame.materialCount; ++i)
       if (reach.pixelsPerMm * widestDeviation(frame.materials[i]) > levelDeviation(coarsest))
@@ -132,10 +130,9 @@ bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan
     return transient;
   };
   bool fits = true;
-  uint32_t left = stages.fused;
   const auto translucency = [&](const LightGroup& group) {
     const uint32_t to = destination();
-    fits = fits && b.translucency(group, source, to, stages.fusesQuads && --left == 0);
+    fits = fits && b.translucency(group, source, to);
     source = to;
   };
   const auto forEachFused = [&](auto&& fused) {
@@ -152,7 +149,7 @@ bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan
     if (stages.history) {
       if (!reused)
         forEachFused([&](const LightGroup& group) {
-          fits = fits && b.translucency(group, PELLUCID_RESOURCE_HISTORY, PELLUCID_RESOURCE_HISTORY, false);
+          fits = fits && b.translucency(group, PELLUCID_RESOURCE_HISTORY, PELLUCID_RESOURCE_HISTORY);
         });
       const uint32_t to = destination();
       fits = fits && b.addHistory(source, to);
@@ -169,44 +166,37 @@ bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan
       forEachLightGroup(frame, [&](const LightGroup& group) {
         if (group.gathered > 0) gathered = group;
       });
-    // Levels 4 and 5 beside 2 and 3 save a dispatch that leaves most of a device free, which points of the
-    // gather can use, and err by more than sums of edges do.
-    const bool boxes = !stages.overlaps && !b.sumsEdges() && coarsest >= kFirstLevel + 4;
-    const bool makesLast = boxes && coarsest == PELLUCID_LAST_LEVEL;
+    // The resolve makes the last two levels, so that no dispatch of few texels holds up the others.
+    const bool makesLast = coarsest == PELLUCID_LAST_LEVEL;
+    const uint32_t reduced = coarsest - (makesLast ? 2 : 0);
     // Records, points and sharing, each beside one of the last three dispatches before the one that adds
-    // points.
-    const int32_t reductions = static_cast<int32_t>(coarsest + 1 - kFirstLevel) / 2;
-    int32_t step = 1 - reductions;
+    // points: quads, reductions and the resolve are at least as many.
+    const uint32_t before = 2 + (reduced - kFirstLevel) / 2;
+    uint32_t step = 0;
     const auto alongside = [&] {
-      if (gathered.gathered > 0 && step >= 0) {
-        b.alongside = true;
-        fits = fits && (step == 0 ? b.records(gathered) : step == 1 ? b.points(gathered, false) : b.share());
-        b.alongside = false;
-      }
-      ++step;
+      const uint32_t left = before - step++;
+      if (gathered.gathered == 0 || left > 3) return;
+      b.alongside = true;
+      fits = fits && (left == 3 ? b.records(gathered) : left == 2 ? b.points(gathered, false) : b.share());
+      b.alongside = false;
     };
     const uint32_t copy = stages.copies ? destination() : source;
-    if (!stages.fusesQuads) fits = fits && b.quads(source, copy);
+    fits = fits && b.quads(source, copy);
     alongside();
     source = copy;
-    const uint32_t reduced = coarsest - (makesLast ? 2 : 0);
-    for (uint32_t finer = kFirstLevel, levels; finer < reduced; finer += levels) {
-      levels = boxes && finer == kFirstLevel ? 4 : 2;
-      fits = fits && b.reduce(finer, levels);
+    for (uint32_t finer = kFirstLevel; finer < reduced; finer += 2) {
+      fits = fits && b.reduce(finer);
       alongside();
     }
-    const uint32_t to = destination();
-    fits = fits && b.resolve(coarsest, makesLast, source, to);
+    fits = fits && b.resolve(coarsest, makesLast);
     alongside();
-    if (b.sumsEdges()) fits = fits && b.clusters(coarsest, source);
+    const uint32_t to = destination();
     fits = fits && b.diffuse(source, to, stages.addsPoints);
-    // A barrier though they write other pixels: synchronization validation knows images, not pixels.
-    if (b.sumsEdges()) fits = fits && b.diffuseEdges(coarsest, source, to, stages.addsPoints);
     if (stages.skipsLight) fits = fits && b.diffuse(source, to, false);
     source = to;
   };
   // Gathered light has already spread on its way through; diffusing it again would spread it twice.
-  if (frame.gatherSamples > 0) {
+  if (gathers(frame)) {
     diffusion();
     translucencies();
   } else {

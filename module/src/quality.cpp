@@ -6,7 +6,7 @@
 
 #include "camera.h"
 #include "diffusion_error_table.h"
-#include "diffusion_profile.h"
+#include "pyramid_energy.h"
 
 namespace pellucid {
 namespace {
@@ -58,7 +58,7 @@ DiffusionReach diffusionReach(const PellucidFrame& frame) {
   return reach;
 }
 
-bool qualityFor(float error, double radius, bool normals, uint32_t* quality) {
+bool qualityFor(float error, double radius, uint32_t* quality) {
   // Errors were measured at some radii; up to the first one that is not less than the frame's.
   size_t count = std::size(kErrorRadii);
   if (radius > 0)
@@ -66,11 +66,10 @@ bool qualityFor(float error, double radius, bool normals, uint32_t* quality) {
         count, static_cast<size_t>(std::lower_bound(std::begin(kErrorRadii), std::end(kErrorRadii), radius) -
                                    kErrorRadii) +
                    1);
-  constexpr uint32_t kBest = std::size(kWorstError) - 1, kFilters = 2;
-  // Without normals those that sum edges are like the one before.
-  for (*quality = 0; *quality < (normals ? kBest + 1 : kFilters); ++*quality)
+  static_assert(std::size(kWorstError) == kBestQuality + 1);
+  for (*quality = 0; *quality <= kBestQuality; ++*quality)
     if (*std::max_element(kWorstError[*quality], kWorstError[*quality] + count) < error) return true;
-  *quality = kBest;
+  *quality = kBestQuality;
   return false;
 }
 

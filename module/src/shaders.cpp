@@ -4,7 +4,6 @@
 
 #include "kAddHistory16f.h"
 #include "kAddHistory32f.h"
-#include "kClusters.h"
 #include "kDebug16f.h"
 #include "kDebug32f.h"
 #include "kDiffuse16f.h"
@@ -13,20 +12,8 @@
 #include "kDiffuseCoarse32f.h"
 #include "kDiffuseCoarseGather16f.h"
 #include "kDiffuseCoarseGather32f.h"
-#include "kDiffuseEdges16f.h"
-#include "kDiffuseEdges32f.h"
-#include "kDiffuseEdgesGather16f.h"
-#include "kDiffuseEdgesGather32f.h"
 #include "kDiffuseGather16f.h"
 #include "kDiffuseGather32f.h"
-#include "kDiffusePlanes16f.h"
-#include "kDiffusePlanes32f.h"
-#include "kDiffusePlanesGather16f.h"
-#include "kDiffusePlanesGather32f.h"
-#include "kDirectional16f.h"
-#include "kDirectional32f.h"
-#include "kDirectionalQuads16f.h"
-#include "kDirectionalQuads32f.h"
 #include "kGather16f.h"
 #include "kGather32f.h"
 #include "kGatherPoints.h"
@@ -40,18 +27,9 @@
 #include "kQuadsAndCopy32f.h"
 #include "kReduce.h"
 #include "kReduceAndResolve.h"
-#include "kReduceForEdges.h"
-#include "kReduceForSums.h"
-#include "kReduceResolveAndSum16f.h"
-#include "kReduceResolveAndSum32f.h"
 #include "kResolve.h"
-#include "kResolveAndSum16f.h"
-#include "kResolveAndSum32f.h"
-#include "kResolveForEdges.h"
 #include "kTranslucency16f.h"
 #include "kTranslucency32f.h"
-#include "kTranslucencyQuads16f.h"
-#include "kTranslucencyQuads32f.h"
 #include "pellucid/pellucid.h"
 
 namespace pellucid {
@@ -78,12 +56,6 @@ const std::array kShaders = {shader(kTranslucency16f),
                              shader(kQuadsAndCopy32f),
                              shader(kQuads),
                              shader(kReduce),
-                             shader(kDirectional16f),
-                             shader(kDirectional32f),
-                             shader(kTranslucencyQuads16f),
-                             shader(kTranslucencyQuads32f),
-                             shader(kDirectionalQuads16f),
-                             shader(kDirectionalQuads32f),
                              shader(kResolve),
                              shader(kDiffuseCoarse16f),
                              shader(kDiffuseCoarse32f),
@@ -96,24 +68,8 @@ const std::array kShaders = {shader(kTranslucency16f),
                              shader(kDiffuseGather32f),
                              shader(kDiffuseCoarseGather16f),
                              shader(kDiffuseCoarseGather32f),
-                             shader(kDiffuseEdges16f),
-                             shader(kDiffuseEdges32f),
-                             shader(kDiffuseEdgesGather16f),
-                             shader(kDiffuseEdgesGather32f),
                              shader(kGatherRecordsOneMap),
-                             shader(kReduceAndResolve),
-                             shader(kReduceForEdges),
-                             shader(kResolveForEdges),
-                             shader(kDiffusePlanes16f),
-                             shader(kDiffusePlanes32f),
-                             shader(kDiffusePlanesGather16f),
-                             shader(kDiffusePlanesGather32f),
-                             shader(kClusters),
-                             shader(kReduceForSums),
-                             shader(kResolveAndSum16f),
-                             shader(kResolveAndSum32f),
-                             shader(kReduceResolveAndSum16f),
-                             shader(kReduceResolveAndSum32f)};
+                             shader(kReduceAndResolve)};
 static_assert(kShaders.size() == PELLUCID_PIPELINE_COUNT);
 
 }  // namespace

@@ -68,12 +68,6 @@ extern "C" const char* pellucidPipelineName(uint32_t pipeline) {
                                        "quads_and_copy_rgba32f",
                                        "quads",
                                        "reduce_levels",
-                                       "translucency_directional_rgba16f",
-                                       "translucency_directional_rgba32f",
-                                       "translucency_quads_rgba16f",
-                                       "translucency_quads_rgba32f",
-                                       "translucency_directional_quads_rgba16f",
-                                       "translucency_directional_quads_rgba32f",
                                        "resolve_levels",
                                        "diffuse_coarse_rgba16f",
                                        "diffuse_coarse_rgba32f",
@@ -86,24 +80,8 @@ extern "C" const char* pellucidPipelineName(uint32_t pipeline) {
                                        "diffuse_gather_rgba32f",
                                        "diffuse_coarse_gather_rgba16f",
                                        "diffuse_coarse_gather_rgba32f",
-                                       "diffuse_edges_rgba16f",
-                                       "diffuse_edges_rgba32f",
-                                       "diffuse_edges_gather_rgba16f",
-                                       "diffuse_edges_gather_rgba32f",
                                        "gather_records_one_map",
-                                       "reduce_and_resolve",
-                                       "reduce_for_edges",
-                                       "resolve_for_edges",
-                                       "diffuse_planes_rgba16f",
-                                       "diffuse_planes_rgba32f",
-                                       "diffuse_planes_gather_rgba16f",
-                                       "diffuse_planes_gather_rgba32f",
-                                       "clusters",
-                                       "reduce_for_sums",
-                                       "resolve_and_sum_rgba16f",
-                                       "resolve_and_sum_rgba32f",
-                                       "reduce_resolve_and_sum_rgba16f",
-                                       "reduce_resolve_and_sum_rgba32f"};
+                                       "reduce_and_resolve"};
   static_assert(names.size() == PELLUCID_PIPELINE_COUNT);
   return pipeline < names.size() ? names[pipeline] : "unknown pipeline";
 }

@@ -6,6 +6,7 @@
 #include "camera.h"
 #include "frame.h"
 #include "minimum_dot.h"
+#include "quality.h"
 #include "reuse.h"
 #include "text.h"
 
@@ -297,7 +298,7 @@ PellucidResult checkFrame(const PellucidFrame* frame, PellucidMessageFn fn, void
 
   if (f.gatherSpacing != 0 && f.gatherSpacing != 1 && f.gatherSpacing != 2 && f.gatherSpacing != 4)
     out.error("gatherSpacing", "is ", f.gatherSpacing, "; use 1, 2 or 4, or 0 to choose by the image's size");
-  if (f.gatherSamples > 64 || f.gatherSamples % 4 != 0)
+  if (f.gatherSamples != PELLUCID_GATHER_BY_QUALITY && (f.gatherSamples > 64 || f.gatherSamples % 4 != 0))
     out.error("gatherSamples", "is ", f.gatherSamples, "; needs a multiple of 4, at most 64");
 
   // 255: the material image is r8ui and 0 means none.
@@ -320,7 +321,7 @@ PellucidResult checkFrame(const PellucidFrame* frame, PellucidMessageFn fn, void
     out.error("coherenceThreshold", "is ", f.coherenceThreshold, "; must be >= 0");
   if (!(f.frameLoad >= 0 && std::isfinite(f.frameLoad)))
     out.error("frameLoad", "is ", f.frameLoad, "; must be >= 0");
-  if (f.quality > 3) out.error("quality", "is ", f.quality, ", outside 0..3");
+  if (f.quality > kBestQuality) out.error("quality", "is ", f.quality, ", outside 0..", kBestQuality);
   if (!(f.targetError >= 0 && std::isfinite(f.targetError)))
     out.error("targetError", "is ", f.targetError, "; must be >= 0");
   if (!(f.nearestDistance >= 0 && std::isfinite(f.nearestDistance)))
@@ -330,8 +331,8 @@ PellucidResult checkFrame(const PellucidFrame* frame, PellucidMessageFn fn, void
   for (uint32_t i = 0; i < f.materialCount; ++i) {
     checkMaterial(f.materials[i], i, out);
     const uint32_t model = f.materials[i].transmittanceModel;
-    if (f.gatherSamples > 0 && model != PELLUCID_TRANSMITTANCE_EXP2 &&
-        model != PELLUCID_TRANSMITTANCE_SINH_EXP)
+    if (f.gatherSamples > 0 && f.gatherSamples != PELLUCID_GATHER_BY_QUALITY &&
+        model != PELLUCID_TRANSMITTANCE_EXP2 && model != PELLUCID_TRANSMITTANCE_SINH_EXP)
       out.error(Field("materials[", i, "].transmittanceModel"), "is ", model,
                 ", which cannot be gathered; use EXP2 or SINH_EXP");
   }

@@ -53,7 +53,7 @@ TEST(Readme, SnippetMakesASlabGlow) {
   const auto normal = image(VK_FORMAT_R32G32B32A32_SFLOAT, facing);
   GpuImage material(device, kSize, kSize, VK_FORMAT_R8_UINT);
   material.upload(std::vector<std::uint8_t>(kSize * kSize, 1));
-  HostBuffer upload(device, 128 * 1024,
+  HostBuffer upload(device, 256 * 1024,
                     VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
 
   PellucidLight light{};

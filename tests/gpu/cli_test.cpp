@@ -10,7 +10,7 @@ TEST_F(Cli, CaptureReplayComparePlan) {
   const std::string capture = path("slab.exr"), out = path("out.exr"), again = path("again.exr");
   expect(0, "capture --procedural slab --size 48x32 -o " + capture, "");
   expect(0, "info " + capture, "shadow");
-  expect(0, "plan " + capture, "\"dispatchCount\": 4");
+  expect(0, "plan " + capture, "\"dispatchCount\": 9");
   expect(0, "replay " + capture + " -o " + out + " --triptych " + path("t.png") + " --png", "resolve");
   expect(0, "replay " + capture + " -o " + again, "median of 3 frames after a first one");
   expect(0, "compare " + out + " " + again + " --mask " + capture + " --limit max=0", "rel_rmse");

@@ -20,13 +20,12 @@ ReplaySettings ofQuality(uint32_t quality) {
 
 using FilteredDiffusion = GpuTest;
 
-// Of those that filter edges and those that sum them: the default and the best.
 class Diffusion : public GpuTest, public testing::WithParamInterface<uint32_t> {
 protected:
   ReplaySettings diffusionOnly() const { return ofQuality(GetParam()); }
 };
 
-INSTANTIATE_TEST_SUITE_P(Quality, Diffusion, testing::Values(1u, 2u, 3u));
+INSTANTIATE_TEST_SUITE_P(Quality, Diffusion, testing::Values(1u));
 
 // Gaussians of these standard deviations in pixels of flatCapture's width, equal weights, in all channels.
 PellucidMaterial gaussians(std::initializer_list<double> deviations, double pixel) {
@@ -112,7 +111,8 @@ TEST_P(Diffusion, ShiftedRectGivesTheSamePixels) {
         const Image part = replayer().run(*c, m, s).output;
         for (int y = 44; y < 84; ++y)
           for (int x = 44; x < 84; ++x)
-            EXPECT_NEAR(part.at(x, y)[0], whole.at(x, y)[0], 1e-3 * (1 + whole.at(x, y)[0]))
+            // A texel of a coarse level that the rect cuts has another slope, and so another area.
+            EXPECT_NEAR(part.at(x, y)[0], whole.at(x, y)[0], 3e-3 * (1 + whole.at(x, y)[0]))
                 << (c == &step ? "step " : "bars ") << x << ", " << y;
       }
     }
@@ -191,7 +191,8 @@ TEST_P(Diffusion, SurfacesCountByTheirArea) {
     double sum = 0;
     for (int y = 0; y < 64; ++y)
       for (int x = 0; x < 64; ++x) sum += out.at(x, y)[0] / 4096;
-    EXPECT_NEAR(sum, 1.0 / 3, 0.01) << (normals ? "normals" : "depths");
+    // Coarse levels lose some of what is folded, as they go by the tangents of single texels.
+    EXPECT_NEAR(sum, 1.0 / 3, 0.04) << (normals ? "normals" : "depths");
   }
 }
 
@@ -220,8 +221,7 @@ TEST_P(Diffusion, SteepSurfacesKeepConstants) {
   }
 }
 
-// A pixel whose normal is none has the area that the depths say, as all have without an image of normals: at
-// the best quality that needs none.
+// A pixel whose normal is none has the area that the depths say, as all have without an image of normals.
 TEST_F(FilteredDiffusion, NormalsThatAreNoneAreLeftOut) {
   Capture c = dark(48, 48);
   for (int y = 0; y < 48; ++y)
@@ -258,9 +258,8 @@ TEST_P(Diffusion, PlanesAndEdgesAreFilteredAlike) {
       ++compared;
     }
   EXPECT_GT(compared, 500);
-  // Level 2 reaches further than the kernel, with little. Edges that are summed lack what the pyramid errs by
-  // on planes.
-  EXPECT_LT(most, GetParam() >= 2 ? 1e-2 : 2e-3);
+  // Level 2 reaches further than the kernel, with little.
+  EXPECT_LT(most, 2e-3);
 }
 
 // Without a depth there is no scale to diffuse over: the pixel keeps its irradiance, alone or on a plane.
@@ -301,30 +300,6 @@ Capture perspective(int size) {
   return c;
 }
 
-// However the rect cuts texels: where all is one plane, the last dispatch, which sums edges, changes nothing.
-TEST_F(GpuTest, NothingIsSummedWhereAllIsOnePlane) {
-  const Context context(device());
-  Capture c = dark(208, 192);
-  for (int y = 0; y < c.height; ++y)
-    for (int x = 0; x < c.width; ++x) light(c, x, y, static_cast<float>((x * 7 + y * 13) % 5));
-  ReplaySettings s = ofQuality(3);
-  for (uint32_t i = 0; i < 16; ++i) {
-    // Ends at each pixel of a texel of level 4, begins at some.
-    const uint32_t x = 3 * i % 16, y = 5 * i % 16;
-    s.renderRect = {x, y, 208 - i - x, 192 - (7 * i + 3) % 16 - y};
-    const auto output = [&](uint32_t without) {
-      const FrameRun run(device(), context, c, {gaussians({1, 5, 12}, pixelOf(c))}, s);
-      const PellucidPlan& plan = run.plan();
-      EXPECT_STREQ(plan.dispatches[plan.dispatchCount - 1].name, "diffuse edges");
-      device().run([&](VkCommandBuffer commands) {
-        for (uint32_t d = 0; d + without < plan.dispatchCount; ++d) run.record(commands, d);
-      });
-      return run.output();
-    };
-    EXPECT_TRUE(sameBits(output(0), output(1))) << i;
-  }
-}
-
 // What the distance leaves out is not missed: levels that no Gaussian reaches.
 TEST_P(Diffusion, SmallRadiiAreTheSameWithFewerLevels) {
   const Capture c = perspective(96);
@@ -340,9 +315,8 @@ TEST_P(Diffusion, SmallRadiiAreTheSameWithFewerLevels) {
     s.nearestDistance = 10;
     const ReplayResult fewer = replayer().run(c, {m}, s);
     EXPECT_EQ(coarsestResolved(fewer.plan) + row.dropped, coarsestResolved(all.plan));
-    // Where edges are summed a reduction makes two levels; else the first makes four and the resolve the
-    // others.
-    EXPECT_EQ(fewer.plan.dispatchCount + (GetParam() == 3 ? row.dropped / 2 : 0), all.plan.dispatchCount);
+    // The resolve makes levels 6 and 7, so that a reduction is left out from 5 on.
+    EXPECT_EQ(fewer.plan.dispatchCount + (row.dropped == 4 ? 1 : 0), all.plan.dispatchCount);
     double most = 0;
     for (size_t i = 0; i < all.output.data.size(); ++i)
       most = std::max(most, static_cast<double>(std::abs(all.output.data[i] - fewer.output.data[i])));

@@ -355,47 +355,47 @@ INSTANTIATE_TEST_SUITE_P(Reference, ThesisOptions, testing::ValuesIn(kOptions),
 
 // The pyramid is another algorithm than the reference's sum over all pixels; this is how far it is.
 TEST_F(GpuTest, DiffusionDistanceToBruteForce) {
-  // A wrong profile or a missing renormalization shows as tens of percent. Of the sphere only the limb is
-  // lit, where every pixel is a silhouette.
+  // A wrong profile or a missing renormalization shows as tens of percent. The sphere is lit at its limb
+  // alone, where every pixel is a silhouette and a texel holds lit and unlit ones.
   struct Row {
     const char* name;
-    double limit, best;  // of the default quality and of 3
+    double limit;  // a tenth above what is measured
   };
-  for (const auto& [name, limit, best] : {Row{"checker", 0.022, 0.018},
-                                          {"step", 0.008, 0.005},
-                                          {"tilted", 0.005, 0.0005},
-                                          {"sphere", 0.062, 0.0105},
-                                          {"ear", 0.016, 0.003}}) {
+  for (const auto& [name, limit] :
+       {Row{"checker", 0.0232}, {"step", 0.008}, {"tilted", 0.0083}, {"sphere", 0.353}, {"ear", 0.058}}) {
     const Capture c = make({name});
     const std::vector<PellucidMaterial> materials = testMaterials(c);
     const Image truth = diffusionTruth(c, materials);
-    for (const uint32_t quality : {2u, 3u}) {
-      const Image gpu = rgb(replayer().run(c, materials, diffusionOf(quality)).output);
-      const Comparison d = compareImages(gpu, truth, comparisonMask(c.material, c.irradiance, Subset::All));
-      std::printf("%-10s quality %u, relative RMSE %.4f %.4f %.4f\n", name, quality,
-                  d.channels[0].relativeRmse, d.channels[1].relativeRmse, d.channels[2].relativeRmse);
-      for (const ChannelDifference& k : d.channels)
-        EXPECT_LT(k.relativeRmse, quality == 3 ? best : limit) << name;
-    }
+    const Image gpu = rgb(replayer().run(c, materials, diffusionOf(1)).output);
+    const Comparison d = compareImages(gpu, truth, comparisonMask(c.material, c.irradiance, Subset::All));
+    std::printf("%-10s relative RMSE %.4f %.4f %.4f\n", name, d.channels[0].relativeRmse,
+                d.channels[1].relativeRmse, d.channels[2].relativeRmse);
+    for (const ChannelDifference& k : d.channels) EXPECT_LT(k.relativeRmse, limit) << name;
   }
 }
 
-// Checkers of 8 pixels on planes that face the camera, that are tilted less than what a quality sums (20
-// degrees at 3, 35 at the default) and more, about the columns, the rows and diagonals, away from the image's
-// border.
+// Checkers of 8 pixels on planes that face the camera and that are tilted, about the columns, the rows and
+// diagonals, away from the image's border.
 TEST_F(GpuTest, DiffusionOnPlanesIsNearBruteForceInEveryDirection) {
   constexpr int kSize = 128, kBorder = 32;
   constexpr double kCell = 8;
   struct Row {
     double tilt;
-    int x, y;             // direction in which the plane recedes, in pixels
-    double normal, best;  // of the default quality and of 3
+    int x, y;      // direction in which the plane recedes, in pixels
+    double limit;  // a tenth above what is measured
   };
-  for (const auto& [tilt, dx, dy, normal, best] :
-       {Row{0, 1, 0, 0.015, 0.003}, Row{18, 0, 1, 0.0145, 0.005}, Row{18, 1, -1, 0.0165, 0.0041},
-        Row{26, 1, 0, 0.015, 0.0009}, Row{34, 1, 0, 0.0142, 0.0009}, Row{34, 1, 1, 0.019, 0.0008},
-        Row{36, 1, 0, 0.0112, 0.0008}, Row{46, 1, -1, 0.0112, 0.0011}, Row{60, 1, 0, 0.0216, 0.0008},
-        Row{60, 0, 1, 0.015, 0.0008}, Row{60, 1, 1, 0.0158, 0.001}, Row{60, -1, 1, 0.0158, 0.001}}) {
+  for (const auto& [tilt, dx, dy, limit] : {Row{0, 1, 0, 0.0153},
+                                            {18, 0, 1, 0.0148},
+                                            {18, 1, -1, 0.0169},
+                                            {26, 1, 0, 0.0154},
+                                            {34, 1, 0, 0.0146},
+                                            {34, 1, 1, 0.0195},
+                                            {36, 1, 0, 0.0146},
+                                            {46, 1, -1, 0.0263},
+                                            {60, 1, 0, 0.0294},
+                                            {60, 0, 1, 0.0294},
+                                            {60, 1, 1, 0.0393},
+                                            {60, -1, 1, 0.0393}}) {
     const double cosine = std::cos(glm::radians(tilt)), sine = std::sin(glm::radians(tilt));
     Capture c = flatCapture(kSize, kSize);
     const double pixel = 2 / (c.clipFromView[0] * kSize), scale = 1 / std::hypot(dx, dy);
@@ -422,18 +422,15 @@ TEST_F(GpuTest, DiffusionOnPlanesIsNearBruteForceInEveryDirection) {
         m.radius[channel] = static_cast<float>(3.8 * deviation);
       }
     const Image truth = diffusionTruth(c, {m});
-    for (const uint32_t quality : {2u, 3u}) {
-      const Comparison d =
-          compareImages(rgb(replayer().run(c, {m}, diffusionOf(quality)).output), truth, middle);
-      for (const ChannelDifference& k : d.channels)
-        EXPECT_LT(k.relativeRmse, quality == 3 ? best : normal)
-            << tilt << " degrees, " << dx << " " << dy << ", quality " << quality;
-    }
+    const Comparison d = compareImages(rgb(replayer().run(c, {m}, diffusionOf(1)).output), truth, middle);
+    std::printf("%g degrees, %d %d: %.4f %.4f %.4f\n", tilt, dx, dy, d.channels[0].relativeRmse,
+                d.channels[1].relativeRmse, d.channels[2].relativeRmse);
+    for (const ChannelDifference& k : d.channels)
+      EXPECT_LT(k.relativeRmse, limit) << tilt << " degrees, " << dx << " " << dy;
   }
 }
 
-// Pixels whose irradiance is none are black to the others, at every quality: the best one sums around them,
-// on what else is a plane, the default not, as all but one of a quad's values are alike.
+// Pixels whose irradiance is none are black to the others, at every quality.
 TEST_F(GpuTest, BadIrradianceIsBlackToBruteForce) {
   Capture c = flatCapture(64, 48);
   const float values[] = {std::numeric_limits<float>::quiet_NaN(), -std::numeric_limits<float>::infinity(),
@@ -442,9 +439,9 @@ TEST_F(GpuTest, BadIrradianceIsBlackToBruteForce) {
   for (int y = 3; y < c.height; y += 9)
     for (int x = 2; x < c.width; x += 7, ++i) c.irradiance.at(x, y)[i / 3 % 3] = values[i % 3];
   const Image truth = diffusionTruth(c, {testMaterial()});
-  // Of quality 0 to 3, a quarter above what is measured: relative RMSE and the worst pixel.
+  // Of each quality, a quarter above what is measured: relative RMSE and the worst pixel.
   const double limits[][2] = {{0.011, 0.19}, {0.003, 0.022}, {0.003, 0.022}, {0.0002, 0.0013}};
-  for (uint32_t quality = 0; quality < 4; ++quality) {
+  for (uint32_t quality = 0; quality < 2; ++quality) {
     const Comparison d = compareImages(rgb(replay(c, testMaterial(), diffusionOf(quality))), truth, {});
     for (const ChannelDifference& k : d.channels) {
       std::printf("quality %u: relative RMSE %.4f, worst %.4f\n", quality, k.relativeRmse, k.max);
@@ -452,107 +449,6 @@ TEST_F(GpuTest, BadIrradianceIsBlackToBruteForce) {
       EXPECT_LT(k.max, limits[quality][1]) << "quality " << quality;
     }
   }
-}
-
-// Light that ranges by less than a fifth, or changes evenly, is not summed where edges are. Checkers of
-// almost that and a ramp from dark to bright, on curves and at silhouettes, err within what the default
-// promises.
-TEST_F(GpuTest, WhatIsAlikeIsNearBruteForceWithoutSums) {
-  struct Pattern {
-    const char* name;
-    float (*light)(int x, int y);
-    double most, worst;  // a tenth above what is measured; the worst pixel is one of a silhouette
-  };
-  const Pattern patterns[] = {
-      {"checker", [](int x, int y) { return (x / 4 + y / 4) % 2 == 0 ? 1.0f : 0.82f; }, 0.008, 0.071},
-      {"ramp",
-       [](int x, int y) { return 0.1f + 0.01f * static_cast<float>(x) + 0.005f * static_cast<float>(y); },
-       0.0045, 0.018}};
-  for (const char* name : {"sphere", "ear"})
-    for (const Pattern& pattern : patterns) {
-      Capture c = make({name});
-      c.albedo = {};
-      for (int y = 0; y < c.height; ++y)
-        for (int x = 0; x < c.width; ++x)
-          for (int k = 0; k < 3; ++k) c.irradiance.at(x, y)[k] = pattern.light(x, y);
-      const std::vector<PellucidMaterial> materials = testMaterials(c);
-      const Image out = rgb(replayer().run(c, materials, diffusionOf(2)).output);
-      const Comparison d = compareImages(out, diffusionTruth(c, materials),
-                                         comparisonMask(c.material, c.irradiance, Subset::All));
-      for (const ChannelDifference& k : d.channels) {
-        EXPECT_LT(k.relativeRmse, pattern.most) << name << ", " << pattern.name;
-        EXPECT_LT(k.max, pattern.worst) << name << ", " << pattern.name;
-      }
-    }
-}
-
-// A ball lit at its limb, as large as the kernel: its middle is a plane to the eye, but its light comes
-// around the curve. What quality 3 filters there is to meet what it sums without a seam.
-TEST_F(GpuTest, MiddleOfABallIsSummedWithItsRim) {
-  constexpr int kSize = 112, kCenter = kSize / 2;
-  constexpr double kRadius = 50, kInside = 40, kLeast = 0.01;
-  Capture c = flatCapture(kSize, kSize);
-  const double pixel = 2 / (c.clipFromView[0] * kSize);
-  for (int y = 0; y < kSize; ++y)
-    for (int x = 0; x < kSize; ++x) {
-      const double nx = (x + 0.5 - kCenter) / kRadius, ny = (kCenter - y - 0.5) / kRadius;
-      const double nz = std::sqrt(std::max(1 - nx * nx - ny * ny, 0.0));
-      if (nz == 0) c.material[static_cast<size_t>(kSize * y + x)] = 0;
-      c.frontDepth.image.at(x, y)[0] = static_cast<float>(100 + (1 - nz) * kRadius * pixel);
-      const double normal[3] = {nx, ny, nz};
-      for (int k = 0; k < 3; ++k) {
-        c.normal.at(x, y)[k] = static_cast<float>(normal[k]);
-        c.irradiance.at(x, y)[k] = nx > 0.85 ? 1.0f : 0.0f;
-      }
-    }
-  PellucidMaterial m = testMaterial();
-  for (int k = 0; k < 3; ++k) {
-    const double deviation = 20 * pixel;
-    m.gaussianVariance[k][0] = static_cast<float>(deviation * deviation);
-    m.gaussianVariance[k][1] = static_cast<float>(deviation * deviation / 25);
-    m.radius[k] = static_cast<float>(3.8 * deviation);
-  }
-  const Image truth = diffusionTruth(c, {m}), out = rgb(replayer().run(c, {m}, diffusionOf(3)).output);
-  const auto ratio = [&](int x, int y) { return static_cast<double>(out.at(x, y)[0] / truth.at(x, y)[0]); };
-  double worst = 0, seam = 0;
-  for (int y = 1; y < kSize; ++y)
-    for (int x = 1; x < kSize; ++x) {
-      if (std::hypot(x + 0.5 - kCenter, y + 0.5 - kCenter) > kInside || truth.at(x, y)[0] < kLeast) continue;
-      worst = std::max(worst, std::abs(ratio(x, y) - 1));
-      seam =
-          std::max({seam, std::abs(ratio(x, y) - ratio(x - 1, y)), std::abs(ratio(x, y) - ratio(x, y - 1))});
-    }
-  // .2 both where the middle is filtered.
-  EXPECT_LT(worst, 0.08);
-  EXPECT_LT(seam, 0.05);
-}
-
-// A long tilted plane lit at one end: what reaches the other comes from clusters of the last level alone.
-TEST_F(GpuTest, SumsReachAsFarAsTheLastLevel) {
-  constexpr int kWidth = 520, kHeight = 16, kLit = 448, kFar = 100;
-  Capture c = flatCapture(kWidth, kHeight);
-  const double pixel = 2 / (c.clipFromView[0] * kWidth), tilt = glm::radians(60.0);
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 0; x < kWidth; ++x) {
-      c.frontDepth.image.at(x, y)[0] = static_cast<float>(100 + std::tan(tilt) * y * pixel);
-      c.normal.at(x, y)[1] = static_cast<float>(-std::sin(tilt));
-      c.normal.at(x, y)[2] = static_cast<float>(std::cos(tilt));
-      for (int k = 0; k < 3; ++k) c.irradiance.at(x, y)[k] = x >= kLit ? 1.0f : 0.0f;
-    }
-  PellucidMaterial m = testMaterial();
-  const double deviation = 300 * pixel;
-  m.gaussianCount = 1;
-  for (int k = 0; k < 3; ++k) {
-    m.gaussianVariance[k][0] = static_cast<float>(deviation * deviation);
-    m.gaussianWeight[k][0] = 1;
-    m.radius[k] = static_cast<float>(3.8 * deviation);
-  }
-  const Image truth = diffusionTruth(c, {m}), out = rgb(replayer().run(c, {m}, diffusionOf(3)).output);
-  double worst = 0;
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 0; x < kFar; ++x)
-      worst = std::max(worst, std::abs(out.at(x, y)[0] / truth.at(x, y)[0] - 1.0));
-  EXPECT_LT(worst, 0.02);
 }
 
 // Burley's profile, 99.9 % of whose energy lies within `radius` mm.
@@ -580,10 +476,9 @@ TEST_F(GpuTest, KernelLargerThanTheImageKeepsItsContrast) {
     }
   const PellucidMaterial m = burley(kRadius * pixel);
   const Comparison d =
-      compareImages(rgb(replayer().run(c, {m}, diffusionOf(3)).output), diffusionTruth(c, {m}),
+      compareImages(rgb(replayer().run(c, {m}, diffusionOf(1)).output), diffusionTruth(c, {m}),
                     comparisonMask(c.material, c.irradiance, Subset::All));
-  // .0017; .0022 by the fit of energies alone, .0032 with areas of texels to 3 % besides.
-  for (const ChannelDifference& k : d.channels) EXPECT_LT(k.relativeRmse, 0.0019);
+  for (const ChannelDifference& k : d.channels) EXPECT_LT(k.relativeRmse, 0.0078);
 }
 
 // Where no distance says how large radii are, levels 6 and 7 are not made for smaller ones than 82 pixels,
@@ -595,7 +490,7 @@ TEST_F(GpuTest, RadiiNeedNotBeKnown) {
     for (int x = 0; x < kSize; ++x)
       for (int k = 0; k < 3; ++k)
         c.irradiance.at(x, y)[k] = x < kSize / 2 ? 0.0f : 2 + 0.1f * static_cast<float>((x * 7 + y * 13) % 5);
-  for (const uint32_t quality : {1u, 2u})
+  for (const uint32_t quality : {0u, 1u})
     for (const double radius : {10.0, 40.0, 70.0}) {
       const PellucidMaterial m = burley(0.5 * radius);
       ReplaySettings s = diffusionOf(quality);
@@ -608,8 +503,8 @@ TEST_F(GpuTest, RadiiNeedNotBeKnown) {
       for (size_t i = 0; i < known.output.data.size(); ++i)
         sum +=
             std::abs(static_cast<double>(known.output.data[i]) - static_cast<double>(unknown.output.data[i]));
-      // Few pixels are rounded to another half; with levels 6 and 7 it would be 4e-5 and 7e-5.
-      EXPECT_LT(sum / static_cast<double>(known.output.data.size()), 1e-5)
+      // What levels 6 and 7 have of the widest radius, at most.
+      EXPECT_LT(sum / static_cast<double>(known.output.data.size()), 2.2e-5)
           << "radius " << radius << ", quality " << quality;
     }
 }

@@ -116,10 +116,10 @@ TEST_P(SharedCaptureGather, IsNearAllTexels) {
   for (size_t c = 0; c < 3; ++c) EXPECT_LT(channels[c].relativeRmse, GetParam().ofAllTexels[c]) << c;
 }
 
-// Diffusion alone from brute force: relative RMSE R G B of the default quality and of the best.
+// Diffusion alone from brute force: relative RMSE R G B of the default.
 struct DiffusionExpectation {
   const char* name;
-  double normal[3], best[3];
+  double all[3];
 };
 
 void PrintTo(const DiffusionExpectation& value, std::ostream* out) { *out << value.name; }
@@ -148,24 +148,18 @@ TEST_P(SharedCaptureDiffusion, IsAsNearToBruteForceAsDocumented) {
           static_cast<float>(value[k]) * (capture.albedo.empty() ? 1 : capture.albedo.at(x, y)[k]);
   }
   ASSERT_GT(std::count(mask.begin(), mask.end(), 1), 200);
-  for (const uint32_t quality : {2u, 3u}) {
-    ReplaySettings s;
-    s.features = PELLUCID_FEATURE_DIFFUSION;
-    s.quality = quality;
-    const Image image = rgb(replayer().run(capture, materials, s).output);
-    const auto channels = compareImages(image, truth, mask).channels;
-    for (size_t c = 0; c < 3; ++c)
-      EXPECT_LT(channels[c].relativeRmse, 1.02 * (quality == 3 ? GetParam().best : GetParam().normal)[c])
-          << "channel " << c << ", quality " << quality;
-  }
+  ReplaySettings s;
+  s.features = PELLUCID_FEATURE_DIFFUSION;
+  const auto channels =
+      compareImages(rgb(replayer().run(capture, materials, s).output), truth, mask).channels;
+  for (size_t c = 0; c < 3; ++c) EXPECT_LT(channels[c].relativeRmse, 1.02 * GetParam().all[c]) << c;
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Truth, SharedCaptureDiffusion,
-    testing::Values(DiffusionExpectation{"ear_backlit", {.0040, .0029, .0027}, {.00053, .00051, .00054}},
-                    DiffusionExpectation{"head_sidelit", {.0023, .0017, .0015}, {.00043, .00044, .00049}},
-                    DiffusionExpectation{"sphere_backlit", {.0096, .0080, .0049}, {.0015, .00098, .00081}}),
-    [](const auto& test) { return std::string(test.param.name); });
+INSTANTIATE_TEST_SUITE_P(Truth, SharedCaptureDiffusion,
+                         testing::Values(DiffusionExpectation{"ear_backlit", {.021, .018, .017}},
+                                         DiffusionExpectation{"head_sidelit", {.017, .009, .0053}},
+                                         DiffusionExpectation{"sphere_backlit", {.0618, .0300, .0258}}),
+                         [](const auto& test) { return std::string(test.param.name); });
 
 INSTANTIATE_TEST_SUITE_P(
     Truth, SharedCaptureGather,
@@ -180,10 +174,10 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& test) { return std::string(test.param.name); });
 
 INSTANTIATE_TEST_SUITE_P(Truth, SharedCapture,
-                         testing::Values(Expectation{"ear_backlit", {.1702, .1056, .0517}},
+                         testing::Values(Expectation{"ear_backlit", {.1770, .1105, .0551}},
                                          Expectation{"head_sidelit", {.0488, .0474, .0417}},
                                          Expectation{"slab_backlit", {.190, .266, .546}},
-                                         Expectation{"sphere_backlit", {.358, .228, .1440}, {1, 1.18, 1.32}},
+                                         Expectation{"sphere_backlit", {.358, .228, .1440}, {1, 1.18, 1.34}},
                                          Expectation{"two_sheets", {.145, .157, .228}}),
                          [](const auto& test) { return std::string(test.param.name); });
 

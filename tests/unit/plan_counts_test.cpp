@@ -41,12 +41,10 @@ struct Detail {
   float nearestDistance;
   bool normals = false;
 };
-const Detail kDetails[] = {{"", 2, 0},
+const Detail kDetails[] = {{"", 1, 0},
                            {", quality 0", 0, 0},
-                           {", quality 1", 1, 0},
-                           {", normals", 2, 0, true},
-                           {", quality 3, normals", 3, 0, true},
-                           {", far away", 2, 1000},
+                           {", normals", 1, 0, true},
+                           {", far away", 1, 1000},
                            {", quality 0, far away", 0, 1000}};
 
 nlohmann::json countsOf(const Frame& f) {

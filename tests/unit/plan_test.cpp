@@ -33,8 +33,8 @@ bool skips(const PellucidPlan& plan, const std::string& what, const std::string&
 TEST(Plan, WholeFrameIsFusedDispatchAndPyramid) {
   Frame f;
   const PellucidPlan plan = f.plan();
-  EXPECT_EQ(names(plan), (std::vector<std::string>{"translucency", "reduce", "resolve", "diffuse"}));
-  EXPECT_EQ(plan.barrierCount, 3u);
+  EXPECT_EQ(names(plan), (std::vector<std::string>{"translucency", "quads", "reduce", "reduce", "resolve", "diffuse"}));
+  EXPECT_EQ(plan.barrierCount, 5u);
   EXPECT_EQ(plan.skipCount, 2u);
   EXPECT_TRUE(skips(plan, "exit depth", "a shadow map has none: air behind an occluder counts as medium"));
   EXPECT_TRUE(skips(plan, "caster material",
@@ -98,7 +98,7 @@ TEST(Plan, NoLightNoTranslucency) {
   Frame f;
   f.frame.lightCount = 0;
   const PellucidPlan plan = f.plan();
-  EXPECT_EQ(names(plan), (std::vector<std::string>{"quads", "reduce", "resolve", "diffuse"}));
+  EXPECT_EQ(names(plan), (std::vector<std::string>{"quads", "reduce", "reduce", "resolve", "diffuse"}));
   EXPECT_EQ(plan.dispatches[0].pipeline, static_cast<uint32_t>(PELLUCID_PIPELINE_QUADS_AND_COPY_16F));
   EXPECT_TRUE(skips(plan, "translucency", "no light can contribute"));
 }
@@ -164,7 +164,7 @@ TEST(Plan, ManyShadowImagesBecomeSeveralDispatches) {
     lights += plan.dispatches[i].pushConstants[1];
   }
   EXPECT_EQ(lights, 20u);
-  EXPECT_STREQ(plan.dispatches[3].name, "reduce");
+  EXPECT_STREQ(plan.dispatches[3].name, "quads");
 }
 
 // Exit depths and caster materials are shadow images, too.
@@ -190,7 +190,7 @@ TEST(Plan, ImagesBesideMapsCount) {
     EXPECT_EQ(images, (std::vector<uint32_t>{light, 4 + 2 * light, 5 + 2 * light, light + 1, 6 + 2 * light,
                                              7 + 2 * light}));
   }
-  EXPECT_STREQ(plan.dispatches[2].name, "reduce");
+  EXPECT_STREQ(plan.dispatches[2].name, "quads");
 }
 
 // Many lights leave out what lies beside their maps before a frame fails that has room for the maps.
@@ -238,17 +238,21 @@ TEST(Plan, ManyLightsBecomeSeveralDispatches) {
   EXPECT_LE(end, plan.constantsSize);
 }
 
-// The variant for directional lights is chosen only where everything that it takes for granted holds.
+// The gather's variant for directional lights is chosen only where everything that it takes for granted holds.
 TEST(Plan, DirectionalVariantNeedsTheCommonCase) {
   const auto pipeline = [](const std::function<void(Frame&)>& change) {
     Frame f;
     f.frame.normal = Frame::view();
+    f.frame.gatherSamples = 8;
     change(f);
     f.use();
-    return f.plan().dispatches[0].pipeline;
+    const PellucidPlan plan = f.plan();
+    for (uint32_t i = 0; i < plan.dispatchCount; ++i)
+      if (names(plan)[i] == "gather points") return plan.dispatches[i].pipeline;
+    return uint32_t{PELLUCID_PIPELINE_COUNT};
   };
   const auto directional = [&](const std::function<void(Frame&)>& change) {
-    return pipeline(change) == static_cast<uint32_t>(PELLUCID_PIPELINE_DIRECTIONAL_QUADS_16F);
+    return pipeline(change) == static_cast<uint32_t>(PELLUCID_PIPELINE_GATHER_POINTS_DIRECTIONAL);
   };
   ASSERT_TRUE(directional([](Frame&) {}));
   EXPECT_FALSE(directional([](Frame& f) { f.frame.normal = {}; }));
@@ -256,23 +260,10 @@ TEST(Plan, DirectionalVariantNeedsTheCommonCase) {
   EXPECT_FALSE(directional([](Frame& f) { f.frame.thicknessSource = PELLUCID_THICKNESS_CAMERA; }));
   EXPECT_FALSE(directional([](Frame& f) { f.frame.angleModel = PELLUCID_ANGLE_COSINE; }));
   EXPECT_FALSE(directional([](Frame& f) { f.frame.constantViewDirection = 1; }));
-  EXPECT_FALSE(directional([](Frame& f) { f.material.transmittanceModel = PELLUCID_TRANSMITTANCE_LINEAR; }));
   EXPECT_FALSE(directional([](Frame& f) { f.lights[0].shadowMapCount = 0; }));
   EXPECT_FALSE(directional([](Frame& f) {
     f.maps[0].encoding = PELLUCID_DEPTH_VIEW_Z;
     for (int i = 0; i < 4; ++i) f.maps[0].viewFromWorld[5 * i] = 1;
-  }));
-  for (uint32_t PellucidShadowMap::*beside :
-       {&PellucidShadowMap::exitImage, &PellucidShadowMap::casterMaterialImage})
-    EXPECT_FALSE(directional([beside](Frame& f) {
-      f.images.push_back(Frame::view());
-      f.maps[0].*beside = 2;
-    }));
-  EXPECT_FALSE(directional([](Frame& f) { f.lights.push_back(f.lights[0]); }));
-  EXPECT_FALSE(directional([](Frame& f) {
-    f.lights.push_back(f.lights[0]);
-    f.lights[1].type = PELLUCID_LIGHT_POINT;
-    f.lights[1].shadowMapCount = 0;
   }));
 }
 
@@ -289,19 +280,14 @@ std::array<uint32_t, 2> workgroupOf(uint32_t pipeline) {
 
 // Tiles that overlap would be done twice, and no pixel would say so.
 TEST(Plan, TilesAreThoseOfTheShader) {
-  for (const bool directional : {false, true})
-    for (const bool diffuses : {false, true}) {
-      Frame f;
-      if (directional) f.frame.normal = Frame::view();
-      if (!diffuses) f.frame.features = PELLUCID_FEATURE_TRANSLUCENCY;
-      const PellucidPlan plan = f.plan();
-      const PellucidDispatch& d = plan.dispatches[0];
-      const auto [columns, rows] = workgroupOf(d.pipeline);
-      ASSERT_GT(columns * rows, 0u);
-      // An invocation does two pixels below each other.
-      EXPECT_EQ(d.groups[0], (f.frame.imageExtent[0] + columns - 1) / columns) << d.pipeline;
-      EXPECT_EQ(d.groups[1], (f.frame.imageExtent[1] + 2 * rows - 1) / (2 * rows)) << d.pipeline;
-    }
+  Frame f;
+  const PellucidPlan plan = f.plan();
+  const PellucidDispatch& d = plan.dispatches[0];
+  const auto [columns, rows] = workgroupOf(d.pipeline);
+  ASSERT_GT(columns * rows, 0u);
+  // An invocation does two pixels below each other.
+  EXPECT_EQ(d.groups[0], (f.frame.imageExtent[0] + columns - 1) / columns);
+  EXPECT_EQ(d.groups[1], (f.frame.imageExtent[1] + 2 * rows - 1) / (2 * rows));
 }
 
 // What the directional records read is a uniform buffer.

@@ -48,8 +48,7 @@ TEST(PyramidEnergy, MixtureIsBurleysProfile) {
 TEST(PyramidEnergy, OfBurleyIsThatOfItsGaussians) {
   for (int i = kFine; i < kElements; ++i) {
     const auto element = static_cast<Element>(i);
-    const EnergyFrom gaussian = gaussianEnergy(FineFilters::One, element),
-                     burley = burleyEnergy(FineFilters::One, element);
+    const EnergyFrom gaussian = gaussianEnergy(element), burley = burleyEnergy(element);
     // Between samples, too.
     for (double x = -9; x < 10; x += 0.3)
       EXPECT_NEAR(at(burley, x), mixed([&](double, double s) { return at(gaussian, s + x); }), 2e-3)
@@ -57,44 +56,18 @@ TEST(PyramidEnergy, OfBurleyIsThatOfItsGaussians) {
   }
 }
 
-// What is fitted to Burley's profile as a whole is near what its Gaussians ask for, but no level has less
-// than nothing, and where the fit ends what lies beyond a radius goes on as it was.
-TEST(PyramidEnergy, FitOfBurleyAsksForNothingBelowZero) {
-  for (int i = kNarrow; i < kElements; ++i) {
-    const auto element = static_cast<Element>(i);
-    const EnergyFrom gaussian = gaussianEnergy(FineFilters::TwoOfPlanes, element),
-                     burley = burleyEnergy(FineFilters::TwoOfPlanes, element);
-    for (double x = -9; x < 7; x += 0.3)
-      EXPECT_NEAR(at(burley, x), mixed([&](double, double s) { return at(gaussian, s + x); }), 0.04)
-          << i << " at " << x;
-    EXPECT_NEAR(burley.first + EnergyFrom::kStep * static_cast<double>(burley.samples.size() - 1), 7, 1e-9);
-    for (size_t k = 1; k < burley.samples.size(); ++k) {
-      const double x = burley.first + EnergyFrom::kStep * static_cast<double>(k);
-      if (element >= kLevel2) {
-        EXPECT_GE(burley.samples[k], 0) << i << " at " << x;
-      }
-      if (x > 0) {
-        EXPECT_GE(burley.samples[k], burley.samples[k - 1]) << i << " at " << x;
-      }
-      // The steepest slope is .41 an octave.
-      EXPECT_LT(burley.samples[k] - burley.samples[k - 1], 0.055) << i << " at " << x;
-    }
-  }
-}
-
 // Far from all elements in width nothing or everything lies there.
 TEST(PyramidEnergy, BeginsWithNothingAndEndsWithAll) {
-  for (const FineFilters filters : {FineFilters::None, FineFilters::One, FineFilters::TwoOfPlanes})
-    for (int i = filters == FineFilters::TwoOfPlanes ? kNarrow : kFine; i < kElements; ++i)
-      for (const EnergyFrom& from : {gaussianEnergy(filters, static_cast<Element>(i)),
-                                     burleyEnergy(filters, static_cast<Element>(i))}) {
-        EXPECT_NEAR(from.samples.front(), 0, 1e-12);
-        EXPECT_NEAR(from.samples.back(), 1, 1e-12);
-        for (const double sample : from.samples) {
-          EXPECT_GT(sample, -0.25);
-          EXPECT_LT(sample, 1.25);
-        }
+  for (int i = kFine; i < kElements; ++i)
+    for (const EnergyFrom& from :
+         {gaussianEnergy(static_cast<Element>(i)), burleyEnergy(static_cast<Element>(i))}) {
+      EXPECT_NEAR(from.samples.front(), 0, 1e-12);
+      EXPECT_NEAR(from.samples.back(), 1, 1e-12);
+      for (const double sample : from.samples) {
+        EXPECT_GT(sample, -0.25);
+        EXPECT_LT(sample, 1.25);
       }
+    }
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "diffusion_error_table.h"
 #include "frame_fixture.h"
@@ -71,24 +72,15 @@ TEST(Quality, SmallRadiiDropLevels) {
   };
   // 23.6, 21.4, 5.9, 5.4, .07 pixels
   for (const Row& row : {Row{3, 7}, {3.3f, 5}, {12, 5}, {13, 3}, {1000, 3}})
-    for (const uint32_t quality : {1u, 2u, 3u}) {
+    for (const uint32_t quality : {0u, 1u, 2u}) {
       f.frame.nearestDistance = row.distance;
       f.frame.quality = quality;
-      f.frame.normal = Frame::view();
       const PellucidPlan plan = f.plan();
-      // Levels 4 and 5 are made beside 2 and 3, levels 6 and 7 by the resolve, unless edges are summed.
-      const bool makesLast = row.coarsest == 7 && quality < 3;
-      const uint32_t reduce[] = {PELLUCID_PIPELINE_REDUCE_LEVELS, PELLUCID_PIPELINE_REDUCE_FOR_SUMS,
-                                 PELLUCID_PIPELINE_REDUCE_FOR_EDGES};
-      EXPECT_EQ(find(plan, "reduce")->pipeline, reduce[quality - 1]);
-      const uint32_t last[] = {PELLUCID_PIPELINE_REDUCE_AND_RESOLVE,
-                               PELLUCID_PIPELINE_REDUCE_RESOLVE_AND_SUM_16F};
-      const uint32_t resolve[] = {PELLUCID_PIPELINE_RESOLVE_LEVELS, PELLUCID_PIPELINE_RESOLVE_AND_SUM_16F,
-                                  PELLUCID_PIPELINE_RESOLVE_FOR_EDGES};
-      EXPECT_EQ(find(plan, "resolve")->pipeline, makesLast ? last[quality - 1] : resolve[quality - 1]);
-      EXPECT_EQ(reductions(plan), quality == 3 ? row.coarsest / 2 : 1) << row.distance;
-      // Clusters and edges.
-      EXPECT_EQ(plan.dispatchCount, 3 + reductions(plan) + (quality == 3 ? 2 : 0));
+      // The resolve makes levels 6 and 7.
+      EXPECT_EQ(find(plan, "resolve")->pipeline,
+                static_cast<uint32_t>(row.coarsest == 7 ? PELLUCID_PIPELINE_REDUCE_AND_RESOLVE
+                                                        : PELLUCID_PIPELINE_RESOLVE_LEVELS));
+      EXPECT_EQ(reductions(plan), row.coarsest == 3 ? 1u : 2u) << row.distance;
       EXPECT_EQ(coarsest(plan), row.coarsest) << row.distance;
     }
   f.frame.nearestDistance = 13;
@@ -135,106 +127,118 @@ TEST(Quality, RadiiBeyondThePyramidAreReported) {
 
 TEST(Quality, ChoosesTheLastPass) {
   Frame f;
-  f.frame.normal = f.frame.irradiance;
-  EXPECT_EQ(f.plan().quality, 2u) << "default";
+  EXPECT_EQ(f.plan().quality, 1u) << "default";
   for (uint32_t quality = 0; quality < kQualities; ++quality) {
     f.frame.quality = quality;
     for (const bool wide : {false, true}) {
       f.frame.outputFormat = wide ? VK_FORMAT_R32G32B32A32_SFLOAT : VK_FORMAT_R16G16B16A16_SFLOAT;
       const PellucidPlan plan = f.plan();
       EXPECT_EQ(plan.quality, quality);
-      const uint32_t half = quality == 0   ? PELLUCID_PIPELINE_DIFFUSE_COARSE_16F
-                            : quality == 3 ? PELLUCID_PIPELINE_DIFFUSE_PLANES_16F
-                                           : PELLUCID_PIPELINE_DIFFUSE_16F;
+      const uint32_t half =
+          quality == 0 ? PELLUCID_PIPELINE_DIFFUSE_COARSE_16F : PELLUCID_PIPELINE_DIFFUSE_16F;
       EXPECT_EQ(find(plan, "diffuse")->pipeline, half + wide);
-      const PellucidDispatch* edges = find(plan, "diffuse edges");
-      ASSERT_EQ(edges != nullptr, quality == 3);
-      // At quality 2 they are summed beside the resolve, which then writes the output.
-      const uint32_t sums = PELLUCID_PIPELINE_REDUCE_RESOLVE_AND_SUM_16F;
-      EXPECT_EQ(find(plan, "resolve")->pipeline == sums + wide, quality == 2);
-      if (!edges) continue;
-      EXPECT_EQ(edges->pipeline, PELLUCID_PIPELINE_DIFFUSE_EDGES_16F + wide);
     }
   }
-  f.frame.normal = {};
-  f.frame.outputFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
-  EXPECT_EQ(find(f.plan(), "diffuse edges"), nullptr) << "there are none";
-  EXPECT_EQ(find(f.plan(), "diffuse")->pipeline, PELLUCID_PIPELINE_DIFFUSE_16F);
 }
 
-// Tiles of 16 x 16 pixels of the image, four to sixteen of a group, so that there are a thousand groups if
-// that is enough.
-TEST(Quality, GroupsThatSumHaveAllTiles) {
-  struct Row {
-    uint32_t x, y, width, height, tiles, ofGroup;
-  };
-  for (const Row& row :
-       {Row{0, 0, 3840, 2160, 240 * 135, 16}, Row{0, 0, 1920, 1080, 120 * 68, 7},
-        Row{0, 0, 7680, 4320, 480 * 270, 16}, Row{0, 0, 100, 50, 7 * 4, 4}, Row{15, 31, 2, 2, 4, 4}}) {
-    Frame f;
-    f.frame.normal = f.frame.irradiance;
-    f.frame.imageExtent[0] = row.x + row.width;
-    f.frame.imageExtent[1] = row.y + row.height;
-    f.frame.renderRect[0] = row.x;
-    f.frame.renderRect[1] = row.y;
-    f.frame.renderRect[2] = row.width;
-    f.frame.renderRect[3] = row.height;
+// Samples and points of the gather, unless single fields say how many.
+TEST(Quality, ChoosesTheGather) {
+  Frame f(1);
+  f.frame.gatherSamples = PELLUCID_GATHER_BY_QUALITY;
+  f.frame.imageExtent[0] = 1920;
+  f.frame.imageExtent[1] = 1080;
+  const uint32_t samples[] = {0, 8, 16}, spacing[] = {0, 4, 2};
+  for (uint32_t quality = 0; quality <= 2; ++quality) {
+    f.frame.quality = quality;
     const PellucidPlan plan = f.plan();
-    const PellucidDispatch* resolve = find(plan, "resolve");
-    ASSERT_NE(resolve, nullptr);
-    const uint32_t before = resolve->pushConstants[2] & 0xFFFF, ofGroup = resolve->pushConstants[2] >> 16;
-    EXPECT_EQ(ofGroup, row.ofGroup);
-    const uint32_t columns = resolve->groups[0], groups = (resolve->groups[1] - before) * columns;
-    EXPECT_GE(groups * ofGroup, row.tiles) << row.width;
-    EXPECT_LT((groups - columns) * ofGroup, row.tiles) << "a row of groups has nothing to do";
+    const PellucidDispatch* points = find(plan, "gather points");
+    ASSERT_EQ(points != nullptr, quality > 0);
+    if (!points) continue;
+    EXPECT_EQ(points->pushConstants[3], samples[quality]);
+    EXPECT_EQ(points->pushConstants[0], spacing[quality]);
+    EXPECT_EQ(skipped(plan, "gather"), 0u);
+  }
+  f.frame.gatherSpacing = 1;
+  EXPECT_EQ(find(f.plan(), "gather points")->pushConstants[0], 1u);
+  f.frame.gatherSamples = 64;
+  EXPECT_EQ(find(f.plan(), "gather points")->pushConstants[3], 64u);
+  f.frame.gatherSamples = 0;
+  EXPECT_EQ(find(f.plan(), "gather points"), nullptr);
+  EXPECT_EQ(skipped(f.plan(), "gather"), 0u) << "nobody asked for one";
+}
+
+// Without the translucency there is nothing to gather, and the diffusion adds nothing.
+TEST(Quality, GathersNothingWithoutTranslucency) {
+  Frame f(1);
+  f.frame.imageExtent[0] = 1920;
+  f.frame.imageExtent[1] = 1080;
+  f.frame.features = PELLUCID_FEATURE_DIFFUSION;
+  const auto pipeline = [&] { return find(f.plan(), "diffuse")->pipeline; };
+  const uint32_t alone = pipeline();
+  EXPECT_EQ(alone, static_cast<uint32_t>(PELLUCID_PIPELINE_DIFFUSE_16F));
+  for (const uint32_t samples : {8u, PELLUCID_GATHER_BY_QUALITY}) {
+    f.frame.gatherSamples = samples;
+    EXPECT_EQ(pipeline(), alone);
+    EXPECT_EQ(find(f.plan(), "gather points"), nullptr);
   }
 }
 
-// Gathered light is added when the resolve is done.
-TEST(Quality, EdgesAreNotSummedBesideTheResolveWithAGather) {
+// What a frame cannot have is left out and said.
+TEST(Quality, SaysWhyNothingIsGathered) {
   Frame f(1);
-  f.frame.normal = Frame::view();
-  f.frame.gatherSamples = 8;
-  EXPECT_EQ(find(f.plan(), "reduce")->pipeline, PELLUCID_PIPELINE_REDUCE_LEVELS);
-  f.frame.gatherSamples = 0;
-  EXPECT_EQ(find(f.plan(), "reduce")->pipeline, PELLUCID_PIPELINE_REDUCE_FOR_SUMS);
+  f.frame.gatherSamples = PELLUCID_GATHER_BY_QUALITY;
+  f.frame.thicknessSource = PELLUCID_THICKNESS_CAMERA;
+  EXPECT_EQ(find(f.plan(), "gather points"), nullptr);
+  EXPECT_EQ(skipped(f.plan(), "gather"), 1u);
+  f.frame.thicknessSource = PELLUCID_THICKNESS_LIGHT;
+  const auto skips = [&](auto PellucidFrame::*field, auto value) {
+    const auto before = std::exchange(f.frame.*field, value);
+    EXPECT_EQ(find(f.plan(), "gather points"), nullptr);
+    EXPECT_EQ(skipped(f.plan(), "gather"), 1u);
+    f.frame.*field = before;
+  };
+  skips(&PellucidFrame::angleModel, PELLUCID_ANGLE_COSINE);
+  skips(&PellucidFrame::constantViewDirection, 1u);
+  skips(&PellucidFrame::minimumDot, -0.1f);
+  skips(&PellucidFrame::maximumThickness, 10.0f);
+  EXPECT_NE(find(f.plan(), "gather points"), nullptr);
+  f.material.transmittanceModel = PELLUCID_TRANSMITTANCE_LINEAR;
+  f.material.transmittance[0][0] = f.material.transmittance[1][0] = f.material.transmittance[2][0] = 4;
+  EXPECT_EQ(find(f.plan(), "gather points"), nullptr);
+  EXPECT_EQ(skipped(f.plan(), "gather"), 1u);
+  f.frame.quality = 0;
+  EXPECT_EQ(skipped(f.plan(), "gather"), 0u);
 }
 
-// Against the table: the least quality that is below the target at every radius up to the frame's. Without
-// normals those that sum edges are no better than the one before.
+// Against the table: the least quality that is below the target at every radius up to the frame's.
 TEST(Quality, TargetErrorChoosesTheLeastThatHolds) {
   Frame f;
   f.frame.quality = 1;
   uint32_t chosen[kQualities] = {}, none = 0;
-  for (const bool normals : {false, true}) {
-    f.frame.normal = normals ? Frame::view() : PellucidImage{};
-    const uint32_t qualities = normals ? kQualities : 2;
-    for (const float radius : {0.0f, 0.4f, 0.5f, 1.9f, 7.0f, 30.0f, 128.0f, 400.0f}) {
-      // 5 mm are 250 / p pixels. 0: not known, as good as the largest.
-      f.frame.nearestDistance = radius > 0 ? 250 / radius * 1.0001f : 0;
-      for (const float target : {1e-5f, 3e-4f, 0.007f, 0.02f, 0.03f, 0.05f, 0.07f, 0.5f}) {
-        f.frame.targetError = target;
-        uint32_t expected = qualities;
-        for (uint32_t q = 0; q < qualities && expected == qualities; ++q) {
-          bool holds = true;
-          for (size_t i = 0; i < std::size(kErrorRadii); ++i) {
-            const bool reached = radius == 0 || i == 0 || kErrorRadii[i - 1] < radius;
-            holds = holds && (!reached || kWorstError[q][i] < target);
-          }
-          if (holds) expected = q;
+  for (const float radius : {0.0f, 0.4f, 0.5f, 1.9f, 7.0f, 30.0f, 128.0f, 400.0f}) {
+    // 5 mm are 250 / p pixels. 0: not known, as good as the largest.
+    f.frame.nearestDistance = radius > 0 ? 250 / radius * 1.0001f : 0;
+    for (const float target : {1e-5f, 3e-4f, 0.007f, 0.02f, 0.025f, 0.03f, 0.04f, 0.05f, 0.07f, 0.5f}) {
+      f.frame.targetError = target;
+      uint32_t expected = kQualities;
+      for (uint32_t q = 0; q < kQualities && expected == kQualities; ++q) {
+        bool holds = true;
+        for (size_t i = 0; i < std::size(kErrorRadii); ++i) {
+          const bool reached = radius == 0 || i == 0 || kErrorRadii[i - 1] < radius;
+          holds = holds && (!reached || kWorstError[q][i] < target);
         }
-        const bool found = expected < qualities;
-        const PellucidPlan plan = f.plan();
-        EXPECT_EQ(plan.quality, found ? expected : kQualities - 1) << radius << " pixels, " << target;
-        EXPECT_EQ(skipped(plan, "targetError"), found ? 0u : 1u) << radius << ", " << target;
-        ++(found ? chosen[expected] : none);
+        if (holds) expected = q;
       }
+      const bool found = expected < kQualities;
+      const PellucidPlan plan = f.plan();
+      EXPECT_EQ(plan.quality, found ? expected : kQualities - 1) << radius << " pixels, " << target;
+      EXPECT_EQ(skipped(plan, "targetError"), found ? 0u : 1u) << radius << ", " << target;
+      ++(found ? chosen[expected] : none);
     }
   }
   EXPECT_GT(chosen[0], 0u);
   EXPECT_GT(chosen[1], 0u);
-  EXPECT_GT(chosen[2], 0u);
-  EXPECT_GT(chosen[3], 0u);
+  EXPECT_EQ(chosen[2], 0u) << "its diffusion is that of quality 1";
   EXPECT_GT(none, 0u);
 }
 
@@ -246,7 +250,7 @@ TEST(Quality, IsInThePlansText) {
   size_t size = sizeof text;
   ASSERT_EQ(pellucidPlanToJson(&plan, text, &size), PELLUCID_OK);
   const nlohmann::json json = nlohmann::json::parse(text);
-  EXPECT_EQ(json.at("quality"), 2);
+  EXPECT_EQ(json.at("quality"), 1);
   EXPECT_NEAR(json.at("largestRadius").get<double>(), 5, 1e-5);
 }
 

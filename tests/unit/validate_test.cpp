@@ -45,7 +45,7 @@ const std::vector<Violation> kViolations = {
     {"SeparateOutput", "separateOutput", "2", [](Frame& f) { f.frame.separateOutput = 2; }},
     {"IndirectDispatches", "indirectDispatches", "2", [](Frame& f) { f.frame.indirectDispatches = 2; }},
     {"FrameLoad", "frameLoad", "-1", [](Frame& f) { f.frame.frameLoad = -1; }},
-    {"Quality", "quality", "4, outside 0..3", [](Frame& f) { f.frame.quality = 4; }},
+    {"Quality", "quality", "3, outside 0..2", [](Frame& f) { f.frame.quality = 3; }},
     {"TargetError", "targetError", "inf", [](Frame& f) { f.frame.targetError = INFINITY; }},
     {"NearestDistance", "nearestDistance", "-1", [](Frame& f) { f.frame.nearestDistance = -1; }},
     {"NoMinimumDots", "minimumDotTable", "NULL",

@@ -193,6 +193,9 @@ typedef enum PellucidDebugView {
   PELLUCID_DEBUG_IRRADIANCE = 4     /* irradiance + transmitted/rho: what the diffusion reads */
 } PellucidDebugView;
 
+/* PellucidFrame::gatherSamples: frame.quality chooses. */
+#define PELLUCID_GATHER_BY_QUALITY 0xFFFFFFFFu
+
 typedef struct PellucidFrame {
   uint32_t structSize; /* sizeof(PellucidFrame), written by pellucidInitFrame */
   uint32_t features;   /* PellucidFeatureBits; default both */
@@ -239,9 +242,12 @@ typedef struct PellucidFrame {
                                between N and the view ray */
   float maximumThickness;   /* mm; thicker parts let nothing through; 0: no limit */
   float transmittanceFilter[3]; /* multiplies T, [0, 1]; default 1 (Whelan 2009, 4.5: .55 .29 .28) */
-  uint32_t gatherSamples;   /* 0..64, a multiple of 4: points of the shadow map that each point of gatherSpacing
-                               gathers light from, for lights with a map and materials of EXP2 or SINH_EXP;
-                               0: one light-space thickness */
+  uint32_t gatherSamples;   /* points of the shadow map that each point of gatherSpacing gathers light from, for lights
+                               with a map: a multiple of 4, at most 64; needs materials of EXP2 or SINH_EXP.
+                               0: one light-space thickness. PELLUCID_GATHER_BY_QUALITY (default): 0, 8 or 16 at
+                               quality 0, 1 or 2; 0, which the plan's skips say, with a material of another
+                               model, thickness from the camera, another angleModel than NORMAL, and with
+                               constantViewDirection, minimumDot or maximumThickness */
 
   /* Minimum dots by the direction from the object to a light, each [-1, 0]. AZIMUTH: minimumDotTableSize
    * entries, 1..360 (Whelan: 36), at equal angles about upAxis, the first where the face looks and the next
@@ -270,17 +276,20 @@ typedef struct PellucidFrame {
                                in place of x, so that they begin at the minimum dot and still reach their
                                value at 1 (our reading of Whelan 2009's pre-scaling); 0 (default): x itself */
 
-  uint32_t quality;       /* of the diffusion, 0..3 (default 2, 3 best): docs/diffusion.md says what each does */
-  float targetError;      /* > 0: in place of quality, the least one whose measured error stays below it: relative
+  uint32_t quality;       /* of the frame. 0: one thickness a pixel, and no filter of each pixel's neighbors; 1
+                             (default): gathered light, and that filter; 2: twice the samples, at twice the points
+                             along each side. gatherSamples and gatherSpacing override it */
+  float targetError;      /* > 0: in place of the diffusion's quality, the least one whose measured error stays below it: relative
                              RMSE from brute force, the worst of several scenes, at the radii that the frame has;
-                             3 and a skip if none does; 0 (default): off */
+                             the best and a skip if none does; 0 (default): off */
   float nearestDistance;  /* planar distance of the nearest surface that diffuses, scene units, or less: radii in
                              pixels follow from it, and where they are small levels are left out; surfaces that are
                              nearer still are then diffused too little. Orthographic cameras need none.
                              0 (default): not known, and radii count as being as large as the pyramid holds */
   uint32_t gatherSpacing;   /* pixels a side that one point gathers for: 1, 2 or 4; 0 (default): 4 in images of more
-                               than 2^20 pixels, 2 in those of more than 2^19, else 1. Each step costs a quarter of
-                               the one before. 4 asks for pixels well below a mean free path */
+                               than 2^20 pixels, 2 in those of more than 2^19, else 1, and half of that at quality 2.
+                               Each step costs a quarter of the one before. 4 asks for pixels well below a mean free
+                               path */
   uint32_t separateOutput;  /* 1: the output shares no memory with the irradiance, which diffusion without a fused
                                dispatch before it (a gather, or no light) then reads itself and not a copy; 0
                                (default): it may be the same image */
@@ -321,46 +330,23 @@ typedef enum PellucidPipeline {
   PELLUCID_PIPELINE_QUADS_AND_COPY_32F = 11,
   PELLUCID_PIPELINE_QUADS = 12,
   PELLUCID_PIPELINE_REDUCE_LEVELS = 13,
-  PELLUCID_PIPELINE_DIRECTIONAL_16F = 14, /* translucency where the one light is directional with one map of
-                                             device depth, with normals, EXP2 materials and the default models */
-  PELLUCID_PIPELINE_DIRECTIONAL_32F = 15,
-  PELLUCID_PIPELINE_TRANSLUCENCY_QUADS_16F = 16, /* with level 1 of the diffusion's pyramid */
-  PELLUCID_PIPELINE_TRANSLUCENCY_QUADS_32F = 17,
-  PELLUCID_PIPELINE_DIRECTIONAL_QUADS_16F = 18,
-  PELLUCID_PIPELINE_DIRECTIONAL_QUADS_32F = 19,
-  PELLUCID_PIPELINE_RESOLVE_LEVELS = 20,
-  PELLUCID_PIPELINE_DIFFUSE_COARSE_16F = 21, /* without the filter of each pixel's neighbors: quality 0 */
-  PELLUCID_PIPELINE_DIFFUSE_COARSE_32F = 22,
-  PELLUCID_PIPELINE_GATHER_RECORDS = 23,
-  PELLUCID_PIPELINE_GATHER_POINTS = 24,
-  PELLUCID_PIPELINE_GATHER_SHARE = 25,
-  PELLUCID_PIPELINE_GATHER_RECORDS_DIRECTIONAL = 26, /* where all lights that are gathered from are, in frames as
-                                                        for DIRECTIONAL */
-  PELLUCID_PIPELINE_GATHER_POINTS_DIRECTIONAL = 27,
-  PELLUCID_PIPELINE_DIFFUSE_GATHER_16F = 28, /* with what the gather's points share */
-  PELLUCID_PIPELINE_DIFFUSE_GATHER_32F = 29,
-  PELLUCID_PIPELINE_DIFFUSE_COARSE_GATHER_16F = 30,
-  PELLUCID_PIPELINE_DIFFUSE_COARSE_GATHER_32F = 31,
-  PELLUCID_PIPELINE_DIFFUSE_EDGES_16F = 32, /* edges by distances in space: quality 3 with normals */
-  PELLUCID_PIPELINE_DIFFUSE_EDGES_32F = 33,
-  PELLUCID_PIPELINE_DIFFUSE_EDGES_GATHER_16F = 34,
-  PELLUCID_PIPELINE_DIFFUSE_EDGES_GATHER_32F = 35,
-  PELLUCID_PIPELINE_GATHER_RECORDS_ONE_MAP = 36, /* as DIRECTIONAL, of one light with one map */
-  PELLUCID_PIPELINE_REDUCE_AND_RESOLVE = 37, /* resolves levels of which it makes the last two */
-  PELLUCID_PIPELINE_REDUCE_FOR_EDGES = 38,   /* the pyramid where DIFFUSE_EDGES runs */
-  PELLUCID_PIPELINE_RESOLVE_FOR_EDGES = 39,
-  PELLUCID_PIPELINE_DIFFUSE_PLANES_16F = 40, /* pixels that DIFFUSE_EDGES leaves, in place of DIFFUSE */
-  PELLUCID_PIPELINE_DIFFUSE_PLANES_32F = 41,
-  PELLUCID_PIPELINE_DIFFUSE_PLANES_GATHER_16F = 42,
-  PELLUCID_PIPELINE_DIFFUSE_PLANES_GATHER_32F = 43,
-  PELLUCID_PIPELINE_CLUSTERS = 44, /* what DIFFUSE_EDGES sums over, from the resolved pyramid and the pixels */
-  PELLUCID_PIPELINE_REDUCE_FOR_SUMS = 45,     /* the pyramid where edges are summed beside its resolve: quality 2 with
-                                                 normals and without a gather */
-  PELLUCID_PIPELINE_RESOLVE_AND_SUM_16F = 46, /* RESOLVE_LEVELS, beside groups that sum edges */
-  PELLUCID_PIPELINE_RESOLVE_AND_SUM_32F = 47,
-  PELLUCID_PIPELINE_REDUCE_RESOLVE_AND_SUM_16F = 48, /* the same of REDUCE_AND_RESOLVE */
-  PELLUCID_PIPELINE_REDUCE_RESOLVE_AND_SUM_32F = 49,
-  PELLUCID_PIPELINE_COUNT = 50
+  PELLUCID_PIPELINE_RESOLVE_LEVELS = 14,
+  PELLUCID_PIPELINE_DIFFUSE_COARSE_16F = 15, /* without the filter of each pixel's neighbors: quality 0 */
+  PELLUCID_PIPELINE_DIFFUSE_COARSE_32F = 16,
+  PELLUCID_PIPELINE_GATHER_RECORDS = 17,
+  PELLUCID_PIPELINE_GATHER_POINTS = 18,
+  PELLUCID_PIPELINE_GATHER_SHARE = 19,
+  PELLUCID_PIPELINE_GATHER_RECORDS_DIRECTIONAL = 20, /* where all lights that are gathered from are
+                                                        directional with one map of device depth, with normals, EXP2
+                                                        materials and the default models */
+  PELLUCID_PIPELINE_GATHER_POINTS_DIRECTIONAL = 21,
+  PELLUCID_PIPELINE_DIFFUSE_GATHER_16F = 22, /* with what the gather's points share */
+  PELLUCID_PIPELINE_DIFFUSE_GATHER_32F = 23,
+  PELLUCID_PIPELINE_DIFFUSE_COARSE_GATHER_16F = 24,
+  PELLUCID_PIPELINE_DIFFUSE_COARSE_GATHER_32F = 25,
+  PELLUCID_PIPELINE_GATHER_RECORDS_ONE_MAP = 26, /* as DIRECTIONAL, of one light with one map */
+  PELLUCID_PIPELINE_REDUCE_AND_RESOLVE = 27, /* resolves levels of which it makes the last two */
+  PELLUCID_PIPELINE_COUNT = 28
 } PellucidPipeline;
 
 enum {
@@ -492,7 +478,7 @@ PellucidResult pellucidBuildPlan(const PellucidFrame* frame, const PellucidPlan*
  * caller may add what else it can lower (resolution, lights, gatherSamples); `reuse` asks for reuse of results
  * between frames, frame.reuse. */
 typedef struct PellucidBudgetState {
-  uint32_t quality; /* 3 best .. 0 cheapest */
+  uint32_t quality; /* 2 best .. 0 cheapest */
   uint32_t reuse;   /* 1: reuse; given up last when there is room again */
   uint32_t overFrames, underFrames;   /* on end above the budget; on end with room for more */
   uint32_t settleFrames;              /* times of the setting before that may still arrive */
@@ -502,7 +488,7 @@ typedef struct PellucidBudgetState {
   uint32_t easierFrames;              /* on end well below raisedMs after that step failed */
 } PellucidBudgetState;
 
-void pellucidInitBudgetState(PellucidBudgetState* state); /* quality 3, no reuse */
+void pellucidInitBudgetState(PellucidBudgetState* state); /* quality 2, no reuse */
 
 /* One frame's time, ms, against the budget (Whelan 2009, 6.2.5). Pure. Goes one setting down (reuse first,
  * then quality) after 3 frames on end above the budget, so a setting that fits is reached within 20 frames;
