@@ -24,9 +24,11 @@ float depthDenominator(Camera camera, float depth) {
 // Planar distance of a device depth; -1 where it holds nothing.
 float planarDistance(Camera camera, float depth) {
   float denominator = depthDenominator(camera, depth);
-  // The comparison is false for NaN, and keeps 0/0 of an infinite far plane out.
-  bool something = abs(denominator) > 0.0 && depth != camera.range.z;
-  return something ? (camera.depth.y - depth * camera.depth.w) / denominator : -1.0;
+  // Comparisons are false for NaN. 0/0 of an infinite far plane stays out.
+  bool something = abs(denominator) > 0.0 && depth >= 0.0 && depth <= 1.0 && depth != camera.range.z;
+  float distance = something ? (camera.depth.y - depth * camera.depth.w) / denominator : -1.0;
+  // Depths next to an infinite far plane end beyond any scene. Orthographic cameras see surfaces behind the eye.
+  return abs(distance) > 0.0 && abs(distance) < kNoDepth ? distance : -1.0;
 }
 
 // Planar distance of a viewZ value; -1 where it holds nothing.

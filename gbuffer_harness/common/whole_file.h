@@ -13,14 +13,18 @@ namespace pellucid::harness {
 
 // Calls write(temporary), a name of its own in the folder of `path`, and renames it to `path`. Whoever
 // looks at `path` meanwhile, or after a crash, sees what was there before. Nothing is left behind when
-// write throws. Throws InputError when the file cannot be renamed.
+// write throws. What is there and no regular file, like a device node, is not replaced by one. Throws
+// InputError when the file cannot be renamed.
 template <class Write>
 void writeWhole(const std::filesystem::path& path, const Write& write) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+    throw InputError(path.string(), "", "is there and no regular file; nothing is written in its place");
   std::ostringstream suffix;
   suffix << ".part-" << std::hex << std::random_device{}();
   std::filesystem::path temporary = path;
   temporary += suffix.str();
-  std::error_code error;
   try {
     write(temporary);
   } catch (...) {

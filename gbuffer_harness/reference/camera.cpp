@@ -35,7 +35,7 @@ std::optional<double> Camera::planarDepth(float stored, PellucidDepthEncoding en
   const double z = (m[3][2] - stored * m[3][3]) / (stored * m[2][3] - m[2][2]);
   const double depth = forward_ * z;
   // An orthographic camera may stand anywhere along its rays: its depths have no sign to check.
-  const bool usable = std::isfinite(depth) && (orthographic_ || depth > 0);
+  const bool usable = std::abs(depth) < 1e9 && (orthographic_ ? depth != 0 : depth > 0);
   return usable ? std::optional<double>(depth) : std::nullopt;
 }
 

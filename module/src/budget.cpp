@@ -21,6 +21,19 @@ void changed(PellucidBudgetState& s) {
   s.settleFrames = kSettleFrames;
 }
 
+// A state that was never initialized or got damaged goes on from the nearest valid one.
+void mend(PellucidBudgetState& s) {
+  s.quality = std::min(s.quality, kBest);
+  s.reuse = std::min(s.reuse, 1u);
+  s.settleFrames = std::min(s.settleFrames, kSettleFrames);
+  s.overFrames = std::min(s.overFrames, kOverFrames);
+  s.waitFrames = std::clamp(s.waitFrames, kFirstWait, kLongestWait);
+  s.underFrames = std::min(s.underFrames, kLongestWait);
+  s.easierFrames = std::min(s.easierFrames, kFirstWait);
+  s.heldFrames = std::min(s.heldFrames, 4 * kLongestWait);
+  if (!(s.raisedMs >= 0) || !std::isfinite(s.raisedMs)) s.raisedMs = 0;
+}
+
 // Reuse goes first: it costs a lag in the light, a lower quality costs sharpness.
 void lower(PellucidBudgetState& s) {
   if (s.reuse == 0)
@@ -50,6 +63,7 @@ extern "C" void pellucidInitBudgetState(PellucidBudgetState* state) {
 extern "C" void pellucidStepBudget(PellucidBudgetState* state, float measuredMs, float budgetMs) {
   if (!state || !(budgetMs > 0) || !(measuredMs >= 0) || !std::isfinite(measuredMs)) return;
   PellucidBudgetState& s = *state;
+  mend(s);
   if (s.settleFrames > 0) {
     --s.settleFrames;
     return;

@@ -17,7 +17,10 @@ const char* readDepthRange(const glm::dmat4& m, DepthRange* range) {
       if (!std::isfinite(m[c][r])) return "has an element that is not finite";
   if (m[0][2] != 0 || m[1][2] != 0 || m[0][3] != 0 || m[1][3] != 0)
     return "has depth or w depend on x or y; oblique near planes are not supported";
-  if (m[0][0] * m[1][1] - m[1][0] * m[0][1] == 0) return "maps the image to a line";
+  const double scale = std::abs(m[0][0] * m[1][1] - m[1][0] * m[0][1]);
+  if (scale == 0) return "maps the image to a line";
+  // Pixels keep a size that floats can square.
+  if (!(scale >= 1e-24 && scale <= 1e24)) return "scales the image by less than 1e-12 or more than 1e12";
   const double a = m[2][2], b = m[3][2], c = m[2][3], d = m[3][3];
   const double slope = a * d - b * c;
   if (slope == 0) return "gives every distance the same depth";

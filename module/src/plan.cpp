@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "dispatches.h"
+#include "facts.h"
 #include "pyramid.h"
 #include "quality.h"
 #include "reuse.h"
@@ -223,6 +224,8 @@ extern "C" PellucidResult pellucidBuildPlan(const PellucidFrame* frame, const Pe
     *plan = PellucidPlan{};
     return PELLUCID_ERROR_CAPACITY;
   }
+  const Facts facts = factsOf(*frame);
+  std::copy(std::begin(facts.hash), std::end(facts.hash), plan->facts);
   return PELLUCID_OK;
 }
 

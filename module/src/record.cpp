@@ -1,5 +1,7 @@
 // Plan -> command buffer. The only file that calls vkCmd*.
 #include "context.h"
+#include "facts.h"
+#include "text.h"
 #include "validate.h"
 
 namespace pellucid {
@@ -58,6 +60,14 @@ PellucidResult refuse(const PellucidContext& c, const char* field, const char* s
 
 // Whether the frame has what a plan uses, which a plan made from another frame may not find.
 PellucidResult checkPlan(const PellucidContext& c, const PellucidPlan& plan, const PellucidFrame& f) {
+  const Facts facts = factsOf(f);
+  for (int i = 0; i < PELLUCID_FACT_COUNT; ++i)
+    if (facts.hash[i] != plan.facts[i]) {
+      char sentence[96];
+      Text(sentence, sizeof sentence)
+          << "was made from another frame, whose " << nameOf(static_cast<PellucidFact>(i)) << " differs";
+      return refuse(c, "plan", sentence);
+    }
   for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
     const PellucidDispatch& d = plan.dispatches[i];
     for (uint32_t b = 0; b < d.bindingCount; ++b) {

@@ -2,8 +2,10 @@
 #include "validate.h"
 
 #include <cmath>
+#include <utility>
 
 #include "camera.h"
+#include "domains.h"
 #include "frame.h"
 #include "minimum_dot.h"
 #include "quality.h"
@@ -64,6 +66,31 @@ bool finite(const float* values, int count) {
   return true;
 }
 
+// Fields outside their domains, each named behind `prefix`. Integers first, which say what else is read.
+template <class Struct>
+void checkDomains(const Struct& object, const char* prefix, Findings& out) {
+  bool allIntegers = true;
+  for (const IntegerDomain& d : integerDomains<Struct>())
+    for (uint32_t i = 0; i < d.count; ++i) {
+      const uint32_t value = valueOf(d, &object, i);
+      if (value >= d.least && value <= d.most) continue;
+      const Field element = d.count == 1 ? Field("") : Field("[", i, "] ");
+      out.error(Field(prefix, d.field), element, "is ", value, ", outside ", d.least, "..", d.most);
+      allIntegers = false;
+    }
+  if (!allIntegers) return;
+  for (const FloatDomain& d : floatDomains<Struct>())
+    for (uint32_t i = 0; i < d.count; ++i) {
+      const float value = valueOf(d, &object, i);
+      if (!isRead(d, &object, i) || contains(d, value)) continue;
+      const Field element = d.count == 1 ? Field("")
+                            : d.row == 0 ? Field("[", i, "] ")
+                                         : Field("[", i / d.row, "][", i % d.row, "] ");
+      out.error(Field(prefix, d.field), element, "is ", value, ", outside ", d.leastIsOut ? "(" : "[",
+                d.least, ", ", d.most, "]");
+    }
+}
+
 // An affine, rigid transform: rotation, no scale. 1e-3 forgives float matrices built in several steps.
 bool rigid(const glm::dmat4& m) {
   const glm::dmat3 r(m);
@@ -109,7 +136,18 @@ void checkMinimumDotTable(const PellucidFrame& f, Findings& out) {
     out.error("faceVector", "is ", f.faceVector[0], ", ", f.faceVector[1], ", ", f.faceVector[2],
               " and upAxis ", f.upAxis[0], ", ", f.upAxis[1], ", ", f.upAxis[2],
               "; must be finite, longer than 0 and not parallel");
-  if (!finite(f.objectCenter, 3)) out.error("objectCenter", "is not finite");
+}
+
+// Whether a1 e^(-k1 d) + a2 e^(-k2 d) is positive and falls with d: its slope has one zero at most, so its
+// signs at 0 and where the slower term is left say all. The tolerance is what fits in floats miss.
+bool falls(const float (&t)[5]) {
+  const double a1 = static_cast<double>(t[0]), k1 = static_cast<double>(t[1]);
+  const double a2 = static_cast<double>(t[2]), k2 = static_cast<double>(t[3]);
+  if (!(k1 >= 0 && k2 >= 0)) return false;
+  const double most = std::abs(a1) + std::abs(a2), tolerance = 1e-4 * most;
+  const double slower = k1 < k2 ? a1 : k1 > k2 ? a2 : a1 + a2;
+  return a1 + a2 >= -tolerance && slower >= -tolerance &&
+         a1 * k1 + a2 * k2 >= -1e-4 * most * std::max(k1, k2);
 }
 
 void checkMaterial(const PellucidMaterial& m, uint32_t index, Findings& out) {
@@ -118,44 +156,27 @@ void checkMaterial(const PellucidMaterial& m, uint32_t index, Findings& out) {
     out.error(field("structSize"), "is ", m.structSize, "; this library expects ", sizeof(PellucidMaterial));
     return;
   }
-  if (m.transmittanceModel > PELLUCID_TRANSMITTANCE_LINEAR)
-    out.error(field("transmittanceModel"), "is ", m.transmittanceModel, ", not a PellucidTransmittanceModel");
-  if (m.gaussianCount > PELLUCID_MAX_GAUSSIANS) {
-    out.error(field("gaussianCount"), "is ", m.gaussianCount, "; at most ",
-              static_cast<int>(PELLUCID_MAX_GAUSSIANS));
-    return;
-  }
+  checkDomains(m, field(""), out);
+  if (m.gaussianCount > PELLUCID_MAX_GAUSSIANS) return;
   const bool fromGaussians = m.transmittanceModel == PELLUCID_TRANSMITTANCE_GAUSSIANS ||
                              m.transmittanceModel == PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED;
   if (fromGaussians && m.gaussianCount == 0)
     out.error(field("gaussianCount"), "is 0, but the transmittance model needs Gaussians");
   for (int c = 0; c < 3; ++c) {
-    const float* t = m.transmittance[c];
-    if (!finite(t, 5)) out.error(field("transmittance"), "of channel ", c, " is not finite");
-    if (m.transmittanceModel == PELLUCID_TRANSMITTANCE_EXP2 && !(t[1] >= 0 && t[3] >= 0))
-      out.error(field("transmittance"), "of channel ", c, " grows with thickness: k1 ", t[1], ", k2 ", t[3]);
+    const float(&t)[5] = m.transmittance[c];
+    if (m.transmittanceModel == PELLUCID_TRANSMITTANCE_EXP2 && !falls(t))
+      out.error(field("transmittance"), "of channel ", c, " grows with thickness: a1 ", t[0], ", k1 ", t[1],
+                ", a2 ", t[2], ", k2 ", t[3]);
     if (m.transmittanceModel == PELLUCID_TRANSMITTANCE_SINH_EXP && !(t[1] >= 0 && t[2] > 0 && t[4] >= 0))
       out.error(field("transmittance"), "of channel ", c, " needs kappa >= 0, z > 0, c >= 0; they are ", t[1],
                 ", ", t[2], ", ", t[4]);
     if (m.transmittanceModel == PELLUCID_TRANSMITTANCE_LINEAR && !(t[0] > 0))
       out.error(field("transmittance"), "of channel ", c, " has dmax ", t[0], "; must be > 0");
-    if (!(m.reflectance[c] > 0 && m.reflectance[c] <= 1))
-      out.error(field("reflectance"), "of channel ", c, " is ", m.reflectance[c], ", outside (0, 1]");
     float sum = 0;
-    for (uint32_t i = 0; i < m.gaussianCount; ++i) {
-      if (!(m.gaussianVariance[c][i] > 0) || !std::isfinite(m.gaussianVariance[c][i]))
-        out.error(field("gaussianVariance"), "[", c, "][", i, "] is ", m.gaussianVariance[c][i],
-                  "; must be > 0");
-      if (!(m.gaussianWeight[c][i] >= 0))
-        out.error(field("gaussianWeight"), "[", c, "][", i, "] is ", m.gaussianWeight[c][i],
-                  "; must be >= 0");
-      sum += m.gaussianWeight[c][i];
-    }
+    for (uint32_t i = 0; i < m.gaussianCount; ++i) sum += m.gaussianWeight[c][i];
     // 1e-3: the accuracy to which constant irradiance is promised to stay constant.
     if (m.gaussianCount > 0 && !(std::abs(sum - 1) <= 1e-3f))
       out.error(field("gaussianWeight"), "of channel ", c, " sums to ", sum, ", not 1");
-    if (m.gaussianCount > 0 && !(m.radius[c] > 0 && std::isfinite(m.radius[c])))
-      out.error(field("radius"), "of channel ", c, " is ", m.radius[c], "; must be > 0");
   }
 }
 
@@ -164,18 +185,12 @@ void checkShadowMap(const PellucidFrame& f, uint32_t index, Findings& out) {
   const auto field = [index](const char* name) { return Field("shadowMaps[", index, "].", name); };
   if (s.image >= f.shadowImageCount)
     out.error(field("image"), "is ", s.image, ", but there are ", f.shadowImageCount, " shadowImages");
-  if (s.extent[0] == 0 || s.extent[1] == 0)
-    out.error(field("extent"), "is ", s.extent[0], " x ", s.extent[1]);
-  if (s.encoding > PELLUCID_DEPTH_DISTANCE)
-    out.error(field("encoding"), "is ", s.encoding, ", not a PellucidDepthEncoding");
-  if (!finite(s.clipFromWorld, 16))
-    out.error(field("clipFromWorld"), "is not finite");
-  else if (glm::determinant(toMatrix(s.clipFromWorld)) == 0)
+  checkDomains(s, field(""), out);
+  if (finite(s.clipFromWorld, 16) && glm::determinant(toMatrix(s.clipFromWorld)) == 0)
     out.error(field("clipFromWorld"), "cannot be inverted");
   if (s.encoding != PELLUCID_DEPTH_DEVICE &&
       !(finite(s.viewFromWorld, 16) && rigid(toMatrix(s.viewFromWorld))))
     out.error(field("viewFromWorld"), "is not a rotation and translation, which this encoding needs");
-  if (!(s.bias >= 0 && std::isfinite(s.bias))) out.error(field("bias"), "is ", s.bias, "; must be >= 0");
   const auto checkBeside = [&](const char* name, uint32_t image) {
     if (image > f.shadowImageCount)
       out.error(field(name), "is ", image, " (an index plus 1), but there are ", f.shadowImageCount,
@@ -187,24 +202,13 @@ void checkShadowMap(const PellucidFrame& f, uint32_t index, Findings& out) {
   checkBeside("casterMaterialImage", s.casterMaterialImage);
   if (s.exitImage != 0 && s.exitImage == s.casterMaterialImage)
     out.error(field("casterMaterialImage"), "is ", s.casterMaterialImage, ", the exitImage");
-  if (!(s.casterMaterialScale >= 0 && std::isfinite(s.casterMaterialScale)))
-    out.error(field("casterMaterialScale"), "is ", s.casterMaterialScale, "; must be >= 0");
 }
 
 void checkLight(const PellucidFrame& f, uint32_t index, Findings& out) {
   const PellucidLight& l = f.lights[index];
   const auto field = [index](const char* name) { return Field("lights[", index, "].", name); };
-  if (l.type > PELLUCID_LIGHT_SPOT) {
-    out.error(field("type"), "is ", l.type, ", not a PellucidLightType");
-    return;
-  }
-  for (int c = 0; c < 3; ++c)
-    if (!(l.color[c] >= 0 && std::isfinite(l.color[c])))
-      out.error(field("color"), "[", c, "] is ", l.color[c]);
-  if (!(l.intensity >= 0 && std::isfinite(l.intensity))) out.error(field("intensity"), "is ", l.intensity);
-  if (!(l.range >= 0)) out.error(field("range"), "is ", l.range, "; must be >= 0");
-  if (l.type != PELLUCID_LIGHT_DIRECTIONAL && !finite(l.position, 3))
-    out.error(field("position"), "is not finite");
+  checkDomains(l, field(""), out);
+  if (l.type > PELLUCID_LIGHT_SPOT) return;
   const float length = std::hypot(l.direction[0], l.direction[1], l.direction[2]);
   if (l.type != PELLUCID_LIGHT_POINT && !(length > 0 && std::isfinite(length)))
     out.error(field("direction"), "has length ", length);
@@ -263,8 +267,7 @@ PellucidResult checkFrame(const PellucidFrame* frame, PellucidMessageFn fn, void
   constexpr uint32_t known = PELLUCID_FEATURE_TRANSLUCENCY | PELLUCID_FEATURE_DIFFUSION;
   if (f.features & ~known) out.error("features", "has unknown bits: ", f.features);
   checkImageSize(f, out);
-  if (!(f.metersPerUnit > 0 && std::isfinite(f.metersPerUnit)))
-    out.error("metersPerUnit", "is ", f.metersPerUnit, "; must be > 0");
+  checkDomains(f, "", out);
   DepthRange range;
   if (const char* wrong = readDepthRange(toMatrix(f.clipFromView), &range)) out.error("clipFromView", wrong);
   if (!finite(f.viewFromWorld, 16) || !rigid(toMatrix(f.viewFromWorld)))
@@ -272,29 +275,7 @@ PellucidResult checkFrame(const PellucidFrame* frame, PellucidMessageFn fn, void
   if (f.outputFormat != VK_FORMAT_R16G16B16A16_SFLOAT && f.outputFormat != VK_FORMAT_R32G32B32A32_SFLOAT)
     out.error("outputFormat", "is VkFormat ", static_cast<int>(f.outputFormat),
               "; use R16G16B16A16_SFLOAT or R32G32B32A32_SFLOAT");
-  if (f.frontDepthEncoding > PELLUCID_DEPTH_VIEW_Z)
-    out.error("frontDepthEncoding", "is ", f.frontDepthEncoding, "; use DEVICE or VIEW_Z");
-  if (f.backDepthEncoding > PELLUCID_DEPTH_VIEW_Z)
-    out.error("backDepthEncoding", "is ", f.backDepthEncoding, "; use DEVICE or VIEW_Z");
-  if (f.thicknessSource > PELLUCID_THICKNESS_CAMERA)
-    out.error("thicknessSource", "is ", f.thicknessSource, ", not a PellucidThicknessSource");
-  if (f.debugView > PELLUCID_DEBUG_IRRADIANCE)
-    out.error("debugView", "is ", f.debugView, ", not a PellucidDebugView");
-
-  if (f.angleModel > PELLUCID_ANGLE_MINIMUM_DOT_SPHERE)
-    out.error("angleModel", "is ", f.angleModel, ", not a PellucidAngleModel");
-  if (!finite(f.anglePolynomial, 4)) out.error("anglePolynomial", "is not finite");
-  if (!(f.minimumDot >= -1 && f.minimumDot <= 0))
-    out.error("minimumDot", "is ", f.minimumDot, ", outside [-1, 0]");
-  if (f.prescaleAngle > 1) out.error("prescaleAngle", "is ", f.prescaleAngle, ", neither 0 nor 1");
-  if (f.indirectDispatches > 1)
-    out.error("indirectDispatches", "is ", f.indirectDispatches, ", neither 0 nor 1");
-  if (f.separateOutput > 1) out.error("separateOutput", "is ", f.separateOutput, ", neither 0 nor 1");
   checkMinimumDotTable(f, out);
-  if (!(f.maximumThickness >= 0)) out.error("maximumThickness", "is ", f.maximumThickness, "; must be >= 0");
-  for (int c = 0; c < 3; ++c)
-    if (!(f.transmittanceFilter[c] >= 0 && f.transmittanceFilter[c] <= 1))
-      out.error("transmittanceFilter", "[", c, "] is ", f.transmittanceFilter[c], ", outside [0, 1]");
 
   if (f.gatherSpacing != 0 && f.gatherSpacing != 1 && f.gatherSpacing != 2 && f.gatherSpacing != 4)
     out.error("gatherSpacing", "is ", f.gatherSpacing, "; use 1, 2 or 4, or 0 to choose by the image's size");
@@ -317,15 +298,6 @@ PellucidResult checkFrame(const PellucidFrame* frame, PellucidMessageFn fn, void
     out.error("reuse", "is both; alternating would skip frames in which coherence asks for a refresh");
   else if (f.reuse > PELLUCID_REUSE_COHERENCE)
     out.error("reuse", "is ", f.reuse, ", not a PellucidReuse");
-  if (!(f.coherenceThreshold >= 0))
-    out.error("coherenceThreshold", "is ", f.coherenceThreshold, "; must be >= 0");
-  if (!(f.frameLoad >= 0 && std::isfinite(f.frameLoad)))
-    out.error("frameLoad", "is ", f.frameLoad, "; must be >= 0");
-  if (f.quality > kBestQuality) out.error("quality", "is ", f.quality, ", outside 0..", kBestQuality);
-  if (!(f.targetError >= 0 && std::isfinite(f.targetError)))
-    out.error("targetError", "is ", f.targetError, "; must be >= 0");
-  if (!(f.nearestDistance >= 0 && std::isfinite(f.nearestDistance)))
-    out.error("nearestDistance", "is ", f.nearestDistance, "; must be >= 0");
   if (out.result() != PELLUCID_OK) return out.result();
 
   for (uint32_t i = 0; i < f.materialCount; ++i) {
@@ -348,13 +320,26 @@ PellucidResult checkFrame(const PellucidFrame* frame, PellucidMessageFn fn, void
   if (groups.count > 1 && f.debugView != PELLUCID_DEBUG_NONE && f.debugView != PELLUCID_DEBUG_IRRADIANCE)
     out.error("debugView", "is ", f.debugView, ", which needs all lights in one dispatch; they use ",
               groups.count);
-  if (groups.fused() + groups.gatherDispatches() + (keepsHistory(f) ? 3 : 2) > PELLUCID_MAX_DISPATCHES) {
-    out.error("shadowImages", "are more than the plan's ", static_cast<int>(PELLUCID_MAX_DISPATCHES),
-              " dispatches can bind");
-    return PELLUCID_ERROR_CAPACITY;
-  }
   return out.result();
 }
+
+namespace {
+
+// Layouts in which shaders may read an image.
+bool canBeRead(VkImageLayout layout) {
+  return layout == VK_IMAGE_LAYOUT_GENERAL || layout == VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL ||
+         layout == VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL ||
+         layout == VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_STENCIL_ATTACHMENT_OPTIMAL ||
+         layout == VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL || layout == VK_IMAGE_LAYOUT_READ_ONLY_OPTIMAL;
+}
+
+void checkLayout(const PellucidImage& image, const char* field, Findings& out) {
+  if (given(image) && !canBeRead(image.layout))
+    out.error(field, "is in VkImageLayout ", static_cast<int>(image.layout),
+              "; shaders read images in GENERAL or a READ_ONLY layout");
+}
+
+}  // namespace
 
 PellucidResult checkViews(const PellucidFrame& f, PellucidMessageFn fn, void* user) {
   Findings out(fn, user);
@@ -362,8 +347,15 @@ PellucidResult checkViews(const PellucidFrame& f, PellucidMessageFn fn, void* us
   const char* names[] = {"frontDepth", "irradiance", "material", "output"};
   for (int i = 0; i < 4; ++i)
     if (!given(*required[i])) out.error(names[i], "has no view, but is required");
-  for (uint32_t i = 0; i < f.shadowImageCount; ++i)
-    if (!given(f.shadowImages[i])) out.error(Field("shadowImages[", i, "]"), "has no view");
+  const std::pair<const char*, const PellucidImage*> inputs[] = {
+      {"frontDepth", &f.frontDepth}, {"backDepth", &f.backDepth}, {"irradiance", &f.irradiance},
+      {"normal", &f.normal},         {"albedo", &f.albedo},       {"material", &f.material}};
+  for (const auto& [field, image] : inputs) checkLayout(*image, field, out);
+  for (uint32_t i = 0; i < f.shadowImageCount; ++i) {
+    const Field field("shadowImages[", i, "]");
+    if (!given(f.shadowImages[i])) out.error(field, "has no view");
+    checkLayout(f.shadowImages[i], field, out);
+  }
   uint32_t needed = 0;
   pellucidGetImageNeeds(&f, &needed, nullptr);
   if (keepsHistory(f)) {
@@ -390,8 +382,31 @@ PellucidResult checkViews(const PellucidFrame& f, PellucidMessageFn fn, void* us
 
 }  // namespace pellucid
 
+namespace {
+
+// Lights, from the first one on, whose shadow images the dispatches of a plan can bind.
+uint32_t lightsThatFit(PellucidFrame frame) {
+  PellucidPlan plan;
+  while (frame.lightCount > 0 && pellucidBuildPlan(&frame, nullptr, &plan) == PELLUCID_ERROR_CAPACITY)
+    --frame.lightCount;
+  return frame.lightCount;
+}
+
+}  // namespace
+
 extern "C" PellucidResult pellucidValidateFrame(const PellucidFrame* frame, PellucidMessageFn fn,
                                                 void* user) {
-  const PellucidResult result = pellucid::checkFrame(frame, fn, user);
+  PellucidResult result = pellucid::checkFrame(frame, fn, user);
+  if (result != PELLUCID_OK) return result;
+  // The plan says what fits into it.
+  PellucidPlan plan;
+  result = pellucidBuildPlan(frame, nullptr, &plan);
+  if (result == PELLUCID_ERROR_CAPACITY) {
+    pellucid::Findings(fn, user).error(
+        "shadowImages", "of all ", frame->lightCount, " lights are more than the plan's ",
+        static_cast<int>(PELLUCID_MAX_DISPATCHES), " dispatches can bind; those of the first ",
+        lightsThatFit(*frame), " lights fit");
+    return result;
+  }
   return result == PELLUCID_OK ? pellucid::checkViews(*frame, fn, user) : result;
 }

@@ -1,11 +1,13 @@
 // Prints the README's tables from the code, or checks or rewrites them in a file:
 //   pellucid_readme_tables [--check | --update README.md]
-// and likewise with the word quality after the file, docs/diffusion.md, the table of qualities.
+// and likewise with the word quality after the file, docs/diffusion.md, the table of qualities, or with
+// domains, docs/domains.md, what values fields may have.
 #include <cstdio>
 #include <iterator>
 #include <string>
 
 #include "diffusion_error_table.h"
+#include "domains.h"
 #include "generated_block.h"
 #include "pellucid/pellucid.h"
 
@@ -128,10 +130,36 @@ std::string qualityTable() {
   return table;
 }
 
+template <class Struct>
+void addDomains(const char* name, std::string* table) {
+  char text[96];
+  for (const pellucid::FloatDomain& d : pellucid::floatDomains<Struct>()) {
+    std::snprintf(text, sizeof text, "%c%g, %g]", d.leastIsOut ? '(' : '[', static_cast<double>(d.least),
+                  static_cast<double>(d.most));
+    *table += std::string("| `") + name + "` | `" + d.field + "` | " + text + " | " +
+              (d.where ? d.where : "always") + " |\n";
+  }
+  for (const pellucid::IntegerDomain& d : pellucid::integerDomains<Struct>()) {
+    std::snprintf(text, sizeof text, "%u..%u", d.least, d.most);
+    *table += std::string("| `") + name + "` | `" + d.field + "` | " + text + " | always |\n";
+  }
+}
+
+std::string domainsTable() {
+  std::string table = "| struct | field | domain | read |\n|-|-|-|-|\n";
+  addDomains<PellucidFrame>("PellucidFrame", &table);
+  addDomains<PellucidMaterial>("PellucidMaterial", &table);
+  addDomains<PellucidLight>("PellucidLight", &table);
+  addDomains<PellucidShadowMap>("PellucidShadowMap", &table);
+  return table;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  const bool quality = argc == 4 && std::string(argv[3]) == "quality";
-  return generatedBlock(argc - 1, argv + 1, quality ? "quality" : "",
-                        quality ? qualityTable() : imagesTable() + "\n" + featuresTable());
+  const std::string block = argc == 4 ? argv[3] : "";
+  return generatedBlock(argc - 1, argv + 1, block.c_str(),
+                        block == "quality"   ? qualityTable()
+                        : block == "domains" ? domainsTable()
+                                             : imagesTable() + "\n" + featuresTable());
 }

@@ -229,8 +229,42 @@ TEST_F(Replay, PlansOfFramesWithMoreImagesAreRefused) {
   const PellucidConstantsSlice constants{reinterpret_cast<VkBuffer>(uintptr_t{1}), 0, 0, nullptr};
   EXPECT_EQ(pellucidRecordPlan(context.handle(), unused, &run.plan(), &lacking, &constants),
             PELLUCID_ERROR_INVALID_ARGUMENT);
-  EXPECT_EQ(context.message(),
-            "plan uses an image that the frame has no view of: it was made from another frame");
+  EXPECT_EQ(context.message(), "plan was made from another frame, whose group of settings differs");
+  // All else alike, but for the views.
+  PellucidFrame blind = run.frame();
+  blind.output = {};
+  EXPECT_EQ(pellucidRecordPlan(context.handle(), unused, &run.plan(), &blind, &constants),
+            PELLUCID_ERROR_INVALID_ARGUMENT);
+}
+
+// More shadow images than the frame at recording has would be read past its array's end.
+TEST_F(Replay, PlansNameWhatDiffersInAnotherFrame) {
+  const Context context(device());
+  Capture c = busyCapture(16, 16);
+  c.lights[0].shadowMaps = {flatShadowMap(-12, PELLUCID_DEPTH_DEVICE)};
+  const FrameRun run(device(), context, c, {testMaterial()}, {});
+  const auto unused = reinterpret_cast<VkCommandBuffer>(uintptr_t{1});
+  const PellucidConstantsSlice constants{reinterpret_cast<VkBuffer>(uintptr_t{1}), 0, 0, nullptr};
+  const auto refusal = [&](const PellucidFrame& other) {
+    EXPECT_EQ(pellucidRecordPlan(context.handle(), unused, &run.plan(), &other, &constants),
+              PELLUCID_ERROR_INVALID_ARGUMENT);
+    return context.message();
+  };
+  PellucidFrame other = run.frame();
+  other.shadowImageCount = other.shadowMapCount = 0;
+  PellucidLight unmapped = other.lights[0];
+  unmapped.shadowMapCount = 0;
+  other.lights = &unmapped;
+  other.lightCount = 1;
+  EXPECT_TRUE(refusal(other).ends_with("plan was made from another frame, whose list of lights differs"));
+  other = run.frame();
+  other.clipFromView[0] *= 2;
+  EXPECT_TRUE(refusal(other).ends_with("plan was made from another frame, whose camera differs"));
+  other = run.frame();
+  PellucidMaterial material = other.materials[0];
+  material.reflectance[1] = 0.125f;
+  other.materials = &material;
+  EXPECT_TRUE(refusal(other).ends_with("plan was made from another frame, whose list of materials differs"));
 }
 
 TEST_F(Replay, OutputMayBeTheIrradianceImage) {

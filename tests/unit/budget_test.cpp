@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <functional>
 #include <random>
 
@@ -78,6 +79,25 @@ TEST(Budget, NoiseDoesNotSwing) {
     std::normal_distribution<float> noise(1, 0.1f);
     const Series run = simulate(20000, [&](int) { return load * noise(random); });
     EXPECT_LE(run.changes, 60) << load;  // 3 in 1000 frames
+  }
+}
+
+// Whatever the state holds, a light load reaches the best setting and a heavy one the cheapest.
+TEST(Budget, DamagedStatesRecover) {
+  for (const uint32_t bits : {0u, 1u, 0x7FC00000u, 0x7F800000u, 0xFFFFFFFFu, 0x80000000u}) {
+    PellucidBudgetState light, heavy;
+    for (size_t i = 0; i < sizeof light / 4; ++i)
+      std::memcpy(reinterpret_cast<char*>(&light) + 4 * i, &bits, 4);
+    heavy = light;
+    for (int i = 0; i < 40000; ++i) {
+      pellucidStepBudget(&light, 0.5f, 2);
+      pellucidStepBudget(&heavy, 100, 2);
+    }
+    PellucidBudgetState best;
+    pellucidInitBudgetState(&best);
+    EXPECT_EQ(light.quality, best.quality) << bits;
+    EXPECT_EQ(light.reuse, 0u) << bits;
+    EXPECT_EQ(heavy.quality, 0u) << bits;
   }
 }
 

@@ -91,7 +91,7 @@ const std::vector<Violation> kViolations = {
        f.material.transmittanceModel = PELLUCID_TRANSMITTANCE_SINH_EXP;
        f.material.transmittance[0][2] = 0;
      }},
-    {"Reflectance", "materials[0].reflectance", "channel 2 is 0",
+    {"Reflectance", "materials[0].reflectance", "[2] is 0, outside (0, 1]",
      [](Frame& f) { f.material.reflectance[2] = 0; }},
     {"Weights", "materials[0].gaussianWeight", "sums to",
      [](Frame& f) { f.material.gaussianWeight[0][0] = 0.9f; }},
@@ -155,6 +155,42 @@ TEST_P(Validate, NamesFieldAndValue) {
   PellucidPlan plan;
   EXPECT_NE(pellucidBuildPlan(&f.frame, nullptr, &plan), PELLUCID_OK);
   EXPECT_EQ(plan.dispatchCount, 0u);
+}
+
+// What validation accepts a plan can be made of, at every number of lights with maps of their own.
+TEST(Validate, CapacityIsThePlans) {
+  for (const uint32_t samples : {0u, 8u}) {
+    bool refused = false;
+    for (uint32_t lights = 8; lights <= 320 && !refused; lights += 8) {
+      Frame f(lights);
+      f.frame.gatherSamples = samples;
+      const std::string problems = f.problems();
+      PellucidPlan plan;
+      const PellucidResult result = pellucidBuildPlan(&f.frame, nullptr, &plan);
+      // The fixture has no transients, which validation asks for, but not the plan.
+      refused = result == PELLUCID_ERROR_CAPACITY;
+      EXPECT_EQ(problems.find("shadowImages of all " + std::to_string(lights)) == 0, refused) << problems;
+      if (!refused) continue;
+      const size_t first = problems.find("first ") + 6;
+      Frame fits(static_cast<uint32_t>(std::stoul(problems.substr(first))));
+      fits.frame.gatherSamples = samples;
+      EXPECT_EQ(pellucidBuildPlan(&fits.frame, nullptr, &plan), PELLUCID_OK);
+    }
+    EXPECT_TRUE(refused) << samples << " samples: no number of lights was too many";
+  }
+}
+
+TEST(Validate, LayoutsThatShadersCannotRead) {
+  for (const VkImageLayout layout : {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                                     VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL}) {
+    Frame f;
+    f.frame.normal = Frame::view();
+    f.frame.normal.layout = layout;
+    f.images[0].layout = layout;
+    const std::string problems = f.problems();
+    EXPECT_NE(problems.find("normal is in VkImageLayout"), std::string::npos) << problems;
+    EXPECT_NE(problems.find("shadowImages[0] is in VkImageLayout"), std::string::npos) << problems;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Fields, Validate, testing::ValuesIn(kViolations),

@@ -83,14 +83,15 @@ typedef struct PellucidMaterial {
 /* ---- Frame ----------------------------------------------------------------------------------- */
 
 /* An image the caller owns. The view must be 2D, one layer, one mip; the layout is the one the image
- * is in while the recorded commands run and is never changed. A null view means "not given". */
+ * is in while the recorded commands run, GENERAL or a READ_ONLY one, and is never changed. A null view means "not given". */
 typedef struct PellucidImage {
   VkImageView view;
   VkImageLayout layout;
 } PellucidImage;
 
 typedef enum PellucidDepthEncoding {
-  PELLUCID_DEPTH_DEVICE = 0,  /* the 0..1 value of the matrix that rendered it */
+  PELLUCID_DEPTH_DEVICE = 0,  /* the 0..1 value of the matrix that rendered it; of the camera: other values, NaN, and distances
+                                 of 1e9 and more: nothing there */
   PELLUCID_DEPTH_VIEW_Z = 1,  /* positive planar distance in front of the eye, scene units; <= 0,
                                  >= 1e9, inf or NaN: nothing there */
   PELLUCID_DEPTH_DISTANCE = 2 /* distance from the light, scene units (shadow maps only) */
@@ -399,6 +400,20 @@ typedef struct PellucidHistory {
   uint32_t gatherSpacing; /* of the points of a gather; 0: it holds the light of pixels */
 } PellucidHistory;
 
+/* Parts of a frame that a plan is made from. A plan keeps a hash of each, and recording refuses a frame whose parts
+ * differ, by name. */
+typedef enum PellucidFact {
+  PELLUCID_FACT_SIZE = 0,          /* imageExtent, renderRect */
+  PELLUCID_FACT_CAMERA = 1,        /* metersPerUnit, clipFromView, viewFromWorld */
+  PELLUCID_FACT_IMAGES = 2,        /* which optional images are given */
+  PELLUCID_FACT_SETTINGS = 3,      /* all fields of other kinds */
+  PELLUCID_FACT_MATERIALS = 4,
+  PELLUCID_FACT_LIGHTS = 5,
+  PELLUCID_FACT_SHADOW_MAPS = 6,
+  PELLUCID_FACT_SHADOW_IMAGES = 7, /* their number */
+  PELLUCID_FACT_COUNT = 8
+} PellucidFact;
+
 typedef struct PellucidPlan {
   uint32_t dispatchCount, barrierCount;
   uint32_t skipCount;
@@ -411,6 +426,7 @@ typedef struct PellucidPlan {
                           materials at frame.nearestDistance; 0: not known, or nothing diffuses */
   uint32_t quality;    /* that the diffusion runs at: frame.quality, or what frame.targetError chose; 0 where
                           nothing diffuses */
+  uint32_t facts[PELLUCID_FACT_COUNT]; /* hashes of what the frame held, by PellucidFact */
 } PellucidPlan;
 
 /* One transient the caller creates: 2D, one mip, of this format and extent, usage SAMPLED | STORAGE. It holds
@@ -463,7 +479,8 @@ uint32_t pellucidGetRequiredInputs(uint32_t features);
 PellucidResult pellucidGetImageNeeds(const PellucidFrame* frame, uint32_t* count,
                                      PellucidImageNeed* needs);
 
-/* Checks every convention; calls `fn` for each finding. PELLUCID_OK unless one is an error. */
+/* Checks every convention and the domains of all fields (docs/domains.md); calls `fn` for each finding. PELLUCID_OK unless one is
+ * an error. PELLUCID_ERROR_CAPACITY exactly where pellucidBuildPlan returns it, too: more shadow images than a plan can bind. */
 PellucidResult pellucidValidateFrame(const PellucidFrame* frame, PellucidMessageFn fn, void* user);
 
 /* Same frame and previous plan, same plan. `previous` is the last recorded frame's plan or NULL; history
@@ -494,7 +511,7 @@ void pellucidInitBudgetState(PellucidBudgetState* state); /* quality 2, no reuse
  * then quality) after 3 frames on end above the budget, so a setting that fits is reached within 20 frames;
  * one up after waitFrames at most 70 % of it. An upward step that does not hold doubles the wait, until
  * 30 frames on end take 70 % of the time from before it. Times that are negative or not finite, and
- * budgets that are not > 0, change nothing. */
+ * budgets that are not > 0, change nothing. A damaged state goes on from the nearest valid one. */
 void pellucidStepBudget(PellucidBudgetState* state, float measuredMs, float budgetMs);
 
 /* ---- Recording ------------------------------------------------------------------------------- */
@@ -513,8 +530,8 @@ typedef struct PellucidConstantsSlice {
 /* Writes the slice and records every dispatch and the barriers between them. Before: the inputs
  * are readable by, and the output and transients free for, COMPUTE_SHADER. After: `output` was
  * written by COMPUTE_SHADER / SHADER_WRITE. Compute pipeline, push constants and set 0 are left
- * changed. `frame` is the one that made the plan, with its views filled in; one that lacks an image of the
- * plan's is PELLUCID_ERROR_INVALID_ARGUMENT. */
+ * changed. `frame` is the one that made the plan, with its views filled in. One that differs in anything else, or
+ * lacks an image of the plan's, is PELLUCID_ERROR_INVALID_ARGUMENT; the message names the part that differs. */
 PellucidResult pellucidRecordPlan(const PellucidContext* context, VkCommandBuffer commandBuffer,
                                   const PellucidPlan* plan, const PellucidFrame* frame,
                                   const PellucidConstantsSlice* constants);

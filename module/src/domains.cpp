@@ -1,0 +1,156 @@
+#include "domains.h"
+
+#include <array>
+
+#include "quality.h"
+
+namespace pellucid {
+namespace {
+
+// Lengths in scene units, and what matrices make of them: squares and products of two stay finite in shaders.
+constexpr float kLongest = 1e15F;
+// mm. A profile or thickness beyond a thousand kilometers is a mistake of units.
+constexpr float kLongestMm = 1e9F;
+// Irradiance and intensities: times a color and the factor of the angle they stay finite.
+constexpr float kBrightest = 1e15F;
+
+template <class Struct>
+const Struct& as(const void* object) {
+  return *static_cast<const Struct*>(object);
+}
+
+bool looksMinimumDotsUp(const void* object, uint32_t) {
+  const uint32_t model = as<PellucidFrame>(object).angleModel;
+  return model == PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH || model == PELLUCID_ANGLE_MINIMUM_DOT_SPHERE;
+}
+bool hasPosition(const void* object, uint32_t) {
+  return as<PellucidLight>(object).type != PELLUCID_LIGHT_DIRECTIONAL;
+}
+bool hasDirection(const void* object, uint32_t) {
+  return as<PellucidLight>(object).type != PELLUCID_LIGHT_POINT;
+}
+bool isSpot(const void* object, uint32_t) { return as<PellucidLight>(object).type == PELLUCID_LIGHT_SPOT; }
+bool readsView(const void* object, uint32_t) {
+  return as<PellucidShadowMap>(object).encoding != PELLUCID_DEPTH_DEVICE;
+}
+bool diffuses(const void* object, uint32_t) { return as<PellucidMaterial>(object).gaussianCount > 0; }
+bool isGaussian(const void* object, uint32_t index) {
+  return index % PELLUCID_MAX_GAUSSIANS < as<PellucidMaterial>(object).gaussianCount;
+}
+
+#define FIELD(Struct, name) #name, offsetof(Struct, name), sizeof(Struct::name) / 4
+constexpr const char* kMinimumDots = "`angleModel` MINIMUM_DOT_AZIMUTH or _SPHERE";
+
+constexpr auto kFrameFloats = std::to_array<FloatDomain>({
+    {FIELD(PellucidFrame, metersPerUnit), 0, 1e-9F, 1e9F, false, nullptr, nullptr},
+    {FIELD(PellucidFrame, clipFromView), 0, -kLongest, kLongest, false, nullptr, nullptr},
+    {FIELD(PellucidFrame, viewFromWorld), 0, -kLongest, kLongest, false, nullptr, nullptr},
+    {FIELD(PellucidFrame, anglePolynomial), 0, -1e6F, 1e6F, false, nullptr, nullptr},
+    {FIELD(PellucidFrame, minimumDot), 0, -1, 0, false, nullptr, nullptr},
+    {FIELD(PellucidFrame, maximumThickness), 0, 0, kLongestMm, false, nullptr, nullptr},
+    {FIELD(PellucidFrame, transmittanceFilter), 0, 0, 1, false, nullptr, nullptr},
+    {FIELD(PellucidFrame, faceVector), 0, -kLongest, kLongest, false, looksMinimumDotsUp, kMinimumDots},
+    {FIELD(PellucidFrame, upAxis), 0, -kLongest, kLongest, false, looksMinimumDotsUp, kMinimumDots},
+    {FIELD(PellucidFrame, objectCenter), 0, -kLongest, kLongest, false, looksMinimumDotsUp, kMinimumDots},
+    {FIELD(PellucidFrame, coherenceThreshold), 0, 0, 2, false, nullptr, nullptr},
+    {FIELD(PellucidFrame, frameLoad), 0, 0, 1e9F, false, nullptr, nullptr},
+    {FIELD(PellucidFrame, targetError), 0, 0, 1e9F, false, nullptr, nullptr},
+    {FIELD(PellucidFrame, nearestDistance), 0, 0, kLongest, false, nullptr, nullptr},
+});
+
+constexpr auto kFrameIntegers = std::to_array<IntegerDomain>({
+    {FIELD(PellucidFrame, frontDepthEncoding), 0, PELLUCID_DEPTH_VIEW_Z},
+    {FIELD(PellucidFrame, backDepthEncoding), 0, PELLUCID_DEPTH_VIEW_Z},
+    {FIELD(PellucidFrame, normalsInViewSpace), 0, 1},
+    {FIELD(PellucidFrame, thicknessSource), 0, PELLUCID_THICKNESS_CAMERA},
+    {FIELD(PellucidFrame, debugView), 0, PELLUCID_DEBUG_IRRADIANCE},
+    {FIELD(PellucidFrame, angleModel), 0, PELLUCID_ANGLE_MINIMUM_DOT_SPHERE},
+    {FIELD(PellucidFrame, constantViewDirection), 0, 1},
+    {FIELD(PellucidFrame, chordThickness), 0, 1},
+    {FIELD(PellucidFrame, prescaleAngle), 0, 1},
+    {FIELD(PellucidFrame, quality), 0, kBestQuality},
+    {FIELD(PellucidFrame, separateOutput), 0, 1},
+    {FIELD(PellucidFrame, indirectDispatches), 0, 1},
+});
+
+constexpr auto kMaterialFloats = std::to_array<FloatDomain>({
+    {FIELD(PellucidMaterial, transmittance), 5, -kLongestMm, kLongestMm, false, nullptr, nullptr},
+    {FIELD(PellucidMaterial, reflectance), 0, 0, 1, true, nullptr, nullptr},
+    {FIELD(PellucidMaterial, gaussianVariance), PELLUCID_MAX_GAUSSIANS, 0, kLongestMm* kLongestMm, true,
+     isGaussian, "the first `gaussianCount` of a row"},
+    {FIELD(PellucidMaterial, gaussianWeight), PELLUCID_MAX_GAUSSIANS, 0, 1.001F, false, isGaussian,
+     "the first `gaussianCount` of a row"},
+    {FIELD(PellucidMaterial, radius), 0, 0, kLongestMm, true, diffuses, "`gaussianCount` above 0"},
+    {FIELD(PellucidMaterial, burleyDistance), 0, 0, kLongestMm, false, diffuses, "`gaussianCount` above 0"},
+});
+
+constexpr auto kMaterialIntegers = std::to_array<IntegerDomain>({
+    {FIELD(PellucidMaterial, transmittanceModel), 0, PELLUCID_TRANSMITTANCE_LINEAR},
+    {FIELD(PellucidMaterial, gaussianCount), 0, PELLUCID_MAX_GAUSSIANS},
+});
+
+constexpr auto kLightFloats = std::to_array<FloatDomain>({
+    {FIELD(PellucidLight, position), 0, -kLongest, kLongest, false, hasPosition, "point and spot lights"},
+    {FIELD(PellucidLight, direction), 0, -kLongest, kLongest, false, hasDirection,
+     "directional and spot lights"},
+    {FIELD(PellucidLight, color), 0, 0, kBrightest, false, nullptr, nullptr},
+    {FIELD(PellucidLight, intensity), 0, 0, kBrightest, false, nullptr, nullptr},
+    {FIELD(PellucidLight, range), 0, 0, kLongest, false, hasPosition, "point and spot lights"},
+    // Pi/2 rounds up as a float.
+    {FIELD(PellucidLight, innerConeAngle), 0, 0, 1.5707964F, false, isSpot, "spot lights"},
+    {FIELD(PellucidLight, outerConeAngle), 0, 0, 1.5707964F, true, isSpot, "spot lights"},
+});
+
+constexpr auto kLightIntegers =
+    std::to_array<IntegerDomain>({{FIELD(PellucidLight, type), 0, PELLUCID_LIGHT_SPOT}});
+
+constexpr auto kMapFloats = std::to_array<FloatDomain>({
+    {FIELD(PellucidShadowMap, clipFromWorld), 0, -kLongest, kLongest, false, nullptr, nullptr},
+    {FIELD(PellucidShadowMap, viewFromWorld), 0, -kLongest, kLongest, false, readsView,
+     "VIEW_Z and DISTANCE"},
+    {FIELD(PellucidShadowMap, bias), 0, 0, kLongest, false, nullptr, nullptr},
+    {FIELD(PellucidShadowMap, casterMaterialScale), 0, 0, 65536, false, nullptr, nullptr},
+});
+
+constexpr auto kMapIntegers = std::to_array<IntegerDomain>({
+    {FIELD(PellucidShadowMap, extent), 1, 65536},
+    {FIELD(PellucidShadowMap, encoding), 0, PELLUCID_DEPTH_DISTANCE},
+});
+#undef FIELD
+
+}  // namespace
+
+template <>
+std::span<const FloatDomain> floatDomains<PellucidFrame>() {
+  return kFrameFloats;
+}
+template <>
+std::span<const IntegerDomain> integerDomains<PellucidFrame>() {
+  return kFrameIntegers;
+}
+template <>
+std::span<const FloatDomain> floatDomains<PellucidMaterial>() {
+  return kMaterialFloats;
+}
+template <>
+std::span<const IntegerDomain> integerDomains<PellucidMaterial>() {
+  return kMaterialIntegers;
+}
+template <>
+std::span<const FloatDomain> floatDomains<PellucidLight>() {
+  return kLightFloats;
+}
+template <>
+std::span<const IntegerDomain> integerDomains<PellucidLight>() {
+  return kLightIntegers;
+}
+template <>
+std::span<const FloatDomain> floatDomains<PellucidShadowMap>() {
+  return kMapFloats;
+}
+template <>
+std::span<const IntegerDomain> integerDomains<PellucidShadowMap>() {
+  return kMapIntegers;
+}
+
+}  // namespace pellucid

@@ -1,0 +1,69 @@
+// Values that the fields of the frame's structs may have. Validation checks these tables, docs/domains.md
+// shows them, and tests/unit/domains_test.cpp tries what lies outside.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "pellucid/pellucid.h"
+
+namespace pellucid {
+
+struct FloatDomain {
+  const char* field;
+  size_t offset;
+  uint32_t count, row;  // floats; of a row, 0: there are no rows
+  float least, most;
+  bool leastIsOut;
+  // Whether the frame reads element `index` of the field in this struct; NULL: always. What is not read may
+  // be anything.
+  bool (*isRead)(const void* object, uint32_t index);
+  const char* where;  // the same in words, NULL: always
+};
+
+struct IntegerDomain {
+  const char* field;
+  size_t offset;
+  uint32_t count, least, most;
+};
+
+template <class Struct>
+std::span<const FloatDomain> floatDomains();
+template <class Struct>
+std::span<const IntegerDomain> integerDomains();
+
+template <>
+std::span<const FloatDomain> floatDomains<PellucidFrame>();
+template <>
+std::span<const FloatDomain> floatDomains<PellucidMaterial>();
+template <>
+std::span<const FloatDomain> floatDomains<PellucidLight>();
+template <>
+std::span<const FloatDomain> floatDomains<PellucidShadowMap>();
+template <>
+std::span<const IntegerDomain> integerDomains<PellucidFrame>();
+template <>
+std::span<const IntegerDomain> integerDomains<PellucidMaterial>();
+template <>
+std::span<const IntegerDomain> integerDomains<PellucidLight>();
+template <>
+std::span<const IntegerDomain> integerDomains<PellucidShadowMap>();
+
+// Element `index` of the field.
+inline float valueOf(const FloatDomain& d, const void* object, uint32_t index) {
+  return reinterpret_cast<const float*>(static_cast<const std::byte*>(object) + d.offset)[index];
+}
+inline uint32_t valueOf(const IntegerDomain& d, const void* object, uint32_t index) {
+  return reinterpret_cast<const uint32_t*>(static_cast<const std::byte*>(object) + d.offset)[index];
+}
+
+// False for NaN, too.
+inline bool contains(const FloatDomain& d, float value) {
+  return (d.leastIsOut ? value > d.least : value >= d.least) && value <= d.most;
+}
+inline bool isRead(const FloatDomain& d, const void* object, uint32_t index) {
+  return !d.isRead || d.isRead(object, index);
+}
+
+}  // namespace pellucid
