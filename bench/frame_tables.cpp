@@ -92,11 +92,19 @@ std::string header(const std::string& first, const std::vector<std::string>& col
   return text + "\n" + rule + "\n";
 }
 
-// One row a name, one column a frame; a cell has the times of the sizes, and then the error of the first.
-std::string byFrame(const Frames& all, const std::string& kind, const std::vector<std::string>& sizes) {
+// Rows of the README's tables.
+const std::vector<std::string> kBrief = {"Pellucid, quality 0", "Pellucid, quality 1", "Pellucid, quality 2",
+                                         "Jimenez 2010 + 2015, 11 taps", "HDRP, 20 samples"};
+
+std::vector<std::string> coveredOf(const Frames& all) {
   std::vector<std::string> columns;
   for (const std::string& frame : all.frames()) columns.push_back(all.covered(frame));
-  std::string table = header("", columns);
+  return columns;
+}
+
+// One row a name, one column a frame; a cell has the times of the sizes, and then the error of the first.
+std::string byFrame(const Frames& all, const std::string& kind, const std::vector<std::string>& sizes) {
+  std::string table = header("", coveredOf(all));
   for (const std::string& name : all.names(kind)) {
     table += "| " + name + " |";
     for (const std::string& frame : all.frames()) {
@@ -133,6 +141,25 @@ std::string framesTable(const Json& results) {
   if (sizes.empty()) sizes = all.sizes();
   return all.heading("microseconds at " + listed(sizes) + ", then the error; in brackets: the covered part") +
          byFrame(all, "whole", sizes);
+}
+
+std::string framesBriefTable(const Json& results) {
+  const Frames all(results);
+  const std::vector<std::string>& sizes = all.sizes();
+  const std::string full = "1920x1080";
+  const std::string size = std::count(sizes.begin(), sizes.end(), full) > 0 ? full : sizes.front();
+  std::string table =
+      all.heading("whole frames at " + size + " in microseconds; in brackets: the covered part") +
+      header("", coveredOf(all));
+  for (const std::string& name : kBrief) {
+    table += "| " + name + " |";
+    for (const std::string& frame : all.frames()) {
+      const Json* row = all.find(frame, size, "whole", name);
+      table += row ? format(" %s |", timeOf(*row).c_str()) : " |";
+    }
+    table += "\n";
+  }
+  return table;
 }
 
 std::string frameSizesTable(const Json& results) {
@@ -238,6 +265,26 @@ std::string truthTable(const Json& results) {
          header("frame", {"whole frame", "relative RMSE", "isolated", "tint", "red/green", "FLIP mean",
                           "99th percentile"}) +
          rows;
+}
+
+std::string truthBriefTable(const Json& results) {
+  const Frames all(results);
+  std::string table = header("", all.frames());
+  bool some = false;
+  for (const std::string& name : kBrief) {
+    table += "| " + name + " |";
+    for (const std::string& frame : all.frames()) {
+      const Json* row = all.find(frame, all.sizes().front(), "whole", name);
+      const bool has = row && row->contains("truth_relative_rmse_rgb");
+      some = some || has;
+      table += has ? format(" %.3f, %.3f |", row->at("truth_relative_rmse_rgb").at(0).get<double>(),
+                            row->at("flip").get<double>())
+                   : " |";
+    }
+    table += "\n";
+  }
+  if (!some) throw NotMeasured("no frame with path-traced truth");
+  return all.heading("whole frames, relative RMSE of red and mean FLIP") + table;
 }
 
 std::string contextTable(const Json& results) {

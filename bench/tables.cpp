@@ -112,12 +112,14 @@ struct Table {
 constexpr Table kTables[] = {{"measured", measured},
                              {"sweep", sweep},
                              {"frames", framesTable},
+                             {"frames_brief", framesBriefTable},
                              {"frame_sizes", frameSizesTable},
                              {"frame_parts", framePartsTable},
                              {"frame_dispatches", frameDispatchesTable},
                              {"frame_host", frameHostTable},
                              {"context", contextTable},
-                             {"truth", truthTable}};
+                             {"truth", truthTable},
+                             {"truth_brief", truthBriefTable}};
 
 constexpr int kNothingMeasured = 77;  // CTest's word for a test that was skipped
 

@@ -26,17 +26,44 @@ layout(set = 0, binding = PELLUCID_BINDING_GATHER_DISPATCHES) coherent buffer Di
 
 const uint kAdds = 1u << 31; // of pass.value.z
 
-// The first pixel of the cell with a surface that light comes through. Its texels are fetched at once, so that the
-// latencies overlap.
+// A bit for each pixel of a cell whose material light may come through.
+shared uint translucent[GROUP_SIDE * GROUP_SIDE];
+
+// Of all cells of the group, whose invocations read neighbors: cells without a material cost a read of it a pixel.
+void findTranslucent(ivec2 firstCell, int side) {
+  const int kCells = GROUP_SIDE * GROUP_SIDE;
+  int shift = shiftOf(side), columns = GROUP_SIDE * side, rowShift = findMSB(columns), pixels = kCells * side * side;
+  translucent[gl_LocalInvocationIndex] = 0u;
+  barrier();
+  for (int first = int(gl_LocalInvocationIndex); first < pixels; first += 4 * kCells) {
+    uint values[4];
+    // Four at once, so that their latencies overlap.
+    [[unroll]] for (int i = 0; i < 4; ++i) {
+      int at = first + i * kCells;
+      ivec2 pixel = firstCell * side + ivec2(at & (columns - 1), at >> rowShift);
+      values[i] = at < pixels && insideRect(pixel) ? materialValueAt(pixel) : 0u;
+    }
+    [[unroll]] for (int i = 0; i < 4; ++i) {
+      int at = first + i * kCells;
+      ivec2 inGroup = ivec2(at & (columns - 1), at >> rowShift), cell = inGroup >> shift, inCell = inGroup & (side - 1);
+      if (materialIndex(values[i]) != 0u && (values[i] & frame.marks.x) == 0u)
+        atomicOr(translucent[cell.y * GROUP_SIDE + cell.x], 1u << (inCell.y * side + inCell.x));
+    }
+  }
+  barrier();
+}
+
+// The first of these pixels with a surface. Its texels are fetched at once, so that the latencies overlap.
 bool pixelOf(ivec2 cell, int side, out int index, out uint material, out float front, out vec4 normal) {
-  for (index = 0; index < side * side; ++index) {
+  index = 0;
+  for (uint bits = translucent[gl_LocalInvocationIndex]; bits != 0u; bits &= bits - 1u) {
+    index = findLSB(bits);
     ivec2 pixel = pixelInCell(cell, side, index);
-    if (!insideRect(pixel)) continue;
     uint value = materialValueAt(pixel);
     front = frontDistance(pixel);
     normal = texelFetch(normalImage, pixel, 0);
     material = materialIndex(value);
-    if (material != 0u && (value & frame.marks.x) == 0u && front > 0.0) return true;
+    if (front > 0.0) return true;
   }
   return false;
 }
@@ -54,6 +81,7 @@ void main() {
   ivec4 cells = cellsOf(frame.rect, side);
   ivec2 cell = cells.xy + ivec2(gl_GlobalInvocationID.xy);
   bool inside = all(lessThan(cell, cells.zw));
+  findTranslucent(cells.xy + ivec2(gl_WorkGroupID.xy) * GROUP_SIDE, side);
   Point result = unpackPoint(kNoPoint);
   vec4 normalTexel;
   bool some = inside && pixelOf(cell, side, result.index, result.material, result.front, normalTexel);

@@ -65,11 +65,11 @@ Image allTexels(const Capture& capture, const std::vector<PellucidMaterial>& mat
   return reference::compute(capture, materials, settings).image;
 }
 
-// thesis | light-space thickness | gather, 16 samples | truth, under one exposure.
+// thesis | light-space thickness | quality 1 | truth, under one exposure.
 void writePicture(const std::string& path, const Capture& capture,
                   const std::vector<PellucidMaterial>& materials, Replayer& replayer) {
   std::vector<Image> images;
-  for (const ReplaySettings& settings : {thesisSettings(), ReplaySettings(), gather(16)})
+  for (const ReplaySettings& settings : {thesisSettings(), ReplaySettings(), gather(PELLUCID_GATHER_BY_QUALITY)})
     images.push_back(rgb(replayer.run(capture, materials, settings).output));
   images.push_back(capture.truth->image);
   std::vector<const Image*> pointers;
@@ -172,7 +172,7 @@ void addEvaluateCommand(CLI::App& app) {
   command->add_flag("--reference", options->reference,
                     "add the float64 gather over all texels with brute-force diffusion; takes minutes");
   command->add_option("--picture", options->picture,
-                      "PNG of the first capture: thesis, light-space thickness, gather, truth");
+                      "PNG of the first capture: thesis, light-space thickness, quality 1, truth");
   command->add_option("--plot", options->plot, "PNG of the error against the samples of the gather");
   command->add_option("--device", options->device, "part of the Vulkan device's name");
   command->callback([options] { run(*options); });
