@@ -306,7 +306,7 @@ TEST_F(PointLights, MoreMapsThanAPlanBindsAreRefusedByName) {
   EXPECT_EQ(refusal([&] { replay(c, testMaterial()); }), "");
   c.lights.assign(PELLUCID_MAX_DISPATCHES, light);
   const std::string error = refusal([&] { replay(c, testMaterial()); });
-  EXPECT_NE(error.find("shadowImages are more than the plan's 32 dispatches"), std::string::npos) << error;
+  EXPECT_NE(error.find("shadowImages of all 32 lights are more than the plan's 32 dispatches"), std::string::npos) << error;
 }
 
 }  // namespace
