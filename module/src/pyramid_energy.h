@@ -5,8 +5,9 @@
 
 namespace pellucid {
 
-// Octaves by which levels 4 and coarser take narrower Gaussians than levels from reductions alone, to which
-// the table was fitted: they begin with averages of level 1, which are narrower.
+// Octaves by which levels 4 and coarser take narrower Gaussians than the table says. Measured: at 0 a
+// close-up of a face errs by .0136 in place of .0118 in red, and a step at a radius of 128 pixels by .0048 in
+// place of .0036.
 constexpr double kCoarserShift = 0.03;
 
 // The fine filter, level 2, level 3, and any coarser one.
