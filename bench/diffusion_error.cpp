@@ -83,16 +83,18 @@ void printScenes(Bench& bench, const std::vector<double>& radii, uint32_t qualit
   }
 }
 
-const std::vector<uint32_t> kQualities = {0, 1, 2};
+// One quality of each row of the table, without and with the fine filter.
+const std::vector<uint32_t> kQualities = {0, 1};
 
 // module/src/diffusion_error_table.h.
 void printTable(Bench& bench, const std::vector<double>& radii) {
   std::vector<std::vector<double>> columns;
   for (const double radius : radii) columns.push_back(bench.worst(radius, kQualities));
   std::printf(
-      "// Relative RMSE of the diffusion from brute force, of each quality at each radius (pixels within "
-      "which 99.9 %%\n"
-      "// of the energy lies) the worst of the scenes of docs/diffusion.md. Written by\n"
+      "// Relative RMSE of the diffusion from brute force, of qualities 0 and 1, which 2 shares, at each "
+      "radius "
+      "(pixels\n"
+      "// within which 99.9 %% of the energy lies) the worst of the scenes of docs/diffusion.md. Written by\n"
       "// build/bin/pellucid_diffusion_error --table, which --check measures again.\n"
       "#pragma once\n\nnamespace pellucid {\n\nconstexpr float kErrorRadii[] = {");
   for (size_t i = 0; i < radii.size(); ++i) std::printf("%s%g", i ? ", " : "", radii[i]);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <optional>
 #include <vector>
@@ -96,6 +97,21 @@ std::string header(const std::string& first, const std::vector<std::string>& col
 const std::vector<std::string> kBrief = {"Pellucid, quality 0", "Pellucid, quality 1", "Pellucid, quality 2",
                                          "Jimenez 2010 + 2015, 11 taps", "HDRP, 20 samples"};
 
+// One row a name of kBrief, one column a frame; `cell`: of a whole frame's row.
+std::string briefTable(const Frames& all, const std::string& size, const std::vector<std::string>& columns,
+                       const std::function<std::string(const Json&)>& cell) {
+  std::string table = header("", columns);
+  for (const std::string& name : kBrief) {
+    table += "| " + name + " |";
+    for (const std::string& frame : all.frames()) {
+      const Json* row = all.find(frame, size, "whole", name);
+      table += row ? cell(*row) : " |";
+    }
+    table += "\n";
+  }
+  return table;
+}
+
 std::vector<std::string> coveredOf(const Frames& all) {
   std::vector<std::string> columns;
   for (const std::string& frame : all.frames()) columns.push_back(all.covered(frame));
@@ -148,18 +164,9 @@ std::string framesBriefTable(const Json& results) {
   const std::vector<std::string>& sizes = all.sizes();
   const std::string full = "1920x1080";
   const std::string size = std::count(sizes.begin(), sizes.end(), full) > 0 ? full : sizes.front();
-  std::string table =
-      all.heading("whole frames at " + size + " in microseconds; in brackets: the covered part") +
-      header("", coveredOf(all));
-  for (const std::string& name : kBrief) {
-    table += "| " + name + " |";
-    for (const std::string& frame : all.frames()) {
-      const Json* row = all.find(frame, size, "whole", name);
-      table += row ? format(" %s |", timeOf(*row).c_str()) : " |";
-    }
-    table += "\n";
-  }
-  return table;
+  return all.heading("whole frames at " + size + " in microseconds; in brackets: the covered part") +
+         briefTable(all, size, coveredOf(all),
+                    [](const Json& row) { return format(" %s |", timeOf(row).c_str()); });
 }
 
 std::string frameSizesTable(const Json& results) {
@@ -269,20 +276,14 @@ std::string truthTable(const Json& results) {
 
 std::string truthBriefTable(const Json& results) {
   const Frames all(results);
-  std::string table = header("", all.frames());
   bool some = false;
-  for (const std::string& name : kBrief) {
-    table += "| " + name + " |";
-    for (const std::string& frame : all.frames()) {
-      const Json* row = all.find(frame, all.sizes().front(), "whole", name);
-      const bool has = row && row->contains("truth_relative_rmse_rgb");
-      some = some || has;
-      table += has ? format(" %.3f, %.3f |", row->at("truth_relative_rmse_rgb").at(0).get<double>(),
-                            row->at("flip").get<double>())
-                   : " |";
-    }
-    table += "\n";
-  }
+  const std::string table =
+      briefTable(all, all.sizes().front(), all.frames(), [&](const Json& row) -> std::string {
+        if (!row.contains("truth_relative_rmse_rgb")) return " |";
+        some = true;
+        return format(" %.3f, %.3f |", row.at("truth_relative_rmse_rgb").at(0).get<double>(),
+                      row.at("flip").get<double>());
+      });
   if (!some) throw NotMeasured("no frame with path-traced truth");
   return all.heading("whole frames, relative RMSE of red and mean FLIP") + table;
 }

@@ -37,8 +37,6 @@ const float kDensityOne = 128.0;
 // The share of a kernel that a surface fills, over what a plane would, of each channel. A plane's is exact.
 uint packDensity(vec3 density) { return packUnorm4x8(vec4(density * (kDensityOne / 255.0), 0.0)); }
 
-const uint kDensityBits = 0xFFFFFFu, kFullDensity = 0x808080u;
-
 // Times kDensityOne.
 vec3 unpackDensity(uint u) { return vec3(u & 0xFFu, (u >> 8) & 0xFFu, (u >> 16) & 0xFFu); }
 

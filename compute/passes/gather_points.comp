@@ -29,7 +29,8 @@ const uint kAdds = 1u << 31; // of pass.value.z
 // A bit for each pixel of a cell whose material light may come through.
 shared uint translucent[GROUP_SIDE * GROUP_SIDE];
 
-// Of all cells of the group, whose invocations read neighbors: cells without a material cost a read of it a pixel.
+// Fills translucent[] for all cells of the group. Neighboring invocations read neighboring pixels, so that a cell without a
+// material costs one coalesced read a pixel.
 void findTranslucent(ivec2 firstCell, int side) {
   const int kCells = GROUP_SIDE * GROUP_SIDE;
   int shift = shiftOf(side), columns = GROUP_SIDE * side, rowShift = findMSB(columns), pixels = kCells * side * side;

@@ -2,7 +2,7 @@
 #ifndef PELLUCID_PASS_GATHER_TILE_GLSL
 #define PELLUCID_PASS_GATHER_TILE_GLSL
 
-const int kTile = TILE_COLUMNS;
+const int kTile = TILE_SIDE;
 const int kThreads = PELLUCID_GATHER_GROUP * PELLUCID_GATHER_GROUP;
 #include "passes/gathered.glsl"
 

@@ -2,9 +2,10 @@
 #define PELLUCID_GROUP_ORDER_GLSL
 
 // Groups start in the order of their indices, so what takes longest comes first and ends while others still run: the
-// rect's borders, which are edges. Left and right columns, then the last row and the first. Of `count` columns and rows the
-// place of the one with that index; indices beyond them have places beyond the last row.
-uvec2 bordersFirst(uvec2 count, uint index) {
+// rect's borders, which are edges. Left and right columns, then the last row and the first. The place of the group.
+uvec2 bordersFirst() {
+  uvec2 count = gl_NumWorkGroups.xy;
+  uint index = gl_WorkGroupID.y * count.x + gl_WorkGroupID.x;
   uint inner = max(count.x, 3u) - 2u, columns = 2u * count.y;
   uint rest = max(index, columns) - columns;
   // By floats, because all loads wait for it and integers take several times as long. Exact: the quotient errs by less
@@ -15,9 +16,5 @@ uvec2 bordersFirst(uvec2 count, uint index) {
   // One or two columns are in order.
   return count.x < 3u ? uvec2(index & (count.x - 1u), index >> (count.x - 1u)) : index < columns ? inColumn : inRow;
 }
-
-uint groupIndex() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; }
-
-uvec2 bordersFirst() { return bordersFirst(gl_NumWorkGroups.xy, groupIndex()); }
 
 #endif

@@ -8,9 +8,9 @@
 #include "passes/normal_image.glsl"
 #include "passes/pyramid.glsl"
 
-const int kTile = TILE_COLUMNS, kQuads = kTile / 2; // of a row
-shared uvec2 tileColors[kTile * TILE_ROWS]; // and material
-shared float tileDepths[kTile * TILE_ROWS];
+const int kTile = TILE_SIDE, kQuads = kTile / 2; // of a row
+shared uvec2 tileColors[kTile * TILE_SIDE]; // and material
+shared float tileDepths[kTile * TILE_SIDE];
 
 // `color`: of halves.
 void keepPixel(ivec2 inTile, vec3 color, float depth, uint material) {
@@ -19,7 +19,7 @@ void keepPixel(ivec2 inTile, vec3 color, float depth, uint material) {
 }
 
 // The first invocations do a quad each.
-bool hasQuad() { return gl_LocalInvocationIndex < uint(kQuads * TILE_ROWS / 2); }
+bool hasQuad() { return gl_LocalInvocationIndex < uint(kQuads * TILE_SIDE / 2); }
 ivec2 quadInTile() { return ivec2(gl_LocalInvocationIndex % uint(kQuads), gl_LocalInvocationIndex / uint(kQuads)); }
 
 // The pixel whose normal stands for a quad that is one surface: any of the four, by turns.
@@ -29,7 +29,7 @@ ivec2 pixelOfQuad(ivec2 quad) { return 2 * quad + (quad.yx & 1); }
 // own.
 uint apartFromQuad() { return 0x100u << (gl_LocalInvocationID.x & 1u | (gl_LocalInvocationID.y & 1u) << 1); }
 
-// Of the invocation's quad, to be loaded with all the rest.
+// The normal of the invocation's quad, to be loaded with all the rest.
 vec3 normalOfQuad() {
   return hasQuad() ? normalAt(withinRect(pixelOfQuad((evenTile() >> 1) + quadInTile()))) : vec3(0.0);
 }
@@ -46,7 +46,7 @@ void writeQuad(vec3 normal) {
     packed[i] = tileColors[at];
     depth[i] = tileDepths[at];
   }
-  // Where nothing is, nothing is looked up.
+  // An empty quad looks nothing up.
   if ((packed[0].y | packed[1].y | packed[2].y | packed[3].y) >> 16 == 0u) {
     if (inside) writeLevel(1u, quad, uvec4(0u));
     return;

@@ -20,7 +20,7 @@ int tapsOfPlane() { return taps(); }
 int tapsOfPlane() { return 16; }
 #endif
 
-// Of the squared length of a texel's side. Curved surfaces below it gain nothing from weights of their own.
+// A plane's largest mean squared distance, over the squared length of a texel's side. Curved surfaces below it gain nothing from weights of their own.
 const float kPlaneResidual = 0.01;
 
 // What the bits of texels of one plane have in common: the material, and that they are planes.

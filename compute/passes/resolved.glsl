@@ -51,7 +51,7 @@ PixelShares unpackShares(uvec3 u) {
                      vec3((u.y >> 16) & 255u, u.y >> 24, u.z & 255u) * (kMostFine / 255.0), unpackShape(u.z));
 }
 
-// Of texels' shares: all under the texel's filter is one plane.
+// A flag of a texel's shares: all under the texel's filter is one plane.
 const uint kFull = 0x1000000u;
 
 bool isFull(uvec4 its) { return (its.w & kFull) != 0u; }

@@ -3,21 +3,18 @@
 #ifndef PELLUCID_TILE_GLSL
 #define PELLUCID_TILE_GLSL
 
-#ifndef TILE_COLUMNS
-#define TILE_COLUMNS PELLUCID_TILE
-#endif
-#ifndef TILE_ROWS
-#define TILE_ROWS TILE_COLUMNS
+#ifndef TILE_SIDE
+#define TILE_SIDE PELLUCID_TILE
 #endif
 #ifdef FOUR_PIXELS
-#define GROUP_SIDE (TILE_COLUMNS / 2)
+#define GROUP_SIDE (TILE_SIDE / 2)
 #else
-#define GROUP_SIDE TILE_COLUMNS
+#define GROUP_SIDE TILE_SIDE
 #endif
-#define GROUP_ROWS (TILE_ROWS / 2)
+#define GROUP_ROWS (TILE_SIDE / 2)
 #include "passes/bindings.glsl"
 
-const int kPixels = TILE_COLUMNS * TILE_ROWS / (GROUP_SIDE * GROUP_ROWS); // of an invocation
+const int kPixels = TILE_SIDE * TILE_SIDE / (GROUP_SIDE * GROUP_ROWS); // of an invocation
 
 // The i-th of them: half a tile apart, so that neighbors load neighbors.
 ivec2 pixelInTile(int i) {
@@ -29,6 +26,6 @@ ivec2 pixelInTile(int i) {
 }
 
 // Of tiles that start at even pixels, so that quads of pixels are the image's.
-ivec2 evenTile() { return (ivec2(frame.rect.xy) & ~1) + ivec2(gl_WorkGroupID.xy) * ivec2(TILE_COLUMNS, TILE_ROWS); }
+ivec2 evenTile() { return (ivec2(frame.rect.xy) & ~1) + ivec2(gl_WorkGroupID.xy) * TILE_SIDE; }
 
 #endif

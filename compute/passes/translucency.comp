@@ -7,7 +7,7 @@
 
 #ifdef GATHER
 #define FOUR_PIXELS // their loads overlap
-#define TILE_COLUMNS (2 * PELLUCID_GATHER_GROUP)
+#define TILE_SIDE (2 * PELLUCID_GATHER_GROUP)
 #endif
 #include "passes/tile.glsl"
 

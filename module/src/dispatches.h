@@ -71,8 +71,8 @@ struct Builder {
   }
 
   // Of PELLUCID_TILE columns, from even pixels on.
-  void tiles(PellucidDispatch* d, uint32_t rows = PELLUCID_TILE) const {
-    groups(d, rect.width + (rect.x & 1), rect.height + (rect.y & 1), PELLUCID_TILE, rows);
+  void tiles(PellucidDispatch* d) const {
+    groups(d, rect.width + (rect.x & 1), rect.height + (rect.y & 1), PELLUCID_TILE);
   }
 
   static void bind(PellucidDispatch* d, uint32_t binding, VkDescriptorType type, uint32_t resource,

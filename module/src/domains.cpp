@@ -121,36 +121,20 @@ constexpr auto kMapIntegers = std::to_array<IntegerDomain>({
 }  // namespace
 
 template <>
-std::span<const FloatDomain> floatDomains<PellucidFrame>() {
-  return kFrameFloats;
+Domains domainsOf<PellucidFrame>() {
+  return {kFrameFloats, kFrameIntegers};
 }
 template <>
-std::span<const IntegerDomain> integerDomains<PellucidFrame>() {
-  return kFrameIntegers;
+Domains domainsOf<PellucidMaterial>() {
+  return {kMaterialFloats, kMaterialIntegers};
 }
 template <>
-std::span<const FloatDomain> floatDomains<PellucidMaterial>() {
-  return kMaterialFloats;
+Domains domainsOf<PellucidLight>() {
+  return {kLightFloats, kLightIntegers};
 }
 template <>
-std::span<const IntegerDomain> integerDomains<PellucidMaterial>() {
-  return kMaterialIntegers;
-}
-template <>
-std::span<const FloatDomain> floatDomains<PellucidLight>() {
-  return kLightFloats;
-}
-template <>
-std::span<const IntegerDomain> integerDomains<PellucidLight>() {
-  return kLightIntegers;
-}
-template <>
-std::span<const FloatDomain> floatDomains<PellucidShadowMap>() {
-  return kMapFloats;
-}
-template <>
-std::span<const IntegerDomain> integerDomains<PellucidShadowMap>() {
-  return kMapIntegers;
+Domains domainsOf<PellucidShadowMap>() {
+  return {kMapFloats, kMapIntegers};
 }
 
 }  // namespace pellucid

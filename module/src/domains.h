@@ -16,8 +16,8 @@ struct FloatDomain {
   uint32_t count, row;  // floats; of a row, 0: there are no rows
   float least, most;
   bool leastIsOut;
-  // Whether the frame reads element `index` of the field in this struct; NULL: always. What is not read may
-  // be anything.
+  // True where the frame reads element `index` of the field in this struct; NULL: always. A value that is not
+  // read may be anything.
   bool (*isRead)(const void* object, uint32_t index);
   const char* where;  // the same in words, NULL: always
 };
@@ -28,27 +28,21 @@ struct IntegerDomain {
   uint32_t count, least, most;
 };
 
-template <class Struct>
-std::span<const FloatDomain> floatDomains();
-template <class Struct>
-std::span<const IntegerDomain> integerDomains();
+struct Domains {
+  std::span<const FloatDomain> floats;
+  std::span<const IntegerDomain> integers;
+};
 
+template <class Struct>
+Domains domainsOf();
 template <>
-std::span<const FloatDomain> floatDomains<PellucidFrame>();
+Domains domainsOf<PellucidFrame>();
 template <>
-std::span<const FloatDomain> floatDomains<PellucidMaterial>();
+Domains domainsOf<PellucidMaterial>();
 template <>
-std::span<const FloatDomain> floatDomains<PellucidLight>();
+Domains domainsOf<PellucidLight>();
 template <>
-std::span<const FloatDomain> floatDomains<PellucidShadowMap>();
-template <>
-std::span<const IntegerDomain> integerDomains<PellucidFrame>();
-template <>
-std::span<const IntegerDomain> integerDomains<PellucidMaterial>();
-template <>
-std::span<const IntegerDomain> integerDomains<PellucidLight>();
-template <>
-std::span<const IntegerDomain> integerDomains<PellucidShadowMap>();
+Domains domainsOf<PellucidShadowMap>();
 
 // Element `index` of the field.
 inline float valueOf(const FloatDomain& d, const void* object, uint32_t index) {

@@ -1,4 +1,4 @@
-// What a plan was made from, so that recording can refuse another frame by name.
+// Hashes of the frame that a plan was made from, so that recording can refuse another frame by name.
 #pragma once
 
 #include "pellucid/pellucid.h"
@@ -9,7 +9,8 @@ struct Facts {
   uint32_t hash[PELLUCID_FACT_COUNT];
 };
 
-// Of all that a frame holds but its views. Equal frames have equal facts; others differ but for one in 2^32.
+// Hashes all that a frame holds but its views. Equal frames have equal facts; others differ but for one in
+// 2^32.
 Facts factsOf(const PellucidFrame& frame);
 
 const char* nameOf(PellucidFact fact);

@@ -33,7 +33,6 @@ static_assert(kLightWindow <= 16384 && kShadowWindow <= 16384 && kGatherMapWindo
               kRecordMapWindow <= 16384);  // least maxUniformBufferRange
 
 struct LightGroup {
-  uint32_t index = 0;
   uint32_t firstLight = 0, lightCount = 0;       // among the lights that are not skipped
   uint32_t shadowCount = 0;                      // shadow maps
   VkDeviceSize lightBytes = 0, shadowBytes = 0;  // of the groups before, in the constants
@@ -59,7 +58,7 @@ private:
   bool addImage(uint32_t image);
 };
 
-// Of each point, with what frame.quality chooses.
+// The samples of each point, by frame.quality if that chooses.
 uint32_t gatherSamples(const PellucidFrame& frame);
 
 // Why frame.quality cannot choose a gather, for the plan's skips; NULL: it can.
@@ -71,7 +70,7 @@ inline bool gathers(const PellucidFrame& frame) {
          frame.debugView == PELLUCID_DEBUG_NONE;
 }
 inline bool isGathered(const PellucidFrame& frame, const PellucidLight& light) {
-  return gathers(frame) && light.shadowMapCount > 0;
+  return light.shadowMapCount > 0 && gathers(frame);
 }
 
 // Pixels a side of what one point of the gather stands for.
@@ -97,7 +96,6 @@ void forEachLightGroup(const PellucidFrame& frame, bool beside, OnLight&& light,
         group(static_cast<const LightGroup&>(current));
         LightGroup next;
         next.beside = beside;
-        next.index = current.index + 1;
         next.firstLight = current.firstLight + current.lightCount;
         next.lightBytes = current.lightBytes + aligned(current.lightCount * sizeof(shared::LightConstants));
         next.shadowBytes =

@@ -21,7 +21,7 @@ struct PyramidPlace {
 
 PyramidPlace placeOf(const PellucidFrame& frame, uint32_t level);
 
-// Where the shares of the resolved level 2 begin, in texels right of it; it lies where level 1 was.
+// The column where the shares of the resolved level 2 begin. That level lies where level 1 was.
 int32_t sharesColumn(const PellucidFrame& frame);
 
 // Of the pyramid's image, for any render rect.

@@ -66,9 +66,10 @@ bool qualityFor(float error, double radius, uint32_t* quality) {
         count, static_cast<size_t>(std::lower_bound(std::begin(kErrorRadii), std::end(kErrorRadii), radius) -
                                    kErrorRadii) +
                    1);
-  static_assert(std::size(kWorstError) == kBestQuality + 1);
-  for (*quality = 0; *quality <= kBestQuality; ++*quality)
-    if (*std::max_element(kWorstError[*quality], kWorstError[*quality] + count) < error) return true;
+  for (*quality = 0; *quality <= kBestQuality; ++*quality) {
+    const float* errors = kWorstError[hasFineFilter(*quality) ? 1 : 0];
+    if (*std::max_element(errors, errors + count) < error) return true;
+  }
   *quality = kBestQuality;
   return false;
 }

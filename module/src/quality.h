@@ -27,7 +27,7 @@ double deviationWithin(uint32_t level);
 // The best frame.quality.
 constexpr uint32_t kBestQuality = 2;
 
-// Whether a pixel's neighbors are filtered one by one, in place of giving their part to it and to level 2.
+// True where a pixel's neighbors are filtered one by one, in place of giving their part to it and to level 2.
 inline bool hasFineFilter(uint32_t quality) { return quality > 0; }
 
 // The least quality whose measured error at radii up to `radius` pixels (0: all) is below `error`. False, and

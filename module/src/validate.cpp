@@ -70,7 +70,7 @@ bool finite(const float* values, int count) {
 template <class Struct>
 void checkDomains(const Struct& object, const char* prefix, Findings& out) {
   bool allIntegers = true;
-  for (const IntegerDomain& d : integerDomains<Struct>())
+  for (const IntegerDomain& d : domainsOf<Struct>().integers)
     for (uint32_t i = 0; i < d.count; ++i) {
       const uint32_t value = valueOf(d, &object, i);
       if (value >= d.least && value <= d.most) continue;
@@ -79,7 +79,7 @@ void checkDomains(const Struct& object, const char* prefix, Findings& out) {
       allIntegers = false;
     }
   if (!allIntegers) return;
-  for (const FloatDomain& d : floatDomains<Struct>())
+  for (const FloatDomain& d : domainsOf<Struct>().floats)
     for (uint32_t i = 0; i < d.count; ++i) {
       const float value = valueOf(d, &object, i);
       if (!isRead(d, &object, i) || contains(d, value)) continue;

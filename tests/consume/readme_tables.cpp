@@ -120,7 +120,7 @@ std::string qualityTable() {
   }
   table += "\n" + rule + "\n";
   for (uint32_t quality = 0; quality < std::size(pellucid::kWorstError); ++quality) {
-    table += "| " + std::to_string(quality) + " |";
+    table += quality == 0 ? "| 0 |" : "| 1 and 2 |";
     for (const float error : pellucid::kWorstError[quality]) {
       std::snprintf(text, sizeof text, " %.4f |", static_cast<double>(error));
       table += text;
@@ -133,13 +133,13 @@ std::string qualityTable() {
 template <class Struct>
 void addDomains(const char* name, std::string* table) {
   char text[96];
-  for (const pellucid::FloatDomain& d : pellucid::floatDomains<Struct>()) {
+  for (const pellucid::FloatDomain& d : pellucid::domainsOf<Struct>().floats) {
     std::snprintf(text, sizeof text, "%c%g, %g]", d.leastIsOut ? '(' : '[', static_cast<double>(d.least),
                   static_cast<double>(d.most));
     *table += std::string("| `") + name + "` | `" + d.field + "` | " + text + " | " +
               (d.where ? d.where : "always") + " |\n";
   }
-  for (const pellucid::IntegerDomain& d : pellucid::integerDomains<Struct>()) {
+  for (const pellucid::IntegerDomain& d : pellucid::domainsOf<Struct>().integers) {
     std::snprintf(text, sizeof text, "%u..%u", d.least, d.most);
     *table += std::string("| `") + name + "` | `" + d.field + "` | " + text + " | always |\n";
   }

@@ -439,7 +439,7 @@ TEST_F(GpuTest, BadIrradianceIsBlackToBruteForce) {
   for (int y = 3; y < c.height; y += 9)
     for (int x = 2; x < c.width; x += 7, ++i) c.irradiance.at(x, y)[i / 3 % 3] = values[i % 3];
   const Image truth = diffusionTruth(c, {testMaterial()});
-  // Of each quality, a quarter above what is measured: relative RMSE and the worst pixel.
+  // Limits of each quality, a quarter above what is measured: relative RMSE and the worst pixel.
   const double limits[][2] = {{0.011, 0.19}, {0.003, 0.022}, {0.003, 0.022}, {0.0002, 0.0013}};
   for (uint32_t quality = 0; quality < 2; ++quality) {
     const Comparison d = compareImages(rgb(replay(c, testMaterial(), diffusionOf(quality))), truth, {});
@@ -503,7 +503,7 @@ TEST_F(GpuTest, RadiiNeedNotBeKnown) {
       for (size_t i = 0; i < known.output.data.size(); ++i)
         sum +=
             std::abs(static_cast<double>(known.output.data[i]) - static_cast<double>(unknown.output.data[i]));
-      // What levels 6 and 7 have of the widest radius, at most.
+      // Levels 6 and 7 have that much of the widest radius, at most.
       EXPECT_LT(sum / static_cast<double>(known.output.data.size()), 2.2e-5)
           << "radius " << radius << ", quality " << quality;
     }

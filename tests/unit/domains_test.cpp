@@ -103,7 +103,7 @@ TYPED_TEST_SUITE(Domains, Structs);
 TYPED_TEST(Domains, FloatsOutsideAreNamed) {
   std::set<std::string> read;
   for (const auto& change : kFrames)
-    for (const FloatDomain& d : floatDomains<TypeParam>())
+    for (const FloatDomain& d : domainsOf<TypeParam>().floats)
       for (uint32_t i = 0; i < d.count; ++i)
         for (const float value : kExtremes) {
           Whole f;
@@ -121,11 +121,12 @@ TYPED_TEST(Domains, FloatsOutsideAreNamed) {
           EXPECT_NE(problems.find(std::string(prefix<TypeParam>()) + d.field), std::string::npos)
               << d.field << "[" << i << "] = " << value << ": " << problems;
         }
-  EXPECT_EQ(read.size(), floatDomains<TypeParam>().size()) << "some field is read by no frame of this test";
+  EXPECT_EQ(read.size(), domainsOf<TypeParam>().floats.size())
+      << "some field is read by no frame of this test";
 }
 
 TYPED_TEST(Domains, IntegersOutsideAreNamed) {
-  for (const IntegerDomain& d : integerDomains<TypeParam>())
+  for (const IntegerDomain& d : domainsOf<TypeParam>().integers)
     for (uint32_t i = 0; i < d.count; ++i)
       for (const uint32_t value : {d.least - 1, d.most + 1, 0x80000000u, 0xFFFFFFFFu}) {
         if (value >= d.least && value <= d.most) continue;
@@ -163,7 +164,7 @@ TYPED_TEST(Domains, TheTableHasEveryFloatOfTheHeader) {
                      : std::is_same_v<TypeParam, PellucidLight>    ? "PellucidLight"
                                                                    : "PellucidShadowMap";
   std::set<std::string> table;
-  for (const FloatDomain& d : floatDomains<TypeParam>()) table.insert(d.field);
+  for (const FloatDomain& d : domainsOf<TypeParam>().floats) table.insert(d.field);
   EXPECT_EQ(table, declaredFloats(name));
 }
 
