@@ -6,6 +6,4 @@ bool contains(ivec4 rect, ivec2 at) {
   return all(greaterThanEqual(at, rect.xy)) && all(lessThan(at, rect.zw));
 }
 
-ivec4 inset(ivec4 rect, int by) { return rect + ivec4(by, by, -by, -by); }
-
 #endif

@@ -84,11 +84,9 @@ const char* whyNotGathered(const PellucidFrame& frame) {
   if (frame.angleModel != PELLUCID_ANGLE_NORMAL || frame.constantViewDirection != 0 ||
       frame.minimumDot != 0 || frame.maximumThickness > 0)
     return "angleModel, constantViewDirection, minimumDot and maximumThickness are of one thickness a pixel";
-  for (uint32_t i = 0; i < frame.materialCount; ++i) {
-    const uint32_t model = frame.materials[i].transmittanceModel;
-    if (model != PELLUCID_TRANSMITTANCE_EXP2 && model != PELLUCID_TRANSMITTANCE_SINH_EXP)
+  for (uint32_t i = 0; i < frame.materialCount; ++i)
+    if (!canBeGathered(frame.materials[i].transmittanceModel))
       return "a material's transmittance model has no profile";
-  }
   return nullptr;
 }
 

@@ -58,6 +58,12 @@ private:
   bool addImage(uint32_t image);
 };
 
+// True for transmittance models that the gather's kernel follows from.
+inline bool canBeGathered(uint32_t transmittanceModel) {
+  return transmittanceModel == PELLUCID_TRANSMITTANCE_EXP2 ||
+         transmittanceModel == PELLUCID_TRANSMITTANCE_SINH_EXP;
+}
+
 // The samples of each point, by frame.quality if that chooses.
 uint32_t gatherSamples(const PellucidFrame& frame);
 

@@ -303,8 +303,7 @@ PellucidResult checkFrame(const PellucidFrame* frame, PellucidMessageFn fn, void
   for (uint32_t i = 0; i < f.materialCount; ++i) {
     checkMaterial(f.materials[i], i, out);
     const uint32_t model = f.materials[i].transmittanceModel;
-    if (f.gatherSamples > 0 && f.gatherSamples != PELLUCID_GATHER_BY_QUALITY &&
-        model != PELLUCID_TRANSMITTANCE_EXP2 && model != PELLUCID_TRANSMITTANCE_SINH_EXP)
+    if (f.gatherSamples > 0 && f.gatherSamples != PELLUCID_GATHER_BY_QUALITY && !canBeGathered(model))
       out.error(Field("materials[", i, "].transmittanceModel"), "is ", model,
                 ", which cannot be gathered; use EXP2 or SINH_EXP");
   }
