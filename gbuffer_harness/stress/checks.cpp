@@ -60,6 +60,16 @@ const Image& Subject::unlitOutput() {
   return unlitOutput_;
 }
 
+const Image& Subject::dimOutput() {
+  if (dimOutput_.empty()) dimOutput_ = renderer.render(withLights(plain_, kDim));
+  return dimOutput_;
+}
+
+StressFrame withLights(StressFrame frame, double factor) {
+  for (Light& light : frame.capture.lights) light.intensity *= factor;
+  return frame;
+}
+
 std::span<const Check> checks() {
   static const std::vector<Check> all = [] {
     std::vector<Check> joined(bitChecks().begin(), bitChecks().end());

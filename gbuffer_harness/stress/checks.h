@@ -36,10 +36,13 @@ public:
   // The same without lights.
   const StressFrame& unlit() { return unlit_; }
   const Image& unlitOutput();
+  // Of the plain frame with its lights at kDim of their intensity: what lights add is the difference. A gather returns more
+  // of all light from curved surfaces, so that a frame without lights is no base.
+  const Image& dimOutput();
 
 private:
   StressFrame plain_, unlit_;
-  Image plainOutput_, unlitOutput_;
+  Image plainOutput_, unlitOutput_, dimOutput_;
 };
 
 struct Check {
@@ -52,6 +55,10 @@ struct Check {
   // None: the frame is not one of `frames`.
   std::optional<Worst> (*run)(Subject& subject);
 };
+
+inline constexpr double kDim = 0x1p-24;  // below what tolerances see
+
+StressFrame withLights(StressFrame frame, double factor);
 
 std::span<const Check> checks();
 

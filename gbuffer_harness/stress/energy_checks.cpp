@@ -47,38 +47,31 @@ std::optional<Worst> moreIrradiance(Subject& s) {
   return less(s.unlitOutput(), s.renderer.render(more), s.owned);
 }
 
-StressFrame withTwiceLights(StressFrame frame) {
-  for (Light& light : frame.capture.lights) light.intensity *= 2;
-  return frame;
-}
-
-bool canDouble(const StressFrame& frame) {
-  return std::all_of(frame.capture.lights.begin(), frame.capture.lights.end(),
-                     [](const Light& light) { return light.intensity <= 5e14; });
-}
-
-// The frame with twice the light is the frame without lights and twice what they add.
-std::optional<Worst> twiceLights(Subject& s) {
-  if (!s.translucent() || !canDouble(s.plain())) return {};
-  return notSum(s.unlitOutput(), {s.plainOutput(), s.plainOutput()}, s.renderer.render(withTwiceLights(s.plain())), s.owned);
+// Half the lights and not twice, as a gather takes from irradiance that the lights themselves bring.
+std::optional<Worst> halfLights(Subject& s) {
+  if (!s.translucent()) return {};
+  const Image half = s.renderer.render(withLights(s.plain(), 0.5));
+  return notSum(s.dimOutput(), {half, half}, s.plainOutput(), s.owned);
 }
 
 // Light and irradiance together: holds where the output ends at 0, too.
 std::optional<Worst> twiceAll(Subject& s) {
-  if (!s.translucent() || !canDouble(s.plain())) return {};
-  return notTwice(s.plainOutput(), s.renderer.render(withTwiceIrradiance(withTwiceLights(s.plain()))), s.owned);
+  const std::vector<Light>& lights = s.plain().capture.lights;
+  const bool inDomain = std::all_of(lights.begin(), lights.end(), [](const Light& l) { return l.intensity <= 5e14; });
+  if (!s.translucent() || !inDomain) return {};
+  return notTwice(s.plainOutput(), s.renderer.render(withTwiceIrradiance(withLights(s.plain(), 2))), s.owned);
 }
 
 std::optional<Worst> sumOfLights(Subject& s) {
   const std::size_t count = s.frame.capture.lights.size();
   if (!s.translucent() || count < 2 || count > 4) return {};
   std::vector<Image> parts;
-  for (const Light& light : s.plain().capture.lights) {
-    StressFrame one = s.plain();
-    one.capture.lights = {light};
+  for (std::size_t i = 0; i < count; ++i) {
+    StressFrame one = withLights(s.plain(), kDim);
+    one.capture.lights[i] = s.plain().capture.lights[i];
     parts.push_back(s.renderer.render(one));
   }
-  return notSum(s.unlitOutput(), parts, s.plainOutput(), s.owned);
+  return notSum(s.dimOutput(), parts, s.plainOutput(), s.owned);
 }
 
 // What a frame of light that is not gathered transmits.
@@ -142,8 +135,9 @@ std::optional<Worst> nearerMaps(Subject& s) {
 // without a map.
 std::optional<Worst> fartherBacks(Subject& s) {
   StressFrame frame;
-  if (!ungathered(s, frame) || frame.capture.backDepth.image.empty() ||
-      frame.capture.backDepth.encoding != PELLUCID_DEPTH_VIEW_Z)
+  Capture& c = frame.capture;
+  if (!ungathered(s, frame) || c.backDepth.image.empty() || c.frontDepth.encoding != PELLUCID_DEPTH_VIEW_Z ||
+      c.backDepth.encoding != PELLUCID_DEPTH_VIEW_Z)
     return {};
   std::erase_if(frame.capture.lights, [](const Light& light) { return light.type != PELLUCID_LIGHT_DIRECTIONAL; });
   if (frame.capture.lights.empty()) return {};
@@ -151,8 +145,11 @@ std::optional<Worst> fartherBacks(Subject& s) {
   StressFrame thicker = frame;
   Random random = s.random("farther-backs");
   const auto factor = 1 + static_cast<float>(random.magnitude(1e-4, 1));
-  for (float& d : thicker.capture.backDepth.image.data)
-    if (d > 0 && d < 1e8f) d *= factor;
+  for (std::size_t i = 0; i < s.owned.size(); ++i) {
+    float& back = thicker.capture.backDepth.image.data[i];
+    // One in front of the front is none.
+    if (back > c.frontDepth.image.data[i] && back < 1e8f) back *= factor;
+  }
   return less(s.renderer.render(thicker), s.renderer.render(frame), s.owned);
 }
 
@@ -176,7 +173,7 @@ std::span<const Check> energyChecks() {
        &twiceIrradiance},
       {"more-irradiance", "more irradiance at some pixels gives no pixel less", "all, without lights", 2e-3, 2e-3, kRounding,
        &moreIrradiance},
-      {"twice-lights", "twice the lights add twice as much", "frames with lights", 3e-3, 3e-3, kLight, &twiceLights},
+      {"half-lights", "lights of half the intensity add half as much", "frames with lights", 3e-3, 3e-3, kLight, &halfLights},
       {"twice-all", "twice the lights and irradiance give twice the output", "frames with lights", 2e-3, 2e-3, kRounding,
        &twiceAll},
       {"sum-of-lights", "a frame of lights adds the sum of what each adds", "frames of 2 to 4 lights", 5e-3, 5e-3, kLight,
@@ -188,7 +185,7 @@ std::span<const Check> energyChecks() {
       {"nearer-maps", "maps nearer to the light give no pixel more", "frames with maps, not gathered, thickness of the light",
        2e-3, 2e-3, kRounding, &nearerMaps},
       {"farther-backs", "a back depth farther away gives no pixel more",
-       "frames with directional lights without maps and a back depth in view z", 2e-3, 2e-3, kRounding, &fartherBacks},
+       "frames with directional lights and depths in view z", 2e-3, 2e-3, kRounding, &fartherBacks},
       {"reuse", "the next frame of a still camera is the frame", "frames that reuse light", 2e-3, 2e-3, kRounding, &reuse},
   };
   return table;

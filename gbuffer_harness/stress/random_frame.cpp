@@ -142,7 +142,7 @@ StressFrame randomFrame(std::uint64_t seed, std::uint64_t index, const MaterialP
   frame.wild = index % 2 == 1;
   Capture& c = frame.capture;
   c.name = "stress-" + std::to_string(seed) + "-" + std::to_string(index);
-  const View view = randomView(random, frame.wild, limits, c);
+  View view = randomView(random, frame.wild, limits, c);
   if (random.chance(0.2))
     frame.transmittance =
         random.of({TransmittanceChoice::Linear, TransmittanceChoice::Gaussians, TransmittanceChoice::GaussiansAsPrinted});

@@ -216,8 +216,8 @@ float badFloat(Random& random) {
                     65520.0f, 1e9f, 1e10f, 1e30f, 3.4e38f, -3.4e38f, static_cast<float>(random.real(0, 2))});
 }
 
-void addRandomImages(Random& random, bool wild, const View& view, int materials, Capture& capture) {
-  const std::vector<double> front = randomFront(random, view);
+void addRandomImages(Random& random, bool wild, View& view, int materials, Capture& capture) {
+  const std::vector<double>& front = view.planar = randomFront(random, view);
   addDepths(random, wild, view, front, capture);
   addMaterial(random, wild, view, materials, front, capture);
   addNormals(random, wild, view, front, capture);

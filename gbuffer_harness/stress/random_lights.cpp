@@ -173,6 +173,36 @@ Light randomLight(Random& random, bool wild, const Target& target, const glm::dv
   return light;
 }
 
+// What the light brings to the surfaces that face it, as an engine's irradiance has it, shadows left out: a gather
+// takes its share of that from there.
+void addDirectLight(const Light& light, const View& view, Capture& c) {
+  const glm::dmat3 toWorld(view.worldFromView);
+  const glm::dvec3 position(light.position[0], light.position[1], light.position[2]);
+  const glm::dvec3 travel = glm::normalize(glm::dvec3(light.direction[0], light.direction[1], light.direction[2]));
+  std::size_t i = 0;
+  for (int y = 0; y < view.height; ++y)
+    for (int x = 0; x < view.width; ++x, ++i) {
+      if (view.planar[i] == 0) continue;
+      glm::dvec3 toLight = -travel;
+      double falloff = 1;
+      if (light.type != PELLUCID_LIGHT_DIRECTIONAL) {
+        toLight = position - glm::dvec3(view.worldFromView * glm::dvec4(view.point(x, y, view.planar[i]), 1));
+        const double square = std::max(glm::dot(toLight, toLight), 1e-12);
+        falloff = 1 / square;
+        toLight /= std::sqrt(square);
+      }
+      double cosine = 1;
+      if (!c.normal.empty()) {
+        const float* stored = c.normal.at(x, y);
+        glm::dvec3 n(stored[0], stored[1], stored[2]);
+        if (c.normalsInViewSpace) n = toWorld * n;
+        cosine = std::clamp(glm::dot(n, toLight), 0.0, 1.0);
+      }
+      for (std::size_t k = 0; k < 3; ++k)
+        c.irradiance.data[4 * i + k] += static_cast<float>(light.intensity * falloff * cosine * light.color[k]);
+    }
+}
+
 }  // namespace
 
 void addRandomLights(Random& random, bool wild, const View& view, Capture& capture) {
@@ -182,6 +212,8 @@ void addRandomLights(Random& random, bool wild, const View& view, Capture& captu
   int count = random.of({0, 1, 1, 1, 2, 2, 3});
   if (random.chance(0.03)) count = random.whole(4, wild ? 12 : 6);
   for (int i = 0; i < count; ++i) capture.lights.push_back(randomLight(random, wild, target, axis));
+  if (wild && random.chance(0.3)) return;
+  for (const Light& light : capture.lights) addDirectLight(light, view, capture);
 }
 
 }  // namespace pellucid::harness::stress

@@ -21,6 +21,7 @@ struct View {
   double pixel;           // side of a pixel there, scene units
   double mm;              // of a scene unit
   glm::dmat4 worldFromView;
+  std::vector<double> planar;  // of each pixel's surface; 0: nothing there; what depth images hold may differ
 
   glm::dvec3 point(double x, double y, double p) const;  // view space, of the center of pixel x, y
   double deviceDepth(double p) const { return perspective ? a + b / p : a * p + b; }
@@ -28,8 +29,8 @@ struct View {
 
 View randomView(Random& random, bool wild, const FrameLimits& limits, Capture& capture);
 
-// Depths, material, normals, irradiance and albedo. `materials`: how many there are.
-void addRandomImages(Random& random, bool wild, const View& view, int materials, Capture& capture);
+// View::planar, depths, material, normals, irradiance and albedo. `materials`: how many there are.
+void addRandomImages(Random& random, bool wild, View& view, int materials, Capture& capture);
 
 void addRandomLights(Random& random, bool wild, const View& view, Capture& capture);
 
