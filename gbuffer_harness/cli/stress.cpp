@@ -4,16 +4,14 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <fstream>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "capture/write.h"
 #include "cli/command.h"
 #include "cli/commands.h"
-#include "cli/settings.h"
+#include "cli/stress_failure.h"
 #include "common/error.h"
 #include "common/progress.h"
 #include "common/whole_file.h"
@@ -36,22 +34,6 @@ struct Options {
 };
 
 std::string kindOf(const StressFrame& frame) { return frame.wild ? "wild" : "tame"; }
-
-// The file of a capture that replays a frame, and the settings beside it.
-std::string writeFailure(const std::filesystem::path& folder, const StressFrame& frame) {
-  std::filesystem::create_directories(folder);
-  const std::filesystem::path exr = folder / (frame.capture.name + ".exr"), json = folder / (frame.capture.name + ".json");
-  Capture capture = frame.capture;
-  capture.irradiance = rgb(capture.irradiance);
-  if (const std::uint32_t mark = frame.settings.translucency.materialMarkBit)
-    for (std::uint8_t& m : capture.material) m = static_cast<std::uint8_t>(m & ~mark);
-  writeCapture(capture, exr);
-  ReplaySettings settings = frame.settings;
-  settings.transmittance = frame.transmittance;
-  writeWhole(json, [&](const std::filesystem::path& path) { std::ofstream(path) << settingsJson(settings); });
-  const std::string debug = debugOption(settings);
-  return "pellucid replay " + exr.string() + " --set @" + json.string() + (debug.empty() ? "" : " --debug " + debug);
-}
 
 class Reporter {
 public:

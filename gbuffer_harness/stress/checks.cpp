@@ -17,6 +17,7 @@ StressFrame plainFrame(const StressFrame& frame) {
   plain.settings.debugView = PELLUCID_DEBUG_NONE;
   plain.settings.reuse = PELLUCID_REUSE_NONE;
   limitIrradiance(plain.capture.irradiance);
+  if (frame.wild) plain.capture.albedo = {};
   return plain;
 }
 
@@ -63,6 +64,19 @@ const Image& Subject::unlitOutput() {
 const Image& Subject::dimOutput() {
   if (dimOutput_.empty()) dimOutput_ = renderer.render(withLights(plain_, kDim));
   return dimOutput_;
+}
+
+bool Subject::saturates() {
+  if (!saturates_) {
+    StressFrame read = plain_;
+    read.settings.debugView = PELLUCID_DEBUG_IRRADIANCE;
+    const Image image = renderer.render(read);
+    saturates_ = false;
+    for (std::size_t i = 0; i < image.data.size(); ++i)
+      // Twice of it must fit, too.
+      if (owned[i / 4] && i % 4 < 3 && !(static_cast<double>(image.data[i]) < kCeiling / 2)) saturates_ = true;
+  }
+  return *saturates_;
 }
 
 StressFrame withLights(StressFrame frame, double factor) {

@@ -30,7 +30,7 @@ public:
   // Numbers of the check's own, the same whatever other checks run.
   Random random(const char* check) const;
 
-  // The frame as energies are compared: no debug view, no reuse, irradiance within [0, 16000].
+  // The frame as energies are compared: no debug view, no reuse, irradiance within [0, 16000], no wild albedo.
   const StressFrame& plain() { return plain_; }
   const Image& plainOutput();
   // The same without lights.
@@ -39,10 +39,13 @@ public:
   // Of the plain frame with its lights at kDim of their intensity: what lights add is the difference. A gather returns more
   // of all light from curved surfaces, so that a frame without lights is no base.
   const Image& dimOutput();
+  // Some of the plain frame's light ends at 65504 before the diffusion, where outputs no longer tell.
+  bool saturates();
 
 private:
   StressFrame plain_, unlit_;
   Image plainOutput_, unlitOutput_, dimOutput_;
+  std::optional<bool> saturates_;
 };
 
 struct Check {

@@ -49,7 +49,7 @@ std::optional<Worst> moreIrradiance(Subject& s) {
 
 // Half the lights and not twice, as a gather takes from irradiance that the lights themselves bring.
 std::optional<Worst> halfLights(Subject& s) {
-  if (!s.translucent()) return {};
+  if (!s.translucent() || s.saturates()) return {};
   const Image half = s.renderer.render(withLights(s.plain(), 0.5));
   return notSum(s.dimOutput(), {half, half}, s.plainOutput(), s.owned);
 }
@@ -58,13 +58,13 @@ std::optional<Worst> halfLights(Subject& s) {
 std::optional<Worst> twiceAll(Subject& s) {
   const std::vector<Light>& lights = s.plain().capture.lights;
   const bool inDomain = std::all_of(lights.begin(), lights.end(), [](const Light& l) { return l.intensity <= 5e14; });
-  if (!s.translucent() || !inDomain) return {};
+  if (!s.translucent() || !inDomain || s.saturates()) return {};
   return notTwice(s.plainOutput(), s.renderer.render(withTwiceIrradiance(withLights(s.plain(), 2))), s.owned);
 }
 
 std::optional<Worst> sumOfLights(Subject& s) {
   const std::size_t count = s.frame.capture.lights.size();
-  if (!s.translucent() || count < 2 || count > 4) return {};
+  if (!s.translucent() || count < 2 || count > 4 || s.saturates()) return {};
   std::vector<Image> parts;
   for (std::size_t i = 0; i < count; ++i) {
     StressFrame one = withLights(s.plain(), kDim);
@@ -173,10 +173,10 @@ std::span<const Check> energyChecks() {
        &twiceIrradiance},
       {"more-irradiance", "more irradiance at some pixels gives no pixel less", "all, without lights", 2e-3, 2e-3, kRounding,
        &moreIrradiance},
-      {"half-lights", "lights of half the intensity add half as much", "frames with lights", 3e-3, 3e-3, kLight, &halfLights},
-      {"twice-all", "twice the lights and irradiance give twice the output", "frames with lights", 2e-3, 2e-3, kRounding,
+      {"half-lights", "lights of half the intensity add half as much", "frames with lights that stay below 65504", 3e-3, 3e-3, kLight, &halfLights},
+      {"twice-all", "twice the lights and irradiance give twice the output", "frames with lights that stay below 65504", 2e-3, 2e-3, kRounding,
        &twiceAll},
-      {"sum-of-lights", "a frame of lights adds the sum of what each adds", "frames of 2 to 4 lights", 5e-3, 5e-3, kLight,
+      {"sum-of-lights", "a frame of lights adds the sum of what each adds", "frames of 2 to 4 lights that stay below 65504", 5e-3, 5e-3, kLight,
        &sumOfLights},
       {"thinner-limit", "a smaller maximumThickness gives no pixel more", "frames with lights, not gathered", 2e-3, 2e-3,
        kRounding, &thinnerLimit},

@@ -106,7 +106,7 @@ void markPixels(Random& random, StressFrame& frame) {
   if (bit == 0) return;
   for (std::uint8_t& m : frame.capture.material)
     if (m != 0 && random.chance(0.3)) m = static_cast<std::uint8_t>(m | bit);
-  frame.notInCapture = "material values with the mark bit";
+  frame.notInCapture += (frame.notInCapture.empty() ? "" : " and ") + std::string("material values with the mark bit");
 }
 
 }  // namespace

@@ -9,7 +9,8 @@ namespace pellucid::harness::stress {
 
 namespace {
 
-// Mostly near 64 x 64, so that there are many; now and then one pixel, a strip, or the largest.
+// Mostly well below the limit, near 64 x 64 without one, so that there are many; now and then one pixel, a strip, or the
+// largest.
 void randomSize(Random& random, const FrameLimits& limits, int& width, int& height) {
   const double kind = random.real();
   const int most = std::min(limits.side, limits.pixels);
@@ -21,7 +22,7 @@ void randomSize(Random& random, const FrameLimits& limits, int& width, int& heig
     height = random.whole(1, std::min(4, std::max(1, limits.pixels / width)));
     if (random.chance(0.5)) std::swap(width, height);
   } else {
-    const double pixels = kind < 0.1 ? random.magnitude(4096, limits.pixels) : random.magnitude(256, 8192);
+    const double pixels = random.magnitude(16, kind < 0.1 ? limits.pixels : limits.pixels / 8.0) + random.real(0, limits.pixels / 32.0);
     const double aspect = random.magnitude(0.25, 4);
     width = static_cast<int>(std::sqrt(pixels * aspect)) + 1;
     height = static_cast<int>(std::sqrt(pixels / aspect)) + 1;

@@ -37,8 +37,10 @@ bool count(CheckResult& result, const StressFrame& frame, const Worst& worst, st
 class Run {
 public:
   Run(const StressOptions& options, const ViolationFn& onViolation)
-      : options_(options), onViolation_(onViolation), renderer_({options.device, options.validate}) {
-    if (!options.only.empty()) only_ = findCheck(options.only);
+      : options_(options),
+        onViolation_(onViolation),
+        only_(options.only.empty() ? nullptr : findCheck(options.only)),
+        renderer_({options.device, options.validate}) {
     result.device = renderer_.device().description();
     result.checks = {{kAccepted, {}, {}}, {kValidation, {}, {}}};
     for (const Check& check : checks()) result.checks.push_back({check.name, {}, {}});
@@ -83,10 +85,10 @@ public:
 private:
   const StressOptions& options_;
   const ViolationFn& onViolation_;
+  const Check* const only_;
   Renderer renderer_;
   const MaterialPool pool_;
   FrameLimits limits_;
-  const Check* only_ = nullptr;
 };
 
 }  // namespace
