@@ -26,6 +26,11 @@ private:
   std::vector<std::string> assignments() const;  // key=value
 };
 
+// What --set @FILE reads as these settings of --mode physical: a JSON object. The debug view is no key; its option is
+// `debugOption`, or "".
+std::string settingsJson(const ReplaySettings& settings);
+std::string debugOption(const ReplaySettings& settings);
+
 // Puts a number in the place of PELLUCID_GATHER_BY_QUALITY, as the module does, for what is not the module.
 void resolveGather(ReplaySettings& settings, const std::vector<PellucidMaterial>& materials);
 
