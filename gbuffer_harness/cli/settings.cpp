@@ -27,7 +27,8 @@ const Names<uint32_t> kFeatures = {
 const Names<PellucidThicknessSource> kThickness = {{"light", PELLUCID_THICKNESS_LIGHT},
                                                    {"camera", PELLUCID_THICKNESS_CAMERA}};
 const Names<VkFormat> kFormats = {{"rgba16f", VK_FORMAT_R16G16B16A16_SFLOAT},
-                                  {"rgba32f", VK_FORMAT_R32G32B32A32_SFLOAT}};
+                                  {"rgba32f", VK_FORMAT_R32G32B32A32_SFLOAT},
+                                  {"rg11b10f", VK_FORMAT_B10G11R11_UFLOAT_PACK32}};
 const Names<TransmittanceChoice> kTransmittance = {
     {"material", TransmittanceChoice::Material},
     {"linear", TransmittanceChoice::Linear},
@@ -216,7 +217,7 @@ const std::map<std::string, Key> kKeys = {
      {"of what diffuses from the camera's plane, scene units, 0 for not known",
       [](const auto& key, const auto& value, ReplaySettings& s) { s.nearestDistance = real(key, value); }}},
     {"format",
-     {"rgba16f|rgba32f", [](const auto& key, const auto& value,
+     {"rgba16f|rgba32f|rg11b10f", [](const auto& key, const auto& value,
                             ReplaySettings& s) { s.outputFormat = lookUp(kFormats, key, value); }}},
     {"alias",
      {"0|1: output is the irradiance image",
