@@ -2,15 +2,14 @@
 // below each other beside it.
 #pragma once
 
-#include "frame.h"
+#include <array>
+
+#include "rect.h"
+#include "shared/pellucid_shared.h"
 
 namespace pellucid {
 
 constexpr uint32_t kFirstLevel = 1;
-
-// The coarsest level in use: odd, because a reduction makes two levels, and no coarser than it takes for the
-// image to lie on 2 x 2 texels.
-uint32_t coarsestLevel(const PellucidFrame& frame);
 
 struct PyramidPlace {
   int32_t x, y;  // in the image
@@ -19,16 +18,27 @@ struct PyramidPlace {
   } rect;  // texels of the level that the render rect needs, as levelRect of compute/lib/pyramid.glsl
 };
 
-PyramidPlace placeOf(const PellucidFrame& frame, uint32_t level);
+struct Pyramid {
+  Pyramid() = default;
+  Pyramid(const uint32_t (&imageExtent)[2], const Rect& rect);
 
-// The column where the shares of the resolved level 2 begin. That level lies where level 1 was.
-int32_t sharesColumn(const PellucidFrame& frame);
+  // The coarsest level in use: odd, because a dispatch that downsamples makes two levels, and no coarser than
+  // it takes for the image to lie on 2 x 2 texels.
+  uint32_t coarsest = 0;
 
-// Of the pyramid's image, for any render rect.
-struct PyramidExtent {
-  uint32_t width, height;
+  // By level, from kFirstLevel on; coarser levels than those in use have places, too.
+  std::array<PyramidPlace, PELLUCID_LAST_LEVEL + 1> levels{};
+
+  // The column where the shares of level 2 begin after upsampling. That level lies where level 1 was.
+  int32_t sharesColumn = 0;
+
+  // Of the pyramid's image, for any render rect.
+  uint32_t width = 0, height = 0;
+
+  // Texels of a level that the rect needs.
+  uint64_t texels(uint32_t level) const {
+    return static_cast<uint64_t>(levels[level].rect.width) * static_cast<uint64_t>(levels[level].rect.height);
+  }
 };
-
-PyramidExtent pyramidExtent(const PellucidFrame& frame);
 
 }  // namespace pellucid

@@ -33,7 +33,8 @@ bool skips(const PellucidPlan& plan, const std::string& what, const std::string&
 TEST(Plan, WholeFrameIsFusedDispatchAndPyramid) {
   Frame f;
   const PellucidPlan plan = f.plan();
-  EXPECT_EQ(names(plan), (std::vector<std::string>{"translucency", "quads", "reduce", "reduce", "resolve", "diffuse"}));
+  EXPECT_EQ(names(plan),
+            (std::vector<std::string>{"translucency", "quads", "reduce", "reduce", "resolve", "diffuse"}));
   EXPECT_EQ(plan.barrierCount, 5u);
   EXPECT_EQ(plan.skipCount, 2u);
   EXPECT_TRUE(skips(plan, "exit depth", "a shadow map has none: air behind an occluder counts as medium"));
@@ -238,7 +239,8 @@ TEST(Plan, ManyLightsBecomeSeveralDispatches) {
   EXPECT_LE(end, plan.constantsSize);
 }
 
-// The gather's variant for directional lights is chosen only where everything that it takes for granted holds.
+// The gather's variant for directional lights is chosen only where everything that it takes for granted
+// holds.
 TEST(Plan, DirectionalVariantNeedsTheCommonCase) {
   const auto pipeline = [](const std::function<void(Frame&)>& change) {
     Frame f;
@@ -258,8 +260,8 @@ TEST(Plan, DirectionalVariantNeedsTheCommonCase) {
   EXPECT_FALSE(directional([](Frame& f) { f.frame.normal = {}; }));
   EXPECT_FALSE(directional([](Frame& f) { f.frame.frontDepthEncoding = PELLUCID_DEPTH_VIEW_Z; }));
   EXPECT_FALSE(directional([](Frame& f) { f.frame.thicknessSource = PELLUCID_THICKNESS_CAMERA; }));
-  EXPECT_FALSE(directional([](Frame& f) { f.frame.angleModel = PELLUCID_ANGLE_COSINE; }));
-  EXPECT_FALSE(directional([](Frame& f) { f.frame.constantViewDirection = 1; }));
+  EXPECT_FALSE(directional([](Frame& f) { f.thesis.angleModel = PELLUCID_ANGLE_COSINE; }));
+  EXPECT_FALSE(directional([](Frame& f) { f.thesis.constantViewDirection = 1; }));
   EXPECT_FALSE(directional([](Frame& f) { f.lights[0].shadowMapCount = 0; }));
   EXPECT_FALSE(directional([](Frame& f) {
     f.maps[0].encoding = PELLUCID_DEPTH_VIEW_Z;
