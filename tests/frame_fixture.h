@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "pellucid/pellucid.h"
+#include "pellucid/pellucid_thesis.h"
 
 namespace pellucid::test {
 
@@ -32,6 +32,7 @@ inline PellucidMaterial plainMaterial() {
 
 struct Frame {
   PellucidFrame frame;
+  PellucidThesisOptions thesis;
   PellucidMaterial material = plainMaterial();
   std::vector<PellucidLight> lights;
   std::vector<PellucidShadowMap> maps;
@@ -40,6 +41,8 @@ struct Frame {
   // One directional light per shadow image; without images one light without a map.
   explicit Frame(uint32_t shadowImages = 1) {
     pellucidInitFrame(&frame);
+    pellucidInitThesisOptions(&thesis);
+    frame.thesis = &thesis;
     frame.gatherSamples = 0;  // tests of the gather say so
     frame.imageExtent[0] = 100;
     frame.imageExtent[1] = 50;

@@ -22,7 +22,7 @@ void makeLevels(ivec2 k, int invocation) {
   ivec2 first7 = firstMade(7u, k), first6 = firstMade(6u, k), first5 = 2 * first6 - 1;
   for (int i = invocation; i < kSide5 * kSide5; i += PELLUCID_UPSAMPLE_GROUP * PELLUCID_UPSAMPLE_GROUP) {
     ivec2 at = ivec2(i % kSide5, i / kSide5), texel = first5 + at;
-    uvec4 bits = contains(levelRect(5u), texel) ? texelFetch(pyramidImage, inAtlas(5u, texel), 0) : uvec4(0u);
+    uvec4 bits = contains(levelRect(5u), texel) ? storedTexel(5u, texel) : uvec4(0u);
     colors[slot(at, kSide5)] = bits.xy;
     depths[slot(at, kSide5)] = uintBitsToFloat(bits.z);
   }

@@ -1,4 +1,4 @@
-// Writing the diffusion pyramid. All levels lie in one image, at FrameConstants::level.
+// Writing the diffusion pyramid. Levels lie at FrameConstants::level in their images, see module/src/pyramid.h.
 #ifndef PELLUCID_PYRAMID_GLSL
 #define PELLUCID_PYRAMID_GLSL
 

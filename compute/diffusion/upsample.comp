@@ -10,6 +10,7 @@
 #define GROUP_SIDE PELLUCID_UPSAMPLE_GROUP
 #include "diffusion/upsampled.glsl"
 
+layout(set = 0, binding = PELLUCID_BINDING_COARSER_LEVELS) uniform utexture2D coarserLevelsImage;
 layout(set = 0, binding = PELLUCID_BINDING_KERNELS) readonly buffer Kernels { KernelConstants kernels[]; };
 
 // Upsampled texels of level 3 and coarser ones, level after level; see Window. Color and material as packed, depth, and in
@@ -71,7 +72,7 @@ void main() {
   bool lastInside = coarsest == 7u && hasLast && contains(levelRect(7u), lastTexel);
   if (invocation == 0) needsMade = 0u;
   // All before the first is used.
-  uvec4 bits = inside && level <= 5u ? texelFetch(pyramidImage, inAtlas(level, texel), 0) : uvec4(0u);
+  uvec4 bits = inside && level <= 5u ? storedTexel(level, texel) : uvec4(0u);
   uvec4 lastBits = uvec4(0u);
   uvec4 fineBits = contains(levelRect(2u), fine) ? texelFetch(pyramidImage, inAtlas(2u, fine), 0) : uvec4(0u);
   uvec4 nextBits = contains(levelRect(2u), nextFine) ? texelFetch(pyramidImage, inAtlas(2u, nextFine), 0) : uvec4(0u);

@@ -1,4 +1,4 @@
-// Level 2 of the pyramid with all coarser ones in it: two texels each, where level 1 was. One is packed as a texel of
+// Level 2 of the pyramid with all coarser ones in it: two texels each, in the image of level 1. One is packed as a texel of
 // the pyramid, whose kPlane says that all around lies on its plane, too. The other holds the shares of the pixels under it
 // and in w the share of the kernel that the surface fills, a byte a channel, and flags.
 #ifndef PELLUCID_UPSAMPLED_GLSL

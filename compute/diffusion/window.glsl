@@ -45,12 +45,18 @@ bool known(uint level, ivec2 texel, ivec2 k) {
   return true;
 }
 
+// Of levels 2 to 5.
+uvec4 storedTexel(uint level, ivec2 texel) {
+  return level < 4u ? texelFetch(pyramidImage, inAtlas(level, texel), 0)
+                    : texelFetch(coarserLevelsImage, inAtlas(level, texel), 0);
+}
+
 uvec4 texelAt(uint level, ivec2 texel, ivec2 k) {
   if (level > 5u) {
     ivec2 at = texel - firstMade(level, k);
     return upsampled[kMade + (level == 6u ? at.y * kSide6 + at.x : kSide6 * kSide6 + at.y * 3 + at.x)];
   }
-  return texelFetch(pyramidImage, inAtlas(level, texel), 0);
+  return storedTexel(level, texel);
 }
 
 #endif

@@ -47,7 +47,8 @@ using glm::vec4;
 #define PELLUCID_BINDING_SHADOW_IMAGES 12 // and the next SHADOW_IMAGE_COUNT - 1
 #define PELLUCID_SHADOW_IMAGE_COUNT 8     // 14 sampled images in all; every device has 16
 #define PELLUCID_BINDING_LEVELS 20        // written by the diffusion's passes, which read no shadow images:
-#define PELLUCID_BINDING_PYRAMID PELLUCID_BINDING_SHADOW_IMAGES
+#define PELLUCID_BINDING_PYRAMID PELLUCID_BINDING_SHADOW_IMAGES // the level or levels that are read
+#define PELLUCID_BINDING_COARSER_LEVELS (PELLUCID_BINDING_SHADOW_IMAGES + 1) // of upsampling: levels 4 and 5
 // The gather's passes know lights, maps and materials, and no kernels:
 #define PELLUCID_BINDING_GATHER_MAPS PELLUCID_BINDING_SHADOWS
 #define PELLUCID_BINDING_ENTRY_MAPS PELLUCID_BINDING_KERNELS
@@ -130,7 +131,7 @@ struct FrameConstants {
   vec4 anglePolynomial;
   uvec4 marks;         // x: bit of material values without translucency; 0: none
   vec4 filterAndLimit;        // rgb: factor of T; w: largest thickness, mm
-  ivec4 level[PELLUCID_LAST_LEVEL + 1]; // xy: where texel (0, 0) of the level lies in the pyramid's image; of level 0, that
+  ivec4 level[PELLUCID_LAST_LEVEL + 1]; // xy: where texel (0, 0) of the level lies in its image; of level 0, that
                                         // of the resolved level 2, zw: of its shares
   // View ray of planar length 1: of pixel (0, 0), changes per pixel in x and y.
   vec4 normalRay[3]; // xyz: in the normal image's space

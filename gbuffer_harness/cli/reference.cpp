@@ -50,9 +50,9 @@ void runReference(const Options& options) {
   toSettings(options, replay);  // what is not of the reference is refused before anything is read
   requireExr("-o", options.output);
   const Capture capture = readCapture(options.input, options.preset);
-  const std::vector<PellucidMaterial> materials =
-      withTransmittance(compileMaterials(capture), replay.transmittance);
-  resolveGather(replay, materials);
+  const std::vector<PellucidMaterial> compiled = compileMaterials(capture);
+  resolveGather(replay, capture, compiled);
+  const std::vector<PellucidMaterial> materials = withTransmittance(compiled, replay.transmittance);
   const reference::Settings settings = toSettings(options, replay);
   const auto start = std::chrono::steady_clock::now();
   const reference::Result result = reference::compute(capture, materials, settings);

@@ -1,12 +1,12 @@
 #include "cli/settings.h"
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fstream>
 #include <functional>
 #include <iterator>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "capture/json_field.h"
@@ -318,18 +318,16 @@ ReplaySettings SettingsOptions::parse() const {
   return settings;
 }
 
-void resolveGather(ReplaySettings& settings, const std::vector<PellucidMaterial>& materials) {
+void resolveGather(ReplaySettings& settings, const Capture& capture,
+                   const std::vector<PellucidMaterial>& materials) {
   std::uint32_t& samples = settings.translucency.gatherSamples;
   if (samples != PELLUCID_GATHER_BY_QUALITY) return;
-  const TranslucencySettings& t = settings.translucency;
-  const bool possible = t.thicknessSource == PELLUCID_THICKNESS_LIGHT &&
-                        t.angleModel == PELLUCID_ANGLE_NORMAL && !t.constantViewDirection &&
-                        t.minimumDot == 0 && t.maximumThickness == 0 &&
-                        std::all_of(materials.begin(), materials.end(), [](const PellucidMaterial& m) {
-                          return m.transmittanceModel == PELLUCID_TRANSMITTANCE_EXP2 ||
-                                 m.transmittanceModel == PELLUCID_TRANSMITTANCE_SINH_EXP;
-                        });
-  samples = possible ? 8 * settings.quality : 0;
+  FrameData data;
+  makeFrame(capture, materials, settings, data);
+  data.frame.lightCount = 0;  // lights do not matter here, and a plan has no room for any number of them
+  const auto plan = std::make_unique<PellucidPlan>();
+  requireOk(pellucidBuildPlan(&data.frame, nullptr, plan.get()), data.frame, capture.name);
+  samples = plan->gatherSamples;
 }
 
 std::string settingsJson(const ReplaySettings& s) {

@@ -31,7 +31,10 @@ private:
 std::string settingsJson(const ReplaySettings& settings);
 std::string debugOption(const ReplaySettings& settings);
 
-// Puts a number in the place of PELLUCID_GATHER_BY_QUALITY, as the module does, for what is not the module.
-void resolveGather(ReplaySettings& settings, const std::vector<PellucidMaterial>& materials);
+// Puts the number that the module chooses for the capture in the place of PELLUCID_GATHER_BY_QUALITY, for
+// what is not the module. `materials`: with their own T(d). Throws InputError where the module refuses the
+// frame.
+void resolveGather(ReplaySettings& settings, const Capture& capture,
+                   const std::vector<PellucidMaterial>& materials);
 
 }  // namespace pellucid::harness

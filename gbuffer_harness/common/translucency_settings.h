@@ -1,11 +1,11 @@
-// How light through thin parts is computed: the fields of PellucidFrame of these names, for the module
-// and the float64 reference alike.
+// How light through thin parts is computed: the fields of PellucidFrame and PellucidThesisOptions of these
+// names, for the module and the float64 reference alike.
 #pragma once
 
 #include <array>
 #include <vector>
 
-#include "pellucid/pellucid.h"
+#include "pellucid/pellucid_thesis.h"
 
 namespace pellucid::harness {
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/error.h"
+#include "pellucid/pellucid_material.h"
 
 namespace pellucid::harness {
 namespace {
@@ -47,27 +48,15 @@ void addLight(const Light& light, float shadowBias, uint32_t& images, FrameData&
   data.lights.push_back(l);
 }
 
-double transmittance(const PellucidMaterial& m, int channel, double d) {
-  const auto p = [&](int i) { return static_cast<double>(m.transmittance[channel][i]); };
-  if (m.transmittanceModel == PELLUCID_TRANSMITTANCE_EXP2)
-    return p(0) * std::exp(-p(1) * d) + p(2) * std::exp(-p(3) * d);
-  if (m.transmittanceModel == PELLUCID_TRANSMITTANCE_SINH_EXP)
-    return p(0) / std::sinh(p(1) * d + p(2)) + p(3) * std::exp(-p(4) * d);
-  double sum = 0;
-  for (uint32_t i = 0; i < m.gaussianCount; ++i)
-    sum += static_cast<double>(m.gaussianWeight[channel][i]) *
-           std::exp(-d * d / (2 * static_cast<double>(m.gaussianVariance[channel][i])));
-  return sum;
-}
-
 // The dmax whose line has the least RMS distance to T over 0..10 mm; skin is dark beyond. A fine
 // geometric search is enough: the RMS is smooth in dmax.
-float nearestLine(const PellucidMaterial& m, int channel) {
+float nearestLine(const PellucidMaterial& m, uint32_t channel) {
   double best = INFINITY, bestLength = 1;
   for (double length = 0.05; length < 200; length *= 1.005) {
     double sum = 0;
     for (int i = 0; i <= 200; ++i) {
-      const double d = 0.05 * i, error = std::max(0.0, 1 - d / length) - transmittance(m, channel, d);
+      const double d = 0.05 * i,
+                   error = std::max(0.0, 1 - d / length) - pellucidEvaluateTransmittance(&m, channel, d);
       sum += error * error;
     }
     if (sum < best) {
@@ -76,6 +65,31 @@ float nearestLine(const PellucidMaterial& m, int channel) {
     }
   }
   return static_cast<float>(bestLength);
+}
+
+void addThesisOptions(const TranslucencySettings& t, FrameData& data) {
+  PellucidThesisOptions& o = data.thesis;
+  pellucidInitThesisOptions(&o);
+  o.angleModel = t.angleModel;
+  std::copy(t.anglePolynomial.begin(), t.anglePolynomial.end(), o.anglePolynomial);
+  o.minimumDot = t.minimumDot;
+  o.prescaleAngle = t.prescaleAngle;
+  o.constantViewDirection = t.constantViewDirection;
+  o.chordThickness = t.chordThickness;
+  o.maximumThickness = t.maximumThickness;
+  std::copy(t.transmittanceFilter.begin(), t.transmittanceFilter.end(), o.transmittanceFilter);
+  o.materialMarkBit = t.materialMarkBit;
+  data.minimumDotTable = t.minimumDotTable;
+  o.minimumDotTable = data.minimumDotTable.data();
+  const auto entries = static_cast<uint32_t>(data.minimumDotTable.size());
+  // Validation refuses a map that is not square by the size that is left.
+  const auto side = static_cast<uint32_t>(std::lround(std::sqrt(entries)));
+  const bool sphere = t.angleModel == PELLUCID_ANGLE_MINIMUM_DOT_SPHERE;
+  o.minimumDotTableSize = !sphere ? entries : side * side == entries ? side : 0;
+  std::copy(t.faceVector.begin(), t.faceVector.end(), o.faceVector);
+  std::copy(t.upAxis.begin(), t.upAxis.end(), o.upAxis);
+  std::copy(t.objectCenter.begin(), t.objectCenter.end(), o.objectCenter);
+  data.frame.thesis = &o;
 }
 
 // Views of different images that are never dereferenced: planning and validation only ask whether a view is
@@ -125,7 +139,7 @@ std::vector<PellucidMaterial> withTransmittance(std::vector<PellucidMaterial> ma
       case TransmittanceChoice::Material:
         break;
       case TransmittanceChoice::Linear:
-        for (int c = 0; c < 3; ++c) m.transmittance[c][0] = nearestLine(m, c);
+        for (uint32_t c = 0; c < 3; ++c) m.transmittance[c][0] = nearestLine(m, c);
         m.transmittanceModel = PELLUCID_TRANSMITTANCE_LINEAR;
         break;
       case TransmittanceChoice::Gaussians:
@@ -180,27 +194,9 @@ void makeFrame(const Capture& capture, const std::vector<PellucidMaterial>& mate
   f.shadowImages = data.shadowImages.data();
   const TranslucencySettings& t = settings.translucency;
   f.thicknessSource = t.thicknessSource;
-  f.angleModel = t.angleModel;
-  std::copy(t.anglePolynomial.begin(), t.anglePolynomial.end(), f.anglePolynomial);
-  f.minimumDot = t.minimumDot;
   f.gatherSamples = t.gatherSamples;
   f.gatherSpacing = t.gatherSpacing;
-  f.constantViewDirection = t.constantViewDirection;
-  f.chordThickness = t.chordThickness;
-  f.maximumThickness = t.maximumThickness;
-  std::copy(t.transmittanceFilter.begin(), t.transmittanceFilter.end(), f.transmittanceFilter);
-  data.minimumDotTable = t.minimumDotTable;
-  f.minimumDotTable = data.minimumDotTable.data();
-  const auto entries = static_cast<uint32_t>(data.minimumDotTable.size());
-  // Validation refuses a map that is not square by the size that is left.
-  const auto side = static_cast<uint32_t>(std::lround(std::sqrt(entries)));
-  const bool sphere = t.angleModel == PELLUCID_ANGLE_MINIMUM_DOT_SPHERE;
-  f.minimumDotTableSize = !sphere ? entries : side * side == entries ? side : 0;
-  std::copy(t.faceVector.begin(), t.faceVector.end(), f.faceVector);
-  std::copy(t.upAxis.begin(), t.upAxis.end(), f.upAxis);
-  std::copy(t.objectCenter.begin(), t.objectCenter.end(), f.objectCenter);
-  f.materialMarkBit = t.materialMarkBit;
-  f.prescaleAngle = t.prescaleAngle;
+  addThesisOptions(t, data);
   f.reuse = settings.reuse;
   f.coherenceThreshold = settings.coherenceThreshold;
   f.frameLoad = settings.frameLoad;

@@ -55,6 +55,7 @@ std::vector<ShadowSource> shadowSources(const std::vector<Light>& lights);
 // A frame and the arrays it points to. shadowImages are as shadowSources() of the capture's lights.
 struct FrameData {
   PellucidFrame frame;
+  PellucidThesisOptions thesis;
   std::vector<PellucidMaterial> materials;
   std::vector<PellucidLight> lights;
   std::vector<PellucidShadowMap> shadowMaps;
@@ -62,7 +63,7 @@ struct FrameData {
   std::vector<float> minimumDotTable;
 
   FrameData() = default;
-  FrameData(const FrameData&) = delete;  // frame points into the vectors
+  FrameData(const FrameData&) = delete;  // frame points to the others
   FrameData& operator=(const FrameData&) = delete;
 };
 

@@ -107,7 +107,7 @@ std::optional<Worst> badValues(Subject& s) {
 // for the Gaussian of a stretched kernel. Halving sizes sum to twice the last.
 int kernelReach(const PellucidPlan& plan) {
   for (std::uint32_t i = 0; i < plan.dispatchCount; ++i)
-    if (std::strcmp(plan.dispatches[i].name, "resolve") == 0) return 15 << plan.dispatches[i].pushConstants[0];
+    if (std::strcmp(plan.dispatches[i].name, "upsample") == 0) return 15 << plan.dispatches[i].pushConstants[0];
   return 0;
 }
 

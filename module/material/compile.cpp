@@ -10,6 +10,7 @@
 #include "pellucid/pellucid_material.h"
 #include "presets.h"
 #include "profile.h"
+#include "transmittance.h"
 
 namespace pellucid::material {
 namespace {
@@ -192,31 +193,6 @@ Result compile(const PellucidMaterialDesc& desc) {
 
 // ---- The C boundary ----------------------------------------------------------------------------
 
-double evaluateMaterial(const PellucidMaterial& material, std::size_t channel, double d) {
-  const float* parameters = material.transmittance[channel];
-  switch (material.transmittanceModel) {
-    case PELLUCID_TRANSMITTANCE_EXP2:
-    case PELLUCID_TRANSMITTANCE_SINH_EXP: {
-      Curve curve{static_cast<PellucidTransmittanceModel>(material.transmittanceModel), {}};
-      std::copy_n(parameters, curve.parameters.size(), curve.parameters.begin());
-      return evaluate(curve, d);
-    }
-    case PELLUCID_TRANSMITTANCE_GAUSSIANS:
-    case PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED: {
-      const double twice = material.transmittanceModel == PELLUCID_TRANSMITTANCE_GAUSSIANS ? 2 : 1;
-      double sum = 0;
-      for (std::size_t i = 0; i < std::min<std::size_t>(material.gaussianCount, PELLUCID_MAX_GAUSSIANS); ++i)
-        sum += static_cast<double>(material.gaussianWeight[channel][i]) *
-               std::exp(-d * d / (twice * static_cast<double>(material.gaussianVariance[channel][i])));
-      return sum;
-    }
-    case PELLUCID_TRANSMITTANCE_LINEAR:
-      return std::max(1 - d / static_cast<double>(parameters[0]), 0.0);
-    default:
-      return std::numeric_limits<double>::quiet_NaN();
-  }
-}
-
 void requireDesc(const PellucidMaterialDesc* desc) {
   if (desc == nullptr) throw Refusal("desc", "NULL");
   if (desc->structSize != sizeof(PellucidMaterialDesc))
@@ -307,7 +283,7 @@ PellucidResult pellucidMaterialSlabs(const PellucidMaterialDesc* desc, uint32_t 
     const Result result = compile(*desc);
     for (std::size_t i = 0; i < count; ++i)
       for (std::size_t c = 0; c < 3; ++c) {
-        const double value = evaluateMaterial(result.material, c, thickness[i]);
+        const double value = pellucid::transmittance(result.material, c, thickness[i]);
         slabs[3 * i + c] = {value, value, 0};
       }
   });
@@ -315,7 +291,7 @@ PellucidResult pellucidMaterialSlabs(const PellucidMaterialDesc* desc, uint32_t 
 
 double pellucidEvaluateTransmittance(const PellucidMaterial* material, uint32_t channel, double thickness) {
   if (material == nullptr || channel > 2) return std::numeric_limits<double>::quiet_NaN();
-  return evaluateMaterial(*material, channel, thickness);
+  return pellucid::transmittance(*material, channel, thickness);
 }
 
 uint32_t pellucidPresetCount(void) { return static_cast<uint32_t>(presets().size()); }

@@ -7,6 +7,8 @@
 #include <limits>
 #include <vector>
 
+#include "transmittance.h"
+
 namespace pellucid::material {
 namespace {
 
@@ -263,12 +265,7 @@ Fit fitSinhExp(std::span<const Sample> samples, const Rates& rates, bool exact) 
 }  // namespace
 
 double evaluate(const Curve& curve, double thickness) {
-  const auto p = [&](std::size_t i) { return static_cast<double>(curve.parameters[i]); };
-  if (curve.model == PELLUCID_TRANSMITTANCE_EXP2)
-    return p(0) * std::exp(-p(1) * thickness) + p(2) * std::exp(-p(3) * thickness);
-  // 1 / sinh y = 2 e^{-y} / (1 - e^{-2y}) does not overflow.
-  const double y = p(1) * thickness + p(2);
-  return p(0) * 2 * std::exp(-y) / -std::expm1(-2 * y) + p(3) * std::exp(-p(4) * thickness);
+  return transmittance(curve.model, curve.parameters.data(), thickness);
 }
 
 bool isTransmittance(const Curve& curve) {

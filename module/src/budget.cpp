@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pellucid/pellucid_budget.h"
 #include "quality.h"
 
 namespace {

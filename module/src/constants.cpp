@@ -3,16 +3,11 @@
 #include <cmath>
 #include <cstring>
 
-#include "camera.h"
+#include "constants.h"
 #include "diffusion_profile.h"
-#include "entry_points.h"
-#include "frame.h"
 #include "gather.h"
 #include "minimum_dot.h"
-#include "pyramid.h"
-#include "quality.h"
-#include "reuse.h"
-#include "validate.h"
+#include "entry_points.h"
 
 namespace pellucid {
 namespace {
@@ -37,13 +32,12 @@ static_assert(PELLUCID_MAX_LIGHT_SHADOW_MAPS <= PELLUCID_SHADOW_IMAGE_COUNT);
 
 glm::vec4 rgb(const float (&v)[3], float w = 0) { return {v[0], v[1], v[2], w}; }
 
-shared::FrameConstants frameConstants(const PellucidFrame& f) {
+shared::FrameConstants frameConstants(const FrameFacts& facts) {
+  const PellucidFrame& f = facts.frame;
   shared::FrameConstants c{};
-  const glm::dmat4 clip = toMatrix(f.clipFromView);
-  DepthRange range;
-  readDepthRange(clip, &range);
-  c.camera = makeCamera(clip, range, {f.imageExtent[0], f.imageExtent[1]}, f.metersPerUnit);
-  c.viewFromNormal = f.normalsInViewSpace ? glm::mat4(1) : glm::mat4(glm::mat3(toMatrix(f.viewFromWorld)));
+  c.camera =
+      makeCamera(facts.clipFromView, facts.depthRange, {f.imageExtent[0], f.imageExtent[1]}, f.metersPerUnit);
+  c.viewFromNormal = f.normalsInViewSpace ? glm::mat4(1) : glm::mat4(glm::mat3(facts.viewFromWorld));
   const glm::mat3 normalFromView = glm::transpose(glm::mat3(c.viewFromNormal));
   const shared::Camera& camera = c.camera;
   c.normalRay[0] = {normalFromView * glm::vec3(camera.rayBase.x, camera.rayBase.y, camera.range.x), 0};
@@ -59,31 +53,31 @@ shared::FrameConstants frameConstants(const PellucidFrame& f) {
   };
   c.facingRay[0] = {facing(camera.rayBase), facing(camera.rayX)};
   c.facingRay[1] = {facing(camera.rayY), 0, 0};
-  const Rect r = renderRect(f);
+  const Rect& r = facts.rect;
   c.rect = {r.x, r.y, r.x + r.width, r.y + r.height};
+  const PellucidThesisOptions& t = facts.thesis;
   uint32_t flags = 0;
-  if (given(f.backDepth)) flags |= PELLUCID_FLAG_BACK_DEPTH;
-  if (given(f.normal)) flags |= PELLUCID_FLAG_NORMAL;
-  if (given(f.albedo)) flags |= PELLUCID_FLAG_ALBEDO;
+  for (const ImageField& image : kImageFields)
+    if (given(f.*image.field)) flags |= image.flag;
   if (f.frontDepthEncoding == PELLUCID_DEPTH_VIEW_Z) flags |= PELLUCID_FLAG_FRONT_VIEW_Z;
   if (f.backDepthEncoding == PELLUCID_DEPTH_VIEW_Z) flags |= PELLUCID_FLAG_BACK_VIEW_Z;
   if (f.thicknessSource == PELLUCID_THICKNESS_CAMERA) flags |= PELLUCID_FLAG_CAMERA_THICKNESS;
-  if (f.constantViewDirection) flags |= PELLUCID_FLAG_CONSTANT_VIEW;
-  if (f.chordThickness) flags |= PELLUCID_FLAG_CHORD_THICKNESS;
-  if (needsChord(f)) flags |= PELLUCID_FLAG_CHORD;
-  if (isWide(f)) flags |= PELLUCID_FLAG_WIDE_OUTPUT;
-  if (f.features & PELLUCID_FEATURE_DIFFUSION && anyMaterialDiffuses(f)) flags |= PELLUCID_FLAG_DIFFUSED;
-  c.flags = {flags, f.materialCount, f.debugView, f.angleModel};
-  const float* p = f.anglePolynomial;
+  if (t.constantViewDirection) flags |= PELLUCID_FLAG_CONSTANT_VIEW;
+  if (t.chordThickness) flags |= PELLUCID_FLAG_CHORD_THICKNESS;
+  if (facts.needsChord) flags |= PELLUCID_FLAG_CHORD;
+  if (facts.wide) flags |= PELLUCID_FLAG_WIDE_OUTPUT;
+  if (f.features & PELLUCID_FEATURE_DIFFUSION && facts.diffuses) flags |= PELLUCID_FLAG_DIFFUSED;
+  c.flags = {flags, f.materialCount, f.debugView, t.angleModel};
+  const float* p = t.anglePolynomial;
   c.anglePolynomial = {p[0], p[1], p[2], p[3]};
-  c.marks.x = f.materialMarkBit;
-  c.filterAndLimit = rgb(f.transmittanceFilter, f.maximumThickness > 0 ? f.maximumThickness : INFINITY);
+  c.marks.x = t.materialMarkBit;
+  c.filterAndLimit = rgb(t.transmittanceFilter, t.maximumThickness > 0 ? t.maximumThickness : INFINITY);
   for (uint32_t level = kFirstLevel; level <= PELLUCID_LAST_LEVEL; ++level) {
-    const PyramidPlace place = placeOf(f, level);
+    const PyramidPlace& place = facts.pyramid.levels[level];
     c.level[level] = {place.x - place.rect.x, place.y - place.rect.y, 0, 0};
   }
-  const PyramidPlace second = placeOf(f, 2);
-  c.level[0] = {-second.rect.x, -second.rect.y, sharesColumn(f) - second.rect.x, -second.rect.y};
+  const PyramidPlace& second = facts.pyramid.levels[2];
+  c.level[0] = {-second.rect.x, -second.rect.y, facts.pyramid.sharesColumn - second.rect.x, -second.rect.y};
   return c;
 }
 
@@ -91,8 +85,8 @@ glm::dvec3 travel(const PellucidLight& l) {
   return glm::normalize(glm::dvec3(l.direction[0], l.direction[1], l.direction[2]));
 }
 
-shared::LightConstants lightConstants(const PellucidFrame& f, const PellucidLight& l,
-                                      const glm::dmat4& viewFromWorld, uint32_t firstShadow) {
+shared::LightConstants lightConstants(const FrameFacts& f, const PellucidLight& l, uint32_t firstShadow) {
+  const glm::dmat4& viewFromWorld = f.viewFromWorld;
   shared::LightConstants c{};
   c.meta = {l.type, firstShadow, l.shadowMapCount, 0};
   c.radiance = rgb(l.color) * l.intensity;
@@ -110,7 +104,7 @@ shared::LightConstants lightConstants(const PellucidFrame& f, const PellucidLigh
     c.cone.y = static_cast<float>(-outer * scale);
   }
   // A light whose minimum dot is -1 was skipped: nothing comes through, and the quotient would be 0/0.
-  const double m = minimumDotOf(f, l);
+  const double m = minimumDotOf(f.thesis, l);
   c.cone.z = static_cast<float>(m > -1 ? 1 / (m + 1) : 0);
   c.cone.w = static_cast<float>(m > -1 ? m / (m + 1) : 0);
   return c;
@@ -137,7 +131,7 @@ float texelSide(const glm::dmat4& clipFromWorld, bool perspective, const uint32_
   return static_cast<float>(side);
 }
 
-glm::uvec4 occluderConstants(const PellucidFrame& f, const PellucidShadowMap& s, const PellucidLight& l,
+glm::uvec4 occluderConstants(const FrameFacts& f, const PellucidShadowMap& s, const PellucidLight& l,
                              const LightGroup& group) {
   const float scale = s.casterMaterialScale == 0 ? 255.0f : s.casterMaterialScale;
   return {group.readsExit(f, l, s) ? group.slot(s.exitImage - 1) + 1 : 0,
@@ -145,7 +139,7 @@ glm::uvec4 occluderConstants(const PellucidFrame& f, const PellucidShadowMap& s,
           bitsOf(texelSide(toMatrix(s.clipFromWorld), l.type != PELLUCID_LIGHT_DIRECTIONAL, s.extent))};
 }
 
-shared::ShadowConstants shadowConstants(const PellucidFrame& f, const PellucidShadowMap& s,
+shared::ShadowConstants shadowConstants(const FrameFacts& f, const PellucidShadowMap& s,
                                         const PellucidLight& l, const glm::dmat4& worldFromView,
                                         const LightGroup& group) {
   shared::ShadowConstants c{};
@@ -204,52 +198,39 @@ void put(void* slice, VkDeviceSize offset, const T& value) {
   std::memcpy(static_cast<char*>(slice) + offset, &value, sizeof value);
 }
 
-}  // namespace
-}  // namespace pellucid
-
-using namespace pellucid;
-
-extern "C" PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const PellucidFrame* frame,
-                                                 void* mapped, size_t size) {
-  if (!plan || !mapped) return PELLUCID_ERROR_INVALID_ARGUMENT;
-  const PellucidResult result = checkFrame(frame, nullptr, nullptr);
-  if (result != PELLUCID_OK) return result;
-  const PellucidFrame& f = *frame;
-  const ConstantsLayout layout = constantsLayout(f);
-  if (layout.size != plan->constantsSize || layout.lightCount != plan->activeLights)
-    return PELLUCID_ERROR_INVALID_ARGUMENT;
-  if (size < layout.size) return PELLUCID_ERROR_BUFFER_TOO_SMALL;
-
-  std::memset(mapped, 0, static_cast<size_t>(layout.size));
-  const shared::FrameConstants frameValues = frameConstants(f);
-  put(mapped, layout.frame.offset, frameValues);
-  const glm::dmat4 viewFromWorld = toMatrix(f.viewFromWorld);
-  const glm::dmat4 worldFromView = glm::inverse(viewFromWorld);
-  const auto eachLight = [&](const LightGroup& group, const PellucidLight& l) {
-    // addLight ran before this call: the group counts the light, its maps and its images already.
+// Lights, their shadow maps and what the gather knows of these.
+void putLights(const FrameFacts& f, void* mapped) {
+  const ConstantsLayout& layout = f.constants;
+  const glm::dmat4 worldFromView = glm::inverse(f.viewFromWorld);
+  f.forEachLight([&](const LightGroup& group, const PellucidLight& l) {
     uint32_t shadow = group.shadowCount - l.shadowMapCount, row = group.entryRows;
-    if (isGathered(f, l))
-      for (uint32_t i = 0; i < l.shadowMapCount; ++i) row -= entryGroups(entryExtent(f, l, i).height);
+    const bool gathered = f.isGathered(l);
+    for (uint32_t i = 0; gathered && i < l.shadowMapCount; ++i)
+      row -= entryGroups(entryExtent(f.frame, l, i).height);
     put(mapped,
         layout.lights.offset + group.lightBytes + (group.lightCount - 1) * sizeof(shared::LightConstants),
-        lightConstants(f, l, viewFromWorld, shadow));
+        lightConstants(f, l, shadow));
     for (uint32_t i = 0; i < l.shadowMapCount; ++i, ++shadow) {
-      const PellucidShadowMap& s = f.shadowMaps[l.firstShadowMap + i];
+      const PellucidShadowMap& s = f.frame.shadowMaps[l.firstShadowMap + i];
       const shared::ShadowConstants constants = shadowConstants(f, s, l, worldFromView, group);
       put(mapped, layout.shadows.offset + group.shadowBytes + shadow * sizeof constants, constants);
-      if (!isGathered(f, l)) continue;
-      const EntryExtent extent = entryExtent(f, l, i);
+      if (!gathered) continue;
+      const EntryExtent extent = entryExtent(f.frame, l, i);
       const EntryConstants entry =
-          entryConstants(f, s, l, constants, viewFromWorld, extent, row, group.lightCount - 1);
+          entryConstants(f.frame, s, l, constants, f.viewFromWorld, extent, row, group.lightCount - 1);
       row += entryGroups(extent.height);
       put(mapped, layout.gatherMaps.offset + group.gatherMapBytes + shadow * sizeof entry.gather,
           entry.gather);
-      put(mapped, layout.entryMaps.offset + group.entryMapBytes + shadow * sizeof entry.map, entry.map);
+      put(mapped, layout.entryMaps.offset + group.entryMapBytes + shadow * sizeof entry.map,
+          entry.map);
     }
-  };
-  forEachLightGroup(f, eachLight, [](const LightGroup&) {});
-  for (uint32_t i = 0; i < plan->dispatchCount; ++i) {
-    const PellucidDispatch& d = plan->dispatches[i];
+  });
+}
+
+// What the GPU changes of dispatches that it decides about.
+void putIndirect(const ConstantsLayout& layout, const PellucidPlan& plan, void* mapped) {
+  for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
+    const PellucidDispatch& d = plan.dispatches[i];
     if (!d.indirect) continue;
     // Until the GPU finds light there is none.
     const bool starts =
@@ -257,11 +238,39 @@ extern "C" PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const
     put(mapped, d.indirectOffset,
         glm::uvec4(starts ? d.groups[0] : 0, d.groups[1], d.groups[2], d.groups[0]));
   }
-  for (uint32_t i = 0; i < f.materialCount; ++i) {
+}
+
+}  // namespace
+
+PellucidResult writeConstants(const FrameFacts& f, const PellucidPlan& plan, void* mapped, size_t size) {
+  const ConstantsLayout& layout = f.constants;
+  if (layout.size != plan.constantsSize || f.lights.lightCount != plan.activeLights)
+    return PELLUCID_ERROR_INVALID_ARGUMENT;
+  if (size < layout.size) return PELLUCID_ERROR_BUFFER_TOO_SMALL;
+
+  std::memset(mapped, 0, static_cast<size_t>(layout.size));
+  put(mapped, layout.frame.offset, frameConstants(f));
+  putLights(f, mapped);
+  putIndirect(layout, plan, mapped);
+  for (uint32_t i = 0; i < f.frame.materialCount; ++i) {
+    const PellucidMaterial material = f.material(i);
     put(mapped, layout.materials.offset + i * sizeof(shared::MaterialConstants),
-        materialConstants(f.materials[i], gathers(f)));
+        materialConstants(material, f.gathers));
     put(mapped, layout.kernels.offset + i * sizeof(shared::KernelConstants),
-        kernelConstants(f.materials[i], hasFineFilter(plan->quality)));
+        kernelConstants(material, kQualities[f.quality].fineFilter));
   }
   return PELLUCID_OK;
+}
+
+}  // namespace pellucid
+
+using namespace pellucid;
+
+extern "C" PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const PellucidFrame* frame,
+                                                 void* mapped, size_t size) {
+  if (!plan || !mapped) return PELLUCID_ERROR_INVALID_ARGUMENT;
+  Findings silent(nullptr, nullptr);
+  FrameFacts facts;
+  const PellucidResult result = readFrame(frame, silent, &facts);
+  return result == PELLUCID_OK ? writeConstants(facts, *plan, mapped, size) : result;
 }

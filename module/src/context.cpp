@@ -5,6 +5,7 @@
 #include <memory>
 #include <new>
 
+#include "defaults.h"
 #include "output_format.h"
 #include "pipelines.h"
 #include "shared/pellucid_shared.h"
@@ -49,9 +50,8 @@ VkDescriptorType descriptorType(uint32_t binding) {
 }
 
 PellucidResult checkDesc(const PellucidContextDesc& desc) {
-  if (desc.structSize != sizeof(PellucidContextDesc) || desc.headerVersion != PELLUCID_HEADER_VERSION) {
-    say(desc, "headerVersion", "is ", desc.headerVersion, " with structSize ", desc.structSize,
-        "; this library has ", PELLUCID_HEADER_VERSION, " and ", sizeof(PellucidContextDesc));
+  if (desc.headerVersion != PELLUCID_HEADER_VERSION) {
+    say(desc, "headerVersion", "is ", desc.headerVersion, "; this library has ", PELLUCID_HEADER_VERSION);
     return PELLUCID_ERROR_VERSION;
   }
   if (!desc.instance || !desc.physicalDevice || !desc.device || !desc.getInstanceProcAddr) {
@@ -183,19 +183,17 @@ PellucidResult createPipelines(const PellucidContextDesc& desc, PellucidContext&
 
 using namespace pellucid;
 
-extern "C" void pellucidInitContextDesc(PellucidContextDesc* desc) {
-  if (!desc) return;
-  *desc = PellucidContextDesc{};
-  desc->structSize = sizeof(PellucidContextDesc);
-  desc->headerVersion = PELLUCID_HEADER_VERSION;
-  desc->apiVersion = VK_API_VERSION_1_1;
-  desc->outputFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
-}
-
-extern "C" PellucidResult pellucidCreateContext(const PellucidContextDesc* desc, PellucidContext** context) {
+extern "C" PellucidResult pellucidCreateContext(const PellucidContextDesc* given, PellucidContext** context) {
   if (!context) return PELLUCID_ERROR_INVALID_ARGUMENT;
   *context = nullptr;
-  if (!desc) return PELLUCID_ERROR_INVALID_ARGUMENT;
+  if (!given) return PELLUCID_ERROR_INVALID_ARGUMENT;
+  if (!canReadStruct(given, kLeastContextDesc)) {
+    say(*given, "structSize", "is ", given->structSize, "; this library reads ", kLeastContextDesc, " to ",
+        sizeof(PellucidContextDesc), " bytes, and more if they are 0 (call pellucidInitContextDesc)");
+    return PELLUCID_ERROR_VERSION;
+  }
+  const PellucidContextDesc whole = readStruct(given, defaultContextDesc());
+  const PellucidContextDesc* desc = &whole;
   PellucidResult result = checkDesc(*desc);
   if (result != PELLUCID_OK) return result;
 

@@ -22,19 +22,17 @@ double angleBetween(const glm::dvec3& a, const glm::dvec3& b) {
 
 }  // namespace
 
-ViewBounds::ViewBounds(const PellucidFrame& frame)
-    : frame_(frame), viewFromWorld_(toMatrix(frame.viewFromWorld)) {
-  const glm::dmat4 clip = toMatrix(frame.clipFromView);
-  DepthRange range{};
-  readDepthRange(clip, &range);
-  const shared::Camera camera =
-      makeCamera(clip, range, {frame.imageExtent[0], frame.imageExtent[1]}, frame.metersPerUnit);
+ViewBounds::ViewBounds(const FrameFacts& facts) : viewFromWorld_(facts.viewFromWorld) {
+  const PellucidFrame& frame = facts.frame;
+  const DepthRange& range = facts.depthRange;
+  const shared::Camera camera = makeCamera(facts.clipFromView, range,
+                                           {frame.imageExtent[0], frame.imageExtent[1]}, frame.metersPerUnit);
   parallel_ = !range.perspective;
   bounded_ = parallel_ || range.d == 0;
   forward_ = range.forward;
 
   // The rect's corners, half a pixel outside of the centers that the shaders use.
-  const Rect r = renderRect(frame);
+  const Rect& r = facts.rect;
   const double left = r.x - 0.5, top = r.y - 0.5, right = left + r.width, bottom = top + r.height;
   const glm::dvec2 corners[4] = {{left, top}, {right, top}, {right, bottom}, {left, bottom}};
   std::array<glm::dvec3, 4> directions;
@@ -50,7 +48,7 @@ ViewBounds::ViewBounds(const PellucidFrame& frame)
   for (const glm::dvec3& d : directions) halfAngle_ = std::max(halfAngle_, angleBetween(axis_, d));
   // A cone is convex, and so holds what lies between the corners, up to a right angle.
   if (!(halfAngle_ < 1.57)) halfAngle_ = INFINITY;
-  if (frame.constantViewDirection) {
+  if (facts.thesis.constantViewDirection) {
     axis_ = {0, 0, forward_};
     halfAngle_ = 0;
   }
@@ -69,16 +67,16 @@ ViewBounds::ViewBounds(const PellucidFrame& frame)
 // Every factor but -N.L needs the cosine between the view ray and the direction to the light to be above
 // -minimumDot (0 for models without). Walking along a ray turns a light from ahead to behind, so for a
 // light at a point that cosine is largest where the ray starts.
-bool ViewBounds::angleStops(const PellucidLight& light) const {
-  if (frame_.angleModel == PELLUCID_ANGLE_NORMAL && given(frame_.normal)) return false;
-  const double least = -minimumDotOf(frame_, light);
+bool ViewBounds::angleStops(const FrameFacts& facts, const PellucidLight& light) const {
+  if (facts.thesis.angleModel == PELLUCID_ANGLE_NORMAL && facts.has(PELLUCID_RESOURCE_NORMAL)) return false;
+  const double least = -minimumDotOf(facts.thesis, light);
   if (least >= 1) return true;
   if (light.type == PELLUCID_LIGHT_DIRECTIONAL) {
     const glm::dvec3 toLight = -(glm::dmat3(viewFromWorld_) * vec(light.direction));
     return angleBetween(axis_, toLight) - halfAngle_ > std::acos(least) + kMargin;
   }
   const glm::dvec3 position(viewFromWorld_ * glm::dvec4(vec(light.position), 1));
-  if (frame_.constantViewDirection || parallel_) {
+  if (facts.thesis.constantViewDirection || parallel_) {
     const glm::dvec3 direction = glm::normalize(axis_);
     return std::all_of(starts_.begin(), starts_.end(), [&](const glm::dvec3& start) {
       return glm::dot(direction, position - start) < -kMargin * glm::length(position - start);
@@ -108,16 +106,18 @@ bool ViewBounds::coneMisses(const PellucidLight& light) const {
   });
 }
 
-const char* ViewBounds::whySkipped(const PellucidLight& light) const {
+const char* ViewBounds::whySkipped(const FrameFacts& facts, const PellucidLight& light) const {
   if (light.intensity <= 0 || (light.color[0] <= 0 && light.color[1] <= 0 && light.color[2] <= 0))
     return "no intensity";
-  const bool needsCamera = light.shadowMapCount == 0 || frame_.thicknessSource == PELLUCID_THICKNESS_CAMERA;
-  if (needsCamera && !given(frame_.backDepth)) return "no back depth to take a thickness from";
+  const bool needsCamera =
+      light.shadowMapCount == 0 || facts.frame.thicknessSource == PELLUCID_THICKNESS_CAMERA;
+  if (needsCamera && !facts.has(PELLUCID_RESOURCE_BACK_DEPTH))
+    return "no back depth to take a thickness from";
   // Gathered light comes from around, whatever the angle, and from beyond the view.
-  if (gathers(frame_) && light.shadowMapCount > 0) return nullptr;
+  if (facts.isGathered(light)) return nullptr;
   // That view shows thicknesses whether light comes through or not.
-  if (!bounded_ || frame_.debugView == PELLUCID_DEBUG_THICKNESS) return nullptr;
-  if (angleStops(light)) return "no pixel's view ray passes its angle test";
+  if (!bounded_ || facts.frame.debugView == PELLUCID_DEBUG_THICKNESS) return nullptr;
+  if (angleStops(facts, light)) return "no pixel's view ray passes its angle test";
   if (rangeMisses(light)) return "its range does not reach the view";
   if (coneMisses(light)) return "its cone points away from the view";
   return nullptr;

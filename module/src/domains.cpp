@@ -20,7 +20,7 @@ const Struct& as(const void* object) {
 }
 
 bool looksMinimumDotsUp(const void* object, uint32_t) {
-  const uint32_t model = as<PellucidFrame>(object).angleModel;
+  const uint32_t model = as<PellucidThesisOptions>(object).angleModel;
   return model == PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH || model == PELLUCID_ANGLE_MINIMUM_DOT_SPHERE;
 }
 bool hasPosition(const void* object, uint32_t) {
@@ -45,13 +45,6 @@ constexpr auto kFrameFloats = std::to_array<FloatDomain>({
     {FIELD(PellucidFrame, metersPerUnit), 0, 1e-9F, 1e9F, false, nullptr, nullptr},
     {FIELD(PellucidFrame, clipFromView), 0, -kLongest, kLongest, false, nullptr, nullptr},
     {FIELD(PellucidFrame, viewFromWorld), 0, -kLongest, kLongest, false, nullptr, nullptr},
-    {FIELD(PellucidFrame, anglePolynomial), 0, -1e6F, 1e6F, false, nullptr, nullptr},
-    {FIELD(PellucidFrame, minimumDot), 0, -1, 0, false, nullptr, nullptr},
-    {FIELD(PellucidFrame, maximumThickness), 0, 0, kLongestMm, false, nullptr, nullptr},
-    {FIELD(PellucidFrame, transmittanceFilter), 0, 0, 1, false, nullptr, nullptr},
-    {FIELD(PellucidFrame, faceVector), 0, -kLongest, kLongest, false, looksMinimumDotsUp, kMinimumDots},
-    {FIELD(PellucidFrame, upAxis), 0, -kLongest, kLongest, false, looksMinimumDotsUp, kMinimumDots},
-    {FIELD(PellucidFrame, objectCenter), 0, -kLongest, kLongest, false, looksMinimumDotsUp, kMinimumDots},
     {FIELD(PellucidFrame, coherenceThreshold), 0, 0, 2, false, nullptr, nullptr},
     {FIELD(PellucidFrame, frameLoad), 0, 0, 1e9F, false, nullptr, nullptr},
     {FIELD(PellucidFrame, targetError), 0, 0, 1e9F, false, nullptr, nullptr},
@@ -64,13 +57,28 @@ constexpr auto kFrameIntegers = std::to_array<IntegerDomain>({
     {FIELD(PellucidFrame, normalsInViewSpace), 0, 1},
     {FIELD(PellucidFrame, thicknessSource), 0, PELLUCID_THICKNESS_CAMERA},
     {FIELD(PellucidFrame, debugView), 0, PELLUCID_DEBUG_IRRADIANCE},
-    {FIELD(PellucidFrame, angleModel), 0, PELLUCID_ANGLE_MINIMUM_DOT_SPHERE},
-    {FIELD(PellucidFrame, constantViewDirection), 0, 1},
-    {FIELD(PellucidFrame, chordThickness), 0, 1},
-    {FIELD(PellucidFrame, prescaleAngle), 0, 1},
     {FIELD(PellucidFrame, quality), 0, kBestQuality},
     {FIELD(PellucidFrame, separateOutput), 0, 1},
     {FIELD(PellucidFrame, indirectDispatches), 0, 1},
+});
+
+constexpr auto kThesisFloats = std::to_array<FloatDomain>({
+    {FIELD(PellucidThesisOptions, anglePolynomial), 0, -1e6F, 1e6F, false, nullptr, nullptr},
+    {FIELD(PellucidThesisOptions, minimumDot), 0, -1, 0, false, nullptr, nullptr},
+    {FIELD(PellucidThesisOptions, maximumThickness), 0, 0, kLongestMm, false, nullptr, nullptr},
+    {FIELD(PellucidThesisOptions, transmittanceFilter), 0, 0, 1, false, nullptr, nullptr},
+    {FIELD(PellucidThesisOptions, faceVector), 0, -kLongest, kLongest, false, looksMinimumDotsUp,
+     kMinimumDots},
+    {FIELD(PellucidThesisOptions, upAxis), 0, -kLongest, kLongest, false, looksMinimumDotsUp, kMinimumDots},
+    {FIELD(PellucidThesisOptions, objectCenter), 0, -kLongest, kLongest, false, looksMinimumDotsUp,
+     kMinimumDots},
+});
+
+constexpr auto kThesisIntegers = std::to_array<IntegerDomain>({
+    {FIELD(PellucidThesisOptions, angleModel), 0, PELLUCID_ANGLE_MINIMUM_DOT_SPHERE},
+    {FIELD(PellucidThesisOptions, constantViewDirection), 0, 1},
+    {FIELD(PellucidThesisOptions, chordThickness), 0, 1},
+    {FIELD(PellucidThesisOptions, prescaleAngle), 0, 1},
 });
 
 constexpr auto kMaterialFloats = std::to_array<FloatDomain>({
@@ -123,6 +131,10 @@ constexpr auto kMapIntegers = std::to_array<IntegerDomain>({
 template <>
 Domains domainsOf<PellucidFrame>() {
   return {kFrameFloats, kFrameIntegers};
+}
+template <>
+Domains domainsOf<PellucidThesisOptions>() {
+  return {kThesisFloats, kThesisIntegers};
 }
 template <>
 Domains domainsOf<PellucidMaterial>() {

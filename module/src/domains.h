@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-#include "pellucid/pellucid.h"
+#include "pellucid/pellucid_thesis.h"
 
 namespace pellucid {
 
@@ -37,6 +37,8 @@ template <class Struct>
 Domains domainsOf();
 template <>
 Domains domainsOf<PellucidFrame>();
+template <>
+Domains domainsOf<PellucidThesisOptions>();
 template <>
 Domains domainsOf<PellucidMaterial>();
 template <>

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "transmittance.h"
+
 namespace pellucid {
 namespace {
 
@@ -13,26 +15,26 @@ constexpr int kEntries = PELLUCID_GATHER_ENTRIES;
 
 // T(d) of one channel and how fast it spreads sideways.
 struct Channel {
-  bool exp2;
-  std::array<double, 5> p;
+  const PellucidMaterial* material;
+  int index;
   double slowest;        // kappa, 1/mm
   double extrapolation;  // e: T goes like 1 / sinh(kappa (d + e)); mm, INFINITY for one exponential
 
   double transmittance(double d) const {
-    return exp2 ? p[0] * std::exp(-p[1] * d) + p[2] * std::exp(-p[3] * d)
-                : p[0] / std::sinh(p[1] * d + p[2]) + p[3] * std::exp(-p[4] * d);
+    return pellucid::transmittance(*material, static_cast<size_t>(index), d);
   }
   // Of the lowest mode of a slab of thickness d, 1/mm.
   double decay(double d) const { return std::hypot(slowest, kPi / std::max(d + extrapolation, 1e-3)); }
 };
 
 Channel channelOf(const PellucidMaterial& m, int index) {
-  Channel c{m.transmittanceModel == PELLUCID_TRANSMITTANCE_EXP2, {}, 0, 0};
-  std::copy_n(m.transmittance[index], c.p.size(), c.p.begin());
+  Channel c{&m, index, 0, 0};
+  const auto p = [&](int i) { return static_cast<double>(m.transmittance[index][i]); };
+  const bool exp2 = m.transmittanceModel == PELLUCID_TRANSMITTANCE_EXP2;
   // A floor of 1/km keeps media without absorption finite.
-  c.slowest = std::max(c.exp2 && c.p[2] > 0 ? std::min(c.p[1], c.p[3]) : c.p[1], 1e-6);
-  if (!c.exp2) {
-    c.extrapolation = c.p[2] / c.slowest;
+  c.slowest = std::max(exp2 && p(2) > 0 ? std::min(p(1), p(3)) : p(1), 1e-6);
+  if (!exp2) {
+    c.extrapolation = p(2) / c.slowest;
     return c;
   }
   // kappa coth(kappa (d + e)) is the rate of T at half depth.
@@ -41,8 +43,8 @@ Channel channelOf(const PellucidMaterial& m, int index) {
     const double middle = 0.5 * (low + high);
     (c.transmittance(middle) > 0.5 * c.transmittance(0) ? low : high) = middle;
   }
-  const double a1 = c.p[0] * std::exp(-c.p[1] * low), a2 = c.p[2] * std::exp(-c.p[3] * low);
-  const double excess = (a1 * c.p[1] + a2 * c.p[3]) / (a1 + a2) / c.slowest - 1;
+  const double a1 = p(0) * std::exp(-p(1) * low), a2 = p(2) * std::exp(-p(3) * low);
+  const double excess = (a1 * p(1) + a2 * p(3)) / (a1 + a2) / c.slowest - 1;
   c.extrapolation =
       excess > 1e-6 ? std::max(0.5 * std::log((2 + excess) / excess) / c.slowest - low, 0.0) : INFINITY;
   return c;
@@ -127,7 +129,7 @@ shared::GatherConstants gatherConstants(const PellucidMaterial& m) {
     g.entries[3 * i + 1] = {step.g, step.b, decay[i].r, decay[i].g};
     g.entries[3 * i + 2] = {decay[i].b, decayStep.r, decayStep.g, decayStep.b};
   }
-  // Points share what they gather as far as the light that comes through thin parts spreads sideways.
+  // Probes share what they gather as far as the light that comes through thin parts spreads sideways.
   const double reach = longest / 2;
   g.profile.w = static_cast<float>(1 / (reach * reach));
   return g;

@@ -6,7 +6,13 @@
 
 namespace pellucid {
 
-// Of a material whose transmittance is EXP2 or SINH_EXP.
+// True for transmittance models that the gather's kernel follows from.
+inline bool canBeGathered(uint32_t transmittanceModel) {
+  return transmittanceModel == PELLUCID_TRANSMITTANCE_EXP2 ||
+         transmittanceModel == PELLUCID_TRANSMITTANCE_SINH_EXP;
+}
+
+// Of a material of such a model.
 shared::GatherConstants gatherConstants(const PellucidMaterial& material);
 
 }  // namespace pellucid

@@ -11,23 +11,23 @@ namespace {
 glm::dvec3 vec(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 
 // World direction from the object to the light; 0 for a light at its center.
-glm::dvec3 directionTo(const PellucidFrame& f, const PellucidLight& light) {
+glm::dvec3 directionTo(const PellucidThesisOptions& t, const PellucidLight& light) {
   const glm::dvec3 d = light.type == PELLUCID_LIGHT_DIRECTIONAL ? -vec(light.direction)
-                                                                : vec(light.position) - vec(f.objectCenter);
+                                                                : vec(light.position) - vec(t.objectCenter);
   const double length = glm::length(d);
   return length > 0 ? d / length : d;
 }
 
-double alongAzimuth(const PellucidFrame& f, double side, double front) {
+double alongAzimuth(const PellucidThesisOptions& t, double side, double front) {
   const double turns = std::atan2(side, front) / (2 * std::numbers::pi);
-  const double at = (turns - std::floor(turns)) * f.minimumDotTableSize;
-  const uint32_t i = static_cast<uint32_t>(at) % f.minimumDotTableSize;
-  const double from = f.minimumDotTable[i], to = f.minimumDotTable[(i + 1) % f.minimumDotTableSize];
+  const double at = (turns - std::floor(turns)) * t.minimumDotTableSize;
+  const uint32_t i = static_cast<uint32_t>(at) % t.minimumDotTableSize;
+  const double from = t.minimumDotTable[i], to = t.minimumDotTable[(i + 1) % t.minimumDotTableSize];
   return from + (to - from) * (at - std::floor(at));
 }
 
-double onSphere(const PellucidFrame& f, const glm::dvec3& d) {
-  const uint32_t n = f.minimumDotTableSize;
+double onSphere(const PellucidThesisOptions& t, const glm::dvec3& d) {
+  const uint32_t n = t.minimumDotTableSize;
   const double sum = std::abs(d.x) + std::abs(d.y) + std::abs(d.z);
   glm::dvec2 p = sum > 0 ? glm::dvec2(d.x, d.z) / sum : glm::dvec2(0);
   if (d.y < 0) p = {std::copysign(1 - std::abs(p.y), p.x), std::copysign(1 - std::abs(p.x), p.y)};
@@ -36,7 +36,7 @@ double onSphere(const PellucidFrame& f, const glm::dvec3& d) {
   const uint32_t x = std::min(static_cast<uint32_t>(at.x), n - 2),
                  y = std::min(static_cast<uint32_t>(at.y), n - 2);
   const auto entry = [&](uint32_t i, uint32_t j) {
-    return static_cast<double>(f.minimumDotTable[j * n + i]);
+    return static_cast<double>(t.minimumDotTable[j * n + i]);
   };
   const double upper = glm::mix(entry(x, y), entry(x + 1, y), at.x - x);
   const double lower = glm::mix(entry(x, y + 1), entry(x + 1, y + 1), at.x - x);
@@ -45,22 +45,22 @@ double onSphere(const PellucidFrame& f, const glm::dvec3& d) {
 
 }  // namespace
 
-double minimumDotOf(const PellucidFrame& f, const PellucidLight& light) {
+double minimumDotOf(const PellucidThesisOptions& t, const PellucidLight& light) {
   const bool prescaled =
-      f.prescaleAngle && f.angleModel >= PELLUCID_ANGLE_COSINE && f.angleModel <= PELLUCID_ANGLE_POLYNOMIAL;
-  if (prescaled || f.angleModel == PELLUCID_ANGLE_MINIMUM_DOT) return f.minimumDot;
-  if (minimumDotEntries(f) == 0) return 0;
-  const glm::dvec3 up = glm::normalize(vec(f.upAxis));
-  const glm::dvec3 side = glm::normalize(glm::cross(up, vec(f.faceVector))), front = glm::cross(side, up);
-  const glm::dvec3 d = directionTo(f, light);
+      t.prescaleAngle && t.angleModel >= PELLUCID_ANGLE_COSINE && t.angleModel <= PELLUCID_ANGLE_POLYNOMIAL;
+  if (prescaled || t.angleModel == PELLUCID_ANGLE_MINIMUM_DOT) return t.minimumDot;
+  if (minimumDotEntries(t) == 0) return 0;
+  const glm::dvec3 up = glm::normalize(vec(t.upAxis));
+  const glm::dvec3 side = glm::normalize(glm::cross(up, vec(t.faceVector))), front = glm::cross(side, up);
+  const glm::dvec3 d = directionTo(t, light);
   const glm::dvec3 local(glm::dot(d, side), glm::dot(d, up), glm::dot(d, front));
-  return f.angleModel == PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH ? alongAzimuth(f, local.x, local.z)
-                                                            : onSphere(f, local);
+  return t.angleModel == PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH ? alongAzimuth(t, local.x, local.z)
+                                                            : onSphere(t, local);
 }
 
-uint32_t minimumDotEntries(const PellucidFrame& f) {
-  if (f.angleModel == PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH) return f.minimumDotTableSize;
-  if (f.angleModel == PELLUCID_ANGLE_MINIMUM_DOT_SPHERE) return f.minimumDotTableSize * f.minimumDotTableSize;
+uint32_t minimumDotEntries(const PellucidThesisOptions& t) {
+  if (t.angleModel == PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH) return t.minimumDotTableSize;
+  if (t.angleModel == PELLUCID_ANGLE_MINIMUM_DOT_SPHERE) return t.minimumDotTableSize * t.minimumDotTableSize;
   return 0;
 }
 

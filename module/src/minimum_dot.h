@@ -1,15 +1,15 @@
 // Whelan 2009, 4.6: how far around the head a light must be before anything comes through.
 #pragma once
 
-#include "pellucid/pellucid.h"
+#include "pellucid/pellucid_thesis.h"
 
 namespace pellucid {
 
-// The minimum dot of a light, [-1, 0]: frame.minimumDot or the table's entry for where the light is, and 0
-// for models without one. Models that are prescaled have frame.minimumDot.
-double minimumDotOf(const PellucidFrame& frame, const PellucidLight& light);
+// The minimum dot of a light, [-1, 0]: the options' minimumDot or their table's entry for where the light is,
+// and 0 for models without one. Models that are prescaled have minimumDot.
+double minimumDotOf(const PellucidThesisOptions& thesis, const PellucidLight& light);
 
-// Entries that frame.minimumDotTable must have; 0 for models without a table.
-uint32_t minimumDotEntries(const PellucidFrame& frame);
+// Entries that minimumDotTable must have; 0 for models without a table.
+uint32_t minimumDotEntries(const PellucidThesisOptions& thesis);
 
 }  // namespace pellucid

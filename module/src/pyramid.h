@@ -1,34 +1,47 @@
-// Where the levels of the diffusion pyramid lie in its image. Level 1 is at the left, the coarser ones are
-// below each other beside it.
+// Where the levels of the diffusion pyramid lie in its images. No dispatch reads the image that it writes: level 1 has one,
+// and so have the two levels that a dispatch makes of it, and the two of those. Upsampling writes over level 1.
 #pragma once
 
-#include "frame.h"
+#include <array>
+
+#include "rect.h"
+#include "shared/pellucid_shared.h"
 
 namespace pellucid {
 
-constexpr uint32_t kFirstLevel = 1;
-
-// The coarsest level in use: odd, because a reduction makes two levels, and no coarser than it takes for the
-// image to lie on 2 x 2 texels.
-uint32_t coarsestLevel(const PellucidFrame& frame);
+constexpr uint32_t kFirstLevel = 1, kPyramidImages = 3;
 
 struct PyramidPlace {
-  int32_t x, y;  // in the image
+  int32_t x, y;  // in the level's image
   struct {
     int32_t x, y, width, height;
   } rect;  // texels of the level that the render rect needs, as levelRect of compute/diffusion/texel.glsl
 };
 
-PyramidPlace placeOf(const PellucidFrame& frame, uint32_t level);
+struct Pyramid {
+  Pyramid() = default;
+  Pyramid(const uint32_t (&imageExtent)[2], const Rect& rect);
 
-// The column where the shares of the resolved level 2 begin. That level lies where level 1 was.
-int32_t sharesColumn(const PellucidFrame& frame);
+  // The coarsest level in use: odd, because a dispatch that downsamples makes two levels, and no coarser than
+  // it takes for the image to lie on 2 x 2 texels.
+  uint32_t coarsest = 0;
 
-// Of the pyramid's image, for any render rect.
-struct PyramidExtent {
-  uint32_t width, height;
+  // By level, from kFirstLevel on; coarser levels than those in use have places, too.
+  std::array<PyramidPlace, PELLUCID_LAST_LEVEL + 1> levels{};
+
+  // The column where the shares of level 2 begin after upsampling, in the image of level 1.
+  int32_t sharesColumn = 0;
+
+  // Of each image, for any render rect: of level 1, of levels 2 and 3, of levels 4 and 5. The two coarsest are never stored.
+  struct Extent {
+    uint32_t width, height;
+  };
+  std::array<Extent, kPyramidImages> images{};
+
+  // Texels of a level that the rect needs.
+  uint64_t texels(uint32_t level) const {
+    return static_cast<uint64_t>(levels[level].rect.width) * static_cast<uint64_t>(levels[level].rect.height);
+  }
 };
-
-PyramidExtent pyramidExtent(const PellucidFrame& frame);
 
 }  // namespace pellucid

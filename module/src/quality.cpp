@@ -4,8 +4,8 @@
 #include <cmath>
 #include <iterator>
 
-#include "camera.h"
 #include "diffusion_error_table.h"
+#include "frame.h"
 #include "pyramid_energy.h"
 
 namespace pellucid {
@@ -13,10 +13,10 @@ namespace {
 
 // Pixels per mm on a facing surface at the nearest distance, along the finer side; 0: not known. All that is
 // farther or tilted has fewer.
-double pixelsPerMm(const PellucidFrame& f) {
-  const glm::dmat4 clip = toMatrix(f.clipFromView);
-  DepthRange range;
-  if (readDepthRange(clip, &range)) return 0;
+double pixelsPerMm(const FrameFacts& facts) {
+  const PellucidFrame& f = facts.frame;
+  const glm::dmat4& clip = facts.clipFromView;
+  const DepthRange& range = facts.depthRange;
   if (range.perspective && f.nearestDistance == 0) return 0;
   // clip.xy / w spans 2 over the image; see makeCamera.
   const double w = range.c * static_cast<double>(f.nearestDistance) + range.d;
@@ -44,12 +44,12 @@ double levelDeviation(uint32_t level) { return std::sqrt(7.0 / 12 * std::exp2(2.
 // and further by what that is shifted.
 double deviationWithin(uint32_t level) { return std::exp2(level - 0.5 - kCoarserShift); }
 
-DiffusionReach diffusionReach(const PellucidFrame& frame) {
+DiffusionReach diffusionReach(const FrameFacts& facts) {
   // No infinity may reach the plan's text.
-  DiffusionReach reach{std::min(pixelsPerMm(frame), 1e30), 0, 0};
+  DiffusionReach reach{std::min(pixelsPerMm(facts), 1e30), 0, 0};
   const auto pixels = [&](double mm) { return std::min(mm * reach.pixelsPerMm, 1e30); };
-  for (uint32_t i = 0; i < frame.materialCount; ++i) {
-    const PellucidMaterial& m = frame.materials[i];
+  for (uint32_t i = 0; i < facts.frame.materialCount; ++i) {
+    const PellucidMaterial m = facts.material(i);
     if (m.gaussianCount == 0) continue;
     const double radius = static_cast<double>(*std::max_element(m.radius, m.radius + 3));
     reach.radius = std::max(reach.radius, pixels(radius));
@@ -67,7 +67,7 @@ bool qualityFor(float error, double radius, uint32_t* quality) {
                                    kErrorRadii) +
                    1);
   for (*quality = 0; *quality <= kBestQuality; ++*quality) {
-    const float* errors = kWorstError[hasFineFilter(*quality) ? 1 : 0];
+    const float* errors = kWorstError[kQualities[*quality].fineFilter ? 1 : 0];
     if (*std::max_element(errors, errors + count) < error) return true;
   }
   *quality = kBestQuality;

@@ -1,9 +1,13 @@
 // How far a frame's diffusion reaches in pixels, and what its quality means.
 #pragma once
 
-#include "frame.h"
+#include <iterator>
+
+#include "pellucid/pellucid.h"
 
 namespace pellucid {
+
+struct FrameFacts;
 
 // Of all materials that diffuse, at frame.nearestDistance; all 0 where that does not say how large a pixel
 // is.
@@ -13,7 +17,8 @@ struct DiffusionReach {
   double deviation;  // pixels; standard deviation of the widest Gaussian
 };
 
-DiffusionReach diffusionReach(const PellucidFrame& frame);
+// Reads what the facts have of the view and the materials.
+DiffusionReach diffusionReach(const FrameFacts& facts);
 
 // Standard deviation of a material's widest Gaussian, mm; 0 if it has none.
 double widestDeviation(const PellucidMaterial& material);
@@ -24,11 +29,15 @@ double levelDeviation(uint32_t level);
 // The widest Gaussian that has nothing in coarser levels than this one, from 3 on; pixels.
 double deviationWithin(uint32_t level);
 
-// The best frame.quality.
-constexpr uint32_t kBestQuality = 2;
-
-// True where a pixel's neighbors are filtered one by one, in place of giving their part to it and to level 2.
-inline bool hasFineFilter(uint32_t quality) { return quality > 0; }
+// What frame.quality chooses, from the cheapest on.
+struct Quality {
+  uint32_t gatherSamples;  // of each probe; 0: one thickness a pixel
+  uint32_t finer;          // the spacing of probes is divided by it
+  bool fineFilter;  // a pixel's neighbors are filtered one by one, and do not give their part to it and level
+                    // 2
+};
+constexpr Quality kQualities[] = {{0, 1, false}, {8, 1, true}, {16, 2, true}};
+constexpr uint32_t kBestQuality = std::size(kQualities) - 1;
 
 // The least quality whose measured error at radii up to `radius` pixels (0: all) is below `error`. False, and
 // the best quality, if there is none.

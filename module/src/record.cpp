@@ -1,33 +1,11 @@
 // Plan -> command buffer. The only file that calls vkCmd*.
+#include "constants.h"
 #include "context.h"
-#include "facts.h"
-#include "text.h"
+#include "plan_state.h"
 #include "validate.h"
 
 namespace pellucid {
 namespace {
-
-const PellucidImage& imageOf(const PellucidFrame& f, uint32_t resource) {
-  if (resource >= PELLUCID_RESOURCE_SHADOW0) return f.shadowImages[resource - PELLUCID_RESOURCE_SHADOW0];
-  if (resource == PELLUCID_RESOURCE_HISTORY) return f.history;
-  if (resource >= PELLUCID_RESOURCE_TRANSIENT0) return f.transients[resource - PELLUCID_RESOURCE_TRANSIENT0];
-  switch (resource) {
-    case PELLUCID_RESOURCE_FRONT_DEPTH:
-      return f.frontDepth;
-    case PELLUCID_RESOURCE_BACK_DEPTH:
-      return f.backDepth;
-    case PELLUCID_RESOURCE_IRRADIANCE:
-      return f.irradiance;
-    case PELLUCID_RESOURCE_NORMAL:
-      return f.normal;
-    case PELLUCID_RESOURCE_ALBEDO:
-      return f.albedo;
-    case PELLUCID_RESOURCE_MATERIAL:
-      return f.material;
-    default:
-      return f.output;
-  }
-}
 
 void pushBindings(const PellucidContext& c, VkCommandBuffer commandBuffer, const PellucidDispatch& d,
                   const PellucidFrame& f, const PellucidConstantsSlice& slice) {
@@ -59,16 +37,16 @@ PellucidResult refuse(const PellucidContext& c, const char* field, const char* s
 }
 
 // Whether the frame has what a plan uses, which a plan made from another frame may not find.
-PellucidResult checkPlan(const PellucidContext& c, const PellucidPlan& plan, const PellucidFrame& f) {
-  const Facts facts = factsOf(f);
-  for (int i = 0; i < PELLUCID_FACT_COUNT; ++i)
-    if (facts.hash[i] != plan.facts[i]) {
+PellucidResult checkPlan(const PellucidContext& c, const PellucidPlan& plan, const FrameFacts& facts) {
+  const FrameHash now = hashOf(facts), then = stateOf(plan).frame;
+  for (size_t i = 0; i < now.size(); ++i)
+    if (now[i] != then[i]) {
       char sentence[96];
       Text(sentence, sizeof sentence)
-          << "was made from another frame, whose " << nameOf(static_cast<PellucidFact>(i)) << " differs";
+          << "was made from another frame, whose " << nameOf(static_cast<FramePart>(i)) << " differs";
       return refuse(c, "plan", sentence);
     }
-  if (c.outputFormat != VK_FORMAT_UNDEFINED && c.outputFormat != f.outputFormat)
+  if (c.outputFormat != VK_FORMAT_UNDEFINED && c.outputFormat != facts.frame.outputFormat)
     return refuse(c, "outputFormat",
                   "is not PellucidContextDesc::outputFormat, which the context writes alone");
   for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
@@ -81,7 +59,7 @@ PellucidResult checkPlan(const PellucidContext& c, const PellucidPlan& plan, con
     }
     for (uint32_t b = 0; b < d.bindingCount; ++b) {
       const uint32_t resource = d.bindings[b].resource;
-      if (resource != PELLUCID_RESOURCE_CONSTANTS && imageOf(f, resource).view == VK_NULL_HANDLE)
+      if (resource != PELLUCID_RESOURCE_CONSTANTS && imageOf(facts.frame, resource).view == VK_NULL_HANDLE)
         return refuse(c, "plan",
                       "uses an image that the frame has no view of: it was made from another frame");
     }
@@ -100,10 +78,19 @@ extern "C" PellucidResult pellucidRecordPlan(const PellucidContext* c, VkCommand
   if (!c || !commandBuffer || !plan || !frame || !constants) return PELLUCID_ERROR_INVALID_ARGUMENT;
   if (constants->offset % 256 != 0 || !constants->buffer)
     return refuse(*c, "constants", "needs a buffer and an offset that is a multiple of 256");
-  PellucidResult result = checkViews(*frame, c->message, c->messageUser);
-  if (result == PELLUCID_OK) result = checkPlan(*c, *plan, *frame);
+  // Warnings are validation's.
+  const auto errors = [](void* user, PellucidSeverity severity, const char* field, const char* message) {
+    const auto* context = static_cast<const PellucidContext*>(user);
+    if (severity == PELLUCID_SEVERITY_ERROR) refuse(*context, field, message);
+  };
+  Findings out(errors, const_cast<PellucidContext*>(c));
+  FrameFacts facts;
+  PellucidResult result = readFrame(frame, out, &facts);
+  if (result == PELLUCID_OK) checkViews(facts, out);
+  if (out.result() != PELLUCID_OK) return out.result();
+  result = checkPlan(*c, *plan, facts);
   if (result == PELLUCID_OK)
-    result = pellucidWriteConstants(plan, frame, constants->mapped, static_cast<size_t>(constants->size));
+    result = writeConstants(facts, *plan, constants->mapped, static_cast<size_t>(constants->size));
   if (result != PELLUCID_OK) return result;
 
   for (uint32_t i = 0; i < plan->dispatchCount; ++i) {
@@ -121,7 +108,7 @@ extern "C" PellucidResult pellucidRecordPlan(const PellucidContext* c, VkCommand
                                  &barrier, 0, nullptr, 0, nullptr);
     }
     c->vk.vkCmdBindPipeline(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, c->pipelines[d.pipeline]);
-    pushBindings(*c, commandBuffer, d, *frame, *constants);
+    pushBindings(*c, commandBuffer, d, facts.frame, *constants);
     c->vk.vkCmdPushConstants(commandBuffer, c->pipelineLayout, VK_SHADER_STAGE_COMPUTE_BIT, 0,
                              PELLUCID_PUSH_CONSTANT_BYTES, d.pushConstants);
     if (d.indirect)

@@ -5,14 +5,23 @@
 
 namespace pellucid {
 
-// The frame keeps its transmitted light in frame.history.
-bool keepsHistory(const PellucidFrame& frame);
+struct FrameFacts;
 
-// What it keeps are the points of a gather, which are added to the frame's own diffused light.
-bool keepsProbes(const PellucidFrame& frame);
+constexpr uint32_t kCoherentLights = 16;
+
+// What frame.history holds after a plan has run.
+struct History {
+  uint32_t valid;  // 0: nothing
+  uint32_t age;    // frames since it was written
+  VkFormat format;
+  uint32_t extent[2], rect[4];
+  uint32_t lightCount;               // above kCoherentLights, COHERENCE refreshes every frame
+  float lightDots[kCoherentLights];  // camera axis and direction to the light, when written
+  uint32_t gatherSpacing;            // of the probes that it holds; 0: it holds the light of pixels
+};
 
 // For a frame that keeps its transmitted light: whether `kept`, of the previous plan, stands in for this
 // frame's. `now` becomes what the history holds after the frame.
-bool decideReuse(const PellucidFrame& frame, const PellucidHistory& kept, PellucidHistory* now);
+bool decideReuse(const FrameFacts& facts, const History& kept, History* now);
 
 }  // namespace pellucid

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "pellucid/pellucid.h"
+#include "images.h"
 
 namespace pellucid {
 
@@ -45,11 +45,16 @@ extern "C" const char* pellucidResultName(PellucidResult result) {
 }
 
 extern "C" const char* pellucidResourceName(uint32_t resource) {
-  static constexpr std::array names = {"frontDepth", "backDepth",  "irradiance", "normal",     "albedo",
-                                       "material",   "output",     "constants",  "transient0", "transient1",
-                                       "transient2", "transient3", "history"};
-  if (resource >= PELLUCID_RESOURCE_SHADOW0) return "shadowImage";
-  return resource < names.size() ? names[resource] : "unknown resource";
+  for (const ImageField& image : kImageFields)
+    if (image.resource == resource) return image.name;
+  static constexpr const char* kTransients[] = {"transient0", "transient1", "transient2",
+                                                "transient3", "transient4", "transient5"};
+  static_assert(std::size(kTransients) == PELLUCID_MAX_TRANSIENTS);
+  const uint32_t transient = resource - PELLUCID_RESOURCE_TRANSIENT0;
+  if (transient < PELLUCID_MAX_TRANSIENTS) return kTransients[transient];
+  if (resource == PELLUCID_RESOURCE_CONSTANTS) return "constants";
+  if (resource == PELLUCID_RESOURCE_HISTORY) return "history";
+  return resource >= PELLUCID_RESOURCE_SHADOW0 ? "shadowImage" : "unknown resource";
 }
 
 namespace {

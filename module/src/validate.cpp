@@ -1,64 +1,15 @@
-// Every convention, checked, in a sentence a person understands.
 #include "validate.h"
 
 #include <cmath>
-#include <utility>
 
-#include "camera.h"
+#include "defaults.h"
 #include "domains.h"
 #include "frame.h"
+#include "gather.h"
 #include "minimum_dot.h"
-#include "quality.h"
-#include "reuse.h"
-#include "text.h"
 
 namespace pellucid {
 namespace {
-
-class Findings {
-public:
-  Findings(PellucidMessageFn fn, void* user) : fn_(fn), user_(user) {}
-
-  PellucidResult result() const { return failed_ ? PELLUCID_ERROR_INVALID_ARGUMENT : PELLUCID_OK; }
-
-  template <class... Parts>
-  void error(const char* field, const Parts&... sentence) {
-    failed_ = true;
-    say(PELLUCID_SEVERITY_ERROR, field, sentence...);
-  }
-  template <class... Parts>
-  void warning(const char* field, const Parts&... sentence) {
-    say(PELLUCID_SEVERITY_WARNING, field, sentence...);
-  }
-
-private:
-  template <class... Parts>
-  void say(PellucidSeverity severity, const char* field, const Parts&... sentence) {
-    if (!fn_) return;
-    char message[256];
-    Text text(message, sizeof message);
-    (text << ... << sentence);
-    fn_(user_, severity, field, message);
-  }
-
-  PellucidMessageFn fn_;
-  void* user_;
-  bool failed_ = false;
-};
-
-// "lights[3].color" without allocation.
-class Field {
-public:
-  template <class... Parts>
-  explicit Field(const Parts&... parts) {
-    Text text(name_, sizeof name_);
-    (text << ... << parts);
-  }
-  operator const char*() const { return name_; }
-
-private:
-  char name_[64];
-};
 
 bool finite(const float* values, int count) {
   for (int i = 0; i < count; ++i)
@@ -115,26 +66,26 @@ void checkImageSize(const PellucidFrame& f, Findings& out) {
               " image");
 }
 
-void checkMinimumDotTable(const PellucidFrame& f, Findings& out) {
-  const bool azimuth = f.angleModel == PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH;
-  if (!azimuth && f.angleModel != PELLUCID_ANGLE_MINIMUM_DOT_SPHERE) return;
-  const uint32_t least = azimuth ? 1 : 3, most = azimuth ? 360 : 16, size = f.minimumDotTableSize;
+void checkMinimumDotTable(const PellucidThesisOptions& t, Findings& out) {
+  const bool azimuth = t.angleModel == PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH;
+  if (!azimuth && t.angleModel != PELLUCID_ANGLE_MINIMUM_DOT_SPHERE) return;
+  const uint32_t least = azimuth ? 1 : 3, most = azimuth ? 360 : 16, size = t.minimumDotTableSize;
   if (size < least || size > most) {
-    out.error("minimumDotTableSize", "is ", size, ", outside ", least, "..", most);
-  } else if (!f.minimumDotTable) {
-    out.error("minimumDotTable", "is NULL, but the angle model looks minimum dots up");
+    out.error("thesis.minimumDotTableSize", "is ", size, ", outside ", least, "..", most);
+  } else if (!t.minimumDotTable) {
+    out.error("thesis.minimumDotTable", "is NULL, but the angle model looks minimum dots up");
   } else {
-    for (uint32_t i = 0; i < minimumDotEntries(f); ++i)
-      if (!(f.minimumDotTable[i] >= -1 && f.minimumDotTable[i] <= 0))
-        out.error("minimumDotTable", "[", i, "] is ", f.minimumDotTable[i], ", outside [-1, 0]");
+    for (uint32_t i = 0; i < minimumDotEntries(t); ++i)
+      if (!(t.minimumDotTable[i] >= -1 && t.minimumDotTable[i] <= 0))
+        out.error("thesis.minimumDotTable", "[", i, "] is ", t.minimumDotTable[i], ", outside [-1, 0]");
   }
-  const glm::dvec3 face(f.faceVector[0], f.faceVector[1], f.faceVector[2]);
-  const glm::dvec3 up(f.upAxis[0], f.upAxis[1], f.upAxis[2]);
+  const glm::dvec3 face(t.faceVector[0], t.faceVector[1], t.faceVector[2]);
+  const glm::dvec3 up(t.upAxis[0], t.upAxis[1], t.upAxis[2]);
   const double sine = glm::length(glm::cross(glm::normalize(up), glm::normalize(face)));
   // Nearer to each other than this, float rounding would decide where the face looks.
   if (!(sine > 1e-4))
-    out.error("faceVector", "is ", f.faceVector[0], ", ", f.faceVector[1], ", ", f.faceVector[2],
-              " and upAxis ", f.upAxis[0], ", ", f.upAxis[1], ", ", f.upAxis[2],
+    out.error("thesis.faceVector", "is ", t.faceVector[0], ", ", t.faceVector[1], ", ", t.faceVector[2],
+              " and upAxis ", t.upAxis[0], ", ", t.upAxis[1], ", ", t.upAxis[2],
               "; must be finite, longer than 0 and not parallel");
 }
 
@@ -152,10 +103,6 @@ bool falls(const float (&t)[5]) {
 
 void checkMaterial(const PellucidMaterial& m, uint32_t index, Findings& out) {
   const auto field = [index](const char* name) { return Field("materials[", index, "].", name); };
-  if (m.structSize != sizeof(PellucidMaterial)) {
-    out.error(field("structSize"), "is ", m.structSize, "; this library expects ", sizeof(PellucidMaterial));
-    return;
-  }
   checkDomains(m, field(""), out);
   if (m.gaussianCount > PELLUCID_MAX_GAUSSIANS) return;
   const bool fromGaussians = m.transmittanceModel == PELLUCID_TRANSMITTANCE_GAUSSIANS ||
@@ -204,7 +151,8 @@ void checkShadowMap(const PellucidFrame& f, uint32_t index, Findings& out) {
     out.error(field("casterMaterialImage"), "is ", s.casterMaterialImage, ", the exitImage");
 }
 
-void checkLight(const PellucidFrame& f, uint32_t index, Findings& out) {
+void checkLight(const FrameFacts& facts, uint32_t index, Findings& out) {
+  const PellucidFrame& f = facts.frame;
   const PellucidLight& l = f.lights[index];
   const auto field = [index](const char* name) { return Field("lights[", index, "].", name); };
   checkDomains(l, field(""), out);
@@ -227,7 +175,7 @@ void checkLight(const PellucidFrame& f, uint32_t index, Findings& out) {
   bool fits = true;
   for (uint32_t i = 0; i < l.shadowMapCount; ++i) {
     const PellucidShadowMap& s = f.shadowMaps[l.firstShadowMap + i];
-    fits = fits && images.addImages(f, l, s);
+    fits = fits && images.addImages(facts, l, s);
     const glm::dmat4 clip = toMatrix(s.clipFromWorld);
     const bool perspective = clip[0][3] != 0 || clip[1][3] != 0 || clip[2][3] != 0;
     if (perspective == (l.type == PELLUCID_LIGHT_DIRECTIONAL))
@@ -252,22 +200,13 @@ void checkLight(const PellucidFrame& f, uint32_t index, Findings& out) {
 
 }  // namespace
 
-PellucidResult checkFrame(const PellucidFrame* frame, PellucidMessageFn fn, void* user) {
-  Findings out(fn, user);
-  if (!frame) {
-    out.error("frame", "is NULL");
-    return out.result();
-  }
-  const PellucidFrame& f = *frame;
-  if (f.structSize != sizeof(PellucidFrame)) {
-    out.error("structSize", "is ", f.structSize, "; this library expects ", sizeof(PellucidFrame),
-              " (call pellucidInitFrame)");
-    return PELLUCID_ERROR_VERSION;
-  }
+void checkFields(const FrameFacts& facts, Findings& out) {
+  const PellucidFrame& f = facts.frame;
   constexpr uint32_t known = PELLUCID_FEATURE_TRANSLUCENCY | PELLUCID_FEATURE_DIFFUSION;
   if (f.features & ~known) out.error("features", "has unknown bits: ", f.features);
   checkImageSize(f, out);
   checkDomains(f, "", out);
+  checkDomains(facts.thesis, "thesis.", out);
   DepthRange range;
   if (const char* wrong = readDepthRange(toMatrix(f.clipFromView), &range)) out.error("clipFromView", wrong);
   if (!finite(f.viewFromWorld, 16) || !rigid(toMatrix(f.viewFromWorld)))
@@ -276,7 +215,7 @@ PellucidResult checkFrame(const PellucidFrame* frame, PellucidMessageFn fn, void
       f.outputFormat != VK_FORMAT_B10G11R11_UFLOAT_PACK32)
     out.error("outputFormat", "is VkFormat ", static_cast<int>(f.outputFormat),
               "; use R16G16B16A16_SFLOAT, R32G32B32A32_SFLOAT or B10G11R11_UFLOAT_PACK32");
-  checkMinimumDotTable(f, out);
+  checkMinimumDotTable(facts.thesis, out);
 
   if (f.gatherSpacing != 0 && f.gatherSpacing != 1 && f.gatherSpacing != 2 && f.gatherSpacing != 4)
     out.error("gatherSpacing", "is ", f.gatherSpacing, "; use 1, 2 or 4, or 0 to choose by the image's size");
@@ -286,10 +225,10 @@ PellucidResult checkFrame(const PellucidFrame* frame, PellucidMessageFn fn, void
   // 255: the material image is r8ui and 0 means none.
   if (f.materialCount == 0 || f.materialCount > 255 || !f.materials)
     out.error("materials", "has ", f.materialCount, f.materials ? "" : " at NULL", "; needs 1..255");
-  const uint32_t mark = f.materialMarkBit;
+  const uint32_t mark = facts.thesis.materialMarkBit;
   if (mark != 0 && ((mark & (mark - 1)) != 0 || mark <= f.materialCount))
-    out.error("materialMarkBit", "is ", mark, "; must be 0 or a power of two above the ", f.materialCount,
-              " materials");
+    out.error("thesis.materialMarkBit", "is ", mark, "; must be 0 or a power of two above the ",
+              f.materialCount, " materials");
   if (f.lightCount > 0 && !f.lights) out.error("lights", "is NULL, but lightCount is ", f.lightCount);
   if (f.shadowMapCount > 0 && !f.shadowMaps)
     out.error("shadowMaps", "is NULL, but shadowMapCount is ", f.shadowMapCount);
@@ -299,28 +238,51 @@ PellucidResult checkFrame(const PellucidFrame* frame, PellucidMessageFn fn, void
     out.error("reuse", "is both; alternating would skip frames in which coherence asks for a refresh");
   else if (f.reuse > PELLUCID_REUSE_COHERENCE)
     out.error("reuse", "is ", f.reuse, ", not a PellucidReuse");
-  if (out.result() != PELLUCID_OK) return out.result();
+}
 
+void checkMaterials(const FrameFacts& facts, Findings& out) {
+  const PellucidFrame& f = facts.frame;
+  // All before any is read, as the first one's size says where the others are.
+  const uint32_t size = f.materials->structSize;
+  if (!canReadStruct(f.materials, kLeastMaterial)) {
+    out.error("materials[0].structSize", "is ", size, "; this library reads ", kLeastMaterial, " to ",
+              sizeof(PellucidMaterial), " bytes, and more if they are 0");
+    return;
+  }
+  const auto* bytes = reinterpret_cast<const unsigned char*>(f.materials);
+  for (uint32_t i = 1; i < f.materialCount; ++i) {
+    const auto* m = reinterpret_cast<const PellucidMaterial*>(bytes + static_cast<size_t>(i) * size);
+    if (m->structSize == size && canReadStruct(m, kLeastMaterial)) continue;
+    out.error(Field("materials[", i, "].structSize"), "is ", m->structSize, "; that of materials[0] is ",
+              size, ", of which those that this library does not know must be 0");
+    return;
+  }
   for (uint32_t i = 0; i < f.materialCount; ++i) {
-    checkMaterial(f.materials[i], i, out);
-    const uint32_t model = f.materials[i].transmittanceModel;
+    const PellucidMaterial material = facts.material(i);
+    checkMaterial(material, i, out);
+    const uint32_t model = material.transmittanceModel;
     if (f.gatherSamples > 0 && f.gatherSamples != PELLUCID_GATHER_BY_QUALITY && !canBeGathered(model))
       out.error(Field("materials[", i, "].transmittanceModel"), "is ", model,
                 ", which cannot be gathered; use EXP2 or SINH_EXP");
   }
-  for (uint32_t i = 0; i < f.shadowMapCount; ++i) checkShadowMap(f, i, out);
-  if (out.result() != PELLUCID_OK) return out.result();
-  for (uint32_t i = 0; i < f.lightCount; ++i) checkLight(f, i, out);
-  if (out.result() != PELLUCID_OK) return out.result();
-  const ViewBounds view(f);
+}
+
+void checkShadowMaps(const FrameFacts& facts, Findings& out) {
+  for (uint32_t i = 0; i < facts.frame.shadowMapCount; ++i) checkShadowMap(facts.frame, i, out);
+}
+
+void checkLights(const FrameFacts& facts, Findings& out) {
+  for (uint32_t i = 0; i < facts.frame.lightCount; ++i) checkLight(facts, i, out);
+}
+
+void checkGroups(const FrameFacts& facts, Findings& out) {
+  const PellucidFrame& f = facts.frame;
   for (uint32_t i = 0; i < f.lightCount; ++i)
-    if (const char* reason = view.whySkipped(f.lights[i]))
+    if (const char* reason = facts.whySkipped(f.lights[i]))
       out.warning(Field("lights[", i, "]"), "adds nothing: ", reason);
-  const LightGroups groups = lightGroups(f);
-  if (groups.count > 1 && f.debugView != PELLUCID_DEBUG_NONE && f.debugView != PELLUCID_DEBUG_IRRADIANCE)
+  if (facts.lights.count > 1 && facts.debug() && f.debugView != PELLUCID_DEBUG_IRRADIANCE)
     out.error("debugView", "is ", f.debugView, ", which needs all lights in one dispatch; they use ",
-              groups.count);
-  return out.result();
+              facts.lights.count);
 }
 
 namespace {
@@ -341,25 +303,19 @@ void checkLayout(const PellucidImage& image, const char* field, Findings& out) {
 
 }  // namespace
 
-PellucidResult checkViews(const PellucidFrame& f, PellucidMessageFn fn, void* user) {
-  Findings out(fn, user);
-  const PellucidImage* required[] = {&f.frontDepth, &f.irradiance, &f.material, &f.output};
-  const char* names[] = {"frontDepth", "irradiance", "material", "output"};
-  for (int i = 0; i < 4; ++i)
-    if (!given(*required[i])) out.error(names[i], "has no view, but is required");
-  const std::pair<const char*, const PellucidImage*> inputs[] = {
-      {"frontDepth", &f.frontDepth}, {"backDepth", &f.backDepth}, {"irradiance", &f.irradiance},
-      {"normal", &f.normal},         {"albedo", &f.albedo},       {"material", &f.material}};
-  for (const auto& [field, image] : inputs) checkLayout(*image, field, out);
+void checkViews(const FrameFacts& facts, Findings& out) {
+  const PellucidFrame& f = facts.frame;
+  for (const ImageField& image : kImageFields)
+    if (image.required && !given(f.*image.field)) out.error(image.name, "has no view, but is required");
+  for (const ImageField& image : kImageFields)
+    if (image.resource != PELLUCID_RESOURCE_OUTPUT) checkLayout(f.*image.field, image.name, out);
   for (uint32_t i = 0; i < f.shadowImageCount; ++i) {
     const Field field("shadowImages[", i, "]");
     if (!given(f.shadowImages[i])) out.error(field, "has no view");
     checkLayout(f.shadowImages[i], field, out);
   }
-  uint32_t needed = 0;
-  pellucidGetImageNeeds(&f, &needed, nullptr);
-  if (keepsHistory(f)) {
-    --needed;
+  const uint32_t needed = facts.stages.transients();
+  if (facts.stages.keepsHistory) {
     if (!given(f.history))
       out.error("history", "has no view, but reuse needs it; see pellucidGetImageNeeds");
     else if (f.history.layout != VK_IMAGE_LAYOUT_GENERAL)
@@ -377,36 +333,6 @@ PellucidResult checkViews(const PellucidFrame& f, PellucidMessageFn fn, void* us
     if (given(f.transients[i]) && f.transients[i].layout != VK_IMAGE_LAYOUT_GENERAL)
       out.error(Field("transients[", i, "]"), "is in VkImageLayout ",
                 static_cast<int>(f.transients[i].layout), "; must be GENERAL");
-  return out.result();
 }
 
 }  // namespace pellucid
-
-namespace {
-
-// Lights, from the first one on, whose shadow images the dispatches of a plan can bind.
-uint32_t lightsThatFit(PellucidFrame frame) {
-  PellucidPlan plan;
-  while (frame.lightCount > 0 && pellucidBuildPlan(&frame, nullptr, &plan) == PELLUCID_ERROR_CAPACITY)
-    --frame.lightCount;
-  return frame.lightCount;
-}
-
-}  // namespace
-
-extern "C" PellucidResult pellucidValidateFrame(const PellucidFrame* frame, PellucidMessageFn fn,
-                                                void* user) {
-  PellucidResult result = pellucid::checkFrame(frame, fn, user);
-  if (result != PELLUCID_OK) return result;
-  // The plan says what fits into it.
-  PellucidPlan plan;
-  result = pellucidBuildPlan(frame, nullptr, &plan);
-  if (result == PELLUCID_ERROR_CAPACITY) {
-    pellucid::Findings(fn, user).error(
-        "shadowImages", "of all ", frame->lightCount, " lights are more than the plan's ",
-        static_cast<int>(PELLUCID_MAX_DISPATCHES), " dispatches can bind; those of the first ",
-        lightsThatFit(*frame), " lights fit");
-    return result;
-  }
-  return result == PELLUCID_OK ? pellucid::checkViews(*frame, fn, user) : result;
-}

@@ -1,13 +1,20 @@
+// Every convention, checked, in a sentence a person understands. In this order: each check relies on those
+// before it, and on what readFrame has put into the facts between them.
 #pragma once
 
-#include "pellucid/pellucid.h"
+#include "findings.h"
 
 namespace pellucid {
 
-// Everything a plan relies on; image views are not looked at. `fn` may be null.
-PellucidResult checkFrame(const PellucidFrame* frame, PellucidMessageFn fn, void* user);
+struct FrameFacts;
+
+void checkFields(const FrameFacts& facts, Findings& out);
+void checkMaterials(const FrameFacts& facts, Findings& out);
+void checkShadowMaps(const FrameFacts& facts, Findings& out);
+void checkLights(const FrameFacts& facts, Findings& out);
+void checkGroups(const FrameFacts& facts, Findings& out);
 
 // The views a recording needs.
-PellucidResult checkViews(const PellucidFrame& frame, PellucidMessageFn fn, void* user);
+void checkViews(const FrameFacts& facts, Findings& out);
 
 }  // namespace pellucid

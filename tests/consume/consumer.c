@@ -1,18 +1,27 @@
 /* The headers are C: compiled as such, linked without any Vulkan loader. */
 #include <pellucid/pellucid.h>
+#include <pellucid/pellucid_budget.h>
 #include <pellucid/pellucid_material.h>
+#include <pellucid/pellucid_plan.h>
+#include <pellucid/pellucid_thesis.h>
 #include <string.h>
 
 int main(void) {
   PellucidMaterialDesc desc;
   PellucidMaterial material;
   PellucidFrame frame;
+  PellucidThesisOptions thesis;
+  PellucidBudgetState budget;
   static PellucidPlan plan;
   pellucidInitMaterialDesc(&desc);
   desc.kind = PELLUCID_MATERIAL_PRESET;
   desc.preset = "skin1";
   if (pellucidCompileMaterial(&desc, &material, NULL, NULL, NULL) != PELLUCID_OK) return 1;
+  pellucidInitBudgetState(&budget);
+  pellucidInitThesisOptions(&thesis);
   pellucidInitFrame(&frame);
+  frame.quality = budget.quality;
+  frame.thesis = &thesis;
   frame.materialCount = 1;
   frame.materials = &material;
   /* No extent and no projection yet: refused. */

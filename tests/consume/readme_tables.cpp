@@ -148,6 +148,7 @@ void addDomains(const char* name, std::string* table) {
 std::string domainsTable() {
   std::string table = "| struct | field | domain | read |\n|-|-|-|-|\n";
   addDomains<PellucidFrame>("PellucidFrame", &table);
+  addDomains<PellucidThesisOptions>("PellucidThesisOptions", &table);
   addDomains<PellucidMaterial>("PellucidMaterial", &table);
   addDomains<PellucidLight>("PellucidLight", &table);
   addDomains<PellucidShadowMap>("PellucidShadowMap", &table);

@@ -287,7 +287,7 @@ TEST_F(GatherAgreement, KeptPointsDisplaceToo) {
     for (int i = 0; i < 2; ++i) {
       auto run = std::make_unique<FrameRun>(device(), context, c, std::vector{skin()}, s, last.get());
       device().run([&](VkCommandBuffer commands) { run->record(commands); });
-      EXPECT_EQ(run->plan().history.age, static_cast<uint32_t>(i));
+      EXPECT_EQ(run->plan().historyAge, static_cast<uint32_t>(i));
       const Image out = rgb(run->output());
       for (size_t k = 0; k < out.data.size(); ++k)
         ASSERT_NEAR(out.data[k], expected.data[k], 1e-6f) << "spacing " << spacing << " frame " << i;

@@ -183,7 +183,7 @@ TEST_F(GpuTest, ReuseOverATurningLight) {
             std::make_unique<FrameRun>(device(), context, c, std::vector{testMaterial()}, s, last.get());
         device().run([&](VkCommandBuffer commands) { run->record(commands); });
         const Image out = run->output(), own = replay(c, testMaterial(), plain);
-        if (run->plan().history.age == 0) {
+        if (run->plan().historyAge == 0) {
           kept = own;
           keptIrradiance = c.irradiance;
           ++refreshed;

@@ -7,7 +7,7 @@
 #include <functional>
 #include <random>
 
-#include "pellucid/pellucid.h"
+#include "pellucid/pellucid_budget.h"
 
 namespace {
 

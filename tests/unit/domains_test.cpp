@@ -31,9 +31,9 @@ const std::vector<std::function<void(Frame&)>> kFrames = {
     [](Frame&) {},
     [](Frame& f) {
       static const float table[9] = {};
-      f.frame.angleModel = PELLUCID_ANGLE_MINIMUM_DOT_SPHERE;
-      f.frame.minimumDotTableSize = 3;
-      f.frame.minimumDotTable = table;
+      f.thesis.angleModel = PELLUCID_ANGLE_MINIMUM_DOT_SPHERE;
+      f.thesis.minimumDotTableSize = 3;
+      f.thesis.minimumDotTable = table;
       f.material.gaussianCount = PELLUCID_MAX_GAUSSIANS;
       for (int c = 0; c < 3; ++c)
         for (int k = 0; k < PELLUCID_MAX_GAUSSIANS; ++k) {
@@ -69,6 +69,10 @@ PellucidFrame& objectOf(Frame& f) {
   return f.frame;
 }
 template <>
+PellucidThesisOptions& objectOf(Frame& f) {
+  return f.thesis;
+}
+template <>
 PellucidMaterial& objectOf(Frame& f) {
   return f.material;
 }
@@ -83,6 +87,7 @@ PellucidShadowMap& objectOf(Frame& f) {
 
 template <class Struct>
 const char* prefix() {
+  if constexpr (std::is_same_v<Struct, PellucidThesisOptions>) return "thesis.";
   if constexpr (std::is_same_v<Struct, PellucidMaterial>) return "materials[0].";
   if constexpr (std::is_same_v<Struct, PellucidLight>) return "lights[0].";
   if constexpr (std::is_same_v<Struct, PellucidShadowMap>) return "shadowMaps[0].";
@@ -97,7 +102,8 @@ void set(void* object, size_t offset, uint32_t index, Value value) {
 template <class Struct>
 class Domains : public testing::Test {};
 
-using Structs = testing::Types<PellucidFrame, PellucidMaterial, PellucidLight, PellucidShadowMap>;
+using Structs =
+    testing::Types<PellucidFrame, PellucidThesisOptions, PellucidMaterial, PellucidLight, PellucidShadowMap>;
 TYPED_TEST_SUITE(Domains, Structs);
 
 TYPED_TEST(Domains, FloatsOutsideAreNamed) {
@@ -140,13 +146,14 @@ TYPED_TEST(Domains, IntegersOutsideAreNamed) {
 
 // Names of the float fields that the header declares in a struct.
 std::set<std::string> declaredFloats(const std::string& name) {
-  std::ifstream file(std::string(PELLUCID_SOURCE_DIR) + "/module/include/pellucid/pellucid.h");
+  const char* const header = name == "PellucidThesisOptions" ? "pellucid_thesis.h" : "pellucid.h";
+  std::ifstream file(std::string(PELLUCID_SOURCE_DIR) + "/module/include/pellucid/" + header);
   std::stringstream text;
   text << file.rdbuf();
-  std::string header = std::regex_replace(text.str(), std::regex(R"(/\*[\s\S]*?\*/)"), "");
-  const size_t first = header.find("typedef struct " + name + " {"), last = header.find("} " + name + ";");
+  const std::string declarations = std::regex_replace(text.str(), std::regex(R"(/\*[\s\S]*?\*/)"), "");
+  const size_t first = declarations.find("struct " + name + " {"), last = declarations.find("}", first);
   std::set<std::string> fields;
-  const std::string body = header.substr(first, last - first);
+  const std::string body = declarations.substr(first, last - first);
   const std::regex declaration(R"(\bfloat ([^*;]+);)"), field(R"((\w+)(\[\w+\])*)");
   for (std::sregex_iterator d(body.begin(), body.end(), declaration), end; d != end; ++d) {
     std::stringstream list((*d)[1].str());
@@ -159,10 +166,11 @@ std::set<std::string> declaredFloats(const std::string& name) {
 }
 
 TYPED_TEST(Domains, TheTableHasEveryFloatOfTheHeader) {
-  const char* name = std::is_same_v<TypeParam, PellucidFrame>      ? "PellucidFrame"
-                     : std::is_same_v<TypeParam, PellucidMaterial> ? "PellucidMaterial"
-                     : std::is_same_v<TypeParam, PellucidLight>    ? "PellucidLight"
-                                                                   : "PellucidShadowMap";
+  const char* name = std::is_same_v<TypeParam, PellucidFrame>           ? "PellucidFrame"
+                     : std::is_same_v<TypeParam, PellucidThesisOptions> ? "PellucidThesisOptions"
+                     : std::is_same_v<TypeParam, PellucidMaterial>      ? "PellucidMaterial"
+                     : std::is_same_v<TypeParam, PellucidLight>         ? "PellucidLight"
+                                                                        : "PellucidShadowMap";
   std::set<std::string> table;
   for (const FloatDomain& d : domainsOf<TypeParam>().floats) table.insert(d.field);
   EXPECT_EQ(table, declaredFloats(name));

@@ -1,4 +1,4 @@
-// Where the diffusion pyramid's levels lie: apart, and inside the image that the plan asks for.
+// Where the diffusion pyramid's levels lie: apart, and inside the images that the plan asks for.
 #include "pyramid.h"
 
 #include <gtest/gtest.h>
@@ -17,53 +17,41 @@ bool apart(const Box& a, const Box& b) {
   return a.x + a.width <= b.x || b.x + b.width <= a.x || a.y + a.height <= b.y || b.y + b.height <= a.y;
 }
 
-PellucidFrame frameOf(uint32_t width, uint32_t height, const Rect& rect) {
-  PellucidFrame f;
-  pellucidInitFrame(&f);
-  f.imageExtent[0] = width;
-  f.imageExtent[1] = height;
-  f.renderRect[0] = rect.x;
-  f.renderRect[1] = rect.y;
-  f.renderRect[2] = rect.width;
-  f.renderRect[3] = rect.height;
-  return f;
-}
-
-void expectApart(const PellucidFrame& f) {
-  SCOPED_TRACE(std::to_string(f.imageExtent[0]) + " x " + std::to_string(f.imageExtent[1]));
+void expectApart(uint32_t width, uint32_t height, Rect rect) {
+  SCOPED_TRACE(std::to_string(width) + " x " + std::to_string(height));
+  if (rect.width == 0) rect = {0, 0, width, height};
+  const uint32_t extent[2] = {width, height};
+  const Pyramid pyramid(extent, rect);
   const auto box = [&](uint32_t level) {
-    const PyramidPlace p = placeOf(f, level);
+    const PyramidPlace& p = pyramid.levels[level];
     return Box{p.x, p.y, p.rect.width, p.rect.height};
   };
-  // Resolved texels of level 2 and their shares are written while the levels from 2 on are read.
-  const Box second = box(2);
-  std::vector<Box> boxes = {{0, 0, second.width, second.height},
-                            {sharesColumn(f), 0, second.width, second.height}};
-  const size_t resolved = boxes.size();
-  for (uint32_t level = 2; level <= coarsestLevel(f); ++level) boxes.push_back(box(level));
-  const PyramidExtent extent = pyramidExtent(f);
-  for (size_t i = 0; i < boxes.size(); ++i) {
-    for (size_t j = 0; j < i; ++j) EXPECT_TRUE(apart(boxes[i], boxes[j])) << i << " and " << j;
-    EXPECT_LE(boxes[i].x + boxes[i].width, static_cast<int32_t>(extent.width)) << i;
-    EXPECT_LE(boxes[i].y + boxes[i].height, static_cast<int32_t>(extent.height)) << i;
-    // Level 1 is read while the next two are written.
-    if (i >= resolved) {
-      EXPECT_TRUE(apart(box(kFirstLevel), boxes[i])) << i;
-    }
-  }
+  const auto inside = [&](const Box& b, uint32_t image) {
+    const Pyramid::Extent& extent = pyramid.images[image];
+    return b.x >= 0 && b.y >= 0 && b.x + b.width <= static_cast<int32_t>(extent.width) &&
+           b.y + b.height <= static_cast<int32_t>(extent.height);
+  };
+  // Texels of level 2 after upsampling and their shares are in the image of level 1.
+  const Box second = box(2), upsampled{0, 0, second.width, second.height},
+            shares{pyramid.sharesColumn, 0, second.width, second.height};
+  EXPECT_TRUE(apart(upsampled, shares));
+  EXPECT_TRUE(inside(upsampled, 0) && inside(shares, 0) && inside(box(1), 0));
+  for (uint32_t level = 2; level <= 5; ++level) EXPECT_TRUE(inside(box(level), level / 2)) << level;
+  EXPECT_TRUE(apart(box(2), box(3)));
+  EXPECT_TRUE(apart(box(4), box(5)));
 }
 
 TEST(Pyramid, LevelsLieApart) {
   for (uint32_t width = 1; width <= 140; ++width)
-    for (const uint32_t height : {1u, 2u, 47u, 64u, 139u}) expectApart(frameOf(width, height, {}));
-  expectApart(frameOf(1920, 1080, {}));
-  expectApart(frameOf(1921, 1081, {}));
-  expectApart(frameOf(3840, 2160, {}));
+    for (const uint32_t height : {1u, 2u, 47u, 64u, 139u}) expectApart(width, height, {});
+  expectApart(1920, 1080, {});
+  expectApart(1921, 1081, {});
+  expectApart(3840, 2160, {});
 }
 
 TEST(Pyramid, LevelsOfPartsLieApart) {
   for (uint32_t x = 0; x < 9; ++x)
-    for (uint32_t width = 1; width <= 61 - x; width += 3) expectApart(frameOf(61, 47, {x, x / 2, width, 41}));
+    for (uint32_t width = 1; width <= 61 - x; width += 3) expectApart(61, 47, {x, x / 2, width, 41});
 }
 
 }  // namespace

@@ -184,16 +184,16 @@ TEST(Quality, SaysWhyNothingIsGathered) {
   EXPECT_EQ(find(f.plan(), "probes"), nullptr);
   EXPECT_EQ(skipped(f.plan(), "gather"), 1u);
   f.frame.thicknessSource = PELLUCID_THICKNESS_LIGHT;
-  const auto skips = [&](auto PellucidFrame::*field, auto value) {
-    const auto before = std::exchange(f.frame.*field, value);
+  const auto skips = [&](auto PellucidThesisOptions::*field, auto value) {
+    const auto before = std::exchange(f.thesis.*field, value);
     EXPECT_EQ(find(f.plan(), "probes"), nullptr);
     EXPECT_EQ(skipped(f.plan(), "gather"), 1u);
-    f.frame.*field = before;
+    f.thesis.*field = before;
   };
-  skips(&PellucidFrame::angleModel, PELLUCID_ANGLE_COSINE);
-  skips(&PellucidFrame::constantViewDirection, 1u);
-  skips(&PellucidFrame::minimumDot, -0.1f);
-  skips(&PellucidFrame::maximumThickness, 10.0f);
+  skips(&PellucidThesisOptions::angleModel, PELLUCID_ANGLE_COSINE);
+  skips(&PellucidThesisOptions::constantViewDirection, 1u);
+  skips(&PellucidThesisOptions::minimumDot, -0.1f);
+  skips(&PellucidThesisOptions::maximumThickness, 10.0f);
   EXPECT_NE(find(f.plan(), "probes"), nullptr);
   f.material.transmittanceModel = PELLUCID_TRANSMITTANCE_LINEAR;
   f.material.transmittance[0][0] = f.material.transmittance[1][0] = f.material.transmittance[2][0] = 4;

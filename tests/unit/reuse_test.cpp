@@ -2,9 +2,12 @@
 #include <cmath>
 
 #include "frame_fixture.h"
+#include "plan_state.h"
 
 namespace {
 
+using pellucid::kCoherentLights;
+using pellucid::stateOf;
 using pellucid::test::Frame;
 
 bool reuses(const PellucidPlan& plan) {
@@ -40,7 +43,7 @@ struct Sequence : Frame {
 TEST(Reuse, NoneNeverReuses) {
   Sequence s(PELLUCID_REUSE_NONE);
   for (int i = 0; i < 5; ++i) EXPECT_TRUE(s.refreshes());
-  EXPECT_EQ(s.last.history.valid, 0u);
+  EXPECT_EQ(stateOf(s.last).history.valid, 0u);
 }
 
 TEST(Reuse, AlternateRefreshesEverySecondFrame) {
@@ -51,7 +54,7 @@ TEST(Reuse, AlternateRefreshesEverySecondFrame) {
 TEST(Reuse, CoherenceOfAStillLightRefreshesOnce) {
   Sequence s(PELLUCID_REUSE_COHERENCE);
   for (int i = 0; i < 50; ++i) EXPECT_EQ(s.refreshes(), i == 0) << i;
-  EXPECT_EQ(s.last.history.age, 49u);
+  EXPECT_EQ(s.last.historyAge, 49u);
 }
 
 // A light that turns half a degree a frame: refreshed exactly when the cosine has moved by more than .005.
@@ -86,7 +89,7 @@ TEST(Reuse, TheCameraTurnsTheCosineToo) {
   const float turned[16] = {c, 0, n, 0, 0, 1, 0, 0, -n, 0, c, 0, 0, 0, 0, 1};
   std::copy(turned, turned + 16, s.frame.viewFromWorld);
   EXPECT_TRUE(s.refreshes());
-  EXPECT_NEAR(s.last.history.lightDots[0], 1, 1e-6);
+  EXPECT_NEAR(stateOf(s.last).history.lightDots[0], 1, 1e-6);
   EXPECT_FALSE(s.refreshes());
 }
 
@@ -116,7 +119,7 @@ TEST(Reuse, AnotherImageOrOtherLightsRefresh) {
 
 TEST(Reuse, MoreLightsThanAreFollowedRefreshEveryFrame) {
   Sequence s(PELLUCID_REUSE_COHERENCE);
-  s.lights.resize(PELLUCID_MAX_COHERENT_LIGHTS + 1, s.lights[0]);
+  s.lights.resize(kCoherentLights + 1, s.lights[0]);
   s.use();
   for (int i = 0; i < 3; ++i) EXPECT_TRUE(s.refreshes());
 }

@@ -36,43 +36,43 @@ const std::vector<Violation> kViolations = {
        f.frame.renderRect[2] = 2;
        f.frame.renderRect[3] = 2;
      }},
-    {"MarkBitOfTwoBits", "materialMarkBit", "192", [](Frame& f) { f.frame.materialMarkBit = 192; }},
-    {"MarkBitInTheIndex", "materialMarkBit", "above the 1 materials",
-     [](Frame& f) { f.frame.materialMarkBit = 1; }},
+    {"MarkBitOfTwoBits", "thesis.materialMarkBit", "192", [](Frame& f) { f.thesis.materialMarkBit = 192; }},
+    {"MarkBitInTheIndex", "thesis.materialMarkBit", "above the 1 materials",
+     [](Frame& f) { f.thesis.materialMarkBit = 1; }},
     {"BothReuses", "reuse", "is both", [](Frame& f) { f.frame.reuse = 3; }},
     {"CoherenceThreshold", "coherenceThreshold", "nan", [](Frame& f) { f.frame.coherenceThreshold = NAN; }},
-    {"PrescaleAngle", "prescaleAngle", "2", [](Frame& f) { f.frame.prescaleAngle = 2; }},
+    {"PrescaleAngle", "thesis.prescaleAngle", "2", [](Frame& f) { f.thesis.prescaleAngle = 2; }},
     {"SeparateOutput", "separateOutput", "2", [](Frame& f) { f.frame.separateOutput = 2; }},
     {"IndirectDispatches", "indirectDispatches", "2", [](Frame& f) { f.frame.indirectDispatches = 2; }},
     {"FrameLoad", "frameLoad", "-1", [](Frame& f) { f.frame.frameLoad = -1; }},
     {"Quality", "quality", "3, outside 0..2", [](Frame& f) { f.frame.quality = 3; }},
     {"TargetError", "targetError", "inf", [](Frame& f) { f.frame.targetError = INFINITY; }},
     {"NearestDistance", "nearestDistance", "-1", [](Frame& f) { f.frame.nearestDistance = -1; }},
-    {"NoMinimumDots", "minimumDotTable", "NULL",
+    {"NoMinimumDots", "thesis.minimumDotTable", "NULL",
      [](Frame& f) {
-       f.frame.angleModel = PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH;
-       f.frame.minimumDotTableSize = 36;
+       f.thesis.angleModel = PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH;
+       f.thesis.minimumDotTableSize = 36;
      }},
-    {"MinimumDotTableSize", "minimumDotTableSize", "17, outside 3..16",
+    {"MinimumDotTableSize", "thesis.minimumDotTableSize", "17, outside 3..16",
      [](Frame& f) {
-       f.frame.angleModel = PELLUCID_ANGLE_MINIMUM_DOT_SPHERE;
-       f.frame.minimumDotTableSize = 17;
+       f.thesis.angleModel = PELLUCID_ANGLE_MINIMUM_DOT_SPHERE;
+       f.thesis.minimumDotTableSize = 17;
      }},
-    {"MinimumDotEntry", "minimumDotTable", "[1] is 0.5",
+    {"MinimumDotEntry", "thesis.minimumDotTable", "[1] is 0.5",
      [](Frame& f) {
        static const float table[2] = {0, 0.5f};
-       f.frame.angleModel = PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH;
-       f.frame.minimumDotTable = table;
-       f.frame.minimumDotTableSize = 2;
+       f.thesis.angleModel = PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH;
+       f.thesis.minimumDotTable = table;
+       f.thesis.minimumDotTableSize = 2;
      }},
-    {"FaceAlongUp", "faceVector", "parallel",
+    {"FaceAlongUp", "thesis.faceVector", "parallel",
      [](Frame& f) {
        static const float table[1] = {0};
-       f.frame.angleModel = PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH;
-       f.frame.minimumDotTable = table;
-       f.frame.minimumDotTableSize = 1;
-       f.frame.faceVector[1] = 5;
-       f.frame.faceVector[2] = 0;
+       f.thesis.angleModel = PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH;
+       f.thesis.minimumDotTable = table;
+       f.thesis.minimumDotTableSize = 1;
+       f.thesis.faceVector[1] = 5;
+       f.thesis.faceVector[2] = 0;
      }},
     {"MetersPerUnit", "metersPerUnit", "0", [](Frame& f) { f.frame.metersPerUnit = 0; }},
     {"ProjectionNan", "clipFromView", "not finite", [](Frame& f) { f.frame.clipFromView[0] = NAN; }},

@@ -1,0 +1,124 @@
+/* What a plan holds, for engines that record plans themselves, and its text.
+ *
+ * A plan is plain data without pointers but to static strings: it may be copied, and it outlives the frame
+ * that it was made from. pellucid.h includes this header, so that callers of pellucidRecordPlan can
+ * allocate plans; they need not read it.
+ */
+#ifndef PELLUCID_PLAN_H
+#define PELLUCID_PLAN_H
+
+#include "pellucid.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Images and buffers a dispatch binds, as bits for pellucidGetRequiredInputs and as names in plans.
+ * Transients are PELLUCID_RESOURCE_TRANSIENT0 + index, shadow images SHADOW0 + index. */
+typedef enum PellucidResource {
+  PELLUCID_RESOURCE_FRONT_DEPTH = 0,
+  PELLUCID_RESOURCE_BACK_DEPTH = 1,
+  PELLUCID_RESOURCE_IRRADIANCE = 2,
+  PELLUCID_RESOURCE_NORMAL = 3,
+  PELLUCID_RESOURCE_ALBEDO = 4,
+  PELLUCID_RESOURCE_MATERIAL = 5,
+  PELLUCID_RESOURCE_OUTPUT = 6,
+  PELLUCID_RESOURCE_CONSTANTS = 7, /* a range of the constants slice */
+  PELLUCID_RESOURCE_TRANSIENT0 = 8,
+  PELLUCID_RESOURCE_HISTORY = 14,
+  PELLUCID_RESOURCE_SHADOW0 = 16
+} PellucidResource;
+
+enum {
+  PELLUCID_MAX_DISPATCHES = 32,
+  PELLUCID_MAX_BINDINGS = 24,
+  PELLUCID_MAX_SKIPS = 16,
+  PELLUCID_PUSH_CONSTANT_BYTES = 16,
+  PELLUCID_PLAN_STATE_WORDS = 40
+};
+
+typedef struct PellucidBinding {
+  uint32_t binding;            /* of set 0, the push-descriptor set */
+  VkDescriptorType type;
+  uint32_t resource;           /* PellucidResource */
+  uint32_t level;              /* mip or pyramid level; 0 for a plain image */
+  VkDeviceSize offset, size;   /* bytes in the constants slice; buffers only */
+} PellucidBinding;
+
+typedef struct PellucidDispatch {
+  const char* name;             /* static string */
+  uint32_t pipeline;            /* index below pellucidGetPipelineCount() */
+  uint32_t groups[3];           /* workgroups; the most there may be when indirect */
+  uint32_t indirect;            /* 1: VkDispatchIndirectCommand at indirectOffset of indirectResource, which earlier
+                                   dispatches decide */
+  uint32_t indirectResource;
+  VkDeviceSize indirectOffset;
+  uint32_t barrierBefore;       /* 1: a compute-to-compute memory barrier precedes the dispatch */
+  uint32_t barrierIndirect;     /* 1: DRAW_INDIRECT / INDIRECT_COMMAND_READ waits for that barrier, too */
+  uint32_t pushConstants[PELLUCID_PUSH_CONSTANT_BYTES / 4];
+  uint32_t bindingCount;
+  PellucidBinding bindings[PELLUCID_MAX_BINDINGS];
+  uint64_t modeledBytes;        /* least device-memory traffic: each image read once, written once */
+} PellucidDispatch;
+
+typedef struct PellucidSkip {
+  const char* what;   /* static string */
+  const char* reason; /* static string */
+  uint32_t count;     /* how many (lights, say) */
+} PellucidSkip;
+
+/* What is the module's own in a plan: how the next plan decides about reuse, and what recording compares frames by. */
+typedef struct PellucidPlanState {
+  uint32_t words[PELLUCID_PLAN_STATE_WORDS];
+} PellucidPlanState;
+
+struct PellucidPlan {
+  uint32_t dispatchCount, barrierCount;
+  uint32_t skipCount;
+  uint32_t activeLights;      /* lights that can contribute; the others are in skips */
+  VkDeviceSize constantsSize; /* bytes RecordPlan writes into the constants slice */
+  PellucidDispatch dispatches[PELLUCID_MAX_DISPATCHES];
+  PellucidSkip skips[PELLUCID_MAX_SKIPS];
+  float largestRadius; /* pixels within which 99.9 % of the diffused energy lies, of the widest channel of all
+                          materials at frame.nearestDistance; 0: not known, or nothing diffuses */
+  uint32_t quality;    /* that the diffusion runs at: frame.quality, or what frame.targetError chose; 0 where
+                          nothing diffuses */
+  uint32_t gatherSamples; /* of each probe: frame.gatherSamples, or what frame.quality chose; 0: lights
+                             with a shadow map have one thickness a pixel */
+  uint32_t historyAge;    /* frames since frame.history was written, by the last frame that computed the light that
+                             comes through; 0: this frame computes it */
+  PellucidPlanState state;
+};
+
+typedef struct PellucidSpecialization {
+  uint32_t id, value; /* of 32 bits; booleans are 0 or 1 */
+} PellucidSpecialization;
+
+typedef struct PellucidShader {
+  const uint32_t* words; /* SPIR-V; entry point "main", push constants PELLUCID_PUSH_CONSTANT_BYTES, capability
+                            StorageImageWriteWithoutFormat */
+  size_t wordCount;
+  uint32_t constantCount;
+  const PellucidSpecialization* constants;
+} PellucidShader;
+
+/* The constants that pellucidRecordPlan would write, and what each pipeline is made of. */
+PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const PellucidFrame* frame,
+                                      void* mapped, size_t size);
+uint32_t pellucidGetPipelineCount(void);
+PellucidResult pellucidGetShader(uint32_t pipeline, PellucidShader* shader);
+
+/* Bit (1 << PellucidResource) of each screen-sized image that `features` cannot do without. */
+uint32_t pellucidGetRequiredInputs(uint32_t features);
+
+/* Zero-terminated JSON. *size is the room in `text` and becomes the bytes needed, terminator
+ * included; `text` may be NULL to ask. */
+PellucidResult pellucidPlanToJson(const PellucidPlan* plan, char* text, size_t* size);
+
+const char* pellucidResourceName(uint32_t resource); /* "frontDepth", ... */
+const char* pellucidPipelineName(uint32_t pipeline);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

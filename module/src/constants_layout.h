@@ -1,0 +1,29 @@
+// Where the constants slice holds what.
+#pragma once
+
+#include "light_groups.h"
+
+namespace pellucid {
+
+// The largest offset alignment that Vulkan allows a device to ask for.
+constexpr VkDeviceSize aligned(VkDeviceSize bytes) { return (bytes + 255) / 256 * 256; }
+
+constexpr VkDeviceSize kLightWindow = PELLUCID_DISPATCH_LIGHTS * sizeof(shared::LightConstants);
+constexpr VkDeviceSize kShadowWindow = PELLUCID_DISPATCH_SHADOWS * sizeof(shared::ShadowConstants);
+constexpr VkDeviceSize kGatherMapWindow = PELLUCID_DISPATCH_SHADOWS * sizeof(shared::GatherMapConstants);
+static_assert(kLightWindow <= 16384 && kShadowWindow <= 16384 && kGatherMapWindow <= kShadowWindow);  // least maxUniformBufferRange
+
+// Byte ranges of the constants slice.
+struct ConstantsLayout {
+  struct Range {
+    VkDeviceSize offset, size;
+  };
+  Range frame{}, lights{}, shadows{}, materials{}, kernels{};
+  Range gatherMaps{}, entryMaps{}, gatherDispatches{};  // of frames that gather
+  VkDeviceSize size = 0;
+
+  ConstantsLayout() = default;
+  explicit ConstantsLayout(const FrameFacts& facts);
+};
+
+}  // namespace pellucid

@@ -1,0 +1,73 @@
+// Which lights of a frame contribute, and which of its dispatches takes each.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "pellucid/pellucid.h"
+#include "shared/pellucid_shared.h"
+
+namespace pellucid {
+
+struct FrameFacts;
+
+// One fused dispatch binds PELLUCID_SHADOW_IMAGE_COUNT shadow images and windows of fixed size on the
+// constants of lights and shadow maps, so lights are taken in order into groups that need no more. Constants
+// are laid out light by light within the groups.
+struct LightGroup {
+  uint32_t firstLight = 0, lightCount = 0;       // among the lights that are not skipped
+  uint32_t shadowCount = 0;                      // shadow maps
+  VkDeviceSize lightBytes = 0, shadowBytes = 0;  // of the groups before, in the constants
+  VkDeviceSize gatherMapBytes = 0, entryMapBytes = 0;
+  uint32_t gathered = 0;                     // lights that are gathered from; the first ones
+  uint32_t entryColumns = 0, entryRows = 0;  // of their maps' entry points
+  uint32_t entryWidth = 0, entryHeight = 0;  // the most that one of them has
+  bool beside = true;                        // exit depths and caster materials have slots among the images
+  uint32_t imageCount = 0;
+  std::array<uint32_t, PELLUCID_SHADOW_IMAGE_COUNT> images{};  // into frame.shadowImages
+
+  // Slot of an image, or PELLUCID_SHADOW_IMAGE_COUNT.
+  uint32_t slot(uint32_t image) const;
+  // Gives the images of a light's map slots; false if there are not enough.
+  bool addImages(const FrameFacts& facts, const PellucidLight& light, const PellucidShadowMap& map);
+  // Adds the light, its maps and their images; false (and no change) if they do not fit.
+  bool addLight(const FrameFacts& facts, const PellucidLight& light);
+  // An empty group whose constants follow this one's.
+  LightGroup next() const;
+  // Whether what lies beside the light's map is read. Thickness from the camera knows nothing of the light's
+  // way and its exit.
+  bool readsExit(const FrameFacts& facts, const PellucidLight& light, const PellucidShadowMap& map) const;
+  bool readsCaster(const PellucidShadowMap& map) const { return beside && map.casterMaterialImage != 0; }
+
+private:
+  bool addImage(uint32_t image);
+};
+
+// All groups of a frame. Lights that are gathered from come first: all of them are added to the pixels at
+// once.
+struct LightGroups {
+  // With exit depths and caster materials, unless those need more dispatches than a plan has: then they are
+  // left out as if the frame had only the maps.
+  static LightGroups of(const FrameFacts& facts);
+
+  uint32_t count = 0, gathered = 0;          // gathered: with lights that are gathered from
+  uint32_t lightCount = 0;                   // lights that are not skipped
+  uint32_t entryColumns = 0, entryRows = 0;  // the most of a group
+  bool beside = true;                        // see LightGroup
+  LightGroup last;
+  std::array<LightGroup, PELLUCID_MAX_DISPATCHES> first{};  // a frame with more has no plan
+
+  bool fitPlan() const { return count <= first.size(); }
+  std::span<const LightGroup> list() const { return {first.data(), fitPlan() ? count : first.size()}; }
+  // Dispatches besides those over all pixels.
+  uint32_t gatherDispatches() const { return gathered > 0 ? 2 * gathered + 1 : 0; }
+  // Dispatches over all pixels. What is gathered in several groups is added at once.
+  uint32_t fused() const { return count - (gathered > 0 ? gathered - 1 : 0); }
+
+private:
+  LightGroups(const FrameFacts& facts, bool withBeside);
+  friend struct FrameFacts;
+  LightGroups() = default;
+};
+
+}  // namespace pellucid

@@ -1,0 +1,80 @@
+// The images that a frame's dispatches need besides the caller's own.
+#include "needs.h"
+
+#include "plan.h"
+#include "plan_builder.h"
+#include "entry_points.h"
+
+namespace pellucid {
+namespace {
+
+struct Extent {
+  uint32_t width, height;
+
+  void fit(uint32_t w, uint32_t h) {
+    width = std::max(width, w);
+    height = std::max(height, h);
+  }
+};
+
+// Of images of packed texels, in their order: the pyramid's, probes, entry points.
+Extent texelExtent(const FrameFacts& f, uint32_t index) {
+  const Stages& stages = f.stages;
+  const uint32_t pyramid = stages.pyramidImages();
+  Extent size{1, 1};
+  if (index < pyramid) size = {f.pyramid.images[index].width, f.pyramid.images[index].height};
+  const bool entryPoints =
+      stages.gathered > 0 && index == (stages.entriesApart() ? pyramid + 1 : uint32_t{0});
+  if (entryPoints) size.fit(withCoarserEntries(f.lights.entryColumns), f.lights.entryRows);
+  // Filtered probes take the place of entry points.
+  if (entryPoints || (stages.gathered > 0 && index == pyramid))
+    size.fit((f.frame.imageExtent[0] - 1) / f.gatherSpacing + 1,
+             (f.frame.imageExtent[1] - 1) / f.gatherSpacing + 1);
+  return size;
+}
+
+// The dispatches of the plan that bind the image.
+void addUse(const PellucidPlan& plan, uint32_t resource, PellucidImageNeed& need) {
+  need.firstDispatch = UINT32_MAX;
+  for (uint32_t d = 0; d < plan.dispatchCount; ++d)
+    for (uint32_t b = 0; b < plan.dispatches[d].bindingCount; ++b)
+      if (plan.dispatches[d].bindings[b].resource == resource) {
+        need.firstDispatch = std::min(need.firstDispatch, d);
+        need.lastDispatch = d;
+      }
+}
+
+}  // namespace
+
+PellucidResult imageNeeds(const FrameFacts& f, uint32_t* count, PellucidImageNeed* needs) {
+  const Stages& stages = f.stages;
+  const uint32_t colors = stages.colorTransients(), transients = stages.transients(), room = *count;
+  *count = transients + (stages.keepsHistory ? 1 : 0);
+  if (!needs) return PELLUCID_OK;
+  // Without a plan before it, that of a frame that refreshes a history: every image is in use.
+  PellucidPlan plan;
+  const PellucidResult result = buildPlan(f, {}, &plan);
+  if (result != PELLUCID_OK) return result;
+  // Frames that reuse the history lack the dispatches that refresh it.
+  const uint32_t refreshing = stages.keepsProbes ? f.lights.gatherDispatches()
+                              : stages.history   ? stages.fused
+                                                 : 0;
+  for (uint32_t i = 0; i < *count && i < room; ++i) {
+    const bool persistent = i == transients;
+    const bool texels = persistent ? stages.keepsProbes : i >= colors;
+    const Extent size = !texels ? Extent{f.frame.imageExtent[0], f.frame.imageExtent[1]}
+                                : texelExtent(f, persistent ? stages.pyramidImages() : i - colors);
+    PellucidImageNeed& need = needs[i];
+    need = {};
+    need.format = texels ? VK_FORMAT_R32G32B32A32_UINT : f.colorFormat();
+    need.extent[0] = size.width;
+    need.extent[1] = size.height;
+    need.bytes = (texels ? kTexelBytes : f.wide ? 16 : 8) * size.width * size.height;
+    need.persistent = persistent;
+    addUse(plan, persistent ? static_cast<uint32_t>(PELLUCID_RESOURCE_HISTORY) : kTransient0 + i, need);
+    need.firstDispatch -= std::min(need.firstDispatch, refreshing);
+  }
+  return PELLUCID_OK;
+}
+
+}  // namespace pellucid

@@ -1,0 +1,105 @@
+#include "plan_builder.h"
+
+#include <algorithm>
+
+namespace pellucid {
+
+void PlanBuilder::skip(const char* what, const char* reason) {
+  for (uint32_t i = 0; i < plan.skipCount; ++i)
+    if (plan.skips[i].what == what && plan.skips[i].reason == reason) {
+      ++plan.skips[i].count;
+      return;
+    }
+  if (plan.skipCount < PELLUCID_MAX_SKIPS) plan.skips[plan.skipCount++] = {what, reason, 1};
+}
+
+PellucidDispatch* PlanBuilder::dispatch(const char* name, Pipeline pipeline) {
+  if (plan.dispatchCount == PELLUCID_MAX_DISPATCHES) {
+    fits = false;
+    beyond_ = {};
+    return &beyond_;
+  }
+  PellucidDispatch& d = plan.dispatches[plan.dispatchCount];
+  d.name = name;
+  d.pipeline = static_cast<uint32_t>(pipeline);
+  groups(&d, facts.rect.width, facts.rect.height, PELLUCID_GROUP_X);
+  // Every dispatch after the first reads what the one before wrote, unless it runs beside that.
+  // The first of a frame that reuses comes after the last frame's use of the history.
+  d.barrierBefore = !alongside && (plan.dispatchCount > 0 || facts.stages.keepsHistory) ? 1 : 0;
+  plan.barrierCount += d.barrierBefore;
+  ++plan.dispatchCount;
+  return &d;
+}
+
+void PlanBuilder::groups(PellucidDispatch* d, uint32_t width, uint32_t height, uint32_t columns,
+                         uint32_t rows) {
+  d->groups[0] = (width + columns - 1) / columns;
+  d->groups[1] = (height + rows - 1) / rows;
+  d->groups[2] = 1;
+}
+
+void PlanBuilder::tiles(PellucidDispatch* d) const {
+  const Rect& rect = facts.rect;
+  groups(d, rect.width + (rect.x & 1), rect.height + (rect.y & 1), PELLUCID_TILE);
+}
+
+void PlanBuilder::indirect(PellucidDispatch* d, size_t offset) const {
+  if (!fits) return;
+  const auto isIndirect = [](const PellucidDispatch& other) { return other.indirect != 0; };
+  if (std::none_of(plan.dispatches, d, isIndirect)) {
+    PellucidDispatch* waits = d;
+    while (waits > plan.dispatches && !waits->barrierBefore) --waits;
+    waits->barrierIndirect = 1;
+  }
+  d->indirect = 1;
+  d->indirectResource = PELLUCID_RESOURCE_CONSTANTS;
+  d->indirectOffset = facts.constants.gatherDispatches.offset + offset;
+}
+
+void PlanBuilder::bind(PellucidDispatch* d, uint32_t binding, VkDescriptorType type, uint32_t resource,
+                       ConstantsLayout::Range range) {
+  d->bindings[d->bindingCount++] = {binding, type, resource, 0, range.offset, range.size};
+}
+
+void PlanBuilder::constants(PellucidDispatch* d, uint32_t binding, ConstantsLayout::Range range) {
+  const bool uniform = binding <= PELLUCID_BINDING_SHADOWS;
+  bind(d, binding, uniform ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+       PELLUCID_RESOURCE_CONSTANTS, range);
+}
+
+void PlanBuilder::image(PellucidDispatch* d, uint32_t binding, uint32_t resource, uint64_t bytes) const {
+  bind(d, binding, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, resource);
+  d->modeledBytes += bytes * pixels();
+}
+
+void PlanBuilder::optional(PellucidDispatch* d, uint32_t binding, PellucidResource resource,
+                           uint64_t bytes) const {
+  if (facts.has(resource)) return image(d, binding, resource, bytes);
+  image(d, binding, PELLUCID_RESOURCE_FRONT_DEPTH, 0);
+}
+
+void PlanBuilder::shadowImages(PellucidDispatch* d, const LightGroup& group) const {
+  for (uint32_t slot = 0; slot < PELLUCID_SHADOW_IMAGE_COUNT; ++slot) {
+    const bool used = slot < group.imageCount;
+    image(d, PELLUCID_BINDING_SHADOW_IMAGES + slot,
+          used ? kShadow0 + group.images[slot] : static_cast<uint32_t>(PELLUCID_RESOURCE_FRONT_DEPTH),
+          used ? kUnknownDepthBytes : 0);
+  }
+}
+
+void PlanBuilder::pixelInputs(PellucidDispatch* d, uint32_t source) const {
+  image(d, PELLUCID_BINDING_FRONT_DEPTH, PELLUCID_RESOURCE_FRONT_DEPTH, kUnknownDepthBytes);
+  image(d, PELLUCID_BINDING_SOURCE, source, colorBytes());
+  image(d, PELLUCID_BINDING_MATERIAL, PELLUCID_RESOURCE_MATERIAL, 1);
+}
+
+void PlanBuilder::common(PellucidDispatch* d, uint32_t source, uint32_t destination) const {
+  constants(d, PELLUCID_BINDING_FRAME, facts.constants.frame);
+  pixelInputs(d, source);
+  const bool last = destination == PELLUCID_RESOURCE_OUTPUT;
+  optional(d, PELLUCID_BINDING_ALBEDO, PELLUCID_RESOURCE_ALBEDO, last ? 4 : 0);
+  bind(d, PELLUCID_BINDING_DESTINATION, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, destination);
+  d->modeledBytes += colorBytes() * pixels();
+}
+
+}  // namespace pellucid

@@ -1,0 +1,78 @@
+// A plan while it is made: its dispatches in the order in which they are asked for, and what they bind.
+#pragma once
+
+#include "frame.h"
+#include "pipelines.h"
+
+namespace pellucid {
+
+inline constexpr uint32_t kShadow0 = PELLUCID_RESOURCE_SHADOW0;
+inline constexpr uint32_t kTransient0 = PELLUCID_RESOURCE_TRANSIENT0;
+inline constexpr uint64_t kTexelBytes = 16;        // of the pyramid, as packed by compute/diffusion/texel.glsl
+inline constexpr uint64_t kUnknownDepthBytes = 4;  // the module does not know the format; 4 is the common one
+
+struct PlanBuilder {
+  PlanBuilder(const FrameFacts& of, PellucidPlan& into) : facts(of), plan(into) {}
+
+  const FrameFacts& facts;
+  PellucidPlan& plan;
+  bool alongside = false;  // dispatches run beside the one before, with which they share nothing
+  bool fits = true;        // all dispatches that were asked for are in the plan
+
+  uint64_t pixels() const { return static_cast<uint64_t>(facts.rect.width) * facts.rect.height; }
+  uint64_t colorBytes() const { return facts.wide ? 16 : 8; }
+
+  // Of a level, see Pyramid. The first holds level 2 after upsampling, too.
+  uint32_t pyramidImage(uint32_t level) const {
+    return kTransient0 + facts.stages.colorTransients() + level / 2;
+  }
+  // What the gather's probes find; the entry points of the maps and, in their place, the filtered probes.
+  // They lie where level 1 was unless both are in use at once.
+  uint32_t probesImage() const {
+    return kTransient0 + facts.stages.colorTransients() + facts.stages.pyramidImages();
+  }
+  uint32_t entryPointsImage() const {
+    return facts.stages.entriesApart() ? probesImage() + 1 : pyramidImage(kFirstLevel);
+  }
+  uint32_t filteredProbesImage() const {
+    return facts.stages.keepsProbes ? static_cast<uint32_t>(PELLUCID_RESOURCE_HISTORY) : entryPointsImage();
+  }
+
+  void skip(const char* what, const char* reason);
+
+  // One workgroup for each PELLUCID_GROUP_X x PELLUCID_GROUP_X pixels. Beyond the plan's capacity: one that
+  // counts for nothing, and `fits` is false.
+  PellucidDispatch* dispatch(const char* name, Pipeline pipeline);
+
+  // `columns`, `rows`: of what one group makes.
+  static void groups(PellucidDispatch* d, uint32_t width, uint32_t height, uint32_t columns, uint32_t rows);
+  static void groups(PellucidDispatch* d, uint32_t width, uint32_t height, uint32_t tile) {
+    groups(d, width, height, tile, tile);
+  }
+  // Of PELLUCID_TILE columns, from even pixels on.
+  void tiles(PellucidDispatch* d) const;
+
+  // Runs if earlier dispatches say so at `offset` of shared::GatherDispatches. They are done before the first
+  // of these.
+  void indirect(PellucidDispatch* d, size_t offset) const;
+
+  static void bind(PellucidDispatch* d, uint32_t binding, VkDescriptorType type, uint32_t resource,
+                   ConstantsLayout::Range range = {});
+  static void constants(PellucidDispatch* d, uint32_t binding, ConstantsLayout::Range range);
+  // `bytes`: of a pixel that is read.
+  void image(PellucidDispatch* d, uint32_t binding, uint32_t resource, uint64_t bytes) const;
+  // An input the frame may lack. The shader's flag keeps it unread, but every statically used binding
+  // must hold a view: the front depth stands in.
+  void optional(PellucidDispatch* d, uint32_t binding, PellucidResource resource, uint64_t bytes) const;
+  void shadowImages(PellucidDispatch* d, const LightGroup& group) const;
+
+  // What every pass over pixels reads.
+  void pixelInputs(PellucidDispatch* d, uint32_t source) const;
+  // Bindings of every pass that writes colors.
+  void common(PellucidDispatch* d, uint32_t source, uint32_t destination) const;
+
+private:
+  PellucidDispatch beyond_{};
+};
+
+}  // namespace pellucid

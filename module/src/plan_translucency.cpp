@@ -1,0 +1,48 @@
+#include "plan_translucency.h"
+
+#include "plan_gather.h"
+
+namespace pellucid {
+
+void addTranslucency(PlanBuilder& b, const LightGroup& group, uint32_t source, uint32_t destination) {
+  const FrameFacts& f = b.facts;
+  const bool gathered = group.gathered > 0 && !f.debug();
+  PellucidDispatch* d = f.debug()  ? b.dispatch("debug view", Pipeline::DebugView)
+                        : gathered ? b.dispatch("add gathered", Pipeline::AddGathered)
+                                   : b.dispatch("translucency", Pipeline::Translucency);
+  if (gathered) {
+    // Tiles are the image's.
+    constexpr uint32_t kTile = 2 * PELLUCID_GATHER_GROUP;
+    b.groups(d, f.rect.x % kTile + f.rect.width, f.rect.y % kTile + f.rect.height, kTile);
+    d->pushConstants[0] = f.gatherSpacing;
+    readProbes(b, d, PELLUCID_BINDING_PROBES, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE);
+    d->pushConstants[3] = group.gathered;
+  } else {
+    b.tiles(d);
+  }
+  d->pushConstants[1] = group.lightCount;
+  d->pushConstants[2] = destination == PELLUCID_RESOURCE_OUTPUT;
+  b.common(d, source, destination);
+  if (destination == PELLUCID_RESOURCE_HISTORY && group.firstLight == 0) {
+    d->pushConstants[2] = PELLUCID_WRITE_STARTS;
+    d->modeledBytes -= b.colorBytes() * b.pixels();  // what is there is not read
+  }
+  const ConstantsLayout& layout = f.constants;
+  b.constants(d, PELLUCID_BINDING_MATERIALS, layout.materials);
+  b.optional(d, PELLUCID_BINDING_NORMAL, PELLUCID_RESOURCE_NORMAL, 4);
+  b.constants(d, PELLUCID_BINDING_LIGHTS, {layout.lights.offset + group.lightBytes, kLightWindow});
+  b.constants(d, PELLUCID_BINDING_SHADOWS, {layout.shadows.offset + group.shadowBytes, kShadowWindow});
+  b.optional(d, PELLUCID_BINDING_BACK_DEPTH, PELLUCID_RESOURCE_BACK_DEPTH,
+             f.needsChord ? kUnknownDepthBytes : 0);
+  // Lights that are gathered from have been.
+  b.shadowImages(d, group.gathered > 0 ? LightGroup{} : group);
+}
+
+void addHistory(PlanBuilder& b, uint32_t source, uint32_t destination) {
+  PellucidDispatch* d = b.dispatch("add history", Pipeline::AddHistory);
+  d->pushConstants[2] = destination == PELLUCID_RESOURCE_OUTPUT;
+  b.common(d, source, destination);
+  b.image(d, PELLUCID_BINDING_HISTORY, PELLUCID_RESOURCE_HISTORY, b.colorBytes());
+}
+
+}  // namespace pellucid

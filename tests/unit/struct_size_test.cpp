@@ -1,0 +1,229 @@
+// Callers of other versions of the header: structs that end before fields that this library knows, and
+// structs with more. Each struct lies in memory of exactly its size, so that a sanitizer sees reads beyond
+// it.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <functional>
+#include <memory>
+
+#include "frame_fixture.h"
+
+namespace {
+
+using pellucid::test::Frame;
+using pellucid::test::plainMaterial;
+
+// A struct as a caller has it whose header makes it `size` bytes long.
+template <class Struct>
+class Sized {
+public:
+  Sized(const Struct& from, size_t size) : bytes_(static_cast<unsigned char*>(std::malloc(size))) {
+    std::memset(bytes_.get(), 0, size);
+    std::memcpy(bytes_.get(), &from, std::min(size, sizeof from));
+    get()->structSize = static_cast<uint32_t>(size);
+  }
+  Struct* get() { return reinterpret_cast<Struct*>(bytes_.get()); }
+  unsigned char* bytes() { return bytes_.get(); }
+
+private:
+  struct Free {
+    void operator()(unsigned char* p) const { std::free(p); }
+  };
+  std::unique_ptr<unsigned char, Free> bytes_;
+};
+
+// A hash of the plan's text and its constants, all that a frame decides, or the error.
+std::string resultOf(const PellucidFrame& frame) {
+  PellucidPlan plan;
+  if (const PellucidResult result = pellucidBuildPlan(&frame, nullptr, &plan); result != PELLUCID_OK)
+    return pellucidResultName(result);
+  size_t size = 0;
+  pellucidPlanToJson(&plan, nullptr, &size);
+  std::string all(size, ' ');
+  pellucidPlanToJson(&plan, all.data(), &size);
+  std::string constants(plan.constantsSize, ' ');
+  EXPECT_EQ(pellucidWriteConstants(&plan, &frame, constants.data(), constants.size()), PELLUCID_OK);
+  return std::to_string(std::hash<std::string>()(all + constants));
+}
+
+std::string errorsOf(const PellucidFrame& frame) {
+  std::string all;
+  pellucidValidateFrame(
+      &frame,
+      [](void* user, PellucidSeverity severity, const char* field, const char* message) {
+        if (severity == PELLUCID_SEVERITY_ERROR)
+          *static_cast<std::string*>(user) += std::string(field) + " " + message + "\n";
+      },
+      &all);
+  return all;
+}
+
+// Where the fields begin that may be missing, as the headers say.
+constexpr size_t kLeastFrame = offsetof(PellucidFrame, thicknessSource);
+constexpr size_t kLeastThesis = 2 * sizeof(uint32_t);  // no struct that holds a pointer is shorter
+constexpr size_t kLeastMaterial = offsetof(PellucidMaterial, burleyDistance);
+constexpr size_t kLeastDesc = offsetof(PellucidContextDesc, pipelineCache);
+
+// Nothing at its default.
+struct Unusual : Frame {
+  Unusual() : Frame(2) {
+    frame.debugView = PELLUCID_DEBUG_NONE;
+    thesis.angleModel = PELLUCID_ANGLE_MINIMUM_DOT;
+    thesis.minimumDot = -0.5f;
+    thesis.maximumThickness = 3;
+    thesis.transmittanceFilter[1] = 0.25f;
+    frame.gatherSamples = 0;
+    frame.reuse = PELLUCID_REUSE_ALTERNATE;
+    frame.quality = 2;
+    frame.nearestDistance = 13;
+    frame.separateOutput = 1;
+    frame.indirectDispatches = 1;
+  }
+};
+
+TEST(StructSize, FrameCutShortHasDefaults) {
+  const Unusual whole;
+  std::set<std::string> results;
+  for (size_t size = kLeastFrame; size <= sizeof(PellucidFrame); size += alignof(PellucidFrame)) {
+    // What a caller of this header gets who sets the fields before the cut.
+    PellucidFrame expected;
+    pellucidInitFrame(&expected);
+    std::memcpy(&expected, &whole.frame, size);
+    expected.structSize = sizeof expected;
+    Sized<PellucidFrame> cut(whole.frame, size);
+    results.insert(resultOf(expected));
+    EXPECT_EQ(resultOf(*cut.get()), resultOf(expected)) << size;
+    EXPECT_EQ(errorsOf(*cut.get()), errorsOf(expected)) << size;
+  }
+  EXPECT_GT(results.size(), 3u) << "the fields that are cut off decide nothing";
+}
+
+TEST(StructSize, ThesisOptionsCutShortHaveDefaults) {
+  Unusual f;
+  std::set<std::string> results;
+  for (size_t size = kLeastThesis; size <= sizeof(PellucidThesisOptions);
+       size += alignof(PellucidThesisOptions)) {
+    PellucidThesisOptions expected;
+    pellucidInitThesisOptions(&expected);
+    std::memcpy(&expected, &f.thesis, size);
+    expected.structSize = sizeof expected;
+    Sized<PellucidThesisOptions> cut(f.thesis, size);
+    f.frame.thesis = &expected;
+    const std::string result = resultOf(f.frame);
+    results.insert(result);
+    f.frame.thesis = cut.get();
+    EXPECT_EQ(resultOf(f.frame), result) << size;
+    f.frame.thesis = &f.thesis;
+  }
+  EXPECT_GT(results.size(), 3u) << "the fields that are cut off decide nothing";
+}
+
+TEST(StructSize, NoThesisOptionsAreTheirDefaults) {
+  Frame f;
+  const std::string result = resultOf(f.frame);
+  f.frame.thesis = nullptr;
+  EXPECT_EQ(resultOf(f.frame), result);
+}
+
+// Three materials of a caller to whom burleyDistance is not known, and of one who knows more.
+TEST(StructSize, MaterialsLieAsFarApartAsTheyAreLong) {
+  for (const size_t size : {kLeastMaterial, sizeof(PellucidMaterial), sizeof(PellucidMaterial) + 20}) {
+    std::vector<PellucidMaterial> whole(3, plainMaterial());
+    std::vector<unsigned char> packed(3 * size);
+    for (size_t i = 0; i < whole.size(); ++i) {
+      whole[i].reflectance[1] = 0.25f + 0.125f * static_cast<float>(i);
+      whole[i].structSize = static_cast<uint32_t>(size);
+      std::memcpy(packed.data() + i * size, &whole[i], std::min(size, sizeof whole[i]));
+      whole[i].structSize = sizeof whole[i];
+    }
+    Frame f;
+    f.frame.materialCount = 3;
+    f.frame.materials = whole.data();
+    const std::string result = resultOf(f.frame);
+    f.frame.materials = reinterpret_cast<const PellucidMaterial*>(packed.data());
+    EXPECT_EQ(resultOf(f.frame), result) << size;
+  }
+}
+
+TEST(StructSize, MaterialsHaveOneSize) {
+  PellucidMaterial materials[2] = {plainMaterial(), plainMaterial()};
+  materials[1].structSize -= 12;
+  Frame f;
+  f.frame.materialCount = 2;
+  f.frame.materials = materials;
+  EXPECT_EQ(f.problems().find("materials[1].structSize is "), 0u) << f.problems();
+}
+
+// A newer caller's further fields are refused unless they are off.
+TEST(StructSize, LongerStructsAreTakenWhereTheRestIsZero) {
+  const Frame f;
+  Sized<PellucidFrame> longer(f.frame, sizeof(PellucidFrame) + 16);
+  EXPECT_EQ(resultOf(*longer.get()), resultOf(f.frame));
+  longer.bytes()[sizeof(PellucidFrame) + 15] = 1;
+  EXPECT_EQ(resultOf(*longer.get()), "PELLUCID_ERROR_VERSION");
+  EXPECT_EQ(errorsOf(*longer.get()).find("structSize is "), 0u) << errorsOf(*longer.get());
+}
+
+TEST(StructSize, SizesOfNoVersionAreRefused) {
+  const Frame f;
+  for (const size_t size : {size_t{8}, kLeastFrame - 8, kLeastFrame + 4, size_t{4104}, size_t{0xCDCDCDCD}}) {
+    PellucidFrame frame = f.frame;
+    frame.structSize = static_cast<uint32_t>(size);
+    EXPECT_EQ(resultOf(frame), "PELLUCID_ERROR_VERSION") << size;
+    EXPECT_NE(errorsOf(frame).find("structSize is " + std::to_string(size)), std::string::npos);
+  }
+  PellucidThesisOptions thesis;
+  pellucidInitThesisOptions(&thesis);
+  thesis.structSize = 4;
+  PellucidFrame frame = f.frame;
+  frame.thesis = &thesis;
+  EXPECT_EQ(resultOf(frame), "PELLUCID_ERROR_VERSION");
+  EXPECT_NE(errorsOf(frame).find("thesis.structSize is 4"), std::string::npos) << errorsOf(frame);
+}
+
+// The defaults of this library's fields do not run over a shorter struct of the caller's.
+TEST(StructSize, InitStaysInTheCallersStruct) {
+  PellucidFrame frame;
+  std::memset(static_cast<void*>(&frame), 0xAB, sizeof frame);
+  pellucidInitFrameSized(&frame, kLeastFrame);
+  EXPECT_EQ(frame.structSize, kLeastFrame);
+  EXPECT_EQ(frame.metersPerUnit, 1);
+  EXPECT_EQ(frame.thicknessSource, 0xABABABABu);
+  PellucidContextDesc desc;
+  std::memset(static_cast<void*>(&desc), 0xAB, sizeof desc);
+  pellucidInitContextDescSized(&desc, kLeastDesc);
+  EXPECT_EQ(desc.headerVersion, PELLUCID_HEADER_VERSION);
+  EXPECT_EQ(desc.messageUser, reinterpret_cast<void*>(0xABABABABABABABAB));
+}
+
+// Without a device: what is checked next is that a driver's functions are found.
+TEST(StructSize, ContextDescCutShortIsRead) {
+  PellucidContextDesc desc;
+  pellucidInitContextDesc(&desc);
+  desc.instance = reinterpret_cast<VkInstance>(uintptr_t{1});
+  desc.physicalDevice = reinterpret_cast<VkPhysicalDevice>(uintptr_t{1});
+  desc.device = reinterpret_cast<VkDevice>(uintptr_t{1});
+  static int asked;
+  asked = 0;
+  desc.getInstanceProcAddr = [](VkInstance, const char*) -> PFN_vkVoidFunction {
+    ++asked;
+    return nullptr;
+  };
+  PellucidContext* context = nullptr;
+  int expected = 0;
+  for (size_t size = kLeastDesc; size <= sizeof desc; size += alignof(PellucidContextDesc)) {
+    Sized<PellucidContextDesc> cut(desc, size);
+    EXPECT_EQ(pellucidCreateContext(cut.get(), &context), PELLUCID_ERROR_INVALID_ARGUMENT) << size;
+    EXPECT_EQ(asked, ++expected) << size;
+  }
+  desc.structSize = kLeastDesc - 8;
+  EXPECT_EQ(pellucidCreateContext(&desc, &context), PELLUCID_ERROR_VERSION);
+  desc.structSize = sizeof desc;
+  desc.headerVersion = PELLUCID_HEADER_VERSION + 1;
+  EXPECT_EQ(pellucidCreateContext(&desc, &context), PELLUCID_ERROR_VERSION);
+  EXPECT_EQ(asked, expected);
+}
+
+}  // namespace
