@@ -20,5 +20,6 @@ void addFlickerCommand(CLI::App& app);
 void addCaptureCommand(CLI::App& app);
 void addSheetCommand(CLI::App& app);
 void addMeasureDotsCommand(CLI::App& app);
+void addStressCommand(CLI::App& app);
 
 }  // namespace pellucid::harness

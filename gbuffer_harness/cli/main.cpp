@@ -21,7 +21,7 @@ int fail(ExitCode code, const char* sentence) {
 int main(int argc, char** argv) {
   CLI::App app("Screen-space translucency and subsurface diffusion on captured frames.", "pellucid");
   app.require_subcommand(1);
-  app.footer("Exit codes: 0 ok, 1 comparison over its limit, 2 usage, 3 bad input, 4 no usable device.");
+  app.footer("Exit codes: 0 ok, 1 comparison over its limit or stress violated, 2 usage, 3 bad input, 4 no usable device.");
   addInfoCommand(app);
   addReplayCommand(app);
   addPlanCommand(app);
@@ -34,6 +34,7 @@ int main(int argc, char** argv) {
   addCaptureCommand(app);
   addSheetCommand(app);
   addMeasureDotsCommand(app);
+  addStressCommand(app);
   try {
     app.parse(argc, argv);
     return OK;

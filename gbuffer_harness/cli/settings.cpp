@@ -1,5 +1,6 @@
 #include "cli/settings.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -7,6 +8,7 @@
 #include <iterator>
 #include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "capture/json_field.h"
 #include "common/error.h"
@@ -26,7 +28,8 @@ const Names<uint32_t> kFeatures = {
 const Names<PellucidThicknessSource> kThickness = {{"light", PELLUCID_THICKNESS_LIGHT},
                                                    {"camera", PELLUCID_THICKNESS_CAMERA}};
 const Names<VkFormat> kFormats = {{"rgba16f", VK_FORMAT_R16G16B16A16_SFLOAT},
-                                  {"rgba32f", VK_FORMAT_R32G32B32A32_SFLOAT}};
+                                  {"rgba32f", VK_FORMAT_R32G32B32A32_SFLOAT},
+                                  {"rg11b10f", VK_FORMAT_B10G11R11_UFLOAT_PACK32}};
 const Names<TransmittanceChoice> kTransmittance = {
     {"material", TransmittanceChoice::Material},
     {"linear", TransmittanceChoice::Linear},
@@ -215,12 +218,17 @@ const std::map<std::string, Key> kKeys = {
      {"of what diffuses from the camera's plane, scene units, 0 for not known",
       [](const auto& key, const auto& value, ReplaySettings& s) { s.nearestDistance = real(key, value); }}},
     {"format",
-     {"rgba16f|rgba32f", [](const auto& key, const auto& value,
-                            ReplaySettings& s) { s.outputFormat = lookUp(kFormats, key, value); }}},
+     {"rgba16f|rgba32f|rg11b10f", [](const auto& key, const auto& value,
+                                     ReplaySettings& s) { s.outputFormat = lookUp(kFormats, key, value); }}},
     {"alias",
      {"0|1: output is the irradiance image",
       [](const auto& key, const auto& value, ReplaySettings& s) {
         s.aliasOutput = lookUp(kBooleans, key, value);
+      }}},
+    {"indirect",
+     {"0|1: the GPU leaves out workgroups of a gather that find nothing to do",
+      [](const auto& key, const auto& value, ReplaySettings& s) {
+        s.indirectDispatches = lookUp(kBooleans, key, value);
       }}},
     {"rect",
      {"x,y,width,height",
@@ -230,6 +238,13 @@ const std::map<std::string, Key> kKeys = {
         for (size_t i = 0; i < 4; ++i) s.renderRect[i] = number(key, parts[i]);
       }}},
 };
+
+template <class T>
+std::string nameOf(const Names<T>& names, const T& value) {
+  const auto found =
+      std::find_if(names.begin(), names.end(), [&](const auto& name) { return name.second == value; });
+  return found == names.end() ? "" : found->first;
+}
 
 // As --set takes it: a string, a number, or an array's numbers with commas.
 std::string valueText(const Field& field) {
@@ -316,6 +331,45 @@ void resolveGather(ReplaySettings& settings, const Capture& capture,
   requireOk(pellucidBuildPlan(&data.frame, nullptr, plan.get()), data.frame, capture.name);
   samples = plan->gatherSamples;
 }
+
+std::string settingsJson(const ReplaySettings& s) {
+  const TranslucencySettings& t = s.translucency;
+  std::string features;
+  for (const auto& [name, bit] : kFeatures)
+    if (s.features & bit) features += (features.empty() ? "" : ",") + name;
+  nlohmann::ordered_json json = {{"features", features.empty() ? "none" : features},
+                                 {"thickness", nameOf(kThickness, t.thicknessSource)},
+                                 {"transmittance", nameOf(kTransmittance, s.transmittance)},
+                                 {"angle", nameOf(kAngles, t.angleModel)},
+                                 {"polynomial", t.anglePolynomial},
+                                 {"minimum-dot", t.minimumDot},
+                                 {"prescale", t.prescaleAngle ? "1" : "0"},
+                                 {"view", nameOf(kViews, t.constantViewDirection)},
+                                 {"chord", t.chordThickness ? "1" : "0"},
+                                 {"max-thickness", t.maximumThickness},
+                                 {"filter", t.transmittanceFilter},
+                                 {"bias", t.shadowBias},
+                                 {"gather-spacing", t.gatherSpacing},
+                                 {"face", t.faceVector},
+                                 {"up", t.upAxis},
+                                 {"center", t.objectCenter},
+                                 {"mark-bit", t.materialMarkBit},
+                                 {"reuse", nameOf(kReuse, s.reuse)},
+                                 {"coherence-threshold", s.coherenceThreshold},
+                                 {"frame-load", s.frameLoad},
+                                 {"quality", s.quality},
+                                 {"target-error", s.targetError},
+                                 {"nearest-distance", s.nearestDistance},
+                                 {"format", nameOf(kFormats, s.outputFormat)},
+                                 {"alias", s.aliasOutput ? "1" : "0"},
+                                 {"indirect", s.indirectDispatches ? "1" : "0"},
+                                 {"rect", s.renderRect}};
+  if (t.gatherSamples != PELLUCID_GATHER_BY_QUALITY) json["gather"] = t.gatherSamples;
+  if (!t.minimumDotTable.empty()) json["minimum-dots"] = t.minimumDotTable;
+  return json.dump(2) + "\n";
+}
+
+std::string debugOption(const ReplaySettings& settings) { return nameOf(kDebugViews, settings.debugView); }
 
 std::string SettingsOptions::text() const {
   std::string all = "mode=" + mode;

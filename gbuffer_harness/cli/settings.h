@@ -26,6 +26,11 @@ private:
   std::vector<std::string> assignments() const;  // key=value
 };
 
+// What --set @FILE reads as these settings of --mode physical: a JSON object. The debug view is no key; its
+// option is `debugOption`, or "".
+std::string settingsJson(const ReplaySettings& settings);
+std::string debugOption(const ReplaySettings& settings);
+
 // Puts the number that the module chooses for the capture in the place of PELLUCID_GATHER_BY_QUALITY, for
 // what is not the module. `materials`: with their own T(d). Throws InputError where the module refuses the
 // frame.

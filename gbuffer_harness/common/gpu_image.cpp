@@ -159,6 +159,18 @@ void GpuImage::clear(std::uint8_t byte) {
   });
 }
 
+void GpuImage::fill(std::uint64_t seed) {
+  std::vector<std::uint64_t> words((bytes() + 7) / 8);
+  std::uint64_t state = seed | 1;  // xorshift64 stays at 0
+  for (std::uint64_t& word : words) {
+    state ^= state << 13;
+    state ^= state >> 7;
+    state ^= state << 17;
+    word = state;
+  }
+  transfer(words.data());
+}
+
 Image GpuImage::download() const {
   const Texel texel = texelOf(format_);
   Image result(width_, height_, texel.channels);

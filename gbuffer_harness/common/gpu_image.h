@@ -20,6 +20,7 @@ public:
   void upload(const Image& source);
   void upload(const std::vector<std::uint8_t>& source);  // R8_UINT, R8_UNORM: bytes as they are stored
   void clear(std::uint8_t byte = 0);                     // every byte of every texel
+  void fill(std::uint64_t seed);                         // pseudo-random bits
   Image download() const;
 
   // How an engine hands it to Pellucid.

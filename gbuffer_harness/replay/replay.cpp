@@ -1,9 +1,12 @@
 #include "replay/replay.h"
 
 #include <algorithm>
+#include <cstring>
+#include <iterator>
 #include <utility>
 
 #include "common/error.h"
+#include "common/parallel.h"
 #include "common/progress.h"
 
 namespace pellucid::harness {
@@ -97,11 +100,23 @@ public:
       GpuImage& image =
           create(static_cast<int>(needs[i].extent[0]), static_cast<int>(needs[i].extent[1]), needs[i].format);
       image.clear(0xFF);  // brings it into GENERAL; what it holds must not matter
+      transients_.push_back(&image);
       f.transients[i] = image.use();
     }
   }
 
+  void fillGarbage(std::uint64_t seed) const {
+    if (!outputIsIrradiance_) output_->clear(0xFF);
+    constexpr std::uint8_t kBytes[] = {0x00, 0xFF, 0x7B};  // 0, NaN, large finite numbers in both formats
+    for (GpuImage* image : transients_) {
+      if (seed % 4 < std::size(kBytes))
+        image->clear(kBytes[seed % 4]);
+      else
+        image->fill(seed);
+    }
+  }
   Image output() const { return output_->download(); }
+  Image irradiance() const { return inputs_->irradiance().download(); }
   void restoreIrradiance(const Capture& capture) const {
     if (outputIsIrradiance_) inputs_->irradiance().upload(capture.irradiance);
   }
@@ -113,20 +128,22 @@ private:
   }
   static Image composited(const Capture& capture) {
     Image result = capture.irradiance;
-    for (size_t i = 0; i < result.data.size() && !capture.albedo.empty(); ++i)
-      result.data[i] *= capture.albedo.data[i];
+    const auto channels = static_cast<size_t>(result.channels);  // albedo has three
+    for (size_t i = 0; i < capture.albedo.data.size(); ++i)
+      result.data[i / 3 * channels + i % 3] *= capture.albedo.data[i];
     return result;
   }
 
   Device& device_;
   std::shared_ptr<const InputImages> inputs_;
   std::vector<std::unique_ptr<GpuImage>> images_;
-  const GpuImage* output_ = nullptr;
+  std::vector<GpuImage*> transients_;
+  GpuImage* output_ = nullptr;
   bool outputIsIrradiance_ = false;
   std::shared_ptr<GpuImage> history_;  // of all frames of a sequence
 };
 
-Context::Context(Device& device, VkPipelineCache pipelineCache) {
+Context::Context(Device& device, VkPipelineCache pipelineCache, uint32_t uses) {
   PellucidContextDesc desc;
   pellucidInitContextDesc(&desc);
   desc.instance = device.instance();
@@ -136,7 +153,12 @@ Context::Context(Device& device, VkPipelineCache pipelineCache) {
   desc.pipelineCache = pipelineCache;
   desc.message = &appendError;
   desc.messageUser = &message_;
-  const ProgressLine progress("compiling " + std::to_string(PELLUCID_PIPELINE_COUNT) + " shaders");
+  if (device.writesWithoutFormat()) desc.outputFormat = VK_FORMAT_UNDEFINED;
+  desc.uses = uses;
+  desc.parallelFor = [](void*, uint32_t count, void (*job)(void*, uint32_t), void* data) {
+    parallelRows(static_cast<int>(count), 0, [&](int i) { job(data, static_cast<uint32_t>(i)); });
+  };
+  const ProgressLine progress("compiling shaders");
   const PellucidResult result = pellucidCreateContext(&desc, &context_);
   if (result != PELLUCID_OK) throw DeviceError(std::string(pellucidResultName(result)) + ": " + message_);
 }
@@ -210,6 +232,13 @@ void FrameRun::recordAlone(VkCommandBuffer commandBuffer, uint32_t dispatch) con
 const void* FrameRun::constants() const { return constants_->mapped(); }
 
 Image FrameRun::output() const { return images_->output(); }
+
+Image FrameRun::irradiance() const { return images_->irradiance(); }
+
+void FrameRun::fillGarbage(std::uint64_t seed) const {
+  images_->fillGarbage(seed);
+  std::memset(constants_->mapped(), static_cast<int>(seed & 0xFF), static_cast<size_t>(constants_->size()));
+}
 
 void FrameRun::restoreIrradiance(const Capture& capture) const { images_->restoreIrradiance(capture); }
 

@@ -14,8 +14,9 @@ namespace pellucid::harness {
 // A module context on a device.
 class Context {
 public:
-  // Throws DeviceError with the module's sentence. The cache may be VK_NULL_HANDLE.
-  explicit Context(Device& device, VkPipelineCache pipelineCache = VK_NULL_HANDLE);
+  // Throws DeviceError with the module's sentence. The cache may be VK_NULL_HANDLE; `uses`: PellucidUse bits,
+  // 0 for all.
+  explicit Context(Device& device, VkPipelineCache pipelineCache = VK_NULL_HANDLE, uint32_t uses = 0);
   ~Context();
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
@@ -77,9 +78,15 @@ public:
   // Gives an irradiance image that is the output, too, its content before the first recording again.
   void restoreIrradiance(const Capture& capture) const;
 
+  // Other bits where a recording must not depend on them: in transients, the constants' memory, and an output that
+  // is not the irradiance, which becomes 0xFF bytes: NaN in both formats.
+  void fillGarbage(std::uint64_t seed) const;
+
   // RGBA. Outside the rect and at material 0: irradiance times albedo, as an engine that composites in
   // place would have there; 0 for debug views.
   Image output() const;
+  // RGBA of the irradiance in its format, which an output that is the irradiance replaces.
+  Image irradiance() const;
 
 private:
   class Images;

@@ -5,9 +5,9 @@
 
 #include "constants.h"
 #include "diffusion_profile.h"
+#include "entry_points.h"
 #include "gather.h"
 #include "minimum_dot.h"
-#include "records.h"
 
 namespace pellucid {
 namespace {
@@ -65,6 +65,7 @@ shared::FrameConstants frameConstants(const FrameFacts& facts) {
   if (t.constantViewDirection) flags |= PELLUCID_FLAG_CONSTANT_VIEW;
   if (t.chordThickness) flags |= PELLUCID_FLAG_CHORD_THICKNESS;
   if (facts.needsChord) flags |= PELLUCID_FLAG_CHORD;
+  if (facts.wide) flags |= PELLUCID_FLAG_WIDE_OUTPUT;
   if (f.features & PELLUCID_FEATURE_DIFFUSION && facts.diffuses) flags |= PELLUCID_FLAG_DIFFUSED;
   c.flags = {flags, f.materialCount, f.debugView, t.angleModel};
   const float* p = t.anglePolynomial;
@@ -205,7 +206,7 @@ void putLights(const FrameFacts& f, void* mapped) {
     uint32_t shadow = group.shadowCount - l.shadowMapCount, row = group.entryRows;
     const bool gathered = f.isGathered(l);
     for (uint32_t i = 0; gathered && i < l.shadowMapCount; ++i)
-      row -= recordGroups(recordExtent(f.frame, l, i).height);
+      row -= entryGroups(entryExtent(f.frame, l, i).height);
     put(mapped,
         layout.lights.offset + group.lightBytes + (group.lightCount - 1) * sizeof(shared::LightConstants),
         lightConstants(f, l, shadow));
@@ -214,14 +215,13 @@ void putLights(const FrameFacts& f, void* mapped) {
       const shared::ShadowConstants constants = shadowConstants(f, s, l, worldFromView, group);
       put(mapped, layout.shadows.offset + group.shadowBytes + shadow * sizeof constants, constants);
       if (!gathered) continue;
-      const RecordExtent extent = recordExtent(f.frame, l, i);
-      const RecordConstants records =
-          recordConstants(f.frame, s, l, constants, f.viewFromWorld, extent, row, group.lightCount - 1);
-      row += recordGroups(extent.height);
-      put(mapped, layout.gatherMaps.offset + group.gatherMapBytes + shadow * sizeof records.gather,
-          records.gather);
-      put(mapped, layout.entryMaps.offset + group.entryMapBytes + shadow * sizeof records.record,
-          records.record);
+      const EntryExtent extent = entryExtent(f.frame, l, i);
+      const EntryConstants entry =
+          entryConstants(f.frame, s, l, constants, f.viewFromWorld, extent, row, group.lightCount - 1);
+      row += entryGroups(extent.height);
+      put(mapped, layout.gatherMaps.offset + group.gatherMapBytes + shadow * sizeof entry.gather,
+          entry.gather);
+      put(mapped, layout.entryMaps.offset + group.entryMapBytes + shadow * sizeof entry.map, entry.map);
     }
   });
 }

@@ -18,7 +18,7 @@ ConstantsLayout::ConstantsLayout(const FrameFacts& facts) {
   place(&kernels, facts.frame.materialCount * sizeof(shared::KernelConstants));
   if (facts.gathers) {
     place(&gatherMaps, last.gatherMapBytes + kGatherMapWindow);
-    place(&entryMaps, last.entryMapBytes + PELLUCID_DISPATCH_SHADOWS * sizeof(shared::RecordMapConstants));
+    place(&entryMaps, last.entryMapBytes + PELLUCID_DISPATCH_SHADOWS * sizeof(shared::EntryMapConstants));
     place(&gatherDispatches, sizeof(shared::GatherDispatches));
   }
 }

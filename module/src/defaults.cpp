@@ -8,7 +8,7 @@ namespace {
 static_assert(ENDS_WITH(PellucidFrame, indirectDispatches));
 static_assert(ENDS_WITH(PellucidMaterial, burleyDistance));
 static_assert(ENDS_WITH(PellucidThesisOptions, minimumDotTable));
-static_assert(ENDS_WITH(PellucidContextDesc, messageUser));
+static_assert(ENDS_WITH(PellucidContextDesc, parallelUser));
 #undef ENDS_WITH
 
 }  // namespace
@@ -40,6 +40,7 @@ PellucidContextDesc defaultContextDesc() {
   desc.structSize = sizeof desc;
   desc.headerVersion = PELLUCID_HEADER_VERSION;
   desc.apiVersion = VK_API_VERSION_1_1;
+  desc.outputFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
   return desc;
 }
 

@@ -24,7 +24,8 @@ struct FrameFacts {
 
   // ---- Of the view
   Rect rect{};
-  bool wide = false;    // colors of 32 bits
+  bool wide = false;                           // colors of 32 bits a channel
+  VkFormat colorFormat = VK_FORMAT_UNDEFINED;  // of transients and histories that hold colors
   uint32_t images = 0;  // bit (1 << PellucidResource) of each image field that has a view
   glm::dmat4 clipFromView{1}, viewFromWorld{1};
   DepthRange depthRange{};

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "entry_points.h"
 #include "frame.h"
-#include "records.h"
 
 namespace pellucid {
 
@@ -43,17 +43,14 @@ bool LightGroup::addLight(const FrameFacts& facts, const PellucidLight& light) {
   }
   if (facts.isGathered(light)) {
     for (uint32_t i = 0; i < light.shadowMapCount; ++i) {
-      const RecordExtent extent = recordExtent(frame, light, i);
-      grown.entryColumns = std::max(grown.entryColumns, recordGroups(extent.width));
-      grown.entryRows += recordGroups(extent.height);
+      const EntryExtent extent = entryExtent(frame, light, i);
+      grown.entryColumns = std::max(grown.entryColumns, entryGroups(extent.width));
+      grown.entryRows += entryGroups(extent.height);
       grown.entryWidth = std::max(grown.entryWidth, extent.width);
       grown.entryHeight = std::max(grown.entryHeight, extent.height);
     }
-    if (grown.entryRows > kRecordRows) return false;
+    if (grown.entryRows > kEntryRows) return false;
     ++grown.gathered;
-    const bool directional = light.type == PELLUCID_LIGHT_DIRECTIONAL && light.shadowMapCount == 1 &&
-                             frame.shadowMaps[light.firstShadowMap].encoding == PELLUCID_DEPTH_DEVICE;
-    grown.gatheredDirectional = grown.gatheredDirectional && directional;
   }
   ++grown.lightCount;
   *this = grown;
@@ -67,7 +64,7 @@ LightGroup LightGroup::next() const {
   next.lightBytes = lightBytes + aligned(lightCount * sizeof(shared::LightConstants));
   next.shadowBytes = shadowBytes + aligned(shadowCount * sizeof(shared::ShadowConstants));
   next.gatherMapBytes = gatherMapBytes + aligned(shadowCount * sizeof(shared::GatherMapConstants));
-  next.entryMapBytes = entryMapBytes + aligned(shadowCount * sizeof(shared::RecordMapConstants));
+  next.entryMapBytes = entryMapBytes + aligned(shadowCount * sizeof(shared::EntryMapConstants));
   return next;
 }
 

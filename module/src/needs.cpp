@@ -1,9 +1,9 @@
 // The images that a frame's dispatches need besides the caller's own.
 #include "needs.h"
 
+#include "entry_points.h"
 #include "plan.h"
 #include "plan_builder.h"
-#include "records.h"
 
 namespace pellucid {
 namespace {
@@ -24,7 +24,7 @@ Extent texelExtent(const FrameFacts& f, uint32_t index) {
   // Entry points lie where the pyramid was unless both are in use at once.
   const bool entryPoints = f.stages.gathered > 0 && index == (f.stages.overlaps ? 2u : 0u);
   const bool probes = index == 1 || entryPoints;  // filtered ones take the place of entry points
-  if (entryPoints) size.fit(withCoarserRecords(f.lights.entryColumns), f.lights.entryRows);
+  if (entryPoints) size.fit(withCoarserEntries(f.lights.entryColumns), f.lights.entryRows);
   if (probes)
     size.fit((f.frame.imageExtent[0] - 1) / f.gatherSpacing + 1,
              (f.frame.imageExtent[1] - 1) / f.gatherSpacing + 1);
@@ -64,7 +64,7 @@ PellucidResult imageNeeds(const FrameFacts& f, uint32_t* count, PellucidImageNee
                                 : texelExtent(f, persistent ? 1 : i - colors);
     PellucidImageNeed& need = needs[i];
     need = {};
-    need.format = texels ? VK_FORMAT_R32G32B32A32_UINT : f.frame.outputFormat;
+    need.format = texels ? VK_FORMAT_R32G32B32A32_UINT : f.colorFormat;
     need.extent[0] = size.width;
     need.extent[1] = size.height;
     need.bytes = (texels ? kTexelBytes : f.wide ? 16 : 8) * size.width * size.height;

@@ -122,8 +122,7 @@ private:
     if (!stages_.diffusion) return;
     const uint32_t coarsest = b_.facts.coarsestLevel;
     // The dispatch that upsamples makes the last two levels, so that none of few texels holds up the others.
-    const bool makesLast = coarsest == PELLUCID_LAST_LEVEL;
-    const uint32_t downsampled = coarsest - (makesLast ? 2 : 0);
+    const uint32_t downsampled = coarsest - (coarsest == PELLUCID_LAST_LEVEL ? 2 : 0);
     // Entry points, probes and the spatial filter, each beside one of the last three dispatches before the
     // one that adds probes: base level, downsampling and upsampling are at least as many.
     uint32_t left = 2 + (downsampled - kFirstLevel) / 2;
@@ -148,7 +147,7 @@ private:
       addDownsample(b_, finer);
       alongside();
     }
-    addUpsample(b_, coarsest, makesLast);
+    addUpsample(b_, coarsest);
     alongside();
     const uint32_t to = destination();
     addDiffuse(b_, source_, to, stages_.addsProbes);

@@ -13,7 +13,7 @@ void PlanBuilder::skip(const char* what, const char* reason) {
   if (plan.skipCount < PELLUCID_MAX_SKIPS) plan.skips[plan.skipCount++] = {what, reason, 1};
 }
 
-PellucidDispatch* PlanBuilder::dispatch(const char* name, uint32_t pipeline) {
+PellucidDispatch* PlanBuilder::dispatch(const char* name, Pipeline pipeline) {
   if (plan.dispatchCount == PELLUCID_MAX_DISPATCHES) {
     fits = false;
     beyond_ = {};
@@ -21,7 +21,7 @@ PellucidDispatch* PlanBuilder::dispatch(const char* name, uint32_t pipeline) {
   }
   PellucidDispatch& d = plan.dispatches[plan.dispatchCount];
   d.name = name;
-  d.pipeline = pipeline;
+  d.pipeline = static_cast<uint32_t>(pipeline);
   groups(&d, facts.rect.width, facts.rect.height, PELLUCID_GROUP_X);
   // Every dispatch after the first reads what the one before wrote, unless it runs beside that.
   // The first of a frame that reuses comes after the last frame's use of the history.

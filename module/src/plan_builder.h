@@ -2,12 +2,13 @@
 #pragma once
 
 #include "frame.h"
+#include "pipelines.h"
 
 namespace pellucid {
 
 inline constexpr uint32_t kShadow0 = PELLUCID_RESOURCE_SHADOW0;
 inline constexpr uint32_t kTransient0 = PELLUCID_RESOURCE_TRANSIENT0;
-inline constexpr uint64_t kTexelBytes = 16;        // of the pyramid, as packed by compute/lib/pyramid.glsl
+inline constexpr uint64_t kTexelBytes = 16;  // of the pyramid, as packed by compute/diffusion/texel.glsl
 inline constexpr uint64_t kUnknownDepthBytes = 4;  // the module does not know the format; 4 is the common one
 
 struct PlanBuilder {
@@ -34,7 +35,7 @@ struct PlanBuilder {
 
   // One workgroup for each PELLUCID_GROUP_X x PELLUCID_GROUP_X pixels. Beyond the plan's capacity: one that
   // counts for nothing, and `fits` is false.
-  PellucidDispatch* dispatch(const char* name, uint32_t pipeline);
+  PellucidDispatch* dispatch(const char* name, Pipeline pipeline);
 
   // `columns`, `rows`: of what one group makes.
   static void groups(PellucidDispatch* d, uint32_t width, uint32_t height, uint32_t columns, uint32_t rows);

@@ -3,17 +3,6 @@
 namespace pellucid {
 namespace {
 
-// What compute/lib/common_case.glsl takes for granted besides the lights.
-bool isCommonFrame(const FrameFacts& f) {
-  bool exponentials = true;
-  for (uint32_t i = 0; i < f.frame.materialCount; ++i)
-    exponentials = exponentials && f.material(i).transmittanceModel == PELLUCID_TRANSMITTANCE_EXP2;
-  return exponentials && f.has(PELLUCID_RESOURCE_NORMAL) &&
-         f.frame.frontDepthEncoding == PELLUCID_DEPTH_DEVICE &&
-         f.frame.thicknessSource == PELLUCID_THICKNESS_LIGHT &&
-         f.thesis.angleModel == PELLUCID_ANGLE_NORMAL && f.thesis.constantViewDirection == 0;
-}
-
 // Cells of the image that the rect touches; each has one probe.
 struct Cells {
   uint32_t width, height;
@@ -34,28 +23,20 @@ uint64_t entryPointBytes(const LightGroup& group) {
 }  // namespace
 
 void addEntryPoints(PlanBuilder& b, const LightGroup& group) {
-  const bool directional =
-      group.gatheredDirectional && isCommonFrame(b.facts) && group.shadowCount <= PELLUCID_RECORD_MAPS;
-  PellucidDispatch* d =
-      b.dispatch("gather records", !directional             ? PELLUCID_PIPELINE_GATHER_RECORDS
-                                   : group.shadowCount == 1 ? PELLUCID_PIPELINE_GATHER_RECORDS_ONE_MAP
-                                                            : PELLUCID_PIPELINE_GATHER_RECORDS_DIRECTIONAL);
-  b.groups(d, group.entryWidth, group.entryHeight, PELLUCID_RECORDS_GROUP);
+  PellucidDispatch* d = b.dispatch("entry points", Pipeline::EntryPoints);
+  b.groups(d, group.entryWidth, group.entryHeight, PELLUCID_ENTRY_POINTS_GROUP);
   d->groups[2] = group.shadowCount;
   d->pushConstants[1] = group.entryColumns | group.entryRows << 16;
   const ConstantsLayout& layout = b.facts.constants;
   b.constants(d, PELLUCID_BINDING_FRAME, layout.frame);
+  b.constants(d, PELLUCID_BINDING_LIGHTS, {layout.lights.offset + group.lightBytes, kLightWindow});
   b.constants(d, PELLUCID_BINDING_GATHER_MAPS,
               {layout.gatherMaps.offset + group.gatherMapBytes, kGatherMapWindow});
-  const VkDeviceSize maps = layout.entryMaps.offset + group.entryMapBytes;
-  if (directional) {
-    b.constants(d, PELLUCID_BINDING_DIRECTIONAL_RECORD_MAPS, {maps, kEntryMapWindow});
-  } else {
-    b.constants(d, PELLUCID_BINDING_LIGHTS, {layout.lights.offset + group.lightBytes, kLightWindow});
-    b.constants(d, PELLUCID_BINDING_RECORD_MAPS,
-                {maps, group.shadowCount * sizeof(shared::RecordMapConstants)});
-  }
+  b.constants(
+      d, PELLUCID_BINDING_ENTRY_MAPS,
+      {layout.entryMaps.offset + group.entryMapBytes, group.shadowCount * sizeof(shared::EntryMapConstants)});
   b.image(d, PELLUCID_BINDING_FRONT_DEPTH, PELLUCID_RESOURCE_FRONT_DEPTH, kUnknownDepthBytes);
+  b.image(d, PELLUCID_BINDING_MATERIAL, PELLUCID_RESOURCE_MATERIAL, 1);
   b.shadowImages(d, group);
   b.bind(d, PELLUCID_BINDING_LEVELS, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, b.entryPointsImage());
   d->modeledBytes += entryPointBytes(group);
@@ -63,11 +44,9 @@ void addEntryPoints(PlanBuilder& b, const LightGroup& group) {
 
 void addProbes(PlanBuilder& b, const LightGroup& group, bool adds) {
   const FrameFacts& f = b.facts;
-  const bool directional = group.gatheredDirectional && isCommonFrame(f);
-  PellucidDispatch* d = b.dispatch("gather points", directional ? PELLUCID_PIPELINE_GATHER_POINTS_DIRECTIONAL
-                                                                : PELLUCID_PIPELINE_GATHER_POINTS);
+  PellucidDispatch* d = b.dispatch("probes", Pipeline::Probes);
   const Cells cells(f);
-  b.groups(d, cells.width, cells.height, PELLUCID_POINTS_GROUP);
+  b.groups(d, cells.width, cells.height, PELLUCID_PROBES_GROUP);
   d->pushConstants[0] = f.gatherSpacing;
   d->pushConstants[1] = group.gathered;
   d->pushConstants[2] = group.entryColumns | group.entryRows << 16 | (adds ? 1u << 31 : 0);
@@ -82,8 +61,8 @@ void addProbes(PlanBuilder& b, const LightGroup& group, bool adds) {
   b.bind(d, PELLUCID_BINDING_MATERIAL, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, PELLUCID_RESOURCE_MATERIAL);
   b.optional(d, PELLUCID_BINDING_NORMAL, PELLUCID_RESOURCE_NORMAL, 0);
   b.optional(d, PELLUCID_BINDING_BACK_DEPTH, PELLUCID_RESOURCE_BACK_DEPTH, 0);
-  b.bind(d, PELLUCID_BINDING_RECORDS, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, b.entryPointsImage());
-  b.bind(d, PELLUCID_BINDING_POINTS, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, b.probesImage());
+  b.bind(d, PELLUCID_BINDING_ENTRY_POINTS, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, b.entryPointsImage());
+  b.bind(d, PELLUCID_BINDING_PROBES, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, b.probesImage());
   b.constants(d, PELLUCID_BINDING_GATHER_DISPATCHES, layout.gatherDispatches);
   // Of each cell one pixel's depth, material and normal.
   constexpr uint64_t kCellBytes = kUnknownDepthBytes + 1 + 4 + kTexelBytes;
@@ -93,14 +72,14 @@ void addProbes(PlanBuilder& b, const LightGroup& group, bool adds) {
 
 void addSpatialFilter(PlanBuilder& b) {
   const FrameFacts& f = b.facts;
-  PellucidDispatch* d = b.dispatch("gather share", PELLUCID_PIPELINE_GATHER_SHARE);
+  PellucidDispatch* d = b.dispatch("filter probes", Pipeline::FilterProbes);
   const Cells cells(f);
-  b.groups(d, cells.width, cells.height, PELLUCID_SHARE_GROUP);
+  b.groups(d, cells.width, cells.height, PELLUCID_FILTER_GROUP);
   d->pushConstants[0] = f.gatherSpacing;
   b.constants(d, PELLUCID_BINDING_FRAME, f.constants.frame);
   b.constants(d, PELLUCID_BINDING_MATERIALS, f.constants.materials);
-  b.bind(d, PELLUCID_BINDING_RECORDS, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, b.probesImage());
-  b.bind(d, PELLUCID_BINDING_POINTS, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, b.filteredProbesImage());
+  b.bind(d, PELLUCID_BINDING_ENTRY_POINTS, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, b.probesImage());
+  b.bind(d, PELLUCID_BINDING_PROBES, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, b.filteredProbesImage());
   d->modeledBytes = 2 * kTexelBytes * cells.width * cells.height;
   if (f.stages.skipsLight) b.indirect(d, offsetof(shared::GatherDispatches, share));
 }

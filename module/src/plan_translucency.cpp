@@ -6,16 +6,16 @@ namespace pellucid {
 
 void addTranslucency(PlanBuilder& b, const LightGroup& group, uint32_t source, uint32_t destination) {
   const FrameFacts& f = b.facts;
-  const uint32_t half = f.debug()            ? PELLUCID_PIPELINE_DEBUG_16F
-                        : group.gathered > 0 ? PELLUCID_PIPELINE_GATHER_16F
-                                             : PELLUCID_PIPELINE_TRANSLUCENCY_16F;
-  PellucidDispatch* d = b.dispatch(f.debug() ? "debug view" : "translucency", half + (f.wide ? 1 : 0));
-  if (half == PELLUCID_PIPELINE_GATHER_16F) {
+  const bool gathered = group.gathered > 0 && !f.debug();
+  PellucidDispatch* d = f.debug()  ? b.dispatch("debug view", Pipeline::DebugView)
+                        : gathered ? b.dispatch("add gathered", Pipeline::AddGathered)
+                                   : b.dispatch("translucency", Pipeline::Translucency);
+  if (gathered) {
     // Tiles are the image's.
     constexpr uint32_t kTile = 2 * PELLUCID_GATHER_GROUP;
     b.groups(d, f.rect.x % kTile + f.rect.width, f.rect.y % kTile + f.rect.height, kTile);
     d->pushConstants[0] = f.gatherSpacing;
-    readProbes(b, d, PELLUCID_BINDING_POINTS, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE);
+    readProbes(b, d, PELLUCID_BINDING_PROBES, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE);
     d->pushConstants[3] = group.gathered;
   } else {
     b.tiles(d);
@@ -39,8 +39,7 @@ void addTranslucency(PlanBuilder& b, const LightGroup& group, uint32_t source, u
 }
 
 void addHistory(PlanBuilder& b, uint32_t source, uint32_t destination) {
-  PellucidDispatch* d = b.dispatch(
-      "add history", b.facts.wide ? PELLUCID_PIPELINE_ADD_HISTORY_32F : PELLUCID_PIPELINE_ADD_HISTORY_16F);
+  PellucidDispatch* d = b.dispatch("add history", Pipeline::AddHistory);
   d->pushConstants[2] = destination == PELLUCID_RESOURCE_OUTPUT;
   b.common(d, source, destination);
   b.image(d, PELLUCID_BINDING_HISTORY, PELLUCID_RESOURCE_HISTORY, b.colorBytes());

@@ -17,7 +17,7 @@ struct Stages {
   bool keepsProbes = false;   // the gather's filtered probes: the fused dispatches read them, or
   bool history = false;       // that of pixels: the fused dispatches write it, and one more adds it
   bool copies = false;        // the diffusion is all there is: it copies the irradiance before it writes the
-                        // output, which may be the same image and whose pixels read their neighbors
+                              // output, which may be the same image and whose pixels read their neighbors
   bool overlaps = false;  // the gather runs beside the diffusion, which it does not wait for, with images of
                           // its own
   bool addsProbes =

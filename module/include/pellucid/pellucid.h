@@ -26,30 +26,14 @@
 #include <stdint.h>
 #include <vulkan/vulkan_core.h>
 
+#include "pellucid_result.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
 
 /* Passed in PellucidContextDesc; the library refuses a header it does not know. */
 #define PELLUCID_HEADER_VERSION 3u
-
-typedef int32_t PellucidResult;
-enum {
-  PELLUCID_OK = 0,
-  PELLUCID_ERROR_INVALID_ARGUMENT = -1, /* a field is wrong; the message names it */
-  PELLUCID_ERROR_VERSION = -2,          /* structSize or headerVersion that this library cannot take */
-  PELLUCID_ERROR_MISSING_FEATURE = -3,  /* no Vulkan 1.1, push descriptors or 24 KiB of shared memory a group */
-  PELLUCID_ERROR_OUT_OF_MEMORY = -4,
-  PELLUCID_ERROR_VULKAN = -5,        /* a Vulkan call failed; the message has the VkResult */
-  PELLUCID_ERROR_CAPACITY = -6,      /* more dispatches or shadow images than a plan holds */
-  PELLUCID_ERROR_BUFFER_TOO_SMALL = -7 /* constants slice or text buffer shorter than needed */
-};
-
-typedef enum PellucidSeverity { PELLUCID_SEVERITY_WARNING = 0, PELLUCID_SEVERITY_ERROR = 1 } PellucidSeverity;
-
-/* `field` is the API field at fault ("lights[2].color"), `message` a UTF-8 sentence. Both are valid
- * during the call only. Called on the thread that made the API call. */
-typedef void (*PellucidMessageFn)(void* user, PellucidSeverity severity, const char* field, const char* message);
 
 /* ---- Materials ------------------------------------------------------------------------------- */
 
@@ -202,7 +186,9 @@ typedef struct PellucidFrame {
   PellucidImage output;     /* required; storage image of outputFormat; may be the irradiance image. Pixels of
                                material 0 are not written; alpha is the irradiance's */
   PellucidImage transients[PELLUCID_MAX_TRANSIENTS]; /* as listed by pellucidGetImageNeeds */
-  VkFormat outputFormat;    /* R16G16B16A16_SFLOAT (default) or R32G32B32A32_SFLOAT; of color transients, too */
+  VkFormat outputFormat;    /* R16G16B16A16_SFLOAT (default), R32G32B32A32_SFLOAT or B10G11R11_UFLOAT_PACK32, which has no
+                               alpha; see PellucidContextDesc::outputFormat. 32 bits keep alpha to the bit and colors up
+                               to 65504: to 1e-6 without diffusion, to 2^-10 with it, which works in halves */
   uint32_t frontDepthEncoding, backDepthEncoding; /* PELLUCID_DEPTH_DEVICE (default) or VIEW_Z */
   uint32_t normalsInViewSpace; /* 0: world (default) */
   uint32_t materialCount;   /* 1..255 */
@@ -252,40 +238,6 @@ typedef struct PellucidFrame {
 /* What runs for a frame. A complete type of pellucid_plan.h that the caller allocates. */
 typedef struct PellucidPlan PellucidPlan;
 
-typedef enum PellucidPipeline {
-  PELLUCID_PIPELINE_TRANSLUCENCY_16F = 0,
-  PELLUCID_PIPELINE_TRANSLUCENCY_32F = 1,
-  PELLUCID_PIPELINE_DEBUG_16F = 2,
-  PELLUCID_PIPELINE_DEBUG_32F = 3,
-  PELLUCID_PIPELINE_DIFFUSE_16F = 4,
-  PELLUCID_PIPELINE_DIFFUSE_32F = 5,
-  PELLUCID_PIPELINE_GATHER_16F = 6,
-  PELLUCID_PIPELINE_GATHER_32F = 7,
-  PELLUCID_PIPELINE_ADD_HISTORY_16F = 8,
-  PELLUCID_PIPELINE_ADD_HISTORY_32F = 9,
-  PELLUCID_PIPELINE_QUADS_AND_COPY_16F = 10,
-  PELLUCID_PIPELINE_QUADS_AND_COPY_32F = 11,
-  PELLUCID_PIPELINE_QUADS = 12,
-  PELLUCID_PIPELINE_REDUCE_LEVELS = 13,
-  PELLUCID_PIPELINE_RESOLVE_LEVELS = 14,
-  PELLUCID_PIPELINE_DIFFUSE_COARSE_16F = 15, /* without the filter of each pixel's neighbors: quality 0 */
-  PELLUCID_PIPELINE_DIFFUSE_COARSE_32F = 16,
-  PELLUCID_PIPELINE_GATHER_RECORDS = 17,
-  PELLUCID_PIPELINE_GATHER_POINTS = 18,
-  PELLUCID_PIPELINE_GATHER_SHARE = 19,
-  PELLUCID_PIPELINE_GATHER_RECORDS_DIRECTIONAL = 20, /* where all lights that are gathered from are
-                                                        directional with one map of device depth, with normals, EXP2
-                                                        materials and the default models */
-  PELLUCID_PIPELINE_GATHER_POINTS_DIRECTIONAL = 21,
-  PELLUCID_PIPELINE_DIFFUSE_GATHER_16F = 22, /* with what the gather's points share */
-  PELLUCID_PIPELINE_DIFFUSE_GATHER_32F = 23,
-  PELLUCID_PIPELINE_DIFFUSE_COARSE_GATHER_16F = 24,
-  PELLUCID_PIPELINE_DIFFUSE_COARSE_GATHER_32F = 25,
-  PELLUCID_PIPELINE_GATHER_RECORDS_ONE_MAP = 26, /* as DIRECTIONAL, of one light with one map */
-  PELLUCID_PIPELINE_REDUCE_AND_RESOLVE = 27, /* resolves levels of which it makes the last two */
-  PELLUCID_PIPELINE_COUNT = 28
-} PellucidPipeline;
-
 /* One transient the caller creates: 2D, one mip, of this format and extent (for any render rect), usage SAMPLED |
  * STORAGE. It holds nothing between frames: it may alias memory not used during dispatches first..last. */
 typedef struct PellucidImageNeed {
@@ -300,6 +252,20 @@ typedef struct PellucidImageNeed {
 
 typedef struct PellucidContext PellucidContext;
 
+/* What frames ask of a context. A pipeline is made if all that it is for is asked for, and recording refuses a plan
+ * that needs one of the others. */
+typedef enum PellucidUse {
+  PELLUCID_USE_TRANSLUCENCY = 1 << 0, /* lights that are not gathered from, and frames without diffusion */
+  PELLUCID_USE_GATHER = 1 << 1,       /* gathered light */
+  PELLUCID_USE_DIFFUSION = 1 << 2,
+  PELLUCID_USE_QUALITY_0 = 1 << 3,    /* besides qualities 1 and 2, which take the same pipelines */
+  PELLUCID_USE_REUSE = 1 << 4,        /* frame.reuse without a gather */
+  PELLUCID_USE_DEBUG_VIEWS = 1 << 5
+} PellucidUse;
+
+/* Calls job(data, i) for each i in 0..count - 1, on any threads and in any order, and returns when all have returned. */
+typedef void (*PellucidParallelForFn)(void* user, uint32_t count, void (*job)(void* data, uint32_t index), void* data);
+
 typedef struct PellucidContextDesc {
   uint32_t structSize;    /* sizeof(PellucidContextDesc), written by pellucidInitContextDesc */
   uint32_t headerVersion; /* PELLUCID_HEADER_VERSION, likewise */
@@ -313,13 +279,19 @@ typedef struct PellucidContextDesc {
   const VkAllocationCallbacks* allocator; /* optional; host memory of Vulkan objects */
   PellucidMessageFn message;              /* optional */
   void* messageUser;
+  uint32_t uses;            /* PellucidUse bits; 0 (default): all */
+  VkFormat outputFormat;    /* of all frames: R16G16B16A16_SFLOAT (default) or R32G32B32A32_SFLOAT; UNDEFINED: any that
+                               PellucidFrame::outputFormat lists, on a device with the feature
+                               shaderStorageImageWriteWithoutFormat enabled */
+  PellucidParallelForFn parallelFor; /* optional: lends threads to the creation of pipelines */
+  void* parallelUser;
 } PellucidContextDesc;
 
 /* The defaults, written into a struct of that many bytes; pellucidInit* without it have the header's size. */
 void pellucidInitContextDescSized(PellucidContextDesc* desc, size_t structSize);
 static inline void pellucidInitContextDesc(PellucidContextDesc* d) { pellucidInitContextDescSized(d, sizeof *d); }
 
-/* Builds every pipeline. The context is immutable: any thread may use it. On failure *context is
+/* Builds the pipelines of desc.uses. The context is immutable: any thread may use it. On failure *context is
  * NULL and the message callback has the sentence. */
 PellucidResult pellucidCreateContext(const PellucidContextDesc* desc, PellucidContext** context);
 
@@ -366,7 +338,6 @@ PellucidResult pellucidRecordPlan(const PellucidContext* context, VkCommandBuffe
                                   const PellucidPlan* plan, const PellucidFrame* frame,
                                   const PellucidConstantsSlice* constants);
 
-const char* pellucidResultName(PellucidResult result); /* "PELLUCID_OK", ... */
 
 #ifdef __cplusplus
 }

@@ -47,7 +47,7 @@ typedef struct PellucidBinding {
 
 typedef struct PellucidDispatch {
   const char* name;             /* static string */
-  uint32_t pipeline;            /* PellucidPipeline */
+  uint32_t pipeline;            /* index below pellucidGetPipelineCount(); pellucidPipelineName() reads it */
   uint32_t groups[3];           /* workgroups; the most there may be when indirect */
   uint32_t indirect;            /* 1: VkDispatchIndirectCommand at indirectOffset of indirectResource, which earlier
                                    dispatches decide */
@@ -90,11 +90,23 @@ struct PellucidPlan {
   PellucidPlanState state;
 };
 
-/* The constants that pellucidRecordPlan would write, and the SPIR-V of a pipeline (entry point "main", push
- * constants PELLUCID_PUSH_CONSTANT_BYTES). */
+typedef struct PellucidSpecialization {
+  uint32_t id, value; /* of 32 bits; booleans are 0 or 1 */
+} PellucidSpecialization;
+
+typedef struct PellucidShader {
+  const uint32_t* words; /* SPIR-V; entry point "main", push constants PELLUCID_PUSH_CONSTANT_BYTES. Declares
+                            StorageImageWriteWithoutFormat */
+  size_t wordCount;
+  uint32_t constantCount;
+  const PellucidSpecialization* constants;
+} PellucidShader;
+
+/* The constants that pellucidRecordPlan would write, and what each pipeline is made of. */
 PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const PellucidFrame* frame,
                                       void* mapped, size_t size);
-PellucidResult pellucidGetShader(uint32_t pipeline, const uint32_t** words, size_t* wordCount);
+uint32_t pellucidGetPipelineCount(void);
+PellucidResult pellucidGetShader(uint32_t pipeline, PellucidShader* shader);
 
 /* Bit (1 << PellucidResource) of each screen-sized image that `features` cannot do without. */
 uint32_t pellucidGetRequiredInputs(uint32_t features);

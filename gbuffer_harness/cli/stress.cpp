@@ -1,0 +1,161 @@
+// `pellucid stress`: random frames through the module, and what must hold for each.
+#include "stress/stress.h"
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/command.h"
+#include "cli/commands.h"
+#include "cli/stress_failure.h"
+#include "common/error.h"
+#include "common/progress.h"
+#include "common/whole_file.h"
+
+namespace pellucid::harness {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using stress::StressFrame;
+using stress::StressOptions;
+using stress::StressResult;
+using stress::Violation;
+
+// Of each check, tame and wild apart: what comes later adds little.
+constexpr int kShown = 3;
+
+struct Options {
+  StressOptions stress;
+  std::string folder, json, quality = "any";
+};
+
+std::string kindOf(const StressFrame& frame) { return frame.wild ? "wild" : "tame"; }
+
+class Reporter {
+public:
+  explicit Reporter(const Options& options) : options_(options) {}
+
+  void operator()(const StressFrame& frame, const std::vector<Violation>& violations) {
+    bool shown = false;
+    for (const Violation& v : violations) {
+      if (++count_[kindOf(frame) + v.check] > kShown) continue;
+      shown = true;
+      std::printf("%s frame %llu: %s: %g", kindOf(frame).c_str(), static_cast<unsigned long long>(frame.index),
+                  v.check.c_str(), v.worst.value);
+      if (v.worst.x >= 0) std::printf(" at pixel %d, %d, channel %d", v.worst.x, v.worst.y, v.worst.channel);
+      std::printf("%s%s\n", v.sentence.empty() ? "" : ": ", v.sentence.c_str());
+    }
+    if (!shown) return;
+    std::printf("  again: pellucid stress --seed %llu --first %llu --frames 1%s%s\n",
+                static_cast<unsigned long long>(frame.seed), static_cast<unsigned long long>(frame.index),
+                limits().c_str(), options_.stress.validate ? " --validate" : "");
+    if (!options_.folder.empty()) {
+      std::printf("  or:    %s\n", writeFailure(options_.folder, frame).c_str());
+      if (!frame.notInCapture.empty()) std::printf("         (the capture lacks %s)\n", frame.notInCapture.c_str());
+    }
+    std::fflush(stdout);
+  }
+
+private:
+  std::string limits() const {
+    const StressOptions defaults, &given = options_.stress;
+    std::string text;
+    if (given.limits.quality != defaults.limits.quality) text += " --quality " + options_.quality;
+    if (given.limits.pixels != defaults.limits.pixels) text += " --pixels " + std::to_string(given.limits.pixels);
+    return text;
+  }
+
+  const Options& options_;
+  std::map<std::string, int> count_;
+};
+
+Json toJson(const stress::CheckCount& count) {
+  return {{"done", count.done},
+          {"violations", count.violations},
+          {"worst", std::isfinite(count.worst.value) ? Json(count.worst.value) : Json("infinite")},
+          {"worstFrame", count.worstFrame}};
+}
+
+Json toJson(const StressOptions& options, const StressResult& result) {
+  Json json = {{"device", result.device},         {"seed", options.seed},
+               {"first", options.first},          {"frames", result.frames},
+               {"recordings", result.recordings}, {"pixels", result.pixels},
+               {"seconds", result.seconds},       {"refusedTame", result.refusedTame},
+               {"refusedWild", result.refusedWild}};
+  for (const stress::CheckResult& check : result.checks)
+    json["checks"][check.name] = {{"tame", toJson(check.tame)}, {"wild", toJson(check.wild)}};
+  return json;
+}
+
+void print(const StressOptions& options, const StressResult& result) {
+  std::printf("%s\nseed %llu, frames %llu to %llu, %llu recordings, %llu pixels, %.1f s; refused: %llu tame, %llu wild\n",
+              result.device.c_str(), static_cast<unsigned long long>(options.seed),
+              static_cast<unsigned long long>(options.first), static_cast<unsigned long long>(result.next) - 1,
+              static_cast<unsigned long long>(result.recordings), static_cast<unsigned long long>(result.pixels),
+              result.seconds, static_cast<unsigned long long>(result.refusedTame),
+              static_cast<unsigned long long>(result.refusedWild));
+  std::printf("%-18s %9s %9s %9s %9s  %9s %9s %9s %9s\n", "check", "tame", "violated", "worst", "frame", "wild", "violated",
+              "worst", "frame");
+  for (const stress::CheckResult& check : result.checks) {
+    std::printf("%-18s", check.name.c_str());
+    for (const stress::CheckCount* c : {&check.tame, &check.wild})
+      std::printf(" %9llu %9llu %9.2g %9llu ", static_cast<unsigned long long>(c->done),
+                  static_cast<unsigned long long>(c->violations), c->worst.value,
+                  static_cast<unsigned long long>(c->worstFrame));
+    std::printf("\n");
+  }
+}
+
+void run(Options& options) {
+  StressOptions& s = options.stress;
+  if (options.quality != "any") s.limits.quality = std::stoi(options.quality);
+  Reporter reporter(options);
+  StressResult result;
+  {
+    // Hundredths of a second, or frames.
+    Progress progress("stressing", s.frames ? *s.frames : static_cast<std::uint64_t>(100 * s.seconds));
+    std::uint64_t shown = 0;
+    result = stress::runStress(
+        s, [&](const StressFrame& frame, const std::vector<Violation>& violations) { reporter(frame, violations); },
+        [&](const StressResult& sofar) {
+          const std::uint64_t done = s.frames ? sofar.frames
+                                              : static_cast<std::uint64_t>(100 * std::min(sofar.seconds, s.seconds));
+          progress.note(std::to_string(sofar.frames) + " frames, " + std::to_string(sofar.violations()) + " violations");
+          progress.advance(done - shown);
+          shown = done;
+        });
+  }
+  print(s, result);
+  if (!options.json.empty())
+    writeWhole(options.json, [&](const std::filesystem::path& path) { std::ofstream(path) << toJson(s, result).dump(2) << "\n"; });
+  if (result.violations() > 0) throw LimitExceeded(std::to_string(result.violations()) + " violations");
+}
+
+}  // namespace
+
+void addStressCommand(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  StressOptions& s = options->stress;
+  CLI::App* command =
+      app.add_subcommand("stress", "Random frames through the module on a Vulkan device, and what must hold for each");
+  CLI::Option* seconds = command->add_option("--seconds", s.seconds, "how long")->check(CLI::Range(0.0, 1e6))->capture_default_str();
+  command->add_option("--frames", s.frames, "how many frames, in place of --seconds")->check(CLI::Range(1, 1000000000))->excludes(seconds);
+  command->add_option("--seed", s.seed, "of all frames")->capture_default_str();
+  command->add_option("--first", s.first, "index of the first frame; even ones are tame, odd ones wild")->capture_default_str();
+  command->add_option("--quality", options->quality, "of all frames")
+      ->check(CLI::IsMember({"0", "1", "2", "any"}))
+      ->capture_default_str();
+  command->add_option("--pixels", s.limits.pixels, "of the largest frame")->check(CLI::Range(16, 1 << 26))->capture_default_str();
+  command->add_option("--only", s.only, "one check by its name; docs/stress.md has them");
+  command->add_flag("--validate", s.validate, "with Vulkan's core and synchronization validation, whose messages are violations");
+  command->add_option("-o,--output", options->folder, "folder for captures of frames that violate a check");
+  command->add_option("--json", options->json, "file for the summary");
+  command->add_option("--device", s.device, "part of the Vulkan device's name; default: the fastest kind");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace pellucid::harness

@@ -1,0 +1,72 @@
+// What must hold for every random frame. Most checks render a changed frame and compare the two.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "stress/measures.h"
+#include "stress/random.h"
+#include "stress/renderer.h"
+
+namespace pellucid::harness::stress {
+
+// One frame, its output, and what several checks need of it.
+class Subject {
+public:
+  // Renders the frame. Throws InputError for one that the module refuses.
+  Subject(Renderer& renderer, const StressFrame& frame);
+
+  Renderer& renderer;
+  const StressFrame& frame;
+  const Pixels owned;
+  const std::unique_ptr<FrameRun> run;
+  const Image before, output;  // before: garbage, or the irradiance that the output replaces
+
+  bool translucent() const;  // has lights and the feature
+  bool diffuses() const { return frame.settings.features & PELLUCID_FEATURE_DIFFUSION; }
+  // Numbers of the check's own, the same whatever other checks run.
+  Random random(const char* check) const;
+
+  // The frame as energies are compared: no debug view, no reuse, irradiance within [0, 16000], no wild albedo.
+  const StressFrame& plain() { return plain_; }
+  const Image& plainOutput();
+  // The same without lights.
+  const StressFrame& unlit() { return unlit_; }
+  const Image& unlitOutput();
+  // Of the plain frame with its lights at kDim of their intensity: what lights add is the difference. A gather returns more
+  // of all light from curved surfaces, so that a frame without lights is no base.
+  const Image& dimOutput();
+  // Some of the plain frame's light ends at 65504 before the diffusion, where outputs no longer tell.
+  bool saturates();
+
+private:
+  StressFrame plain_, unlit_;
+  Image plainOutput_, unlitOutput_, dimOutput_;
+  std::optional<bool> saturates_;
+};
+
+struct Check {
+  const char* name;
+  const char* what;    // must hold
+  const char* frames;  // that it is asked of
+  double tame;         // the largest value that is no violation
+  std::optional<double> wild;  // likewise; none: measured, and no violation
+  const char* reason;          // of the tolerances
+  // None: the frame is not one of `frames`.
+  std::optional<Worst> (*run)(Subject& subject);
+};
+
+inline constexpr double kDim = 0x1p-24;  // below what tolerances see
+
+StressFrame withLights(StressFrame frame, double factor);
+
+std::span<const Check> checks();
+
+// The tables that checks() joins: of bits, and of energies.
+std::span<const Check> bitChecks();
+std::span<const Check> energyChecks();
+
+}  // namespace pellucid::harness::stress

@@ -1,0 +1,228 @@
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <glm/gtc/packing.hpp>
+#include <limits>
+
+#include "stress/random_parts.h"
+
+namespace pellucid::harness::stress {
+
+namespace {
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
+
+// A function of the pixel, which costs little: waves, steps, noise, or nothing.
+class Pattern {
+public:
+  Pattern(Random& random, int width, int height) : kind_(random.whole(0, 4)), random_(random) {
+    const double x = random.magnitude(0.02, 3), y = random.magnitude(0.02, 3), phase = random.real(0, 6);
+    for (int i = 0; i < width; ++i) column_.push_back(std::sin(x * i + phase));
+    for (int i = 0; i < height; ++i) row_.push_back(std::sin(y * i - phase));
+    block_ = random.whole(1, 16);
+  }
+  // -1..1
+  double at(int x, int y) {
+    const auto column = static_cast<std::size_t>(x), row = static_cast<std::size_t>(y);
+    switch (kind_) {
+      case 0:
+        return column_[column] * row_[row];
+      case 1:
+        return (x / block_ + y / block_) % 2 == 0 ? 1 : -1;
+      case 2:
+        return random_.real(-1, 1);
+      case 3:
+        return 0.5 * (column_[column] + row_[row]);
+      default:
+        return 0;
+    }
+  }
+
+private:
+  int kind_, block_;
+  Random& random_;
+  std::vector<double> column_, row_;
+};
+
+// Planar distances of the front; 0: nothing there.
+std::vector<double> randomFront(Random& random, const View& v) {
+  std::vector<double> front(static_cast<std::size_t>(v.width) * static_cast<std::size_t>(v.height));
+  const double least = std::max(v.near * 1.001, v.distance * 0.3), most = std::min(v.far * 0.999, v.distance * 3);
+  const double size = v.pixel * std::max(v.width, v.height);
+  const bool sphere = random.chance(0.35);
+  const double slopeX = random.chance(0.7) ? random.real(-2, 2) : 0, slopeY = random.chance(0.7) ? random.real(-2, 2) : 0;
+  const double rough = random.chance(0.5) ? v.pixel * random.magnitude(0.01, 10) : 0;
+  const double radius = size * random.real(0.1, 0.6);
+  const glm::dvec3 middle = v.point(v.width * random.real(0.2, 0.8), v.height * random.real(0.2, 0.8), v.distance);
+  Pattern pattern(random, v.width, v.height);
+  std::size_t i = 0;
+  for (int y = 0; y < v.height; ++y)
+    for (int x = 0; x < v.width; ++x, ++i) {
+      const glm::dvec3 at = v.point(x, y, v.distance) - middle;
+      double p = v.distance + slopeX * at.x + slopeY * at.y;
+      if (sphere) {
+        const double square = radius * radius - at.x * at.x - at.y * at.y;
+        p = square > 0 ? v.distance - std::sqrt(square) : 0;
+        if (square <= 0) continue;
+      }
+      if (rough > 0) p += rough * pattern.at(x, y);
+      front[i] = std::clamp(p, least, most);
+    }
+  return front;
+}
+
+float encoded(const View& v, PellucidDepthEncoding encoding, double p) {
+  return static_cast<float>(encoding == PELLUCID_DEPTH_DEVICE ? v.deviceDepth(p) : p);
+}
+
+float nothing(Random& random, const View& v, PellucidDepthEncoding encoding) {
+  if (encoding == PELLUCID_DEPTH_DEVICE) return v.deviceDepth(1e30 * v.distance) > v.deviceDepth(v.distance) ? 1.0f : 0.0f;
+  return random.of({0.0f, kNoDepth, kInfinity});
+}
+
+float quantized(float depth, PellucidDepthEncoding encoding, int bits) {
+  if (bits == 32) return depth;
+  if (encoding != PELLUCID_DEPTH_DEVICE) return glm::unpackHalf1x16(glm::packHalf1x16(std::min(depth, 65504.0f)));
+  const double steps = std::exp2(bits) - 1;
+  return static_cast<float>(std::round(static_cast<double>(depth) * steps) / steps);
+}
+
+float badDepth(Random& random, float front) {
+  return random.chance(0.3) ? std::nextafter(front, random.of({0.0f, 2.0f * front})) : badFloat(random);
+}
+
+void addDepths(Random& random, bool wild, const View& v, const std::vector<double>& front, Capture& c) {
+  c.frontDepth.encoding = random.of({PELLUCID_DEPTH_DEVICE, PELLUCID_DEPTH_VIEW_Z});
+  c.backDepth.encoding = random.chance(0.9) ? c.frontDepth.encoding : PELLUCID_DEPTH_VIEW_Z;
+  c.frontDepth.image = Image(v.width, v.height, 1);
+  const int bits = random.chance(0.7) ? 32 : random.of({16, 24});
+  const float frontNothing = nothing(random, v, c.frontDepth.encoding);
+  for (std::size_t i = 0; i < front.size(); ++i)
+    c.frontDepth.image.data[i] =
+        front[i] > 0 ? quantized(encoded(v, c.frontDepth.encoding, front[i]), c.frontDepth.encoding, bits) : frontNothing;
+  if (random.chance(0.75)) {
+    c.backDepth.image = Image(v.width, v.height, 1);
+    const double thickness = random.magnitude(0.1, 30) / v.mm;
+    const float backNothing = nothing(random, v, c.backDepth.encoding);
+    Pattern pattern(random, v.width, v.height);
+    std::size_t i = 0;
+    for (int y = 0; y < v.height; ++y)
+      for (int x = 0; x < v.width; ++x, ++i) {
+        const double p = front[i] + thickness * (1 + 0.9 * pattern.at(x, y));
+        c.backDepth.image.data[i] = front[i] > 0 && p < v.far ? encoded(v, c.backDepth.encoding, p) : backNothing;
+      }
+  }
+  if (!wild || random.chance(0.4)) return;
+  const double share = random.magnitude(1e-4, 1);
+  for (std::size_t i = 0; i < front.size(); ++i) {
+    if (random.chance(share)) c.frontDepth.image.data[i] = badDepth(random, c.frontDepth.image.data[i]);
+    if (!c.backDepth.image.empty() && random.chance(share))
+      c.backDepth.image.data[i] = badDepth(random, c.frontDepth.image.data[i]);
+  }
+}
+
+void addMaterial(Random& random, bool wild, const View& v, int materials, const std::vector<double>& front, Capture& c) {
+  c.material.assign(front.size(), static_cast<std::uint8_t>(random.whole(1, materials)));
+  const int kind = random.whole(0, 4), block = random.whole(2, 24);
+  const double share = random.real();
+  const glm::dvec2 middle(v.width * random.real(), v.height * random.real());
+  const double radius = std::max(v.width, v.height) * random.real(0.1, 0.7);
+  std::size_t i = 0;
+  for (int y = 0; y < v.height; ++y)
+    for (int x = 0; x < v.width; ++x, ++i) {
+      std::uint8_t& m = c.material[i];
+      if (kind == 1 && glm::length(glm::dvec2(x, y) - middle) > radius) m = 0;
+      if (kind == 2) m = static_cast<std::uint8_t>((x / block + y / block) % (materials + 1));
+      if (kind == 3 && random.chance(share)) m = static_cast<std::uint8_t>(random.whole(0, materials));
+      if (front[i] == 0 && (!wild || block % 2 == 0)) m = 0;
+    }
+}
+
+// From the neighbors' points; faces the eye.
+void addNormals(Random& random, bool wild, const View& v, const std::vector<double>& front, Capture& c) {
+  if (random.chance(0.2)) return;
+  c.normal = Image(v.width, v.height, 3);
+  c.normalsInViewSpace = random.chance(0.3);
+  const auto pointAt = [&](int x, int y, int fallbackX, int fallbackY) {
+    x = std::clamp(x, 0, v.width - 1);
+    y = std::clamp(y, 0, v.height - 1);
+    double p = front[static_cast<std::size_t>(y * v.width + x)];
+    if (p == 0) p = front[static_cast<std::size_t>(fallbackY * v.width + fallbackX)];
+    return v.point(x, y, p);
+  };
+  const glm::dmat3 toWorld(v.worldFromView);
+  const double share = wild && random.chance(0.6) ? random.magnitude(1e-4, 1) : 0;
+  std::size_t i = 0;
+  for (int y = 0; y < v.height; ++y)
+    for (int x = 0; x < v.width; ++x, ++i) {
+      glm::dvec3 n(0, 0, -v.sign);
+      if (front[i] > 0 && v.width > 1 && v.height > 1) {
+        const glm::dvec3 at = v.point(x, y, front[i]);
+        const glm::dvec3 u = pointAt(x + 1, y, x, y) - pointAt(x - 1, y, x, y);
+        const glm::dvec3 w = pointAt(x, y + 1, x, y) - pointAt(x, y - 1, x, y);
+        const glm::dvec3 cross = glm::cross(u, w);
+        const double length = glm::length(cross);
+        const glm::dvec3 toEye = v.perspective ? -at : n;
+        if (length > 0) n = cross / length * (glm::dot(cross, toEye) < 0 ? -1.0 : 1.0);
+      }
+      if (!c.normalsInViewSpace) n = toWorld * n;
+      float* stored = &c.normal.data[3 * i];
+      for (int k = 0; k < 3; ++k) stored[k] = static_cast<float>(n[k]);
+      if (share == 0 || !random.chance(share)) continue;
+      const int kind = random.whole(0, 3);
+      const auto factor = static_cast<float>(random.magnitude(1e-6, 1e6));
+      for (int k = 0; k < 3; ++k)
+        stored[k] = kind == 0 ? 0.0f : kind == 1 ? badFloat(random) : kind == 2 ? stored[k] * factor : -stored[k];
+    }
+}
+
+void addIrradiance(Random& random, bool wild, const View& v, Capture& c) {
+  c.irradiance = Image(v.width, v.height, 4);
+  const double level = random.magnitude(0.01, 20), contrast = random.chance(0.5) ? 1 : random.real();
+  const glm::dvec3 color(random.real(0.1, 1), random.real(0.1, 1), random.real(0.1, 1));
+  const double share = wild && random.chance(0.7) ? random.magnitude(1e-4, 1) : 0;
+  Pattern pattern(random, v.width, v.height);
+  std::size_t i = 0;
+  for (int y = 0; y < v.height; ++y)
+    for (int x = 0; x < v.width; ++x, i += 4) {
+      const double e = level * (1 + contrast * pattern.at(x, y));
+      for (int k = 0; k < 3; ++k) c.irradiance.data[i + static_cast<std::size_t>(k)] = static_cast<float>(e * color[k]);
+      c.irradiance.data[i + 3] = static_cast<float>(random.real());
+      if (share > 0 && random.chance(share))
+        for (std::size_t k = 0; k < 4; ++k) c.irradiance.data[i + k] = badFloat(random);
+    }
+  if (random.chance(0.15)) {  // a firefly
+    const std::size_t at = static_cast<std::size_t>(random.whole(0, v.width * v.height - 1)) * 4;
+    for (std::size_t k = 0; k < 3; ++k) c.irradiance.data[at + k] = wild ? 65504.0f : static_cast<float>(random.magnitude(1, 1000));
+  }
+}
+
+void addAlbedo(Random& random, bool wild, const View& v, Capture& c) {
+  if (random.chance(0.5)) return;
+  c.albedo = Image(v.width, v.height, 3);
+  const bool constant = random.chance(0.5);
+  const double share = wild && random.chance(0.5) ? random.magnitude(1e-4, 1) : 0;
+  const float color[3] = {static_cast<float>(random.real()), static_cast<float>(random.real()), static_cast<float>(random.real())};
+  for (std::size_t i = 0; i < c.albedo.data.size(); ++i) {
+    c.albedo.data[i] = constant ? color[i % 3] : static_cast<float>(random.real());
+    if (share > 0 && random.chance(share)) c.albedo.data[i] = badFloat(random);
+  }
+}
+
+}  // namespace
+
+float badFloat(Random& random) {
+  return random.of({kNaN, -kNaN, kInfinity, -kInfinity, 0.0f, -0.0f, 1.0f, -1.0f, 1e-40f, -1e-40f, 1e-20f, 6e-8f, 65504.0f,
+                    65520.0f, 1e9f, 1e10f, 1e30f, 3.4e38f, -3.4e38f, static_cast<float>(random.real(0, 2))});
+}
+
+void addRandomImages(Random& random, bool wild, View& view, int materials, Capture& capture) {
+  const std::vector<double>& front = view.planar = randomFront(random, view);
+  addDepths(random, wild, view, front, capture);
+  addMaterial(random, wild, view, materials, front, capture);
+  addNormals(random, wild, view, front, capture);
+  addIrradiance(random, wild, view, capture);
+  addAlbedo(random, wild, view, capture);
+}
+
+}  // namespace pellucid::harness::stress

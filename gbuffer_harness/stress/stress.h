@@ -1,0 +1,59 @@
+// Random frames through the module and its checks, until time or frames are over.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "stress/checks.h"
+
+namespace pellucid::harness::stress {
+
+struct StressOptions {
+  std::uint64_t seed = 1, first = 0;
+  std::optional<std::uint64_t> frames;
+  double seconds = 60;  // without `frames`
+  FrameLimits limits;
+  std::string only;      // a check's name; empty: all
+  std::string device;    // as DeviceOptions::name
+  bool validate = false;
+};
+
+// Of tame frames or of wild ones.
+struct CheckCount {
+  std::uint64_t done = 0, violations = 0;
+  Worst worst;
+  std::uint64_t worstFrame = 0;
+};
+
+struct CheckResult {
+  std::string name;
+  CheckCount tame, wild;
+};
+
+struct Violation {
+  std::string check;
+  Worst worst;
+  std::string sentence;  // what else is to say; may be empty
+};
+
+struct StressResult {
+  std::string device;
+  std::uint64_t frames = 0, recordings = 0, pixels = 0, next = 0;  // next: index of the first frame not run
+  std::uint64_t refusedTame = 0, refusedWild = 0;
+  double seconds = 0;
+  std::vector<CheckResult> checks;  // first of what the module refuses and what validation says
+
+  std::uint64_t violations() const;
+};
+
+// Called for every frame with what it violates.
+using ViolationFn = std::function<void(const StressFrame&, const std::vector<Violation>&)>;
+
+// `progress`: called after each frame with the share that is done. Throws UsageError for a check that there is not.
+StressResult runStress(const StressOptions& options, const ViolationFn& onViolation,
+                       const std::function<void(const StressResult&)>& progress = {});
+
+}  // namespace pellucid::harness::stress

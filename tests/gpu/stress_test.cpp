@@ -1,0 +1,299 @@
+// The stress: its frames, each of its checks against a fault that it must find, the files of failures, and a short run.
+#include "stress/stress.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <set>
+
+#include "capture/material.h"
+#include "capture/read.h"
+#include "cli/settings.h"
+#include "cli/stress_failure.h"
+#include "common/error.h"
+
+namespace {
+
+using namespace pellucid::harness;
+using namespace pellucid::harness::stress;
+
+const MaterialPool& pool() {
+  static const MaterialPool shared;
+  return shared;
+}
+
+FrameLimits small() { return {-1, 1024, 1024}; }
+
+std::string bytesOf(const std::vector<float>& values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)};
+}
+
+// All that the frame's pictures and numbers hold.
+std::string contents(const StressFrame& f) {
+  std::string all = settingsJson(f.settings) + debugOption(f.settings);
+  for (const Image* image : {&f.capture.frontDepth.image, &f.capture.backDepth.image, &f.capture.irradiance,
+                             &f.capture.normal, &f.capture.albedo})
+    all += bytesOf(image->data);
+  all.append(f.capture.material.begin(), f.capture.material.end());
+  for (const double m : f.capture.clipFromView) all += std::to_string(m);
+  for (const Light& light : f.capture.lights) {
+    all += std::to_string(light.intensity);
+    for (const ShadowMap& map : light.shadowMaps) all += bytesOf(map.depth.image.data);
+  }
+  return all;
+}
+
+TEST(StressFrames, FollowFromSeedAndIndex) {
+  std::set<std::string> different;
+  for (std::uint64_t i = 0; i < 16; ++i) {
+    const std::string first = contents(randomFrame(7, i, pool(), small()));
+    EXPECT_EQ(first, contents(randomFrame(7, i, pool(), small()))) << i;
+    different.insert(first);
+    different.insert(contents(randomFrame(8, i, pool(), small())));
+  }
+  EXPECT_EQ(different.size(), 32u);
+}
+
+// What the module says to the frame; no device is needed.
+std::string refusal(const StressFrame& f) {
+  FrameData data;
+  makeFrame(f.capture, f.materials, f.settings, data);
+  std::string sentences;
+  return pellucidValidateFrame(&data.frame, &appendError, &sentences) == PELLUCID_OK ? "" : sentences + " ";
+}
+
+TEST(StressFrames, HoldEveryOptionAndAreAccepted) {
+  std::map<std::string, int> seen;
+  int refused = 0;
+  constexpr int kFrames = 1500;
+  for (std::uint64_t i = 0; i < kFrames; ++i) {
+    const StressFrame f = randomFrame(3, i, pool(), small());
+    const std::string said = refusal(f);
+    if (f.wild)
+      refused += !said.empty();
+    else
+      EXPECT_EQ(said, "") << i;
+    const ReplaySettings& s = f.settings;
+    const auto see = [&](const char* what, auto value) { ++seen[what + std::to_string(static_cast<int>(value))]; };
+    see("quality ", s.quality);
+    see("features ", s.features);
+    see("debug ", s.debugView);
+    see("angle ", s.translucency.angleModel);
+    see("reuse ", s.reuse);
+    see("alias ", s.aliasOutput);
+    see("front ", f.capture.frontDepth.encoding);
+    see("transmittance ", f.transmittance);
+    see("half ", s.outputFormat == VK_FORMAT_R16G16B16A16_SFLOAT);
+    see("perspective ", f.capture.clipFromView[11] != 0);
+    see("left-handed ", f.capture.clipFromView[11] > 0);
+    for (const Light& light : f.capture.lights) {
+      see("light ", light.type);
+      see("maps ", light.shadowMaps.size());
+      for (const ShadowMap& map : light.shadowMaps) see("map ", map.depth.encoding);
+    }
+    bool bad = false;
+    for (const float e : f.capture.irradiance.data) bad = bad || !std::isfinite(e);
+    EXPECT_TRUE(!bad || f.wild) << i;
+    see("bad irradiance ", bad);
+  }
+  // A twentieth at most, or wild frames would stress validation alone.
+  EXPECT_LE(refused, kFrames / 40);
+  const std::map<std::string, int> counts = {{"quality ", 3}, {"features ", 4}, {"debug ", 5},  {"angle ", 7},
+                                             {"reuse ", 3},   {"alias ", 2},    {"front ", 2},  {"transmittance ", 4},
+                                             {"half ", 2},    {"light ", 3},    {"map ", 3},    {"perspective ", 2},
+                                             {"maps ", 2},    {"left-handed ", 2}, {"bad irradiance ", 2}};
+  for (const auto& [what, count] : counts)
+    for (int i = 0; i < count; ++i) EXPECT_GE(seen[what + std::to_string(i)], 5) << what << i;
+}
+
+// Renders, and damages what comes out.
+class Damaging : public Renderer {
+public:
+  Damaging() : Renderer({"", true}) {}
+
+  using Renderer::render;
+  Image render(const StressFrame& frame, const FrameRun& run, std::uint64_t garbage) override {
+    Image image = Renderer::render(frame, run, garbage);
+    if (damage) damage(count, frame, image);
+    ++count;
+    return image;
+  }
+
+  std::function<void(int, const StressFrame&, Image&)> damage;
+  int count = 0;  // of what was rendered before
+};
+
+class Stress : public testing::Test {
+protected:
+  static Damaging& renderer() {
+    static Damaging shared;
+    shared.damage = {};
+    shared.count = 0;
+    return shared;
+  }
+};
+
+std::size_t firstWith(const Pixels& owned, bool is) {
+  for (std::size_t i = 0; i < owned.size(); ++i)
+    if ((owned[i] != 0) == is) return i;
+  return owned.size();
+}
+
+// Adds to every pixel of every second output. Energies that compare two or three outputs cannot all agree with that.
+void brighten(int count, const StressFrame&, Image& image) {
+  if (count % 2 == 0) return;
+  for (std::size_t i = 0; i < image.data.size(); ++i)
+    if (i % 4 < 3) image.data[i] = 1.5f * image.data[i] + 0.5f;
+}
+void darken(int count, const StressFrame&, Image& image) {
+  if (count % 2 == 0) return;
+  for (std::size_t i = 0; i < image.data.size(); ++i)
+    if (i % 4 < 3) image.data[i] *= 0.5f;
+}
+
+// Sets one channel of the first pixel that is owned, or is not.
+auto set(std::size_t channel, float value, bool owned = true) {
+  return [=](int, const StressFrame& frame, Image& image) {
+    const std::size_t pixel = firstWith(ownedPixels(frame), owned);
+    if (4 * pixel < image.data.size()) image.data[4 * pixel + channel] = value;
+  };
+}
+
+float untouched() {
+  const std::uint32_t bits = 0xFFFFFFFF;
+  float value;
+  std::memcpy(&value, &bits, sizeof value);
+  return value;
+}
+
+using Damage = std::function<void(int, const StressFrame&, Image&)>;
+
+// What each check must find.
+std::vector<Damage> faultsFor(const std::string& check) {
+  constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+  if (check == "finite") return {set(0, kNaN), set(2, std::numeric_limits<float>::infinity())};
+  if (check == "not-negative") return {set(1, -1e-12f)};
+  if (check == "outside") return {set(1, 0.25f, false)};
+  if (check == "alpha") return {set(3, 2.0f)};
+  if (check == "written")
+    return {[](int, const StressFrame& frame, Image& image) {
+      const std::size_t pixel = firstWith(ownedPixels(frame), true);
+      for (std::size_t k = 0; k < 4 && 4 * pixel < image.data.size(); ++k) image.data[4 * pixel + k] = untouched();
+    }};
+  return {brighten, darken};
+}
+
+// On frames of which the check has a say, it says nothing to what is right, and something to each fault.
+TEST_F(Stress, EveryCheckFindsAFault) {
+  for (const Check& check : checks()) {
+    const std::vector<Damage> faults = faultsFor(check.name);
+    bool found = false;
+    int asked = 0;
+    for (std::uint64_t i = 0; i < 400 && !(found && asked > 0); i += 2) {
+      const StressFrame frame = randomFrame(11, i, pool(), {-1, 256, 256});
+      if (firstWith(ownedPixels(frame), true) == ownedPixels(frame).size()) continue;
+      for (const Damage& fault : faults) {
+        Damaging& r = renderer();
+        Subject subject(r, frame);
+        r.damage = nullptr;
+        if (!check.run(subject)) break;
+        ++asked;
+        r.count = 0;
+        r.damage = fault;
+        Subject damaged(r, frame);
+        const std::optional<Worst> worst = check.run(damaged);
+        found = found || (worst && worst->value > check.tame);
+      }
+    }
+    EXPECT_GT(asked, 0) << check.name << " has no frame";
+    EXPECT_TRUE(found) << check.name;
+  }
+}
+
+TEST(StressMeasures, SayHowFarAndWhere) {
+  const Pixels owned = {1, 1, 0, 1};
+  const Image ones(2, 2, 4, 1);
+  Image other = ones;
+  other.at(1, 1)[2] = 1.01f;
+  const Worst worst = differentBits(ones, other, owned);
+  EXPECT_NEAR(worst.value, 0.01 / 1.01, 1e-6);
+  EXPECT_EQ(worst.x, 1);
+  EXPECT_EQ(worst.y, 1);
+  EXPECT_EQ(worst.channel, 2);
+  EXPECT_EQ(differentBits(ones, ones, owned).value, 0);
+  // Pixels that are not owned, and the sign of 0.
+  other = ones;
+  other.at(0, 1)[0] = 7;
+  EXPECT_EQ(differentBits(ones, other, owned).value, 0);
+  EXPECT_EQ(changedOutside(ones, other, owned).value, 1);
+  EXPECT_GT(differentBits(Image(2, 2, 4, 0.0f), Image(2, 2, 4, -0.0f), owned).value, 0);
+  EXPECT_NEAR(less(Image(2, 2, 4, 2), ones, owned).value, 0.5, 1e-9);
+  EXPECT_EQ(less(ones, Image(2, 2, 4, 2), owned).value, 0);
+  EXPECT_NEAR(notTwice(ones, Image(2, 2, 4, 2.02f), owned).value, 0.01, 1e-3);
+  EXPECT_EQ(notSum(ones, {Image(2, 2, 4, 2), Image(2, 2, 4, 4)}, Image(2, 2, 4, 5), owned).value, 0);
+  EXPECT_NEAR(notSum(ones, {Image(2, 2, 4, 2), Image(2, 2, 4, 4)}, Image(2, 2, 4, 6), owned).value, 1.0 / 6, 1e-6);
+  // Outputs end at the largest half.
+  EXPECT_EQ(notTwice(Image(2, 2, 4, 50000), Image(2, 2, 4, 65504), owned).value, 0);
+}
+
+TEST_F(Stress, FailuresReplayToTheSameBits) {
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / ("pellucid_stress_" + std::to_string(::getpid()));
+  int compared = 0;
+  for (std::uint64_t i = 0; compared < 6; ++i) {
+    const StressFrame frame = randomFrame(5, i, pool(), small());
+    if (!frame.notInCapture.empty() || !refusal(frame).empty()) continue;
+    ++compared;
+    const std::string command = writeFailure(folder, frame);
+    EXPECT_NE(command.find(frame.capture.name + ".exr"), std::string::npos);
+    StressFrame again = frame;
+    again.capture = readCapture(folder / (frame.capture.name + ".exr"));
+    SettingsOptions options;
+    options.set = {"@" + (folder / (frame.capture.name + ".json")).string()};
+    options.debug = debugOption(frame.settings);
+    const ReplaySettings settings = options.parse();
+    EXPECT_EQ(settingsJson(settings), [&] {
+      ReplaySettings s = frame.settings;
+      s.transmittance = frame.transmittance;
+      return settingsJson(s);
+    }());
+    again.settings = settings;
+    again.materials = compileMaterials(again.capture);
+    // A material that the capture describes is compiled to the same bits.
+    Damaging& r = renderer();
+    EXPECT_EQ(differentBits(r.render(frame), r.render(again), ownedPixels(frame)).value, 0) << i;
+  }
+  std::filesystem::remove_all(folder);
+}
+
+TEST_F(Stress, ShortRunHolds) {
+  StressOptions options;
+  options.seed = 40;
+  options.frames = 24;
+  options.limits = {-1, 8192, 8192};
+  options.validate = true;
+  const StressResult result = runStress(options, [](const StressFrame& frame, const std::vector<Violation>& violations) {
+    for (const Violation& v : violations)
+      ADD_FAILURE() << (frame.wild ? "wild" : "tame") << " frame " << frame.index << ": " << v.check << " " << v.worst.value
+                    << " at " << v.worst.x << ", " << v.worst.y << ", " << v.worst.channel << " " << v.sentence;
+  });
+  EXPECT_EQ(result.frames, 24u);
+  EXPECT_EQ(result.checks.size(), checks().size() + 2);
+  EXPECT_EQ(result.checks[1].tame.done, 12u);
+}
+
+TEST(StressRun, NamesTheChecksThatThereAre) {
+  StressOptions options;
+  options.only = "nothing";
+  try {
+    runStress(options, {});
+    FAIL();
+  } catch (const UsageError& error) {
+    EXPECT_NE(std::string(error.what()).find("\"nothing\" is not one of finite, "), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
