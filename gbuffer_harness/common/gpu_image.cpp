@@ -27,6 +27,8 @@ Texel texelOf(VkFormat format) {
       return {4, 4};
     case VK_FORMAT_R8G8B8A8_SNORM:
       return {4, 1};
+    case VK_FORMAT_B10G11R11_UFLOAT_PACK32:  // one word
+      return {1, 4};
     case VK_FORMAT_R8_UINT:
     case VK_FORMAT_R8_UNORM:
       return {1, 1};
@@ -121,6 +123,14 @@ void GpuImage::upload(const Image& source) {
     throw DeviceError("upload of " + std::to_string(source.width) + " x " + std::to_string(source.height) +
                       " into an image of " + std::to_string(width_) + " x " + std::to_string(height_));
   const Texel texel = texelOf(format_);
+  if (format_ == VK_FORMAT_B10G11R11_UFLOAT_PACK32) {
+    std::vector<glm::uint32> words(source.pixels());
+    for (size_t i = 0; i < words.size(); ++i) {
+      const float* p = source.data.data() + i * static_cast<size_t>(source.channels);
+      words[i] = glm::packF2x11_1x10(glm::vec3(p[0], p[1], p[2]));
+    }
+    return transfer(words.data());
+  }
   std::vector<float> full(source.pixels() * static_cast<size_t>(texel.channels));
   for (size_t i = 0; i < source.pixels(); ++i)
     for (int c = 0; c < texel.channels; ++c)
@@ -173,9 +183,9 @@ void GpuImage::fill(std::uint64_t seed) {
 
 Image GpuImage::download() const {
   const Texel texel = texelOf(format_);
-  Image result(width_, height_, texel.channels);
-  HostBuffer staging(device_, result.data.size() * static_cast<size_t>(texel.bytes),
-                     VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+  const bool packed = format_ == VK_FORMAT_B10G11R11_UFLOAT_PACK32;
+  Image result(width_, height_, packed ? 3 : texel.channels);
+  HostBuffer staging(device_, bytes(), VK_BUFFER_USAGE_TRANSFER_DST_BIT);
   device_.run([&](VkCommandBuffer commandBuffer) {
     barrier(commandBuffer, image_, VK_IMAGE_LAYOUT_GENERAL);
     const VkBufferImageCopy region = wholeImage(width_, height_);
@@ -185,7 +195,13 @@ Image GpuImage::download() const {
     vkCmdPipelineBarrier(commandBuffer, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1,
                          &toHost, 0, nullptr, 0, nullptr);
   });
-  if (texel.bytes == 4) {
+  if (packed) {
+    const auto* words = static_cast<const glm::uint32*>(staging.mapped());
+    for (size_t i = 0; i < result.pixels(); ++i) {
+      const glm::vec3 color = glm::unpackF2x11_1x10(words[i]);
+      for (int c = 0; c < 3; ++c) result.data[3 * i + static_cast<size_t>(c)] = color[c];
+    }
+  } else if (texel.bytes == 4) {
     std::memcpy(result.data.data(), staging.mapped(), result.data.size() * sizeof(float));
   } else if (texel.bytes == 2) {
     const auto* half = static_cast<const glm::uint16*>(staging.mapped());

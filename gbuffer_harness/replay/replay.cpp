@@ -143,21 +143,20 @@ private:
   std::shared_ptr<GpuImage> history_;  // of all frames of a sequence
 };
 
-Context::Context(Device& device, VkPipelineCache pipelineCache, uint32_t uses) {
+Context::Context(Device& device, const std::function<void(PellucidContextDesc&)>& change) {
   PellucidContextDesc desc;
   pellucidInitContextDesc(&desc);
   desc.instance = device.instance();
   desc.physicalDevice = device.physicalDevice();
   desc.device = device.handle();
   desc.getInstanceProcAddr = &vkGetInstanceProcAddr;
-  desc.pipelineCache = pipelineCache;
   desc.message = &appendError;
   desc.messageUser = &message_;
   if (device.writesWithoutFormat()) desc.outputFormat = VK_FORMAT_UNDEFINED;
-  desc.uses = uses;
   desc.parallelFor = [](void*, uint32_t count, void (*job)(void*, uint32_t), void* data) {
     parallelRows(static_cast<int>(count), 0, [&](int i) { job(data, static_cast<uint32_t>(i)); });
   };
+  if (change) change(desc);
   const ProgressLine progress("compiling shaders");
   const PellucidResult result = pellucidCreateContext(&desc, &context_);
   if (result != PELLUCID_OK) throw DeviceError(std::string(pellucidResultName(result)) + ": " + message_);

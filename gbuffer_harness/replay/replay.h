@@ -1,6 +1,8 @@
 // Capture in, module, image out: one frame of an engine, on any Vulkan device.
 #pragma once
 
+#include <functional>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -14,9 +16,8 @@ namespace pellucid::harness {
 // A module context on a device.
 class Context {
 public:
-  // Throws DeviceError with the module's sentence. The cache may be VK_NULL_HANDLE; `uses`: PellucidUse bits,
-  // 0 for all.
-  explicit Context(Device& device, VkPipelineCache pipelineCache = VK_NULL_HANDLE, uint32_t uses = 0);
+  // Throws DeviceError with the module's sentence. `change`: of what the context is made for, which is everything.
+  explicit Context(Device& device, const std::function<void(PellucidContextDesc&)>& change = {});
   ~Context();
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;

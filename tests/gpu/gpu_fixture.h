@@ -99,10 +99,10 @@ inline Capture perspectiveCapture(int size) {
   return c;
 }
 
-// Of the pyramid's levels, the one that the resolve begins at.
-inline uint32_t coarsestResolved(const PellucidPlan& plan) {
+// Of the pyramid's levels, the one that upsampling begins at.
+inline uint32_t coarsestUpsampled(const PellucidPlan& plan) {
   for (uint32_t i = 0; i < plan.dispatchCount; ++i)
-    if (plan.dispatches[i].name == std::string("resolve")) return plan.dispatches[i].pushConstants[0];
+    if (plan.dispatches[i].name == std::string("upsample")) return plan.dispatches[i].pushConstants[0];
   return 0;
 }
 

@@ -497,8 +497,8 @@ TEST_F(GpuTest, RadiiNeedNotBeKnown) {
       const ReplayResult unknown = replayer().run(c, {m}, s);
       s.nearestDistance = 10;
       const ReplayResult known = replayer().run(c, {m}, s);
-      EXPECT_EQ(coarsestResolved(unknown.plan), 7u);
-      EXPECT_LE(coarsestResolved(known.plan), 5u);
+      EXPECT_EQ(coarsestUpsampled(unknown.plan), 7u);
+      EXPECT_LE(coarsestUpsampled(known.plan), 5u);
       double sum = 0;
       for (size_t i = 0; i < known.output.data.size(); ++i)
         sum +=

@@ -1,0 +1,131 @@
+// What a context is created for: output formats and pipelines.
+#include <set>
+
+#include "common/error.h"
+#include "gpu_fixture.h"
+
+namespace pellucid::test {
+namespace {
+
+using ContextTest = GpuTest;
+
+Capture litSlab() {
+  Capture c = flatCapture(32, 24);
+  c.lights.push_back(backLight());
+  for (size_t i = 0; i < c.irradiance.data.size(); i += 7) c.irradiance.data[i] = 3.7f;
+  return c;
+}
+
+TEST_F(ContextTest, FormatsPatchedIntoShadersWriteTheSameBits) {
+  for (const VkFormat format : {VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT}) {
+    ReplaySettings s;
+    s.outputFormat = format;
+    const Capture c = litSlab();
+    const Image expected = replay(c, testMaterial(), s);
+    const Context fixed(device(), [&](PellucidContextDesc& desc) { desc.outputFormat = format; });
+    const FrameRun run(device(), fixed, c, {testMaterial()}, s);
+    device().run([&](VkCommandBuffer commandBuffer) { run.record(commandBuffer); });
+    EXPECT_TRUE(sameBits(run.output(), expected)) << format;
+  }
+}
+
+// What recording says of a frame that the context was not made for.
+std::string refusal(Device& device, const Context& context, const ReplaySettings& s) {
+  const FrameRun run(device, context, litSlab(), {testMaterial()}, s);
+  std::string sentence;
+  device.run([&](VkCommandBuffer commandBuffer) {
+    try {
+      run.record(commandBuffer);
+    } catch (const std::exception& e) {
+      sentence = e.what();
+    }
+  });
+  return sentence + context.message();
+}
+
+TEST_F(ContextTest, RefusesOtherFormatsThanItsOwn) {
+  const Context half(device(), [](PellucidContextDesc& desc) {
+    desc.uses = PELLUCID_USE_TRANSLUCENCY;
+    desc.outputFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
+  });
+  ReplaySettings s;
+  s.features = PELLUCID_FEATURE_TRANSLUCENCY;
+  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  EXPECT_NE(refusal(device(), half, s).find("outputFormat: is not"), std::string::npos) << half.message();
+
+  try {
+    const Context other(device(), [](PellucidContextDesc& d) { d.outputFormat = VK_FORMAT_R8G8B8A8_UNORM; });
+    ADD_FAILURE() << "no exception";
+  } catch (const DeviceError& e) {
+    EXPECT_NE(std::string(e.what()).find("outputFormat: is VkFormat 37"), std::string::npos) << e.what();
+  }
+}
+
+// Eleven bits keep 6 of the mantissa, ten 5.
+TEST_F(ContextTest, PackedFloatsAreNearHalves) {
+  if (!device().writesWithoutFormat()) GTEST_SKIP() << "the device writes no image without a format";
+  const Capture c = litSlab();
+  ReplaySettings s;
+  const Image half = replay(c, testMaterial(), s);
+  s.outputFormat = VK_FORMAT_B10G11R11_UFLOAT_PACK32;
+  const Image packed = replay(c, testMaterial(), s);
+  ASSERT_EQ(packed.channels, 3);
+  for (size_t i = 0; i < packed.pixels(); ++i)
+    for (size_t k = 0; k < 3; ++k) {
+      const float expected = half.data[4 * i + k];
+      // The irradiance was rounded to the format, too.
+      EXPECT_NEAR(packed.data[3 * i + k], expected, expected * (k == 2 ? 1.0 / 16 : 1.0 / 32)) << i;
+    }
+}
+
+TEST_F(ContextTest, MakesThePipelinesOfItsUsesOnLentThreads) {
+  struct Lent {
+    std::set<uint32_t> jobs;
+    uint32_t count = 0;
+  } lent;
+  const Context diffusion(device(), [&](PellucidContextDesc& desc) {
+    desc.uses = PELLUCID_USE_DIFFUSION;
+    desc.parallelUser = &lent;
+    desc.parallelFor = [](void* user, uint32_t count, void (*job)(void*, uint32_t), void* data) {
+      auto& l = *static_cast<Lent*>(user);
+      l.count = count;
+      for (uint32_t i = count; i-- > 0;) {
+        job(data, i);
+        l.jobs.insert(i);
+      }
+    };
+  });
+  EXPECT_EQ(lent.count, 4u) << "base level, downsample, upsample, diffuse";
+  EXPECT_EQ(lent.jobs.size(), lent.count);
+
+  ReplaySettings s;
+  s.features = PELLUCID_FEATURE_DIFFUSION;
+  const FrameRun alone(device(), diffusion, litSlab(), {testMaterial()}, s);
+  device().run([&](VkCommandBuffer commandBuffer) { alone.record(commandBuffer); });
+  EXPECT_TRUE(sameBits(alone.output(), replay(litSlab(), testMaterial(), s)));
+
+  s.quality = 0;
+  EXPECT_NE(refusal(device(), diffusion, s).find("plan: needs pipeline diffuse_coarse"), std::string::npos);
+  EXPECT_THROW(Context(device(), [](PellucidContextDesc& desc) { desc.uses = 1u << 20; }), DeviceError);
+}
+
+// Not as far as halves keep it.
+TEST_F(ContextTest, WideOutputsKeepAlphaToTheBit) {
+  Capture c = litSlab();
+  Image rgba(c.width, c.height, 4);
+  for (size_t i = 0; i < rgba.pixels(); ++i) {
+    for (size_t k = 0; k < 3; ++k) rgba.data[4 * i + k] = c.irradiance.data[3 * i + k];
+    rgba.data[4 * i + 3] = i % 2 == 0 ? 0.1234567f : 1e6f;
+  }
+  c.irradiance = rgba;
+  ReplaySettings s;
+  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  for (const uint32_t quality : {0u, 1u}) {
+    s.quality = quality;
+    const Image out = replay(c, testMaterial(), s);
+    for (size_t i = 0; i < out.pixels(); ++i) ASSERT_EQ(out.data[4 * i + 3], rgba.data[4 * i + 3]) << i;
+  }
+}
+
+}  // namespace
+}  // namespace pellucid::test
