@@ -1,5 +1,6 @@
 #include "cli/settings.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -218,7 +219,7 @@ const std::map<std::string, Key> kKeys = {
       [](const auto& key, const auto& value, ReplaySettings& s) { s.nearestDistance = real(key, value); }}},
     {"format",
      {"rgba16f|rgba32f|rg11b10f", [](const auto& key, const auto& value,
-                            ReplaySettings& s) { s.outputFormat = lookUp(kFormats, key, value); }}},
+                                     ReplaySettings& s) { s.outputFormat = lookUp(kFormats, key, value); }}},
     {"alias",
      {"0|1: output is the irradiance image",
       [](const auto& key, const auto& value, ReplaySettings& s) {
@@ -240,7 +241,8 @@ const std::map<std::string, Key> kKeys = {
 
 template <class T>
 std::string nameOf(const Names<T>& names, const T& value) {
-  const auto found = std::find_if(names.begin(), names.end(), [&](const auto& name) { return name.second == value; });
+  const auto found =
+      std::find_if(names.begin(), names.end(), [&](const auto& name) { return name.second == value; });
   return found == names.end() ? "" : found->first;
 }
 

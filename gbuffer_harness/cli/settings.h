@@ -26,8 +26,8 @@ private:
   std::vector<std::string> assignments() const;  // key=value
 };
 
-// What --set @FILE reads as these settings of --mode physical: a JSON object. The debug view is no key; its option is
-// `debugOption`, or "".
+// What --set @FILE reads as these settings of --mode physical: a JSON object. The debug view is no key; its
+// option is `debugOption`, or "".
 std::string settingsJson(const ReplaySettings& settings);
 std::string debugOption(const ReplaySettings& settings);
 

@@ -5,9 +5,9 @@
 
 #include "constants.h"
 #include "diffusion_profile.h"
+#include "entry_points.h"
 #include "gather.h"
 #include "minimum_dot.h"
-#include "entry_points.h"
 
 namespace pellucid {
 namespace {
@@ -221,8 +221,7 @@ void putLights(const FrameFacts& f, void* mapped) {
       row += entryGroups(extent.height);
       put(mapped, layout.gatherMaps.offset + group.gatherMapBytes + shadow * sizeof entry.gather,
           entry.gather);
-      put(mapped, layout.entryMaps.offset + group.entryMapBytes + shadow * sizeof entry.map,
-          entry.map);
+      put(mapped, layout.entryMaps.offset + group.entryMapBytes + shadow * sizeof entry.map, entry.map);
     }
   });
 }

@@ -13,6 +13,7 @@ void addView(FrameFacts& f) {
   const PellucidFrame& frame = f.frame;
   f.rect = renderRect(frame);
   f.wide = frame.outputFormat == VK_FORMAT_R32G32B32A32_SFLOAT;
+  f.colorFormat = f.wide ? VK_FORMAT_R32G32B32A32_SFLOAT : VK_FORMAT_R16G16B16A16_SFLOAT;
   for (const ImageField& image : kImageFields)
     if (given(frame.*image.field)) f.images |= 1u << image.resource;
   f.clipFromView = toMatrix(frame.clipFromView);

@@ -24,7 +24,8 @@ struct FrameFacts {
 
   // ---- Of the view
   Rect rect{};
-  bool wide = false;    // colors of 32 bits
+  bool wide = false;                           // colors of 32 bits a channel
+  VkFormat colorFormat = VK_FORMAT_UNDEFINED;  // of transients and histories that hold colors
   uint32_t images = 0;  // bit (1 << PellucidResource) of each image field that has a view
   glm::dmat4 clipFromView{1}, viewFromWorld{1};
   DepthRange depthRange{};
@@ -53,8 +54,6 @@ struct FrameFacts {
   ConstantsLayout constants;
 
   bool has(PellucidResource image) const { return (images & 1u << image) != 0; }
-  // Of transients and histories that hold colors.
-  VkFormat colorFormat() const { return wide ? VK_FORMAT_R32G32B32A32_SFLOAT : VK_FORMAT_R16G16B16A16_SFLOAT; }
   bool debug() const { return frame.debugView != PELLUCID_DEBUG_NONE; }
   bool isGathered(const PellucidLight& light) const { return light.shadowMapCount > 0 && gathers; }
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "frame.h"
 #include "entry_points.h"
+#include "frame.h"
 
 namespace pellucid {
 

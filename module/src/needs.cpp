@@ -1,9 +1,9 @@
 // The images that a frame's dispatches need besides the caller's own.
 #include "needs.h"
 
+#include "entry_points.h"
 #include "plan.h"
 #include "plan_builder.h"
-#include "entry_points.h"
 
 namespace pellucid {
 namespace {
@@ -66,7 +66,7 @@ PellucidResult imageNeeds(const FrameFacts& f, uint32_t* count, PellucidImageNee
                                 : texelExtent(f, persistent ? stages.pyramidImages() : i - colors);
     PellucidImageNeed& need = needs[i];
     need = {};
-    need.format = texels ? VK_FORMAT_R32G32B32A32_UINT : f.colorFormat();
+    need.format = texels ? VK_FORMAT_R32G32B32A32_UINT : f.colorFormat;
     need.extent[0] = size.width;
     need.extent[1] = size.height;
     need.bytes = (texels ? kTexelBytes : f.wide ? 16 : 8) * size.width * size.height;

@@ -8,7 +8,7 @@ namespace pellucid {
 
 inline constexpr uint32_t kShadow0 = PELLUCID_RESOURCE_SHADOW0;
 inline constexpr uint32_t kTransient0 = PELLUCID_RESOURCE_TRANSIENT0;
-inline constexpr uint64_t kTexelBytes = 16;        // of the pyramid, as packed by compute/diffusion/texel.glsl
+inline constexpr uint64_t kTexelBytes = 16;  // of the pyramid, as packed by compute/diffusion/texel.glsl
 inline constexpr uint64_t kUnknownDepthBytes = 4;  // the module does not know the format; 4 is the common one
 
 struct PlanBuilder {

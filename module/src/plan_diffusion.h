@@ -11,7 +11,7 @@ void addBaseLevel(PlanBuilder& b, uint32_t source, uint32_t copy);
 // The two levels after `finer`.
 void addDownsample(PlanBuilder& b, uint32_t finer);
 
-// From the coarsest level down to level 2. Levels 6 and 7 are made on the way, from level 5.
+// From the coarsest level down to level 2. Levels 6 and 7 are made on the way.
 void addUpsample(PlanBuilder& b, uint32_t coarsest);
 
 // To pixels. `addsProbes`: the gather's filtered probes are added.

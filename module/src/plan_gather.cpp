@@ -29,12 +29,12 @@ void addEntryPoints(PlanBuilder& b, const LightGroup& group) {
   d->pushConstants[1] = group.entryColumns | group.entryRows << 16;
   const ConstantsLayout& layout = b.facts.constants;
   b.constants(d, PELLUCID_BINDING_FRAME, layout.frame);
+  b.constants(d, PELLUCID_BINDING_LIGHTS, {layout.lights.offset + group.lightBytes, kLightWindow});
   b.constants(d, PELLUCID_BINDING_GATHER_MAPS,
               {layout.gatherMaps.offset + group.gatherMapBytes, kGatherMapWindow});
-  b.constants(d, PELLUCID_BINDING_LIGHTS, {layout.lights.offset + group.lightBytes, kLightWindow});
-  b.constants(d, PELLUCID_BINDING_ENTRY_MAPS,
-              {layout.entryMaps.offset + group.entryMapBytes,
-               group.shadowCount * sizeof(shared::EntryMapConstants)});
+  b.constants(
+      d, PELLUCID_BINDING_ENTRY_MAPS,
+      {layout.entryMaps.offset + group.entryMapBytes, group.shadowCount * sizeof(shared::EntryMapConstants)});
   b.image(d, PELLUCID_BINDING_FRONT_DEPTH, PELLUCID_RESOURCE_FRONT_DEPTH, kUnknownDepthBytes);
   b.image(d, PELLUCID_BINDING_MATERIAL, PELLUCID_RESOURCE_MATERIAL, 1);
   b.shadowImages(d, group);

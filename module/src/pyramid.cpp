@@ -19,7 +19,8 @@ Pyramid::Pyramid(const uint32_t (&imageExtent)[2], const Rect& r) : coarsest(kFi
   for (uint32_t level = kFirstLevel; level <= PELLUCID_LAST_LEVEL; ++level) {
     PyramidPlace& place = levels[level];
     // The second level of an image lies beside the first.
-    if (level > kFirstLevel && level % 2 != 0) place.x = static_cast<int32_t>(most(imageExtent[0], level - 1));
+    if (level > kFirstLevel && level % 2 != 0)
+      place.x = static_cast<int32_t>(most(imageExtent[0], level - 1));
     const int32_t border = level > kFirstLevel ? 1 : 0;
     const auto first = [&](uint32_t pixel) { return static_cast<int32_t>(pixel >> level) - border; };
     const auto end = [&](uint32_t pixels) {

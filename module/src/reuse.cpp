@@ -42,7 +42,7 @@ bool decideReuse(const FrameFacts& f, const History& kept, History* result) {
   History& now = *result;
   now = {};
   now.valid = 1;
-  now.format = f.stages.keepsProbes ? VK_FORMAT_R32G32B32A32_UINT : f.colorFormat();
+  now.format = f.stages.keepsProbes ? VK_FORMAT_R32G32B32A32_UINT : f.colorFormat;
   now.gatherSpacing = f.stages.keepsProbes ? f.gatherSpacing : 0;
   const uint32_t rect[4] = {f.rect.x, f.rect.y, f.rect.width, f.rect.height};
   std::copy(f.frame.imageExtent, f.frame.imageExtent + 2, now.extent);

@@ -19,7 +19,7 @@ struct Stages {
   bool keepsProbes = false;   // the gather's filtered probes: the fused dispatches read them, or
   bool history = false;       // that of pixels: the fused dispatches write it, and one more adds it
   bool copies = false;        // the diffusion is all there is: it copies the irradiance before it writes the
-                        // output, which may be the same image and whose pixels read their neighbors
+                              // output, which may be the same image and whose pixels read their neighbors
   bool overlaps = false;  // the gather runs beside the diffusion, which it does not wait for, with images of
                           // its own
   bool addsProbes =
@@ -35,7 +35,9 @@ struct Stages {
   // Of packed texels: the pyramid's; the gather's probes; entry points, if they do not lie where level 1 was.
   uint32_t pyramidImages() const { return diffusion ? kPyramidImages : 0; }
   bool entriesApart() const { return gathered > 0 && (overlaps || !diffusion); }
-  uint32_t texelTransients() const { return pyramidImages() + (gathered > 0 ? 1 : 0) + (entriesApart() ? 1 : 0); }
+  uint32_t texelTransients() const {
+    return pyramidImages() + (gathered > 0 ? 1 : 0) + (entriesApart() ? 1 : 0);
+  }
   uint32_t transients() const { return colorTransients() + texelTransients(); }
 };
 

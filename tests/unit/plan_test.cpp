@@ -33,7 +33,8 @@ bool skips(const PellucidPlan& plan, const std::string& what, const std::string&
 TEST(Plan, WholeFrameIsFusedDispatchAndPyramid) {
   Frame f;
   const PellucidPlan plan = f.plan();
-  EXPECT_EQ(names(plan), (std::vector<std::string>{"translucency", "base level", "downsample", "downsample", "upsample", "diffuse"}));
+  EXPECT_EQ(names(plan), (std::vector<std::string>{"translucency", "base level", "downsample", "downsample",
+                                                   "upsample", "diffuse"}));
   EXPECT_EQ(plan.barrierCount, 5u);
   EXPECT_EQ(plan.skipCount, 2u);
   EXPECT_TRUE(skips(plan, "exit depth", "a shadow map has none: air behind an occluder counts as medium"));
@@ -98,7 +99,8 @@ TEST(Plan, NoLightNoTranslucency) {
   Frame f;
   f.frame.lightCount = 0;
   const PellucidPlan plan = f.plan();
-  EXPECT_EQ(names(plan), (std::vector<std::string>{"base level", "downsample", "downsample", "upsample", "diffuse"}));
+  EXPECT_EQ(names(plan),
+            (std::vector<std::string>{"base level", "downsample", "downsample", "upsample", "diffuse"}));
   EXPECT_EQ(plan.dispatches[0].pushConstants[0], 1u) << "copies";
   EXPECT_TRUE(skips(plan, "translucency", "no light can contribute"));
 }

@@ -26,30 +26,14 @@
 #include <stdint.h>
 #include <vulkan/vulkan_core.h>
 
+#include "pellucid_result.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
 
 /* Passed in PellucidContextDesc; the library refuses a header it does not know. */
 #define PELLUCID_HEADER_VERSION 3u
-
-typedef int32_t PellucidResult;
-enum {
-  PELLUCID_OK = 0,
-  PELLUCID_ERROR_INVALID_ARGUMENT = -1, /* a field is wrong; the message names it */
-  PELLUCID_ERROR_VERSION = -2,          /* structSize or headerVersion that this library cannot take */
-  PELLUCID_ERROR_MISSING_FEATURE = -3,  /* no Vulkan 1.1, push descriptors or 24 KiB of shared memory a group */
-  PELLUCID_ERROR_OUT_OF_MEMORY = -4,
-  PELLUCID_ERROR_VULKAN = -5,        /* a Vulkan call failed; the message has the VkResult */
-  PELLUCID_ERROR_CAPACITY = -6,      /* more dispatches or shadow images than a plan holds */
-  PELLUCID_ERROR_BUFFER_TOO_SMALL = -7 /* constants slice or text buffer shorter than needed */
-};
-
-typedef enum PellucidSeverity { PELLUCID_SEVERITY_WARNING = 0, PELLUCID_SEVERITY_ERROR = 1 } PellucidSeverity;
-
-/* `field` is the API field at fault ("lights[2].color"), `message` a UTF-8 sentence. Both are valid
- * during the call only. Called on the thread that made the API call. */
-typedef void (*PellucidMessageFn)(void* user, PellucidSeverity severity, const char* field, const char* message);
 
 /* ---- Materials ------------------------------------------------------------------------------- */
 
@@ -203,8 +187,8 @@ typedef struct PellucidFrame {
                                material 0 are not written; alpha is the irradiance's */
   PellucidImage transients[PELLUCID_MAX_TRANSIENTS]; /* as listed by pellucidGetImageNeeds */
   VkFormat outputFormat;    /* R16G16B16A16_SFLOAT (default), R32G32B32A32_SFLOAT or B10G11R11_UFLOAT_PACK32, which has no
-                               alpha; see PellucidContextDesc. 32 bits keep alpha to the bit and colors, up to 65504, to
-                               1e-6 without diffusion and to 2^-10 with it, which works in halves */
+                               alpha; see PellucidContextDesc::outputFormat. 32 bits keep alpha to the bit and colors up
+                               to 65504: to 1e-6 without diffusion, to 2^-10 with it, which works in halves */
   uint32_t frontDepthEncoding, backDepthEncoding; /* PELLUCID_DEPTH_DEVICE (default) or VIEW_Z */
   uint32_t normalsInViewSpace; /* 0: world (default) */
   uint32_t materialCount;   /* 1..255 */
@@ -272,10 +256,10 @@ typedef struct PellucidContext PellucidContext;
  * needs one of the others. */
 typedef enum PellucidUse {
   PELLUCID_USE_TRANSLUCENCY = 1 << 0, /* lights that are not gathered from, and frames without diffusion */
-  PELLUCID_USE_GATHER = 1 << 1,
+  PELLUCID_USE_GATHER = 1 << 1,       /* gathered light */
   PELLUCID_USE_DIFFUSION = 1 << 2,
-  PELLUCID_USE_QUALITY_0 = 1 << 3, /* besides qualities 1 and 2, which take the same pipelines */
-  PELLUCID_USE_REUSE = 1 << 4,     /* frame.reuse without a gather */
+  PELLUCID_USE_QUALITY_0 = 1 << 3,    /* besides qualities 1 and 2, which take the same pipelines */
+  PELLUCID_USE_REUSE = 1 << 4,        /* frame.reuse without a gather */
   PELLUCID_USE_DEBUG_VIEWS = 1 << 5
 } PellucidUse;
 
@@ -354,7 +338,6 @@ PellucidResult pellucidRecordPlan(const PellucidContext* context, VkCommandBuffe
                                   const PellucidPlan* plan, const PellucidFrame* frame,
                                   const PellucidConstantsSlice* constants);
 
-const char* pellucidResultName(PellucidResult result); /* "PELLUCID_OK", ... */
 
 #ifdef __cplusplus
 }

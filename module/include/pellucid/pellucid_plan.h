@@ -47,7 +47,7 @@ typedef struct PellucidBinding {
 
 typedef struct PellucidDispatch {
   const char* name;             /* static string */
-  uint32_t pipeline;            /* index below pellucidGetPipelineCount() */
+  uint32_t pipeline;            /* index below pellucidGetPipelineCount(); pellucidPipelineName() reads it */
   uint32_t groups[3];           /* workgroups; the most there may be when indirect */
   uint32_t indirect;            /* 1: VkDispatchIndirectCommand at indirectOffset of indirectResource, which earlier
                                    dispatches decide */
@@ -95,7 +95,7 @@ typedef struct PellucidSpecialization {
 } PellucidSpecialization;
 
 typedef struct PellucidShader {
-  const uint32_t* words; /* SPIR-V; entry point "main", push constants PELLUCID_PUSH_CONSTANT_BYTES, capability
+  const uint32_t* words; /* SPIR-V; entry point "main", push constants PELLUCID_PUSH_CONSTANT_BYTES. Declares
                             StorageImageWriteWithoutFormat */
   size_t wordCount;
   uint32_t constantCount;

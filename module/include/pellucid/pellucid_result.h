@@ -1,0 +1,34 @@
+/* Results of all functions, and the sentences that go with errors. */
+#ifndef PELLUCID_RESULT_H
+#define PELLUCID_RESULT_H
+
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef int32_t PellucidResult;
+enum {
+  PELLUCID_OK = 0,
+  PELLUCID_ERROR_INVALID_ARGUMENT = -1, /* a field is wrong; the message names it */
+  PELLUCID_ERROR_VERSION = -2,          /* structSize or headerVersion that this library cannot take */
+  PELLUCID_ERROR_MISSING_FEATURE = -3,  /* no Vulkan 1.1, push descriptors or 24 KiB of shared memory a group */
+  PELLUCID_ERROR_OUT_OF_MEMORY = -4,
+  PELLUCID_ERROR_VULKAN = -5,        /* a Vulkan call failed; the message has the VkResult */
+  PELLUCID_ERROR_CAPACITY = -6,      /* more dispatches or shadow images than a plan holds */
+  PELLUCID_ERROR_BUFFER_TOO_SMALL = -7 /* constants slice or text buffer shorter than needed */
+};
+
+typedef enum PellucidSeverity { PELLUCID_SEVERITY_WARNING = 0, PELLUCID_SEVERITY_ERROR = 1 } PellucidSeverity;
+
+/* `field` is the API field at fault ("lights[2].color"), `message` a UTF-8 sentence. Both are valid
+ * during the call only. Called on the thread that made the API call. */
+typedef void (*PellucidMessageFn)(void* user, PellucidSeverity severity, const char* field, const char* message);
+
+const char* pellucidResultName(PellucidResult result); /* "PELLUCID_OK", ... */
+
+#ifdef __cplusplus
+}
+#endif
+#endif
