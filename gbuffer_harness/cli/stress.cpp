@@ -30,7 +30,7 @@ constexpr int kShown = 3;
 
 struct Options {
   StressOptions stress;
-  std::string folder, json, quality = "any";
+  std::string device, folder, json, quality = "any";
 };
 
 std::string kindOf(const StressFrame& frame) { return frame.wild ? "wild" : "tame"; }
@@ -94,7 +94,7 @@ Json toJson(const StressOptions& options, const StressResult& result) {
 void print(const StressOptions& options, const StressResult& result) {
   std::printf("%s\nseed %llu, frames %llu to %llu, %llu recordings, %llu pixels, %.1f s; refused: %llu tame, %llu wild\n",
               result.device.c_str(), static_cast<unsigned long long>(options.seed),
-              static_cast<unsigned long long>(options.first), static_cast<unsigned long long>(result.next) - 1,
+              static_cast<unsigned long long>(options.first), static_cast<unsigned long long>(options.first + result.frames) - 1,
               static_cast<unsigned long long>(result.recordings), static_cast<unsigned long long>(result.pixels),
               result.seconds, static_cast<unsigned long long>(result.refusedTame),
               static_cast<unsigned long long>(result.refusedWild));
@@ -113,6 +113,8 @@ void print(const StressOptions& options, const StressResult& result) {
 void run(Options& options) {
   StressOptions& s = options.stress;
   if (options.quality != "any") s.limits.quality = std::stoi(options.quality);
+  if (!s.only.empty()) stress::requireCheck(s.only);  // before a device is opened
+  stress::Renderer renderer({options.device, s.validate});
   Reporter reporter(options);
   StressResult result;
   {
@@ -120,7 +122,7 @@ void run(Options& options) {
     Progress progress("stressing", s.frames ? *s.frames : static_cast<std::uint64_t>(100 * s.seconds));
     std::uint64_t shown = 0;
     result = stress::runStress(
-        s, [&](const StressFrame& frame, const std::vector<Violation>& violations) { reporter(frame, violations); },
+        renderer, s, [&](const StressFrame& frame, const std::vector<Violation>& violations) { reporter(frame, violations); },
         [&](const StressResult& sofar) {
           const std::uint64_t done = s.frames ? sofar.frames
                                               : static_cast<std::uint64_t>(100 * std::min(sofar.seconds, s.seconds));
@@ -154,7 +156,7 @@ void addStressCommand(CLI::App& app) {
   command->add_flag("--validate", s.validate, "with Vulkan's core and synchronization validation, whose messages are violations");
   command->add_option("-o,--output", options->folder, "folder for captures of frames that violate a check");
   command->add_option("--json", options->json, "file for the summary");
-  command->add_option("--device", s.device, "part of the Vulkan device's name; default: the fastest kind");
+  command->add_option("--device", options->device, "part of the Vulkan device's name; default: the fastest kind");
   command->callback([options] { run(*options); });
 }
 
