@@ -3,7 +3,7 @@
 #ifndef PELLUCID_BASELINE_TRANSMITTED_GLSL
 #define PELLUCID_BASELINE_TRANSMITTED_GLSL
 
-#include "gbuffer_decode.glsl"
+#include "frame/gbuffer_decode.glsl"
 #include "lib/camera.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;

@@ -4,7 +4,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
-#include "gbuffer_decode.glsl"
+#include "frame/gbuffer_decode.glsl"
 #include "steps.glsl"
 
 layout(push_constant) uniform Pass { uvec4 value; } pass; // x: lights
@@ -20,7 +20,7 @@ layout(set = 0, binding = 9, rgba16f) uniform writeonly image2D transmittedImage
 
 float shadowTexel(uint image, ivec2 texel) { return texelFetch(shadowImage, texel, 0).x; }
 
-#include "lib/transmission.glsl"
+#include "translucency/transmission.glsl"
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
@@ -38,7 +38,7 @@ void main() {
     Surface s = makeSurface(ray, front, through, normal);
     s.material = material;
     for (uint i = 0u; i < pass.value.x; ++i) {
-      Transmitted t = lightTransmission(lights[i], s);
+      Transmitted t = lightTransmission(lights[i], s, lights[i].meta.z != 0u);
       vec3 light = t.arriving * t.visible;
       if (t.thickness >= 0.0 && max(light.r, max(light.g, light.b)) > 0.0)
         sum += light * materialTransmittance(material - 1u, t.thickness * frame.camera.range.w);

@@ -2,7 +2,6 @@
 #ifndef PELLUCID_LIGHT_GLSL
 #define PELLUCID_LIGHT_GLSL
 
-#include "lib/common_case.glsl"
 #include "shared/pellucid_shared.h"
 
 struct Incident {
@@ -13,7 +12,7 @@ struct Incident {
 
 // Which part of the light goes the way to a point: 1 inside the range and the cone. toLight: unit.
 float lightShare(LightConstants light, vec3 toLight, float distanceTo) {
-  if (kDirectional || light.meta.x == PELLUCID_SHADER_LIGHT_DIRECTIONAL) return 1.0;
+  if (light.meta.x == PELLUCID_SHADER_LIGHT_DIRECTIONAL) return 1.0;
   float ratio = distanceTo * light.position.w;
   float share = clamp(1.0 - ratio * ratio * ratio * ratio, 0.0, 1.0);
   if (light.meta.x == PELLUCID_SHADER_LIGHT_SPOT) {
@@ -24,7 +23,7 @@ float lightShare(LightConstants light, vec3 toLight, float distanceTo) {
 }
 
 Incident incidentLight(LightConstants light, vec3 x) {
-  if (kDirectional || light.meta.x == PELLUCID_SHADER_LIGHT_DIRECTIONAL)
+  if (light.meta.x == PELLUCID_SHADER_LIGHT_DIRECTIONAL)
     return Incident(light.radiance.rgb, -light.direction.xyz, 0.0);
   vec3 offset = light.position.xyz - x;
   // The floor keeps a point at the light finite; 1e-12 is far below any squared depth resolution.
@@ -32,7 +31,8 @@ Incident incidentLight(LightConstants light, vec3 x) {
   float distanceTo = sqrt(squared);
   vec3 toLight = offset / distanceTo;
   float attenuation = lightShare(light, toLight, distanceTo) / squared;
-  return Incident(light.radiance.rgb * attenuation, toLight, distanceTo);
+  // Below the largest float, so that a transmittance of 0 makes 0 of it.
+  return Incident(min(light.radiance.rgb * attenuation, vec3(1.0e30)), toLight, distanceTo);
 }
 
 #endif

@@ -23,7 +23,7 @@ ShadowReceiver projectReceiver(ShadowConstants shadow, vec3 x) {
 
 // True where the texel holds a surface; false for NaN. meta: ShadowConstants::meta.
 bool shadowHolds(uvec4 meta, float stored) {
-  if (kDirectional || meta.y == PELLUCID_SHADER_DEPTH_DEVICE)
+  if (meta.y == PELLUCID_SHADER_DEPTH_DEVICE)
     return stored >= 0.0 && stored <= 1.0 && stored != uintBitsToFloat(meta.w);
   return stored > 0.0 && stored < kNoDepth;
 }

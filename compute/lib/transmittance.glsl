@@ -19,19 +19,6 @@ float transmittanceSinhExp(vec4 p, float c, float d) {
   return p.x * 2.0 * e / denominator + p.w * exp(-c * d);
 }
 
-// -T'(d) of the two forms.
-float transmittanceExp2Slope(vec4 p, float d) {
-  return p.x * p.y * exp(-p.y * d) + p.z * p.w * exp(-p.w * d);
-}
-
-// d/dy 1/sinh y = -cosh y / sinh^2 y = -2 e (1 + e^2) / (1 - e^2)^2 with e = e^{-y}.
-float transmittanceSinhExpSlope(vec4 p, float c, float d) {
-  float y = max(p.y * d + p.z, 1.0e-6);
-  float e = exp(-y);
-  float denominator = y < 0.05 ? 2.0 * y * (1.0 - y * (1.0 - y * (2.0 / 3.0 - y / 3.0))) : 1.0 - e * e;
-  return p.x * p.y * 2.0 * e * (1.0 + e * e) / (denominator * denominator) + p.w * c * exp(-c * d);
-}
-
 // One term w e^{-d^2 / (2 v)} of d'Eon & Luebke 2007: R(sqrt(r^2 + d^2)) of a Gaussian sum,
 // integrated over the plane.
 vec3 transmittanceGaussian(vec3 weight, vec3 falloff, float d) {

@@ -23,13 +23,13 @@ using glm::vec4;
 #define PELLUCID_DIFFUSE_COARSE_TEXELS_X 16 // without the fine filter
 #define PELLUCID_DIFFUSE_TEXELS_Y 4
 #define PELLUCID_DIFFUSE_CELL 4 // pixels a side of the gather's cells where the diffusion adds what it found
-#define PELLUCID_RESOLVE_GROUP 16 // a side, texels of level 2, of which an invocation does two beside each other
-#define PELLUCID_REDUCE_GROUP 16 // a side, of the pyramid's reductions
-#define PELLUCID_REDUCE_TILE 7   // a side, texels of the second of the two levels that a group makes
+#define PELLUCID_UPSAMPLE_GROUP 16 // a side, texels of level 2, of which an invocation does two beside each other
+#define PELLUCID_DOWNSAMPLE_GROUP 16 // a side, of the pyramid's reductions
+#define PELLUCID_DOWNSAMPLE_TILE 7   // a side, texels of the second of the two levels that a group makes
 #define PELLUCID_GATHER_GROUP 16 // a side, of the pass that adds gathered light; an invocation does 2 x 2 pixels
-#define PELLUCID_RECORDS_GROUP 16 // a side, of the gather's records; of what one of them summarizes
-#define PELLUCID_POINTS_GROUP 8   // a side, of the gather's points
-#define PELLUCID_SHARE_GROUP 16  // a side, where points share
+#define PELLUCID_ENTRY_POINTS_GROUP 16 // a side, of the gather's entry points; of what one of them summarizes
+#define PELLUCID_PROBES_GROUP 8   // a side, of the gather's points
+#define PELLUCID_FILTER_GROUP 16  // a side, where points share
 
 #define PELLUCID_BINDING_FRAME 0
 #define PELLUCID_BINDING_LIGHTS 1
@@ -50,19 +50,17 @@ using glm::vec4;
 #define PELLUCID_BINDING_PYRAMID PELLUCID_BINDING_SHADOW_IMAGES
 // The gather's passes know lights, maps and materials, and no kernels:
 #define PELLUCID_BINDING_GATHER_MAPS PELLUCID_BINDING_SHADOWS
-#define PELLUCID_BINDING_RECORD_MAPS PELLUCID_BINDING_KERNELS
-#define PELLUCID_BINDING_DIRECTIONAL_RECORD_MAPS PELLUCID_BINDING_LIGHTS
+#define PELLUCID_BINDING_ENTRY_MAPS PELLUCID_BINDING_KERNELS
 #define PELLUCID_BINDING_GATHER_DISPATCHES PELLUCID_BINDING_KERNELS
-#define PELLUCID_BINDING_RECORDS PELLUCID_BINDING_SHADOW_IMAGES
-#define PELLUCID_BINDING_POINTS PELLUCID_BINDING_LEVELS
-#define PELLUCID_BINDING_SHARED_POINTS (PELLUCID_BINDING_SHADOW_IMAGES + 1) // of the diffusion, beside the pyramid
+#define PELLUCID_BINDING_ENTRY_POINTS PELLUCID_BINDING_SHADOW_IMAGES
+#define PELLUCID_BINDING_PROBES PELLUCID_BINDING_LEVELS
+#define PELLUCID_BINDING_FILTERED_PROBES (PELLUCID_BINDING_SHADOW_IMAGES + 1) // of the diffusion, beside the pyramid
 #define PELLUCID_BINDING_COUNT 21
 
 // Lights and shadow maps of one dispatch are uniform buffers, which are cached apart from what images pass
 // through. 16 KiB is what every device binds.
 #define PELLUCID_DISPATCH_LIGHTS 128
 #define PELLUCID_DISPATCH_SHADOWS 128
-#define PELLUCID_RECORD_MAPS 64 // of directional lights whose records a dispatch makes from a uniform buffer
 
 // FrameConstants::flags.x
 #define PELLUCID_FLAG_BACK_DEPTH 1u
@@ -75,6 +73,12 @@ using glm::vec4;
 #define PELLUCID_FLAG_CHORD_THICKNESS 128u
 #define PELLUCID_FLAG_CHORD 256u // some light, or a debug view, needs camera-space thickness
 #define PELLUCID_FLAG_DIFFUSED 512u // what the gather adds to has been diffused
+#define PELLUCID_FLAG_WIDE_OUTPUT 1024u // 32 bits a channel, which keep what halves round
+
+// Specialization constants
+#define PELLUCID_CONSTANT_DEBUG_VIEWS 0
+#define PELLUCID_CONSTANT_FINE 1
+#define PELLUCID_CONSTANT_GATHERS 2
 
 // Values of the public enums the shaders branch on; constants.cpp asserts that they agree.
 #define PELLUCID_SHADER_LIGHT_DIRECTIONAL 0u
@@ -163,22 +167,22 @@ struct GatherConstants {
   vec4 entries[3 * PELLUCID_GATHER_ENTRIES]; // see GatherEntry
 };
 
-// A shadow map where its records lie; compute/passes/records.glsl. Of a view-space point (x, 1):
+// A shadow map where its entry points lie; compute/passes/entry points.glsl. Of a view-space point (x, 1):
 struct GatherMapConstants {
-  vec4 column, row; // in records from the map's first one; perspective: times depth
-  vec4 depth;       // what records store. Directional: scene units towards the light; perspective: clip w
-  ivec4 place;      // x, y: of the first record in the image; z, w: how many
-  vec4 stepX, stepY; // from a record to the next, scene units; perspective: times depth
+  vec4 column, row; // in entry points from the map's first one; perspective: times depth
+  vec4 depth;       // what entry points store. Directional: scene units towards the light; perspective: clip w
+  ivec4 place;      // x, y: of the first entry in the image; z, w: how many
+  vec4 stepX, stepY; // from a entry to the next, scene units; perspective: times depth
 };
 
 // Where light enters, by texel coordinates p of the map. Affine in p:
-struct RecordMapConstants {
+struct EntryMapConstants {
   vec4 origin, stepX, stepY; // xyz: directional: a point of the light's ray; perspective: its direction, of clip w 1.
                              // w: of depth, see ray
   vec4 ray;    // xyz: directional: towards the light, scene units; perspective: the light. w, directional: depth is
                // stored w + affine; perspective: w / (stored - affine), or stored / affine where planar
   uvec4 meta;  // as ShadowConstants::meta
-  uvec4 map;   // x, y: texels; z: how many a side for one record; w: the light, of lights[]
+  uvec4 map;   // x, y: texels; z: how many a side for one entry; w: the light, of lights[]
   vec4 seen;   // x + y: how far behind what the camera sees a point may lie, scene units; perspective: x times depth
   vec4 toLight; // xyz: directional: unit
   uvec4 occluder; // as ShadowConstants::occluder
@@ -216,8 +220,8 @@ struct GatherDispatches {
 };
 
 // Push constants. translucency: pixels a side of a cell of the gather, lights, PELLUCID_WRITE_*, lights of the gather.
-// gather records: unused, columns and, from bit 16 on, rows of records. gather points: pixels a side of a cell, lights with
-// maps, columns and rows of records and, in bit 31, 1 to add to what is there, samples.
+// gather entry points: unused, columns and, from bit 16 on, rows of entry points. gather points: pixels a side of a cell, lights with
+// maps, columns and rows of entry points and, in bit 31, 1 to add to what is there, samples.
 // gather share: pixels a side of a cell.
 // add: unused, unused, 1 if this is the last dispatch.
 // reduce: finer level, 16. resolve: coarsest level, 16.

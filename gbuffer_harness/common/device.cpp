@@ -194,11 +194,16 @@ void Device::createDevice() {
   queue.queueCount = 1;
   queue.pQueuePriorities = &priority;
   const char* extension = VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME;
+  VkPhysicalDeviceFeatures available, features{};
+  vkGetPhysicalDeviceFeatures(physicalDevice_, &available);
+  features.shaderStorageImageWriteWithoutFormat = available.shaderStorageImageWriteWithoutFormat;
+  writesWithoutFormat_ = features.shaderStorageImageWriteWithoutFormat;
   VkDeviceCreateInfo info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO};
   info.queueCreateInfoCount = 1;
   info.pQueueCreateInfos = &queue;
   info.enabledExtensionCount = 1;
   info.ppEnabledExtensionNames = &extension;
+  info.pEnabledFeatures = &features;
   check(vkCreateDevice(physicalDevice_, &info, nullptr, &device_), "vkCreateDevice");
   vkGetDeviceQueue(device_, queueFamily_, 0, &queue_);
   VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};

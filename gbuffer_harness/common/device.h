@@ -32,6 +32,8 @@ public:
   const VkPhysicalDeviceProperties& properties() const { return properties_; }
   std::string description() const;           // "name, driver and version"
   bool canDraw() const { return canDraw_; }  // the queue does graphics besides compute
+  // Storage images need no format in shaders.
+  bool writesWithoutFormat() const { return writesWithoutFormat_; }
 
   // Records with `record`, submits and waits.
   void run(const std::function<void(VkCommandBuffer)>& record);
@@ -57,7 +59,7 @@ private:
   VkPhysicalDeviceProperties properties_{};
   std::string driver_;
   uint32_t queueFamily_ = 0;
-  bool canDraw_ = false;
+  bool canDraw_ = false, writesWithoutFormat_ = false;
   VkDevice device_ = VK_NULL_HANDLE;
   VkQueue queue_ = VK_NULL_HANDLE;
   VkCommandPool pool_ = VK_NULL_HANDLE;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/error.h"
+#include "common/parallel.h"
 #include "common/progress.h"
 
 namespace pellucid::harness {
@@ -142,7 +143,7 @@ private:
   std::shared_ptr<GpuImage> history_;  // of all frames of a sequence
 };
 
-Context::Context(Device& device, VkPipelineCache pipelineCache) {
+Context::Context(Device& device, VkPipelineCache pipelineCache, uint32_t uses) {
   PellucidContextDesc desc;
   pellucidInitContextDesc(&desc);
   desc.instance = device.instance();
@@ -152,7 +153,12 @@ Context::Context(Device& device, VkPipelineCache pipelineCache) {
   desc.pipelineCache = pipelineCache;
   desc.message = &appendError;
   desc.messageUser = &message_;
-  const ProgressLine progress("compiling " + std::to_string(PELLUCID_PIPELINE_COUNT) + " shaders");
+  if (device.writesWithoutFormat()) desc.outputFormat = VK_FORMAT_UNDEFINED;
+  desc.uses = uses;
+  desc.parallelFor = [](void*, uint32_t count, void (*job)(void*, uint32_t), void* data) {
+    parallelRows(static_cast<int>(count), 0, [&](int i) { job(data, static_cast<uint32_t>(i)); });
+  };
+  const ProgressLine progress("compiling shaders");
   const PellucidResult result = pellucidCreateContext(&desc, &context_);
   if (result != PELLUCID_OK) throw DeviceError(std::string(pellucidResultName(result)) + ": " + message_);
 }

@@ -14,8 +14,9 @@ namespace pellucid::harness {
 // A module context on a device.
 class Context {
 public:
-  // Throws DeviceError with the module's sentence. The cache may be VK_NULL_HANDLE.
-  explicit Context(Device& device, VkPipelineCache pipelineCache = VK_NULL_HANDLE);
+  // Throws DeviceError with the module's sentence. The cache may be VK_NULL_HANDLE; `uses`: PellucidUse bits,
+  // 0 for all.
+  explicit Context(Device& device, VkPipelineCache pipelineCache = VK_NULL_HANDLE, uint32_t uses = 0);
   ~Context();
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;

@@ -5,12 +5,12 @@
 
 #include "camera.h"
 #include "diffusion_profile.h"
+#include "entry_points.h"
 #include "frame.h"
 #include "gather.h"
 #include "minimum_dot.h"
 #include "pyramid.h"
 #include "quality.h"
-#include "records.h"
 #include "reuse.h"
 #include "validate.h"
 
@@ -71,6 +71,7 @@ shared::FrameConstants frameConstants(const PellucidFrame& f) {
   if (f.constantViewDirection) flags |= PELLUCID_FLAG_CONSTANT_VIEW;
   if (f.chordThickness) flags |= PELLUCID_FLAG_CHORD_THICKNESS;
   if (needsChord(f)) flags |= PELLUCID_FLAG_CHORD;
+  if (isWide(f)) flags |= PELLUCID_FLAG_WIDE_OUTPUT;
   if (f.features & PELLUCID_FEATURE_DIFFUSION && anyMaterialDiffuses(f)) flags |= PELLUCID_FLAG_DIFFUSED;
   c.flags = {flags, f.materialCount, f.debugView, f.angleModel};
   const float* p = f.anglePolynomial;
@@ -226,9 +227,9 @@ extern "C" PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const
   const glm::dmat4 worldFromView = glm::inverse(viewFromWorld);
   const auto eachLight = [&](const LightGroup& group, const PellucidLight& l) {
     // addLight ran before this call: the group counts the light, its maps and its images already.
-    uint32_t shadow = group.shadowCount - l.shadowMapCount, row = group.recordRows;
+    uint32_t shadow = group.shadowCount - l.shadowMapCount, row = group.entryRows;
     if (isGathered(f, l))
-      for (uint32_t i = 0; i < l.shadowMapCount; ++i) row -= recordGroups(recordExtent(f, l, i).height);
+      for (uint32_t i = 0; i < l.shadowMapCount; ++i) row -= entryGroups(entryExtent(f, l, i).height);
     put(mapped,
         layout.lights.offset + group.lightBytes + (group.lightCount - 1) * sizeof(shared::LightConstants),
         lightConstants(f, l, viewFromWorld, shadow));
@@ -237,14 +238,13 @@ extern "C" PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const
       const shared::ShadowConstants constants = shadowConstants(f, s, l, worldFromView, group);
       put(mapped, layout.shadows.offset + group.shadowBytes + shadow * sizeof constants, constants);
       if (!isGathered(f, l)) continue;
-      const RecordExtent extent = recordExtent(f, l, i);
-      const RecordConstants records =
-          recordConstants(f, s, l, constants, viewFromWorld, extent, row, group.lightCount - 1);
-      row += recordGroups(extent.height);
-      put(mapped, layout.gatherMaps.offset + group.gatherMapBytes + shadow * sizeof records.gather,
-          records.gather);
-      put(mapped, layout.recordMaps.offset + group.recordMapBytes + shadow * sizeof records.record,
-          records.record);
+      const EntryExtent extent = entryExtent(f, l, i);
+      const EntryConstants entry =
+          entryConstants(f, s, l, constants, viewFromWorld, extent, row, group.lightCount - 1);
+      row += entryGroups(extent.height);
+      put(mapped, layout.gatherMaps.offset + group.gatherMapBytes + shadow * sizeof entry.gather,
+          entry.gather);
+      put(mapped, layout.entryMaps.offset + group.entryMapBytes + shadow * sizeof entry.map, entry.map);
     }
   };
   forEachLightGroup(f, eachLight, [](const LightGroup&) {});

@@ -1,9 +1,12 @@
 // Pipelines, layouts, feature checks.
 #include "context.h"
 
+#include <algorithm>
+#include <memory>
 #include <new>
 
-#include "shaders.h"
+#include "output_format.h"
+#include "pipelines.h"
 #include "shared/pellucid_shared.h"
 #include "text.h"
 
@@ -24,6 +27,9 @@ PellucidResult vulkanError(const PellucidContextDesc& desc, const char* call, Vk
   const bool memory = result == VK_ERROR_OUT_OF_HOST_MEMORY || result == VK_ERROR_OUT_OF_DEVICE_MEMORY;
   return memory ? PELLUCID_ERROR_OUT_OF_MEMORY : PELLUCID_ERROR_VULKAN;
 }
+
+constexpr uint32_t kAllUses = PELLUCID_USE_TRANSLUCENCY | PELLUCID_USE_GATHER | PELLUCID_USE_DIFFUSION |
+                              PELLUCID_USE_QUALITY_0 | PELLUCID_USE_REUSE | PELLUCID_USE_DEBUG_VIEWS;
 
 VkDescriptorType descriptorType(uint32_t binding) {
   switch (binding) {
@@ -55,6 +61,16 @@ PellucidResult checkDesc(const PellucidContextDesc& desc) {
         : !desc.device         ? "device"
                                : "getInstanceProcAddr",
         "is NULL");
+    return PELLUCID_ERROR_INVALID_ARGUMENT;
+  }
+  if (desc.outputFormat != VK_FORMAT_UNDEFINED && desc.outputFormat != VK_FORMAT_R16G16B16A16_SFLOAT &&
+      desc.outputFormat != VK_FORMAT_R32G32B32A32_SFLOAT) {
+    say(desc, "outputFormat", "is VkFormat ", static_cast<int>(desc.outputFormat),
+        "; R16G16B16A16_SFLOAT, R32G32B32A32_SFLOAT and UNDEFINED are possible");
+    return PELLUCID_ERROR_INVALID_ARGUMENT;
+  }
+  if (desc.uses & ~kAllUses) {
+    say(desc, "uses", "has unknown bits ", desc.uses & ~kAllUses);
     return PELLUCID_ERROR_INVALID_ARGUMENT;
   }
   if (desc.apiVersion < VK_API_VERSION_1_1) {
@@ -100,27 +116,65 @@ PellucidResult createLayouts(const PellucidContextDesc& desc, PellucidContext& c
   return result == VK_SUCCESS ? PELLUCID_OK : vulkanError(desc, "vkCreatePipelineLayout", result);
 }
 
-PellucidResult createPipelines(const PellucidContextDesc& desc, PellucidContext& c) {
-  for (uint32_t i = 0; i < PELLUCID_PIPELINE_COUNT; ++i) {
-    const Shader shader = shaderOf(i);
-    VkShaderModuleCreateInfo moduleInfo{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
-    moduleInfo.codeSize = shader.wordCount * sizeof(uint32_t);
-    moduleInfo.pCode = shader.words;
-    VkShaderModule module = VK_NULL_HANDLE;
-    VkResult result = c.vk.vkCreateShaderModule(c.device, &moduleInfo, c.callbacks(), &module);
-    if (result != VK_SUCCESS) return vulkanError(desc, "vkCreateShaderModule", result);
+// One pipeline for each thread that the caller lends.
+struct PipelineJobs {
+  const PellucidContextDesc& desc;
+  PellucidContext& context;
+  std::array<uint32_t, kPipelineCount> pipelines{};  // to make
+  std::array<VkResult, kPipelineCount> results{};
+};
 
-    VkComputePipelineCreateInfo info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
-    info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
-    info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
-    info.stage.module = module;
-    info.stage.pName = "main";
-    info.layout = c.pipelineLayout;
-    result =
-        c.vk.vkCreateComputePipelines(c.device, desc.pipelineCache, 1, &info, c.callbacks(), &c.pipelines[i]);
-    c.vk.vkDestroyShaderModule(c.device, module, c.callbacks());
-    if (result != VK_SUCCESS) return vulkanError(desc, "vkCreateComputePipelines", result);
-  }
+VkResult createPipeline(const PellucidContextDesc& desc, const PellucidContext& c, const PipelineDesc& p,
+                        VkPipeline* pipeline) {
+  const std::unique_ptr<uint32_t[]> words(new (std::nothrow) uint32_t[p.wordCount]);
+  if (!words) return VK_ERROR_OUT_OF_HOST_MEMORY;
+  std::copy_n(p.words, p.wordCount, words.get());
+  if (desc.outputFormat != VK_FORMAT_UNDEFINED)
+    fixOutputFormat(words.get(), p.wordCount, desc.outputFormat == VK_FORMAT_R32G32B32A32_SFLOAT);
+  VkShaderModuleCreateInfo moduleInfo{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
+  moduleInfo.codeSize = p.wordCount * sizeof(uint32_t);
+  moduleInfo.pCode = words.get();
+  VkShaderModule module = VK_NULL_HANDLE;
+  VkResult result = c.vk.vkCreateShaderModule(c.device, &moduleInfo, c.callbacks(), &module);
+  if (result != VK_SUCCESS) return result;
+
+  std::array<VkSpecializationMapEntry, std::tuple_size_v<decltype(p.constants)>> entries;
+  for (uint32_t i = 0; i < p.constantCount; ++i)
+    entries[i] = {p.constants[i].id,
+                  static_cast<uint32_t>(i * sizeof p.constants[0] + offsetof(PellucidSpecialization, value)),
+                  sizeof(uint32_t)};
+  const VkSpecializationInfo specialization{p.constantCount, entries.data(), sizeof p.constants,
+                                            p.constants.data()};
+  VkComputePipelineCreateInfo info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
+  info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+  info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
+  info.stage.module = module;
+  info.stage.pName = "main";
+  info.stage.pSpecializationInfo = &specialization;
+  info.layout = c.pipelineLayout;
+  result = c.vk.vkCreateComputePipelines(c.device, desc.pipelineCache, 1, &info, c.callbacks(), pipeline);
+  c.vk.vkDestroyShaderModule(c.device, module, c.callbacks());
+  return result;
+}
+
+PellucidResult createPipelines(const PellucidContextDesc& desc, PellucidContext& c) {
+  PipelineJobs jobs{desc, c};
+  uint32_t count = 0;
+  for (uint32_t i = 0; i < kPipelineCount; ++i)
+    if (desc.uses == 0 || (pipelineDesc(i).uses & ~desc.uses) == 0) jobs.pipelines[count++] = i;
+  const auto job = [](void* data, uint32_t i) {
+    auto& all = *static_cast<PipelineJobs*>(data);
+    const uint32_t pipeline = all.pipelines[i];
+    all.results[i] =
+        createPipeline(all.desc, all.context, pipelineDesc(pipeline), &all.context.pipelines[pipeline]);
+  };
+  if (desc.parallelFor)
+    desc.parallelFor(desc.parallelUser, count, job, &jobs);
+  else
+    for (uint32_t i = 0; i < count; ++i) job(&jobs, i);
+  for (uint32_t i = 0; i < count; ++i)
+    if (jobs.results[i] != VK_SUCCESS)
+      return vulkanError(desc, pipelineDesc(jobs.pipelines[i]).name, jobs.results[i]);
   return PELLUCID_OK;
 }
 
@@ -135,6 +189,7 @@ extern "C" void pellucidInitContextDesc(PellucidContextDesc* desc) {
   desc->structSize = sizeof(PellucidContextDesc);
   desc->headerVersion = PELLUCID_HEADER_VERSION;
   desc->apiVersion = VK_API_VERSION_1_1;
+  desc->outputFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
 }
 
 extern "C" PellucidResult pellucidCreateContext(const PellucidContextDesc* desc, PellucidContext** context) {
@@ -153,6 +208,7 @@ extern "C" PellucidResult pellucidCreateContext(const PellucidContextDesc* desc,
   }
   c->message = desc->message;
   c->messageUser = desc->messageUser;
+  c->outputFormat = desc->outputFormat;
   const auto getDeviceProcAddr = reinterpret_cast<PFN_vkGetDeviceProcAddr>(
       desc->getInstanceProcAddr(desc->instance, "vkGetDeviceProcAddr"));
   const char* missing =

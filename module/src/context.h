@@ -3,6 +3,7 @@
 #include <array>
 
 #include "pellucid/pellucid.h"
+#include "pipelines.h"
 #include "vk_table.h"
 
 // Immutable once pellucidCreateContext has returned.
@@ -15,7 +16,8 @@ struct PellucidContext {
   void* messageUser = nullptr;
   VkDescriptorSetLayout setLayout = VK_NULL_HANDLE;
   VkPipelineLayout pipelineLayout = VK_NULL_HANDLE;
-  std::array<VkPipeline, PELLUCID_PIPELINE_COUNT> pipelines{};
+  std::array<VkPipeline, pellucid::kPipelineCount> pipelines{};  // NULL: not among desc.uses
+  VkFormat outputFormat = VK_FORMAT_UNDEFINED;                   // of all frames; UNDEFINED: any
 
   const VkAllocationCallbacks* callbacks() const { return hasAllocator ? &allocator : nullptr; }
 };

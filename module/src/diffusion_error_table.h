@@ -1,5 +1,5 @@
-// Relative RMSE of the diffusion from brute force, of qualities 0 and 1, which 2 shares, at each radius (pixels
-// within which 99.9 % of the energy lies) the worst of the scenes of docs/diffusion.md. Written by
+// Relative RMSE of the diffusion from brute force, of qualities 0 and 1, which 2 shares, at each radius
+// (pixels within which 99.9 % of the energy lies) the worst of the scenes of docs/diffusion.md. Written by
 // build/bin/pellucid_diffusion_error --table, which --check measures again.
 #pragma once
 

@@ -3,16 +3,17 @@
 
 #include <algorithm>
 
+#include "entry_points.h"
 #include "frame.h"
+#include "pipelines.h"
 #include "pyramid.h"
 #include "quality.h"
-#include "records.h"
 
 namespace pellucid {
 
 inline constexpr uint32_t kShadow0 = PELLUCID_RESOURCE_SHADOW0;
 inline constexpr uint32_t kTransient0 = PELLUCID_RESOURCE_TRANSIENT0;
-inline constexpr uint64_t kTexelBytes = 16;        // of the pyramid, as packed by compute/lib/pyramid.glsl
+inline constexpr uint64_t kTexelBytes = 16;  // of the pyramid, as packed by compute/diffusion/texel.glsl
 inline constexpr uint64_t kUnknownDepthBytes = 4;  // the module does not know the format; 4 is the common one
 
 struct Builder {
@@ -20,20 +21,20 @@ struct Builder {
   const ConstantsLayout layout;
   const Rect rect;
   const uint32_t colorTransients;
-  const bool keepsPoints, overlaps;
+  const bool keepsProbes, overlaps;
   const bool skipsLight;  // of the gather's dispatches those that the GPU finds nothing to do for are empty
   PellucidPlan& plan;
   bool alongside = false;  // dispatches run beside the one before, with which they share nothing
 
-  bool wide() const { return frame.outputFormat == VK_FORMAT_R32G32B32A32_SFLOAT; }
+  bool wide() const { return isWide(frame); }
   uint64_t pixels() const { return static_cast<uint64_t>(rect.width) * rect.height; }
   uint32_t pyramidImage() const { return kTransient0 + colorTransients; }
-  // What points of the gather find; the records of the maps and, in their place, what points share. Records
-  // lie where the pyramid was unless both are in use at once.
-  uint32_t pointsImage() const { return pyramidImage() + 1; }
-  uint32_t recordsImage() const { return overlaps ? pyramidImage() + 2 : pyramidImage(); }
-  uint32_t sharedImage() const {
-    return keepsPoints ? static_cast<uint32_t>(PELLUCID_RESOURCE_HISTORY) : recordsImage();
+  // What probes find; the entry points of the maps and, in their place, what the spatial filter makes of the
+  // probes. Entry points lie where the pyramid was unless both are in use at once.
+  uint32_t probesImage() const { return pyramidImage() + 1; }
+  uint32_t entriesImage() const { return overlaps ? pyramidImage() + 2 : pyramidImage(); }
+  uint32_t filteredImage() const {
+    return keepsProbes ? static_cast<uint32_t>(PELLUCID_RESOURCE_HISTORY) : entriesImage();
   }
   uint64_t colorBytes() const { return wide() ? 16 : 8; }
 
@@ -46,11 +47,11 @@ struct Builder {
     if (plan.skipCount < PELLUCID_MAX_SKIPS) plan.skips[plan.skipCount++] = {what, reason, 1};
   }
 
-  PellucidDispatch* dispatch(const char* name, uint32_t pipeline) {
+  PellucidDispatch* dispatch(const char* name, Pipeline pipeline) {
     if (plan.dispatchCount == PELLUCID_MAX_DISPATCHES) return nullptr;
     PellucidDispatch& d = plan.dispatches[plan.dispatchCount];
     d.name = name;
-    d.pipeline = pipeline;
+    d.pipeline = static_cast<uint32_t>(pipeline);
     groups(&d, rect.width, rect.height, PELLUCID_GROUP_X);
     // Every dispatch after the first reads what the one before wrote, unless it runs beside that.
     // The first of a frame that reuses comes after the last frame's use of the history.
@@ -112,16 +113,6 @@ struct Builder {
     d->modeledBytes += colorBytes() * pixels();
   }
 
-  // What compute/lib/common_case.glsl takes for granted besides the lights.
-  bool directionalFrame() const {
-    bool exponentials = true;
-    for (uint32_t i = 0; i < frame.materialCount; ++i)
-      exponentials = exponentials && frame.materials[i].transmittanceModel == PELLUCID_TRANSMITTANCE_EXP2;
-    return exponentials && given(frame.normal) && frame.frontDepthEncoding == PELLUCID_DEPTH_DEVICE &&
-           frame.thicknessSource == PELLUCID_THICKNESS_LIGHT && frame.angleModel == PELLUCID_ANGLE_NORMAL &&
-           frame.constantViewDirection == 0;
-  }
-
   // Cells of the gather that the rect touches.
   struct Cells {
     uint32_t width, height;
@@ -134,36 +125,28 @@ struct Builder {
     return {count(rect.x, rect.width), count(rect.y, rect.height)};
   }
 
-  static uint64_t recordBytes(const LightGroup& group) {
-    return kTexelBytes * group.recordColumns * group.recordRows;
+  static uint64_t entryBytes(const LightGroup& group) {
+    return kTexelBytes * group.entryColumns * group.entryRows;
   }
 
-  bool records(const LightGroup& group) {
-    const bool directional =
-        group.gatheredDirectional && directionalFrame() && group.shadowCount <= PELLUCID_RECORD_MAPS;
-    PellucidDispatch* d =
-        dispatch("gather records", !directional             ? PELLUCID_PIPELINE_GATHER_RECORDS
-                                   : group.shadowCount == 1 ? PELLUCID_PIPELINE_GATHER_RECORDS_ONE_MAP
-                                                            : PELLUCID_PIPELINE_GATHER_RECORDS_DIRECTIONAL);
+  bool entryPoints(const LightGroup& group) {
+    PellucidDispatch* d = dispatch("entry points", Pipeline::EntryPoints);
     if (!d) return false;
-    groups(d, group.recordWidth, group.recordHeight, PELLUCID_RECORDS_GROUP);
+    groups(d, group.entryWidth, group.entryHeight, PELLUCID_ENTRY_POINTS_GROUP);
     d->groups[2] = group.shadowCount;
-    d->pushConstants[1] = group.recordColumns | group.recordRows << 16;
+    d->pushConstants[1] = group.entryColumns | group.entryRows << 16;
     constants(d, PELLUCID_BINDING_FRAME, layout.frame);
+    constants(d, PELLUCID_BINDING_LIGHTS, {layout.lights.offset + group.lightBytes, kLightWindow});
     constants(d, PELLUCID_BINDING_GATHER_MAPS,
               {layout.gatherMaps.offset + group.gatherMapBytes, kGatherMapWindow});
-    const VkDeviceSize maps = layout.recordMaps.offset + group.recordMapBytes;
-    if (directional) {
-      constants(d, PELLUCID_BINDING_DIRECTIONAL_RECORD_MAPS, {maps, kRecordMapWindow});
-    } else {
-      constants(d, PELLUCID_BINDING_LIGHTS, {layout.lights.offset + group.lightBytes, kLightWindow});
-      constants(d, PELLUCID_BINDING_RECORD_MAPS,
-                {maps, group.shadowCount * sizeof(shared::RecordMapConstants)});
-    }
+    constants(d, PELLUCID_BINDING_ENTRY_MAPS,
+              {layout.entryMaps.offset + group.entryMapBytes,
+               group.shadowCount * sizeof(shared::EntryMapConstants)});
     image(d, PELLUCID_BINDING_FRONT_DEPTH, PELLUCID_RESOURCE_FRONT_DEPTH, kUnknownDepthBytes);
+    image(d, PELLUCID_BINDING_MATERIAL, PELLUCID_RESOURCE_MATERIAL, 1);
     shadowImages(d, group);
-    bind(d, PELLUCID_BINDING_LEVELS, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, recordsImage());
-    d->modeledBytes += recordBytes(group);
+    bind(d, PELLUCID_BINDING_LEVELS, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, entriesImage());
+    d->modeledBytes += entryBytes(group);
     return true;
   }
 
@@ -181,17 +164,15 @@ struct Builder {
     d->indirectOffset = layout.gatherDispatches.offset + offset;
   }
 
-  // `adds`: to what points found in an earlier dispatch.
-  bool points(const LightGroup& group, bool adds) {
-    const bool directional = group.gatheredDirectional && directionalFrame();
-    PellucidDispatch* d = dispatch("gather points", directional ? PELLUCID_PIPELINE_GATHER_POINTS_DIRECTIONAL
-                                                                : PELLUCID_PIPELINE_GATHER_POINTS);
+  // `adds`: to what probes found in an earlier dispatch.
+  bool probes(const LightGroup& group, bool adds) {
+    PellucidDispatch* d = dispatch("probes", Pipeline::Probes);
     if (!d) return false;
     const Cells size = cells();
-    groups(d, size.width, size.height, PELLUCID_POINTS_GROUP);
+    groups(d, size.width, size.height, PELLUCID_PROBES_GROUP);
     d->pushConstants[0] = gatherSpacing(frame);
     d->pushConstants[1] = group.gathered;
-    d->pushConstants[2] = group.recordColumns | group.recordRows << 16 | (adds ? 1u << 31 : 0);
+    d->pushConstants[2] = group.entryColumns | group.entryRows << 16 | (adds ? 1u << 31 : 0);
     d->pushConstants[3] = gatherSamples(frame);
     constants(d, PELLUCID_BINDING_FRAME, layout.frame);
     constants(d, PELLUCID_BINDING_LIGHTS, {layout.lights.offset + group.lightBytes, kLightWindow});
@@ -202,33 +183,33 @@ struct Builder {
     bind(d, PELLUCID_BINDING_MATERIAL, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, PELLUCID_RESOURCE_MATERIAL);
     optional(d, PELLUCID_BINDING_NORMAL, frame.normal, PELLUCID_RESOURCE_NORMAL, 0);
     optional(d, PELLUCID_BINDING_BACK_DEPTH, frame.backDepth, PELLUCID_RESOURCE_BACK_DEPTH, 0);
-    bind(d, PELLUCID_BINDING_RECORDS, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, recordsImage());
-    bind(d, PELLUCID_BINDING_POINTS, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, pointsImage());
+    bind(d, PELLUCID_BINDING_ENTRY_POINTS, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, entriesImage());
+    bind(d, PELLUCID_BINDING_PROBES, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, probesImage());
     constants(d, PELLUCID_BINDING_GATHER_DISPATCHES, layout.gatherDispatches);
     // Of each cell one pixel's depth, material and normal.
     constexpr uint64_t kCellBytes = kUnknownDepthBytes + 1 + 4 + kTexelBytes;
-    d->modeledBytes = recordBytes(group) + (kCellBytes + (adds ? kTexelBytes : 0)) * size.width * size.height;
+    d->modeledBytes = entryBytes(group) + (kCellBytes + (adds ? kTexelBytes : 0)) * size.width * size.height;
     return true;
   }
 
-  bool share() {
-    PellucidDispatch* d = dispatch("gather share", PELLUCID_PIPELINE_GATHER_SHARE);
+  bool filterProbes() {
+    PellucidDispatch* d = dispatch("filter probes", Pipeline::FilterProbes);
     if (!d) return false;
     const Cells size = cells();
-    groups(d, size.width, size.height, PELLUCID_SHARE_GROUP);
+    groups(d, size.width, size.height, PELLUCID_FILTER_GROUP);
     d->pushConstants[0] = gatherSpacing(frame);
     constants(d, PELLUCID_BINDING_FRAME, layout.frame);
     constants(d, PELLUCID_BINDING_MATERIALS, layout.materials);
-    bind(d, PELLUCID_BINDING_RECORDS, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, pointsImage());
-    bind(d, PELLUCID_BINDING_POINTS, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, sharedImage());
+    bind(d, PELLUCID_BINDING_ENTRY_POINTS, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, probesImage());
+    bind(d, PELLUCID_BINDING_PROBES, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, filteredImage());
     d->modeledBytes = 2 * kTexelBytes * size.width * size.height;
     if (skipsLight) indirect(d, offsetof(shared::GatherDispatches, share));
     return true;
   }
 
-  // What points share.
-  void readsPoints(PellucidDispatch* d, uint32_t binding, VkDescriptorType type) const {
-    bind(d, binding, type, sharedImage());
+  // What probes have after the spatial filter.
+  void readsProbes(PellucidDispatch* d, uint32_t binding, VkDescriptorType type) const {
+    bind(d, binding, type, filteredImage());
     d->modeledBytes += kTexelBytes * cells().width * cells().height;
   }
 
@@ -243,18 +224,17 @@ struct Builder {
 
   bool translucency(const LightGroup& group, uint32_t source, uint32_t destination) {
     const bool debug = frame.debugView != PELLUCID_DEBUG_NONE;
-    const uint32_t half = debug                ? PELLUCID_PIPELINE_DEBUG_16F
-                          : group.gathered > 0 ? PELLUCID_PIPELINE_GATHER_16F
-                                               : PELLUCID_PIPELINE_TRANSLUCENCY_16F;
-    const uint32_t pipeline = half + (wide() ? 1 : 0);
-    PellucidDispatch* d = dispatch(debug ? "debug view" : "translucency", pipeline);
+    const bool gathered = group.gathered > 0 && !debug;
+    PellucidDispatch* d = debug      ? dispatch("debug view", Pipeline::DebugView)
+                          : gathered ? dispatch("add gathered", Pipeline::AddGathered)
+                                     : dispatch("translucency", Pipeline::Translucency);
     if (!d) return false;
-    if (half == PELLUCID_PIPELINE_GATHER_16F) {
+    if (gathered) {
       // Tiles are the image's.
       constexpr uint32_t kTile = 2 * PELLUCID_GATHER_GROUP;
       groups(d, rect.x % kTile + rect.width, rect.y % kTile + rect.height, kTile);
       d->pushConstants[0] = gatherSpacing(frame);
-      readsPoints(d, PELLUCID_BINDING_POINTS, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE);
+      readsProbes(d, PELLUCID_BINDING_PROBES, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE);
       d->pushConstants[3] = group.gathered;
     } else {
       tiles(d);
@@ -278,8 +258,7 @@ struct Builder {
   }
 
   bool addHistory(uint32_t source, uint32_t destination) {
-    PellucidDispatch* d = dispatch(
-        "add history", wide() ? PELLUCID_PIPELINE_ADD_HISTORY_32F : PELLUCID_PIPELINE_ADD_HISTORY_16F);
+    PellucidDispatch* d = dispatch("add history", Pipeline::AddHistory);
     if (!d) return false;
     d->pushConstants[2] = destination == PELLUCID_RESOURCE_OUTPUT;
     common(d, source, destination);
@@ -310,30 +289,29 @@ struct Builder {
   }
 
   // Level 1 from the pixels of an image, which are copied on the way if `copy` is another one.
-  bool quads(uint32_t source, uint32_t copy) {
+  bool baseLevel(uint32_t source, uint32_t copy) {
     const bool copies = copy != source;
-    PellucidDispatch* d = dispatch("quads", !copies  ? PELLUCID_PIPELINE_QUADS
-                                            : wide() ? PELLUCID_PIPELINE_QUADS_AND_COPY_32F
-                                                     : PELLUCID_PIPELINE_QUADS_AND_COPY_16F);
+    PellucidDispatch* d = dispatch("base level", Pipeline::BaseLevel);
     if (!d) return false;
+    d->pushConstants[0] = copies;
     tiles(d);
     constants(d, PELLUCID_BINDING_FRAME, layout.frame);
     writesPyramid(d);
     levelTraffic(d, kFirstLevel);
     pixelInputs(d, source);
     optional(d, PELLUCID_BINDING_NORMAL, frame.normal, PELLUCID_RESOURCE_NORMAL, 4);
-    if (copies) {
-      bind(d, PELLUCID_BINDING_DESTINATION, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, copy);
-      d->modeledBytes += colorBytes() * pixels();
-    }
+    // The output stands in where nothing is copied.
+    bind(d, PELLUCID_BINDING_DESTINATION, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
+         copies ? copy : static_cast<uint32_t>(PELLUCID_RESOURCE_OUTPUT));
+    if (copies) d->modeledBytes += colorBytes() * pixels();
     return true;
   }
 
   // The two levels after `finer`.
-  bool reduce(uint32_t finer) {
-    PellucidDispatch* d = dispatch("reduce", PELLUCID_PIPELINE_REDUCE_LEVELS);
+  bool downsample(uint32_t finer) {
+    PellucidDispatch* d = dispatch("downsample", Pipeline::Downsample);
     if (!d) return false;
-    levelGroups(d, finer + 2, PELLUCID_REDUCE_TILE);
+    levelGroups(d, finer + 2, PELLUCID_DOWNSAMPLE_TILE);
     d->pushConstants[0] = finer;
     d->pushConstants[1] = 16;  // texels under a texel
     constants(d, PELLUCID_BINDING_FRAME, layout.frame);
@@ -343,39 +321,36 @@ struct Builder {
     return true;
   }
 
-  // `reduces`: it makes levels 6 and 7 from level 5.
-  bool resolve(uint32_t coarsest, bool reduces) {
-    PellucidDispatch* d = dispatch(
-        "resolve", reduces ? PELLUCID_PIPELINE_REDUCE_AND_RESOLVE : PELLUCID_PIPELINE_RESOLVE_LEVELS);
+  // Levels 6 and 7 are made on the way.
+  bool upsample(uint32_t coarsest) {
+    PellucidDispatch* d = dispatch("upsample", Pipeline::Upsample);
     if (!d) return false;
     // Groups start at texels 32 k - 1, in y 16 k - 1.
     const PyramidPlace place = placeOf(frame, 2);
     const auto across = [](int32_t first, int32_t texels, int32_t side) {
       return static_cast<uint32_t>((first + texels) / side - (first + 1) / side + 1);
     };
-    d->groups[0] = across(place.rect.x, place.rect.width, 2 * PELLUCID_RESOLVE_GROUP);
-    d->groups[1] = across(place.rect.y, place.rect.height, PELLUCID_RESOLVE_GROUP);
+    d->groups[0] = across(place.rect.x, place.rect.width, 2 * PELLUCID_UPSAMPLE_GROUP);
+    d->groups[1] = across(place.rect.y, place.rect.height, PELLUCID_UPSAMPLE_GROUP);
     d->pushConstants[0] = coarsest;
     d->pushConstants[1] = 16;  // texels under a texel
     constants(d, PELLUCID_BINDING_FRAME, layout.frame);
     constants(d, PELLUCID_BINDING_KERNELS, layout.kernels);
     writesPyramid(d);
     readsPyramid(d);
-    for (uint32_t level = 2; level <= (reduces ? 5 : coarsest); ++level) levelTraffic(d, level);
+    for (uint32_t level = 2; level <= std::min(coarsest, 5u); ++level) levelTraffic(d, level);
     d->modeledBytes += 2 * kTexelBytes * texels(2);
     return true;
   }
 
-  // `addsPoints`: what points of the gather share is added.
-  bool diffuse(uint32_t source, uint32_t destination, bool addsPoints) {
+  // `addsProbes`: what points of the gather share is added.
+  bool diffuse(uint32_t source, uint32_t destination, bool addsProbes) {
     const bool fine = hasFineFilter(plan.quality);
-    const uint32_t half =
-        fine ? (addsPoints ? PELLUCID_PIPELINE_DIFFUSE_GATHER_16F : PELLUCID_PIPELINE_DIFFUSE_16F)
-             : (addsPoints ? PELLUCID_PIPELINE_DIFFUSE_COARSE_GATHER_16F
-                           : PELLUCID_PIPELINE_DIFFUSE_COARSE_16F);
+    const Pipeline pipeline = fine ? (addsProbes ? Pipeline::DiffuseGathered : Pipeline::Diffuse)
+                                   : (addsProbes ? Pipeline::DiffuseCoarseGathered : Pipeline::DiffuseCoarse);
     // With the gather both are in the plan, and one of them runs.
     PellucidDispatch* d =
-        dispatch(skipsLight && !addsPoints ? "diffuse, none gathered" : "diffuse", half + (wide() ? 1 : 0));
+        dispatch(skipsLight && !addsProbes ? "diffuse, none gathered" : "diffuse", pipeline);
     if (!d) return false;
     // Groups start at texels of level 2, whose rect has a border of one.
     const PyramidPlace place = placeOf(frame, 2);
@@ -390,10 +365,13 @@ struct Builder {
     common(d, source, destination);
     readsPyramid(d);
     d->modeledBytes += 2 * kTexelBytes * texels(2);
-    if (addsPoints) readsPoints(d, PELLUCID_BINDING_SHARED_POINTS, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE);
+    if (addsProbes)
+      readsProbes(d, PELLUCID_BINDING_FILTERED_PROBES, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE);
+    else  // stands in
+      bind(d, PELLUCID_BINDING_FILTERED_PROBES, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, pyramidImage());
     if (!skipsLight) return true;
-    if (!addsPoints) d->modeledBytes = 0;  // one of the two runs
-    indirect(d, addsPoints ? offsetof(shared::GatherDispatches, light)
+    if (!addsProbes) d->modeledBytes = 0;  // one of the two runs
+    indirect(d, addsProbes ? offsetof(shared::GatherDispatches, light)
                            : offsetof(shared::GatherDispatches, noLight));
     return true;
   }

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "entry_points.h"
 #include "quality.h"
-#include "records.h"
 
 namespace pellucid {
 
@@ -54,18 +54,15 @@ bool addLight(const PellucidFrame& frame, const PellucidLight& light, LightGroup
   }
   if (isGathered(frame, light)) {
     for (uint32_t i = 0; i < light.shadowMapCount; ++i) {
-      const RecordExtent extent = recordExtent(frame, light, i);
-      grown.recordColumns = std::max(grown.recordColumns, recordGroups(extent.width));
-      grown.recordRows += recordGroups(extent.height);
-      grown.recordWidth = std::max(grown.recordWidth, extent.width);
-      grown.recordHeight = std::max(grown.recordHeight, extent.height);
+      const EntryExtent extent = entryExtent(frame, light, i);
+      grown.entryColumns = std::max(grown.entryColumns, entryGroups(extent.width));
+      grown.entryRows += entryGroups(extent.height);
+      grown.entryWidth = std::max(grown.entryWidth, extent.width);
+      grown.entryHeight = std::max(grown.entryHeight, extent.height);
     }
-    if (grown.recordRows > kRecordRows) return false;
+    if (grown.entryRows > kEntryRows) return false;
     ++grown.gathered;
   }
-  const bool directional = light.type == PELLUCID_LIGHT_DIRECTIONAL && light.shadowMapCount == 1 &&
-                           frame.shadowMaps[light.firstShadowMap].encoding == PELLUCID_DEPTH_DEVICE;
-  if (isGathered(frame, light)) grown.gatheredDirectional = grown.gatheredDirectional && directional;
   ++grown.lightCount;
   *group = grown;
   return true;
@@ -112,8 +109,8 @@ LightGroups countGroups(const PellucidFrame& frame, bool beside) {
       [&](const LightGroup& group) {
         ++groups.count;
         if (group.gathered > 0) ++groups.gathered;
-        groups.recordColumns = std::max(groups.recordColumns, group.recordColumns);
-        groups.recordRows = std::max(groups.recordRows, group.recordRows);
+        groups.entryColumns = std::max(groups.entryColumns, group.entryColumns);
+        groups.entryRows = std::max(groups.entryRows, group.entryRows);
       });
   return groups;
 }
@@ -136,7 +133,7 @@ bool bindsBeside(const PellucidFrame& frame) {
 
 LightGroups lightGroups(const PellucidFrame& frame) { return countGroups(frame, bindsBeside(frame)); }
 
-bool addsPoints(const PellucidFrame& frame) {
+bool addsProbes(const PellucidFrame& frame) {
   uint32_t groups = 0, others = 0;
   forEachLightGroup(frame, [&](const LightGroup& group) {
     ++groups;
@@ -165,8 +162,8 @@ ConstantsLayout constantsLayout(const PellucidFrame& frame) {
   place(&layout.kernels, frame.materialCount * sizeof(shared::KernelConstants));
   if (gathers(frame)) {
     place(&layout.gatherMaps, last.gatherMapBytes + kGatherMapWindow);
-    place(&layout.recordMaps,
-          last.recordMapBytes + PELLUCID_DISPATCH_SHADOWS * sizeof(shared::RecordMapConstants));
+    place(&layout.entryMaps,
+          last.entryMapBytes + PELLUCID_DISPATCH_SHADOWS * sizeof(shared::EntryMapConstants));
     place(&layout.gatherDispatches, sizeof(shared::GatherDispatches));
   }
   return layout;

@@ -17,6 +17,13 @@ Rect renderRect(const PellucidFrame& frame);
 
 inline bool given(const PellucidImage& image) { return image.view != VK_NULL_HANDLE; }
 
+// 32 bits a channel.
+inline bool isWide(const PellucidFrame& frame) { return frame.outputFormat == VK_FORMAT_R32G32B32A32_SFLOAT; }
+// Of transients and histories that hold colors.
+inline VkFormat colorFormat(const PellucidFrame& frame) {
+  return isWide(frame) ? VK_FORMAT_R32G32B32A32_SFLOAT : VK_FORMAT_R16G16B16A16_SFLOAT;
+}
+
 bool anyMaterialDiffuses(const PellucidFrame& frame);
 
 // The largest offset alignment that Vulkan allows a device to ask for.
@@ -28,20 +35,18 @@ constexpr VkDeviceSize aligned(VkDeviceSize bytes) { return (bytes + 255) / 256 
 constexpr VkDeviceSize kLightWindow = PELLUCID_DISPATCH_LIGHTS * sizeof(shared::LightConstants);
 constexpr VkDeviceSize kShadowWindow = PELLUCID_DISPATCH_SHADOWS * sizeof(shared::ShadowConstants);
 constexpr VkDeviceSize kGatherMapWindow = PELLUCID_DISPATCH_SHADOWS * sizeof(shared::GatherMapConstants);
-constexpr VkDeviceSize kRecordMapWindow = PELLUCID_RECORD_MAPS * sizeof(shared::RecordMapConstants);
-static_assert(kLightWindow <= 16384 && kShadowWindow <= 16384 && kGatherMapWindow <= kShadowWindow &&
-              kRecordMapWindow <= 16384);  // least maxUniformBufferRange
+static_assert(kLightWindow <= 16384 && kShadowWindow <= 16384 &&
+              kGatherMapWindow <= kShadowWindow);  // least maxUniformBufferRange
 
 struct LightGroup {
   uint32_t firstLight = 0, lightCount = 0;       // among the lights that are not skipped
   uint32_t shadowCount = 0;                      // shadow maps
   VkDeviceSize lightBytes = 0, shadowBytes = 0;  // of the groups before, in the constants
-  VkDeviceSize gatherMapBytes = 0, recordMapBytes = 0;
-  uint32_t gathered = 0;                       // lights that are gathered from; the first ones
-  bool gatheredDirectional = true;             // these are directional with one shadow map of device depth
-  uint32_t recordColumns = 0, recordRows = 0;  // of their maps' records
-  uint32_t recordWidth = 0, recordHeight = 0;  // the most that one of them has
-  bool beside = true;                          // exit depths and caster materials have slots among the images
+  VkDeviceSize gatherMapBytes = 0, entryMapBytes = 0;
+  uint32_t gathered = 0;                     // lights that are gathered from; the first ones
+  uint32_t entryColumns = 0, entryRows = 0;  // of their maps' entry points
+  uint32_t entryWidth = 0, entryHeight = 0;  // the most that one of them has
+  bool beside = true;                        // exit depths and caster materials have slots among the images
   uint32_t imageCount = 0;
   std::array<uint32_t, PELLUCID_SHADOW_IMAGE_COUNT> images{};  // into frame.shadowImages
 
@@ -108,8 +113,8 @@ void forEachLightGroup(const PellucidFrame& frame, bool beside, OnLight&& light,
             current.shadowBytes + aligned(current.shadowCount * sizeof(shared::ShadowConstants));
         next.gatherMapBytes =
             current.gatherMapBytes + aligned(current.shadowCount * sizeof(shared::GatherMapConstants));
-        next.recordMapBytes =
-            current.recordMapBytes + aligned(current.shadowCount * sizeof(shared::RecordMapConstants));
+        next.entryMapBytes =
+            current.entryMapBytes + aligned(current.shadowCount * sizeof(shared::EntryMapConstants));
         current = next;
         addLight(frame, frame.lights[i], &current);
       }
@@ -135,8 +140,8 @@ void forEachLightGroup(const PellucidFrame& frame, OnGroup&& group) {
 bool needsChord(const PellucidFrame& frame);
 
 struct LightGroups {
-  uint32_t count = 0, gathered = 0;            // gathered: with lights that are gathered from
-  uint32_t recordColumns = 0, recordRows = 0;  // the most of a group
+  uint32_t count = 0, gathered = 0;          // gathered: with lights that are gathered from
+  uint32_t entryColumns = 0, entryRows = 0;  // the most of a group
   // Dispatches besides those over all pixels.
   uint32_t gatherDispatches() const { return gathered > 0 ? 2 * gathered + 1 : 0; }
   // Dispatches over all pixels. What is gathered in several groups is added at once.
@@ -147,7 +152,7 @@ LightGroups lightGroups(const PellucidFrame& frame);
 
 // Whether all light that comes through is gathered, in one group and for every pixel with a material: then
 // what adds it needs nothing else of the pixels.
-bool addsPoints(const PellucidFrame& frame);
+bool addsProbes(const PellucidFrame& frame);
 
 // Byte ranges of the constants slice.
 struct ConstantsLayout {
@@ -155,7 +160,7 @@ struct ConstantsLayout {
     VkDeviceSize offset, size;
   };
   Range frame, lights, shadows, materials, kernels;
-  Range gatherMaps, recordMaps, gatherDispatches;  // of frames that gather
+  Range gatherMaps, entryMaps, gatherDispatches;  // of frames that gather
   VkDeviceSize size;
   uint32_t lightCount;
 };

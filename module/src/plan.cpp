@@ -17,18 +17,18 @@ struct Stages {
   bool diffusion;
   uint32_t fused;    // fused dispatches
   bool history;      // these write the history, and one more adds it
-  bool keepsPoints;  // the history is what the gather's points share: these read it
+  bool keepsProbes;  // the history is what the gather's probes have found: these read it
   bool copies;  // the diffusion is all there is: it copies the irradiance before it writes the output, which
                 // may be the same image and whose pixels read their neighbors
   LightGroups groups;  // of lights
   bool overlaps;  // the gather runs beside the diffusion, which it does not wait for, with images of its own
-  bool addsPoints;  // the diffusion's last dispatch adds what was gathered: no other light comes through
+  bool addsProbes;  // the diffusion's last dispatch adds what was gathered: no other light comes through
   bool skipsLight;  // the GPU says whether anything was gathered
 
   // Dispatches that write a color transient or the output.
   uint32_t writers() const { return (history ? 1 : fused) + (diffusion ? 1 : 0) + (copies ? 1 : 0); }
   uint32_t colorTransients() const { return std::min(writers() - 1, 2u); }
-  // Of packed texels: the pyramid; what the gather's points find; records, if they do not lie where the
+  // Of packed texels: the pyramid; what the gather's probes find; entry points, if they do not lie where the
   // pyramid was.
   uint32_t texelTransients() const { return groups.gathered > 0 ? (overlaps ? 3 : 2) : diffusion ? 1 : 0; }
 };
@@ -38,18 +38,18 @@ Stages stagesOf(const PellucidFrame& frame) {
   Stages s{};
   if (frame.features & PELLUCID_FEATURE_TRANSLUCENCY || debug) s.groups = lightGroups(frame);
   s.diffusion = frame.features & PELLUCID_FEATURE_DIFFUSION && !debug && anyMaterialDiffuses(frame);
-  s.addsPoints = s.diffusion && addsPoints(frame);
-  s.fused = s.addsPoints ? 0 : s.groups.fused();
+  s.addsProbes = s.diffusion && addsProbes(frame);
+  s.fused = s.addsProbes ? 0 : s.groups.fused();
   s.lights = s.fused > 0;
   s.copies = s.diffusion && !s.lights && !frame.separateOutput;
   // Without diffusion the fused pass still has to bring irradiance (times albedo) to the output.
   if (s.writers() == 0) s.fused = 1;
-  s.keepsPoints = keepsPoints(frame);
-  s.history = keepsHistory(frame) && !s.keepsPoints;
+  s.keepsProbes = keepsProbes(frame);
+  s.history = keepsHistory(frame) && !s.keepsProbes;
   // More would be more transients than there are.
   s.overlaps = s.diffusion && s.groups.gathered == 1 && s.colorTransients() <= 1 && !s.history;
   // Points that are kept are read where none is found, too.
-  s.skipsLight = s.overlaps && s.addsPoints && !s.keepsPoints && frame.indirectDispatches;
+  s.skipsLight = s.overlaps && s.addsProbes && !s.keepsProbes && frame.indirectDispatches;
   return s;
 }
 
@@ -78,7 +78,7 @@ bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan
             constantsLayout(frame),
             renderRect(frame),
             stages.colorTransients(),
-            stages.keepsPoints,
+            stages.keepsProbes,
             stages.overlaps,
             stages.skipsLight,
             plan};
@@ -118,8 +118,8 @@ bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan
       coarsest -= 2;
   }
 
-  const bool reused = (stages.history || stages.keepsPoints) && decideReuse(frame, kept, &plan.history);
-  if (reused) b.skip(stages.keepsPoints ? "gather" : "translucency", "reused from an earlier frame");
+  const bool reused = (stages.history || stages.keepsProbes) && decideReuse(frame, kept, &plan.history);
+  if (reused) b.skip(stages.keepsProbes ? "gather" : "translucency", "reused from an earlier frame");
 
   // Images alternate between the two transients; the last write goes to the output.
   uint32_t source = PELLUCID_RESOURCE_IRRADIANCE, next = 0;
@@ -140,9 +140,9 @@ bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan
     uint32_t index = 0;
     forEachLightGroup(frame, [&](const LightGroup& group) {
       const bool gathers = group.gathered > 0 && !reused && !stages.overlaps;
-      if (gathers) fits = fits && b.records(group) && b.points(group, index > 0);
+      if (gathers) fits = fits && b.entryPoints(group) && b.probes(group, index > 0);
       if (++index < stages.groups.gathered) return;
-      if (gathers) fits = fits && b.share();
+      if (gathers) fits = fits && b.filterProbes();
       fused(group);
     });
   };
@@ -167,32 +167,33 @@ bool build(const PellucidFrame& frame, const PellucidHistory& kept, PellucidPlan
       forEachLightGroup(frame, [&](const LightGroup& group) {
         if (group.gathered > 0) gathered = group;
       });
-    // The resolve makes the last two levels, so that no dispatch of few texels holds up the others.
-    const bool makesLast = coarsest == PELLUCID_LAST_LEVEL;
-    const uint32_t reduced = coarsest - (makesLast ? 2 : 0);
-    // Records, points and sharing, each beside one of the last three dispatches before the one that adds
-    // points: quads, reductions and the resolve are at least as many.
-    const uint32_t before = 2 + (reduced - kFirstLevel) / 2;
+    // Upsampling makes the last two levels, so that no dispatch of few texels holds up the others.
+    const uint32_t downsampled = coarsest - (coarsest == PELLUCID_LAST_LEVEL ? 2 : 0);
+    // Entry points, probes and their filter, each beside one of the last three dispatches before the one that
+    // adds light: base level, downsampling and upsampling are at least as many.
+    const uint32_t before = 2 + (downsampled - kFirstLevel) / 2;
     uint32_t step = 0;
     const auto alongside = [&] {
       const uint32_t left = before - step++;
       if (gathered.gathered == 0 || left > 3) return;
       b.alongside = true;
-      fits = fits && (left == 3 ? b.records(gathered) : left == 2 ? b.points(gathered, false) : b.share());
+      fits = fits && (left == 3   ? b.entryPoints(gathered)
+                      : left == 2 ? b.probes(gathered, false)
+                                  : b.filterProbes());
       b.alongside = false;
     };
     const uint32_t copy = stages.copies ? destination() : source;
-    fits = fits && b.quads(source, copy);
+    fits = fits && b.baseLevel(source, copy);
     alongside();
     source = copy;
-    for (uint32_t finer = kFirstLevel; finer < reduced; finer += 2) {
-      fits = fits && b.reduce(finer);
+    for (uint32_t finer = kFirstLevel; finer < downsampled; finer += 2) {
+      fits = fits && b.downsample(finer);
       alongside();
     }
-    fits = fits && b.resolve(coarsest, makesLast);
+    fits = fits && b.upsample(coarsest);
     alongside();
     const uint32_t to = destination();
-    fits = fits && b.diffuse(source, to, stages.addsPoints);
+    fits = fits && b.diffuse(source, to, stages.addsProbes);
     if (stages.skipsLight) fits = fits && b.diffuse(source, to, false);
     source = to;
   };
@@ -237,31 +238,31 @@ extern "C" PellucidResult pellucidGetImageNeeds(const PellucidFrame* frame, uint
   const Stages stages = stagesOf(*frame);
   const uint32_t colors = stages.colorTransients(), transients = colors + stages.texelTransients();
   const uint32_t room = *count;
-  *count = transients + (stages.history || stages.keepsPoints ? 1 : 0);
+  *count = transients + (stages.history || stages.keepsProbes ? 1 : 0);
   if (!needs) return PELLUCID_OK;  // validation asks for the number in every frame
   // Without a plan before it, that of a frame that refreshes a history: every image is in use.
   PellucidPlan plan{};
   if (!build(*frame, {}, plan)) return PELLUCID_ERROR_CAPACITY;
-  const uint64_t colorBytes = frame->outputFormat == VK_FORMAT_R32G32B32A32_SFLOAT ? 16 : 8;
+  const uint64_t colorBytes = isWide(*frame) ? 16 : 8;
   for (uint32_t i = 0; i < *count && i < room; ++i) {
     const bool persistent = i == transients, texels = !persistent && i >= colors;
     PyramidExtent size{frame->imageExtent[0], frame->imageExtent[1]};
-    const uint32_t texel = i - colors;  // the pyramid, points, records
-    const bool kept = persistent && stages.keepsPoints;
+    const uint32_t texel = i - colors;  // the pyramid, probes, entry points
+    const bool kept = persistent && stages.keepsProbes;
     if (texels || kept)
       size = texels && texel == 0 && stages.diffusion ? pyramidExtent(*frame) : PyramidExtent{1, 1};
-    const bool records = texels && stages.groups.gathered > 0 && texel == (stages.overlaps ? 2u : 0u);
-    if (kept || records || (texels && texel == 1)) {
+    const bool entries = texels && stages.groups.gathered > 0 && texel == (stages.overlaps ? 2u : 0u);
+    if (kept || entries || (texels && texel == 1)) {
       const uint32_t side = gatherSpacing(*frame);
       const auto fit = [&](uint32_t* most, uint32_t pixels, uint32_t ofMaps) {
-        *most = std::max({*most, (pixels - 1) / side + 1, records ? ofMaps : 0});
+        *most = std::max({*most, (pixels - 1) / side + 1, entries ? ofMaps : 0});
       };
-      fit(&size.width, frame->imageExtent[0], withCoarserRecords(stages.groups.recordColumns));
-      fit(&size.height, frame->imageExtent[1], stages.groups.recordRows);
+      fit(&size.width, frame->imageExtent[0], withCoarserEntries(stages.groups.entryColumns));
+      fit(&size.height, frame->imageExtent[1], stages.groups.entryRows);
     }
     PellucidImageNeed& need = needs[i];
     need = {};
-    need.format = texels || kept ? VK_FORMAT_R32G32B32A32_UINT : frame->outputFormat;
+    need.format = texels || kept ? VK_FORMAT_R32G32B32A32_UINT : colorFormat(*frame);
     need.extent[0] = size.width;
     need.extent[1] = size.height;
     need.bytes = (texels || kept ? kTexelBytes : colorBytes) * size.width * size.height;
@@ -275,7 +276,7 @@ extern "C" PellucidResult pellucidGetImageNeeds(const PellucidFrame* frame, uint
           need.lastDispatch = d;
         }
     // Frames that reuse the history lack the dispatches that refresh it.
-    const uint32_t refreshing = stages.keepsPoints ? stages.groups.gatherDispatches()
+    const uint32_t refreshing = stages.keepsProbes ? stages.groups.gatherDispatches()
                                 : stages.history   ? stages.fused
                                                    : 0;
     need.firstDispatch -= std::min(need.firstDispatch, refreshing);

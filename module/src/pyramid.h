@@ -16,7 +16,7 @@ struct PyramidPlace {
   int32_t x, y;  // in the image
   struct {
     int32_t x, y, width, height;
-  } rect;  // texels of the level that the render rect needs, as levelRect of compute/lib/pyramid.glsl
+  } rect;  // texels of the level that the render rect needs, as levelRect of compute/diffusion/texel.glsl
 };
 
 PyramidPlace placeOf(const PellucidFrame& frame, uint32_t level);

@@ -68,8 +68,17 @@ PellucidResult checkPlan(const PellucidContext& c, const PellucidPlan& plan, con
           << "was made from another frame, whose " << nameOf(static_cast<PellucidFact>(i)) << " differs";
       return refuse(c, "plan", sentence);
     }
+  if (c.outputFormat != VK_FORMAT_UNDEFINED && c.outputFormat != f.outputFormat)
+    return refuse(c, "outputFormat",
+                  "is not PellucidContextDesc::outputFormat, which the context writes alone");
   for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
     const PellucidDispatch& d = plan.dispatches[i];
+    if (d.pipeline >= kPipelineCount || c.pipelines[d.pipeline] == VK_NULL_HANDLE) {
+      char sentence[128];
+      Text(sentence, sizeof sentence) << "needs pipeline " << pellucidPipelineName(d.pipeline)
+                                      << ", which PellucidContextDesc::uses leaves out";
+      return refuse(c, "plan", sentence);
+    }
     for (uint32_t b = 0; b < d.bindingCount; ++b) {
       const uint32_t resource = d.bindings[b].resource;
       if (resource != PELLUCID_RESOURCE_CONSTANTS && imageOf(f, resource).view == VK_NULL_HANDLE)

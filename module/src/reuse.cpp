@@ -46,14 +46,14 @@ bool keepsHistory(const PellucidFrame& f) {
          (f.features & PELLUCID_FEATURE_TRANSLUCENCY) != 0 && lightGroups(f).count > 0;
 }
 
-bool keepsPoints(const PellucidFrame& f) { return keepsHistory(f) && lightGroups(f).gathered > 0; }
+bool keepsProbes(const PellucidFrame& f) { return keepsHistory(f) && lightGroups(f).gathered > 0; }
 
 bool decideReuse(const PellucidFrame& f, const PellucidHistory& kept, PellucidHistory* result) {
   PellucidHistory& now = *result;
   now = {};
   now.valid = 1;
-  now.format = keepsPoints(f) ? VK_FORMAT_R32G32B32A32_UINT : f.outputFormat;
-  now.gatherSpacing = keepsPoints(f) ? gatherSpacing(f) : 0;
+  now.format = keepsProbes(f) ? VK_FORMAT_R32G32B32A32_UINT : colorFormat(f);
+  now.gatherSpacing = keepsProbes(f) ? gatherSpacing(f) : 0;
   const Rect r = renderRect(f);
   const uint32_t rect[4] = {r.x, r.y, r.width, r.height};
   std::copy(f.imageExtent, f.imageExtent + 2, now.extent);

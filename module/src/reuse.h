@@ -9,7 +9,7 @@ namespace pellucid {
 bool keepsHistory(const PellucidFrame& frame);
 
 // What it keeps are the points of a gather, which are added to the frame's own diffused light.
-bool keepsPoints(const PellucidFrame& frame);
+bool keepsProbes(const PellucidFrame& frame);
 
 // For a frame that keeps its transmitted light: whether `kept`, of the previous plan, stands in for this
 // frame's. `now` becomes what the history holds after the frame.

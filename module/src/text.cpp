@@ -52,40 +52,6 @@ extern "C" const char* pellucidResourceName(uint32_t resource) {
   return resource < names.size() ? names[resource] : "unknown resource";
 }
 
-extern "C" const char* pellucidPipelineName(uint32_t pipeline) {
-  static constexpr std::array names = {"translucency_rgba16f",
-                                       "translucency_rgba32f",
-                                       "debug_rgba16f",
-                                       "debug_rgba32f",
-                                       "diffuse_rgba16f",
-                                       "diffuse_rgba32f",
-                                       "gather_rgba16f",
-                                       "gather_rgba32f",
-
-                                       "add_history_rgba16f",
-                                       "add_history_rgba32f",
-                                       "quads_and_copy_rgba16f",
-                                       "quads_and_copy_rgba32f",
-                                       "quads",
-                                       "reduce_levels",
-                                       "resolve_levels",
-                                       "diffuse_coarse_rgba16f",
-                                       "diffuse_coarse_rgba32f",
-                                       "gather_records",
-                                       "gather_points",
-                                       "gather_share",
-                                       "gather_records_directional",
-                                       "gather_points_directional",
-                                       "diffuse_gather_rgba16f",
-                                       "diffuse_gather_rgba32f",
-                                       "diffuse_coarse_gather_rgba16f",
-                                       "diffuse_coarse_gather_rgba32f",
-                                       "gather_records_one_map",
-                                       "reduce_and_resolve"};
-  static_assert(names.size() == PELLUCID_PIPELINE_COUNT);
-  return pipeline < names.size() ? names[pipeline] : "unknown pipeline";
-}
-
 namespace {
 
 const char* descriptorName(VkDescriptorType type) {

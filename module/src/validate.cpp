@@ -272,9 +272,10 @@ PellucidResult checkFrame(const PellucidFrame* frame, PellucidMessageFn fn, void
   if (const char* wrong = readDepthRange(toMatrix(f.clipFromView), &range)) out.error("clipFromView", wrong);
   if (!finite(f.viewFromWorld, 16) || !rigid(toMatrix(f.viewFromWorld)))
     out.error("viewFromWorld", "is not a rotation and translation");
-  if (f.outputFormat != VK_FORMAT_R16G16B16A16_SFLOAT && f.outputFormat != VK_FORMAT_R32G32B32A32_SFLOAT)
+  if (f.outputFormat != VK_FORMAT_R16G16B16A16_SFLOAT && f.outputFormat != VK_FORMAT_R32G32B32A32_SFLOAT &&
+      f.outputFormat != VK_FORMAT_B10G11R11_UFLOAT_PACK32)
     out.error("outputFormat", "is VkFormat ", static_cast<int>(f.outputFormat),
-              "; use R16G16B16A16_SFLOAT or R32G32B32A32_SFLOAT");
+              "; use R16G16B16A16_SFLOAT, R32G32B32A32_SFLOAT or B10G11R11_UFLOAT_PACK32");
   checkMinimumDotTable(f, out);
 
   if (f.gatherSpacing != 0 && f.gatherSpacing != 1 && f.gatherSpacing != 2 && f.gatherSpacing != 4)

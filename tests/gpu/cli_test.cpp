@@ -11,7 +11,7 @@ TEST_F(Cli, CaptureReplayComparePlan) {
   expect(0, "capture --procedural slab --size 48x32 -o " + capture, "");
   expect(0, "info " + capture, "shadow");
   expect(0, "plan " + capture, "\"dispatchCount\": 9");
-  expect(0, "replay " + capture + " -o " + out + " --triptych " + path("t.png") + " --png", "resolve");
+  expect(0, "replay " + capture + " -o " + out + " --triptych " + path("t.png") + " --png", "upsample");
   expect(0, "replay " + capture + " -o " + again, "median of 3 frames after a first one");
   expect(0, "compare " + out + " " + again + " --mask " + capture + " --limit max=0", "rel_rmse");
   for (const char* file : {"out.exr", "out.png", "t.png"}) EXPECT_GT(fs::file_size(path(file)), 100u) << file;

@@ -130,14 +130,14 @@ TEST_F(Gather, PlanGathersBesideTheDiffusion) {
       const PellucidDispatch& d = plan.dispatches[i];
       if (i > 0 && !d.barrierBefore) beside.push_back(d.name);
       if (d.indirect) decided.push_back(d.name);
-      EXPECT_EQ(d.barrierIndirect != 0, indirect && d.name == std::string("resolve"))
-          << "share, the first that the GPU decides about, runs beside the resolve";
+      EXPECT_EQ(d.barrierIndirect != 0, indirect && d.name == std::string("upsample"))
+          << "the spatial filter, the first that the GPU decides about, runs beside upsampling";
     }
-    EXPECT_EQ(beside, (std::vector<std::string>{"gather records", "gather points", "gather share"}));
+    EXPECT_EQ(beside, (std::vector<std::string>{"entry points", "probes", "filter probes"}));
     using Names = std::vector<std::string>;
-    EXPECT_EQ(decided, indirect ? Names({"gather share", "diffuse", "diffuse, none gathered"}) : Names());
-    EXPECT_EQ(plan.dispatches[plan.dispatchCount - (indirect ? 2 : 1)].pipeline,
-              static_cast<uint32_t>(PELLUCID_PIPELINE_DIFFUSE_GATHER_32F));
+    EXPECT_EQ(decided, indirect ? Names({"filter probes", "diffuse", "diffuse, none gathered"}) : Names());
+    EXPECT_STREQ(pellucidPipelineName(plan.dispatches[plan.dispatchCount - (indirect ? 2 : 1)].pipeline),
+                 "diffuse_gathered");
   }
 }
 
@@ -197,19 +197,19 @@ TEST_F(Gather, OtherLightsAreAddedAfterTheDiffusion) {
   Capture c = backlitSlab(1, PELLUCID_DEPTH_VIEW_Z);
   const auto last = [&](const ReplaySettings& s) {
     const PellucidPlan plan = replayer().run(c, {testMaterial()}, s).plan;
-    return plan.dispatches[plan.dispatchCount - 1].pipeline;
+    return std::string(pellucidPipelineName(plan.dispatches[plan.dispatchCount - 1].pipeline));
   };
   ReplaySettings s = settings(8);
   s.indirectDispatches = false;
   s.translucency.gatherSpacing = 2;
-  EXPECT_EQ(last(s), static_cast<uint32_t>(PELLUCID_PIPELINE_GATHER_32F));
+  EXPECT_EQ(last(s), "add_gathered");
   s.translucency.gatherSpacing = 4;
   s.translucency.materialMarkBit = 128;
-  EXPECT_EQ(last(s), static_cast<uint32_t>(PELLUCID_PIPELINE_GATHER_32F));
+  EXPECT_EQ(last(s), "add_gathered");
   s.translucency.materialMarkBit = 0;
-  EXPECT_EQ(last(s), static_cast<uint32_t>(PELLUCID_PIPELINE_DIFFUSE_GATHER_32F));
+  EXPECT_EQ(last(s), "diffuse_gathered");
   c.lights.push_back(backLight());
-  EXPECT_EQ(last(s), static_cast<uint32_t>(PELLUCID_PIPELINE_GATHER_32F));
+  EXPECT_EQ(last(s), "add_gathered");
 }
 
 TEST_F(Gather, RefusesWhatItCannotSample) {

@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "frame_fixture.h"
-#include "shaders.h"
+#include "output_format.h"
 #include "shared/pellucid_shared.h"
 
 namespace {
@@ -33,7 +33,7 @@ bool skips(const PellucidPlan& plan, const std::string& what, const std::string&
 TEST(Plan, WholeFrameIsFusedDispatchAndPyramid) {
   Frame f;
   const PellucidPlan plan = f.plan();
-  EXPECT_EQ(names(plan), (std::vector<std::string>{"translucency", "quads", "reduce", "reduce", "resolve", "diffuse"}));
+  EXPECT_EQ(names(plan), (std::vector<std::string>{"translucency", "base level", "downsample", "downsample", "upsample", "diffuse"}));
   EXPECT_EQ(plan.barrierCount, 5u);
   EXPECT_EQ(plan.skipCount, 2u);
   EXPECT_TRUE(skips(plan, "exit depth", "a shadow map has none: air behind an occluder counts as medium"));
@@ -98,8 +98,8 @@ TEST(Plan, NoLightNoTranslucency) {
   Frame f;
   f.frame.lightCount = 0;
   const PellucidPlan plan = f.plan();
-  EXPECT_EQ(names(plan), (std::vector<std::string>{"quads", "reduce", "reduce", "resolve", "diffuse"}));
-  EXPECT_EQ(plan.dispatches[0].pipeline, static_cast<uint32_t>(PELLUCID_PIPELINE_QUADS_AND_COPY_16F));
+  EXPECT_EQ(names(plan), (std::vector<std::string>{"base level", "downsample", "downsample", "upsample", "diffuse"}));
+  EXPECT_EQ(plan.dispatches[0].pushConstants[0], 1u) << "copies";
   EXPECT_TRUE(skips(plan, "translucency", "no light can contribute"));
 }
 
@@ -120,11 +120,11 @@ TEST(Plan, DiffusionAloneCopiesTheIrradianceUnlessTheOutputIsSeparate) {
     };
     const PellucidPlan copying = f.plan();
     const uint32_t before = needs();
-    EXPECT_EQ(copying.dispatches[0].pipeline, static_cast<uint32_t>(PELLUCID_PIPELINE_QUADS_AND_COPY_16F));
+    EXPECT_EQ(copying.dispatches[0].pushConstants[0], 1u);
     EXPECT_FALSE(reads(copying.dispatches[copying.dispatchCount - 1], PELLUCID_RESOURCE_IRRADIANCE));
     f.frame.separateOutput = 1;
     const PellucidPlan separate = f.plan();
-    EXPECT_EQ(separate.dispatches[0].pipeline, static_cast<uint32_t>(PELLUCID_PIPELINE_QUADS));
+    EXPECT_EQ(separate.dispatches[0].pushConstants[0], 0u);
     EXPECT_TRUE(reads(separate.dispatches[separate.dispatchCount - 1], PELLUCID_RESOURCE_IRRADIANCE));
     EXPECT_EQ(names(separate), names(copying));
     EXPECT_EQ(needs(), before - 1);
@@ -164,7 +164,7 @@ TEST(Plan, ManyShadowImagesBecomeSeveralDispatches) {
     lights += plan.dispatches[i].pushConstants[1];
   }
   EXPECT_EQ(lights, 20u);
-  EXPECT_STREQ(plan.dispatches[3].name, "quads");
+  EXPECT_STREQ(plan.dispatches[3].name, "base level");
 }
 
 // Exit depths and caster materials are shadow images, too.
@@ -190,7 +190,7 @@ TEST(Plan, ImagesBesideMapsCount) {
     EXPECT_EQ(images, (std::vector<uint32_t>{light, 4 + 2 * light, 5 + 2 * light, light + 1, 6 + 2 * light,
                                              7 + 2 * light}));
   }
-  EXPECT_STREQ(plan.dispatches[2].name, "quads");
+  EXPECT_STREQ(plan.dispatches[2].name, "base level");
 }
 
 // Many lights leave out what lies beside their maps before a frame fails that has room for the maps.
@@ -238,38 +238,10 @@ TEST(Plan, ManyLightsBecomeSeveralDispatches) {
   EXPECT_LE(end, plan.constantsSize);
 }
 
-// The gather's variant for directional lights is chosen only where everything that it takes for granted holds.
-TEST(Plan, DirectionalVariantNeedsTheCommonCase) {
-  const auto pipeline = [](const std::function<void(Frame&)>& change) {
-    Frame f;
-    f.frame.normal = Frame::view();
-    f.frame.gatherSamples = 8;
-    change(f);
-    f.use();
-    const PellucidPlan plan = f.plan();
-    for (uint32_t i = 0; i < plan.dispatchCount; ++i)
-      if (names(plan)[i] == "gather points") return plan.dispatches[i].pipeline;
-    return uint32_t{PELLUCID_PIPELINE_COUNT};
-  };
-  const auto directional = [&](const std::function<void(Frame&)>& change) {
-    return pipeline(change) == static_cast<uint32_t>(PELLUCID_PIPELINE_GATHER_POINTS_DIRECTIONAL);
-  };
-  ASSERT_TRUE(directional([](Frame&) {}));
-  EXPECT_FALSE(directional([](Frame& f) { f.frame.normal = {}; }));
-  EXPECT_FALSE(directional([](Frame& f) { f.frame.frontDepthEncoding = PELLUCID_DEPTH_VIEW_Z; }));
-  EXPECT_FALSE(directional([](Frame& f) { f.frame.thicknessSource = PELLUCID_THICKNESS_CAMERA; }));
-  EXPECT_FALSE(directional([](Frame& f) { f.frame.angleModel = PELLUCID_ANGLE_COSINE; }));
-  EXPECT_FALSE(directional([](Frame& f) { f.frame.constantViewDirection = 1; }));
-  EXPECT_FALSE(directional([](Frame& f) { f.lights[0].shadowMapCount = 0; }));
-  EXPECT_FALSE(directional([](Frame& f) {
-    f.maps[0].encoding = PELLUCID_DEPTH_VIEW_Z;
-    for (int i = 0; i < 4; ++i) f.maps[0].viewFromWorld[5 * i] = 1;
-  }));
-}
-
 // Of a shader's workgroups, as its SPIR-V states it: columns, rows.
 std::array<uint32_t, 2> workgroupOf(uint32_t pipeline) {
-  const pellucid::Shader shader = pellucid::shaderOf(pipeline);
+  PellucidShader shader{};
+  EXPECT_EQ(pellucidGetShader(pipeline, &shader), PELLUCID_OK);
   constexpr size_t kHeaderWords = 5;
   constexpr uint32_t kOpExecutionMode = 16, kLocalSize = 17;
   for (size_t i = kHeaderWords; i < shader.wordCount; i += shader.words[i] >> 16)
@@ -290,9 +262,9 @@ TEST(Plan, TilesAreThoseOfTheShader) {
   EXPECT_EQ(d.groups[1], (f.frame.imageExtent[1] + 2 * rows - 1) / (2 * rows));
 }
 
-// What the directional records read is a uniform buffer.
-TEST(Plan, RecordsOfMoreMapsThanAUniformBufferHoldsAreTheGeneralOnes) {
-  const auto records = [](size_t lights) {
+// Uniform buffers of the gather hold what every device binds, however many maps there are.
+TEST(Plan, EntryPointsOfManyMapsBindNoMoreThanDevicesDo) {
+  for (const size_t lights : {size_t{1}, size_t{65}, size_t{128}}) {
     Frame f;
     f.frame.normal = Frame::view();
     f.frame.gatherSamples = 8;
@@ -300,21 +272,19 @@ TEST(Plan, RecordsOfMoreMapsThanAUniformBufferHoldsAreTheGeneralOnes) {
     f.lights.resize(lights, f.lights[0]);
     f.use();
     const PellucidPlan plan = f.plan();
+    uint32_t found = 0;
     for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
-      if (names(plan)[i] != "gather records") continue;
+      if (names(plan)[i] != "entry points") continue;
+      ++found;
       const PellucidDispatch& d = plan.dispatches[i];
       for (uint32_t b = 0; b < d.bindingCount; ++b) {
         const PellucidBinding& binding = d.bindings[b];
         EXPECT_LE(binding.offset + binding.size, plan.constantsSize);
         EXPECT_TRUE(binding.type != VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER || binding.size <= 16384);
       }
-      return d.pipeline;
     }
-    return uint32_t{PELLUCID_PIPELINE_COUNT};
-  };
-  EXPECT_EQ(records(PELLUCID_RECORD_MAPS),
-            static_cast<uint32_t>(PELLUCID_PIPELINE_GATHER_RECORDS_DIRECTIONAL));
-  EXPECT_EQ(records(PELLUCID_RECORD_MAPS + 1), static_cast<uint32_t>(PELLUCID_PIPELINE_GATHER_RECORDS));
+    EXPECT_EQ(found, 1u);
+  }
 }
 
 TEST(Plan, ImageNeedsCoverThePlan) {
@@ -363,16 +333,37 @@ TEST(Plan, JsonParses) {
 }
 
 TEST(Plan, ShadersAreSpirv) {
-  for (uint32_t p = 0; p < PELLUCID_PIPELINE_COUNT; ++p) {
-    const uint32_t* words = nullptr;
-    size_t count = 0;
-    ASSERT_EQ(pellucidGetShader(p, &words, &count), PELLUCID_OK);
-    ASSERT_GT(count, 5u);
-    EXPECT_EQ(words[0], 0x07230203u);
+  PellucidShader shader{};
+  for (uint32_t p = 0; p < pellucidGetPipelineCount(); ++p) {
+    ASSERT_EQ(pellucidGetShader(p, &shader), PELLUCID_OK);
+    ASSERT_GT(shader.wordCount, 5u);
+    EXPECT_EQ(shader.words[0], 0x07230203u);
+    for (uint32_t i = 0; i < shader.constantCount; ++i) EXPECT_LE(shader.constants[i].value, 1u);
   }
-  const uint32_t* words = nullptr;
-  size_t count = 0;
-  EXPECT_EQ(pellucidGetShader(PELLUCID_PIPELINE_COUNT, &words, &count), PELLUCID_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(pellucidGetShader(pellucidGetPipelineCount(), &shader), PELLUCID_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(pellucidGetShader(0, nullptr), PELLUCID_ERROR_INVALID_ARGUMENT);
+}
+
+// What the context does for devices without shaderStorageImageWriteWithoutFormat.
+TEST(Plan, OutputFormatIsPatchedIntoShaders) {
+  const auto counts = [](const std::vector<uint32_t>& words) {
+    std::array<int, 2> result{};  // capabilities and images without a format
+    for (size_t i = 5; i < words.size(); i += words[i] >> 16) {
+      const uint32_t opcode = words[i] & 0xFFFF;
+      if (opcode == 17 && words[i + 1] == 56) ++result[0];
+      if (opcode == 25 && words[i + 7] == 2 && words[i + 8] == 0) ++result[1];
+    }
+    return result;
+  };
+  for (uint32_t p = 0; p < pellucidGetPipelineCount(); ++p) {
+    PellucidShader shader{};
+    ASSERT_EQ(pellucidGetShader(p, &shader), PELLUCID_OK);
+    std::vector<uint32_t> words(shader.words, shader.words + shader.wordCount);
+    const auto before = counts(words);
+    EXPECT_EQ(before[0], before[1]) << pellucidPipelineName(p);
+    pellucid::fixOutputFormat(words.data(), words.size(), true);
+    EXPECT_EQ(counts(words), (std::array<int, 2>{})) << pellucidPipelineName(p);
+  }
 }
 
 TEST(Plan, ConstantsStayInTheirSlice) {

@@ -237,7 +237,7 @@ TEST(Names, AreKnown) {
   EXPECT_STREQ(pellucidResultName(PELLUCID_ERROR_CAPACITY), "PELLUCID_ERROR_CAPACITY");
   EXPECT_STREQ(pellucidResourceName(PELLUCID_RESOURCE_OUTPUT), "output");
   EXPECT_STREQ(pellucidResourceName(PELLUCID_RESOURCE_SHADOW0 + 3), "shadowImage");
-  EXPECT_STREQ(pellucidPipelineName(PELLUCID_PIPELINE_COUNT), "unknown pipeline");
+  EXPECT_STREQ(pellucidPipelineName(pellucidGetPipelineCount()), "unknown pipeline");
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 #include "draw.glsl"
-#include "gbuffer_decode.glsl"
+#include "frame/gbuffer_decode.glsl"
 #include "shared/pellucid_shared.h"
 
 layout(location = 1) in vec2 uv;
@@ -49,7 +49,7 @@ float shadowTexel(uint image, ivec2 texel) {
   }
 }
 
-#include "lib/transmission.glsl"
+#include "translucency/transmission.glsl"
 
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
@@ -68,7 +68,7 @@ void main() {
   s.material = material;
   vec3 sum = vec3(0.0);
   for (uint i = 0u; i < draw.ids.w; ++i) {
-    Transmitted t = lightTransmission(lights[i], s);
+    Transmitted t = lightTransmission(lights[i], s, lights[i].meta.z != 0u);
     vec3 light = t.arriving * t.visible;
     if (t.thickness >= 0.0 && max(light.r, max(light.g, light.b)) > 0.0)
       sum += light * materialTransmittance(material - 1u, t.thickness * frame.camera.range.w);

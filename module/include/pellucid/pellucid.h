@@ -24,7 +24,7 @@ extern "C" {
 #endif
 
 /* Passed in PellucidContextDesc; the library refuses a header it does not know. */
-#define PELLUCID_HEADER_VERSION 2u
+#define PELLUCID_HEADER_VERSION 3u
 
 typedef int32_t PellucidResult;
 enum {
@@ -217,8 +217,9 @@ typedef struct PellucidFrame {
   PellucidImage output;     /* required; storage image of outputFormat; may be the irradiance image.
                                Pixels of material 0 are not written; alpha is the irradiance's */
   PellucidImage transients[PELLUCID_MAX_TRANSIENTS]; /* as listed by pellucidGetImageNeeds */
-  VkFormat outputFormat;    /* VK_FORMAT_R16G16B16A16_SFLOAT (default) or R32G32B32A32_SFLOAT; also
-                               of the transients that hold colors */
+  VkFormat outputFormat;    /* R16G16B16A16_SFLOAT (default), R32G32B32A32_SFLOAT or B10G11R11_UFLOAT_PACK32, which has no
+                               alpha; see PellucidContextDesc::outputFormat. 32 bits keep alpha to the bit and colors up to
+                               65504: to 1e-6 without diffusion, to 2^-10 with it, which works in halves */
   uint32_t frontDepthEncoding, backDepthEncoding; /* PELLUCID_DEPTH_DEVICE (default) or VIEW_Z */
   uint32_t normalsInViewSpace; /* 0: world (default) */
 
@@ -316,40 +317,6 @@ typedef enum PellucidResource {
   PELLUCID_RESOURCE_SHADOW0 = 16
 } PellucidResource;
 
-typedef enum PellucidPipeline {
-  PELLUCID_PIPELINE_TRANSLUCENCY_16F = 0,
-  PELLUCID_PIPELINE_TRANSLUCENCY_32F = 1,
-  PELLUCID_PIPELINE_DEBUG_16F = 2,
-  PELLUCID_PIPELINE_DEBUG_32F = 3,
-  PELLUCID_PIPELINE_DIFFUSE_16F = 4,
-  PELLUCID_PIPELINE_DIFFUSE_32F = 5,
-  PELLUCID_PIPELINE_GATHER_16F = 6,
-  PELLUCID_PIPELINE_GATHER_32F = 7,
-  PELLUCID_PIPELINE_ADD_HISTORY_16F = 8,
-  PELLUCID_PIPELINE_ADD_HISTORY_32F = 9,
-  PELLUCID_PIPELINE_QUADS_AND_COPY_16F = 10,
-  PELLUCID_PIPELINE_QUADS_AND_COPY_32F = 11,
-  PELLUCID_PIPELINE_QUADS = 12,
-  PELLUCID_PIPELINE_REDUCE_LEVELS = 13,
-  PELLUCID_PIPELINE_RESOLVE_LEVELS = 14,
-  PELLUCID_PIPELINE_DIFFUSE_COARSE_16F = 15, /* without the filter of each pixel's neighbors: quality 0 */
-  PELLUCID_PIPELINE_DIFFUSE_COARSE_32F = 16,
-  PELLUCID_PIPELINE_GATHER_RECORDS = 17,
-  PELLUCID_PIPELINE_GATHER_POINTS = 18,
-  PELLUCID_PIPELINE_GATHER_SHARE = 19,
-  PELLUCID_PIPELINE_GATHER_RECORDS_DIRECTIONAL = 20, /* where all lights that are gathered from are
-                                                        directional with one map of device depth, with normals, EXP2
-                                                        materials and the default models */
-  PELLUCID_PIPELINE_GATHER_POINTS_DIRECTIONAL = 21,
-  PELLUCID_PIPELINE_DIFFUSE_GATHER_16F = 22, /* with what the gather's points share */
-  PELLUCID_PIPELINE_DIFFUSE_GATHER_32F = 23,
-  PELLUCID_PIPELINE_DIFFUSE_COARSE_GATHER_16F = 24,
-  PELLUCID_PIPELINE_DIFFUSE_COARSE_GATHER_32F = 25,
-  PELLUCID_PIPELINE_GATHER_RECORDS_ONE_MAP = 26, /* as DIRECTIONAL, of one light with one map */
-  PELLUCID_PIPELINE_REDUCE_AND_RESOLVE = 27, /* resolves levels of which it makes the last two */
-  PELLUCID_PIPELINE_COUNT = 28
-} PellucidPipeline;
-
 enum {
   PELLUCID_MAX_DISPATCHES = 32,
   PELLUCID_MAX_BINDINGS = 24,
@@ -367,7 +334,7 @@ typedef struct PellucidBinding {
 
 typedef struct PellucidDispatch {
   const char* name;             /* static string */
-  uint32_t pipeline;            /* PellucidPipeline */
+  uint32_t pipeline;            /* index below pellucidGetPipelineCount(); pellucidPipelineName() reads it */
   uint32_t groups[3];           /* workgroups; the most there may be when indirect */
   uint32_t indirect;            /* 1: VkDispatchIndirectCommand at indirectOffset of indirectResource, which earlier
                                    dispatches decide */
@@ -444,6 +411,20 @@ typedef struct PellucidImageNeed {
 
 typedef struct PellucidContext PellucidContext;
 
+/* What frames ask of a context. A pipeline is made if all that it is for is asked for, and recording refuses a plan
+ * that needs one of the others. */
+typedef enum PellucidUse {
+  PELLUCID_USE_TRANSLUCENCY = 1 << 0,    /* lights that are not gathered from, and frames without diffusion */
+  PELLUCID_USE_GATHER = 1 << 1,          /* gathered light */
+  PELLUCID_USE_DIFFUSION = 1 << 2,
+  PELLUCID_USE_QUALITY_0 = 1 << 3,       /* besides qualities 1 and 2, which take the same pipelines */
+  PELLUCID_USE_REUSE = 1 << 4,           /* frame.reuse without a gather */
+  PELLUCID_USE_DEBUG_VIEWS = 1 << 5
+} PellucidUse;
+
+/* Calls job(data, i) for each i in 0..count - 1, on any threads and in any order, and returns when all have returned. */
+typedef void (*PellucidParallelForFn)(void* user, uint32_t count, void (*job)(void* data, uint32_t index), void* data);
+
 typedef struct PellucidContextDesc {
   uint32_t structSize;    /* sizeof(PellucidContextDesc), written by pellucidInitContextDesc */
   uint32_t headerVersion; /* PELLUCID_HEADER_VERSION, likewise */
@@ -456,11 +437,17 @@ typedef struct PellucidContextDesc {
   const VkAllocationCallbacks* allocator; /* optional; host memory of Vulkan objects */
   PellucidMessageFn message;              /* optional */
   void* messageUser;
+  uint32_t uses;            /* PellucidUse bits; 0 (default): all */
+  VkFormat outputFormat;    /* of all frames: R16G16B16A16_SFLOAT (default) or R32G32B32A32_SFLOAT; UNDEFINED: any that
+                               PellucidFrame::outputFormat lists, on a device with the feature
+                               shaderStorageImageWriteWithoutFormat enabled */
+  PellucidParallelForFn parallelFor; /* optional: lends threads to the creation of pipelines */
+  void* parallelUser;
 } PellucidContextDesc;
 
 void pellucidInitContextDesc(PellucidContextDesc* desc);
 
-/* Builds every pipeline. The context is immutable: any thread may use it. On failure *context is
+/* Builds the pipelines of desc.uses. The context is immutable: any thread may use it. On failure *context is
  * NULL and the message callback has the sentence. */
 PellucidResult pellucidCreateContext(const PellucidContextDesc* desc, PellucidContext** context);
 
@@ -536,11 +523,23 @@ PellucidResult pellucidRecordPlan(const PellucidContext* context, VkCommandBuffe
                                   const PellucidPlan* plan, const PellucidFrame* frame,
                                   const PellucidConstantsSlice* constants);
 
-/* For engines that record themselves: the constants RecordPlan would write, and the SPIR-V of a
- * pipeline (entry point "main", push constants PELLUCID_PUSH_CONSTANT_BYTES). */
+typedef struct PellucidSpecialization {
+  uint32_t id, value; /* of 32 bits; booleans are 0 or 1 */
+} PellucidSpecialization;
+
+typedef struct PellucidShader {
+  const uint32_t* words; /* SPIR-V; entry point "main", push constants PELLUCID_PUSH_CONSTANT_BYTES. Declares
+                            StorageImageWriteWithoutFormat */
+  size_t wordCount;
+  uint32_t constantCount;
+  const PellucidSpecialization* constants;
+} PellucidShader;
+
+/* For engines that record themselves: the constants RecordPlan would write, and what each pipeline is made of. */
 PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const PellucidFrame* frame,
                                       void* mapped, size_t size);
-PellucidResult pellucidGetShader(uint32_t pipeline, const uint32_t** words, size_t* wordCount);
+uint32_t pellucidGetPipelineCount(void);
+PellucidResult pellucidGetShader(uint32_t pipeline, PellucidShader* shader);
 
 /* ---- Text ------------------------------------------------------------------------------------ */
 

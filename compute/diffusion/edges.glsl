@@ -1,0 +1,182 @@
+// Pixels of edges: texels of level 2 that are no plane, or whose neighbors are none. All weights go by what lies on a
+// pixel's surface.
+#ifndef PELLUCID_EDGES_GLSL
+#define PELLUCID_EDGES_GLSL
+
+// Fills edges[] and edgeCounts[].
+void collectEdges(int invocation) {
+  if (invocation >= kTexelsX * kTexelsY) return;
+  ivec2 local = ivec2(invocation % kTexelsX, invocation / kTexelsX);
+  int index = (local.y + 1) * kWindowX + local.x + 1;
+  uvec4 its = upsampled[index];
+  if (its.y >> 16 == 0u || isPlane(its)) return;
+  bool full = isFull(shares[index]);
+  uint before = atomicAdd(edgeCounts[local.y], full ? 1u : 0x10000u);
+  int place = full ? int(before & 0xFFFFu) : kTexelsX - 1 - int(before >> 16);
+  edges[kTexelsX * local.y + place] = uint(local.x);
+}
+
+// What pixels of edges ask of a texel and is the same for all of them. Shares without the texel's density: that of the
+// pixel replaces it, and a plane's is 1.
+void prepareForEdges(int index) {
+  uvec4 bits = upsampled[index];
+  Texel t = unpackTexel(bits);
+  spreads[index] = inverseSpread(t.slope, texelSize(t.depth, 2u));
+  if (isPlane(bits)) return;
+  PixelShares s = unpackShares(shares[index].xyz);
+  vec3 density = unpackDensity(shares[index].w) * (1.0 / kDensityOne);
+  s.coarser /= max(s.coarser + density * (1.0 - s.coarser), vec3(1.0e-6));
+  // Less 1 from a half on: halves are too coarse near 1 for what is left of it.
+  s.coarser = mix(s.coarser, min(s.coarser - 1.0, vec3(-6.0e-8)), greaterThan(s.coarser, vec3(0.5)));
+  uvec3 packed = packShares(s);
+  // One by one: others read z and w meanwhile, which a store of a part of a vector may store, too.
+  shares[index].x = packed.x;
+  shares[index].y = packed.y;
+}
+
+// What prepareForEdges did not take from it.
+vec3 coarserOfEdge(vec3 coarser) { return mix(coarser, coarser + 1.0, lessThan(coarser, vec3(0.0))); }
+
+// Colors, materials and depths of a row of texels' pixels with their ring. `first`: of them.
+void keepRow(ivec2 first) {
+  const int kEach = kRowPixels / kInvocations;
+  uvec2 colors[kEach];
+  uint depths[kEach];
+  // All loads at once, so that their latencies overlap.
+  [[unroll]] for (int i = 0; i < kEach; ++i) {
+    int place = int(gl_LocalInvocationIndex) + i * kInvocations;
+    ivec2 pixel = first + ivec2(place % kColumns, place / kColumns), at = withinRect(pixel);
+    colors[i] = packColor(sanitize(texelFetch(sourceImage, at, 0).rgb), at == pixel ? materialAt(at) : 0u);
+    depths[i] = floatBitsToUint(frontDistance(at));
+  }
+  [[unroll]] for (int i = 0; i < kEach; ++i) {
+    int place = int(gl_LocalInvocationIndex) + i * kInvocations;
+    vertical[place] = colors[i];
+    vertical[kRowPixels + place].x = depths[i];
+  }
+}
+
+// The fine filter of a pixel on a surface of that slope, and what of it lies on the surface. `place`: of the pixel in
+// what keepRow kept; `wider`: FineShape's. What is thin is left to planes, as it makes edges no better.
+vec4 fineOfEdge(int place, vec2 slope, vec2 size, float wider) {
+  uint material = vertical[place].y >> 16;
+  float own = uintBitsToFloat(vertical[kRowPixels + place].x);
+  vec2 depthStep = slope * size;
+  float spread2 = inverseSpread(slope, 2.0 * size);
+  vec3 columns = fineWeights(-wider), rows = fineWeights(wider);
+  vec4 fine = vec4(0.0);
+  for (int y = -2; y <= 2; ++y) {
+    float weightY = weightAt(columns, y);
+    // A row without a branch, so that latencies overlap.
+    [[unroll]] for (int x = -2; x <= 2; ++x) {
+      int at = place + y * kColumns + x;
+      uvec2 packed = vertical[at];
+      float theirs = uintBitsToFloat(vertical[kRowPixels + at].x);
+      float along = dot(depthStep, vec2(x, y));
+      float w = sameSurface(theirs - own - along, along, spread2, kPixelFalloff);
+      bool counts = packed.y >> 16 == material && theirs > 0.0;
+      fine += (counts ? w * weightAt(rows, x) * weightY : 0.0) * vec4(unpackColor(packed), 1.0);
+    }
+  }
+  return fine;
+}
+
+// What the texels around a pixel have for it.
+struct Around {
+  vec3 coarser, found;            // colors of level 2 and coarser ones, and how much of the kernel they fill
+  vec3 coarserShare, fineShare;   // mean shares
+  vec2 slope;
+};
+
+// `from`: the pixel from the center of its texel, pixels; `center`: that texel in upsampled[].
+Around aroundPixel(int center, vec2 from, float depth, uint material, vec2 size) {
+  Around a = Around(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec2(0.0));
+  vec3 splineX = spline(0.25 * from.x), splineY = spline(0.25 * from.y);
+  float weights = 0.0;
+  // With gathered light, unrolling over a number that compilers know takes more registers than four groups have.
+  int reach = kGathers ? int(pass.value.y) : 1;
+  for (int y = -1; y <= 1; ++y) {
+    float weightY = y < 0 ? splineY.x : y > 0 ? splineY.z : splineY.y;
+    // A row without a branch, so that latencies overlap.
+    for (int x = -1; x <= reach; ++x) {
+      int index = center + y * kWindowX + x;
+      Texel t = unpackTexel(upsampled[index]);
+      float along = dot(t.slope, (from - 4.0 * vec2(x, y)) * size);
+      float w = sameSurface(depth - t.depth - along, along, spreads[index], kPixelFalloff);
+      w *= weightY * (x < 0 ? splineX.x : x > 0 ? splineX.z : splineX.y);
+      w = t.mass != 0.0 && t.material == material ? w : 0.0;
+      vec3 density = w * (1.0 / kDensityOne) * unpackDensity(shares[index].w);
+      a.coarser += density * t.color;
+      a.found += density;
+      w *= min(t.mass, 1.0);
+      a.slope += w * t.slope;
+      PixelShares s = unpackShares(shares[index].xyz);
+      a.coarserShare += w * coarserOfEdge(s.coarser);
+      a.fineShare += w * s.fine;
+      weights += w;
+    }
+  }
+  float inverse = weights > 0.0 ? 1.0 / weights : 0.0;
+  a.slope *= inverse;
+  a.coarserShare *= inverse;
+  a.fineShare *= (1.0 - a.coarserShare) * inverse;
+  return a;
+}
+
+// `local`: from the group's first pixel.
+void diffuseEdge(ivec2 firstTexel, ivec2 local) {
+  ivec2 pixel = 4 * firstTexel + local;
+  int place = ((local.y & 3) + kRing) * kColumns + local.x + kRing;
+  uint material;
+  float depth;
+  if (kFine) {
+    material = vertical[place].y >> 16;
+    depth = uintBitsToFloat(vertical[kRowPixels + place].x);
+  } else {
+    material = insideRect(pixel) ? materialAt(pixel) : 0u;
+    depth = frontDistance(withinRect(pixel));
+  }
+  if (material == 0u) return;
+  vec4 source = texelFetch(sourceImage, pixel, 0);
+  vec3 own = kFine ? unpackColor(vertical[place]) : sanitize(source.rgb), color = own;
+  if (depth > 0.0) {
+    vec2 size = texelSize(depth, 0u);
+    int center = (local.y / 4 + 1) * kWindowX + local.x / 4 + 1;
+    Around a = aroundPixel(center, vec2(local & 3) - 1.5, depth, material, size);
+    // Shares are weighted with what of their filters was found. The pixel itself counts in the first and the second,
+    // so the divisor is 0 only where all of the share is the coarser one's and none of it is there.
+    vec3 ownShare = 1.0 - a.coarserShare - a.fineShare;
+    vec3 sum = ownShare * own + a.coarserShare * a.coarser, divisor = ownShare + a.coarserShare * a.found;
+    if (kFine) {
+      uint shape = shares[center].z;
+      vec4 fine = isFull(shares[center]) ? vec4(fineOfPlane(place, shape), 1.0)
+                                         : fineOfEdge(place, a.slope, size, unpackShape(shape).wider);
+      sum += a.fineShare * fine.rgb;
+      divisor += a.fineShare * fine.a;
+    }
+    color = mix(own, max(sum, vec3(0.0)) / max(divisor, vec3(1.0e-6)), greaterThan(divisor, vec3(1.0e-6)));
+    if (kGathers && someLight != 0u) color = withGathered(color, pixel, PELLUCID_DIFFUSE_CELL, depth, material);
+  }
+  writeResult(pixel, color, source.a, pass.value.w != 0u);
+}
+
+// For all invocations, as they wait for each other. After diffusePlanes, which prepares the texels.
+void diffuseEdges(ivec2 firstTexel, int invocation) {
+  // The same rows for all.
+  for (uint rows = edgeRows; rows != 0u; rows &= rows - 1u) {
+    int row = findLSB(rows), full = int(edgeCounts[row] & 0xFFFFu), count = full + int(edgeCounts[row] >> 16);
+    if (kFine) {
+      barrier(); // what was there has been read
+      keepRow(4 * firstTexel + ivec2(-kRing, 4 * row - kRing));
+      barrier();
+    }
+    int edge = invocation >> 4, at = invocation & 15;
+    if (edge < count) {
+      int place = edge < full ? edge : kTexelsX - 1 - (edge - full);
+      int texelX = int(edges[kTexelsX * row + place]);
+      diffuseEdge(firstTexel, ivec2(4 * texelX + (at & 3), 4 * row + (at >> 2)));
+    }
+  }
+}
+
+#endif

@@ -1,0 +1,56 @@
+// The fine filter: five taps in each direction around a pixel, wider along rows or columns where the surface is
+// foreshortened. Of the including pass: colors in vertical[].
+#ifndef PELLUCID_FINE_FILTER_GLSL
+#define PELLUCID_FINE_FILTER_GLSL
+
+// Weights in one direction: of the pixel, of its neighbors and of theirs.
+const vec3 kFineWeights = vec3(9.0, 4.0, 1.0) / 19.0, kWideFineWeights = vec3(2.0, 2.0, 1.0) / 8.0;
+
+// `wider`: FineShape's, negative in the other direction.
+vec3 fineWeights(float wider) { return mix(kFineWeights, kWideFineWeights, max(wider, 0.0)); }
+
+float weightAt(vec3 weights, int i) { return i == 0 ? weights.x : abs(i) == 1 ? weights.y : weights.z; }
+
+// The same of each channel, `direct` of which goes through unfiltered.
+struct FineFilter {
+  vec3 own, next, last;
+};
+
+FineFilter fineFilter(float wider, vec3 direct) {
+  vec3 weights = fineWeights(wider), rest = 1.0 - direct;
+  return FineFilter(direct + weights.x * rest, weights.y * rest, weights.z * rest);
+}
+
+vec3 fineSum(FineFilter f, vec3 a, vec3 b, vec3 c, vec3 d, vec3 e) {
+  return f.own * c + f.next * (b + d) + f.last * (a + e);
+}
+
+// Of those along columns, then rows: what is thin along one passes the other unfiltered. `shape`: a texel's shares' z.
+FineFilter columnFilter(uint shape, bool shaped) {
+  FineShape s = shaped ? unpackShape(shape) : kNoShape;
+  return fineFilter(-s.wider, s.wider > 0.0 ? s.thin : vec3(0.0));
+}
+
+FineFilter rowFilter(uint shape, bool shaped) {
+  FineShape s = shaped ? unpackShape(shape) : kNoShape;
+  return fineFilter(s.wider, s.wider > 0.0 ? vec3(0.0) : s.thin);
+}
+
+// The horizontal half, at a place whose vertical half is done.
+vec3 fineOf(FineFilter f, int at) {
+  return fineSum(f, unpackColor(vertical[at - 2]), unpackColor(vertical[at - 1]), unpackColor(vertical[at]),
+                 unpackColor(vertical[at + 1]), unpackColor(vertical[at + 2]));
+}
+
+// Both halves where all around the pixel is one plane. `place`: in what keepRow kept.
+vec3 fineOfPlane(int place, uint shape) {
+  FineFilter columns = columnFilter(shape, true), rows = rowFilter(shape, true);
+  vec3 fine = vec3(0.0);
+  for (int y = -2; y <= 2; ++y) {
+    vec3 weight = y == 0 ? columns.own : abs(y) == 1 ? columns.next : columns.last;
+    fine += weight * fineOf(rows, place + y * kColumns);
+  }
+  return fine;
+}
+
+#endif

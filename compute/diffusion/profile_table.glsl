@@ -1,0 +1,49 @@
+// Lookups in a material's profile table, KernelConstants.
+#ifndef PELLUCID_PROFILE_TABLE_GLSL
+#define PELLUCID_PROFILE_TABLE_GLSL
+
+// Place of a length on the surface among a material's shares, see KernelConstants.
+float shareEntry(uint m, float lengthMm) {
+  // The floor keeps log2 finite where the camera gives a pixel no size.
+  float at = (log2(max(lengthMm, 1.0e-30)) - kernels[m].range.x) * kernels[m].range.y;
+  return clamp(at, 0.0, float(PELLUCID_SHARE_ENTRIES - 1));
+}
+
+// Of level `level` and coarser ones, the share of the coarser ones at texels with this entry.
+vec3 coarserShare(uint m, uint level, float entry) {
+  uint i = min(uint(entry), uint(PELLUCID_SHARE_ENTRIES - 2));
+  uint first = min(level - 2u, uint(PELLUCID_SHARE_COARSER)) * uint(PELLUCID_SHARE_ENTRIES) + i;
+  return mix(kernels[m].share[first].rgb, kernels[m].share[first + 1u].rgb, entry - float(i));
+}
+
+// Parts of all energy at pixels with this entry, `element` as in KernelConstants::pixelShare.
+vec3 beyondPixel(uint m, uint element, float entry) {
+  entry = max(entry, 0.0);
+  uint i = min(uint(entry), uint(PELLUCID_SHARE_ENTRIES - 2)), first = uint(PELLUCID_PIXEL_SHARES) * i + element;
+  vec3 next = kernels[m].pixelShare[first + uint(PELLUCID_PIXEL_SHARES)].rgb;
+  return mix(kernels[m].pixelShare[first].rgb, next, entry - float(i));
+}
+
+// Of pixels of a texel of level 2, on a surface that fills all of the kernel. By how many octaves the kernel's longest side is
+// longer than its shortest, which the level goes by, and how much of that goes for the pixel, its neighbors and level 2, was
+// fitted on tilted planes, for kernels along rows or columns and along diagonals. Next to silhouettes, where surfaces bend
+// away from their tangent planes, it is none.
+PixelShares pixelShares(uint m, Foreshortening f) {
+  // The stretch is >= 0 but for rounding.
+  float longer = 0.5 * log2(1.0 + max(f.stretch, 0.0)), octaves = clamp(2.5 - longer, 0.0, min(longer, 1.0));
+  // A length of a pixel is a quarter of a texel's.
+  float entry = shareEntry(m, 0.25 * f.lengthMm), perOctave = kernels[m].range.y * octaves;
+  // 1: along rows or columns, 0: along a diagonal.
+  float straight = abs(f.axis.x * f.axis.x - f.axis.y * f.axis.y);
+  vec3 coarser = beyondPixel(m, 0u, entry - perOctave * (0.3 - 0.15 * straight));
+  vec3 both = max(beyondPixel(m, 1u, entry - perOctave * (0.5 - 0.5 * straight)), coarser);
+  vec3 beyond = max(beyondPixel(m, 1u, entry - 0.5 * perOctave), both);
+  // What one Gaussian asks for may be more than all.
+  vec3 fine = min((beyond - coarser) / max(1.0 - coarser, vec3(1.0e-3)), vec3(kMostFine));
+  float wider = min(exp2(octaves) - 1.0, 1.0) * straight;
+  FineShape shape = FineShape(abs(f.axis.x) < abs(f.axis.y) ? -wider : wider,
+                              (beyond - both) / max(beyond - coarser, vec3(1.0e-6)));
+  return PixelShares(coarser, fine, shape);
+}
+
+#endif

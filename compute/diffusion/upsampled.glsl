@@ -1,0 +1,60 @@
+// Level 2 of the pyramid with all coarser ones in it: two texels each, where level 1 was. One is packed as a texel of
+// the pyramid, whose kPlane says that all around lies on its plane, too. The other holds the shares of the pixels under it
+// and in w the share of the kernel that the surface fills, a byte a channel, and flags.
+#ifndef PELLUCID_UPSAMPLED_GLSL
+#define PELLUCID_UPSAMPLED_GLSL
+
+#include "diffusion/pyramid.glsl"
+
+layout(set = 0, binding = PELLUCID_BINDING_PYRAMID) uniform utexture2D pyramidImage;
+
+ivec2 upsampledPlace(ivec2 texel) { return frame.level[0].xy + texel; }
+
+ivec2 sharesPlace(ivec2 texel) { return frame.level[0].zw + texel; }
+
+// A foreshortened surface's kernel is longer in one direction. Along rows or columns of pixels, whichever is nearer to it, the
+// fine filter is wider, and part of its share is that of a filter along them alone.
+struct FineShape {
+  float wider; // 0: 1 4 9 4 1 to 1: 1 2 2 2 1; negative: along columns
+  vec3 thin;   // part of fine
+};
+
+// Shares of a pixel on the surface of a texel: what level 2 and coarser ones have, with the texel's density already
+// in it, and of the rest the fine filters.
+struct PixelShares {
+  vec3 coarser, fine;
+  FineShape shape;
+};
+
+// fine is at most kMostFine, so that the pixel itself never counts less than 0: 1 - f + f w >= 0 of the fine filter's least
+// weight of it, w = 9/19 1/4.
+const float kMostFine = 1.134;
+
+uvec3 packShares(PixelShares s) {
+  uvec3 fine = uvec3(s.fine * (255.0 / kMostFine) + 0.5), thin = uvec3(s.shape.thin * 63.0 + 0.5);
+  // Edges write x and y while the shape, which is in z, is read.
+  uint shape = uint(int(s.shape.wider * 31.0 + (s.shape.wider < 0.0 ? -0.5 : 0.5))) << 26;
+  return uvec3(packHalf2x16(s.coarser.rg),
+               (packHalf2x16(vec2(s.coarser.b, 0.0)) & 0xFFFFu) | fine.r << 16 | fine.g << 24,
+               shape | thin.b << 20 | thin.g << 14 | thin.r << 8 | fine.b);
+}
+
+FineShape unpackShape(uint z) {
+  return FineShape(float(int(z) >> 26) * (1.0 / 31.0), vec3((z >> 8) & 63u, (z >> 14) & 63u, (z >> 20) & 63u) * (1.0 / 63.0));
+}
+
+const FineShape kNoShape = FineShape(0.0, vec3(0.0));
+
+bool hasShape(uint z) { return z >> 8 != 0u; }
+
+PixelShares unpackShares(uvec3 u) {
+  return PixelShares(vec3(unpackHalf2x16(u.x), unpackHalf2x16(u.y).x),
+                     vec3((u.y >> 16) & 255u, u.y >> 24, u.z & 255u) * (kMostFine / 255.0), unpackShape(u.z));
+}
+
+// A flag of a texel's shares: all under the texel's filter is one plane.
+const uint kFull = 0x1000000u;
+
+bool isFull(uvec4 its) { return (its.w & kFull) != 0u; }
+
+#endif

@@ -1,0 +1,69 @@
+// Set 0 of every pass, and the few functions that read it.
+#ifndef PELLUCID_BINDINGS_GLSL
+#define PELLUCID_BINDINGS_GLSL
+
+#include "frame/gbuffer_decode.glsl"
+#include "lib/camera.glsl"
+#include "lib/rect.glsl"
+#include "lib/sanitize.glsl"
+#include "shared/pellucid_shared.h"
+
+#ifndef GROUP_SIDE
+#define GROUP_SIDE PELLUCID_GROUP_X
+#endif
+#ifndef GROUP_ROWS
+#define GROUP_ROWS GROUP_SIDE
+#endif
+layout(local_size_x = GROUP_SIDE, local_size_y = GROUP_ROWS) in;
+
+layout(push_constant) uniform Pass { PassConstants pass; };
+layout(set = 0, binding = PELLUCID_BINDING_FRAME) uniform Frame { FrameConstants frame; };
+layout(set = 0, binding = PELLUCID_BINDING_FRONT_DEPTH) uniform texture2D frontDepthImage;
+layout(set = 0, binding = PELLUCID_BINDING_SOURCE) uniform texture2D sourceImage;
+layout(set = 0, binding = PELLUCID_BINDING_ALBEDO) uniform texture2D albedoImage;
+layout(set = 0, binding = PELLUCID_BINDING_MATERIAL) uniform utexture2D materialImage;
+// Without a format, so that one shader writes every output format; see module/src/pipelines.cpp.
+layout(set = 0, binding = PELLUCID_BINDING_DESTINATION) uniform writeonly image2D destinationImage;
+
+#include "frame/flags.glsl"
+
+ivec2 invocationPixel() { return ivec2(frame.rect.xy) + ivec2(gl_GlobalInvocationID.xy); }
+
+bool insideRect(ivec2 pixel) { return contains(ivec4(frame.rect), pixel); }
+
+// The nearest pixel of the rect, where loads need no branch.
+ivec2 withinRect(ivec2 pixel) { return clamp(pixel, ivec2(frame.rect.xy), ivec2(frame.rect.zw) - 1); }
+
+// Index without the mark bit. 0 for none and for values beyond the material list, so that a stray id
+// cannot read past it.
+uint materialIndex(uint value) {
+  uint id = value & ~frame.marks.x;
+  return id <= frame.flags.y ? id : 0u;
+}
+
+uint materialValueAt(ivec2 pixel) { return decodeMaterial(texelFetch(materialImage, pixel, 0)); }
+
+uint materialAt(ivec2 pixel) { return materialIndex(materialValueAt(pixel)); }
+
+// Planar distance of the front surface, -1 where there is none.
+float frontDistanceOf(float stored) {
+  return hasFlag(PELLUCID_FLAG_FRONT_VIEW_Z) ? planarDistanceViewZ(stored) : planarDistance(frame.camera, stored);
+}
+
+float frontDistance(ivec2 pixel) { return frontDistanceOf(texelFetch(frontDepthImage, pixel, 0).x); }
+
+// `color`: >= 0. Halves are rounded here, as image stores may truncate.
+vec3 asStored(vec3 color) { return hasFlag(PELLUCID_FLAG_WIDE_OUTPUT) ? color : roundToHalf(color); }
+
+// Whether the post-scatter albedo applies. `last`: this is the frame's final write.
+bool tinted(bool last) { return last && hasFlag(PELLUCID_FLAG_ALBEDO); }
+
+vec3 albedoAt(ivec2 pixel) { return sanitize(texelFetch(albedoImage, pixel, 0).rgb); }
+
+void writeResult(ivec2 pixel, vec3 color, float alpha, bool last) {
+  color = sanitize(color);
+  if (tinted(last)) color = sanitize(color * albedoAt(pixel));
+  imageStore(destinationImage, pixel, vec4(asStored(color), alpha));
+}
+
+#endif

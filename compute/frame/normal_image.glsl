@@ -1,0 +1,14 @@
+// The frame's normals, where it has some.
+#ifndef PELLUCID_NORMAL_IMAGE_GLSL
+#define PELLUCID_NORMAL_IMAGE_GLSL
+
+#include "frame/bindings.glsl"
+
+layout(set = 0, binding = PELLUCID_BINDING_NORMAL) uniform texture2D normalImage;
+
+// Outward, in the image's space, of any length; 0: none.
+vec3 normalAt(ivec2 pixel) {
+  return hasFlag(PELLUCID_FLAG_NORMAL) ? decodeNormal(texelFetch(normalImage, pixel, 0)) : vec3(0.0);
+}
+
+#endif

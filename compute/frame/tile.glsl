@@ -1,0 +1,31 @@
+// Passes whose groups do a tile of pixels, an invocation two of them: one leaves too much to do for each pixel again, four
+// hold so many registers that too few groups run at a time, but for a pass that does little (FOUR_PIXELS).
+#ifndef PELLUCID_TILE_GLSL
+#define PELLUCID_TILE_GLSL
+
+#ifndef TILE_SIDE
+#define TILE_SIDE PELLUCID_TILE
+#endif
+#ifdef FOUR_PIXELS
+#define GROUP_SIDE (TILE_SIDE / 2)
+#else
+#define GROUP_SIDE TILE_SIDE
+#endif
+#define GROUP_ROWS (TILE_SIDE / 2)
+#include "frame/bindings.glsl"
+
+const int kPixels = TILE_SIDE * TILE_SIDE / (GROUP_SIDE * GROUP_ROWS); // of an invocation
+
+// The i-th of them: half a tile apart, so that neighbors load neighbors.
+ivec2 pixelInTile(int i) {
+#ifdef FOUR_PIXELS
+  return ivec2(gl_LocalInvocationID.xy) + ivec2(GROUP_SIDE * (i & 1), GROUP_ROWS * (i >> 1));
+#else
+  return ivec2(gl_LocalInvocationID.xy) + ivec2(0, GROUP_ROWS * i);
+#endif
+}
+
+// Of tiles that start at even pixels, so that quads of pixels are the image's.
+ivec2 evenTile() { return (ivec2(frame.rect.xy) & ~1) + ivec2(gl_WorkGroupID.xy) * TILE_SIDE; }
+
+#endif

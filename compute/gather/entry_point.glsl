@@ -1,0 +1,52 @@
+// Records of the gather: what a sample needs to know of a texel of a shadow map, made once for all pixels, and means of
+// 2x2 to 8x8 of them for samples that stand for a larger part of the map.
+#ifndef PELLUCID_ENTRY_POINT_GLSL
+#define PELLUCID_ENTRY_POINT_GLSL
+
+#include "lib/octahedral.glsl"
+
+layout(set = 0, binding = PELLUCID_BINDING_LIGHTS) uniform Lights { LightConstants lights[PELLUCID_DISPATCH_LIGHTS]; };
+layout(set = 0, binding = PELLUCID_BINDING_GATHER_MAPS) uniform GatherMaps { GatherMapConstants maps[PELLUCID_DISPATCH_SHADOWS]; };
+
+struct EntryPoint {
+  float depth;  // of the lit surface, see GatherMapConstants::depth
+  vec3 normal;  // unit, towards the light
+  float hidden; // part of the light that enters where the camera does not see it
+  float seen;   // part that enters where the camera does, and is in the irradiance
+  float cosine; // between normal and light, above 0
+  float exit;   // scene units along the light from the surface to the nearest back face behind it; kNoExit: not known
+  uint material; // index + 1 of what light enters; 0: not known
+};
+
+const float kNoExit = 6.0e4; // as halves hold;
+
+
+// Nothing there, and several surfaces of which no mean makes sense.
+const uvec4 kNoEntry = uvec4(0u), kSeveralSurfaces = uvec4(0u, 0u, 0u, 0x100u);
+
+const int kLastEntryLevel = 3; // whose entry points are means of 8x8
+
+uvec4 packEntry(EntryPoint r) {
+  uint cosine = uint(clamp(r.cosine * 255.0 + 0.5, 1.0, 255.0));
+  return uvec4(floatBitsToUint(r.depth), packSnorm2x16(octahedral(r.normal)), packHalf2x16(vec2(r.hidden, r.seen)),
+               cosine | r.material << 8 | packHalf2x16(vec2(min(r.exit, kNoExit), 0.0)) << 16);
+}
+
+bool holdsSurface(uvec4 bits) { return (bits.w & 0xFFu) != 0u; }
+
+bool lightEnters(uvec4 bits) { return bits.z != 0u; }
+
+EntryPoint unpackEntry(uvec4 bits) {
+  vec2 parts = unpackHalf2x16(bits.z);
+  return EntryPoint(uintBitsToFloat(bits.x), fromOctahedral(unpackSnorm2x16(bits.y)), parts.x, parts.y,
+                float(bits.w & 0xFFu) / 255.0, unpackHalf2x16(bits.w >> 16).x, bits.w >> 8 & 0xFFu);
+}
+
+// Place of a level's entry in the image, from that of the first level. `size`: of the first level, whole groups.
+// Level 1 is beside the first, each coarser one below the level before.
+ivec2 entryPlace(ivec2 first, int level, ivec2 size) {
+  ivec2 corner = level == 0 ? ivec2(0) : ivec2(size.x, size.y - (size.y >> (level - 1)));
+  return corner + (first >> level);
+}
+
+#endif

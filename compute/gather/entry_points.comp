@@ -1,0 +1,64 @@
+// Records of a dispatch's shadow maps, below each other in one image, and their means.
+#version 460
+#extension GL_EXT_control_flow_attributes : require
+#extension GL_EXT_samplerless_texture_functions : require
+#extension GL_GOOGLE_include_directive : require
+
+#define GROUP_SIDE PELLUCID_ENTRY_POINTS_GROUP
+#include "frame/bindings.glsl"
+#include "gather/entry_point.glsl"
+#include "gather/mean_entry.glsl"
+#include "gather/texel_entry.glsl"
+
+layout(set = 0, binding = PELLUCID_BINDING_ENTRY_MAPS) readonly buffer EntryMaps { EntryMapConstants entryMaps[]; };
+layout(set = 0, binding = PELLUCID_BINDING_LEVELS, rgba32ui) uniform writeonly uimage2D entriesDestination;
+
+shared uvec4 entries[GROUP_SIDE * GROUP_SIDE], means[GROUP_SIDE * GROUP_SIDE / 4];
+shared uint someSurface;
+
+// A group makes 16x16 entry points of one map, each of the texel in the middle of those that it stands for, and their means.
+void main() {
+  uint map = gl_WorkGroupID.z;
+  int side = int(entryMaps[map].map.z), index = int(gl_LocalInvocationIndex);
+  ivec2 size = ivec2(pass.value.y & 0xFFFFu, pass.value.y >> 16), own = ivec2(gl_GlobalInvocationID.xy);
+  bool contained = all(lessThan(own, maps[map].place.zw));
+  ivec2 texel = min(own * side + side / 2, ivec2(entryMaps[map].map.xy) - 1);
+  uvec4 entry = contained ? entryOf(entryMaps[map], texel) : kNoEntry;
+  entries[index] = entry;
+  if (index == 0) someSurface = 0u;
+  barrier();
+  if (holdsSurface(entry)) someSurface = 1u;
+  barrier();
+  bool some = someSurface != 0u;
+  // Groups beyond the map have nothing to write. Maps begin at whole groups.
+  ivec2 start = ivec2(gl_WorkGroupID.xy) * GROUP_SIDE, first = maps[map].place.xy + start;
+  bool inside = all(lessThan(start, maps[map].place.zw));
+  if (inside) imageStore(entriesDestination, first + ivec2(gl_LocalInvocationID.xy), entry);
+  // Halved again and again, from one array to the first part of the other.
+  for (int level = 1; level <= kLastEntryLevel; ++level) {
+    int across = GROUP_SIDE >> level;
+    ivec2 local = ivec2(index % across, index / across);
+    bool makes = inside && index < across * across;
+    if (makes) {
+      entry = kNoEntry;
+      if (some) {
+        int from = 4 * local.y * across + 2 * local.x;
+        uvec4 bits[4];
+        [[unroll]] for (int i = 0; i < 4; ++i) {
+          int place = from + (i & 1) + (i >> 1) * 2 * across;
+          bits[i] = (level & 1) != 0 ? entries[place] : means[place];
+        }
+        entry = meanOf(bits, float(side << (level - 1)), entryMaps[map]);
+      }
+      imageStore(entriesDestination, entryPlace(first, level, size) + local, entry);
+    }
+    barrier(); // what was there has been read
+    if (makes) {
+      if ((level & 1) != 0)
+        means[index] = entry;
+      else
+        entries[index] = entry;
+    }
+    barrier();
+  }
+}

@@ -1,0 +1,108 @@
+// How the surface of a gather's point is curved, and how thin the body is there.
+#ifndef PELLUCID_PROBE_SHAPE_GLSL
+#define PELLUCID_PROBE_SHAPE_GLSL
+
+// From a point to a pixel beside it: changes of position, mm, and of the normal; w: 1 where the surface goes on, less
+// where the pixel lies two to three times `reach` away, 0 beyond, so that what follows from it is continuous.
+struct Beside {
+  vec4 apart;
+  vec3 turn;
+};
+
+Beside besideAt(ivec2 pixel, Surface x, float reach) {
+  ivec2 at = withinRect(pixel);
+  float front = materialAt(at) != 0u ? frontDistance(at) : -1.0;
+  vec3 normal = mat3(frame.viewFromNormal) * decodeNormal(texelFetch(normalImage, at, 0));
+  Surface s = makeSurface(viewRay(frame.camera, at), front, -1.0, normal);
+  vec3 apart = (s.position - x.position) * frame.camera.range.w;
+  float ratio = dot(apart, apart) / max(reach * reach, 1.0e-30);
+  bool there = at == pixel && front > 0.0 && s.hasNormal;
+  return Beside(vec4(apart, there ? clamp((9.0 - ratio) / 5.0, 0.0, 1.0) : 0.0), there ? s.normal - x.normal : vec3(0.0));
+}
+
+// Across the point, from one side to the other.
+Beside acrossOf(Beside forward, Beside backward) {
+  float f = forward.apart.w, b = backward.apart.w;
+  return Beside(vec4(f * forward.apart.xyz - b * backward.apart.xyz, max(f, b)), f * forward.turn - b * backward.turn);
+}
+
+// Pixels that are `reach` mm away on the surface's tangent plane.
+ivec2 stepsOf(Surface x, ViewRay ray, float front, float reach) {
+  Camera c = frame.camera;
+  vec3 sideX = vec3(c.rayX.zw + front * c.rayX.xy, 0.0), sideY = vec3(c.rayY.zw + front * c.rayY.xy, 0.0);
+  float facing = min(dot(x.normal, ray.direction), -0.1); // planes seen edge-on would have no end
+  sideX -= ray.direction * (dot(x.normal, sideX) / facing);
+  sideY -= ray.direction * (dot(x.normal, sideY) / facing);
+  vec2 size = sqrt(vec2(dot(sideX, sideX), dot(sideY, sideY))) * c.range.w;
+  return ivec2(clamp(reach / max(size, vec2(1.0e-30)) + 0.5, vec2(1.0), vec2(1.0e4)));
+}
+
+// Mean curvature of the surface around x, 1/mm, positive where convex; 0 where it does not go on.
+float meanCurvature(ivec2 pixel, Surface x, ViewRay ray, float front, float reach) {
+  ivec2 steps = stepsOf(x, ray, front, reach);
+  Beside a = acrossOf(besideAt(pixel + ivec2(steps.x, 0), x, reach), besideAt(pixel - ivec2(steps.x, 0), x, reach));
+  Beside b = acrossOf(besideAt(pixel + ivec2(0, steps.y), x, reach), besideAt(pixel - ivec2(0, steps.y), x, reach));
+  // Trace of the map from steps to turns.
+  float area = dot(x.normal, cross(a.apart.xyz, b.apart.xyz));
+  float least = 0.1 * sqrt(dot(a.apart.xyz, a.apart.xyz) * dot(b.apart.xyz, b.apart.xyz));
+  float trace = dot(x.normal, cross(a.turn, b.apart.xyz) + cross(a.apart.xyz, b.turn));
+  return abs(area) > least ? a.apart.w * b.apart.w * 0.5 * trace / area : 0.0;
+}
+
+// By how much more of the diffused light comes back, of each channel.
+vec3 convexityAt(ivec2 pixel, Surface x, ViewRay ray, float front, uint m) {
+  vec4 perCurvature = materials[m].gather.convexity;
+  vec3 more = perCurvature.rgb * meanCurvature(pixel, x, ray, front, perCurvature.w);
+  // Not NaN, whose conversion to steps may be anything.
+  return mix(vec3(0.0), clamp(more, vec3(-kMostConvexity), vec3(kMostConvexity)), lessThan(abs(more), vec3(1.0e30)));
+}
+
+// Probe of the nearest back face, view space; false where there is none.
+bool backAt(ivec2 pixel, out vec3 back) {
+  ivec2 at = withinRect(pixel);
+  float stored = texelFetch(frontDepthImage, at, 0).x, front = frontDistanceOf(stored);
+  ViewRay ray = viewRay(frame.camera, at);
+  float along = chordOf(ray, front, stored, texelFetch(backDepthImage, at, 0).x);
+  back = ray.origin + front * ray.direction + along * normalize(ray.direction);
+  return at == pixel && materialAt(at) != 0u && front > 0.0 && along > 0.0;
+}
+
+// Step along an axis of the image on the back face, to the nearer side: the other may lie across an edge.
+bool backSlope(ivec2 pixel, ivec2 axis, vec3 back, out vec3 slope) {
+  vec3 forward, backward;
+  bool hasForward = backAt(pixel + axis, forward), hasBackward = backAt(pixel - axis, backward);
+  forward -= back;
+  backward = back - backward;
+  slope = hasForward && !(hasBackward && dot(backward, backward) < dot(forward, forward)) ? forward : backward;
+  return hasForward || hasBackward;
+}
+
+// The part of the light that enters at x which a half-space sends back and the body does not, as the light leaves by the
+// other face: 1 - R(h) / rho of a slab, weighted with how opposite the faces are, as a rim has all of the medium behind it.
+vec3 thinLoss(ivec2 pixel, Surface x, uint m) {
+  if (!hasFlag(PELLUCID_FLAG_BACK_DEPTH)) return vec3(0.0);
+  vec3 back, across, along;
+  if (!backAt(pixel, back)) return vec3(0.0);
+  vec3 chord = (back - x.position) * frame.camera.range.w;
+  // A half-space beyond: T(h) is below 1 % there, and its square counts.
+  if (dot(chord, chord) > materials[m].gather.lengths.z * materials[m].gather.lengths.z * 6.25) return vec3(0.0);
+  vec3 normal = -x.normal;
+  if (backSlope(pixel, ivec2(1, 0), back, across) && backSlope(pixel, ivec2(0, 1), back, along)) {
+    vec3 n = cross(across, along);
+    float squared = dot(n, n);
+    if (squared > 0.0) normal = n * (dot(n, x.view) < 0.0 ? -inversesqrt(squared) : inversesqrt(squared));
+  }
+  // Mean of the two faces' cosines: a slab's thickness.
+  float h = 0.5 * (abs(dot(chord, x.normal)) + abs(dot(chord, normal)));
+  GatherSlab slab = slabOf(m, materials[m].gather.lengths, h);
+  vec3 t = exp2(slab.logarithm - slab.decay * h);
+  vec3 sent;
+  [[unroll]] for (int c = 0; c < 3; ++c) {
+    vec4 r = materials[m].gather.reflectance[c];
+    sent[c] = r.x - sqrt(max(r.y * t[c] * t[c] + r.z, 0.0));
+  }
+  float opposite = 0.5 - 0.5 * dot(x.normal, normal);
+  return opposite * clamp(1.0 - sent, vec3(0.0), vec3(1.0));
+}
+
+#endif

@@ -1,0 +1,182 @@
+// The entry point of a texel of a shadow map.
+#ifndef PELLUCID_TEXEL_ENTRY_GLSL
+#define PELLUCID_TEXEL_ENTRY_GLSL
+
+#include "frame/shadow_images.glsl"
+#include "lib/occluder.glsl"
+#include "lib/shadow.glsl"
+
+// A surface that the light sees more obliquely counts as if it did not: a sample that stands for more than five times its own
+// area shows as a dot at terminators.
+const float kLeastCosine = 0.2;
+
+// Where the camera has a surface on the pixel that a point is seen on, at the point or in front of it: what it sees is
+// in the irradiance that diffusion spreads. What faces away cannot be seen, however thin the part is.
+// `front`: of the pixel.
+bool cameraSees(ivec2 pixel, float front, float planar, vec3 normal, float tolerance) {
+  return insideRect(pixel) && dot(normal, viewRay(frame.camera, pixel).direction) < 0.0 && front > 0.0 &&
+         planar <= front + tolerance;
+}
+
+// Of pixels without a material nothing is seen, whatever depth they hold: their light is not diffused. To be fetched before
+// what need not wait for it.
+float frontAround(ivec2 pixel) {
+  ivec2 at = withinRect(pixel);
+  float front = frontDistance(at);
+  return materialAt(at) != 0u ? front : -1.0;
+}
+
+// The surface that a texel of a perspective map stores, as EntryMapConstants says; depth: as entry points store it.
+vec3 surfacePoint(EntryMapConstants map, ivec2 texel, float stored, out float depth) {
+  vec2 p = vec2(texel) + 0.5;
+  vec4 at = map.origin + p.x * map.stepX + p.y * map.stepY;
+  float divisor = at.w;
+  float dividend = stored;
+  if (map.meta.y == PELLUCID_SHADER_DEPTH_DEVICE) {
+    dividend = map.ray.w;
+    divisor = stored - at.w;
+  } else if (map.meta.y == PELLUCID_SHADER_DEPTH_DISTANCE) {
+    divisor = length(at.xyz);
+  }
+  // 0 or of the other sign only at infinity.
+  depth = dividend * divisor > 0.0 ? dividend / divisor : kNoDepth;
+  return map.ray.xyz + depth * at.xyz;
+}
+
+// One texel's step along an axis of the map from y, towards whichever neighbor is nearer: the other may lie
+// across an edge. `stored`: of the neighbors forwards and backwards. `squaredStep`: of a texel across the light.
+vec3 entrySlope(EntryMapConstants map, ivec2 texel, vec3 y, ivec2 axis, vec2 stored, float squaredStep) {
+  vec3 best = vec3(0.0);
+  float least = 3.0e38;
+  for (int i = 0; i < 2; ++i) {
+    int side = 1 - 2 * i;
+    ivec2 neighbor = texel + side * axis;
+    if (any(lessThan(neighbor, ivec2(0))) || any(greaterThanEqual(neighbor, ivec2(map.map.xy)))) continue;
+    float theirs = i == 0 ? stored.x : stored.y;
+    if (!shadowHolds(map.meta, theirs)) continue;
+    float depth;
+    vec3 toward = float(side) * (surfacePoint(map, neighbor, theirs, depth) - y);
+    float squared = dot(toward, toward);
+    if (squared < least) {
+      least = squared;
+      best = toward;
+    }
+    // Less steep than 60 degrees: no edge.
+    if (squared < 4.0 * squaredStep) break;
+  }
+  return best;
+}
+
+// Where rays are parallel, how much depth grows along a texel's step beyond what it does on a plane across the light,
+// to whichever neighbor is nearer; kNoDepth if there is none. `at`, `texels`: of the step's axis; `plane`: what depth
+// grows on a plane; `across`: twice the step times the ray; `grows`: to the neighbors forwards and backwards.
+float parallelSlope(int at, int texels, float plane, float squaredStep, float across, float ray2, vec2 grows) {
+  vec2 change = vec2(1.0, -1.0) * grows + plane;
+  vec2 squared = squaredStep + change * (across + change * ray2);
+  bool forward = at + 1 < texels && grows.x < kNoDepth, backward = at > 0 && grows.y < kNoDepth;
+  // Less steep than 60 degrees: no edge.
+  if (forward && (!backward || squared.x < 4.0 * squaredStep || squared.x <= squared.y)) return change.x;
+  return backward ? change.y : kNoDepth;
+}
+
+// A texel's caster: what lies behind the stored surface, and what the surface is of.
+struct Behind {
+  float exit; // see EntryPoint
+  uint material;
+  bool opaque; // no light enters
+};
+
+Behind behind(EntryMapConstants map, ivec2 texel) {
+  Behind b = Behind(kNoExit, 0u, false);
+  if (map.occluder.y != 0u) {
+    float index = shadowTexel(map.occluder.y - 1u, texel) * uintBitsToFloat(map.occluder.z);
+    // NaN counts as opaque.
+    b.material = index >= 0.5 && index < 255.5 ? uint(index + 0.5) : 0u;
+    b.opaque = b.material == 0u;
+  }
+  return b;
+}
+
+// The entry of a surface that part `share` of the light enters. normal: not normalized, 0 where no neighbor says.
+uvec4 entryOf(float depth, float share, vec3 normal, vec3 toLight, ivec2 pixel, float front, float planar,
+               float tolerance, Behind b) {
+  if (b.opaque) share = 0.0;
+  EntryPoint r = EntryPoint(depth, toLight, share, 0.0, 1.0, b.exit, b.material);
+  float squared = dot(normal, normal);
+  if (squared > 0.0) {
+    normal *= inversesqrt(squared);
+    float cosine = dot(normal, toLight);
+    r.normal = cosine < 0.0 ? -normal : normal;
+    r.cosine = max(abs(cosine), kLeastCosine);
+  }
+  if (cameraSees(pixel, front, planar, r.normal, tolerance)) {
+    r.seen = share;
+    r.hidden = 0.0;
+  }
+  return packEntry(r);
+}
+
+const ivec2 kNoPixel = ivec2(-1);
+
+uvec4 parallelEntry(EntryMapConstants map, ivec2 texel, ShadowTexels stored) {
+  vec4 beside = stored.beside;
+  bvec4 holds = bvec4(shadowHolds(map.meta, beside.x), shadowHolds(map.meta, beside.y), shadowHolds(map.meta, beside.z),
+                      shadowHolds(map.meta, beside.w));
+  vec4 grows = mix(vec4(2.0 * kNoDepth), (beside - stored.own) * map.ray.w, holds);
+  vec2 p = vec2(texel) + 0.5;
+  float depth = stored.own * map.ray.w + (map.origin.w + p.x * map.stepX.w + p.y * map.stepY.w);
+  if (!(abs(depth) < kNoDepth)) return kNoEntry;
+  vec4 q = vec4(p, depth, 1.0);
+  float w = dot(map.pixelW, q), planar = dot(map.planar, q);
+  ivec2 pixel = kNoPixel;
+  // Far outside stays outside after the conversion.
+  if (abs(w) > 0.0 && planar > 0.0)
+    pixel = ivec2(floor(clamp(vec2(dot(map.pixelX, q), dot(map.pixelY, q)) / w, vec2(-1.0e6), vec2(1.0e6))));
+  float front = frontAround(pixel);
+  float squareX = dot(map.stepX.xyz, map.stepX.xyz), squareY = dot(map.stepY.xyz, map.stepY.xyz);
+  float ray2 = map.across[1].w;
+  float x = parallelSlope(texel.x, int(map.map.x), map.stepX.w, squareX, map.normal.w, ray2, grows.xy);
+  float y = parallelSlope(texel.y, int(map.map.y), map.stepY.w, squareY, map.across[0].w, ray2, grows.zw);
+  vec3 normal = vec3(0.0);
+  if (x < kNoDepth && y < kNoDepth) normal = map.normal.xyz + x * map.across[0].xyz + y * map.across[1].xyz;
+  Behind b = behind(map, texel);
+  if (map.occluder.x != 0u) {
+    float exit = shadowTexel(map.occluder.x - 1u, texel);
+    // Depths of entry points grow towards the light.
+    if (shadowHolds(map.meta, exit)) b.exit = max((stored.own - exit) * map.ray.w, 0.0);
+  }
+  return entryOf(depth, 1.0, normal, map.toLight.xyz, pixel, front, planar, map.seen.x + map.seen.y, b);
+}
+
+uvec4 perspectiveEntry(EntryMapConstants map, ivec2 texel, ShadowTexels stored) {
+  float depth;
+  vec3 y = surfacePoint(map, texel, stored.own, depth);
+  if (!(abs(depth) < kNoDepth)) return kNoEntry;
+  ivec2 pixel;
+  if (!projectToPixel(frame.camera, y, pixel)) pixel = kNoPixel;
+  float front = frontAround(pixel);
+  vec3 toLight = map.ray.xyz - y;
+  float distanceTo = length(toLight), scale = depth * depth;
+  toLight /= max(distanceTo, 1.0e-12);
+  float share = lightShare(lights[map.map.w], toLight, distanceTo);
+  float squareX = scale * dot(map.stepX.xyz, map.stepX.xyz), squareY = scale * dot(map.stepY.xyz, map.stepY.xyz);
+  vec3 normal = cross(entrySlope(map, texel, y, ivec2(1, 0), stored.beside.xy, squareX),
+                      entrySlope(map, texel, y, ivec2(0, 1), stored.beside.zw, squareY));
+  float tolerance = abs(depth) * map.seen.x + map.seen.y;
+  Behind b = behind(map, texel);
+  if (map.occluder.x != 0u) {
+    float exit = shadowTexel(map.occluder.x - 1u, texel), exitDepth;
+    vec3 e = surfacePoint(map, texel, exit, exitDepth);
+    if (shadowHolds(map.meta, exit) && abs(exitDepth) < kNoDepth) b.exit = distance(e, y);
+  }
+  return entryOf(depth, share, normal, toLight, pixel, front, y.z * frame.camera.range.x, tolerance, b);
+}
+
+uvec4 entryOf(EntryMapConstants map, ivec2 texel) {
+  ShadowTexels stored = shadowTexels(map.meta.x, texel, ivec2(map.map.xy) - 1);
+  if (!shadowHolds(map.meta, stored.own)) return kNoEntry;
+  if (map.meta.z != 0u) return perspectiveEntry(map, texel, stored);
+  return parallelEntry(map, texel, stored);
+}
+
+#endif

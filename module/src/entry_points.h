@@ -1,0 +1,40 @@
+// Where the entry points of the gather lie (compute/gather/entry_point.glsl), and what the shaders know of
+// their maps. Pure.
+#pragma once
+
+#include "frame.h"
+
+namespace pellucid {
+
+// Entry points of a dispatch's maps, which are below each other: at most. Maps that are wider take fewer
+// entries than texels, as samples are further apart than their texels.
+constexpr uint32_t kEntryColumns = 1024, kEntryRows = 4096;
+
+// Whole groups of the pass that makes them.
+constexpr uint32_t entryGroups(uint32_t entries) {
+  return (entries + PELLUCID_ENTRY_POINTS_GROUP - 1) / PELLUCID_ENTRY_POINTS_GROUP *
+         PELLUCID_ENTRY_POINTS_GROUP;
+}
+
+// Columns with the coarser levels beside them, of compute/gather/entry_point.glsl.
+constexpr uint32_t withCoarserEntries(uint32_t columns) { return columns + columns / 2; }
+
+struct EntryExtent {
+  uint32_t width, height;
+  uint32_t side;  // texels of the map that a entry point stands for, a side
+};
+
+// Of one of the light's maps: a power of two of texels a side, so that all of them fit.
+EntryExtent entryExtent(const PellucidFrame& frame, const PellucidLight& light, uint32_t map);
+
+// `row`: of the map's first entry point. `light`: its place among the dispatch's.
+struct EntryConstants {
+  shared::GatherMapConstants gather;
+  shared::EntryMapConstants map;
+};
+EntryConstants entryConstants(const PellucidFrame& frame, const PellucidShadowMap& map,
+                              const PellucidLight& light, const shared::ShadowConstants& shadow,
+                              const glm::dmat4& viewFromWorld, EntryExtent extent, uint32_t row,
+                              uint32_t lightIndex);
+
+}  // namespace pellucid

@@ -1,0 +1,45 @@
+// The pipelines that exist: a pass with its specialization constants.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "pellucid/pellucid.h"
+
+namespace pellucid {
+
+// Indices of PellucidDispatch::pipeline.
+enum class Pipeline : uint32_t {
+  Translucency,
+  DebugView,
+  AddHistory,
+  BaseLevel,
+  Downsample,
+  Upsample,
+  Diffuse,
+  DiffuseGathered,
+  DiffuseCoarse,  // without the fine filter: quality 0
+  DiffuseCoarseGathered,
+  EntryPoints,
+  Probes,
+  FilterProbes,
+  AddGathered,
+  Count
+};
+
+constexpr uint32_t kPipelineCount = static_cast<uint32_t>(Pipeline::Count);
+
+struct PipelineDesc {
+  const char* name;
+  const uint32_t* words;
+  std::size_t wordCount;
+  uint32_t uses;           // PellucidUse bits, all of which it takes to make it
+  uint32_t constantCount;  // of constants
+  std::array<PellucidSpecialization, 2> constants;
+};
+
+// `index` < kPipelineCount.
+const PipelineDesc& pipelineDesc(uint32_t index);
+
+}  // namespace pellucid
