@@ -28,9 +28,9 @@ bool count(CheckResult& result, const StressFrame& frame, const Worst& worst, st
 
 class Run {
 public:
-  Run(Renderer& renderer, const StressOptions& options, const ViolationFn& onViolation)
+  Run(Renderer& renderer, const StressOptions& options, const StressEvents& events)
       : options_(options),
-        onViolation_(onViolation),
+        events_(events),
         renderer_(renderer),
         recordingsBefore_(renderer.recordings()),
         pixelsBefore_(renderer.pixels()) {
@@ -49,6 +49,7 @@ public:
     try {
       Subject subject(renderer_, frame);
       count(result.checks[0], frame, {}, 0);
+      if (events_.rendered) events_.rendered(frame, subject.output);
       std::size_t i = 1;
       for (const Check& check : checks()) {
         ++i;
@@ -67,7 +68,7 @@ public:
     const Worst worst{static_cast<double>(said.size() - messages), -1, -1, -1};
     if (options_.validate && count(result.checks[1], frame, worst, 0))
       violations.push_back({kValidation, worst, said.back()});
-    if (!violations.empty()) onViolation_(frame, violations);
+    if (!violations.empty() && events_.violated) events_.violated(frame, violations);
     ++result.frames;
     result.recordings = renderer_.recordings() - recordingsBefore_;
     result.pixels = renderer_.pixels() - pixelsBefore_;
@@ -77,7 +78,7 @@ public:
 
 private:
   const StressOptions& options_;
-  const ViolationFn& onViolation_;
+  const StressEvents& events_;
   Renderer& renderer_;
   const std::uint64_t recordingsBefore_, pixelsBefore_;
   const MaterialPool pool_;
@@ -101,9 +102,8 @@ std::uint64_t StressResult::violations() const {
   return sum;
 }
 
-StressResult runStress(Renderer& renderer, const StressOptions& options, const ViolationFn& onViolation,
-                       const std::function<void(const StressResult&)>& progress) {
-  Run run(renderer, options, onViolation);
+StressResult runStress(Renderer& renderer, const StressOptions& options, const StressEvents& events) {
+  Run run(renderer, options, events);
   const auto start = std::chrono::steady_clock::now();
   const auto seconds = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -111,7 +111,7 @@ StressResult runStress(Renderer& renderer, const StressOptions& options, const V
   for (std::uint64_t i = 0; options.frames ? i < *options.frames : seconds() < options.seconds; ++i) {
     run.runFrame(options.first + i);
     run.result.seconds = seconds();
-    if (progress) progress(run.result);
+    if (events.progressed) events.progressed(run.result);
   }
   return run.result;
 }

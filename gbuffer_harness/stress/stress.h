@@ -48,14 +48,17 @@ struct StressResult {
   std::uint64_t violations() const;
 };
 
-// Called for every frame with what it violates.
-using ViolationFn = std::function<void(const StressFrame&, const std::vector<Violation>&)>;
+// What is called after a frame; each may be empty.
+struct StressEvents {
+  std::function<void(const StressFrame&, const std::vector<Violation>&)> violated;  // where it violates checks
+  std::function<void(const StressFrame&, const Image& output)> rendered;            // unless it was refused
+  std::function<void(const StressResult&)> progressed;                              // with what there is so far
+};
 
 // Throws UsageError for a check that there is not.
 void requireCheck(const std::string& name);
 
-// `progress`: called after each frame with what there is so far. Throws as requireCheck does.
-StressResult runStress(Renderer& renderer, const StressOptions& options, const ViolationFn& onViolation,
-                       const std::function<void(const StressResult&)>& progress = {});
+// Throws as requireCheck does.
+StressResult runStress(Renderer& renderer, const StressOptions& options, const StressEvents& events);
 
 }  // namespace pellucid::harness::stress
