@@ -15,6 +15,7 @@
 #include "common/error.h"
 #include "common/progress.h"
 #include "common/whole_file.h"
+#include "stress/results.h"
 
 namespace pellucid::harness {
 namespace {
@@ -30,7 +31,7 @@ constexpr int kShown = 3;
 
 struct Options {
   StressOptions stress;
-  std::string folder, json, quality = "any";
+  std::string device, folder, json, results, compareWith, quality = "any";
 };
 
 std::string kindOf(const StressFrame& frame) { return frame.wild ? "wild" : "tame"; }
@@ -80,6 +81,21 @@ Json toJson(const stress::CheckCount& count) {
           {"worstFrame", count.worstFrame}};
 }
 
+Json toJson(const stress::Difference& d) {
+  return {{"frames", d.frames}, {"sameBits", d.sameBits},       {"values", d.values},         {"above1e-3", d.above3},
+          {"above1e-2", d.above2}, {"worst", d.worst.value}, {"worstFrame", d.worstFrame}};
+}
+
+void print(const stress::ResultsReader& other) {
+  std::printf("%-10s %8s %10s %12s %12s %12s %10s %8s\n", "difference", "frames", "same bits", "values", "above 1e-3",
+              "above 1e-2", "worst", "frame");
+  for (const auto& [name, d] : {std::pair{"tame", &other.tame}, std::pair{"wild", &other.wild}})
+    std::printf("%-10s %8llu %10llu %12llu %12llu %12llu %10.2g %8llu\n", name, static_cast<unsigned long long>(d->frames),
+                static_cast<unsigned long long>(d->sameBits), static_cast<unsigned long long>(d->values),
+                static_cast<unsigned long long>(d->above3), static_cast<unsigned long long>(d->above2), d->worst.value,
+                static_cast<unsigned long long>(d->worstFrame));
+}
+
 Json toJson(const StressOptions& options, const StressResult& result) {
   Json json = {{"device", result.device},         {"seed", options.seed},
                {"first", options.first},          {"frames", result.frames},
@@ -94,7 +110,7 @@ Json toJson(const StressOptions& options, const StressResult& result) {
 void print(const StressOptions& options, const StressResult& result) {
   std::printf("%s\nseed %llu, frames %llu to %llu, %llu recordings, %llu pixels, %.1f s; refused: %llu tame, %llu wild\n",
               result.device.c_str(), static_cast<unsigned long long>(options.seed),
-              static_cast<unsigned long long>(options.first), static_cast<unsigned long long>(result.next) - 1,
+              static_cast<unsigned long long>(options.first), static_cast<unsigned long long>(options.first + result.frames) - 1,
               static_cast<unsigned long long>(result.recordings), static_cast<unsigned long long>(result.pixels),
               result.seconds, static_cast<unsigned long long>(result.refusedTame),
               static_cast<unsigned long long>(result.refusedWild));
@@ -113,25 +129,40 @@ void print(const StressOptions& options, const StressResult& result) {
 void run(Options& options) {
   StressOptions& s = options.stress;
   if (options.quality != "any") s.limits.quality = std::stoi(options.quality);
+  if (!s.only.empty()) stress::requireCheck(s.only);  // before a device is opened
+  stress::Renderer renderer({options.device, s.validate});
   Reporter reporter(options);
+  std::optional<stress::ResultsWriter> writer;
+  std::optional<stress::ResultsReader> reader;
+  if (!options.results.empty()) writer.emplace(options.results);
+  if (!options.compareWith.empty()) reader.emplace(options.compareWith);
+  stress::StressEvents events;
+  events.violated = [&](const StressFrame& frame, const std::vector<Violation>& violations) { reporter(frame, violations); };
+  events.rendered = [&](const StressFrame& frame, const Image& output) {
+    if (writer) writer->add(frame, output);
+    if (reader && !reader->ended()) reader->add(frame, output);
+  };
   StressResult result;
   {
     // Hundredths of a second, or frames.
     Progress progress("stressing", s.frames ? *s.frames : static_cast<std::uint64_t>(100 * s.seconds));
     std::uint64_t shown = 0;
-    result = stress::runStress(
-        s, [&](const StressFrame& frame, const std::vector<Violation>& violations) { reporter(frame, violations); },
-        [&](const StressResult& sofar) {
-          const std::uint64_t done = s.frames ? sofar.frames
-                                              : static_cast<std::uint64_t>(100 * std::min(sofar.seconds, s.seconds));
-          progress.note(std::to_string(sofar.frames) + " frames, " + std::to_string(sofar.violations()) + " violations");
-          progress.advance(done - shown);
-          shown = done;
-        });
+    events.progressed = [&](const StressResult& sofar) {
+      const std::uint64_t done =
+          s.frames ? sofar.frames : static_cast<std::uint64_t>(100 * std::min(sofar.seconds, s.seconds));
+      progress.note(std::to_string(sofar.frames) + " frames, " + std::to_string(sofar.violations()) + " violations");
+      progress.advance(done - shown);
+      shown = done;
+    };
+    result = stress::runStress(renderer, s, events);
   }
   print(s, result);
-  if (!options.json.empty())
-    writeWhole(options.json, [&](const std::filesystem::path& path) { std::ofstream(path) << toJson(s, result).dump(2) << "\n"; });
+  if (reader) print(*reader);
+  if (!options.json.empty()) {
+    Json json = toJson(s, result);
+    if (reader) json["differences"] = {{"tame", toJson(reader->tame)}, {"wild", toJson(reader->wild)}};
+    writeWhole(options.json, [&](const std::filesystem::path& path) { std::ofstream(path) << json.dump(2) << "\n"; });
+  }
   if (result.violations() > 0) throw LimitExceeded(std::to_string(result.violations()) + " violations");
 }
 
@@ -154,7 +185,9 @@ void addStressCommand(CLI::App& app) {
   command->add_flag("--validate", s.validate, "with Vulkan's core and synchronization validation, whose messages are violations");
   command->add_option("-o,--output", options->folder, "folder for captures of frames that violate a check");
   command->add_option("--json", options->json, "file for the summary");
-  command->add_option("--device", s.device, "part of the Vulkan device's name; default: the fastest kind");
+  command->add_option("--results", options->results, "file for the outputs, to compare another device's with");
+  command->add_option("--compare-with", options->compareWith, "file of --results of the same seed, first frame and limits");
+  command->add_option("--device", options->device, "part of the Vulkan device's name; default: the fastest kind");
   command->callback([options] { run(*options); });
 }
 

@@ -173,7 +173,7 @@ std::span<const Check> energyChecks() {
        &twiceIrradiance},
       {"more-irradiance", "more irradiance at some pixels gives no pixel less", "all, without lights", 2e-3, 2e-3, kRounding,
        &moreIrradiance},
-      {"half-lights", "lights of half the intensity add half as much", "frames with lights that stay below 65504", 3e-3, 3e-3, kLight, &halfLights},
+      {"half-lights", "lights of half the intensity add half as much", "frames with lights that stay below 65504", 4e-3, 4e-3, kLight, &halfLights},
       {"twice-all", "twice the lights and irradiance give twice the output", "frames with lights that stay below 65504", 2e-3, 2e-3, kRounding,
        &twiceAll},
       {"sum-of-lights", "a frame of lights adds the sum of what each adds", "frames of 2 to 4 lights that stay below 65504", 5e-3, 5e-3, kLight,

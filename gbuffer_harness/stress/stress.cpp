@@ -13,14 +13,6 @@ namespace {
 constexpr const char* kAccepted = "accepted";
 constexpr const char* kValidation = "validation";
 
-const Check* findCheck(const std::string& name) {
-  for (const Check& check : checks())
-    if (check.name == name) return &check;
-  std::string known;
-  for (const Check& check : checks()) known += (known.empty() ? "" : ", ") + std::string(check.name);
-  throw UsageError("--only: \"" + name + "\" is not one of " + known);
-}
-
 // Counts one value; true when it is a violation.
 bool count(CheckResult& result, const StressFrame& frame, const Worst& worst, std::optional<double> tolerance) {
   CheckCount& c = frame.wild ? result.wild : result.tame;
@@ -36,11 +28,13 @@ bool count(CheckResult& result, const StressFrame& frame, const Worst& worst, st
 
 class Run {
 public:
-  Run(const StressOptions& options, const ViolationFn& onViolation)
+  Run(Renderer& renderer, const StressOptions& options, const StressEvents& events)
       : options_(options),
-        onViolation_(onViolation),
-        only_(options.only.empty() ? nullptr : findCheck(options.only)),
-        renderer_({options.device, options.validate}) {
+        events_(events),
+        renderer_(renderer),
+        recordingsBefore_(renderer.recordings()),
+        pixelsBefore_(renderer.pixels()) {
+    if (!options.only.empty()) requireCheck(options.only);
     result.device = renderer_.device().description();
     result.checks = {{kAccepted, {}, {}}, {kValidation, {}, {}}};
     for (const Check& check : checks()) result.checks.push_back({check.name, {}, {}});
@@ -55,10 +49,11 @@ public:
     try {
       Subject subject(renderer_, frame);
       count(result.checks[0], frame, {}, 0);
+      if (events_.rendered) events_.rendered(frame, subject.output);
       std::size_t i = 1;
       for (const Check& check : checks()) {
         ++i;
-        if (only_ && only_ != &check) continue;
+        if (!options_.only.empty() && options_.only != check.name) continue;
         const std::optional<Worst> worst = check.run(subject);
         if (worst && count(result.checks[i], frame, *worst, frame.wild ? check.wild : check.tame))
           violations.push_back({check.name, *worst, ""});
@@ -73,25 +68,33 @@ public:
     const Worst worst{static_cast<double>(said.size() - messages), -1, -1, -1};
     if (options_.validate && count(result.checks[1], frame, worst, 0))
       violations.push_back({kValidation, worst, said.back()});
-    if (!violations.empty()) onViolation_(frame, violations);
+    if (!violations.empty() && events_.violated) events_.violated(frame, violations);
     ++result.frames;
-    result.next = index + 1;
-    result.recordings = renderer_.recordings();
-    result.pixels = renderer_.pixels();
+    result.recordings = renderer_.recordings() - recordingsBefore_;
+    result.pixels = renderer_.pixels() - pixelsBefore_;
   }
 
   StressResult result;
 
 private:
   const StressOptions& options_;
-  const ViolationFn& onViolation_;
-  const Check* const only_;
-  Renderer renderer_;
+  const StressEvents& events_;
+  Renderer& renderer_;
+  const std::uint64_t recordingsBefore_, pixelsBefore_;
   const MaterialPool pool_;
   FrameLimits limits_;
 };
 
 }  // namespace
+
+void requireCheck(const std::string& name) {
+  std::string known;
+  for (const Check& check : checks()) {
+    if (check.name == name) return;
+    known += (known.empty() ? "" : ", ") + std::string(check.name);
+  }
+  throw UsageError("--only: \"" + name + "\" is not one of " + known);
+}
 
 std::uint64_t StressResult::violations() const {
   std::uint64_t sum = 0;
@@ -99,9 +102,8 @@ std::uint64_t StressResult::violations() const {
   return sum;
 }
 
-StressResult runStress(const StressOptions& options, const ViolationFn& onViolation,
-                       const std::function<void(const StressResult&)>& progress) {
-  Run run(options, onViolation);
+StressResult runStress(Renderer& renderer, const StressOptions& options, const StressEvents& events) {
+  Run run(renderer, options, events);
   const auto start = std::chrono::steady_clock::now();
   const auto seconds = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -109,7 +111,7 @@ StressResult runStress(const StressOptions& options, const ViolationFn& onViolat
   for (std::uint64_t i = 0; options.frames ? i < *options.frames : seconds() < options.seconds; ++i) {
     run.runFrame(options.first + i);
     run.result.seconds = seconds();
-    if (progress) progress(run.result);
+    if (events.progressed) events.progressed(run.result);
   }
   return run.result;
 }

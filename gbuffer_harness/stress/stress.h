@@ -16,9 +16,8 @@ struct StressOptions {
   std::optional<std::uint64_t> frames;
   double seconds = 60;  // without `frames`
   FrameLimits limits;
-  std::string only;      // a check's name; empty: all
-  std::string device;    // as DeviceOptions::name
-  bool validate = false;
+  std::string only;       // a check's name; empty: all
+  bool validate = false;  // messages of the renderer's validation are violations
 };
 
 // Of tame frames or of wild ones.
@@ -41,7 +40,7 @@ struct Violation {
 
 struct StressResult {
   std::string device;
-  std::uint64_t frames = 0, recordings = 0, pixels = 0, next = 0;  // next: index of the first frame not run
+  std::uint64_t frames = 0, recordings = 0, pixels = 0;
   std::uint64_t refusedTame = 0, refusedWild = 0;
   double seconds = 0;
   std::vector<CheckResult> checks;  // first of what the module refuses and what validation says
@@ -49,11 +48,17 @@ struct StressResult {
   std::uint64_t violations() const;
 };
 
-// Called for every frame with what it violates.
-using ViolationFn = std::function<void(const StressFrame&, const std::vector<Violation>&)>;
+// What is called after a frame; each may be empty.
+struct StressEvents {
+  std::function<void(const StressFrame&, const std::vector<Violation>&)> violated;  // where it violates checks
+  std::function<void(const StressFrame&, const Image& output)> rendered;            // unless it was refused
+  std::function<void(const StressResult&)> progressed;                              // with what there is so far
+};
 
-// `progress`: called after each frame with the share that is done. Throws UsageError for a check that there is not.
-StressResult runStress(const StressOptions& options, const ViolationFn& onViolation,
-                       const std::function<void(const StressResult&)>& progress = {});
+// Throws UsageError for a check that there is not.
+void requireCheck(const std::string& name);
+
+// Throws as requireCheck does.
+StressResult runStress(Renderer& renderer, const StressOptions& options, const StressEvents& events);
 
 }  // namespace pellucid::harness::stress

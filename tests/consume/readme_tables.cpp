@@ -1,7 +1,7 @@
 // Prints the README's tables from the code, or checks or rewrites them in a file:
 //   pellucid_readme_tables [--check | --update README.md]
-// and likewise with the word quality after the file, docs/diffusion.md, the table of qualities, or with
-// domains, docs/domains.md, what values fields may have.
+// and likewise with the word quality after the file, docs/diffusion.md, the table of qualities, with domains,
+// docs/domains.md, what values fields may have, or with stress, docs/stress.md, what must hold for random frames.
 #include <cstdio>
 #include <iterator>
 #include <string>
@@ -10,6 +10,7 @@
 #include "domains.h"
 #include "generated_block.h"
 #include "pellucid/pellucid.h"
+#include "stress/checks.h"
 
 namespace {
 
@@ -155,6 +156,18 @@ std::string domainsTable() {
   return table;
 }
 
+std::string stressTable() {
+  std::string table = "| check | must hold | frames | tame | wild | reason |\n|-|-|-|-|-|-|\n";
+  char tame[32], wild[32];
+  for (const pellucid::harness::stress::Check& c : pellucid::harness::stress::checks()) {
+    std::snprintf(tame, sizeof tame, "%g", c.tame);
+    std::snprintf(wild, sizeof wild, "%g", c.wild.value_or(0));
+    table += std::string("| `") + c.name + "` | " + c.what + " | " + c.frames + " | " + tame + " | " +
+             (c.wild ? wild : "measured") + " | " + c.reason + " |\n";
+  }
+  return table;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -162,5 +175,6 @@ int main(int argc, char** argv) {
   return generatedBlock(argc - 1, argv + 1, block.c_str(),
                         block == "quality"   ? qualityTable()
                         : block == "domains" ? domainsTable()
+                        : block == "stress"  ? stressTable()
                                              : imagesTable() + "\n" + featuresTable());
 }
