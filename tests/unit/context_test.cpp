@@ -1,11 +1,12 @@
 // Creation of contexts where memory ends, and one context that many threads plan and record with.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
+#include <atomic>
 #include <new>
 #include <thread>
 #include <vector>
 
+#include "failing_allocator.h"
 #include "frame_fixture.h"
 #include "null_device.h"
 
@@ -18,43 +19,16 @@ std::atomic<int> failingNew = -1;
 
 void* operator new(size_t size, const std::nothrow_t&) noexcept {
   if (failingNew >= 0 && failingNew-- == 0) return nullptr;
-  return std::malloc(size);
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, size_t) noexcept { std::free(memory); }
-void* operator new(size_t size) {
-  void* memory = std::malloc(size);
-  if (!memory) throw std::bad_alloc();
-  return memory;
+  try {
+    return ::operator new(size);
+  } catch (const std::bad_alloc&) {
+    return nullptr;
+  }
 }
 
 namespace {
 
 using namespace pellucid::test;
-
-// Vulkan's allocation callbacks, the `failing`-th of which fails. -1: none does.
-struct Allocator {
-  int failing = -1, calls = 0, live = 0;
-
-  VkAllocationCallbacks callbacks() {
-    VkAllocationCallbacks c{};
-    c.pUserData = this;
-    c.pfnAllocation = [](void* user, size_t size, size_t alignment, VkSystemAllocationScope) -> void* {
-      auto& self = *static_cast<Allocator*>(user);
-      if (self.calls++ == self.failing) return nullptr;
-      ++self.live;
-      return std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
-    };
-    c.pfnReallocation = [](void*, void*, size_t, size_t, VkSystemAllocationScope) -> void* {
-      return nullptr;  // the null device does not reallocate
-    };
-    c.pfnFree = [](void* user, void* memory) {
-      if (memory) --static_cast<Allocator*>(user)->live;
-      std::free(memory);
-    };
-    return c;
-  }
-};
 
 struct Sentences {
   int count = 0;
@@ -71,7 +45,7 @@ TEST(ContextMemory, EveryFailingAllocationIsReportedAndNothingLeaks) {
   for (int n = 0;; ++n) {
     SCOPED_TRACE(n);
     NullDevice device;
-    Allocator allocator;
+    FailingAllocator allocator;
     allocator.failing = n;
     const VkAllocationCallbacks callbacks = allocator.callbacks();
     Sentences sentences;
@@ -83,15 +57,15 @@ TEST(ContextMemory, EveryFailingAllocationIsReportedAndNothingLeaks) {
     const PellucidResult result = pellucidCreateContext(&desc, &context);
     if (result == PELLUCID_OK) {
       allocations = allocator.calls;
-      EXPECT_GT(allocator.live, 0);
+      EXPECT_GT(allocator.live(), 0u);
       pellucidDestroyContext(context);
-      EXPECT_EQ(allocator.live, 0);
+      EXPECT_EQ(allocator.live(), 0u);
       EXPECT_EQ(device.live, 0);
       break;
     }
     ASSERT_EQ(result, PELLUCID_ERROR_OUT_OF_MEMORY);
     EXPECT_EQ(context, nullptr);
-    EXPECT_EQ(allocator.live, 0);
+    EXPECT_EQ(allocator.live(), 0u);
     EXPECT_EQ(device.live, 0);
     EXPECT_EQ(sentences.count, 1) << sentences.last;
     EXPECT_EQ(sentences.last.find("device vkCreate"), 0u) << sentences.last;
