@@ -1,5 +1,5 @@
-// A Vulkan device that computes nothing: functions that make handles and check what is recorded. Contexts of it
-// cost microseconds and need no driver, so that tests can make thousands.
+// A Vulkan device that computes nothing: functions that make handles and check what is recorded. Contexts of
+// it cost microseconds and need no driver, so that tests can make thousands.
 #pragma once
 
 #include <atomic>
@@ -37,8 +37,8 @@ public:
     if (live != 0) std::abort();  // a context outlives its device
   }
 
-  std::atomic<int> live = 0;        // Vulkan objects
-  const char* missing = nullptr;    // a device function that does not exist
+  std::atomic<int> live = 0;      // Vulkan objects
+  const char* missing = nullptr;  // a device function that does not exist
 
   PellucidContextDesc desc() {
     PellucidContextDesc d;
@@ -64,9 +64,9 @@ private:
 
   template <class Handle>
   static VkResult create(VkDevice device, const VkAllocationCallbacks* a, Handle* handle) {
-    void* object = a ? a->pfnAllocation(a->pUserData, kObjectBytes, kAlignment,
-                                        VK_SYSTEM_ALLOCATION_SCOPE_OBJECT)
-                     : std::malloc(kObjectBytes);
+    void* object =
+        a ? a->pfnAllocation(a->pUserData, kObjectBytes, kAlignment, VK_SYSTEM_ALLOCATION_SCOPE_OBJECT)
+          : std::malloc(kObjectBytes);
     *handle = reinterpret_cast<Handle>(object);
     if (!object) return VK_ERROR_OUT_OF_HOST_MEMORY;
     ++of(device).live;

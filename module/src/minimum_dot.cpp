@@ -59,8 +59,9 @@ double minimumDotOf(const PellucidFrame& f, const PellucidLight& light) {
 }
 
 uint32_t minimumDotEntries(const PellucidFrame& f) {
-  if (f.angleModel == PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH) return f.minimumDotTableSize;
-  if (f.angleModel == PELLUCID_ANGLE_MINIMUM_DOT_SPHERE) return f.minimumDotTableSize * f.minimumDotTableSize;
+  const uint32_t size = f.minimumDotTableSize;
+  if (f.angleModel == PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH) return size <= kMostAzimuths ? size : 0;
+  if (f.angleModel == PELLUCID_ANGLE_MINIMUM_DOT_SPHERE) return size <= kMostSphereSide ? size * size : 0;
   return 0;
 }
 

@@ -9,7 +9,11 @@ namespace pellucid {
 // for models without one. Models that are prescaled have frame.minimumDot.
 double minimumDotOf(const PellucidFrame& frame, const PellucidLight& light);
 
-// Entries that frame.minimumDotTable must have; 0 for models without a table.
+// The largest minimumDotTableSize of the two models with a table.
+inline constexpr uint32_t kMostAzimuths = 360, kMostSphereSide = 16;
+
+// Entries that frame.minimumDotTable must have; 0 for models without a table, and for sizes beyond the
+// domain's.
 uint32_t minimumDotEntries(const PellucidFrame& frame);
 
 }  // namespace pellucid

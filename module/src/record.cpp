@@ -58,8 +58,11 @@ PellucidResult refuse(const PellucidContext& c, const char* field, const char* s
   return PELLUCID_ERROR_INVALID_ARGUMENT;
 }
 
-// Whether the frame has what a plan uses, which a plan made from another frame may not find.
-PellucidResult checkPlan(const PellucidContext& c, const PellucidPlan& plan, const PellucidFrame& f) {
+// Whether the plan was made from such a frame. Before it nothing of the frame is known to be valid.
+PellucidResult checkFacts(const PellucidContext& c, const PellucidPlan& plan, const PellucidFrame& f) {
+  if ((f.materialCount > 0 && !f.materials) || (f.lightCount > 0 && !f.lights) ||
+      (f.shadowMapCount > 0 && !f.shadowMaps) || (f.shadowImageCount > 0 && !f.shadowImages))
+    return refuse(c, "frame", "has an array that is NULL, but not its count 0");
   const Facts facts = factsOf(f);
   for (int i = 0; i < PELLUCID_FACT_COUNT; ++i)
     if (facts.hash[i] != plan.facts[i]) {
@@ -68,6 +71,11 @@ PellucidResult checkPlan(const PellucidContext& c, const PellucidPlan& plan, con
           << "was made from another frame, whose " << nameOf(static_cast<PellucidFact>(i)) << " differs";
       return refuse(c, "plan", sentence);
     }
+  return PELLUCID_OK;
+}
+
+// Whether the frame has a view of each image that the plan binds.
+PellucidResult checkBindings(const PellucidContext& c, const PellucidPlan& plan, const PellucidFrame& f) {
   for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
     const PellucidDispatch& d = plan.dispatches[i];
     for (uint32_t b = 0; b < d.bindingCount; ++b) {
@@ -91,8 +99,9 @@ extern "C" PellucidResult pellucidRecordPlan(const PellucidContext* c, VkCommand
   if (!c || !commandBuffer || !plan || !frame || !constants) return PELLUCID_ERROR_INVALID_ARGUMENT;
   if (constants->offset % 256 != 0 || !constants->buffer)
     return refuse(*c, "constants", "needs a buffer and an offset that is a multiple of 256");
-  PellucidResult result = checkViews(*frame, c->message, c->messageUser);
-  if (result == PELLUCID_OK) result = checkPlan(*c, *plan, *frame);
+  PellucidResult result = checkFacts(*c, *plan, *frame);
+  if (result == PELLUCID_OK) result = checkViews(*frame, c->message, c->messageUser);
+  if (result == PELLUCID_OK) result = checkBindings(*c, *plan, *frame);
   if (result == PELLUCID_OK)
     result = pellucidWriteConstants(plan, frame, constants->mapped, static_cast<size_t>(constants->size));
   if (result != PELLUCID_OK) return result;

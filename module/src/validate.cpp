@@ -118,7 +118,8 @@ void checkImageSize(const PellucidFrame& f, Findings& out) {
 void checkMinimumDotTable(const PellucidFrame& f, Findings& out) {
   const bool azimuth = f.angleModel == PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH;
   if (!azimuth && f.angleModel != PELLUCID_ANGLE_MINIMUM_DOT_SPHERE) return;
-  const uint32_t least = azimuth ? 1 : 3, most = azimuth ? 360 : 16, size = f.minimumDotTableSize;
+  const uint32_t least = azimuth ? 1 : 3, most = azimuth ? kMostAzimuths : kMostSphereSide;
+  const uint32_t size = f.minimumDotTableSize;
   if (size < least || size > most) {
     out.error("minimumDotTableSize", "is ", size, ", outside ", least, "..", most);
   } else if (!f.minimumDotTable) {
@@ -383,12 +384,17 @@ PellucidResult checkViews(const PellucidFrame& f, PellucidMessageFn fn, void* us
 
 namespace {
 
-// Lights, from the first one on, whose shadow images the dispatches of a plan can bind.
+// Lights, from the first one on, whose shadow images the dispatches of a plan can bind; one more does not fit. Those
+// of all lights do not.
 uint32_t lightsThatFit(PellucidFrame frame) {
   PellucidPlan plan;
-  while (frame.lightCount > 0 && pellucidBuildPlan(&frame, nullptr, &plan) == PELLUCID_ERROR_CAPACITY)
-    --frame.lightCount;
-  return frame.lightCount;
+  uint32_t fit = 0, tooMany = frame.lightCount;
+  while (tooMany - fit > 1) {  // halved: each try costs lights times materials
+    frame.lightCount = fit + (tooMany - fit) / 2;
+    const bool fits = pellucidBuildPlan(&frame, nullptr, &plan) != PELLUCID_ERROR_CAPACITY;
+    (fits ? fit : tooMany) = frame.lightCount;
+  }
+  return fit;
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Creation of a context by a real driver, of whose host allocations some fail. tests/unit/context_test.cpp has every
-// one, of the null device.
+// Creation of a context by a real driver, of whose host allocations some fail. tests/unit/context_test.cpp
+// has every one, of the null device.
 #include "failing_allocator.h"
 #include "gpu_fixture.h"
 

@@ -108,6 +108,52 @@ TEST(ContextMemory, MissingFunctionsAreNamed) {
   }
 }
 
+// A plan of a valid frame and a frame that is not: recording refuses it before it reads what is not there.
+TEST(ContextRecording, FramesThatAreNotValidAreRefused) {
+  NullDevice device;
+  Sentences sentences;
+  PellucidContextDesc desc = device.desc();
+  desc.message = Sentences::add;
+  desc.messageUser = &sentences;
+  PellucidContext* context = nullptr;
+  ASSERT_EQ(pellucidCreateContext(&desc, &context), PELLUCID_OK);
+  static const float table[9] = {};
+  const std::pair<const char*, void (*)(PellucidFrame&)> damages[] = {
+      {"NULL", [](PellucidFrame& f) { f.materials = nullptr; }},
+      {"NULL", [](PellucidFrame& f) { f.lights = nullptr; }},
+      {"NULL", [](PellucidFrame& f) { f.shadowMaps = nullptr; }},
+      {"NULL", [](PellucidFrame& f) { f.shadowImages = nullptr; }},
+      // The transients of such a frame cannot be counted.
+      {"imageExtent",
+       [](PellucidFrame& f) {
+         f.reuse = PELLUCID_REUSE_ALTERNATE;
+         f.imageExtent[0] = 0;
+       }},
+      // More entries than there are, or than 32 bits count.
+      {"settings", [](PellucidFrame& f) { f.minimumDotTableSize = 40000; }},
+      {"settings", [](PellucidFrame& f) { f.minimumDotTableSize = 0x80000001u; }}};
+  for (const auto& [words, damage] : damages) {
+    Frame f;
+    for (PellucidImage& image : f.frame.transients) image = Frame::view();
+    f.frame.angleModel = PELLUCID_ANGLE_MINIMUM_DOT_SPHERE;
+    f.frame.minimumDotTableSize = 3;
+    f.frame.minimumDotTable = table;
+    ASSERT_EQ(f.problems(), "");
+    const PellucidPlan plan = f.plan();
+    damage(f.frame);
+    std::vector<unsigned char> constants(plan.constantsSize);
+    NullCommands commands;
+    commands.sliceSize = plan.constantsSize;
+    const PellucidConstantsSlice slice{reinterpret_cast<VkBuffer>(uintptr_t{1}), 0, plan.constantsSize,
+                                       constants.data()};
+    EXPECT_EQ(pellucidRecordPlan(context, commands.handle(), &plan, &f.frame, &slice),
+              PELLUCID_ERROR_INVALID_ARGUMENT);
+    EXPECT_NE(sentences.last.find(words), std::string::npos) << sentences.last;
+    EXPECT_EQ(commands.dispatches, 0u);
+  }
+  pellucidDestroyContext(context);
+}
+
 // Frames of different kinds, so that threads run different code at once.
 void shape(Frame& f, uint32_t kind) {
   for (PellucidImage& image : f.frame.transients) image = Frame::view();
