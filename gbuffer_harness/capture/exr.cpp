@@ -77,7 +77,7 @@ struct ExrFile::Impl {
   template <class Call>
   auto guarded(Call&& call) const {
     try {
-      return call();
+      return withinMemory(path.string(), call);
     } catch (const InputError&) {
       throw;
     } catch (const std::exception& error) {

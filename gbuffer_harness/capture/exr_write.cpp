@@ -4,6 +4,7 @@
 #include <ImfMultiPartOutputFile.h>
 #include <ImfOutputPart.h>
 #include <ImfPartType.h>
+#include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
 
 #include <cmath>
@@ -63,6 +64,23 @@ private:
   std::vector<std::uint32_t> uint_;
 };
 
+void writeParts(Imf::OStream& stream, const std::filesystem::path& path, const std::vector<ExrPart>& parts,
+                const std::vector<Imf::Header>& headers) {
+  Imf::MultiPartOutputFile file(stream, headers.data(), static_cast<int>(headers.size()));
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    std::vector<Plane> planes;
+    Imf::FrameBuffer frame;
+    planes.reserve(parts[i].channels.size());
+    for (const ExrChannel& channel : parts[i].channels) {
+      planes.emplace_back(path, channel);
+      frame.insert(channel.name, planes.back().slice(headers[i].dataWindow()));
+    }
+    Imf::OutputPart output(file, static_cast<int>(i));
+    output.setFrameBuffer(frame);
+    output.writePixels(parts[i].channels.front().image->height);
+  }
+}
+
 }  // namespace
 
 void writeExrParts(const std::filesystem::path& path, const std::vector<ExrPart>& parts) {
@@ -81,19 +99,12 @@ void writeExrParts(const std::filesystem::path& path, const std::vector<ExrPart>
     headers.push_back(header);
   }
   try {
-    Imf::MultiPartOutputFile file(path.string().c_str(), headers.data(), static_cast<int>(headers.size()));
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-      std::vector<Plane> planes;
-      Imf::FrameBuffer frame;
-      planes.reserve(parts[i].channels.size());
-      for (const ExrChannel& channel : parts[i].channels) {
-        planes.emplace_back(path, channel);
-        frame.insert(channel.name, planes.back().slice(headers[i].dataWindow()));
-      }
-      Imf::OutputPart output(file, static_cast<int>(i));
-      output.setFrameBuffer(frame);
-      output.writePixels(parts[i].channels.front().image->height);
-    }
+    // Our own stream: OpenEXR finishes the file in a destructor, which cannot say that the disk is full.
+    std::ofstream bytes(path, std::ios::binary);
+    if (!bytes) throw InputError(path.string(), "", "cannot be opened for writing");
+    Imf::StdOFStream stream(bytes, path.string().c_str());
+    writeParts(stream, path, parts, headers);
+    if (!bytes.flush()) throw InputError(path.string(), "", "cannot be written: the disk may be full");
   } catch (const InputError&) {
     throw;
   } catch (const std::exception& error) {

@@ -152,13 +152,7 @@ std::vector<std::uint8_t> materialIndices(const Manifest& manifest, const Buffer
   return indices;
 }
 
-}  // namespace
-
-Capture readCapture(const std::filesystem::path& path, ManifestPreset preset) {
-  return readCapture(readManifest(path, preset));
-}
-
-Capture readCapture(const Manifest& manifest) {
+Capture readImages(const Manifest& manifest) {
   Capture capture = manifest.capture;
   Image material;
   Loader loader(manifest);
@@ -196,6 +190,16 @@ Capture readCapture(const Manifest& manifest) {
     for (Image* image : {&capture.truth->image, &capture.truth->standardError})
       for (float& value : image->data) value *= static_cast<float>(manifest.truthScale);
   return capture;
+}
+
+}  // namespace
+
+Capture readCapture(const std::filesystem::path& path, ManifestPreset preset) {
+  return readCapture(withinMemory(path.string(), [&] { return readManifest(path, preset); }));
+}
+
+Capture readCapture(const Manifest& manifest) {
+  return withinMemory(manifest.path.string(), [&] { return readImages(manifest); });
 }
 
 }  // namespace pellucid::harness

@@ -18,6 +18,8 @@ template <class... Visitors>
 struct Overloaded : Visitors... {
   using Visitors::operator()...;
 };
+template <class... Visitors>
+Overloaded(Visitors...) -> Overloaded<Visitors...>;  // clang 14 does not deduce it
 
 const char* encodingName(PellucidDepthEncoding encoding) {
   return encoding == PELLUCID_DEPTH_DEVICE   ? "device"

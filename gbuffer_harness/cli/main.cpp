@@ -1,5 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <new>
 
 #include "cli/command.h"
 #include "cli/commands.h"
@@ -14,6 +15,15 @@ enum ExitCode { OK = 0, OVER_LIMIT = 1, USAGE = 2, BAD_INPUT = 3, NO_DEVICE = 4 
 int fail(ExitCode code, const char* sentence) {
   std::fprintf(stderr, "pellucid: %s\n", sentence);
   return code;
+}
+
+// Files that need more memory than there is are named where they are read. What is left is work on them: the
+// command says which. Nothing is allocated.
+int outOfMemory(int argc, char** argv) {
+  std::fputs("pellucid: there is not enough memory for:", stderr);
+  for (int i = 1; i < argc; ++i) std::fprintf(stderr, " %s", argv[i]);
+  std::fputs("\n", stderr);
+  return BAD_INPUT;
 }
 
 }  // namespace
@@ -47,7 +57,7 @@ int main(int argc, char** argv) {
   } catch (const DeviceError& e) {
     return fail(NO_DEVICE, e.what());
   } catch (const std::bad_alloc&) {
-    return fail(BAD_INPUT, "out of memory");
+    return outOfMemory(argc, argv);
   } catch (const std::exception& e) {
     return fail(BAD_INPUT, e.what());
   }

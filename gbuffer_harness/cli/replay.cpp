@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <mutex>
+#include <new>
 #include <optional>
 
 #include "capture/exr.h"
@@ -178,6 +179,9 @@ void replaySequence(const Options& options, const ReplaySettings& settings) {
       }
     } catch (const DeviceError&) {
       throw;  // the next frame would find the same device
+    } catch (const std::bad_alloc&) {
+      const std::scoped_lock lock(reportMutex);
+      failures[frame] = "needs more memory than there is";
     } catch (const std::exception& error) {
       const std::scoped_lock lock(reportMutex);
       failures[frame] = error.what();
@@ -205,7 +209,7 @@ void replay(const Options& options) {
   if (options.frames.empty()) {
     if (options.input.find('#') != std::string::npos && !std::filesystem::exists(options.input))
       throw UsageError("\"" + options.input + "\" is a sequence: --frames FIRST-LAST is required");
-    return replayOne(options, settings);
+    return withinMemory(options.input, [&] { replayOne(options, settings); });
   }
   if (!options.triptych.empty()) throw UsageError("--triptych shows one capture, not --frames");
   if (options.repeat) throw UsageError("--repeat times one capture, not --frames");

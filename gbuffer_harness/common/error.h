@@ -1,6 +1,7 @@
 // The harness's exceptions, one per exit code of the command line.
 #pragma once
 
+#include <new>
 #include <stdexcept>
 #include <string>
 
@@ -13,6 +14,16 @@ public:
       : std::runtime_error((file.empty() ? std::string() : file + ": ") +
                            (field.empty() ? std::string() : field + ": ") + sentence) {}
 };
+
+// Calls work(), which takes memory for what is in `file`; where there is none left, throws InputError.
+template <class Work>
+auto withinMemory(const std::string& file, const Work& work) {
+  try {
+    return work();
+  } catch (const std::bad_alloc&) {
+    throw InputError(file, "", "needs more memory than there is");
+  }
+}
 
 // Wrong use of the command line (exit code 2).
 class UsageError : public std::runtime_error {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
 
 #include "common/error.h"
 
@@ -28,7 +29,12 @@ std::uint8_t srgbByte(float linear) {
 
 void writePng(const std::filesystem::path& path, int width, int height,
               const std::vector<std::uint8_t>& rgb) {
-  if (!stbi_write_png(path.string().c_str(), width, height, 3, rgb.data(), width * 3))
+  std::ofstream file(path, std::ios::binary);
+  const auto append = [](void* to, void* bytes, int size) {
+    static_cast<std::ofstream*>(to)->write(static_cast<const char*>(bytes), size);
+  };
+  if (!file || !stbi_write_png_to_func(append, &file, width, height, 3, rgb.data(), width * 3) ||
+      !file.flush())
     throw InputError(path.string(), "", "the PNG cannot be written");
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <new>
 #include <optional>
 #include <string_view>
 
@@ -188,6 +189,8 @@ GltfDocument readGltf(const fs::path& path) {
             ? loader.LoadBinaryFromMemory(&document.model, &problems, &warnings, bytes.data(), size, folder)
             : loader.LoadASCIIFromString(&document.model, &problems, &warnings,
                                          reinterpret_cast<const char*>(bytes.data()), size, folder);
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& e) {
     problems = e.what();
   }

@@ -11,6 +11,7 @@
 #include <set>
 #include <utility>
 
+#include "common/error.h"
 #include "gltf/document.h"
 #include "gltf/material.h"
 #include "gltf/mesh.h"
@@ -276,8 +277,10 @@ GltfScene Loader::load() {
 }  // namespace
 
 GltfScene loadGltf(const std::filesystem::path& path, const GltfOptions& options) {
-  const GltfDocument document = readGltf(path);
-  return Loader(document, options).load();
+  return withinMemory(path.string(), [&] {
+    const GltfDocument document = readGltf(path);
+    return Loader(document, options).load();
+  });
 }
 
 }  // namespace pellucid::harness

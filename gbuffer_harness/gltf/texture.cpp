@@ -17,6 +17,10 @@ namespace pellucid::harness {
 namespace {
 
 constexpr long long kMaxPixels = 1LL << 26;
+// Of a byte: deflate makes 1032 bytes of one, of 8 pixels each in a PNG of one bit. What claims more is
+// damaged, and memory would be taken for it. A JPEG cannot have more either, at a bit for each block of 64
+// pixels.
+constexpr long long kMaxPixelsPerByte = 8 * 1032;
 
 TextureWrap wrapOf(const GltfDocument& document, int mode, const std::string& field) {
   switch (mode) {
@@ -56,6 +60,9 @@ Texture readTexture(const GltfDocument& document, int textureIndex, const std::s
   if (static_cast<long long>(width) * height > kMaxPixels)
     document.fail(name,
                   std::to_string(width) + " x " + std::to_string(height) + " pixels are more than 2^26");
+  if (static_cast<long long>(width) * height > kMaxPixelsPerByte * size)
+    document.fail(name, std::to_string(width) + " x " + std::to_string(height) + " pixels cannot be in " +
+                            std::to_string(size) + " bytes");
   const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
       stbi_load_from_memory(data, size, &width, &height, &channels, 4), stbi_image_free);
   if (!pixels) document.fail(name, std::string("cannot be decoded: ") + stbi_failure_reason());

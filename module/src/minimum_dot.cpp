@@ -59,8 +59,9 @@ double minimumDotOf(const PellucidThesisOptions& t, const PellucidLight& light) 
 }
 
 uint32_t minimumDotEntries(const PellucidThesisOptions& t) {
-  if (t.angleModel == PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH) return t.minimumDotTableSize;
-  if (t.angleModel == PELLUCID_ANGLE_MINIMUM_DOT_SPHERE) return t.minimumDotTableSize * t.minimumDotTableSize;
+  const uint32_t size = t.minimumDotTableSize;
+  if (t.angleModel == PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH) return size <= kMostAzimuths ? size : 0;
+  if (t.angleModel == PELLUCID_ANGLE_MINIMUM_DOT_SPHERE) return size <= kMostSphereSide ? size * size : 0;
   return 0;
 }
 

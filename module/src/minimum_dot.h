@@ -9,7 +9,10 @@ namespace pellucid {
 // and 0 for models without one. Models that are prescaled have minimumDot.
 double minimumDotOf(const PellucidThesisOptions& thesis, const PellucidLight& light);
 
-// Entries that minimumDotTable must have; 0 for models without a table.
+// The largest minimumDotTableSize of the two models with a table.
+inline constexpr uint32_t kMostAzimuths = 360, kMostSphereSide = 16;
+
+// Entries that minimumDotTable must have; 0 for models without a table, and for sizes beyond the domain's.
 uint32_t minimumDotEntries(const PellucidThesisOptions& thesis);
 
 }  // namespace pellucid

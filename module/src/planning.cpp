@@ -37,12 +37,17 @@ extern "C" uint32_t pellucidGetRequiredInputs(uint32_t features) {
 
 namespace {
 
-// Lights, from the first one on, whose shadow images the dispatches of a plan can bind.
+// Lights, from the first one on, whose shadow images the dispatches of a plan can bind; one more does not fit. Those
+// of all lights do not.
 uint32_t lightsThatFit(PellucidFrame frame) {
   PellucidPlan plan;
-  while (frame.lightCount > 0 && pellucidBuildPlan(&frame, nullptr, &plan) == PELLUCID_ERROR_CAPACITY)
-    --frame.lightCount;
-  return frame.lightCount;
+  uint32_t fit = 0, tooMany = frame.lightCount;
+  while (tooMany - fit > 1) {  // halved: each try costs lights times materials
+    frame.lightCount = fit + (tooMany - fit) / 2;
+    const bool fits = pellucidBuildPlan(&frame, nullptr, &plan) != PELLUCID_ERROR_CAPACITY;
+    (fits ? fit : tooMany) = frame.lightCount;
+  }
+  return fit;
 }
 
 }  // namespace

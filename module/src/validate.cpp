@@ -69,7 +69,8 @@ void checkImageSize(const PellucidFrame& f, Findings& out) {
 void checkMinimumDotTable(const PellucidThesisOptions& t, Findings& out) {
   const bool azimuth = t.angleModel == PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH;
   if (!azimuth && t.angleModel != PELLUCID_ANGLE_MINIMUM_DOT_SPHERE) return;
-  const uint32_t least = azimuth ? 1 : 3, most = azimuth ? 360 : 16, size = t.minimumDotTableSize;
+  const uint32_t least = azimuth ? 1 : 3, most = azimuth ? kMostAzimuths : kMostSphereSide;
+  const uint32_t size = t.minimumDotTableSize;
   if (size < least || size > most) {
     out.error("thesis.minimumDotTableSize", "is ", size, ", outside ", least, "..", most);
   } else if (!t.minimumDotTable) {

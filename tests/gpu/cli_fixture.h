@@ -17,8 +17,9 @@ struct Outcome {
   std::string text;  // standard output and error
 };
 
-inline Outcome run(const std::string& arguments) {
-  const std::string command = std::string(PELLUCID_COMMAND) + " " + arguments + " 2>&1";
+// `before`: shell commands in the same process, each with its semicolon.
+inline Outcome run(const std::string& arguments, const std::string& before = "") {
+  const std::string command = before + PELLUCID_COMMAND + " " + arguments + " 2>&1";
   FILE* pipe = popen(command.c_str(), "r");
   if (!pipe) return {-1, "popen failed"};
   Outcome outcome{0, {}};

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
+#include <iterator>
 #include <random>
 
 #include "pellucid/pellucid_budget.h"
@@ -98,6 +99,32 @@ TEST(Budget, DamagedStatesRecover) {
     EXPECT_EQ(light.quality, best.quality) << bits;
     EXPECT_EQ(light.reuse, 0u) << bits;
     EXPECT_EQ(heavy.quality, 0u) << bits;
+  }
+}
+
+// Likewise where each field is damaged in its own way, or is not.
+TEST(Budget, RandomStatesRecover) {
+  std::mt19937 random(19);
+  const uint32_t words[] = {0,           1,           2,           3,           30,         4096,
+                            0x7FC00000u, 0x7F800000u, 0x3F800000u, 0x80000000u, 0xFFFFFFFFu};
+  for (int state = 0; state < 300; ++state) {
+    SCOPED_TRACE(state);
+    PellucidBudgetState light;
+    pellucidInitBudgetState(&light);
+    for (size_t i = 0; i < sizeof light / 4; ++i) {
+      const uint32_t kind = static_cast<uint32_t>(random()) % 4;
+      if (kind == 0) continue;
+      const uint32_t word = kind == 1 ? static_cast<uint32_t>(random()) : words[random() % std::size(words)];
+      std::memcpy(reinterpret_cast<char*>(&light) + 4 * i, &word, 4);
+    }
+    PellucidBudgetState heavy = light;
+    int lightFrames = 0, heavyFrames = 0;
+    // Two waits of 4096 frames at most, one for each quality, and one for the reuse.
+    for (; lightFrames < 20000 && !(light.quality == 2 && light.reuse == 0); ++lightFrames)
+      pellucidStepBudget(&light, 0.5f, kBudget);
+    for (; heavyFrames < 100 && heavy.quality != 0; ++heavyFrames) pellucidStepBudget(&heavy, 100, kBudget);
+    EXPECT_LT(lightFrames, 20000);
+    EXPECT_LE(heavyFrames, kLongestOver + 2) << "as from a state that is whole, after what it lets settle";
   }
 }
 

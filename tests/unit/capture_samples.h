@@ -40,6 +40,7 @@ public:
   TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
 
   std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+  operator const std::filesystem::path&() const { return path_; }
 
 private:
   std::filesystem::path path_;
@@ -130,7 +131,7 @@ inline std::string readText(const std::filesystem::path& path) {
 }
 
 // Writes g.exr and s.exr of the sample's values into `directory` and returns the manifest that names them.
-inline nlohmann::json writeSampleFiles(const TemporaryDirectory& directory) {
+inline nlohmann::json writeSampleFiles(const std::filesystem::path& directory) {
   const Capture capture = sampleCapture();
   Image all(kSampleWidth, kSampleHeight, 6);
   for (int y = 0; y < kSampleHeight; ++y)

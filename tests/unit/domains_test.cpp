@@ -144,8 +144,8 @@ TYPED_TEST(Domains, IntegersOutsideAreNamed) {
       }
 }
 
-// Names of the float fields that the header declares in a struct.
-std::set<std::string> declaredFloats(const std::string& name) {
+// Names of the fields of a type that the headers declare in a struct.
+std::set<std::string> declared(const std::string& type, const std::string& name) {
   const char* const header = name == "PellucidThesisOptions" ? "pellucid_thesis.h" : "pellucid.h";
   std::ifstream file(std::string(PELLUCID_SOURCE_DIR) + "/module/include/pellucid/" + header);
   std::stringstream text;
@@ -154,7 +154,7 @@ std::set<std::string> declaredFloats(const std::string& name) {
   const size_t first = declarations.find("struct " + name + " {"), last = declarations.find("}", first);
   std::set<std::string> fields;
   const std::string body = declarations.substr(first, last - first);
-  const std::regex declaration(R"(\bfloat ([^*;]+);)"), field(R"((\w+)(\[\w+\])*)");
+  const std::regex declaration("\\b" + type + " ([^*;]+);"), field(R"((\w+)(\[\w+\])*)");
   for (std::sregex_iterator d(body.begin(), body.end(), declaration), end; d != end; ++d) {
     std::stringstream list((*d)[1].str());
     for (std::string one; std::getline(list, one, ',');) {
@@ -165,15 +165,232 @@ std::set<std::string> declaredFloats(const std::string& name) {
   return fields;
 }
 
+template <class Struct>
+const char* nameOf() {
+  return std::is_same_v<Struct, PellucidFrame>           ? "PellucidFrame"
+         : std::is_same_v<Struct, PellucidThesisOptions> ? "PellucidThesisOptions"
+         : std::is_same_v<Struct, PellucidMaterial>      ? "PellucidMaterial"
+         : std::is_same_v<Struct, PellucidLight>         ? "PellucidLight"
+                                                         : "PellucidShadowMap";
+}
+
 TYPED_TEST(Domains, TheTableHasEveryFloatOfTheHeader) {
-  const char* name = std::is_same_v<TypeParam, PellucidFrame>           ? "PellucidFrame"
-                     : std::is_same_v<TypeParam, PellucidThesisOptions> ? "PellucidThesisOptions"
-                     : std::is_same_v<TypeParam, PellucidMaterial>      ? "PellucidMaterial"
-                     : std::is_same_v<TypeParam, PellucidLight>         ? "PellucidLight"
-                                                                        : "PellucidShadowMap";
+  const char* const name = nameOf<TypeParam>();
   std::set<std::string> table;
   for (const FloatDomain& d : domainsOf<TypeParam>().floats) table.insert(d.field);
-  EXPECT_EQ(table, declaredFloats(name));
+  EXPECT_EQ(table, declared("float", name));
+}
+
+// Integers whose domain is no interval, or depends on other fields: values that each must refuse, and the
+// field that the sentence names.
+struct IntegerRule {
+  const char* structName;
+  const char* field;
+  const char* named;
+  std::function<void(Frame&, uint32_t)> set;
+  std::vector<uint32_t> bad;
+};
+
+const std::vector<IntegerRule> kIntegerRules = {
+    {"PellucidFrame",
+     "structSize",
+     "structSize",
+     [](Frame& f, uint32_t v) { f.frame.structSize = v; },
+     {0, 4, 0xFFFFFFFF}},
+    {"PellucidFrame",
+     "features",
+     "features",
+     [](Frame& f, uint32_t v) { f.frame.features = v; },
+     {4, 7, 0x80000000, 0xFFFFFFFF}},
+    {"PellucidFrame",
+     "imageExtent",
+     "imageExtent",
+     [](Frame& f, uint32_t v) { f.frame.imageExtent[1] = v; },
+     {0, 65537, 0x80000000, 0xFFFFFFFF}},
+    {"PellucidFrame",
+     "renderRect",
+     "renderRect",
+     [](Frame& f, uint32_t v) { f.frame.renderRect[0] = v; },
+     {1, 65537, 0x80000000, 0xFFFFFFFF}},
+    {"PellucidFrame",
+     "renderRect",
+     "renderRect",
+     [](Frame& f, uint32_t v) { f.frame.renderRect[2] = v; },
+     {1, 0x80000000, 0xFFFFFFFF}},  // of height 0
+    {"PellucidFrame",
+     "renderRect",
+     "renderRect",
+     [](Frame& f, uint32_t v) {
+       f.frame.renderRect[1] = f.frame.renderRect[2] = 1;
+       f.frame.renderRect[3] = v;
+     },
+     {0, 50, 0x80000000, 0xFFFFFFFF}},
+    {"PellucidFrame",
+     "materialCount",
+     "materials",
+     [](Frame& f, uint32_t v) { f.frame.materialCount = v; },
+     {0, 256, 0x80000000, 0xFFFFFFFF}},
+    {"PellucidFrame",
+     "lightCount",
+     "lights",
+     [](Frame& f, uint32_t v) {
+       f.frame.lightCount = v;
+       f.frame.lights = nullptr;
+     },
+     {1, 0xFFFFFFFF}},
+    {"PellucidFrame",
+     "shadowMapCount",
+     "shadowMaps",
+     [](Frame& f, uint32_t v) {
+       f.frame.shadowMapCount = v;
+       f.frame.shadowMaps = nullptr;
+     },
+     {1, 0xFFFFFFFF}},
+    {"PellucidFrame",
+     "shadowImageCount",
+     "shadowImages",
+     [](Frame& f, uint32_t v) {
+       f.frame.shadowImageCount = v;
+       f.frame.shadowImages = nullptr;
+     },
+     {1, 0xFFFFFFFF}},
+    {"PellucidFrame",
+     "gatherSamples",
+     "gatherSamples",
+     [](Frame& f, uint32_t v) { f.frame.gatherSamples = v; },
+     {1, 3, 66, 68, 0x80000000, 0xFFFFFFFE}},
+    {"PellucidFrame",
+     "gatherSpacing",
+     "gatherSpacing",
+     [](Frame& f, uint32_t v) { f.frame.gatherSpacing = v; },
+     {3, 5, 8, 0x80000000, 0xFFFFFFFF}},
+    {"PellucidThesisOptions",
+     "minimumDotTableSize",
+     "thesis.minimumDotTableSize",
+     [](Frame& f, uint32_t v) {
+       f.thesis.angleModel = PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH;
+       f.thesis.minimumDotTableSize = v;
+     },
+     {0, 361, 0x80000000, 0xFFFFFFFF}},
+    {"PellucidThesisOptions",
+     "minimumDotTableSize",
+     "thesis.minimumDotTableSize",
+     [](Frame& f, uint32_t v) {
+       f.thesis.angleModel = PELLUCID_ANGLE_MINIMUM_DOT_SPHERE;
+       f.thesis.minimumDotTableSize = v;
+     },
+     {0, 2, 17, 65536, 0x80000001, 0xFFFFFFFF}},
+    {"PellucidThesisOptions",
+     "materialMarkBit",
+     "thesis.materialMarkBit",
+     [](Frame& f, uint32_t v) { f.thesis.materialMarkBit = v; },
+     {1, 3, 192, 0xFFFFFFFF}},
+    {"PellucidFrame",
+     "reuse",
+     "reuse",
+     [](Frame& f, uint32_t v) { f.frame.reuse = v; },
+     {3, 4, 0x80000000, 0xFFFFFFFF}},
+    {"PellucidMaterial",
+     "structSize",
+     "materials[0].structSize",
+     [](Frame& f, uint32_t v) { f.material.structSize = v; },
+     {0, 4, 0xFFFFFFFF}},
+    {"PellucidThesisOptions",
+     "structSize",
+     "thesis.structSize",
+     [](Frame& f, uint32_t v) { f.thesis.structSize = v; },
+     {0, 4, 0xFFFFFFFF}},
+    {"PellucidLight",
+     "firstShadowMap",
+     "lights[0].shadowMapCount",
+     [](Frame& f, uint32_t v) { f.lights[0].firstShadowMap = v; },
+     {1, 0x80000000, 0xFFFFFFFF}},
+    {"PellucidLight",
+     "shadowMapCount",
+     "lights[0].shadowMapCount",
+     [](Frame& f, uint32_t v) { f.lights[0].shadowMapCount = v; },
+     {2, PELLUCID_MAX_LIGHT_SHADOW_MAPS + 1, 0x80000000, 0xFFFFFFFF}},
+    {"PellucidShadowMap",
+     "image",
+     "shadowMaps[0].image",
+     [](Frame& f, uint32_t v) { f.maps[0].image = v; },
+     {1, 0x80000000, 0xFFFFFFFF}},
+    {"PellucidShadowMap",
+     "exitImage",
+     "shadowMaps[0].exitImage",
+     [](Frame& f, uint32_t v) { f.maps[0].exitImage = v; },
+     {1, 2, 0x80000000, 0xFFFFFFFF}},
+    {"PellucidShadowMap",
+     "casterMaterialImage",
+     "shadowMaps[0].casterMaterialImage",
+     [](Frame& f, uint32_t v) { f.maps[0].casterMaterialImage = v; },
+     {1, 2, 0x80000000, 0xFFFFFFFF}}};
+
+TEST(Domains, IntegersAgainstTheirRulesAreNamed) {
+  for (const IntegerRule& rule : kIntegerRules)
+    for (const uint32_t value : rule.bad) {
+      Whole f;
+      rule.set(f, value);
+      const std::string problems = f.problems();
+      EXPECT_EQ(problems.find(rule.named), 0u) << rule.field << " = " << value << ": " << problems;
+      PellucidPlan plan;
+      EXPECT_NE(pellucidBuildPlan(&f.frame, nullptr, &plan), PELLUCID_OK) << rule.field << " = " << value;
+    }
+}
+
+TYPED_TEST(Domains, EveryIntegerOfTheHeaderHasADomainOrARule) {
+  std::set<std::string> known;
+  for (const IntegerDomain& d : domainsOf<TypeParam>().integers) known.insert(d.field);
+  for (const IntegerRule& rule : kIntegerRules)
+    if (std::string(rule.structName) == nameOf<TypeParam>()) known.insert(rule.field);
+  EXPECT_EQ(known, declared("uint32_t", nameOf<TypeParam>()));
+}
+
+// Each image in each layout that shaders cannot read, and the written ones in all but GENERAL.
+TEST(Domains, LayoutsThatDoNotFitAreNamed) {
+  const std::vector<std::pair<std::string, std::function<PellucidImage&(Frame&)>>> images = {
+      {"frontDepth", [](Frame& f) -> PellucidImage& { return f.frame.frontDepth; }},
+      {"backDepth", [](Frame& f) -> PellucidImage& { return f.frame.backDepth; }},
+      {"irradiance", [](Frame& f) -> PellucidImage& { return f.frame.irradiance; }},
+      {"normal", [](Frame& f) -> PellucidImage& { return f.frame.normal; }},
+      {"albedo", [](Frame& f) -> PellucidImage& { return f.frame.albedo; }},
+      {"material", [](Frame& f) -> PellucidImage& { return f.frame.material; }},
+      {"shadowImages[0]", [](Frame& f) -> PellucidImage& { return f.images[0]; }},
+      {"output", [](Frame& f) -> PellucidImage& { return f.frame.output; }},
+      {"transients[0]", [](Frame& f) -> PellucidImage& { return f.frame.transients[0]; }},
+      {"history", [](Frame& f) -> PellucidImage& { return f.frame.history; }}};
+  const VkImageLayout readable[] = {
+      VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL,
+      VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_STENCIL_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL,
+      VK_IMAGE_LAYOUT_READ_ONLY_OPTIMAL};
+  const VkImageLayout others[] = {VK_IMAGE_LAYOUT_UNDEFINED,
+                                  VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                                  VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
+                                  VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                                  VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                                  VK_IMAGE_LAYOUT_PREINITIALIZED,
+                                  VK_IMAGE_LAYOUT_PRESENT_SRC_KHR,
+                                  VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
+                                  VK_IMAGE_LAYOUT_ATTACHMENT_OPTIMAL,
+                                  static_cast<VkImageLayout>(9),
+                                  VK_IMAGE_LAYOUT_MAX_ENUM};
+  const auto problemsWith = [](const auto& image, VkImageLayout layout) {
+    Whole f;
+    f.frame.normal = f.frame.albedo = f.frame.history = Frame::view();
+    f.frame.reuse = PELLUCID_REUSE_ALTERNATE;
+    image(f).layout = layout;
+    return f.problems();
+  };
+  for (const auto& [name, image] : images) {
+    const bool written = name == "output" || name == "transients[0]" || name == "history";
+    EXPECT_EQ(problemsWith(image, VK_IMAGE_LAYOUT_GENERAL), "") << name;
+    for (const VkImageLayout layout : readable)
+      EXPECT_EQ(problemsWith(image, layout).find(name + " is in VkImageLayout"),
+                written ? 0u : std::string::npos)
+          << name << " " << layout;
+    for (const VkImageLayout layout : others)
+      EXPECT_EQ(problemsWith(image, layout).find(name + " is in VkImageLayout"), 0u) << name << " " << layout;
+  }
 }
 
 // Transmittance that thicker parts have more of is refused, even where its rates are positive.

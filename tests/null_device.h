@@ -1,0 +1,198 @@
+// A Vulkan device that computes nothing: functions that make handles and check what is recorded. Contexts of
+// it cost microseconds and need no driver, so that tests can make thousands.
+#pragma once
+
+#include <atomic>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+
+#include "pellucid/pellucid.h"
+
+namespace pellucid::test {
+
+// One command buffer: counts, and the first rule of Vulkan or of pellucid.h that was broken.
+struct NullCommands {
+  uint32_t dispatches = 0, barriers = 0;
+  std::string problem;
+  VkDeviceSize sliceOffset = 0, sliceSize = 0;  // set by the test: what buffers may be bound and read
+
+  VkCommandBuffer handle() { return reinterpret_cast<VkCommandBuffer>(this); }
+
+  void require(bool holds, const char* rule) {
+    if (!holds && problem.empty()) problem = rule;
+  }
+  bool isInSlice(VkDeviceSize offset, VkDeviceSize size) const {
+    return offset >= sliceOffset && size <= sliceSize && offset - sliceOffset <= sliceSize - size;
+  }
+
+  bool hasPipeline = false, hasBindings = false, hasConstants = false;
+};
+
+class NullDevice {
+public:
+  NullDevice() = default;
+  NullDevice(const NullDevice&) = delete;
+  ~NullDevice() {
+    if (live != 0) std::abort();  // a context outlives its device
+  }
+
+  std::atomic<int> live = 0;      // Vulkan objects
+  const char* missing = nullptr;  // a device function that does not exist
+
+  PellucidContextDesc desc() {
+    PellucidContextDesc d;
+    pellucidInitContextDesc(&d);
+    d.instance = reinterpret_cast<VkInstance>(this);
+    d.physicalDevice = reinterpret_cast<VkPhysicalDevice>(this);
+    d.device = reinterpret_cast<VkDevice>(this);
+    d.getInstanceProcAddr = getInstanceProcAddr;
+    return d;
+  }
+
+private:
+  using Function = PFN_vkVoidFunction;
+  template <class F>
+  static Function function(F* f) {
+    return reinterpret_cast<Function>(f);
+  }
+
+  static NullDevice& of(VkDevice device) { return *reinterpret_cast<NullDevice*>(device); }
+  static NullCommands& of(VkCommandBuffer buffer) { return *reinterpret_cast<NullCommands*>(buffer); }
+
+  static constexpr size_t kObjectBytes = 32, kAlignment = 16;
+
+  template <class Handle>
+  static VkResult create(VkDevice device, const VkAllocationCallbacks* a, Handle* handle) {
+    void* object =
+        a ? a->pfnAllocation(a->pUserData, kObjectBytes, kAlignment, VK_SYSTEM_ALLOCATION_SCOPE_OBJECT)
+          : std::malloc(kObjectBytes);
+    *handle = reinterpret_cast<Handle>(object);
+    if (!object) return VK_ERROR_OUT_OF_HOST_MEMORY;
+    ++of(device).live;
+    return VK_SUCCESS;
+  }
+  template <class Handle>
+  static void VKAPI_PTR destroy(VkDevice device, Handle handle, const VkAllocationCallbacks* a) {
+    if (!handle) return;
+    --of(device).live;
+    if (a)
+      a->pfnFree(a->pUserData, handle);
+    else
+      std::free(handle);
+  }
+  template <class Handle, class Info>
+  static VkResult VKAPI_PTR createFrom(VkDevice device, const Info*, const VkAllocationCallbacks* a,
+                                       Handle* handle) {
+    return create(device, a, handle);
+  }
+  static VkResult VKAPI_PTR createPipelines(VkDevice device, VkPipelineCache, uint32_t count,
+                                            const VkComputePipelineCreateInfo*,
+                                            const VkAllocationCallbacks* a, VkPipeline* pipelines) {
+    // A driver takes memory for the call, too.
+    void* forCall = nullptr;
+    if (a) {
+      forCall = a->pfnAllocation(a->pUserData, kObjectBytes, kAlignment, VK_SYSTEM_ALLOCATION_SCOPE_COMMAND);
+      if (!forCall) return VK_ERROR_OUT_OF_HOST_MEMORY;
+    }
+    VkResult result = VK_SUCCESS;
+    for (uint32_t i = 0; i < count; ++i)
+      if (create(device, a, &pipelines[i]) != VK_SUCCESS) result = VK_ERROR_OUT_OF_HOST_MEMORY;
+    if (a) a->pfnFree(a->pUserData, forCall);
+    return result;
+  }
+
+  static void VKAPI_PTR bindPipeline(VkCommandBuffer buffer, VkPipelineBindPoint point, VkPipeline pipeline) {
+    NullCommands& c = of(buffer);
+    c.require(point == VK_PIPELINE_BIND_POINT_COMPUTE && pipeline, "vkCmdBindPipeline without a pipeline");
+    c.hasPipeline = true;
+  }
+  static void VKAPI_PTR pushConstants(VkCommandBuffer buffer, VkPipelineLayout layout, VkShaderStageFlags,
+                                      uint32_t offset, uint32_t size, const void* values) {
+    NullCommands& c = of(buffer);
+    c.require(layout && values && offset == 0 && size == PELLUCID_PUSH_CONSTANT_BYTES,
+              "vkCmdPushConstants of another range than the layout's");
+    c.hasConstants = true;
+  }
+  static void VKAPI_PTR pushDescriptorSet(VkCommandBuffer buffer, VkPipelineBindPoint, VkPipelineLayout,
+                                          uint32_t set, uint32_t count, const VkWriteDescriptorSet* writes) {
+    NullCommands& c = of(buffer);
+    c.require(set == 0 && count > 0 && count <= PELLUCID_MAX_BINDINGS, "wrong number of bindings");
+    for (uint32_t i = 0; i < count; ++i) {
+      const VkWriteDescriptorSet& w = writes[i];
+      for (uint32_t k = 0; k < i; ++k)
+        c.require(writes[k].dstBinding != w.dstBinding, "a binding is written twice");
+      if (w.pBufferInfo) {
+        const VkDescriptorBufferInfo& b = *w.pBufferInfo;
+        c.require(b.buffer && b.range > 0 && c.isInSlice(b.offset, b.range), "a buffer leaves the slice");
+        // The largest alignment that a device may ask for, of storage and uniform buffers.
+        c.require((b.offset - c.sliceOffset) % 256 == 0, "a buffer's offset is no multiple of 256");
+      } else {
+        c.require(w.pImageInfo && w.pImageInfo->imageView, "an image is bound without a view");
+      }
+    }
+    c.hasBindings = true;
+  }
+  static void VKAPI_PTR barrier(VkCommandBuffer buffer, VkPipelineStageFlags, VkPipelineStageFlags,
+                                VkDependencyFlags, uint32_t, const VkMemoryBarrier*, uint32_t,
+                                const VkBufferMemoryBarrier*, uint32_t, const VkImageMemoryBarrier*) {
+    ++of(buffer).barriers;
+  }
+  static void dispatchAny(NullCommands& c) {
+    c.require(c.hasPipeline && c.hasBindings && c.hasConstants, "a dispatch without what it needs");
+    c.hasPipeline = c.hasBindings = c.hasConstants = false;
+    ++c.dispatches;
+  }
+  static void VKAPI_PTR dispatch(VkCommandBuffer buffer, uint32_t x, uint32_t y, uint32_t z) {
+    NullCommands& c = of(buffer);
+    // The least maxComputeWorkGroupCount that Vulkan allows a device.
+    for (const uint32_t groups : {x, y, z})
+      c.require(groups >= 1 && groups <= 65535, "groups outside 1..65535");
+    dispatchAny(c);
+  }
+  static void VKAPI_PTR dispatchIndirect(VkCommandBuffer buffer, VkBuffer commands, VkDeviceSize offset) {
+    NullCommands& c = of(buffer);
+    c.require(commands && offset % 4 == 0 && c.isInSlice(offset, sizeof(VkDispatchIndirectCommand)),
+              "an indirect command outside the slice");
+    dispatchAny(c);
+  }
+
+  static void VKAPI_PTR getProperties(VkPhysicalDevice, VkPhysicalDeviceProperties* properties) {
+    *properties = {};
+    properties->apiVersion = VK_API_VERSION_1_1;
+    std::strcpy(properties->deviceName, "null device");
+  }
+
+  static Function VKAPI_PTR getInstanceProcAddr(VkInstance, const char* name) {
+    if (std::strcmp(name, "vkGetPhysicalDeviceProperties") == 0) return function(getProperties);
+    return std::strcmp(name, "vkGetDeviceProcAddr") == 0 ? function(getDeviceProcAddr) : nullptr;
+  }
+
+  static Function VKAPI_PTR getDeviceProcAddr(VkDevice device, const char* name) {
+    if (of(device).missing && std::strcmp(name, of(device).missing) == 0) return nullptr;
+    const struct {
+      const char* name;
+      Function function;
+    } table[] = {
+        {"vkCreateDescriptorSetLayout",
+         function(createFrom<VkDescriptorSetLayout, VkDescriptorSetLayoutCreateInfo>)},
+        {"vkDestroyDescriptorSetLayout", function(destroy<VkDescriptorSetLayout>)},
+        {"vkCreatePipelineLayout", function(createFrom<VkPipelineLayout, VkPipelineLayoutCreateInfo>)},
+        {"vkDestroyPipelineLayout", function(destroy<VkPipelineLayout>)},
+        {"vkCreateShaderModule", function(createFrom<VkShaderModule, VkShaderModuleCreateInfo>)},
+        {"vkDestroyShaderModule", function(destroy<VkShaderModule>)},
+        {"vkCreateComputePipelines", function(createPipelines)},
+        {"vkDestroyPipeline", function(destroy<VkPipeline>)},
+        {"vkCmdBindPipeline", function(bindPipeline)},
+        {"vkCmdPushConstants", function(pushConstants)},
+        {"vkCmdPushDescriptorSetKHR", function(pushDescriptorSet)},
+        {"vkCmdPipelineBarrier", function(barrier)},
+        {"vkCmdDispatch", function(dispatch)},
+        {"vkCmdDispatchIndirect", function(dispatchIndirect)}};
+    for (const auto& entry : table)
+      if (std::strcmp(name, entry.name) == 0) return entry.function;
+    return nullptr;
+  }
+};
+
+}  // namespace pellucid::test

@@ -1,0 +1,252 @@
+// Creation of contexts where memory ends, and one context that many threads plan and record with.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <new>
+#include <thread>
+#include <vector>
+
+#include "failing_allocator.h"
+#include "frame_fixture.h"
+#include "null_device.h"
+
+namespace {
+
+// Of the process' own nothrow new, which the module allocates with: the n-th call from now on fails.
+std::atomic<int> failingNew = -1;
+
+}  // namespace
+
+void* operator new(size_t size, const std::nothrow_t&) noexcept {
+  if (failingNew >= 0 && failingNew-- == 0) return nullptr;
+  try {
+    return ::operator new(size);
+  } catch (const std::bad_alloc&) {
+    return nullptr;
+  }
+}
+
+namespace {
+
+using namespace pellucid::test;
+
+struct Sentences {
+  int count = 0;
+  std::string last;
+  static void add(void* user, PellucidSeverity, const char* field, const char* message) {
+    auto& self = *static_cast<Sentences*>(user);
+    ++self.count;
+    self.last = std::string(field) + " " + message;
+  }
+};
+
+TEST(ContextMemory, EveryFailingAllocationIsReportedAndNothingLeaks) {
+  int allocations = 0;
+  for (int n = 0;; ++n) {
+    SCOPED_TRACE(n);
+    NullDevice device;
+    FailingAllocator allocator;
+    allocator.failing = n;
+    const VkAllocationCallbacks callbacks = allocator.callbacks();
+    Sentences sentences;
+    PellucidContextDesc desc = device.desc();
+    desc.allocator = &callbacks;
+    desc.message = Sentences::add;
+    desc.messageUser = &sentences;
+    auto* context = reinterpret_cast<PellucidContext*>(&device);  // to be overwritten
+    const PellucidResult result = pellucidCreateContext(&desc, &context);
+    if (result == PELLUCID_OK) {
+      allocations = allocator.calls;
+      EXPECT_GT(allocator.live(), 0u);
+      pellucidDestroyContext(context);
+      EXPECT_EQ(allocator.live(), 0u);
+      EXPECT_EQ(device.live, 0);
+      break;
+    }
+    ASSERT_EQ(result, PELLUCID_ERROR_OUT_OF_MEMORY);
+    EXPECT_EQ(context, nullptr);
+    EXPECT_EQ(allocator.live(), 0u);
+    EXPECT_EQ(device.live, 0);
+    EXPECT_EQ(sentences.count, 1) << sentences.last;
+    EXPECT_EQ(sentences.last.find("device vkCreate"), 0u) << sentences.last;
+  }
+  // Two layouts, and of each pipeline its shader, itself and what the call takes.
+  EXPECT_EQ(allocations, 2 + 3 * PELLUCID_PIPELINE_COUNT);
+}
+
+TEST(ContextMemory, FailingHostMemoryIsReported) {
+  NullDevice device;
+  const PellucidContextDesc desc = device.desc();
+  int failures = 0;
+  for (;; ++failures) {
+    failingNew = failures;
+    PellucidContext* context = nullptr;
+    const PellucidResult result = pellucidCreateContext(&desc, &context);
+    failingNew = -1;
+    if (result == PELLUCID_OK) {
+      pellucidDestroyContext(context);
+      break;
+    }
+    ASSERT_EQ(result, PELLUCID_ERROR_OUT_OF_MEMORY);
+    EXPECT_EQ(context, nullptr);
+    EXPECT_EQ(device.live, 0);
+  }
+  EXPECT_EQ(failures, 1) << "the context itself is all that the module allocates";
+}
+
+TEST(ContextMemory, MissingFunctionsAreNamed) {
+  for (const char* name : {"vkCmdPushDescriptorSetKHR", "vkCreateShaderModule", "vkCmdDispatchIndirect"}) {
+    NullDevice device;
+    device.missing = name;
+    Sentences sentences;
+    PellucidContextDesc desc = device.desc();
+    desc.message = Sentences::add;
+    desc.messageUser = &sentences;
+    PellucidContext* context = nullptr;
+    EXPECT_EQ(pellucidCreateContext(&desc, &context), PELLUCID_ERROR_MISSING_FEATURE);
+    EXPECT_NE(sentences.last.find(name), std::string::npos) << sentences.last;
+  }
+}
+
+// A plan of a valid frame and a frame that is not: recording refuses it before it reads what is not there.
+TEST(ContextRecording, FramesThatAreNotValidAreRefused) {
+  NullDevice device;
+  Sentences sentences;
+  PellucidContextDesc desc = device.desc();
+  desc.message = Sentences::add;
+  desc.messageUser = &sentences;
+  PellucidContext* context = nullptr;
+  ASSERT_EQ(pellucidCreateContext(&desc, &context), PELLUCID_OK);
+  static const float table[9] = {};
+  const std::pair<const char*, void (*)(Frame&)> damages[] = {
+      {"NULL", [](Frame& f) { f.frame.materials = nullptr; }},
+      {"NULL", [](Frame& f) { f.frame.lights = nullptr; }},
+      {"NULL", [](Frame& f) { f.frame.shadowMaps = nullptr; }},
+      {"NULL", [](Frame& f) { f.frame.shadowImages = nullptr; }},
+      // The transients of such a frame cannot be counted.
+      {"imageExtent",
+       [](Frame& f) {
+         f.frame.reuse = PELLUCID_REUSE_ALTERNATE;
+         f.frame.imageExtent[0] = 0;
+       }},
+      // More entries than there are, or than 32 bits count.
+      {"minimumDotTableSize", [](Frame& f) { f.thesis.minimumDotTableSize = 40000; }},
+      {"minimumDotTableSize", [](Frame& f) { f.thesis.minimumDotTableSize = 0x80000001u; }}};
+  for (const auto& [words, damage] : damages) {
+    Frame f;
+    for (PellucidImage& image : f.frame.transients) image = Frame::view();
+    f.thesis.angleModel = PELLUCID_ANGLE_MINIMUM_DOT_SPHERE;
+    f.thesis.minimumDotTableSize = 3;
+    f.thesis.minimumDotTable = table;
+    ASSERT_EQ(f.problems(), "");
+    const PellucidPlan plan = f.plan();
+    damage(f);
+    std::vector<unsigned char> constants(plan.constantsSize);
+    NullCommands commands;
+    commands.sliceSize = plan.constantsSize;
+    const PellucidConstantsSlice slice{reinterpret_cast<VkBuffer>(uintptr_t{1}), 0, plan.constantsSize,
+                                       constants.data()};
+    EXPECT_EQ(pellucidRecordPlan(context, commands.handle(), &plan, &f.frame, &slice),
+              PELLUCID_ERROR_INVALID_ARGUMENT);
+    EXPECT_NE(sentences.last.find(words), std::string::npos) << sentences.last;
+    EXPECT_EQ(commands.dispatches, 0u);
+  }
+  pellucidDestroyContext(context);
+}
+
+// Frames of different kinds, so that threads run different code at once.
+void shape(Frame& f, uint32_t kind) {
+  for (PellucidImage& image : f.frame.transients) image = Frame::view();
+  f.frame.imageExtent[0] = 64 + 100 * (kind % 7);
+  if (kind % 3 == 1) f.frame.gatherSamples = PELLUCID_GATHER_BY_QUALITY;
+  if (kind % 3 == 2) f.frame.features = PELLUCID_FEATURE_DIFFUSION;
+  if (kind % 4 == 1) f.frame.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  f.frame.quality = kind % 3;
+  if (kind % 5 == 1) f.frame.normal = Frame::view();
+}
+
+struct Recorded {
+  std::vector<unsigned char> constants;
+  std::string json;
+  uint32_t dispatches = 0;
+  bool operator==(const Recorded&) const = default;
+};
+
+// Through every function of the API that planning and recording call. No expectations: threads call it.
+std::string record(const PellucidContext* context, uint32_t kind, Recorded* out) {
+  Frame f(kind % 4);
+  shape(f, kind);
+  if (pellucidValidateFrame(&f.frame, nullptr, nullptr) != PELLUCID_OK) return "the frame is not valid";
+  PellucidImageNeed needs[PELLUCID_MAX_TRANSIENTS + 1];
+  uint32_t count = PELLUCID_MAX_TRANSIENTS + 1;
+  if (pellucidGetImageNeeds(&f.frame, &count, needs) != PELLUCID_OK) return "no needs";
+  PellucidPlan plan;
+  if (pellucidBuildPlan(&f.frame, nullptr, &plan) != PELLUCID_OK) return "no plan";
+  out->constants.resize(plan.constantsSize);
+  NullCommands commands;
+  commands.sliceSize = plan.constantsSize;
+  const PellucidConstantsSlice slice{reinterpret_cast<VkBuffer>(uintptr_t{1}), 0, plan.constantsSize,
+                                     out->constants.data()};
+  if (pellucidRecordPlan(context, commands.handle(), &plan, &f.frame, &slice) != PELLUCID_OK)
+    return "not recorded";
+  out->dispatches = commands.dispatches;
+  size_t size = 0;
+  pellucidPlanToJson(&plan, nullptr, &size);
+  out->json.resize(size);
+  if (pellucidPlanToJson(&plan, out->json.data(), &size) != PELLUCID_OK) return "no JSON";
+  return commands.problem;
+}
+
+// Also run with ThreadSanitizer: ./run sanitize.
+TEST(ContextThreads, RecordTheSameAsOne) {
+  constexpr uint32_t kKinds = 60, kThreads = 8, kRounds = 10;
+  NullDevice device;
+  const PellucidContextDesc desc = device.desc();
+  PellucidContext* context = nullptr;
+  ASSERT_EQ(pellucidCreateContext(&desc, &context), PELLUCID_OK);
+  std::vector<Recorded> expected(kKinds);
+  for (uint32_t kind = 0; kind < kKinds; ++kind) {
+    ASSERT_EQ(record(context, kind, &expected[kind]), "") << kind;
+    EXPECT_GT(expected[kind].dispatches, 0u);
+  }
+  std::vector<std::string> problems(kThreads);
+  {
+    std::vector<std::jthread> threads;
+    for (uint32_t thread = 0; thread < kThreads; ++thread)
+      threads.emplace_back([&, thread] {
+        for (uint32_t i = 0; i < kKinds * kRounds && problems[thread].empty(); ++i) {
+          const uint32_t kind = (i * 7 + thread * 11) % kKinds;
+          Recorded recorded;
+          problems[thread] = record(context, kind, &recorded);
+          if (problems[thread].empty() && !(recorded == expected[kind]))
+            problems[thread] = "frame " + std::to_string(kind) + " was recorded otherwise than alone";
+        }
+      });
+  }
+  for (const std::string& problem : problems) EXPECT_EQ(problem, "");
+  pellucidDestroyContext(context);
+}
+
+// Contexts are made and destroyed on several threads of one device, too.
+TEST(ContextThreads, EachMakesItsOwnContext) {
+  NullDevice device;
+  std::vector<std::string> problems(4);
+  {
+    std::vector<std::jthread> threads;
+    for (std::string& problem : problems)
+      threads.emplace_back([&] {
+        for (int i = 0; i < 20 && problem.empty(); ++i) {
+          const PellucidContextDesc desc = device.desc();
+          PellucidContext* context = nullptr;
+          if (pellucidCreateContext(&desc, &context) != PELLUCID_OK) problem = "no context";
+          Recorded recorded;
+          if (problem.empty()) problem = record(context, static_cast<uint32_t>(i), &recorded);
+          pellucidDestroyContext(context);
+        }
+      });
+  }
+  for (const std::string& problem : problems) EXPECT_EQ(problem, "");
+  EXPECT_EQ(device.live, 0);
+}
+
+}  // namespace
