@@ -173,8 +173,11 @@ PellucidResult createPipelines(const PellucidContextDesc& desc, PellucidContext&
   else
     for (uint32_t i = 0; i < count; ++i) job(&jobs, i);
   for (uint32_t i = 0; i < count; ++i)
-    if (jobs.results[i] != VK_SUCCESS)
-      return vulkanError(desc, pipelineDesc(jobs.pipelines[i]).name, jobs.results[i]);
+    if (jobs.results[i] != VK_SUCCESS) {
+      char call[64];
+      Text(call, sizeof call) << "creating pipeline " << pipelineDesc(jobs.pipelines[i]).name;
+      return vulkanError(desc, call, jobs.results[i]);
+    }
   return PELLUCID_OK;
 }
 
