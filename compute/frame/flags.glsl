@@ -4,6 +4,15 @@
 
 #include "shared/pellucid_shared.h"
 
-bool hasFlag(uint flag) { return (frame.flags.x & flag) != 0u; }
+// The common frame of a gather: every light that is gathered from is directional with one map of device depth, the camera's
+// depth is device depth, and normals are given. Compilers drop the rest.
+layout(constant_id = PELLUCID_CONSTANT_DIRECTIONAL) const bool kDirectional = false;
+
+bool hasFlag(uint flag) {
+  const uint kOpen = PELLUCID_FLAG_BACK_DEPTH | PELLUCID_FLAG_BACK_VIEW_Z | PELLUCID_FLAG_DIFFUSED;
+  uint flags = frame.flags.x;
+  if (kDirectional) flags = (flags & kOpen) | PELLUCID_FLAG_NORMAL;
+  return (flags & flag) != 0u;
+}
 
 #endif

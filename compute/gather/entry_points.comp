@@ -19,11 +19,13 @@ shared uint someSurface;
 // A group makes 16x16 entry points of one map, each of the texel in the middle of those that it stands for, and their means.
 void main() {
   uint map = gl_WorkGroupID.z;
-  int side = int(entryMaps[map].map.z), index = int(gl_LocalInvocationIndex);
+  EntryMapConstants constants = entryMaps[map];
+  if (kDirectional) constants.meta.yz = uvec2(PELLUCID_SHADER_DEPTH_DEVICE, 0u);
+  int side = int(constants.map.z), index = int(gl_LocalInvocationIndex);
   ivec2 size = ivec2(pass.value.y & 0xFFFFu, pass.value.y >> 16), own = ivec2(gl_GlobalInvocationID.xy);
   bool contained = all(lessThan(own, maps[map].place.zw));
-  ivec2 texel = min(own * side + side / 2, ivec2(entryMaps[map].map.xy) - 1);
-  uvec4 entry = contained ? entryOf(entryMaps[map], texel) : kNoEntry;
+  ivec2 texel = min(own * side + side / 2, ivec2(constants.map.xy) - 1);
+  uvec4 entry = contained ? entryOf(constants, texel) : kNoEntry;
   entries[index] = entry;
   if (index == 0) someSurface = 0u;
   barrier();
@@ -48,7 +50,7 @@ void main() {
           int place = from + (i & 1) + (i >> 1) * 2 * across;
           bits[i] = (level & 1) != 0 ? entries[place] : means[place];
         }
-        entry = meanOf(bits, float(side << (level - 1)), entryMaps[map]);
+        entry = meanOf(bits, float(side << (level - 1)), constants);
       }
       imageStore(entriesDestination, entryPlace(first, level, size) + local, entry);
     }

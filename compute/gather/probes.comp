@@ -103,8 +103,11 @@ void main() {
       loss = thinLoss(pixel, x, m);
     }
     Pattern pattern = patternOf(cell, m, result.front);
-    for (uint i = 0u; i < pass.value.y; ++i)
-      result.added += lights[i].radiance.rgb * gatherLight(m, lights[i], x, pattern, loss);
+    for (uint i = 0u; i < pass.value.y; ++i) {
+      LightConstants light = lights[i];
+      if (kDirectional) light.meta.xz = uvec2(PELLUCID_SHADER_LIGHT_DIRECTIONAL, 1u);
+      result.added += light.radiance.rgb * gatherLight(m, light, x, pattern, loss);
+    }
     if ((pass.value.z & kAdds) != 0u) result.added += addedOf(imageLoad(probesImage, cell));
   }
   uvec4 bits = some ? packProbe(result) : kNoProbe;

@@ -80,6 +80,7 @@ using glm::vec4;
 #define PELLUCID_CONSTANT_DEBUG_VIEWS 0
 #define PELLUCID_CONSTANT_FINE 1
 #define PELLUCID_CONSTANT_GATHERS 2
+#define PELLUCID_CONSTANT_DIRECTIONAL 3
 
 // Values of the public enums the shaders branch on; constants.cpp asserts that they agree.
 #define PELLUCID_SHADER_LIGHT_DIRECTIONAL 0u

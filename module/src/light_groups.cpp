@@ -51,6 +51,9 @@ bool LightGroup::addLight(const FrameFacts& facts, const PellucidLight& light) {
     }
     if (grown.entryRows > kEntryRows) return false;
     ++grown.gathered;
+    grown.directional = grown.directional && light.type == PELLUCID_LIGHT_DIRECTIONAL &&
+                        light.shadowMapCount == 1 &&
+                        frame.shadowMaps[light.firstShadowMap].encoding == PELLUCID_DEPTH_DEVICE;
   }
   ++grown.lightCount;
   *this = grown;

@@ -20,6 +20,7 @@ struct LightGroup {
   VkDeviceSize lightBytes = 0, shadowBytes = 0;  // of the groups before, in the constants
   VkDeviceSize gatherMapBytes = 0, entryMapBytes = 0;
   uint32_t gathered = 0;                     // lights that are gathered from; the first ones
+  bool directional = true;                   // these are directional with one shadow map of device depth
   uint32_t entryColumns = 0, entryRows = 0;  // of their maps' entry points
   uint32_t entryWidth = 0, entryHeight = 0;  // the most that one of them has
   bool beside = true;                        // exit depths and caster materials have slots among the images

@@ -25,6 +25,8 @@ constexpr PellucidSpecialization kDebugViews{PELLUCID_CONSTANT_DEBUG_VIEWS, 1};
 constexpr PellucidSpecialization kFine{PELLUCID_CONSTANT_FINE, 1}, kCoarse{PELLUCID_CONSTANT_FINE, 0};
 constexpr PellucidSpecialization kGathered{PELLUCID_CONSTANT_GATHERS, 1};
 
+constexpr PellucidSpecialization kDirectional{PELLUCID_CONSTANT_DIRECTIONAL, 1};
+
 constexpr uint32_t kGather = PELLUCID_USE_GATHER, kDiffusion = PELLUCID_USE_DIFFUSION;
 constexpr uint32_t kQuality0 = kDiffusion | PELLUCID_USE_QUALITY_0;
 
@@ -41,7 +43,9 @@ const std::array<PipelineDesc, kPipelineCount> kPipelines = {
     desc("diffuse_coarse", kDiffuse, kQuality0, kCoarse),
     desc("diffuse_coarse_gathered", kDiffuse, kQuality0 | kGather, kCoarse, kGathered),
     desc("entry_points", kEntryPoints, kGather),
+    desc("entry_points_directional", kEntryPoints, kGather, kDirectional),
     desc("probes", kProbes, kGather),
+    desc("probes_directional", kProbes, kGather, kDirectional),
     desc("filter_probes", kFilterProbes, kGather),
     desc("add_gathered", kAddGathered, kGather)};
 

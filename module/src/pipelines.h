@@ -22,7 +22,9 @@ enum class Pipeline : uint32_t {
   DiffuseCoarse,  // without the fine filter: quality 0
   DiffuseCoarseGathered,
   EntryPoints,
+  EntryPointsDirectional,  // see compute/frame/flags.glsl
   Probes,
+  ProbesDirectional,
   FilterProbes,
   AddGathered,
   Count

@@ -3,6 +3,12 @@
 namespace pellucid {
 namespace {
 
+// What compute/frame/flags.glsl takes for granted.
+bool isDirectional(const FrameFacts& f, const LightGroup& group) {
+  return group.directional && f.has(PELLUCID_RESOURCE_NORMAL) &&
+         f.frame.frontDepthEncoding == PELLUCID_DEPTH_DEVICE;
+}
+
 // Cells of the image that the rect touches; each has one probe.
 struct Cells {
   uint32_t width, height;
@@ -23,7 +29,9 @@ uint64_t entryPointBytes(const LightGroup& group) {
 }  // namespace
 
 void addEntryPoints(PlanBuilder& b, const LightGroup& group) {
-  PellucidDispatch* d = b.dispatch("entry points", Pipeline::EntryPoints);
+  PellucidDispatch* d =
+      b.dispatch("entry points",
+                 isDirectional(b.facts, group) ? Pipeline::EntryPointsDirectional : Pipeline::EntryPoints);
   b.groups(d, group.entryWidth, group.entryHeight, PELLUCID_ENTRY_POINTS_GROUP);
   d->groups[2] = group.shadowCount;
   d->pushConstants[1] = group.entryColumns | group.entryRows << 16;
@@ -44,7 +52,8 @@ void addEntryPoints(PlanBuilder& b, const LightGroup& group) {
 
 void addProbes(PlanBuilder& b, const LightGroup& group, bool adds) {
   const FrameFacts& f = b.facts;
-  PellucidDispatch* d = b.dispatch("probes", Pipeline::Probes);
+  PellucidDispatch* d =
+      b.dispatch("probes", isDirectional(f, group) ? Pipeline::ProbesDirectional : Pipeline::Probes);
   const Cells cells(f);
   b.groups(d, cells.width, cells.height, PELLUCID_PROBES_GROUP);
   d->pushConstants[0] = f.gatherSpacing;

@@ -17,7 +17,7 @@ struct GBuffer {
   uint32_t width, height, frameIndex, framesInFlight;
   float metersPerUnit;
   float projection[16], view[16];
-  VkImageView depth, backFaceDepth, irradiance, normal, materialId, scratch[2];
+  VkImageView depth, backFaceDepth, irradiance, normal, materialId, scratch[4];
   uint32_t lightCount;
   const PellucidLight* lights;
   VkBuffer uploadBuffer;
@@ -80,8 +80,8 @@ TEST(Readme, SnippetMakesASlabGlow) {
 
   PellucidFrame frame;
   describeFrame(g, t, frame);
-  PellucidImageNeed needs[3];
-  uint32_t count = 3;
+  PellucidImageNeed needs[5];
+  uint32_t count = 5;
   ASSERT_EQ(pellucidGetImageNeeds(&frame, &count, needs), PELLUCID_OK);
   ASSERT_EQ(count, std::size(g.scratch));
   std::vector<std::unique_ptr<GpuImage>> scratch;
