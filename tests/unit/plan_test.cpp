@@ -320,7 +320,7 @@ TEST(Plan, ImageNeedsCoverThePlan) {
 TEST(Plan, NoDispatchReadsAndWritesATransient) {
   for (const uint32_t features : {1u, 2u, 3u})
     for (const uint32_t samples : {0u, 8u})
-      for (const size_t lights : {size_t{0}, size_t{1}, size_t{9}}) {
+      for (const uint32_t lights : {0u, 1u, 9u}) {
         Frame f(lights);
         f.frame.features = features;
         f.frame.gatherSamples = samples;
