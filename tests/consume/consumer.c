@@ -31,5 +31,5 @@ int main(void) {
   frame.clipFromView[5] = frame.clipFromView[11] = -1;
   frame.clipFromView[14] = 0.1f;
   if (pellucidBuildPlan(&frame, NULL, &plan) != PELLUCID_OK) return 3;
-  return strcmp(plan.dispatches[0].name, "quads") == 0 ? 0 : 4;
+  return strcmp(plan.dispatches[0].name, "base level") == 0 ? 0 : 4;
 }

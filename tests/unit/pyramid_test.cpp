@@ -27,9 +27,9 @@ void expectApart(uint32_t width, uint32_t height, Rect rect) {
     return Box{p.x, p.y, p.rect.width, p.rect.height};
   };
   const auto inside = [&](const Box& b, uint32_t image) {
-    const Pyramid::Extent& extent = pyramid.images[image];
-    return b.x >= 0 && b.y >= 0 && b.x + b.width <= static_cast<int32_t>(extent.width) &&
-           b.y + b.height <= static_cast<int32_t>(extent.height);
+    const Pyramid::Extent& size = pyramid.images[image];
+    return b.x >= 0 && b.y >= 0 && b.x + b.width <= static_cast<int32_t>(size.width) &&
+           b.y + b.height <= static_cast<int32_t>(size.height);
   };
   // Texels of level 2 after upsampling and their shares are in the image of level 1.
   const Box second = box(2), upsampled{0, 0, second.width, second.height},
