@@ -105,23 +105,26 @@ std::optional<Worst> badValues(Subject& s) {
 // Pixels to each side that the irradiance of a pixel may change. A texel of the coarsest level, whose sides are 2^l
 // pixels, sees those that its filters do: 1.5 texels of each level below for the reductions, 2 for each refinement, and 4
 // for the Gaussian of a stretched kernel. Halving sizes sum to twice the last.
-int kernelReach(const PellucidPlan& plan) {
+std::optional<int> kernelReach(const Subject& s) {
+  if (!s.diffuses()) return 0;
+  const PellucidPlan& plan = s.run->plan();
   for (std::uint32_t i = 0; i < plan.dispatchCount; ++i)
     if (std::strcmp(plan.dispatches[i].name, "upsample") == 0) return 15 << plan.dispatches[i].pushConstants[0];
-  return 0;
+  return {};
 }
 
 std::optional<Worst> reach(Subject& s) {
   Random random = s.random("reach");
   const std::vector<std::size_t> pixels = someOwned(s, random);
-  if (pixels.empty()) return {};
-  const int width = s.frame.capture.width, distance = kernelReach(s.run->plan());
+  const std::optional<int> distance = kernelReach(s);
+  if (pixels.empty() || !distance) return {};
+  const int width = s.frame.capture.width;
   const int x = static_cast<int>(pixels[0]) % width, y = static_cast<int>(pixels[0]) / width;
   Pixels beyond = s.owned;
   bool any = false;
   for (std::size_t i = 0; i < beyond.size(); ++i) {
     const int dx = std::abs(static_cast<int>(i) % width - x), dy = std::abs(static_cast<int>(i) / width - y);
-    if (std::max(dx, dy) <= distance) beyond[i] = 0;
+    if (std::max(dx, dy) <= *distance) beyond[i] = 0;
     any = any || beyond[i];
   }
   if (!any) return {};

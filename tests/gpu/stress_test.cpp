@@ -280,7 +280,7 @@ protected:
 };
 
 TEST_F(StressResults, SayHowFarDevicesAreApart) {
-  const StressFrame frame = randomFrame(2, 4, pool(), small()), next = randomFrame(2, 5, pool(), small());
+  const StressFrame frame = randomFrame(2, 6, pool(), small()), next = randomFrame(2, 7, pool(), small());
   Image output(frame.capture.width, frame.capture.height, 4, 1), other = output;
   const std::size_t pixel = firstWith(ownedPixels(frame), true);
   ASSERT_LT(4 * pixel, output.data.size());
