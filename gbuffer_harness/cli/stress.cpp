@@ -26,7 +26,7 @@ using stress::StressOptions;
 using stress::StressResult;
 using stress::Violation;
 
-// Of each check, tame and wild apart: what comes later adds little.
+// Violations of a check that are printed, tame and wild apart: what comes later adds little.
 constexpr int kShown = 3;
 
 struct Options {
