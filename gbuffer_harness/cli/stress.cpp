@@ -26,7 +26,7 @@ using stress::StressOptions;
 using stress::StressResult;
 using stress::Violation;
 
-// Of each check, tame and wild apart: what comes later adds little.
+// Violations of a check that are printed, tame and wild apart: what comes later adds little.
 constexpr int kShown = 3;
 
 struct Options {
@@ -45,8 +45,8 @@ public:
     for (const Violation& v : violations) {
       if (++count_[kindOf(frame) + v.check] > kShown) continue;
       shown = true;
-      std::printf("%s frame %llu: %s: %g", kindOf(frame).c_str(), static_cast<unsigned long long>(frame.index),
-                  v.check.c_str(), v.worst.value);
+      std::printf("%s frame %llu: %s: %g", kindOf(frame).c_str(),
+                  static_cast<unsigned long long>(frame.index), v.check.c_str(), v.worst.value);
       if (v.worst.x >= 0) std::printf(" at pixel %d, %d, channel %d", v.worst.x, v.worst.y, v.worst.channel);
       std::printf("%s%s\n", v.sentence.empty() ? "" : ": ", v.sentence.c_str());
     }
@@ -56,7 +56,8 @@ public:
                 limits().c_str(), options_.stress.validate ? " --validate" : "");
     if (!options_.folder.empty()) {
       std::printf("  or:    %s\n", writeFailure(options_.folder, frame).c_str());
-      if (!frame.notInCapture.empty()) std::printf("         (the capture lacks %s)\n", frame.notInCapture.c_str());
+      if (!frame.notInCapture.empty())
+        std::printf("         (the capture lacks %s)\n", frame.notInCapture.c_str());
     }
     std::fflush(stdout);
   }
@@ -66,7 +67,8 @@ private:
     const StressOptions defaults, &given = options_.stress;
     std::string text;
     if (given.limits.quality != defaults.limits.quality) text += " --quality " + options_.quality;
-    if (given.limits.pixels != defaults.limits.pixels) text += " --pixels " + std::to_string(given.limits.pixels);
+    if (given.limits.pixels != defaults.limits.pixels)
+      text += " --pixels " + std::to_string(given.limits.pixels);
     return text;
   }
 
@@ -82,25 +84,27 @@ Json toJson(const stress::CheckCount& count) {
 }
 
 Json toJson(const stress::Difference& d) {
-  return {{"frames", d.frames}, {"sameBits", d.sameBits},       {"values", d.values},         {"above1e-3", d.above3},
-          {"above1e-2", d.above2}, {"worst", d.worst.value}, {"worstFrame", d.worstFrame}};
+  return {{"frames", d.frames},        {"sameBits", d.sameBits}, {"values", d.values},
+          {"above1e-3", d.above3},     {"above1e-2", d.above2},  {"worst", d.worst.value},
+          {"worstFrame", d.worstFrame}};
 }
 
 void print(const stress::ResultsReader& other) {
-  std::printf("%-10s %8s %10s %12s %12s %12s %10s %8s\n", "difference", "frames", "same bits", "values", "above 1e-3",
-              "above 1e-2", "worst", "frame");
+  std::printf("%-10s %8s %10s %12s %12s %12s %10s %8s\n", "difference", "frames", "same bits", "values",
+              "above 1e-3", "above 1e-2", "worst", "frame");
   for (const auto& [name, d] : {std::pair{"tame", &other.tame}, std::pair{"wild", &other.wild}})
-    std::printf("%-10s %8llu %10llu %12llu %12llu %12llu %10.2g %8llu\n", name, static_cast<unsigned long long>(d->frames),
-                static_cast<unsigned long long>(d->sameBits), static_cast<unsigned long long>(d->values),
-                static_cast<unsigned long long>(d->above3), static_cast<unsigned long long>(d->above2), d->worst.value,
+    std::printf("%-10s %8llu %10llu %12llu %12llu %12llu %10.2g %8llu\n", name,
+                static_cast<unsigned long long>(d->frames), static_cast<unsigned long long>(d->sameBits),
+                static_cast<unsigned long long>(d->values), static_cast<unsigned long long>(d->above3),
+                static_cast<unsigned long long>(d->above2), d->worst.value,
                 static_cast<unsigned long long>(d->worstFrame));
 }
 
 Json toJson(const StressOptions& options, const StressResult& result) {
-  Json json = {{"device", result.device},         {"seed", options.seed},
-               {"first", options.first},          {"frames", result.frames},
-               {"recordings", result.recordings}, {"pixels", result.pixels},
-               {"seconds", result.seconds},       {"refusedTame", result.refusedTame},
+  Json json = {{"device", result.device},          {"seed", options.seed},
+               {"first", options.first},           {"frames", result.frames},
+               {"recordings", result.recordings},  {"pixels", result.pixels},
+               {"seconds", result.seconds},        {"refusedTame", result.refusedTame},
                {"refusedWild", result.refusedWild}};
   for (const stress::CheckResult& check : result.checks)
     json["checks"][check.name] = {{"tame", toJson(check.tame)}, {"wild", toJson(check.wild)}};
@@ -108,14 +112,17 @@ Json toJson(const StressOptions& options, const StressResult& result) {
 }
 
 void print(const StressOptions& options, const StressResult& result) {
-  std::printf("%s\nseed %llu, frames %llu to %llu, %llu recordings, %llu pixels, %.1f s; refused: %llu tame, %llu wild\n",
-              result.device.c_str(), static_cast<unsigned long long>(options.seed),
-              static_cast<unsigned long long>(options.first), static_cast<unsigned long long>(options.first + result.frames) - 1,
-              static_cast<unsigned long long>(result.recordings), static_cast<unsigned long long>(result.pixels),
-              result.seconds, static_cast<unsigned long long>(result.refusedTame),
-              static_cast<unsigned long long>(result.refusedWild));
-  std::printf("%-18s %9s %9s %9s %9s  %9s %9s %9s %9s\n", "check", "tame", "violated", "worst", "frame", "wild", "violated",
-              "worst", "frame");
+  std::printf(
+      "%s\nseed %llu, frames %llu to %llu, %llu recordings, %llu pixels, %.1f s; refused: %llu tame, %llu "
+      "wild\n",
+      result.device.c_str(), static_cast<unsigned long long>(options.seed),
+      static_cast<unsigned long long>(options.first),
+      static_cast<unsigned long long>(options.first + result.frames) - 1,
+      static_cast<unsigned long long>(result.recordings), static_cast<unsigned long long>(result.pixels),
+      result.seconds, static_cast<unsigned long long>(result.refusedTame),
+      static_cast<unsigned long long>(result.refusedWild));
+  std::printf("%-18s %9s %9s %9s %9s  %9s %9s %9s %9s\n", "check", "tame", "violated", "worst", "frame",
+              "wild", "violated", "worst", "frame");
   for (const stress::CheckResult& check : result.checks) {
     std::printf("%-18s", check.name.c_str());
     for (const stress::CheckCount* c : {&check.tame, &check.wild})
@@ -137,7 +144,9 @@ void run(Options& options) {
   if (!options.results.empty()) writer.emplace(options.results);
   if (!options.compareWith.empty()) reader.emplace(options.compareWith);
   stress::StressEvents events;
-  events.violated = [&](const StressFrame& frame, const std::vector<Violation>& violations) { reporter(frame, violations); };
+  events.violated = [&](const StressFrame& frame, const std::vector<Violation>& violations) {
+    reporter(frame, violations);
+  };
   events.rendered = [&](const StressFrame& frame, const Image& output) {
     if (writer) writer->add(frame, output);
     if (reader && !reader->ended()) reader->add(frame, output);
@@ -150,7 +159,8 @@ void run(Options& options) {
     events.progressed = [&](const StressResult& sofar) {
       const std::uint64_t done =
           s.frames ? sofar.frames : static_cast<std::uint64_t>(100 * std::min(sofar.seconds, s.seconds));
-      progress.note(std::to_string(sofar.frames) + " frames, " + std::to_string(sofar.violations()) + " violations");
+      progress.note(std::to_string(sofar.frames) + " frames, " + std::to_string(sofar.violations()) +
+                    " violations");
       progress.advance(done - shown);
       shown = done;
     };
@@ -161,7 +171,8 @@ void run(Options& options) {
   if (!options.json.empty()) {
     Json json = toJson(s, result);
     if (reader) json["differences"] = {{"tame", toJson(reader->tame)}, {"wild", toJson(reader->wild)}};
-    writeWhole(options.json, [&](const std::filesystem::path& path) { std::ofstream(path) << json.dump(2) << "\n"; });
+    writeWhole(options.json,
+               [&](const std::filesystem::path& path) { std::ofstream(path) << json.dump(2) << "\n"; });
   }
   if (result.violations() > 0) throw LimitExceeded(std::to_string(result.violations()) + " violations");
 }
@@ -171,23 +182,34 @@ void run(Options& options) {
 void addStressCommand(CLI::App& app) {
   auto options = std::make_shared<Options>();
   StressOptions& s = options->stress;
-  CLI::App* command =
-      app.add_subcommand("stress", "Random frames through the module on a Vulkan device, and what must hold for each");
-  CLI::Option* seconds = command->add_option("--seconds", s.seconds, "how long")->check(CLI::Range(0.0, 1e6))->capture_default_str();
-  command->add_option("--frames", s.frames, "how many frames, in place of --seconds")->check(CLI::Range(1, 1000000000))->excludes(seconds);
+  CLI::App* command = app.add_subcommand(
+      "stress", "Random frames through the module on a Vulkan device, and what must hold for each");
+  CLI::Option* seconds = command->add_option("--seconds", s.seconds, "how long")
+                             ->check(CLI::Range(0.0, 1e6))
+                             ->capture_default_str();
+  command->add_option("--frames", s.frames, "how many frames, in place of --seconds")
+      ->check(CLI::Range(1, 1000000000))
+      ->excludes(seconds);
   command->add_option("--seed", s.seed, "of all frames")->capture_default_str();
-  command->add_option("--first", s.first, "index of the first frame; even ones are tame, odd ones wild")->capture_default_str();
+  command->add_option("--first", s.first, "index of the first frame; even ones are tame, odd ones wild")
+      ->capture_default_str();
   command->add_option("--quality", options->quality, "of all frames")
       ->check(CLI::IsMember({"0", "1", "2", "any"}))
       ->capture_default_str();
-  command->add_option("--pixels", s.limits.pixels, "of the largest frame")->check(CLI::Range(16, 1 << 26))->capture_default_str();
+  command->add_option("--pixels", s.limits.pixels, "of the largest frame")
+      ->check(CLI::Range(16, 1 << 26))
+      ->capture_default_str();
   command->add_option("--only", s.only, "one check by its name; docs/stress.md has them");
-  command->add_flag("--validate", s.validate, "with Vulkan's core and synchronization validation, whose messages are violations");
+  command->add_flag("--validate", s.validate,
+                    "with Vulkan's core and synchronization validation, whose messages are violations");
   command->add_option("-o,--output", options->folder, "folder for captures of frames that violate a check");
   command->add_option("--json", options->json, "file for the summary");
-  command->add_option("--results", options->results, "file for the outputs, to compare another device's with");
-  command->add_option("--compare-with", options->compareWith, "file of --results of the same seed, first frame and limits");
-  command->add_option("--device", options->device, "part of the Vulkan device's name; default: the fastest kind");
+  command->add_option("--results", options->results,
+                      "file for the outputs, to compare another device's with");
+  command->add_option("--compare-with", options->compareWith,
+                      "file of --results of the same seed, first frame and limits");
+  command->add_option("--device", options->device,
+                      "part of the Vulkan device's name; default: the fastest kind");
   command->callback([options] { run(*options); });
 }
 

@@ -21,7 +21,8 @@ std::string writeFailure(const std::filesystem::path& folder, const stress::Stre
   settings.transmittance = frame.transmittance;
   writeWhole(json, [&](const std::filesystem::path& path) { std::ofstream(path) << settingsJson(settings); });
   const std::string debug = debugOption(settings);
-  return "pellucid replay " + exr.string() + " --set @" + json.string() + (debug.empty() ? "" : " --debug " + debug);
+  return "pellucid replay " + exr.string() + " --set @" + json.string() +
+         (debug.empty() ? "" : " --debug " + debug);
 }
 
 }  // namespace pellucid::harness

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <functional>
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,7 +15,8 @@ namespace pellucid::harness {
 // A module context on a device.
 class Context {
 public:
-  // Throws DeviceError with the module's sentence. `change`: of what the context is made for, which is everything.
+  // Throws DeviceError with the module's sentence. `change`: of what the context is made for, which is
+  // everything.
   explicit Context(Device& device, const std::function<void(PellucidContextDesc&)>& change = {});
   ~Context();
   Context(const Context&) = delete;
@@ -79,8 +79,8 @@ public:
   // Gives an irradiance image that is the output, too, its content before the first recording again.
   void restoreIrradiance(const Capture& capture) const;
 
-  // Other bits where a recording must not depend on them: in transients, the constants' memory, and an output that
-  // is not the irradiance, which becomes 0xFF bytes: NaN in both formats.
+  // Other bits where a recording must not depend on them: in transients, the constants' memory, and an output
+  // that is not the irradiance, which becomes 0xFF bytes: NaN in both formats.
   void fillGarbage(std::uint64_t seed) const;
 
   // RGBA. Outside the rect and at material 0: irradiance times albedo, as an engine that composites in

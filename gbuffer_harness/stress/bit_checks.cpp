@@ -11,7 +11,9 @@ namespace pellucid::harness::stress {
 
 namespace {
 
-bool aliased(const StressFrame& f) { return f.settings.aliasOutput && f.settings.debugView == PELLUCID_DEBUG_NONE; }
+bool aliased(const StressFrame& f) {
+  return f.settings.aliasOutput && f.settings.debugView == PELLUCID_DEBUG_NONE;
+}
 
 std::optional<Worst> finite(Subject& s) { return notFinite(s.output, s.owned); }
 
@@ -64,8 +66,11 @@ std::optional<Worst> unownedPixels(Subject& s) {
 std::optional<Worst> unownedDepths(Subject& s) {
   Random random = s.random("unowned-depths");
   return withUnowned(s, [&](Capture& c, std::size_t i) {
-    const float other = c.frontDepth.image.data[static_cast<std::size_t>(random.whole(0, static_cast<int>(s.owned.size()) - 1))];
-    c.frontDepth.image.data[i] = random.chance(0.5) ? badFloat(random) : other * static_cast<float>(random.real());
+    const float other =
+        c.frontDepth.image
+            .data[static_cast<std::size_t>(random.whole(0, static_cast<int>(s.owned.size()) - 1))];
+    c.frontDepth.image.data[i] =
+        random.chance(0.5) ? badFloat(random) : other * static_cast<float>(random.real());
     if (!c.backDepth.image.empty()) c.backDepth.image.data[i] = random.chance(0.5) ? badFloat(random) : other;
   });
 }
@@ -80,7 +85,8 @@ std::vector<std::size_t> someOwned(Subject& s, Random& random) {
   return some;
 }
 
-StressFrame withIrradiance(const StressFrame& frame, const std::vector<std::size_t>& pixels, int channels, float value) {
+StressFrame withIrradiance(const StressFrame& frame, const std::vector<std::size_t>& pixels, int channels,
+                           float value) {
   StressFrame other = frame;
   for (const std::size_t pixel : pixels)
     for (int k = 0; k < 3; ++k)
@@ -92,7 +98,8 @@ StressFrame withIrradiance(const StressFrame& frame, const std::vector<std::size
 std::optional<Worst> badValues(Subject& s) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-  constexpr float kPairs[][2] = {{kNaN, 0}, {-kNaN, 0}, {-1, 0}, {-kInfinity, 0}, {-65504, 0}, {kInfinity, 65504}};
+  constexpr float kPairs[][2] = {{kNaN, 0},       {-kNaN, 0},  {-1, 0},
+                                 {-kInfinity, 0}, {-65504, 0}, {kInfinity, 65504}};
   Random random = s.random("bad-values");
   const std::vector<std::size_t> pixels = someOwned(s, random);
   if (pixels.empty()) return {};
@@ -102,30 +109,35 @@ std::optional<Worst> badValues(Subject& s) {
                        s.renderer.render(withIrradiance(s.frame, pixels, channels, counted)), s.owned);
 }
 
-// Pixels to each side that the irradiance of a pixel may change. A texel of the coarsest level, whose sides are 2^l
-// pixels, sees those that its filters do: 1.5 texels of each level below for the reductions, 2 for each refinement, and 4
-// for the Gaussian of a stretched kernel. Halving sizes sum to twice the last.
-int kernelReach(const PellucidPlan& plan) {
+// Pixels to each side that the irradiance of a pixel may change. A texel of the coarsest level, whose sides
+// are 2^l pixels, sees those that its filters do: 1.5 texels of each level below for the reductions, 2 for
+// each refinement, and 4 for the Gaussian of a stretched kernel. Halving sizes sum to twice the last.
+std::optional<int> kernelReach(const Subject& s) {
+  if (!s.diffuses()) return 0;
+  const PellucidPlan& plan = s.run->plan();
   for (std::uint32_t i = 0; i < plan.dispatchCount; ++i)
-    if (std::strcmp(plan.dispatches[i].name, "upsample") == 0) return 15 << plan.dispatches[i].pushConstants[0];
-  return 0;
+    if (std::strcmp(plan.dispatches[i].name, "upsample") == 0)
+      return 15 << plan.dispatches[i].pushConstants[0];
+  return {};
 }
 
 std::optional<Worst> reach(Subject& s) {
   Random random = s.random("reach");
   const std::vector<std::size_t> pixels = someOwned(s, random);
-  if (pixels.empty()) return {};
-  const int width = s.frame.capture.width, distance = kernelReach(s.run->plan());
+  const std::optional<int> distance = kernelReach(s);
+  if (pixels.empty() || !distance) return {};
+  const int width = s.frame.capture.width;
   const int x = static_cast<int>(pixels[0]) % width, y = static_cast<int>(pixels[0]) / width;
   Pixels beyond = s.owned;
   bool any = false;
   for (std::size_t i = 0; i < beyond.size(); ++i) {
     const int dx = std::abs(static_cast<int>(i) % width - x), dy = std::abs(static_cast<int>(i) / width - y);
-    if (std::max(dx, dy) <= distance) beyond[i] = 0;
+    if (std::max(dx, dy) <= *distance) beyond[i] = 0;
     any = any || beyond[i];
   }
   if (!any) return {};
-  return differentBits(s.output, s.renderer.render(withIrradiance(s.frame, {pixels[0]}, 7, badFloat(random))), beyond);
+  return differentBits(s.output, s.renderer.render(withIrradiance(s.frame, {pixels[0]}, 7, badFloat(random))),
+                       beyond);
 }
 
 std::optional<Worst> alpha(Subject& s) {
@@ -139,20 +151,23 @@ constexpr const char* kBits = "bits have no tolerance";
 std::span<const Check> bitChecks() {
   static const Check table[] = {
       {"finite", "RGB of every owned pixel is finite; counts values", "all", 0, 0, kBits, &finite},
-      {"not-negative", "RGB of every owned pixel is >= 0; largest deficit", "all but debug view thickness, where -1 is none", 0,
-       0, kBits, &notNegative},
-      {"outside", "pixels without material or outside the rect keep their bits; counts pixels", "all", 0, 0, kBits, &outside},
-      {"written", "every owned pixel is written; counts pixels", "outputs that are not the irradiance", 0, 0, kBits, &written},
+      {"not-negative", "RGB of every owned pixel is >= 0; largest deficit",
+       "all but debug view thickness, where -1 is none", 0, 0, kBits, &notNegative},
+      {"outside", "pixels without material or outside the rect keep their bits; counts pixels", "all", 0, 0,
+       kBits, &outside},
+      {"written", "every owned pixel is written; counts pixels", "outputs that are not the irradiance", 0, 0,
+       kBits, &written},
       {"same-bits", "a second recording over other garbage has the same bits", "all", 0, 0, kBits, &sameBits},
-      {"alias", "an output that is the irradiance has the bits of one that is not", "all but debug views", 0, 0, kBits, &alias},
+      {"alias", "an output that is the irradiance has the bits of one that is not", "all but debug views", 0,
+       0, kBits, &alias},
       {"unowned-pixels", "irradiance, normals and albedo of pixels that are not owned change no bit",
        "those with such pixels", 0, 0, kBits, &unownedPixels},
-      {"unowned-depths", "depths of pixels that are not owned change no bit", "those with such pixels", 0, 0, kBits,
-       &unownedDepths},
-      {"bad-values", "irradiance that is NaN or negative has the bits of 0, infinity those of 65504", "all", 0, 0, kBits,
-       &badValues},
-      {"reach", "a pixel's irradiance changes no bit beyond the diffusion's kernel", "those larger than the kernel", 0, 0,
-       kBits, &reach},
+      {"unowned-depths", "depths of pixels that are not owned change no bit", "those with such pixels", 0, 0,
+       kBits, &unownedDepths},
+      {"bad-values", "irradiance that is NaN or negative has the bits of 0, infinity those of 65504", "all",
+       0, 0, kBits, &badValues},
+      {"reach", "a pixel's irradiance changes no bit beyond the diffusion's kernel",
+       "those larger than the kernel", 0, 0, kBits, &reach},
       {"alpha", "alpha has the irradiance's bits", "all", 0, 0, kBits, &alpha},
   };
   return table;

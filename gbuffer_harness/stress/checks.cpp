@@ -9,7 +9,8 @@ namespace {
 // What sanitize.glsl makes of irradiance, and room for twice its sum with other light.
 void limitIrradiance(Image& irradiance) {
   for (std::size_t i = 0; i < irradiance.data.size(); ++i)
-    if (i % 4 < 3) irradiance.data[i] = irradiance.data[i] > 0 ? std::min(irradiance.data[i], 16000.0f) : 0.0f;
+    if (i % 4 < 3)
+      irradiance.data[i] = irradiance.data[i] > 0 ? std::min(irradiance.data[i], 16000.0f) : 0.0f;
 }
 
 StressFrame plainFrame(const StressFrame& frame) {
@@ -74,7 +75,8 @@ bool Subject::saturates() {
     saturates_ = false;
     for (std::size_t i = 0; i < image.data.size(); ++i)
       // Twice of it must fit, too.
-      if (owned[i / 4] && i % 4 < 3 && !(static_cast<double>(image.data[i]) < kCeiling / 2)) saturates_ = true;
+      if (owned[i / 4] && i % 4 < 3 && !(static_cast<double>(image.data[i]) < kCeiling / 2))
+        saturates_ = true;
   }
   return *saturates_;
 }

@@ -30,14 +30,15 @@ public:
   // Numbers of the check's own, the same whatever other checks run.
   Random random(const char* check) const;
 
-  // The frame as energies are compared: no debug view, no reuse, irradiance within [0, 16000], no wild albedo.
+  // The frame as energies are compared: no debug view, no reuse, irradiance within [0, 16000], no wild
+  // albedo.
   const StressFrame& plain() { return plain_; }
   const Image& plainOutput();
   // The same without lights.
   const StressFrame& unlit() { return unlit_; }
   const Image& unlitOutput();
-  // Of the plain frame with its lights at kDim of their intensity: what lights add is the difference. A gather returns more
-  // of all light from curved surfaces, so that a frame without lights is no base.
+  // Of the plain frame with its lights at kDim of their intensity: what lights add is the difference. A
+  // gather returns more of all light from curved surfaces, so that a frame without lights is no base.
   const Image& dimOutput();
   // Some of the plain frame's light ends at 65504 before the diffusion, where outputs no longer tell.
   bool saturates();
@@ -50,9 +51,9 @@ private:
 
 struct Check {
   const char* name;
-  const char* what;    // must hold
-  const char* frames;  // that it is asked of
-  double tame;         // the largest value that is no violation
+  const char* what;            // must hold
+  const char* frames;          // that it is asked of
+  double tame;                 // the largest value that is no violation
   std::optional<double> wild;  // likewise; none: measured, and no violation
   const char* reason;          // of the tolerances
   // None: the frame is not one of `frames`.

@@ -43,7 +43,8 @@ std::optional<Worst> moreIrradiance(Subject& s) {
     for (std::size_t k = 0; k < 3; ++k) e[i + k] += static_cast<float>(random.real(0, most));
   }
   if (share == 0)  // one bright pixel
-    e[4 * static_cast<std::size_t>(random.whole(0, static_cast<int>(s.owned.size()) - 1))] += static_cast<float>(most);
+    e[4 * static_cast<std::size_t>(random.whole(0, static_cast<int>(s.owned.size()) - 1))] +=
+        static_cast<float>(most);
   return less(s.unlitOutput(), s.renderer.render(more), s.owned);
 }
 
@@ -57,7 +58,8 @@ std::optional<Worst> halfLights(Subject& s) {
 // Light and irradiance together: holds where the output ends at 0, too.
 std::optional<Worst> twiceAll(Subject& s) {
   const std::vector<Light>& lights = s.plain().capture.lights;
-  const bool inDomain = std::all_of(lights.begin(), lights.end(), [](const Light& l) { return l.intensity <= 5e14; });
+  const bool inDomain =
+      std::all_of(lights.begin(), lights.end(), [](const Light& l) { return l.intensity <= 5e14; });
   if (!s.translucent() || !inDomain || s.saturates()) return {};
   return notTwice(s.plainOutput(), s.renderer.render(withTwiceIrradiance(withLights(s.plain(), 2))), s.owned);
 }
@@ -101,11 +103,12 @@ std::optional<Worst> darkerFilter(Subject& s) {
   return less(s.renderer.render(darker), s.renderer.render(frame), s.owned);
 }
 
-// Towards the light, where the map holds a depth: in view depth and distance that is nearer, and in device depth it is
-// towards the value of the near plane.
+// Towards the light, where the map holds a depth: in view depth and distance that is nearer, and in device
+// depth it is towards the value of the near plane.
 std::optional<Worst> nearerMaps(Subject& s) {
   StressFrame frame;
-  if (!ungathered(s, frame) || frame.settings.translucency.thicknessSource != PELLUCID_THICKNESS_LIGHT) return {};
+  if (!ungathered(s, frame) || frame.settings.translucency.thicknessSource != PELLUCID_THICKNESS_LIGHT)
+    return {};
   StressFrame thicker = frame;
   Random random = s.random("nearer-maps");
   bool any = false;
@@ -118,9 +121,11 @@ std::optional<Worst> nearerMaps(Subject& s) {
       const bool device = map.depth.encoding == PELLUCID_DEPTH_DEVICE;
       bool farIsOne = true;
       if (device && light.type == PELLUCID_LIGHT_DIRECTIONAL)
-        farIsOne = glm::dot(depthAxis, glm::dvec3(light.direction[0], light.direction[1], light.direction[2])) > 0;
+        farIsOne =
+            glm::dot(depthAxis, glm::dvec3(light.direction[0], light.direction[1], light.direction[2])) > 0;
       else if (device)  // at the eye w is 0 and depth's numerator is -near, or near where reversed
-        farIsOne = m[2] * light.position[0] + m[6] * light.position[1] + m[10] * light.position[2] + m[14] < 0;
+        farIsOne =
+            m[2] * light.position[0] + m[6] * light.position[1] + m[10] * light.position[2] + m[14] < 0;
       for (float& d : map.depth.image.data) {
         if (!(d > 0 && d < (device ? 1.0f : 1e9f))) continue;
         d = !device || farIsOne ? d * factor : 1 - (1 - d) * factor;
@@ -131,15 +136,16 @@ std::optional<Worst> nearerMaps(Subject& s) {
   return less(s.renderer.render(thicker), s.renderer.render(frame), s.owned);
 }
 
-// A back depth farther away, where it says the thickness and nothing else: the hidden point of a directional light
-// without a map.
+// A back depth farther away, where it says the thickness and nothing else: the hidden point of a directional
+// light without a map.
 std::optional<Worst> fartherBacks(Subject& s) {
   StressFrame frame;
   Capture& c = frame.capture;
   if (!ungathered(s, frame) || c.backDepth.image.empty() || c.frontDepth.encoding != PELLUCID_DEPTH_VIEW_Z ||
       c.backDepth.encoding != PELLUCID_DEPTH_VIEW_Z)
     return {};
-  std::erase_if(frame.capture.lights, [](const Light& light) { return light.type != PELLUCID_LIGHT_DIRECTIONAL; });
+  std::erase_if(frame.capture.lights,
+                [](const Light& light) { return light.type != PELLUCID_LIGHT_DIRECTIONAL; });
   if (frame.capture.lights.empty()) return {};
   for (Light& light : frame.capture.lights) light.shadowMaps.clear();
   StressFrame thicker = frame;
@@ -155,7 +161,8 @@ std::optional<Worst> fartherBacks(Subject& s) {
 
 // The next frame of a camera that stands still shows what it kept.
 std::optional<Worst> reuse(Subject& s) {
-  if (s.frame.settings.reuse == PELLUCID_REUSE_NONE || s.frame.settings.debugView != PELLUCID_DEBUG_NONE) return {};
+  if (s.frame.settings.reuse == PELLUCID_REUSE_NONE || s.frame.settings.debugView != PELLUCID_DEBUG_NONE)
+    return {};
   const std::unique_ptr<FrameRun> next = s.renderer.prepare(s.frame, s.run.get());
   return apart(s.renderer.render(s.frame, *next, s.frame.index + 2), s.output, s.owned);
 }
@@ -167,26 +174,28 @@ constexpr const char* kLight = "colors are rounded to halves once with and once 
 
 std::span<const Check> energyChecks() {
   static const Check table[] = {
-      {"constant", "constant irradiance comes back from the diffusion", "frames that diffuse, without lights and albedo", 1e-3,
-       1e-3, kRounding, &constant},
-      {"twice-irradiance", "twice the irradiance gives twice the output", "all, without lights", 1e-3, 1e-3, kRounding,
-       &twiceIrradiance},
-      {"more-irradiance", "more irradiance at some pixels gives no pixel less", "all, without lights", 2e-3, 2e-3, kRounding,
-       &moreIrradiance},
-      {"half-lights", "lights of half the intensity add half as much", "frames with lights that stay below 65504", 4e-3, 4e-3, kLight, &halfLights},
-      {"twice-all", "twice the lights and irradiance give twice the output", "frames with lights that stay below 65504", 2e-3, 2e-3, kRounding,
-       &twiceAll},
-      {"sum-of-lights", "a frame of lights adds the sum of what each adds", "frames of 2 to 4 lights that stay below 65504", 5e-3, 5e-3, kLight,
-       &sumOfLights},
-      {"thinner-limit", "a smaller maximumThickness gives no pixel more", "frames with lights, not gathered", 2e-3, 2e-3,
-       kRounding, &thinnerLimit},
-      {"darker-filter", "a smaller transmittanceFilter gives no pixel more", "frames with lights, not gathered", 2e-3, 2e-3,
-       kRounding, &darkerFilter},
-      {"nearer-maps", "maps nearer to the light give no pixel more", "frames with maps, not gathered, thickness of the light",
-       2e-3, 2e-3, kRounding, &nearerMaps},
+      {"constant", "constant irradiance comes back from the diffusion",
+       "frames that diffuse, without lights and albedo", 1e-3, 1e-3, kRounding, &constant},
+      {"twice-irradiance", "twice the irradiance gives twice the output", "all, without lights", 2e-3, 2e-3,
+       kRounding, &twiceIrradiance},
+      {"more-irradiance", "more irradiance at some pixels gives no pixel less", "all, without lights", 2e-3,
+       2e-3, kRounding, &moreIrradiance},
+      {"half-lights", "lights of half the intensity add half as much",
+       "frames with lights that stay below 65504", 4e-3, 4e-3, kLight, &halfLights},
+      {"twice-all", "twice the lights and irradiance give twice the output",
+       "frames with lights that stay below 65504", 2e-3, 2e-3, kRounding, &twiceAll},
+      {"sum-of-lights", "a frame of lights adds the sum of what each adds",
+       "frames of 2 to 4 lights that stay below 65504", 5e-3, 5e-3, kLight, &sumOfLights},
+      {"thinner-limit", "a smaller maximumThickness gives no pixel more", "frames with lights, not gathered",
+       2e-3, 2e-3, kRounding, &thinnerLimit},
+      {"darker-filter", "a smaller transmittanceFilter gives no pixel more",
+       "frames with lights, not gathered", 2e-3, 2e-3, kRounding, &darkerFilter},
+      {"nearer-maps", "maps nearer to the light give no pixel more",
+       "frames with maps, not gathered, thickness of the light", 2e-3, 2e-3, kRounding, &nearerMaps},
       {"farther-backs", "a back depth farther away gives no pixel more",
        "frames with directional lights and depths in view z", 2e-3, 2e-3, kRounding, &fartherBacks},
-      {"reuse", "the next frame of a still camera is the frame", "frames that reuse light", 2e-3, 2e-3, kRounding, &reuse},
+      {"reuse", "the next frame of a still camera is the frame", "frames that reuse light", 2e-3, 2e-3,
+       kRounding, &reuse},
   };
   return table;
 }

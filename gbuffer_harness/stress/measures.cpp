@@ -21,7 +21,8 @@ Worst at(const Image& image, std::size_t i, double value) {
 
 // The largest of error(i) over elements first..last of the pixels. A NaN is the largest.
 template <class Error>
-Worst largest(const Image& image, const Pixels& pixels, std::size_t first, std::size_t last, const Error& error) {
+Worst largest(const Image& image, const Pixels& pixels, std::size_t first, std::size_t last,
+              const Error& error) {
   Worst worst;
   for (std::size_t p = 0; p < pixels.size(); ++p) {
     if (!pixels[p]) continue;
@@ -60,7 +61,8 @@ Worst notFinite(const Image& image, const Pixels& pixels) {
 }
 
 Worst negative(const Image& image, const Pixels& pixels) {
-  return largest(image, pixels, 0, 2, [&](std::size_t i) { return image.data[i] < 0 ? -number(image, i) : 0.0; });
+  return largest(image, pixels, 0, 2,
+                 [&](std::size_t i) { return image.data[i] < 0 ? -number(image, i) : 0.0; });
 }
 
 Worst changedOutside(const Image& before, const Image& after, const Pixels& pixels) {

@@ -26,13 +26,14 @@ Worst negative(const Image& image, const Pixels& pixels);
 Worst changedOutside(const Image& before, const Image& after, const Pixels& pixels);
 // Pixels in which all bits are still those of the 0xFF bytes from before: their number.
 Worst unwritten(const Image& after, const Pixels& pixels);
-// The largest difference of RGB, relative to the larger value; infinite where bits differ and one is not finite.
+// The largest difference of RGB, relative to the larger value; infinite where bits differ and one is not
+// finite.
 Worst differentBits(const Image& a, const Image& b, const Pixels& pixels);
 // The largest difference of alpha, likewise.
 Worst differentAlpha(const Image& a, const Image& b, const Pixels& pixels);
 
-// Relative differences of RGB. Values below `kFloor` count as kFloor in the divisor, as halves have fewer bits there.
-// Values from kCeiling on in either image are left out: outputs end at 65504.
+// Relative differences of RGB. Values below `kFloor` count as kFloor in the divisor, as halves have fewer
+// bits there. Values from kCeiling on in either image are left out: outputs end at 65504.
 inline constexpr double kFloor = 1e-3, kCeiling = 65000;
 
 // |image - expected|.
@@ -41,8 +42,8 @@ Worst apart(const Image& image, const Image& expected, const Pixels& pixels);
 Worst notTwice(const Image& one, const Image& two, const Pixels& pixels);
 // How much less `more` is than `less`.
 Worst less(const Image& less, const Image& more, const Pixels& pixels);
-// |all - without - sum of (part - without)|, relative to the largest of the images. Pixels that are 0 in an image
-// are left out, as outputs end there.
+// |all - without - sum of (part - without)|, relative to the largest of the images. Pixels that are 0 in an
+// image are left out, as outputs end there.
 Worst notSum(const Image& without, const std::vector<Image>& parts, const Image& all, const Pixels& pixels);
 
 }  // namespace pellucid::harness::stress

@@ -1,4 +1,5 @@
-// Pseudo-random numbers that are the same on every machine, which the standard library's distributions are not.
+// Pseudo-random numbers that are the same on every machine, which the standard library's distributions are
+// not.
 #pragma once
 
 #include <cmath>
@@ -12,7 +13,8 @@ class Random {
 public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
   // Of one item of a sequence: no other item's numbers.
-  Random(std::uint64_t seed, std::uint64_t index) : state_(Random(seed).bits() ^ (index * 0xD1342543DE82EF95u)) {
+  Random(std::uint64_t seed, std::uint64_t index)
+      : state_(Random(seed).bits() ^ (index * 0xD1342543DE82EF95u)) {
     state_ = bits();
   }
 

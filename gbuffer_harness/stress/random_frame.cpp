@@ -11,26 +11,32 @@ namespace pellucid::harness::stress {
 namespace {
 
 CoefficientMaterial coefficients(double scattering, double absorption) {
-  return {{scattering, scattering * 0.7, scattering * 1.5}, {absorption, absorption * 2, absorption * 0.5}, 0, 1.4};
+  return {{scattering, scattering * 0.7, scattering * 1.5},
+          {absorption, absorption * 2, absorption * 0.5},
+          0,
+          1.4};
 }
 
 BurleyMaterial burley(double distance) { return {{distance, distance / 1.4, distance / 2}, std::nullopt}; }
 
 bool gatherable(const PellucidMaterial& m) {
-  return m.transmittanceModel == PELLUCID_TRANSMITTANCE_EXP2 || m.transmittanceModel == PELLUCID_TRANSMITTANCE_SINH_EXP;
+  return m.transmittanceModel == PELLUCID_TRANSMITTANCE_EXP2 ||
+         m.transmittanceModel == PELLUCID_TRANSMITTANCE_SINH_EXP;
 }
 
 std::vector<float> minimumDots(Random& random, PellucidAngleModel model) {
   const int side = random.whole(3, 16);
-  std::vector<float> table(static_cast<std::size_t>(
-      model == PELLUCID_ANGLE_MINIMUM_DOT_SPHERE ? side * side : random.chance(0.5) ? 36 : random.whole(1, 360)));
+  std::vector<float> table(static_cast<std::size_t>(model == PELLUCID_ANGLE_MINIMUM_DOT_SPHERE ? side * side
+                                                    : random.chance(0.5)                       ? 36
+                                                                         : random.whole(1, 360)));
   for (float& m : table) m = static_cast<float>(random.real(-1, 0));
   return table;
 }
 
 void randomAngles(Random& random, TranslucencySettings& t) {
   t.angleModel = random.of({PELLUCID_ANGLE_COSINE, PELLUCID_ANGLE_INVERSE_COSINE, PELLUCID_ANGLE_POLYNOMIAL,
-                            PELLUCID_ANGLE_MINIMUM_DOT, PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH, PELLUCID_ANGLE_MINIMUM_DOT_SPHERE});
+                            PELLUCID_ANGLE_MINIMUM_DOT, PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH,
+                            PELLUCID_ANGLE_MINIMUM_DOT_SPHERE});
   for (float& c : t.anglePolynomial) c = static_cast<float>(random.real(-2, 2));
   t.minimumDot = random.chance(0.3) ? random.of({0.0f, -1.0f}) : static_cast<float>(random.real(-1, 0));
   t.prescaleAngle = random.chance(0.5);
@@ -39,13 +45,15 @@ void randomAngles(Random& random, TranslucencySettings& t) {
     t.minimumDotTable = minimumDots(random, t.angleModel);
 }
 
-void randomTranslucency(Random& random, bool wild, const StressFrame& frame, double mm, TranslucencySettings& t) {
+void randomTranslucency(Random& random, bool wild, const StressFrame& frame, double mm,
+                        TranslucencySettings& t) {
   t.gatherSamples = PELLUCID_GATHER_BY_QUALITY;
   if (random.chance(0.2)) t.thicknessSource = PELLUCID_THICKNESS_CAMERA;
   if (random.chance(0.25)) randomAngles(random, t);
   t.chordThickness = random.chance(0.2);
   if (random.chance(0.15)) t.maximumThickness = static_cast<float>(random.magnitude(0.1, wild ? 1e9 : 100));
-  if (random.chance(0.2)) t.transmittanceFilter = {static_cast<float>(random.real()), 1, random.of({0.0f, 0.5f})};
+  if (random.chance(0.2))
+    t.transmittanceFilter = {static_cast<float>(random.real()), 1, random.of({0.0f, 0.5f})};
   if (random.chance(0.5)) t.shadowBias = static_cast<float>(std::min(random.magnitude(1e-3, 1) / mm, 1e15));
   if (wild && random.chance(0.1)) t.shadowBias = static_cast<float>(random.magnitude(1e-20, 1e15));
   if (random.chance(0.3))
@@ -66,7 +74,8 @@ float nearestDistance(const StressFrame& frame, const View& view) {
     if (c.material[i] == 0) continue;
     const double depth = static_cast<double>(c.frontDepth.image.data[i]);
     double p = depth;
-    if (c.frontDepth.encoding == PELLUCID_DEPTH_DEVICE) p = view.perspective ? view.b / (depth - view.a) : (depth - view.b) / view.a;
+    if (c.frontDepth.encoding == PELLUCID_DEPTH_DEVICE)
+      p = view.perspective ? view.b / (depth - view.a) : (depth - view.b) / view.a;
     if (p > 0 && p < nearest) nearest = p;
   }
   return nearest < 1e9 ? static_cast<float>(nearest * 0.999) : 0;
@@ -91,13 +100,14 @@ void randomSettings(Random& random, const View& view, const FrameLimits& limits,
   if (random.chance(0.08))
     s.debugView = shadowSources(frame.capture.lights).size() > 8
                       ? PELLUCID_DEBUG_IRRADIANCE
-                      : random.of({PELLUCID_DEBUG_THICKNESS, PELLUCID_DEBUG_TRANSMITTANCE, PELLUCID_DEBUG_OCCLUSION,
-                                   PELLUCID_DEBUG_IRRADIANCE});
+                      : random.of({PELLUCID_DEBUG_THICKNESS, PELLUCID_DEBUG_TRANSMITTANCE,
+                                   PELLUCID_DEBUG_OCCLUSION, PELLUCID_DEBUG_IRRADIANCE});
   const auto width = frame.capture.width, height = frame.capture.height;
   if (random.chance(0.3)) {
     const int x = random.whole(0, width - 1), y = random.whole(0, height - 1);
     s.renderRect = {static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
-                    static_cast<std::uint32_t>(random.whole(1, width - x)), static_cast<std::uint32_t>(random.whole(1, height - y))};
+                    static_cast<std::uint32_t>(random.whole(1, width - x)),
+                    static_cast<std::uint32_t>(random.whole(1, height - y))};
   }
 }
 
@@ -106,7 +116,8 @@ void markPixels(Random& random, StressFrame& frame) {
   if (bit == 0) return;
   for (std::uint8_t& m : frame.capture.material)
     if (m != 0 && random.chance(0.3)) m = static_cast<std::uint8_t>(m | bit);
-  frame.notInCapture += (frame.notInCapture.empty() ? "" : " and ") + std::string("material values with the mark bit");
+  frame.notInCapture +=
+      (frame.notInCapture.empty() ? "" : " and ") + std::string("material values with the mark bit");
 }
 
 }  // namespace
@@ -115,12 +126,14 @@ MaterialPool::MaterialPool() {
   const auto add = [&](MaterialSource source, bool tame) {
     Entry entry{std::move(source), tame, {}};
     const PellucidMaterial material = compileMaterial(entry.source, "stress");
-    for (const TransmittanceChoice choice : {TransmittanceChoice::Material, TransmittanceChoice::Linear,
-                                             TransmittanceChoice::Gaussians, TransmittanceChoice::GaussiansAsPrinted})
+    for (const TransmittanceChoice choice :
+         {TransmittanceChoice::Material, TransmittanceChoice::Linear, TransmittanceChoice::Gaussians,
+          TransmittanceChoice::GaussiansAsPrinted})
       entry.compiled[static_cast<std::size_t>(choice)] = withTransmittance({material}, choice).front();
     entries_.push_back(std::move(entry));
   };
-  for (const char* preset : {"skin1", "marble", "ketchup", "whole_milk", "skin_three_layer"}) add(PresetMaterial{preset}, true);
+  for (const char* preset : {"skin1", "marble", "ketchup", "whole_milk", "skin_three_layer"})
+    add(PresetMaterial{preset}, true);
   add(coefficients(1, 0.05), true);
   add(burley(1), true);
   add(burley(5), true);
@@ -134,7 +147,8 @@ MaterialPool::MaterialPool() {
   add(coefficients(10, 1e-6), false);
 }
 
-StressFrame randomFrame(std::uint64_t seed, std::uint64_t index, const MaterialPool& pool, const FrameLimits& limits) {
+StressFrame randomFrame(std::uint64_t seed, std::uint64_t index, const MaterialPool& pool,
+                        const FrameLimits& limits) {
   Random random(seed, index);
   StressFrame frame;
   frame.seed = seed;
@@ -144,11 +158,12 @@ StressFrame randomFrame(std::uint64_t seed, std::uint64_t index, const MaterialP
   c.name = "stress-" + std::to_string(seed) + "-" + std::to_string(index);
   View view = randomView(random, frame.wild, limits, c);
   if (random.chance(0.2))
-    frame.transmittance =
-        random.of({TransmittanceChoice::Linear, TransmittanceChoice::Gaussians, TransmittanceChoice::GaussiansAsPrinted});
+    frame.transmittance = random.of({TransmittanceChoice::Linear, TransmittanceChoice::Gaussians,
+                                     TransmittanceChoice::GaussiansAsPrinted});
   const int count = random.of({1, 1, 2, 3});
   while (static_cast<int>(c.materials.size()) < count) {
-    const auto& entry = pool.entries()[static_cast<std::size_t>(random.whole(0, static_cast<int>(pool.entries().size()) - 1))];
+    const auto& entry = pool.entries()[static_cast<std::size_t>(
+        random.whole(0, static_cast<int>(pool.entries().size()) - 1))];
     if (!entry.tame && !frame.wild) continue;
     c.materials.push_back(entry.source);
     frame.materials.push_back(entry.compiled[static_cast<std::size_t>(frame.transmittance)]);

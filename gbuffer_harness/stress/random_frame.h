@@ -44,7 +44,8 @@ struct StressFrame {
 };
 
 // Same seed and index, same frame. Even indices are tame, odd ones wild.
-StressFrame randomFrame(std::uint64_t seed, std::uint64_t index, const MaterialPool& pool, const FrameLimits& limits);
+StressFrame randomFrame(std::uint64_t seed, std::uint64_t index, const MaterialPool& pool,
+                        const FrameLimits& limits);
 
 // 1 for each pixel that the pass owns: with a material and inside the rect.
 std::vector<std::uint8_t> ownedPixels(const StressFrame& frame);

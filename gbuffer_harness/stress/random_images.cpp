@@ -10,7 +10,8 @@ namespace pellucid::harness::stress {
 
 namespace {
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN(),
+                kInfinity = std::numeric_limits<float>::infinity();
 
 // A function of the pixel, which costs little: waves, steps, noise, or nothing.
 class Pattern {
@@ -47,13 +48,16 @@ private:
 // Planar distances of the front; 0: nothing there.
 std::vector<double> randomFront(Random& random, const View& v) {
   std::vector<double> front(static_cast<std::size_t>(v.width) * static_cast<std::size_t>(v.height));
-  const double least = std::max(v.near * 1.001, v.distance * 0.3), most = std::min(v.far * 0.999, v.distance * 3);
+  const double least = std::max(v.near * 1.001, v.distance * 0.3),
+               most = std::min(v.far * 0.999, v.distance * 3);
   const double size = v.pixel * std::max(v.width, v.height);
   const bool sphere = random.chance(0.35);
-  const double slopeX = random.chance(0.7) ? random.real(-2, 2) : 0, slopeY = random.chance(0.7) ? random.real(-2, 2) : 0;
+  const double slopeX = random.chance(0.7) ? random.real(-2, 2) : 0,
+               slopeY = random.chance(0.7) ? random.real(-2, 2) : 0;
   const double rough = random.chance(0.5) ? v.pixel * random.magnitude(0.01, 10) : 0;
   const double radius = size * random.real(0.1, 0.6);
-  const glm::dvec3 middle = v.point(v.width * random.real(0.2, 0.8), v.height * random.real(0.2, 0.8), v.distance);
+  const glm::dvec3 middle =
+      v.point(v.width * random.real(0.2, 0.8), v.height * random.real(0.2, 0.8), v.distance);
   Pattern pattern(random, v.width, v.height);
   std::size_t i = 0;
   for (int y = 0; y < v.height; ++y)
@@ -76,13 +80,15 @@ float encoded(const View& v, PellucidDepthEncoding encoding, double p) {
 }
 
 float nothing(Random& random, const View& v, PellucidDepthEncoding encoding) {
-  if (encoding == PELLUCID_DEPTH_DEVICE) return v.deviceDepth(1e30 * v.distance) > v.deviceDepth(v.distance) ? 1.0f : 0.0f;
+  if (encoding == PELLUCID_DEPTH_DEVICE)
+    return v.deviceDepth(1e30 * v.distance) > v.deviceDepth(v.distance) ? 1.0f : 0.0f;
   return random.of({0.0f, kNoDepth, kInfinity});
 }
 
 float quantized(float depth, PellucidDepthEncoding encoding, int bits) {
   if (bits == 32) return depth;
-  if (encoding != PELLUCID_DEPTH_DEVICE) return glm::unpackHalf1x16(glm::packHalf1x16(std::min(depth, 65504.0f)));
+  if (encoding != PELLUCID_DEPTH_DEVICE)
+    return glm::unpackHalf1x16(glm::packHalf1x16(std::min(depth, 65504.0f)));
   const double steps = std::exp2(bits) - 1;
   return static_cast<float>(std::round(static_cast<double>(depth) * steps) / steps);
 }
@@ -99,7 +105,8 @@ void addDepths(Random& random, bool wild, const View& v, const std::vector<doubl
   const float frontNothing = nothing(random, v, c.frontDepth.encoding);
   for (std::size_t i = 0; i < front.size(); ++i)
     c.frontDepth.image.data[i] =
-        front[i] > 0 ? quantized(encoded(v, c.frontDepth.encoding, front[i]), c.frontDepth.encoding, bits) : frontNothing;
+        front[i] > 0 ? quantized(encoded(v, c.frontDepth.encoding, front[i]), c.frontDepth.encoding, bits)
+                     : frontNothing;
   if (random.chance(0.75)) {
     c.backDepth.image = Image(v.width, v.height, 1);
     const double thickness = random.magnitude(0.1, 30) / v.mm;
@@ -109,7 +116,8 @@ void addDepths(Random& random, bool wild, const View& v, const std::vector<doubl
     for (int y = 0; y < v.height; ++y)
       for (int x = 0; x < v.width; ++x, ++i) {
         const double p = front[i] + thickness * (1 + 0.9 * pattern.at(x, y));
-        c.backDepth.image.data[i] = front[i] > 0 && p < v.far ? encoded(v, c.backDepth.encoding, p) : backNothing;
+        c.backDepth.image.data[i] =
+            front[i] > 0 && p < v.far ? encoded(v, c.backDepth.encoding, p) : backNothing;
       }
   }
   if (!wild || random.chance(0.4)) return;
@@ -121,7 +129,8 @@ void addDepths(Random& random, bool wild, const View& v, const std::vector<doubl
   }
 }
 
-void addMaterial(Random& random, bool wild, const View& v, int materials, const std::vector<double>& front, Capture& c) {
+void addMaterial(Random& random, bool wild, const View& v, int materials, const std::vector<double>& front,
+                 Capture& c) {
   c.material.assign(front.size(), static_cast<std::uint8_t>(random.whole(1, materials)));
   const int kind = random.whole(0, 4), block = random.whole(2, 24);
   const double share = random.real();
@@ -172,7 +181,10 @@ void addNormals(Random& random, bool wild, const View& v, const std::vector<doub
       const int kind = random.whole(0, 3);
       const auto factor = static_cast<float>(random.magnitude(1e-6, 1e6));
       for (int k = 0; k < 3; ++k)
-        stored[k] = kind == 0 ? 0.0f : kind == 1 ? badFloat(random) : kind == 2 ? stored[k] * factor : -stored[k];
+        stored[k] = kind == 0   ? 0.0f
+                    : kind == 1 ? badFloat(random)
+                    : kind == 2 ? stored[k] * factor
+                                : -stored[k];
     }
 }
 
@@ -186,14 +198,16 @@ void addIrradiance(Random& random, bool wild, const View& v, Capture& c) {
   for (int y = 0; y < v.height; ++y)
     for (int x = 0; x < v.width; ++x, i += 4) {
       const double e = level * (1 + contrast * pattern.at(x, y));
-      for (int k = 0; k < 3; ++k) c.irradiance.data[i + static_cast<std::size_t>(k)] = static_cast<float>(e * color[k]);
+      for (int k = 0; k < 3; ++k)
+        c.irradiance.data[i + static_cast<std::size_t>(k)] = static_cast<float>(e * color[k]);
       c.irradiance.data[i + 3] = static_cast<float>(random.real());
       if (share > 0 && random.chance(share))
         for (std::size_t k = 0; k < 4; ++k) c.irradiance.data[i + k] = badFloat(random);
     }
   if (random.chance(0.15)) {  // a firefly
     const std::size_t at = static_cast<std::size_t>(random.whole(0, v.width * v.height - 1)) * 4;
-    for (std::size_t k = 0; k < 3; ++k) c.irradiance.data[at + k] = wild ? 65504.0f : static_cast<float>(random.magnitude(1, 1000));
+    for (std::size_t k = 0; k < 3; ++k)
+      c.irradiance.data[at + k] = wild ? 65504.0f : static_cast<float>(random.magnitude(1, 1000));
   }
 }
 
@@ -202,7 +216,8 @@ void addAlbedo(Random& random, bool wild, const View& v, Capture& c) {
   c.albedo = Image(v.width, v.height, 3);
   const bool constant = random.chance(0.5);
   const double share = wild && random.chance(0.5) ? random.magnitude(1e-4, 1) : 0;
-  const float color[3] = {static_cast<float>(random.real()), static_cast<float>(random.real()), static_cast<float>(random.real())};
+  const float color[3] = {static_cast<float>(random.real()), static_cast<float>(random.real()),
+                          static_cast<float>(random.real())};
   for (std::size_t i = 0; i < c.albedo.data.size(); ++i) {
     c.albedo.data[i] = constant ? color[i % 3] : static_cast<float>(random.real());
     if (share > 0 && random.chance(share)) c.albedo.data[i] = badFloat(random);
@@ -212,8 +227,10 @@ void addAlbedo(Random& random, bool wild, const View& v, Capture& c) {
 }  // namespace
 
 float badFloat(Random& random) {
-  return random.of({kNaN, -kNaN, kInfinity, -kInfinity, 0.0f, -0.0f, 1.0f, -1.0f, 1e-40f, -1e-40f, 1e-20f, 6e-8f, 65504.0f,
-                    65520.0f, 1e9f, 1e10f, 1e30f, 3.4e38f, -3.4e38f, static_cast<float>(random.real(0, 2))});
+  return random.of({kNaN,   -kNaN, kInfinity, -kInfinity, 0.0f,
+                    -0.0f,  1.0f,  -1.0f,     1e-40f,     -1e-40f,
+                    1e-20f, 6e-8f, 65504.0f,  65520.0f,   1e9f,
+                    1e10f,  1e30f, 3.4e38f,   -3.4e38f,   static_cast<float>(random.real(0, 2))});
 }
 
 void addRandomImages(Random& random, bool wild, View& view, int materials, Capture& capture) {

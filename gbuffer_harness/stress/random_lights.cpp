@@ -28,8 +28,8 @@ glm::dvec3 randomDirection(Random& random) {
 // What a light shines at: where the middle of the image looks.
 struct Target {
   glm::dvec3 center;
-  double size;        // of what the image shows there
-  double mm;          // of a scene unit
+  double size;  // of what the image shows there
+  double mm;    // of a scene unit
   int materials;
 };
 
@@ -53,14 +53,15 @@ struct MapCamera {
 
   float store(PellucidDepthEncoding encoding, double p, double u, double v) const {
     if (encoding == PELLUCID_DEPTH_VIEW_Z) return static_cast<float>(p);
-    if (encoding == PELLUCID_DEPTH_DISTANCE) return static_cast<float>(p * std::sqrt(1 + slope * slope * (u * u + v * v)));
+    if (encoding == PELLUCID_DEPTH_DISTANCE)
+      return static_cast<float>(p * std::sqrt(1 + slope * slope * (u * u + v * v)));
     const double depth = perspective ? far / (far - near) * (1 - near / p) : (p - near) / (far - near);
     return static_cast<float>(reversed ? 1 - depth : depth);
   }
 };
 
-MapCamera mapCamera(Random& random, const Target& target, const glm::dvec3& eye, const glm::dvec3& direction, bool perspective,
-                    double tangent) {
+MapCamera mapCamera(Random& random, const Target& target, const glm::dvec3& eye, const glm::dvec3& direction,
+                    bool perspective, double tangent) {
   MapCamera m{};
   m.perspective = perspective;
   m.reversed = random.chance(0.4);
@@ -88,7 +89,8 @@ ShadowMap randomMap(Random& random, bool wild, const Target& target, const MapCa
   ShadowMap map;
   map.depth.encoding = random.of({PELLUCID_DEPTH_DEVICE, PELLUCID_DEPTH_VIEW_Z, PELLUCID_DEPTH_DISTANCE});
   map.clipFromWorld = toMatrix(camera.clip * camera.view);
-  if (map.depth.encoding != PELLUCID_DEPTH_DEVICE || random.chance(0.3)) map.viewFromWorld = toMatrix(camera.view);
+  if (map.depth.encoding != PELLUCID_DEPTH_DEVICE || random.chance(0.3))
+    map.viewFromWorld = toMatrix(camera.view);
   const int side = random.chance(0.05) ? random.whole(1, 4) : random.of({16, 32, 64});
   map.depth.image = Image(side, side, 1);
   const bool exits = sidecars && random.chance(0.3), casters = sidecars && random.chance(0.3);
@@ -110,10 +112,12 @@ ShadowMap randomMap(Random& random, bool wild, const Target& target, const MapCa
       const bool empty = holes > 0 && random.chance(holes);
       map.depth.image.data[i] = empty ? nothing : camera.store(map.depth.encoding, p, u, v);
       if (exits)
-        map.exitDepth.data[i] = empty || random.chance(0.2)
-                                    ? nothing
-                                    : camera.store(map.depth.encoding, std::min(p + gap, camera.far * 0.999), u, v);
-      if (casters && !empty) map.casterMaterial[i] = static_cast<std::uint8_t>(random.whole(0, target.materials));
+        map.exitDepth.data[i] =
+            empty || random.chance(0.2)
+                ? nothing
+                : camera.store(map.depth.encoding, std::min(p + gap, camera.far * 0.999), u, v);
+      if (casters && !empty)
+        map.casterMaterial[i] = static_cast<std::uint8_t>(random.whole(0, target.materials));
       if (share == 0 || !random.chance(share)) continue;
       map.depth.image.data[i] = badFloat(random);
       if (exits) map.exitDepth.data[i] = badFloat(random);
@@ -137,13 +141,14 @@ void addMaps(Random& random, bool wild, const Target& target, Light& light) {
   }
   const glm::dvec3 eye(light.position[0], light.position[1], light.position[2]);
   if (light.type == PELLUCID_LIGHT_POINT && random.chance(0.2)) {
-    for (const glm::dvec3 axis : {glm::dvec3(1, 0, 0), glm::dvec3(-1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, -1, 0),
-                                  glm::dvec3(0, 0, 1), glm::dvec3(0, 0, -1)})
-      light.shadowMaps.push_back(randomMap(random, wild, target, mapCamera(random, target, eye, axis, true, 1), false));
+    for (const glm::dvec3 axis : {glm::dvec3(1, 0, 0), glm::dvec3(-1, 0, 0), glm::dvec3(0, 1, 0),
+                                  glm::dvec3(0, -1, 0), glm::dvec3(0, 0, 1), glm::dvec3(0, 0, -1)})
+      light.shadowMaps.push_back(
+          randomMap(random, wild, target, mapCamera(random, target, eye, axis, true, 1), false));
     return;
   }
-  light.shadowMaps.push_back(
-      randomMap(random, wild, target, mapCamera(random, target, eye, direction, true, random.magnitude(0.2, 2)), true));
+  light.shadowMaps.push_back(randomMap(
+      random, wild, target, mapCamera(random, target, eye, direction, true, random.magnitude(0.2, 2)), true));
 }
 
 Light randomLight(Random& random, bool wild, const Target& target, const glm::dvec3& viewAxis) {
@@ -152,7 +157,8 @@ Light randomLight(Random& random, bool wild, const Target& target, const glm::dv
   // Mostly from behind, from where it comes through.
   glm::dvec3 direction = randomDirection(random);
   if (random.chance(0.7)) direction = glm::normalize(direction - 1.5 * viewAxis);
-  const double away = target.size * (wild && random.chance(0.2) ? random.magnitude(1e-6, 1e6) : random.magnitude(0.6, 10));
+  const double away =
+      target.size * (wild && random.chance(0.2) ? random.magnitude(1e-6, 1e6) : random.magnitude(0.6, 10));
   light.direction = toArray(direction);
   const glm::dvec3 position = wild && random.chance(0.1) ? target.center : target.center - direction * away;
   light.position = toArray(position);
@@ -173,12 +179,13 @@ Light randomLight(Random& random, bool wild, const Target& target, const glm::dv
   return light;
 }
 
-// What the light brings to the surfaces that face it, as an engine's irradiance has it, shadows left out: a gather
-// takes its share of that from there.
+// What the light brings to the surfaces that face it, as an engine's irradiance has it, shadows left out: a
+// gather takes its share of that from there.
 void addDirectLight(const Light& light, const View& view, Capture& c) {
   const glm::dmat3 toWorld(view.worldFromView);
   const glm::dvec3 position(light.position[0], light.position[1], light.position[2]);
-  const glm::dvec3 travel = glm::normalize(glm::dvec3(light.direction[0], light.direction[1], light.direction[2]));
+  const glm::dvec3 travel =
+      glm::normalize(glm::dvec3(light.direction[0], light.direction[1], light.direction[2]));
   std::size_t i = 0;
   for (int y = 0; y < view.height; ++y)
     for (int x = 0; x < view.width; ++x, ++i) {
@@ -199,15 +206,18 @@ void addDirectLight(const Light& light, const View& view, Capture& c) {
         cosine = std::clamp(glm::dot(n, toLight), 0.0, 1.0);
       }
       for (std::size_t k = 0; k < 3; ++k)
-        c.irradiance.data[4 * i + k] += static_cast<float>(light.intensity * falloff * cosine * light.color[k]);
+        c.irradiance.data[4 * i + k] +=
+            static_cast<float>(light.intensity * falloff * cosine * light.color[k]);
     }
 }
 
 }  // namespace
 
 void addRandomLights(Random& random, bool wild, const View& view, Capture& capture) {
-  const glm::dvec3 center = glm::dvec3(view.worldFromView * glm::dvec4(view.point(view.width * 0.5, view.height * 0.5, view.distance), 1));
-  const Target target{center, view.pixel * std::max(view.width, view.height), view.mm, static_cast<int>(capture.materials.size())};
+  const glm::dvec3 center = glm::dvec3(
+      view.worldFromView * glm::dvec4(view.point(view.width * 0.5, view.height * 0.5, view.distance), 1));
+  const Target target{center, view.pixel * std::max(view.width, view.height), view.mm,
+                      static_cast<int>(capture.materials.size())};
   const glm::dvec3 axis = glm::dmat3(view.worldFromView) * glm::dvec3(0, 0, view.sign);
   int count = random.of({0, 1, 1, 1, 2, 2, 3});
   if (random.chance(0.03)) count = random.whole(4, wild ? 12 : 6);

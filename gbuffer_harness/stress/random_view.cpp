@@ -9,8 +9,8 @@ namespace pellucid::harness::stress {
 
 namespace {
 
-// Mostly well below the limit, near 64 x 64 without one, so that there are many; now and then one pixel, a strip, or the
-// largest.
+// Mostly well below the limit, near 64 x 64 without one, so that there are many; now and then one pixel, a
+// strip, or the largest.
 void randomSize(Random& random, const FrameLimits& limits, int& width, int& height) {
   const double kind = random.real();
   const int most = std::min(limits.side, limits.pixels);
@@ -22,7 +22,8 @@ void randomSize(Random& random, const FrameLimits& limits, int& width, int& heig
     height = random.whole(1, std::min(4, std::max(1, limits.pixels / width)));
     if (random.chance(0.5)) std::swap(width, height);
   } else {
-    const double pixels = random.magnitude(16, kind < 0.1 ? limits.pixels : limits.pixels / 8.0) + random.real(0, limits.pixels / 32.0);
+    const double pixels = random.magnitude(16, kind < 0.1 ? limits.pixels : limits.pixels / 8.0) +
+                          random.real(0, limits.pixels / 32.0);
     const double aspect = random.magnitude(0.25, 4);
     width = static_cast<int>(std::sqrt(pixels * aspect)) + 1;
     height = static_cast<int>(std::sqrt(pixels / aspect)) + 1;
@@ -47,7 +48,8 @@ View randomView(Random& random, bool wild, const FrameLimits& limits, Capture& c
   const bool reversed = random.chance(0.5), infinite = v.perspective && random.chance(0.4);
   v.near = wild ? random.magnitude(1e-4, 1e3) : random.magnitude(0.01, 1);
   v.distance = v.near * random.magnitude(1.5, wild ? 1e5 : 300);
-  v.far = infinite ? std::numeric_limits<double>::infinity() : v.distance * random.magnitude(3, wild ? 1e6 : 1e3);
+  v.far =
+      infinite ? std::numeric_limits<double>::infinity() : v.distance * random.magnitude(3, wild ? 1e6 : 1e3);
   v.ox = random.chance(0.3) ? random.real(-0.7, 0.7) : 0;
   v.oy = random.chance(0.3) ? random.real(-0.7, 0.7) : 0;
   const double aspect = static_cast<double>(v.width) / v.height;
@@ -87,7 +89,8 @@ View randomView(Random& random, bool wild, const FrameLimits& limits, Capture& c
 
   glm::dquat turn(1, 0, 0, 0);
   if (random.chance(0.8))
-    turn = glm::normalize(glm::dquat(random.real(-1, 1), random.real(-1, 1), random.real(-1, 1), random.real(0.1, 1)));
+    turn = glm::normalize(
+        glm::dquat(random.real(-1, 1), random.real(-1, 1), random.real(-1, 1), random.real(0.1, 1)));
   const double away = wild && random.chance(0.2) ? 1e6 : random.chance(0.5) ? 10 * v.distance : 0;
   glm::dmat4 world = glm::mat4_cast(turn);
   world[3] = {away * random.real(-1, 1), away * random.real(-1, 1), away * random.real(-1, 1), 1};

@@ -5,7 +5,8 @@ namespace pellucid::harness::stress {
 std::unique_ptr<FrameRun> Renderer::prepare(const StressFrame& frame, const FrameRun* previous) {
   const bool aliased = frame.settings.aliasOutput && frame.settings.debugView == PELLUCID_DEBUG_NONE;
   if (aliased || previous)
-    return std::make_unique<FrameRun>(device_, context_, frame.capture, frame.materials, frame.settings, previous);
+    return std::make_unique<FrameRun>(device_, context_, frame.capture, frame.materials, frame.settings,
+                                      previous);
   // Without the picture that an engine would have around the surface: garbage takes its place.
   return std::make_unique<FrameRun>(device_, context_, frame.capture, frame.materials, frame.settings,
                                     std::make_shared<InputImages>(device_, frame.capture, frame.settings));

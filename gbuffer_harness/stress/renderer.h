@@ -21,7 +21,8 @@ public:
   // Throws InputError for a frame that the module refuses. `previous`: as FrameRun takes it.
   std::unique_ptr<FrameRun> prepare(const StressFrame& frame, const FrameRun* previous = nullptr);
 
-  // The whole output. `garbage`: as FrameRun::fillGarbage takes it. Virtual so that tests can damage what checks see.
+  // The whole output. `garbage`: as FrameRun::fillGarbage takes it. Virtual so that tests can damage what
+  // checks see.
   virtual Image render(const StressFrame& frame, const FrameRun& run, std::uint64_t garbage);
   Image render(const StressFrame& frame) { return render(frame, *prepare(frame), frame.index); }
 

@@ -10,8 +10,8 @@
 
 namespace pellucid::harness::stress {
 
-// A line of text, then for each frame its seed and index (64 bits), width and height (32 bits) and RGBA (32-bit floats),
-// all little-endian.
+// A line of text, then for each frame its seed and index (64 bits), width and height (32 bits) and RGBA
+// (32-bit floats), all little-endian.
 class ResultsWriter {
 public:
   // Throws InputError, as add() does, for a file that cannot be written.
@@ -25,7 +25,7 @@ private:
 
 // How far outputs are from those of the file, over owned pixels of RGB: relative, with kFloor and kCeiling.
 struct Difference {
-  std::uint64_t frames = 0, sameBits = 0;  // frames of which all bits are the same
+  std::uint64_t frames = 0, sameBits = 0;            // frames of which all bits are the same
   std::uint64_t values = 0, above3 = 0, above2 = 0;  // values; those that differ by more than 1e-3 and 1e-2
   Worst worst;
   std::uint64_t worstFrame = 0;

@@ -14,7 +14,8 @@ constexpr const char* kAccepted = "accepted";
 constexpr const char* kValidation = "validation";
 
 // Counts one value; true when it is a violation.
-bool count(CheckResult& result, const StressFrame& frame, const Worst& worst, std::optional<double> tolerance) {
+bool count(CheckResult& result, const StressFrame& frame, const Worst& worst,
+           std::optional<double> tolerance) {
   CheckCount& c = frame.wild ? result.wild : result.tame;
   ++c.done;
   if (worst.value > c.worst.value) {
@@ -39,17 +40,19 @@ public:
     result.checks = {{kAccepted, {}, {}}, {kValidation, {}, {}}};
     for (const Check& check : checks()) result.checks.push_back({check.name, {}, {}});
     limits_ = options.limits;
-    limits_.side = std::min(limits_.side, static_cast<int>(renderer_.device().properties().limits.maxImageDimension2D));
+    limits_.side =
+        std::min(limits_.side, static_cast<int>(renderer_.device().properties().limits.maxImageDimension2D));
   }
 
   void runFrame(std::uint64_t index) {
     const StressFrame frame = randomFrame(options_.seed, index, pool_, limits_);
     std::vector<Violation> violations;
     const std::size_t messages = renderer_.device().validationMessages().size();
+    std::optional<Image> output;
     try {
       Subject subject(renderer_, frame);
       count(result.checks[0], frame, {}, 0);
-      if (events_.rendered) events_.rendered(frame, subject.output);
+      output = subject.output;
       std::size_t i = 1;
       for (const Check& check : checks()) {
         ++i;
@@ -61,9 +64,11 @@ public:
     } catch (const InputError& refused) {
       // Wild frames may be refused; an engine's may not.
       ++(frame.wild ? result.refusedWild : result.refusedTame);
-      if (count(result.checks[0], frame, {1, -1, -1, -1}, frame.wild ? std::nullopt : std::optional<double>(0)))
+      if (count(result.checks[0], frame, {1, -1, -1, -1},
+                frame.wild ? std::nullopt : std::optional<double>(0)))
         violations.push_back({kAccepted, {1, -1, -1, -1}, refused.what()});
     }
+    if (output && events_.rendered) events_.rendered(frame, *output);  // may throw what is no refusal
     const std::vector<std::string> said = renderer_.device().validationMessages();
     const Worst worst{static_cast<double>(said.size() - messages), -1, -1, -1};
     if (options_.validate && count(result.checks[1], frame, worst, 0))

@@ -1,7 +1,8 @@
 // Prints the README's tables from the code, or checks or rewrites them in a file:
 //   pellucid_readme_tables [--check | --update README.md]
 // and likewise with the word quality after the file, docs/diffusion.md, the table of qualities, with domains,
-// docs/domains.md, what values fields may have, or with stress, docs/stress.md, what must hold for random frames.
+// docs/domains.md, what values fields may have, or with stress, docs/stress.md, what must hold for random
+// frames.
 #include <cstdio>
 #include <iterator>
 #include <string>

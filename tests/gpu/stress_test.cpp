@@ -1,4 +1,5 @@
-// The stress: its frames, each of its checks against a fault that it must find, the files of failures, and a short run.
+// The stress: its frames, each of its checks against a fault that it must find, the files of failures, and a
+// short run.
 #include "stress/stress.h"
 
 #include <gtest/gtest.h>
@@ -80,7 +81,9 @@ TEST(StressFrames, HoldEveryOptionAndAreAccepted) {
     else
       EXPECT_EQ(said, "") << i;
     const ReplaySettings& s = f.settings;
-    const auto see = [&](const char* what, auto value) { ++seen[what + std::to_string(static_cast<int>(value))]; };
+    const auto see = [&](const char* what, auto value) {
+      ++seen[what + std::to_string(static_cast<int>(value))];
+    };
     see("quality ", s.quality);
     see("features ", s.features);
     see("debug ", s.debugView);
@@ -104,10 +107,11 @@ TEST(StressFrames, HoldEveryOptionAndAreAccepted) {
   }
   // A twentieth at most, or wild frames would stress validation alone.
   EXPECT_LE(refused, kFrames / 40);
-  const std::map<std::string, int> counts = {{"quality ", 3}, {"features ", 4}, {"debug ", 5},  {"angle ", 7},
-                                             {"reuse ", 3},   {"alias ", 2},    {"front ", 2},  {"transmittance ", 4},
-                                             {"half ", 2},    {"light ", 3},    {"map ", 3},    {"perspective ", 2},
-                                             {"maps ", 2},    {"left-handed ", 2}, {"bad irradiance ", 2}};
+  const std::map<std::string, int> counts = {{"quality ", 3}, {"features ", 4},      {"debug ", 5},
+                                             {"angle ", 7},   {"reuse ", 3},         {"alias ", 2},
+                                             {"front ", 2},   {"transmittance ", 4}, {"half ", 2},
+                                             {"light ", 3},   {"map ", 3},           {"perspective ", 2},
+                                             {"maps ", 2},    {"left-handed ", 2},   {"bad irradiance ", 2}};
   for (const auto& [what, count] : counts)
     for (int i = 0; i < count; ++i) EXPECT_GE(seen[what + std::to_string(i)], 5) << what << i;
 }
@@ -145,7 +149,8 @@ std::size_t firstWith(const Pixels& owned, bool is) {
   return owned.size();
 }
 
-// Adds to every pixel of every second output. Energies that compare two or three outputs cannot all agree with that.
+// Adds to every pixel of every second output. Energies that compare two or three outputs cannot all agree
+// with that.
 void brighten(int count, const StressFrame&, Image& image) {
   if (count % 2 == 0) return;
   for (std::size_t i = 0; i < image.data.size(); ++i)
@@ -184,36 +189,34 @@ std::vector<Damage> faultsFor(const std::string& check) {
   if (check == "written")
     return {[](int, const StressFrame& frame, Image& image) {
       const std::size_t pixel = firstWith(ownedPixels(frame), true);
-      for (std::size_t k = 0; k < 4 && 4 * pixel < image.data.size(); ++k) image.data[4 * pixel + k] = untouched();
+      for (std::size_t k = 0; k < 4 && 4 * pixel < image.data.size(); ++k)
+        image.data[4 * pixel + k] = untouched();
     }};
   return {brighten, darken};
 }
 
-// On frames of which the check has a say, it says nothing to what is right, and something to each fault.
+// On a frame that a check is asked of, some fault makes a violation.
 TEST_F(Stress, EveryCheckFindsAFault) {
-  for (const Check& check : checks()) {
-    const std::vector<Damage> faults = faultsFor(check.name);
-    bool found = false;
-    int asked = 0;
-    for (std::uint64_t i = 0; i < 400 && !(found && asked > 0); i += 2) {
-      const StressFrame frame = randomFrame(11, i, pool(), {-1, 256, 256});
-      if (firstWith(ownedPixels(frame), true) == ownedPixels(frame).size()) continue;
-      for (const Damage& fault : faults) {
-        Damaging& r = renderer();
-        Subject subject(r, frame);
-        r.damage = nullptr;
-        if (!check.run(subject)) break;
-        ++asked;
+  std::set<std::string> missing;
+  for (const Check& check : checks()) missing.insert(check.name);
+  for (std::uint64_t i = 0; i < 400 && !missing.empty(); i += 2) {
+    const StressFrame frame = randomFrame(11, i, pool(), {-1, 256, 256});
+    if (firstWith(ownedPixels(frame), true) == ownedPixels(frame).size()) continue;
+    Damaging& r = renderer();
+    Subject subject(r, frame);
+    for (const Check& check : checks()) {
+      r.damage = nullptr;
+      if (missing.count(check.name) == 0 || !check.run(subject)) continue;
+      for (const Damage& fault : faultsFor(check.name)) {
         r.count = 0;
         r.damage = fault;
         Subject damaged(r, frame);
         const std::optional<Worst> worst = check.run(damaged);
-        found = found || (worst && worst->value > check.tame);
+        if (worst && worst->value > check.tame) missing.erase(check.name);
       }
     }
-    EXPECT_GT(asked, 0) << check.name << " has no frame";
-    EXPECT_TRUE(found) << check.name;
   }
+  for (const std::string& check : missing) ADD_FAILURE() << check << " has no frame, or finds no fault";
 }
 
 TEST(StressMeasures, SayHowFarAndWhere) {
@@ -237,15 +240,17 @@ TEST(StressMeasures, SayHowFarAndWhere) {
   EXPECT_EQ(less(ones, Image(2, 2, 4, 2), owned).value, 0);
   EXPECT_NEAR(notTwice(ones, Image(2, 2, 4, 2.02f), owned).value, 0.01, 1e-3);
   EXPECT_EQ(notSum(ones, {Image(2, 2, 4, 2), Image(2, 2, 4, 4)}, Image(2, 2, 4, 5), owned).value, 0);
-  EXPECT_NEAR(notSum(ones, {Image(2, 2, 4, 2), Image(2, 2, 4, 4)}, Image(2, 2, 4, 6), owned).value, 1.0 / 6, 1e-6);
+  EXPECT_NEAR(notSum(ones, {Image(2, 2, 4, 2), Image(2, 2, 4, 4)}, Image(2, 2, 4, 6), owned).value, 1.0 / 6,
+              1e-6);
   // Outputs end at the largest half.
   EXPECT_EQ(notTwice(Image(2, 2, 4, 50000), Image(2, 2, 4, 65504), owned).value, 0);
 }
 
 TEST_F(Stress, FailuresReplayToTheSameBits) {
-  const std::filesystem::path folder = std::filesystem::temp_directory_path() / ("pellucid_stress_" + std::to_string(::getpid()));
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("pellucid_stress_" + std::to_string(::getpid()));
   int compared = 0;
-  for (std::uint64_t i = 0; compared < 6; ++i) {
+  for (std::uint64_t i = 0; compared < 4; ++i) {
     const StressFrame frame = randomFrame(5, i, pool(), small());
     if (!frame.notInCapture.empty() || !refusal(frame).empty()) continue;
     ++compared;
@@ -280,7 +285,7 @@ protected:
 };
 
 TEST_F(StressResults, SayHowFarDevicesAreApart) {
-  const StressFrame frame = randomFrame(2, 4, pool(), small()), next = randomFrame(2, 5, pool(), small());
+  const StressFrame frame = randomFrame(2, 6, pool(), small()), next = randomFrame(2, 7, pool(), small());
   Image output(frame.capture.width, frame.capture.height, 4, 1), other = output;
   const std::size_t pixel = firstWith(ownedPixels(frame), true);
   ASSERT_LT(4 * pixel, output.data.size());
@@ -315,19 +320,20 @@ TEST_F(StressResults, SayHowFarDevicesAreApart) {
 TEST_F(Stress, ShortRunHolds) {
   StressOptions options;
   options.seed = 40;
-  options.frames = 16;
+  options.frames = 10;
   options.limits = {-1, 2048, 2048};
   options.validate = true;
   StressEvents events;
   events.violated = [](const StressFrame& frame, const std::vector<Violation>& violations) {
     for (const Violation& v : violations)
-      ADD_FAILURE() << (frame.wild ? "wild" : "tame") << " frame " << frame.index << ": " << v.check << " " << v.worst.value
-                    << " at " << v.worst.x << ", " << v.worst.y << ", " << v.worst.channel << " " << v.sentence;
+      ADD_FAILURE() << (frame.wild ? "wild" : "tame") << " frame " << frame.index << ": " << v.check << " "
+                    << v.worst.value << " at " << v.worst.x << ", " << v.worst.y << ", " << v.worst.channel
+                    << " " << v.sentence;
   };
   const StressResult result = runStress(renderer(), options, events);
-  EXPECT_EQ(result.frames, 16u);
+  EXPECT_EQ(result.frames, 10u);
   EXPECT_EQ(result.checks.size(), checks().size() + 2);
-  EXPECT_EQ(result.checks[1].tame.done, 8u);
+  EXPECT_EQ(result.checks[1].tame.done, 5u);
 }
 
 TEST(StressRun, NamesTheChecksThatThereAre) {
@@ -336,7 +342,8 @@ TEST(StressRun, NamesTheChecksThatThereAre) {
     requireCheck("nothing");
     FAIL();
   } catch (const UsageError& error) {
-    EXPECT_NE(std::string(error.what()).find("\"nothing\" is not one of finite, "), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("\"nothing\" is not one of finite, "), std::string::npos)
+        << error.what();
   }
 }
 
