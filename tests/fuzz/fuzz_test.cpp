@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
-#include <chrono>
+#include <ctime>
 #include <fstream>
 #include <ostream>
 
@@ -49,12 +49,12 @@ TEST_P(Seeds, AreAcceptedOrRefusedWithASentence) {
   const MemoryLimit limit;
   forEachSeed(GetParam().name, [&](const std::string& bytes) {
     SCOPED_TRACE(count);
-    const auto start = std::chrono::steady_clock::now();
+    const std::clock_t start = std::clock();  // of the process: other work of the machine does not count
     bool isAccepted = false;
     EXPECT_NO_THROW(isAccepted =
                         GetParam().run({reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()}));
     // A sound input takes some milliseconds.
-    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
+    EXPECT_LT(std::clock() - start, 5 * CLOCKS_PER_SEC);
     EXPECT_TRUE(isAccepted || count > 0) << "the first is sound";
     ++count;
     accepted += isAccepted;
