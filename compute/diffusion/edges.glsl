@@ -143,6 +143,9 @@ void diffuseEdge(ivec2 firstTexel, ivec2 local) {
     vec2 size = texelSize(depth, 0u);
     int center = (local.y / 4 + 1) * kWindowX + local.x / 4 + 1;
     Around a = aroundPixel(center, vec2(local & 3) - 1.5, depth, material, size);
+    float wider = unpackShape(shares[center].z).wider;
+    // Texels around may ask for more of a filter that counts the pixel more.
+    a.fineShare = min(a.fineShare, (1.0 - a.coarserShare) * mostFine(wider));
     // Shares are weighted with what of their filters was found. The pixel itself counts in the first and the second,
     // so the divisor is 0 only where all of the share is the coarser one's and none of it is there.
     vec3 ownShare = 1.0 - a.coarserShare - a.fineShare;
@@ -150,7 +153,7 @@ void diffuseEdge(ivec2 firstTexel, ivec2 local) {
     if (kFine) {
       uint shape = shares[center].z;
       vec4 fine = isFull(shares[center]) ? vec4(fineOfPlane(place, shape), 1.0)
-                                         : fineOfEdge(place, a.slope, size, unpackShape(shape).wider);
+                                         : fineOfEdge(place, a.slope, size, wider);
       sum += a.fineShare * fine.rgb;
       divisor += a.fineShare * fine.a;
     }

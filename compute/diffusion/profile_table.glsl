@@ -38,9 +38,9 @@ PixelShares pixelShares(uint m, Foreshortening f) {
   vec3 coarser = beyondPixel(m, 0u, entry - perOctave * (0.3 - 0.15 * straight));
   vec3 both = max(beyondPixel(m, 1u, entry - perOctave * (0.5 - 0.5 * straight)), coarser);
   vec3 beyond = max(beyondPixel(m, 1u, entry - 0.5 * perOctave), both);
-  // What one Gaussian asks for may be more than all.
-  vec3 fine = min((beyond - coarser) / max(1.0 - coarser, vec3(1.0e-3)), vec3(kMostFine));
   float wider = min(exp2(octaves) - 1.0, 1.0) * straight;
+  // What one Gaussian asks for may be more than all.
+  vec3 fine = min((beyond - coarser) / max(1.0 - coarser, vec3(1.0e-3)), vec3(mostFine(wider)));
   FineShape shape = FineShape(abs(f.axis.x) < abs(f.axis.y) ? -wider : wider,
                               (beyond - both) / max(beyond - coarser, vec3(1.0e-6)));
   return PixelShares(coarser, fine, shape);

@@ -26,9 +26,11 @@ struct PixelShares {
   FineShape shape;
 };
 
-// fine is at most kMostFine, so that the pixel itself never counts less than 0: 1 - f + f w >= 0 of the fine filter's least
-// weight of it, w = 9/19 1/4.
-const float kMostFine = 1.134;
+const float kMostFine = 1.2; // of fine
+
+// The share of the fine filter at which the pixel itself counts 0, less what 8 bits round: 1 - f + f w = 0 of the filter's
+// weight w of it, 9/19 along one axis and 9/19 to 1/4 along the other.
+float mostFine(float wider) { return min(kMostFine, 1.0 / (1.0 - 9.0 / 19.0 * mix(9.0 / 19.0, 0.25, abs(wider))) - 0.003); }
 
 uvec3 packShares(PixelShares s) {
   uvec3 fine = uvec3(s.fine * (255.0 / kMostFine) + 0.5), thin = uvec3(s.shape.thin * 63.0 + 0.5);

@@ -32,7 +32,7 @@ std::string imagesTable() {
        "the angle between view and light replaces -N.L, depths say how large surfaces are"},
       {PELLUCID_RESOURCE_ALBEDO, "post-scatter albedo", "the output is not multiplied"},
       {PELLUCID_RESOURCE_MATERIAL, "unsigned integer: 0 none, i for materials[i - 1]", ""},
-      {PELLUCID_RESOURCE_OUTPUT, "rgba16f or rgba32f storage image; may be the irradiance image", ""},
+      {PELLUCID_RESOURCE_OUTPUT, "rgba16f, rgba32f or rg11b10f storage image; may be the irradiance image", ""},
   };
   const uint32_t required =
       pellucidGetRequiredInputs(PELLUCID_FEATURE_TRANSLUCENCY | PELLUCID_FEATURE_DIFFUSION);
