@@ -118,7 +118,8 @@ Around aroundPixel(int center, vec2 from, float depth, uint material, vec2 size)
   }
   float inverse = weights > 0.0 ? 1.0 / weights : 0.0;
   a.slope *= inverse;
-  a.coarserShare *= inverse;
+  // Rounding must not take from the pixel what it does not have.
+  a.coarserShare = min(a.coarserShare * inverse, vec3(1.0));
   a.fineShare *= (1.0 - a.coarserShare) * inverse;
   return a;
 }

@@ -82,7 +82,7 @@ const std::vector<Row> kRows = {
      "",
      "rgba32f",
      Effect::Keeps,
-     {{"rgba8", 2, "format: \"rgba8\" is not one of rgba16f, rgba32f"}}},
+     {{"rgba8", 2, "format: \"rgba8\" is not one of rg11b10f, rgba16f, rgba32f"}}},
     {"frame-load",
      "--set reuse=coherence",
      "2",
