@@ -13,7 +13,7 @@
 
 // Without the fine filter the material's table gives its share to the pixel and level 2.
 layout(constant_id = PELLUCID_CONSTANT_FINE) const bool kFine = true;
-// Whether gathered light is added.
+// Gathered light is added.
 layout(constant_id = PELLUCID_CONSTANT_GATHERS) const bool kGathers = false;
 
 const int kInvocations = PELLUCID_DIFFUSE_GROUP * PELLUCID_DIFFUSE_GROUP;
@@ -39,7 +39,7 @@ shared uint edgeCounts[kTexelsY];
 shared uint edgeRows, anySurface, anyShape; // anyShape: whether a texel has a FineShape
 shared uint someLight;                      // kSome* of the probes around all pixels
 
-// Of the invocation: its column of the group's pixels with their ring, and the first of its rows.
+// The invocation's column of the group's pixels with their ring, and the first of its rows.
 int ownColumn() { return int(gl_LocalInvocationIndex) % kColumns; }
 int ownRow() { return int(gl_LocalInvocationIndex) / kColumns * kRows; }
 

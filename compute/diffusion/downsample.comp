@@ -25,7 +25,7 @@ shared uint anySurface; // in the input
 
 #include "diffusion/downsampled.glsl"
 
-// Whether a texel and all around it are full and lie on one plane. `at`: not in the outermost rows and columns.
+// True where a texel and all around it are full and lie on one plane. `at`: not in the outermost rows and columns.
 bool isFlatAround(uvec4 bits, ivec2 at, uint level) {
   float depth = uintBitsToFloat(bits.z), most = 0.0;
   vec2 size = texelSize(depth, level), slope = unpackHalf2x16(bits.w);
@@ -68,7 +68,7 @@ void main() {
   barrier();
   ivec2 at = ivec2(gl_LocalInvocationID.xy), texel = start + at;
   bool inside = contains(rect, texel);
-  // The same for all invocations; what nothing is made of is nothing.
+  // All invocations agree; texels of nothing are nothing.
   bool some = anySurface != 0u;
   uvec4 bits = uvec4(0u);
   if (some && inside) bits = downsampled(finer, texel, 2 * at.y * kInput + at.x, kInput, 16);

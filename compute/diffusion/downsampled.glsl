@@ -16,10 +16,10 @@ int taps() { return int(pass.value.y); }
 // A plane's largest mean squared distance, over the squared length of a texel's side. Curved surfaces below it gain nothing from weights of their own.
 const float kPlaneResidual = 0.01;
 
-// What the bits of texels of one plane have in common: the material, and that they are planes.
+// Bits that texels of one plane have in common: the material, and that they are planes.
 const uint kSamePlane = 0xFF000000u | kPlane;
 
-// Whether texels are one plane: one's bits, in which the others differ, their mean squared distance from the plane of
+// True where texels are one plane: one's bits, in which the others differ, their mean squared distance from the plane of
 // least squares, its slope, and the side that they make together.
 bool onePlane(uint bits, uint different, float residual, vec2 slope, vec2 side) {
   return (different & kSamePlane) == 0u && (bits & kPlane) != 0u &&
@@ -29,7 +29,7 @@ bool onePlane(uint bits, uint different, float residual, vec2 slope, vec2 side) 
 // Even columns of a row come before the odd ones: reads of every other column meet no bank twice.
 int slot(ivec2 at, int width) { return at.y * width + (at.x >> 1) + (at.x & 1) * (width >> 1); }
 
-// Of the 4 x 4 texels whose first one is in an even column, at `first`.
+// A place among the 4 x 4 texels whose first one is in an even column, at `first`.
 int tap(int first, int width, int x, int y) { return first + slot(ivec2(x, y), width); }
 
 struct Source {
@@ -42,7 +42,7 @@ Source sourceAt(int index) {
   return Source(massOf(bits), depths[index], bits >> 24);
 }
 
-// Which texel's surface is taken: the nearest to the camera of the four in the middle or, beyond an edge, the one of the others
+// The texel whose surface is taken: the nearest to the camera of the four in the middle or, beyond an edge, the one of the others
 // that the filter weights most. -1: none.
 int surfaceOf(int first, int stride) {
   int surface = -1;
@@ -80,7 +80,7 @@ float depthStep(int first, int stride, Source center, ivec2 at, ivec2 direction)
   return best;
 }
 
-// Where the 4 x 4 texels are not one plane.
+// The texel of 4 x 4 texels that are not one plane.
 uvec4 downsampledEdge(uint finer, ivec2 texel, int first, int stride) {
   int chosen = surfaceOf(first, stride);
   if (chosen < 0) {
@@ -111,7 +111,7 @@ uvec4 downsampledEdge(uint finer, ivec2 texel, int first, int stride) {
       w = counts ? w * sameSurface(difference, dot(slope, offset), spread2, kDownsampleFalloff) : 0.0;
       color += w * t.mass * unpackColor(colors[index]);
       mass += w * t.mass;
-      // Where it is seen edge-on, a surface says no more about its depth than elsewhere.
+      // A surface that is seen edge-on says no more about its depth than elsewhere.
       w *= min(t.mass, 1.0);
       off += w * difference;
       tilt += w * difference * offset;

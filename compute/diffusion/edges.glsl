@@ -16,7 +16,7 @@ void collectEdges(int invocation) {
   edges[kTexelsX * local.y + place] = uint(local.x);
 }
 
-// What pixels of edges ask of a texel and is the same for all of them. Shares without the texel's density: that of the
+// Prepares what all pixels of edges ask of a texel alike. Shares without the texel's density: that of the
 // pixel replaces it, and a plane's is 1.
 void prepareForEdges(int index) {
   uvec4 bits = upsampled[index];
@@ -34,7 +34,7 @@ void prepareForEdges(int index) {
   shares[index].y = packed.y;
 }
 
-// What prepareForEdges did not take from it.
+// The share as it was before prepareForEdges.
 vec3 coarserOfEdge(vec3 coarser) { return mix(coarser, coarser + 1.0, lessThan(coarser, vec3(0.0))); }
 
 // Colors, materials and depths of a row of texels' pixels with their ring. `first`: of them.
@@ -81,7 +81,7 @@ vec4 fineOfEdge(int place, vec2 slope, vec2 size, float wider) {
   return fine;
 }
 
-// What the texels around a pixel have for it.
+// Sums over the texels around a pixel.
 struct Around {
   vec3 coarser, found;            // colors of level 2 and coarser ones, and how much of the kernel they fill
   vec3 coarserShare, fineShare;   // mean shares
@@ -166,7 +166,7 @@ void diffuseEdge(ivec2 firstTexel, ivec2 local) {
 
 // For all invocations, as they wait for each other. After diffusePlanes, which prepares the texels.
 void diffuseEdges(ivec2 firstTexel, int invocation) {
-  // The same rows for all.
+  // All invocations do the same rows.
   for (uint rows = edgeRows; rows != 0u; rows &= rows - 1u) {
     int row = findLSB(rows), full = int(edgeCounts[row] & 0xFFFFu), count = full + int(edgeCounts[row] >> 16);
     if (kFine) {

@@ -11,7 +11,7 @@ vec3 fineWeights(float wider) { return mix(kFineWeights, kWideFineWeights, max(w
 
 float weightAt(vec3 weights, int i) { return i == 0 ? weights.x : abs(i) == 1 ? weights.y : weights.z; }
 
-// The same of each channel, `direct` of which goes through unfiltered.
+// Weights of each channel, `direct` of which goes through unfiltered.
 struct FineFilter {
   vec3 own, next, last;
 };
@@ -25,7 +25,7 @@ vec3 fineSum(FineFilter f, vec3 a, vec3 b, vec3 c, vec3 d, vec3 e) {
   return f.own * c + f.next * (b + d) + f.last * (a + e);
 }
 
-// Of those along columns, then rows: what is thin along one passes the other unfiltered. `shape`: a texel's shares' z.
+// Filters along columns and along rows: light that is thin along one passes the other unfiltered. `shape`: a texel's shares' z.
 FineFilter columnFilter(uint shape, bool shaped) {
   FineShape s = shaped ? unpackShape(shape) : kNoShape;
   return fineFilter(-s.wider, s.wider > 0.0 ? s.thin : vec3(0.0));

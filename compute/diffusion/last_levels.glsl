@@ -2,10 +2,10 @@
 #ifndef PELLUCID_LAST_LEVELS_GLSL
 #define PELLUCID_LAST_LEVELS_GLSL
 
-// Of all energy: what a plane of 82 pixels' radius has beyond level 5, where a plan that knows radii begins to use level 6.
+// Part of all energy: a plane of 82 pixels' radius has as much beyond level 5, where a plan that knows radii begins to use level 6.
 const float kLeastBeyondMade = 0.004;
 
-// Whether a texel of level 5 has energy at coarser levels. Where the plan does not know how large radii are, most have next to
+// True where a texel of level 5 has energy at coarser levels. In plans that do not know how large radii are, most have next to
 // none.
 bool reachesBeyond(ivec2 texel, uvec4 bits) {
   if (!hasSurface(bits)) return false;

@@ -18,7 +18,7 @@ vec4 stretched(ivec2 texel, uint level, ivec2 k, Texel own, Foreshortening f) {
   vec2 size = texelSize(own.depth, level);
   float spread2 = inverseSpread(own.slope, size);
   ivec4 rect = levelRect(level);
-  // Of the next texels. A narrow Gaussian at texels' centers alone has next to none of its variance; two taps beside one have all
+  // The weight of the next texels. A narrow Gaussian at texels' centers alone has next to none of its variance; two taps beside one have all
   // of it, up to where both are alike.
   float next = max(exp(-0.5 / variance), min(0.5 * variance / (1.0 - min(variance, 0.5)), 0.17));
   // Three standard deviations.
@@ -45,7 +45,7 @@ vec4 stretched(ivec2 texel, uint level, ivec2 k, Texel own, Foreshortening f) {
   return sum / weights;
 }
 
-// What a texel's level says of it, without the coarser ones.
+// A texel's own level, without the coarser ones.
 struct Own {
   Texel texel;
   vec4 here;  // the level's own part, times the share of its kernel that the surface fills, which is in a
@@ -96,7 +96,7 @@ Level withCoarser(Own own, uint level, ivec2 texel, Window window) {
   // Both are weighted with the density that they found, which renormalizes at silhouettes and borders.
   vec3 density = (1.0 - own.share) * own.here.a + own.share * found;
   vec3 here = (1.0 - own.share) * own.here.rgb, light = here + own.share * coarser;
-  // Where a channel has nothing here, the level's own color stands in: the finer level weights it with 0.
+  // The level's own color stands in for a channel that has nothing here: the finer level weights it with 0.
   vec3 color = mix(own.texel.color, light / max(density, vec3(1.0e-6)), greaterThan(density, vec3(1.0e-6)));
   return Level(color, density);
 }

@@ -28,7 +28,7 @@ void coarserRows(int texel, vec3 splineX, out vec3 rows[3]) {
   }
 }
 
-// The same at the pixel's row.
+// Level 2 at the pixel's row.
 vec3 coarserAt(vec3 rows[3], int y) {
   vec3 splineY = splineAt(y);
   return splineY.x * rows[0] + splineY.y * rows[1] + splineY.z * rows[2];

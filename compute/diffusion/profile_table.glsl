@@ -9,7 +9,7 @@ float shareEntry(uint m, float lengthMm) {
   return clamp(at, 0.0, float(PELLUCID_SHARE_ENTRIES - 1));
 }
 
-// Of level `level` and coarser ones, the share of the coarser ones at texels with this entry.
+// The share that levels coarser than `level` have of it and of them, at texels with this entry.
 vec3 coarserShare(uint m, uint level, float entry) {
   uint i = min(uint(entry), uint(PELLUCID_SHARE_ENTRIES - 2));
   uint first = min(level - 2u, uint(PELLUCID_SHARE_COARSER)) * uint(PELLUCID_SHARE_ENTRIES) + i;
@@ -24,7 +24,7 @@ vec3 beyondPixel(uint m, uint element, float entry) {
   return mix(kernels[m].pixelShare[first].rgb, next, entry - float(i));
 }
 
-// Of pixels of a texel of level 2, on a surface that fills all of the kernel. By how many octaves the kernel's longest side is
+// Shares of pixels of a texel of level 2, on a surface that fills all of the kernel. By how many octaves the kernel's longest side is
 // longer than its shortest, which the level goes by, and how much of that goes for the pixel, its neighbors and level 2, was
 // fitted on tilted planes, for kernels along rows or columns and along diagonals. Next to silhouettes, where surfaces bend
 // away from their tangent planes, it is none.
@@ -39,7 +39,7 @@ PixelShares pixelShares(uint m, Foreshortening f) {
   vec3 both = max(beyondPixel(m, 1u, entry - perOctave * (0.5 - 0.5 * straight)), coarser);
   vec3 beyond = max(beyondPixel(m, 1u, entry - 0.5 * perOctave), both);
   float wider = min(exp2(octaves) - 1.0, 1.0) * straight;
-  // What one Gaussian asks for may be more than all.
+  // One Gaussian may ask for more than all.
   vec3 fine = min((beyond - coarser) / max(1.0 - coarser, vec3(1.0e-3)), vec3(mostFine(wider)));
   FineShape shape = FineShape(abs(f.axis.x) < abs(f.axis.y) ? -wider : wider,
                               (beyond - both) / max(beyond - coarser, vec3(1.0e-6)));

@@ -14,7 +14,7 @@ struct Texel {
   vec2 slope;    // change of depth over that of position, facing the camera: tangents, the same at every level
 };
 
-// Of halves.
+// `color`: halves.
 uvec2 packHalves(vec3 color, uint upper) {
   return uvec2(packHalf2x16(color.rg), (packHalf2x16(vec2(color.b, 0.0)) & 0xFFFFu) | upper << 16);
 }
@@ -43,9 +43,9 @@ vec3 unpackDensity(uint u) { return vec3(u & 0xFFu, (u >> 8) & 0xFFu, (u >> 16) 
 // A slope of 1000 is 0.06 degrees from edge-on.
 uint packSlope(vec2 slope) { return packHalf2x16(clamp(slope, vec2(-1.0e3), vec2(1.0e3))); }
 
-// Of y: all under the texel's filter is one plane.
+// A bit of y: all under the texel's filter is one plane.
 const uint kPlane = 0x800000u;
-// Of x, where the sign of green is and only in level 2: all around the texel lies on that plane, too.
+// A bit of x, green's sign, in level 2 alone: all around the texel lies on that plane, too.
 const uint kFlat = 0x80000000u;
 
 // `plane`: kPlane or 0.
@@ -94,10 +94,10 @@ float sameSurface(float off, float along, float inverseSpread2, vec2 falloff) {
   return rest * rest;
 }
 
-// Of the squared length of a texel's side: how far from its plane texels around it are and still lie on it.
+// Texels around a texel lie on its plane up to this part of the squared length of its side.
 const float kPlaneOffset = 0.1;
 
-// Of the reductions, the stretch and the coarser levels of resolves, and the last pass: those with the least errors on
+// Falloffs of downsampling, of the stretch and the coarser levels of upsampling, and of the last pass: those with the least errors on
 // the scenes and captures of docs/diffusion.md that let no more light over a gap than the profile does.
 const vec2 kDownsampleFalloff = vec2(0.2, 0.5), kStretchFalloff = vec2(0.5, 2.5), kUpsampleFalloff = vec2(0.55, 3.5),
            kPixelFalloff = vec2(0.45, 1.2);
@@ -117,7 +117,7 @@ float areaOf(uint level, ivec2 texel, vec2 slope) {
 // Edge-on surfaces show no more area than one that far from it, 87 degrees from facing the camera: the cosine.
 const float kLeastCosine = 0.05;
 
-// The same of a pixel with a normal, of any length > 0; 0: it has none.
+// Area of a pixel with a normal of any length > 0; 0: it has none.
 float areaOf(vec2 pixel, vec3 normal) {
   // In the normal's space.
   vec3 ray = frame.normalRay[0].xyz + pixel.x * frame.normalRay[1].xyz + pixel.y * frame.normalRay[2].xyz;
@@ -156,14 +156,14 @@ uvec4 quadTexel(uint material[4], float depth[4], vec3 color[4], vec4 area) {
   return packTexel(Texel(mean / mass, 0.25 * mass, nearestMaterial, sum / weights, vec2(0.0)), 0u);
 }
 
-// The same where it is one surface, of that area. `packed`: by packHalves(color, material).
+// Texel of level 1 where its pixels are one surface, of that area. `packed`: by packHalves(color, material).
 uvec4 wholeQuadTexel(uvec2 packed[4], float depth[4], float area) {
   vec3 color = unpackColor(packed[0]) + unpackColor(packed[1]) + unpackColor(packed[2]) + unpackColor(packed[3]);
   return packTexel(Texel(0.25 * color, area, packed[0].y >> 16, 0.25 * (depth[0] + depth[1] + depth[2] + depth[3]),
                          vec2(0.0)), kPlane);
 }
 
-// Whether four pixels, packed alike, are one surface.
+// True where four pixels, packed alike, are one surface.
 bool isWholeQuad(uvec2 packed[4], float depth[4]) {
   uint first = packed[0].y, different = (first ^ packed[1].y) | (first ^ packed[2].y) | (first ^ packed[3].y);
   float nearest = min(min(depth[0], depth[1]), min(depth[2], depth[3]));

@@ -1,8 +1,8 @@
-// What an upsampling group holds of each level in shared memory.
+// The part of each level that an upsampling group holds in shared memory.
 #ifndef PELLUCID_WINDOW_GLSL
 #define PELLUCID_WINDOW_GLSL
 
-// What a group needs of a level. Groups start at texels 16 k - 1 of level 2, k.x even, so that these are the same
+// A part of a level that a group needs. Groups start at texels 16 k - 1 of level 2, k.x even, so that these are the same
 // everywhere.
 struct Window {
   ivec2 corner; // first texel
@@ -36,7 +36,7 @@ ivec2 firstMade(uint level, ivec2 k) {
   return level == 6u ? 2 * last - 1 : last;
 }
 
-// Whether the group can tell what a texel around its window is. Of levels that it makes it knows few others.
+// True where the group can tell what a texel around its window is. It knows few others of levels that it makes.
 bool known(uint level, ivec2 texel, ivec2 k) {
   if (level > 5u) {
     ivec2 at = texel - firstMade(level, k);
@@ -45,7 +45,7 @@ bool known(uint level, ivec2 texel, ivec2 k) {
   return true;
 }
 
-// Of levels 2 to 5.
+// A texel of levels 2 to 5.
 uvec4 storedTexel(uint level, ivec2 texel) {
   return level < 4u ? texelFetch(pyramidImage, inAtlas(level, texel), 0)
                     : texelFetch(coarserLevelsImage, inAtlas(level, texel), 0);

@@ -55,7 +55,7 @@ float frontDistance(ivec2 pixel) { return frontDistanceOf(texelFetch(frontDepthI
 // `color`: >= 0. Halves are rounded here, as image stores may truncate.
 vec3 asStored(vec3 color) { return hasFlag(PELLUCID_FLAG_WIDE_OUTPUT) ? color : roundToHalf(color); }
 
-// Whether the post-scatter albedo applies. `last`: this is the frame's final write.
+// True where the post-scatter albedo applies. `last`: this is the frame's final write.
 bool tinted(bool last) { return last && hasFlag(PELLUCID_FLAG_ALBEDO); }
 
 vec3 albedoAt(ivec2 pixel) { return sanitize(texelFetch(albedoImage, pixel, 0).rgb); }

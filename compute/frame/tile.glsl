@@ -25,7 +25,7 @@ ivec2 pixelInTile(int i) {
 #endif
 }
 
-// Of tiles that start at even pixels, so that quads of pixels are the image's.
+// The first pixel of tiles that start at even pixels, so that quads of pixels are the image's.
 ivec2 evenTile() { return (ivec2(frame.rect.xy) & ~1) + ivec2(gl_WorkGroupID.xy) * TILE_SIDE; }
 
 #endif

@@ -66,7 +66,7 @@ uvec4 probeOf(ivec2 cell, ivec2 pixel, float front, out float off) {
   return probes[at];
 }
 
-// What came through of the lights without a map, which come last.
+// The light that came through from lights without a map, which come last.
 vec3 otherLight(ivec2 pixel, float front, float frontStored, uint m) {
   float back = hasFlag(PELLUCID_FLAG_CHORD) ? texelFetch(backDepthImage, pixel, 0).x : 0.0;
   Surface s = surfaceAt(pixel, front, frontStored, back, texelFetch(normalImage, pixel, 0));

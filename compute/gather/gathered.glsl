@@ -29,7 +29,7 @@ vec4 tangentPlane(Probe p, ivec2 pixel, ivec2 first) {
 // pixel from the probe's plane, quarters of a pixel. Where the probes are, the including pass knows.
 uvec4 probeOf(ivec2 cell, ivec2 pixel, float front, out float off);
 
-// What the diffused irradiance D becomes.
+// The diffused irradiance D with the light that was gathered.
 vec3 withLight(vec3 diffused, vec3 added, vec3 convexity) {
   return sanitize(diffused + diffused * convexity + added);
 }

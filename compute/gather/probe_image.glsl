@@ -1,4 +1,4 @@
-// What the gather's probes share, where the diffusion adds it.
+// Filtered probes, where the diffusion adds their light.
 #ifndef PELLUCID_PROBE_IMAGE_GLSL
 #define PELLUCID_PROBE_IMAGE_GLSL
 

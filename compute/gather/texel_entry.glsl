@@ -10,7 +10,7 @@
 // area shows as a dot at terminators.
 const float kLeastCosine = 0.2;
 
-// Where the camera has a surface on the pixel that a point is seen on, at the point or in front of it: what it sees is
+// True where the camera has a surface on the pixel that a point is seen on, at the point or in front of it: what it sees is
 // in the irradiance that diffusion spreads. What faces away cannot be seen, however thin the part is.
 // `front`: of the pixel.
 bool cameraSees(ivec2 pixel, float front, float planar, vec3 normal, float tolerance) {
@@ -18,7 +18,7 @@ bool cameraSees(ivec2 pixel, float front, float planar, vec3 normal, float toler
          planar <= front + tolerance;
 }
 
-// Of pixels without a material nothing is seen, whatever depth they hold: their light is not diffused. To be fetched before
+// Pixels without a material show nothing, whatever depth they hold: their light is not diffused. To be fetched before
 // what need not wait for it.
 float frontAround(ivec2 pixel) {
   ivec2 at = withinRect(pixel);
@@ -67,7 +67,7 @@ vec3 entrySlope(EntryMapConstants map, ivec2 texel, vec3 y, ivec2 axis, vec2 sto
   return best;
 }
 
-// Where rays are parallel, how much depth grows along a texel's step beyond what it does on a plane across the light,
+// For parallel rays: how much depth grows along a texel's step beyond what it does on a plane across the light,
 // to whichever neighbor is nearer; kNoDepth if there is none. `at`, `texels`: of the step's axis; `plane`: what depth
 // grows on a plane; `across`: twice the step times the ray; `grows`: to the neighbors forwards and backwards.
 float parallelSlope(int at, int texels, float plane, float squaredStep, float across, float ray2, vec2 grows) {

@@ -41,7 +41,7 @@ vec3 gatherTransmitted(vec4 lengths, GatherSlab slab, float curved, float h, flo
   return (begin - end) / decay + begin * q * (before + 0.5 * before * before * slope * q);
 }
 
-// The same of Burley's profile, 1 - cdf = e^{-r / d} / 4 + 3/4 e^{-r / 3d}; inverse3d = 0: no profile.
+// Integral of Burley's profile over the ring, 1 - cdf = e^{-r / d} / 4 + 3/4 e^{-r / 3d}; inverse3d = 0: no profile.
 vec3 gatherReflected(vec3 inverse3d, float near, float far) {
   vec3 a = exp(-inverse3d * near), b = exp(-inverse3d * far);
   return 0.25 * (a * a * a - b * b * b) + 0.75 * (a - b);

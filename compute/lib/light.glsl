@@ -10,7 +10,7 @@ struct Incident {
   float distanceTo; // scene units; 0 for a directional light
 };
 
-// Which part of the light goes the way to a point: 1 inside the range and the cone. toLight: unit.
+// The part of the light that goes the way to a point: 1 inside the range and the cone. toLight: unit.
 float lightShare(LightConstants light, vec3 toLight, float distanceTo) {
   if (light.meta.x == PELLUCID_SHADER_LIGHT_DIRECTIONAL) return 1.0;
   float ratio = distanceTo * light.position.w;

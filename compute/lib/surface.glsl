@@ -3,7 +3,7 @@
 
 #include "lib/camera.glsl"
 
-// What one pixel knows of its surface. View space, scene units.
+// A pixel's surface. View space, scene units.
 struct Surface {
   vec3 position, normal, view; // view: unit, from the eye
   float chord;                 // along the view ray; -1: unknown
@@ -11,7 +11,7 @@ struct Surface {
   uint material; // index + 1; 0: not known
 };
 
-// Whether a vector of that squared length has a direction; false for NaN, too.
+// True where a vector of that squared length has a direction; false for NaN.
 bool hasDirection(float squared) { return squared > 1.0e-8 && squared < 1.0e8; }
 
 // `normal`: any length, view space; (0, 0, 0): none.

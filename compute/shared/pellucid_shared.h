@@ -158,7 +158,7 @@ struct ShadowConstants {
                      // material; w: side of a texel, scene units; perspective: per unit of distance
 };
 
-// Of the light-space gather; see lib/gather.glsl. rgb: per channel.
+// Constants of the light-space gather; see lib/gather.glsl. rgb: per channel.
 struct GatherConstants {
   vec4 lengths; // mm; x: shortest; y: log2(longest / shortest); z: largest distance looked for, 2 / kappa; w: depth scale
   vec4 profile; // rgb: 1/(3 d) of Burley's profile, 0: none, 1/mm; w: sharing between points, 1/mm^2
@@ -177,7 +177,7 @@ struct GatherMapConstants {
   vec4 stepX, stepY; // from a entry to the next, scene units; perspective: times depth
 };
 
-// Where light enters, by texel coordinates p of the map. Affine in p:
+// The surface that a map stores, by its texel coordinates p. Affine in p:
 struct EntryMapConstants {
   vec4 origin, stepX, stepY; // xyz: directional: a point of the light's ray; perspective: its direction, of clip w 1.
                              // w: of depth, see ray

@@ -6,7 +6,7 @@ namespace pellucid::harness::stress {
 
 namespace {
 
-// What sanitize.glsl makes of irradiance, and room for twice its sum with other light.
+// Irradiance as sanitize.glsl makes it, and room for twice its sum with other light.
 void limitIrradiance(Image& irradiance) {
   for (std::size_t i = 0; i < irradiance.data.size(); ++i)
     if (i % 4 < 3)

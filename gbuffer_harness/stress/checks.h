@@ -1,4 +1,4 @@
-// What must hold for every random frame. Most checks render a changed frame and compare the two.
+// Promises that hold for every random frame. Most checks render a changed frame and compare the two.
 #pragma once
 
 #include <memory>
@@ -34,11 +34,11 @@ public:
   // albedo.
   const StressFrame& plain() { return plain_; }
   const Image& plainOutput();
-  // The same without lights.
+  // The plain frame without lights.
   const StressFrame& unlit() { return unlit_; }
   const Image& unlitOutput();
-  // Of the plain frame with its lights at kDim of their intensity: what lights add is the difference. A
-  // gather returns more of all light from curved surfaces, so that a frame without lights is no base.
+  // Output of the plain frame with its lights at kDim of their intensity: what lights add is the difference.
+  // A gather returns more of all light from curved surfaces, so that a frame without lights is no base.
   const Image& dimOutput();
   // Some of the plain frame's light ends at 65504 before the diffusion, where outputs no longer tell.
   bool saturates();

@@ -76,7 +76,7 @@ std::optional<Worst> sumOfLights(Subject& s) {
   return notSum(s.dimOutput(), parts, s.plainOutput(), s.owned);
 }
 
-// What a frame of light that is not gathered transmits.
+// The frame with light that is not gathered.
 const StressFrame* ungathered(Subject& s, StressFrame& frame) {
   if (!s.translucent()) return nullptr;
   frame = s.plain();

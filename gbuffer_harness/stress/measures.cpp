@@ -44,7 +44,7 @@ double relativeDifference(float a, float b) {
 
 double number(const Image& image, std::size_t i) { return static_cast<double>(image.data[i]); }
 
-// Of `value` over what stands for 1.
+// `value` over what stands for 1.
 double relative(double value, double scale) { return value / std::max(scale, kFloor); }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace pellucid::harness::stress {
 class Random {
 public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
-  // Of one item of a sequence: no other item's numbers.
+  // Numbers of one item of a sequence, and of no other.
   Random(std::uint64_t seed, std::uint64_t index)
       : state_(Random(seed).bits() ^ (index * 0xD1342543DE82EF95u)) {
     state_ = bits();

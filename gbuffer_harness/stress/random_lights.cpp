@@ -25,7 +25,7 @@ glm::dvec3 randomDirection(Random& random) {
   return {r * std::cos(angle), r * std::sin(angle), z};
 }
 
-// What a light shines at: where the middle of the image looks.
+// The point that a light shines at: where the middle of the image looks.
 struct Target {
   glm::dvec3 center;
   double size;  // of what the image shows there
@@ -179,8 +179,8 @@ Light randomLight(Random& random, bool wild, const Target& target, const glm::dv
   return light;
 }
 
-// What the light brings to the surfaces that face it, as an engine's irradiance has it, shadows left out: a
-// gather takes its share of that from there.
+// Irradiance that the light brings to the surfaces that face it, as an engine's irradiance has it, shadows
+// left out: a gather takes its share of that from there.
 void addDirectLight(const Light& light, const View& view, Capture& c) {
   const glm::dmat3 toWorld(view.worldFromView);
   const glm::dvec3 position(light.position[0], light.position[1], light.position[2]);

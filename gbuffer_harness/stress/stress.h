@@ -20,7 +20,7 @@ struct StressOptions {
   bool validate = false;  // messages of the renderer's validation are violations
 };
 
-// Of tame frames or of wild ones.
+// Counts of tame frames or of wild ones.
 struct CheckCount {
   std::uint64_t done = 0, violations = 0;
   Worst worst;
@@ -48,7 +48,7 @@ struct StressResult {
   std::uint64_t violations() const;
 };
 
-// What is called after a frame; each may be empty.
+// Functions that are called after a frame; each may be empty.
 struct StressEvents {
   std::function<void(const StressFrame&, const std::vector<Violation>&)>
       violated;                                                           // where it violates checks

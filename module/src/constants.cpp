@@ -226,7 +226,7 @@ void putLights(const FrameFacts& f, void* mapped) {
   });
 }
 
-// What the GPU changes of dispatches that it decides about.
+// Indirect commands of dispatches that the GPU decides about.
 void putIndirect(const ConstantsLayout& layout, const PellucidPlan& plan, void* mapped) {
   for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
     const PellucidDispatch& d = plan.dispatches[i];

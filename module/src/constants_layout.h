@@ -1,4 +1,4 @@
-// Where the constants slice holds what.
+// Byte ranges of the constants slice.
 #pragma once
 
 #include "light_groups.h"

@@ -1,4 +1,4 @@
-// Which lights cannot add to any pixel of a frame, decided without its images. Pure, double inside.
+// Lights that cannot add to any pixel of a frame, decided without its images. Pure, double inside.
 #pragma once
 
 #include <array>
@@ -10,7 +10,8 @@ namespace pellucid {
 
 struct FrameFacts;
 
-// What the render rect can show: every surface lies on a ray start + p direction, p > 0. View space.
+// The part of space that the render rect can show: every surface lies on a ray start + p direction, p > 0.
+// View space.
 class ViewBounds {
 public:
   ViewBounds() = default;

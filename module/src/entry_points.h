@@ -1,4 +1,4 @@
-// Where the entry points of the gather lie (compute/gather/entry_point.glsl), and what the shaders know of
+// Places of the entry points of the gather (compute/gather/entry_point.glsl), and what the shaders know of
 // their maps. Pure.
 #pragma once
 
@@ -24,7 +24,7 @@ struct EntryExtent {
   uint32_t side;  // texels of the map that a entry point stands for, a side
 };
 
-// Of one of the light's maps: a power of two of texels a side, so that all of them fit.
+// Extent of one of the light's maps: a power of two of texels a side, so that all of them fit.
 EntryExtent entryExtent(const PellucidFrame& frame, const PellucidLight& light, uint32_t map);
 
 // `row`: of the map's first entry point. `light`: its place among the dispatch's.

@@ -1,4 +1,4 @@
-// What is wrong with a frame, in sentences without allocation.
+// Faults of a frame, in sentences without allocation.
 #pragma once
 
 #include "pellucid/pellucid.h"

@@ -1,4 +1,4 @@
-// What a frame has, computed once: planning, image needs, constants, validation and recording read it here.
+// Facts of a frame, computed once: planning, image needs, constants, validation and recording read it here.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -70,7 +70,8 @@ struct FrameFacts {
     placeLights(lights.beside, light, [](const LightGroup&) {});
   }
 
-  // The same with what lies beside maps or without, and group(const LightGroup&) for each group in order.
+  // Places lights with what lies beside maps or without, and group(const LightGroup&) for each group in
+  // order.
   template <class OnLight, class OnGroup>
   void placeLights(bool beside, OnLight&& light, OnGroup&& group) const {
     LightGroup current;

@@ -1,4 +1,4 @@
-// Which lights of a frame contribute, and which of its dispatches takes each.
+// Lights of a frame that contribute, by the dispatches that take them.
 #pragma once
 
 #include <array>
@@ -35,8 +35,8 @@ struct LightGroup {
   bool addLight(const FrameFacts& facts, const PellucidLight& light);
   // An empty group whose constants follow this one's.
   LightGroup next() const;
-  // Whether what lies beside the light's map is read. Thickness from the camera knows nothing of the light's
-  // way and its exit.
+  // True where what lies beside the light's map is read. Thickness from the camera knows nothing of the
+  // light's way and its exit.
   bool readsExit(const FrameFacts& facts, const PellucidLight& light, const PellucidShadowMap& map) const;
   bool readsCaster(const PellucidShadowMap& map) const { return beside && map.casterMaterialImage != 0; }
 

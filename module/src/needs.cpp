@@ -17,7 +17,7 @@ struct Extent {
   }
 };
 
-// Of images of packed texels, in their order: the pyramid's, probes, entry points.
+// Extents of images of packed texels, in their order: the pyramid's, probes, entry points.
 Extent texelExtent(const FrameFacts& f, uint32_t index) {
   const Stages& stages = f.stages;
   const uint32_t pyramid = stages.pyramidImages();

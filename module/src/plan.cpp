@@ -9,7 +9,7 @@
 namespace pellucid {
 namespace {
 
-// What the maps of lights that contribute lack.
+// Images that the maps of contributing lights lack.
 void skipBeside(PlanBuilder& b) {
   const FrameFacts& f = b.facts;
   if (!f.lights.beside)
@@ -28,7 +28,7 @@ void skipBeside(PlanBuilder& b) {
            "a shadow map has none: light enters through opaque bodies and other materials");
 }
 
-// What does not run or is left out, and why.
+// Skips: all that does not run, and why.
 void addSkips(PlanBuilder& b) {
   const FrameFacts& f = b.facts;
   for (uint32_t i = 0; i < f.frame.lightCount; ++i)

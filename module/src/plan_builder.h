@@ -22,11 +22,11 @@ struct PlanBuilder {
   uint64_t pixels() const { return static_cast<uint64_t>(facts.rect.width) * facts.rect.height; }
   uint64_t colorBytes() const { return facts.wide ? 16 : 8; }
 
-  // Of a level, see Pyramid. The first holds level 2 after upsampling, too.
+  // Image of a level, see Pyramid. The first holds level 2 after upsampling, too.
   uint32_t pyramidImage(uint32_t level) const {
     return kTransient0 + facts.stages.colorTransients() + level / 2;
   }
-  // What the gather's probes find; the entry points of the maps and, in their place, the filtered probes.
+  // Images of the gather's probes; of the entry points of the maps and, in their place, the filtered probes.
   // They lie where level 1 was unless both are in use at once.
   uint32_t probesImage() const {
     return kTransient0 + facts.stages.colorTransients() + facts.stages.pyramidImages();
@@ -49,7 +49,7 @@ struct PlanBuilder {
   static void groups(PellucidDispatch* d, uint32_t width, uint32_t height, uint32_t tile) {
     groups(d, width, height, tile, tile);
   }
-  // Of PELLUCID_TILE columns, from even pixels on.
+  // Groups of PELLUCID_TILE columns, from even pixels on.
   void tiles(PellucidDispatch* d) const;
 
   // Runs if earlier dispatches say so at `offset` of shared::GatherDispatches. They are done before the first
@@ -66,7 +66,7 @@ struct PlanBuilder {
   void optional(PellucidDispatch* d, uint32_t binding, PellucidResource resource, uint64_t bytes) const;
   void shadowImages(PellucidDispatch* d, const LightGroup& group) const;
 
-  // What every pass over pixels reads.
+  // Images that every pass over pixels reads.
   void pixelInputs(PellucidDispatch* d, uint32_t source) const;
   // Bindings of every pass that writes colors.
   void common(PellucidDispatch* d, uint32_t source, uint32_t destination) const;

@@ -3,7 +3,7 @@
 namespace pellucid {
 namespace {
 
-// What compute/frame/flags.glsl takes for granted.
+// True where the frame is as compute/frame/flags.glsl takes for granted.
 bool isDirectional(const FrameFacts& f, const LightGroup& group) {
   return group.directional && f.has(PELLUCID_RESOURCE_NORMAL) &&
          f.frame.frontDepthEncoding == PELLUCID_DEPTH_DEVICE;
@@ -73,7 +73,7 @@ void addProbes(PlanBuilder& b, const LightGroup& group, bool adds) {
   b.bind(d, PELLUCID_BINDING_ENTRY_POINTS, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, b.entryPointsImage());
   b.bind(d, PELLUCID_BINDING_PROBES, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, b.probesImage());
   b.constants(d, PELLUCID_BINDING_GATHER_DISPATCHES, layout.gatherDispatches);
-  // Of each cell one pixel's depth, material and normal.
+  // One pixel's depth, material and normal of each cell.
   constexpr uint64_t kCellBytes = kUnknownDepthBytes + 1 + 4 + kTexelBytes;
   d->modeledBytes =
       entryPointBytes(group) + (kCellBytes + (adds ? kTexelBytes : 0)) * cells.width * cells.height;

@@ -9,7 +9,7 @@ namespace pellucid {
 // Entry points of the group's shadow maps.
 void addEntryPoints(PlanBuilder& b, const LightGroup& group);
 
-// What the probes gather from the entry points. `adds`: to what they found in an earlier dispatch.
+// Probes that gather from the entry points. `adds`: to what they found in an earlier dispatch.
 void addProbes(PlanBuilder& b, const LightGroup& group, bool adds);
 
 // The mean of each probe and those around it.

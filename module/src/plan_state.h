@@ -1,4 +1,4 @@
-// What a plan keeps for the module alone.
+// The part of a plan that is the module's own.
 #pragma once
 
 #include <cstring>

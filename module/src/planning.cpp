@@ -37,8 +37,8 @@ extern "C" uint32_t pellucidGetRequiredInputs(uint32_t features) {
 
 namespace {
 
-// Lights, from the first one on, whose shadow images the dispatches of a plan can bind; one more does not fit. Those
-// of all lights do not.
+// Lights, from the first one on, whose shadow images the dispatches of a plan can bind; one more does not
+// fit. Those of all lights do not.
 uint32_t lightsThatFit(PellucidFrame frame) {
   PellucidPlan plan;
   uint32_t fit = 0, tooMany = frame.lightCount;

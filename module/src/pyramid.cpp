@@ -8,7 +8,7 @@ namespace {
 // Texels of a level under `pixels` in a row, wherever they start, and one more on each side.
 uint32_t most(uint32_t pixels, uint32_t level) { return ((pixels - 1) >> level) + 3; }
 
-// What level 1 takes in a row, and in its place level 2 after upsampling beside its shares.
+// Columns that level 1 takes, and in its place level 2 after upsampling beside its shares.
 uint32_t firstColumns(uint32_t pixels) { return std::max(most(pixels, kFirstLevel), 2 * most(pixels, 2)); }
 
 }  // namespace

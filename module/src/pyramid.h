@@ -1,4 +1,4 @@
-// Where the levels of the diffusion pyramid lie in its images. No dispatch reads the image that it writes:
+// Places of the levels of the diffusion pyramid in its images. No dispatch reads the image that it writes:
 // level 1 has one, and so have the two levels that a dispatch makes of it, and the two of those. Upsampling
 // writes over level 1.
 #pragma once
@@ -33,8 +33,8 @@ struct Pyramid {
   // The column where the shares of level 2 begin after upsampling, in the image of level 1.
   int32_t sharesColumn = 0;
 
-  // Of each image, for any render rect: of level 1, of levels 2 and 3, of levels 4 and 5. The two coarsest
-  // are never stored.
+  // Extents of the images, for any render rect: of level 1, of levels 2 and 3, of levels 4 and 5. The two
+  // coarsest are never stored.
   struct Extent {
     uint32_t width, height;
   };

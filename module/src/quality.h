@@ -9,8 +9,8 @@ namespace pellucid {
 
 struct FrameFacts;
 
-// Of all materials that diffuse, at frame.nearestDistance; all 0 where that does not say how large a pixel
-// is.
+// Reach of all materials that diffuse, at frame.nearestDistance; all 0 where that does not say how large a
+// pixel is.
 struct DiffusionReach {
   double pixelsPerMm;
   double radius;     // pixels; the largest PellucidMaterial::radius
@@ -29,7 +29,7 @@ double levelDeviation(uint32_t level);
 // The widest Gaussian that has nothing in coarser levels than this one, from 3 on; pixels.
 double deviationWithin(uint32_t level);
 
-// What frame.quality chooses, from the cheapest on.
+// Settings that frame.quality chooses, from the cheapest on.
 struct Quality {
   uint32_t gatherSamples;  // of each probe; 0: one thickness a pixel
   uint32_t finer;          // the spacing of probes is divided by it

@@ -36,7 +36,7 @@ PellucidResult refuse(const PellucidContext& c, const char* field, const char* s
   return PELLUCID_ERROR_INVALID_ARGUMENT;
 }
 
-// Whether the frame has what a plan uses, which a plan made from another frame may not find.
+// Refuses frames without what the plan uses, as a plan of another frame has it.
 PellucidResult checkPlan(const PellucidContext& c, const PellucidPlan& plan, const FrameFacts& facts) {
   const FrameHash now = hashOf(facts), then = stateOf(plan).frame;
   for (size_t i = 0; i < now.size(); ++i)

@@ -1,4 +1,4 @@
-// Whether a frame takes the light that came through from an earlier one. Pure.
+// Decides if a frame takes the light that came through from an earlier one. Pure.
 #pragma once
 
 #include "pellucid/pellucid.h"
@@ -9,7 +9,7 @@ struct FrameFacts;
 
 constexpr uint32_t kCoherentLights = 16;
 
-// What frame.history holds after a plan has run.
+// Content of frame.history after a plan has run.
 struct History {
   uint32_t valid;  // 0: nothing
   uint32_t age;    // frames since it was written

@@ -5,7 +5,7 @@
 namespace pellucid {
 namespace {
 
-// Whether all light that comes through is gathered, in one group and for every pixel with a material: then
+// True where all light that comes through is gathered, in one group and for every pixel with a material: then
 // what adds it needs nothing else of the pixels.
 bool addsProbesAlone(const FrameFacts& facts) {
   const LightGroup& group = facts.lights.last;

@@ -1,4 +1,4 @@
-// What runs for a frame.
+// The passes that run for a frame.
 #pragma once
 
 #include <algorithm>
@@ -32,7 +32,8 @@ struct Stages {
   // Dispatches that write a color transient or the output.
   uint32_t writers() const { return (history ? 1 : fused) + (diffusion ? 1 : 0) + (copies ? 1 : 0); }
   uint32_t colorTransients() const { return std::min(writers() - 1, 2u); }
-  // Of packed texels: the pyramid's; the gather's probes; entry points, if they do not lie where level 1 was.
+  // Images of packed texels: the pyramid's; the gather's probes; entry points, if they do not lie where level
+  // 1 was.
   uint32_t pyramidImages() const { return diffusion ? kPyramidImages : 0; }
   bool entriesApart() const { return gathered > 0 && (overlaps || !diffusion); }
   uint32_t texelTransients() const {

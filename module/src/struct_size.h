@@ -16,8 +16,8 @@ constexpr size_t kLargestStruct = 4096;
 // The size of a struct that ends before its first field that may be missing, which is `field`.
 #define PELLUCID_LEAST_SIZE(Struct, field) offsetof(Struct, field)
 
-// Whether a caller's struct of that size can be read: `least` bytes or more, whole fields (pointers are the
-// widest), and zeros where this library knows no fields.
+// True where a caller's struct of that size can be read: `least` bytes or more, whole fields (pointers are
+// the widest), and zeros where this library knows no fields.
 template <class Struct>
 bool canReadStruct(const Struct* given, size_t least) {
   const size_t size = given->structSize;

@@ -158,7 +158,7 @@ void gltfSeeds(Damage& damage, const Use& use) {
   damage.cut(sound, 150);
   damage.flipBits(sound, sound.size(), 300);
   damage.setCharacters(sound, 600);
-  // The same document without its buffer, as .gltf.
+  // A document without its buffer, as .gltf.
   const std::size_t jsonBytes =
       static_cast<unsigned char>(sound[12]) + 256u * static_cast<unsigned char>(sound[13]);
   const json document = json::parse(sound.substr(20, jsonBytes));

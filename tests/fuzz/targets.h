@@ -1,4 +1,4 @@
-// What is fuzzed. Each function takes any bytes: it returns, or throws BrokenPromise where the code under
+// Fuzz targets. Each function takes any bytes: it returns, or throws BrokenPromise where the code under
 // test answers otherwise than documented. A crash, a sanitizer's report and a hang are findings, too.
 #pragma once
 

@@ -1,4 +1,4 @@
-// What float arithmetic and 16-bit storage cost: errors of the shaders on small images, against float64.
+// Costs of float arithmetic and 16-bit storage: errors of the shaders on small images, against float64.
 #pragma once
 
 #include <string>

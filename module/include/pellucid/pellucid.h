@@ -51,7 +51,7 @@ typedef enum PellucidTransmittanceModel {
   PELLUCID_TRANSMITTANCE_LINEAR = 4     /* dmax (mm, > 0): 1 - d/dmax, 0 beyond (Whelan 2009, 4.1) */
 } PellucidTransmittanceModel;
 
-/* What the shaders evaluate. Filled by pellucidCompileMaterial (pellucid_material.h) from physical
+/* Constants that the shaders evaluate. Filled by pellucidCompileMaterial (pellucid_material.h) from physical
  * coefficients or a preset, or by hand. Index order of arrays of 3: R, G, B. */
 typedef struct PellucidMaterial {
   uint32_t structSize;        /* sizeof(PellucidMaterial); one size for all of a frame */
@@ -136,13 +136,13 @@ typedef enum PellucidFeatureBits {
   PELLUCID_FEATURE_DIFFUSION = 1u << 1
 } PellucidFeatureBits;
 
-/* Where the thickness of a light with a shadow map comes from. Lights without one use the camera's depths. */
+/* Source of the thickness of a light with a shadow map. Lights without one use the camera's depths. */
 typedef enum PellucidThicknessSource {
   PELLUCID_THICKNESS_LIGHT = 0, /* distance along the light ray from the shadow map's surface */
   PELLUCID_THICKNESS_CAMERA = 1 /* back depth minus front depth; the shadow map only occludes */
 } PellucidThicknessSource;
 
-/* Which frames compute the light that comes through and which take that of an earlier one. Irradiance and diffusion
+/* Frames may take the light that comes through from an earlier one. Irradiance and diffusion
  * are always the frame's own. One of the two: alternating would skip frames in which coherence asks for a refresh. */
 typedef enum PellucidReuse {
   PELLUCID_REUSE_NONE = 0,
@@ -235,7 +235,7 @@ typedef struct PellucidFrame {
 
 /* ---- Plan ------------------------------------------------------------------------------------ */
 
-/* What runs for a frame. A complete type of pellucid_plan.h that the caller allocates. */
+/* The dispatches of a frame. A complete type of pellucid_plan.h that the caller allocates. */
 typedef struct PellucidPlan PellucidPlan;
 
 /* One transient the caller creates: 2D, one mip, of this format and extent (for any render rect), usage SAMPLED |
@@ -252,7 +252,7 @@ typedef struct PellucidImageNeed {
 
 typedef struct PellucidContext PellucidContext;
 
-/* What frames ask of a context. A pipeline is made if all that it is for is asked for; recording refuses a plan that
+/* Uses that frames ask of a context. A pipeline is made if all that it is for is asked for; recording refuses a plan that
  * needs one of the others. */
 typedef enum PellucidUse {
   PELLUCID_USE_TRANSLUCENCY = 1 << 0, /* lights that are not gathered from, and frames without diffusion */

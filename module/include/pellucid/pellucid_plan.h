@@ -1,4 +1,4 @@
-/* What a plan holds, for engines that record plans themselves, and its text.
+/* Contents of a plan, for engines that record plans themselves, and its text.
  *
  * A plan is plain data without pointers but to static strings: it may be copied, and it outlives the frame
  * that it was made from. pellucid.h includes this header, so that callers of pellucidRecordPlan can
@@ -67,7 +67,7 @@ typedef struct PellucidSkip {
   uint32_t count;     /* how many (lights, say) */
 } PellucidSkip;
 
-/* What is the module's own in a plan: how the next plan decides about reuse, and what recording compares frames by. */
+/* The module's own part of a plan: how the next plan decides about reuse, and what recording compares frames by. */
 typedef struct PellucidPlanState {
   uint32_t words[PELLUCID_PLAN_STATE_WORDS];
 } PellucidPlanState;

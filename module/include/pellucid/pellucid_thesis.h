@@ -10,7 +10,7 @@
 extern "C" {
 #endif
 
-/* What stands for the cosine of the light on the hidden face. x is the cosine between the view ray and
+/* Models of the cosine of the light on the hidden face. x is the cosine between the view ray and
  * the direction to the light: 1 when the light is straight behind. Every factor is clamped to 0..1. */
 typedef enum PellucidAngleModel {
   PELLUCID_ANGLE_NORMAL = 0,         /* -N.L, the hidden face taken antiparallel to N; COSINE where
