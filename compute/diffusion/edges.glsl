@@ -120,7 +120,8 @@ Around aroundPixel(int center, vec2 from, float depth, uint material, vec2 size)
   a.slope *= inverse;
   // Rounding must not take from the pixel what it does not have.
   a.coarserShare = min(a.coarserShare * inverse, vec3(1.0));
-  a.fineShare *= (1.0 - a.coarserShare) * inverse;
+  // Without the fine filter the pixel itself has its share.
+  a.fineShare *= kFine ? (1.0 - a.coarserShare) * inverse : vec3(0.0);
   return a;
 }
 

@@ -151,4 +151,10 @@ TEST_F(Cli, Stress) {
   expect(3, run + " --compare-with " + path("s.json"), "s.json: is no file of stress results");
 }
 
+// Frames that found faults which are mended: without the fine filter a pixel at an edge counted less than 0.
+TEST_F(Cli, StressFramesThatFoundFaultsHold) {
+  expect(0, "stress --seed 303 --first 26 --frames 1 --pixels 12000000 --only more-irradiance",
+         "seed 303, frames 26 to 26, ");
+}
+
 }  // namespace
