@@ -1,5 +1,5 @@
-// The pixels' own shares of the profile plus the upsampled pyramid's. Where a texel of level 2 lies on one plane with all
-// around it, its 4 x 4 pixels are filtered without looking at their depths; the rest, edges, are collected and done a
+// The pixels' own shares of the profile plus the upsampled pyramid's. A texel of level 2 that lies on one plane with all
+// around it has its 4 x 4 pixels filtered without looking at their depths; the rest, edges, are collected and done a
 // pixel an invocation.
 #version 460
 #extension GL_EXT_control_flow_attributes : require

@@ -57,7 +57,7 @@ void keepRow(ivec2 first) {
 }
 
 // The fine filter of a pixel on a surface of that slope, and what of it lies on the surface. `place`: of the pixel in
-// what keepRow kept; `wider`: FineShape's. What is thin is left to planes, as it makes edges no better.
+// what keepRow kept; `wider`: FineShape's. Planes alone have a thin part, as it makes edges no better.
 vec4 fineOfEdge(int place, vec2 slope, vec2 size, float wider) {
   uint material = vertical[place].y >> 16;
   float own = uintBitsToFloat(vertical[kRowPixels + place].x);

@@ -1,5 +1,5 @@
 // The fine filter: five taps in each direction around a pixel, wider along rows or columns where the surface is
-// foreshortened. Of the including pass: colors in vertical[].
+// foreshortened. The including pass has the colors in vertical[].
 #ifndef PELLUCID_FINE_FILTER_GLSL
 #define PELLUCID_FINE_FILTER_GLSL
 

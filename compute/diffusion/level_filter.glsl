@@ -74,7 +74,7 @@ Level alone(Own own) {
   return Level(own.here.a > 0.0 ? own.here.rgb / own.here.a : own.texel.color, vec3(own.here.a));
 }
 
-// `window`: of the coarser level, which is resolved.
+// `window`: of the coarser level, which is upsampled.
 Level withCoarser(Own own, uint level, ivec2 texel, Window window) {
   // 9, 3, 3 and 1 sixteenths of the four nearest: the refinement of the quadratic B-spline.
   ivec2 nearest = texel >> 1, toward = 2 * (texel & 1) - 1;

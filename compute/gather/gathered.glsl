@@ -26,7 +26,7 @@ vec4 tangentPlane(Probe p, ivec2 pixel, ivec2 first) {
 }
 
 // The light of a cell's point, as packLight does, and its material, 0: nothing there. `off`: of a surface at `front` in the
-// pixel from the probe's plane, quarters of a pixel. Where the probes are, the including pass knows.
+// pixel from the probe's plane, quarters of a pixel. The including pass knows where the probes are.
 uvec4 probeOf(ivec2 cell, ivec2 pixel, float front, out float off);
 
 // The diffused irradiance D with the light that was gathered.

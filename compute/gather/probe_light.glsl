@@ -1,4 +1,4 @@
-// A point of the gather and one light: what the light brings, by samples of its entry points.
+// A probe and one light: what the light brings, by samples of its entry points.
 #ifndef PELLUCID_PROBE_LIGHT_GLSL
 #define PELLUCID_PROBE_LIGHT_GLSL
 
@@ -17,7 +17,7 @@ GatherSlab slabOf(uint m, vec4 lengths, float h) {
                     fract(place));
 }
 
-// The part of the light that enters at a entry and reaches x through the medium: none where x lies beyond the entry point's exit,
+// The part of the light that enters at an entry point and reaches x through the medium: none where x lies beyond the entry point's exit,
 // with air between. Exits differ by the slope of the body's far side; only where x's own ray has air, too, is that no excuse.
 // `to`: from the lit point to x.
 float staysInside(GatherRings rings, EntryPoint entry, vec3 to, vec3 toLight) {

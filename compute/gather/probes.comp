@@ -71,9 +71,9 @@ bool pixelOf(ivec2 cell, int side, out int index, out uint material, out float f
 
 // Decides about the dispatches that follow.
 void someProbeHasLight() {
-  // Read first: atomics of all probes would queue at the same place. Where the plan does not go by them, both are 0.
+  // Read first: atomics of all probes would queue at the same place. Both are 0 in plans that do not go by them.
   if (dispatches.light.x == dispatches.light.w || atomicMax(dispatches.light.x, dispatches.light.w) != 0u) return;
-  atomicMax(dispatches.share.x, dispatches.share.w);
+  atomicMax(dispatches.filterProbes.x, dispatches.filterProbes.w);
   atomicMin(dispatches.noLight.x, 0u);
 }
 

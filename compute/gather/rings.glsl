@@ -63,7 +63,7 @@ struct GatherRings {
   uint map;            // that contains x
 };
 
-const float kSteepestOwn = 4.0; // slope of the surface at x within a entry, as of 76 degrees
+const float kSteepestOwn = 4.0; // slope of the surface at x within an entry point, as of 76 degrees
 
 // An axis between the light's ray and the normal inwards suits slabs: their rings are around the foot of the
 // perpendicular. false: no map contains x, so that no light comes through it.
@@ -80,7 +80,7 @@ bool gatherRings(LightConstants light, Surface x, vec3 toLight, float distanceTo
   uvec4 bits;
   if (!fetchEntry(light, x.position, 0, rings.map, point, bits, off)) return false;
   rings.entrySide = length(maps[rings.map].stepX.xyz) * mm * (parallel ? 1.0 : point.z);
-  // The slope of the surface within a entry, and one entry for its curvature.
+  // The slope of the surface within an entry point, and one entry point for its curvature.
   rings.tolerance = rings.entrySide * (2.0 + min(slopeOf(x.hasNormal ? dot(x.normal, toLight) : 0.0), kSteepestOwn));
   if (!holdsSurface(bits)) return true;
   float perAhead = parallel ? 1.0 : distanceTo;
@@ -99,7 +99,7 @@ bool gatherRings(LightConstants light, Surface x, vec3 toLight, float distanceTo
   return true;
 }
 
-// The part of the light that gets to x itself, as its map says: none where the lit surface lies further ahead than a entry point's
+// The part of the light that gets to x itself, as its map says: none where the lit surface lies further ahead than an entry point's
 // side makes of the surface's slope. Continuous, as the map is coarse.
 float arrivesAt(GatherRings rings, float cosine) {
   float own = rings.entrySide * (1.0 + min(slopeOf(cosine), kSteepestOwn));

@@ -11,7 +11,7 @@
 const float kLeastCosine = 0.2;
 
 // True where the camera has a surface on the pixel that a point is seen on, at the point or in front of it: what it sees is
-// in the irradiance that diffusion spreads. What faces away cannot be seen, however thin the part is.
+// in the irradiance that diffusion spreads. A surface that faces away cannot be seen, however thin the part is.
 // `front`: of the pixel.
 bool cameraSees(ivec2 pixel, float front, float planar, vec3 normal, float tolerance) {
   return insideRect(pixel) && dot(normal, viewRay(frame.camera, pixel).direction) < 0.0 && front > 0.0 &&

@@ -161,7 +161,7 @@ struct ShadowConstants {
 // Constants of the light-space gather; see lib/gather.glsl. rgb: per channel.
 struct GatherConstants {
   vec4 lengths; // mm; x: shortest; y: log2(longest / shortest); z: largest distance looked for, 2 / kappa; w: depth scale
-  vec4 profile; // rgb: 1/(3 d) of Burley's profile, 0: none, 1/mm; w: sharing between points, 1/mm^2
+  vec4 profile; // rgb: 1/(3 d) of Burley's profile, 0: none, 1/mm; w: of the spatial filter between probes, 1/mm^2
   vec4 convexity; // rgb: how much more of the light comes back, per mean curvature, mm; w: how far to both sides that
                   // is measured, mm
   // A slab of thickness h sends back R(h) = x - sqrt(y T(h)^2 + z) of a half-space's light, x, y, z of each channel.
@@ -169,12 +169,12 @@ struct GatherConstants {
   vec4 entries[3 * PELLUCID_GATHER_ENTRIES]; // see GatherEntry
 };
 
-// A shadow map where its entry points lie; compute/passes/entry points.glsl. Of a view-space point (x, 1):
+// Places and depths of a map's entry points (compute/gather/entry_point.glsl), from a view-space point (x, 1):
 struct GatherMapConstants {
   vec4 column, row; // in entry points from the map's first one; perspective: times depth
   vec4 depth;       // what entry points store. Directional: scene units towards the light; perspective: clip w
   ivec4 place;      // x, y: of the first entry in the image; z, w: how many
-  vec4 stepX, stepY; // from a entry to the next, scene units; perspective: times depth
+  vec4 stepX, stepY; // from an entry point to the next, scene units; perspective: times depth
 };
 
 // The surface that a map stores, by its texel coordinates p. Affine in p:
@@ -214,20 +214,25 @@ struct KernelConstants {
   vec4 pixelShare[PELLUCID_PIXEL_SHARES * PELLUCID_SHARE_ENTRIES];
 };
 
-// VkDispatchIndirectCommands of what follows the gather's points; x: columns of groups, 0 where it does not run; w: where it
+// VkDispatchIndirectCommands of what follows the gather's probes; x: columns of groups, 0 where it does not run; w: where it
 // does.
 struct GatherDispatches {
-  uvec4 share, light; // if some point has light, which the diffusion adds
-  uvec4 noLight;      // the diffusion alone, if none has
+  uvec4 filterProbes, light; // if some probe has light, which the diffusion adds
+  uvec4 noLight;             // the diffusion alone, if none has
 };
 
-// Push constants. translucency: pixels a side of a cell of the gather, lights, PELLUCID_WRITE_*, lights of the gather.
-// gather entry points: unused, columns and, from bit 16 on, rows of entry points. gather points: pixels a side of a cell, lights with
-// maps, columns and rows of entry points and, in bit 31, 1 to add to what is there, samples.
-// gather share: pixels a side of a cell.
-// add: unused, unused, 1 if this is the last dispatch.
-// reduce: finer level, 16. resolve: coarsest level, 16.
-// diffuse: unused, 1, unused, 1 if this is the last dispatch.
+// Push constants of each pass:
+// translucency, debug view: unused, lights, PELLUCID_WRITE_*
+// add gathered: pixels a side of a cell, lights, PELLUCID_WRITE_*, lights that are gathered from
+// add history: unused, unused, 1 if this is the last dispatch
+// base level: 1 to copy the pixels
+// downsample: finer level, 16
+// upsample: coarsest level, 16
+// diffuse: unused, 1, unused, 1 if this is the last dispatch
+// entry points: unused, columns and, from bit 16 on, rows of entry points
+// probes: pixels a side of a cell, lights with maps, columns and rows of entry points and, in bit 31, 1 to add to what is
+// there, samples
+// filter probes: pixels a side of a cell
 struct PassConstants {
   uvec4 value;
 };

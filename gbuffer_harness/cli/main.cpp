@@ -17,7 +17,7 @@ int fail(ExitCode code, const char* sentence) {
   return code;
 }
 
-// Files that need more memory than there is are named where they are read. What is left is work on them: the
+// Files that need more memory than there is are named where they are read. Work on them is left: the
 // command says which. Nothing is allocated.
 int outOfMemory(int argc, char** argv) {
   std::fputs("pellucid: there is not enough memory for:", stderr);
@@ -31,7 +31,9 @@ int outOfMemory(int argc, char** argv) {
 int main(int argc, char** argv) {
   CLI::App app("Screen-space translucency and subsurface diffusion on captured frames.", "pellucid");
   app.require_subcommand(1);
-  app.footer("Exit codes: 0 ok, 1 comparison over its limit or stress violated, 2 usage, 3 bad input, 4 no usable device.");
+  app.footer(
+      "Exit codes: 0 ok, 1 comparison over its limit or stress violated, 2 usage, 3 bad input, 4 no usable "
+      "device.");
   addInfoCommand(app);
   addReplayCommand(app);
   addPlanCommand(app);

@@ -17,9 +17,9 @@ namespace pellucid::harness {
 namespace {
 
 constexpr long long kMaxPixels = 1LL << 26;
-// Of a byte: deflate makes 1032 bytes of one, of 8 pixels each in a PNG of one bit. What claims more is
-// damaged, and memory would be taken for it. A JPEG cannot have more either, at a bit for each block of 64
-// pixels.
+// The most pixels in a byte: deflate makes 1032 bytes of one, of 8 pixels each in a PNG of one bit. An image
+// that claims more is damaged, and memory would be taken for it. A JPEG cannot have more either, at a bit for
+// each block of 64 pixels.
 constexpr long long kMaxPixelsPerByte = 8 * 1032;
 
 TextureWrap wrapOf(const GltfDocument& document, int mode, const std::string& field) {

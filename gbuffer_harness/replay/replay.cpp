@@ -143,13 +143,18 @@ private:
   std::shared_ptr<GpuImage> history_;  // of all frames of a sequence
 };
 
-Context::Context(Device& device, const std::function<void(PellucidContextDesc&)>& change) {
+PellucidContextDesc contextDesc(const Device& device) {
   PellucidContextDesc desc;
   pellucidInitContextDesc(&desc);
   desc.instance = device.instance();
   desc.physicalDevice = device.physicalDevice();
   desc.device = device.handle();
   desc.getInstanceProcAddr = &vkGetInstanceProcAddr;
+  return desc;
+}
+
+Context::Context(Device& device, const std::function<void(PellucidContextDesc&)>& change) {
+  PellucidContextDesc desc = contextDesc(device);
   desc.message = &appendError;
   desc.messageUser = &message_;
   if (device.writesWithoutFormat()) desc.outputFormat = VK_FORMAT_UNDEFINED;

@@ -12,6 +12,9 @@
 
 namespace pellucid::harness {
 
+// The module's defaults for a context on the device.
+PellucidContextDesc contextDesc(const Device& device);
+
 // A module context on a device.
 class Context {
 public:

@@ -44,10 +44,9 @@ double relativeDifference(float a, float b) {
 
 double number(const Image& image, std::size_t i) { return static_cast<double>(image.data[i]); }
 
-// `value` over what stands for 1.
-double relative(double value, double scale) { return value / std::max(scale, kFloor); }
-
 }  // namespace
+
+double relative(double value, double scale) { return value / std::max(scale, kFloor); }
 
 Worst notFinite(const Image& image, const Pixels& pixels) {
   double count = 0;

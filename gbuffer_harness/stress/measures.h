@@ -36,6 +36,9 @@ Worst differentAlpha(const Image& a, const Image& b, const Pixels& pixels);
 // bits there. Values from kCeiling on in either image are left out: outputs end at 65504.
 inline constexpr double kFloor = 1e-3, kCeiling = 65000;
 
+// `value` over what stands for 1.
+double relative(double value, double scale);
+
 // |image - expected|.
 Worst apart(const Image& image, const Image& expected, const Pixels& pixels);
 // |two - 2 one|.

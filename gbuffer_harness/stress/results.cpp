@@ -74,7 +74,7 @@ void ResultsReader::add(const StressFrame& frame, const Image& output) {
     if (!owned[p]) continue;
     for (std::size_t i = 4 * p; i < 4 * p + 3; ++i) {
       const double a = static_cast<double>(output.data[i]), b = static_cast<double>(other.data[i]);
-      const double error = std::abs(a - b) / std::max(b, kFloor);
+      const double error = relative(std::abs(a - b), b);
       ++d.values;
       d.above3 += !(error <= 1e-3);
       d.above2 += !(error <= 1e-2);

@@ -6,6 +6,7 @@
 #include <new>
 
 #include "defaults.h"
+#include "findings.h"
 #include "output_format.h"
 #include "pipelines.h"
 #include "shared/pellucid_shared.h"
@@ -14,19 +15,11 @@
 namespace pellucid {
 namespace {
 
-template <class... Parts>
-void say(const PellucidContextDesc& desc, const char* field, const Parts&... sentence) {
-  if (!desc.message) return;
-  char message[256];
-  Text text(message, sizeof message);
-  (text << ... << sentence);
-  desc.message(desc.messageUser, PELLUCID_SEVERITY_ERROR, field, message);
-}
-
-PellucidResult vulkanError(const PellucidContextDesc& desc, const char* call, VkResult result) {
-  say(desc, "device", call, " returned VkResult ", static_cast<int>(result));
+PellucidResult vulkanError(Findings& out, const char* call, VkResult result) {
   const bool memory = result == VK_ERROR_OUT_OF_HOST_MEMORY || result == VK_ERROR_OUT_OF_DEVICE_MEMORY;
-  return memory ? PELLUCID_ERROR_OUT_OF_MEMORY : PELLUCID_ERROR_VULKAN;
+  out.fail(memory ? PELLUCID_ERROR_OUT_OF_MEMORY : PELLUCID_ERROR_VULKAN, "device", call,
+           " returned VkResult ", static_cast<int>(result));
+  return out.result();
 }
 
 constexpr uint32_t kAllUses = PELLUCID_USE_TRANSLUCENCY | PELLUCID_USE_GATHER | PELLUCID_USE_DIFFUSION |
@@ -49,53 +42,56 @@ VkDescriptorType descriptorType(uint32_t binding) {
   }
 }
 
-PellucidResult checkDesc(const PellucidContextDesc& desc) {
+PellucidResult checkDesc(const PellucidContextDesc& desc, Findings& out) {
   if (desc.headerVersion != PELLUCID_HEADER_VERSION) {
-    say(desc, "headerVersion", "is ", desc.headerVersion, "; this library has ", PELLUCID_HEADER_VERSION);
-    return PELLUCID_ERROR_VERSION;
+    out.fail(PELLUCID_ERROR_VERSION, "headerVersion", "is ", desc.headerVersion, "; this library has ",
+             PELLUCID_HEADER_VERSION);
+    return out.result();
   }
   if (!desc.instance || !desc.physicalDevice || !desc.device || !desc.getInstanceProcAddr) {
-    say(desc,
-        !desc.instance         ? "instance"
-        : !desc.physicalDevice ? "physicalDevice"
-        : !desc.device         ? "device"
-                               : "getInstanceProcAddr",
-        "is NULL");
-    return PELLUCID_ERROR_INVALID_ARGUMENT;
+    out.fail(PELLUCID_ERROR_INVALID_ARGUMENT,
+             !desc.instance         ? "instance"
+             : !desc.physicalDevice ? "physicalDevice"
+             : !desc.device         ? "device"
+                                    : "getInstanceProcAddr",
+             "is NULL");
+    return out.result();
   }
   if (desc.outputFormat != VK_FORMAT_UNDEFINED && desc.outputFormat != VK_FORMAT_R16G16B16A16_SFLOAT &&
       desc.outputFormat != VK_FORMAT_R32G32B32A32_SFLOAT) {
-    say(desc, "outputFormat", "is VkFormat ", static_cast<int>(desc.outputFormat),
-        "; R16G16B16A16_SFLOAT, R32G32B32A32_SFLOAT and UNDEFINED are possible");
-    return PELLUCID_ERROR_INVALID_ARGUMENT;
+    out.fail(PELLUCID_ERROR_INVALID_ARGUMENT, "outputFormat", "is VkFormat ",
+             static_cast<int>(desc.outputFormat),
+             "; R16G16B16A16_SFLOAT, R32G32B32A32_SFLOAT and UNDEFINED are possible");
+    return out.result();
   }
   if (desc.uses & ~kAllUses) {
-    say(desc, "uses", "has unknown bits ", desc.uses & ~kAllUses);
-    return PELLUCID_ERROR_INVALID_ARGUMENT;
+    out.fail(PELLUCID_ERROR_INVALID_ARGUMENT, "uses", "has unknown bits ", desc.uses & ~kAllUses);
+    return out.result();
   }
   if (desc.apiVersion < VK_API_VERSION_1_1) {
-    say(desc, "apiVersion", "is ", VK_API_VERSION_MAJOR(desc.apiVersion), ".",
-        VK_API_VERSION_MINOR(desc.apiVersion), "; Vulkan 1.1 is required");
-    return PELLUCID_ERROR_MISSING_FEATURE;
+    out.fail(PELLUCID_ERROR_MISSING_FEATURE, "apiVersion", "is ", VK_API_VERSION_MAJOR(desc.apiVersion), ".",
+             VK_API_VERSION_MINOR(desc.apiVersion), "; Vulkan 1.1 is required");
+    return out.result();
   }
   const auto getProperties = reinterpret_cast<PFN_vkGetPhysicalDeviceProperties>(
       desc.getInstanceProcAddr(desc.instance, "vkGetPhysicalDeviceProperties"));
   if (!getProperties) {
-    say(desc, "getInstanceProcAddr", "does not find vkGetPhysicalDeviceProperties");
-    return PELLUCID_ERROR_INVALID_ARGUMENT;
+    out.fail(PELLUCID_ERROR_INVALID_ARGUMENT, "getInstanceProcAddr",
+             "does not find vkGetPhysicalDeviceProperties");
+    return out.result();
   }
   VkPhysicalDeviceProperties properties;
   getProperties(desc.physicalDevice, &properties);
   if (properties.apiVersion < VK_API_VERSION_1_1) {
-    say(desc, "physicalDevice", properties.deviceName, " has Vulkan ",
-        VK_API_VERSION_MAJOR(properties.apiVersion), ".", VK_API_VERSION_MINOR(properties.apiVersion),
-        "; 1.1 is required");
-    return PELLUCID_ERROR_MISSING_FEATURE;
+    out.fail(PELLUCID_ERROR_MISSING_FEATURE, "physicalDevice", properties.deviceName, " has Vulkan ",
+             VK_API_VERSION_MAJOR(properties.apiVersion), ".", VK_API_VERSION_MINOR(properties.apiVersion),
+             "; 1.1 is required");
+    return out.result();
   }
   return PELLUCID_OK;
 }
 
-PellucidResult createLayouts(const PellucidContextDesc& desc, PellucidContext& c) {
+PellucidResult createLayouts(PellucidContext& c, Findings& out) {
   VkDescriptorSetLayoutBinding bindings[PELLUCID_BINDING_COUNT];
   for (uint32_t i = 0; i < PELLUCID_BINDING_COUNT; ++i)
     bindings[i] = {i, descriptorType(i), 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr};
@@ -104,7 +100,7 @@ PellucidResult createLayouts(const PellucidContextDesc& desc, PellucidContext& c
   set.bindingCount = PELLUCID_BINDING_COUNT;
   set.pBindings = bindings;
   VkResult result = c.vk.vkCreateDescriptorSetLayout(c.device, &set, c.callbacks(), &c.setLayout);
-  if (result != VK_SUCCESS) return vulkanError(desc, "vkCreateDescriptorSetLayout", result);
+  if (result != VK_SUCCESS) return vulkanError(out, "vkCreateDescriptorSetLayout", result);
 
   const VkPushConstantRange push{VK_SHADER_STAGE_COMPUTE_BIT, 0, PELLUCID_PUSH_CONSTANT_BYTES};
   VkPipelineLayoutCreateInfo layout{VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO};
@@ -113,7 +109,7 @@ PellucidResult createLayouts(const PellucidContextDesc& desc, PellucidContext& c
   layout.pushConstantRangeCount = 1;
   layout.pPushConstantRanges = &push;
   result = c.vk.vkCreatePipelineLayout(c.device, &layout, c.callbacks(), &c.pipelineLayout);
-  return result == VK_SUCCESS ? PELLUCID_OK : vulkanError(desc, "vkCreatePipelineLayout", result);
+  return result == VK_SUCCESS ? PELLUCID_OK : vulkanError(out, "vkCreatePipelineLayout", result);
 }
 
 // One pipeline for each thread that the caller lends.
@@ -126,14 +122,16 @@ struct PipelineJobs {
 
 VkResult createPipeline(const PellucidContextDesc& desc, const PellucidContext& c, const PipelineDesc& p,
                         VkPipeline* pipeline) {
-  const std::unique_ptr<uint32_t[]> words(new (std::nothrow) uint32_t[p.wordCount]);
-  if (!words) return VK_ERROR_OUT_OF_HOST_MEMORY;
-  std::copy_n(p.words, p.wordCount, words.get());
-  if (desc.outputFormat != VK_FORMAT_UNDEFINED)
-    fixOutputFormat(words.get(), p.wordCount, desc.outputFormat == VK_FORMAT_R32G32B32A32_SFLOAT);
+  std::unique_ptr<uint32_t[]> patched;
+  if (desc.outputFormat != VK_FORMAT_UNDEFINED) {
+    patched.reset(new (std::nothrow) uint32_t[p.wordCount]);
+    if (!patched) return VK_ERROR_OUT_OF_HOST_MEMORY;
+    std::copy_n(p.words, p.wordCount, patched.get());
+    fixOutputFormat(patched.get(), p.wordCount, desc.outputFormat == VK_FORMAT_R32G32B32A32_SFLOAT);
+  }
   VkShaderModuleCreateInfo moduleInfo{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
   moduleInfo.codeSize = p.wordCount * sizeof(uint32_t);
-  moduleInfo.pCode = words.get();
+  moduleInfo.pCode = patched ? patched.get() : p.words;
   VkShaderModule module = VK_NULL_HANDLE;
   VkResult result = c.vk.vkCreateShaderModule(c.device, &moduleInfo, c.callbacks(), &module);
   if (result != VK_SUCCESS) return result;
@@ -157,7 +155,7 @@ VkResult createPipeline(const PellucidContextDesc& desc, const PellucidContext& 
   return result;
 }
 
-PellucidResult createPipelines(const PellucidContextDesc& desc, PellucidContext& c) {
+PellucidResult createPipelines(const PellucidContextDesc& desc, PellucidContext& c, Findings& out) {
   PipelineJobs jobs{desc, c};
   uint32_t count = 0;
   for (uint32_t i = 0; i < kPipelineCount; ++i)
@@ -176,7 +174,7 @@ PellucidResult createPipelines(const PellucidContextDesc& desc, PellucidContext&
     if (jobs.results[i] != VK_SUCCESS) {
       char call[64];
       Text(call, sizeof call) << "creating pipeline " << pipelineDesc(jobs.pipelines[i]).name;
-      return vulkanError(desc, call, jobs.results[i]);
+      return vulkanError(out, call, jobs.results[i]);
     }
   return PELLUCID_OK;
 }
@@ -191,13 +189,19 @@ extern "C" PellucidResult pellucidCreateContext(const PellucidContextDesc* given
   *context = nullptr;
   if (!given) return PELLUCID_ERROR_INVALID_ARGUMENT;
   if (!canReadStruct(given, kLeastContextDesc)) {
-    say(*given, "structSize", "is ", given->structSize, "; this library reads ", kLeastContextDesc, " to ",
-        sizeof(PellucidContextDesc), " bytes, and more if they are 0 (call pellucidInitContextDesc)");
-    return PELLUCID_ERROR_VERSION;
+    // A struct that is too short has no callback to read.
+    constexpr size_t kHasMessage = offsetof(PellucidContextDesc, messageUser) + sizeof given->messageUser;
+    const bool tells = given->structSize >= kHasMessage;
+    Findings out(tells ? given->message : nullptr, tells ? given->messageUser : nullptr);
+    out.fail(PELLUCID_ERROR_VERSION, "structSize", "is ", given->structSize, "; this library reads ",
+             kLeastContextDesc, " to ", sizeof(PellucidContextDesc),
+             " bytes, and more if they are 0 (call pellucidInitContextDesc)");
+    return out.result();
   }
   const PellucidContextDesc whole = readStruct(given, defaultContextDesc());
   const PellucidContextDesc* desc = &whole;
-  PellucidResult result = checkDesc(*desc);
+  Findings out(desc->message, desc->messageUser);
+  PellucidResult result = checkDesc(*desc, out);
   if (result != PELLUCID_OK) return result;
 
   auto* c = new (std::nothrow) PellucidContext;
@@ -215,12 +219,13 @@ extern "C" PellucidResult pellucidCreateContext(const PellucidContextDesc* given
   const char* missing =
       getDeviceProcAddr ? loadVkTable(getDeviceProcAddr, desc->device, &c->vk) : "vkGetDeviceProcAddr";
   if (missing) {
-    say(*desc, "device", "has no ", missing, "; is VK_KHR_push_descriptor enabled?");
+    out.fail(PELLUCID_ERROR_MISSING_FEATURE, "device", "has no ", missing,
+             "; is VK_KHR_push_descriptor enabled?");
     delete c;
-    return PELLUCID_ERROR_MISSING_FEATURE;
+    return out.result();
   }
-  result = createLayouts(*desc, *c);
-  if (result == PELLUCID_OK) result = createPipelines(*desc, *c);
+  result = createLayouts(*c, out);
+  if (result == PELLUCID_OK) result = createPipelines(*desc, *c, out);
   if (result != PELLUCID_OK) {
     pellucidDestroyContext(c);
     return result;

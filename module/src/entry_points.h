@@ -21,7 +21,7 @@ constexpr uint32_t withCoarserEntries(uint32_t columns) { return columns + colum
 
 struct EntryExtent {
   uint32_t width, height;
-  uint32_t side;  // texels of the map that a entry point stands for, a side
+  uint32_t side;  // texels of the map that an entry point stands for, a side
 };
 
 // Extent of one of the light's maps: a power of two of texels a side, so that all of them fit.

@@ -90,7 +90,7 @@ void addSpatialFilter(PlanBuilder& b) {
   b.bind(d, PELLUCID_BINDING_ENTRY_POINTS, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, b.probesImage());
   b.bind(d, PELLUCID_BINDING_PROBES, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, b.filteredProbesImage());
   d->modeledBytes = 2 * kTexelBytes * cells.width * cells.height;
-  if (f.stages.skipsLight) b.indirect(d, offsetof(shared::GatherDispatches, share));
+  if (f.stages.skipsLight) b.indirect(d, offsetof(shared::GatherDispatches, filterProbes));
 }
 
 void readProbes(const PlanBuilder& b, PellucidDispatch* d, uint32_t binding, VkDescriptorType type) {

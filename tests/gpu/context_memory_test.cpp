@@ -20,12 +20,7 @@ Attempt attempt(Device& device, VkPipelineCache cache, int failing) {
   FailingAllocator allocator;
   allocator.failing = failing;
   const VkAllocationCallbacks callbacks = allocator.callbacks();
-  PellucidContextDesc desc;
-  pellucidInitContextDesc(&desc);
-  desc.instance = device.instance();
-  desc.physicalDevice = device.physicalDevice();
-  desc.device = device.handle();
-  desc.getInstanceProcAddr = &vkGetInstanceProcAddr;
+  PellucidContextDesc desc = contextDesc(device);
   desc.pipelineCache = cache;
   desc.allocator = &callbacks;
   desc.message = [](void* user, PellucidSeverity, const char* field, const char* message) {

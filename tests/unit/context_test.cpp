@@ -41,6 +41,13 @@ struct Sentences {
   }
 };
 
+PellucidContextDesc descOf(NullDevice& device, Sentences& sentences) {
+  PellucidContextDesc desc = device.desc();
+  desc.message = Sentences::add;
+  desc.messageUser = &sentences;
+  return desc;
+}
+
 TEST(ContextMemory, EveryFailingAllocationIsReportedAndNothingLeaks) {
   int allocations = 0;
   for (int n = 0;; ++n) {
@@ -50,10 +57,8 @@ TEST(ContextMemory, EveryFailingAllocationIsReportedAndNothingLeaks) {
     allocator.failing = n;
     const VkAllocationCallbacks callbacks = allocator.callbacks();
     Sentences sentences;
-    PellucidContextDesc desc = device.desc();
+    PellucidContextDesc desc = descOf(device, sentences);
     desc.allocator = &callbacks;
-    desc.message = Sentences::add;
-    desc.messageUser = &sentences;
     auto* context = reinterpret_cast<PellucidContext*>(&device);  // to be overwritten
     const PellucidResult result = pellucidCreateContext(&desc, &context);
     if (result == PELLUCID_OK) {
@@ -102,9 +107,7 @@ TEST(ContextMemory, MissingFunctionsAreNamed) {
     NullDevice device;
     device.missing = name;
     Sentences sentences;
-    PellucidContextDesc desc = device.desc();
-    desc.message = Sentences::add;
-    desc.messageUser = &sentences;
+    const PellucidContextDesc desc = descOf(device, sentences);
     PellucidContext* context = nullptr;
     EXPECT_EQ(pellucidCreateContext(&desc, &context), PELLUCID_ERROR_MISSING_FEATURE);
     EXPECT_NE(sentences.last.find(name), std::string::npos) << sentences.last;
@@ -115,9 +118,7 @@ TEST(ContextMemory, MissingFunctionsAreNamed) {
 TEST(ContextRecording, FramesThatAreNotValidAreRefused) {
   NullDevice device;
   Sentences sentences;
-  PellucidContextDesc desc = device.desc();
-  desc.message = Sentences::add;
-  desc.messageUser = &sentences;
+  const PellucidContextDesc desc = descOf(device, sentences);
   PellucidContext* context = nullptr;
   ASSERT_EQ(pellucidCreateContext(&desc, &context), PELLUCID_OK);
   static const float table[9] = {};

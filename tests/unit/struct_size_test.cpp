@@ -218,8 +218,15 @@ TEST(StructSize, ContextDescCutShortIsRead) {
     EXPECT_EQ(pellucidCreateContext(cut.get(), &context), PELLUCID_ERROR_INVALID_ARGUMENT) << size;
     EXPECT_EQ(asked, ++expected) << size;
   }
+  static int said;
+  said = 0;
+  desc.message = [](void*, PellucidSeverity, const char*, const char*) { ++said; };
   desc.structSize = kLeastDesc - 8;
   EXPECT_EQ(pellucidCreateContext(&desc, &context), PELLUCID_ERROR_VERSION);
+  EXPECT_EQ(said, 0) << "the callback lies beyond the struct";
+  desc.structSize = sizeof desc - 4;
+  EXPECT_EQ(pellucidCreateContext(&desc, &context), PELLUCID_ERROR_VERSION);
+  EXPECT_EQ(said, 1);
   desc.structSize = sizeof desc;
   desc.headerVersion = PELLUCID_HEADER_VERSION + 1;
   EXPECT_EQ(pellucidCreateContext(&desc, &context), PELLUCID_ERROR_VERSION);
