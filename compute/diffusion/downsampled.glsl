@@ -1,36 +1,33 @@
-// A texel of the pyramid from 4 x 4 of the finer level, by 3 5 5 3 in each direction: it takes the nearest of
-// the four surfaces under it and averages those that lie on it. The finer level is in the including pass's shared colors[],
-// with mass, material and plane as packed, and depths[]; slopes are not needed.
-#ifndef PELLUCID_DOWNSAMPLED_GLSL
-#define PELLUCID_DOWNSAMPLED_GLSL
+// A texel of the pyramid from 4 x 4 of the finer level, by 3 5 5 3 in each direction: it takes the nearest of the four
+// surfaces under it and averages those that lie on it. The entry point has the finer level in shared colors[], with mass,
+// material and plane as packed, and depths[]; slopes are not needed.
 
-// 3 5 5 3, whose variance is 1.
+// The variance of 3 5 5 3 is 1.
 const float kOuterWeight = 3.0 / 16.0;
 
 float weight(int i) { return i == 0 || i == 3 ? kOuterWeight : 0.5 - kOuterWeight; }
 
-// Texels under a texel, from the push constants: compilers would unroll the loops of edges over a number that they know,
-// which takes half as many registers again.
+// Texels under a texel. The push constants say so, because compilers would unroll the loops of edges over a number that
+// they know, which takes half as many registers again.
 int taps() { return int(pass.value.y); }
 
-// A plane's largest mean squared distance, over the squared length of a texel's side. Curved surfaces below it gain nothing from weights of their own.
+// A plane's largest mean squared distance, over the squared length of a texel's side. Curved surfaces below it gain nothing
+// from weights of their own.
 const float kPlaneResidual = 0.01;
 
 // Bits that texels of one plane have in common: the material, and that they are planes.
 const uint kSamePlane = 0xFF000000u | kPlane;
-
-// True where texels are one plane: one's bits, in which the others differ, their mean squared distance from the plane of
-// least squares, its slope, and the side that they make together.
-bool onePlane(uint bits, uint different, float residual, vec2 slope, vec2 side) {
-  return (different & kSamePlane) == 0u && (bits & kPlane) != 0u &&
-         residual * inverseSpread(slope, side) < kPlaneResidual;
-}
 
 // Even columns of a row come before the odd ones: reads of every other column meet no bank twice.
 int slot(ivec2 at, int width) { return at.y * width + (at.x >> 1) + (at.x & 1) * (width >> 1); }
 
 // A place among the 4 x 4 texels whose first one is in an even column, at `first`.
 int tap(int first, int width, int x, int y) { return first + slot(ivec2(x, y), width); }
+
+void keepTexel(int index, uvec4 bits) {
+  colors[index] = bits.xy;
+  depths[index] = uintBitsToFloat(bits.z);
+}
 
 struct Source {
   float mass, depth;
@@ -42,8 +39,8 @@ Source sourceAt(int index) {
   return Source(massOf(bits), depths[index], bits >> 24);
 }
 
-// The texel whose surface is taken: the nearest to the camera of the four in the middle or, beyond an edge, the one of the others
-// that the filter weights most. -1: none.
+// The texel whose surface is taken: the nearest to the camera of the four in the middle or, beyond an edge, the one of the
+// others that the filter weights most. -1: none.
 int surfaceOf(int first, int stride) {
   int surface = -1;
   float nearest = kNoDepth, most = 0.0;
@@ -63,8 +60,8 @@ int surfaceOf(int first, int stride) {
   return surface;
 }
 
-// Depth change per texel in one direction, to whichever neighbor of the same material is nearer in depth:
-// the other one may lie across an edge.
+// Depth change per texel in one direction, to whichever neighbor of the material is nearer in depth, because the other one
+// may lie across an edge.
 float depthStep(int first, int stride, Source center, ivec2 at, ivec2 direction) {
   float best = 0.0;
   bool found = false;
@@ -80,7 +77,7 @@ float depthStep(int first, int stride, Source center, ivec2 at, ivec2 direction)
   return best;
 }
 
-// The texel of 4 x 4 texels that are not one plane.
+// Texel from 4 x 4 texels that are not one plane.
 uvec4 downsampledEdge(uint finer, ivec2 texel, int first, int stride) {
   int chosen = surfaceOf(first, stride);
   if (chosen < 0) {
@@ -98,7 +95,7 @@ uvec4 downsampledEdge(uint finer, ivec2 texel, int first, int stride) {
   vec3 color = vec3(0.0);
   float mass = 0.0, weights = 0.0, off = 0.0;
   vec2 tilt = vec2(0.0), spread = vec2(0.0);
-  // A row at a time, and without a branch, so that the taps' latencies overlap. Those that do not count are finite, too.
+  // A row has no branch, so that the taps' latencies overlap. Taps that do not count are finite, too.
   for (int i = 0; i < taps(); i += 4) {
     [[unroll]] for (int x = 0; x < 4; ++x) {
       ivec2 at = ivec2(x, i >> 2);
@@ -109,7 +106,7 @@ uvec4 downsampledEdge(uint finer, ivec2 texel, int first, int stride) {
       float difference = t.depth - surface.depth - dot(slope, vec2(at - nearest) * size);
       float w = weight(at.x) * weight(at.y);
       w = counts ? w * sameSurface(difference, dot(slope, offset), spread2, kDownsampleFalloff) : 0.0;
-      color += w * t.mass * unpackColor(colors[index]);
+      color += w * t.mass * unpackHalves(colors[index]);
       mass += w * t.mass;
       // A surface that is seen edge-on says no more about its depth than elsewhere.
       w *= min(t.mass, 1.0);
@@ -127,8 +124,8 @@ uvec4 downsampledEdge(uint finer, ivec2 texel, int first, int stride) {
   return packTexel(Texel(color / mass, mass, surface.material, depth, slope), 0u);
 }
 
-// Texel of the level after `finer` from the 4 x 4 at `first`. `tapsOfPlane`: 16, or taps() where a pass has no registers for
-// all of them at once.
+// Texel of the level after `finer` from the 4 x 4 at `first`. `tapsOfPlane`: 16, or taps() where a pass lacks registers for
+// all at once.
 uvec4 downsampled(uint finer, ivec2 texel, int first, int stride, int tapsOfPlane) {
   uint bits = colors[first].y, different = 0u;
   float base = depths[first], off = 0.0, square = 0.0;
@@ -140,7 +137,7 @@ uvec4 downsampled(uint finer, ivec2 texel, int first, int stride, int tapsOfPlan
       uvec2 packed = colors[index];
       float w = weight(x) * weight(y), difference = depths[index] - base;
       different |= packed.y ^ bits;
-      color += w * unpackColor(packed);
+      color += w * unpackHalves(packed);
       off += w * difference;
       tilt += w * difference * (vec2(x, y) - 1.5);
       square += w * difference * difference;
@@ -149,11 +146,10 @@ uvec4 downsampled(uint finer, ivec2 texel, int first, int stride, int tapsOfPlan
   vec2 size = texelSize(base, finer);
   float residual = square - off * off - dot(tilt, tilt);
   vec2 slope = tilt / max(size, vec2(1.0e-30));
-  bool plane = onePlane(bits, different, residual, slope, 2.0 * size);
+  bool plane = (different & kSamePlane) == 0u && (bits & kPlane) != 0u &&
+               residual * inverseSpread(slope, 2.0 * size) < kPlaneResidual;
   uvec4 result = packTexel(Texel(color, areaOf(finer + 1u, texel, slope), bits >> 24, base + off, slope), kPlane);
-  // That nothing is there is too rare for a branch of its own.
+  // Empty texels are too rare for a branch of their own.
   if (!plane) result = (bits | different) >> 16 == 0u ? uvec4(0u) : downsampledEdge(finer, texel, first, stride);
   return result;
 }
-
-#endif
