@@ -12,7 +12,7 @@ const int kFirst = PELLUCID_DOWNSAMPLE_GROUP, kInput = 2 * kFirst + 2;
 const int kLoadRows = kFirst * kFirst / kInput, kLoads = (kInput + kLoadRows - 1) / kLoadRows;
 // The arrays hold the input and, once that has been used, the first level: as many groups run at a time as these fit into
 // a processor.
-shared uvec2 colors[kInput * kInput]; // and mass, material and plane, as packed
+shared uvec2 colors[kInput * kInput]; // and area, material and plane, as packed
 shared float depths[kInput * kInput];
 shared uint anySurface; // in the input
 

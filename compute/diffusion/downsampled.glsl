@@ -1,5 +1,5 @@
 // A texel of the pyramid from 4 x 4 of the finer level, by 3 5 5 3 in each direction: it takes the nearest of the four
-// surfaces under it and averages those that lie on it. The entry point has the finer level in shared colors[], with mass,
+// surfaces under it and averages those that lie on it. The entry point has the finer level in shared colors[], with area,
 // material and plane as packed, and depths[]; slopes are not needed.
 
 // The variance of 3 5 5 3 is 1.
@@ -30,13 +30,13 @@ void keepTexel(int index, uvec4 bits) {
 }
 
 struct Source {
-  float mass, depth;
+  float area, depth;
   uint material;
 };
 
 Source sourceAt(int index) {
   uint bits = colors[index].y;
-  return Source(massOf(bits), depths[index], bits >> 24);
+  return Source(storedArea(bits), depths[index], bits >> 24);
 }
 
 // The texel whose surface is taken: the nearest to the camera of the four in the middle or, beyond an edge, the one of the
@@ -46,13 +46,13 @@ int surfaceOf(int first, int stride) {
   float nearest = kNoDepth, most = 0.0;
   [[unroll]] for (int i = 0; i < 4; ++i) {
     Source t = sourceAt(tap(first, stride, 1 + (i & 1), 1 + (i >> 1)));
-    bool nearer = t.mass != 0.0 && t.depth < nearest;
+    bool nearer = t.area != 0.0 && t.depth < nearest;
     nearest = nearer ? t.depth : nearest;
     surface = nearer ? 5 + 4 * (i >> 1) + (i & 1) : surface;
   }
   if (surface >= 0) return surface;
   for (int i = 0; i < taps(); ++i) {
-    float w = weight(i & 3) * weight(i >> 2) * sourceAt(tap(first, stride, i & 3, i >> 2)).mass;
+    float w = weight(i & 3) * weight(i >> 2) * sourceAt(tap(first, stride, i & 3, i >> 2)).area;
     if (!(w > most)) continue;
     most = w;
     surface = i;
@@ -69,7 +69,7 @@ float depthStep(int first, int stride, Source center, ivec2 at, ivec2 direction)
     ivec2 neighbor = at + side * direction, within = clamp(neighbor, ivec2(0), ivec2(3));
     Source t = sourceAt(tap(first, stride, within.x, within.y));
     float difference = float(side) * (t.depth - center.depth);
-    bool counts = neighbor == within && t.mass != 0.0 && t.material == center.material;
+    bool counts = neighbor == within && t.area != 0.0 && t.material == center.material;
     bool better = counts && (!found || abs(difference) < abs(best));
     best = better ? difference : best;
     found = found || counts;
@@ -93,7 +93,7 @@ uvec4 downsampledEdge(uint finer, ivec2 texel, int first, int stride) {
                     depthStep(first, stride, surface, nearest, ivec2(0, 1))) / max(size, vec2(1.0e-30));
   float spread2 = inverseSpread(slope, 2.0 * size);
   vec3 color = vec3(0.0);
-  float mass = 0.0, weights = 0.0, off = 0.0;
+  float area = 0.0, weights = 0.0, off = 0.0;
   vec2 tilt = vec2(0.0), spread = vec2(0.0);
   // A row has no branch, so that the taps' latencies overlap. Taps that do not count are finite, too.
   for (int i = 0; i < taps(); i += 4) {
@@ -101,27 +101,27 @@ uvec4 downsampledEdge(uint finer, ivec2 texel, int first, int stride) {
       ivec2 at = ivec2(x, i >> 2);
       int index = tap(first, stride, at.x, at.y);
       Source t = sourceAt(index);
-      bool counts = t.mass != 0.0 && t.material == surface.material;
+      bool counts = t.area != 0.0 && t.material == surface.material;
       vec2 offset = (vec2(at) - 1.5) * size;
       float difference = t.depth - surface.depth - dot(slope, vec2(at - nearest) * size);
       float w = weight(at.x) * weight(at.y);
-      w = counts ? w * sameSurface(difference, dot(slope, offset), spread2, kDownsampleFalloff) : 0.0;
-      color += w * t.mass * unpackHalves(colors[index]);
-      mass += w * t.mass;
+      w = counts ? w * tangentPlaneWeight(difference, dot(slope, offset), spread2, kDownsampleFalloff) : 0.0;
+      color += w * t.area * unpackHalves(colors[index]);
+      area += w * t.area;
       // A surface that is seen edge-on says no more about its depth than elsewhere.
-      w *= min(t.mass, 1.0);
+      w *= min(t.area, 1.0);
       off += w * difference;
       tilt += w * difference * offset;
       spread += w * offset * offset;
       weights += w;
     }
   }
-  // The nearest one counts, so mass and weights are positive; spread is 0 only where it is alone.
+  // The nearest one counts, so area and weights are positive; spread is 0 only where it is alone.
   float inverse = 1.0 / weights;
   vec2 center = vec2(1.5) - vec2(nearest);
   float depth = surface.depth + dot(slope, center * size) + off * inverse;
   slope += tilt / max(spread, 1.0e-6 * size * size + 1.0e-30);
-  return packTexel(Texel(color / mass, mass, surface.material, depth, slope), 0u);
+  return packTexel(Texel(color / area, area, surface.material, depth, slope), 0u);
 }
 
 // Texel of the level after `finer` from the 4 x 4 at `first`. `tapsOfPlane`: 16, or taps() where a pass lacks registers for

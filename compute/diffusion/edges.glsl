@@ -21,8 +21,8 @@ void prepareForEdges(int index) {
   spreads[index] = inverseSpread(t.slope, texelSize(t.depth, 2u));
   if (isPlane(bits)) return;
   PixelShares s = unpackShares(shares[index].xyz);
-  vec3 density = unpackDensity(shares[index].w) * (1.0 / kDensityOne);
-  s.coarser /= max(s.coarser + density * (1.0 - s.coarser), vec3(1.0e-6));
+  vec3 coverage = unpackCoverage(shares[index].w) * (1.0 / kCoverageOne);
+  s.coarser /= max(s.coarser + coverage * (1.0 - s.coarser), vec3(1.0e-6));
   // From a half on, shares are kept less 1: halves are too coarse near 1 for what is left of it.
   s.coarser = mix(s.coarser, min(s.coarser - 1.0, vec3(-6.0e-8)), greaterThan(s.coarser, vec3(0.5)));
   uvec3 packed = packShares(s);
@@ -70,7 +70,7 @@ vec4 fineOfEdge(int place, vec2 slope, vec2 size, float wider) {
       uvec2 packed = vertical[at];
       float theirs = uintBitsToFloat(vertical[kRowPixels + at].x);
       float along = dot(depthStep, vec2(x, y));
-      float w = sameSurface(theirs - own - along, along, spread2, kPixelFalloff);
+      float w = tangentPlaneWeight(theirs - own - along, along, spread2, kPixelFalloff);
       bool counts = packed.y >> 16 == material && theirs > 0.0;
       fine += (counts ? w * weightAt(rows, x) * weightY : 0.0) * vec4(unpackHalves(packed), 1.0);
     }
@@ -99,13 +99,13 @@ Around aroundPixel(int center, vec2 from, float depth, uint material, vec2 size)
       int index = center + y * kWindowX + x;
       Texel t = unpackTexel(upsampled[index]);
       float along = dot(t.slope, (from - 4.0 * vec2(x, y)) * size);
-      float w = sameSurface(depth - t.depth - along, along, spreads[index], kPixelFalloff);
+      float w = tangentPlaneWeight(depth - t.depth - along, along, spreads[index], kPixelFalloff);
       w *= weightY * (x < 0 ? splineX.x : x > 0 ? splineX.z : splineX.y);
-      w = t.mass != 0.0 && t.material == material ? w : 0.0;
-      vec3 density = w * (1.0 / kDensityOne) * unpackDensity(shares[index].w);
-      a.coarser += density * t.color;
-      a.found += density;
-      w *= min(t.mass, 1.0);
+      w = t.area != 0.0 && t.material == material ? w : 0.0;
+      vec3 coverage = w * (1.0 / kCoverageOne) * unpackCoverage(shares[index].w);
+      a.coarser += coverage * t.color;
+      a.found += coverage;
+      w *= min(t.area, 1.0);
       a.slope += w * t.slope;
       PixelShares s = unpackShares(shares[index].xyz);
       a.coarserShare += w * coarserOfEdge(s.coarser);

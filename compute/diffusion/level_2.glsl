@@ -18,7 +18,7 @@ void upsampleFine(ivec2 texel, ivec2 k, uvec4 bits) {
   uint upper = bits.y >> 16 & ~(kPlane >> 16);
   if ((bits.x & kFlat) != 0u) upper |= kPlane >> 16;
   PixelShares share = pixelShares(own.texel.material - 1u, f);
-  share.coarser = share.coarser * r.density / max(1.0 - share.coarser + share.coarser * r.density, vec3(1.0e-6));
+  share.coarser = share.coarser * r.coverage / max(1.0 - share.coarser + share.coarser * r.coverage, vec3(1.0e-6));
   writeUpsampled(texel, uvec4(packColor(r.color, upper), bits.zw),
-                 uvec4(packShares(share), packDensity(r.density) | (isPlane(bits) ? kFull : 0u)));
+                 uvec4(packShares(share), packCoverage(r.coverage) | (isPlane(bits) ? kFull : 0u)));
 }

@@ -9,13 +9,13 @@ const int kReach = 4; // of the stretch, texels
 // A level's kernel has variance 7/12 - 13/12 4^-level squared texels of an axis. Foreshortened surfaces need a kernel that
 // is longer along one axis: the filter is a 1-D Gaussian of what is missing, at the texels nearest to the axis.
 vec4 stretched(ivec2 texel, uint level, ivec2 k, Texel own, Foreshortening f) {
-  vec4 sum = own.mass * vec4(own.color, 1.0);
+  vec4 sum = own.area * vec4(own.color, 1.0);
   float variance = (7.0 / 12.0 - 13.0 / 12.0 * exp2(-2.0 * float(level))) * f.stretch;
   bool alongX = abs(f.axis.x) >= abs(f.axis.y);
   float dominant = alongX ? f.axis.x : f.axis.y; // its square is at least 1/2
   float gradient = (alongX ? f.axis.y : f.axis.x) / dominant;
   variance = min(variance * dominant * dominant, float(kReach));
-  if (own.mass == 0.0 || variance < 0.02) return sum;
+  if (own.area == 0.0 || variance < 0.02) return sum;
   float weights = 1.0;
   vec2 size = texelSize(own.depth, level);
   float spread2 = inverseSpread(own.slope, size);
@@ -39,8 +39,8 @@ vec4 stretched(ivec2 texel, uint level, ivec2 k, Texel own, Foreshortening f) {
     [[unroll]] for (int side = 0; side < 2; ++side) {
       Texel t = unpackTexel(bits[side]);
       float along = dot(own.slope, vec2((1 - 2 * side) * offset) * size);
-      float w = weight * t.mass * sameSurface(t.depth - own.depth - along, along, spread2, kStretchFalloff);
-      sum += (t.mass != 0.0 && t.material == own.material ? w : 0.0) * vec4(t.color, 1.0);
+      float w = weight * t.area * tangentPlaneWeight(t.depth - own.depth - along, along, spread2, kStretchFalloff);
+      sum += (t.area != 0.0 && t.material == own.material ? w : 0.0) * vec4(t.color, 1.0);
     }
   }
   return sum / weights;
@@ -59,7 +59,7 @@ Own ownPart(uint level, ivec2 texel, ivec2 k, uvec4 bits, out Foreshortening f) 
   own.texel = unpackTexel(bits);
   f = foreshortening(texel, level, own.texel.depth, own.texel.slope);
   // A plane fills all of its kernel, however its area was rounded.
-  float area = isPlane(bits) ? own.texel.mass : areaOf(level, texel, own.texel.slope);
+  float area = isPlane(bits) ? own.texel.area : areaOf(level, texel, own.texel.slope);
   own.here = stretched(texel, level, k, own.texel, f) / area;
   // Material 0 looks up what it does not use.
   uint m = max(own.texel.material, 1u) - 1u;
@@ -68,11 +68,11 @@ Own ownPart(uint level, ivec2 texel, ivec2 k, uvec4 bits, out Foreshortening f) 
 }
 
 struct Level {
-  vec3 color, density; // kernel coverage of each channel
+  vec3 color, coverage; // kernel coverage of each channel
 };
 
 uvec4 packLevel(Level r, uvec4 bits) {
-  return uvec4(packColor(r.color, bits.y >> 16), bits.z, packDensity(r.density));
+  return uvec4(packColor(r.color, bits.y >> 16), bits.z, packCoverage(r.coverage));
 }
 
 Level alone(Own own) {
@@ -90,18 +90,18 @@ Level withCoarser(Own own, uint level, ivec2 texel, Window window) {
     ivec2 at = nearest + toward * ivec2(i & 1, i >> 1);
     uvec4 theirs = upsampled[indexOf(window, at)];
     vec2 off = vec2(at) + 0.5 - 0.5 * (vec2(texel) + 0.5);
-    float w = (i == 0 ? 9.0 / 16.0 : i == 3 ? 1.0 / 16.0 : 3.0 / 16.0) / kDensityOne;
+    float w = (i == 0 ? 9.0 / 16.0 : i == 3 ? 1.0 / 16.0 : 3.0 / 16.0) / kCoverageOne;
     float along = dot(own.texel.slope, off * size);
-    w *= sameSurface(uintBitsToFloat(theirs.z) - own.texel.depth - along, along, spread2, kUpsampleFalloff);
+    w *= tangentPlaneWeight(uintBitsToFloat(theirs.z) - own.texel.depth - along, along, spread2, kUpsampleFalloff);
     w = materialBits(theirs) == own.texel.material ? w : 0.0;
-    vec3 density = w * unpackDensity(theirs.w);
-    coarser += density * unpackHalves(theirs.xy);
-    found += density;
+    vec3 coverage = w * unpackCoverage(theirs.w);
+    coarser += coverage * unpackHalves(theirs.xy);
+    found += coverage;
   }
   // Coverage weights both parts, which renormalizes at silhouettes and borders.
-  vec3 density = (1.0 - own.share) * own.here.a + own.share * found;
+  vec3 coverage = (1.0 - own.share) * own.here.a + own.share * found;
   vec3 here = (1.0 - own.share) * own.here.rgb, light = here + own.share * coarser;
   // The level's own color stands in for a channel that has nothing here: the finer level weights it with 0.
-  vec3 color = mix(own.texel.color, light / max(density, vec3(1.0e-6)), greaterThan(density, vec3(1.0e-6)));
-  return Level(color, density);
+  vec3 color = mix(own.texel.color, light / max(coverage, vec3(1.0e-6)), greaterThan(coverage, vec3(1.0e-6)));
+  return Level(color, coverage);
 }

@@ -59,7 +59,7 @@ uvec4 edgeQuadTexel(ivec2 quad, uvec2 packed[4], float depth[4]) {
   vec2 sides = squaredPixelSize(frame.camera, nearest);
   float side = sqrt(min(sides.x, sides.y));
   vec3 mean = vec3(0.0);
-  float sum = 0.0, weights = 0.0, mass = 0.0;
+  float sum = 0.0, weights = 0.0, areas = 0.0;
   for (int i = 0; i < 4; ++i) {
     bool counts = depth[i] > 0.0 && packed[i].y >> 16 == nearestMaterial &&
                   depth[i] - nearest <= side * max(8.0, area[i]);
@@ -68,10 +68,10 @@ uvec4 edgeQuadTexel(ivec2 quad, uvec2 packed[4], float depth[4]) {
     mean += a * unpackHalves(packed[i]);
     sum += counts ? depth[i] : 0.0;
     weights += w;
-    mass += a;
+    areas += a;
   }
   // The nearest counts, so weights >= 1; areas are positive.
-  return packTexel(Texel(mean / mass, 0.25 * mass, nearestMaterial, sum / weights, vec2(0.0)), 0u);
+  return packTexel(Texel(mean / areas, 0.25 * areas, nearestMaterial, sum / weights, vec2(0.0)), 0u);
 }
 
 // `normal`: of pixelOfQuad(quad).

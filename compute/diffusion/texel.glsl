@@ -4,7 +4,7 @@
 
 struct Texel {
   vec3 color;    // mean over the surface's area
-  float mass;    // projected-area weight of the surface under the texel's filter; 0: there is none
+  float area;    // projected-area weight of the surface under the filter; 0: there is none
   uint material; // where there is no surface, not 0: some of its pixels have this material and no depth
   float depth;   // planar, at the texel's center
   vec2 slope;    // change of depth over that of position, facing the camera: tangents, the same at every level
@@ -22,10 +22,10 @@ uint packArea(float area) {
 float unpackArea(uint u) { return float(u * u) / 1024.0; }
 
 // Kernel coverage of each channel. A plane's, 1, is exact.
-const float kDensityOne = 128.0;
-uint packDensity(vec3 density) { return packUnorm4x8(vec4(density * (kDensityOne / 255.0), 0.0)); }
-// The result is the coverage times kDensityOne.
-vec3 unpackDensity(uint u) { return vec3(u & 0xFFu, (u >> 8) & 0xFFu, (u >> 16) & 0xFFu); }
+const float kCoverageOne = 128.0;
+uint packCoverage(vec3 coverage) { return packUnorm4x8(vec4(coverage * (kCoverageOne / 255.0), 0.0)); }
+// The result is the coverage times kCoverageOne.
+vec3 unpackCoverage(uint u) { return vec3(u & 0xFFu, (u >> 8) & 0xFFu, (u >> 16) & 0xFFu); }
 
 // A slope of 1000 is 0.06 degrees from edge-on.
 uint packSlope(vec2 slope) { return packHalf2x16(clamp(slope, vec2(-1.0e3), vec2(1.0e3))); }
@@ -37,14 +37,14 @@ const uint kFlat = 0x80000000u;
 
 // `plane`: kPlane or 0.
 uvec4 packTexel(Texel t, uint plane) {
-  uvec2 color = packColor(t.color, packArea(t.mass) | t.material << 8);
+  uvec2 color = packColor(t.color, packArea(t.area) | t.material << 8);
   return uvec4(color.x, color.y | plane, floatBitsToUint(t.depth), packSlope(t.slope));
 }
 
-float massOf(uint y) { return unpackArea((y >> 16) & 0x7Fu); }
+float storedArea(uint y) { return unpackArea((y >> 16) & 0x7Fu); }
 
 Texel unpackTexel(uvec4 u) {
-  return Texel(unpackHalves(uvec2(u.x & ~kFlat, u.y)), massOf(u.y), u.y >> 24, uintBitsToFloat(u.z), unpackHalf2x16(u.w));
+  return Texel(unpackHalves(uvec2(u.x & ~kFlat, u.y)), storedArea(u.y), u.y >> 24, uintBitsToFloat(u.z), unpackHalf2x16(u.w));
 }
 
 bool hasSurface(uvec4 texel) { return (texel.y & 0x7F0000u) != 0u; }
@@ -64,7 +64,7 @@ vec2 texelSize(float p, uint level) {
   return pixelSize(frame.camera, p) * (exp2(float(level)) / frame.camera.range.w);
 }
 
-// 1 / s^2 for sameSurface: s is the longest side of a texel of facing sides `size` on a surface of that slope.
+// 1 / s^2 for tangentPlaneWeight: s is the longest side of a texel of facing sides `size` on a surface of that slope.
 float inverseSpread(vec2 slope, vec2 size) {
   // Sides are positive in front of the eye; the floor keeps their product normal.
   return 1.0 / max((1.0 + dot(slope, slope)) * size.x * size.y, 1.0e-30);
@@ -74,7 +74,7 @@ float inverseSpread(vec2 slope, vec2 size) {
 // the texel's center. With d = along + off, the squared distance differs by d^2 - along^2 = off (off + 2 along). The two
 // terms have factors of their own, x and y of `falloff`: the first says how far a kernel bridges gaps, the second how it
 // shifts on curved surfaces, where filters of few taps shift less than Gaussians.
-float sameSurface(float off, float along, float inverseSpread2, vec2 falloff) {
+float tangentPlaneWeight(float off, float along, float inverseSpread2, vec2 falloff) {
   float rest = clamp(1.0 - off * (falloff.x * off + falloff.y * along) * inverseSpread2, 0.0, 1.4);
   return rest * rest;
 }

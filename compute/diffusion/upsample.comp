@@ -40,14 +40,14 @@ void main() {
   Foreshortening unused;
   if (coarsest == 7u && hasLast) {
     Own own = ownPart(7u, lastTexel, k, lastBits, unused);
-    upsampled[last.first + invocation] = own.texel.mass > 0.0 ? packLevel(alone(own), lastBits) : uvec4(0u);
+    upsampled[last.first + invocation] = own.texel.area > 0.0 ? packLevel(alone(own), lastBits) : uvec4(0u);
   }
   Own own = ownPart(level, texel, k, bits, unused);
   for (uint l = min(coarsest, 6u); l > 2u; --l) {
     barrier();
     if (level == l && within) {
       Level r = l == coarsest ? alone(own) : withCoarser(own, level, texel, windowOf(level + 1u, k));
-      upsampled[invocation] = own.texel.mass > 0.0 ? packLevel(r, bits) : uvec4(0u);
+      upsampled[invocation] = own.texel.area > 0.0 ? packLevel(r, bits) : uvec4(0u);
     }
   }
   barrier();
