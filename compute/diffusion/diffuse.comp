@@ -1,6 +1,5 @@
-// Blends the pixels' own shares of the profile with the upsampled pyramid's. A texel of level 2 that lies on one plane with
-// all around it has its 4 x 4 pixels filtered without looking at their depths. The rest, edges, are collected and done a
-// pixel an invocation.
+// Blends the pixels' own shares of the profile with the upsampled pyramid's. Texels of level 2 that are planes have their 4 x 4
+// pixels filtered without looking at depths. The rest, edges, are collected and done a pixel an invocation.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

@@ -24,10 +24,8 @@ vec3 beyondPixel(uint m, uint element, float entry) {
   return mix(kernels[m].pixelShare[first].rgb, next, entry - float(i));
 }
 
-// Shares of pixels of a texel of level 2, on a surface that fills all of the kernel. The level goes by the kernel's longest
-// side. How much of the octaves to its shortest side counts for the pixel, its neighbors and level 2 was fitted on tilted
-// planes, for kernels along rows or columns and along diagonals. None counts next to silhouettes, where surfaces bend away
-// from their tangent planes.
+// Shares of pixels of a texel of level 2, on a surface that fills all of the kernel. The octaves between the kernel's sides
+// count by factors that were fitted on tilted planes, and not at silhouettes, where surfaces leave their tangent planes.
 PixelShares pixelShares(uint m, Foreshortening f) {
   // The stretch is >= 0 but for rounding.
   float longer = 0.5 * log2(1.0 + max(f.stretch, 0.0)), octaves = clamp(2.5 - longer, 0.0, min(longer, 1.0));

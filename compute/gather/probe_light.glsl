@@ -14,9 +14,8 @@ GatherSlab slabOf(uint m, vec4 lengths, float h) {
                     fract(place));
 }
 
-// The part of the light of an entry point that reaches x through the medium: none where x lies beyond the entry point's exit,
-// with air between. Exits differ by the slope of the body's far side, which counts unless x's own ray has air, too. `to`: from
-// the lit point to x.
+// The part of an entry point's light that reaches x through the medium: none where x lies beyond the exit, with air between.
+// The slope of the body's far side excuses other exits, unless x's own ray has air, too. `to`: from the lit point to x.
 float staysInside(GatherRings rings, EntryPoint entry, vec3 to, vec3 toLight) {
   if (entry.exit >= kNoExit) return 1.0;
   float along = -dot(to, toLight), aside = sqrt(max(dot(to, to) - along * along, 0.0));

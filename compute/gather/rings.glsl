@@ -18,9 +18,8 @@ uvec4 entryAt(uint map, ivec2 entry, int level) {
   return texelFetch(entriesImage, entryPlace(maps[map].place.xy + entry, level, size), 0);
 }
 
-// Fetches the entry of the light ray through a point of the map from a level or, where that has several surfaces, from the
-// first. false: the map does not contain the point. `off`: from the point to the middle of what the entry stands for, in entry
-// points.
+// Fetches the entry of a point of the map from a level or, where that has several surfaces, from the first. false: the map
+// does not contain the point. `off`: from the point to the middle of what the entry stands for, in entry points.
 bool fetchEntry(uint map, bool parallel, vec3 point, int level, out uvec4 bits, out vec2 off) {
   bits = kNoEntry;
   off = vec2(0.0);
