@@ -1,30 +1,22 @@
-// A texel of the pyramid from 4 x 4 of the finer level, by 3 5 5 3 in each direction: it takes the nearest of
-// the four surfaces under it and averages those that lie on it. The finer level is in the including pass's shared colors[],
-// with mass, material and plane as packed, and depths[]; slopes are not needed.
-#ifndef PELLUCID_DOWNSAMPLED_GLSL
-#define PELLUCID_DOWNSAMPLED_GLSL
+// A texel of the pyramid from 4 x 4 of the finer level, by 3 5 5 3 in each direction: it takes the nearest of the four
+// surfaces under it and averages those that lie on it. The entry point has the finer level in shared colors[], with area,
+// material and plane as packed, and depths[]; slopes are not needed.
 
-// 3 5 5 3, whose variance is 1.
+// The variance of 3 5 5 3 is 1.
 const float kOuterWeight = 3.0 / 16.0;
 
 float weight(int i) { return i == 0 || i == 3 ? kOuterWeight : 0.5 - kOuterWeight; }
 
-// Texels under a texel, from the push constants: compilers would unroll the loops of edges over a number that they know,
-// which takes half as many registers again.
+// Texels under a texel. The push constants say so, because compilers would unroll the loops of edges over a number that
+// they know, which takes half as many registers again.
 int taps() { return int(pass.value.y); }
 
-// A plane's largest mean squared distance, over the squared length of a texel's side. Curved surfaces below it gain nothing from weights of their own.
+// A plane's largest mean squared distance, over the squared length of a texel's side. Curved surfaces below it gain nothing
+// from weights of their own.
 const float kPlaneResidual = 0.01;
 
 // Bits that texels of one plane have in common: the material, and that they are planes.
 const uint kSamePlane = 0xFF000000u | kPlane;
-
-// True where texels are one plane: one's bits, in which the others differ, their mean squared distance from the plane of
-// least squares, its slope, and the side that they make together.
-bool onePlane(uint bits, uint different, float residual, vec2 slope, vec2 side) {
-  return (different & kSamePlane) == 0u && (bits & kPlane) != 0u &&
-         residual * inverseSpread(slope, side) < kPlaneResidual;
-}
 
 // Even columns of a row come before the odd ones: reads of every other column meet no bank twice.
 int slot(ivec2 at, int width) { return at.y * width + (at.x >> 1) + (at.x & 1) * (width >> 1); }
@@ -32,30 +24,35 @@ int slot(ivec2 at, int width) { return at.y * width + (at.x >> 1) + (at.x & 1) *
 // A place among the 4 x 4 texels whose first one is in an even column, at `first`.
 int tap(int first, int width, int x, int y) { return first + slot(ivec2(x, y), width); }
 
+void keepTexel(int index, uvec4 bits) {
+  colors[index] = bits.xy;
+  depths[index] = uintBitsToFloat(bits.z);
+}
+
 struct Source {
-  float mass, depth;
+  float area, depth;
   uint material;
 };
 
 Source sourceAt(int index) {
   uint bits = colors[index].y;
-  return Source(massOf(bits), depths[index], bits >> 24);
+  return Source(storedArea(bits), depths[index], bits >> 24);
 }
 
-// The texel whose surface is taken: the nearest to the camera of the four in the middle or, beyond an edge, the one of the others
-// that the filter weights most. -1: none.
+// The texel whose surface is taken: the nearest to the camera of the four in the middle or, beyond an edge, the one of the
+// others that the filter weights most. -1: none.
 int surfaceOf(int first, int stride) {
   int surface = -1;
   float nearest = kNoDepth, most = 0.0;
   [[unroll]] for (int i = 0; i < 4; ++i) {
     Source t = sourceAt(tap(first, stride, 1 + (i & 1), 1 + (i >> 1)));
-    bool nearer = t.mass != 0.0 && t.depth < nearest;
+    bool nearer = t.area != 0.0 && t.depth < nearest;
     nearest = nearer ? t.depth : nearest;
     surface = nearer ? 5 + 4 * (i >> 1) + (i & 1) : surface;
   }
   if (surface >= 0) return surface;
   for (int i = 0; i < taps(); ++i) {
-    float w = weight(i & 3) * weight(i >> 2) * sourceAt(tap(first, stride, i & 3, i >> 2)).mass;
+    float w = weight(i & 3) * weight(i >> 2) * sourceAt(tap(first, stride, i & 3, i >> 2)).area;
     if (!(w > most)) continue;
     most = w;
     surface = i;
@@ -63,8 +60,8 @@ int surfaceOf(int first, int stride) {
   return surface;
 }
 
-// Depth change per texel in one direction, to whichever neighbor of the same material is nearer in depth:
-// the other one may lie across an edge.
+// Depth change per texel in one direction, to whichever neighbor of the material is nearer in depth, because the other one
+// may lie across an edge.
 float depthStep(int first, int stride, Source center, ivec2 at, ivec2 direction) {
   float best = 0.0;
   bool found = false;
@@ -72,7 +69,7 @@ float depthStep(int first, int stride, Source center, ivec2 at, ivec2 direction)
     ivec2 neighbor = at + side * direction, within = clamp(neighbor, ivec2(0), ivec2(3));
     Source t = sourceAt(tap(first, stride, within.x, within.y));
     float difference = float(side) * (t.depth - center.depth);
-    bool counts = neighbor == within && t.mass != 0.0 && t.material == center.material;
+    bool counts = neighbor == within && t.area != 0.0 && t.material == center.material;
     bool better = counts && (!found || abs(difference) < abs(best));
     best = better ? difference : best;
     found = found || counts;
@@ -80,7 +77,7 @@ float depthStep(int first, int stride, Source center, ivec2 at, ivec2 direction)
   return best;
 }
 
-// The texel of 4 x 4 texels that are not one plane.
+// Texel from 4 x 4 texels that are not one plane.
 uvec4 downsampledEdge(uint finer, ivec2 texel, int first, int stride) {
   int chosen = surfaceOf(first, stride);
   if (chosen < 0) {
@@ -96,39 +93,39 @@ uvec4 downsampledEdge(uint finer, ivec2 texel, int first, int stride) {
                     depthStep(first, stride, surface, nearest, ivec2(0, 1))) / max(size, vec2(1.0e-30));
   float spread2 = inverseSpread(slope, 2.0 * size);
   vec3 color = vec3(0.0);
-  float mass = 0.0, weights = 0.0, off = 0.0;
+  float area = 0.0, weights = 0.0, off = 0.0;
   vec2 tilt = vec2(0.0), spread = vec2(0.0);
-  // A row at a time, and without a branch, so that the taps' latencies overlap. Those that do not count are finite, too.
+  // A row has no branch, so that the taps' latencies overlap. Taps that do not count are finite, too.
   for (int i = 0; i < taps(); i += 4) {
     [[unroll]] for (int x = 0; x < 4; ++x) {
       ivec2 at = ivec2(x, i >> 2);
       int index = tap(first, stride, at.x, at.y);
       Source t = sourceAt(index);
-      bool counts = t.mass != 0.0 && t.material == surface.material;
+      bool counts = t.area != 0.0 && t.material == surface.material;
       vec2 offset = (vec2(at) - 1.5) * size;
       float difference = t.depth - surface.depth - dot(slope, vec2(at - nearest) * size);
       float w = weight(at.x) * weight(at.y);
-      w = counts ? w * sameSurface(difference, dot(slope, offset), spread2, kDownsampleFalloff) : 0.0;
-      color += w * t.mass * unpackColor(colors[index]);
-      mass += w * t.mass;
+      w = counts ? w * tangentPlaneWeight(difference, dot(slope, offset), spread2, kDownsampleFalloff) : 0.0;
+      color += w * t.area * unpackHalves(colors[index]);
+      area += w * t.area;
       // A surface that is seen edge-on says no more about its depth than elsewhere.
-      w *= min(t.mass, 1.0);
+      w *= min(t.area, 1.0);
       off += w * difference;
       tilt += w * difference * offset;
       spread += w * offset * offset;
       weights += w;
     }
   }
-  // The nearest one counts, so mass and weights are positive; spread is 0 only where it is alone.
+  // The nearest one counts, so area and weights are positive; spread is 0 only where it is alone.
   float inverse = 1.0 / weights;
   vec2 center = vec2(1.5) - vec2(nearest);
   float depth = surface.depth + dot(slope, center * size) + off * inverse;
   slope += tilt / max(spread, 1.0e-6 * size * size + 1.0e-30);
-  return packTexel(Texel(color / mass, mass, surface.material, depth, slope), 0u);
+  return packTexel(Texel(color / area, area, surface.material, depth, slope), 0u);
 }
 
-// Texel of the level after `finer` from the 4 x 4 at `first`. `tapsOfPlane`: 16, or taps() where a pass has no registers for
-// all of them at once.
+// Texel of the level after `finer` from the 4 x 4 at `first`. `tapsOfPlane`: 16, or taps() where a pass lacks registers for
+// all at once.
 uvec4 downsampled(uint finer, ivec2 texel, int first, int stride, int tapsOfPlane) {
   uint bits = colors[first].y, different = 0u;
   float base = depths[first], off = 0.0, square = 0.0;
@@ -140,7 +137,7 @@ uvec4 downsampled(uint finer, ivec2 texel, int first, int stride, int tapsOfPlan
       uvec2 packed = colors[index];
       float w = weight(x) * weight(y), difference = depths[index] - base;
       different |= packed.y ^ bits;
-      color += w * unpackColor(packed);
+      color += w * unpackHalves(packed);
       off += w * difference;
       tilt += w * difference * (vec2(x, y) - 1.5);
       square += w * difference * difference;
@@ -149,11 +146,10 @@ uvec4 downsampled(uint finer, ivec2 texel, int first, int stride, int tapsOfPlan
   vec2 size = texelSize(base, finer);
   float residual = square - off * off - dot(tilt, tilt);
   vec2 slope = tilt / max(size, vec2(1.0e-30));
-  bool plane = onePlane(bits, different, residual, slope, 2.0 * size);
+  bool plane = (different & kSamePlane) == 0u && (bits & kPlane) != 0u &&
+               residual * inverseSpread(slope, 2.0 * size) < kPlaneResidual;
   uvec4 result = packTexel(Texel(color, areaOf(finer + 1u, texel, slope), bits >> 24, base + off, slope), kPlane);
-  // That nothing is there is too rare for a branch of its own.
+  // Empty texels are too rare for a branch of their own.
   if (!plane) result = (bits | different) >> 16 == 0u ? uvec4(0u) : downsampledEdge(finer, texel, first, stride);
   return result;
 }
-
-#endif

@@ -1,7 +1,4 @@
-// Pixels of edges: texels of level 2 that are no plane, or whose neighbors are none. All weights go by what lies on a
-// pixel's surface.
-#ifndef PELLUCID_EDGES_GLSL
-#define PELLUCID_EDGES_GLSL
+// Pixels of edges: texels of level 2 that are no plane, or whose neighbors are none. A pixel takes what lies on its surface.
 
 // Fills edges[] and edgeCounts[].
 void collectEdges(int invocation) {
@@ -16,20 +13,20 @@ void collectEdges(int invocation) {
   edges[kTexelsX * local.y + place] = uint(local.x);
 }
 
-// Prepares what all pixels of edges ask of a texel alike. Shares without the texel's density: that of the
-// pixel replaces it, and a plane's is 1.
+// Prepares what all pixels of edges ask of a texel alike: its spread, and its shares without its kernel coverage, which the
+// pixel's replaces. A plane's coverage is 1.
 void prepareForEdges(int index) {
   uvec4 bits = upsampled[index];
   Texel t = unpackTexel(bits);
   spreads[index] = inverseSpread(t.slope, texelSize(t.depth, 2u));
   if (isPlane(bits)) return;
   PixelShares s = unpackShares(shares[index].xyz);
-  vec3 density = unpackDensity(shares[index].w) * (1.0 / kDensityOne);
-  s.coarser /= max(s.coarser + density * (1.0 - s.coarser), vec3(1.0e-6));
-  // Less 1 from a half on: halves are too coarse near 1 for what is left of it.
+  vec3 coverage = unpackCoverage(shares[index].w) * (1.0 / kCoverageOne);
+  s.coarser /= max(s.coarser + coverage * (1.0 - s.coarser), vec3(1.0e-6));
+  // From a half on, shares are kept less 1: halves are too coarse near 1 for what is left of it.
   s.coarser = mix(s.coarser, min(s.coarser - 1.0, vec3(-6.0e-8)), greaterThan(s.coarser, vec3(0.5)));
   uvec3 packed = packShares(s);
-  // One by one: others read z and w meanwhile, which a store of a part of a vector may store, too.
+  // Stores go one by one: a store of a part of a vector may store z and w, too, which others read meanwhile.
   shares[index].x = packed.x;
   shares[index].y = packed.y;
 }
@@ -37,12 +34,12 @@ void prepareForEdges(int index) {
 // The share as it was before prepareForEdges.
 vec3 coarserOfEdge(vec3 coarser) { return mix(coarser, coarser + 1.0, lessThan(coarser, vec3(0.0))); }
 
-// Colors, materials and depths of a row of texels' pixels with their ring. `first`: of them.
+// Keeps colors, materials and depths of a row of texels' pixels with their ring, from pixel `first` on.
 void keepRow(ivec2 first) {
   const int kEach = kRowPixels / kInvocations;
   uvec2 colors[kEach];
   uint depths[kEach];
-  // All loads at once, so that their latencies overlap.
+  // All loads come before the first use, so that their latencies overlap.
   [[unroll]] for (int i = 0; i < kEach; ++i) {
     int place = int(gl_LocalInvocationIndex) + i * kInvocations;
     ivec2 pixel = first + ivec2(place % kColumns, place / kColumns), at = withinRect(pixel);
@@ -56,8 +53,8 @@ void keepRow(ivec2 first) {
   }
 }
 
-// The fine filter of a pixel on a surface of that slope, and what of it lies on the surface. `place`: of the pixel in
-// what keepRow kept; `wider`: FineShape's. Planes alone have a thin part, as it makes edges no better.
+// The fine filter of a pixel on a surface of that slope; w: the part of its weight that lies on the surface. `place`: of the
+// pixel in what keepRow kept; `wider`: FineShape's. The thin part is left to planes, as it makes edges no better.
 vec4 fineOfEdge(int place, vec2 slope, vec2 size, float wider) {
   uint material = vertical[place].y >> 16;
   float own = uintBitsToFloat(vertical[kRowPixels + place].x);
@@ -67,15 +64,15 @@ vec4 fineOfEdge(int place, vec2 slope, vec2 size, float wider) {
   vec4 fine = vec4(0.0);
   for (int y = -2; y <= 2; ++y) {
     float weightY = weightAt(columns, y);
-    // A row without a branch, so that latencies overlap.
+    // A row has no branch, so that latencies overlap.
     [[unroll]] for (int x = -2; x <= 2; ++x) {
       int at = place + y * kColumns + x;
       uvec2 packed = vertical[at];
       float theirs = uintBitsToFloat(vertical[kRowPixels + at].x);
       float along = dot(depthStep, vec2(x, y));
-      float w = sameSurface(theirs - own - along, along, spread2, kPixelFalloff);
+      float w = tangentPlaneWeight(theirs - own - along, along, spread2, kPixelFalloff);
       bool counts = packed.y >> 16 == material && theirs > 0.0;
-      fine += (counts ? w * weightAt(rows, x) * weightY : 0.0) * vec4(unpackColor(packed), 1.0);
+      fine += (counts ? w * weightAt(rows, x) * weightY : 0.0) * vec4(unpackHalves(packed), 1.0);
     }
   }
   return fine;
@@ -97,18 +94,18 @@ Around aroundPixel(int center, vec2 from, float depth, uint material, vec2 size)
   int reach = kGathers ? int(pass.value.y) : 1;
   for (int y = -1; y <= 1; ++y) {
     float weightY = y < 0 ? splineY.x : y > 0 ? splineY.z : splineY.y;
-    // A row without a branch, so that latencies overlap.
+    // A row has no branch, so that latencies overlap.
     for (int x = -1; x <= reach; ++x) {
       int index = center + y * kWindowX + x;
       Texel t = unpackTexel(upsampled[index]);
       float along = dot(t.slope, (from - 4.0 * vec2(x, y)) * size);
-      float w = sameSurface(depth - t.depth - along, along, spreads[index], kPixelFalloff);
+      float w = tangentPlaneWeight(depth - t.depth - along, along, spreads[index], kPixelFalloff);
       w *= weightY * (x < 0 ? splineX.x : x > 0 ? splineX.z : splineX.y);
-      w = t.mass != 0.0 && t.material == material ? w : 0.0;
-      vec3 density = w * (1.0 / kDensityOne) * unpackDensity(shares[index].w);
-      a.coarser += density * t.color;
-      a.found += density;
-      w *= min(t.mass, 1.0);
+      w = t.area != 0.0 && t.material == material ? w : 0.0;
+      vec3 coverage = w * (1.0 / kCoverageOne) * unpackCoverage(shares[index].w);
+      a.coarser += coverage * t.color;
+      a.found += coverage;
+      w *= min(t.area, 1.0);
       a.slope += w * t.slope;
       PixelShares s = unpackShares(shares[index].xyz);
       a.coarserShare += w * coarserOfEdge(s.coarser);
@@ -125,7 +122,7 @@ Around aroundPixel(int center, vec2 from, float depth, uint material, vec2 size)
   return a;
 }
 
-// `local`: from the group's first pixel.
+// `local`: the pixel from the group's first one.
 void diffuseEdge(ivec2 firstTexel, ivec2 local) {
   ivec2 pixel = 4 * firstTexel + local;
   int place = ((local.y & 3) + kRing) * kColumns + local.x + kRing;
@@ -140,7 +137,7 @@ void diffuseEdge(ivec2 firstTexel, ivec2 local) {
   }
   if (material == 0u) return;
   vec4 source = texelFetch(sourceImage, pixel, 0);
-  vec3 own = kFine ? unpackColor(vertical[place]) : sanitize(source.rgb), color = own;
+  vec3 own = kFine ? unpackHalves(vertical[place]) : sanitize(source.rgb), color = own;
   if (depth > 0.0) {
     vec2 size = texelSize(depth, 0u);
     int center = (local.y / 4 + 1) * kWindowX + local.x / 4 + 1;
@@ -148,8 +145,8 @@ void diffuseEdge(ivec2 firstTexel, ivec2 local) {
     float wider = unpackShape(shares[center].z).wider;
     // Texels around may ask for more of a filter that counts the pixel more.
     a.fineShare = min(a.fineShare, (1.0 - a.coarserShare) * mostFine(wider));
-    // Shares are weighted with what of their filters was found. The pixel itself counts in the first and the second,
-    // so the divisor is 0 only where all of the share is the coarser one's and none of it is there.
+    // Kernel coverage weights the shares. The pixel itself counts in the first and the second, so the divisor is 0 only where
+    // the coarser levels have all of the share and none of it is there.
     vec3 ownShare = 1.0 - a.coarserShare - a.fineShare;
     vec3 sum = ownShare * own + a.coarserShare * a.coarser, divisor = ownShare + a.coarserShare * a.found;
     if (kFine) {
@@ -165,9 +162,8 @@ void diffuseEdge(ivec2 firstTexel, ivec2 local) {
   writeResult(pixel, color, source.a, pass.value.w != 0u);
 }
 
-// For all invocations, as they wait for each other. After diffusePlanes, which prepares the texels.
+// Follows diffusePlanes, which prepares the texels. For all invocations, as they wait for each other.
 void diffuseEdges(ivec2 firstTexel, int invocation) {
-  // All invocations do the same rows.
   for (uint rows = edgeRows; rows != 0u; rows &= rows - 1u) {
     int row = findLSB(rows), full = int(edgeCounts[row] & 0xFFFFu), count = full + int(edgeCounts[row] >> 16);
     if (kFine) {
@@ -183,5 +179,3 @@ void diffuseEdges(ivec2 firstTexel, int invocation) {
     }
   }
 }
-
-#endif

@@ -1,12 +1,13 @@
-// Levels 6 and 7 of the pyramid, made by the upsampling groups that need them.
-#ifndef PELLUCID_LAST_LEVELS_GLSL
-#define PELLUCID_LAST_LEVELS_GLSL
+// Levels 6 and 7 of the pyramid. The upsampling groups that need them make them.
 
-// Part of all energy: a plane of 82 pixels' radius has as much beyond level 5, where a plan that knows radii begins to use level 6.
+#include "diffusion/downsampled.glsl"
+
+// Part of all energy. A plane of 82 pixels' radius has as much beyond level 5; plans that know radii begin to use level 6
+// there.
 const float kLeastBeyondMade = 0.004;
 
-// True where a texel of level 5 has energy at coarser levels. In plans that do not know how large radii are, most have next to
-// none.
+// True where a texel of level 5 has energy at coarser levels. In plans that do not know how large radii are, most texels have
+// next to none.
 bool reachesBeyond(ivec2 texel, uvec4 bits) {
   if (!hasSurface(bits)) return false;
   uint m = materialBits(bits) - 1u;
@@ -17,17 +18,15 @@ bool reachesBeyond(ivec2 texel, uvec4 bits) {
   return any(greaterThan(beyond, vec3(kLeastBeyondMade)));
 }
 
-// Levels 6 and 7 where windows of group k are, before others need them.
+// Makes levels 6 and 7 where windows of group k are. For all invocations, as they wait for each other.
 void makeLevels(ivec2 k, int invocation) {
   ivec2 first7 = firstMade(7u, k), first6 = firstMade(6u, k), first5 = 2 * first6 - 1;
   for (int i = invocation; i < kSide5 * kSide5; i += PELLUCID_UPSAMPLE_GROUP * PELLUCID_UPSAMPLE_GROUP) {
     ivec2 at = ivec2(i % kSide5, i / kSide5), texel = first5 + at;
-    uvec4 bits = contains(levelRect(5u), texel) ? storedTexel(5u, texel) : uvec4(0u);
-    colors[slot(at, kSide5)] = bits.xy;
-    depths[slot(at, kSide5)] = uintBitsToFloat(bits.z);
+    keepTexel(slot(at, kSide5), contains(levelRect(5u), texel) ? storedTexel(5u, texel) : uvec4(0u));
   }
   barrier();
-  // In a loop, as one reduction in the code takes fewer registers than two.
+  // One reduction in a loop takes fewer registers than two in a row.
   for (uint finer = 5u; finer < 7u; ++finer) {
     bool isFirst = finer == 5u;
     int side = isFirst ? kSide6 : 3, width = isFirst ? kSide5 : kSide6;
@@ -37,13 +36,8 @@ void makeLevels(ivec2 k, int invocation) {
     barrier();
     if (at.y < side) {
       upsampled[(isFirst ? kMade : kMade + kSide6 * kSide6) + invocation] = bits;
-      if (isFirst) {
-        colors[slot(at, side)] = bits.xy;
-        depths[slot(at, side)] = uintBitsToFloat(bits.z);
-      }
+      if (isFirst) keepTexel(slot(at, side), bits);
     }
     barrier();
   }
 }
-
-#endif

@@ -1,33 +1,34 @@
 // A level's own part of the kernel, and the coarser levels under it.
-#ifndef PELLUCID_LEVEL_FILTER_GLSL
-#define PELLUCID_LEVEL_FILTER_GLSL
+
+#include "diffusion/foreshortening.glsl"
+#include "diffusion/profile_table.glsl"
+#include "diffusion/window.glsl"
 
 const int kReach = 4; // of the stretch, texels
 
-// A level's kernel has variance 7/12 - 13/12 4^-level squared texels of an axis; foreshortened surfaces need it
-// longer along one axis: a 1-D Gaussian of what is missing, at the texels nearest to the axis.
+// A level's kernel has variance 7/12 - 13/12 4^-level squared texels of an axis. Foreshortened surfaces need a kernel that
+// is longer along one axis: the filter is a 1-D Gaussian of what is missing, at the texels nearest to the axis.
 vec4 stretched(ivec2 texel, uint level, ivec2 k, Texel own, Foreshortening f) {
-  vec4 sum = own.mass * vec4(own.color, 1.0);
+  vec4 sum = own.area * vec4(own.color, 1.0);
   float variance = (7.0 / 12.0 - 13.0 / 12.0 * exp2(-2.0 * float(level))) * f.stretch;
   bool alongX = abs(f.axis.x) >= abs(f.axis.y);
   float dominant = alongX ? f.axis.x : f.axis.y; // its square is at least 1/2
   float gradient = (alongX ? f.axis.y : f.axis.x) / dominant;
   variance = min(variance * dominant * dominant, float(kReach));
-  if (own.mass == 0.0 || variance < 0.02) return sum;
+  if (own.area == 0.0 || variance < 0.02) return sum;
   float weights = 1.0;
   vec2 size = texelSize(own.depth, level);
   float spread2 = inverseSpread(own.slope, size);
   ivec4 rect = levelRect(level);
-  // The weight of the next texels. A narrow Gaussian at texels' centers alone has next to none of its variance; two taps beside one have all
-  // of it, up to where both are alike.
+  // The weight of the next texels. A narrow Gaussian at texels' centers alone has next to none of its variance; two taps
+  // beside one have all of it, up to where both are alike.
   float next = max(exp(-0.5 / variance), min(0.5 * variance / (1.0 - min(variance, 0.5)), 0.17));
-  // Three standard deviations.
-  int reach = min(int(ceil(3.0 * sqrt(variance))), kReach);
+  int reach = min(int(ceil(3.0 * sqrt(variance))), kReach); // three standard deviations
   for (int i = 1; i <= reach; ++i) {
     float weight = pow(next, float(i * i));
     int across = int(floor(gradient * float(i) + 0.5));
     ivec2 offset = alongX ? ivec2(i, across) : ivec2(across, i);
-    // Both sides at once, so that their latencies overlap.
+    // Both sides are looked up at once, so that their latencies overlap.
     uvec4 bits[2];
     [[unroll]] for (int side = 0; side < 2; ++side) {
       ivec2 at = texel + (1 - 2 * side) * offset;
@@ -38,8 +39,8 @@ vec4 stretched(ivec2 texel, uint level, ivec2 k, Texel own, Foreshortening f) {
     [[unroll]] for (int side = 0; side < 2; ++side) {
       Texel t = unpackTexel(bits[side]);
       float along = dot(own.slope, vec2((1 - 2 * side) * offset) * size);
-      float w = weight * t.mass * sameSurface(t.depth - own.depth - along, along, spread2, kStretchFalloff);
-      sum += (t.mass != 0.0 && t.material == own.material ? w : 0.0) * vec4(t.color, 1.0);
+      float w = weight * t.area * tangentPlaneWeight(t.depth - own.depth - along, along, spread2, kStretchFalloff);
+      sum += (t.area != 0.0 && t.material == own.material ? w : 0.0) * vec4(t.color, 1.0);
     }
   }
   return sum / weights;
@@ -48,35 +49,39 @@ vec4 stretched(ivec2 texel, uint level, ivec2 k, Texel own, Foreshortening f) {
 // A texel's own level, without the coarser ones.
 struct Own {
   Texel texel;
-  vec4 here;  // the level's own part, times the share of its kernel that the surface fills, which is in a
+  vec4 here;  // the level's own part, times its kernel coverage, which is in a
   vec3 share; // of the coarser levels
 };
 
-// Without branches, so that what is looked up is waited for once.
+// The function has no branches, so that the invocation waits for memory once.
 Own ownPart(uint level, ivec2 texel, ivec2 k, uvec4 bits, out Foreshortening f) {
   Own own;
   own.texel = unpackTexel(bits);
   f = foreshortening(texel, level, own.texel.depth, own.texel.slope);
   // A plane fills all of its kernel, however its area was rounded.
-  float area = isPlane(bits) ? own.texel.mass : areaOf(level, texel, own.texel.slope);
+  float area = isPlane(bits) ? own.texel.area : areaOf(level, texel, own.texel.slope);
   own.here = stretched(texel, level, k, own.texel, f) / area;
-  // Material 0 looks at what it does not use.
+  // Material 0 looks up what it does not use.
   uint m = max(own.texel.material, 1u) - 1u;
   own.share = coarserShare(m, level, shareEntry(m, f.lengthMm));
   return own;
 }
 
 struct Level {
-  vec3 color, density; // share of the kernel that the surface fills, of each channel
+  vec3 color, coverage; // kernel coverage of each channel
 };
+
+uvec4 packLevel(Level r, uvec4 bits) {
+  return uvec4(packColor(r.color, bits.y >> 16), bits.z, packCoverage(r.coverage));
+}
 
 Level alone(Own own) {
   return Level(own.here.a > 0.0 ? own.here.rgb / own.here.a : own.texel.color, vec3(own.here.a));
 }
 
-// `window`: of the coarser level, which is upsampled.
+// `window`: of the coarser level, which has been upsampled.
 Level withCoarser(Own own, uint level, ivec2 texel, Window window) {
-  // 9, 3, 3 and 1 sixteenths of the four nearest: the refinement of the quadratic B-spline.
+  // The four nearest count 9, 3, 3 and 1 sixteenths: the refinement of the quadratic B-spline.
   ivec2 nearest = texel >> 1, toward = 2 * (texel & 1) - 1;
   vec2 size = texelSize(own.texel.depth, level + 1u);
   float spread2 = inverseSpread(own.texel.slope, size);
@@ -85,20 +90,18 @@ Level withCoarser(Own own, uint level, ivec2 texel, Window window) {
     ivec2 at = nearest + toward * ivec2(i & 1, i >> 1);
     uvec4 theirs = upsampled[indexOf(window, at)];
     vec2 off = vec2(at) + 0.5 - 0.5 * (vec2(texel) + 0.5);
-    float w = (i == 0 ? 9.0 / 16.0 : i == 3 ? 1.0 / 16.0 : 3.0 / 16.0) / kDensityOne;
+    float w = (i == 0 ? 9.0 / 16.0 : i == 3 ? 1.0 / 16.0 : 3.0 / 16.0) / kCoverageOne;
     float along = dot(own.texel.slope, off * size);
-    w *= sameSurface(uintBitsToFloat(theirs.z) - own.texel.depth - along, along, spread2, kUpsampleFalloff);
+    w *= tangentPlaneWeight(uintBitsToFloat(theirs.z) - own.texel.depth - along, along, spread2, kUpsampleFalloff);
     w = materialBits(theirs) == own.texel.material ? w : 0.0;
-    vec3 density = w * unpackDensity(theirs.w);
-    coarser += density * unpackColor(theirs.xy);
-    found += density;
+    vec3 coverage = w * unpackCoverage(theirs.w);
+    coarser += coverage * unpackHalves(theirs.xy);
+    found += coverage;
   }
-  // Both are weighted with the density that they found, which renormalizes at silhouettes and borders.
-  vec3 density = (1.0 - own.share) * own.here.a + own.share * found;
+  // Coverage weights both parts, which renormalizes at silhouettes and borders.
+  vec3 coverage = (1.0 - own.share) * own.here.a + own.share * found;
   vec3 here = (1.0 - own.share) * own.here.rgb, light = here + own.share * coarser;
   // The level's own color stands in for a channel that has nothing here: the finer level weights it with 0.
-  vec3 color = mix(own.texel.color, light / max(density, vec3(1.0e-6)), greaterThan(density, vec3(1.0e-6)));
-  return Level(color, density);
+  vec3 color = mix(own.texel.color, light / max(coverage, vec3(1.0e-6)), greaterThan(coverage, vec3(1.0e-6)));
+  return Level(color, coverage);
 }
-
-#endif

@@ -1,9 +1,7 @@
 // Pixels of planes, of which an invocation does four below each other.
-#ifndef PELLUCID_PLANES_GLSL
-#define PELLUCID_PLANES_GLSL
 
-// Four pixels below each other, a column of a cell, with what is linear between the four probes around it. The cell and
-// those around are one surface, so that probes need no test.
+// Adds gathered light, linear between the four probes around, to a column of a cell: four pixels. The cell and those around
+// are one surface, so that probes need no test.
 void addLightOfPlane(ivec2 pixel, inout vec4 colors[4]) {
   ivec2 cell = pixel >> 2;
   float across = 0.25 * float(pixel.x & 3);
@@ -19,12 +17,13 @@ void addLightOfPlane(ivec2 pixel, inout vec4 colors[4]) {
     colors[i].rgb = withLight(colors[i].rgb, added + float(i) * addedStep, convexity + float(i) * convexityStep);
 }
 
-// Level 2 at a pixel's column, `splineX` splineAt it, in the rows of its texel `texel` of the window and of those beside it.
+// Level 2 at a pixel's column, in the row of its texel and those above and below. `texel`: in upsampled[]; `splineX`:
+// splineAt the column.
 void coarserRows(int texel, vec3 splineX, out vec3 rows[3]) {
   [[unroll]] for (int y = 0; y < 3; ++y) {
     int row = texel + (y - 1) * kWindowX;
-    rows[y] = splineX.x * unpackColor(upsampled[row - 1].xy) + splineX.y * unpackColor(upsampled[row].xy) +
-              splineX.z * unpackColor(upsampled[row + 1].xy);
+    rows[y] = splineX.x * unpackHalves(upsampled[row - 1].xy) + splineX.y * unpackHalves(upsampled[row].xy) +
+              splineX.z * unpackHalves(upsampled[row + 1].xy);
   }
 }
 
@@ -34,14 +33,14 @@ vec3 coarserAt(vec3 rows[3], int y) {
   return splineY.x * rows[0] + splineY.y * rows[1] + splineY.z * rows[2];
 }
 
-// With what light was gathered; `top`: the first of the pixels.
+// Stores a column of pixels, the first one at `top`, with what light was gathered.
 void storeColumn(ivec2 top, vec4 result[4]) {
   if (kGathers && someLight != 0u) addLightOfPlane(top, result);
-  // One branch for all pixels, as branches cost more than what is in them.
+  // All pixels share a branch, because branches cost more than what is in them.
   if (tinted(pass.value.w != 0u))
     [[unroll]] for (int i = 0; i < 4; ++i)
       result[i].rgb = sanitize(result[i].rgb * albedoAt(top + ivec2(0, i)));
-  // Halves have lost what other outputs keep of alpha.
+  // The halves that keep alpha lose bits that wide outputs have.
   if (hasFlag(PELLUCID_FLAG_WIDE_OUTPUT))
     [[unroll]] for (int i = 0; i < 4; ++i)
       result[i].a = texelFetch(sourceImage, top + ivec2(0, i), 0).a;
@@ -49,8 +48,8 @@ void storeColumn(ivec2 top, vec4 result[4]) {
     imageStore(destinationImage, top + ivec2(0, i), vec4(asStored(result[i].rgb), result[i].a));
 }
 
-// `sources`: of the invocation's column of pixels with its ring; `shaped`: whether texels have shapes. For all
-// invocations, as it waits for them.
+// `sources`: the invocation's column of pixels with its ring; `shaped`: texels have shapes. For all invocations, as they
+// wait for each other.
 void diffusePlanes(ivec2 firstTexel, vec4 sources[kRows + 2 * kMostRing], bool shaped) {
   int column = ownColumn(), firstRow = ownRow(), invocation = int(gl_LocalInvocationIndex);
   uvec2 own[kRows]; // colors and alphas
@@ -84,5 +83,3 @@ void diffusePlanes(ivec2 firstTexel, vec4 sources[kRows + 2 * kMostRing], bool s
     storeColumn(4 * firstTexel + ivec2(x, firstRow), result);
   }
 }
-
-#endif

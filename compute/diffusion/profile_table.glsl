@@ -1,15 +1,15 @@
 // Lookups in a material's profile table, KernelConstants.
-#ifndef PELLUCID_PROFILE_TABLE_GLSL
-#define PELLUCID_PROFILE_TABLE_GLSL
 
-// Place of a length on the surface among a material's shares, see KernelConstants.
+layout(set = 0, binding = PELLUCID_BINDING_KERNELS) readonly buffer Kernels { KernelConstants kernels[]; };
+
+// Place of a length on the surface among a material's shares.
 float shareEntry(uint m, float lengthMm) {
   // The floor keeps log2 finite where the camera gives a pixel no size.
   float at = (log2(max(lengthMm, 1.0e-30)) - kernels[m].range.x) * kernels[m].range.y;
   return clamp(at, 0.0, float(PELLUCID_SHARE_ENTRIES - 1));
 }
 
-// The share that levels coarser than `level` have of it and of them, at texels with this entry.
+// The coarser levels' share of the energy that `level` and they have, at texels with this entry.
 vec3 coarserShare(uint m, uint level, float entry) {
   uint i = min(uint(entry), uint(PELLUCID_SHARE_ENTRIES - 2));
   uint first = min(level - 2u, uint(PELLUCID_SHARE_COARSER)) * uint(PELLUCID_SHARE_ENTRIES) + i;
@@ -24,17 +24,13 @@ vec3 beyondPixel(uint m, uint element, float entry) {
   return mix(kernels[m].pixelShare[first].rgb, next, entry - float(i));
 }
 
-// Shares of pixels of a texel of level 2, on a surface that fills all of the kernel. By how many octaves the kernel's longest side is
-// longer than its shortest, which the level goes by, and how much of that goes for the pixel, its neighbors and level 2, was
-// fitted on tilted planes, for kernels along rows or columns and along diagonals. Next to silhouettes, where surfaces bend
-// away from their tangent planes, it is none.
+// Shares of pixels of a texel of level 2, on a surface that fills all of the kernel. The octaves between the kernel's sides
+// count by factors that were fitted on tilted planes, and not at silhouettes, where surfaces leave their tangent planes.
 PixelShares pixelShares(uint m, Foreshortening f) {
   // The stretch is >= 0 but for rounding.
   float longer = 0.5 * log2(1.0 + max(f.stretch, 0.0)), octaves = clamp(2.5 - longer, 0.0, min(longer, 1.0));
-  // A length of a pixel is a quarter of a texel's.
-  float entry = shareEntry(m, 0.25 * f.lengthMm), perOctave = kernels[m].range.y * octaves;
-  // 1: along rows or columns, 0: along a diagonal.
-  float straight = abs(f.axis.x * f.axis.x - f.axis.y * f.axis.y);
+  float entry = shareEntry(m, 0.25 * f.lengthMm), perOctave = kernels[m].range.y * octaves; // of a pixel, 1/4 of the texel
+  float straight = abs(f.axis.x * f.axis.x - f.axis.y * f.axis.y); // 1: along rows or columns, 0: along a diagonal
   vec3 coarser = beyondPixel(m, 0u, entry - perOctave * (0.3 - 0.15 * straight));
   vec3 both = max(beyondPixel(m, 1u, entry - perOctave * (0.5 - 0.5 * straight)), coarser);
   vec3 beyond = max(beyondPixel(m, 1u, entry - 0.5 * perOctave), both);
@@ -45,5 +41,3 @@ PixelShares pixelShares(uint m, Foreshortening f) {
                               (beyond - both) / max(beyond - coarser, vec3(1.0e-6)));
   return PixelShares(coarser, fine, shape);
 }
-
-#endif

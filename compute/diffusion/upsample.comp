@@ -1,62 +1,14 @@
-// R_l = (1 - s) E_l + s R_(l+1) from the coarsest level of the pyramid to level 2, s the profile's share of the coarser
-// levels at the texel, and the shares of the pixels under level 2. A group makes 32 x 16 texels of level 2 and, before
-// them, as much of each coarser level as they need. It makes levels 6 and 7 itself, from level 5, so that no dispatch of few
-// texels holds up the others.
+// Computes R_l = (1 - s) E_l + s R_(l+1), s the coarser levels' share of the profile, from the coarsest level of the pyramid
+// to level 2, and the shares of level 2's pixels. A group makes 32 x 16 texels of level 2 and, before them, what they need of
+// each coarser level. It makes levels 6 and 7 itself, so that no dispatch of few texels holds up the others.
 #version 460
-#extension GL_EXT_control_flow_attributes : require
-#extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
 #define GROUP_SIDE PELLUCID_UPSAMPLE_GROUP
 #include "diffusion/upsampled.glsl"
-
-layout(set = 0, binding = PELLUCID_BINDING_COARSER_LEVELS) uniform utexture2D coarserLevelsImage;
-layout(set = 0, binding = PELLUCID_BINDING_KERNELS) readonly buffer Kernels { KernelConstants kernels[]; };
-
-// Upsampled texels of level 3 and coarser ones, level after level; see Window. Color and material as packed, depth, and in
-// place of the slope the share of the kernel that the surface fills, of each channel.
-const int kUpsampled = 153 + 60 + 24 + 12 + 9;
-const int kMade = kUpsampled; // then levels 6 and, 3 x 3, 7, where the group makes them
-// Sides of what a group needs of level 5 to make level 6, and of that to make level 7.
-const int kSide5 = 18, kSide6 = 8;
-
-shared uvec4 upsampled[kMade + kSide6 * kSide6 + 9];
-shared uvec2 colors[kSide5 * kSide5];
-shared float depths[kSide5 * kSide5];
-shared uint needsMade; // whether the group makes levels 6 and 7
-
-#include "diffusion/downsampled.glsl"
-#include "diffusion/profile_table.glsl"
-#include "diffusion/window.glsl"
 #include "diffusion/level_filter.glsl"
 #include "diffusion/last_levels.glsl"
-
-void writeUpsampled(ivec2 texel, uvec4 color, uvec4 shares) {
-  imageStore(levelsDestination, upsampledPlace(texel), color);
-  imageStore(levelsDestination, sharesPlace(texel), shares);
-}
-
-uvec4 packLevel(Level r, uvec4 bits) {
-  return uvec4(packColor(r.color, bits.y >> 16), bits.z, packDensity(r.density));
-}
-
-// A texel of level 2 and its pixels' shares.
-void upsampleFine(ivec2 texel, ivec2 k, uvec4 bits) {
-  if (!contains(levelRect(2u), texel)) return;
-  uvec4 color = uvec4(0u, bits.y & 0xFFFF0000u, 0u, 0u), shares = uvec4(0u);
-  if (hasSurface(bits)) {
-    Foreshortening f;
-    Own own = ownPart(2u, texel, k, bits, f);
-    uint m = own.texel.material - 1u;
-    Level r = withCoarser(own, 2u, texel, windowOf(3u, k));
-    uint upper = bits.y >> 16 & ~(kPlane >> 16);
-    color = uvec4(packColor(r.color, (bits.x & kFlat) != 0u ? upper | kPlane >> 16 : upper), bits.zw);
-    PixelShares share = pixelShares(m, f);
-    share.coarser = share.coarser * r.density / max(1.0 - share.coarser + share.coarser * r.density, vec3(1.0e-6));
-    shares = uvec4(packShares(share), packDensity(r.density) | (isPlane(bits) ? kFull : 0u));
-  }
-  writeUpsampled(texel, color, shares);
-}
+#include "diffusion/level_2.glsl"
 
 void main() {
   int invocation = int(gl_LocalInvocationIndex);
@@ -71,11 +23,10 @@ void main() {
   bool inside = level <= coarsest && within && contains(levelRect(level), texel);
   bool lastInside = coarsest == 7u && hasLast && contains(levelRect(7u), lastTexel);
   if (invocation == 0) needsMade = 0u;
-  // All before the first is used.
-  uvec4 bits = inside && level <= 5u ? storedTexel(level, texel) : uvec4(0u);
-  uvec4 lastBits = uvec4(0u);
-  uvec4 fineBits = contains(levelRect(2u), fine) ? texelFetch(pyramidImage, inAtlas(2u, fine), 0) : uvec4(0u);
-  uvec4 nextBits = contains(levelRect(2u), nextFine) ? texelFetch(pyramidImage, inAtlas(2u, nextFine), 0) : uvec4(0u);
+  // All loads come before the first use.
+  uvec4 bits = inside && level <= 5u ? storedTexel(level, texel) : uvec4(0u), lastBits = uvec4(0u);
+  uvec4 fineBits = contains(levelRect(2u), fine) ? storedTexel(2u, fine) : uvec4(0u);
+  uvec4 nextBits = contains(levelRect(2u), nextFine) ? storedTexel(2u, nextFine) : uvec4(0u);
   barrier();
   if (coarsest == 7u && level == 5u && reachesBeyond(texel, bits)) needsMade = 1u; // whoever writes, writes this
   barrier();
@@ -89,18 +40,18 @@ void main() {
   Foreshortening unused;
   if (coarsest == 7u && hasLast) {
     Own own = ownPart(7u, lastTexel, k, lastBits, unused);
-    upsampled[last.first + invocation] = own.texel.mass > 0.0 ? packLevel(alone(own), lastBits) : uvec4(0u);
+    upsampled[last.first + invocation] = own.texel.area > 0.0 ? packLevel(alone(own), lastBits) : uvec4(0u);
   }
   Own own = ownPart(level, texel, k, bits, unused);
   for (uint l = min(coarsest, 6u); l > 2u; --l) {
     barrier();
     if (level == l && within) {
       Level r = l == coarsest ? alone(own) : withCoarser(own, level, texel, windowOf(level + 1u, k));
-      upsampled[invocation] = own.texel.mass > 0.0 ? packLevel(r, bits) : uvec4(0u);
+      upsampled[invocation] = own.texel.area > 0.0 ? packLevel(r, bits) : uvec4(0u);
     }
   }
   barrier();
-  // In a loop, because both in a row are a third more code and no faster.
+  // The loop runs once for each texel of level 2: both in a row are a third more code and no faster.
   for (int i = 0; i < 2; ++i) {
     upsampleFine(fine, k, fineBits);
     fine = nextFine;

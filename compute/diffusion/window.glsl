@@ -1,9 +1,19 @@
-// The part of each level that an upsampling group holds in shared memory.
-#ifndef PELLUCID_WINDOW_GLSL
-#define PELLUCID_WINDOW_GLSL
+// Parts of levels that an upsampling group k holds in shared upsampled[]. Groups start at texels 16 k - 1 of level 2, k.x
+// even, so that windows are alike everywhere. Texels of level 3 and coarser ones, which have been upsampled, come level
+// after level: color and material as packed, depth and, in place of the slope, the kernel coverage of each channel.
+const int kUpsampled = 153 + 60 + 24 + 12 + 9;
+// Levels 6 and, 3 x 3, 7 follow as the pyramid has them, where the group makes them.
+const int kMade = kUpsampled;
+// Sides of what a group needs of level 5 to make level 6, and of level 6 to make level 7.
+const int kSide5 = 18, kSide6 = 8;
 
-// A part of a level that a group needs. Groups start at texels 16 k - 1 of level 2, k.x even, so that these are the same
-// everywhere.
+layout(set = 0, binding = PELLUCID_BINDING_COARSER_LEVELS) uniform utexture2D coarserLevelsImage;
+
+shared uvec4 upsampled[kMade + kSide6 * kSide6 + 9];
+shared uvec2 colors[kSide5 * kSide5]; // of level 5, then 6, to make the next
+shared float depths[kSide5 * kSide5];
+shared uint needsMade; // whether the group makes levels 6 and 7
+
 struct Window {
   ivec2 corner; // first texel
   int columns;  // texels
@@ -18,19 +28,19 @@ Window windowOf(uint level, ivec2 k) {
   return Window((k - 2) >> 1, 3, 249);
 }
 
-// In upsampled[], of a texel in the window.
+// Place in upsampled[] of a texel in the window.
 int indexOf(Window window, ivec2 texel) {
   ivec2 at = texel - window.corner;
   return window.first + at.y * window.columns + at.x;
 }
 
-// The other way round, from the window's first one on.
+// The inverse; `index`: from the window's first texel on.
 ivec2 texelOf(Window window, int index) {
   int row = int((float(index) + 0.5) / float(window.columns));
   return window.corner + ivec2(index - row * window.columns, row);
 }
 
-// First texel of level 6 or 7 that the group makes.
+// The first texel of level 6 or 7 that the group makes.
 ivec2 firstMade(uint level, ivec2 k) {
   ivec2 last = windowOf(7u, k).corner;
   return level == 6u ? 2 * last - 1 : last;
@@ -38,11 +48,7 @@ ivec2 firstMade(uint level, ivec2 k) {
 
 // True where the group can tell what a texel around its window is. It knows few others of levels that it makes.
 bool known(uint level, ivec2 texel, ivec2 k) {
-  if (level > 5u) {
-    ivec2 at = texel - firstMade(level, k);
-    return all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, ivec2(level == 6u ? kSide6 : 3)));
-  }
-  return true;
+  return level < 6u || contains(ivec4(0, 0, ivec2(level == 6u ? kSide6 : 3)), texel - firstMade(level, k));
 }
 
 // A texel of levels 2 to 5.
@@ -52,11 +58,7 @@ uvec4 storedTexel(uint level, ivec2 texel) {
 }
 
 uvec4 texelAt(uint level, ivec2 texel, ivec2 k) {
-  if (level > 5u) {
-    ivec2 at = texel - firstMade(level, k);
-    return upsampled[kMade + (level == 6u ? at.y * kSide6 + at.x : kSide6 * kSide6 + at.y * 3 + at.x)];
-  }
-  return storedTexel(level, texel);
+  if (level < 6u) return storedTexel(level, texel);
+  ivec2 at = texel - firstMade(level, k);
+  return upsampled[kMade + (level == 6u ? at.y * kSide6 + at.x : kSide6 * kSide6 + at.y * 3 + at.x)];
 }
-
-#endif

@@ -1,6 +1,9 @@
-// Set 0 of every pass, and the few functions that read it.
+// Set 0 of every pass, and the few functions that read it. An entry point includes this file first.
 #ifndef PELLUCID_BINDINGS_GLSL
 #define PELLUCID_BINDINGS_GLSL
+
+#extension GL_EXT_control_flow_attributes : require
+#extension GL_EXT_samplerless_texture_functions : require
 
 #include "frame/gbuffer_decode.glsl"
 #include "lib/camera.glsl"
@@ -22,7 +25,7 @@ layout(set = 0, binding = PELLUCID_BINDING_FRONT_DEPTH) uniform texture2D frontD
 layout(set = 0, binding = PELLUCID_BINDING_SOURCE) uniform texture2D sourceImage;
 layout(set = 0, binding = PELLUCID_BINDING_ALBEDO) uniform texture2D albedoImage;
 layout(set = 0, binding = PELLUCID_BINDING_MATERIAL) uniform utexture2D materialImage;
-// Without a format, so that one shader writes every output format; see module/src/pipelines.cpp.
+// The destination has no format, so that one shader writes every output format; see module/src/pipelines.cpp.
 layout(set = 0, binding = PELLUCID_BINDING_DESTINATION) uniform writeonly image2D destinationImage;
 
 #include "frame/flags.glsl"
@@ -34,8 +37,8 @@ bool insideRect(ivec2 pixel) { return contains(ivec4(frame.rect), pixel); }
 // The nearest pixel of the rect, where loads need no branch.
 ivec2 withinRect(ivec2 pixel) { return clamp(pixel, ivec2(frame.rect.xy), ivec2(frame.rect.zw) - 1); }
 
-// Index without the mark bit. 0 for none and for values beyond the material list, so that a stray id
-// cannot read past it.
+// Index without the mark bit. It is 0 for none and for values beyond the material list, so that a stray id
+// cannot read past the list.
 uint materialIndex(uint value) {
   uint id = value & ~frame.marks.x;
   return id <= frame.flags.y ? id : 0u;
@@ -52,7 +55,7 @@ float frontDistanceOf(float stored) {
 
 float frontDistance(ivec2 pixel) { return frontDistanceOf(texelFetch(frontDepthImage, pixel, 0).x); }
 
-// `color`: >= 0. Halves are rounded here, as image stores may truncate.
+// `color`: >= 0. Halves are rounded here, because image stores may truncate.
 vec3 asStored(vec3 color) { return hasFlag(PELLUCID_FLAG_WIDE_OUTPUT) ? color : roundToHalf(color); }
 
 // True where the post-scatter albedo applies. `last`: this is the frame's final write.

@@ -4,7 +4,8 @@
 
 #include "lib/thickness.glsl"
 
-// Along the view ray, scene units; -1 where no back face is behind the front one. `front`: planar distance of `frontStored`.
+// Scene units along the view ray; -1 where no back face is behind the front one. `front`: planar distance of
+// `frontStored`.
 float chordOf(ViewRay ray, float front, float frontStored, float backStored) {
   bool backViewZ = hasFlag(PELLUCID_FLAG_BACK_VIEW_Z);
   float back = backViewZ ? planarDistanceViewZ(backStored) : planarDistance(frame.camera, backStored);

@@ -4,8 +4,8 @@
 
 #include "shared/pellucid_shared.h"
 
-// The common frame of a gather: every light that is gathered from is directional with one map of device depth, the camera's
-// depth is device depth, and normals are given. Compilers drop the rest.
+// True in pipelines for the common frame of a gather: every light is directional with one map of device depth, the camera
+// stores device depth, and normals are given. Compilers drop the rest.
 layout(constant_id = PELLUCID_CONSTANT_DIRECTIONAL) const bool kDirectional = false;
 
 bool hasFlag(uint flag) {

@@ -1,19 +1,19 @@
 #ifndef PELLUCID_GROUP_ORDER_GLSL
 #define PELLUCID_GROUP_ORDER_GLSL
 
-// Groups start in the order of their indices, so what takes longest comes first and ends while others still run: the
-// rect's borders, which are edges. Left and right columns, then the last row and the first. The place of the group.
+// The place of the group. Groups start in the order of their indices; the rect's borders, which are edges, take longest
+// and come first, so that they end while others still run: left and right columns, then the last row and the first.
 uvec2 bordersFirst() {
   uvec2 count = gl_NumWorkGroups.xy;
   uint index = gl_WorkGroupID.y * count.x + gl_WorkGroupID.x;
   uint inner = max(count.x, 3u) - 2u, columns = 2u * count.y;
   uint rest = max(index, columns) - columns;
-  // By floats, because all loads wait for it and integers take several times as long. Exact: the quotient errs by less
-  // than 1e-6 of some thousand rows, and the half keeps it 1 / (2 inner) away from the next row.
+  // All loads wait for this division, and integers take several times as long as floats. The result is exact: the quotient
+  // errs by less than 1e-6 of some thousand rows, and the half keeps it 1 / (2 inner) away from the next row.
   uint row = uint((float(rest) + 0.5) / float(inner));
   uvec2 inRow = uvec2(1u + rest - row * inner, row == 0u ? count.y - 1u : row - uint(row < count.y));
   uvec2 inColumn = uvec2((index & 1u) * (count.x - 1u), index >> 1);
-  // One or two columns are in order.
+  // Groups of one or two columns keep their order.
   return count.x < 3u ? uvec2(index & (count.x - 1u), index >> (count.x - 1u)) : index < columns ? inColumn : inRow;
 }
 

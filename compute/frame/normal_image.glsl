@@ -1,4 +1,4 @@
-// The frame's normals, where it has some.
+// Normals of the frame, where it has an image of them.
 #ifndef PELLUCID_NORMAL_IMAGE_GLSL
 #define PELLUCID_NORMAL_IMAGE_GLSL
 
@@ -6,7 +6,7 @@
 
 layout(set = 0, binding = PELLUCID_BINDING_NORMAL) uniform texture2D normalImage;
 
-// Outward, in the image's space, of any length; 0: none.
+// Outward normal of any length, in the image's space; 0: none.
 vec3 normalAt(ivec2 pixel) {
   return hasFlag(PELLUCID_FLAG_NORMAL) ? decodeNormal(texelFetch(normalImage, pixel, 0)) : vec3(0.0);
 }

@@ -11,7 +11,7 @@ layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 5) uniform texture2D 
 layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 6) uniform texture2D shadowImage6;
 layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 7) uniform texture2D shadowImage7;
 
-// A switch over constant bindings needs no shaderSampledImageArrayDynamicIndexing.
+// A switch over bindings, unlike an index, does not need shaderSampledImageArrayDynamicIndexing.
 float shadowTexel(uint image, ivec2 texel) {
   switch (image) {
     case 0u: return texelFetch(shadowImage0, texel, 0).x;
@@ -25,10 +25,9 @@ float shadowTexel(uint image, ivec2 texel) {
   }
 }
 
-// A texel, and those to the right, to the left, below and above it.
 struct ShadowTexels {
   float own;
-  vec4 beside;
+  vec4 beside; // texels to the right, to the left, below and above
 };
 
 #define PELLUCID_TEXELS(image)                                                                                       \

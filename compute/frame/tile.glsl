@@ -1,5 +1,5 @@
-// Passes whose groups do a tile of pixels, an invocation two of them: one leaves too much to do for each pixel again, four
-// hold so many registers that too few groups run at a time, but for a pass that does little (FOUR_PIXELS).
+// A group does a tile of pixels, an invocation two of them: one leaves too much to do for each pixel again, four hold so
+// many registers that too few groups run at a time. A pass that does little may define FOUR_PIXELS.
 #ifndef PELLUCID_TILE_GLSL
 #define PELLUCID_TILE_GLSL
 
@@ -14,9 +14,9 @@
 #define GROUP_ROWS (TILE_SIDE / 2)
 #include "frame/bindings.glsl"
 
-const int kPixels = TILE_SIDE * TILE_SIDE / (GROUP_SIDE * GROUP_ROWS); // of an invocation
+const int kPixels = TILE_SIDE * TILE_SIDE / (GROUP_SIDE * GROUP_ROWS); // per invocation
 
-// The i-th of them: half a tile apart, so that neighbors load neighbors.
+// The invocation's i-th pixel. Its pixels are half a tile apart, so that neighbors load neighbors.
 ivec2 pixelInTile(int i) {
 #ifdef FOUR_PIXELS
   return ivec2(gl_LocalInvocationID.xy) + ivec2(GROUP_SIDE * (i & 1), GROUP_ROWS * (i >> 1));
@@ -25,7 +25,7 @@ ivec2 pixelInTile(int i) {
 #endif
 }
 
-// The first pixel of tiles that start at even pixels, so that quads of pixels are the image's.
+// First pixel of the tile. Tiles start at even pixels, so that quads of pixels are the image's.
 ivec2 evenTile() { return (ivec2(frame.rect.xy) & ~1) + ivec2(gl_WorkGroupID.xy) * TILE_SIDE; }
 
 #endif

@@ -1,12 +1,11 @@
-// Records of the gather: what a sample needs to know of a texel of a shadow map, made once for all pixels, and means of
+// Entry points of the gather: what a sample needs to know of a texel of a shadow map, made once for all pixels, and means of
 // 2x2 to 8x8 of them for samples that stand for a larger part of the map.
-#ifndef PELLUCID_ENTRY_POINT_GLSL
-#define PELLUCID_ENTRY_POINT_GLSL
-
 #include "lib/octahedral.glsl"
 
 layout(set = 0, binding = PELLUCID_BINDING_LIGHTS) uniform Lights { LightConstants lights[PELLUCID_DISPATCH_LIGHTS]; };
-layout(set = 0, binding = PELLUCID_BINDING_GATHER_MAPS) uniform GatherMaps { GatherMapConstants maps[PELLUCID_DISPATCH_SHADOWS]; };
+layout(set = 0, binding = PELLUCID_BINDING_GATHER_MAPS) uniform GatherMaps {
+  GatherMapConstants maps[PELLUCID_DISPATCH_SHADOWS];
+};
 
 struct EntryPoint {
   float depth;  // of the lit surface, see GatherMapConstants::depth
@@ -18,13 +17,9 @@ struct EntryPoint {
   uint material; // index + 1 of what light enters; 0: not known
 };
 
-const float kNoExit = 6.0e4; // as halves hold;
-
-
-// Nothing there, and several surfaces of which no mean makes sense.
-const uvec4 kNoEntry = uvec4(0u), kSeveralSurfaces = uvec4(0u, 0u, 0u, 0x100u);
-
-const int kLastEntryLevel = 3; // whose entry points are means of 8x8
+const float kNoExit = 6.0e4; // fits in a half
+const uvec4 kNoEntry = uvec4(0u), kSeveralSurfaces = uvec4(0u, 0u, 0u, 0x100u); // several: no mean makes sense
+const int kLastEntryLevel = 3; // means of 8x8
 
 uvec4 packEntry(EntryPoint r) {
   uint cosine = uint(clamp(r.cosine * 255.0 + 0.5, 1.0, 255.0));
@@ -33,20 +28,17 @@ uvec4 packEntry(EntryPoint r) {
 }
 
 bool holdsSurface(uvec4 bits) { return (bits.w & 0xFFu) != 0u; }
-
 bool lightEnters(uvec4 bits) { return bits.z != 0u; }
 
 EntryPoint unpackEntry(uvec4 bits) {
   vec2 parts = unpackHalf2x16(bits.z);
   return EntryPoint(uintBitsToFloat(bits.x), fromOctahedral(unpackSnorm2x16(bits.y)), parts.x, parts.y,
-                float(bits.w & 0xFFu) / 255.0, unpackHalf2x16(bits.w >> 16).x, bits.w >> 8 & 0xFFu);
+                    float(bits.w & 0xFFu) / 255.0, unpackHalf2x16(bits.w >> 16).x, bits.w >> 8 & 0xFFu);
 }
 
-// Place of a level's entry in the image, from that of the first level. `size`: of the first level, whole groups.
-// Level 1 is beside the first, each coarser one below the level before.
+// Place of a level's entry in the image. Level 1 is beside the first level, each coarser one below the level before.
+// `first`: of the first level; `size`: of that level, whole groups.
 ivec2 entryPlace(ivec2 first, int level, ivec2 size) {
   ivec2 corner = level == 0 ? ivec2(0) : ivec2(size.x, size.y - (size.y >> (level - 1)));
   return corner + (first >> level);
 }
-
-#endif

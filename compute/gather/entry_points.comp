@@ -1,7 +1,6 @@
-// Records of a dispatch's shadow maps, below each other in one image, and their means.
+// Makes the entry points of a dispatch's shadow maps, below each other in one image, and their means. A group makes 16x16 of
+// one map, each of the texel in the middle of those that it stands for.
 #version 460
-#extension GL_EXT_control_flow_attributes : require
-#extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
 #define GROUP_SIDE PELLUCID_ENTRY_POINTS_GROUP
@@ -13,10 +12,8 @@
 layout(set = 0, binding = PELLUCID_BINDING_ENTRY_MAPS) readonly buffer EntryMaps { EntryMapConstants entryMaps[]; };
 layout(set = 0, binding = PELLUCID_BINDING_LEVELS, rgba32ui) uniform writeonly uimage2D entriesDestination;
 
-shared uvec4 entries[GROUP_SIDE * GROUP_SIDE], means[GROUP_SIDE * GROUP_SIDE / 4];
 shared uint someSurface;
 
-// A group makes 16x16 entry points of one map, each of the texel in the middle of those that it stands for, and their means.
 void main() {
   uint map = gl_WorkGroupID.z;
   EntryMapConstants constants = entryMaps[map];
@@ -36,22 +33,14 @@ void main() {
   ivec2 start = ivec2(gl_WorkGroupID.xy) * GROUP_SIDE, first = maps[map].place.xy + start;
   bool inside = all(lessThan(start, maps[map].place.zw));
   if (inside) imageStore(entriesDestination, first + ivec2(gl_LocalInvocationID.xy), entry);
-  // Halved again and again, from one array to the first part of the other.
   for (int level = 1; level <= kLastEntryLevel; ++level) {
     int across = GROUP_SIDE >> level;
     ivec2 local = ivec2(index % across, index / across);
     bool makes = inside && index < across * across;
     if (makes) {
-      entry = kNoEntry;
-      if (some) {
-        int from = 4 * local.y * across + 2 * local.x;
-        uvec4 bits[4];
-        [[unroll]] for (int i = 0; i < 4; ++i) {
-          int place = from + (i & 1) + (i >> 1) * 2 * across;
-          bits[i] = (level & 1) != 0 ? entries[place] : means[place];
-        }
-        entry = meanOf(bits, float(side << (level - 1)), constants);
-      }
+      // Texels are 2 seen.x wide, and 70 degrees is a slope of 3.
+      float limit = 6.0 * float(side << (level - 1)) * constants.seen.x;
+      entry = some ? meanBelow(level, local, limit, constants.meta.z != 0u) : kNoEntry;
       imageStore(entriesDestination, entryPlace(first, level, size) + local, entry);
     }
     barrier(); // what was there has been read

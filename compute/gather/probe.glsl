@@ -1,12 +1,10 @@
 // Gather probes as one pass leaves them for the next. Cells are aligned to the image, not to the rect.
-#ifndef PELLUCID_PROBE_GLSL
-#define PELLUCID_PROBE_GLSL
-
+#include "lib/halves.glsl"
 #include "lib/octahedral.glsl"
 
 struct Probe {
   vec3 added;     // irradiance that the lights bring beyond their diffused one; below 0 where they bring less
-  vec3 convexity; // part of the diffused irradiance that comes back besides, -1/10..1/10
+  vec3 convexity; // part of the diffused irradiance that comes back besides, -0.1 to 0.1
   vec3 normal;    // unit
   float front;    // planar distance
   uint material;  // index + 1; 0: nothing there
@@ -15,16 +13,16 @@ struct Probe {
 
 const uvec4 kNoProbe = uvec4(0u);
 
-// Convexity is kept in 9 bits a channel, 0 as 0.
+// Convexity takes 9 bits a channel; 0 is exact.
 const float kMostConvexity = 0.1, kConvexitySteps = 255.0;
 
-// A point with other light.
+// The probe with other light.
 uvec4 replaceLight(uvec4 bits, vec3 added, vec3 convexity) {
-  // Rounding of next to nothing counts as nothing, so that pixels without light are known by their bits.
+  // Next to nothing counts as nothing, so that bits say which probes have no light.
   added = mix(vec3(0.0), clamp(added, vec3(-kLargestHalf), vec3(kLargestHalf)), greaterThan(abs(added), vec3(1.0e-7)));
   vec3 steps = clamp(convexity / kMostConvexity, vec3(-1.0), vec3(1.0)) * kConvexitySteps;
   uvec3 parts = uvec3(ivec3(floor(steps + 0.5))) & 511u;
-  return uvec4(packHalf2x16(added.rg), (packHalf2x16(vec2(added.b, 0.0)) & 0xFFFFu) | (bits.y & 0xFFFF0000u), bits.z,
+  return uvec4(packHalves(added, bits.y >> 16), bits.z,
                parts.r | parts.g << 9 | parts.b << 18 | (bits.w & 0xF8000000u));
 }
 
@@ -35,7 +33,7 @@ uvec4 packProbe(Probe p) {
   return replaceLight(bits, p.added, p.convexity);
 }
 
-vec3 addedOf(uvec4 bits) { return vec3(unpackHalf2x16(bits.x), unpackHalf2x16(bits.y).x); }
+vec3 addedOf(uvec4 bits) { return unpackHalves(bits.xy); }
 
 vec3 convexityOf(uvec4 bits) {
   int w = int(bits.w);
@@ -45,7 +43,7 @@ vec3 convexityOf(uvec4 bits) {
 
 bool hasConvexity(uvec4 bits) { return (bits.w & 0x7FFFFFFu) != 0u; }
 
-// True where light is added, or more or less of the diffused one comes back.
+// True where light is added, or more or less of the diffused light comes back.
 bool hasLight(uvec4 bits) { return (bits.x | bits.y & 0xFFFFu) != 0u || hasConvexity(bits); }
 
 vec3 normalOf(uvec4 bits) { return fromOctahedral(unpackSnorm4x8(bits.y >> 16).xy); }
@@ -60,13 +58,14 @@ uvec3 packLight(vec3 added, vec3 convexity) {
   return uvec3(packHalf2x16(added.rg), packHalf2x16(vec2(added.b, convexity.r)), packHalf2x16(convexity.gb));
 }
 
+// `bits`: by packLight.
 void addLight(uvec3 bits, float weight, inout vec3 added, inout vec3 convexity) {
   vec2 middle = unpackHalf2x16(bits.y);
   added += weight * vec3(unpackHalf2x16(bits.x), middle.x);
   convexity += weight * vec3(middle.y, unpackHalf2x16(bits.z));
 }
 
-// Cells have 1, 2 or 4 pixels a side: shifts in place of divisions, which take as long as the rest.
+// Cells have 1, 2 or 4 pixels a side, so that a shift replaces divisions, which take as long as the rest.
 int shiftOf(int side) { return side >> 1; }
 
 ivec2 pixelInCell(ivec2 cell, int side, int index) {
@@ -83,5 +82,3 @@ ivec4 cellsOf(uvec4 rect, int side) {
   int shift = shiftOf(side);
   return ivec4(ivec2(rect.xy) >> shift, ((ivec2(rect.zw) - 1) >> shift) + 1);
 }
-
-#endif

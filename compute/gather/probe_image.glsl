@@ -1,7 +1,4 @@
 // Filtered probes, where the diffusion adds their light.
-#ifndef PELLUCID_PROBE_IMAGE_GLSL
-#define PELLUCID_PROBE_IMAGE_GLSL
-
 #include "gather/gathered.glsl"
 
 layout(set = 0, binding = PELLUCID_BINDING_FILTERED_PROBES) uniform utexture2D probesImage;
@@ -16,5 +13,3 @@ uvec4 probeOf(ivec2 cell, ivec2 pixel, float front, out float off) {
   off = (front - plane.x) * plane.w;
   return uvec4(packLight(p.added, p.convexity), p.material);
 }
-
-#endif

@@ -1,7 +1,5 @@
-// A probe and one light: what the light brings, by samples of its entry points.
-#ifndef PELLUCID_PROBE_LIGHT_GLSL
-#define PELLUCID_PROBE_LIGHT_GLSL
-
+// Light that one light brings to a probe, by samples of its entry points.
+#include "lib/gather.glsl"
 #include "gather/rings.glsl"
 
 const float kLastRing = 1.0e12; // squared radius of what lies beyond all samples
@@ -12,26 +10,24 @@ const float kSampleSide = 0.5;
 GatherSlab slabOf(uint m, vec4 lengths, float h) {
   float place = gatherPlace(lengths, h);
   int i = 3 * int(place);
-  return gatherSlab(GatherEntry(materials[m].gather.entries[i], materials[m].gather.entries[i + 1],
-                                materials[m].gather.entries[i + 2]),
+  return gatherSlab(materials[m].gather.entries[i], materials[m].gather.entries[i + 1], materials[m].gather.entries[i + 2],
                     fract(place));
 }
 
-// The part of the light that enters at an entry point and reaches x through the medium: none where x lies beyond the entry point's exit,
-// with air between. Exits differ by the slope of the body's far side; only where x's own ray has air, too, is that no excuse.
-// `to`: from the lit point to x.
+// The part of an entry point's light that reaches x through the medium: none where x lies beyond the exit, with air between.
+// The slope of the body's far side excuses other exits, unless x's own ray has air, too. `to`: from the lit point to x.
 float staysInside(GatherRings rings, EntryPoint entry, vec3 to, vec3 toLight) {
   if (entry.exit >= kNoExit) return 1.0;
   float along = -dot(to, toLight), aside = sqrt(max(dot(to, to) - along * along, 0.0));
-  const float kSteepest = 2.0; // of far sides, as of 63 degrees
+  const float kSteepest = 2.0; // slope of far sides: 63 degrees
   float beyond = along - entry.exit * frame.camera.range.w - kSteepest * (1.0 - rings.shadowed) * aside;
   return clamp(2.0 - beyond / max(rings.tolerance, 1.0e-12), 0.0, 1.0);
 }
 
-// From x, mm.
+// A sample's place from x, mm.
 vec3 onRing(vec3 center, vec3 across, vec3 along, vec2 offset) { return center + offset.x * across + offset.y * along; }
 
-// A cell takes one of thirteen patterns. Points that are too far apart to share all take the middle one.
+// A cell takes one of thirteen patterns. Probes that are too far apart to share all take the middle one.
 struct Pattern {
   float within, turn; // [0, 1): place in a ring, turn of the first sample
 };
@@ -39,8 +35,8 @@ struct Pattern {
 Pattern patternOf(ivec2 cell, uint m, float front) {
   vec2 spacing = float(pass.value.x) * pixelSize(frame.camera, front);
   float vary = clamp(2.0 - dot(spacing, spacing) * materials[m].gather.profile.w, 0.0, 1.0);
-  // A cell and the twelve that it shares with have one of thirteen each. A lattice fills the strata, and the turn between a
-  // sample and its like. It begins off the axes, along which edges often lie: of eight turns the one that errs least.
+  // A cell and the twelve that it shares with have one pattern each. A lattice fills the strata, and the turn between a sample
+  // and its like. Turns begin off the axes, along which edges often lie: of eight first turns this one errs least.
   int turn = (cell.x + 5 * cell.y) % 13, within = turn * 5 % 13;
   return Pattern(0.5 + vary * (float(within) - 6.0) / 13.0, vary * (float(turn) / 13.0 + 0.025));
 }
@@ -54,7 +50,7 @@ struct Gathered {
   vec3 seenLight, seen; // diffused irradiance of what enters seen, and its part of the profile
 };
 
-// Adds a sample. `to`: from the lit point to x; `near`, `far`: distances of its ring from x; flux: per area across the axis.
+// Adds a sample. `to`: from the lit point to x; `near`, `far`: distances of its ring from x; `flux`: per area across the axis.
 void addSample(inout Gathered sum, Surface x, uint m, vec4 lengths, EntryPoint entry, vec3 to, float near, float far,
                float flux, float axisCosine) {
   float squared = dot(to, to);
@@ -92,7 +88,7 @@ Gathered gatherSamples(uint m, LightConstants light, Surface x, Pattern pattern,
   uint samples = pass.value.w;
   float perSample = 1.0 / float(samples), inner = 0.0;
   [[dont_unroll]] for (uint i = 0u; i < samples; ++i) {
-    // mm, from the foot, across and along the ring.
+    // Lengths are mm from the foot, across and along the ring.
     float spread = gatherSpread(lengths, (float(i) + pattern.within) * perSample);
     float radius = sqrt(gatherSquaredRadius(rings.t, spread));
     vec2 offset = radius * direction;
@@ -118,11 +114,11 @@ Gathered gatherSamples(uint m, LightConstants light, Surface x, Pattern pattern,
     vec3 middle = (off.x * maps[map].stepX.xyz + off.y * maps[map].stepY.xyz) * mm * (parallel ? 1.0 : entry.depth);
     float towards = dot(entry.normal, toLight), most = 2.0 * length(middle) * inversesqrt(max(dot(toLight, toLight), 1.0e-12));
     ahead += clamp(dot(entry.normal, middle) / max(towards, 1.0e-6 * mm), -most, most);
-    vec3 to = -(s + ahead * toLight); // from the lit point to x
-    // The ring, seen as if all of it lay in the lit point's plane across the axis.
+    vec3 to = -(s + ahead * toLight);
+    // The ring counts as if all of it lay in the lit point's plane across the axis.
     float plane = max(dot(to, to) - dot(offset, offset), 0.0);
     float flux = rings.axisCosine;
-    // A point light's is its intensity: per square scene unit at s. At the light itself any finite value will do.
+    // A point light's flux is its intensity per square scene unit at s. At the light itself any finite value will do.
     if (!parallel) flux *= mm * mm / max(dot(toLight, toLight), 1.0e-12 * mm * mm);
     float inside = staysInside(rings, entry, to, parallel ? incident.toLight : normalize(toLight));
     entry.hidden *= inside;
@@ -132,9 +128,9 @@ Gathered gatherSamples(uint m, LightConstants light, Surface x, Pattern pattern,
   return sum;
 }
 
-// A light of radiance 1 brings this to x beyond its diffused irradiance, as irradiance that albedo = rho turns into exitance.
-// The diffusion is normalized over what the camera sees: what enters hidden from it displaces its part of what the light
-// itself brings to x and to its surroundings. `loss`: see thinLoss.
+// Irradiance that a light of radiance 1 brings to x beyond its diffused irradiance, for albedo = rho to turn into exitance.
+// The diffusion is normalized over what the camera sees: what enters hidden displaces its part of what the light itself brings
+// to x and to the surroundings. `loss`: see thinLoss.
 vec3 gatherLight(uint m, LightConstants light, Surface x, Pattern pattern, vec3 loss) {
   Incident incident = incidentLight(light, x.position);
   GatherRings rings;
@@ -143,7 +139,7 @@ vec3 gatherLight(uint m, LightConstants light, Surface x, Pattern pattern, vec3 
   vec3 through = g.through * frame.filterAndLimit.rgb * materials[m].inverseReflectance.rgb;
   if (!hasFlag(PELLUCID_FLAG_DIFFUSED)) return through;
   float cosine = x.hasNormal ? max(dot(x.normal, incident.toLight), 0.0) : 0.0;
-  // The light's cone and range are left out: the sums have them.
+  // The sums have the light's cone and range.
   float falloff = directional(light) ? 1.0 : 1.0 / max(incident.distanceTo * incident.distanceTo, 1.0e-12);
   float own = falloff * cosine * arrivesAt(rings, cosine);
   vec3 hidden = min(g.hidden, vec3(1.0)), seen = g.seenLight / max(g.seen, vec3(1.0e-12)), around = 0.5 * (own + seen);
@@ -152,5 +148,3 @@ vec3 gatherLight(uint m, LightConstants light, Surface x, Pattern pattern, vec3 
   vec3 lost = min(seen, vec3(2.0 * own)) * lightShare(light, incident.toLight, incident.distanceTo);
   return through + g.entering - opposite - hidden * around - (1.0 - hidden) * loss * lost;
 }
-
-#endif

@@ -1,12 +1,9 @@
-// How the surface of a gather's point is curved, and how thin the body is there.
-#ifndef PELLUCID_PROBE_SHAPE_GLSL
-#define PELLUCID_PROBE_SHAPE_GLSL
+// Curvature of the surface at a gather probe, and thinness of the body there.
 
-// From a point to a pixel beside it: changes of position, mm, and of the normal; w: 1 where the surface goes on, less
-// where the pixel lies two to three times `reach` away, 0 beyond, so that what follows from it is continuous.
+// Step from a probe to a pixel beside it.
 struct Beside {
-  vec4 apart;
-  vec3 turn;
+  vec4 apart; // change of position, mm; w: 1 where the surface goes on, down to 0 at two to three times `reach`
+  vec3 turn;  // change of the normal
 };
 
 Beside besideAt(ivec2 pixel, Surface x, float reach) {
@@ -20,13 +17,13 @@ Beside besideAt(ivec2 pixel, Surface x, float reach) {
   return Beside(vec4(apart, there ? clamp((9.0 - ratio) / 5.0, 0.0, 1.0) : 0.0), there ? s.normal - x.normal : vec3(0.0));
 }
 
-// Across the point, from one side to the other.
+// Step across the probe, from one side to the other.
 Beside acrossOf(Beside forward, Beside backward) {
   float f = forward.apart.w, b = backward.apart.w;
   return Beside(vec4(f * forward.apart.xyz - b * backward.apart.xyz, max(f, b)), f * forward.turn - b * backward.turn);
 }
 
-// Pixels that are `reach` mm away on the surface's tangent plane.
+// Steps in pixels that reach `reach` mm on the surface's tangent plane.
 ivec2 stepsOf(Surface x, ViewRay ray, float front, float reach) {
   Camera c = frame.camera;
   vec3 sideX = vec3(c.rayX.zw + front * c.rayX.xy, 0.0), sideY = vec3(c.rayY.zw + front * c.rayY.xy, 0.0);
@@ -42,22 +39,22 @@ float meanCurvature(ivec2 pixel, Surface x, ViewRay ray, float front, float reac
   ivec2 steps = stepsOf(x, ray, front, reach);
   Beside a = acrossOf(besideAt(pixel + ivec2(steps.x, 0), x, reach), besideAt(pixel - ivec2(steps.x, 0), x, reach));
   Beside b = acrossOf(besideAt(pixel + ivec2(0, steps.y), x, reach), besideAt(pixel - ivec2(0, steps.y), x, reach));
-  // Trace of the map from steps to turns.
+  // The curvature is half the trace of the map from steps to turns.
   float area = dot(x.normal, cross(a.apart.xyz, b.apart.xyz));
   float least = 0.1 * sqrt(dot(a.apart.xyz, a.apart.xyz) * dot(b.apart.xyz, b.apart.xyz));
   float trace = dot(x.normal, cross(a.turn, b.apart.xyz) + cross(a.apart.xyz, b.turn));
   return abs(area) > least ? a.apart.w * b.apart.w * 0.5 * trace / area : 0.0;
 }
 
-// By how much more of the diffused light comes back, of each channel.
+// Part of the diffused light that comes back besides.
 vec3 convexityAt(ivec2 pixel, Surface x, ViewRay ray, float front, uint m) {
   vec4 perCurvature = materials[m].gather.convexity;
   vec3 more = perCurvature.rgb * meanCurvature(pixel, x, ray, front, perCurvature.w);
-  // Not NaN, whose conversion to steps may be anything.
+  // NaN becomes 0: its conversion to steps may be anything.
   return mix(vec3(0.0), clamp(more, vec3(-kMostConvexity), vec3(kMostConvexity)), lessThan(abs(more), vec3(1.0e30)));
 }
 
-// Probe of the nearest back face, view space; false where there is none.
+// Position of the pixel's back face, view space; false where there is none.
 bool backAt(ivec2 pixel, out vec3 back) {
   ivec2 at = withinRect(pixel);
   float stored = texelFetch(frontDepthImage, at, 0).x, front = frontDistanceOf(stored);
@@ -67,7 +64,7 @@ bool backAt(ivec2 pixel, out vec3 back) {
   return at == pixel && materialAt(at) != 0u && front > 0.0 && along > 0.0;
 }
 
-// Step along an axis of the image on the back face, to the nearer side: the other may lie across an edge.
+// Step along an axis of the image on the back face, to the nearer side, because the other may lie across an edge.
 bool backSlope(ivec2 pixel, ivec2 axis, vec3 back, out vec3 slope) {
   vec3 forward, backward;
   bool hasForward = backAt(pixel + axis, forward), hasBackward = backAt(pixel - axis, backward);
@@ -84,7 +81,7 @@ vec3 thinLoss(ivec2 pixel, Surface x, uint m) {
   vec3 back, across, along;
   if (!backAt(pixel, back)) return vec3(0.0);
   vec3 chord = (back - x.position) * frame.camera.range.w;
-  // A half-space beyond: T(h) is below 1 % there, and its square counts.
+  // Beyond this the body is a half-space: T(h) is below 1 %, and its square counts.
   if (dot(chord, chord) > materials[m].gather.lengths.z * materials[m].gather.lengths.z * 6.25) return vec3(0.0);
   vec3 normal = -x.normal;
   if (backSlope(pixel, ivec2(1, 0), back, across) && backSlope(pixel, ivec2(0, 1), back, along)) {
@@ -92,7 +89,7 @@ vec3 thinLoss(ivec2 pixel, Surface x, uint m) {
     float squared = dot(n, n);
     if (squared > 0.0) normal = n * (dot(n, x.view) < 0.0 ? -inversesqrt(squared) : inversesqrt(squared));
   }
-  // Mean of the two faces' cosines: a slab's thickness.
+  // A slab's thickness comes from the mean of the two faces' cosines.
   float h = 0.5 * (abs(dot(chord, x.normal)) + abs(dot(chord, normal)));
   GatherSlab slab = slabOf(m, materials[m].gather.lengths, h);
   vec3 t = exp2(slab.logarithm - slab.decay * h);
@@ -104,5 +101,3 @@ vec3 thinLoss(ivec2 pixel, Surface x, uint m) {
   float opposite = 0.5 - 0.5 * dot(x.normal, normal);
   return opposite * clamp(1.0 - sent, vec3(0.0), vec3(1.0));
 }
-
-#endif

@@ -1,17 +1,14 @@
 // The rings of samples around a probe, and the entry points that a light has for them.
-#ifndef PELLUCID_RINGS_GLSL
-#define PELLUCID_RINGS_GLSL
-
 #include "lib/occluder.glsl"
 
 bool directional(LightConstants light) { return light.meta.x == PELLUCID_SHADER_LIGHT_DIRECTIONAL; }
 
-// A view-space point in a map: where its entry lies, and its depth.
+// Place of a view-space point's entry in a map, and the point's depth.
 vec3 mapPoint(uint map, vec4 position) {
   return vec3(dot(maps[map].column, position), dot(maps[map].row, position), dot(maps[map].depth, position));
 }
 
-// As floats, where far outside stays outside.
+// Floats keep outside what is far outside.
 bool isInMap(uint map, vec2 at) {
   return all(greaterThanEqual(at, vec2(0.0))) && all(lessThan(at, vec2(maps[map].place.zw)));
 }
@@ -21,8 +18,8 @@ uvec4 entryAt(uint map, ivec2 entry, int level) {
   return texelFetch(entriesImage, entryPlace(maps[map].place.xy + entry, level, size), 0);
 }
 
-// The entry of the light ray through a point of the map, of a level or, where that has several surfaces, of the first;
-// false: the map does not contain the point. `off`: from the point to the middle of what the entry stands for, entry points.
+// Fetches the entry of a point of the map from a level or, where that has several surfaces, from the first. false: the map
+// does not contain the point. `off`: from the point to the middle of what the entry stands for, in entry points.
 bool fetchEntry(uint map, bool parallel, vec3 point, int level, out uvec4 bits, out vec2 off) {
   bits = kNoEntry;
   off = vec2(0.0);
@@ -38,9 +35,9 @@ bool fetchEntry(uint map, bool parallel, vec3 point, int level, out uvec4 bits, 
   return true;
 }
 
-// Reads the first of the light's maps that contains the position.
+// Fetches from the first of the light's maps that contains the position.
 bool fetchEntry(LightConstants light, vec3 position, int level, out uint map, out vec3 point, out uvec4 bits,
-                 out vec2 off) {
+                out vec2 off) {
   for (map = light.meta.y; map < light.meta.y + light.meta.z; ++map) {
     point = mapPoint(map, vec4(position, 1.0));
     if (fetchEntry(map, directional(light), point, level, bits, off)) return true;
@@ -56,17 +53,17 @@ float distanceAhead(bool parallel, float depth, float own) { return parallel ? d
 struct GatherRings {
   vec3 axis;
   float t, axisCosine; // along the axis from x to the lit surface; of the axis with the light's ray
-  float entrySide;    // of the first level
+  float entrySide;     // side of an entry point of the first level
   float ahead;         // along the light's ray from x to the lit surface
-  float tolerance;     // that a receiver's own exit may be off by
+  float tolerance;     // how far a receiver's own exit may be off
   float shadowed;      // 1: x lies beyond the exit of its own ray, with air before it, 0: it does not
-  uint map;            // that contains x
+  uint map;            // contains x
 };
 
-const float kSteepestOwn = 4.0; // slope of the surface at x within an entry point, as of 76 degrees
+const float kSteepestOwn = 4.0; // largest slope of the surface at x within an entry point: 76 degrees
 
-// An axis between the light's ray and the normal inwards suits slabs: their rings are around the foot of the
-// perpendicular. false: no map contains x, so that no light comes through it.
+// An axis between the light's ray and the inward normal suits slabs, whose rings lie around the foot of the perpendicular.
+// false: no map contains x, so that no light comes through it.
 bool gatherRings(LightConstants light, Surface x, vec3 toLight, float distanceTo, float longest,
                  out GatherRings rings) {
   float mm = frame.camera.range.w;
@@ -80,7 +77,7 @@ bool gatherRings(LightConstants light, Surface x, vec3 toLight, float distanceTo
   uvec4 bits;
   if (!fetchEntry(light, x.position, 0, rings.map, point, bits, off)) return false;
   rings.entrySide = length(maps[rings.map].stepX.xyz) * mm * (parallel ? 1.0 : point.z);
-  // The slope of the surface within an entry point, and one entry point for its curvature.
+  // The slope of the surface counts within an entry point, and one entry point stands for its curvature.
   rings.tolerance = rings.entrySide * (2.0 + min(slopeOf(x.hasNormal ? dot(x.normal, toLight) : 0.0), kSteepestOwn));
   if (!holdsSurface(bits)) return true;
   float perAhead = parallel ? 1.0 : distanceTo;
@@ -99,11 +96,9 @@ bool gatherRings(LightConstants light, Surface x, vec3 toLight, float distanceTo
   return true;
 }
 
-// The part of the light that gets to x itself, as its map says: none where the lit surface lies further ahead than an entry point's
-// side makes of the surface's slope. Continuous, as the map is coarse.
+// The part of the light that gets to x itself, as its map says: none where the lit surface lies further ahead than the
+// surface's slope makes it over an entry point. The part is continuous, because the map is coarse.
 float arrivesAt(GatherRings rings, float cosine) {
   float own = rings.entrySide * (1.0 + min(slopeOf(cosine), kSteepestOwn));
   return clamp(2.0 - rings.ahead / max(own, 1.0e-12), 0.0, 1.0);
 }
-
-#endif

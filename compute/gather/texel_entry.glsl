@@ -1,25 +1,20 @@
 // The entry point of a texel of a shadow map.
-#ifndef PELLUCID_TEXEL_ENTRY_GLSL
-#define PELLUCID_TEXEL_ENTRY_GLSL
-
 #include "frame/shadow_images.glsl"
 #include "lib/occluder.glsl"
 #include "lib/shadow.glsl"
 
-// A surface that the light sees more obliquely counts as if it did not: a sample that stands for more than five times its own
-// area shows as a dot at terminators.
+// Least cosine at which a surface counts: a sample that stands for more than five times its own area shows as a dot at
+// terminators.
 const float kLeastCosine = 0.2;
 
-// True where the camera has a surface on the pixel that a point is seen on, at the point or in front of it: what it sees is
-// in the irradiance that diffusion spreads. A surface that faces away cannot be seen, however thin the part is.
-// `front`: of the pixel.
+// True where a point does not lie behind the surface that its pixel shows: the light that enters there is in the irradiance
+// that diffusion spreads. A surface that faces away cannot be seen, however thin the part is. `front`: of the pixel.
 bool cameraSees(ivec2 pixel, float front, float planar, vec3 normal, float tolerance) {
   return insideRect(pixel) && dot(normal, viewRay(frame.camera, pixel).direction) < 0.0 && front > 0.0 &&
          planar <= front + tolerance;
 }
 
-// Pixels without a material show nothing, whatever depth they hold: their light is not diffused. To be fetched before
-// what need not wait for it.
+// Front of a pixel that has a material; others show nothing, whatever depth they hold, as their light is not diffused.
 float frontAround(ivec2 pixel) {
   ivec2 at = withinRect(pixel);
   float front = frontDistance(at);
@@ -38,13 +33,13 @@ vec3 surfacePoint(EntryMapConstants map, ivec2 texel, float stored, out float de
   } else if (map.meta.y == PELLUCID_SHADER_DEPTH_DISTANCE) {
     divisor = length(at.xyz);
   }
-  // 0 or of the other sign only at infinity.
+  // The product is 0 or negative only at infinity.
   depth = dividend * divisor > 0.0 ? dividend / divisor : kNoDepth;
   return map.ray.xyz + depth * at.xyz;
 }
 
-// One texel's step along an axis of the map from y, towards whichever neighbor is nearer: the other may lie
-// across an edge. `stored`: of the neighbors forwards and backwards. `squaredStep`: of a texel across the light.
+// One texel's step along an axis of the map from y, towards whichever neighbor is nearer, because the other may lie across an
+// edge. `stored`: of the neighbors forwards and backwards; `squaredStep`: of a texel across the light.
 vec3 entrySlope(EntryMapConstants map, ivec2 texel, vec3 y, ivec2 axis, vec2 stored, float squaredStep) {
   vec3 best = vec3(0.0);
   float least = 3.0e38;
@@ -61,25 +56,25 @@ vec3 entrySlope(EntryMapConstants map, ivec2 texel, vec3 y, ivec2 axis, vec2 sto
       least = squared;
       best = toward;
     }
-    // Less steep than 60 degrees: no edge.
+    // A step less steep than 60 degrees is no edge.
     if (squared < 4.0 * squaredStep) break;
   }
   return best;
 }
 
-// For parallel rays: how much depth grows along a texel's step beyond what it does on a plane across the light,
-// to whichever neighbor is nearer; kNoDepth if there is none. `at`, `texels`: of the step's axis; `plane`: what depth
-// grows on a plane; `across`: twice the step times the ray; `grows`: to the neighbors forwards and backwards.
+// For parallel rays: how much more depth grows along a texel's step than on a plane across the light, to whichever neighbor is
+// nearer; kNoDepth: there is none. `at`, `texels`: of the step's axis; `plane`: what depth grows on a plane; `across`: twice the
+// step times the ray; `grows`: to the neighbors forwards and backwards.
 float parallelSlope(int at, int texels, float plane, float squaredStep, float across, float ray2, vec2 grows) {
   vec2 change = vec2(1.0, -1.0) * grows + plane;
   vec2 squared = squaredStep + change * (across + change * ray2);
   bool forward = at + 1 < texels && grows.x < kNoDepth, backward = at > 0 && grows.y < kNoDepth;
-  // Less steep than 60 degrees: no edge.
+  // A step less steep than 60 degrees is no edge.
   if (forward && (!backward || squared.x < 4.0 * squaredStep || squared.x <= squared.y)) return change.x;
   return backward ? change.y : kNoDepth;
 }
 
-// A texel's caster: what lies behind the stored surface, and what the surface is of.
+// A texel's caster: what lies behind the stored surface, and the surface's material.
 struct Behind {
   float exit; // see EntryPoint
   uint material;
@@ -97,9 +92,9 @@ Behind behind(EntryMapConstants map, ivec2 texel) {
   return b;
 }
 
-// The entry of a surface that part `share` of the light enters. normal: not normalized, 0 where no neighbor says.
-uvec4 entryOf(float depth, float share, vec3 normal, vec3 toLight, ivec2 pixel, float front, float planar,
-               float tolerance, Behind b) {
+// The entry of a surface that part `share` of the light enters. `normal`: not normalized, 0 where no neighbor says.
+uvec4 entryOf(float depth, float share, vec3 normal, vec3 toLight, ivec2 pixel, float front, float planar, float tolerance,
+              Behind b) {
   if (b.opaque) share = 0.0;
   EntryPoint r = EntryPoint(depth, toLight, share, 0.0, 1.0, b.exit, b.material);
   float squared = dot(normal, normal);
@@ -178,5 +173,3 @@ uvec4 entryOf(EntryMapConstants map, ivec2 texel) {
   if (map.meta.z != 0u) return perspectiveEntry(map, texel, stored);
   return parallelEntry(map, texel, stored);
 }
-
-#endif

@@ -1,5 +1,5 @@
-// Factors for the unknown cosine of the light on the hidden face. x: cosine between the view ray and the
-// direction to the light. See PellucidAngleModel.
+// Factors that stand for the cosine of the light on the hidden face, which the camera does not see. x is the cosine
+// between the view ray and the direction to the light. See PellucidAngleModel.
 #ifndef PELLUCID_ANGLE_GLSL
 #define PELLUCID_ANGLE_GLSL
 

@@ -1,4 +1,4 @@
-// Pixel and depth to view space. All of it comes from the projection matrix: see module/src/camera.h.
+// Conversions from pixel and depth to view space; module/src/camera.h derives the constants from the projection matrix.
 #ifndef PELLUCID_CAMERA_GLSL
 #define PELLUCID_CAMERA_GLSL
 
@@ -36,9 +36,9 @@ float planarDistanceViewZ(float viewZ) {
   return viewZ > 0.0 && viewZ < kNoDepth ? viewZ : -1.0;
 }
 
-// The pixel a view-space point falls on; false behind the eye.
+// Finds the pixel that a view-space point falls on; false behind the eye.
 bool projectToPixel(Camera camera, vec3 position, out ivec2 pixel) {
-  // The inverse of point(p) = origin + p direction, both affine in the pixel: two linear equations.
+  // The function inverts point(p) = origin + p direction, both affine in the pixel: two linear equations.
   float p = position.z * camera.range.x;
   vec2 x = camera.rayX.xy * p + camera.rayX.zw, y = camera.rayY.xy * p + camera.rayY.zw;
   vec2 rest = position.xy - (camera.rayBase.xy * p + camera.rayBase.zw);

@@ -1,6 +1,5 @@
-// Light-space gather. Light that enters the lit surface at y with flux F leaves x with exitance
-// F (1 - m) K(r, h) and comes back as diffused irradiance F m R(r), r = |x - y|; docs/gather.md derives K.
-// Lengths in mm.
+// Light-space gather. Light that enters the lit surface at y with flux F leaves x with exitance F (1 - m) K(r, h) and comes
+// back as diffused irradiance F m R(r), r = |x - y| in mm; docs/gather.md derives K.
 #ifndef PELLUCID_GATHER_GLSL
 #define PELLUCID_GATHER_GLSL
 
@@ -11,26 +10,21 @@ struct GatherSlab {
   vec3 logarithm, decay;
 };
 
-// Linear between an entry of GatherConstants and the next: both, and what the next has more.
-struct GatherEntry {
-  vec4 a, b, c; // logarithm and its step, decay and its step
-};
-
 // Place of a thickness among the entries, which are at equal steps of h / (h + scale).
 float gatherPlace(vec4 lengths, float h) {
   return h / (h + lengths.w) * float(PELLUCID_GATHER_ENTRIES - 1); // scale > 0
 }
 
-GatherSlab gatherSlab(GatherEntry e, float fraction) {
-  return GatherSlab(e.a.rgb + fraction * vec3(e.a.w, e.b.rg), vec3(e.b.zw, e.c.x) + fraction * e.c.yzw);
+// Interpolates between an entry of GatherConstants and the next. a, b, c: the logarithm and its step, the decay and its
+// step.
+GatherSlab gatherSlab(vec4 a, vec4 b, vec4 c, float fraction) {
+  return GatherSlab(a.rgb + fraction * vec3(a.w, b.rg), vec3(b.zw, c.x) + fraction * c.yzw);
 }
 
-// Integral of K(r, h) over the ring that a plane with x at distance 0 from its center shows between the
-// distances `near` and `far` from x, T [e^{-q (near - h)} - e^{-q (far - h)}]: slabs are exact however wide
-// the rings are. Where h grows with r, as on spheres (h = r), K goes like T(r) instead. Its logarithm falls by
-// kappa coth(kappa (h + e)) per mm: within 14 % a line in q, for q up to 5 kappa. It does so before h where that reaches
-// into the ring, to second order, and beyond by the part `curved`, 0 to 1. The channel that spreads furthest decides how
-// much slower than by q, as light of the others comes from rings that are small beside it.
+// Integral of K(r, h) over the ring between the distances `near` and `far` from x: T [e^{-q (near - h)} - e^{-q (far - h)}] is
+// exact for slabs. Where h grows with r, as on spheres, K falls like T(r), with a slope that is within 14 % a line in q, for q
+// up to 5 kappa: before h, to second order, and beyond h by the part `curved`, 0 to 1. The channel that spreads furthest
+// decides the slope, because light of the others comes from rings that are small beside it.
 vec3 gatherTransmitted(vec4 lengths, GatherSlab slab, float curved, float h, float near, float far) {
   float begins = max(near, h), before = 0.69314718 * (begins - near);
   vec3 q = slab.decay;

@@ -11,21 +11,12 @@ struct Surface {
   uint material; // index + 1; 0: not known
 };
 
-// True where a vector of that squared length has a direction; false for NaN.
-bool hasDirection(float squared) { return squared > 1.0e-8 && squared < 1.0e8; }
-
 // `normal`: any length, view space; (0, 0, 0): none.
 Surface makeSurface(ViewRay ray, float planar, float chord, vec3 normal) {
-  Surface s;
-  s.position = ray.origin + planar * ray.direction;
-  s.view = normalize(ray.direction);
-  s.chord = chord;
-  s.material = 0u;
-  s.normal = normal;
-  float squared = dot(s.normal, s.normal);
-  s.hasNormal = hasDirection(squared);
-  if (s.hasNormal) s.normal *= inversesqrt(squared);
-  return s;
+  float squared = dot(normal, normal);
+  bool hasNormal = squared > 1.0e-8 && squared < 1.0e8; // false for NaN
+  if (hasNormal) normal *= inversesqrt(squared);
+  return Surface(ray.origin + planar * ray.direction, normal, normalize(ray.direction), chord, hasNormal, 0u);
 }
 
 #endif

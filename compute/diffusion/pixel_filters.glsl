@@ -1,9 +1,15 @@
-// The fine filter: five taps in each direction around a pixel, wider along rows or columns where the surface is
-// foreshortened. The including pass has the colors in vertical[].
-#ifndef PELLUCID_FINE_FILTER_GLSL
-#define PELLUCID_FINE_FILTER_GLSL
+// Filters of pixels. The spline interpolates level 2. The fine filter takes five taps in each direction of shared vertical[],
+// wider along rows or columns where the surface is foreshortened.
 
-// Weights in one direction: of the pixel, of its neighbors and of theirs.
+// The quadratic B-spline at -1, 0 and 1 for a point at most half a texel from 0.
+vec3 spline(float at) {
+  return vec3(0.5 * (0.5 - at) * (0.5 - at), 0.75 - at * at, 0.5 * (0.5 + at) * (0.5 + at));
+}
+
+// The spline at a pixel of a texel of level 2, in one direction.
+vec3 splineAt(int pixel) { return spline(0.25 * (float(pixel & 3) - 1.5)); }
+
+// Weights of the pixel, of its neighbors and of theirs in one direction.
 const vec3 kFineWeights = vec3(9.0, 4.0, 1.0) / 19.0, kWideFineWeights = vec3(2.0, 2.0, 1.0) / 8.0;
 
 // `wider`: FineShape's, negative in the other direction.
@@ -11,11 +17,11 @@ vec3 fineWeights(float wider) { return mix(kFineWeights, kWideFineWeights, max(w
 
 float weightAt(vec3 weights, int i) { return i == 0 ? weights.x : abs(i) == 1 ? weights.y : weights.z; }
 
-// Weights of each channel, `direct` of which goes through unfiltered.
 struct FineFilter {
-  vec3 own, next, last;
+  vec3 own, next, last; // weights of each channel
 };
 
+// `direct`: part of each channel that goes through unfiltered.
 FineFilter fineFilter(float wider, vec3 direct) {
   vec3 weights = fineWeights(wider), rest = 1.0 - direct;
   return FineFilter(direct + weights.x * rest, weights.y * rest, weights.z * rest);
@@ -25,7 +31,8 @@ vec3 fineSum(FineFilter f, vec3 a, vec3 b, vec3 c, vec3 d, vec3 e) {
   return f.own * c + f.next * (b + d) + f.last * (a + e);
 }
 
-// Filters along columns and along rows: light that is thin along one passes the other unfiltered. `shape`: a texel's shares' z.
+// Filters along columns and along rows: light that is thin along one passes the other unfiltered. `shape`: z of a texel's
+// shares.
 FineFilter columnFilter(uint shape, bool shaped) {
   FineShape s = shaped ? unpackShape(shape) : kNoShape;
   return fineFilter(-s.wider, s.wider > 0.0 ? s.thin : vec3(0.0));
@@ -38,8 +45,8 @@ FineFilter rowFilter(uint shape, bool shaped) {
 
 // The horizontal half, at a place whose vertical half is done.
 vec3 fineOf(FineFilter f, int at) {
-  return fineSum(f, unpackColor(vertical[at - 2]), unpackColor(vertical[at - 1]), unpackColor(vertical[at]),
-                 unpackColor(vertical[at + 1]), unpackColor(vertical[at + 2]));
+  return fineSum(f, unpackHalves(vertical[at - 2]), unpackHalves(vertical[at - 1]), unpackHalves(vertical[at]),
+                 unpackHalves(vertical[at + 1]), unpackHalves(vertical[at + 2]));
 }
 
 // Both halves where all around the pixel is one plane. `place`: in what keepRow kept.
@@ -52,5 +59,3 @@ vec3 fineOfPlane(int place, uint shape) {
   }
   return fine;
 }
-
-#endif

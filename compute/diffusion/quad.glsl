@@ -1,0 +1,85 @@
+// A texel of level 1 from its quad: four pixels, rows first, packed by packHalves(color, material); depth <= 0: none.
+
+// The pixel whose normal stands for a quad that is one surface: any of the four, by turns.
+ivec2 pixelOfQuad(ivec2 quad) { return 2 * quad + (quad.yx & 1); }
+
+// Cosine, of 87 degrees: surfaces closer to edge-on show no more area than one there.
+const float kLeastCosine = 0.05;
+
+// Projected-area weight of a pixel with a normal of any length > 0; 0: it has none.
+float areaOf(vec2 pixel, vec3 normal) {
+  // The ray is in the normal's space.
+  vec3 ray = frame.normalRay[0].xyz + pixel.x * frame.normalRay[1].xyz + pixel.y * frame.normalRay[2].xyz;
+  float squared = dot(normal, normal), along = dot(normal, ray);
+  // The comparison is false for NaN, too.
+  return squared > 1.0e-8 ? inversesqrt(max(along * along * (1.0 / squared), kLeastCosine * kLeastCosine)) : 0.0;
+}
+
+// Projected-area weight of a quad that is one surface, as its depths say.
+float areaOfQuad(ivec2 quad, float depth[4]) {
+  vec2 rise = 0.5 * vec2(depth[1] - depth[0] + depth[3] - depth[2], depth[2] - depth[0] + depth[3] - depth[1]);
+  return areaOf(1u, quad, rise * inversesqrt(max(squaredPixelSize(frame.camera, depth[0]), vec2(1.0e-30))));
+}
+
+// True where the four pixels are one surface.
+bool isWholeQuad(uvec2 packed[4], float depth[4]) {
+  uint first = packed[0].y, different = (first ^ packed[1].y) | (first ^ packed[2].y) | (first ^ packed[3].y);
+  float nearest = min(min(depth[0], depth[1]), min(depth[2], depth[3]));
+  float farthest = max(max(depth[0], depth[1]), max(depth[2], depth[3]));
+  bool one = nearest > 0.0 && first >> 16 != 0u && different >> 16 == 0u;
+  vec2 sides = squaredPixelSize(frame.camera, nearest);
+  float span = farthest - nearest;
+  return one && span * span < 64.0 * min(sides.x, sides.y);
+}
+
+uvec4 wholeQuadTexel(uvec2 packed[4], float depth[4], float area) {
+  vec3 color = unpackHalves(packed[0]) + unpackHalves(packed[1]) + unpackHalves(packed[2]) + unpackHalves(packed[3]);
+  float sum = depth[0] + depth[1] + depth[2] + depth[3];
+  return packTexel(Texel(0.25 * color, area, packed[0].y >> 16, 0.25 * sum, vec2(0.0)), kPlane);
+}
+
+// The texel takes the nearest surface and what lies behind it by no more than its own slope over a pixel, or within what a
+// surface 83 degrees from facing the camera has.
+uvec4 edgeQuadTexel(ivec2 quad, uvec2 packed[4], float depth[4]) {
+  vec4 area;
+  for (int i = 0; i < 4; ++i) {
+    ivec2 pixel = withinRect(2 * quad + ivec2(i & 1, i >> 1));
+    area[i] = areaOf(vec2(pixel), normalAt(pixel));
+  }
+  uint nearestMaterial = 0u, any = 0u;
+  float nearest = kNoDepth;
+  for (int i = 0; i < 4; ++i) {
+    uint material = packed[i].y >> 16;
+    any = max(any, material);
+    if (material == 0u || !(depth[i] > 0.0) || depth[i] >= nearest) continue;
+    nearest = depth[i];
+    nearestMaterial = material;
+  }
+  if (nearestMaterial == 0u) return uvec4(0u, any << 24, 0u, 0u);
+  vec2 sides = squaredPixelSize(frame.camera, nearest);
+  float side = sqrt(min(sides.x, sides.y));
+  vec3 mean = vec3(0.0);
+  float sum = 0.0, weights = 0.0, areas = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    bool counts = depth[i] > 0.0 && packed[i].y >> 16 == nearestMaterial &&
+                  depth[i] - nearest <= side * max(8.0, area[i]);
+    // Across an edge depths say nothing of slopes.
+    float w = counts ? 1.0 : 0.0, a = w * (area[i] > 0.0 ? area[i] : 1.0);
+    mean += a * unpackHalves(packed[i]);
+    sum += counts ? depth[i] : 0.0;
+    weights += w;
+    areas += a;
+  }
+  // The nearest counts, so weights >= 1; areas are positive.
+  return packTexel(Texel(mean / areas, 0.25 * areas, nearestMaterial, sum / weights, vec2(0.0)), 0u);
+}
+
+// `normal`: of pixelOfQuad(quad).
+uvec4 texelOfQuad(ivec2 quad, uvec2 packed[4], float depth[4], vec3 normal) {
+  // An empty quad looks nothing up.
+  if ((packed[0].y | packed[1].y | packed[2].y | packed[3].y) >> 16 == 0u) return uvec4(0u);
+  if (!isWholeQuad(packed, depth)) return edgeQuadTexel(quad, packed, depth);
+  float area = areaOf(vec2(pixelOfQuad(quad)), normal);
+  if (area == 0.0) area = areaOfQuad(quad, depth);
+  return wholeQuadTexel(packed, depth, area);
+}

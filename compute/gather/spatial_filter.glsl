@@ -1,0 +1,53 @@
+// The spatial filter of a group's probes, from shared memory.
+
+const int kReach = 2; // cells, across and along together
+const int kSquare = 2 * kReach + 1, kRow = PELLUCID_FILTER_GROUP + 2 * kReach;
+const int kBorder = kRow * kRow - PELLUCID_FILTER_GROUP * PELLUCID_FILTER_GROUP;
+
+shared vec4 places[kRow * kRow];  // position; w: bits of the material, 0: nothing there
+shared uvec4 found[kRow * kRow];  // as probes have light; the normal in halves, in place of the probes' own
+shared uint someLight, someConvexity;
+
+// The cell's place in the shared arrays; `local`: the cell from the group's first one.
+int placeOf(ivec2 local) { return (local.y + kReach) * kRow + local.x + kReach; }
+
+void keepProbe(ivec2 local, ivec2 cell, int side, uvec4 bits) {
+  vec3 normal = normalOf(bits);
+  places[placeOf(local)] = vec4(viewPosition(cell, side, unpackProbe(bits)), uintBitsToFloat(bits.z & 0xFFu));
+  found[placeOf(local)] = uvec4(bits.x, (bits.y & 0xFFFFu) | packHalf2x16(vec2(0.0, normal.x)), packHalf2x16(normal.yz),
+                                bits.w);
+}
+
+// The i-th cell of the border: whole rows above and below come first, then the rest row by row.
+ivec2 borderCell(int i) {
+  bool whole = i < 2 * kReach * kRow;
+  if (!whole) i -= 2 * kReach * kRow;
+  int columns = whole ? kRow : 2 * kReach, across = i % columns, along = i / columns;
+  int skips = (whole ? along : across) < kReach ? 0 : PELLUCID_FILTER_GROUP;
+  return (whole ? ivec2(across, along + skips) : ivec2(across + skips, along + kReach)) - kReach;
+}
+
+// The probe `own` with its filtered light. `perSquare`: falloff by distance, per squared scene unit.
+uvec4 filtered(ivec2 local, uvec4 own, float perSquare) {
+  int center = placeOf(local);
+  vec3 place = places[center].xyz, normal = vec3(unpackHalf2x16(found[center].y).y, unpackHalf2x16(found[center].z));
+  float total = 0.0;
+  vec3 added = vec3(0.0), convexity = vec3(0.0);
+  [[unroll]] for (int i = 0; i < kSquare * kSquare; ++i) {
+    ivec2 away = ivec2(i % kSquare, i / kSquare) - kReach;
+    if (abs(away.x) + abs(away.y) > kReach) continue; // known when compiled
+    vec4 theirs = places[center + away.y * kRow + away.x];
+    uvec4 bits = found[center + away.y * kRow + away.x];
+    vec3 apart = theirs.xyz - place;
+    vec2 middle = unpackHalf2x16(bits.y);
+    float facing = max(dot(vec3(middle.y, unpackHalf2x16(bits.z)), normal), 0.0);
+    // The fourth power keeps what surfaces turn over from being evened out.
+    facing *= facing;
+    float weight = floatBitsToUint(theirs.w) == (own.z & 0xFFu) ? exp2(-dot(apart, apart) * perSquare) * facing * facing : 0.0;
+    added += weight * vec3(unpackHalf2x16(bits.x), middle.x);
+    if (someConvexity != 0u) convexity += weight * convexityOf(bits);
+    total += weight;
+  }
+  // The probe itself is among them.
+  return replaceLight(own, added / total, convexity / total);
+}
