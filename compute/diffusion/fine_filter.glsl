@@ -4,7 +4,8 @@
 #define PELLUCID_FINE_FILTER_GLSL
 
 // Weights in one direction: of the pixel, of its neighbors and of theirs.
-const vec3 kFineWeights = vec3(9.0, 4.0, 1.0) / 19.0, kWideFineWeights = vec3(2.0, 2.0, 1.0) / 8.0;
+const vec3 kFineWeights = vec3(PELLUCID_FINE_OWN, PELLUCID_FINE_NEXT, PELLUCID_FINE_LAST);
+const vec3 kWideFineWeights = vec3(PELLUCID_WIDE_FINE_OWN, PELLUCID_WIDE_FINE_NEXT, PELLUCID_WIDE_FINE_LAST);
 
 // `wider`: FineShape's, negative in the other direction.
 vec3 fineWeights(float wider) { return mix(kFineWeights, kWideFineWeights, max(wider, 0.0)); }

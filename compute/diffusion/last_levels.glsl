@@ -2,8 +2,8 @@
 #ifndef PELLUCID_LAST_LEVELS_GLSL
 #define PELLUCID_LAST_LEVELS_GLSL
 
-// Part of all energy: a plane of 82 pixels' radius has as much beyond level 5, where a plan that knows radii begins to use level 6.
-const float kLeastBeyondMade = 0.004;
+// Part of all energy: a plane of 84 pixels' radius has as much beyond level 5, where a plan that knows radii begins to use level 6.
+const float kLeastBeyondMade = 0.003;
 
 // True where a texel of level 5 has energy at coarser levels. In plans that do not know how large radii are, most have next to
 // none.

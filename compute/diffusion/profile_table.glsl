@@ -26,7 +26,7 @@ vec3 beyondPixel(uint m, uint element, float entry) {
 
 // Shares of pixels of a texel of level 2, on a surface that fills all of the kernel. By how many octaves the kernel's longest side is
 // longer than its shortest, which the level goes by, and how much of that goes for the pixel, its neighbors and level 2, was
-// fitted on tilted planes, for kernels along rows or columns and along diagonals. Next to silhouettes, where surfaces bend
+// chosen on tilted planes (pellucid_filters.h), for kernels along rows or columns and along diagonals. Next to silhouettes, where surfaces bend
 // away from their tangent planes, it is none.
 PixelShares pixelShares(uint m, Foreshortening f) {
   // The stretch is >= 0 but for rounding.
@@ -35,9 +35,9 @@ PixelShares pixelShares(uint m, Foreshortening f) {
   float entry = shareEntry(m, 0.25 * f.lengthMm), perOctave = kernels[m].range.y * octaves;
   // 1: along rows or columns, 0: along a diagonal.
   float straight = abs(f.axis.x * f.axis.x - f.axis.y * f.axis.y);
-  vec3 coarser = beyondPixel(m, 0u, entry - perOctave * (0.3 - 0.15 * straight));
-  vec3 both = max(beyondPixel(m, 1u, entry - perOctave * (0.5 - 0.5 * straight)), coarser);
-  vec3 beyond = max(beyondPixel(m, 1u, entry - 0.5 * perOctave), both);
+  vec3 coarser = beyondPixel(m, 0u, entry - perOctave * (PELLUCID_FORESHORTENED_COARSER - PELLUCID_FORESHORTENED_STRAIGHT * straight));
+  vec3 both = max(beyondPixel(m, 1u, entry - perOctave * PELLUCID_FORESHORTENED_FINE * (1.0 - straight)), coarser);
+  vec3 beyond = max(beyondPixel(m, 1u, entry - perOctave * PELLUCID_FORESHORTENED_FINE), both);
   float wider = min(exp2(octaves) - 1.0, 1.0) * straight;
   // One Gaussian may ask for more than all.
   vec3 fine = min((beyond - coarser) / max(1.0 - coarser, vec3(1.0e-3)), vec3(mostFine(wider)));

@@ -15,7 +15,7 @@ ivec2 sharesPlace(ivec2 texel) { return frame.level[0].zw + texel; }
 // A foreshortened surface's kernel is longer in one direction. Along rows or columns of pixels, whichever is nearer to it, the
 // fine filter is wider, and part of its share is that of a filter along them alone.
 struct FineShape {
-  float wider; // 0: 1 4 9 4 1 to 1: 1 2 2 2 1; negative: along columns
+  float wider; // 0: the fine filter to 1: the wide one; negative: along columns
   vec3 thin;   // part of fine
 };
 
@@ -29,8 +29,11 @@ struct PixelShares {
 const float kMostFine = 1.2; // of fine
 
 // The share of the fine filter at which the pixel itself counts 0, less what 8 bits round: 1 - f + f w = 0 of the filter's
-// weight w of it, 9/19 along one axis and 9/19 to 1/4 along the other.
-float mostFine(float wider) { return min(kMostFine, 1.0 / (1.0 - 9.0 / 19.0 * mix(9.0 / 19.0, 0.25, abs(wider))) - 0.003); }
+// weight w of it, the narrow filter's along one axis and either's along the other.
+float mostFine(float wider) {
+  float own = PELLUCID_FINE_OWN * mix(PELLUCID_FINE_OWN, PELLUCID_WIDE_FINE_OWN, abs(wider));
+  return min(kMostFine, 1.0 / (1.0 - own) - 0.003);
+}
 
 uvec3 packShares(PixelShares s) {
   uvec3 fine = uvec3(s.fine * (255.0 / kMostFine) + 0.5), thin = uvec3(s.shape.thin * 63.0 + 0.5);
