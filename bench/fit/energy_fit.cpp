@@ -16,21 +16,25 @@ using Eigen::VectorXd;
 
 constexpr double kPi = std::numbers::pi;
 
-// Rows of pixels repeat after this many, which the widest element's 768 and 32 deviations of the widest Gaussian fit in.
+// Rows of pixels repeat after this many, which the widest element's 768 and 32 deviations of the widest
+// Gaussian fit in.
 constexpr int kPeriod = 2048, kFrequencies = kPeriod / 2 + 1;
 
-// A random image of straight edges has a covariance of its contrast squared less a multiple of the distance r (Matern 1960:
-// mosaics of random lines have e^{-r/L}). The sum of weights is 1, which leaves -r, and
+// A random image of straight edges has a covariance of its contrast squared less a multiple of the distance r
+// (Matern 1960: mosaics of random lines have e^{-r/L}). The sum of weights is 1, which leaves -r, and
 //   r = sqrt(2 / pi) int_0^inf (1 - e^{-r^2 / (2 t^2)}) dt
-// is a mixture of covariances that are products along rows and columns, as all kernels here are. Deviations t of the mixture:
+// is a mixture of covariances that are products along rows and columns, as all kernels here are. Deviations t
+// of the mixture:
 constexpr double kFirstOctave = -2, kLastOctave = 9, kOctaveStep = 0.5;
 
 // (f(d + 1) - 2 f(d) + f(d - 1)) of this is the covariance of the means over two pixels at distance d.
 double secondIntegral(double d, double t) {
-  return t * t * std::expm1(-d * d / (2 * t * t)) + d * t * std::sqrt(kPi / 2) * std::erf(d / (t * std::numbers::sqrt2));
+  return t * t * std::expm1(-d * d / (2 * t * t)) +
+         d * t * std::sqrt(kPi / 2) * std::erf(d / (t * std::numbers::sqrt2));
 }
 
-// Of the covariance e^{-d^2 / (2 t^2)} between points of a row of pixels; of one side's frequencies, counting the other's.
+// Of the covariance e^{-d^2 / (2 t^2)} between points of a row of pixels; of one side's frequencies, counting
+// the other's.
 VectorXd spectrumOf(double t) {
   VectorXd covariance(kPeriod);
   for (int i = 0; i < kPeriod; ++i) {
@@ -76,8 +80,8 @@ EdgeError::EdgeError(const std::vector<double>& deviations) : deviations_(deviat
     const int reach = std::min(kPeriod / 2 - 1, static_cast<int>(8 * deviation) + 2);
     gaussians.row(g) = transformOf(gaussianKernel(deviation, reach)).real().transpose();
   }
-  // Means over the pixels of a texel of the last level: of the elements' transforms and of products of two, a column for each
-  // pair. The other half of these pixels mirrors this one.
+  // Means over the pixels of a texel of the last level: of the elements' transforms and of products of two, a
+  // column for each pair. The other half of these pixels mirrors this one.
   constexpr int kPhases = (1 << kLastElement) / 2;
   MatrixXd mean = MatrixXd::Zero(kElementCount, kFrequencies);
   MatrixXd pairs = MatrixXd::Zero(kFrequencies, kElementCount * kElementCount);
@@ -96,8 +100,8 @@ EdgeError::EdgeError(const std::vector<double>& deviations) : deviations_(deviat
   for (double octave = kFirstOctave; octave <= kLastOctave; octave += kOctaveStep) {
     const double t = std::exp2(octave);  // its weight, too, at equal steps of log2 t
     const VectorXd spectrum = spectrumOf(t);
-    // Products along a row. Columns are alike, and a pixel's place in a row says nothing of its place in a column, so
-    // those over the image are the squares.
+    // Products along a row. Columns are alike, and a pixel's place in a row says nothing of its place in a
+    // column, so those over the image are the squares.
     const VectorXd ofPairs = pairs.transpose() * spectrum;
     elements_ += t * ofPairs.reshaped(kElementCount, kElementCount).cwiseAbs2();
     products_ += t * (mean * spectrum.asDiagonal() * gaussians.transpose()).cwiseAbs2();

@@ -14,9 +14,9 @@ namespace {
 
 static_assert(kTables == pellucid::kElements);
 
-// Measured on the checker of docs/diffusion.md at 2, 8, 32, 128 pixels: .001 gives .0052 .0050 .0076 .0079, .01 .0046 .0050
-// .0075 .0076, .05 .0046 .0057 .0081 .0082. Without it narrow Gaussians have negative weights of level 2, which the module
-// cannot use.
+// Measured on the checker of docs/diffusion.md at 2, 8, 32, 128 pixels: .001 gives .0052 .0050 .0076 .0079,
+// .01 .0046 .0050 .0075 .0076, .05 .0046 .0057 .0081 .0082. Without it narrow Gaussians have negative weights
+// of level 2, which the module cannot use.
 constexpr double kPenalty = 0.015;
 
 constexpr int kPerOctave = static_cast<int>(1 / EnergyFrom::kStep);
@@ -24,8 +24,8 @@ constexpr int kPerOctave = static_cast<int>(1 / EnergyFrom::kStep);
 constexpr int kNarrowest = -3, kWidest = 6;
 constexpr int kFits = (kWidest - kNarrowest) * kPerOctave + 1;
 
-// Element of each table, and the log2 of the deviation that it begins at, in pixels or the level's texels. Levels coarser than 4
-// differ from it by less than 1 % of their variance.
+// Element of each table, and the log2 of the deviation that it begins at, in pixels or the level's texels.
+// Levels coarser than 4 differ from it by less than 1 % of their variance.
 struct Source {
   int element, first;
 };
@@ -52,7 +52,8 @@ Eigen::VectorXd weightsOf(const EnergyTable& table, double octave) {
   Eigen::VectorXd weights(kElementCount);
   double before = 1;
   for (int e = kFineFilter; e < kElementCount; ++e) {
-    const double from = energyAt(table[static_cast<size_t>(std::min(e, kTables) - 1)], octave - octavesOfTexel(e));
+    const double from =
+        energyAt(table[static_cast<size_t>(std::min(e, kTables) - 1)], octave - octavesOfTexel(e));
     weights[e - 1] = before - from;
     before = from;
   }
@@ -111,8 +112,10 @@ double largestDifference(const EnergyTable& a, const EnergyTable& b) {
 
 std::string textOf(const EnergyTable& table) {
   std::string text =
-      "// Cumulative weights of the pyramid's elements over the deviation of a Gaussian, fitted and written by `./run fit`;\n"
-      "// docs/diffusion.md, \"Fitted tables\". Each row: log2 of the first deviation, and samples EnergyFrom::kStep apart.\n"
+      "// Cumulative weights of the pyramid's elements over the deviation of a Gaussian, fitted and written "
+      "by `./run fit`;\n"
+      "// docs/diffusion.md, \"Fitted tables\". Each row: log2 of the first deviation, and samples "
+      "EnergyFrom::kStep apart.\n"
       "#pragma once\n\n"
       "namespace pellucid {\n\n"
       "struct GaussianEnergy {\n"
@@ -127,7 +130,11 @@ std::string textOf(const EnergyTable& table) {
     std::snprintf(number, sizeof number, "\n  {%g, {", row.first);
     text += number;
     for (size_t k = 0; k < row.samples.size(); ++k) {
-      std::snprintf(number, sizeof number, "%s%.4f", k == 0 ? "" : k % 10 == 0 ? ",\n    " : ", ", row.samples[k]);
+      std::snprintf(number, sizeof number, "%s%.4f",
+                    k == 0        ? ""
+                    : k % 10 == 0 ? ",\n    "
+                                  : ", ",
+                    row.samples[k]);
       text += number;
     }
     text += "}},";

@@ -1,4 +1,5 @@
-// module/src/pyramid_energy_table.h: cumulative weights of the pyramid's elements over the Gaussian's deviation.
+// module/src/pyramid_energy_table.h: cumulative weights of the pyramid's elements over the Gaussian's
+// deviation.
 #pragma once
 
 #include <array>
@@ -11,7 +12,8 @@ namespace pellucid::fit {
 constexpr int kTables = 4;
 constexpr int kTableSamples = 49;
 
-// Energy at an element and coarser ones. `first`: log2 of the first sample's deviation, in pixels; of levels, in texels.
+// Energy at an element and coarser ones. `first`: log2 of the first sample's deviation, in pixels; of levels,
+// in texels.
 struct EnergySamples {
   double first;
   std::array<double, kTableSamples> samples;

@@ -1,4 +1,5 @@
-// The model of the pyramid against filters applied one after the other, and the objective against closed forms.
+// The model of the pyramid against filters applied one after the other, and the objective against closed
+// forms.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -62,7 +63,8 @@ TEST(PyramidModel, Level4IsWhatItsFiltersMakeOfARow) {
   for (int pixel = 40; pixel < 40 + 16; ++pixel) {
     const double x = (pixel % 4 - 1.5) / 4;
     const int texel = pixel / 4;
-    const double expected = (0.5 - x) * (0.5 - x) / 2 * at(level, texel - 1) + (0.75 - x * x) * at(level, texel) +
+    const double expected = (0.5 - x) * (0.5 - x) / 2 * at(level, texel - 1) +
+                            (0.75 - x * x) * at(level, texel) +
                             (0.5 + x) * (0.5 + x) / 2 * at(level, texel + 1);
     const Kernel kernel = elementKernel(4, pixel);
     double made = 0;
@@ -73,7 +75,7 @@ TEST(PyramidModel, Level4IsWhatItsFiltersMakeOfARow) {
 }
 
 class EdgeErrors : public testing::Test {
- protected:
+protected:
   static const EdgeError& error() {
     static const EdgeError e({1, 16, 32});
     return e;
@@ -85,11 +87,15 @@ class EdgeErrors : public testing::Test {
 double betweenGaussians(double a, double b) { return std::hypot(a, b) - (a + b) / std::sqrt(2.0); }
 
 TEST_F(EdgeErrors, GoesAsThatOfAStep) {
-  const auto alone = [](int element) { return Eigen::VectorXd(Eigen::VectorXd::Unit(kElementCount, element)); };
+  const auto alone = [](int element) {
+    return Eigen::VectorXd(Eigen::VectorXd::Unit(kElementCount, element));
+  };
   const double pixel = error().of(1, alone(kPixel));
-  // Pixels hold means over their area, of variance 1/12; the Gaussian's integral over pixels has as much again.
+  // Pixels hold means over their area, of variance 1/12; the Gaussian's integral over pixels has as much
+  // again.
   const auto between = [](double elementVariance, double deviation) {
-    return betweenGaussians(std::sqrt(elementVariance + 1.0 / 12), std::sqrt(deviation * deviation + 2.0 / 12));
+    return betweenGaussians(std::sqrt(elementVariance + 1.0 / 12),
+                            std::sqrt(deviation * deviation + 2.0 / 12));
   };
   EXPECT_NEAR(error().of(2, alone(kPixel)) / pixel, between(0, 32) / between(0, 16), 0.005);
   // Level 6 is flatter than a Gaussian and changes with the place of the pixel: by 5 %.
@@ -108,16 +114,18 @@ TEST_F(EdgeErrors, IsLeastAtTheFit) {
       EXPECT_GT(error().of(g, best + other), error().of(g, best)) << g;
     }
     // The penalty takes from far elements.
-    EXPECT_LT(error().best(g, 1)[kLastElement] * error().best(g, 1)[kLastElement], best[kLastElement] * best[kLastElement]) << g;
+    EXPECT_LT(error().best(g, 1)[kLastElement] * error().best(g, 1)[kLastElement],
+              best[kLastElement] * best[kLastElement])
+        << g;
   }
 }
 
-// Of Gaussians up to where level 7 is the only one that is as wide.
 TEST(EnergyTable, BuiltOneIsNearlyAsGoodAsAnyWeights) {
   for (const GaussianErrors& e : errorsOf(builtEnergyTable())) {
     EXPECT_GE(e.table, e.unconstrained - 1e-4) << e.deviation;
     // Narrower ones have next to nothing beside the pixel, and four decimals of it.
-    if (e.deviation >= 0.5) EXPECT_LE(e.table, 1.5 * e.unconstrained + 0.02) << e.deviation;
+    if (e.deviation < 0.5) continue;
+    EXPECT_LE(e.table, 1.5 * e.unconstrained + 0.02) << e.deviation;
   }
 }
 

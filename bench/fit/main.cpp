@@ -26,11 +26,15 @@ void printErrors(const EnergyTable& built, const EnergyTable& fitted) {
 int main(int argc, char** argv) {
   std::string file;
   bool check = false, errors = false;
-  CLI::App app("Fits the weights of the diffusion pyramid's elements to Gaussians and prints the module's table.", "pellucid_fit");
-  CLI::Option* update = app.add_option("--update", file, "write module/src/pyramid_energy_table.h, this file, instead");
+  CLI::App app(
+      "Fits the weights of the diffusion pyramid's elements to Gaussians and prints the module's table.",
+      "pellucid_fit");
+  CLI::Option* update =
+      app.add_option("--update", file, "write module/src/pyramid_energy_table.h, this file, instead");
   app.add_flag("--check", check, "compare with the table that this was built with instead; 1 if they differ")
       ->excludes(update);
-  app.add_flag("--errors", errors, "print the objective instead: relative RMSE of Gaussians near straight edges")
+  app.add_flag("--errors", errors,
+               "print the objective instead: relative RMSE of Gaussians near straight edges")
       ->excludes(update)
       ->excludes("--check");
   CLI11_PARSE(app, argc, argv);
@@ -41,7 +45,8 @@ int main(int argc, char** argv) {
     } else if (check) {
       const double difference = largestDifference(table, built);
       const bool same = difference <= 1.5 * kRounding;
-      std::printf("largest difference from the module's table: %.4f%s\n", difference, same ? "" : "; ./run fit rewrites it");
+      std::printf("largest difference from the module's table: %.4f%s\n", difference,
+                  same ? "" : "; ./run fit rewrites it");
       return same ? 0 : 1;
     } else if (file.empty()) {
       std::fputs(textOf(table).c_str(), stdout);

@@ -33,13 +33,15 @@ Kernel throughBaseLevel(const Kernel& level1) {
   return pixels;
 }
 
-// Weights of the coarser level's texels: texel i takes the one that it lies in and the one beside it that is nearer.
+// Weights of the coarser level's texels: texel i takes the one that it lies in and the one beside it that is
+// nearer.
 Kernel throughRefinement(const Kernel& finer) {
   const int last = finer.first + static_cast<int>(finer.weights.size()) - 1;
   Kernel coarser{floorHalf(finer.first) - 1, {}};
   coarser.weights.resize(static_cast<size_t>(floorHalf(last) + 2 - coarser.first));
   for (size_t k = 0; k < finer.weights.size(); ++k) {
-    const int i = finer.first + static_cast<int>(k), near = floorHalf(i), far = (i & 1) != 0 ? near + 1 : near - 1;
+    const int i = finer.first + static_cast<int>(k), near = floorHalf(i),
+              far = (i & 1) != 0 ? near + 1 : near - 1;
     coarser.weights[static_cast<size_t>(near - coarser.first)] += finer.weights[k] * PELLUCID_REFINEMENT_NEAR;
     coarser.weights[static_cast<size_t>(far - coarser.first)] += finer.weights[k] * PELLUCID_REFINEMENT_FAR;
   }

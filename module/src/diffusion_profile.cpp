@@ -82,7 +82,8 @@ shared::KernelConstants kernelConstants(const PellucidMaterial& m, bool fineFilt
       put(1, shareOf(coarserAbove.sum[i], level3.sum[i]));
       put(PELLUCID_SHARE_COARSER, shareOf(coarserAbove.sum[i], coarser.sum[i]));
       double second = std::clamp(pixelLevel2.sum[i], 0.0, 1.0), neighbors = pixelFine.sum[i];
-      if (!fineFilter) second = neighbors = std::clamp(std::lerp(second, neighbors, PELLUCID_FINE_AT_LEVEL_2), 0.0, 1.0);
+      if (!fineFilter)
+        second = neighbors = std::clamp(std::lerp(second, neighbors, PELLUCID_FINE_AT_LEVEL_2), 0.0, 1.0);
       const double shares[] = {second, std::max(second, neighbors)};
       for (int k = 0; k < PELLUCID_PIXEL_SHARES; ++k)
         c.pixelShare[PELLUCID_PIXEL_SHARES * i + k][channel] = static_cast<float>(shares[k]);

@@ -43,7 +43,9 @@ Mixture mixtureOf(const GaussianEnergy& gaussian) {
 
 }  // namespace
 
-EnergyFrom gaussianEnergy(Element element) { return {kGaussianEnergy[element].first, kGaussianEnergy[element].samples}; }
+EnergyFrom gaussianEnergy(Element element) {
+  return {kGaussianEnergy[element].first, kGaussianEnergy[element].samples};
+}
 
 EnergyFrom burleyEnergy(Element element) {
   static const auto mixtures = [] {
