@@ -34,12 +34,9 @@ struct Energy {
   }
 };
 
-// Few Gaussians can ask for a negative weight of an element; it counts as 0.
-double shareOf(double coarser, double all) {
-  coarser = std::max(coarser, 0.0);
-  all = std::max(coarser, all);
-  return all > 1e-9 ? coarser / all : 0;
-}
+// One Gaussian can ask for a negative weight of an element, which counts as 0. Where a level and coarser ones have nothing, the
+// level itself has what others give it: without the fine filter, a part of that one's energy.
+double shareOf(double coarser, double all) { return all > 1e-9 ? std::clamp(coarser / all, 0.0, 1.0) : 0; }
 
 }  // namespace
 
