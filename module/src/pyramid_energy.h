@@ -8,8 +8,8 @@ namespace pellucid {
 // The fine filter, level 2, level 3, and any coarser one.
 enum Element { kFine, kLevel2, kLevel3, kCoarser, kElements };
 
-// A Gaussian whose deviation is at most 2^this texels of a level from 4 on has nothing at that level and
-// beyond: the table is 0 or less up to there, but for what rounding and other Gaussians hide.
+// A Gaussian of at most 2^this texels of a level from 4 on has at most a thousandth of its energy at that
+// level and coarser ones.
 constexpr double kCoarserBegins = -1.5;
 
 // The energy at an element and coarser ones, over log2 of a profile's width in pixels; for levels, in texels.
