@@ -86,6 +86,25 @@ void printScenes(Bench& bench, const std::vector<double>& radii, uint32_t qualit
 // One quality of each row of the table, without and with the fine filter.
 const std::vector<uint32_t> kQualities = {0, 1};
 
+// Root mean squares over the scenes, a row for each quality.
+void printMeans(Bench& bench, const std::vector<double>& radii) {
+  std::vector<std::vector<double>> rows(kQualities.size());
+  for (const double radius : radii) {
+    std::vector<double> squares(kQualities.size());
+    for (const ErrorScene& scene : errorScenes()) {
+      const std::vector<double> all = bench.errors(scene, radius, kQualities);
+      for (size_t i = 0; i < all.size(); ++i) squares[i] += all[i] * all[i];
+    }
+    for (size_t i = 0; i < squares.size(); ++i)
+      rows[i].push_back(std::sqrt(squares[i] / static_cast<double>(errorScenes().size())));
+  }
+  for (size_t i = 0; i < rows.size(); ++i) {
+    std::printf("| quality %u |", kQualities[i]);
+    for (const double mean : rows[i]) std::printf(" %.5f |", mean);
+    std::printf("\n");
+  }
+}
+
 // module/src/diffusion_error_table.h.
 void printTable(Bench& bench, const std::vector<double>& radii) {
   std::vector<std::vector<double>> columns;
@@ -133,7 +152,7 @@ int main(int argc, char** argv) {
   std::string device;
   int size = 96;
   uint32_t quality = 1;
-  bool table = false, check = false;
+  bool table = false, check = false, means = false;
   std::vector<double> radii(std::begin(pellucid::kErrorRadii), std::end(pellucid::kErrorRadii));
   CLI::App app("Relative RMSE of the module's diffusion from brute force, worst channel.",
                "pellucid_diffusion_error");
@@ -144,6 +163,7 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_flag("--table", table, "print module/src/diffusion_error_table.h instead");
   app.add_flag("--check", check, "compare with it instead; 1 if an error is exceeded by a tenth");
+  app.add_flag("--mean", means, "print the root mean squares over the scenes instead, of qualities 0 and 1");
   app.add_option("--radius", radii, "pixels within which 99.9 % of the energy lies; several with commas")
       ->delimiter(',')
       ->check(CLI::Range(0.01, 1000.0))
@@ -151,7 +171,9 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   try {
     Bench bench(device, size);
-    if (table)
+    if (means)
+      printMeans(bench, radii);
+    else if (table)
       printTable(bench, radii);
     else if (check)
       return holdsTable(bench, radii) ? 0 : 1;

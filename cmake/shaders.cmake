@@ -7,7 +7,7 @@ function(pellucid_shader target array source)
   set(directory ${CMAKE_CURRENT_BINARY_DIR}/spirv)
   set(header ${directory}/${array}.h)
   file(MAKE_DIRECTORY ${directory})
-  set(definitions ${ARGN})
+  set(definitions ${ARGN} ${PELLUCID_FILTER_CONSTANT})
   list(TRANSFORM definitions PREPEND -D)
   add_custom_command(
     OUTPUT ${header}

@@ -1,11 +1,8 @@
-// A texel of the pyramid from 4 x 4 of the finer level, by 3 5 5 3 in each direction: it takes the nearest of the four
+// A texel of the pyramid from 4 x 4 of the finer level, by the filter of pellucid_filters.h: it takes the nearest of the four
 // surfaces under it and averages those that lie on it. The entry point has the finer level in shared colors[], with area,
 // material and plane as packed, and depths[]; slopes are not needed.
 
-// The variance of 3 5 5 3 is 1.
-const float kOuterWeight = 3.0 / 16.0;
-
-float weight(int i) { return i == 0 || i == 3 ? kOuterWeight : 0.5 - kOuterWeight; }
+float weight(int i) { return i == 0 || i == 3 ? PELLUCID_DOWNSAMPLE_OUTER : PELLUCID_DOWNSAMPLE_INNER; }
 
 // Texels under a texel. The push constants say so, because compilers would unroll the loops of edges over a number that
 // they know, which takes half as many registers again.
@@ -142,10 +139,10 @@ uvec4 downsampled(uint finer, ivec2 texel, int first, int stride, int tapsOfPlan
       tilt += w * difference * (vec2(x, y) - 1.5);
       square += w * difference * difference;
     }
-  // The plane of least squares: its slope is the covariance over the variance, 1.
-  vec2 size = texelSize(base, finer);
-  float residual = square - off * off - dot(tilt, tilt);
-  vec2 slope = tilt / max(size, vec2(1.0e-30));
+  // The plane of least squares: its slope is the covariance over the filter's variance.
+  vec2 size = texelSize(base, finer), rise = tilt / PELLUCID_DOWNSAMPLE_VARIANCE;
+  float residual = square - off * off - dot(tilt, rise);
+  vec2 slope = rise / max(size, vec2(1.0e-30));
   bool plane = (different & kSamePlane) == 0u && (bits & kPlane) != 0u &&
                residual * inverseSpread(slope, 2.0 * size) < kPlaneResidual;
   uvec4 result = packTexel(Texel(color, areaOf(finer + 1u, texel, slope), bits >> 24, base + off, slope), kPlane);

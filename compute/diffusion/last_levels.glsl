@@ -2,9 +2,9 @@
 
 #include "diffusion/downsampled.glsl"
 
-// Part of all energy. A plane of 82 pixels' radius has as much beyond level 5; plans that know radii begin to use level 6
+// Part of all energy. A plane of 84 pixels' radius has as much beyond level 5; plans that know radii begin to use level 6
 // there.
-const float kLeastBeyondMade = 0.004;
+const float kLeastBeyondMade = 0.003;
 
 // True where a texel of level 5 has energy at coarser levels. In plans that do not know how large radii are, most texels have
 // next to none.

@@ -6,11 +6,11 @@
 
 const int kReach = 4; // of the stretch, texels
 
-// A level's kernel has variance 7/12 - 13/12 4^-level squared texels of an axis. Foreshortened surfaces need a kernel that
-// is longer along one axis: the filter is a 1-D Gaussian of what is missing, at the texels nearest to the axis.
+// Foreshortened surfaces need a level's kernel longer along one axis: the filter is a 1-D Gaussian of what is missing, at the
+// texels nearest to the axis.
 vec4 stretched(ivec2 texel, uint level, ivec2 k, Texel own, Foreshortening f) {
   vec4 sum = own.area * vec4(own.color, 1.0);
-  float variance = (7.0 / 12.0 - 13.0 / 12.0 * exp2(-2.0 * float(level))) * f.stretch;
+  float variance = (PELLUCID_LEVEL_VARIANCE_SCALE + PELLUCID_LEVEL_VARIANCE_REST * exp2(-2.0 * float(level))) * f.stretch;
   bool alongX = abs(f.axis.x) >= abs(f.axis.y);
   float dominant = alongX ? f.axis.x : f.axis.y; // its square is at least 1/2
   float gradient = (alongX ? f.axis.y : f.axis.x) / dominant;
@@ -81,7 +81,8 @@ Level alone(Own own) {
 
 // `window`: of the coarser level, which has been upsampled.
 Level withCoarser(Own own, uint level, ivec2 texel, Window window) {
-  // The four nearest count 9, 3, 3 and 1 sixteenths: the refinement of the quadratic B-spline.
+  // The refinement, of the four nearest.
+  const float kNear = PELLUCID_REFINEMENT_NEAR, kFar = PELLUCID_REFINEMENT_FAR;
   ivec2 nearest = texel >> 1, toward = 2 * (texel & 1) - 1;
   vec2 size = texelSize(own.texel.depth, level + 1u);
   float spread2 = inverseSpread(own.texel.slope, size);
@@ -90,7 +91,7 @@ Level withCoarser(Own own, uint level, ivec2 texel, Window window) {
     ivec2 at = nearest + toward * ivec2(i & 1, i >> 1);
     uvec4 theirs = upsampled[indexOf(window, at)];
     vec2 off = vec2(at) + 0.5 - 0.5 * (vec2(texel) + 0.5);
-    float w = (i == 0 ? 9.0 / 16.0 : i == 3 ? 1.0 / 16.0 : 3.0 / 16.0) / kCoverageOne;
+    float w = (i == 0 ? kNear * kNear : i == 3 ? kFar * kFar : kNear * kFar) / kCoverageOne;
     float along = dot(own.texel.slope, off * size);
     w *= tangentPlaneWeight(uintBitsToFloat(theirs.z) - own.texel.depth - along, along, spread2, kUpsampleFalloff);
     w = materialBits(theirs) == own.texel.material ? w : 0.0;

@@ -9,8 +9,9 @@ vec3 spline(float at) {
 // The spline at a pixel of a texel of level 2, in one direction.
 vec3 splineAt(int pixel) { return spline(0.25 * (float(pixel & 3) - 1.5)); }
 
-// Weights of the pixel, of its neighbors and of theirs in one direction.
-const vec3 kFineWeights = vec3(9.0, 4.0, 1.0) / 19.0, kWideFineWeights = vec3(2.0, 2.0, 1.0) / 8.0;
+// Weights in one direction: of the pixel, of its neighbors and of theirs.
+const vec3 kFineWeights = vec3(PELLUCID_FINE_OWN, PELLUCID_FINE_NEXT, PELLUCID_FINE_LAST);
+const vec3 kWideFineWeights = vec3(PELLUCID_WIDE_FINE_OWN, PELLUCID_WIDE_FINE_NEXT, PELLUCID_WIDE_FINE_LAST);
 
 // `wider`: FineShape's, negative in the other direction.
 vec3 fineWeights(float wider) { return mix(kFineWeights, kWideFineWeights, max(wider, 0.0)); }

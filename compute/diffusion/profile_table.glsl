@@ -25,15 +25,16 @@ vec3 beyondPixel(uint m, uint element, float entry) {
 }
 
 // Shares of pixels of a texel of level 2, on a surface that fills all of the kernel. The octaves between the kernel's sides
-// count by factors that were fitted on tilted planes, and not at silhouettes, where surfaces leave their tangent planes.
+// count by factors of pellucid_filters.h, and not at silhouettes, where surfaces leave their tangent planes.
 PixelShares pixelShares(uint m, Foreshortening f) {
   // The stretch is >= 0 but for rounding.
   float longer = 0.5 * log2(1.0 + max(f.stretch, 0.0)), octaves = clamp(2.5 - longer, 0.0, min(longer, 1.0));
   float entry = shareEntry(m, 0.25 * f.lengthMm), perOctave = kernels[m].range.y * octaves; // of a pixel, 1/4 of the texel
   float straight = abs(f.axis.x * f.axis.x - f.axis.y * f.axis.y); // 1: along rows or columns, 0: along a diagonal
-  vec3 coarser = beyondPixel(m, 0u, entry - perOctave * (0.3 - 0.15 * straight));
-  vec3 both = max(beyondPixel(m, 1u, entry - perOctave * (0.5 - 0.5 * straight)), coarser);
-  vec3 beyond = max(beyondPixel(m, 1u, entry - 0.5 * perOctave), both);
+  float less = PELLUCID_FORESHORTENED_COARSER - PELLUCID_FORESHORTENED_STRAIGHT * straight;
+  vec3 coarser = beyondPixel(m, 0u, entry - perOctave * less);
+  vec3 both = max(beyondPixel(m, 1u, entry - perOctave * PELLUCID_FORESHORTENED_FINE * (1.0 - straight)), coarser);
+  vec3 beyond = max(beyondPixel(m, 1u, entry - perOctave * PELLUCID_FORESHORTENED_FINE), both);
   float wider = min(exp2(octaves) - 1.0, 1.0) * straight;
   // One Gaussian may ask for more than all.
   vec3 fine = min((beyond - coarser) / max(1.0 - coarser, vec3(1.0e-3)), vec3(mostFine(wider)));

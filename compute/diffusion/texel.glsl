@@ -1,6 +1,7 @@
 // Texels of the diffusion pyramid. A texel of level l covers 2^l x 2^l pixels of the image, not of the rect, and stands
 // for one surface.
 #include "lib/halves.glsl"
+#include "shared/pellucid_filters.h"
 
 struct Texel {
   vec3 color;    // mean over the surface's area
@@ -84,8 +85,8 @@ const float kPlaneOffset = 0.1;
 
 // Falloffs of downsampling, of the stretch and the coarser levels of upsampling, and of the last pass. They have the least
 // errors on the scenes and captures of docs/diffusion.md of those that let no more light over a gap than the profile does.
-const vec2 kDownsampleFalloff = vec2(0.2, 0.5), kStretchFalloff = vec2(0.5, 2.5), kUpsampleFalloff = vec2(0.55, 3.5),
-           kPixelFalloff = vec2(0.45, 1.2);
+const vec2 kDownsampleFalloff = vec2(PELLUCID_DOWNSAMPLE_FALLOFF), kStretchFalloff = vec2(PELLUCID_STRETCH_FALLOFF),
+           kUpsampleFalloff = vec2(PELLUCID_UPSAMPLE_FALLOFF), kPixelFalloff = vec2(PELLUCID_PIXEL_FALLOFF);
 
 // The pixel that a texel's center lies at.
 vec2 pixelOf(uint level, ivec2 texel) { return (vec2(texel) + 0.5) * exp2(float(level)) - 0.5; }

@@ -10,7 +10,7 @@ ivec2 sharesPlace(ivec2 texel) { return frame.level[0].zw + texel; }
 // A foreshortened surface's kernel is longer in one direction. The fine filter is wider along rows or columns of pixels,
 // whichever is nearer to that direction, and a filter along them alone has part of its share.
 struct FineShape {
-  float wider; // 0: 1 4 9 4 1 to 1: 1 2 2 2 1; negative: along columns
+  float wider; // 0: the fine filter to 1: the wide one; negative: along columns
   vec3 thin;   // part of fine
 };
 const FineShape kNoShape = FineShape(0.0, vec3(0.0));
@@ -24,9 +24,12 @@ struct PixelShares {
 
 const float kMostFine = 1.2; // of fine
 
-// The share f of the fine filter at which the pixel itself counts 0, less what 8 bits round: 1 - f + f w = 0, where w is the
-// filter's weight of the pixel, 9/19 along one axis and 9/19 to 1/4 along the other.
-float mostFine(float wider) { return min(kMostFine, 1.0 / (1.0 - 9.0 / 19.0 * mix(9.0 / 19.0, 0.25, abs(wider))) - 0.003); }
+// The share of the fine filter at which the pixel itself counts 0, less what 8 bits round: 1 - f + f w = 0 of the filter's
+// weight w of it, the narrow filter's along one axis and either's along the other.
+float mostFine(float wider) {
+  float own = PELLUCID_FINE_OWN * mix(PELLUCID_FINE_OWN, PELLUCID_WIDE_FINE_OWN, abs(wider));
+  return min(kMostFine, 1.0 / (1.0 - own) - 0.003);
+}
 
 uvec3 packShares(PixelShares s) {
   uvec3 fine = uvec3(s.fine * (255.0 / kMostFine) + 0.5), thin = uvec3(s.shape.thin * 63.0 + 0.5);

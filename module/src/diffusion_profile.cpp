@@ -4,12 +4,10 @@
 #include <cmath>
 
 #include "pyramid_energy.h"
+#include "shared/pellucid_filters.h"
 
 namespace pellucid {
 namespace {
-
-// Without the fine filter level 2 takes this part of its energy and the pixel the rest.
-constexpr double kFineAtLevel2 = 0.3;
 
 // Entries that are not 0; the last one is.
 constexpr int kEntries = PELLUCID_SHARE_ENTRIES - 1;
@@ -36,12 +34,9 @@ struct Energy {
   }
 };
 
-// Few Gaussians can ask for a negative weight of an element; it counts as 0.
-double shareOf(double coarser, double all) {
-  coarser = std::max(coarser, 0.0);
-  all = std::max(coarser, all);
-  return all > 1e-9 ? coarser / all : 0;
-}
+// One Gaussian can ask for a negative weight of an element, which counts as 0. Where a level and coarser ones have nothing, the
+// level itself has what others give it: without the fine filter, a part of that one's energy.
+double shareOf(double coarser, double all) { return all > 1e-9 ? std::clamp(coarser / all, 0.0, 1.0) : 0; }
 
 }  // namespace
 
@@ -84,7 +79,8 @@ shared::KernelConstants kernelConstants(const PellucidMaterial& m, bool fineFilt
       put(1, shareOf(coarserAbove.sum[i], level3.sum[i]));
       put(PELLUCID_SHARE_COARSER, shareOf(coarserAbove.sum[i], coarser.sum[i]));
       double second = std::clamp(pixelLevel2.sum[i], 0.0, 1.0), neighbors = pixelFine.sum[i];
-      if (!fineFilter) second = neighbors = std::clamp(std::lerp(second, neighbors, kFineAtLevel2), 0.0, 1.0);
+      if (!fineFilter)
+        second = neighbors = std::clamp(std::lerp(second, neighbors, PELLUCID_FINE_AT_LEVEL_2), 0.0, 1.0);
       const double shares[] = {second, std::max(second, neighbors)};
       for (int k = 0; k < PELLUCID_PIXEL_SHARES; ++k)
         c.pixelShare[PELLUCID_PIXEL_SHARES * i + k][channel] = static_cast<float>(shares[k]);

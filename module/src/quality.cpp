@@ -7,6 +7,7 @@
 #include "diffusion_error_table.h"
 #include "frame.h"
 #include "pyramid_energy.h"
+#include "shared/pellucid_filters.h"
 
 namespace pellucid {
 namespace {
@@ -38,11 +39,11 @@ double widestDeviation(const PellucidMaterial& m) {
   return std::sqrt(variance);
 }
 
-double levelDeviation(uint32_t level) { return std::sqrt(7.0 / 12 * std::exp2(2.0 * level) - 13.0 / 12); }
+double levelDeviation(uint32_t level) {
+  return std::sqrt(PELLUCID_LEVEL_VARIANCE_SCALE * std::exp2(2.0 * level) + PELLUCID_LEVEL_VARIANCE_REST);
+}
 
-// Where the energy beyond a level begins in the table of pyramid_energy.cpp: 1.5 octaves below its texels,
-// and further by what that is shifted.
-double deviationWithin(uint32_t level) { return std::exp2(level - 0.5 - kCoarserShift); }
+double deviationWithin(uint32_t level) { return std::exp2(level + 1 + kCoarserBegins); }
 
 DiffusionReach diffusionReach(const FrameFacts& facts) {
   // No infinity may reach the plan's text.

@@ -70,5 +70,13 @@ TEST(PyramidEnergy, BeginsWithNothingAndEndsWithAll) {
     }
 }
 
+// Plans leave out levels by it.
+TEST(PyramidEnergy, CoarserLevelsBeginWhereStated) {
+  const EnergyFrom coarser = gaussianEnergy(kCoarser);
+  for (double x = coarser.first; x <= kCoarserBegins; x += EnergyFrom::kStep)
+    EXPECT_LE(at(coarser, x), 1e-3) << x;
+  EXPECT_GT(at(coarser, kCoarserBegins + 2 * EnergyFrom::kStep), 1e-3);
+}
+
 }  // namespace
 }  // namespace pellucid
