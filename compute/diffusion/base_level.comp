@@ -26,13 +26,13 @@ ivec2 quadInTile() { return ivec2(gl_LocalInvocationIndex % uint(kQuads), gl_Loc
 ivec2 pixelOfQuad(ivec2 quad) { return 2 * quad + (quad.yx & 1); }
 
 // The normal of the invocation's quad, to be loaded with all the rest.
-vec3 normalOfQuad() {
-  return hasQuad() ? normalAt(withinRect(pixelOfQuad((evenTile() >> 1) + quadInTile()))) : vec3(0.0);
+vec3 normalOfQuad(ivec2 tile) {
+  return hasQuad() ? normalAt(withinRect(pixelOfQuad((tile >> 1) + quadInTile()))) : vec3(0.0);
 }
 
 // After a barrier. `normal`: normalOfQuad().
-void writeQuad(vec3 normal) {
-  ivec2 local = quadInTile(), quad = (evenTile() >> 1) + local;
+void writeQuad(ivec2 tile, vec3 normal) {
+  ivec2 local = quadInTile(), quad = (tile >> 1) + local;
   if (!hasQuad()) return;
   bool inside = contains(levelRect(1u), quad);
   float depth[4];
@@ -66,13 +66,14 @@ void writeQuad(vec3 normal) {
 }
 
 void main() {
+  ivec2 tile = evenTile();
   uint material[kPixels];
   float depth[kPixels];
   vec4 source[kPixels];
-  vec3 normal = normalOfQuad();
+  vec3 normal = normalOfQuad(tile);
   // All at once, so that the latencies overlap.
   for (int i = 0; i < kPixels; ++i) {
-    ivec2 pixel = evenTile() + pixelInTile(i);
+    ivec2 pixel = tile + pixelInTile(i);
     ivec2 at = withinRect(pixel);
     material[i] = at == pixel ? materialAt(at) : 0u;
     depth[i] = frontDistance(at);
@@ -81,9 +82,9 @@ void main() {
   for (int i = 0; i < kPixels; ++i) {
     vec3 color = sanitize(source[i].rgb);
     if (pass.value.x != 0u && material[i] != 0u)
-      imageStore(destinationImage, evenTile() + pixelInTile(i), vec4(asStored(color), source[i].a));
+      imageStore(destinationImage, tile + pixelInTile(i), vec4(asStored(color), source[i].a));
     keepPixel(pixelInTile(i), roundToHalf(color), depth[i], material[i]);
   }
   barrier();
-  writeQuad(normal);
+  writeQuad(tile, normal);
 }

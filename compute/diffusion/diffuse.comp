@@ -50,7 +50,7 @@ int ownRow() { return int(gl_LocalInvocationIndex) / kColumns * kRows; }
 
 void main() {
   int invocation = int(gl_LocalInvocationIndex);
-  ivec2 firstTexel = (ivec2(frame.rect.xy) >> 2) + ivec2(bordersFirst()) * ivec2(kTexelsX, kTexelsY);
+  ivec2 firstTexel = (ivec2(frame.rect.xy) >> 2) + ivec2(workGroupBordersFirst(PELLUCID_LIST_DIFFUSE)) * ivec2(kTexelsX, kTexelsY);
   // All loads before the first barrier, so that a group waits for memory once.
   uvec4 texel = uvec4(0u), texelShares = uvec4(0u);
   ivec2 inWindow = ivec2(invocation % kWindowX, invocation / kWindowX);

@@ -7,11 +7,13 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define GROUP_SIDE PELLUCID_DOWNSAMPLE_GROUP
-#include "frame/group_order.glsl"
 #include "diffusion/pyramid.glsl"
 
 layout(set = 0, binding = PELLUCID_BINDING_PYRAMID) uniform utexture2D pyramidImage;
 
+#include "frame/group_order.glsl"
+
+const uint kFirstLevel = 1u; // of the pyramid
 const uint kInvocations = uint(PELLUCID_DOWNSAMPLE_GROUP * PELLUCID_DOWNSAMPLE_GROUP);
 // Sides of what a tile needs of the level before, and of its input.
 const int kFirst = PELLUCID_DOWNSAMPLE_GROUP, kInput = 2 * kFirst + 2;
@@ -46,7 +48,10 @@ void main() {
   barrier();
   uint finer = pass.value.x;
   ivec4 rect = levelRect(finer + 1u), lastRect = levelRect(finer + 2u);
-  ivec2 own = lastRect.xy + PELLUCID_DOWNSAMPLE_TILE * ivec2(bordersFirst()), start = 2 * own - 1;
+  uint list = finer == kFirstLevel ? PELLUCID_LIST_DOWNSAMPLE : PELLUCID_LIST_DOWNSAMPLE_COARSE;
+  uvec2 group = workGroupBordersFirst(list);
+  bool checks = readsUnwritten(list);
+  ivec2 own = lastRect.xy + PELLUCID_DOWNSAMPLE_TILE * ivec2(group), start = 2 * own - 1;
   ivec2 mine = ivec2(invocation % kInput, invocation / kInput), firstLoad = 2 * start - 1 + mine;
   int slotOfMine = slot(mine, kInput);
   ivec4 finerRect = levelRect(finer);
@@ -54,9 +59,15 @@ void main() {
   bool loads = mine.y < kLoadRows && firstLoad.x >= finerRect.x && firstLoad.x < finerRect.z;
   uint rows = loads ? uint(finerRect.w - finerRect.y) : 0u, row = uint(firstLoad.y - finerRect.y);
   // All loads before the first is used, so that their latencies overlap.
+  bool written[kLoads];
+  [[unroll]] for (int j = 0; j < kLoads; ++j) {
+    ivec2 pixel = (firstLoad + ivec2(0, j * kLoadRows)) << finer;
+    written[j] = row + uint(j * kLoadRows) < rows;
+    if (checks) written[j] = written[j] && (finer == kFirstLevel ? isInCell(pixel) : isNearMaterial(pixel));
+  }
   uvec4 loaded[kLoads];
   [[unroll]] for (int j = 0; j < kLoads; ++j)
-    loaded[j] = row + uint(j * kLoadRows) < rows
+    loaded[j] = written[j]
                     ? texelFetch(pyramidImage, inAtlas(finer, firstLoad + ivec2(0, j * kLoadRows)), 0)
                     : uvec4(0u);
   [[unroll]] for (int j = 0; j < kLoads; ++j)

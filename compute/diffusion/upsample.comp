@@ -8,6 +8,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define GROUP_SIDE PELLUCID_UPSAMPLE_GROUP
+#include "frame/work_group.glsl"
 #include "diffusion/upsampled.glsl"
 
 layout(set = 0, binding = PELLUCID_BINDING_COARSER_LEVELS) uniform utexture2D coarserLevelsImage;
@@ -62,7 +63,7 @@ void main() {
   int invocation = int(gl_LocalInvocationIndex);
   uint coarsest = pass.value.x;
   // An invocation does two texels of level 2 and, before them, one of levels 3 to 6. The first ones have level 7, too.
-  ivec2 k = (((levelRect(2u).xy + 1) >> ivec2(5, 4)) + ivec2(gl_WorkGroupID.xy)) * ivec2(2, 1);
+  ivec2 k = (((levelRect(2u).xy + 1) >> ivec2(5, 4)) + ivec2(workGroup(PELLUCID_LIST_UPSAMPLE))) * ivec2(2, 1);
   ivec2 fine = 16 * k - 1 + ivec2(gl_LocalInvocationID.xy), nextFine = fine + ivec2(PELLUCID_UPSAMPLE_GROUP, 0);
   uint level = 3u + uint(invocation >= 153) + uint(invocation >= 213) + uint(invocation >= 237);
   Window window = windowOf(level, k), last = windowOf(7u, k);
@@ -70,12 +71,13 @@ void main() {
   ivec2 texel = texelOf(window, invocation - window.first), lastTexel = texelOf(last, invocation);
   bool inside = level <= coarsest && within && contains(levelRect(level), texel);
   bool lastInside = coarsest == 7u && hasLast && contains(levelRect(7u), lastTexel);
+  bool checks = readsUnwritten(PELLUCID_LIST_UPSAMPLE);
   if (invocation == 0) needsMade = 0u;
   // All before the first is used.
-  uvec4 bits = inside && level <= 5u ? storedTexel(level, texel) : uvec4(0u);
+  uvec4 bits = inside && level <= 5u ? writtenTexel(level, texel, checks) : uvec4(0u);
   uvec4 lastBits = uvec4(0u);
-  uvec4 fineBits = contains(levelRect(2u), fine) ? texelFetch(pyramidImage, inAtlas(2u, fine), 0) : uvec4(0u);
-  uvec4 nextBits = contains(levelRect(2u), nextFine) ? texelFetch(pyramidImage, inAtlas(2u, nextFine), 0) : uvec4(0u);
+  uvec4 fineBits = contains(levelRect(2u), fine) ? writtenTexel(2u, fine, checks) : uvec4(0u);
+  uvec4 nextBits = contains(levelRect(2u), nextFine) ? writtenTexel(2u, nextFine, checks) : uvec4(0u);
   barrier();
   if (coarsest == 7u && level == 5u && reachesBeyond(texel, bits)) needsMade = 1u; // whoever writes, writes this
   barrier();

@@ -51,6 +51,11 @@ uvec4 storedTexel(uint level, ivec2 texel) {
                     : texelFetch(coarserLevelsImage, inAtlas(level, texel), 0);
 }
 
+// Such a texel, nothing where downsampling wrote nothing. All groups of the coarser levels run.
+uvec4 writtenTexel(uint level, ivec2 texel, bool checks) {
+  return !checks || level > 3u || isNearMaterial(texel << level) ? storedTexel(level, texel) : uvec4(0u);
+}
+
 uvec4 texelAt(uint level, ivec2 texel, ivec2 k) {
   if (level > 5u) {
     ivec2 at = texel - firstMade(level, k);
