@@ -16,14 +16,14 @@ void main() {
   // The first invocations do a quad each.
   bool hasQuad = gl_LocalInvocationIndex < uint(kQuads * kQuads);
   ivec2 local = ivec2(gl_LocalInvocationIndex % uint(kQuads), gl_LocalInvocationIndex / uint(kQuads));
-  ivec2 quad = (evenTile() >> 1) + local;
+  ivec2 tile = evenTile(), quad = (tile >> 1) + local;
   uint material[kPixels];
   float depth[kPixels];
   vec4 source[kPixels];
   // All loads come before the first use, so that their latencies overlap.
   vec3 normal = hasQuad ? normalAt(withinRect(pixelOfQuad(quad))) : vec3(0.0);
   for (int i = 0; i < kPixels; ++i) {
-    ivec2 pixel = evenTile() + pixelInTile(i), at = withinRect(pixel);
+    ivec2 pixel = tile + pixelInTile(i), at = withinRect(pixel);
     material[i] = at == pixel ? materialAt(at) : 0u;
     depth[i] = frontDistance(at);
     source[i] = texelFetch(sourceImage, at, 0);
@@ -32,7 +32,7 @@ void main() {
     vec3 color = sanitize(source[i].rgb);
     ivec2 inTile = pixelInTile(i);
     if (pass.value.x != 0u && material[i] != 0u)
-      imageStore(destinationImage, evenTile() + inTile, vec4(asStored(color), source[i].a));
+      imageStore(destinationImage, tile + inTile, vec4(asStored(color), source[i].a));
     tileColors[inTile.y * kTile + inTile.x] = packHalves(roundToHalf(color), material[i]);
     tileDepths[inTile.y * kTile + inTile.x] = depth[i];
   }

@@ -14,7 +14,7 @@
 
 void main() {
   int invocation = int(gl_LocalInvocationIndex);
-  ivec2 firstTexel = (ivec2(frame.rect.xy) >> 2) + ivec2(bordersFirst()) * ivec2(kTexelsX, kTexelsY);
+  ivec2 firstTexel = (ivec2(frame.rect.xy) >> 2) + ivec2(workGroupBordersFirst(PELLUCID_LIST_DIFFUSE)) * ivec2(kTexelsX, kTexelsY);
   // All loads come before the first barrier, so that a group waits for memory once.
   uvec4 texel = uvec4(0u), texelShares = uvec4(0u);
   ivec2 inWindow = ivec2(invocation % kWindowX, invocation / kWindowX);

@@ -5,13 +5,13 @@
 
 #define GROUP_SIDE PELLUCID_DOWNSAMPLE_GROUP
 #include "diffusion/pyramid.glsl"
+#include "diffusion/written.glsl"
 #include "frame/group_order.glsl"
 
 // Sides of the first level's part and of the input; rows of the input that the invocations load at a time, and how often.
 const int kFirst = PELLUCID_DOWNSAMPLE_GROUP, kInput = 2 * kFirst + 2;
 const int kLoadRows = kFirst * kFirst / kInput, kLoads = (kInput + kLoadRows - 1) / kLoadRows;
-// The arrays hold the input and, once that has been used, the first level: as many groups run at a time as these fit into
-// a processor.
+// The arrays hold the input and, once that has been used, the first level: their size limits how many groups run at a time.
 shared uvec2 colors[kInput * kInput]; // and area, material and plane, as packed
 shared float depths[kInput * kInput];
 shared uint anySurface; // in the input
@@ -25,7 +25,8 @@ void main() {
   barrier();
   uint finer = pass.value.x;
   ivec4 finerRect = levelRect(finer), rect = levelRect(finer + 1u), lastRect = levelRect(finer + 2u);
-  ivec2 own = lastRect.xy + PELLUCID_DOWNSAMPLE_TILE * ivec2(bordersFirst()), start = 2 * own - 1;
+  uint list = finer == 1u ? PELLUCID_LIST_DOWNSAMPLE : PELLUCID_LIST_DOWNSAMPLE_COARSE;
+  ivec2 own = lastRect.xy + PELLUCID_DOWNSAMPLE_TILE * ivec2(workGroupBordersFirst(list)), start = 2 * own - 1;
   ivec2 mine = ivec2(invocation % kInput, invocation / kInput), firstLoad = 2 * start - 1 + mine;
   // The level has so many rows from its first one on, in this column and where the invocation has a row.
   bool loads = mine.y < kLoadRows && firstLoad.x >= finerRect.x && firstLoad.x < finerRect.z;
@@ -33,8 +34,8 @@ void main() {
   // All loads come before the first use, so that their latencies overlap.
   uvec4 loaded[kLoads];
   [[unroll]] for (int j = 0; j < kLoads; ++j) {
-    ivec2 place = inAtlas(finer, firstLoad + ivec2(0, j * kLoadRows));
-    loaded[j] = row + uint(j * kLoadRows) < rows ? texelFetch(pyramidImage, place, 0) : uvec4(0u);
+    ivec2 from = firstLoad + ivec2(0, j * kLoadRows);
+    loaded[j] = row + uint(j * kLoadRows) < rows ? finerTexel(list, finer, from) : uvec4(0u);
   }
   [[unroll]] for (int j = 0; j < kLoads; ++j)
     if (mine.y < kLoadRows && mine.y + j * kLoadRows < kInput) {
@@ -48,8 +49,7 @@ void main() {
   barrier();
   keepTexel(slot(at, kFirst), bits);
   barrier();
-  // The outer ones are the groups' beside.
-  if (inside && all(greaterThan(at, ivec2(0))) && all(lessThan(at, ivec2(kFirst - 1)))) {
+  if (inside && contains(ivec4(1, 1, ivec2(kFirst - 1)), at)) { // the outer ones are the groups' beside
     if (finer == 1u && isFlatAround(bits, at, kFirst, 2u)) bits.x |= kFlat;
     writeLevel(finer + 1u, texel, bits);
   }

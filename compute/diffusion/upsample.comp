@@ -14,7 +14,7 @@ void main() {
   int invocation = int(gl_LocalInvocationIndex);
   uint coarsest = pass.value.x;
   // An invocation does two texels of level 2 and, before them, one of levels 3 to 6. The first ones have level 7, too.
-  ivec2 k = (((levelRect(2u).xy + 1) >> ivec2(5, 4)) + ivec2(gl_WorkGroupID.xy)) * ivec2(2, 1);
+  ivec2 k = (((levelRect(2u).xy + 1) >> ivec2(5, 4)) + ivec2(workGroup(PELLUCID_LIST_UPSAMPLE))) * ivec2(2, 1);
   ivec2 fine = 16 * k - 1 + ivec2(gl_LocalInvocationID.xy), nextFine = fine + ivec2(PELLUCID_UPSAMPLE_GROUP, 0);
   uint level = 3u + uint(invocation >= 153) + uint(invocation >= 213) + uint(invocation >= 237);
   Window window = windowOf(level, k), last = windowOf(7u, k);
@@ -24,9 +24,9 @@ void main() {
   bool lastInside = coarsest == 7u && hasLast && contains(levelRect(7u), lastTexel);
   if (invocation == 0) needsMade = 0u;
   // All loads come before the first use.
-  uvec4 bits = inside && level <= 5u ? storedTexel(level, texel) : uvec4(0u), lastBits = uvec4(0u);
-  uvec4 fineBits = contains(levelRect(2u), fine) ? storedTexel(2u, fine) : uvec4(0u);
-  uvec4 nextBits = contains(levelRect(2u), nextFine) ? storedTexel(2u, nextFine) : uvec4(0u);
+  uvec4 bits = inside && level <= 5u ? writtenTexel(level, texel) : uvec4(0u), lastBits = uvec4(0u);
+  uvec4 fineBits = contains(levelRect(2u), fine) ? writtenTexel(2u, fine) : uvec4(0u);
+  uvec4 nextBits = contains(levelRect(2u), nextFine) ? writtenTexel(2u, nextFine) : uvec4(0u);
   barrier();
   if (coarsest == 7u && level == 5u && reachesBeyond(texel, bits)) needsMade = 1u; // whoever writes, writes this
   barrier();

@@ -1,6 +1,7 @@
 // Parts of levels that an upsampling group k holds in shared upsampled[]. Groups start at texels 16 k - 1 of level 2, k.x
 // even, so that windows are alike everywhere. Texels of level 3 and coarser ones, which have been upsampled, come level
 // after level: color and material as packed, depth and, in place of the slope, the kernel coverage of each channel.
+#include "diffusion/written.glsl"
 const int kUpsampled = 153 + 60 + 24 + 12 + 9;
 // Levels 6 and, 3 x 3, 7 follow as the pyramid has them, where the group makes them.
 const int kMade = kUpsampled;
@@ -55,6 +56,11 @@ bool known(uint level, ivec2 texel, ivec2 k) {
 uvec4 storedTexel(uint level, ivec2 texel) {
   return level < 4u ? texelFetch(pyramidImage, inAtlas(level, texel), 0)
                     : texelFetch(coarserLevelsImage, inAtlas(level, texel), 0);
+}
+
+// Such a texel, nothing where none was written.
+uvec4 writtenTexel(uint level, ivec2 texel) {
+  return isWritten(PELLUCID_LIST_UPSAMPLE, level, texel) ? storedTexel(level, texel) : uvec4(0u);
 }
 
 uvec4 texelAt(uint level, ivec2 texel, ivec2 k) {

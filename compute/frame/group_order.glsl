@@ -1,6 +1,8 @@
 #ifndef PELLUCID_GROUP_ORDER_GLSL
 #define PELLUCID_GROUP_ORDER_GLSL
 
+#include "frame/work_group.glsl"
+
 // The place of the group. Groups start in the order of their indices; the rect's borders, which are edges, take longest
 // and come first, so that they end while others still run: left and right columns, then the last row and the first.
 uvec2 bordersFirst() {
@@ -16,5 +18,8 @@ uvec2 bordersFirst() {
   // Groups of one or two columns keep their order.
   return count.x < 3u ? uvec2(index & (count.x - 1u), index >> (count.x - 1u)) : index < columns ? inColumn : inRow;
 }
+
+// As workGroup, and borders first where all groups run.
+uvec2 workGroupBordersFirst(uint list) { return goesByLists() ? unpackGroup(listedWord(list)) : bordersFirst(); }
 
 #endif

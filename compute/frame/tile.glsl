@@ -12,7 +12,7 @@
 #define GROUP_SIDE TILE_SIDE
 #endif
 #define GROUP_ROWS (TILE_SIDE / 2)
-#include "frame/bindings.glsl"
+#include "frame/work_group.glsl"
 
 const int kPixels = TILE_SIDE * TILE_SIDE / (GROUP_SIDE * GROUP_ROWS); // per invocation
 
@@ -25,7 +25,7 @@ ivec2 pixelInTile(int i) {
 #endif
 }
 
-// First pixel of the tile. Tiles start at even pixels, so that quads of pixels are the image's.
-ivec2 evenTile() { return (ivec2(frame.rect.xy) & ~1) + ivec2(gl_WorkGroupID.xy) * TILE_SIDE; }
+// The first pixel of the group's tile. Tiles start at even pixels, so that quads of pixels are the image's.
+ivec2 evenTile() { return firstBlockPixel() + ivec2(workGroup(PELLUCID_LIST_TILES)) * TILE_SIDE; }
 
 #endif

@@ -4,7 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define GROUP_SIDE PELLUCID_ENTRY_POINTS_GROUP
-#include "frame/bindings.glsl"
+#include "frame/work_group.glsl"
 #include "gather/entry_point.glsl"
 #include "gather/mean_entry.glsl"
 #include "gather/texel_entry.glsl"
@@ -15,11 +15,12 @@ layout(set = 0, binding = PELLUCID_BINDING_LEVELS, rgba32ui) uniform writeonly u
 shared uint someSurface;
 
 void main() {
-  uint map = gl_WorkGroupID.z;
+  uvec3 group = goesByLists() ? unpackEntryGroup(listedWord(PELLUCID_LIST_ENTRY_POINTS)) : gl_WorkGroupID;
+  uint map = group.z;
   EntryMapConstants constants = entryMaps[map];
   if (kDirectional) constants.meta.yz = uvec2(PELLUCID_SHADER_DEPTH_DEVICE, 0u);
   int side = int(constants.map.z), index = int(gl_LocalInvocationIndex);
-  ivec2 size = ivec2(pass.value.y & 0xFFFFu, pass.value.y >> 16), own = ivec2(gl_GlobalInvocationID.xy);
+  ivec2 size = ivec2(pass.value.y & 0xFFFFu, pass.value.y >> 16), start = ivec2(group.xy) * GROUP_SIDE, own = start + ivec2(gl_LocalInvocationID.xy);
   bool contained = all(lessThan(own, maps[map].place.zw));
   ivec2 texel = min(own * side + side / 2, ivec2(constants.map.xy) - 1);
   uvec4 entry = contained ? entryOf(constants, texel) : kNoEntry;
@@ -30,7 +31,7 @@ void main() {
   barrier();
   bool some = someSurface != 0u;
   // Groups beyond the map have nothing to write. Maps begin at whole groups.
-  ivec2 start = ivec2(gl_WorkGroupID.xy) * GROUP_SIDE, first = maps[map].place.xy + start;
+  ivec2 first = maps[map].place.xy + start;
   bool inside = all(lessThan(start, maps[map].place.zw));
   if (inside) imageStore(entriesDestination, first + ivec2(gl_LocalInvocationID.xy), entry);
   for (int level = 1; level <= kLastEntryLevel; ++level) {

@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define GROUP_SIDE PELLUCID_FILTER_GROUP
-#include "frame/bindings.glsl"
+#include "frame/work_group.glsl"
 #include "gather/probe.glsl"
 #include "gather/spatial_filter.glsl"
 
@@ -18,7 +18,7 @@ uvec4 probeAt(ivec2 cell, ivec4 cells) {
 void main() {
   int side = int(pass.value.x), index = int(gl_LocalInvocationIndex);
   ivec4 cells = cellsOf(frame.rect, side);
-  ivec2 local = ivec2(gl_LocalInvocationID.xy), first = cells.xy + ivec2(gl_WorkGroupID.xy) * PELLUCID_FILTER_GROUP;
+  ivec2 local = ivec2(gl_LocalInvocationID.xy), first = cells.xy + ivec2(workGroup(PELLUCID_LIST_FILTER_PROBES)) * PELLUCID_FILTER_GROUP;
   ivec2 cell = first + local, border = borderCell(index);
   bool hasBorder = index < kBorder;
   uvec4 own = probeAt(cell, cells), beside = kNoProbe;

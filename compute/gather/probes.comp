@@ -4,7 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define GROUP_SIDE PELLUCID_PROBES_GROUP
-#include "frame/bindings.glsl"
+#include "frame/work_group.glsl"
 #include "frame/chord.glsl"
 #include "gather/probe.glsl"
 #include "gather/entry_point.glsl"
@@ -32,10 +32,11 @@ void someProbeHasLight() {
 void main() {
   int side = int(pass.value.x);
   ivec4 cells = cellsOf(frame.rect, side);
-  ivec2 cell = cells.xy + ivec2(gl_GlobalInvocationID.xy);
+  ivec2 firstCell = cells.xy + ivec2(workGroup(PELLUCID_LIST_PROBES)) * GROUP_SIDE;
+  ivec2 cell = firstCell + ivec2(gl_LocalInvocationID.xy);
   translucent[gl_LocalInvocationIndex] = 0u;
   barrier();
-  markTranslucent(cells.xy + ivec2(gl_WorkGroupID.xy) * GROUP_SIDE, side);
+  markTranslucent(firstCell, side);
   barrier();
   if (any(greaterThanEqual(cell, cells.zw))) return;
   Probe probe = unpackProbe(kNoProbe);

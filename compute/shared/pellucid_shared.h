@@ -30,6 +30,10 @@ using glm::vec4;
 #define PELLUCID_ENTRY_POINTS_GROUP 16 // a side, of the gather's entry points; of what one of them summarizes
 #define PELLUCID_PROBES_GROUP 8   // a side, of the gather's points
 #define PELLUCID_FILTER_GROUP 16  // a side, where points share
+#define PELLUCID_BLOCK 64         // a side, pixels of a block of the tile lists; tiles of PELLUCID_TILE divide it
+#define PELLUCID_CELL 8           // a side, pixels of a cell: a block has a bit for each of its 8 x 8
+#define PELLUCID_FIND_GROUP 16    // a side, of the pass that finds cells with material
+#define PELLUCID_LIST_GROUP 16    // a side, of the pass that lists groups
 
 #define PELLUCID_BINDING_FRAME 0
 #define PELLUCID_BINDING_LIGHTS 1
@@ -56,7 +60,9 @@ using glm::vec4;
 #define PELLUCID_BINDING_ENTRY_POINTS PELLUCID_BINDING_SHADOW_IMAGES
 #define PELLUCID_BINDING_PROBES PELLUCID_BINDING_LEVELS
 #define PELLUCID_BINDING_FILTERED_PROBES (PELLUCID_BINDING_SHADOW_IMAGES + 1) // of the diffusion, beside the pyramid
-#define PELLUCID_BINDING_COUNT 21
+#define PELLUCID_BINDING_TILES 21 // lists of groups with work; see compute/frame/tiles.glsl
+#define PELLUCID_BINDING_TILE_COMMANDS PELLUCID_BINDING_KERNELS // of the passes that make them
+#define PELLUCID_BINDING_COUNT 22
 
 // Lights and shadow maps of one dispatch are uniform buffers, which are cached apart from what images pass
 // through. 16 KiB is what every device binds.
@@ -99,6 +105,25 @@ using glm::vec4;
 #define PELLUCID_SHADER_DEBUG_TRANSMITTANCE 2u
 #define PELLUCID_SHADER_DEBUG_OCCLUSION 3u
 
+// Lists of the groups that have work, one for each pass, in the order in which one pass makes them.
+#define PELLUCID_LIST_TILES 0u // of PELLUCID_TILE pixels a side, with material
+#define PELLUCID_LIST_DOWNSAMPLE 1u // levels 2 and 3
+#define PELLUCID_LIST_DOWNSAMPLE_COARSE 2u
+#define PELLUCID_LIST_UPSAMPLE 3u
+#define PELLUCID_LIST_DIFFUSE 4u
+#define PELLUCID_LIST_PROBES 5u
+#define PELLUCID_LIST_FILTER_PROBES 6u
+#define PELLUCID_LIST_ENTRY_POINTS 7u
+#define PELLUCID_LISTS 8
+// GroupList::size.z: a group runs if there is material in a cell of its part, in a block of it, in one or beside it, anywhere.
+#define PELLUCID_RUNS_WITH_CELLS 0
+#define PELLUCID_RUNS_WITH_BLOCKS 1
+#define PELLUCID_RUNS_BESIDE_BLOCKS 2
+#define PELLUCID_RUNS_WITH_ANY 3
+#define PELLUCID_TILE_WORDS_SHIFT 10 // log2 of the columns of their image
+#define PELLUCID_ENTRY_GROUP_WORDS 128 // a bit for each of a map's groups of entry points, at most 64 x 64
+#define PELLUCID_BLOCK_WORDS 4 // bits of cells' rows 0 to 3 and 4 to 7; bits of the nearest and farthest planar distance
+
 // PassConstants::value.z of the translucency pass
 #define PELLUCID_WRITE_LAST 1u   // the frame's final write
 #define PELLUCID_WRITE_STARTS 2u // of a history, from 0
@@ -134,6 +159,10 @@ struct FrameConstants {
   vec4 filterAndLimit;        // rgb: factor of T; w: largest thickness, mm
   ivec4 level[PELLUCID_LAST_LEVEL + 1]; // xy: where texel (0, 0) of the level lies in its image; of level 0, that
                                         // of the resolved level 2, zw: of its shares
+  // Tile lists. blocks: x, y: how many; z: first word of the marks of blocks near material; w: 1 if groups go by lists.
+  uvec4 blocks;
+  uvec4 lists[PELLUCID_LISTS / 4]; // first words
+  uvec4 listGroups[PELLUCID_LISTS / 4]; // first groups of the pass that makes them
   // View ray of planar length 1: of pixel (0, 0), changes per pixel in x and y.
   vec4 normalRay[3]; // xyz: in the normal image's space
   vec4 facingRay[2]; // along pixels' columns and rows; xy, zw, xy
@@ -174,7 +203,7 @@ struct GatherMapConstants {
   vec4 column, row; // in entry points from the map's first one; perspective: times depth
   vec4 depth;       // what entry points store. Directional: scene units towards the light; perspective: clip w
   ivec4 place;      // x, y: of the first entry in the image; z, w: how many
-  vec4 stepX, stepY; // from an entry point to the next, scene units; perspective: times depth
+  vec4 stepX, stepY; // from an entry point to the next, scene units; perspective: times depth. stepX.w: 1 perspective
 };
 
 // The surface that a map stores, by its texel coordinates p. Affine in p:
@@ -221,6 +250,22 @@ struct GatherDispatches {
   uvec4 noLight;             // the diffusion alone, if none has
 };
 
+// Groups of a pass that has a list. A group has work if there is material in its part of the image.
+struct GroupList {
+  ivec4 places; // xy: first pixel of group (0, 0)'s part, from the first block on; zw: pixels from a group to the next
+  ivec4 size;   // xy: pixels of a part; z: PELLUCID_RUNS_*
+  uvec4 count;  // x, y: groups
+};
+
+// What the passes that make tile lists read and write besides the lists.
+struct TileCommands {
+  GatherDispatches gather; // w: groups that are listed, where the gather decides
+  uvec4 commands[PELLUCID_LISTS]; // VkDispatchIndirectCommand
+  GroupList groups[PELLUCID_LISTS];
+  uvec4 maps;   // x: shadow maps that are gathered from; y: 1 if the gather decides which lists run
+  vec4 reach; // x: how far from a surface probes look for entry points, scene units
+};
+
 // Push constants of each pass:
 // translucency, debug view: unused, lights, PELLUCID_WRITE_*
 // add gathered: pixels a side of a cell, lights, PELLUCID_WRITE_*, lights that are gathered from
@@ -233,6 +278,8 @@ struct GatherDispatches {
 // probes: pixels a side of a cell, lights with maps, columns and rows of entry points and, in bit 31, 1 to add to what is
 // there, samples
 // filter probes: pixels a side of a cell
+// find cells: 1 to find distances, too
+// list groups: unused
 struct PassConstants {
   uvec4 value;
 };

@@ -45,6 +45,9 @@ const Names<PellucidAngleModel> kAngles = {{"normal", PELLUCID_ANGLE_NORMAL},
 const Names<PellucidReuse> kReuse = {{"none", PELLUCID_REUSE_NONE},
                                      {"alternate", PELLUCID_REUSE_ALTERNATE},
                                      {"coherence", PELLUCID_REUSE_COHERENCE}};
+const Names<PellucidIndirect> kIndirect = {{"none", PELLUCID_INDIRECT_NONE},
+                                           {"material", PELLUCID_INDIRECT_MATERIAL},
+                                           {"light", PELLUCID_INDIRECT_LIGHT}};
 // Through the values that Whelan 2009's curves are known to take; docs/thesis.md.
 const Names<std::array<float, 4>> kPolynomials = {{"quadratic", {0, -0.9214f, 1.7884f, 0}},
                                                   {"cubic", {0, 0, -0.744f, 1.744f}}};
@@ -226,9 +229,9 @@ const std::map<std::string, Key> kKeys = {
         s.aliasOutput = lookUp(kBooleans, key, value);
       }}},
     {"indirect",
-     {"0|1: the GPU leaves out workgroups of a gather that find nothing to do",
+     {"none|material|light: passes run everywhere, where the GPU finds material and light, where it finds light",
       [](const auto& key, const auto& value, ReplaySettings& s) {
-        s.indirectDispatches = lookUp(kBooleans, key, value);
+        s.indirectDispatches = lookUp(kIndirect, key, value);
       }}},
     {"rect",
      {"x,y,width,height",
@@ -362,7 +365,7 @@ std::string settingsJson(const ReplaySettings& s) {
                                  {"nearest-distance", s.nearestDistance},
                                  {"format", nameOf(kFormats, s.outputFormat)},
                                  {"alias", s.aliasOutput ? "1" : "0"},
-                                 {"indirect", s.indirectDispatches ? "1" : "0"},
+                                 {"indirect", nameOf(kIndirect, s.indirectDispatches)},
                                  {"rect", s.renderRect}};
   if (t.gatherSamples != PELLUCID_GATHER_BY_QUALITY) json["gather"] = t.gatherSamples;
   if (!t.minimumDotTable.empty()) json["minimum-dots"] = t.minimumDotTable;

@@ -16,6 +16,7 @@ struct Texel {
 
 Texel texelOf(VkFormat format) {
   switch (format) {
+    case VK_FORMAT_R32_UINT:
     case VK_FORMAT_R32_SFLOAT:
       return {1, 4};
     case VK_FORMAT_R32G32_SFLOAT:

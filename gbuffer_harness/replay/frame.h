@@ -30,7 +30,7 @@ struct ReplaySettings {
   uint32_t quality = 1;
   float targetError = 0, nearestDistance = 0;  // see PellucidFrame
   bool aliasOutput = false;                    // output is the irradiance image; ignored for debug views
-  bool indirectDispatches = true;              // see PellucidFrame
+  PellucidIndirect indirectDispatches = PELLUCID_INDIRECT_MATERIAL;
   std::array<uint32_t, 4> renderRect = {0, 0, 0, 0};  // width 0: everything
 };
 

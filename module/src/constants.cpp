@@ -78,6 +78,12 @@ shared::FrameConstants frameConstants(const FrameFacts& facts) {
   }
   const PyramidPlace& second = facts.pyramid.levels[2];
   c.level[0] = {-second.rect.x, -second.rect.y, facts.pyramid.sharesColumn - second.rect.x, -second.rect.y};
+  const TileLists& tiles = facts.tiles;
+  c.blocks = {tiles.blocks[0], tiles.blocks[1], tiles.marks, facts.stages.tiles};
+  for (uint32_t list = 0; list < PELLUCID_LISTS; ++list) {
+    c.lists[list / 4][static_cast<int>(list % 4)] = tiles.first[list];
+    c.listGroups[list / 4][static_cast<int>(list % 4)] = tiles.firstGroup[list];
+  }
   return c;
 }
 
@@ -226,11 +232,34 @@ void putLights(const FrameFacts& f, void* mapped) {
   });
 }
 
+// Before the commands, which the plan knows.
+shared::TileCommands tileCommands(const FrameFacts& f) {
+  shared::TileCommands c{};
+  for (uint32_t list = 0; list < PELLUCID_LISTS; ++list) {
+    const GroupGrid& grid = f.tiles.grids[list];
+    c.groups[list].places = {grid.first[0] - static_cast<int32_t>(f.tiles.firstPixel[0]),
+                             grid.first[1] - static_cast<int32_t>(f.tiles.firstPixel[1]), grid.step[0], grid.step[1]};
+    c.groups[list].size = {grid.size[0], grid.size[1], static_cast<int32_t>(grid.runs), 0};
+    c.groups[list].count = {grid.columns, grid.rows, 0, 0};
+  }
+  c.maps = {f.stages.gathered > 0 ? f.lights.list().front().shadowCount : 0, f.stages.skipsLight, 0, 0};
+  float reach = 0;
+  for (uint32_t i = 0; f.gathers && i < f.frame.materialCount; ++i)
+    reach = std::max(reach, gatherReach(f.material(i)));
+  c.reach.x = reach / (1000 * f.frame.metersPerUnit);
+  return c;
+}
+
 // Indirect commands of dispatches that the GPU decides about.
-void putIndirect(const ConstantsLayout& layout, const PellucidPlan& plan, void* mapped) {
+void putIndirect(const FrameFacts& facts, const PellucidPlan& plan, void* mapped) {
+  const ConstantsLayout& layout = facts.constants;
   for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
     const PellucidDispatch& d = plan.dispatches[i];
     if (!d.indirect) continue;
+    if (facts.stages.tiles) {  // all that is indirect: the GPU counts groups
+      put(mapped, d.indirectOffset, glm::uvec4(0, 1, 1, 0));
+      continue;
+    }
     // Until the GPU finds light there is none.
     const bool starts =
         d.indirectOffset == layout.gatherDispatches.offset + offsetof(shared::GatherDispatches, noLight);
@@ -250,7 +279,8 @@ PellucidResult writeConstants(const FrameFacts& f, const PellucidPlan& plan, voi
   std::memset(mapped, 0, static_cast<size_t>(layout.size));
   put(mapped, layout.frame.offset, frameConstants(f));
   putLights(f, mapped);
-  putIndirect(layout, plan, mapped);
+  if (f.stages.tiles) put(mapped, layout.tileCommands.offset, tileCommands(f));
+  putIndirect(f, plan, mapped);
   for (uint32_t i = 0; i < f.frame.materialCount; ++i) {
     const PellucidMaterial material = f.material(i);
     put(mapped, layout.materials.offset + i * sizeof(shared::MaterialConstants),

@@ -19,7 +19,12 @@ ConstantsLayout::ConstantsLayout(const FrameFacts& facts) {
   if (facts.gathers) {
     place(&gatherMaps, last.gatherMapBytes + kGatherMapWindow);
     place(&entryMaps, last.entryMapBytes + PELLUCID_DISPATCH_SHADOWS * sizeof(shared::EntryMapConstants));
-    place(&gatherDispatches, sizeof(shared::GatherDispatches));
+    if (!facts.stages.tiles) place(&gatherDispatches, sizeof(shared::GatherDispatches));
+  }
+  if (facts.stages.tiles) {
+    const uint32_t maps = facts.stages.gathered > 0 ? facts.lights.list().front().shadowCount : 0;
+    place(&tileCommands, sizeof(shared::TileCommands) + maps * PELLUCID_ENTRY_GROUP_WORDS * sizeof(uint32_t));
+    gatherDispatches = {tileCommands.offset, sizeof(shared::GatherDispatches)};
   }
 }
 

@@ -21,6 +21,7 @@ struct ConstantsLayout {
   };
   Range frame{}, lights{}, shadows{}, materials{}, kernels{};
   Range gatherMaps{}, entryMaps{}, gatherDispatches{};  // of frames that gather
+  Range tileCommands{};                                 // of frames with tile lists; begins with gatherDispatches
   VkDeviceSize size = 0;
 
   ConstantsLayout() = default;

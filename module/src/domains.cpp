@@ -59,7 +59,7 @@ constexpr auto kFrameIntegers = std::to_array<IntegerDomain>({
     {FIELD(PellucidFrame, debugView), 0, PELLUCID_DEBUG_IRRADIANCE},
     {FIELD(PellucidFrame, quality), 0, kBestQuality},
     {FIELD(PellucidFrame, separateOutput), 0, 1},
-    {FIELD(PellucidFrame, indirectDispatches), 0, 1},
+    {FIELD(PellucidFrame, indirectDispatches), 0, PELLUCID_INDIRECT_LIGHT},
 });
 
 constexpr auto kThesisFloats = std::to_array<FloatDomain>({

@@ -101,7 +101,7 @@ EntryConstants entryConstants(const PellucidFrame& frame, const PellucidShadowMa
   }
   r.meta = shadow.meta;
   r.occluder = shadow.occluder;
-  c.gather.stepX = glm::vec4(glm::vec3(stepX) * static_cast<float>(extent.side), 0);
+  c.gather.stepX = glm::vec4(glm::vec3(stepX) * static_cast<float>(extent.side), perspective ? 1 : 0);
   c.gather.stepY = glm::vec4(glm::vec3(stepY) * static_cast<float>(extent.side), 0);
   r.map = {s.extent[0], s.extent[1], extent.side, lightIndex};
   // The camera may miss a texel's point by the slope of the surface within half a texel and the pixel.

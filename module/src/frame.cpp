@@ -16,6 +16,7 @@ void addView(FrameFacts& f) {
   f.colorFormat = f.wide ? VK_FORMAT_R32G32B32A32_SFLOAT : VK_FORMAT_R16G16B16A16_SFLOAT;
   for (const ImageField& image : kImageFields)
     if (given(frame.*image.field)) f.images |= 1u << image.resource;
+  f.inPlace = given(frame.output) && frame.output.view == frame.irradiance.view;
   f.clipFromView = toMatrix(frame.clipFromView);
   f.viewFromWorld = toMatrix(frame.viewFromWorld);
   readDepthRange(f.clipFromView, &f.depthRange);
@@ -65,16 +66,21 @@ void addLights(FrameFacts& f) {
   f.lights = LightGroups::of(f);
 }
 
-void addStages(FrameFacts& f) {
-  f.stages = Stages(f);
-  f.constants = ConstantsLayout(f);
-  f.coarsestLevel = f.pyramid.coarsest;
-  if (!f.stages.diffusion) return;
+void addDiffusion(FrameFacts& f) {
   f.quality = f.frame.quality;
   f.missesTarget = f.frame.targetError > 0 && !qualityFor(f.frame.targetError, f.reach.radius, &f.quality);
   while (f.reach.deviation > 0 && f.coarsestLevel > kFirstLevel + 2 &&
          f.reach.deviation <= deviationWithin(f.coarsestLevel - 2))
     f.coarsestLevel -= 2;
+  f.stages.tiles = whyNoTileLists(f) == nullptr;
+  if (f.stages.tiles) f.tiles = TileLists(f, f.rect);
+}
+
+void addStages(FrameFacts& f) {
+  f.stages = Stages(f);
+  f.coarsestLevel = f.pyramid.coarsest;
+  if (f.stages.diffusion) addDiffusion(f);
+  f.constants = ConstantsLayout(f);
 }
 
 // Sizes of the caller's structs, before anything else of them is read.

@@ -14,6 +14,7 @@
 #include "quality.h"
 #include "rect.h"
 #include "stages.h"
+#include "tiles.h"
 
 namespace pellucid {
 
@@ -27,6 +28,7 @@ struct FrameFacts {
   bool wide = false;                           // colors of 32 bits a channel
   VkFormat colorFormat = VK_FORMAT_UNDEFINED;  // of transients and histories that hold colors
   uint32_t images = 0;  // bit (1 << PellucidResource) of each image field that has a view
+  bool inPlace = false;  // the output is the irradiance's view
   glm::dmat4 clipFromView{1}, viewFromWorld{1};
   DepthRange depthRange{};
   ViewBounds view;
@@ -51,6 +53,7 @@ struct FrameFacts {
   uint32_t quality = 0;        // of the diffusion; 0 where nothing diffuses
   bool missesTarget = false;   // no quality has frame.targetError
   uint32_t coarsestLevel = 0;  // of the pyramid that the diffusion needs
+  TileLists tiles;             // with stages.tiles
   ConstantsLayout constants;
 
   bool has(PellucidResource image) const { return (images & 1u << image) != 0; }

@@ -41,6 +41,8 @@ FrameHash hashOf(const FrameFacts& facts) {
     const unsigned char isGiven = !image.required && given(f.*image.field) ? 1 : 0;
     of(FramePart::Images).add(&isGiven, 1);
   }
+  const unsigned char nothing = facts.stages.nothing ? 1 : 0;
+  of(FramePart::Images).add(&nothing, 1);
   Hash& settings = of(FramePart::Settings);
   settings.add(RANGE(f, features, features));
   settings.add(RANGE(f, outputFormat, normalsInViewSpace));

@@ -135,4 +135,10 @@ shared::GatherConstants gatherConstants(const PellucidMaterial& m) {
   return g;
 }
 
+float gatherReach(const PellucidMaterial& m) {
+  const glm::vec4 lengths = gatherConstants(m).lengths;
+  // A ring's radius is sqrt(s^2 + 2 s t) at most, s the longest spread and t <= lengths.z along the axis.
+  return lengths.z + lengths.x * std::exp2(lengths.y);
+}
+
 }  // namespace pellucid

@@ -33,6 +33,12 @@ Extent texelExtent(const FrameFacts& f, uint32_t index) {
   return size;
 }
 
+// For any render rect: none has more blocks and groups than the whole image.
+Extent tilesExtent(const FrameFacts& f) {
+  const TileLists lists(f, {0, 0, f.frame.imageExtent[0], f.frame.imageExtent[1]});
+  return {TileLists::kColumns, (lists.words - 1) / TileLists::kColumns + 1};
+}
+
 // The dispatches of the plan that bind the image.
 void addUse(const PellucidPlan& plan, uint32_t resource, PellucidImageNeed& need) {
   need.firstDispatch = UINT32_MAX;
@@ -61,15 +67,17 @@ PellucidResult imageNeeds(const FrameFacts& f, uint32_t* count, PellucidImageNee
                                                  : 0;
   for (uint32_t i = 0; i < *count && i < room; ++i) {
     const bool persistent = i == transients;
-    const bool texels = persistent ? stages.keepsProbes : i >= colors;
-    const Extent size = !texels ? Extent{f.frame.imageExtent[0], f.frame.imageExtent[1]}
-                                : texelExtent(f, persistent ? stages.pyramidImages() : i - colors);
+    const bool tiles = stages.tiles && i + 1 == transients;
+    const bool texels = persistent ? stages.keepsProbes : i >= colors && !tiles;
+    const Extent size = tiles    ? tilesExtent(f)
+                        : texels ? texelExtent(f, persistent ? stages.pyramidImages() : i - colors)
+                                 : Extent{f.frame.imageExtent[0], f.frame.imageExtent[1]};
     PellucidImageNeed& need = needs[i];
     need = {};
-    need.format = texels ? VK_FORMAT_R32G32B32A32_UINT : f.colorFormat;
+    need.format = tiles ? VK_FORMAT_R32_UINT : texels ? VK_FORMAT_R32G32B32A32_UINT : f.colorFormat;
     need.extent[0] = size.width;
     need.extent[1] = size.height;
-    need.bytes = (texels ? kTexelBytes : f.wide ? 16 : 8) * size.width * size.height;
+    need.bytes = (tiles ? 4 : texels ? kTexelBytes : f.wide ? 16 : 8) * size.width * size.height;
     need.persistent = persistent;
     addUse(plan, persistent ? static_cast<uint32_t>(PELLUCID_RESOURCE_HISTORY) : kTransient0 + i, need);
     need.firstDispatch -= std::min(need.firstDispatch, refreshing);

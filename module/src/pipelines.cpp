@@ -7,6 +7,8 @@
 #include "kDownsample.h"
 #include "kEntryPoints.h"
 #include "kFilterProbes.h"
+#include "kFindCells.h"
+#include "kListGroups.h"
 #include "kProbes.h"
 #include "kTranslucency.h"
 #include "kUpsample.h"
@@ -35,6 +37,8 @@ const std::array<PipelineDesc, kPipelineCount> kPipelines = {
     desc("translucency", kTranslucency, PELLUCID_USE_TRANSLUCENCY),
     desc("debug_view", kTranslucency, PELLUCID_USE_DEBUG_VIEWS, kDebugViews),
     desc("add_history", kAddHistory, PELLUCID_USE_REUSE),
+    desc("find_cells", kFindCells, kDiffusion),
+    desc("list_groups", kListGroups, kDiffusion),
     desc("base_level", kBaseLevel, kDiffusion),
     desc("downsample", kDownsample, kDiffusion),
     desc("upsample", kUpsample, kDiffusion),

@@ -14,6 +14,8 @@ enum class Pipeline : uint32_t {
   Translucency,
   DebugView,
   AddHistory,
+  FindCells,
+  ListGroups,
   BaseLevel,
   Downsample,
   Upsample,

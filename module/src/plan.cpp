@@ -4,6 +4,7 @@
 #include "plan_diffusion.h"
 #include "plan_gather.h"
 #include "plan_state.h"
+#include "plan_tiles.h"
 #include "plan_translucency.h"
 
 namespace pellucid {
@@ -47,8 +48,10 @@ void addSkips(PlanBuilder& b) {
     b.skip("diffusion", "a debug view is written instead");
   else if (!f.stages.diffusion)
     b.skip("diffusion", "no material diffuses");
+  if (f.stages.nothing) b.skip("all dispatches", "no light comes through, nothing diffuses, and the output is the irradiance image");
   if (!f.stages.diffusion) return;
   if (f.missesTarget) b.skip("targetError", "no quality is that exact");
+  if (!f.stages.tiles) b.skip("tile lists", whyNoTileLists(f));
   for (uint32_t i = 0; i < f.frame.materialCount; ++i)
     if (f.reach.pixelsPerMm * widestDeviation(f.material(i)) > levelDeviation(f.pyramid.coarsest))
       b.skip("diffusion radius", "wider than the pyramid holds");
@@ -62,6 +65,8 @@ public:
       : b_(builder), stages_(builder.facts.stages), reused_(reuses), remaining_(stages_.writers()) {}
 
   void addAll() {
+    if (stages_.nothing) return;
+    if (stages_.tiles) addTileLists(b_);
     // Gathered light has already spread on its way through; diffusing it again would spread it twice.
     if (b_.facts.gathers) {
       diffusion();

@@ -1,6 +1,6 @@
 #include "plan_builder.h"
 
-#include <algorithm>
+#include <cstddef>
 
 namespace pellucid {
 
@@ -38,22 +38,33 @@ void PlanBuilder::groups(PellucidDispatch* d, uint32_t width, uint32_t height, u
   d->groups[2] = 1;
 }
 
-void PlanBuilder::tiles(PellucidDispatch* d) const {
-  const Rect& rect = facts.rect;
-  groups(d, rect.width + (rect.x & 1), rect.height + (rect.y & 1), PELLUCID_TILE);
+void PlanBuilder::listed(PellucidDispatch* d, uint32_t list) const {
+  const GroupGrid grid = groupGrid(facts, facts.rect, list);
+  d->groups[0] = grid.columns;
+  d->groups[1] = grid.rows;
+  goByList(d, list);
 }
 
-void PlanBuilder::indirect(PellucidDispatch* d, size_t offset) const {
+void PlanBuilder::goByList(PellucidDispatch* d, uint32_t list) const {
+  // The material image stands in.
+  bind(d, PELLUCID_BINDING_TILES, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE,
+       facts.stages.tiles ? tilesImage() : static_cast<uint32_t>(PELLUCID_RESOURCE_MATERIAL));
+  if (!facts.stages.tiles) return;
+  d->groups[0] *= d->groups[1] * d->groups[2];
+  d->groups[1] = d->groups[2] = 1;
+  indirect(d, facts.constants.tileCommands.offset + offsetof(shared::TileCommands, commands) +
+                  list * sizeof(glm::uvec4));
+}
+
+void PlanBuilder::indirect(PellucidDispatch* d, VkDeviceSize offset) const {
   if (!fits) return;
-  const auto isIndirect = [](const PellucidDispatch& other) { return other.indirect != 0; };
-  if (std::none_of(plan.dispatches, d, isIndirect)) {
-    PellucidDispatch* waits = d;
-    while (waits > plan.dispatches && !waits->barrierBefore) --waits;
-    waits->barrierIndirect = 1;
-  }
+  // The first barrier after the dispatch that decides makes its commands visible to all that follow; others would cost 2 us each.
+  PellucidDispatch* waits = plan.dispatches + decider + 1;
+  while (waits < d && !waits->barrierBefore) ++waits;
+  waits->barrierIndirect = 1;
   d->indirect = 1;
   d->indirectResource = PELLUCID_RESOURCE_CONSTANTS;
-  d->indirectOffset = facts.constants.gatherDispatches.offset + offset;
+  d->indirectOffset = offset;
 }
 
 void PlanBuilder::bind(PellucidDispatch* d, uint32_t binding, VkDescriptorType type, uint32_t resource,

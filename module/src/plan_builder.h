@@ -18,6 +18,10 @@ struct PlanBuilder {
   PellucidPlan& plan;
   bool alongside = false;  // dispatches run beside the one before, with which they share nothing
   bool fits = true;        // all dispatches that were asked for are in the plan
+  uint32_t decider = 0;    // the last dispatch so far that writes commands of others
+
+  // The dispatch that was asked for last writes commands of others.
+  void decides() { decider = plan.dispatchCount - 1; }
 
   uint64_t pixels() const { return static_cast<uint64_t>(facts.rect.width) * facts.rect.height; }
   uint64_t colorBytes() const { return facts.wide ? 16 : 8; }
@@ -34,6 +38,7 @@ struct PlanBuilder {
   uint32_t entryPointsImage() const {
     return facts.stages.entriesApart() ? probesImage() + 1 : pyramidImage(kFirstLevel);
   }
+  uint32_t tilesImage() const { return kTransient0 + facts.stages.transients() - 1; }
   uint32_t filteredProbesImage() const {
     return facts.stages.keepsProbes ? static_cast<uint32_t>(PELLUCID_RESOURCE_HISTORY) : entryPointsImage();
   }
@@ -49,12 +54,13 @@ struct PlanBuilder {
   static void groups(PellucidDispatch* d, uint32_t width, uint32_t height, uint32_t tile) {
     groups(d, width, height, tile, tile);
   }
-  // Groups of PELLUCID_TILE columns, from even pixels on.
-  void tiles(PellucidDispatch* d) const;
+  // The groups of a list's grid; with tile lists those of them that the GPU lists.
+  void listed(PellucidDispatch* d, uint32_t list) const;
+  // With tile lists: as many groups as the list has, of those that the dispatch has so far.
+  void goByList(PellucidDispatch* d, uint32_t list) const;
 
-  // Runs if earlier dispatches say so at `offset` of shared::GatherDispatches. They are done before the first
-  // of these.
-  void indirect(PellucidDispatch* d, size_t offset) const;
+  // Runs as earlier dispatches say at `offset` of the constants.
+  void indirect(PellucidDispatch* d, VkDeviceSize offset) const;
 
   static void bind(PellucidDispatch* d, uint32_t binding, VkDescriptorType type, uint32_t resource,
                    ConstantsLayout::Range range = {});

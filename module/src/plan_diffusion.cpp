@@ -25,7 +25,7 @@ void addBaseLevel(PlanBuilder& b, uint32_t source, uint32_t copy) {
   const bool copies = copy != source;
   PellucidDispatch* d = b.dispatch("base level", Pipeline::BaseLevel);
   d->pushConstants[0] = copies;
-  b.tiles(d);
+  b.listed(d, PELLUCID_LIST_TILES);
   b.constants(d, PELLUCID_BINDING_FRAME, f.constants.frame);
   writeLevel(b, d, kFirstLevel);
   levelTraffic(b, d, kFirstLevel);
@@ -39,9 +39,7 @@ void addBaseLevel(PlanBuilder& b, uint32_t source, uint32_t copy) {
 
 void addDownsample(PlanBuilder& b, uint32_t finer) {
   PellucidDispatch* d = b.dispatch("downsample", Pipeline::Downsample);
-  const PyramidPlace& place = b.facts.pyramid.levels[finer + 2];
-  b.groups(d, static_cast<uint32_t>(place.rect.width), static_cast<uint32_t>(place.rect.height),
-           PELLUCID_DOWNSAMPLE_TILE);
+  b.listed(d, finer == kFirstLevel ? PELLUCID_LIST_DOWNSAMPLE : PELLUCID_LIST_DOWNSAMPLE_COARSE);
   d->pushConstants[0] = finer;
   d->pushConstants[1] = 16;  // texels under a texel
   b.constants(d, PELLUCID_BINDING_FRAME, b.facts.constants.frame);
@@ -53,13 +51,7 @@ void addDownsample(PlanBuilder& b, uint32_t finer) {
 void addUpsample(PlanBuilder& b, uint32_t coarsest) {
   const FrameFacts& f = b.facts;
   PellucidDispatch* d = b.dispatch("upsample", Pipeline::Upsample);
-  // Groups start at texels 32 k - 1, in y 16 k - 1.
-  const PyramidPlace& place = f.pyramid.levels[2];
-  const auto across = [](int32_t first, int32_t texels, int32_t side) {
-    return static_cast<uint32_t>((first + texels) / side - (first + 1) / side + 1);
-  };
-  d->groups[0] = across(place.rect.x, place.rect.width, 2 * PELLUCID_UPSAMPLE_GROUP);
-  d->groups[1] = across(place.rect.y, place.rect.height, PELLUCID_UPSAMPLE_GROUP);
+  b.listed(d, PELLUCID_LIST_UPSAMPLE);
   d->pushConstants[0] = coarsest;
   d->pushConstants[1] = 16;  // texels under a texel
   b.constants(d, PELLUCID_BINDING_FRAME, f.constants.frame);
@@ -80,14 +72,7 @@ void addDiffuse(PlanBuilder& b, uint32_t source, uint32_t destination, bool adds
   const bool skipsLight = f.stages.skipsLight;
   PellucidDispatch* d =
       b.dispatch(skipsLight && !addsProbes ? "diffuse, none gathered" : "diffuse", pipeline);
-  // Groups start at texels of level 2, whose rect has a border of one.
-  const PyramidPlace& place = f.pyramid.levels[2];
-  const auto across = [](int32_t texels, uint32_t side) {
-    return (static_cast<uint32_t>(texels) - 2 + side - 1) / side;
-  };
-  d->groups[0] =
-      across(place.rect.width, fine ? PELLUCID_DIFFUSE_TEXELS_X : PELLUCID_DIFFUSE_COARSE_TEXELS_X);
-  d->groups[1] = across(place.rect.height, PELLUCID_DIFFUSE_TEXELS_Y);
+  b.listed(d, PELLUCID_LIST_DIFFUSE);
   d->pushConstants[1] = 1;  // texels to each side of an edge's that its pixels look at
   d->pushConstants[3] = destination == PELLUCID_RESOURCE_OUTPUT;
   b.common(d, source, destination);
@@ -99,8 +84,8 @@ void addDiffuse(PlanBuilder& b, uint32_t source, uint32_t destination, bool adds
     readLevel(b, d, PELLUCID_BINDING_FILTERED_PROBES, kFirstLevel);
   if (!skipsLight) return;
   if (!addsProbes) d->modeledBytes = 0;  // one of the two runs
-  b.indirect(d, addsProbes ? offsetof(shared::GatherDispatches, light)
-                           : offsetof(shared::GatherDispatches, noLight));
+  b.indirect(d, f.constants.gatherDispatches.offset + (addsProbes ? offsetof(shared::GatherDispatches, light)
+                                                                   : offsetof(shared::GatherDispatches, noLight)));
 }
 
 }  // namespace pellucid

@@ -34,6 +34,7 @@ void addEntryPoints(PlanBuilder& b, const LightGroup& group) {
                  isDirectional(b.facts, group) ? Pipeline::EntryPointsDirectional : Pipeline::EntryPoints);
   b.groups(d, group.entryWidth, group.entryHeight, PELLUCID_ENTRY_POINTS_GROUP);
   d->groups[2] = group.shadowCount;
+  b.goByList(d, PELLUCID_LIST_ENTRY_POINTS);
   d->pushConstants[1] = group.entryColumns | group.entryRows << 16;
   const ConstantsLayout& layout = b.facts.constants;
   b.constants(d, PELLUCID_BINDING_FRAME, layout.frame);
@@ -55,7 +56,8 @@ void addProbes(PlanBuilder& b, const LightGroup& group, bool adds) {
   PellucidDispatch* d =
       b.dispatch("probes", isDirectional(f, group) ? Pipeline::ProbesDirectional : Pipeline::Probes);
   const Cells cells(f);
-  b.groups(d, cells.width, cells.height, PELLUCID_PROBES_GROUP);
+  b.listed(d, PELLUCID_LIST_PROBES);
+  if (f.stages.skipsLight) b.decides();
   d->pushConstants[0] = f.gatherSpacing;
   d->pushConstants[1] = group.gathered;
   d->pushConstants[2] = group.entryColumns | group.entryRows << 16 | (adds ? 1u << 31 : 0);
@@ -83,14 +85,15 @@ void addSpatialFilter(PlanBuilder& b) {
   const FrameFacts& f = b.facts;
   PellucidDispatch* d = b.dispatch("filter probes", Pipeline::FilterProbes);
   const Cells cells(f);
-  b.groups(d, cells.width, cells.height, PELLUCID_FILTER_GROUP);
+  b.listed(d, PELLUCID_LIST_FILTER_PROBES);
   d->pushConstants[0] = f.gatherSpacing;
   b.constants(d, PELLUCID_BINDING_FRAME, f.constants.frame);
   b.constants(d, PELLUCID_BINDING_MATERIALS, f.constants.materials);
   b.bind(d, PELLUCID_BINDING_ENTRY_POINTS, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, b.probesImage());
   b.bind(d, PELLUCID_BINDING_PROBES, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, b.filteredProbesImage());
   d->modeledBytes = 2 * kTexelBytes * cells.width * cells.height;
-  if (f.stages.skipsLight) b.indirect(d, offsetof(shared::GatherDispatches, filterProbes));
+  if (f.stages.skipsLight)
+    b.indirect(d, f.constants.gatherDispatches.offset + offsetof(shared::GatherDispatches, filterProbes));
 }
 
 void readProbes(const PlanBuilder& b, PellucidDispatch* d, uint32_t binding, VkDescriptorType type) {

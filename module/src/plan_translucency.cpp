@@ -18,7 +18,7 @@ void addTranslucency(PlanBuilder& b, const LightGroup& group, uint32_t source, u
     readProbes(b, d, PELLUCID_BINDING_PROBES, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE);
     d->pushConstants[3] = group.gathered;
   } else {
-    b.tiles(d);
+    b.listed(d, PELLUCID_LIST_TILES);
   }
   d->pushConstants[1] = group.lightCount;
   d->pushConstants[2] = destination == PELLUCID_RESOURCE_OUTPUT;

@@ -26,8 +26,9 @@ Stages::Stages(const FrameFacts& facts) {
   }
   lights = fused > 0;
   copies = diffusion && !lights && !frame.separateOutput;
-  // Without diffusion the fused pass still has to bring irradiance (times albedo) to the output.
-  if (writers() == 0) fused = 1;
+  // Without diffusion the fused pass still has to bring irradiance (times albedo) to the output, unless that is what it is.
+  nothing = writers() == 0 && facts.inPlace && !facts.has(PELLUCID_RESOURCE_ALBEDO);
+  if (writers() == 0 && !nothing) fused = 1;
   keepsHistory =
       frame.reuse != PELLUCID_REUSE_NONE && !facts.debug() && translucency && facts.lights.count > 0;
   keepsProbes = keepsHistory && facts.lights.gathered > 0;

@@ -11,7 +11,8 @@ namespace pellucid {
 struct FrameFacts;
 
 struct Stages {
-  bool lights = false;  // the fused dispatches carry lights
+  bool nothing = false;  // the output is the irradiance image, and nothing is added to it
+  bool lights = false;   // the fused dispatches carry lights
   bool diffusion = false;
   uint32_t fused = 0;         // fused dispatches
   uint32_t gathered = 0;      // groups of lights that are gathered from
@@ -25,13 +26,14 @@ struct Stages {
   bool addsProbes =
       false;  // the diffusion's last dispatch adds what was gathered: no other light comes through
   bool skipsLight = false;  // the GPU says whether anything was gathered
+  bool tiles = false;       // groups run where the GPU finds material
 
   Stages() = default;
   explicit Stages(const FrameFacts& facts);
 
   // Dispatches that write a color transient or the output.
   uint32_t writers() const { return (history ? 1 : fused) + (diffusion ? 1 : 0) + (copies ? 1 : 0); }
-  uint32_t colorTransients() const { return std::min(writers() - 1, 2u); }
+  uint32_t colorTransients() const { return nothing ? 0 : std::min(writers() - 1, 2u); }
   // Images of packed texels: the pyramid's; the gather's probes; entry points, if they do not lie where level
   // 1 was.
   uint32_t pyramidImages() const { return diffusion ? kPyramidImages : 0; }
@@ -39,7 +41,7 @@ struct Stages {
   uint32_t texelTransients() const {
     return pyramidImages() + (gathered > 0 ? 1 : 0) + (entriesApart() ? 1 : 0);
   }
-  uint32_t transients() const { return colorTransients() + texelTransients(); }
+  uint32_t transients() const { return colorTransients() + texelTransients() + (tiles ? 1 : 0); }
 };
 
 }  // namespace pellucid

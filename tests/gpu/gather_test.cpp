@@ -122,7 +122,7 @@ TEST_F(Gather, PlanGathersBesideTheDiffusion) {
   const Capture c = backlitSlab(1, PELLUCID_DEPTH_VIEW_Z);
   ReplaySettings coarse = settings(8);
   coarse.translucency.gatherSpacing = 4;
-  for (const bool indirect : {false, true}) {
+  for (const auto indirect : {PELLUCID_INDIRECT_NONE, PELLUCID_INDIRECT_LIGHT}) {
     coarse.indirectDispatches = indirect;
     const PellucidPlan plan = replayer().run(c, {testMaterial()}, coarse).plan;
     std::vector<std::string> beside, decided;
@@ -173,6 +173,7 @@ TEST_F(Gather, SkipsWhatFindsNoLight) {
     SCOPED_TRACE(c.name);
     ReplaySettings s = settings(8);
     s.translucency.gatherSpacing = 4;
+    s.indirectDispatches = PELLUCID_INDIRECT_LIGHT;
     const std::vector<PellucidMaterial> materials(c.capture.materials.size(), testMaterial());
     const FrameRun run(device(), context, c.capture, materials, s);
     device().run([&](VkCommandBuffer commands) { run.record(commands); });
@@ -186,7 +187,7 @@ TEST_F(Gather, SkipsWhatFindsNoLight) {
       EXPECT_EQ(command.y, d.groups[1]) << d.name;
       EXPECT_EQ(command.z, 1u) << d.name;
     }
-    s.indirectDispatches = false;
+    s.indirectDispatches = PELLUCID_INDIRECT_NONE;
     EXPECT_TRUE(sameBits(run.output(), replayer().run(c.capture, materials, s).output));
   }
 }
@@ -200,7 +201,7 @@ TEST_F(Gather, OtherLightsAreAddedAfterTheDiffusion) {
     return std::string(pellucidPipelineName(plan.dispatches[plan.dispatchCount - 1].pipeline));
   };
   ReplaySettings s = settings(8);
-  s.indirectDispatches = false;
+  s.indirectDispatches = PELLUCID_INDIRECT_NONE;
   s.translucency.gatherSpacing = 2;
   EXPECT_EQ(last(s), "add_gathered");
   s.translucency.gatherSpacing = 4;

@@ -129,7 +129,7 @@ typedef struct PellucidShadowMap {
 /* A fused dispatch binds 8 shadow images and takes 128 lights and 128 shadow maps; a frame with more gets several. Exit
  * depths and caster materials count; the images of one light must fit into one dispatch. Where those of all lights are
  * more than a plan's dispatches can bind, all exit depths and caster materials are left out, which a skip says. */
-enum { PELLUCID_MAX_LIGHT_SHADOW_MAPS = 8, PELLUCID_MAX_TRANSIENTS = 6 };
+enum { PELLUCID_MAX_LIGHT_SHADOW_MAPS = 8, PELLUCID_MAX_TRANSIENTS = 7 };
 
 typedef enum PellucidFeatureBits {
   PELLUCID_FEATURE_TRANSLUCENCY = 1u << 0,
@@ -160,6 +160,13 @@ typedef enum PellucidDebugView {
   PELLUCID_DEBUG_OCCLUSION = 3,     /* fraction of the lights' back irradiance that the maps let by */
   PELLUCID_DEBUG_IRRADIANCE = 4     /* irradiance + transmitted/rho: what the diffusion reads */
 } PellucidDebugView;
+
+/* Where the GPU decides how many workgroups run. */
+typedef enum PellucidIndirect {
+  PELLUCID_INDIRECT_NONE = 0,     /* nowhere: all passes run over the whole rect */
+  PELLUCID_INDIRECT_MATERIAL = 1, /* where it finds material, and passes of a gather where it finds light, too */
+  PELLUCID_INDIRECT_LIGHT = 2     /* the latter alone: where materials cover most of the rect, finding them costs more */
+} PellucidIndirect;
 
 /* Options of Whelan 2009, pellucid_thesis.h. */
 typedef struct PellucidThesisOptions PellucidThesisOptions;
@@ -229,8 +236,7 @@ typedef struct PellucidFrame {
                                Each step costs a quarter of the one before; 4 needs pixels far below a mean free path */
   uint32_t separateOutput;  /* 1: the output shares no memory with the irradiance, of which diffusion without a fused
                                dispatch before it then needs no copy; 0 (default): it may be the same image */
-  uint32_t indirectDispatches; /* 1: the constants' buffer has usage INDIRECT_BUFFER, too: of a gather's dispatches
-                               those that the GPU finds nothing to do for are then empty. 0 (default): all run */
+  uint32_t indirectDispatches; /* PellucidIndirect; but for NONE the constants' buffer has usage INDIRECT_BUFFER, too */
 } PellucidFrame;
 
 /* ---- Plan ------------------------------------------------------------------------------------ */
@@ -313,8 +319,8 @@ PellucidResult pellucidGetImageNeeds(const PellucidFrame* frame, uint32_t* count
 PellucidResult pellucidValidateFrame(const PellucidFrame* frame, PellucidMessageFn fn, void* user);
 
 /* Same frame and previous plan, same plan. `previous` is the last recorded frame's plan or NULL; history comes in here
- * and nowhere else; see PellucidReuse. The plan keeps no pointer to the frame. Only whether optional inputs have views
- * is read of the views. */
+ * and nowhere else; see PellucidReuse. The plan keeps no pointer to the frame. Of the views only those of optional inputs
+ * are looked at, and whether output and irradiance are one view: then a frame with nothing to do has no dispatches. */
 PellucidResult pellucidBuildPlan(const PellucidFrame* frame, const PellucidPlan* previous, PellucidPlan* plan);
 
 /* ---- Recording ------------------------------------------------------------------------------- */

@@ -1,0 +1,45 @@
+// Tile lists: which groups of each pass have material to work on, as the GPU finds it (compute/tiles/). This is where the groups
+// lie and where the lists are kept.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "rect.h"
+#include "shared/pellucid_shared.h"
+
+namespace pellucid {
+
+struct FrameFacts;
+
+// The groups of a pass. A group makes the part of the image that begins at `first` + its place * `step`, `size` pixels; parts
+// that others read are larger by as much as that takes.
+struct GroupGrid {
+  uint32_t columns = 0, rows = 0;
+  std::array<int32_t, 2> first{}, step{}, size{};  // pixels
+  uint32_t runs = PELLUCID_RUNS_WITH_CELLS;
+
+  uint32_t count() const { return columns * rows; }
+};
+
+// `list`: PELLUCID_LIST_* but those of entry points.
+GroupGrid groupGrid(const FrameFacts& facts, const Rect& rect, uint32_t list);
+
+struct TileLists {
+  std::array<uint32_t, 2> firstPixel{}, blocks{};
+  std::array<GroupGrid, PELLUCID_LISTS> grids{};
+  std::array<uint32_t, PELLUCID_LISTS> first{};       // words of the lists
+  std::array<uint32_t, PELLUCID_LISTS> firstGroup{};  // of the pass that makes the lists, by list
+  uint32_t marks = 0;                                 // first word of the blocks' marks
+  uint32_t words = 0, groups = 0;                     // in all; groups of the pass that makes the lists
+
+  TileLists() = default;
+  TileLists(const FrameFacts& facts, const Rect& rect);
+
+  static constexpr uint32_t kColumns = 1u << PELLUCID_TILE_WORDS_SHIFT;  // of the image that holds the words
+};
+
+// Why the frame's passes run over whole images in place of lists, or nullptr. Static string.
+const char* whyNoTileLists(const FrameFacts& facts);
+
+}  // namespace pellucid

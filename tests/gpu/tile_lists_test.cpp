@@ -1,0 +1,104 @@
+// Tile lists change where passes run and no pixel.
+#include "gpu_fixture.h"
+
+#include <cstdio>
+#include <random>
+
+namespace {
+
+using namespace pellucid::test;
+
+using TileLists = GpuTest;
+
+// Islands of material, some of one pixel, on a plane that is lit from behind; most of the image is empty.
+Capture islands(int width, int height, unsigned seed) {
+  Capture c = flatCapture(width, height);
+  c.lights = {backLight()};
+  c.lights[0].shadowMaps = {flatShadowMap(-11, PELLUCID_DEPTH_VIEW_Z, 256)};
+  std::mt19937 random(seed);
+  const auto below = [&](int end) { return std::uniform_int_distribution<int>(0, end - 1)(random); };
+  c.material.assign(c.material.size(), 0);
+  for (int i = 0; i < 5; ++i) {
+    const int side = i < 2 ? 1 : 1 + below(40), x0 = below(width), y0 = below(height);
+    for (int y = y0; y < std::min(y0 + side, height); ++y)
+      for (int x = x0; x < std::min(x0 + side, width); ++x) c.material[static_cast<size_t>(y * width + x)] = 1;
+  }
+  for (float& value : c.irradiance.data) value = static_cast<float>(below(1000)) / 1000;
+  return c;
+}
+
+uint32_t groupsOf(const FrameRun& run, const char* name) {
+  for (uint32_t i = 0; i < run.plan().dispatchCount; ++i) {
+    const PellucidDispatch& d = run.plan().dispatches[i];
+    if (d.name != std::string(name)) continue;
+    if (!d.indirect) return d.groups[0] * d.groups[1] * d.groups[2];
+    VkDispatchIndirectCommand command;
+    std::memcpy(&command, static_cast<const char*>(run.constants()) + d.indirectOffset, sizeof command);
+    EXPECT_LE(command.x, d.groups[0]) << name;
+    return command.x * command.y * command.z;
+  }
+  return 0;
+}
+
+struct Way {
+  const char* name;
+  void (*change)(ReplaySettings&);
+};
+
+constexpr Way kWays[] = {
+    {"quality 0", [](ReplaySettings& s) { s.quality = 0; }},
+    {"quality 1", [](ReplaySettings&) {}},
+    {"cells of 4 pixels", [](ReplaySettings& s) { s.translucency.gatherSpacing = 4; }},
+    {"cells of 2 pixels, quality 2", [](ReplaySettings& s) {
+       s.quality = 2;
+       s.translucency.gatherSpacing = 2;
+     }},
+    {"a rect from odd pixels", [](ReplaySettings& s) { s.renderRect = {67, 33, 131, 90}; }},
+    {"32 bits", [](ReplaySettings& s) { s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT; }},
+};
+
+// The transients hold NaN before each recording, so that a texel that no group wrote shows.
+TEST_F(TileLists, ChangeNoPixel) {
+  const Context context(device());
+  for (unsigned seed = 1; seed <= 3; ++seed)
+    for (const Way& way : kWays) {
+      const Capture c = islands(260 + 3 * static_cast<int>(seed), 190, seed);
+      ReplaySettings s;
+      way.change(s);
+      s.indirectDispatches = PELLUCID_INDIRECT_NONE;
+      const Image whole = replayer().run(c, {testMaterial()}, s).output;
+      s.indirectDispatches = PELLUCID_INDIRECT_MATERIAL;
+      const FrameRun run(device(), context, c, {testMaterial()}, s);
+      // A recording may run more than once.
+      for (int times = 0; times < 2; ++times) {
+        device().run([&](VkCommandBuffer commands) { run.record(commands); });
+        EXPECT_TRUE(sameBits(run.output(), whole)) << way.name << ", seed " << seed << ", run " << times;
+      }
+    }
+}
+
+TEST_F(TileLists, GroupsFollowTheMaterial) {
+  const Context context(device());
+  ReplaySettings s;
+  s.translucency.gatherSpacing = 4;
+  Capture c = islands(256, 256, 1);
+  const auto groups = [&](const char* name) {
+    const FrameRun run(device(), context, c, {testMaterial()}, s);
+    device().run([&](VkCommandBuffer commands) { run.record(commands); });
+    return groupsOf(run, name);
+  };
+  c.material.assign(c.material.size(), 0);
+  for (const char* name : {"base level", "downsample", "upsample", "diffuse", "diffuse, none gathered", "entry points", "probes"})
+    EXPECT_EQ(groups(name), 0u) << name << " of nothing";
+  c.material[128 * 256 + 128] = 1;  // the first pixel of a tile
+  EXPECT_EQ(groups("base level"), 1u);
+  EXPECT_EQ(groups("diffuse"), 1u);
+  // 2 reaches of 2 mm around a pixel are 8 of 256 texels of the map's 200 mm, and groups have 16 entry points.
+  const uint32_t entries = groups("entry points");
+  EXPECT_GT(entries, 0u);
+  EXPECT_LT(entries, 64u);
+  s.indirectDispatches = PELLUCID_INDIRECT_LIGHT;
+  EXPECT_EQ(groups("base level"), 256u);
+}
+
+}  // namespace
