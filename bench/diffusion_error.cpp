@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <iterator>
+#include <limits>
 
 #include "common/compare.h"
 #include "common/error.h"
@@ -20,9 +21,8 @@ using namespace pellucid::harness;
 using namespace pellucid::bench;
 
 // The largest channel's.
-double relativeRmse(const Image& image, const Image& truth, const Capture& capture) {
-  const Comparison c =
-      compareImages(image, truth, comparisonMask(capture.material, capture.irradiance, Subset::All));
+double relativeRmse(const Image& image, const Image& truth, const std::vector<std::uint8_t>& pixels) {
+  const Comparison c = compareImages(image, truth, pixels);
   double worst = 0;
   for (const ChannelDifference& k : c.channels) worst = std::max(worst, k.relativeRmse);
   return worst;
@@ -31,10 +31,10 @@ double relativeRmse(const Image& image, const Image& truth, const Capture& captu
 struct Bench {
   Device device;
   Context context;
-  int size;
+  int size, pixels;
 
-  Bench(const std::string& deviceName, int pixels)
-      : device({deviceName, false}), context(device), size(pixels) {}
+  Bench(const std::string& deviceName, int side, int errorPixels)
+      : device({deviceName, false}), context(device), size(side), pixels(errorPixels) {}
 
   // Of each quality, at a radius in pixels.
   std::vector<double> errors(const ErrorScene& scene, double radius, const std::vector<uint32_t>& qualities) {
@@ -42,6 +42,7 @@ struct Bench {
     const PellucidMaterial material = burleyMaterial(radius);
     reference::Settings settings;
     settings.features = PELLUCID_FEATURE_DIFFUSION;
+    settings.wanted = spreadPixels(capture, pixels);
     const Image truth = reference::compute(capture, {material}, settings).image;
     std::vector<double> result;
     for (const uint32_t quality : qualities) {
@@ -50,7 +51,7 @@ struct Bench {
       replaySettings.quality = quality;
       FrameRun run(device, context, capture, {material}, replaySettings);
       device.run([&](VkCommandBuffer c) { run.record(c); });
-      result.push_back(relativeRmse(rgb(run.output()), truth, capture));
+      result.push_back(relativeRmse(rgb(run.output()), truth, settings.wanted));
     }
     return result;
   }
@@ -150,7 +151,7 @@ bool holdsTable(Bench& bench, const std::vector<double>& radii) {
 
 int main(int argc, char** argv) {
   std::string device;
-  int size = 96;
+  int size = 96, pixels = std::numeric_limits<int>::max();
   uint32_t quality = 1;
   bool table = false, check = false, means = false;
   std::vector<double> radii(std::begin(pellucid::kErrorRadii), std::end(pellucid::kErrorRadii));
@@ -158,6 +159,9 @@ int main(int argc, char** argv) {
                "pellucid_diffusion_error");
   app.add_option("--device", device, "part of the Vulkan device's name");
   app.add_option("--size", size, "pixels a side")->check(CLI::Range(16, 512))->capture_default_str();
+  app.add_option("--error-pixels", pixels,
+                 "of a scene, at most, where brute force says the error; default all")
+      ->check(CLI::Range(16, 1000000));
   app.add_option("--quality", quality, "PellucidFrame::quality")
       ->check(CLI::Range(0, 3))
       ->capture_default_str();
@@ -170,7 +174,7 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   CLI11_PARSE(app, argc, argv);
   try {
-    Bench bench(device, size);
+    Bench bench(device, size, pixels);
     if (means)
       printMeans(bench, radii);
     else if (table)

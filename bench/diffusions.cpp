@@ -37,9 +37,10 @@ Image Site::run(const Variant& variant) const {
 }
 
 double requireNear(const Variant& v, const Image& image, const Image& truth, const Capture& capture,
-                   double limit) {
-  const Comparison c =
-      compareImages(image, truth, comparisonMask(capture.material, capture.irradiance, Subset::All));
+                   double limit, const std::vector<std::uint8_t>& pixels) {
+  const Comparison c = compareImages(
+      image, truth,
+      pixels.empty() ? comparisonMask(capture.material, capture.irradiance, Subset::All) : pixels);
   double sum = 0;
   for (const ChannelDifference& k : c.channels) sum += k.relativeRmse * k.relativeRmse;
   const double error = std::sqrt(sum / static_cast<double>(c.channels.size()));
@@ -67,11 +68,13 @@ std::vector<double> diffusionErrors(const Site& site) {
     const Capture capture = makeErrorCapture(scene, 96, site.pixel);
     reference::Settings settings;
     settings.features = PELLUCID_FEATURE_DIFFUSION;
+    settings.wanted = spreadPixels(capture, site.errorPixels);
     const Image truth = reference::compute(capture, {site.material}, settings).image;
     const std::vector<Variant> variants = diffusions(site, capture);
     errors.resize(variants.size());
     for (size_t i = 0; i < variants.size(); ++i)
-      errors[i] = std::max(errors[i], requireNear(variants[i], site.run(variants[i]), truth, capture, 0.5));
+      errors[i] = std::max(
+          errors[i], requireNear(variants[i], site.run(variants[i]), truth, capture, 0.5, settings.wanted));
   }
   return errors;
 }

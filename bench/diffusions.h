@@ -2,6 +2,7 @@
 // against time.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,8 @@ struct Site {
   harness::Device& device;
   const harness::Context& context;
   PellucidMaterial material;
-  double pixel;  // mm
+  double pixel;                                       // mm
+  int errorPixels = std::numeric_limits<int>::max();  // of a scene, at most, that brute force is computed at
 
   std::shared_ptr<const BenchFrame> frame(const harness::Capture& capture,
                                           harness::ReplaySettings settings) const;
@@ -24,9 +26,11 @@ struct Site {
 };
 
 // Root mean square over the channels of the relative RMSE of `image`, where there is a material. Throws
-// DeviceError beyond `limit`: a wrong pass is not worth timing.
+// DeviceError beyond `limit`: a wrong pass is not worth timing. `pixels`: one value per pixel, which counts
+// where it is not 0; empty: all.
 double requireNear(const Variant& v, const harness::Image& image, const harness::Image& truth,
-                   const harness::Capture& capture, double limit);
+                   const harness::Capture& capture, double limit,
+                   const std::vector<std::uint8_t>& pixels = {});
 
 // The module's without and with the fine filter, and then the baselines.
 std::vector<Variant> diffusions(const Site& site, const harness::Capture& capture);

@@ -5,6 +5,7 @@
 #include "bench_frame.h"
 #include "common/compare.h"
 #include "reference/reference.h"
+#include "scene.h"
 #include "scene/scene.h"
 
 namespace pellucid::bench {
@@ -25,15 +26,16 @@ std::vector<double> gatherErrors(const Site& site, const std::vector<uint32_t>& 
   reference::Settings all;
   all.features = settings.features;
   all.translucency = settings.translucency;
+  constexpr int kBox = 4;
+  all.wanted = spreadPixels(capture, site.errorPixels, kBox);
   const std::vector<PellucidMaterial> materials(capture.materials.size(), site.material);
   const Image truth = reference::compute(capture, materials, all).image;
-  const auto mask = comparisonMask(capture.material, capture.irradiance, Subset::All);
   std::vector<double> errors;
   for (const uint32_t n : samples) {
     settings.translucency.gatherSamples = n;
     const Image image = site.run(moduleVariant(site.frame(capture, settings), ""));
     double worst = 0;
-    for (const ChannelDifference& channel : compareImages(image, truth, mask, 4).channels)
+    for (const ChannelDifference& channel : compareImages(image, truth, all.wanted, kBox).channels)
       worst = std::max(worst, channel.relativeRmse);
     errors.push_back(worst);
   }

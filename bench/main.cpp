@@ -109,7 +109,8 @@ private:
   void measureTimes(const std::vector<FrameSource>& sources) {
     const Context context(device_);
     const PellucidMaterial material = benchMaterial();
-    const Site site{device_, context, material, pixelSizeFor(material, options_.plane.radius)};
+    const Site site{device_, context, material, pixelSizeFor(material, options_.plane.radius),
+                    options_.plane.errorPixels};
     if (std::any_of(std::begin(kPlaneTables), std::end(kPlaneTables),
                     [&](const char* name) { return wanted(name); })) {
       const auto [width, height] = options_.plane.size;

@@ -13,7 +13,7 @@ namespace pellucid::bench {
 namespace {
 
 constexpr double kSpan = 10000;  // microseconds of a command buffer
-// Microseconds of a run on software devices, whose clocks and compilers are not what takes the time.
+// Microseconds of a run, above which compilers and clocks are not what takes the time.
 constexpr double kSlow = 100000;
 using Clock = std::chrono::steady_clock;
 Clock::time_point lastWork{};
@@ -22,11 +22,11 @@ int passesFor(double microseconds, double most) {
   return static_cast<int>(std::clamp(std::ceil(kSpan / std::max(microseconds, 1.0)), 1.0, most));
 }
 
-// Devices lower their clocks while images are being made, and take up to a second of work to raise them.
-// `once`: what a run takes, microseconds.
+// GPUs lower their clocks while images are being made, and take up to a second of work to raise them;
+// software devices do not. `once`: what a run takes, microseconds.
 template <class Run>
-void warmUp(double once, const Run& run) {
-  if (once > kSlow) return;
+void warmUp(const harness::Device& device, double once, const Run& run) {
+  if (once > kSlow || device.properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU) return;
   const Clock::time_point start = Clock::now();
   const std::chrono::milliseconds least(start - lastWork > std::chrono::milliseconds(100) ? 1000 : 30);
   for (int i = 0; i < 2 || Clock::now() - start < least; ++i) run();
@@ -59,7 +59,7 @@ Time measure(harness::Device& device, int repeat, const std::function<void(VkCom
   double once = run(1);
   if (once < kSlow) once = run(1);  // the first use of a pipeline may compile it
   const int passes = passesFor(once, 256);
-  warmUp(once, [&] { run(passes); });
+  warmUp(device, once, [&] { run(passes); });
   std::vector<double> times;
   for (int i = 0; i < repeat; ++i) times.push_back(run(passes));
   lastWork = Clock::now();
@@ -93,7 +93,7 @@ std::vector<Time> measureParts(harness::Device& device, int repeat, uint32_t par
   const std::vector<double> first = run(1);
   const double once = std::accumulate(first.begin(), first.end(), 0.0);
   const int passes = passesFor(once, kMost);
-  warmUp(once, [&] { run(passes); });
+  warmUp(device, once, [&] { run(passes); });
   std::vector<std::vector<double>> times(parts);
   for (int i = 0; i < repeat; ++i) {
     const std::vector<double> sums = run(passes);

@@ -53,9 +53,11 @@ int readOptions(int argc, char** argv, Options& options) {
   app.add_option("--shadow-size", f.shadowSize,
                  "texels across a shadow map of frames that are made; default 2048, on a software device 512")
       ->check(CLI::Range(16, 8192));
-  app.add_option("--error-pixels", f.errorPixels, "of a frame, at most, where brute force says the error")
-      ->check(CLI::Range(16, 1000000))
-      ->capture_default_str();
+  app.add_option_function<int>(
+         "--error-pixels",
+         [&options](int pixels) { options.frames.errorPixels = options.plane.errorPixels = pixels; },
+         "at most, where brute force says the error; default 4096 of a frame, all of the tables on planes")
+      ->check(CLI::Range(16, 1000000));
   app.add_option("--cache", f.cache, "folder that keeps what brute force gave");
 
   PlaneOptions& p = options.plane;

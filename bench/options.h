@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <set>
 #include <string>
@@ -13,8 +14,9 @@ namespace pellucid::bench {
 // Sections on planes and patterns, whose every pixel may be covered.
 struct PlaneOptions {
   std::pair<int, int> size = {1280, 720};
-  std::vector<double> coverage = {100, 25, 0};  // percent
-  double radius = 40;                           // pixels
+  std::vector<double> coverage = {100, 25, 0};        // percent
+  double radius = 40;                                 // pixels
+  int errorPixels = std::numeric_limits<int>::max();  // of a scene, at most, that brute force is computed at
 };
 
 struct FrameOptions {

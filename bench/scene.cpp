@@ -1,6 +1,7 @@
 #include "scene.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -30,7 +31,8 @@ double pixelSizeFor(const PellucidMaterial& material, double radius) {
 
 namespace {
 
-constexpr double kFar = 100;  // mm, of the slab's camera
+constexpr double kFar = 100;                  // mm, of the slab's camera
+constexpr unsigned kMostShadowTexels = 1024;  // across the slab's map, which has about a texel a pixel
 
 // In device depths of which 1 is `far` mm away: random, up to half a hundredth of a pixel to either side.
 // Memory that compresses what is constant, which depths of G-buffers are not, would be read faster than real
@@ -73,7 +75,9 @@ Capture slabWithoutGrain(int width, int height, double coverage, double pixel) {
   light.shadowMaps[0].clipFromWorld = {
       2 / (pixel * width), 0, 0, 0, 0, 2 / (pixel * height), 0, 0, 0, 0, 1 / kFar, 0, 0, 0, 1, 1};
   light.shadowMaps[0].depth.encoding = PELLUCID_DEPTH_DEVICE;
-  light.shadowMaps[0].depth.image = Image(1024, 1024, 1, 0.48f);
+  const auto across = static_cast<int>(
+      std::min(kMostShadowTexels, std::bit_ceil(static_cast<unsigned>(std::max(width, height)))));
+  light.shadowMaps[0].depth.image = Image(across, across, 1, 0.48f);
   c.lights = {light};
   return c;
 }
@@ -178,6 +182,24 @@ Capture makeErrorCapture(const ErrorScene& scene, int size, double pixel) {
   if (scene.checker > 0) paintChecker(capture, scene.checker * size / scene.width);
   capture.albedo = {};  // the error is the diffusion's
   return capture;
+}
+
+std::vector<std::uint8_t> spreadPixels(const Capture& capture, int count, int box) {
+  const auto covered =
+      std::count_if(capture.material.begin(), capture.material.end(), [](auto m) { return m != 0; });
+  std::mt19937 random(5);
+  std::vector<std::uint8_t> wanted(capture.material.size());
+  for (int top = 0; top < capture.height; top += box)
+    for (int left = 0; left < capture.width; left += box) {
+      const bool chosen = random() % static_cast<std::uint64_t>(std::max<std::ptrdiff_t>(covered, 1)) <
+                          static_cast<std::uint64_t>(count);
+      for (int y = top; y < std::min(top + box, capture.height); ++y)
+        for (int x = left; x < std::min(left + box, capture.width); ++x) {
+          const auto i = static_cast<size_t>(y) * static_cast<size_t>(capture.width) + static_cast<size_t>(x);
+          wanted[i] = chosen && capture.material[i] != 0;
+        }
+    }
+  return wanted;
 }
 
 PellucidMaterial burleyMaterial(double radius) {

@@ -21,8 +21,8 @@ double pixelSizeFor(const PellucidMaterial& material, double radius);
 harness::Capture withMapsAlone(harness::Capture capture);
 
 // A 2 mm slab, noise in the irradiance and of a hundredth of a pixel in the depths, one directional light
-// from behind with a 1024^2 shadow map; the upper `coverage` of the image has the material. A pixel is
-// `pixel` mm wide.
+// from behind with a shadow map of about a texel a pixel, at most 1024^2; the upper `coverage` of the image
+// has the material. A pixel is `pixel` mm wide.
 harness::Capture slab(int width, int height, double coverage, double pixel);
 
 // Of the slab's first pixel, mm.
@@ -48,6 +48,10 @@ std::vector<ErrorScene> errorScenes();
 
 // `size` pixels a side; all lengths scaled so that a pixel is `pixel` mm wide where the scene has its width.
 harness::Capture makeErrorCapture(const ErrorScene& scene, int size, double pixel);
+
+// One value per pixel: 1 in blocks of box x box pixels that hold about `count` of the pixels with a material,
+// spread at random with a fixed seed; in all blocks where there are no more.
+std::vector<std::uint8_t> spreadPixels(const harness::Capture& capture, int count, int box = 1);
 
 // Burley's profile (Christensen & Burley 2015) with 99.9 % of the energy within `radius` mm in red, and
 // distances 1/1.4 and 1/2 of that in green and blue.

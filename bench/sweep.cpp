@@ -47,7 +47,8 @@ nlohmann::json sweep(const Site& site, const SweepOptions& options, int repeat, 
   nlohmann::json rows = nlohmann::json::array();
   std::vector<std::vector<TimedError>> points(sizes.size());
   for (const double radius : options.radii) {
-    const Site scaled{site.device, site.context, site.material, pixelSizeFor(site.material, radius)};
+    const Site scaled{site.device, site.context, site.material, pixelSizeFor(site.material, radius),
+                      site.errorPixels};
     const std::vector<double> errors = diffusionErrors(scaled);
     // The last size comes first: it says which baselines are worth the time at the others.
     std::vector<bool> wanted(errors.size(), true);

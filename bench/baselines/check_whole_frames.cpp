@@ -121,7 +121,7 @@ Capture ear() {
   SceneParameters p;
   p.name = "ear";
   p.width = p.height = 128;
-  p.shadowSize = 512;
+  p.shadowSize = 256;
   p.depthEncoding = PELLUCID_DEPTH_DEVICE;
   Capture capture = makeScene(p);
   p.lightType = PELLUCID_LIGHT_DIRECTIONAL;

@@ -112,7 +112,7 @@ void replayOne(const Options& options, const ReplaySettings& settings) {
   const std::vector<PellucidMaterial> materials = compileMaterials(capture);
   requireNearestDistance(capture, materials, settings);
   Device device({options.device, false});
-  Replayer replayer(device);
+  Replayer replayer(device, usesOf(settings));
   const uint32_t repeat = options.repeat.value_or(kDefaultRepeat);
   const ReplayResult result = replayer.run(capture, materials, settings, repeat);
   print(device, result, repeat);
@@ -156,7 +156,7 @@ void replaySequence(const Options& options, const ReplaySettings& settings) {
   const FramePattern input("capture", options.input), output("-o", options.output);
   const std::vector<int> frames = parseFrames(options.frames);
   Device device({options.device, false});
-  Replayer replayer(device);
+  Replayer replayer(device, usesOf(settings));
   Progress progress("replaying", frames.size());
   std::mutex deviceMutex, reportMutex;
   std::map<int, std::string> failures;

@@ -136,13 +136,14 @@ void print(const StressOptions& options, const StressResult& result) {
 void run(Options& options) {
   StressOptions& s = options.stress;
   if (options.quality != "any") s.limits.quality = std::stoi(options.quality);
-  if (!s.only.empty()) stress::requireCheck(s.only);  // before a device is opened
-  stress::Renderer renderer({options.device, s.validate});
-  Reporter reporter(options);
+  // What is wrong here is said before a device is opened.
+  if (!s.only.empty()) stress::requireCheck(s.only);
   std::optional<stress::ResultsWriter> writer;
   std::optional<stress::ResultsReader> reader;
   if (!options.results.empty()) writer.emplace(options.results);
   if (!options.compareWith.empty()) reader.emplace(options.compareWith);
+  stress::Renderer renderer({options.device, s.validate});
+  Reporter reporter(options);
   stress::StressEvents events;
   events.violated = [&](const StressFrame& frame, const std::vector<Violation>& violations) {
     reporter(frame, violations);

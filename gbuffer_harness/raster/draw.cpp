@@ -322,6 +322,12 @@ void UploadedModel::createLayout() {
       vkGetDeviceProcAddr(device_.handle(), "vkCmdPushDescriptorSetKHR"));
 }
 
+VkPipeline UploadedModel::pipelineOf(const RenderTarget& target, const PipelineState& state) const {
+  const auto [entry, isNew] = pipelines_.try_emplace(state, device_);
+  if (isNew) createPipeline(entry->second, target, state);
+  return entry->second;
+}
+
 void UploadedModel::createPipeline(Pipeline& pipeline, const RenderTarget& target,
                                    const PipelineState& state) const {
   ShaderModule vertex(device_), fragment(device_);
@@ -391,12 +397,8 @@ void UploadedModel::createPipeline(Pipeline& pipeline, const RenderTarget& targe
 
 void UploadedModel::draw(const RenderTarget& target, const DrawView& view, const PipelineState& state,
                          VkCullModeFlags doubleSidedCull, const EarlierPass& earlier) const {
-  Pipeline singleSided(device_), doubleSided(device_);
-  createPipeline(singleSided, target, state);
-  PipelineState other = state;
-  other.cull = doubleSidedCull;
-  createPipeline(doubleSided, target, other);
-
+  PipelineState doubleSided = state;
+  doubleSided.cull = doubleSidedCull;
   const glm::dmat4 viewFromWorld = toGlm(view.viewFromWorld);
   DrawConstants constants{};
   constants.clipFromWorld = glm::mat4(toGlm(view.clipFromView) * viewFromWorld);
@@ -412,7 +414,7 @@ void UploadedModel::draw(const RenderTarget& target, const DrawView& view, const
     for (const Part& part : model_.parts) {
       const Surface& surface = model_.surfaces[part.surface];
       vkCmdBindPipeline(commandBuffer, VK_PIPELINE_BIND_POINT_GRAPHICS,
-                        surface.doubleSided ? doubleSided : singleSided);
+                        pipelineOf(target, surface.doubleSided ? doubleSided : state));
       const std::size_t none = textures_.size() - 1;
       const auto textureOr = [none](int index) { return index < 0 ? none : static_cast<std::size_t>(index); };
       const std::size_t color = textureOr(surface.texture), normal = textureOr(surface.normalMap);

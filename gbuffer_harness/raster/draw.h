@@ -3,6 +3,7 @@
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
+#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -69,6 +70,8 @@ struct PipelineState {
   VkCullModeFlags cull = VK_CULL_MODE_NONE;
   std::optional<VkCompareOp> depthTest;  // writes depth; absent: no depth buffer
   bool add = false;                      // colors add up instead of replacing
+
+  auto operator<=>(const PipelineState&) const = default;
 };
 
 // Push constants; shaders/draw.glsl.
@@ -109,13 +112,14 @@ public:
   UploadedModel(Device& device, const Model& model);
 
   // Draws every part. Single-sided surfaces get `state.cull`; those that are double-sided too, unless
-  // `doubleSidedCull` differs. One submission.
+  // `doubleSidedCull` differs. One submission. Targets of one fragment shader have the same formats.
   void draw(const RenderTarget& target, const DrawView& view, const PipelineState& state,
             VkCullModeFlags doubleSidedCull, const EarlierPass& earlier = {}) const;
 
 private:
   using Pipeline = Owned<VkPipeline, vkDestroyPipeline>;
 
+  VkPipeline pipelineOf(const RenderTarget& target, const PipelineState& state) const;
   void createPipeline(Pipeline& pipeline, const RenderTarget& target, const PipelineState& state) const;
   void createLayout();
 
@@ -126,6 +130,7 @@ private:
   std::vector<std::unique_ptr<Owned<VkSampler, vkDestroySampler>>> samplers_;
   Owned<VkDescriptorSetLayout, vkDestroyDescriptorSetLayout> setLayout_;
   Owned<VkPipelineLayout, vkDestroyPipelineLayout> layout_;
+  mutable std::map<PipelineState, Pipeline> pipelines_;  // created where they are drawn with first
   PFN_vkCmdPushDescriptorSetKHR pushDescriptors_ = nullptr;
 };
 

@@ -272,7 +272,8 @@ Gather::Sums Gather::sums(const Blocks& blocks, const Exit& exit, const Place& p
       if (path.distance > radius) continue;
       const double part = inside(y, exit, place), opposite = part * (1 - path.facing),
                    alike = part * path.facing;
-      sums.transmitted += opposite * kernel.transmitted(path.distance, path.depth) * y.flux;
+      if (opposite > 0) sums.transmitted += opposite * kernel.transmitted(path.distance, path.depth) * y.flux;
+      if (!(alike > 0) && !(y.seen && opposite > 0)) continue;
       // The texel of the exit itself has all that lies within a disc of its area.
       const glm::dvec3 profile =
           own ? kernel.reflectedWithin(side / std::sqrt(kPi)) / y.area : kernel.reflected(path.distance);

@@ -37,10 +37,15 @@ glm::dvec3 debugColor(const Transmission& t, PellucidDebugView view) {
   }
 }
 
-void validate(const Capture& capture, const std::vector<PellucidMaterial>& materials) {
+void validate(const Capture& capture, const std::vector<PellucidMaterial>& materials,
+              const Settings& settings) {
   if (!(capture.metersPerUnit > 0) || !std::isfinite(capture.metersPerUnit))
     throw InputError(capture.name, "metersPerUnit",
                      std::to_string(capture.metersPerUnit) + " is not a length");
+  if (!settings.wanted.empty() && settings.wanted.size() != capture.material.size())
+    throw InputError(capture.name, "wanted",
+                     std::to_string(settings.wanted.size()) + " values for " +
+                         std::to_string(capture.material.size()) + " pixels");
   const auto highest = std::max_element(capture.material.begin(), capture.material.end());
   if (highest != capture.material.end() && *highest > materials.size())
     throw InputError(
@@ -97,6 +102,16 @@ private:
     });
   }
 
+  bool wanted(std::size_t i) const { return settings_.wanted.empty() || settings_.wanted[i] != 0; }
+
+  // Likewise, for every pixel whose output is wanted.
+  template <typename Fn>
+  void forEachWanted(const char* label, const Fn& fn) const {
+    forEachPixel(label, [&](int x, int y, std::size_t i) {
+      if (wanted(i)) fn(x, y, i);
+    });
+  }
+
   const PellucidMaterial& material(std::size_t i) const { return materials_[capture_.material[i] - 1u]; }
 
   Transmission transmission(int x, int y, std::size_t i) const {
@@ -125,7 +140,7 @@ private:
     const auto& f = settings_.translucency.transmittanceFilter;
     const bool spreads = settings_.features & PELLUCID_FEATURE_DIFFUSION;
     const Gather all(capture_, surfaces_, materials_, double(settings_.translucency.shadowBias), spreads);
-    forEachPixel("gather", [&](int x, int y, std::size_t i) {
+    forEachWanted("gather", [&](int x, int y, std::size_t i) {
       const std::optional<Surface> surface = surfaces_.at(x, y);
       if (!surface || marks_.count(i) != 0) return;
       const Gathered g = all.at(*surface, capture_.material[i] - 1u);
@@ -138,7 +153,7 @@ private:
   }
 
   void gatherDebugView() {
-    forEachPixel("debug view", [&](int x, int y, std::size_t i) {
+    forEachWanted("debug view", [&](int x, int y, std::size_t i) {
       values_[i] = debugColor(transmission(x, y, i), settings_.debugView);
     });
   }
@@ -152,7 +167,7 @@ private:
     std::vector<glm::dvec3> output = values_;
     if (settings_.features & PELLUCID_FEATURE_DIFFUSION) {
       const Diffusion diffusion(capture_, surfaces_, materials_, settings_.diffusion, values_);
-      forEachPixel("diffusion", [&](int x, int y, std::size_t i) { output[i] = diffusion.at(x, y); });
+      forEachWanted("diffusion", [&](int x, int y, std::size_t i) { output[i] = diffusion.at(x, y); });
       result.radius = diffusion.radius();
       result.discardedEnergy = settings_.diffusion.discardedEnergy;
     }
@@ -169,7 +184,7 @@ private:
   Image toImage(const std::vector<glm::dvec3>& values) const {
     Image image(capture_.width, capture_.height, 3);
     for (std::size_t i = 0; i < values.size(); ++i)
-      for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t c = 0; c < 3 && wanted(i); ++c)
         image.data[3 * i + c] = static_cast<float>(values[i][static_cast<glm::length_t>(c)]);
     return image;
   }
@@ -189,7 +204,7 @@ Result compute(const Capture& capture, const std::vector<PellucidMaterial>& mate
                const Settings& settings) {
   const std::uint32_t mark = settings.translucency.materialMarkBit;
   if (mark == 0) {
-    validate(capture, materials);
+    validate(capture, materials, settings);
     return Pass(capture, {}, materials, settings).run();
   }
   Capture unmarked = capture;
@@ -198,7 +213,7 @@ Result compute(const Capture& capture, const std::vector<PellucidMaterial>& mate
     if ((capture.material[i] & mark) != 0) marks.insert(i);
     unmarked.material[i] = static_cast<std::uint8_t>(capture.material[i] & ~mark);
   }
-  validate(unmarked, materials);
+  validate(unmarked, materials, settings);
   return Pass(unmarked, marks, materials, settings).run();
 }
 

@@ -2,6 +2,7 @@
 // the module or its shaders.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "capture/capture.h"
@@ -17,6 +18,8 @@ struct Settings {
   PellucidDebugView debugView = PELLUCID_DEBUG_NONE;
   DiffusionSettings diffusion;
   int jobs = 0;  // threads; 0: as many as the machine has
+  // One value per pixel: the output is computed where it is not 0, and 0 elsewhere. Empty: everywhere.
+  std::vector<std::uint8_t> wanted;
 };
 
 struct Result {

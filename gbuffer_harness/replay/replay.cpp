@@ -246,6 +246,21 @@ void FrameRun::fillGarbage(std::uint64_t seed) const {
 
 void FrameRun::restoreIrradiance(const Capture& capture) const { images_->restoreIrradiance(capture); }
 
+std::uint32_t usesOf(const ReplaySettings& settings) {
+  std::uint32_t uses = 0;
+  const bool translucency = settings.features & PELLUCID_FEATURE_TRANSLUCENCY;
+  const bool diffusion = settings.features & PELLUCID_FEATURE_DIFFUSION;
+  // Also where the features are none or no material diffuses: one dispatch brings the irradiance to the
+  // output.
+  uses |= PELLUCID_USE_TRANSLUCENCY;
+  if (translucency && settings.translucency.gatherSamples > 0) uses |= PELLUCID_USE_GATHER;
+  if (diffusion) uses |= PELLUCID_USE_DIFFUSION;
+  if (diffusion && (settings.quality == 0 || settings.targetError > 0)) uses |= PELLUCID_USE_QUALITY_0;
+  if (settings.reuse != PELLUCID_REUSE_NONE) uses |= PELLUCID_USE_REUSE;
+  if (settings.debugView != PELLUCID_DEBUG_NONE) uses |= PELLUCID_USE_DEBUG_VIEWS;
+  return uses;
+}
+
 ReplayResult Replayer::run(const Capture& capture, const std::vector<PellucidMaterial>& materials,
                            const ReplaySettings& settings, uint32_t timedFrames) {
   const FrameRun run(device_, context_, capture, materials, settings);

@@ -118,9 +118,15 @@ struct ReplayResult {
   std::vector<DispatchTime> times;  // one per dispatch; none without timed frames
 };
 
+// PellucidUse bits of frames with these settings, of any capture.
+std::uint32_t usesOf(const ReplaySettings& settings);
+
 class Replayer {
 public:
-  explicit Replayer(Device& device) : device_(device), context_(device) {}
+  // `uses`: PellucidUse bits of the frames that it runs, whose pipelines take a second to create on a CPU; 0:
+  // all.
+  explicit Replayer(Device& device, std::uint32_t uses = 0)
+      : device_(device), context_(device, [uses](PellucidContextDesc& desc) { desc.uses = uses; }) {}
 
   const Context& context() const { return context_; }
 

@@ -15,7 +15,10 @@ namespace {
 using namespace pellucid::test;
 namespace reference = pellucid::harness::reference;
 
-PellucidMaterial skin() { return compileMaterial(PresetMaterial{"skin1"}, "skin1"); }
+const PellucidMaterial& skin() {
+  static const PellucidMaterial compiled = compileMaterial(PresetMaterial{"skin1"}, "skin1");
+  return compiled;
+}
 
 // Diffusion leaves constant irradiance alone on both sides, so that what remains is the gather.
 Capture evenlyLit(SceneParameters p, float irradiance = 0.2f) {
@@ -95,11 +98,17 @@ TEST_F(GatherAgreement, SixteenSamplesAreNearAllTexels) {
                                           .shadowEncoding = PELLUCID_DEPTH_DISTANCE}};
   for (SceneParameters p : conventions) {
     p.width = p.height = 64;
-    p.shadowSize = 192;
+    p.shadowSize = 160;
     const Capture c = evenlyLit(p);
-    const Image all = allTexels(c, c.irradiance, [](int, int) { return true; });
+    // Every fourth of the blocks that error() averages, along each row another one.
+    const auto wanted = [](int x, int y) { return (x / 4 + y / 4) % 4 == 0; };
+    const Image all = allTexels(c, c.irradiance, wanted);
+    Capture compared = c;
+    for (int y = 0; y < c.height; ++y)
+      for (int x = 0; x < c.width; ++x)
+        if (!wanted(x, y)) compared.material[static_cast<size_t>(y * c.width + x)] = 0;
     double at[3];
-    for (int i = 0; i < 3; ++i) at[i] = error(c, gpuGather(replayer(), c, 8u << i), all);
+    for (int i = 0; i < 3; ++i) at[i] = error(compared, gpuGather(replayer(), c, 8u << i), all);
     std::printf("%s: 8 samples %.4f, 16 %.4f, 32 %.4f of all texels\n", p.name.c_str(), at[0], at[1], at[2]);
     EXPECT_LT(at[1], 0.03) << p.name;
   }
@@ -112,8 +121,9 @@ TEST_F(GatherAgreement, TheDiffusionAddsTheSame) {
   struct Case {
     const char* scene;
     double tolerance;
+    bool curved;
   };
-  for (const auto& [scene, tolerance] : {Case{"ear", 8e-3}, Case{"wedge", 1e-4}}) {
+  for (const auto& [scene, tolerance, curved] : {Case{"ear", 8e-3, true}, Case{"wedge", 1e-4, false}}) {
     SceneParameters p;
     p.name = scene;
     p.width = 190;
@@ -122,20 +132,19 @@ TEST_F(GatherAgreement, TheDiffusionAddsTheSame) {
     p.lightType = PELLUCID_LIGHT_POINT;
     const Capture c = makeScene(p);
     const std::vector<PellucidMaterial> materials(c.materials.size(), skin());
-    for (const uint32_t quality : {0u, 1u})
-      for (const bool part : {false, true}) {
-        ReplaySettings s;
-        s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
-        s.quality = quality;
-        s.translucency.gatherSamples = 8;
-        s.translucency.gatherSpacing = 4;
-        s.aliasOutput = part;
-        if (part) s.renderRect = {11, 7, 150, 101};
-        const Image together = rgb(replayer().run(c, materials, s).output);
-        s.translucency.materialMarkBit = 128;
-        const double off = error(c, together, rgb(replayer().run(c, materials, s).output));
-        EXPECT_LT(off, tolerance) << scene << ", quality " << quality << ", " << part;
-      }
+    for (const auto& [quality, part] : {std::pair(0u, curved), {1u, !curved}}) {
+      ReplaySettings s;
+      s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+      s.quality = quality;
+      s.translucency.gatherSamples = 8;
+      s.translucency.gatherSpacing = 4;
+      s.aliasOutput = part;
+      if (part) s.renderRect = {11, 7, 150, 101};
+      const Image together = rgb(replayer().run(c, materials, s).output);
+      s.translucency.materialMarkBit = 128;
+      const double off = error(c, together, rgb(replayer().run(c, materials, s).output));
+      EXPECT_LT(off, tolerance) << scene << ", quality " << quality << ", " << part;
+    }
   }
 }
 
@@ -273,7 +282,7 @@ TEST_F(GatherAgreement, WeakLightsChangeNothing) {
 
 // With reuse, frames that compute and frames that keep are what frames without it are.
 TEST_F(GatherAgreement, KeptPointsDisplaceToo) {
-  const Context context(device());
+  const Context& context = replayer().context();
   const Capture c = litSphere();
   // The diffusion adds what cells of 4 pixels keep, a dispatch of its own what those of 2 do.
   for (const uint32_t spacing : {2u, 4u}) {
@@ -309,7 +318,7 @@ TEST_F(GatherAgreement, TerminatorIsContinuous) {
       else
         p.options["majorRadius"] = 8;
       p.width = p.height = 96;
-      p.shadowSize = 512;
+      p.shadowSize = 256;  // 13 texels a mean free path
       p.orthographic = true;
       Capture c = makeScene(p);
       c.albedo = {};

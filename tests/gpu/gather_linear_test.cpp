@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "capture/material.h"
 #include "pellucid/pellucid_material.h"
@@ -13,7 +14,10 @@ namespace {
 
 using namespace pellucid::test;
 
-PellucidMaterial skin() { return compileMaterial(PresetMaterial{"skin1"}, "skin1"); }
+const PellucidMaterial& skin() {
+  static const PellucidMaterial compiled = compileMaterial(PresetMaterial{"skin1"}, "skin1");
+  return compiled;
+}
 
 class GatherLinear : public GpuTest {
 protected:
@@ -26,7 +30,10 @@ protected:
   }
 };
 
-Capture head(const std::map<std::string, double>& options) {
+// Made once: the head takes longer than the passes over it.
+const Capture& head(const std::map<std::string, double>& options) {
+  static std::map<std::map<std::string, double>, Capture> made;
+  if (const auto found = made.find(options); found != made.end()) return found->second;
   SceneParameters p;
   p.name = "head";
   p.width = 160;
@@ -35,7 +42,7 @@ Capture head(const std::map<std::string, double>& options) {
   p.options = options;
   Capture c = makeScene(p);
   c.albedo = {};
-  return c;
+  return made.emplace(options, std::move(c)).first->second;
 }
 
 // The scene's light of index `light` alone, and what it brings to the irradiance.

@@ -58,7 +58,8 @@ TEST_F(MeasureDots, SphereIsAlikeAllAround) {
   const auto phase = [&] { return (std::sin(b) + (std::numbers::pi - b) * std::cos(b)) / std::numbers::pi; };
   while (phase() > threshold) b += 1e-5;
   const std::string sphere =
-      "--procedural sphere --scene-set radius=.001 --scene-set extent=.003 --size 48 --threshold .5 ";
+      "--procedural sphere --scene-set radius=.001 --scene-set extent=.003 --size 48 --shadow-size 48 "
+      "--threshold .5 ";
   std::vector<double> dots = measure(sphere + "--entries 5");
   const std::vector<double> map = measure(sphere + "--sphere 3 --face 0,1,1 --up 1,0,0");
   ASSERT_EQ(dots.size(), 5u);
@@ -72,10 +73,10 @@ TEST_F(MeasureDots, SphereIsAlikeAllAround) {
 // comes along it: that would have to cross 20 mm.
 TEST_F(MeasureDots, PlateOfAModel) {
   writePlate();
-  const std::vector<double> dots =
-      measure(path("plate.glb") + " --material *=skin1 --unit mm --entries 4 --size 32");
+  const std::vector<double> dots = measure(
+      path("plate.glb") + " --material *=skin1 --unit mm --entries 4 --steps 6 --size 24 --shadow-size 64");
   ASSERT_EQ(dots.size(), 4u);
-  const double firstStep = -std::sin(std::numbers::pi / 36);
+  const double firstStep = -std::sin(std::numbers::pi / 12);
   for (const size_t face : {0u, 2u}) {
     EXPECT_LT(dots[face], 0);
     EXPECT_GT(dots[face], firstStep);
@@ -96,16 +97,19 @@ TEST_F(MeasureDots, TableIsReplayed) {
   EXPECT_EQ(bytes("table.json"), first);  // same device, same table
   std::string list;
   for (const double dot : dots) list.append(list.empty() ? "" : ",").append(std::to_string(dot));
-  expect(0, "replay " + capture + " -o " + path("file.exr") + " --set @" + table, "wrote");
+  expect(0, "replay " + capture + " --repeat 0 -o " + path("file.exr") + " --set @" + table, "wrote");
   expect(0,
-         "replay " + capture + " -o " + path("list.exr") +
+         "replay " + capture + " --repeat 0 -o " + path("list.exr") +
              " --set angle=minimum-dot-azimuth --set minimum-dots=" + list,
          "wrote");
-  expect(0, "replay " + capture + " -o " + path("plain.exr"), "wrote");
+  expect(0, "replay " + capture + " --repeat 0 -o " + path("plain.exr"), "wrote");
   expect(0, "compare " + path("file.exr") + " " + path("list.exr") + " --limit max=0", "");
   expect(1, "compare " + path("file.exr") + " " + path("plain.exr") + " --limit max=0", "limit");
   // Later settings win, and without -o the table is what is printed.
-  expect(0, "replay " + capture + " -o " + path("late.exr") + " --set @" + table + " --set angle=normal", "");
+  expect(
+      0,
+      "replay " + capture + " --repeat 0 -o " + path("late.exr") + " --set @" + table + " --set angle=normal",
+      "");
   expect(0, "compare " + path("late.exr") + " " + path("plain.exr") + " --limit max=0", "");
   EXPECT_EQ(run("measure-dots " + small).text, first);
 }

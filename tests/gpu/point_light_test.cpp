@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <glm/glm.hpp>
+#include <span>
 
 #include "capture/read.h"
 #include "capture/write.h"
@@ -107,9 +108,17 @@ Face faceOf(const glm::dvec3& x) {
 // The wall along each light ray is what geometry says, on every face and across their seams.
 TEST_F(PointLights, ThicknessOfAShellAroundTheLight) {
   const Model model = shell();
-  for (const auto encoding : {PELLUCID_DEPTH_DEVICE, PELLUCID_DEPTH_VIEW_Z, PELLUCID_DEPTH_DISTANCE}) {
-    int pixels[6] = {}, seams = 0;
-    for (const double side : {1.0, -1.0}) {
+  // Three faces of the cube show on each side.
+  struct Case {
+    PellucidDepthEncoding encoding;
+    std::vector<double> sides;
+  };
+  int pixels[6] = {};
+  for (const auto& [encoding, sides] : {Case{PELLUCID_DEPTH_DEVICE, {1, -1}},
+                                        {PELLUCID_DEPTH_VIEW_Z, {1}},
+                                        {PELLUCID_DEPTH_DISTANCE, {-1}}}) {
+    int seams = 0;
+    for (const double side : sides) {
       RasterOptions options = smallOptions();
       options.shadowEncoding = encoding;
       const RasterResult result =
@@ -136,9 +145,9 @@ TEST_F(PointLights, ThicknessOfAShellAroundTheLight) {
       // from a face's plane: half a diagonal of 0.02 mm times 1.4, along a ray 1.7 times as long.
       EXPECT_LT(worst, 0.05) << "encoding " << encoding;
     }
-    for (const int n : pixels) EXPECT_GT(n, 500);
-    EXPECT_GT(seams, 100);
+    EXPECT_GT(seams, 50);
   }
+  for (const int n : pixels) EXPECT_GT(n, 1000);
 }
 
 // Seen from within, the wall gets I cos / r^2 everywhere: no seam shows and the wall does not shadow itself.
@@ -171,10 +180,12 @@ TEST_F(PointLights, NoLightLeaksOutOfAShell) {
   Model model = shell();
   addHollow(model, 20, 64);
   endPart(model, 1);
+  const std::vector<Vector3> targets = {{-1, 1, -1}, {1, 0, 0}, {0, -1, 0.1}};
   for (const int size : {512, 65, 8}) {
     RasterOptions options = smallOptions();
     options.shadowSize = size;
-    for (const Vector3& target : {Vector3{1, 0, 0}, Vector3{-1, 1, -1}, Vector3{0, -1, 0.1}}) {
+    // Texels that are small leak less.
+    for (const Vector3& target : std::span(targets).first(size == 512 ? 1 : 3)) {
       const Vector3 eye = {10 * target[0], 10 * target[1], 10 * target[2]};
       const Vector3 ahead = {20 * target[0], 20 * target[1], 20 * target[2]};
       const Capture c = rasterize(model, cameraAt(eye, ahead, 2), options).capture;
@@ -188,7 +199,9 @@ TEST_F(PointLights, NoLightLeaksOutOfAShell) {
 TEST_F(PointLights, GatherDoesNotEndAtSeams) {
   Model model = shell();
   model.lights = {lamp({0, 0, 0})};
-  const Capture c = rasterize(model, cameraAt({60, 50, 40}, {0, 0, 0}, 0.2), smallOptions()).capture;
+  RasterOptions options = smallOptions();
+  options.shadowSize = 256;
+  const Capture c = rasterize(model, cameraAt({60, 50, 40}, {0, 0, 0}, 0.2), options).capture;
   ReplaySettings settings;
   settings.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
   settings.features = PELLUCID_FEATURE_TRANSLUCENCY;
@@ -241,7 +254,9 @@ TEST_F(PointLights, AgreeWithTheReference) {
 }
 
 TEST_F(PointLights, CaptureReplaysBitIdentically) {
-  const Capture direct = rasterize(shell(), cameraAt({60, 50, 40}, {0, 0, 0}, 0.2), smallOptions()).capture;
+  RasterOptions options = smallOptions();
+  options.shadowSize = 64;
+  const Capture direct = rasterize(shell(), cameraAt({60, 50, 40}, {0, 0, 0}, 0.2), options).capture;
   const std::filesystem::path file =
       std::filesystem::temp_directory_path() / ("pellucid_lamp_" + std::to_string(::getpid()) + ".exr");
   writeCapture(direct, file);
@@ -306,7 +321,9 @@ TEST_F(PointLights, MoreMapsThanAPlanBindsAreRefusedByName) {
   EXPECT_EQ(refusal([&] { replay(c, testMaterial()); }), "");
   c.lights.assign(PELLUCID_MAX_DISPATCHES, light);
   const std::string error = refusal([&] { replay(c, testMaterial()); });
-  EXPECT_NE(error.find("shadowImages of all 32 lights are more than the plan's 32 dispatches"), std::string::npos) << error;
+  EXPECT_NE(error.find("shadowImages of all 32 lights are more than the plan's 32 dispatches"),
+            std::string::npos)
+      << error;
 }
 
 }  // namespace

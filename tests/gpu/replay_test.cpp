@@ -209,18 +209,19 @@ TEST_F(Replay, TimedFramesChangeNothing) {
 }
 
 TEST_F(Replay, ContextKeepsWhatTheModuleSays) {
-  const Context context(device());
+  const Context& context = replayer().context();
   const FrameRun run(device(), context, flatCapture(8, 8), {testMaterial()}, {});
   const PellucidConstantsSlice noBuffer{};
   const auto unused = reinterpret_cast<VkCommandBuffer>(uintptr_t{1});
   EXPECT_EQ(pellucidRecordPlan(context.handle(), unused, &run.plan(), &run.frame(), &noBuffer),
             PELLUCID_ERROR_INVALID_ARGUMENT);
-  EXPECT_EQ(context.message(), "constants needs a buffer and an offset that is a multiple of 256");
+  EXPECT_TRUE(
+      context.message().ends_with("constants needs a buffer and an offset that is a multiple of 256"));
 }
 
 // A plan knows images by their places in the frame, where another frame may have none.
 TEST_F(Replay, PlansOfFramesWithMoreImagesAreRefused) {
-  const Context context(device());
+  const Context& context = replayer().context();
   const FrameRun run(device(), context, flatCapture(8, 8), {testMaterial()}, {});
   PellucidFrame lacking = run.frame();
   lacking.features = PELLUCID_FEATURE_TRANSLUCENCY;
@@ -229,7 +230,8 @@ TEST_F(Replay, PlansOfFramesWithMoreImagesAreRefused) {
   const PellucidConstantsSlice constants{reinterpret_cast<VkBuffer>(uintptr_t{1}), 0, 0, nullptr};
   EXPECT_EQ(pellucidRecordPlan(context.handle(), unused, &run.plan(), &lacking, &constants),
             PELLUCID_ERROR_INVALID_ARGUMENT);
-  EXPECT_EQ(context.message(), "plan was made from another frame, whose group of settings differs");
+  EXPECT_TRUE(
+      context.message().ends_with("plan was made from another frame, whose group of settings differs"));
   // All else alike, but for the views.
   PellucidFrame blind = run.frame();
   blind.output = {};
@@ -239,7 +241,7 @@ TEST_F(Replay, PlansOfFramesWithMoreImagesAreRefused) {
 
 // More shadow images than the frame at recording has would be read past its array's end.
 TEST_F(Replay, PlansNameWhatDiffersInAnotherFrame) {
-  const Context context(device());
+  const Context& context = replayer().context();
   Capture c = busyCapture(16, 16);
   c.lights[0].shadowMaps = {flatShadowMap(-12, PELLUCID_DEPTH_DEVICE)};
   const FrameRun run(device(), context, c, {testMaterial()}, {});

@@ -11,7 +11,8 @@ using namespace pellucid::test;
 
 TEST_F(Cli, TruthIsMadeContinuedAndCompared) {
   const std::string file = path("truth.exr"), out = path("out.exr");
-  const std::string scene = "truth --procedural sphere --set extent=18 --size 24x24 -o " + file;
+  const std::string scene =
+      "truth --procedural sphere --set extent=18 --size 24x24 --shadow-size 64 -o " + file;
   expect(0, scene + " --spp 16", "16 samples each");
   expect(0, scene + " --spp 8 --jobs 1", "24 samples each");
   expect(3, scene + " --truth-seed 2", "was made with --truth-seed 1, not 2");

@@ -455,6 +455,25 @@ TEST(Reference, OnePixelAndAnyNumberOfJobs) {
             compute(c, {burleyMaterial(1)}, parallel).image.data);
 }
 
+// A pixel that is wanted sees all others all the same.
+TEST(Reference, OnlyWantedPixelsAreComputed) {
+  Capture c = facingPlane(9, 7, 0.3);
+  paint(c, [](glm::dvec2 p) { return 2 + p.x + p.y; });
+  for (const std::uint32_t features : {1u, 2u, 3u}) {
+    Settings some;
+    some.features = features;
+    const Image whole = compute(c, {burleyMaterial(1)}, some).image;
+    some.wanted.assign(c.material.size(), 0);
+    some.wanted[20] = some.wanted[31] = 1;
+    const Image image = compute(c, {burleyMaterial(1)}, some).image;
+    for (std::size_t i = 0; i < image.data.size(); ++i)
+      EXPECT_EQ(image.data[i], some.wanted[i / 3] ? whole.data[i] : 0) << i << ", features " << features;
+  }
+  Settings wrong;
+  wrong.wanted.assign(5, 1);
+  EXPECT_THROW(compute(c, {burleyMaterial(1)}, wrong), InputError);
+}
+
 TEST(Reference, BadInputIsNamed) {
   Capture c = facingPlane(4, 4, 1);
   c.material[3] = 2;
