@@ -12,10 +12,11 @@ const float kLeastCosine = 0.2;
 
 // True where the camera has a surface on the pixel that a point is seen on, at the point or in front of it: what it sees is
 // in the irradiance that diffusion spreads. A surface that faces away cannot be seen, however thin the part is.
-// `front`: of the pixel.
-bool cameraSees(ivec2 pixel, float front, float planar, vec3 normal, float tolerance) {
-  return insideRect(pixel) && dot(normal, viewRay(frame.camera, pixel).direction) < 0.0 && front > 0.0 &&
-         planar <= front + tolerance;
+// `front`: of the pixel; `uncertain`: along the normal.
+bool cameraSees(ivec2 pixel, float front, float planar, vec3 normal, float tolerance, float uncertain) {
+  float facing = dot(normal, viewRay(frame.camera, pixel).direction);
+  return insideRect(pixel) && facing < 0.0 && front > 0.0 &&
+         planar <= front + tolerance + uncertain / max(-facing, kLeastCosine);
 }
 
 // Pixels without a material show nothing, whatever depth they hold: their light is not diffused. To be fetched before
@@ -86,6 +87,7 @@ struct Behind {
   bool opaque; // no light enters
 };
 
+// `texel`: of the image.
 Behind behind(EntryMapConstants map, ivec2 texel) {
   Behind b = Behind(kNoExit, 0u, false);
   if (map.occluder.y != 0u) {
@@ -98,8 +100,9 @@ Behind behind(EntryMapConstants map, ivec2 texel) {
 }
 
 // The entry of a surface that part `share` of the light enters. normal: not normalized, 0 where no neighbor says.
+// uncertain: scene units along the light that the surface may be off by.
 uvec4 entryOf(float depth, float share, vec3 normal, vec3 toLight, ivec2 pixel, float front, float planar,
-               float tolerance, Behind b) {
+               float tolerance, float uncertain, Behind b) {
   if (b.opaque) share = 0.0;
   EntryPoint r = EntryPoint(depth, toLight, share, 0.0, 1.0, b.exit, b.material);
   float squared = dot(normal, normal);
@@ -109,7 +112,7 @@ uvec4 entryOf(float depth, float share, vec3 normal, vec3 toLight, ivec2 pixel, 
     r.normal = cosine < 0.0 ? -normal : normal;
     r.cosine = max(abs(cosine), kLeastCosine);
   }
-  if (cameraSees(pixel, front, planar, r.normal, tolerance)) {
+  if (cameraSees(pixel, front, planar, r.normal, tolerance, uncertain * dot(r.normal, toLight))) {
     r.seen = share;
     r.hidden = 0.0;
   }
@@ -118,13 +121,34 @@ uvec4 entryOf(float depth, float share, vec3 normal, vec3 toLight, ivec2 pixel, 
 
 const ivec2 kNoPixel = ivec2(-1);
 
+ivec2 firstTexel(EntryMapConstants map) { return ivec2(map.occluder.w & 0xFFFFu, map.occluder.w >> 16); }
+
+bool hasOffsets(EntryMapConstants map) { return any(notEqual(map.offsets, vec4(0.0))); }
+
+// See lib/shadow.glsl. The neighbors of the tile's border are within it: the border itself takes the place of others, and
+// does not count.
+DrawnDepth drawnDepth(EntryMapConstants map, ivec2 texel, ShadowTexels stored, bvec4 holds) {
+  ivec2 last = ivec2(map.map.xy) - 1;
+  bvec4 within = bvec4(texel.x < last.x, texel.x > 0, texel.y < last.y, texel.y > 0);
+  holds = bvec4(uvec4(holds) & uvec4(within));
+  float steepest = max(nearerStep(stored.own, stored.beside.xy, holds.xy), nearerStep(stored.own, stored.beside.zw, holds.zw));
+  return drawnDepth(map.offsets, stored.own, steepest);
+}
+
+bvec4 neighborsHold(EntryMapConstants map, vec4 beside) {
+  return bvec4(shadowHolds(map.meta, beside.x), shadowHolds(map.meta, beside.y), shadowHolds(map.meta, beside.z),
+               shadowHolds(map.meta, beside.w));
+}
+
 uvec4 parallelEntry(EntryMapConstants map, ivec2 texel, ShadowTexels stored) {
   vec4 beside = stored.beside;
-  bvec4 holds = bvec4(shadowHolds(map.meta, beside.x), shadowHolds(map.meta, beside.y), shadowHolds(map.meta, beside.z),
-                      shadowHolds(map.meta, beside.w));
+  bvec4 holds = neighborsHold(map, beside);
+  DrawnDepth drawn = DrawnDepth(stored.own, 0.0);
+  if (hasOffsets(map)) drawn = drawnDepth(map, texel, stored, holds);
+  // Neighbors on one plane have the same bias, so that steps need no correction.
   vec4 grows = mix(vec4(2.0 * kNoDepth), (beside - stored.own) * map.ray.w, holds);
   vec2 p = vec2(texel) + 0.5;
-  float depth = stored.own * map.ray.w + (map.origin.w + p.x * map.stepX.w + p.y * map.stepY.w);
+  float depth = drawn.depth * map.ray.w + (map.origin.w + p.x * map.stepX.w + p.y * map.stepY.w) + map.offsets.z;
   if (!(abs(depth) < kNoDepth)) return kNoEntry;
   vec4 q = vec4(p, depth, 1.0);
   float w = dot(map.pixelW, q), planar = dot(map.planar, q);
@@ -139,41 +163,63 @@ uvec4 parallelEntry(EntryMapConstants map, ivec2 texel, ShadowTexels stored) {
   float y = parallelSlope(texel.y, int(map.map.y), map.stepY.w, squareY, map.across[0].w, ray2, grows.zw);
   vec3 normal = vec3(0.0);
   if (x < kNoDepth && y < kNoDepth) normal = map.normal.xyz + x * map.across[0].xyz + y * map.across[1].xyz;
-  Behind b = behind(map, texel);
+  ivec2 inImage = texel + firstTexel(map);
+  Behind b = behind(map, inImage);
   if (map.occluder.x != 0u) {
-    float exit = shadowTexel(map.occluder.x - 1u, texel);
+    float exit = shadowTexel(map.occluder.x - 1u, inImage);
     // Depths of entry points grow towards the light.
-    if (shadowHolds(map.meta, exit)) b.exit = max((stored.own - exit) * map.ray.w, 0.0);
+    if (shadowHolds(map.meta, exit)) b.exit = max((drawn.depth - exit) * map.ray.w + map.offsets.z, 0.0);
   }
-  return entryOf(depth, 1.0, normal, map.toLight.xyz, pixel, front, planar, map.seen.x + map.seen.y, b);
+  return entryOf(depth, 1.0, normal, map.toLight.xyz, pixel, front, planar, map.seen.x, drawn.uncertain * abs(map.ray.w), b);
+}
+
+// Moves a texel's point y from the stored depth to the surface that was drawn. Returns how far along the light that may be off.
+float moveToDrawn(EntryMapConstants map, ivec2 texel, DrawnDepth drawn, inout vec3 y, inout float depth) {
+  y = surfacePoint(map, texel, drawn.depth, depth);
+  float beside;
+  vec3 off = surfacePoint(map, texel, drawn.depth + drawn.uncertain, beside) - y;
+  // Not beyond the light.
+  float part = max(1.0 - map.offsets.z / max(distance(y, map.ray.xyz), 1.0e-12), 1.0e-3);
+  y = map.ray.xyz + part * (y - map.ray.xyz);
+  depth *= part;
+  return min(length(off), kNoDepth);
 }
 
 uvec4 perspectiveEntry(EntryMapConstants map, ivec2 texel, ShadowTexels stored) {
-  float depth;
+  float depth, uncertain = 0.0;
   vec3 y = surfacePoint(map, texel, stored.own, depth);
   if (!(abs(depth) < kNoDepth)) return kNoEntry;
+  // Neighbors on one plane have the same bias, so that steps need no correction.
+  float scale = depth * depth;
+  float squareX = scale * dot(map.stepX.xyz, map.stepX.xyz), squareY = scale * dot(map.stepY.xyz, map.stepY.xyz);
+  vec3 normal = cross(entrySlope(map, texel, y, ivec2(1, 0), stored.beside.xy, squareX),
+                      entrySlope(map, texel, y, ivec2(0, 1), stored.beside.zw, squareY));
+  if (hasOffsets(map)) {
+    uncertain = moveToDrawn(map, texel, drawnDepth(map, texel, stored, neighborsHold(map, stored.beside)), y, depth);
+    if (!(abs(depth) < kNoDepth)) return kNoEntry;
+  }
   ivec2 pixel;
   if (!projectToPixel(frame.camera, y, pixel)) pixel = kNoPixel;
   float front = frontAround(pixel);
   vec3 toLight = map.ray.xyz - y;
-  float distanceTo = length(toLight), scale = depth * depth;
+  float distanceTo = length(toLight);
   toLight /= max(distanceTo, 1.0e-12);
   float share = lightShare(lights[map.map.w], toLight, distanceTo);
-  float squareX = scale * dot(map.stepX.xyz, map.stepX.xyz), squareY = scale * dot(map.stepY.xyz, map.stepY.xyz);
-  vec3 normal = cross(entrySlope(map, texel, y, ivec2(1, 0), stored.beside.xy, squareX),
-                      entrySlope(map, texel, y, ivec2(0, 1), stored.beside.zw, squareY));
-  float tolerance = abs(depth) * map.seen.x + map.seen.y;
-  Behind b = behind(map, texel);
+  float tolerance = abs(depth) * map.seen.x;
+  ivec2 inImage = texel + firstTexel(map);
+  Behind b = behind(map, inImage);
   if (map.occluder.x != 0u) {
-    float exit = shadowTexel(map.occluder.x - 1u, texel), exitDepth;
+    float exit = shadowTexel(map.occluder.x - 1u, inImage), exitDepth;
     vec3 e = surfacePoint(map, texel, exit, exitDepth);
     if (shadowHolds(map.meta, exit) && abs(exitDepth) < kNoDepth) b.exit = distance(e, y);
   }
-  return entryOf(depth, share, normal, toLight, pixel, front, y.z * frame.camera.range.x, tolerance, b);
+  return entryOf(depth, share, normal, toLight, pixel, front, y.z * frame.camera.range.x, tolerance, uncertain, b);
 }
 
+// `texel`: of the map's tile.
 uvec4 entryOf(EntryMapConstants map, ivec2 texel) {
-  ShadowTexels stored = shadowTexels(map.meta.x, texel, ivec2(map.map.xy) - 1);
+  ivec2 first = firstTexel(map);
+  ShadowTexels stored = shadowTexels(map.meta.x, texel + first, first, first + ivec2(map.map.xy) - 1);
   if (!shadowHolds(map.meta, stored.own)) return kNoEntry;
   if (map.meta.z != 0u) return perspectiveEntry(map, texel, stored);
   return parallelEntry(map, texel, stored);

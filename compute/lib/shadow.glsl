@@ -1,4 +1,5 @@
-// The one place that projects a receiver into a shadow map, for occlusion and thickness alike.
+// The one place that projects a receiver into a shadow map, for occlusion and thickness alike. Include it after declaring
+//   float shadowTexel(uint image, ivec2 texel); // of the image and layer in ShadowConstants::meta.x
 #ifndef PELLUCID_SHADOW_GLSL
 #define PELLUCID_SHADOW_GLSL
 
@@ -7,9 +8,11 @@
 
 struct ShadowReceiver {
   vec4 clip;
-  ivec2 texel;
+  ivec2 texel; // of the image
   bool inside; // false: the map says nothing about this point, so no light comes through it
 };
+
+ivec2 firstTexel(ShadowConstants shadow) { return ivec2(shadow.occluder.w & 0xFFFFu, shadow.occluder.w >> 16); }
 
 ShadowReceiver projectReceiver(ShadowConstants shadow, vec3 x) {
   vec4 clip = shadow.clipFromView * vec4(x, 1.0);
@@ -18,7 +21,7 @@ ShadowReceiver projectReceiver(ShadowConstants shadow, vec3 x) {
   ivec2 texel = ivec2(floor((ndc * 0.5 + 0.5) * shadow.depth.zw));
   bool inside = inFront && all(lessThanEqual(abs(ndc), vec2(1.0))) &&
                 all(lessThan(texel, ivec2(shadow.depth.zw)));
-  return ShadowReceiver(clip, texel, inside);
+  return ShadowReceiver(clip, texel + firstTexel(shadow), inside);
 }
 
 // True where the texel holds a surface; false for NaN. meta: ShadowConstants::meta.
@@ -26,6 +29,46 @@ bool shadowHolds(uvec4 meta, float stored) {
   if (meta.y == PELLUCID_SHADER_DEPTH_DEVICE)
     return stored >= 0.0 && stored <= 1.0 && stored != uintBitsToFloat(meta.w);
   return stored > 0.0 && stored < kNoDepth;
+}
+
+// The depth of the surface that was drawn, without the biases that the drawing added; in units of the stored depth.
+struct DrawnDepth {
+  float depth;
+  float uncertain; // how far it may be off
+};
+
+// Part of a slope that the nearer neighbor may miss: between the last texels before a sphere's limb it is 27 %.
+const float kMissedSlope = 0.3;
+
+// The change of depth from a texel to the nearer of its two neighbors along an axis, as the other may lie across an edge;
+// 0 where there is none.
+float nearerStep(float own, vec2 beside, bvec2 holds) {
+  vec2 apart = mix(vec2(3.0e38), abs(beside - own), holds);
+  float least = min(apart.x, apart.y);
+  return least < 3.0e38 ? least : 0.0;
+}
+
+// offsets: ShadowConstants::offsets; `steepest`: the larger of the steps along the map's axes.
+DrawnDepth drawnDepth(vec4 offsets, float stored, float steepest) {
+  return DrawnDepth(stored - offsets.x - offsets.y * steepest,
+                    0.5 * offsets.w + abs(offsets.y) * (offsets.w + kMissedSlope * steepest));
+}
+
+float stepAlong(ShadowConstants shadow, ivec2 texel, float stored, ivec2 axis) {
+  ivec2 first = firstTexel(shadow), last = first + ivec2(shadow.depth.zw) - 1;
+  ivec2 forward = texel + axis, backward = texel - axis;
+  vec2 beside = vec2(shadowTexel(shadow.meta.x, min(forward, last)), shadowTexel(shadow.meta.x, max(backward, first)));
+  bvec2 holds = bvec2(shadowHolds(shadow.meta, beside.x) && all(lessThanEqual(forward, last)),
+                      shadowHolds(shadow.meta, beside.y) && all(greaterThanEqual(backward, first)));
+  return nearerStep(stored, beside, holds);
+}
+
+// `texel`: of the image, which holds `stored`.
+DrawnDepth drawnDepth(ShadowConstants shadow, ivec2 texel, float stored) {
+  float steepest = 0.0;
+  if (shadow.offsets.y != 0.0) // neighbors are read for maps with such a bias alone
+    steepest = max(stepAlong(shadow, texel, stored, ivec2(1, 0)), stepAlong(shadow, texel, stored, ivec2(0, 1)));
+  return drawnDepth(shadow.offsets, stored, steepest);
 }
 
 // Scene units along the light ray from the stored surface to the receiver x; negative: the surface is
@@ -47,6 +90,19 @@ float lightThickness(ShadowConstants shadow, ShadowReceiver receiver, vec3 x, In
     return (planar - stored) / max(planar, 1.0e-12) * light.distanceTo;
   }
   return light.distanceTo - stored;
+}
+
+// Scene units along the receiver's light ray per unit of the stored depth, at that depth: the derivative of lightThickness.
+float lengthPerDepth(ShadowConstants shadow, ShadowReceiver receiver, vec3 x, Incident light, float stored) {
+  bool perspective = shadow.meta.z != 0u;
+  if (shadow.meta.y == PELLUCID_SHADER_DEPTH_DEVICE) {
+    if (!perspective) return abs(shadow.depth.x);
+    float total = shadow.depth.x + stored * receiver.clip.w - receiver.clip.z;
+    return total * shadow.depth.x > 0.0 ? abs(receiver.clip.w * shadow.depth.x) / (total * total) * light.distanceTo : 0.0;
+  }
+  if (shadow.meta.y != PELLUCID_SHADER_DEPTH_VIEW_Z) return 1.0;
+  if (!perspective) return abs(shadow.depth.x);
+  return light.distanceTo / max(dot(shadow.planar, vec4(x, 1.0)), 1.0e-12); // inside the map: above 0
 }
 
 #endif
