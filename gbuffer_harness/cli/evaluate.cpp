@@ -40,7 +40,6 @@ std::vector<Model> models() {
   ReplaySettings none, light, camera;
   none.features = PELLUCID_FEATURE_DIFFUSION;
   camera.translucency.thicknessSource = PELLUCID_THICKNESS_CAMERA;
-  camera.translucency.shadowBias = thesisSettings().translucency.shadowBias;
   return {{"no translucency", none},          {"thesis", thesisSettings()},
           {"camera-space thickness", camera}, {"light-space thickness", light},
           {"gather, 8 samples", gather(8)},   {"gather, 16 samples", gather(16)},

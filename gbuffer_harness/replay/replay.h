@@ -12,6 +12,8 @@
 
 namespace pellucid::harness {
 
+struct ShadowImageSource;
+
 // The module's defaults for a context on the device.
 PellucidContextDesc contextDesc(const Device& device);
 
@@ -46,6 +48,7 @@ private:
   PellucidImage add(Device& device, const Image& image, VkFormat format);
   PellucidImage add(Device& device, int width, int height, const std::vector<std::uint8_t>& indices,
                     VkFormat format);
+  PellucidImage add(Device& device, const ShadowImageSource& source, bool array);
 
   std::vector<std::unique_ptr<GpuImage>> images_;
   GpuImage* irradiance_ = nullptr;
@@ -122,7 +125,8 @@ class Replayer {
 public:
   explicit Replayer(Device& device) : device_(device), context_(device) {}
 
-  const Context& context() const { return context_; }
+  // The one whose shadow views fit the capture: of arrays where maps lie in layers.
+  const Context& contextFor(const Capture& capture);
 
   // `timedFrames`: recordings of the frame after the one that makes the output, in which drivers may still
   // compile shaders. Times are medians of their GPU timestamps, microseconds.
@@ -132,6 +136,7 @@ public:
 private:
   Device& device_;
   Context context_;
+  std::unique_ptr<Context> arrays_;  // made when first asked for
 };
 
 }  // namespace pellucid::harness

@@ -37,11 +37,6 @@ const char* const kAzimuth = "--set angle=minimum-dot-azimuth --set minimum-dots
 const std::vector<Row> kRows = {
     {"alias", "", "1", Effect::Keeps, {{"2", 2, "--set alias: \"2\" is not one of 0, 1"}}},
     {"angle", "", "cosine", Effect::Changes, {{"acos", 2, "--set angle: \"acos\" is not one of cosine, "}}},
-    {"bias",
-     "",
-     "0.5",
-     Effect::Changes,
-     {{"-1", 3, "bias is -1, outside [0, "}, {"x", 2, "--set bias: \"x\" is not a number"}}},
     {"center",
      kAzimuth,
      "300,10,5",

@@ -246,7 +246,7 @@ TEST(Plan, ManyLightsBecomeSeveralDispatches) {
 // Of a shader's workgroups, as its SPIR-V states it: columns, rows.
 std::array<uint32_t, 2> workgroupOf(uint32_t pipeline) {
   PellucidShader shader{};
-  EXPECT_EQ(pellucidGetShader(pipeline, &shader), PELLUCID_OK);
+  EXPECT_EQ(pellucidGetShader(pipeline, VK_IMAGE_VIEW_TYPE_2D, &shader), PELLUCID_OK);
   constexpr size_t kHeaderWords = 5;
   constexpr uint32_t kOpExecutionMode = 16, kLocalSize = 17;
   for (size_t i = kHeaderWords; i < shader.wordCount; i += shader.words[i] >> 16)
@@ -360,14 +360,25 @@ TEST(Plan, JsonParses) {
 
 TEST(Plan, ShadersAreSpirv) {
   PellucidShader shader{};
-  for (uint32_t p = 0; p < pellucidGetPipelineCount(); ++p) {
-    ASSERT_EQ(pellucidGetShader(p, &shader), PELLUCID_OK);
-    ASSERT_GT(shader.wordCount, 5u);
-    EXPECT_EQ(shader.words[0], 0x07230203u);
-    for (uint32_t i = 0; i < shader.constantCount; ++i) EXPECT_LE(shader.constants[i].value, 1u);
-  }
-  EXPECT_EQ(pellucidGetShader(pellucidGetPipelineCount(), &shader), PELLUCID_ERROR_INVALID_ARGUMENT);
-  EXPECT_EQ(pellucidGetShader(0, nullptr), PELLUCID_ERROR_INVALID_ARGUMENT);
+  uint32_t arrays = 0;  // that read views of arrays
+  for (const VkImageViewType views : {VK_IMAGE_VIEW_TYPE_2D, VK_IMAGE_VIEW_TYPE_2D_ARRAY})
+    for (uint32_t p = 0; p < pellucidGetPipelineCount(); ++p) {
+      ASSERT_EQ(pellucidGetShader(p, views, &shader), PELLUCID_OK);
+      ASSERT_GT(shader.wordCount, 5u);
+      EXPECT_EQ(shader.words[0], 0x07230203u);
+      for (uint32_t i = 0; i < shader.constantCount; ++i) EXPECT_LE(shader.constants[i].value, 1u);
+      constexpr uint32_t kOpTypeImage = 25;
+      bool array = false;
+      for (size_t i = 5; i < shader.wordCount; i += shader.words[i] >> 16)
+        array = array || ((shader.words[i] & 0xFFFF) == kOpTypeImage && shader.words[i + 5] == 1);
+      arrays += array;
+      if (views == VK_IMAGE_VIEW_TYPE_2D) EXPECT_FALSE(array) << pellucidPipelineName(p);
+    }
+  EXPECT_EQ(arrays, 4u) << "translucency, debug view and both of entry points";
+  EXPECT_EQ(pellucidGetShader(pellucidGetPipelineCount(), VK_IMAGE_VIEW_TYPE_2D, &shader),
+            PELLUCID_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(pellucidGetShader(0, VK_IMAGE_VIEW_TYPE_CUBE, &shader), PELLUCID_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(pellucidGetShader(0, VK_IMAGE_VIEW_TYPE_2D, nullptr), PELLUCID_ERROR_INVALID_ARGUMENT);
 }
 
 // What the context does for devices without shaderStorageImageWriteWithoutFormat.
@@ -383,7 +394,7 @@ TEST(Plan, OutputFormatIsPatchedIntoShaders) {
   };
   for (uint32_t p = 0; p < pellucidGetPipelineCount(); ++p) {
     PellucidShader shader{};
-    ASSERT_EQ(pellucidGetShader(p, &shader), PELLUCID_OK);
+    ASSERT_EQ(pellucidGetShader(p, VK_IMAGE_VIEW_TYPE_2D, &shader), PELLUCID_OK);
     std::vector<uint32_t> words(shader.words, shader.words + shader.wordCount);
     const auto before = counts(words);
     EXPECT_LE(before[0], before[1]) << pellucidPipelineName(p);  // an image that is not written needs none

@@ -101,7 +101,22 @@ const std::vector<Violation> kViolations = {
     {"ShadowImage", "shadowMaps[0].image", "is 5", [](Frame& f) { f.maps[0].image = 5; }},
     {"ShadowSingular", "shadowMaps[0].clipFromWorld", "inverted",
      [](Frame& f) { f.maps[0].clipFromWorld[0] = 0; }},
-    {"ShadowBias", "shadowMaps[0].bias", "-1", [](Frame& f) { f.maps[0].bias = -1; }},
+    {"ShadowOffsetLength", "shadowMaps[0].offsetLength", "-1", [](Frame& f) { f.maps[0].offsetLength = -1; }},
+    {"ShadowDepthStep", "shadowMaps[0].depthStep", "-1", [](Frame& f) { f.maps[0].depthStep = -1; }},
+    {"ShadowDepthBias", "shadowMaps[0].depthBiasConstant", "nan",
+     [](Frame& f) { f.maps[0].depthBiasConstant = NAN; }},
+    {"ShadowSlopeBias", "shadowMaps[0].depthBiasSlope", "inf",
+     [](Frame& f) { f.maps[0].depthBiasSlope = INFINITY; }},
+    {"ShadowFaces", "shadowMaps[0].faces", "is 2, outside 0..1", [](Frame& f) { f.maps[0].faces = 2; }},
+    {"ShadowTile", "shadowMaps[0].offset", "[1] is 65500 with an extent of 64",
+     [](Frame& f) { f.maps[0].offset[1] = 65500; }},
+    {"FacesOfOneLight", "shadowMaps[1].faces", "is 1, but that of the first map of lights[0] is 0",
+     [](Frame& f) {
+       f.maps.push_back(f.maps[0]);
+       f.maps[1].faces = PELLUCID_FACES_BACK;
+       f.lights[0].shadowMapCount = 2;
+       f.use();
+     }},
     {"ShadowView", "shadowMaps[0].viewFromWorld", "encoding",
      [](Frame& f) { f.maps[0].encoding = PELLUCID_DEPTH_VIEW_Z; }},
     {"ExitImage", "shadowMaps[0].exitImage", "is 2 (an index plus 1), but there are 1",
