@@ -322,6 +322,33 @@ INSTANTIATE_TEST_SUITE_P(Encodings, LeaningPlane,
                          testing::Values(PELLUCID_DEPTH_DEVICE, PELLUCID_DEPTH_VIEW_Z, PELLUCID_DEPTH_DISTANCE),
                          testing::PrintToStringParamName());
 
+TEST_F(EngineMaps, DrawingsThatNoMapHasAreRefused) {
+  const Model model = ballAndEar();
+  const std::pair<const char*, void (*)(RasterOptions&)> kWrong[] = {
+      {"shadowBits: 8 is not 16, 24 or 32", [](RasterOptions& o) { o.shadow.bits = 8; }},
+      {"shadowDepthBias: nan", [](RasterOptions& o) { o.shadow.depthBiasSlope = NAN; }},
+      {"shadowDepth: must be device",
+       [](RasterOptions& o) {
+         o.shadow.cull = MapCull::Front;
+         o.shadowEncoding = PELLUCID_DEPTH_VIEW_Z;
+       }},
+      {"shadowSize: is 0", [](RasterOptions& o) {
+         o.shadow.placement = MapPlacement::Atlas;
+         o.shadowSize = 0;
+       }}};
+  for (const auto& [sentence, change] : kWrong) {
+    RasterOptions options;
+    options.width = options.height = 8;
+    change(options);
+    try {
+      rasterize(device(), model, frontCamera(false), options);
+      ADD_FAILURE() << sentence << ": not refused";
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(sentence), std::string::npos) << error.what();
+    }
+  }
+}
+
 // A scanned head, where it is.
 TEST_F(EngineMaps, Head) {
   const char* variable = std::getenv("PELLUCID_SHARED");

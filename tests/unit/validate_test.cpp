@@ -228,6 +228,69 @@ TEST(Validate, WarnsOfLightsThatAddNothing) {
   EXPECT_EQ(f.problems(), "");
 }
 
+struct Warned {
+  const char* name;
+  const char* sentence;
+  void (*change)(Frame&);
+};
+
+// The fixture's texels are .3 mm long and its material's mean free path is 2 mm.
+const std::vector<Warned> kWarned = {
+    {"Coarse",
+     "shadowMaps[0].extent makes a texel 20 mm long, more than 4 mean free paths of materials[0], which are 8 mm",
+     [](Frame& f) { f.maps[0].extent[0] = 1; }},
+    {"Overlap", "shadowMaps[1].offset is 32, 63: the tile overlaps that of shadowMaps[0]",
+     [](Frame& f) {
+       f.maps.push_back(f.maps[0]);
+       f.maps[1].offset[0] = 32;
+       f.maps[1].offset[1] = 63;
+       f.use();
+     }},
+    {"BackFaces", "shadowMaps[0].faces is BACK: lights[0] takes its thickness from backDepth",
+     [](Frame& f) { f.maps[0].faces = PELLUCID_FACES_BACK; }},
+    {"BackFacesAlone", "lights[0] adds nothing: no back depth to take a thickness from, and its map holds back",
+     [](Frame& f) {
+       f.maps[0].faces = PELLUCID_FACES_BACK;
+       f.frame.backDepth = {};
+     }},
+    {"SlopeWithoutNeighbors", "shadowMaps[0].depthBiasSlope is 1.75, but a tile of 64 x 1 texels",
+     [](Frame& f) {
+       f.maps[0].depthBiasSlope = 1.75f;
+       f.maps[0].extent[1] = 1;
+     }},
+};
+
+TEST(Validate, WarnsOfShadowMaps) {
+  for (const Warned& w : kWarned) {
+    Frame f;
+    for (PellucidImage& image : f.frame.transients) image = Frame::view();
+    EXPECT_EQ(f.problems(PELLUCID_SEVERITY_WARNING), "");
+    w.change(f);
+    EXPECT_EQ(f.problems(), "") << w.name;
+    const std::string warnings = f.problems(PELLUCID_SEVERITY_WARNING);
+    EXPECT_NE(warnings.find(w.sentence), std::string::npos) << w.name << ": " << warnings;
+  }
+}
+
+// Tiles that meet, other layers and one map of two lights are no overlap.
+TEST(Validate, TilesMayMeet) {
+  const std::vector<std::function<void(PellucidShadowMap&)>> changes = {
+      [](PellucidShadowMap& m) { m.offset[0] = 64; }, [](PellucidShadowMap& m) { m.offset[1] = 64; },
+      [](PellucidShadowMap& m) {
+        m.layer = 1;
+        m.offset[0] = 3;
+      },
+      [](PellucidShadowMap&) {}};
+  for (const auto& change : changes) {
+    Frame f;
+    for (PellucidImage& image : f.frame.transients) image = Frame::view();
+    f.maps.push_back(f.maps[0]);
+    change(f.maps[1]);
+    f.use();
+    EXPECT_EQ(f.problems(PELLUCID_SEVERITY_WARNING), "");
+  }
+}
+
 TEST(Validate, SeparateOutputIsNotTheIrradiance) {
   Frame f;
   for (PellucidImage& image : f.frame.transients) image = Frame::view();
