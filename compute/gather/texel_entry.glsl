@@ -130,9 +130,7 @@ bool hasOffsets(EntryMapConstants map) { return any(notEqual(map.offsets, vec4(0
 DrawnDepth drawnDepth(EntryMapConstants map, ivec2 texel, ShadowTexels stored, bvec4 holds) {
   ivec2 last = ivec2(map.map.xy) - 1;
   bvec4 within = bvec4(texel.x < last.x, texel.x > 0, texel.y < last.y, texel.y > 0);
-  holds = bvec4(uvec4(holds) & uvec4(within));
-  float steepest = max(nearerStep(stored.own, stored.beside.xy, holds.xy), nearerStep(stored.own, stored.beside.zw, holds.zw));
-  return drawnDepth(map.offsets, stored.own, steepest);
+  return drawnDepth(map.offsets, stored.own, stored.beside, bvec4(uvec4(holds) & uvec4(within)));
 }
 
 bvec4 neighborsHold(EntryMapConstants map, vec4 beside) {

@@ -40,35 +40,47 @@ struct DrawnDepth {
 // Part of a slope that the nearer neighbor may miss: between the last texels before a sphere's limb it is 27 %.
 const float kMissedSlope = 0.3;
 
-// The change of depth from a texel to the nearer of its two neighbors along an axis, as the other may lie across an edge;
-// 0 where there is none.
-float nearerStep(float own, vec2 beside, bvec2 holds) {
-  vec2 apart = mix(vec2(3.0e38), abs(beside - own), holds);
+// A texel's change of depth along an axis, x: to the nearer of its two neighbors, as the other may lie across an edge;
+// 0 where there is none. y: how much that may miss, as far as the other neighbor says so.
+vec2 stepAlong(float own, vec2 beside, bvec2 holds) {
+  vec2 change = vec2(1.0, -1.0) * (beside - own), apart = mix(vec2(3.0e38), abs(change), holds);
   float least = min(apart.x, apart.y);
-  return least < 3.0e38 ? least : 0.0;
+  if (!any(holds)) return vec2(0.0);
+  return vec2(least, max(kMissedSlope * least, all(holds) ? abs(change.x - change.y) : least));
 }
 
-// offsets: ShadowConstants::offsets; `steepest`: the larger of the steps along the map's axes.
-DrawnDepth drawnDepth(vec4 offsets, float stored, float steepest) {
-  return DrawnDepth(stored - offsets.x - offsets.y * steepest,
-                    0.5 * offsets.w + abs(offsets.y) * (offsets.w + kMissedSlope * steepest));
+// How far a texel lies behind both of its neighbors along an axis, the way that a bias moves it.
+float pitAlong(float own, vec2 beside, bvec2 holds, float way) {
+  vec2 behind = way * (own - beside);
+  return all(holds) ? max(min(behind.x, behind.y), 0.0) : 0.0;
 }
 
-float stepAlong(ShadowConstants shadow, ivec2 texel, float stored, ivec2 axis) {
-  ivec2 first = firstTexel(shadow), last = first + ivec2(shadow.depth.zw) - 1;
-  ivec2 forward = texel + axis, backward = texel - axis;
-  vec2 beside = vec2(shadowTexel(shadow.meta.x, min(forward, last)), shadowTexel(shadow.meta.x, max(backward, first)));
-  bvec2 holds = bvec2(shadowHolds(shadow.meta, beside.x) && all(lessThanEqual(forward, last)),
-                      shadowHolds(shadow.meta, beside.y) && all(greaterThanEqual(backward, first)));
-  return nearerStep(stored, beside, holds);
+// offsets: ShadowConstants::offsets; beside: texels to the right, to the left, below and above; `holds`: which of them hold
+// a surface of the tile.
+DrawnDepth drawnDepth(vec4 offsets, float own, vec4 beside, bvec4 holds) {
+  if (offsets.y == 0.0) return DrawnDepth(own - offsets.x, 0.5 * offsets.w);
+  // A triangle that the light grazes is moved far beyond its neighbors; a pit one texel wide is more likely that.
+  float way = sign(offsets.y);
+  own -= way * max(pitAlong(own, beside.xy, holds.xy, way), pitAlong(own, beside.zw, holds.zw, way));
+  vec2 x = stepAlong(own, beside.xy, holds.xy), y = stepAlong(own, beside.zw, holds.zw);
+  return DrawnDepth(own - offsets.x - offsets.y * max(x.x, y.x),
+                    0.5 * offsets.w + abs(offsets.y) * (offsets.w + max(x.y, y.y)));
 }
 
 // `texel`: of the image, which holds `stored`.
 DrawnDepth drawnDepth(ShadowConstants shadow, ivec2 texel, float stored) {
-  float steepest = 0.0;
-  if (shadow.offsets.y != 0.0) // neighbors are read for maps with such a bias alone
-    steepest = max(stepAlong(shadow, texel, stored, ivec2(1, 0)), stepAlong(shadow, texel, stored, ivec2(0, 1)));
-  return drawnDepth(shadow.offsets, stored, steepest);
+  vec4 beside = vec4(stored);
+  bvec4 holds = bvec4(false);
+  if (shadow.offsets.y != 0.0) { // neighbors are read for maps with such a bias alone
+    ivec2 first = firstTexel(shadow), last = first + ivec2(shadow.depth.zw) - 1;
+    for (int i = 0; i < 4; ++i) {
+      ivec2 axis = i < 2 ? ivec2(1, 0) : ivec2(0, 1), neighbor = texel + (i % 2 == 0 ? axis : -axis);
+      if (any(lessThan(neighbor, first)) || any(greaterThan(neighbor, last))) continue;
+      beside[i] = shadowTexel(shadow.meta.x, neighbor);
+      holds[i] = shadowHolds(shadow.meta, beside[i]);
+    }
+  }
+  return drawnDepth(shadow.offsets, stored, beside, holds);
 }
 
 // Scene units along the light ray from the stored surface to the receiver x; negative: the surface is

@@ -372,7 +372,7 @@ TEST(Plan, ShadersAreSpirv) {
       for (size_t i = 5; i < shader.wordCount; i += shader.words[i] >> 16)
         array = array || ((shader.words[i] & 0xFFFF) == kOpTypeImage && shader.words[i + 5] == 1);
       arrays += array;
-      if (views == VK_IMAGE_VIEW_TYPE_2D) EXPECT_FALSE(array) << pellucidPipelineName(p);
+      EXPECT_TRUE(views == VK_IMAGE_VIEW_TYPE_2D_ARRAY || !array) << pellucidPipelineName(p);
     }
   EXPECT_EQ(arrays, 4u) << "translucency, debug view and both of entry points";
   EXPECT_EQ(pellucidGetShader(pellucidGetPipelineCount(), VK_IMAGE_VIEW_TYPE_2D, &shader),
