@@ -105,7 +105,8 @@ Transmitted lightTransmission(LightConstants light, Surface s, bool mapped) {
   float visible = 1.0;
   if (mapped) {
     LightSpace l = lightSpace(light, incident, s, back);
-    visible = l.enters && l.thickness <= l.tolerance ? 1.0 : 0.0;
+    // Where light enters it has not come to the face that it leaves by.
+    visible = l.enters && l.thickness <= (holdsExits ? -l.tolerance : l.tolerance) ? 1.0 : 0.0;
   }
   return Transmitted(thickness, incident.irradiance * hiddenCosine(light, s, incident.toLight), visible);
 }

@@ -104,7 +104,10 @@ bool Translucency::backPointLit(std::size_t light, const Receiver& r, const glm:
   if (shadows_[light].empty()) return true;
   const ShadowView::Lookup lookup = shadowLookup(light, backPoint);
   const glm::dvec3 toLight = arrivalAt(capture_.lights[light], backPoint).toLight;
-  return entersMedium(lookup, r) && lookup.distance <= ownTolerance(lookup, r, toLight) + lookup.uncertain;
+  const double tolerance = ownTolerance(lookup, r, toLight) + lookup.uncertain;
+  // A face that light leaves by is not one that it enters by.
+  if (holdsBackFaces(capture_.lights[light])) return entersMedium(lookup, r) && lookup.distance <= -tolerance;
+  return entersMedium(lookup, r) && lookup.distance <= tolerance;
 }
 
 Translucency::LightPath Translucency::cameraSpacePath(std::size_t light, const Receiver& r) const {
