@@ -10,13 +10,16 @@
 // area shows as a dot at terminators.
 const float kLeastCosine = 0.2;
 
+// Texels' sides that a depth may be off by so that neighbors still say a normal.
+const float kSureTexels = 3.0;
+
 // True where the camera has a surface on the pixel that a point is seen on, at the point or in front of it: what it sees is
 // in the irradiance that diffusion spreads. A surface that faces away cannot be seen, however thin the part is.
-// `front`: of the pixel; `uncertain`: along the normal.
+// `front`: of the pixel; tolerance: half a texel; `uncertain`: how far the point's depth may be off.
 bool cameraSees(ivec2 pixel, float front, float planar, vec3 normal, float tolerance, float uncertain) {
-  float facing = dot(normal, viewRay(frame.camera, pixel).direction);
-  return insideRect(pixel) && facing < 0.0 && front > 0.0 &&
-         planar <= front + tolerance + uncertain / max(-facing, kLeastCosine);
+  // Depths that are off by several texels' sides say no normal.
+  bool faces = dot(normal, viewRay(frame.camera, pixel).direction) < 0.0 || uncertain > kSureTexels * 2.0 * tolerance;
+  return insideRect(pixel) && faces && front > 0.0 && planar <= front + tolerance + uncertain;
 }
 
 // Pixels without a material show nothing, whatever depth they hold: their light is not diffused. To be fetched before
@@ -112,7 +115,7 @@ uvec4 entryOf(float depth, float share, vec3 normal, vec3 toLight, ivec2 pixel, 
     r.normal = cosine < 0.0 ? -normal : normal;
     r.cosine = max(abs(cosine), kLeastCosine);
   }
-  if (cameraSees(pixel, front, planar, r.normal, tolerance, uncertain * dot(r.normal, toLight))) {
+  if (cameraSees(pixel, front, planar, r.normal, tolerance, uncertain)) {
     r.seen = share;
     r.hidden = 0.0;
   }
