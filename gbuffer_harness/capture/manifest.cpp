@@ -224,8 +224,8 @@ std::array<int, 2> pairOf(const Field& field, int least) {
 }
 
 ShadowMap readShadowMap(const Field& field) {
-  field.allowKeys({"file", "part", "channel", "constant", "encoding", "clipFromWorld", "viewFromWorld", "exit",
-                   "casterMaterial", "offset", "size", "layer", "faces", "depthBiasConstant",
+  field.allowKeys({"file", "part", "channel", "constant", "encoding", "clipFromWorld", "viewFromWorld",
+                   "exit", "casterMaterial", "offset", "size", "layer", "faces", "depthBiasConstant",
                    "depthBiasSlope", "offsetLength", "depthStep"});
   ShadowMap map;
   map.depth.encoding = shadowEncoding(field);

@@ -135,8 +135,7 @@ void crop(const BufferSource& source, const ShadowMap& map, const std::array<int
                          std::to_string(y) + ") is outside the image of " +
                          sizeText(image.width, image.height));
   Image tile(size[0], size[1], 1);
-  for (int row = 0; row < size[1]; ++row)
-    std::copy_n(image.at(x, y + row), size[0], tile.at(0, row));
+  for (int row = 0; row < size[1]; ++row) std::copy_n(image.at(x, y + row), size[0], tile.at(0, row));
   image = std::move(tile);
 }
 

@@ -45,8 +45,8 @@ ShadowImages shadowImages(const std::vector<Light>& lights) {
       std::array<int, 3>& indices = result.ofMap.emplace_back(std::array<int, 3>{-1, -1, -1});
       for (const ShadowContent content : {ShadowContent::Depth, ShadowContent::Exit, ShadowContent::Caster}) {
         if (!holds(map, content)) continue;
-        const auto shared = std::find_if(
-            result.images.begin(), result.images.end(), [&](const ShadowImageSource& other) {
+        const auto shared =
+            std::find_if(result.images.begin(), result.images.end(), [&](const ShadowImageSource& other) {
               return map.sharedImage >= 0 && other.content == content &&
                      other.maps.front()->sharedImage == map.sharedImage;
             });

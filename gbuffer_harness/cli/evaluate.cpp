@@ -68,7 +68,8 @@ Image allTexels(const Capture& capture, const std::vector<PellucidMaterial>& mat
 void writePicture(const std::string& path, const Capture& capture,
                   const std::vector<PellucidMaterial>& materials, Replayer& replayer) {
   std::vector<Image> images;
-  for (const ReplaySettings& settings : {thesisSettings(), ReplaySettings(), gather(PELLUCID_GATHER_BY_QUALITY)})
+  for (const ReplaySettings& settings :
+       {thesisSettings(), ReplaySettings(), gather(PELLUCID_GATHER_BY_QUALITY)})
     images.push_back(rgb(replayer.run(capture, materials, settings).output));
   images.push_back(capture.truth->image);
   std::vector<const Image*> pointers;

@@ -193,7 +193,8 @@ void RenderTarget::createDepthBuffer(Device& device) {
   VkFormatProperties properties;
   vkGetPhysicalDeviceFormatProperties(device.physicalDevice(), depthFormat_, &properties);
   if (!(properties.optimalTilingFeatures & VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT))
-    throw DeviceError(device.description() + " has no depth buffers of VkFormat " + std::to_string(depthFormat_));
+    throw DeviceError(device.description() + " has no depth buffers of VkFormat " +
+                      std::to_string(depthFormat_));
   VkImageCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO};
   info.imageType = VK_IMAGE_TYPE_2D;
   info.format = depthFormat_;
@@ -276,9 +277,10 @@ Image RenderTarget::depth() const {
   for (std::size_t i = 0; i < texels; ++i) {
     std::uint32_t word = 0;
     std::memcpy(&word, read + i * bytes, bytes);
-    result.data[i] = depthFormat_ == VK_FORMAT_D16_UNORM    ? static_cast<float>(word) / 65535.0f
-                     : depthFormat_ == VK_FORMAT_D32_SFLOAT ? std::bit_cast<float>(word)
-                                                            : static_cast<float>((word & 0xFFFFFFu) / 16777215.0);
+    result.data[i] = depthFormat_ == VK_FORMAT_D16_UNORM ? static_cast<float>(word) / 65535.0f
+                     : depthFormat_ == VK_FORMAT_D32_SFLOAT
+                         ? std::bit_cast<float>(word)
+                         : static_cast<float>((word & 0xFFFFFFu) / 16777215.0);
   }
   return result;
 }

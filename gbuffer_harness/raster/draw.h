@@ -37,8 +37,8 @@ public:
     VkFormat format;
     VkClearColorValue clear;
   };
-  // depthFormat: of that buffer, D16_UNORM, X8_D24_UNORM_PACK32 or D32_SFLOAT. Throws DeviceError for one that the
-  // device does not draw to.
+  // depthFormat: of that buffer, D16_UNORM, X8_D24_UNORM_PACK32 or D32_SFLOAT. Throws DeviceError for one
+  // that the device does not draw to.
   RenderTarget(Device& device, int width, int height, const std::vector<Color>& colors,
                std::optional<float> clearDepth, VkFormat depthFormat = VK_FORMAT_D32_SFLOAT);
 
@@ -73,8 +73,8 @@ enum class FragmentShader { Surface, Depth, Caster, Count, Transmit };
 struct PipelineState {
   FragmentShader shader = FragmentShader::Surface;
   VkCullModeFlags cull = VK_CULL_MODE_NONE;
-  std::optional<VkCompareOp> depthTest;  // writes depth; absent: no depth buffer
-  bool add = false;                      // colors add up instead of replacing
+  std::optional<VkCompareOp> depthTest;             // writes depth; absent: no depth buffer
+  bool add = false;                                 // colors add up instead of replacing
   float depthBiasConstant = 0, depthBiasSlope = 0;  // factors of vkCmdSetDepthBias
 };
 

@@ -26,8 +26,8 @@ enum class MapPlacement {
 // How the maps that a capture keeps are drawn, as engines do. The irradiance's own map stays plain.
 struct ShadowDrawing {
   MapCull cull = MapCull::None;
-  // Factors of vkCmdSetDepthBias that move away from the light, -1e3..1e3: the harness's depths are reversed, so that both
-  // are drawn, and kept in the capture, with the other sign.
+  // Factors of vkCmdSetDepthBias that move away from the light, -1e3..1e3: the harness's depths are reversed,
+  // so that both are drawn, and kept in the capture, with the other sign.
   double depthBiasConstant = 0, depthBiasSlope = 0;
   int bits = 32;  // of the depth buffer: 16, 24 or 32, a float
   MapPlacement placement = MapPlacement::Separate;

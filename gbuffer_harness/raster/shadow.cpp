@@ -75,13 +75,11 @@ VkFormat formatOf(const ShadowDrawing& drawing) {
 }
 
 // Difference of neighboring depths of that many bits; of floats that between depths of .5 and 1.
-double depthUnit(const ShadowDrawing& drawing) {
-  return drawing.bits == 16 ? 1.0 / 65535 : std::exp2(-24);
-}
+double depthUnit(const ShadowDrawing& drawing) { return drawing.bits == 16 ? 1.0 / 65535 : std::exp2(-24); }
 
 // What an engine's depth buffer holds.
-void drawAsEngine(Device& device, const UploadedModel& model, const DrawView& view, const RasterOptions& options,
-                  ShadowMap& map) {
+void drawAsEngine(Device& device, const UploadedModel& model, const DrawView& view,
+                  const RasterOptions& options, ShadowMap& map) {
   const ShadowDrawing& drawing = options.shadow;
   const RenderTarget target(device, options.shadowSize, options.shadowSize, depthColors(kReversed),
                             farDepth(kReversed), formatOf(drawing));
@@ -102,13 +100,13 @@ void drawAsEngine(Device& device, const UploadedModel& model, const DrawView& vi
 
 }  // namespace
 
-DrawnShadows drawShadows(Device& device, const Model& model, const UploadedModel& uploaded, const Light& light,
-                         const RasterOptions& options) {
+DrawnShadows drawShadows(Device& device, const Model& model, const UploadedModel& uploaded,
+                         const Light& light, const RasterOptions& options) {
   DrawnShadows drawn;
   const std::vector<LightView> views = frameLight(model, light, options.pointMaps, options.shadowSize);
   // Of six maps with images of their own they would be more than a dispatch binds.
-  const bool few = options.shadow.placement != MapPlacement::Separate ||
-                   3 * views.size() <= PELLUCID_SHADOW_IMAGE_COUNT;
+  const bool few =
+      options.shadow.placement != MapPlacement::Separate || 3 * views.size() <= PELLUCID_SHADOW_IMAGE_COUNT;
   const bool casters = few && options.shadow.cull != MapCull::Front;
   for (const LightView& lightView : views) {
     const DrawView view{lightView.clipFromView, lightView.viewFromWorld, kReversed};
@@ -140,8 +138,9 @@ void checkShadowDrawing(const Model& model, const RasterOptions& options) {
   if (drawing.bits != 16 && drawing.bits != 24 && drawing.bits != 32)
     throw InputError(model.name, "shadowBits", std::to_string(drawing.bits) + " is not 16, 24 or 32");
   if (!isPlain(drawing) && options.shadowEncoding != PELLUCID_DEPTH_DEVICE)
-    throw InputError(model.name, "shadowDepth",
-                     "must be device where maps are culled, biased or of other than 32 bits: only depth buffers are");
+    throw InputError(
+        model.name, "shadowDepth",
+        "must be device where maps are culled, biased or of other than 32 bits: only depth buffers are");
   if (options.shadowSize == 0 && (!isPlain(drawing) || drawing.placement != MapPlacement::Separate))
     throw InputError(model.name, "shadowSize", "is 0, but something is asked of the shadow maps");
 }

@@ -11,14 +11,14 @@
 namespace pellucid::harness {
 
 struct DrawnShadows {
-  std::vector<ShadowMap> maps;  // for the capture
+  std::vector<ShadowMap> maps;      // for the capture
   std::vector<ShadowImage> images;  // for the irradiance, of the targets
   std::vector<std::unique_ptr<RenderTarget>> targets;
 };
 
 // options.shadowSize > 0.
-DrawnShadows drawShadows(Device& device, const Model& model, const UploadedModel& uploaded, const Light& light,
-                         const RasterOptions& options);
+DrawnShadows drawShadows(Device& device, const Model& model, const UploadedModel& uploaded,
+                         const Light& light, const RasterOptions& options);
 
 // Throws InputError for options that no map can be drawn with.
 void checkShadowDrawing(const Model& model, const RasterOptions& options);

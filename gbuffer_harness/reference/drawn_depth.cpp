@@ -42,7 +42,8 @@ DrawnDepth drawnDepth(const ShadowMap& map, int x, int y, const std::function<bo
     slope = std::max(slope, least);
     missed = std::max({missed, kMissed * least, other});
   }
-  return {own - map.depthBiasConstant - bias * slope, map.depthStep / 2 + std::abs(bias) * (map.depthStep + missed)};
+  return {own - map.depthBiasConstant - bias * slope,
+          map.depthStep / 2 + std::abs(bias) * (map.depthStep + missed)};
 }
 
 }  // namespace pellucid::harness::reference

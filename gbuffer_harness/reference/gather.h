@@ -26,8 +26,8 @@ struct Gathered {
 class Gather {
 public:
   // Keeps references to the camera's surfaces. `diffused`: what light the camera sees has been diffused; else
-  // only what enters hidden counts. Lights whose maps hold back faces bring nothing. Throws InputError when a map
-  // lacks a matrix or a material has no kernel.
+  // only what enters hidden counts. Lights whose maps hold back faces bring nothing. Throws InputError when a
+  // map lacks a matrix or a material has no kernel.
   Gather(const Capture& capture, const SurfaceReader& surfaces,
          const std::vector<PellucidMaterial>& materials, bool diffused = true);
 

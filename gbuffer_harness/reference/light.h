@@ -33,11 +33,11 @@ public:
   };
   struct Lookup {
     Kind kind;
-    double distance;   // along the light ray from the stored surface to the point; negative when the
-                       // point is nearer to the light. Surface only
-    double texel = 0;  // longer side of a texel across the light, scene units; perspective: where the ray
-                       // through the map's middle is as long as that to the point. Not of Outside
-    double uncertain = 0;      // scene units that distance may be off by; Surface only
+    double distance;       // along the light ray from the stored surface to the point; negative when the
+                           // point is nearer to the light. Surface only
+    double texel = 0;      // longer side of a texel across the light, scene units; perspective: where the ray
+                           // through the map's middle is as long as that to the point. Not of Outside
+    double uncertain = 0;  // scene units that distance may be off by; Surface only
     double exitUncertain = 0;  // likewise, of fromExit
     // From what lies beside the map; Surface only.
     std::optional<double> fromExit = {};     // as distance, from the exit depth; absent: none is known

@@ -46,8 +46,7 @@ void randomAngles(Random& random, TranslucencySettings& t) {
     t.minimumDotTable = minimumDots(random, t.angleModel);
 }
 
-void randomTranslucency(Random& random, bool wild, const StressFrame& frame,
-                        TranslucencySettings& t) {
+void randomTranslucency(Random& random, bool wild, const StressFrame& frame, TranslucencySettings& t) {
   t.gatherSamples = PELLUCID_GATHER_BY_QUALITY;
   if (random.chance(0.2)) t.thicknessSource = PELLUCID_THICKNESS_CAMERA;
   if (random.chance(0.25)) randomAngles(random, t);

@@ -172,9 +172,8 @@ PellucidResult createPipelines(const PellucidContextDesc& desc, PellucidContext&
   const auto job = [](void* data, uint32_t i) {
     auto& all = *static_cast<PipelineJobs*>(data);
     const uint32_t pipeline = all.pipelines[i];
-    all.results[i] =
-        createPipeline(all.desc, all.context, pipelineDesc(pipeline, all.desc.shadowViewType),
-                       &all.context.pipelines[pipeline]);
+    all.results[i] = createPipeline(all.desc, all.context, pipelineDesc(pipeline, all.desc.shadowViewType),
+                                    &all.context.pipelines[pipeline]);
   };
   if (desc.parallelFor)
     desc.parallelFor(desc.parallelUser, count, job, &jobs);

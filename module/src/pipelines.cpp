@@ -81,8 +81,7 @@ extern "C" const char* pellucidPipelineName(uint32_t pipeline) {
 
 extern "C" PellucidResult pellucidGetShader(uint32_t pipeline, VkImageViewType shadowViewType,
                                             PellucidShader* shader) {
-  const bool known =
-      shadowViewType == VK_IMAGE_VIEW_TYPE_2D || shadowViewType == VK_IMAGE_VIEW_TYPE_2D_ARRAY;
+  const bool known = shadowViewType == VK_IMAGE_VIEW_TYPE_2D || shadowViewType == VK_IMAGE_VIEW_TYPE_2D_ARRAY;
   if (pipeline >= kPipelineCount || !known || !shader) return PELLUCID_ERROR_INVALID_ARGUMENT;
   const PipelineDesc p = pipelineDesc(pipeline, shadowViewType);
   *shader = {p.words, p.wordCount, p.constantCount, kPipelines[pipeline].constants.data()};

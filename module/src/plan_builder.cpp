@@ -84,8 +84,8 @@ void PlanBuilder::shadowImages(PellucidDispatch* d, const LightGroup& group) con
                                                 : static_cast<uint32_t>(PELLUCID_RESOURCE_FRONT_DEPTH);
   for (uint32_t slot = 0; slot < PELLUCID_SHADOW_IMAGE_COUNT; ++slot) {
     const bool used = slot < group.imageCount;
-    image(d, PELLUCID_BINDING_SHADOW_IMAGES + slot,
-          used ? kShadow0 + group.images[slot] : standIn, used ? kUnknownDepthBytes : 0);
+    image(d, PELLUCID_BINDING_SHADOW_IMAGES + slot, used ? kShadow0 + group.images[slot] : standIn,
+          used ? kUnknownDepthBytes : 0);
   }
 }
 

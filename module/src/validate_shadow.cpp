@@ -100,8 +100,8 @@ void warnOfShadowMaps(const FrameFacts& facts, Findings& out) {
     const PellucidLight& l = f.lights[i];
     if (facts.whySkipped(l)) continue;
     if (facts.holdsBackFaces(l))
-      out.warning(Field("shadowMaps[", l.firstShadowMap, "].faces"),
-                  "is BACK: lights[", i, "] takes its thickness from backDepth and is not gathered");
+      out.warning(Field("shadowMaps[", l.firstShadowMap, "].faces"), "is BACK: lights[", i,
+                  "] takes its thickness from backDepth and is not gathered");
     for (uint32_t k = 0; k < l.shadowMapCount; ++k) {
       const uint32_t map = l.firstShadowMap + k;
       const PellucidShadowMap& s = f.shadowMaps[map];

@@ -1,5 +1,5 @@
-// Shadow maps as engines draw them, against plain maps of the same scene: depth bias, front faces culled, few bits,
-// tiles of an atlas, layers of an array, cascades. And exactly, on planes.
+// Shadow maps as engines draw them, against plain maps of the same scene: depth bias, front faces culled, few
+// bits, tiles of an atlas, layers of an array, cascades. And exactly, on planes.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -27,7 +27,8 @@ ReplaySettings atQuality(uint32_t quality) {
   return s;
 }
 
-// A ball of 6 mm and beside it an ear, 8 mm high and 2.4 mm thick. A key light from the front and a rim light.
+// A ball of 6 mm and beside it an ear, 8 mm high and 2.4 mm thick. A key light from the front and a rim
+// light.
 Model ballAndEar() {
   Model model = emptyModel();
   addSphere(model, {-3, 0, 0}, 6, 48);
@@ -81,7 +82,8 @@ protected:
     for (double& s : sum) s /= static_cast<double>(count);
     return sum;
   }
-  static void expectNear(const std::array<double, 3>& mean, const std::array<double, 3>& plain, double share) {
+  static void expectNear(const std::array<double, 3>& mean, const std::array<double, 3>& plain,
+                         double share) {
     for (std::size_t k = 0; k < 3; ++k) {
       RecordProperty("ratio" + std::to_string(k), std::to_string(mean[k] / plain[k]));
       EXPECT_NEAR(mean[k] / plain[k], 1, share) << "channel " << k;
@@ -140,7 +142,8 @@ TEST_F(EngineMaps, FrontFacesCulled) {
     Capture blind = c;
     blind.backDepth.image = {};
     const ReplayResult without = replayer().run(blind, compileMaterials(blind), atQuality(quality));
-    EXPECT_TRUE(sameBits(without.output, render(none, quality))) << "without back depth nothing comes through";
+    EXPECT_TRUE(sameBits(without.output, render(none, quality)))
+        << "without back depth nothing comes through";
     EXPECT_EQ(without.plan.activeLights, 0u);
   }
   const auto plan = replayer().run(c, compileMaterials(c), atQuality(1)).plan;
@@ -176,7 +179,8 @@ TEST_F(EngineMaps, AtlasAndArrayAreAsSeparateMaps) {
     ShadowDrawing drawing = biased(32);
     drawing.placement = placement;
     const Capture c = draw(model, drawing);
-    EXPECT_EQ(shadowImages(c.lights).images.size(), 3u) << "depth, exit depth and caster material of all maps";
+    EXPECT_EQ(shadowImages(c.lights).images.size(), 3u)
+        << "depth, exit depth and caster material of all maps";
     EXPECT_EQ(hasLayers(c.lights), placement == MapPlacement::Array);
     for (const uint32_t quality : {0u, 1u})
       EXPECT_TRUE(sameBits(render(c, quality), render(separate, quality)))
@@ -199,7 +203,8 @@ TEST_F(EngineMaps, LayersNeedAnArrayContext) {
       run.record(commandBuffer);
       ADD_FAILURE() << "not refused";
     } catch (const InputError& error) {
-      EXPECT_NE(std::string(error.what()).find("shadowMaps[0].layer is 3"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("shadowMaps[0].layer is 3"), std::string::npos)
+          << error.what();
     }
   });
 }
@@ -263,7 +268,8 @@ TEST_F(EngineMaps, CascadesMeetWithoutASeam) {
         for (int x = 0; x < c.width; ++x) {
           if (c.material[static_cast<std::size_t>(y * c.width + x)] == 0) continue;
           const double p = planar(c, c.frontDepth, x, y);
-          const double wx = ((x + 0.5) / c.width * 2 - 1) * tangent * p, wy = -((y + 0.5) / c.height * 2 - 1) * tangent * p;
+          const double wx = ((x + 0.5) / c.width * 2 - 1) * tangent * p,
+                       wy = -((y + 0.5) / c.height * 2 - 1) * tangent * p;
           const double ndc = clip[0] * wx + clip[4] * wy + clip[8] * (100 - p) + clip[12];
           const double pixels = std::abs(ndc - 1) / std::abs(clip[0]) / (20.0 / c.width);
           if (pixels > 4) continue;
@@ -275,7 +281,8 @@ TEST_F(EngineMaps, CascadesMeetWithoutASeam) {
         }
       ASSERT_GT(plainSum[0], 0);
       ASSERT_GT(plainSum[1], 0);
-      EXPECT_NEAR(sum[0] / plainSum[0], sum[1] / plainSum[1], 0.01) << "quality " << quality << ", light " << l;
+      EXPECT_NEAR(sum[0] / plainSum[0], sum[1] / plainSum[1], 0.01)
+          << "quality " << quality << ", light " << l;
     }
 }
 
@@ -334,7 +341,8 @@ TEST_P(LeaningPlane, OffsetsAreTakenBack) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Encodings, LeaningPlane,
-                         testing::Values(PELLUCID_DEPTH_DEVICE, PELLUCID_DEPTH_VIEW_Z, PELLUCID_DEPTH_DISTANCE),
+                         testing::Values(PELLUCID_DEPTH_DEVICE, PELLUCID_DEPTH_VIEW_Z,
+                                         PELLUCID_DEPTH_DISTANCE),
                          testing::PrintToStringParamName());
 
 TEST_F(EngineMaps, DrawingsThatNoMapHasAreRefused) {

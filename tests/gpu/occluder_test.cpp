@@ -64,7 +64,10 @@ TEST_F(FlatOccluder, MediumEndsAtTheExitDepth) {
     }
     setExitAt(c, -11.5);
     Capture rough = c;
-    mapOf(rough).depthStep = encoding == PELLUCID_DEPTH_DEVICE ? 1.6 * std::abs(narrowMap(-10, encoding).depth.image.data[0] - narrowMap(-11, encoding).depth.image.data[0]) : 1.6;
+    mapOf(rough).depthStep = encoding == PELLUCID_DEPTH_DEVICE
+                                 ? 1.6 * std::abs(narrowMap(-10, encoding).depth.image.data[0] -
+                                                  narrowMap(-11, encoding).depth.image.data[0])
+                                 : 1.6;
     EXPECT_NEAR(through(rough), lit, 1e-5) << "the air is thinner than the map's step";
     for (const float nothing :
          {std::numeric_limits<float>::quiet_NaN(), encoding == PELLUCID_DEPTH_DEVICE ? 1.0f : kNoDepth}) {

@@ -116,7 +116,8 @@ inline Capture sampleCapture() {
                         {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0, 0, -0.1, 0},
                         kIdentity}};
   for (ShadowMap& map : around.shadowMaps) map.faces = PELLUCID_FACES_BACK;
-  Light tiled = lamp;  // two tiles of an atlas, of which one alone has an exit depth, and two layers of an array
+  Light tiled =
+      lamp;  // two tiles of an atlas, of which one alone has an exit depth, and two layers of an array
   tiled.shadowMaps = around.shadowMaps;
   tiled.shadowMaps[0].sharedImage = tiled.shadowMaps[1].sharedImage = 0;
   tiled.shadowMaps[1].offset = {11, 5};

@@ -293,15 +293,16 @@ TEST(Plan, EntryPointsOfManyMapsBindNoMoreThanDevicesDo) {
   }
 }
 
-// A light whose map holds back faces is not gathered: its map is bound by a dispatch after the gathered light's.
+// A light whose map holds back faces is not gathered: its map is bound by a dispatch after the gathered
+// light's.
 TEST(Plan, LightsOfBackFacesComeAfterGatheredOnes) {
   Frame f(2);
   f.maps[0].faces = PELLUCID_FACES_BACK;
   f.frame.gatherSamples = 8;
   const PellucidPlan plan = f.plan();
   EXPECT_EQ(plan.activeLights, 2u);
-  EXPECT_TRUE(skips(plan, "gather",
-                    "a light's shadow map holds back faces, which do not say where light enters"));
+  EXPECT_TRUE(
+      skips(plan, "gather", "a light's shadow map holds back faces, which do not say where light enters"));
   const std::vector<std::string> all = names(plan);
   const auto gathered = std::find(all.begin(), all.end(), "add gathered");
   ASSERT_NE(gathered, all.end());
@@ -310,7 +311,8 @@ TEST(Plan, LightsOfBackFacesComeAfterGatheredOnes) {
   const PellucidDispatch& d = plan.dispatches[gathered + 1 - all.begin()];
   EXPECT_EQ(d.pushConstants[1], 1u);
   bool bound = false;
-  for (uint32_t b = 0; b < d.bindingCount; ++b) bound = bound || d.bindings[b].resource == PELLUCID_RESOURCE_SHADOW0;
+  for (uint32_t b = 0; b < d.bindingCount; ++b)
+    bound = bound || d.bindings[b].resource == PELLUCID_RESOURCE_SHADOW0;
   EXPECT_TRUE(bound);
 }
 
@@ -341,7 +343,8 @@ TEST(Plan, ImageNeedsCoverThePlan) {
   }
 }
 
-// D3D12, Metal and WebGPU forbid what Vulkan allows in GENERAL. A history is added to in place, pixel by pixel.
+// D3D12, Metal and WebGPU forbid what Vulkan allows in GENERAL. A history is added to in place, pixel by
+// pixel.
 TEST(Plan, NoDispatchReadsAndWritesATransient) {
   for (const uint32_t features : {1u, 2u, 3u})
     for (const uint32_t samples : {0u, 8u})

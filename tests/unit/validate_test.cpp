@@ -237,7 +237,8 @@ struct Warned {
 // The fixture's texels are .3 mm long and its material's mean free path is 2 mm.
 const std::vector<Warned> kWarned = {
     {"Coarse",
-     "shadowMaps[0].extent makes a texel 20 mm long, more than 4 mean free paths of materials[0], which are 8 mm",
+     "shadowMaps[0].extent makes a texel 20 mm long, more than 4 mean free paths of materials[0], which are "
+     "8 mm",
      [](Frame& f) { f.maps[0].extent[0] = 1; }},
     {"Overlap", "shadowMaps[1].offset is 32, 63: the tile overlaps that of shadowMaps[0]",
      [](Frame& f) {
@@ -248,7 +249,8 @@ const std::vector<Warned> kWarned = {
      }},
     {"BackFaces", "shadowMaps[0].faces is BACK: lights[0] takes its thickness from backDepth",
      [](Frame& f) { f.maps[0].faces = PELLUCID_FACES_BACK; }},
-    {"BackFacesAlone", "lights[0] adds nothing: no back depth to take a thickness from, and its map holds back",
+    {"BackFacesAlone",
+     "lights[0] adds nothing: no back depth to take a thickness from, and its map holds back",
      [](Frame& f) {
        f.maps[0].faces = PELLUCID_FACES_BACK;
        f.frame.backDepth = {};
