@@ -152,7 +152,6 @@ void separateSteps(const Bench& bench) {
   ReplaySettings settings;
   settings.features = PELLUCID_FEATURE_TRANSLUCENCY;
   settings.translucency.thicknessSource = PELLUCID_THICKNESS_CAMERA;
-  settings.translucency.shadowBias = 0.5f;
   SceneParameters p;
   p.name = "ear";
   p.width = p.height = 128;

@@ -1,27 +1,40 @@
-// The shadow images of one dispatch.
+// The shadow images of one dispatch: 2D views, or with PELLUCID_SHADOW_ARRAY views of all layers of array images.
 #ifndef PELLUCID_SHADOW_IMAGES_GLSL
 #define PELLUCID_SHADOW_IMAGES_GLSL
 
-layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 0) uniform texture2D shadowImage0;
-layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 1) uniform texture2D shadowImage1;
-layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 2) uniform texture2D shadowImage2;
-layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 3) uniform texture2D shadowImage3;
-layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 4) uniform texture2D shadowImage4;
-layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 5) uniform texture2D shadowImage5;
-layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 6) uniform texture2D shadowImage6;
-layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 7) uniform texture2D shadowImage7;
+#ifdef PELLUCID_SHADOW_ARRAY
+#define PELLUCID_SHADOW_TEXTURE texture2DArray
+#define PELLUCID_SHADOW_SLOT(image) ((image) & 0xFFu)
+#define PELLUCID_SHADOW_PLACE(texel, image) ivec3(texel, (image) >> 8)
+#else
+#define PELLUCID_SHADOW_TEXTURE texture2D
+#define PELLUCID_SHADOW_SLOT(image) (image)
+#define PELLUCID_SHADOW_PLACE(texel, image) (texel)
+#endif
+
+layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 0) uniform PELLUCID_SHADOW_TEXTURE shadowImage0;
+layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 1) uniform PELLUCID_SHADOW_TEXTURE shadowImage1;
+layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 2) uniform PELLUCID_SHADOW_TEXTURE shadowImage2;
+layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 3) uniform PELLUCID_SHADOW_TEXTURE shadowImage3;
+layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 4) uniform PELLUCID_SHADOW_TEXTURE shadowImage4;
+layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 5) uniform PELLUCID_SHADOW_TEXTURE shadowImage5;
+layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 6) uniform PELLUCID_SHADOW_TEXTURE shadowImage6;
+layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 7) uniform PELLUCID_SHADOW_TEXTURE shadowImage7;
+
+#define PELLUCID_TEXEL(slot, texel) texelFetch(slot, PELLUCID_SHADOW_PLACE(texel, image), 0).x
 
 // A switch over bindings, unlike an index, does not need shaderSampledImageArrayDynamicIndexing.
+// `image`: a slot, from bit 8 on the layer, which is 0 of 2D views.
 float shadowTexel(uint image, ivec2 texel) {
-  switch (image) {
-    case 0u: return texelFetch(shadowImage0, texel, 0).x;
-    case 1u: return texelFetch(shadowImage1, texel, 0).x;
-    case 2u: return texelFetch(shadowImage2, texel, 0).x;
-    case 3u: return texelFetch(shadowImage3, texel, 0).x;
-    case 4u: return texelFetch(shadowImage4, texel, 0).x;
-    case 5u: return texelFetch(shadowImage5, texel, 0).x;
-    case 6u: return texelFetch(shadowImage6, texel, 0).x;
-    default: return texelFetch(shadowImage7, texel, 0).x;
+  switch (PELLUCID_SHADOW_SLOT(image)) {
+    case 0u: return PELLUCID_TEXEL(shadowImage0, texel);
+    case 1u: return PELLUCID_TEXEL(shadowImage1, texel);
+    case 2u: return PELLUCID_TEXEL(shadowImage2, texel);
+    case 3u: return PELLUCID_TEXEL(shadowImage3, texel);
+    case 4u: return PELLUCID_TEXEL(shadowImage4, texel);
+    case 5u: return PELLUCID_TEXEL(shadowImage5, texel);
+    case 6u: return PELLUCID_TEXEL(shadowImage6, texel);
+    default: return PELLUCID_TEXEL(shadowImage7, texel);
   }
 }
 
@@ -30,15 +43,15 @@ struct ShadowTexels {
   vec4 beside; // texels to the right, to the left, below and above
 };
 
-#define PELLUCID_TEXELS(image)                                                                                       \
-  ShadowTexels(texelFetch(image, texel, 0).x, vec4(texelFetch(image, right, 0).x, texelFetch(image, left, 0).x,      \
-                                                   texelFetch(image, below, 0).x, texelFetch(image, above, 0).x))
+#define PELLUCID_TEXELS(slot)                                                                       \
+  ShadowTexels(PELLUCID_TEXEL(slot, texel), vec4(PELLUCID_TEXEL(slot, right), PELLUCID_TEXEL(slot, left), \
+                                                 PELLUCID_TEXEL(slot, below), PELLUCID_TEXEL(slot, above)))
 
-// `most`: the last texel of the image.
-ShadowTexels shadowTexels(uint image, ivec2 texel, ivec2 most) {
-  ivec2 right = ivec2(min(texel.x + 1, most.x), texel.y), left = ivec2(max(texel.x - 1, 0), texel.y);
-  ivec2 below = ivec2(texel.x, min(texel.y + 1, most.y)), above = ivec2(texel.x, max(texel.y - 1, 0));
-  switch (image) {
+// `first`, `last`: texels of the tile, beyond which its border is read again.
+ShadowTexels shadowTexels(uint image, ivec2 texel, ivec2 first, ivec2 last) {
+  ivec2 right = ivec2(min(texel.x + 1, last.x), texel.y), left = ivec2(max(texel.x - 1, first.x), texel.y);
+  ivec2 below = ivec2(texel.x, min(texel.y + 1, last.y)), above = ivec2(texel.x, max(texel.y - 1, first.y));
+  switch (PELLUCID_SHADOW_SLOT(image)) {
     case 0u: return PELLUCID_TEXELS(shadowImage0);
     case 1u: return PELLUCID_TEXELS(shadowImage1);
     case 2u: return PELLUCID_TEXELS(shadowImage2);
@@ -51,5 +64,6 @@ ShadowTexels shadowTexels(uint image, ivec2 texel, ivec2 most) {
 }
 
 #undef PELLUCID_TEXELS
+#undef PELLUCID_TEXEL
 
 #endif

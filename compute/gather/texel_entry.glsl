@@ -7,11 +7,16 @@
 // terminators.
 const float kLeastCosine = 0.2;
 
+// Texels' sides that a depth may be off by so that neighbors still say a normal.
+const float kSureTexels = 3.0;
+
 // True where a point does not lie behind the surface that its pixel shows: the light that enters there is in the irradiance
-// that diffusion spreads. A surface that faces away cannot be seen, however thin the part is. `front`: of the pixel.
-bool cameraSees(ivec2 pixel, float front, float planar, vec3 normal, float tolerance) {
-  return insideRect(pixel) && dot(normal, viewRay(frame.camera, pixel).direction) < 0.0 && front > 0.0 &&
-         planar <= front + tolerance;
+// that diffusion spreads. A surface that faces away cannot be seen, however thin the part is. `front`: of the pixel;
+// `tolerance`: half a texel; `uncertain`: how far the point's depth may be off.
+bool cameraSees(ivec2 pixel, float front, float planar, vec3 normal, float tolerance, float uncertain) {
+  // Depths that are off by several texels' sides say no normal.
+  bool faces = dot(normal, viewRay(frame.camera, pixel).direction) < 0.0 || uncertain > kSureTexels * 2.0 * tolerance;
+  return insideRect(pixel) && faces && front > 0.0 && planar <= front + tolerance + uncertain;
 }
 
 // Front of a pixel that has a material; others show nothing, whatever depth they hold, as their light is not diffused.
@@ -81,6 +86,7 @@ struct Behind {
   bool opaque; // no light enters
 };
 
+// `texel`: of the image.
 Behind behind(EntryMapConstants map, ivec2 texel) {
   Behind b = Behind(kNoExit, 0u, false);
   if (map.occluder.y != 0u) {
@@ -93,8 +99,9 @@ Behind behind(EntryMapConstants map, ivec2 texel) {
 }
 
 // The entry of a surface that part `share` of the light enters. `normal`: not normalized, 0 where no neighbor says.
-uvec4 entryOf(float depth, float share, vec3 normal, vec3 toLight, ivec2 pixel, float front, float planar, float tolerance,
-              Behind b) {
+// `uncertain`: scene units along the light that the surface may be off by.
+uvec4 entryOf(float depth, float share, vec3 normal, vec3 toLight, ivec2 pixel, float front, float planar,
+               float tolerance, float uncertain, Behind b) {
   if (b.opaque) share = 0.0;
   EntryPoint r = EntryPoint(depth, toLight, share, 0.0, 1.0, b.exit, b.material);
   float squared = dot(normal, normal);
@@ -104,7 +111,7 @@ uvec4 entryOf(float depth, float share, vec3 normal, vec3 toLight, ivec2 pixel, 
     r.normal = cosine < 0.0 ? -normal : normal;
     r.cosine = max(abs(cosine), kLeastCosine);
   }
-  if (cameraSees(pixel, front, planar, r.normal, tolerance)) {
+  if (cameraSees(pixel, front, planar, r.normal, tolerance, uncertain)) {
     r.seen = share;
     r.hidden = 0.0;
   }
@@ -113,13 +120,49 @@ uvec4 entryOf(float depth, float share, vec3 normal, vec3 toLight, ivec2 pixel, 
 
 const ivec2 kNoPixel = ivec2(-1);
 
-uvec4 parallelEntry(EntryMapConstants map, ivec2 texel, ShadowTexels stored) {
+ivec2 firstTexel(EntryMapConstants map) { return ivec2(map.occluder.w & 0xFFFFu, map.occluder.w >> 16); }
+
+bvec4 neighborsHold(EntryMapConstants map, vec4 beside) {
+  return bvec4(shadowHolds(map.meta, beside.x), shadowHolds(map.meta, beside.y), shadowHolds(map.meta, beside.z),
+               shadowHolds(map.meta, beside.w));
+}
+
+// `texel`: of the tile, beyond which nothing is read.
+ShadowTexels texelsAt(EntryMapConstants map, ivec2 texel) {
+  ivec2 first = firstTexel(map);
+  return shadowTexels(map.meta.x, texel + first, first, first + ivec2(map.map.xy) - 1);
+}
+
+// See lib/shadow.glsl. A neighbor beyond the tile's border does not count: the texel itself stands in its place.
+DrawnDepth drawnDepth(EntryMapConstants map, ivec2 texel, ShadowTexels stored) {
+  ivec2 last = ivec2(map.map.xy) - 1;
+  bvec4 within = bvec4(texel.x < last.x, texel.x > 0, texel.y < last.y, texel.y > 0);
+  bvec4 holds = bvec4(uvec4(neighborsHold(map, stored.beside)) & uvec4(within));
+  return drawnDepth(map.offsets, stored.own, stored.beside, holds);
+}
+
+// What was drawn into a texel and its neighbors. Each has a bias by its own slope, and only then says a normal.
+ShadowTexels drawnTexels(EntryMapConstants map, ivec2 texel, ShadowTexels stored, out float uncertain) {
+  DrawnDepth own = drawnDepth(map, texel, stored);
+  uncertain = own.uncertain;
+  ShadowTexels drawn = ShadowTexels(own.depth, stored.beside);
+  for (int i = 0; i < 4; ++i) {
+    if (!shadowHolds(map.meta, stored.beside[i])) continue;
+    ivec2 axis = i < 2 ? ivec2(1, 0) : ivec2(0, 1);
+    ivec2 neighbor = clamp(texel + (i % 2 == 0 ? axis : -axis), ivec2(0), ivec2(map.map.xy) - 1);
+    drawn.beside[i] = map.offsets.y == 0.0 ? stored.beside[i] - map.offsets.x
+                                           : drawnDepth(map, neighbor, texelsAt(map, neighbor)).depth;
+  }
+  return drawn;
+}
+
+// stored: as drawn; `uncertain`: how far its own depth may be off.
+uvec4 parallelEntry(EntryMapConstants map, ivec2 texel, ShadowTexels stored, float uncertain) {
   vec4 beside = stored.beside;
-  bvec4 holds = bvec4(shadowHolds(map.meta, beside.x), shadowHolds(map.meta, beside.y), shadowHolds(map.meta, beside.z),
-                      shadowHolds(map.meta, beside.w));
+  bvec4 holds = neighborsHold(map, beside);
   vec4 grows = mix(vec4(2.0 * kNoDepth), (beside - stored.own) * map.ray.w, holds);
   vec2 p = vec2(texel) + 0.5;
-  float depth = stored.own * map.ray.w + (map.origin.w + p.x * map.stepX.w + p.y * map.stepY.w);
+  float depth = stored.own * map.ray.w + (map.origin.w + p.x * map.stepX.w + p.y * map.stepY.w) + map.offsets.z;
   if (!(abs(depth) < kNoDepth)) return kNoEntry;
   vec4 q = vec4(p, depth, 1.0);
   float w = dot(map.pixelW, q), planar = dot(map.planar, q);
@@ -134,42 +177,56 @@ uvec4 parallelEntry(EntryMapConstants map, ivec2 texel, ShadowTexels stored) {
   float y = parallelSlope(texel.y, int(map.map.y), map.stepY.w, squareY, map.across[0].w, ray2, grows.zw);
   vec3 normal = vec3(0.0);
   if (x < kNoDepth && y < kNoDepth) normal = map.normal.xyz + x * map.across[0].xyz + y * map.across[1].xyz;
-  Behind b = behind(map, texel);
+  ivec2 inImage = texel + firstTexel(map);
+  Behind b = behind(map, inImage);
   if (map.occluder.x != 0u) {
-    float exit = shadowTexel(map.occluder.x - 1u, texel);
+    float exit = shadowTexel(map.occluder.x - 1u, inImage);
     // Depths of entry points grow towards the light.
-    if (shadowHolds(map.meta, exit)) b.exit = max((stored.own - exit) * map.ray.w, 0.0);
+    if (shadowHolds(map.meta, exit)) b.exit = max((stored.own - exit) * map.ray.w + map.offsets.z, 0.0);
   }
-  return entryOf(depth, 1.0, normal, map.toLight.xyz, pixel, front, planar, map.seen.x + map.seen.y, b);
+  return entryOf(depth, 1.0, normal, map.toLight.xyz, pixel, front, planar, map.seen.x, uncertain * abs(map.ray.w), b);
 }
 
-uvec4 perspectiveEntry(EntryMapConstants map, ivec2 texel, ShadowTexels stored) {
-  float depth;
+// `stored`, `uncertain`: as parallelEntry takes them.
+uvec4 perspectiveEntry(EntryMapConstants map, ivec2 texel, ShadowTexels stored, float uncertain) {
+  float depth, beside;
   vec3 y = surfacePoint(map, texel, stored.own, depth);
   if (!(abs(depth) < kNoDepth)) return kNoEntry;
+  float scale = depth * depth;
+  float squareX = scale * dot(map.stepX.xyz, map.stepX.xyz), squareY = scale * dot(map.stepY.xyz, map.stepY.xyz);
+  vec3 normal = cross(entrySlope(map, texel, y, ivec2(1, 0), stored.beside.xy, squareX),
+                      entrySlope(map, texel, y, ivec2(0, 1), stored.beside.zw, squareY));
+  if (uncertain > 0.0) uncertain = min(distance(surfacePoint(map, texel, stored.own + uncertain, beside), y), kNoDepth);
+  if (map.offsets.z > 0.0) {
+    // Not beyond the light.
+    float part = max(1.0 - map.offsets.z / max(distance(y, map.ray.xyz), 1.0e-12), 1.0e-3);
+    y = map.ray.xyz + part * (y - map.ray.xyz);
+    depth *= part;
+  }
   ivec2 pixel;
   if (!projectToPixel(frame.camera, y, pixel)) pixel = kNoPixel;
   float front = frontAround(pixel);
   vec3 toLight = map.ray.xyz - y;
-  float distanceTo = length(toLight), scale = depth * depth;
+  float distanceTo = length(toLight);
   toLight /= max(distanceTo, 1.0e-12);
   float share = lightShare(lights[map.map.w], toLight, distanceTo);
-  float squareX = scale * dot(map.stepX.xyz, map.stepX.xyz), squareY = scale * dot(map.stepY.xyz, map.stepY.xyz);
-  vec3 normal = cross(entrySlope(map, texel, y, ivec2(1, 0), stored.beside.xy, squareX),
-                      entrySlope(map, texel, y, ivec2(0, 1), stored.beside.zw, squareY));
-  float tolerance = abs(depth) * map.seen.x + map.seen.y;
-  Behind b = behind(map, texel);
+  float tolerance = abs(depth) * map.seen.x;
+  ivec2 inImage = texel + firstTexel(map);
+  Behind b = behind(map, inImage);
   if (map.occluder.x != 0u) {
-    float exit = shadowTexel(map.occluder.x - 1u, texel), exitDepth;
+    float exit = shadowTexel(map.occluder.x - 1u, inImage), exitDepth;
     vec3 e = surfacePoint(map, texel, exit, exitDepth);
     if (shadowHolds(map.meta, exit) && abs(exitDepth) < kNoDepth) b.exit = distance(e, y);
   }
-  return entryOf(depth, share, normal, toLight, pixel, front, y.z * frame.camera.range.x, tolerance, b);
+  return entryOf(depth, share, normal, toLight, pixel, front, y.z * frame.camera.range.x, tolerance, uncertain, b);
 }
 
+// `texel`: of the map's tile.
 uvec4 entryOf(EntryMapConstants map, ivec2 texel) {
-  ShadowTexels stored = shadowTexels(map.meta.x, texel, ivec2(map.map.xy) - 1);
+  ShadowTexels stored = texelsAt(map, texel);
   if (!shadowHolds(map.meta, stored.own)) return kNoEntry;
-  if (map.meta.z != 0u) return perspectiveEntry(map, texel, stored);
-  return parallelEntry(map, texel, stored);
+  float uncertain = 0.0;
+  if (any(notEqual(map.offsets.xyw, vec3(0.0)))) stored = drawnTexels(map, texel, stored, uncertain);
+  if (map.meta.z != 0u) return perspectiveEntry(map, texel, stored, uncertain);
+  return parallelEntry(map, texel, stored, uncertain);
 }

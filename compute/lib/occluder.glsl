@@ -23,8 +23,8 @@ bool casterIsMedium(float stored, float scale, uint material) { return abs(store
 // surface is off by that surface's slope between it and the texel's center, half a texel's diagonal away; one texel more
 // stands for curvature. `distanceTo`: of the light; `cosine`: between the receiver's normal and the light; 0: not known.
 float exitTolerance(ShadowConstants shadow, float distanceTo, float cosine) {
-  float side = uintBitsToFloat(shadow.occluder.w) * (shadow.meta.z != 0u ? distanceTo : 1.0);
-  return shadow.depth.y + side * min(1.0 + slopeOf(cosine), kMostExitTexels);
+  float side = shadow.depth.y * (shadow.meta.z != 0u ? distanceTo : 1.0);
+  return side * min(1.0 + slopeOf(cosine), kMostExitTexels);
 }
 
 // True where air or another body lies between a receiver and the stored surface. `fromExit`: from the exit to the receiver,

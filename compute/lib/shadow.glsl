@@ -1,4 +1,5 @@
-// The one place that projects a receiver into a shadow map, for occlusion and thickness alike.
+// The one place that projects a receiver into a shadow map, for occlusion and thickness alike. Include it after declaring
+//   float shadowTexel(uint image, ivec2 texel); // of the image and layer in ShadowConstants::meta.x
 #ifndef PELLUCID_SHADOW_GLSL
 #define PELLUCID_SHADOW_GLSL
 
@@ -7,9 +8,11 @@
 
 struct ShadowReceiver {
   vec4 clip;
-  ivec2 texel;
+  ivec2 texel; // of the image
   bool inside; // false: the map says nothing about this point, so no light comes through it
 };
+
+ivec2 firstTexel(ShadowConstants shadow) { return ivec2(shadow.occluder.w & 0xFFFFu, shadow.occluder.w >> 16); }
 
 ShadowReceiver projectReceiver(ShadowConstants shadow, vec3 x) {
   vec4 clip = shadow.clipFromView * vec4(x, 1.0);
@@ -18,7 +21,7 @@ ShadowReceiver projectReceiver(ShadowConstants shadow, vec3 x) {
   ivec2 texel = ivec2(floor((ndc * 0.5 + 0.5) * shadow.depth.zw));
   bool inside = inFront && all(lessThanEqual(abs(ndc), vec2(1.0))) &&
                 all(lessThan(texel, ivec2(shadow.depth.zw)));
-  return ShadowReceiver(clip, texel, inside);
+  return ShadowReceiver(clip, texel + firstTexel(shadow), inside);
 }
 
 // True where the texel holds a surface; false for NaN. meta: ShadowConstants::meta.
@@ -26,6 +29,58 @@ bool shadowHolds(uvec4 meta, float stored) {
   if (meta.y == PELLUCID_SHADER_DEPTH_DEVICE)
     return stored >= 0.0 && stored <= 1.0 && stored != uintBitsToFloat(meta.w);
   return stored > 0.0 && stored < kNoDepth;
+}
+
+// The depth of the surface that was drawn, without the biases that the drawing added; in units of the stored depth.
+struct DrawnDepth {
+  float depth;
+  float uncertain; // how far it may be off
+};
+
+// Part of a slope that the nearer neighbor may miss: between the last texels before a sphere's limb it is 27 %.
+const float kMissedSlope = 0.3;
+
+// A texel's change of depth along an axis, x: to the nearer of its two neighbors, as the other may lie across an edge;
+// 0 where there is none. y: how much that may miss, as far as the other neighbor says so.
+vec2 stepAlong(float own, vec2 beside, bvec2 holds) {
+  vec2 change = vec2(1.0, -1.0) * (beside - own), apart = mix(vec2(3.0e38), abs(change), holds);
+  float least = min(apart.x, apart.y);
+  if (!any(holds)) return vec2(0.0);
+  return vec2(least, max(kMissedSlope * least, all(holds) ? abs(change.x - change.y) : least));
+}
+
+// How far a texel lies behind both of its neighbors along an axis, the way that a bias moves it.
+float pitAlong(float own, vec2 beside, bvec2 holds, float way) {
+  vec2 behind = way * (own - beside);
+  return all(holds) ? max(min(behind.x, behind.y), 0.0) : 0.0;
+}
+
+// offsets: ShadowConstants::offsets; beside: texels to the right, to the left, below and above; `holds`: which of them hold
+// a surface of the tile.
+DrawnDepth drawnDepth(vec4 offsets, float own, vec4 beside, bvec4 holds) {
+  if (offsets.y == 0.0) return DrawnDepth(own - offsets.x, 0.5 * offsets.w);
+  // A triangle that the light grazes is moved far beyond its neighbors; a pit one texel wide is more likely that.
+  float way = sign(offsets.y);
+  own -= way * max(pitAlong(own, beside.xy, holds.xy, way), pitAlong(own, beside.zw, holds.zw, way));
+  vec2 x = stepAlong(own, beside.xy, holds.xy), y = stepAlong(own, beside.zw, holds.zw);
+  return DrawnDepth(own - offsets.x - offsets.y * max(x.x, y.x),
+                    0.5 * offsets.w + abs(offsets.y) * (offsets.w + max(x.y, y.y)));
+}
+
+// `texel`: of the image, which holds `stored`.
+DrawnDepth drawnDepth(ShadowConstants shadow, ivec2 texel, float stored) {
+  vec4 beside = vec4(stored);
+  bvec4 holds = bvec4(false);
+  if (shadow.offsets.y != 0.0) { // neighbors are read for maps with such a bias alone
+    ivec2 first = firstTexel(shadow), last = first + ivec2(shadow.depth.zw) - 1;
+    for (int i = 0; i < 4; ++i) {
+      ivec2 axis = i < 2 ? ivec2(1, 0) : ivec2(0, 1), neighbor = texel + (i % 2 == 0 ? axis : -axis);
+      if (any(lessThan(neighbor, first)) || any(greaterThan(neighbor, last))) continue;
+      beside[i] = shadowTexel(shadow.meta.x, neighbor);
+      holds[i] = shadowHolds(shadow.meta, beside[i]);
+    }
+  }
+  return drawnDepth(shadow.offsets, stored, beside, holds);
 }
 
 // Scene units along the light ray from the stored surface to the receiver x; negative: the surface is
@@ -47,6 +102,19 @@ float lightThickness(ShadowConstants shadow, ShadowReceiver receiver, vec3 x, In
     return (planar - stored) / max(planar, 1.0e-12) * light.distanceTo;
   }
   return light.distanceTo - stored;
+}
+
+// Scene units along the receiver's light ray per unit of the stored depth, at that depth: the derivative of lightThickness.
+float lengthPerDepth(ShadowConstants shadow, ShadowReceiver receiver, vec3 x, Incident light, float stored) {
+  bool perspective = shadow.meta.z != 0u;
+  if (shadow.meta.y == PELLUCID_SHADER_DEPTH_DEVICE) {
+    if (!perspective) return abs(shadow.depth.x);
+    float total = shadow.depth.x + stored * receiver.clip.w - receiver.clip.z;
+    return total * shadow.depth.x > 0.0 ? abs(receiver.clip.w * shadow.depth.x) / (total * total) * light.distanceTo : 0.0;
+  }
+  if (shadow.meta.y != PELLUCID_SHADER_DEPTH_VIEW_Z) return 1.0;
+  if (!perspective) return abs(shadow.depth.x);
+  return light.distanceTo / max(dot(shadow.planar, vec4(x, 1.0)), 1.0e-12); // inside the map: above 0
 }
 
 #endif

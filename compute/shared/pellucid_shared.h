@@ -67,7 +67,7 @@ using glm::vec4;
 // Lights and shadow maps of one dispatch are uniform buffers, which are cached apart from what images pass
 // through. 16 KiB is what every device binds.
 #define PELLUCID_DISPATCH_LIGHTS 128
-#define PELLUCID_DISPATCH_SHADOWS 128
+#define PELLUCID_DISPATCH_SHADOWS 112
 
 // FrameConstants::flags.x
 #define PELLUCID_FLAG_BACK_DEPTH 1u
@@ -174,17 +174,21 @@ struct LightConstants {
   vec4 radiance;  // color times intensity
   vec4 cone;      // KHR_lights_punctual: x: scale, y: offset of the cosine; z: scale, w: offset of the
                   // minimum dot's (m + x) / (m + 1)
-  uvec4 meta;     // x: type; y: first of shadows[]; z: how many
+  uvec4 meta;     // x: type; y: first of shadows[]; z: how many; w: 1: they hold back faces
 };
 
 struct ShadowConstants {
   mat4 clipFromView; // light clip from camera view space
   vec4 planar;       // dot(planar, (x, 1)): planar distance from the light, for DEPTH_VIEW_Z
   vec4 depth;        // x: perspective: clip z at the light; orthographic: scene units along the
-                     // light per clip z or per planar unit; y: bias; z, w: texels
-  uvec4 meta;        // x: image; y: encoding; z: 1 perspective; w: texel value that holds nothing (bits)
-  uvec4 occluder;    // x: image of the exit depth + 1; y: of the caster's material + 1; 0: none. Bits: z: scale of the
-                     // material; w: side of a texel, scene units; perspective: per unit of distance
+                     // light per clip z or per planar unit; y: side of a texel, scene units; perspective: per unit of
+                     // distance; z, w: texels
+  vec4 offsets;      // of what is stored. x: constant, y: per steepest step from texel to texel, z: scene units along the
+                     // light's ray, w: smallest step
+  uvec4 meta;        // x: image, from bit 8 on its layer; y: encoding; z: 1 perspective; w: texel value that holds
+                     // nothing (bits)
+  uvec4 occluder;    // x: image and layer of the exit depth + 1; y: of the caster's material + 1; 0: none. z: scale of the
+                     // material (bits); w: first texel of the tile: x, from bit 16 on y
 };
 
 // Constants of the light-space gather; see lib/gather.glsl. rgb: per channel.
@@ -214,7 +218,8 @@ struct EntryMapConstants {
                // stored w + affine; perspective: w / (stored - affine), or stored / affine where planar
   uvec4 meta;  // as ShadowConstants::meta
   uvec4 map;   // x, y: texels; z: how many a side for one entry; w: the light, of lights[]
-  vec4 seen;   // x + y: how far behind what the camera sees a point may lie, scene units; perspective: x times depth
+  vec4 seen;   // x: how far behind what the camera sees a point may lie, scene units; perspective: per depth
+  vec4 offsets; // as ShadowConstants::offsets
   vec4 toLight; // xyz: directional: unit
   uvec4 occluder; // as ShadowConstants::occluder
   // Directional: dot products with (p, depth, 1) say what the camera sees it on: pixelX / pixelW, pixelY / pixelW and

@@ -50,7 +50,7 @@ vec3 resultAt(ivec2 pixel, Texels t, float front, uint m) {
         visible += entering;
         if (through.visible > 0.0 && thickness.b < 0.0) thickness.b = through.thickness * mm;
         LightSpace l = lightSpace(light, incidentLight(light, s.position), s, s.position);
-        if (l.inside && l.holds && thickness.g < 0.0) thickness.g = max(l.thickness - l.bias, 0.0) * mm;
+        if (l.inside && l.holds && light.meta.w == 0u && thickness.g < 0.0) thickness.g = max(l.thickness, 0.0) * mm;
       }
     }
   }

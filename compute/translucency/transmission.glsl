@@ -1,6 +1,6 @@
 // Light through one surface point, for any shader stage. Include it after declaring, from whatever bindings
 // the shader has: FrameConstants frame, ShadowConstants shadows[], MaterialConstants materials[], and
-//   float shadowTexel(uint image, ivec2 texel); // of the image in ShadowConstants::meta.x
+//   float shadowTexel(uint image, ivec2 texel); // of the image and layer in ShadowConstants::meta.x
 // They are names and not parameters because a buffer's array cannot be passed without a copy.
 #ifndef PELLUCID_TRANSMISSION_GLSL
 #define PELLUCID_TRANSMISSION_GLSL
@@ -37,8 +37,10 @@ struct LightSpace {
   bool inside, holds; // the map contains the point; its texel has a surface
   bool enters;        // there, and nothing but the surface's own medium is known to lie between it and the point
   float thickness;    // scene units along the light ray; negative: the surface is beyond the point
-  float bias;
+  float tolerance;    // that a point of the stored surface may be off by
 };
+
+float receiverCosine(Surface s, Incident incident) { return s.hasNormal ? dot(s.normal, incident.toLight) : 0.0; }
 
 bool lightEntersMedium(ShadowConstants shadow, ShadowReceiver receiver, Incident incident, Surface s, vec3 x) {
   if (hasCasterImage(shadow) && !casterIsMedium(shadowTexel(shadow.occluder.y - 1u, receiver.texel),
@@ -46,9 +48,10 @@ bool lightEntersMedium(ShadowConstants shadow, ShadowReceiver receiver, Incident
     return false;
   if (!hasExitImage(shadow)) return true;
   float stored = shadowTexel(shadow.occluder.x - 1u, receiver.texel);
-  float cosine = s.hasNormal ? dot(s.normal, incident.toLight) : 0.0;
-  return !shadowHolds(shadow.meta, stored) || !liesBeyondExit(lightThickness(shadow, receiver, x, incident, stored),
-                                                               exitTolerance(shadow, incident.distanceTo, cosine));
+  float tolerance = exitTolerance(shadow, incident.distanceTo, receiverCosine(s, incident));
+  if (shadow.offsets.w > 0.0) tolerance += shadow.offsets.w * lengthPerDepth(shadow, receiver, x, incident, stored);
+  return !shadowHolds(shadow.meta, stored) ||
+         !liesBeyondExit(lightThickness(shadow, receiver, x, incident, stored), tolerance);
 }
 
 // In the first of the light's maps that contains x, a point on or behind the surface s.
@@ -59,8 +62,11 @@ LightSpace lightSpace(LightConstants light, Incident incident, Surface s, vec3 x
     if (!receiver.inside) continue;
     float stored = shadowTexel(shadow.meta.x, receiver.texel);
     bool holds = shadowHolds(shadow.meta, stored);
+    DrawnDepth drawn = drawnDepth(shadow, receiver.texel, stored);
+    float tolerance = exitTolerance(shadow, incident.distanceTo, receiverCosine(s, incident)) +
+                      drawn.uncertain * lengthPerDepth(shadow, receiver, x, incident, drawn.depth);
     return LightSpace(true, holds, holds && lightEntersMedium(shadow, receiver, incident, s, x),
-                      lightThickness(shadow, receiver, x, incident, stored), shadow.depth.y);
+                      lightThickness(shadow, receiver, x, incident, drawn.depth) + shadow.offsets.z, tolerance);
   }
   return LightSpace(false, false, false, -1.0, 0.0);
 }
@@ -84,10 +90,11 @@ float hiddenCosine(LightConstants light, Surface s, vec3 toLight) {
 // docs/design.md says why each source is what it is. `mapped`: whether the light has shadow maps.
 Transmitted lightTransmission(LightConstants light, Surface s, bool mapped) {
   Incident incident = incidentLight(light, s.position);
-  if (mapped && !hasFlag(PELLUCID_FLAG_CAMERA_THICKNESS)) {
+  bool holdsExits = light.meta.w != 0u; // which do not say where light enters
+  if (mapped && !holdsExits && !hasFlag(PELLUCID_FLAG_CAMERA_THICKNESS)) {
     LightSpace l = lightSpace(light, incident, s, s.position);
     vec3 arriving = incident.irradiance * hiddenCosine(light, s, incident.toLight);
-    return Transmitted(max(l.thickness - l.bias, 0.0), arriving, l.enters ? 1.0 : 0.0);
+    return Transmitted(max(l.thickness, 0.0), arriving, l.enters ? 1.0 : 0.0);
   }
   if (s.chord < 0.0) return Transmitted(-1.0, vec3(0.0), 0.0);
   vec3 back = s.position + s.chord * s.view;
@@ -98,7 +105,8 @@ Transmitted lightTransmission(LightConstants light, Surface s, bool mapped) {
   float visible = 1.0;
   if (mapped) {
     LightSpace l = lightSpace(light, incident, s, back);
-    visible = l.enters && l.thickness <= l.bias ? 1.0 : 0.0;
+    // Where light enters it has not come to the face that it leaves by.
+    visible = l.enters && l.thickness <= (holdsExits ? -l.tolerance : l.tolerance) ? 1.0 : 0.0;
   }
   return Transmitted(thickness, incident.irradiance * hiddenCosine(light, s, incident.toLight), visible);
 }

@@ -26,6 +26,7 @@ struct DepthImage {
   PellucidDepthEncoding encoding = PELLUCID_DEPTH_VIEW_Z;
 };
 
+// The fields of PellucidShadowMap of these names. Images have the size of the map's tile.
 struct ShadowMap {
   DepthImage depth;
   Matrix clipFromWorld = kIdentity;
@@ -33,6 +34,12 @@ struct ShadowMap {
   // Of depth's size, or empty: not given. What the fields of PellucidShadowMap are.
   Image exitDepth;                           // one channel, in depth's encoding
   std::vector<std::uint8_t> casterMaterial;  // index; 0: opaque, or nothing there
+  PellucidMapFaces faces = PELLUCID_FACES_FRONT;
+  double depthBiasConstant = 0, depthBiasSlope = 0, offsetLength = 0, depthStep = 0;
+  // Maps of one number are tiles and layers of one image; -1: an image of its own.
+  int sharedImage = -1;
+  std::array<int, 2> offset = {0, 0};
+  int layer = 0;
 };
 
 struct Light {

@@ -7,6 +7,7 @@
 #include <glm/glm.hpp>
 #include <numbers>
 #include <sstream>
+#include <tuple>
 
 #include "capture/blender.h"
 #include "capture/exr.h"
@@ -214,20 +215,46 @@ MaterialSource readMaterial(const Field& field) {
              field.shown());
 }
 
+constexpr int kMostTexels = 65536, kMostLayers = 2047;  // of the module and of devices
+
+std::array<int, 2> pairOf(const Field& field, int least) {
+  const std::vector<Field> items = field.items();
+  if (items.size() != 2) field.fail("needs 2 whole numbers, has " + std::to_string(items.size()));
+  return {items[0].integer(least, kMostTexels), items[1].integer(least, kMostTexels)};
+}
+
 ShadowMap readShadowMap(const Field& field) {
   field.allowKeys({"file", "part", "channel", "constant", "encoding", "clipFromWorld", "viewFromWorld",
-                   "exit", "casterMaterial"});
+                   "exit", "casterMaterial", "offset", "size", "layer", "faces", "depthBiasConstant",
+                   "depthBiasSlope", "offsetLength", "depthStep"});
   ShadowMap map;
   map.depth.encoding = shadowEncoding(field);
   map.clipFromWorld = invertible(field["clipFromWorld"]);
   if (field.has("viewFromWorld") || map.depth.encoding != PELLUCID_DEPTH_DEVICE)
     map.viewFromWorld = rigid(field["viewFromWorld"]);
+  if (const auto faces = field.find("faces"))
+    map.faces = faces->choice({"front", "back"}) == 1 ? PELLUCID_FACES_BACK : PELLUCID_FACES_FRONT;
+  constexpr double kMost = 1e15, kMostSlope = 1e6;  // of the module
+  if (const auto bias = field.find("depthBiasConstant")) map.depthBiasConstant = bias->number(-kMost, kMost);
+  if (const auto bias = field.find("depthBiasSlope"))
+    map.depthBiasSlope = bias->number(-kMostSlope, kMostSlope);
+  if (const auto length = field.find("offsetLength")) map.offsetLength = length->number(0, kMost);
+  if (const auto step = field.find("depthStep")) map.depthStep = step->number(0, kMost);
+  if (const auto layer = field.find("layer")) map.layer = layer->integer(0, kMostLayers);
+  if (const auto offset = field.find("offset")) {
+    if (!field.has("size")) offset->fail("needs \"size\", the tile's size");
+    map.offset = pairOf(*offset, 0);
+  }
   return map;
 }
 
 ShadowSources readShadowSources(const Field& map, const BufferReader& read, int materialCount) {
   ShadowSources sources;
   sources.depth = read(map, 1);
+  if (const auto size = map.find("size")) {
+    if (sources.depth.isConstant()) size->fail("a constant has no tiles");
+    sources.tile = pairOf(*size, 1);
+  }
   if (const auto exit = map.find("exit")) {
     exit->allowKeys({"file", "part", "channel", "constant"});
     sources.exit = read(*exit, 1);
@@ -348,6 +375,26 @@ Truth readTruth(const Field& field) {
   return truth;
 }
 
+// Maps with a layer share one array image; those with a size share the image of that part and channel.
+void numberSharedImages(const Field& lights, Manifest& manifest) {
+  using Key = std::tuple<std::filesystem::path, int, std::vector<std::string>>;
+  std::map<Key, int> numbers;
+  const std::vector<Field> all = lights.items();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const std::vector<Field> maps = shadowMapsOf(all[i]);
+    for (std::size_t k = 0; k < maps.size(); ++k) {
+      const ShadowSources& sources = manifest.shadowMaps[i][k];
+      Key key;
+      if (!maps[k].has("layer")) {
+        if (!sources.tile) continue;
+        key = {sources.depth.file, sources.depth.part.value_or(-1), sources.depth.channels};
+      }
+      manifest.capture.lights[i].shadowMaps[k].sharedImage =
+          numbers.emplace(key, static_cast<int>(numbers.size())).first->second;
+    }
+  }
+}
+
 void parse(const Field& root, const BufferReader& read, Manifest& manifest) {
   // The version comes first: another version's keys are not "unknown".
   if (const Field version = root["pellucid"]; version.number() != kVersion)
@@ -378,6 +425,7 @@ void parse(const Field& root, const BufferReader& read, Manifest& manifest) {
         manifest.shadowMaps.back().push_back(
             readShadowSources(map, read, static_cast<int>(capture.materials.size())));
     }
+    numberSharedImages(*lights, manifest);
   }
   if (const auto truth = root.find("truth")) {
     truth->allowKeys(

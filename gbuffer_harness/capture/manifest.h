@@ -2,6 +2,7 @@
 // read.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -36,6 +37,7 @@ struct ShadowSources {
   BufferSource depth;
   std::optional<BufferSource> exit, casterMaterial;
   MaterialMap casterMaterialMap;
+  std::optional<std::array<int, 2>> tile;  // size, from ShadowMap::offset on; absent: the whole image
 };
 
 struct Manifest {

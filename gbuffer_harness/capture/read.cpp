@@ -1,5 +1,6 @@
 #include "capture/read.h"
 
+#include <algorithm>
 #include <cmath>
 #include <deque>
 #include <limits>
@@ -124,6 +125,20 @@ private:
   std::map<std::filesystem::path, ExrFile> files_;
 };
 
+// The map's tile of an image that it shares.
+void crop(const BufferSource& source, const ShadowMap& map, const std::array<int, 2>& size, Image& image) {
+  if (image.empty()) return;
+  const auto [x, y] = map.offset;
+  if (x > image.width - size[0] || y > image.height - size[1])
+    throw InputError(source.file.string(), source.field,
+                     "the tile of " + sizeText(size[0], size[1]) + " texels at (" + std::to_string(x) + ", " +
+                         std::to_string(y) + ") is outside the image of " +
+                         sizeText(image.width, image.height));
+  Image tile(size[0], size[1], 1);
+  for (int row = 0; row < size[1]; ++row) std::copy_n(image.at(x, y + row), size[0], tile.at(0, row));
+  image = std::move(tile);
+}
+
 std::vector<std::uint8_t> materialIndices(const Manifest& manifest, const BufferSource& source,
                                           const MaterialMap& map, const Image& stored) {
   const std::size_t count = manifest.capture.materials.size();
@@ -177,6 +192,17 @@ Capture readImages(const Manifest& manifest) {
     }
   loader.load(capture.width, capture.height);
 
+  auto tile = casters.begin();
+  for (std::size_t i = 0; i < capture.lights.size(); ++i)
+    for (std::size_t k = 0; k < capture.lights[i].shadowMaps.size(); ++k) {
+      const ShadowSources& sources = manifest.shadowMaps[i][k];
+      ShadowMap& map = capture.lights[i].shadowMaps[k];
+      Image* const caster = sources.casterMaterial ? &*tile++ : nullptr;
+      if (!sources.tile) continue;
+      crop(sources.depth, map, *sources.tile, map.depth.image);
+      crop(sources.depth, map, *sources.tile, map.exitDepth);
+      if (caster) crop(sources.depth, map, *sources.tile, *caster);
+    }
   capture.material = materialIndices(manifest, manifest.material, manifest.materialMap, material);
   auto caster = casters.begin();
   for (std::size_t i = 0; i < capture.lights.size(); ++i)

@@ -1,12 +1,16 @@
 #include "capture/write.h"
 
+#include <algorithm>
 #include <deque>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "capture/exr.h"
 #include "capture/manifest.h"
+#include "capture/shadow_images.h"
 
 namespace pellucid::harness {
 
@@ -112,6 +116,69 @@ Image imageOf(const std::vector<std::uint8_t>& indices, int width, int height) {
   return image;
 }
 
+// Shadow maps, each image and layer a part. What parts point to lives here.
+class ShadowWriter {
+public:
+  explicit ShadowWriter(const std::vector<Light>& lights) : shared_(shadowImages(lights)) {}
+
+  // The manifest's entry of the next map in order.
+  Json add(const ShadowMap& map, const std::string& name, std::vector<ExrPart>& parts) {
+    const std::array<int, 3>& of = shared_.ofMap[next_++];
+    const Json& written = part({of[0], map.layer}, of, name, parts);
+    Json entry = written["depth"];
+    entry["encoding"] = encodingName(map.depth.encoding);
+    entry["clipFromWorld"] = map.clipFromWorld;
+    if (map.viewFromWorld) entry["viewFromWorld"] = *map.viewFromWorld;
+    if (map.faces == PELLUCID_FACES_BACK) entry["faces"] = "back";
+    const std::pair<const char*, double> offsets[] = {{"depthBiasConstant", map.depthBiasConstant},
+                                                      {"depthBiasSlope", map.depthBiasSlope},
+                                                      {"offsetLength", map.offsetLength},
+                                                      {"depthStep", map.depthStep}};
+    for (const auto& [key, value] : offsets)
+      if (value != 0) entry[key] = value;
+    const ShadowImageSource& image = shared_.images[static_cast<std::size_t>(of[0])];
+    if (map.sharedImage >= 0) {
+      entry["offset"] = map.offset;
+      entry["size"] = {map.depth.image.width, map.depth.image.height};
+      if (image.layers > 1) entry["layer"] = map.layer;
+    }
+    if (!map.exitDepth.empty()) entry["exit"] = written["exit"];
+    if (!map.casterMaterial.empty()) entry["casterMaterial"] = written["caster"];
+    return entry;
+  }
+
+private:
+  using Place = std::pair<int, int>;  // image and layer
+
+  const Json& part(const Place& place, const std::array<int, 3>& of, const std::string& name,
+                   std::vector<ExrPart>& parts) {
+    const auto found = written_.find(place);
+    if (found != written_.end()) return found->second;
+    PartWriter writer{{name, {}, {}}, static_cast<int>(parts.size())};
+    Json& json = written_[place];
+    const auto layer = [&](int image) -> const Image& {
+      return images_.emplace_back(shared_.images[static_cast<std::size_t>(image)].layer(place.second));
+    };
+    json["depth"] = writer.add(layer(of[0]), "shadow", "Z", ExrFormat::Float);
+    // All maps of the image, not only the first.
+    int exit = -1, caster = -1;
+    for (const std::array<int, 3>& other : shared_.ofMap)
+      if (other[0] == of[0]) {
+        exit = std::max(exit, other[1]);
+        caster = std::max(caster, other[2]);
+      }
+    if (exit >= 0) json["exit"] = writer.add(layer(exit), "exit", "Z", ExrFormat::Float);
+    if (caster >= 0) json["caster"] = writer.add(layer(caster), "caster", "I", ExrFormat::Uint);
+    parts.push_back(std::move(writer.part));
+    return json;
+  }
+
+  ShadowImages shared_;
+  std::size_t next_ = 0;
+  std::map<Place, Json> written_;
+  std::deque<Image> images_;
+};
+
 }  // namespace
 
 void writeCapture(const Capture& capture, const std::filesystem::path& exr, ColorFormat color) {
@@ -136,27 +203,17 @@ void writeCapture(const Capture& capture, const std::filesystem::path& exr, Colo
   if (capture.truth) manifest["truth"] = truthJson(*capture.truth, screen, format);
 
   std::vector<ExrPart> parts = {std::move(screen.part)};
-  std::deque<Image> casters;  // parts point to them
+  ShadowWriter shadows(capture.lights);
   manifest["lights"] = Json::array();
   for (std::size_t i = 0; i < capture.lights.size(); ++i) {
     const Light& light = capture.lights[i];
     Json json = lightJson(light);
     const bool several = light.shadowMaps.size() > 1;
     for (std::size_t k = 0; k < light.shadowMaps.size(); ++k) {
-      const ShadowMap& map = light.shadowMaps[k];
       std::string name = "shadowMap" + std::to_string(i);
       if (several) name.append(".").append(std::to_string(k));
-      PartWriter writer{{name, {}, {}}, static_cast<int>(parts.size())};
       Json& entry = several ? json["shadowMaps"].emplace_back() : json["shadowMap"];
-      entry = writer.addDepth(map.depth, "shadow");
-      entry["clipFromWorld"] = map.clipFromWorld;
-      if (map.viewFromWorld) entry["viewFromWorld"] = *map.viewFromWorld;
-      if (!map.exitDepth.empty()) entry["exit"] = writer.add(map.exitDepth, "exit", "Z", ExrFormat::Float);
-      if (!map.casterMaterial.empty()) {
-        casters.push_back(imageOf(map.casterMaterial, map.depth.image.width, map.depth.image.height));
-        entry["casterMaterial"] = writer.add(casters.back(), "caster", "I", ExrFormat::Uint);
-      }
-      parts.push_back(std::move(writer.part));
+      entry = shadows.add(light.shadowMaps[k], name, parts);
     }
     manifest["lights"].push_back(std::move(json));
   }

@@ -72,6 +72,22 @@ void refuseOptionsOf(const CLI::App& command, const char* group, const char* nee
       throw UsageError(option->get_name() + ": needs " + needs);
 }
 
+ShadowDrawing shadowDrawing(const CaptureOptions& options) {
+  ShadowDrawing drawing;
+  drawing.cull = options.shadowCull;
+  drawing.bits = options.shadowBits;
+  drawing.placement = options.shadowAtlas   ? MapPlacement::Atlas
+                      : options.shadowArray ? MapPlacement::Array
+                                            : MapPlacement::Separate;
+  if (options.shadowDepthBias.empty()) return drawing;
+  const std::vector<std::string> factors = split(options.shadowDepthBias, ',');
+  if (factors.size() != 2)
+    throw UsageError("--shadow-depth-bias: \"" + options.shadowDepthBias + "\" is not CONSTANT,SLOPE");
+  drawing.depthBiasConstant = parseNumber<double>("--shadow-depth-bias", factors[0]);
+  drawing.depthBiasSlope = parseNumber<double>("--shadow-depth-bias", factors[1]);
+  return drawing;
+}
+
 void addCommonOptions(CLI::App& command, CaptureOptions& options) {
   command.add_option("--size", options.size, "WIDTHxHEIGHT in pixels")->capture_default_str();
   const std::map<std::string, bool> projections = {{"perspective", false}, {"orthographic", true}};
@@ -135,6 +151,27 @@ void addModelOptions(CLI::App& command, CaptureOptions& options, SceneUse use) {
                   "shadow maps of a point light: 1, 6 or auto, 6 where 1 cannot see the whole model")
       ->check(CLI::IsMember({"auto", "1", "6"}))
       ->capture_default_str()
+      ->group(group);
+  const std::map<std::string, MapCull> culls = {
+      {"none", MapCull::None}, {"back", MapCull::Back}, {"front", MapCull::Front}};
+  command
+      .add_option("--shadow-cull", options.shadowCull,
+                  "faces that shadow maps leave out: none (default), back or front")
+      ->transform(CLI::CheckedTransformer(culls, CLI::ignore_case))
+      ->group(group);
+  command
+      .add_option("--shadow-depth-bias", options.shadowDepthBias,
+                  "CONSTANT,SLOPE: factors of vkCmdSetDepthBias, away from the light")
+      ->group(group);
+  command.add_option("--shadow-bits", options.shadowBits, "of a shadow map's depth: 16, 24 or 32, a float")
+      ->check(CLI::IsMember({16, 24, 32}))
+      ->capture_default_str()
+      ->group(group);
+  CLI::Option* atlas =
+      command.add_flag("--shadow-atlas", options.shadowAtlas, "all shadow maps as tiles of one image")
+          ->group(group);
+  command.add_flag("--shadow-array", options.shadowArray, "all shadow maps as layers of one image")
+      ->excludes(atlas)
       ->group(group);
   CLI::Option* device = command.add_option("--device", options.device,
                                            "part of the Vulkan device's name; default: the fastest kind");
@@ -233,6 +270,7 @@ CaptureModel captureModel(const CaptureOptions& options, const std::vector<doubl
   result.raster.pointMaps = options.pointMaps == "1"   ? PointMaps::One
                             : options.pointMaps == "6" ? PointMaps::Six
                                                        : PointMaps::Auto;
+  result.raster.shadow = shadowDrawing(options);
   GltfOptions gltf;
   gltf.metersPerUnit = parseUnit(options.unit);
   for (const std::string& text : options.presets) {

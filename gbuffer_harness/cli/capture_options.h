@@ -33,6 +33,10 @@ struct CaptureOptions {
   std::optional<double> ior;  // of all materials
   std::string environment;    // "": none
   BackFace backFace = BackFace::Nearest;
+  MapCull shadowCull = MapCull::None;
+  std::string shadowDepthBias;  // "": none
+  int shadowBits = 32;
+  bool shadowAtlas = false, shadowArray = false;
 };
 
 // A glTF file made ready for rasterize(): its lights are those to capture with.

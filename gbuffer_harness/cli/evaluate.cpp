@@ -40,7 +40,6 @@ std::vector<Model> models() {
   ReplaySettings none, light, camera;
   none.features = PELLUCID_FEATURE_DIFFUSION;
   camera.translucency.thicknessSource = PELLUCID_THICKNESS_CAMERA;
-  camera.translucency.shadowBias = thesisSettings().translucency.shadowBias;
   return {{"no translucency", none},          {"thesis", thesisSettings()},
           {"camera-space thickness", camera}, {"light-space thickness", light},
           {"gather, 8 samples", gather(8)},   {"gather, 16 samples", gather(16)},
@@ -69,7 +68,8 @@ Image allTexels(const Capture& capture, const std::vector<PellucidMaterial>& mat
 void writePicture(const std::string& path, const Capture& capture,
                   const std::vector<PellucidMaterial>& materials, Replayer& replayer) {
   std::vector<Image> images;
-  for (const ReplaySettings& settings : {thesisSettings(), ReplaySettings(), gather(PELLUCID_GATHER_BY_QUALITY)})
+  for (const ReplaySettings& settings :
+       {thesisSettings(), ReplaySettings(), gather(PELLUCID_GATHER_BY_QUALITY)})
     images.push_back(rgb(replayer.run(capture, materials, settings).output));
   images.push_back(capture.truth->image);
   std::vector<const Image*> pointers;

@@ -160,11 +160,6 @@ const std::map<std::string, Key> kKeys = {
       [](const auto& key, const auto& value, ReplaySettings& s) {
         s.translucency.transmittanceFilter = reals<3>(key, value);
       }}},
-    {"bias",
-     {"of shadow maps, scene units",
-      [](const auto& key, const auto& value, ReplaySettings& s) {
-        s.translucency.shadowBias = real(key, value);
-      }}},
     {"gather",
      {"samples of the shadow map, 0..64; default: by the quality",
       [](const auto& key, const auto& value, ReplaySettings& s) {
@@ -351,7 +346,6 @@ std::string settingsJson(const ReplaySettings& s) {
                                  {"chord", t.chordThickness ? "1" : "0"},
                                  {"max-thickness", t.maximumThickness},
                                  {"filter", t.transmittanceFilter},
-                                 {"bias", t.shadowBias},
                                  {"gather-spacing", t.gatherSpacing},
                                  {"face", t.faceVector},
                                  {"up", t.upAxis},

@@ -39,7 +39,7 @@ Texel texelOf(VkFormat format) {
 }
 
 // From any layout and use to GENERAL, ready for everything: the harness values clarity over overlap.
-void barrier(VkCommandBuffer commandBuffer, VkImage image, VkImageLayout from) {
+void barrier(VkCommandBuffer commandBuffer, VkImage image, VkImageLayout from, int layer = 0) {
   VkImageMemoryBarrier b{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER};
   b.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
   b.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
@@ -47,27 +47,28 @@ void barrier(VkCommandBuffer commandBuffer, VkImage image, VkImageLayout from) {
   b.newLayout = VK_IMAGE_LAYOUT_GENERAL;
   b.srcQueueFamilyIndex = b.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
   b.image = image;
-  b.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+  b.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, static_cast<uint32_t>(layer), 1};
   vkCmdPipelineBarrier(commandBuffer, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
                        0, 0, nullptr, 0, nullptr, 1, &b);
 }
 
-VkBufferImageCopy wholeImage(int width, int height) {
+VkBufferImageCopy wholeImage(int width, int height, int layer = 0) {
   VkBufferImageCopy region{};
-  region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+  region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, static_cast<uint32_t>(layer), 1};
   region.imageExtent = {static_cast<uint32_t>(width), static_cast<uint32_t>(height), 1};
   return region;
 }
 
 }  // namespace
 
-GpuImage::GpuImage(Device& device, int width, int height, VkFormat format, VkImageUsageFlags more)
+GpuImage::GpuImage(Device& device, int width, int height, VkFormat format, VkImageUsageFlags more, int layers)
     : device_(device), width_(width), height_(height), format_(format) {
   VkImageCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO};
   info.imageType = VK_IMAGE_TYPE_2D;
   info.format = format;
   info.extent = {static_cast<uint32_t>(width), static_cast<uint32_t>(height), 1};
-  info.mipLevels = info.arrayLayers = 1;
+  info.mipLevels = 1;
+  info.arrayLayers = static_cast<uint32_t>(std::max(layers, 1));
   info.samples = VK_SAMPLE_COUNT_1_BIT;
   info.usage =
       VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | more;
@@ -88,9 +89,9 @@ GpuImage::GpuImage(Device& device, int width, int height, VkFormat format, VkIma
   check(vkBindImageMemory(device.handle(), image_, memory_, 0), "vkBindImageMemory");
   VkImageViewCreateInfo view{VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
   view.image = image_;
-  view.viewType = VK_IMAGE_VIEW_TYPE_2D;
+  view.viewType = layers > 0 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
   view.format = format;
-  view.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+  view.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, info.arrayLayers};
   check(vkCreateImageView(device.handle(), &view, nullptr, &view_), "vkCreateImageView");
 }
 
@@ -106,20 +107,20 @@ VkDeviceSize GpuImage::bytes() const {
          static_cast<VkDeviceSize>(height_ * texel.channels * texel.bytes);
 }
 
-void GpuImage::copyFrom(VkCommandBuffer commandBuffer, VkBuffer buffer) const {
-  barrier(commandBuffer, image_, VK_IMAGE_LAYOUT_UNDEFINED);
-  const VkBufferImageCopy region = wholeImage(width_, height_);
+void GpuImage::copyFrom(VkCommandBuffer commandBuffer, VkBuffer buffer, int layer) const {
+  barrier(commandBuffer, image_, VK_IMAGE_LAYOUT_UNDEFINED, layer);
+  const VkBufferImageCopy region = wholeImage(width_, height_, layer);
   vkCmdCopyBufferToImage(commandBuffer, buffer, image_, VK_IMAGE_LAYOUT_GENERAL, 1, &region);
-  barrier(commandBuffer, image_, VK_IMAGE_LAYOUT_GENERAL);
+  barrier(commandBuffer, image_, VK_IMAGE_LAYOUT_GENERAL, layer);
 }
 
-void GpuImage::transfer(const void* source) {
+void GpuImage::transfer(const void* source, int layer) {
   const HostBuffer staging(device_, bytes(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
   std::memcpy(staging.mapped(), source, static_cast<size_t>(bytes()));
-  device_.run([&](VkCommandBuffer commandBuffer) { copyFrom(commandBuffer, staging.handle()); });
+  device_.run([&](VkCommandBuffer commandBuffer) { copyFrom(commandBuffer, staging.handle(), layer); });
 }
 
-void GpuImage::upload(const Image& source) {
+void GpuImage::upload(const Image& source, int layer) {
   if (source.width != width_ || source.height != height_)
     throw DeviceError("upload of " + std::to_string(source.width) + " x " + std::to_string(source.height) +
                       " into an image of " + std::to_string(width_) + " x " + std::to_string(height_));
@@ -130,7 +131,7 @@ void GpuImage::upload(const Image& source) {
       const float* p = source.data.data() + i * static_cast<size_t>(source.channels);
       words[i] = glm::packF2x11_1x10(glm::vec3(p[0], p[1], p[2]));
     }
-    return transfer(words.data());
+    return transfer(words.data(), layer);
   }
   std::vector<float> full(source.pixels() * static_cast<size_t>(texel.channels));
   for (size_t i = 0; i < source.pixels(); ++i)
@@ -138,22 +139,22 @@ void GpuImage::upload(const Image& source) {
       full[i * static_cast<size_t>(texel.channels) + static_cast<size_t>(c)] =
           c < source.channels ? source.data[i * static_cast<size_t>(source.channels) + static_cast<size_t>(c)]
                               : (c == 3 ? 1.0f : 0.0f);
-  if (texel.bytes == 4) return transfer(full.data());
+  if (texel.bytes == 4) return transfer(full.data(), layer);
   if (format_ == VK_FORMAT_R8G8B8A8_SNORM) {
     std::vector<glm::uint8> bytes(full.size());
     std::transform(full.begin(), full.end(), bytes.begin(), [](float v) { return glm::packSnorm1x8(v); });
-    return transfer(bytes.data());
+    return transfer(bytes.data(), layer);
   }
   std::vector<glm::uint16> half(full.size());
   std::transform(full.begin(), full.end(), half.begin(), [](float v) { return glm::packHalf1x16(v); });
-  transfer(half.data());
+  transfer(half.data(), layer);
 }
 
-void GpuImage::upload(const std::vector<std::uint8_t>& source) {
+void GpuImage::upload(const std::vector<std::uint8_t>& source, int layer) {
   if (source.size() != static_cast<size_t>(width_) * static_cast<size_t>(height_))
     throw DeviceError("upload of " + std::to_string(source.size()) + " bytes into an image of " +
                       std::to_string(width_) + " x " + std::to_string(height_));
-  transfer(source.data());
+  transfer(source.data(), layer);
 }
 
 void GpuImage::clear(std::uint8_t byte) {

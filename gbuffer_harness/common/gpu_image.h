@@ -11,16 +11,19 @@ class GpuImage {
 public:
   // Usable as sampled and storage image, for transfers, and as `more` says. Formats: R32_SFLOAT,
   // R16G16B16A16_SFLOAT, R32G32B32A32_SFLOAT, R8G8B8A8_SNORM; not storage: R32G32_SFLOAT, R8_UINT, R8_UNORM.
-  GpuImage(Device& device, int width, int height, VkFormat format, VkImageUsageFlags more = 0);
+  // layers: 0: a 2D view, else a view of all layers of an array.
+  GpuImage(Device& device, int width, int height, VkFormat format, VkImageUsageFlags more = 0,
+           int layers = 0);
   ~GpuImage();
   GpuImage(const GpuImage&) = delete;
   GpuImage& operator=(const GpuImage&) = delete;
 
   // Converts to the image's format. Channels that the source lacks become 0, alpha 1.
-  void upload(const Image& source);
-  void upload(const std::vector<std::uint8_t>& source);  // R8_UINT, R8_UNORM: bytes as they are stored
-  void clear(std::uint8_t byte = 0);                     // every byte of every texel
-  void fill(std::uint64_t seed);                         // pseudo-random bits
+  void upload(const Image& source, int layer = 0);
+  // R8_UINT, R8_UNORM: bytes as they are stored.
+  void upload(const std::vector<std::uint8_t>& source, int layer = 0);
+  void clear(std::uint8_t byte = 0);  // every byte of every texel
+  void fill(std::uint64_t seed);      // pseudo-random bits
   Image download() const;
 
   // How an engine hands it to Pellucid.
@@ -29,8 +32,8 @@ public:
 
 private:
   VkDeviceSize bytes() const;
-  void transfer(const void* source);
-  void copyFrom(VkCommandBuffer commandBuffer, VkBuffer buffer) const;
+  void transfer(const void* source, int layer = 0);
+  void copyFrom(VkCommandBuffer commandBuffer, VkBuffer buffer, int layer = 0) const;
 
   Device& device_;
   int width_, height_;

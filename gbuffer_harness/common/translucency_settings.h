@@ -20,7 +20,6 @@ struct TranslucencySettings {
   std::array<float, 3> transmittanceFilter = {1, 1, 1};
   std::uint32_t gatherSamples = 0;
   std::uint32_t gatherSpacing = 0;
-  float shadowBias = 0; // scene units, of every shadow map
   std::vector<float> minimumDotTable; // entries of the azimuth, or rows of the square octahedral map
   std::array<float, 3> faceVector = {0, 0, 1}, upAxis = {0, 1, 0}, objectCenter = {0, 0, 0};
   uint32_t materialMarkBit = 0;

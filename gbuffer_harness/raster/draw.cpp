@@ -22,7 +22,6 @@ namespace pellucid::harness {
 
 namespace {
 
-constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
 // Of shaders/draw.glsl.
 constexpr std::uint32_t kOwnBindings = 4, kBehindFront = 1, kBehindCaster = 2;
 
@@ -158,8 +157,10 @@ void addPlanned(const PlannedInputs& planned, DescriptorWrites& writes) {
 }  // namespace
 
 RenderTarget::RenderTarget(Device& device, int width, int height, const std::vector<Color>& colors,
-                           std::optional<float> clearDepth)
-    : extent_{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)},
+                           std::optional<float> clearDepth, VkFormat depthFormat)
+    : device_(device),
+      extent_{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)},
+      depthFormat_(depthFormat),
       depthMemory_(device),
       depthImage_(device),
       depthView_(device),
@@ -189,13 +190,18 @@ RenderTarget::RenderTarget(Device& device, int width, int height, const std::vec
 }
 
 void RenderTarget::createDepthBuffer(Device& device) {
+  VkFormatProperties properties;
+  vkGetPhysicalDeviceFormatProperties(device.physicalDevice(), depthFormat_, &properties);
+  if (!(properties.optimalTilingFeatures & VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT))
+    throw DeviceError(device.description() + " has no depth buffers of VkFormat " +
+                      std::to_string(depthFormat_));
   VkImageCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO};
   info.imageType = VK_IMAGE_TYPE_2D;
-  info.format = kDepthFormat;
+  info.format = depthFormat_;
   info.extent = {extent_.width, extent_.height, 1};
   info.mipLevels = info.arrayLayers = 1;
   info.samples = VK_SAMPLE_COUNT_1_BIT;
-  info.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+  info.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
   check(vkCreateImage(device.handle(), &info, nullptr, depthImage_.receive()), "vkCreateImage");
   VkMemoryRequirements needs;
   vkGetImageMemoryRequirements(device.handle(), depthImage_, &needs);
@@ -207,7 +213,7 @@ void RenderTarget::createDepthBuffer(Device& device) {
   VkImageViewCreateInfo view{VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
   view.image = depthImage_;
   view.viewType = VK_IMAGE_VIEW_TYPE_2D;
-  view.format = kDepthFormat;
+  view.format = depthFormat_;
   view.subresourceRange = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 1, 0, 1};
   check(vkCreateImageView(device.handle(), &view, nullptr, depthView_.receive()), "vkCreateImageView");
 }
@@ -229,7 +235,7 @@ void RenderTarget::createRenderPass(Device& device, const std::vector<Color>& co
   };
   for (const Color& color : colors) attach(color.format, VK_ATTACHMENT_STORE_OP_STORE);
   const bool hasDepth = clears_.size() > colors.size();
-  if (hasDepth) attach(kDepthFormat, VK_ATTACHMENT_STORE_OP_DONT_CARE);
+  if (hasDepth) attach(depthFormat_, VK_ATTACHMENT_STORE_OP_STORE);
 
   VkSubpassDescription subpass{};
   subpass.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS;
@@ -250,6 +256,33 @@ void RenderTarget::createRenderPass(Device& device, const std::vector<Color>& co
   info.dependencyCount = static_cast<std::uint32_t>(std::size(dependencies));
   info.pDependencies = dependencies;
   check(vkCreateRenderPass(device.handle(), &info, nullptr, renderPass_.receive()), "vkCreateRenderPass");
+}
+
+Image RenderTarget::depth() const {
+  const std::size_t texels = static_cast<std::size_t>(extent_.width) * extent_.height;
+  const std::size_t bytes = depthFormat_ == VK_FORMAT_D16_UNORM ? 2 : 4;
+  const HostBuffer staging(device_, texels * bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+  VkBufferImageCopy region{};
+  region.imageSubresource = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 0, 1};
+  region.imageExtent = {extent_.width, extent_.height, 1};
+  device_.run([&](VkCommandBuffer commandBuffer) {
+    vkCmdCopyImageToBuffer(commandBuffer, depthImage_, VK_IMAGE_LAYOUT_GENERAL, staging.handle(), 1, &region);
+    const VkMemoryBarrier toHost{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr, VK_ACCESS_TRANSFER_WRITE_BIT,
+                                 VK_ACCESS_HOST_READ_BIT};
+    vkCmdPipelineBarrier(commandBuffer, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1,
+                         &toHost, 0, nullptr, 0, nullptr);
+  });
+  Image result(static_cast<int>(extent_.width), static_cast<int>(extent_.height), 1);
+  const auto* read = static_cast<const unsigned char*>(staging.mapped());
+  for (std::size_t i = 0; i < texels; ++i) {
+    std::uint32_t word = 0;
+    std::memcpy(&word, read + i * bytes, bytes);
+    result.data[i] = depthFormat_ == VK_FORMAT_D16_UNORM ? static_cast<float>(word) / 65535.0f
+                     : depthFormat_ == VK_FORMAT_D32_SFLOAT
+                         ? std::bit_cast<float>(word)
+                         : static_cast<float>((word & 0xFFFFFFu) / 16777215.0);
+  }
+  return result;
 }
 
 void RenderTarget::begin(VkCommandBuffer commandBuffer) const {
@@ -358,6 +391,9 @@ void UploadedModel::createPipeline(Pipeline& pipeline, const RenderTarget& targe
   raster.cullMode = state.cull;
   raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
   raster.lineWidth = 1;
+  raster.depthBiasEnable = state.depthBiasConstant != 0 || state.depthBiasSlope != 0;
+  raster.depthBiasConstantFactor = state.depthBiasConstant;
+  raster.depthBiasSlopeFactor = state.depthBiasSlope;
   VkPipelineMultisampleStateCreateInfo samples{VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO};
   samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
   VkPipelineDepthStencilStateCreateInfo depth{VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO};

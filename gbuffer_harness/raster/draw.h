@@ -38,12 +38,16 @@ public:
     VkFormat format;
     VkClearColorValue clear;
   };
+  // depthFormat: of that buffer, D16_UNORM, X8_D24_UNORM_PACK32 or D32_SFLOAT. Throws DeviceError for one
+  // that the device does not draw to.
   RenderTarget(Device& device, int width, int height, const std::vector<Color>& colors,
-               std::optional<float> clearDepth);
+               std::optional<float> clearDepth, VkFormat depthFormat = VK_FORMAT_D32_SFLOAT);
 
   GpuImage& image(std::size_t i) const { return *images_[i]; }
   VkRenderPass renderPass() const { return renderPass_; }
   std::size_t colorCount() const { return images_.size(); }
+  // The depth buffer as it was stored, one channel, 0..1.
+  Image depth() const;
 
   // Clears, and waits for everything before; what is drawn is ready for everything after.
   void begin(VkCommandBuffer commandBuffer) const;
@@ -53,7 +57,9 @@ private:
   void createDepthBuffer(Device& device);
   void createRenderPass(Device& device, const std::vector<Color>& colors);
 
+  Device& device_;
   VkExtent2D extent_;
+  VkFormat depthFormat_;
   std::vector<VkClearValue> clears_;
   std::vector<std::unique_ptr<GpuImage>> images_;
   Owned<VkDeviceMemory, vkFreeMemory> depthMemory_;
@@ -68,8 +74,9 @@ enum class FragmentShader { Surface, Depth, Caster, Count, Transmit };
 struct PipelineState {
   FragmentShader shader = FragmentShader::Surface;
   VkCullModeFlags cull = VK_CULL_MODE_NONE;
-  std::optional<VkCompareOp> depthTest;  // writes depth; absent: no depth buffer
-  bool add = false;                      // colors add up instead of replacing
+  std::optional<VkCompareOp> depthTest;             // writes depth; absent: no depth buffer
+  bool add = false;                                 // colors add up instead of replacing
+  float depthBiasConstant = 0, depthBiasSlope = 0;  // factors of vkCmdSetDepthBias
 
   auto operator<=>(const PipelineState&) const = default;
 };

@@ -10,6 +10,14 @@ inline VkCompareOp nearer(bool reversed) { return reversed ? VK_COMPARE_OP_GREAT
 inline float farDepth(bool reversed) { return reversed ? 0.0f : 1.0f; }
 inline VkClearColorValue clearTo(float value) { return {.float32 = {value, value, value, value}}; }
 
+// Images of RenderTargets that shaders/depth.frag and shaders/caster.frag write.
+constexpr std::size_t kPlanar = 0, kDeviceDepth = 1, kCaster = 2;
+
+// What shaders/depth.frag writes, cleared to "nothing there".
+inline std::vector<RenderTarget::Color> depthColors(bool reversed) {
+  return {{VK_FORMAT_R32_SFLOAT, clearTo(kNoDepth)}, {VK_FORMAT_R32_SFLOAT, clearTo(farDepth(reversed))}};
+}
+
 struct FrontTarget {
   RenderTarget target;
 

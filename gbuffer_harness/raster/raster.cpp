@@ -10,17 +10,14 @@
 #include "raster/framing.h"
 #include "raster/front.h"
 #include "raster/irradiance.h"
+#include "raster/shadow.h"
 #include "scene/vector.h"
-#include "shared/pellucid_shared.h"
 
 namespace pellucid::harness {
 
 namespace {
 
 constexpr int kLargestSide = 8192;
-
-// Images of RenderTargets that shaders/depth.frag and shaders/caster.frag write.
-constexpr std::size_t kPlanar = 0, kDeviceDepth = 1, kCaster = 2;
 
 void checkSide(const Model& model, const char* field, int value, int smallest) {
   if (value < smallest || value > kLargestSide)
@@ -41,11 +38,6 @@ Matrix projection(const ModelCamera& camera, const RasterOptions& options) {
   }
   return camera.orthographic ? orthographic(camera.height * aspect, camera.height, range)
                              : perspective(camera.verticalFov, aspect, range);
-}
-
-// What shaders/depth.frag writes, cleared to "nothing there".
-std::vector<RenderTarget::Color> depthColors(bool reversed) {
-  return {{VK_FORMAT_R32_SFLOAT, clearTo(kNoDepth)}, {VK_FORMAT_R32_SFLOAT, clearTo(farDepth(reversed))}};
 }
 
 // Back depth in both encodings and the faces counted along each pixel's ray.
@@ -75,55 +67,6 @@ bool isClosed(const float* count, BackFace backFace) {
   return count[0] == 0 || (backFace == BackFace::Nearest && count[1] == 1);
 }
 
-DepthImage encodeShadow(const RenderTarget& target, const ShadowImage& view, PellucidDepthEncoding encoding) {
-  if (encoding == PELLUCID_DEPTH_DEVICE) return {target.image(kDeviceDepth).download(), encoding};
-  DepthImage depth{target.image(kPlanar).download(), encoding};
-  if (encoding != PELLUCID_DEPTH_DISTANCE || !view.perspective) return depth;
-  // Length of the ray through a texel per planar distance.
-  const double tangent = 1 / view.clipFromView[0];
-  for (int y = 0; y < view.size; ++y)
-    for (int x = 0; x < view.size; ++x) {
-      const double u = ((x + 0.5) / view.size * 2 - 1) * tangent;
-      const double v = ((y + 0.5) / view.size * 2 - 1) * tangent;
-      float& value = *depth.image.at(x, y);
-      if (value < kNoDepth) value = static_cast<float>(value * std::sqrt(1 + u * u + v * v));
-    }
-  return depth;
-}
-
-// A light's view of the model: its shadow map's surface, and with `casters` what casts the shadow.
-std::unique_ptr<RenderTarget> drawShadow(Device& device, const UploadedModel& model, const DrawView& view,
-                                         int size, bool casters) {
-  std::vector<RenderTarget::Color> colors = depthColors(view.reversedDepth);
-  if (casters) colors.push_back({VK_FORMAT_R32G32_SFLOAT, clearTo(0)});
-  auto target = std::make_unique<RenderTarget>(device, size, size, colors, farDepth(view.reversedDepth));
-  model.draw(*target, view,
-             {casters ? FragmentShader::Caster : FragmentShader::Depth, VK_CULL_MODE_NONE,
-              nearer(view.reversedDepth), false},
-             VK_CULL_MODE_NONE);
-  return target;
-}
-
-// The nearest back face behind the map's surface, of the object that is entered there.
-DepthImage exitDepth(Device& device, const UploadedModel& model, const DrawView& view,
-                     const RenderTarget& shadow, const ShadowImage& image, PellucidDepthEncoding encoding) {
-  const RenderTarget target(device, image.size, image.size, depthColors(view.reversedDepth),
-                            farDepth(view.reversedDepth));
-  EarlierPass earlier{&shadow.image(kDeviceDepth)};
-  earlier.caster = &shadow.image(kCaster);
-  model.draw(target, view, {FragmentShader::Depth, VK_CULL_MODE_FRONT_BIT, nearer(view.reversedDepth), false},
-             VK_CULL_MODE_FRONT_BIT, earlier);
-  return encodeShadow(target, image, encoding);
-}
-
-std::vector<std::uint8_t> casterMaterial(const RenderTarget& shadow) {
-  const Image caster = shadow.image(kCaster).download();
-  std::vector<std::uint8_t> materials(caster.pixels());
-  for (std::size_t i = 0; i < materials.size(); ++i)
-    materials[i] = static_cast<std::uint8_t>(caster.data[2 * i]);
-  return materials;
-}
-
 // Adds the light to `irradiance` and returns it with its shadow maps.
 Light drawLight(Device& device, const Model& model, const UploadedModel& uploaded, const Light& light,
                 const RasterOptions& options, IrradiancePass& irradiance) {
@@ -132,27 +75,9 @@ Light drawLight(Device& device, const Model& model, const UploadedModel& uploade
     if (light.radius == 0) irradiance.add(light, {});
     return result;
   }
-  constexpr bool kReversed = true;
-  std::vector<std::unique_ptr<RenderTarget>> targets;
-  std::vector<ShadowImage> shadows;
-  const std::vector<LightView> views = frameLight(model, light, options.pointMaps, options.shadowSize);
-  // Of six maps they would be more images than a dispatch binds.
-  const bool casters = 3 * views.size() <= PELLUCID_SHADOW_IMAGE_COUNT;
-  for (const LightView& lightView : views) {
-    const DrawView view{lightView.clipFromView, lightView.viewFromWorld, kReversed};
-    targets.push_back(drawShadow(device, uploaded, view, options.shadowSize, casters));
-    const RenderTarget& target = *targets.back();
-    shadows.push_back({&target.image(kPlanar), options.shadowSize, view.clipFromView, view.viewFromWorld,
-                       light.type != PELLUCID_LIGHT_DIRECTIONAL});
-    ShadowMap& map = result.shadowMaps.emplace_back();
-    map.depth = encodeShadow(target, shadows.back(), options.shadowEncoding);
-    map.clipFromWorld = multiply(view.clipFromView, view.viewFromWorld);
-    map.viewFromWorld = view.viewFromWorld;
-    if (!casters) continue;
-    map.exitDepth = exitDepth(device, uploaded, view, target, shadows.back(), options.shadowEncoding).image;
-    map.casterMaterial = casterMaterial(target);
-  }
-  if (light.radius == 0) irradiance.add(light, shadows);
+  const DrawnShadows drawn = drawShadows(device, model, uploaded, light, options);
+  result.shadowMaps = drawn.maps;
+  if (light.radius == 0) irradiance.add(light, drawn.images);
   return result;
 }
 
@@ -218,6 +143,7 @@ RasterResult rasterize(Device& device, const Model& model, const ModelCamera& ca
   checkSide(model, "shadowSize", options.shadowSize, 0);
   if (options.depthEncoding == PELLUCID_DEPTH_DISTANCE)
     throw InputError(model.name, "depthEncoding", "distance is an encoding of shadow maps only");
+  checkShadowDrawing(model, options);
   boundsOf(model);  // refuses an empty model
 
   RasterResult result;
@@ -241,6 +167,7 @@ RasterResult rasterize(Device& device, const Model& model, const ModelCamera& ca
                             view);
   for (const Light& light : model.lights)
     capture.lights.push_back(drawLight(device, model, uploaded, light, options, irradiance));
+  placeShadowMaps(options.shadow.placement, capture.lights);
   capture.irradiance = irradiance.irradiance();
   addWarnings(result, options);
   return result;

@@ -15,6 +15,24 @@ enum class BackFace {
   Farthest  // the thickness of everything, hollows included
 };
 
+enum class MapCull { None, Back, Front };
+
+enum class MapPlacement {
+  Separate,  // an image for each map
+  Atlas,     // tiles of one image
+  Array      // layers of one image
+};
+
+// How the maps that a capture keeps are drawn, as engines do. The irradiance's own map stays plain.
+struct ShadowDrawing {
+  MapCull cull = MapCull::None;
+  // Factors of vkCmdSetDepthBias that move away from the light, -1e3..1e3: the harness's depths are reversed,
+  // so that both are drawn, and kept in the capture, with the other sign.
+  double depthBiasConstant = 0, depthBiasSlope = 0;
+  int bits = 32;  // of the depth buffer: 16, 24 or 32, a float
+  MapPlacement placement = MapPlacement::Separate;
+};
+
 struct RasterOptions {
   int width = 512, height = 512;                                // pixels, 1..8192
   bool reversedZ = true;                                        // device depth 1 at the near plane
@@ -25,6 +43,7 @@ struct RasterOptions {
   int shadowSize = 1024;  // texels across a shadow map, 0..8192; 0: no shadow maps and no shadows
   PellucidDepthEncoding shadowEncoding = PELLUCID_DEPTH_DEVICE;
   PointMaps pointMaps = PointMaps::Auto;
+  ShadowDrawing shadow;  // other than plain in DEVICE encoding alone; placement in any
 };
 
 struct RasterResult {

@@ -15,6 +15,9 @@ const PellucidDispatch& fusedDispatch(const FrameRun& run, const std::string& na
     throw InputError(name, "thicknessSource", "light-space thickness does not need the back faces");
   if (run.frame().gatherSamples > 0 && run.frame().gatherSamples != PELLUCID_GATHER_BY_QUALITY)
     throw InputError(name, "gatherSamples", "gathering does not need the back faces");
+  for (std::uint32_t i = 0; i < run.frame().shadowMapCount; ++i)
+    if (run.frame().shadowMaps[i].layer > 0)
+      throw InputError(name, "lights", "have shadow maps in layers; the back-face pass reads 2D images");
   if (plan.activeLights == 0) throw InputError(name, "lights", "none can contribute");
   // Lights are read from the first dispatch on, so all are in it when it has as many as are active.
   if (plan.dispatches[0].pushConstants[1] != plan.activeLights)

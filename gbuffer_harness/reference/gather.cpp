@@ -23,6 +23,8 @@ constexpr double kSteepestOwn = 4;
 constexpr double kMostConvexity = 0.1;
 // Texels: a point on a surface and the pixel that shows it are apart by the slope within them.
 constexpr double kSeenTolerance = 0.5;
+// Texels that a depth may be off by so that its neighbors still say a normal.
+constexpr double kSureTexels = 3;
 
 bool contains(const ShadowMap& map, const glm::dvec3& point) {
   const glm::dvec4 clip = toMatrix(map.clipFromWorld) * glm::dvec4(point, 1);
@@ -32,7 +34,7 @@ bool contains(const ShadowMap& map, const glm::dvec3& point) {
 }  // namespace
 
 Gather::Gather(const Capture& capture, const SurfaceReader& surfaces,
-               const std::vector<PellucidMaterial>& materials, double shadowBias, bool diffused)
+               const std::vector<PellucidMaterial>& materials, bool diffused)
     : capture_(capture), surfaces_(surfaces), mm_(surfaces.millimetersPerUnit()), diffused_(diffused) {
   for (const PellucidMaterial& m : materials) {
     kernels_.emplace_back(m);
@@ -41,9 +43,10 @@ Gather::Gather(const Capture& capture, const SurfaceReader& surfaces,
   for (const Light& light : capture.lights) {
     Blocks& blocks = lights_.emplace_back();
     std::vector<ShadowView>& views = views_.emplace_back();
+    if (holdsBackFaces(light)) continue;
     for (const ShadowMap& map : light.shadowMaps) views.emplace_back(light, map);
     for (std::size_t map = 0; map < light.shadowMaps.size(); ++map) {
-      Blocks more = collect(light, map, shadowBias);
+      Blocks more = collect(light, map);
       std::move(more.begin(), more.end(), std::back_inserter(blocks));
     }
   }
@@ -51,13 +54,17 @@ Gather::Gather(const Capture& capture, const SurfaceReader& surfaces,
 
 // What faces away cannot be seen, however thin the part is; what faces the camera is seen unless
 // something is clearly in front of it.
-bool Gather::cameraSees(const glm::dvec3& world, const glm::dvec3& normal, double tolerance) const {
+bool Gather::cameraSees(const glm::dvec3& world, const glm::dvec3& normal, double tolerance,
+                        double off) const {
   const glm::dmat4 viewFromWorld = glm::inverse(surfaces_.worldFromView());
   const glm::dvec3 view(viewFromWorld * glm::dvec4(world, 1));
   const Camera& camera = surfaces_.camera();
   const double planar = camera.planarDepth(view);
   if (!(planar > 0)) return false;
-  if (glm::dot(glm::dmat3(viewFromWorld) * normal, camera.rayThrough(view)) > 0) return false;
+  const glm::dvec3 ray = camera.rayThrough(view);
+  const bool sure = off <= kSureTexels * tolerance / kSeenTolerance;
+  if (sure && glm::dot(glm::dmat3(viewFromWorld) * normal, ray) > 0) return false;
+  tolerance += off;
   const glm::dvec2 pixel = glm::floor(camera.project(view));
   if (!(pixel.x >= 0 && pixel.y >= 0 && pixel.x < capture_.width && pixel.y < capture_.height)) return false;
   const std::optional<double> front =
@@ -66,7 +73,7 @@ bool Gather::cameraSees(const glm::dvec3& world, const glm::dvec3& normal, doubl
   return front && planar <= *front + tolerance;
 }
 
-Gather::Blocks Gather::collect(const Light& light, std::size_t mapIndex, double bias) const {
+Gather::Blocks Gather::collect(const Light& light, std::size_t mapIndex) const {
   const ShadowMap& map = light.shadowMaps[mapIndex];
   const int width = map.depth.image.width, height = map.depth.image.height;
   const ShadowTexels texels(light, map);
@@ -116,7 +123,8 @@ Gather::Blocks Gather::collect(const Light& light, std::size_t mapIndex, double 
           double exit = INFINITY;
           if (!map.exitDepth.empty())
             if (const auto e = texels.at(x, y, *map.exitDepth.at(x, y))) exit = mm_ * glm::distance(*e, *p);
-          const bool seen = cameraSees(*p, normal, kSeenTolerance * std::sqrt(across) + bias);
+          const bool seen =
+              cameraSees(*p, normal, kSeenTolerance * std::sqrt(across), texels.uncertain(x, y));
           if (seen && !diffused_) continue;
           const double area = across * mm_ * mm_;
           const double cosine = std::max(glm::dot(normal, arrival.toLight), kLeastCosine);

@@ -25,11 +25,11 @@ struct Gathered {
 
 class Gather {
 public:
-  // Keeps references to the camera's surfaces. shadowBias: scene units. `diffused`: what light the camera
-  // sees has been diffused; else only what enters hidden counts. Throws InputError when a map lacks a matrix
-  // or a material has no kernel.
+  // Keeps references to the camera's surfaces. `diffused`: what light the camera sees has been diffused; else
+  // only what enters hidden counts. Lights whose maps hold back faces bring nothing. Throws InputError when a
+  // map lacks a matrix or a material has no kernel.
   Gather(const Capture& capture, const SurfaceReader& surfaces,
-         const std::vector<PellucidMaterial>& materials, double shadowBias, bool diffused = true);
+         const std::vector<PellucidMaterial>& materials, bool diffused = true);
 
   // `material`: index into the list. Pixels without a normal see every texel as opposite. Safe from several
   // threads.
@@ -69,7 +69,7 @@ private:
   };
 
   // Of one of the light's maps; a texel that an earlier one contains counts there.
-  Blocks collect(const Light& light, std::size_t map, double bias) const;
+  Blocks collect(const Light& light, std::size_t map) const;
   Sums sums(const Blocks& blocks, const Exit& exit, const Place& place) const;
   Place placeOf(std::size_t light, const Exit& exit) const;
   // Part of what enters at a texel that reaches the exit through the medium.
@@ -79,7 +79,8 @@ private:
   double meanCurvature(const Surface& surface, double reach) const;
   // 1 - R(h) / rho of the body there, weighted with how opposite its faces are.
   glm::dvec3 thinLoss(const Surface& surface, std::size_t material) const;
-  bool cameraSees(const glm::dvec3& world, const glm::dvec3& normal, double tolerance) const;
+  // off: scene units along the light that the point may be off by, besides the tolerance.
+  bool cameraSees(const glm::dvec3& world, const glm::dvec3& normal, double tolerance, double off) const;
 
   const Capture& capture_;
   const SurfaceReader& surfaces_;

@@ -5,6 +5,7 @@
 
 #include "common/error.h"
 #include "reference/camera.h"
+#include "reference/drawn_depth.h"
 
 namespace pellucid::harness::reference {
 namespace {
@@ -36,6 +37,10 @@ Arrival arrivalAt(const Light& light, const glm::dvec3& point) {
   const glm::dvec3 toLight = offset / distance;
   const double cone = light.type == PELLUCID_LIGHT_SPOT ? coneFalloff(light, toLight) : 1;
   return {toLight, emitted * (cone * rangeWindow(distance, light.range) / (distance * distance))};
+}
+
+bool holdsBackFaces(const Light& light) {
+  return !light.shadowMaps.empty() && light.shadowMaps.front().faces == PELLUCID_FACES_BACK;
 }
 
 ShadowView::ShadowView(const Light& light, const ShadowMap& map)
@@ -81,29 +86,30 @@ bool ShadowView::isFarEnd(const glm::dvec3& point, const glm::dvec3& travel, flo
   return stored == (grows ? 1.0f : 0.0f);
 }
 
-ShadowView::Lookup ShadowView::deviceDistance(const glm::dvec3& point, const Projected& p,
-                                              float stored) const {
+bool ShadowView::holds(const glm::dvec3& point, float stored) const {
+  if (map_.depth.encoding != PELLUCID_DEPTH_DEVICE) return holdsSurface(stored);
   const glm::dvec3 travel = -arrivalAt(light_, point).toLight;
-  if (!(stored >= 0 && stored <= 1) || isFarEnd(point, travel, stored)) return {Kind::Empty, 0};
-  const glm::dvec4 surface = worldFromClip_ * glm::dvec4(p.ndc.x, p.ndc.y, double(stored), 1);
-  return {Kind::Surface, glm::dot(point - glm::dvec3(surface) / surface.w, travel)};
+  return stored >= 0 && stored <= 1 && !isFarEnd(point, travel, stored);
+}
+
+double ShadowView::deviceDistance(const glm::dvec3& point, const Projected& p, double stored) const {
+  const glm::dvec4 surface = worldFromClip_ * glm::dvec4(p.ndc.x, p.ndc.y, stored, 1);
+  return glm::dot(point - glm::dvec3(surface) / surface.w, -arrivalAt(light_, point).toLight);
 }
 
 // The planar difference grows to the length of the ray between the two planes.
-ShadowView::Lookup ShadowView::planarDistance(const glm::dvec3& point, float stored) const {
-  if (!holdsSurface(stored)) return {Kind::Empty, 0};
+double ShadowView::planarDistance(const glm::dvec3& point, double stored) const {
   const glm::dvec3 inView(viewFromWorld_ * glm::dvec4(point, 1));
   const double planar = -inView.z;
   const double rayPerDepth = perspective_ ? glm::length(inView) / planar : 1;
-  return {Kind::Surface, (planar - double(stored)) * rayPerDepth};
+  return (planar - stored) * rayPerDepth;
 }
 
-ShadowView::Lookup ShadowView::radialDistance(const glm::dvec3& point, float stored) const {
-  if (!holdsSurface(stored)) return {Kind::Empty, 0};
+double ShadowView::radialDistance(const glm::dvec3& point, double stored) const {
   const double distance = light_.type == PELLUCID_LIGHT_DIRECTIONAL
                               ? -(viewFromWorld_ * glm::dvec4(point, 1)).z
                               : glm::distance(point, toVector(light_.position));
-  return {Kind::Surface, distance - double(stored)};
+  return distance - stored;
 }
 
 // Where the neighboring texels see the depth of the point.
@@ -121,7 +127,7 @@ double ShadowView::texelAt(const glm::dvec3& point, const Projected& p) const {
   return side * glm::distance(point, toVector(light_.position)) / planar;
 }
 
-ShadowView::Lookup ShadowView::lookup(const glm::dvec3& point, const Projected& p, float stored) const {
+double ShadowView::distanceFrom(const glm::dvec3& point, const Projected& p, double stored) const {
   switch (map_.depth.encoding) {
     case PELLUCID_DEPTH_VIEW_Z:
       return planarDistance(point, stored);
@@ -135,12 +141,23 @@ ShadowView::Lookup ShadowView::lookup(const glm::dvec3& point, const Projected& 
 ShadowView::Lookup ShadowView::at(const glm::dvec3& point) const {
   const std::optional<Projected> p = project(point);
   if (!p) return {Kind::Outside, 0};
-  Lookup found = lookup(point, *p, *map_.depth.image.at(p->x, p->y));
+  Lookup found{Kind::Empty, 0};
   found.texel = texelAt(point, *p);
-  if (found.kind != Kind::Surface) return found;
+  const auto surfaceAt = [&](float stored) { return holds(point, stored); };
+  if (!surfaceAt(*map_.depth.image.at(p->x, p->y))) return found;
+  found.kind = Kind::Surface;
+  const DrawnDepth drawn = drawnDepth(map_, p->x, p->y, surfaceAt);
+  const auto lengthOf = [&](double depth, double step) {
+    return std::abs(distanceFrom(point, *p, depth + step) - distanceFrom(point, *p, depth));
+  };
+  found.distance = distanceFrom(point, *p, drawn.depth) + map_.offsetLength;
+  found.uncertain = lengthOf(drawn.depth, drawn.uncertain);
   if (!map_.exitDepth.empty()) {
-    const Lookup exit = lookup(point, *p, *map_.exitDepth.at(p->x, p->y));
-    if (exit.kind == Kind::Surface) found.fromExit = exit.distance;
+    const float exit = *map_.exitDepth.at(p->x, p->y);
+    if (surfaceAt(exit)) {
+      found.fromExit = distanceFrom(point, *p, double(exit));
+      found.exitUncertain = lengthOf(double(exit), map_.depthStep);
+    }
   }
   if (!map_.casterMaterial.empty())
     found.casterMaterial =

@@ -17,6 +17,9 @@ struct Arrival {
 // the range window max(0, min(1, 1 - (r/range)^4)) and the spot's angular falloff.
 Arrival arrivalAt(const Light& light, const glm::dvec3& point);
 
+// Whether the light's maps hold the faces that light leaves by; all of them do, or none.
+bool holdsBackFaces(const Light& light);
+
 // A light's shadow map, asked where a point lies behind the surface it stores.
 class ShadowView {
 public:
@@ -30,10 +33,12 @@ public:
   };
   struct Lookup {
     Kind kind;
-    double distance;   // along the light ray from the stored surface to the point; negative when the
-                       // point is nearer to the light. Surface only
-    double texel = 0;  // longer side of a texel across the light, scene units; perspective: where the ray
-                       // through the map's middle is as long as that to the point. Not of Outside
+    double distance;       // along the light ray from the stored surface to the point; negative when the
+                           // point is nearer to the light. Surface only
+    double texel = 0;      // longer side of a texel across the light, scene units; perspective: where the ray
+                           // through the map's middle is as long as that to the point. Not of Outside
+    double uncertain = 0;  // scene units that distance may be off by; Surface only
+    double exitUncertain = 0;  // likewise, of fromExit
     // From what lies beside the map; Surface only.
     std::optional<double> fromExit = {};     // as distance, from the exit depth; absent: none is known
     std::optional<int> casterMaterial = {};  // of the stored surface, 0: opaque; absent: not given
@@ -47,11 +52,13 @@ private:
     int x, y;  // texel
   };
   std::optional<Projected> project(const glm::dvec3& point) const;
-  Lookup lookup(const glm::dvec3& point, const Projected& p, float stored) const;
+  // As Lookup::distance, of a depth.
+  double distanceFrom(const glm::dvec3& point, const Projected& p, double stored) const;
+  bool holds(const glm::dvec3& point, float stored) const;
   double texelAt(const glm::dvec3& point, const Projected& p) const;
-  Lookup deviceDistance(const glm::dvec3& point, const Projected& p, float stored) const;
-  Lookup planarDistance(const glm::dvec3& point, float stored) const;
-  Lookup radialDistance(const glm::dvec3& point, float stored) const;
+  double deviceDistance(const glm::dvec3& point, const Projected& p, double stored) const;
+  double planarDistance(const glm::dvec3& point, double stored) const;
+  double radialDistance(const glm::dvec3& point, double stored) const;
   bool isFarEnd(const glm::dvec3& point, const glm::dvec3& travel, float stored) const;
 
   const Light& light_;

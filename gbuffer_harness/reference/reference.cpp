@@ -139,7 +139,7 @@ private:
   void gather(std::vector<glm::dvec3>& output) const {
     const auto& f = settings_.translucency.transmittanceFilter;
     const bool spreads = settings_.features & PELLUCID_FEATURE_DIFFUSION;
-    const Gather all(capture_, surfaces_, materials_, double(settings_.translucency.shadowBias), spreads);
+    const Gather all(capture_, surfaces_, materials_, spreads);
     forEachWanted("gather", [&](int x, int y, std::size_t i) {
       const std::optional<Surface> surface = surfaces_.at(x, y);
       if (!surface || marks_.count(i) != 0) return;

@@ -42,20 +42,38 @@ ShadowTexels::Line ShadowTexels::rayAt(double x, double y) const {
   return {eye, glm::normalize(0.5 * (p + q) - eye)};
 }
 
+bool ShadowTexels::holds(float stored) const {
+  if (map_.depth.encoding == PELLUCID_DEPTH_DEVICE) return stored >= 0 && stored <= 1 && stored != nothing_;
+  return holdsSurface(stored);
+}
+
+DrawnDepth ShadowTexels::drawn(int x, int y) const {
+  return drawnDepth(map_, x, y, [this](float stored) { return holds(stored); });
+}
+
 std::optional<glm::dvec3> ShadowTexels::at(int x, int y) const {
-  return at(x, y, *map_.depth.image.at(x, y));
+  if (!holds(*map_.depth.image.at(x, y))) return std::nullopt;
+  return pointAt(x, y, drawn(x, y).depth) - map_.offsetLength * rayAt(x + 0.5, y + 0.5).direction;
 }
 
 std::optional<glm::dvec3> ShadowTexels::at(int x, int y, float stored) const {
+  if (!holds(stored)) return std::nullopt;
+  return pointAt(x, y, double(stored));
+}
+
+double ShadowTexels::uncertain(int x, int y) const {
+  const DrawnDepth d = drawn(x, y);
+  return d.uncertain > 0 ? glm::distance(pointAt(x, y, d.depth + d.uncertain), pointAt(x, y, d.depth)) : 0;
+}
+
+glm::dvec3 ShadowTexels::pointAt(int x, int y, double stored) const {
   const Line ray = rayAt(x + 0.5, y + 0.5);
   if (map_.depth.encoding == PELLUCID_DEPTH_DEVICE) {
-    if (!(stored >= 0 && stored <= 1) || stored == nothing_) return std::nullopt;
     const Image& image = map_.depth.image;
     const glm::dvec4 p = worldFromClip_ * glm::dvec4((x + 0.5) / image.width * 2 - 1,
-                                                     (y + 0.5) / image.height * 2 - 1, double(stored), 1);
+                                                     (y + 0.5) / image.height * 2 - 1, stored, 1);
     return glm::dvec3(p) / p.w;
   }
-  if (!holdsSurface(stored)) return std::nullopt;
   if (map_.depth.encoding == PELLUCID_DEPTH_DISTANCE && perspective_) return ray.at(stored);
   const glm::dvec4 planar = -glm::row(viewFromWorld_, 2);
   const double from = glm::dot(planar, glm::dvec4(ray.origin, 1));

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "capture/capture.h"
+#include "reference/drawn_depth.h"
 
 namespace pellucid::harness::reference {
 
@@ -17,6 +18,8 @@ public:
   std::optional<glm::dvec3> at(int x, int y) const;
   // The point of the texel's ray that has a depth in the map's encoding.
   std::optional<glm::dvec3> at(int x, int y, float stored) const;
+  // Scene units along the light's ray that the texel's surface may be off by.
+  double uncertain(int x, int y) const;
 
   // Area across the light's ray that a texel covers at a point, square scene units.
   double across(int x, int y, const glm::dvec3& point) const;
@@ -26,6 +29,9 @@ private:
     glm::dvec3 origin, direction;  // direction of travel, unit
     glm::dvec3 at(double t) const { return origin + t * direction; }
   };
+  bool holds(float stored) const;
+  glm::dvec3 pointAt(int x, int y, double stored) const;
+  DrawnDepth drawn(int x, int y) const;
   // The light's ray through continuous map coordinates.
   Line rayAt(double x, double y) const;
 

@@ -59,7 +59,8 @@ double Translucency::hiddenCosine(const Receiver& r, std::size_t light, const gl
 }
 
 bool Translucency::usesLightSpace(std::size_t light) const {
-  return !shadows_[light].empty() && settings_.thicknessSource == PELLUCID_THICKNESS_LIGHT;
+  return !shadows_[light].empty() && settings_.thicknessSource == PELLUCID_THICKNESS_LIGHT &&
+         !holdsBackFaces(capture_.lights[light]);
 }
 
 ShadowView::Lookup Translucency::shadowLookup(std::size_t light, const glm::dvec3& point) const {
@@ -76,13 +77,17 @@ bool Translucency::entersMedium(const ShadowView::Lookup& lookup, const Receiver
 
 // A receiver of the exit surface lies off the depth of its own texel by the slope there; half the diagonal of
 // a texel and curvature are one texel each. The light grazes where that would be more than 8 texels.
-bool Translucency::beyondExit(const ShadowView::Lookup& lookup, const Receiver& r,
-                              const glm::dvec3& toLight) const {
-  if (!lookup.fromExit) return false;
+double Translucency::ownTolerance(const ShadowView::Lookup& lookup, const Receiver& r,
+                                  const glm::dvec3& toLight) {
   constexpr double kMostTexels = 8;
   const double cosine = r.normal ? std::abs(glm::dot(*r.normal, toLight)) : 0;
   const double slope = cosine > 0 ? std::tan(std::acos(std::min(cosine, 1.0))) : kMostTexels;
-  return *lookup.fromExit > double(settings_.shadowBias) + lookup.texel * std::min(1 + slope, kMostTexels);
+  return lookup.texel * std::min(1 + slope, kMostTexels);
+}
+
+bool Translucency::beyondExit(const ShadowView::Lookup& lookup, const Receiver& r,
+                              const glm::dvec3& toLight) {
+  return lookup.fromExit && *lookup.fromExit > ownTolerance(lookup, r, toLight) + lookup.exitUncertain;
 }
 
 Translucency::LightPath Translucency::lightSpacePath(std::size_t light, const Receiver& r) const {
@@ -91,14 +96,18 @@ Translucency::LightPath Translucency::lightSpacePath(std::size_t light, const Re
   path.arriving = arrival.irradiance * hiddenCosine(r, light, arrival.toLight);
   const ShadowView::Lookup lookup = shadowLookup(light, r.position);
   path.reaches = entersMedium(lookup, r) && !beyondExit(lookup, r, arrival.toLight);
-  path.thickness = std::max(0.0, lookup.distance - double(settings_.shadowBias));
+  path.thickness = std::max(0.0, lookup.distance);
   return path;
 }
 
 bool Translucency::backPointLit(std::size_t light, const Receiver& r, const glm::dvec3& backPoint) const {
   if (shadows_[light].empty()) return true;
   const ShadowView::Lookup lookup = shadowLookup(light, backPoint);
-  return entersMedium(lookup, r) && lookup.distance <= double(settings_.shadowBias);
+  const glm::dvec3 toLight = arrivalAt(capture_.lights[light], backPoint).toLight;
+  const double tolerance = ownTolerance(lookup, r, toLight) + lookup.uncertain;
+  // A face that light leaves by is not one that it enters by.
+  if (holdsBackFaces(capture_.lights[light])) return entersMedium(lookup, r) && lookup.distance <= -tolerance;
+  return entersMedium(lookup, r) && lookup.distance <= tolerance;
 }
 
 Translucency::LightPath Translucency::cameraSpacePath(std::size_t light, const Receiver& r) const {
@@ -115,9 +124,9 @@ Translucency::LightPath Translucency::cameraSpacePath(std::size_t light, const R
 
 std::optional<double> Translucency::firstLightDistance(const Receiver& r) const {
   for (std::size_t i = 0; i < shadows_.size(); ++i) {
+    if (holdsBackFaces(capture_.lights[i])) continue;
     const ShadowView::Lookup lookup = shadowLookup(i, r.position);
-    if (lookup.kind == ShadowView::Kind::Surface)
-      return std::max(0.0, lookup.distance - double(settings_.shadowBias));
+    if (lookup.kind == ShadowView::Kind::Surface) return std::max(0.0, lookup.distance);
     if (lookup.kind == ShadowView::Kind::Empty) return std::nullopt;
   }
   return std::nullopt;
@@ -132,7 +141,8 @@ Transmission Translucency::at(const Surface& surface, const PellucidMaterial& ma
   if (receiver.chord) t.cameraThickness = *receiver.chord * mmPerUnit;
   if (const auto distance = firstLightDistance(receiver)) t.lightThickness = *distance * mmPerUnit;
   for (std::size_t i = 0; i < capture_.lights.size(); ++i) {
-    if (settings_.gatherSamples > 0 && !shadows_[i].empty()) continue;  // reference/gather.h
+    if (settings_.gatherSamples > 0 && !shadows_[i].empty() && !holdsBackFaces(capture_.lights[i]))
+      continue;  // reference/gather.h
     const LightPath path = usesLightSpace(i) ? lightSpacePath(i, receiver) : cameraSpacePath(i, receiver);
     t.arriving += path.arriving;
     if (!path.reaches) continue;

@@ -56,7 +56,9 @@ private:
   // Whether light enters the receiver's own medium where the map's surface is.
   static bool entersMedium(const ShadowView::Lookup& lookup, const Receiver& r);
   // Whether it has left that medium before it is at the receiver.
-  bool beyondExit(const ShadowView::Lookup& lookup, const Receiver& r, const glm::dvec3& toLight) const;
+  static bool beyondExit(const ShadowView::Lookup& lookup, const Receiver& r, const glm::dvec3& toLight);
+  // Scene units along the light that a point of a stored surface may lie off the depth of its own texel.
+  static double ownTolerance(const ShadowView::Lookup& lookup, const Receiver& r, const glm::dvec3& toLight);
   bool backPointLit(std::size_t light, const Receiver& r, const glm::dvec3& backPoint) const;
 
   const Capture& capture_;

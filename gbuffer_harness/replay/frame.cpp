@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "capture/shadow_images.h"
 #include "common/error.h"
 #include "pellucid/pellucid_material.h"
 
@@ -19,8 +20,7 @@ void copy(const std::array<double, 3>& from, float (&to)[3]) {
   std::transform(from.begin(), from.end(), to, [](double v) { return static_cast<float>(v); });
 }
 
-// `images`: shadow images of the lights before.
-void addLight(const Light& light, float shadowBias, uint32_t& images, FrameData& data) {
+void addLight(const Light& light, const ShadowImages& images, FrameData& data) {
   PellucidLight l{};
   l.type = light.type;
   copy(light.position, l.position);
@@ -34,13 +34,20 @@ void addLight(const Light& light, float shadowBias, uint32_t& images, FrameData&
   l.shadowMapCount = static_cast<uint32_t>(light.shadowMaps.size());
   for (const ShadowMap& map : light.shadowMaps) {
     PellucidShadowMap s{};
-    s.image = images++;
-    if (!map.exitDepth.empty()) s.exitImage = ++images;
-    if (!map.casterMaterial.empty()) s.casterMaterialImage = ++images;
+    const auto& [depth, exit, caster] = images.ofMap[data.shadowMaps.size()];
+    s.image = static_cast<uint32_t>(depth);
+    s.exitImage = static_cast<uint32_t>(exit + 1);
+    s.casterMaterialImage = static_cast<uint32_t>(caster + 1);
+    for (std::size_t i = 0; i < 2; ++i) s.offset[i] = static_cast<uint32_t>(map.offset[i]);
+    s.layer = static_cast<uint32_t>(map.layer);
+    s.faces = map.faces;
+    s.depthBiasConstant = static_cast<float>(map.depthBiasConstant);
+    s.depthBiasSlope = static_cast<float>(map.depthBiasSlope);
+    s.offsetLength = static_cast<float>(map.offsetLength);
+    s.depthStep = static_cast<float>(map.depthStep);
     s.extent[0] = static_cast<uint32_t>(map.depth.image.width);
     s.extent[1] = static_cast<uint32_t>(map.depth.image.height);
     s.encoding = map.depth.encoding;
-    s.bias = shadowBias;
     copy(map.clipFromWorld, s.clipFromWorld);
     copy(map.viewFromWorld.value_or(kIdentity), s.viewFromWorld);
     data.shadowMaps.push_back(s);
@@ -128,7 +135,6 @@ ReplaySettings thesisSettings() {
   s.translucency.thicknessSource = PELLUCID_THICKNESS_CAMERA;
   s.translucency.angleModel = PELLUCID_ANGLE_INVERSE_COSINE;
   s.translucency.chordThickness = true;
-  s.translucency.shadowBias = 0.5f;
   return s;
 }
 
@@ -153,23 +159,12 @@ std::vector<PellucidMaterial> withTransmittance(std::vector<PellucidMaterial> ma
   return materials;
 }
 
-std::vector<ShadowSource> shadowSources(const std::vector<Light>& lights) {
-  std::vector<ShadowSource> sources;
-  for (const Light& light : lights)
-    for (const ShadowMap& map : light.shadowMaps) {
-      sources.push_back({&map.depth.image});
-      if (!map.exitDepth.empty()) sources.push_back({&map.exitDepth});
-      if (!map.casterMaterial.empty()) sources.push_back({&map.depth.image, &map.casterMaterial});
-    }
-  return sources;
-}
-
 void makeFrame(const Capture& capture, const std::vector<PellucidMaterial>& materials,
                const ReplaySettings& settings, FrameData& data) {
   data.materials = withTransmittance(materials, settings.transmittance);
-  uint32_t images = 0;
-  for (const Light& light : capture.lights) addLight(light, settings.translucency.shadowBias, images, data);
-  data.shadowImages.resize(images);
+  const ShadowImages images = shadowImages(capture.lights);
+  for (const Light& light : capture.lights) addLight(light, images, data);
+  data.shadowImages.resize(images.images.size());
 
   PellucidFrame& f = data.frame;
   pellucidInitFrame(&f);

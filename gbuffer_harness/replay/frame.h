@@ -35,24 +35,14 @@ struct ReplaySettings {
 };
 
 // Whelan 2009: linear transmittance, camera-space thickness along the view ray, the inverse cosine of the
-// angle between camera and light, rejection by the shadow map (biased by half a unit, because the back
-// face lies on the surface the map stores).
+// angle between camera and light, rejection by the shadow map.
 ReplaySettings thesisSettings();
 
 // `materials` with T(d) exchanged as `choice` says.
 std::vector<PellucidMaterial> withTransmittance(std::vector<PellucidMaterial> materials,
                                                 TransmittanceChoice choice);
 
-// What a shadow image must hold: depths as floats, or, where `materials` is given, those indices in R8_UNORM.
-struct ShadowSource {
-  const Image* depth;
-  const std::vector<std::uint8_t>* materials = nullptr;  // of depth's size
-};
-
-// Of the lights' maps in order: each map, then its exit depth and its caster material where it has them.
-std::vector<ShadowSource> shadowSources(const std::vector<Light>& lights);
-
-// A frame and the arrays it points to. shadowImages are as shadowSources() of the capture's lights.
+// A frame and the arrays it points to. shadowImages are as shadowImages() of the capture's lights has them.
 struct FrameData {
   PellucidFrame frame;
   PellucidThesisOptions thesis;

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <utility>
 
+#include "capture/shadow_images.h"
 #include "common/error.h"
 #include "common/parallel.h"
 #include "common/progress.h"
@@ -30,10 +31,24 @@ InputImages::InputImages(Device& device, const Capture& capture, const ReplaySet
   if (!capture.normal.empty()) normal_ = add(device, capture.normal, settings.normalFormat);
   if (!capture.albedo.empty()) albedo_ = add(device, capture.albedo, VK_FORMAT_R32G32B32A32_SFLOAT);
   material_ = add(device, capture.width, capture.height, capture.material, VK_FORMAT_R8_UINT);
-  for (const ShadowSource& source : shadowSources(capture.lights))
-    shadows_.push_back(source.materials ? add(device, source.depth->width, source.depth->height,
-                                              *source.materials, VK_FORMAT_R8_UNORM)
-                                        : add(device, *source.depth, VK_FORMAT_R32_SFLOAT));
+  const bool array = hasLayers(capture.lights);
+  for (const ShadowImageSource& source : shadowImages(capture.lights).images)
+    shadows_.push_back(add(device, source, array));
+}
+
+PellucidImage InputImages::add(Device& device, const ShadowImageSource& source, bool array) {
+  const bool caster = source.content == ShadowContent::Caster;
+  images_.push_back(std::make_unique<GpuImage>(device, source.width, source.height,
+                                               caster ? VK_FORMAT_R8_UNORM : VK_FORMAT_R32_SFLOAT, 0,
+                                               array ? source.layers : 0));
+  for (int layer = 0; layer < source.layers; ++layer) {
+    const Image image = source.layer(layer);
+    if (caster)
+      images_.back()->upload(std::vector<std::uint8_t>(image.data.begin(), image.data.end()), layer);
+    else
+      images_.back()->upload(image, layer);
+  }
+  return images_.back()->use();
 }
 
 PellucidImage InputImages::add(Device& device, const Image& image, VkFormat format) {
@@ -261,9 +276,20 @@ std::uint32_t usesOf(const ReplaySettings& settings) {
   return uses;
 }
 
+const Context& Replayer::contextFor(const Capture& capture) {
+  if (!hasLayers(capture.lights)) return context_;
+  if (!arrays_)
+    arrays_ = std::make_unique<Context>(
+        device_, [this](PellucidContextDesc& desc) {
+          desc.uses = uses_;
+          desc.shadowViewType = VK_IMAGE_VIEW_TYPE_2D_ARRAY;
+        });
+  return *arrays_;
+}
+
 ReplayResult Replayer::run(const Capture& capture, const std::vector<PellucidMaterial>& materials,
                            const ReplaySettings& settings, uint32_t timedFrames) {
-  const FrameRun run(device_, context_, capture, materials, settings);
+  const FrameRun run(device_, contextFor(capture), capture, materials, settings);
   ReplayResult result;
   result.plan = run.plan();
   const auto recordFirst = [&] {

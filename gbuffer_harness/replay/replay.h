@@ -12,6 +12,8 @@
 
 namespace pellucid::harness {
 
+struct ShadowImageSource;
+
 // The module's defaults for a context on the device.
 PellucidContextDesc contextDesc(const Device& device);
 
@@ -46,6 +48,7 @@ private:
   PellucidImage add(Device& device, const Image& image, VkFormat format);
   PellucidImage add(Device& device, int width, int height, const std::vector<std::uint8_t>& indices,
                     VkFormat format);
+  PellucidImage add(Device& device, const ShadowImageSource& source, bool array);
 
   std::vector<std::unique_ptr<GpuImage>> images_;
   GpuImage* irradiance_ = nullptr;
@@ -126,9 +129,12 @@ public:
   // `uses`: PellucidUse bits of the frames that it runs, whose pipelines take a second to create on a CPU; 0:
   // all.
   explicit Replayer(Device& device, std::uint32_t uses = 0)
-      : device_(device), context_(device, [uses](PellucidContextDesc& desc) { desc.uses = uses; }) {}
+      : device_(device),
+        uses_(uses),
+        context_(device, [uses](PellucidContextDesc& desc) { desc.uses = uses; }) {}
 
-  const Context& context() const { return context_; }
+  // The one whose shadow views fit the capture: of arrays where maps lie in layers.
+  const Context& contextFor(const Capture& capture);
 
   // `timedFrames`: recordings of the frame after the one that makes the output, in which drivers may still
   // compile shaders. Times are medians of their GPU timestamps, microseconds.
@@ -137,7 +143,9 @@ public:
 
 private:
   Device& device_;
+  std::uint32_t uses_;
   Context context_;
+  std::unique_ptr<Context> arrays_;  // made when first asked for
 };
 
 }  // namespace pellucid::harness

@@ -109,6 +109,9 @@ std::optional<Worst> nearerMaps(Subject& s) {
   StressFrame frame;
   if (!ungathered(s, frame) || frame.settings.translucency.thicknessSource != PELLUCID_THICKNESS_LIGHT)
     return {};
+  // What follows from differences of depths scales with them.
+  for (Light& light : frame.capture.lights)
+    for (ShadowMap& map : light.shadowMaps) map.depthBiasSlope = map.depthStep = 0;
   StressFrame thicker = frame;
   Random random = s.random("nearer-maps");
   bool any = false;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "capture/material.h"
+#include "capture/shadow_images.h"
 #include "stress/random_parts.h"
 
 namespace pellucid::harness::stress {
@@ -45,8 +46,7 @@ void randomAngles(Random& random, TranslucencySettings& t) {
     t.minimumDotTable = minimumDots(random, t.angleModel);
 }
 
-void randomTranslucency(Random& random, bool wild, const StressFrame& frame, double mm,
-                        TranslucencySettings& t) {
+void randomTranslucency(Random& random, bool wild, const StressFrame& frame, TranslucencySettings& t) {
   t.gatherSamples = PELLUCID_GATHER_BY_QUALITY;
   if (random.chance(0.2)) t.thicknessSource = PELLUCID_THICKNESS_CAMERA;
   if (random.chance(0.25)) randomAngles(random, t);
@@ -54,8 +54,6 @@ void randomTranslucency(Random& random, bool wild, const StressFrame& frame, dou
   if (random.chance(0.15)) t.maximumThickness = static_cast<float>(random.magnitude(0.1, wild ? 1e9 : 100));
   if (random.chance(0.2))
     t.transmittanceFilter = {static_cast<float>(random.real()), 1, random.of({0.0f, 0.5f})};
-  if (random.chance(0.5)) t.shadowBias = static_cast<float>(std::min(random.magnitude(1e-3, 1) / mm, 1e15));
-  if (wild && random.chance(0.1)) t.shadowBias = static_cast<float>(random.magnitude(1e-20, 1e15));
   if (random.chance(0.3))
     t.gatherSamples = std::all_of(frame.materials.begin(), frame.materials.end(), gatherable)
                           ? static_cast<std::uint32_t>(4 * random.whole(0, 16))
@@ -88,7 +86,7 @@ void randomSettings(Random& random, const View& view, const FrameLimits& limits,
                : kind < 0.78 ? PELLUCID_FEATURE_DIFFUSION
                : kind < 0.97 ? PELLUCID_FEATURE_TRANSLUCENCY
                              : 0;
-  randomTranslucency(random, frame.wild, frame, view.mm, s.translucency);
+  randomTranslucency(random, frame.wild, frame, s.translucency);
   s.outputFormat = random.of({VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT});
   s.quality = static_cast<std::uint32_t>(limits.quality >= 0 ? limits.quality : random.whole(0, 2));
   if (random.chance(0.1)) s.targetError = static_cast<float>(random.magnitude(0.001, 1));
@@ -98,7 +96,7 @@ void randomSettings(Random& random, const View& view, const FrameLimits& limits,
   if (random.chance(0.1)) s.reuse = random.of({PELLUCID_REUSE_ALTERNATE, PELLUCID_REUSE_COHERENCE});
   // Views of lights need all in one dispatch.
   if (random.chance(0.08))
-    s.debugView = shadowSources(frame.capture.lights).size() > 8
+    s.debugView = shadowImages(frame.capture.lights).images.size() > 8
                       ? PELLUCID_DEBUG_IRRADIANCE
                       : random.of({PELLUCID_DEBUG_THICKNESS, PELLUCID_DEBUG_TRANSMITTANCE,
                                    PELLUCID_DEBUG_OCCLUSION, PELLUCID_DEBUG_IRRADIANCE});

@@ -85,6 +85,23 @@ MapCamera mapCamera(Random& random, const Target& target, const glm::dvec3& eye,
   return m;
 }
 
+// What an engine's rasterizer added to the depths, up to as much as the part is thick.
+void addOffsets(Random& random, bool wild, const Target& target, const MapCamera& camera, ShadowMap& map) {
+  const double thickness = random.magnitude(0.01, 3) / target.mm;
+  const double unit = std::abs(static_cast<double>(
+      camera.store(map.depth.encoding, std::min(camera.surface + thickness, camera.far), 0, 0) -
+      camera.store(map.depth.encoding, camera.surface, 0, 0)));
+  if (random.chance(0.5)) map.depthBiasConstant = random.real(-1, 1) * unit;
+  if (random.chance(0.5)) map.depthBiasSlope = random.real(-4, 4);
+  if (random.chance(0.3)) map.offsetLength = random.real() * thickness;
+  if (random.chance(0.3)) map.depthStep = random.magnitude(1e-4, 0.3) * unit;
+  if (!wild || !random.chance(0.2)) return;
+  map.depthBiasConstant = random.of({0.0, 1e15, -1e15});
+  map.depthBiasSlope = random.of({0.0, 1e6, -1e6});
+  map.offsetLength = random.of({0.0, 1e-30, 1e15});
+  map.depthStep = random.of({0.0, 1e-30, 1e15});
+}
+
 ShadowMap randomMap(Random& random, bool wild, const Target& target, const MapCamera& camera, bool sidecars) {
   ShadowMap map;
   map.depth.encoding = random.of({PELLUCID_DEPTH_DEVICE, PELLUCID_DEPTH_VIEW_Z, PELLUCID_DEPTH_DISTANCE});
@@ -122,11 +139,26 @@ ShadowMap randomMap(Random& random, bool wild, const Target& target, const MapCa
       map.depth.image.data[i] = badFloat(random);
       if (exits) map.exitDepth.data[i] = badFloat(random);
     }
+  if (random.chance(0.3)) addOffsets(random, wild, target, camera, map);
   if (wild && random.chance(0.1)) {  // nearly a line: x and y differ by many magnitudes
     const double squeeze = random.magnitude(1e-12, 1e-3);
     for (std::size_t c = 0; c < 4; ++c) map.clipFromWorld[4 * c] *= squeeze;
   }
   return map;
+}
+
+// Gives all maps places in one image, with texels between them that belong to none.
+void shareImage(Random& random, std::vector<Light>& lights) {
+  const bool layers = random.chance(0.2);
+  int count = 0, right = 0;
+  for (Light& light : lights)
+    for (ShadowMap& map : light.shadowMaps) {
+      map.sharedImage = 0;
+      if (layers) map.layer = count;
+      map.offset = {layers ? random.whole(0, 3) : right + random.whole(0, 3), random.whole(0, 9)};
+      right = map.offset[0] + map.depth.image.width;
+      ++count;
+    }
 }
 
 void addMaps(Random& random, bool wild, const Target& target, Light& light) {
@@ -174,6 +206,8 @@ Light randomLight(Random& random, bool wild, const Target& target, const glm::dv
   if (wild && random.chance(0.1)) light.color = {0, 1e15, 1e-30};
   // No camera looks from where it looks to.
   if (random.chance(0.75) && glm::length(target.center - position) > 0) addMaps(random, wild, target, light);
+  if (random.chance(0.1))
+    for (ShadowMap& map : light.shadowMaps) map.faces = PELLUCID_FACES_BACK;
   if (wild && random.chance(0.2))
     for (double& d : light.direction) d *= random.magnitude(1e-10, 1e10);
   return light;
@@ -222,6 +256,7 @@ void addRandomLights(Random& random, bool wild, const View& view, Capture& captu
   int count = random.of({0, 1, 1, 1, 2, 2, 3});
   if (random.chance(0.03)) count = random.whole(4, wild ? 12 : 6);
   for (int i = 0; i < count; ++i) capture.lights.push_back(randomLight(random, wild, target, axis));
+  if (random.chance(0.2)) shareImage(random, capture.lights);
   if (wild && random.chance(0.3)) return;
   for (const Light& light : capture.lights) addDirectLight(light, view, capture);
 }

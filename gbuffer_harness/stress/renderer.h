@@ -27,8 +27,11 @@ public:
   Image render(const StressFrame& frame) { return render(frame, *prepare(frame), frame.index); }
 
 private:
+  const Context& contextFor(const Capture& capture);
+
   Device device_;
   Context context_;
+  std::unique_ptr<Context> arrays_;  // of frames whose maps lie in layers
   std::uint64_t recordings_ = 0, pixels_ = 0;
 };
 

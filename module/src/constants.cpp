@@ -8,6 +8,7 @@
 #include "entry_points.h"
 #include "gather.h"
 #include "minimum_dot.h"
+#include "shadow_map.h"
 
 namespace pellucid {
 namespace {
@@ -27,6 +28,8 @@ static_assert(PELLUCID_SHADER_ANGLE_POLYNOMIAL == PELLUCID_ANGLE_POLYNOMIAL);
 static_assert(PELLUCID_SHADER_DEBUG_THICKNESS == PELLUCID_DEBUG_THICKNESS);
 static_assert(PELLUCID_SHADER_DEBUG_TRANSMITTANCE == PELLUCID_DEBUG_TRANSMITTANCE);
 static_assert(PELLUCID_SHADER_DEBUG_OCCLUSION == PELLUCID_DEBUG_OCCLUSION);
+static_assert(PELLUCID_DISPATCH_SHADOWS * sizeof(shared::ShadowConstants) <= 16384);
+static_assert(PELLUCID_DISPATCH_LIGHTS * sizeof(shared::LightConstants) <= 16384);
 static_assert(PELLUCID_GAUSSIANS == PELLUCID_MAX_GAUSSIANS);
 static_assert(PELLUCID_MAX_LIGHT_SHADOW_MAPS <= PELLUCID_SHADOW_IMAGE_COUNT);
 
@@ -94,7 +97,7 @@ glm::dvec3 travel(const PellucidLight& l) {
 shared::LightConstants lightConstants(const FrameFacts& f, const PellucidLight& l, uint32_t firstShadow) {
   const glm::dmat4& viewFromWorld = f.viewFromWorld;
   shared::LightConstants c{};
-  c.meta = {l.type, firstShadow, l.shadowMapCount, 0};
+  c.meta = {l.type, firstShadow, l.shadowMapCount, f.holdsBackFaces(l) ? 1 : 0};
   c.radiance = rgb(l.color) * l.intensity;
   if (l.type != PELLUCID_LIGHT_DIRECTIONAL) {
     const glm::dvec4 position(l.position[0], l.position[1], l.position[2], 1);
@@ -122,27 +125,17 @@ uint32_t bitsOf(float value) {
   return bits;
 }
 
-// Longer side of a map's texel, scene units across the light; perspective: at planar distance 1.
-float texelSide(const glm::dmat4& clipFromWorld, bool perspective, const uint32_t (&extent)[2]) {
-  const auto row = [&](int i) {
-    return glm::dvec3(clipFromWorld[0][i], clipFromWorld[1][i], clipFromWorld[2][i]);
-  };
-  const glm::dvec3 w = row(3);
-  double side = 0;
-  for (int i = 0; i < 2; ++i) {
-    // An axis that is off center leans along the view; that does not make texels smaller.
-    const glm::dvec3 across = perspective ? row(i) - w * (glm::dot(row(i), w) / glm::dot(w, w)) : row(i);
-    side = std::max(side, 2 * (perspective ? glm::length(w) : 1) / (glm::length(across) * extent[i]));
-  }
-  return static_cast<float>(side);
+// The map's layer of an image, as the shaders' shadowTexel takes them.
+uint32_t placeOf(const LightGroup& group, const PellucidShadowMap& map, uint32_t image) {
+  return group.slot(image) | map.layer << 8;
 }
 
 glm::uvec4 occluderConstants(const FrameFacts& f, const PellucidShadowMap& s, const PellucidLight& l,
                              const LightGroup& group) {
   const float scale = s.casterMaterialScale == 0 ? 255.0f : s.casterMaterialScale;
-  return {group.readsExit(f, l, s) ? group.slot(s.exitImage - 1) + 1 : 0,
-          group.readsCaster(s) ? group.slot(s.casterMaterialImage - 1) + 1 : 0, bitsOf(scale),
-          bitsOf(texelSide(toMatrix(s.clipFromWorld), l.type != PELLUCID_LIGHT_DIRECTIONAL, s.extent))};
+  return {group.readsExit(f, l, s) ? placeOf(group, s, s.exitImage - 1) + 1 : 0,
+          group.readsCaster(s) ? placeOf(group, s, s.casterMaterialImage - 1) + 1 : 0, bitsOf(scale),
+          s.offset[0] | s.offset[1] << 16};
 }
 
 shared::ShadowConstants shadowConstants(const FrameFacts& f, const PellucidShadowMap& s,
@@ -170,11 +163,12 @@ shared::ShadowConstants shadowConstants(const FrameFacts& f, const PellucidShado
   } else {
     depthScale = 1 / glm::dot(glm::dvec3(zRow), travel(l));
   }
-  c.depth = {static_cast<float>(depthScale), s.bias, static_cast<float>(s.extent[0]),
-             static_cast<float>(s.extent[1])};
+  c.depth = {static_cast<float>(depthScale), static_cast<float>(texelSide(s)),
+             static_cast<float>(s.extent[0]), static_cast<float>(s.extent[1])};
+  c.offsets = {s.depthBiasConstant, s.depthBiasSlope, s.offsetLength, s.depthStep};
   // A cleared device-depth map holds its far plane: depth grows away from the light, or is reversed.
   const bool forward = perspective ? depthScale < 0 : depthScale > 0;
-  c.meta = {group.slot(s.image), encoding, perspective ? 1u : 0u, bitsOf(forward ? 1.0f : 0.0f)};
+  c.meta = {placeOf(group, s, s.image), encoding, perspective ? 1u : 0u, bitsOf(forward ? 1.0f : 0.0f)};
   c.occluder = occluderConstants(f, s, l, group);
   return c;
 }

@@ -64,6 +64,15 @@ PellucidResult checkDesc(const PellucidContextDesc& desc, Findings& out) {
              "; R16G16B16A16_SFLOAT, R32G32B32A32_SFLOAT and UNDEFINED are possible");
     return out.result();
   }
+  if (desc.shadowViewType != VK_IMAGE_VIEW_TYPE_2D && desc.shadowViewType != VK_IMAGE_VIEW_TYPE_2D_ARRAY) {
+    out.fail(PELLUCID_ERROR_INVALID_ARGUMENT, "shadowViewType", "is VkImageViewType ",
+             static_cast<int>(desc.shadowViewType), "; 2D and 2D_ARRAY are possible");
+    return out.result();
+  }
+  if (desc.reserved != 0) {
+    out.fail(PELLUCID_ERROR_INVALID_ARGUMENT, "reserved", "is ", desc.reserved, ", must be 0");
+    return out.result();
+  }
   if (desc.uses & ~kAllUses) {
     out.fail(PELLUCID_ERROR_INVALID_ARGUMENT, "uses", "has unknown bits ", desc.uses & ~kAllUses);
     return out.result();
@@ -163,8 +172,8 @@ PellucidResult createPipelines(const PellucidContextDesc& desc, PellucidContext&
   const auto job = [](void* data, uint32_t i) {
     auto& all = *static_cast<PipelineJobs*>(data);
     const uint32_t pipeline = all.pipelines[i];
-    all.results[i] =
-        createPipeline(all.desc, all.context, pipelineDesc(pipeline), &all.context.pipelines[pipeline]);
+    all.results[i] = createPipeline(all.desc, all.context, pipelineDesc(pipeline, all.desc.shadowViewType),
+                                    &all.context.pipelines[pipeline]);
   };
   if (desc.parallelFor)
     desc.parallelFor(desc.parallelUser, count, job, &jobs);
@@ -213,6 +222,7 @@ extern "C" PellucidResult pellucidCreateContext(const PellucidContextDesc* given
   }
   c->message = desc->message;
   c->messageUser = desc->messageUser;
+  c->shadowViewType = desc->shadowViewType;
   c->outputFormat = desc->outputFormat;
   const auto getDeviceProcAddr = reinterpret_cast<PFN_vkGetDeviceProcAddr>(
       desc->getInstanceProcAddr(desc->instance, "vkGetDeviceProcAddr"));

@@ -18,6 +18,7 @@ struct PellucidContext {
   VkPipelineLayout pipelineLayout = VK_NULL_HANDLE;
   std::array<VkPipeline, pellucid::kPipelineCount> pipelines{};  // NULL: not among desc.uses
   VkFormat outputFormat = VK_FORMAT_UNDEFINED;                   // of all frames; UNDEFINED: any
+  VkImageViewType shadowViewType = VK_IMAGE_VIEW_TYPE_2D;        // of all frames' shadow images
 
   const VkAllocationCallbacks* callbacks() const { return hasAllocator ? &allocator : nullptr; }
 };

@@ -109,10 +109,10 @@ bool ViewBounds::coneMisses(const PellucidLight& light) const {
 const char* ViewBounds::whySkipped(const FrameFacts& facts, const PellucidLight& light) const {
   if (light.intensity <= 0 || (light.color[0] <= 0 && light.color[1] <= 0 && light.color[2] <= 0))
     return "no intensity";
-  const bool needsCamera =
-      light.shadowMapCount == 0 || facts.frame.thicknessSource == PELLUCID_THICKNESS_CAMERA;
-  if (needsCamera && !facts.has(PELLUCID_RESOURCE_BACK_DEPTH))
-    return "no back depth to take a thickness from";
+  if (facts.takesChord(light) && !facts.has(PELLUCID_RESOURCE_BACK_DEPTH))
+    return facts.holdsBackFaces(light)
+               ? "no back depth to take a thickness from, and its map holds back faces"
+               : "no back depth to take a thickness from";
   // Gathered light comes from around, whatever the angle, and from beyond the view.
   if (facts.isGathered(light)) return nullptr;
   // That view shows thicknesses whether light comes through or not.

@@ -8,7 +8,7 @@ namespace {
 static_assert(ENDS_WITH(PellucidFrame, indirectDispatches));
 static_assert(ENDS_WITH(PellucidMaterial, burleyDistance));
 static_assert(ENDS_WITH(PellucidThesisOptions, minimumDotTable));
-static_assert(ENDS_WITH(PellucidContextDesc, parallelUser));
+static_assert(ENDS_WITH(PellucidContextDesc, reserved));
 #undef ENDS_WITH
 
 }  // namespace
@@ -41,6 +41,7 @@ PellucidContextDesc defaultContextDesc() {
   desc.headerVersion = PELLUCID_HEADER_VERSION;
   desc.apiVersion = VK_API_VERSION_1_1;
   desc.outputFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
+  desc.shadowViewType = VK_IMAGE_VIEW_TYPE_2D;
   return desc;
 }
 

@@ -116,13 +116,19 @@ constexpr auto kMapFloats = std::to_array<FloatDomain>({
     {FIELD(PellucidShadowMap, clipFromWorld), 0, -kLongest, kLongest, false, nullptr, nullptr},
     {FIELD(PellucidShadowMap, viewFromWorld), 0, -kLongest, kLongest, false, readsView,
      "VIEW_Z and DISTANCE"},
-    {FIELD(PellucidShadowMap, bias), 0, 0, kLongest, false, nullptr, nullptr},
+    {FIELD(PellucidShadowMap, depthBiasConstant), 0, -kLongest, kLongest, false, nullptr, nullptr},
+    {FIELD(PellucidShadowMap, depthBiasSlope), 0, -1e6F, 1e6F, false, nullptr, nullptr},
+    {FIELD(PellucidShadowMap, offsetLength), 0, 0, kLongest, false, nullptr, nullptr},
+    {FIELD(PellucidShadowMap, depthStep), 0, 0, kLongest, false, nullptr, nullptr},
     {FIELD(PellucidShadowMap, casterMaterialScale), 0, 0, 65536, false, nullptr, nullptr},
 });
 
 constexpr auto kMapIntegers = std::to_array<IntegerDomain>({
+    {FIELD(PellucidShadowMap, offset), 0, 65535},
     {FIELD(PellucidShadowMap, extent), 1, 65536},
+    {FIELD(PellucidShadowMap, layer), 0, 65535},
     {FIELD(PellucidShadowMap, encoding), 0, PELLUCID_DEPTH_DISTANCE},
+    {FIELD(PellucidShadowMap, faces), 0, PELLUCID_FACES_BACK},
 });
 #undef FIELD
 

@@ -105,7 +105,8 @@ EntryConstants entryConstants(const PellucidFrame& frame, const PellucidShadowMa
   c.gather.stepY = glm::vec4(glm::vec3(stepY) * static_cast<float>(extent.side), 0);
   r.map = {s.extent[0], s.extent[1], extent.side, lightIndex};
   // The camera may miss a texel's point by the slope of the surface within half a texel and the pixel.
-  r.seen = {static_cast<float>(0.5 * std::sqrt(glm::length(stepX) * glm::length(stepY))), s.bias, 0, 0};
+  r.seen = {static_cast<float>(0.5 * std::sqrt(glm::length(stepX) * glm::length(stepY))), 0, 0, 0};
+  r.offsets = shadow.offsets;
   return c;
 }
 

@@ -58,11 +58,11 @@ void addGather(FrameFacts& f) {
 }
 
 void addLights(FrameFacts& f) {
-  // Lights without shadow maps have no other thickness, and the debug view of thickness shows it.
+  // The debug view of thickness shows the chord, too.
   f.needsChord = f.frame.thicknessSource == PELLUCID_THICKNESS_CAMERA ||
                  f.frame.debugView == PELLUCID_DEBUG_THICKNESS ||
                  std::any_of(f.frame.lights, f.frame.lights + f.frame.lightCount,
-                             [](const PellucidLight& light) { return light.shadowMapCount == 0; });
+                             [&](const PellucidLight& light) { return f.takesChord(light); });
   f.lights = LightGroups::of(f);
 }
 

@@ -58,7 +58,18 @@ struct FrameFacts {
 
   bool has(PellucidResource image) const { return (images & 1u << image) != 0; }
   bool debug() const { return frame.debugView != PELLUCID_DEBUG_NONE; }
-  bool isGathered(const PellucidLight& light) const { return light.shadowMapCount > 0 && gathers; }
+  // All maps of a light hold the same faces.
+  bool holdsBackFaces(const PellucidLight& light) const {
+    return light.shadowMapCount > 0 && frame.shadowMaps[light.firstShadowMap].faces == PELLUCID_FACES_BACK;
+  }
+  bool isGathered(const PellucidLight& light) const {
+    return light.shadowMapCount > 0 && gathers && !holdsBackFaces(light);
+  }
+  // Whether the light's thickness is the camera's.
+  bool takesChord(const PellucidLight& light) const {
+    return light.shadowMapCount == 0 || frame.thicknessSource == PELLUCID_THICKNESS_CAMERA ||
+           holdsBackFaces(light);
+  }
 
   // frame.materials[index] with the defaults of fields that the caller's lacks.
   PellucidMaterial material(uint32_t index) const;

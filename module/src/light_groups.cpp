@@ -28,12 +28,14 @@ bool LightGroup::addImages(const FrameFacts& facts, const PellucidLight& light,
 
 bool LightGroup::readsExit(const FrameFacts& facts, const PellucidLight& light,
                            const PellucidShadowMap& map) const {
-  return beside && map.exitImage != 0 &&
+  return beside && map.exitImage != 0 && map.faces == PELLUCID_FACES_FRONT &&
          (facts.frame.thicknessSource == PELLUCID_THICKNESS_LIGHT || facts.isGathered(light));
 }
 
 bool LightGroup::addLight(const FrameFacts& facts, const PellucidLight& light) {
   const PellucidFrame& frame = facts.frame;
+  // What adds gathered light binds no shadow images.
+  if (gathered > 0 && !facts.isGathered(light) && light.shadowMapCount > 0) return false;
   LightGroup grown = *this;
   grown.shadowCount += light.shadowMapCount;
   if (lightCount == PELLUCID_DISPATCH_LIGHTS || grown.shadowCount > PELLUCID_DISPATCH_SHADOWS) return false;

@@ -1,16 +1,20 @@
 #include "pipelines.h"
 
+#include <iterator>
+
 #include "kAddGathered.h"
 #include "kAddHistory.h"
 #include "kBaseLevel.h"
 #include "kDiffuse.h"
 #include "kDownsample.h"
 #include "kEntryPoints.h"
+#include "kEntryPointsArray.h"
 #include "kFilterProbes.h"
 #include "kFindCells.h"
 #include "kListGroups.h"
 #include "kProbes.h"
 #include "kTranslucency.h"
+#include "kTranslucencyArray.h"
 #include "kUpsample.h"
 #include "shared/pellucid_shared.h"
 
@@ -55,7 +59,19 @@ const std::array<PipelineDesc, kPipelineCount> kPipelines = {
 
 }  // namespace
 
-const PipelineDesc& pipelineDesc(uint32_t index) { return kPipelines[index]; }
+PipelineDesc pipelineDesc(uint32_t index, VkImageViewType shadowViewType) {
+  PipelineDesc desc = kPipelines[index];
+  if (shadowViewType != VK_IMAGE_VIEW_TYPE_2D_ARRAY) return desc;
+  // Passes that read shadow images.
+  if (desc.words == kTranslucency) {
+    desc.words = kTranslucencyArray;
+    desc.wordCount = std::size(kTranslucencyArray);
+  } else if (desc.words == kEntryPoints) {
+    desc.words = kEntryPointsArray;
+    desc.wordCount = std::size(kEntryPointsArray);
+  }
+  return desc;
+}
 
 }  // namespace pellucid
 
@@ -67,9 +83,11 @@ extern "C" const char* pellucidPipelineName(uint32_t pipeline) {
   return pipeline < kPipelineCount ? pipelineDesc(pipeline).name : "unknown pipeline";
 }
 
-extern "C" PellucidResult pellucidGetShader(uint32_t pipeline, PellucidShader* shader) {
-  if (pipeline >= kPipelineCount || !shader) return PELLUCID_ERROR_INVALID_ARGUMENT;
-  const PipelineDesc& p = pipelineDesc(pipeline);
-  *shader = {p.words, p.wordCount, p.constantCount, p.constants.data()};
+extern "C" PellucidResult pellucidGetShader(uint32_t pipeline, VkImageViewType shadowViewType,
+                                            PellucidShader* shader) {
+  const bool known = shadowViewType == VK_IMAGE_VIEW_TYPE_2D || shadowViewType == VK_IMAGE_VIEW_TYPE_2D_ARRAY;
+  if (pipeline >= kPipelineCount || !known || !shader) return PELLUCID_ERROR_INVALID_ARGUMENT;
+  const PipelineDesc p = pipelineDesc(pipeline, shadowViewType);
+  *shader = {p.words, p.wordCount, p.constantCount, kPipelines[pipeline].constants.data()};
   return PELLUCID_OK;
 }

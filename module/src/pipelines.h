@@ -43,7 +43,7 @@ struct PipelineDesc {
   std::array<PellucidSpecialization, 2> constants;
 };
 
-// `index` < kPipelineCount.
-const PipelineDesc& pipelineDesc(uint32_t index);
+// `index` < kPipelineCount. shadowViewType: PellucidContextDesc's, 2D or 2D_ARRAY.
+PipelineDesc pipelineDesc(uint32_t index, VkImageViewType shadowViewType = VK_IMAGE_VIEW_TYPE_2D);
 
 }  // namespace pellucid

@@ -16,13 +16,23 @@ void skipBeside(PlanBuilder& b) {
   if (!f.lights.beside)
     b.skip("exit depth and caster material", "more lights have them than the dispatches of a plan can bind");
   bool noExit = false, noCaster = false;
+  uint32_t backFaces = 0;
   f.forEachLight([&](const LightGroup&, const PellucidLight& light) {
+    if (f.holdsBackFaces(light)) {
+      ++backFaces;
+      return;
+    }
     for (uint32_t k = 0; k < light.shadowMapCount; ++k) {
       const PellucidShadowMap& map = f.frame.shadowMaps[light.firstShadowMap + k];
       noExit = noExit || (map.exitImage == 0 && f.frame.thicknessSource == PELLUCID_THICKNESS_LIGHT);
       noCaster = noCaster || map.casterMaterialImage == 0;
     }
   });
+  for (uint32_t i = 0; i < backFaces; ++i) {
+    constexpr const char* kWhy = "a light's shadow map holds back faces, which do not say where light enters";
+    if (f.frame.thicknessSource == PELLUCID_THICKNESS_LIGHT) b.skip("light-space thickness", kWhy);
+    if (f.gathers) b.skip("gather", kWhy);
+  }
   if (noExit) b.skip("exit depth", "a shadow map has none: air behind an occluder counts as medium");
   if (noCaster)
     b.skip("caster material",

@@ -90,10 +90,12 @@ void PlanBuilder::optional(PellucidDispatch* d, uint32_t binding, PellucidResour
 }
 
 void PlanBuilder::shadowImages(PellucidDispatch* d, const LightGroup& group) const {
+  // Slots that are not read hold a view of the type of the others.
+  const uint32_t standIn = group.imageCount > 0 ? kShadow0 + group.images[0]
+                                                : static_cast<uint32_t>(PELLUCID_RESOURCE_FRONT_DEPTH);
   for (uint32_t slot = 0; slot < PELLUCID_SHADOW_IMAGE_COUNT; ++slot) {
     const bool used = slot < group.imageCount;
-    image(d, PELLUCID_BINDING_SHADOW_IMAGES + slot,
-          used ? kShadow0 + group.images[slot] : static_cast<uint32_t>(PELLUCID_RESOURCE_FRONT_DEPTH),
+    image(d, PELLUCID_BINDING_SHADOW_IMAGES + slot, used ? kShadow0 + group.images[slot] : standIn,
           used ? kUnknownDepthBytes : 0);
   }
 }

@@ -49,6 +49,13 @@ PellucidResult checkPlan(const PellucidContext& c, const PellucidPlan& plan, con
   if (c.outputFormat != VK_FORMAT_UNDEFINED && c.outputFormat != facts.frame.outputFormat)
     return refuse(c, "outputFormat",
                   "is not PellucidContextDesc::outputFormat, which the context writes alone");
+  for (uint32_t i = 0; i < facts.frame.shadowMapCount; ++i)
+    if (const uint32_t layer = facts.frame.shadowMaps[i].layer;
+        layer != 0 && c.shadowViewType != VK_IMAGE_VIEW_TYPE_2D_ARRAY) {
+      char sentence[96];
+      Text(sentence, sizeof sentence) << "is " << layer << ", but PellucidContextDesc::shadowViewType is 2D";
+      return refuse(c, Field("shadowMaps[", i, "].layer"), sentence);
+    }
   for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
     const PellucidDispatch& d = plan.dispatches[i];
     if (d.pipeline >= kPipelineCount || c.pipelines[d.pipeline] == VK_NULL_HANDLE) {

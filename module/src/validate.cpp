@@ -7,50 +7,10 @@
 #include "frame.h"
 #include "gather.h"
 #include "minimum_dot.h"
+#include "validate_shared.h"
 
 namespace pellucid {
 namespace {
-
-bool finite(const float* values, int count) {
-  for (int i = 0; i < count; ++i)
-    if (!std::isfinite(values[i])) return false;
-  return true;
-}
-
-// Fields outside their domains, each named behind `prefix`. Integers first, which say what else is read.
-template <class Struct>
-void checkDomains(const Struct& object, const char* prefix, Findings& out) {
-  bool allIntegers = true;
-  for (const IntegerDomain& d : domainsOf<Struct>().integers)
-    for (uint32_t i = 0; i < d.count; ++i) {
-      const uint32_t value = valueOf(d, &object, i);
-      if (value >= d.least && value <= d.most) continue;
-      const Field element = d.count == 1 ? Field("") : Field("[", i, "] ");
-      out.error(Field(prefix, d.field), element, "is ", value, ", outside ", d.least, "..", d.most);
-      allIntegers = false;
-    }
-  if (!allIntegers) return;
-  for (const FloatDomain& d : domainsOf<Struct>().floats)
-    for (uint32_t i = 0; i < d.count; ++i) {
-      const float value = valueOf(d, &object, i);
-      if (!isRead(d, &object, i) || contains(d, value)) continue;
-      const Field element = d.count == 1 ? Field("")
-                            : d.row == 0 ? Field("[", i, "] ")
-                                         : Field("[", i / d.row, "][", i % d.row, "] ");
-      out.error(Field(prefix, d.field), element, "is ", value, ", outside ", d.leastIsOut ? "(" : "[",
-                d.least, ", ", d.most, "]");
-    }
-}
-
-// An affine, rigid transform: rotation, no scale. 1e-3 forgives float matrices built in several steps.
-bool rigid(const glm::dmat4& m) {
-  const glm::dmat3 r(m);
-  const glm::dmat3 shouldBeIdentity = glm::transpose(r) * r;
-  for (int c = 0; c < 3; ++c)
-    for (int i = 0; i < 3; ++i)
-      if (std::abs(shouldBeIdentity[c][i] - (c == i ? 1.0 : 0.0)) > 1e-3) return false;
-  return m[0][3] == 0 && m[1][3] == 0 && m[2][3] == 0 && m[3][3] == 1;
-}
 
 void checkImageSize(const PellucidFrame& f, Findings& out) {
   const uint32_t w = f.imageExtent[0], h = f.imageExtent[1];
@@ -128,30 +88,6 @@ void checkMaterial(const PellucidMaterial& m, uint32_t index, Findings& out) {
   }
 }
 
-void checkShadowMap(const PellucidFrame& f, uint32_t index, Findings& out) {
-  const PellucidShadowMap& s = f.shadowMaps[index];
-  const auto field = [index](const char* name) { return Field("shadowMaps[", index, "].", name); };
-  if (s.image >= f.shadowImageCount)
-    out.error(field("image"), "is ", s.image, ", but there are ", f.shadowImageCount, " shadowImages");
-  checkDomains(s, field(""), out);
-  if (finite(s.clipFromWorld, 16) && glm::determinant(toMatrix(s.clipFromWorld)) == 0)
-    out.error(field("clipFromWorld"), "cannot be inverted");
-  if (s.encoding != PELLUCID_DEPTH_DEVICE &&
-      !(finite(s.viewFromWorld, 16) && rigid(toMatrix(s.viewFromWorld))))
-    out.error(field("viewFromWorld"), "is not a rotation and translation, which this encoding needs");
-  const auto checkBeside = [&](const char* name, uint32_t image) {
-    if (image > f.shadowImageCount)
-      out.error(field(name), "is ", image, " (an index plus 1), but there are ", f.shadowImageCount,
-                " shadowImages");
-    else if (image != 0 && image - 1 == s.image)
-      out.error(field(name), "is ", image, " (an index plus 1), the map's own image");
-  };
-  checkBeside("exitImage", s.exitImage);
-  checkBeside("casterMaterialImage", s.casterMaterialImage);
-  if (s.exitImage != 0 && s.exitImage == s.casterMaterialImage)
-    out.error(field("casterMaterialImage"), "is ", s.casterMaterialImage, ", the exitImage");
-}
-
 void checkLight(const FrameFacts& facts, uint32_t index, Findings& out) {
   const PellucidFrame& f = facts.frame;
   const PellucidLight& l = f.lights[index];
@@ -172,6 +108,7 @@ void checkLight(const FrameFacts& facts, uint32_t index, Findings& out) {
               static_cast<int>(PELLUCID_MAX_LIGHT_SHADOW_MAPS));
     return;
   }
+  checkFaces(facts, index, out);
   LightGroup images;
   bool fits = true;
   for (uint32_t i = 0; i < l.shadowMapCount; ++i) {
@@ -268,10 +205,6 @@ void checkMaterials(const FrameFacts& facts, Findings& out) {
   }
 }
 
-void checkShadowMaps(const FrameFacts& facts, Findings& out) {
-  for (uint32_t i = 0; i < facts.frame.shadowMapCount; ++i) checkShadowMap(facts.frame, i, out);
-}
-
 void checkLights(const FrameFacts& facts, Findings& out) {
   for (uint32_t i = 0; i < facts.frame.lightCount; ++i) checkLight(facts, i, out);
 }
@@ -281,6 +214,7 @@ void checkGroups(const FrameFacts& facts, Findings& out) {
   for (uint32_t i = 0; i < f.lightCount; ++i)
     if (const char* reason = facts.whySkipped(f.lights[i]))
       out.warning(Field("lights[", i, "]"), "adds nothing: ", reason);
+  warnOfShadowMaps(facts, out);
   if (facts.lights.count > 1 && facts.debug() && f.debugView != PELLUCID_DEBUG_IRRADIANCE)
     out.error("debugView", "is ", f.debugView, ", which needs all lights in one dispatch; they use ",
               facts.lights.count);

@@ -40,7 +40,7 @@ Image gpuGather(Replayer& replayer, const Capture& c, uint32_t samples) {
 Image allTexels(const Capture& c, const Image& diffused, const std::function<bool(int, int)>& wanted) {
   const PellucidMaterial material = skin();
   const reference::SurfaceReader surfaces(c);
-  const reference::Gather gather(c, surfaces, std::vector<PellucidMaterial>(c.materials.size(), material), 0);
+  const reference::Gather gather(c, surfaces, std::vector<PellucidMaterial>(c.materials.size(), material));
   Image out(c.width, c.height, 3);
   parallelRows(c.height, 0, [&](int y) {
     for (int x = 0; x < c.width; ++x) {

@@ -233,7 +233,6 @@ const Option kOptions[] = {
      [](TranslucencySettings& t) {
        t.transmittanceFilter = {0.55f, 0.29f, 0.28f};
      }},
-    {"Bias", [](TranslucencySettings& t) { t.shadowBias = 0.5f; }},
     {"Linear", [](TranslucencySettings&) {}, PELLUCID_TRANSMITTANCE_LINEAR},
     {"Gaussians", [](TranslucencySettings&) {}, PELLUCID_TRANSMITTANCE_GAUSSIANS},
     {"GaussiansAsPrinted", [](TranslucencySettings&) {}, PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED},

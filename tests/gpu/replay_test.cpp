@@ -197,7 +197,7 @@ TEST_F(Replay, TimedFramesChangeNothing) {
     ASSERT_EQ(timed.times.size(), timed.plan.dispatchCount);
     for (const DispatchTime& time : timed.times) EXPECT_GT(time.microseconds, 0) << time.name;
   }
-  const FrameRun frame(device(), replayer().context(), c, {testMaterial()}, aliased);
+  const FrameRun frame(device(), replayer().contextFor(c), c, {testMaterial()}, aliased);
   const auto record = [&] {
     device().run([&](VkCommandBuffer commandBuffer) { frame.record(commandBuffer); });
     return frame.output();

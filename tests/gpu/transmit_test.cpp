@@ -108,8 +108,7 @@ TEST_F(Transmit, BackFacePassEqualsTheFusedDispatch) {
   cosine.translucency.angleModel = PELLUCID_ANGLE_COSINE;
   cosine.translucency.constantViewDirection = true;
   cosine.translucency.transmittanceFilter = {0.55f, 0.29f, 0.28f};
-  ReplaySettings physical;
-  physical.translucency.shadowBias = 0.5f;
+  const ReplaySettings physical;
   const std::pair<const char*, ReplaySettings> kSettings[] = {
       {"physical", physical}, {"thesis", thesisSettings()}, {"cosine", cosine}};
   for (const auto& [name, settings] : kSettings)

@@ -91,6 +91,10 @@ inline Capture sampleCapture() {
   sun.shadowMaps[0].exitDepth = sampleImage(kSampleShadowSize, kSampleShadowSize, 1, 0.3f);
   for (int i = 0; i < kSampleShadowSize * kSampleShadowSize; ++i)
     sun.shadowMaps[0].casterMaterial.push_back(static_cast<std::uint8_t>(i % 5));
+  sun.shadowMaps[0].depthBiasConstant = -1.25 / 65535;
+  sun.shadowMaps[0].depthBiasSlope = -1.75;
+  sun.shadowMaps[0].offsetLength = 0.125;
+  sun.shadowMaps[0].depthStep = 1.0 / 65535;
   Light lamp;
   lamp.type = PELLUCID_LIGHT_POINT;
   lamp.position = {1.5, 2.5, -3.5};
@@ -111,7 +115,16 @@ inline Capture sampleCapture() {
                        {{sampleImage(3, 2, 1, 7.0f), PELLUCID_DEPTH_VIEW_Z},
                         {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0, 0, -0.1, 0},
                         kIdentity}};
-  capture.lights = {sun, lamp, spot, around};
+  for (ShadowMap& map : around.shadowMaps) map.faces = PELLUCID_FACES_BACK;
+  Light tiled =
+      lamp;  // two tiles of an atlas, of which one alone has an exit depth, and two layers of an array
+  tiled.shadowMaps = around.shadowMaps;
+  tiled.shadowMaps[0].sharedImage = tiled.shadowMaps[1].sharedImage = 0;
+  tiled.shadowMaps[1].offset = {11, 5};
+  Light layered = tiled;
+  layered.shadowMaps[0].sharedImage = layered.shadowMaps[1].sharedImage = 1;
+  layered.shadowMaps[1].layer = 1;
+  capture.lights = {sun, lamp, spot, around, tiled, layered};
   capture.materials = {
       PresetMaterial{"skin1"}, CoefficientMaterial{{0.74, 0.88, 1.01}, {0.032, 0.17, 0.48}, 0.1, 1.3},
       BurleyMaterial{

@@ -60,6 +60,14 @@ TEST(CaptureRoundTrip, IsBitExactWithFloat) {
       EXPECT_TRUE(sameBits(a.shadowMaps[k].exitDepth, b.shadowMaps[k].exitDepth));
       EXPECT_EQ(a.shadowMaps[k].casterMaterial, b.shadowMaps[k].casterMaterial);
       EXPECT_EQ(a.shadowMaps[k].clipFromWorld, b.shadowMaps[k].clipFromWorld);
+      EXPECT_EQ(a.shadowMaps[k].faces, b.shadowMaps[k].faces);
+      EXPECT_EQ(a.shadowMaps[k].depthBiasConstant, b.shadowMaps[k].depthBiasConstant);
+      EXPECT_EQ(a.shadowMaps[k].depthBiasSlope, b.shadowMaps[k].depthBiasSlope);
+      EXPECT_EQ(a.shadowMaps[k].offsetLength, b.shadowMaps[k].offsetLength);
+      EXPECT_EQ(a.shadowMaps[k].depthStep, b.shadowMaps[k].depthStep);
+      EXPECT_EQ(a.shadowMaps[k].sharedImage, b.shadowMaps[k].sharedImage);
+      EXPECT_EQ(a.shadowMaps[k].offset, b.shadowMaps[k].offset);
+      EXPECT_EQ(a.shadowMaps[k].layer, b.shadowMaps[k].layer);
       EXPECT_EQ(a.shadowMaps[k].viewFromWorld, b.shadowMaps[k].viewFromWorld);
     }
   }
@@ -211,6 +219,27 @@ TEST_F(Manifests, WhatLiesBesideAShadowMapIsOptionalAndHasItsSize) {
   expectNames(error(), {"s.exr", "lights[0].shadowMap.casterMaterial", "holds 7", "does not name"});
   map["casterMaterial"].erase("map");
   expectNames(error(), {"lights[0].shadowMap.casterMaterial", "holds 7", "1 materials"});
+}
+
+TEST_F(Manifests, TilesAreCutOutOfTheirImage) {
+  json& map = manifest["lights"][0]["shadowMap"];
+  map["offset"] = {1, 1};
+  map["size"] = {2, 2};
+  json& around = manifest["lights"][1]["shadowMaps"];
+  around[1] = map;
+  around[1]["offset"] = {0, 0};
+  const Capture capture = read();
+  const ShadowMap &tile = capture.lights[0].shadowMaps[0], &other = capture.lights[1].shadowMaps[1];
+  const Image& whole = sample.lights[0].shadowMaps[0].depth.image;
+  ASSERT_EQ(tile.depth.image.width, 2);
+  ASSERT_EQ(tile.depth.image.height, 2);
+  EXPECT_EQ(*tile.depth.image.at(1, 0), *whole.at(2, 1));
+  EXPECT_EQ(*tile.exitDepth.at(0, 1), *sample.lights[0].shadowMaps[0].exitDepth.at(1, 2));
+  EXPECT_EQ(tile.casterMaterial.size(), 4u);
+  EXPECT_EQ(*other.depth.image.at(1, 1), *whole.at(1, 1));
+  EXPECT_EQ(tile.sharedImage, 0);
+  EXPECT_EQ(other.sharedImage, 0) << "tiles of one channel share an image";
+  EXPECT_EQ(capture.lights[1].shadowMaps[0].sharedImage, -1) << "the whole image is one of its own";
 }
 
 TEST_F(Manifests, CountOfShadowMapsIsLimited) {
@@ -368,25 +397,41 @@ INSTANTIATE_TEST_SUITE_P(
 
 INSTANTIATE_TEST_SUITE_P(
     Unknown, Mistakes,
-    testing::Values(Mistake{"/exposure", "1", {"m.json", "exposure", "unknown key"}},
-                    Mistake{"/camera/fov", "1", {"camera.fov", "unknown key"}},
-                    Mistake{"/buffers/depth", "{}", {"buffers.depth", "unknown key", "frontDepth"}},
-                    Mistake{"/buffers/normal/encoding", "\"x\"", {"buffers.normal.encoding", "unknown key"}},
-                    Mistake{"/buffers/material/channels", "[]", {"buffers.material.channels", "unknown key"}},
-                    Mistake{"/lights/0/glow", "1", {"lights[0].glow", "unknown key"}},
-                    Mistake{"/lights/0/radius", "1", {"lights[0].radius", "only a point light"}},
-                    Mistake{"/lights/0/shadowMap/bias", "1", {"lights[0].shadowMap.bias", "unknown key"}},
-                    Mistake{"/lights/0/shadowMap/exit/encoding",
-                            "\"device\"",
-                            {"lights[0].shadowMap.exit.encoding", "unknown key"}},
-                    Mistake{"/lights/0/shadowMap/casterMaterial/scale",
-                            "255",
-                            {"lights[0].shadowMap.casterMaterial.scale", "unknown key"}},
-                    Mistake{
-                        "/lights/1/shadowMaps/0/bias", "1", {"lights[1].shadowMaps[0].bias", "unknown key"}},
-                    Mistake{"/materials/0/name", "\"x\"", {"materials[0].name", "unknown key"}},
-                    Mistake{"/truth/samples", "\"-1\"", {"truth.samples", "whole number in quotes", "-1"}},
-                    Mistake{"/truth/exposure", "1", {"truth.exposure", "unknown key"}}));
+    testing::Values(
+        Mistake{"/exposure", "1", {"m.json", "exposure", "unknown key"}},
+        Mistake{"/camera/fov", "1", {"camera.fov", "unknown key"}},
+        Mistake{"/buffers/depth", "{}", {"buffers.depth", "unknown key", "frontDepth"}},
+        Mistake{"/buffers/normal/encoding", "\"x\"", {"buffers.normal.encoding", "unknown key"}},
+        Mistake{"/buffers/material/channels", "[]", {"buffers.material.channels", "unknown key"}},
+        Mistake{"/lights/0/glow", "1", {"lights[0].glow", "unknown key"}},
+        Mistake{"/lights/0/radius", "1", {"lights[0].radius", "only a point light"}},
+        Mistake{"/lights/0/shadowMap/bias", "1", {"lights[0].shadowMap.bias", "unknown key"}},
+        Mistake{"/lights/0/shadowMap/faces", "\"both\"", {"lights[0].shadowMap.faces", "both"}},
+        Mistake{"/lights/0/shadowMap/layer", "-1", {"lights[0].shadowMap.layer", "-1"}},
+        Mistake{"/lights/0/shadowMap/depthStep", "-1", {"lights[0].shadowMap.depthStep", "-1"}},
+        Mistake{"/lights/0/shadowMap/offsetLength", "-1", {"lights[0].shadowMap.offsetLength", "-1"}},
+        Mistake{
+            "/lights/0/shadowMap/depthBiasSlope", "2e6", {"lights[0].shadowMap.depthBiasSlope", "2000000"}},
+        Mistake{"/lights/0/shadowMap/depthBiasConstant",
+                "\"x\"",
+                {"lights[0].shadowMap.depthBiasConstant", "number"}},
+        Mistake{"/lights/0/shadowMap/offset", "[1, 2]", {"lights[0].shadowMap.offset", "size"}},
+        Mistake{"/lights/0/shadowMap/size", "[1]", {"lights[0].shadowMap.size", "2 whole numbers"}},
+        Mistake{"/lights/0/shadowMap/size", "[1, 0]", {"lights[0].shadowMap.size", "0"}},
+        Mistake{"/lights/1/shadowMaps/1/size", "[1, 1]", {"lights[1].shadowMaps[1].size", "constant"}},
+        Mistake{"/lights/0/shadowMap/size",
+                "[100, 2]",
+                {"s.exr", "lights[0].shadowMap", "100x2 texels at (0, 0)", "outside the image"}},
+        Mistake{"/lights/0/shadowMap/exit/encoding",
+                "\"device\"",
+                {"lights[0].shadowMap.exit.encoding", "unknown key"}},
+        Mistake{"/lights/0/shadowMap/casterMaterial/scale",
+                "255",
+                {"lights[0].shadowMap.casterMaterial.scale", "unknown key"}},
+        Mistake{"/lights/1/shadowMaps/0/bias", "1", {"lights[1].shadowMaps[0].bias", "unknown key"}},
+        Mistake{"/materials/0/name", "\"x\"", {"materials[0].name", "unknown key"}},
+        Mistake{"/truth/samples", "\"-1\"", {"truth.samples", "whole number in quotes", "-1"}},
+        Mistake{"/truth/exposure", "1", {"truth.exposure", "unknown key"}}));
 
 INSTANTIATE_TEST_SUITE_P(
     Values, Mistakes,

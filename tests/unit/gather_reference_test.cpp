@@ -147,7 +147,7 @@ TEST_P(GatherModel, IsNearTheRandomWalk) {
   PellucidMaterial material;
   ASSERT_EQ(pellucidCompileMaterial(&desc, &material, nullptr, nullptr, nullptr), PELLUCID_OK);
   const reference::SurfaceReader surfaces(c);
-  const reference::Gather gather(c, surfaces, {material}, 0);
+  const reference::Gather gather(c, surfaces, {material});
   const auto walked = walkShape(shape);
   const auto& d = c.lights.at(0).direction;
   const glm::dvec3 toLight = -glm::normalize(glm::dvec3(d[0], d[1], d[2]));

@@ -193,7 +193,8 @@ TEST(Plan, ImagesBesideMapsCount) {
         images.push_back(d.bindings[b].resource - PELLUCID_RESOURCE_SHADOW0);
     const uint32_t light = 2 * i;
     EXPECT_EQ(images, (std::vector<uint32_t>{light, 4 + 2 * light, 5 + 2 * light, light + 1, 6 + 2 * light,
-                                             7 + 2 * light}));
+                                             7 + 2 * light, light, light}))
+        << "the first one stands in for what is not read: views of one type";
   }
   EXPECT_STREQ(plan.dispatches[2].name, "base level");
 }
@@ -246,7 +247,7 @@ TEST(Plan, ManyLightsBecomeSeveralDispatches) {
 // Of a shader's workgroups, as its SPIR-V states it: columns, rows.
 std::array<uint32_t, 2> workgroupOf(uint32_t pipeline) {
   PellucidShader shader{};
-  EXPECT_EQ(pellucidGetShader(pipeline, &shader), PELLUCID_OK);
+  EXPECT_EQ(pellucidGetShader(pipeline, VK_IMAGE_VIEW_TYPE_2D, &shader), PELLUCID_OK);
   constexpr size_t kHeaderWords = 5;
   constexpr uint32_t kOpExecutionMode = 16, kLocalSize = 17;
   for (size_t i = kHeaderWords; i < shader.wordCount; i += shader.words[i] >> 16)
@@ -288,8 +289,31 @@ TEST(Plan, EntryPointsOfManyMapsBindNoMoreThanDevicesDo) {
         EXPECT_TRUE(binding.type != VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER || binding.size <= 16384);
       }
     }
-    EXPECT_EQ(found, 1u);
+    EXPECT_EQ(found, lights > PELLUCID_DISPATCH_SHADOWS ? 2u : 1u);
   }
+}
+
+// A light whose map holds back faces is not gathered: its map is bound by a dispatch after the gathered
+// light's.
+TEST(Plan, LightsOfBackFacesComeAfterGatheredOnes) {
+  Frame f(2);
+  f.maps[0].faces = PELLUCID_FACES_BACK;
+  f.frame.gatherSamples = 8;
+  const PellucidPlan plan = f.plan();
+  EXPECT_EQ(plan.activeLights, 2u);
+  EXPECT_TRUE(
+      skips(plan, "gather", "a light's shadow map holds back faces, which do not say where light enters"));
+  const std::vector<std::string> all = names(plan);
+  const auto gathered = std::find(all.begin(), all.end(), "add gathered");
+  ASSERT_NE(gathered, all.end());
+  ASSERT_NE(gathered + 1, all.end());
+  EXPECT_EQ(gathered[1], "translucency");
+  const PellucidDispatch& d = plan.dispatches[gathered + 1 - all.begin()];
+  EXPECT_EQ(d.pushConstants[1], 1u);
+  bool bound = false;
+  for (uint32_t b = 0; b < d.bindingCount; ++b)
+    bound = bound || d.bindings[b].resource == PELLUCID_RESOURCE_SHADOW0;
+  EXPECT_TRUE(bound);
 }
 
 TEST(Plan, ImageNeedsCoverThePlan) {
@@ -319,7 +343,8 @@ TEST(Plan, ImageNeedsCoverThePlan) {
   }
 }
 
-// D3D12, Metal and WebGPU forbid what Vulkan allows in GENERAL. A history is added to in place, pixel by pixel.
+// D3D12, Metal and WebGPU forbid what Vulkan allows in GENERAL. A history is added to in place, pixel by
+// pixel.
 TEST(Plan, NoDispatchReadsAndWritesATransient) {
   for (const uint32_t features : {1u, 2u, 3u})
     for (const uint32_t samples : {0u, 8u})
@@ -360,14 +385,25 @@ TEST(Plan, JsonParses) {
 
 TEST(Plan, ShadersAreSpirv) {
   PellucidShader shader{};
-  for (uint32_t p = 0; p < pellucidGetPipelineCount(); ++p) {
-    ASSERT_EQ(pellucidGetShader(p, &shader), PELLUCID_OK);
-    ASSERT_GT(shader.wordCount, 5u);
-    EXPECT_EQ(shader.words[0], 0x07230203u);
-    for (uint32_t i = 0; i < shader.constantCount; ++i) EXPECT_LE(shader.constants[i].value, 1u);
-  }
-  EXPECT_EQ(pellucidGetShader(pellucidGetPipelineCount(), &shader), PELLUCID_ERROR_INVALID_ARGUMENT);
-  EXPECT_EQ(pellucidGetShader(0, nullptr), PELLUCID_ERROR_INVALID_ARGUMENT);
+  uint32_t arrays = 0;  // that read views of arrays
+  for (const VkImageViewType views : {VK_IMAGE_VIEW_TYPE_2D, VK_IMAGE_VIEW_TYPE_2D_ARRAY})
+    for (uint32_t p = 0; p < pellucidGetPipelineCount(); ++p) {
+      ASSERT_EQ(pellucidGetShader(p, views, &shader), PELLUCID_OK);
+      ASSERT_GT(shader.wordCount, 5u);
+      EXPECT_EQ(shader.words[0], 0x07230203u);
+      for (uint32_t i = 0; i < shader.constantCount; ++i) EXPECT_LE(shader.constants[i].value, 1u);
+      constexpr uint32_t kOpTypeImage = 25;
+      bool array = false;
+      for (size_t i = 5; i < shader.wordCount; i += shader.words[i] >> 16)
+        array = array || ((shader.words[i] & 0xFFFF) == kOpTypeImage && shader.words[i + 5] == 1);
+      arrays += array;
+      EXPECT_TRUE(views == VK_IMAGE_VIEW_TYPE_2D_ARRAY || !array) << pellucidPipelineName(p);
+    }
+  EXPECT_EQ(arrays, 4u) << "translucency, debug view and both of entry points";
+  EXPECT_EQ(pellucidGetShader(pellucidGetPipelineCount(), VK_IMAGE_VIEW_TYPE_2D, &shader),
+            PELLUCID_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(pellucidGetShader(0, VK_IMAGE_VIEW_TYPE_CUBE, &shader), PELLUCID_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(pellucidGetShader(0, VK_IMAGE_VIEW_TYPE_2D, nullptr), PELLUCID_ERROR_INVALID_ARGUMENT);
 }
 
 // What the context does for devices without shaderStorageImageWriteWithoutFormat.
@@ -383,7 +419,7 @@ TEST(Plan, OutputFormatIsPatchedIntoShaders) {
   };
   for (uint32_t p = 0; p < pellucidGetPipelineCount(); ++p) {
     PellucidShader shader{};
-    ASSERT_EQ(pellucidGetShader(p, &shader), PELLUCID_OK);
+    ASSERT_EQ(pellucidGetShader(p, VK_IMAGE_VIEW_TYPE_2D, &shader), PELLUCID_OK);
     std::vector<uint32_t> words(shader.words, shader.words + shader.wordCount);
     const auto before = counts(words);
     EXPECT_LE(before[0], before[1]) << pellucidPipelineName(p);  // an image that is not written needs none

@@ -101,7 +101,22 @@ const std::vector<Violation> kViolations = {
     {"ShadowImage", "shadowMaps[0].image", "is 5", [](Frame& f) { f.maps[0].image = 5; }},
     {"ShadowSingular", "shadowMaps[0].clipFromWorld", "inverted",
      [](Frame& f) { f.maps[0].clipFromWorld[0] = 0; }},
-    {"ShadowBias", "shadowMaps[0].bias", "-1", [](Frame& f) { f.maps[0].bias = -1; }},
+    {"ShadowOffsetLength", "shadowMaps[0].offsetLength", "-1", [](Frame& f) { f.maps[0].offsetLength = -1; }},
+    {"ShadowDepthStep", "shadowMaps[0].depthStep", "-1", [](Frame& f) { f.maps[0].depthStep = -1; }},
+    {"ShadowDepthBias", "shadowMaps[0].depthBiasConstant", "nan",
+     [](Frame& f) { f.maps[0].depthBiasConstant = NAN; }},
+    {"ShadowSlopeBias", "shadowMaps[0].depthBiasSlope", "inf",
+     [](Frame& f) { f.maps[0].depthBiasSlope = INFINITY; }},
+    {"ShadowFaces", "shadowMaps[0].faces", "is 2, outside 0..1", [](Frame& f) { f.maps[0].faces = 2; }},
+    {"ShadowTile", "shadowMaps[0].offset", "[1] is 65500 with an extent of 64",
+     [](Frame& f) { f.maps[0].offset[1] = 65500; }},
+    {"FacesOfOneLight", "shadowMaps[1].faces", "is 1, but that of the first map of lights[0] is 0",
+     [](Frame& f) {
+       f.maps.push_back(f.maps[0]);
+       f.maps[1].faces = PELLUCID_FACES_BACK;
+       f.lights[0].shadowMapCount = 2;
+       f.use();
+     }},
     {"ShadowView", "shadowMaps[0].viewFromWorld", "encoding",
      [](Frame& f) { f.maps[0].encoding = PELLUCID_DEPTH_VIEW_Z; }},
     {"ExitImage", "shadowMaps[0].exitImage", "is 2 (an index plus 1), but there are 1",
@@ -211,6 +226,71 @@ TEST(Validate, WarnsOfLightsThatAddNothing) {
   EXPECT_NE(f.problems(PELLUCID_SEVERITY_WARNING).find("lights[0] adds nothing: no intensity"),
             std::string::npos);
   EXPECT_EQ(f.problems(), "");
+}
+
+struct Warned {
+  const char* name;
+  const char* sentence;
+  void (*change)(Frame&);
+};
+
+// The fixture's texels are .3 mm long and its material's mean free path is 2 mm.
+const std::vector<Warned> kWarned = {
+    {"Coarse",
+     "shadowMaps[0].extent makes a texel 20 mm long, more than 4 mean free paths of materials[0], which are "
+     "8 mm",
+     [](Frame& f) { f.maps[0].extent[0] = 1; }},
+    {"Overlap", "shadowMaps[1].offset is 32, 63: the tile overlaps that of shadowMaps[0]",
+     [](Frame& f) {
+       f.maps.push_back(f.maps[0]);
+       f.maps[1].offset[0] = 32;
+       f.maps[1].offset[1] = 63;
+       f.use();
+     }},
+    {"BackFaces", "shadowMaps[0].faces is BACK: lights[0] takes its thickness from backDepth",
+     [](Frame& f) { f.maps[0].faces = PELLUCID_FACES_BACK; }},
+    {"BackFacesAlone",
+     "lights[0] adds nothing: no back depth to take a thickness from, and its map holds back",
+     [](Frame& f) {
+       f.maps[0].faces = PELLUCID_FACES_BACK;
+       f.frame.backDepth = {};
+     }},
+    {"SlopeWithoutNeighbors", "shadowMaps[0].depthBiasSlope is 1.75, but a tile of 64 x 1 texels",
+     [](Frame& f) {
+       f.maps[0].depthBiasSlope = 1.75f;
+       f.maps[0].extent[1] = 1;
+     }},
+};
+
+TEST(Validate, WarnsOfShadowMaps) {
+  for (const Warned& w : kWarned) {
+    Frame f;
+    for (PellucidImage& image : f.frame.transients) image = Frame::view();
+    EXPECT_EQ(f.problems(PELLUCID_SEVERITY_WARNING), "");
+    w.change(f);
+    EXPECT_EQ(f.problems(), "") << w.name;
+    const std::string warnings = f.problems(PELLUCID_SEVERITY_WARNING);
+    EXPECT_NE(warnings.find(w.sentence), std::string::npos) << w.name << ": " << warnings;
+  }
+}
+
+// Tiles that meet, other layers and one map of two lights are no overlap.
+TEST(Validate, TilesMayMeet) {
+  const std::vector<std::function<void(PellucidShadowMap&)>> changes = {
+      [](PellucidShadowMap& m) { m.offset[0] = 64; }, [](PellucidShadowMap& m) { m.offset[1] = 64; },
+      [](PellucidShadowMap& m) {
+        m.layer = 1;
+        m.offset[0] = 3;
+      },
+      [](PellucidShadowMap&) {}};
+  for (const auto& change : changes) {
+    Frame f;
+    for (PellucidImage& image : f.frame.transients) image = Frame::view();
+    f.maps.push_back(f.maps[0]);
+    change(f.maps[1]);
+    f.use();
+    EXPECT_EQ(f.problems(PELLUCID_SEVERITY_WARNING), "");
+  }
 }
 
 TEST(Validate, SeparateOutputIsNotTheIrradiance) {

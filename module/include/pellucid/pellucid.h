@@ -4,8 +4,8 @@
  * object: the module creates pipelines and layouts, records vkCmd* calls into the caller's command
  * buffer, and never allocates device memory, transitions an image layout, submits or waits.
  * pellucid_plan.h, which this header includes at its end, has what a plan holds, for engines that record
- * plans themselves. pellucid_thesis.h has the options of Whelan 2009, pellucid_budget.h a frame budget,
- * pellucid_material.h the material compiler.
+ * plans themselves. pellucid_shadow_map.h describes a light's shadow map, pellucid_thesis.h has the options of
+ * Whelan 2009, pellucid_budget.h a frame budget, pellucid_material.h the material compiler.
  *
  * Conventions, unless a field says otherwise:
  * - matrices: 16 floats, column-major, column vectors (GLM and Vulkan memory order);
@@ -27,13 +27,14 @@
 #include <vulkan/vulkan_core.h>
 
 #include "pellucid_result.h"
+#include "pellucid_shadow_map.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
 /* Passed in PellucidContextDesc; the library refuses a header it does not know. */
-#define PELLUCID_HEADER_VERSION 3u
+#define PELLUCID_HEADER_VERSION 4u
 
 /* ---- Materials ------------------------------------------------------------------------------- */
 
@@ -105,28 +106,7 @@ typedef struct PellucidLight {
                                               0 maps: unshadowed, thickness from the camera's depths */
 } PellucidLight;
 
-typedef struct PellucidShadowMap {
-  uint32_t image;        /* index into frame.shadowImages */
-  uint32_t extent[2];    /* texels */
-  uint32_t encoding;     /* PellucidDepthEncoding */
-  float clipFromWorld[16];
-  float viewFromWorld[16]; /* right-handed, -z forward; not read for DEVICE, nor for DISTANCE of point and spot lights */
-  float bias;            /* scene units of thickness; nearer than this counts as the receiver itself */
-
-  /* Two optional images of the map's extent say what lies behind the stored surface. Without them everything
-   * between that surface and the receiver counts as the receiver's medium, air behind an occluder included.
-   * Both are indices into frame.shadowImages plus 1; 0 (default): not given. */
-  uint32_t exitImage; /* depth, in the map's encoding and matrices, of the nearest back face behind the stored
-                         surface. Receivers beyond it are in shadow. A texel that holds nothing, or NaN: no back
-                         face is known, and the medium goes on. Not read by PELLUCID_THICKNESS_CAMERA */
-  uint32_t casterMaterialImage; /* one float channel: material of the stored surface, numbered as in
-                                   frame.material without the mark bit; 0: opaque. Light enters receivers of that
-                                   material only */
-  float casterMaterialScale; /* the number is round(value * scale); >= 0; 0 (default): 255, for R8_UNORM; 1 for
-                                formats that hold the number itself */
-} PellucidShadowMap;
-
-/* A fused dispatch binds 8 shadow images and takes 128 lights and 128 shadow maps; a frame with more gets several. Exit
+/* A fused dispatch binds 8 shadow images and takes 128 lights and 112 shadow maps; a frame with more gets several. Exit
  * depths and caster materials count; the images of one light must fit into one dispatch. Where those of all lights are
  * more than a plan's dispatches can bind, all exit depths and caster materials are left out, which a skip says. */
 enum { PELLUCID_MAX_LIGHT_SHADOW_MAPS = 8, PELLUCID_MAX_TRANSIENTS = 7 };
@@ -205,7 +185,8 @@ typedef struct PellucidFrame {
   uint32_t shadowMapCount;
   const PellucidShadowMap* shadowMaps;
   uint32_t shadowImageCount; /* any number */
-  const PellucidImage* shadowImages; /* depth or one float channel, one 2D view each */
+  const PellucidImage* shadowImages; /* depth or one float channel, one view each of
+                                        PellucidContextDesc::shadowViewType, of the depth aspect alone */
   /* ---- fields that may be missing ---- */
   uint32_t thicknessSource; /* PellucidThicknessSource */
   uint32_t debugView;       /* PellucidDebugView */
@@ -291,6 +272,9 @@ typedef struct PellucidContextDesc {
   PellucidParallelForFn parallelFor; /* optional: lends threads to the creation of pipelines; the allocator's and the
                                         cache's functions are called on them */
   void* parallelUser;
+  VkImageViewType shadowViewType; /* of all shadow images of all frames: 2D (default), or 2D_ARRAY, of which one view of all
+                                     layers serves every map in them */
+  uint32_t reserved;              /* 0, for a later field */
 } PellucidContextDesc;
 
 /* The defaults, written into a struct of that many bytes; pellucidInit* without it have the header's size. */

@@ -102,11 +102,12 @@ typedef struct PellucidShader {
   const PellucidSpecialization* constants;
 } PellucidShader;
 
-/* The constants that pellucidRecordPlan would write, and what each pipeline is made of. */
+/* The constants that pellucidRecordPlan would write, and what each pipeline is made of; shadowViewType as in
+ * PellucidContextDesc. */
 PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const PellucidFrame* frame,
                                       void* mapped, size_t size);
 uint32_t pellucidGetPipelineCount(void);
-PellucidResult pellucidGetShader(uint32_t pipeline, PellucidShader* shader);
+PellucidResult pellucidGetShader(uint32_t pipeline, VkImageViewType shadowViewType, PellucidShader* shader);
 
 /* Bit (1 << PellucidResource) of each screen-sized image that `features` cannot do without. */
 uint32_t pellucidGetRequiredInputs(uint32_t features);

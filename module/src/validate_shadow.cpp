@@ -1,0 +1,117 @@
+// Checks of shadow maps: the errors of each, and warnings of what a picture would show.
+#include <algorithm>
+#include <cmath>
+
+#include "frame.h"
+#include "shadow_map.h"
+#include "validate.h"
+#include "validate_shared.h"
+
+namespace pellucid {
+namespace {
+
+constexpr uint32_t kMostTexels = 65536;
+
+void checkShadowMap(const PellucidFrame& f, uint32_t index, Findings& out) {
+  const PellucidShadowMap& s = f.shadowMaps[index];
+  const auto field = [index](const char* name) { return Field("shadowMaps[", index, "].", name); };
+  if (s.image >= f.shadowImageCount)
+    out.error(field("image"), "is ", s.image, ", but there are ", f.shadowImageCount, " shadowImages");
+  checkDomains(s, field(""), out);
+  for (int i = 0; i < 2; ++i)
+    if (s.offset[i] <= kMostTexels && s.extent[i] <= kMostTexels && s.offset[i] + s.extent[i] > kMostTexels)
+      out.error(field("offset"), "[", i, "] is ", s.offset[i], " with an extent of ", s.extent[i],
+                "; the tile must end within ", kMostTexels, " texels");
+  if (finite(s.clipFromWorld, 16) && glm::determinant(toMatrix(s.clipFromWorld)) == 0)
+    out.error(field("clipFromWorld"), "cannot be inverted");
+  if (s.encoding != PELLUCID_DEPTH_DEVICE &&
+      !(finite(s.viewFromWorld, 16) && rigid(toMatrix(s.viewFromWorld))))
+    out.error(field("viewFromWorld"), "is not a rotation and translation, which this encoding needs");
+  const auto checkBeside = [&](const char* name, uint32_t image) {
+    if (image > f.shadowImageCount)
+      out.error(field(name), "is ", image, " (an index plus 1), but there are ", f.shadowImageCount,
+                " shadowImages");
+    else if (image != 0 && image - 1 == s.image)
+      out.error(field(name), "is ", image, " (an index plus 1), the map's own image");
+  };
+  checkBeside("exitImage", s.exitImage);
+  checkBeside("casterMaterialImage", s.casterMaterialImage);
+  if (s.exitImage != 0 && s.exitImage == s.casterMaterialImage)
+    out.error(field("casterMaterialImage"), "is ", s.casterMaterialImage, ", the exitImage");
+}
+
+bool overlap(const PellucidShadowMap& a, const PellucidShadowMap& b) {
+  if (a.image != b.image || a.layer != b.layer) return false;
+  for (int i = 0; i < 2; ++i)
+    if (a.offset[i] + a.extent[i] <= b.offset[i] || b.offset[i] + b.extent[i] <= a.offset[i]) return false;
+  // Two lights may share a whole map.
+  return !std::equal(a.offset, a.offset + 2, b.offset) || !std::equal(a.extent, a.extent + 2, b.extent);
+}
+
+void warnOfTiles(const PellucidFrame& f, Findings& out) {
+  // Pairs: more maps than this would take longer than the frame.
+  constexpr uint32_t kMostMaps = 1024;
+  for (uint32_t i = 1; i < std::min(f.shadowMapCount, kMostMaps); ++i)
+    for (uint32_t k = 0; k < i; ++k)
+      if (overlap(f.shadowMaps[i], f.shadowMaps[k])) {
+        out.warning(Field("shadowMaps[", i, "].offset"), "is ", f.shadowMaps[i].offset[0], ", ",
+                    f.shadowMaps[i].offset[1], ": the tile overlaps that of shadowMaps[", k,
+                    "] in the same image and layer");
+        break;
+      }
+}
+
+// Thickness and gather are resolved to a texel. Of a perspective map the texel depends on the distance.
+void warnOfTexels(const FrameFacts& facts, uint32_t index, Findings& out) {
+  constexpr float kMostPaths = 4;
+  const PellucidFrame& f = facts.frame;
+  const PellucidShadowMap& s = f.shadowMaps[index];
+  if (isPerspective(s)) return;
+  const double side = texelSide(s) * static_cast<double>(f.metersPerUnit) * 1000;
+  for (uint32_t i = 0; i < f.materialCount; ++i) {
+    const float path = meanFreePath(facts.material(i));
+    if (!(path > 0) || !(side > static_cast<double>(kMostPaths * path))) continue;
+    out.warning(Field("shadowMaps[", index, "].extent"), "makes a texel ", static_cast<float>(side),
+                " mm long, more than ", kMostPaths, " mean free paths of materials[", i, "], which are ",
+                kMostPaths * path, " mm: thickness and gathered light are resolved to a texel");
+    return;
+  }
+}
+
+}  // namespace
+
+void checkShadowMaps(const FrameFacts& facts, Findings& out) {
+  for (uint32_t i = 0; i < facts.frame.shadowMapCount; ++i) checkShadowMap(facts.frame, i, out);
+}
+
+void checkFaces(const FrameFacts& facts, uint32_t light, Findings& out) {
+  const PellucidLight& l = facts.frame.lights[light];
+  const PellucidShadowMap* maps = facts.frame.shadowMaps + l.firstShadowMap;
+  for (uint32_t i = 1; i < l.shadowMapCount; ++i)
+    if (maps[i].faces != maps[0].faces)
+      out.error(Field("shadowMaps[", l.firstShadowMap + i, "].faces"), "is ", maps[i].faces,
+                ", but that of the first map of lights[", light, "] is ", maps[0].faces);
+}
+
+void warnOfShadowMaps(const FrameFacts& facts, Findings& out) {
+  const PellucidFrame& f = facts.frame;
+  warnOfTiles(f, out);
+  for (uint32_t i = 0; i < f.lightCount; ++i) {
+    const PellucidLight& l = f.lights[i];
+    if (facts.whySkipped(l)) continue;
+    if (facts.holdsBackFaces(l))
+      out.warning(Field("shadowMaps[", l.firstShadowMap, "].faces"), "is BACK: lights[", i,
+                  "] takes its thickness from backDepth and is not gathered");
+    for (uint32_t k = 0; k < l.shadowMapCount; ++k) {
+      const uint32_t map = l.firstShadowMap + k;
+      const PellucidShadowMap& s = f.shadowMaps[map];
+      warnOfTexels(facts, map, out);
+      if (s.depthBiasSlope != 0 && std::min(s.extent[0], s.extent[1]) < 2)
+        out.warning(Field("shadowMaps[", map, "].depthBiasSlope"), "is ", s.depthBiasSlope,
+                    ", but a tile of ", s.extent[0], " x ", s.extent[1],
+                    " texels has no neighbors to take the slope from");
+    }
+  }
+}
+
+}  // namespace pellucid

@@ -1,0 +1,408 @@
+// Shadow maps as engines draw them, against plain maps of the same scene: depth bias, front faces culled, few
+// bits, tiles of an atlas, layers of an array, cascades. And exactly, on planes.
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+
+#include "capture/material.h"
+#include "capture/shadow_images.h"
+#include "common/error.h"
+#include "gltf/gltf.h"
+#include "gpu_fixture.h"
+#include "model_builder.h"
+#include "raster/raster.h"
+#include "reference/reference.h"
+
+namespace {
+
+using namespace pellucid::test;
+namespace reference = pellucid::harness::reference;
+
+ReplaySettings atQuality(uint32_t quality) {
+  ReplaySettings s;
+  s.quality = quality;
+  s.translucency.gatherSamples = PELLUCID_GATHER_BY_QUALITY;
+  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  return s;
+}
+
+// A ball of 6 mm and beside it an ear, 8 mm high and 2.4 mm thick. A key light from the front and a rim
+// light.
+Model ballAndEar() {
+  Model model = emptyModel();
+  addSphere(model, {-3, 0, 0}, 6, 48);
+  endPart(model, 0);
+  const std::size_t first = model.vertices.size();
+  addSphere(model, {0, 0, 0}, 1, 48);
+  endPart(model, 1);
+  constexpr std::array<float, 3> kRadii = {2.5f, 4, 1.2f}, kCenter = {6.2f, 0, 0};
+  for (std::size_t i = first; i < model.vertices.size(); ++i) {
+    Vertex& v = model.vertices[i];
+    float squared = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      v.position[c] = kCenter[c] + kRadii[c] * v.position[c];
+      v.normal[c] /= kRadii[c];
+      squared += v.normal[c] * v.normal[c];
+    }
+    for (float& n : v.normal) n /= std::sqrt(squared);
+  }
+  model.lights = {directional({0.6, -0.4, -0.7}, 2), directional({0.5, -0.2, 0.85}, 2)};
+  return model;
+}
+
+class EngineMaps : public GpuTest {
+protected:
+  static Capture draw(const Model& model, const ShadowDrawing& shadow, int size = 256) {
+    RasterOptions options;
+    options.width = options.height = 96;
+    options.shadowSize = size;
+    options.shadow = shadow;
+    return rasterize(device(), model, frontCamera(false), options).capture;
+  }
+  static Image render(const Capture& c, uint32_t quality) {
+    return replayer().run(c, compileMaterials(c), atQuality(quality)).output;
+  }
+  static Image renderUngathered(const Capture& c, uint32_t quality,
+                                PellucidThicknessSource source = PELLUCID_THICKNESS_LIGHT) {
+    ReplaySettings s = atQuality(quality);
+    s.translucency.gatherSamples = 0;
+    s.translucency.thicknessSource = source;
+    return replayer().run(c, compileMaterials(c), s).output;
+  }
+  // In red, green and blue: of pixels that some light reaches.
+  static std::array<double, 3> meanLit(const Capture& c, const Image& image) {
+    std::array<double, 3> sum{};
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < c.material.size(); ++i) {
+      if (c.material[i] == 0 || !(c.irradiance.data[3 * i] > 0)) continue;
+      for (std::size_t k = 0; k < 3; ++k) sum[k] += double(image.data[4 * i + k]);
+      ++count;
+    }
+    for (double& s : sum) s /= static_cast<double>(count);
+    return sum;
+  }
+  static void expectNear(const std::array<double, 3>& mean, const std::array<double, 3>& plain,
+                         double share) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      RecordProperty("ratio" + std::to_string(k), std::to_string(mean[k] / plain[k]));
+      EXPECT_NEAR(mean[k] / plain[k], 1, share) << "channel " << k;
+    }
+  }
+  static ShadowDrawing biased(int bits) {
+    ShadowDrawing drawing;
+    drawing.depthBiasConstant = 1.25;
+    drawing.depthBiasSlope = 1.75;
+    drawing.bits = bits;
+    return drawing;
+  }
+};
+
+TEST_F(EngineMaps, DepthBiasIsTakenBack) {
+  const Model model = ballAndEar();
+  const Capture plain = draw(model, {});
+  for (const int bits : {16, 24, 32}) {
+    Capture c = draw(model, biased(bits));
+    EXPECT_LT(c.lights[0].shadowMaps[0].depthBiasSlope, 0) << "depths are reversed";
+    for (const uint32_t quality : {0u, 1u}) {
+      SCOPED_TRACE(std::to_string(bits) + " bits, quality " + std::to_string(quality));
+      expectNear(meanLit(c, render(c, quality)), meanLit(plain, render(plain, quality)), 0.02);
+    }
+    if (bits != 32) continue;
+    const std::array<double, 3> said = meanLit(c, render(c, 1));
+    for (Light& light : c.lights)
+      for (ShadowMap& map : light.shadowMaps) map.depthBiasConstant = map.depthBiasSlope = 0;
+    const std::array<double, 3> expected = meanLit(plain, render(plain, 1));
+    const double unsaid = meanLit(c, render(c, 1))[0] / expected[0], saidRatio = said[0] / expected[0];
+    EXPECT_GT(unsaid, 1.03) << "a bias that the map does not say counts lit skin twice";
+    EXPECT_LT(std::abs(saidRatio - 1), 0.5 * (unsaid - 1));
+  }
+}
+
+// The map does not know where light enters: the light has the camera's thickness.
+TEST_F(EngineMaps, FrontFacesCulled) {
+  const Model model = ballAndEar();
+  const Capture plain = draw(model, {});
+  ShadowDrawing culled;
+  culled.cull = MapCull::Front;
+  const Capture c = draw(model, culled);
+  EXPECT_EQ(c.lights[0].shadowMaps[0].faces, PELLUCID_FACES_BACK);
+  Capture none = c;
+  none.lights.clear();
+  for (const uint32_t quality : {0u, 1u}) {
+    SCOPED_TRACE(quality);
+    const Image image = render(c, quality),
+                expected = renderUngathered(plain, quality, PELLUCID_THICKNESS_CAMERA);
+    expectNear(meanLit(c, image), meanLit(plain, expected), 0.02);
+    // Never white: the light of rims, whose chord is short, is all that is brighter than with the plain map.
+    const float brightest = *std::max_element(expected.data.begin(), expected.data.end());
+    const auto white = std::count_if(image.data.begin(), image.data.end(),
+                                     [&](float value) { return value > 1.1f * brightest; });
+    EXPECT_LT(static_cast<double>(white), 0.02 * static_cast<double>(image.data.size()));
+    Capture blind = c;
+    blind.backDepth.image = {};
+    const ReplayResult without = replayer().run(blind, compileMaterials(blind), atQuality(quality));
+    EXPECT_TRUE(sameBits(without.output, render(none, quality)))
+        << "without back depth nothing comes through";
+    EXPECT_EQ(without.plan.activeLights, 0u);
+  }
+  const auto plan = replayer().run(c, compileMaterials(c), atQuality(1)).plan;
+  std::string skips;
+  for (uint32_t i = 0; i < plan.skipCount; ++i) skips += std::string(plan.skips[i].what) + ";";
+  EXPECT_NE(skips.find("gather;"), std::string::npos) << skips;
+  EXPECT_NE(skips.find("light-space thickness;"), std::string::npos) << skips;
+}
+
+// A body behind another one is in its shadow, beyond the face that light leaves the first by.
+TEST_F(EngineMaps, BackFacesOcclude) {
+  Model model = emptyModel();
+  addSphere(model, {0, 0, 0}, 3, 32);
+  endPart(model, 0);
+  addSphere(model, {0, 0, -20}, 3.3, 32);
+  endPart(model, 1);
+  model.lights = {directional({0, 0, 1}, 2)};
+  ShadowDrawing culled;
+  culled.cull = MapCull::Front;
+  const Capture c = draw(model, culled);
+  Capture none = c;
+  none.lights.clear();
+  EXPECT_TRUE(sameBits(render(c, 0), render(none, 0))) << "the farther ball shadows all of the nearer one";
+  model.parts.pop_back();
+  const Capture alone = draw(model, culled);
+  EXPECT_GT(render(alone, 0).at(48, 48)[0], render(none, 0).at(48, 48)[0]);
+}
+
+TEST_F(EngineMaps, AtlasAndArrayAreAsSeparateMaps) {
+  const Model model = ballAndEar();
+  const Capture separate = draw(model, biased(32));
+  for (const MapPlacement placement : {MapPlacement::Atlas, MapPlacement::Array}) {
+    ShadowDrawing drawing = biased(32);
+    drawing.placement = placement;
+    const Capture c = draw(model, drawing);
+    EXPECT_EQ(shadowImages(c.lights).images.size(), 3u)
+        << "depth, exit depth and caster material of all maps";
+    EXPECT_EQ(hasLayers(c.lights), placement == MapPlacement::Array);
+    for (const uint32_t quality : {0u, 1u})
+      EXPECT_TRUE(sameBits(render(c, quality), render(separate, quality)))
+          << "placement " << static_cast<int>(placement) << ", quality " << quality;
+  }
+}
+
+TEST_F(EngineMaps, LayersNeedAnArrayContext) {
+  Capture c = flatCapture(8, 8);
+  c.lights = {backLight()};
+  c.lights[0].shadowMaps = {flatShadowMap(-11, PELLUCID_DEPTH_DEVICE)};
+  c.lights[0].shadowMaps[0].sharedImage = 0;
+  c.lights[0].shadowMaps[0].layer = 3;
+  const Context flat(device(), [](PellucidContextDesc& desc) { desc.uses = PELLUCID_USE_TRANSLUCENCY; });
+  ReplaySettings s;
+  s.features = PELLUCID_FEATURE_TRANSLUCENCY;
+  const FrameRun run(device(), flat, c, {testMaterial()}, s);
+  device().run([&](VkCommandBuffer commandBuffer) {
+    try {
+      run.record(commandBuffer);
+      ADD_FAILURE() << "not refused";
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("shadowMaps[0].layer is 3"), std::string::npos)
+          << error.what();
+    }
+  });
+}
+
+TEST_F(EngineMaps, FewBitsMakeNoSeams) {
+  const Model model = ballAndEar();
+  const Capture plain = draw(model, {});
+  for (const int bits : {16, 24}) {
+    ShadowDrawing drawing;
+    drawing.bits = bits;
+    const Capture c = draw(model, drawing);
+    EXPECT_GT(c.lights[0].shadowMaps[0].depthStep, 0);
+    for (const uint32_t quality : {0u, 1u}) {
+      const Image image = render(c, quality), expected = render(plain, quality);
+      const float peak = *std::max_element(expected.data.begin(), expected.data.end());
+      float worst = 0;
+      for (std::size_t i = 0; i < image.data.size(); ++i)
+        worst = std::max(worst, std::abs(image.data[i] - expected.data[i]));
+      EXPECT_LT(worst, 0.01f * peak) << bits << " bits, quality " << quality;
+    }
+  }
+}
+
+// The left part of each map in full resolution, then all of it in half of that.
+TEST_F(EngineMaps, CascadesMeetWithoutASeam) {
+  const Model model = ballAndEar();
+  constexpr int kSize = 256, kWidth = 150;
+  const Capture plain = draw(model, {}, kSize), coarse = draw(model, {}, kSize / 2);
+  Capture c = plain;
+  for (std::size_t l = 0; l < c.lights.size(); ++l) {
+    ShadowMap& near = c.lights[l].shadowMaps[0];
+    const ShadowMap whole = near;
+    near.depth.image = near.exitDepth = Image(kWidth, kSize, 1);
+    near.casterMaterial.resize(std::size_t{kWidth} * kSize);
+    for (int y = 0; y < kSize; ++y)
+      for (int x = 0; x < kWidth; ++x) {
+        *near.depth.image.at(x, y) = *whole.depth.image.at(x, y);
+        *near.exitDepth.at(x, y) = *whole.exitDepth.at(x, y);
+        near.casterMaterial[static_cast<std::size_t>(y * kWidth + x)] =
+            whole.casterMaterial[static_cast<std::size_t>(y * kSize + x)];
+      }
+    // ndc of the whole map -1 .. 2 kWidth / kSize - 1 becomes -1 .. 1.
+    const double scale = double(kSize) / kWidth;
+    for (std::size_t column = 0; column < 4; ++column) {
+      double& x = near.clipFromWorld[4 * column];
+      x = scale * x + (scale - 1) * near.clipFromWorld[4 * column + 3];
+    }
+    c.lights[l].shadowMaps.push_back(coarse.lights[l].shadowMaps[0]);
+  }
+  for (const uint32_t quality : {0u, 1u})
+    for (std::size_t l = 0; l < c.lights.size(); ++l) {
+      Capture one = c, reference = plain;
+      one.lights = {c.lights[l]};
+      reference.lights = {plain.lights[l]};
+      const Image image = render(one, quality), expected = render(reference, quality);
+      // The light that comes through, over the plain map's, on both sides of the border.
+      double sum[2] = {}, plainSum[2] = {};
+      const double tangent = 0.1;  // of frontCamera
+      const Matrix& clip = one.lights[0].shadowMaps[0].clipFromWorld;
+      for (int y = 0; y < c.height; ++y)
+        for (int x = 0; x < c.width; ++x) {
+          if (c.material[static_cast<std::size_t>(y * c.width + x)] == 0) continue;
+          const double p = planar(c, c.frontDepth, x, y);
+          const double wx = ((x + 0.5) / c.width * 2 - 1) * tangent * p,
+                       wy = -((y + 0.5) / c.height * 2 - 1) * tangent * p;
+          const double ndc = clip[0] * wx + clip[4] * wy + clip[8] * (100 - p) + clip[12];
+          const double pixels = std::abs(ndc - 1) / std::abs(clip[0]) / (20.0 / c.width);
+          if (pixels > 4) continue;
+          const int side = ndc > 1;
+          for (int k = 0; k < 3; ++k) {
+            sum[side] += double(image.at(x, y)[k]);
+            plainSum[side] += double(expected.at(x, y)[k]);
+          }
+        }
+      ASSERT_GT(plainSum[0], 0);
+      ASSERT_GT(plainSum[1], 0);
+      EXPECT_NEAR(sum[0] / plainSum[0], sum[1] / plainSum[1], 0.01)
+          << "quality " << quality << ", light " << l;
+    }
+}
+
+// A plane that leans across the light's rays, with what a rasterizer adds to its depths.
+class LeaningPlane : public GpuTest, public testing::WithParamInterface<PellucidDepthEncoding> {
+protected:
+  static constexpr double kConstant = 0.3, kSlope = 2.5, kOffset = 0.4;
+  // Depths grow by `step` a texel along x and half of that along y.
+  static ShadowMap map(double step) {
+    ShadowMap m = flatShadowMap(-12, GetParam(), 64);
+    m.clipFromWorld[0] = m.clipFromWorld[5] = 0.1;  // +-10 mm
+    for (int y = 0; y < 64; ++y)
+      for (int x = 0; x < 64; ++x)
+        *m.depth.image.at(x, y) += static_cast<float>(step * (x - 32) + 0.5 * step * (y - 32));
+    return m;
+  }
+  static double unit() { return GetParam() == PELLUCID_DEPTH_DEVICE ? 0.01 : 1; }  // of a mm, stored
+  static Image through(const ShadowMap& m) {
+    Capture c = flatCapture(32, 32);
+    for (float& e : c.irradiance.data) e = 0;
+    c.lights = {backLight()};
+    c.lights[0].shadowMaps = {m};
+    ReplaySettings s;
+    s.features = PELLUCID_FEATURE_TRANSLUCENCY;
+    s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+    const Image image = replay(c, testMaterial(), s);
+    reference::Settings r;
+    r.features = PELLUCID_FEATURE_TRANSLUCENCY;
+    const Image exact = reference::compute(c, {testMaterial()}, r).image;
+    for (int y = 0; y < 32; ++y)
+      for (int x = 0; x < 32; ++x)
+        for (int k = 0; k < 3; ++k) EXPECT_NEAR(image.at(x, y)[k], exact.at(x, y)[k], 2e-4) << x << ", " << y;
+    return image;
+  }
+};
+
+TEST_P(LeaningPlane, OffsetsAreTakenBack) {
+  const double step = 0.01 * unit();
+  const ShadowMap plain = map(step);
+  const Image expected = through(plain);
+  for (const double sign : {1.0, -1.0}) {
+    ShadowMap biased = plain;
+    biased.depthBiasConstant = sign * kConstant * unit();
+    biased.depthBiasSlope = sign * kSlope;
+    biased.offsetLength = kOffset;
+    for (float& d : biased.depth.image.data)
+      d += static_cast<float>(sign * (kConstant * unit() + kSlope * step) + kOffset * unit());
+    const Image image = through(biased);
+    // A slope of floats of size .4: 3e-8 / 1e-4 of the slope bias; then three additions.
+    for (std::size_t i = 0; i < image.data.size(); ++i) ASSERT_NEAR(image.data[i], expected.data[i], 2e-4);
+    biased.sharedImage = 0;
+    biased.offset = {3, 7};
+    const Image tile = through(biased);
+    EXPECT_TRUE(sameBits(tile, image)) << "what lies around the tile is not read";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Encodings, LeaningPlane,
+                         testing::Values(PELLUCID_DEPTH_DEVICE, PELLUCID_DEPTH_VIEW_Z,
+                                         PELLUCID_DEPTH_DISTANCE),
+                         testing::PrintToStringParamName());
+
+TEST_F(EngineMaps, DrawingsThatNoMapHasAreRefused) {
+  const Model model = ballAndEar();
+  const std::pair<const char*, void (*)(RasterOptions&)> kWrong[] = {
+      {"shadowBits: 8 is not 16, 24 or 32", [](RasterOptions& o) { o.shadow.bits = 8; }},
+      {"shadowDepthBias: nan", [](RasterOptions& o) { o.shadow.depthBiasSlope = NAN; }},
+      {"shadowDepth: must be device",
+       [](RasterOptions& o) {
+         o.shadow.cull = MapCull::Front;
+         o.shadowEncoding = PELLUCID_DEPTH_VIEW_Z;
+       }},
+      {"shadowSize: is 0", [](RasterOptions& o) {
+         o.shadow.placement = MapPlacement::Atlas;
+         o.shadowSize = 0;
+       }}};
+  for (const auto& [sentence, change] : kWrong) {
+    RasterOptions options;
+    options.width = options.height = 8;
+    change(options);
+    try {
+      rasterize(device(), model, frontCamera(false), options);
+      ADD_FAILURE() << sentence << ": not refused";
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(sentence), std::string::npos) << error.what();
+    }
+  }
+}
+
+// A scanned head, where it is.
+TEST_F(EngineMaps, Head) {
+  const char* variable = std::getenv("PELLUCID_SHARED");
+  const std::filesystem::path file = (variable ? std::filesystem::path(variable)
+                                               : std::filesystem::path(PELLUCID_SOURCE_DIR) / "../shared") /
+                                     "models/head_views.glb";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no " << file;
+  GltfOptions gltf;
+  gltf.metersPerUnit = 0.052;
+  gltf.presets["*"] = "skin1";
+  GltfScene scene = loadGltf(file, gltf);
+  scene.model.lights = {directional({0.6, -0.4, -0.7}, 2), directional({0.5, -0.2, 0.85}, 2)};
+  const auto camera = std::find_if(scene.model.cameras.begin(), scene.model.cameras.end(),
+                                   [](const ModelCamera& c) { return c.name == "portrait"; });
+  ASSERT_NE(camera, scene.model.cameras.end());
+  RasterOptions options;
+  options.width = 160;
+  options.height = 120;
+  const auto draw = [&](const ShadowDrawing& shadow) {
+    options.shadow = shadow;
+    return rasterize(device(), scene.model, *camera, options).capture;
+  };
+  ShadowDrawing culled;
+  culled.cull = MapCull::Front;
+  const Capture plain = draw({}), withBias = draw(biased(32)), back = draw(culled);
+  for (const uint32_t quality : {0u, 1u}) {
+    SCOPED_TRACE(quality);
+    const std::array<double, 3> expected = meanLit(plain, render(plain, quality));
+    expectNear(meanLit(withBias, render(withBias, quality)), expected, 0.02);
+    expectNear(meanLit(back, render(back, quality)), meanLit(plain, renderUngathered(plain, quality)), 0.02);
+  }
+}
+
+}  // namespace
