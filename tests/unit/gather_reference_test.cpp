@@ -26,8 +26,8 @@ WalkPolyhedron slab(double thickness) { return WalkPolyhedron({{{0, 0, 1}, 0}, {
 // Deviations beyond 4 standard errors happen once in 16000 tries.
 constexpr double kDeviations = 4;
 
-// A pixel; the truth's noise is 1 to 5 % where it is bright and is taken off below.
-constexpr std::size_t kWalks = 40000;
+// A pixel; the truth's noise is 1 to 8 % where it is bright and is taken off below.
+constexpr std::size_t kWalks = 20000;
 
 TEST(RandomWalk, IsSlabTransport) {
   std::uint64_t seed = 1;
