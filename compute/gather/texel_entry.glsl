@@ -10,16 +10,13 @@
 // area shows as a dot at terminators.
 const float kLeastCosine = 0.2;
 
-// Texels' sides that a depth may be off by so that neighbors still say a normal.
-const float kSureTexels = 3.0;
-
 // True where the camera has a surface on the pixel that a point is seen on, at the point or in front of it: what it sees is
 // in the irradiance that diffusion spreads. A surface that faces away cannot be seen, however thin the part is.
-// `front`: of the pixel; tolerance: half a texel; `uncertain`: how far the point's depth may be off.
+// `front`: of the pixel; `uncertain`: along the normal.
 bool cameraSees(ivec2 pixel, float front, float planar, vec3 normal, float tolerance, float uncertain) {
-  // Depths that are off by several texels' sides say no normal.
-  bool faces = dot(normal, viewRay(frame.camera, pixel).direction) < 0.0 || uncertain > kSureTexels * 2.0 * tolerance;
-  return insideRect(pixel) && faces && front > 0.0 && planar <= front + tolerance + uncertain;
+  float facing = dot(normal, viewRay(frame.camera, pixel).direction);
+  return insideRect(pixel) && facing < 0.0 && front > 0.0 &&
+         planar <= front + tolerance + uncertain / max(-facing, kLeastCosine);
 }
 
 // Pixels without a material show nothing, whatever depth they hold: their light is not diffused. To be fetched before
@@ -115,7 +112,7 @@ uvec4 entryOf(float depth, float share, vec3 normal, vec3 toLight, ivec2 pixel, 
     r.normal = cosine < 0.0 ? -normal : normal;
     r.cosine = max(abs(cosine), kLeastCosine);
   }
-  if (cameraSees(pixel, front, planar, r.normal, tolerance, uncertain)) {
+  if (cameraSees(pixel, front, planar, r.normal, tolerance, uncertain * dot(r.normal, toLight))) {
     r.seen = share;
     r.hidden = 0.0;
   }
@@ -126,47 +123,30 @@ const ivec2 kNoPixel = ivec2(-1);
 
 ivec2 firstTexel(EntryMapConstants map) { return ivec2(map.occluder.w & 0xFFFFu, map.occluder.w >> 16); }
 
+bool hasOffsets(EntryMapConstants map) { return any(notEqual(map.offsets, vec4(0.0))); }
+
+// See lib/shadow.glsl. The neighbors of the tile's border are within it: the border itself takes the place of others, and
+// does not count.
+DrawnDepth drawnDepth(EntryMapConstants map, ivec2 texel, ShadowTexels stored, bvec4 holds) {
+  ivec2 last = ivec2(map.map.xy) - 1;
+  bvec4 within = bvec4(texel.x < last.x, texel.x > 0, texel.y < last.y, texel.y > 0);
+  return drawnDepth(map.offsets, stored.own, stored.beside, bvec4(uvec4(holds) & uvec4(within)));
+}
+
 bvec4 neighborsHold(EntryMapConstants map, vec4 beside) {
   return bvec4(shadowHolds(map.meta, beside.x), shadowHolds(map.meta, beside.y), shadowHolds(map.meta, beside.z),
                shadowHolds(map.meta, beside.w));
 }
 
-// `texel`: of the tile, beyond which nothing is read.
-ShadowTexels texelsAt(EntryMapConstants map, ivec2 texel) {
-  ivec2 first = firstTexel(map);
-  return shadowTexels(map.meta.x, texel + first, first, first + ivec2(map.map.xy) - 1);
-}
-
-// See lib/shadow.glsl. A neighbor beyond the tile's border does not count: the texel itself stands in its place.
-DrawnDepth drawnDepth(EntryMapConstants map, ivec2 texel, ShadowTexels stored) {
-  ivec2 last = ivec2(map.map.xy) - 1;
-  bvec4 within = bvec4(texel.x < last.x, texel.x > 0, texel.y < last.y, texel.y > 0);
-  bvec4 holds = bvec4(uvec4(neighborsHold(map, stored.beside)) & uvec4(within));
-  return drawnDepth(map.offsets, stored.own, stored.beside, holds);
-}
-
-// What was drawn into a texel and its neighbors. Each has a bias by its own slope, and only then says a normal.
-ShadowTexels drawnTexels(EntryMapConstants map, ivec2 texel, ShadowTexels stored, out float uncertain) {
-  DrawnDepth own = drawnDepth(map, texel, stored);
-  uncertain = own.uncertain;
-  ShadowTexels drawn = ShadowTexels(own.depth, stored.beside);
-  for (int i = 0; i < 4; ++i) {
-    if (!shadowHolds(map.meta, stored.beside[i])) continue;
-    ivec2 axis = i < 2 ? ivec2(1, 0) : ivec2(0, 1);
-    ivec2 neighbor = clamp(texel + (i % 2 == 0 ? axis : -axis), ivec2(0), ivec2(map.map.xy) - 1);
-    drawn.beside[i] = map.offsets.y == 0.0 ? stored.beside[i] - map.offsets.x
-                                           : drawnDepth(map, neighbor, texelsAt(map, neighbor)).depth;
-  }
-  return drawn;
-}
-
-// stored: as drawn; `uncertain`: how far its own depth may be off.
-uvec4 parallelEntry(EntryMapConstants map, ivec2 texel, ShadowTexels stored, float uncertain) {
+uvec4 parallelEntry(EntryMapConstants map, ivec2 texel, ShadowTexels stored) {
   vec4 beside = stored.beside;
   bvec4 holds = neighborsHold(map, beside);
+  DrawnDepth drawn = DrawnDepth(stored.own, 0.0);
+  if (hasOffsets(map)) drawn = drawnDepth(map, texel, stored, holds);
+  // Neighbors on one plane have the same bias, so that steps need no correction.
   vec4 grows = mix(vec4(2.0 * kNoDepth), (beside - stored.own) * map.ray.w, holds);
   vec2 p = vec2(texel) + 0.5;
-  float depth = stored.own * map.ray.w + (map.origin.w + p.x * map.stepX.w + p.y * map.stepY.w) + map.offsets.z;
+  float depth = drawn.depth * map.ray.w + (map.origin.w + p.x * map.stepX.w + p.y * map.stepY.w) + map.offsets.z;
   if (!(abs(depth) < kNoDepth)) return kNoEntry;
   vec4 q = vec4(p, depth, 1.0);
   float w = dot(map.pixelW, q), planar = dot(map.planar, q);
@@ -186,26 +166,35 @@ uvec4 parallelEntry(EntryMapConstants map, ivec2 texel, ShadowTexels stored, flo
   if (map.occluder.x != 0u) {
     float exit = shadowTexel(map.occluder.x - 1u, inImage);
     // Depths of entry points grow towards the light.
-    if (shadowHolds(map.meta, exit)) b.exit = max((stored.own - exit) * map.ray.w + map.offsets.z, 0.0);
+    if (shadowHolds(map.meta, exit)) b.exit = max((drawn.depth - exit) * map.ray.w + map.offsets.z, 0.0);
   }
-  return entryOf(depth, 1.0, normal, map.toLight.xyz, pixel, front, planar, map.seen.x, uncertain * abs(map.ray.w), b);
+  return entryOf(depth, 1.0, normal, map.toLight.xyz, pixel, front, planar, map.seen.x, drawn.uncertain * abs(map.ray.w), b);
 }
 
-// `stored`, `uncertain`: as parallelEntry takes them.
-uvec4 perspectiveEntry(EntryMapConstants map, ivec2 texel, ShadowTexels stored, float uncertain) {
-  float depth, beside;
+// Moves a texel's point y from the stored depth to the surface that was drawn. Returns how far along the light that may be off.
+float moveToDrawn(EntryMapConstants map, ivec2 texel, DrawnDepth drawn, inout vec3 y, inout float depth) {
+  y = surfacePoint(map, texel, drawn.depth, depth);
+  float beside;
+  vec3 off = surfacePoint(map, texel, drawn.depth + drawn.uncertain, beside) - y;
+  // Not beyond the light.
+  float part = max(1.0 - map.offsets.z / max(distance(y, map.ray.xyz), 1.0e-12), 1.0e-3);
+  y = map.ray.xyz + part * (y - map.ray.xyz);
+  depth *= part;
+  return min(length(off), kNoDepth);
+}
+
+uvec4 perspectiveEntry(EntryMapConstants map, ivec2 texel, ShadowTexels stored) {
+  float depth, uncertain = 0.0;
   vec3 y = surfacePoint(map, texel, stored.own, depth);
   if (!(abs(depth) < kNoDepth)) return kNoEntry;
+  // Neighbors on one plane have the same bias, so that steps need no correction.
   float scale = depth * depth;
   float squareX = scale * dot(map.stepX.xyz, map.stepX.xyz), squareY = scale * dot(map.stepY.xyz, map.stepY.xyz);
   vec3 normal = cross(entrySlope(map, texel, y, ivec2(1, 0), stored.beside.xy, squareX),
                       entrySlope(map, texel, y, ivec2(0, 1), stored.beside.zw, squareY));
-  if (uncertain > 0.0) uncertain = min(distance(surfacePoint(map, texel, stored.own + uncertain, beside), y), kNoDepth);
-  if (map.offsets.z > 0.0) {
-    // Not beyond the light.
-    float part = max(1.0 - map.offsets.z / max(distance(y, map.ray.xyz), 1.0e-12), 1.0e-3);
-    y = map.ray.xyz + part * (y - map.ray.xyz);
-    depth *= part;
+  if (hasOffsets(map)) {
+    uncertain = moveToDrawn(map, texel, drawnDepth(map, texel, stored, neighborsHold(map, stored.beside)), y, depth);
+    if (!(abs(depth) < kNoDepth)) return kNoEntry;
   }
   ivec2 pixel;
   if (!projectToPixel(frame.camera, y, pixel)) pixel = kNoPixel;
@@ -227,12 +216,11 @@ uvec4 perspectiveEntry(EntryMapConstants map, ivec2 texel, ShadowTexels stored, 
 
 // `texel`: of the map's tile.
 uvec4 entryOf(EntryMapConstants map, ivec2 texel) {
-  ShadowTexels stored = texelsAt(map, texel);
+  ivec2 first = firstTexel(map);
+  ShadowTexels stored = shadowTexels(map.meta.x, texel + first, first, first + ivec2(map.map.xy) - 1);
   if (!shadowHolds(map.meta, stored.own)) return kNoEntry;
-  float uncertain = 0.0;
-  if (any(notEqual(map.offsets.xyw, vec3(0.0)))) stored = drawnTexels(map, texel, stored, uncertain);
-  if (map.meta.z != 0u) return perspectiveEntry(map, texel, stored, uncertain);
-  return parallelEntry(map, texel, stored, uncertain);
+  if (map.meta.z != 0u) return perspectiveEntry(map, texel, stored);
+  return parallelEntry(map, texel, stored);
 }
 
 #endif
