@@ -123,30 +123,60 @@ const ivec2 kNoPixel = ivec2(-1);
 
 ivec2 firstTexel(EntryMapConstants map) { return ivec2(map.occluder.w & 0xFFFFu, map.occluder.w >> 16); }
 
-bool hasOffsets(EntryMapConstants map) { return any(notEqual(map.offsets, vec4(0.0))); }
-
-// See lib/shadow.glsl. The neighbors of the tile's border are within it: the border itself takes the place of others, and
-// does not count.
-DrawnDepth drawnDepth(EntryMapConstants map, ivec2 texel, ShadowTexels stored, bvec4 holds) {
-  ivec2 last = ivec2(map.map.xy) - 1;
-  bvec4 within = bvec4(texel.x < last.x, texel.x > 0, texel.y < last.y, texel.y > 0);
-  return drawnDepth(map.offsets, stored.own, stored.beside, bvec4(uvec4(holds) & uvec4(within)));
-}
-
 bvec4 neighborsHold(EntryMapConstants map, vec4 beside) {
   return bvec4(shadowHolds(map.meta, beside.x), shadowHolds(map.meta, beside.y), shadowHolds(map.meta, beside.z),
                shadowHolds(map.meta, beside.w));
 }
 
-uvec4 parallelEntry(EntryMapConstants map, ivec2 texel, ShadowTexels stored) {
+// The step of depth along an axis that two neighboring steps agree best on: a bias jumps between triangles, and within one
+// all steps are alike. beside, beyond: one and two texels ahead, and behind.
+float agreedStep(float own, vec2 beside, vec2 beyond, bvec2 holds, bvec2 holdsBeyond) {
+  vec4 steps = vec4(beside.y - beyond.y, own - beside.y, beside.x - own, beyond.x - beside.x);
+  bvec4 known = bvec4(holds.y && holdsBeyond.y, holds.y, holds.x, holds.x && holdsBeyond.x);
+  float least = 3.0e38, agreed = known.y ? steps.y : known.z ? steps.z : 0.0;
+  for (int i = 0; i < 3; ++i) {
+    float apart = abs(steps[i] - steps[i + 1]);
+    if (!known[i] || !known[i + 1] || apart >= least) continue;
+    least = apart;
+    agreed = 0.5 * (steps[i] + steps[i + 1]);
+  }
+  return agreed;
+}
+
+float agreedStep(EntryMapConstants map, ivec2 texel, ivec2 axis, float own, vec2 beside, bvec2 holds) {
+  ivec2 ahead = texel + 2 * axis, behind = texel - 2 * axis, first = firstTexel(map), last = ivec2(map.map.xy) - 1;
+  vec2 beyond = vec2(shadowTexel(map.meta.x, first + min(ahead, last)), shadowTexel(map.meta.x, first + max(behind, ivec2(0))));
+  bvec2 holdsBeyond = bvec2(all(lessThanEqual(ahead, last)) && shadowHolds(map.meta, beyond.x),
+                            all(greaterThanEqual(behind, ivec2(0))) && shadowHolds(map.meta, beyond.y));
+  return agreedStep(own, beside, beyond, holds, holdsBeyond);
+}
+
+// What was drawn into a texel and its neighbors, without the map's biases. `uncertain`: how far its own depth may be off.
+// The neighbors of the tile's border are within it: the border itself takes the place of others, and does not count.
+ShadowTexels drawnTexels(EntryMapConstants map, ivec2 texel, ShadowTexels stored, out float uncertain) {
+  ivec2 last = ivec2(map.map.xy) - 1;
+  bvec4 within = bvec4(texel.x < last.x, texel.x > 0, texel.y < last.y, texel.y > 0);
+  bvec4 holds = bvec4(uvec4(neighborsHold(map, stored.beside)) & uvec4(within));
+  DrawnDepth drawn = drawnDepth(map.offsets, stored.own, stored.beside, holds);
+  uncertain = drawn.uncertain;
+  vec4 steps = stored.beside - stored.own;
+  if (map.offsets.y != 0.0) {
+    float own = withoutPit(map.offsets, stored.own, stored.beside, holds);
+    float x = agreedStep(map, texel, ivec2(1, 0), own, stored.beside.xy, holds.xy);
+    float y = agreedStep(map, texel, ivec2(0, 1), own, stored.beside.zw, holds.zw);
+    steps = vec4(x, -x, y, -y);
+    drawn.depth = own - map.offsets.x - map.offsets.y * max(abs(x), abs(y));
+  }
+  return ShadowTexels(drawn.depth, mix(stored.beside, drawn.depth + steps, neighborsHold(map, stored.beside)));
+}
+
+// stored: as drawn; `uncertain`: see drawnTexels.
+uvec4 parallelEntry(EntryMapConstants map, ivec2 texel, ShadowTexels stored, float uncertain) {
   vec4 beside = stored.beside;
   bvec4 holds = neighborsHold(map, beside);
-  DrawnDepth drawn = DrawnDepth(stored.own, 0.0);
-  if (hasOffsets(map)) drawn = drawnDepth(map, texel, stored, holds);
-  // Neighbors on one plane have the same bias, so that steps need no correction.
   vec4 grows = mix(vec4(2.0 * kNoDepth), (beside - stored.own) * map.ray.w, holds);
   vec2 p = vec2(texel) + 0.5;
-  float depth = drawn.depth * map.ray.w + (map.origin.w + p.x * map.stepX.w + p.y * map.stepY.w) + map.offsets.z;
+  float depth = stored.own * map.ray.w + (map.origin.w + p.x * map.stepX.w + p.y * map.stepY.w) + map.offsets.z;
   if (!(abs(depth) < kNoDepth)) return kNoEntry;
   vec4 q = vec4(p, depth, 1.0);
   float w = dot(map.pixelW, q), planar = dot(map.planar, q);
@@ -166,35 +196,26 @@ uvec4 parallelEntry(EntryMapConstants map, ivec2 texel, ShadowTexels stored) {
   if (map.occluder.x != 0u) {
     float exit = shadowTexel(map.occluder.x - 1u, inImage);
     // Depths of entry points grow towards the light.
-    if (shadowHolds(map.meta, exit)) b.exit = max((drawn.depth - exit) * map.ray.w + map.offsets.z, 0.0);
+    if (shadowHolds(map.meta, exit)) b.exit = max((stored.own - exit) * map.ray.w + map.offsets.z, 0.0);
   }
-  return entryOf(depth, 1.0, normal, map.toLight.xyz, pixel, front, planar, map.seen.x, drawn.uncertain * abs(map.ray.w), b);
+  return entryOf(depth, 1.0, normal, map.toLight.xyz, pixel, front, planar, map.seen.x, uncertain * abs(map.ray.w), b);
 }
 
-// Moves a texel's point y from the stored depth to the surface that was drawn. Returns how far along the light that may be off.
-float moveToDrawn(EntryMapConstants map, ivec2 texel, DrawnDepth drawn, inout vec3 y, inout float depth) {
-  y = surfacePoint(map, texel, drawn.depth, depth);
-  float beside;
-  vec3 off = surfacePoint(map, texel, drawn.depth + drawn.uncertain, beside) - y;
-  // Not beyond the light.
-  float part = max(1.0 - map.offsets.z / max(distance(y, map.ray.xyz), 1.0e-12), 1.0e-3);
-  y = map.ray.xyz + part * (y - map.ray.xyz);
-  depth *= part;
-  return min(length(off), kNoDepth);
-}
-
-uvec4 perspectiveEntry(EntryMapConstants map, ivec2 texel, ShadowTexels stored) {
-  float depth, uncertain = 0.0;
+// `stored`, `uncertain`: as parallelEntry takes them.
+uvec4 perspectiveEntry(EntryMapConstants map, ivec2 texel, ShadowTexels stored, float uncertain) {
+  float depth, beside;
   vec3 y = surfacePoint(map, texel, stored.own, depth);
   if (!(abs(depth) < kNoDepth)) return kNoEntry;
-  // Neighbors on one plane have the same bias, so that steps need no correction.
   float scale = depth * depth;
   float squareX = scale * dot(map.stepX.xyz, map.stepX.xyz), squareY = scale * dot(map.stepY.xyz, map.stepY.xyz);
   vec3 normal = cross(entrySlope(map, texel, y, ivec2(1, 0), stored.beside.xy, squareX),
                       entrySlope(map, texel, y, ivec2(0, 1), stored.beside.zw, squareY));
-  if (hasOffsets(map)) {
-    uncertain = moveToDrawn(map, texel, drawnDepth(map, texel, stored, neighborsHold(map, stored.beside)), y, depth);
-    if (!(abs(depth) < kNoDepth)) return kNoEntry;
+  if (uncertain > 0.0) uncertain = min(distance(surfacePoint(map, texel, stored.own + uncertain, beside), y), kNoDepth);
+  if (map.offsets.z > 0.0) {
+    // Not beyond the light.
+    float part = max(1.0 - map.offsets.z / max(distance(y, map.ray.xyz), 1.0e-12), 1.0e-3);
+    y = map.ray.xyz + part * (y - map.ray.xyz);
+    depth *= part;
   }
   ivec2 pixel;
   if (!projectToPixel(frame.camera, y, pixel)) pixel = kNoPixel;
@@ -219,8 +240,10 @@ uvec4 entryOf(EntryMapConstants map, ivec2 texel) {
   ivec2 first = firstTexel(map);
   ShadowTexels stored = shadowTexels(map.meta.x, texel + first, first, first + ivec2(map.map.xy) - 1);
   if (!shadowHolds(map.meta, stored.own)) return kNoEntry;
-  if (map.meta.z != 0u) return perspectiveEntry(map, texel, stored);
-  return parallelEntry(map, texel, stored);
+  float uncertain = 0.0;
+  if (any(notEqual(map.offsets.xyw, vec3(0.0)))) stored = drawnTexels(map, texel, stored, uncertain);
+  if (map.meta.z != 0u) return perspectiveEntry(map, texel, stored, uncertain);
+  return parallelEntry(map, texel, stored, uncertain);
 }
 
 #endif

@@ -55,13 +55,17 @@ float pitAlong(float own, vec2 beside, bvec2 holds, float way) {
   return all(holds) ? max(min(behind.x, behind.y), 0.0) : 0.0;
 }
 
+// A triangle that the light grazes is moved far beyond its neighbors; a pit one texel wide is more likely that.
+float withoutPit(vec4 offsets, float own, vec4 beside, bvec4 holds) {
+  float way = sign(offsets.y);
+  return own - way * max(pitAlong(own, beside.xy, holds.xy, way), pitAlong(own, beside.zw, holds.zw, way));
+}
+
 // offsets: ShadowConstants::offsets; beside: texels to the right, to the left, below and above; `holds`: which of them hold
 // a surface of the tile.
 DrawnDepth drawnDepth(vec4 offsets, float own, vec4 beside, bvec4 holds) {
   if (offsets.y == 0.0) return DrawnDepth(own - offsets.x, 0.5 * offsets.w);
-  // A triangle that the light grazes is moved far beyond its neighbors; a pit one texel wide is more likely that.
-  float way = sign(offsets.y);
-  own -= way * max(pitAlong(own, beside.xy, holds.xy, way), pitAlong(own, beside.zw, holds.zw, way));
+  own = withoutPit(offsets, own, beside, holds);
   vec2 x = stepAlong(own, beside.xy, holds.xy), y = stepAlong(own, beside.zw, holds.zw);
   return DrawnDepth(own - offsets.x - offsets.y * max(x.x, y.x),
                     0.5 * offsets.w + abs(offsets.y) * (offsets.w + max(x.y, y.y)));
