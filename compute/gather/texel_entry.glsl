@@ -7,16 +7,13 @@
 // terminators.
 const float kLeastCosine = 0.2;
 
-// Texels' sides that a depth may be off by so that neighbors still say a normal.
-const float kSureTexels = 3.0;
-
 // True where a point does not lie behind the surface that its pixel shows: the light that enters there is in the irradiance
 // that diffusion spreads. A surface that faces away cannot be seen, however thin the part is. `front`: of the pixel;
-// `tolerance`: half a texel; `uncertain`: how far the point's depth may be off.
+// `uncertain`: along the normal.
 bool cameraSees(ivec2 pixel, float front, float planar, vec3 normal, float tolerance, float uncertain) {
-  // Depths that are off by several texels' sides say no normal.
-  bool faces = dot(normal, viewRay(frame.camera, pixel).direction) < 0.0 || uncertain > kSureTexels * 2.0 * tolerance;
-  return insideRect(pixel) && faces && front > 0.0 && planar <= front + tolerance + uncertain;
+  float facing = dot(normal, viewRay(frame.camera, pixel).direction);
+  return insideRect(pixel) && facing < 0.0 && front > 0.0 &&
+         planar <= front + tolerance + uncertain / max(-facing, kLeastCosine);
 }
 
 // Front of a pixel that has a material; others show nothing, whatever depth they hold, as their light is not diffused.
@@ -111,7 +108,7 @@ uvec4 entryOf(float depth, float share, vec3 normal, vec3 toLight, ivec2 pixel, 
     r.normal = cosine < 0.0 ? -normal : normal;
     r.cosine = max(abs(cosine), kLeastCosine);
   }
-  if (cameraSees(pixel, front, planar, r.normal, tolerance, uncertain)) {
+  if (cameraSees(pixel, front, planar, r.normal, tolerance, uncertain * dot(r.normal, toLight))) {
     r.seen = share;
     r.hidden = 0.0;
   }
@@ -127,36 +124,49 @@ bvec4 neighborsHold(EntryMapConstants map, vec4 beside) {
                shadowHolds(map.meta, beside.w));
 }
 
-// `texel`: of the tile, beyond which nothing is read.
-ShadowTexels texelsAt(EntryMapConstants map, ivec2 texel) {
-  ivec2 first = firstTexel(map);
-  return shadowTexels(map.meta.x, texel + first, first, first + ivec2(map.map.xy) - 1);
+// The step of depth along an axis that two neighboring steps agree best on: a bias jumps between triangles, and within one
+// all steps are alike. beside, beyond: one and two texels ahead, and behind.
+float agreedStep(float own, vec2 beside, vec2 beyond, bvec2 holds, bvec2 holdsBeyond) {
+  vec4 steps = vec4(beside.y - beyond.y, own - beside.y, beside.x - own, beyond.x - beside.x);
+  bvec4 known = bvec4(holds.y && holdsBeyond.y, holds.y, holds.x, holds.x && holdsBeyond.x);
+  float least = 3.0e38, agreed = known.y ? steps.y : known.z ? steps.z : 0.0;
+  for (int i = 0; i < 3; ++i) {
+    float apart = abs(steps[i] - steps[i + 1]);
+    if (!known[i] || !known[i + 1] || apart >= least) continue;
+    least = apart;
+    agreed = 0.5 * (steps[i] + steps[i + 1]);
+  }
+  return agreed;
 }
 
-// See lib/shadow.glsl. A neighbor beyond the tile's border does not count: the texel itself stands in its place.
-DrawnDepth drawnDepth(EntryMapConstants map, ivec2 texel, ShadowTexels stored) {
+float agreedStep(EntryMapConstants map, ivec2 texel, ivec2 axis, float own, vec2 beside, bvec2 holds) {
+  ivec2 ahead = texel + 2 * axis, behind = texel - 2 * axis, first = firstTexel(map), last = ivec2(map.map.xy) - 1;
+  vec2 beyond = vec2(shadowTexel(map.meta.x, first + min(ahead, last)), shadowTexel(map.meta.x, first + max(behind, ivec2(0))));
+  bvec2 holdsBeyond = bvec2(all(lessThanEqual(ahead, last)) && shadowHolds(map.meta, beyond.x),
+                            all(greaterThanEqual(behind, ivec2(0))) && shadowHolds(map.meta, beyond.y));
+  return agreedStep(own, beside, beyond, holds, holdsBeyond);
+}
+
+// What was drawn into a texel and its neighbors, without the map's biases. `uncertain`: how far its own depth may be off.
+// The neighbors of the tile's border are within it: the border itself takes the place of others, and does not count.
+ShadowTexels drawnTexels(EntryMapConstants map, ivec2 texel, ShadowTexels stored, out float uncertain) {
   ivec2 last = ivec2(map.map.xy) - 1;
   bvec4 within = bvec4(texel.x < last.x, texel.x > 0, texel.y < last.y, texel.y > 0);
   bvec4 holds = bvec4(uvec4(neighborsHold(map, stored.beside)) & uvec4(within));
-  return drawnDepth(map.offsets, stored.own, stored.beside, holds);
-}
-
-// What was drawn into a texel and its neighbors. Each has a bias by its own slope, and only then says a normal.
-ShadowTexels drawnTexels(EntryMapConstants map, ivec2 texel, ShadowTexels stored, out float uncertain) {
-  DrawnDepth own = drawnDepth(map, texel, stored);
-  uncertain = own.uncertain;
-  ShadowTexels drawn = ShadowTexels(own.depth, stored.beside);
-  for (int i = 0; i < 4; ++i) {
-    if (!shadowHolds(map.meta, stored.beside[i])) continue;
-    ivec2 axis = i < 2 ? ivec2(1, 0) : ivec2(0, 1);
-    ivec2 neighbor = clamp(texel + (i % 2 == 0 ? axis : -axis), ivec2(0), ivec2(map.map.xy) - 1);
-    drawn.beside[i] = map.offsets.y == 0.0 ? stored.beside[i] - map.offsets.x
-                                           : drawnDepth(map, neighbor, texelsAt(map, neighbor)).depth;
+  DrawnDepth drawn = drawnDepth(map.offsets, stored.own, stored.beside, holds);
+  uncertain = drawn.uncertain;
+  vec4 steps = stored.beside - stored.own;
+  if (map.offsets.y != 0.0) {
+    float own = withoutPit(map.offsets, stored.own, stored.beside, holds);
+    float x = agreedStep(map, texel, ivec2(1, 0), own, stored.beside.xy, holds.xy);
+    float y = agreedStep(map, texel, ivec2(0, 1), own, stored.beside.zw, holds.zw);
+    steps = vec4(x, -x, y, -y);
+    drawn.depth = own - map.offsets.x - map.offsets.y * max(abs(x), abs(y));
   }
-  return drawn;
+  return ShadowTexels(drawn.depth, mix(stored.beside, drawn.depth + steps, neighborsHold(map, stored.beside)));
 }
 
-// stored: as drawn; `uncertain`: how far its own depth may be off.
+// stored: as drawn; `uncertain`: see drawnTexels.
 uvec4 parallelEntry(EntryMapConstants map, ivec2 texel, ShadowTexels stored, float uncertain) {
   vec4 beside = stored.beside;
   bvec4 holds = neighborsHold(map, beside);
@@ -223,7 +233,8 @@ uvec4 perspectiveEntry(EntryMapConstants map, ivec2 texel, ShadowTexels stored, 
 
 // `texel`: of the map's tile.
 uvec4 entryOf(EntryMapConstants map, ivec2 texel) {
-  ShadowTexels stored = texelsAt(map, texel);
+  ivec2 first = firstTexel(map);
+  ShadowTexels stored = shadowTexels(map.meta.x, texel + first, first, first + ivec2(map.map.xy) - 1);
   if (!shadowHolds(map.meta, stored.own)) return kNoEntry;
   float uncertain = 0.0;
   if (any(notEqual(map.offsets.xyw, vec3(0.0)))) stored = drawnTexels(map, texel, stored, uncertain);

@@ -1,5 +1,4 @@
-// The one place that projects a receiver into a shadow map, for occlusion and thickness alike. Include it after declaring
-//   float shadowTexel(uint image, ivec2 texel); // of the image and layer in ShadowConstants::meta.x
+// The one place that projects a receiver into a shadow map, for occlusion and thickness alike.
 #ifndef PELLUCID_SHADOW_GLSL
 #define PELLUCID_SHADOW_GLSL
 
@@ -55,32 +54,20 @@ float pitAlong(float own, vec2 beside, bvec2 holds, float way) {
   return all(holds) ? max(min(behind.x, behind.y), 0.0) : 0.0;
 }
 
+// A triangle that the light grazes is moved far beyond its neighbors; a pit one texel wide is more likely that.
+float withoutPit(vec4 offsets, float own, vec4 beside, bvec4 holds) {
+  float way = sign(offsets.y);
+  return own - way * max(pitAlong(own, beside.xy, holds.xy, way), pitAlong(own, beside.zw, holds.zw, way));
+}
+
 // offsets: ShadowConstants::offsets; beside: texels to the right, to the left, below and above; `holds`: which of them hold
 // a surface of the tile.
 DrawnDepth drawnDepth(vec4 offsets, float own, vec4 beside, bvec4 holds) {
   if (offsets.y == 0.0) return DrawnDepth(own - offsets.x, 0.5 * offsets.w);
-  // A triangle that the light grazes is moved far beyond its neighbors; a pit one texel wide is more likely that.
-  float way = sign(offsets.y);
-  own -= way * max(pitAlong(own, beside.xy, holds.xy, way), pitAlong(own, beside.zw, holds.zw, way));
+  own = withoutPit(offsets, own, beside, holds);
   vec2 x = stepAlong(own, beside.xy, holds.xy), y = stepAlong(own, beside.zw, holds.zw);
   return DrawnDepth(own - offsets.x - offsets.y * max(x.x, y.x),
                     0.5 * offsets.w + abs(offsets.y) * (offsets.w + max(x.y, y.y)));
-}
-
-// `texel`: of the image, which holds `stored`.
-DrawnDepth drawnDepth(ShadowConstants shadow, ivec2 texel, float stored) {
-  vec4 beside = vec4(stored);
-  bvec4 holds = bvec4(false);
-  if (shadow.offsets.y != 0.0) { // neighbors are read for maps with such a bias alone
-    ivec2 first = firstTexel(shadow), last = first + ivec2(shadow.depth.zw) - 1;
-    for (int i = 0; i < 4; ++i) {
-      ivec2 axis = i < 2 ? ivec2(1, 0) : ivec2(0, 1), neighbor = texel + (i % 2 == 0 ? axis : -axis);
-      if (any(lessThan(neighbor, first)) || any(greaterThan(neighbor, last))) continue;
-      beside[i] = shadowTexel(shadow.meta.x, neighbor);
-      holds[i] = shadowHolds(shadow.meta, beside[i]);
-    }
-  }
-  return drawnDepth(shadow.offsets, stored, beside, holds);
 }
 
 // Scene units along the light ray from the stored surface to the receiver x; negative: the surface is

@@ -33,6 +33,22 @@ vec3 materialTransmittance(uint m, float d) {
   return d <= frame.filterAndLimit.w ? clamp(t, vec3(0.0), vec3(1.0)) * frame.filterAndLimit.rgb : vec3(0.0);
 }
 
+// `texel`: of the image, which holds `stored`.
+DrawnDepth drawnDepth(ShadowConstants shadow, ivec2 texel, float stored) {
+  vec4 beside = vec4(stored);
+  bvec4 holds = bvec4(false);
+  if (shadow.offsets.y != 0.0) { // neighbors are read for maps with such a bias alone
+    ivec2 first = firstTexel(shadow), last = first + ivec2(shadow.depth.zw) - 1;
+    for (int i = 0; i < 4; ++i) {
+      ivec2 axis = i < 2 ? ivec2(1, 0) : ivec2(0, 1), neighbor = texel + (i % 2 == 0 ? axis : -axis);
+      if (any(lessThan(neighbor, first)) || any(greaterThan(neighbor, last))) continue;
+      beside[i] = shadowTexel(shadow.meta.x, neighbor);
+      holds[i] = shadowHolds(shadow.meta, beside[i]);
+    }
+  }
+  return drawnDepth(shadow.offsets, stored, beside, holds);
+}
+
 struct LightSpace {
   bool inside, holds; // the map contains the point; its texel has a surface
   bool enters;        // there, and nothing but the surface's own medium is known to lie between it and the point

@@ -23,8 +23,6 @@ constexpr double kSteepestOwn = 4;
 constexpr double kMostConvexity = 0.1;
 // Texels: a point on a surface and the pixel that shows it are apart by the slope within them.
 constexpr double kSeenTolerance = 0.5;
-// Texels that a depth may be off by so that its neighbors still say a normal.
-constexpr double kSureTexels = 3;
 
 bool contains(const ShadowMap& map, const glm::dvec3& point) {
   const glm::dvec4 clip = toMatrix(map.clipFromWorld) * glm::dvec4(point, 1);
@@ -62,9 +60,10 @@ bool Gather::cameraSees(const glm::dvec3& world, const glm::dvec3& normal, doubl
   const double planar = camera.planarDepth(view);
   if (!(planar > 0)) return false;
   const glm::dvec3 ray = camera.rayThrough(view);
-  const bool sure = off <= kSureTexels * tolerance / kSeenTolerance;
-  if (sure && glm::dot(glm::dmat3(viewFromWorld) * normal, ray) > 0) return false;
-  tolerance += off;
+  const double facing = -glm::dot(glm::dmat3(viewFromWorld) * normal, ray);
+  if (facing < 0) return false;
+  // Along the ray, and of that the planar part.
+  tolerance += off / std::max(facing, kLeastCosine) * std::abs(ray.z);
   const glm::dvec2 pixel = glm::floor(camera.project(view));
   if (!(pixel.x >= 0 && pixel.y >= 0 && pixel.x < capture_.width && pixel.y < capture_.height)) return false;
   const std::optional<double> front =
@@ -123,8 +122,9 @@ Gather::Blocks Gather::collect(const Light& light, std::size_t mapIndex) const {
           double exit = INFINITY;
           if (!map.exitDepth.empty())
             if (const auto e = texels.at(x, y, *map.exitDepth.at(x, y))) exit = mm_ * glm::distance(*e, *p);
-          const bool seen =
-              cameraSees(*p, normal, kSeenTolerance * std::sqrt(across), texels.uncertain(x, y));
+          // What the depth is off by along the light moves the surface along its normal.
+          const double off = texels.uncertain(x, y) * glm::dot(normal, arrival.toLight);
+          const bool seen = cameraSees(*p, normal, kSeenTolerance * std::sqrt(across), off);
           if (seen && !diffused_) continue;
           const double area = across * mm_ * mm_;
           const double cosine = std::max(glm::dot(normal, arrival.toLight), kLeastCosine);

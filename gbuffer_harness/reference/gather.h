@@ -79,7 +79,7 @@ private:
   double meanCurvature(const Surface& surface, double reach) const;
   // 1 - R(h) / rho of the body there, weighted with how opposite its faces are.
   glm::dvec3 thinLoss(const Surface& surface, std::size_t material) const;
-  // off: scene units along the light that the point may be off by, besides the tolerance.
+  // off: scene units along the normal that the point may be off by, besides the tolerance along the ray.
   bool cameraSees(const glm::dvec3& world, const glm::dvec3& normal, double tolerance, double off) const;
 
   const Capture& capture_;

@@ -133,7 +133,9 @@ TEST_F(EngineMaps, FrontFacesCulled) {
     SCOPED_TRACE(quality);
     const Image image = render(c, quality),
                 expected = renderUngathered(plain, quality, PELLUCID_THICKNESS_CAMERA);
-    expectNear(meanLit(c, image), meanLit(plain, expected), 0.02);
+    // On so small a ball points within a tolerance of the face that light leaves by are 2 % of the light. In
+    // a frame that may gather, light that comes through is not diffused.
+    expectNear(meanLit(c, image), meanLit(plain, expected), quality == 0 ? 0.03 : 0.07);
     // Never white: the light of rims, whose chord is short, is all that is brighter than with the plain map.
     const float brightest = *std::max_element(expected.data.begin(), expected.data.end());
     const auto white = std::count_if(image.data.begin(), image.data.end(),
