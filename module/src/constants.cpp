@@ -239,7 +239,7 @@ shared::TileCommands tileCommands(const FrameFacts& f) {
   c.maps = {f.stages.gathered > 0 ? f.lights.list().front().shadowCount : 0, f.stages.skipsLight, 0, 0};
   float reach = 0;
   for (uint32_t i = 0; f.gathers && i < f.frame.materialCount; ++i)
-    reach = std::max(reach, gatherReach(f.material(i)));
+    reach = std::max(reach, gatherReach(f.material(i), f.gatherSamples));
   c.reach.x = reach / (1000 * f.frame.metersPerUnit);
   return c;
 }

@@ -15,7 +15,7 @@ inline bool canBeGathered(uint32_t transmittanceModel) {
 // Of a material of such a model.
 shared::GatherConstants gatherConstants(const PellucidMaterial& material);
 
-// How far from a surface its probes look for entry points, mm: along the rings' axis and across.
-float gatherReach(const PellucidMaterial& material);
+// How far from a surface its probes look for entry points, mm.
+float gatherReach(const PellucidMaterial& material, uint32_t samples);
 
 }  // namespace pellucid

@@ -282,8 +282,8 @@ TEST_F(GatherAgreement, WeakLightsChangeNothing) {
 
 // With reuse, frames that compute and frames that keep are what frames without it are.
 TEST_F(GatherAgreement, KeptPointsDisplaceToo) {
-  const Context& context = replayer().context();
   const Capture c = litSphere();
+  const Context& context = replayer().contextFor(c);
   // The diffusion adds what cells of 4 pixels keep, a dispatch of its own what those of 2 do.
   for (const uint32_t spacing : {2u, 4u}) {
     ReplaySettings s;

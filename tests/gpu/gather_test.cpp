@@ -177,7 +177,7 @@ TEST_F(Gather, SkipsWhatFindsNoLight) {
       curved.capture.normal.at(x, y)[2] = scale;
     }
 
-  const Context& context = replayer().context();
+  const Context& context = replayer().contextFor(curved.capture);
   for (const Case& c : {fromBehind, fromTheFront, curved}) {
     SCOPED_TRACE(c.name);
     ReplaySettings s = settings(8);

@@ -209,8 +209,9 @@ TEST_F(Replay, TimedFramesChangeNothing) {
 }
 
 TEST_F(Replay, ContextKeepsWhatTheModuleSays) {
-  const Context& context = replayer().context();
-  const FrameRun run(device(), context, flatCapture(8, 8), {testMaterial()}, {});
+  const Capture capture = flatCapture(8, 8);
+  const Context& context = replayer().contextFor(capture);
+  const FrameRun run(device(), context, capture, {testMaterial()}, {});
   const PellucidConstantsSlice noBuffer{};
   const auto unused = reinterpret_cast<VkCommandBuffer>(uintptr_t{1});
   EXPECT_EQ(pellucidRecordPlan(context.handle(), unused, &run.plan(), &run.frame(), &noBuffer),
@@ -221,8 +222,9 @@ TEST_F(Replay, ContextKeepsWhatTheModuleSays) {
 
 // A plan knows images by their places in the frame, where another frame may have none.
 TEST_F(Replay, PlansOfFramesWithMoreImagesAreRefused) {
-  const Context& context = replayer().context();
-  const FrameRun run(device(), context, flatCapture(8, 8), {testMaterial()}, {});
+  const Capture capture = flatCapture(8, 8);
+  const Context& context = replayer().contextFor(capture);
+  const FrameRun run(device(), context, capture, {testMaterial()}, {});
   PellucidFrame lacking = run.frame();
   lacking.features = PELLUCID_FEATURE_TRANSLUCENCY;
   for (PellucidImage& image : lacking.transients) image = {};
@@ -241,8 +243,8 @@ TEST_F(Replay, PlansOfFramesWithMoreImagesAreRefused) {
 
 // More shadow images than the frame at recording has would be read past its array's end.
 TEST_F(Replay, PlansNameWhatDiffersInAnotherFrame) {
-  const Context& context = replayer().context();
   Capture c = busyCapture(16, 16);
+  const Context& context = replayer().contextFor(c);
   c.lights[0].shadowMaps = {flatShadowMap(-12, PELLUCID_DEPTH_DEVICE)};
   const FrameRun run(device(), context, c, {testMaterial()}, {});
   const auto unused = reinterpret_cast<VkCommandBuffer>(uintptr_t{1});

@@ -152,7 +152,7 @@ TEST_F(ThesisFigure, NearestAndFarthestBackDepth) {
 // A light that turns: frames that refresh are as without reuse, frames between them are their own irradiance
 // plus the light that came through at the last refresh, gathered or not.
 TEST_F(GpuTest, ReuseOverATurningLight) {
-  const Context& context = replayer().context();
+  const Context& context = replayer().contextFor(Capture{});
   for (const auto reuse : {PELLUCID_REUSE_ALTERNATE, PELLUCID_REUSE_COHERENCE})
     for (const int maps : {1, 9}) {  // one fused dispatch, and two
       ReplaySettings s;

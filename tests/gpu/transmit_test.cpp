@@ -84,7 +84,7 @@ protected:
     settings.features = PELLUCID_FEATURE_TRANSLUCENCY;
     settings.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
     settings.translucency.thicknessSource = PELLUCID_THICKNESS_CAMERA;
-    const Context& context = replayer().context();
+    const Context& context = replayer().contextFor(capture);
     const FrameRun run(device(), context, capture, {testMaterial()}, settings);
     device().run([&](VkCommandBuffer commandBuffer) { run.record(commandBuffer); });
     const Image fused = run.output();
@@ -134,7 +134,7 @@ TEST_F(Transmit, LightSpaceThicknessIsRefused) {
   const Model model = blob();
   const RasterOptions options{.width = 16, .height = 16};
   const Capture capture = rasterize(device(), model, frontCamera(false, kEye), options).capture;
-  const Context& context = replayer().context();
+  const Context& context = replayer().contextFor(capture);
   const FrameRun run(device(), context, capture, {testMaterial()}, {});
   EXPECT_THROW(rasterizeTransmitted(device(), model, capture, run, options), InputError);
 }
