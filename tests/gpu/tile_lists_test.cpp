@@ -46,7 +46,11 @@ struct Way {
 };
 
 constexpr Way kWays[] = {
-    {"quality 0", [](ReplaySettings& s) { s.quality = 0; }},
+    {"quality 0",
+     [](ReplaySettings& s) {
+       s.quality = 0;
+       s.translucency.gatherSamples = 0;
+     }},
     {"quality 1", [](ReplaySettings&) {}},
     {"cells of 4 pixels", [](ReplaySettings& s) { s.translucency.gatherSpacing = 4; }},
     {"cells of 2 pixels, quality 2", [](ReplaySettings& s) {
@@ -64,6 +68,7 @@ TEST_F(TileLists, ChangeNoPixel) {
     for (const Way& way : kWays) {
       const Capture c = islands(260 + 3 * static_cast<int>(seed), 190, seed);
       ReplaySettings s;
+      s.translucency.gatherSamples = 8;
       way.change(s);
       s.indirectDispatches = PELLUCID_INDIRECT_NONE;
       const Image whole = replayer().run(c, {testMaterial()}, s).output;
@@ -80,6 +85,7 @@ TEST_F(TileLists, ChangeNoPixel) {
 TEST_F(TileLists, GroupsFollowTheMaterial) {
   const Context context(device());
   ReplaySettings s;
+  s.translucency.gatherSamples = 8;
   s.translucency.gatherSpacing = 4;
   Capture c = islands(256, 256, 1);
   const auto groups = [&](const char* name) {
