@@ -105,24 +105,7 @@ using glm::vec4;
 #define PELLUCID_SHADER_DEBUG_TRANSMITTANCE 2u
 #define PELLUCID_SHADER_DEBUG_OCCLUSION 3u
 
-// Lists of the groups that have work, one for each pass, in the order in which one pass makes them.
-#define PELLUCID_LIST_TILES 0u // of PELLUCID_TILE pixels a side, with material
-#define PELLUCID_LIST_DOWNSAMPLE 1u // levels 2 and 3
-#define PELLUCID_LIST_DOWNSAMPLE_COARSE 2u
-#define PELLUCID_LIST_UPSAMPLE 3u
-#define PELLUCID_LIST_DIFFUSE 4u
-#define PELLUCID_LIST_PROBES 5u
-#define PELLUCID_LIST_FILTER_PROBES 6u
-#define PELLUCID_LIST_ENTRY_POINTS 7u
-#define PELLUCID_LISTS 8
-// GroupList::size.z: a group runs if there is material in a cell of its part, in a block of it, in one or beside it, anywhere.
-#define PELLUCID_RUNS_WITH_CELLS 0
-#define PELLUCID_RUNS_WITH_BLOCKS 1
-#define PELLUCID_RUNS_BESIDE_BLOCKS 2
-#define PELLUCID_RUNS_WITH_ANY 3
-#define PELLUCID_TILE_WORDS_SHIFT 10 // log2 of the columns of their image
-#define PELLUCID_ENTRY_GROUP_WORDS 128 // a bit for each of a map's groups of entry points, at most 64 x 64
-#define PELLUCID_BLOCK_WORDS 4 // bits of cells' rows 0 to 3 and 4 to 7; bits of the nearest and farthest planar distance
+#define PELLUCID_LISTS 8 // see pellucid_tiles.h
 
 // PassConstants::value.z of the translucency pass
 #define PELLUCID_WRITE_LAST 1u   // the frame's final write
@@ -191,42 +174,13 @@ struct ShadowConstants {
                      // material (bits); w: first texel of the tile: x, from bit 16 on y
 };
 
-// Constants of the light-space gather; see lib/gather.glsl. rgb: per channel.
-struct GatherConstants {
-  vec4 lengths; // mm; x: shortest; y: log2(longest / shortest); z: largest distance looked for, 2 / kappa; w: depth scale
-  vec4 profile; // rgb: 1/(3 d) of Burley's profile, 0: none, 1/mm; w: of the spatial filter between probes, 1/mm^2
-  vec4 convexity; // rgb: how much more of the light comes back, per mean curvature, mm; w: how far to both sides that
-                  // is measured, mm
-  // A slab of thickness h sends back R(h) = x - sqrt(y T(h)^2 + z) of a half-space's light, x, y, z of each channel.
-  vec4 reflectance[3];
-  vec4 entries[3 * PELLUCID_GATHER_ENTRIES]; // see GatherEntry
-};
-
-// Places and depths of a map's entry points (compute/gather/entry_point.glsl), from a view-space point (x, 1):
-struct GatherMapConstants {
-  vec4 column, row; // in entry points from the map's first one; perspective: times depth
-  vec4 depth;       // what entry points store. Directional: scene units towards the light; perspective: clip w
-  ivec4 place;      // x, y: of the first entry in the image; z, w: how many
-  vec4 stepX, stepY; // from an entry point to the next, scene units; perspective: times depth. stepX.w: 1 perspective
-};
-
-// The surface that a map stores, by its texel coordinates p. Affine in p:
-struct EntryMapConstants {
-  vec4 origin, stepX, stepY; // xyz: directional: a point of the light's ray; perspective: its direction, of clip w 1.
-                             // w: of depth, see ray
-  vec4 ray;    // xyz: directional: towards the light, scene units; perspective: the light. w, directional: depth is
-               // stored w + affine; perspective: w / (stored - affine), or stored / affine where planar
-  uvec4 meta;  // as ShadowConstants::meta
-  uvec4 map;   // x, y: texels; z: how many a side for one entry; w: the light, of lights[]
-  vec4 seen;   // x: how far behind what the camera sees a point may lie, scene units; perspective: per depth
-  vec4 offsets; // as ShadowConstants::offsets
-  vec4 toLight; // xyz: directional: unit
-  uvec4 occluder; // as ShadowConstants::occluder
-  // Directional: dot products with (p, depth, 1) say what the camera sees it on: pixelX / pixelW, pixelY / pixelW and
-  // the planar distance. normal + x across[0] + y across[1] is the normal where depth grows by x and y beyond a plane's
-  // along the steps of p. w, normal: 2 stepX ray, across: 2 stepY ray and ray^2.
-  vec4 pixelX, pixelY, pixelW, planar, normal, across[2];
-};
+#ifdef __cplusplus
+} // namespace pellucid::shared
+#endif
+#include "pellucid_gather.h"
+#ifdef __cplusplus
+namespace pellucid::shared {
+#endif
 
 struct MaterialConstants {
   vec4 transmittance[3]; // per channel, the model's first four parameters
@@ -255,22 +209,6 @@ struct GatherDispatches {
   uvec4 noLight;             // the diffusion alone, if none has
 };
 
-// Groups of a pass that has a list. A group has work if there is material in its part of the image.
-struct GroupList {
-  ivec4 places; // xy: first pixel of group (0, 0)'s part, from the first block on; zw: pixels from a group to the next
-  ivec4 size;   // xy: pixels of a part; z: PELLUCID_RUNS_*
-  uvec4 count;  // x, y: groups
-};
-
-// What the passes that make tile lists read and write besides the lists.
-struct TileCommands {
-  GatherDispatches gather; // w: groups that are listed, where the gather decides
-  uvec4 commands[PELLUCID_LISTS]; // VkDispatchIndirectCommand
-  GroupList groups[PELLUCID_LISTS];
-  uvec4 maps;   // x: shadow maps that are gathered from; y: 1 if the gather decides which lists run
-  vec4 reach; // x: how far from a surface probes look for entry points, scene units
-};
-
 // Push constants of each pass:
 // translucency, debug view: unused, lights, PELLUCID_WRITE_*
 // add gathered: pixels a side of a cell, lights, PELLUCID_WRITE_*, lights that are gathered from
@@ -292,4 +230,6 @@ struct PassConstants {
 #ifdef __cplusplus
 } // namespace pellucid::shared
 #endif
+
+#include "pellucid_tiles.h"
 #endif

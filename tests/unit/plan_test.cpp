@@ -73,6 +73,12 @@ TEST(Plan, EveryReadIsOfSomethingWritten) {
       Frame f(images);
       f.frame.features = features;
       const PellucidPlan plan = f.plan();
+      // Nothing to do where the irradiance is the output already.
+      const bool nothing = features == 0 && f.frame.output.view == f.frame.irradiance.view;
+      if (nothing && f.frame.albedo.view == VK_NULL_HANDLE) {
+        EXPECT_EQ(plan.dispatchCount, 0u);
+        continue;
+      }
       ASSERT_GT(plan.dispatchCount, 0u);
       std::set<uint32_t> written;
       for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
