@@ -95,7 +95,7 @@ TEST_F(ContextTest, MakesThePipelinesOfItsUsesOnLentThreads) {
       }
     };
   });
-  EXPECT_EQ(lent.count, 4u) << "base level, downsample, upsample, diffuse";
+  EXPECT_EQ(lent.count, 6u) << "find cells, list groups, base level, downsample, upsample, diffuse";
   EXPECT_EQ(lent.jobs.size(), lent.count);
 
   ReplaySettings s;

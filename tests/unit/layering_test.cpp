@@ -45,7 +45,7 @@ struct Rule {
 void PrintTo(const Rule& value, std::ostream* out) { *out << value.folder << ": " << value.reason; }
 
 const std::vector<Rule> kRules = {
-    {"compute/shared", R"(#include\s*[<"](?!glm/))", "shared headers include nothing but GLM types", ""},
+    {"compute/shared", R"(#include\s*[<"](?!glm/|pellucid_))", "shared headers include nothing but GLM types and each other", ""},
     {"compute/lib", R"(\blayout\s*\()", "lib is maths: bindings belong to passes", ""},
     {"compute/lib", R"(#include\s*"(?!lib/|shared/))", "lib does not know the passes", ""},
     {"compute", R"(#include\s*"(pellucid/|capture/|replay/|scene/))", "shaders include shaders", ""},
