@@ -1,4 +1,4 @@
-// The Vulkan objects of drawing a model into images: targets, pipelines and the uploaded triangles.
+// The Vulkan objects of drawing a model into images: pipelines and the uploaded triangles.
 #pragma once
 
 #include <glm/mat4x4.hpp>
@@ -6,68 +6,15 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "common/device.h"
 #include "common/gpu_image.h"
 #include "raster/model.h"
+#include "raster/render_target.h"
 
 namespace pellucid::harness {
-
-// A device object destroyed with its owner.
-template <class Handle, void (*destroy)(VkDevice, Handle, const VkAllocationCallbacks*)>
-class Owned {
-public:
-  explicit Owned(const Device& device) : device_(device.handle()) {}
-  ~Owned() { destroy(device_, handle_, nullptr); }
-  Owned(const Owned&) = delete;
-  Owned& operator=(const Owned&) = delete;
-
-  Handle* receive() { return &handle_; }  // for vkCreate*
-  operator Handle() const { return handle_; }
-
-private:
-  VkDevice device_;
-  Handle handle_ = VK_NULL_HANDLE;
-};
-
-// Color images of one size, and a depth buffer of its own when `clearDepth` is given.
-class RenderTarget {
-public:
-  struct Color {
-    VkFormat format;
-    VkClearColorValue clear;
-  };
-  // depthFormat: of that buffer, D16_UNORM, X8_D24_UNORM_PACK32 or D32_SFLOAT. Throws DeviceError for one
-  // that the device does not draw to.
-  RenderTarget(Device& device, int width, int height, const std::vector<Color>& colors,
-               std::optional<float> clearDepth, VkFormat depthFormat = VK_FORMAT_D32_SFLOAT);
-
-  GpuImage& image(std::size_t i) const { return *images_[i]; }
-  VkRenderPass renderPass() const { return renderPass_; }
-  std::size_t colorCount() const { return images_.size(); }
-  // The depth buffer as it was stored, one channel, 0..1.
-  Image depth() const;
-
-  // Clears, and waits for everything before; what is drawn is ready for everything after.
-  void begin(VkCommandBuffer commandBuffer) const;
-  void end(VkCommandBuffer commandBuffer) const { vkCmdEndRenderPass(commandBuffer); }
-
-private:
-  void createDepthBuffer(Device& device);
-  void createRenderPass(Device& device, const std::vector<Color>& colors);
-
-  Device& device_;
-  VkExtent2D extent_;
-  VkFormat depthFormat_;
-  std::vector<VkClearValue> clears_;
-  std::vector<std::unique_ptr<GpuImage>> images_;
-  Owned<VkDeviceMemory, vkFreeMemory> depthMemory_;
-  Owned<VkImage, vkDestroyImage> depthImage_;
-  Owned<VkImageView, vkDestroyImageView> depthView_;
-  Owned<VkRenderPass, vkDestroyRenderPass> renderPass_;
-  Owned<VkFramebuffer, vkDestroyFramebuffer> framebuffer_;
-};
 
 enum class FragmentShader { Surface, Depth, Caster, Count, Transmit };
 
@@ -119,7 +66,7 @@ public:
   UploadedModel(Device& device, const Model& model);
 
   // Draws every part. Single-sided surfaces get `state.cull`; those that are double-sided too, unless
-  // `doubleSidedCull` differs. One submission. Targets of one fragment shader have the same formats.
+  // `doubleSidedCull` differs. One submission. Targets of one fragment shader have the same color formats.
   void draw(const RenderTarget& target, const DrawView& view, const PipelineState& state,
             VkCullModeFlags doubleSidedCull, const EarlierPass& earlier = {}) const;
 
@@ -137,7 +84,8 @@ private:
   std::vector<std::unique_ptr<Owned<VkSampler, vkDestroySampler>>> samplers_;
   Owned<VkDescriptorSetLayout, vkDestroyDescriptorSetLayout> setLayout_;
   Owned<VkPipelineLayout, vkDestroyPipelineLayout> layout_;
-  mutable std::map<PipelineState, Pipeline> pipelines_;  // created where they are drawn with first
+  // By the target's depth format; created where they are drawn with first.
+  mutable std::map<std::pair<VkFormat, PipelineState>, Pipeline> pipelines_;
   PFN_vkCmdPushDescriptorSetKHR pushDescriptors_ = nullptr;
 };
 

@@ -13,7 +13,7 @@ inline VkClearColorValue clearTo(float value) { return {.float32 = {value, value
 // Images of RenderTargets that shaders/depth.frag and shaders/caster.frag write.
 constexpr std::size_t kPlanar = 0, kDeviceDepth = 1, kCaster = 2;
 
-// What shaders/depth.frag writes, cleared to "nothing there".
+// Images that shaders/depth.frag writes, cleared to "nothing there".
 inline std::vector<RenderTarget::Color> depthColors(bool reversed) {
   return {{VK_FORMAT_R32_SFLOAT, clearTo(kNoDepth)}, {VK_FORMAT_R32_SFLOAT, clearTo(farDepth(reversed))}};
 }

@@ -77,7 +77,7 @@ VkFormat formatOf(const ShadowDrawing& drawing) {
 // Difference of neighboring depths of that many bits; of floats that between depths of .5 and 1.
 double depthUnit(const ShadowDrawing& drawing) { return drawing.bits == 16 ? 1.0 / 65535 : std::exp2(-24); }
 
-// What an engine's depth buffer holds.
+// Draws the map as an engine's depth buffer holds it.
 void drawAsEngine(Device& device, const UploadedModel& model, const DrawView& view,
                   const RasterOptions& options, ShadowMap& map) {
   const ShadowDrawing& drawing = options.shadow;
@@ -104,7 +104,7 @@ DrawnShadows drawShadows(Device& device, const Model& model, const UploadedModel
                          const Light& light, const RasterOptions& options) {
   DrawnShadows drawn;
   const std::vector<LightView> views = frameLight(model, light, options.pointMaps, options.shadowSize);
-  // Of six maps with images of their own they would be more than a dispatch binds.
+  // Six maps with images of their own would have more than a dispatch binds.
   const bool few =
       options.shadow.placement != MapPlacement::Separate || 3 * views.size() <= PELLUCID_SHADOW_IMAGE_COUNT;
   const bool casters = few && options.shadow.cull != MapCull::Front;

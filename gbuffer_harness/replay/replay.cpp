@@ -184,6 +184,21 @@ Context::Context(Device& device, const std::function<void(PellucidContextDesc&)>
 
 Context::~Context() { pellucidDestroyContext(context_); }
 
+Contexts::Contexts(Device& device, std::uint32_t uses)
+    : device_(device),
+      uses_(uses),
+      context_(device, [uses](PellucidContextDesc& desc) { desc.uses = uses; }) {}
+
+const Context& Contexts::of(const Capture& capture) {
+  if (!hasLayers(capture.lights)) return context_;
+  if (!arrays_)
+    arrays_ = std::make_unique<Context>(device_, [this](PellucidContextDesc& desc) {
+      desc.uses = uses_;
+      desc.shadowViewType = VK_IMAGE_VIEW_TYPE_2D_ARRAY;
+    });
+  return *arrays_;
+}
+
 FrameRun::FrameRun(Device& device, const Context& context, const Capture& capture,
                    const std::vector<PellucidMaterial>& materials, const ReplaySettings& settings,
                    const FrameRun* previous)
@@ -274,17 +289,6 @@ std::uint32_t usesOf(const ReplaySettings& settings) {
   if (settings.reuse != PELLUCID_REUSE_NONE) uses |= PELLUCID_USE_REUSE;
   if (settings.debugView != PELLUCID_DEBUG_NONE) uses |= PELLUCID_USE_DEBUG_VIEWS;
   return uses;
-}
-
-const Context& Replayer::contextFor(const Capture& capture) {
-  if (!hasLayers(capture.lights)) return context_;
-  if (!arrays_)
-    arrays_ = std::make_unique<Context>(
-        device_, [this](PellucidContextDesc& desc) {
-          desc.uses = uses_;
-          desc.shadowViewType = VK_IMAGE_VIEW_TYPE_2D_ARRAY;
-        });
-  return *arrays_;
 }
 
 ReplayResult Replayer::run(const Capture& capture, const std::vector<PellucidMaterial>& materials,

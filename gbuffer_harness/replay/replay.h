@@ -35,6 +35,21 @@ private:
   std::string message_;
 };
 
+// Contexts of a device whose shadow views fit captures: 2D, or of arrays where maps lie in layers.
+class Contexts {
+public:
+  // `uses`: PellucidUse bits of the frames, whose pipelines take a second to create on a CPU; 0: all.
+  explicit Contexts(Device& device, std::uint32_t uses = 0);
+
+  const Context& of(const Capture& capture);
+
+private:
+  Device& device_;
+  std::uint32_t uses_;
+  Context context_;
+  std::unique_ptr<Context> arrays_;  // made when first asked for
+};
+
 // What frames of one capture read, on the device.
 class InputImages {
 public:
@@ -126,15 +141,10 @@ std::uint32_t usesOf(const ReplaySettings& settings);
 
 class Replayer {
 public:
-  // `uses`: PellucidUse bits of the frames that it runs, whose pipelines take a second to create on a CPU; 0:
-  // all.
-  explicit Replayer(Device& device, std::uint32_t uses = 0)
-      : device_(device),
-        uses_(uses),
-        context_(device, [uses](PellucidContextDesc& desc) { desc.uses = uses; }) {}
+  // `uses`: as Contexts takes them.
+  explicit Replayer(Device& device, std::uint32_t uses = 0) : device_(device), contexts_(device, uses) {}
 
-  // The one whose shadow views fit the capture: of arrays where maps lie in layers.
-  const Context& contextFor(const Capture& capture);
+  const Context& contextFor(const Capture& capture) { return contexts_.of(capture); }
 
   // `timedFrames`: recordings of the frame after the one that makes the output, in which drivers may still
   // compile shaders. Times are medians of their GPU timestamps, microseconds.
@@ -143,9 +153,7 @@ public:
 
 private:
   Device& device_;
-  std::uint32_t uses_;
-  Context context_;
-  std::unique_ptr<Context> arrays_;  // made when first asked for
+  Contexts contexts_;
 };
 
 }  // namespace pellucid::harness

@@ -1,25 +1,15 @@
 #include "stress/renderer.h"
 
-#include "capture/shadow_images.h"
-
 namespace pellucid::harness::stress {
-
-const Context& Renderer::contextFor(const Capture& capture) {
-  if (!hasLayers(capture.lights)) return context_;
-  if (!arrays_)
-    arrays_ = std::make_unique<Context>(
-        device_, [](PellucidContextDesc& desc) { desc.shadowViewType = VK_IMAGE_VIEW_TYPE_2D_ARRAY; });
-  return *arrays_;
-}
 
 std::unique_ptr<FrameRun> Renderer::prepare(const StressFrame& frame, const FrameRun* previous) {
   const bool aliased = frame.settings.aliasOutput && frame.settings.debugView == PELLUCID_DEBUG_NONE;
+  const Context& context = contexts_.of(frame.capture);
   if (aliased || previous)
-    return std::make_unique<FrameRun>(device_, contextFor(frame.capture), frame.capture, frame.materials,
-                                      frame.settings, previous);
+    return std::make_unique<FrameRun>(device_, context, frame.capture, frame.materials, frame.settings,
+                                      previous);
   // Without the picture that an engine would have around the surface: garbage takes its place.
-  return std::make_unique<FrameRun>(device_, contextFor(frame.capture), frame.capture, frame.materials,
-                                    frame.settings,
+  return std::make_unique<FrameRun>(device_, context, frame.capture, frame.materials, frame.settings,
                                     std::make_shared<InputImages>(device_, frame.capture, frame.settings));
 }
 

@@ -11,7 +11,7 @@ namespace pellucid::harness::stress {
 
 class Renderer {
 public:
-  explicit Renderer(const DeviceOptions& options) : device_(options), context_(device_) {}
+  explicit Renderer(const DeviceOptions& options) : device_(options), contexts_(device_) {}
   virtual ~Renderer() = default;
 
   const Device& device() const { return device_; }
@@ -27,11 +27,8 @@ public:
   Image render(const StressFrame& frame) { return render(frame, *prepare(frame), frame.index); }
 
 private:
-  const Context& contextFor(const Capture& capture);
-
   Device device_;
-  Context context_;
-  std::unique_ptr<Context> arrays_;  // of frames whose maps lie in layers
+  Contexts contexts_;
   std::uint64_t recordings_ = 0, pixels_ = 0;
 };
 

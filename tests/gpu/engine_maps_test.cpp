@@ -407,4 +407,18 @@ TEST_F(EngineMaps, Head) {
   }
 }
 
+// Their own depth format and that of the maps that exit depths come from, with one fragment shader: a
+// pipeline of each.
+TEST_F(EngineMaps, PointLightsHaveMapsOfFewBits) {
+  Model model = ballAndEar();
+  model.lights = {Light{}};
+  model.lights[0].type = PELLUCID_LIGHT_POINT;
+  model.lights[0].position = {10, 10, 30};
+  model.lights[0].intensity = 2000;
+  ShadowDrawing shadow;
+  shadow.bits = 16;
+  const Capture few = draw(model, shadow, 64), plain = draw(model, {}, 64);
+  expectNear(meanLit(few, render(few, 0)), meanLit(plain, render(plain, 0)), 0.02);
+}
+
 }  // namespace

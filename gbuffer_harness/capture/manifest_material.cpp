@@ -1,0 +1,105 @@
+#include "capture/manifest_material.h"
+
+#include <array>
+#include <cmath>
+#include <string>
+
+namespace pellucid::harness {
+namespace {
+
+MaterialSource readCoefficients(const Field& field) {
+  field.allowKeys({"scattering", "absorption", "g", "ior", "unit"});
+  CoefficientMaterial material;
+  double perMillimeter = 1;  // what 1 of the file's unit is in 1/mm
+  if (const auto unit = field.find("unit")) {
+    constexpr double kScales[] = {1, 0.1, 0.001};
+    perMillimeter = kScales[unit->choice({"1/mm", "1/cm", "1/m"})];
+  }
+  const auto coefficients = [&](const char* key) {
+    auto values = field[key].numbers<3>();
+    for (double& value : values) {
+      if (value < 0) field[key].fail("must not be negative, is " + field[key].shown());
+      value *= perMillimeter;
+    }
+    return values;
+  };
+  material.scattering = coefficients("scattering");
+  material.absorption = coefficients("absorption");
+  if (const auto g = field.find("g")) material.g = g->number(-0.999, 0.999);
+  if (const auto ior = field.find("ior")) material.ior = ior->number(1, 4);
+  return material;
+}
+
+MaterialSource readBurley(const Field& field) {
+  field.allowKeys({"profile", "distance", "transmittance"});
+  field["profile"].choice({"burley"});
+  BurleyMaterial material;
+  material.distance = field["distance"].numbers<3>();
+  for (const double distance : material.distance)
+    if (!(distance > 0)) field["distance"].fail("must be positive (mm), is " + field["distance"].shown());
+  if (const auto transmittance = field.find("transmittance")) {
+    transmittance->allowKeys({"a1", "k1", "a2", "k2"});
+    std::array<std::array<double, 4>, 3> exponentials = {};
+    constexpr const char* kNames[] = {"a1", "k1", "a2", "k2"};
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Field values = (*transmittance)[kNames[i]];
+      const auto rgb = values.numbers<3>();
+      for (std::size_t channel = 0; channel < 3; ++channel) {
+        if (kNames[i][0] == 'k' && !(rgb[channel] > 0))
+          values.fail("must be positive (1/mm), is " + values.shown());
+        exponentials[channel][i] = rgb[channel];
+      }
+    }
+    for (const auto& [a1, k1, a2, k2] : exponentials)
+      if (a1 + a2 < 0 || a1 + a2 > 1)
+        transmittance->fail("T(0) = a1 + a2 must be from 0 to 1, is " + std::to_string(a1 + a2));
+    material.transmittance = exponentials;
+  }
+  return material;
+}
+
+MaterialSource readGaussians(const Field& field) {
+  field.allowKeys({"gaussians"});
+  const Field gaussians = field["gaussians"];
+  gaussians.allowKeys({"variance", "weight"});
+  GaussianMaterial material;
+  material.variance = gaussians["variance"].numbers();
+  if (material.variance.size() > PELLUCID_MAX_GAUSSIANS)
+    gaussians["variance"].fail("at most " + std::to_string(PELLUCID_MAX_GAUSSIANS) + " Gaussians, has " +
+                               std::to_string(material.variance.size()));
+  for (const double variance : material.variance)
+    if (!(variance > 0))
+      gaussians["variance"].fail("must be positive (mm^2), is " + gaussians["variance"].shown());
+  const Field weights = gaussians["weight"];
+  std::array<double, 3> sum = {0, 0, 0};
+  for (const Field& weight : weights.items()) {
+    material.weight.push_back(weight.numbers<3>());
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      if (material.weight.back()[channel] < 0) weight.fail("must not be negative, is " + weight.shown());
+      sum[channel] += material.weight.back()[channel];
+    }
+  }
+  if (material.weight.size() != material.variance.size())
+    weights.fail("needs one RGB triple per variance (" + std::to_string(material.variance.size()) +
+                 "), has " + std::to_string(material.weight.size()));
+  for (const double total : sum)
+    if (std::abs(total - 1) > 0.01)  // published tables are rounded to three digits
+      weights.fail("each channel must sum to 1, one sums to " + std::to_string(total));
+  return material;
+}
+
+}  // namespace
+
+MaterialSource readMaterial(const Field& field) {
+  if (field.has("preset")) {
+    field.allowKeys({"preset"});
+    return PresetMaterial{field["preset"].text()};
+  }
+  if (field.has("profile")) return readBurley(field);
+  if (field.has("gaussians")) return readGaussians(field);
+  if (field.has("scattering") || field.has("absorption")) return readCoefficients(field);
+  field.fail("must have \"preset\", \"scattering\" and \"absorption\", \"profile\" or \"gaussians\", is " +
+             field.shown());
+}
+
+}  // namespace pellucid::harness
