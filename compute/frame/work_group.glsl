@@ -13,7 +13,7 @@ bool goesByLists() { return frame.blocks.w != 0u; }
 
 uint listedWord(uint list) { return tileWord(frame.lists[list >> 2][list & 3u] + gl_WorkGroupID.x); }
 
-// False where the group's list says that all it reads has been written.
+// True unless the group's list says that all it reads has been written.
 bool readsUnwritten(uint list) { return goesByLists() && !isWhole(listedWord(list)); }
 
 uvec2 workGroup(uint list) { return goesByLists() ? unpackGroup(listedWord(list)) : gl_WorkGroupID.xy; }
@@ -30,9 +30,8 @@ bool isNearMaterial(ivec2 pixel) {
 bool isInCell(ivec2 pixel) {
   ivec2 at = pixel - firstBlockPixel(), block = at >> kBlockShift;
   if (!contains(ivec4(0, 0, frame.blocks.xy), block)) return false;
-  uint word = uint(PELLUCID_BLOCK_WORDS) * (uint(block.y) * frame.blocks.x + uint(block.x));
   ivec2 cell = (at & (PELLUCID_BLOCK - 1)) >> kCellShift;
-  return (tileWord(word + uint(cell.y >> 2)) >> (8 * (cell.y & 3) + cell.x) & 1u) != 0u;
+  return (tileWord(blockWord(uvec2(block)) + uint(cell.y >> 2)) >> (8 * (cell.y & 3) + cell.x) & 1u) != 0u;
 }
 
 #endif

@@ -117,8 +117,6 @@ uvec4 entryOf(float depth, float share, vec3 normal, vec3 toLight, ivec2 pixel, 
 
 const ivec2 kNoPixel = ivec2(-1);
 
-ivec2 firstTexel(EntryMapConstants map) { return ivec2(map.occluder.w & 0xFFFFu, map.occluder.w >> 16); }
-
 bvec4 neighborsHold(EntryMapConstants map, vec4 beside) {
   return bvec4(shadowHolds(map.meta, beside.x), shadowHolds(map.meta, beside.y), shadowHolds(map.meta, beside.z),
                shadowHolds(map.meta, beside.w));
@@ -140,19 +138,19 @@ float agreedStep(float own, vec2 beside, vec2 beyond, bvec2 holds, bvec2 holdsBe
 }
 
 float agreedStep(EntryMapConstants map, ivec2 texel, ivec2 axis, float own, vec2 beside, bvec2 holds) {
-  ivec2 ahead = texel + 2 * axis, behind = texel - 2 * axis, first = firstTexel(map), last = ivec2(map.map.xy) - 1;
+  ivec2 ahead = texel + 2 * axis, behind = texel - 2 * axis, first = firstTexel(map.occluder), last = ivec2(map.map.xy) - 1;
   vec2 beyond = vec2(shadowTexel(map.meta.x, first + min(ahead, last)), shadowTexel(map.meta.x, first + max(behind, ivec2(0))));
   bvec2 holdsBeyond = bvec2(all(lessThanEqual(ahead, last)) && shadowHolds(map.meta, beyond.x),
                             all(greaterThanEqual(behind, ivec2(0))) && shadowHolds(map.meta, beyond.y));
   return agreedStep(own, beside, beyond, holds, holdsBeyond);
 }
 
-// What was drawn into a texel and its neighbors, without the map's biases. `uncertain`: how far its own depth may be off.
+// Depths that were drawn into a texel and its neighbors, without the map's biases. `uncertain`: how far its own depth may be off.
 // The neighbors of the tile's border are within it: the border itself takes the place of others, and does not count.
 ShadowTexels drawnTexels(EntryMapConstants map, ivec2 texel, ShadowTexels stored, out float uncertain) {
   ivec2 last = ivec2(map.map.xy) - 1;
   bvec4 within = bvec4(texel.x < last.x, texel.x > 0, texel.y < last.y, texel.y > 0);
-  bvec4 holds = bvec4(uvec4(neighborsHold(map, stored.beside)) & uvec4(within));
+  bvec4 stores = neighborsHold(map, stored.beside), holds = bvec4(uvec4(stores) & uvec4(within));
   DrawnDepth drawn = drawnDepth(map.offsets, stored.own, stored.beside, holds);
   uncertain = drawn.uncertain;
   vec4 steps = stored.beside - stored.own;
@@ -163,7 +161,7 @@ ShadowTexels drawnTexels(EntryMapConstants map, ivec2 texel, ShadowTexels stored
     steps = vec4(x, -x, y, -y);
     drawn.depth = own - map.offsets.x - map.offsets.y * max(abs(x), abs(y));
   }
-  return ShadowTexels(drawn.depth, mix(stored.beside, drawn.depth + steps, neighborsHold(map, stored.beside)));
+  return ShadowTexels(drawn.depth, mix(stored.beside, drawn.depth + steps, stores));
 }
 
 // stored: as drawn; `uncertain`: see drawnTexels.
@@ -187,7 +185,7 @@ uvec4 parallelEntry(EntryMapConstants map, ivec2 texel, ShadowTexels stored, flo
   float y = parallelSlope(texel.y, int(map.map.y), map.stepY.w, squareY, map.across[0].w, ray2, grows.zw);
   vec3 normal = vec3(0.0);
   if (x < kNoDepth && y < kNoDepth) normal = map.normal.xyz + x * map.across[0].xyz + y * map.across[1].xyz;
-  ivec2 inImage = texel + firstTexel(map);
+  ivec2 inImage = texel + firstTexel(map.occluder);
   Behind b = behind(map, inImage);
   if (map.occluder.x != 0u) {
     float exit = shadowTexel(map.occluder.x - 1u, inImage);
@@ -221,7 +219,7 @@ uvec4 perspectiveEntry(EntryMapConstants map, ivec2 texel, ShadowTexels stored, 
   toLight /= max(distanceTo, 1.0e-12);
   float share = lightShare(lights[map.map.w], toLight, distanceTo);
   float tolerance = abs(depth) * map.seen.x;
-  ivec2 inImage = texel + firstTexel(map);
+  ivec2 inImage = texel + firstTexel(map.occluder);
   Behind b = behind(map, inImage);
   if (map.occluder.x != 0u) {
     float exit = shadowTexel(map.occluder.x - 1u, inImage), exitDepth;
@@ -233,7 +231,7 @@ uvec4 perspectiveEntry(EntryMapConstants map, ivec2 texel, ShadowTexels stored, 
 
 // `texel`: of the map's tile.
 uvec4 entryOf(EntryMapConstants map, ivec2 texel) {
-  ivec2 first = firstTexel(map);
+  ivec2 first = firstTexel(map.occluder);
   ShadowTexels stored = shadowTexels(map.meta.x, texel + first, first, first + ivec2(map.map.xy) - 1);
   if (!shadowHolds(map.meta, stored.own)) return kNoEntry;
   float uncertain = 0.0;

@@ -11,7 +11,8 @@ struct ShadowReceiver {
   bool inside; // false: the map says nothing about this point, so no light comes through it
 };
 
-ivec2 firstTexel(ShadowConstants shadow) { return ivec2(shadow.occluder.w & 0xFFFFu, shadow.occluder.w >> 16); }
+// The first texel of the map's tile in the image. occluder: ShadowConstants::occluder.
+ivec2 firstTexel(uvec4 occluder) { return ivec2(occluder.w & 0xFFFFu, occluder.w >> 16); }
 
 ShadowReceiver projectReceiver(ShadowConstants shadow, vec3 x) {
   vec4 clip = shadow.clipFromView * vec4(x, 1.0);
@@ -20,7 +21,7 @@ ShadowReceiver projectReceiver(ShadowConstants shadow, vec3 x) {
   ivec2 texel = ivec2(floor((ndc * 0.5 + 0.5) * shadow.depth.zw));
   bool inside = inFront && all(lessThanEqual(abs(ndc), vec2(1.0))) &&
                 all(lessThan(texel, ivec2(shadow.depth.zw)));
-  return ShadowReceiver(clip, texel + firstTexel(shadow), inside);
+  return ShadowReceiver(clip, texel + firstTexel(shadow.occluder), inside);
 }
 
 // True where the texel holds a surface; false for NaN. meta: ShadowConstants::meta.

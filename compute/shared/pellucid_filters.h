@@ -6,7 +6,7 @@
 // Downsampling: outer, inner, inner, outer, which are 3 5 5 3 over 16.
 #define PELLUCID_DOWNSAMPLE_OUTER (3.0 / 16.0)
 #define PELLUCID_DOWNSAMPLE_INNER (0.5 - PELLUCID_DOWNSAMPLE_OUTER)
-// Of these taps, at 1/2 and 3/2 texels of the finer level to both sides; squared texels of it.
+// Variance of these taps, at 1/2 and 3/2 texels of the finer level to both sides, in squared texels of that level.
 #define PELLUCID_DOWNSAMPLE_VARIANCE (4.5 * PELLUCID_DOWNSAMPLE_OUTER + 0.5 * PELLUCID_DOWNSAMPLE_INNER)
 
 // Upsampling: the weight of the nearer coarser texel; the other one beside it has the rest.
@@ -22,7 +22,7 @@
 #define PELLUCID_WIDE_FINE_LAST (1.0 / 8.0)
 #define PELLUCID_WIDE_FINE_OWN (1.0 - 2.0 * (PELLUCID_WIDE_FINE_NEXT + PELLUCID_WIDE_FINE_LAST))
 
-// Of a refinement, squared texels of the finer level: the coarser centers are 1/2 and 3/2 of its texels away.
+// Variance of a refinement, squared texels of the finer level: the coarser centers are 1/2 and 3/2 of its texels away.
 #define PELLUCID_REFINEMENT_VARIANCE (0.25 * PELLUCID_REFINEMENT_NEAR + 2.25 * PELLUCID_REFINEMENT_FAR)
 
 // Variance of level l's kernel along an axis, squared pixels: SCALE 4^l + REST. Terms: 1/4 for the base level's 2 x 2 pixels, the

@@ -31,7 +31,7 @@ struct GroupList {
   uvec4 count;  // x, y: groups
 };
 
-// What the passes that make tile lists read and write besides the lists.
+// Buffer that the passes read and write which make tile lists.
 struct TileCommands {
   GatherDispatches gather; // w: groups that are listed, where the gather decides
   uvec4 commands[PELLUCID_LISTS]; // VkDispatchIndirectCommand

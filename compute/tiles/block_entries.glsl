@@ -47,11 +47,11 @@ uint bitsWithin(int first, int last, int begin) {
 
 // Lists the groups in a row of a map that a block needs and that no other has listed.
 void listEntryGroups(uint map, uint blockIndex, int row) {
-  uint word = uint(PELLUCID_BLOCK_WORDS) * blockIndex;
+  uvec2 block = uvec2(blockIndex % frame.blocks.x, blockIndex / frame.blocks.x);
+  uint word = blockWord(block);
   float nearest = uintBitsToFloat(readTileWord(word + 2u)), farthest = uintBitsToFloat(readTileWord(word + 3u));
   if (!(farthest > 0.0)) return;
-  ivec2 block = ivec2(blockIndex % frame.blocks.x, blockIndex / frame.blocks.x);
-  vec4 entries = entriesInReach(map, block, nearest, farthest);
+  vec4 entries = entriesInReach(map, ivec2(block), nearest, farthest);
   ivec2 last = maps[map].place.zw - 1;
   if (any(isnan(entries))) entries = vec4(vec2(0.0), vec2(last));
   // Far outside stays outside after the conversion.

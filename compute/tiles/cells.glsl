@@ -4,7 +4,8 @@
 
 uint readTileWord(uint word) { return imageLoad(tilesDestination, tileWordPlace(word)).x; }
 
-uint blockWord(ivec2 block) { return uint(PELLUCID_BLOCK_WORDS) * (uint(block.y) * frame.blocks.x + uint(block.x)); }
+// Not 0 where the block of these words has material.
+uint bitsOfBlock(uint word) { return readTileWord(word) | readTileWord(word + 1u); }
 
 // Blocks [xy, zw) that the pixels [xy, zw) from the first block on lie in. All of them beyond the image: the nearest.
 ivec4 blocksOf(ivec4 part) {
@@ -22,7 +23,7 @@ struct Material {
   bool some, all; // somewhere, everywhere
 };
 
-// Of the cells that a part of the image touches.
+// Material of the cells that a part of the image touches.
 Material materialOfCells(ivec4 part) {
   const int kShift = kBlockShift - kCellShift;
   ivec4 cells = ivec4(part.xy >> kCellShift, ((part.zw - 1) >> kCellShift) + 1), blocks = blocksOf(part);
@@ -31,7 +32,7 @@ Material materialOfCells(ivec4 part) {
   for (int y = blocks.y; y < blocks.w; ++y)
     for (int x = blocks.x; x < blocks.z; ++x) {
       uint columns = cellBits(cells.x - (x << kShift), cells.z - (x << kShift)) * 0x01010101u;
-      uint rows = cellBits(cells.y - (y << kShift), cells.w - (y << kShift)), word = blockWord(ivec2(x, y));
+      uint rows = cellBits(cells.y - (y << kShift), cells.w - (y << kShift)), word = blockWord(uvec2(x, y));
       [[unroll]] for (uint i = 0u; i < 2u; ++i) {
         uint four = rows >> (4u * i) & 15u; // a bit a row becomes a byte of ones
         uint mask = columns & (((four & 1u) | (four & 2u) << 7 | (four & 4u) << 14 | (four & 8u) << 21) * 255u);
@@ -43,7 +44,7 @@ Material materialOfCells(ivec4 part) {
   return Material(some != 0u, lacks == 0u);
 }
 
-// Of blocks, at most 6 in a row.
+// Material of blocks, at most 6 in a row.
 Material materialOfBlocks(ivec4 blocks) {
   uint some = 0u;
   bool all = true;
@@ -51,7 +52,7 @@ Material materialOfBlocks(ivec4 blocks) {
     [[unroll]] for (int i = 0; i < 6; ++i) {
       int x = blocks.x + i;
       if (x >= blocks.z) continue;
-      uint word = blockWord(ivec2(x, y)), bits = readTileWord(word) | readTileWord(word + 1u);
+      uint bits = bitsOfBlock(blockWord(uvec2(x, y)));
       some |= bits;
       all = all && bits != 0u;
     }

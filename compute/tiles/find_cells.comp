@@ -44,7 +44,7 @@ void main() {
     if (floatBitsToUint(most) > farthest) atomicMax(farthest, floatBitsToUint(most));
   }
   barrier();
-  uint word = uint(PELLUCID_BLOCK_WORDS) * (block.y * frame.blocks.x + block.x);
+  uint word = blockWord(block);
   if (invocation < 2u) writeTileWord(word + invocation, cells[invocation]);
   if (invocation == 2u) writeTileWord(word + 2u, nearest);
   if (invocation == 3u) writeTileWord(word + 3u, farthest);

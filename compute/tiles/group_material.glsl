@@ -1,4 +1,4 @@
-// Whether groups have material to work on.
+// Decides which groups run.
 #ifndef PELLUCID_GROUP_MATERIAL_GLSL
 #define PELLUCID_GROUP_MATERIAL_GLSL
 
@@ -11,11 +11,10 @@ shared uint someMaterial; // in the image
 // Looks at all blocks.
 void findSomeMaterial(uint invocation) {
   for (uint i = invocation; i < frame.blocks.x * frame.blocks.y; i += kInvocations)
-    if ((readTileWord(uint(PELLUCID_BLOCK_WORDS) * i) | readTileWord(uint(PELLUCID_BLOCK_WORDS) * i + 1u)) != 0u)
-      someMaterial = 1u; // whoever writes, writes this
+    if (bitsOfBlock(uint(PELLUCID_BLOCK_WORDS) * i) != 0u) someMaterial = 1u; // whoever writes, writes this
 }
 
-// Whether a group runs, and whether all that it reads of the pass before has been written.
+// Material of a group's part: some makes it run, and all says that all it reads of the pass before has been written.
 Material materialOf(GroupList groups, uvec2 place) {
   ivec2 first = groups.places.xy + ivec2(place) * groups.places.zw;
   ivec4 part = ivec4(first, first + groups.size.xy);

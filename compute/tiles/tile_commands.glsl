@@ -1,4 +1,4 @@
-// What the passes that make tile lists write.
+// The image and the commands that the passes write which make tile lists.
 #ifndef PELLUCID_TILE_COMMANDS_GLSL
 #define PELLUCID_TILE_COMMANDS_GLSL
 

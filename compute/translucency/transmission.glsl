@@ -33,19 +33,16 @@ vec3 materialTransmittance(uint m, float d) {
   return d <= frame.filterAndLimit.w ? clamp(t, vec3(0.0), vec3(1.0)) * frame.filterAndLimit.rgb : vec3(0.0);
 }
 
-// `texel`: of the image, which holds `stored`.
+// `texel`: of the image, which holds `stored`. Neighbors are read for maps with a slope bias alone.
 DrawnDepth drawnDepth(ShadowConstants shadow, ivec2 texel, float stored) {
-  vec4 beside = vec4(stored);
-  bvec4 holds = bvec4(false);
-  if (shadow.offsets.y != 0.0) { // neighbors are read for maps with such a bias alone
-    ivec2 first = firstTexel(shadow), last = first + ivec2(shadow.depth.zw) - 1;
-    for (int i = 0; i < 4; ++i) {
-      ivec2 axis = i < 2 ? ivec2(1, 0) : ivec2(0, 1), neighbor = texel + (i % 2 == 0 ? axis : -axis);
-      if (any(lessThan(neighbor, first)) || any(greaterThan(neighbor, last))) continue;
-      beside[i] = shadowTexel(shadow.meta.x, neighbor);
-      holds[i] = shadowHolds(shadow.meta, beside[i]);
-    }
-  }
+  if (shadow.offsets.y == 0.0) return drawnDepth(shadow.offsets, stored, vec4(stored), bvec4(false));
+  uint image = shadow.meta.x;
+  ivec2 first = firstTexel(shadow.occluder), last = first + ivec2(shadow.depth.zw) - 1;
+  ivec2 low = max(texel - 1, first), high = min(texel + 1, last);
+  vec4 beside = vec4(shadowTexel(image, ivec2(high.x, texel.y)), shadowTexel(image, ivec2(low.x, texel.y)),
+                     shadowTexel(image, ivec2(texel.x, high.y)), shadowTexel(image, ivec2(texel.x, low.y)));
+  bvec4 holds = bvec4(high.x > texel.x && shadowHolds(shadow.meta, beside.x), low.x < texel.x && shadowHolds(shadow.meta, beside.y),
+                      high.y > texel.y && shadowHolds(shadow.meta, beside.z), low.y < texel.y && shadowHolds(shadow.meta, beside.w));
   return drawnDepth(shadow.offsets, stored, beside, holds);
 }
 
@@ -121,7 +118,7 @@ Transmitted lightTransmission(LightConstants light, Surface s, bool mapped) {
   float visible = 1.0;
   if (mapped) {
     LightSpace l = lightSpace(light, incident, s, back);
-    // Where light enters it has not come to the face that it leaves by.
+    // Light that enters has not come to the face that it leaves by.
     visible = l.enters && l.thickness <= (holdsExits ? -l.tolerance : l.tolerance) ? 1.0 : 0.0;
   }
   return Transmitted(thickness, incident.irradiance * hiddenCosine(light, s, incident.toLight), visible);

@@ -17,8 +17,6 @@ const fs::path kCompute = fs::path(PELLUCID_SOURCE_DIR) / "compute";
 
 // Bodies of passes are in files of their own: an entry point addresses and loads.
 constexpr int kMostLines = 250, kMostEntryPointLines = 60;
-// Files that have yet to be split.
-const std::vector<std::string> kLongEntryPoints = {"translucency.comp"};
 
 int lines(const fs::path& file) {
   std::ifstream in(file);
@@ -39,9 +37,8 @@ TEST(ShaderFiles, AreShort) {
   int entryPoints = 0;
   for (const fs::path& file : files(kCompute)) {
     const bool entryPoint = file.extension() == ".comp";
-    const bool known = std::ranges::count(kLongEntryPoints, file.filename().string()) != 0;
     entryPoints += entryPoint;
-    EXPECT_LE(lines(file), entryPoint && !known ? kMostEntryPointLines : kMostLines) << file;
+    EXPECT_LE(lines(file), entryPoint ? kMostEntryPointLines : kMostLines) << file;
   }
   EXPECT_GT(entryPoints, 0);
 }
