@@ -28,8 +28,6 @@ static_assert(PELLUCID_SHADER_ANGLE_POLYNOMIAL == PELLUCID_ANGLE_POLYNOMIAL);
 static_assert(PELLUCID_SHADER_DEBUG_THICKNESS == PELLUCID_DEBUG_THICKNESS);
 static_assert(PELLUCID_SHADER_DEBUG_TRANSMITTANCE == PELLUCID_DEBUG_TRANSMITTANCE);
 static_assert(PELLUCID_SHADER_DEBUG_OCCLUSION == PELLUCID_DEBUG_OCCLUSION);
-static_assert(PELLUCID_DISPATCH_SHADOWS * sizeof(shared::ShadowConstants) <= 16384);
-static_assert(PELLUCID_DISPATCH_LIGHTS * sizeof(shared::LightConstants) <= 16384);
 static_assert(PELLUCID_GAUSSIANS == PELLUCID_MAX_GAUSSIANS);
 static_assert(PELLUCID_MAX_LIGHT_SHADOW_MAPS <= PELLUCID_SHADOW_IMAGE_COUNT);
 
@@ -230,13 +228,14 @@ void putLights(const FrameFacts& f, void* mapped) {
 shared::TileCommands tileCommands(const FrameFacts& f) {
   shared::TileCommands c{};
   for (uint32_t list = 0; list < PELLUCID_LISTS; ++list) {
-    const GroupGrid& grid = f.tiles.grids[list];
+    const GroupGrid& grid = f.grids[list];
     c.groups[list].places = {grid.first[0] - static_cast<int32_t>(f.tiles.firstPixel[0]),
-                             grid.first[1] - static_cast<int32_t>(f.tiles.firstPixel[1]), grid.step[0], grid.step[1]};
+                             grid.first[1] - static_cast<int32_t>(f.tiles.firstPixel[1]), grid.step[0],
+                             grid.step[1]};
     c.groups[list].size = {grid.size[0], grid.size[1], static_cast<int32_t>(grid.runs), 0};
     c.groups[list].count = {grid.columns, grid.rows, 0, 0};
   }
-  c.maps = {f.stages.gathered > 0 ? f.lights.list().front().shadowCount : 0, f.stages.skipsLight, 0, 0};
+  c.maps = {f.tiles.maps, f.stages.skipsLight, 0, 0};
   float reach = 0;
   for (uint32_t i = 0; f.gathers && i < f.frame.materialCount; ++i)
     reach = std::max(reach, gatherReach(f.material(i), f.gatherSamples));

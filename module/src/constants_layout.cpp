@@ -22,8 +22,8 @@ ConstantsLayout::ConstantsLayout(const FrameFacts& facts) {
     if (!facts.stages.tiles) place(&gatherDispatches, sizeof(shared::GatherDispatches));
   }
   if (facts.stages.tiles) {
-    const uint32_t maps = facts.stages.gathered > 0 ? facts.lights.list().front().shadowCount : 0;
-    place(&tileCommands, sizeof(shared::TileCommands) + maps * PELLUCID_ENTRY_GROUP_WORDS * sizeof(uint32_t));
+    place(&tileCommands,
+          sizeof(shared::TileCommands) + facts.tiles.maps * PELLUCID_ENTRY_GROUP_WORDS * sizeof(uint32_t));
     gatherDispatches = {tileCommands.offset, sizeof(shared::GatherDispatches)};
   }
 }

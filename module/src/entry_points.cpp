@@ -8,8 +8,6 @@
 namespace pellucid {
 namespace {
 
-uint32_t parts(uint32_t texels, uint32_t side) { return (texels - 1) / side + 1; }
-
 // Row of a matrix without its translation.
 glm::dvec3 linear(const glm::dmat4& m, int row) { return {m[0][row], m[1][row], m[2][row]}; }
 

@@ -12,8 +12,7 @@ constexpr uint32_t kEntryColumns = 1024, kEntryRows = 4096;
 
 // Whole groups of the pass that makes them.
 constexpr uint32_t entryGroups(uint32_t entries) {
-  return (entries + PELLUCID_ENTRY_POINTS_GROUP - 1) / PELLUCID_ENTRY_POINTS_GROUP *
-         PELLUCID_ENTRY_POINTS_GROUP;
+  return parts(entries, PELLUCID_ENTRY_POINTS_GROUP) * PELLUCID_ENTRY_POINTS_GROUP;
 }
 
 // Columns with the coarser levels beside them, of compute/gather/entry_point.glsl.

@@ -72,14 +72,15 @@ void addDiffusion(FrameFacts& f) {
   while (f.reach.deviation > 0 && f.coarsestLevel > kFirstLevel + 2 &&
          f.reach.deviation <= deviationWithin(f.coarsestLevel - 2))
     f.coarsestLevel -= 2;
-  f.stages.tiles = whyNoTileLists(f) == nullptr;
-  if (f.stages.tiles) f.tiles = TileLists(f, f.rect);
 }
 
 void addStages(FrameFacts& f) {
   f.stages = Stages(f);
   f.coarsestLevel = f.pyramid.coarsest;
   if (f.stages.diffusion) addDiffusion(f);
+  f.grids = groupGrids(f, f.rect, f.pyramid);
+  f.stages.tiles = f.stages.diffusion && whyNoTileLists(f) == nullptr;
+  if (f.stages.tiles) f.tiles = TileLists(f, f.rect, f.grids);
   f.constants = ConstantsLayout(f);
 }
 

@@ -27,7 +27,7 @@ struct FrameFacts {
   Rect rect{};
   bool wide = false;                           // colors of 32 bits a channel
   VkFormat colorFormat = VK_FORMAT_UNDEFINED;  // of transients and histories that hold colors
-  uint32_t images = 0;  // bit (1 << PellucidResource) of each image field that has a view
+  uint32_t images = 0;   // bit (1 << PellucidResource) of each image field that has a view
   bool inPlace = false;  // the output is the irradiance's view
   glm::dmat4 clipFromView{1}, viewFromWorld{1};
   DepthRange depthRange{};
@@ -53,6 +53,7 @@ struct FrameFacts {
   uint32_t quality = 0;        // of the diffusion; 0 where nothing diffuses
   bool missesTarget = false;   // no quality has frame.targetError
   uint32_t coarsestLevel = 0;  // of the pyramid that the diffusion needs
+  GroupGrids grids{};          // of passes that have lists
   TileLists tiles;             // with stages.tiles
   ConstantsLayout constants;
 
@@ -65,7 +66,7 @@ struct FrameFacts {
   bool isGathered(const PellucidLight& light) const {
     return light.shadowMapCount > 0 && gathers && !holdsBackFaces(light);
   }
-  // Whether the light's thickness is the camera's.
+  // True where the light's thickness is the camera's.
   bool takesChord(const PellucidLight& light) const {
     return light.shadowMapCount == 0 || frame.thicknessSource == PELLUCID_THICKNESS_CAMERA ||
            holdsBackFaces(light);

@@ -34,7 +34,7 @@ bool LightGroup::readsExit(const FrameFacts& facts, const PellucidLight& light,
 
 bool LightGroup::addLight(const FrameFacts& facts, const PellucidLight& light) {
   const PellucidFrame& frame = facts.frame;
-  // What adds gathered light binds no shadow images.
+  // The pass that adds gathered light binds no shadow images.
   if (gathered > 0 && !facts.isGathered(light) && light.shadowMapCount > 0) return false;
   LightGroup grown = *this;
   grown.shadowCount += light.shadowMapCount;

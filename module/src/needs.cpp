@@ -28,15 +28,15 @@ Extent texelExtent(const FrameFacts& f, uint32_t index) {
   if (entryPoints) size.fit(withCoarserEntries(f.lights.entryColumns), f.lights.entryRows);
   // Filtered probes take the place of entry points.
   if (entryPoints || (stages.gathered > 0 && index == pyramid))
-    size.fit((f.frame.imageExtent[0] - 1) / f.gatherSpacing + 1,
-             (f.frame.imageExtent[1] - 1) / f.gatherSpacing + 1);
+    size.fit(parts(f.frame.imageExtent[0], f.gatherSpacing), parts(f.frame.imageExtent[1], f.gatherSpacing));
   return size;
 }
 
 // For any render rect: none has more blocks and groups than the whole image.
 Extent tilesExtent(const FrameFacts& f) {
-  const TileLists lists(f, {0, 0, f.frame.imageExtent[0], f.frame.imageExtent[1]});
-  return {TileLists::kColumns, (lists.words - 1) / TileLists::kColumns + 1};
+  const Rect all{0, 0, f.frame.imageExtent[0], f.frame.imageExtent[1]};
+  const TileLists lists(f, all, groupGrids(f, all, Pyramid(f.frame.imageExtent, all)));
+  return {TileLists::kColumns, parts(lists.words, TileLists::kColumns)};
 }
 
 // The dispatches of the plan that bind the image.

@@ -58,7 +58,9 @@ void addSkips(PlanBuilder& b) {
     b.skip("diffusion", "a debug view is written instead");
   else if (!f.stages.diffusion)
     b.skip("diffusion", "no material diffuses");
-  if (f.stages.nothing) b.skip("all dispatches", "no light comes through, nothing diffuses, and the output is the irradiance image");
+  if (f.stages.nothing)
+    b.skip("all dispatches",
+           "no light comes through, nothing diffuses, and the output is the irradiance image");
   if (!f.stages.diffusion) return;
   if (f.missesTarget) b.skip("targetError", "no quality is that exact");
   if (f.frame.indirectDispatches == PELLUCID_INDIRECT_MATERIAL && !f.stages.tiles)

@@ -33,13 +33,13 @@ PellucidDispatch* PlanBuilder::dispatch(const char* name, Pipeline pipeline) {
 
 void PlanBuilder::groups(PellucidDispatch* d, uint32_t width, uint32_t height, uint32_t columns,
                          uint32_t rows) {
-  d->groups[0] = (width + columns - 1) / columns;
-  d->groups[1] = (height + rows - 1) / rows;
+  d->groups[0] = parts(width, columns);
+  d->groups[1] = parts(height, rows);
   d->groups[2] = 1;
 }
 
 void PlanBuilder::listed(PellucidDispatch* d, uint32_t list) const {
-  const GroupGrid grid = groupGrid(facts, facts.rect, list);
+  const GroupGrid& grid = facts.grids[list];
   d->groups[0] = grid.columns;
   d->groups[1] = grid.rows;
   goByList(d, list);
@@ -58,7 +58,8 @@ void PlanBuilder::goByList(PellucidDispatch* d, uint32_t list) const {
 
 void PlanBuilder::indirect(PellucidDispatch* d, VkDeviceSize offset) const {
   if (!fits) return;
-  // The first barrier after the dispatch that decides makes its commands visible to all that follow; others would cost 2 us each.
+  // The first barrier after the dispatch that decides makes its commands visible to all that follow; others
+  // would cost 2 us each.
   PellucidDispatch* waits = plan.dispatches + decider + 1;
   while (waits < d && !waits->barrierBefore) ++waits;
   waits->barrierIndirect = 1;

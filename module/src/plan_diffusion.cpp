@@ -84,8 +84,9 @@ void addDiffuse(PlanBuilder& b, uint32_t source, uint32_t destination, bool adds
     readLevel(b, d, PELLUCID_BINDING_FILTERED_PROBES, kFirstLevel);
   if (!skipsLight) return;
   if (!addsProbes) d->modeledBytes = 0;  // one of the two runs
-  b.indirect(d, f.constants.gatherDispatches.offset + (addsProbes ? offsetof(shared::GatherDispatches, light)
-                                                                   : offsetof(shared::GatherDispatches, noLight)));
+  b.indirect(
+      d, f.constants.gatherDispatches.offset + (addsProbes ? offsetof(shared::GatherDispatches, light)
+                                                           : offsetof(shared::GatherDispatches, noLight)));
 }
 
 }  // namespace pellucid

@@ -13,13 +13,9 @@ bool isDirectional(const FrameFacts& f, const LightGroup& group) {
 struct Cells {
   uint32_t width, height;
 
-  explicit Cells(const FrameFacts& f) {
-    const auto count = [&](uint32_t first, uint32_t pixels) {
-      return (first + pixels - 1) / f.gatherSpacing - first / f.gatherSpacing + 1;
-    };
-    width = count(f.rect.x, f.rect.width);
-    height = count(f.rect.y, f.rect.height);
-  }
+  explicit Cells(const FrameFacts& f)
+      : width(cellsAlong(f.rect.x, f.rect.width, f.gatherSpacing)),
+        height(cellsAlong(f.rect.y, f.rect.height, f.gatherSpacing)) {}
 };
 
 uint64_t entryPointBytes(const LightGroup& group) {

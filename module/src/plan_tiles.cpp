@@ -21,7 +21,8 @@ void addTileLists(PlanBuilder& b) {
   find->pushConstants[0] = gathers;  // entry points depend on distances
   bindLists(b, find);
   b.image(find, PELLUCID_BINDING_MATERIAL, PELLUCID_RESOURCE_MATERIAL, 1);
-  b.image(find, PELLUCID_BINDING_FRONT_DEPTH, PELLUCID_RESOURCE_FRONT_DEPTH, gathers ? kUnknownDepthBytes : 0);
+  b.image(find, PELLUCID_BINDING_FRONT_DEPTH, PELLUCID_RESOURCE_FRONT_DEPTH,
+          gathers ? kUnknownDepthBytes : 0);
 
   PellucidDispatch* list = b.dispatch("list groups", Pipeline::ListGroups);
   b.decides();

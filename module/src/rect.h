@@ -17,4 +17,12 @@ inline Rect renderRect(const PellucidFrame& frame) {
   return {frame.renderRect[0], frame.renderRect[1], frame.renderRect[2], frame.renderRect[3]};
 }
 
+// Parts that cover a length, the last of them perhaps cut short.
+constexpr uint32_t parts(uint32_t length, uint32_t part) { return (length + part - 1) / part; }
+
+// Cells of `side` pixels, aligned to the image, that the pixels [first, first + count) lie in.
+constexpr uint32_t cellsAlong(uint32_t first, uint32_t count, uint32_t side) {
+  return (first + count - 1) / side - first / side + 1;
+}
+
 }  // namespace pellucid

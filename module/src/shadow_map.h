@@ -1,4 +1,4 @@
-// What follows from a shadow map's fields. Pure.
+// Lengths that follow from a shadow map's fields. Pure.
 #pragma once
 
 #include "pellucid/pellucid.h"

@@ -26,7 +26,8 @@ Stages::Stages(const FrameFacts& facts) {
   }
   lights = fused > 0;
   copies = diffusion && !lights && !frame.separateOutput;
-  // Without diffusion the fused pass still has to bring irradiance (times albedo) to the output, unless that is what it is.
+  // Without diffusion the fused pass still has to bring irradiance (times albedo) to the output, unless that
+  // is what it is.
   nothing = writers() == 0 && facts.inPlace && !facts.has(PELLUCID_RESOURCE_ALBEDO);
   if (writers() == 0 && !nothing) fused = 1;
   keepsHistory =

@@ -10,16 +10,15 @@ namespace {
 
 // The least limit of workgroups in a dispatch's row, of all devices.
 constexpr uint32_t kMostGroups = 65535;
-constexpr uint32_t kMostLightGroups = 8;   // leaves room for the lists' dispatches in any plan
+constexpr uint32_t kMostLightGroups = 8;  // leaves room for the lists' dispatches in any plan
 
 // A bit for each of a map's groups of entry points.
 static_assert(kEntryColumns / PELLUCID_ENTRY_POINTS_GROUP * (kEntryColumns / PELLUCID_ENTRY_POINTS_GROUP) <=
               32 * PELLUCID_ENTRY_GROUP_WORDS);
 
-uint32_t parts(uint32_t length, uint32_t part) { return (length + part - 1) / part; }
-
 // Parts of `side` pixels from the first pixel on.
-GroupGrid gridFrom(std::array<int32_t, 2> first, uint32_t columns, uint32_t rows, int32_t width, int32_t height) {
+GroupGrid gridFrom(std::array<int32_t, 2> first, uint32_t columns, uint32_t rows, int32_t width,
+                   int32_t height) {
   return {columns, rows, first, {width, height}, {width, height}};
 }
 
@@ -31,15 +30,16 @@ GroupGrid grown(GroupGrid grid, int32_t x, int32_t y) {
 
 GroupGrid tileGrid(const Rect& r) {
   return gridFrom({static_cast<int32_t>(r.x & ~1u), static_cast<int32_t>(r.y & ~1u)},
-                  parts(r.width + (r.x & 1), PELLUCID_TILE), parts(r.height + (r.y & 1), PELLUCID_TILE), PELLUCID_TILE,
-                  PELLUCID_TILE);
+                  parts(r.width + (r.x & 1), PELLUCID_TILE), parts(r.height + (r.y & 1), PELLUCID_TILE),
+                  PELLUCID_TILE, PELLUCID_TILE);
 }
 
 // Groups make PELLUCID_DOWNSAMPLE_TILE texels of the coarser of two levels.
 GroupGrid downsampleGrid(const Pyramid& pyramid, uint32_t coarser) {
   const auto& rect = pyramid.levels[coarser].rect;
   const int32_t side = PELLUCID_DOWNSAMPLE_TILE << coarser, first = 1 << coarser;
-  return gridFrom({rect.x * first, rect.y * first}, parts(static_cast<uint32_t>(rect.width), PELLUCID_DOWNSAMPLE_TILE),
+  return gridFrom({rect.x * first, rect.y * first},
+                  parts(static_cast<uint32_t>(rect.width), PELLUCID_DOWNSAMPLE_TILE),
                   parts(static_cast<uint32_t>(rect.height), PELLUCID_DOWNSAMPLE_TILE), side, side);
 }
 
@@ -69,67 +69,64 @@ GroupGrid diffuseGrid(const Pyramid& pyramid, bool fine) {
 
 // Groups of `side` x `side` cells of the gather's probes.
 GroupGrid cellGrid(const Rect& r, uint32_t spacing, uint32_t side) {
-  const auto groups = [&](uint32_t first, uint32_t pixels) {
-    return parts((first + pixels - 1) / spacing - first / spacing + 1, side);
-  };
   const auto first = [&](uint32_t pixel) { return static_cast<int32_t>(pixel / spacing * spacing); };
   const auto pixels = static_cast<int32_t>(side * spacing);
-  return gridFrom({first(r.x), first(r.y)}, groups(r.x, r.width), groups(r.y, r.height), pixels, pixels);
+  return gridFrom({first(r.x), first(r.y)}, parts(cellsAlong(r.x, r.width, spacing), side),
+                  parts(cellsAlong(r.y, r.height, spacing), side), pixels, pixels);
+}
+
+GroupGrid running(uint32_t runs, GroupGrid grid) {
+  grid.runs = runs;
+  return grid;
 }
 
 }  // namespace
 
-GroupGrid groupGrid(const FrameFacts& f, const Rect& rect, uint32_t list) {
-  const Pyramid pyramid(f.frame.imageExtent, rect);
+GroupGrids groupGrids(const FrameFacts& f, const Rect& rect, const Pyramid& pyramid) {
   const auto spacing = static_cast<int32_t>(f.gatherSpacing);
-  GroupGrid grid;
-  switch (list) {
-    case PELLUCID_LIST_TILES:
-      return tileGrid(rect);
-    case PELLUCID_LIST_DOWNSAMPLE:
-      // A group reads three texels of level 1 around its part.
-      grid = grown(downsampleGrid(pyramid, 3), 6, 6);
-      grid.runs = PELLUCID_RUNS_BESIDE_BLOCKS;
-      return grid;
-    case PELLUCID_LIST_DOWNSAMPLE_COARSE:
-      grid = downsampleGrid(pyramid, 5);
-      grid.runs = PELLUCID_RUNS_WITH_ANY;
-      return grid;
-    case PELLUCID_LIST_UPSAMPLE:
-      // As far as a group that diffuses reads around one of its pixels: all of its part but that, and a texel of level 2.
-      grid = grown(upsampleGrid(pyramid), 4 * PELLUCID_DIFFUSE_COARSE_TEXELS_X + 4, 4 * PELLUCID_DIFFUSE_TEXELS_Y + 4);
-      grid.runs = PELLUCID_RUNS_WITH_BLOCKS;
-      return grid;
-    case PELLUCID_LIST_DIFFUSE:
-      return diffuseGrid(pyramid, kQualities[f.quality].fineFilter);
-    case PELLUCID_LIST_PROBES:
-      // A pixel reads the next cell's filtered probe, which is of the probes two cells around.
-      return grown(cellGrid(rect, f.gatherSpacing, PELLUCID_PROBES_GROUP), 4 * spacing, 4 * spacing);
-    default:
-      return grown(cellGrid(rect, f.gatherSpacing, PELLUCID_FILTER_GROUP), 2 * spacing, 2 * spacing);
-  }
+  GroupGrids grids;
+  grids[PELLUCID_LIST_TILES] = tileGrid(rect);
+  // A group reads three texels of level 1 around its part.
+  grids[PELLUCID_LIST_DOWNSAMPLE] =
+      running(PELLUCID_RUNS_BESIDE_BLOCKS, grown(downsampleGrid(pyramid, 3), 6, 6));
+  grids[PELLUCID_LIST_DOWNSAMPLE_COARSE] = running(PELLUCID_RUNS_WITH_ANY, downsampleGrid(pyramid, 5));
+  // As far as a group that diffuses reads around one of its pixels: all of its part but that, and a texel of
+  // level 2.
+  grids[PELLUCID_LIST_UPSAMPLE] = running(
+      PELLUCID_RUNS_WITH_BLOCKS, grown(upsampleGrid(pyramid), 4 * PELLUCID_DIFFUSE_COARSE_TEXELS_X + 4,
+                                       4 * PELLUCID_DIFFUSE_TEXELS_Y + 4));
+  grids[PELLUCID_LIST_DIFFUSE] = diffuseGrid(pyramid, kQualities[f.quality].fineFilter);
+  // A pixel reads the next cell's filtered probe, which is of the probes two cells around.
+  grids[PELLUCID_LIST_PROBES] =
+      grown(cellGrid(rect, f.gatherSpacing, PELLUCID_PROBES_GROUP), 4 * spacing, 4 * spacing);
+  grids[PELLUCID_LIST_FILTER_PROBES] =
+      grown(cellGrid(rect, f.gatherSpacing, PELLUCID_FILTER_GROUP), 2 * spacing, 2 * spacing);
+  return grids;
 }
 
-TileLists::TileLists(const FrameFacts& f, const Rect& rect) {
-  firstPixel = {rect.x & ~1u, rect.y & ~1u};
-  blocks = {parts(rect.x + rect.width - firstPixel[0], PELLUCID_BLOCK), parts(rect.y + rect.height - firstPixel[1], PELLUCID_BLOCK)};
+TileLists::TileLists(const FrameFacts& f, const Rect& rect, const GroupGrids& grids)
+    : firstPixel{rect.x & ~1u, rect.y & ~1u},
+      blocks{parts(rect.x + rect.width - firstPixel[0], PELLUCID_BLOCK),
+             parts(rect.y + rect.height - firstPixel[1], PELLUCID_BLOCK)},
+      maps(f.stages.gathered > 0 ? f.lights.list().front().shadowCount : 0) {
+  constexpr uint32_t kInvocations = PELLUCID_LIST_GROUP * PELLUCID_LIST_GROUP;
   const uint32_t blockCount = blocks[0] * blocks[1];
   marks = PELLUCID_BLOCK_WORDS * blockCount;
   words = marks + blockCount;
   for (uint32_t list = 0; list < PELLUCID_LIST_ENTRY_POINTS; ++list) {
-    if (list < PELLUCID_LIST_PROBES || f.stages.gathered > 0) grids[list] = groupGrid(f, rect, list);
+    const uint32_t count = list < PELLUCID_LIST_PROBES || f.stages.gathered > 0 ? grids[list].count() : 0;
     first[list] = words;
-    words += grids[list].count();
+    words += count;
     firstGroup[list] = groups;
-    groups += parts(grids[list].count(), PELLUCID_LIST_GROUP * PELLUCID_LIST_GROUP);
+    groups += parts(count, kInvocations);
   }
-  const uint32_t maps = f.stages.gathered > 0 ? f.lights.list().front().shadowCount : 0;
   first[PELLUCID_LIST_ENTRY_POINTS] = words;
-  words += f.lights.entryColumns * f.lights.entryRows / (PELLUCID_ENTRY_POINTS_GROUP * PELLUCID_ENTRY_POINTS_GROUP);
+  words += f.lights.entryColumns * f.lights.entryRows /
+           (PELLUCID_ENTRY_POINTS_GROUP * PELLUCID_ENTRY_POINTS_GROUP);
   firstGroup[PELLUCID_LIST_ENTRY_POINTS] = groups;
   // An invocation for each block's mark, then for each map, block and row of the map's groups.
   constexpr uint32_t kRows = kEntryColumns / PELLUCID_ENTRY_POINTS_GROUP;
-  groups += parts(blockCount * (1 + kRows * maps), PELLUCID_LIST_GROUP * PELLUCID_LIST_GROUP);
+  groups += parts(blockCount * (1 + kRows * maps), kInvocations);
 }
 
 const char* whyNoTileLists(const FrameFacts& f) {
@@ -137,8 +134,8 @@ const char* whyNoTileLists(const FrameFacts& f) {
     return "frame.indirectDispatches asks for none";
   if (f.stages.history) return "frame.reuse keeps the light of pixels, all of which it writes";
   if (f.lights.count > kMostLightGroups || f.stages.gathered > 1) return "lights need several dispatches";
-  for (uint32_t list = 0; list < PELLUCID_LIST_ENTRY_POINTS; ++list)
-    if (groupGrid(f, f.rect, list).count() > kMostGroups) return "the image has more tiles than a row of workgroups";
+  for (const GroupGrid& grid : f.grids)
+    if (grid.count() > kMostGroups) return "the image has more tiles than a row of workgroups";
   return nullptr;
 }
 

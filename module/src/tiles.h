@@ -1,10 +1,11 @@
-// Tile lists: which groups of each pass have material to work on, as the GPU finds it (compute/tiles/). This is where the groups
-// lie and where the lists are kept.
+// Tile lists say which groups of each pass have material to work on, as the GPU finds it (compute/tiles/).
+// This file says where the groups lie and where the lists are kept.
 #pragma once
 
 #include <array>
 #include <cstdint>
 
+#include "pyramid.h"
 #include "rect.h"
 #include "shared/pellucid_shared.h"
 
@@ -12,8 +13,8 @@ namespace pellucid {
 
 struct FrameFacts;
 
-// The groups of a pass. A group makes the part of the image that begins at `first` + its place * `step`, `size` pixels; parts
-// that others read are larger by as much as that takes.
+// The groups of a pass. A group makes the part of the image that begins at `first` + its place * `step`,
+// `size` pixels; parts that others read are larger by as much as that takes.
 struct GroupGrid {
   uint32_t columns = 0, rows = 0;
   std::array<int32_t, 2> first{}, step{}, size{};  // pixels
@@ -22,19 +23,20 @@ struct GroupGrid {
   uint32_t count() const { return columns * rows; }
 };
 
-// `list`: PELLUCID_LIST_* but those of entry points.
-GroupGrid groupGrid(const FrameFacts& facts, const Rect& rect, uint32_t list);
+// By PELLUCID_LIST_*; entry points have none.
+using GroupGrids = std::array<GroupGrid, PELLUCID_LISTS>;
+GroupGrids groupGrids(const FrameFacts& facts, const Rect& rect, const Pyramid& pyramid);
 
 struct TileLists {
   std::array<uint32_t, 2> firstPixel{}, blocks{};
-  std::array<GroupGrid, PELLUCID_LISTS> grids{};
   std::array<uint32_t, PELLUCID_LISTS> first{};       // words of the lists
   std::array<uint32_t, PELLUCID_LISTS> firstGroup{};  // of the pass that makes the lists, by list
+  uint32_t maps = 0;                                  // shadow maps that are gathered from
   uint32_t marks = 0;                                 // first word of the blocks' marks
   uint32_t words = 0, groups = 0;                     // in all; groups of the pass that makes the lists
 
   TileLists() = default;
-  TileLists(const FrameFacts& facts, const Rect& rect);
+  TileLists(const FrameFacts& facts, const Rect& rect, const GroupGrids& grids);
 
   static constexpr uint32_t kColumns = 1u << PELLUCID_TILE_WORDS_SHIFT;  // of the image that holds the words
 };

@@ -12,7 +12,7 @@ void checkFields(const FrameFacts& facts, Findings& out);
 void checkMaterials(const FrameFacts& facts, Findings& out);
 void checkShadowMaps(const FrameFacts& facts, Findings& out);
 void checkLights(const FrameFacts& facts, Findings& out);
-// Of one light, whose maps there are.
+// Checks one light, whose maps there are.
 void checkFaces(const FrameFacts& facts, uint32_t light, Findings& out);
 void checkGroups(const FrameFacts& facts, Findings& out);
 // Warnings, once nothing is wrong.

@@ -61,7 +61,7 @@ void warnOfTiles(const PellucidFrame& f, Findings& out) {
       }
 }
 
-// Thickness and gather are resolved to a texel. Of a perspective map the texel depends on the distance.
+// Thickness and gather are resolved to a texel. A perspective map's texel depends on the distance.
 void warnOfTexels(const FrameFacts& facts, uint32_t index, Findings& out) {
   constexpr float kMostPaths = 4;
   const PellucidFrame& f = facts.frame;

@@ -21,7 +21,8 @@ Capture islands(int width, int height, unsigned seed) {
   for (int i = 0; i < 5; ++i) {
     const int side = i < 2 ? 1 : 1 + below(40), x0 = below(width), y0 = below(height);
     for (int y = y0; y < std::min(y0 + side, height); ++y)
-      for (int x = x0; x < std::min(x0 + side, width); ++x) c.material[static_cast<size_t>(y * width + x)] = 1;
+      for (int x = x0; x < std::min(x0 + side, width); ++x)
+        c.material[static_cast<size_t>(y * width + x)] = 1;
   }
   for (float& value : c.irradiance.data) value = static_cast<float>(below(1000)) / 1000;
   return c;
@@ -53,11 +54,15 @@ constexpr Way kWays[] = {
      }},
     {"quality 1", [](ReplaySettings&) {}},
     {"cells of 4 pixels", [](ReplaySettings& s) { s.translucency.gatherSpacing = 4; }},
-    {"cells of 2 pixels, quality 2", [](ReplaySettings& s) {
+    {"cells of 2 pixels, quality 2",
+     [](ReplaySettings& s) {
        s.quality = 2;
        s.translucency.gatherSpacing = 2;
      }},
-    {"a rect from odd pixels", [](ReplaySettings& s) { s.renderRect = {67, 33, 131, 90}; }},
+    {"a rect from odd pixels",
+     [](ReplaySettings& s) {
+       s.renderRect = {67, 33, 131, 90};
+     }},
     {"32 bits", [](ReplaySettings& s) { s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT; }},
 };
 
@@ -94,12 +99,14 @@ TEST_F(TileLists, GroupsFollowTheMaterial) {
     return groupsOf(run, name);
   };
   c.material.assign(c.material.size(), 0);
-  for (const char* name : {"base level", "downsample", "upsample", "diffuse", "diffuse, none gathered", "entry points", "probes"})
+  for (const char* name : {"base level", "downsample", "upsample", "diffuse", "diffuse, none gathered",
+                           "entry points", "probes"})
     EXPECT_EQ(groups(name), 0u) << name << " of nothing";
   c.material[128 * 256 + 128] = 1;  // the first pixel of a tile
   EXPECT_EQ(groups("base level"), 1u);
   EXPECT_EQ(groups("diffuse"), 1u);
-  // 2 reaches of 2 mm around a pixel are 8 of 256 texels of the map's 200 mm, and groups have 16 entry points.
+  // 2 reaches of 2 mm around a pixel are 8 of 256 texels of the map's 200 mm, and groups have 16 entry
+  // points.
   const uint32_t entries = groups("entry points");
   EXPECT_GT(entries, 0u);
   EXPECT_LT(entries, 64u);

@@ -141,7 +141,7 @@ typedef enum PellucidDebugView {
   PELLUCID_DEBUG_IRRADIANCE = 4     /* irradiance + transmitted/rho: what the diffusion reads */
 } PellucidDebugView;
 
-/* Where the GPU decides how many workgroups run. */
+/* The GPU decides how many workgroups run: */
 typedef enum PellucidIndirect {
   PELLUCID_INDIRECT_NONE = 0,     /* nowhere: all passes run over the whole rect */
   PELLUCID_INDIRECT_MATERIAL = 1, /* where it finds material, and passes of a gather where it finds light, too */
@@ -303,8 +303,9 @@ PellucidResult pellucidGetImageNeeds(const PellucidFrame* frame, uint32_t* count
 PellucidResult pellucidValidateFrame(const PellucidFrame* frame, PellucidMessageFn fn, void* user);
 
 /* Same frame and previous plan, same plan. `previous` is the last recorded frame's plan or NULL; history comes in here
- * and nowhere else; see PellucidReuse. The plan keeps no pointer to the frame. Of the views only those of optional inputs
- * are looked at, and whether output and irradiance are one view: then a frame with nothing to do has no dispatches. */
+ * and nowhere else; see PellucidReuse. The plan keeps no pointer to the frame. It depends
+ * on which optional inputs have views, and on output and irradiance being one view: then a frame with nothing to do has
+ * no dispatches. */
 PellucidResult pellucidBuildPlan(const PellucidFrame* frame, const PellucidPlan* previous, PellucidPlan* plan);
 
 /* ---- Recording ------------------------------------------------------------------------------- */

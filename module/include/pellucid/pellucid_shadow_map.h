@@ -19,7 +19,7 @@ typedef enum PellucidMapFaces {
                                the same faces */
 } PellucidMapFaces;
 
-/* Of every field that is not a place, 0 is the default. */
+/* Fields that are not a place have 0 as their default. */
 typedef struct PellucidShadowMap {
   uint32_t image;        /* index into frame.shadowImages */
   uint32_t offset[2];    /* texels, 0..65535: first texel of the map's tile in the image (an atlas); default 0, 0 */
