@@ -33,8 +33,8 @@ double secondIntegral(double d, double t) {
          d * t * std::sqrt(kPi / 2) * std::erf(d / (t * std::numbers::sqrt2));
 }
 
-// Of the covariance e^{-d^2 / (2 t^2)} between points of a row of pixels; of one side's frequencies, counting
-// the other's.
+// Spectrum of the covariance e^{-d^2 / (2 t^2)} between points of a row of pixels, by one side's frequencies, which
+// count the other's.
 VectorXd spectrumOf(double t) {
   VectorXd covariance(kPeriod);
   for (int i = 0; i < kPeriod; ++i) {

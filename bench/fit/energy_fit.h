@@ -13,7 +13,7 @@ public:
   // Deviations in pixels, 1/8 to 64.
   explicit EdgeError(const std::vector<double>& deviations);
 
-  // Of the Gaussian with that index, by these weights of all elements, whose sum is 1.
+  // Error from the Gaussian with that index, by these weights of all elements, whose sum is 1.
   double of(Eigen::Index gaussian, const Eigen::VectorXd& weights) const;
 
   // Weights with the least sum of that error and, of each element but the pixel, `penalty` times o^2 times

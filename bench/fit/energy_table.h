@@ -40,7 +40,7 @@ struct GaussianErrors {
   double unconstrained;  // the least that any weights have
 };
 
-// Of Gaussians half an octave apart.
+// Errors from Gaussians half an octave apart.
 std::vector<GaussianErrors> errorsOf(const EnergyTable& table);
 
 }  // namespace pellucid::fit

@@ -81,7 +81,7 @@ Kernel gaussianKernel(double deviation, int reach) {
   Kernel kernel{-reach, {}};
   const double scale = 1 / (deviation * std::numbers::sqrt2);
   for (int i = -reach; i <= reach; ++i) {
-    // Of the outer half alone, as differences of numbers near 1 would have no digits left.
+    // The outer half alone says it, as differences of numbers near 1 would have no digits left.
     const double from = std::abs(i) - 0.5, to = std::abs(i) + 0.5;
     kernel.weights.push_back((std::erfc(from * scale) - std::erfc(to * scale)) / 2);
   }

@@ -21,7 +21,7 @@ constexpr int kPixel = 0, kFineFilter = 1, kFirstLevelElement = 2, kLastElement 
 // every 2^e of them.
 Kernel elementKernel(int element, int phase);
 
-// Of a kernel, squared pixels, around pixel 0.
+// Variance of a kernel around pixel 0, squared pixels.
 double varianceOf(const Kernel& kernel);
 
 // How a Gaussian of that deviation, integrated over the pixels as the references do, weights pixels around a

@@ -18,7 +18,7 @@ float texel(const ShadowMap& map, ShadowContent content, int x, int y) {
                             static_cast<std::size_t>(x)];
 }
 
-// Of all maps that share the image, whatever they hold: what lies beside a map has the map's place.
+// Grows by a map that shares the image, whatever the map holds: images beside a map have the map's place.
 void extend(ShadowImageSource& source, const ShadowMap& map) {
   source.width = std::max(source.width, map.offset[0] + map.depth.image.width);
   source.height = std::max(source.height, map.offset[1] + map.depth.image.height);

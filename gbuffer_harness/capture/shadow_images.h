@@ -21,14 +21,14 @@ struct ShadowImageSource {
 
 struct ShadowImages {
   std::vector<ShadowImageSource> images;
-  // Of each map of the lights in order, into `images`: depth, exit depth and caster material; -1: none.
+  // Indices into `images` of each map's depth, exit depth and caster material, by the lights' order; -1: none.
   std::vector<std::array<int, 3>> ofMap;
 };
 
 // `lights` must outlive the result.
 ShadowImages shadowImages(const std::vector<Light>& lights);
 
-// Whether some map lies in a layer, so that its views are of arrays.
+// True where a map lies in a layer, so that its views are of arrays.
 bool hasLayers(const std::vector<Light>& lights);
 
 }  // namespace pellucid::harness

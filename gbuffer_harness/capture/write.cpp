@@ -116,7 +116,7 @@ Image imageOf(const std::vector<std::uint8_t>& indices, int width, int height) {
   return image;
 }
 
-// Shadow maps, each image and layer a part. What parts point to lives here.
+// Shadow maps, each image and layer a part. This object owns the data that parts point to.
 class ShadowWriter {
 public:
   explicit ShadowWriter(const std::vector<Light>& lights) : shared_(shadowImages(lights)) {}

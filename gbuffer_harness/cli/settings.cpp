@@ -224,7 +224,8 @@ const std::map<std::string, Key> kKeys = {
         s.aliasOutput = lookUp(kBooleans, key, value);
       }}},
     {"indirect",
-     {"none|material|light: passes run everywhere, where the GPU finds material and light, where it finds light",
+     {"none|material|light: passes run everywhere, where the GPU finds material and light, where it finds "
+      "light",
       [](const auto& key, const auto& value, ReplaySettings& s) {
         s.indirectDispatches = lookUp(kIndirect, key, value);
       }}},

@@ -136,7 +136,7 @@ void print(const StressOptions& options, const StressResult& result) {
 void run(Options& options) {
   StressOptions& s = options.stress;
   if (options.quality != "any") s.limits.quality = std::stoi(options.quality);
-  // What is wrong here is said before a device is opened.
+  // Errors of these options come before a device is opened.
   if (!s.only.empty()) stress::requireCheck(s.only);
   std::optional<stress::ResultsWriter> writer;
   std::optional<stress::ResultsReader> reader;

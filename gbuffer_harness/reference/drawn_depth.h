@@ -13,7 +13,7 @@ struct DrawnDepth {
   double uncertain;  // how far it may be off
 };
 
-// Of a texel that stores a surface. `holds`: whether a stored depth is of a surface.
+// Depth of a texel that stores a surface. `holds`: true for a stored depth of a surface.
 DrawnDepth drawnDepth(const ShadowMap& map, int x, int y, const std::function<bool(float)>& holds);
 
 }  // namespace pellucid::harness::reference

@@ -122,7 +122,7 @@ Gather::Blocks Gather::collect(const Light& light, std::size_t mapIndex) const {
           double exit = INFINITY;
           if (!map.exitDepth.empty())
             if (const auto e = texels.at(x, y, *map.exitDepth.at(x, y))) exit = mm_ * glm::distance(*e, *p);
-          // What the depth is off by along the light moves the surface along its normal.
+          // A depth that is off along the light moves the surface along its normal.
           const double off = texels.uncertain(x, y) * glm::dot(normal, arrival.toLight);
           const bool seen = cameraSees(*p, normal, kSeenTolerance * std::sqrt(across), off);
           if (seen && !diffused_) continue;

@@ -17,7 +17,7 @@ struct Arrival {
 // the range window max(0, min(1, 1 - (r/range)^4)) and the spot's angular falloff.
 Arrival arrivalAt(const Light& light, const glm::dvec3& point);
 
-// Whether the light's maps hold the faces that light leaves by; all of them do, or none.
+// True where the light's maps hold the faces that light leaves by; all of them do, or none.
 bool holdsBackFaces(const Light& light);
 
 // A light's shadow map, asked where a point lies behind the surface it stores.

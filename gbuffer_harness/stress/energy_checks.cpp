@@ -109,7 +109,7 @@ std::optional<Worst> nearerMaps(Subject& s) {
   StressFrame frame;
   if (!ungathered(s, frame) || frame.settings.translucency.thicknessSource != PELLUCID_THICKNESS_LIGHT)
     return {};
-  // What follows from differences of depths scales with them.
+  // These fields go by differences of depths, which scale.
   for (Light& light : frame.capture.lights)
     for (ShadowMap& map : light.shadowMaps) map.depthBiasSlope = map.depthStep = 0;
   StressFrame thicker = frame;

@@ -85,7 +85,7 @@ MapCamera mapCamera(Random& random, const Target& target, const glm::dvec3& eye,
   return m;
 }
 
-// What an engine's rasterizer added to the depths, up to as much as the part is thick.
+// Adds what an engine's rasterizer adds to the depths, up to as much as the part is thick.
 void addOffsets(Random& random, bool wild, const Target& target, const MapCamera& camera, ShadowMap& map) {
   const double thickness = random.magnitude(0.01, 3) / target.mm;
   const double unit = std::abs(static_cast<double>(
