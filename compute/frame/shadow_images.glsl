@@ -12,14 +12,18 @@
 #define PELLUCID_SHADOW_PLACE(texel, image) (texel)
 #endif
 
-layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 0) uniform PELLUCID_SHADOW_TEXTURE shadowImage0;
-layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 1) uniform PELLUCID_SHADOW_TEXTURE shadowImage1;
-layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 2) uniform PELLUCID_SHADOW_TEXTURE shadowImage2;
-layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 3) uniform PELLUCID_SHADOW_TEXTURE shadowImage3;
-layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 4) uniform PELLUCID_SHADOW_TEXTURE shadowImage4;
-layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 5) uniform PELLUCID_SHADOW_TEXTURE shadowImage5;
-layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 6) uniform PELLUCID_SHADOW_TEXTURE shadowImage6;
-layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGES + 7) uniform PELLUCID_SHADOW_TEXTURE shadowImage7;
+#ifndef SHADOW_BINDING
+#define SHADOW_BINDING PELLUCID_BINDING_SHADOW_IMAGES
+#endif
+
+layout(set = 0, binding = SHADOW_BINDING + 0) uniform PELLUCID_SHADOW_TEXTURE shadowImage0;
+layout(set = 0, binding = SHADOW_BINDING + 1) uniform PELLUCID_SHADOW_TEXTURE shadowImage1;
+layout(set = 0, binding = SHADOW_BINDING + 2) uniform PELLUCID_SHADOW_TEXTURE shadowImage2;
+layout(set = 0, binding = SHADOW_BINDING + 3) uniform PELLUCID_SHADOW_TEXTURE shadowImage3;
+layout(set = 0, binding = SHADOW_BINDING + 4) uniform PELLUCID_SHADOW_TEXTURE shadowImage4;
+layout(set = 0, binding = SHADOW_BINDING + 5) uniform PELLUCID_SHADOW_TEXTURE shadowImage5;
+layout(set = 0, binding = SHADOW_BINDING + 6) uniform PELLUCID_SHADOW_TEXTURE shadowImage6;
+layout(set = 0, binding = SHADOW_BINDING + 7) uniform PELLUCID_SHADOW_TEXTURE shadowImage7;
 
 #define PELLUCID_TEXEL(slot, texel) texelFetch(slot, PELLUCID_SHADOW_PLACE(texel, image), 0).x
 
@@ -64,6 +68,26 @@ ShadowTexels shadowTexels(uint image, ivec2 texel, ivec2 first, ivec2 last) {
 }
 
 #undef PELLUCID_TEXELS
+
+#define PELLUCID_QUAD(slot)                                                               \
+  vec4(PELLUCID_TEXEL(slot, low), PELLUCID_TEXEL(slot, ivec2(high.x, low.y)),             \
+       PELLUCID_TEXEL(slot, ivec2(low.x, high.y)), PELLUCID_TEXEL(slot, high))
+
+// Texels at low, (high.x, low.y), (low.x, high.y) and high.
+vec4 shadowQuad(uint image, ivec2 low, ivec2 high) {
+  switch (PELLUCID_SHADOW_SLOT(image)) {
+    case 0u: return PELLUCID_QUAD(shadowImage0);
+    case 1u: return PELLUCID_QUAD(shadowImage1);
+    case 2u: return PELLUCID_QUAD(shadowImage2);
+    case 3u: return PELLUCID_QUAD(shadowImage3);
+    case 4u: return PELLUCID_QUAD(shadowImage4);
+    case 5u: return PELLUCID_QUAD(shadowImage5);
+    case 6u: return PELLUCID_QUAD(shadowImage6);
+    default: return PELLUCID_QUAD(shadowImage7);
+  }
+}
+
+#undef PELLUCID_QUAD
 #undef PELLUCID_TEXEL
 
 #endif

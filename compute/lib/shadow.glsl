@@ -8,6 +8,7 @@
 struct ShadowReceiver {
   vec4 clip;
   ivec2 texel; // of the image
+  vec2 place;  // in the map, texels from its corner
   bool inside; // false: the map says nothing about this point, so no light comes through it
 };
 
@@ -18,10 +19,26 @@ ShadowReceiver projectReceiver(ShadowConstants shadow, vec3 x) {
   vec4 clip = shadow.clipFromView * vec4(x, 1.0);
   bool inFront = clip.w > 0.0;
   vec2 ndc = clip.xy / (inFront ? clip.w : 1.0);
-  ivec2 texel = ivec2(floor((ndc * 0.5 + 0.5) * shadow.depth.zw));
+  vec2 place = (ndc * 0.5 + 0.5) * shadow.depth.zw;
+  ivec2 texel = ivec2(floor(place));
   bool inside = inFront && all(lessThanEqual(abs(ndc), vec2(1.0))) &&
                 all(lessThan(texel, ivec2(shadow.depth.zw)));
-  return ShadowReceiver(clip, texel + firstTexel(shadow.occluder), inside);
+  return ShadowReceiver(clip, texel + firstTexel(shadow.occluder), place, inside);
+}
+
+// The four texels around a receiver, of the image, and their bilinear weights: low, (high.x, low.y), (low.x, high.y), high.
+struct ShadowFootprint {
+  ivec2 low, high;
+  vec2 part; // of the way from low to high
+  vec4 weight;
+};
+
+ShadowFootprint footprintOf(ShadowConstants shadow, ShadowReceiver receiver) {
+  vec2 from = floor(receiver.place - 0.5), part = receiver.place - 0.5 - from;
+  ivec2 first = firstTexel(shadow.occluder), last = ivec2(shadow.depth.zw) - 1;
+  vec2 x = vec2(1.0 - part.x, part.x);
+  return ShadowFootprint(first + clamp(ivec2(from), ivec2(0), last), first + clamp(ivec2(from) + 1, ivec2(0), last), part,
+                         vec4(x * (1.0 - part.y), x * part.y));
 }
 
 // True where the texel holds a surface; false for NaN. meta: ShadowConstants::meta.

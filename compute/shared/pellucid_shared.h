@@ -81,6 +81,7 @@ using glm::vec4;
 #define PELLUCID_FLAG_CHORD 256u // some light, or a debug view, needs camera-space thickness
 #define PELLUCID_FLAG_DIFFUSED 512u // what the gather adds to has been diffused
 #define PELLUCID_FLAG_WIDE_OUTPUT 1024u // 32 bits a channel, which keep what halves round
+#define PELLUCID_FLAG_LIGHT_THICKNESS 2048u // some light's thickness is its maps'
 
 // Specialization constants
 #define PELLUCID_CONSTANT_DEBUG_VIEWS 0
@@ -185,7 +186,7 @@ namespace pellucid::shared {
 struct MaterialConstants {
   vec4 transmittance[3]; // per channel, the model's first four parameters
   vec4 transmittance4;   // rgb: the fifth
-  vec4 inverseReflectance; // rgb: 1/rho
+  vec4 inverseReflectance; // rgb: 1/rho; w: 1 / mm at which T falls to half
   uvec4 meta;            // x: model; y: Gaussians
   vec4 gaussianFalloff[PELLUCID_GAUSSIANS]; // rgb: 1/(2 v), 1/mm^2; 1/v for the printed form
   vec4 gaussianWeight[PELLUCID_GAUSSIANS];  // rgb

@@ -4,7 +4,19 @@ struct Texels {
   uint value;
   vec4 source, normal;
   float front, back; // as stored
+  vec4 beside;       // front depths to the right, to the left, below and above,
+  bvec4 same;        // where these pixels have the pixel's own material
 };
+
+// Depths count where a pixel has a material; `same` is false beyond the rect.
+void fetchBeside(ivec2 pixel, inout Texels t) {
+  const ivec2 steps[4] = ivec2[](ivec2(1, 0), ivec2(-1, 0), ivec2(0, 1), ivec2(0, -1));
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    ivec2 at = withinRect(pixel + steps[i]);
+    t.beside[i] = texelFetch(frontDepthImage, at, 0).x;
+    t.same[i] = at != pixel && materialValueAt(at) == t.value;
+  }
+}
 
 // All at once and whatever the flags say (a stand-in is bound where an image is missing), so that their
 // latencies overlap: the pass waits for memory more than it computes.
@@ -15,7 +27,16 @@ Texels fetch(ivec2 pixel) {
   t.front = texelFetch(frontDepthImage, pixel, 0).x;
   t.back = hasFlag(PELLUCID_FLAG_CHORD) ? texelFetch(backDepthImage, pixel, 0).x : 0.0;
   t.normal = texelFetch(normalImage, pixel, 0);
+  t.beside = vec4(0.0);
+  t.same = bvec4(false);
+  if (hasFlag(PELLUCID_FLAG_LIGHT_THICKNESS)) fetchBeside(pixel, t);
   return t;
+}
+
+vec3 facetAt(ivec2 pixel, float front, Texels t) {
+  vec4 beside = vec4(frontDistanceOf(t.beside.x), frontDistanceOf(t.beside.y), frontDistanceOf(t.beside.z),
+                     frontDistanceOf(t.beside.w));
+  return normalOfDepths(frame.camera, pixel, front, mix(vec4(-1.0), beside, t.same));
 }
 
 // Irradiance and the light that comes through, or what a debug view shows.
@@ -26,6 +47,7 @@ vec3 resultAt(ivec2 pixel, Texels t, float front, uint m) {
   if (front > 0.0 && (t.value & frame.marks.x) == 0u) {
     Surface s = surfaceAt(pixel, front, t.front, t.back, t.normal);
     s.material = m + 1u;
+    if (hasFlag(PELLUCID_FLAG_LIGHT_THICKNESS)) s.facet = facetAt(pixel, front, t);
     float mm = frame.camera.range.w;
     if (s.chord >= 0.0) thickness.r = s.chord * mm;
     for (uint i = 0u; i < pass.value.y; ++i) {
@@ -39,8 +61,8 @@ vec3 resultAt(ivec2 pixel, Texels t, float front, uint m) {
         arriving += through.arriving;
         visible += entering;
         if (through.visible > 0.0 && thickness.b < 0.0) thickness.b = through.thickness * mm;
-        LightSpace l = lightSpace(light, incidentLight(light, s.position), s, s.position);
-        if (l.inside && l.holds && light.meta.w == 0u && thickness.g < 0.0) thickness.g = max(l.thickness, 0.0) * mm;
+        LightTexels l = lightTexels(light, incidentLight(light, s.position), s, s.position, 0.0);
+        if (l.held != vec4(0.0) && light.meta.w == 0u && thickness.g < 0.0) thickness.g = meanThickness(l.held, l.thickness, m) * mm;
       }
     }
   }

@@ -1,6 +1,6 @@
 // Light through one surface point, for any shader stage. Include it after declaring, from whatever bindings
 // the shader has: FrameConstants frame, ShadowConstants shadows[], MaterialConstants materials[], and
-//   float shadowTexel(uint image, ivec2 texel); // of the image and layer in ShadowConstants::meta.x
+// the functions of frame/shadow_images.glsl, which take the image and layer in ShadowConstants::meta.x.
 // They are names and not parameters because a buffer's array cannot be passed without a copy.
 #ifndef PELLUCID_TRANSMISSION_GLSL
 #define PELLUCID_TRANSMISSION_GLSL
@@ -46,42 +46,77 @@ DrawnDepth drawnDepth(ShadowConstants shadow, ivec2 texel, float stored) {
   return drawnDepth(shadow.offsets, stored, beside, holds);
 }
 
-struct LightSpace {
-  bool inside, holds; // the map contains the point; its texel has a surface
-  bool enters;        // there, and nothing but the surface's own medium is known to lie between it and the point
-  float thickness;    // scene units along the light ray; negative: the surface is beyond the point
-  float tolerance;    // that a point of the stored surface may be off by
+// The four texels around a point in the first of the light's maps that contains it.
+struct LightTexels {
+  vec4 held;      // bilinear weights of the texels that have a surface; 0 of others
+  vec4 entering;  // of those where light enters the point's own medium
+  vec4 thickness; // scene units along the light ray; negative: the surface is beyond the point
+  float tolerance; // that a point of the stored surface may be off by
 };
 
-float receiverCosine(Surface s, Incident incident) { return s.hasNormal ? dot(s.normal, incident.toLight) : 0.0; }
-
-bool lightEntersMedium(ShadowConstants shadow, ShadowReceiver receiver, Incident incident, Surface s, vec3 x) {
-  if (hasCasterImage(shadow) && !casterIsMedium(shadowTexel(shadow.occluder.y - 1u, receiver.texel),
-                                                uintBitsToFloat(shadow.occluder.z), s.material))
-    return false;
-  if (!hasExitImage(shadow)) return true;
-  float stored = shadowTexel(shadow.occluder.x - 1u, receiver.texel);
-  float tolerance = exitTolerance(shadow, incident.distanceTo, receiverCosine(s, incident));
+// Weights of texels where light enters the receiver's medium and has not left it before it is at the receiver.
+float entersMedium(ShadowConstants shadow, ShadowReceiver receiver, ivec2 texel, Incident incident, Surface s, vec3 x,
+                   float tolerance) {
+  if (hasCasterImage(shadow) &&
+      !casterIsMedium(shadowTexel(shadow.occluder.y - 1u, texel), uintBitsToFloat(shadow.occluder.z), s.material))
+    return 0.0;
+  if (!hasExitImage(shadow)) return 1.0;
+  float stored = shadowTexel(shadow.occluder.x - 1u, texel);
+  if (!shadowHolds(shadow.meta, stored)) return 1.0;
   if (shadow.offsets.w > 0.0) tolerance += shadow.offsets.w * lengthPerDepth(shadow, receiver, x, incident, stored);
-  return !shadowHolds(shadow.meta, stored) ||
-         !liesBeyondExit(lightThickness(shadow, receiver, x, incident, stored), tolerance);
+  return liesBeyondExit(lightThickness(shadow, receiver, x, incident, stored), tolerance) ? 0.0 : 1.0;
 }
 
-// In the first of the light's maps that contains x, a point on or behind the surface s.
-LightSpace lightSpace(LightConstants light, Incident incident, Surface s, vec3 x) {
+LightTexels lightTexels(ShadowConstants shadow, ShadowReceiver receiver, Incident incident, Surface s, vec3 x, float cosine) {
+  ShadowFootprint footprint = footprintOf(shadow, receiver);
+  vec4 stored = shadowQuad(shadow.meta.x, footprint.low, footprint.high);
+  vec2 row = footprint.part.y < 0.5 ? stored.xy : stored.zw;
+  float nearest = footprint.part.x < 0.5 ? row.x : row.y;
+  DrawnDepth drawn = drawnDepth(shadow, receiver.texel, nearest);
+  float tolerance = exitTolerance(shadow, incident.distanceTo, cosine);
+  LightTexels l = LightTexels(vec4(0.0), vec4(0.0), vec4(0.0), tolerance);
+  l.tolerance += drawn.uncertain * lengthPerDepth(shadow, receiver, x, incident, drawn.depth);
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    if (!shadowHolds(shadow.meta, stored[i])) continue;
+    l.held[i] = footprint.weight[i];
+    l.thickness[i] = lightThickness(shadow, receiver, x, incident, stored[i] + drawn.depth - nearest) + shadow.offsets.z;
+    ivec2 texel = ivec2((i & 1) != 0 ? footprint.high.x : footprint.low.x, i > 1 ? footprint.high.y : footprint.low.y);
+    l.entering[i] = l.held[i] * entersMedium(shadow, receiver, texel, incident, s, x, tolerance);
+  }
+  return l;
+}
+
+// x: a point on or behind the surface s; cosine: between its normal and the light; 0: not known.
+LightTexels lightTexels(LightConstants light, Incident incident, Surface s, vec3 x, float cosine) {
   for (uint i = 0u; i < light.meta.z; ++i) {
     ShadowConstants shadow = shadows[light.meta.y + i];
     ShadowReceiver receiver = projectReceiver(shadow, x);
-    if (!receiver.inside) continue;
-    float stored = shadowTexel(shadow.meta.x, receiver.texel);
-    bool holds = shadowHolds(shadow.meta, stored);
-    DrawnDepth drawn = drawnDepth(shadow, receiver.texel, stored);
-    float tolerance = exitTolerance(shadow, incident.distanceTo, receiverCosine(s, incident)) +
-                      drawn.uncertain * lengthPerDepth(shadow, receiver, x, incident, drawn.depth);
-    return LightSpace(true, holds, holds && lightEntersMedium(shadow, receiver, incident, s, x),
-                      lightThickness(shadow, receiver, x, incident, drawn.depth) + shadow.offsets.z, tolerance);
+    if (receiver.inside) return lightTexels(shadow, receiver, incident, s, x, cosine);
   }
-  return LightSpace(false, false, false, -1.0, 0.0);
+  return LightTexels(vec4(0.0), vec4(0.0), vec4(0.0), 0.0);
+}
+
+// Beyond this cosine a face that turns away from the light is not the one that a map stores, whose texels would have to
+// reach around 30 degrees of curvature.
+const float kLeastTurnedCosine = 0.5;
+
+// Weights of texels that do not store the receiver itself: the light lies on it or is blocked, but does not come through.
+vec4 throughWeights(LightTexels l, float cosine) {
+  float tolerance = l.tolerance * clamp(1.0 + cosine / kLeastTurnedCosine, 0.0, 1.0);
+  return tolerance > 0.0 ? l.entering * clamp(l.thickness / tolerance - 1.0, 0.0, 1.0) : l.entering;
+}
+
+// Mean of thicknesses as an exponential has it that halves at the same depth as T. Scene units; 0 without weights.
+float meanThickness(vec4 weight, vec4 thickness, uint m) {
+  float total = dot(weight, vec4(1.0));
+  if (total <= 0.0) return 0.0;
+  float rate = materials[m].inverseReflectance.w * frame.camera.range.w;
+  thickness = max(thickness, 0.0);
+  vec4 counted = mix(vec4(3.0e38), thickness, greaterThan(weight, vec4(0.0)));
+  float least = min(min(counted.x, counted.y), min(counted.z, counted.w));
+  // 0 < sum <= total: the least thickness has a weight above 0.
+  float sum = dot(weight, exp2(rate * min(least - thickness, 0.0)));
+  return rate > 0.0 ? least - log2(sum / total) / rate : dot(weight, thickness) / total;
 }
 
 struct Transmitted {
@@ -105,9 +140,11 @@ Transmitted lightTransmission(LightConstants light, Surface s, bool mapped) {
   Incident incident = incidentLight(light, s.position);
   bool holdsExits = light.meta.w != 0u; // which do not say where light enters
   if (mapped && !holdsExits && !hasFlag(PELLUCID_FLAG_CAMERA_THICKNESS)) {
-    LightSpace l = lightSpace(light, incident, s, s.position);
-    vec3 arriving = incident.irradiance * hiddenCosine(light, s, incident.toLight);
-    return Transmitted(max(l.thickness, 0.0), arriving, l.enters ? 1.0 : 0.0);
+    float cosine = dot(s.facet, incident.toLight);
+    LightTexels l = lightTexels(light, incident, s, s.position, cosine);
+    vec4 weight = throughWeights(l, cosine);
+    return Transmitted(meanThickness(weight, l.thickness, s.material - 1u),
+                       incident.irradiance * hiddenCosine(light, s, incident.toLight), dot(weight, vec4(1.0)));
   }
   if (s.chord < 0.0) return Transmitted(-1.0, vec3(0.0), 0.0);
   vec3 back = s.position + s.chord * s.view;
@@ -117,9 +154,10 @@ Transmitted lightTransmission(LightConstants light, Surface s, bool mapped) {
   float thickness = alongNormal ? s.chord * abs(dot(s.normal, s.view)) : s.chord;
   float visible = 1.0;
   if (mapped) {
-    LightSpace l = lightSpace(light, incident, s, back);
+    // The camera does not see how the hidden face turns.
+    LightTexels l = lightTexels(light, incident, s, back, 0.0);
     // Light that enters has not come to the face that it leaves by.
-    visible = l.enters && l.thickness <= (holdsExits ? -l.tolerance : l.tolerance) ? 1.0 : 0.0;
+    visible = dot(l.entering, vec4(lessThanEqual(l.thickness, vec4(holdsExits ? -l.tolerance : l.tolerance))));
   }
   return Transmitted(thickness, incident.irradiance * hiddenCosine(light, s, incident.toLight), visible);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "raster/enclosing.h"
 #include "reference/path_tracer/mesh_scene.h"
 #include "reference/path_tracer/solid_scene.h"
 #include "reference/path_tracer/visible_surface.h"
@@ -35,6 +36,7 @@ Capture captureScene(const SceneParameters& scene, const CaptureOptions& options
 
 RasterResult captureScene(Device& device, const Model& model, const ModelCamera& camera,
                           const RasterOptions& raster, const std::optional<Environment>& environment) {
+  refuseEnclosedLights(model);
   RasterResult result = rasterize(device, model, camera, raster);
   if (needsTracing(model.lights, environment))
     addTracedLight(result.capture, *reference::makeMeshScene(model), environment);

@@ -1,10 +1,12 @@
 // Punctual lights and their shadow maps in double precision. World space, scene units.
 #pragma once
 
+#include <array>
 #include <glm/glm.hpp>
 #include <optional>
 
 #include "capture/capture.h"
+#include "reference/drawn_depth.h"
 
 namespace pellucid::harness::reference {
 
@@ -43,8 +45,16 @@ public:
     std::optional<double> fromExit = {};     // as distance, from the exit depth; absent: none is known
     std::optional<int> casterMaterial = {};  // of the stored surface, 0: opaque; absent: not given
   };
-  // Nearest texel. Thickness and occlusion both come from here.
+  // Nearest texel.
   Lookup at(const glm::dvec3& point) const;
+
+  // The four texels around the point with their bilinear weights; nothing outside the map. Of all texels,
+  // what was drawn is as far off what is stored as in the nearest one.
+  struct Tap {
+    double weight;
+    Lookup found;
+  };
+  std::optional<std::array<Tap, 4>> around(const glm::dvec3& point) const;
 
 private:
   struct Projected {
@@ -55,6 +65,9 @@ private:
   // As Lookup::distance, of a depth.
   double distanceFrom(const glm::dvec3& point, const Projected& p, double stored) const;
   bool holds(const glm::dvec3& point, float stored) const;
+  // Of texel (x, y), `drawn`: of the nearest one.
+  Lookup lookup(const glm::dvec3& point, const Projected& p, int x, int y, const DrawnDepth& drawn) const;
+  DrawnDepth drawnAt(const glm::dvec3& point, const Projected& p) const;
   double texelAt(const glm::dvec3& point, const Projected& p) const;
   double deviceDistance(const glm::dvec3& point, const Projected& p, double stored) const;
   double planarDistance(const glm::dvec3& point, double stored) const;

@@ -60,6 +60,7 @@ std::optional<Surface> SurfaceReader::at(int x, int y) const {
   s.position = camera_.position(center, *front);
   s.ray = camera_.rayThrough(s.position);
   s.normal = normalAt(x, y);
+  s.facet = normalFromDepth(x, y, s);
   if (!capture_.backDepth.image.empty()) {
     const std::optional<double> back =
         camera_.planarDepth(*capture_.backDepth.image.at(x, y), capture_.backDepth.encoding);
@@ -93,19 +94,23 @@ glm::dvec3 SurfaceReader::slopeAlong(int x, int y, int stepX, int stepY, const g
   return best;
 }
 
-glm::dvec3 SurfaceReader::normalFromDepth(int x, int y, const Surface& s, const glm::dvec3& flatX,
-                                          const glm::dvec3& flatY) const {
-  return glm::normalize(glm::cross(slopeAlong(x, y, 1, 0, flatX, s), slopeAlong(x, y, 0, 1, flatY, s)));
+glm::dvec3 SurfaceReader::flatStep(int x, int y, const Surface& s, const glm::dvec2& step) const {
+  const double depth = camera_.planarDepth(s.position);
+  const glm::dvec2 center(x + 0.5, y + 0.5);
+  return camera_.position(center + 0.5 * step, depth) - camera_.position(center - 0.5 * step, depth);
+}
+
+std::optional<glm::dvec3> SurfaceReader::normalFromDepth(int x, int y, const Surface& s) const {
+  const glm::dvec3 n = glm::cross(slopeAlong(x, y, 1, 0, flatStep(x, y, s, {1, 0}), s),
+                                  slopeAlong(x, y, 0, 1, flatStep(x, y, s, {0, 1}), s));
+  const double length = glm::length(n);
+  if (!(length > 0) || !finite(n)) return std::nullopt;
+  return glm::dot(n, s.ray) > 0 ? -n / length : n / length;
 }
 
 SurfaceReader::Footprint SurfaceReader::footprint(int x, int y, const Surface& s) const {
-  const double depth = camera_.planarDepth(s.position);
-  const auto displacement = [&](glm::dvec2 halfStep) {
-    const glm::dvec2 center(x + 0.5, y + 0.5);
-    return camera_.position(center + halfStep, depth) - camera_.position(center - halfStep, depth);
-  };
-  const glm::dvec3 flatX = displacement({0.5, 0}), flatY = displacement({0, 0.5});
-  glm::dvec3 n = s.normal ? *s.normal : normalFromDepth(x, y, s, flatX, flatY);
+  const glm::dvec3 flatX = flatStep(x, y, s, {1, 0}), flatY = flatStep(x, y, s, {0, 1});
+  glm::dvec3 n = s.normal ? *s.normal : s.facet.value_or(-s.ray);
   if (glm::dot(n, s.ray) > 0) n = -n;
   const double cosine = -glm::dot(n, s.ray);
   if (cosine < kLeastCosine) {

@@ -18,11 +18,19 @@ Translucency::Translucency(const Capture& capture, const SurfaceReader& surfaces
   }
 }
 
-Translucency::Receiver Translucency::toWorld(const Surface& s, int material) const {
+Translucency::Receiver Translucency::toWorld(const Surface& s, const PellucidMaterial& material,
+                                             int index) const {
   const glm::dmat4& m = surfaces_.worldFromView();
   const glm::dmat3 rotation(m);
-  Receiver r{glm::dvec3(m * glm::dvec4(s.position, 1)), rotation * s.ray, std::nullopt, s.chord, material};
+  Receiver r{glm::dvec3(m * glm::dvec4(s.position, 1)),
+             rotation * s.ray,
+             std::nullopt,
+             std::nullopt,
+             s.chord,
+             index,
+             halfThickness(material)};
   if (s.normal) r.normal = rotation * *s.normal;
+  if (s.facet) r.facet = rotation * *s.facet;
   return r;
 }
 
@@ -63,51 +71,80 @@ bool Translucency::usesLightSpace(std::size_t light) const {
          !holdsBackFaces(capture_.lights[light]);
 }
 
-ShadowView::Lookup Translucency::shadowLookup(std::size_t light, const glm::dvec3& point) const {
+std::optional<Translucency::Taps> Translucency::texelsAround(std::size_t light,
+                                                             const glm::dvec3& point) const {
   for (const ShadowView& map : shadows_[light])
-    if (const ShadowView::Lookup lookup = map.at(point); lookup.kind != ShadowView::Kind::Outside)
-      return lookup;
-  return {ShadowView::Kind::Outside, 0};
-}
-
-bool Translucency::entersMedium(const ShadowView::Lookup& lookup, const Receiver& r) {
-  return lookup.kind == ShadowView::Kind::Surface &&
-         (!lookup.casterMaterial || *lookup.casterMaterial == r.material);
+    if (const std::optional<Taps> taps = map.around(point)) return taps;
+  return std::nullopt;
 }
 
 // A receiver of the exit surface lies off the depth of its own texel by the slope there; half the diagonal of
 // a texel and curvature are one texel each. The light grazes where that would be more than 8 texels.
-double Translucency::ownTolerance(const ShadowView::Lookup& lookup, const Receiver& r,
-                                  const glm::dvec3& toLight) {
+double Translucency::ownTolerance(const ShadowView::Lookup& lookup, double cosine) {
   constexpr double kMostTexels = 8;
-  const double cosine = r.normal ? std::abs(glm::dot(*r.normal, toLight)) : 0;
+  cosine = std::abs(cosine);
   const double slope = cosine > 0 ? std::tan(std::acos(std::min(cosine, 1.0))) : kMostTexels;
   return lookup.texel * std::min(1 + slope, kMostTexels);
 }
 
-bool Translucency::beyondExit(const ShadowView::Lookup& lookup, const Receiver& r,
-                              const glm::dvec3& toLight) {
-  return lookup.fromExit && *lookup.fromExit > ownTolerance(lookup, r, toLight) + lookup.exitUncertain;
+bool Translucency::entersMedium(const ShadowView::Lookup& lookup, const Receiver& r, double cosine) {
+  return lookup.kind == ShadowView::Kind::Surface &&
+         (!lookup.casterMaterial || *lookup.casterMaterial == r.material) &&
+         !(lookup.fromExit && *lookup.fromExit > ownTolerance(lookup, cosine) + lookup.exitUncertain);
+}
+
+// None where the texel stores the receiver itself, which a face that turns away from the light is not.
+double Translucency::comesThrough(const ShadowView::Lookup& lookup, const Receiver& r, double cosine) {
+  constexpr double kTurned = 0.5;
+  if (!entersMedium(lookup, r, cosine)) return 0;
+  const double tolerance =
+      (ownTolerance(lookup, cosine) + lookup.uncertain) * std::clamp(1 + cosine / kTurned, 0.0, 1.0);
+  return tolerance > 0 ? std::clamp(lookup.distance / tolerance - 1, 0.0, 1.0) : 1;
+}
+
+// As an exponential has it that halves at the same depth as T.
+double Translucency::meanThickness(const Taps& taps, const std::array<double, 4>& weights,
+                                   const Receiver& r) const {
+  const double half = r.halfThickness / surfaces_.millimetersPerUnit();
+  double total = 0, sum = 0;
+  for (std::size_t i = 0; i < taps.size(); ++i) {
+    if (weights[i] <= 0) continue;
+    total += weights[i];
+    sum += weights[i] * std::exp2(-std::max(0.0, taps[i].found.distance) / half);
+  }
+  return -std::log2(sum / total) * half;
 }
 
 Translucency::LightPath Translucency::lightSpacePath(std::size_t light, const Receiver& r) const {
   const Arrival arrival = arrivalAt(capture_.lights[light], r.position);
   LightPath path;
   path.arriving = arrival.irradiance * hiddenCosine(r, light, arrival.toLight);
-  const ShadowView::Lookup lookup = shadowLookup(light, r.position);
-  path.reaches = entersMedium(lookup, r) && !beyondExit(lookup, r, arrival.toLight);
-  path.thickness = std::max(0.0, lookup.distance);
+  const std::optional<Taps> taps = texelsAround(light, r.position);
+  if (!taps) return path;
+  const double cosine = r.facet ? glm::dot(*r.facet, arrival.toLight) : 0;
+  std::array<double, 4> weights;
+  for (std::size_t i = 0; i < taps->size(); ++i) {
+    weights[i] = (*taps)[i].weight * comesThrough((*taps)[i].found, r, cosine);
+    path.reaches += weights[i];
+  }
+  if (path.reaches > 0) path.thickness = meanThickness(*taps, weights, r);
   return path;
 }
 
-bool Translucency::backPointLit(std::size_t light, const Receiver& r, const glm::dvec3& backPoint) const {
-  if (shadows_[light].empty()) return true;
-  const ShadowView::Lookup lookup = shadowLookup(light, backPoint);
-  const glm::dvec3 toLight = arrivalAt(capture_.lights[light], backPoint).toLight;
-  const double tolerance = ownTolerance(lookup, r, toLight) + lookup.uncertain;
-  // A face that light leaves by is not one that it enters by.
-  if (holdsBackFaces(capture_.lights[light])) return entersMedium(lookup, r) && lookup.distance <= -tolerance;
-  return entersMedium(lookup, r) && lookup.distance <= tolerance;
+// The camera does not see how the hidden face turns.
+double Translucency::litPart(std::size_t light, const Receiver& r, const glm::dvec3& backPoint) const {
+  if (shadows_[light].empty()) return 1;
+  const std::optional<Taps> taps = texelsAround(light, backPoint);
+  if (!taps) return 0;
+  double lit = 0;
+  for (const auto& [weight, found] : *taps) {
+    if (!entersMedium(found, r, 0)) continue;
+    const double tolerance = ownTolerance(found, 0) + found.uncertain;
+    // A face that light leaves by is not one that it enters by.
+    const double most = holdsBackFaces(capture_.lights[light]) ? -tolerance : tolerance;
+    if (found.distance <= most) lit += weight;
+  }
+  return lit;
 }
 
 Translucency::LightPath Translucency::cameraSpacePath(std::size_t light, const Receiver& r) const {
@@ -116,7 +153,7 @@ Translucency::LightPath Translucency::cameraSpacePath(std::size_t light, const R
   const glm::dvec3 backPoint = r.position + *r.chord * r.ray;
   const Arrival arrival = arrivalAt(capture_.lights[light], backPoint);
   path.arriving = arrival.irradiance * hiddenCosine(r, light, arrival.toLight);
-  path.reaches = backPointLit(light, r, backPoint);
+  path.reaches = litPart(light, r, backPoint);
   path.thickness =
       *r.chord * (r.normal && !settings_.chordThickness ? std::abs(glm::dot(*r.normal, r.ray)) : 1);
   return path;
@@ -125,16 +162,22 @@ Translucency::LightPath Translucency::cameraSpacePath(std::size_t light, const R
 std::optional<double> Translucency::firstLightDistance(const Receiver& r) const {
   for (std::size_t i = 0; i < shadows_.size(); ++i) {
     if (holdsBackFaces(capture_.lights[i])) continue;
-    const ShadowView::Lookup lookup = shadowLookup(i, r.position);
-    if (lookup.kind == ShadowView::Kind::Surface) return std::max(0.0, lookup.distance);
-    if (lookup.kind == ShadowView::Kind::Empty) return std::nullopt;
+    const std::optional<Taps> taps = texelsAround(i, r.position);
+    if (!taps) continue;
+    std::array<double, 4> weights{};
+    double total = 0;
+    for (std::size_t k = 0; k < taps->size(); ++k) {
+      if ((*taps)[k].found.kind == ShadowView::Kind::Surface) weights[k] = (*taps)[k].weight;
+      total += weights[k];
+    }
+    if (total > 0) return meanThickness(*taps, weights, r);
   }
   return std::nullopt;
 }
 
 Transmission Translucency::at(const Surface& surface, const PellucidMaterial& material, int index) const {
   const double mmPerUnit = surfaces_.millimetersPerUnit();
-  const Receiver receiver = toWorld(surface, index);
+  const Receiver receiver = toWorld(surface, material, index);
   const auto& f = settings_.transmittanceFilter;
   const glm::dvec3 filter(f[0], f[1], f[2]);
   Transmission t;
@@ -145,11 +188,11 @@ Transmission Translucency::at(const Surface& surface, const PellucidMaterial& ma
       continue;  // reference/gather.h
     const LightPath path = usesLightSpace(i) ? lightSpacePath(i, receiver) : cameraSpacePath(i, receiver);
     t.arriving += path.arriving;
-    if (!path.reaches) continue;
+    if (!(path.reaches > 0)) continue;
     const double thickness = path.thickness * mmPerUnit;
-    t.unoccluded += path.arriving;
+    t.unoccluded += path.reaches * path.arriving;
     if (!(settings_.maximumThickness > 0) || thickness <= double(settings_.maximumThickness))
-      t.transmitted += filter * transmittance(material, thickness) * path.arriving;
+      t.transmitted += path.reaches * filter * transmittance(material, thickness) * path.arriving;
     if (!t.usedThickness && path.arriving != glm::dvec3(0)) t.usedThickness = thickness;
   }
   return t;

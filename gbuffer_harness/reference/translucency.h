@@ -1,6 +1,7 @@
 // Light through thin parts, pixel by pixel: thickness, occlusion, transmitted exitance.
 #pragma once
 
+#include <array>
 #include <glm/glm.hpp>
 #include <optional>
 #include <vector>
@@ -34,32 +35,37 @@ private:
   // A receiver in world space.
   struct Receiver {
     glm::dvec3 position, ray;
-    std::optional<glm::dvec3> normal;
+    std::optional<glm::dvec3> normal, facet;
     std::optional<double> chord;  // scene units
     int material;
+    double halfThickness;  // mm at which the material's T falls to half
   };
   // One light's part of a Transmission.
   struct LightPath {
     double thickness = 0;  // scene units
     glm::dvec3 arriving{0};
-    bool reaches = false;
+    double reaches = 0;  // part of the texels that let it by
   };
+  using Taps = std::array<ShadowView::Tap, 4>;
 
-  Receiver toWorld(const Surface& surface, int material) const;
+  Receiver toWorld(const Surface& surface, const PellucidMaterial& material, int index) const;
   double hiddenCosine(const Receiver& r, std::size_t light, const glm::dvec3& toLight) const;
   LightPath lightSpacePath(std::size_t light, const Receiver& r) const;
   LightPath cameraSpacePath(std::size_t light, const Receiver& r) const;
   std::optional<double> firstLightDistance(const Receiver& r) const;  // scene units
   bool usesLightSpace(std::size_t light) const;
   // In the first of the light's maps that contains the point.
-  ShadowView::Lookup shadowLookup(std::size_t light, const glm::dvec3& point) const;
-  // Whether light enters the receiver's own medium where the map's surface is.
-  static bool entersMedium(const ShadowView::Lookup& lookup, const Receiver& r);
-  // Whether it has left that medium before it is at the receiver.
-  static bool beyondExit(const ShadowView::Lookup& lookup, const Receiver& r, const glm::dvec3& toLight);
+  std::optional<Taps> texelsAround(std::size_t light, const glm::dvec3& point) const;
+  // Whether light enters the receiver's own medium where the map's surface is, and has not left it before it
+  // is at the receiver. `cosine`: between the receiver's normal and the light; 0: not known.
+  static bool entersMedium(const ShadowView::Lookup& lookup, const Receiver& r, double cosine);
   // Scene units along the light that a point of a stored surface may lie off the depth of its own texel.
-  static double ownTolerance(const ShadowView::Lookup& lookup, const Receiver& r, const glm::dvec3& toLight);
-  bool backPointLit(std::size_t light, const Receiver& r, const glm::dvec3& backPoint) const;
+  static double ownTolerance(const ShadowView::Lookup& lookup, double cosine);
+  // Part of the light that a texel says comes through to the receiver.
+  static double comesThrough(const ShadowView::Lookup& lookup, const Receiver& r, double cosine);
+  // Scene units. `weights`: of the taps; not all 0.
+  double meanThickness(const Taps& taps, const std::array<double, 4>& weights, const Receiver& r) const;
+  double litPart(std::size_t light, const Receiver& r, const glm::dvec3& backPoint) const;
 
   const Capture& capture_;
   const SurfaceReader& surfaces_;

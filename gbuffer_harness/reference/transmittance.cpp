@@ -44,4 +44,15 @@ glm::dvec3 transmittance(const PellucidMaterial& m, double thickness) {
           channelTransmittance(m, 2, thickness)};
 }
 
+double halfThickness(const PellucidMaterial& m) {
+  const auto sum = [&](double d) { return glm::dot(transmittance(m, d), glm::dvec3(1)); };
+  const double half = 0.5 * sum(0);
+  double low = 1e-3, high = 1000;
+  while (high - low > 1e-9 * high) {
+    const double middle = 0.5 * (low + high);
+    (sum(middle) > half ? low : high) = middle;
+  }
+  return low;
+}
+
 }  // namespace pellucid::harness::reference

@@ -11,4 +11,7 @@ namespace pellucid::harness::reference {
 // defines it. Throws InputError for an unknown model.
 glm::dvec3 transmittance(const PellucidMaterial& material, double thickness);
 
+// mm at which the mean of the channels' T falls to half of T(0), from .001 to 1000.
+double halfThickness(const PellucidMaterial& material);
+
 }  // namespace pellucid::harness::reference

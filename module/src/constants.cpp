@@ -9,6 +9,7 @@
 #include "gather.h"
 #include "minimum_dot.h"
 #include "shadow_map.h"
+#include "transmittance.h"
 
 namespace pellucid {
 namespace {
@@ -66,6 +67,7 @@ shared::FrameConstants frameConstants(const FrameFacts& facts) {
   if (t.constantViewDirection) flags |= PELLUCID_FLAG_CONSTANT_VIEW;
   if (t.chordThickness) flags |= PELLUCID_FLAG_CHORD_THICKNESS;
   if (facts.needsChord) flags |= PELLUCID_FLAG_CHORD;
+  if (facts.needsMapThickness) flags |= PELLUCID_FLAG_LIGHT_THICKNESS;
   if (facts.wide) flags |= PELLUCID_FLAG_WIDE_OUTPUT;
   if (f.features & PELLUCID_FEATURE_DIFFUSION && facts.diffuses) flags |= PELLUCID_FLAG_DIFFUSED;
   c.flags = {flags, f.materialCount, f.debugView, t.angleModel};
@@ -176,6 +178,7 @@ shared::MaterialConstants materialConstants(const PellucidMaterial& m, bool gath
   c.meta = {m.transmittanceModel, m.gaussianCount, 0, 0};
   const float exponent = m.transmittanceModel == PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED ? 1.0f : 0.5f;
   if (gathers) c.gather = gatherConstants(m);
+  c.inverseReflectance.w = static_cast<float>(1 / halfThickness(m));
   for (int channel = 0; channel < 3; ++channel) {
     const float* t = m.transmittance[channel];
     // The shader reads a, kappa, z, b and c of SINH_EXP as xyzw and the fifth.

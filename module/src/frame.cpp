@@ -63,6 +63,9 @@ void addLights(FrameFacts& f) {
                  f.frame.debugView == PELLUCID_DEBUG_THICKNESS ||
                  std::any_of(f.frame.lights, f.frame.lights + f.frame.lightCount,
                              [&](const PellucidLight& light) { return f.takesChord(light); });
+  f.needsMapThickness =
+      std::any_of(f.frame.lights, f.frame.lights + f.frame.lightCount,
+                  [&](const PellucidLight& light) { return !f.takesChord(light) && !f.isGathered(light); });
   f.lights = LightGroups::of(f);
 }
 

@@ -45,7 +45,8 @@ struct FrameFacts {
   bool gathers = false;                  // lights with a map are gathered from
 
   // ---- Of the lights
-  bool needsChord = false;  // thickness along view rays is asked for
+  bool needsChord = false;         // thickness along view rays is asked for
+  bool needsMapThickness = false;  // thickness along lights' rays is asked for
   LightGroups lights;
 
   // ---- Of what runs

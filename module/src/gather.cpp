@@ -38,15 +38,11 @@ Channel channelOf(const PellucidMaterial& m, int index) {
     return c;
   }
   // kappa coth(kappa (d + e)) is the rate of T at half depth.
-  double low = 0, high = 100 / c.slowest;
-  for (int step = 0; step < 60; ++step) {
-    const double middle = 0.5 * (low + high);
-    (c.transmittance(middle) > 0.5 * c.transmittance(0) ? low : high) = middle;
-  }
-  const double a1 = p(0) * std::exp(-p(1) * low), a2 = p(2) * std::exp(-p(3) * low);
+  const double half = halfDepth([&](double d) { return c.transmittance(d); }, 100 / c.slowest);
+  const double a1 = p(0) * std::exp(-p(1) * half), a2 = p(2) * std::exp(-p(3) * half);
   const double excess = (a1 * p(1) + a2 * p(3)) / (a1 + a2) / c.slowest - 1;
   c.extrapolation =
-      excess > 1e-6 ? std::max(0.5 * std::log((2 + excess) / excess) / c.slowest - low, 0.0) : INFINITY;
+      excess > 1e-6 ? std::max(0.5 * std::log((2 + excess) / excess) / c.slowest - half, 0.0) : INFINITY;
   return c;
 }
 

@@ -41,4 +41,24 @@ inline double transmittance(const PellucidMaterial& m, size_t channel, double d)
   }
 }
 
+// The depth below `high` at which a falling T is half of T(0); of a T that does not fall that far, `high`.
+template <class T>
+double halfDepth(const T& transmittance, double high) {
+  const double half = 0.5 * transmittance(0.0);
+  double low = 0;
+  for (int step = 0; step < 60; ++step) {
+    const double middle = 0.5 * (low + high);
+    (transmittance(middle) > half ? low : high) = middle;
+  }
+  return low;
+}
+
+// mm at which the mean of the channels' T is half of T(0), from .001 to 1000.
+inline double halfThickness(const PellucidMaterial& m) {
+  const auto mean = [&](double d) {
+    return transmittance(m, 0, d) + transmittance(m, 1, d) + transmittance(m, 2, d);
+  };
+  return std::max(halfDepth(mean, 1000), 1e-3);
+}
+
 }  // namespace pellucid

@@ -2,10 +2,12 @@
 // The back-face pass when it also computes the light that comes through: camera-space thickness,
 // transmittance and lighting of the nearest back face, so that the frame needs no dispatch for them (Whelan
 // 2009, 6.2.4). What an engine does with compute/lib in a shader of its own.
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 #include "draw.glsl"
 #include "frame/gbuffer_decode.glsl"
+#include "lib/rect.glsl"
 #include "shared/pellucid_shared.h"
 
 layout(location = 1) in vec2 uv;
@@ -27,29 +29,20 @@ layout(set = 0, binding = PLANNED_BINDINGS + PELLUCID_BINDING_MATERIALS) readonl
 layout(set = 0, binding = PLANNED_BINDINGS + PELLUCID_BINDING_NORMAL) uniform texture2D normalImage;
 layout(set = 0, binding = PLANNED_BINDINGS + PELLUCID_BINDING_MATERIAL) uniform utexture2D materialImage;
 #define SHADOW_BINDING PLANNED_BINDINGS + PELLUCID_BINDING_SHADOW_IMAGES
-layout(set = 0, binding = SHADOW_BINDING + 0) uniform texture2D shadowImage0;
-layout(set = 0, binding = SHADOW_BINDING + 1) uniform texture2D shadowImage1;
-layout(set = 0, binding = SHADOW_BINDING + 2) uniform texture2D shadowImage2;
-layout(set = 0, binding = SHADOW_BINDING + 3) uniform texture2D shadowImage3;
-layout(set = 0, binding = SHADOW_BINDING + 4) uniform texture2D shadowImage4;
-layout(set = 0, binding = SHADOW_BINDING + 5) uniform texture2D shadowImage5;
-layout(set = 0, binding = SHADOW_BINDING + 6) uniform texture2D shadowImage6;
-layout(set = 0, binding = SHADOW_BINDING + 7) uniform texture2D shadowImage7;
-
-float shadowTexel(uint image, ivec2 texel) {
-  switch (image) {
-    case 0u: return texelFetch(shadowImage0, texel, 0).x;
-    case 1u: return texelFetch(shadowImage1, texel, 0).x;
-    case 2u: return texelFetch(shadowImage2, texel, 0).x;
-    case 3u: return texelFetch(shadowImage3, texel, 0).x;
-    case 4u: return texelFetch(shadowImage4, texel, 0).x;
-    case 5u: return texelFetch(shadowImage5, texel, 0).x;
-    case 6u: return texelFetch(shadowImage6, texel, 0).x;
-    default: return texelFetch(shadowImage7, texel, 0).x;
-  }
-}
-
+#include "frame/shadow_images.glsl"
 #include "translucency/transmission.glsl"
+
+// The normal of the front depths, from pixels with the same material.
+vec3 facetAt(ivec2 pixel, float front, uint material) {
+  const ivec2 steps[4] = ivec2[](ivec2(1, 0), ivec2(-1, 0), ivec2(0, 1), ivec2(0, -1));
+  vec4 beside = vec4(-1.0);
+  for (int i = 0; i < 4; ++i) {
+    ivec2 at = pixel + steps[i];
+    if (contains(ivec4(frame.rect), at) && decodeMaterial(texelFetch(materialImage, at, 0)) == material)
+      beside[i] = planarDistance(frame.camera, texelFetch(earlierDepth, at, 0).r);
+  }
+  return normalOfDepths(frame.camera, pixel, front, beside);
+}
 
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
@@ -64,8 +57,10 @@ void main() {
   if (hasFlag(PELLUCID_FLAG_NORMAL))
     normal = mat3(frame.viewFromNormal) * decodeNormal(texelFetch(normalImage, pixel, 0));
   float through = chord(planarDifference(frame.camera, gl_FragCoord.z, front), ray);
-  Surface s = makeSurface(ray, planarDistance(frame.camera, front), through, normal);
+  float planar = planarDistance(frame.camera, front);
+  Surface s = makeSurface(ray, planar, through, normal);
   s.material = material;
+  s.facet = facetAt(pixel, planar, material);
   vec3 sum = vec3(0.0);
   for (uint i = 0u; i < draw.ids.w; ++i) {
     Transmitted t = lightTransmission(lights[i], s, lights[i].meta.z != 0u);

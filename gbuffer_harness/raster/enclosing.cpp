@@ -1,0 +1,62 @@
+#include "raster/enclosing.h"
+
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "common/error.h"
+#include "scene/vector.h"
+
+namespace pellucid::harness {
+namespace {
+
+// Van Oosterom & Strackee 1983, "The solid angle of a plane triangle". a, b, c: from the point.
+double solidAngle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+  const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
+  const double divisor = la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb;
+  return 2 * std::atan2(glm::dot(a, glm::cross(b, c)), divisor);
+}
+
+}  // namespace
+
+std::optional<std::string> enclosingBody(const Model& model, const std::array<double, 3>& point) {
+  struct Body {
+    double angle = 0;
+    std::optional<std::string> surface;
+  };
+  std::map<std::uint32_t, Body> bodies;
+  const glm::dvec3 from = toGlm(point);
+  const auto corner = [&](std::uint32_t index) {
+    const std::array<float, 3>& p = model.vertices[model.indices[index]].position;
+    return glm::dvec3(p[0], p[1], p[2]) - from;
+  };
+  for (const Part& part : model.parts) {
+    Body& body = bodies[part.object];
+    const Surface& surface = model.surfaces[part.surface];
+    if (surface.material != 0 && !body.surface) body.surface = surface.name;
+    for (std::uint32_t i = part.firstIndex; i < part.firstIndex + part.indexCount; i += 3)
+      body.angle += solidAngle(corner(i), corner(i + 1), corner(i + 2));
+  }
+  for (const auto& [object, body] : bodies) {
+    // A closed surface spans 4 pi from each point inside and 0 from outside or from a hollow. A bowl spans up
+    // to half of it where nothing encloses a point; the eighth that may be missing is that of meshes with
+    // small holes.
+    constexpr double kLeast = 0.875 * 4 * std::numbers::pi;
+    if (body.surface && body.angle > kLeast) return body.surface;
+  }
+  return std::nullopt;
+}
+
+void refuseEnclosedLights(const Model& model) {
+  for (std::size_t i = 0; i < model.lights.size(); ++i) {
+    const Light& light = model.lights[i];
+    if (light.type == PELLUCID_LIGHT_DIRECTIONAL) continue;
+    if (const auto surface = enclosingBody(model, light.position))
+      throw InputError(model.name, "lights[" + std::to_string(i) + "].position",
+                       "lies inside the translucent body \"" + *surface +
+                           "\": shadow maps hold the faces where light enters, and this light enters none; "
+                           "move it outside, or give the body a hollow around it");
+  }
+}
+
+}  // namespace pellucid::harness

@@ -1,0 +1,74 @@
+// Points inside bodies, and the lights that are refused for lying there.
+#include "raster/enclosing.h"
+
+#include <gtest/gtest.h>
+
+#include "common/error.h"
+#include "gpu/model_builder.h"
+
+namespace pellucid::test {
+namespace {
+
+Model sphere(double radius) {
+  Model model = emptyModel();
+  model.surfaces[0].name = "wax";
+  addSphere(model, {0, 0, 0}, radius, 12);
+  endPart(model, 0);
+  return model;
+}
+
+// The same triangles seen from the other side.
+void turnOver(Model& model, std::size_t firstIndex) {
+  for (std::size_t i = firstIndex; i < model.indices.size(); i += 3)
+    std::swap(model.indices[i], model.indices[i + 1]);
+}
+
+TEST(Enclosing, PointsInASolid) {
+  const Model model = sphere(10);
+  EXPECT_EQ(enclosingBody(model, {0, 0, 0}), "wax");
+  EXPECT_EQ(enclosingBody(model, {0, 9.5, 0}), "wax");
+  EXPECT_FALSE(enclosingBody(model, {0, 10.5, 0}));
+  EXPECT_FALSE(enclosingBody(model, {30, 0, 0}));
+}
+
+TEST(Enclosing, HollowsAndLeavesEncloseNothing) {
+  Model shell = sphere(10);
+  const std::size_t inner = shell.indices.size();
+  addSphere(shell, {0, 0, 0}, 8, 12);
+  turnOver(shell, inner);
+  endPart(shell, 0);
+  EXPECT_FALSE(enclosingBody(shell, {0, 0, 0})) << "the hollow";
+  EXPECT_EQ(enclosingBody(shell, {0, 9, 0}), "wax") << "the wall";
+
+  Model leaf = emptyModel();
+  addSquare(leaf, 0, 0, 0, 10);
+  endPart(leaf, 0);
+  for (const double z : {-0.01, 0.01}) EXPECT_FALSE(enclosingBody(leaf, {0, 0, z}));
+}
+
+TEST(Enclosing, OpaqueBodiesAreNotLookedAt) {
+  Model model = sphere(10);
+  model.surfaces[0].material = 0;
+  EXPECT_FALSE(enclosingBody(model, {0, 0, 0}));
+}
+
+TEST(Enclosing, LightsInsideAreRefusedByName) {
+  Model model = sphere(10);
+  model.lights.push_back(directional({0, 0, -1}));
+  model.lights.push_back({});
+  model.lights[1].type = PELLUCID_LIGHT_POINT;
+  model.lights[1].position = {0, 0, 20};
+  EXPECT_NO_THROW(refuseEnclosedLights(model));
+  model.lights[1].position = {0, 0, 2};
+  try {
+    refuseEnclosedLights(model);
+    FAIL() << "a light in the middle of a solid";
+  } catch (const InputError& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("lights[1].position"), std::string::npos) << text;
+    EXPECT_NE(text.find("wax"), std::string::npos) << text;
+  }
+}
+
+}  // namespace
+}  // namespace pellucid::test
