@@ -1,6 +1,7 @@
 // The light that comes through, over rho. THICKNESS: the chord comes from an image, else from both planar
 // distances here. One shadow image.
 #version 460
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
@@ -19,6 +20,11 @@ layout(set = 0, binding = 8) uniform texture2D shadowImage;
 layout(set = 0, binding = 9, rgba16f) uniform writeonly image2D transmittedImage;
 
 float shadowTexel(uint image, ivec2 texel) { return texelFetch(shadowImage, texel, 0).x; }
+vec4 shadowQuad(uint image, ivec2 low, ivec2 high) {
+  return vec4(shadowTexel(image, low), shadowTexel(image, ivec2(high.x, low.y)), shadowTexel(image, ivec2(low.x, high.y)),
+              shadowTexel(image, high));
+}
+vec3 facetAt(ivec2 pixel, bool back) { return vec3(0.0); }
 
 #include "translucency/transmission.glsl"
 
@@ -38,7 +44,7 @@ void main() {
     Surface s = makeSurface(ray, front, through, normal);
     s.material = material;
     for (uint i = 0u; i < pass.value.x; ++i) {
-      Transmitted t = lightTransmission(lights[i], s, lights[i].meta.z != 0u);
+      Transmitted t = lightTransmission(lights[i], s, pixel, lights[i].meta.z != 0u);
       vec3 light = t.arriving * t.visible;
       if (t.thickness >= 0.0 && max(light.r, max(light.g, light.b)) > 0.0)
         sum += light * materialTransmittance(material - 1u, t.thickness * frame.camera.range.w);

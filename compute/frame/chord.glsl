@@ -4,12 +4,16 @@
 
 #include "lib/thickness.glsl"
 
+// Planar distance of the back surface, -1 where there is none.
+float backDistanceOf(float stored) {
+  return hasFlag(PELLUCID_FLAG_BACK_VIEW_Z) ? planarDistanceViewZ(stored) : planarDistance(frame.camera, stored);
+}
+
 // Scene units along the view ray; -1 where no back face is behind the front one. `front`: planar distance of
 // `frontStored`.
 float chordOf(ViewRay ray, float front, float frontStored, float backStored) {
-  bool backViewZ = hasFlag(PELLUCID_FLAG_BACK_VIEW_Z);
-  float back = backViewZ ? planarDistanceViewZ(backStored) : planarDistance(frame.camera, backStored);
-  bool device = !backViewZ && !hasFlag(PELLUCID_FLAG_FRONT_VIEW_Z);
+  float back = backDistanceOf(backStored);
+  bool device = !hasFlag(PELLUCID_FLAG_BACK_VIEW_Z) && !hasFlag(PELLUCID_FLAG_FRONT_VIEW_Z);
   float difference = device ? planarDifference(frame.camera, backStored, frontStored) : back - front;
   return back > 0.0 ? chord(difference, ray) : -1.0;
 }

@@ -5,9 +5,9 @@
 
 #include "shared/pellucid_shared.h"
 
-// exitTolerance ends here. Only light that grazes a face reaches it, at a cosine of .14, and only below .09 a receiver's
+// depthTolerance ends here. Only light that grazes a face reaches it, at a cosine of .14, and only below .09 a receiver's
 // own exit can be farther off than this. More would hide gaps: 8 texels of a head's map of 1024 texels are 1.8 mm.
-const float kMostExitTexels = 8.0;
+const float kMostTexels = 8.0;
 
 // Slope of a surface across a light's rays, from the cosine between them and its normal; at most 1000.
 float slopeOf(float cosine) { return sqrt(max(1.0 - cosine * cosine, 0.0)) / max(abs(cosine), 1.0e-3); }
@@ -19,13 +19,13 @@ bool hasCasterImage(ShadowConstants shadow) { return shadow.occluder.y != 0u; }
 // `scale`: as ShadowConstants::occluder.z; `material`: index + 1. False for NaN.
 bool casterIsMedium(float stored, float scale, uint material) { return abs(stored * scale - float(material)) < 0.5; }
 
-// Scene units along the light ray that a receiver may lie behind the exit depth of its own texel. A receiver of the exit
-// surface is off by that surface's slope between it and the texel's center, half a texel's diagonal away; one texel more
-// stands for curvature. `distanceTo`: of the light; `cosine`: between the receiver's normal and the light; 0: not known.
-float exitTolerance(ShadowConstants shadow, float distanceTo, float cosine) {
-  float side = shadow.depth.y * (shadow.meta.z != 0u ? distanceTo : 1.0);
-  return side * min(1.0 + slopeOf(cosine), kMostExitTexels);
-}
+// Side of a texel, scene units across the light's ray, where a point is. `distanceTo`: of the light.
+float texelSideAt(ShadowConstants shadow, float distanceTo) { return shadow.depth.y * (shadow.meta.z != 0u ? distanceTo : 1.0); }
+
+// Scene units along the light ray that a point of a stored surface may lie off the depth of its own texel: that surface's
+// slope between the point and the texel's center, half a texel's diagonal away; one texel more stands for curvature.
+// `side`: of a texel; `cosine`: between the point's normal and the light; 0: not known.
+float depthTolerance(float side, float cosine) { return side * min(1.0 + slopeOf(cosine), kMostTexels); }
 
 // True where air or another body lies between a receiver and the stored surface. `fromExit`: from the exit to the receiver,
 // scene units along the light ray.

@@ -6,7 +6,6 @@
 // A pixel's surface. View space, scene units.
 struct Surface {
   vec3 position, normal, view; // view: unit, from the eye
-  vec3 facet;                  // unit normal of the depths, towards the eye; 0: not known
   float chord;                 // along the view ray; -1: unknown
   bool hasNormal;
   uint material; // index + 1; 0: not known
@@ -17,7 +16,7 @@ Surface makeSurface(ViewRay ray, float planar, float chord, vec3 normal) {
   float squared = dot(normal, normal);
   bool hasNormal = squared > 1.0e-8 && squared < 1.0e8; // false for NaN
   if (hasNormal) normal *= inversesqrt(squared);
-  return Surface(ray.origin + planar * ray.direction, normal, normalize(ray.direction), vec3(0.0), chord, hasNormal, 0u);
+  return Surface(ray.origin + planar * ray.direction, normal, normalize(ray.direction), chord, hasNormal, 0u);
 }
 
 // From a pixel of distance `front` to its neighbor that is nearer in depth: the other one may lie across an edge. `step`: one

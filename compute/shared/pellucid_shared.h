@@ -81,7 +81,6 @@ using glm::vec4;
 #define PELLUCID_FLAG_CHORD 256u // some light, or a debug view, needs camera-space thickness
 #define PELLUCID_FLAG_DIFFUSED 512u // what the gather adds to has been diffused
 #define PELLUCID_FLAG_WIDE_OUTPUT 1024u // 32 bits a channel, which keep what halves round
-#define PELLUCID_FLAG_LIGHT_THICKNESS 2048u // some light's thickness is its maps'
 
 // Specialization constants
 #define PELLUCID_CONSTANT_DEBUG_VIEWS 0

@@ -8,10 +8,28 @@ layout(set = 0, binding = PELLUCID_BINDING_LIGHTS) uniform Lights { LightConstan
 layout(set = 0, binding = PELLUCID_BINDING_SHADOWS) uniform Shadows { ShadowConstants shadows[PELLUCID_DISPATCH_SHADOWS]; };
 layout(set = 0, binding = PELLUCID_BINDING_MATERIALS) readonly buffer Materials { MaterialConstants materials[]; };
 layout(set = 0, binding = PELLUCID_BINDING_BACK_DEPTH) uniform texture2D backDepthImage;
+#include "frame/chord.glsl"
 #include "frame/normal_image.glsl"
 #include "frame/shadow_images.glsl"
+#include "lib/surface.glsl"
+
+float distanceAt(ivec2 pixel, bool back) {
+  return back ? backDistanceOf(texelFetch(backDepthImage, pixel, 0).x) : frontDistance(pixel);
+}
+
+// Depths count where a pixel has the material of this one.
+vec3 facetAt(ivec2 pixel, bool back) {
+  const ivec2 steps[4] = ivec2[](ivec2(1, 0), ivec2(-1, 0), ivec2(0, 1), ivec2(0, -1));
+  uint material = materialAt(pixel);
+  vec4 beside = vec4(-1.0);
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    ivec2 at = pixel + steps[i];
+    if (insideRect(at) && materialAt(at) == material) beside[i] = distanceAt(at, back);
+  }
+  return normalOfDepths(frame.camera, pixel, distanceAt(pixel, back), beside);
+}
+
 #include "translucency/transmission.glsl"
-#include "frame/chord.glsl"
 
 Surface surfaceAt(ivec2 pixel, float front, float frontStored, float backStored, vec4 normalTexel) {
   ViewRay ray = viewRay(frame.camera, pixel);

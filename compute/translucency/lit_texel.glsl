@@ -4,19 +4,7 @@ struct Texels {
   uint value;
   vec4 source, normal;
   float front, back; // as stored
-  vec4 beside;       // front depths to the right, to the left, below and above,
-  bvec4 same;        // where these pixels have the pixel's own material
 };
-
-// Depths count where a pixel has a material; `same` is false beyond the rect.
-void fetchBeside(ivec2 pixel, inout Texels t) {
-  const ivec2 steps[4] = ivec2[](ivec2(1, 0), ivec2(-1, 0), ivec2(0, 1), ivec2(0, -1));
-  [[unroll]] for (int i = 0; i < 4; ++i) {
-    ivec2 at = withinRect(pixel + steps[i]);
-    t.beside[i] = texelFetch(frontDepthImage, at, 0).x;
-    t.same[i] = at != pixel && materialValueAt(at) == t.value;
-  }
-}
 
 // All at once and whatever the flags say (a stand-in is bound where an image is missing), so that their
 // latencies overlap: the pass waits for memory more than it computes.
@@ -27,16 +15,7 @@ Texels fetch(ivec2 pixel) {
   t.front = texelFetch(frontDepthImage, pixel, 0).x;
   t.back = hasFlag(PELLUCID_FLAG_CHORD) ? texelFetch(backDepthImage, pixel, 0).x : 0.0;
   t.normal = texelFetch(normalImage, pixel, 0);
-  t.beside = vec4(0.0);
-  t.same = bvec4(false);
-  if (hasFlag(PELLUCID_FLAG_LIGHT_THICKNESS)) fetchBeside(pixel, t);
   return t;
-}
-
-vec3 facetAt(ivec2 pixel, float front, Texels t) {
-  vec4 beside = vec4(frontDistanceOf(t.beside.x), frontDistanceOf(t.beside.y), frontDistanceOf(t.beside.z),
-                     frontDistanceOf(t.beside.w));
-  return normalOfDepths(frame.camera, pixel, front, mix(vec4(-1.0), beside, t.same));
 }
 
 // Irradiance and the light that comes through, or what a debug view shows.
@@ -47,12 +26,11 @@ vec3 resultAt(ivec2 pixel, Texels t, float front, uint m) {
   if (front > 0.0 && (t.value & frame.marks.x) == 0u) {
     Surface s = surfaceAt(pixel, front, t.front, t.back, t.normal);
     s.material = m + 1u;
-    if (hasFlag(PELLUCID_FLAG_LIGHT_THICKNESS)) s.facet = facetAt(pixel, front, t);
     float mm = frame.camera.range.w;
     if (s.chord >= 0.0) thickness.r = s.chord * mm;
     for (uint i = 0u; i < pass.value.y; ++i) {
       LightConstants light = lights[i];
-      Transmitted through = lightTransmission(light, s, light.meta.z != 0u);
+      Transmitted through = lightTransmission(light, s, pixel, light.meta.z != 0u);
       vec3 entering = through.arriving * through.visible;
       // Most pixels face some lights; T is the expensive part.
       if (through.thickness >= 0.0 && max(entering.r, max(entering.g, entering.b)) > 0.0)

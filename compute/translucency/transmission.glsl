@@ -1,6 +1,9 @@
 // Light through one surface point, for any shader stage. Include it after declaring, from whatever bindings
 // the shader has: FrameConstants frame, ShadowConstants shadows[], MaterialConstants materials[], and
-// the functions of frame/shadow_images.glsl, which take the image and layer in ShadowConstants::meta.x.
+//   float shadowTexel(uint image, ivec2 texel); // of the image and layer in ShadowConstants::meta.x
+//   vec4 shadowQuad(uint image, ivec2 low, ivec2 high); // as frame/shadow_images.glsl has it
+//   vec3 facetAt(ivec2 pixel, bool back); // unit normal of the front or back depths, towards the eye; 0: not known
+// The shader requires GL_EXT_control_flow_attributes.
 // They are names and not parameters because a buffer's array cannot be passed without a copy.
 #ifndef PELLUCID_TRANSMISSION_GLSL
 #define PELLUCID_TRANSMISSION_GLSL
@@ -51,20 +54,24 @@ struct LightTexels {
   vec4 held;      // bilinear weights of the texels that have a surface; 0 of others
   vec4 entering;  // of those where light enters the point's own medium
   vec4 thickness; // scene units along the light ray; negative: the surface is beyond the point
-  float tolerance; // that a point of the stored surface may be off by
+  float side;      // of a texel, scene units
+  float uncertain; // scene units that the thickness may be off by, besides what depthTolerance says
 };
 
-// Weights of texels where light enters the receiver's medium and has not left it before it is at the receiver.
-float entersMedium(ShadowConstants shadow, ShadowReceiver receiver, ivec2 texel, Incident incident, Surface s, vec3 x,
-                   float tolerance) {
+float receiverCosine(Surface s, Incident incident) { return s.hasNormal ? dot(s.normal, incident.toLight) : 0.0; }
+
+// Whether light enters the receiver's medium at a texel and has not left it before it is at the receiver. `tolerance`: of a
+// receiver on the exit surface.
+bool entersMedium(ShadowConstants shadow, ShadowReceiver receiver, ivec2 texel, Incident incident, Surface s, vec3 x,
+                  float tolerance) {
   if (hasCasterImage(shadow) &&
       !casterIsMedium(shadowTexel(shadow.occluder.y - 1u, texel), uintBitsToFloat(shadow.occluder.z), s.material))
-    return 0.0;
-  if (!hasExitImage(shadow)) return 1.0;
+    return false;
+  if (!hasExitImage(shadow)) return true;
   float stored = shadowTexel(shadow.occluder.x - 1u, texel);
-  if (!shadowHolds(shadow.meta, stored)) return 1.0;
+  if (!shadowHolds(shadow.meta, stored)) return true;
   if (shadow.offsets.w > 0.0) tolerance += shadow.offsets.w * lengthPerDepth(shadow, receiver, x, incident, stored);
-  return liesBeyondExit(lightThickness(shadow, receiver, x, incident, stored), tolerance) ? 0.0 : 1.0;
+  return !liesBeyondExit(lightThickness(shadow, receiver, x, incident, stored), tolerance);
 }
 
 LightTexels lightTexels(ShadowConstants shadow, ShadowReceiver receiver, Incident incident, Surface s, vec3 x, float cosine) {
@@ -72,16 +79,22 @@ LightTexels lightTexels(ShadowConstants shadow, ShadowReceiver receiver, Inciden
   vec4 stored = shadowQuad(shadow.meta.x, footprint.low, footprint.high);
   vec2 row = footprint.part.y < 0.5 ? stored.xy : stored.zw;
   float nearest = footprint.part.x < 0.5 ? row.x : row.y;
-  DrawnDepth drawn = drawnDepth(shadow, receiver.texel, nearest);
-  float tolerance = exitTolerance(shadow, incident.distanceTo, cosine);
-  LightTexels l = LightTexels(vec4(0.0), vec4(0.0), vec4(0.0), tolerance);
-  l.tolerance += drawn.uncertain * lengthPerDepth(shadow, receiver, x, incident, drawn.depth);
+  // All texels were moved as far as the nearest one, or by the constant alone where that has no surface.
+  DrawnDepth drawn = DrawnDepth(-shadow.offsets.x, 0.5 * shadow.offsets.w);
+  if (shadowHolds(shadow.meta, nearest)) {
+    drawn = drawnDepth(shadow, receiver.texel, nearest);
+    drawn.depth -= nearest;
+  }
+  float side = texelSideAt(shadow, incident.distanceTo);
+  LightTexels l = LightTexels(vec4(0.0), vec4(0.0), vec4(0.0), side, 0.0);
   [[unroll]] for (int i = 0; i < 4; ++i) {
     if (!shadowHolds(shadow.meta, stored[i])) continue;
     l.held[i] = footprint.weight[i];
-    l.thickness[i] = lightThickness(shadow, receiver, x, incident, stored[i] + drawn.depth - nearest) + shadow.offsets.z;
+    l.thickness[i] = lightThickness(shadow, receiver, x, incident, stored[i] + drawn.depth) + shadow.offsets.z;
+    if (drawn.uncertain > 0.0)
+      l.uncertain = max(l.uncertain, drawn.uncertain * lengthPerDepth(shadow, receiver, x, incident, stored[i]));
     ivec2 texel = ivec2((i & 1) != 0 ? footprint.high.x : footprint.low.x, i > 1 ? footprint.high.y : footprint.low.y);
-    l.entering[i] = l.held[i] * entersMedium(shadow, receiver, texel, incident, s, x, tolerance);
+    if (entersMedium(shadow, receiver, texel, incident, s, x, depthTolerance(side, cosine))) l.entering[i] = l.held[i];
   }
   return l;
 }
@@ -93,17 +106,36 @@ LightTexels lightTexels(LightConstants light, Incident incident, Surface s, vec3
     ShadowReceiver receiver = projectReceiver(shadow, x);
     if (receiver.inside) return lightTexels(shadow, receiver, incident, s, x, cosine);
   }
-  return LightTexels(vec4(0.0), vec4(0.0), vec4(0.0), 0.0);
+  return LightTexels(vec4(0.0), vec4(0.0), vec4(0.0), 0.0, 0.0);
 }
 
 // Beyond this cosine a face that turns away from the light is not the one that a map stores, whose texels would have to
 // reach around 30 degrees of curvature.
 const float kLeastTurnedCosine = 0.5;
 
-// Weights of texels that do not store the receiver itself: the light lies on it or is blocked, but does not come through.
-vec4 throughWeights(LightTexels l, float cosine) {
-  float tolerance = l.tolerance * clamp(1.0 + cosine / kLeastTurnedCosine, 0.0, 1.0);
+// The least value of texels that count.
+float leastEntering(LightTexels l, vec4 values) {
+  vec4 counted = mix(vec4(3.0e38), values, greaterThan(l.entering, vec4(0.0)));
+  return min(min(counted.x, counted.y), min(counted.z, counted.w));
+}
+
+// Weights of texels that do not store the receiver itself: there, light lies on it or is blocked, but does not come through.
+// Depths of pixels are read only where they may decide, here and below.
+vec4 throughWeights(LightTexels l, ivec2 pixel, vec3 toLight) {
+  if (leastEntering(l, l.thickness) >= 2.0 * (kMostTexels * l.side + l.uncertain)) return l.entering;
+  float cosine = dot(facetAt(pixel, false), toLight);
+  float tolerance = (depthTolerance(l.side, cosine) + l.uncertain) * clamp(1.0 + cosine / kLeastTurnedCosine, 0.0, 1.0);
   return tolerance > 0.0 ? l.entering * clamp(l.thickness / tolerance - 1.0, 0.0, 1.0) : l.entering;
+}
+
+// Part of the texels that let light come to a hidden face, whose map holds it or the face that light leaves by. It fades over
+// one tolerance.
+float litPart(LightTexels l, ivec2 pixel, vec3 toLight, bool holdsExits) {
+  float tolerance = kMostTexels * l.side;
+  if (leastEntering(l, abs(l.thickness)) <= 2.0 * (tolerance + l.uncertain))
+    tolerance = depthTolerance(l.side, dot(facetAt(pixel, true), toLight));
+  tolerance = max(tolerance + l.uncertain, 1.0e-30);
+  return dot(l.entering, clamp((holdsExits ? 0.0 : 2.0) - l.thickness / tolerance, 0.0, 1.0));
 }
 
 // Mean of thicknesses as an exponential has it that halves at the same depth as T. Scene units; 0 without weights.
@@ -135,16 +167,17 @@ float hiddenCosine(LightConstants light, Surface s, vec3 toLight) {
   return clamp(x, 0.0, 1.0);
 }
 
-// docs/design.md says why each source is what it is. `mapped`: whether the light has shadow maps.
-Transmitted lightTransmission(LightConstants light, Surface s, bool mapped) {
+// docs/design.md says why each source is what it is. `pixel`: of the surface; `mapped`: whether the light has shadow maps.
+Transmitted lightTransmission(LightConstants light, Surface s, ivec2 pixel, bool mapped) {
   Incident incident = incidentLight(light, s.position);
   bool holdsExits = light.meta.w != 0u; // which do not say where light enters
   if (mapped && !holdsExits && !hasFlag(PELLUCID_FLAG_CAMERA_THICKNESS)) {
-    float cosine = dot(s.facet, incident.toLight);
-    LightTexels l = lightTexels(light, incident, s, s.position, cosine);
-    vec4 weight = throughWeights(l, cosine);
-    return Transmitted(meanThickness(weight, l.thickness, s.material - 1u),
-                       incident.irradiance * hiddenCosine(light, s, incident.toLight), dot(weight, vec4(1.0)));
+    vec3 arriving = incident.irradiance * hiddenCosine(light, s, incident.toLight);
+    // Most pixels face some lights, whose maps need no reading.
+    if (arriving == vec3(0.0)) return Transmitted(-1.0, arriving, 0.0);
+    LightTexels l = lightTexels(light, incident, s, s.position, receiverCosine(s, incident));
+    vec4 weight = throughWeights(l, pixel, incident.toLight);
+    return Transmitted(meanThickness(weight, l.thickness, s.material - 1u), arriving, dot(weight, vec4(1.0)));
   }
   if (s.chord < 0.0) return Transmitted(-1.0, vec3(0.0), 0.0);
   vec3 back = s.position + s.chord * s.view;
@@ -152,13 +185,8 @@ Transmitted lightTransmission(LightConstants light, Surface s, bool mapped) {
   // A slab's thickness along its normal, from the chord along the view ray.
   bool alongNormal = s.hasNormal && !hasFlag(PELLUCID_FLAG_CHORD_THICKNESS);
   float thickness = alongNormal ? s.chord * abs(dot(s.normal, s.view)) : s.chord;
-  float visible = 1.0;
-  if (mapped) {
-    // The camera does not see how the hidden face turns.
-    LightTexels l = lightTexels(light, incident, s, back, 0.0);
-    // Light that enters has not come to the face that it leaves by.
-    visible = dot(l.entering, vec4(lessThanEqual(l.thickness, vec4(holdsExits ? -l.tolerance : l.tolerance))));
-  }
+  // The exit depth says where light leaves, which the back depth does already.
+  float visible = mapped ? litPart(lightTexels(light, incident, s, back, 0.0), pixel, incident.toLight, holdsExits) : 1.0;
   return Transmitted(thickness, incident.irradiance * hiddenCosine(light, s, incident.toLight), visible);
 }
 

@@ -138,12 +138,16 @@ double ShadowView::distanceFrom(const glm::dvec3& point, const Projected& p, dou
   }
 }
 
-DrawnDepth ShadowView::drawnAt(const glm::dvec3& point, const Projected& p) const {
-  return drawnDepth(map_, p.x, p.y, [&](float stored) { return holds(point, stored); });
+DrawnDepth ShadowView::moveAt(const glm::dvec3& point, const Projected& p) const {
+  const auto surfaceAt = [&](float stored) { return holds(point, stored); };
+  const float stored = *map_.depth.image.at(p.x, p.y);
+  if (!surfaceAt(stored)) return {-map_.depthBiasConstant, map_.depthStep / 2};
+  const DrawnDepth drawn = drawnDepth(map_, p.x, p.y, surfaceAt);
+  return {drawn.depth - double(stored), drawn.uncertain};
 }
 
 ShadowView::Lookup ShadowView::lookup(const glm::dvec3& point, const Projected& p, int x, int y,
-                                      const DrawnDepth& drawn) const {
+                                      const DrawnDepth& move) const {
   Lookup found{Kind::Empty, 0};
   found.texel = texelAt(point, p);
   const float stored = *map_.depth.image.at(x, y);
@@ -152,9 +156,8 @@ ShadowView::Lookup ShadowView::lookup(const glm::dvec3& point, const Projected& 
   const auto lengthOf = [&](double depth, double step) {
     return std::abs(distanceFrom(point, p, depth + step) - distanceFrom(point, p, depth));
   };
-  const double moved = drawn.depth - double(*map_.depth.image.at(p.x, p.y));
-  found.distance = distanceFrom(point, p, double(stored) + moved) + map_.offsetLength;
-  found.uncertain = lengthOf(drawn.depth, drawn.uncertain);
+  found.distance = distanceFrom(point, p, double(stored) + move.depth) + map_.offsetLength;
+  found.uncertain = lengthOf(double(stored), move.uncertain);
   if (!map_.exitDepth.empty()) {
     const float exit = *map_.exitDepth.at(x, y);
     if (holds(point, exit)) {
@@ -170,7 +173,7 @@ ShadowView::Lookup ShadowView::lookup(const glm::dvec3& point, const Projected& 
 ShadowView::Lookup ShadowView::at(const glm::dvec3& point) const {
   const std::optional<Projected> p = project(point);
   if (!p) return {Kind::Outside, 0};
-  return lookup(point, *p, p->x, p->y, drawnAt(point, *p));
+  return lookup(point, *p, p->x, p->y, moveAt(point, *p));
 }
 
 std::optional<std::array<ShadowView::Tap, 4>> ShadowView::around(const glm::dvec3& point) const {
@@ -179,14 +182,14 @@ std::optional<std::array<ShadowView::Tap, 4>> ShadowView::around(const glm::dvec
   const Image& image = map_.depth.image;
   const glm::dvec2 place = (glm::dvec2(p->ndc) * 0.5 + 0.5) * glm::dvec2(image.width, image.height) - 0.5;
   const glm::dvec2 from = glm::floor(place), part = place - from;
-  const DrawnDepth drawn = drawnAt(point, *p);
+  const DrawnDepth move = moveAt(point, *p);
   std::array<Tap, 4> taps;
   for (int i = 0; i < 4; ++i) {
     const int right = i & 1, down = i >> 1;
     const int x = std::clamp(static_cast<int>(from.x) + right, 0, image.width - 1);
     const int y = std::clamp(static_cast<int>(from.y) + down, 0, image.height - 1);
     taps[static_cast<std::size_t>(i)] = {(right ? part.x : 1 - part.x) * (down ? part.y : 1 - part.y),
-                                         lookup(point, *p, x, y, drawn)};
+                                         lookup(point, *p, x, y, move)};
   }
   return taps;
 }

@@ -65,9 +65,10 @@ private:
   // As Lookup::distance, of a depth.
   double distanceFrom(const glm::dvec3& point, const Projected& p, double stored) const;
   bool holds(const glm::dvec3& point, float stored) const;
-  // Of texel (x, y), `drawn`: of the nearest one.
-  Lookup lookup(const glm::dvec3& point, const Projected& p, int x, int y, const DrawnDepth& drawn) const;
-  DrawnDepth drawnAt(const glm::dvec3& point, const Projected& p) const;
+  // From what the nearest texel stores to what was drawn, in units of the stored depth.
+  DrawnDepth moveAt(const glm::dvec3& point, const Projected& p) const;
+  // Of texel (x, y).
+  Lookup lookup(const glm::dvec3& point, const Projected& p, int x, int y, const DrawnDepth& move) const;
   double texelAt(const glm::dvec3& point, const Projected& p) const;
   double deviceDistance(const glm::dvec3& point, const Projected& p, double stored) const;
   double planarDistance(const glm::dvec3& point, double stored) const;

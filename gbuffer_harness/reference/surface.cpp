@@ -38,8 +38,8 @@ SurfaceReader::SurfaceReader(const Capture& capture)
                      std::to_string(capture.material.size()) + " pixels; need " + std::to_string(pixels));
 }
 
-std::optional<double> SurfaceReader::frontDepth(int x, int y) const {
-  return camera_.planarDepth(*capture_.frontDepth.image.at(x, y), capture_.frontDepth.encoding);
+std::optional<double> SurfaceReader::planarDepth(const DepthImage& depth, int x, int y) const {
+  return camera_.planarDepth(*depth.image.at(x, y), depth.encoding);
 }
 
 std::optional<glm::dvec3> SurfaceReader::normalAt(int x, int y) const {
@@ -53,27 +53,36 @@ std::optional<glm::dvec3> SurfaceReader::normalAt(int x, int y) const {
 }
 
 std::optional<Surface> SurfaceReader::at(int x, int y) const {
-  const std::optional<double> front = frontDepth(x, y);
+  const std::optional<double> front = planarDepth(capture_.frontDepth, x, y);
   if (!front) return std::nullopt;
   const glm::dvec2 center(x + 0.5, y + 0.5);
   Surface s;
   s.position = camera_.position(center, *front);
   s.ray = camera_.rayThrough(s.position);
   s.normal = normalAt(x, y);
-  s.facet = normalFromDepth(x, y, s);
+  s.facet = normalFromDepth(capture_.frontDepth, x, y, s.position);
   if (!capture_.backDepth.image.empty()) {
-    const std::optional<double> back =
-        camera_.planarDepth(*capture_.backDepth.image.at(x, y), capture_.backDepth.encoding);
-    if (back && *back > *front) s.chord = glm::distance(s.position, camera_.position(center, *back));
+    const std::optional<double> back = planarDepth(capture_.backDepth, x, y);
+    if (back && *back > *front) {
+      const glm::dvec3 position = camera_.position(center, *back);
+      s.chord = glm::distance(s.position, position);
+      s.backFacet = normalFromDepth(capture_.backDepth, x, y, position);
+    }
   }
   return s;
 }
 
+glm::dvec3 SurfaceReader::flatStep(int x, int y, const glm::dvec3& position, const glm::dvec2& step) const {
+  const double depth = camera_.planarDepth(position);
+  const glm::dvec2 center(x + 0.5, y + 0.5);
+  return camera_.position(center + 0.5 * step, depth) - camera_.position(center - 0.5 * step, depth);
+}
+
 // Displacement along the surface per pixel step, from whichever neighbor of the same material is
-// nearer in depth: the other one may lie across an edge. `flat` when neither can be used.
-glm::dvec3 SurfaceReader::slopeAlong(int x, int y, int stepX, int stepY, const glm::dvec3& flat,
-                                     const Surface& s) const {
-  glm::dvec3 best = flat;
+// nearer in depth: the other one may lie across an edge. That of a facing surface when neither can be used.
+glm::dvec3 SurfaceReader::slopeAlong(const DepthImage& depth, int x, int y, int stepX, int stepY,
+                                     const glm::dvec3& position) const {
+  glm::dvec3 best = flatStep(x, y, position, {stepX, stepY});
   double least = INFINITY;
   const auto pixel = [&](int px, int py) {
     return static_cast<std::size_t>(py) * static_cast<std::size_t>(capture_.width) +
@@ -83,33 +92,28 @@ glm::dvec3 SurfaceReader::slopeAlong(int x, int y, int stepX, int stepY, const g
     const int nx = x + sign * stepX, ny = y + sign * stepY;
     if (nx < 0 || ny < 0 || nx >= capture_.width || ny >= capture_.height) continue;
     if (capture_.material[pixel(nx, ny)] != capture_.material[pixel(x, y)]) continue;
-    const std::optional<double> depth = frontDepth(nx, ny);
-    if (!depth) continue;
-    const double difference = std::abs(*depth - camera_.planarDepth(s.position));
+    const std::optional<double> there = planarDepth(depth, nx, ny);
+    if (!there) continue;
+    const double difference = std::abs(*there - camera_.planarDepth(position));
     if (difference < least) {
       least = difference;
-      best = double(sign) * (camera_.position({nx + 0.5, ny + 0.5}, *depth) - s.position);
+      best = double(sign) * (camera_.position({nx + 0.5, ny + 0.5}, *there) - position);
     }
   }
   return best;
 }
 
-glm::dvec3 SurfaceReader::flatStep(int x, int y, const Surface& s, const glm::dvec2& step) const {
-  const double depth = camera_.planarDepth(s.position);
-  const glm::dvec2 center(x + 0.5, y + 0.5);
-  return camera_.position(center + 0.5 * step, depth) - camera_.position(center - 0.5 * step, depth);
-}
-
-std::optional<glm::dvec3> SurfaceReader::normalFromDepth(int x, int y, const Surface& s) const {
-  const glm::dvec3 n = glm::cross(slopeAlong(x, y, 1, 0, flatStep(x, y, s, {1, 0}), s),
-                                  slopeAlong(x, y, 0, 1, flatStep(x, y, s, {0, 1}), s));
+std::optional<glm::dvec3> SurfaceReader::normalFromDepth(const DepthImage& depth, int x, int y,
+                                                         const glm::dvec3& position) const {
+  const glm::dvec3 n =
+      glm::cross(slopeAlong(depth, x, y, 1, 0, position), slopeAlong(depth, x, y, 0, 1, position));
   const double length = glm::length(n);
   if (!(length > 0) || !finite(n)) return std::nullopt;
-  return glm::dot(n, s.ray) > 0 ? -n / length : n / length;
+  return glm::dot(n, camera_.rayThrough(position)) > 0 ? -n / length : n / length;
 }
 
 SurfaceReader::Footprint SurfaceReader::footprint(int x, int y, const Surface& s) const {
-  const glm::dvec3 flatX = flatStep(x, y, s, {1, 0}), flatY = flatStep(x, y, s, {0, 1});
+  const glm::dvec3 flatX = flatStep(x, y, s.position, {1, 0}), flatY = flatStep(x, y, s.position, {0, 1});
   glm::dvec3 n = s.normal ? *s.normal : s.facet.value_or(-s.ray);
   if (glm::dot(n, s.ray) > 0) n = -n;
   const double cosine = -glm::dot(n, s.ray);

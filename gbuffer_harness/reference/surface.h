@@ -14,8 +14,9 @@ struct Surface {
   glm::dvec3 position;
   glm::dvec3 ray;                    // unit, from the eye to the position
   std::optional<glm::dvec3> normal;  // unit, outward; absent when the capture's is missing, 0 or not finite
-  std::optional<glm::dvec3> facet;   // unit normal of the front depths, towards the eye; absent: not known
-  std::optional<double> chord;       // length of the ray between the front and back surface, > 0
+  // Unit normals of the front and back depths, towards the eye; absent: not known.
+  std::optional<glm::dvec3> facet, backFacet;
+  std::optional<double> chord;  // length of the ray between the front and back surface, > 0
 };
 
 class SurfaceReader {
@@ -42,12 +43,14 @@ public:
 
 private:
   std::optional<glm::dvec3> normalAt(int x, int y) const;
-  std::optional<double> frontDepth(int x, int y) const;
-  glm::dvec3 slopeAlong(int x, int y, int stepX, int stepY, const glm::dvec3& flat, const Surface& s) const;
-  // Unit, towards the eye; absent where depths span no plane.
-  std::optional<glm::dvec3> normalFromDepth(int x, int y, const Surface& s) const;
+  std::optional<double> planarDepth(const DepthImage& depth, int x, int y) const;
+  glm::dvec3 slopeAlong(const DepthImage& depth, int x, int y, int stepX, int stepY,
+                        const glm::dvec3& position) const;
+  // Unit, towards the eye; absent where depths span no plane. `position`: of the surface at the pixel.
+  std::optional<glm::dvec3> normalFromDepth(const DepthImage& depth, int x, int y,
+                                            const glm::dvec3& position) const;
   // Displacement of one pixel's step at the surface's distance, facing the camera.
-  glm::dvec3 flatStep(int x, int y, const Surface& s, const glm::dvec2& step) const;
+  glm::dvec3 flatStep(int x, int y, const glm::dvec3& position, const glm::dvec2& step) const;
 
   const Capture& capture_;
   Camera camera_;

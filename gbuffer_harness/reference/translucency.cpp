@@ -26,11 +26,13 @@ Translucency::Receiver Translucency::toWorld(const Surface& s, const PellucidMat
              rotation * s.ray,
              std::nullopt,
              std::nullopt,
+             std::nullopt,
              s.chord,
              index,
              halfThickness(material)};
   if (s.normal) r.normal = rotation * *s.normal;
   if (s.facet) r.facet = rotation * *s.facet;
+  if (s.backFacet) r.backFacet = rotation * *s.backFacet;
   return r;
 }
 
@@ -87,16 +89,23 @@ double Translucency::ownTolerance(const ShadowView::Lookup& lookup, double cosin
   return lookup.texel * std::min(1 + slope, kMostTexels);
 }
 
-bool Translucency::entersMedium(const ShadowView::Lookup& lookup, const Receiver& r, double cosine) {
+bool Translucency::entersMedium(const ShadowView::Lookup& lookup, const Receiver& r) {
   return lookup.kind == ShadowView::Kind::Surface &&
-         (!lookup.casterMaterial || *lookup.casterMaterial == r.material) &&
-         !(lookup.fromExit && *lookup.fromExit > ownTolerance(lookup, cosine) + lookup.exitUncertain);
+         (!lookup.casterMaterial || *lookup.casterMaterial == r.material);
+}
+
+bool Translucency::beyondExit(const ShadowView::Lookup& lookup, const Receiver& r,
+                              const glm::dvec3& toLight) {
+  const double cosine = r.normal ? glm::dot(*r.normal, toLight) : 0;
+  return lookup.fromExit && *lookup.fromExit > ownTolerance(lookup, cosine) + lookup.exitUncertain;
 }
 
 // None where the texel stores the receiver itself, which a face that turns away from the light is not.
-double Translucency::comesThrough(const ShadowView::Lookup& lookup, const Receiver& r, double cosine) {
+double Translucency::comesThrough(const ShadowView::Lookup& lookup, const Receiver& r,
+                                  const glm::dvec3& toLight) {
   constexpr double kTurned = 0.5;
-  if (!entersMedium(lookup, r, cosine)) return 0;
+  if (!entersMedium(lookup, r) || beyondExit(lookup, r, toLight)) return 0;
+  const double cosine = r.facet ? glm::dot(*r.facet, toLight) : 0;
   const double tolerance =
       (ownTolerance(lookup, cosine) + lookup.uncertain) * std::clamp(1 + cosine / kTurned, 0.0, 1.0);
   return tolerance > 0 ? std::clamp(lookup.distance / tolerance - 1, 0.0, 1.0) : 1;
@@ -121,28 +130,28 @@ Translucency::LightPath Translucency::lightSpacePath(std::size_t light, const Re
   path.arriving = arrival.irradiance * hiddenCosine(r, light, arrival.toLight);
   const std::optional<Taps> taps = texelsAround(light, r.position);
   if (!taps) return path;
-  const double cosine = r.facet ? glm::dot(*r.facet, arrival.toLight) : 0;
   std::array<double, 4> weights;
   for (std::size_t i = 0; i < taps->size(); ++i) {
-    weights[i] = (*taps)[i].weight * comesThrough((*taps)[i].found, r, cosine);
+    weights[i] = (*taps)[i].weight * comesThrough((*taps)[i].found, r, arrival.toLight);
     path.reaches += weights[i];
   }
   if (path.reaches > 0) path.thickness = meanThickness(*taps, weights, r);
   return path;
 }
 
-// The camera does not see how the hidden face turns.
 double Translucency::litPart(std::size_t light, const Receiver& r, const glm::dvec3& backPoint) const {
   if (shadows_[light].empty()) return 1;
   const std::optional<Taps> taps = texelsAround(light, backPoint);
   if (!taps) return 0;
+  const double cosine =
+      r.backFacet ? glm::dot(*r.backFacet, arrivalAt(capture_.lights[light], backPoint).toLight) : 0;
   double lit = 0;
   for (const auto& [weight, found] : *taps) {
-    if (!entersMedium(found, r, 0)) continue;
-    const double tolerance = ownTolerance(found, 0) + found.uncertain;
+    if (!entersMedium(found, r)) continue;
+    const double tolerance = ownTolerance(found, cosine) + found.uncertain;
     // A face that light leaves by is not one that it enters by.
-    const double most = holdsBackFaces(capture_.lights[light]) ? -tolerance : tolerance;
-    if (found.distance <= most) lit += weight;
+    const double most = holdsBackFaces(capture_.lights[light]) ? 0 : 2;
+    lit += weight * std::clamp(most - found.distance / tolerance, 0.0, 1.0);
   }
   return lit;
 }

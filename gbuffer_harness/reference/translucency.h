@@ -35,7 +35,7 @@ private:
   // A receiver in world space.
   struct Receiver {
     glm::dvec3 position, ray;
-    std::optional<glm::dvec3> normal, facet;
+    std::optional<glm::dvec3> normal, facet, backFacet;
     std::optional<double> chord;  // scene units
     int material;
     double halfThickness;  // mm at which the material's T falls to half
@@ -56,13 +56,14 @@ private:
   bool usesLightSpace(std::size_t light) const;
   // In the first of the light's maps that contains the point.
   std::optional<Taps> texelsAround(std::size_t light, const glm::dvec3& point) const;
-  // Whether light enters the receiver's own medium where the map's surface is, and has not left it before it
-  // is at the receiver. `cosine`: between the receiver's normal and the light; 0: not known.
-  static bool entersMedium(const ShadowView::Lookup& lookup, const Receiver& r, double cosine);
+  // Whether light enters the receiver's own medium where the map's surface is.
+  static bool entersMedium(const ShadowView::Lookup& lookup, const Receiver& r);
+  // Whether it has left that medium before it is at the receiver.
+  static bool beyondExit(const ShadowView::Lookup& lookup, const Receiver& r, const glm::dvec3& toLight);
   // Scene units along the light that a point of a stored surface may lie off the depth of its own texel.
   static double ownTolerance(const ShadowView::Lookup& lookup, double cosine);
   // Part of the light that a texel says comes through to the receiver.
-  static double comesThrough(const ShadowView::Lookup& lookup, const Receiver& r, double cosine);
+  static double comesThrough(const ShadowView::Lookup& lookup, const Receiver& r, const glm::dvec3& toLight);
   // Scene units. `weights`: of the taps; not all 0.
   double meanThickness(const Taps& taps, const std::array<double, 4>& weights, const Receiver& r) const;
   double litPart(std::size_t light, const Receiver& r, const glm::dvec3& backPoint) const;

@@ -265,6 +265,13 @@ void FrameRun::recordAlone(VkCommandBuffer commandBuffer, uint32_t dispatch) con
 
 const void* FrameRun::constants() const { return constants_->mapped(); }
 
+std::uint64_t FrameRun::groupsRun(std::uint32_t dispatch) const {
+  const PellucidDispatch& d = plan_->dispatches[dispatch];
+  VkDispatchIndirectCommand ran = {d.groups[0], d.groups[1], d.groups[2]};
+  if (d.indirect) std::memcpy(&ran, static_cast<const char*>(constants()) + d.indirectOffset, sizeof ran);
+  return std::uint64_t{ran.x} * ran.y * ran.z;
+}
+
 Image FrameRun::output() const { return images_->output(); }
 
 Image FrameRun::irradiance() const { return images_->irradiance(); }
@@ -299,6 +306,7 @@ ReplayResult Replayer::run(const Capture& capture, const std::vector<PellucidMat
   const auto recordFirst = [&] {
     device_.run([&](VkCommandBuffer commandBuffer) { run.record(commandBuffer); });
     result.output = run.output();
+    for (uint32_t i = 0; i < result.plan.dispatchCount; ++i) result.groups.push_back(run.groupsRun(i));
   };
   if (timedFrames == 0) {
     recordFirst();

@@ -91,6 +91,8 @@ public:
   const PellucidFrame& frame() const { return data_.frame; }
   // The slice as the device left it: with what it decided about indirect dispatches.
   const void* constants() const;
+  // Groups of a dispatch that ran in the last recording that the device finished.
+  std::uint64_t groupsRun(std::uint32_t dispatch) const;
 
   void record(VkCommandBuffer commandBuffer) const;                     // the whole plan
   void record(VkCommandBuffer commandBuffer, uint32_t dispatch) const;  // one dispatch of it, in its turn
@@ -133,6 +135,8 @@ struct DispatchTime {
 struct ReplayResult {
   Image output;  // as FrameRun::output
   PellucidPlan plan;
+  std::vector<std::uint64_t>
+      groups;                       // that ran, one for each dispatch: of indirect ones what the GPU decided
   std::vector<DispatchTime> times;  // one per dispatch; none without timed frames
 };
 

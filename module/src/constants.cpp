@@ -67,7 +67,6 @@ shared::FrameConstants frameConstants(const FrameFacts& facts) {
   if (t.constantViewDirection) flags |= PELLUCID_FLAG_CONSTANT_VIEW;
   if (t.chordThickness) flags |= PELLUCID_FLAG_CHORD_THICKNESS;
   if (facts.needsChord) flags |= PELLUCID_FLAG_CHORD;
-  if (facts.needsMapThickness) flags |= PELLUCID_FLAG_LIGHT_THICKNESS;
   if (facts.wide) flags |= PELLUCID_FLAG_WIDE_OUTPUT;
   if (f.features & PELLUCID_FEATURE_DIFFUSION && facts.diffuses) flags |= PELLUCID_FLAG_DIFFUSED;
   c.flags = {flags, f.materialCount, f.debugView, t.angleModel};
@@ -207,7 +206,7 @@ void putLights(const FrameFacts& f, void* mapped) {
     uint32_t shadow = group.shadowCount - l.shadowMapCount, row = group.entryRows;
     const bool gathered = f.isGathered(l);
     for (uint32_t i = 0; gathered && i < l.shadowMapCount; ++i)
-      row -= entryGroups(entryExtent(f.frame, l, i).height);
+      row -= entryGroups(entryExtent(f, l, i).height);
     put(mapped,
         layout.lights.offset + group.lightBytes + (group.lightCount - 1) * sizeof(shared::LightConstants),
         lightConstants(f, l, shadow));
@@ -216,7 +215,7 @@ void putLights(const FrameFacts& f, void* mapped) {
       const shared::ShadowConstants constants = shadowConstants(f, s, l, worldFromView, group);
       put(mapped, layout.shadows.offset + group.shadowBytes + shadow * sizeof constants, constants);
       if (!gathered) continue;
-      const EntryExtent extent = entryExtent(f.frame, l, i);
+      const EntryExtent extent = entryExtent(f, l, i);
       const EntryConstants entry =
           entryConstants(f.frame, s, l, constants, f.viewFromWorld, extent, row, group.lightCount - 1);
       row += entryGroups(extent.height);

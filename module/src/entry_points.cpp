@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "camera.h"
+#include "shadow_map.h"
 
 namespace pellucid {
 namespace {
@@ -13,19 +15,35 @@ glm::dvec3 linear(const glm::dmat4& m, int row) { return {m[0][row], m[1][row], 
 
 }  // namespace
 
-EntryExtent entryExtent(const PellucidFrame& frame, const PellucidLight& light, uint32_t map) {
-  const PellucidShadowMap* maps = frame.shadowMaps + light.firstShadowMap;
+float longestEntrySide(const FrameFacts& facts) {
+  constexpr float kPerPath = 3;
+  float shortest = std::numeric_limits<float>::infinity();
+  for (uint32_t i = 0; i < facts.frame.materialCount; ++i)
+    shortest = std::min(shortest, meanFreePath(facts.material(i)));
+  return shortest / (kPerPath * static_cast<float>(kQualities[facts.frame.quality].finer) * 1000 *
+                     facts.frame.metersPerUnit);
+}
+
+EntryExtent entryExtent(const FrameFacts& facts, const PellucidLight& light, uint32_t map) {
+  const PellucidShadowMap* maps = facts.frame.shadowMaps + light.firstShadowMap;
+  const PellucidShadowMap* end = maps + light.shadowMapCount;
   const auto fits = [&](uint32_t side) {
     uint64_t rows = 0;
-    for (uint32_t i = 0; i < light.shadowMapCount; ++i) {
-      if (parts(maps[i].extent[0], side) > kEntryColumns) return false;
-      if (parts(maps[i].extent[1], side) > kEntryColumns) return false;
-      rows += entryGroups(parts(maps[i].extent[1], side));
+    for (const PellucidShadowMap* m = maps; m < end; ++m) {
+      if (parts(m->extent[0], side) > kEntryColumns || parts(m->extent[1], side) > kEntryColumns)
+        return false;
+      rows += entryGroups(parts(m->extent[1], side));
     }
     return rows <= kEntryRows;
   };
+  const auto isFineEnough = [&](uint32_t side) {
+    return std::all_of(maps, end, [&](const PellucidShadowMap& m) {
+      return !isPerspective(m) && std::min(m.extent[0], m.extent[1]) / side >= kLeastEntries &&
+             side * texelSide(m) <= static_cast<double>(facts.longestEntrySide);
+    });
+  };
   uint32_t side = 1;
-  while (!fits(side)) side *= 2;
+  while (!fits(side) || isFineEnough(2 * side)) side *= 2;
   return {parts(maps[map].extent[0], side), parts(maps[map].extent[1], side), side};
 }
 

@@ -10,6 +10,10 @@ namespace pellucid {
 // entries than texels, as samples are further apart than their texels.
 constexpr uint32_t kEntryColumns = 1024, kEntryRows = 4096;
 
+// Entry points along either side of a map that no length takes away: they know but the texel in their middle,
+// and bodies have details whatever their material.
+constexpr uint32_t kLeastEntries = 512;
+
 // Whole groups of the pass that makes them.
 constexpr uint32_t entryGroups(uint32_t entries) {
   return parts(entries, PELLUCID_ENTRY_POINTS_GROUP) * PELLUCID_ENTRY_POINTS_GROUP;
@@ -23,8 +27,14 @@ struct EntryExtent {
   uint32_t side;  // texels of the map that an entry point stands for, a side
 };
 
-// Extent of one of the light's maps: a power of two of texels a side, so that all of them fit.
-EntryExtent entryExtent(const PellucidFrame& frame, const PellucidLight& light, uint32_t map);
+// Longest side of an entry point across the light, scene units: of a frame's shortest mean free path a third,
+// and by frame.quality finer. A third costs heads 3 % of the gather's error, two thirds 60 %; docs/lab has
+// the table.
+float longestEntrySide(const FrameFacts& facts);
+
+// Extent of one of the light's maps: a power of two of texels a side, so that all of them fit. Orthographic
+// maps take no more entry points than longestEntrySide() asks for.
+EntryExtent entryExtent(const FrameFacts& facts, const PellucidLight& light, uint32_t map);
 
 // `row`: of the map's first entry point. `light`: its place among the dispatch's.
 struct EntryConstants {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "defaults.h"
+#include "entry_points.h"
 #include "gather.h"
 #include "validate.h"
 
@@ -54,6 +55,7 @@ void addGather(FrameFacts& f) {
                     : f.whyNotGathered                                  ? 0
                                        : kQualities[f.frame.quality].gatherSamples;
   f.gatherSpacing = gatherSpacing(f.frame);
+  f.longestEntrySide = longestEntrySide(f);
   f.gathers = (f.frame.features & PELLUCID_FEATURE_TRANSLUCENCY) != 0 && f.gatherSamples > 0 && !f.debug();
 }
 
@@ -63,9 +65,6 @@ void addLights(FrameFacts& f) {
                  f.frame.debugView == PELLUCID_DEBUG_THICKNESS ||
                  std::any_of(f.frame.lights, f.frame.lights + f.frame.lightCount,
                              [&](const PellucidLight& light) { return f.takesChord(light); });
-  f.needsMapThickness =
-      std::any_of(f.frame.lights, f.frame.lights + f.frame.lightCount,
-                  [&](const PellucidLight& light) { return !f.takesChord(light) && !f.isGathered(light); });
   f.lights = LightGroups::of(f);
 }
 

@@ -43,10 +43,10 @@ struct FrameFacts {
   uint32_t gatherSamples = 0;            // of each probe, by frame.quality if that chooses
   uint32_t gatherSpacing = 0;            // pixels a side of what one probe stands for
   bool gathers = false;                  // lights with a map are gathered from
+  float longestEntrySide = 0;            // see entry_points.h
 
   // ---- Of the lights
-  bool needsChord = false;         // thickness along view rays is asked for
-  bool needsMapThickness = false;  // thickness along lights' rays is asked for
+  bool needsChord = false;  // thickness along view rays is asked for
   LightGroups lights;
 
   // ---- Of what runs

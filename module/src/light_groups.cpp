@@ -45,7 +45,7 @@ bool LightGroup::addLight(const FrameFacts& facts, const PellucidLight& light) {
   }
   if (facts.isGathered(light)) {
     for (uint32_t i = 0; i < light.shadowMapCount; ++i) {
-      const EntryExtent extent = entryExtent(frame, light, i);
+      const EntryExtent extent = entryExtent(facts, light, i);
       grown.entryColumns = std::max(grown.entryColumns, entryGroups(extent.width));
       grown.entryRows += entryGroups(extent.height);
       grown.entryWidth = std::max(grown.entryWidth, extent.width);

@@ -8,6 +8,7 @@
 #include "draw.glsl"
 #include "frame/gbuffer_decode.glsl"
 #include "lib/rect.glsl"
+#include "lib/surface.glsl"
 #include "shared/pellucid_shared.h"
 
 layout(location = 1) in vec2 uv;
@@ -30,40 +31,45 @@ layout(set = 0, binding = PLANNED_BINDINGS + PELLUCID_BINDING_NORMAL) uniform te
 layout(set = 0, binding = PLANNED_BINDINGS + PELLUCID_BINDING_MATERIAL) uniform utexture2D materialImage;
 #define SHADOW_BINDING PLANNED_BINDINGS + PELLUCID_BINDING_SHADOW_IMAGES
 #include "frame/shadow_images.glsl"
-#include "translucency/transmission.glsl"
+vec3 triangleNormal; // of the back face that is drawn
 
-// The normal of the front depths, from pixels with the same material.
-vec3 facetAt(ivec2 pixel, float front, uint material) {
+// Depths count where a pixel has the material of this one.
+vec3 facetAt(ivec2 pixel, bool back) {
+  if (back) return triangleNormal;
   const ivec2 steps[4] = ivec2[](ivec2(1, 0), ivec2(-1, 0), ivec2(0, 1), ivec2(0, -1));
+  uint material = decodeMaterial(texelFetch(materialImage, pixel, 0));
   vec4 beside = vec4(-1.0);
   for (int i = 0; i < 4; ++i) {
     ivec2 at = pixel + steps[i];
     if (contains(ivec4(frame.rect), at) && decodeMaterial(texelFetch(materialImage, at, 0)) == material)
       beside[i] = planarDistance(frame.camera, texelFetch(earlierDepth, at, 0).r);
   }
-  return normalOfDepths(frame.camera, pixel, front, beside);
+  return normalOfDepths(frame.camera, pixel, planarDistance(frame.camera, texelFetch(earlierDepth, pixel, 0).r), beside);
 }
+
+#include "translucency/transmission.glsl"
 
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
+  ViewRay ray = viewRay(frame.camera, pixel);
+  // Derivatives need all invocations.
+  vec3 at = ray.origin + planarDistance(frame.camera, gl_FragCoord.z) * ray.direction, across = cross(dFdx(at), dFdy(at));
+  triangleNormal = across / max(length(across), 1.0e-30);
   float front = texelFetch(earlierDepth, pixel, 0).r;
   uint material = decodeMaterial(texelFetch(materialImage, pixel, 0));
   bool sameObject = texelFetch(frontObject, pixel, 0).a == draw.addedColor.a;
   if (isHole(uv) || !sameObject || !isNearer(front, gl_FragCoord.z)) discard;
   if (material == 0u || material > frame.flags.y) discard;
 
-  ViewRay ray = viewRay(frame.camera, pixel);
   vec3 normal = vec3(0.0);
   if (hasFlag(PELLUCID_FLAG_NORMAL))
     normal = mat3(frame.viewFromNormal) * decodeNormal(texelFetch(normalImage, pixel, 0));
   float through = chord(planarDifference(frame.camera, gl_FragCoord.z, front), ray);
-  float planar = planarDistance(frame.camera, front);
-  Surface s = makeSurface(ray, planar, through, normal);
+  Surface s = makeSurface(ray, planarDistance(frame.camera, front), through, normal);
   s.material = material;
-  s.facet = facetAt(pixel, planar, material);
   vec3 sum = vec3(0.0);
   for (uint i = 0u; i < draw.ids.w; ++i) {
-    Transmitted t = lightTransmission(lights[i], s, lights[i].meta.z != 0u);
+    Transmitted t = lightTransmission(lights[i], s, pixel, lights[i].meta.z != 0u);
     vec3 light = t.arriving * t.visible;
     if (t.thickness >= 0.0 && max(light.r, max(light.g, light.b)) > 0.0)
       sum += light * materialTransmittance(material - 1u, t.thickness * frame.camera.range.w);
