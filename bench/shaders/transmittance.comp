@@ -6,6 +6,8 @@
 #extension GL_GOOGLE_include_directive : require
 
 #include "frame/gbuffer_decode.glsl"
+#include "lib/rect.glsl"
+#include "lib/surface.glsl"
 #include "steps.glsl"
 
 layout(push_constant) uniform Pass { uvec4 value; } pass; // x: lights
@@ -24,7 +26,16 @@ vec4 shadowQuad(uint image, ivec2 low, ivec2 high) {
   return vec4(shadowTexel(image, low), shadowTexel(image, ivec2(high.x, low.y)), shadowTexel(image, ivec2(low.x, high.y)),
               shadowTexel(image, high));
 }
-vec3 facetAt(ivec2 pixel, bool back) { return vec3(0.0); }
+float distanceOf(ivec2 pixel, uint material, bool back) {
+  if (!contains(ivec4(frame.rect), pixel) || decodeMaterial(texelFetch(materialImage, pixel, 0)) != material) return -1.0;
+  float front = texelFetch(frontImage, pixel, 0).x;
+  if (!back) return front;
+  float through = texelFetch(thicknessOrBackImage, pixel, 0).x;
+#ifdef THICKNESS
+  through = through > 0.0 ? front + through / length(viewRay(frame.camera, pixel).direction) : -1.0;
+#endif
+  return through;
+}
 
 #include "translucency/transmission.glsl"
 

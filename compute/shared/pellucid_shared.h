@@ -184,7 +184,7 @@ namespace pellucid::shared {
 
 struct MaterialConstants {
   vec4 transmittance[3]; // per channel, the model's first four parameters
-  vec4 transmittance4;   // rgb: the fifth
+  vec4 transmittance4;   // rgb: the fifth; w: mm at which no channel lets light through that a half shows
   vec4 inverseReflectance; // rgb: 1/rho; w: 1 / mm at which T falls to half
   uvec4 meta;            // x: model; y: Gaussians
   vec4 gaussianFalloff[PELLUCID_GAUSSIANS]; // rgb: 1/(2 v), 1/mm^2; 1/v for the printed form

@@ -13,20 +13,9 @@ layout(set = 0, binding = PELLUCID_BINDING_BACK_DEPTH) uniform texture2D backDep
 #include "frame/shadow_images.glsl"
 #include "lib/surface.glsl"
 
-float distanceAt(ivec2 pixel, bool back) {
+float distanceOf(ivec2 pixel, uint material, bool back) {
+  if (!insideRect(pixel) || materialAt(pixel) != material) return -1.0;
   return back ? backDistanceOf(texelFetch(backDepthImage, pixel, 0).x) : frontDistance(pixel);
-}
-
-// Depths count where a pixel has the material of this one.
-vec3 facetAt(ivec2 pixel, bool back) {
-  const ivec2 steps[4] = ivec2[](ivec2(1, 0), ivec2(-1, 0), ivec2(0, 1), ivec2(0, -1));
-  uint material = materialAt(pixel);
-  vec4 beside = vec4(-1.0);
-  [[unroll]] for (int i = 0; i < 4; ++i) {
-    ivec2 at = pixel + steps[i];
-    if (insideRect(at) && materialAt(at) == material) beside[i] = distanceAt(at, back);
-  }
-  return normalOfDepths(frame.camera, pixel, distanceAt(pixel, back), beside);
 }
 
 #include "translucency/transmission.glsl"

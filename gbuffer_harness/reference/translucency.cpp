@@ -29,7 +29,8 @@ Translucency::Receiver Translucency::toWorld(const Surface& s, const PellucidMat
              std::nullopt,
              s.chord,
              index,
-             halfThickness(material)};
+             halfThickness(material),
+             opaqueThickness(material)};
   if (s.normal) r.normal = rotation * *s.normal;
   if (s.facet) r.facet = rotation * *s.facet;
   if (s.backFacet) r.backFacet = rotation * *s.backFacet;
@@ -102,9 +103,10 @@ bool Translucency::beyondExit(const ShadowView::Lookup& lookup, const Receiver& 
 
 // None where the texel stores the receiver itself, which a face that turns away from the light is not.
 double Translucency::comesThrough(const ShadowView::Lookup& lookup, const Receiver& r,
-                                  const glm::dvec3& toLight) {
+                                  const glm::dvec3& toLight) const {
   constexpr double kTurned = 0.5;
   if (!entersMedium(lookup, r) || beyondExit(lookup, r, toLight)) return 0;
+  if (lookup.distance * surfaces_.millimetersPerUnit() >= r.opaqueThickness) return 0;
   const double cosine = r.facet ? glm::dot(*r.facet, toLight) : 0;
   const double tolerance =
       (ownTolerance(lookup, cosine) + lookup.uncertain) * std::clamp(1 + cosine / kTurned, 0.0, 1.0);

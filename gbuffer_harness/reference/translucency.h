@@ -38,7 +38,7 @@ private:
     std::optional<glm::dvec3> normal, facet, backFacet;
     std::optional<double> chord;  // scene units
     int material;
-    double halfThickness;  // mm at which the material's T falls to half
+    double halfThickness, opaqueThickness;  // mm; see transmittance.h
   };
   // One light's part of a Transmission.
   struct LightPath {
@@ -63,7 +63,7 @@ private:
   // Scene units along the light that a point of a stored surface may lie off the depth of its own texel.
   static double ownTolerance(const ShadowView::Lookup& lookup, double cosine);
   // Part of the light that a texel says comes through to the receiver.
-  static double comesThrough(const ShadowView::Lookup& lookup, const Receiver& r, const glm::dvec3& toLight);
+  double comesThrough(const ShadowView::Lookup& lookup, const Receiver& r, const glm::dvec3& toLight) const;
   // Scene units. `weights`: of the taps; not all 0.
   double meanThickness(const Taps& taps, const std::array<double, 4>& weights, const Receiver& r) const;
   double litPart(std::size_t light, const Receiver& r, const glm::dvec3& backPoint) const;

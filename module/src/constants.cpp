@@ -178,6 +178,7 @@ shared::MaterialConstants materialConstants(const PellucidMaterial& m, bool gath
   const float exponent = m.transmittanceModel == PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED ? 1.0f : 0.5f;
   if (gathers) c.gather = gatherConstants(m);
   c.inverseReflectance.w = static_cast<float>(1 / halfThickness(m));
+  c.transmittance4.w = static_cast<float>(opaqueThickness(m));
   for (int channel = 0; channel < 3; ++channel) {
     const float* t = m.transmittance[channel];
     // The shader reads a, kappa, z, b and c of SINH_EXP as xyzw and the fifth.

@@ -16,7 +16,7 @@ glm::dvec3 linear(const glm::dmat4& m, int row) { return {m[0][row], m[1][row], 
 }  // namespace
 
 float longestEntrySide(const FrameFacts& facts) {
-  constexpr float kPerPath = 3;
+  constexpr float kPerPath = 2;
   float shortest = std::numeric_limits<float>::infinity();
   for (uint32_t i = 0; i < facts.frame.materialCount; ++i)
     shortest = std::min(shortest, meanFreePath(facts.material(i)));

@@ -38,7 +38,8 @@ Channel channelOf(const PellucidMaterial& m, int index) {
     return c;
   }
   // kappa coth(kappa (d + e)) is the rate of T at half depth.
-  const double half = halfDepth([&](double d) { return c.transmittance(d); }, 100 / c.slowest);
+  const auto t = [&](double d) { return c.transmittance(d); };
+  const double half = depthOf(t, 0.5 * t(0), 100 / c.slowest);
   const double a1 = p(0) * std::exp(-p(1) * half), a2 = p(2) * std::exp(-p(3) * half);
   const double excess = (a1 * p(1) + a2 * p(3)) / (a1 + a2) / c.slowest - 1;
   c.extrapolation =

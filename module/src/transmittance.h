@@ -41,24 +41,33 @@ inline double transmittance(const PellucidMaterial& m, size_t channel, double d)
   }
 }
 
-// The depth below `high` at which a falling T is half of T(0); of a T that does not fall that far, `high`.
+// The depth below `high` at which a falling T is `least`; `high` where T does not fall that far.
 template <class T>
-double halfDepth(const T& transmittance, double high) {
-  const double half = 0.5 * transmittance(0.0);
+double depthOf(const T& transmittance, double least, double high) {
   double low = 0;
   for (int step = 0; step < 60; ++step) {
     const double middle = 0.5 * (low + high);
-    (transmittance(middle) > half ? low : high) = middle;
+    (transmittance(middle) > least ? low : high) = middle;
   }
   return low;
 }
 
+constexpr double kMostThickness = 1000;  // mm
+
 // mm at which the mean of the channels' T is half of T(0), from .001 to 1000.
 inline double halfThickness(const PellucidMaterial& m) {
-  const auto mean = [&](double d) {
+  const auto sum = [&](double d) {
     return transmittance(m, 0, d) + transmittance(m, 1, d) + transmittance(m, 2, d);
   };
-  return std::max(halfDepth(mean, 1000), 1e-3);
+  return std::max(depthOf(sum, 0.5 * sum(0), kMostThickness), 1e-3);
+}
+
+// mm beyond which each channel's T is below 2e-5, the twentieth of a half's rounding; INFINITY where it never is.
+inline double opaqueThickness(const PellucidMaterial& m) {
+  const auto most = [&](double d) {
+    return std::max({transmittance(m, 0, d), transmittance(m, 1, d), transmittance(m, 2, d)});
+  };
+  return most(kMostThickness) > 2e-5 ? INFINITY : depthOf(most, 2e-5, kMostThickness);
 }
 
 }  // namespace pellucid

@@ -301,12 +301,14 @@ TEST(Reference, OccluderInFrontOfTheBackFace) {
   Capture c = backLitSlab();
   c.lights[0].shadowMaps = {mapBehindSlab()};
   // Nearer to the light than the slab's back face at 100: an occluder 10 mm behind the slab.
-  *c.lights[0].shadowMaps[0].depth.image.at(4, 3) = 90;
+  // Texels around that of the pixel count, too.
+  for (const int x : {3, 4, 5})
+    for (const int y : {2, 3, 4}) *c.lights[0].shadowMaps[0].depth.image.at(x, y) = 90;
   const Image light = debugView(c, PELLUCID_DEBUG_THICKNESS);
   EXPECT_NEAR(light.at(2, 2)[1], 14, 1e-4);
   const Image camera = debugView(c, PELLUCID_DEBUG_OCCLUSION, PELLUCID_THICKNESS_CAMERA);
   EXPECT_EQ(camera.at(2, 2)[0], 0);
-  EXPECT_EQ(camera.at(1, 1)[0], 1);
+  EXPECT_GT(camera.at(0, 0)[0], 0) << "a texel beside the occluder counts here";
 }
 
 TEST(Reference, SurfaceNearerThanTheMapHasThicknessZero) {

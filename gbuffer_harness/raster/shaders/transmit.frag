@@ -31,20 +31,12 @@ layout(set = 0, binding = PLANNED_BINDINGS + PELLUCID_BINDING_NORMAL) uniform te
 layout(set = 0, binding = PLANNED_BINDINGS + PELLUCID_BINDING_MATERIAL) uniform utexture2D materialImage;
 #define SHADOW_BINDING PLANNED_BINDINGS + PELLUCID_BINDING_SHADOW_IMAGES
 #include "frame/shadow_images.glsl"
-vec3 triangleNormal; // of the back face that is drawn
+vec2 slope; // of the device depth of the triangle that is drawn, which is affine over pixels
 
-// Depths count where a pixel has the material of this one.
-vec3 facetAt(ivec2 pixel, bool back) {
-  if (back) return triangleNormal;
-  const ivec2 steps[4] = ivec2[](ivec2(1, 0), ivec2(-1, 0), ivec2(0, 1), ivec2(0, -1));
-  uint material = decodeMaterial(texelFetch(materialImage, pixel, 0));
-  vec4 beside = vec4(-1.0);
-  for (int i = 0; i < 4; ++i) {
-    ivec2 at = pixel + steps[i];
-    if (contains(ivec4(frame.rect), at) && decodeMaterial(texelFetch(materialImage, at, 0)) == material)
-      beside[i] = planarDistance(frame.camera, texelFetch(earlierDepth, at, 0).r);
-  }
-  return normalOfDepths(frame.camera, pixel, planarDistance(frame.camera, texelFetch(earlierDepth, pixel, 0).r), beside);
+float distanceOf(ivec2 pixel, uint material, bool back) {
+  if (!contains(ivec4(frame.rect), pixel) || decodeMaterial(texelFetch(materialImage, pixel, 0)) != material) return -1.0;
+  vec2 steps = vec2(pixel) + 0.5 - gl_FragCoord.xy;
+  return planarDistance(frame.camera, back ? gl_FragCoord.z + dot(slope, steps) : texelFetch(earlierDepth, pixel, 0).r);
 }
 
 #include "translucency/transmission.glsl"
@@ -52,9 +44,7 @@ vec3 facetAt(ivec2 pixel, bool back) {
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   ViewRay ray = viewRay(frame.camera, pixel);
-  // Derivatives need all invocations.
-  vec3 at = ray.origin + planarDistance(frame.camera, gl_FragCoord.z) * ray.direction, across = cross(dFdx(at), dFdy(at));
-  triangleNormal = across / max(length(across), 1.0e-30);
+  slope = vec2(dFdx(gl_FragCoord.z), dFdy(gl_FragCoord.z)); // before invocations part
   float front = texelFetch(earlierDepth, pixel, 0).r;
   uint material = decodeMaterial(texelFetch(materialImage, pixel, 0));
   bool sameObject = texelFetch(frontObject, pixel, 0).a == draw.addedColor.a;
