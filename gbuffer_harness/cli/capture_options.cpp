@@ -132,6 +132,14 @@ void addModelOptions(CLI::App& command, CaptureOptions& options, SceneUse use) {
       .add_option("--unit", options.unit, "mm, cm, m or a number of meters: the length of the file's unit")
       ->capture_default_str()
       ->group(group);
+  CLI::Option* time = command
+                          .add_option("--time", options.time,
+                                      "seconds into the file's animation (default: nodes as they stand)")
+                          ->check(CLI::NonNegativeNumber)
+                          ->group(group);
+  command.add_option("--animation", options.animation, "name or number from 0 (default: the first)")
+      ->needs(time)
+      ->group(group);
   command.add_flag("--fill-holes", options.fillHoles, "close the holes of bodies that have a material")
       ->group(group);
   command.add_option("--camera", options.camera, "name of one of the file's cameras, or auto")->group(group);
@@ -235,6 +243,16 @@ void say(const CaptureModel& model) {
   warn(model.warnings);
 }
 
+void requireTranslucent(const CaptureModel& model) {
+  if (!model.model.materials.empty()) return;
+  std::string names;
+  for (const std::string& name : model.materialNames) names += (names.empty() ? "" : ", ") + name;
+  throw InputError(
+      model.model.name, "materials",
+      "none is translucent; --material NAME=PRESET makes one so, as in --material '*=skin1'; there are " +
+          names);
+}
+
 void setIor(std::vector<MaterialSource>& materials, const CaptureOptions& options) {
   if (!options.ior) return;
   for (std::size_t i = 0; i < materials.size(); ++i)
@@ -278,10 +296,14 @@ CaptureModel captureModel(const CaptureOptions& options, const std::vector<doubl
     gltf.presets[set.key] = set.value;
   }
   gltf.ior = options.ior.value_or(0);
+  gltf.time = options.time;
+  gltf.animation = options.animation;
+  gltf.camera = options.camera;
   GltfScene scene = loadGltf(options.model, gltf);
   result.model = std::move(scene.model);
   result.notes = std::move(scene.notes);
   result.warnings = std::move(scene.warnings);
+  result.materialNames = std::move(scene.materialNames);
   if (options.fillHoles) {
     const std::size_t filled = fillHoles(result.model);
     result.warnings.push_back("--fill-holes: " + std::to_string(filled) + " holes filled");

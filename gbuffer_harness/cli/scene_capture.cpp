@@ -36,8 +36,13 @@ Capture captureScene(const SceneParameters& scene, const CaptureOptions& options
 RasterResult captureScene(Device& device, const Model& model, const ModelCamera& camera,
                           const RasterOptions& raster, const std::optional<Environment>& environment) {
   RasterResult result = rasterize(device, model, camera, raster);
-  if (needsTracing(model.lights, environment))
-    addTracedLight(result.capture, *reference::makeMeshScene(model), environment);
+  if (!needsTracing(model.lights, environment)) return result;
+  const Image drawn = result.capture.irradiance;
+  addTracedLight(result.capture, *reference::makeMeshScene(model), environment);
+  for (std::size_t i = 0; i < result.reflectedShare.data.size(); ++i) {
+    float& irradiance = result.capture.irradiance.data[i];
+    irradiance = drawn.data[i] + (irradiance - drawn.data[i]) * result.reflectedShare.data[i];
+  }
   return result;
 }
 
