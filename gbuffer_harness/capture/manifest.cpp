@@ -66,6 +66,10 @@ struct BufferReader {
   BufferSource operator()(const Field& field, std::size_t components) const {
     BufferSource source;
     source.field = field.path();
+    if (const auto scale = field.find("scale")) {
+      source.scale = scale->number();
+      if (!(source.scale > 0)) scale->fail("must be above 0, is " + scale->shown());
+    }
     if (field.has("constant")) {
       for (const char* key : {"file", "part", "channel", "channels"})
         if (const auto other = field.find(key)) other->fail("a constant has no " + std::string(key));
@@ -131,12 +135,19 @@ std::array<int, 2> pairOf(const Field& field, int least) {
   return {items[0].integer(least, kMostTexels), items[1].integer(least, kMostTexels)};
 }
 
+void refuseScaleOfDevice(const Field& field, PellucidDepthEncoding encoding) {
+  if (encoding != PELLUCID_DEPTH_DEVICE) return;
+  if (const auto scale = field.find("scale"))
+    scale->fail("a device depth has no unit; the matrix says what it means");
+}
+
 ShadowMap readShadowMap(const Field& field) {
-  field.allowKeys({"file", "part", "channel", "constant", "encoding", "clipFromWorld", "viewFromWorld",
-                   "exit", "casterMaterial", "offset", "size", "layer", "faces", "depthBiasConstant",
-                   "depthBiasSlope", "offsetLength", "depthStep"});
+  field.allowKeys({"file", "part", "channel", "constant", "scale", "encoding", "clipFromWorld",
+                   "viewFromWorld", "exit", "casterMaterial", "offset", "size", "layer", "faces",
+                   "depthBiasConstant", "depthBiasSlope", "offsetLength", "depthStep"});
   ShadowMap map;
   map.depth.encoding = shadowEncoding(field);
+  refuseScaleOfDevice(field, map.depth.encoding);
   map.clipFromWorld = invertible(field["clipFromWorld"]);
   if (field.has("viewFromWorld") || map.depth.encoding != PELLUCID_DEPTH_DEVICE)
     map.viewFromWorld = rigid(field["viewFromWorld"]);
@@ -164,7 +175,7 @@ ShadowSources readShadowSources(const Field& map, const BufferReader& read, int 
     sources.tile = pairOf(*size, 1);
   }
   if (const auto exit = map.find("exit")) {
-    exit->allowKeys({"file", "part", "channel", "constant"});
+    exit->allowKeys({"file", "part", "channel", "constant", "scale"});
     sources.exit = read(*exit, 1);
   }
   if (const auto caster = map.find("casterMaterial")) {
@@ -237,22 +248,25 @@ Light readLight(const Field& field) {
 void readBuffers(const Field& buffers, const BufferReader& read, Manifest& manifest) {
   buffers.allowKeys({"frontDepth", "backDepth", "irradiance", "normal", "albedo", "material"});
   const auto depth = [&](const Field& field, DepthImage& image) {
-    field.allowKeys({"file", "part", "channel", "encoding", "constant"});
+    field.allowKeys({"file", "part", "channel", "encoding", "constant", "scale"});
     image.encoding = screenEncoding(field);
+    refuseScaleOfDevice(field, image.encoding);
     return read(field, 1);
   };
   manifest.frontDepth = depth(buffers["frontDepth"], manifest.capture.frontDepth);
   if (const auto field = buffers.find("backDepth"))
     manifest.backDepth = depth(*field, manifest.capture.backDepth);
 
-  buffers["irradiance"].allowKeys({"file", "part", "channels", "constant"});
+  buffers["irradiance"].allowKeys({"file", "part", "channels", "constant", "scale"});
   manifest.irradiance = read(buffers["irradiance"], 3);
   if (const auto field = buffers.find("albedo")) {
-    field->allowKeys({"file", "part", "channels", "constant"});
+    field->allowKeys({"file", "part", "channels", "constant", "scale"});
     manifest.albedo = read(*field, 3);
   }
   if (const auto field = buffers.find("normal")) {
-    field->allowKeys({"file", "part", "channels", "space", "constant"});
+    field->allowKeys({"file", "part", "channels", "space", "encoding", "constant"});
+    if (const auto encoding = field->find("encoding"))
+      manifest.normalIsUnorm = encoding->choice({"vector", "unorm"}) == 1;
     if (const auto space = field->find("space"))
       manifest.capture.normalsInViewSpace = space->choice({"world", "view"}) == 1;
     manifest.normal = read(*field, 3);
@@ -343,8 +357,8 @@ void parse(const Field& root, const BufferReader& read, Manifest& manifest) {
     if (const auto error = truth->find("standardError")) {
       error->allowKeys({"file", "part", "channels", "constant"});
       manifest.truthStandardError = read(*error, 3);
+      manifest.truthStandardError->scale = manifest.truth->scale;
     }
-    if (const auto scale = truth->find("scale")) manifest.truthScale = scale->number();
   }
 }
 
@@ -372,7 +386,6 @@ Manifest readManifest(const std::filesystem::path& path, ManifestPreset preset) 
       throw InputError(scene.string(), "", "no such file; tools/blender_export.py writes it");
     const nlohmann::json document = blenderManifest(path, scene, readText(scene));
     parse(Field(scene.string(), document), read, manifest);
-    manifest.irradianceScale = kIrradiancePerDiffDir;
     return manifest;
   }
   std::string text;

@@ -1,5 +1,7 @@
 #include "cli/capture_options.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <map>
 #include <numbers>
@@ -15,12 +17,14 @@ namespace pellucid::harness {
 
 namespace {
 
+constexpr int kLargestSide = 8192;  // of RasterOptions
+
 constexpr const char *kModelGroup = "Models", *kSceneGroup = "Procedural scenes";
 
 // Fields that SceneParameters and RasterOptions have in common.
 template <class Parameters>
 void setCommon(const CaptureOptions& options, Parameters& to) {
-  const std::vector<std::string> size = split(options.size, 'x');
+  const std::vector<std::string> size = split(options.size.empty() ? "512x512" : options.size, 'x');
   if (size.size() != 2) throw UsageError("--size: \"" + options.size + "\" is not WIDTHxHEIGHT");
   to.width = parseNumber<int>("--size", size[0]);
   to.height = parseNumber<int>("--size", size[1]);
@@ -89,7 +93,9 @@ ShadowDrawing shadowDrawing(const CaptureOptions& options) {
 }
 
 void addCommonOptions(CLI::App& command, CaptureOptions& options) {
-  command.add_option("--size", options.size, "WIDTHxHEIGHT in pixels")->capture_default_str();
+  command.add_option(
+      "--size", options.size,
+      "WIDTHxHEIGHT in pixels (default: 512x512, and 512 high for a file's camera with an aspect)");
   const std::map<std::string, bool> projections = {{"perspective", false}, {"orthographic", true}};
   command
       .add_option("--projection", options.orthographic,
@@ -309,6 +315,9 @@ CaptureModel captureModel(const CaptureOptions& options, const std::vector<doubl
     result.warnings.push_back("--fill-holes: " + std::to_string(filled) + " holes filled");
   }
   result.camera = chooseCamera(options, result.model, result.raster, turns);
+  if (options.size.empty() && result.camera.aspect > 0)
+    result.raster.width = static_cast<int>(
+        std::clamp(std::round(result.raster.height * result.camera.aspect), 1.0, double(kLargestSide)));
   std::vector<std::string> lights = options.lights;
   if (lights.empty() && result.model.lights.empty()) {
     lights = {kBackLight};

@@ -16,7 +16,7 @@ namespace pellucid::harness {
 
 // As given. Options of both kinds of scene stand before the two; absent ones have each kind's own default.
 struct CaptureOptions {
-  std::string size = "512x512", device;
+  std::string size, device;  // "": of a model whose camera has an aspect 512 high, else 512x512
   bool infiniteFar = false, viewNormals = false;
   std::optional<bool> reversedZ, orthographic;
   std::optional<PellucidDepthEncoding> depth, shadowDepth;

@@ -214,6 +214,7 @@ void Loader::addCamera(std::size_t node, const glm::dmat4& world) {
     require(o.znear >= 0 && o.znear < 1e18, ".orthographic.znear", o.znear, ">= 0");
     require(o.zfar > o.znear && o.zfar < 1e18, ".orthographic.zfar", o.zfar, "> znear");
     result.height = 2 * o.ymag;
+    if (o.xmag > 0 && o.xmag < 1e18) result.aspect = o.xmag / o.ymag;
     result.range = {o.znear, o.zfar, true};
   } else {
     const tinygltf::PerspectiveCamera& p = camera.perspective;
@@ -221,6 +222,8 @@ void Loader::addCamera(std::size_t node, const glm::dmat4& world) {
     require(p.znear > 0 && p.znear < 1e18, ".perspective.znear", p.znear, "> 0");
     require(p.zfar == 0 || (p.zfar > p.znear && p.zfar < 1e18), ".perspective.zfar", p.zfar, "> znear");
     result.verticalFov = p.yfov;
+    require(p.aspectRatio >= 0 && p.aspectRatio < 1e18, ".perspective.aspectRatio", p.aspectRatio, "> 0");
+    result.aspect = p.aspectRatio;
     result.range = {p.znear, p.zfar > 0 ? p.zfar : std::numeric_limits<double>::infinity(), true};
   }
   const Frame frame = frameOf(world);

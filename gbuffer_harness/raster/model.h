@@ -71,6 +71,7 @@ struct ModelCamera {
   bool orthographic = false;
   double verticalFov = 0.5;  // radians; perspective
   double height = 1;         // scene units from the lower to the upper edge; orthographic
+  double aspect = 0;         // width / height of the image it is meant for; 0: any
   ClipRange range;           // `reversed` is decided by the rasterizer's options
 };
 

@@ -106,7 +106,10 @@ TEST_F(Cli, TurntableAndSequence) {
   fs::remove(path("in.001.exr"));
   expect(3, "replay " + in + " -o " + out + " --frames 1-4", "2 written, 1 finished before, 1 failed");
   expect(3, "replay " + in + " -o " + out + " --frames 1,4",
-         "failed: --frames 1\n  frame 1: " + path("in.001.exr"));
+         "failed: --frames 1\n  frames 1: " + in + " is not there");
+  expect(3, "replay " + in + " -o " + out + " --frames 1-300",
+         "failed: --frames 1,5-300\n  frames 1,5-300: " + in + " is not there");
+  expect(0, "replay " + in + " -o " + out, "0 written, 3 finished before, 0 failed");
   EXPECT_EQ(bytes("out.3.exr"), bytes("third.exr"));
   expect(0, "compare " + path("out.2.exr") + " " + path("out.3.exr"), "rel_rmse");
   for (const auto& entry : fs::directory_iterator(folder_))
@@ -119,14 +122,16 @@ TEST_F(Cli, TurntableAndSequence) {
 }
 
 TEST_F(Cli, SequenceUsage) {
-  expect(2, "replay in.####.exr", "\"in.####.exr\" is a sequence: --frames FIRST-LAST is required");
+  expect(2, "replay in.####.exr", "a sequence: -o with #### is required");
+  expect(3, "replay in.####.exr -o o.####.exr", "in.####.exr: no file has such a name");
   expect(2, "replay in.exr -o o.#.exr --frames 1-2", "\"in.exr\" is not a file name with one run of #");
   expect(2, "replay in.#.exr -o o.exr --frames 1-2", "\"o.exr\" is not a file name with one run of #");
   expect(2, "replay in.#.exr --frames 1-2", "-o with #### is required");
   expect(2, "replay in.#.exr -o o.#.exr --frames 2-1", "\"2-1\" ends before it begins");
   expect(2, "replay in.#.exr -o o.#.exr --frames 1-2 --png", "--exposure");
   expect(2, "replay in.#.exr -o o.#.exr --frames 1-2 --triptych t.png", "--triptych");
-  expect(2, "replay in.#.exr -o o.#.exr --frames 1-2 --repeat 2", "--repeat times one capture, not --frames");
+  expect(2, "replay in.#.exr -o o.#.exr --frames 1-2 --repeat 2",
+         "--repeat times one capture, not a sequence");
   expect(2, "replay in.exr --repeat -1", "--repeat");
   expect(2, "capture --procedural ear --turntable 3 -o x.exr", "one run of #");
   expect(2, "capture --procedural ear --orbit -o x.exr", "--orbit: needs --turntable");

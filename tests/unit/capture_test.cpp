@@ -271,6 +271,31 @@ TEST_F(Manifests, OneChannelMayServeTwice) {
   EXPECT_EQ(capture.irradiance.at(3, 2)[2], sample.irradiance.at(3, 2)[2]);
 }
 
+// Programs store E / pi, pre-exposed light, centimeters, and normals as 0 .. 1.
+TEST_F(Manifests, StoredValuesMayHaveAScale) {
+  const Capture plain = read();
+  manifest["buffers"]["frontDepth"]["scale"] = 0.01;
+  manifest["buffers"]["irradiance"]["scale"] = 4;
+  manifest["buffers"]["albedo"] = {{"constant", {0.25, 0.5, 0.125}}, {"scale", 2}};
+  Image normal(kSampleWidth, kSampleHeight, 3, 0.5f);
+  normal.data[2] = 1;
+  writeExr(directory / "n.exr", normal, {"R", "G", "B"});
+  manifest["buffers"]["normal"] = {{"file", "n.exr"}, {"channels", {"R", "G", "B"}}, {"encoding", "unorm"}};
+  const Capture scaled = read();
+  for (std::size_t i = 0; i < plain.irradiance.data.size(); ++i)
+    EXPECT_EQ(scaled.irradiance.data[i], 4 * plain.irradiance.data[i]);
+  for (std::size_t i = 0; i < plain.frontDepth.image.data.size(); ++i) {
+    const float stored = plain.frontDepth.image.data[i];
+    if (stored < 1e9f)
+      EXPECT_EQ(scaled.frontDepth.image.data[i], 0.01f * stored);
+    else
+      EXPECT_EQ(scaled.frontDepth.image.data[i], stored) << "nothing is there";
+  }
+  EXPECT_EQ(scaled.albedo.data[1], 1);
+  EXPECT_EQ(scaled.normal.data[0], 0);
+  EXPECT_EQ(scaled.normal.data[2], 1);
+}
+
 TEST_F(Manifests, FilesAreRelativeToTheManifest) {
   std::filesystem::create_directory(directory / "sub");
   for (const char* name : {"frontDepth", "backDepth", "irradiance", "material"})
@@ -372,6 +397,11 @@ TEST_P(Mistakes, AreNamed) {
 INSTANTIATE_TEST_SUITE_P(
     Required, Mistakes,
     testing::Values(
+        Mistake{"/buffers/irradiance/scale", "0", {"buffers.irradiance.scale", "above 0"}},
+        Mistake{"/buffers/material/scale", "2", {"buffers.material.scale"}},
+        Mistake{"/buffers/backDepth",
+                R"({"constant": [0.5], "encoding": "device", "scale": 2})",
+                {"buffers.backDepth.scale", "no unit"}},
         Mistake{"/pellucid", "", {"m.json", "pellucid", "missing"}},
         Mistake{"/camera", "", {"m.json", "camera", "missing"}},
         Mistake{"/camera/clipFromView", "", {"camera.clipFromView", "missing"}},
@@ -401,7 +431,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"/exposure", "1", {"m.json", "exposure", "unknown key"}},
         Mistake{"/camera/fov", "1", {"camera.fov", "unknown key"}},
         Mistake{"/buffers/depth", "{}", {"buffers.depth", "unknown key", "frontDepth"}},
-        Mistake{"/buffers/normal/encoding", "\"x\"", {"buffers.normal.encoding", "unknown key"}},
+        Mistake{"/buffers/normal/layer", "\"x\"", {"buffers.normal.layer", "unknown key"}},
         Mistake{"/buffers/material/channels", "[]", {"buffers.material.channels", "unknown key"}},
         Mistake{"/lights/0/glow", "1", {"lights[0].glow", "unknown key"}},
         Mistake{"/lights/0/radius", "1", {"lights[0].radius", "only a point light"}},

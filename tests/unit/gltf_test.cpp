@@ -132,10 +132,11 @@ TEST_F(Gltf, NormalsOfNoLengthComeFromTheTriangles) {
 TEST_F(Gltf, CamerasAndLights) {
   GltfBuilder b = square();
   b.json["scenes"][0]["nodes"] = {0, 1, 2, 3, 4};
-  b.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.1}}}},
-                       {{"name", "ortho"},
-                        {"type", "orthographic"},
-                        {"orthographic", {{"xmag", 3}, {"ymag", 2}, {"znear", 0}, {"zfar", 50}}}}};
+  b.json["cameras"] = {
+      {{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.1}, {"aspectRatio", 1.5}}}},
+      {{"name", "ortho"},
+       {"type", "orthographic"},
+       {"orthographic", {{"xmag", 3}, {"ymag", 2}, {"znear", 0}, {"zfar", 50}}}}};
   b.json["extensionsUsed"] = {"KHR_lights_punctual", "VENDOR_thing"};
   b.json["extensions"]["KHR_lights_punctual"]["lights"] = {
       {{"type", "directional"}, {"color", {1, 0.5, 0}}, {"intensity", 3}},
@@ -160,6 +161,8 @@ TEST_F(Gltf, CamerasAndLights) {
   EXPECT_EQ(m.cameras[1].name, "ortho");
   EXPECT_TRUE(m.cameras[1].orthographic);
   EXPECT_EQ(m.cameras[1].height, 4);
+  EXPECT_EQ(m.cameras[0].aspect, 1.5);
+  EXPECT_EQ(m.cameras[1].aspect, 1.5);
   EXPECT_NEAR(m.cameras[1].viewFromWorld[2], 1, 1e-12) << "it looks along -x";
   ASSERT_EQ(m.lights.size(), 2u);
   EXPECT_EQ(m.lights[0].type, PELLUCID_LIGHT_DIRECTIONAL);
