@@ -4,7 +4,7 @@
     blender -b scene.blend -P blender_capture.py -- -o out/ --frames 1-250    out/capture.0001.json and so on
 
 Options: --shadow-size 1024, --samples 16 (of lights that have a size), --truth SAMPLES (Cycles' own random walk).
-The scene in the file stays as it is.
+The scene in the file stays as it is. Installed as an add-on, the script has a panel in the properties of the render.
 """
 import argparse
 import contextlib
@@ -15,6 +15,10 @@ import sys
 
 import bpy
 from mathutils import Matrix, Vector
+
+bl_info = {"name": "Pellucid capture", "author": "Pellucid", "version": (0, 2, 0), "blender": (3, 4, 0),
+           "location": "Properties > Render > Pellucid", "category": "Render",
+           "description": "Renders the frame as a capture for pellucid replay"}
 
 VULKAN_FROM_OPENGL = Matrix(((1, 0, 0, 0), (0, -1, 0, 0), (0, 0, 0.5, 0.5), (0, 0, 0, 1)))
 LIGHT_KINDS = {"SUN": "directional", "POINT": "point", "SPOT": "spot"}
@@ -30,6 +34,10 @@ def rigid_inverse(matrix):
     """View space of an object: its matrix without scale, inverted."""
     location, rotation, _ = matrix.decompose()
     return (Matrix.Translation(location) @ rotation.to_matrix().to_4x4()).inverted()
+
+
+class Refused(Exception):
+    """What the scene lacks, in a sentence."""
 
 
 def say(sentence):
@@ -220,7 +228,7 @@ def bounds(depsgraph):
         if instance.object.type in ("MESH", "CURVE", "SURFACE", "META", "FONT"):
             corners += [instance.matrix_world @ Vector(corner) for corner in instance.object.bound_box]
     if not corners:
-        raise SystemExit("pellucid: the scene has nothing that a render shows")
+        raise Refused("the scene has nothing that a render shows")
     return corners
 
 
@@ -377,6 +385,8 @@ def render_maps(name, data, matrix, corners, size, folder, stem):
         for index, (view, extent) in enumerate(light_views(data, matrix, corners)):
             view_from_world = rigid_inverse(view)
             distances = [-(view_from_world @ corner).z for corner in corners]
+            if max(distances) <= 0:  # nothing is on this side
+                continue
             camera.matrix_world = view
             camera_data.clip_start = max(0.5 * min(distances), 1e-3 * max(distances))
             camera_data.clip_end = 1.1 * max(distances)
@@ -408,12 +418,12 @@ def capture(folder, stem, options):
     """Renders the current frame and writes its manifest."""
     scene, layer = bpy.context.scene, bpy.context.view_layer
     if not scene.camera:
-        raise SystemExit("pellucid: the scene has no camera")
+        raise Refused("the scene has no camera")
     os.makedirs(folder, exist_ok=True)
     depsgraph = bpy.context.evaluated_depsgraph_get()
     materials = translucent_materials(depsgraph)
     if not materials:
-        raise SystemExit("pellucid: no rendered material has subsurface scattering: raise Principled's Subsurface")
+        raise Refused("no rendered material has subsurface scattering: raise Principled's Subsurface")
     corners = bounds(depsgraph)
     unit = scene.unit_settings.scale_length
     file, back = f"{stem}.exr", f"{stem}.back.exr"
@@ -472,6 +482,63 @@ def capture(folder, stem, options):
     return path
 
 
+# ---- The add-on
+
+
+class PELLUCID_OT_capture(bpy.types.Operator):
+    """Renders the current frame as a capture for pellucid replay"""
+    bl_idname = "pellucid.capture"
+    bl_label = "Capture"
+
+    def execute(self, context):
+        words = context.scene.pellucid
+        options = argparse.Namespace(shadow_size=words.shadow_size, samples=words.samples, truth=words.truth)
+        try:
+            path = capture(bpy.path.abspath(words.folder), "capture", options)
+        except Refused as refusal:
+            self.report({"ERROR"}, str(refusal))
+            return {"CANCELLED"}
+        self.report({"INFO"}, f"wrote {path}; next: pellucid replay {path} -o out.exr --png")
+        return {"FINISHED"}
+
+
+class PellucidWords(bpy.types.PropertyGroup):
+    folder: bpy.props.StringProperty(name="Folder", subtype="DIR_PATH", default="//pellucid/")
+    shadow_size: bpy.props.IntProperty(name="Shadow map", description="Texels across", default=1024, min=1, max=8192)
+    samples: bpy.props.IntProperty(name="Samples", description="For lamps that have a size", default=16, min=1)
+    truth: bpy.props.IntProperty(name="Truth", description="Samples of a random walk; 0: none", default=0, min=0)
+
+
+class PELLUCID_PT_capture(bpy.types.Panel):
+    bl_label = "Pellucid"
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+    bl_context = "render"
+
+    def draw(self, context):
+        for name in ("folder", "shadow_size", "samples", "truth"):
+            self.layout.prop(context.scene.pellucid, name)
+        self.layout.operator("pellucid.capture")
+
+
+CLASSES = (PellucidWords, PELLUCID_OT_capture, PELLUCID_PT_capture)
+
+
+def register():
+    for thing in CLASSES:
+        bpy.utils.register_class(thing)
+    bpy.types.Scene.pellucid = bpy.props.PointerProperty(type=PellucidWords)
+
+
+def unregister():
+    del bpy.types.Scene.pellucid
+    for thing in reversed(CLASSES):
+        bpy.utils.unregister_class(thing)
+
+
+# ---- The command
+
+
 def frames_of(text):
     frames = []
     for part in text.split(","):
@@ -493,7 +560,10 @@ def main(arguments):
     for frame in frames:
         if frame is not None:
             scene.frame_set(frame)
-        last = capture(options.output, "capture" if frame is None else f"capture.{frame:04d}", options)
+        try:
+            last = capture(options.output, "capture" if frame is None else f"capture.{frame:04d}", options)
+        except Refused as refusal:
+            raise SystemExit(f"pellucid: {refusal}") from None
     pattern = last if frames == [None] else os.path.join(options.output, "capture.####.json")
     print(f"pellucid: wrote {last}\nnext: pellucid replay {pattern} -o "
           + ("out.exr --png" if frames == [None] else "out.####.exr"))

@@ -9,7 +9,9 @@ import sys
 import tempfile
 import unittest
 
-BLENDER, TOOLS, COMMAND = sys.argv[1:4]
+sys.dont_write_bytecode = True
+BLENDER, TOOLS, COMMAND = sys.argv[1], os.path.abspath(sys.argv[2]), sys.argv[3]
+os.environ["PYTHONDONTWRITEBYTECODE"] = "1"
 HERE = os.path.dirname(os.path.abspath(__file__))
 # Of each channel, over the wax. The random walk of 256 samples has a noise of some 2 %; shadow maps of 512 texels, the
 # slab kernel and the diffusion make up the rest.
@@ -94,6 +96,30 @@ class BlenderCapture(unittest.TestCase):
         # The picture, too: the depth in the middle of the window is the whole's there.
         ranges = [self.info(name + "/capture.json")["buffers"]["frontDepth"]["range"] for name in ("whole", "crop")]
         self.assertAlmostEqual(ranges[0][0], ranges[1][0], delta=1)
+
+    def test_every_kind_of_light_has_its_maps(self):
+        # A point within the scene, whose face away from everything is left out; one outside; a spot; an area light.
+        setup = ("import math; [bpy.data.objects.remove(o) for o in list(scene.objects) if o.type in ('LIGHT', 'EMPTY')]\n"
+                 "def add(name, kind, place, **more):\n"
+                 "  data = bpy.data.lights.new(name, kind); data.energy = 4e4; data.shadow_soft_size = 0\n"
+                 "  for key in more: setattr(data, key, more[key])\n"
+                 "  thing = bpy.data.objects.new(name, data); scene.collection.objects.link(thing); thing.location = place\n"
+                 "  return thing\n"
+                 "add('a', 'POINT', (14, 9, -8)); add('b', 'POINT', (30, 20, -90)); add('d', 'AREA', (0, 0, 40))\n"
+                 "add('c', 'SPOT', (0, 50, 0), spot_size=0.9).rotation_euler = (-math.pi / 2, 0, 0)")
+        text = self.capture("lights", "--shadow-size", "32", setup=setup)
+        self.assertIn("left out: light d of type AREA", text)
+        lights = self.manifest("lights/capture.json")["lights"]
+        self.assertEqual([light["type"] for light in lights], ["point", "point", "spot"])
+        self.assertEqual([len(light["shadowMaps"]) for light in lights], [5, 1, 1])
+        self.assertFalse([w for w in self.info("lights/capture.json")["warnings"] if "not of length 1" not in w])
+
+    def test_the_add_on_has_a_button(self):
+        use = ("import sys, bpy; sys.path.insert(0, %r); import blender_capture; blender_capture.register(); "
+               "words = bpy.context.scene.pellucid; words.folder = %r; words.shadow_size = 16; "
+               "assert bpy.ops.pellucid.capture() == {'FINISHED'}; blender_capture.unregister()") % (TOOLS, self.path("button"))
+        run(BLENDER, "-b", self.scene, "--python-exit-code", "1", "--python-expr", use)
+        self.assertEqual(self.info("button/capture.json")["size"], [96, 96])
 
     def test_frames_have_a_manifest_each(self):
         self.assertIn("capture.####.json", self.capture("frames", "--frames", "1-2", "--shadow-size", "16"))
