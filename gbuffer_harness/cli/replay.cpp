@@ -8,6 +8,8 @@
 #include <optional>
 
 #include "capture/exr.h"
+#include "capture/layers.h"
+#include "capture/manifest.h"
 #include "capture/material.h"
 #include "capture/read.h"
 #include "cli/commands.h"
@@ -33,7 +35,7 @@ constexpr uint32_t kDefaultRepeat = 3;
 
 struct Options {
   std::string input, output, device, triptych, frames;
-  bool png = false, overwrite = false;
+  bool png = false, overwrite = false, keepLayers = false;
   float exposure = 0;
   int jobs = 2;
   std::optional<uint32_t> repeat;
@@ -97,14 +99,18 @@ void writeFrame(const Options& options, const std::filesystem::path& output, con
   if (png)
     writeWhole(std::filesystem::path(output).replace_extension(".png"),
                [&](const auto& file) { writePng(file, image.width, image.height, toSrgb(image, exposure)); });
-  writeWhole(output, [&](const auto& file) {
-    writeExr(file, image, {"R", "G", "B"},
-             {{"pellucid.device", device.description()},
-              {"pellucid.capture", capture.name},
-              {"pellucid.plan", planJson(plan)},
-              {kSettingsAttribute, options.settings.text()},
-              {kDebugAttribute, options.settings.debug}});
-  });
+  ExrPart part;
+  part.attributes = {{"pellucid.device", device.description()},
+                     {"pellucid.capture", capture.name},
+                     {"pellucid.plan", planJson(plan)},
+                     {kSettingsAttribute, options.settings.text()},
+                     {kDebugAttribute, options.settings.debug}};
+  const char* const names[] = {"R", "G", "B"};
+  for (int c = 0; c < 3; ++c) part.channels.push_back({names[c], ExrFormat::Float, &image, c});
+  KeptLayers kept;
+  if (options.keepLayers) kept = readOtherLayers(readManifest(capture.name, options.preset).irradiance);
+  part.channels.insert(part.channels.end(), kept.channels.begin(), kept.channels.end());
+  writeWhole(output, [&](const auto& file) { writeExrParts(file, {part}); });
 }
 
 void replayOne(const Options& options, const ReplaySettings& settings) {
@@ -253,6 +259,8 @@ void addReplayCommand(CLI::App& app) {
           "frames that are timed, after a first one that compiles shaders: the median is printed; 0: "
           "no times; default: 3, not of a sequence")
       ->check(CLI::Range(0, 1000));
+  command->add_flag("--keep-layers", options->keepLayers,
+                    "also write the alpha and the other channels of the irradiance's file");
   command->add_flag("--png", options->png, "also write a PNG beside the EXR (--debug always does)");
   command->add_option("--triptych", options->triptych, "write a PNG of before | translucency | after");
   command->add_option("--exposure", options->exposure, "factor for PNGs; default: from the picture")
