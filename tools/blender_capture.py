@@ -3,7 +3,8 @@
     blender -b scene.blend -P blender_capture.py -- -o out/                   the current frame: out/capture.json
     blender -b scene.blend -P blender_capture.py -- -o out/ --frames 1-250    out/capture.0001.json and so on
 
-Options: --shadow-size 1024, --samples 16 (of lights that have a size), --truth SAMPLES (Cycles' own random walk).
+Options: --replay build/bin/pellucid (also makes out/picture.exr and .png), --shadow-size 1024, --samples 16 (of lights that
+have a size), --truth SAMPLES (Cycles' own random walk).
 The scene in the file stays as it is. Installed as an add-on, the script has a panel in the properties of the render.
 """
 import argparse
@@ -11,6 +12,7 @@ import contextlib
 import json
 import math
 import os
+import subprocess
 import sys
 
 import bpy
@@ -551,6 +553,7 @@ def main(arguments):
     parser = argparse.ArgumentParser(prog="blender_capture.py")
     parser.add_argument("-o", "--output", required=True, help="folder")
     parser.add_argument("--frames", help="FIRST-LAST or a list like 1-10,20 (default: the current frame)")
+    parser.add_argument("--replay", metavar="PELLUCID", help="the command that also makes the pictures")
     parser.add_argument("--shadow-size", type=int, default=1024, help="texels across a shadow map")
     parser.add_argument("--samples", type=int, default=16, help="a pixel, for the light of lamps that have a size")
     parser.add_argument("--truth", type=int, default=0, help="samples of a random walk to compare with")
@@ -564,9 +567,15 @@ def main(arguments):
             last = capture(options.output, "capture" if frame is None else f"capture.{frame:04d}", options)
         except Refused as refusal:
             raise SystemExit(f"pellucid: {refusal}") from None
-    pattern = last if frames == [None] else os.path.join(options.output, "capture.####.json")
-    print(f"pellucid: wrote {last}\nnext: pellucid replay {pattern} -o "
-          + ("out.exr --png" if frames == [None] else "out.####.exr"))
+    number = "" if frames == [None] else ".####"
+    pattern = os.path.join(options.output, f"capture{number}.json")
+    print(f"pellucid: wrote {last}")
+    words = ["replay", pattern, "-o", os.path.join(options.output, f"picture{number}.exr")]
+    words += ["--frames", options.frames] if number else ["--png"]
+    if options.replay:
+        subprocess.run([options.replay, *words], check=True)
+    else:
+        print("next: pellucid " + " ".join(words))
 
 
 if __name__ == "__main__":
