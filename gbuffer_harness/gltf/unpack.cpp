@@ -229,6 +229,8 @@ void unpack(GltfDocument& document) {
   if (meshes == document.json.end()) return;
   for (std::size_t m = 0; m < meshes->size(); ++m) {
     const GltfJson& primitives = (*meshes)[m]["primitives"];
+    if (document.model.meshes.at(m).primitives.size() != primitives.size())
+      document.fail("meshes[" + std::to_string(m) + "].primitives", "cannot all be read");
     for (std::size_t p = 0; p < primitives.size(); ++p)
       if (const GltfJson* extension = extensionOf(primitives[p], kDraco))
         unpackPrimitive(document, document.model.meshes[m].primitives[p], *extension,
