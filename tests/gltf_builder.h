@@ -33,7 +33,7 @@ struct GltfBuilder {
   int indices(const std::vector<std::uint16_t>& values) { return accessor(values, 5123, "SCALAR", 1); }
 
   std::string glb() {
-    if (!buffer.empty()) json["buffers"] = {{{"byteLength", buffer.size()}}};
+    if (!buffer.empty()) json["buffers"][0] = {{"byteLength", buffer.size()}};  // others stay
     std::string text = json.dump();
     text.resize((text.size() + 3) / 4 * 4, ' ');
     std::string bin = buffer;

@@ -1,15 +1,17 @@
 """Saves textures of a RenderDoc capture as EXR files and begins a Pellucid manifest for them.
 
-Name your engine's textures below, then run this in RenderDoc's own Python: in its Python shell with a
-capture open (or `qrenderdoc --python renderdoc_capture.py frame.rdc`), or where its `renderdoc` module can be
-imported: python3 renderdoc_capture.py frame.rdc.  `pellucid info FOLDER/manifest.json` then names what is
-still to be filled in: matrices (null) and whatever has no texture.  docs/scenes.md has the recipe.
+Name your engine's textures below, then run this in RenderDoc's own Python: in its Python shell with a capture open (or
+`qrenderdoc --ui-python renderdoc_capture.py frame.rdc`: `--python` runs before the capture is loaded), or where its
+`renderdoc` module can be imported: python3 renderdoc_capture.py frame.rdc.  `pellucid info FOLDER/manifest.json` then
+names what is still to be filled in: matrices (null) and whatever has no texture. `pellucid init FOLDER/*.exr` asks for the
+camera's numbers instead of its matrices.  docs/scenes.md has the recipe.
 """
 import json
 import os
 import sys
 
-# Manifest buffer -> name of the texture in RenderDoc's resource list; leave out what there is not. A light's
+# Manifest buffer -> name of the texture in RenderDoc's resource list, or the number of its resource id (1234, or
+# "ResourceId::1234"); leave out what there is not. A light's
 # shadow map is "shadowMap0", "shadowMap1", ...
 TEXTURES = {
     "frontDepth": "SceneDepth",
@@ -50,16 +52,38 @@ def manifest_skeleton(files):
     return manifest
 
 
+def number_of(resource_id):
+    """The number that RenderDoc shows of a resource id, as "ResourceId::1234"."""
+    return str(resource_id).rpartition("::")[2]
+
+
+def find_textures(controller, wanted):
+    """Names or numbers -> resource ids. The error lists what there is."""
+    names = {number_of(resource.resourceId): resource.name for resource in controller.GetResources()}
+    textures = {number_of(texture.resourceId): texture for texture in controller.GetTextures()}
+    found, missing = {}, []
+    for name in wanted:
+        number = number_of(name)
+        # The last of a name is what the frame ends with, where an engine makes it anew.
+        numbers = [key for key in textures if key == number or names.get(key) == name]
+        if numbers:
+            found[name] = textures[numbers[-1]].resourceId
+        else:
+            missing.append(str(name))
+    if missing:
+        lines = [f"  {key}: {names.get(key, '')}, {texture.width} x {texture.height}, {texture.format.Name()}"
+                 for key, texture in textures.items()]
+        raise ValueError("no texture has the name or number " + ", ".join(missing) + "; there are\n" + "\n".join(lines))
+    return found
+
+
 def save_textures(rd, controller, textures, folder):
     """Writes FOLDER/<buffer>.exr for each of `textures`; returns the files as manifest_skeleton takes them."""
-    names = {resource.name: resource.resourceId for resource in controller.GetResources()}
-    missing = [texture for texture in textures.values() if texture not in names]
-    if missing:
-        raise ValueError(f"no resource is named {', '.join(missing)}")
+    ids = find_textures(controller, textures.values())
     files = {}
     for buffer, texture in textures.items():
         save = rd.TextureSave()
-        save.resourceId = names[texture]
+        save.resourceId = ids[texture]
         save.mip = 0
         save.slice.sliceIndex = 0
         save.alpha = rd.AlphaMapping.Preserve
@@ -99,8 +123,16 @@ def open_and_capture(rd, path):
     rd.ShutdownReplay()
 
 
+def capture_in_shell(rd, context):
+    if not context.IsCaptureLoaded():
+        raise RuntimeError("no capture is loaded: open one, or give the script with --ui-python, which runs after loading")
+    context.Replay().BlockInvoke(lambda controller: capture(rd, controller))
+
+
 if "pyrenderdoc" in globals():  # RenderDoc's own shell, where renderdoc is a global, too
-    pyrenderdoc.Replay().BlockInvoke(lambda controller: capture(renderdoc, controller))
+    capture_in_shell(renderdoc, pyrenderdoc)
 elif __name__ == "__main__":
     import renderdoc
+    if len(sys.argv) != 2:
+        raise SystemExit("usage: python3 renderdoc_capture.py frame.rdc")
     open_and_capture(renderdoc, sys.argv[1])

@@ -138,7 +138,8 @@ json blenderManifest(const std::filesystem::path& exr, const std::filesystem::pa
   json& buffers = manifest["buffers"];
   const std::string depth = passes.name("Depth", "Z");
   buffers["frontDepth"] = {{"file", file}, {"channel", depth}, {"encoding", "viewZ"}};
-  buffers["irradiance"] = {{"file", file}, {"channels", passes.names("DiffDir", "RGB")}};
+  buffers["irradiance"] = {
+      {"file", file}, {"channels", passes.names("DiffDir", "RGB")}, {"scale", kIrradiancePerDiffDir}};
   buffers["normal"] = {{"file", file}, {"channels", passes.names("Normal", "XYZ")}, {"space", "world"}};
   if (passes.has("DiffCol", "R"))
     buffers["albedo"] = {{"file", file}, {"channels", passes.names("DiffCol", "RGB")}};

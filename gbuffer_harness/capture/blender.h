@@ -11,9 +11,9 @@ namespace pellucid::harness {
 inline constexpr double kIrradiancePerDiffDir = 3.14159265358979323846;
 
 // Manifest (version 1) of the multilayer EXR `exr`, whose camera, lights and materials stand in the JSON
-// `scene` of tools/blender_export.py. Files are relative to the EXR. The irradiance it names is the
-// Diffuse Direct pass, still to be multiplied by kIrradiancePerDiffDir. Throws InputError naming
-// file, field and value: passes that the EXR lacks, lights that are neither sun, point nor spot.
+// `scene` of tools/blender_export.py. Files are relative to the EXR. The irradiance is the Diffuse
+// Direct pass times kIrradiancePerDiffDir. Throws InputError naming file, field and value: passes that the
+// EXR lacks, lights that are neither sun, point nor spot.
 nlohmann::json blenderManifest(const std::filesystem::path& exr, const std::filesystem::path& scene,
                                const std::string& sceneText);
 

@@ -1,9 +1,11 @@
 #include "capture/exr.h"
 
 #include <ImfChannelList.h>
+#include <ImfFloatAttribute.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfInputPart.h>
+#include <ImfMatrixAttribute.h>
 #include <ImfMultiPartInputFile.h>
 #include <ImfPartType.h>
 #include <ImfStringAttribute.h>
@@ -163,6 +165,36 @@ std::optional<std::string> ExrFile::findText(const std::string& attribute) const
   return std::nullopt;
 }
 
+std::string ExrFile::partName(int part) const {
+  const Imf::Header& header = impl_->file->header(part);
+  return header.hasName() ? header.name() : std::string();
+}
+
+std::optional<std::array<double, 16>> ExrFile::findMatrix(const std::string& attribute) const {
+  // OpenEXR multiplies row vectors from the left: its rows are the columns.
+  const auto columns = [](const auto& matrix) {
+    std::array<double, 16> result;
+    for (int i = 0; i < 16; ++i)
+      result[static_cast<std::size_t>(i)] = static_cast<double>(matrix[i / 4][i % 4]);
+    return result;
+  };
+  for (int part = 0; part < partCount(); ++part) {
+    const Imf::Header& header = impl_->file->header(part);
+    if (const auto* found = header.findTypedAttribute<Imf::M44fAttribute>(attribute))
+      return columns(found->value());
+    if (const auto* found = header.findTypedAttribute<Imf::M44dAttribute>(attribute))
+      return columns(found->value());
+  }
+  return std::nullopt;
+}
+
+std::optional<double> ExrFile::findNumber(const std::string& attribute) const {
+  for (int part = 0; part < partCount(); ++part)
+    if (const auto* found = impl_->file->header(part).findTypedAttribute<Imf::FloatAttribute>(attribute))
+      return static_cast<double>(found->value());
+  return std::nullopt;
+}
+
 int ExrFile::findPart(const std::vector<std::string>& channels, std::optional<int> part,
                       const std::string& field) const {
   const auto has = [&](int candidate, const std::string& channel) {
@@ -288,7 +320,7 @@ bool isExr(const std::filesystem::path& path, const std::string& field) {
                             [](char a, unsigned char b) { return static_cast<unsigned char>(a) == b; });
 }
 
-Image readExrImage(const std::filesystem::path& path) {
+Image readExrImage(const std::filesystem::path& path, const std::string& layer) {
   const ExrFile file(path);
   // Candidates: a part and the prefix before R, G and B.
   std::vector<std::pair<int, std::string>> found;
@@ -309,6 +341,15 @@ Image readExrImage(const std::filesystem::path& path) {
   }
   if (found.empty())
     throw InputError(path.string(), "channels", "no R, G, B in any layer; the file has: " + listed(all));
+  if (!layer.empty()) {
+    std::erase_if(found, [&](const auto& f) {
+      return f.second != layer + "." && !f.second.ends_with("." + layer + ".");
+    });
+    if (found.size() != 1)
+      throw InputError(path.string(), "channels",
+                       (found.empty() ? "no layer \"" : "several layers \"") + layer +
+                           "\" has R, G, B; there are " + listed(layers));
+  }
   auto chosen = std::find_if(found.begin(), found.end(), [](const auto& f) { return f.second.empty(); });
   if (chosen == found.end() && found.size() > 1)
     throw InputError(path.string(), "channels",

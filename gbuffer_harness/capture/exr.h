@@ -1,6 +1,7 @@
 // OpenEXR files as planes of floats. Nothing of OpenEXR's own types or exceptions gets out.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -38,9 +39,13 @@ public:
   ExrFile(ExrFile&&) noexcept;
 
   int partCount() const;
-  std::vector<std::string> channels(int part) const;                        // in the file's order: by name
-  std::string channelFormat(int part, const std::string& channel) const;    // "half", "float", "uint"
-  std::optional<std::string> findText(const std::string& attribute) const;  // first part that has it
+  std::vector<std::string> channels(int part) const;                      // in the file's order: by name
+  std::string channelFormat(int part, const std::string& channel) const;  // "half", "float", "uint"
+  std::string partName(int part) const;                                   // "": it has none
+  // Of the first part that has it. A matrix is column-major for column vectors.
+  std::optional<std::string> findText(const std::string& attribute) const;
+  std::optional<std::array<double, 16>> findMatrix(const std::string& attribute) const;
+  std::optional<double> findNumber(const std::string& attribute) const;
 
   // The part that has all of `channels`: `part`, or when absent the only one. `field` is named in errors.
   int findPart(const std::vector<std::string>& channels, std::optional<int> part,
@@ -88,7 +93,8 @@ void writeExr(const std::filesystem::path& path, const Image& image, const std::
               const std::map<std::string, std::string>& attributes = {});
 
 // The color of a file: channels R, G, B, or else those of the only layer that has them
-// ("diffuse.R", ...). Pixels outside the data window are 0. The error lists the channels that exist.
-Image readExrImage(const std::filesystem::path& path);
+// ("diffuse.R", ...); with `layer` those of this one, whose name may lack what stands before a dot. Pixels
+// outside the data window are 0. The error lists the channels that exist.
+Image readExrImage(const std::filesystem::path& path, const std::string& layer = "");
 
 }  // namespace pellucid::harness

@@ -69,7 +69,8 @@ Field Field::operator[](const char* key) const {
 std::vector<std::pair<std::string, Field>> Field::members() const {
   if (!value_->is_object()) fail("must be an object, is " + shown());
   std::vector<std::pair<std::string, Field>> result;
-  for (const auto& [key, value] : value_->items()) result.emplace_back(key, member(key, value));
+  for (const auto& [key, value] : value_->items())
+    if (!key.starts_with("//")) result.emplace_back(key, member(key, value));
   return result;
 }
 

@@ -34,8 +34,8 @@ public:
   void allowKeys(std::initializer_list<std::string_view> keys) const;
   bool has(const char* key) const { return value_->is_object() && value_->contains(key); }
   std::optional<Field> find(const char* key) const;
-  Field operator[](const char* key) const;  // throws when missing
-  std::vector<std::pair<std::string, Field>> members() const;
+  Field operator[](const char* key) const;                     // throws when missing
+  std::vector<std::pair<std::string, Field>> members() const;  // but for comments, keys that begin with //
   std::vector<Field> items() const;
 
   // A number that a float can hold: finite, at most 3.4e38.

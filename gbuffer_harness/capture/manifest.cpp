@@ -4,7 +4,6 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
-#include <glm/glm.hpp>
 #include <numbers>
 #include <sstream>
 #include <tuple>
@@ -13,6 +12,7 @@
 #include "capture/exr.h"
 #include "capture/json_field.h"
 #include "capture/manifest_material.h"
+#include "capture/manifest_matrix.h"
 #include "common/error.h"
 
 namespace pellucid::harness {
@@ -22,42 +22,6 @@ namespace {
 constexpr int kVersion = 1;
 constexpr int kMaxMaterials = 255;  // the module's material image has 8 bits
 
-Matrix invertible(const Field& field) {
-  const Matrix matrix = field.numbers<16>();
-  // Units differ between rows and columns; scale them away before judging the determinant.
-  glm::dmat4 scaled;
-  for (int column = 0; column < 4; ++column)
-    for (int row = 0; row < 4; ++row)
-      scaled[column][row] = matrix[static_cast<std::size_t>(column * 4 + row)];
-  const auto largest = [](const glm::dvec4& v) {
-    return std::max(std::max(std::abs(v.x), std::abs(v.y)), std::max(std::abs(v.z), std::abs(v.w)));
-  };
-  for (int pass = 0; pass < 2; ++pass) {  // first rows, then columns
-    scaled = glm::transpose(scaled);
-    for (int i = 0; i < 4; ++i)
-      if (largest(scaled[i]) > 0) scaled[i] /= largest(scaled[i]);
-  }
-  if (!(std::abs(glm::determinant(scaled)) > 1e-10)) field.fail("the matrix is singular: " + field.shown());
-  return matrix;
-}
-
-Matrix rigid(const Field& field) {
-  Matrix m = field.numbers<16>();
-  constexpr double kTolerance = 1e-3;  // matrices that went through float32 and a few products
-  if (std::abs(m[3]) + std::abs(m[7]) + std::abs(m[11]) + std::abs(m[15] - 1) > kTolerance)
-    field.fail(
-        "the last row must be 0 0 0 1; matrices are column-major, with the translation in numbers 13 to 15");
-  for (std::size_t a = 0; a < 3; ++a)
-    for (std::size_t b = 0; b <= a; ++b) {
-      const double dot = m[a * 4] * m[b * 4] + m[a * 4 + 1] * m[b * 4 + 1] + m[a * 4 + 2] * m[b * 4 + 2];
-      if (std::abs(dot - (a == b ? 1 : 0)) > kTolerance)
-        field.fail("must be rigid (rotation and translation, no scale), so that view units are scene units");
-    }
-  m[3] = m[7] = m[11] = 0;
-  m[15] = 1;
-  return m;
-}
-
 // Reads one buffer of `components` values per pixel; `directory` is where relative names start and
 // `embedded` the EXR that holds the manifest, or empty.
 struct BufferReader {
@@ -66,6 +30,10 @@ struct BufferReader {
   BufferSource operator()(const Field& field, std::size_t components) const {
     BufferSource source;
     source.field = field.path();
+    if (const auto scale = field.find("scale")) {
+      source.scale = scale->number();
+      if (!(source.scale > 0)) scale->fail("must be above 0, is " + scale->shown());
+    }
     if (field.has("constant")) {
       for (const char* key : {"file", "part", "channel", "channels"})
         if (const auto other = field.find(key)) other->fail("a constant has no " + std::string(key));
@@ -131,12 +99,19 @@ std::array<int, 2> pairOf(const Field& field, int least) {
   return {items[0].integer(least, kMostTexels), items[1].integer(least, kMostTexels)};
 }
 
+void refuseScaleOfDevice(const Field& field, PellucidDepthEncoding encoding) {
+  if (encoding != PELLUCID_DEPTH_DEVICE) return;
+  if (const auto scale = field.find("scale"))
+    scale->fail("a device depth has no unit; the matrix says what it means");
+}
+
 ShadowMap readShadowMap(const Field& field) {
-  field.allowKeys({"file", "part", "channel", "constant", "encoding", "clipFromWorld", "viewFromWorld",
-                   "exit", "casterMaterial", "offset", "size", "layer", "faces", "depthBiasConstant",
-                   "depthBiasSlope", "offsetLength", "depthStep"});
+  field.allowKeys({"file", "part", "channel", "constant", "scale", "encoding", "clipFromWorld",
+                   "viewFromWorld", "exit", "casterMaterial", "offset", "size", "layer", "faces",
+                   "depthBiasConstant", "depthBiasSlope", "offsetLength", "depthStep"});
   ShadowMap map;
   map.depth.encoding = shadowEncoding(field);
+  refuseScaleOfDevice(field, map.depth.encoding);
   map.clipFromWorld = invertible(field["clipFromWorld"]);
   if (field.has("viewFromWorld") || map.depth.encoding != PELLUCID_DEPTH_DEVICE)
     map.viewFromWorld = rigid(field["viewFromWorld"]);
@@ -164,7 +139,7 @@ ShadowSources readShadowSources(const Field& map, const BufferReader& read, int 
     sources.tile = pairOf(*size, 1);
   }
   if (const auto exit = map.find("exit")) {
-    exit->allowKeys({"file", "part", "channel", "constant"});
+    exit->allowKeys({"file", "part", "channel", "constant", "scale"});
     sources.exit = read(*exit, 1);
   }
   if (const auto caster = map.find("casterMaterial")) {
@@ -237,22 +212,25 @@ Light readLight(const Field& field) {
 void readBuffers(const Field& buffers, const BufferReader& read, Manifest& manifest) {
   buffers.allowKeys({"frontDepth", "backDepth", "irradiance", "normal", "albedo", "material"});
   const auto depth = [&](const Field& field, DepthImage& image) {
-    field.allowKeys({"file", "part", "channel", "encoding", "constant"});
+    field.allowKeys({"file", "part", "channel", "encoding", "constant", "scale"});
     image.encoding = screenEncoding(field);
+    refuseScaleOfDevice(field, image.encoding);
     return read(field, 1);
   };
   manifest.frontDepth = depth(buffers["frontDepth"], manifest.capture.frontDepth);
   if (const auto field = buffers.find("backDepth"))
     manifest.backDepth = depth(*field, manifest.capture.backDepth);
 
-  buffers["irradiance"].allowKeys({"file", "part", "channels", "constant"});
+  buffers["irradiance"].allowKeys({"file", "part", "channels", "constant", "scale"});
   manifest.irradiance = read(buffers["irradiance"], 3);
   if (const auto field = buffers.find("albedo")) {
-    field->allowKeys({"file", "part", "channels", "constant"});
+    field->allowKeys({"file", "part", "channels", "constant", "scale"});
     manifest.albedo = read(*field, 3);
   }
   if (const auto field = buffers.find("normal")) {
-    field->allowKeys({"file", "part", "channels", "space", "constant"});
+    field->allowKeys({"file", "part", "channels", "space", "encoding", "constant"});
+    if (const auto encoding = field->find("encoding"))
+      manifest.normalIsUnorm = encoding->choice({"vector", "unorm"}) == 1;
     if (const auto space = field->find("space"))
       manifest.capture.normalsInViewSpace = space->choice({"world", "view"}) == 1;
     manifest.normal = read(*field, 3);
@@ -343,8 +321,8 @@ void parse(const Field& root, const BufferReader& read, Manifest& manifest) {
     if (const auto error = truth->find("standardError")) {
       error->allowKeys({"file", "part", "channels", "constant"});
       manifest.truthStandardError = read(*error, 3);
+      manifest.truthStandardError->scale = manifest.truth->scale;
     }
-    if (const auto scale = truth->find("scale")) manifest.truthScale = scale->number();
   }
 }
 
@@ -372,7 +350,6 @@ Manifest readManifest(const std::filesystem::path& path, ManifestPreset preset) 
       throw InputError(scene.string(), "", "no such file; tools/blender_export.py writes it");
     const nlohmann::json document = blenderManifest(path, scene, readText(scene));
     parse(Field(scene.string(), document), read, manifest);
-    manifest.irradianceScale = kIrradiancePerDiffDir;
     return manifest;
   }
   std::string text;

@@ -20,6 +20,7 @@ struct BufferSource {
   std::optional<int> part;            // absent: the one part that has the channels
   std::vector<std::string> channels;  // full EXR names, layer included
   std::vector<double> constant;       // the same value in every pixel, instead of a file
+  double scale = 1;                   // of what is stored, > 0; distances >= 1e9 stay: nothing is there
 
   bool isConstant() const { return !constant.empty(); }
 };
@@ -48,8 +49,7 @@ struct Manifest {
   std::optional<BufferSource> backDepth, normal, albedo, truth, truthStandardError;
   std::vector<std::vector<ShadowSources>> shadowMaps;  // per light, as Light::shadowMaps
   MaterialMap materialMap;
-  double truthScale = 1;
-  double irradianceScale = 1;  // of the stored values; not 1 for presets only
+  bool normalIsUnorm = false;  // 0 .. 1 for -1 .. 1
 };
 
 // Who made a file that is no capture of its own.

@@ -90,6 +90,7 @@ public:
     for (const Request& request : requests_) {
       if (request.source->isConstant()) fill(request, screenWidth, screenHeight);
       if (request.beside) checkBeside(request);
+      scale(request);
     }
   }
 
@@ -118,6 +119,13 @@ private:
       image = request.screen ? Image(width, height, image.channels) : Image(1, 1, image.channels);
     for (std::size_t i = 0; i < image.data.size(); ++i)
       image.data[i] = static_cast<float>(request.source->constant[i % request.source->constant.size()]);
+  }
+
+  static void scale(const Request& request) {
+    constexpr float kNothing = 1e9f;  // of distances
+    if (request.source->scale == 1) return;
+    for (float& value : request.image->data)
+      if (value < kNothing) value *= static_cast<float>(request.source->scale);
   }
 
   const Manifest& manifest_;
@@ -210,11 +218,8 @@ Capture readImages(const Manifest& manifest) {
       if (const ShadowSources& sources = manifest.shadowMaps[i][k]; sources.casterMaterial)
         capture.lights[i].shadowMaps[k].casterMaterial =
             materialIndices(manifest, *sources.casterMaterial, sources.casterMaterialMap, *caster++);
-  if (manifest.irradianceScale != 1)
-    for (float& value : capture.irradiance.data) value *= static_cast<float>(manifest.irradianceScale);
-  if (capture.truth)
-    for (Image* image : {&capture.truth->image, &capture.truth->standardError})
-      for (float& value : image->data) value *= static_cast<float>(manifest.truthScale);
+  if (manifest.normalIsUnorm)
+    for (float& value : capture.normal.data) value = 2 * value - 1;
   return capture;
 }
 

@@ -21,7 +21,8 @@ struct ShadowImageSource {
 
 struct ShadowImages {
   std::vector<ShadowImageSource> images;
-  // Indices into `images` of each map's depth, exit depth and caster material, by the lights' order; -1: none.
+  // Indices into `images` of each map's depth, exit depth and caster material, by the lights' order; -1:
+  // none.
   std::vector<std::array<int, 3>> ofMap;
 };
 

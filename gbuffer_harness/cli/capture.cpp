@@ -105,6 +105,7 @@ void captureGltf(const Options& options) {
   for (int i = 1; i < turns; ++i) angles.push_back(2 * std::numbers::pi * i / turns);
   CaptureModel scene = captureModel(options.scene, angles);
   say(scene);
+  requireTranslucent(scene);
 
   const std::optional<Environment> sky = environment(options.scene);
   Device device({options.scene.device, false});

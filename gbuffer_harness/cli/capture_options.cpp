@@ -1,5 +1,7 @@
 #include "cli/capture_options.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <map>
 #include <numbers>
@@ -15,12 +17,14 @@ namespace pellucid::harness {
 
 namespace {
 
+constexpr int kLargestSide = 8192;  // of RasterOptions
+
 constexpr const char *kModelGroup = "Models", *kSceneGroup = "Procedural scenes";
 
 // Fields that SceneParameters and RasterOptions have in common.
 template <class Parameters>
 void setCommon(const CaptureOptions& options, Parameters& to) {
-  const std::vector<std::string> size = split(options.size, 'x');
+  const std::vector<std::string> size = split(options.size.empty() ? "512x512" : options.size, 'x');
   if (size.size() != 2) throw UsageError("--size: \"" + options.size + "\" is not WIDTHxHEIGHT");
   to.width = parseNumber<int>("--size", size[0]);
   to.height = parseNumber<int>("--size", size[1]);
@@ -89,7 +93,9 @@ ShadowDrawing shadowDrawing(const CaptureOptions& options) {
 }
 
 void addCommonOptions(CLI::App& command, CaptureOptions& options) {
-  command.add_option("--size", options.size, "WIDTHxHEIGHT in pixels")->capture_default_str();
+  command.add_option(
+      "--size", options.size,
+      "WIDTHxHEIGHT in pixels (default: 512x512, and 512 high for a file's camera with an aspect)");
   const std::map<std::string, bool> projections = {{"perspective", false}, {"orthographic", true}};
   command
       .add_option("--projection", options.orthographic,
@@ -131,6 +137,14 @@ void addModelOptions(CLI::App& command, CaptureOptions& options, SceneUse use) {
   command
       .add_option("--unit", options.unit, "mm, cm, m or a number of meters: the length of the file's unit")
       ->capture_default_str()
+      ->group(group);
+  CLI::Option* time = command
+                          .add_option("--time", options.time,
+                                      "seconds into the file's animation (default: nodes as they stand)")
+                          ->check(CLI::NonNegativeNumber)
+                          ->group(group);
+  command.add_option("--animation", options.animation, "name or number from 0 (default: the first)")
+      ->needs(time)
       ->group(group);
   command.add_flag("--fill-holes", options.fillHoles, "close the holes of bodies that have a material")
       ->group(group);
@@ -235,6 +249,16 @@ void say(const CaptureModel& model) {
   warn(model.warnings);
 }
 
+void requireTranslucent(const CaptureModel& model) {
+  if (!model.model.materials.empty()) return;
+  std::string names;
+  for (const std::string& name : model.materialNames) names += (names.empty() ? "" : ", ") + name;
+  throw InputError(
+      model.model.name, "materials",
+      "none is translucent; --material NAME=PRESET makes one so, as in --material '*=skin1'; there are " +
+          names);
+}
+
 void setIor(std::vector<MaterialSource>& materials, const CaptureOptions& options) {
   if (!options.ior) return;
   for (std::size_t i = 0; i < materials.size(); ++i)
@@ -278,15 +302,22 @@ CaptureModel captureModel(const CaptureOptions& options, const std::vector<doubl
     gltf.presets[set.key] = set.value;
   }
   gltf.ior = options.ior.value_or(0);
+  gltf.time = options.time;
+  gltf.animation = options.animation;
+  gltf.camera = options.camera;
   GltfScene scene = loadGltf(options.model, gltf);
   result.model = std::move(scene.model);
   result.notes = std::move(scene.notes);
   result.warnings = std::move(scene.warnings);
+  result.materialNames = std::move(scene.materialNames);
   if (options.fillHoles) {
     const std::size_t filled = fillHoles(result.model);
     result.warnings.push_back("--fill-holes: " + std::to_string(filled) + " holes filled");
   }
   result.camera = chooseCamera(options, result.model, result.raster, turns);
+  if (options.size.empty() && result.camera.aspect > 0)
+    result.raster.width = static_cast<int>(
+        std::clamp(std::round(result.raster.height * result.camera.aspect), 1.0, double(kLargestSide)));
   std::vector<std::string> lights = options.lights;
   if (lights.empty() && result.model.lights.empty()) {
     lights = {kBackLight};

@@ -16,7 +16,7 @@ namespace pellucid::harness {
 
 // As given. Options of both kinds of scene stand before the two; absent ones have each kind's own default.
 struct CaptureOptions {
-  std::string size = "512x512", device;
+  std::string size, device;  // "": of a model whose camera has an aspect 512 high, else 512x512
   bool infiniteFar = false, viewNormals = false;
   std::optional<bool> reversedZ, orthographic;
   std::optional<PellucidDepthEncoding> depth, shadowDepth;
@@ -28,6 +28,8 @@ struct CaptureOptions {
 
   std::string model, unit = "m", camera, view, pointMaps = "auto";
   std::vector<std::string> presets;
+  std::optional<double> time;  // of the animation, seconds
+  std::string animation;
   double verticalFov = 30;  // of the auto camera, degrees
   bool fillHoles = false;
   std::optional<double> ior;  // of all materials
@@ -45,6 +47,7 @@ struct CaptureModel {
   ModelCamera camera;
   RasterOptions raster;
   std::vector<std::string> notes, warnings;  // sentences for a person
+  std::vector<std::string> materialNames;    // as --material takes them
 };
 
 // Prints sentences on stderr.
@@ -52,6 +55,10 @@ void warn(const std::vector<std::string>& warnings);
 
 // Prints notes and warnings on stderr.
 void say(const CaptureModel& model);
+
+// Throws InputError, which names --material, for a model without a translucent material: its capture would
+// have none.
+void requireTranslucent(const CaptureModel& model);
 
 // Commands that take a scene: those that capture it, and those that replay it too, whose --set is the
 // replay's: the scene's is --scene-set, and --device is of procedural scenes as well.

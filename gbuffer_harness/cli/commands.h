@@ -9,6 +9,7 @@ class App;
 namespace pellucid::harness {
 
 void addInfoCommand(CLI::App& app);
+void addInitCommand(CLI::App& app);
 void addReplayCommand(CLI::App& app);
 void addPlanCommand(CLI::App& app);
 void addMaterialCommand(CLI::App& app);

@@ -17,6 +17,7 @@
 #include "cli/commands.h"
 #include "cli/limits.h"
 #include "cli/metrics_json.h"
+#include "cli/preset.h"
 #include "common/error.h"
 #include "common/png.h"
 #include "metrics/isolated.h"
@@ -52,7 +53,9 @@ const std::vector<LimitKind> kLimitKinds = {{"rel_rmse"}, {"p999"}, {"max"},  {"
                                             {"isolated"}, {"tint"}, {"flip"}, {"flip_p99"}};
 
 struct Options {
-  std::string a, b, mask, diff, ratio, isolated, subset = "all";
+  std::string a, b, mask, diff, ratio, isolated, layer, subset = "all";
+  double scale = 1;
+  ManifestPreset preset = ManifestPreset::None;
   int box = 1;
   double boxCoverage = 0.5, exposure = 0;
   std::vector<std::string> limits;
@@ -74,8 +77,9 @@ std::optional<Capture> findCapture(const std::filesystem::path& path) {
 }
 
 // An image to compare: of a capture its truth, with what is known of its noise.
-Truth readTruth(const std::string& path, const std::optional<Capture>& capture) {
-  if (!capture) return {readExrImage(path), {}};
+Truth readTruth(const std::string& path, const std::optional<Capture>& capture,
+                const std::string& layer = "") {
+  if (!capture) return {readExrImage(path, layer), {}};
   if (!capture->truth) throw InputError(path, "truth", "missing: the capture has no image to compare with");
   return *capture->truth;
 }
@@ -187,10 +191,13 @@ void checkLimits(const Result& result, const Limits& limits) {
 void compare(const Options& options) {
   const Limits limits(kLimitKinds, options.limits);
   const Truth truthA = readTruth(options.a, findCapture(options.a));
-  std::optional<Capture> capture = findCapture(options.b);
-  const Truth truthB = readTruth(options.b, capture);
+  std::optional<Capture> capture;
+  if (options.layer.empty()) capture = findCapture(options.b);
+  Truth truthB = readTruth(options.b, capture, options.layer);
+  for (Image* image : {&truthB.image, &truthB.standardError})
+    for (float& value : image->data) value *= static_cast<float>(options.scale);
   const Image &a = truthA.image, &b = truthB.image;
-  if (!options.mask.empty()) capture = readCapture(options.mask);
+  if (!options.mask.empty()) capture = readCapture(options.mask, options.preset);
   const Subset subset = options.subset == "lit"     ? Subset::Lit
                         : options.subset == "unlit" ? Subset::Unlit
                                                     : Subset::All;
@@ -231,6 +238,12 @@ void addCompareCommand(CLI::App& app) {
       ->required();
   command->add_option("--mask", options->mask,
                       "capture whose material pixels count (default: B's, else all pixels)");
+  addPresetOption(*command, options->preset);
+  command->add_option("--layer", options->layer,
+                      "layer of B whose R, G, B are compared; B then counts as an image");
+  command->add_option("--scale", options->scale, "factor of B, as pi for a pass that holds E / pi")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   command->add_option("--box", options->box, "average blocks of NxN pixels first")
       ->check(CLI::Range(1, 4096))
       ->capture_default_str();

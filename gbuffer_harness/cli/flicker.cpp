@@ -91,6 +91,7 @@ Frames proceduralFrames(const Options& options) {
 
 Frames modelFrames(const Options& options, Device& device) {
   CaptureModel scene = captureModel(options.scene);
+  requireTranslucent(scene);
   const std::optional<Environment> sky = environment(options.scene);
   const RasterResult still = captureScene(device, scene.model, scene.camera, scene.raster, sky);
   scene.warnings.insert(scene.warnings.end(), still.warnings.begin(), still.warnings.end());

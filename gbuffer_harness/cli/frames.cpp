@@ -72,4 +72,22 @@ std::filesystem::path FramePattern::operator()(int frame) const {
   return folder_ / (before_ + zeros + number + after_);
 }
 
+std::vector<int> FramePattern::existing() const {
+  std::vector<int> frames;
+  std::error_code error;
+  const std::filesystem::path folder = folder_.empty() ? "." : folder_;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    if (name.size() < before_.size() + after_.size() || !name.starts_with(before_) || !name.ends_with(after_))
+      continue;
+    const std::string number = name.substr(before_.size(), name.size() - before_.size() - after_.size());
+    const bool digits = !number.empty() && number.find_first_not_of("0123456789") == std::string::npos;
+    if (!digits || number.size() > 7) continue;
+    const int frame = parseNumber<int>("--frames", number);
+    if ((*this)(frame).filename() == name) frames.push_back(frame);
+  }
+  std::sort(frames.begin(), frames.end());
+  return frames;
+}
+
 }  // namespace pellucid::harness

@@ -22,6 +22,8 @@ public:
   FramePattern(const std::string& option, const std::string& path);
 
   std::filesystem::path operator()(int frame) const;
+  // Frames whose files are there, ascending.
+  std::vector<int> existing() const;
 
 private:
   std::filesystem::path folder_;

@@ -40,13 +40,19 @@ struct Range {
 
 // Where the numbers come from; `constant`, or file, part, channels and their format.
 Json sourceJson(const BufferSource& source) {
-  if (source.isConstant()) return {{"constant", source.constant}};
-  const ExrFile file(source.file);
-  const int part = file.findPart(source.channels, source.part, source.field);
-  return {{"file", source.file.string()},
-          {"part", part},
-          {"channels", source.channels},
-          {"format", file.channelFormat(part, source.channels.front())}};
+  Json json;
+  if (source.isConstant()) {
+    json["constant"] = source.constant;
+  } else {
+    const ExrFile file(source.file);
+    const int part = file.findPart(source.channels, source.part, source.field);
+    json = {{"file", source.file.string()},
+            {"part", part},
+            {"channels", source.channels},
+            {"format", file.channelFormat(part, source.channels.front())}};
+  }
+  if (source.scale != 1) json["scale"] = source.scale;
+  return json;
 }
 
 Json imageJson(const BufferSource& source, const Image& image) {
@@ -121,16 +127,16 @@ Json materialsJson(const Capture& capture, const std::vector<PellucidMaterial>& 
   return json;
 }
 
-// What the absence of optional parts means for the result.
+// What the absence of optional parts means for the result, the most harmful first.
 std::vector<std::string> missingParts(const Capture& capture) {
   std::vector<std::string> missing;
+  if (capture.lights.empty()) missing.push_back("no lights: no translucency");
   if (capture.backDepth.image.empty())
     missing.push_back(
         "no backDepth: no camera-space thickness; lights without a shadow map add no translucency");
   if (capture.normal.empty())
     missing.push_back("no normal: the angle between view and light takes the place of -N.L");
   if (capture.albedo.empty()) missing.push_back("no albedo: the output is not multiplied by a surface color");
-  if (capture.lights.empty()) missing.push_back("no lights: no translucency");
   for (std::size_t i = 0; i < capture.lights.size(); ++i) {
     const std::vector<ShadowMap>& maps = capture.lights[i].shadowMaps;
     const std::string light = "lights[" + std::to_string(i) + "]";
@@ -248,10 +254,7 @@ Json describe(const std::filesystem::path& path, ManifestPreset preset) {
   buffers["material"]["pixels"] =
       capture.material.size() -
       static_cast<std::size_t>(std::count(capture.material.begin(), capture.material.end(), 0));
-  if (manifest.truth) {
-    buffers["truth"] = imageJson(*manifest.truth, capture.truth->image);
-    buffers["truth"]["scale"] = manifest.truthScale;
-  }
+  if (manifest.truth) buffers["truth"] = imageJson(*manifest.truth, capture.truth->image);
   json["lights"] = Json::array();
   for (std::size_t i = 0; i < capture.lights.size(); ++i) {
     const Light& light = capture.lights[i];
@@ -310,7 +313,11 @@ std::string toText(const Json& json) {
     }
   }
   for (const Json& material : json["materials"]) text << "  material: " << line(material) << "\n";
-  for (const Json& sentence : json["missing"]) text << "missing: " << sentence.get<std::string>() << "\n";
+  const char* word = "missing most: ";
+  for (const Json& sentence : json["missing"]) {
+    text << word << sentence.get<std::string>() << "\n";
+    word = "missing: ";
+  }
   for (const Json& sentence : json["warnings"]) text << "warning: " << sentence.get<std::string>() << "\n";
   return text.str();
 }

@@ -50,6 +50,7 @@ Light parseLight(const std::string& text, const Model& model, const ModelCamera&
     light.direction = where;
     if (distance(where, {0, 0, 0}) == 0) throw UsageError("--light: \"" + text + "\" has no direction");
   } else {
+    for (std::size_t i = 0; i < 3; ++i) where[i] -= model.origin[i];
     const Bounds bounds = boundsOf(model);
     const double away = distance(where, bounds.center);
     light.type = parts[0] == "spot" ? PELLUCID_LIGHT_SPOT : PELLUCID_LIGHT_POINT;

@@ -35,6 +35,7 @@ int main(int argc, char** argv) {
       "Exit codes: 0 ok, 1 comparison over its limit or stress violated, 2 usage, 3 bad input, 4 no usable "
       "device.");
   addInfoCommand(app);
+  addInitCommand(app);
   addReplayCommand(app);
   addPlanCommand(app);
   addMaterialCommand(app);

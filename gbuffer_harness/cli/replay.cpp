@@ -8,6 +8,8 @@
 #include <optional>
 
 #include "capture/exr.h"
+#include "capture/layers.h"
+#include "capture/manifest.h"
 #include "capture/material.h"
 #include "capture/read.h"
 #include "cli/commands.h"
@@ -33,7 +35,7 @@ constexpr uint32_t kDefaultRepeat = 3;
 
 struct Options {
   std::string input, output, device, triptych, frames;
-  bool png = false, overwrite = false;
+  bool png = false, overwrite = false, keepLayers = false;
   float exposure = 0;
   int jobs = 2;
   std::optional<uint32_t> repeat;
@@ -98,14 +100,18 @@ void writeFrame(const Options& options, const std::filesystem::path& output, con
   if (png)
     writeWhole(std::filesystem::path(output).replace_extension(".png"),
                [&](const auto& file) { writePng(file, image.width, image.height, toSrgb(image, exposure)); });
-  writeWhole(output, [&](const auto& file) {
-    writeExr(file, image, {"R", "G", "B"},
-             {{"pellucid.device", device.description()},
-              {"pellucid.capture", capture.name},
-              {"pellucid.plan", planJson(plan)},
-              {kSettingsAttribute, options.settings.text()},
-              {kDebugAttribute, options.settings.debug}});
-  });
+  ExrPart part;
+  part.attributes = {{"pellucid.device", device.description()},
+                     {"pellucid.capture", capture.name},
+                     {"pellucid.plan", planJson(plan)},
+                     {kSettingsAttribute, options.settings.text()},
+                     {kDebugAttribute, options.settings.debug}};
+  const char* const names[] = {"R", "G", "B"};
+  for (int c = 0; c < 3; ++c) part.channels.push_back({names[c], ExrFormat::Float, &image, c});
+  KeptLayers kept;
+  if (options.keepLayers) kept = readOtherLayers(readManifest(capture.name, options.preset).irradiance);
+  part.channels.insert(part.channels.end(), kept.channels.begin(), kept.channels.end());
+  writeWhole(output, [&](const auto& file) { writeExrParts(file, {part}); });
 }
 
 void replayOne(const Options& options, const ReplaySettings& settings) {
@@ -155,12 +161,14 @@ bool isFinished(const Options& options, const std::filesystem::path& output) {
 // Threads read, compile and write; one at a time has the device.
 void replaySequence(const Options& options, const ReplaySettings& settings) {
   const FramePattern input("capture", options.input), output("-o", options.output);
-  const std::vector<int> frames = parseFrames(options.frames);
+  const std::vector<int> frames = options.frames.empty() ? input.existing() : parseFrames(options.frames);
+  if (frames.empty()) throw InputError(options.input, "", "no file has such a name");
   Device device({options.device, false});
   Replayer replayer(device, usesOf(settings));
   Progress progress("replaying", frames.size());
   std::mutex deviceMutex, reportMutex;
   std::map<int, std::string> failures;
+  std::vector<int> missing;
   int skipped = 0;
   parallelRows(static_cast<int>(frames.size()), options.jobs, [&](int i) {
     const int frame = frames[static_cast<std::size_t>(i)];
@@ -168,6 +176,9 @@ void replaySequence(const Options& options, const ReplaySettings& settings) {
       if (isFinished(options, output(frame))) {
         const std::scoped_lock lock(reportMutex);
         ++skipped;
+      } else if (!std::filesystem::exists(input(frame))) {
+        const std::scoped_lock lock(reportMutex);
+        missing.push_back(frame);
       } else {
         const Capture capture = readCapture(input(frame), options.preset);
         const std::vector<PellucidMaterial> materials = compileMaterials(capture);
@@ -189,16 +200,20 @@ void replaySequence(const Options& options, const ReplaySettings& settings) {
     }
     progress.advance();
   });
+  const std::size_t failedCount = failures.size() + missing.size();
   std::printf("%s\n%zu frames: %zu written, %d finished before, %zu failed\n", device.description().c_str(),
-              frames.size(), frames.size() - static_cast<std::size_t>(skipped) - failures.size(), skipped,
-              failures.size());
-  if (failures.empty()) return;
+              frames.size(), frames.size() - static_cast<std::size_t>(skipped) - failedCount, skipped,
+              failedCount);
+  if (failedCount == 0) return;
+  std::sort(missing.begin(), missing.end());
   std::string report;
-  std::vector<int> failed;
+  std::vector<int> failed = missing;
+  if (!missing.empty()) report = "\n  frames " + framesText(missing) + ": " + options.input + " is not there";
   for (const auto& [frame, sentence] : failures) {
     report += "\n  frame " + std::to_string(frame) + ": " + sentence;
     failed.push_back(frame);
   }
+  std::sort(failed.begin(), failed.end());
   throw InputError("", "", "failed: --frames " + framesText(failed) + report);
 }
 
@@ -207,16 +222,16 @@ void replay(const Options& options) {
   requireExr("-o", options.output);
   if (!options.triptych.empty() && settings.debugView != PELLUCID_DEBUG_NONE)
     throw UsageError("--triptych shows results and cannot be combined with --debug");
-  if (options.frames.empty()) {
-    if (options.input.find('#') != std::string::npos && !std::filesystem::exists(options.input))
-      throw UsageError("\"" + options.input + "\" is a sequence: --frames FIRST-LAST is required");
+  const bool isSequence = !options.frames.empty() || (options.input.find('#') != std::string::npos &&
+                                                      !std::filesystem::exists(options.input));
+  if (!isSequence) {
     return withinMemory(options.input, [&] { replayOne(options, settings); });
   }
-  if (!options.triptych.empty()) throw UsageError("--triptych shows one capture, not --frames");
-  if (options.repeat) throw UsageError("--repeat times one capture, not --frames");
-  if (options.output.empty()) throw UsageError("--frames: -o with #### is required");
+  if (!options.triptych.empty()) throw UsageError("--triptych shows one capture, not a sequence");
+  if (options.repeat) throw UsageError("--repeat times one capture, not a sequence");
+  if (options.output.empty()) throw UsageError("a sequence: -o with #### is required");
   if (wantsPng(options, settings) && !(options.exposure > 0))
-    throw UsageError("--frames: PNGs need --exposure, one for the whole sequence");
+    throw UsageError("a sequence: PNGs need --exposure, one for the whole");
   replaySequence(options, settings);
 }
 
@@ -232,7 +247,9 @@ void addReplayCommand(CLI::App& app) {
   command->add_option("-o,--output", options->output,
                       "EXR to write; default: <capture>.pellucid.exr here; of a sequence out.####.exr");
   command->add_option("--frames", options->frames,
-                      "a sequence: FIRST-LAST or a list like 1-10,20; frames finished before are skipped");
+                      "of a sequence: FIRST-LAST or a list like 1-10,20 (default: all that exist); frames "
+                      "finished before are "
+                      "skipped");
   command->add_option("--jobs", options->jobs, "threads of a sequence that read and write files")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
@@ -241,8 +258,10 @@ void addReplayCommand(CLI::App& app) {
       ->add_option(
           "--repeat", options->repeat,
           "frames that are timed, after a first one that compiles shaders: the median is printed; 0: "
-          "no times; default: 3, without --frames")
+          "no times; default: 3, not of a sequence")
       ->check(CLI::Range(0, 1000));
+  command->add_flag("--keep-layers", options->keepLayers,
+                    "also write the alpha and the other channels of the irradiance's file");
   command->add_flag("--png", options->png, "also write a PNG beside the EXR (--debug always does)");
   command->add_option("--triptych", options->triptych, "write a PNG of before | translucency | after");
   command->add_option("--exposure", options->exposure, "factor for PNGs; default: from the picture")

@@ -38,8 +38,13 @@ RasterResult captureScene(Device& device, const Model& model, const ModelCamera&
                           const RasterOptions& raster, const std::optional<Environment>& environment) {
   refuseEnclosedLights(model);
   RasterResult result = rasterize(device, model, camera, raster);
-  if (needsTracing(model.lights, environment))
-    addTracedLight(result.capture, *reference::makeMeshScene(model), environment);
+  if (!needsTracing(model.lights, environment)) return result;
+  const Image drawn = result.capture.irradiance;
+  addTracedLight(result.capture, *reference::makeMeshScene(model), environment);
+  for (std::size_t i = 0; i < result.reflectedShare.data.size(); ++i) {
+    float& irradiance = result.capture.irradiance.data[i];
+    irradiance = drawn.data[i] + (irradiance - drawn.data[i]) * result.reflectedShare.data[i];
+  }
   return result;
 }
 

@@ -40,6 +40,11 @@ void SceneHash::add(const Model& model) {
     value(surface.alphaCutoff);
     value(surface.doubleSided);
     value(surface.material);
+    if (surface.lobeMap < 0 && surface.lobes == SurfaceLobes::Together) continue;
+    value(surface.lobeMap);
+    value(surface.displaced);
+    value(surface.backscatter);
+    value(static_cast<int>(surface.lobes));
   }
   for (const Texture& texture : model.textures) bytes(texture.rgba.data(), texture.rgba.size());
   value(model.metersPerUnit);

@@ -1,42 +1,148 @@
 // `pellucid sheet`: results side by side in one picture, under one exposure.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
+#include <deque>
 #include <memory>
 
 #include "capture/exr.h"
+#include "capture/material.h"
+#include "capture/read.h"
 #include "cli/commands.h"
+#include "cli/nearest_distance.h"
+#include "cli/numbers.h"
+#include "cli/settings.h"
 #include "common/error.h"
 #include "common/png.h"
+#include "common/progress.h"
+#include "common/text.h"
+#include "replay/replay.h"
 
 namespace pellucid::harness {
 namespace {
 
+constexpr int kGap = 4;
+constexpr std::size_t kMostPictures = 256;
+
 struct Options {
-  std::vector<std::string> inputs;
-  std::string output;
-  int columns = 3;
+  std::vector<std::string> inputs, sweeps;
+  std::string output, device;
+  int columns = 0;  // 0: the last sweep's values, or 3
   float exposure = 0;
 };
 
-void sheet(const Options& options) {
-  std::vector<Image> images;
-  std::vector<const Image*> pointers;
-  images.reserve(options.inputs.size());
+struct Picture {
+  Image image;
+  std::vector<std::string> labels;  // lines
+};
+
+// A setting of replay, or the material, with the values it takes in turn.
+struct Sweep {
+  std::string key;
+  std::vector<std::string> values;
+};
+
+std::deque<Picture> readPictures(const Options& options) {
+  std::deque<Picture> pictures;
   for (const std::string& input : options.inputs) {
-    images.push_back(readExrImage(input));
-    const Image &image = images.back(), &first = images.front();
+    pictures.push_back({readExrImage(input), {}});
+    const Image &image = pictures.back().image, &first = pictures.front().image;
     if (image.width != first.width || image.height != first.height)
       throw InputError(input, "",
                        "is " + std::to_string(image.width) + " x " + std::to_string(image.height) +
                            " and \"" + options.inputs.front() + "\" " + std::to_string(first.width) + " x " +
                            std::to_string(first.height));
-    pointers.push_back(&image);
   }
-  const Image picture = contactSheet(pointers, options.columns);
+  return pictures;
+}
+
+std::vector<Sweep> parseSweeps(const std::vector<std::string>& texts) {
+  std::vector<Sweep> sweeps;
+  std::size_t count = 1;
+  for (const std::string& text : texts) {
+    const Assignment sweep = parseAssignment("--sweep", text);
+    sweeps.push_back({sweep.key, split(sweep.value, ',')});
+    count *= sweeps.back().values.size();
+  }
+  if (count > kMostPictures)
+    throw UsageError("--sweep: " + std::to_string(count) + " pictures are more than " +
+                     std::to_string(kMostPictures));
+  return sweeps;
+}
+
+// Every combination; the last sweep's values change first.
+std::deque<Picture> replaySweeps(const Options& options, const std::vector<Sweep>& sweeps) {
+  if (options.inputs.size() != 1) throw UsageError("--sweep: takes one capture");
+  const Capture source = readCapture(options.inputs.front());
+  Device device({options.device, false});
+  Replayer replayer(device);
+  std::size_t count = 1;
+  for (const Sweep& sweep : sweeps) count *= sweep.values.size();
+  Progress progress("replaying", count);
+  std::deque<Picture> pictures;
+  for (std::size_t i = 0; i < count; ++i) {
+    Capture capture = source;
+    SettingsOptions settings;
+    Picture& picture = pictures.emplace_back();
+    std::size_t rest = i, block = count;
+    for (const Sweep& sweep : sweeps) {
+      block /= sweep.values.size();
+      const std::string& value = sweep.values[rest / block];
+      rest %= block;
+      picture.labels.push_back(sweep.key + "=" + value);
+      if (sweep.key == "material")
+        std::fill(capture.materials.begin(), capture.materials.end(), MaterialSource(PresetMaterial{value}));
+      else
+        settings.set.push_back(sweep.key + "=" + value);
+    }
+    const ReplaySettings parsed = settings.parse();
+    const std::vector<PellucidMaterial> materials = compileMaterials(capture);
+    requireNearestDistance(capture, materials, parsed);
+    picture.image = rgb(replayer.run(capture, materials, parsed).output);
+    progress.advance();
+  }
+  return pictures;
+}
+
+// White on dark strips at the picture's lower left, no farther right than the picture.
+void drawLabels(const std::vector<std::string>& labels, int left, int bottom, const Image& picture, int width,
+                std::vector<std::uint8_t>& rgb) {
+  constexpr int kMargin = 2, kLine = kTextHeight + 2 * kMargin;
+  const auto fill = [&](const TextRect& rect, std::uint8_t gray) {
+    for (int y = std::max(rect.top, bottom - picture.height); y < std::min(rect.bottom, bottom); ++y)
+      for (int x = rect.left; x < std::min(rect.right, left + picture.width); ++x)
+        std::fill_n(rgb.begin() + 3 * (static_cast<std::ptrdiff_t>(y) * width + x), 3, gray);
+  };
+  int top = bottom - kLine * static_cast<int>(labels.size());
+  for (const std::string& label : labels) {
+    fill({left, top, left + textWidth(label) + 2 * kMargin, top + kLine}, 0);
+    for (const TextRect& r : textRects(label))
+      fill({left + kMargin + r.left, top + kMargin + r.top, left + kMargin + r.right,
+            top + kMargin + r.bottom},
+           255);
+    top += kLine;
+  }
+}
+
+void sheet(const Options& options) {
+  const std::vector<Sweep> sweeps = parseSweeps(options.sweeps);
+  const std::deque<Picture> pictures = sweeps.empty() ? readPictures(options) : replaySweeps(options, sweeps);
+  const int columns = options.columns > 0 ? options.columns
+                      : sweeps.empty()    ? 3
+                                          : static_cast<int>(sweeps.back().values.size());
+  std::vector<const Image*> pointers;
+  for (const Picture& picture : pictures) pointers.push_back(&picture.image);
+  const Image all = contactSheet(pointers, columns, kGap);
   // One exposure for all: brightness is part of what is compared.
-  const float exposure = options.exposure > 0 ? options.exposure : autoExposure(picture);
-  writePng(options.output, picture.width, picture.height, toSrgb(picture, exposure));
-  std::printf("wrote %s (%zu images, exposure %g)\n", options.output.c_str(), images.size(),
+  const float exposure = options.exposure > 0 ? options.exposure : autoExposure(all);
+  std::vector<std::uint8_t> rgb = toSrgb(all, exposure);
+  const Image& first = pictures.front().image;
+  const int across = std::min(columns, static_cast<int>(pictures.size()));
+  for (int i = 0; i < static_cast<int>(pictures.size()); ++i)
+    drawLabels(pictures[static_cast<std::size_t>(i)].labels, i % across * (first.width + kGap),
+               i / across * (first.height + kGap) + first.height, first, all.width, rgb);
+  writePng(options.output, all.width, all.height, rgb);
+  std::printf("wrote %s (%zu images, exposure %g)\n", options.output.c_str(), pictures.size(),
               static_cast<double>(exposure));
 }
 
@@ -44,14 +150,23 @@ void sheet(const Options& options) {
 
 void addSheetCommand(CLI::App& app) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("sheet", "Lay EXR images out in one PNG, under one exposure");
-  command->add_option("images", options->inputs, "EXR files of one size")->required();
+  CLI::App* command = app.add_subcommand(
+      "sheet", "Lay EXR images, or one capture's variants, out in one PNG, under one exposure");
+  command->add_option("images", options->inputs, "EXR files of one size; with --sweep one capture")
+      ->required();
   command->add_option("-o,--output", options->output, "PNG to write")->required();
-  command->add_option("--columns", options->columns, "images a row")
-      ->check(CLI::Range(1, 64))
-      ->capture_default_str();
+  command
+      ->add_option("--sweep", options->sweeps,
+                   "KEY=VALUE,VALUE,..., repeatable: replays the capture with each value of a key of "
+                   "replay's --set, or of "
+                   "material, a preset in place of all materials; combinations, labeled")
+      ->take_all();
+  command
+      ->add_option("--columns", options->columns, "images a row (default: the last sweep's values, else 3)")
+      ->check(CLI::Range(1, 64));
   command->add_option("--exposure", options->exposure, "default: from the pictures")
       ->check(CLI::PositiveNumber);
+  command->add_option("--device", options->device, "of --sweep: part of the Vulkan device's name");
   command->callback([options] { sheet(*options); });
 }
 

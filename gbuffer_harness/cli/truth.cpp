@@ -83,8 +83,12 @@ void makeTranslucent(Model& model, bool close) {
 
 Scene modelScene(const Options& options, SceneHash& hash) {
   CaptureModel model = captureModel(options.scene);
-  if (options.like.empty()) say(model);
-  if (!options.like.empty()) makeTranslucent(model.model, options.scene.fillHoles);
+  if (options.like.empty()) {
+    say(model);
+    requireTranslucent(model);
+  } else {
+    makeTranslucent(model.model, options.scene.fillHoles);
+  }
   requireClosed(model.model);
   for (const Surface& surface : model.model.surfaces) {
     if (surface.alphaCutoff > 0)

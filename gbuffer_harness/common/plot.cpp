@@ -6,19 +6,13 @@
 #include <limits>
 
 #include "common/png.h"
-
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wconversion"
-#pragma GCC diagnostic ignored "-Wunused-function"
-#include <stb/stb_easy_font.h>
-#pragma GCC diagnostic pop
+#include "common/text.h"
 
 namespace pellucid::harness {
 
 namespace {
 
 constexpr Color kInk = {40, 40, 40}, kGrid = {225, 225, 225}, kMinorGrid = {242, 242, 242};
-constexpr int kTextHeight = 9;  // of stb_easy_font's capitals and their margin
 
 struct Rect {
   int left, top, right, bottom;
@@ -67,26 +61,10 @@ public:
   }
 
   void text(int x, int y, const std::string& words, const Color& color, bool upward = false) {
-    struct Vertex {
-      float x, y, z;
-      unsigned char color[4];
-    };
-    std::string writable = words;
-    std::vector<Vertex> vertices(writable.size() * 64 + 64);
-    const int quads = stb_easy_font_print(0, 0, writable.data(), nullptr, vertices.data(),
-                                          static_cast<int>(vertices.size() * sizeof(Vertex)));
-    for (int q = 0; q < quads; ++q) {
-      const Vertex &a = vertices[static_cast<std::size_t>(4 * q)],
-                   &b = vertices[static_cast<std::size_t>(4 * q + 2)];
-      const int x0 = static_cast<int>(a.x), y0 = static_cast<int>(a.y);
-      const int x1 = static_cast<int>(b.x), y1 = static_cast<int>(b.y);
-      fill(upward ? Rect{x + y0, y - x1, x + y1, y - x0} : Rect{x + x0, y + y0, x + x1, y + y1}, color);
-    }
-  }
-
-  static int textWidth(const std::string& words) {
-    std::string writable = words;
-    return stb_easy_font_width(writable.data());
+    for (const TextRect& r : textRects(words))
+      fill(upward ? Rect{x + r.top, y - r.right, x + r.bottom, y - r.left}
+                  : Rect{x + r.left, y + r.top, x + r.right, y + r.bottom},
+           color);
   }
 
 private:
@@ -177,14 +155,14 @@ void draw(Canvas& canvas, const Plot& plot, const Rect& frame) {
       const int x = static_cast<int>(std::lround(xAt(tick.value)));
       canvas.fill({x, area.top, x + 1, area.bottom}, major ? kGrid : kMinorGrid);
       const std::string words = label(tick.value);
-      if (major) canvas.text(x - Canvas::textWidth(words) / 2, area.bottom + 6, words, kInk);
+      if (major) canvas.text(x - textWidth(words) / 2, area.bottom + 6, words, kInk);
     }
     for (const Tick& tick : yScale.ticks()) {
       if (tick.major != major) continue;
       const int y = static_cast<int>(std::lround(yAt(tick.value)));
       canvas.fill({area.left, y, area.right, y + 1}, major ? kGrid : kMinorGrid);
       const std::string words = label(tick.value);
-      if (major) canvas.text(area.left - 6 - Canvas::textWidth(words), y - kTextHeight / 2, words, kInk);
+      if (major) canvas.text(area.left - 6 - textWidth(words), y - kTextHeight / 2, words, kInk);
     }
   }
   for (const Rect& edge : {Rect{area.left, area.bottom, area.right, area.bottom + 1},
@@ -205,7 +183,7 @@ void draw(Canvas& canvas, const Plot& plot, const Rect& frame) {
   }
 
   int widest = 0, row = area.top + 10;
-  for (const Series& series : plot.series) widest = std::max(widest, Canvas::textWidth(series.name));
+  for (const Series& series : plot.series) widest = std::max(widest, textWidth(series.name));
   const int left = area.right - widest - 36;
   for (const Series& series : plot.series) {
     if (series.name.empty()) continue;
@@ -217,11 +195,10 @@ void draw(Canvas& canvas, const Plot& plot, const Rect& frame) {
     row += 14;
   }
 
-  canvas.text((area.left + area.right - Canvas::textWidth(plot.title)) / 2, frame.top + 12, plot.title, kInk);
-  canvas.text((area.left + area.right - Canvas::textWidth(plot.x.label)) / 2, frame.bottom - 18, plot.x.label,
-              kInk);
-  canvas.text(frame.left + 10, (area.top + area.bottom + Canvas::textWidth(plot.y.label)) / 2, plot.y.label,
-              kInk, true);
+  canvas.text((area.left + area.right - textWidth(plot.title)) / 2, frame.top + 12, plot.title, kInk);
+  canvas.text((area.left + area.right - textWidth(plot.x.label)) / 2, frame.bottom - 18, plot.x.label, kInk);
+  canvas.text(frame.left + 10, (area.top + area.bottom + textWidth(plot.y.label)) / 2, plot.y.label, kInk,
+              true);
 }
 
 }  // namespace

@@ -14,7 +14,8 @@ namespace pellucid::harness {
 // Calls write(temporary), a name of its own in the folder of `path`, and renames it to `path`. Whoever
 // looks at `path` meanwhile, or after a crash, sees what was there before. Nothing is left behind when
 // write throws. What is there and no regular file, like a device node, is not replaced by one. Throws
-// InputError when the file cannot be renamed.
+// InputError, naming `path`, when there is no such folder or the file cannot be renamed, and what write
+// throws.
 template <class Write>
 void writeWhole(const std::filesystem::path& path, const Write& write) {
   std::error_code error;
@@ -25,8 +26,18 @@ void writeWhole(const std::filesystem::path& path, const Write& write) {
   suffix << ".part-" << std::hex << std::random_device{}();
   std::filesystem::path temporary = path;
   temporary += suffix.str();
+  const std::filesystem::path folder = std::filesystem::absolute(path, error).parent_path();
+  if (!std::filesystem::is_directory(folder, error))
+    throw InputError(path.string(), "", "cannot be written: there is no folder " + folder.string());
   try {
     write(temporary);
+  } catch (const InputError& e) {
+    std::filesystem::remove(temporary, error);
+    // Who asked for `path` knows nothing of the temporary name.
+    std::string sentence = e.what();
+    for (std::size_t at; (at = sentence.find(suffix.str())) != std::string::npos;)
+      sentence.erase(at, suffix.str().size());
+    throw InputError("", "", sentence);
   } catch (...) {
     std::filesystem::remove(temporary, error);
     throw;

@@ -17,6 +17,9 @@ struct Elements {
   bool normalized;
 };
 
+// Of accessors that only a sparse part gives numbers other than 0.
+constexpr std::size_t kMostZeros = 1u << 24;
+
 int componentsOf(const tinygltf::Accessor& accessor) {
   switch (accessor.type) {
     case TINYGLTF_TYPE_SCALAR:
@@ -27,8 +30,10 @@ int componentsOf(const tinygltf::Accessor& accessor) {
       return 3;
     case TINYGLTF_TYPE_VEC4:
       return 4;
+    case TINYGLTF_TYPE_MAT4:
+      return 16;
     default:
-      return 0;  // matrices
+      return 0;  // smaller matrices
   }
 }
 
@@ -48,36 +53,37 @@ std::size_t bytesOf(int componentType) {
   }
 }
 
-Elements elementsOf(const GltfDocument& document, int accessorIndex, const std::string& field) {
-  const auto& accessors = document.model.accessors;
-  const tinygltf::Accessor& accessor =
-      accessors[document.index(accessorIndex, accessors.size(), field, "accessors")];
-  const std::string name = "accessors[" + std::to_string(accessorIndex) + "]";
-  if (accessor.sparse.isSparse) document.fail(name + ".sparse", "sparse accessors are not supported");
-  const GltfDocument::Bytes view = document.bufferView(accessor.bufferView, name);
-  const std::size_t stride =
-      document.model.bufferViews[static_cast<std::size_t>(accessor.bufferView)].byteStride;
-
-  Elements elements{
-      nullptr, accessor.count, 0, componentsOf(accessor), accessor.componentType, accessor.normalized};
+// Elements of a type in the bytes that hold them. `name` is what describes them, `where` what holds the
+// bytes.
+Elements elementsIn(const GltfDocument& document, const GltfDocument::Bytes& bytes, std::size_t byteOffset,
+                    std::size_t stride, std::size_t count, const tinygltf::Accessor& type,
+                    const std::string& name, const std::string& where) {
+  Elements elements{nullptr, count, 0, componentsOf(type), type.componentType, type.normalized};
   const std::size_t size = bytesOf(elements.componentType) * static_cast<std::size_t>(elements.components);
   if (size == 0)
-    document.fail(name, "type " + std::to_string(accessor.type) + " of component type " +
-                            std::to_string(accessor.componentType) + " is not a scalar or vector of numbers");
+    document.fail(name, "type " + std::to_string(type.type) + " of component type " +
+                            std::to_string(type.componentType) + " is not made of numbers");
   elements.stride = stride == 0 ? size : stride;
   if (elements.stride < size || elements.stride > 252)
-    document.fail("bufferViews[" + std::to_string(accessor.bufferView) + "].byteStride",
+    document.fail(where + ".byteStride",
                   std::to_string(stride) + " does not fit elements of " + std::to_string(size) + " bytes");
-  if (accessor.count == 0) document.fail(name + ".count", "0 elements");
+  if (count == 0) document.fail(name + ".count", "0 elements");
   // Divisions instead of products: a count near 2^64 must not wrap around.
-  if (accessor.byteOffset > view.size || view.size - accessor.byteOffset < size ||
-      (view.size - accessor.byteOffset - size) / elements.stride < accessor.count - 1)
-    document.fail(name + ".count", std::to_string(accessor.count) + " elements from byteOffset " +
-                                       std::to_string(accessor.byteOffset) + " leave the " +
-                                       std::to_string(view.size) + " bytes of bufferViews[" +
-                                       std::to_string(accessor.bufferView) + "]");
-  elements.first = view.data + accessor.byteOffset;
+  if (byteOffset > bytes.size || bytes.size - byteOffset < size ||
+      (bytes.size - byteOffset - size) / elements.stride < count - 1)
+    document.fail(name + ".count", std::to_string(count) + " elements from byteOffset " +
+                                       std::to_string(byteOffset) + " leave the " +
+                                       std::to_string(bytes.size) + " bytes of " + where);
+  elements.first = bytes.data + byteOffset;
   return elements;
+}
+
+Elements elementsInView(const GltfDocument& document, int view, std::size_t byteOffset, std::size_t count,
+                        const tinygltf::Accessor& type, const std::string& name) {
+  const GltfDocument::Bytes bytes = document.bufferView(view, name);
+  return elementsIn(document, bytes, byteOffset,
+                    document.model.bufferViews[static_cast<std::size_t>(view)].byteStride, count, type, name,
+                    "bufferViews[" + std::to_string(view) + "]");
 }
 
 template <class T>
@@ -110,24 +116,95 @@ double component(const Elements& elements, std::size_t element, int i) {
   }
 }
 
+void requireUnsigned(const GltfDocument& document, int components, int componentType,
+                     const std::string& field, const std::string& name) {
+  if (components != 1 || (componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE &&
+                          componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
+                          componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT))
+    document.fail(field, name + " does not hold unsigned integers");
+}
+
+// The numbers of an accessor: in its buffer view or unpacked, and in place of some those of a sparse part.
+class Numbers {
+public:
+  Numbers(const GltfDocument& document, int index, const std::string& field)
+      : name_("accessors[" + std::to_string(index) + "]"),
+        accessor_(document.model.accessors[document.index(index, document.model.accessors.size(), field,
+                                                          "accessors")]) {
+    const auto unpacked = document.accessors.find(index);
+    if (unpacked != document.accessors.end())
+      base_ = elementsIn(document, {unpacked->second.data(), unpacked->second.size()}, 0, 0, accessor_.count,
+                         accessor_, name_, "what is unpacked");
+    else if (accessor_.bufferView >= 0 || !accessor_.sparse.isSparse)
+      base_ = elementsInView(document, accessor_.bufferView, accessor_.byteOffset, accessor_.count, accessor_,
+                             name_);
+    if (accessor_.sparse.isSparse) readSparse(document);
+  }
+
+  const std::string& name() const { return name_; }
+  std::size_t count() const { return accessor_.count; }
+  int components() const { return componentsOf(accessor_); }
+  int componentType() const { return accessor_.componentType; }
+  double operator()(std::size_t element, int i) const {
+    const auto replaced = std::lower_bound(replaced_.begin(), replaced_.end(), element);
+    if (replaced != replaced_.end() && *replaced == element)
+      return component(sparse_, static_cast<std::size_t>(replaced - replaced_.begin()), i);
+    return base_.first ? component(base_, element, i) : 0;
+  }
+
+private:
+  void readSparse(const GltfDocument& document) {
+    const std::string field = name_ + ".sparse";
+    const auto& sparse = accessor_.sparse;
+    // Without a buffer view, nothing bounds the number of zeros.
+    if (!base_.first && accessor_.count > kMostZeros)
+      document.fail(name_ + ".count", std::to_string(accessor_.count) + " is more than 2^24");
+    if (sparse.count < 0) document.fail(field + ".count", std::to_string(sparse.count) + " is negative");
+    const auto count = static_cast<std::size_t>(sparse.count);
+    tinygltf::Accessor integers;
+    integers.type = TINYGLTF_TYPE_SCALAR;
+    integers.componentType = sparse.indices.componentType;
+    requireUnsigned(document, 1, integers.componentType, field + ".indices.componentType", field);
+    const Elements indices = elementsInView(document, sparse.indices.bufferView,
+                                            static_cast<std::size_t>(std::max(sparse.indices.byteOffset, 0)),
+                                            count, integers, field + ".indices");
+    sparse_ = elementsInView(document, sparse.values.bufferView,
+                             static_cast<std::size_t>(std::max(sparse.values.byteOffset, 0)), count,
+                             accessor_, field + ".values");
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto index = static_cast<std::size_t>(component(indices, i, 0));
+      if (index >= accessor_.count || (i > 0 && index <= replaced_.back()))
+        document.fail(field + ".indices", std::to_string(index) + " at " + std::to_string(i) +
+                                              " does not follow the one before, or is not one of the " +
+                                              std::to_string(accessor_.count) + " elements");
+      replaced_.push_back(index);
+    }
+  }
+
+  std::string name_;
+  const tinygltf::Accessor& accessor_;
+  Elements base_{};  // without `first`: zeros
+  Elements sparse_{};
+  std::vector<std::size_t> replaced_;  // ascending
+};
+
 }  // namespace
 
 AccessorValues readFloats(const GltfDocument& document, int accessor, int least, int most,
                           const std::string& field) {
-  const Elements elements = elementsOf(document, accessor, field);
-  const std::string name = "accessors[" + std::to_string(accessor) + "]";
-  if (elements.components < least || elements.components > most)
-    document.fail(field, name + " has " + std::to_string(elements.components) + " components, not " +
-                             std::to_string(least) +
+  const Numbers numbers(document, accessor, field);
+  if (numbers.components() < least || numbers.components() > most)
+    document.fail(field, numbers.name() + " has " + std::to_string(numbers.components()) +
+                             " components, not " + std::to_string(least) +
                              (most > least ? " to " + std::to_string(most) : std::string()));
   AccessorValues values;
-  values.components = elements.components;
-  values.data.reserve(elements.count * static_cast<std::size_t>(elements.components));
-  for (std::size_t i = 0; i < elements.count; ++i)
-    for (int c = 0; c < elements.components; ++c) {
-      const double value = component(elements, i, c);
+  values.components = numbers.components();
+  values.data.reserve(numbers.count() * static_cast<std::size_t>(values.components));
+  for (std::size_t i = 0; i < numbers.count(); ++i)
+    for (int c = 0; c < values.components; ++c) {
+      const double value = numbers(i, c);
       if (!std::isfinite(value))
-        document.fail(name, "element " + std::to_string(i) + " is not a finite number");
+        document.fail(numbers.name(), "element " + std::to_string(i) + " is not a finite number");
       values.data.push_back(static_cast<float>(value));
     }
   return values;
@@ -135,19 +212,15 @@ AccessorValues readFloats(const GltfDocument& document, int accessor, int least,
 
 std::vector<std::uint32_t> readIndices(const GltfDocument& document, int accessor, std::size_t vertexCount,
                                        const std::string& field) {
-  const Elements elements = elementsOf(document, accessor, field);
-  const std::string name = "accessors[" + std::to_string(accessor) + "]";
-  if (elements.components != 1 || (elements.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE &&
-                                   elements.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
-                                   elements.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT))
-    document.fail(field, name + " does not hold unsigned integers");
-  std::vector<std::uint32_t> indices(elements.count);
-  for (std::size_t i = 0; i < elements.count; ++i) {
-    const double value = component(elements, i, 0);
+  const Numbers numbers(document, accessor, field);
+  requireUnsigned(document, numbers.components(), numbers.componentType(), field, numbers.name());
+  std::vector<std::uint32_t> indices(numbers.count());
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    const double value = numbers(i, 0);
     if (!(value < static_cast<double>(vertexCount)))
-      document.fail(name, "index " + std::to_string(static_cast<std::uint64_t>(value)) + " at " +
-                              std::to_string(i) + " is not one of the " + std::to_string(vertexCount) +
-                              " vertices");
+      document.fail(numbers.name(), "index " + std::to_string(static_cast<std::uint64_t>(value)) + " at " +
+                                        std::to_string(i) + " is not one of the " +
+                                        std::to_string(vertexCount) + " vertices");
     indices[i] = static_cast<std::uint32_t>(value);
   }
   return indices;

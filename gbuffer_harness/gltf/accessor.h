@@ -10,7 +10,7 @@
 namespace pellucid::harness {
 
 struct AccessorValues {
-  int components = 0;  // 1..4
+  int components = 0;  // 1..4, or 16 of a matrix, column by column
   std::vector<float> data;
 
   std::size_t count() const { return data.size() / static_cast<std::size_t>(components); }

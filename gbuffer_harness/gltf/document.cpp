@@ -1,6 +1,7 @@
 #include "gltf/document.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
@@ -9,6 +10,7 @@
 #include <string_view>
 
 #include "common/error.h"
+#include "gltf/unpack.h"
 
 namespace pellucid::harness {
 
@@ -17,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uintmax_t kMaxFileBytes = 1u << 30;  // tinygltf counts in 32 bits
-constexpr int kMaxDepth = 100;                      // tinygltf reads extensions and extras recursively
+constexpr std::size_t kGlbHeader = 20;
 
 // Why the file cannot be read, or nothing.
 std::optional<std::string> readFile(const fs::path& path, std::vector<unsigned char>& bytes) {
@@ -48,7 +50,7 @@ bool isInFolder(const std::string& name, Session& session) {
   const fs::path real = fs::weakly_canonical(name, error);
   const fs::path relative = real.lexically_relative(session.folder);
   if (!error && !relative.empty() && *relative.begin() != "..") return true;
-  session.refusal = "uri \"" + name.substr(std::min(name.size(), session.folder.string().size() + 1)) +
+  session.refusal = "\"" + name.substr(std::min(name.size(), session.folder.string().size() + 1)) +
                     "\" leaves the file's folder";
   return false;
 }
@@ -98,36 +100,48 @@ bool isBinary(const std::vector<unsigned char>& bytes) {
 std::string_view jsonText(const std::string& file, const std::vector<unsigned char>& bytes) {
   const auto* text = reinterpret_cast<const char*>(bytes.data());
   if (!isBinary(bytes)) return {text, bytes.size()};
-  constexpr std::size_t kHeader = 20;
-  if (bytes.size() < kHeader) throw InputError(file, "", "is truncated: a GLB header has 20 bytes");
+  if (bytes.size() < kGlbHeader) throw InputError(file, "", "is truncated: a GLB header has 20 bytes");
   if (word(bytes, 4) != 2)
     throw InputError(file, "", "is GLB version " + std::to_string(word(bytes, 4)) + "; 2 is known");
   if (word(bytes, 8) > bytes.size())
     throw InputError(file, "",
                      "is truncated: its header says " + std::to_string(word(bytes, 8)) +
                          " bytes, there are " + std::to_string(bytes.size()));
-  if (word(bytes, 12) > bytes.size() - kHeader)
+  if (word(bytes, 12) > bytes.size() - kGlbHeader)
     throw InputError(file, "",
                      "its JSON chunk says " + std::to_string(word(bytes, 12)) + " bytes, there are " +
-                         std::to_string(bytes.size() - kHeader));
-  return {text + kHeader, word(bytes, 12)};
+                         std::to_string(bytes.size() - kGlbHeader));
+  return {text + kGlbHeader, word(bytes, 12)};
 }
 
-// Depth of brackets outside strings.
-void checkNesting(const std::string& file, std::string_view json) {
-  int depth = 0;
-  bool inString = false;
-  for (std::size_t i = 0; i < json.size(); ++i) {
-    const char c = json[i];
-    if (inString && c == '\\')
-      ++i;
-    else if (c == '"')
-      inString = !inString;
-    else if (!inString && (c == '[' || c == '{') && ++depth > kMaxDepth)
-      throw InputError(file, "", "its JSON is nested deeper than " + std::to_string(kMaxDepth) + " levels");
-    else if (!inString && (c == ']' || c == '}'))
-      --depth;
-  }
+// The length of what a GLB holds behind its JSON: its first buffer.
+std::size_t binaryBytes(const std::vector<unsigned char>& bytes, std::string_view json) {
+  constexpr std::size_t kChunkHeader = 8;
+  const std::size_t chunk = kGlbHeader + json.size();
+  return bytes.size() - chunk < kChunkHeader
+             ? 0
+             : std::min<std::size_t>(word(bytes, chunk), bytes.size() - chunk - kChunkHeader);
+}
+
+void setWord(std::vector<unsigned char>& bytes, std::size_t offset, std::size_t value) {
+  for (std::size_t i = 0; i < 4; ++i) bytes[offset + i] = static_cast<unsigned char>(value >> (8 * i));
+}
+
+// The file with another JSON text.
+std::vector<unsigned char> withJson(std::vector<unsigned char> bytes, std::size_t oldSize, std::string text) {
+  if (!isBinary(bytes)) return {text.begin(), text.end()};
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  const auto first = bytes.begin() + kGlbHeader;
+  const std::size_t shared = std::min(oldSize, text.size());
+  std::copy_n(text.begin(), shared, first);
+  const auto end = first + static_cast<std::ptrdiff_t>(shared);
+  if (text.size() > oldSize)
+    bytes.insert(end, text.begin() + static_cast<std::ptrdiff_t>(shared), text.end());
+  else
+    bytes.erase(end, first + static_cast<std::ptrdiff_t>(oldSize));
+  setWord(bytes, 8, bytes.size());
+  setWord(bytes, 12, text.size());
+  return bytes;
 }
 
 // tinygltf's lines as one sentence.
@@ -138,6 +152,59 @@ std::string sentenceOf(std::string text) {
   constexpr std::size_t kLongest = 300;
   if (text.size() > kLongest) text = text.substr(0, kLongest) + " ...";
   return text.empty() ? "cannot be parsed" : text;
+}
+
+std::string percentDecoded(const std::string& uri) {
+  std::string result;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    const auto isHex = [&](std::size_t k) { return std::isxdigit(static_cast<unsigned char>(uri[k])) != 0; };
+    if (uri[i] == '%' && i + 2 < uri.size() && isHex(i + 1) && isHex(i + 2)) {
+      result += static_cast<char>(std::stoi(uri.substr(i + 1, 2), nullptr, 16));
+      i += 2;
+    } else {
+      result += uri[i];
+    }
+  }
+  return result;
+}
+
+std::size_t base64Bytes(const std::string& uri) {
+  const std::size_t comma = uri.find(',');
+  std::size_t digits = comma == std::string::npos ? 0 : uri.size() - comma - 1;
+  for (std::size_t end = uri.size(); digits > 0 && uri[end - 1] == '='; --end) --digits;
+  return digits * 3 / 4;
+}
+
+// What tinygltf would say of buffers without naming them. `binary`: bytes of a GLB's own buffer.
+void checkBuffers(const GltfDocument& document, Session& session, std::size_t binary) {
+  const auto buffers = document.json.find("buffers");
+  if (buffers == document.json.end()) return;
+  for (std::size_t i = 0; i < buffers->size(); ++i) {
+    const GltfJson& buffer = (*buffers)[i];
+    if (isFallbackBuffer(buffer)) continue;
+    const std::string field = "buffers[" + std::to_string(i) + "].";
+    const std::size_t claimed = buffer["byteLength"];
+    const std::string uri = buffer.value("uri", "");
+    std::size_t bytes = binary;
+    std::string where = "BIN chunk";
+    if (uri.empty()) {
+      if (binary == 0) document.fail(field + "uri", "is missing");
+      if (claimed <= binary) continue;  // the chunk is padded
+    } else if (uri.rfind("data:", 0) == 0) {
+      bytes = base64Bytes(uri);
+      where = "data URI";
+    } else {
+      const std::string name = session.folder.string() + "/" + percentDecoded(uri);
+      if (!isInFolder(name, session)) document.fail(field + "uri", session.refusal);
+      std::error_code error;
+      if (!fs::is_regular_file(name, error)) document.fail(field + "uri", "\"" + uri + "\" is not found");
+      bytes = static_cast<std::size_t>(fs::file_size(name, error));
+      where = "\"" + uri + "\"";
+    }
+    if (claimed != bytes)
+      document.fail(field + "byteLength", std::to_string(claimed) + " are not the " + std::to_string(bytes) +
+                                              " bytes of its " + where);
+  }
 }
 
 }  // namespace
@@ -156,6 +223,8 @@ std::size_t GltfDocument::index(int index, std::size_t size, const std::string& 
 GltfDocument::Bytes GltfDocument::bufferView(int viewIndex, const std::string& field) const {
   const tinygltf::BufferView& view =
       model.bufferViews[index(viewIndex, model.bufferViews.size(), field + ".bufferView", "buffer views")];
+  if (const auto unpacked = views.find(viewIndex); unpacked != views.end())
+    return {unpacked->second.data(), unpacked->second.size()};
   const std::string name = "bufferViews[" + std::to_string(viewIndex) + "]";
   const auto& data =
       model.buffers[index(view.buffer, model.buffers.size(), name + ".buffer", "buffers")].data;
@@ -171,11 +240,14 @@ GltfDocument readGltf(const fs::path& path) {
   document.file = path.string();
   std::vector<unsigned char> bytes;
   if (const std::optional<std::string> why = readFile(path, bytes)) document.fail("", *why);
-  checkNesting(document.file, jsonText(document.file, bytes));
+  const std::string_view text = jsonText(document.file, bytes);
+  document.json = parseGltfJson(document.file, text);
 
   Session session;
   std::error_code error;
   session.folder = fs::canonical(path, error).parent_path();
+  checkBuffers(document, session, isBinary(bytes) ? binaryBytes(bytes, text) : 0);
+  bytes = withJson(std::move(bytes), text.size(), forTinyGltf(document.json).dump());
   tinygltf::TinyGLTF loader;
   loader.SetFsCallbacks(fileAccess(session));
   loader.SetImageLoader(keepImage, &session);
@@ -201,6 +273,7 @@ GltfDocument readGltf(const fs::path& path) {
     document.fail("asset.version", "\"" + document.model.asset.version + "\" is not 2.x");
   document.images = std::move(session.images);
   document.images.resize(document.model.images.size());
+  unpack(document);
   return document;
 }
 

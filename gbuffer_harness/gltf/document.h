@@ -4,15 +4,22 @@
 #include <tiny_gltf.h>
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
+
+#include "gltf/json.h"
 
 namespace pellucid::harness {
 
 struct GltfDocument {
   std::string file;  // for messages
+  GltfJson json;     // the whole file's; the model is without animations and skins
   tinygltf::Model model;
   std::vector<std::vector<unsigned char>> images;  // encoded, for those with a URI; as model.images
+
+  // Decompressed: the bytes of buffer views, and those of accessors, one element after the other.
+  std::map<int, std::vector<unsigned char>> views, accessors;
 
   // Throws InputError: file, field, sentence.
   [[noreturn]] void fail(const std::string& field, const std::string& sentence) const;

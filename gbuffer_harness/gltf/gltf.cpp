@@ -8,7 +8,6 @@
 #include <map>
 #include <numbers>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "common/error.h"
@@ -16,6 +15,8 @@
 #include "gltf/material.h"
 #include "gltf/mesh.h"
 #include "gltf/node.h"
+#include "gltf/origin.h"
+#include "gltf/pose.h"
 #include "gltf/texture.h"
 #include "scene/vector.h"
 
@@ -25,19 +26,11 @@ namespace {
 
 constexpr std::size_t kMaxMaterials = 255;  // 8 bits, 0 is none
 
-// Understood, or of no consequence for what is drawn.
-const std::set<std::string> kExtensions = {
-    "KHR_lights_punctual",   "KHR_materials_diffuse_transmission",
-    "KHR_materials_ior",     "KHR_materials_transmission",
-    "KHR_materials_volume",  "KHR_materials_volume_scatter",
-    "KHR_mesh_quantization",
-};
-
 // Rotation and position of a node, whatever its scale.
-struct Pose {
+struct Frame {
   glm::dvec3 position, up, backward;
 };
-Pose poseOf(const glm::dmat4& world) {
+Frame frameOf(const glm::dmat4& world) {
   return {glm::dvec3(world[3]), glm::dvec3(world[1]), glm::dvec3(world[2])};
 }
 
@@ -50,6 +43,10 @@ struct Drawn {
   std::optional<std::uint32_t> colored, reflecting;
 };
 
+bool isBound(const tinygltf::Primitive& primitive) {
+  return primitive.attributes.count("JOINTS_0") && primitive.attributes.count("WEIGHTS_0");
+}
+
 class Loader {
 public:
   Loader(const GltfDocument& document, const GltfOptions& options) : document_(document), options_(options) {}
@@ -57,27 +54,31 @@ public:
   GltfScene load();
 
 private:
-  void checkExtensions();
+  void sayIgnored();
   void addMesh(std::size_t node, const glm::dmat4& world);
+  void addPrimitive(const tinygltf::Primitive& primitive, const std::string& field, const MeshPose& pose,
+                    std::uint32_t object);
   void addCamera(std::size_t node, const glm::dmat4& world);
   void addLight(std::size_t node, const glm::dmat4& world);
   Drawn& read(int material);
   std::uint32_t surfaceOf(Drawn& drawn, bool hasVertexColors);
-  int textureOf(int texture, bool isNormalMap, const std::string& field);
+  int textureOf(const std::optional<TextureUse>& use, bool isNormalMap);
   void checkPresetNames();
 
   const GltfDocument& document_;
   const GltfOptions& options_;
   GltfScene scene_;
+  Pose pose_;
+  std::vector<std::optional<glm::dmat4>> worldFromNode_;  // of the nodes in the scene
+  std::vector<glm::dvec3> positions_;                     // of scene_.model.vertices
+  std::uint32_t furtherObjects_ = 0;
   std::map<int, Drawn> drawn_;                    // by glTF material
   std::map<std::pair<int, bool>, int> textures_;  // by glTF texture and whether it is a normal map
 };
 
-void Loader::checkExtensions() {
-  for (const std::string& name : document_.model.extensionsRequired)
-    if (!kExtensions.count(name)) document_.fail("extensionsRequired", "\"" + name + "\" is not supported");
+void Loader::sayIgnored() {
   for (const std::string& name : document_.model.extensionsUsed)
-    if (!kExtensions.count(name)) scene_.warnings.push_back("extension " + name + " is ignored");
+    if (!isDrawn(name)) scene_.warnings.push_back("extension " + name + " is ignored");
 }
 
 void Loader::checkPresetNames() {
@@ -92,14 +93,14 @@ void Loader::checkPresetNames() {
       document_.fail("materials", "none is named \"" + name + "\"; there are " + list);
 }
 
-// Into Model::textures; -1 for -1.
-int Loader::textureOf(int texture, bool isNormalMap, const std::string& field) {
-  if (texture == -1) return -1;
+// Into Model::textures; -1 without one.
+int Loader::textureOf(const std::optional<TextureUse>& use, bool isNormalMap) {
+  if (!use) return -1;
   std::vector<Texture>& textures = scene_.model.textures;
   const auto [entry, isNew] =
-      textures_.try_emplace({texture, isNormalMap}, static_cast<int>(textures.size()));
+      textures_.try_emplace({use->texture, isNormalMap}, static_cast<int>(textures.size()));
   if (isNew) {
-    textures.push_back(readTexture(document_, texture, field));
+    textures.push_back(readTexture(document_, use->texture, use->field + ".index"));
     textures.back().isNormalMap = isNormalMap;
   }
   return entry->second;
@@ -109,10 +110,12 @@ Drawn& Loader::read(int material) {
   if (const auto known = drawn_.find(material); known != drawn_.end()) return known->second;
   Model& model = scene_.model;
   GltfMaterial read = readMaterial(document_, material, options_, scene_.warnings);
-  const std::string field = "materials[" + std::to_string(material) + "].";
-  read.surface.texture =
-      textureOf(read.texture, false, field + "pbrMetallicRoughness.baseColorTexture.index");
-  read.surface.normalMap = textureOf(read.normalTexture, true, field + "normalTexture.index");
+  read.surface.texture = textureOf(read.color, false);
+  read.surface.normalMap = textureOf(read.normal, true);
+  if (read.lobeMap) {
+    read.surface.lobeMap = static_cast<int>(model.textures.size());
+    model.textures.push_back(std::move(read.lobeMap->texture));
+  }
   if (read.medium) {
     if (model.materials.size() == kMaxMaterials)
       document_.fail("materials", "more than 255 of them are translucent");
@@ -121,8 +124,9 @@ Drawn& Loader::read(int material) {
   }
   Drawn& drawn = drawn_[material];
   drawn.surface = read.surface;
-  drawn.texCoords = {read.texture >= 0 ? read.texCoord : -1,
-                     read.normalTexture >= 0 ? read.normalTexCoord : -1};
+  if (read.color) drawn.texCoords.color = read.color->coord;
+  if (read.normal) drawn.texCoords.normal = read.normal->coord;
+  if (read.lobeMap) drawn.texCoords.lobe = read.lobeMap->coord;
   drawn.reflectance = read.reflectance;
   return drawn;
 }
@@ -149,33 +153,47 @@ std::uint32_t Loader::surfaceOf(Drawn& drawn, bool hasVertexColors) {
 void Loader::addMesh(std::size_t node, const glm::dmat4& world) {
   const tinygltf::Node& source = document_.model.nodes[node];
   const std::string nodeName = "nodes[" + std::to_string(node) + "]";
-  if (source.skin != -1)
-    document_.fail(nodeName + ".skin", "skinned meshes are not supported; bake the pose");
   const std::size_t index =
       document_.index(source.mesh, document_.model.meshes.size(), nodeName + ".mesh", "meshes");
   const tinygltf::Mesh& mesh = document_.model.meshes[index];
-  const std::vector<double>& weights = source.weights.empty() ? mesh.weights : source.weights;
-  const bool morphed = std::any_of(weights.begin(), weights.end(), [](double w) { return w != 0; });
-
-  Model& model = scene_.model;
-  for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
-    const tinygltf::Primitive& primitive = mesh.primitives[i];
-    const std::string field = "meshes[" + std::to_string(index) + "].primitives[" + std::to_string(i) + "]";
-    if (morphed && !primitive.targets.empty())
-      document_.fail(field + ".targets", "morph targets in use are not supported; bake the shape");
-    if (primitive.material != -1)
-      document_.index(primitive.material, document_.model.materials.size(), field + ".material", "materials");
-    Drawn& drawn = read(primitive.material);
-    const auto first = static_cast<std::uint32_t>(model.indices.size());
-    const auto firstVertex = static_cast<std::ptrdiff_t>(model.vertices.size());
-    if (!appendPrimitive(document_, primitive, field, world, drawn.texCoords, model, scene_.warnings))
-      continue;
-    const bool hasVertexColors = std::any_of(model.vertices.begin() + firstVertex, model.vertices.end(),
-                                             [](const Vertex& v) { return v.color != Vertex{}.color; });
-    const std::uint32_t surface = surfaceOf(drawn, hasVertexColors);
-    model.parts.push_back({first, static_cast<std::uint32_t>(model.indices.size()) - first, surface,
-                           static_cast<std::uint32_t>(node)});
+  MeshPose pose;
+  const auto animated = pose_.weights.find(node);
+  pose.weights = animated != pose_.weights.end() ? animated->second
+                 : source.weights.empty()        ? mesh.weights
+                                                 : source.weights;
+  if (source.skin != -1) pose.joints = readJoints(document_, source.skin, worldFromNode_, nodeName + ".skin");
+  // Instances are bodies of their own.
+  bool isFirst = true;
+  for (const glm::dmat4& instance : readInstances(document_, node)) {
+    pose.worldFromMesh = world * instance;
+    const auto object =
+        static_cast<std::uint32_t>(isFirst ? node : document_.model.nodes.size() + furtherObjects_++);
+    isFirst = false;
+    for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
+      const std::string field = "meshes[" + std::to_string(index) + "].primitives[" + std::to_string(i) + "]";
+      if (source.skin != -1 && !isBound(mesh.primitives[i]))
+        document_.fail(nodeName + ".skin",
+                       field + " has no JOINTS_0 and WEIGHTS_0 by which it would be bound; bake the pose");
+      addPrimitive(mesh.primitives[i], field, pose, object);
+    }
   }
+}
+
+void Loader::addPrimitive(const tinygltf::Primitive& primitive, const std::string& field,
+                          const MeshPose& pose, std::uint32_t object) {
+  Model& model = scene_.model;
+  if (primitive.material != -1)
+    document_.index(primitive.material, document_.model.materials.size(), field + ".material", "materials");
+  Drawn& drawn = read(primitive.material);
+  const auto first = static_cast<std::uint32_t>(model.indices.size());
+  const auto firstVertex = static_cast<std::ptrdiff_t>(model.vertices.size());
+  if (!appendPrimitive(document_, primitive, field, pose, drawn.texCoords, model, positions_,
+                       scene_.warnings))
+    return;
+  const bool hasVertexColors = std::any_of(model.vertices.begin() + firstVertex, model.vertices.end(),
+                                           [](const Vertex& v) { return v.color != Vertex{}.color; });
+  const std::uint32_t surface = surfaceOf(drawn, hasVertexColors);
+  model.parts.push_back({first, static_cast<std::uint32_t>(model.indices.size()) - first, surface, object});
 }
 
 void Loader::addCamera(std::size_t node, const glm::dmat4& world) {
@@ -196,6 +214,7 @@ void Loader::addCamera(std::size_t node, const glm::dmat4& world) {
     require(o.znear >= 0 && o.znear < 1e18, ".orthographic.znear", o.znear, ">= 0");
     require(o.zfar > o.znear && o.zfar < 1e18, ".orthographic.zfar", o.zfar, "> znear");
     result.height = 2 * o.ymag;
+    if (o.xmag > 0 && o.xmag < 1e18) result.aspect = o.xmag / o.ymag;
     result.range = {o.znear, o.zfar, true};
   } else {
     const tinygltf::PerspectiveCamera& p = camera.perspective;
@@ -203,13 +222,15 @@ void Loader::addCamera(std::size_t node, const glm::dmat4& world) {
     require(p.znear > 0 && p.znear < 1e18, ".perspective.znear", p.znear, "> 0");
     require(p.zfar == 0 || (p.zfar > p.znear && p.zfar < 1e18), ".perspective.zfar", p.zfar, "> znear");
     result.verticalFov = p.yfov;
+    require(p.aspectRatio >= 0 && p.aspectRatio < 1e18, ".perspective.aspectRatio", p.aspectRatio, "> 0");
+    result.aspect = p.aspectRatio;
     result.range = {p.znear, p.zfar > 0 ? p.zfar : std::numeric_limits<double>::infinity(), true};
   }
-  const Pose pose = poseOf(world);
-  if (!(glm::length(pose.backward) > 0))
+  const Frame frame = frameOf(world);
+  if (!(glm::length(frame.backward) > 0))
     document_.fail("nodes[" + std::to_string(node) + "]", "a camera is scaled by 0");
-  result.viewFromWorld = lookAt(fromGlm(pose.position),
-                                fromGlm(pose.position - glm::normalize(pose.backward)), fromGlm(pose.up));
+  result.viewFromWorld = lookAt(fromGlm(frame.position),
+                                fromGlm(frame.position - glm::normalize(frame.backward)), fromGlm(frame.up));
   scene_.model.cameras.push_back(result);
 }
 
@@ -249,10 +270,10 @@ void Loader::addLight(std::size_t node, const glm::dmat4& world) {
                 light.outerConeAngle <= std::numbers::pi / 2 + 1e-6,
             "spot", "0 <= innerConeAngle < outerConeAngle <= pi / 2");
   }
-  const Pose pose = poseOf(world);
-  require(glm::length(pose.backward) > 0, "direction", "defined: its node is scaled by 0");
-  light.position = fromGlm(pose.position);
-  light.direction = fromGlm(-glm::normalize(pose.backward));
+  const Frame frame = frameOf(world);
+  require(glm::length(frame.backward) > 0, "direction", "defined: its node is scaled by 0");
+  light.position = fromGlm(frame.position);
+  light.direction = fromGlm(-glm::normalize(frame.backward));
   scene_.model.lights.push_back(light);
 }
 
@@ -260,17 +281,20 @@ GltfScene Loader::load() {
   Model& model = scene_.model;
   model.name = document_.file;
   model.metersPerUnit = options_.metersPerUnit;
-  checkExtensions();
+  sayIgnored();
   checkPresetNames();
-  forEachNode(document_, [&](std::size_t node, const glm::dmat4& world) {
+  pose_ = readPose(document_, options_.time, options_.animation, scene_.warnings);
+  worldFromNode_.resize(document_.model.nodes.size());
+  forEachNode(document_, pose_,
+              [&](std::size_t node, const glm::dmat4& world) { worldFromNode_[node] = world; });
+  forEachNode(document_, pose_, [&](std::size_t node, const glm::dmat4& world) {
     const tinygltf::Node& source = document_.model.nodes[node];
     if (source.mesh != -1) addMesh(node, world);
     if (source.camera != -1) addCamera(node, world);
     addLight(node, world);
   });
   if (model.indices.empty()) document_.fail("meshes", "the scene has no triangles");
-  if (model.materials.empty())
-    scene_.warnings.push_back("no material of the scene is translucent; name a preset for one");
+  if (moveOrigin(model, positions_, options_.camera)) scene_.notes.push_back(originNote(model));
   return std::move(scene_);
 }
 

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,12 @@ struct GltfOptions {
   // material that is not named; "default": triangles without a material.
   std::map<std::string, std::string> presets;
   double ior = 0;  // of all media, in place of their own, [1, 3]; 0: their own
+  // Of the animation that is read; absent: the nodes as they stand. Seconds, >= 0.
+  std::optional<double> time;
+  std::string animation;  // name or number from 0; empty: the first
+  // Name of the camera that looks, by which the world's origin is chosen where the scene is far from its own;
+  // empty: the file's first, and the model's center without one or for "auto".
+  std::string camera;
 };
 
 struct GltfScene {
@@ -25,10 +32,10 @@ struct GltfScene {
   std::vector<std::string> warnings;       // sentences for a person: what is drawn otherwise than asked
 };
 
-// Reads the default scene, with every node's transform applied. Memory stays within a small multiple of
-// the files' size and of 2^24 vertices. External buffers and images must lie in the file's own folder or
-// below it. Throws InputError naming file, field and value for what is broken, and for what cannot be
-// drawn as asked: required extensions, skins, morph targets in use, sparse accessors.
+// Reads the default scene, with every node's transform, skin and morph targets applied. Memory stays within a
+// small multiple of the files' size and of 2^24 vertices. External buffers and images must lie in the file's
+// own folder or below it. Throws InputError naming file, field and value for what is broken, and for what
+// cannot be drawn as asked, as required extensions that are not known.
 GltfScene loadGltf(const std::filesystem::path& path, const GltfOptions& options = {});
 
 }  // namespace pellucid::harness

@@ -1,52 +1,26 @@
 #include "gltf/node.h"
 
 #include <algorithm>
-#include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
-#include <vector>
+#include <optional>
+
+#include "gltf/accessor.h"
 
 namespace pellucid::harness {
 
 namespace {
 
-// `values` when they are `count` finite numbers, `absent` when there are none.
-std::vector<double> numbers(const GltfDocument& document, const std::vector<double>& values,
-                            std::vector<double> absent, const std::string& field) {
-  if (values.empty()) return absent;
-  if (values.size() != absent.size() ||
-      !std::all_of(values.begin(), values.end(), [](double v) { return std::abs(v) < 1e30; }))
-    document.fail(field, "is not " + std::to_string(absent.size()) + " numbers below 1e30");
-  return values;
-}
-
-glm::dmat4 transformOf(const GltfDocument& document, std::size_t index) {
-  const tinygltf::Node& node = document.model.nodes[index];
-  const std::string field = "nodes[" + std::to_string(index) + "].";
-  if (!node.matrix.empty()) {
-    const auto m = numbers(document, node.matrix, std::vector<double>(16), field + "matrix");
-    glm::dmat4 matrix;
-    for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = m[static_cast<std::size_t>(i)];
-    if (glm::transpose(matrix)[3] != glm::dvec4(0, 0, 0, 1))
-      document.fail(field + "matrix", "its last row is not 0, 0, 0, 1");
-    return matrix;
-  }
-  const auto t = numbers(document, node.translation, {0, 0, 0}, field + "translation");
-  const auto r = numbers(document, node.rotation, {0, 0, 0, 1}, field + "rotation");
-  const auto s = numbers(document, node.scale, {1, 1, 1}, field + "scale");
-  const glm::dquat rotation(r[3], r[0], r[1], r[2]);
-  if (!(glm::length(rotation) > 0)) document.fail(field + "rotation", "is a quaternion of length 0");
-  return glm::translate(glm::dmat4(1), {t[0], t[1], t[2]}) * glm::mat4_cast(glm::normalize(rotation)) *
-         glm::scale(glm::dmat4(1), {s[0], s[1], s[2]});
-}
+constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
 
 }  // namespace
 
-void forEachNode(const GltfDocument& document,
+void forEachNode(const GltfDocument& document, const Pose& pose,
                  const std::function<void(std::size_t, const glm::dmat4&)>& visit) {
   const tinygltf::Model& model = document.model;
-  const std::size_t scene = document.index(model.defaultScene >= 0 ? model.defaultScene : 0,
-                                           model.scenes.size(), "scene", "scenes");
+  if (model.scenes.empty()) document.fail("scenes", "the file has none: there is nothing to draw");
+  const std::size_t scene =
+      model.defaultScene < 0 ? 0 : document.index(model.defaultScene, model.scenes.size(), "scene", "scenes");
   struct Pending {
     std::size_t node;
     glm::dmat4 worldFromParent;
@@ -67,10 +41,56 @@ void forEachNode(const GltfDocument& document,
   while (!pending.empty()) {
     const Pending next = pending.back();
     pending.pop_back();
-    const glm::dmat4 world = next.worldFromParent * transformOf(document, next.node);
+    const glm::dmat4 world = next.worldFromParent * parentFromNode(document, pose, next.node);
     visit(next.node, world);
     push(model.nodes[next.node].children, world, "nodes[" + std::to_string(next.node) + "].children");
   }
+}
+
+std::vector<glm::dmat4> readInstances(const GltfDocument& document, std::size_t node) {
+  const GltfJson* extension = extensionOf(document.json["nodes"][node], kInstancing);
+  if (!extension) return {glm::dmat4(1)};
+  const std::string field = "nodes[" + std::to_string(node) + "].extensions." + kInstancing + ".attributes";
+  const auto attributes = extension->find("attributes");
+  if (attributes == extension->end() || !attributes->is_object()) document.fail(field, "is missing");
+  std::optional<std::size_t> count;
+  const auto read = [&](const char* name, int components) -> std::optional<AccessorValues> {
+    const auto found = attributes->find(name);
+    if (found == attributes->end()) return std::nullopt;
+    const std::string where = field + "." + name;
+    if (!found->is_number_unsigned()) document.fail(where, found->dump() + " is not an integer >= 0");
+    AccessorValues values =
+        readFloats(document, static_cast<int>(std::min<std::size_t>(found->get<std::size_t>(), 1u << 30)),
+                   components, components, where);
+    if (count && *count != values.count())
+      document.fail(where, std::to_string(values.count()) + " are not the " + std::to_string(*count) +
+                               " of the other attributes");
+    count = values.count();
+    return values;
+  };
+  const auto translation = read("TRANSLATION", 3), rotation = read("ROTATION", 4), scale = read("SCALE", 3);
+  if (!count) document.fail(field, "has none of TRANSLATION, ROTATION and SCALE");
+  std::vector<glm::dmat4> result;
+  for (std::size_t i = 0; i < *count; ++i) {
+    glm::dmat4 matrix(1);
+    if (translation) {
+      const float* t = (*translation)[i];
+      matrix = glm::translate(matrix, glm::dvec3(t[0], t[1], t[2]));
+    }
+    if (rotation) {
+      const float* r = (*rotation)[i];
+      const glm::dquat q(r[3], r[0], r[1], r[2]);
+      if (!(glm::length(q) > 0))
+        document.fail(field + ".ROTATION", "element " + std::to_string(i) + " is a quaternion of length 0");
+      matrix *= glm::mat4_cast(glm::normalize(q));
+    }
+    if (scale) {
+      const float* s = (*scale)[i];
+      matrix = glm::scale(matrix, glm::dvec3(s[0], s[1], s[2]));
+    }
+    result.push_back(matrix);
+  }
+  return result;
 }
 
 }  // namespace pellucid::harness

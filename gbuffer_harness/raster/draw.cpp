@@ -1,17 +1,20 @@
 #include "raster/draw.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <deque>
+#include <glm/gtc/packing.hpp>
 
 #include "common/error.h"
 #include "kRasterCaster.h"
 #include "kRasterCount.h"
 #include "kRasterDepth.h"
 #include "kRasterMesh.h"
+#include "kRasterReflected.h"
 #include "kRasterSurface.h"
 #include "kRasterTransmit.h"
 #include "replay/frame.h"
@@ -23,7 +26,7 @@ namespace pellucid::harness {
 namespace {
 
 // Of shaders/draw.glsl.
-constexpr std::uint32_t kOwnBindings = 4, kBehindFront = 1, kBehindCaster = 2;
+constexpr std::uint32_t kOwnBindings = 5, kBehindFront = 1, kBehindCaster = 2, kLobesApart = 256;
 
 using ShaderModule = Owned<VkShaderModule, vkDestroyShaderModule>;
 
@@ -42,6 +45,8 @@ Spirv fragmentSpirv(FragmentShader shader) {
       return {kRasterCaster, sizeof kRasterCaster};
     case FragmentShader::Count:
       return {kRasterCount, sizeof kRasterCount};
+    case FragmentShader::Reflected:
+      return {kRasterReflected, sizeof kRasterReflected};
     case FragmentShader::Transmit:
       return {kRasterTransmit, sizeof kRasterTransmit};
   }
@@ -92,6 +97,11 @@ VkSamplerAddressMode addressMode(TextureWrap wrap) {
 glm::vec4 vec4(const std::array<double, 3>& rgb, double w) {
   return {static_cast<float>(rgb[0]), static_cast<float>(rgb[1]), static_cast<float>(rgb[2]),
           static_cast<float>(w)};
+}
+
+// A half float in the upper 16 bits.
+std::uint32_t highHalf(double value) {
+  return glm::packHalf2x16({0.0f, static_cast<float>(std::min(value, 65504.0))});
 }
 
 // Bindings of the module's fused dispatch that shaders/transmit.frag reads; they follow those of draw.glsl.
@@ -232,7 +242,8 @@ void UploadedModel::createPipeline(Pipeline& pipeline, const RenderTarget& targe
       {3, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, color)},
       {4, 0, VK_FORMAT_R32_SFLOAT, offsetof(Vertex, mark)},
       {5, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(Vertex, normalUv)},
-      {6, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Vertex, tangent)}};
+      {6, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Vertex, tangent)},
+      {7, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(Vertex, lobeUv)}};
   VkPipelineVertexInputStateCreateInfo input{VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
   input.vertexBindingDescriptionCount = 1;
   input.pVertexBindingDescriptions = &binding;
@@ -309,11 +320,13 @@ void UploadedModel::draw(const RenderTarget& target, const DrawView& view, const
                         pipelineOf(target, surface.doubleSided ? doubleSided : state));
       const std::size_t none = textures_.size() - 1;
       const auto textureOr = [none](int index) { return index < 0 ? none : static_cast<std::size_t>(index); };
-      const std::size_t color = textureOr(surface.texture), normal = textureOr(surface.normalMap);
+      const std::size_t color = textureOr(surface.texture), normal = textureOr(surface.normalMap),
+                        lobe = textureOr(surface.lobeMap);
       const GpuImage* const object = earlier.caster ? earlier.caster : earlier.albedoObject;
       const GpuImage* images[kOwnBindings] = {textures_[color].get(), earlier.depth ? earlier.depth : &white,
-                                              object ? object : &white, textures_[normal].get()};
-      const std::size_t samplers[kOwnBindings] = {color, none, none, normal};
+                                              object ? object : &white, textures_[normal].get(),
+                                              textures_[lobe].get()};
+      const std::size_t samplers[kOwnBindings] = {color, none, none, normal, lobe};
       DescriptorWrites writes;
       for (std::uint32_t i = 0; i < kOwnBindings; ++i)
         writes.image(i, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, *samplers_[samplers[i]], images[i]->use());
@@ -326,7 +339,9 @@ void UploadedModel::draw(const RenderTarget& target, const DrawView& view, const
       const std::uint32_t behind = earlier.depth == nullptr ? 0
                                    : earlier.caster         ? kBehindCaster
                                                             : kBehindFront;
-      constants.ids = {surface.material, view.reversedDepth, behind,
+      const std::uint32_t apart = surface.lobes == SurfaceLobes::Apart ? kLobesApart : 0;
+      constants.ids = {surface.material | apart | highHalf(surface.displaced),
+                       view.reversedDepth | highHalf(surface.backscatter), behind,
                        earlier.planned ? earlier.planned->dispatch.pushConstants[1]
                                        : std::bit_cast<std::uint32_t>(normalScale)};
       vkCmdPushConstants(commandBuffer, layout_, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,

@@ -16,7 +16,7 @@
 
 namespace pellucid::harness {
 
-enum class FragmentShader { Surface, Depth, Caster, Count, Transmit };
+enum class FragmentShader { Surface, Reflected, Depth, Caster, Count, Transmit };
 
 struct PipelineState {
   FragmentShader shader = FragmentShader::Surface;

@@ -22,6 +22,7 @@ struct Vertex {
   // World, unit, along which u grows; the map's +y is along w cross(normal, tangent), w = 1 or -1. 0: both
   // follow from positions and normalUv.
   std::array<float, 4> tangent = {0, 0, 0, 0};
+  std::array<float, 2> lobeUv = {0, 0};  // of the lobe map
 };
 
 enum class TextureWrap { Repeat, Clamp, Mirror };
@@ -33,7 +34,14 @@ struct Texture {
   bool isNormalMap = false;  // rgb are vectors, 0 .. 255 for -1 .. 1
 };
 
-// How a part is drawn: albedo = texture * baseColor * vertex color + addedColor.
+enum class SurfaceLobes {
+  Together,  // the albedo is the sum of both
+  Apart  // the albedo is addedColor's, which light that comes through has, too; that of other light is apart
+};
+
+// How a part is drawn, with rgb and a of the lobe map: albedo = texture * baseColor * vertex color *
+// (1 - displaced * a) + addedColor * rgb * a. With lobes apart the first term, and `backscatter` times the
+// second, reflect light, and the capture's irradiance is times their ratio to the second.
 struct Surface {
   std::string name;
   std::array<double, 3> baseColor = {1, 1, 1};   // linear
@@ -44,6 +52,10 @@ struct Surface {
   std::uint8_t material = 0;                     // index in the material image; 0: not translucent
   int normalMap = -1;                            // into Model::textures; -1: none
   double normalScale = 1;                        // of the map's x and y
+  int lobeMap = -1;                              // into Model::textures; -1: white
+  double displaced = 0;                          // 0 .. 1
+  double backscatter = 0;                        // >= 0
+  SurfaceLobes lobes = SurfaceLobes::Together;
 };
 
 struct Part {
@@ -59,12 +71,15 @@ struct ModelCamera {
   bool orthographic = false;
   double verticalFov = 0.5;  // radians; perspective
   double height = 1;         // scene units from the lower to the upper edge; orthographic
+  double aspect = 0;         // width / height of the image it is meant for; 0: any
   ClipRange range;           // `reversed` is decided by the rasterizer's options
 };
 
 struct Model {
   std::string name;
   double metersPerUnit = 1;
+  // Of the file's world, where the model's world begins; other than 0 where floats would be too coarse.
+  std::array<double, 3> origin = {0, 0, 0};
   std::vector<Vertex> vertices;
   std::vector<std::uint32_t> indices;
   std::vector<Part> parts;

@@ -61,6 +61,11 @@ BackImages drawBack(Device& device, const UploadedModel& model, const DrawView& 
   return {back.image(kPlanar).download(), back.image(kDeviceDepth).download(), count.image(0).download()};
 }
 
+bool isInFront(float depth, float other, const RasterOptions& options) {
+  const bool greaterIsNearer = options.depthEncoding == PELLUCID_DEPTH_DEVICE && options.reversedZ;
+  return greaterIsNearer ? depth > other : depth < other;
+}
+
 // Between the front and the nearest back face of a closed object lies nothing of it, or as many entrances
 // as exits along the whole ray.
 bool isClosed(const float* count, BackFace backFace) {
@@ -79,6 +84,21 @@ Light drawLight(Device& device, const Model& model, const UploadedModel& uploade
   result.shadowMaps = drawn.maps;
   if (light.radius == 0) irradiance.add(light, drawn.images);
   return result;
+}
+
+bool hasLobesApart(const Model& model) {
+  return std::any_of(model.surfaces.begin(), model.surfaces.end(),
+                     [](const Surface& s) { return s.lobes == SurfaceLobes::Apart; });
+}
+
+Image drawReflectedShare(Device& device, const UploadedModel& model, const DrawView& view,
+                         const RasterOptions& options) {
+  const RenderTarget target(device, options.width, options.height,
+                            {{VK_FORMAT_R32G32B32A32_SFLOAT, clearTo(0)}}, farDepth(options.reversedZ));
+  model.draw(target, view,
+             {FragmentShader::Reflected, VK_CULL_MODE_BACK_BIT, nearer(options.reversedZ), false},
+             VK_CULL_MODE_NONE);
+  return rgb(target.image(0).download());
 }
 
 // The pixels of the front and back passes as a capture has them.
@@ -109,7 +129,11 @@ void fillCapture(const FrontTarget& front, const BackImages& back, const RasterO
       capture.normal.data[k] = static_cast<float>(normal[c]);
       capture.albedo.data[k] = albedo.data[4 * i + static_cast<std::size_t>(c)];
     }
-    if (!isClosed(&back.count.data[4 * i], options.backFace)) capture.backDepth.image.data[i] = nothing;
+    float& backDepth = capture.backDepth.image.data[i];
+    const float frontDepth = capture.frontDepth.image.data[i];
+    // At an edge of the silhouette both are one, but for what rounding makes of steep triangles.
+    if (isInFront(backDepth, frontDepth, options)) backDepth = frontDepth;
+    if (!isClosed(&back.count.data[4 * i], options.backFace)) backDepth = nothing;
     result.openPixels += capture.material[i] != 0 && capture.backDepth.image.data[i] == nothing;
   }
   const std::vector<float>& backs = capture.backDepth.image.data;
@@ -169,6 +193,11 @@ RasterResult rasterize(Device& device, const Model& model, const ModelCamera& ca
     capture.lights.push_back(drawLight(device, model, uploaded, light, options, irradiance));
   placeShadowMaps(options.shadow.placement, capture.lights);
   capture.irradiance = irradiance.irradiance();
+  if (hasLobesApart(model)) {
+    result.reflectedShare = drawReflectedShare(device, uploaded, view, options);
+    for (std::size_t i = 0; i < capture.irradiance.data.size(); ++i)
+      capture.irradiance.data[i] *= result.reflectedShare.data[i];
+  }
   addWarnings(result, options);
   return result;
 }

@@ -54,6 +54,8 @@ struct RasterResult {
   // Pixels of a material through which the front's object is not closed: an open or single-sided mesh, or
   // a hole. They have no back depth.
   std::size_t openPixels = 0;
+  // What the irradiance is times, RGB, 0 where nothing is; empty: no surface has its lobes apart.
+  Image reflectedShare;
   std::vector<std::string> warnings;  // sentences for a person
 };
 

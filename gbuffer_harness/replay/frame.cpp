@@ -8,6 +8,7 @@
 #include "capture/shadow_images.h"
 #include "common/error.h"
 #include "pellucid/pellucid_material.h"
+#include "replay/world_origin.h"
 
 namespace pellucid::harness {
 namespace {
@@ -20,10 +21,17 @@ void copy(const std::array<double, 3>& from, float (&to)[3]) {
   std::transform(from.begin(), from.end(), to, [](double v) { return static_cast<float>(v); });
 }
 
-void addLight(const Light& light, const ShadowImages& images, FrameData& data) {
+using Origin = std::array<double, 3>;
+
+Origin minus(Origin position, const Origin& origin) {
+  for (std::size_t i = 0; i < 3; ++i) position[i] -= origin[i];
+  return position;
+}
+
+void addLight(const Light& light, const Origin& origin, const ShadowImages& images, FrameData& data) {
   PellucidLight l{};
   l.type = light.type;
-  copy(light.position, l.position);
+  copy(minus(light.position, origin), l.position);
   copy(light.direction, l.direction);
   copy(light.color, l.color);
   l.intensity = static_cast<float>(light.intensity);
@@ -48,8 +56,8 @@ void addLight(const Light& light, const ShadowImages& images, FrameData& data) {
     s.extent[0] = static_cast<uint32_t>(map.depth.image.width);
     s.extent[1] = static_cast<uint32_t>(map.depth.image.height);
     s.encoding = map.depth.encoding;
-    copy(map.clipFromWorld, s.clipFromWorld);
-    copy(map.viewFromWorld.value_or(kIdentity), s.viewFromWorld);
+    copy(fromOrigin(map.clipFromWorld, origin), s.clipFromWorld);
+    copy(fromOrigin(map.viewFromWorld.value_or(kIdentity), origin), s.viewFromWorld);
     data.shadowMaps.push_back(s);
   }
   data.lights.push_back(l);
@@ -74,7 +82,7 @@ float nearestLine(const PellucidMaterial& m, uint32_t channel) {
   return static_cast<float>(bestLength);
 }
 
-void addThesisOptions(const TranslucencySettings& t, FrameData& data) {
+void addThesisOptions(const TranslucencySettings& t, const Origin& origin, FrameData& data) {
   PellucidThesisOptions& o = data.thesis;
   pellucidInitThesisOptions(&o);
   o.angleModel = t.angleModel;
@@ -95,7 +103,7 @@ void addThesisOptions(const TranslucencySettings& t, FrameData& data) {
   o.minimumDotTableSize = !sphere ? entries : side * side == entries ? side : 0;
   std::copy(t.faceVector.begin(), t.faceVector.end(), o.faceVector);
   std::copy(t.upAxis.begin(), t.upAxis.end(), o.upAxis);
-  std::copy(t.objectCenter.begin(), t.objectCenter.end(), o.objectCenter);
+  for (std::size_t i = 0; i < 3; ++i) o.objectCenter[i] = static_cast<float>(t.objectCenter[i] - origin[i]);
   data.frame.thesis = &o;
 }
 
@@ -163,7 +171,8 @@ void makeFrame(const Capture& capture, const std::vector<PellucidMaterial>& mate
                const ReplaySettings& settings, FrameData& data) {
   data.materials = withTransmittance(materials, settings.transmittance);
   const ShadowImages images = shadowImages(capture.lights);
-  for (const Light& light : capture.lights) addLight(light, images, data);
+  const Origin origin = worldOrigin(capture);
+  for (const Light& light : capture.lights) addLight(light, origin, images, data);
   data.shadowImages.resize(images.images.size());
 
   PellucidFrame& f = data.frame;
@@ -174,7 +183,7 @@ void makeFrame(const Capture& capture, const std::vector<PellucidMaterial>& mate
   std::copy(settings.renderRect.begin(), settings.renderRect.end(), f.renderRect);
   f.metersPerUnit = static_cast<float>(capture.metersPerUnit);
   copy(capture.clipFromView, f.clipFromView);
-  copy(capture.viewFromWorld, f.viewFromWorld);
+  copy(fromOrigin(capture.viewFromWorld, origin), f.viewFromWorld);
   f.outputFormat = settings.outputFormat;
   f.frontDepthEncoding = capture.frontDepth.encoding;
   f.backDepthEncoding = capture.backDepth.encoding;
@@ -191,7 +200,7 @@ void makeFrame(const Capture& capture, const std::vector<PellucidMaterial>& mate
   f.thicknessSource = t.thicknessSource;
   f.gatherSamples = t.gatherSamples;
   f.gatherSpacing = t.gatherSpacing;
-  addThesisOptions(t, data);
+  addThesisOptions(t, origin, data);
   f.reuse = settings.reuse;
   f.coherenceThreshold = settings.coherenceThreshold;
   f.frameLoad = settings.frameLoad;

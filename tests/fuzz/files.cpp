@@ -66,13 +66,39 @@ std::string soundGlb() {
   const int normal = b.vectors({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1});
   const int uv = b.accessor(std::vector<float>{0, 1, 1, 1, 1, 0, 0, 0}, 5126, "VEC2", 2);
   const int indices = b.indices({0, 1, 2, 0, 2, 3});
-  b.json["meshes"] = {{{"primitives",
-                        {{{"attributes", {{"POSITION", position}, {"NORMAL", normal}, {"TEXCOORD_0", uv}}},
+  const int joints = b.accessor(std::vector<std::uint8_t>(16, 0), 5121, "VEC4", 4);
+  const int weights = b.accessor(std::vector<float>(16, 0.25f), 5126, "VEC4", 4);
+  const int times = b.accessor(std::vector<float>{0, 1}, 5126, "SCALAR", 1);
+  const int path = b.vectors({0, 0, 0, 1, 2, 3});
+  const std::vector<std::uint16_t> replaced = {1};
+  const int sparse = b.view(replaced.data(), 2);
+  b.json["accessors"][static_cast<std::size_t>(normal)]["sparse"] = {
+      {"count", 1},
+      {"indices", {{"bufferView", sparse}, {"componentType", 5123}}},
+      {"values", {{"bufferView", 0}}}};
+  b.json["meshes"] = {{{"weights", {0.5}},
+                       {"primitives",
+                        {{{"attributes",
+                           {{"POSITION", position},
+                            {"NORMAL", normal},
+                            {"TEXCOORD_0", uv},
+                            {"JOINTS_0", joints},
+                            {"WEIGHTS_0", weights}}},
+                          {"targets", {{{"POSITION", normal}}}},
                           {"indices", indices},
                           {"material", 0}}}}}};
-  b.json["nodes"] = {{{"mesh", 0}, {"scale", {1, 2, 3}}, {"children", {1}}},
-                     {{"camera", 0}, {"translation", {0, 0, 5}}},
-                     {{"rotation", {0, 0, 0, 1}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}}};
+  b.json["skins"] = {{{"joints", {0}}}};
+  b.json["animations"] = {
+      {{"samplers", {{{"input", times}, {"output", path}}}},
+       {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}}}};
+  b.json["nodes"] = {
+      {{"mesh", 0},
+       {"skin", 0},
+       {"scale", {1, 2, 3}},
+       {"children", {1}},
+       {"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", path}}}}}}}},
+      {{"camera", 0}, {"translation", {0, 0, 5}}},
+      {{"rotation", {0, 0, 0, 1}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}}};
   b.json["scenes"][0]["nodes"] = {0, 2};
   b.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.1}}}}};
   b.json["extensionsUsed"] = {"KHR_lights_punctual", "KHR_materials_volume"};
@@ -84,13 +110,18 @@ std::string soundGlb() {
   b.json["textures"] = {{{"source", 0}, {"sampler", 0}}};
   b.json["materials"] = {
       {{"name", "m"},
-       {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}},
+       {"pbrMetallicRoughness",
+        {{"baseColorTexture",
+          {{"index", 0},
+           {"extensions", {{"KHR_texture_transform", {{"offset", {0.5, 0}}, {"rotation", 1}}}}}}}}},
        {"normalTexture", {{"index", 0}, {"scale", 0.5}}},
        {"extensions",
         {{"KHR_materials_volume",
           {{"thicknessFactor", 1}, {"attenuationDistance", 0.002}, {"attenuationColor", {0.5, 0.25, 0.125}}}},
          {"KHR_materials_volume_scatter",
-          {{"multiscatterColor", {0.8, 0.5, 0.2}}, {"scatterAnisotropy", 0.25}}},
+          {{"multiscatterColor", {0.8, 0.5, 0.2}},
+           {"multiscatterColorTexture", {{"index", 0}}},
+           {"scatterAnisotropy", 0.25}}},
          {"KHR_materials_diffuse_transmission", {{"diffuseTransmissionFactor", 1.0}}}}}}};
   return b.glb();
 }

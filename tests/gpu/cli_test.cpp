@@ -49,6 +49,22 @@ TEST_F(Cli, Sheet) {
   expect(2, "sheet " + views + " -o " + path("sheet.png") + " --columns 0", "--columns");
 }
 
+TEST_F(Cli, SheetOfSweeps) {
+  const std::string capture = path("ear.exr"), sheet = path("sheet.png");
+  ASSERT_EQ(run("capture --procedural ear --size 96x64 --shadow-size 32 -o " + capture).code, 0);
+  expect(0,
+         "sheet " + capture + " --sweep quality=0,1 --sweep material=skin1,marble --exposure 1 -o " + sheet,
+         "4 images");
+  // Two rows of two, with gaps of 4: 196 x 132.
+  const std::string png = bytes("sheet.png");
+  EXPECT_EQ(png.substr(16, 8), std::string("\0\0\0\xC4\0\0\0\x84", 8));
+  expect(2, "sheet " + capture + " " + capture + " --sweep quality=0 -o " + sheet,
+         "--sweep: takes one capture");
+  expect(2, "sheet " + capture + " --sweep color=red -o " + sheet, "unknown key \"color\"");
+  expect(2, "sheet " + capture + " --sweep quality -o " + sheet, "--sweep");
+  expect(3, "sheet " + capture + " --sweep material=jade -o " + sheet, "jade");
+}
+
 TEST_F(Cli, UsageErrors) {
   expect(2, "", "subcommand");
   expect(2, "replay", "capture");
@@ -106,7 +122,10 @@ TEST_F(Cli, TurntableAndSequence) {
   fs::remove(path("in.001.exr"));
   expect(3, "replay " + in + " -o " + out + " --frames 1-4", "2 written, 1 finished before, 1 failed");
   expect(3, "replay " + in + " -o " + out + " --frames 1,4",
-         "failed: --frames 1\n  frame 1: " + path("in.001.exr"));
+         "failed: --frames 1\n  frames 1: " + in + " is not there");
+  expect(3, "replay " + in + " -o " + out + " --frames 1-300",
+         "failed: --frames 1,5-300\n  frames 1,5-300: " + in + " is not there");
+  expect(0, "replay " + in + " -o " + out, "0 written, 3 finished before, 0 failed");
   EXPECT_EQ(bytes("out.3.exr"), bytes("third.exr"));
   expect(0, "compare " + path("out.2.exr") + " " + path("out.3.exr"), "rel_rmse");
   for (const auto& entry : fs::directory_iterator(folder_))
@@ -119,14 +138,16 @@ TEST_F(Cli, TurntableAndSequence) {
 }
 
 TEST_F(Cli, SequenceUsage) {
-  expect(2, "replay in.####.exr", "\"in.####.exr\" is a sequence: --frames FIRST-LAST is required");
+  expect(2, "replay in.####.exr", "a sequence: -o with #### is required");
+  expect(3, "replay in.####.exr -o o.####.exr", "in.####.exr: no file has such a name");
   expect(2, "replay in.exr -o o.#.exr --frames 1-2", "\"in.exr\" is not a file name with one run of #");
   expect(2, "replay in.#.exr -o o.exr --frames 1-2", "\"o.exr\" is not a file name with one run of #");
   expect(2, "replay in.#.exr --frames 1-2", "-o with #### is required");
   expect(2, "replay in.#.exr -o o.#.exr --frames 2-1", "\"2-1\" ends before it begins");
   expect(2, "replay in.#.exr -o o.#.exr --frames 1-2 --png", "--exposure");
   expect(2, "replay in.#.exr -o o.#.exr --frames 1-2 --triptych t.png", "--triptych");
-  expect(2, "replay in.#.exr -o o.#.exr --frames 1-2 --repeat 2", "--repeat times one capture, not --frames");
+  expect(2, "replay in.#.exr -o o.#.exr --frames 1-2 --repeat 2",
+         "--repeat times one capture, not a sequence");
   expect(2, "replay in.exr --repeat -1", "--repeat");
   expect(2, "capture --procedural ear --turntable 3 -o x.exr", "one run of #");
   expect(2, "capture --procedural ear --orbit -o x.exr", "--orbit: needs --turntable");

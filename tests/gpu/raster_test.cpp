@@ -82,6 +82,39 @@ TEST_F(Raster, CubeHasExactDepthsInEveryConvention) {
   }
 }
 
+// Where an edge of the silhouette runs through a pixel's center, front and back are one: the body is closed
+// there, and has a thickness of 0. Sizes at which some pixels are so.
+TEST_F(Raster, EdgesOfClosedBodiesAreNotOpen) {
+  Model model = emptyModel();
+  addCube(model, 1);
+  for (Vertex& v : model.vertices) v.position[0] += 2;
+  endPart(model, 0);
+  addCube(model, 1);
+  for (std::size_t i = 24; i < 48; ++i) model.vertices[i].position[0] -= 2;
+  endPart(model, 1);
+  for (const int size : {64, 100, 128, 256}) {
+    for (const PellucidDepthEncoding encoding : {PELLUCID_DEPTH_DEVICE, PELLUCID_DEPTH_VIEW_Z}) {
+      RasterOptions options;
+      options.width = options.height = size;
+      options.depthEncoding = encoding;
+      const RasterResult result = rasterize(model, frameModel(model, {0, 0, 1}, 0.5, 1, false), options);
+      const Capture& c = result.capture;
+      EXPECT_EQ(result.openPixels, 0u) << size;
+      for (int y = 0; y < size; ++y)
+        for (int x = 0; x < size; ++x) {
+          if (planar(c, c.frontDepth, x, y) < 0) continue;
+          ASSERT_GE(planar(c, c.backDepth, x, y), planar(c, c.frontDepth, x, y)) << x << " " << y;
+        }
+    }
+  }
+  // Inside out, the faces that are seen are those far away, and no body begins there.
+  for (std::size_t i = 0; i < model.indices.size(); i += 3) std::swap(model.indices[i], model.indices[i + 1]);
+  RasterOptions options;
+  options.width = options.height = 64;
+  const RasterResult inverted = rasterize(model, frameModel(model, {0, 0, 1}, 0.5, 1, false), options);
+  EXPECT_GT(inverted.openPixels, 500u);
+}
+
 // Triangles of a sphere of 256 rings are right-angled with legs r a, a = pi / 256: they dip r a^2 / 4
 // = 3.8e-5 r below it. Where the surface stands at cosine c to the ray, the thickness 2 r c is off by 2 dips
 // / c.

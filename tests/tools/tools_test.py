@@ -67,17 +67,27 @@ class RenderDoc(unittest.TestCase):
             with open(path, "w", encoding="utf-8"):
                 pass
 
+        def texture(number, width):
+            return stand_in(resourceId=f"ResourceId::{number}", width=width, height=9, format=stand_in(Name=lambda: "D32"))
+
         controller = stand_in(
-            GetResources=lambda: [stand_in(name="Z", resourceId=5), stand_in(name="E", resourceId=6)],
-            SaveTexture=save)
+            GetResources=lambda: [stand_in(name=name, resourceId=f"ResourceId::{number}")
+                                  for name, number in (("Z", 5), ("E", 6), ("Z", 8), ("Buffer", 9))],
+            GetTextures=lambda: [texture(5, 4), texture(6, 16), texture(8, 16)], SaveTexture=save)
         rd = stand_in(TextureSave=lambda: stand_in(slice=stand_in()), FileType=stand_in(EXR="exr"),
                       AlphaMapping=stand_in(Preserve=0))
         files = self.script.save_textures(rd, controller, {"frontDepth": "Z", "irradiance": "E"},
                                           self.folder.name)
         self.assertEqual(files, {"frontDepth": "frontDepth.exr", "irradiance": "irradiance.exr"})
-        self.assertEqual(saved, {"frontDepth.exr": (5, "exr"), "irradiance.exr": (6, "exr")})
-        with self.assertRaisesRegex(ValueError, "Nothing"):
-            self.script.save_textures(rd, controller, {"normal": "Nothing"}, self.folder.name)
+        self.assertEqual(saved, {"frontDepth.exr": ("ResourceId::8", "exr"), "irradiance.exr": ("ResourceId::6", "exr")})
+        self.script.save_textures(rd, controller, {"frontDepth": 5, "irradiance": "ResourceId::6"}, self.folder.name)
+        self.assertEqual(saved["frontDepth.exr"][0], "ResourceId::5")
+        with self.assertRaisesRegex(ValueError, "(?s)Nothing, Buffer; there are.*5: Z, 4 x 9, D32.*6: E, 16 x 9, D32"):
+            self.script.save_textures(rd, controller, {"normal": "Nothing", "albedo": "Buffer"}, self.folder.name)
+
+    def test_a_shell_without_a_capture_says_so(self):
+        with self.assertRaisesRegex(RuntimeError, "no capture is loaded: .*--ui-python"):
+            self.script.capture_in_shell(None, stand_in(IsCaptureLoaded=lambda: False))
 
 
 class Blender(unittest.TestCase):

@@ -3,6 +3,7 @@
 
 #include <cstdlib>
 
+#include "capture/layers.h"
 #include "capture/material.h"
 #include "capture/read.h"
 #include "capture/write.h"
@@ -271,6 +272,60 @@ TEST_F(Manifests, OneChannelMayServeTwice) {
   EXPECT_EQ(capture.irradiance.at(3, 2)[2], sample.irradiance.at(3, 2)[2]);
 }
 
+// Programs store E / pi, pre-exposed light, centimeters, and normals as 0 .. 1.
+TEST_F(Manifests, StoredValuesMayHaveAScale) {
+  const Capture plain = read();
+  manifest["buffers"]["frontDepth"]["scale"] = 0.01;
+  manifest["buffers"]["irradiance"]["scale"] = 4;
+  manifest["buffers"]["albedo"] = {{"constant", {0.25, 0.5, 0.125}}, {"scale", 2}};
+  Image normal(kSampleWidth, kSampleHeight, 3, 0.5f);
+  normal.data[2] = 1;
+  writeExr(directory / "n.exr", normal, {"R", "G", "B"});
+  manifest["buffers"]["normal"] = {{"file", "n.exr"}, {"channels", {"R", "G", "B"}}, {"encoding", "unorm"}};
+  const Capture scaled = read();
+  for (std::size_t i = 0; i < plain.irradiance.data.size(); ++i)
+    EXPECT_EQ(scaled.irradiance.data[i], 4 * plain.irradiance.data[i]);
+  for (std::size_t i = 0; i < plain.frontDepth.image.data.size(); ++i) {
+    const float stored = plain.frontDepth.image.data[i];
+    if (stored < 1e9f)
+      EXPECT_EQ(scaled.frontDepth.image.data[i], 0.01f * stored);
+    else
+      EXPECT_EQ(scaled.frontDepth.image.data[i], stored) << "nothing is there";
+  }
+  EXPECT_EQ(scaled.albedo.data[1], 1);
+  EXPECT_EQ(scaled.normal.data[0], 0);
+  EXPECT_EQ(scaled.normal.data[2], 1);
+}
+
+TEST_F(Manifests, OtherLayersOfTheIrradiancesFileAreKept) {
+  const Image image = sampleImage(kSampleWidth, kSampleHeight, 4, 0.25f),
+              id(kSampleWidth, kSampleHeight, 1, 7);
+  const Image map(3, 3, 1, 1);
+  writeExrParts(directory / "l.exr", {{"screen",
+                                       {{"light.R", ExrFormat::Float, &image, 0},
+                                        {"light.G", ExrFormat::Float, &image, 1},
+                                        {"light.B", ExrFormat::Float, &image, 2},
+                                        {"light.A", ExrFormat::Half, &image, 3},
+                                        {"id", ExrFormat::Uint, &id, 0}},
+                                       {}},
+                                      {"shadow", {{"Z", ExrFormat::Float, &map, 0}}, {}}});
+  manifest["buffers"]["irradiance"] = {{"file", "l.exr"}, {"channels", {"light.R", "light.G", "light.B"}}};
+  writeText(directory / "m.json", manifest.dump());
+  const KeptLayers kept = readOtherLayers(readManifest(directory / "m.json").irradiance);
+  std::map<std::string, const ExrChannel*> channels;
+  for (const ExrChannel& channel : kept.channels) channels[channel.name] = &channel;
+  ASSERT_EQ(channels.size(), 6u) << "A, id and light.*";
+  EXPECT_EQ(channels.count("Z"), 0u) << "a shadow map has another size";
+  EXPECT_EQ(channels["id"]->format, ExrFormat::Uint);
+  EXPECT_EQ(channels["id"]->image->data[3], 7);
+  EXPECT_EQ(channels["A"]->format, ExrFormat::Half);
+  EXPECT_NEAR(channels["A"]->image->data[2], *(image.at(2, 0) + 3), 1e-3);
+  EXPECT_EQ(channels["light.G"]->image->data[4], *(image.at(4, 0) + 1));
+  manifest["buffers"]["irradiance"] = {{"constant", {1, 1, 1}}};
+  writeText(directory / "m.json", manifest.dump());
+  EXPECT_TRUE(readOtherLayers(readManifest(directory / "m.json").irradiance).channels.empty());
+}
+
 TEST_F(Manifests, FilesAreRelativeToTheManifest) {
   std::filesystem::create_directory(directory / "sub");
   for (const char* name : {"frontDepth", "backDepth", "irradiance", "material"})
@@ -372,6 +427,11 @@ TEST_P(Mistakes, AreNamed) {
 INSTANTIATE_TEST_SUITE_P(
     Required, Mistakes,
     testing::Values(
+        Mistake{"/buffers/irradiance/scale", "0", {"buffers.irradiance.scale", "above 0"}},
+        Mistake{"/buffers/material/scale", "2", {"buffers.material.scale"}},
+        Mistake{"/buffers/backDepth",
+                R"({"constant": [0.5], "encoding": "device", "scale": 2})",
+                {"buffers.backDepth.scale", "no unit"}},
         Mistake{"/pellucid", "", {"m.json", "pellucid", "missing"}},
         Mistake{"/camera", "", {"m.json", "camera", "missing"}},
         Mistake{"/camera/clipFromView", "", {"camera.clipFromView", "missing"}},
@@ -401,7 +461,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"/exposure", "1", {"m.json", "exposure", "unknown key"}},
         Mistake{"/camera/fov", "1", {"camera.fov", "unknown key"}},
         Mistake{"/buffers/depth", "{}", {"buffers.depth", "unknown key", "frontDepth"}},
-        Mistake{"/buffers/normal/encoding", "\"x\"", {"buffers.normal.encoding", "unknown key"}},
+        Mistake{"/buffers/normal/layer", "\"x\"", {"buffers.normal.layer", "unknown key"}},
         Mistake{"/buffers/material/channels", "[]", {"buffers.material.channels", "unknown key"}},
         Mistake{"/lights/0/glow", "1", {"lights[0].glow", "unknown key"}},
         Mistake{"/lights/0/radius", "1", {"lights[0].radius", "only a point light"}},

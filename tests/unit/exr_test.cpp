@@ -223,6 +223,12 @@ TEST(ExrImages, FindTheirColor) {
                                         {"b.B", ExrFormat::Half, &image, 2}},
                                        {}}});
   expectNames(errorOf([&] { readExrImage(directory / "d.exr"); }), {"d.exr", "channels", "a.R, b.R"});
+  EXPECT_TRUE(sameBits(readExrImage(directory / "b.exr", "diffuse"), image));
+  EXPECT_EQ(readExrImage(directory / "d.exr", "b").width, 3);
+  expectNames(errorOf([&] { readExrImage(directory / "d.exr", "c"); }),
+              {"d.exr", "no layer \"c\"", "a.R, b.R"});
+  writeExr(directory / "e.exr", image, {"View.Combined.R", "View.Combined.G", "View.Combined.B"});
+  EXPECT_TRUE(sameBits(readExrImage(directory / "e.exr", "Combined"), image));
 }
 
 }  // namespace

@@ -32,6 +32,33 @@ TEST(Frames, PatternPadsToItsWidth) {
     EXPECT_THROW(FramePattern("-o", bad), UsageError) << bad;
 }
 
+TEST(Frames, ThoseThatExistAreFound) {
+  const TemporaryDirectory folder;
+  for (const char* name :
+       {"a.0007.exr", "a.0010.exr", "a.12345.exr", "a.7.exr", "a.x007.exr", "b.0001.exr", "a.0003.png"})
+    writeText(folder / name, "");
+  EXPECT_EQ(FramePattern("capture", (folder / "a.####.exr").string()).existing(),
+            (std::vector<int>{7, 10, 12345}));
+  EXPECT_TRUE(FramePattern("capture", (folder / "none/a.####.exr").string()).existing().empty());
+}
+
+TEST(WholeFile, ErrorsNameTheFileThatWasAskedFor) {
+  const TemporaryDirectory folder;
+  const auto sentence = [&](const std::filesystem::path& path) {
+    try {
+      writeWhole(path, [](const std::filesystem::path& file) {
+        throw InputError(file.string(), "", "the disk is full");
+      });
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(sentence(folder / "o.exr"), (folder / "o.exr").string() + ": the disk is full");
+  EXPECT_NE(sentence(folder / "no/o.exr").find("no/o.exr: cannot be written: there is no folder"),
+            std::string::npos);
+}
+
 TEST(WholeFile, AppearsWhenItIsWhole) {
   const TemporaryDirectory folder;
   const std::filesystem::path path = folder / "out.exr";

@@ -85,6 +85,7 @@ TEST_F(InfoCommand, SaysWhatIsMissing) {
   manifest.erase("truth");
   manifest["lights"] = json::array();
   const json missing = info()["missing"];
+  EXPECT_NE(run().find("missing most: " + missing[0].get<std::string>()), std::string::npos);
   for (const char* part : {"backDepth", "normal", "albedo", "lights", "truth"})
     EXPECT_TRUE(has(missing, part)) << part;
 }

@@ -15,5 +15,5 @@ void main() {
   if (isHole(uv)) discard;
   outPlanar = planar;
   outDepth = gl_FragCoord.z;
-  outCaster = vec2(colorMark.a >= 0.5 ? draw.ids.x : 0u, gl_FrontFacing ? draw.addedColor.a : -1.0);
+  outCaster = vec2(colorMark.a >= 0.5 ? partMaterial() : 0u, gl_FrontFacing ? draw.addedColor.a : -1.0);
 }

@@ -9,13 +9,24 @@ layout(location = 3) in float planar;
 layout(location = 0) out float outPlanar;
 layout(location = 1) out float outDepth;
 
+// Where a silhouette's edge runs through the pixel's center, front and back face meet there. Rounding may put the back face
+// in front, by no more than its depth changes within the pixel.
+bool isBehind(float depth, float slope, float front) {
+  float nearest = (draw.ids.y & 1u) != 0u ? depth - slope : depth + slope;
+  return !isNearer(nearest, front);
+}
+
 void main() {
+  float slope = fwidth(gl_FragCoord.z);
   if (isHole(uv)) discard;
   if (draw.ids.z != 0u) {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     vec4 front = texelFetch(frontObject, pixel, 0);
     bool sameObject = (draw.ids.z == BEHIND_CASTER ? front.y : front.a) == draw.addedColor.a;
-    if (!sameObject || !isNearer(texelFetch(earlierDepth, pixel, 0).r, gl_FragCoord.z)) discard;
+    float frontDepth = texelFetch(earlierDepth, pixel, 0).r;
+    bool behind = draw.ids.z == BEHIND_CASTER ? isNearer(frontDepth, gl_FragCoord.z)
+                                              : isBehind(gl_FragCoord.z, slope, frontDepth);
+    if (!sameObject || !behind) discard;
   }
   outPlanar = planar;
   outDepth = gl_FragCoord.z;

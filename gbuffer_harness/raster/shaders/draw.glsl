@@ -7,7 +7,8 @@ layout(push_constant) uniform Draw {
   vec4 planar;     // dot(planar, (x, 1)): planar distance in front of the eye
   vec4 baseColor;  // a: alpha below this is a hole
   vec4 addedColor; // a: object
-  uvec4 ids;       // x: material; y: 1 reversed depth; z: whether only back faces behind the front count, which
+  uvec4 ids;       // x: material, LOBES_APART, and in the upper half how much the lobe map displaces;
+                   // y: 1 reversed depth, and in the upper half the backscatter; z: whether only back faces behind the front count, which
                    // is one of BEHIND_*;
                    // w: lights in transmit.frag, else bits of the normal map's scale, 0: no map
 } draw;
@@ -20,9 +21,14 @@ layout(set = 0, binding = 1) uniform sampler2D earlierDepth;
 #define BEHIND_CASTER 2u // y: of caster.frag
 layout(set = 0, binding = 2) uniform sampler2D frontObject;
 layout(set = 0, binding = 3) uniform sampler2D normalMap; // vectors
+layout(set = 0, binding = 4) uniform sampler2D lobeMap;   // linear rgb; a: strength
+
+#define LOBES_APART 256u
+
+uint partMaterial() { return draw.ids.x & 255u; }
 
 bool isNearer(float depth, float other) {
-  return draw.ids.y != 0u ? depth > other : depth < other;
+  return (draw.ids.y & 1u) != 0u ? depth > other : depth < other;
 }
 
 bool isHole(vec2 uv) {

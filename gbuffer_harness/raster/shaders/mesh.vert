@@ -9,6 +9,7 @@ layout(location = 3) in vec3 color;
 layout(location = 4) in float mark;
 layout(location = 5) in vec2 normalUv;
 layout(location = 6) in vec4 tangent;
+layout(location = 7) in vec2 lobeUv;
 
 layout(location = 0) out vec3 outNormal;
 layout(location = 1) out vec2 outUv;
@@ -17,6 +18,7 @@ layout(location = 3) out float outPlanar;
 layout(location = 4) out vec2 outNormalUv;
 layout(location = 5) out vec4 outTangent;
 layout(location = 6) out vec3 outPosition;
+layout(location = 7) out vec2 outLobeUv;
 
 // Passes compare depths of the same triangle for equality.
 invariant gl_Position;
@@ -30,4 +32,5 @@ void main() {
   outNormalUv = normalUv;
   outTangent = tangent;
   outPosition = position;
+  outLobeUv = lobeUv;
 }

@@ -1,7 +1,7 @@
 #version 450
 // The nearest surface: everything that a G-buffer holds besides light.
 #extension GL_GOOGLE_include_directive : require
-#include "draw.glsl"
+#include "lobes.glsl"
 
 layout(location = 0) in vec3 normal;
 layout(location = 1) in vec2 uv;
@@ -10,30 +10,19 @@ layout(location = 3) in float planar;
 layout(location = 4) in vec2 normalUv;
 layout(location = 5) in vec4 tangent;
 layout(location = 6) in vec3 position;
+layout(location = 7) in vec2 lobeUv;
 
 layout(location = 0) out vec4 outNormalPlanar;
 layout(location = 1) out vec4 outAlbedoObject;
 layout(location = 2) out uint outMaterial;
 layout(location = 3) out vec4 outDepthNormal; // yzw: without the normal map
 
-// Mean over the pixel's footprint: there are no mip levels.
-vec3 meanOf(sampler2D image, vec2 uv) {
-  const int n = 4;
-  vec2 dx = dFdx(uv), dy = dFdy(uv);
-  vec3 sum = vec3(0.0);
-  for (int i = 0; i < n * n; ++i) {
-    vec2 offset = (vec2(i % n, i / n) + 0.5) / float(n) - 0.5;
-    sum += textureLod(image, uv + dx * offset.x + dy * offset.y, 0.0).rgb;
-  }
-  return sum / float(n * n);
-}
-
 // The map's x is along growing u, its y along falling v (glTF 2.0, 3.9.3). The supplied tangent, or the
 // derivatives of position with respect to uv (Schueler 2006, "Normal Mapping without Precomputed Tangents").
 vec3 mappedNormal(vec3 n) {
   float scale = uintBitsToFloat(draw.ids.w);
   if (scale == 0.0) return n;
-  vec3 m = meanOf(normalMap, normalUv) * vec3(scale, scale, 1.0);
+  vec3 m = meanOf(normalMap, normalUv).rgb * vec3(scale, scale, 1.0);
   vec2 ux = dFdx(normalUv), uy = dFdy(normalUv);
   vec3 px = dFdx(position), py = dFdy(position);
   float orientation = sign(ux.x * uy.y - uy.x * ux.y);
@@ -52,7 +41,7 @@ vec3 mappedNormal(vec3 n) {
 }
 
 void main() {
-  vec3 albedo = meanOf(baseColorTexture, uv) * draw.baseColor.rgb * colorMark.rgb + draw.addedColor.rgb;
+  vec3 albedo = albedoOf(lobesOf(uv, lobeUv, colorMark.rgb));
   // Opposite normals of a crease may cancel; any direction is then as good.
   float size = length(normal);
   vec3 n = size > 0.0 ? normal / size : vec3(0.0, 0.0, 1.0);
@@ -61,6 +50,6 @@ void main() {
   float facing = gl_FrontFacing ? 1.0 : -1.0;
   outNormalPlanar = vec4(facing * mapped, planar);
   outAlbedoObject = vec4(albedo, draw.addedColor.a);
-  outMaterial = colorMark.a >= 0.5 ? draw.ids.x : 0u;
+  outMaterial = colorMark.a >= 0.5 ? partMaterial() : 0u;
   outDepthNormal = vec4(gl_FragCoord.z, facing * n);
 }

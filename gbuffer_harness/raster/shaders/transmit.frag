@@ -15,8 +15,8 @@ layout(location = 1) in vec2 uv;
 
 layout(location = 0) out vec4 outTransmitted; // rgb: transmitted / rho, to be added to the irradiance
 
-// The bindings of the module's fused dispatch, after the four of draw.glsl (kOwnBindings of draw.cpp).
-#define PLANNED_BINDINGS 4
+// The bindings of the module's fused dispatch, after the five of draw.glsl (kOwnBindings of draw.cpp).
+#define PLANNED_BINDINGS 5
 layout(set = 0, binding = PLANNED_BINDINGS + PELLUCID_BINDING_FRAME) uniform Frame { FrameConstants frame; };
 layout(set = 0, binding = PLANNED_BINDINGS + PELLUCID_BINDING_LIGHTS) readonly buffer Lights {
   LightConstants lights[];

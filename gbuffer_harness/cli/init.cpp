@@ -1,0 +1,149 @@
+// `pellucid init`: a manifest for EXR files of other programs.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+
+#include "cli/commands.h"
+#include "cli/light_option.h"
+#include "cli/numbers.h"
+#include "common/error.h"
+#include "common/whole_file.h"
+#include "init/manifest.h"
+
+namespace pellucid::harness {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kLightWords = "directional:X,Y,Z[:E] (direction of travel) or point:X,Y,Z:I";
+
+struct Options {
+  std::vector<std::string> files, lights;
+  std::string output = "capture.json", unit, depth, eye, target, up;
+  InitWords words;
+  std::map<Role, std::string> roles;
+};
+
+Vector3 vectorOf(const char* option, const std::string& text) {
+  const std::vector<std::string> parts = split(text, ',');
+  if (parts.size() != 3) throw UsageError(std::string(option) + ": \"" + text + "\" is not X,Y,Z");
+  Vector3 result;
+  for (std::size_t i = 0; i < 3; ++i) result[i] = parseNumber<double>(option, parts[i]);
+  return result;
+}
+
+Json lightOf(const std::string& text) {
+  const std::vector<std::string> parts = split(text, ':');
+  const bool isPoint = parts[0] == "point";
+  if ((!isPoint && parts[0] != "directional") || parts.size() < (isPoint ? 3 : 2) || parts.size() > 3)
+    throw UsageError("--light: \"" + text + "\" is not " + kLightWords);
+  const Vector3 where = vectorOf("--light", parts[1]);
+  const double intensity = parts.size() == 3 ? parseNumber<double>("--light", parts[2]) : 1;
+  if (!(intensity >= 0 && intensity < 1e30))
+    throw UsageError("--light: \"" + text + "\": the intensity is not >= 0");
+  return {{"type", parts[0]}, {isPoint ? "position" : "direction", where}, {"intensity", intensity}};
+}
+
+InitWords wordsOf(const Options& options) {
+  InitWords words = options.words;
+  if (!options.unit.empty()) words.metersPerUnit = parseUnit(options.unit);
+  if (!options.depth.empty()) words.deviceDepth = options.depth == "device";
+  if (!options.eye.empty()) words.camera.eye = vectorOf("--eye", options.eye);
+  if (!options.target.empty()) words.camera.target = vectorOf("--target", options.target);
+  if (!options.up.empty()) words.camera.up = vectorOf("--up", options.up);
+  for (const auto& [role, name] : options.roles)
+    if (!name.empty()) words.roles[role] = name;
+  for (const std::string& light : options.lights) words.lights.push_back(lightOf(light));
+  return words;
+}
+
+void init(const Options& options) {
+  const std::filesystem::path output = options.output;
+  const std::filesystem::path folder = std::filesystem::absolute(output).parent_path();
+  const std::vector<std::filesystem::path> files(options.files.begin(), options.files.end());
+  const GuessedManifest guessed = guessManifest(files, folder, wordsOf(options));
+  writeWhole(output, [&](const auto& path) {
+    std::ofstream file(path);
+    file << guessed.json.dump(1) << "\n";
+    if (!file.flush()) throw InputError(path.string(), "", "cannot be written");
+  });
+  for (const std::string& line : guessed.found) std::printf("%s\n", line.c_str());
+  if (!guessed.missing.empty()) {
+    std::printf("missing most: %s\n", guessed.missing.front().c_str());
+    for (std::size_t i = 1; i < guessed.missing.size(); ++i)
+      std::printf("also missing: %s\n", guessed.missing[i].c_str());
+  }
+  std::printf(
+      "wrote %s; its keys that begin with // say what is unknown\nnext: pellucid replay %s -o out.exr "
+      "--png\n",
+      output.c_str(), output.c_str());
+}
+
+}  // namespace
+
+void addInitCommand(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("init", "Write a manifest for EXR files of another program");
+  command
+      ->add_option("files", options->files,
+                   "EXR files of one frame: layers of one, or a file for each buffer")
+      ->required();
+  command->add_option("-o,--output", options->output, "manifest to write")->capture_default_str();
+  InitWords& words = options->words;
+  CameraWords& camera = words.camera;
+  const char* group = "Camera";
+  command->add_option("--fov", camera.verticalFov, "vertical field of view, degrees")
+      ->check(CLI::Range(0.01, 179.0))
+      ->group(group);
+  command->add_option("--ortho-height", camera.orthographicHeight, "of an orthographic camera, scene units")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
+  command->add_option("--near", camera.nearPlane, "near plane, scene units")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
+  command->add_option("--far", camera.farPlane, "far plane, scene units (default: infinitely far)")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
+  command
+      ->add_flag("--reversed-z,!--forward-z", camera.reversedZ,
+                 "device depth 1 at the near plane (default: what the background says)")
+      ->group(group);
+  command->add_option("--eye", options->eye, "X,Y,Z: where the camera is")->group(group);
+  command->add_option("--target", options->target, "X,Y,Z: what it looks at")->group(group);
+  command->add_option("--up", options->up, "X,Y,Z: up in the world (default: 0,1,0)")->group(group);
+  group = "Buffers: a layer, a channel, or a file without extension, in place of the guess";
+  const std::pair<const char*, Role> roles[] = {
+      {"--front-depth", Role::FrontDepth}, {"--back-depth", Role::BackDepth},
+      {"--irradiance", Role::Irradiance},  {"--normal", Role::Normal},
+      {"--albedo", Role::Albedo},          {"--material-index", Role::Material}};
+  for (const auto& [name, role] : roles) command->add_option(name, options->roles[role])->group(group);
+  group = "Meaning";
+  command
+      ->add_option("--depth", options->depth, "viewz or device (default: device where all are within 0 .. 1)")
+      ->check(CLI::IsMember({"viewz", "device"}))
+      ->group(group);
+  command
+      ->add_option("--irradiance-scale", words.irradianceScale, "factor of what is stored, as pi for E / pi")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
+  command
+      ->add_option("--unit", options->unit,
+                   "mm, cm, m or a number of meters (default: what names say, else m)")
+      ->group(group);
+  command
+      ->add_option("--material-id", words.materialIds,
+                   "stored value that is translucent, repeatable (default: all but 0)")
+      ->take_all()
+      ->group(group);
+  command->add_option("--material", words.preset, "preset of the translucent material")
+      ->capture_default_str()
+      ->group(group);
+  command->add_option("--light", options->lights, std::string("repeatable: ") + kLightWords)
+      ->take_all()
+      ->group(group);
+  command->callback([options] { init(*options); });
+}
+
+}  // namespace pellucid::harness

@@ -1,0 +1,311 @@
+#include "init/manifest.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <glm/glm.hpp>
+
+#include "capture/manifest.h"
+#include "common/error.h"
+#include "scene/vector.h"
+
+namespace pellucid::harness {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr float kNothing = 1e9f;  // a distance at which nothing is
+constexpr std::size_t kMostMaterials = 1000;
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+// Builds the manifest buffer by buffer.
+class Builder {
+public:
+  Builder(const std::vector<std::filesystem::path>& files, const std::filesystem::path& folder,
+          const InitWords& words)
+      : files_(files), folder_(folder), words_(words) {}
+
+  GuessedManifest build();
+
+private:
+  Json sourceOf(Role role) const;
+  void say(Role role, const std::string& how);
+  void addDepths();
+  void addIrradiance();
+  void addNormal();
+  void addMaterial();
+  void addCamera();
+  void addMissing();
+  Image read(Role role);
+  DepthFacts depthFacts() const;
+  double facing(const Image& normal, bool unorm, const Matrix& viewFromNormal) const;
+
+  const std::vector<std::filesystem::path>& files_;
+  const std::filesystem::path& folder_;
+  const InitWords& words_;
+  std::map<Role, Guess> guesses_;
+  Image front_;
+  DepthFacts depth_;
+  GuessedCamera camera_;
+  int width_ = 0, height_ = 0;
+  GuessedManifest result_;
+};
+
+Json Builder::sourceOf(Role role) const {
+  const ChannelGroup& group = guesses_.at(role).group;
+  Json json = {{"file", std::filesystem::proximate(group.file, folder_).generic_string()}};
+  if (group.part > 0) json["part"] = group.part;
+  if (group.channels.size() == 1)
+    json["channel"] = group.channels[0];
+  else
+    json["channels"] = group.channels;
+  return json;
+}
+
+void Builder::say(Role role, const std::string& how) {
+  const Guess& guess = guesses_.at(role);
+  std::string channels;
+  for (const std::string& channel : guess.group.channels) channels += (channels.empty() ? "" : ",") + channel;
+  result_.found.push_back(std::string(roleName(role)) + ": " + guess.group.file.filename().string() + " " +
+                          channels + (how.empty() ? "" : ", " + how) + ": " + guess.why);
+  if (!guess.doubt.empty()) {
+    result_.json["// " + std::string(roleName(role))] = guess.doubt;
+    result_.missing.push_back(std::string(roleName(role)) + ": " + guess.doubt);
+  }
+}
+
+Image Builder::read(Role role) {
+  const ChannelGroup& group = guesses_.at(role).group;
+  Image image = readGroup(group);
+  if (width_ == 0) {
+    width_ = image.width;
+    height_ = image.height;
+  }
+  if (image.width != width_ || image.height != height_)
+    throw InputError(group.file.string(), roleName(role),
+                     std::to_string(image.width) + "x" + std::to_string(image.height) +
+                         " pixels, but frontDepth has " + std::to_string(width_) + "x" +
+                         std::to_string(height_));
+  return image;
+}
+
+// Device depths lie within 0 .. 1 and are cleared to one of them; distances begin above 0 and mostly pass 1.
+DepthFacts Builder::depthFacts() const {
+  double least = INFINITY, most = 0, sum = 0;
+  std::size_t zeros = 0, ones = 0, count = 0;
+  for (const float value : front_.data) {
+    if (!std::isfinite(value) || value >= kNothing) continue;
+    zeros += value == 0;
+    ones += value == 1;
+    if (!(value > 0)) continue;
+    least = std::min(least, static_cast<double>(value));
+    most = std::max(most, static_cast<double>(value));
+    if (value == 1) continue;
+    sum += static_cast<double>(value);
+    ++count;
+  }
+  if (count == 0)
+    throw InputError(guesses_.at(Role::FrontDepth).group.file.string(), "frontDepth",
+                     "no pixel holds a surface");
+  DepthFacts facts;
+  const bool couldBe = most <= 1;
+  facts.isDevice = words_.deviceDepth.value_or(couldBe && (words_.camera.nearPlane || zeros + ones > 0));
+  if (facts.isDevice && !couldBe)
+    throw UsageError("--depth: depths up to " + number(most) + " are not the device's");
+  facts.looksReversed =
+      !facts.isDevice || (zeros != ones ? zeros > ones : sum < 0.5 * static_cast<double>(count));
+  facts.nearest = least;
+  return facts;
+}
+
+void Builder::addDepths() {
+  front_ = read(Role::FrontDepth);
+  depth_ = depthFacts();
+  const char* const encoding = depth_.isDevice ? "device" : "viewZ";
+  for (const Role role : {Role::FrontDepth, Role::BackDepth}) {
+    if (!guesses_.count(role)) continue;
+    if (role == Role::BackDepth) read(role);
+    Json json = sourceOf(role);
+    json["encoding"] = encoding;
+    result_.json["buffers"][roleName(role)] = json;
+    say(role, encoding);
+  }
+  if (!depth_.isDevice)
+    result_.json["// frontDepth"] =
+        "planar distances along the view axis are assumed; distances along the ray have to be converted";
+}
+
+void Builder::addIrradiance() {
+  const Guess& guess = guesses_.at(Role::Irradiance);
+  read(Role::Irradiance);
+  Json json = sourceOf(Role::Irradiance);
+  const double scale = words_.irradianceScale.value_or(guess.scale);
+  if (scale != 1) json["scale"] = scale;
+  result_.json["buffers"]["irradiance"] = json;
+  say(Role::Irradiance, scale != 1 ? "times " + number(scale) : "");
+  if (!guesses_.count(Role::Albedo)) return;
+  read(Role::Albedo);
+  result_.json["buffers"]["albedo"] = sourceOf(Role::Albedo);
+  say(Role::Albedo, "");
+}
+
+// The part of the normals, within -1 .. 1, that face the camera.
+double Builder::facing(const Image& normal, bool unorm, const Matrix& viewFromNormal) const {
+  const glm::dmat3 rotation(toGlm(viewFromNormal));
+  const Matrix& clip = camera_.clipFromView;
+  std::size_t count = 0, facing = 0;
+  for (int y = 0; y < height_; ++y)
+    for (int x = 0; x < width_; ++x) {
+      const float* v = normal.at(x, y);
+      glm::dvec3 n(v[0], v[1], v[2]);
+      if (unorm) n = 2.0 * n - 1.0;
+      const float depth = *front_.at(x, y);
+      const bool isEmpty = depth_.isDevice ? depth == 0 || depth == 1 : !(depth > 0 && depth < kNothing);
+      if (isEmpty || !(glm::length(n) > 0.5)) continue;
+      const double u = ((x + 0.5) / width_ * 2 - 1 - clip[12]) / clip[0],
+                   w = ((y + 0.5) / height_ * 2 - 1 - clip[13]) / clip[5];
+      const glm::dvec3 ray = clip[15] == 0 ? glm::dvec3(u, w, -1) : glm::dvec3(0, 0, -1);
+      ++count;
+      facing += glm::dot(glm::normalize(rotation * n), glm::normalize(ray)) <
+                0.1;  // smoothed normals turn away a little
+    }
+  return count == 0 ? 0 : static_cast<double>(facing) / static_cast<double>(count);
+}
+
+void Builder::addNormal() {
+  if (!guesses_.count(Role::Normal)) return;
+  const Image normal = read(Role::Normal);
+  const bool unorm = *std::min_element(normal.data.begin(), normal.data.end()) >= 0;
+  const double view = facing(normal, unorm, kIdentity), world = facing(normal, unorm, camera_.viewFromWorld);
+  const bool isView = view > world || (view == world && !camera_.isPlaced);
+  Json json = sourceOf(Role::Normal);
+  json["space"] = isView ? "view" : "world";
+  if (unorm) json["encoding"] = "unorm";
+  result_.json["buffers"]["normal"] = json;
+  const double best = std::max(view, world);
+  say(Role::Normal, std::string(isView ? "view space" : "world space") + (unorm ? ", 0..1 for -1..1" : "") +
+                        ", " + number(100 * best) + " % face the camera");
+  constexpr double kEnough = 0.95;
+  if (best >= kEnough) return;
+  const std::string doubt =
+      "only " + number(100 * best) +
+      " % of the normals face the camera: their axes or their packing are others, or the camera is; "
+      "leave them out (delete \"normal\") or decode them";
+  result_.json["// normal"] = doubt;
+  result_.missing.push_back("normal: " + doubt);
+}
+
+void Builder::addMaterial() {
+  Json& json = result_.json["buffers"]["material"];
+  json = {{"constant", {1}}};
+  std::string doubt = "no channel says what is translucent: everything is";
+  if (guesses_.count(Role::Material)) {
+    std::map<long, std::size_t> stored;
+    bool isWhole = true;
+    for (const float value : read(Role::Material).data) {
+      isWhole = isWhole && value >= 0 && value <= static_cast<float>(kMaxStoredMaterial) &&
+                std::round(value) == value;
+      if (!isWhole || stored.size() > kMostMaterials) break;
+      ++stored[std::lround(value)];
+    }
+    if (isWhole && stored.size() <= kMostMaterials) {
+      json = sourceOf(Role::Material);
+      std::string values;
+      doubt.clear();
+      for (const auto& [value, pixels] : stored) {
+        const bool isMaterial = words_.materialIds.empty() ? value != 0
+                                                           : std::count(words_.materialIds.begin(),
+                                                                        words_.materialIds.end(), value) > 0;
+        json["map"][std::to_string(value)] = isMaterial ? 1 : 0;
+        values +=
+            (values.empty() ? "" : ", ") + std::to_string(value) + " (" + std::to_string(pixels) + " pixels)";
+      }
+      say(Role::Material, "values " + values);
+      if (words_.materialIds.empty())
+        doubt =
+            "every value but 0 is taken for translucent: " + values + "; --material-id names those that are";
+    } else {
+      doubt = "its values are no small whole numbers, so everything is taken for translucent";
+    }
+  }
+  if (doubt.empty()) return;
+  result_.json["// material"] = doubt;
+  result_.missing.push_back("material: " + doubt);
+}
+
+void Builder::addCamera() {
+  camera_ = guessCamera(files_, width_, height_, words_.camera, depth_);
+  result_.json["camera"] = {{"clipFromView", camera_.clipFromView}, {"viewFromWorld", camera_.viewFromWorld}};
+  result_.found.push_back("camera: the projection is that of " + camera_.why);
+  std::string unknown;
+  for (const std::string& sentence : camera_.unknown) unknown += (unknown.empty() ? "" : "; ") + sentence;
+  if (!unknown.empty()) result_.json["// camera"] = "unknown: " + unknown;
+}
+
+void Builder::addMissing() {
+  std::vector<std::string> missing;
+  if (words_.lights.empty()) {
+    const char* const sentence =
+        "without a light nothing comes through: --light directional:X,Y,Z:E or point:X,Y,Z:I adds one, best "
+        "with a \"shadowMap\"";
+    result_.json["// lights"] = sentence;
+    missing.push_back(std::string("lights: ") + sentence);
+  }
+  if (!guesses_.count(Role::BackDepth)) {
+    const char* const sentence =
+        "without the depth of back faces, or a light's shadow map, nothing says how thick things are: render "
+        "back faces alone";
+    result_.json["// backDepth"] = sentence;
+    missing.push_back(std::string("backDepth: ") + sentence);
+  }
+  if (!camera_.isPlaced && !words_.lights.empty())
+    missing.push_back("camera: unknown: " + camera_.unknown.front());
+  missing.insert(missing.end(), result_.missing.begin(), result_.missing.end());
+  result_.missing = std::move(missing);
+}
+
+GuessedManifest Builder::build() {
+  const std::vector<ChannelGroup> groups = survey(files_);
+  guesses_ = guessRoles(groups, words_.roles);
+  for (const Role role : {Role::FrontDepth, Role::Irradiance}) {
+    if (guesses_.count(role)) continue;
+    std::string list;
+    for (const ChannelGroup& group : groups)
+      list += (list.empty() ? "" : ", ") + group.name + " (" + group.channels.front() + ")";
+    throw UsageError(std::string(role == Role::FrontDepth ? "--front-depth" : "--irradiance") +
+                     ": no name is that of one; name a layer, a channel or a file of: " + list);
+  }
+  const Guess& front = guesses_.at(Role::FrontDepth);
+  const double meters = words_.metersPerUnit.value_or(front.metersPerUnit > 0 ? front.metersPerUnit : 1);
+  result_.json["pellucid"] = 1;
+  result_.json["metersPerUnit"] = meters;
+  if (!words_.metersPerUnit && !(front.metersPerUnit > 0))
+    result_.json["// metersPerUnit"] =
+        "unknown: --unit says how long a unit is; a material is as translucent as its lengths say";
+  result_.json["camera"] = nullptr;
+  result_.json["buffers"] = Json::object();
+  addDepths();
+  addCamera();
+  addIrradiance();
+  addNormal();
+  addMaterial();
+  result_.json["lights"] = words_.lights;
+  result_.json["materials"] = {{{"preset", words_.preset}}};
+  addMissing();
+  return std::move(result_);
+}
+
+}  // namespace
+
+GuessedManifest guessManifest(const std::vector<std::filesystem::path>& files,
+                              const std::filesystem::path& folder, const InitWords& words) {
+  return Builder(files, folder, words).build();
+}
+
+}  // namespace pellucid::harness

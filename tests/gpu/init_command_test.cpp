@@ -1,0 +1,58 @@
+// From a file that nobody described to a picture, in two commands.
+#include <nlohmann/json.hpp>
+
+#include "cli_fixture.h"
+
+namespace {
+
+using namespace pellucid::test;
+
+class InitCommand : public Cli {
+protected:
+  void SetUp() override {
+    Cli::SetUp();
+    ASSERT_EQ(run("capture --procedural sphere --size 32x24 --shadow-size 16 -o " + path("s.exr")).code, 0);
+  }
+};
+
+TEST_F(InitCommand, WritesAManifestThatReplays) {
+  const std::string manifest = path("c.json");
+  const Outcome made =
+      run("init " + path("s.exr") + " --fov 20 --unit mm --light directional:0,0,1:3 -o " + manifest);
+  ASSERT_EQ(made.code, 0) << made.text;
+  for (const char* line :
+       {"frontDepth: s.exr front.Z, viewZ", "backDepth: s.exr back.Z, viewZ",
+        "irradiance: s.exr irradiance.R,irradiance.G,irradiance.B",
+        "normal: s.exr normal.X,normal.Y,normal.Z, view space", "the projection is that of --fov",
+        "missing most: camera: unknown: where the camera is"})
+    EXPECT_NE(made.text.find(line), std::string::npos) << line << "\n" << made.text;
+  EXPECT_NE(made.text.find("next: pellucid replay " + manifest), std::string::npos) << made.text;
+  expect(0, "replay " + manifest + " --repeat 0 --png -o " + path("o.exr"), "wrote");
+  EXPECT_GT(std::filesystem::file_size(path("o.png")), 100u);
+  // With its layers the result is a G-buffer again.
+  expect(0, "replay " + manifest + " --repeat 0 --keep-layers -o " + path("k.exr"), "wrote");
+  expect(0, "compare " + path("o.exr") + " " + path("k.exr") + " --limit max=0", "rel_rmse");
+  expect(0, "init " + path("k.exr") + " --fov 20 --irradiance irradiance -o " + path("k.json"),
+         "k.exr front.Z");
+  const auto json = nlohmann::json::parse(bytes("c.json"));
+  EXPECT_EQ(json["metersPerUnit"], 0.001);
+  EXPECT_EQ(json["lights"][0]["intensity"], 3);
+  EXPECT_EQ(json["buffers"]["frontDepth"]["file"], "s.exr") << "relative to the manifest";
+  EXPECT_TRUE(json.contains("// camera"));
+}
+
+TEST_F(InitCommand, NamesWhatItNeeds) {
+  const std::string file = path("s.exr");
+  expect(2, "init " + file + " -o " + path("c.json"), "--fov: is needed");
+  expect(2, "init " + file + " --fov 20 --depth device -o " + path("c.json"), "are not the device's");
+  expect(2, "init " + file + " --fov 20 --normal Nothing -o " + path("c.json"),
+         "normal: there is no \"Nothing\"");
+  expect(2, "init " + file + " --fov 20 --light sun -o " + path("c.json"),
+         "--light: \"sun\" is not directional");
+  expect(2, "init " + file + " --fov 20 --eye 1,2 --target 0,0,0 -o " + path("c.json"),
+         "--eye: \"1,2\" is not X,Y,Z");
+  expect(3, "init " + path("none.exr") + " --fov 20", "none.exr");
+  EXPECT_FALSE(std::filesystem::exists(path("c.json")));
+}
+
+}  // namespace

@@ -1,0 +1,150 @@
+"""tools/blender_capture.py in Blender, on a scene that a script makes, against Cycles' own random walk.
+
+    python3 blender_capture_test.py BLENDER TOOLS_FOLDER PELLUCID_COMMAND
+"""
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.dont_write_bytecode = True
+BLENDER, TOOLS, COMMAND = sys.argv[1], os.path.abspath(sys.argv[2]), os.path.abspath(sys.argv[3])
+os.environ["PYTHONDONTWRITEBYTECODE"] = "1"
+HERE = os.path.dirname(os.path.abspath(__file__))
+# Of each channel, over the wax. The random walk of 256 samples has a noise of some 2 %; shadow maps of 512 texels, the
+# slab kernel and the diffusion make up the rest.
+LARGEST_ERROR = 0.15
+
+
+def run(*command):
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        raise AssertionError(f"{' '.join(command)}\n{done.stdout}{done.stderr}")
+    return done.stdout + done.stderr
+
+
+class BlenderCapture(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.scene = cls.path("scene.blend")
+        run(BLENDER, "-b", "--python-exit-code", "1", "-P", os.path.join(HERE, "blender_scene.py"), "--", cls.scene)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    @classmethod
+    def path(cls, name):
+        return os.path.join(cls.folder.name, name)
+
+    def capture(self, folder, *options, setup="", expected=0):
+        command = [BLENDER, "-b", self.scene, "--python-exit-code", "1"]
+        if setup:
+            command += ["--python-expr", "import bpy; scene = bpy.context.scene; " + setup]
+        command += ["-P", os.path.join(TOOLS, "blender_capture.py"), "--", "-o", self.path(folder), *options]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, expected, done.stdout + done.stderr)
+        return done.stdout + done.stderr
+
+    def manifest(self, name):
+        with open(self.path(name), encoding="utf-8") as file:
+            return json.load(file)
+
+    def info(self, name):
+        return json.loads(run(COMMAND, "info", self.path(name), "--json"))
+
+    def test_the_picture_is_that_of_the_random_walk(self):
+        self.assertIn("next: pellucid replay", self.capture("still", "--shadow-size", "512", "--truth", "256"))
+        manifest = self.manifest("still/capture.json")
+        self.assertEqual([light["intensity"] for light in manifest["lights"]], [3, 1], "neither hidden light, and the instance")
+        self.assertEqual(len(manifest["materials"]), 1)
+        info = self.info("still/capture.json")
+        self.assertEqual(info["size"], [96, 96], "resolution percentage")
+        self.assertAlmostEqual(info["metersPerUnit"], 0.001, places=9)
+        # A pixel's samples may lie on both sides of an edge, in spite of the filter.
+        self.assertFalse([w for w in info["warnings"] if "not of length 1" not in w], info["warnings"])
+        capture, out = self.path("still/capture.json"), self.path("out.exr")
+        run(COMMAND, "replay", capture, "-o", out, "--repeat", "0")
+        errors = json.loads(run(COMMAND, "compare", out, capture, "--json"))
+        print("relative RMSE:", errors["rel_rmse"], "bias:", errors["bias"])
+        for error in errors["rel_rmse"]:
+            self.assertLess(error, LARGEST_ERROR)
+
+    def test_border_and_crop_move_the_window(self):
+        whole = self.capture("whole", "--shadow-size", "16") and self.manifest("whole/capture.json")
+        setup = ("scene.render.use_border = True; scene.render.border_min_x, scene.render.border_max_x = 0.25, 0.5; "
+                 "scene.render.border_min_y, scene.render.border_max_y = 0.125, 0.75")
+        self.capture("crop", "--shadow-size", "16", setup=setup)
+        crop = self.manifest("crop/capture.json")
+        self.assertEqual(self.info("crop/capture.json")["size"], [24, 60])
+
+        def pixel(manifest, size, point):
+            clip, view = (manifest["camera"][key] for key in ("clipFromView", "viewFromWorld"))
+            for m in (view, clip):
+                point = [sum(m[4 * c + r] * point[c] for c in range(4)) for r in range(4)]
+            return [(point[i] / point[3] * 0.5 + 0.5) * size[i] for i in range(2)]
+
+        # 24 columns from the 24th, 60 rows from the 24th from the top.
+        for point in ((0, 0, 0, 1), (3, -2, 5, 1)):
+            x, y = pixel(whole, (96, 96), point)
+            u, v = pixel(crop, (24, 60), point)
+            self.assertAlmostEqual(u, x - 24, places=3)
+            self.assertAlmostEqual(v, y - 24, places=3)
+        # The picture, too: the depth in the middle of the window is the whole's there.
+        ranges = [self.info(name + "/capture.json")["buffers"]["frontDepth"]["range"] for name in ("whole", "crop")]
+        self.assertAlmostEqual(ranges[0][0], ranges[1][0], delta=1)
+
+    def test_every_kind_of_light_has_its_maps(self):
+        # A point within the scene, whose face away from everything is left out; one outside; a spot; an area light.
+        setup = ("import math; [bpy.data.objects.remove(o) for o in list(scene.objects) if o.type in ('LIGHT', 'EMPTY')]\n"
+                 "def add(name, kind, place, **more):\n"
+                 "  data = bpy.data.lights.new(name, kind); data.energy = 4e4; data.shadow_soft_size = 0\n"
+                 "  for key in more: setattr(data, key, more[key])\n"
+                 "  thing = bpy.data.objects.new(name, data); scene.collection.objects.link(thing); thing.location = place\n"
+                 "  return thing\n"
+                 "add('a', 'POINT', (14, 9, -8)); add('b', 'POINT', (30, 20, -90)); add('d', 'AREA', (0, 0, 40))\n"
+                 "add('c', 'SPOT', (0, 50, 0), spot_size=0.9).rotation_euler = (-math.pi / 2, 0, 0)")
+        text = self.capture("lights", "--shadow-size", "32", setup=setup)
+        self.assertIn("left out: light d of type AREA", text)
+        lights = self.manifest("lights/capture.json")["lights"]
+        self.assertEqual([light["type"] for light in lights], ["point", "point", "spot"])
+        self.assertEqual([len(light["shadowMaps"]) for light in lights], [5, 1, 1])
+        self.assertFalse([w for w in self.info("lights/capture.json")["warnings"] if "not of length 1" not in w])
+
+    def test_one_command_makes_the_picture(self):
+        self.capture("picture", "--shadow-size", "64", "--replay", COMMAND)
+        self.assertGreater(os.path.getsize(self.path("picture/picture.png")), 1000)
+
+    def test_the_add_on_has_a_button(self):
+        use = ("import sys, bpy; sys.path.insert(0, %r); import blender_capture; blender_capture.register(); "
+               "words = bpy.context.scene.pellucid; words.folder = %r; words.shadow_size = 16; "
+               "assert bpy.ops.pellucid.capture() == {'FINISHED'}; blender_capture.unregister()") % (TOOLS, self.path("button"))
+        run(BLENDER, "-b", self.scene, "--python-exit-code", "1", "--python-expr", use)
+        self.assertEqual(self.info("button/capture.json")["size"], [96, 96])
+
+    def test_frames_have_a_manifest_each(self):
+        text = self.capture("frames", "--frames", "1-2", "--shadow-size", "16", "--replay", COMMAND)
+        for frame in ("0001", "0002"):
+            self.assertEqual(self.info(f"frames/capture.{frame}.json")["size"], [96, 96])
+        self.assertIn("2 frames: 2 written", text)
+
+    def test_a_scene_without_subsurface_scattering_is_refused(self):
+        setup = "bpy.data.materials['wax'].node_tree.nodes['Principled BSDF'].inputs['Subsurface'].default_value = 0"
+        self.assertIn("no rendered material has subsurface scattering", self.capture("none", setup=setup, expected=1))
+
+    def test_the_scene_stays_as_it_is(self):
+        check = ("import bpy; s = bpy.context.scene; "
+                 "assert (s.render.engine, s.render.resolution_x, len(bpy.data.materials), s.camera.name, len(bpy.data.objects)) == "
+                 "before, 'changed'; assert bpy.data.materials['wax'].node_tree.nodes['Material Output'].inputs['Surface']"
+                 ".links[0].from_node.type == 'BSDF_PRINCIPLED'")
+        before = ("import bpy, builtins; s = bpy.context.scene; builtins.before = (s.render.engine, s.render.resolution_x, "
+                  "len(bpy.data.materials), s.camera.name, len(bpy.data.objects))")
+        run(BLENDER, "-b", self.scene, "--python-exit-code", "1", "--python-expr", before, "-P",
+            os.path.join(TOOLS, "blender_capture.py"), "--python-expr", check, "--", "-o", self.path("kept"), "--shadow-size", "16")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])

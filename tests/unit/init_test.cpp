@@ -1,0 +1,239 @@
+// Manifests for EXR files in the manner of other programs: each holds a frame that is known, and has to give
+// it back.
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfMatrixAttribute.h>
+#include <ImfOutputFile.h>
+#include <gtest/gtest.h>
+
+#include <glm/glm.hpp>
+#include <numbers>
+
+#include "capture/read.h"
+#include "init/manifest.h"
+#include "scene/scene.h"
+#include "scene/vector.h"
+#include "unit/capture_samples.h"
+
+namespace pellucid::harness {
+namespace {
+
+// A sphere before a wall, seen from the side.
+class Init : public testing::Test {
+protected:
+  Init() {
+    SceneParameters p;
+    p.name = "sphere";
+    p.width = 40;
+    p.height = 24;
+    p.shadowSize = 8;
+    frame_ = makeScene(p);
+    const glm::dmat4 world = glm::inverse(toGlm(frame_.viewFromWorld));
+    eye_ = fromGlm(glm::dvec3(world[3]));
+    target_ = fromGlm(glm::dvec3(world[3] - 50.0 * world[2]));
+    up_ = fromGlm(glm::dvec3(world[1]));
+    fov_ = 2 * std::atan(1 / std::abs(frame_.clipFromView[5])) * 180 / std::numbers::pi;
+  }
+
+  struct Channel {
+    std::string name;
+    const Image* image;
+    int component;
+  };
+  void write(const std::string& name, const std::vector<Channel>& channels,
+             const std::map<std::string, Imath::M44f>& matrices = {}) const {
+    Imf::Header header(frame_.width, frame_.height);
+    Imf::FrameBuffer buffer;
+    for (const auto& [attribute, matrix] : matrices) header.insert(attribute, Imf::M44fAttribute(matrix));
+    for (const Channel& c : channels) {
+      header.channels().insert(c.name, Imf::Channel(Imf::FLOAT));
+      const auto stride = static_cast<std::size_t>(c.image->channels) * sizeof(float);
+      auto* base = const_cast<char*>(reinterpret_cast<const char*>(c.image->data.data() + c.component));
+      buffer.insert(c.name,
+                    Imf::Slice(Imf::FLOAT, base, stride, stride * static_cast<std::size_t>(frame_.width)));
+    }
+    Imf::OutputFile file((folder_ / name).string().c_str(), header);
+    file.setFrameBuffer(buffer);
+    file.writePixels(frame_.height);
+  }
+  static std::vector<Channel> triple(const std::string& layer, const char* components, const Image& image) {
+    std::vector<Channel> result;
+    for (int i = 0; i < 3; ++i) result.push_back({layer + components[i], &image, i});
+    return result;
+  }
+  Image materialImage(float value) const {
+    Image image(frame_.width, frame_.height, 1);
+    for (std::size_t i = 0; i < image.data.size(); ++i) image.data[i] = frame_.material[i] != 0 ? value : 0;
+    return image;
+  }
+
+  GuessedManifest guess(const std::vector<std::string>& names, const InitWords& words) const {
+    std::vector<std::filesystem::path> files;
+    for (const std::string& name : names) files.push_back(folder_ / name);
+    return guessManifest(files, folder_, words);
+  }
+  Capture read(const GuessedManifest& guessed) const {
+    writeText(folder_ / "capture.json", guessed.json.dump(1));
+    return readCapture(folder_ / "capture.json");
+  }
+  // Where the pixel's ray goes: all that the x, y and w rows of a projection say.
+  static void expectSameRays(const Matrix& a, const Matrix& b) {
+    for (const std::size_t i : {0u, 5u, 8u, 9u, 11u, 12u, 13u, 15u}) EXPECT_NEAR(a[i], b[i], 1e-5) << i;
+  }
+  static void expectSameView(const Matrix& a, const Matrix& b, double tolerance) {
+    for (std::size_t i = 0; i < 16; ++i) EXPECT_NEAR(a[i], b[i], i < 12 ? 1e-5 : tolerance) << i;
+  }
+  static std::string errorOf(const std::function<void()>& work) {
+    try {
+      work();
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  TemporaryDirectory folder_;
+  Capture frame_;
+  Vector3 eye_, target_, up_;
+  double fov_ = 0;
+};
+
+// One file of layers and OpenEXR's camera attributes, as Arnold and Nuke write them.
+TEST_F(Init, LayersWithOpenExrsCameraNeedNoWords) {
+  const Image id = materialImage(1);
+  std::vector<Channel> channels = {
+      {"Z", &frame_.frontDepth.image, 0}, {"back.Z", &frame_.backDepth.image, 0}, {"id", &id, 0}};
+  for (const auto& layer :
+       {triple("direct_diffuse.", "RGB", frame_.irradiance), triple("N.", "XYZ", frame_.normal),
+        triple("albedo.", "RGB", frame_.albedo.empty() ? frame_.irradiance : frame_.albedo)})
+    channels.insert(channels.end(), layer.begin(), layer.end());
+  // OpenEXR: a left-handed camera space, row vectors; the image is 0 .. 1 with y down.
+  Imath::M44f worldToCamera, worldToNdc;
+  const glm::dmat4 flipped =
+      glm::dmat4(1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1) * toGlm(frame_.viewFromWorld);
+  const glm::dmat4 clip = toGlm(frame_.clipFromView) * toGlm(frame_.viewFromWorld);
+  const glm::dmat4 half(0.5, 0, 0, 0, 0, 0.5, 0, 0, 0, 0, 1, 0, 0.5, 0.5, 0, 1);
+  const glm::dmat4 ndc = half * clip;
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) {
+      worldToCamera[i][j] = static_cast<float>(flipped[i][j]);
+      worldToNdc[i][j] = static_cast<float>(ndc[i][j]);
+    }
+  write("beauty.exr", channels, {{"worldToCamera", worldToCamera}, {"worldToNDC", worldToNdc}});
+  const GuessedManifest guessed = guess({"beauty.exr"}, {});
+  const Capture capture = read(guessed);
+  expectSameView(capture.viewFromWorld, frame_.viewFromWorld, 1e-3);
+  expectSameRays(capture.clipFromView, frame_.clipFromView);
+  EXPECT_TRUE(sameBits(capture.frontDepth.image, frame_.frontDepth.image));
+  EXPECT_TRUE(sameBits(capture.backDepth.image, frame_.backDepth.image));
+  EXPECT_TRUE(sameBits(capture.irradiance, frame_.irradiance));
+  EXPECT_TRUE(sameBits(capture.normal, frame_.normal));
+  EXPECT_FALSE(capture.normalsInViewSpace);
+  EXPECT_EQ(capture.material, frame_.material);
+  ASSERT_FALSE(guessed.missing.empty());
+  EXPECT_NE(guessed.missing[0].find("lights: without a light"), std::string::npos);
+  EXPECT_TRUE(guessed.json.contains("// lights"));
+  EXPECT_TRUE(guessed.json.contains("// irradiance")) << "it may hold the albedo";
+}
+
+// A file for each texture of four channels, a reversed depth buffer, normals as 0 .. 1: what RenderDoc saves.
+TEST_F(Init, TexturesOfADebuggerNeedTheCamerasNumbers) {
+  const double nearPlane = 5, aspect = static_cast<double>(frame_.width) / frame_.height;
+  const Matrix clip = perspective(fov_ * std::numbers::pi / 180, aspect, {nearPlane, INFINITY, true});
+  const Image device = toDeviceDepth(frame_.frontDepth, clip).image;
+  Image normal = frame_.normal;
+  for (std::size_t i = 0; i < normal.data.size(); ++i) normal.data[i] = 0.5f * normal.data[i] + 0.5f;
+  const Image id = materialImage(7);
+  const auto save = [&](const std::string& name, std::vector<Channel> channels) {
+    while (channels.size() < 4) channels.push_back({"", channels[0].image, 0});
+    const char* const names[] = {"R", "G", "B", "A"};
+    for (std::size_t i = 0; i < 4; ++i) channels[i].name = names[i];
+    write(name, channels);
+  };
+  save("SceneDepthZ.exr", {{"", &device, 0}});
+  save("GBufferA.exr", triple("", "RGB", normal));
+  save("DiffuseIrradiance.exr", triple("", "RGB", frame_.irradiance));
+  save("MaterialID.exr", {{"", &id, 0}});
+  const std::vector<std::string> names = {"SceneDepthZ.exr", "GBufferA.exr", "DiffuseIrradiance.exr",
+                                          "MaterialID.exr"};
+  InitWords words;
+  EXPECT_NE(errorOf([&] { guess(names, words); }).find("--near: is needed"), std::string::npos);
+  words.camera.nearPlane = nearPlane;
+  EXPECT_NE(errorOf([&] { guess(names, words); }).find("--fov: is needed"), std::string::npos);
+  words.camera.verticalFov = fov_;
+  words.camera.eye = eye_;
+  words.camera.target = target_;
+  words.camera.up = up_;
+  words.metersPerUnit = 0.001;
+  words.materialIds = {7};
+  words.lights = {{{"type", "directional"}, {"direction", {0, 0, 1}}}};
+  const GuessedManifest guessed = guess(names, words);
+  const Capture capture = read(guessed);
+  EXPECT_EQ(capture.frontDepth.encoding, PELLUCID_DEPTH_DEVICE);
+  expectSameView(capture.viewFromWorld, frame_.viewFromWorld, 1e-9);
+  for (std::size_t i = 0; i < 16; ++i) EXPECT_NEAR(capture.clipFromView[i], clip[i], 1e-9) << i;
+  EXPECT_EQ(capture.material, frame_.material);
+  EXPECT_FALSE(capture.normalsInViewSpace);
+  for (std::size_t i = 0; i < frame_.material.size(); ++i)
+    EXPECT_NEAR(capture.normal.data[3 * i], frame_.normal.data[3 * i], 1e-6);
+  EXPECT_EQ(capture.metersPerUnit, 0.001);
+  EXPECT_EQ(guessed.missing.size(), 1u) << guessed.missing[0];
+  EXPECT_NE(guessed.missing[0].find("backDepth: without"), std::string::npos);
+}
+
+// Layers of a view layer, E / pi, no camera: Blender's multilayer file without its script.
+TEST_F(Init, BlendersPassesAreKnown) {
+  const Image id = materialImage(3);
+  Image combined = frame_.irradiance;
+  std::vector<Channel> channels = {{"ViewLayer.Depth.Z", &frame_.frontDepth.image, 0},
+                                   {"ViewLayer.IndexMA.X", &id, 0}};
+  for (const auto& layer :
+       {triple("ViewLayer.DiffDir.", "RGB", frame_.irradiance),
+        triple("ViewLayer.Combined.", "RGB", combined), triple("ViewLayer.Normal.", "XYZ", frame_.normal)})
+    channels.insert(channels.end(), layer.begin(), layer.end());
+  write("render.exr", channels);
+  InitWords words;
+  words.camera.verticalFov = fov_;
+  const GuessedManifest guessed = guess({"render.exr"}, words);
+  const Capture capture = read(guessed);
+  EXPECT_EQ(guessed.json["buffers"]["irradiance"]["scale"], std::numbers::pi);
+  EXPECT_EQ(capture.irradiance.data[300], static_cast<float>(std::numbers::pi) * frame_.irradiance.data[300]);
+  EXPECT_EQ(capture.viewFromWorld, kIdentity);
+  EXPECT_TRUE(guessed.json.contains("// camera"));
+  expectSameRays(capture.clipFromView, frame_.clipFromView);
+  EXPECT_EQ(guessed.json["buffers"]["material"]["map"], (nlohmann::json{{"0", 0}, {"3", 1}}));
+
+  words.roles = {{Role::Irradiance, "ViewLayer.Combined"}};
+  EXPECT_EQ(guess({"render.exr"}, words).json["buffers"]["irradiance"]["channels"][0],
+            "ViewLayer.Combined.R");
+  words.roles = {{Role::Irradiance, "ViewLayer.None"}};
+  EXPECT_NE(errorOf([&] { guess({"render.exr"}, words); }).find("ViewLayer.Combined"), std::string::npos);
+}
+
+TEST_F(Init, WhatCannotBeACaptureIsNamed) {
+  InitWords words;
+  words.camera.verticalFov = 30;
+  write("a.exr", triple("", "RGB", frame_.irradiance));
+  EXPECT_NE(errorOf([&] {
+              guess({"a.exr"}, words);
+            }).find("--front-depth: no name is that of one; name a layer, a channel or a file of: a (R)"),
+            std::string::npos);
+  write("z.exr", {{"Z", &frame_.frontDepth.image, 0}});
+  EXPECT_NE(errorOf([&] { guess({"z.exr"}, words); }).find("--irradiance"), std::string::npos);
+  const Image empty(frame_.width, frame_.height, 1, kNoDepth);
+  write("z.exr", {{"Z", &empty, 0}});
+  EXPECT_NE(errorOf([&] {
+              guess({"a.exr", "z.exr"}, words);
+            }).find("z.exr: frontDepth: no pixel holds a surface"),
+            std::string::npos);
+  write("z.exr", {{"Z", &frame_.frontDepth.image, 0}});
+  words.camera.eye = {0, 0, 1};
+  EXPECT_NE(errorOf([&] {
+              guess({"a.exr", "z.exr"}, words);
+            }).find("--eye: needs --target"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace pellucid::harness
