@@ -21,5 +21,6 @@ void addCaptureCommand(CLI::App& app);
 void addSheetCommand(CLI::App& app);
 void addMeasureDotsCommand(CLI::App& app);
 void addStressCommand(CLI::App& app);
+void addViewCommand(CLI::App& app);
 
 }  // namespace pellucid::harness

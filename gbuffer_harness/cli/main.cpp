@@ -47,6 +47,7 @@ int main(int argc, char** argv) {
   addSheetCommand(app);
   addMeasureDotsCommand(app);
   addStressCommand(app);
+  addViewCommand(app);
   try {
     app.parse(argc, argv);
     return OK;

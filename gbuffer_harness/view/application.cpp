@@ -1,0 +1,356 @@
+#include "view/application.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "common/error.h"
+#include "common/png.h"
+#include "view/gui.h"
+#include "view/input.h"
+#include "view/panel.h"
+#include "view/save.h"
+#include "view/script.h"
+#include "view/window.h"
+
+namespace pellucid::harness {
+
+namespace {
+
+// Dear ImGui shows what a click did in the frames after it.
+constexpr int kFramesAfterInput = 3;
+constexpr float kLegendWidth = 14;
+constexpr VkFormat kScreenFormat = VK_FORMAT_R8G8B8A8_UNORM;
+
+DeviceOptions deviceOptions(const ApplicationOptions& options, const Desktop* desktop) {
+  DeviceOptions result{options.device, options.validation};
+  if (desktop) desktop->require(result);
+  return result;
+}
+
+// The screen as an image, which the window shows and screenshots are made of.
+std::unique_ptr<RenderTarget> makeScreen(Device& device, int width, int height) {
+  return std::make_unique<RenderTarget>(
+      device, width, height,
+      std::vector<RenderTarget::Color>{{kScreenFormat, {.float32 = {0.08f, 0.08f, 0.09f, 1}}}}, std::nullopt);
+}
+
+class Application {
+public:
+  explicit Application(const ApplicationOptions& options)
+      : options_(options),
+        desktop_(options.window ? std::make_unique<Desktop>() : nullptr),
+        device_(deviceOptions(options, desktop_.get())),
+        width_(options.width),
+        height_(options.height) {
+    if (!device_.canDraw())
+      throw DeviceError(device_.description() + " computes but has no queue that draws");
+    source_ = options.open(device_);
+    state_ = source_->start();
+    if (options.start) options.start(state_);
+    panel_.followWindow = options.followWindow && source_->fixedCamera().empty();
+    if (options.window)
+      window_ = std::make_unique<Window>(*desktop_, device_, "Pellucid", width_, height_);
+    if (!options.script.empty()) script_ = readScript(options.script);
+    screen_ = makeScreen(device_, width_, height_);
+    gui_ = std::make_unique<Gui>(device_, *screen_, window_ ? window_->handle() : nullptr);
+    display_ = std::make_unique<DisplayPass>(device_, *screen_);
+    frames_ = std::make_unique<ViewFrames>(device_, *source_);
+    frames_->update(state_, {});
+    if (state_.display.exposure == 0)
+      state_.display.exposure = autoExposure(frames_->image(Shown::After));
+  }
+
+  ApplicationReport run() {
+    int left = kFramesAfterInput;
+    while (!done()) {
+      if (window_) {
+        const bool idle = left == 0 && options_.frames == 0 && !panel_.measure && nextLine_ == script_.size();
+        window_->events(idle);
+        if (idle) left = kFramesAfterInput;
+      }
+      if (!fitScreen()) {
+        // Nothing to draw on until the window is restored; frames that were asked for end all the same.
+        if (options_.frames == 0 && window_) window_->events(true);
+        ++report_.frames;
+        continue;
+      }
+      left = drawFrame() ? kFramesAfterInput : std::max(left - 1, 0);
+    }
+    if (!options_.save.empty()) save(options_.save);
+    if (!options_.screenshot.empty()) screenshot(options_.screenshot);
+    const std::vector<std::string> messages = device_.validationMessages();
+    if (!messages.empty())
+      throw DeviceError(std::to_string(messages.size()) + " messages of the validation layers: " +
+                        messages.front());
+    report_.device = device_.description();
+    report_.recorded = frames_->recorded();
+    return report_;
+  }
+
+private:
+  bool done() const {
+    if (window_ && window_->shouldClose()) return true;
+    return options_.frames > 0 && report_.frames >= options_.frames;
+  }
+
+  // Makes the screen as large as the window; false: there is none to see.
+  bool fitScreen() {
+    int width = width_, height = height_;
+    if (window_) window_->size(width, height);
+    if (width <= 0 || height <= 0) return false;
+    if (width == width_ && height == height_) return true;
+    width_ = width;
+    height_ = height;
+    screen_ = makeScreen(device_, width, height);
+    return true;
+  }
+
+  ScreenRect pictureArea() const {
+    return {0, 0, std::max(static_cast<float>(width_) - kPanelWidth, 1.0f), static_cast<float>(height_)};
+  }
+
+  ScreenRect picture() const {
+    return fitted(pictureArea(), frames_->capture().width, frames_->capture().height);
+  }
+
+  // One frame of the screen; true where another one has to follow.
+  bool drawFrame() {
+    ++report_.frames;
+    gui_->poll(width_, height_);
+    Changes changes;
+    playScript(changes);
+    gui_->begin();
+    changes.add(controls_.apply(state_, input(), *source_, picture()));
+    changes.add(drawPanel(state_, panel_, *frames_, *source_,
+                          {0, 0, static_cast<float>(width_), static_cast<float>(height_)}));
+    followWindow(changes);
+    changes.frame |= panel_.measure;
+    update(changes);
+    const ScreenRect picture = this->picture(), legend = legendOf(picture);
+    const ImVec2 cursor = ImGui::GetIO().MousePos;
+    drawOverlay(state_, panel_, *frames_, picture, legend, cursor.x, cursor.y);
+    gui_->end();
+    device_.run([&](VkCommandBuffer commandBuffer) {
+      screen_->begin(commandBuffer);
+      drawPicture(commandBuffer, picture, legend);
+      gui_->record(commandBuffer);
+      screen_->end(commandBuffer);
+    });
+    bool again = changes.any();
+    if (window_ && !window_->present(screen_->image(0), width_, height_)) again = true;
+    if (panel_.save) save(panel_.savePath);
+    panel_.save = false;
+    takeScreenshots();
+    return again;
+  }
+
+  void update(const Changes& changes) {
+    if (!changes.any()) return;
+    try {
+      frames_->update(state_, changes);
+      if (panel_.isError) panel_.message.clear();
+      panel_.isError = false;
+    } catch (const InputError& error) {
+      report(error.what(), true);
+    }
+    findFalseColors();
+  }
+
+  void report(const std::string& message, bool isError) {
+    panel_.message = message;
+    panel_.isError = isError;
+  }
+
+  void followWindow(Changes& changes) {
+    if (!panel_.followWindow) return;
+    const ScreenRect area = pictureArea();
+    const int width = std::clamp(static_cast<int>(area.width), 1, 8192);
+    const int height = std::clamp(static_cast<int>(area.height), 1, 8192);
+    if (width == state_.width && height == state_.height) return;
+    state_.width = width;
+    state_.height = height;
+    changes.scene = true;
+  }
+
+  std::optional<Shown> falseColored() const {
+    const Display& display = state_.display;
+    if (isFalseColor(display.shown)) return display.shown;
+    if (display.split && isFalseColor(display.left)) return display.left;
+    return std::nullopt;
+  }
+
+  // Ends of the false colors: as set, else those of the pixels that have a material.
+  void findFalseColors() {
+    const Display& display = state_.display;
+    panel_.low = display.falseLow;
+    panel_.high = display.falseHigh;
+    const std::optional<Shown> shown = falseColored();
+    if (!shown || display.falseLow != display.falseHigh) return;
+    const Image& image = frames_->image(*shown);
+    const std::vector<std::uint8_t>& material = frames_->capture().material;
+    const auto channels = static_cast<std::size_t>(image.channels);
+    const std::size_t channel = std::min(static_cast<std::size_t>(display.channel), channels - 1);
+    float low = INFINITY, high = -INFINITY;
+    for (std::size_t i = 0; i < image.pixels(); ++i) {
+      const float value = image.data[i * channels + channel];
+      if (material[i] == 0 || !(value > -kNoDepth && value < kNoDepth)) continue;
+      low = std::min(low, value);
+      high = std::max(high, value);
+    }
+    panel_.low = low <= high ? low : 0;
+    panel_.high = low < high ? high : panel_.low + 1;
+  }
+
+  ScreenRect legendOf(const ScreenRect& picture) const {
+    if (!falseColored()) return {};
+    return {picture.x + 12, picture.y + 60, kLegendWidth, std::max(picture.height / 2, 1.0f)};
+  }
+
+  void drawPicture(VkCommandBuffer commandBuffer, const ScreenRect& picture, const ScreenRect& legend) const {
+    const Display& display = state_.display;
+    ScreenRect right = picture;
+    if (display.split) {
+      ScreenRect left = picture;
+      left.width = std::round(picture.width * display.splitAt);
+      right.x += left.width;
+      right.width -= left.width;
+      display_->draw(commandBuffer, *frames_, display, display.left, picture, left, panel_.low, panel_.high);
+    }
+    display_->draw(commandBuffer, *frames_, display, display.shown, picture, right, panel_.low, panel_.high);
+    if (legend.width > 0) display_->drawLegend(commandBuffer, *frames_, legend);
+  }
+
+  static ViewInput input() {
+    const ImGuiIO& io = ImGui::GetIO();
+    ViewInput result;
+    result.x = io.MousePos.x;
+    result.y = io.MousePos.y;
+    if (!io.WantCaptureMouse) {
+      result.movedX = io.MouseDelta.x;
+      result.movedY = io.MouseDelta.y;
+      result.wheel = io.MouseWheel;
+      result.left = io.MouseDown[0];
+      result.right = io.MouseDown[1];
+      result.middle = io.MouseDown[2];
+      result.shift = io.KeyShift;
+    }
+    if (io.WantCaptureKeyboard) return result;
+    result.forward = io.KeysDown['W'];
+    result.back = io.KeysDown['S'];
+    result.stepLeft = io.KeysDown['A'];
+    result.stepRight = io.KeysDown['D'];
+    result.up = io.KeysDown['E'];
+    result.down = io.KeysDown['Q'];
+    result.seconds = std::min(io.DeltaTime, 0.1f);  // a slow frame is no leap
+    return result;
+  }
+
+  void playScript(Changes& changes);
+  void takeScreenshots();
+  void save(const std::filesystem::path& capture);
+  void screenshot(const std::filesystem::path& file);
+
+  const ApplicationOptions& options_;
+  std::unique_ptr<Desktop> desktop_;
+  Device device_;
+  int width_, height_;
+  std::unique_ptr<Source> source_;
+  ViewState state_;
+  PanelState panel_;
+  Controls controls_;
+  std::unique_ptr<Window> window_;
+  std::unique_ptr<RenderTarget> screen_;
+  std::unique_ptr<Gui> gui_;
+  std::unique_ptr<DisplayPass> display_;
+  std::unique_ptr<ViewFrames> frames_;
+  std::vector<ScriptLine> script_;
+  std::size_t nextLine_ = 0;
+  std::vector<std::filesystem::path> pendingScreenshots_, pendingSaves_;
+  ImVec2 scriptedCursor_{-1, -1};
+  bool pressed_[3] = {false, false, false};
+  std::vector<int> heldKeys_;
+  bool shift_ = false;
+  ApplicationReport report_;
+};
+
+void Application::playScript(Changes& changes) {
+  if (script_.empty()) return;
+  ImGuiIO& io = ImGui::GetIO();
+  for (; nextLine_ < script_.size() && script_[nextLine_].frame <= report_.frames; ++nextLine_) {
+    const ScriptLine& line = script_[nextLine_];
+    if (applyToState(line, state_, changes)) continue;
+    const std::string& first = line.arguments.front();
+    const bool down = line.command == "press";
+    if (line.command == "move") {
+      scriptedCursor_ = {numberOf(line, 0), numberOf(line, 1)};
+    } else if (line.command == "wheel") {
+      io.MouseWheel = numberOf(line, 0);
+    } else if (line.command == "resize") {
+      const int width = std::clamp(static_cast<int>(numberOf(line, 0)), 64, 8192);
+      const int height = std::clamp(static_cast<int>(numberOf(line, 1)), 64, 8192);
+      if (window_)
+        window_->resize(width, height);
+      else
+        throw InputError(line.where, line.command, "needs a window");
+    } else if (line.command == "save") {
+      pendingSaves_.push_back(first);
+    } else if (line.command == "screenshot") {
+      pendingScreenshots_.push_back(first);
+    } else if (first == "shift") {
+      shift_ = down;
+    } else if (first == "left" || first == "right" || first == "middle") {
+      pressed_[first == "left" ? 0 : first == "right" ? 1 : 2] = down;
+    } else {
+      const int key = first == "space" ? ' ' : first[0] - 'a' + 'A';
+      std::erase(heldKeys_, key);
+      if (down) heldKeys_.push_back(key);
+    }
+  }
+  // Every frame anew: a window's own events would say otherwise.
+  io.MousePos = scriptedCursor_;
+  std::copy(std::begin(pressed_), std::end(pressed_), io.MouseDown);
+  io.KeyShift = shift_;
+  for (const int key : {'W', 'A', 'S', 'D', 'E', 'Q', ' '})
+    io.KeysDown[key] = std::find(heldKeys_.begin(), heldKeys_.end(), key) != heldKeys_.end();
+}
+
+void Application::takeScreenshots() {
+  for (const auto& file : pendingSaves_) save(file);
+  for (const auto& file : pendingScreenshots_) screenshot(file);
+  pendingSaves_.clear();
+  pendingScreenshots_.clear();
+}
+
+void Application::save(const std::filesystem::path& capture) {
+  try {
+    const SavedFiles files = savedFiles(capture);
+    // A replay is a frame of its own: what is saved must not come from frames before.
+    if (state_.settings.reuse != PELLUCID_REUSE_NONE) {
+      frames_->forgetHistory();
+      frames_->update(state_, {.frame = true});
+    }
+    saveView(files, *frames_, options_.settingsText(settingsFor(state_, Shown::After)),
+             {options_.scene, "", state_});
+    savePicture(files.picture, screen_->image(0).download());
+    for (const auto& file : {files.capture, files.settings, files.session, files.result, files.picture})
+      report_.saved.push_back(file.string());
+    report("saved " + files.capture.string(), false);
+  } catch (const InputError& error) {
+    if (options_.frames > 0) throw;  // nobody reads the panel
+    report(error.what(), true);
+  }
+}
+
+void Application::screenshot(const std::filesystem::path& file) {
+  savePicture(file, screen_->image(0).download());
+  report_.saved.push_back(file.string());
+}
+
+}  // namespace
+
+ApplicationReport runApplication(const ApplicationOptions& options) { return Application(options).run(); }
+
+}  // namespace pellucid::harness

@@ -1,0 +1,23 @@
+// The curves beside the sliders.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "pellucid/pellucid.h"
+
+namespace pellucid::harness {
+
+struct Curves {
+  double end = 1;                             // x runs from 0 to here, evenly, both ends included
+  std::array<std::vector<double>, 3> values;  // R G B
+};
+
+// T(d), d in mm, as far as some channel lets 1 % through, 0.1 to 100 mm. points: >= 2.
+Curves transmittanceCurves(const PellucidMaterial& material, int points);
+
+// 2 pi r R(r), 1/mm, r in mm to the largest radius within which a channel has 95 % of its energy; no channel of a
+// material that does not diffuse has values.
+Curves profileCurves(const PellucidMaterial& material, int points);
+
+}  // namespace pellucid::harness
