@@ -74,7 +74,7 @@ public:
       if (!fitScreen()) {
         // Nothing to draw on until the window is restored; frames that were asked for end all the same.
         if (options_.frames == 0 && window_) window_->events(true);
-        ++report_.frames;
+        ++passed_;
         continue;
       }
       left = drawFrame() ? kFramesAfterInput : std::max(left - 1, 0);
@@ -93,7 +93,7 @@ public:
 private:
   bool done() const {
     if (window_ && window_->shouldClose()) return true;
-    return options_.frames > 0 && report_.frames >= options_.frames;
+    return options_.frames > 0 && passed_ >= options_.frames;
   }
 
   // Makes the screen as large as the window; false: there is none to see.
@@ -118,6 +118,7 @@ private:
 
   // One frame of the screen; true where another one has to follow.
   bool drawFrame() {
+    ++passed_;
     ++report_.frames;
     gui_->poll(width_, height_);
     Changes changes;
@@ -273,13 +274,14 @@ private:
   bool pressed_[3] = {false, false, false};
   std::vector<int> heldKeys_;
   bool shift_ = false;
+  int passed_ = 0;  // frames, with those that had no screen
   ApplicationReport report_;
 };
 
 void Application::playScript(Changes& changes) {
   if (script_.empty()) return;
   ImGuiIO& io = ImGui::GetIO();
-  for (; nextLine_ < script_.size() && script_[nextLine_].frame <= report_.frames; ++nextLine_) {
+  for (; nextLine_ < script_.size() && script_[nextLine_].frame <= passed_; ++nextLine_) {
     const ScriptLine& line = script_[nextLine_];
     if (applyToState(line, state_, changes)) continue;
     const std::string& first = line.arguments.front();

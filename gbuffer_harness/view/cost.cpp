@@ -19,8 +19,9 @@ bool CostHistory::add(std::uint64_t frame, const std::vector<DispatchTime>& time
   for (const DispatchTime& time : times) {
     const auto found = std::find_if(dispatches_.begin(), dispatches_.end(),
                                     [&](const Dispatch& d) { return d.name == time.name; });
-    Dispatch& dispatch = found != dispatches_.end() ? *found : dispatches_.emplace_back();
-    if (found == dispatches_.end()) {
+    const bool isNew = found == dispatches_.end();
+    Dispatch& dispatch = isNew ? dispatches_.emplace_back() : *found;
+    if (isNew) {
       dispatch.name = time.name;
       dispatch.history.assign(frames_, 0);
       if (!first) dispatch.smoothed = time.microseconds;

@@ -15,7 +15,7 @@ namespace pellucid::harness {
 //   wheel NOTCHES
 //   resize WIDTH HEIGHT               of the window
 //   set NAME=VALUE[,VALUE...]         a parameter by its key or label; names or numbers of choices
-//   show NAME                         of shownNames()
+//   show NAME                         of shownNames(), with - for spaces
 //   split NAME AT                     NAME to the left of AT, 0..1 of the picture's width
 //   exposure FACTOR
 //   save FILE.exr, screenshot FILE.png
