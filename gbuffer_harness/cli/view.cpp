@@ -57,9 +57,9 @@ std::string extensionOf(const std::string& path) {
 }
 
 // What the scene options say, without those of the viewer and of the replay.
-const std::set<std::string> kNotOfTheScene = {"--set", "--mode", "--debug", "--device", "--window-size",
-                                              "--no-window", "--validate", "--frames", "--script",
-                                              "--screenshot", "--save", "--help"};
+const std::set<std::string> kNotOfTheScene = {"--set",         "--mode",       "--debug",    "--device",
+                                              "--window-size", "--no-window",  "--validate", "--frames",
+                                              "--script",      "--screenshot", "--save",     "--help"};
 
 std::vector<std::string> sceneArguments(const CLI::App& command) {
   std::vector<std::string> arguments;
@@ -186,19 +186,25 @@ void view(const CLI::App& given, const Options& givenOptions) {
 
 void addViewCommand(CLI::App& app) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("view", "Look at a model, a scene, a capture or a saved view, and change it");
+  CLI::App* command =
+      app.add_subcommand("view", "Look at a model, a scene, a capture or a saved view, and change it");
   addCaptureOptions(*command, options->scene, SceneUse::Replay);
-  command->get_option("model")->description("glTF file (.glb, .gltf), capture (.exr, .json) or saved view (.view.json)");
+  command->get_option("model")->description(
+      "glTF file (.glb, .gltf), capture (.exr, .json) or saved view (.view.json)");
   options->settings.addTo(*command);
   command->add_option("--window-size", options->windowSize, "WIDTHxHEIGHT in pixels")->capture_default_str();
-  command->add_option("--frames", options->frames, "of the screen, after which it ends; default: when the window is closed")
+  command
+      ->add_option("--frames", options->frames,
+                   "of the screen, after which it ends; default: when the window is closed")
       ->check(CLI::Range(1, 1000000));
   command->add_flag("--no-window", options->noWindow, "draws into an image: needs no display");
   command->add_option("--script", options->script, "input from a file (docs/view.md)");
   command->add_option("--screenshot", options->screenshot, "PNG of the last frame of the screen");
-  command->add_option("--save", options->save,
-                      "NAME.exr: at the end the capture, with settings, session, result and picture beside it");
-  command->add_flag("--validate", options->validate, "with the Vulkan validation layers, whose messages are an error");
+  command->add_option(
+      "--save", options->save,
+      "NAME.exr: at the end the capture, with settings, session, result and picture beside it");
+  command->add_flag("--validate", options->validate,
+                    "with the Vulkan validation layers, whose messages are an error");
   command->callback([options, command] { view(*command, *options); });
 }
 

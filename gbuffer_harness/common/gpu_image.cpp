@@ -213,10 +213,9 @@ Image GpuImage::download() const {
   } else {
     const auto* bytes = static_cast<const std::uint8_t*>(staging.mapped());
     std::transform(bytes, bytes + result.data.size(), result.data.begin(), [this](std::uint8_t v) {
-      return format_ == VK_FORMAT_R8G8B8A8_SNORM ? glm::unpackSnorm1x8(v)
-             : format_ == VK_FORMAT_R8_UNORM || format_ == VK_FORMAT_R8G8B8A8_UNORM
-                 ? glm::unpackUnorm1x8(v)
-                 : static_cast<float>(v);
+      return format_ == VK_FORMAT_R8G8B8A8_SNORM                                    ? glm::unpackSnorm1x8(v)
+             : format_ == VK_FORMAT_R8_UNORM || format_ == VK_FORMAT_R8G8B8A8_UNORM ? glm::unpackUnorm1x8(v)
+                                                                                    : static_cast<float>(v);
     });
   }
   return result;

@@ -10,8 +10,8 @@ namespace pellucid::harness {
 class GpuImage {
 public:
   // Usable as sampled and storage image, for transfers, and as `more` says. Formats: R32_SFLOAT,
-  // R16G16B16A16_SFLOAT, R32G32B32A32_SFLOAT, R8G8B8A8_SNORM, R8G8B8A8_UNORM; not storage: R32G32_SFLOAT, R8_UINT, R8_UNORM.
-  // layers: 0: a 2D view, else a view of all layers of an array.
+  // R16G16B16A16_SFLOAT, R32G32B32A32_SFLOAT, R8G8B8A8_SNORM, R8G8B8A8_UNORM; not storage: R32G32_SFLOAT,
+  // R8_UINT, R8_UNORM. layers: 0: a 2D view, else a view of all layers of an array.
   GpuImage(Device& device, int width, int height, VkFormat format, VkImageUsageFlags more = 0,
            int layers = 0);
   ~GpuImage();

@@ -63,7 +63,8 @@ struct RasterResult {
 RasterResult rasterize(Device& device, const Model& model, const ModelCamera& camera,
                        const RasterOptions& options);
 
-// The same of a model that is on the device already. `model` is the uploaded one, whose lights may have changed.
+// The same of a model that is on the device already. `model` is the uploaded one, whose lights may have
+// changed.
 class UploadedModel;
 RasterResult rasterize(Device& device, const Model& model, const UploadedModel& uploaded,
                        const ModelCamera& camera, const RasterOptions& options);

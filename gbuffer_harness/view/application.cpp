@@ -51,16 +51,15 @@ public:
     state_ = source_->start();
     if (options.start) options.start(state_);
     panel_.followWindow = options.followWindow && source_->fixedCamera().empty();
-    if (options.window)
-      window_ = std::make_unique<Window>(*desktop_, device_, "Pellucid", width_, height_);
+    if (options.window) window_ = std::make_unique<Window>(*desktop_, device_, "Pellucid", width_, height_);
     if (!options.script.empty()) script_ = readScript(options.script);
     screen_ = makeScreen(device_, width_, height_);
     gui_ = std::make_unique<Gui>(device_, *screen_, window_ ? window_->handle() : nullptr);
     display_ = std::make_unique<DisplayPass>(device_, *screen_);
-    frames_ = std::make_unique<ViewFrames>(device_, *source_);
+    contexts_ = std::make_unique<Contexts>(device_);
+    frames_ = std::make_unique<ViewFrames>(device_, *contexts_, *source_);
     frames_->update(state_, {});
-    if (state_.display.exposure == 0)
-      state_.display.exposure = autoExposure(frames_->image(Shown::After));
+    if (state_.display.exposure == 0) state_.display.exposure = autoExposure(frames_->image(Shown::After));
   }
 
   ApplicationReport run() {
@@ -83,8 +82,8 @@ public:
     if (!options_.screenshot.empty()) screenshot(options_.screenshot);
     const std::vector<std::string> messages = device_.validationMessages();
     if (!messages.empty())
-      throw DeviceError(std::to_string(messages.size()) + " messages of the validation layers: " +
-                        messages.front());
+      throw DeviceError(std::to_string(messages.size()) +
+                        " messages of the validation layers: " + messages.front());
     report_.device = device_.description();
     report_.recorded = frames_->recorded();
     return report_;
@@ -266,6 +265,7 @@ private:
   std::unique_ptr<RenderTarget> screen_;
   std::unique_ptr<Gui> gui_;
   std::unique_ptr<DisplayPass> display_;
+  std::unique_ptr<Contexts> contexts_;
   std::unique_ptr<ViewFrames> frames_;
   std::vector<ScriptLine> script_;
   std::size_t nextLine_ = 0;

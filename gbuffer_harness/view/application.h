@@ -14,9 +14,9 @@
 namespace pellucid::harness {
 
 struct ApplicationOptions {
-  std::string device;       // part of the Vulkan device's name; empty: the fastest kind
-  bool validation = false;  // messages of the validation layers end it with a DeviceError
-  bool window = true;       // false: needs `frames`
+  std::string device;              // part of the Vulkan device's name; empty: the fastest kind
+  bool validation = false;         // messages of the validation layers end it with a DeviceError
+  bool window = true;              // false: needs `frames`
   int width = 1280, height = 800;  // of the window, pixels
   int frames = 0;                  // of the screen, then it ends; 0: until the window is closed
   bool followWindow = false;       // the picture is as large as its place in the window

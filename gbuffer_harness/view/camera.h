@@ -14,8 +14,8 @@ struct ViewCamera {
   Vector3 back() const;               // world, unit; from what is seen towards the eye
 };
 
-// Round the pivot: `yaw` about the vertical, counterclockwise from above, then `pitch` upwards, to 89 degrees of
-// elevation at most.
+// Round the pivot: `yaw` about the vertical, counterclockwise from above, then `pitch` upwards, to 89 degrees
+// of elevation at most.
 void orbit(ViewCamera& camera, double yaw, double pitch);
 
 // Turns the head: `yaw` to the left, `pitch` upwards, to 89 degrees at most. The pivot stays ahead.

@@ -18,9 +18,9 @@ public:
   bool add(std::uint64_t frame, const std::vector<DispatchTime>& times);
 
   struct Dispatch {
-    std::string name;                // dispatches of one name in a frame add up
-    double smoothed = 0;             // microseconds; half of it is of the last 6 frames
-    std::deque<double> history;      // of each frame, the newest last, at most kFrames; 0 where it did not run
+    std::string name;            // dispatches of one name in a frame add up
+    double smoothed = 0;         // microseconds; half of it is of the last 6 frames
+    std::deque<double> history;  // of each frame, the newest last, at most kFrames; 0 where it did not run
   };
   static constexpr std::size_t kFrames = 160;
   const std::vector<Dispatch>& dispatches() const { return dispatches_; }

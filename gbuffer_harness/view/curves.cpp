@@ -27,8 +27,7 @@ Curves transmittanceCurves(const PellucidMaterial& material, int points) {
   while (curves.end < kThickest && brightest(material, curves.end) > kDarkest) curves.end *= 1.1;
   for (std::uint32_t c = 0; c < 3; ++c)
     for (int i = 0; i < points; ++i)
-      curves.values[c].push_back(
-          pellucidEvaluateTransmittance(&material, c, curves.end * i / (points - 1)));
+      curves.values[c].push_back(pellucidEvaluateTransmittance(&material, c, curves.end * i / (points - 1)));
   return curves;
 }
 

@@ -16,8 +16,8 @@ struct Curves {
 // T(d), d in mm, as far as some channel lets 1 % through, 0.1 to 100 mm. points: >= 2.
 Curves transmittanceCurves(const PellucidMaterial& material, int points);
 
-// 2 pi r R(r), 1/mm, r in mm to the largest radius within which a channel has 95 % of its energy; no channel of a
-// material that does not diffuse has values.
+// 2 pi r R(r), 1/mm, r in mm to the largest radius within which a channel has 95 % of its energy; no channel
+// of a material that does not diffuse has values.
 Curves profileCurves(const PellucidMaterial& material, int points);
 
 }  // namespace pellucid::harness

@@ -40,7 +40,8 @@ ScreenRect fitted(const ScreenRect& area, int width, int height) {
 std::optional<Texel> texelAt(const ScreenRect& picture, int width, int height, float x, float y) {
   const float u = (x - picture.x) / picture.width, v = (y - picture.y) / picture.height;
   if (!(u >= 0 && u < 1 && v >= 0 && v < 1)) return std::nullopt;
-  return Texel{static_cast<int>(u * static_cast<float>(width)), static_cast<int>(v * static_cast<float>(height))};
+  return Texel{static_cast<int>(u * static_cast<float>(width)),
+               static_cast<int>(v * static_cast<float>(height))};
 }
 
 DisplayPass::DisplayPass(Device& device, const RenderTarget& target)

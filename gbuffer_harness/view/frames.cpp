@@ -31,8 +31,8 @@ Image combined(const Image& a, const Image& b, const Function& of) {
 
 }  // namespace
 
-ViewFrames::ViewFrames(Device& device, Source& source)
-    : device_(device), source_(source), contexts_(device) {}
+ViewFrames::ViewFrames(Device& device, Contexts& contexts, Source& source)
+    : device_(device), source_(source), contexts_(contexts) {}
 
 ViewFrames::Kind ViewFrames::kindOf(Shown shown) {
   return shown == Shown::Through ? Kind::Through : shown == Shown::Debug ? Kind::Debug : Kind::Result;
@@ -97,8 +97,8 @@ void ViewFrames::update(const ViewState& state, const Changes& changes) {
   if (state.display.split) need(state.display.left);
   std::unique_ptr<GpuImage> truth;
   if (rendered && rendered->truth) {
-    truth = std::make_unique<GpuImage>(device_, rendered->width, rendered->height,
-                                       VK_FORMAT_R32G32B32A32_SFLOAT);
+    truth =
+        std::make_unique<GpuImage>(device_, rendered->width, rendered->height, VK_FORMAT_R32G32B32A32_SFLOAT);
     truth->upload(rendered->truth->image);
   }
 

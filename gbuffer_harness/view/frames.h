@@ -15,11 +15,11 @@ namespace pellucid::harness {
 
 class ViewFrames {
 public:
-  // `source` must outlive it.
-  ViewFrames(Device& device, Source& source);
+  // `contexts` of all uses and `source` must outlive it.
+  ViewFrames(Device& device, Contexts& contexts, Source& source);
 
-  // Makes anew what the changes ask for, and frames that the display newly shows. Where it throws, what was there
-  // before stays.
+  // Makes anew what the changes ask for, and frames that the display newly shows. Where it throws, what was
+  // there before stays.
   void update(const ViewState& state, const Changes& changes);
 
   const Capture& capture() const { return capture_; }
@@ -30,8 +30,8 @@ public:
   const FrameRun& run(Shown shown) const;
   const GpuImage* truth() const { return truth_.get(); }  // null: the capture has none
 
-  // What is shown, before exposure: RGB, or one channel or three for false colors. Pixels without a material: as
-  // a replay has them.
+  // What is shown, before exposure: RGB, or one channel or three for false colors. Pixels without a material:
+  // as a replay has them.
   const Image& image(Shown shown) const;
 
   // Of the last recording of Shown::After, by the GPU's clock.
@@ -58,7 +58,7 @@ private:
 
   Device& device_;
   Source& source_;
-  mutable Contexts contexts_;
+  Contexts& contexts_;
   Capture capture_;
   std::vector<PellucidMaterial> materials_;
   std::vector<std::string> warnings_;

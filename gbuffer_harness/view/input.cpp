@@ -46,7 +46,8 @@ Changes Controls::apply(ViewState& state, const ViewInput& input, const Source& 
   ViewCamera& camera = state.camera;
   const bool cameraMoves = source.fixedCamera().empty(), lightsMove = source.fixedLights().empty();
   const double turn = 2 * std::numbers::pi * kTurnsPerPicture / static_cast<double>(picture.height);
-  const double right = turn * static_cast<double>(input.movedX), up = -turn * static_cast<double>(input.movedY);
+  const double right = turn * static_cast<double>(input.movedX),
+               up = -turn * static_cast<double>(input.movedY);
   // The cursor moved to where the button went down before that.
   const bool moved = wasDragging && (input.movedX != 0 || input.movedY != 0);
   Light* const light = selectedLight(state);

@@ -17,8 +17,8 @@ struct ViewInput {
   float seconds = 0;
 };
 
-// Left button: orbit; on the split: moves it; with shift: drags the selected light. Right: looks around. Middle:
-// pans. Wheel: to the pivot and away; with shift: the light. w a s d, e and q: walks.
+// Left button: orbit; on the split: moves it; with shift: drags the selected light. Right: looks around.
+// Middle: pans. Wheel: to the pivot and away; with shift: the light. w a s d, e and q: walks.
 class Controls {
 public:
   // `picture`: where the frame is on the screen; buttons pressed outside of it do nothing.

@@ -55,7 +55,8 @@ bool drawParameter(const Parameter& parameter, ReplaySettings& settings) {
     }
     case ParameterKind::Whole: {
       int whole = static_cast<int>(values[0]);
-      changed = ImGui::SliderInt(label, &whole, static_cast<int>(parameter.low), static_cast<int>(parameter.high));
+      changed =
+          ImGui::SliderInt(label, &whole, static_cast<int>(parameter.low), static_cast<int>(parameter.high));
       values[0] = static_cast<float>(whole);
       break;
     }
@@ -72,7 +73,8 @@ bool drawParameter(const Parameter& parameter, ReplaySettings& settings) {
 bool drawParameters(ReplaySettings& settings) {
   bool changed = false;
   for (const ParameterGroup& group : parameterGroups()) {
-    if (!ImGui::CollapsingHeader(group.name.c_str(), group.open ? ImGuiTreeNodeFlags_DefaultOpen : 0)) continue;
+    if (!ImGui::CollapsingHeader(group.name.c_str(), group.open ? ImGuiTreeNodeFlags_DefaultOpen : 0))
+      continue;
     for (const Parameter& parameter : group.parameters) {
       const bool used = !parameter.used || parameter.used(settings);
       if (!used) ImGui::BeginDisabled();
@@ -112,8 +114,8 @@ Changes drawDisplay(ViewState& state, const PanelState& panel, const ViewFrames&
       changes.shown = true;
     }
   }
-  changes.shown |= ImGui::SliderFloat("exposure", &display.exposure, 0.01f, 100, "%.3g",
-                                      ImGuiSliderFlags_Logarithmic);
+  changes.shown |=
+      ImGui::SliderFloat("exposure", &display.exposure, 0.01f, 100, "%.3g", ImGuiSliderFlags_Logarithmic);
   int tone = static_cast<int>(display.toneMap);
   changes.shown |= combo("tone mapping", tone, toneMapNames());
   display.toneMap = static_cast<ToneMap>(tone);
@@ -152,7 +154,8 @@ Changes drawCamera(ViewState& state, PanelState& panel, const Source& source) {
     state.height = std::clamp(size[1], 1, 8192);
     changes.scene = true;
   }
-  ImGui::TextDisabled("drag: orbit; right: look; middle: pan; wheel: zoom\nw a s d e q: walk; shift + drag: light");
+  ImGui::TextDisabled(
+      "drag: orbit; right: look; middle: pan; wheel: zoom\nw a s d e q: walk; shift + drag: light");
   return changes;
 }
 
@@ -168,7 +171,8 @@ Changes drawPanel(ViewState& state, PanelState& panel, const ViewFrames& frames,
   ImGui::PushItemWidth(200);
   Changes changes;
   if (!panel.message.empty()) {
-    ImGui::PushStyleColor(ImGuiCol_Text, panel.isError ? ImVec4(1, 0.45f, 0.4f, 1) : ImVec4(0.6f, 0.9f, 0.6f, 1));
+    ImGui::PushStyleColor(ImGuiCol_Text,
+                          panel.isError ? ImVec4(1, 0.45f, 0.4f, 1) : ImVec4(0.6f, 0.9f, 0.6f, 1));
     ImGui::TextWrapped("%s", panel.message.c_str());
     ImGui::PopStyleColor();
   }
@@ -209,7 +213,8 @@ void drawOverlay(const ViewState& state, const PanelState& panel, const ViewFram
     char ends[2][32];
     std::snprintf(ends[0], sizeof ends[0], "%.4g", static_cast<double>(panel.high));
     std::snprintf(ends[1], sizeof ends[1], "%.4g", static_cast<double>(panel.low));
-    list->AddRect({legend.x - 1, legend.y - 1}, {legend.x + legend.width + 1, legend.y + legend.height + 1}, kWhite);
+    list->AddRect({legend.x - 1, legend.y - 1}, {legend.x + legend.width + 1, legend.y + legend.height + 1},
+                  kWhite);
     text(legend.x, legend.y - 20, ends[0]);
     text(legend.x, legend.y + legend.height + 6, ends[1]);
   }

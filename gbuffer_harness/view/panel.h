@@ -1,4 +1,5 @@
-// The panel beside the picture: draws the state and changes it. Calls Dear ImGui between Gui::begin() and end().
+// The panel beside the picture: draws the state and changes it. Calls Dear ImGui between Gui::begin() and
+// end().
 #pragma once
 
 #include <optional>
@@ -21,7 +22,7 @@ struct PanelState {
   std::string message;        // of what went wrong or was done last
   bool isError = false;
   char savePath[512] = "out/view.exr";
-  bool save = false;  // asked for in this frame
+  bool save = false;        // asked for in this frame
   float low = 0, high = 1;  // ends of the false colors as they are drawn
 };
 
@@ -31,7 +32,8 @@ constexpr float kPanelWidth = 380;
 Changes drawPanel(ViewState& state, PanelState& panel, const ViewFrames& frames, const Source& source,
                   const ScreenRect& screen);
 
-// Over the picture: labels of its halves, the line of the split, ends of the legend, the value under the cursor.
+// Over the picture: labels of its halves, the line of the split, ends of the legend, the value under the
+// cursor.
 void drawOverlay(const ViewState& state, const PanelState& panel, const ViewFrames& frames,
                  const ScreenRect& picture, const ScreenRect& legend, float cursorX, float cursorY);
 

@@ -13,7 +13,8 @@ namespace {
 
 constexpr int kPoints = 120;
 constexpr float kPlotHeight = 90;
-constexpr ImU32 kChannels[] = {IM_COL32(255, 90, 80, 255), IM_COL32(90, 220, 90, 255), IM_COL32(110, 150, 255, 255)};
+constexpr ImU32 kChannels[] = {IM_COL32(255, 90, 80, 255), IM_COL32(90, 220, 90, 255),
+                               IM_COL32(110, 150, 255, 255)};
 // Paul Tol's bright scheme: told apart by people who see red and green alike, too.
 constexpr ImU32 kDispatches[] = {IM_COL32(68, 119, 170, 255),  IM_COL32(238, 102, 119, 255),
                                  IM_COL32(34, 136, 51, 255),   IM_COL32(204, 187, 68, 255),
@@ -47,7 +48,8 @@ void plot(const char* title, const char* unit, const Curves& curves) {
                                         static_cast<float>(values.size() - 1),
                       frame.high.y - (frame.high.y - frame.low.y) *
                                          static_cast<float>(most > 0 ? values[i] / most : 0)});
-    ImGui::GetWindowDrawList()->AddPolyline(line.data(), static_cast<int>(line.size()), kChannels[c], 0, 1.5f);
+    ImGui::GetWindowDrawList()->AddPolyline(line.data(), static_cast<int>(line.size()), kChannels[c], 0,
+                                            1.5f);
   }
 }
 
@@ -75,7 +77,8 @@ void plotStack(const CostHistory& cost, double budget) {
       sum = next;
     }
   }
-  if (budget > 0) list->AddLine({frame.low.x, y(budget)}, {frame.high.x, y(budget)}, IM_COL32(255, 255, 255, 200));
+  if (budget > 0)
+    list->AddLine({frame.low.x, y(budget)}, {frame.high.x, y(budget)}, IM_COL32(255, 255, 255, 200));
   char top[32];
   std::snprintf(top, sizeof top, "%.3g ms", most / 1000);
   list->AddText({frame.low.x + 3, frame.low.y + 1}, IM_COL32(255, 255, 255, 200), top);
@@ -108,11 +111,12 @@ Changes drawCost(ViewState& state, PanelState& panel, const ViewFrames& frames) 
   plotStack(panel.cost, panel.budget.on ? 1000 * static_cast<double>(panel.budget.milliseconds) : 0);
   for (std::size_t k = 0; k < panel.cost.dispatches().size(); ++k) {
     const CostHistory::Dispatch& dispatch = panel.cost.dispatches()[k];
-    ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(kDispatches[k % std::size(kDispatches)]), "%8.1f us  %s",
-                       dispatch.smoothed, dispatch.name.c_str());
+    ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(kDispatches[k % std::size(kDispatches)]),
+                       "%8.1f us  %s", dispatch.smoothed, dispatch.name.c_str());
   }
   for (std::uint32_t i = 0; i < plan.skipCount; ++i)
-    ImGui::TextWrapped("skipped: %u x %s (%s)", plan.skips[i].count, plan.skips[i].what, plan.skips[i].reason);
+    ImGui::TextWrapped("skipped: %u x %s (%s)", plan.skips[i].count, plan.skips[i].what,
+                       plan.skips[i].reason);
   ImGui::Checkbox("record without end", &panel.measure);
   ImGui::Checkbox("hold a frame time", &panel.budget.on);
   if (panel.budget.on) {

@@ -16,8 +16,8 @@ namespace {
 
 bool dragReals(const char* label, double* values, int count, double low, double high) {
   const double speed = 0.005 * std::max(std::abs(*std::max_element(values, values + count)), 1e-3);
-  const bool changed = ImGui::DragScalarN(label, ImGuiDataType_Double, values, count, static_cast<float>(speed),
-                                          &low, &high, "%.4g");
+  const bool changed = ImGui::DragScalarN(label, ImGuiDataType_Double, values, count,
+                                          static_cast<float>(speed), &low, &high, "%.4g");
   for (int i = 0; i < count; ++i) values[i] = std::clamp(values[i], low, high);
   return changed;
 }
@@ -84,7 +84,8 @@ bool drawLight(Light& light, const Source& source) {
   changed |= dragReals("intensity", &light.intensity, 1, 0, 1e30);
   if (fixed) return changed;
   if (ImGui::BeginCombo("type", typeName(light.type))) {
-    for (const PellucidLightType type : {PELLUCID_LIGHT_DIRECTIONAL, PELLUCID_LIGHT_POINT, PELLUCID_LIGHT_SPOT})
+    for (const PellucidLightType type :
+         {PELLUCID_LIGHT_DIRECTIONAL, PELLUCID_LIGHT_POINT, PELLUCID_LIGHT_SPOT})
       if (ImGui::Selectable(typeName(type), type == light.type) && type != light.type) {
         const Light before = light;
         light = newLight(type, source.start().camera, source.center(), source.radius()).light;

@@ -37,7 +37,8 @@ Parameter bound(Parameter parameter, const Access& field) {
   return parameter;
 }
 
-#define FIELD(member) [](auto& settings) -> auto& { return settings.member; }
+#define FIELD(member) \
+  [](auto& settings) -> auto& { return settings.member; }
 
 Parameter choice(const char* key, const char* label, const char* help, std::vector<std::string> choices) {
   Parameter parameter{key, label, help, ParameterKind::Choice};
@@ -62,9 +63,7 @@ Parameter usedWhere(Parameter parameter, std::function<bool(const ReplaySettings
 }
 
 bool hasTranslucency(const ReplaySettings& s) { return s.features & PELLUCID_FEATURE_TRANSLUCENCY; }
-bool angleIs(const ReplaySettings& s, PellucidAngleModel model) {
-  return s.translucency.angleModel == model;
-}
+bool angleIs(const ReplaySettings& s, PellucidAngleModel model) { return s.translucency.angleModel == model; }
 
 Parameter feature(const char* label, const char* help, std::uint32_t bit) {
   Parameter parameter = flag("features", label, help);
@@ -108,19 +107,20 @@ Parameter gatherSpacing() {
 }
 
 ParameterGroup quality() {
-  return {"Quality",
-          true,
-          {bound(whole("quality", "quality", "0: one thickness a pixel; 1 and 2 gather light.", 0, 2),
-                 FIELD(quality)),
-           usedWhere(gatherSamples(), hasTranslucency), usedWhere(gatherSpacing(), hasTranslucency),
-           feature("translucency", "Light that comes through.", PELLUCID_FEATURE_TRANSLUCENCY),
-           feature("diffusion", "Light that leaves beside where it enters.", PELLUCID_FEATURE_DIFFUSION),
-           bound(real("target-error", "target error",
-                      "Above 0: the least quality of the diffusion whose relative RMSE stays below.", 0, 0.2f),
-                 FIELD(targetError)),
-           bound(choice("indirect", "indirect", "Passes run everywhere, where there is material, or light.",
-                        {"none", "material", "light"}),
-                 FIELD(indirectDispatches))}};
+  return {
+      "Quality",
+      true,
+      {bound(whole("quality", "quality", "0: one thickness a pixel; 1 and 2 gather light.", 0, 2),
+             FIELD(quality)),
+       usedWhere(gatherSamples(), hasTranslucency), usedWhere(gatherSpacing(), hasTranslucency),
+       feature("translucency", "Light that comes through.", PELLUCID_FEATURE_TRANSLUCENCY),
+       feature("diffusion", "Light that leaves beside where it enters.", PELLUCID_FEATURE_DIFFUSION),
+       bound(real("target-error", "target error",
+                  "Above 0: the least quality of the diffusion whose relative RMSE stays below.", 0, 0.2f),
+             FIELD(targetError)),
+       bound(choice("indirect", "indirect", "Passes run everywhere, where there is material, or light.",
+                    {"none", "material", "light"}),
+             FIELD(indirectDispatches))}};
 }
 
 ParameterGroup thickness() {
@@ -144,7 +144,8 @@ ParameterGroup thickness() {
            usedWhere(bound(flag("chord", "chord", "Camera thickness without the cosine correction."),
                            FIELD(translucency.chordThickness)),
                      [](const ReplaySettings& s) {
-                       return hasTranslucency(s) && s.translucency.thicknessSource == PELLUCID_THICKNESS_CAMERA;
+                       return hasTranslucency(s) &&
+                              s.translucency.thicknessSource == PELLUCID_THICKNESS_CAMERA;
                      })}};
 }
 
@@ -154,29 +155,30 @@ ParameterGroup angles() {
                                   s.translucency.thicknessSource == PELLUCID_THICKNESS_CAMERA);
   };
   // The models with tables of directions need tables that sliders cannot make.
-  return {"Angle between view and light",
-          false,
-          {usedWhere(bound(choice("angle", "model", "The cosine of the light on the hidden face.",
-                                  {"normal", "cosine", "inverse cosine", "polynomial", "minimum dot"}),
-                           FIELD(translucency.angleModel)),
-                     oneThickness),
-           usedWhere(bound(real("polynomial", "c0 c1 c2 c3", "c0 + c1 x + c2 x^2 + c3 x^3.", -10, 10, 4),
-                           FIELD(translucency.anglePolynomial)),
-                     [=](const ReplaySettings& s) {
-                       return oneThickness(s) && angleIs(s, PELLUCID_ANGLE_POLYNOMIAL);
-                     }),
-           usedWhere(bound(real("minimum-dot", "minimum dot", "Cosine above which nothing comes through.", -1, 0),
-                           FIELD(translucency.minimumDot)),
-                     [=](const ReplaySettings& s) {
-                       return oneThickness(s) &&
-                              (angleIs(s, PELLUCID_ANGLE_MINIMUM_DOT) || s.translucency.prescaleAngle);
-                     }),
-           usedWhere(bound(flag("prescale", "pre-scaled", "The curves begin at the minimum dot."),
-                           FIELD(translucency.prescaleAngle)),
-                     oneThickness),
-           usedWhere(bound(flag("view", "one view ray", "The camera's axis for all pixels, as the thesis has it."),
-                           FIELD(translucency.constantViewDirection)),
-                     oneThickness)}};
+  return {
+      "Angle between view and light",
+      false,
+      {usedWhere(bound(choice("angle", "model", "The cosine of the light on the hidden face.",
+                              {"normal", "cosine", "inverse cosine", "polynomial", "minimum dot"}),
+                       FIELD(translucency.angleModel)),
+                 oneThickness),
+       usedWhere(
+           bound(real("polynomial", "c0 c1 c2 c3", "c0 + c1 x + c2 x^2 + c3 x^3.", -10, 10, 4),
+                 FIELD(translucency.anglePolynomial)),
+           [=](const ReplaySettings& s) { return oneThickness(s) && angleIs(s, PELLUCID_ANGLE_POLYNOMIAL); }),
+       usedWhere(bound(real("minimum-dot", "minimum dot", "Cosine above which nothing comes through.", -1, 0),
+                       FIELD(translucency.minimumDot)),
+                 [=](const ReplaySettings& s) {
+                   return oneThickness(s) &&
+                          (angleIs(s, PELLUCID_ANGLE_MINIMUM_DOT) || s.translucency.prescaleAngle);
+                 }),
+       usedWhere(bound(flag("prescale", "pre-scaled", "The curves begin at the minimum dot."),
+                       FIELD(translucency.prescaleAngle)),
+                 oneThickness),
+       usedWhere(
+           bound(flag("view", "one view ray", "The camera's axis for all pixels, as the thesis has it."),
+                 FIELD(translucency.constantViewDirection)),
+           oneThickness)}};
 }
 
 ParameterGroup reuse() {

@@ -24,12 +24,13 @@ struct Parameter {
   std::string label;  // with the unit
   std::string help;   // a sentence
   ParameterKind kind = ParameterKind::Real;
-  int components = 1;           // 1..4; of Real
-  float low = 0, high = 1;      // both are allowed
+  int components = 1;       // 1..4; of Real
+  float low = 0, high = 1;  // both are allowed
   std::vector<std::string> choices;
   std::function<Values(const ReplaySettings&)> get;
   std::function<void(ReplaySettings&, const Values&)> set;
-  std::function<bool(const ReplaySettings&)> used;  // false: it has no effect with these settings; empty: always
+  std::function<bool(const ReplaySettings&)>
+      used;  // false: it has no effect with these settings; empty: always
 };
 
 struct ParameterGroup {

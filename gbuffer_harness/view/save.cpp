@@ -23,13 +23,15 @@ void writeText(const std::filesystem::path& path, const std::string& text) {
 
 }  // namespace
 
-void saveView(const SavedFiles& files, const ViewFrames& frames, const std::string& settings, Session session) {
+void saveView(const SavedFiles& files, const ViewFrames& frames, const std::string& settings,
+              Session session) {
   writeWhole(files.capture, [&](const auto& file) { writeCapture(frames.capture(), file); });
   writeText(files.settings, settings);
   session.settings = files.settings.filename().string();
   writeText(files.session, sessionJson(session));
-  writeWhole(files.result,
-             [&](const auto& file) { writeExr(file, frames.image(Shown::After), {"R", "G", "B"}, {}); });
+  writeWhole(files.result, [&](const auto& file) {
+    writeExr(file, frames.image(Shown::After), {"R", "G", "B"}, {});
+  });
 }
 
 void savePicture(const std::filesystem::path& png, const Image& screen) {

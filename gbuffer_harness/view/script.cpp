@@ -15,10 +15,11 @@ namespace pellucid::harness {
 namespace {
 
 const std::map<std::string, std::size_t> kArguments = {
-    {"move", 2}, {"press", 1}, {"release", 1},  {"wheel", 1}, {"resize", 2},
-    {"set", 1},  {"show", 1},  {"split", 2},    {"exposure", 1}, {"save", 1}, {"screenshot", 1}};
+    {"move", 2}, {"press", 1}, {"release", 1},  {"wheel", 1}, {"resize", 2},    {"set", 1},
+    {"show", 1}, {"split", 2}, {"exposure", 1}, {"save", 1},  {"screenshot", 1}};
 
-const std::vector<std::string> kButtons = {"left", "middle", "right", "shift", "w", "a", "s", "d", "e", "q", "space"};
+const std::vector<std::string> kButtons = {"left", "middle", "right", "shift", "w",    "a",
+                                           "s",    "d",      "e",     "q",     "space"};
 
 [[noreturn]] void fail(const ScriptLine& line, const std::string& sentence) {
   throw InputError(line.where, line.command, sentence);
@@ -86,7 +87,8 @@ std::vector<ScriptLine> readScript(const std::filesystem::path& path) {
     if (!(words >> frame) || frame[0] == '#') continue;
     line.command = "frame";
     const float parsed = parse(line, frame);
-    if (parsed < 1 || parsed > 1e6f || parsed != std::floor(parsed)) fail(line, "\"" + frame + "\" is not a frame");
+    if (parsed < 1 || parsed > 1e6f || parsed != std::floor(parsed))
+      fail(line, "\"" + frame + "\" is not a frame");
     line.frame = static_cast<int>(parsed);
     if (!lines.empty() && line.frame < lines.back().frame)
       fail(line, frame + " comes after " + std::to_string(lines.back().frame));

@@ -26,8 +26,8 @@ struct ScriptLine {
   std::string where;  // file and line, for messages
 };
 
-// Lines in order of their frames; empty ones and those that begin with # say nothing. Throws InputError naming file
-// and line for an unknown command, a wrong number of arguments, and frames that go back.
+// Lines in order of their frames; empty ones and those that begin with # say nothing. Throws InputError
+// naming file and line for an unknown command, a wrong number of arguments, and frames that go back.
 std::vector<ScriptLine> readScript(const std::filesystem::path& path);
 
 // Carries out the commands that change the state: set, show, split and exposure. False for others. Throws

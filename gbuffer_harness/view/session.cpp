@@ -67,14 +67,11 @@ ViewCamera readCamera(const Field& field) {
 
 Json displayJson(const Display& display) {
   const auto name = [](Shown shown) { return shownNames()[static_cast<std::size_t>(shown)]; };
-  return {{"exposure", display.exposure},
-          {"toneMap", toneMapNames()[static_cast<std::size_t>(display.toneMap)]},
-          {"shown", name(display.shown)},
-          {"split", display.split},
-          {"left", name(display.left)},
-          {"splitAt", display.splitAt},
-          {"channel", display.channel},
-          {"falseColors", {display.falseLow, display.falseHigh}}};
+  return {
+      {"exposure", display.exposure}, {"toneMap", toneMapNames()[static_cast<std::size_t>(display.toneMap)]},
+      {"shown", name(display.shown)}, {"split", display.split},
+      {"left", name(display.left)},   {"splitAt", display.splitAt},
+      {"channel", display.channel},   {"falseColors", {display.falseLow, display.falseHigh}}};
 }
 
 Display readDisplay(const Field& field) {

@@ -9,8 +9,8 @@
 
 namespace pellucid::harness {
 
-// The files of one saved view. The capture, replayed with the settings, gives the result bit for bit; the session
-// opens the scene again where it was left.
+// The files of one saved view. The capture, replayed with the settings, gives the result bit for bit; the
+// session opens the scene again where it was left.
 struct SavedFiles {
   std::filesystem::path capture;   // NAME.exr
   std::filesystem::path settings;  // NAME.settings.json, for --set @FILE
@@ -30,8 +30,8 @@ struct Session {
 
 std::string sessionJson(const Session& session);
 
-// `start`: the state that the scene begins with, for what the session does not say. Throws InputError naming file,
-// field and value.
+// `start`: the state that the scene begins with, for what the session does not say. Throws InputError naming
+// file, field and value.
 Session readSession(const std::filesystem::path& path, const ViewState& start = {});
 
 // True for a file that begins like one; false for one that cannot be read, too.

@@ -25,14 +25,14 @@ public:
   virtual Vector3 center() const = 0;  // world; what lights are dragged round
   virtual double radius() const = 0;   // scene units, > 0
 
-  // Empty where camera and size, or the lights' part of the irradiance, can change; else a sentence that says why
-  // not.
+  // Empty where camera and size, or the lights' part of the irradiance, can change; else a sentence that says
+  // why not.
   virtual std::string fixedCamera() const { return {}; }
   virtual std::string fixedLights() const { return {}; }
 };
 
-// Drawn by the device's rasterizer, which throws where the device cannot draw. The camera and the lights are where
-// it begins; `raster` has the rest, whose size is the first.
+// Drawn by the device's rasterizer, which throws where the device cannot draw. The camera and the lights are
+// where it begins; `raster` has the rest, whose size is the first.
 std::unique_ptr<Source> modelSource(Device& device, Model model, const ModelCamera& camera,
                                     const RasterOptions& raster);
 

@@ -49,9 +49,8 @@ ViewLight newLight(PellucidLightType type, const ViewCamera& camera, const Vecto
 
 void dragLight(Light& light, const ViewCamera& camera, const Vector3& center, double right, double up) {
   // Behind the center the same turn moves it the other way on the screen.
-  const glm::dvec3 from = light.type == PELLUCID_LIGHT_DIRECTIONAL
-                              ? -toGlm(light.direction)
-                              : toGlm(light.position) - toGlm(center);
+  const glm::dvec3 from = light.type == PELLUCID_LIGHT_DIRECTIONAL ? -toGlm(light.direction)
+                                                                   : toGlm(light.position) - toGlm(center);
   const double side = glm::dot(from, toGlm(camera.back())) < 0 ? -1 : 1;
   const auto carried = [&](const Vector3& v) {
     return turned(turned(v, camera.up(), side * right), camera.right(), -side * up);

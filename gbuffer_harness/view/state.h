@@ -16,16 +16,16 @@ struct ViewLight {
 };
 
 enum class Shown {
-  After,        // the module's output
-  Before,       // irradiance times albedo
-  Through,      // what translucency alone adds
-  Difference,   // |after - truth| or, without a truth, |after - before|
-  Truth,        // of a capture that has one
-  Debug,        // settings.debugView in false color
-  FrontDepth,   // as the capture stores it, in false color
-  Normal,       // -1..1 as 0..1
+  After,       // the module's output
+  Before,      // irradiance times albedo
+  Through,     // what translucency alone adds
+  Difference,  // |after - truth| or, without a truth, |after - before|
+  Truth,       // of a capture that has one
+  Debug,       // settings.debugView in false color
+  FrontDepth,  // as the capture stores it, in false color
+  Normal,      // -1..1 as 0..1
   Albedo,
-  Material,     // index, in false color
+  Material,  // index, in false color
 };
 
 enum class ToneMap {
@@ -38,10 +38,10 @@ struct Display {
   float exposure = 0;  // factor; 0: from the first picture, autoExposure()
   ToneMap toneMap = ToneMap::Srgb;
   Shown shown = Shown::After;
-  bool split = false;             // `left` is shown to the left of the split
+  bool split = false;  // `left` is shown to the left of the split
   Shown left = Shown::Before;
-  float splitAt = 0.5f;           // of the picture's width
-  int channel = 0;                // of false colors, 0..2
+  float splitAt = 0.5f;               // of the picture's width
+  int channel = 0;                    // of false colors, 0..2
   float falseLow = 0, falseHigh = 0;  // values of the ends of the false colors; equal: those of the picture
 };
 
@@ -84,11 +84,12 @@ const std::vector<std::string>& toneMapNames();
 // A light of that type from behind and above, of which 1 arrives at `center`.
 ViewLight newLight(PellucidLightType type, const ViewCamera& camera, const Vector3& center, double radius);
 
-// Carries a light round `center` as the camera sees it: `right` and `up`, radians. Point and spot lights move, and
-// spots go on looking at what they looked at; directional lights turn.
+// Carries a light round `center` as the camera sees it: `right` and `up`, radians. Point and spot lights
+// move, and spots go on looking at what they looked at; directional lights turn.
 void dragLight(Light& light, const ViewCamera& camera, const Vector3& center, double right, double up);
 
-// Multiplies a point or spot light's distance to `center` by `factor` > 0; as much light arrives there as before.
+// Multiplies a point or spot light's distance to `center` by `factor` > 0; as much light arrives there as
+// before.
 void pullLight(Light& light, const Vector3& center, double factor);
 
 }  // namespace pellucid::harness

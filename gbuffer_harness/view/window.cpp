@@ -56,8 +56,7 @@ void record(VkCommandBuffer commandBuffer, const VkImageMemoryBarrier& barrier) 
 
 Desktop::Desktop() {
   if (!glfwInit())
-    throw DeviceError("no window can be opened: " + lastError() +
-                      "; --no-window draws without a display");
+    throw DeviceError("no window can be opened: " + lastError() + "; --no-window draws without a display");
   if (glfwVulkanSupported()) return;
   const std::string reason = lastError();
   glfwTerminate();
@@ -131,10 +130,10 @@ void Window::createSwapchain() {
   size(width, height);
   extent_ = can.currentExtent;
   if (extent_.width == UINT32_MAX) {  // the swapchain decides
-    extent_.width = std::clamp(static_cast<std::uint32_t>(width), can.minImageExtent.width,
-                               can.maxImageExtent.width);
-    extent_.height = std::clamp(static_cast<std::uint32_t>(height), can.minImageExtent.height,
-                                can.maxImageExtent.height);
+    extent_.width =
+        std::clamp(static_cast<std::uint32_t>(width), can.minImageExtent.width, can.maxImageExtent.width);
+    extent_.height =
+        std::clamp(static_cast<std::uint32_t>(height), can.minImageExtent.height, can.maxImageExtent.height);
   }
   if (width == 0 || height == 0 || extent_.width == 0 || extent_.height == 0) {
     extent_ = {0, 0};
@@ -142,8 +141,8 @@ void Window::createSwapchain() {
   }
   if (!(can.supportedUsageFlags & VK_IMAGE_USAGE_TRANSFER_DST_BIT))
     throw DeviceError(device_.description() + " cannot copy images to the window");
-  const VkSurfaceFormatKHR format = chooseFormat(
-      listed<VkSurfaceFormatKHR>(vkGetPhysicalDeviceSurfaceFormatsKHR, physical, surface_));
+  const VkSurfaceFormatKHR format =
+      chooseFormat(listed<VkSurfaceFormatKHR>(vkGetPhysicalDeviceSurfaceFormatsKHR, physical, surface_));
   VkSwapchainCreateInfoKHR info{VK_STRUCTURE_TYPE_SWAPCHAIN_CREATE_INFO_KHR};
   info.surface = surface_;
   info.minImageCount = std::max(can.minImageCount, 2u);
@@ -198,9 +197,8 @@ bool Window::present(const GpuImage& image, int width, int height) {
   check(vkWaitForFences(device_.handle(), 1, &fence, VK_TRUE, UINT64_MAX), "vkWaitForFences");
   check(vkResetFences(device_.handle(), 1, &fence), "vkResetFences");
   // run() waits, so that presenting needs no semaphore.
-  device_.run([&](VkCommandBuffer commandBuffer) {
-    copy(commandBuffer, image, width, height, images_[index]);
-  });
+  device_.run(
+      [&](VkCommandBuffer commandBuffer) { copy(commandBuffer, image, width, height, images_[index]); });
   VkPresentInfoKHR info{VK_STRUCTURE_TYPE_PRESENT_INFO_KHR};
   info.swapchainCount = 1;
   info.pSwapchains = &swapchain_;

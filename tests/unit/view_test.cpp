@@ -29,7 +29,9 @@ ViewCamera cameraAt(const Vector3& eye, const Vector3& pivot) {
   return camera;
 }
 
-double distance(const Vector3& a, const Vector3& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
+double distance(const Vector3& a, const Vector3& b) {
+  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+}
 
 void expectNear(const Vector3& a, const Vector3& b, double tolerance) {
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(a[i], b[i], tolerance) << i;
@@ -107,10 +109,12 @@ TEST(ViewCamera, RangeHoldsTheSphereAndStaysInFront) {
 
 TEST(ViewLights, NewOnesBringOneToTheCenter) {
   const ViewCamera camera = cameraAt({0, 0, 5}, {0, 0, 0});
-  for (const PellucidLightType type : {PELLUCID_LIGHT_DIRECTIONAL, PELLUCID_LIGHT_POINT, PELLUCID_LIGHT_SPOT}) {
+  for (const PellucidLightType type :
+       {PELLUCID_LIGHT_DIRECTIONAL, PELLUCID_LIGHT_POINT, PELLUCID_LIGHT_SPOT}) {
     const Light light = newLight(type, camera, {0, 0, 0}, 2).light;
     const double r = distance(light.position, {0, 0, 0});
-    EXPECT_NEAR(type == PELLUCID_LIGHT_DIRECTIONAL ? light.intensity : light.intensity / (r * r), 1, kRounding);
+    EXPECT_NEAR(type == PELLUCID_LIGHT_DIRECTIONAL ? light.intensity : light.intensity / (r * r), 1,
+                kRounding);
     EXPECT_GT(light.direction[2], 0);  // towards the camera
     EXPECT_LT(light.innerConeAngle, light.outerConeAngle);
   }
