@@ -22,5 +22,6 @@ void addSheetCommand(CLI::App& app);
 void addMeasureDotsCommand(CLI::App& app);
 void addStressCommand(CLI::App& app);
 void addViewCommand(CLI::App& app);
+void addPerceptionCommand(CLI::App& app);
 
 }  // namespace pellucid::harness

@@ -48,6 +48,7 @@ int main(int argc, char** argv) {
   addMeasureDotsCommand(app);
   addStressCommand(app);
   addViewCommand(app);
+  addPerceptionCommand(app);
   try {
     app.parse(argc, argv);
     return OK;

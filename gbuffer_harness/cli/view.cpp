@@ -34,6 +34,7 @@ void addViewCommand(CLI::App& app) {
 #include "cli/settings.h"
 #include "scene/model.h"
 #include "view/application.h"
+#include "view/perception.h"
 #include "view/session.h"
 
 namespace pellucid::harness {
@@ -47,6 +48,8 @@ struct Options {
   bool noWindow = false, validate = false;
   int frames = 0;
   std::string script, screenshot, save;
+  std::string perception, participant, answers;
+  float exposure = 0;
 };
 
 std::string extensionOf(const std::string& path) {
@@ -59,7 +62,8 @@ std::string extensionOf(const std::string& path) {
 // What the scene options say, without those of the viewer and of the replay.
 const std::set<std::string> kNotOfTheScene = {"--set",         "--mode",       "--debug",    "--device",
                                               "--window-size", "--no-window",  "--validate", "--frames",
-                                              "--script",      "--screenshot", "--save",     "--help"};
+                                              "--script",      "--screenshot", "--exposure", "--perception",
+                                              "--participant", "--answers",    "--save",     "--help"};
 
 std::vector<std::string> sceneArguments(const CLI::App& command) {
   std::vector<std::string> arguments;
@@ -145,6 +149,16 @@ void parseSize(const std::string& text, ApplicationOptions& options) {
       throw UsageError("--window-size: " + std::to_string(side) + " is outside 64 .. 8192");
 }
 
+PerceptionOptions perceptionTest(const CLI::App& command, const Options& options) {
+  if (!sceneArguments(command).empty())
+    throw UsageError(sceneArguments(command).front() + ": the scenes are those of --perception");
+  if (options.participant.empty() || options.answers.empty())
+    throw UsageError("--perception: needs --participant and --answers");
+  if (!options.save.empty()) throw UsageError("--save: there is no one scene in a perception test");
+  requireNewParticipant(options.answers, options.participant);
+  return {readSceneList(options.perception), options.participant, options.answers, options.exposure};
+}
+
 void view(const CLI::App& given, const Options& givenOptions) {
   const std::string& model = givenOptions.scene.model;
   std::unique_ptr<Reopened> reopened;
@@ -168,12 +182,17 @@ void view(const CLI::App& given, const Options& givenOptions) {
   application.script = options.script;
   application.screenshot = options.screenshot;
   application.save = options.save;
-  application.scene = sceneArguments(command);
   application.settingsText = settingsJson;
-  application.open = opener(command, options);
+  if (options.perception.empty()) {
+    application.scene = sceneArguments(command);
+    application.open = opener(command, options);
+  } else {
+    application.perception = perceptionTest(command, options);
+  }
   application.start = [&](ViewState& state) {
     if (reopened) state = readSession(model, state).state;
     state.settings = settings;
+    if (options.exposure > 0) state.display.exposure = options.exposure;
     if (settings.debugView != PELLUCID_DEBUG_NONE) state.display.shown = Shown::Debug;
   };
   const ApplicationReport report = runApplication(application);
@@ -203,6 +222,12 @@ void addViewCommand(CLI::App& app) {
   command->add_option(
       "--save", options->save,
       "NAME.exr: at the end the capture, with settings, session, result and picture beside it");
+  command->add_option("--exposure", options->exposure, "factor; default: from the first picture")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--perception", options->perception,
+                      "perception test: a file that names captures, one a line");
+  command->add_option("--participant", options->participant, "who takes the test");
+  command->add_option("--answers", options->answers, "CSV that the test's answers are added to");
   command->add_flag("--validate", options->validate,
                     "with the Vulkan validation layers, whose messages are an error");
   command->callback([options, command] { view(*command, *options); });

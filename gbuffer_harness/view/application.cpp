@@ -3,16 +3,19 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <optional>
 
+#include "capture/read.h"
 #include "common/error.h"
 #include "common/png.h"
 #include "view/gui.h"
 #include "view/input.h"
 #include "view/panel.h"
+#include "view/perception.h"
 #include "view/save.h"
-#include "view/script.h"
+#include "view/scripted_input.h"
 #include "view/window.h"
 
 namespace pellucid::harness {
@@ -44,29 +47,34 @@ public:
         desktop_(options.window ? std::make_unique<Desktop>() : nullptr),
         device_(deviceOptions(options, desktop_.get())),
         width_(options.width),
-        height_(options.height) {
+        height_(options.height),
+        script_(options.script.empty() ? std::vector<ScriptLine>() : readScript(options.script)) {
     if (!device_.canDraw())
       throw DeviceError(device_.description() + " computes but has no queue that draws");
-    source_ = options.open(device_);
-    state_ = source_->start();
+    if (!isTest()) source_ = options.open(device_);
+    if (source_) state_ = source_->start();
     if (options.start) options.start(state_);
-    panel_.followWindow = options.followWindow && source_->fixedCamera().empty();
+    panel_.followWindow = options.followWindow && source_ && source_->fixedCamera().empty();
     if (options.window) window_ = std::make_unique<Window>(*desktop_, device_, "Pellucid", width_, height_);
-    if (!options.script.empty()) script_ = readScript(options.script);
     screen_ = makeScreen(device_, width_, height_);
     gui_ = std::make_unique<Gui>(device_, *screen_, window_ ? window_->handle() : nullptr);
     display_ = std::make_unique<DisplayPass>(device_, *screen_);
     contexts_ = std::make_unique<Contexts>(device_);
+    if (isTest()) {
+      openScene();
+      return;
+    }
     frames_ = std::make_unique<ViewFrames>(device_, *contexts_, *source_);
     frames_->update(state_, {});
-    if (state_.display.exposure == 0) state_.display.exposure = autoExposure(frames_->image(Shown::After));
+    if (state_.display.exposure == 0)
+      state_.display.exposure = autoExposure(frames_->image(Shown::After));
   }
 
   ApplicationReport run() {
     int left = kFramesAfterInput;
     while (!done()) {
       if (window_) {
-        const bool idle = left == 0 && options_.frames == 0 && !panel_.measure && nextLine_ == script_.size();
+        const bool idle = left == 0 && options_.frames == 0 && !panel_.measure && script_.isDone();
         window_->events(idle);
         if (idle) left = kFramesAfterInput;
       }
@@ -91,7 +99,7 @@ public:
 
 private:
   bool done() const {
-    if (window_ && window_->shouldClose()) return true;
+    if (testDone_ || (window_ && window_->shouldClose())) return true;
     return options_.frames > 0 && passed_ >= options_.frames;
   }
 
@@ -121,17 +129,21 @@ private:
     ++report_.frames;
     gui_->poll(width_, height_);
     Changes changes;
-    playScript(changes);
+    script_.play(passed_, state_, changes, [this](const ScriptLine& line) { carryOut(line); });
     gui_->begin();
-    changes.add(controls_.apply(state_, input(), *source_, picture()));
-    changes.add(drawPanel(state_, panel_, *frames_, *source_,
-                          {0, 0, static_cast<float>(width_), static_cast<float>(height_)}));
+    if (isTest()) {
+      changes.add(askForColor());
+    } else {
+      changes.add(controls_.apply(state_, input(), *source_, picture()));
+      changes.add(drawPanel(state_, panel_, *frames_, *source_,
+                            {0, 0, static_cast<float>(width_), static_cast<float>(height_)}));
+    }
     followWindow(changes);
     changes.frame |= panel_.measure;
     update(changes);
     const ScreenRect picture = this->picture(), legend = legendOf(picture);
     const ImVec2 cursor = ImGui::GetIO().MousePos;
-    drawOverlay(state_, panel_, *frames_, picture, legend, cursor.x, cursor.y);
+    if (!isTest()) drawOverlay(state_, panel_, *frames_, picture, legend, cursor.x, cursor.y);
     gui_->end();
     device_.run([&](VkCommandBuffer commandBuffer) {
       screen_->begin(commandBuffer);
@@ -248,7 +260,10 @@ private:
     return result;
   }
 
-  void playScript(Changes& changes);
+  bool isTest() const { return !options_.perception.scenes.empty(); }
+  void carryOut(const ScriptLine& line);
+  void openScene();
+  Changes askForColor();
   void takeScreenshots();
   void save(const std::filesystem::path& capture);
   void screenshot(const std::filesystem::path& file);
@@ -267,56 +282,62 @@ private:
   std::unique_ptr<DisplayPass> display_;
   std::unique_ptr<Contexts> contexts_;
   std::unique_ptr<ViewFrames> frames_;
-  std::vector<ScriptLine> script_;
-  std::size_t nextLine_ = 0;
+  ScriptedInput script_;
   std::vector<std::filesystem::path> pendingScreenshots_, pendingSaves_;
-  ImVec2 scriptedCursor_{-1, -1};
-  bool pressed_[3] = {false, false, false};
-  std::vector<int> heldKeys_;
-  bool shift_ = false;
+  std::size_t scene_ = 0;  // of the perception test
+  std::chrono::steady_clock::time_point sceneBegin_;
+  bool spaceDown_ = false, testDone_ = false;
   int passed_ = 0;  // frames, with those that had no screen
   ApplicationReport report_;
 };
 
-void Application::playScript(Changes& changes) {
-  if (script_.empty()) return;
-  ImGuiIO& io = ImGui::GetIO();
-  for (; nextLine_ < script_.size() && script_[nextLine_].frame <= passed_; ++nextLine_) {
-    const ScriptLine& line = script_[nextLine_];
-    if (applyToState(line, state_, changes)) continue;
-    const std::string& first = line.arguments.front();
-    const bool down = line.command == "press";
-    if (line.command == "move") {
-      scriptedCursor_ = {numberOf(line, 0), numberOf(line, 1)};
-    } else if (line.command == "wheel") {
-      io.MouseWheel = numberOf(line, 0);
-    } else if (line.command == "resize") {
-      const int width = std::clamp(static_cast<int>(numberOf(line, 0)), 64, 8192);
-      const int height = std::clamp(static_cast<int>(numberOf(line, 1)), 64, 8192);
-      if (window_)
-        window_->resize(width, height);
-      else
-        throw InputError(line.where, line.command, "needs a window");
-    } else if (line.command == "save") {
-      pendingSaves_.push_back(first);
-    } else if (line.command == "screenshot") {
-      pendingScreenshots_.push_back(first);
-    } else if (first == "shift") {
-      shift_ = down;
-    } else if (first == "left" || first == "right" || first == "middle") {
-      pressed_[first == "left" ? 0 : first == "right" ? 1 : 2] = down;
-    } else {
-      const int key = first == "space" ? ' ' : first[0] - 'a' + 'A';
-      std::erase(heldKeys_, key);
-      if (down) heldKeys_.push_back(key);
-    }
+void Application::carryOut(const ScriptLine& line) {
+  if (line.command == "save") return pendingSaves_.push_back(line.arguments.front());
+  if (line.command == "screenshot") return pendingScreenshots_.push_back(line.arguments.front());
+  if (!window_) throw InputError(line.where, line.command, "needs a window");
+  window_->resize(std::clamp(static_cast<int>(numberOf(line, 0)), 64, 8192),
+                  std::clamp(static_cast<int>(numberOf(line, 1)), 64, 8192));
+}
+
+// Opens the perception test's scene, with a filter that changes nothing.
+void Application::openScene() {
+  frames_.reset();
+  source_ = captureSource(readCapture(options_.perception.scenes[scene_]));
+  const Display display = state_.display;
+  const ReplaySettings settings = state_.settings;
+  state_ = source_->start();
+  state_.display = display;
+  state_.settings = settings;
+  state_.settings.translucency.transmittanceFilter = {1, 1, 1};
+  frames_ = std::make_unique<ViewFrames>(device_, *contexts_, *source_);
+  frames_->update(state_, {});
+  if (options_.perception.exposure == 0) state_.display.exposure = autoExposure(frames_->image(Shown::After));
+  sceneBegin_ = std::chrono::steady_clock::now();
+}
+
+// The perception test's panel; space accepts the color and goes on.
+Changes Application::askForColor() {
+  const PerceptionOptions& test = options_.perception;
+  std::array<float, 3>& color = state_.settings.translucency.transmittanceFilter;
+  Changes changes;
+  changes.frame = drawColorQuestion(color, scene_ + 1, test.scenes.size(), static_cast<float>(width_),
+                                    static_cast<float>(height_));
+  const bool down = ImGui::GetIO().KeysDown[' '], pressed = down && !spaceDown_;
+  spaceDown_ = down;
+  if (!pressed) return changes;
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - sceneBegin_;
+  addAnswer(test.answers, {test.participant,
+                           test.scenes[scene_].stem().string(),
+                           {color[0], color[1], color[2]},
+                           seconds.count()});
+  if (++scene_ == test.scenes.size()) {
+    testDone_ = true;
+    --scene_;
+    return changes;
   }
-  // Every frame anew: a window's own events would say otherwise.
-  io.MousePos = scriptedCursor_;
-  std::copy(std::begin(pressed_), std::end(pressed_), io.MouseDown);
-  io.KeyShift = shift_;
-  for (const int key : {'W', 'A', 'S', 'D', 'E', 'Q', ' '})
-    io.KeysDown[key] = std::find(heldKeys_.begin(), heldKeys_.end(), key) != heldKeys_.end();
+  openScene();
+  changes.shown = true;
+  return changes;
 }
 
 void Application::takeScreenshots() {

@@ -13,6 +13,14 @@
 
 namespace pellucid::harness {
 
+// Whelan 2009, 3.4.1: each scene until a color is accepted, then the next, then the end.
+struct PerceptionOptions {
+  std::vector<std::filesystem::path> scenes;  // captures; empty: no test
+  std::string participant;
+  std::filesystem::path answers;  // CSV that rows are added to
+  float exposure = 0;             // of all scenes; 0: each by its own picture
+};
+
 struct ApplicationOptions {
   std::string device;              // part of the Vulkan device's name; empty: the fastest kind
   bool validation = false;         // messages of the validation layers end it with a DeviceError
@@ -24,6 +32,7 @@ struct ApplicationOptions {
   std::vector<std::string> scene;                  // arguments that open it again, for saved sessions
   std::function<std::string(const ReplaySettings&)> settingsText;  // what --set @FILE reads
   std::function<std::unique_ptr<Source>(Device&)> open;
+  PerceptionOptions perception;           // with scenes, `open` is not called
   std::function<void(ViewState&)> start;  // changes the state that the source begins with
 };
 

@@ -193,6 +193,22 @@ Changes drawPanel(ViewState& state, PanelState& panel, const ViewFrames& frames,
   return changes;
 }
 
+bool drawColorQuestion(std::array<float, 3>& color, std::size_t number, std::size_t count, float width,
+                       float height) {
+  ImGui::SetNextWindowPos({width - kPanelWidth, 0});
+  ImGui::SetNextWindowSize({kPanelWidth, height});
+  ImGui::Begin("Question", nullptr,
+               ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoTitleBar);
+  ImGui::Text("Scene %zu of %zu", number, count);
+  ImGui::TextWrapped(
+      "Choose the color of the light that comes through until the picture looks real, then press "
+      "the space bar.");
+  const bool changed = ImGui::ColorPicker3("##color", color.data(),
+                                           ImGuiColorEditFlags_PickerHueWheel | ImGuiColorEditFlags_Float);
+  ImGui::End();
+  return changed;
+}
+
 void drawOverlay(const ViewState& state, const PanelState& panel, const ViewFrames& frames,
                  const ScreenRect& picture, const ScreenRect& legend, float cursorX, float cursorY) {
   ImDrawList* const list = ImGui::GetBackgroundDrawList();

@@ -2,6 +2,7 @@
 // end().
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 
@@ -36,6 +37,10 @@ Changes drawPanel(ViewState& state, PanelState& panel, const ViewFrames& frames,
 // cursor.
 void drawOverlay(const ViewState& state, const PanelState& panel, const ViewFrames& frames,
                  const ScreenRect& picture, const ScreenRect& legend, float cursorX, float cursorY);
+
+// In the panel's place: a color selector for scene `number` of `count`. True: another color.
+bool drawColorQuestion(std::array<float, 3>& color, std::size_t number, std::size_t count, float width,
+                       float height);
 
 // Parts of the panel.
 Changes drawMaterials(ViewState& state, const ViewFrames& frames);
