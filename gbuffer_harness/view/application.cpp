@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "capture/read.h"
@@ -66,8 +67,7 @@ public:
     }
     frames_ = std::make_unique<ViewFrames>(device_, *contexts_, *source_);
     frames_->update(state_, {});
-    if (state_.display.exposure == 0)
-      state_.display.exposure = autoExposure(frames_->image(Shown::After));
+    if (state_.display.exposure == 0) state_.display.exposure = autoExposure(frames_->image(Shown::After));
   }
 
   ApplicationReport run() {
@@ -139,6 +139,7 @@ private:
                             {0, 0, static_cast<float>(width_), static_cast<float>(height_)}));
     }
     followWindow(changes);
+    turn(changes);
     changes.frame |= panel_.measure;
     update(changes);
     const ScreenRect picture = this->picture(), legend = legendOf(picture);
@@ -174,6 +175,14 @@ private:
   void report(const std::string& message, bool isError) {
     panel_.message = message;
     panel_.isError = isError;
+  }
+
+  // As captures of turntables have it: the model stays, and camera and lights turn back by its angle.
+  void turn(Changes& changes) {
+    if (panel_.headTurn == 0 && panel_.lightTurn == 0) return;
+    const auto step = [](int frames) { return frames > 0 ? 2 * std::numbers::pi / frames : 0; };
+    const double head = step(panel_.headTurn);
+    changes.add(turnTable(state_, source_->center(), -head, step(panel_.lightTurn) - head));
   }
 
   void followWindow(Changes& changes) {

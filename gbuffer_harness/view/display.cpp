@@ -125,6 +125,7 @@ void DisplayPass::createPipeline(const RenderTarget& target) {
 void DisplayPass::draw(VkCommandBuffer commandBuffer, const ViewFrames& frames, Shown shown, const Push& push,
                        const ScreenRect& clip) const {
   const PellucidFrame& frame = frames.run(shown).frame();
+  const GpuImage* const host = frames.hostImage(shown);
   const auto orWhite = [&](const PellucidImage& image) { return image.view ? image : white_.use(); };
   const PellucidImage images[kBindings] = {frame.output,
                                            frame.irradiance,
@@ -132,7 +133,7 @@ void DisplayPass::draw(VkCommandBuffer commandBuffer, const ViewFrames& frames, 
                                            frame.material,
                                            orWhite(frame.normal),
                                            frame.frontDepth,
-                                           frames.truth() ? frames.truth()->use() : white_.use()};
+                                           host ? host->use() : white_.use()};
   VkDescriptorImageInfo infos[kBindings];
   VkWriteDescriptorSet writes[kBindings];
   for (std::uint32_t i = 0; i < kBindings; ++i) {
@@ -172,7 +173,8 @@ void DisplayPass::draw(VkCommandBuffer commandBuffer, const ViewFrames& frames, 
   push.exposure = display.exposure;
   push.low = low;
   push.high = high;
-  push.hasTruth = frames.truth() != nullptr;
+  push.hasTruth = frames.hostImage(Shown::Truth) != nullptr;
+  push.isFalseColor = isFalseColor(shown);
   draw(commandBuffer, frames, shown, push, clip);
 }
 

@@ -42,7 +42,7 @@ private:
     float scale;
     std::int32_t shown, toneMap, channel;
     float exposure, low, high;
-    std::int32_t isLegend, hasTruth;
+    std::int32_t isLegend, hasTruth, isFalseColor;
   };
   void createLayout();
   void createPipeline(const RenderTarget& target);

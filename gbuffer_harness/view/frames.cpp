@@ -1,11 +1,14 @@
 #include "view/frames.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <glm/gtc/packing.hpp>
 #include <utility>
 
 #include "capture/material.h"
+#include "metrics/isolated.h"
+#include "shared/pellucid_shared.h"
 
 namespace pellucid::harness {
 
@@ -19,6 +22,22 @@ Image composited(const Capture& capture, VkFormat format) {
     if (format == VK_FORMAT_R16G16B16A16_SFLOAT)
       result.data[i] = glm::unpackHalf1x16(glm::packHalf1x16(result.data[i]));
   }
+  return result;
+}
+
+Image coveredTiles(const Capture& capture) {
+  constexpr int kTile = PELLUCID_TILE;
+  Image result(capture.width, capture.height, 1);
+  for (int top = 0; top < capture.height; top += kTile)
+    for (int left = 0; left < capture.width; left += kTile) {
+      const int bottom = std::min(top + kTile, capture.height), right = std::min(left + kTile, capture.width);
+      int covered = 0;
+      for (int y = top; y < bottom; ++y)
+        for (int x = left; x < right; ++x) covered += capture.material[pixelIndex(result, x, y)] != 0;
+      const float part = static_cast<float>(covered) / static_cast<float>((bottom - top) * (right - left));
+      for (int y = top; y < bottom; ++y)
+        std::fill(result.at(left, y), result.at(left, y) + (right - left), part);
+    }
   return result;
 }
 
@@ -95,17 +114,11 @@ void ViewFrames::update(const ViewState& state, const Changes& changes) {
   need(Shown::After);
   need(state.display.shown);
   if (state.display.split) need(state.display.left);
-  std::unique_ptr<GpuImage> truth;
-  if (rendered && rendered->truth) {
-    truth =
-        std::make_unique<GpuImage>(device_, rendered->width, rendered->height, VK_FORMAT_R32G32B32A32_SFLOAT);
-    truth->upload(rendered->truth->image);
-  }
-
   // All is made; nothing below throws but for memory.
   if (frames) {
     runs_.clear();
     images_.clear();
+    hostImages_.clear();
     materials_ = std::move(materials);
   }
   for (auto& [kind, frame] : made) {
@@ -117,13 +130,37 @@ void ViewFrames::update(const ViewState& state, const Changes& changes) {
   }
   if (scene) {
     capture_ = std::move(*rendered);
-    truth_ = std::move(truth);
     warnings_ = std::move(warnings);
     sceneMilliseconds_ = milliseconds;
   }
   capture_.materials = state.materials;
   inputs_ = inputs;
   format_ = state.settings.outputFormat;
+  uploadHostImage(state.display.shown);
+  if (state.display.split) uploadHostImage(state.display.left);
+}
+
+namespace {
+
+// Which image of the host a picture needs.
+Shown hostImageOf(Shown shown) { return shown == Shown::Difference ? Shown::Truth : shown; }
+
+}  // namespace
+
+void ViewFrames::uploadHostImage(Shown shown) {
+  shown = hostImageOf(shown);
+  const bool isHosts =
+      shown == Shown::Tiles || shown == Shown::Isolated || (shown == Shown::Truth && capture_.truth);
+  if (!isHosts || hostImages_.count(shown) > 0) return;
+  auto image =
+      std::make_unique<GpuImage>(device_, capture_.width, capture_.height, VK_FORMAT_R32G32B32A32_SFLOAT);
+  image->upload(this->image(shown));
+  hostImages_[shown] = std::move(image);
+}
+
+const GpuImage* ViewFrames::hostImage(Shown shown) const {
+  const auto found = hostImages_.find(hostImageOf(shown));
+  return found != hostImages_.end() ? found->second.get() : nullptr;
 }
 
 const FrameRun& ViewFrames::run(Shown shown) const {
@@ -175,6 +212,15 @@ Image ViewFrames::made(Shown shown) const {
     case Shown::Material: {
       Image result(capture_.width, capture_.height, 1);
       std::copy(capture_.material.begin(), capture_.material.end(), result.data.begin());
+      return result;
+    }
+    case Shown::Tiles:
+      return coveredTiles(capture_);
+    case Shown::Isolated: {
+      const std::vector<std::uint8_t> marks =
+          findIsolated(image(Shown::After), Surfaces(capture_), capture_.material).marks;
+      Image result(capture_.width, capture_.height, 1);
+      std::copy(marks.begin(), marks.end(), result.data.begin());
       return result;
     }
   }

@@ -28,7 +28,9 @@ public:
 
   // The frame whose output is looked at; what shows inputs has that of Shown::After.
   const FrameRun& run(Shown shown) const;
-  const GpuImage* truth() const { return truth_.get(); }  // null: the capture has none
+  // What the host made of what is shown, for the display: the truth of Truth and Difference, Tiles, Isolated.
+  // Null for others, and where the capture has no truth.
+  const GpuImage* hostImage(Shown shown) const;
 
   // What is shown, before exposure: RGB, or one channel or three for false colors. Pixels without a material:
   // as a replay has them.
@@ -55,6 +57,7 @@ private:
              const std::vector<PellucidMaterial>& materials,
              const std::shared_ptr<const InputImages>& inputs) const;
   Image made(Shown shown) const;
+  void uploadHostImage(Shown shown);
 
   Device& device_;
   Source& source_;
@@ -63,7 +66,7 @@ private:
   std::vector<PellucidMaterial> materials_;
   std::vector<std::string> warnings_;
   std::shared_ptr<const InputImages> inputs_;
-  std::unique_ptr<GpuImage> truth_;
+  std::map<Shown, std::unique_ptr<GpuImage>> hostImages_;
   std::map<Kind, std::shared_ptr<const FrameRun>> runs_;
   mutable std::map<Shown, Image> images_;  // downloaded when first asked for
   std::vector<DispatchTime> times_;

@@ -18,9 +18,10 @@ namespace pellucid::harness {
 struct PanelState {
   CostHistory cost;
   Budget budget;
-  bool measure = false;       // frames are recorded without end, for their times
-  bool followWindow = false;  // the picture is as large as its area
-  std::string message;        // of what went wrong or was done last
+  bool measure = false;             // frames are recorded without end, for their times
+  bool followWindow = false;        // the picture is as large as its area
+  int headTurn = 0, lightTurn = 0;  // frames in which the model and the lights turn once; 0: they stand still
+  std::string message;              // of what went wrong or was done last
   bool isError = false;
   char savePath[512] = "out/view.exr";
   bool save = false;        // asked for in this frame

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "scene/turn.h"
 #include "scene/vector.h"
 
 namespace pellucid::harness {
@@ -18,12 +19,14 @@ ReplaySettings settingsFor(const ViewState& state, Shown shown) {
 }
 
 bool isFalseColor(Shown shown) {
-  return shown == Shown::Debug || shown == Shown::FrontDepth || shown == Shown::Material;
+  return shown == Shown::Debug || shown == Shown::FrontDepth || shown == Shown::Material ||
+         shown == Shown::Tiles || shown == Shown::Isolated;
 }
 
 const std::vector<std::string>& shownNames() {
-  static const std::vector<std::string> names = {"after", "before",      "through", "difference", "truth",
-                                                 "debug", "front depth", "normal",  "albedo",     "material"};
+  static const std::vector<std::string> names = {"after",  "before",   "through",     "difference",
+                                                 "truth",  "debug",    "front depth", "normal",
+                                                 "albedo", "material", "tiles",       "isolated pixels"};
   return names;
 }
 
@@ -64,6 +67,14 @@ void pullLight(Light& light, const Vector3& center, double factor) {
   if (light.type == PELLUCID_LIGHT_DIRECTIONAL) return;
   light.position = fromGlm(toGlm(center) + factor * (toGlm(light.position) - toGlm(center)));
   light.intensity *= factor * factor;
+}
+
+Changes turnTable(ViewState& state, const Vector3& center, double camera, double lights) {
+  state.camera.lens.viewFromWorld = turnedView(state.camera.lens.viewFromWorld, center, camera);
+  for (ViewLight& light : state.lights) light.light = turnedLight(light.light, center, lights);
+  Changes changes;
+  changes.scene = camera != 0 || lights != 0;
+  return changes;
 }
 
 }  // namespace pellucid::harness

@@ -26,6 +26,8 @@ enum class Shown {
   Normal,      // -1..1 as 0..1
   Albedo,
   Material,  // index, in false color
+  Tiles,     // part of a tile's pixels that have a material, in false color
+  Isolated,  // of the output's pixels, 1 those brighter than all around, 2 darker, 3 both; in false color
 };
 
 enum class ToneMap {
@@ -87,6 +89,10 @@ ViewLight newLight(PellucidLightType type, const ViewCamera& camera, const Vecto
 // Carries a light round `center` as the camera sees it: `right` and `up`, radians. Point and spot lights
 // move, and spots go on looking at what they looked at; directional lights turn.
 void dragLight(Light& light, const ViewCamera& camera, const Vector3& center, double right, double up);
+
+// Carries the camera and all lights round the vertical through `center`, radians, counterclockwise from
+// above.
+Changes turnTable(ViewState& state, const Vector3& center, double camera, double lights);
 
 // Multiplies a point or spot light's distance to `center` by `factor` > 0; as much light arrives there as
 // before.

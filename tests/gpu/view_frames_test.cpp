@@ -223,6 +223,29 @@ TEST_F(ViewScreen, FalseColorsRiseFromBlackToWhite) {
   }
 }
 
+TEST_F(ViewScreen, TilesSayHowMuchIsCovered) {
+  const Image& tiles = frames_->image(Shown::Tiles);
+  double covered = 0, sum = 0;
+  for (std::size_t i = 0; i < tiles.pixels(); ++i) {
+    covered += frames_->capture().material[i] != 0;
+    sum += static_cast<double>(tiles.data[i]);
+  }
+  EXPECT_NEAR(sum, covered, 1e-3 * covered);  // floats
+  EXPECT_EQ(*tiles.at(kSize / 2, kSize / 2), 1);
+  EXPECT_LT(*tiles.at(0, 0), 0.5f);
+  const Image screen = draw(Shown::Tiles, picture_);
+  for (int c = 0; c < 3; ++c) EXPECT_EQ(pixel(screen, kSize / 2, kSize / 2)[c], 1);
+  EXPECT_LT(pixel(screen, 0, 0)[1], 1);
+}
+
+TEST_F(ViewScreen, IsolatedPixelsAreThoseOfTheMetric) {
+  const Image screen = draw(Shown::Isolated, picture_, 0, 3);
+  const Image& marks = frames_->image(Shown::Isolated);
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x)
+      EXPECT_EQ(*marks.at(x, y) != 0, pixel(screen, x, y)[2] != 0) << x << ", " << y;
+}
+
 class ViewSources : public GpuTest {};
 
 TEST_F(ViewSources, CapturesKeepTheirCameraAndFindTheirCenter) {

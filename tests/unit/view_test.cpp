@@ -134,6 +134,17 @@ TEST(ViewLights, DragMovesThemAsTheCameraSeesIt) {
   }
 }
 
+TEST(ViewLights, TurntablesCarryCameraAndLights) {
+  ViewState state;
+  state.camera = cameraAt({0, 0, 5}, {0, 0, 0});
+  state.lights = {newLight(PELLUCID_LIGHT_POINT, state.camera, {0, 0, 0}, 1)};
+  state.lights[0].light.position = {0, 0, 3};
+  EXPECT_FALSE(turnTable(state, {0, 0, 0}, 0, 0).any());
+  EXPECT_TRUE(turnTable(state, {0, 0, 0}, -kPi / 2, kPi / 2).scene);
+  expectNear(state.camera.eye(), {-5, 0, 0}, kRounding);
+  expectNear(state.lights[0].light.position, {3, 0, 0}, kRounding);
+}
+
 TEST(ViewLights, PullKeepsWhatArrives) {
   Light light;
   light.type = PELLUCID_LIGHT_SPOT;
