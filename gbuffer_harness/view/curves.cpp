@@ -1,10 +1,13 @@
 #include "view/curves.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "pellucid/pellucid_material.h"
 #include "reference/material_profile.h"
+#include "reference/translucency.h"
 
 namespace pellucid::harness {
 
@@ -28,6 +31,18 @@ Curves transmittanceCurves(const PellucidMaterial& material, int points) {
   for (std::uint32_t c = 0; c < 3; ++c)
     for (int i = 0; i < points; ++i)
       curves.values[c].push_back(pellucidEvaluateTransmittance(&material, c, curves.end * i / (points - 1)));
+  return curves;
+}
+
+Curves angleCurve(const TranslucencySettings& settings, int points) {
+  Curves curves;
+  curves.end = 90;
+  const PellucidAngleModel model = settings.angleModel;
+  if (model == PELLUCID_ANGLE_NORMAL || model > PELLUCID_ANGLE_MINIMUM_DOT) return curves;
+  for (int i = 0; i < points; ++i) {
+    const double x = std::sin(std::numbers::pi / 2 * i / (points - 1));
+    curves.values[0].push_back(reference::angleFactor(settings, x, double(settings.minimumDot)));
+  }
   return curves;
 }
 

@@ -98,6 +98,8 @@ void drawCurves(const ViewState& state, const ViewFrames& frames) {
       withTransmittance({frames.materials()[selected]}, state.settings.transmittance);
   plot("T(d)", "mm", transmittanceCurves(used.front(), kPoints));
   plot("2 pi r R(r), 1/mm", "mm", profileCurves(used.front(), kPoints));
+  const Curves angle = angleCurve(state.settings.translucency, kPoints);
+  if (!angle.values[0].empty()) plot("angle model", "degrees beyond 90", angle);
 }
 
 Changes drawCost(ViewState& state, PanelState& panel, const ViewFrames& frames) {

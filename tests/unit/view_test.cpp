@@ -436,6 +436,20 @@ TEST(ViewCost, BudgetGoesDownAboveIt) {
   EXPECT_EQ(settings.reuse, PELLUCID_REUSE_COHERENCE);
 }
 
+TEST(ViewCurves, AngleModelsRunFromTheRightAngleOn) {
+  TranslucencySettings settings;
+  EXPECT_TRUE(angleCurve(settings, 5).values[0].empty());  // -N.L
+  settings.angleModel = PELLUCID_ANGLE_INVERSE_COSINE;     // linear in the angle
+  const Curves linear = angleCurve(settings, 5);
+  for (int i = 0; i < 5; ++i) EXPECT_NEAR(linear.values[0][static_cast<std::size_t>(i)], i / 4.0, 1e-12);
+  settings.angleModel = PELLUCID_ANGLE_MINIMUM_DOT;
+  settings.minimumDot = -0.5f;
+  const Curves dot = angleCurve(settings, 4);  // 0, 30, 60 and 90 degrees beyond 90
+  EXPECT_NEAR(dot.values[0][1], 0, 1e-12);
+  EXPECT_NEAR(dot.values[0][2], std::sqrt(3) - 1, 1e-12);
+  EXPECT_NEAR(dot.values[0][3], 1, 1e-12);
+}
+
 TEST(ViewCurves, AreThoseOfTheMaterial) {
   PellucidMaterial material{};
   material.structSize = sizeof material;
