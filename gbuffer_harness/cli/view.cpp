@@ -93,8 +93,7 @@ void refuseSceneOptions(const CLI::App& command, const std::string& model) {
       throw UsageError(argument + ": " + model + " is a capture, whose scene is what it holds");
 }
 
-std::function<std::unique_ptr<Source>(Device&)> opener(const CLI::App& command, const Options& options) {
-  const CaptureOptions& scene = options.scene;
+std::function<std::unique_ptr<Source>(Device&)> opener(const CLI::App& command, const CaptureOptions& scene) {
   if (!scene.environment.empty())
     throw UsageError("--environment: is traced by rays, which takes too long; make a capture and view that");
   if (!scene.model.empty() && isCapture(scene.model)) {
@@ -102,41 +101,89 @@ std::function<std::unique_ptr<Source>(Device&)> opener(const CLI::App& command, 
     return [path = scene.model](Device&) { return captureSource(readCapture(path)); };
   }
   if (isProcedural(command, scene))
-    return [&scene](Device&) {
+    return [scene](Device&) {
       const SceneParameters parameters = procedural(scene);
       std::vector<MaterialSource> materials = sceneModel(parameters).materials;
       setIor(materials, scene);
       return sceneSource(parameters, materials);
     };
-  return [&scene](Device& device) {
+  return [scene](Device& device) {
     CaptureModel model = captureModel(scene);
     say(model);
     return modelSource(device, std::move(model.model), model.camera, model.raster);
   };
 }
 
-// A session's scene, opened with the options that it was first opened with.
-struct Reopened {
-  CLI::App command{"", "view"};
-  Options options;
-};
+ReplaySettings parsed(const SettingsOptions& options) {
+  const ReplaySettings settings = options.parse();
+  if (settings.nearestDistance > 0)
+    throw UsageError("--set nearest-distance: promises the distance of a camera that can move here");
+  return settings;
+}
 
-std::unique_ptr<Reopened> reopen(const Options& given, const std::string& path) {
-  const Session session = readSession(path);
-  auto reopened = std::make_unique<Reopened>();
-  reopened->options = given;
-  reopened->options.scene = {};
-  reopened->options.scene.device = given.scene.device;
-  addCaptureOptions(reopened->command, reopened->options.scene, SceneUse::Replay);
+SceneToView sceneOf(const CLI::App& command, const Options& options) {
+  const ReplaySettings settings = parsed(options.settings);
+  return {opener(command, options.scene),
+          [settings, exposure = options.exposure](ViewState& state) {
+            state.settings = settings;
+            if (exposure > 0) state.display.exposure = exposure;
+            if (settings.debugView != PELLUCID_DEBUG_NONE) state.display.shown = Shown::Debug;
+          },
+          sceneArguments(command)};
+}
+
+void parseScene(CLI::App& command, CaptureOptions& scene, std::vector<std::string> arguments,
+                const std::filesystem::path& file) {
+  addCaptureOptions(command, scene, SceneUse::Replay);
+  std::reverse(arguments.begin(), arguments.end());
   try {
-    reopened->command.parse(std::vector<std::string>(session.scene.rbegin(), session.scene.rend()));
+    command.parse(arguments);
   } catch (const CLI::ParseError& error) {
-    throw InputError(path, "scene", error.what());
+    throw InputError(file.string(), "scene", error.what());
   }
-  const std::filesystem::path settings = std::filesystem::path(path).parent_path() / session.settings;
-  std::vector<std::string>& set = reopened->options.settings.set;
-  set.insert(set.begin(), "@" + settings.string());
-  return reopened;
+}
+
+// A saved view, opened with the options that its scene was first opened with.
+SceneToView savedView(const Options& given, const std::filesystem::path& path) {
+  const Session session = readSession(path);
+  CLI::App command("", "view");
+  Options options = given;
+  options.scene = {};
+  parseScene(command, options.scene, session.scene, path);
+  std::vector<std::string>& set = options.settings.set;
+  set.insert(set.begin(), "@" + (path.parent_path() / session.settings).string());
+  SceneToView scene = sceneOf(command, options);
+  scene.start = [path, start = scene.start](ViewState& state) {
+    state = readSession(path, state).state;
+    start(state);
+  };
+  return scene;
+}
+
+// A file that is named in the panel: a saved view, or what the command line would have opened with its
+// options.
+SceneToView loaded(const Options& given, const std::filesystem::path& path) {
+  if (isSession(path)) return savedView(given, path);
+  CLI::App command("", "view");
+  Options options = given;
+  const bool capture = isCapture(path.string());
+  const CaptureOptions before = given.scene;
+  options.scene = {};
+  std::vector<std::string> arguments = {path.string()};
+  if (!capture) {
+    // Options of models hold for every model.
+    const auto add = [&](const char* name, const std::string& value) {
+      arguments.push_back(name);
+      arguments.push_back(value);
+    };
+    add("--unit", before.unit);
+    add("--size", before.size);
+    for (const std::string& preset : before.presets) add("--material", preset);
+    for (const std::string& light : before.model.empty() ? std::vector<std::string>() : before.lights)
+      add("--light", light);
+  }
+  parseScene(command, options.scene, arguments, path);
+  return sceneOf(command, options);
 }
 
 void parseSize(const std::string& text, ApplicationOptions& options) {
@@ -156,23 +203,13 @@ PerceptionOptions perceptionTest(const CLI::App& command, const Options& options
     throw UsageError("--perception: needs --participant and --answers");
   if (!options.save.empty()) throw UsageError("--save: there is no one scene in a perception test");
   requireNewParticipant(options.answers, options.participant);
-  return {readSceneList(options.perception), options.participant, options.answers, options.exposure};
+  return {readSceneList(options.perception), options.participant, options.answers, parsed(options.settings),
+          options.exposure};
 }
 
-void view(const CLI::App& given, const Options& givenOptions) {
-  const std::string& model = givenOptions.scene.model;
-  std::unique_ptr<Reopened> reopened;
-  if (!model.empty() && isSession(model)) {
-    refuseSceneOptions(given, model);
-    reopened = reopen(givenOptions, model);
-  }
-  const CLI::App& command = reopened ? reopened->command : given;
-  const Options& options = reopened ? reopened->options : givenOptions;
+void view(const CLI::App& command, const Options& options) {
+  const std::string& model = options.scene.model;
   if (options.noWindow && options.frames == 0) throw UsageError("--no-window: needs --frames");
-  const ReplaySettings settings = options.settings.parse();
-  if (settings.nearestDistance > 0)
-    throw UsageError("--set nearest-distance: promises the distance of a camera that can move here");
-
   ApplicationOptions application;
   application.device = options.scene.device;
   application.validation = options.validate;
@@ -183,18 +220,15 @@ void view(const CLI::App& given, const Options& givenOptions) {
   application.screenshot = options.screenshot;
   application.save = options.save;
   application.settingsText = settingsJson;
-  if (options.perception.empty()) {
-    application.scene = sceneArguments(command);
-    application.open = opener(command, options);
-  } else {
+  application.load = [&](const std::filesystem::path& path) { return loaded(options, path); };
+  if (!options.perception.empty()) {
     application.perception = perceptionTest(command, options);
+  } else if (!model.empty() && isSession(model)) {
+    refuseSceneOptions(command, model);
+    application.scene = savedView(options, model);
+  } else {
+    application.scene = sceneOf(command, options);
   }
-  application.start = [&](ViewState& state) {
-    if (reopened) state = readSession(model, state).state;
-    state.settings = settings;
-    if (options.exposure > 0) state.display.exposure = options.exposure;
-    if (settings.debugView != PELLUCID_DEBUG_NONE) state.display.shown = Shown::Debug;
-  };
   const ApplicationReport report = runApplication(application);
   std::printf("%s\n%d frames of the screen, %llu of the module\n", report.device.c_str(), report.frames,
               static_cast<unsigned long long>(report.recorded));

@@ -15,6 +15,7 @@
 #include "view/input.h"
 #include "view/panel.h"
 #include "view/perception.h"
+#include "view/picture.h"
 #include "view/save.h"
 #include "view/scripted_input.h"
 #include "view/window.h"
@@ -25,7 +26,6 @@ namespace {
 
 // Dear ImGui shows what a click did in the frames after it.
 constexpr int kFramesAfterInput = 3;
-constexpr float kLegendWidth = 14;
 constexpr VkFormat kScreenFormat = VK_FORMAT_R8G8B8A8_UNORM;
 
 DeviceOptions deviceOptions(const ApplicationOptions& options, const Desktop* desktop) {
@@ -52,22 +52,15 @@ public:
         script_(options.script.empty() ? std::vector<ScriptLine>() : readScript(options.script)) {
     if (!device_.canDraw())
       throw DeviceError(device_.description() + " computes but has no queue that draws");
-    if (!isTest()) source_ = options.open(device_);
-    if (source_) state_ = source_->start();
-    if (options.start) options.start(state_);
-    panel_.followWindow = options.followWindow && source_ && source_->fixedCamera().empty();
     if (options.window) window_ = std::make_unique<Window>(*desktop_, device_, "Pellucid", width_, height_);
     screen_ = makeScreen(device_, width_, height_);
     gui_ = std::make_unique<Gui>(device_, *screen_, window_ ? window_->handle() : nullptr);
     display_ = std::make_unique<DisplayPass>(device_, *screen_);
     contexts_ = std::make_unique<Contexts>(device_);
-    if (isTest()) {
-      openScene();
-      return;
-    }
-    frames_ = std::make_unique<ViewFrames>(device_, *contexts_, *source_);
-    frames_->update(state_, {});
-    if (state_.display.exposure == 0) state_.display.exposure = autoExposure(frames_->image(Shown::After));
+    if (isTest())
+      openQuestion();
+    else
+      open(options.scene);
   }
 
   ApplicationReport run() {
@@ -142,13 +135,13 @@ private:
     turn(changes);
     changes.frame |= panel_.measure;
     update(changes);
-    const ScreenRect picture = this->picture(), legend = legendOf(picture);
+    const ScreenRect picture = this->picture();
     const ImVec2 cursor = ImGui::GetIO().MousePos;
-    if (!isTest()) drawOverlay(state_, panel_, *frames_, picture, legend, cursor.x, cursor.y);
+    if (!isTest()) drawOverlay(state_, panel_, *frames_, picture, cursor.x, cursor.y);
     gui_->end();
     device_.run([&](VkCommandBuffer commandBuffer) {
       screen_->begin(commandBuffer);
-      drawPicture(commandBuffer, picture, legend);
+      drawPicture(commandBuffer, *display_, *frames_, state_.display, picture, panel_.colors);
       gui_->record(commandBuffer);
       screen_->end(commandBuffer);
     });
@@ -156,6 +149,11 @@ private:
     if (window_ && !window_->present(screen_->image(0), width_, height_)) again = true;
     if (panel_.save) save(panel_.savePath);
     panel_.save = false;
+    if (panel_.load) {
+      load(panel_.loadPath);
+      again = true;
+    }
+    panel_.load = false;
     takeScreenshots();
     return again;
   }
@@ -169,7 +167,7 @@ private:
     } catch (const InputError& error) {
       report(error.what(), true);
     }
-    findFalseColors();
+    panel_.colors = falseColorsOf(state_.display, *frames_);
   }
 
   void report(const std::string& message, bool isError) {
@@ -194,54 +192,6 @@ private:
     state_.width = width;
     state_.height = height;
     changes.scene = true;
-  }
-
-  std::optional<Shown> falseColored() const {
-    const Display& display = state_.display;
-    if (isFalseColor(display.shown)) return display.shown;
-    if (display.split && isFalseColor(display.left)) return display.left;
-    return std::nullopt;
-  }
-
-  // Ends of the false colors: as set, else those of the pixels that have a material.
-  void findFalseColors() {
-    const Display& display = state_.display;
-    panel_.low = display.falseLow;
-    panel_.high = display.falseHigh;
-    const std::optional<Shown> shown = falseColored();
-    if (!shown || display.falseLow != display.falseHigh) return;
-    const Image& image = frames_->image(*shown);
-    const std::vector<std::uint8_t>& material = frames_->capture().material;
-    const auto channels = static_cast<std::size_t>(image.channels);
-    const std::size_t channel = std::min(static_cast<std::size_t>(display.channel), channels - 1);
-    float low = INFINITY, high = -INFINITY;
-    for (std::size_t i = 0; i < image.pixels(); ++i) {
-      const float value = image.data[i * channels + channel];
-      if (material[i] == 0 || !(value > -kNoDepth && value < kNoDepth)) continue;
-      low = std::min(low, value);
-      high = std::max(high, value);
-    }
-    panel_.low = low <= high ? low : 0;
-    panel_.high = low < high ? high : panel_.low + 1;
-  }
-
-  ScreenRect legendOf(const ScreenRect& picture) const {
-    if (!falseColored()) return {};
-    return {picture.x + 12, picture.y + 60, kLegendWidth, std::max(picture.height / 2, 1.0f)};
-  }
-
-  void drawPicture(VkCommandBuffer commandBuffer, const ScreenRect& picture, const ScreenRect& legend) const {
-    const Display& display = state_.display;
-    ScreenRect right = picture;
-    if (display.split) {
-      ScreenRect left = picture;
-      left.width = std::round(picture.width * display.splitAt);
-      right.x += left.width;
-      right.width -= left.width;
-      display_->draw(commandBuffer, *frames_, display, display.left, picture, left, panel_.low, panel_.high);
-    }
-    display_->draw(commandBuffer, *frames_, display, display.shown, picture, right, panel_.low, panel_.high);
-    if (legend.width > 0) display_->drawLegend(commandBuffer, *frames_, legend);
   }
 
   static ViewInput input() {
@@ -271,7 +221,9 @@ private:
 
   bool isTest() const { return !options_.perception.scenes.empty(); }
   void carryOut(const ScriptLine& line);
-  void openScene();
+  void open(const SceneToView& scene);
+  void load(const std::filesystem::path& file);
+  void openQuestion();
   Changes askForColor();
   void takeScreenshots();
   void save(const std::filesystem::path& capture);
@@ -293,7 +245,8 @@ private:
   std::unique_ptr<ViewFrames> frames_;
   ScriptedInput script_;
   std::vector<std::filesystem::path> pendingScreenshots_, pendingSaves_;
-  std::size_t scene_ = 0;  // of the perception test
+  std::vector<std::string> arguments_;  // that open the scene
+  std::size_t scene_ = 0;               // of the perception test
   std::chrono::steady_clock::time_point sceneBegin_;
   bool spaceDown_ = false, testDone_ = false;
   int passed_ = 0;  // frames, with those that had no screen
@@ -302,25 +255,50 @@ private:
 
 void Application::carryOut(const ScriptLine& line) {
   if (line.command == "save") return pendingSaves_.push_back(line.arguments.front());
+  if (line.command == "open") return load(line.arguments.front());
   if (line.command == "screenshot") return pendingScreenshots_.push_back(line.arguments.front());
   if (!window_) throw InputError(line.where, line.command, "needs a window");
   window_->resize(std::clamp(static_cast<int>(numberOf(line, 0)), 64, 8192),
                   std::clamp(static_cast<int>(numberOf(line, 1)), 64, 8192));
 }
 
-// Opens the perception test's scene, with a filter that changes nothing.
-void Application::openScene() {
-  frames_.reset();
-  source_ = captureSource(readCapture(options_.perception.scenes[scene_]));
-  const Display display = state_.display;
-  const ReplaySettings settings = state_.settings;
-  state_ = source_->start();
-  state_.display = display;
-  state_.settings = settings;
-  state_.settings.translucency.transmittanceFilter = {1, 1, 1};
-  frames_ = std::make_unique<ViewFrames>(device_, *contexts_, *source_);
-  frames_->update(state_, {});
-  if (options_.perception.exposure == 0) state_.display.exposure = autoExposure(frames_->image(Shown::After));
+// What was open stays where the new scene cannot be read or rendered.
+void Application::open(const SceneToView& scene) {
+  std::unique_ptr<Source> source = scene.open(device_);
+  ViewState state = source->start();
+  scene.start(state);
+  auto frames = std::make_unique<ViewFrames>(device_, *contexts_, *source);
+  frames->update(state, {});
+  if (state.display.exposure == 0) state.display.exposure = autoExposure(frames->image(Shown::After));
+  frames_ = std::move(frames);
+  source_ = std::move(source);
+  state_ = std::move(state);
+  arguments_ = scene.arguments;
+  panel_.colors = falseColorsOf(state_.display, *frames_);
+  panel_.cost = {};
+}
+
+void Application::load(const std::filesystem::path& file) {
+  try {
+    open(options_.load(file));
+    report("opened " + file.string(), false);
+  } catch (const InputError& error) {
+    report(error.what(), true);
+  } catch (const UsageError& error) {
+    report(error.what(), true);
+  }
+}
+
+// The perception test's scene, with a filter that changes nothing.
+void Application::openQuestion() {
+  const PerceptionOptions& test = options_.perception;
+  open({[&](Device&) { return captureSource(readCapture(test.scenes[scene_])); },
+        [&](ViewState& state) {
+          state.settings = test.settings;
+          state.settings.translucency.transmittanceFilter = {1, 1, 1};
+          state.display.exposure = test.exposure;
+        },
+        {}});
   sceneBegin_ = std::chrono::steady_clock::now();
 }
 
@@ -344,7 +322,7 @@ Changes Application::askForColor() {
     --scene_;
     return changes;
   }
-  openScene();
+  openQuestion();
   changes.shown = true;
   return changes;
 }
@@ -365,7 +343,7 @@ void Application::save(const std::filesystem::path& capture) {
       frames_->update(state_, {.frame = true});
     }
     saveView(files, *frames_, options_.settingsText(settingsFor(state_, Shown::After)),
-             {options_.scene, "", state_});
+             {arguments_, "", state_});
     savePicture(files.picture, screen_->image(0).download());
     for (const auto& file : {files.capture, files.settings, files.session, files.result, files.picture})
       report_.saved.push_back(file.string());

@@ -18,7 +18,14 @@ struct PerceptionOptions {
   std::vector<std::filesystem::path> scenes;  // captures; empty: no test
   std::string participant;
   std::filesystem::path answers;  // CSV that rows are added to
+  ReplaySettings settings;        // but for the filter
   float exposure = 0;             // of all scenes; 0: each by its own picture
+};
+
+struct SceneToView {
+  std::function<std::unique_ptr<Source>(Device&)> open;
+  std::function<void(ViewState&)> start;  // changes the state that the source begins with
+  std::vector<std::string> arguments;     // that open it again, for saved sessions
 };
 
 struct ApplicationOptions {
@@ -27,13 +34,11 @@ struct ApplicationOptions {
   bool window = true;              // false: needs `frames`
   int width = 1280, height = 800;  // of the window, pixels
   int frames = 0;                  // of the screen, then it ends; 0: until the window is closed
-  bool followWindow = false;       // the picture is as large as its place in the window
   std::filesystem::path script, screenshot, save;  // empty: none. The latter two are written at the end
-  std::vector<std::string> scene;                  // arguments that open it again, for saved sessions
   std::function<std::string(const ReplaySettings&)> settingsText;  // what --set @FILE reads
-  std::function<std::unique_ptr<Source>(Device&)> open;
-  PerceptionOptions perception;           // with scenes, `open` is not called
-  std::function<void(ViewState&)> start;  // changes the state that the source begins with
+  SceneToView scene;
+  std::function<SceneToView(const std::filesystem::path&)> load;  // of a file that a person names later
+  PerceptionOptions perception;                                   // with scenes, `scene` is not looked at
 };
 
 struct ApplicationReport {

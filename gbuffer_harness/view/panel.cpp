@@ -103,8 +103,9 @@ Changes drawDisplay(ViewState& state, const PanelState& panel, const ViewFrames&
   }
   if (isFalseColor(display.shown) || (display.split && isFalseColor(display.left))) {
     changes.shown |= combo("channel", display.channel, {"R", "G", "B"});
-    float ends[2] = {panel.low, panel.high};
-    if (ImGui::DragFloat2("false colors", ends, 0.01f * std::max(std::abs(panel.high - panel.low), 1e-3f))) {
+    float ends[2] = {panel.colors.low, panel.colors.high};
+    if (ImGui::DragFloat2("false colors", ends,
+                          0.01f * std::max(std::abs(panel.colors.high - panel.colors.low), 1e-3f))) {
       display.falseLow = ends[0];
       display.falseHigh = ends[1];
       changes.shown = true;
@@ -188,7 +189,10 @@ Changes drawPanel(ViewState& state, PanelState& panel, const ViewFrames& frames,
   changes.add(drawLights(state, source));
   changes.add(drawCamera(state, panel, source));
   changes.add(drawCost(state, panel, frames));
-  if (ImGui::CollapsingHeader("Save")) {
+  if (ImGui::CollapsingHeader("Open and save")) {
+    ImGui::InputText("file", panel.loadPath, sizeof panel.loadPath);
+    if (ImGui::Button("open")) panel.load = true;
+    hint("A model, a capture or a saved view, with the options of the command line.");
     ImGui::InputText("capture", panel.savePath, sizeof panel.savePath);
     if (ImGui::Button("save capture, settings, session, result and picture")) panel.save = true;
   }
@@ -215,7 +219,7 @@ bool drawColorQuestion(std::array<float, 3>& color, std::size_t number, std::siz
 }
 
 void drawOverlay(const ViewState& state, const PanelState& panel, const ViewFrames& frames,
-                 const ScreenRect& picture, const ScreenRect& legend, float cursorX, float cursorY) {
+                 const ScreenRect& picture, float cursorX, float cursorY) {
   ImDrawList* const list = ImGui::GetBackgroundDrawList();
   const auto text = [&](float x, float y, const std::string& words) {
     const ImVec2 size = ImGui::CalcTextSize(words.c_str());
@@ -230,10 +234,11 @@ void drawOverlay(const ViewState& state, const PanelState& panel, const ViewFram
     text(picture.x + 8, top, name(display.left));
   }
   text((display.split ? split : picture.x) + 8, top, name(display.shown));
+  const ScreenRect legend = legendOf(display, picture);
   if (legend.width > 0) {
     char ends[2][32];
-    std::snprintf(ends[0], sizeof ends[0], "%.4g", static_cast<double>(panel.high));
-    std::snprintf(ends[1], sizeof ends[1], "%.4g", static_cast<double>(panel.low));
+    std::snprintf(ends[0], sizeof ends[0], "%.4g", static_cast<double>(panel.colors.high));
+    std::snprintf(ends[1], sizeof ends[1], "%.4g", static_cast<double>(panel.colors.low));
     list->AddRect({legend.x - 1, legend.y - 1}, {legend.x + legend.width + 1, legend.y + legend.height + 1},
                   kWhite);
     text(legend.x, legend.y - 20, ends[0]);

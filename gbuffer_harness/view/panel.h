@@ -9,6 +9,7 @@
 #include "view/cost.h"
 #include "view/display.h"
 #include "view/frames.h"
+#include "view/picture.h"
 #include "view/source.h"
 #include "view/state.h"
 
@@ -24,8 +25,10 @@ struct PanelState {
   std::string message;              // of what went wrong or was done last
   bool isError = false;
   char savePath[512] = "out/view.exr";
-  bool save = false;        // asked for in this frame
-  float low = 0, high = 1;  // ends of the false colors as they are drawn
+  bool save = false;  // asked for in this frame
+  char loadPath[512] = "";
+  bool load = false;
+  FalseColors colors;  // as they are drawn
 };
 
 constexpr float kPanelWidth = 380;
@@ -37,7 +40,7 @@ Changes drawPanel(ViewState& state, PanelState& panel, const ViewFrames& frames,
 // Over the picture: labels of its halves, the line of the split, ends of the legend, the value under the
 // cursor.
 void drawOverlay(const ViewState& state, const PanelState& panel, const ViewFrames& frames,
-                 const ScreenRect& picture, const ScreenRect& legend, float cursorX, float cursorY);
+                 const ScreenRect& picture, float cursorX, float cursorY);
 
 // In the panel's place: a color selector for scene `number` of `count`. True: another color.
 bool drawColorQuestion(std::array<float, 3>& color, std::size_t number, std::size_t count, float width,

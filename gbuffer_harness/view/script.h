@@ -18,7 +18,7 @@ namespace pellucid::harness {
 //   show NAME                         of shownNames(), with - for spaces
 //   split NAME AT                     NAME to the left of AT, 0..1 of the picture's width
 //   exposure FACTOR
-//   save FILE.exr, screenshot FILE.png
+//   save FILE.exr, screenshot FILE.png, open FILE
 struct ScriptLine {
   int frame = 1;
   std::string command;

@@ -40,6 +40,15 @@ TEST_F(View, SavesWhatReplaysToTheSameBits) {
   EXPECT_EQ(bytes("a.exr"), bytes("b.exr"));
   EXPECT_EQ(bytes("a.settings.json"), bytes("b.settings.json"));
   EXPECT_EQ(bytes("a.png").substr(0, 4), "\x89PNG");
+  // Opened later, in place of another scene; what cannot be opened changes nothing.
+  expect(0,
+         "view --procedural slab --size 20x20 --shadow-size 16 --no-window --validate --frames 4 " +
+             script("1 open " + path("none.exr") + "\n2 open " + path("a.view.json") + "\n3 open " +
+                    path("script.txt") + "\n") +
+             "--save " + path("d.exr"),
+         "4 frames of the screen, 1 of the module");
+  EXPECT_EQ(bytes("a.exr"), bytes("d.exr"));
+  EXPECT_EQ(bytes("a.pellucid.exr"), bytes("d.pellucid.exr"));
   expect(0,
          "view " + path("a.exr") + " --set @" + path("a.settings.json") +
              " --validate --no-window --frames 1 --save " + path("c.exr"),
