@@ -255,6 +255,11 @@ private:
 
 void Application::carryOut(const ScriptLine& line) {
   if (line.command == "save") return pendingSaves_.push_back(line.arguments.front());
+  if (line.command == "turn") {
+    panel_.headTurn = std::clamp(static_cast<int>(numberOf(line, 0)), 0, kLongestTurn);
+    panel_.lightTurn = std::clamp(static_cast<int>(numberOf(line, 1)), 0, kLongestTurn);
+    return;
+  }
   if (line.command == "open") return load(line.arguments.front());
   if (line.command == "screenshot") return pendingScreenshots_.push_back(line.arguments.front());
   if (!window_) throw InputError(line.where, line.command, "needs a window");

@@ -53,6 +53,10 @@ void Gui::poll(int width, int height) {
   ImGuiIO& io = ImGui::GetIO();
   if (window_) {
     ImGui_ImplGlfw_NewFrame();
+    // The screen is in pixels, of which some desktops have more than one a unit of the window.
+    const float scale = io.DisplaySize.x > 0 ? static_cast<float>(width) / io.DisplaySize.x : 1;
+    if (ImGui::IsMousePosValid()) io.MousePos = {io.MousePos.x * scale, io.MousePos.y * scale};
+    io.DisplayFramebufferScale = {1, 1};
   } else {
     io.DeltaTime = 1.0f / 60;  // the same in every run
   }

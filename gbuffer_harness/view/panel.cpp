@@ -158,8 +158,8 @@ Changes drawCamera(ViewState& state, PanelState& panel, const Source& source) {
   // The model turns before the camera, and the lights at their own speed (Whelan 2009, 5.1).
   ImGui::InputInt("model turns in frames", &panel.headTurn, 60);
   if (source.fixedLights().empty()) ImGui::InputInt("lights turn in frames", &panel.lightTurn, 60);
-  panel.headTurn = std::clamp(panel.headTurn, 0, 100000);
-  panel.lightTurn = std::clamp(panel.lightTurn, 0, 100000);
+  panel.headTurn = std::clamp(panel.headTurn, 0, kLongestTurn);
+  panel.lightTurn = std::clamp(panel.lightTurn, 0, kLongestTurn);
   ImGui::TextDisabled(
       "drag: orbit; right: look; middle: pan; wheel: zoom\nw a s d e q: walk; shift + drag: light");
   return changes;

@@ -32,6 +32,7 @@ struct PanelState {
 };
 
 constexpr float kPanelWidth = 380;
+constexpr int kLongestTurn = 100000;  // frames
 
 // In the right part of a screen of that size.
 Changes drawPanel(ViewState& state, PanelState& panel, const ViewFrames& frames, const Source& source,

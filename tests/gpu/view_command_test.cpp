@@ -99,16 +99,17 @@ TEST_F(View, PerceptionTestAsksAboutEachSceneAndIsAnalyzed) {
   expect(3, "perception " + path("answers.csv"), "\"three\" has not answered scene \"directional\"");
 }
 
-// A session with a window: opened, orbited, resized, looked through, closed.
+// A session with a window: opened, orbited, resized, looked through, turned, closed. The drag and two frames of the
+// turntable record the module again.
 TEST_F(View, WindowOfAVirtualDisplay) {
   if (std::system("command -v xvfb-run >/dev/null") != 0) GTEST_SKIP() << "xvfb-run is not installed";
   const std::string input = script(
       "1 move 300 300\n1 press left\n2 move 340 290\n3 release left\n4 resize 900 600\n6 show debug\n"
-      "7 resize 1100 640\n9 show after\n");
+      "7 resize 1100 640\n8 turn 40 16\n10 turn 0 0\n10 show after\n");
   const Outcome outcome = run(kScene + "--frames 12 " + input + "--save " + path("w.exr"),
                               "exec xvfb-run -a -s '-screen 0 1600x1000x24' ");
   EXPECT_EQ(outcome.code, 0) << outcome.text;
-  EXPECT_NE(outcome.text.find("12 frames of the screen"), std::string::npos) << outcome.text;
+  EXPECT_NE(outcome.text.find("12 frames of the screen, 4 of the module"), std::string::npos) << outcome.text;
   expectReplays("w");
 }
 

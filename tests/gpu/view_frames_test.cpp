@@ -134,6 +134,7 @@ TEST_F(ViewFramesTest, AlternateReuseTakesWhatCameThroughFromTheFrameBefore) {
   frames_->forgetHistory();
   frames_->update(state_, {.frame = true});
   EXPECT_EQ(frames_->run(Shown::After).plan().dispatchCount, fresh);
+  expectReplays("without the frames before");
 }
 
 // The screen, of which the picture covers all but a margin of 8 pixels, each texel two pixels wide.
