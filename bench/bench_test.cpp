@@ -17,6 +17,7 @@
 #include "frame_errors.h"
 #include "reference/reference.h"
 #include "scene/scene.h"
+#include "turntable_shares.h"
 
 namespace pellucid::bench {
 namespace {
@@ -91,6 +92,25 @@ TEST(CompareRuns, TimesOfTwoDevicesAreRefused) {
 }
 
 TEST(CompareRuns, WhatIsNoRunIsRefused) { EXPECT_THROW(grew(Json::object(), run()), InputError); }
+
+// ---- Shares of a turntable
+
+TEST(TurntableShares, AreThoseOfALinearCosine) {
+  // By .0026 a frame: .005 and .01 are exceeded by every second and fourth frame.
+  std::vector<TurntableFrame> frames;
+  for (int k = 0; k < 400; ++k) frames.push_back({-0.5 + 0.0026 * k, k < 200});
+  const TurntableShares shares = turntableShares(frames);
+  EXPECT_NEAR(shares.necessary, 1 / 2.0, 1e-12);
+  EXPECT_NEAR(shares.coherent[0], 1 / 2.0, 1e-12);
+  EXPECT_NEAR(shares.coherent[1], 1 / 4.0, 1e-12);
+  EXPECT_NEAR(shares.both[0], 1 / 4.0, 1e-12);
+  EXPECT_NEAR(shares.both[1], 1 / 8.0, 1e-12);
+}
+
+TEST(TurntableShares, AreComputedAgainAfterDarkness) {
+  const TurntableShares shares = turntableShares({{-0.5, true}, {-0.5, true}, {0.5, false}, {-0.5, true}});
+  EXPECT_DOUBLE_EQ(shares.both[0], 0.5);
+}
 
 // ---- Errors of frames
 

@@ -16,6 +16,7 @@
 #include "plane.h"
 #include "scene.h"
 #include "sweep.h"
+#include "thesis.h"
 
 namespace {
 
@@ -122,6 +123,7 @@ private:
       json_.update(
           {{"width", width}, {"height", height}, {"radius_pixels", radius}, {"floor_us", planes.floor}});
     }
+    if (wanted("thesis")) measureThesis(device_, context, options_.frames, repeat_, report_);
     if (wanted("sweep")) swept_ = sweep(site, options_.sweep, repeat_, table_, &plots_["sweep"]);
     if (wanted("frames"))
       for (auto& [size, frames] : measureFrames(device_, context, sources, options_.frames, repeat_, report_))

@@ -37,30 +37,46 @@ public:
         result_(frame->image(VK_FORMAT_R16G16B16A16_SFLOAT)) {}
 
   void record(VkCommandBuffer commandBuffer) const {
-    const PellucidFrame& f = frame_->images();
-    const auto dispatch = [&](const ComputePass& pass, std::vector<Resource> resources) {
-      resources.insert(resources.begin(), frame_->planned(PELLUCID_BINDING_FRAME));
-      pass.record(commandBuffer, frame_->width(), frame_->height(), resources,
-                  {frame_->run().plan().activeLights});
-    };
-    dispatch(linearize_, {f.frontDepth, front_->use()});
-    dispatch(linearize_, {f.backDepth, back_->use()});
+    recordLinearize(commandBuffer);
     computeBarrier(commandBuffer);
     if (!fused_) {
-      dispatch(thickness_, {front_->use(), back_->use(), chord_->use()});
+      recordThickness(commandBuffer);
       computeBarrier(commandBuffer);
     }
-    dispatch(transmittance_,
+    recordTransmittance(commandBuffer);
+    computeBarrier(commandBuffer);
+    recordAddition(commandBuffer);
+  }
+
+  void recordThickness(VkCommandBuffer commandBuffer) const {
+    dispatch(commandBuffer, thickness_, {front_->use(), back_->use(), chord_->use()});
+  }
+  void recordTransmittance(VkCommandBuffer commandBuffer) const {
+    const PellucidFrame& f = frame_->images();
+    dispatch(commandBuffer, transmittance_,
              {frame_->planned(PELLUCID_BINDING_LIGHTS), frame_->planned(PELLUCID_BINDING_SHADOWS),
               frame_->planned(PELLUCID_BINDING_MATERIALS), front_->use(), (fused_ ? back_ : chord_)->use(),
               f.normal, f.material, frame_->planned(PELLUCID_BINDING_SHADOW_IMAGES), transmitted_->use()});
-    computeBarrier(commandBuffer);
-    dispatch(combine_, {f.irradiance, transmitted_->use(), result_->use()});
+  }
+  void recordAddition(VkCommandBuffer commandBuffer) const {
+    dispatch(commandBuffer, combine_, {frame_->images().irradiance, transmitted_->use(), result_->use()});
   }
 
   harness::Image output() const { return rgb(result_->download()); }
 
 private:
+  void recordLinearize(VkCommandBuffer commandBuffer) const {
+    const PellucidFrame& f = frame_->images();
+    dispatch(commandBuffer, linearize_, {f.frontDepth, front_->use()});
+    dispatch(commandBuffer, linearize_, {f.backDepth, back_->use()});
+  }
+  void dispatch(VkCommandBuffer commandBuffer, const ComputePass& pass,
+                std::vector<Resource> resources) const {
+    resources.insert(resources.begin(), frame_->planned(PELLUCID_BINDING_FRAME));
+    pass.record(commandBuffer, frame_->width(), frame_->height(), resources,
+                {frame_->run().plan().activeLights});
+  }
+
   std::shared_ptr<const BenchFrame> frame_;
   bool fused_;
   ComputePass linearize_, thickness_, transmittance_, combine_;
@@ -82,6 +98,25 @@ Variant steps(const std::shared_ptr<const BenchFrame>& frame, bool fused) {
 }
 
 }  // namespace
+
+TranslucencySteps translucencySteps(const std::shared_ptr<const BenchFrame>& frame) {
+  const auto separate = std::make_shared<Steps>(frame, false), one = std::make_shared<Steps>(frame, true);
+  for (const auto& all : {separate, one})
+    frame->device().run([&](VkCommandBuffer commandBuffer) { all->record(commandBuffer); });
+  const auto step = [](const char* name, const std::shared_ptr<Steps>& all,
+                       void (Steps::*record)(VkCommandBuffer) const) {
+    return Variant{name,
+                   1,
+                   0,
+                   0,
+                   [=](VkCommandBuffer commandBuffer) { (*all.*record)(commandBuffer); },
+                   [all] { return all->output(); }};
+  };
+  return {step("thickness", separate, &Steps::recordThickness),
+          step("transmittance", separate, &Steps::recordTransmittance),
+          step("thickness and transmittance in one", one, &Steps::recordTransmittance),
+          step("addition", separate, &Steps::recordAddition)};
+}
 
 std::vector<Variant> translucencyVariants(const std::shared_ptr<const BenchFrame>& frame) {
   return {steps(frame, false), steps(frame, true), moduleVariant(frame, "one dispatch")};

@@ -13,4 +13,11 @@ namespace pellucid::bench {
 // one shadow image, translucency alone with PELLUCID_THICKNESS_CAMERA.
 std::vector<Variant> translucencyVariants(const std::shared_ptr<const BenchFrame>& frame);
 
+// The steps of the first two one by one, without the linearization, which a raster pass of planar distances
+// does: thickness; transmittance of it; thickness and transmittance in one; addition. They have run once.
+struct TranslucencySteps {
+  Variant thickness, transmittance, both, addition;
+};
+TranslucencySteps translucencySteps(const std::shared_ptr<const BenchFrame>& frame);
+
 }  // namespace pellucid::bench

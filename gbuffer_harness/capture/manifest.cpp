@@ -13,6 +13,7 @@
 #include "capture/json_field.h"
 #include "capture/manifest_material.h"
 #include "capture/manifest_matrix.h"
+#include "capture/manifest_parts.h"
 #include "common/error.h"
 
 namespace pellucid::harness {
@@ -164,6 +165,8 @@ std::vector<Field> shadowMapsOf(const Field& light) {
   return maps;
 }
 
+}  // namespace
+
 Light readLight(const Field& field) {
   field.allowKeys({"type", "position", "direction", "color", "intensity", "range", "radius", "innerConeAngle",
                    "outerConeAngle", "shadowMap", "shadowMaps"});
@@ -208,6 +211,8 @@ Light readLight(const Field& field) {
   for (const Field& map : shadowMapsOf(field)) light.shadowMaps.push_back(readShadowMap(map));
   return light;
 }
+
+namespace {
 
 void readBuffers(const Field& buffers, const BufferReader& read, Manifest& manifest) {
   buffers.allowKeys({"frontDepth", "backDepth", "irradiance", "normal", "albedo", "material"});

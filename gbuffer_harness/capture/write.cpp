@@ -10,6 +10,7 @@
 
 #include "capture/exr.h"
 #include "capture/manifest.h"
+#include "capture/manifest_parts.h"
 #include "capture/shadow_images.h"
 
 namespace pellucid::harness {
@@ -30,6 +31,8 @@ const char* encodingName(PellucidDepthEncoding encoding) {
          : encoding == PELLUCID_DEPTH_VIEW_Z ? "viewZ"
                                              : "distance";
 }
+
+}  // namespace
 
 Json materialJson(const MaterialSource& source) {
   return std::visit(Overloaded{
@@ -60,6 +63,8 @@ Json materialJson(const MaterialSource& source) {
                     source);
 }
 
+namespace {
+
 // Collects the channels of one part and says where they are.
 struct PartWriter {
   ExrPart part;
@@ -86,6 +91,8 @@ struct PartWriter {
   }
 };
 
+}  // namespace
+
 Json lightJson(const Light& light) {
   const char* const types[] = {"directional", "point", "spot"};
   Json json = {{"type", types[light.type]}, {"position", light.position},   {"direction", light.direction},
@@ -97,6 +104,8 @@ Json lightJson(const Light& light) {
   }
   return json;
 }
+
+namespace {
 
 Json truthJson(const Truth& truth, PartWriter& screen, ExrFormat format) {
   Json json = screen.add(truth.image, "truth", "RGB", format);

@@ -22,5 +22,7 @@ void addCaptureCommand(CLI::App& app);
 void addSheetCommand(CLI::App& app);
 void addMeasureDotsCommand(CLI::App& app);
 void addStressCommand(CLI::App& app);
+void addViewCommand(CLI::App& app);
+void addPerceptionCommand(CLI::App& app);
 
 }  // namespace pellucid::harness

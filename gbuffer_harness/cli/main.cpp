@@ -48,6 +48,8 @@ int main(int argc, char** argv) {
   addSheetCommand(app);
   addMeasureDotsCommand(app);
   addStressCommand(app);
+  addViewCommand(app);
+  addPerceptionCommand(app);
   try {
     app.parse(argc, argv);
     return OK;

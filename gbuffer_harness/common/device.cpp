@@ -22,14 +22,13 @@ bool hasLayer(const char* name) {
                      [&](const auto& l) { return !std::strcmp(l.layerName, name); });
 }
 
-bool hasPushDescriptors(VkPhysicalDevice device) {
+bool hasExtension(VkPhysicalDevice device, const char* name) {
   uint32_t count = 0;
   vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr);
   std::vector<VkExtensionProperties> extensions(count);
   vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data());
-  return std::any_of(extensions.begin(), extensions.end(), [](const auto& e) {
-    return !std::strcmp(e.extensionName, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME);
-  });
+  return std::any_of(extensions.begin(), extensions.end(),
+                     [&](const auto& e) { return !std::strcmp(e.extensionName, name); });
 }
 
 struct QueueFamily {
@@ -37,15 +36,18 @@ struct QueueFamily {
   bool canDraw;
 };
 
-// A family that computes, if possible one that draws too.
-std::optional<QueueFamily> findFamily(VkPhysicalDevice device) {
+// A family that computes and that `accepts` takes, if possible one that draws too.
+std::optional<QueueFamily> findFamily(VkPhysicalDevice device,
+                                      const std::function<bool(uint32_t family)>& accepts) {
   uint32_t count = 0;
   vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
   std::vector<VkQueueFamilyProperties> families(count);
   vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
   std::optional<QueueFamily> best;
   for (uint32_t i = 0; i < count; ++i) {
-    if (!(families[i].queueFlags & VK_QUEUE_COMPUTE_BIT) || families[i].timestampValidBits == 0) continue;
+    if (!(families[i].queueFlags & VK_QUEUE_COMPUTE_BIT) || families[i].timestampValidBits == 0 ||
+        !accepts(i))
+      continue;
     const bool canDraw = families[i].queueFlags & VK_QUEUE_GRAPHICS_BIT;
     if (!best || (canDraw && !best->canDraw)) best = {i, canDraw};
   }
@@ -76,6 +78,8 @@ std::string lower(std::string s) {
 }  // namespace
 
 void check(VkResult result, const char* call) {
+  if (result == VK_ERROR_DEVICE_LOST)
+    throw DeviceError(std::string(call) + ": the driver lost the device, which a hang or a reset does");
   if (result != VK_SUCCESS)
     throw DeviceError(std::string(call) + " returned VkResult " + std::to_string(result));
 }
@@ -83,9 +87,9 @@ void check(VkResult result, const char* call) {
 Device::Device(const DeviceOptions& options) {
   // The destructor does not run when a constructor throws.
   try {
-    createInstance(options.validation);
-    chooseDevice(options.name);
-    createDevice();
+    createInstance(options);
+    chooseDevice(options);
+    createDevice(options.presents != nullptr);
   } catch (...) {
     release();
     throw;
@@ -108,7 +112,7 @@ void Device::release() {
   if (instance_) vkDestroyInstance(instance_, nullptr);
 }
 
-void Device::createInstance(bool validation) {
+void Device::createInstance(const DeviceOptions& options) {
   VkApplicationInfo application{VK_STRUCTURE_TYPE_APPLICATION_INFO};
   application.pApplicationName = "pellucid";
   application.apiVersion = VK_API_VERSION_1_1;
@@ -126,24 +130,26 @@ void Device::createInstance(bool validation) {
   VkValidationFeaturesEXT features{VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT};
   features.enabledValidationFeatureCount = 1;
   features.pEnabledValidationFeatures = &synchronization;
-  const char* extension = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
-  if (validation) {
+  std::vector<const char*> extensions = options.instanceExtensions;
+  if (options.validation) {
     if (!hasLayer(kValidationLayer)) throw DeviceError("the Vulkan validation layers are not installed");
     info.enabledLayerCount = 1;
     info.ppEnabledLayerNames = &kValidationLayer;
-    info.enabledExtensionCount = 1;
-    info.ppEnabledExtensionNames = &extension;
+    extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
     info.pNext = &features;
     features.pNext = &messenger;
   }
+  info.enabledExtensionCount = static_cast<uint32_t>(extensions.size());
+  info.ppEnabledExtensionNames = extensions.data();
   check(vkCreateInstance(&info, nullptr, &instance_), "vkCreateInstance");
-  if (!validation) return;
+  if (!options.validation) return;
   const auto create = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(
       vkGetInstanceProcAddr(instance_, "vkCreateDebugUtilsMessengerEXT"));
   check(create(instance_, &messenger, nullptr, &messenger_), "vkCreateDebugUtilsMessengerEXT");
 }
 
-void Device::chooseDevice(const std::string& name) {
+void Device::chooseDevice(const DeviceOptions& options) {
+  const std::string& name = options.name;
   uint32_t count = 0;
   check(vkEnumeratePhysicalDevices(instance_, &count, nullptr), "vkEnumeratePhysicalDevices");
   std::vector<VkPhysicalDevice> devices(count);
@@ -155,14 +161,19 @@ void Device::chooseDevice(const std::string& name) {
   for (VkPhysicalDevice candidate : devices) {
     VkPhysicalDeviceProperties properties;
     vkGetPhysicalDeviceProperties(candidate, &properties);
-    const std::optional<QueueFamily> family = findFamily(candidate);
+    const std::optional<QueueFamily> family = findFamily(candidate, [&](uint32_t i) {
+      return !options.presents || options.presents(instance_, candidate, i);
+    });
     std::string why;
     if (properties.apiVersion < VK_API_VERSION_1_1)
       why = "Vulkan 1.1 is missing";
-    else if (!hasPushDescriptors(candidate))
+    else if (!hasExtension(candidate, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME))
       why = "VK_KHR_push_descriptor is missing";
+    else if (options.presents && !hasExtension(candidate, VK_KHR_SWAPCHAIN_EXTENSION_NAME))
+      why = "VK_KHR_swapchain is missing";
     else if (!family)
-      why = "no compute queue with timestamps";
+      why = options.presents ? "no compute queue with timestamps presents to the window"
+                             : "no compute queue with timestamps";
     seen += "\n  " + std::string(properties.deviceName) + (why.empty() ? "" : " (" + why + ")");
     if (!why.empty() || lower(properties.deviceName).find(lower(name)) == std::string::npos) continue;
     if (speed(properties.deviceType) <= best) continue;
@@ -180,7 +191,7 @@ void Device::chooseDevice(const std::string& name) {
                                 "; there are:" + seen);
 }
 
-void Device::createDevice() {
+void Device::createDevice(bool presents) {
   VkPhysicalDeviceDriverProperties driver{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
   VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
   // Core in 1.2; an older device would ignore the struct and leave the strings empty.
@@ -193,7 +204,8 @@ void Device::createDevice() {
   queue.queueFamilyIndex = queueFamily_;
   queue.queueCount = 1;
   queue.pQueuePriorities = &priority;
-  const char* extension = VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME;
+  std::vector<const char*> extensions = {VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
+  if (presents) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
   VkPhysicalDeviceFeatures available, features{};
   vkGetPhysicalDeviceFeatures(physicalDevice_, &available);
   features.shaderStorageImageWriteWithoutFormat = available.shaderStorageImageWriteWithoutFormat;
@@ -201,8 +213,8 @@ void Device::createDevice() {
   VkDeviceCreateInfo info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO};
   info.queueCreateInfoCount = 1;
   info.pQueueCreateInfos = &queue;
-  info.enabledExtensionCount = 1;
-  info.ppEnabledExtensionNames = &extension;
+  info.enabledExtensionCount = static_cast<uint32_t>(extensions.size());
+  info.ppEnabledExtensionNames = extensions.data();
   info.pEnabledFeatures = &features;
   check(vkCreateDevice(physicalDevice_, &info, nullptr, &device_), "vkCreateDevice");
   vkGetDeviceQueue(device_, queueFamily_, 0, &queue_);

@@ -16,6 +16,10 @@ void check(VkResult result, const char* call);
 struct DeviceOptions {
   std::string name;         // part of the device's name, any case; empty: the fastest kind there is
   bool validation = false;  // core and synchronization validation; messages are collected
+  // Of a window system: its instance extensions, and whether a queue family presents to it. With the latter
+  // the device has VK_KHR_swapchain; without, it shows nothing.
+  std::vector<const char*> instanceExtensions = {};
+  std::function<bool(VkInstance, VkPhysicalDevice, uint32_t family)> presents = {};
 };
 
 class Device {
@@ -29,6 +33,8 @@ public:
   VkInstance instance() const { return instance_; }
   VkPhysicalDevice physicalDevice() const { return physicalDevice_; }
   VkDevice handle() const { return device_; }
+  uint32_t queueFamily() const { return queueFamily_; }
+  VkQueue queue() const { return queue_; }
   const VkPhysicalDeviceProperties& properties() const { return properties_; }
   std::string description() const;           // "name, driver and version"
   bool canDraw() const { return canDraw_; }  // the queue does graphics besides compute
@@ -45,9 +51,9 @@ public:
   std::vector<std::string> validationMessages() const;
 
 private:
-  void createInstance(bool validation);
-  void chooseDevice(const std::string& name);
-  void createDevice();
+  void createInstance(const DeviceOptions& options);
+  void chooseDevice(const DeviceOptions& options);
+  void createDevice(bool presents);
   void release();
   static VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT,
                                                   VkDebugUtilsMessageTypeFlagsEXT,

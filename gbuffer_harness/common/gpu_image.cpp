@@ -27,6 +27,7 @@ Texel texelOf(VkFormat format) {
     case VK_FORMAT_R32G32B32A32_SFLOAT:
       return {4, 4};
     case VK_FORMAT_R8G8B8A8_SNORM:
+    case VK_FORMAT_R8G8B8A8_UNORM:
       return {4, 1};
     case VK_FORMAT_B10G11R11_UFLOAT_PACK32:  // one word
       return {1, 4};
@@ -212,9 +213,9 @@ Image GpuImage::download() const {
   } else {
     const auto* bytes = static_cast<const std::uint8_t*>(staging.mapped());
     std::transform(bytes, bytes + result.data.size(), result.data.begin(), [this](std::uint8_t v) {
-      return format_ == VK_FORMAT_R8G8B8A8_SNORM ? glm::unpackSnorm1x8(v)
-             : format_ == VK_FORMAT_R8_UNORM     ? glm::unpackUnorm1x8(v)
-                                                 : static_cast<float>(v);
+      return format_ == VK_FORMAT_R8G8B8A8_SNORM                                    ? glm::unpackSnorm1x8(v)
+             : format_ == VK_FORMAT_R8_UNORM || format_ == VK_FORMAT_R8G8B8A8_UNORM ? glm::unpackUnorm1x8(v)
+                                                                                    : static_cast<float>(v);
     });
   }
   return result;

@@ -10,15 +10,16 @@ namespace pellucid::harness {
 class GpuImage {
 public:
   // Usable as sampled and storage image, for transfers, and as `more` says. Formats: R32_SFLOAT,
-  // R16G16B16A16_SFLOAT, R32G32B32A32_SFLOAT, R8G8B8A8_SNORM; not storage: R32G32_SFLOAT, R8_UINT, R8_UNORM.
-  // layers: 0: a 2D view, else a view of all layers of an array.
+  // R16G16B16A16_SFLOAT, R32G32B32A32_SFLOAT, R8G8B8A8_SNORM, R8G8B8A8_UNORM; not storage: R32G32_SFLOAT,
+  // R8_UINT, R8_UNORM. layers: 0: a 2D view, else a view of all layers of an array.
   GpuImage(Device& device, int width, int height, VkFormat format, VkImageUsageFlags more = 0,
            int layers = 0);
   ~GpuImage();
   GpuImage(const GpuImage&) = delete;
   GpuImage& operator=(const GpuImage&) = delete;
 
-  // Converts to the image's format. Channels that the source lacks become 0, alpha 1.
+  // Converts to the image's format, which is not R8G8B8A8_UNORM. Channels that the source lacks become 0,
+  // alpha 1.
   void upload(const Image& source, int layer = 0);
   // R8_UINT, R8_UNORM: bytes as they are stored.
   void upload(const std::vector<std::uint8_t>& source, int layer = 0);

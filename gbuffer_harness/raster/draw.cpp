@@ -300,6 +300,14 @@ void UploadedModel::createPipeline(Pipeline& pipeline, const RenderTarget& targe
 
 void UploadedModel::draw(const RenderTarget& target, const DrawView& view, const PipelineState& state,
                          VkCullModeFlags doubleSidedCull, const EarlierPass& earlier) const {
+  device_.run([&](VkCommandBuffer commandBuffer) {
+    record(commandBuffer, target, view, state, doubleSidedCull, earlier);
+  });
+}
+
+void UploadedModel::record(VkCommandBuffer commandBuffer, const RenderTarget& target, const DrawView& view,
+                           const PipelineState& state, VkCullModeFlags doubleSidedCull,
+                           const EarlierPass& earlier) const {
   PipelineState doubleSided = state;
   doubleSided.cull = doubleSidedCull;
   const glm::dmat4 viewFromWorld = toGlm(view.viewFromWorld);
@@ -308,48 +316,44 @@ void UploadedModel::draw(const RenderTarget& target, const DrawView& view, const
   constants.planar = -glm::vec4(glm::transpose(viewFromWorld)[2]);
   const GpuImage& white = *textures_.back();
 
-  device_.run([&](VkCommandBuffer commandBuffer) {
-    target.begin(commandBuffer);
-    const VkDeviceSize offset = 0;
-    const VkBuffer vertexBuffer = vertices_.handle();
-    vkCmdBindVertexBuffers(commandBuffer, 0, 1, &vertexBuffer, &offset);
-    vkCmdBindIndexBuffer(commandBuffer, indices_.handle(), 0, VK_INDEX_TYPE_UINT32);
-    for (const Part& part : model_.parts) {
-      const Surface& surface = model_.surfaces[part.surface];
-      vkCmdBindPipeline(commandBuffer, VK_PIPELINE_BIND_POINT_GRAPHICS,
-                        pipelineOf(target, surface.doubleSided ? doubleSided : state));
-      const std::size_t none = textures_.size() - 1;
-      const auto textureOr = [none](int index) { return index < 0 ? none : static_cast<std::size_t>(index); };
-      const std::size_t color = textureOr(surface.texture), normal = textureOr(surface.normalMap),
-                        lobe = textureOr(surface.lobeMap);
-      const GpuImage* const object = earlier.caster ? earlier.caster : earlier.albedoObject;
-      const GpuImage* images[kOwnBindings] = {textures_[color].get(), earlier.depth ? earlier.depth : &white,
-                                              object ? object : &white, textures_[normal].get(),
-                                              textures_[lobe].get()};
-      const std::size_t samplers[kOwnBindings] = {color, none, none, normal, lobe};
-      DescriptorWrites writes;
-      for (std::uint32_t i = 0; i < kOwnBindings; ++i)
-        writes.image(i, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, *samplers_[samplers[i]], images[i]->use());
-      if (earlier.planned) addPlanned(*earlier.planned, writes);
-      pushDescriptors_(commandBuffer, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0,
-                       static_cast<std::uint32_t>(writes.all().size()), writes.all().data());
-      constants.baseColor = vec4(surface.baseColor, surface.alphaCutoff);
-      constants.addedColor = vec4(surface.addedColor, part.object);
-      const float normalScale = surface.normalMap < 0 ? 0 : static_cast<float>(surface.normalScale);
-      const std::uint32_t behind = earlier.depth == nullptr ? 0
-                                   : earlier.caster         ? kBehindCaster
-                                                            : kBehindFront;
-      const std::uint32_t apart = surface.lobes == SurfaceLobes::Apart ? kLobesApart : 0;
-      constants.ids = {surface.material | apart | highHalf(surface.displaced),
-                       view.reversedDepth | highHalf(surface.backscatter), behind,
-                       earlier.planned ? earlier.planned->dispatch.pushConstants[1]
-                                       : std::bit_cast<std::uint32_t>(normalScale)};
-      vkCmdPushConstants(commandBuffer, layout_, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
-                         sizeof constants, &constants);
-      vkCmdDrawIndexed(commandBuffer, part.indexCount, 1, part.firstIndex, 0, 0);
-    }
-    target.end(commandBuffer);
-  });
+  target.begin(commandBuffer);
+  const VkDeviceSize offset = 0;
+  const VkBuffer vertexBuffer = vertices_.handle();
+  vkCmdBindVertexBuffers(commandBuffer, 0, 1, &vertexBuffer, &offset);
+  vkCmdBindIndexBuffer(commandBuffer, indices_.handle(), 0, VK_INDEX_TYPE_UINT32);
+  for (const Part& part : model_.parts) {
+    const Surface& surface = model_.surfaces[part.surface];
+    vkCmdBindPipeline(commandBuffer, VK_PIPELINE_BIND_POINT_GRAPHICS,
+                      pipelineOf(target, surface.doubleSided ? doubleSided : state));
+    const std::size_t none = textures_.size() - 1;
+    const auto textureOr = [none](int index) { return index < 0 ? none : static_cast<std::size_t>(index); };
+    const std::size_t color = textureOr(surface.texture), normal = textureOr(surface.normalMap),
+                      lobe = textureOr(surface.lobeMap);
+    const GpuImage* const object = earlier.caster ? earlier.caster : earlier.albedoObject;
+    const GpuImage* images[kOwnBindings] = {textures_[color].get(), earlier.depth ? earlier.depth : &white,
+                                            object ? object : &white, textures_[normal].get(),
+                                            textures_[lobe].get()};
+    const std::size_t samplers[kOwnBindings] = {color, none, none, normal, lobe};
+    DescriptorWrites writes;
+    for (std::uint32_t i = 0; i < kOwnBindings; ++i)
+      writes.image(i, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, *samplers_[samplers[i]], images[i]->use());
+    if (earlier.planned) addPlanned(*earlier.planned, writes);
+    pushDescriptors_(commandBuffer, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0,
+                     static_cast<std::uint32_t>(writes.all().size()), writes.all().data());
+    constants.baseColor = vec4(surface.baseColor, surface.alphaCutoff);
+    constants.addedColor = vec4(surface.addedColor, part.object);
+    const float normalScale = surface.normalMap < 0 ? 0 : static_cast<float>(surface.normalScale);
+    const std::uint32_t behind = earlier.depth == nullptr ? 0 : earlier.caster ? kBehindCaster : kBehindFront;
+    const std::uint32_t apart = surface.lobes == SurfaceLobes::Apart ? kLobesApart : 0;
+    constants.ids = {surface.material | apart | highHalf(surface.displaced),
+                     view.reversedDepth | highHalf(surface.backscatter), behind,
+                     earlier.planned ? earlier.planned->dispatch.pushConstants[1]
+                                     : std::bit_cast<std::uint32_t>(normalScale)};
+    vkCmdPushConstants(commandBuffer, layout_, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
+                       sizeof constants, &constants);
+    vkCmdDrawIndexed(commandBuffer, part.indexCount, 1, part.firstIndex, 0, 0);
+  }
+  target.end(commandBuffer);
 }
 
 }  // namespace pellucid::harness

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <memory>
 
 #include "kRasterIrradiance.h"
 #include "scene/vector.h"
@@ -121,6 +122,11 @@ void IrradiancePass::createPipeline() {
 }
 
 void IrradiancePass::add(const Light& light, const std::vector<ShadowImage>& shadows) {
+  device_.run(recorder(light, shadows));
+}
+
+std::function<void(VkCommandBuffer)> IrradiancePass::recorder(const Light& light,
+                                                              const std::vector<ShadowImage>& shadows) const {
   const glm::dmat4 viewFromWorld = toGlm(view_.viewFromWorld);
   Constants constants{};
   constants.viewFromWorld = glm::mat4(viewFromWorld);
@@ -128,13 +134,18 @@ void IrradiancePass::add(const Light& light, const std::vector<ShadowImage>& sha
   const bool perspective = view_.clipFromView[15] == 0;
   constants.eye = glm::vec4(1 / view_.clipFromView[0], 1 / view_.clipFromView[5], perspective, 0);
   setShadows(constants, shadows, glm::inverse(viewFromWorld));
-  const HostBuffer buffer(device_, sizeof constants, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
-  std::memcpy(buffer.mapped(), &constants, sizeof constants);
+  const auto buffer =
+      std::make_shared<HostBuffer>(device_, sizeof constants, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
+  std::memcpy(buffer->mapped(), &constants, sizeof constants);
+  return [this, buffer, shadows](VkCommandBuffer commandBuffer) { record(commandBuffer, *buffer, shadows); };
+}
 
+void IrradiancePass::record(VkCommandBuffer commandBuffer, const HostBuffer& constants,
+                            const std::vector<ShadowImage>& shadows) const {
   const auto imageInfo = [&](const GpuImage& image) {
     return VkDescriptorImageInfo{sampler_, image.use().view, image.use().layout};
   };
-  const VkDescriptorBufferInfo bufferInfo{buffer.handle(), 0, VK_WHOLE_SIZE};
+  const VkDescriptorBufferInfo bufferInfo{constants.handle(), 0, VK_WHOLE_SIZE};
   const VkDescriptorImageInfo surface = imageInfo(normalPlanar_), triangles = imageInfo(depthNormal_),
                               target = imageInfo(irradiance_);
   // A descriptor that is not read must be valid all the same.
@@ -153,20 +164,18 @@ void IrradiancePass::add(const Light& light, const std::vector<ShadowImage>& sha
   writes[kShadowBinding].pImageInfo = maps;
   writes[kIrradianceBinding].pImageInfo = &target;
   writes[kTrianglesBinding].pImageInfo = &triangles;
-  device_.run([&](VkCommandBuffer commandBuffer) {
-    vkCmdBindPipeline(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_);
-    pushDescriptors_(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, layout_, 0,
-                     static_cast<std::uint32_t>(std::size(writes)), writes);
-    const auto groups = [](int pixels, int size) {
-      return static_cast<std::uint32_t>((pixels + size - 1) / size);
-    };
-    vkCmdDispatch(commandBuffer, groups(width_, PELLUCID_GROUP_X), groups(height_, PELLUCID_GROUP_Y), 1);
-    // The next light, or the download, reads what this one wrote.
-    const VkMemoryBarrier barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr, VK_ACCESS_SHADER_WRITE_BIT,
-                                  VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT};
-    vkCmdPipelineBarrier(commandBuffer, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
-                         VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 1, &barrier, 0, nullptr, 0, nullptr);
-  });
+  vkCmdBindPipeline(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_);
+  pushDescriptors_(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, layout_, 0,
+                   static_cast<std::uint32_t>(std::size(writes)), writes);
+  const auto groups = [](int pixels, int size) {
+    return static_cast<std::uint32_t>((pixels + size - 1) / size);
+  };
+  vkCmdDispatch(commandBuffer, groups(width_, PELLUCID_GROUP_X), groups(height_, PELLUCID_GROUP_Y), 1);
+  // The next light, or the download, reads what this one wrote.
+  const VkMemoryBarrier barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr, VK_ACCESS_SHADER_WRITE_BIT,
+                                VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT};
+  vkCmdPipelineBarrier(commandBuffer, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
+                       VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 1, &barrier, 0, nullptr, 0, nullptr);
 }
 
 Image IrradiancePass::irradiance() const {

@@ -1,6 +1,7 @@
 // Irradiance of the visible surfaces, light by light.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "common/device.h"
@@ -30,10 +31,16 @@ public:
   // shadows: none, one, or the six of a cube, which have the same size and projection.
   void add(const Light& light, const std::vector<ShadowImage>& shadows);
 
+  // What add() records. The function keeps what the commands read besides this and the images.
+  std::function<void(VkCommandBuffer)> recorder(const Light& light,
+                                                const std::vector<ShadowImage>& shadows) const;
+
   Image irradiance() const;  // RGB
 
 private:
   void createPipeline();
+  void record(VkCommandBuffer commandBuffer, const HostBuffer& constants,
+              const std::vector<ShadowImage>& shadows) const;
 
   Device& device_;
   const GpuImage &normalPlanar_, &depthNormal_;

@@ -162,13 +162,18 @@ void addWarnings(RasterResult& result, const RasterOptions& options) {
 
 RasterResult rasterize(Device& device, const Model& model, const ModelCamera& camera,
                        const RasterOptions& options) {
+  boundsOf(model);  // refuses an empty model, of which nothing can be uploaded
+  return rasterize(device, model, UploadedModel(device, model), camera, options);
+}
+
+RasterResult rasterize(Device& device, const Model& model, const UploadedModel& uploaded,
+                       const ModelCamera& camera, const RasterOptions& options) {
   checkSide(model, "width", options.width, 1);
   checkSide(model, "height", options.height, 1);
   checkSide(model, "shadowSize", options.shadowSize, 0);
   if (options.depthEncoding == PELLUCID_DEPTH_DISTANCE)
     throw InputError(model.name, "depthEncoding", "distance is an encoding of shadow maps only");
   checkShadowDrawing(model, options);
-  boundsOf(model);  // refuses an empty model
 
   RasterResult result;
   Capture& capture = result.capture;
@@ -181,7 +186,6 @@ RasterResult rasterize(Device& device, const Model& model, const ModelCamera& ca
   capture.normalsInViewSpace = options.normalsInViewSpace;
   capture.materials = model.materials;
 
-  const UploadedModel uploaded(device, model);
   const DrawView view{capture.clipFromView, capture.viewFromWorld, options.reversedZ};
   const FrontTarget front(device, options);
   front.draw(uploaded, view);

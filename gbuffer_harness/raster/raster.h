@@ -65,4 +65,10 @@ struct RasterResult {
 RasterResult rasterize(Device& device, const Model& model, const ModelCamera& camera,
                        const RasterOptions& options);
 
+// The same of a model that is on the device already. `model` is the uploaded one, whose lights may have
+// changed.
+class UploadedModel;
+RasterResult rasterize(Device& device, const Model& model, const UploadedModel& uploaded,
+                       const ModelCamera& camera, const RasterOptions& options);
+
 }  // namespace pellucid::harness

@@ -37,22 +37,17 @@ Translucency::Receiver Translucency::toWorld(const Surface& s, const PellucidMat
   return r;
 }
 
-// The models of PellucidAngleModel.
-double Translucency::hiddenCosine(const Receiver& r, std::size_t light, const glm::dvec3& toLight) const {
-  if (settings_.angleModel == PELLUCID_ANGLE_NORMAL && r.normal)
-    return std::max(0.0, -glm::dot(*r.normal, toLight));
-  const glm::dvec3 axis = glm::normalize(glm::dmat3(surfaces_.worldFromView()) * glm::dvec3(0, 0, -1));
-  double x = std::clamp(glm::dot(settings_.constantViewDirection ? axis : r.ray, toLight), -1.0, 1.0);
-  const auto& c = settings_.anglePolynomial;
-  const double m = minimumDots_[light];
-  if (settings_.prescaleAngle && settings_.angleModel >= PELLUCID_ANGLE_COSINE &&
-      settings_.angleModel <= PELLUCID_ANGLE_POLYNOMIAL) {
-    const double begin = double(settings_.minimumDot);
+double angleFactor(const TranslucencySettings& settings, double x, double minimumDot) {
+  const auto& c = settings.anglePolynomial;
+  const double m = minimumDot;
+  if (settings.prescaleAngle && settings.angleModel >= PELLUCID_ANGLE_COSINE &&
+      settings.angleModel <= PELLUCID_ANGLE_POLYNOMIAL) {
+    const double begin = double(settings.minimumDot);
     if (!(begin > -1)) return 0;
     x = (begin + x) / (begin + 1);
     if (x <= 0) return 0;
   }
-  switch (settings_.angleModel) {
+  switch (settings.angleModel) {
     case PELLUCID_ANGLE_INVERSE_COSINE:
       return std::max(0.0, 1 - std::acos(x) * 2 / std::numbers::pi);
     case PELLUCID_ANGLE_POLYNOMIAL:
@@ -67,6 +62,14 @@ double Translucency::hiddenCosine(const Receiver& r, std::size_t light, const gl
     default:
       return std::max(0.0, x);
   }
+}
+
+double Translucency::hiddenCosine(const Receiver& r, std::size_t light, const glm::dvec3& toLight) const {
+  if (settings_.angleModel == PELLUCID_ANGLE_NORMAL && r.normal)
+    return std::max(0.0, -glm::dot(*r.normal, toLight));
+  const glm::dvec3 axis = glm::normalize(glm::dmat3(surfaces_.worldFromView()) * glm::dvec3(0, 0, -1));
+  const double x = std::clamp(glm::dot(settings_.constantViewDirection ? axis : r.ray, toLight), -1.0, 1.0);
+  return angleFactor(settings_, x, minimumDots_[light]);
 }
 
 bool Translucency::usesLightSpace(std::size_t light) const {

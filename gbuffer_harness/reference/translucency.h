@@ -23,6 +23,10 @@ struct Transmission {
   glm::dvec3 transmitted{0};              // sum of T(d) times the unoccluded back irradiance
 };
 
+// What settings.angleModel makes of x, the cosine between the view ray and the direction to the light, -1..1;
+// of NORMAL what it is without normals. minimumDot: the light's, of the models that have one.
+double angleFactor(const TranslucencySettings& settings, double x, double minimumDot);
+
 class Translucency {
 public:
   // Keeps references to the capture and the reader.

@@ -211,13 +211,14 @@ FrameRun::FrameRun(Device& device, const Context& context, const Capture& captur
 
 FrameRun::FrameRun(Device& device, const Context& context, const Capture& capture,
                    const std::vector<PellucidMaterial>& materials, const ReplaySettings& settings,
-                   std::shared_ptr<const InputImages> inputs)
+                   std::shared_ptr<const InputImages> inputs, const FrameRun* previous)
     : context_(context), name_(capture.name), plan_(std::make_unique<PellucidPlan>()) {
   makeFrame(capture, materials, settings, data_);
   if (!data_.frame.separateOutput)
     throw InputError(name_, "aliasOutput", "the inputs are other frames', too");
-  images_ = std::make_unique<Images>(device, capture, settings, data_, std::move(inputs), nullptr);
-  plan(device, nullptr);
+  images_ = std::make_unique<Images>(device, capture, settings, data_, std::move(inputs),
+                                     previous ? previous->images_.get() : nullptr);
+  plan(device, previous ? previous->plan_.get() : nullptr);
 }
 
 void FrameRun::plan(Device& device, const PellucidPlan* previous) {

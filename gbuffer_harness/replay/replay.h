@@ -84,7 +84,7 @@ public:
   // the irradiance the output. Pixels that the pass does not write hold 0.
   FrameRun(Device& device, const Context& context, const Capture& capture,
            const std::vector<PellucidMaterial>& materials, const ReplaySettings& settings,
-           std::shared_ptr<const InputImages> inputs);
+           std::shared_ptr<const InputImages> inputs, const FrameRun* previous = nullptr);
   ~FrameRun();
 
   const PellucidPlan& plan() const { return *plan_; }

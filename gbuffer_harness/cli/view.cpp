@@ -1,0 +1,272 @@
+// `pellucid view`: the interactive application.
+#include <CLI/CLI.hpp>
+
+#include "cli/commands.h"
+#include "common/error.h"
+
+#ifndef PELLUCID_HAS_VIEWER
+
+namespace pellucid::harness {
+
+void addViewCommand(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("view", "Look at a scene and change it (left out of this build)");
+  command->allow_extras();
+  command->callback([] {
+    throw UsageError(
+        "view: this build has no viewer, as libglfw3-dev or libimgui-dev was missing; install them and "
+        "configure again");
+  });
+}
+
+}  // namespace pellucid::harness
+
+#else
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <set>
+
+#include "capture/read.h"
+#include "cli/capture_options.h"
+#include "cli/numbers.h"
+#include "cli/settings.h"
+#include "scene/model.h"
+#include "view/application.h"
+#include "view/perception.h"
+#include "view/session.h"
+
+namespace pellucid::harness {
+
+namespace {
+
+struct Options {
+  CaptureOptions scene;
+  SettingsOptions settings;
+  std::string windowSize = "1280x800";
+  bool noWindow = false, validate = false;
+  int frames = 0;
+  std::string script, screenshot, save;
+  std::string perception, participant, answers;
+  float exposure = 0;
+};
+
+std::string extensionOf(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+// What the scene options say, without those of the viewer and of the replay.
+const std::set<std::string> kNotOfTheScene = {"--set",         "--mode",       "--debug",    "--device",
+                                              "--window-size", "--no-window",  "--validate", "--frames",
+                                              "--script",      "--screenshot", "--exposure", "--perception",
+                                              "--participant", "--answers",    "--save",     "--help"};
+
+std::vector<std::string> sceneArguments(const CLI::App& command) {
+  std::vector<std::string> arguments;
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->count() == 0 || kNotOfTheScene.count(option->get_name()) > 0) continue;
+    for (const std::string& value : option->results()) {
+      if (option->get_positional()) {
+        arguments.push_back(std::filesystem::absolute(value).string());  // sessions are opened from anywhere
+        continue;
+      }
+      const bool isFlag = option->get_expected_min() == 0;
+      arguments.push_back(isFlag && value == "false" ? "--forward-z" : option->get_name());
+      if (!isFlag) arguments.push_back(value);
+    }
+  }
+  return arguments;
+}
+
+bool isCapture(const std::string& path) {
+  const std::string extension = extensionOf(path);
+  return extension == ".exr" || extension == ".json";
+}
+
+void refuseSceneOptions(const CLI::App& command, const std::string& model) {
+  for (const std::string& argument : sceneArguments(command))
+    if (argument.rfind("--", 0) == 0)
+      throw UsageError(argument + ": " + model + " is a capture, whose scene is what it holds");
+}
+
+std::function<std::unique_ptr<Source>(Device&)> opener(const CLI::App& command, const CaptureOptions& scene) {
+  if (!scene.environment.empty())
+    throw UsageError("--environment: is traced by rays, which takes too long; make a capture and view that");
+  if (!scene.model.empty() && isCapture(scene.model)) {
+    refuseSceneOptions(command, scene.model);
+    return [path = scene.model](Device&) { return captureSource(readCapture(path)); };
+  }
+  if (isProcedural(command, scene))
+    return [scene](Device&) {
+      const SceneParameters parameters = procedural(scene);
+      std::vector<MaterialSource> materials = sceneModel(parameters).materials;
+      setIor(materials, scene);
+      return sceneSource(parameters, materials);
+    };
+  return [scene](Device& device) {
+    CaptureModel model = captureModel(scene);
+    say(model);
+    return modelSource(device, std::move(model.model), model.camera, model.raster);
+  };
+}
+
+ReplaySettings parsed(const SettingsOptions& options) {
+  const ReplaySettings settings = options.parse();
+  if (settings.nearestDistance > 0)
+    throw UsageError("--set nearest-distance: promises the distance of a camera that can move here");
+  return settings;
+}
+
+SceneToView sceneOf(const CLI::App& command, const Options& options) {
+  const ReplaySettings settings = parsed(options.settings);
+  return {opener(command, options.scene),
+          [settings, exposure = options.exposure](ViewState& state) {
+            state.settings = settings;
+            if (exposure > 0) state.display.exposure = exposure;
+            if (settings.debugView != PELLUCID_DEBUG_NONE) state.display.shown = Shown::Debug;
+          },
+          sceneArguments(command)};
+}
+
+void parseScene(CLI::App& command, CaptureOptions& scene, std::vector<std::string> arguments,
+                const std::filesystem::path& file) {
+  addCaptureOptions(command, scene, SceneUse::Replay);
+  std::reverse(arguments.begin(), arguments.end());
+  try {
+    command.parse(arguments);
+  } catch (const CLI::ParseError& error) {
+    throw InputError(file.string(), "scene", error.what());
+  }
+}
+
+// A saved view, opened with the options that its scene was first opened with.
+SceneToView savedView(const Options& given, const std::filesystem::path& path) {
+  const Session session = readSession(path);
+  CLI::App command("", "view");
+  Options options = given;
+  options.scene = {};
+  parseScene(command, options.scene, session.scene, path);
+  std::vector<std::string>& set = options.settings.set;
+  set.insert(set.begin(), "@" + (path.parent_path() / session.settings).string());
+  SceneToView scene = sceneOf(command, options);
+  scene.start = [path, start = scene.start](ViewState& state) {
+    state = readSession(path, state).state;
+    start(state);
+  };
+  return scene;
+}
+
+// A file that is named in the panel: a saved view, or what the command line would have opened with its
+// options.
+SceneToView loaded(const Options& given, const std::filesystem::path& path) {
+  if (isSession(path)) return savedView(given, path);
+  CLI::App command("", "view");
+  Options options = given;
+  const bool capture = isCapture(path.string());
+  const CaptureOptions before = given.scene;
+  options.scene = {};
+  std::vector<std::string> arguments = {path.string()};
+  if (!capture) {
+    // Options of models hold for every model.
+    const auto add = [&](const char* name, const std::string& value) {
+      arguments.push_back(name);
+      arguments.push_back(value);
+    };
+    add("--unit", before.unit);
+    add("--size", before.size);
+    for (const std::string& preset : before.presets) add("--material", preset);
+    for (const std::string& light : before.model.empty() ? std::vector<std::string>() : before.lights)
+      add("--light", light);
+  }
+  parseScene(command, options.scene, arguments, path);
+  return sceneOf(command, options);
+}
+
+void parseSize(const std::string& text, ApplicationOptions& options) {
+  const std::vector<std::string> size = split(text, 'x');
+  if (size.size() != 2) throw UsageError("--window-size: \"" + text + "\" is not WIDTHxHEIGHT");
+  options.width = parseNumber<int>("--window-size", size[0]);
+  options.height = parseNumber<int>("--window-size", size[1]);
+  for (const int side : {options.width, options.height})
+    if (side < 64 || side > 8192)
+      throw UsageError("--window-size: " + std::to_string(side) + " is outside 64 .. 8192");
+}
+
+PerceptionOptions perceptionTest(const CLI::App& command, const Options& options) {
+  if (!sceneArguments(command).empty())
+    throw UsageError(sceneArguments(command).front() + ": the scenes are those of --perception");
+  if (options.participant.empty() || options.answers.empty())
+    throw UsageError("--perception: needs --participant and --answers");
+  if (!options.save.empty()) throw UsageError("--save: there is no one scene in a perception test");
+  requireNewParticipant(options.answers, options.participant);
+  return {readSceneList(options.perception), options.participant, options.answers, parsed(options.settings),
+          options.exposure};
+}
+
+void view(const CLI::App& command, const Options& options) {
+  const std::string& model = options.scene.model;
+  if (options.noWindow && options.frames == 0) throw UsageError("--no-window: needs --frames");
+  ApplicationOptions application;
+  application.device = options.scene.device;
+  application.validation = options.validate;
+  application.window = !options.noWindow;
+  parseSize(options.windowSize, application);
+  application.frames = options.frames;
+  application.script = options.script;
+  application.screenshot = options.screenshot;
+  application.save = options.save;
+  application.settingsText = settingsJson;
+  application.load = [&](const std::filesystem::path& path) { return loaded(options, path); };
+  if (!options.perception.empty()) {
+    application.perception = perceptionTest(command, options);
+  } else if (!model.empty() && isSession(model)) {
+    refuseSceneOptions(command, model);
+    application.scene = savedView(options, model);
+  } else {
+    application.scene = sceneOf(command, options);
+  }
+  const ApplicationReport report = runApplication(application);
+  std::printf("%s\n%d frames of the screen, %llu of the module\n", report.device.c_str(), report.frames,
+              static_cast<unsigned long long>(report.recorded));
+  for (const std::string& file : report.saved) std::printf("wrote %s\n", file.c_str());
+}
+
+}  // namespace
+
+void addViewCommand(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("view", "Look at a model, a scene, a capture or a saved view, and change it");
+  addCaptureOptions(*command, options->scene, SceneUse::Replay);
+  command->get_option("model")->description(
+      "glTF file (.glb, .gltf), capture (.exr, .json) or saved view (.view.json)");
+  options->settings.addTo(*command);
+  command->add_option("--window-size", options->windowSize, "WIDTHxHEIGHT in pixels")->capture_default_str();
+  command
+      ->add_option("--frames", options->frames,
+                   "of the screen, after which it ends; default: when the window is closed")
+      ->check(CLI::Range(1, 1000000));
+  command->add_flag("--no-window", options->noWindow, "draws into an image: needs no display");
+  command->add_option("--script", options->script, "input from a file (docs/view.md)");
+  command->add_option("--screenshot", options->screenshot, "PNG of the last frame of the screen");
+  command->add_option(
+      "--save", options->save,
+      "NAME.exr: at the end the capture, with settings, session, result and picture beside it");
+  command->add_option("--exposure", options->exposure, "factor; default: from the first picture")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--perception", options->perception,
+                      "perception test: a file that names captures, one a line");
+  command->add_option("--participant", options->participant, "who takes the test");
+  command->add_option("--answers", options->answers, "CSV that the test's answers are added to");
+  command->add_flag("--validate", options->validate,
+                    "with the Vulkan validation layers, whose messages are an error");
+  command->callback([options, command] { view(*command, *options); });
+}
+
+}  // namespace pellucid::harness
+
+#endif

@@ -1,0 +1,371 @@
+#include "view/application.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "capture/read.h"
+#include "common/error.h"
+#include "common/png.h"
+#include "view/gui.h"
+#include "view/input.h"
+#include "view/panel.h"
+#include "view/perception.h"
+#include "view/picture.h"
+#include "view/save.h"
+#include "view/scripted_input.h"
+#include "view/window.h"
+
+namespace pellucid::harness {
+
+namespace {
+
+// Dear ImGui shows what a click did in the frames after it.
+constexpr int kFramesAfterInput = 3;
+constexpr VkFormat kScreenFormat = VK_FORMAT_R8G8B8A8_UNORM;
+
+DeviceOptions deviceOptions(const ApplicationOptions& options, const Desktop* desktop) {
+  DeviceOptions result{options.device, options.validation};
+  if (desktop) desktop->require(result);
+  return result;
+}
+
+// The screen as an image, which the window shows and screenshots are made of.
+std::unique_ptr<RenderTarget> makeScreen(Device& device, int width, int height) {
+  return std::make_unique<RenderTarget>(
+      device, width, height,
+      std::vector<RenderTarget::Color>{{kScreenFormat, {.float32 = {0.08f, 0.08f, 0.09f, 1}}}}, std::nullopt);
+}
+
+class Application {
+public:
+  explicit Application(const ApplicationOptions& options)
+      : options_(options),
+        desktop_(options.window ? std::make_unique<Desktop>() : nullptr),
+        device_(deviceOptions(options, desktop_.get())),
+        width_(options.width),
+        height_(options.height),
+        script_(options.script.empty() ? std::vector<ScriptLine>() : readScript(options.script)) {
+    if (!device_.canDraw())
+      throw DeviceError(device_.description() + " computes but has no queue that draws");
+    if (options.window) window_ = std::make_unique<Window>(*desktop_, device_, "Pellucid", width_, height_);
+    screen_ = makeScreen(device_, width_, height_);
+    gui_ = std::make_unique<Gui>(device_, *screen_, window_ ? window_->handle() : nullptr);
+    display_ = std::make_unique<DisplayPass>(device_, *screen_);
+    contexts_ = std::make_unique<Contexts>(device_);
+    if (isTest())
+      openQuestion();
+    else
+      open(options.scene);
+  }
+
+  ApplicationReport run() {
+    int left = kFramesAfterInput;
+    while (!done()) {
+      if (window_) {
+        const bool idle = left == 0 && options_.frames == 0 && !panel_.measure && script_.isDone();
+        window_->events(idle);
+        if (idle) left = kFramesAfterInput;
+      }
+      if (!fitScreen()) {
+        // Nothing to draw on until the window is restored; frames that were asked for end all the same.
+        if (options_.frames == 0 && window_) window_->events(true);
+        ++passed_;
+        continue;
+      }
+      left = drawFrame() ? kFramesAfterInput : std::max(left - 1, 0);
+    }
+    if (!options_.save.empty()) save(options_.save);
+    if (!options_.screenshot.empty()) screenshot(options_.screenshot);
+    const std::vector<std::string> messages = device_.validationMessages();
+    if (!messages.empty())
+      throw DeviceError(std::to_string(messages.size()) +
+                        " messages of the validation layers: " + messages.front());
+    report_.device = device_.description();
+    report_.recorded = frames_->recorded();
+    return report_;
+  }
+
+private:
+  bool done() const {
+    if (testDone_ || (window_ && window_->shouldClose())) return true;
+    return options_.frames > 0 && passed_ >= options_.frames;
+  }
+
+  // Makes the screen as large as the window; false: there is none to see.
+  bool fitScreen() {
+    int width = width_, height = height_;
+    if (window_) window_->size(width, height);
+    if (width <= 0 || height <= 0) return false;
+    if (width == width_ && height == height_) return true;
+    width_ = width;
+    height_ = height;
+    screen_ = makeScreen(device_, width, height);
+    return true;
+  }
+
+  ScreenRect pictureArea() const {
+    return {0, 0, std::max(static_cast<float>(width_) - kPanelWidth, 1.0f), static_cast<float>(height_)};
+  }
+
+  ScreenRect picture() const {
+    return fitted(pictureArea(), frames_->capture().width, frames_->capture().height);
+  }
+
+  // One frame of the screen; true where another one has to follow.
+  bool drawFrame() {
+    ++passed_;
+    ++report_.frames;
+    gui_->poll(width_, height_);
+    Changes changes;
+    script_.play(passed_, state_, changes, [this](const ScriptLine& line) { carryOut(line); });
+    gui_->begin();
+    if (isTest()) {
+      changes.add(askForColor());
+    } else {
+      changes.add(controls_.apply(state_, input(), *source_, picture()));
+      changes.add(drawPanel(state_, panel_, *frames_, *source_,
+                            {0, 0, static_cast<float>(width_), static_cast<float>(height_)}));
+    }
+    followWindow(changes);
+    turn(changes);
+    changes.frame |= panel_.measure;
+    update(changes);
+    const ScreenRect picture = this->picture();
+    const ImVec2 cursor = ImGui::GetIO().MousePos;
+    if (!isTest()) drawOverlay(state_, panel_, *frames_, picture, cursor.x, cursor.y);
+    gui_->end();
+    device_.run([&](VkCommandBuffer commandBuffer) {
+      screen_->begin(commandBuffer);
+      drawPicture(commandBuffer, *display_, *frames_, state_.display, picture, panel_.colors);
+      gui_->record(commandBuffer);
+      screen_->end(commandBuffer);
+    });
+    bool again = changes.any();
+    if (window_ && !window_->present(screen_->image(0), width_, height_)) again = true;
+    if (panel_.save) save(panel_.savePath);
+    panel_.save = false;
+    if (panel_.load) {
+      load(panel_.loadPath);
+      again = true;
+    }
+    panel_.load = false;
+    takeScreenshots();
+    return again;
+  }
+
+  void update(const Changes& changes) {
+    if (!changes.any()) return;
+    try {
+      frames_->update(state_, changes);
+      if (panel_.isError) panel_.message.clear();
+      panel_.isError = false;
+    } catch (const InputError& error) {
+      report(error.what(), true);
+    }
+    panel_.colors = falseColorsOf(state_.display, *frames_);
+  }
+
+  void report(const std::string& message, bool isError) {
+    panel_.message = message;
+    panel_.isError = isError;
+  }
+
+  // As captures of turntables have it: the model stays, and camera and lights turn back by its angle.
+  void turn(Changes& changes) {
+    if (panel_.headTurn == 0 && panel_.lightTurn == 0) return;
+    const auto step = [](int frames) { return frames > 0 ? 2 * std::numbers::pi / frames : 0; };
+    const double head = step(panel_.headTurn);
+    changes.add(turnTable(state_, source_->center(), -head, step(panel_.lightTurn) - head));
+  }
+
+  void followWindow(Changes& changes) {
+    if (!panel_.followWindow) return;
+    const ScreenRect area = pictureArea();
+    const int width = std::clamp(static_cast<int>(area.width), 1, 8192);
+    const int height = std::clamp(static_cast<int>(area.height), 1, 8192);
+    if (width == state_.width && height == state_.height) return;
+    state_.width = width;
+    state_.height = height;
+    changes.scene = true;
+  }
+
+  static ViewInput input() {
+    const ImGuiIO& io = ImGui::GetIO();
+    ViewInput result;
+    result.x = io.MousePos.x;
+    result.y = io.MousePos.y;
+    if (!io.WantCaptureMouse) {
+      result.movedX = io.MouseDelta.x;
+      result.movedY = io.MouseDelta.y;
+      result.wheel = io.MouseWheel;
+      result.left = io.MouseDown[0];
+      result.right = io.MouseDown[1];
+      result.middle = io.MouseDown[2];
+      result.shift = io.KeyShift;
+    }
+    if (io.WantCaptureKeyboard) return result;
+    result.forward = io.KeysDown['W'];
+    result.back = io.KeysDown['S'];
+    result.stepLeft = io.KeysDown['A'];
+    result.stepRight = io.KeysDown['D'];
+    result.up = io.KeysDown['E'];
+    result.down = io.KeysDown['Q'];
+    result.seconds = std::min(io.DeltaTime, 0.1f);  // a slow frame is no leap
+    return result;
+  }
+
+  bool isTest() const { return !options_.perception.scenes.empty(); }
+  void carryOut(const ScriptLine& line);
+  void open(const SceneToView& scene);
+  void load(const std::filesystem::path& file);
+  void openQuestion();
+  Changes askForColor();
+  void takeScreenshots();
+  void save(const std::filesystem::path& capture);
+  void screenshot(const std::filesystem::path& file);
+
+  const ApplicationOptions& options_;
+  std::unique_ptr<Desktop> desktop_;
+  Device device_;
+  int width_, height_;
+  std::unique_ptr<Source> source_;
+  ViewState state_;
+  PanelState panel_;
+  Controls controls_;
+  std::unique_ptr<Window> window_;
+  std::unique_ptr<RenderTarget> screen_;
+  std::unique_ptr<Gui> gui_;
+  std::unique_ptr<DisplayPass> display_;
+  std::unique_ptr<Contexts> contexts_;
+  std::unique_ptr<ViewFrames> frames_;
+  ScriptedInput script_;
+  std::vector<std::filesystem::path> pendingScreenshots_, pendingSaves_;
+  std::vector<std::string> arguments_;  // that open the scene
+  std::size_t scene_ = 0;               // of the perception test
+  std::chrono::steady_clock::time_point sceneBegin_;
+  bool spaceDown_ = false, testDone_ = false;
+  int passed_ = 0;  // frames, with those that had no screen
+  ApplicationReport report_;
+};
+
+void Application::carryOut(const ScriptLine& line) {
+  if (line.command == "save") return pendingSaves_.push_back(line.arguments.front());
+  if (line.command == "turn") {
+    panel_.headTurn = std::clamp(static_cast<int>(numberOf(line, 0)), 0, kLongestTurn);
+    panel_.lightTurn = std::clamp(static_cast<int>(numberOf(line, 1)), 0, kLongestTurn);
+    return;
+  }
+  if (line.command == "open") return load(line.arguments.front());
+  if (line.command == "screenshot") return pendingScreenshots_.push_back(line.arguments.front());
+  if (!window_) throw InputError(line.where, line.command, "needs a window");
+  window_->resize(std::clamp(static_cast<int>(numberOf(line, 0)), 64, 8192),
+                  std::clamp(static_cast<int>(numberOf(line, 1)), 64, 8192));
+}
+
+// What was open stays where the new scene cannot be read or rendered.
+void Application::open(const SceneToView& scene) {
+  std::unique_ptr<Source> source = scene.open(device_);
+  ViewState state = source->start();
+  scene.start(state);
+  auto frames = std::make_unique<ViewFrames>(device_, *contexts_, *source);
+  frames->update(state, {});
+  if (state.display.exposure == 0) state.display.exposure = autoExposure(frames->image(Shown::After));
+  frames_ = std::move(frames);
+  source_ = std::move(source);
+  state_ = std::move(state);
+  arguments_ = scene.arguments;
+  panel_.colors = falseColorsOf(state_.display, *frames_);
+  panel_.cost = {};
+}
+
+void Application::load(const std::filesystem::path& file) {
+  try {
+    open(options_.load(file));
+    report("opened " + file.string(), false);
+  } catch (const InputError& error) {
+    report(error.what(), true);
+  } catch (const UsageError& error) {
+    report(error.what(), true);
+  }
+}
+
+// The perception test's scene, with a filter that changes nothing.
+void Application::openQuestion() {
+  const PerceptionOptions& test = options_.perception;
+  open({[&](Device&) { return captureSource(readCapture(test.scenes[scene_])); },
+        [&](ViewState& state) {
+          state.settings = test.settings;
+          state.settings.translucency.transmittanceFilter = {1, 1, 1};
+          state.display.exposure = test.exposure;
+        },
+        {}});
+  sceneBegin_ = std::chrono::steady_clock::now();
+}
+
+// The perception test's panel; space accepts the color and goes on.
+Changes Application::askForColor() {
+  const PerceptionOptions& test = options_.perception;
+  std::array<float, 3>& color = state_.settings.translucency.transmittanceFilter;
+  Changes changes;
+  changes.frame = drawColorQuestion(color, scene_ + 1, test.scenes.size(), static_cast<float>(width_),
+                                    static_cast<float>(height_));
+  const bool down = ImGui::GetIO().KeysDown[' '], pressed = down && !spaceDown_;
+  spaceDown_ = down;
+  if (!pressed) return changes;
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - sceneBegin_;
+  addAnswer(test.answers, {test.participant,
+                           test.scenes[scene_].stem().string(),
+                           {color[0], color[1], color[2]},
+                           seconds.count()});
+  if (++scene_ == test.scenes.size()) {
+    testDone_ = true;
+    --scene_;
+    return changes;
+  }
+  openQuestion();
+  changes.shown = true;
+  return changes;
+}
+
+void Application::takeScreenshots() {
+  for (const auto& file : pendingSaves_) save(file);
+  for (const auto& file : pendingScreenshots_) screenshot(file);
+  pendingSaves_.clear();
+  pendingScreenshots_.clear();
+}
+
+void Application::save(const std::filesystem::path& capture) {
+  try {
+    const SavedFiles files = savedFiles(capture);
+    // A replay is a frame of its own: what is saved must not come from frames before.
+    if (state_.settings.reuse != PELLUCID_REUSE_NONE) {
+      frames_->forgetHistory();
+      frames_->update(state_, {.frame = true});
+    }
+    saveView(files, *frames_, options_.settingsText(settingsFor(state_, Shown::After)),
+             {arguments_, "", state_});
+    savePicture(files.picture, screen_->image(0).download());
+    for (const auto& file : {files.capture, files.settings, files.session, files.result, files.picture})
+      report_.saved.push_back(file.string());
+    report("saved " + files.capture.string(), false);
+  } catch (const InputError& error) {
+    if (options_.frames > 0) throw;  // nobody reads the panel
+    report(error.what(), true);
+  }
+}
+
+void Application::screenshot(const std::filesystem::path& file) {
+  savePicture(file, screen_->image(0).download());
+  report_.saved.push_back(file.string());
+}
+
+}  // namespace
+
+ApplicationReport runApplication(const ApplicationOptions& options) { return Application(options).run(); }
+
+}  // namespace pellucid::harness

@@ -1,0 +1,54 @@
+// `pellucid view` itself: a window, or an image in its place, with picture and panel.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "view/source.h"
+#include "view/state.h"
+
+namespace pellucid::harness {
+
+// Whelan 2009, 3.4.1: each scene until a color is accepted, then the next, then the end.
+struct PerceptionOptions {
+  std::vector<std::filesystem::path> scenes;  // captures; empty: no test
+  std::string participant;
+  std::filesystem::path answers;  // CSV that rows are added to
+  ReplaySettings settings;        // but for the filter
+  float exposure = 0;             // of all scenes; 0: each by its own picture
+};
+
+struct SceneToView {
+  std::function<std::unique_ptr<Source>(Device&)> open;
+  std::function<void(ViewState&)> start;  // changes the state that the source begins with
+  std::vector<std::string> arguments;     // that open it again, for saved sessions
+};
+
+struct ApplicationOptions {
+  std::string device;              // part of the Vulkan device's name; empty: the fastest kind
+  bool validation = false;         // messages of the validation layers end it with a DeviceError
+  bool window = true;              // false: needs `frames`
+  int width = 1280, height = 800;  // of the window, pixels
+  int frames = 0;                  // of the screen, then it ends; 0: until the window is closed
+  std::filesystem::path script, screenshot, save;  // empty: none. The latter two are written at the end
+  std::function<std::string(const ReplaySettings&)> settingsText;  // what --set @FILE reads
+  SceneToView scene;
+  std::function<SceneToView(const std::filesystem::path&)> load;  // of a file that a person names later
+  PerceptionOptions perception;                                   // with scenes, `scene` is not looked at
+};
+
+struct ApplicationReport {
+  std::string device;              // its description
+  int frames = 0;                  // of the screen that were drawn
+  std::uint64_t recorded = 0;      // of the module
+  std::vector<std::string> saved;  // files
+};
+
+// Throws DeviceError where there is no display or device, and what opening, rendering and saving throw.
+ApplicationReport runApplication(const ApplicationOptions& options);
+
+}  // namespace pellucid::harness

@@ -1,0 +1,61 @@
+// Draws what is shown of a frame into a target of the screen's format.
+#pragma once
+
+#include "common/device.h"
+#include "common/gpu_image.h"
+#include "raster/render_target.h"
+#include "view/frames.h"
+#include "view/state.h"
+
+namespace pellucid::harness {
+
+// Pixels of the screen, from its top left corner.
+struct ScreenRect {
+  float x = 0, y = 0, width = 0, height = 0;
+};
+
+// The largest rectangle within `area` that has the picture's shape, in its middle.
+ScreenRect fitted(const ScreenRect& area, int width, int height);
+
+// The texel of the picture under a position of the screen; none outside of it.
+struct Texel {
+  int x, y;
+};
+std::optional<Texel> texelAt(const ScreenRect& picture, int width, int height, float x, float y);
+
+class DisplayPass {
+public:
+  // For targets like `target`. The device must be able to draw.
+  DisplayPass(Device& device, const RenderTarget& target);
+
+  // Within target.begin() and end(). `picture`: where the whole frame is on the screen; only `clip` is drawn.
+  // low, high: values at the ends of the false colors.
+  void draw(VkCommandBuffer commandBuffer, const ViewFrames& frames, const Display& display, Shown shown,
+            const ScreenRect& picture, const ScreenRect& clip, float low, float high) const;
+
+  // The false colors, low at the bottom.
+  void drawLegend(VkCommandBuffer commandBuffer, const ViewFrames& frames, const ScreenRect& rect) const;
+
+private:
+  struct Push {
+    float origin[2], extent[2];
+    float scale;
+    std::int32_t shown, toneMap, channel;
+    float exposure, low, high;
+    std::int32_t isLegend, hasTruth, isFalseColor;
+  };
+  void createLayout();
+  void createPipeline(const RenderTarget& target);
+  void draw(VkCommandBuffer commandBuffer, const ViewFrames& frames, Shown shown, const Push& push,
+            const ScreenRect& clip) const;
+
+  Device& device_;
+  GpuImage white_;  // of one texel, for what a frame does not have
+  Owned<VkSampler, vkDestroySampler> sampler_;
+  Owned<VkDescriptorSetLayout, vkDestroyDescriptorSetLayout> setLayout_;
+  Owned<VkPipelineLayout, vkDestroyPipelineLayout> layout_;
+  Owned<VkPipeline, vkDestroyPipeline> pipeline_;
+  PFN_vkCmdPushDescriptorSetKHR pushDescriptors_ = nullptr;
+};
+
+}  // namespace pellucid::harness

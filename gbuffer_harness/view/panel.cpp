@@ -1,0 +1,262 @@
+#include "view/panel.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "common/compare.h"
+#include "view/parameters.h"
+
+namespace pellucid::harness {
+
+namespace {
+
+constexpr ImU32 kWhite = IM_COL32(255, 255, 255, 255), kShade = IM_COL32(0, 0, 0, 160);
+
+void hint(const std::string& text) {
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text.c_str());
+}
+
+bool combo(const char* label, int& index, const std::vector<std::string>& names) {
+  return ImGui::Combo(
+      label, &index,
+      [](void* data, int i, const char** text) {
+        *text = (*static_cast<const std::vector<std::string>*>(data))[static_cast<std::size_t>(i)].c_str();
+        return true;
+      },
+      const_cast<std::vector<std::string>*>(&names), static_cast<int>(names.size()));
+}
+
+bool shownCombo(const char* label, Shown& shown) {
+  int index = static_cast<int>(shown);
+  const bool changed = combo(label, index, shownNames());
+  shown = static_cast<Shown>(index);
+  return changed;
+}
+
+bool drawParameter(const Parameter& parameter, ReplaySettings& settings) {
+  Parameter::Values values = parameter.get(settings);
+  const char* const label = parameter.label.c_str();
+  bool changed = false;
+  switch (parameter.kind) {
+    case ParameterKind::Choice: {
+      int index = static_cast<int>(values[0]);
+      changed = combo(label, index, parameter.choices);
+      values[0] = static_cast<float>(index);
+      break;
+    }
+    case ParameterKind::Flag: {
+      bool on = values[0] != 0;
+      changed = ImGui::Checkbox(label, &on);
+      values[0] = on;
+      break;
+    }
+    case ParameterKind::Whole: {
+      int whole = static_cast<int>(values[0]);
+      changed =
+          ImGui::SliderInt(label, &whole, static_cast<int>(parameter.low), static_cast<int>(parameter.high));
+      values[0] = static_cast<float>(whole);
+      break;
+    }
+    case ParameterKind::Real:
+      changed = ImGui::SliderScalarN(label, ImGuiDataType_Float, values.data(), parameter.components,
+                                     &parameter.low, &parameter.high, "%.3g");
+      break;
+  }
+  hint(parameter.help + " (--set " + parameter.key + ")");
+  if (changed) assign(parameter, settings, values);
+  return changed;
+}
+
+bool drawParameters(ReplaySettings& settings) {
+  bool changed = false;
+  for (const ParameterGroup& group : parameterGroups()) {
+    if (!ImGui::CollapsingHeader(group.name.c_str(), group.open ? ImGuiTreeNodeFlags_DefaultOpen : 0))
+      continue;
+    for (const Parameter& parameter : group.parameters) {
+      const bool used = !parameter.used || parameter.used(settings);
+      if (!used) ImGui::BeginDisabled();
+      changed |= drawParameter(parameter, settings);
+      if (!used) ImGui::EndDisabled();
+    }
+  }
+  return changed;
+}
+
+Changes drawDisplay(ViewState& state, const PanelState& panel, const ViewFrames& frames) {
+  Changes changes;
+  if (!ImGui::CollapsingHeader("Picture", ImGuiTreeNodeFlags_DefaultOpen)) return changes;
+  Display& display = state.display;
+  changes.shown |= shownCombo("show", display.shown);
+  if (display.shown == Shown::Debug || (display.split && display.left == Shown::Debug)) {
+    int view = std::max(static_cast<int>(state.settings.debugView) - 1, 0);
+    const std::vector<std::string> names = {"thickness, mm", "transmittance", "occlusion", "irradiance"};
+    changes.frame |= combo("debug view", view, names);
+    state.settings.debugView = static_cast<PellucidDebugView>(view + 1);
+  }
+  changes.shown |= ImGui::Checkbox("split", &display.split);
+  if (display.split) {
+    ImGui::SameLine();
+    changes.shown |= shownCombo("left", display.left);
+  }
+  if (isFalseColor(display.shown) || (display.split && isFalseColor(display.left))) {
+    changes.shown |= combo("channel", display.channel, {"R", "G", "B"});
+    float ends[2] = {panel.colors.low, panel.colors.high};
+    if (ImGui::DragFloat2("false colors", ends,
+                          0.01f * std::max(std::abs(panel.colors.high - panel.colors.low), 1e-3f))) {
+      display.falseLow = ends[0];
+      display.falseHigh = ends[1];
+      changes.shown = true;
+    }
+    if (ImGui::Button("ends of the picture")) {
+      display.falseLow = display.falseHigh = 0;
+      changes.shown = true;
+    }
+  }
+  changes.shown |=
+      ImGui::SliderFloat("exposure", &display.exposure, 0.01f, 100, "%.3g", ImGuiSliderFlags_Logarithmic);
+  int tone = static_cast<int>(display.toneMap);
+  changes.shown |= combo("tone mapping", tone, toneMapNames());
+  display.toneMap = static_cast<ToneMap>(tone);
+  const Capture& capture = frames.capture();
+  if (!capture.truth) return changes;
+  const Comparison error = compareImages(frames.image(Shown::After), capture.truth->image, capture.material);
+  ImGui::Text("relative RMSE from the truth: %.4f %.4f %.4f", error.channels[0].relativeRmse,
+              error.channels[1].relativeRmse, error.channels[2].relativeRmse);
+  return changes;
+}
+
+Changes drawCamera(ViewState& state, PanelState& panel, const Source& source) {
+  Changes changes;
+  if (!ImGui::CollapsingHeader("Camera")) return changes;
+  if (const std::string fixed = source.fixedCamera(); !fixed.empty()) {
+    ImGui::TextWrapped("%s", fixed.c_str());
+    return changes;
+  }
+  ModelCamera& lens = state.camera.lens;
+  if (!lens.orthographic) {
+    float degrees = static_cast<float>(lens.verticalFov * 180 / 3.14159265358979);
+    if (ImGui::SliderFloat("field of view", &degrees, 1, 120, "%.1f deg")) {
+      lens.verticalFov = static_cast<double>(degrees) * 3.14159265358979 / 180;
+      changes.scene = true;
+    }
+  }
+  if (ImGui::Button("as it was")) {
+    state.camera = source.start().camera;
+    changes.scene = true;
+  }
+  ImGui::SameLine();
+  ImGui::Checkbox("size of the window", &panel.followWindow);
+  int size[2] = {state.width, state.height};
+  if (!panel.followWindow && ImGui::InputInt2("size", size, ImGuiInputTextFlags_EnterReturnsTrue)) {
+    state.width = std::clamp(size[0], 1, 8192);
+    state.height = std::clamp(size[1], 1, 8192);
+    changes.scene = true;
+  }
+  // The model turns before the camera, and the lights at their own speed (Whelan 2009, 5.1).
+  ImGui::InputInt("model turns in frames", &panel.headTurn, 60);
+  if (source.fixedLights().empty()) ImGui::InputInt("lights turn in frames", &panel.lightTurn, 60);
+  panel.headTurn = std::clamp(panel.headTurn, 0, kLongestTurn);
+  panel.lightTurn = std::clamp(panel.lightTurn, 0, kLongestTurn);
+  ImGui::TextDisabled(
+      "drag: orbit; right: look; middle: pan; wheel: zoom\nw a s d e q: walk; shift + drag: light");
+  return changes;
+}
+
+}  // namespace
+
+Changes drawPanel(ViewState& state, PanelState& panel, const ViewFrames& frames, const Source& source,
+                  const ScreenRect& screen) {
+  ImGui::SetNextWindowPos({screen.width - kPanelWidth, 0});
+  ImGui::SetNextWindowSize({kPanelWidth, screen.height});
+  ImGui::Begin("Pellucid", nullptr,
+               ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
+                   ImGuiWindowFlags_NoTitleBar);
+  ImGui::PushItemWidth(200);
+  Changes changes;
+  if (!panel.message.empty()) {
+    ImGui::PushStyleColor(ImGuiCol_Text,
+                          panel.isError ? ImVec4(1, 0.45f, 0.4f, 1) : ImVec4(0.6f, 0.9f, 0.6f, 1));
+    ImGui::TextWrapped("%s", panel.message.c_str());
+    ImGui::PopStyleColor();
+  }
+  changes.add(drawDisplay(state, panel, frames));
+  changes.frame |= drawParameters(state.settings);
+  changes.add(drawMaterials(state, frames));
+  if (ImGui::CollapsingHeader("T(d) and profile", ImGuiTreeNodeFlags_DefaultOpen)) drawCurves(state, frames);
+  changes.add(drawLights(state, source));
+  changes.add(drawCamera(state, panel, source));
+  changes.add(drawCost(state, panel, frames));
+  if (ImGui::CollapsingHeader("Open and save")) {
+    ImGui::InputText("file", panel.loadPath, sizeof panel.loadPath);
+    if (ImGui::Button("open")) panel.load = true;
+    hint("A model, a capture or a saved view, with the options of the command line.");
+    ImGui::InputText("capture", panel.savePath, sizeof panel.savePath);
+    if (ImGui::Button("save capture, settings, session, result and picture")) panel.save = true;
+  }
+  for (const std::string& warning : frames.warnings()) ImGui::TextWrapped("warning: %s", warning.c_str());
+  ImGui::PopItemWidth();
+  ImGui::End();
+  return changes;
+}
+
+bool drawColorQuestion(std::array<float, 3>& color, std::size_t number, std::size_t count, float width,
+                       float height) {
+  ImGui::SetNextWindowPos({width - kPanelWidth, 0});
+  ImGui::SetNextWindowSize({kPanelWidth, height});
+  ImGui::Begin("Question", nullptr,
+               ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoTitleBar);
+  ImGui::Text("Scene %zu of %zu", number, count);
+  ImGui::TextWrapped(
+      "Choose the color of the light that comes through until the picture looks real, then press "
+      "the space bar.");
+  const bool changed = ImGui::ColorPicker3("##color", color.data(),
+                                           ImGuiColorEditFlags_PickerHueWheel | ImGuiColorEditFlags_Float);
+  ImGui::End();
+  return changed;
+}
+
+void drawOverlay(const ViewState& state, const PanelState& panel, const ViewFrames& frames,
+                 const ScreenRect& picture, float cursorX, float cursorY) {
+  ImDrawList* const list = ImGui::GetBackgroundDrawList();
+  const auto text = [&](float x, float y, const std::string& words) {
+    const ImVec2 size = ImGui::CalcTextSize(words.c_str());
+    list->AddRectFilled({x - 4, y - 2}, {x + size.x + 4, y + size.y + 2}, kShade);
+    list->AddText({x, y}, kWhite, words.c_str());
+  };
+  const auto name = [](Shown shown) { return shownNames()[static_cast<std::size_t>(shown)]; };
+  const Display& display = state.display;
+  const float split = picture.x + display.splitAt * picture.width, top = picture.y + 8;
+  if (display.split) {
+    list->AddLine({split, picture.y}, {split, picture.y + picture.height}, kWhite, 2);
+    text(picture.x + 8, top, name(display.left));
+  }
+  text((display.split ? split : picture.x) + 8, top, name(display.shown));
+  const ScreenRect legend = legendOf(display, picture);
+  if (legend.width > 0) {
+    char ends[2][32];
+    std::snprintf(ends[0], sizeof ends[0], "%.4g", static_cast<double>(panel.colors.high));
+    std::snprintf(ends[1], sizeof ends[1], "%.4g", static_cast<double>(panel.colors.low));
+    list->AddRect({legend.x - 1, legend.y - 1}, {legend.x + legend.width + 1, legend.y + legend.height + 1},
+                  kWhite);
+    text(legend.x, legend.y - 20, ends[0]);
+    text(legend.x, legend.y + legend.height + 6, ends[1]);
+  }
+  const Capture& capture = frames.capture();
+  const auto texel = texelAt(picture, capture.width, capture.height, cursorX, cursorY);
+  if (!texel) return;
+  const Shown shown = display.split && cursorX < split ? display.left : display.shown;
+  const Image& image = frames.image(shown);
+  const float* const value = image.at(texel->x, texel->y);
+  std::string words = name(shown) + " at " + std::to_string(texel->x) + ", " + std::to_string(texel->y) + ":";
+  for (int c = 0; c < image.channels; ++c) {
+    char number[32];
+    std::snprintf(number, sizeof number, " %.4g", static_cast<double>(value[c]));
+    words += number;
+  }
+  text(picture.x + 8, picture.y + picture.height - 22, words);
+}
+
+}  // namespace pellucid::harness

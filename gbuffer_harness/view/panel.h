@@ -1,0 +1,56 @@
+// The panel beside the picture: draws the state and changes it. Calls Dear ImGui between Gui::begin() and
+// end().
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "view/cost.h"
+#include "view/display.h"
+#include "view/frames.h"
+#include "view/picture.h"
+#include "view/source.h"
+#include "view/state.h"
+
+namespace pellucid::harness {
+
+// What the panel knows besides the state, kept between frames of the screen.
+struct PanelState {
+  CostHistory cost;
+  Budget budget;
+  bool measure = false;             // frames are recorded without end, for their times
+  bool followWindow = false;        // the picture is as large as its area
+  int headTurn = 0, lightTurn = 0;  // frames in which the model and the lights turn once; 0: they stand still
+  std::string message;              // of what went wrong or was done last
+  bool isError = false;
+  char savePath[512] = "out/view.exr";
+  bool save = false;  // asked for in this frame
+  char loadPath[512] = "";
+  bool load = false;
+  FalseColors colors;  // as they are drawn
+};
+
+constexpr float kPanelWidth = 380;
+constexpr int kLongestTurn = 100000;  // frames
+
+// In the right part of a screen of that size.
+Changes drawPanel(ViewState& state, PanelState& panel, const ViewFrames& frames, const Source& source,
+                  const ScreenRect& screen);
+
+// Over the picture: labels of its halves, the line of the split, ends of the legend, the value under the
+// cursor.
+void drawOverlay(const ViewState& state, const PanelState& panel, const ViewFrames& frames,
+                 const ScreenRect& picture, float cursorX, float cursorY);
+
+// In the panel's place: a color selector for scene `number` of `count`. True: another color.
+bool drawColorQuestion(std::array<float, 3>& color, std::size_t number, std::size_t count, float width,
+                       float height);
+
+// Parts of the panel.
+Changes drawMaterials(ViewState& state, const ViewFrames& frames);
+Changes drawLights(ViewState& state, const Source& source);
+void drawCurves(const ViewState& state, const ViewFrames& frames);
+Changes drawCost(ViewState& state, PanelState& panel, const ViewFrames& frames);
+
+}  // namespace pellucid::harness

@@ -1,0 +1,217 @@
+#include "view/parameters.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pellucid::harness {
+
+namespace {
+
+using Values = Parameter::Values;
+
+template <class T>
+Values values(const T& value) {
+  return {static_cast<float>(value), 0, 0, 0};
+}
+template <std::size_t N>
+Values values(const std::array<float, N>& value) {
+  Values result{};
+  std::copy(value.begin(), value.end(), result.begin());
+  return result;
+}
+
+template <class T>
+void store(T& field, const Values& from) {
+  field = static_cast<T>(from[0]);
+}
+template <std::size_t N>
+void store(std::array<float, N>& field, const Values& from) {
+  std::copy_n(from.begin(), N, field.begin());
+}
+
+// `field`: a reference to the member of any ReplaySettings, const or not.
+template <class Access>
+Parameter bound(Parameter parameter, const Access& field) {
+  parameter.get = [field](const ReplaySettings& settings) { return values(field(settings)); };
+  parameter.set = [field](ReplaySettings& settings, const Values& to) { store(field(settings), to); };
+  return parameter;
+}
+
+#define FIELD(member) \
+  [](auto& settings) -> auto& { return settings.member; }
+
+Parameter choice(const char* key, const char* label, const char* help, std::vector<std::string> choices) {
+  Parameter parameter{key, label, help, ParameterKind::Choice};
+  parameter.high = static_cast<float>(choices.size() - 1);
+  parameter.choices = std::move(choices);
+  return parameter;
+}
+Parameter flag(const char* key, const char* label, const char* help) {
+  return {key, label, help, ParameterKind::Flag};
+}
+Parameter whole(const char* key, const char* label, const char* help, float low, float high) {
+  return {key, label, help, ParameterKind::Whole, 1, low, high};
+}
+Parameter real(const char* key, const char* label, const char* help, float low, float high,
+               int components = 1) {
+  return {key, label, help, ParameterKind::Real, components, low, high};
+}
+
+Parameter usedWhere(Parameter parameter, std::function<bool(const ReplaySettings&)> used) {
+  parameter.used = std::move(used);
+  return parameter;
+}
+
+bool hasTranslucency(const ReplaySettings& s) { return s.features & PELLUCID_FEATURE_TRANSLUCENCY; }
+bool angleIs(const ReplaySettings& s, PellucidAngleModel model) { return s.translucency.angleModel == model; }
+
+Parameter feature(const char* label, const char* help, std::uint32_t bit) {
+  Parameter parameter = flag("features", label, help);
+  parameter.get = [bit](const ReplaySettings& s) { return values((s.features & bit) != 0); };
+  parameter.set = [bit](ReplaySettings& s, const Values& to) {
+    s.features = to[0] != 0 ? s.features | bit : s.features & ~bit;
+  };
+  return parameter;
+}
+
+// 0 stands for the quality's own number, as no gather at all is thickness "one a pixel".
+const std::vector<std::uint32_t> kSamples = {PELLUCID_GATHER_BY_QUALITY, 0, 4, 8, 12, 16, 24, 32, 48, 64};
+
+Parameter gatherSamples() {
+  Parameter parameter =
+      choice("gather", "samples", "Entry points of the shadow map that each probe gathers light from.",
+             {"by quality", "one thickness", "4", "8", "12", "16", "24", "32", "48", "64"});
+  parameter.get = [](const ReplaySettings& s) {
+    const auto found = std::find(kSamples.begin(), kSamples.end(), s.translucency.gatherSamples);
+    return values(found == kSamples.end() ? 0 : found - kSamples.begin());
+  };
+  parameter.set = [](ReplaySettings& s, const Values& to) {
+    s.translucency.gatherSamples = kSamples[static_cast<std::size_t>(to[0])];
+  };
+  return parameter;
+}
+
+const std::vector<std::uint32_t> kSpacings = {0, 1, 2, 4};
+
+Parameter gatherSpacing() {
+  Parameter parameter = choice("gather-spacing", "probe spacing", "Pixels a side that one probe stands for.",
+                               {"by size", "1", "2", "4"});
+  parameter.get = [](const ReplaySettings& s) {
+    const auto found = std::find(kSpacings.begin(), kSpacings.end(), s.translucency.gatherSpacing);
+    return values(found == kSpacings.end() ? 0 : found - kSpacings.begin());
+  };
+  parameter.set = [](ReplaySettings& s, const Values& to) {
+    s.translucency.gatherSpacing = kSpacings[static_cast<std::size_t>(to[0])];
+  };
+  return parameter;
+}
+
+ParameterGroup quality() {
+  return {
+      "Quality",
+      true,
+      {bound(whole("quality", "quality", "0: one thickness a pixel; 1 and 2 gather light.", 0, 2),
+             FIELD(quality)),
+       usedWhere(gatherSamples(), hasTranslucency), usedWhere(gatherSpacing(), hasTranslucency),
+       feature("translucency", "Light that comes through.", PELLUCID_FEATURE_TRANSLUCENCY),
+       feature("diffusion", "Light that leaves beside where it enters.", PELLUCID_FEATURE_DIFFUSION),
+       bound(real("target-error", "target error",
+                  "Above 0: the least quality of the diffusion whose relative RMSE stays below.", 0, 0.2f),
+             FIELD(targetError)),
+       bound(choice("indirect", "indirect", "Passes run everywhere, where there is material, or light.",
+                    {"none", "material", "light"}),
+             FIELD(indirectDispatches))}};
+}
+
+ParameterGroup thickness() {
+  return {"Thickness and transmittance",
+          false,
+          {usedWhere(bound(choice("thickness", "thickness", "Its source for lights with a shadow map.",
+                                  {"light", "camera"}),
+                           FIELD(translucency.thicknessSource)),
+                     hasTranslucency),
+           usedWhere(bound(choice("transmittance", "T(d)", "What stands for the material's own.",
+                                  {"material", "linear", "Gaussians", "Gaussians as printed"}),
+                           FIELD(transmittance)),
+                     hasTranslucency),
+           usedWhere(bound(real("max-thickness", "largest thickness, mm",
+                                "Thicker parts let nothing through; 0: no limit.", 0, 100),
+                           FIELD(translucency.maximumThickness)),
+                     hasTranslucency),
+           usedWhere(bound(real("filter", "filter", "Multiplies T (thesis: .55 .29 .28).", 0, 1, 3),
+                           FIELD(translucency.transmittanceFilter)),
+                     hasTranslucency),
+           usedWhere(bound(flag("chord", "chord", "Camera thickness without the cosine correction."),
+                           FIELD(translucency.chordThickness)),
+                     [](const ReplaySettings& s) {
+                       return hasTranslucency(s) &&
+                              s.translucency.thicknessSource == PELLUCID_THICKNESS_CAMERA;
+                     })}};
+}
+
+ParameterGroup angles() {
+  const auto oneThickness = [](const ReplaySettings& s) {
+    return hasTranslucency(s) && (s.quality == 0 || s.translucency.gatherSamples == 0 ||
+                                  s.translucency.thicknessSource == PELLUCID_THICKNESS_CAMERA);
+  };
+  // The models with tables of directions need tables that sliders cannot make.
+  return {
+      "Angle between view and light",
+      false,
+      {usedWhere(bound(choice("angle", "model", "The cosine of the light on the hidden face.",
+                              {"normal", "cosine", "inverse cosine", "polynomial", "minimum dot"}),
+                       FIELD(translucency.angleModel)),
+                 oneThickness),
+       usedWhere(
+           bound(real("polynomial", "c0 c1 c2 c3", "c0 + c1 x + c2 x^2 + c3 x^3.", -10, 10, 4),
+                 FIELD(translucency.anglePolynomial)),
+           [=](const ReplaySettings& s) { return oneThickness(s) && angleIs(s, PELLUCID_ANGLE_POLYNOMIAL); }),
+       usedWhere(bound(real("minimum-dot", "minimum dot", "Cosine above which nothing comes through.", -1, 0),
+                       FIELD(translucency.minimumDot)),
+                 [=](const ReplaySettings& s) {
+                   return oneThickness(s) &&
+                          (angleIs(s, PELLUCID_ANGLE_MINIMUM_DOT) || s.translucency.prescaleAngle);
+                 }),
+       usedWhere(bound(flag("prescale", "pre-scaled", "The curves begin at the minimum dot."),
+                       FIELD(translucency.prescaleAngle)),
+                 oneThickness),
+       usedWhere(
+           bound(flag("view", "one view ray", "The camera's axis for all pixels, as the thesis has it."),
+                 FIELD(translucency.constantViewDirection)),
+           oneThickness)}};
+}
+
+ParameterGroup reuse() {
+  return {"Reuse between frames",
+          false,
+          {bound(choice("reuse", "reuse", "Light that came through is taken from the frame before.",
+                        {"none", "alternate", "coherence"}),
+                 FIELD(reuse)),
+           usedWhere(bound(real("coherence-threshold", "threshold",
+                                "Change of the cosine between camera and light.", 0, 0.1f),
+                           FIELD(coherenceThreshold)),
+                     [](const ReplaySettings& s) { return s.reuse == PELLUCID_REUSE_COHERENCE; }),
+           usedWhere(bound(real("frame-load", "frame load",
+                                "Frame time over its budget; above 1 it multiplies the threshold.", 0, 4),
+                           FIELD(frameLoad)),
+                     [](const ReplaySettings& s) { return s.reuse == PELLUCID_REUSE_COHERENCE; })}};
+}
+
+}  // namespace
+
+const std::vector<ParameterGroup>& parameterGroups() {
+  static const std::vector<ParameterGroup> groups = {quality(), thickness(), angles(), reuse()};
+  return groups;
+}
+
+void assign(const Parameter& parameter, ReplaySettings& settings, Values to) {
+  const Values before = parameter.get(settings);
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    if (std::isnan(to[i])) to[i] = before[i];
+    to[i] = std::clamp(to[i], parameter.low, parameter.high);
+    if (parameter.kind != ParameterKind::Real) to[i] = std::round(to[i]);
+  }
+  parameter.set(settings, to);
+}
+
+}  // namespace pellucid::harness

@@ -1,0 +1,135 @@
+#include "view/script.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "common/error.h"
+#include "view/parameters.h"
+
+namespace pellucid::harness {
+
+namespace {
+
+const std::map<std::string, std::size_t> kArguments = {
+    {"move", 2},  {"press", 1},    {"release", 1}, {"wheel", 1},      {"resize", 2}, {"set", 1}, {"show", 1},
+    {"split", 2}, {"exposure", 1}, {"save", 1},    {"screenshot", 1}, {"open", 1},   {"turn", 2}};
+
+const std::vector<std::string> kButtons = {"left", "middle", "right", "shift", "w",    "a",
+                                           "s",    "d",      "e",     "q",     "space"};
+
+[[noreturn]] void fail(const ScriptLine& line, const std::string& sentence) {
+  throw InputError(line.where, line.command, sentence);
+}
+
+float parse(const ScriptLine& line, const std::string& text) {
+  float value = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || stop != end || !std::isfinite(value))
+    fail(line, "\"" + text + "\" is not a number");
+  return value;
+}
+
+Shown shownOf(const ScriptLine& line, std::string name) {
+  std::replace(name.begin(), name.end(), '-', ' ');
+  const std::vector<std::string>& names = shownNames();
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) fail(line, "there is no \"" + name + "\" to show");
+  return static_cast<Shown>(found - names.begin());
+}
+
+const Parameter* find(const std::string& name) {
+  for (const bool byLabel : {true, false})
+    for (const ParameterGroup& group : parameterGroups())
+      for (const Parameter& parameter : group.parameters)
+        if ((byLabel ? parameter.label : parameter.key) == name) return &parameter;
+  return nullptr;
+}
+
+void setParameter(const ScriptLine& line, ReplaySettings& settings) {
+  const std::string& text = line.arguments[0];
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos) fail(line, "\"" + text + "\" is not NAME=VALUE");
+  std::string name = text.substr(0, equals);
+  const Parameter* parameter = find(name);
+  if (!parameter) fail(line, "there is no parameter \"" + name + "\"");
+  Parameter::Values values = parameter->get(settings);
+  std::istringstream parts(text.substr(equals + 1));
+  std::string part;
+  for (std::size_t i = 0; std::getline(parts, part, ','); ++i) {
+    if (i >= static_cast<std::size_t>(parameter->components))
+      fail(line, "\"" + text + "\" has more values than " + std::to_string(parameter->components));
+    const auto choice = std::find(parameter->choices.begin(), parameter->choices.end(), part);
+    values[i] = choice != parameter->choices.end() ? static_cast<float>(choice - parameter->choices.begin())
+                                                   : parse(line, part);
+    if (values[i] < parameter->low || values[i] > parameter->high)
+      fail(line, "\"" + part + "\" is outside of what " + name + " allows");
+  }
+  assign(*parameter, settings, values);
+}
+
+}  // namespace
+
+std::vector<ScriptLine> readScript(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  if (!file) throw InputError(path.string(), "", "cannot be read");
+  std::vector<ScriptLine> lines;
+  std::string text;
+  for (int number = 1; std::getline(file, text); ++number) {
+    std::istringstream words(text);
+    ScriptLine line;
+    line.where = path.string() + ":" + std::to_string(number);
+    std::string frame;
+    if (!(words >> frame) || frame[0] == '#') continue;
+    line.command = "frame";
+    const float parsed = parse(line, frame);
+    if (parsed < 1 || parsed > 1e6f || parsed != std::floor(parsed))
+      fail(line, "\"" + frame + "\" is not a frame");
+    line.frame = static_cast<int>(parsed);
+    if (!lines.empty() && line.frame < lines.back().frame)
+      fail(line, frame + " comes after " + std::to_string(lines.back().frame));
+    words >> line.command;
+    std::string argument;
+    while (words >> argument) line.arguments.push_back(argument);
+    const auto known = kArguments.find(line.command);
+    if (known == kArguments.end()) fail(line, "is no command");
+    if (known->second != line.arguments.size())
+      fail(line, "needs " + std::to_string(known->second) + " arguments, has " +
+                     std::to_string(line.arguments.size()));
+    if ((line.command == "press" || line.command == "release") &&
+        std::find(kButtons.begin(), kButtons.end(), line.arguments[0]) == kButtons.end())
+      fail(line, "\"" + line.arguments[0] + "\" is no button or key");
+    lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+bool applyToState(const ScriptLine& line, ViewState& state, Changes& changes) {
+  if (line.command == "set") {
+    setParameter(line, state.settings);
+    changes.frame = true;
+  } else if (line.command == "show") {
+    state.display.split = false;
+    state.display.shown = shownOf(line, line.arguments[0]);
+    changes.shown = true;
+  } else if (line.command == "split") {
+    state.display.split = true;
+    state.display.left = shownOf(line, line.arguments[0]);
+    state.display.splitAt = std::clamp(numberOf(line, 1), 0.0f, 1.0f);
+    changes.shown = true;
+  } else if (line.command == "exposure") {
+    state.display.exposure = std::max(numberOf(line, 0), 0.0f);
+    changes.shown = true;
+  } else {
+    return false;
+  }
+  return true;
+}
+
+float numberOf(const ScriptLine& line, std::size_t argument) { return parse(line, line.arguments[argument]); }
+
+}  // namespace pellucid::harness

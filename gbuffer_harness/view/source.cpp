@@ -1,0 +1,208 @@
+#include "view/source.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "raster/draw.h"
+#include "reference/camera.h"
+#include "scene/model.h"
+#include "scene/render.h"
+#include "scene/vector.h"
+
+namespace pellucid::harness {
+
+namespace {
+
+std::vector<ViewLight> viewLights(const std::vector<Light>& lights) {
+  std::vector<ViewLight> result;
+  for (const Light& light : lights) result.push_back({light, true});
+  for (ViewLight& light : result) light.light.shadowMaps.clear();
+  return result;
+}
+
+std::vector<Light> lit(const std::vector<ViewLight>& lights) {
+  std::vector<Light> result;
+  for (const ViewLight& light : lights)
+    if (light.on) result.push_back(light.light);
+  return result;
+}
+
+class ModelSource : public Source {
+public:
+  ModelSource(Device& device, Model model, const ModelCamera& camera, const RasterOptions& raster)
+      : device_(device),
+        model_(std::move(model)),
+        raster_(raster),
+        bounds_(boundsOf(model_)),
+        uploaded_(device, model_) {
+    start_.width = raster.width;
+    start_.height = raster.height;
+    start_.camera = {camera, bounds_.center};
+    start_.lights = viewLights(model_.lights);
+    start_.materials = model_.materials;
+  }
+
+  ViewState start() const override { return start_; }
+  Vector3 center() const override { return bounds_.center; }
+  double radius() const override { return bounds_.radius; }
+
+  Capture render(const ViewState& state, std::vector<std::string>& warnings) override {
+    RasterOptions options = raster_;
+    options.width = state.width;
+    options.height = state.height;
+    model_.lights = lit(state.lights);
+    model_.materials = state.materials;
+    RasterResult result = rasterize(device_, model_, uploaded_, state.camera.lens, options);
+    warnings = std::move(result.warnings);
+    return std::move(result.capture);
+  }
+
+private:
+  Device& device_;
+  Model model_;
+  RasterOptions raster_;
+  Bounds bounds_;
+  UploadedModel uploaded_;  // of model_
+  ViewState start_;
+};
+
+class SceneSource : public Source {
+public:
+  SceneSource(const SceneParameters& parameters, const std::vector<MaterialSource>& materials)
+      : parameters_(parameters), scene_(sceneModel(parameters)) {
+    scene_.materials = materials;
+    ViewCamera& camera = start_.camera;
+    camera.pivot = center();
+    camera.lens.name = parameters.name;
+    camera.lens.viewFromWorld = scene_.camera.viewFromWorld;
+    camera.lens.orthographic = scene_.camera.orthographic;
+    // Rows of perspective() and orthographic().
+    const double scale = std::abs(scene_.camera.clipFromView[5]);
+    if (scene_.camera.orthographic)
+      camera.lens.height = 2 / scale;
+    else
+      camera.lens.verticalFov = 2 * std::atan(1 / scale);
+    camera.lens.range = scene_.camera.range;
+    start_.width = parameters.width;
+    start_.height = parameters.height;
+    start_.lights = viewLights(scene_.lights);
+    start_.materials = materials;
+  }
+
+  ViewState start() const override { return start_; }
+  Vector3 center() const override { return fromGlm(scene_.center); }
+  double radius() const override { return scene_.radius; }
+  std::string fixedCamera() const override {
+    return scene_.endless ? "this scene has no end, so its camera stays where it is" : "";
+  }
+  std::string fixedLights() const override {
+    return scene_.paint ? "this scene has a painted irradiance, and no lights" : "";
+  }
+
+  Capture render(const ViewState& state, std::vector<std::string>& warnings) override {
+    warnings.clear();
+    parameters_.width = state.width;
+    parameters_.height = state.height;
+    const ModelCamera& lens = state.camera.lens;
+    const double aspect = static_cast<double>(state.width) / state.height;
+    scene_.camera.viewFromWorld = lens.viewFromWorld;
+    scene_.camera.range = lens.range;
+    scene_.camera.range.reversed = parameters_.reversedZ;
+    if (parameters_.infiniteFar) scene_.camera.range.farPlane = std::numeric_limits<double>::infinity();
+    scene_.camera.clipFromView = lens.orthographic
+                                     ? orthographic(lens.height * aspect, lens.height, scene_.camera.range)
+                                     : perspective(lens.verticalFov, aspect, scene_.camera.range);
+    if (!scene_.paint) scene_.lights = lit(state.lights);
+    scene_.materials = state.materials;
+    return renderCapture(scene_, parameters_, nullptr);
+  }
+
+private:
+  SceneParameters parameters_;
+  SceneModel scene_;
+  ViewState start_;
+};
+
+class CaptureSource : public Source {
+public:
+  explicit CaptureSource(Capture capture) : capture_(std::move(capture)) {
+    start_.width = capture_.width;
+    start_.height = capture_.height;
+    start_.camera.lens.viewFromWorld = capture_.viewFromWorld;
+    start_.lights = viewLights(capture_.lights);
+    start_.materials = capture_.materials;
+    for (const Light& light : capture_.lights) maps_.push_back(light.shadowMaps);
+    findCenter();
+    start_.camera.pivot = center_;
+  }
+
+  ViewState start() const override { return start_; }
+  Vector3 center() const override { return center_; }
+  double radius() const override { return radius_; }
+  std::string fixedCamera() const override { return "a capture is seen by its own camera"; }
+  std::string fixedLights() const override {
+    return "the irradiance is the capture's: lights change what comes through, and stay where their shadow "
+           "maps were drawn";
+  }
+
+  Capture render(const ViewState& state, std::vector<std::string>& warnings) override {
+    warnings.clear();
+    Capture capture = capture_;
+    capture.materials = state.materials;
+    capture.lights.clear();
+    for (std::size_t i = 0; i < state.lights.size(); ++i) {
+      if (!state.lights[i].on) continue;
+      capture.lights.push_back(state.lights[i].light);
+      if (i < maps_.size()) capture.lights.back().shadowMaps = maps_[i];
+    }
+    return capture;
+  }
+
+private:
+  // The middle of what the camera sees, from the depths of the pixels that have a material.
+  void findCenter() {
+    const reference::Camera camera(capture_.clipFromView, capture_.width, capture_.height);
+    const glm::dmat4 world = glm::inverse(toGlm(capture_.viewFromWorld));
+    glm::dvec3 low(std::numeric_limits<double>::infinity()), high = -low;
+    for (int y = 0; y < capture_.height; ++y)
+      for (int x = 0; x < capture_.width; ++x) {
+        const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(capture_.width) +
+                              static_cast<std::size_t>(x);
+        const std::optional<double> depth =
+            camera.planarDepth(capture_.frontDepth.image.data[i], capture_.frontDepth.encoding);
+        if (capture_.material[i] == 0 || !depth) continue;
+        const glm::dvec3 p(world * glm::dvec4(camera.position({x + 0.5, y + 0.5}, *depth), 1));
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+      }
+    if (!(low.x <= high.x)) return;
+    center_ = fromGlm(0.5 * (low + high));
+    radius_ = std::max(0.5 * glm::length(high - low), 1e-9);
+  }
+
+  Capture capture_;
+  std::vector<std::vector<ShadowMap>> maps_;
+  ViewState start_;
+  Vector3 center_ = {0, 0, 0};
+  double radius_ = 1;
+};
+
+}  // namespace
+
+std::unique_ptr<Source> modelSource(Device& device, Model model, const ModelCamera& camera,
+                                    const RasterOptions& raster) {
+  return std::make_unique<ModelSource>(device, std::move(model), camera, raster);
+}
+
+std::unique_ptr<Source> sceneSource(const SceneParameters& parameters,
+                                    const std::vector<MaterialSource>& materials) {
+  return std::make_unique<SceneSource>(parameters, materials);
+}
+
+std::unique_ptr<Source> captureSource(Capture capture) {
+  return std::make_unique<CaptureSource>(std::move(capture));
+}
+
+}  // namespace pellucid::harness

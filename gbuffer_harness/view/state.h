@@ -1,0 +1,101 @@
+// What the viewer's panel and mouse change, and what a change makes necessary.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "capture/capture.h"
+#include "replay/frame.h"
+#include "view/camera.h"
+
+namespace pellucid::harness {
+
+struct ViewLight {
+  Light light;  // without shadow maps
+  bool on = true;
+};
+
+enum class Shown {
+  After,       // the module's output
+  Before,      // irradiance times albedo
+  Through,     // what translucency alone adds
+  Difference,  // |after - truth| or, without a truth, |after - before|
+  Truth,       // of a capture that has one
+  Debug,       // settings.debugView in false color
+  FrontDepth,  // as the capture stores it, in false color
+  Normal,      // -1..1 as 0..1
+  Albedo,
+  Material,  // index, in false color
+  Tiles,     // part of a tile's pixels that have a material, in false color
+  Isolated,  // of the output's pixels, 1 those brighter than all around, 2 darker, 3 both; in false color
+};
+
+enum class ToneMap {
+  Srgb,      // clamped
+  Reinhard,  // c / (1 + c)
+  Filmic     // Narkowicz 2016, a fit of the ACES reference transform
+};
+
+struct Display {
+  float exposure = 0;  // factor; 0: from the first picture, autoExposure()
+  ToneMap toneMap = ToneMap::Srgb;
+  Shown shown = Shown::After;
+  bool split = false;  // `left` is shown to the left of the split
+  Shown left = Shown::Before;
+  float splitAt = 0.5f;               // of the picture's width
+  int channel = 0;                    // of false colors, 0..2
+  float falseLow = 0, falseHigh = 0;  // values of the ends of the false colors; equal: those of the picture
+};
+
+struct ViewState {
+  int width = 512, height = 512;  // pixels of the picture
+  ViewCamera camera;
+  std::vector<ViewLight> lights;
+  std::vector<MaterialSource> materials;
+  ReplaySettings settings;
+  Display display;
+  int selectedLight = 0, selectedMaterial = 0;
+};
+
+// What has to be made anew, which makes what depends on it anew, too.
+struct Changes {
+  bool scene = false;      // camera, lights, size: the images that the module reads
+  bool materials = false;  // their coefficients
+  bool frame = false;      // settings: the module's frame
+  bool shown = false;      // exposure and the like: the picture on the screen
+
+  void add(const Changes& other) {
+    scene |= other.scene;
+    materials |= other.materials;
+    frame |= other.frame;
+    shown |= other.shown;
+  }
+  bool any() const { return scene || materials || frame || shown; }
+};
+
+// The settings of the frame whose output `shown` needs: Through has no diffusion, Debug its view.
+ReplaySettings settingsFor(const ViewState& state, Shown shown);
+
+// True where the picture is looked up in false colors.
+bool isFalseColor(Shown shown);
+
+// Names for the panel and for session files, in the order of the enumerations.
+const std::vector<std::string>& shownNames();
+const std::vector<std::string>& toneMapNames();
+
+// A light of that type from behind and above, of which 1 arrives at `center`.
+ViewLight newLight(PellucidLightType type, const ViewCamera& camera, const Vector3& center, double radius);
+
+// Carries a light round `center` as the camera sees it: `right` and `up`, radians. Point and spot lights
+// move, and spots go on looking at what they looked at; directional lights turn.
+void dragLight(Light& light, const ViewCamera& camera, const Vector3& center, double right, double up);
+
+// Carries the camera and all lights round the vertical through `center`, radians, counterclockwise from
+// above.
+Changes turnTable(ViewState& state, const Vector3& center, double camera, double lights);
+
+// Multiplies a point or spot light's distance to `center` by `factor` > 0; as much light arrives there as
+// before.
+void pullLight(Light& light, const Vector3& center, double factor);
+
+}  // namespace pellucid::harness

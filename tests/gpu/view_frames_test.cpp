@@ -1,0 +1,285 @@
+// The viewer's frames against replays of their captures, and its screen against their images.
+#include <algorithm>
+#include <cmath>
+
+#include "capture/material.h"
+#include "common/error.h"
+#include "common/png.h"
+#include "gpu_fixture.h"
+#include "model_builder.h"
+#include "raster/framing.h"
+#include "view/display.h"
+#include "view/frames.h"
+
+namespace {
+
+using namespace pellucid::test;
+
+constexpr int kSize = 48;
+
+Model litSphere() {
+  Model model = emptyModel();
+  addSphere(model, {0, 0, 0}, 6, 24);
+  endPart(model, 1);
+  model.lights = {directional({0.2, 0.1, 1}, 2), directional({0, -1, -0.4}, 0.5)};
+  return model;
+}
+
+RasterOptions smallRaster() {
+  RasterOptions options;
+  options.width = options.height = kSize;
+  options.shadowSize = 64;
+  return options;
+}
+
+// Counts what it is asked for.
+class CountingSource : public Source {
+public:
+  explicit CountingSource(std::unique_ptr<Source> source) : source_(std::move(source)) {}
+  ViewState start() const override { return source_->start(); }
+  Capture render(const ViewState& state, std::vector<std::string>& warnings) override {
+    ++renders;
+    return source_->render(state, warnings);
+  }
+  Vector3 center() const override { return source_->center(); }
+  double radius() const override { return source_->radius(); }
+  int renders = 0;
+
+private:
+  std::unique_ptr<Source> source_;
+};
+
+class ViewFramesTest : public GpuTest {
+protected:
+  void SetUp() override {
+    GpuTest::SetUp();
+    source_ = std::make_unique<CountingSource>(
+        modelSource(device(), litSphere(), frontCamera(false), smallRaster()));
+    state_ = source_->start();
+    static Contexts contexts(device());  // a second of pipelines, once
+    frames_ = std::make_unique<ViewFrames>(device(), contexts, *source_);
+    frames_->update(state_, {});
+  }
+
+  void expectReplays(const char* what) {
+    const Capture& capture = frames_->capture();
+    const ReplaySettings settings = settingsFor(state_, Shown::After);
+    const Image replayed = rgb(replayer().run(capture, compileMaterials(capture), settings).output);
+    EXPECT_TRUE(sameBits(frames_->image(Shown::After), replayed)) << what;
+    const float most = *std::max_element(replayed.data.begin(), replayed.data.end());
+    EXPECT_GT(most, 0.01f) << what << ": a black picture would be anything's";
+  }
+
+  std::unique_ptr<CountingSource> source_;
+  ViewState state_;
+  std::unique_ptr<ViewFrames> frames_;
+};
+
+TEST_F(ViewFramesTest, AreReplaysOfTheirCaptures) {
+  expectReplays("as opened");
+  orbit(state_.camera, 0.4, 0.3);
+  fitRange(state_.camera, source_->center(), source_->radius());
+  frames_->update(state_, {.scene = true});
+  expectReplays("orbited");
+  state_.lights.push_back(
+      newLight(PELLUCID_LIGHT_POINT, state_.camera, source_->center(), source_->radius()));
+  state_.lights[0].on = false;
+  frames_->update(state_, {.scene = true});
+  EXPECT_EQ(frames_->capture().lights.size(), 2u);
+  expectReplays("other lights");
+  state_.materials[0] = CoefficientMaterial{{2, 2, 2}, {0.01, 0.05, 0.1}, 0, 1.3};
+  frames_->update(state_, {.materials = true});
+  expectReplays("another material");
+  state_.settings.quality = 2;
+  state_.settings.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  frames_->update(state_, {.frame = true});
+  expectReplays("other settings");
+  state_.width = 31;
+  state_.height = 17;
+  frames_->update(state_, {.scene = true});
+  expectReplays("another size");
+}
+
+TEST_F(ViewFramesTest, RenderOnlyWhatChanged) {
+  EXPECT_EQ(source_->renders, 1);
+  EXPECT_EQ(frames_->recorded(), 1u);
+  frames_->update(state_, {.shown = true});
+  EXPECT_EQ(frames_->recorded(), 1u);
+  frames_->update(state_, {.frame = true});
+  EXPECT_EQ(source_->renders, 1);
+  EXPECT_EQ(frames_->recorded(), 2u);
+  frames_->update(state_, {.scene = true});
+  EXPECT_EQ(source_->renders, 2);
+  EXPECT_EQ(frames_->recorded(), 3u);
+  EXPECT_EQ(frames_->times().size(), frames_->run(Shown::After).plan().dispatchCount);
+}
+
+TEST_F(ViewFramesTest, StayWhereAChangeIsRefused) {
+  const Image before = frames_->image(Shown::After);
+  state_.settings.translucency.maximumThickness = -1;
+  EXPECT_THROW(frames_->update(state_, {.frame = true}), InputError);
+  EXPECT_TRUE(sameBits(frames_->image(Shown::After), before));
+  state_.settings.translucency.maximumThickness = 0;
+  frames_->update(state_, {.frame = true});
+  EXPECT_TRUE(sameBits(frames_->image(Shown::After), before));
+}
+
+TEST_F(ViewFramesTest, AlternateReuseTakesWhatCameThroughFromTheFrameBefore) {
+  state_.settings.reuse = PELLUCID_REUSE_ALTERNATE;
+  frames_->forgetHistory();
+  frames_->update(state_, {.frame = true});
+  const std::uint32_t fresh = frames_->run(Shown::After).plan().dispatchCount;
+  frames_->update(state_, {.frame = true});
+  EXPECT_LT(frames_->run(Shown::After).plan().dispatchCount, fresh);
+  frames_->forgetHistory();
+  frames_->update(state_, {.frame = true});
+  EXPECT_EQ(frames_->run(Shown::After).plan().dispatchCount, fresh);
+  expectReplays("without the frames before");
+}
+
+// The screen, of which the picture covers all but a margin of 8 pixels, each texel two pixels wide.
+class ViewScreen : public ViewFramesTest {
+protected:
+  static constexpr int kMargin = 8, kScale = 2, kSide = kScale * kSize + 2 * kMargin;
+
+  ViewScreen()
+      : screen_(device(), kSide, kSide, {{VK_FORMAT_R8G8B8A8_UNORM, {.float32 = {0, 0, 1, 1}}}},
+                std::nullopt),
+        display_(device(), screen_) {}
+
+  Image draw(Shown shown, const ScreenRect& clip, float low = 0, float high = 1) {
+    state_.display.shown = shown;
+    frames_->update(state_, {.shown = true});
+    device().run([&](VkCommandBuffer commandBuffer) {
+      screen_.begin(commandBuffer);
+      display_.draw(commandBuffer, *frames_, state_.display, shown, picture_, clip, low, high);
+      screen_.end(commandBuffer);
+    });
+    return screen_.image(0).download();
+  }
+  const float* pixel(const Image& screen, int x, int y) const {
+    return screen.at(kMargin + kScale * x + 1, kMargin + kScale * y);
+  }
+
+  ScreenRect picture_{kMargin, kMargin, kScale* kSize, kScale* kSize};
+  RenderTarget screen_;
+  DisplayPass display_;
+};
+
+TEST_F(ViewScreen, ShowsItsImagesInSrgb) {
+  state_.display.exposure = 1.5f;
+  for (const Shown shown : {Shown::After, Shown::Before, Shown::Through, Shown::Difference, Shown::Albedo}) {
+    const Image screen = draw(shown, picture_);
+    const std::vector<std::uint8_t> expected = toSrgb(frames_->image(shown), state_.display.exposure);
+    // The device rounds a curve that is computed in floats, of an irradiance that is stored in halves.
+    constexpr float kTolerance = 1.01f;
+    int lit = 0;
+    for (int y = 0; y < kSize; ++y)
+      for (int x = 0; x < kSize; ++x)
+        for (int c = 0; c < 3; ++c) {
+          const float byte = expected[static_cast<std::size_t>((y * kSize + x) * 3 + c)];
+          lit += byte > 20;
+          ASSERT_NEAR(pixel(screen, x, y)[c] * 255, byte, kTolerance) << int(shown) << ": " << x << ", " << y;
+        }
+    EXPECT_GT(lit, 50) << int(shown);
+    EXPECT_EQ(screen.at(2, 2)[2], 1) << "beside the picture";
+  }
+}
+
+TEST_F(ViewScreen, DrawsWithinItsClipAlone) {
+  ScreenRect right = picture_;
+  right.x += 40;
+  right.width -= 40;
+  state_.display.exposure = 1;
+  const Image whole = draw(Shown::Albedo, picture_), half = draw(Shown::Albedo, right);
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x) {
+      const bool inside = x >= kMargin + 40;
+      for (int c = 0; c < 3; ++c)
+        ASSERT_EQ(half.at(x, y)[c], inside ? whole.at(x, y)[c] : (c == 2 ? 1.0f : 0.0f)) << x << ", " << y;
+    }
+}
+
+TEST_F(ViewScreen, FalseColorsRiseFromBlackToWhite) {
+  const Image& depth = frames_->image(Shown::FrontDepth);
+  const float nearest = *depth.at(kSize / 2, kSize / 2);
+  const Image white = draw(Shown::FrontDepth, picture_, 0, nearest);
+  const Image black = draw(Shown::FrontDepth, picture_, nearest, 2 * nearest);
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_EQ(pixel(white, kSize / 2, kSize / 2)[c], 1);
+    EXPECT_EQ(pixel(black, kSize / 2, kSize / 2)[c], 0);
+  }
+  device().run([&](VkCommandBuffer commandBuffer) {
+    screen_.begin(commandBuffer);
+    display_.drawLegend(commandBuffer, *frames_, {4, 4, 10, 80});
+    screen_.end(commandBuffer);
+  });
+  const Image legend = screen_.image(0).download();
+  float before = 2;
+  for (int y = 4; y < 84; ++y) {
+    const float* c = legend.at(8, y);
+    const float luminance = 0.2126f * c[0] + 0.7152f * c[1] + 0.0722f * c[2];
+    EXPECT_LE(luminance, before + 0.004f) << y;  // a step of 8 bits
+    before = luminance;
+  }
+}
+
+TEST_F(ViewScreen, TilesSayHowMuchIsCovered) {
+  const Image& tiles = frames_->image(Shown::Tiles);
+  double covered = 0, sum = 0;
+  for (std::size_t i = 0; i < tiles.pixels(); ++i) {
+    covered += frames_->capture().material[i] != 0;
+    sum += static_cast<double>(tiles.data[i]);
+  }
+  EXPECT_NEAR(sum, covered, 1e-3 * covered);  // floats
+  EXPECT_EQ(*tiles.at(kSize / 2, kSize / 2), 1);
+  EXPECT_LT(*tiles.at(0, 0), 0.5f);
+  const Image screen = draw(Shown::Tiles, picture_);
+  for (int c = 0; c < 3; ++c) EXPECT_EQ(pixel(screen, kSize / 2, kSize / 2)[c], 1);
+  EXPECT_LT(pixel(screen, 0, 0)[1], 1);
+}
+
+TEST_F(ViewScreen, IsolatedPixelsAreThoseOfTheMetric) {
+  const Image screen = draw(Shown::Isolated, picture_, 0, 3);
+  const Image& marks = frames_->image(Shown::Isolated);
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x)
+      EXPECT_EQ(*marks.at(x, y) != 0, pixel(screen, x, y)[2] != 0) << x << ", " << y;
+}
+
+class ViewSources : public GpuTest {};
+
+TEST_F(ViewSources, CapturesKeepTheirCameraAndFindTheirCenter) {
+  const Model model = litSphere();
+  const Capture capture = rasterize(device(), model, frontCamera(false), smallRaster()).capture;
+  const std::unique_ptr<Source> source = captureSource(capture);
+  EXPECT_FALSE(source->fixedCamera().empty());
+  const Vector3 center = source->center();
+  EXPECT_NEAR(center[0], 0, 0.3);  // half a pixel, 20 mm over 48
+  EXPECT_NEAR(center[1], 0, 0.3);
+  EXPECT_GT(center[2], 2);  // of the half that is seen
+  EXPECT_LT(center[2], 6);
+  ViewState state = source->start();
+  state.lights[0].on = false;
+  std::vector<std::string> warnings;
+  const Capture seen = source->render(state, warnings);
+  EXPECT_EQ(seen.lights.size(), 1u);
+  EXPECT_FALSE(seen.lights[0].shadowMaps.empty());
+  EXPECT_TRUE(sameBits(seen.irradiance, capture.irradiance));
+}
+
+TEST_F(ViewSources, ScenesAreThoseOfCaptures) {
+  SceneParameters parameters;
+  parameters.name = "sphere";
+  parameters.width = parameters.height = 24;
+  parameters.shadowSize = 32;
+  const Capture expected = makeScene(parameters);
+  const std::unique_ptr<Source> source = sceneSource(parameters, expected.materials);
+  std::vector<std::string> warnings;
+  const Capture seen = source->render(source->start(), warnings);
+  EXPECT_TRUE(sameBits(seen.frontDepth.image, expected.frontDepth.image));
+  EXPECT_TRUE(sameBits(seen.irradiance, expected.irradiance));
+  EXPECT_EQ(seen.material, expected.material);
+}
+
+}  // namespace

@@ -1,0 +1,472 @@
+// What the viewer does without a window: camera, lights, input, parameters, sessions, scripts, cost.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <set>
+
+#include "common/error.h"
+#include "scene/turn.h"
+#include "view/cost.h"
+#include "view/curves.h"
+#include "view/input.h"
+#include "view/parameters.h"
+#include "view/script.h"
+#include "view/session.h"
+
+namespace {
+
+using namespace pellucid::harness;
+
+constexpr double kPi = std::numbers::pi;
+
+ViewCamera cameraAt(const Vector3& eye, const Vector3& pivot) {
+  ViewCamera camera;
+  camera.lens.viewFromWorld = lookAt(eye, pivot, {0, 1, 0});
+  camera.pivot = pivot;
+  return camera;
+}
+
+double distance(const Vector3& a, const Vector3& b) {
+  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+}
+
+void expectNear(const Vector3& a, const Vector3& b, double tolerance) {
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(a[i], b[i], tolerance) << i;
+}
+
+// Rounding of a few turns in double precision.
+constexpr double kRounding = 1e-12;
+
+TEST(ViewCamera, YawIsTheTurntablesTurn) {
+  ViewCamera camera = cameraAt({1, 2, 5}, {1, 0, -1});
+  const Matrix expected = turnedView(camera.lens.viewFromWorld, camera.pivot, 0.3);
+  orbit(camera, 0.3, 0);
+  for (std::size_t i = 0; i < 16; ++i) EXPECT_NEAR(camera.lens.viewFromWorld[i], expected[i], kRounding);
+}
+
+TEST(ViewCamera, OrbitKeepsTheDistanceAndLooksAtThePivot) {
+  ViewCamera camera = cameraAt({0, 0, 5}, {0, 0, 0});
+  orbit(camera, 0, kPi / 6);
+  expectNear(camera.eye(), {0, 2.5, 5 * std::cos(kPi / 6)}, kRounding);
+  orbit(camera, kPi / 2, 0);
+  expectNear(camera.eye(), {5 * std::cos(kPi / 6), 2.5, 0}, kRounding);
+  const Vector3 eye = camera.eye(), back = camera.back();
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(eye[i], 5 * back[i], kRounding);
+}
+
+TEST(ViewCamera, OrbitStopsBelowThePole) {
+  ViewCamera camera = cameraAt({0, 0, 5}, {0, 0, 0});
+  orbit(camera, 0, 3);
+  EXPECT_NEAR(camera.eye()[1], 5 * std::sin(89 * kPi / 180), kRounding);
+  orbit(camera, 0, -9);
+  EXPECT_NEAR(camera.eye()[1], -5 * std::sin(89 * kPi / 180), kRounding);
+}
+
+TEST(ViewCamera, LooksAroundWhereItStands) {
+  ViewCamera camera = cameraAt({0, 0, 5}, {0, 0, 0});
+  look(camera, kPi / 2, 0);  // to the left
+  expectNear(camera.eye(), {0, 0, 5}, kRounding);
+  expectNear(camera.pivot, {-5, 0, 5}, kRounding);
+  look(camera, 0, kPi / 4);
+  EXPECT_NEAR(camera.pivot[1], 5 * std::sin(kPi / 4), kRounding);
+}
+
+TEST(ViewCamera, WalksAlongItsOwnAxes) {
+  ViewCamera camera = cameraAt({5, 0, 0}, {0, 0, 0});  // right is -z
+  walk(camera, {1, 2, 3});
+  expectNear(camera.eye(), {2, 2, -1}, kRounding);
+  expectNear(camera.pivot, {-3, 2, -1}, kRounding);
+}
+
+TEST(ViewCamera, ZoomScalesTheDistanceAndTheOrthographicHeight) {
+  ViewCamera camera = cameraAt({0, 0, 5}, {0, 0, 1});
+  zoom(camera, 0.5);
+  expectNear(camera.eye(), {0, 0, 3}, kRounding);
+  expectNear(camera.pivot, {0, 0, 1}, kRounding);
+  camera.lens.orthographic = true;
+  camera.lens.height = 8;
+  zoom(camera, 0.5);
+  expectNear(camera.eye(), {0, 0, 3}, kRounding);
+  EXPECT_EQ(camera.lens.height, 4);
+}
+
+TEST(ViewCamera, RangeHoldsTheSphereAndStaysInFront) {
+  ViewCamera camera = cameraAt({0, 0, 5}, {0, 0, 0});
+  fitRange(camera, {0, 0, 0}, 1);
+  EXPECT_LT(camera.lens.range.nearPlane, 4);
+  EXPECT_GT(camera.lens.range.nearPlane, 3.9);
+  EXPECT_GT(camera.lens.range.farPlane, 6);
+  for (const double z : {0.5, -9.0}) {  // within the sphere, and with it behind
+    camera = cameraAt({0, 0, z}, {0, 0, z - 1});
+    fitRange(camera, {0, 0, 0}, 1);
+    EXPECT_GT(camera.lens.range.nearPlane, 0);
+    EXPECT_GT(camera.lens.range.farPlane, camera.lens.range.nearPlane);
+  }
+}
+
+TEST(ViewLights, NewOnesBringOneToTheCenter) {
+  const ViewCamera camera = cameraAt({0, 0, 5}, {0, 0, 0});
+  for (const PellucidLightType type :
+       {PELLUCID_LIGHT_DIRECTIONAL, PELLUCID_LIGHT_POINT, PELLUCID_LIGHT_SPOT}) {
+    const Light light = newLight(type, camera, {0, 0, 0}, 2).light;
+    const double r = distance(light.position, {0, 0, 0});
+    EXPECT_NEAR(type == PELLUCID_LIGHT_DIRECTIONAL ? light.intensity : light.intensity / (r * r), 1,
+                kRounding);
+    EXPECT_GT(light.direction[2], 0);  // towards the camera
+    EXPECT_LT(light.innerConeAngle, light.outerConeAngle);
+  }
+}
+
+TEST(ViewLights, DragMovesThemAsTheCameraSeesIt) {
+  const ViewCamera camera = cameraAt({0, 0, 5}, {0, 0, 0});
+  for (const double side : {1.0, -1.0}) {  // before and behind the center
+    Light light;
+    light.type = PELLUCID_LIGHT_POINT;
+    light.position = {0, 0, 3 * side};
+    dragLight(light, camera, {0, 0, 0}, 0.2, 0);
+    expectNear(light.position, {3 * std::sin(0.2), 0, 3 * side * std::cos(0.2)}, kRounding);
+    light.position = {0, 0, 3 * side};
+    dragLight(light, camera, {0, 0, 0}, 0, 0.2);
+    expectNear(light.position, {0, 3 * std::sin(0.2), 3 * side * std::cos(0.2)}, kRounding);
+  }
+}
+
+TEST(ViewLights, TurntablesCarryCameraAndLights) {
+  ViewState state;
+  state.camera = cameraAt({0, 0, 5}, {0, 0, 0});
+  state.lights = {newLight(PELLUCID_LIGHT_POINT, state.camera, {0, 0, 0}, 1)};
+  state.lights[0].light.position = {0, 0, 3};
+  EXPECT_FALSE(turnTable(state, {0, 0, 0}, 0, 0).any());
+  EXPECT_TRUE(turnTable(state, {0, 0, 0}, -kPi / 2, kPi / 2).scene);
+  expectNear(state.camera.eye(), {-5, 0, 0}, kRounding);
+  expectNear(state.lights[0].light.position, {3, 0, 0}, kRounding);
+}
+
+TEST(ViewLights, PullKeepsWhatArrives) {
+  Light light;
+  light.type = PELLUCID_LIGHT_SPOT;
+  light.position = {0, 0, 3};
+  light.intensity = 9;
+  pullLight(light, {0, 0, 1}, 2);
+  expectNear(light.position, {0, 0, 5}, kRounding);
+  EXPECT_NEAR(light.intensity / 16, 9.0 / 4, kRounding);
+}
+
+// A sphere of radius 1 that nothing renders.
+class FakeSource : public Source {
+public:
+  ViewState start() const override { return {}; }
+  Capture render(const ViewState&, std::vector<std::string>&) override { return {}; }
+  Vector3 center() const override { return {0, 0, 0}; }
+  double radius() const override { return 1; }
+  std::string fixedCamera() const override { return fixed ? "fixed" : ""; }
+  bool fixed = false;
+};
+
+struct Drag {
+  FakeSource source;
+  ViewState state;
+  Controls controls;
+  ScreenRect picture{100, 0, 400, 400};
+
+  Drag() { state.camera = cameraAt({0, 0, 5}, {0, 0, 0}); }
+  Changes drag(float fromX, float fromY, float toX, float toY, bool shift = false) {
+    ViewInput input;
+    input.x = fromX;
+    input.y = fromY;
+    input.movedX = 1000;  // on the way there
+    input.left = true;
+    input.shift = shift;
+    Changes changes = controls.apply(state, input, source, picture);
+    input.x = toX;
+    input.y = toY;
+    input.movedX = toX - fromX;
+    input.movedY = toY - fromY;
+    changes.add(controls.apply(state, input, source, picture));
+    controls.apply(state, {}, source, picture);
+    return changes;
+  }
+};
+
+TEST(ViewInput, DragOrbitsHalfATurnAPicture) {
+  Drag d;
+  EXPECT_TRUE(d.drag(200, 200, 400, 200).scene);
+  expectNear(d.state.camera.eye(), {-5, 0, 0}, kRounding);  // the model turns right, so the camera goes left
+}
+
+TEST(ViewInput, DragThatBeginsOutsideOfThePictureDoesNothing) {
+  Drag d;
+  EXPECT_FALSE(d.drag(50, 200, 300, 200).any());
+  expectNear(d.state.camera.eye(), {0, 0, 5}, 0);
+}
+
+TEST(ViewInput, FixedCamerasStay) {
+  Drag d;
+  d.source.fixed = true;
+  EXPECT_FALSE(d.drag(200, 200, 400, 200).any());
+}
+
+TEST(ViewInput, DragOnTheSplitMovesIt) {
+  Drag d;
+  d.state.display.split = true;
+  const Changes changes = d.drag(303, 50, 200, 60);
+  EXPECT_TRUE(changes.shown && !changes.scene);
+  EXPECT_FLOAT_EQ(d.state.display.splitAt, 0.25f);
+}
+
+TEST(ViewInput, ShiftDragsTheSelectedLight) {
+  Drag d;
+  d.state.lights = {newLight(PELLUCID_LIGHT_POINT, d.state.camera, {0, 0, 0}, 1)};
+  d.state.lights[0].light.position = {0, 0, 3};
+  EXPECT_TRUE(d.drag(200, 200, 300, 200, true).scene);
+  expectNear(d.state.lights[0].light.position, {3 * std::sin(kPi / 4), 0, 3 * std::cos(kPi / 4)}, kRounding);
+  expectNear(d.state.camera.eye(), {0, 0, 5}, 0);
+}
+
+TEST(ViewInput, KeysWalkARadiusASecond) {
+  Drag d;
+  ViewInput input;
+  input.forward = input.stepRight = true;
+  input.seconds = 0.5f;
+  EXPECT_TRUE(d.controls.apply(d.state, input, d.source, d.picture).scene);
+  expectNear(d.state.camera.eye(), {0.5, 0, 4.5}, kRounding);
+}
+
+TEST(ViewDisplay, PictureFitsAndKnowsItsTexels) {
+  const ScreenRect r = fitted({0, 0, 400, 300}, 200, 100);
+  EXPECT_EQ(r.width, 400);
+  EXPECT_EQ(r.height, 200);
+  EXPECT_EQ(r.y, 50);
+  const auto texel = texelAt(r, 200, 100, 399, 51);
+  ASSERT_TRUE(texel);
+  EXPECT_EQ(texel->x, 199);
+  EXPECT_EQ(texel->y, 0);
+  EXPECT_FALSE(texelAt(r, 200, 100, 10, 49));
+}
+
+TEST(ViewState, ShownDecidesTheSettings) {
+  ViewState state;
+  state.settings.debugView = PELLUCID_DEBUG_OCCLUSION;
+  EXPECT_EQ(settingsFor(state, Shown::After).debugView, PELLUCID_DEBUG_NONE);
+  EXPECT_EQ(settingsFor(state, Shown::Debug).debugView, PELLUCID_DEBUG_OCCLUSION);
+  EXPECT_EQ(settingsFor(state, Shown::Through).features, std::uint32_t{PELLUCID_FEATURE_TRANSLUCENCY});
+}
+
+TEST(ViewParameters, TakeEveryValueThatTheyAllow) {
+  for (const ParameterGroup& group : parameterGroups())
+    for (const Parameter& p : group.parameters) {
+      ReplaySettings settings;
+      for (const float value : {p.low, p.high}) {
+        assign(p, settings, {value, value, value, value});
+        const Parameter::Values got = p.get(settings);
+        for (int c = 0; c < p.components; ++c) EXPECT_EQ(got[static_cast<std::size_t>(c)], value) << p.label;
+      }
+      assign(p, settings, {p.high + 100, 0, 0, 0});
+      EXPECT_EQ(p.get(settings)[0], p.high) << p.label;
+      assign(p, settings, {NAN, NAN, NAN, NAN});
+      EXPECT_EQ(p.get(settings)[0], p.high) << p.label;
+    }
+}
+
+TEST(ViewParameters, ReachTheirFields) {
+  ReplaySettings settings;
+  Changes changes;
+  ViewState state;
+  const auto set = [&](const std::string& text) {
+    EXPECT_TRUE(applyToState({1, "set", {text}, "here"}, state, changes)) << text;
+  };
+  set("quality=2");
+  set("gather=16");
+  set("thickness=camera");
+  set("filter=0.55,0.29,0.28");
+  set("angle=polynomial");
+  set("polynomial=1,2,3,4");
+  set("diffusion=0");
+  set("reuse=coherence");
+  const ReplaySettings& s = state.settings;
+  EXPECT_EQ(s.quality, 2u);
+  EXPECT_EQ(s.translucency.gatherSamples, 16u);
+  EXPECT_EQ(s.translucency.thicknessSource, PELLUCID_THICKNESS_CAMERA);
+  EXPECT_EQ(s.translucency.transmittanceFilter, (std::array<float, 3>{0.55f, 0.29f, 0.28f}));
+  EXPECT_EQ(s.translucency.angleModel, PELLUCID_ANGLE_POLYNOMIAL);
+  EXPECT_EQ(s.translucency.anglePolynomial, (std::array<float, 4>{1, 2, 3, 4}));
+  EXPECT_EQ(s.features, std::uint32_t{PELLUCID_FEATURE_TRANSLUCENCY});
+  EXPECT_EQ(s.reuse, PELLUCID_REUSE_COHERENCE);
+  EXPECT_TRUE(changes.frame && !changes.scene);
+}
+
+class ViewFiles : public testing::Test {
+protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() / ("pellucid_view_" + std::to_string(getpid()));
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  std::filesystem::path write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+    return folder_ / name;
+  }
+  template <class Work>
+  static std::string refusal(const Work& work) {
+    try {
+      work();
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+  std::filesystem::path folder_;
+};
+
+Session sampleSession() {
+  Session session{{"head.glb", "--unit", "cm"}, "a.settings.json", {}};
+  ViewState& state = session.state;
+  state.width = 321;
+  state.height = 123;
+  state.camera = cameraAt({0.1, 0.2, 5}, {0.3, 0, 0});
+  orbit(state.camera, 0.7, 0.1);
+  state.camera.lens.verticalFov = 0.37;
+  state.camera.lens.range = {0.11, 17};
+  state.lights = {newLight(PELLUCID_LIGHT_SPOT, state.camera, {0, 0, 0}, 1),
+                  newLight(PELLUCID_LIGHT_DIRECTIONAL, state.camera, {0, 0, 0}, 1)};
+  state.lights[1].on = false;
+  state.materials = {PresetMaterial{"skin1"}, CoefficientMaterial{{1, 2, 3}, {0.1, 0.2, 0.3}, 0.5, 1.3}};
+  state.display = {2.5f, ToneMap::Filmic, Shown::Debug, true, Shown::FrontDepth, 0.3f, 2, -1, 4};
+  return session;
+}
+
+TEST_F(ViewFiles, SessionsComeBackToTheBit) {
+  const Session session = sampleSession();
+  const std::string text = sessionJson(session);
+  const std::filesystem::path file = write("a.view.json", text);
+  EXPECT_TRUE(isSession(file));
+  const Session read = readSession(file);
+  EXPECT_EQ(sessionJson(read), text);
+  EXPECT_EQ(read.state.camera.lens.viewFromWorld, session.state.camera.lens.viewFromWorld);
+  EXPECT_FALSE(read.state.lights[1].on);
+  EXPECT_EQ(read.state.display.left, Shown::FrontDepth);
+}
+
+TEST_F(ViewFiles, SessionsAreRefusedByFieldAndValue) {
+  const std::string good = sessionJson(sampleSession());
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string text = good;
+    const std::size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    text.replace(at, from.size(), to);
+    const std::filesystem::path file = write("bad.view.json", text);
+    return refusal([&] { readSession(file); });
+  };
+  EXPECT_NE(with("\"filmic\"", "\"velvia\"").find("display.toneMap"), std::string::npos);
+  EXPECT_NE(with("\"near\": 0.11", "\"near\": -1").find("camera.near"), std::string::npos);
+  EXPECT_NE(with("321", "0").find("size"), std::string::npos);
+  EXPECT_NE(with("\"on\": true", "\"on\": 3").find("lights[0].on"), std::string::npos);
+  EXPECT_NE(with("\"display\"", "\"displays\"").find("displays"), std::string::npos);
+}
+
+TEST_F(ViewFiles, OtherFilesAreNoSessions) {
+  EXPECT_FALSE(isSession(write("capture.json", "{\"pellucid\": 1}")));
+  EXPECT_FALSE(isSession(folder_ / "missing.json"));
+}
+
+TEST_F(ViewFiles, SavedFilesLieBesideTheCapture) {
+  const SavedFiles files = savedFiles("out/a.exr");
+  EXPECT_EQ(files.settings, "out/a.settings.json");
+  EXPECT_EQ(files.result, "out/a.pellucid.exr");
+  EXPECT_NE(refusal([] { savedFiles("a.png"); }).find("a.png"), std::string::npos);
+}
+
+TEST_F(ViewFiles, ScriptsAreReadLineByLine) {
+  const auto file = write("s.txt", "# a comment\n\n1 move 3 4.5\n1 press left\n7 show front-depth\n");
+  const std::vector<ScriptLine> lines = readScript(file);
+  ASSERT_EQ(lines.size(), 3u);
+  EXPECT_EQ(numberOf(lines[0], 1), 4.5f);
+  EXPECT_EQ(lines[2].frame, 7);
+  ViewState state;
+  Changes changes;
+  EXPECT_FALSE(applyToState(lines[0], state, changes));
+  EXPECT_TRUE(applyToState(lines[2], state, changes));
+  EXPECT_EQ(state.display.shown, Shown::FrontDepth);
+}
+
+TEST_F(ViewFiles, ScriptsAreRefusedByLine) {
+  const auto refused = [&](const std::string& text) {
+    const auto file = write("bad.txt", text);
+    return refusal([&] {
+      ViewState state;
+      Changes changes;
+      for (const ScriptLine& line : readScript(file)) applyToState(line, state, changes);
+    });
+  };
+  for (const char* text : {"1 jump 3", "1 move 3", "0 wheel 1", "x wheel 1", "1 press elbow", "1 set quality",
+                           "1 set quality=9", "1 set speed=1", "1 set filter=1,1,1,1,1", "1 show soul",
+                           "1 exposure much", "2 wheel 1\n1 wheel 1"}) {
+    const std::string sentence = refused(std::string("# first\n") + text);
+    EXPECT_NE(sentence.find("bad.txt:"), std::string::npos) << text << " gives: " << sentence;
+  }
+}
+
+TEST(ViewCost, SmoothsAndForgets) {
+  CostHistory cost;
+  EXPECT_TRUE(cost.add(1, {{"a", 100}, {"b", 20}, {"a", 50}}));
+  EXPECT_FALSE(cost.add(1, {{"a", 1}}));
+  ASSERT_EQ(cost.dispatches().size(), 2u);
+  EXPECT_EQ(cost.dispatches()[0].smoothed, 150);
+  EXPECT_EQ(cost.lastSum(), 170);
+  for (std::uint64_t frame = 2; frame <= 7; ++frame) cost.add(frame, {{"a", 50}, {"c", 10}});
+  EXPECT_NEAR(cost.dispatches()[0].smoothed, 100, 0.2);  // half of the way in 6 frames; .109 is rounded
+  EXPECT_EQ(cost.size(), 7u);
+  for (const CostHistory::Dispatch& d : cost.dispatches()) EXPECT_EQ(d.history.size(), 7u);
+  for (std::uint64_t frame = 8; frame < 300; ++frame) cost.add(frame, {{"a", 50}});
+  ASSERT_EQ(cost.dispatches().size(), 1u);
+  EXPECT_EQ(cost.size(), CostHistory::kFrames);
+}
+
+TEST(ViewCost, BudgetGoesDownAboveIt) {
+  Budget budget;
+  ReplaySettings settings;
+  EXPECT_FALSE(budget.step(100, settings));
+  budget.on = true;
+  budget.milliseconds = 2;
+  for (int i = 0; i < 20; ++i) budget.step(10, settings);
+  EXPECT_EQ(settings.quality, 0u);
+  EXPECT_EQ(settings.reuse, PELLUCID_REUSE_COHERENCE);
+}
+
+TEST(ViewCurves, AngleModelsRunFromTheRightAngleOn) {
+  TranslucencySettings settings;
+  EXPECT_TRUE(angleCurve(settings, 5).values[0].empty());  // -N.L
+  settings.angleModel = PELLUCID_ANGLE_INVERSE_COSINE;     // linear in the angle
+  const Curves linear = angleCurve(settings, 5);
+  for (int i = 0; i < 5; ++i) EXPECT_NEAR(linear.values[0][static_cast<std::size_t>(i)], i / 4.0, 1e-12);
+  settings.angleModel = PELLUCID_ANGLE_MINIMUM_DOT;
+  settings.minimumDot = -0.5f;
+  const Curves dot = angleCurve(settings, 4);  // 0, 30, 60 and 90 degrees beyond 90
+  EXPECT_NEAR(dot.values[0][1], 0, 1e-12);
+  EXPECT_NEAR(dot.values[0][2], std::sqrt(3) - 1, 1e-12);
+  EXPECT_NEAR(dot.values[0][3], 1, 1e-12);
+}
+
+TEST(ViewCurves, AreThoseOfTheMaterial) {
+  PellucidMaterial material{};
+  material.structSize = sizeof material;
+  material.transmittanceModel = PELLUCID_TRANSMITTANCE_LINEAR;
+  for (auto& channel : material.transmittance) channel[0] = 4;
+  const Curves t = transmittanceCurves(material, 3);
+  EXPECT_NEAR(t.values[0][1], 1 - t.end / 2 / 4, 1e-6);  // floats
+  EXPECT_LT(t.values[0][2], 0.011);
+  EXPECT_TRUE(profileCurves(material, 3).values[0].empty());
+  material.gaussianCount = 1;
+  for (int c = 0; c < 3; ++c) {
+    material.gaussianVariance[c][0] = 1;
+    material.gaussianWeight[c][0] = 1;
+  }
+  const Curves r = profileCurves(material, 3);
+  EXPECT_NEAR(r.end, std::sqrt(2 * std::log(20)), 1e-4);  // 95 % of a Gaussian's energy; rounded up
+  EXPECT_NEAR(r.values[1][1], r.end / 2 * std::exp(-r.end * r.end / 8), 1e-6);
+}
+
+}  // namespace
