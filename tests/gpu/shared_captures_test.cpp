@@ -175,10 +175,10 @@ INSTANTIATE_TEST_SUITE_P(
 
 INSTANTIATE_TEST_SUITE_P(Truth, SharedCapture,
                          testing::Values(Expectation{"ear_backlit", {.1770, .1105, .0551}},
-                                         Expectation{"head_sidelit", {.0488, .0474, .0417}},
-                                         Expectation{"slab_backlit", {.190, .266, .546}},
-                                         Expectation{"sphere_backlit", {.358, .228, .1440}, {1, 1.18, 1.34}},
-                                         Expectation{"two_sheets", {.145, .157, .228}}),
+                                         Expectation{"head_sidelit", {.0500, .0485, .0412}},
+                                         Expectation{"slab_backlit", {.190, .259, .413}},
+                                         Expectation{"sphere_backlit", {.363, .220, .1340}, {1, 1.18, 1.34}},
+                                         Expectation{"two_sheets", {.1484, .159, .214}}),
                          [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace
