@@ -55,7 +55,7 @@ void main() {
     Surface s = makeSurface(ray, front, through, normal);
     s.material = material;
     for (uint i = 0u; i < pass.value.x; ++i) {
-      Transmitted t = lightTransmission(lights[i], s, pixel, lights[i].meta.z != 0u);
+      Transmitted t = lightTransmission(lights[i], s, pixel);
       vec3 light = t.arriving * t.visible;
       if (t.thickness >= 0.0 && max(light.r, max(light.g, light.b)) > 0.0)
         sum += light * materialTransmittance(material - 1u, t.thickness * frame.camera.range.w);

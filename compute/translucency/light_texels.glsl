@@ -33,7 +33,7 @@ const float kEverywhere = 3.0e38;
 
 float receiverCosine(Surface s, Incident incident) { return s.hasNormal ? dot(s.normal, incident.toLight) : 0.0; }
 
-// Of four texels, whether light enters the receiver's medium and has not left it before it is at the receiver.
+// True of each texel where light enters the receiver's medium and has not left the medium before the receiver.
 bvec4 entersMedium(ShadowConstants shadow, ShadowReceiver receiver, ShadowFootprint footprint, Incident incident, Surface s,
                    vec3 x, float tolerance) {
   vec4 caster = vec4(0.0), exits = vec4(0.0);

@@ -30,7 +30,7 @@ vec3 resultAt(ivec2 pixel, Texels t, float front, uint m) {
     if (s.chord >= 0.0) thickness.r = s.chord * mm;
     for (uint i = 0u; i < pass.value.y; ++i) {
       LightConstants light = lights[i];
-      Transmitted through = lightTransmission(light, s, pixel, light.meta.z != 0u);
+      Transmitted through = lightTransmission(light, s, pixel);
       vec3 entering = through.arriving * through.visible;
       // Most pixels face some lights; T is the expensive part.
       if (through.thickness >= 0.0 && max(entering.r, max(entering.g, entering.b)) > 0.0)

@@ -52,32 +52,36 @@ float hiddenCosine(LightConstants light, Surface s, vec3 toLight) {
   return clamp(x, 0.0, 1.0);
 }
 
-// docs/design.md says why each source is what it is. `pixel`: of the surface; `mapped`: whether the light has shadow maps.
-Transmitted lightTransmission(LightConstants light, Surface s, ivec2 pixel, bool mapped) {
-  Incident incident = incidentLight(light, s.position);
-  bool holdsExits = light.meta.w != 0u; // which do not say where light enters
-  if (mapped && !holdsExits && !hasFlag(PELLUCID_FLAG_CAMERA_THICKNESS)) {
-    vec3 arriving = incident.irradiance * hiddenCosine(light, s, incident.toLight);
-    // Most pixels face some lights, whose maps need no reading.
-    if (arriving == vec3(0.0)) return Transmitted(-1.0, arriving, 0.0);
-    float farthest = materials[s.material - 1u].transmittance4.w / frame.camera.range.w;
-    LightTexels l = lightTexels(light, incident, s, s.position, receiverCosine(s, incident), farthest);
-    vec4 weight = throughWeights(l, pixel, s.material, incident.toLight);
-    return Transmitted(meanThickness(weight, l.thickness, s.material - 1u), arriving, dot(weight, vec4(1.0)));
-  }
+// Light along the chord, of a light without shadow maps.
+Transmitted chordTransmission(LightConstants light, Surface s) {
   if (s.chord < 0.0) return Transmitted(-1.0, vec3(0.0), 0.0);
-  vec3 back = s.position + s.chord * s.view;
-  incident = incidentLight(light, back);
+  Incident incident = incidentLight(light, s.position + s.chord * s.view);
   // A slab's thickness along its normal, from the chord along the view ray.
   bool alongNormal = s.hasNormal && !hasFlag(PELLUCID_FLAG_CHORD_THICKNESS);
   float thickness = alongNormal ? s.chord * abs(dot(s.normal, s.view)) : s.chord;
-  // The exit depth says where light leaves, which the back depth does already.
-  float visible = 1.0;
-  if (mapped) {
+  return Transmitted(thickness, incident.irradiance * hiddenCosine(light, s, incident.toLight), 1.0);
+}
+
+// docs/design.md says why each source is what it is. `pixel`: of the surface.
+Transmitted lightTransmission(LightConstants light, Surface s, ivec2 pixel) {
+  bool holdsExits = light.meta.w != 0u; // which do not say where light enters
+  if (light.meta.z == 0u || holdsExits || hasFlag(PELLUCID_FLAG_CAMERA_THICKNESS)) {
+    Transmitted t = chordTransmission(light, s);
+    if (light.meta.z == 0u || t.thickness < 0.0) return t;
+    vec3 back = s.position + s.chord * s.view;
+    Incident incident = incidentLight(light, back);
     LightTexels l = lightTexels(light, incident, s, back, 0.0, kEverywhere);
-    visible = litPart(l, pixel, s.material, incident.toLight, holdsExits);
+    t.visible = litPart(l, pixel, s.material, incident.toLight, holdsExits);
+    return t;
   }
-  return Transmitted(thickness, incident.irradiance * hiddenCosine(light, s, incident.toLight), visible);
+  Incident incident = incidentLight(light, s.position);
+  vec3 arriving = incident.irradiance * hiddenCosine(light, s, incident.toLight);
+  // Most pixels face some lights, whose maps need no reading.
+  if (arriving == vec3(0.0)) return Transmitted(-1.0, arriving, 0.0);
+  float farthest = materials[s.material - 1u].transmittance4.w / frame.camera.range.w;
+  LightTexels l = lightTexels(light, incident, s, s.position, receiverCosine(s, incident), farthest);
+  vec4 weight = throughWeights(l, pixel, s.material, incident.toLight);
+  return Transmitted(meanThickness(weight, l.thickness, s.material - 1u), arriving, dot(weight, vec4(1.0)));
 }
 
 #endif

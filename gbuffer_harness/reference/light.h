@@ -67,7 +67,7 @@ private:
   bool holds(const glm::dvec3& point, float stored) const;
   // From what the nearest texel stores to what was drawn, in units of the stored depth.
   DrawnDepth moveAt(const glm::dvec3& point, const Projected& p) const;
-  // Of texel (x, y).
+  // The lookup of texel (x, y).
   Lookup lookup(const glm::dvec3& point, const Projected& p, int x, int y, const DrawnDepth& move) const;
   double texelAt(const glm::dvec3& point, const Projected& p) const;
   double deviceDistance(const glm::dvec3& point, const Projected& p, double stored) const;

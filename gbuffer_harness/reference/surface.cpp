@@ -60,14 +60,10 @@ std::optional<Surface> SurfaceReader::at(int x, int y) const {
   s.position = camera_.position(center, *front);
   s.ray = camera_.rayThrough(s.position);
   s.normal = normalAt(x, y);
-  s.facet = normalFromDepth(capture_.frontDepth, x, y, s.position);
+  s.pixel = {x, y};
   if (!capture_.backDepth.image.empty()) {
     const std::optional<double> back = planarDepth(capture_.backDepth, x, y);
-    if (back && *back > *front) {
-      const glm::dvec3 position = camera_.position(center, *back);
-      s.chord = glm::distance(s.position, position);
-      s.backFacet = normalFromDepth(capture_.backDepth, x, y, position);
-    }
+    if (back && *back > *front) s.chord = glm::distance(s.position, camera_.position(center, *back));
   }
   return s;
 }
@@ -112,9 +108,18 @@ std::optional<glm::dvec3> SurfaceReader::normalFromDepth(const DepthImage& depth
   return glm::dot(n, camera_.rayThrough(position)) > 0 ? -n / length : n / length;
 }
 
+std::optional<glm::dvec3> SurfaceReader::facet(const Surface& s) const {
+  return normalFromDepth(capture_.frontDepth, s.pixel.x, s.pixel.y, s.position);
+}
+
+std::optional<glm::dvec3> SurfaceReader::backFacet(const Surface& s) const {
+  if (!s.chord) return std::nullopt;
+  return normalFromDepth(capture_.backDepth, s.pixel.x, s.pixel.y, s.position + *s.chord * s.ray);
+}
+
 SurfaceReader::Footprint SurfaceReader::footprint(int x, int y, const Surface& s) const {
   const glm::dvec3 flatX = flatStep(x, y, s.position, {1, 0}), flatY = flatStep(x, y, s.position, {0, 1});
-  glm::dvec3 n = s.normal ? *s.normal : s.facet.value_or(-s.ray);
+  glm::dvec3 n = s.normal ? *s.normal : facet(s).value_or(-s.ray);
   if (glm::dot(n, s.ray) > 0) n = -n;
   const double cosine = -glm::dot(n, s.ray);
   if (cosine < kLeastCosine) {

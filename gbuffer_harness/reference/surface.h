@@ -14,8 +14,7 @@ struct Surface {
   glm::dvec3 position;
   glm::dvec3 ray;                    // unit, from the eye to the position
   std::optional<glm::dvec3> normal;  // unit, outward; absent when the capture's is missing, 0 or not finite
-  // Unit normals of the front and back depths, towards the eye; absent: not known.
-  std::optional<glm::dvec3> facet, backFacet;
+  glm::ivec2 pixel;
   std::optional<double> chord;  // length of the ray between the front and back surface, > 0
 };
 
@@ -26,6 +25,11 @@ public:
 
   // Nothing where the front depth holds nothing. Pixel center of (x, y).
   std::optional<Surface> at(int x, int y) const;
+
+  // Unit normals of the front and back depths at the surface's pixel, view space, towards the eye; nothing
+  // where depths span no plane.
+  std::optional<glm::dvec3> facet(const Surface& surface) const;
+  std::optional<glm::dvec3> backFacet(const Surface& surface) const;
 
   // Parallelogram of the surface's tangent plane that the pixel covers: its two half-axes, scene
   // units, view space. Tilted planes tile without gaps. Planes seen more obliquely than

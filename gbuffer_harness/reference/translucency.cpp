@@ -25,15 +25,11 @@ Translucency::Receiver Translucency::toWorld(const Surface& s, const PellucidMat
   Receiver r{glm::dvec3(m * glm::dvec4(s.position, 1)),
              rotation * s.ray,
              std::nullopt,
-             std::nullopt,
-             std::nullopt,
              s.chord,
              index,
-             halfThickness(material),
-             opaqueThickness(material)};
+             &material,
+             &s};
   if (s.normal) r.normal = rotation * *s.normal;
-  if (s.facet) r.facet = rotation * *s.facet;
-  if (s.backFacet) r.backFacet = rotation * *s.backFacet;
   return r;
 }
 
@@ -104,22 +100,26 @@ bool Translucency::beyondExit(const ShadowView::Lookup& lookup, const Receiver& 
   return lookup.fromExit && *lookup.fromExit > ownTolerance(lookup, cosine) + lookup.exitUncertain;
 }
 
-// None where the texel stores the receiver itself, which a face that turns away from the light is not.
+double Translucency::facing(const std::optional<glm::dvec3>& facet, const glm::dvec3& toLight) const {
+  return facet ? glm::dot(glm::dmat3(surfaces_.worldFromView()) * *facet, toLight) : 0;
+}
+
+// None where the texel stores the receiver itself, which a face that turns away from the light is not, and
+// none through what is opaque.
 double Translucency::comesThrough(const ShadowView::Lookup& lookup, const Receiver& r,
-                                  const glm::dvec3& toLight) const {
+                                  const glm::dvec3& toLight, double facing) const {
   constexpr double kTurned = 0.5;
   if (!entersMedium(lookup, r) || beyondExit(lookup, r, toLight)) return 0;
-  if (lookup.distance * surfaces_.millimetersPerUnit() >= r.opaqueThickness) return 0;
-  const double cosine = r.facet ? glm::dot(*r.facet, toLight) : 0;
+  if (isOpaque(*r.medium, std::max(0.0, lookup.distance * surfaces_.millimetersPerUnit()))) return 0;
   const double tolerance =
-      (ownTolerance(lookup, cosine) + lookup.uncertain) * std::clamp(1 + cosine / kTurned, 0.0, 1.0);
+      (ownTolerance(lookup, facing) + lookup.uncertain) * std::clamp(1 + facing / kTurned, 0.0, 1.0);
   return tolerance > 0 ? std::clamp(lookup.distance / tolerance - 1, 0.0, 1.0) : 1;
 }
 
 // As an exponential has it that halves at the same depth as T.
 double Translucency::meanThickness(const Taps& taps, const std::array<double, 4>& weights,
                                    const Receiver& r) const {
-  const double half = r.halfThickness / surfaces_.millimetersPerUnit();
+  const double half = halfThickness(*r.medium) / surfaces_.millimetersPerUnit();
   double total = 0, sum = 0;
   for (std::size_t i = 0; i < taps.size(); ++i) {
     if (weights[i] <= 0) continue;
@@ -135,9 +135,10 @@ Translucency::LightPath Translucency::lightSpacePath(std::size_t light, const Re
   path.arriving = arrival.irradiance * hiddenCosine(r, light, arrival.toLight);
   const std::optional<Taps> taps = texelsAround(light, r.position);
   if (!taps) return path;
+  const double facet = facing(surfaces_.facet(*r.surface), arrival.toLight);
   std::array<double, 4> weights;
   for (std::size_t i = 0; i < taps->size(); ++i) {
-    weights[i] = (*taps)[i].weight * comesThrough((*taps)[i].found, r, arrival.toLight);
+    weights[i] = (*taps)[i].weight * comesThrough((*taps)[i].found, r, arrival.toLight, facet);
     path.reaches += weights[i];
   }
   if (path.reaches > 0) path.thickness = meanThickness(*taps, weights, r);
@@ -149,7 +150,7 @@ double Translucency::litPart(std::size_t light, const Receiver& r, const glm::dv
   const std::optional<Taps> taps = texelsAround(light, backPoint);
   if (!taps) return 0;
   const double cosine =
-      r.backFacet ? glm::dot(*r.backFacet, arrivalAt(capture_.lights[light], backPoint).toLight) : 0;
+      facing(surfaces_.backFacet(*r.surface), arrivalAt(capture_.lights[light], backPoint).toLight);
   double lit = 0;
   for (const auto& [weight, found] : *taps) {
     if (!entersMedium(found, r)) continue;

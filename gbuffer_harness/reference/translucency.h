@@ -39,10 +39,11 @@ private:
   // A receiver in world space.
   struct Receiver {
     glm::dvec3 position, ray;
-    std::optional<glm::dvec3> normal, facet, backFacet;
+    std::optional<glm::dvec3> normal;
     std::optional<double> chord;  // scene units
     int material;
-    double halfThickness, opaqueThickness;  // mm; see transmittance.h
+    const PellucidMaterial* medium;
+    const Surface* surface;
   };
   // One light's part of a Transmission.
   struct LightPath {
@@ -66,8 +67,12 @@ private:
   static bool beyondExit(const ShadowView::Lookup& lookup, const Receiver& r, const glm::dvec3& toLight);
   // Scene units along the light that a point of a stored surface may lie off the depth of its own texel.
   static double ownTolerance(const ShadowView::Lookup& lookup, double cosine);
-  // Part of the light that a texel says comes through to the receiver.
-  double comesThrough(const ShadowView::Lookup& lookup, const Receiver& r, const glm::dvec3& toLight) const;
+  // Part of the light that a texel says comes through to the receiver. `facing`: cosine between the
+  // receiver's depths and the light; 0: not known.
+  double comesThrough(const ShadowView::Lookup& lookup, const Receiver& r, const glm::dvec3& toLight,
+                      double facing) const;
+  // Cosine between a direction and the normal of depths, view space; 0: not known.
+  double facing(const std::optional<glm::dvec3>& facet, const glm::dvec3& toLight) const;
   // Scene units. `weights`: of the taps; not all 0.
   double meanThickness(const Taps& taps, const std::array<double, 4>& weights, const Receiver& r) const;
   double litPart(std::size_t light, const Receiver& r, const glm::dvec3& backPoint) const;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <string>
 
 #include "common/error.h"
@@ -38,18 +37,6 @@ double channelTransmittance(const PellucidMaterial& m, int channel, double d) {
   }
 }
 
-constexpr double kDeepest = 1000;  // mm
-
-// Where a falling T is `least`, from .001 mm to kDeepest.
-double depthOf(const std::function<double(double)>& t, double least) {
-  double low = 1e-3, high = kDeepest;
-  while (high - low > 1e-9 * high) {
-    const double middle = 0.5 * (low + high);
-    (t(middle) > least ? low : high) = middle;
-  }
-  return low;
-}
-
 }  // namespace
 
 glm::dvec3 transmittance(const PellucidMaterial& m, double thickness) {
@@ -59,16 +46,19 @@ glm::dvec3 transmittance(const PellucidMaterial& m, double thickness) {
 
 double halfThickness(const PellucidMaterial& m) {
   const auto sum = [&](double d) { return glm::dot(transmittance(m, d), glm::dvec3(1)); };
-  return depthOf(sum, 0.5 * sum(0));
+  const double half = 0.5 * sum(0);
+  double low = 1e-3, high = 1000;
+  while (high - low > 1e-9 * high) {
+    const double middle = 0.5 * (low + high);
+    (sum(middle) > half ? low : high) = middle;
+  }
+  return low;
 }
 
-double opaqueThickness(const PellucidMaterial& m) {
+bool isOpaque(const PellucidMaterial& m, double thickness) {
   constexpr double kLeast = 2e-5;
-  const auto most = [&](double d) {
-    const glm::dvec3 t = transmittance(m, d);
-    return std::max({t.r, t.g, t.b});
-  };
-  return most(kDeepest) > kLeast ? INFINITY : depthOf(most, kLeast);
+  const glm::dvec3 t = transmittance(m, thickness);
+  return std::max({t.r, t.g, t.b}) < kLeast;
 }
 
 }  // namespace pellucid::harness::reference

@@ -14,7 +14,7 @@ glm::dvec3 transmittance(const PellucidMaterial& material, double thickness);
 // mm at which the mean of the channels' T falls to half of T(0), from .001 to 1000.
 double halfThickness(const PellucidMaterial& material);
 
-// mm beyond which each channel's T is below 2e-5; INFINITY where some is not below at 1000.
-double opaqueThickness(const PellucidMaterial& material);
+// True if each channel's T is below 2e-5 at d >= 0 mm.
+bool isOpaque(const PellucidMaterial& material, double thickness);
 
 }  // namespace pellucid::harness::reference

@@ -45,7 +45,7 @@ inline double transmittance(const PellucidMaterial& m, size_t channel, double d)
 template <class T>
 double depthOf(const T& transmittance, double least, double high) {
   double low = 0;
-  for (int step = 0; step < 60; ++step) {
+  for (int step = 0; step < 40; ++step) {
     const double middle = 0.5 * (low + high);
     (transmittance(middle) > least ? low : high) = middle;
   }

@@ -59,7 +59,7 @@ void main() {
   s.material = material;
   vec3 sum = vec3(0.0);
   for (uint i = 0u; i < draw.ids.w; ++i) {
-    Transmitted t = lightTransmission(lights[i], s, pixel, lights[i].meta.z != 0u);
+    Transmitted t = lightTransmission(lights[i], s, pixel);
     vec3 light = t.arriving * t.visible;
     if (t.thickness >= 0.0 && max(light.r, max(light.g, light.b)) > 0.0)
       sum += light * materialTransmittance(material - 1u, t.thickness * frame.camera.range.w);
