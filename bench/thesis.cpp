@@ -34,7 +34,7 @@ namespace {
 constexpr int kFrames = 5000, kHeadTurns = 2, kLightTurns = 5;
 constexpr int kTimed = 12, kTimedSoftware = 4;  // frames, evenly apart, whose passes are timed
 
-// Mean microseconds of each pass. Of translucency over the frames that have some.
+// Mean microseconds of each pass; those of translucency average only the frames that have some.
 struct Passes {
   double gbuffer = 0, shadow = 0, lighting = 0, diffusion = 0;
   double front = 0, back = 0, thickness = 0, transmittance = 0, both = 0, addition = 0;
@@ -229,7 +229,7 @@ private:
              {&front.depthNormal(), &front.albedoObject(), &planned});
   }
 
-  // What is timed computes the same: the steps against the module's dispatch.
+  // The timed variants compute the same: the steps are held against the module's dispatch.
   void requireAgreement(const std::shared_ptr<const BenchFrame>& frame) const {
     constexpr double kTolerance = 5e-3;  // halves, and chords that are stored in between
     std::vector<Image> images;

@@ -5,7 +5,7 @@
 
 namespace pellucid::bench {
 
-// Of all frames, those in which light that comes through has to be computed.
+// Shares of the frames in which light that comes through has to be computed.
 struct TurntableShares {
   double necessary = 0;         // light can come through (4.7.1)
   double coherent[2] = {0, 0};  // the cosine of camera and light changed by more than kCoherence (4.7.5)
@@ -13,7 +13,7 @@ struct TurntableShares {
 };
 inline constexpr double kCoherence[] = {0.005, 0.01};
 
-// Of a frame: the cosine between the camera's axis and the direction to the light, and whether light can come
+// A frame's cosine between the camera's axis and the direction to the light, and whether light can come
 // through.
 struct TurntableFrame {
   double cosine;

@@ -39,7 +39,7 @@ def rigid_inverse(matrix):
 
 
 class Refused(Exception):
-    """What the scene lacks, in a sentence."""
+    """Says in a sentence what the scene lacks."""
 
 
 def say(sentence):
@@ -134,7 +134,7 @@ def surface_node(material):
 
 
 def subsurface(material):
-    """What a material says of the light under its surface; None: it is not translucent."""
+    """Reads a material's light under its surface; None: the material is not translucent."""
     node = surface_node(material)
     if node is None:
         return None

@@ -42,7 +42,7 @@ public:
   std::vector<std::string> channels(int part) const;                      // in the file's order: by name
   std::string channelFormat(int part, const std::string& channel) const;  // "half", "float", "uint"
   std::string partName(int part) const;                                   // "": it has none
-  // Of the first part that has it. A matrix is column-major for column vectors.
+  // The attribute of the first part that has it. A matrix is column-major for column vectors.
   std::optional<std::string> findText(const std::string& attribute) const;
   std::optional<std::array<double, 16>> findMatrix(const std::string& attribute) const;
   std::optional<double> findNumber(const std::string& attribute) const;

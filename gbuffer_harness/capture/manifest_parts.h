@@ -6,7 +6,7 @@
 
 namespace pellucid::harness {
 
-// What is not its shadow maps.
+// The light without its shadow maps, and the material.
 nlohmann::ordered_json lightJson(const Light& light);
 nlohmann::ordered_json materialJson(const MaterialSource& source);
 

@@ -127,7 +127,7 @@ Json materialsJson(const Capture& capture, const std::vector<PellucidMaterial>& 
   return json;
 }
 
-// What the absence of optional parts means for the result, the most harmful first.
+// Optional parts that are missing with the effect on the result, the most harmful first.
 std::vector<std::string> missingParts(const Capture& capture) {
   std::vector<std::string> missing;
   if (capture.lights.empty()) missing.push_back("no lights: no translucency");

@@ -59,7 +59,7 @@ std::string extensionOf(const std::string& path) {
   return extension;
 }
 
-// What the scene options say, without those of the viewer and of the replay.
+// Options of the viewer and of the replay; all others are options of the scene.
 const std::set<std::string> kNotOfTheScene = {"--set",         "--mode",       "--debug",    "--device",
                                               "--window-size", "--no-window",  "--validate", "--frames",
                                               "--script",      "--screenshot", "--exposure", "--perception",

@@ -16,8 +16,8 @@ void check(VkResult result, const char* call);
 struct DeviceOptions {
   std::string name;         // part of the device's name, any case; empty: the fastest kind there is
   bool validation = false;  // core and synchronization validation; messages are collected
-  // Of a window system: its instance extensions, and whether a queue family presents to it. With the latter
-  // the device has VK_KHR_swapchain; without, it shows nothing.
+  // A window system's instance extensions, and a test that a queue family presents to the window system. With
+  // `presents` the device has VK_KHR_swapchain; without, the device shows nothing.
   std::vector<const char*> instanceExtensions = {};
   std::function<bool(VkInstance, VkPhysicalDevice, uint32_t family)> presents = {};
 };

@@ -17,7 +17,7 @@ struct Elements {
   bool normalized;
 };
 
-// Of accessors that only a sparse part gives numbers other than 0.
+// Largest count of an accessor whose only numbers other than 0 come from a sparse part.
 constexpr std::size_t kMostZeros = 1u << 24;
 
 int componentsOf(const tinygltf::Accessor& accessor) {

@@ -12,7 +12,7 @@
 
 namespace pellucid::harness {
 
-// Where a texture takes its coordinates from.
+// Source of a texture's coordinates.
 struct TexCoord {
   int set = -1;             // the n of TEXCOORD_n; -1: there is no texture
   glm::dmat3 transform{1};  // KHR_texture_transform; of (u, v, 1)
@@ -27,7 +27,7 @@ struct TexCoords {
 struct Attributes {
   AccessorValues position;
   std::optional<AccessorValues> normal, uv, color, mark, normalUv, lobeUv, tangent;
-  // Of joints, four for each set: JOINTS_0, JOINTS_1 and so on, as many as WEIGHTS_n.
+  // Joints and their weights, four for each set: JOINTS_0, JOINTS_1 and so on, as many as WEIGHTS_n.
   std::vector<AccessorValues> joints, weights;
 
   std::size_t count() const { return position.count(); }
@@ -39,7 +39,7 @@ Attributes readAttributes(const GltfDocument& document, const tinygltf::Primitiv
                           const std::string& field, const TexCoords& texCoords,
                           const std::vector<double>& weights);
 
-// Of a texture info in the file's JSON (baseColorTexture and its like): the set and the transform.
+// Reads the set and the transform of a texture info in the file's JSON (baseColorTexture and its like).
 TexCoord readTexCoord(const GltfDocument& document, const GltfJson& textureInfo, const std::string& field);
 
 }  // namespace pellucid::harness

@@ -175,7 +175,8 @@ std::size_t base64Bytes(const std::string& uri) {
   return digits * 3 / 4;
 }
 
-// What tinygltf would say of buffers without naming them. `binary`: bytes of a GLB's own buffer.
+// Refuses by name the buffers that tinygltf would refuse without a name. `binary`: bytes of a GLB's own
+// buffer.
 void checkBuffers(const GltfDocument& document, Session& session, std::size_t binary) {
   const auto buffers = document.json.find("buffers");
   if (buffers == document.json.end()) return;

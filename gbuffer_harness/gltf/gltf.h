@@ -17,7 +17,7 @@ struct GltfOptions {
   // material that is not named; "default": triangles without a material.
   std::map<std::string, std::string> presets;
   double ior = 0;  // of all media, in place of their own, [1, 3]; 0: their own
-  // Of the animation that is read; absent: the nodes as they stand. Seconds, >= 0.
+  // Seconds into the animation that is read, >= 0; absent: the nodes as they stand.
   std::optional<double> time;
   std::string animation;  // name or number from 0; empty: the first
   // Name of the camera that looks, by which the world's origin is chosen where the scene is far from its own;

@@ -37,7 +37,7 @@ const std::set<std::string> kHarmless = {
 
 enum class Type { Object, Array, String, Number, Index, Boolean };
 
-// What tinygltf needs to be there, or to be of a type, in a path where * is every element of an array or
+// A path that tinygltf needs to be there, or to be of a type; in it, * is every element of an array or
 // object.
 struct Rule {
   const char* path;
@@ -295,7 +295,7 @@ GltfJson forTinyGltf(const GltfJson& json) {
       const auto indices = primitive.find("indices");
       if (indices == primitive.end() || !extensionOf(primitive, "KHR_draco_mesh_compression")) continue;
       const std::size_t i = *indices;
-      // tinygltf takes no indices without a view. What the stream holds stands in front of that of the view.
+      // tinygltf takes no indices without a view. The stream's indices take precedence over the view's.
       if (i < accessors->size() && !(*accessors)[i].contains("bufferView")) (*accessors)[i]["bufferView"] = 0;
     }
   return result;

@@ -9,14 +9,15 @@ namespace pellucid::harness {
 
 using GltfJson = nlohmann::json;
 
-// Whether a file that requires or uses the extension is drawn as it asks, or as well without it.
+// True if a file that requires or uses the extension is drawn as the extension asks, or as well without the
+// extension.
 bool isDrawn(const std::string& extension);
 
 // Parses `text` and throws InputError for what tinygltf would refuse without a field: JSON that is none,
 // extensions that are required and not known, and properties that are missing or of another type.
 GltfJson parseGltfJson(const std::string& file, std::string_view text);
 
-// Whether a buffer only stands in for what its views hold compressed elsewhere (EXT_meshopt_compression).
+// True if a buffer only stands in for what its views hold compressed elsewhere (EXT_meshopt_compression).
 bool isFallbackBuffer(const GltfJson& buffer);
 
 // The extension of that name; NULL: `value` does not have it as an object.

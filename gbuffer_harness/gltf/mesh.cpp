@@ -108,7 +108,7 @@ glm::dmat4 skinned(const GltfDocument& document, const Attributes& attributes, s
   return sum / total;
 }
 
-// Of normals; up to a factor the inverse transpose, and finite where the matrix is singular.
+// Transform of normals: up to a factor the inverse transpose, and finite where the matrix is singular.
 struct NormalTransform {
   glm::dmat3 linear, cofactors;
   double sign;
@@ -155,7 +155,7 @@ WorldVertices toWorld(const GltfDocument& document, const Attributes& attributes
   return world;
 }
 
-// Whether the mesh's transform turns its outside in.
+// True if the mesh's transform turns the outside in.
 bool isMirrored(const GltfDocument& document, const Attributes& attributes, const std::string& field,
                 const MeshPose& pose) {
   const glm::dmat4 matrix =

@@ -12,12 +12,13 @@ namespace pellucid::harness {
 
 namespace {
 
-// Of the distance that is seen. Floats then still tell 1 part in 65536 of it apart.
+// Largest distance from the origin, as a multiple of the seen distance. Floats there still tell apart 1/65536
+// of the seen distance.
 constexpr double kFarthest = 256;
-// What is seen is not much farther than so many near planes.
+// The seen distance is not much more than so many near planes.
 constexpr double kNearPlanes = 100;
 
-// What has to be drawn finely: a place, and the distance from it that counts.
+// A place around which the scene has to be drawn finely, and the distance from the place that counts.
 struct Anchor {
   glm::dvec3 position;
   double distance;

@@ -1,4 +1,4 @@
-// Where the nodes of a glTF file are at a time of its animation.
+// Places of a glTF file's nodes at a time of its animation.
 #pragma once
 
 #include <glm/mat4x4.hpp>
@@ -11,7 +11,7 @@
 
 namespace pellucid::harness {
 
-// What an animation changes, by node; all others stand as in the file.
+// Changes by an animation, by node; all other nodes stand as in the file.
 struct Pose {
   std::map<std::size_t, glm::dmat4> parentFromNode;
   std::map<std::size_t, std::vector<double>> weights;  // of morph targets

@@ -43,7 +43,7 @@ int decode(const MeshoptStream& stream, const std::string& mode, std::vector<uns
   return meshopt_decodeIndexSequence(to.data(), stream.count, stream.stride, stream.data, stream.bytes);
 }
 
-// What the decoders assert instead of refusing.
+// Checks that the decoders assert instead of refusing.
 bool isStride(const std::string& mode, std::size_t stride) {
   return mode == "ATTRIBUTES" ? stride > 0 && stride % 4 == 0 && stride <= 256 : stride == 2 || stride == 4;
 }

@@ -1,4 +1,4 @@
-// What glTF's extensions say of the light that enters a surface.
+// The light that enters a surface, by glTF's extensions.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace pellucid::harness {
 
-// Of KHR_materials_volume, _volume_scatter, _diffuse_transmission, _scatter and _transmission;
+// Result of KHR_materials_volume, _volume_scatter, _diffuse_transmission, _scatter and _transmission;
 // docs/scenes.md.
 struct Scattering {
   std::optional<MaterialSource> medium;  // nothing: opaque

@@ -79,7 +79,7 @@ Matrix projectionOf(const Attributes& attributes, const Matrix& viewFromWorld, c
   x /= scale;
   y /= scale;
   w /= scale;
-  // Where the axis meets the image: near the middle of 0 .. 1, or of -1 .. 1.
+  // The axis meets the image near the middle of 0 .. 1, or of -1 .. 1.
   const bool isOpenExr =
       std::abs(glm::dot(x, ahead) - 0.5) < 0.25 && std::abs(glm::dot(y, ahead) - 0.5) < 0.25;
   glm::dmat4 clip(0);

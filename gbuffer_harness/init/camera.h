@@ -10,7 +10,7 @@
 
 namespace pellucid::harness {
 
-// What the person says; all of it optional.
+// Statements of the person; all are optional.
 struct CameraWords {
   std::optional<double> verticalFov;          // degrees
   std::optional<double> orthographicHeight;   // scene units
@@ -20,7 +20,7 @@ struct CameraWords {
   Vector3 up = {0, 1, 0};
 };
 
-// What the depths say.
+// Facts that the depths tell.
 struct DepthFacts {
   bool isDevice = false, looksReversed = true;
   double nearest = 1;  // planar distance; of viewZ

@@ -113,7 +113,7 @@ bool hasShapeOf(Role role, const ChannelGroup& group) {
   return isTriple ? group.channels.size() == 3 : group.channels.size() == 1 || !group.isNamed;
 }
 
-// What a group may be known by: its layer, and of single channels the whole name.
+// Names by which a group may be known: its layer, and of single channels the whole name.
 std::vector<std::string> namesOf(const ChannelGroup& group) {
   std::vector<std::string> names = {plain(group.name)};
   if (group.channels.size() == 1) {

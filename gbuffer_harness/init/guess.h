@@ -1,4 +1,4 @@
-// Which of the channels of foreign files are the buffers of a capture.
+// Guesses which channels of foreign files are the buffers of a capture.
 #pragma once
 
 #include <map>

@@ -1,4 +1,4 @@
-// What is in EXR files that nobody described.
+// Contents of EXR files that nobody described.
 #pragma once
 
 #include <filesystem>

@@ -70,7 +70,7 @@ public:
   void draw(const RenderTarget& target, const DrawView& view, const PipelineState& state,
             VkCullModeFlags doubleSidedCull, const EarlierPass& earlier = {}) const;
 
-  // The same into a command buffer of the caller's, whose resources must live until it has run.
+  // Records draw() into a command buffer of the caller's, whose resources must live until it has run.
   void record(VkCommandBuffer commandBuffer, const RenderTarget& target, const DrawView& view,
               const PipelineState& state, VkCullModeFlags doubleSidedCull,
               const EarlierPass& earlier = {}) const;

@@ -31,7 +31,7 @@ public:
   // shadows: none, one, or the six of a cube, which have the same size and projection.
   void add(const Light& light, const std::vector<ShadowImage>& shadows);
 
-  // What add() records. The function keeps what the commands read besides this and the images.
+  // Records the commands of add(). The function keeps what the commands read besides this and the images.
   std::function<void(VkCommandBuffer)> recorder(const Light& light,
                                                 const std::vector<ShadowImage>& shadows) const;
 

@@ -78,7 +78,7 @@ struct ModelCamera {
 struct Model {
   std::string name;
   double metersPerUnit = 1;
-  // Of the file's world, where the model's world begins; other than 0 where floats would be too coarse.
+  // Place in the file's world at which the model's world begins; other than 0 if floats would be too coarse.
   std::array<double, 3> origin = {0, 0, 0};
   std::vector<Vertex> vertices;
   std::vector<std::uint32_t> indices;

@@ -54,7 +54,7 @@ struct RasterResult {
   // Pixels of a material through which the front's object is not closed: an open or single-sided mesh, or
   // a hole. They have no back depth.
   std::size_t openPixels = 0;
-  // What the irradiance is times, RGB, 0 where nothing is; empty: no surface has its lobes apart.
+  // Factor in the irradiance, RGB, 0 where nothing is; empty: no surface has its lobes apart.
   Image reflectedShare;
   std::vector<std::string> warnings;  // sentences for a person
 };
@@ -65,8 +65,7 @@ struct RasterResult {
 RasterResult rasterize(Device& device, const Model& model, const ModelCamera& camera,
                        const RasterOptions& options);
 
-// The same of a model that is on the device already. `model` is the uploaded one, whose lights may have
-// changed.
+// Draws a model that is on the device already. `model` is the uploaded one, whose lights may have changed.
 class UploadedModel;
 RasterResult rasterize(Device& device, const Model& model, const UploadedModel& uploaded,
                        const ModelCamera& camera, const RasterOptions& options);

@@ -48,8 +48,8 @@ public:
   // Nearest texel.
   Lookup at(const glm::dvec3& point) const;
 
-  // The four texels around the point with their bilinear weights; nothing outside the map. Of all texels,
-  // what was drawn is as far off what is stored as in the nearest one.
+  // The four texels around the point with their bilinear weights; nothing outside the map. In each texel, the
+  // drawn depth is as far off the stored one as in the nearest texel.
   struct Tap {
     double weight;
     Lookup found;

@@ -23,8 +23,8 @@ struct Transmission {
   glm::dvec3 transmitted{0};              // sum of T(d) times the unoccluded back irradiance
 };
 
-// What settings.angleModel makes of x, the cosine between the view ray and the direction to the light, -1..1;
-// of NORMAL what it is without normals. minimumDot: the light's, of the models that have one.
+// Value of settings.angleModel for x, the cosine between the view ray and the direction to the light, -1..1;
+// for NORMAL, the value without normals. minimumDot: the light's, of the models that have one.
 double angleFactor(const TranslucencySettings& settings, double x, double minimumDot);
 
 class Translucency {

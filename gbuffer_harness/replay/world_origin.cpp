@@ -7,9 +7,10 @@ namespace pellucid::harness {
 
 namespace {
 
-// Of the distance that is seen. Floats then still tell 1 part in 65536 of it apart.
+// Largest distance from the origin, as a multiple of the seen distance. Floats there still tell apart 1/65536
+// of the seen distance.
 constexpr double kFarthest = 256;
-// What is seen is not much farther than so many near planes.
+// The seen distance is not much more than so many near planes.
 constexpr double kNearPlanes = 100;
 
 // The distance that is seen, in scene units; 0: the matrix does not say.

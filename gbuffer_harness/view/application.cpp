@@ -267,7 +267,7 @@ void Application::carryOut(const ScriptLine& line) {
                   std::clamp(static_cast<int>(numberOf(line, 1)), 64, 8192));
 }
 
-// What was open stays where the new scene cannot be read or rendered.
+// The open scene stays if the new scene cannot be read or rendered.
 void Application::open(const SceneToView& scene) {
   std::unique_ptr<Source> source = scene.open(device_);
   ViewState state = source->start();

@@ -33,7 +33,7 @@ bool CostHistory::add(std::uint64_t frame, const std::vector<DispatchTime>& time
     const double now = dispatch.history.back();
     dispatch.smoothed = first ? now : dispatch.smoothed + kNewShare * (now - dispatch.smoothed);
   }
-  // What has not run for the whole history is forgotten.
+  // A dispatch that has not run for the whole history is forgotten.
   std::erase_if(dispatches_, [](const Dispatch& d) {
     return std::all_of(d.history.begin(), d.history.end(), [](double t) { return t == 0; });
   });

@@ -1,4 +1,4 @@
-// What the module's dispatches cost over the last frames, and the budget that holds it.
+// Cost of the module's dispatches over the last frames, and the budget that holds this cost.
 #pragma once
 
 #include <cstdint>

@@ -18,7 +18,7 @@ struct Curves {
 // T(d), d in mm, as far as some channel lets 1 % through, 0.1 to 100 mm. points: >= 2.
 Curves transmittanceCurves(const PellucidMaterial& material, int points);
 
-// What the angle model makes of 0..90 degrees beyond the right angle between the directions to the eye and to
+// The angle model's values for 0..90 degrees beyond the right angle between the directions to the eye and to
 // the light. Models with tables and -N.L have no one curve: no values.
 Curves angleCurve(const TranslucencySettings& settings, int points);
 

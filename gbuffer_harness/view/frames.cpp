@@ -142,7 +142,7 @@ void ViewFrames::update(const ViewState& state, const Changes& changes) {
 
 namespace {
 
-// Which image of the host a picture needs.
+// Names the image of the host that a picture needs.
 Shown hostImageOf(Shown shown) { return shown == Shown::Difference ? Shown::Truth : shown; }
 
 }  // namespace

@@ -18,8 +18,8 @@ public:
   // `contexts` of all uses and `source` must outlive it.
   ViewFrames(Device& device, Contexts& contexts, Source& source);
 
-  // Makes anew what the changes ask for, and frames that the display newly shows. Where it throws, what was
-  // there before stays.
+  // Makes anew what the changes ask for, and frames that the display newly shows. If update() throws, all
+  // frames stay as they were.
   void update(const ViewState& state, const Changes& changes);
 
   const Capture& capture() const { return capture_; }
@@ -28,15 +28,15 @@ public:
 
   // The frame whose output is looked at; what shows inputs has that of Shown::After.
   const FrameRun& run(Shown shown) const;
-  // What the host made of what is shown, for the display: the truth of Truth and Difference, Tiles, Isolated.
+  // The host's image of what is shown, for the display: the truth of Truth and Difference, Tiles, Isolated.
   // Null for others, and where the capture has no truth.
   const GpuImage* hostImage(Shown shown) const;
 
-  // What is shown, before exposure: RGB, or one channel or three for false colors. Pixels without a material:
-  // as a replay has them.
+  // The shown picture before exposure: RGB, or one channel or three for false colors. Pixels without a
+  // material: as a replay has them.
   const Image& image(Shown shown) const;
 
-  // Of the last recording of Shown::After, by the GPU's clock.
+  // Times of the last recording of Shown::After, by the GPU's clock.
   const std::vector<DispatchTime>& times() const { return times_; }
   // Wall-clock time of the last source.render() and upload.
   double sceneMilliseconds() const { return sceneMilliseconds_; }

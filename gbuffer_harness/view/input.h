@@ -1,4 +1,4 @@
-// What mouse and keys do to the state, for a panel library and a test alike.
+// Effect of mouse and keys on the state, for a panel library and a test alike.
 #pragma once
 
 #include "view/display.h"

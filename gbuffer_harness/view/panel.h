@@ -15,7 +15,7 @@
 
 namespace pellucid::harness {
 
-// What the panel knows besides the state, kept between frames of the screen.
+// Values that the panel knows besides the state, kept between frames of the screen.
 struct PanelState {
   CostHistory cost;
   Budget budget;

@@ -37,7 +37,7 @@ bool drawPreset(MaterialSource& source) {
   return changed;
 }
 
-// Of presets, coefficients of their own take over with the first change; layered skin has none.
+// The first change of a preset replaces it by coefficients; layered skin has none.
 bool drawCoefficients(MaterialSource& source) {
   CoefficientMaterial material{};
   try {

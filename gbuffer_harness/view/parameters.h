@@ -1,4 +1,4 @@
-// What the panel offers of a replay's settings: names, ranges and how a value reaches its field.
+// A replay's settings that the panel offers: names, ranges and how a value reaches its field.
 #pragma once
 
 #include <array>

@@ -12,13 +12,13 @@ struct FalseColors {
   float low = 0, high = 1;
 };
 
-// Which half of the picture has false colors, the right one first.
+// The half of the picture that has false colors, the right one first.
 std::optional<Shown> falseColored(const Display& display);
 
 // As the display sets them; where it does not, those of the pixels that have a material, with low < high.
 FalseColors falseColorsOf(const Display& display, const ViewFrames& frames);
 
-// Where the legend is; empty without false colors.
+// Rectangle of the legend; empty without false colors.
 ScreenRect legendOf(const Display& display, const ScreenRect& picture);
 
 // Within a target's begin() and end(). `picture`: where the frame is on the screen.

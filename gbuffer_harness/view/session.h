@@ -1,4 +1,4 @@
-// What the viewer saves: the scene and the state that a capture does not hold.
+// Saved views: the scene and the state that a capture does not hold.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// What the viewer looks at: a model, a procedural scene or a capture.
+// The subject of the viewer: a model, a procedural scene or a capture.
 #pragma once
 
 #include <memory>

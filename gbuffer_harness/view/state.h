@@ -1,4 +1,4 @@
-// What the viewer's panel and mouse change, and what a change makes necessary.
+// State that the viewer's panel and mouse change, and the work that a change makes necessary.
 #pragma once
 
 #include <string>
@@ -57,7 +57,7 @@ struct ViewState {
   int selectedLight = 0, selectedMaterial = 0;
 };
 
-// What has to be made anew, which makes what depends on it anew, too.
+// Parts that have to be made anew, along with all that depends on them.
 struct Changes {
   bool scene = false;      // camera, lights, size: the images that the module reads
   bool materials = false;  // their coefficients

@@ -27,7 +27,7 @@ std::vector<T> listed(const Function& function, Arguments... arguments) {
   return all;
 }
 
-// Of 8 bits without a curve of its own: what is copied there is sRGB already.
+// Chooses 8 bits without a curve of its own, because the copied image is sRGB already.
 VkSurfaceFormatKHR chooseFormat(const std::vector<VkSurfaceFormatKHR>& formats) {
   for (const VkFormat wanted : {VK_FORMAT_B8G8R8A8_UNORM, VK_FORMAT_R8G8B8A8_UNORM})
     for (const VkSurfaceFormatKHR& format : formats)

@@ -62,7 +62,7 @@ TEST_F(Lobes, ReflectedAndTransmittedLightHaveTheirOwnColors) {
   expectRgb(middle(leaf(), 1, "behind"), {0.8, 0.1, 0.1});
 }
 
-// What comes through in red is all that comes through; blue reflects in spite of an albedo of 0.
+// No blue light comes through, but blue reflects in spite of an albedo of 0.
 TEST_F(Lobes, ChannelsWithoutTransmittedLightReflect) {
   Model model = leaf();
   model.surfaces[0].addedColor = {0.4, 0.05, 0};

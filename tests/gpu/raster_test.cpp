@@ -82,8 +82,8 @@ TEST_F(Raster, CubeHasExactDepthsInEveryConvention) {
   }
 }
 
-// Where an edge of the silhouette runs through a pixel's center, front and back are one: the body is closed
-// there, and has a thickness of 0. Sizes at which some pixels are so.
+// At an edge of the silhouette that runs through a pixel's center, front and back are one: the body is closed
+// and has a thickness of 0. Some pixels are such edges at these sizes.
 TEST_F(Raster, EdgesOfClosedBodiesAreNotOpen) {
   Model model = emptyModel();
   addCube(model, 1);

@@ -74,8 +74,8 @@ protected:
     std::size_t lit = 0, apart = 0;  // values
   };
 
-  // Of the raster pass and what the dispatch adds to the irradiance. `apart`: values further apart than 1e-3
-  // of 5, about the peak.
+  // Difference of the raster pass and the light that the dispatch adds to the irradiance. `apart`: values
+  // further apart than 1e-3 of 5, about the peak.
   static Difference difference(bool orthographic, const RasterOptions& options, ReplaySettings settings) {
     const Model model = blob();
     RasterResult raster = rasterize(device(), model, frontCamera(orthographic, kEye), options);
@@ -101,9 +101,9 @@ protected:
   }
 };
 
-// Both evaluate the same functions of the same float depths. What is left is the rounding of the sum with the
-// irradiance, and edges of shadows: there the hidden face's slope decides how light fades, which the pass
-// takes from its triangle and the dispatch from depths.
+// Both evaluate the same functions of the same float depths. Two differences are left: the rounding of the
+// sum with the irradiance, and edges of shadows. At such edges the hidden face's slope decides how light
+// fades. The pass takes this slope from its triangle and the dispatch from depths.
 TEST_F(Transmit, BackFacePassEqualsTheFusedDispatch) {
   ReplaySettings cosine = thesisSettings();
   cosine.transmittance = TransmittanceChoice::Gaussians;

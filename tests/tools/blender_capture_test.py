@@ -13,8 +13,8 @@ sys.dont_write_bytecode = True
 BLENDER, TOOLS, COMMAND = sys.argv[1], os.path.abspath(sys.argv[2]), os.path.abspath(sys.argv[3])
 os.environ["PYTHONDONTWRITEBYTECODE"] = "1"
 HERE = os.path.dirname(os.path.abspath(__file__))
-# Of each channel, over the wax. The random walk of 256 samples has a noise of some 2 %; shadow maps of 512 texels, the
-# slab kernel and the diffusion make up the rest.
+# Largest error of each channel, over the wax. The random walk of 256 samples has a noise of some 2 %; shadow maps of
+# 512 texels, the slab kernel and the diffusion make up the rest.
 LARGEST_ERROR = 0.15
 
 

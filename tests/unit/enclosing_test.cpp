@@ -17,7 +17,7 @@ Model sphere(double radius) {
   return model;
 }
 
-// The same triangles seen from the other side.
+// Turns the triangles to be seen from the other side.
 void turnOver(Model& model, std::size_t firstIndex) {
   for (std::size_t i = firstIndex; i < model.indices.size(); i += 3)
     std::swap(model.indices[i], model.indices[i + 1]);

@@ -37,7 +37,7 @@ protected:
     std::ofstream(folder_ / name, std::ios::binary) << bytes;
     return folder_ / name;
   }
-  // What loadGltf says of these bytes; empty: it accepts them.
+  // The error of loadGltf for these bytes; empty: loadGltf accepts the bytes.
   std::string refusal(const std::string& bytes, const std::string& name = "t.glb",
                       const GltfOptions& options = {}) const {
     try {
@@ -91,7 +91,7 @@ inline void expectVector(const std::array<float, 3>& v, double x, double y, doub
   EXPECT_NEAR(v[2], z, tolerance);
 }
 
-// Whether one of the sentences holds these words.
+// True if one of the sentences holds these words.
 inline bool says(const std::vector<std::string>& sentences, const std::string& words) {
   return std::any_of(sentences.begin(), sentences.end(),
                      [&](const std::string& s) { return s.find(words) != std::string::npos; });

@@ -204,7 +204,7 @@ TEST_F(Gltf, VerticesFarFromTheOriginStayExact) {
   EXPECT_EQ(near.model.origin, (std::array<double, 3>{0, 0, 0}));
 }
 
-// What is near a camera that looks counts, however large the scene.
+// Only the part near a camera that looks counts, however large the scene.
 TEST_F(Gltf, TheOriginIsNearTheCameraThatLooks) {
   GltfBuilder b = square();
   b.json["nodes"] = {

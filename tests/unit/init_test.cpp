@@ -77,7 +77,7 @@ protected:
     writeText(folder_ / "capture.json", guessed.json.dump(1));
     return readCapture(folder_ / "capture.json");
   }
-  // Where the pixel's ray goes: all that the x, y and w rows of a projection say.
+  // Compares the pixels' rays: all that the x, y and w rows of a projection say.
   static void expectSameRays(const Matrix& a, const Matrix& b) {
     for (const std::size_t i : {0u, 5u, 8u, 9u, 11u, 12u, 13u, 15u}) EXPECT_NEAR(a[i], b[i], 1e-5) << i;
   }

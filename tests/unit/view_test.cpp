@@ -1,4 +1,4 @@
-// What the viewer does without a window: camera, lights, input, parameters, sessions, scripts, cost.
+// The viewer without a window: camera, lights, input, parameters, sessions, scripts, cost.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -9,7 +9,7 @@ layout(location = 3) in float planar;
 layout(location = 0) out float outPlanar;
 layout(location = 1) out float outDepth;
 
-// Where a silhouette's edge runs through the pixel's center, front and back face meet there. Rounding may put the back face
+// Front and back face meet where a silhouette's edge runs through the pixel's center. Rounding may put the back face
 // in front, by no more than its depth changes within the pixel.
 bool isBehind(float depth, float slope, float front) {
   float nearest = (draw.ids.y & 1u) != 0u ? depth - slope : depth + slope;

@@ -36,7 +36,7 @@ vec3 albedoOf(Lobes lobes) {
   return areApart() ? max(lobes.through, least) : lobes.reflected + lobes.through;
 }
 
-// What times the albedo is the color of reflected light.
+// Factor that makes the albedo the color of reflected light.
 vec3 reflectedShare(Lobes lobes) {
   float backscatter = unpackHalf2x16(draw.ids.y).y;
   return areApart() ? (lobes.reflected + backscatter * lobes.through) / albedoOf(lobes) : vec3(1.0);

@@ -1,5 +1,5 @@
 #version 450
-// What is shown of a frame, as pixels of the screen. Inputs that the frame does not have are images of one texel.
+// The shown part of a frame, as pixels of the screen. Inputs that the frame does not have are images of one texel.
 layout(set = 0, binding = 0) uniform sampler2D resultImage;
 layout(set = 0, binding = 1) uniform sampler2D irradianceImage;
 layout(set = 0, binding = 2) uniform sampler2D albedoImage;
