@@ -103,42 +103,6 @@ std::optional<Worst> darkerFilter(Subject& s) {
   return less(s.renderer.render(darker), s.renderer.render(frame), s.owned);
 }
 
-// Towards the light, where the map holds a depth: in view depth and distance that is nearer, and in device
-// depth it is towards the value of the near plane.
-std::optional<Worst> nearerMaps(Subject& s) {
-  StressFrame frame;
-  if (!ungathered(s, frame) || frame.settings.translucency.thicknessSource != PELLUCID_THICKNESS_LIGHT)
-    return {};
-  // These fields go by differences of depths, which scale.
-  for (Light& light : frame.capture.lights)
-    for (ShadowMap& map : light.shadowMaps) map.depthBiasSlope = map.depthStep = 0;
-  StressFrame thicker = frame;
-  Random random = s.random("nearer-maps");
-  bool any = false;
-  for (Light& light : thicker.capture.lights)
-    for (ShadowMap& map : light.shadowMaps) {
-      const auto factor = static_cast<float>(random.real(0.3, 1));
-      const Matrix& m = map.clipFromWorld;
-      // Along the light's axis depth grows as the third row says; w as the fourth.
-      const glm::dvec3 depthAxis(m[2], m[6], m[10]), wAxis(m[3], m[7], m[11]);
-      const bool device = map.depth.encoding == PELLUCID_DEPTH_DEVICE;
-      bool farIsOne = true;
-      if (device && light.type == PELLUCID_LIGHT_DIRECTIONAL)
-        farIsOne =
-            glm::dot(depthAxis, glm::dvec3(light.direction[0], light.direction[1], light.direction[2])) > 0;
-      else if (device)  // at the eye w is 0 and depth's numerator is -near, or near where reversed
-        farIsOne =
-            m[2] * light.position[0] + m[6] * light.position[1] + m[10] * light.position[2] + m[14] < 0;
-      for (float& d : map.depth.image.data) {
-        if (!(d > 0 && d < (device ? 1.0f : 1e9f))) continue;
-        d = !device || farIsOne ? d * factor : 1 - (1 - d) * factor;
-        any = true;
-      }
-    }
-  if (!any) return {};
-  return less(s.renderer.render(thicker), s.renderer.render(frame), s.owned);
-}
-
 // A back depth farther away, where it says the thickness and nothing else: the hidden point of a directional
 // light without a map.
 std::optional<Worst> fartherBacks(Subject& s) {
@@ -198,8 +162,6 @@ std::span<const Check> energyChecks() {
        2e-3, 2e-3, kRounding, &thinnerLimit},
       {"darker-filter", "a smaller transmittanceFilter gives no pixel more",
        "frames with lights, not gathered", 2e-3, 2e-3, kRounding, &darkerFilter},
-      {"nearer-maps", "maps nearer to the light give no pixel more",
-       "frames with maps, not gathered, thickness of the light", 2e-3, 2e-3, kRounding, &nearerMaps},
       {"farther-backs", "a back depth farther away gives no pixel more",
        "frames with directional lights and depths in view z", 2e-3, 2e-3, kRounding, &fartherBacks},
       {"reuse", "the next frame of a still camera is the frame", "frames that reuse light", 2e-3, 2e-3,

@@ -91,8 +91,11 @@ void PlanBuilder::optional(PellucidDispatch* d, uint32_t binding, PellucidResour
 }
 
 void PlanBuilder::shadowImages(PellucidDispatch* d, const LightGroup& group) const {
-  // Slots that are not read hold a view of the type of the others.
+  // Slots that are not read hold a view of the type that shadow images have, as far as the frame has one.
+  const PellucidFrame& f = facts.frame;
+  const bool some = f.shadowImageCount > 0 && given(f.shadowImages[0]);
   const uint32_t standIn = group.imageCount > 0 ? kShadow0 + group.images[0]
+                           : some               ? kShadow0
                                                 : static_cast<uint32_t>(PELLUCID_RESOURCE_FRONT_DEPTH);
   for (uint32_t slot = 0; slot < PELLUCID_SHADOW_IMAGE_COUNT; ++slot) {
     const bool used = slot < group.imageCount;

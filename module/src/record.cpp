@@ -65,7 +65,12 @@ PellucidResult checkPlan(const PellucidContext& c, const PellucidPlan& plan, con
       return refuse(c, "plan", sentence);
     }
     for (uint32_t b = 0; b < d.bindingCount; ++b) {
-      const uint32_t resource = d.bindings[b].resource;
+      const uint32_t resource = d.bindings[b].resource, binding = d.bindings[b].binding;
+      if (resource == PELLUCID_RESOURCE_FRONT_DEPTH && binding >= PELLUCID_BINDING_SHADOW_IMAGES &&
+          c.shadowViewType == VK_IMAGE_VIEW_TYPE_2D_ARRAY)
+        return refuse(c, "shadowImages",
+                      "has no view, but PellucidContextDesc::shadowViewType is 2D_ARRAY, and passes bind one "
+                      "such view even where no light has a map");
       if (resource != PELLUCID_RESOURCE_CONSTANTS && imageOf(facts.frame, resource).view == VK_NULL_HANDLE)
         return refuse(c, "plan",
                       "uses an image that the frame has no view of: it was made from another frame");

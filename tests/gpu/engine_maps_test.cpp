@@ -211,6 +211,37 @@ TEST_F(EngineMaps, LayersNeedAnArrayContext) {
   });
 }
 
+// Passes of an array context bind array views, those without lights and those after a gather among them.
+TEST_F(EngineMaps, ArrayContextsBindArrayViewsAlone) {
+  Capture c = flatCapture(8, 8);
+  const Context arrays(device(), [](PellucidContextDesc& desc) {
+    desc.uses = PELLUCID_USE_TRANSLUCENCY;
+    desc.shadowViewType = VK_IMAGE_VIEW_TYPE_2D_ARRAY;
+  });
+  ReplaySettings s;
+  s.features = 0;
+  const FrameRun none(device(), arrays, c, {testMaterial()}, s);
+  device().run([&](VkCommandBuffer commandBuffer) {
+    try {
+      none.record(commandBuffer);
+      ADD_FAILURE() << "not refused";
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("shadowImages has no view"), std::string::npos)
+          << error.what();
+    }
+  });
+  c.lights = {backLight()};
+  c.lights[0].shadowMaps = {flatShadowMap(-11, PELLUCID_DEPTH_DEVICE)};
+  c.lights[0].shadowMaps[0].sharedImage = 0;
+  c.lights[0].shadowMaps[0].layer = 1;
+  for (const uint32_t features : {0u, uint32_t{PELLUCID_FEATURE_TRANSLUCENCY}}) {
+    s.features = features;
+    // The fixture fails with the first validation message.
+    const Image image = replayer().run(c, {testMaterial()}, s).output;
+    EXPECT_GT(*image.at(4, 4), 0);
+  }
+}
+
 TEST_F(EngineMaps, FewBitsMakeNoSeams) {
   const Model model = ballAndEar();
   const Capture plain = draw(model, {});

@@ -273,7 +273,7 @@ typedef struct PellucidContextDesc {
                                         cache's functions are called on them */
   void* parallelUser;
   VkImageViewType shadowViewType; /* of all shadow images of all frames: 2D (default), or 2D_ARRAY, of which one view of all
-                                     layers serves every map in them */
+                                     layers serves every map in them; each frame then has a shadow image, maps or not */
   uint32_t reserved;              /* 0, for a later field */
 } PellucidContextDesc;
 
