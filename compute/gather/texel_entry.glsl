@@ -7,11 +7,19 @@
 // terminators.
 const float kLeastCosine = 0.2;
 
+// Slope towards the camera up to which a pixel's own slope excuses a point behind its depth: 63 degrees. Steeper limbs enter
+// light that their few pixels do not all show: without this end a sphere of 8 mm is off by a third more.
+const float kSteepestSeen = 2.0;
+
 // True where a point does not lie behind the surface that its pixel shows: the light that enters there is in the irradiance
 // that diffusion spreads. A surface that faces away cannot be seen, however thin the part is. `front`: of the pixel;
 // `uncertain`: along the normal.
 bool cameraSees(ivec2 pixel, float front, float planar, vec3 normal, float tolerance, float uncertain) {
-  float facing = dot(normal, viewRay(frame.camera, pixel).direction);
+  vec3 ray = normalize(viewRay(frame.camera, pixel).direction);
+  float facing = dot(normal, ray), slope = slopeOf(facing) < kSteepestSeen ? slopeOf(facing) : 0.0;
+  vec2 squared = squaredPixelSize(frame.camera, front);
+  // Up to half a pixel's diagonal lies between the point and the pixel's center.
+  tolerance += 0.70710678 * sqrt(max(squared.x, squared.y)) * slope;
   return insideRect(pixel) && facing < 0.0 && front > 0.0 &&
          planar <= front + tolerance + uncertain / max(-facing, kLeastCosine);
 }
