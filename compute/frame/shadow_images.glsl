@@ -27,27 +27,30 @@ layout(set = 0, binding = SHADOW_BINDING + 7) uniform PELLUCID_SHADOW_TEXTURE sh
 
 #define PELLUCID_TEXEL(slot, texel) texelFetch(slot, PELLUCID_SHADOW_PLACE(texel, image), 0).x
 
-// A switch over bindings, unlike an index, does not need shaderSampledImageArrayDynamicIndexing.
-// `image`: a slot, from bit 8 on the layer, which is 0 of 2D views.
-float shadowTexel(uint image, ivec2 texel) {
-  switch (PELLUCID_SHADOW_SLOT(image)) {
-    case 0u: return PELLUCID_TEXEL(shadowImage0, texel);
-    case 1u: return PELLUCID_TEXEL(shadowImage1, texel);
-    case 2u: return PELLUCID_TEXEL(shadowImage2, texel);
-    case 3u: return PELLUCID_TEXEL(shadowImage3, texel);
-    case 4u: return PELLUCID_TEXEL(shadowImage4, texel);
-    case 5u: return PELLUCID_TEXEL(shadowImage5, texel);
-    case 6u: return PELLUCID_TEXEL(shadowImage6, texel);
-    default: return PELLUCID_TEXEL(shadowImage7, texel);
+// Returns what `fetch` makes of the image's slot. A switch over bindings, unlike an index, does not need
+// shaderSampledImageArrayDynamicIndexing.
+#define PELLUCID_RETURN_OF_SLOT(fetch)       \
+  switch (PELLUCID_SHADOW_SLOT(image)) {     \
+    case 0u: return fetch(shadowImage0);     \
+    case 1u: return fetch(shadowImage1);     \
+    case 2u: return fetch(shadowImage2);     \
+    case 3u: return fetch(shadowImage3);     \
+    case 4u: return fetch(shadowImage4);     \
+    case 5u: return fetch(shadowImage5);     \
+    case 6u: return fetch(shadowImage6);     \
+    default: return fetch(shadowImage7);     \
   }
-}
+
+// `image`, here and below: a slot, from bit 8 on the layer, which is 0 of 2D views.
+#define PELLUCID_ONE(slot) PELLUCID_TEXEL(slot, texel)
+float shadowTexel(uint image, ivec2 texel) { PELLUCID_RETURN_OF_SLOT(PELLUCID_ONE) }
 
 struct ShadowTexels {
   float own;
   vec4 beside; // texels to the right, to the left, below and above
 };
 
-#define PELLUCID_TEXELS(slot)                                                                       \
+#define PELLUCID_CROSS(slot)                                                                        \
   ShadowTexels(PELLUCID_TEXEL(slot, texel), vec4(PELLUCID_TEXEL(slot, right), PELLUCID_TEXEL(slot, left), \
                                                  PELLUCID_TEXEL(slot, below), PELLUCID_TEXEL(slot, above)))
 
@@ -55,39 +58,20 @@ struct ShadowTexels {
 ShadowTexels shadowTexels(uint image, ivec2 texel, ivec2 first, ivec2 last) {
   ivec2 right = ivec2(min(texel.x + 1, last.x), texel.y), left = ivec2(max(texel.x - 1, first.x), texel.y);
   ivec2 below = ivec2(texel.x, min(texel.y + 1, last.y)), above = ivec2(texel.x, max(texel.y - 1, first.y));
-  switch (PELLUCID_SHADOW_SLOT(image)) {
-    case 0u: return PELLUCID_TEXELS(shadowImage0);
-    case 1u: return PELLUCID_TEXELS(shadowImage1);
-    case 2u: return PELLUCID_TEXELS(shadowImage2);
-    case 3u: return PELLUCID_TEXELS(shadowImage3);
-    case 4u: return PELLUCID_TEXELS(shadowImage4);
-    case 5u: return PELLUCID_TEXELS(shadowImage5);
-    case 6u: return PELLUCID_TEXELS(shadowImage6);
-    default: return PELLUCID_TEXELS(shadowImage7);
-  }
+  PELLUCID_RETURN_OF_SLOT(PELLUCID_CROSS)
 }
 
-#undef PELLUCID_TEXELS
-
-#define PELLUCID_QUAD(slot)                                                               \
-  vec4(PELLUCID_TEXEL(slot, low), PELLUCID_TEXEL(slot, ivec2(high.x, low.y)),             \
+#define PELLUCID_QUAD(slot)                                                   \
+  vec4(PELLUCID_TEXEL(slot, low), PELLUCID_TEXEL(slot, ivec2(high.x, low.y)), \
        PELLUCID_TEXEL(slot, ivec2(low.x, high.y)), PELLUCID_TEXEL(slot, high))
 
 // Texels at low, (high.x, low.y), (low.x, high.y) and high.
-vec4 shadowQuad(uint image, ivec2 low, ivec2 high) {
-  switch (PELLUCID_SHADOW_SLOT(image)) {
-    case 0u: return PELLUCID_QUAD(shadowImage0);
-    case 1u: return PELLUCID_QUAD(shadowImage1);
-    case 2u: return PELLUCID_QUAD(shadowImage2);
-    case 3u: return PELLUCID_QUAD(shadowImage3);
-    case 4u: return PELLUCID_QUAD(shadowImage4);
-    case 5u: return PELLUCID_QUAD(shadowImage5);
-    case 6u: return PELLUCID_QUAD(shadowImage6);
-    default: return PELLUCID_QUAD(shadowImage7);
-  }
-}
+vec4 shadowQuad(uint image, ivec2 low, ivec2 high) { PELLUCID_RETURN_OF_SLOT(PELLUCID_QUAD) }
 
+#undef PELLUCID_ONE
+#undef PELLUCID_CROSS
 #undef PELLUCID_QUAD
+#undef PELLUCID_RETURN_OF_SLOT
 #undef PELLUCID_TEXEL
 
 #endif
