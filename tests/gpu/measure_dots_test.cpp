@@ -67,7 +67,7 @@ TEST_F(MeasureDots, SphereIsAlikeAllAround) {
   dots.insert(dots.end(), map.begin(), map.end());
   // 700 pixels, of which the limb's are in or out, steps of 5 degrees, and texels of a 48th of the sphere
   // over which light fades in at the terminator.
-  for (const double dot : dots) EXPECT_NEAR(dot, -std::cos(b), 0.02);
+  for (const double dot : dots) EXPECT_NEAR(dot, -std::cos(b), 0.013);
 }
 
 // A plate shows its lit face's other side from the first step past 90 degrees on, and nothing of light that
