@@ -15,8 +15,9 @@ const float kSteepestSeen = 2.0;
 // that diffusion spreads. A surface that faces away cannot be seen, however thin the part is. `front`: of the pixel;
 // `uncertain`: along the normal.
 bool cameraSees(ivec2 pixel, float front, float planar, vec3 normal, float tolerance, float uncertain) {
-  vec3 ray = normalize(viewRay(frame.camera, pixel).direction);
-  float facing = dot(normal, ray), slope = slopeOf(facing) < kSteepestSeen ? slopeOf(facing) : 0.0;
+  vec3 ray = viewRay(frame.camera, pixel).direction;
+  float facing = dot(normal, ray), slope = slopeOf(facing * inversesqrt(dot(ray, ray)));
+  if (slope >= kSteepestSeen) slope = 0.0;
   vec2 squared = squaredPixelSize(frame.camera, front);
   // Up to half a pixel's diagonal lies between the point and the pixel's center.
   tolerance += 0.70710678 * sqrt(max(squared.x, squared.y)) * slope;
