@@ -172,13 +172,15 @@ shared::ShadowConstants shadowConstants(const FrameFacts& f, const PellucidShado
   return c;
 }
 
-shared::MaterialConstants materialConstants(const PellucidMaterial& m, bool gathers) {
+shared::MaterialConstants materialConstants(const FrameFacts& f, const PellucidMaterial& m) {
   shared::MaterialConstants c{};
   c.meta = {m.transmittanceModel, m.gaussianCount, 0, 0};
   const float exponent = m.transmittanceModel == PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED ? 1.0f : 0.5f;
-  if (gathers) c.gather = gatherConstants(m);
-  c.inverseReflectance.w = static_cast<float>(1 / halfThickness(m));
-  c.transmittance4.w = static_cast<float>(opaqueThickness(m));
+  if (f.gathers) c.gather = gatherConstants(m);
+  if (f.stages.lights) {  // one thickness a pixel
+    c.inverseReflectance.w = static_cast<float>(1 / halfThickness(m));
+    c.transmittance4.w = static_cast<float>(opaqueThickness(m));
+  }
   for (int channel = 0; channel < 3; ++channel) {
     const float* t = m.transmittance[channel];
     // The shader reads a, kappa, z, b and c of SINH_EXP as xyzw and the fifth.
@@ -280,7 +282,7 @@ PellucidResult writeConstants(const FrameFacts& f, const PellucidPlan& plan, voi
   for (uint32_t i = 0; i < f.frame.materialCount; ++i) {
     const PellucidMaterial material = f.material(i);
     put(mapped, layout.materials.offset + i * sizeof(shared::MaterialConstants),
-        materialConstants(material, f.gathers));
+        materialConstants(f, material));
     put(mapped, layout.kernels.offset + i * sizeof(shared::KernelConstants),
         kernelConstants(material, kQualities[f.quality].fineFilter));
   }
