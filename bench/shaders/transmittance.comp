@@ -54,12 +54,8 @@ void main() {
     vec3 normal = mat3(frame.viewFromNormal) * decodeNormal(texelFetch(normalImage, pixel, 0));
     Surface s = makeSurface(ray, front, through, normal);
     s.material = material;
-    for (uint i = 0u; i < pass.value.x; ++i) {
-      Transmitted t = lightTransmission(lights[i], s, pixel);
-      vec3 light = t.arriving * t.visible;
-      if (t.thickness >= 0.0 && max(light.r, max(light.g, light.b)) > 0.0)
-        sum += light * materialTransmittance(material - 1u, t.thickness * frame.camera.range.w);
-    }
+    for (uint i = 0u; i < pass.value.x; ++i)
+      sum += exitanceOf(lightTransmission(lights[i], s, pixel), material - 1u);
     sum *= materials[material - 1u].inverseReflectance.rgb;
   }
   imageStore(transmittedImage, pixel, vec4(sum, 1.0));

@@ -132,9 +132,9 @@ float meanThickness(vec4 weight, vec4 thickness, uint m) {
   thickness = max(thickness, 0.0);
   vec4 counted = mix(vec4(3.0e38), thickness, greaterThan(weight, vec4(0.0)));
   float least = min(min(counted.x, counted.y), min(counted.z, counted.w));
-  // 0 < sum <= total: the least thickness has a weight above 0.
+  // 0 < sum <= total: the least thickness has a weight above 0. rate > 0: no material's T takes more than 1000 mm to halve.
   float sum = dot(weight, exp2(rate * min(least - thickness, 0.0)));
-  return rate > 0.0 ? least - log2(sum / total) / rate : dot(weight, thickness) / total;
+  return least - log2(sum / total) / rate;
 }
 
 #endif

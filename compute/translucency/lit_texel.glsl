@@ -31,13 +31,10 @@ vec3 resultAt(ivec2 pixel, Texels t, float front, uint m) {
     for (uint i = 0u; i < pass.value.y; ++i) {
       LightConstants light = lights[i];
       Transmitted through = lightTransmission(light, s, pixel);
-      vec3 entering = through.arriving * through.visible;
-      // Most pixels face some lights; T is the expensive part.
-      if (through.thickness >= 0.0 && max(entering.r, max(entering.g, entering.b)) > 0.0)
-        transmitted += entering * materialTransmittance(m, through.thickness * mm);
+      transmitted += exitanceOf(through, m);
       if (kDebugViews) {
         arriving += through.arriving;
-        visible += entering;
+        visible += through.arriving * through.visible;
         if (through.visible > 0.0 && thickness.b < 0.0) thickness.b = through.thickness * mm;
         LightTexels l = lightTexels(light, incidentLight(light, s.position), s, s.position, 0.0, kEverywhere);
         if (l.held != vec4(0.0) && light.meta.w == 0u && thickness.g < 0.0) thickness.g = meanThickness(l.held, l.thickness, m) * mm;

@@ -42,6 +42,13 @@ struct Transmitted {
   float visible;
 };
 
+// Exitance of what arrives at material m's hidden face. Most pixels face some lights; T is the expensive part.
+vec3 exitanceOf(Transmitted t, uint m) {
+  vec3 entering = t.arriving * t.visible;
+  if (!(t.thickness >= 0.0 && max(entering.r, max(entering.g, entering.b)) > 0.0)) return vec3(0.0); // false for NaN
+  return entering * materialTransmittance(m, t.thickness * frame.camera.range.w);
+}
+
 float hiddenCosine(LightConstants light, Surface s, vec3 toLight) {
   uint model = frame.flags.w;
   if (model == PELLUCID_SHADER_ANGLE_NORMAL && s.hasNormal) return max(-dot(s.normal, toLight), 0.0);

@@ -61,9 +61,9 @@ private:
   bool usesLightSpace(std::size_t light) const;
   // In the first of the light's maps that contains the point.
   std::optional<Taps> texelsAround(std::size_t light, const glm::dvec3& point) const;
-  // Whether light enters the receiver's own medium where the map's surface is.
+  // True if light enters the receiver's own medium where the map's surface is.
   static bool entersMedium(const ShadowView::Lookup& lookup, const Receiver& r);
-  // Whether it has left that medium before it is at the receiver.
+  // True if light has left that medium before the receiver.
   static bool beyondExit(const ShadowView::Lookup& lookup, const Receiver& r, const glm::dvec3& toLight);
   // Scene units along the light that a point of a stored surface may lie off the depth of its own texel.
   static double ownTolerance(const ShadowView::Lookup& lookup, double cosine);

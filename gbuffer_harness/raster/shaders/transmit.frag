@@ -58,11 +58,7 @@ void main() {
   Surface s = makeSurface(ray, planarDistance(frame.camera, front), through, normal);
   s.material = material;
   vec3 sum = vec3(0.0);
-  for (uint i = 0u; i < draw.ids.w; ++i) {
-    Transmitted t = lightTransmission(lights[i], s, pixel);
-    vec3 light = t.arriving * t.visible;
-    if (t.thickness >= 0.0 && max(light.r, max(light.g, light.b)) > 0.0)
-      sum += light * materialTransmittance(material - 1u, t.thickness * frame.camera.range.w);
-  }
+  for (uint i = 0u; i < draw.ids.w; ++i)
+    sum += exitanceOf(lightTransmission(lights[i], s, pixel), material - 1u);
   outTransmitted = vec4(sum * materials[material - 1u].inverseReflectance.rgb, 1.0);
 }
