@@ -1,6 +1,5 @@
 #include "gltf/node.h"
 
-#include <algorithm>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <optional>
@@ -55,13 +54,10 @@ std::vector<glm::dmat4> readInstances(const GltfDocument& document, std::size_t 
   if (attributes == extension->end() || !attributes->is_object()) document.fail(field, "is missing");
   std::optional<std::size_t> count;
   const auto read = [&](const char* name, int components) -> std::optional<AccessorValues> {
-    const auto found = attributes->find(name);
-    if (found == attributes->end()) return std::nullopt;
+    if (!attributes->contains(name)) return std::nullopt;
     const std::string where = field + "." + name;
-    if (!found->is_number_unsigned()) document.fail(where, found->dump() + " is not an integer >= 0");
     AccessorValues values =
-        readFloats(document, static_cast<int>(std::min<std::size_t>(found->get<std::size_t>(), 1u << 30)),
-                   components, components, where);
+        readFloats(document, document.reference(*attributes, name, field), components, components, where);
     if (count && *count != values.count())
       document.fail(where, std::to_string(values.count()) + " are not the " + std::to_string(*count) +
                                " of the other attributes");

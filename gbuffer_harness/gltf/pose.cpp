@@ -57,15 +57,6 @@ glm::dmat4 stillTransform(const GltfDocument& document, std::size_t index) {
   return matrix;
 }
 
-// A member that is an integer; throws without it.
-int integer(const GltfDocument& document, const GltfJson& object, const char* key, const std::string& field) {
-  const auto found = object.is_object() ? object.find(key) : object.end();
-  if (!object.is_object() || found == object.end()) document.fail(field + "." + key, "is missing");
-  if (!found->is_number_unsigned() || found->get<std::uint64_t>() > 0x7fffffff)
-    document.fail(field + "." + key, found->dump() + " is not an integer >= 0");
-  return *found;
-}
-
 const GltfJson& array(const GltfDocument& document, const GltfJson& object, const char* key,
                       const std::string& field) {
   const auto found = object.find(key);
@@ -78,8 +69,8 @@ const GltfJson& array(const GltfDocument& document, const GltfJson& object, cons
 class Sampler {
 public:
   Sampler(const GltfDocument& document, const GltfJson& sampler, const std::string& field)
-      : times_(readFloats(document, integer(document, sampler, "input", field), 1, 1, field + ".input")),
-        values_(readFloats(document, integer(document, sampler, "output", field), 1, 4, field + ".output")) {
+      : times_(readFloats(document, document.reference(sampler, "input", field), 1, 1, field + ".input")),
+        values_(readFloats(document, document.reference(sampler, "output", field), 1, 4, field + ".output")) {
     const auto interpolation = sampler.find("interpolation");
     const GltfJson kind = interpolation == sampler.end() ? GltfJson("LINEAR") : *interpolation;
     if (kind != "LINEAR" && kind != "STEP" && kind != "CUBICSPLINE")
@@ -177,9 +168,9 @@ void animate(const GltfDocument& document, double seconds, const std::string& na
       warnings.push_back(channel + ": path \"" + path + "\" without a node is ignored");
       continue;
     }
-    const std::size_t node = document.index(integer(document, target, "node", channel + ".target"),
+    const std::size_t node = document.index(document.reference(target, "node", channel + ".target"),
                                             document.model.nodes.size(), channel + ".target.node", "nodes");
-    const std::size_t samplerIndex = document.index(integer(document, channels[i], "sampler", channel),
+    const std::size_t samplerIndex = document.index(document.reference(channels[i], "sampler", channel),
                                                     samplers.size(), channel + ".sampler", "samplers");
     const Sampler sampler(document, samplers[samplerIndex],
                           field + ".samplers[" + std::to_string(samplerIndex) + "]");
@@ -232,7 +223,7 @@ std::vector<glm::dmat4> readJoints(const GltfDocument& document, int skin,
   const GltfJson& joints = array(document, source, "joints", name);
   std::optional<AccessorValues> inverse;
   if (source.contains("inverseBindMatrices")) {
-    inverse = readFloats(document, integer(document, source, "inverseBindMatrices", name), 16, 16,
+    inverse = readFloats(document, document.reference(source, "inverseBindMatrices", name), 16, 16,
                          name + ".inverseBindMatrices");
     if (inverse->count() < joints.size())
       document.fail(name + ".inverseBindMatrices", "are " + std::to_string(inverse->count()) + " for " +
