@@ -1,7 +1,5 @@
 #include "gltf/node.h"
 
-#include <glm/gtc/matrix_transform.hpp>
-#include <glm/gtc/quaternion.hpp>
 #include <optional>
 
 #include "gltf/accessor.h"
@@ -68,23 +66,11 @@ std::vector<glm::dmat4> readInstances(const GltfDocument& document, std::size_t 
   if (!count) document.fail(field, "has none of TRANSLATION, ROTATION and SCALE");
   std::vector<glm::dmat4> result;
   for (std::size_t i = 0; i < *count; ++i) {
-    glm::dmat4 matrix(1);
-    if (translation) {
-      const float* t = (*translation)[i];
-      matrix = glm::translate(matrix, glm::dvec3(t[0], t[1], t[2]));
-    }
-    if (rotation) {
-      const float* r = (*rotation)[i];
-      const glm::dquat q(r[3], r[0], r[1], r[2]);
-      if (!(glm::length(q) > 0))
-        document.fail(field + ".ROTATION", "element " + std::to_string(i) + " is a quaternion of length 0");
-      matrix *= glm::mat4_cast(glm::normalize(q));
-    }
-    if (scale) {
-      const float* s = (*scale)[i];
-      matrix = glm::scale(matrix, glm::dvec3(s[0], s[1], s[2]));
-    }
-    result.push_back(matrix);
+    Parts parts;
+    if (translation) parts.translation.assign((*translation)[i], (*translation)[i] + 3);
+    if (rotation) parts.rotation.assign((*rotation)[i], (*rotation)[i] + 4);
+    if (scale) parts.scale.assign((*scale)[i], (*scale)[i] + 3);
+    result.push_back(matrixOf(document, parts, field + ".ROTATION[" + std::to_string(i) + "]"));
   }
   return result;
 }

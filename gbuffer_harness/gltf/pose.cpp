@@ -23,11 +23,6 @@ std::vector<double> numbers(const GltfDocument& document, const std::vector<doub
   return values;
 }
 
-// Translation, rotation and scale of a node.
-struct Parts {
-  std::vector<double> translation, rotation, scale;
-};
-
 Parts partsOf(const GltfDocument& document, std::size_t index) {
   const tinygltf::Node& node = document.model.nodes[index];
   const std::string field = nodeName(index) + ".";
@@ -36,18 +31,13 @@ Parts partsOf(const GltfDocument& document, std::size_t index) {
           numbers(document, node.scale, {1, 1, 1}, field + "scale")};
 }
 
-glm::dmat4 matrixOf(const GltfDocument& document, std::size_t index, const Parts& parts) {
-  const auto &t = parts.translation, &r = parts.rotation, &s = parts.scale;
-  const glm::dquat rotation(r[3], r[0], r[1], r[2]);
-  if (!(glm::length(rotation) > 0))
-    document.fail(nodeName(index) + ".rotation", "is a quaternion of length 0");
-  return glm::translate(glm::dmat4(1), {t[0], t[1], t[2]}) * glm::mat4_cast(glm::normalize(rotation)) *
-         glm::scale(glm::dmat4(1), {s[0], s[1], s[2]});
+glm::dmat4 matrixOfNode(const GltfDocument& document, std::size_t index, const Parts& parts) {
+  return matrixOf(document, parts, nodeName(index) + ".rotation");
 }
 
 glm::dmat4 stillTransform(const GltfDocument& document, std::size_t index) {
   const tinygltf::Node& node = document.model.nodes[index];
-  if (node.matrix.empty()) return matrixOf(document, index, partsOf(document, index));
+  if (node.matrix.empty()) return matrixOfNode(document, index, partsOf(document, index));
   const std::string field = nodeName(index) + ".matrix";
   const auto m = numbers(document, node.matrix, std::vector<double>(16), field);
   glm::dmat4 matrix;
@@ -195,10 +185,18 @@ void animate(const GltfDocument& document, double seconds, const std::string& na
       document.fail(channel + ".sampler", std::to_string(value.size()) + " numbers are no " + path);
     *to = value;
   }
-  for (const auto& [node, parts] : moved) pose.parentFromNode[node] = matrixOf(document, node, parts);
+  for (const auto& [node, parts] : moved) pose.parentFromNode[node] = matrixOfNode(document, node, parts);
 }
 
 }  // namespace
+
+glm::dmat4 matrixOf(const GltfDocument& document, const Parts& parts, const std::string& rotationField) {
+  const auto &t = parts.translation, &r = parts.rotation, &s = parts.scale;
+  const glm::dquat rotation(r[3], r[0], r[1], r[2]);
+  if (!(glm::length(rotation) > 0)) document.fail(rotationField, "is a quaternion of length 0");
+  return glm::translate(glm::dmat4(1), {t[0], t[1], t[2]}) * glm::mat4_cast(glm::normalize(rotation)) *
+         glm::scale(glm::dmat4(1), {s[0], s[1], s[2]});
+}
 
 Pose readPose(const GltfDocument& document, std::optional<double> seconds, const std::string& animation,
               std::vector<std::string>& warnings) {
