@@ -12,8 +12,7 @@ constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
 
 }  // namespace
 
-void forEachNode(const GltfDocument& document, const Pose& pose,
-                 const std::function<void(std::size_t, const glm::dmat4&)>& visit) {
+std::vector<PlacedNode> placeNodes(const GltfDocument& document, const Pose& pose) {
   const tinygltf::Model& model = document.model;
   if (model.scenes.empty()) document.fail("scenes", "the file has none: there is nothing to draw");
   const std::size_t scene =
@@ -23,6 +22,7 @@ void forEachNode(const GltfDocument& document, const Pose& pose,
     glm::dmat4 worldFromParent;
   };
   std::vector<Pending> pending;
+  std::vector<PlacedNode> placed;
   std::vector<bool> reached(model.nodes.size(), false);
   const auto push = [&](const std::vector<int>& nodes, const glm::dmat4& world, const std::string& field) {
     // Backwards, so that the stack gives them in the file's order.
@@ -39,9 +39,10 @@ void forEachNode(const GltfDocument& document, const Pose& pose,
     const Pending next = pending.back();
     pending.pop_back();
     const glm::dmat4 world = next.worldFromParent * parentFromNode(document, pose, next.node);
-    visit(next.node, world);
+    placed.push_back({next.node, world});
     push(model.nodes[next.node].children, world, "nodes[" + std::to_string(next.node) + "].children");
   }
+  return placed;
 }
 
 std::vector<glm::dmat4> readInstances(const GltfDocument& document, std::size_t node) {
