@@ -2,6 +2,7 @@
 #include "gpu_fixture.h"
 
 #include "capture/material.h"
+#include "common/far_origin.h"
 #include "gpu/model_builder.h"
 #include "raster/raster.h"
 #include "replay/world_origin.h"
