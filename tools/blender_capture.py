@@ -115,11 +115,16 @@ def socket_value(node, *names):
     return None
 
 
+def output_node(material):
+    tree = material.node_tree
+    return tree.get_output_node("CYCLES") or tree.get_output_node("ALL")
+
+
 def surface_node(material):
     """The Principled or Subsurface node that feeds the output, looking through mixes."""
     if not material or not material.use_nodes:
         return None
-    output = material.node_tree.get_output_node("CYCLES") or material.node_tree.get_output_node("ALL")
+    output = output_node(material)
     pending = [link.from_node for link in output.inputs["Surface"].links] if output else []
     seen = set()
     while pending:
@@ -157,8 +162,7 @@ def subsurface(material):
 @contextlib.contextmanager
 def surface_of(material, make):
     """While it lasts, the material's surface is the shader that make(nodes) returns."""
-    tree = material.node_tree
-    output = tree.get_output_node("CYCLES") or tree.get_output_node("ALL")
+    tree, output = material.node_tree, output_node(material)
     before = [link.from_socket for link in output.inputs["Surface"].links]
     made = make(tree.nodes)
     tree.links.new(made.outputs[0], output.inputs["Surface"])
@@ -267,14 +271,13 @@ def looking(position, direction):
 
 def light_views(data, matrix, corners):
     """(matrix of the camera, its orthographic width or else its angle) of each shadow map of a light."""
-    position = matrix.translation
-    if data.type == "SUN":
-        direction = -matrix.col[2].to_3d().normalized()
-        center = sum(corners, Vector()) / len(corners)
-        radius = max((corner - center).length for corner in corners)
-        return [(looking(center - 2 * radius * direction, direction), {"width": 2.02 * radius})]
+    position, axis = matrix.translation, -matrix.col[2].to_3d().normalized()
     center = sum(corners, Vector()) / len(corners)
-    axis = -matrix.col[2].to_3d().normalized() if data.type == "SPOT" else (center - position)
+    if data.type == "SUN":
+        radius = max((corner - center).length for corner in corners)
+        return [(looking(center - 2 * radius * axis, axis), {"width": 2.02 * radius})]
+    if data.type == "POINT":
+        axis = center - position
     angle = math.pi
     if axis.length > 0:
         angle = 2.02 * max(axis.angle(corner - position, math.pi) for corner in corners)
@@ -451,11 +454,11 @@ def capture(folder, stem, options):
         camera = scene.camera.evaluated_get(depsgraph)
         manifest["camera"] = {"clipFromView": column_major(projection(depsgraph, camera)),
                               "viewFromWorld": column_major(rigid_inverse(camera.matrix_world))}
-        records = [(safe(name), data, matrix) for name, data, matrix in lights(depsgraph)]
         manifest["lights"] = []
-        for i, (name, data, matrix) in enumerate(records):
+        # All of them first: renders change the depsgraph.
+        for i, (name, data, matrix) in enumerate(list(lights(depsgraph))):
             record = light_record(data, matrix)
-            maps = render_maps(f"light{i}_{name}", data, matrix, corners, options.shadow_size, folder, stem)
+            maps = render_maps(f"light{i}_{safe(name)}", data, matrix, corners, options.shadow_size, folder, stem)
             if maps:
                 record["shadowMaps"] = maps
             manifest["lights"].append(record)

@@ -13,6 +13,9 @@
 
 namespace pellucid::harness {
 
+// Stored distances from here on say that nothing is there.
+inline constexpr float kLeastNoDepth = 1e9f;
+
 // Where one buffer's numbers come from.
 struct BufferSource {
   std::string field;                  // JSON path, for messages
@@ -20,7 +23,7 @@ struct BufferSource {
   std::optional<int> part;            // absent: the one part that has the channels
   std::vector<std::string> channels;  // full EXR names, layer included
   std::vector<double> constant;       // the same value in every pixel, instead of a file
-  double scale = 1;                   // of what is stored, > 0; distances >= 1e9 stay: nothing is there
+  double scale = 1;                   // of what is stored, > 0; distances >= kLeastNoDepth stay
 
   bool isConstant() const { return !constant.empty(); }
 };

@@ -122,10 +122,9 @@ private:
   }
 
   static void scale(const Request& request) {
-    constexpr float kNothing = 1e9f;  // of distances
     if (request.source->scale == 1) return;
     for (float& value : request.image->data)
-      if (value < kNothing) value *= static_cast<float>(request.source->scale);
+      if (value < kLeastNoDepth) value *= static_cast<float>(request.source->scale);
   }
 
   const Manifest& manifest_;

@@ -1,7 +1,6 @@
 // `pellucid init`: a manifest for EXR files of other programs.
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <fstream>
 #include <memory>
 
 #include "cli/commands.h"
@@ -64,11 +63,7 @@ void init(const Options& options) {
   const std::filesystem::path folder = std::filesystem::absolute(output).parent_path();
   const std::vector<std::filesystem::path> files(options.files.begin(), options.files.end());
   const GuessedManifest guessed = guessManifest(files, folder, wordsOf(options));
-  writeWhole(output, [&](const auto& path) {
-    std::ofstream file(path);
-    file << guessed.json.dump(1) << "\n";
-    if (!file.flush()) throw InputError(path.string(), "", "cannot be written");
-  });
+  writeWholeText(output, guessed.json.dump(1) + "\n");
   for (const std::string& line : guessed.found) std::printf("%s\n", line.c_str());
   if (!guessed.missing.empty()) {
     std::printf("missing most: %s\n", guessed.missing.front().c_str());

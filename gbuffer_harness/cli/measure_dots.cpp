@@ -2,7 +2,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
 #include <functional>
 #include <iostream>
 #include <memory>
@@ -164,11 +163,7 @@ void measure(const Options& options) {
     std::cout << json.dump(2) << "\n";
     return;
   }
-  writeWhole(options.output, [&](const auto& path) {
-    std::ofstream file(path);
-    file << json.dump(2) << "\n";
-    if (!file.flush()) throw InputError(options.output, "", "cannot be written");
-  });
+  writeWholeText(options.output, json.dump(2) + "\n");
   const auto [least, most] = std::minmax_element(dots.begin(), dots.end());
   std::printf("wrote %s: %zu entries from %g to %g; replay --set @%s uses it\n", options.output.c_str(),
               entries, *least, *most, options.output.c_str());

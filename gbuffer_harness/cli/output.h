@@ -1,21 +1,18 @@
 // Names of output files on the command line.
 #pragma once
 
-#include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <string>
 
 #include "common/error.h"
+#include "common/lower.h"
 
 namespace pellucid::harness {
 
 // Throws UsageError, naming `option`, for a name with another extension than .exr: EXR would be in a file
 // that says it is something else.
 inline void requireExr(const std::string& option, const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = lower(path.extension().string());
   if (!extension.empty() && extension != ".exr")
     throw UsageError(option + ": \"" + path.string() + "\" is written as EXR and cannot be called " +
                      extension);

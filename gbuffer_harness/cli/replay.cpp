@@ -248,8 +248,7 @@ void addReplayCommand(CLI::App& app) {
                       "EXR to write; default: <capture>.pellucid.exr here; of a sequence out.####.exr");
   command->add_option("--frames", options->frames,
                       "of a sequence: FIRST-LAST or a list like 1-10,20 (default: all that exist); frames "
-                      "finished before are "
-                      "skipped");
+                      "finished before are skipped");
   command->add_option("--jobs", options->jobs, "threads of a sequence that read and write files")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();

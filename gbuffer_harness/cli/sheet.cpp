@@ -156,10 +156,10 @@ void addSheetCommand(CLI::App& app) {
       ->required();
   command->add_option("-o,--output", options->output, "PNG to write")->required();
   command
-      ->add_option("--sweep", options->sweeps,
-                   "KEY=VALUE,VALUE,..., repeatable: replays the capture with each value of a key of "
-                   "replay's --set, or of "
-                   "material, a preset in place of all materials; combinations, labeled")
+      ->add_option(
+          "--sweep", options->sweeps,
+          "KEY=VALUE,VALUE,..., repeatable: replays the capture with each value of a key of "
+          "replay's --set, or of material, a preset in place of all materials; combinations, labeled")
       ->take_all();
   command
       ->add_option("--columns", options->columns, "images a row (default: the last sweep's values, else 3)")

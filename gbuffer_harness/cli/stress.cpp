@@ -4,7 +4,6 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -172,8 +171,7 @@ void run(Options& options) {
   if (!options.json.empty()) {
     Json json = toJson(s, result);
     if (reader) json["differences"] = {{"tame", toJson(reader->tame)}, {"wild", toJson(reader->wild)}};
-    writeWhole(options.json,
-               [&](const std::filesystem::path& path) { std::ofstream(path) << json.dump(2) << "\n"; });
+    writeWholeText(options.json, json.dump(2) + "\n");
   }
   if (result.violations() > 0) throw LimitExceeded(std::to_string(result.violations()) + " violations");
 }

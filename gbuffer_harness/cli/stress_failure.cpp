@@ -1,7 +1,5 @@
 #include "cli/stress_failure.h"
 
-#include <fstream>
-
 #include "capture/write.h"
 #include "cli/settings.h"
 #include "common/whole_file.h"
@@ -19,7 +17,7 @@ std::string writeFailure(const std::filesystem::path& folder, const stress::Stre
   writeCapture(capture, exr);
   ReplaySettings settings = frame.settings;
   settings.transmittance = frame.transmittance;
-  writeWhole(json, [&](const std::filesystem::path& path) { std::ofstream(path) << settingsJson(settings); });
+  writeWholeText(json, settingsJson(settings));
   const std::string debug = debugOption(settings);
   return "pellucid replay " + exr.string() + " --set @" + json.string() +
          (debug.empty() ? "" : " --debug " + debug);

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cstring>
 #include <optional>
 
 #include "common/error.h"
+#include "common/lower.h"
 
 namespace pellucid::harness {
 namespace {
@@ -67,12 +67,6 @@ int speed(VkPhysicalDeviceType type) {
     default:
       return 0;
   }
-}
-
-std::string lower(std::string s) {
-  std::transform(s.begin(), s.end(), s.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return s;
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <fstream>
 #include <random>
 #include <sstream>
 #include <string>
@@ -47,6 +48,15 @@ void writeWhole(const std::filesystem::path& path, const Write& write) {
   const std::string reason = error.message();
   std::filesystem::remove(temporary, error);
   throw InputError(path.string(), "", "cannot be written: " + reason);
+}
+
+// writeWhole() of a text; a full disk is an InputError, too.
+inline void writeWholeText(const std::filesystem::path& path, const std::string& text) {
+  writeWhole(path, [&](const std::filesystem::path& temporary) {
+    std::ofstream file(temporary, std::ios::binary);
+    file << text;
+    if (!file.flush()) throw InputError(path.string(), "", "cannot be written");
+  });
 }
 
 }  // namespace pellucid::harness

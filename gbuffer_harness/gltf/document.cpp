@@ -221,19 +221,34 @@ std::size_t GltfDocument::index(int index, std::size_t size, const std::string& 
   return static_cast<std::size_t>(index);
 }
 
+std::size_t GltfDocument::integer(const GltfJson& object, const char* key, const std::string& field) const {
+  const auto found = object.find(key);
+  if (found == object.end()) fail(field + "." + key, "is missing");
+  if (!found->is_number_unsigned()) fail(field + "." + key, found->dump() + " is not an integer >= 0");
+  return *found;
+}
+
+int GltfDocument::reference(const GltfJson& object, const char* key, const std::string& field) const {
+  return static_cast<int>(std::min<std::size_t>(integer(object, key, field), 1u << 30));
+}
+
 GltfDocument::Bytes GltfDocument::bufferView(int viewIndex, const std::string& field) const {
   const tinygltf::BufferView& view =
       model.bufferViews[index(viewIndex, model.bufferViews.size(), field + ".bufferView", "buffer views")];
   if (const auto unpacked = views.find(viewIndex); unpacked != views.end())
     return {unpacked->second.data(), unpacked->second.size()};
-  const std::string name = "bufferViews[" + std::to_string(viewIndex) + "]";
-  const auto& data =
-      model.buffers[index(view.buffer, model.buffers.size(), name + ".buffer", "buffers")].data;
-  if (view.byteOffset > data.size() || view.byteLength > data.size() - view.byteOffset)
-    fail(name, "byteOffset " + std::to_string(view.byteOffset) + " and byteLength " +
-                   std::to_string(view.byteLength) + " leave the " + std::to_string(data.size()) +
-                   " bytes of buffers[" + std::to_string(view.buffer) + "]");
-  return {data.data() + view.byteOffset, view.byteLength};
+  return bytesOf(view.buffer, view.byteOffset, view.byteLength,
+                 "bufferViews[" + std::to_string(viewIndex) + "]");
+}
+
+GltfDocument::Bytes GltfDocument::bytesOf(int buffer, std::size_t byteOffset, std::size_t byteLength,
+                                          const std::string& field) const {
+  const auto& data = model.buffers[index(buffer, model.buffers.size(), field + ".buffer", "buffers")].data;
+  if (byteOffset > data.size() || byteLength > data.size() - byteOffset)
+    fail(field, "byteOffset " + std::to_string(byteOffset) + " and byteLength " + std::to_string(byteLength) +
+                    " leave the " + std::to_string(data.size()) + " bytes of buffers[" +
+                    std::to_string(buffer) + "]");
+  return {data.data() + byteOffset, byteLength};
 }
 
 GltfDocument readGltf(const fs::path& path) {

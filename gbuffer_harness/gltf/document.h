@@ -30,9 +30,16 @@ struct GltfDocument {
     std::size_t size;
   };
   Bytes bufferView(int index, const std::string& field) const;
+  // Part of a buffer, all of it inside. `field` is what holds "buffer", "byteOffset" and "byteLength".
+  Bytes bytesOf(int buffer, std::size_t byteOffset, std::size_t byteLength, const std::string& field) const;
 
   // Throws InputError unless 0 <= index < size; "nodes[3].mesh: 7 is not one of the 2 meshes".
   std::size_t index(int index, std::size_t size, const std::string& field, const char* plural) const;
+
+  // A property of `field`'s object. Throws InputError where the property is missing or no integer >= 0.
+  std::size_t integer(const GltfJson& object, const char* key, const std::string& field) const;
+  // Such a property as an index; beyond 2^30 it is 2^30, which no list has.
+  int reference(const GltfJson& object, const char* key, const std::string& field) const;
 };
 
 // Throws InputError for files that are not glTF 2.0, truncated, nested too deeply or larger than 1 GiB, and

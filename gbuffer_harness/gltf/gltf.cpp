@@ -285,14 +285,14 @@ GltfScene Loader::load() {
   checkPresetNames();
   pose_ = readPose(document_, options_.time, options_.animation, scene_.warnings);
   worldFromNode_.resize(document_.model.nodes.size());
-  forEachNode(document_, pose_,
-              [&](std::size_t node, const glm::dmat4& world) { worldFromNode_[node] = world; });
-  forEachNode(document_, pose_, [&](std::size_t node, const glm::dmat4& world) {
+  const std::vector<PlacedNode> placed = placeNodes(document_, pose_);
+  for (const auto& [node, world] : placed) worldFromNode_[node] = world;
+  for (const auto& [node, world] : placed) {
     const tinygltf::Node& source = document_.model.nodes[node];
     if (source.mesh != -1) addMesh(node, world);
     if (source.camera != -1) addCamera(node, world);
     addLight(node, world);
-  });
+  }
   if (model.indices.empty()) document_.fail("meshes", "the scene has no triangles");
   if (moveOrigin(model, positions_, options_.camera)) scene_.notes.push_back(originNote(model));
   return std::move(scene_);

@@ -9,8 +9,7 @@ namespace pellucid::harness {
 
 using GltfJson = nlohmann::json;
 
-// True if a file that requires or uses the extension is drawn as the extension asks, or as well without the
-// extension.
+// True if files that use the extension are drawn as the extension asks.
 bool isDrawn(const std::string& extension);
 
 // Parses `text` and throws InputError for what tinygltf would refuse without a field: JSON that is none,

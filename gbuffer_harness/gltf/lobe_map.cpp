@@ -3,17 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/srgb.h"
 #include "gltf/texture.h"
 
 namespace pellucid::harness {
 
 namespace {
 
-// IEC 61966-2-1.
-double linearOf(std::uint8_t srgb) {
-  const double v = srgb / 255.0;
-  return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
-}
+// The inverse of linearOf().
 std::uint8_t srgbOf(double linear) {
   const double v = linear <= 0.0031308 ? linear * 12.92 : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
   return static_cast<std::uint8_t>(std::lround(255 * std::clamp(v, 0.0, 1.0)));

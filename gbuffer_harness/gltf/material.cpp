@@ -46,6 +46,7 @@ GltfMaterial readMaterial(const GltfDocument& document, int index, const GltfOpt
                           std::vector<std::string>& warnings) {
   GltfMaterial result;
   const std::string name = materialName(document, index);
+  const std::string* const preset = presetFor(name, options);
   result.surface.name = name;
   if (index >= 0) {
     const std::string field = "materials[" + std::to_string(index) + "]";
@@ -72,14 +73,14 @@ GltfMaterial readMaterial(const GltfDocument& document, int index, const GltfOpt
     if (!(std::abs(result.surface.normalScale) <= kLargestNormalScale))
       document.fail(field + ".normalTexture.scale",
                     std::to_string(result.surface.normalScale) + " is outside -1000 .. 1000");
-    if (!presetFor(name, options)) {
+    if (!preset) {
       Scattering scattering = readScattering(document, static_cast<std::size_t>(index), name,
                                              options.metersPerUnit, result.surface, warnings);
       result.medium = scattering.medium;
       result.lobeMap = std::move(scattering.map);
     }
   }
-  if (const std::string* preset = presetFor(name, options)) {
+  if (preset) {
     PellucidMaterialDesc desc;
     if (pellucidFindPreset(preset->c_str(), &desc) != PELLUCID_OK)
       document.fail("material \"" + name + "\"", "there is no preset \"" + *preset + "\"");
@@ -87,7 +88,7 @@ GltfMaterial readMaterial(const GltfDocument& document, int index, const GltfOpt
   }
   const std::string where = document.file + ": material \"" + name + "\"";
   if (result.medium && options.ior > 0) result.medium = withIor(*result.medium, options.ior, where);
-  if (presetFor(name, options) && !hasColor(result)) {
+  if (preset && !hasColor(result)) {
     const PellucidMaterial compiled = compileMaterial(*result.medium, where);
     result.reflectance.emplace();
     std::copy_n(compiled.reflectance, 3, result.reflectance->begin());

@@ -1,8 +1,5 @@
 #include "gltf/node.h"
 
-#include <algorithm>
-#include <glm/gtc/matrix_transform.hpp>
-#include <glm/gtc/quaternion.hpp>
 #include <optional>
 
 #include "gltf/accessor.h"
@@ -15,8 +12,7 @@ constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
 
 }  // namespace
 
-void forEachNode(const GltfDocument& document, const Pose& pose,
-                 const std::function<void(std::size_t, const glm::dmat4&)>& visit) {
+std::vector<PlacedNode> placeNodes(const GltfDocument& document, const Pose& pose) {
   const tinygltf::Model& model = document.model;
   if (model.scenes.empty()) document.fail("scenes", "the file has none: there is nothing to draw");
   const std::size_t scene =
@@ -26,6 +22,7 @@ void forEachNode(const GltfDocument& document, const Pose& pose,
     glm::dmat4 worldFromParent;
   };
   std::vector<Pending> pending;
+  std::vector<PlacedNode> placed;
   std::vector<bool> reached(model.nodes.size(), false);
   const auto push = [&](const std::vector<int>& nodes, const glm::dmat4& world, const std::string& field) {
     // Backwards, so that the stack gives them in the file's order.
@@ -42,9 +39,10 @@ void forEachNode(const GltfDocument& document, const Pose& pose,
     const Pending next = pending.back();
     pending.pop_back();
     const glm::dmat4 world = next.worldFromParent * parentFromNode(document, pose, next.node);
-    visit(next.node, world);
+    placed.push_back({next.node, world});
     push(model.nodes[next.node].children, world, "nodes[" + std::to_string(next.node) + "].children");
   }
+  return placed;
 }
 
 std::vector<glm::dmat4> readInstances(const GltfDocument& document, std::size_t node) {
@@ -55,13 +53,10 @@ std::vector<glm::dmat4> readInstances(const GltfDocument& document, std::size_t 
   if (attributes == extension->end() || !attributes->is_object()) document.fail(field, "is missing");
   std::optional<std::size_t> count;
   const auto read = [&](const char* name, int components) -> std::optional<AccessorValues> {
-    const auto found = attributes->find(name);
-    if (found == attributes->end()) return std::nullopt;
+    if (!attributes->contains(name)) return std::nullopt;
     const std::string where = field + "." + name;
-    if (!found->is_number_unsigned()) document.fail(where, found->dump() + " is not an integer >= 0");
     AccessorValues values =
-        readFloats(document, static_cast<int>(std::min<std::size_t>(found->get<std::size_t>(), 1u << 30)),
-                   components, components, where);
+        readFloats(document, document.reference(*attributes, name, field), components, components, where);
     if (count && *count != values.count())
       document.fail(where, std::to_string(values.count()) + " are not the " + std::to_string(*count) +
                                " of the other attributes");
@@ -72,23 +67,11 @@ std::vector<glm::dmat4> readInstances(const GltfDocument& document, std::size_t 
   if (!count) document.fail(field, "has none of TRANSLATION, ROTATION and SCALE");
   std::vector<glm::dmat4> result;
   for (std::size_t i = 0; i < *count; ++i) {
-    glm::dmat4 matrix(1);
-    if (translation) {
-      const float* t = (*translation)[i];
-      matrix = glm::translate(matrix, glm::dvec3(t[0], t[1], t[2]));
-    }
-    if (rotation) {
-      const float* r = (*rotation)[i];
-      const glm::dquat q(r[3], r[0], r[1], r[2]);
-      if (!(glm::length(q) > 0))
-        document.fail(field + ".ROTATION", "element " + std::to_string(i) + " is a quaternion of length 0");
-      matrix *= glm::mat4_cast(glm::normalize(q));
-    }
-    if (scale) {
-      const float* s = (*scale)[i];
-      matrix = glm::scale(matrix, glm::dvec3(s[0], s[1], s[2]));
-    }
-    result.push_back(matrix);
+    Parts parts;
+    if (translation) parts.translation.assign((*translation)[i], (*translation)[i] + 3);
+    if (rotation) parts.rotation.assign((*rotation)[i], (*rotation)[i] + 4);
+    if (scale) parts.scale.assign((*scale)[i], (*scale)[i] + 3);
+    result.push_back(matrixOf(document, parts, field + ".ROTATION[" + std::to_string(i) + "]"));
   }
   return result;
 }

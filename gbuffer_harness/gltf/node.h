@@ -1,7 +1,6 @@
 // The node hierarchy of a glTF scene.
 #pragma once
 
-#include <functional>
 #include <glm/mat4x4.hpp>
 #include <vector>
 
@@ -10,10 +9,14 @@
 
 namespace pellucid::harness {
 
-// Calls visit(node index, worldFromNode) for every node of the default scene, as it stands in `pose`. Throws
-// InputError when a transform is not made of finite numbers, and when a node is reached twice, as in a cycle.
-void forEachNode(const GltfDocument& document, const Pose& pose,
-                 const std::function<void(std::size_t, const glm::dmat4&)>& visit);
+struct PlacedNode {
+  std::size_t node;
+  glm::dmat4 world;  // worldFromNode
+};
+
+// Every node of the default scene, as it stands in `pose`, parents before children. Throws InputError when a
+// transform is not made of finite numbers, and when a node is reached twice, as in a cycle.
+std::vector<PlacedNode> placeNodes(const GltfDocument& document, const Pose& pose);
 
 // nodeFromInstance of each instance of the node's mesh (EXT_mesh_gpu_instancing); without instances the
 // identity.

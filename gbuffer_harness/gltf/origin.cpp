@@ -1,22 +1,16 @@
 #include "gltf/origin.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <glm/glm.hpp>
 #include <limits>
 
+#include "common/far_origin.h"
 #include "scene/vector.h"
 
 namespace pellucid::harness {
 
 namespace {
-
-// Largest distance from the origin, as a multiple of the seen distance. Floats there still tell apart 1/65536
-// of the seen distance.
-constexpr double kFarthest = 256;
-// The seen distance is not much more than so many near planes.
-constexpr double kNearPlanes = 100;
 
 // A place around which the scene has to be drawn finely, and the distance from the place that counts.
 struct Anchor {
@@ -40,31 +34,20 @@ Anchor anchorOf(const Model& model, const std::vector<glm::dvec3>& positions, co
   return {eye, std::min(center.distance, seen)};
 }
 
-// Whole units of the distance, so that frames of a sequence share an origin while their center moves a
-// little.
-double rounded(double value, double distance) {
-  const double unit = std::exp2(std::ceil(std::log2(std::max(distance, 1e-30))));
-  return std::round(value / unit) * unit;
-}
-
 }  // namespace
 
 bool moveOrigin(Model& model, const std::vector<glm::dvec3>& positions, const std::string& camera) {
   const Anchor anchor = anchorOf(model, positions, camera);
   glm::dvec3 origin(0);
   if (glm::length(anchor.position) > kFarthest * anchor.distance && anchor.distance > 0)
-    for (int c = 0; c < 3; ++c) origin[c] = rounded(anchor.position[c], anchor.distance);
+    origin = toGlm(originNear(fromGlm(anchor.position), anchor.distance));
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const glm::vec3 p(positions[i] - origin);
     model.vertices[i].position = {p.x, p.y, p.z};
   }
   if (origin == glm::dvec3(0)) return false;
   model.origin = fromGlm(origin);
-  for (ModelCamera& c : model.cameras) {
-    glm::dmat4 view = toGlm(c.viewFromWorld);
-    view[3] += glm::dvec4(glm::dmat3(view) * origin, 0);
-    c.viewFromWorld = fromGlm(view);
-  }
+  for (ModelCamera& c : model.cameras) c.viewFromWorld = fromOrigin(c.viewFromWorld, model.origin);
   for (Light& light : model.lights) light.position = fromGlm(toGlm(light.position) - origin);
   return true;
 }

@@ -23,11 +23,6 @@ std::vector<double> numbers(const GltfDocument& document, const std::vector<doub
   return values;
 }
 
-// Translation, rotation and scale of a node.
-struct Parts {
-  std::vector<double> translation, rotation, scale;
-};
-
 Parts partsOf(const GltfDocument& document, std::size_t index) {
   const tinygltf::Node& node = document.model.nodes[index];
   const std::string field = nodeName(index) + ".";
@@ -36,18 +31,13 @@ Parts partsOf(const GltfDocument& document, std::size_t index) {
           numbers(document, node.scale, {1, 1, 1}, field + "scale")};
 }
 
-glm::dmat4 matrixOf(const GltfDocument& document, std::size_t index, const Parts& parts) {
-  const auto &t = parts.translation, &r = parts.rotation, &s = parts.scale;
-  const glm::dquat rotation(r[3], r[0], r[1], r[2]);
-  if (!(glm::length(rotation) > 0))
-    document.fail(nodeName(index) + ".rotation", "is a quaternion of length 0");
-  return glm::translate(glm::dmat4(1), {t[0], t[1], t[2]}) * glm::mat4_cast(glm::normalize(rotation)) *
-         glm::scale(glm::dmat4(1), {s[0], s[1], s[2]});
+glm::dmat4 matrixOfNode(const GltfDocument& document, std::size_t index, const Parts& parts) {
+  return matrixOf(document, parts, nodeName(index) + ".rotation");
 }
 
 glm::dmat4 stillTransform(const GltfDocument& document, std::size_t index) {
   const tinygltf::Node& node = document.model.nodes[index];
-  if (node.matrix.empty()) return matrixOf(document, index, partsOf(document, index));
+  if (node.matrix.empty()) return matrixOfNode(document, index, partsOf(document, index));
   const std::string field = nodeName(index) + ".matrix";
   const auto m = numbers(document, node.matrix, std::vector<double>(16), field);
   glm::dmat4 matrix;
@@ -55,15 +45,6 @@ glm::dmat4 stillTransform(const GltfDocument& document, std::size_t index) {
   if (glm::transpose(matrix)[3] != glm::dvec4(0, 0, 0, 1))
     document.fail(field, "its last row is not 0, 0, 0, 1");
   return matrix;
-}
-
-// A member that is an integer; throws without it.
-int integer(const GltfDocument& document, const GltfJson& object, const char* key, const std::string& field) {
-  const auto found = object.is_object() ? object.find(key) : object.end();
-  if (!object.is_object() || found == object.end()) document.fail(field + "." + key, "is missing");
-  if (!found->is_number_unsigned() || found->get<std::uint64_t>() > 0x7fffffff)
-    document.fail(field + "." + key, found->dump() + " is not an integer >= 0");
-  return *found;
 }
 
 const GltfJson& array(const GltfDocument& document, const GltfJson& object, const char* key,
@@ -78,8 +59,8 @@ const GltfJson& array(const GltfDocument& document, const GltfJson& object, cons
 class Sampler {
 public:
   Sampler(const GltfDocument& document, const GltfJson& sampler, const std::string& field)
-      : times_(readFloats(document, integer(document, sampler, "input", field), 1, 1, field + ".input")),
-        values_(readFloats(document, integer(document, sampler, "output", field), 1, 4, field + ".output")) {
+      : times_(readFloats(document, document.reference(sampler, "input", field), 1, 1, field + ".input")),
+        values_(readFloats(document, document.reference(sampler, "output", field), 1, 4, field + ".output")) {
     const auto interpolation = sampler.find("interpolation");
     const GltfJson kind = interpolation == sampler.end() ? GltfJson("LINEAR") : *interpolation;
     if (kind != "LINEAR" && kind != "STEP" && kind != "CUBICSPLINE")
@@ -177,9 +158,9 @@ void animate(const GltfDocument& document, double seconds, const std::string& na
       warnings.push_back(channel + ": path \"" + path + "\" without a node is ignored");
       continue;
     }
-    const std::size_t node = document.index(integer(document, target, "node", channel + ".target"),
+    const std::size_t node = document.index(document.reference(target, "node", channel + ".target"),
                                             document.model.nodes.size(), channel + ".target.node", "nodes");
-    const std::size_t samplerIndex = document.index(integer(document, channels[i], "sampler", channel),
+    const std::size_t samplerIndex = document.index(document.reference(channels[i], "sampler", channel),
                                                     samplers.size(), channel + ".sampler", "samplers");
     const Sampler sampler(document, samplers[samplerIndex],
                           field + ".samplers[" + std::to_string(samplerIndex) + "]");
@@ -204,10 +185,18 @@ void animate(const GltfDocument& document, double seconds, const std::string& na
       document.fail(channel + ".sampler", std::to_string(value.size()) + " numbers are no " + path);
     *to = value;
   }
-  for (const auto& [node, parts] : moved) pose.parentFromNode[node] = matrixOf(document, node, parts);
+  for (const auto& [node, parts] : moved) pose.parentFromNode[node] = matrixOfNode(document, node, parts);
 }
 
 }  // namespace
+
+glm::dmat4 matrixOf(const GltfDocument& document, const Parts& parts, const std::string& rotationField) {
+  const auto &t = parts.translation, &r = parts.rotation, &s = parts.scale;
+  const glm::dquat rotation(r[3], r[0], r[1], r[2]);
+  if (!(glm::length(rotation) > 0)) document.fail(rotationField, "is a quaternion of length 0");
+  return glm::translate(glm::dmat4(1), {t[0], t[1], t[2]}) * glm::mat4_cast(glm::normalize(rotation)) *
+         glm::scale(glm::dmat4(1), {s[0], s[1], s[2]});
+}
 
 Pose readPose(const GltfDocument& document, std::optional<double> seconds, const std::string& animation,
               std::vector<std::string>& warnings) {
@@ -232,7 +221,7 @@ std::vector<glm::dmat4> readJoints(const GltfDocument& document, int skin,
   const GltfJson& joints = array(document, source, "joints", name);
   std::optional<AccessorValues> inverse;
   if (source.contains("inverseBindMatrices")) {
-    inverse = readFloats(document, integer(document, source, "inverseBindMatrices", name), 16, 16,
+    inverse = readFloats(document, document.reference(source, "inverseBindMatrices", name), 16, 16,
                          name + ".inverseBindMatrices");
     if (inverse->count() < joints.size())
       document.fail(name + ".inverseBindMatrices", "are " + std::to_string(inverse->count()) + " for " +

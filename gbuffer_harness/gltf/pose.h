@@ -11,6 +11,14 @@
 
 namespace pellucid::harness {
 
+// Translation, rotation (x, y, z, w) and scale of a node or instance.
+struct Parts {
+  std::vector<double> translation = {0, 0, 0}, rotation = {0, 0, 0, 1}, scale = {1, 1, 1};
+};
+
+// Throws InputError naming `rotationField` for a quaternion of length 0.
+glm::dmat4 matrixOf(const GltfDocument& document, const Parts& parts, const std::string& rotationField);
+
 // Changes by an animation, by node; all other nodes stand as in the file.
 struct Pose {
   std::map<std::size_t, glm::dmat4> parentFromNode;

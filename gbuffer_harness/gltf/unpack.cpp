@@ -11,17 +11,6 @@ namespace {
 
 constexpr const char *kMeshopt = "EXT_meshopt_compression", *kDraco = "KHR_draco_mesh_compression";
 
-// An integer property of an extension; `least` where it is absent and not required.
-std::size_t integer(const GltfDocument& document, const GltfJson& object, const char* key,
-                    const std::string& field, bool required = true) {
-  const auto found = object.find(key);
-  if (found == object.end() && !required) return 0;
-  if (found == object.end()) document.fail(field + "." + key, "is missing");
-  if (!found->is_number_unsigned())
-    document.fail(field + "." + key, found->dump() + " is not an integer >= 0");
-  return *found;
-}
-
 std::string text(const GltfDocument& document, const GltfJson& object, const char* key,
                  const std::string& field, const char* absent) {
   const auto found = object.find(key);
@@ -56,22 +45,13 @@ bool isFilterStride(const std::string& filter, std::size_t stride) {
 
 void unpackView(GltfDocument& document, int index, const GltfJson& extension) {
   const std::string field = "bufferViews[" + std::to_string(index) + "].extensions." + kMeshopt;
-  const tinygltf::Model& model = document.model;
-  const std::size_t buffer = integer(document, extension, "buffer", field);
-  if (buffer >= model.buffers.size())
-    document.fail(field + ".buffer", std::to_string(buffer) + " is not one of the " +
-                                         std::to_string(model.buffers.size()) + " buffers");
-  const std::vector<unsigned char>& data = model.buffers[buffer].data;
-  const std::size_t offset = integer(document, extension, "byteOffset", field, false);
-  MeshoptStream stream{};
-  stream.bytes = integer(document, extension, "byteLength", field);
-  stream.count = integer(document, extension, "count", field);
-  stream.stride = integer(document, extension, "byteStride", field);
-  if (offset > data.size() || stream.bytes > data.size() - offset)
-    document.fail(field, "byteOffset " + std::to_string(offset) + " and byteLength " +
-                             std::to_string(stream.bytes) + " leave the " + std::to_string(data.size()) +
-                             " bytes of buffers[" + std::to_string(buffer) + "]");
-  stream.data = data.data() + offset;
+  const std::size_t offset =
+      extension.contains("byteOffset") ? document.integer(extension, "byteOffset", field) : 0;
+  const GltfDocument::Bytes source =
+      document.bytesOf(document.reference(extension, "buffer", field), offset,
+                       document.integer(extension, "byteLength", field), field);
+  const MeshoptStream stream{source.data, source.size, document.integer(extension, "count", field),
+                             document.integer(extension, "byteStride", field)};
   const std::string mode = text(document, extension, "mode", field, "");
   const std::string filter = text(document, extension, "filter", field, "NONE");
   if (mode != "ATTRIBUTES" && mode != "TRIANGLES" && mode != "INDICES")
@@ -89,7 +69,7 @@ void unpackView(GltfDocument& document, int index, const GltfJson& extension) {
   if (stream.count > (stream.bytes * kMostPerByte + kSlack) / stream.stride)
     document.fail(field + ".count", std::to_string(stream.count) + " elements cannot be in " +
                                         std::to_string(stream.bytes) + " bytes");
-  const std::size_t claimed = model.bufferViews[static_cast<std::size_t>(index)].byteLength;
+  const std::size_t claimed = document.model.bufferViews[static_cast<std::size_t>(index)].byteLength;
   if (claimed != stream.count * stream.stride)
     document.fail(field + ".count", std::to_string(stream.count) + " elements of " +
                                         std::to_string(stream.stride) +
@@ -170,9 +150,8 @@ void unpackPrimitive(GltfDocument& document, const tinygltf::Primitive& primitiv
   const std::string field = primitiveField + ".extensions." + kDraco;
   if (primitive.mode != TINYGLTF_MODE_TRIANGLES)
     document.fail(primitiveField + ".mode", "a Draco stream of other than triangles is not supported");
-  const std::size_t view = integer(document, extension, "bufferView", field);
   const GltfDocument::Bytes data =
-      document.bufferView(static_cast<int>(std::min<std::size_t>(view, 1u << 30)), field);
+      document.bufferView(document.reference(extension, "bufferView", field), field);
   draco::DecoderBuffer buffer;
   buffer.Init(reinterpret_cast<const char*>(data.data), data.size);
   draco::Decoder decoder;

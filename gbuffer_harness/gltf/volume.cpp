@@ -192,8 +192,10 @@ void Reader::readDiffuse(const Extension& diffuse) {
   surface_.addedColor = diffuse.color("diffuseTransmissionColorFactor", {1, 1, 1});
   if (factor == 0) warn("diffuseTransmissionFactor is 0, its default: no light comes through");
   if (isBlack(surface_.addedColor)) warn("diffuseTransmissionColorFactor is black: no light comes through");
-  if (factor == 0) surface_.addedColor = {0, 0, 0};
-  if (factor == 0) return;
+  if (factor == 0) {
+    surface_.addedColor = {0, 0, 0};
+    return;
+  }
   setMap({diffuse.texture("diffuseTransmissionColorTexture")}, diffuse.texture("diffuseTransmissionTexture"));
   scale(surface_.addedColor, factor);
   surface_.displaced = factor;
@@ -327,8 +329,7 @@ Scattering Reader::read() {
   else if (isVolume_ && !scatter)
     warn(
         "a clear medium without KHR_materials_diffuse_transmission, _volume_scatter or _scatter is not "
-        "subsurface "
-        "scattering; it is drawn opaque");
+        "subsurface scattering; it is drawn opaque");
   return std::move(result_);
 }
 

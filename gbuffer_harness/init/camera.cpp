@@ -53,8 +53,7 @@ ClipRange rangeOf(const CameraWords& words, const DepthFacts& depth) {
   if (depth.isDevice && !words.nearPlane)
     throw UsageError(
         "--near: is needed, because depths within 0 .. 1 are the device's, and only its planes say how far "
-        "they are; "
-        "--depth viewz says that they are distances");
+        "they are; --depth viewz says that they are distances");
   ClipRange range;
   range.nearPlane = words.nearPlane.value_or(0.5 * depth.nearest);
   range.farPlane = words.farPlane.value_or(std::numeric_limits<double>::infinity());
@@ -116,8 +115,7 @@ GuessedCamera guessCamera(const std::vector<std::filesystem::path>& files, int w
   } else {
     camera.unknown.push_back(
         "where the camera is (--eye X,Y,Z --target X,Y,Z): the world is taken for the camera's space, in "
-        "which x is right, y up "
-        "and -z ahead");
+        "which x is right, y up and -z ahead");
   }
   const double aspect = static_cast<double>(width) / height * attributes.pixelAspectRatio.value_or(1);
   ClipRange range = rangeOf(words, depth);
@@ -139,8 +137,7 @@ GuessedCamera guessCamera(const std::vector<std::filesystem::path>& files, int w
   } else {
     throw UsageError(
         "--fov: is needed, the vertical field of view in degrees (or --ortho-height): no file has the "
-        "attributes "
-        "worldToCamera and worldToNDC, or a screenWindowWidth other than 1");
+        "attributes worldToCamera and worldToNDC, or a screenWindowWidth other than 1");
   }
   if (!words.nearPlane)
     camera.unknown.push_back(

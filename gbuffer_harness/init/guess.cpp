@@ -107,10 +107,12 @@ bool fits(const std::string& name, const Name& known) {
   return false;
 }
 
+// The role's buffer has three numbers a pixel.
+bool isTriple(Role role) { return role == Role::Irradiance || role == Role::Normal || role == Role::Albedo; }
+
 // A single number may be the first of a color: RenderDoc saves every texture as one.
 bool hasShapeOf(Role role, const ChannelGroup& group) {
-  const bool isTriple = role == Role::Irradiance || role == Role::Normal || role == Role::Albedo;
-  return isTriple ? group.channels.size() == 3 : group.channels.size() == 1 || !group.isNamed;
+  return isTriple(role) ? group.channels.size() == 3 : group.channels.size() == 1 || !group.isNamed;
 }
 
 // Names by which a group may be known: its layer, and of single channels the whole name.
@@ -126,9 +128,7 @@ std::vector<std::string> namesOf(const ChannelGroup& group) {
 Guess guessOf(const ChannelGroup& group, const Name& known) {
   Guess guess{group, std::string("its name is that of ") + known.what, known.doubt, known.scale,
               known.metersPerUnit};
-  const bool isTriple =
-      known.role == Role::Irradiance || known.role == Role::Normal || known.role == Role::Albedo;
-  if (!isTriple) guess.group.channels.resize(1);
+  if (!isTriple(known.role)) guess.group.channels.resize(1);
   return guess;
 }
 

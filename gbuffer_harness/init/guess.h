@@ -2,7 +2,6 @@
 #pragma once
 
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,7 +26,7 @@ struct Guess {
 };
 
 // By names that Blender, Arnold, Nuke, V-Ray, Unreal, Unity, RenderDoc and this program use. `given`: the
-// person's own, layer, channel, or file without extension.  Throws UsageError for one that is not there.
+// person's own, layer, channel, or file without extension. Throws UsageError for one that is not there.
 std::map<Role, Guess> guessRoles(const std::vector<ChannelGroup>& groups,
                                  const std::map<Role, std::string>& given);
 

@@ -15,7 +15,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr float kNothing = 1e9f;  // a distance at which nothing is
 constexpr std::size_t kMostMaterials = 1000;
 
 std::string number(double value) {
@@ -100,7 +99,7 @@ DepthFacts Builder::depthFacts() const {
   double least = INFINITY, most = 0, sum = 0;
   std::size_t zeros = 0, ones = 0, count = 0;
   for (const float value : front_.data) {
-    if (!std::isfinite(value) || value >= kNothing) continue;
+    if (!std::isfinite(value) || value >= kLeastNoDepth) continue;
     zeros += value == 0;
     ones += value == 1;
     if (!(value > 0)) continue;
@@ -166,7 +165,7 @@ double Builder::facing(const Image& normal, bool unorm, const Matrix& viewFromNo
       glm::dvec3 n(v[0], v[1], v[2]);
       if (unorm) n = 2.0 * n - 1.0;
       const float depth = *front_.at(x, y);
-      const bool isEmpty = depth_.isDevice ? depth == 0 || depth == 1 : !(depth > 0 && depth < kNothing);
+      const bool isEmpty = depth_.isDevice ? depth == 0 || depth == 1 : !(depth > 0 && depth < kLeastNoDepth);
       if (isEmpty || !(glm::length(n) > 0.5)) continue;
       const double u = ((x + 0.5) / width_ * 2 - 1 - clip[12]) / clip[0],
                    w = ((y + 0.5) / height_ * 2 - 1 - clip[13]) / clip[5];

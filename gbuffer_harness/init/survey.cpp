@@ -1,18 +1,12 @@
 #include "init/survey.h"
 
-#include <algorithm>
-#include <cctype>
 #include <map>
+
+#include "common/lower.h"
 
 namespace pellucid::harness {
 
 namespace {
-
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
 
 // Takes the channels of these components out of `components`, when all are there.
 std::vector<std::string> take(std::map<std::string, std::string>& components, const char* wanted) {

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <deque>
 #include <glm/gtc/packing.hpp>
 
 #include "common/error.h"
+#include "common/srgb.h"
 #include "kRasterCaster.h"
 #include "kRasterCount.h"
 #include "kRasterDepth.h"
@@ -71,17 +71,11 @@ VkDeviceSize byteCount(const std::vector<T>& values) {
   return static_cast<VkDeviceSize>(values.size() * sizeof(T));
 }
 
-// IEC 61966-2-1.
-float linearOf(std::uint8_t srgb) {
-  const double v = srgb / 255.0;
-  return static_cast<float>(v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4));
-}
-
 Image linearImage(const Texture& texture) {
   std::array<float, 256> linear;
   for (std::size_t i = 0; i < linear.size(); ++i)
-    linear[i] =
-        texture.isNormalMap ? static_cast<float>(i) / 127.5f - 1 : linearOf(static_cast<std::uint8_t>(i));
+    linear[i] = texture.isNormalMap ? static_cast<float>(i) / 127.5f - 1
+                                    : static_cast<float>(linearOf(static_cast<std::uint8_t>(i)));
   Image image(texture.width, texture.height, 4);
   for (std::size_t i = 0; i < image.data.size(); ++i)
     image.data[i] = i % 4 == 3 ? static_cast<float>(texture.rgba[i]) / 255.0f : linear[texture.rgba[i]];

@@ -7,6 +7,7 @@
 
 #include "capture/shadow_images.h"
 #include "common/error.h"
+#include "common/far_origin.h"
 #include "pellucid/pellucid_material.h"
 #include "replay/world_origin.h"
 

@@ -3,15 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/far_origin.h"
+
 namespace pellucid::harness {
 
 namespace {
-
-// Largest distance from the origin, as a multiple of the seen distance. Floats there still tell apart 1/65536
-// of the seen distance.
-constexpr double kFarthest = 256;
-// The seen distance is not much more than so many near planes.
-constexpr double kNearPlanes = 100;
 
 // The distance that is seen, in scene units; 0: the matrix does not say.
 double seenDistance(const Matrix& clip) {
@@ -36,17 +32,7 @@ std::array<double, 3> worldOrigin(const Capture& capture) {
   }
   const double seen = seenDistance(capture.clipFromView);
   if (!(seen > 0) || !std::isfinite(length) || !(length > kFarthest * seen)) return {0, 0, 0};
-  // Frames of a sequence whose camera moves a little share an origin.
-  const double unit = std::exp2(std::ceil(std::log2(seen)));
-  for (double& x : eye) x = std::round(x / unit) * unit;
-  return eye;
-}
-
-Matrix fromOrigin(const Matrix& fromWorld, const std::array<double, 3>& origin) {
-  Matrix result = fromWorld;
-  for (std::size_t row = 0; row < 4; ++row)
-    for (std::size_t i = 0; i < 3; ++i) result[12 + row] += fromWorld[4 * i + row] * origin[i];
-  return result;
+  return originNear(eye, seen);
 }
 
 }  // namespace pellucid::harness

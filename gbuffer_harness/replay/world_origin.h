@@ -11,7 +11,4 @@ namespace pellucid::harness {
 // what it sees; else 0, 0, 0.
 std::array<double, 3> worldOrigin(const Capture& capture);
 
-// The matrix from a world that begins at `origin`.
-Matrix fromOrigin(const Matrix& fromWorld, const std::array<double, 3>& origin);
-
 }  // namespace pellucid::harness

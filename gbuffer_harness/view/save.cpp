@@ -1,7 +1,6 @@
 #include "view/save.h"
 
 #include <cmath>
-#include <fstream>
 
 #include "capture/exr.h"
 #include "capture/write.h"
@@ -11,24 +10,12 @@
 
 namespace pellucid::harness {
 
-namespace {
-
-void writeText(const std::filesystem::path& path, const std::string& text) {
-  writeWhole(path, [&](const std::filesystem::path& file) {
-    std::ofstream out(file, std::ios::binary);
-    out << text;
-    if (!out.flush()) throw InputError(path.string(), "", "cannot be written");
-  });
-}
-
-}  // namespace
-
 void saveView(const SavedFiles& files, const ViewFrames& frames, const std::string& settings,
               Session session) {
   writeWhole(files.capture, [&](const auto& file) { writeCapture(frames.capture(), file); });
-  writeText(files.settings, settings);
+  writeWholeText(files.settings, settings);
   session.settings = files.settings.filename().string();
-  writeText(files.session, sessionJson(session));
+  writeWholeText(files.session, sessionJson(session));
   writeWhole(files.result, [&](const auto& file) {
     writeExr(file, frames.image(Shown::After), {"R", "G", "B"}, {});
   });

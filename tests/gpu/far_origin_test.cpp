@@ -2,6 +2,7 @@
 #include "gpu_fixture.h"
 
 #include "capture/material.h"
+#include "common/far_origin.h"
 #include "gpu/model_builder.h"
 #include "raster/raster.h"
 #include "replay/world_origin.h"
@@ -29,11 +30,7 @@ TEST_F(FarOrigin, ThePictureIsThatOfTheOrigin) {
   Model model = emptyModel();
   addSphere(model, {0, 0, 0}, 5, 32);
   endPart(model, 0);
-  Light point;
-  point.type = PELLUCID_LIGHT_POINT;
-  point.position = {20, 5, -60};
-  point.intensity = 4000;
-  model.lights = {directional({0.3, -0.2, 1}, 3), point};
+  model.lights = {directional({0.3, -0.2, 1}, 3), pointLight({20, 5, -60}, 4000)};
   RasterOptions options;
   options.width = options.height = 48;
   options.shadowSize = 128;

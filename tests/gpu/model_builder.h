@@ -108,6 +108,14 @@ inline Light directional(const Vector3& direction, double intensity = 1) {
   return light;
 }
 
+inline Light pointLight(const Vector3& position, double intensity = 1) {
+  Light light;
+  light.type = PELLUCID_LIGHT_POINT;
+  light.position = position;
+  light.intensity = intensity;
+  return light;
+}
+
 // Planar distances of a capture's depth image through its matrix; < 0: nothing there.
 inline double planar(const Capture& capture, const DepthImage& depth, int x, int y) {
   if (depth.image.empty()) return -1;

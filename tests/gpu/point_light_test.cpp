@@ -26,13 +26,7 @@ constexpr double kInner = 6, kOuter = 8;  // mm
 // Off the center, so that no face of the cube is like another.
 const glm::dvec3 kLight(0.9, -0.6, 0.4);
 
-Light lamp(const glm::dvec3& position) {
-  Light light;
-  light.type = PELLUCID_LIGHT_POINT;
-  light.position = fromGlm(position);
-  light.intensity = 50;
-  return light;
-}
+Light lamp(const glm::dvec3& position) { return pointLight(fromGlm(position), 50); }
 
 // A sphere whose surface faces its center.
 void addHollow(Model& model, double radius, std::uint32_t rings) {

@@ -268,10 +268,7 @@ TEST_F(Raster, IrradianceIsLambert) {
   const Vector3 toLight = {0.6, 0, 0.8};
   Light sun = directional({-0.6, 0, -0.8}, 3);
   sun.color = {1, 0.5, 0.25};
-  Light point;
-  point.type = PELLUCID_LIGHT_POINT;
-  point.position = {60, 30, 40};
-  point.intensity = 8000;
+  const Light point = pointLight({60, 30, 40}, 8000);
   Light spot = point;
   spot.type = PELLUCID_LIGHT_SPOT;
   spot.direction = {-60, -30, -40};
@@ -335,10 +332,7 @@ TEST_F(Raster, ShadowsFallWhereTheyShould) {
   endPart(model, 0);
   addSquare(model, -6, 0, 20, 2);  // seen beside its shadow
   endPart(model, 1);
-  Light point;
-  point.type = PELLUCID_LIGHT_POINT;
-  point.position = {-18, 0, 60};  // the shadow is 1.5 times as large, about x = 0
-  point.intensity = 3600;
+  const Light point = pointLight({-18, 0, 60}, 3600);  // the shadow is 1.5 times as large, about x = 0
   Light spot = point;
   spot.type = PELLUCID_LIGHT_SPOT;
   spot.direction = {18, 0, -60};
@@ -379,9 +373,7 @@ TEST_F(Raster, ShadowMapEncodings) {
   Model model = emptyModel();
   addSquare(model, 0, 0, 0, 9);
   endPart(model, 0);
-  Light point;
-  point.type = PELLUCID_LIGHT_POINT;
-  point.position = {0, 0, 40};
+  Light point = pointLight({0, 0, 40});
   RasterOptions options;
   options.width = options.height = 16;
   options.shadowSize = 65;
@@ -500,10 +492,7 @@ TEST_F(Raster, SixMapsHaveNothingBesideThem) {
   Model model = emptyModel();
   addSphere(model, {0, 0, 0}, 8, 16);
   endPart(model, 0);
-  Light point;
-  point.type = PELLUCID_LIGHT_POINT;
-  point.position = {0, 0, 20};
-  model.lights = {point};
+  model.lights = {pointLight({0, 0, 20})};
   RasterOptions options;
   options.width = options.height = 16;
   options.shadowSize = 16;
@@ -520,11 +509,7 @@ TEST_F(Raster, PointLightWithinTheModelHasNoMapAndSaysSo) {
   Model model = emptyModel();
   addSquare(model, 0, 0, 0, 9);
   endPart(model, 0);
-  Light point;
-  point.type = PELLUCID_LIGHT_POINT;
-  point.position = {0, 0, 1};
-  point.intensity = 1;
-  model.lights = {directional({0, 0, -1}), point};
+  model.lights = {directional({0, 0, -1}), pointLight({0, 0, 1})};
   RasterOptions options;
   options.width = options.height = 17;
   options.depthEncoding = PELLUCID_DEPTH_VIEW_Z;
@@ -647,11 +632,7 @@ TEST_F(Raster, WrittenCaptureReplaysBitIdentically) {
   endPart(model, 0);
   addSquare(model, -7, 0, -12, 4);
   endPart(model, 1);
-  Light point;
-  point.type = PELLUCID_LIGHT_POINT;
-  point.position = {10, 5, -60};
-  point.intensity = 9000;
-  model.lights = {directional({0.3, 0, 1}, 2), point};
+  model.lights = {directional({0.3, 0, 1}, 2), pointLight({10, 5, -60}, 9000)};
   RasterOptions options;
   options.width = 96;
   options.height = 80;

@@ -54,10 +54,7 @@ TEST(Enclosing, OpaqueBodiesAreNotLookedAt) {
 
 TEST(Enclosing, LightsInsideAreRefusedByName) {
   Model model = sphere(10);
-  model.lights.push_back(directional({0, 0, -1}));
-  model.lights.push_back({});
-  model.lights[1].type = PELLUCID_LIGHT_POINT;
-  model.lights[1].position = {0, 0, 20};
+  model.lights = {directional({0, 0, -1}), pointLight({0, 0, 20})};
   EXPECT_NO_THROW(refuseEnclosedLights(model));
   model.lights[1].position = {0, 0, 2};
   try {

@@ -2,11 +2,9 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <glm/glm.hpp>
 #include <initializer_list>
@@ -15,6 +13,7 @@
 #include "common/error.h"
 #include "gltf/gltf.h"
 #include "gltf_builder.h"
+#include "unit/capture_samples.h"
 
 namespace pellucid::test {
 
@@ -25,16 +24,8 @@ using Json = nlohmann::ordered_json;
 // A folder that goes away with the test.
 class Gltf : public testing::Test {
 protected:
-  Gltf() {
-    static int count = 0;
-    folder_ = fs::temp_directory_path() /
-              ("pellucid_gltf_" + std::to_string(::getpid()) + "_" + std::to_string(count++));
-    fs::create_directory(folder_);
-  }
-  ~Gltf() override { fs::remove_all(folder_); }
-
   fs::path write(const std::string& name, const std::string& bytes) const {
-    std::ofstream(folder_ / name, std::ios::binary) << bytes;
+    writeText(folder_ / name, bytes);
     return folder_ / name;
   }
   // The error of loadGltf for these bytes; empty: loadGltf accepts the bytes.
@@ -55,7 +46,7 @@ protected:
       EXPECT_NE(sentence.find(word), std::string::npos) << "\"" << word << "\" is not in: " << sentence;
   }
 
-  fs::path folder_;
+  TemporaryDirectory folder_;
 };
 
 // Two triangles of the square [0, 2]^2 at z = 0, facing +z, of material "m".

@@ -8,8 +8,8 @@ layout(push_constant) uniform Draw {
   vec4 baseColor;  // a: alpha below this is a hole
   vec4 addedColor; // a: object
   uvec4 ids;       // x: material, LOBES_APART, and in the upper half how much the lobe map displaces;
-                   // y: 1 reversed depth, and in the upper half the backscatter; z: whether only back faces behind the front count, which
-                   // is one of BEHIND_*;
+                   // y: 1 reversed depth, and in the upper half the backscatter;
+                   // z: 0, or one of BEHIND_* where only back faces behind the front count;
                    // w: lights in transmit.frag, else bits of the normal map's scale, 0: no map
 } draw;
 
