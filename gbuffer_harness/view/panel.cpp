@@ -184,7 +184,7 @@ Changes drawPanel(ViewState& state, PanelState& panel, const ViewFrames& frames,
   }
   changes.add(drawDisplay(state, panel, frames));
   changes.frame |= drawParameters(state.settings);
-  changes.add(drawMaterials(state, frames));
+  changes.add(drawMaterials(state));
   if (ImGui::CollapsingHeader("T(d) and profile", ImGuiTreeNodeFlags_DefaultOpen)) drawCurves(state, frames);
   changes.add(drawLights(state, source));
   changes.add(drawCamera(state, panel, source));
