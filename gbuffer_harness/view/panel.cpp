@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 
 #include "common/compare.h"
 #include "view/parameters.h"
@@ -137,9 +138,10 @@ Changes drawCamera(ViewState& state, PanelState& panel, const Source& source) {
   }
   ModelCamera& lens = state.camera.lens;
   if (!lens.orthographic) {
-    float degrees = static_cast<float>(lens.verticalFov * 180 / 3.14159265358979);
+    constexpr double kDegrees = 180 / std::numbers::pi;
+    float degrees = static_cast<float>(lens.verticalFov * kDegrees);
     if (ImGui::SliderFloat("field of view", &degrees, 1, 120, "%.1f deg")) {
-      lens.verticalFov = static_cast<double>(degrees) * 3.14159265358979 / 180;
+      lens.verticalFov = static_cast<double>(degrees) / kDegrees;
       changes.scene = true;
     }
   }
