@@ -192,8 +192,9 @@ void parseSize(const std::string& text, ApplicationOptions& options) {
   options.width = parseNumber<int>("--window-size", size[0]);
   options.height = parseNumber<int>("--window-size", size[1]);
   for (const int side : {options.width, options.height})
-    if (side < 64 || side > 8192)
-      throw UsageError("--window-size: " + std::to_string(side) + " is outside 64 .. 8192");
+    if (side < kSmallestWindow || side > kLargestSide)
+      throw UsageError("--window-size: " + std::to_string(side) + " is outside " +
+                       std::to_string(kSmallestWindow) + " .. " + std::to_string(kLargestSide));
 }
 
 PerceptionOptions perceptionTest(const CLI::App& command, const Options& options) {

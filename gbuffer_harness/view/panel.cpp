@@ -153,8 +153,8 @@ Changes drawCamera(ViewState& state, PanelState& panel, const Source& source) {
   ImGui::Checkbox("size of the window", &panel.followWindow);
   int size[2] = {state.width, state.height};
   if (!panel.followWindow && ImGui::InputInt2("size", size, ImGuiInputTextFlags_EnterReturnsTrue)) {
-    state.width = std::clamp(size[0], 1, 8192);
-    state.height = std::clamp(size[1], 1, 8192);
+    state.width = std::clamp(size[0], 1, kLargestSide);
+    state.height = std::clamp(size[1], 1, kLargestSide);
     changes.scene = true;
   }
   // The model turns before the camera, and the lights at their own speed (Whelan 2009, 5.1).

@@ -19,7 +19,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kKey = "pellucidView";
-constexpr int kVersion = 1, kLargestSide = 8192;
+constexpr int kVersion = 1;
 
 std::size_t nameIn(const std::vector<std::string>& names, const Field& field) {
   const auto found = std::find(names.begin(), names.end(), field.text());
