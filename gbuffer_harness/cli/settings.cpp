@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <functional>
-#include <iterator>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -258,10 +256,7 @@ std::string valueText(const Field& field) {
 }
 
 std::vector<std::string> assignmentsIn(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  const std::string text(std::istreambuf_iterator<char>(file), {});
-  if (!file) throw InputError(path, "", "cannot be read");
-  const nlohmann::json json = parseJson(path, text);
+  const nlohmann::json json = readJson(path);
   const Field root(path, json);
   if (!json.is_object()) root.fail("is not an object of settings");
   std::vector<std::string> assignments;
