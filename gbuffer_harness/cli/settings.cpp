@@ -1,8 +1,6 @@
 #include "cli/settings.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <functional>
 #include <map>
 #include <memory>
@@ -10,6 +8,7 @@
 
 #include "capture/json_field.h"
 #include "common/error.h"
+#include "common/number.h"
 
 namespace pellucid::harness {
 namespace {
@@ -72,19 +71,15 @@ T lookUp(const Names<T>& names, const std::string& key, const std::string& value
 }
 
 uint32_t number(const std::string& key, const std::string& text) {
-  uint32_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size())
-    throw UsageError(key + ": \"" + text + "\" is not a whole number");
-  return value;
+  const std::optional<uint32_t> value = numberIn<uint32_t>(text);
+  if (!value) throw UsageError(key + ": \"" + text + "\" is not a whole number");
+  return *value;
 }
 
 float real(const std::string& key, const std::string& text) {
-  float value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-    throw UsageError(key + ": \"" + text + "\" is not a number");
-  return value;
+  const std::optional<float> value = numberIn<float>(text);
+  if (!value) throw UsageError(key + ": \"" + text + "\" is not a number");
+  return *value;
 }
 
 template <size_t N>
