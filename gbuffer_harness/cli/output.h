@@ -1,4 +1,4 @@
-// Names of output files on the command line.
+// Names of files on the command line.
 #pragma once
 
 #include <algorithm>
@@ -10,12 +10,18 @@
 
 namespace pellucid::harness {
 
-// Throws UsageError, naming `option`, for a name with another extension than .exr: EXR would be in a file
-// that says it is something else.
-inline void requireExr(const std::string& option, const std::filesystem::path& path) {
+// In lower case.
+inline std::string extensionOf(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+// Throws UsageError, naming `option`, for a name with another extension than .exr: EXR would be in a file
+// that says it is something else.
+inline void requireExr(const std::string& option, const std::filesystem::path& path) {
+  const std::string extension = extensionOf(path);
   if (!extension.empty() && extension != ".exr")
     throw UsageError(option + ": \"" + path.string() + "\" is written as EXR and cannot be called " +
                      extension);

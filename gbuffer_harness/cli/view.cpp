@@ -31,6 +31,7 @@ void addViewCommand(CLI::App& app) {
 #include "capture/read.h"
 #include "cli/capture_options.h"
 #include "cli/numbers.h"
+#include "cli/output.h"
 #include "cli/settings.h"
 #include "scene/model.h"
 #include "view/application.h"
@@ -51,13 +52,6 @@ struct Options {
   std::string perception, participant, answers;
   float exposure = 0;
 };
-
-std::string extensionOf(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
 
 // Options of the viewer and of the replay; all others are options of the scene.
 const std::set<std::string> kNotOfTheScene = {"--set",         "--mode",       "--debug",    "--device",
