@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <numbers>
 #include <optional>
 
@@ -154,7 +153,7 @@ private:
       again = true;
     }
     panel_.load = false;
-    takeScreenshots();
+    writePending();
     return again;
   }
 
@@ -225,7 +224,7 @@ private:
   void load(const std::filesystem::path& file);
   void openQuestion();
   Changes askForColor();
-  void takeScreenshots();
+  void writePending();
   void save(const std::filesystem::path& capture);
   void screenshot(const std::filesystem::path& file);
 
@@ -334,7 +333,7 @@ Changes Application::askForColor() {
   return changes;
 }
 
-void Application::takeScreenshots() {
+void Application::writePending() {
   for (const auto& file : pendingSaves_) save(file);
   for (const auto& file : pendingScreenshots_) screenshot(file);
   pendingSaves_.clear();

@@ -197,9 +197,12 @@ Image ViewFrames::made(Shown shown) const {
       return rgb(run(shown).output());
     case Shown::FrontDepth:
       return capture_.frontDepth.image;
-    case Shown::Normal:
+    case Shown::Normal: {
       if (capture_.normal.empty()) return Image(capture_.width, capture_.height, 3);
-      return combined(capture_.normal, capture_.normal, [](float n, float) { return 0.5f * n + 0.5f; });
+      Image result = capture_.normal;
+      for (float& n : result.data) n = 0.5f * n + 0.5f;
+      return result;
+    }
     case Shown::Albedo:
       return capture_.albedo.empty() ? Image(capture_.width, capture_.height, 3, 1.0f) : capture_.albedo;
     case Shown::Material: {
