@@ -81,17 +81,17 @@ bool isCapture(const std::string& path) {
   return extension == ".exr" || extension == ".json";
 }
 
-void refuseSceneOptions(const CLI::App& command, const std::string& model) {
+void refuseSceneOptions(const CLI::App& command, const std::string& model, const char* kind) {
   for (const std::string& argument : sceneArguments(command))
     if (argument.rfind("--", 0) == 0)
-      throw UsageError(argument + ": " + model + " is a capture, whose scene is what it holds");
+      throw UsageError(argument + ": " + model + " is a " + kind + ", whose scene is what it holds");
 }
 
 std::function<std::unique_ptr<Source>(Device&)> opener(const CLI::App& command, const CaptureOptions& scene) {
   if (!scene.environment.empty())
     throw UsageError("--environment: is traced by rays, which takes too long; make a capture and view that");
   if (!scene.model.empty() && isCapture(scene.model)) {
-    refuseSceneOptions(command, scene.model);
+    refuseSceneOptions(command, scene.model, "capture");
     return [path = scene.model](Device&) { return captureSource(readCapture(path)); };
   }
   if (isProcedural(command, scene))
@@ -219,7 +219,7 @@ void view(const CLI::App& command, const Options& options) {
   if (!options.perception.empty()) {
     application.perception = perceptionTest(command, options);
   } else if (!model.empty() && isSession(model)) {
-    refuseSceneOptions(command, model);
+    refuseSceneOptions(command, model, "saved view");
     application.scene = savedView(options, model);
   } else {
     application.scene = sceneOf(command, options);
