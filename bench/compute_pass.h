@@ -8,6 +8,7 @@
 
 #include "common/device.h"
 #include "pellucid/pellucid.h"
+#include "raster/pipeline.h"
 
 namespace pellucid::bench {
 
@@ -26,25 +27,19 @@ public:
   // have four words of push constants.
   ComputePass(harness::Device& device, std::span<const uint32_t> spirv,
               const std::vector<VkDescriptorType>& types, const Tile& tile = {});
-  ~ComputePass();
-  ComputePass(const ComputePass&) = delete;
-  ComputePass& operator=(const ComputePass&) = delete;
 
   void record(VkCommandBuffer commandBuffer, int width, int height, const std::vector<Resource>& resources,
               const std::array<uint32_t, 4>& push = {}) const;
 
 private:
-  void createLayout();
   void createPipeline(std::span<const uint32_t> spirv);
 
   harness::Device& device_;
   std::vector<VkDescriptorType> types_;
   Tile tile_;
-  VkSampler sampler_ = VK_NULL_HANDLE;
-  VkDescriptorSetLayout setLayout_ = VK_NULL_HANDLE;
-  VkPipelineLayout layout_ = VK_NULL_HANDLE;
-  VkPipeline pipeline_ = VK_NULL_HANDLE;
-  PFN_vkCmdPushDescriptorSetKHR pushDescriptors_ = nullptr;
+  harness::Owned<VkSampler, vkDestroySampler> sampler_;
+  harness::PushLayout layout_;
+  harness::Pipeline pipeline_;
 };
 
 // What one dispatch writes, the next may read and overwrite.

@@ -1,6 +1,7 @@
 // Translucency of camera-space thickness as separate dispatches, the way Whelan 2009 (4.7.2) first has it.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -16,7 +17,7 @@ std::vector<Variant> translucencyVariants(const std::shared_ptr<const BenchFrame
 // The steps of the first two one by one, without the linearization, which a raster pass of planar distances
 // does: thickness; transmittance of it; thickness and transmittance in one; addition. They have run once.
 struct TranslucencySteps {
-  Variant thickness, transmittance, both, addition;
+  std::function<void(VkCommandBuffer)> thickness, transmittance, both, addition;
 };
 TranslucencySteps translucencySteps(const std::shared_ptr<const BenchFrame>& frame);
 

@@ -1,6 +1,8 @@
 #include "thesis.h"
 
 #include <cmath>
+#include <cstdio>
+#include <functional>
 #include <numbers>
 #include <vector>
 
@@ -214,10 +216,10 @@ private:
                        const FrontTarget& front) {
     requireAgreement(frame);
     const TranslucencySteps steps = translucencySteps(frame);
-    sum.thickness += time(steps.thickness.record);
-    sum.transmittance += time(steps.transmittance.record);
-    sum.both += time(steps.both.record);
-    sum.addition += time(steps.addition.record);
+    sum.thickness += time(steps.thickness);
+    sum.transmittance += time(steps.transmittance);
+    sum.both += time(steps.both);
+    sum.addition += time(steps.addition);
     sum.fused += time(moduleVariant(frame, "").record);
     const bool keepGreater = view.reversedDepth;
     const RenderTarget target(device_, raster_.width, raster_.height,

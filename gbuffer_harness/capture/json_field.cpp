@@ -1,6 +1,8 @@
 #include "capture/json_field.h"
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <set>
 
@@ -25,6 +27,13 @@ json parseJson(const std::string& file, const std::string& text) {
   } catch (const json::exception& error) {
     throw InputError(file, "", std::string("not valid JSON: ") + error.what());
   }
+}
+
+json readJson(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  const std::string text(std::istreambuf_iterator<char>(file), {});
+  if (!file) throw InputError(path.string(), "", "cannot be read");
+  return parseJson(path.string(), text);
 }
 
 void Field::fail(const std::string& sentence) const { throw InputError(file_, path_, sentence); }
@@ -111,12 +120,16 @@ std::string Field::text() const {
 }
 
 std::size_t Field::choice(std::initializer_list<std::string_view> choices) const {
+  return choice(std::vector<std::string>(choices.begin(), choices.end()));
+}
+
+std::size_t Field::choice(std::span<const std::string> choices) const {
   const std::string value = text();
   std::string list;
   std::size_t index = 0;
-  for (const std::string_view candidate : choices) {
+  for (const std::string& candidate : choices) {
     if (candidate == value) return index;
-    list += (list.empty() ? "\"" : ", \"") + std::string(candidate) + "\"";
+    list += (list.empty() ? "\"" : ", \"") + candidate + "\"";
     ++index;
   }
   fail("must be one of " + list + ", is " + shown());

@@ -3,9 +3,11 @@
 
 #include <array>
 #include <cstddef>
+#include <filesystem>
 #include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -15,6 +17,8 @@ namespace pellucid::harness {
 
 // Parses JSON text. Throws InputError for syntax errors and for a key that stands twice in one object.
 nlohmann::json parseJson(const std::string& file, const std::string& text);
+// Parses a JSON file. Throws InputError as parseJson() does, and for a file that cannot be read.
+nlohmann::json readJson(const std::filesystem::path& path);
 
 class Field {
 public:
@@ -45,6 +49,7 @@ public:
   std::string text() const;  // not empty
   // Index of the string among `choices`.
   std::size_t choice(std::initializer_list<std::string_view> choices) const;
+  std::size_t choice(std::span<const std::string> choices) const;
   std::vector<double> numbers() const;  // array of any length >= 1
   template <std::size_t N>
   std::array<double, N> numbers() const {

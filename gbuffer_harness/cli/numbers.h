@@ -1,26 +1,20 @@
 // Numbers, lists and assignments in command-line options.
 #pragma once
 
-#include <charconv>
-#include <cmath>
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "common/error.h"
+#include "common/number.h"
 
 namespace pellucid::harness {
 
 // Throws UsageError, naming `option`, unless all of `text` is one finite number.
 template <class T>
 T parseNumber(const std::string& option, const std::string& text) {
-  T value{};
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  const bool finite = std::abs(static_cast<double>(value)) <= std::numeric_limits<double>::max();
-  if (error != std::errc() || stop != end || !finite)
-    throw UsageError(option + ": \"" + text + "\" is not a number");
-  return value;
+  const std::optional<T> value = numberIn<T>(text);
+  if (!value) throw UsageError(option + ": \"" + text + "\" is not a number");
+  return *value;
 }
 
 inline std::vector<std::string> split(const std::string& text, char separator) {

@@ -1,17 +1,14 @@
 #include "cli/settings.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
-#include <fstream>
 #include <functional>
-#include <iterator>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "capture/json_field.h"
 #include "common/error.h"
+#include "common/number.h"
 
 namespace pellucid::harness {
 namespace {
@@ -74,19 +71,15 @@ T lookUp(const Names<T>& names, const std::string& key, const std::string& value
 }
 
 uint32_t number(const std::string& key, const std::string& text) {
-  uint32_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size())
-    throw UsageError(key + ": \"" + text + "\" is not a whole number");
-  return value;
+  const std::optional<uint32_t> value = numberIn<uint32_t>(text);
+  if (!value) throw UsageError(key + ": \"" + text + "\" is not a whole number");
+  return *value;
 }
 
 float real(const std::string& key, const std::string& text) {
-  float value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-    throw UsageError(key + ": \"" + text + "\" is not a number");
-  return value;
+  const std::optional<float> value = numberIn<float>(text);
+  if (!value) throw UsageError(key + ": \"" + text + "\" is not a number");
+  return *value;
 }
 
 template <size_t N>
@@ -258,10 +251,7 @@ std::string valueText(const Field& field) {
 }
 
 std::vector<std::string> assignmentsIn(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  const std::string text(std::istreambuf_iterator<char>(file), {});
-  if (!file) throw InputError(path, "", "cannot be read");
-  const nlohmann::json json = parseJson(path, text);
+  const nlohmann::json json = readJson(path);
   const Field root(path, json);
   if (!json.is_object()) root.fail("is not an object of settings");
   std::vector<std::string> assignments;

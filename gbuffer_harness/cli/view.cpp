@@ -31,6 +31,7 @@ void addViewCommand(CLI::App& app) {
 #include "capture/read.h"
 #include "cli/capture_options.h"
 #include "cli/numbers.h"
+#include "cli/output.h"
 #include "cli/settings.h"
 #include "scene/model.h"
 #include "view/application.h"
@@ -52,34 +53,29 @@ struct Options {
   float exposure = 0;
 };
 
-std::string extensionOf(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
-
 // Options of the viewer and of the replay; all others are options of the scene.
 const std::set<std::string> kNotOfTheScene = {"--set",         "--mode",       "--debug",    "--device",
                                               "--window-size", "--no-window",  "--validate", "--frames",
                                               "--script",      "--screenshot", "--exposure", "--perception",
                                               "--participant", "--answers",    "--save",     "--help"};
 
+// The model comes first: behind an option that takes a list, it would be read as one more of its values.
 std::vector<std::string> sceneArguments(const CLI::App& command) {
-  std::vector<std::string> arguments;
+  std::vector<std::string> model, options;
   for (const CLI::Option* option : command.get_options()) {
     if (option->count() == 0 || kNotOfTheScene.count(option->get_name()) > 0) continue;
     for (const std::string& value : option->results()) {
       if (option->get_positional()) {
-        arguments.push_back(std::filesystem::absolute(value).string());  // sessions are opened from anywhere
+        model.push_back(std::filesystem::absolute(value).string());  // sessions are opened from anywhere
         continue;
       }
       const bool isFlag = option->get_expected_min() == 0;
-      arguments.push_back(isFlag && value == "false" ? "--forward-z" : option->get_name());
-      if (!isFlag) arguments.push_back(value);
+      options.push_back(isFlag && value == "false" ? "--forward-z" : option->get_name());
+      if (!isFlag) options.push_back(value);
     }
   }
-  return arguments;
+  model.insert(model.end(), options.begin(), options.end());
+  return model;
 }
 
 bool isCapture(const std::string& path) {
@@ -87,17 +83,17 @@ bool isCapture(const std::string& path) {
   return extension == ".exr" || extension == ".json";
 }
 
-void refuseSceneOptions(const CLI::App& command, const std::string& model) {
+void refuseSceneOptions(const CLI::App& command, const std::string& model, const char* kind) {
   for (const std::string& argument : sceneArguments(command))
     if (argument.rfind("--", 0) == 0)
-      throw UsageError(argument + ": " + model + " is a capture, whose scene is what it holds");
+      throw UsageError(argument + ": " + model + " is a " + kind + ", whose scene is what it holds");
 }
 
 std::function<std::unique_ptr<Source>(Device&)> opener(const CLI::App& command, const CaptureOptions& scene) {
   if (!scene.environment.empty())
     throw UsageError("--environment: is traced by rays, which takes too long; make a capture and view that");
   if (!scene.model.empty() && isCapture(scene.model)) {
-    refuseSceneOptions(command, scene.model);
+    refuseSceneOptions(command, scene.model, "capture");
     return [path = scene.model](Device&) { return captureSource(readCapture(path)); };
   }
   if (isProcedural(command, scene))
@@ -192,8 +188,9 @@ void parseSize(const std::string& text, ApplicationOptions& options) {
   options.width = parseNumber<int>("--window-size", size[0]);
   options.height = parseNumber<int>("--window-size", size[1]);
   for (const int side : {options.width, options.height})
-    if (side < 64 || side > 8192)
-      throw UsageError("--window-size: " + std::to_string(side) + " is outside 64 .. 8192");
+    if (side < kSmallestWindow || side > kLargestSide)
+      throw UsageError("--window-size: " + std::to_string(side) + " is outside " +
+                       std::to_string(kSmallestWindow) + " .. " + std::to_string(kLargestSide));
 }
 
 PerceptionOptions perceptionTest(const CLI::App& command, const Options& options) {
@@ -224,7 +221,7 @@ void view(const CLI::App& command, const Options& options) {
   if (!options.perception.empty()) {
     application.perception = perceptionTest(command, options);
   } else if (!model.empty() && isSession(model)) {
-    refuseSceneOptions(command, model);
+    refuseSceneOptions(command, model, "saved view");
     application.scene = savedView(options, model);
   } else {
     application.scene = sceneOf(command, options);

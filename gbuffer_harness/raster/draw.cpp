@@ -27,13 +27,8 @@ namespace {
 
 // Of shaders/draw.glsl.
 constexpr std::uint32_t kOwnBindings = 5, kBehindFront = 1, kBehindCaster = 2, kLobesApart = 256;
-
-using ShaderModule = Owned<VkShaderModule, vkDestroyShaderModule>;
-
-struct Spirv {
-  const std::uint32_t* words;
-  std::size_t bytes;
-};
+constexpr VkShaderStageFlags kStages =  // that read DrawConstants
+    VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
 
 Spirv fragmentSpirv(FragmentShader shader) {
   switch (shader) {
@@ -51,19 +46,6 @@ Spirv fragmentSpirv(FragmentShader shader) {
       return {kRasterTransmit, sizeof kRasterTransmit};
   }
   throw DeviceError("no such fragment shader");
-}
-
-VkPipelineShaderStageCreateInfo loadStage(Device& device, VkShaderStageFlagBits stage, Spirv code,
-                                          ShaderModule& shader) {
-  VkShaderModuleCreateInfo info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
-  info.codeSize = code.bytes;
-  info.pCode = code.words;
-  check(vkCreateShaderModule(device.handle(), &info, nullptr, shader.receive()), "vkCreateShaderModule");
-  VkPipelineShaderStageCreateInfo result{VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO};
-  result.stage = stage;
-  result.module = shader;
-  result.pName = "main";
-  return result;
 }
 
 template <class T>
@@ -117,6 +99,16 @@ std::vector<PlannedBinding> plannedBindings() {
   return all;
 }
 
+std::vector<VkDescriptorSetLayoutBinding> layoutBindings() {
+  std::vector<VkDescriptorSetLayoutBinding> bindings;
+  for (std::uint32_t i = 0; i < kOwnBindings; ++i)
+    bindings.push_back(
+        {i, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1, VK_SHADER_STAGE_FRAGMENT_BIT, nullptr});
+  for (const PlannedBinding& b : plannedBindings())
+    bindings.push_back({kOwnBindings + b.binding, b.type, 1, VK_SHADER_STAGE_FRAGMENT_BIT, nullptr});
+  return bindings;
+}
+
 // The writes of one push, with what they point to.
 class DescriptorWrites {
 public:
@@ -165,8 +157,7 @@ UploadedModel::UploadedModel(Device& device, const Model& model)
       model_(model),
       vertices_(device, byteCount(model.vertices), VK_BUFFER_USAGE_VERTEX_BUFFER_BIT),
       indices_(device, byteCount(model.indices), VK_BUFFER_USAGE_INDEX_BUFFER_BIT),
-      setLayout_(device),
-      layout_(device) {
+      layout_(device, layoutBindings(), {kStages, 0, sizeof(DrawConstants)}) {
   if (!device.canDraw()) throw DeviceError(device.description() + " computes but has no queue that draws");
   std::memcpy(vertices_.mapped(), model.vertices.data(), static_cast<std::size_t>(vertices_.size()));
   std::memcpy(indices_.mapped(), model.indices.data(), static_cast<std::size_t>(indices_.size()));
@@ -185,49 +176,15 @@ UploadedModel::UploadedModel(Device& device, const Model& model)
   for (const Texture& texture : model.textures) add(texture, VK_FILTER_LINEAR);
   // Its sampler also serves texelFetch from formats that need not filter.
   add({1, 1, {255, 255, 255, 255}}, VK_FILTER_NEAREST);
-  createLayout();
-}
-
-void UploadedModel::createLayout() {
-  std::vector<VkDescriptorSetLayoutBinding> bindings;
-  for (std::uint32_t i = 0; i < kOwnBindings; ++i)
-    bindings.push_back(
-        {i, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1, VK_SHADER_STAGE_FRAGMENT_BIT, nullptr});
-  for (const PlannedBinding& b : plannedBindings())
-    bindings.push_back({kOwnBindings + b.binding, b.type, 1, VK_SHADER_STAGE_FRAGMENT_BIT, nullptr});
-  VkDescriptorSetLayoutCreateInfo set{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
-  set.flags = VK_DESCRIPTOR_SET_LAYOUT_CREATE_PUSH_DESCRIPTOR_BIT_KHR;
-  set.bindingCount = static_cast<std::uint32_t>(bindings.size());
-  set.pBindings = bindings.data();
-  check(vkCreateDescriptorSetLayout(device_.handle(), &set, nullptr, setLayout_.receive()),
-        "vkCreateDescriptorSetLayout");
-  const VkPushConstantRange constants{VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
-                                      sizeof(DrawConstants)};
-  const VkDescriptorSetLayout sets[] = {setLayout_};
-  VkPipelineLayoutCreateInfo layout{VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO};
-  layout.setLayoutCount = 1;
-  layout.pSetLayouts = sets;
-  layout.pushConstantRangeCount = 1;
-  layout.pPushConstantRanges = &constants;
-  check(vkCreatePipelineLayout(device_.handle(), &layout, nullptr, layout_.receive()),
-        "vkCreatePipelineLayout");
-  pushDescriptors_ = reinterpret_cast<PFN_vkCmdPushDescriptorSetKHR>(
-      vkGetDeviceProcAddr(device_.handle(), "vkCmdPushDescriptorSetKHR"));
 }
 
 VkPipeline UploadedModel::pipelineOf(const RenderTarget& target, const PipelineState& state) const {
   const auto [entry, isNew] = pipelines_.try_emplace({target.depthFormat(), state}, device_);
-  if (isNew) createPipeline(entry->second, target, state);
+  if (isNew) create(entry->second, target, state);
   return entry->second;
 }
 
-void UploadedModel::createPipeline(Pipeline& pipeline, const RenderTarget& target,
-                                   const PipelineState& state) const {
-  ShaderModule vertex(device_), fragment(device_);
-  const VkPipelineShaderStageCreateInfo stages[] = {
-      loadStage(device_, VK_SHADER_STAGE_VERTEX_BIT, {kRasterMesh, sizeof kRasterMesh}, vertex),
-      loadStage(device_, VK_SHADER_STAGE_FRAGMENT_BIT, fragmentSpirv(state.shader), fragment)};
-
+void UploadedModel::create(Pipeline& pipeline, const RenderTarget& target, const PipelineState& state) const {
   const VkVertexInputBindingDescription binding{0, sizeof(Vertex), VK_VERTEX_INPUT_RATE_VERTEX};
   const VkVertexInputAttributeDescription attributes[] = {
       {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, position)},
@@ -238,58 +195,23 @@ void UploadedModel::createPipeline(Pipeline& pipeline, const RenderTarget& targe
       {5, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(Vertex, normalUv)},
       {6, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Vertex, tangent)},
       {7, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(Vertex, lobeUv)}};
-  VkPipelineVertexInputStateCreateInfo input{VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
-  input.vertexBindingDescriptionCount = 1;
-  input.pVertexBindingDescriptions = &binding;
-  input.vertexAttributeDescriptionCount = static_cast<std::uint32_t>(std::size(attributes));
-  input.pVertexAttributeDescriptions = attributes;
-  VkPipelineInputAssemblyStateCreateInfo assembly{
-      VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO};
-  assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
-  VkPipelineViewportStateCreateInfo viewport{VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO};
-  viewport.viewportCount = viewport.scissorCount = 1;
-  VkPipelineRasterizationStateCreateInfo raster{VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO};
-  raster.cullMode = state.cull;
-  raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
-  raster.lineWidth = 1;
-  raster.depthBiasEnable = state.depthBiasConstant != 0 || state.depthBiasSlope != 0;
-  raster.depthBiasConstantFactor = state.depthBiasConstant;
-  raster.depthBiasSlopeFactor = state.depthBiasSlope;
-  VkPipelineMultisampleStateCreateInfo samples{VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO};
-  samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
-  VkPipelineDepthStencilStateCreateInfo depth{VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO};
-  depth.depthTestEnable = depth.depthWriteEnable = state.depthTest.has_value();
-  depth.depthCompareOp = state.depthTest.value_or(VK_COMPARE_OP_ALWAYS);
-  VkPipelineColorBlendAttachmentState blend{};
-  blend.blendEnable = state.add;
-  blend.srcColorBlendFactor = blend.dstColorBlendFactor = VK_BLEND_FACTOR_ONE;
-  blend.srcAlphaBlendFactor = blend.dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
-  blend.colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT |
-                         VK_COLOR_COMPONENT_A_BIT;
-  const std::vector<VkPipelineColorBlendAttachmentState> blends(target.colorCount(), blend);
-  VkPipelineColorBlendStateCreateInfo colors{VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO};
-  colors.attachmentCount = static_cast<std::uint32_t>(blends.size());
-  colors.pAttachments = blends.data();
-  const VkDynamicState dynamicStates[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
-  VkPipelineDynamicStateCreateInfo dynamic{VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO};
-  dynamic.dynamicStateCount = static_cast<std::uint32_t>(std::size(dynamicStates));
-  dynamic.pDynamicStates = dynamicStates;
-
-  VkGraphicsPipelineCreateInfo info{VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO};
-  info.stageCount = static_cast<std::uint32_t>(std::size(stages));
-  info.pStages = stages;
-  info.pVertexInputState = &input;
-  info.pInputAssemblyState = &assembly;
-  info.pViewportState = &viewport;
-  info.pRasterizationState = &raster;
-  info.pMultisampleState = &samples;
-  info.pDepthStencilState = &depth;
-  info.pColorBlendState = &colors;
-  info.pDynamicState = &dynamic;
-  info.layout = layout_;
-  info.renderPass = target.renderPass();
-  check(vkCreateGraphicsPipelines(device_.handle(), VK_NULL_HANDLE, 1, &info, nullptr, pipeline.receive()),
-        "vkCreateGraphicsPipelines");
+  DrawState drawn;
+  drawn.input.vertexBindingDescriptionCount = 1;
+  drawn.input.pVertexBindingDescriptions = &binding;
+  drawn.input.vertexAttributeDescriptionCount = static_cast<std::uint32_t>(std::size(attributes));
+  drawn.input.pVertexAttributeDescriptions = attributes;
+  drawn.raster.cullMode = state.cull;
+  drawn.raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
+  drawn.raster.depthBiasEnable = state.depthBiasConstant != 0 || state.depthBiasSlope != 0;
+  drawn.raster.depthBiasConstantFactor = state.depthBiasConstant;
+  drawn.raster.depthBiasSlopeFactor = state.depthBiasSlope;
+  drawn.depth.depthTestEnable = drawn.depth.depthWriteEnable = state.depthTest.has_value();
+  drawn.depth.depthCompareOp = state.depthTest.value_or(VK_COMPARE_OP_ALWAYS);
+  drawn.blend.blendEnable = state.add;
+  drawn.blend.srcColorBlendFactor = drawn.blend.dstColorBlendFactor = VK_BLEND_FACTOR_ONE;
+  drawn.blend.srcAlphaBlendFactor = drawn.blend.dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
+  createPipeline(device_, target, layout_, {kRasterMesh, sizeof kRasterMesh}, fragmentSpirv(state.shader),
+                 drawn, pipeline);
 }
 
 void UploadedModel::draw(const RenderTarget& target, const DrawView& view, const PipelineState& state,
@@ -332,8 +254,7 @@ void UploadedModel::record(VkCommandBuffer commandBuffer, const RenderTarget& ta
     for (std::uint32_t i = 0; i < kOwnBindings; ++i)
       writes.image(i, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, *samplers_[samplers[i]], images[i]->use());
     if (earlier.planned) addPlanned(*earlier.planned, writes);
-    pushDescriptors_(commandBuffer, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0,
-                     static_cast<std::uint32_t>(writes.all().size()), writes.all().data());
+    layout_.push(commandBuffer, VK_PIPELINE_BIND_POINT_GRAPHICS, writes.all());
     constants.baseColor = vec4(surface.baseColor, surface.alphaCutoff);
     constants.addedColor = vec4(surface.addedColor, part.object);
     const float normalScale = surface.normalMap < 0 ? 0 : static_cast<float>(surface.normalScale);
@@ -343,8 +264,7 @@ void UploadedModel::record(VkCommandBuffer commandBuffer, const RenderTarget& ta
                      view.reversedDepth | highHalf(surface.backscatter), behind,
                      earlier.planned ? earlier.planned->dispatch.pushConstants[1]
                                      : std::bit_cast<std::uint32_t>(normalScale)};
-    vkCmdPushConstants(commandBuffer, layout_, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
-                       sizeof constants, &constants);
+    vkCmdPushConstants(commandBuffer, layout_, kStages, 0, sizeof constants, &constants);
     vkCmdDrawIndexed(commandBuffer, part.indexCount, 1, part.firstIndex, 0, 0);
   }
   target.end(commandBuffer);

@@ -12,6 +12,7 @@
 #include "common/device.h"
 #include "common/gpu_image.h"
 #include "raster/model.h"
+#include "raster/pipeline.h"
 #include "raster/render_target.h"
 
 namespace pellucid::harness {
@@ -76,22 +77,17 @@ public:
               const EarlierPass& earlier = {}) const;
 
 private:
-  using Pipeline = Owned<VkPipeline, vkDestroyPipeline>;
-
   VkPipeline pipelineOf(const RenderTarget& target, const PipelineState& state) const;
-  void createPipeline(Pipeline& pipeline, const RenderTarget& target, const PipelineState& state) const;
-  void createLayout();
+  void create(Pipeline& pipeline, const RenderTarget& target, const PipelineState& state) const;
 
   Device& device_;
   const Model& model_;
   HostBuffer vertices_, indices_;
   std::vector<std::unique_ptr<GpuImage>> textures_;  // as Model::textures, and a white one
   std::vector<std::unique_ptr<Owned<VkSampler, vkDestroySampler>>> samplers_;
-  Owned<VkDescriptorSetLayout, vkDestroyDescriptorSetLayout> setLayout_;
-  Owned<VkPipelineLayout, vkDestroyPipelineLayout> layout_;
+  PushLayout layout_;
   // By the target's depth format; created where they are drawn with first.
   mutable std::map<std::pair<VkFormat, PipelineState>, Pipeline> pipelines_;
-  PFN_vkCmdPushDescriptorSetKHR pushDescriptors_ = nullptr;
 };
 
 }  // namespace pellucid::harness

@@ -65,6 +65,14 @@ void setShadows(Constants& constants, const std::vector<ShadowImage>& shadows,
   constants.shadow = glm::vec4(first.size, first.perspective, texel, shadows.size());
 }
 
+std::vector<VkDescriptorSetLayoutBinding> layoutBindings() {
+  std::vector<VkDescriptorSetLayoutBinding> bindings;
+  for (std::uint32_t i = 0; i < std::size(kTypes); ++i)
+    bindings.push_back(
+        {i, kTypes[i], i == kShadowBinding ? kShadowMaps : 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
+  return bindings;
+}
+
 }  // namespace
 
 IrradiancePass::IrradiancePass(Device& device, const GpuImage& normalPlanar, const GpuImage& depthNormal,
@@ -77,8 +85,7 @@ IrradiancePass::IrradiancePass(Device& device, const GpuImage& normalPlanar, con
       view_(view),
       irradiance_(device, width, height, VK_FORMAT_R32G32B32A32_SFLOAT),
       sampler_(device),
-      setLayout_(device),
-      layout_(device),
+      layout_(device, layoutBindings()),
       pipeline_(device) {
   irradiance_.clear();
   createPipeline();
@@ -88,37 +95,13 @@ void IrradiancePass::createPipeline() {
   VkSamplerCreateInfo sampler{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
   check(vkCreateSampler(device_.handle(), &sampler, nullptr, sampler_.receive()), "vkCreateSampler");
 
-  VkDescriptorSetLayoutBinding bindings[std::size(kTypes)]{};
-  for (std::uint32_t i = 0; i < std::size(kTypes); ++i)
-    bindings[i] = {i, kTypes[i], i == kShadowBinding ? kShadowMaps : 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr};
-  VkDescriptorSetLayoutCreateInfo set{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
-  set.flags = VK_DESCRIPTOR_SET_LAYOUT_CREATE_PUSH_DESCRIPTOR_BIT_KHR;
-  set.bindingCount = static_cast<std::uint32_t>(std::size(bindings));
-  set.pBindings = bindings;
-  check(vkCreateDescriptorSetLayout(device_.handle(), &set, nullptr, setLayout_.receive()),
-        "vkCreateDescriptorSetLayout");
-  const VkDescriptorSetLayout sets[] = {setLayout_};
-  VkPipelineLayoutCreateInfo layout{VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO};
-  layout.setLayoutCount = 1;
-  layout.pSetLayouts = sets;
-  check(vkCreatePipelineLayout(device_.handle(), &layout, nullptr, layout_.receive()),
-        "vkCreatePipelineLayout");
-
-  Owned<VkShaderModule, vkDestroyShaderModule> shader(device_);
-  VkShaderModuleCreateInfo code{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
-  code.codeSize = sizeof kRasterIrradiance;
-  code.pCode = kRasterIrradiance;
-  check(vkCreateShaderModule(device_.handle(), &code, nullptr, shader.receive()), "vkCreateShaderModule");
+  ShaderModule shader(device_);
   VkComputePipelineCreateInfo info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
-  info.stage = {VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO};
-  info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
-  info.stage.module = shader;
-  info.stage.pName = "main";
+  info.stage =
+      loadStage(device_, VK_SHADER_STAGE_COMPUTE_BIT, {kRasterIrradiance, sizeof kRasterIrradiance}, shader);
   info.layout = layout_;
   check(vkCreateComputePipelines(device_.handle(), VK_NULL_HANDLE, 1, &info, nullptr, pipeline_.receive()),
         "vkCreateComputePipelines");
-  pushDescriptors_ = reinterpret_cast<PFN_vkCmdPushDescriptorSetKHR>(
-      vkGetDeviceProcAddr(device_.handle(), "vkCmdPushDescriptorSetKHR"));
 }
 
 void IrradiancePass::add(const Light& light, const std::vector<ShadowImage>& shadows) {
@@ -165,8 +148,7 @@ void IrradiancePass::record(VkCommandBuffer commandBuffer, const HostBuffer& con
   writes[kIrradianceBinding].pImageInfo = &target;
   writes[kTrianglesBinding].pImageInfo = &triangles;
   vkCmdBindPipeline(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_);
-  pushDescriptors_(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, layout_, 0,
-                   static_cast<std::uint32_t>(std::size(writes)), writes);
+  layout_.push(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, writes);
   const auto groups = [](int pixels, int size) {
     return static_cast<std::uint32_t>((pixels + size - 1) / size);
   };

@@ -7,6 +7,7 @@
 #include "common/device.h"
 #include "common/gpu_image.h"
 #include "raster/draw.h"
+#include "raster/pipeline.h"
 
 namespace pellucid::harness {
 
@@ -48,10 +49,8 @@ private:
   DrawView view_;
   GpuImage irradiance_;
   Owned<VkSampler, vkDestroySampler> sampler_;
-  Owned<VkDescriptorSetLayout, vkDestroyDescriptorSetLayout> setLayout_;
-  Owned<VkPipelineLayout, vkDestroyPipelineLayout> layout_;
-  Owned<VkPipeline, vkDestroyPipeline> pipeline_;
-  PFN_vkCmdPushDescriptorSetKHR pushDescriptors_ = nullptr;
+  PushLayout layout_;
+  Pipeline pipeline_;
 };
 
 }  // namespace pellucid::harness

@@ -10,6 +10,8 @@
 
 namespace pellucid::harness {
 
+class UploadedModel;
+
 enum class BackFace {
   Nearest,  // of those behind the front: the thickness of the first layer
   Farthest  // the thickness of everything, hollows included
@@ -66,7 +68,6 @@ RasterResult rasterize(Device& device, const Model& model, const ModelCamera& ca
                        const RasterOptions& options);
 
 // Draws a model that is on the device already. `model` is the uploaded one, whose lights may have changed.
-class UploadedModel;
 RasterResult rasterize(Device& device, const Model& model, const UploadedModel& uploaded,
                        const ModelCamera& camera, const RasterOptions& options);
 

@@ -7,25 +7,9 @@
 
 #include "common/device.h"
 #include "common/gpu_image.h"
+#include "common/owned.h"
 
 namespace pellucid::harness {
-
-// A device object destroyed with its owner.
-template <class Handle, void (*destroy)(VkDevice, Handle, const VkAllocationCallbacks*)>
-class Owned {
-public:
-  explicit Owned(const Device& device) : device_(device.handle()) {}
-  ~Owned() { destroy(device_, handle_, nullptr); }
-  Owned(const Owned&) = delete;
-  Owned& operator=(const Owned&) = delete;
-
-  Handle* receive() { return &handle_; }  // for vkCreate*
-  operator Handle() const { return handle_; }
-
-private:
-  VkDevice device_;
-  Handle handle_ = VK_NULL_HANDLE;
-};
 
 // Color images of one size, and a depth buffer of its own when `clearDepth` is given.
 class RenderTarget {

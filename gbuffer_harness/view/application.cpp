@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <numbers>
 #include <optional>
 
@@ -154,7 +153,7 @@ private:
       again = true;
     }
     panel_.load = false;
-    takeScreenshots();
+    writePending();
     return again;
   }
 
@@ -186,8 +185,8 @@ private:
   void followWindow(Changes& changes) {
     if (!panel_.followWindow) return;
     const ScreenRect area = pictureArea();
-    const int width = std::clamp(static_cast<int>(area.width), 1, 8192);
-    const int height = std::clamp(static_cast<int>(area.height), 1, 8192);
+    const int width = std::clamp(static_cast<int>(area.width), 1, kLargestSide);
+    const int height = std::clamp(static_cast<int>(area.height), 1, kLargestSide);
     if (width == state_.width && height == state_.height) return;
     state_.width = width;
     state_.height = height;
@@ -225,7 +224,7 @@ private:
   void load(const std::filesystem::path& file);
   void openQuestion();
   Changes askForColor();
-  void takeScreenshots();
+  void writePending();
   void save(const std::filesystem::path& capture);
   void screenshot(const std::filesystem::path& file);
 
@@ -263,8 +262,10 @@ void Application::carryOut(const ScriptLine& line) {
   if (line.command == "open") return load(line.arguments.front());
   if (line.command == "screenshot") return pendingScreenshots_.push_back(line.arguments.front());
   if (!window_) throw InputError(line.where, line.command, "needs a window");
-  window_->resize(std::clamp(static_cast<int>(numberOf(line, 0)), 64, 8192),
-                  std::clamp(static_cast<int>(numberOf(line, 1)), 64, 8192));
+  const auto side = [&](std::size_t argument) {
+    return std::clamp(static_cast<int>(numberOf(line, argument)), kSmallestWindow, kLargestSide);
+  };
+  window_->resize(side(0), side(1));
 }
 
 // The open scene stays if the new scene cannot be read or rendered.
@@ -332,7 +333,7 @@ Changes Application::askForColor() {
   return changes;
 }
 
-void Application::takeScreenshots() {
+void Application::writePending() {
   for (const auto& file : pendingSaves_) save(file);
   for (const auto& file : pendingScreenshots_) screenshot(file);
   pendingSaves_.clear();

@@ -1,8 +1,11 @@
 // Draws what is shown of a frame into a target of the screen's format.
 #pragma once
 
+#include <optional>
+
 #include "common/device.h"
 #include "common/gpu_image.h"
+#include "raster/pipeline.h"
 #include "raster/render_target.h"
 #include "view/frames.h"
 #include "view/state.h"
@@ -44,18 +47,14 @@ private:
     float exposure, low, high;
     std::int32_t isLegend, hasTruth, isFalseColor;
   };
-  void createLayout();
-  void createPipeline(const RenderTarget& target);
   void draw(VkCommandBuffer commandBuffer, const ViewFrames& frames, Shown shown, const Push& push,
             const ScreenRect& clip) const;
 
   Device& device_;
   GpuImage white_;  // of one texel, for what a frame does not have
   Owned<VkSampler, vkDestroySampler> sampler_;
-  Owned<VkDescriptorSetLayout, vkDestroyDescriptorSetLayout> setLayout_;
-  Owned<VkPipelineLayout, vkDestroyPipelineLayout> layout_;
-  Owned<VkPipeline, vkDestroyPipeline> pipeline_;
-  PFN_vkCmdPushDescriptorSetKHR pushDescriptors_ = nullptr;
+  PushLayout layout_;
+  Pipeline pipeline_;
 };
 
 }  // namespace pellucid::harness

@@ -48,27 +48,27 @@ Image combined(const Image& a, const Image& b, const Function& of) {
   return result;
 }
 
+// Names the frame whose output or inputs a picture shows.
+Shown frameOf(Shown shown) { return shown == Shown::Through || shown == Shown::Debug ? shown : Shown::After; }
+
+// Names the image of the host that a picture needs.
+Shown hostImageOf(Shown shown) { return shown == Shown::Difference ? Shown::Truth : shown; }
+
 }  // namespace
 
 ViewFrames::ViewFrames(Device& device, Contexts& contexts, Source& source)
     : device_(device), source_(source), contexts_(contexts) {}
 
-ViewFrames::Kind ViewFrames::kindOf(Shown shown) {
-  return shown == Shown::Through ? Kind::Through : shown == Shown::Debug ? Kind::Debug : Kind::Result;
-}
-
-ViewFrames::Frame ViewFrames::make(const ViewState& state, Kind kind, const Capture& capture,
+ViewFrames::Frame ViewFrames::make(const ViewState& state, Shown shown, const Capture& capture,
                                    const std::vector<PellucidMaterial>& materials,
                                    const std::shared_ptr<const InputImages>& inputs) const {
-  const ReplaySettings settings = settingsFor(state, kind == Kind::Result    ? Shown::After
-                                                     : kind == Kind::Through ? Shown::Through
-                                                                             : Shown::Debug);
-  const auto before = runs_.find(kind);
+  const auto before = runs_.find(shown);
   const bool goesOn = before != runs_.end() && !forget_ && capture.width == capture_.width &&
                       capture.height == capture_.height;
   Frame frame;
-  frame.run = std::make_shared<const FrameRun>(device_, contexts_.of(capture), capture, materials, settings,
-                                               inputs, goesOn ? before->second.get() : nullptr);
+  frame.run = std::make_shared<const FrameRun>(device_, contexts_.of(capture), capture, materials,
+                                               settingsFor(state, shown), inputs,
+                                               goesOn ? before->second.get() : nullptr);
   const PellucidPlan& plan = frame.run->plan();
   const Timestamps timestamps(device_, plan.dispatchCount + 1);
   device_.run([&](VkCommandBuffer commandBuffer) {
@@ -105,11 +105,11 @@ void ViewFrames::update(const ViewState& state, const Changes& changes) {
     for (std::size_t i = 0; i < state.materials.size(); ++i)
       materials.push_back(compileMaterial(state.materials[i], "materials[" + std::to_string(i) + "]"));
   }
-  std::map<Kind, Frame> made;
+  std::map<Shown, Frame> made;
   const auto need = [&](Shown shown) {
-    const Kind kind = kindOf(shown);
-    if ((frames || runs_.count(kind) == 0) && made.count(kind) == 0)
-      made[kind] = make(state, kind, capture, materials, inputs);
+    const Shown of = frameOf(shown);
+    if ((frames || runs_.count(of) == 0) && made.count(of) == 0)
+      made[of] = make(state, of, capture, materials, inputs);
   };
   need(Shown::After);
   need(state.display.shown);
@@ -121,9 +121,9 @@ void ViewFrames::update(const ViewState& state, const Changes& changes) {
     hostImages_.clear();
     materials_ = std::move(materials);
   }
-  for (auto& [kind, frame] : made) {
-    runs_[kind] = std::move(frame.run);
-    if (kind != Kind::Result) continue;
+  for (auto& [of, frame] : made) {
+    runs_[of] = std::move(frame.run);
+    if (of != Shown::After) continue;
     times_ = std::move(frame.times);
     ++recorded_;
     forget_ = false;
@@ -139,13 +139,6 @@ void ViewFrames::update(const ViewState& state, const Changes& changes) {
   uploadHostImage(state.display.shown);
   if (state.display.split) uploadHostImage(state.display.left);
 }
-
-namespace {
-
-// Names the image of the host that a picture needs.
-Shown hostImageOf(Shown shown) { return shown == Shown::Difference ? Shown::Truth : shown; }
-
-}  // namespace
 
 void ViewFrames::uploadHostImage(Shown shown) {
   shown = hostImageOf(shown);
@@ -164,8 +157,8 @@ const GpuImage* ViewFrames::hostImage(Shown shown) const {
 }
 
 const FrameRun& ViewFrames::run(Shown shown) const {
-  const auto found = runs_.find(kindOf(shown));
-  return *(found != runs_.end() ? found : runs_.find(Kind::Result))->second;
+  const auto found = runs_.find(frameOf(shown));
+  return *(found != runs_.end() ? found : runs_.find(Shown::After))->second;
 }
 
 const Image& ViewFrames::image(Shown shown) const {
@@ -204,9 +197,12 @@ Image ViewFrames::made(Shown shown) const {
       return rgb(run(shown).output());
     case Shown::FrontDepth:
       return capture_.frontDepth.image;
-    case Shown::Normal:
+    case Shown::Normal: {
       if (capture_.normal.empty()) return Image(capture_.width, capture_.height, 3);
-      return combined(capture_.normal, capture_.normal, [](float n, float) { return 0.5f * n + 0.5f; });
+      Image result = capture_.normal;
+      for (float& n : result.data) n = 0.5f * n + 0.5f;
+      return result;
+    }
     case Shown::Albedo:
       return capture_.albedo.empty() ? Image(capture_.width, capture_.height, 3, 1.0f) : capture_.albedo;
     case Shown::Material: {

@@ -47,13 +47,11 @@ public:
   void forgetHistory() { forget_ = true; }
 
 private:
-  enum class Kind { Result, Through, Debug };
   struct Frame {
     std::shared_ptr<const FrameRun> run;
     std::vector<DispatchTime> times;
   };
-  static Kind kindOf(Shown shown);
-  Frame make(const ViewState& state, Kind kind, const Capture& capture,
+  Frame make(const ViewState& state, Shown shown, const Capture& capture,
              const std::vector<PellucidMaterial>& materials,
              const std::shared_ptr<const InputImages>& inputs) const;
   Image made(Shown shown) const;
@@ -67,8 +65,8 @@ private:
   std::vector<std::string> warnings_;
   std::shared_ptr<const InputImages> inputs_;
   std::map<Shown, std::unique_ptr<GpuImage>> hostImages_;
-  std::map<Kind, std::shared_ptr<const FrameRun>> runs_;
-  mutable std::map<Shown, Image> images_;  // downloaded when first asked for
+  std::map<Shown, std::shared_ptr<const FrameRun>> runs_;  // of After, Through and Debug
+  mutable std::map<Shown, Image> images_;                  // downloaded when first asked for
   std::vector<DispatchTime> times_;
   double sceneMilliseconds_ = 0;
   std::uint64_t recorded_ = 0;

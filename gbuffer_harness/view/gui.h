@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/device.h"
+#include "common/owned.h"
 #include "raster/render_target.h"
 
 struct GLFWwindow;

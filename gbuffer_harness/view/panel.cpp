@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 
 #include "common/compare.h"
 #include "view/parameters.h"
@@ -137,9 +138,10 @@ Changes drawCamera(ViewState& state, PanelState& panel, const Source& source) {
   }
   ModelCamera& lens = state.camera.lens;
   if (!lens.orthographic) {
-    float degrees = static_cast<float>(lens.verticalFov * 180 / 3.14159265358979);
+    constexpr double kDegrees = 180 / std::numbers::pi;
+    float degrees = static_cast<float>(lens.verticalFov * kDegrees);
     if (ImGui::SliderFloat("field of view", &degrees, 1, 120, "%.1f deg")) {
-      lens.verticalFov = static_cast<double>(degrees) * 3.14159265358979 / 180;
+      lens.verticalFov = static_cast<double>(degrees) / kDegrees;
       changes.scene = true;
     }
   }
@@ -151,8 +153,8 @@ Changes drawCamera(ViewState& state, PanelState& panel, const Source& source) {
   ImGui::Checkbox("size of the window", &panel.followWindow);
   int size[2] = {state.width, state.height};
   if (!panel.followWindow && ImGui::InputInt2("size", size, ImGuiInputTextFlags_EnterReturnsTrue)) {
-    state.width = std::clamp(size[0], 1, 8192);
-    state.height = std::clamp(size[1], 1, 8192);
+    state.width = std::clamp(size[0], 1, kLargestSide);
+    state.height = std::clamp(size[1], 1, kLargestSide);
     changes.scene = true;
   }
   // The model turns before the camera, and the lights at their own speed (Whelan 2009, 5.1).
@@ -184,7 +186,7 @@ Changes drawPanel(ViewState& state, PanelState& panel, const ViewFrames& frames,
   }
   changes.add(drawDisplay(state, panel, frames));
   changes.frame |= drawParameters(state.settings);
-  changes.add(drawMaterials(state, frames));
+  changes.add(drawMaterials(state));
   if (ImGui::CollapsingHeader("T(d) and profile", ImGuiTreeNodeFlags_DefaultOpen)) drawCurves(state, frames);
   changes.add(drawLights(state, source));
   changes.add(drawCamera(state, panel, source));

@@ -48,7 +48,7 @@ bool drawColorQuestion(std::array<float, 3>& color, std::size_t number, std::siz
                        float height);
 
 // Parts of the panel.
-Changes drawMaterials(ViewState& state, const ViewFrames& frames);
+Changes drawMaterials(ViewState& state);
 Changes drawLights(ViewState& state, const Source& source);
 void drawCurves(const ViewState& state, const ViewFrames& frames);
 Changes drawCost(ViewState& state, PanelState& panel, const ViewFrames& frames);

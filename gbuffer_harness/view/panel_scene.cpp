@@ -111,7 +111,7 @@ bool drawLight(Light& light, const Source& source) {
 
 }  // namespace
 
-Changes drawMaterials(ViewState& state, const ViewFrames&) {
+Changes drawMaterials(ViewState& state) {
   Changes changes;
   if (!ImGui::CollapsingHeader("Material", ImGuiTreeNodeFlags_DefaultOpen) || state.materials.empty())
     return changes;

@@ -74,36 +74,30 @@ Parameter feature(const char* label, const char* help, std::uint32_t bit) {
   return parameter;
 }
 
-// 0 stands for the quality's own number, as no gather at all is thickness "one a pixel".
-const std::vector<std::uint32_t> kSamples = {PELLUCID_GATHER_BY_QUALITY, 0, 4, 8, 12, 16, 24, 32, 48, 64};
-
-Parameter gatherSamples() {
-  Parameter parameter =
-      choice("gather", "samples", "Entry points of the shadow map that each probe gathers light from.",
-             {"by quality", "one thickness", "4", "8", "12", "16", "24", "32", "48", "64"});
-  parameter.get = [](const ReplaySettings& s) {
-    const auto found = std::find(kSamples.begin(), kSamples.end(), s.translucency.gatherSamples);
-    return values(found == kSamples.end() ? 0 : found - kSamples.begin());
+// A choice between numbers; the first stands for any number that is not offered.
+template <class Access>
+Parameter numbered(Parameter parameter, const Access& field, std::vector<std::uint32_t> numbers) {
+  parameter.get = [field, numbers](const ReplaySettings& s) {
+    const auto found = std::find(numbers.begin(), numbers.end(), field(s));
+    return values(found == numbers.end() ? 0 : found - numbers.begin());
   };
-  parameter.set = [](ReplaySettings& s, const Values& to) {
-    s.translucency.gatherSamples = kSamples[static_cast<std::size_t>(to[0])];
+  parameter.set = [field, numbers](ReplaySettings& s, const Values& to) {
+    field(s) = numbers[static_cast<std::size_t>(to[0])];
   };
   return parameter;
 }
 
-const std::vector<std::uint32_t> kSpacings = {0, 1, 2, 4};
+Parameter gatherSamples() {
+  return numbered(
+      choice("gather", "samples", "Entry points of the shadow map that each probe gathers light from.",
+             {"by quality", "one thickness", "4", "8", "12", "16", "24", "32", "48", "64"}),
+      FIELD(translucency.gatherSamples), {PELLUCID_GATHER_BY_QUALITY, 0, 4, 8, 12, 16, 24, 32, 48, 64});
+}
 
 Parameter gatherSpacing() {
-  Parameter parameter = choice("gather-spacing", "probe spacing", "Pixels a side that one probe stands for.",
-                               {"by size", "1", "2", "4"});
-  parameter.get = [](const ReplaySettings& s) {
-    const auto found = std::find(kSpacings.begin(), kSpacings.end(), s.translucency.gatherSpacing);
-    return values(found == kSpacings.end() ? 0 : found - kSpacings.begin());
-  };
-  parameter.set = [](ReplaySettings& s, const Values& to) {
-    s.translucency.gatherSpacing = kSpacings[static_cast<std::size_t>(to[0])];
-  };
-  return parameter;
+  return numbered(choice("gather-spacing", "probe spacing", "Pixels a side that one probe stands for.",
+                         {"by size", "1", "2", "4"}),
+                  FIELD(translucency.gatherSpacing), {0, 1, 2, 4});
 }
 
 ParameterGroup quality() {

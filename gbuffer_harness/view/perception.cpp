@@ -1,11 +1,11 @@
 #include "view/perception.h"
 
 #include <algorithm>
-#include <charconv>
 #include <fstream>
 #include <sstream>
 
 #include "common/error.h"
+#include "common/number.h"
 
 namespace pellucid::harness {
 
@@ -15,12 +15,10 @@ constexpr const char* kHeader = "participant,scene,red,green,blue,seconds";
 constexpr std::size_t kFields = 6;
 
 double parse(const std::string& where, const char* field, const std::string& text, double most) {
-  double value = 0;
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc() || stop != end || !(value >= 0 && value <= most))
+  const std::optional<double> value = numberIn<double>(text);
+  if (!value || !(*value >= 0 && *value <= most))
     throw InputError(where, field, "\"" + text + "\" is not a number from 0 to " + std::to_string(most));
-  return value;
+  return *value;
 }
 
 }  // namespace

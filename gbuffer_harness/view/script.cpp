@@ -1,13 +1,13 @@
 #include "view/script.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <map>
 #include <sstream>
 
 #include "common/error.h"
+#include "common/number.h"
 #include "view/parameters.h"
 
 namespace pellucid::harness {
@@ -26,12 +26,9 @@ const std::vector<std::string> kButtons = {"left", "middle", "right", "shift", "
 }
 
 float parse(const ScriptLine& line, const std::string& text) {
-  float value = 0;
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc() || stop != end || !std::isfinite(value))
-    fail(line, "\"" + text + "\" is not a number");
-  return value;
+  const std::optional<float> value = numberIn<float>(text);
+  if (!value) fail(line, "\"" + text + "\" is not a number");
+  return *value;
 }
 
 Shown shownOf(const ScriptLine& line, std::string name) {

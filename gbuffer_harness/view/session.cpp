@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -19,15 +18,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kKey = "pellucidView";
-constexpr int kVersion = 1, kLargestSide = 8192;
-
-std::size_t nameIn(const std::vector<std::string>& names, const Field& field) {
-  const auto found = std::find(names.begin(), names.end(), field.text());
-  if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
-  std::string known;
-  for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
-  field.fail("is not one of " + known + ", but " + field.shown());
-}
+constexpr int kVersion = 1;
 
 bool flag(const Field& field) {
   if (!field.value().is_boolean()) field.fail("must be true or false, is " + field.shown());
@@ -78,23 +69,16 @@ Display readDisplay(const Field& field) {
   field.allowKeys({"exposure", "toneMap", "shown", "split", "left", "splitAt", "channel", "falseColors"});
   Display display;
   display.exposure = static_cast<float>(field["exposure"].number(0, 1e9));
-  display.toneMap = static_cast<ToneMap>(nameIn(toneMapNames(), field["toneMap"]));
-  display.shown = static_cast<Shown>(nameIn(shownNames(), field["shown"]));
+  display.toneMap = static_cast<ToneMap>(field["toneMap"].choice(toneMapNames()));
+  display.shown = static_cast<Shown>(field["shown"].choice(shownNames()));
   display.split = flag(field["split"]);
-  display.left = static_cast<Shown>(nameIn(shownNames(), field["left"]));
+  display.left = static_cast<Shown>(field["left"].choice(shownNames()));
   display.splitAt = static_cast<float>(field["splitAt"].number(0, 1));
   display.channel = field["channel"].integer(0, 2);
   const auto ends = field["falseColors"].numbers<2>();
   display.falseLow = static_cast<float>(ends[0]);
   display.falseHigh = static_cast<float>(ends[1]);
   return display;
-}
-
-std::string contents(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  const std::string text(std::istreambuf_iterator<char>(file), {});
-  if (!file) throw InputError(path.string(), "", "cannot be read");
-  return text;
 }
 
 }  // namespace
@@ -125,7 +109,7 @@ std::string sessionJson(const Session& session) {
 }
 
 Session readSession(const std::filesystem::path& path, const ViewState& start) {
-  const nlohmann::json json = parseJson(path.string(), contents(path));
+  const nlohmann::json json = readJson(path);
   const Field root(path.string(), json);
   root.allowKeys({kKey, "scene", "settings", "size", "camera", "lights", "materials", "display"});
   root[kKey].integer(kVersion, kVersion);

@@ -1,10 +1,10 @@
 #include "view/source.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "metrics/masked_image.h"
 #include "raster/draw.h"
 #include "reference/camera.h"
 #include "scene/model.h"
@@ -168,8 +168,7 @@ private:
     glm::dvec3 low(std::numeric_limits<double>::infinity()), high = -low;
     for (int y = 0; y < capture_.height; ++y)
       for (int x = 0; x < capture_.width; ++x) {
-        const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(capture_.width) +
-                              static_cast<std::size_t>(x);
+        const std::size_t i = pixelIndex(capture_.frontDepth.image, x, y);
         const std::optional<double> depth =
             camera.planarDepth(capture_.frontDepth.image.data[i], capture_.frontDepth.encoding);
         if (capture_.material[i] == 0 || !depth) continue;

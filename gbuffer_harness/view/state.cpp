@@ -1,7 +1,6 @@
 #include "view/state.h"
 
 #include <cmath>
-#include <numbers>
 
 #include "scene/turn.h"
 #include "scene/vector.h"

@@ -47,8 +47,11 @@ struct Display {
   float falseLow = 0, falseHigh = 0;  // values of the ends of the false colors; equal: those of the picture
 };
 
+constexpr int kLargestSide = 8192;  // pixels, of pictures and of windows
+constexpr int kSmallestWindow = 64;
+
 struct ViewState {
-  int width = 512, height = 512;  // pixels of the picture
+  int width = 512, height = 512;  // pixels of the picture, 1..kLargestSide
   ViewCamera camera;
   std::vector<ViewLight> lights;
   std::vector<MaterialSource> materials;

@@ -7,7 +7,7 @@
 
 #include "common/device.h"
 #include "common/gpu_image.h"
-#include "raster/render_target.h"
+#include "common/owned.h"
 
 struct GLFWwindow;
 

@@ -10,6 +10,8 @@
 #include <iterator>
 #include <string>
 
+#include "temporary_directory.h"
+
 namespace pellucid::test {
 
 struct Outcome {
@@ -32,12 +34,6 @@ inline Outcome run(const std::string& arguments, const std::string& before = "")
 
 class Cli : public testing::Test {
 protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() / ("pellucid_cli_" + std::to_string(getpid()));
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
 
   void expect(int code, const std::string& arguments, const std::string& sentence) const {
@@ -51,7 +47,7 @@ protected:
     return {std::istreambuf_iterator<char>(file), {}};
   }
 
-  std::filesystem::path folder_;
+  harness::TemporaryDirectory folder_;
 };
 
 }  // namespace pellucid::test

@@ -3,6 +3,7 @@
 
 #include "capture/exr.h"
 #include "cli_fixture.h"
+#include "gltf_builder.h"
 #include "gpu_fixture.h"
 
 namespace {
@@ -54,6 +55,23 @@ TEST_F(View, SavesWhatReplaysToTheSameBits) {
              " --validate --no-window --frames 1 --save " + path("c.exr"),
          "wrote");
   EXPECT_EQ(bytes("a.pellucid.exr"), bytes("c.pellucid.exr"));
+}
+
+// The options that take a list must not swallow the model.
+TEST_F(View, ASavedViewOfAModelOpensWithItsLightsAndMaterials) {
+  GltfBuilder b;
+  const int position = b.vectors({0, 0, 0, 2, 0, 0, 0, 2, 0});
+  b.json["meshes"] = {{{"primitives", {{{"attributes", {{"POSITION", position}}}, {"material", 0}}}}}};
+  b.json["materials"] = {{{"name", "wax"}}};
+  b.json["nodes"] = {{{"mesh", 0}}};
+  std::ofstream(path("t.glb"), std::ios::binary) << b.glb();
+  expect(0,
+         "view " + path("t.glb") + " --material wax=skin1 --light point:0,0,10:100 directional:0,0,-1:2" +
+             " --size 32x32 --shadow-size 32 --validate --no-window --frames 1 --save " + path("a.exr"),
+         "wrote");
+  expect(0, "view " + path("a.view.json") + " --validate --no-window --frames 1 --save " + path("b.exr"),
+         "wrote");
+  EXPECT_EQ(bytes("a.exr"), bytes("b.exr"));
 }
 
 TEST_F(View, RefusesInASentence) {

@@ -1,6 +1,5 @@
 // The analysis of perception tests against published analyses and tables.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -8,6 +7,7 @@
 
 #include "common/error.h"
 #include "metrics/anova.h"
+#include "temporary_directory.h"
 #include "view/perception.h"
 
 namespace {
@@ -89,11 +89,6 @@ TEST(Anova, AnswersWithoutNoise) {
 
 class Perception : public testing::Test {
 protected:
-  void SetUp() override {
-    file_ =
-        std::filesystem::temp_directory_path() / ("pellucid_perception_" + std::to_string(getpid()) + ".csv");
-  }
-  void TearDown() override { std::filesystem::remove(file_); }
   std::string refusal() const {
     try {
       readAnswers(file_);
@@ -102,7 +97,8 @@ protected:
     }
     return "";
   }
-  std::filesystem::path file_;
+  TemporaryDirectory folder_;
+  const std::filesystem::path file_ = folder_ / "answers.csv";
 };
 
 TEST_F(Perception, AnswersComeBack) {

@@ -11,40 +11,15 @@
 #include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <random>
 #include <string>
 
 #include "capture/capture.h"
 #include "capture/exr.h"
 #include "capture/read.h"
 #include "common/error.h"
+#include "temporary_directory.h"
 
 namespace pellucid::harness {
-
-// A directory of its own that goes away with the test.
-class TemporaryDirectory {
-public:
-  TemporaryDirectory() {
-    static int count = 0;
-    const auto base = std::filesystem::temp_directory_path();
-    do {
-      path_ =
-          base / ("pellucid_test_" + std::to_string(std::random_device{}()) + "_" + std::to_string(count++));
-    } while (!std::filesystem::create_directory(path_));
-  }
-  ~TemporaryDirectory() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryDirectory(const TemporaryDirectory&) = delete;
-  TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
-
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-  operator const std::filesystem::path&() const { return path_; }
-
-private:
-  std::filesystem::path path_;
-};
 
 inline constexpr int kSampleWidth = 7, kSampleHeight = 5;  // not equal, not even: transposed reads show
 inline constexpr int kSampleShadowSize = 3;

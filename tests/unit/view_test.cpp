@@ -9,6 +9,7 @@
 
 #include "common/error.h"
 #include "scene/turn.h"
+#include "temporary_directory.h"
 #include "view/cost.h"
 #include "view/curves.h"
 #include "view/input.h"
@@ -300,11 +301,6 @@ TEST(ViewParameters, ReachTheirFields) {
 
 class ViewFiles : public testing::Test {
 protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() / ("pellucid_view_" + std::to_string(getpid()));
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
   std::filesystem::path write(const std::string& name, const std::string& text) const {
     std::ofstream(folder_ / name) << text;
     return folder_ / name;
@@ -318,7 +314,7 @@ protected:
     }
     return "";
   }
-  std::filesystem::path folder_;
+  TemporaryDirectory folder_;
 };
 
 Session sampleSession() {

@@ -1,0 +1,60 @@
+// Layouts and pipelines of passes whose descriptors are pushed.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/device.h"
+#include "common/owned.h"
+#include "raster/render_target.h"
+
+namespace pellucid::harness {
+
+struct Spirv {
+  const std::uint32_t* words;
+  std::size_t bytes;
+};
+
+using ShaderModule = Owned<VkShaderModule, vkDestroyShaderModule>;
+using Pipeline = Owned<VkPipeline, vkDestroyPipeline>;
+
+// Creates `shader`, which must live until the pipeline is created.
+VkPipelineShaderStageCreateInfo loadStage(const Device& device, VkShaderStageFlagBits stage,
+                                          const Spirv& code, ShaderModule& shader);
+
+// One set of descriptors, and push constants.
+class PushLayout {
+public:
+  // constants: absent where `size` is 0.
+  PushLayout(const Device& device, const std::vector<VkDescriptorSetLayoutBinding>& bindings,
+             const VkPushConstantRange& constants = {});
+
+  operator VkPipelineLayout() const { return layout_; }
+  void push(VkCommandBuffer commandBuffer, VkPipelineBindPoint point,
+            std::span<const VkWriteDescriptorSet> writes) const;
+
+private:
+  Owned<VkDescriptorSetLayout, vkDestroyDescriptorSetLayout> setLayout_;
+  Owned<VkPipelineLayout, vkDestroyPipelineLayout> layout_;
+  PFN_vkCmdPushDescriptorSetKHR pushDescriptors_;
+};
+
+// Triangles without vertex buffers, of both faces, without a depth test; colors replace what is there.
+struct DrawState {
+  VkPipelineVertexInputStateCreateInfo input{VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
+  VkPipelineRasterizationStateCreateInfo raster{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO, .lineWidth = 1};
+  VkPipelineDepthStencilStateCreateInfo depth{VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO};
+  // The same for each color image.
+  VkPipelineColorBlendAttachmentState blend{.colorWriteMask =
+                                                VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
+                                                VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT};
+};
+
+// For targets like `target`. Viewport and scissor are dynamic.
+void createPipeline(const Device& device, const RenderTarget& target, const PushLayout& layout,
+                    const Spirv& vertex, const Spirv& fragment, const DrawState& state, Pipeline& pipeline);
+
+}  // namespace pellucid::harness
