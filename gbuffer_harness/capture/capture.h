@@ -74,7 +74,21 @@ struct GaussianMaterial {
   std::vector<double> variance;               // mm^2, shared by the channels
   std::vector<std::array<double, 3>> weight;  // RGB per Gaussian
 };
-using MaterialSource = std::variant<PresetMaterial, CoefficientMaterial, BurleyMaterial, GaussianMaterial>;
+// The fields of PellucidOpenPbr; the radius in mm.
+struct OpenPbrMaterial {
+  std::array<double, 3> color = {0.8, 0.8, 0.8};
+  double radius = 1;
+  std::array<double, 3> radiusScale = {1, 0.5, 0.25};
+  double anisotropy = 0, ior = 1.5;
+  bool operator==(const OpenPbrMaterial&) const = default;
+};
+// The fields of PELLUCID_MATERIAL_SKIN, under D65.
+struct SkinMaterial {
+  double melanin = 0.005, melaninType = 0.5, hemoglobin = 0.005, ior = 1.4;
+  bool operator==(const SkinMaterial&) const = default;
+};
+using MaterialSource = std::variant<PresetMaterial, CoefficientMaterial, BurleyMaterial, GaussianMaterial,
+                                    OpenPbrMaterial, SkinMaterial>;
 
 // A result to compare with.
 struct Truth {

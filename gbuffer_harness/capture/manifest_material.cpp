@@ -1,7 +1,9 @@
 #include "capture/manifest_material.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <string>
 
 namespace pellucid::harness {
@@ -88,6 +90,53 @@ MaterialSource readGaussians(const Field& field) {
   return material;
 }
 
+constexpr const char* kColor = "subsurface_color";
+constexpr const char* kRadius = "subsurface_radius";
+constexpr const char* kRadiusScale = "subsurface_radius_scale";
+constexpr const char* kAnisotropy = "subsurface_scatter_anisotropy";
+constexpr const char* kSpecularIor = "specular_ior";
+
+// Ranges beyond those of JSON's types are the compiler's, which names the field, too.
+MaterialSource readOpenPbr(const Field& field) {
+  field.allowKeys({kColor, kRadius, kRadiusScale, kAnisotropy, kSpecularIor, "unit"});
+  OpenPbrMaterial material;
+  double millimeters = 1;
+  if (const auto unit = field.find("unit")) {
+    constexpr double kScales[] = {1, 10, 1000};
+    millimeters = kScales[unit->choice({"mm", "cm", "m"})];
+  }
+  if (const auto color = field.find(kColor)) {
+    material.color = color->numbers<3>();
+    for (const double value : material.color)
+      if (!(value >= 0 && value <= 1)) color->fail("must be within 0 and 1, is " + color->shown());
+  }
+  if (const auto radius = field.find(kRadius)) material.radius = radius->number();
+  if (!(material.radius > 0)) field[kRadius].fail("must be above 0, is " + field[kRadius].shown());
+  material.radius *= millimeters;
+  if (const auto scale = field.find(kRadiusScale)) {
+    material.radiusScale = scale->numbers<3>();
+    for (const double value : material.radiusScale)
+      if (!(value > 0)) scale->fail("must be above 0, is " + scale->shown());
+  }
+  if (const auto g = field.find(kAnisotropy)) material.anisotropy = g->number(-0.999, 0.999);
+  if (const auto ior = field.find(kSpecularIor)) material.ior = ior->number(1, 3);
+  return material;
+}
+
+MaterialSource readSkin(const Field& field) {
+  field.allowKeys({"melanin", "melaninType", "hemoglobin", "ior"});
+  SkinMaterial material;
+  if (const auto melanin = field.find("melanin")) material.melanin = melanin->number(0, 1);
+  if (const auto type = field.find("melaninType")) material.melaninType = type->number(0, 1);
+  if (const auto hemoglobin = field.find("hemoglobin")) material.hemoglobin = hemoglobin->number(0, 1);
+  if (const auto ior = field.find("ior")) material.ior = ior->number(1, 3);
+  return material;
+}
+
+bool hasAny(const Field& field, std::initializer_list<const char*> keys) {
+  return std::any_of(keys.begin(), keys.end(), [&](const char* key) { return field.has(key); });
+}
+
 }  // namespace
 
 MaterialSource readMaterial(const Field& field) {
@@ -98,8 +147,19 @@ MaterialSource readMaterial(const Field& field) {
   if (field.has("profile")) return readBurley(field);
   if (field.has("gaussians")) return readGaussians(field);
   if (field.has("scattering") || field.has("absorption")) return readCoefficients(field);
-  field.fail("must have \"preset\", \"scattering\" and \"absorption\", \"profile\" or \"gaussians\", is " +
-             field.shown());
+  if (hasAny(field, {kColor, kRadius, kRadiusScale, kAnisotropy})) return readOpenPbr(field);
+  if (hasAny(field, {"melanin", "melaninType", "hemoglobin"})) return readSkin(field);
+  field.fail(
+      "must have \"preset\", \"scattering\" and \"absorption\", \"subsurface_color\", \"melanin\", "
+      "\"profile\" "
+      "or \"gaussians\", is " +
+      field.shown());
+}
+
+MaterialSource parseMaterial(const std::string& option, const std::string& text) {
+  if (!text.starts_with('{')) return PresetMaterial{text};
+  const nlohmann::json json = parseJson(option, text);
+  return readMaterial(Field(option, json));
 }
 
 }  // namespace pellucid::harness

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "common/error.h"
 #include "pellucid/pellucid_material.h"
 
 namespace pellucid::harness {
@@ -47,41 +46,28 @@ struct Describe {
         desc.gaussianWeight[channel][i] = material.weight[i][channel];
     }
   }
+  void operator()(const OpenPbrMaterial& material) const {
+    PellucidOpenPbr openPbr;
+    pellucidInitOpenPbr(&openPbr);
+    std::copy(material.color.begin(), material.color.end(), openPbr.subsurfaceColor);
+    openPbr.subsurfaceRadius = material.radius;
+    std::copy(material.radiusScale.begin(), material.radiusScale.end(), openPbr.subsurfaceRadiusScale);
+    openPbr.subsurfaceScatterAnisotropy = material.anisotropy;
+    openPbr.specularIor = material.ior;
+    requireMaterial(where, [&](PellucidMessageFn note, void* user) {
+      return pellucidDescribeOpenPbr(&openPbr, &desc, note, user);
+    });
+  }
+  void operator()(const SkinMaterial& material) const {
+    desc.kind = PELLUCID_MATERIAL_SKIN;
+    desc.melanin = material.melanin;
+    desc.melaninType = material.melaninType;
+    desc.hemoglobin = material.hemoglobin;
+    desc.ior = material.ior;
+  }
 };
 
-}  // namespace
-
-PellucidMaterial compileMaterial(const MaterialSource& source, const std::string& where) {
-  PellucidMaterialDesc desc;
-  pellucidInitMaterialDesc(&desc);
-  std::visit(Describe{desc, where}, source);
-
-  struct Complaint {
-    std::string field, sentence;
-  } complaint;
-  const PellucidMessageFn note = [](void* user, PellucidSeverity severity, const char* field,
-                                    const char* message) {
-    if (severity == PELLUCID_SEVERITY_ERROR) *static_cast<Complaint*>(user) = {field, message};
-  };
-  PellucidMaterial material = {};
-  const PellucidResult result = pellucidCompileMaterial(&desc, &material, nullptr, note, &complaint);
-  if (result != PELLUCID_OK) {
-    if (complaint.sentence.empty()) complaint.sentence = pellucidResultName(result);
-    throw InputError(where, complaint.field, complaint.sentence);
-  }
-  return material;
-}
-
-CoefficientMaterial coefficientsOf(const MaterialSource& source, const std::string& where) {
-  if (const auto* given = std::get_if<CoefficientMaterial>(&source)) return *given;
-  const auto* preset = std::get_if<PresetMaterial>(&source);
-  if (!preset) throw InputError(where, "", "is a profile, which no scattering coefficients define");
-  PellucidMaterialDesc desc;
-  if (pellucidFindPreset(preset->preset.c_str(), &desc) != PELLUCID_OK)
-    throw InputError(where, "preset", "there is no \"" + preset->preset + "\"");
-  if (desc.kind != PELLUCID_MATERIAL_COEFFICIENTS)
-    throw InputError(where, "preset",
-                     "\"" + preset->preset + "\" has layers, which no single set of coefficients defines");
+CoefficientMaterial coefficientsOf(const PellucidMaterialDesc& desc) {
   CoefficientMaterial material{};
   const double millimeters = desc.millimetersPerUnit > 0 ? desc.millimetersPerUnit : 1;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -93,7 +79,51 @@ CoefficientMaterial coefficientsOf(const MaterialSource& source, const std::stri
   return material;
 }
 
-CoefficientMaterial withIor(const MaterialSource& source, double ior, const std::string& where) {
+}  // namespace
+
+PellucidMaterialDesc describeMaterial(const MaterialSource& source, const std::string& where) {
+  PellucidMaterialDesc desc;
+  pellucidInitMaterialDesc(&desc);
+  std::visit(Describe{desc, where}, source);
+  return desc;
+}
+
+PellucidMaterial compileMaterial(const MaterialSource& source, const std::string& where) {
+  const PellucidMaterialDesc desc = describeMaterial(source, where);
+  PellucidMaterial material = {};
+  requireMaterial(where, [&](PellucidMessageFn note, void* user) {
+    return pellucidCompileMaterial(&desc, &material, nullptr, note, user);
+  });
+  return material;
+}
+
+CoefficientMaterial coefficientsOf(const MaterialSource& source, const std::string& where) {
+  if (const auto* given = std::get_if<CoefficientMaterial>(&source)) return *given;
+  if (std::holds_alternative<OpenPbrMaterial>(source)) return coefficientsOf(describeMaterial(source, where));
+  if (std::holds_alternative<SkinMaterial>(source))
+    throw InputError(where, "melanin", "skin has layers, which no single set of coefficients defines");
+  const auto* preset = std::get_if<PresetMaterial>(&source);
+  if (!preset) throw InputError(where, "", "is a profile, which no scattering coefficients define");
+  PellucidMaterialDesc desc;
+  if (pellucidFindPreset(preset->preset.c_str(), &desc) != PELLUCID_OK)
+    throw InputError(where, "preset", "there is no \"" + preset->preset + "\"");
+  if (desc.kind != PELLUCID_MATERIAL_COEFFICIENTS)
+    throw InputError(where, "preset",
+                     "\"" + preset->preset + "\" has layers, which no single set of coefficients defines");
+  return coefficientsOf(desc);
+}
+
+MaterialSource withIor(const MaterialSource& source, double ior, const std::string& where) {
+  if (const auto* openPbr = std::get_if<OpenPbrMaterial>(&source)) {
+    OpenPbrMaterial material = *openPbr;
+    material.ior = ior;
+    return material;
+  }
+  if (const auto* skin = std::get_if<SkinMaterial>(&source)) {
+    SkinMaterial material = *skin;
+    material.ior = ior;
+    return material;
+  }
   CoefficientMaterial material = coefficientsOf(source, where);
   material.ior = ior;
   return material;

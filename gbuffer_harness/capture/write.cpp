@@ -56,6 +56,20 @@ Json materialJson(const MaterialSource& source) {
                           }
                           return json;
                         },
+                        [](const OpenPbrMaterial& m) {
+                          return Json{{"subsurface_color", m.color},
+                                      {"subsurface_radius", m.radius},
+                                      {"subsurface_radius_scale", m.radiusScale},
+                                      {"subsurface_scatter_anisotropy", m.anisotropy},
+                                      {"specular_ior", m.ior},
+                                      {"unit", "mm"}};
+                        },
+                        [](const SkinMaterial& m) {
+                          return Json{{"melanin", m.melanin},
+                                      {"melaninType", m.melaninType},
+                                      {"hemoglobin", m.hemoglobin},
+                                      {"ior", m.ior}};
+                        },
                         [](const GaussianMaterial& m) {
                           return Json{{"gaussians", {{"variance", m.variance}, {"weight", m.weight}}}};
                         },

@@ -108,7 +108,7 @@ Json shadowJson(const ShadowSources& sources, const ShadowMap& map) {
 }
 
 const char* materialKind(const MaterialSource& source) {
-  constexpr const char* kKinds[] = {"preset", "coefficients", "burley", "gaussians"};
+  constexpr const char* kKinds[] = {"preset", "coefficients", "burley", "gaussians", "OpenPBR", "skin"};
   return kKinds[source.index()];
 }
 

@@ -132,7 +132,9 @@ void addInitCommand(CLI::App& app) {
                    "stored value that is translucent, repeatable (default: all but 0)")
       ->take_all()
       ->group(group);
-  command->add_option("--material", words.preset, "preset of the translucent material")
+  command
+      ->add_option("--material", words.material,
+                   "the translucent material: a preset, or a manifest's material in braces")
       ->capture_default_str()
       ->group(group);
   command->add_option("--light", options->lights, std::string("repeatable: ") + kLightWords)

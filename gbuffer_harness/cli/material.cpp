@@ -12,6 +12,8 @@
 #include <numbers>
 #include <optional>
 
+#include "capture/manifest_material.h"
+#include "capture/material.h"
 #include "cli/commands.h"
 #include "common/error.h"
 #include "common/plot.h"
@@ -73,36 +75,43 @@ SpectrumFile readSpectrum(const std::string& path) {
   return spectrum;
 }
 
-// Writes the options into a description, which points into `options` and `spectrum`.
-PellucidMaterialDesc describe(const Options& options, SpectrumFile& spectrum) {
+// Writes the options into a description, which points into `named` and `spectrum`.
+PellucidMaterialDesc describe(const Options& options, MaterialSource& named, SpectrumFile& spectrum) {
   const bool coefficients = !options.scattering.empty() || !options.absorption.empty();
   const bool skin = options.melanin || options.melaninType || options.haemoglobin;
   const int given = !options.name.empty() + coefficients + !options.spectral.empty() + skin;
   if (given != 1)
     throw UsageError(
-        "give one of: a preset's name (see --list), --scattering and --absorption, --spectral, or "
+        "give one of: a preset's name (see --list) or a manifest's material in braces, --scattering and "
+        "--absorption, --spectral, or "
         "--melanin, --melanin-type, --haemoglobin");
   if (coefficients && (options.scattering.empty() || options.absorption.empty()))
     throw UsageError("--scattering and --absorption go together");
   if (options.g && !coefficients && options.spectral.empty())
     throw UsageError("--g needs --scattering or --spectral");
 
+  const bool braces = options.name.starts_with('{');
+  if (braces && options.ior) throw UsageError("--ior: the braces say the index of refraction");
+
   PellucidMaterialDesc desc;
   pellucidInitMaterialDesc(&desc);
+  if (!options.name.empty()) {
+    named = parseMaterial("NAME", options.name);
+    if (std::holds_alternative<GaussianMaterial>(named))
+      throw UsageError("NAME: a sum of Gaussians is taken as it is, without the compiler");
+    desc = describeMaterial(named, "NAME");
+  }
   desc.gaussianCount = options.gaussians;
   desc.illuminant = options.illuminant == "A"   ? PELLUCID_ILLUMINANT_A
                     : options.illuminant == "E" ? PELLUCID_ILLUMINANT_E
                                                 : PELLUCID_ILLUMINANT_D65;
-  desc.g = options.g.value_or(0);
+  if (options.g) desc.g = *options.g;
   if (options.ior) {
     // 0 would stand for the default.
     if (*options.ior == 0) throw InputError("", "ior", "0 is less than 1");
     desc.ior = *options.ior;
   }
-  if (!options.name.empty()) {
-    desc.kind = PELLUCID_MATERIAL_PRESET;
-    desc.preset = options.name.c_str();
-  } else if (coefficients) {
+  if (coefficients) {
     desc.kind = PELLUCID_MATERIAL_COEFFICIENTS;
     std::copy_n(options.scattering.begin(), 3, desc.scattering);
     std::copy_n(options.absorption.begin(), 3, desc.absorption);
@@ -111,25 +120,13 @@ PellucidMaterialDesc describe(const Options& options, SpectrumFile& spectrum) {
     desc.melanin = options.melanin.value_or(desc.melanin);
     desc.melaninType = options.melaninType.value_or(desc.melaninType);
     desc.hemoglobin = options.haemoglobin.value_or(desc.hemoglobin);
-  } else {
+  } else if (!options.spectral.empty()) {
     spectrum = readSpectrum(options.spectral);
     desc.kind = PELLUCID_MATERIAL_SPECTRAL;
     desc.spectrum = {static_cast<std::uint32_t>(spectrum.wavelength.size()), spectrum.wavelength.data(),
                      spectrum.scattering.data(), spectrum.absorption.data()};
   }
   return desc;
-}
-
-// Throws what the compiler complains of.
-template <class Call>
-void require(const std::string& file, Call&& call) {
-  struct Complaint {
-    std::string field, sentence = "out of memory";
-  } complaint;
-  const PellucidMessageFn note = [](void* user, PellucidSeverity, const char* field, const char* message) {
-    *static_cast<Complaint*>(user) = {field, message};
-  };
-  if (call(note, &complaint) != PELLUCID_OK) throw InputError(file, complaint.field, complaint.sentence);
 }
 
 struct Compiled {
@@ -140,7 +137,7 @@ struct Compiled {
 
   std::vector<PellucidSlab> slabs(const std::vector<double>& thickness) const {
     std::vector<PellucidSlab> result(3 * thickness.size());
-    require(file, [&](PellucidMessageFn note, void* user) {
+    requireMaterial(file, [&](PellucidMessageFn note, void* user) {
       return pellucidMaterialSlabs(&desc, static_cast<std::uint32_t>(thickness.size()), thickness.data(),
                                    result.data(), note, user);
     });
@@ -325,9 +322,10 @@ void run(const Options& options) {
   }
   for (const double d : options.thickness)
     if (!std::isfinite(d)) throw InputError("", "thickness", "not a finite number");
+  MaterialSource named;
   SpectrumFile spectrum;
-  Compiled compiled = {describe(options, spectrum), {}, {}, options.spectral};
-  require(compiled.file, [&](PellucidMessageFn note, void* user) {
+  Compiled compiled = {describe(options, named, spectrum), {}, {}, options.spectral};
+  requireMaterial(compiled.file, [&](PellucidMessageFn note, void* user) {
     return pellucidCompileMaterial(&compiled.desc, &compiled.material, &compiled.report, note, user);
   });
   if (options.json)
@@ -343,7 +341,8 @@ void addMaterialCommand(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   CLI::App* command =
       app.add_subcommand("material", "Compile a material: its T(d), profile and what the shaders evaluate");
-  command->add_option("NAME", options->name, "a preset, see --list");
+  command->add_option("NAME", options->name,
+                      "a preset, see --list, or a manifest's material in braces (docs/capture.md)");
   command->add_flag("--list", options->list, "print the presets' names");
   command->add_option("--scattering", options->scattering, "sigma_s of R,G,B in 1/mm; reduced when --g is 0")
       ->delimiter(',')

@@ -179,7 +179,9 @@ void addMeasureDotsCommand(CLI::App& app) {
   command->add_option("--procedural", options->scene.name, "name of a procedural scene instead");
   command->add_option("--scene-set", options->sceneSet, "key=value, repeatable: an option of that scene")
       ->take_all();
-  command->add_option("--material", options->presets, "of a model: NAME=PRESET, repeatable; * all others")
+  command
+      ->add_option("--material", options->presets,
+                   "of a model: NAME=PRESET or NAME={a manifest's material}, repeatable; * all others")
       ->take_all();
   command->add_option("--unit", options->unit, "of a model: mm, cm, m or meters")->capture_default_str();
   command->add_option("-o,--output", options->output, "JSON for --set @FILE; default: standard output");

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "capture/manifest_material.h"
 #include "capture/material.h"
 #include "pellucid/pellucid_material.h"
 
@@ -80,18 +81,12 @@ GltfMaterial readMaterial(const GltfDocument& document, int index, const GltfOpt
       result.lobeMap = std::move(scattering.map);
     }
   }
-  if (preset) {
-    PellucidMaterialDesc desc;
-    if (pellucidFindPreset(preset->c_str(), &desc) != PELLUCID_OK)
-      document.fail("material \"" + name + "\"", "there is no preset \"" + *preset + "\"");
-    result.medium = PresetMaterial{*preset};
-  }
   const std::string where = document.file + ": material \"" + name + "\"";
+  if (preset) result.medium = parseMaterial(where, *preset);
   if (result.medium && options.ior > 0) result.medium = withIor(*result.medium, options.ior, where);
-  if (preset && !hasColor(result)) {
+  if (preset) {
     const PellucidMaterial compiled = compileMaterial(*result.medium, where);
-    result.reflectance.emplace();
-    std::copy_n(compiled.reflectance, 3, result.reflectance->begin());
+    if (!hasColor(result)) std::copy_n(compiled.reflectance, 3, result.reflectance.emplace().begin());
   }
   return result;
 }

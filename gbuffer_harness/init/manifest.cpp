@@ -6,6 +6,8 @@
 #include <glm/glm.hpp>
 
 #include "capture/manifest.h"
+#include "capture/manifest_material.h"
+#include "capture/manifest_parts.h"
 #include "common/error.h"
 #include "scene/vector.h"
 
@@ -295,7 +297,7 @@ GuessedManifest Builder::build() {
   addNormal();
   addMaterial();
   result_.json["lights"] = words_.lights;
-  result_.json["materials"] = {{{"preset", words_.preset}}};
+  result_.json["materials"] = {materialJson(parseMaterial("--material", words_.material))};
   addMissing();
   return std::move(result_);
 }

@@ -18,8 +18,8 @@ struct InitWords {
   std::map<Role, std::string> roles;
   std::optional<bool> deviceDepth;
   std::optional<double> irradianceScale, metersPerUnit;
-  std::vector<int> materialIds;  // stored values that are translucent; empty: all but 0
-  std::string preset = "skin1";
+  std::vector<int> materialIds;                // stored values that are translucent; empty: all but 0
+  std::string material = "skin1";              // of parseMaterial()
   std::vector<nlohmann::ordered_json> lights;  // as in a manifest
 };
 

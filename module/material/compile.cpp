@@ -7,6 +7,7 @@
 
 #include "describe.h"
 #include "fit.h"
+#include "guarded.h"
 #include "pellucid/pellucid_material.h"
 #include "presets.h"
 #include "profile.h"
@@ -200,22 +201,6 @@ void requireDesc(const PellucidMaterialDesc* desc) {
                   std::to_string(desc->structSize) + " is not this library's " +
                       std::to_string(sizeof(PellucidMaterialDesc)),
                   PELLUCID_ERROR_VERSION);
-}
-
-// Runs `body` and turns what it throws into a result code and a message.
-template <class Body>
-PellucidResult guarded(PellucidMessageFn message, void* user, Body&& body) noexcept {
-  try {
-    body();
-    return PELLUCID_OK;
-  } catch (const Refusal& refusal) {
-    if (message != nullptr)
-      message(user, PELLUCID_SEVERITY_ERROR, refusal.field.c_str(), refusal.sentence.c_str());
-    return refusal.result;
-  } catch (...) {
-    if (message != nullptr) message(user, PELLUCID_SEVERITY_ERROR, "", "out of memory");
-    return PELLUCID_ERROR_OUT_OF_MEMORY;
-  }
 }
 
 PellucidSlab publicSlab(const Slab& slab) {

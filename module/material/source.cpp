@@ -74,12 +74,14 @@ std::array<Slab, 3> Source::slabs(double thickness) const {
       rgb[c].transmittance += weights_[s][c] * slab.transmittance;
       rgb[c].transmittanceNormal += weights_[s][c] * slab.transmittanceNormal;
       rgb[c].reflectance += weights_[s][c] * slab.reflectance;
+      rgb[c].reflectanceNormal += weights_[s][c] * slab.reflectanceNormal;
     }
   }
   for (Slab& slab : rgb) {
     slab.transmittance = std::clamp(slab.transmittance, 0.0, 1.0);
     slab.transmittanceNormal = std::clamp(slab.transmittanceNormal, 0.0, 1.0);
     slab.reflectance = std::clamp(slab.reflectance, 0.0, 1.0);
+    slab.reflectanceNormal = std::clamp(slab.reflectanceNormal, 0.0, 1.0);
   }
   return rgb;
 }

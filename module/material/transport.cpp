@@ -11,10 +11,11 @@ namespace {
 Slab measure(const Angles& angles, const Eigen::VectorXd& near, const Eigen::VectorXd& far) {
   const Eigen::ArrayXd escape = 1 - angles.reflectance.array();
   const Eigen::ArrayXd flux = 2 * angles.weight.array() * angles.mu.array() * escape;
-  // By reciprocity the hemispherical transmittance at normal incidence is the radiance that leaves
-  // along the normal under unit radiance from everywhere.
-  const double normal = escape[angles.normal] * far[angles.normal] / (angles.ior * angles.ior);
-  return {(flux * far.array()).sum(), normal, (flux * near.array()).sum()};
+  // By reciprocity the hemispherical transmittance and reflectance at normal incidence are the radiances
+  // that leave along the normal under unit radiance from everywhere.
+  const double normal = escape[angles.normal] / (angles.ior * angles.ior);
+  return {(flux * far.array()).sum(), normal * far[angles.normal], (flux * near.array()).sum(),
+          normal * near[angles.normal]};
 }
 
 }  // namespace

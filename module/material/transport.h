@@ -21,6 +21,7 @@ struct Slab {
   double transmittance;        // hemispherical, Lambertian light from outside
   double transmittanceNormal;  // hemispherical, normal incidence
   double reflectance;          // Lambertian light from outside that entered and came back
+  double reflectanceNormal;    // the same for normal incidence
 };
 
 // Radiance leaving the two faces of a layer, one column per column of the source.

@@ -36,6 +36,9 @@ TEST_F(GltfCommand, AModelWithoutATranslucentMaterialIsRefused) {
   expect(3, capture, "t.glb: materials: none is translucent; --material NAME=PRESET");
   expect(3, capture, "there are wax, default");
   EXPECT_FALSE(std::filesystem::exists(out));
+  expect(0, capture + R"( --material 'wax={"subsurface_color": [0.8, 0.5, 0.3]}')", "wrote");
+  expect(3, capture + R"( --material 'wax={"subsurface_color": [0.8, 0.5, 3]}')",
+         "subsurface_color: must be");
   expect(0, capture + " --material 'wax=skin1'", "wrote");
   expect(0, "info " + out, "skin1");
   GltfBuilder b = triangle();

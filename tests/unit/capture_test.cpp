@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "capture/layers.h"
+#include "capture/manifest_material.h"
 #include "capture/material.h"
 #include "capture/read.h"
 #include "capture/write.h"
@@ -73,7 +74,7 @@ TEST(CaptureRoundTrip, IsBitExactWithFloat) {
     }
   }
 
-  ASSERT_EQ(read.materials.size(), 4u);
+  ASSERT_EQ(read.materials.size(), 6u);
   EXPECT_EQ(std::get<PresetMaterial>(read.materials[0]).preset, "skin1");
   const auto& coefficients = std::get<CoefficientMaterial>(read.materials[1]);
   const auto& expected = std::get<CoefficientMaterial>(written.materials[1]);
@@ -87,6 +88,8 @@ TEST(CaptureRoundTrip, IsBitExactWithFloat) {
   const auto& gaussians = std::get<GaussianMaterial>(read.materials[3]);
   EXPECT_EQ(gaussians.variance, std::get<GaussianMaterial>(written.materials[3]).variance);
   EXPECT_EQ(gaussians.weight, std::get<GaussianMaterial>(written.materials[3]).weight);
+  EXPECT_EQ(std::get<OpenPbrMaterial>(read.materials[4]), std::get<OpenPbrMaterial>(written.materials[4]));
+  EXPECT_EQ(std::get<SkinMaterial>(read.materials[5]), std::get<SkinMaterial>(written.materials[5]));
 }
 
 TEST(CaptureRoundTrip, MinimalCaptureHasNoOptionalParts) {
@@ -541,7 +544,31 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"/materials/0/unit", "\"1/inch\"", {"materials[0].unit", "1/inch", "1/cm"}},
         Mistake{"/materials/0/g", "1", {"materials[0].g", "1"}},
         Mistake{"/materials/0/ior", "0.9", {"materials[0].ior", "0.9"}},
-        Mistake{"/materials/0", "{}", {"materials[0]", "preset"}},
+        Mistake{"/materials/0", "{}", {"materials[0]", "preset", "subsurface_color"}},
+        Mistake{"/materials/0",
+                R"({"subsurface_color": [0.5, 1.5, 0]})",
+                {"materials[0].subsurface_color", "within 0 and 1", "1.5"}},
+        Mistake{"/materials/0",
+                R"({"subsurface_radius": 0})",
+                {"materials[0].subsurface_radius", "above 0", "0"}},
+        Mistake{"/materials/0",
+                R"({"subsurface_radius_scale": [1, 0, 1]})",
+                {"materials[0].subsurface_radius_scale", "above 0"}},
+        Mistake{"/materials/0",
+                R"({"subsurface_scatter_anisotropy": 1})",
+                {"materials[0].subsurface_scatter_anisotropy", "1"}},
+        Mistake{"/materials/0",
+                R"({"subsurface_radius": 1, "specular_ior": 4})",
+                {"materials[0].specular_ior", "4"}},
+        Mistake{"/materials/0",
+                R"({"subsurface_radius": 1, "unit": "inch"})",
+                {"materials[0].unit", "inch", "mm"}},
+        Mistake{"/materials/0",
+                R"({"subsurface_color": [1, 1, 1], "subsurface_weight": 1})",
+                {"materials[0].subsurface_weight", "unknown key"}},
+        Mistake{"/materials/0", R"({"melanin": 2})", {"materials[0].melanin", "2"}},
+        Mistake{
+            "/materials/0", R"({"melanin": 0, "haemoglobin": 0})", {"materials[0].haemoglobin", "unknown"}},
         Mistake{"/materials/0",
                 R"({"profile": "burley", "distance": [1, 0, 1]})",
                 {"materials[0].distance", "positive"}},
@@ -558,12 +585,50 @@ TEST_F(Manifests, UnknownPresetIsNamedWhenCompiled) {
   expectNames(errorOf([&] { compileMaterials(capture); }), {"m.json", "materials[0]", "preset", "plutonium"});
 }
 
+TEST_F(Manifests, OpenPbrMediaHaveDefaultsAndAUnit) {
+  manifest["materials"][0] = {{"subsurface_radius", 0.2}, {"unit", "cm"}};
+  OpenPbrMaterial expected;
+  expected.radius = 2;
+  EXPECT_EQ(std::get<OpenPbrMaterial>(read().materials[0]), expected);
+  manifest["materials"][0] = {{"subsurface_color", {0.5, 0.4, 0.3}}};
+  expected = {{0.5, 0.4, 0.3}};
+  EXPECT_EQ(std::get<OpenPbrMaterial>(read().materials[0]), expected);
+  manifest["materials"][0] = {{"hemoglobin", 0.1}};
+  EXPECT_EQ(std::get<SkinMaterial>(read().materials[0]), (SkinMaterial{0.005, 0.5, 0.1, 1.4}));
+}
+
+TEST(Materials, TheCommandLineTakesAManifestsMaterial) {
+  EXPECT_EQ(std::get<PresetMaterial>(parseMaterial("--material", "skin1")).preset, "skin1");
+  EXPECT_EQ(std::get<SkinMaterial>(parseMaterial("--material", R"({"melanin": 0.1})")).melanin, 0.1);
+  expectNames(errorOf([] { parseMaterial("--material", "{"); }), {"--material"});
+  expectNames(errorOf([] { parseMaterial("--material", R"({"g": 1})"); }), {"--material", "preset"});
+}
+
+// An index given for all media changes the boundary: an OpenPBR medium keeps its color, and gets the albedo
+// that has this color behind it.
+TEST(Materials, OpenPbrMediaKeepTheirColorAtAnotherIndex) {
+  const OpenPbrMaterial material{{0.8, 0.5, 0.3}, 2, {1, 1, 1}, 0, 1.5};
+  const MaterialSource matched = withIor(material, 1, "test");
+  const CoefficientMaterial here = coefficientsOf(material, "test"), there = coefficientsOf(matched, "test");
+  EXPECT_EQ(there.ior, 1);
+  for (std::size_t c = 0; c < 3; ++c) {
+    EXPECT_NEAR(here.scattering[c] + here.absorption[c], 0.5, 1e-12);
+    EXPECT_NEAR(there.scattering[c] + there.absorption[c], 0.5, 1e-12);
+    EXPECT_LT(there.scattering[c], here.scattering[c]);
+  }
+  EXPECT_EQ(std::get<SkinMaterial>(withIor(SkinMaterial{}, 1.3, "test")).ior, 1.3);
+  expectNames(errorOf([] { coefficientsOf(SkinMaterial{}, "test"); }), {"test", "layers"});
+}
+
 TEST(Materials, EveryFormCompiles) {
   const auto materials = compileMaterials(sampleCapture());
-  ASSERT_EQ(materials.size(), 4u);
+  ASSERT_EQ(materials.size(), 6u);
   EXPECT_FLOAT_EQ(materials[2].transmittance[1][1], 3.0f);  // k1 of green, as given
   EXPECT_EQ(materials[3].gaussianCount, 2u);
   EXPECT_FLOAT_EQ(materials[3].gaussianWeight[2][1], 0.25f);
+  EXPECT_GT(materials[4].reflectance[0], materials[4].reflectance[1]) << "the color's order";
+  EXPECT_GT(materials[4].radius[0], materials[4].radius[2]) << "the scale's order";
+  EXPECT_GT(materials[5].reflectance[0], materials[5].reflectance[2]) << "skin is red";
 }
 
 // ---- The path-traced captures, where they are

@@ -364,6 +364,11 @@ TEST_F(Gltf, PresetsOverrideByName) {
   GltfOptions options;
   options.presets = {{"absent", "skin1"}};
   expectRefused(b.glb(), {"absent", "m, leaf=2, default"}, "t.glb", options);
+  options.presets = {{"m", R"({"subsurface_color": [0.8, 0.5, 0.3]})"}};
+  const auto media = loadGltf(file, options).model.materials;
+  EXPECT_EQ(std::get<OpenPbrMaterial>(media.at(0)).color, (std::array<double, 3>{0.8, 0.5, 0.3}));
+  options.presets = {{"m", R"({"subsurface_radius": 1e30})"}};
+  expectRefused(b.glb(), {"material \"m\"", "subsurfaceRadius"}, "t.glb", options);
   options.presets = {{"m", "no such thing"}};
   expectRefused(b.glb(), {"material \"m\"", "no such thing"}, "t.glb", options);
 }

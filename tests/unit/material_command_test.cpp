@@ -92,6 +92,22 @@ TEST(MaterialCommand, TextAndList) {
   EXPECT_NE(run("--list").find("whole_milk\n"), std::string::npos);
 }
 
+// The manifest's objects: OpenPBR's names, and skin as by the options of its own.
+TEST(MaterialCommand, ManifestMaterialInBraces) {
+  const auto json = [](const std::string& arguments) { return Json::parse(run(arguments + " --json")); };
+  const Json medium =
+      json(R"('{"subsurface_color":[0.8,0.8,0.8],"subsurface_radius":2,"specular_ior":1.4}')");
+  EXPECT_EQ(medium["ior"], 1.4);
+  const Json& red = medium["channels"][0];
+  EXPECT_NEAR(red["scattering"].get<double>() + red["absorption"].get<double>(), 0.5, 1e-12);
+  EXPECT_NEAR(medium["channels"][2]["scattering"].get<double>(), 4 * red["scattering"].get<double>(), 1e-12);
+  EXPECT_EQ(json(R"('{"melanin":0.1,"hemoglobin":0.02}')"), json("--melanin 0.1 --haemoglobin 0.02"));
+  EXPECT_EQ(json(R"('{"preset":"skin1"}')"), json("skin1"));
+  EXPECT_NE(refusal(R"('{"subsurface_radius":-1}')").find("subsurface_radius"), std::string::npos);
+  EXPECT_THROW(run(R"('{"melanin":0.1}' --ior 1.3)"), UsageError);
+  EXPECT_THROW(run(R"('{"gaussians":{"variance":[1],"weight":[[1,1,1]]}}')"), UsageError);
+}
+
 TEST(MaterialCommand, SpectrumFromFile) {
   const std::filesystem::path path = scratch("spectrum.csv");
   std::ofstream(path) << "nm, s, a\n# measured\n400, 2, 0.5\n\n700, 2, 0.05\n";

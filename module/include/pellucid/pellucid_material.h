@@ -53,10 +53,10 @@ typedef struct PellucidMaterialDesc {
   uint32_t illuminant;    /* PellucidIlluminant */
   const char* preset;     /* zero-terminated name */
 
-  double scattering[3]; /* sigma_s, >= 0; the reduced sigma_s' when g = 0 */
-  double absorption[3]; /* sigma_a, >= 0; a channel where both are 0 is refused */
-  double g;             /* mean cosine of scattering, (-1, 1) */
-  double ior;           /* relative index of refraction, [1, 3]; 0: the preset's own, else 1.4 */
+  double scattering[3];      /* sigma_s, >= 0; the reduced sigma_s' when g = 0 */
+  double absorption[3];      /* sigma_a, >= 0; a channel where both are 0 is refused */
+  double g;                  /* mean cosine of scattering, (-1, 1) */
+  double ior;                /* relative index of refraction, [1, 3]; 0: the preset's own, else 1.4 */
   double millimetersPerUnit; /* of the unit the coefficients are inverse to; 0: 1 (1/mm); 10: 1/cm */
 
   double burleyDistance[3];   /* mm, > 0; d of Christensen & Burley 2015 eq. 3 */
@@ -77,18 +77,18 @@ typedef struct PellucidMaterialDesc {
 
 /* What one channel was compiled from and how well the result fits. */
 typedef struct PellucidChannelReport {
-  double scattering, absorption; /* sigma_s', sigma_a, 1/mm; 0 for kinds without RGB coefficients */
-  double rho;                    /* diffuse reflectance of the half-space under Lambertian light from
-                                    outside; the light reflected without entering is not counted.
-                                    1 for kinds BURLEY and GAUSSIANS, whose albedo is the engine's.
-                                    PellucidMaterial::reflectance is this, at least 1e-4 */
-  double transmittanceError;     /* largest |T_fit / T - 1| on the thicknesses fitted, of the float
-                                    coefficients. Where wavelengths mix, T in the denominator is at
-                                    least half of the brightest channel's */
+  double scattering, absorption;     /* sigma_s', sigma_a, 1/mm; 0 for kinds without RGB coefficients */
+  double rho;                        /* diffuse reflectance of the half-space under Lambertian light from
+                                        outside; the light reflected without entering is not counted.
+                                        1 for kinds BURLEY and GAUSSIANS, whose albedo is the engine's.
+                                        PellucidMaterial::reflectance is this, at least 1e-4 */
+  double transmittanceError;         /* largest |T_fit / T - 1| on the thicknesses fitted, of the float
+                                        coefficients. Where wavelengths mix, T in the denominator is at
+                                        least half of the brightest channel's */
   double minThickness, maxThickness; /* mm; fitted: 0.01 to 20 as far as T > 1e-4, more for dense and
                                         thin media */
-  double edgeError;              /* largest difference of the blurred half-plane step, Gaussians
-                                    against Burley */
+  double edgeError;                  /* largest difference of the blurred half-plane step, Gaussians
+                                        against Burley */
 } PellucidChannelReport;
 
 typedef struct PellucidMaterialReport {
@@ -123,8 +123,8 @@ PellucidResult pellucidSlabTransport(double scattering, double absorption, doubl
 /* What a material's T(d) was fitted to: slabs[3 * i + channel] for thickness[i], >= 0 mm. Of BURLEY
  * and GAUSSIANS it is the function they define, for both incidences, and reflectance is 0. */
 PellucidResult pellucidMaterialSlabs(const PellucidMaterialDesc* desc, uint32_t count,
-                                     const double* thickness, PellucidSlab* slabs,
-                                     PellucidMessageFn message, void* messageUser);
+                                     const double* thickness, PellucidSlab* slabs, PellucidMessageFn message,
+                                     void* messageUser);
 
 /* T(d) as the shaders evaluate it, d >= 0 mm, channel 0..2; NaN for a bad channel or model. */
 double pellucidEvaluateTransmittance(const PellucidMaterial* material, uint32_t channel, double thickness);
@@ -140,6 +140,32 @@ const char* pellucidPresetName(uint32_t index);
  * as kind PRESET. Case and the difference between ' ', '-', '_' do not matter. Other fields get their
  * defaults. INVALID_ARGUMENT when there is no such preset. */
 PellucidResult pellucidFindPreset(const char* name, PellucidMaterialDesc* desc);
+
+/* ---- OpenPBR --------------------------------------------------------------------------------- */
+
+/* The subsurface medium of OpenPBR Surface 1.1 and MaterialX's open_pbr_surface, with the names, meanings
+ * and defaults of that specification. Colors are linear. */
+typedef struct PellucidOpenPbr {
+  uint32_t structSize;                /* sizeof(PellucidOpenPbr), written by pellucidInitOpenPbr */
+  double subsurfaceColor[3];          /* [0, 1]; default .8: share of the light that enters along the normal
+                                         and comes back out, by all scattering */
+  double subsurfaceRadius;            /* > 0; default 1; times the scale: mean free path */
+  double subsurfaceRadiusScale[3];    /* > 0; default 1, .5, .25 */
+  double subsurfaceScatterAnisotropy; /* g, (-1, 1); default 0 */
+  double specularIor;                 /* [1, 3]; default 1.5 */
+  double millimetersPerUnit;          /* of subsurfaceRadius; > 0; default 1 */
+} PellucidOpenPbr;
+
+void pellucidInitOpenPbr(PellucidOpenPbr* material);
+
+/* Describes an OpenPBR medium as kind COEFFICIENTS, in 1/mm: extinction 1 / (radius scale), and the
+ * single-scattering albedo that gives subsurfaceColor behind the smooth boundary of specularIor. The albedo
+ * solves the specification's own definition with the transport of this header, to 1e-4 of the color for
+ * g = 0, and by similarity for others. Other fields of *desc get their defaults. On failure *desc stays as
+ * it is and `message` (optional) names the field and its value. About 20 ms.
+ * Errors: INVALID_ARGUMENT, VERSION, OUT_OF_MEMORY. */
+PellucidResult pellucidDescribeOpenPbr(const PellucidOpenPbr* material, PellucidMaterialDesc* desc,
+                                       PellucidMessageFn message, void* messageUser);
 
 #ifdef __cplusplus
 }
