@@ -47,6 +47,9 @@ void drawOverlay(const ViewState& state, const PanelState& panel, const ViewFram
 bool drawColorQuestion(std::array<float, 3>& color, std::size_t number, std::size_t count, float width,
                        float height);
 
+// One to four numbers under one label, kept within [low, high]. True: changed.
+bool dragReals(const char* label, double* values, int count, double low, double high);
+
 // Parts of the panel.
 Changes drawMaterials(ViewState& state);
 Changes drawLights(ViewState& state, const Source& source);

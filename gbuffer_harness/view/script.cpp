@@ -6,6 +6,7 @@
 #include <map>
 #include <sstream>
 
+#include "capture/manifest_material.h"
 #include "common/error.h"
 #include "common/number.h"
 #include "view/parameters.h"
@@ -15,8 +16,9 @@ namespace pellucid::harness {
 namespace {
 
 const std::map<std::string, std::size_t> kArguments = {
-    {"move", 2},  {"press", 1},    {"release", 1}, {"wheel", 1},      {"resize", 2}, {"set", 1}, {"show", 1},
-    {"split", 2}, {"exposure", 1}, {"save", 1},    {"screenshot", 1}, {"open", 1},   {"turn", 2}};
+    {"move", 2},   {"material", 1},   {"press", 1}, {"release", 1}, {"wheel", 1},
+    {"resize", 2}, {"set", 1},        {"show", 1},  {"split", 2},   {"exposure", 1},
+    {"save", 1},   {"screenshot", 1}, {"open", 1},  {"turn", 2}};
 
 const std::vector<std::string> kButtons = {"left", "middle", "right", "shift", "w",    "a",
                                            "s",    "d",      "e",     "q",     "space"};
@@ -109,6 +111,11 @@ bool applyToState(const ScriptLine& line, ViewState& state, Changes& changes) {
   if (line.command == "set") {
     setParameter(line, state.settings);
     changes.frame = true;
+  } else if (line.command == "material") {
+    if (state.materials.empty()) fail(line, "the scene has no material");
+    state.materials[static_cast<std::size_t>(state.selectedMaterial)] =
+        parseMaterial(line.where + ": material", line.arguments[0]);
+    changes.materials = true;
   } else if (line.command == "show") {
     state.display.split = false;
     state.display.shown = shownOf(line, line.arguments[0]);

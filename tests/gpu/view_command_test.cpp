@@ -57,6 +57,25 @@ TEST_F(View, SavesWhatReplaysToTheSameBits) {
   EXPECT_EQ(bytes("a.pellucid.exr"), bytes("c.pellucid.exr"));
 }
 
+// OpenPBR media and skin by physiology reach the picture, replay to the same bits and are in the saved view.
+TEST_F(View, MaterialsOfEveryDescriptionAreSavedAndOpened) {
+  const std::pair<const char*, const char*> materials[] = {
+      {"p", R"({"subsurface_color":[0.2,0.8,0.3],"subsurface_radius":3})"},
+      {"s", R"({"melanin":0.2,"hemoglobin":0.1})"}};
+  for (const auto& [name, text] : materials) {
+    const std::string input = script(std::string("2 material ") + text + "\n");
+    expect(0, kScene + "--no-window --frames 4 " + input + "--save " + path(name + std::string(".exr")),
+           "2 of");
+    expectReplays(name);
+    const std::string saved = path(name + std::string(".view.json"));
+    expect(0, "view " + saved + " --no-window --frames 2 --save " + path("again.exr"), "1 of the module");
+    EXPECT_EQ(bytes("again.exr"), bytes(name + std::string(".exr")));
+    EXPECT_EQ(bytes("again.png"), bytes(name + std::string(".png"))) << "the panel, too";
+  }
+  EXPECT_NE(bytes("p.pellucid.exr"), bytes("s.pellucid.exr"));
+  expect(3, kScene + "--no-window --frames 2 " + script("1 material {\"melanin\":2}\n"), "material: melanin");
+}
+
 // The options that take a list must not swallow the model.
 TEST_F(View, ASavedViewOfAModelOpensWithItsLightsAndMaterials) {
   GltfBuilder b;
@@ -117,8 +136,8 @@ TEST_F(View, PerceptionTestAsksAboutEachSceneAndIsAnalyzed) {
   expect(3, "perception " + path("answers.csv"), "\"three\" has not answered scene \"directional\"");
 }
 
-// A session with a window: opened, orbited, resized, looked through, turned, closed. The drag and two frames of the
-// turntable record the module again.
+// A session with a window: opened, orbited, resized, looked through, turned, closed. The drag and two frames
+// of the turntable record the module again.
 TEST_F(View, WindowOfAVirtualDisplay) {
   if (std::system("command -v xvfb-run >/dev/null") != 0) GTEST_SKIP() << "xvfb-run is not installed";
   const std::string input = script(

@@ -13,6 +13,7 @@
 #include "view/cost.h"
 #include "view/curves.h"
 #include "view/input.h"
+#include "view/material_kind.h"
 #include "view/parameters.h"
 #include "view/script.h"
 #include "view/session.h"
@@ -329,7 +330,9 @@ Session sampleSession() {
   state.lights = {newLight(PELLUCID_LIGHT_SPOT, state.camera, {0, 0, 0}, 1),
                   newLight(PELLUCID_LIGHT_DIRECTIONAL, state.camera, {0, 0, 0}, 1)};
   state.lights[1].on = false;
-  state.materials = {PresetMaterial{"skin1"}, CoefficientMaterial{{1, 2, 3}, {0.1, 0.2, 0.3}, 0.5, 1.3}};
+  state.materials = {PresetMaterial{"skin1"}, CoefficientMaterial{{1, 2, 3}, {0.1, 0.2, 0.3}, 0.5, 1.3},
+                     OpenPbrMaterial{{0.8, 0.5, 0.3}, 2.5, {0.5, 0.25, 0.125}, 0.6, 1.3},
+                     SkinMaterial{0.1, 0.7, 0.02, 1.45}};
   state.display = {2.5f, ToneMap::Filmic, Shown::Debug, true, Shown::FrontDepth, 0.3f, 2, -1, 4};
   return session;
 }
@@ -343,6 +346,10 @@ TEST_F(ViewFiles, SessionsComeBackToTheBit) {
   EXPECT_EQ(sessionJson(read), text);
   EXPECT_EQ(read.state.camera.lens.viewFromWorld, session.state.camera.lens.viewFromWorld);
   EXPECT_FALSE(read.state.lights[1].on);
+  EXPECT_EQ(std::get<OpenPbrMaterial>(read.state.materials[2]),
+            std::get<OpenPbrMaterial>(session.state.materials[2]));
+  EXPECT_EQ(std::get<SkinMaterial>(read.state.materials[3]),
+            std::get<SkinMaterial>(session.state.materials[3]));
   EXPECT_EQ(read.state.display.left, Shown::FrontDepth);
 }
 
@@ -403,6 +410,27 @@ TEST_F(ViewFiles, ScriptsAreRefusedByLine) {
     const std::string sentence = refused(std::string("# first\n") + text);
     EXPECT_NE(sentence.find("bad.txt:"), std::string::npos) << text << " gives: " << sentence;
   }
+}
+
+// A medium described by coefficients, by OpenPBR and by coefficients again is nearly itself: OpenPBR's color
+// is that of light along the normal, and the panel takes the diffuse one.
+TEST(ViewMaterials, DescriptionsOfOneMedium) {
+  const CoefficientMaterial medium{{2, 1, 0.5}, {0.02, 0.05, 0.1}, 0, 1.4};
+  const MaterialSource openPbr = asKind(medium, MaterialKind::OpenPbr);
+  ASSERT_EQ(kindOf(openPbr), MaterialKind::OpenPbr);
+  const auto again = std::get<CoefficientMaterial>(asKind(openPbr, MaterialKind::Coefficients));
+  for (std::size_t c = 0; c < 3; ++c) {
+    EXPECT_NEAR(again.scattering[c] + again.absorption[c], medium.scattering[c] + medium.absorption[c], 1e-9);
+    EXPECT_NEAR(again.scattering[c] / medium.scattering[c], 1, 0.1);
+  }
+  const auto marble =
+      std::get<CoefficientMaterial>(asKind(PresetMaterial{"marble"}, MaterialKind::Coefficients));
+  EXPECT_EQ(marble.scattering[0], 2.19);
+  EXPECT_EQ(std::get<SkinMaterial>(asKind(medium, MaterialKind::Skin)), SkinMaterial{});
+  EXPECT_EQ(std::get<PresetMaterial>(asKind(SkinMaterial{}, MaterialKind::Preset)).preset, "skin1");
+  EXPECT_THROW(asKind(SkinMaterial{}, MaterialKind::OpenPbr), InputError);
+  EXPECT_THROW(asKind(BurleyMaterial{{1, 1, 1}, {}}, MaterialKind::Coefficients), InputError);
+  for (const MaterialKind kind : kOfferedKinds) EXPECT_EQ(kindOf(asKind(medium, kind)), kind);
 }
 
 TEST(ViewCost, SmoothsAndForgets) {

@@ -1,63 +1,15 @@
-// Materials and lights.
+// Lights.
 #include <imgui.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "capture/material.h"
-#include "common/error.h"
-#include "pellucid/pellucid_material.h"
 #include "view/panel.h"
 
 namespace pellucid::harness {
 
 namespace {
-
-bool dragReals(const char* label, double* values, int count, double low, double high) {
-  const double speed = 0.005 * std::max(std::abs(*std::max_element(values, values + count)), 1e-3);
-  const bool changed = ImGui::DragScalarN(label, ImGuiDataType_Double, values, count,
-                                          static_cast<float>(speed), &low, &high, "%.4g");
-  for (int i = 0; i < count; ++i) values[i] = std::clamp(values[i], low, high);
-  return changed;
-}
-
-bool drawPreset(MaterialSource& source) {
-  const auto* preset = std::get_if<PresetMaterial>(&source);
-  bool changed = false;
-  if (!ImGui::BeginCombo("preset", preset ? preset->preset.c_str() : "none")) return false;
-  for (std::uint32_t i = 0; i < pellucidPresetCount(); ++i) {
-    const std::string name = pellucidPresetName(i);
-    if (!ImGui::Selectable(name.c_str(), preset && preset->preset == name)) continue;
-    source = PresetMaterial{name};
-    changed = true;
-    break;  // `preset` is gone
-  }
-  ImGui::EndCombo();
-  return changed;
-}
-
-// The first change of a preset replaces it by coefficients; layered skin has none.
-bool drawCoefficients(MaterialSource& source) {
-  CoefficientMaterial material{};
-  try {
-    material = coefficientsOf(source, "this material");
-  } catch (const InputError& error) {
-    ImGui::TextWrapped("%s", error.what());
-    return false;
-  }
-  constexpr double kLeast = 1e-6, kMost = 1e4;  // of the compiler's ranges what sliders reach
-  bool changed = dragReals("scattering, 1/mm", material.scattering.data(), 3, kLeast, kMost);
-  changed |= dragReals("absorption, 1/mm", material.absorption.data(), 3, 0, kMost);
-  changed |= dragReals("g", &material.g, 1, -0.99, 0.99);
-  changed |= dragReals("index of refraction", &material.ior, 1, 1, 3);
-  if (changed) source = material;
-  return changed;
-}
-
-bool drawBurley(BurleyMaterial& material) {
-  return dragReals("Burley's d, mm", material.distance.data(), 3, 1e-4, 1e3);
-}
 
 const char* typeName(PellucidLightType type) {
   return type == PELLUCID_LIGHT_DIRECTIONAL ? "directional" : type == PELLUCID_LIGHT_POINT ? "point" : "spot";
@@ -110,24 +62,6 @@ bool drawLight(Light& light, const Source& source) {
 }
 
 }  // namespace
-
-Changes drawMaterials(ViewState& state) {
-  Changes changes;
-  if (!ImGui::CollapsingHeader("Material", ImGuiTreeNodeFlags_DefaultOpen) || state.materials.empty())
-    return changes;
-  ImGui::PushID("material");
-  const int last = static_cast<int>(state.materials.size()) - 1;
-  if (last > 0) ImGui::SliderInt("index", &state.selectedMaterial, 0, last);
-  state.selectedMaterial = std::clamp(state.selectedMaterial, 0, last);
-  MaterialSource& source = state.materials[static_cast<std::size_t>(state.selectedMaterial)];
-  changes.materials |= drawPreset(source);
-  if (auto* burley = std::get_if<BurleyMaterial>(&source))
-    changes.materials |= drawBurley(*burley);
-  else
-    changes.materials |= drawCoefficients(source);
-  ImGui::PopID();
-  return changes;
-}
 
 Changes drawLights(ViewState& state, const Source& source) {
   Changes changes;
