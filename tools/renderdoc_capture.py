@@ -3,7 +3,7 @@
 Name your engine's textures below, then run this in RenderDoc's own Python: in its Python shell with a capture open (or
 `qrenderdoc --ui-python renderdoc_capture.py frame.rdc`: `--python` runs before the capture is loaded), or where its
 `renderdoc` module can be imported: python3 renderdoc_capture.py frame.rdc.  `pellucid info FOLDER/manifest.json` then
-names what is still to be filled in: matrices (null) and whatever has no texture. `pellucid init FOLDER/*.exr` asks for the
+names what is still to be filled in: matrices that MATRICES does not name (null) and whatever has no texture. `pellucid init FOLDER/*.exr` asks for the
 camera's numbers instead of its matrices.  docs/scenes.md has the recipe.
 """
 import json
@@ -21,6 +21,15 @@ TEXTURES = {
     "material": "GBufferMaterialId",
     "shadowMap0": "SunShadowMap",
 }
+# Matrix of the manifest -> constant buffer, as the shader names it, and variable in it ("camera.projection" of a
+# struct). They are read at the last draw or dispatch up to EVENT whose shaders have that buffer. Leave out what there is
+# not. "clipFromView", "viewFromWorld", and of a shadow map "shadowMap0.clipFromWorld" and "shadowMap0.viewFromWorld".
+MATRICES = {
+    # "clipFromView": ("Camera", "projection"),
+    # "viewFromWorld": ("Camera", "view"),
+    # "shadowMap0.clipFromWorld": ("Sun", "viewProjection"),
+}
+ROW_VECTORS = False  # True: shaders multiply mul(vector, matrix), so that the matrices are transposed
 EVENT = None  # event whose result is saved; None: the end of the frame
 FOLDER = "pellucid_capture"
 
@@ -96,6 +105,87 @@ def save_textures(rd, controller, textures, folder):
     return files
 
 
+def constant_blocks(rd, controller):
+    """(stage, reflection, index, block) of each constant buffer of the shaders at the current event."""
+    state = controller.GetPipelineState()
+    for stage in (rd.ShaderStage.Vertex, rd.ShaderStage.Pixel, rd.ShaderStage.Compute):
+        reflection = state.GetShaderReflection(stage)
+        if reflection is not None:
+            for index, block in enumerate(reflection.constantBlocks):
+                yield stage, reflection, index, block
+
+
+def variables_of(rd, controller, stage, reflection, index):
+    """The contents of one constant buffer."""
+    state = controller.GetPipelineState()
+    if hasattr(state, "GetConstantBuffer"):
+        bound = state.GetConstantBuffer(stage, index, 0)
+        place = (bound.resourceId, bound.byteOffset, bound.byteSize)
+    else:  # RenderDoc 1.32
+        bound = state.GetConstantBlock(stage, index, 0).descriptor
+        place = (bound.resource, bound.byteOffset, bound.byteSize)
+    pipeline = state.GetComputePipelineObject() if stage == rd.ShaderStage.Compute else state.GetGraphicsPipelineObject()
+    return controller.GetCBufferVariableContents(pipeline, reflection.resourceId, stage,
+                                                 state.GetShaderEntryPoint(stage), index, *place)
+
+
+def find_variable(variables, path, block):
+    """The matrix at "a.b" of a constant buffer, column-major. The error lists what there is."""
+    found, level = None, list(variables)
+    for part in path.split("."):
+        found = next((variable for variable in level if variable.name == part), None)
+        if found is None:
+            there = ", ".join(f"{variable.name} ({variable.rows} x {variable.columns})" for variable in level)
+            raise ValueError(f"{block}: no variable has the name {path}; there are {there}")
+        level = list(found.members)
+    if (found.rows, found.columns) != (4, 4):
+        raise ValueError(f"{block}: {path} is {found.rows} x {found.columns}, not a matrix of 4 x 4")
+    rows = [list(found.value.f32v[4 * row:4 * row + 4]) for row in range(4)]  # whatever the buffer's own order
+    return sum(rows if ROW_VECTORS else [list(column) for column in zip(*rows)], [])
+
+
+def draws(actions, flags):
+    """Events of draws and dispatches, in their order."""
+    for action in actions:
+        yield from draws(action.children, flags)
+        if action.flags & flags:
+            yield action.eventId
+
+
+def read_matrices(rd, controller, matrices, last):
+    """Reads MATRICES at or before the event `last`; name -> 16 numbers, column-major."""
+    wanted, found, seen = dict(matrices), {}, set()
+    events = draws(controller.GetRootActions(), rd.ActionFlags.Drawcall | rd.ActionFlags.Dispatch)
+    for event in sorted((event for event in events if event <= last), reverse=True):
+        if not wanted:
+            break
+        controller.SetFrameEvent(event, False)
+        for stage, reflection, index, block in constant_blocks(rd, controller):
+            seen.add(block.name)
+            names = [name for name, (buffer, _) in wanted.items() if buffer == block.name]
+            variables = variables_of(rd, controller, stage, reflection, index) if names else []
+            for name in names:
+                found[name] = find_variable(variables, wanted.pop(name)[1], block.name)
+    if wanted:
+        buffers = ", ".join(sorted({buffer for buffer, _ in wanted.values()}))
+        raise ValueError(f"no shader has a constant buffer of the name {buffers}; there are {', '.join(sorted(seen))}")
+    return found
+
+
+def put_matrices(manifest, files, matrices):
+    """Writes what read_matrices() found in place of null."""
+    shadow_maps = sorted((name for name in files if name.startswith(SHADOW)), key=lambda name: (len(name), name))
+    for name, matrix in matrices.items():
+        light, _, key = name.rpartition(".")
+        if name in manifest["camera"]:
+            manifest["camera"][name] = matrix
+        elif light in shadow_maps and key in ("clipFromWorld", "viewFromWorld"):
+            manifest["lights"][shadow_maps.index(light)]["shadowMap"][key] = matrix
+        else:
+            raise ValueError(f"{name}: not clipFromView, viewFromWorld, or clipFromWorld or viewFromWorld of one of "
+                             f"{', '.join(shadow_maps) or 'no shadow map'}")
+
+
 def last_event(actions):
     last = actions[-1]
     return last_event(last.children) if last.children else last.eventId
@@ -103,8 +193,11 @@ def last_event(actions):
 
 def capture(rd, controller):
     os.makedirs(FOLDER, exist_ok=True)
-    controller.SetFrameEvent(last_event(controller.GetRootActions()) if EVENT is None else EVENT, True)
-    manifest = manifest_skeleton(save_textures(rd, controller, TEXTURES, FOLDER))
+    event = last_event(controller.GetRootActions()) if EVENT is None else EVENT
+    controller.SetFrameEvent(event, True)
+    files = save_textures(rd, controller, TEXTURES, FOLDER)
+    manifest = manifest_skeleton(files)
+    put_matrices(manifest, files, read_matrices(rd, controller, MATRICES, event))
     with open(os.path.join(FOLDER, "manifest.json"), "w", encoding="utf-8") as file:
         json.dump(manifest, file, indent=1)
 

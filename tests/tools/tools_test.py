@@ -85,6 +85,80 @@ class RenderDoc(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "(?s)Nothing, Buffer; there are.*5: Z, 4 x 9, D32.*6: E, 16 x 9, D32"):
             self.script.save_textures(rd, controller, {"normal": "Nothing", "albedo": "Buffer"}, self.folder.name)
 
+    # Two draws and a pass after them. The first draw's camera is a struct; the second has a buffer of its own and the
+    # newer PipeState.
+    def replay(self):
+        def matrix(name, first, members=()):
+            return stand_in(name=name, rows=4, columns=4, members=list(members),
+                            value=stand_in(f32v=[float(first + i) for i in range(16)]))
+
+        camera = stand_in(name="camera", rows=0, columns=0, value=None,
+                          members=[matrix("view", 100), matrix("projection", 200)])
+        color = stand_in(name="color", rows=1, columns=4, members=[], value=None)
+        contents = {("vs1", 1): [camera, color], ("vs2", 0): [matrix("viewProjection", 300)], ("cs", 0): [color]}
+        stages = {"Vertex": {1: ("vs1", ["Object", "Frame"]), 2: ("vs2", ["Sun"])}, "Pixel": {},
+                  "Compute": {3: ("cs", ["Post"])}}
+        at = [0]
+
+        def reflection(stage):
+            shader = stages[stage].get(at[0])
+            return shader and stand_in(resourceId=shader[0], constantBlocks=[stand_in(name=name) for name in shader[1]])
+
+        def state():
+            common = {"GetShaderReflection": reflection, "GetShaderEntryPoint": lambda stage: "main",
+                      "GetGraphicsPipelineObject": lambda: "pipeline", "GetComputePipelineObject": lambda: "compute"}
+            place = {"byteOffset": 16, "byteSize": 64}
+            if at[0] == 2:
+                return stand_in(GetConstantBlock=lambda stage, index, array: stand_in(
+                    descriptor=stand_in(resource="buffer", **place)), **common)
+            return stand_in(GetConstantBuffer=lambda stage, index, array: stand_in(resourceId="buffer", **place), **common)
+
+        def variables(pipeline, shader, stage, entry, index, buffer, offset, size):
+            self.assertEqual((pipeline, entry, buffer, offset, size),
+                             ("compute" if stage == "Compute" else "pipeline", "main", "buffer", 16, 64))
+            return contents[shader, index]
+
+        actions = [stand_in(eventId=9, flags=0, children=[stand_in(eventId=i, flags=flag, children=[])
+                                                          for i, flag in ((1, 1), (2, 1), (3, 2))])]
+        rd = stand_in(ShaderStage=stand_in(Vertex="Vertex", Pixel="Pixel", Compute="Compute"),
+                      ActionFlags=stand_in(Drawcall=1, Dispatch=2))
+        return rd, stand_in(GetRootActions=lambda: actions, SetFrameEvent=lambda event, force: at.__setitem__(0, event),
+                            GetPipelineState=state, GetCBufferVariableContents=variables)
+
+    def test_matrices_come_from_named_constant_buffers(self):
+        rd, controller = self.replay()
+        wanted = {"viewFromWorld": ("Frame", "camera.view"), "clipFromView": ("Frame", "camera.projection"),
+                  "shadowMap0.clipFromWorld": ("Sun", "viewProjection")}
+        found = self.script.read_matrices(rd, controller, wanted, 3)
+        columns = [100.0 + 4 * row + column for column in range(4) for row in range(4)]
+        self.assertEqual(found["viewFromWorld"], columns)
+        self.assertEqual(found["shadowMap0.clipFromWorld"], [value + 200 for value in columns])
+        files = {"frontDepth": "frontDepth.exr", "shadowMap0": "shadowMap0.exr"}
+        manifest = self.script.manifest_skeleton(files)
+        self.script.put_matrices(manifest, files, found)
+        self.assertEqual(manifest["camera"]["clipFromView"], [value + 100 for value in columns])
+        self.assertEqual(manifest["lights"][0]["shadowMap"]["clipFromWorld"], found["shadowMap0.clipFromWorld"])
+        self.script.ROW_VECTORS = True
+        self.addCleanup(setattr, self.script, "ROW_VECTORS", False)
+        self.assertEqual(self.script.read_matrices(rd, controller, {"viewFromWorld": ("Frame", "camera.view")}, 3),
+                         {"viewFromWorld": [100.0 + i for i in range(16)]})
+
+    def test_matrices_that_are_not_there_are_named(self):
+        rd, controller = self.replay()
+
+        def refused(pattern, wanted, last=3):
+            with self.assertRaisesRegex(ValueError, pattern):
+                self.script.read_matrices(rd, controller, {"viewFromWorld": wanted}, last)
+
+        refused("name Camera; there are Frame, Object, Post, Sun", ("Camera", "view"))
+        refused("name Sun; there are Frame, Object", ("Sun", "viewProjection"), last=1)
+        refused(r"Frame: no variable has the name camera.world; there are view \(4 x 4\), projection",
+                ("Frame", "camera.world"))
+        refused("Frame: color is 1 x 4, not a matrix", ("Frame", "color"))
+        with self.assertRaisesRegex(ValueError, "shadowMap1.clipFromWorld: not clipFromView.*shadowMap0"):
+            self.script.put_matrices(self.script.manifest_skeleton({"shadowMap0": "a.exr"}), {"shadowMap0": "a.exr"},
+                                     {"shadowMap1.clipFromWorld": []})
+
     def test_a_shell_without_a_capture_says_so(self):
         with self.assertRaisesRegex(RuntimeError, "no capture is loaded: .*--ui-python"):
             self.script.capture_in_shell(None, stand_in(IsCaptureLoaded=lambda: False))
