@@ -19,6 +19,7 @@
 #include "cli/plan_text.h"
 #include "cli/preset.h"
 #include "cli/settings.h"
+#include "cli/tone_map_option.h"
 #include "common/error.h"
 #include "common/parallel.h"
 #include "common/png.h"
@@ -37,6 +38,7 @@ struct Options {
   std::string input, output, device, triptych, frames;
   bool png = false, overwrite = false, keepLayers = false;
   float exposure = 0;
+  ToneMap toneMap = ToneMap::None;
   int jobs = 2;
   std::optional<uint32_t> repeat;
   ManifestPreset preset = ManifestPreset::None;
@@ -85,7 +87,7 @@ void writeTriptych(const Options& options, const Capture& capture,
   multiply(through, capture.albedo);
   multiply(before, capture.albedo);
   const Image picture = sideBySide({&before, &through, &after});
-  writePng(options.triptych, picture.width, picture.height, toSrgb(picture, exposure));
+  writePng(options.triptych, picture.width, picture.height, toSrgb(picture, exposure, options.toneMap));
   std::printf("wrote %s (before | translucency | after)\n", options.triptych.c_str());
 }
 
@@ -98,8 +100,9 @@ void writeFrame(const Options& options, const std::filesystem::path& output, con
                 const Device& device, const PellucidPlan& plan, const Image& image, bool png,
                 float exposure) {
   if (png)
-    writeWhole(std::filesystem::path(output).replace_extension(".png"),
-               [&](const auto& file) { writePng(file, image.width, image.height, toSrgb(image, exposure)); });
+    writeWhole(std::filesystem::path(output).replace_extension(".png"), [&](const auto& file) {
+      writePng(file, image.width, image.height, toSrgb(image, exposure, options.toneMap));
+    });
   ExrPart part;
   part.attributes = {{"pellucid.device", device.description()},
                      {"pellucid.capture", capture.name},
@@ -222,6 +225,10 @@ void replay(const Options& options) {
   requireExr("-o", options.output);
   if (!options.triptych.empty() && settings.debugView != PELLUCID_DEBUG_NONE)
     throw UsageError("--triptych shows results and cannot be combined with --debug");
+  if (options.toneMap != ToneMap::None && settings.debugView != PELLUCID_DEBUG_NONE)
+    throw UsageError("--tonemap: a debug view holds data, which a tone map would change");
+  if (options.toneMap != ToneMap::None && !options.png && options.triptych.empty())
+    throw UsageError("--tonemap is of PNGs: --png or --triptych");
   const bool isSequence = !options.frames.empty() || (options.input.find('#') != std::string::npos &&
                                                       !std::filesystem::exists(options.input));
   if (!isSequence) {
@@ -267,6 +274,7 @@ void addReplayCommand(CLI::App& app) {
       ->check(CLI::PositiveNumber);
   command->add_option("--device", options->device,
                       "part of the Vulkan device's name; default: the fastest kind");
+  addToneMapOption(*command, options->toneMap);
   addPresetOption(*command, options->preset);
   options->settings.addTo(*command);
   command->callback([options] { replay(*options); });

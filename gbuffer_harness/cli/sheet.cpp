@@ -12,6 +12,7 @@
 #include "cli/nearest_distance.h"
 #include "cli/numbers.h"
 #include "cli/settings.h"
+#include "cli/tone_map_option.h"
 #include "common/error.h"
 #include "common/png.h"
 #include "common/progress.h"
@@ -25,10 +26,11 @@ constexpr int kGap = 4;
 constexpr std::size_t kMostPictures = 256;
 
 struct Options {
-  std::vector<std::string> inputs, sweeps;
+  std::vector<std::string> inputs, sweeps, labels;
   std::string output, device;
-  int columns = 0;  // 0: the last sweep's values, or 3
-  float exposure = 0;
+  int columns = 0;               // 0: the last sweep's values, or 3
+  std::vector<float> exposures;  // of all, or one for each picture
+  ToneMap toneMap = ToneMap::None;
 };
 
 struct Picture {
@@ -43,9 +45,13 @@ struct Sweep {
 };
 
 std::deque<Picture> readPictures(const Options& options) {
+  if (!options.labels.empty() && options.labels.size() != options.inputs.size())
+    throw UsageError("--label: " + std::to_string(options.labels.size()) + " are given for " +
+                     std::to_string(options.inputs.size()) + " images");
   std::deque<Picture> pictures;
   for (const std::string& input : options.inputs) {
     pictures.push_back({readExrImage(input), {}});
+    if (!options.labels.empty()) pictures.back().labels = {options.labels[pictures.size() - 1]};
     const Image &image = pictures.back().image, &first = pictures.front().image;
     if (image.width != first.width || image.height != first.height)
       throw InputError(input, "",
@@ -72,6 +78,7 @@ std::vector<Sweep> parseSweeps(const std::vector<std::string>& texts) {
 
 // Every combination; the last sweep's values change first.
 std::deque<Picture> replaySweeps(const Options& options, const std::vector<Sweep>& sweeps) {
+  if (!options.labels.empty()) throw UsageError("--label: --sweep labels its pictures");
   if (options.inputs.size() != 1) throw UsageError("--sweep: takes one capture");
   const Capture source = readCapture(options.inputs.front());
   Device device({options.device, false});
@@ -126,16 +133,24 @@ void drawLabels(const std::vector<std::string>& labels, int left, int bottom, co
 
 void sheet(const Options& options) {
   const std::vector<Sweep> sweeps = parseSweeps(options.sweeps);
-  const std::deque<Picture> pictures = sweeps.empty() ? readPictures(options) : replaySweeps(options, sweeps);
+  std::deque<Picture> pictures = sweeps.empty() ? readPictures(options) : replaySweeps(options, sweeps);
   const int columns = options.columns > 0 ? options.columns
                       : sweeps.empty()    ? 3
                                           : static_cast<int>(sweeps.back().values.size());
+  std::vector<float> exposures = options.exposures;
+  if (exposures.size() > 1 && exposures.size() != pictures.size())
+    throw UsageError("--exposure: " + std::to_string(exposures.size()) + " are given for " +
+                     std::to_string(pictures.size()) + " images");
   std::vector<const Image*> pointers;
-  for (const Picture& picture : pictures) pointers.push_back(&picture.image);
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    for (float& value : pictures[i].image.data)
+      if (exposures.size() > 1) value *= exposures[i];
+    pointers.push_back(&pictures[i].image);
+  }
   const Image all = contactSheet(pointers, columns, kGap);
-  // One exposure for all: brightness is part of what is compared.
-  const float exposure = options.exposure > 0 ? options.exposure : autoExposure(all);
-  std::vector<std::uint8_t> rgb = toSrgb(all, exposure);
+  // One exposure for all, unless asked otherwise: brightness is part of what is compared.
+  const float exposure = exposures.empty() ? autoExposure(all) : exposures.size() == 1 ? exposures[0] : 1;
+  std::vector<std::uint8_t> rgb = toSrgb(all, exposure, options.toneMap);
   const Image& first = pictures.front().image;
   const int across = std::min(columns, static_cast<int>(pictures.size()));
   for (int i = 0; i < static_cast<int>(pictures.size()); ++i)
@@ -151,7 +166,7 @@ void sheet(const Options& options) {
 void addSheetCommand(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand(
-      "sheet", "Lay EXR images, or one capture's variants, out in one PNG, under one exposure");
+      "sheet", "Lay EXR images, or one capture's variants, out in one PNG, under one exposure by default");
   command->add_option("images", options->inputs, "EXR files of one size; with --sweep one capture")
       ->required();
   command->add_option("-o,--output", options->output, "PNG to write")->required();
@@ -162,10 +177,17 @@ void addSheetCommand(CLI::App& app) {
           "replay's --set, or of material, a preset in place of all materials; combinations, labeled")
       ->take_all();
   command
+      ->add_option("--label", options->labels, "text on an image, repeatable: one for each, in their order")
+      ->take_all();
+  command
       ->add_option("--columns", options->columns, "images a row (default: the last sweep's values, else 3)")
       ->check(CLI::Range(1, 64));
-  command->add_option("--exposure", options->exposure, "default: from the pictures")
+  command
+      ->add_option("--exposure", options->exposures,
+                   "factor, or one for each image, separated by commas (default: one from the pictures)")
+      ->delimiter(',')
       ->check(CLI::PositiveNumber);
+  addToneMapOption(*command, options->toneMap);
   command->add_option("--device", options->device, "of --sweep: part of the Vulkan device's name");
   command->callback([options] { sheet(*options); });
 }

@@ -26,6 +26,7 @@ void addViewCommand(CLI::App& app) {
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <set>
 
 #include "capture/read.h"
@@ -33,6 +34,7 @@ void addViewCommand(CLI::App& app) {
 #include "cli/numbers.h"
 #include "cli/output.h"
 #include "cli/settings.h"
+#include "cli/tone_map_option.h"
 #include "scene/model.h"
 #include "view/application.h"
 #include "view/perception.h"
@@ -51,13 +53,14 @@ struct Options {
   std::string script, screenshot, save;
   std::string perception, participant, answers;
   float exposure = 0;
+  std::optional<ToneMap> toneMap;  // absent: a saved view's own, else none
 };
 
 // Options of the viewer and of the replay; all others are options of the scene.
-const std::set<std::string> kNotOfTheScene = {"--set",         "--mode",       "--debug",    "--device",
-                                              "--window-size", "--no-window",  "--validate", "--frames",
-                                              "--script",      "--screenshot", "--exposure", "--perception",
-                                              "--participant", "--answers",    "--save",     "--help"};
+const std::set<std::string> kNotOfTheScene = {
+    "--set",         "--mode",    "--debug",  "--device",     "--window-size", "--no-window",
+    "--validate",    "--frames",  "--script", "--screenshot", "--exposure",    "--perception",
+    "--participant", "--answers", "--save",   "--tonemap",    "--help"};
 
 // The model comes first: behind an option that takes a list, it would be read as one more of its values.
 std::vector<std::string> sceneArguments(const CLI::App& command) {
@@ -120,9 +123,10 @@ ReplaySettings parsed(const SettingsOptions& options) {
 SceneToView sceneOf(const CLI::App& command, const Options& options) {
   const ReplaySettings settings = parsed(options.settings);
   return {opener(command, options.scene),
-          [settings, exposure = options.exposure](ViewState& state) {
+          [settings, exposure = options.exposure, toneMap = options.toneMap](ViewState& state) {
             state.settings = settings;
             if (exposure > 0) state.display.exposure = exposure;
+            if (toneMap) state.display.toneMap = *toneMap;
             if (settings.debugView != PELLUCID_DEBUG_NONE) state.display.shown = Shown::Debug;
           },
           sceneArguments(command)};
@@ -200,8 +204,8 @@ PerceptionOptions perceptionTest(const CLI::App& command, const Options& options
     throw UsageError("--perception: needs --participant and --answers");
   if (!options.save.empty()) throw UsageError("--save: there is no one scene in a perception test");
   requireNewParticipant(options.answers, options.participant);
-  return {readSceneList(options.perception), options.participant, options.answers, parsed(options.settings),
-          options.exposure};
+  return {readSceneList(options.perception), options.participant, options.answers,
+          parsed(options.settings),          options.exposure,    options.toneMap.value_or(ToneMap::None)};
 }
 
 void view(const CLI::App& command, const Options& options) {
@@ -255,6 +259,7 @@ void addViewCommand(CLI::App& app) {
       "NAME.exr: at the end the capture, with settings, session, result and picture beside it");
   command->add_option("--exposure", options->exposure, "factor; default: from the first picture")
       ->check(CLI::PositiveNumber);
+  addToneMapOption(*command, options->toneMap);
   command->add_option("--perception", options->perception,
                       "perception test: a file that names captures, one a line");
   command->add_option("--participant", options->participant, "who takes the test");

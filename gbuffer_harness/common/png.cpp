@@ -38,18 +38,17 @@ void writePng(const std::filesystem::path& path, int width, int height,
     throw InputError(path.string(), "", "the PNG cannot be written");
 }
 
-std::vector<std::uint8_t> toSrgb(const Image& image, float exposure) {
+std::vector<std::uint8_t> toSrgb(const Image& image, float exposure, ToneMap map) {
   constexpr std::array<std::uint8_t, 3> kMagenta = {255, 0, 255};
   std::vector<std::uint8_t> rgb(image.pixels() * 3);
   const int used = std::min(image.channels, 3);
   for (std::size_t i = 0; i < image.pixels(); ++i) {
     const float* pixel = image.data.data() + i * static_cast<std::size_t>(image.channels);
     const bool finite = std::all_of(pixel, pixel + used, [](float value) { return std::isfinite(value); });
-    for (int c = 0; c < 3; ++c) {
-      const float value = pixel[std::min(c, used - 1)];
-      rgb[i * 3 + static_cast<std::size_t>(c)] =
-          finite ? srgbByte(value * exposure) : kMagenta[static_cast<std::size_t>(c)];
-    }
+    std::array<float, 3> color;
+    for (int c = 0; c < 3; ++c) color[static_cast<std::size_t>(c)] = pixel[std::min(c, used - 1)] * exposure;
+    color = toneMapped(map, color);
+    for (std::size_t c = 0; c < 3; ++c) rgb[i * 3 + c] = finite ? srgbByte(color[c]) : kMagenta[c];
   }
   return rgb;
 }

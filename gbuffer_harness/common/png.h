@@ -6,15 +6,16 @@
 #include <vector>
 
 #include "common/image.h"
+#include "common/tone_map.h"
 
 namespace pellucid::harness {
 
 // `rgb`: width * height * 3 bytes, row 0 at the top. Throws InputError when the file cannot be written.
 void writePng(const std::filesystem::path& path, int width, int height, const std::vector<std::uint8_t>& rgb);
 
-// Linear to display: times `exposure`, the exact sRGB curve (IEC 61966-2-1), clamped to 0..255. One
-// channel becomes gray, channels past the third are left out. NaN and infinity are magenta.
-std::vector<std::uint8_t> toSrgb(const Image& image, float exposure = 1.0f);
+// Linear to display: times `exposure`, tone mapped, the exact sRGB curve (IEC 61966-2-1), clamped to 0..255.
+// One channel becomes gray, channels past the third are left out. NaN and infinity are magenta.
+std::vector<std::uint8_t> toSrgb(const Image& image, float exposure = 1.0f, ToneMap map = ToneMap::None);
 
 // The factor that brings the 99th percentile of the values above 0 to 0.8: below white, above the middle.
 float autoExposure(const Image& image);

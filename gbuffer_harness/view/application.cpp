@@ -303,6 +303,7 @@ void Application::openQuestion() {
           state.settings = test.settings;
           state.settings.translucency.transmittanceFilter = {1, 1, 1};
           state.display.exposure = test.exposure;
+          state.display.toneMap = test.toneMap;
         },
         {}});
   sceneBegin_ = std::chrono::steady_clock::now();

@@ -20,6 +20,7 @@ struct PerceptionOptions {
   std::filesystem::path answers;  // CSV that rows are added to
   ReplaySettings settings;        // but for the filter
   float exposure = 0;             // of all scenes; 0: each by its own picture
+  ToneMap toneMap = ToneMap::None;
 };
 
 struct SceneToView {

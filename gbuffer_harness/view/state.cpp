@@ -29,11 +29,6 @@ const std::vector<std::string>& shownNames() {
   return names;
 }
 
-const std::vector<std::string>& toneMapNames() {
-  static const std::vector<std::string> names = {"sRGB", "Reinhard", "filmic"};
-  return names;
-}
-
 ViewLight newLight(PellucidLightType type, const ViewCamera& camera, const Vector3& center, double radius) {
   const glm::dvec3 away = glm::normalize(0.4 * toGlm(camera.up()) - toGlm(camera.back()));
   ViewLight result;

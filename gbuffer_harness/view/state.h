@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "capture/capture.h"
+#include "common/tone_map.h"
 #include "replay/frame.h"
 #include "view/camera.h"
 
@@ -30,15 +31,9 @@ enum class Shown {
   Isolated,  // of the output's pixels, 1 those brighter than all around, 2 darker, 3 both; in false color
 };
 
-enum class ToneMap {
-  Srgb,      // clamped
-  Reinhard,  // c / (1 + c)
-  Filmic     // Narkowicz 2016, a fit of the ACES reference transform
-};
-
 struct Display {
   float exposure = 0;  // factor; 0: from the first picture, autoExposure()
-  ToneMap toneMap = ToneMap::Srgb;
+  ToneMap toneMap = ToneMap::None;
   Shown shown = Shown::After;
   bool split = false;  // `left` is shown to the left of the split
   Shown left = Shown::Before;
@@ -84,7 +79,6 @@ bool isFalseColor(Shown shown);
 
 // Names for the panel and for session files, in the order of the enumerations.
 const std::vector<std::string>& shownNames();
-const std::vector<std::string>& toneMapNames();
 
 // A light of that type from behind and above, of which 1 arrives at `center`.
 ViewLight newLight(PellucidLightType type, const ViewCamera& camera, const Vector3& center, double radius);

@@ -12,6 +12,16 @@ TEST_F(Cli, CaptureReplayComparePlan) {
   expect(0, "info " + capture, "shadow");
   expect(0, "plan " + capture, "\"dispatchCount\": 11");
   expect(0, "replay " + capture + " -o " + out + " --triptych " + path("t.png") + " --png", "upsample");
+  const std::string linear = bytes("t.png");
+  const std::string mapped = "replay " + capture + " --repeat 0 -o " + out + " --exposure 1 ";
+  expect(0, mapped + "--triptych " + path("t.png") + " --tonemap agx", "wrote");
+  const std::string agx = bytes("t.png");
+  expect(0, mapped + "--triptych " + path("t.png") + " --tonemap aces", "wrote");
+  EXPECT_NE(agx, bytes("t.png"));
+  EXPECT_NE(agx, linear);
+  expect(2, mapped + "--tonemap agx", "--png or --triptych");
+  expect(2, mapped + "--tonemap agx --debug thickness", "a debug view holds data");
+  expect(2, mapped + "--png --tonemap velvia", "--tonemap");
   expect(0, "replay " + capture + " -o " + again + " --repeat 0", "wrote");
   expect(0, "compare " + out + " " + again + " --mask " + capture + " --limit max=0", "rel_rmse");
   for (const char* file : {"out.exr", "out.png", "t.png"}) EXPECT_GT(fs::file_size(path(file)), 100u) << file;
@@ -38,9 +48,14 @@ TEST_F(Cli, Sheet) {
   expect(0, "replay " + path("ear.##.exr") + turn + "--set filter=.55,.29,.28 -o " + path("view.##.exr"),
          "2 frames: 2 written");
   const std::string views = path("view.02.exr") + " " + path("view.12.exr");
-  expect(0, "sheet " + views + " " + path("view.02.exr") + " --columns 2 -o " + path("sheet.png"),
+  expect(0,
+         "sheet " + views + " " + path("view.02.exr") + " --columns 2 --tonemap agx -o " + path("sheet.png"),
          "3 images");
   EXPECT_GT(fs::file_size(path("sheet.png")), 100u);
+  expect(0, "sheet " + views + " --label one --label two --exposure 1,0.5 -o " + path("sheet.png"),
+         "2 images");
+  expect(2, "sheet " + views + " --exposure 1,2,3 -o " + path("sheet.png"), "--exposure: 3 are given for 2");
+  expect(2, "sheet " + views + " --label one -o " + path("sheet.png"), "--label: 1 are given for");
   expect(1, "compare " + views + " --limit rel_rmse=0.1", "limit");  // another view is another picture
   ASSERT_EQ(run("capture --procedural plane --size 16x16 --shadow-size 16 -o " + path("small.exr")).code, 0);
   ASSERT_EQ(run("replay " + path("small.exr") + " --repeat 0 -o " + path("small_out.exr")).code, 0);

@@ -333,7 +333,7 @@ Session sampleSession() {
   state.materials = {PresetMaterial{"skin1"}, CoefficientMaterial{{1, 2, 3}, {0.1, 0.2, 0.3}, 0.5, 1.3},
                      OpenPbrMaterial{{0.8, 0.5, 0.3}, 2.5, {0.5, 0.25, 0.125}, 0.6, 1.3},
                      SkinMaterial{0.1, 0.7, 0.02, 1.45}};
-  state.display = {2.5f, ToneMap::Filmic, Shown::Debug, true, Shown::FrontDepth, 0.3f, 2, -1, 4};
+  state.display = {2.5f, ToneMap::Agx, Shown::Debug, true, Shown::FrontDepth, 0.3f, 2, -1, 4};
   return session;
 }
 
@@ -363,7 +363,7 @@ TEST_F(ViewFiles, SessionsAreRefusedByFieldAndValue) {
     const std::filesystem::path file = write("bad.view.json", text);
     return refusal([&] { readSession(file); });
   };
-  EXPECT_NE(with("\"filmic\"", "\"velvia\"").find("display.toneMap"), std::string::npos);
+  EXPECT_NE(with("\"agx\"", "\"velvia\"").find("display.toneMap"), std::string::npos);
   EXPECT_NE(with("\"near\": 0.11", "\"near\": -1").find("camera.near"), std::string::npos);
   EXPECT_NE(with("321", "0").find("size"), std::string::npos);
   EXPECT_NE(with("\"on\": true", "\"on\": 3").find("lights[0].on"), std::string::npos);

@@ -1,4 +1,5 @@
 #version 450
+#extension GL_GOOGLE_include_directive : require
 // The shown part of a frame, as pixels of the screen. Inputs that the frame does not have are images of one texel.
 layout(set = 0, binding = 0) uniform sampler2D resultImage;
 layout(set = 0, binding = 1) uniform sampler2D irradianceImage;
@@ -24,9 +25,10 @@ layout(push_constant) uniform Push {
 
 layout(location = 0) out vec4 color;
 
+#include "tone_map.glsl"
+
 const int kAfter = 0, kBefore = 1, kThrough = 2, kDifference = 3, kTruth = 4, kDebug = 5, kFrontDepth = 6,
           kNormal = 7, kAlbedo = 8, kMaterial = 9, kTiles = 10, kIsolated = 11;
-const int kReinhard = 1, kFilmic = 2;
 
 vec4 fetch(sampler2D image, ivec2 p) { return texelFetch(image, min(p, textureSize(image, 0) - 1), 0); }
 uint materialAt(ivec2 p) { return texelFetch(materialImage, min(p, textureSize(materialImage, 0) - 1), 0).r; }
@@ -55,13 +57,6 @@ vec3 valueAt(ivec2 p) {
 vec3 srgb(vec3 c) {
   c = clamp(c, 0.0, 1.0);
   return mix(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, 12.92 * c, lessThanEqual(c, vec3(0.0031308)));
-}
-
-vec3 toneMapped(vec3 c) {
-  if (push.toneMap == kReinhard) return c / (1.0 + c);
-  // Narkowicz 2016, "ACES filmic tone mapping curve".
-  if (push.toneMap == kFilmic) return c * (2.51 * c + 0.03) / (c * (2.43 * c + 0.59) + 0.14);
-  return c;
 }
 
 // 0..1 to black, blue, magenta, orange, yellow, white, whose luminance rises all the way; already sRGB.
@@ -103,5 +98,5 @@ void main() {
     color = vec4(value, 1.0);
     return;
   }
-  color = vec4(srgb(toneMapped(value * push.exposure)), 1.0);
+  color = vec4(srgb(toneMapped(push.toneMap, value * push.exposure)), 1.0);
 }
