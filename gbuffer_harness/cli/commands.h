@@ -8,6 +8,7 @@ class App;
 
 namespace pellucid::harness {
 
+void addAnglesCommand(CLI::App& app);
 void addInfoCommand(CLI::App& app);
 void addInitCommand(CLI::App& app);
 void addReplayCommand(CLI::App& app);

@@ -50,6 +50,7 @@ int main(int argc, char** argv) {
   addStressCommand(app);
   addViewCommand(app);
   addPerceptionCommand(app);
+  addAnglesCommand(app);
   try {
     app.parse(argc, argv);
     return OK;

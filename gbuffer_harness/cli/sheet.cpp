@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <deque>
+#include <filesystem>
 #include <memory>
 
 #include "capture/exr.h"
@@ -50,7 +51,11 @@ std::deque<Picture> readPictures(const Options& options) {
                      std::to_string(options.inputs.size()) + " images");
   std::deque<Picture> pictures;
   for (const std::string& input : options.inputs) {
-    pictures.push_back({readExrImage(input), {}});
+    // The @ may be part of a file's name.
+    const std::size_t at = std::filesystem::exists(input) ? std::string::npos : input.rfind('@');
+    pictures.push_back({at == std::string::npos ? readExrImage(input)
+                                                : readExrImage(input.substr(0, at), input.substr(at + 1)),
+                        {}});
     if (!options.labels.empty()) pictures.back().labels = {options.labels[pictures.size() - 1]};
     const Image &image = pictures.back().image, &first = pictures.front().image;
     if (image.width != first.width || image.height != first.height)
@@ -167,7 +172,9 @@ void addSheetCommand(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand(
       "sheet", "Lay EXR images, or one capture's variants, out in one PNG, under one exposure by default");
-  command->add_option("images", options->inputs, "EXR files of one size; with --sweep one capture")
+  command
+      ->add_option("images", options->inputs,
+                   "EXR files of one size, FILE@LAYER for another layer; with --sweep one capture")
       ->required();
   command->add_option("-o,--output", options->output, "PNG to write")->required();
   command

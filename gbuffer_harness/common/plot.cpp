@@ -127,7 +127,7 @@ public:
     // Five or so round steps: 1, 2 or 5 times a power of ten.
     const double rough = (high_ - low_) / 5, power = std::pow(10, std::floor(std::log10(rough)));
     const double step = power * (rough < 2 * power ? 1 : rough < 5 * power ? 2 : 5);
-    for (double i = std::ceil(low_ / step - 1e-9); i * step <= high_ * (1 + 1e-9) + 1e-12 * step; ++i)
+    for (double i = std::ceil(low_ / step - 1e-9) + 0.0; i * step <= high_ * (1 + 1e-9) + 1e-12 * step; ++i)
       add(i * step, true);
     return result;
   }

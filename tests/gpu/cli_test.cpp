@@ -39,6 +39,16 @@ TEST_F(Cli, CaptureReplayComparePlan) {
   expect(0, "compare " + out + " " + again + " --mask " + capture + " --limit rel_rmse=0.05", "rel_rmse");
 }
 
+// Whelan 2009, eqs. 4.4 and 4.5 as printed, at both ends.
+TEST_F(Cli, AnglesAreThePrintedEquations) {
+  expect(0, "angles",
+         "90                            0.0000                      0.0000                      0.0361");
+  expect(0, "angles", "0.8670                      0.9616");
+  expect(0, "angles -o " + path("angles.png"), "wrote");
+  EXPECT_EQ(bytes("angles.png").substr(0, 4), "\x89PNG");
+  expect(3, "angles -o " + path("none/angles.png"), "angles.png");
+}
+
 TEST_F(Cli, Sheet) {
   const std::string turn = " --frames 2,12 ";
   expect(0,
@@ -54,6 +64,11 @@ TEST_F(Cli, Sheet) {
   EXPECT_GT(fs::file_size(path("sheet.png")), 100u);
   expect(0, "sheet " + views + " --label one --label two --exposure 1,0.5 -o " + path("sheet.png"),
          "2 images");
+  expect(
+      0,
+      "sheet " + path("ear.02.exr@albedo") + " " + path("ear.02.exr@irradiance") + " -o " + path("sheet.png"),
+      "2 images");
+  expect(3, "sheet " + path("view.02.exr@velvia") + " -o " + path("sheet.png"), "velvia");
   expect(2, "sheet " + views + " --exposure 1,2,3 -o " + path("sheet.png"), "--exposure: 3 are given for 2");
   expect(2, "sheet " + views + " --label one -o " + path("sheet.png"), "--label: 1 are given for");
   expect(1, "compare " + views + " --limit rel_rmse=0.1", "limit");  // another view is another picture
