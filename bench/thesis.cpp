@@ -17,6 +17,7 @@
 #include "raster/front.h"
 #include "raster/irradiance.h"
 #include "raster/shadow.h"
+#include "raster/simplify.h"
 #include "scene.h"
 #include "scene/turn.h"
 #include "scene/vector.h"
@@ -78,9 +79,11 @@ public:
         context_(context),
         repeat_(repeat),
         model_(readModelFile({options.models / "head_views.glb", 0.052, {{"*", "skin1"}}})),
+        simple_(simplified(model_, options.simplify)),
         bounds_(boundsOf(model_)),
         light_(lightAt(bounds_)),
-        uploaded_(device, model_) {
+        uploaded_(device, model_),
+        simpleUploaded_(device, simple_) {
     const bool software = device.properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
     const auto [width, height] = options.sizes.empty()
                                      ? (software ? std::pair(256, 144) : std::pair(1280, 720))
@@ -154,11 +157,11 @@ private:
   double time(const std::function<void(VkCommandBuffer)>& record) const {
     return measure(device_, repeat_, record).median;
   }
-  double draw(const RenderTarget& target, const DrawView& view, const PipelineState& state,
-              const EarlierPass& earlier = {}) const {
+  double draw(const UploadedModel& model, const RenderTarget& target, const DrawView& view,
+              const PipelineState& state, const EarlierPass& earlier = {}) const {
     const VkCullModeFlags doubleSided = state.cull & VK_CULL_MODE_FRONT_BIT;
     return time([&](VkCommandBuffer commandBuffer) {
-      uploaded_.record(commandBuffer, target, view, state, doubleSided, earlier);
+      model.record(commandBuffer, target, view, state, doubleSided, earlier);
     });
   }
 
@@ -170,14 +173,15 @@ private:
     const DrawView view{capture.clipFromView, capture.viewFromWorld, reversed};
     const FrontTarget front(device_, raster_);
     front.draw(uploaded_, view);
-    sum.gbuffer +=
-        draw(front.target, view, {FragmentShader::Surface, VK_CULL_MODE_BACK_BIT, nearer(reversed), false});
+    sum.gbuffer += draw(uploaded_, front.target, view,
+                        {FragmentShader::Surface, VK_CULL_MODE_BACK_BIT, nearer(reversed), false});
     const RenderTarget depth(device_, raster_.width, raster_.height, depthColors(reversed),
                              farDepth(reversed));
-    sum.front += draw(depth, view, {FragmentShader::Depth, VK_CULL_MODE_BACK_BIT, nearer(reversed), false});
+    sum.front += draw(simpleUploaded_, depth, view,
+                      {FragmentShader::Depth, VK_CULL_MODE_BACK_BIT, nearer(reversed), false});
     const EarlierPass behind{&front.depthNormal(), &front.albedoObject()};
-    sum.back +=
-        draw(depth, view, {FragmentShader::Depth, VK_CULL_MODE_FRONT_BIT, nearer(reversed), false}, behind);
+    sum.back += draw(simpleUploaded_, depth, view,
+                     {FragmentShader::Depth, VK_CULL_MODE_FRONT_BIT, nearer(reversed), false}, behind);
     addLight(sum, view, front);
 
     ReplaySettings whole;
@@ -206,7 +210,8 @@ private:
     const DrawView lightView{drawn.images[0].clipFromView, drawn.images[0].viewFromWorld, kReversed};
     const RenderTarget map(device_, raster_.shadowSize, raster_.shadowSize, depthColors(kReversed),
                            farDepth(kReversed));
-    sum.shadow += draw(map, lightView, {FragmentShader::Depth, VK_CULL_MODE_NONE, nearer(kReversed), false});
+    sum.shadow += draw(simpleUploaded_, map, lightView,
+                       {FragmentShader::Depth, VK_CULL_MODE_NONE, nearer(kReversed), false});
     const IrradiancePass irradiance(device_, front.normalPlanar(), front.depthNormal(), raster_.width,
                                     raster_.height, view);
     sum.lighting += time(irradiance.recorder(light, drawn.images));
@@ -226,9 +231,9 @@ private:
                               {{VK_FORMAT_R32G32B32A32_SFLOAT, clearTo(0)}}, farDepth(keepGreater));
     const auto constants = std::get<VkDescriptorBufferInfo>(frame->planned(PELLUCID_BINDING_FRAME)).buffer;
     const PlannedInputs planned{frame->run().plan().dispatches[0], frame->images(), constants};
-    sum.backFace +=
-        draw(target, view, {FragmentShader::Transmit, VK_CULL_MODE_FRONT_BIT, nearer(keepGreater), false},
-             {&front.depthNormal(), &front.albedoObject(), &planned});
+    sum.backFace += draw(uploaded_, target, view,
+                         {FragmentShader::Transmit, VK_CULL_MODE_FRONT_BIT, nearer(keepGreater), false},
+                         {&front.depthNormal(), &front.albedoObject(), &planned});
   }
 
   // The timed variants compute the same: the steps are held against the module's dispatch.
@@ -259,9 +264,11 @@ private:
   const Context& context_;
   int repeat_;
   Model model_;
+  Model simple_;
   Bounds bounds_;
   Light light_;
   UploadedModel uploaded_;
+  UploadedModel simpleUploaded_;  // of the depth maps
   RasterOptions raster_;
   int timed_ = 0;
   ModelCamera camera_, turned_;

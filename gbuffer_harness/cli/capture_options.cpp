@@ -171,6 +171,11 @@ void addModelOptions(CLI::App& command, CaptureOptions& options, SceneUse use) {
   const std::map<std::string, MapCull> culls = {
       {"none", MapCull::None}, {"back", MapCull::Back}, {"front", MapCull::Front}};
   command
+      .add_option(
+          "--simplify", options.simplify,
+          "share of the triangles that back depth and shadow maps are drawn with, above 0 (default 1)")
+      ->group(group);
+  command
       .add_option("--shadow-cull", options.shadowCull,
                   "faces that shadow maps leave out: none (default), back or front")
       ->transform(CLI::CheckedTransformer(culls, CLI::ignore_case))
@@ -297,6 +302,7 @@ CaptureModel captureModel(const CaptureOptions& options, const std::vector<doubl
                             : options.pointMaps == "6" ? PointMaps::Six
                                                        : PointMaps::Auto;
   result.raster.shadow = shadowDrawing(options);
+  result.raster.simplify = options.simplify;
   GltfOptions gltf;
   gltf.metersPerUnit = parseUnit(options.unit);
   for (const std::string& text : options.presets) {

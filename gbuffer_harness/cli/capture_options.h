@@ -32,6 +32,7 @@ struct CaptureOptions {
   std::string animation;
   double verticalFov = 30;  // of the auto camera, degrees
   bool fillHoles = false;
+  double simplify = 1;
   std::optional<double> ior;  // of all materials
   std::string environment;    // "": none
   BackFace backFace = BackFace::Nearest;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 
 #include "common/error.h"
 #include "raster/draw.h"
@@ -11,6 +12,7 @@
 #include "raster/front.h"
 #include "raster/irradiance.h"
 #include "raster/shadow.h"
+#include "raster/simplify.h"
 #include "scene/vector.h"
 
 namespace pellucid::harness {
@@ -73,15 +75,18 @@ bool isClosed(const float* count, BackFace backFace) {
 }
 
 // Adds the light to `irradiance` and returns it with its shadow maps.
-Light drawLight(Device& device, const Model& model, const UploadedModel& uploaded, const Light& light,
-                const RasterOptions& options, IrradiancePass& irradiance) {
+// `transmission`: what the light's way through the model is drawn with.
+Light drawLight(Device& device, const Model& model, const UploadedModel& uploaded,
+                const UploadedModel& transmission, const Light& light, const RasterOptions& options,
+                IrradiancePass& irradiance) {
   Light result = light;
   if (options.shadowSize == 0) {
     if (light.radius == 0) irradiance.add(light, {});
     return result;
   }
   const DrawnShadows drawn = drawShadows(device, model, uploaded, light, options);
-  result.shadowMaps = drawn.maps;
+  result.shadowMaps =
+      &transmission == &uploaded ? drawn.maps : drawShadows(device, model, transmission, light, options).maps;
   if (light.radius == 0) irradiance.add(light, drawn.images);
   return result;
 }
@@ -189,12 +194,19 @@ RasterResult rasterize(Device& device, const Model& model, const UploadedModel& 
   const DrawView view{capture.clipFromView, capture.viewFromWorld, options.reversedZ};
   const FrontTarget front(device, options);
   front.draw(uploaded, view);
-  fillCapture(front, drawBack(device, uploaded, view, front, options), options, result);
+  std::optional<Model> simple;
+  std::optional<UploadedModel> simpleUploaded;
+  if (options.simplify != 1) {
+    simple = simplified(model, options.simplify);
+    simpleUploaded.emplace(device, *simple);
+  }
+  const UploadedModel& transmission = simpleUploaded ? *simpleUploaded : uploaded;
+  fillCapture(front, drawBack(device, transmission, view, front, options), options, result);
 
   IrradiancePass irradiance(device, front.normalPlanar(), front.depthNormal(), options.width, options.height,
                             view);
   for (const Light& light : model.lights)
-    capture.lights.push_back(drawLight(device, model, uploaded, light, options, irradiance));
+    capture.lights.push_back(drawLight(device, model, uploaded, transmission, light, options, irradiance));
   placeShadowMaps(options.shadow.placement, capture.lights);
   capture.irradiance = irradiance.irradiance();
   if (hasLobesApart(model)) {
