@@ -11,6 +11,7 @@
 
 #include "lib/angle.glsl"
 #include "frame/flags.glsl"
+#include "frame/thin_walls.glsl"
 #include "lib/light.glsl"
 #include "lib/surface.glsl"
 #include "lib/thickness.glsl"
@@ -69,8 +70,11 @@ Transmitted chordTransmission(LightConstants light, Surface s) {
   return Transmitted(thickness, incident.irradiance * hiddenCosine(light, s, incident.toLight), 1.0);
 }
 
+#include "translucency/wall_transmission.glsl"
+
 // docs/design.md says why each source is what it is. `pixel`: of the surface.
 Transmitted lightTransmission(LightConstants light, Surface s, ivec2 pixel) {
+  if (isThinWalled(s.material)) return wallTransmission(light, s, pixel);
   bool holdsExits = light.meta.w != 0u; // which do not say where light enters
   if (light.meta.z == 0u || holdsExits || hasFlag(PELLUCID_FLAG_CAMERA_THICKNESS)) {
     Transmitted t = chordTransmission(light, s);

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <sstream>
+#include <string_view>
 
 #include "capture/material.h"
+#include "common/number.h"
 #include "pellucid/pellucid_material.h"
 
 namespace pellucid::harness {
@@ -32,6 +35,26 @@ const std::string* presetFor(const std::string& name, const GltfOptions& options
   for (const std::string& key : {name, std::string("*")})
     if (const auto found = options.presets.find(key); found != options.presets.end()) return &found->second;
   return nullptr;
+}
+
+// Of "thin:R,G,B".
+std::optional<Rgb> thinTransmittance(const GltfDocument& document, const std::string& name,
+                                     const std::string& text) {
+  constexpr std::string_view kThin = "thin:";
+  if (text.rfind(kThin, 0) != 0) return std::nullopt;
+  Rgb color{};
+  std::istringstream parts(text.substr(kThin.size()));
+  std::string part;
+  std::size_t count = 0;
+  for (; std::getline(parts, part, ','); ++count) {
+    const std::optional<double> value = numberIn<double>(part);
+    if (count >= 3 || !value || !(*value >= 0 && *value <= 1)) break;
+    color[count] = *value;
+  }
+  if (count != 3 || !parts.eof() || text.back() == ',')
+    document.fail("material \"" + name + "\"",
+                  "\"" + text + "\" is not thin:R,G,B with a transmittance from 0 to 1 of each");
+  return color;
 }
 
 }  // namespace
@@ -79,6 +102,10 @@ GltfMaterial readMaterial(const GltfDocument& document, int index, const GltfOpt
       result.medium = scattering.medium;
       result.lobeMap = std::move(scattering.map);
     }
+  }
+  if (const auto transmittance = preset ? thinTransmittance(document, name, *preset) : std::nullopt) {
+    result.medium = thinWall(*transmittance, result.surface).medium;
+    return result;
   }
   if (preset) {
     PellucidMaterialDesc desc;

@@ -68,6 +68,7 @@ shared::FrameConstants frameConstants(const FrameFacts& facts) {
   if (t.chordThickness) flags |= PELLUCID_FLAG_CHORD_THICKNESS;
   if (facts.needsChord) flags |= PELLUCID_FLAG_CHORD;
   if (facts.wide) flags |= PELLUCID_FLAG_WIDE_OUTPUT;
+  if (facts.thinWalls) flags |= PELLUCID_FLAG_THIN_WALLS;
   if (f.features & PELLUCID_FEATURE_DIFFUSION && facts.diffuses) flags |= PELLUCID_FLAG_DIFFUSED;
   c.flags = {flags, f.materialCount, f.debugView, t.angleModel};
   const float* p = t.anglePolynomial;
@@ -174,9 +175,9 @@ shared::ShadowConstants shadowConstants(const FrameFacts& f, const PellucidShado
 
 shared::MaterialConstants materialConstants(const FrameFacts& f, const PellucidMaterial& m) {
   shared::MaterialConstants c{};
-  c.meta = {m.transmittanceModel, m.gaussianCount, 0, 0};
+  c.meta = {m.transmittanceModel, m.gaussianCount, m.thinWalled, 0};
   const float exponent = m.transmittanceModel == PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED ? 1.0f : 0.5f;
-  if (f.gathers) c.gather = gatherConstants(m);
+  if (f.gathers && m.thinWalled == 0) c.gather = gatherConstants(m);
   if (f.stages.lights) {  // one thickness a pixel
     c.inverseReflectance.w = static_cast<float>(1 / halfThickness(m));
     c.transmittance4.w = static_cast<float>(opaqueThickness(m));
@@ -243,7 +244,8 @@ shared::TileCommands tileCommands(const FrameFacts& f) {
   c.maps = {f.tiles.maps, f.stages.skipsLight, 0, 0};
   float reach = 0;
   for (uint32_t i = 0; f.gathers && i < f.frame.materialCount; ++i)
-    reach = std::max(reach, gatherReach(f.material(i), f.gatherSamples));
+    if (const PellucidMaterial m = f.material(i); m.thinWalled == 0)
+      reach = std::max(reach, gatherReach(m, f.gatherSamples));
   c.reach.x = reach / (1000 * f.frame.metersPerUnit);
   return c;
 }
