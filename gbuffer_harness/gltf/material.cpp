@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <sstream>
 #include <string_view>
 
 #include "capture/material.h"
@@ -43,17 +42,18 @@ std::optional<Rgb> thinTransmittance(const GltfDocument& document, const std::st
   constexpr std::string_view kThin = "thin:";
   if (text.rfind(kThin, 0) != 0) return std::nullopt;
   Rgb color{};
-  std::istringstream parts(text.substr(kThin.size()));
-  std::string part;
-  std::size_t count = 0;
-  for (; std::getline(parts, part, ','); ++count) {
-    const std::optional<double> value = numberIn<double>(part);
-    if (count >= 3 || !value || !(*value >= 0 && *value <= 1)) break;
-    color[count] = *value;
+  std::size_t from = kThin.size();
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::size_t end = c < 2 ? text.find(',', from) : text.size();
+    const auto value = end < from || end == std::string::npos
+                           ? std::nullopt
+                           : numberIn<double>(std::string_view(text).substr(from, end - from));
+    if (!value || *value < 0 || *value > 1)
+      document.fail("material \"" + name + "\"",
+                    "\"" + text + "\" is not thin:R,G,B with a transmittance from 0 to 1 of each");
+    color[c] = *value;
+    from = end + 1;
   }
-  if (count != 3 || !parts.eof() || text.back() == ',')
-    document.fail("material \"" + name + "\"",
-                  "\"" + text + "\" is not thin:R,G,B with a transmittance from 0 to 1 of each");
   return color;
 }
 

@@ -289,6 +289,27 @@ TEST_F(ThinWall, FramesThatReuseKeepTheSheetsLight) {
   }
 }
 
+// Gathered light is added by the diffusion or by a dispatch of its own, where the GPU finds material or
+// light.
+TEST_F(ThinWall, EveryOrderOfDispatchesHasTheSameLight) {
+  Model model = sheet();
+  addSkin(model, {0, 8, 0}, 1.5);
+  model.lights = {directional({1, 0.5, 1}, kE)};
+  const Capture c = draw(model);
+  for (const std::uint32_t spacing : {1u, 4u})
+    for (const auto indirect : {PELLUCID_INDIRECT_MATERIAL, PELLUCID_INDIRECT_LIGHT})
+      for (const std::uint32_t features : {1u, 3u}) {
+        SCOPED_TRACE(testing::Message() << spacing << " " << indirect << " " << features);
+        ReplaySettings settings = quality(1);
+        settings.translucency.gatherSpacing = spacing;
+        settings.indirectDispatches = indirect;
+        settings.features = features;
+        expectPixels(c, run(c, settings), 1, [&](double, double y, std::size_t k) {
+          return y > 2 ? -1 : kTransmittance[k] * kE * cosineOf({1, 0.5, 1});
+        });
+      }
+}
+
 // Curved sheets, lights of all kinds and encodings, with and without normals and back depths, beside a solid.
 TEST_F(ThinWall, AgreesWithTheReference) {
   PellucidMaterial wall = compileMaterial(ThinWallMaterial{{0.4, 0.3, 0.2}, {0.5, 0.6, 0.1}, {}}, "wall");

@@ -367,8 +367,8 @@ TEST(Material, ThinWallsTransmitTheSameAtEveryThickness) {
     EXPECT_NEAR(wall.material.reflectance[c], reflectance[c], 1e-4);
     EXPECT_LE(wall.material.reflectance[c] + wall.material.wallTransmittance[c], 1.0f);
     for (const double d : thickness)
-      EXPECT_NEAR(pellucidEvaluateTransmittance(&wall.material, c, d), transmittance[c], 1e-4);
-    EXPECT_NEAR(slabs[3 + c].transmittance, transmittance[c], 1e-4);
+      EXPECT_NEAR(pellucidEvaluateTransmittance(&wall.material, c, d), transmittance[c], 2e-4);
+    EXPECT_NEAR(slabs[3 + c].transmittance, transmittance[c], 2e-4);
     EXPECT_EQ(slabs[3 + c].reflectance, reflectance[c]);
   }
   std::fill_n(desc.burleyDistance, 3, 2.0);
