@@ -38,7 +38,7 @@ inline void addSkin(Model& model, const Vector3& center, double radius) {
   skin.baseColor = {0.5, 0.5, 0.5};
   skin.material = 2;
   model.surfaces.push_back(skin);
-  model.materials.push_back(PresetMaterial{"skin1"});
+  model.materials.emplace_back(PresetMaterial{"skin1"});
   addSphere(model, center, radius, 24);
   endPart(model, 2, static_cast<std::uint32_t>(model.surfaces.size() - 1));
 }
