@@ -13,10 +13,10 @@
 #define PELLUCID_REFINEMENT_NEAR (3.0 / 4.0)
 #define PELLUCID_REFINEMENT_FAR (1.0 - PELLUCID_REFINEMENT_NEAR)
 
-// The fine filter: the pixel, its neighbors on both sides and theirs, 11 5 1 over 23. The wide one, along the long axis of
+// The fine filter: the pixel, its neighbors on both sides and theirs, 9 4 1 over 19. The wide one, along the long axis of
 // a foreshortened kernel, is 2 2 1 over 8.
-#define PELLUCID_FINE_NEXT (5.0 / 23.0)
-#define PELLUCID_FINE_LAST (1.0 / 23.0)
+#define PELLUCID_FINE_NEXT (4.0 / 19.0)
+#define PELLUCID_FINE_LAST (1.0 / 19.0)
 #define PELLUCID_FINE_OWN (1.0 - 2.0 * (PELLUCID_FINE_NEXT + PELLUCID_FINE_LAST))
 #define PELLUCID_WIDE_FINE_NEXT (2.0 / 8.0)
 #define PELLUCID_WIDE_FINE_LAST (1.0 / 8.0)
