@@ -62,8 +62,7 @@ using glm::vec4;
 #define PELLUCID_BINDING_FILTERED_PROBES (PELLUCID_BINDING_SHADOW_IMAGES + 1) // of the diffusion, beside the pyramid
 #define PELLUCID_BINDING_TILES 21 // lists of groups with work; see compute/frame/tiles.glsl
 #define PELLUCID_BINDING_TILE_COMMANDS PELLUCID_BINDING_KERNELS // of the passes that make them
-#define PELLUCID_BINDING_MASK 22
-#define PELLUCID_BINDING_COUNT 23
+#define PELLUCID_BINDING_COUNT 22
 
 // Lights and shadow maps of one dispatch are uniform buffers, which are cached apart from what images pass
 // through. 16 KiB is what every device binds.
@@ -81,7 +80,6 @@ using glm::vec4;
 #define PELLUCID_FLAG_CHORD_THICKNESS 128u
 #define PELLUCID_FLAG_CHORD 256u // some light, or a debug view, needs camera-space thickness
 #define PELLUCID_FLAG_DIFFUSED 512u // what the gather adds to has been diffused
-#define PELLUCID_FLAG_MASK 2048u
 #define PELLUCID_FLAG_WIDE_OUTPUT 1024u // 32 bits a channel, which keep what halves round
 
 // Specialization constants

@@ -1,7 +1,5 @@
 // A pixel with the light that comes through, or what a debug view shows of it.
 
-layout(set = 0, binding = PELLUCID_BINDING_MASK) uniform texture2D maskImage;
-
 struct Texels {
   uint value;
   vec4 source, normal;
@@ -42,7 +40,6 @@ vec3 resultAt(ivec2 pixel, Texels t, float front, uint m) {
         if (l.held != vec4(0.0) && light.meta.w == 0u && thickness.g < 0.0) thickness.g = meanThickness(l.held, l.thickness, m) * mm;
       }
     }
-    if (hasFlag(PELLUCID_FLAG_MASK)) transmitted *= clamp(texelFetch(maskImage, pixel, 0).x, 0.0, 1.0);
   }
   if (kDebugViews) {
     // The divisors are positive where they are used; nothing arriving shows as 0.

@@ -24,7 +24,6 @@ constexpr std::array kImageFields = {
     ImageField{PELLUCID_RESOURCE_IRRADIANCE, "irradiance", &PellucidFrame::irradiance, true, 0},
     ImageField{PELLUCID_RESOURCE_NORMAL, "normal", &PellucidFrame::normal, false, PELLUCID_FLAG_NORMAL},
     ImageField{PELLUCID_RESOURCE_ALBEDO, "albedo", &PellucidFrame::albedo, false, PELLUCID_FLAG_ALBEDO},
-    ImageField{PELLUCID_RESOURCE_MASK, "mask", &PellucidFrame::mask, false, PELLUCID_FLAG_MASK},
     ImageField{PELLUCID_RESOURCE_MATERIAL, "material", &PellucidFrame::material, true, 0},
     ImageField{PELLUCID_RESOURCE_OUTPUT, "output", &PellucidFrame::output, true, 0},
 };

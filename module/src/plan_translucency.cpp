@@ -30,7 +30,6 @@ void addTranslucency(PlanBuilder& b, const LightGroup& group, uint32_t source, u
   const ConstantsLayout& layout = f.constants;
   b.constants(d, PELLUCID_BINDING_MATERIALS, layout.materials);
   b.optional(d, PELLUCID_BINDING_NORMAL, PELLUCID_RESOURCE_NORMAL, 4);
-  b.optional(d, PELLUCID_BINDING_MASK, PELLUCID_RESOURCE_MASK, 1);
   b.constants(d, PELLUCID_BINDING_LIGHTS, {layout.lights.offset + group.lightBytes, kLightWindow});
   b.constants(d, PELLUCID_BINDING_SHADOWS, {layout.shadows.offset + group.shadowBytes, kShadowWindow});
   b.optional(d, PELLUCID_BINDING_BACK_DEPTH, PELLUCID_RESOURCE_BACK_DEPTH,

@@ -169,7 +169,6 @@ typedef struct PellucidFrame {
   PellucidImage irradiance; /* required; E, not divided by pi, not multiplied by albedo */
   PellucidImage normal;     /* outward unit vectors, components -1..1 */
   PellucidImage albedo;     /* multiplied after scattering */
-  PellucidImage mask;       /* one float channel, 0..1: multiplies what comes through a pixel at quality 0 */
   PellucidImage material;   /* required; unsigned integer, 0 none, i: materials[i - 1] */
   PellucidImage output;     /* required; storage image of outputFormat; may be the irradiance image. Pixels of
                                material 0 are not written; alpha is the irradiance's */
