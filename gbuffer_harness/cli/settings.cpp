@@ -200,7 +200,7 @@ const std::map<std::string, Key> kKeys = {
      {"frame time / budget, multiplies the coherence threshold above 1",
       [](const auto& key, const auto& value, ReplaySettings& s) { s.frameLoad = real(key, value); }}},
     {"quality",
-     {"of the frame, 0..3, 3 best; from 1 on lights are gathered",
+     {"of the frame, 0..2, 2 best; 1 and 2 gather light",
       [](const auto& key, const auto& value, ReplaySettings& s) { s.quality = number(key, value); }}},
     {"target-error",
      {"relative RMSE of the diffusion that chooses the quality, 0 for none",

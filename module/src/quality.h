@@ -36,7 +36,7 @@ struct Quality {
   bool fineFilter;  // a pixel's neighbors are filtered one by one, and do not give their part to it and level
                     // 2
 };
-constexpr Quality kQualities[] = {{0, 1, false}, {8, 1, true}, {16, 2, true}, {32, 2, true}};
+constexpr Quality kQualities[] = {{0, 1, false}, {8, 1, true}, {16, 2, true}};
 constexpr uint32_t kBestQuality = std::size(kQualities) - 1;
 
 // The least quality whose measured error at radii up to `radius` pixels (0: all) is below `error`. False, and

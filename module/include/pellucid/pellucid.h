@@ -193,7 +193,7 @@ typedef struct PellucidFrame {
   const PellucidThesisOptions* thesis; /* NULL (default): none */
   uint32_t gatherSamples;   /* entry points of the shadow map that each probe gathers light from, for lights with a
                                map: a multiple of 4, at most 64; needs materials of EXP2 or SINH_EXP. 0: one
-                               light-space thickness. PELLUCID_GATHER_BY_QUALITY (default): 0, 8, 16 or 32 at quality
+                               light-space thickness. PELLUCID_GATHER_BY_QUALITY (default): 0, 8 or 16 at quality
                                0, 1 or 2; 0, which the plan's skips say, with a material of another model,
                                thickness from the camera, and thesis options of one thickness a pixel */
   uint32_t reuse;           /* PellucidReuse. Kept light is looked up at the same pixel: pass no previous plan
