@@ -28,8 +28,7 @@ vec3 materialTransmittance(uint m, float d) {
              transmittanceSinhExp(materials[m].transmittance[1], c.g, d),
              transmittanceSinhExp(materials[m].transmittance[2], c.b, d));
   } else if (materials[m].meta.x == PELLUCID_SHADER_TRANSMITTANCE_LINEAR) {
-    t = max(1.0 - d * vec3(materials[m].transmittance[0].x, materials[m].transmittance[1].x, materials[m].transmittance[2].x), 0.0);
-    t *= t;
+    t = 1.0 - d * vec3(materials[m].transmittance[0].x, materials[m].transmittance[1].x, materials[m].transmittance[2].x);
   } else {
     for (uint i = 0u; i < materials[m].meta.y; ++i)
       t += transmittanceGaussian(materials[m].gaussianWeight[i].rgb, materials[m].gaussianFalloff[i].rgb, d);

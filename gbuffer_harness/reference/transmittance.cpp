@@ -31,7 +31,7 @@ double channelTransmittance(const PellucidMaterial& m, int channel, double d) {
     case PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED:
       return gaussianSum(m, channel, d, 1);
     case PELLUCID_TRANSMITTANCE_LINEAR:
-      return std::pow(std::max(0.0, 1 - d / double(p[0])), 2);
+      return std::max(0.0, 1 - d / double(p[0]));
     default:
       throw InputError("", "transmittanceModel", "unknown model " + std::to_string(m.transmittanceModel));
   }

@@ -35,7 +35,7 @@ inline double transmittance(const PellucidMaterial& m, size_t channel, double d)
       return sum;
     }
     case PELLUCID_TRANSMITTANCE_LINEAR:
-      return std::pow(std::max(1 - d / static_cast<double>(m.transmittance[channel][0]), 0.0), 2);
+      return std::max(1 - d / static_cast<double>(m.transmittance[channel][0]), 0.0);
     default:
       return std::numeric_limits<double>::quiet_NaN();
   }
