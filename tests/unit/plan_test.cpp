@@ -45,6 +45,39 @@ TEST(Plan, WholeFrameIsFusedDispatchAndPyramid) {
   EXPECT_EQ(plan.dispatches[0].groups[1], 4u) << "50 pixels in groups of 16";
 }
 
+// Frames in which every light is in a dispatch of its own, and frames of one dispatch.
+TEST(Plan, ConstantsSizeBoundsThatOfFrames) {
+  for (const uint32_t lights : {0u, 1u, 3u, 9u, 16u, 150u})
+    for (const uint32_t samples : {0u, 8u})
+      for (const uint32_t mapsOfALight : {0u, 1u, 6u})
+        for (const uint32_t indirect : {0u, 1u}) {
+          Frame f(0);
+          f.frame.gatherSamples = samples;
+          f.frame.indirectDispatches = indirect;
+          f.lights.clear();
+          const Frame one(1);
+          for (uint32_t i = 0; i < lights; ++i) {
+            f.lights.push_back(Frame::light(static_cast<uint32_t>(f.maps.size()), mapsOfALight));
+            for (uint32_t k = 0; k < mapsOfALight; ++k) {
+              f.maps.push_back(one.maps[0]);
+              // All maps of light 3 n share images, those of the others are their own.
+              f.maps.back().image = i % 3 == 0 ? 0 : static_cast<uint32_t>(f.images.size());
+              if (i % 3 != 0 || f.images.empty()) f.images.push_back(Frame::view());
+            }
+          }
+          f.use();
+          PellucidPlan plan;
+          const PellucidResult result = pellucidBuildPlan(&f.frame, nullptr, &plan);
+          if (result == PELLUCID_ERROR_CAPACITY) continue;
+          ASSERT_EQ(result, PELLUCID_OK) << f.problems();
+          const VkDeviceSize bound = pellucidGetConstantsSize(1, lights, lights * mapsOfALight);
+          EXPECT_EQ(bound % 256, 0u);
+          EXPECT_LE(plan.constantsSize, bound) << lights << " lights of " << mapsOfALight << " maps";
+          // A gather takes 512 bytes a map besides, which frames without one lack.
+          EXPECT_LT(bound, 4 * plan.constantsSize) << lights << " lights of " << mapsOfALight;
+        }
+}
+
 TEST(Plan, SameInputSamePlan) {
   Frame f;
   const PellucidPlan a = f.plan(), b = f.plan();

@@ -297,6 +297,11 @@ static inline void pellucidInitFrame(PellucidFrame* f) { pellucidInitFrameSized(
  * *count to the number there are; `needs` may be NULL. Views are not looked at: call it before creating them. */
 PellucidResult pellucidGetImageNeeds(const PellucidFrame* frame, uint32_t* count, PellucidImageNeed* needs);
 
+/* Bytes of a constants slice for any frame of at most so many materials, lights and shadow maps, whatever else it holds:
+ * plan.constantsSize is never more. shadowMapCount: the sum over the lights, so that a map of two lights counts twice. No
+ * frame, image or device is needed, so a ring of slices can be allocated first. */
+VkDeviceSize pellucidGetConstantsSize(uint32_t materialCount, uint32_t lightCount, uint32_t shadowMapCount);
+
 /* Checks every convention and the domains of all fields (docs/domains.md); calls `fn` for each finding. PELLUCID_OK
  * unless one is an error. PELLUCID_ERROR_CAPACITY exactly where pellucidBuildPlan returns it, too: more shadow images
  * than a plan can bind. */
@@ -312,11 +317,14 @@ PellucidResult pellucidBuildPlan(const PellucidFrame* frame, const PellucidPlan*
 
 /* Host-visible, host-coherent memory for one recording, usage STORAGE_BUFFER | UNIFORM_BUFFER, with
  * frame.indirectDispatches INDIRECT_BUFFER, too: then the device writes there what it decides, which holds until the
- * constants are written again. All passes read it, so it should be device-local, too, where there is such memory. */
+ * constants are written again. All passes read it, so it should be device-local, too, where there is such memory.
+ * Recording writes the slice at once, and the device reads it when the commands run. Each recording that the device has
+ * not finished needs a slice of its own: a ring of as many as there are frames in flight. Neither this library nor
+ * Vulkan's validation sees one that is written too early; the earlier frame then has the later one's camera and lights. */
 typedef struct PellucidConstantsSlice {
   VkBuffer buffer;
   VkDeviceSize offset; /* multiple of 256, the largest alignment Vulkan lets a device ask for */
-  VkDeviceSize size;   /* >= plan.constantsSize */
+  VkDeviceSize size;   /* >= plan.constantsSize, which pellucidGetConstantsSize bounds */
   void* mapped;        /* address of `offset` */
 } PellucidConstantsSlice;
 
