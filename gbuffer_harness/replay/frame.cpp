@@ -210,6 +210,10 @@ void makeFrame(const Capture& capture, const std::vector<PellucidMaterial>& mate
   f.nearestDistance = settings.nearestDistance;
   f.separateOutput = !settings.aliasOutput || settings.debugView != PELLUCID_DEBUG_NONE;
   f.indirectDispatches = settings.indirectDispatches;
+  f.materialShift = settings.materialShift;
+  f.materialMask = settings.materialMask;
+  f.outputMode = settings.outputMode;
+  f.preExposure = settings.preExposure;
   f.debugView = settings.debugView;
   fillPlaceholders(capture, data);
 }

@@ -29,6 +29,11 @@ static_assert(PELLUCID_SHADER_ANGLE_POLYNOMIAL == PELLUCID_ANGLE_POLYNOMIAL);
 static_assert(PELLUCID_SHADER_DEBUG_THICKNESS == PELLUCID_DEBUG_THICKNESS);
 static_assert(PELLUCID_SHADER_DEBUG_TRANSMITTANCE == PELLUCID_DEBUG_TRANSMITTANCE);
 static_assert(PELLUCID_SHADER_DEBUG_OCCLUSION == PELLUCID_DEBUG_OCCLUSION);
+static_assert(PELLUCID_SHADER_NORMALS_SNORM == PELLUCID_NORMALS_SNORM);
+static_assert(PELLUCID_SHADER_NORMALS_UNORM == PELLUCID_NORMALS_UNORM);
+static_assert(PELLUCID_SHADER_NORMALS_OCTAHEDRAL == PELLUCID_NORMALS_OCTAHEDRAL);
+static_assert(PELLUCID_SHADER_NORMALS_OCTAHEDRAL_UNORM == PELLUCID_NORMALS_OCTAHEDRAL_UNORM);
+static_assert(PELLUCID_CONSTANT_NORMALS == PELLUCID_SPECIALIZATION_NORMALS);
 static_assert(PELLUCID_GAUSSIANS == PELLUCID_MAX_GAUSSIANS);
 static_assert(PELLUCID_MAX_LIGHT_SHADOW_MAPS <= PELLUCID_SHADOW_IMAGE_COUNT);
 
@@ -68,11 +73,12 @@ shared::FrameConstants frameConstants(const FrameFacts& facts) {
   if (t.chordThickness) flags |= PELLUCID_FLAG_CHORD_THICKNESS;
   if (facts.needsChord) flags |= PELLUCID_FLAG_CHORD;
   if (facts.wide) flags |= PELLUCID_FLAG_WIDE_OUTPUT;
+  if (f.outputMode == PELLUCID_OUTPUT_ADD) flags |= PELLUCID_FLAG_ADDS;
   if (f.features & PELLUCID_FEATURE_DIFFUSION && facts.diffuses) flags |= PELLUCID_FLAG_DIFFUSED;
   c.flags = {flags, f.materialCount, f.debugView, t.angleModel};
   const float* p = t.anglePolynomial;
   c.anglePolynomial = {p[0], p[1], p[2], p[3]};
-  c.marks.x = t.materialMarkBit;
+  c.marks = {t.materialMarkBit, f.materialShift, materialBits(f) & ~t.materialMarkBit, 0};
   c.filterAndLimit = rgb(t.transmittanceFilter, t.maximumThickness > 0 ? t.maximumThickness : INFINITY);
   for (uint32_t level = kFirstLevel; level <= PELLUCID_LAST_LEVEL; ++level) {
     const PyramidPlace& place = facts.pyramid.levels[level];
@@ -97,7 +103,10 @@ shared::LightConstants lightConstants(const FrameFacts& f, const PellucidLight& 
   const glm::dmat4& viewFromWorld = f.viewFromWorld;
   shared::LightConstants c{};
   c.meta = {l.type, firstShadow, l.shadowMapCount, f.holdsBackFaces(l) ? 1 : 0};
-  c.radiance = rgb(l.color) * l.intensity;
+  // Below the largest float, as light at a point has it in the shaders.
+  for (int i = 0; i < 3; ++i)
+    c.radiance[i] = static_cast<float>(
+        std::min(static_cast<double>(l.color[i]) * l.intensity * f.frame.preExposure, 1e30));
   if (l.type != PELLUCID_LIGHT_DIRECTIONAL) {
     const glm::dvec4 position(l.position[0], l.position[1], l.position[2], 1);
     c.position = glm::vec4(glm::vec3(viewFromWorld * position), l.range > 0 ? 1 / l.range : 0);

@@ -60,6 +60,8 @@ struct FrameFacts {
 
   bool has(PellucidResource image) const { return (images & 1u << image) != 0; }
   bool debug() const { return frame.debugView != PELLUCID_DEBUG_NONE; }
+  // The output shares no memory with the irradiance.
+  bool separate() const { return frame.separateOutput != 0 || frame.outputMode == PELLUCID_OUTPUT_ADD; }
   // All maps of a light hold the same faces.
   bool holdsBackFaces(const PellucidLight& light) const {
     return light.shadowMapCount > 0 && frame.shadowMaps[light.firstShadowMap].faces == PELLUCID_FACES_BACK;
@@ -106,6 +108,11 @@ struct FrameFacts {
     if (current.lightCount > 0) group(static_cast<const LightGroup&>(current));
   }
 };
+
+// Bits of a material value that may hold the index.
+inline uint32_t materialBits(const PellucidFrame& frame) {
+  return (frame.materialMask == 0 ? UINT32_MAX : frame.materialMask) >> frame.materialShift;
+}
 
 // Checks everything that a plan relies on, image views not among it, and fills `facts`, in the order in which
 // one needs the other. PELLUCID_OK: all of `facts` holds.

@@ -50,7 +50,7 @@ FrameHash hashOf(const FrameFacts& facts) {
   settings.add(RANGE(t, angleModel, objectCenter));
   if (t.minimumDotTable) settings.add(t.minimumDotTable, minimumDotEntries(t) * sizeof(float));
   settings.add(RANGE(f, gatherSamples, frameLoad));
-  settings.add(RANGE(f, quality, indirectDispatches));
+  settings.add(RANGE(f, quality, preExposure));
   for (uint32_t i = 0; i < f.materialCount; ++i) {
     const PellucidMaterial material = facts.material(i);
     of(FramePart::Materials).add(&material, sizeof material);

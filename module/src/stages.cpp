@@ -25,7 +25,7 @@ Stages::Stages(const FrameFacts& facts) {
     fused = addsProbes ? 0 : facts.lights.fused();
   }
   lights = fused > 0;
-  copies = diffusion && !lights && !frame.separateOutput;
+  copies = diffusion && !lights && !facts.separate();
   // Without diffusion the fused pass still has to bring irradiance (times albedo) to the output, unless that
   // is what it is.
   nothing = writers() == 0 && facts.inPlace && !facts.has(PELLUCID_RESOURCE_ALBEDO);

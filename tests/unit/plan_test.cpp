@@ -296,6 +296,27 @@ std::array<uint32_t, 2> workgroupOf(uint32_t pipeline) {
 }
 
 // Tiles that overlap would be done twice, and no pixel would say so.
+// Tiles of one atlas, which a dispatch binds once.
+TEST(Plan, AnAtlasHoldsTheMapsOfManyLights) {
+  for (const uint32_t lights : {64u, 300u}) {
+    Frame f;
+    f.lights.clear();
+    const PellucidShadowMap map = f.maps[0];
+    f.maps.clear();
+    for (uint32_t i = 0; i < lights; ++i) {
+      f.maps.push_back(map);
+      f.maps.back().offset[0] = i % 20 * map.extent[0];
+      f.maps.back().offset[1] = i / 20 * map.extent[1];
+      f.lights.push_back(Frame::light(i, 1));
+    }
+    f.use();
+    const PellucidPlan plan = f.plan();
+    EXPECT_EQ(plan.activeLights, lights);
+    const auto all = names(plan);
+    EXPECT_EQ(std::count(all.begin(), all.end(), "translucency"), lights == 64 ? 1 : 3) << "112 maps each";
+  }
+}
+
 TEST(Plan, TilesAreThoseOfTheShader) {
   Frame f;
   const PellucidPlan plan = f.plan();

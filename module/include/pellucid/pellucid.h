@@ -141,6 +141,14 @@ typedef enum PellucidDebugView {
   PELLUCID_DEBUG_IRRADIANCE = 4     /* irradiance + transmitted/rho: what the diffusion reads */
 } PellucidDebugView;
 
+/* What happens to the output's pixels that have a material: */
+typedef enum PellucidOutputMode {
+  PELLUCID_OUTPUT_REPLACE = 0, /* they become the result */
+  PELLUCID_OUTPUT_ADD = 1      /* the result is added to their color, which is specular light, say, and their alpha
+                                  stays. The sum is clamped as a result is: 0..65504, and NaN counts as 0. The output is not the
+                                  irradiance image, and its image has usage SAMPLED, too. Debug views replace */
+} PellucidOutputMode;
+
 /* The GPU decides how many workgroups run: */
 typedef enum PellucidIndirect {
   PELLUCID_INDIRECT_NONE = 0,     /* nowhere: all passes run over the whole rect */
@@ -167,9 +175,10 @@ typedef struct PellucidFrame {
   PellucidImage frontDepth; /* required; one float channel */
   PellucidImage backDepth;  /* nearest back face behind the front; without it no camera-space thickness */
   PellucidImage irradiance; /* required; E, not divided by pi, not multiplied by albedo */
-  PellucidImage normal;     /* outward unit vectors, components -1..1 */
+  PellucidImage normal;     /* outward unit vectors, as PellucidContextDesc::normalEncoding says */
   PellucidImage albedo;     /* multiplied after scattering */
-  PellucidImage material;   /* required; unsigned integer, 0 none, i: materials[i - 1] */
+  PellucidImage material;   /* required; unsigned integer, 0 none, i: materials[i - 1]; see materialMask. A view's
+                               component mapping brings another channel to R */
   PellucidImage output;     /* required; storage image of outputFormat; may be the irradiance image. Pixels of
                                material 0 are not written; alpha is the irradiance's */
   PellucidImage transients[PELLUCID_MAX_TRANSIENTS]; /* as listed by pellucidGetImageNeeds */
@@ -218,6 +227,13 @@ typedef struct PellucidFrame {
   uint32_t separateOutput;  /* 1: the output shares no memory with the irradiance, of which diffusion without a fused
                                dispatch before it then needs no copy; 0 (default): it may be the same image */
   uint32_t indirectDispatches; /* PellucidIndirect; but for NONE the constants' buffer has usage INDIRECT_BUFFER, too */
+  uint32_t materialShift, materialMask; /* the index is (R of the material image & mask) >> shift, so that other bits may
+                                           hold anything; shift 0..31, and the mask has the bits of all indices; mask 0
+                                           (default): all bits. thesis->materialMarkBit is a bit of the shifted value */
+  uint32_t outputMode;      /* PellucidOutputMode */
+  float preExposure;        /* the irradiance image holds E times this, and so does the output; lights keep their units.
+                               1e-9..1e9; default 1. Light that is reused was stored by the factor of its own frame: a
+                               change of the factor computes it anew */
 } PellucidFrame;
 
 /* ---- Plan ------------------------------------------------------------------------------------ */
@@ -253,6 +269,15 @@ typedef enum PellucidUse {
 /* Calls job(data, i) for each i below count, on any threads and in any order, and returns when all have returned. */
 typedef void (*PellucidParallelForFn)(void* user, uint32_t count, void (*job)(void* data, uint32_t index), void* data);
 
+/* How the normal image holds a vector n, of world space or of view space by frame.normalsInViewSpace. */
+typedef enum PellucidNormalEncoding {
+  PELLUCID_NORMALS_SNORM = 0,            /* n in RGB, -1..1: SNORM and float formats; (0, 0, 0): none at this pixel */
+  PELLUCID_NORMALS_UNORM = 1,            /* (n + 1) / 2 in RGB, 0..1; (0, 0, 0), which is none of them: none */
+  PELLUCID_NORMALS_OCTAHEDRAL = 2,       /* "oct" of Cigolle et al. 2014 in RG, -1..1: n / (|x| + |y| + |z|), whose lower
+                                            half, z < 0, is folded over the corners; cannot say none */
+  PELLUCID_NORMALS_OCTAHEDRAL_UNORM = 3  /* (that + 1) / 2 in RG, 0..1 */
+} PellucidNormalEncoding;
+
 typedef struct PellucidContextDesc {
   uint32_t structSize;    /* sizeof(PellucidContextDesc), written by pellucidInitContextDesc */
   uint32_t headerVersion; /* PELLUCID_HEADER_VERSION, likewise */
@@ -274,7 +299,8 @@ typedef struct PellucidContextDesc {
   void* parallelUser;
   VkImageViewType shadowViewType; /* of all shadow images of all frames: 2D (default), or 2D_ARRAY, of which one view of all
                                      layers serves every map in them; each frame then has a shadow image, maps or not */
-  uint32_t reserved;              /* 0, for a later field */
+  uint32_t normalEncoding;        /* PellucidNormalEncoding of all frames; default SNORM. A specialization constant. Unused by
+                                     a library built with PELLUCID_GBUFFER_DECODE, whose file decodes */
 } PellucidContextDesc;
 
 /* The defaults, written into a struct of that many bytes; pellucidInit* without it have the header's size. */
@@ -329,7 +355,7 @@ typedef struct PellucidConstantsSlice {
 } PellucidConstantsSlice;
 
 /* Writes the slice and records every dispatch and the barriers between them. Before: the inputs are readable by, and
- * the output and transients free for, COMPUTE_SHADER. After: `output` was written by COMPUTE_SHADER / SHADER_WRITE.
+ * the output and transients free for, COMPUTE_SHADER; PELLUCID_OUTPUT_ADD reads the output, too. After: `output` was written by COMPUTE_SHADER / SHADER_WRITE.
  * Compute pipeline, push constants and set 0 are left changed. `frame` is the one that made the plan, with its views
  * filled in. One that differs in anything else, or lacks an image of the plan's, is PELLUCID_ERROR_INVALID_ARGUMENT;
  * the message names the part that differs. */
