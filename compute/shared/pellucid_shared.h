@@ -94,6 +94,7 @@ using glm::vec4;
 // Values of the public enums the shaders branch on; constants.cpp asserts that they agree.
 #define PELLUCID_SHADER_LIGHT_DIRECTIONAL 0u
 #define PELLUCID_SHADER_LIGHT_SPOT 2u
+#define PELLUCID_SHADER_LIGHT_AMBIENT 3u // no PellucidLightType: module/src/ambient.h
 #define PELLUCID_SHADER_DEPTH_DEVICE 0u
 #define PELLUCID_SHADER_DEPTH_VIEW_Z 1u
 #define PELLUCID_SHADER_DEPTH_DISTANCE 2u
@@ -157,6 +158,7 @@ struct FrameConstants {
   // View ray of planar length 1: of pixel (0, 0), changes per pixel in x and y.
   vec4 normalRay[3]; // xyz: in the normal image's space
   vec4 facingRay[2]; // along pixels' columns and rows; xy, zw, xy
+  mat4 ambient[3];   // per channel: the form whose value at a normal, 1 is the ambient light's irradiance
 };
 
 struct LightConstants {

@@ -60,6 +60,8 @@ shared::FrameConstants frameConstants(const FrameFacts& facts) {
   };
   c.facingRay[0] = {facing(camera.rayBase), facing(camera.rayX)};
   c.facingRay[1] = {facing(camera.rayY), 0, 0};
+  const std::array<glm::mat4, 3> ambient = ambientIrradiance(facts);
+  std::copy(ambient.begin(), ambient.end(), c.ambient);
   const Rect& r = facts.rect;
   c.rect = {r.x, r.y, r.x + r.width, r.y + r.height};
   const PellucidThesisOptions& t = facts.thesis;
@@ -103,6 +105,7 @@ shared::LightConstants lightConstants(const FrameFacts& f, const PellucidLight& 
   const glm::dmat4& viewFromWorld = f.viewFromWorld;
   shared::LightConstants c{};
   c.meta = {l.type, firstShadow, l.shadowMapCount, f.holdsBackFaces(l) ? 1 : 0};
+  if (isAmbient(l)) return c;
   // Below the largest float, as light at a point has it in the shaders.
   for (int i = 0; i < 3; ++i)
     c.radiance[i] = static_cast<float>(
@@ -185,7 +188,11 @@ shared::MaterialConstants materialConstants(const FrameFacts& f, const PellucidM
   shared::MaterialConstants c{};
   c.meta = {m.transmittanceModel, m.gaussianCount, 0, 0};
   const float exponent = m.transmittanceModel == PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED ? 1.0f : 0.5f;
-  if (f.gathers) c.gather = gatherConstants(m);
+  const bool canGather = canBeGathered(m.transmittanceModel);
+  if (f.gathers || (f.ambient.intensity > 0 && canGather)) c.gather = gatherConstants(m);
+  // Of other models the ambient light takes nothing from visible faces.
+  for (glm::vec4& reflectance : c.gather.reflectance)
+    if (!canGather) reflectance.x = 1;
   if (f.stages.lights) {  // one thickness a pixel
     c.inverseReflectance.w = static_cast<float>(1 / halfThickness(m));
     c.transmittance4.w = static_cast<float>(opaqueThickness(m));

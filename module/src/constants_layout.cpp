@@ -54,5 +54,6 @@ VkDeviceSize mostConstants(VkDeviceSize materials, VkDeviceSize lights, VkDevice
 
 extern "C" VkDeviceSize pellucidGetConstantsSize(uint32_t materialCount, uint32_t lightCount,
                                                  uint32_t shadowMapCount) {
-  return pellucid::mostConstants(materialCount, lightCount, shadowMapCount);
+  // Ambient light is one more.
+  return pellucid::mostConstants(materialCount, VkDeviceSize{lightCount} + 1, shadowMapCount);
 }

@@ -3,6 +3,7 @@
 
 #include <glm/glm.hpp>
 
+#include "ambient.h"
 #include "camera.h"
 #include "constants_layout.h"
 #include "cull.h"
@@ -46,6 +47,7 @@ struct FrameFacts {
   float longestEntrySide = 0;            // see entry_points.h
 
   // ---- Of the lights
+  PellucidLight ambient{};  // see ambient.h
   bool needsChord = false;  // thickness along view rays is asked for
   LightGroups lights;
 
@@ -94,17 +96,19 @@ struct FrameFacts {
   void placeLights(bool beside, OnLight&& light, OnGroup&& group) const {
     LightGroup current;
     current.beside = beside;
-    for (const bool gathered : {true, false})
-      for (uint32_t i = 0; i < frame.lightCount; ++i) {
-        const PellucidLight& l = frame.lights[i];
-        if (isGathered(l) != gathered || whySkipped(l)) continue;
-        if (!current.addLight(*this, l)) {
-          group(static_cast<const LightGroup&>(current));
-          current = current.next();
-          current.addLight(*this, l);
-        }
-        light(static_cast<const LightGroup&>(current), l);
+    const auto place = [&](const PellucidLight& l) {
+      if (whySkipped(l)) return;
+      if (!current.addLight(*this, l)) {
+        group(static_cast<const LightGroup&>(current));
+        current = current.next();
+        current.addLight(*this, l);
       }
+      light(static_cast<const LightGroup&>(current), l);
+    };
+    for (const bool gathered : {true, false})
+      for (uint32_t i = 0; i < frame.lightCount; ++i)
+        if (isGathered(frame.lights[i]) == gathered) place(frame.lights[i]);
+    place(ambient);
     if (current.lightCount > 0) group(static_cast<const LightGroup&>(current));
   }
 };

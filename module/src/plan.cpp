@@ -44,6 +44,8 @@ void addSkips(PlanBuilder& b) {
   const FrameFacts& f = b.facts;
   for (uint32_t i = 0; i < f.frame.lightCount; ++i)
     if (const char* reason = f.whySkipped(f.frame.lights[i])) b.skip("light", reason);
+  if (f.ambient.intensity > 0)
+    if (const char* reason = f.whySkipped(f.ambient)) b.skip("ambient light", reason);
   if (!(f.frame.features & PELLUCID_FEATURE_TRANSLUCENCY))
     b.skip("translucency", "not among the features");
   else if (f.lights.lightCount == 0)

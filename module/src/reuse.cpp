@@ -12,6 +12,7 @@ glm::dvec3 vec(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 
 // Cosine between the camera's axis and the direction to the light.
 float cameraLightDot(const FrameFacts& f, const PellucidLight& light) {
+  if (isAmbient(light)) return 0;  // from everywhere alike
   const glm::dmat4& view = f.viewFromWorld;
   const glm::dvec3 axis = f.depthRange.forward * glm::dvec3(view[0][2], view[1][2], view[2][2]);
   const glm::dvec3 toLight = light.type == PELLUCID_LIGHT_DIRECTIONAL

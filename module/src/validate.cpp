@@ -186,6 +186,9 @@ void checkFields(const FrameFacts& facts, Findings& out) {
   else if (mark != 0 && f.materialShift < 32 && (mark & materialBits(f)) == 0)
     out.error("thesis.materialMarkBit", "is ", mark, ", which materialMask ", f.materialMask,
               " and materialShift ", f.materialShift, " leave out");
+  for (uint32_t i = 0; f.ambient && i < kAmbientCoefficients; ++i)
+    if (!(std::abs(f.ambient[i]) <= 1e15f))
+      out.error("ambient", "[", i, "] is ", f.ambient[i], ", outside [-1e+15, 1e+15]");
   if (f.lightCount > 0 && !f.lights) out.error("lights", "is NULL, but lightCount is ", f.lightCount);
   if (f.shadowMapCount > 0 && !f.shadowMaps)
     out.error("shadowMaps", "is NULL, but shadowMapCount is ", f.shadowMapCount);
@@ -233,6 +236,9 @@ void checkGroups(const FrameFacts& facts, Findings& out) {
   for (uint32_t i = 0; i < f.lightCount; ++i)
     if (const char* reason = facts.whySkipped(f.lights[i]))
       out.warning(Field("lights[", i, "]"), "adds nothing: ", reason);
+  if (facts.ambient.intensity > 0)
+    if (const char* reason = facts.whySkipped(facts.ambient))
+      out.warning("ambient", "adds nothing: ", reason);
   warnOfShadowMaps(facts, out);
   if (facts.lights.count > 1 && facts.debug() && f.debugView != PELLUCID_DEBUG_IRRADIANCE)
     out.error("debugView", "is ", f.debugView, ", which needs all lights in one dispatch; they use ",

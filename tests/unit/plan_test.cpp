@@ -296,6 +296,46 @@ std::array<uint32_t, 2> workgroupOf(uint32_t pipeline) {
 }
 
 // Tiles that overlap would be done twice, and no pixel would say so.
+// A light without a map, in the dispatch of the others or one of its own beside gathered ones.
+TEST(Plan, AmbientLightIsALightOfItsOwn) {
+  std::array<float, 27> sky{};
+  Frame f;
+  f.frame.ambient = sky.data();
+  EXPECT_EQ(f.plan().activeLights, 1u) << "all coefficients are 0";
+  sky[4] = -1;
+  EXPECT_EQ(f.plan().activeLights, 2u);
+  f.lights.clear();
+  f.use();
+  EXPECT_EQ(names(f.plan()).front(), "translucency");
+  f.frame.backDepth = {};
+  EXPECT_EQ(f.plan().activeLights, 0u);
+  EXPECT_TRUE(skips(f.plan(), "ambient light", "no back depth to take a thickness from"));
+  EXPECT_NE(f.problems(PELLUCID_SEVERITY_WARNING).find("ambient adds nothing: no back depth"),
+            std::string::npos);
+
+  Frame gathered;
+  gathered.frame.gatherSamples = 8;
+  gathered.frame.gatherSpacing = 4;
+  gathered.frame.normal = Frame::view();
+  const auto without = names(gathered.plan());
+  EXPECT_EQ(std::count(without.begin(), without.end(), "add gathered"), 0);
+  gathered.frame.ambient = sky.data();
+  const auto with = names(gathered.plan());
+  EXPECT_EQ(std::count(with.begin(), with.end(), "add gathered"), 1);
+}
+
+// Recording refuses a plan of another sky.
+TEST(Plan, AnotherSkyIsAnotherFrame) {
+  std::array<float, 27> sky{};
+  sky[0] = 1;
+  Frame f;
+  f.frame.ambient = sky.data();
+  const PellucidPlan one = f.plan();
+  sky[0] = 2;
+  const PellucidPlan two = f.plan();
+  EXPECT_NE(std::memcmp(&one.state, &two.state, sizeof one.state), 0);
+}
+
 // Tiles of one atlas, which a dispatch binds once.
 TEST(Plan, AnAtlasHoldsTheMapsOfManyLights) {
   for (const uint32_t lights : {64u, 300u}) {

@@ -1,6 +1,7 @@
 // Each convention violated once: the field is named, the value is in the sentence, and no plan is made.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <ostream>
 
 #include <cmath>
@@ -62,6 +63,15 @@ const std::vector<Violation> kViolations = {
        f.thesis.materialMarkBit = 8;
      }},
     {"OutputMode", "outputMode", "2", [](Frame& f) { f.frame.outputMode = 2; }},
+    {"Ambient", "ambient", "[26] is nan",
+     [](Frame& f) {
+       static const auto sky = [] {
+         std::array<float, 27> s{};
+         s[26] = NAN;
+         return s;
+       }();
+       f.frame.ambient = sky.data();
+     }},
     {"PreExposure", "preExposure", "0", [](Frame& f) { f.frame.preExposure = 0; }},
     {"FrameLoad", "frameLoad", "-1", [](Frame& f) { f.frame.frameLoad = -1; }},
     {"Quality", "quality", "3, outside 0..2", [](Frame& f) { f.frame.quality = 3; }},

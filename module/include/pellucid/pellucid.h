@@ -234,6 +234,11 @@ typedef struct PellucidFrame {
   float preExposure;        /* the irradiance image holds E times this, and so does the output; lights keep their units.
                                1e-9..1e9; default 1. Light that is reused was stored by the factor of its own frame: a
                                change of the factor computes it anew */
+  const float* ambient;     /* light from all around that comes through thin parts, or NULL (default): 9 x RGB coefficients of
+                               radiance, -1e15..1e15, of the real orthonormal spherical harmonics of the world direction that
+                               light comes from, in the order 1, y, z, x, xy, yz, 3 z^2 - 1, xz, x^2 - y^2. The irradiance
+                               image has what lies on visible faces. Needs backDepth; nothing shadows hidden faces.
+                               Not in the debug views of light */
 } PellucidFrame;
 
 /* ---- Plan ------------------------------------------------------------------------------------ */
@@ -355,7 +360,8 @@ typedef struct PellucidConstantsSlice {
 } PellucidConstantsSlice;
 
 /* Writes the slice and records every dispatch and the barriers between them. Before: the inputs are readable by, and
- * the output and transients free for, COMPUTE_SHADER; PELLUCID_OUTPUT_ADD reads the output, too. After: `output` was written by COMPUTE_SHADER / SHADER_WRITE.
+ * the output and transients free for, COMPUTE_SHADER; PELLUCID_OUTPUT_ADD reads the output, too. After: `output` was
+ * written by COMPUTE_SHADER / SHADER_WRITE.
  * Compute pipeline, push constants and set 0 are left changed. `frame` is the one that made the plan, with its views
  * filled in. One that differs in anything else, or lacks an image of the plan's, is PELLUCID_ERROR_INVALID_ARGUMENT;
  * the message names the part that differs. */
