@@ -66,7 +66,7 @@ void diffusePlanes(ivec2 firstTexel, vec4 sources[kRows + 2 * kMostRing], bool s
       vertical[(firstRow + i) * kColumns + column] = uvec2(packHalf2x16(sum.rg), packHalf2x16(vec2(sum.b, 0.0)));
     }
   }
-  if (edgeRows != 0u && invocation < kWindowX * kWindowY) prepareForEdges(invocation);
+  if (edgeBands != 0u && invocation < kWindowX * kWindowY) prepareForEdges(invocation);
   barrier();
 
   int x = column - kRing, index = (firstRow / 4 + 1) * kWindowX + x / 4 + 1;

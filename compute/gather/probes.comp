@@ -4,6 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define GROUP_SIDE PELLUCID_PROBES_GROUP
+#define GROUP_DEPTH 2 // invocations of a cell: they share its lights
 #include "frame/work_group.glsl"
 #include "frame/chord.glsl"
 #include "gather/probe.glsl"
@@ -34,18 +35,17 @@ void main() {
   ivec4 cells = cellsOf(frame.rect, side);
   ivec2 firstCell = cells.xy + ivec2(workGroup(PELLUCID_LIST_PROBES)) * GROUP_SIDE;
   ivec2 cell = firstCell + ivec2(gl_LocalInvocationID.xy);
-  translucent[gl_LocalInvocationIndex] = 0u;
+  if (gl_LocalInvocationID.z == 0u) translucent[cellInGroup()] = 0u;
   barrier();
   markTranslucent(firstCell, side);
   barrier();
-  if (any(greaterThanEqual(cell, cells.zw))) return;
+  bool inside = all(lessThan(cell, cells.zw));
   Probe probe = unpackProbe(kNoProbe);
   vec4 normal;
-  uvec4 bits = kNoProbe;
-  if (findSurface(cell, side, probe, normal)) {
-    lightProbe(probe, cell, pixelInCell(cell, side, probe.index), normal);
-    bits = packProbe(probe);
-  }
+  bool found = inside && findSurface(cell, side, probe, normal);
+  lightProbe(probe, found, cell, side, normal);
+  if (gl_LocalInvocationID.z != 0u || !inside) return;
+  uvec4 bits = found ? packProbe(probe) : kNoProbe;
   imageStore(probesImage, cell, bits);
   if (hasLight(bits)) someProbeHasLight();
 }
