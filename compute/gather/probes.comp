@@ -19,6 +19,7 @@ layout(set = 0, binding = PELLUCID_BINDING_ENTRY_POINTS) uniform utexture2D entr
 layout(set = 0, binding = PELLUCID_BINDING_PROBES, rgba32ui) uniform uimage2D probesImage;
 layout(set = 0, binding = PELLUCID_BINDING_GATHER_DISPATCHES) coherent buffer Dispatches { GatherDispatches dispatches; };
 
+#include "frame/thin_walls.glsl"
 #include "gather/translucent_pixels.glsl"
 #include "gather/lit_probe.glsl"
 

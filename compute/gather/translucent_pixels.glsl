@@ -28,7 +28,7 @@ void markTranslucent(ivec2 firstCell, int side) {
   }
 }
 
-// Finds the first translucent pixel of the invocation's cell with a surface: index, material and front of the probe.
+// Finds the first translucent pixel of the invocation's cell with a solid's surface: index, material and front of the probe.
 // Texels are fetched at once, so that the latencies overlap.
 bool findSurface(ivec2 cell, int side, inout Probe probe, out vec4 normal) {
   for (uint bits = translucent[cellInGroup()]; bits != 0u; bits &= bits - 1u) {
@@ -38,7 +38,7 @@ bool findSurface(ivec2 cell, int side, inout Probe probe, out vec4 normal) {
     probe.front = frontDistance(pixel);
     normal = texelFetch(normalImage, pixel, 0);
     probe.material = materialIndex(value);
-    if (probe.front > 0.0) return true;
+    if (probe.front > 0.0 && !isThinWalled(probe.material)) return true;
   }
   return false;
 }

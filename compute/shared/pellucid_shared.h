@@ -82,7 +82,8 @@ using glm::vec4;
 #define PELLUCID_FLAG_CHORD 256u // some light, or a debug view, needs camera-space thickness
 #define PELLUCID_FLAG_DIFFUSED 512u // what the gather adds to has been diffused
 #define PELLUCID_FLAG_WIDE_OUTPUT 1024u // 32 bits a channel, which keep what halves round
-#define PELLUCID_FLAG_ADDS 2048u // the result is added to what the output holds
+#define PELLUCID_FLAG_THIN_WALLS 2048u // some material is thin-walled
+#define PELLUCID_FLAG_ADDS 4096u // the result is added to what the output holds
 
 // Specialization constants
 #define PELLUCID_CONSTANT_DEBUG_VIEWS 0
@@ -114,6 +115,11 @@ using glm::vec4;
 #define PELLUCID_SHADER_DEBUG_OCCLUSION 3u
 
 #define PELLUCID_LISTS 8 // see pellucid_tiles.h
+
+// PassConstants::value.x of the translucency pass: the materials that light comes through
+#define PELLUCID_LIGHT_ALL 0u
+#define PELLUCID_LIGHT_WALLS 1u  // thin-walled ones alone
+#define PELLUCID_LIGHT_SOLIDS 2u // all others
 
 // PassConstants::value.z of the translucency pass
 #define PELLUCID_WRITE_LAST 1u   // the frame's final write
@@ -196,7 +202,7 @@ struct MaterialConstants {
   vec4 transmittance[3]; // per channel, the model's first four parameters
   vec4 transmittance4;   // rgb: the fifth; w: mm at which no channel lets light through that a half shows
   vec4 inverseReflectance; // rgb: 1/rho; w: 1 / mm at which T falls to half
-  uvec4 meta;            // x: model; y: Gaussians
+  uvec4 meta;            // x: model; y: Gaussians; z: 1: thin-walled, EXP2 with rates 0
   vec4 gaussianFalloff[PELLUCID_GAUSSIANS]; // rgb: 1/(2 v), 1/mm^2; 1/v for the printed form
   vec4 gaussianWeight[PELLUCID_GAUSSIANS];  // rgb
   GatherConstants gather;
@@ -220,7 +226,7 @@ struct GatherDispatches {
 };
 
 // Push constants of each pass:
-// translucency, debug view: unused, lights, PELLUCID_WRITE_*
+// translucency, debug view: PELLUCID_LIGHT_*, lights, PELLUCID_WRITE_*
 // add gathered: pixels a side of a cell, lights, PELLUCID_WRITE_*, lights that are gathered from
 // add history: unused, unused, 1 if this is the last dispatch
 // base level: 1 to copy the pixels

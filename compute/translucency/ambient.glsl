@@ -9,9 +9,11 @@ vec3 ambientIrradiance(vec3 normal) {
 
 // What leaves the visible face besides the light that the irradiance image has: below 0 where more goes through than comes.
 vec3 ambientExitance(Surface s, ivec2 pixel, uint m) {
+  vec3 front = s.hasNormal ? s.normal : -s.view;
+  // A sheet's T is the same at any thickness, and its reflectance is its own.
+  if (isThinWalled(m + 1u)) return materialTransmittance(m, 0.0) * ambientIrradiance(-front);
   if (s.chord < 0.0) return vec3(0.0);
   float mm = frame.camera.range.w;
-  vec3 front = s.hasNormal ? s.normal : -s.view;
   float facing = abs(dot(front, s.view));
   // Most bodies are thick, whatever their back.
   if (0.5 * s.chord * facing * mm > materials[m].transmittance4.w) return vec3(0.0);

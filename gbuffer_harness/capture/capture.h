@@ -74,7 +74,14 @@ struct GaussianMaterial {
   std::vector<double> variance;               // mm^2, shared by the channels
   std::vector<std::array<double, 3>> weight;  // RGB per Gaussian
 };
-using MaterialSource = std::variant<PresetMaterial, CoefficientMaterial, BurleyMaterial, GaussianMaterial>;
+// A sheet without thickness: parts of the irradiance of a face that leave by it and by the other, [0, 1],
+// with a sum of at most 1.
+struct ThinWallMaterial {
+  std::array<double, 3> reflectance, transmittance;
+  std::optional<std::array<double, 3>> distance;  // mm, of Burley's profile within the sheet; absent: none
+};
+using MaterialSource =
+    std::variant<PresetMaterial, CoefficientMaterial, BurleyMaterial, GaussianMaterial, ThinWallMaterial>;
 
 // A result to compare with.
 struct Truth {

@@ -47,6 +47,13 @@ struct Describe {
         desc.gaussianWeight[channel][i] = material.weight[i][channel];
     }
   }
+  void operator()(const ThinWallMaterial& material) const {
+    desc.kind = PELLUCID_MATERIAL_THIN_WALL;
+    std::copy(material.reflectance.begin(), material.reflectance.end(), desc.wallReflectance);
+    std::copy(material.transmittance.begin(), material.transmittance.end(), desc.wallTransmittance);
+    if (material.distance)
+      std::copy(material.distance->begin(), material.distance->end(), desc.burleyDistance);
+  }
 };
 
 }  // namespace
@@ -74,6 +81,8 @@ PellucidMaterial compileMaterial(const MaterialSource& source, const std::string
 
 CoefficientMaterial coefficientsOf(const MaterialSource& source, const std::string& where) {
   if (const auto* given = std::get_if<CoefficientMaterial>(&source)) return *given;
+  if (std::holds_alternative<ThinWallMaterial>(source))
+    throw InputError(where, "", "is thin-walled, which no scattering coefficients define");
   const auto* preset = std::get_if<PresetMaterial>(&source);
   if (!preset) throw InputError(where, "", "is a profile, which no scattering coefficients define");
   PellucidMaterialDesc desc;

@@ -59,6 +59,11 @@ Json materialJson(const MaterialSource& source) {
                         [](const GaussianMaterial& m) {
                           return Json{{"gaussians", {{"variance", m.variance}, {"weight", m.weight}}}};
                         },
+                        [](const ThinWallMaterial& m) {
+                          Json wall = {{"reflectance", m.reflectance}, {"transmittance", m.transmittance}};
+                          if (m.distance) wall["distance"] = *m.distance;
+                          return Json{{"thinWalled", wall}};
+                        },
                     },
                     source);
 }

@@ -131,7 +131,10 @@ void addCommonOptions(CLI::App& command, CaptureOptions& options) {
 void addModelOptions(CLI::App& command, CaptureOptions& options, SceneUse use) {
   const char* const group = kModelGroup;
   command.add_option("model", options.model, "glTF file, .glb or .gltf");
-  command.add_option("--material", options.presets, "NAME=PRESET, repeatable; NAME * means all others")
+  command
+      .add_option(
+          "--material", options.presets,
+          "NAME=PRESET or NAME=thin:R,G,B, a thin wall's transmittance; repeatable; NAME * means all others")
       ->take_all()
       ->group(group);
   command

@@ -108,7 +108,7 @@ Json shadowJson(const ShadowSources& sources, const ShadowMap& map) {
 }
 
 const char* materialKind(const MaterialSource& source) {
-  constexpr const char* kKinds[] = {"preset", "coefficients", "burley", "gaussians"};
+  constexpr const char* kKinds[] = {"preset", "coefficients", "burley", "gaussians", "thin wall"};
   return kKinds[source.index()];
 }
 
@@ -121,6 +121,7 @@ Json materialsJson(const Capture& capture, const std::vector<PellucidMaterial>& 
       entry["preset"] = preset->preset;
     entry["pixels"] = std::count(capture.material.begin(), capture.material.end(), index);
     entry["reflectance"] = materials[i].reflectance;
+    if (materials[i].thinWalled) entry["transmittance"] = materials[i].wallTransmittance;
     entry["radius"] = materials[i].radius;
     json.push_back(std::move(entry));
   }

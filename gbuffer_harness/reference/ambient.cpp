@@ -39,14 +39,18 @@ glm::dvec3 Ambient::irradiance(const Harmonics& environment, const glm::dvec3& n
 }
 
 glm::dvec3 Ambient::at(const Surface& s, std::size_t material) const {
-  if (!capture_.environment || !s.chord) return glm::dvec3(0);
+  if (!capture_.environment) return glm::dvec3(0);
   const PellucidMaterial& m = materials_[material];
   const glm::dvec3 front = s.normal.value_or(-s.ray);
+  const glm::dmat3 world(surfaces_.worldFromView());
+  if (m.thinWalled)
+    return glm::dvec3(m.wallTransmittance[0], m.wallTransmittance[1], m.wallTransmittance[2]) *
+           irradiance(*capture_.environment, world * -front);
+  if (!s.chord) return glm::dvec3(0);
   const std::optional<glm::dvec3> towardsEye = surfaces_.backFacet(s);
   const glm::dvec3 back = towardsEye ? -*towardsEye : -front;
   const double h = 0.5 * *s.chord * surfaces_.millimetersPerUnit() *
                    (std::abs(glm::dot(front, s.ray)) + std::abs(glm::dot(back, s.ray)));
-  const glm::dmat3 world(surfaces_.worldFromView());
   const glm::dvec3 rho(m.reflectance[0], m.reflectance[1], m.reflectance[2]);
   const glm::dvec3 kept = kernels_[material] ? kernels_[material]->slabReflectance(h) : glm::dvec3(1);
   const glm::dvec3 through = transmittance(m, h) * irradiance(*capture_.environment, world * back);

@@ -79,7 +79,7 @@ public:
       case PELLUCID_DEBUG_NONE:
         return diffused();
       case PELLUCID_DEBUG_IRRADIANCE:
-        gatherIrradiance(true);
+        addIrradiance([](const PellucidMaterial&) { return true; });
         return {toImage(values_), 0, 0};
       default:
         gatherDebugView();
@@ -122,12 +122,13 @@ private:
     return surface ? translucency_.at(*surface, material(i), capture_.material[i]) : Transmission{};
   }
 
-  // E + transmitted / rho.
-  void gatherIrradiance(bool through) {
+  // E, + transmitted / rho where through(material).
+  template <class Through>
+  void addIrradiance(Through&& through) {
     forEachPixel("translucency", [&](int x, int y, std::size_t i) {
       const float* e = capture_.irradiance.at(x, y);
       values_[i] = {sanitized(e[0]), sanitized(e[1]), sanitized(e[2])};
-      if (through && settings_.features & PELLUCID_FEATURE_TRANSLUCENCY)
+      if (settings_.features & PELLUCID_FEATURE_TRANSLUCENCY && through(material(i)))
         values_[i] = glm::max(values_[i] + transmitted(x, y, i), 0.0);
     });
   }
@@ -148,7 +149,7 @@ private:
     const Gather all(capture_, surfaces_, materials_, spreads);
     forEachWanted("gather", [&](int x, int y, std::size_t i) {
       const std::optional<Surface> surface = surfaces_.at(x, y);
-      if (!surface || marks_.count(i) != 0) return;
+      if (!surface || marks_.count(i) != 0 || material(i).thinWalled) return;
       const Gathered g = all.at(*surface, capture_.material[i] - 1u);
       const float* rho = material(i).reflectance;
       output[i] = (1.0 + g.convexity) * output[i] + g.returned;
@@ -165,10 +166,11 @@ private:
   }
 
   // What comes through is diffused with the irradiance; gathered light has already spread, so it comes after.
+  // Thin walls are not gathered.
   Result diffused() {
     const bool gathers =
         settings_.translucency.gatherSamples > 0 && settings_.features & PELLUCID_FEATURE_TRANSLUCENCY;
-    gatherIrradiance(!gathers);
+    addIrradiance([gathers](const PellucidMaterial& m) { return !gathers || m.thinWalled != 0; });
     Result result;
     std::vector<glm::dvec3> output = values_;
     if (settings_.features & PELLUCID_FEATURE_DIFFUSION) {

@@ -150,6 +150,7 @@ ReplaySettings thesisSettings() {
 std::vector<PellucidMaterial> withTransmittance(std::vector<PellucidMaterial> materials,
                                                 TransmittanceChoice choice) {
   for (PellucidMaterial& m : materials) {
+    if (m.thinWalled) continue;
     switch (choice) {
       case TransmittanceChoice::Material:
         break;

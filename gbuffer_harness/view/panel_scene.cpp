@@ -59,6 +59,17 @@ bool drawBurley(BurleyMaterial& material) {
   return dragReals("Burley's d, mm", material.distance.data(), 3, 1e-4, 1e3);
 }
 
+// More through one lobe is less through the other.
+bool drawThinWall(ThinWallMaterial& material) {
+  const bool reflected = dragReals("reflectance", material.reflectance.data(), 3, 0, 1);
+  const bool through = dragReals("transmittance", material.transmittance.data(), 3, 0, 1);
+  for (std::size_t c = 0; c < 3; ++c) {
+    double& other = reflected ? material.transmittance[c] : material.reflectance[c];
+    other = std::min(other, 1 - (reflected ? material.reflectance[c] : material.transmittance[c]));
+  }
+  return reflected || through;
+}
+
 const char* typeName(PellucidLightType type) {
   return type == PELLUCID_LIGHT_DIRECTIONAL ? "directional" : type == PELLUCID_LIGHT_POINT ? "point" : "spot";
 }
@@ -123,6 +134,8 @@ Changes drawMaterials(ViewState& state) {
   changes.materials |= drawPreset(source);
   if (auto* burley = std::get_if<BurleyMaterial>(&source))
     changes.materials |= drawBurley(*burley);
+  else if (auto* wall = std::get_if<ThinWallMaterial>(&source))
+    changes.materials |= drawThinWall(*wall);
   else
     changes.materials |= drawCoefficients(source);
   ImGui::PopID();

@@ -76,6 +76,7 @@ shared::FrameConstants frameConstants(const FrameFacts& facts) {
   if (facts.needsChord) flags |= PELLUCID_FLAG_CHORD;
   if (facts.wide) flags |= PELLUCID_FLAG_WIDE_OUTPUT;
   if (f.outputMode == PELLUCID_OUTPUT_ADD) flags |= PELLUCID_FLAG_ADDS;
+  if (facts.thinWalls) flags |= PELLUCID_FLAG_THIN_WALLS;
   if (f.features & PELLUCID_FEATURE_DIFFUSION && facts.diffuses) flags |= PELLUCID_FLAG_DIFFUSED;
   c.flags = {flags, f.materialCount, f.debugView, t.angleModel};
   const float* p = t.anglePolynomial;
@@ -186,10 +187,10 @@ shared::ShadowConstants shadowConstants(const FrameFacts& f, const PellucidShado
 
 shared::MaterialConstants materialConstants(const FrameFacts& f, const PellucidMaterial& m) {
   shared::MaterialConstants c{};
-  c.meta = {m.transmittanceModel, m.gaussianCount, 0, 0};
+  c.meta = {m.transmittanceModel, m.gaussianCount, m.thinWalled, 0};
   const float exponent = m.transmittanceModel == PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED ? 1.0f : 0.5f;
-  const bool canGather = canBeGathered(m.transmittanceModel);
-  if (f.gathers || (f.ambient.intensity > 0 && canGather)) c.gather = gatherConstants(m);
+  const bool canGather = canBeGathered(m.transmittanceModel) && m.thinWalled == 0;
+  if ((f.gathers || f.ambient.intensity > 0) && canGather) c.gather = gatherConstants(m);
   // Of other models the ambient light takes nothing from visible faces.
   for (glm::vec4& reflectance : c.gather.reflectance)
     if (!canGather) reflectance.x = 1;
@@ -259,7 +260,8 @@ shared::TileCommands tileCommands(const FrameFacts& f) {
   c.maps = {f.tiles.maps, f.stages.skipsLight, 0, 0};
   float reach = 0;
   for (uint32_t i = 0; f.gathers && i < f.frame.materialCount; ++i)
-    reach = std::max(reach, gatherReach(f.material(i), f.gatherSamples));
+    if (const PellucidMaterial m = f.material(i); m.thinWalled == 0)
+      reach = std::max(reach, gatherReach(m, f.gatherSamples));
   c.reach.x = reach / (1000 * f.frame.metersPerUnit);
   return c;
 }

@@ -33,6 +33,8 @@ bool isSpot(const void* object, uint32_t) { return as<PellucidLight>(object).typ
 bool readsView(const void* object, uint32_t) {
   return as<PellucidShadowMap>(object).encoding != PELLUCID_DEPTH_DEVICE;
 }
+bool isSolid(const void* object, uint32_t) { return as<PellucidMaterial>(object).thinWalled == 0; }
+bool isThinWalled(const void* object, uint32_t) { return as<PellucidMaterial>(object).thinWalled == 1; }
 bool diffuses(const void* object, uint32_t) { return as<PellucidMaterial>(object).gaussianCount > 0; }
 bool isGaussian(const void* object, uint32_t index) {
   return index % PELLUCID_MAX_GAUSSIANS < as<PellucidMaterial>(object).gaussianCount;
@@ -85,7 +87,7 @@ constexpr auto kThesisIntegers = std::to_array<IntegerDomain>({
 });
 
 constexpr auto kMaterialFloats = std::to_array<FloatDomain>({
-    {FIELD(PellucidMaterial, transmittance), 5, -kLongestMm, kLongestMm, false, nullptr, nullptr},
+    {FIELD(PellucidMaterial, transmittance), 5, -kLongestMm, kLongestMm, false, isSolid, "`thinWalled` 0"},
     {FIELD(PellucidMaterial, reflectance), 0, 0, 1, true, nullptr, nullptr},
     {FIELD(PellucidMaterial, gaussianVariance), PELLUCID_MAX_GAUSSIANS, 0, kLongestMm* kLongestMm, true,
      isGaussian, "the first `gaussianCount` of a row"},
@@ -93,11 +95,13 @@ constexpr auto kMaterialFloats = std::to_array<FloatDomain>({
      "the first `gaussianCount` of a row"},
     {FIELD(PellucidMaterial, radius), 0, 0, kLongestMm, true, diffuses, "`gaussianCount` above 0"},
     {FIELD(PellucidMaterial, burleyDistance), 0, 0, kLongestMm, false, diffuses, "`gaussianCount` above 0"},
+    {FIELD(PellucidMaterial, wallTransmittance), 0, 0, 1, false, isThinWalled, "`thinWalled` 1"},
 });
 
 constexpr auto kMaterialIntegers = std::to_array<IntegerDomain>({
     {FIELD(PellucidMaterial, transmittanceModel), 0, PELLUCID_TRANSMITTANCE_LINEAR},
     {FIELD(PellucidMaterial, gaussianCount), 0, PELLUCID_MAX_GAUSSIANS},
+    {FIELD(PellucidMaterial, thinWalled), 0, 1},
 });
 
 constexpr auto kLightFloats = std::to_array<FloatDomain>({

@@ -36,7 +36,8 @@ struct FrameFacts {
   Pyramid pyramid;
 
   // ---- Of the materials
-  bool diffuses = false;  // a material does
+  bool diffuses = false;                   // a material does
+  bool thinWalls = false, solids = false;  // a material is thin-walled; one is not
   DiffusionReach reach{};
 
   // ---- Of the gather
@@ -77,7 +78,13 @@ struct FrameFacts {
            holdsBackFaces(light);
   }
 
-  // frame.materials[index] with the defaults of fields that the caller's lacks.
+  // True where solids have no thickness for the light.
+  bool lacksChord(const PellucidLight& light) const {
+    return takesChord(light) && !has(PELLUCID_RESOURCE_BACK_DEPTH);
+  }
+
+  // frame.materials[index] with the defaults of fields that the caller's lacks. A thin wall's T(d) is
+  // constant.
   PellucidMaterial material(uint32_t index) const;
 
   // Why a light adds nothing to the frame, or nullptr. Static string.

@@ -95,6 +95,10 @@ void checkMaterial(const PellucidMaterial& m, uint32_t index, Findings& out) {
                 ", ", t[2], ", ", t[4]);
     if (m.transmittanceModel == PELLUCID_TRANSMITTANCE_LINEAR && !(t[0] > 0))
       out.error(field("transmittance"), "of channel ", c, " has dmax ", t[0], "; must be > 0");
+    // Rounding of floats.
+    if (m.thinWalled != 0 && !(m.reflectance[c] + m.wallTransmittance[c] <= 1 + 1e-6f))
+      out.error(field("wallTransmittance"), "of channel ", c, " is ", m.wallTransmittance[c],
+                " with a reflectance of ", m.reflectance[c], "; more light leaves a thin wall than arrives");
     float sum = 0;
     for (uint32_t i = 0; i < m.gaussianCount; ++i) sum += m.gaussianWeight[c][i];
     // 1e-3: the accuracy to which constant irradiance is promised to stay constant.

@@ -75,6 +75,25 @@ TEST_F(AmbientLight, NoEnvironmentAndNoBackDepthAddNothing) {
   EXPECT_TRUE(sameBits(replay(c, testMaterial(), through()), none));
 }
 
+// A sheet sends on its part of what its hidden face has, loses nothing, and needs no back depth.
+TEST_F(AmbientLight, ThinWallsSendOnTheirPart) {
+  PellucidMaterial m = testMaterial();
+  m.thinWalled = 1;
+  for (int k = 0; k < 3; ++k) {
+    m.reflectance[k] = 0.5f;
+    m.wallTransmittance[k] = 0.1f * static_cast<float>(k + 1);
+  }
+  Capture c = flatCapture(16, 12);
+  c.backDepth.image = {};
+  c.environment = Environment{{2, 2, 2}, {2, 2, 2}}.harmonics();
+  const Image out = replay(c, m, through());
+  for (size_t k = 0; k < 3; ++k)
+    EXPECT_NEAR(double(out.at(8, 6)[k]),
+                double(c.irradiance.data[k]) + double(m.wallTransmittance[k]) * 2 * std::numbers::pi / 0.5,
+                1e-4)
+        << k;
+}
+
 // Exposed irradiance takes ambient light of its units.
 TEST_F(AmbientLight, PreExposureScalesAmbientLight) {
   Capture c = flatCapture(16, 12);

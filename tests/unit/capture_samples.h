@@ -102,12 +102,14 @@ inline Capture sampleCapture() {
   layered.shadowMaps[0].sharedImage = layered.shadowMaps[1].sharedImage = 1;
   layered.shadowMaps[1].layer = 1;
   capture.lights = {sun, lamp, spot, around, tiled, layered};
-  capture.materials = {
-      PresetMaterial{"skin1"}, CoefficientMaterial{{0.74, 0.88, 1.01}, {0.032, 0.17, 0.48}, 0.1, 1.3},
-      BurleyMaterial{
-          {1, 2, 3},
-          std::array<std::array<double, 4>, 3>{{{0.5, 1, 0.25, 2}, {0.5, 3, 0.25, 4}, {0.5, 5, 0.25, 6}}}},
-      GaussianMaterial{{0.5, 2}, {{0.25, 0.5, 0.75}, {0.75, 0.5, 0.25}}}};
+  capture.materials = {PresetMaterial{"skin1"},
+                       CoefficientMaterial{{0.74, 0.88, 1.01}, {0.032, 0.17, 0.48}, 0.1, 1.3},
+                       BurleyMaterial{{1, 2, 3},
+                                      std::array<std::array<double, 4>, 3>{
+                                          {{0.5, 1, 0.25, 2}, {0.5, 3, 0.25, 4}, {0.5, 5, 0.25, 6}}}},
+                       GaussianMaterial{{0.5, 2}, {{0.25, 0.5, 0.75}, {0.75, 0.5, 0.25}}},
+                       ThinWallMaterial{{0.25, 0.5, 0.125}, {0.5, 0.25, 0.75}, {}},
+                       ThinWallMaterial{{0, 0.5, 1}, {1, 0.25, 0}, {{1, 2, 3}}}};
   return capture;
 }
 

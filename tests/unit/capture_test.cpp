@@ -75,7 +75,7 @@ TEST(CaptureRoundTrip, IsBitExactWithFloat) {
     }
   }
 
-  ASSERT_EQ(read.materials.size(), 4u);
+  ASSERT_EQ(read.materials.size(), 6u);
   EXPECT_EQ(std::get<PresetMaterial>(read.materials[0]).preset, "skin1");
   const auto& coefficients = std::get<CoefficientMaterial>(read.materials[1]);
   const auto& expected = std::get<CoefficientMaterial>(written.materials[1]);
@@ -89,6 +89,13 @@ TEST(CaptureRoundTrip, IsBitExactWithFloat) {
   const auto& gaussians = std::get<GaussianMaterial>(read.materials[3]);
   EXPECT_EQ(gaussians.variance, std::get<GaussianMaterial>(written.materials[3]).variance);
   EXPECT_EQ(gaussians.weight, std::get<GaussianMaterial>(written.materials[3]).weight);
+  for (const std::size_t i : {4u, 5u}) {
+    const auto &wall = std::get<ThinWallMaterial>(read.materials[i]),
+               &same = std::get<ThinWallMaterial>(written.materials[i]);
+    EXPECT_EQ(wall.reflectance, same.reflectance);
+    EXPECT_EQ(wall.transmittance, same.transmittance);
+    EXPECT_EQ(wall.distance, same.distance);
+  }
 }
 
 TEST(CaptureRoundTrip, MinimalCaptureHasNoOptionalParts) {
@@ -554,6 +561,12 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"/materials/0",
                 R"({"gaussians": {"variance": [1], "weight": [[1, 1, 0.5]]}})",
                 {"materials[0].gaussians.weight", "sum"}},
+        Mistake{"/materials/0",
+                R"({"thinWalled": {"reflectance": [0.5, 0.5, 0.5], "transmittance": [0.5, 0.6, 0]}})",
+                {"materials[0].thinWalled.transmittance", "1.1"}},
+        Mistake{"/materials/0",
+                R"({"thinWalled": {"reflectance": [0.5, -1, 0.5], "transmittance": [0, 0, 0]}})",
+                {"materials[0].thinWalled.reflectance", "from 0 to 1"}},
         Mistake{"/truth/scale", "\"pi\"", {"truth.scale", "pi"}}));
 
 TEST_F(Manifests, UnknownPresetIsNamedWhenCompiled) {
@@ -564,10 +577,13 @@ TEST_F(Manifests, UnknownPresetIsNamedWhenCompiled) {
 
 TEST(Materials, EveryFormCompiles) {
   const auto materials = compileMaterials(sampleCapture());
-  ASSERT_EQ(materials.size(), 4u);
+  ASSERT_EQ(materials.size(), 6u);
   EXPECT_FLOAT_EQ(materials[2].transmittance[1][1], 3.0f);  // k1 of green, as given
   EXPECT_EQ(materials[3].gaussianCount, 2u);
   EXPECT_FLOAT_EQ(materials[3].gaussianWeight[2][1], 0.25f);
+  EXPECT_EQ(materials[4].thinWalled, 1u);
+  EXPECT_FLOAT_EQ(materials[4].wallTransmittance[2], 0.75f);
+  EXPECT_FLOAT_EQ(materials[5].burleyDistance[1], 2.0f);
 }
 
 // ---- The path-traced captures, where they are

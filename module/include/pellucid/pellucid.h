@@ -66,6 +66,10 @@ typedef struct PellucidMaterial {
   /* ---- fields that may be missing ---- */
   float burleyDistance[3];    /* mm; d of Christensen & Burley 2015 eq. 3 that the Gaussians fit and the
                                  diffusion takes in their place; 0 (default): the Gaussians */
+  uint32_t thinWalled;        /* 1: a sheet without thickness, like leaves and paper. Light that arrives at one face leaves
+                                 by the other times wallTransmittance, and `transmittance` is not read. Shadow maps only
+                                 say whether something else blocks the light. Not gathered. 0 (default): a solid */
+  float wallTransmittance[3]; /* of the irradiance of the other face, [0, 1]; with `reflectance` at most 1 */
 } PellucidMaterial;
 
 /* ---- Frame ----------------------------------------------------------------------------------- */
@@ -203,7 +207,7 @@ typedef struct PellucidFrame {
   uint32_t gatherSamples;   /* entry points of the shadow map that each probe gathers light from, for lights with a
                                map: a multiple of 4, at most 64; needs materials of EXP2 or SINH_EXP. 0: one
                                light-space thickness. PELLUCID_GATHER_BY_QUALITY (default): 0, 8 or 16 at quality
-                               0, 1 or 2; 0, which the plan's skips say, with a material of another model,
+                               0, 1 or 2; 0, which the plan's skips say, with a solid of another model,
                                thickness from the camera, and thesis options of one thickness a pixel */
   uint32_t reuse;           /* PellucidReuse. Kept light is looked up at the same pixel: pass no previous plan
                                after a cut, and expect a lag of the frames in between where things move.
@@ -263,7 +267,7 @@ typedef struct PellucidContext PellucidContext;
 /* Uses that frames ask of a context. A pipeline is made if all that it is for is asked for; recording refuses a plan that
  * needs one of the others. */
 typedef enum PellucidUse {
-  PELLUCID_USE_TRANSLUCENCY = 1 << 0, /* lights that are not gathered from, and frames without diffusion */
+  PELLUCID_USE_TRANSLUCENCY = 1 << 0, /* lights that are not gathered from, thin walls, and frames without diffusion */
   PELLUCID_USE_GATHER = 1 << 1,       /* gathered light */
   PELLUCID_USE_DIFFUSION = 1 << 2,
   PELLUCID_USE_QUALITY_0 = 1 << 3,    /* besides qualities 1 and 2, which take the same pipelines */
