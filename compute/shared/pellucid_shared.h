@@ -152,8 +152,7 @@ struct FrameConstants {
   uvec4 rect;          // x, y, end x, end y
   uvec4 flags;         // x: PELLUCID_FLAG_*; y: materials; z: debug view; w: angle model
   vec4 anglePolynomial;
-  uvec4 marks;         // of material values: x: bit of those without translucency, 0: none; y: where they begin in a
-                       // word of the image; z: bits of the index
+  uvec4 marks;         // material values: x: bit without translucency, 0: none; y: their first bit in a word; z: bits of the index
   vec4 filterAndLimit;        // rgb: factor of T; w: largest thickness, mm
   ivec4 level[PELLUCID_LAST_LEVEL + 1]; // xy: where texel (0, 0) of the level lies in its image; of level 0, that
                                         // of the resolved level 2, zw: of its shares
