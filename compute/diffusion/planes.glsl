@@ -44,6 +44,9 @@ void storeColumn(ivec2 top, vec4 result[4]) {
   if (hasFlag(PELLUCID_FLAG_WIDE_OUTPUT))
     [[unroll]] for (int i = 0; i < 4; ++i)
       result[i].a = texelFetch(sourceImage, top + ivec2(0, i), 0).a;
+  if (adds(pass.value.w != 0u))
+    [[unroll]] for (int i = 0; i < 4; ++i)
+      result[i] = onHeld(top + ivec2(0, i), result[i].rgb);
   [[unroll]] for (int i = 0; i < 4; ++i)
     imageStore(destinationImage, top + ivec2(0, i), vec4(asStored(result[i].rgb), result[i].a));
 }

@@ -5,7 +5,10 @@ vec3 otherLight(ivec2 pixel, float front, float frontStored, uint m) {
   float back = hasFlag(PELLUCID_FLAG_CHORD) ? texelFetch(backDepthImage, pixel, 0).x : 0.0;
   Surface s = surfaceAt(pixel, front, frontStored, back, texelFetch(normalImage, pixel, 0));
   vec3 transmitted = vec3(0.0);
-  for (uint i = pass.value.w; i < pass.value.y; ++i) transmitted += exitanceOf(chordTransmission(lights[i], s), m);
+  for (uint i = pass.value.w; i < pass.value.y; ++i) {
+    bool ambient = lights[i].meta.x == PELLUCID_SHADER_LIGHT_AMBIENT;
+    transmitted += ambient ? ambientExitance(s, pixel, m) : exitanceOf(chordTransmission(lights[i], s), m);
+  }
   return transmitted * materials[m].inverseReflectance.rgb;
 }
 

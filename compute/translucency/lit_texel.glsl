@@ -31,6 +31,10 @@ vec3 resultAt(ivec2 pixel, Texels t, float front, uint m) {
     if (s.chord >= 0.0) thickness.r = s.chord * mm;
     for (uint i = 0u; i < pass.value.y; ++i) {
       LightConstants light = lights[i];
+      if (light.meta.x == PELLUCID_SHADER_LIGHT_AMBIENT) {
+        if (!kDebugViews || frame.flags.z > PELLUCID_SHADER_DEBUG_OCCLUSION) transmitted += ambientExitance(s, pixel, m);
+        continue;
+      }
       Transmitted through = lightTransmission(light, s, pixel);
       transmitted += exitanceOf(through, m);
       if (kDebugViews) {

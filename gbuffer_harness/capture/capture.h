@@ -92,6 +92,9 @@ struct Truth {
   std::string scene;  // empty: made elsewhere
 };
 
+// RGB of the coefficients of PellucidFrame::ambient.
+using Harmonics = std::array<std::array<double, 3>, 9>;
+
 struct Capture {
   std::string name;  // path it came from, or the scene's name
   int width = 0, height = 0;
@@ -107,6 +110,7 @@ struct Capture {
   std::vector<std::uint8_t> material;  // required; 0 none, i: materials[i - 1]
 
   std::vector<Light> lights;
+  std::optional<Harmonics> environment;  // light from all around; irradiance has it on visible faces
   std::vector<MaterialSource> materials;
   std::optional<Truth> truth;
 };

@@ -231,6 +231,7 @@ void writeCapture(const Capture& capture, const std::filesystem::path& exr, Colo
     }
     manifest["lights"].push_back(std::move(json));
   }
+  if (capture.environment) manifest["environment"] = *capture.environment;
   manifest["materials"] = Json::array();
   for (const MaterialSource& source : capture.materials)
     manifest["materials"].push_back(materialJson(source));

@@ -10,6 +10,7 @@
 #include "common/error.h"
 #include "common/parallel.h"
 #include "common/progress.h"
+#include "reference/ambient.h"
 #include "reference/gather.h"
 #include "reference/surface.h"
 #include "reference/translucency.h"
@@ -70,6 +71,7 @@ public:
         settings_(settings),
         surfaces_(capture),
         translucency_(capture, surfaces_, settings.translucency),
+        ambient_(capture, surfaces_, materials),
         values_(capture.material.size()) {}
 
   Result run() {
@@ -127,14 +129,17 @@ private:
       const float* e = capture_.irradiance.at(x, y);
       values_[i] = {sanitized(e[0]), sanitized(e[1]), sanitized(e[2])};
       if (settings_.features & PELLUCID_FEATURE_TRANSLUCENCY && through(material(i)))
-        values_[i] += transmitted(x, y, i);
+        values_[i] = glm::max(values_[i] + transmitted(x, y, i), 0.0);
     });
   }
 
   // As irradiance that albedo = rho turns into the exitance.
   glm::dvec3 transmitted(int x, int y, std::size_t i) const {
     const float* rho = material(i).reflectance;
-    return transmission(x, y, i).transmitted / glm::dvec3(rho[0], rho[1], rho[2]);
+    glm::dvec3 exitance = transmission(x, y, i).transmitted;
+    if (const std::optional<Surface> surface = surfaces_.at(x, y); surface && marks_.count(i) == 0)
+      exitance += ambient_.at(*surface, capture_.material[i] - 1u);
+    return exitance / glm::dvec3(rho[0], rho[1], rho[2]);
   }
 
   // Adds to the diffused irradiance what all texels of the shadow maps bring, and the lights without one.
@@ -198,6 +203,7 @@ private:
   const Settings& settings_;
   SurfaceReader surfaces_;
   Translucency translucency_;
+  Ambient ambient_;
   std::vector<glm::dvec3> values_;  // 0 where there is no material
 };
 

@@ -116,8 +116,8 @@ const char* ViewBounds::whySkipped(const FrameFacts& facts, const PellucidLight&
     return facts.holdsBackFaces(light)
                ? "no back depth to take a thickness from, and its map holds back faces"
                : "no back depth to take a thickness from";
-  // Gathered light comes from around, whatever the angle, and from beyond the view.
-  if (facts.isGathered(light)) return nullptr;
+  // Gathered and ambient light come from around, whatever the angle, and from beyond the view.
+  if (facts.isGathered(light) || isAmbient(light)) return nullptr;
   // That view shows thicknesses whether light comes through or not.
   if (!bounded_ || facts.frame.debugView == PELLUCID_DEBUG_THICKNESS) return nullptr;
   if (angleStops(facts, light)) return "no pixel's view ray passes its angle test";

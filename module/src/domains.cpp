@@ -51,6 +51,7 @@ constexpr auto kFrameFloats = std::to_array<FloatDomain>({
     {FIELD(PellucidFrame, frameLoad), 0, 0, 1e9F, false, nullptr, nullptr},
     {FIELD(PellucidFrame, targetError), 0, 0, 1e9F, false, nullptr, nullptr},
     {FIELD(PellucidFrame, nearestDistance), 0, 0, kLongest, false, nullptr, nullptr},
+    {FIELD(PellucidFrame, preExposure), 0, 1e-9F, 1e9F, false, nullptr, nullptr},
 });
 
 constexpr auto kFrameIntegers = std::to_array<IntegerDomain>({
@@ -62,6 +63,8 @@ constexpr auto kFrameIntegers = std::to_array<IntegerDomain>({
     {FIELD(PellucidFrame, quality), 0, kBestQuality},
     {FIELD(PellucidFrame, separateOutput), 0, 1},
     {FIELD(PellucidFrame, indirectDispatches), 0, PELLUCID_INDIRECT_LIGHT},
+    {FIELD(PellucidFrame, materialShift), 0, 31},
+    {FIELD(PellucidFrame, outputMode), 0, PELLUCID_OUTPUT_ADD},
 });
 
 constexpr auto kThesisFloats = std::to_array<FloatDomain>({

@@ -42,13 +42,14 @@ void skipBeside(PlanBuilder& b) {
 // Skips: all that does not run, and why.
 void addSkips(PlanBuilder& b) {
   const FrameFacts& f = b.facts;
-  for (uint32_t i = 0; i < f.frame.lightCount; ++i) {
-    const PellucidLight& light = f.frame.lights[i];
+  const auto skipLight = [&](const PellucidLight& light, const char* what) {
     if (const char* reason = f.whySkipped(light))
-      b.skip("light", reason);
+      b.skip(what, reason);
     else if (f.lacksChord(light) && f.solids)
       b.skip("light in solids", "no back depth to take a thickness from: thin walls alone let it through");
-  }
+  };
+  for (uint32_t i = 0; i < f.frame.lightCount; ++i) skipLight(f.frame.lights[i], "light");
+  if (f.ambient.intensity > 0) skipLight(f.ambient, "ambient light");
   if (!(f.frame.features & PELLUCID_FEATURE_TRANSLUCENCY))
     b.skip("translucency", "not among the features");
   else if (f.lights.lightCount == 0)

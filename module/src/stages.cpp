@@ -26,7 +26,7 @@ Stages::Stages(const FrameFacts& facts) {
     walls = facts.lights.walls(facts);
   }
   lights = fused > 0;
-  copies = diffusion && !lights && walls == 0 && !frame.separateOutput;
+  copies = diffusion && !lights && walls == 0 && !facts.separate();
   // Without diffusion the fused pass still has to bring irradiance (times albedo) to the output, unless that
   // is what it is.
   nothing = writers() == 0 && facts.inPlace && !facts.has(PELLUCID_RESOURCE_ALBEDO);

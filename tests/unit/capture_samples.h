@@ -35,6 +35,8 @@ inline Image sampleImage(int width, int height, int channels, float first) {
 // Every buffer, a light of each type, a material of each form, a truth.
 inline Capture sampleCapture() {
   Capture capture;
+  capture.environment.emplace();
+  for (std::size_t i = 0; i < 9; ++i) (*capture.environment)[i] = {1.0 / double(i + 3), -0.5, double(i)};
   capture.width = kSampleWidth;
   capture.height = kSampleHeight;
   capture.metersPerUnit = 0.001;

@@ -41,6 +41,8 @@ TEST(CaptureRoundTrip, IsBitExactWithFloat) {
   EXPECT_EQ(read.truth->seed, written.truth->seed);
   EXPECT_EQ(read.truth->scene, written.truth->scene);
   EXPECT_EQ(read.material, written.material);
+  EXPECT_EQ(read.environment, written.environment);
+  EXPECT_TRUE(read.environment);
 
   ASSERT_EQ(read.lights.size(), written.lights.size());
   for (std::size_t i = 0; i < read.lights.size(); ++i) {
@@ -465,6 +467,8 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     Unknown, Mistakes,
     testing::Values(
+        Mistake{"/environment", "[[1, 1, 1]]", {"environment", "needs 9 coefficients", "has 1"}},
+        Mistake{"/environment", "[[1, 1], 1, 1, 1, 1, 1, 1, 1, 1]", {"environment[0]", "3"}},
         Mistake{"/exposure", "1", {"m.json", "exposure", "unknown key"}},
         Mistake{"/camera/fov", "1", {"camera.fov", "unknown key"}},
         Mistake{"/buffers/depth", "{}", {"buffers.depth", "unknown key", "frontDepth"}},
