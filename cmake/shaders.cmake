@@ -2,6 +2,22 @@
 # of files each one includes, so editing any .glsl or shared header rebuilds exactly its users.
 find_program(PELLUCID_GLSLANG glslangValidator REQUIRED)
 
+# pellucid_decode_include(file variable): the variable becomes the folder that shaders are to include from first, so that
+# `file` stands in for compute/frame/gbuffer_decode.glsl; empty without a file.
+function(pellucid_decode_include file variable)
+  set(${variable} "" PARENT_SCOPE)
+  if(NOT file)
+    return()
+  endif()
+  if(NOT EXISTS ${file} OR IS_DIRECTORY ${file})
+    message(FATAL_ERROR "PELLUCID_GBUFFER_DECODE is \"${file}\", which is no file")
+  endif()
+  set(folder ${CMAKE_CURRENT_BINARY_DIR}/decode)
+  configure_file(${file} ${folder}/frame/gbuffer_decode.glsl COPYONLY)
+  set(${variable} ${folder} PARENT_SCOPE)
+endfunction()
+pellucid_decode_include("${PELLUCID_GBUFFER_DECODE}" PELLUCID_DECODE_INCLUDE)
+
 # pellucid_shader(target array source [definitions...]): array is the C name of the SPIR-V words.
 function(pellucid_shader target array source)
   set(directory ${CMAKE_CURRENT_BINARY_DIR}/spirv)
@@ -13,11 +29,13 @@ function(pellucid_shader target array source)
     OUTPUT ${header}
     COMMAND ${PELLUCID_GLSLANG} --quiet -V --target-env vulkan1.1
             $<IF:$<BOOL:${PELLUCID_SHADER_DEBUG}>,-gVS,-g0>
+            "$<$<BOOL:${PELLUCID_DECODE_INCLUDE}>:-I${PELLUCID_DECODE_INCLUDE}>"
             -I${PROJECT_SOURCE_DIR}/compute ${definitions}
             --depfile ${header}.d --vn ${array} -o ${header} ${source}
     DEPENDS ${source}
     DEPFILE ${header}.d
     COMMENT "SPIR-V ${array}"
+    COMMAND_EXPAND_LISTS
     VERBATIM)
   target_sources(${target} PRIVATE ${header})
   target_include_directories(${target} PRIVATE ${directory})

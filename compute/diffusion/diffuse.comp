@@ -33,7 +33,7 @@ void main() {
     if (kFine || (i >= kMostRing && i < kRows + kMostRing))
       sources[i] = texelFetch(sourceImage, withinRect(first + ivec2(0, i - kMostRing)), 0);
   if (invocation < kTexelsY) edgeCounts[invocation] = 0u;
-  if (invocation == 0) anySurface = edgeRows = anyShape = someLight = 0u;
+  if (invocation == 0) anySurface = edgeBands = anyShape = someLight = 0u;
   barrier();
   if (hasTexel) keepTexel(invocation, inWindow, texel, texelShares);
   uint light = hasProbe ? kindsOfLight(texel) : 0u;

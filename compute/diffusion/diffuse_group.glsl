@@ -14,18 +14,21 @@ const int kMostWindow = (PELLUCID_DIFFUSE_COARSE_TEXELS_X + 2) * kWindowY;
 // An invocation does the four rows of a texel in a column, the outer columns only what their neighbors need.
 const int kColumns = 4 * PELLUCID_DIFFUSE_COARSE_TEXELS_X, kRows = 4, kMostRing = 2;
 
-// Colors after the fine filter's vertical half. Later the pixels of a row of texels with edges and their ring: colors and
-// materials, then depths.
+// Edges are done a band of rows of texels at a time: the fine filter needs their pixels in shared memory.
+const int kBandRows = kFine ? 2 : kTexelsY, kBands = kTexelsY / kBandRows, kBandTexels = kBandRows * kTexelsX;
+const int kBandPixels = (4 * 2 + 2 * kMostRing) * kColumns;
+
+// Colors after the fine filter's vertical half. Later the colors and materials of a band's pixels and their ring.
 shared uvec2 vertical[kRows * kTexelsY * kColumns];
-const int kRowPixels = (4 + 2 * kMostRing) * kColumns;
+shared float bandDepths[kBandPixels];
 shared uvec4 upsampled[kMostWindow];
 shared uvec4 shares[kMostWindow];
 shared float spreads[kMostWindow]; // inverseSpread of upsampled[], in groups with edges
-// Columns of edges, row by row of texels. Full texels, around whose pixels all is one plane though their neighbors are none,
-// come first; the others come last, from the end on.
+// Edges, band by band: columns and, from bit 8 on, rows of texels. Full texels, around whose pixels all is one plane though
+// their neighbors are none, come first; the others come last, from the end on.
 shared uint edges[kMostTexels];
-shared uint edgeCounts[kTexelsY]; // full texels, and in the upper 16 bits others
-shared uint edgeRows;             // a bit for each row that has edges
+shared uint edgeCounts[kTexelsY]; // of each band: full texels, and in the upper 16 bits others
+shared uint edgeBands;            // a bit for each band that has edges
 shared uint anySurface, anyShape; // some texel has a surface, a FineShape
 shared uint someLight;            // kSome* of the probes around all pixels
 
@@ -41,5 +44,5 @@ void keepTexel(int index, ivec2 inWindow, uvec4 texel, uvec4 texelShares) {
   anySurface = 1u; // whoever writes, writes this
   if (hasShape(texelShares.z)) anyShape = 1u;
   if (!isPlane(texel) && contains(ivec4(0, 0, kTexelsX, kTexelsY), inWindow - 1))
-    atomicOr(edgeRows, 1u << (inWindow.y - 1));
+    atomicOr(edgeBands, 1u << ((inWindow.y - 1) / kBandRows));
 }

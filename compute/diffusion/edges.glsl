@@ -8,9 +8,10 @@ void collectEdges(int invocation) {
   uvec4 its = upsampled[index];
   if (its.y >> 16 == 0u || isPlane(its)) return;
   bool full = isFull(shares[index]);
-  uint before = atomicAdd(edgeCounts[local.y], full ? 1u : 0x10000u);
-  int place = full ? int(before & 0xFFFFu) : kTexelsX - 1 - int(before >> 16);
-  edges[kTexelsX * local.y + place] = uint(local.x);
+  int band = local.y / kBandRows;
+  uint before = atomicAdd(edgeCounts[band], full ? 1u : 0x10000u);
+  int place = full ? int(before & 0xFFFFu) : kBandTexels - 1 - int(before >> 16);
+  edges[kBandTexels * band + place] = uint(local.x | local.y << 8);
 }
 
 // Prepares what all pixels of edges ask of a texel alike: its spread, and its shares without its kernel coverage, which the
@@ -34,30 +35,30 @@ void prepareForEdges(int index) {
 // The share as it was before prepareForEdges.
 vec3 coarserOfEdge(vec3 coarser) { return mix(coarser, coarser + 1.0, lessThan(coarser, vec3(0.0))); }
 
-// Keeps colors, materials and depths of a row of texels' pixels with their ring, from pixel `first` on.
-void keepRow(ivec2 first) {
-  const int kEach = kRowPixels / kInvocations;
+// Keeps colors, materials and depths of a band's pixels with their ring, from pixel `first` on.
+void keepBand(ivec2 first) {
+  const int kEach = kBandPixels / kInvocations;
   uvec2 colors[kEach];
-  uint depths[kEach];
+  float depths[kEach];
   // All loads come before the first use, so that their latencies overlap.
   [[unroll]] for (int i = 0; i < kEach; ++i) {
     int place = int(gl_LocalInvocationIndex) + i * kInvocations;
     ivec2 pixel = first + ivec2(place % kColumns, place / kColumns), at = withinRect(pixel);
     colors[i] = packColor(sanitize(texelFetch(sourceImage, at, 0).rgb), at == pixel ? materialAt(at) : 0u);
-    depths[i] = floatBitsToUint(frontDistance(at));
+    depths[i] = frontDistance(at);
   }
   [[unroll]] for (int i = 0; i < kEach; ++i) {
     int place = int(gl_LocalInvocationIndex) + i * kInvocations;
     vertical[place] = colors[i];
-    vertical[kRowPixels + place].x = depths[i];
+    bandDepths[place] = depths[i];
   }
 }
 
 // The fine filter of a pixel on a surface of that slope; w: the part of its weight that lies on the surface. `place`: of the
-// pixel in what keepRow kept; `wider`: FineShape's. The thin part is left to planes, as it makes edges no better.
+// pixel in what keepBand kept; `wider`: FineShape's. The thin part is left to planes, as it makes edges no better.
 vec4 fineOfEdge(int place, vec2 slope, vec2 size, float wider) {
   uint material = vertical[place].y >> 16;
-  float own = uintBitsToFloat(vertical[kRowPixels + place].x);
+  float own = bandDepths[place];
   vec2 depthStep = slope * size;
   float spread2 = inverseSpread(slope, 2.0 * size);
   vec3 columns = fineWeights(-wider), rows = fineWeights(wider);
@@ -68,7 +69,7 @@ vec4 fineOfEdge(int place, vec2 slope, vec2 size, float wider) {
     [[unroll]] for (int x = -2; x <= 2; ++x) {
       int at = place + y * kColumns + x;
       uvec2 packed = vertical[at];
-      float theirs = uintBitsToFloat(vertical[kRowPixels + at].x);
+      float theirs = bandDepths[at];
       float along = dot(depthStep, vec2(x, y));
       float w = tangentPlaneWeight(theirs - own - along, along, spread2, kPixelFalloff);
       bool counts = packed.y >> 16 == material && theirs > 0.0;
@@ -125,12 +126,12 @@ Around aroundPixel(int center, vec2 from, float depth, uint material, vec2 size)
 // `local`: the pixel from the group's first one.
 void diffuseEdge(ivec2 firstTexel, ivec2 local) {
   ivec2 pixel = 4 * firstTexel + local;
-  int place = ((local.y & 3) + kRing) * kColumns + local.x + kRing;
+  int place = (local.y % (4 * kBandRows) + kRing) * kColumns + local.x + kRing;
   uint material;
   float depth;
   if (kFine) {
     material = vertical[place].y >> 16;
-    depth = uintBitsToFloat(vertical[kRowPixels + place].x);
+    depth = bandDepths[place];
   } else {
     material = insideRect(pixel) ? materialAt(pixel) : 0u;
     depth = frontDistance(withinRect(pixel));
@@ -164,18 +165,19 @@ void diffuseEdge(ivec2 firstTexel, ivec2 local) {
 
 // Follows diffusePlanes, which prepares the texels. For all invocations, as they wait for each other.
 void diffuseEdges(ivec2 firstTexel, int invocation) {
-  for (uint rows = edgeRows; rows != 0u; rows &= rows - 1u) {
-    int row = findLSB(rows), full = int(edgeCounts[row] & 0xFFFFu), count = full + int(edgeCounts[row] >> 16);
+  for (uint bands = edgeBands; bands != 0u; bands &= bands - 1u) {
+    int band = findLSB(bands), full = int(edgeCounts[band] & 0xFFFFu), count = full + int(edgeCounts[band] >> 16);
     if (kFine) {
       barrier(); // what was there has been read
-      keepRow(4 * firstTexel + ivec2(-kRing, 4 * row - kRing));
+      keepBand(4 * firstTexel + ivec2(-kRing, 4 * kBandRows * band - kRing));
       barrier();
     }
-    int edge = invocation >> 4, at = invocation & 15;
-    if (edge < count) {
-      int place = edge < full ? edge : kTexelsX - 1 - (edge - full);
-      int texelX = int(edges[kTexelsX * row + place]);
-      diffuseEdge(firstTexel, ivec2(4 * texelX + (at & 3), 4 * row + (at >> 2)));
+    // Sixteen invocations do a texel.
+    ivec2 inTexel = ivec2(invocation & 3, invocation >> 2 & 3);
+    for (int edge = invocation >> 4; edge < count; edge += kInvocations / 16) {
+      int place = edge < full ? edge : kBandTexels - 1 - (edge - full);
+      int texel = int(edges[kBandTexels * band + place]);
+      diffuseEdge(firstTexel, 4 * ivec2(texel & 255, texel >> 8) + inTexel);
     }
   }
 }

@@ -50,7 +50,7 @@ vec3 fineOf(FineFilter f, int at) {
                  unpackHalves(vertical[at + 1]), unpackHalves(vertical[at + 2]));
 }
 
-// Both halves where all around the pixel is one plane. `place`: in what keepRow kept.
+// Both halves where all around the pixel is one plane. `place`: in what keepBand kept.
 vec3 fineOfPlane(int place, uint shape) {
   FineFilter columns = columnFilter(shape, true), rows = rowFilter(shape, true);
   vec3 fine = vec3(0.0);

@@ -44,6 +44,9 @@ void storeColumn(ivec2 top, vec4 result[4]) {
   if (hasFlag(PELLUCID_FLAG_WIDE_OUTPUT))
     [[unroll]] for (int i = 0; i < 4; ++i)
       result[i].a = texelFetch(sourceImage, top + ivec2(0, i), 0).a;
+  if (adds(pass.value.w != 0u))
+    [[unroll]] for (int i = 0; i < 4; ++i)
+      result[i] = onHeld(top + ivec2(0, i), result[i].rgb);
   [[unroll]] for (int i = 0; i < 4; ++i)
     imageStore(destinationImage, top + ivec2(0, i), vec4(asStored(result[i].rgb), result[i].a));
 }
@@ -63,7 +66,7 @@ void diffusePlanes(ivec2 firstTexel, vec4 sources[kRows + 2 * kMostRing], bool s
       vertical[(firstRow + i) * kColumns + column] = uvec2(packHalf2x16(sum.rg), packHalf2x16(vec2(sum.b, 0.0)));
     }
   }
-  if (edgeRows != 0u && invocation < kWindowX * kWindowY) prepareForEdges(invocation);
+  if (edgeBands != 0u && invocation < kWindowX * kWindowY) prepareForEdges(invocation);
   barrier();
 
   int x = column - kRing, index = (firstRow / 4 + 1) * kWindowX + x / 4 + 1;

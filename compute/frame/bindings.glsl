@@ -17,7 +17,10 @@
 #ifndef GROUP_ROWS
 #define GROUP_ROWS GROUP_SIDE
 #endif
-layout(local_size_x = GROUP_SIDE, local_size_y = GROUP_ROWS) in;
+#ifndef GROUP_DEPTH
+#define GROUP_DEPTH 1
+#endif
+layout(local_size_x = GROUP_SIDE, local_size_y = GROUP_ROWS, local_size_z = GROUP_DEPTH) in;
 
 layout(push_constant) uniform Pass { PassConstants pass; };
 layout(set = 0, binding = PELLUCID_BINDING_FRAME) uniform Frame { FrameConstants frame; };
@@ -27,6 +30,8 @@ layout(set = 0, binding = PELLUCID_BINDING_ALBEDO) uniform texture2D albedoImage
 layout(set = 0, binding = PELLUCID_BINDING_MATERIAL) uniform utexture2D materialImage;
 // The destination has no format, so that one shader writes every output format; see module/src/pipelines.cpp.
 layout(set = 0, binding = PELLUCID_BINDING_DESTINATION) uniform writeonly image2D destinationImage;
+// What the output holds, if the frame adds to it. An invocation reads its pixel before it writes it.
+layout(set = 0, binding = PELLUCID_BINDING_HELD) uniform texture2D heldImage;
 
 #include "frame/flags.glsl"
 
@@ -40,16 +45,17 @@ ivec2 withinRect(ivec2 pixel) { return clamp(pixel, ivec2(frame.rect.xy), ivec2(
 // Index without the mark bit. It is 0 for none and for values beyond the material list, so that a stray id
 // cannot read past the list.
 uint materialIndex(uint value) {
-  uint id = value & ~frame.marks.x;
+  uint id = value & frame.marks.z;
   return id <= frame.flags.y ? id : 0u;
 }
 
-uint materialValueAt(ivec2 pixel) { return decodeMaterial(texelFetch(materialImage, pixel, 0)); }
+uint materialValueAt(ivec2 pixel) { return decodeMaterial(texelFetch(materialImage, pixel, 0)) >> frame.marks.y; }
 
 uint materialAt(ivec2 pixel) { return materialIndex(materialValueAt(pixel)); }
 
 // Planar distance of the front surface, -1 where there is none.
 float frontDistanceOf(float stored) {
+  stored = decodeDepth(stored);
   return hasFlag(PELLUCID_FLAG_FRONT_VIEW_Z) ? planarDistanceViewZ(stored) : planarDistance(frame.camera, stored);
 }
 
@@ -63,10 +69,20 @@ bool tinted(bool last) { return last && hasFlag(PELLUCID_FLAG_ALBEDO); }
 
 vec3 albedoAt(ivec2 pixel) { return sanitize(texelFetch(albedoImage, pixel, 0).rgb); }
 
+// True where the result is added to what the output holds.
+bool adds(bool last) { return last && hasFlag(PELLUCID_FLAG_ADDS); }
+
+// `color` with alpha, on top of what the output holds.
+vec4 onHeld(ivec2 pixel, vec3 color) {
+  vec4 held = texelFetch(heldImage, pixel, 0);
+  return vec4(sanitize(sanitize(held.rgb) + color), held.a);
+}
+
 void writeResult(ivec2 pixel, vec3 color, float alpha, bool last) {
-  color = sanitize(color);
-  if (tinted(last)) color = sanitize(color * albedoAt(pixel));
-  imageStore(destinationImage, pixel, vec4(asStored(color), alpha));
+  vec4 result = vec4(sanitize(color), alpha);
+  if (tinted(last)) result.rgb = sanitize(result.rgb * albedoAt(pixel));
+  if (adds(last)) result = onHeld(pixel, result.rgb);
+  imageStore(destinationImage, pixel, vec4(asStored(result.rgb), result.a));
 }
 
 #endif

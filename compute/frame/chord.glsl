@@ -6,6 +6,7 @@
 
 // Planar distance of the back surface, -1 where there is none.
 float backDistanceOf(float stored) {
+  stored = decodeDepth(stored);
   return hasFlag(PELLUCID_FLAG_BACK_VIEW_Z) ? planarDistanceViewZ(stored) : planarDistance(frame.camera, stored);
 }
 
@@ -14,7 +15,8 @@ float backDistanceOf(float stored) {
 float chordOf(ViewRay ray, float front, float frontStored, float backStored) {
   float back = backDistanceOf(backStored);
   bool device = !hasFlag(PELLUCID_FLAG_BACK_VIEW_Z) && !hasFlag(PELLUCID_FLAG_FRONT_VIEW_Z);
-  float difference = device ? planarDifference(frame.camera, backStored, frontStored) : back - front;
+  float difference =
+      device ? planarDifference(frame.camera, decodeDepth(backStored), decodeDepth(frontStored)) : back - front;
   return back > 0.0 ? chord(difference, ray) : -1.0;
 }
 

@@ -9,7 +9,7 @@
 layout(constant_id = PELLUCID_CONSTANT_DIRECTIONAL) const bool kDirectional = false;
 
 bool hasFlag(uint flag) {
-  const uint kOpen = PELLUCID_FLAG_BACK_DEPTH | PELLUCID_FLAG_BACK_VIEW_Z | PELLUCID_FLAG_DIFFUSED;
+  const uint kOpen = PELLUCID_FLAG_BACK_DEPTH | PELLUCID_FLAG_BACK_VIEW_Z | PELLUCID_FLAG_DIFFUSED | PELLUCID_FLAG_THIN_WALLS;
   uint flags = frame.flags.x;
   if (kDirectional) flags = (flags & kOpen) | PELLUCID_FLAG_NORMAL;
   return (flags & flag) != 0u;

@@ -44,7 +44,7 @@ void main() {
       entry = some ? meanBelow(level, local, limit, constants.meta.z != 0u) : kNoEntry;
       imageStore(entriesDestination, entryPlace(first, level, size) + local, entry);
     }
-    barrier(); // what was there has been read
+    // Levels alternate between the arrays, so that what is written has been read before the barrier before.
     if (makes) {
       if ((level & 1) != 0)
         means[index] = entry;

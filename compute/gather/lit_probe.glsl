@@ -4,23 +4,43 @@
 
 const uint kAdds = 1u << 31; // of pass.value.z
 
-// Sets the probe's normal and light. `normalTexel`: of the normal image at the probe's pixel.
-void lightProbe(inout Probe probe, ivec2 cell, ivec2 pixel, vec4 normalTexel) {
-  ViewRay ray = viewRay(frame.camera, pixel);
-  vec3 normal = vec3(0.0), loss = vec3(0.0);
-  if (hasFlag(PELLUCID_FLAG_NORMAL)) normal = mat3(frame.viewFromNormal) * decodeNormal(normalTexel);
-  Surface x = makeSurface(ray, probe.front, -1.0, normal);
-  probe.normal = x.hasNormal ? x.normal : -x.view;
+// What one of a cell's two invocations tells the other: how thin the body is, then light.
+shared vec3 told[GROUP_SIDE * GROUP_SIDE];
+
+// Sets the probe's normal and light, where one was found. `normalTexel`: of the normal image at the probe's pixel. For all
+// invocations, as they wait for each other.
+void lightProbe(inout Probe probe, bool found, ivec2 cell, int side, vec4 normalTexel) {
+  bool first = gl_LocalInvocationID.z == 0u, shaped = false;
   uint m = probe.material - 1u;
-  if (x.hasNormal && hasFlag(PELLUCID_FLAG_DIFFUSED)) {
-    probe.convexity = convexityAt(pixel, x, ray, probe.front, m);
-    loss = thinLoss(pixel, x, m);
+  vec3 loss = vec3(0.0);
+  Surface x;
+  if (found) {
+    ivec2 pixel = pixelInCell(cell, side, probe.index);
+    ViewRay ray = viewRay(frame.camera, pixel);
+    vec3 normal = vec3(0.0);
+    if (hasFlag(PELLUCID_FLAG_NORMAL)) normal = mat3(frame.viewFromNormal) * decodeNormal(normalTexel);
+    x = makeSurface(ray, probe.front, -1.0, normal);
+    probe.normal = x.hasNormal ? x.normal : -x.view;
+    shaped = x.hasNormal && hasFlag(PELLUCID_FLAG_DIFFUSED);
+    if (shaped && first)
+      probe.convexity = convexityAt(pixel, x, ray, probe.front, m);
+    else if (shaped)
+      told[cellInGroup()] = thinLoss(pixel, x, m);
   }
-  Pattern pattern = patternOf(cell, m, probe.front);
-  for (uint i = 0u; i < pass.value.y; ++i) {
-    LightConstants light = lights[i];
-    if (kDirectional) light.meta.xz = uvec2(PELLUCID_SHADER_LIGHT_DIRECTIONAL, 1u);
-    probe.added += light.radiance.rgb * gatherLight(m, light, x, pattern, loss);
+  barrier();
+  if (shaped) loss = told[cellInGroup()];
+  barrier();
+  if (found) {
+    Pattern pattern = patternOf(cell, m, probe.front);
+    for (uint i = gl_LocalInvocationID.z; i < pass.value.y; i += uint(GROUP_DEPTH)) {
+      LightConstants light = lights[i];
+      if (kDirectional) light.meta.xz = uvec2(PELLUCID_SHADER_LIGHT_DIRECTIONAL, 1u);
+      probe.added += light.radiance.rgb * gatherLight(m, light, x, pattern, loss);
+    }
+    if (!first) told[cellInGroup()] = probe.added;
   }
+  barrier();
+  if (!found || !first) return;
+  probe.added += told[cellInGroup()];
   if ((pass.value.z & kAdds) != 0u) probe.added += addedOf(imageLoad(probesImage, cell));
 }

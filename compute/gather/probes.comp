@@ -4,6 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define GROUP_SIDE PELLUCID_PROBES_GROUP
+#define GROUP_DEPTH 2 // invocations of a cell: they share its lights
 #include "frame/work_group.glsl"
 #include "frame/chord.glsl"
 #include "gather/probe.glsl"
@@ -18,6 +19,7 @@ layout(set = 0, binding = PELLUCID_BINDING_ENTRY_POINTS) uniform utexture2D entr
 layout(set = 0, binding = PELLUCID_BINDING_PROBES, rgba32ui) uniform uimage2D probesImage;
 layout(set = 0, binding = PELLUCID_BINDING_GATHER_DISPATCHES) coherent buffer Dispatches { GatherDispatches dispatches; };
 
+#include "frame/thin_walls.glsl"
 #include "gather/translucent_pixels.glsl"
 #include "gather/lit_probe.glsl"
 
@@ -34,18 +36,17 @@ void main() {
   ivec4 cells = cellsOf(frame.rect, side);
   ivec2 firstCell = cells.xy + ivec2(workGroup(PELLUCID_LIST_PROBES)) * GROUP_SIDE;
   ivec2 cell = firstCell + ivec2(gl_LocalInvocationID.xy);
-  translucent[gl_LocalInvocationIndex] = 0u;
+  if (gl_LocalInvocationID.z == 0u) translucent[cellInGroup()] = 0u;
   barrier();
   markTranslucent(firstCell, side);
   barrier();
-  if (any(greaterThanEqual(cell, cells.zw))) return;
+  bool inside = all(lessThan(cell, cells.zw));
   Probe probe = unpackProbe(kNoProbe);
   vec4 normal;
-  uvec4 bits = kNoProbe;
-  if (findSurface(cell, side, probe, normal)) {
-    lightProbe(probe, cell, pixelInCell(cell, side, probe.index), normal);
-    bits = packProbe(probe);
-  }
+  bool found = inside && findSurface(cell, side, probe, normal);
+  lightProbe(probe, found, cell, side, normal);
+  if (gl_LocalInvocationID.z != 0u || !inside) return;
+  uvec4 bits = found ? packProbe(probe) : kNoProbe;
   imageStore(probesImage, cell, bits);
   if (hasLight(bits)) someProbeHasLight();
 }

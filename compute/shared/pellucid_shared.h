@@ -49,7 +49,7 @@ using glm::vec4;
 #define PELLUCID_BINDING_MATERIAL 10
 #define PELLUCID_BINDING_DESTINATION 11
 #define PELLUCID_BINDING_SHADOW_IMAGES 12 // and the next SHADOW_IMAGE_COUNT - 1
-#define PELLUCID_SHADOW_IMAGE_COUNT 8     // 14 sampled images in all; every device has 16
+#define PELLUCID_SHADOW_IMAGE_COUNT 8     // 16 sampled images in all, which every device has
 #define PELLUCID_BINDING_LEVELS 20        // written by the diffusion's passes, which read no shadow images:
 #define PELLUCID_BINDING_PYRAMID PELLUCID_BINDING_SHADOW_IMAGES // the level or levels that are read
 #define PELLUCID_BINDING_COARSER_LEVELS (PELLUCID_BINDING_SHADOW_IMAGES + 1) // of upsampling: levels 4 and 5
@@ -62,7 +62,8 @@ using glm::vec4;
 #define PELLUCID_BINDING_FILTERED_PROBES (PELLUCID_BINDING_SHADOW_IMAGES + 1) // of the diffusion, beside the pyramid
 #define PELLUCID_BINDING_TILES 21 // lists of groups with work; see compute/frame/tiles.glsl
 #define PELLUCID_BINDING_TILE_COMMANDS PELLUCID_BINDING_KERNELS // of the passes that make them
-#define PELLUCID_BINDING_COUNT 22
+#define PELLUCID_BINDING_HELD 22 // the output's content before the frame
+#define PELLUCID_BINDING_COUNT 23
 
 // Lights and shadow maps of one dispatch are uniform buffers, which are cached apart from what images pass
 // through. 16 KiB is what every device binds.
@@ -81,19 +82,27 @@ using glm::vec4;
 #define PELLUCID_FLAG_CHORD 256u // some light, or a debug view, needs camera-space thickness
 #define PELLUCID_FLAG_DIFFUSED 512u // what the gather adds to has been diffused
 #define PELLUCID_FLAG_WIDE_OUTPUT 1024u // 32 bits a channel, which keep what halves round
+#define PELLUCID_FLAG_THIN_WALLS 2048u // some material is thin-walled
+#define PELLUCID_FLAG_ADDS 4096u // the result is added to what the output holds
 
 // Specialization constants
 #define PELLUCID_CONSTANT_DEBUG_VIEWS 0
 #define PELLUCID_CONSTANT_FINE 1
 #define PELLUCID_CONSTANT_GATHERS 2
 #define PELLUCID_CONSTANT_DIRECTIONAL 3
+#define PELLUCID_CONSTANT_NORMALS 4
 
 // Values of the public enums the shaders branch on; constants.cpp asserts that they agree.
 #define PELLUCID_SHADER_LIGHT_DIRECTIONAL 0u
 #define PELLUCID_SHADER_LIGHT_SPOT 2u
+#define PELLUCID_SHADER_LIGHT_AMBIENT 3u // no PellucidLightType: module/src/ambient.h
 #define PELLUCID_SHADER_DEPTH_DEVICE 0u
 #define PELLUCID_SHADER_DEPTH_VIEW_Z 1u
 #define PELLUCID_SHADER_DEPTH_DISTANCE 2u
+#define PELLUCID_SHADER_NORMALS_SNORM 0u
+#define PELLUCID_SHADER_NORMALS_UNORM 1u
+#define PELLUCID_SHADER_NORMALS_OCTAHEDRAL 2u
+#define PELLUCID_SHADER_NORMALS_OCTAHEDRAL_UNORM 3u
 #define PELLUCID_SHADER_TRANSMITTANCE_EXP2 0u
 #define PELLUCID_SHADER_TRANSMITTANCE_SINH_EXP 1u
 #define PELLUCID_SHADER_TRANSMITTANCE_LINEAR 4u
@@ -106,6 +115,11 @@ using glm::vec4;
 #define PELLUCID_SHADER_DEBUG_OCCLUSION 3u
 
 #define PELLUCID_LISTS 8 // see pellucid_tiles.h
+
+// PassConstants::value.x of the translucency pass: the materials that light comes through
+#define PELLUCID_LIGHT_ALL 0u
+#define PELLUCID_LIGHT_WALLS 1u  // thin-walled ones alone
+#define PELLUCID_LIGHT_SOLIDS 2u // all others
 
 // PassConstants::value.z of the translucency pass
 #define PELLUCID_WRITE_LAST 1u   // the frame's final write
@@ -138,7 +152,7 @@ struct FrameConstants {
   uvec4 rect;          // x, y, end x, end y
   uvec4 flags;         // x: PELLUCID_FLAG_*; y: materials; z: debug view; w: angle model
   vec4 anglePolynomial;
-  uvec4 marks;         // x: bit of material values without translucency; 0: none
+  uvec4 marks;         // material values: x: bit without translucency, 0: none; y: their first bit in a word; z: bits of the index
   vec4 filterAndLimit;        // rgb: factor of T; w: largest thickness, mm
   ivec4 level[PELLUCID_LAST_LEVEL + 1]; // xy: where texel (0, 0) of the level lies in its image; of level 0, that
                                         // of the resolved level 2, zw: of its shares
@@ -149,6 +163,7 @@ struct FrameConstants {
   // View ray of planar length 1: of pixel (0, 0), changes per pixel in x and y.
   vec4 normalRay[3]; // xyz: in the normal image's space
   vec4 facingRay[2]; // along pixels' columns and rows; xy, zw, xy
+  mat4 ambient[3];   // per channel: the form whose value at a normal, 1 is the ambient light's irradiance
 };
 
 struct LightConstants {
@@ -186,7 +201,7 @@ struct MaterialConstants {
   vec4 transmittance[3]; // per channel, the model's first four parameters
   vec4 transmittance4;   // rgb: the fifth; w: mm at which no channel lets light through that a half shows
   vec4 inverseReflectance; // rgb: 1/rho; w: 1 / mm at which T falls to half
-  uvec4 meta;            // x: model; y: Gaussians
+  uvec4 meta;            // x: model; y: Gaussians; z: 1: thin-walled, EXP2 with rates 0
   vec4 gaussianFalloff[PELLUCID_GAUSSIANS]; // rgb: 1/(2 v), 1/mm^2; 1/v for the printed form
   vec4 gaussianWeight[PELLUCID_GAUSSIANS];  // rgb
   GatherConstants gather;
@@ -210,7 +225,7 @@ struct GatherDispatches {
 };
 
 // Push constants of each pass:
-// translucency, debug view: unused, lights, PELLUCID_WRITE_*
+// translucency, debug view: PELLUCID_LIGHT_*, lights, PELLUCID_WRITE_*
 // add gathered: pixels a side of a cell, lights, PELLUCID_WRITE_*, lights that are gathered from
 // add history: unused, unused, 1 if this is the last dispatch
 // base level: 1 to copy the pixels

@@ -25,13 +25,18 @@ void main() {
     farthest = 0u;
   }
   barrier();
-  uint own[2] = uint[2](0u, 0u);
-  float least = kNoDepth, most = 0.0;
+  uint own[2] = uint[2](0u, 0u), any = 0u;
+  float least = kNoDepth, most = 0.0, stored[kPixels];
+  [[unroll]] for (int i = 0; i < kPixels; ++i) any |= values[i];
+  // All loads come before the first use.
+  if (any != 0u && pass.value.x != 0u)
+    [[unroll]] for (int i = 0; i < kPixels; ++i)
+      stored[i] = texelFetch(frontDepthImage, withinRect(first + local + PELLUCID_FIND_GROUP * ivec2(i % kAcross, i / kAcross)), 0).x;
   [[unroll]] for (int i = 0; i < kPixels; ++i) {
     ivec2 inBlock = local + PELLUCID_FIND_GROUP * ivec2(i % kAcross, i / kAcross), cell = inBlock >> kCellShift;
     if (values[i] == 0u) continue;
     own[i / (kPixels / 2)] |= 1u << (8 * (cell.y & 3) + cell.x);
-    float front = pass.value.x != 0u ? frontDistance(first + inBlock) : -1.0;
+    float front = pass.value.x != 0u ? frontDistanceOf(stored[i]) : -1.0;
     if (!(front > 0.0)) continue;
     least = min(least, front);
     most = max(most, front);

@@ -105,11 +105,12 @@ float leastEntering(LightTexels l, vec4 values) {
   return min(min(counted.x, counted.y), min(counted.z, counted.w));
 }
 
+// True where a texel may store the receiver itself. Depths of pixels are read only where they may decide, here and below.
+bool mayStoreReceiver(LightTexels l) { return leastEntering(l, l.thickness) < 2.0 * (kMostTexels * l.side + l.uncertain); }
+
 // Weights of texels that do not store the receiver itself: there, light lies on it or is blocked, but does not come through.
-// Depths of pixels are read only where they may decide, here and below.
-vec4 throughWeights(LightTexels l, ivec2 pixel, uint material, vec3 toLight) {
-  if (leastEntering(l, l.thickness) >= 2.0 * (kMostTexels * l.side + l.uncertain)) return l.entering;
-  float cosine = dot(facetAt(pixel, material, false), toLight);
+// `cosine`: between the normal of the front depths and the light; 0: not known.
+vec4 throughWeights(LightTexels l, float cosine) {
   float tolerance = (depthTolerance(l.side, cosine) + l.uncertain) * clamp(1.0 + cosine / kLeastTurnedCosine, 0.0, 1.0);
   return tolerance > 0.0 ? l.entering * clamp(l.thickness / tolerance - 1.0, 0.0, 1.0) : l.entering;
 }

@@ -19,6 +19,7 @@ float distanceOf(ivec2 pixel, uint material, bool back) {
 }
 
 #include "translucency/transmission.glsl"
+#include "translucency/ambient.glsl"
 
 Surface surfaceAt(ivec2 pixel, float front, float frontStored, float backStored, vec4 normalTexel) {
   ViewRay ray = viewRay(frame.camera, pixel);

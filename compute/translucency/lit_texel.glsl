@@ -22,14 +22,19 @@ Texels fetch(ivec2 pixel) {
 vec3 resultAt(ivec2 pixel, Texels t, float front, uint m) {
   vec3 arriving = vec3(0.0), visible = vec3(0.0), transmitted = vec3(0.0);
   vec3 thickness = vec3(-1.0);
+  bool lets = pass.value.x == PELLUCID_LIGHT_ALL || (pass.value.x == PELLUCID_LIGHT_WALLS) == isThinWalled(m + 1u);
   // Marked pixels keep their irradiance.
-  if (front > 0.0 && (t.value & frame.marks.x) == 0u) {
+  if (lets && front > 0.0 && (t.value & frame.marks.x) == 0u) {
     Surface s = surfaceAt(pixel, front, t.front, t.back, t.normal);
     s.material = m + 1u;
     float mm = frame.camera.range.w;
     if (s.chord >= 0.0) thickness.r = s.chord * mm;
     for (uint i = 0u; i < pass.value.y; ++i) {
       LightConstants light = lights[i];
+      if (light.meta.x == PELLUCID_SHADER_LIGHT_AMBIENT) {
+        if (!kDebugViews || frame.flags.z > PELLUCID_SHADER_DEBUG_OCCLUSION) transmitted += ambientExitance(s, pixel, m);
+        continue;
+      }
       Transmitted through = lightTransmission(light, s, pixel);
       transmitted += exitanceOf(through, m);
       if (kDebugViews) {

@@ -11,6 +11,7 @@
 
 #include "lib/angle.glsl"
 #include "frame/flags.glsl"
+#include "frame/thin_walls.glsl"
 #include "lib/light.glsl"
 #include "lib/surface.glsl"
 #include "lib/thickness.glsl"
@@ -69,10 +70,13 @@ Transmitted chordTransmission(LightConstants light, Surface s) {
   return Transmitted(thickness, incident.irradiance * hiddenCosine(light, s, incident.toLight), 1.0);
 }
 
+#include "translucency/wall_transmission.glsl"
+
 // docs/design.md says why each source is what it is. `pixel`: of the surface.
 Transmitted lightTransmission(LightConstants light, Surface s, ivec2 pixel) {
+  bool wall = isThinWalled(s.material);
   bool holdsExits = light.meta.w != 0u; // which do not say where light enters
-  if (light.meta.z == 0u || holdsExits || hasFlag(PELLUCID_FLAG_CAMERA_THICKNESS)) {
+  if (!wall && (light.meta.z == 0u || holdsExits || hasFlag(PELLUCID_FLAG_CAMERA_THICKNESS))) {
     Transmitted t = chordTransmission(light, s);
     if (light.meta.z == 0u || t.thickness < 0.0) return t;
     vec3 back = s.position + s.chord * s.view;
@@ -82,12 +86,17 @@ Transmitted lightTransmission(LightConstants light, Surface s, ivec2 pixel) {
     return t;
   }
   Incident incident = incidentLight(light, s.position);
-  vec3 arriving = incident.irradiance * hiddenCosine(light, s, incident.toLight);
+  float cosine = hiddenCosine(light, s, incident.toLight);
+  vec3 arriving = incident.irradiance * cosine;
   // Most pixels face some lights, whose maps need no reading.
-  if (arriving == vec3(0.0)) return Transmitted(-1.0, arriving, 0.0);
-  float farthest = materials[s.material - 1u].transmittance4.w / frame.camera.range.w;
+  if (arriving == vec3(0.0) && !(wall && takesDepthsNormal(s))) return Transmitted(-1.0, arriving, 0.0);
+  // Media do not count where the receiver has none.
+  float farthest = wall ? -kEverywhere : materials[s.material - 1u].transmittance4.w / frame.camera.range.w;
   LightTexels l = lightTexels(light, incident, s, s.position, receiverCosine(s, incident), farthest);
-  vec4 weight = throughWeights(l, pixel, s.material, incident.toLight);
+  bool byDepths = wall || mayStoreReceiver(l);
+  vec3 facet = byDepths ? facetAt(pixel, s.material, false) : vec3(0.0);
+  if (wall) return wallTransmission(light, incident, s, l, facet, cosine);
+  vec4 weight = byDepths ? throughWeights(l, dot(facet, incident.toLight)) : l.entering;
   return Transmitted(meanThickness(weight, l.thickness, s.material - 1u), arriving, dot(weight, vec4(1.0)));
 }
 

@@ -74,6 +74,12 @@ struct GaussianMaterial {
   std::vector<double> variance;               // mm^2, shared by the channels
   std::vector<std::array<double, 3>> weight;  // RGB per Gaussian
 };
+// A sheet without thickness: parts of the irradiance of a face that leave by it and by the other, [0, 1],
+// with a sum of at most 1.
+struct ThinWallMaterial {
+  std::array<double, 3> reflectance, transmittance;
+  std::optional<std::array<double, 3>> distance;  // mm, of Burley's profile within the sheet; absent: none
+};
 // The fields of PellucidOpenPbr; the radius in mm.
 struct OpenPbrMaterial {
   std::array<double, 3> color = {0.8, 0.8, 0.8};
@@ -88,7 +94,7 @@ struct SkinMaterial {
   bool operator==(const SkinMaterial&) const = default;
 };
 using MaterialSource = std::variant<PresetMaterial, CoefficientMaterial, BurleyMaterial, GaussianMaterial,
-                                    OpenPbrMaterial, SkinMaterial>;
+                                    ThinWallMaterial, OpenPbrMaterial, SkinMaterial>;
 
 // A result to compare with.
 struct Truth {
@@ -98,6 +104,9 @@ struct Truth {
   std::uint64_t samples = 0, seed = 0;
   std::string scene;  // empty: made elsewhere
 };
+
+// RGB of the coefficients of PellucidFrame::ambient.
+using Harmonics = std::array<std::array<double, 3>, 9>;
 
 struct Capture {
   std::string name;  // path it came from, or the scene's name
@@ -114,6 +123,7 @@ struct Capture {
   std::vector<std::uint8_t> material;  // required; 0 none, i: materials[i - 1]
 
   std::vector<Light> lights;
+  std::optional<Harmonics> environment;  // light from all around; irradiance has it on visible faces
   std::vector<MaterialSource> materials;
   std::optional<Truth> truth;
 };

@@ -266,6 +266,16 @@ Truth readTruth(const Field& field) {
   return truth;
 }
 
+Harmonics readHarmonics(const Field& field) {
+  const std::vector<Field> items = field.items();
+  Harmonics result;
+  if (items.size() != result.size())
+    field.fail("needs 9 coefficients of three numbers, has " + std::to_string(items.size()));
+  std::transform(items.begin(), items.end(), result.begin(),
+                 [](const Field& item) { return item.numbers<3>(); });
+  return result;
+}
+
 // Maps with a layer share one array image; those with a size share the image of that part and channel.
 void numberSharedImages(const Field& lights, Manifest& manifest) {
   using Key = std::tuple<std::filesystem::path, int, std::vector<std::string>>;
@@ -291,7 +301,8 @@ void parse(const Field& root, const BufferReader& read, Manifest& manifest) {
   if (const Field version = root["pellucid"]; version.number() != kVersion)
     version.fail("manifest version " + version.shown() + "; this program reads version " +
                  std::to_string(kVersion));
-  root.allowKeys({"pellucid", "metersPerUnit", "camera", "buffers", "lights", "materials", "truth"});
+  root.allowKeys(
+      {"pellucid", "metersPerUnit", "camera", "buffers", "lights", "environment", "materials", "truth"});
   Capture& capture = manifest.capture;
   if (const auto meters = root.find("metersPerUnit")) {
     capture.metersPerUnit = meters->number();
@@ -318,6 +329,7 @@ void parse(const Field& root, const BufferReader& read, Manifest& manifest) {
     }
     numberSharedImages(*lights, manifest);
   }
+  if (const auto environment = root.find("environment")) capture.environment = readHarmonics(*environment);
   if (const auto truth = root.find("truth")) {
     truth->allowKeys(
         {"file", "part", "channels", "constant", "scale", "standardError", "samples", "seed", "scene"});

@@ -137,6 +137,30 @@ bool hasAny(const Field& field, std::initializer_list<const char*> keys) {
   return std::any_of(keys.begin(), keys.end(), [&](const char* key) { return field.has(key); });
 }
 
+MaterialSource readThinWall(const Field& field) {
+  field.allowKeys({"thinWalled"});
+  const Field wall = field["thinWalled"];
+  wall.allowKeys({"reflectance", "transmittance", "distance"});
+  ThinWallMaterial material;
+  const auto parts = [&](const char* key) {
+    const auto values = wall[key].numbers<3>();
+    for (const double value : values)
+      if (!(value >= 0 && value <= 1)) wall[key].fail("must be from 0 to 1, is " + wall[key].shown());
+    return values;
+  };
+  material.reflectance = parts("reflectance");
+  material.transmittance = parts("transmittance");
+  for (std::size_t channel = 0; channel < 3; ++channel)
+    if (const double sum = material.reflectance[channel] + material.transmittance[channel]; sum > 1 + 1e-9)
+      wall["transmittance"].fail("and reflectance must together be at most 1, are " + std::to_string(sum));
+  if (const auto distance = wall.find("distance")) {
+    material.distance = distance->numbers<3>();
+    for (const double d : *material.distance)
+      if (!(d > 0)) distance->fail("must be positive (mm), is " + distance->shown());
+  }
+  return material;
+}
+
 }  // namespace
 
 MaterialSource readMaterial(const Field& field) {
@@ -146,13 +170,13 @@ MaterialSource readMaterial(const Field& field) {
   }
   if (field.has("profile")) return readBurley(field);
   if (field.has("gaussians")) return readGaussians(field);
+  if (field.has("thinWalled")) return readThinWall(field);
   if (field.has("scattering") || field.has("absorption")) return readCoefficients(field);
   if (hasAny(field, {kColor, kRadius, kRadiusScale, kAnisotropy})) return readOpenPbr(field);
   if (hasAny(field, {"melanin", "melaninType", "hemoglobin"})) return readSkin(field);
   field.fail(
       "must have \"preset\", \"scattering\" and \"absorption\", \"subsurface_color\", \"melanin\", "
-      "\"profile\" "
-      "or \"gaussians\", is " +
+      "\"profile\", \"gaussians\" or \"thinWalled\", is " +
       field.shown());
 }
 

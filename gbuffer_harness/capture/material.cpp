@@ -65,6 +65,13 @@ struct Describe {
     desc.hemoglobin = material.hemoglobin;
     desc.ior = material.ior;
   }
+  void operator()(const ThinWallMaterial& material) const {
+    desc.kind = PELLUCID_MATERIAL_THIN_WALL;
+    std::copy(material.reflectance.begin(), material.reflectance.end(), desc.wallReflectance);
+    std::copy(material.transmittance.begin(), material.transmittance.end(), desc.wallTransmittance);
+    if (material.distance)
+      std::copy(material.distance->begin(), material.distance->end(), desc.burleyDistance);
+  }
 };
 
 CoefficientMaterial coefficientsOf(const PellucidMaterialDesc& desc) {
@@ -100,6 +107,8 @@ PellucidMaterial compileMaterial(const MaterialSource& source, const std::string
 CoefficientMaterial coefficientsOf(const MaterialSource& source, const std::string& where) {
   if (const auto* given = std::get_if<CoefficientMaterial>(&source)) return *given;
   if (std::holds_alternative<OpenPbrMaterial>(source)) return coefficientsOf(describeMaterial(source, where));
+  if (std::holds_alternative<ThinWallMaterial>(source))
+    throw InputError(where, "", "is thin-walled, which no scattering coefficients define");
   if (std::holds_alternative<SkinMaterial>(source))
     throw InputError(where, "melanin", "skin has layers, which no single set of coefficients defines");
   const auto* preset = std::get_if<PresetMaterial>(&source);

@@ -73,6 +73,11 @@ Json materialJson(const MaterialSource& source) {
                         [](const GaussianMaterial& m) {
                           return Json{{"gaussians", {{"variance", m.variance}, {"weight", m.weight}}}};
                         },
+                        [](const ThinWallMaterial& m) {
+                          Json wall = {{"reflectance", m.reflectance}, {"transmittance", m.transmittance}};
+                          if (m.distance) wall["distance"] = *m.distance;
+                          return Json{{"thinWalled", wall}};
+                        },
                     },
                     source);
 }
@@ -240,6 +245,7 @@ void writeCapture(const Capture& capture, const std::filesystem::path& exr, Colo
     }
     manifest["lights"].push_back(std::move(json));
   }
+  if (capture.environment) manifest["environment"] = *capture.environment;
   manifest["materials"] = Json::array();
   for (const MaterialSource& source : capture.materials)
     manifest["materials"].push_back(materialJson(source));

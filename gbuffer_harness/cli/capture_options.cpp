@@ -132,8 +132,10 @@ void addModelOptions(CLI::App& command, CaptureOptions& options, SceneUse use) {
   const char* const group = kModelGroup;
   command.add_option("model", options.model, "glTF file, .glb or .gltf");
   command
-      .add_option("--material", options.presets,
-                  "NAME=PRESET or NAME={a manifest's material}, repeatable; NAME * means all others")
+      .add_option(
+          "--material", options.presets,
+          "NAME=PRESET, NAME={a manifest's material} or NAME=thin:R,G,B, a thin wall's transmittance; "
+          "repeatable; NAME * means all others")
       ->take_all()
       ->group(group);
   command

@@ -108,7 +108,8 @@ Json shadowJson(const ShadowSources& sources, const ShadowMap& map) {
 }
 
 const char* materialKind(const MaterialSource& source) {
-  constexpr const char* kKinds[] = {"preset", "coefficients", "burley", "gaussians", "OpenPBR", "skin"};
+  constexpr const char* kKinds[] = {"preset",    "coefficients", "burley", "gaussians",
+                                    "thin wall", "OpenPBR",      "skin"};
   return kKinds[source.index()];
 }
 
@@ -121,6 +122,7 @@ Json materialsJson(const Capture& capture, const std::vector<PellucidMaterial>& 
       entry["preset"] = preset->preset;
     entry["pixels"] = std::count(capture.material.begin(), capture.material.end(), index);
     entry["reflectance"] = materials[i].reflectance;
+    if (materials[i].thinWalled) entry["transmittance"] = materials[i].wallTransmittance;
     entry["radius"] = materials[i].radius;
     json.push_back(std::move(entry));
   }
@@ -130,10 +132,11 @@ Json materialsJson(const Capture& capture, const std::vector<PellucidMaterial>& 
 // Optional parts that are missing with the effect on the result, the most harmful first.
 std::vector<std::string> missingParts(const Capture& capture) {
   std::vector<std::string> missing;
-  if (capture.lights.empty()) missing.push_back("no lights: no translucency");
+  if (capture.lights.empty() && !capture.environment) missing.push_back("no lights: no translucency");
   if (capture.backDepth.image.empty())
     missing.push_back(
-        "no backDepth: no camera-space thickness; lights without a shadow map add no translucency");
+        "no backDepth: no camera-space thickness; lights without a shadow map and environments add no "
+        "translucency");
   if (capture.normal.empty())
     missing.push_back("no normal: the angle between view and light takes the place of -N.L");
   if (capture.albedo.empty()) missing.push_back("no albedo: the output is not multiplied by a surface color");
@@ -263,6 +266,7 @@ Json describe(const std::filesystem::path& path, ManifestPreset preset) {
       entry["shadowMaps"].push_back(shadowJson(manifest.shadowMaps[i][k], light.shadowMaps[k]));
     json["lights"].push_back(std::move(entry));
   }
+  if (capture.environment) json["environment"] = *capture.environment;
   json["materials"] = materialsJson(capture, materials);
   json["missing"] = missingParts(capture);
   std::vector<std::string> warnings;
@@ -312,6 +316,9 @@ std::string toText(const Json& json) {
         if (map.contains(beside)) text << "      " << beside << ": " << line(map[beside]) << "\n";
     }
   }
+  if (json.contains("environment"))
+    text << "  environment: nine coefficients, of which the first is "
+         << line({{"radiance", json["environment"][0]}}) << "\n";
   for (const Json& material : json["materials"]) text << "  material: " << line(material) << "\n";
   const char* word = "missing most: ";
   for (const Json& sentence : json["missing"]) {

@@ -51,6 +51,7 @@ RasterResult captureScene(Device& device, const Model& model, const ModelCamera&
 void addTracedLight(Capture& capture, const reference::TraceScene& scene,
                     const std::optional<Environment>& environment) {
   if (!needsTracing(capture.lights, environment)) return;
+  if (environment) capture.environment = environment->harmonics();
   reference::Emitters emitters;
   emitters.environment = environment;
   std::copy_if(capture.lights.begin(), capture.lights.end(), std::back_inserter(emitters.lights), hasRadius);

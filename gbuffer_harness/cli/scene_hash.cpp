@@ -76,6 +76,11 @@ void SceneHash::add(const reference::Emitters& emitters, const Capture& capture)
   for (const double x : capture.clipFromView) value(x);
   for (const double x : capture.viewFromWorld) value(x);
   for (const MaterialSource& source : capture.materials) {
+    if (const auto* wall = std::get_if<ThinWallMaterial>(&source)) {
+      for (const auto& color : {wall->reflectance, wall->transmittance})
+        for (const double x : color) value(x);
+      continue;
+    }
     const CoefficientMaterial material = coefficientsOf(source, capture.name + ": materials");
     for (const auto& color : {material.scattering, material.absorption})
       for (const double x : color) value(x);

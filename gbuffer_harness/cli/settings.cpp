@@ -211,6 +211,11 @@ const std::map<std::string, Key> kKeys = {
     {"format",
      {"rgba16f|rgba32f|rg11b10f", [](const auto& key, const auto& value,
                                      ReplaySettings& s) { s.outputFormat = lookUp(kFormats, key, value); }}},
+    {"ambient",
+     {"0|1: the capture's environment comes through thin parts",
+      [](const auto& key, const auto& value, ReplaySettings& s) {
+        s.ambient = lookUp(kBooleans, key, value);
+      }}},
     {"alias",
      {"0|1: output is the irradiance image",
       [](const auto& key, const auto& value, ReplaySettings& s) {
@@ -349,6 +354,7 @@ std::string settingsJson(const ReplaySettings& s) {
                                  {"target-error", s.targetError},
                                  {"nearest-distance", s.nearestDistance},
                                  {"format", nameOf(kFormats, s.outputFormat)},
+                                 {"ambient", s.ambient ? "1" : "0"},
                                  {"alias", s.aliasOutput ? "1" : "0"},
                                  {"indirect", nameOf(kIndirect, s.indirectDispatches)},
                                  {"rect", s.renderRect}};

@@ -30,12 +30,30 @@ Texel texelOf(VkFormat format) {
     case VK_FORMAT_R8G8B8A8_UNORM:
       return {4, 1};
     case VK_FORMAT_B10G11R11_UFLOAT_PACK32:  // one word
+    case VK_FORMAT_E5B9G9R9_UFLOAT_PACK32:
+    case VK_FORMAT_A2B10G10R10_UNORM_PACK32:
       return {1, 4};
+    case VK_FORMAT_R16G16_SNORM:
+      return {2, 2};
     case VK_FORMAT_R8_UINT:
     case VK_FORMAT_R8_UNORM:
       return {1, 1};
     default:
       throw DeviceError("GpuImage does not know VkFormat " + std::to_string(format));
+  }
+}
+
+// Packs a texel of a format whose texels are one word; nullptr: another format.
+glm::uint32 (*packing(VkFormat format))(const glm::vec4&) {
+  switch (format) {
+    case VK_FORMAT_B10G11R11_UFLOAT_PACK32:
+      return [](const glm::vec4& v) { return glm::packF2x11_1x10(glm::vec3(v)); };
+    case VK_FORMAT_E5B9G9R9_UFLOAT_PACK32:
+      return [](const glm::vec4& v) { return glm::packF3x9_E1x5(glm::vec3(v)); };
+    case VK_FORMAT_A2B10G10R10_UNORM_PACK32:
+      return [](const glm::vec4& v) { return glm::packUnorm3x10_1x2(v); };
+    default:
+      return nullptr;
   }
 }
 
@@ -73,7 +91,9 @@ GpuImage::GpuImage(Device& device, int width, int height, VkFormat format, VkIma
   info.samples = VK_SAMPLE_COUNT_1_BIT;
   info.usage =
       VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | more;
-  constexpr VkFormat kNotStorage[] = {VK_FORMAT_R32G32_SFLOAT, VK_FORMAT_R8_UINT, VK_FORMAT_R8_UNORM};
+  constexpr VkFormat kNotStorage[] = {
+      VK_FORMAT_R32G32_SFLOAT,          VK_FORMAT_R16G16_SNORM, VK_FORMAT_A2B10G10R10_UNORM_PACK32,
+      VK_FORMAT_E5B9G9R9_UFLOAT_PACK32, VK_FORMAT_R8_UINT,      VK_FORMAT_R8_UNORM};
   if (std::find(std::begin(kNotStorage), std::end(kNotStorage), format) == std::end(kNotStorage))
     info.usage |= VK_IMAGE_USAGE_STORAGE_BIT;
   const auto limit = static_cast<int>(device.properties().limits.maxImageDimension2D);
@@ -125,15 +145,15 @@ void GpuImage::upload(const Image& source, int layer) {
   if (source.width != width_ || source.height != height_)
     throw DeviceError("upload of " + std::to_string(source.width) + " x " + std::to_string(source.height) +
                       " into an image of " + std::to_string(width_) + " x " + std::to_string(height_));
-  const Texel texel = texelOf(format_);
-  if (format_ == VK_FORMAT_B10G11R11_UFLOAT_PACK32) {
+  if (const auto pack = packing(format_)) {
     std::vector<glm::uint32> words(source.pixels());
     for (size_t i = 0; i < words.size(); ++i) {
       const float* p = source.data.data() + i * static_cast<size_t>(source.channels);
-      words[i] = glm::packF2x11_1x10(glm::vec3(p[0], p[1], p[2]));
+      words[i] = pack({p[0], p[1], p[2], source.channels > 3 ? p[3] : 1.0f});
     }
     return transfer(words.data(), layer);
   }
+  const Texel texel = texelOf(format_);
   std::vector<float> full(source.pixels() * static_cast<size_t>(texel.channels));
   for (size_t i = 0; i < source.pixels(); ++i)
     for (int c = 0; c < texel.channels; ++c)
@@ -141,14 +161,23 @@ void GpuImage::upload(const Image& source, int layer) {
           c < source.channels ? source.data[i * static_cast<size_t>(source.channels) + static_cast<size_t>(c)]
                               : (c == 3 ? 1.0f : 0.0f);
   if (texel.bytes == 4) return transfer(full.data(), layer);
-  if (format_ == VK_FORMAT_R8G8B8A8_SNORM) {
+  if (texel.bytes == 1) {
     std::vector<glm::uint8> bytes(full.size());
-    std::transform(full.begin(), full.end(), bytes.begin(), [](float v) { return glm::packSnorm1x8(v); });
+    const auto pack = format_ == VK_FORMAT_R8G8B8A8_SNORM ? &glm::packSnorm1x8 : &glm::packUnorm1x8;
+    std::transform(full.begin(), full.end(), bytes.begin(), pack);
     return transfer(bytes.data(), layer);
   }
-  std::vector<glm::uint16> half(full.size());
-  std::transform(full.begin(), full.end(), half.begin(), [](float v) { return glm::packHalf1x16(v); });
-  transfer(half.data(), layer);
+  std::vector<glm::uint16> words(full.size());
+  const auto pack = format_ == VK_FORMAT_R16G16_SNORM ? &glm::packSnorm1x16 : &glm::packHalf1x16;
+  std::transform(full.begin(), full.end(), words.begin(), pack);
+  transfer(words.data(), layer);
+}
+
+void GpuImage::upload(const std::vector<std::uint32_t>& source, int layer) {
+  if (source.size() * sizeof source[0] != bytes())
+    throw DeviceError("upload of " + std::to_string(source.size()) + " words into an image of " +
+                      std::to_string(bytes()) + " bytes");
+  transfer(source.data(), layer);
 }
 
 void GpuImage::upload(const std::vector<std::uint8_t>& source, int layer) {

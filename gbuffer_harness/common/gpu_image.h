@@ -10,22 +10,25 @@ namespace pellucid::harness {
 class GpuImage {
 public:
   // Usable as sampled and storage image, for transfers, and as `more` says. Formats: R32_SFLOAT,
-  // R16G16B16A16_SFLOAT, R32G32B32A32_SFLOAT, R8G8B8A8_SNORM, R8G8B8A8_UNORM; not storage: R32G32_SFLOAT,
-  // R8_UINT, R8_UNORM. layers: 0: a 2D view, else a view of all layers of an array.
+  // R16G16B16A16_SFLOAT, R32G32B32A32_SFLOAT, R8G8B8A8_SNORM, R8G8B8A8_UNORM, R32_UINT, R32G32B32A32_UINT,
+  // B10G11R11_UFLOAT_PACK32; not storage: R32G32_SFLOAT, R16G16_SNORM, A2B10G10R10_UNORM_PACK32,
+  // E5B9G9R9_UFLOAT_PACK32, R8_UINT, R8_UNORM. layers: 0: a 2D view, else a view of all layers of an array.
   GpuImage(Device& device, int width, int height, VkFormat format, VkImageUsageFlags more = 0,
            int layers = 0);
   ~GpuImage();
   GpuImage(const GpuImage&) = delete;
   GpuImage& operator=(const GpuImage&) = delete;
 
-  // Converts to the image's format, which is not R8G8B8A8_UNORM. Channels that the source lacks become 0,
+  // Converts to the image's format, which is none of integers. Channels that the source lacks become 0,
   // alpha 1.
   void upload(const Image& source, int layer = 0);
   // R8_UINT, R8_UNORM: bytes as they are stored.
   void upload(const std::vector<std::uint8_t>& source, int layer = 0);
-  void clear(std::uint8_t byte = 0);  // every byte of every texel
-  void fill(std::uint64_t seed);      // pseudo-random bits
-  Image download() const;
+  void upload(const std::vector<std::uint32_t>& source, int layer = 0);  // R32_UINT
+  void clear(std::uint8_t byte = 0);                                     // every byte of every texel
+  void fill(std::uint64_t seed);                                         // pseudo-random bits
+  Image download()
+      const;  // of formats that are usable as storage images, R32G32_SFLOAT, R8_UINT and R8_UNORM
 
   // How an engine hands it to Pellucid.
   PellucidImage use() const { return {view_, VK_IMAGE_LAYOUT_GENERAL}; }

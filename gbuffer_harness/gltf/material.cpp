@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <string_view>
 
 #include "capture/manifest_material.h"
 #include "capture/material.h"
+#include "common/number.h"
 #include "pellucid/pellucid_material.h"
 
 namespace pellucid::harness {
@@ -33,6 +35,27 @@ const std::string* presetFor(const std::string& name, const GltfOptions& options
   for (const std::string& key : {name, std::string("*")})
     if (const auto found = options.presets.find(key); found != options.presets.end()) return &found->second;
   return nullptr;
+}
+
+// Of "thin:R,G,B".
+std::optional<Rgb> thinTransmittance(const GltfDocument& document, const std::string& name,
+                                     const std::string& text) {
+  constexpr std::string_view kThin = "thin:";
+  if (text.rfind(kThin, 0) != 0) return std::nullopt;
+  Rgb color{};
+  std::size_t from = kThin.size();
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::size_t end = c < 2 ? text.find(',', from) : text.size();
+    const auto value = end < from || end == std::string::npos
+                           ? std::nullopt
+                           : numberIn<double>(std::string_view(text).substr(from, end - from));
+    if (!value || *value < 0 || *value > 1)
+      document.fail("material \"" + name + "\"",
+                    "\"" + text + "\" is not thin:R,G,B with a transmittance from 0 to 1 of each");
+    color[c] = *value;
+    from = end + 1;
+  }
+  return color;
 }
 
 }  // namespace
@@ -80,6 +103,10 @@ GltfMaterial readMaterial(const GltfDocument& document, int index, const GltfOpt
       result.medium = scattering.medium;
       result.lobeMap = std::move(scattering.map);
     }
+  }
+  if (const auto transmittance = preset ? thinTransmittance(document, name, *preset) : std::nullopt) {
+    result.medium = thinWall(*transmittance, result.surface).medium;
+    return result;
   }
   const std::string where = document.file + ": material \"" + name + "\"";
   if (preset) result.medium = parseMaterial(where, *preset);

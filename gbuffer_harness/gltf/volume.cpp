@@ -20,6 +20,10 @@ constexpr const char *kDiffuse = "KHR_materials_diffuse_transmission",
 // An attenuation color of 0 or 1 would be an infinite or no coefficient.
 constexpr double kDarkest = 1e-4, kClearest = 0.999;
 
+// The albedo is the color of light that comes through, so that of a thin wall's lobes the ratio counts, which
+// is 1.
+constexpr Rgb kHalf = {0.5, 0.5, 0.5};
+
 // A profile too narrow to see, for media that do not scatter, mm.
 constexpr double kNoDiffusion = 1e-3;
 // T(d) has to fall to 0 in the end, 1/mm.
@@ -109,6 +113,7 @@ private:
   Rgb mean() const { return result_.map ? result_.map->mean : Rgb{1, 1, 1}; }
   Rgb extinction() const;
   double boundaryIor() const;
+  void setThinWall();
   void setAbsorbing();
   void setScattering(const Rgb& multiscatter, double strength, double phaseG, double g, double ior);
   void readDiffuse(const Extension& diffuse);
@@ -160,11 +165,16 @@ void Reader::setMap(const std::vector<std::optional<TextureUse>>& colors,
   result_.map = readLobeMap(document_, there, strength, warnings_);
 }
 
+// A thin wall, in the color of the lobe.
+void Reader::setThinWall() {
+  result_.medium = ThinWallMaterial{kHalf, kHalf, {}};
+  surface_.lobes = SurfaceLobes::Apart;
+}
+
 // Light enters and leaves diffusely and is only absorbed on the way: T = e^{-sigma_a d}, in the color of the
 // lobe.
 void Reader::setAbsorbing() {
-  const bool absorbs = isVolume_ && distance_ < kInfinity;
-  const Rgb sigma = absorbs ? extinction() : Rgb{};
+  const Rgb sigma = distance_ < kInfinity ? extinction() : Rgb{};
   BurleyMaterial medium{{kNoDiffusion, kNoDiffusion, kNoDiffusion}, {{}}};
   for (std::size_t i = 0; i < 3; ++i)
     (*medium.transmittance)[i] = {1, std::max(sigma[i], kSlowestDecay), 0, kSlowestDecay};
@@ -199,7 +209,7 @@ void Reader::readDiffuse(const Extension& diffuse) {
   setMap({diffuse.texture("diffuseTransmissionColorTexture")}, diffuse.texture("diffuseTransmissionTexture"));
   scale(surface_.addedColor, factor);
   surface_.displaced = factor;
-  setAbsorbing();
+  isVolume_ ? setAbsorbing() : setThinWall();
 }
 
 void Reader::readVolumeScatter(const Extension& scatter, const std::optional<Extension>& diffuse) {
@@ -264,7 +274,7 @@ void Reader::readThinScatter(const Extension& scatter, double transmission, doub
     return;
   }
   surface_.backscatter = (1 - g) / (1 + g);
-  setAbsorbing();
+  setThinWall();
 }
 
 void Reader::readScatter(const Extension& scatter, const Extension& transmission) {
@@ -334,6 +344,13 @@ Scattering Reader::read() {
 }
 
 }  // namespace
+
+Scattering thinWall(const std::array<double, 3>& transmittance, Surface& surface) {
+  for (std::size_t i = 0; i < 3; ++i) surface.baseColor[i] *= 1 - transmittance[i];
+  surface.addedColor = transmittance;
+  surface.lobes = SurfaceLobes::Apart;
+  return {ThinWallMaterial{kHalf, kHalf, {}}, {}};
+}
 
 Scattering readScattering(const GltfDocument& document, std::size_t material, const std::string& name,
                           double metersPerUnit, Surface& surface, std::vector<std::string>& warnings) {

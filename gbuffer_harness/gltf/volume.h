@@ -25,6 +25,9 @@ struct Scattering {
 Scattering readScattering(const GltfDocument& document, std::size_t material, const std::string& name,
                           double metersPerUnit, Surface& surface, std::vector<std::string>& warnings);
 
+// A thin wall that transmits this color, and reflects the base color of the rest.
+Scattering thinWall(const std::array<double, 3>& transmittance, Surface& surface);
+
 // The texture of an object in the file's JSON, as "baseColorTexture" of pbrMetallicRoughness; nothing without
 // one.
 std::optional<TextureUse> readTextureUse(const GltfDocument& document, const GltfJson& object,

@@ -13,6 +13,12 @@ namespace pellucid::harness {
 
 namespace {
 
+bool holdsMedium(const Model& model, const Surface& surface) {
+  if (surface.material == 0) return false;
+  const std::size_t index = surface.material - 1u;
+  return index >= model.materials.size() || !std::holds_alternative<ThinWallMaterial>(model.materials[index]);
+}
+
 // A vertex of a triangle: its place, and one of the model's vertices there.
 struct Corner {
   std::uint32_t place, vertex;
@@ -75,8 +81,9 @@ std::map<std::uint32_t, ObjectEdges> looseEdges(const Model& model) {
   for (const Part& part : model.parts) objects[part.object].push_back(&part);
   std::map<std::uint32_t, ObjectEdges> result;
   for (const auto& [object, parts] : objects) {
-    const auto translucent = std::find_if(
-        parts.begin(), parts.end(), [&](const Part* p) { return model.surfaces[p->surface].material != 0; });
+    const auto translucent = std::find_if(parts.begin(), parts.end(), [&](const Part* p) {
+      return holdsMedium(model, model.surfaces[p->surface]);
+    });
     if (translucent == parts.end()) continue;
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<LooseEdge>> edges;
     for (const Part* part : parts)

@@ -9,7 +9,7 @@
 
 namespace pellucid::harness {
 
-// An object with a material whose surface has edges that no second triangle continues, once vertices at one
+// An object with a medium whose surface has edges that no second triangle continues, once vertices at one
 // place count as one.
 struct OpenObject {
   std::uint32_t object = 0;
@@ -18,7 +18,7 @@ struct OpenObject {
   std::size_t looseEdges = 0;  // those that lie on no loop: faces turned over, or more than two on an edge
 };
 
-// Objects of surfaces without a material are not looked at: light does not walk through them.
+// Objects of opaque and thin-walled surfaces are not looked at: light does not walk through them.
 std::vector<OpenObject> openObjects(const Model& model);
 
 // Closes each loop with triangles around its center, drawn as the surface next to it. Loose edges stay.

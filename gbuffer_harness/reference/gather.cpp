@@ -35,8 +35,8 @@ Gather::Gather(const Capture& capture, const SurfaceReader& surfaces,
                const std::vector<PellucidMaterial>& materials, bool diffused)
     : capture_(capture), surfaces_(surfaces), mm_(surfaces.millimetersPerUnit()), diffused_(diffused) {
   for (const PellucidMaterial& m : materials) {
-    kernels_.emplace_back(m);
-    radii_.push_back(kernels_.back().radius(kTail));
+    kernels_.push_back(m.thinWalled ? std::nullopt : std::optional<GatherKernel>(m));
+    radii_.push_back(m.thinWalled ? 0 : kernels_.back()->radius(kTail));
   }
   for (const Light& light : capture.lights) {
     Blocks& blocks = lights_.emplace_back();
@@ -217,7 +217,7 @@ glm::dvec3 Gather::thinLoss(const Surface& surface, std::size_t material) const 
       0.5 * chord *
       (std::abs(glm::dot(surface.ray, *surface.normal)) + std::abs(glm::dot(surface.ray, outward)));
   const double opposite = 0.5 - 0.5 * glm::dot(*surface.normal, outward);
-  return opposite * (1.0 - kernels_[material].slabReflectance(depth));
+  return opposite * (1.0 - kernels_[material]->slabReflectance(depth));
 }
 
 // Over the texels of a light's maps.
@@ -264,7 +264,7 @@ double Gather::inside(const Texel& texel, const Exit& exit, const Place& place) 
 }
 
 Gather::Sums Gather::sums(const Blocks& blocks, const Exit& exit, const Place& place) const {
-  const GatherKernel& kernel = kernels_[exit.material];
+  const GatherKernel& kernel = *kernels_[exit.material];
   const double radius = radii_[exit.material];
   Sums sums;
   for (const Block& block : blocks) {
@@ -299,7 +299,7 @@ Gather::Sums Gather::sums(const Blocks& blocks, const Exit& exit, const Place& p
 }
 
 Gathered Gather::at(const Surface& surface, std::size_t material) const {
-  const GatherKernel& kernel = kernels_[material];
+  const GatherKernel& kernel = *kernels_[material];
   const glm::dmat4& worldFromView = surfaces_.worldFromView();
   Exit exit{mm_ * glm::dvec3(worldFromView * glm::dvec4(surface.position, 1)), std::nullopt, material};
   if (surface.normal) exit.normal = glm::dmat3(worldFromView) * *surface.normal;

@@ -84,8 +84,8 @@ private:
 
   const Capture& capture_;
   const SurfaceReader& surfaces_;
-  double mm_;  // per scene unit
-  std::vector<GatherKernel> kernels_;
+  double mm_;                                         // per scene unit
+  std::vector<std::optional<GatherKernel>> kernels_;  // none of thin walls
   std::vector<double> radii_;
   std::vector<Blocks> lights_;
   std::vector<std::vector<ShadowView>> views_;  // of the lights' maps

@@ -10,6 +10,7 @@
 #include "common/error.h"
 #include "common/parallel.h"
 #include "common/progress.h"
+#include "reference/ambient.h"
 #include "reference/gather.h"
 #include "reference/surface.h"
 #include "reference/translucency.h"
@@ -70,6 +71,7 @@ public:
         settings_(settings),
         surfaces_(capture),
         translucency_(capture, surfaces_, settings.translucency),
+        ambient_(capture, surfaces_, materials),
         values_(capture.material.size()) {}
 
   Result run() {
@@ -77,7 +79,7 @@ public:
       case PELLUCID_DEBUG_NONE:
         return diffused();
       case PELLUCID_DEBUG_IRRADIANCE:
-        gatherIrradiance(true);
+        addIrradiance([](const PellucidMaterial&) { return true; });
         return {toImage(values_), 0, 0};
       default:
         gatherDebugView();
@@ -120,19 +122,24 @@ private:
     return surface ? translucency_.at(*surface, material(i), capture_.material[i]) : Transmission{};
   }
 
-  // E + transmitted / rho.
-  void gatherIrradiance(bool through) {
+  // E, + transmitted / rho where through(material).
+  template <class Through>
+  void addIrradiance(Through&& through) {
     forEachPixel("translucency", [&](int x, int y, std::size_t i) {
       const float* e = capture_.irradiance.at(x, y);
       values_[i] = {sanitized(e[0]), sanitized(e[1]), sanitized(e[2])};
-      if (through && settings_.features & PELLUCID_FEATURE_TRANSLUCENCY) values_[i] += transmitted(x, y, i);
+      if (settings_.features & PELLUCID_FEATURE_TRANSLUCENCY && through(material(i)))
+        values_[i] = glm::max(values_[i] + transmitted(x, y, i), 0.0);
     });
   }
 
   // As irradiance that albedo = rho turns into the exitance.
   glm::dvec3 transmitted(int x, int y, std::size_t i) const {
     const float* rho = material(i).reflectance;
-    return transmission(x, y, i).transmitted / glm::dvec3(rho[0], rho[1], rho[2]);
+    glm::dvec3 exitance = transmission(x, y, i).transmitted;
+    if (const std::optional<Surface> surface = surfaces_.at(x, y); surface && marks_.count(i) == 0)
+      exitance += ambient_.at(*surface, capture_.material[i] - 1u);
+    return exitance / glm::dvec3(rho[0], rho[1], rho[2]);
   }
 
   // Adds to the diffused irradiance what all texels of the shadow maps bring, and the lights without one.
@@ -142,7 +149,7 @@ private:
     const Gather all(capture_, surfaces_, materials_, spreads);
     forEachWanted("gather", [&](int x, int y, std::size_t i) {
       const std::optional<Surface> surface = surfaces_.at(x, y);
-      if (!surface || marks_.count(i) != 0) return;
+      if (!surface || marks_.count(i) != 0 || material(i).thinWalled) return;
       const Gathered g = all.at(*surface, capture_.material[i] - 1u);
       const float* rho = material(i).reflectance;
       output[i] = (1.0 + g.convexity) * output[i] + g.returned;
@@ -159,10 +166,11 @@ private:
   }
 
   // What comes through is diffused with the irradiance; gathered light has already spread, so it comes after.
+  // Thin walls are not gathered.
   Result diffused() {
     const bool gathers =
         settings_.translucency.gatherSamples > 0 && settings_.features & PELLUCID_FEATURE_TRANSLUCENCY;
-    gatherIrradiance(!gathers);
+    addIrradiance([gathers](const PellucidMaterial& m) { return !gathers || m.thinWalled != 0; });
     Result result;
     std::vector<glm::dvec3> output = values_;
     if (settings_.features & PELLUCID_FEATURE_DIFFUSION) {
@@ -195,6 +203,7 @@ private:
   const Settings& settings_;
   SurfaceReader surfaces_;
   Translucency translucency_;
+  Ambient ambient_;
   std::vector<glm::dvec3> values_;  // 0 where there is no material
 };
 

@@ -174,6 +174,43 @@ Translucency::LightPath Translucency::cameraSpacePath(std::size_t light, const R
   return path;
 }
 
+// The texels of a plane that is tilted by this cosine lie off their depths by the diagonal of a texel times
+// its slope; where the light grazes, 32 texels have to do.
+double Translucency::unblockedPart(std::size_t light, const Receiver& r, double facing) const {
+  constexpr double kMostTexels = 32;
+  if (shadows_[light].empty()) return 1;
+  const std::optional<Taps> taps = texelsAround(light, r.position);
+  if (!taps) return 0;
+  const double slope = std::sqrt(1 - std::min(facing * facing, 1.0)) / std::max(std::abs(facing), 1e-3);
+  double blocked = 0;
+  for (const auto& [weight, found] : *taps) {
+    if (found.kind != ShadowView::Kind::Surface) continue;
+    const double tolerance =
+        found.texel * std::min(1 + std::numbers::sqrt2 * slope, kMostTexels) + found.uncertain;
+    blocked += weight * std::clamp(found.distance / tolerance - 1, 0.0, 1.0);
+  }
+  return 1 - blocked;
+}
+
+Translucency::LightPath Translucency::thinWallPath(std::size_t light, const Receiver& r) const {
+  constexpr double kTurned = 0.1;
+  const Arrival arrival = arrivalAt(capture_.lights[light], r.position);
+  const std::optional<glm::dvec3> facet = surfaces_.facet(*r.surface);
+  const double turn = facet      ? facing(facet, arrival.toLight)
+                      : r.normal ? glm::dot(*r.normal, arrival.toLight)
+                                 : 0;
+  const bool byDepth = settings_.angleModel == PELLUCID_ANGLE_NORMAL && !r.normal && facet;
+  LightPath path;
+  path.arriving =
+      arrival.irradiance * (byDepth ? std::max(0.0, -turn) : hiddenCosine(r, light, arrival.toLight));
+  path.reaches = std::clamp(1 - turn / kTurned, 0.0, 1.0) * unblockedPart(light, r, turn);
+  return path;
+}
+
+bool Translucency::isGathered(std::size_t light) const {
+  return settings_.gatherSamples > 0 && !shadows_[light].empty() && !holdsBackFaces(capture_.lights[light]);
+}
+
 std::optional<double> Translucency::firstLightDistance(const Receiver& r) const {
   for (std::size_t i = 0; i < shadows_.size(); ++i) {
     if (holdsBackFaces(capture_.lights[i])) continue;
@@ -199,9 +236,10 @@ Transmission Translucency::at(const Surface& surface, const PellucidMaterial& ma
   if (receiver.chord) t.cameraThickness = *receiver.chord * mmPerUnit;
   if (const auto distance = firstLightDistance(receiver)) t.lightThickness = *distance * mmPerUnit;
   for (std::size_t i = 0; i < capture_.lights.size(); ++i) {
-    if (settings_.gatherSamples > 0 && !shadows_[i].empty() && !holdsBackFaces(capture_.lights[i]))
-      continue;  // reference/gather.h
-    const LightPath path = usesLightSpace(i) ? lightSpacePath(i, receiver) : cameraSpacePath(i, receiver);
+    if (!material.thinWalled && isGathered(i)) continue;  // reference/gather.h
+    const LightPath path = material.thinWalled ? thinWallPath(i, receiver)
+                           : usesLightSpace(i) ? lightSpacePath(i, receiver)
+                                               : cameraSpacePath(i, receiver);
     t.arriving += path.arriving;
     if (!(path.reaches > 0)) continue;
     const double thickness = path.thickness * mmPerUnit;

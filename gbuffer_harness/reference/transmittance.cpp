@@ -19,6 +19,7 @@ double gaussianSum(const PellucidMaterial& m, int channel, double d, double perV
 }
 
 double channelTransmittance(const PellucidMaterial& m, int channel, double d) {
+  if (m.thinWalled) return double(m.wallTransmittance[channel]);
   const float* p = m.transmittance[channel];
   switch (m.transmittanceModel) {
     case PELLUCID_TRANSMITTANCE_EXP2:

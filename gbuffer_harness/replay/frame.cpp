@@ -150,6 +150,7 @@ ReplaySettings thesisSettings() {
 std::vector<PellucidMaterial> withTransmittance(std::vector<PellucidMaterial> materials,
                                                 TransmittanceChoice choice) {
   for (PellucidMaterial& m : materials) {
+    if (m.thinWalled) continue;
     switch (choice) {
       case TransmittanceChoice::Material:
         break;
@@ -197,6 +198,11 @@ void makeFrame(const Capture& capture, const std::vector<PellucidMaterial>& mate
   f.shadowMaps = data.shadowMaps.data();
   f.shadowImageCount = static_cast<uint32_t>(data.shadowImages.size());
   f.shadowImages = data.shadowImages.data();
+  if (capture.environment && settings.ambient) {
+    for (const std::array<double, 3>& coefficient : *capture.environment)
+      for (const double channel : coefficient) data.ambient.push_back(static_cast<float>(channel));
+    f.ambient = data.ambient.data();
+  }
   const TranslucencySettings& t = settings.translucency;
   f.thicknessSource = t.thicknessSource;
   f.gatherSamples = t.gatherSamples;
@@ -210,6 +216,10 @@ void makeFrame(const Capture& capture, const std::vector<PellucidMaterial>& mate
   f.nearestDistance = settings.nearestDistance;
   f.separateOutput = !settings.aliasOutput || settings.debugView != PELLUCID_DEBUG_NONE;
   f.indirectDispatches = settings.indirectDispatches;
+  f.materialShift = settings.materialShift;
+  f.materialMask = settings.materialMask;
+  f.outputMode = settings.outputMode;
+  f.preExposure = settings.preExposure;
   f.debugView = settings.debugView;
   fillPlaceholders(capture, data);
 }

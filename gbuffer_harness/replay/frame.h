@@ -23,7 +23,13 @@ struct ReplaySettings {
   TransmittanceChoice transmittance = TransmittanceChoice::Material;
   PellucidDebugView debugView = PELLUCID_DEBUG_NONE;
   VkFormat outputFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
+  VkFormat irradianceFormat = VK_FORMAT_UNDEFINED;        // UNDEFINED: outputFormat
   VkFormat normalFormat = VK_FORMAT_R32G32B32A32_SFLOAT;  // of the image that normals are uploaded to
+  // See PellucidFrame. With a mask, the other bits of the 32 of the uploaded material image hold noise.
+  uint32_t materialShift = 0, materialMask = 0;
+  bool ambient = true;  // the capture's environment comes through thin parts
+  PellucidOutputMode outputMode = PELLUCID_OUTPUT_REPLACE;  // ADD: FrameRun::uploadOutput says to what
+  float preExposure = 1;  // the uploaded irradiance is the capture's times this
   PellucidReuse reuse = PELLUCID_REUSE_NONE;
   float coherenceThreshold = 0.005f;
   float frameLoad = 0;
@@ -51,6 +57,7 @@ struct FrameData {
   std::vector<PellucidShadowMap> shadowMaps;
   std::vector<PellucidImage> shadowImages;
   std::vector<float> minimumDotTable;
+  std::vector<float> ambient;
 
   FrameData() = default;
   FrameData(const FrameData&) = delete;  // frame points to the others

@@ -26,11 +26,15 @@ InputImages::InputImages(Device& device, const Capture& capture, const ReplaySet
   frontDepth_ = add(device, capture.frontDepth.image, VK_FORMAT_R32_SFLOAT);
   if (!capture.backDepth.image.empty())
     backDepth_ = add(device, capture.backDepth.image, VK_FORMAT_R32_SFLOAT);
-  add(device, capture.irradiance, settings.outputFormat);
+  Image irradiance = capture.irradiance;
+  for (size_t i = 0; settings.preExposure != 1 && i < irradiance.data.size(); ++i)
+    if (irradiance.channels == 3 || i % 4 != 3) irradiance.data[i] *= settings.preExposure;
+  add(device, irradiance,
+      settings.irradianceFormat == VK_FORMAT_UNDEFINED ? settings.outputFormat : settings.irradianceFormat);
   irradiance_ = images_.back().get();
   if (!capture.normal.empty()) normal_ = add(device, capture.normal, settings.normalFormat);
   if (!capture.albedo.empty()) albedo_ = add(device, capture.albedo, VK_FORMAT_R32G32B32A32_SFLOAT);
-  material_ = add(device, capture.width, capture.height, capture.material, VK_FORMAT_R8_UINT);
+  addMaterial(device, capture, settings);
   const bool array = hasLayers(capture.lights);
   for (const ShadowImageSource& source : shadowImages(capture.lights).images)
     shadows_.push_back(add(device, source, array));
@@ -57,11 +61,22 @@ PellucidImage InputImages::add(Device& device, const Image& image, VkFormat form
   return images_.back()->use();
 }
 
-PellucidImage InputImages::add(Device& device, int width, int height,
-                               const std::vector<std::uint8_t>& indices, VkFormat format) {
-  images_.push_back(std::make_unique<GpuImage>(device, width, height, format));
-  images_.back()->upload(indices);
-  return images_.back()->use();
+void InputImages::addMaterial(Device& device, const Capture& capture, const ReplaySettings& settings) {
+  const bool packed = settings.materialMask != 0;
+  images_.push_back(std::make_unique<GpuImage>(device, capture.width, capture.height,
+                                               packed ? VK_FORMAT_R32_UINT : VK_FORMAT_R8_UINT));
+  if (packed) {
+    std::vector<std::uint32_t> words(capture.material.size());
+    for (size_t i = 0; i < words.size(); ++i) {
+      const std::uint32_t noise = static_cast<std::uint32_t>(i) * 2654435761u + 12345u;  // Knuth's hash
+      words[i] = (noise & ~settings.materialMask) | std::uint32_t{capture.material[i]}
+                                                        << settings.materialShift;
+    }
+    images_.back()->upload(words);
+  } else {
+    images_.back()->upload(capture.material);
+  }
+  material_ = images_.back()->use();
 }
 
 void InputImages::bind(FrameData& data) const {
@@ -130,6 +145,7 @@ public:
         image->fill(seed);
     }
   }
+  void uploadOutput(const Image& content) const { output_->upload(content); }
   Image output() const { return output_->download(); }
   Image irradiance() const { return inputs_->irradiance().download(); }
   void restoreIrradiance(const Capture& capture) const {
@@ -281,6 +297,8 @@ void FrameRun::fillGarbage(std::uint64_t seed) const {
   images_->fillGarbage(seed);
   std::memset(constants_->mapped(), static_cast<int>(seed & 0xFF), static_cast<size_t>(constants_->size()));
 }
+
+void FrameRun::uploadOutput(const Image& content) const { images_->uploadOutput(content); }
 
 void FrameRun::restoreIrradiance(const Capture& capture) const { images_->restoreIrradiance(capture); }
 

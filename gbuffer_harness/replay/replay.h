@@ -53,7 +53,7 @@ private:
 // What frames of one capture read, on the device.
 class InputImages {
 public:
-  // In settings.outputFormat and settings.normalFormat. The capture is not needed afterwards.
+  // As settings say: formats, material bits, pre-exposure. The capture is not needed afterwards.
   InputImages(Device& device, const Capture& capture, const ReplaySettings& settings);
 
   void bind(FrameData& data) const;
@@ -61,8 +61,7 @@ public:
 
 private:
   PellucidImage add(Device& device, const Image& image, VkFormat format);
-  PellucidImage add(Device& device, int width, int height, const std::vector<std::uint8_t>& indices,
-                    VkFormat format);
+  void addMaterial(Device& device, const Capture& capture, const ReplaySettings& settings);
   PellucidImage add(Device& device, const ShadowImageSource& source, bool array);
 
   std::vector<std::unique_ptr<GpuImage>> images_;
@@ -105,6 +104,9 @@ public:
   // Other bits where a recording must not depend on them: in transients, the constants' memory, and an output
   // that is not the irradiance, which becomes 0xFF bytes: NaN in both formats.
   void fillGarbage(std::uint64_t seed) const;
+
+  // What an output that is not the irradiance holds before the first recording.
+  void uploadOutput(const Image& content) const;
 
   // RGBA. Outside the rect and at material 0: irradiance times albedo, as an engine that composites in
   // place would have there; 0 for debug views.

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <cmath>
+#include <numbers>
 
 namespace pellucid::harness {
 
@@ -14,6 +16,16 @@ struct Environment {
   std::array<double, 3> radiance(double y) const {
     std::array<double, 3> result;
     for (std::size_t c = 0; c < 3; ++c) result[c] = down[c] + (up[c] - down[c]) * (0.5 + 0.5 * y);
+    return result;
+  }
+
+  // In the order of PellucidFrame::ambient; of a linear function the first two of nine say all.
+  std::array<std::array<double, 3>, 9> harmonics() const {
+    std::array<std::array<double, 3>, 9> result{};
+    for (std::size_t c = 0; c < 3; ++c) {
+      result[0][c] = (up[c] + down[c]) * std::sqrt(std::numbers::pi);
+      result[1][c] = (up[c] - down[c]) * std::sqrt(std::numbers::pi / 3);
+    }
     return result;
   }
 };

@@ -137,6 +137,8 @@ MaterialPool::MaterialPool() {
   add(burley(1), true);
   add(burley(5), true);
   add(GaussianMaterial{{0.05, 2}, {{0.3, 0.5, 0.9}, {0.7, 0.5, 0.1}}}, true);
+  add(ThinWallMaterial{{0.2, 0.4, 0.1}, {0.3, 0.6, 0.1}, {}}, true);
+  add(ThinWallMaterial{{0.5, 0.5, 0.5}, {0.5, 0.4, 0.3}, {{1, 2, 3}}}, true);
   // Mean free paths, mm; the compiler takes coefficients of 1e-6 to 1e6 per mm.
   for (const double length : {2e-6, 1e-3, 1e3, 5e5}) add(coefficients(1 / length, 0.01 / length), false);
   for (const double length : {2e-6, 1e-3, 1e3, 1e6}) add(burley(length), false);

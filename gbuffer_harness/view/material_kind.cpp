@@ -31,8 +31,8 @@ OpenPbrMaterial asOpenPbr(const MaterialSource& source) {
 MaterialKind kindOf(const MaterialSource& source) { return static_cast<MaterialKind>(source.index()); }
 
 const char* materialKindName(MaterialKind kind) {
-  constexpr std::array<const char*, 6> kNames = {"preset",    "coefficients", "Burley's profile",
-                                                 "Gaussians", "OpenPBR",      "skin"};
+  constexpr std::array<const char*, 7> kNames = {
+      "preset", "coefficients", "Burley's profile", "Gaussians", "thin wall", "OpenPBR", "skin"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 

@@ -8,7 +8,7 @@
 namespace pellucid::harness {
 
 // In the order of MaterialSource.
-enum class MaterialKind { Preset, Coefficients, Burley, Gaussians, OpenPbr, Skin };
+enum class MaterialKind { Preset, Coefficients, Burley, Gaussians, ThinWall, OpenPbr, Skin };
 
 // Those that a person may choose; profiles come from captures alone.
 inline constexpr std::array<MaterialKind, 4> kOfferedKinds = {

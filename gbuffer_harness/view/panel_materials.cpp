@@ -86,6 +86,16 @@ struct DrawValues {
   bool operator()(BurleyMaterial& material) const {
     return dragReals("Burley's d, mm", material.distance.data(), 3, 1e-4, 1e3);
   }
+  // More through one lobe is less through the other.
+  bool operator()(ThinWallMaterial& material) const {
+    const bool reflected = dragReals("reflectance", material.reflectance.data(), 3, 0, 1);
+    const bool through = dragReals("transmittance", material.transmittance.data(), 3, 0, 1);
+    for (std::size_t c = 0; c < 3; ++c) {
+      double& other = reflected ? material.transmittance[c] : material.reflectance[c];
+      other = std::min(other, 1 - (reflected ? material.reflectance[c] : material.transmittance[c]));
+    }
+    return reflected || through;
+  }
   bool operator()(GaussianMaterial&) const {
     ImGui::TextWrapped("a sum of Gaussians, which the panel does not change");
     return false;

@@ -11,6 +11,7 @@
 #include "pellucid/pellucid_material.h"
 #include "presets.h"
 #include "profile.h"
+#include "struct_size.h"
 #include "transmittance.h"
 
 namespace pellucid::material {
@@ -177,6 +178,31 @@ void compileGaussians(const PellucidMaterialDesc& desc, Result& result) {
   }
 }
 
+void compileThinWall(const PellucidMaterialDesc& desc, Result& result) {
+  PellucidMaterial& material = result.material;
+  material.thinWalled = 1;
+  const bool spreads =
+      std::any_of(desc.burleyDistance, desc.burleyDistance + 3, [](double d) { return d != 0; });
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double reflected = desc.wallReflectance[c], through = desc.wallTransmittance[c];
+    requireRange(indexed("wallReflectance", c), reflected, 0, 1);
+    requireRange(indexed("wallTransmittance", c), through, 0, 1);
+    // Rounding of sums that are meant to be 1.
+    if (reflected + through > 1 + 1e-9)
+      throw Refusal(indexed("wallTransmittance", c), number(through) + " and wallReflectance " +
+                                                         number(reflected) + " together are more than 1");
+    // Shaders divide by it.
+    const double rho = std::max(reflected, 1e-4);
+    material.reflectance[c] = static_cast<float>(rho);
+    material.wallTransmittance[c] = static_cast<float>(std::min(through, 1 - rho));
+    setCurve(material, c, {PELLUCID_TRANSMITTANCE_EXP2, {material.wallTransmittance[c], 0, 0, 0, 0}});
+    result.report.channels[c].rho = reflected;
+    if (!spreads) continue;
+    requireRange(indexed("burleyDistance", c), desc.burleyDistance[c], 1e-6, 1e6);
+    setBurley(result, c, desc.burleyDistance[c], desc.gaussianCount);
+  }
+}
+
 Result compile(const PellucidMaterialDesc& desc) {
   requireCount("gaussianCount", desc.gaussianCount, 1, PELLUCID_MAX_GAUSSIANS);
   Result result;
@@ -185,6 +211,8 @@ Result compile(const PellucidMaterialDesc& desc) {
     compileMedium(*medium, desc.gaussianCount, result);
   else if (desc.kind == PELLUCID_MATERIAL_BURLEY)
     compileBurley(desc, result);
+  else if (desc.kind == PELLUCID_MATERIAL_THIN_WALL)
+    compileThinWall(desc, result);
   else
     compileGaussians(desc, result);
   const std::string_view name = kindName(desc);
@@ -269,14 +297,16 @@ PellucidResult pellucidMaterialSlabs(const PellucidMaterialDesc* desc, uint32_t 
     for (std::size_t i = 0; i < count; ++i)
       for (std::size_t c = 0; c < 3; ++c) {
         const double value = pellucid::transmittance(result.material, c, thickness[i]);
-        slabs[3 * i + c] = {value, value, 0};
+        const bool wall = result.material.thinWalled != 0;
+        slabs[3 * i + c] = {value, value, wall ? result.report.channels[c].rho : 0};
       }
   });
 }
 
 double pellucidEvaluateTransmittance(const PellucidMaterial* material, uint32_t channel, double thickness) {
   if (material == nullptr || channel > 2) return std::numeric_limits<double>::quiet_NaN();
-  return pellucid::transmittance(*material, channel, thickness);
+  // An older caller's struct ends before fields of thin walls.
+  return pellucid::transmittance(pellucid::readStruct(material, PellucidMaterial{}), channel, thickness);
 }
 
 uint32_t pellucidPresetCount(void) { return static_cast<uint32_t>(presets().size()); }

@@ -166,6 +166,7 @@ std::optional<Description> describe(const PellucidMaterialDesc& desc) {
       return describeSkin(desc);
     case PELLUCID_MATERIAL_BURLEY:
     case PELLUCID_MATERIAL_GAUSSIANS:
+    case PELLUCID_MATERIAL_THIN_WALL:
       return std::nullopt;
     default:
       throw Refusal("kind", std::to_string(desc.kind) + " is no PellucidMaterialKind");
@@ -184,6 +185,8 @@ const char* kindName(const PellucidMaterialDesc& desc) {
       return "spectral";
     case PELLUCID_MATERIAL_SKIN:
       return "skin";
+    case PELLUCID_MATERIAL_THIN_WALL:
+      return "thin_wall";
     default:
       return "coefficients";
   }

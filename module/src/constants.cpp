@@ -29,6 +29,11 @@ static_assert(PELLUCID_SHADER_ANGLE_POLYNOMIAL == PELLUCID_ANGLE_POLYNOMIAL);
 static_assert(PELLUCID_SHADER_DEBUG_THICKNESS == PELLUCID_DEBUG_THICKNESS);
 static_assert(PELLUCID_SHADER_DEBUG_TRANSMITTANCE == PELLUCID_DEBUG_TRANSMITTANCE);
 static_assert(PELLUCID_SHADER_DEBUG_OCCLUSION == PELLUCID_DEBUG_OCCLUSION);
+static_assert(PELLUCID_SHADER_NORMALS_SNORM == PELLUCID_NORMALS_SNORM);
+static_assert(PELLUCID_SHADER_NORMALS_UNORM == PELLUCID_NORMALS_UNORM);
+static_assert(PELLUCID_SHADER_NORMALS_OCTAHEDRAL == PELLUCID_NORMALS_OCTAHEDRAL);
+static_assert(PELLUCID_SHADER_NORMALS_OCTAHEDRAL_UNORM == PELLUCID_NORMALS_OCTAHEDRAL_UNORM);
+static_assert(PELLUCID_CONSTANT_NORMALS == PELLUCID_SPECIALIZATION_NORMALS);
 static_assert(PELLUCID_GAUSSIANS == PELLUCID_MAX_GAUSSIANS);
 static_assert(PELLUCID_MAX_LIGHT_SHADOW_MAPS <= PELLUCID_SHADOW_IMAGE_COUNT);
 
@@ -55,6 +60,8 @@ shared::FrameConstants frameConstants(const FrameFacts& facts) {
   };
   c.facingRay[0] = {facing(camera.rayBase), facing(camera.rayX)};
   c.facingRay[1] = {facing(camera.rayY), 0, 0};
+  const std::array<glm::mat4, 3> ambient = ambientIrradiance(facts);
+  std::copy(ambient.begin(), ambient.end(), c.ambient);
   const Rect& r = facts.rect;
   c.rect = {r.x, r.y, r.x + r.width, r.y + r.height};
   const PellucidThesisOptions& t = facts.thesis;
@@ -68,11 +75,13 @@ shared::FrameConstants frameConstants(const FrameFacts& facts) {
   if (t.chordThickness) flags |= PELLUCID_FLAG_CHORD_THICKNESS;
   if (facts.needsChord) flags |= PELLUCID_FLAG_CHORD;
   if (facts.wide) flags |= PELLUCID_FLAG_WIDE_OUTPUT;
+  if (f.outputMode == PELLUCID_OUTPUT_ADD) flags |= PELLUCID_FLAG_ADDS;
+  if (facts.thinWalls) flags |= PELLUCID_FLAG_THIN_WALLS;
   if (f.features & PELLUCID_FEATURE_DIFFUSION && facts.diffuses) flags |= PELLUCID_FLAG_DIFFUSED;
   c.flags = {flags, f.materialCount, f.debugView, t.angleModel};
   const float* p = t.anglePolynomial;
   c.anglePolynomial = {p[0], p[1], p[2], p[3]};
-  c.marks.x = t.materialMarkBit;
+  c.marks = {t.materialMarkBit, f.materialShift, materialBits(f) & ~t.materialMarkBit, 0};
   c.filterAndLimit = rgb(t.transmittanceFilter, t.maximumThickness > 0 ? t.maximumThickness : INFINITY);
   for (uint32_t level = kFirstLevel; level <= PELLUCID_LAST_LEVEL; ++level) {
     const PyramidPlace& place = facts.pyramid.levels[level];
@@ -97,7 +106,11 @@ shared::LightConstants lightConstants(const FrameFacts& f, const PellucidLight& 
   const glm::dmat4& viewFromWorld = f.viewFromWorld;
   shared::LightConstants c{};
   c.meta = {l.type, firstShadow, l.shadowMapCount, f.holdsBackFaces(l) ? 1 : 0};
-  c.radiance = rgb(l.color) * l.intensity;
+  if (isAmbient(l)) return c;
+  // Below the largest float, as light at a point has it in the shaders.
+  for (int i = 0; i < 3; ++i)
+    c.radiance[i] = static_cast<float>(
+        std::min(static_cast<double>(l.color[i]) * l.intensity * f.frame.preExposure, 1e30));
   if (l.type != PELLUCID_LIGHT_DIRECTIONAL) {
     const glm::dvec4 position(l.position[0], l.position[1], l.position[2], 1);
     c.position = glm::vec4(glm::vec3(viewFromWorld * position), l.range > 0 ? 1 / l.range : 0);
@@ -174,9 +187,13 @@ shared::ShadowConstants shadowConstants(const FrameFacts& f, const PellucidShado
 
 shared::MaterialConstants materialConstants(const FrameFacts& f, const PellucidMaterial& m) {
   shared::MaterialConstants c{};
-  c.meta = {m.transmittanceModel, m.gaussianCount, 0, 0};
+  c.meta = {m.transmittanceModel, m.gaussianCount, m.thinWalled, 0};
   const float exponent = m.transmittanceModel == PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED ? 1.0f : 0.5f;
-  if (f.gathers) c.gather = gatherConstants(m);
+  const bool canGather = canBeGathered(m.transmittanceModel) && m.thinWalled == 0;
+  if ((f.gathers || f.ambient.intensity > 0) && canGather) c.gather = gatherConstants(m);
+  // Of other models the ambient light takes nothing from visible faces.
+  for (glm::vec4& reflectance : c.gather.reflectance)
+    if (!canGather) reflectance.x = 1;
   if (f.stages.lights) {  // one thickness a pixel
     c.inverseReflectance.w = static_cast<float>(1 / halfThickness(m));
     c.transmittance4.w = static_cast<float>(opaqueThickness(m));
@@ -243,7 +260,8 @@ shared::TileCommands tileCommands(const FrameFacts& f) {
   c.maps = {f.tiles.maps, f.stages.skipsLight, 0, 0};
   float reach = 0;
   for (uint32_t i = 0; f.gathers && i < f.frame.materialCount; ++i)
-    reach = std::max(reach, gatherReach(f.material(i), f.gatherSamples));
+    if (const PellucidMaterial m = f.material(i); m.thinWalled == 0)
+      reach = std::max(reach, gatherReach(m, f.gatherSamples));
   c.reach.x = reach / (1000 * f.frame.metersPerUnit);
   return c;
 }

@@ -1,5 +1,7 @@
 #include "constants_layout.h"
 
+#include <algorithm>
+
 #include "frame.h"
 
 namespace pellucid {
@@ -28,4 +30,30 @@ ConstantsLayout::ConstantsLayout(const FrameFacts& facts) {
   }
 }
 
+namespace {
+
+// A plan holds no more groups of lights than dispatches.
+VkDeviceSize mostConstants(VkDeviceSize materials, VkDeviceSize lights, VkDeviceSize maps) {
+  const VkDeviceSize groups = std::clamp(lights, VkDeviceSize{1}, VkDeviceSize{PELLUCID_MAX_DISPATCHES});
+  // What a range holds of the groups before the last one, each rounded up, and the last one's window.
+  const auto grouped = [groups](VkDeviceSize bytes, VkDeviceSize window) {
+    return aligned(bytes + (groups - 1) * (aligned(1) - 1) + window);
+  };
+  return aligned(sizeof(shared::FrameConstants)) + aligned(materials * sizeof(shared::MaterialConstants)) +
+         aligned(materials * sizeof(shared::KernelConstants)) +
+         grouped(lights * sizeof(shared::LightConstants), kLightWindow) +
+         grouped(maps * sizeof(shared::ShadowConstants), kShadowWindow) +
+         grouped(maps * sizeof(shared::GatherMapConstants), kGatherMapWindow) +
+         grouped(maps * sizeof(shared::EntryMapConstants),
+                 PELLUCID_DISPATCH_SHADOWS * sizeof(shared::EntryMapConstants)) +
+         aligned(sizeof(shared::TileCommands) + maps * PELLUCID_ENTRY_GROUP_WORDS * sizeof(uint32_t));
+}
+
+}  // namespace
 }  // namespace pellucid
+
+extern "C" VkDeviceSize pellucidGetConstantsSize(uint32_t materialCount, uint32_t lightCount,
+                                                 uint32_t shadowMapCount) {
+  // Ambient light is one more.
+  return pellucid::mostConstants(materialCount, VkDeviceSize{lightCount} + 1, shadowMapCount);
+}

@@ -69,8 +69,9 @@ PellucidResult checkDesc(const PellucidContextDesc& desc, Findings& out) {
              static_cast<int>(desc.shadowViewType), "; 2D and 2D_ARRAY are possible");
     return out.result();
   }
-  if (desc.reserved != 0) {
-    out.fail(PELLUCID_ERROR_INVALID_ARGUMENT, "reserved", "is ", desc.reserved, ", must be 0");
+  if (desc.normalEncoding > PELLUCID_NORMALS_OCTAHEDRAL_UNORM) {
+    out.fail(PELLUCID_ERROR_INVALID_ARGUMENT, "normalEncoding", "is ", desc.normalEncoding,
+             ", not a PellucidNormalEncoding");
     return out.result();
   }
   if (desc.uses & ~kAllUses) {
@@ -145,13 +146,17 @@ VkResult createPipeline(const PellucidContextDesc& desc, const PellucidContext& 
   VkResult result = c.vk.vkCreateShaderModule(c.device, &moduleInfo, c.callbacks(), &module);
   if (result != VK_SUCCESS) return result;
 
-  std::array<VkSpecializationMapEntry, std::tuple_size_v<decltype(p.constants)>> entries;
-  for (uint32_t i = 0; i < p.constantCount; ++i)
-    entries[i] = {p.constants[i].id,
-                  static_cast<uint32_t>(i * sizeof p.constants[0] + offsetof(PellucidSpecialization, value)),
+  std::array<PellucidSpecialization, std::tuple_size_v<decltype(p.constants)> + 1> constants;
+  *std::copy_n(p.constants.begin(), p.constantCount, constants.begin()) = {PELLUCID_SPECIALIZATION_NORMALS,
+                                                                           desc.normalEncoding};
+  const uint32_t count = p.constantCount + 1;
+  std::array<VkSpecializationMapEntry, std::tuple_size_v<decltype(constants)>> entries;
+  for (uint32_t i = 0; i < count; ++i)
+    entries[i] = {constants[i].id,
+                  static_cast<uint32_t>(i * sizeof constants[0] + offsetof(PellucidSpecialization, value)),
                   sizeof(uint32_t)};
-  const VkSpecializationInfo specialization{p.constantCount, entries.data(), sizeof p.constants,
-                                            p.constants.data()};
+  const VkSpecializationInfo specialization{count, entries.data(), count * sizeof constants[0],
+                                            constants.data()};
   VkComputePipelineCreateInfo info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
   info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
   info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;

@@ -68,7 +68,10 @@ ViewBounds::ViewBounds(const FrameFacts& facts) : viewFromWorld_(facts.viewFromW
 // -minimumDot (0 for models without). Walking along a ray turns a light from ahead to behind, so for a
 // light at a point that cosine is largest where the ray starts.
 bool ViewBounds::angleStops(const FrameFacts& facts, const PellucidLight& light) const {
-  if (facts.thesis.angleModel == PELLUCID_ANGLE_NORMAL && facts.has(PELLUCID_RESOURCE_NORMAL)) return false;
+  // Thin walls without normals take those of their depths.
+  if (facts.thesis.angleModel == PELLUCID_ANGLE_NORMAL &&
+      (facts.has(PELLUCID_RESOURCE_NORMAL) || facts.thinWalls))
+    return false;
   const double least = -minimumDotOf(facts.thesis, light);
   if (least >= 1) return true;
   if (light.type == PELLUCID_LIGHT_DIRECTIONAL) {
@@ -109,12 +112,12 @@ bool ViewBounds::coneMisses(const PellucidLight& light) const {
 const char* ViewBounds::whySkipped(const FrameFacts& facts, const PellucidLight& light) const {
   if (light.intensity <= 0 || (light.color[0] <= 0 && light.color[1] <= 0 && light.color[2] <= 0))
     return "no intensity";
-  if (facts.takesChord(light) && !facts.has(PELLUCID_RESOURCE_BACK_DEPTH))
+  if (facts.lacksChord(light) && !facts.thinWalls)
     return facts.holdsBackFaces(light)
                ? "no back depth to take a thickness from, and its map holds back faces"
                : "no back depth to take a thickness from";
-  // Gathered light comes from around, whatever the angle, and from beyond the view.
-  if (facts.isGathered(light)) return nullptr;
+  // Gathered and ambient light come from around, whatever the angle, and from beyond the view.
+  if (facts.isGathered(light) || isAmbient(light)) return nullptr;
   // That view shows thicknesses whether light comes through or not.
   if (!bounded_ || facts.frame.debugView == PELLUCID_DEBUG_THICKNESS) return nullptr;
   if (angleStops(facts, light)) return "no pixel's view ray passes its angle test";

@@ -5,10 +5,10 @@ namespace {
 
 // A field that is appended must not land in bytes that older headers left undefined.
 #define ENDS_WITH(Struct, field) (offsetof(Struct, field) + sizeof(Struct::field) == sizeof(Struct))
-static_assert(ENDS_WITH(PellucidFrame, indirectDispatches));
-static_assert(ENDS_WITH(PellucidMaterial, burleyDistance));
+static_assert(ENDS_WITH(PellucidFrame, ambient));
+static_assert(ENDS_WITH(PellucidMaterial, wallTransmittance));
 static_assert(ENDS_WITH(PellucidThesisOptions, minimumDotTable));
-static_assert(ENDS_WITH(PellucidContextDesc, reserved));
+static_assert(ENDS_WITH(PellucidContextDesc, normalEncoding));
 #undef ENDS_WITH
 
 }  // namespace
@@ -23,6 +23,7 @@ PellucidFrame defaultFrame() {
   frame.coherenceThreshold = 0.005f;
   frame.quality = 1;
   frame.gatherSamples = PELLUCID_GATHER_BY_QUALITY;
+  frame.preExposure = 1;
   return frame;
 }
 

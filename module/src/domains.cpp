@@ -33,6 +33,8 @@ bool isSpot(const void* object, uint32_t) { return as<PellucidLight>(object).typ
 bool readsView(const void* object, uint32_t) {
   return as<PellucidShadowMap>(object).encoding != PELLUCID_DEPTH_DEVICE;
 }
+bool isSolid(const void* object, uint32_t) { return as<PellucidMaterial>(object).thinWalled == 0; }
+bool isThinWalled(const void* object, uint32_t) { return as<PellucidMaterial>(object).thinWalled == 1; }
 bool diffuses(const void* object, uint32_t) { return as<PellucidMaterial>(object).gaussianCount > 0; }
 bool isGaussian(const void* object, uint32_t index) {
   return index % PELLUCID_MAX_GAUSSIANS < as<PellucidMaterial>(object).gaussianCount;
@@ -49,6 +51,7 @@ constexpr auto kFrameFloats = std::to_array<FloatDomain>({
     {FIELD(PellucidFrame, frameLoad), 0, 0, 1e9F, false, nullptr, nullptr},
     {FIELD(PellucidFrame, targetError), 0, 0, 1e9F, false, nullptr, nullptr},
     {FIELD(PellucidFrame, nearestDistance), 0, 0, kLongest, false, nullptr, nullptr},
+    {FIELD(PellucidFrame, preExposure), 0, 1e-9F, 1e9F, false, nullptr, nullptr},
 });
 
 constexpr auto kFrameIntegers = std::to_array<IntegerDomain>({
@@ -60,6 +63,8 @@ constexpr auto kFrameIntegers = std::to_array<IntegerDomain>({
     {FIELD(PellucidFrame, quality), 0, kBestQuality},
     {FIELD(PellucidFrame, separateOutput), 0, 1},
     {FIELD(PellucidFrame, indirectDispatches), 0, PELLUCID_INDIRECT_LIGHT},
+    {FIELD(PellucidFrame, materialShift), 0, 31},
+    {FIELD(PellucidFrame, outputMode), 0, PELLUCID_OUTPUT_ADD},
 });
 
 constexpr auto kThesisFloats = std::to_array<FloatDomain>({
@@ -82,7 +87,7 @@ constexpr auto kThesisIntegers = std::to_array<IntegerDomain>({
 });
 
 constexpr auto kMaterialFloats = std::to_array<FloatDomain>({
-    {FIELD(PellucidMaterial, transmittance), 5, -kLongestMm, kLongestMm, false, nullptr, nullptr},
+    {FIELD(PellucidMaterial, transmittance), 5, -kLongestMm, kLongestMm, false, isSolid, "`thinWalled` 0"},
     {FIELD(PellucidMaterial, reflectance), 0, 0, 1, true, nullptr, nullptr},
     {FIELD(PellucidMaterial, gaussianVariance), PELLUCID_MAX_GAUSSIANS, 0, kLongestMm* kLongestMm, true,
      isGaussian, "the first `gaussianCount` of a row"},
@@ -90,11 +95,13 @@ constexpr auto kMaterialFloats = std::to_array<FloatDomain>({
      "the first `gaussianCount` of a row"},
     {FIELD(PellucidMaterial, radius), 0, 0, kLongestMm, true, diffuses, "`gaussianCount` above 0"},
     {FIELD(PellucidMaterial, burleyDistance), 0, 0, kLongestMm, false, diffuses, "`gaussianCount` above 0"},
+    {FIELD(PellucidMaterial, wallTransmittance), 0, 0, 1, false, isThinWalled, "`thinWalled` 1"},
 });
 
 constexpr auto kMaterialIntegers = std::to_array<IntegerDomain>({
     {FIELD(PellucidMaterial, transmittanceModel), 0, PELLUCID_TRANSMITTANCE_LINEAR},
     {FIELD(PellucidMaterial, gaussianCount), 0, PELLUCID_MAX_GAUSSIANS},
+    {FIELD(PellucidMaterial, thinWalled), 0, 1},
 });
 
 constexpr auto kLightFloats = std::to_array<FloatDomain>({

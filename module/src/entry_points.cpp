@@ -19,7 +19,8 @@ float longestEntrySide(const FrameFacts& facts) {
   constexpr float kPerPath = 2;
   float shortest = std::numeric_limits<float>::infinity();
   for (uint32_t i = 0; i < facts.frame.materialCount; ++i)
-    shortest = std::min(shortest, meanFreePath(facts.material(i)));
+    if (const PellucidMaterial m = facts.material(i); m.thinWalled == 0)
+      shortest = std::min(shortest, meanFreePath(m));
   return shortest / (kPerPath * static_cast<float>(kQualities[facts.frame.quality].finer) * 1000 *
                      facts.frame.metersPerUnit);
 }

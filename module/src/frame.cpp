@@ -30,6 +30,7 @@ const char* whyNotGathered(const FrameFacts& f) {
   if (f.thesis.angleModel != PELLUCID_ANGLE_NORMAL || f.thesis.constantViewDirection != 0 ||
       f.thesis.minimumDot != 0 || f.thesis.maximumThickness > 0)
     return "angleModel, constantViewDirection, minimumDot and maximumThickness are of one thickness a pixel";
+  if (!f.solids) return "every material is thin-walled";
   for (uint32_t i = 0; i < f.frame.materialCount; ++i)
     if (!canBeGathered(f.material(i).transmittanceModel))
       return "a material's transmittance model has no profile";
@@ -44,16 +45,20 @@ uint32_t gatherSpacing(const PellucidFrame& frame) {
 }
 
 void addMaterials(FrameFacts& f) {
-  for (uint32_t i = 0; i < f.frame.materialCount; ++i)
-    f.diffuses = f.diffuses || f.material(i).gaussianCount > 0;
+  for (uint32_t i = 0; i < f.frame.materialCount; ++i) {
+    const PellucidMaterial m = f.material(i);
+    f.diffuses = f.diffuses || m.gaussianCount > 0;
+    (m.thinWalled != 0 ? f.thinWalls : f.solids) = true;
+  }
   f.reach = diffusionReach(f);
 }
 
 void addGather(FrameFacts& f) {
   f.whyNotGathered = whyNotGathered(f);
-  f.gatherSamples = f.frame.gatherSamples != PELLUCID_GATHER_BY_QUALITY ? f.frame.gatherSamples
-                    : f.whyNotGathered                                  ? 0
-                                       : kQualities[f.frame.quality].gatherSamples;
+  const bool byQuality = f.frame.gatherSamples == PELLUCID_GATHER_BY_QUALITY;
+  f.gatherSamples = !f.solids || (byQuality && f.whyNotGathered) ? 0
+                    : byQuality                                  ? kQualities[f.frame.quality].gatherSamples
+                                                                 : f.frame.gatherSamples;
   f.gatherSpacing = gatherSpacing(f.frame);
   f.longestEntrySide = longestEntrySide(f);
   f.gathers = (f.frame.features & PELLUCID_FEATURE_TRANSLUCENCY) != 0 && f.gatherSamples > 0 && !f.debug();
@@ -61,7 +66,8 @@ void addGather(FrameFacts& f) {
 
 void addLights(FrameFacts& f) {
   // The debug view of thickness shows the chord, too.
-  f.needsChord = f.frame.thicknessSource == PELLUCID_THICKNESS_CAMERA ||
+  f.ambient = ambientLight(f.frame);
+  f.needsChord = f.frame.thicknessSource == PELLUCID_THICKNESS_CAMERA || f.ambient.intensity > 0 ||
                  f.frame.debugView == PELLUCID_DEBUG_THICKNESS ||
                  std::any_of(f.frame.lights, f.frame.lights + f.frame.lightCount,
                              [&](const PellucidLight& light) { return f.takesChord(light); });
@@ -112,7 +118,15 @@ PellucidMaterial FrameFacts::material(uint32_t index) const {
   // The caller's structs lie as far apart as each is long.
   const auto* bytes = reinterpret_cast<const unsigned char*>(frame.materials);
   const size_t offset = static_cast<size_t>(index) * frame.materials->structSize;
-  return readStruct(reinterpret_cast<const PellucidMaterial*>(bytes + offset), PellucidMaterial{});
+  PellucidMaterial m =
+      readStruct(reinterpret_cast<const PellucidMaterial*>(bytes + offset), PellucidMaterial{});
+  if (m.thinWalled == 0) return m;
+  m.transmittanceModel = PELLUCID_TRANSMITTANCE_EXP2;
+  for (int c = 0; c < 3; ++c) {
+    std::fill_n(m.transmittance[c], 5, 0.0f);
+    m.transmittance[c][0] = m.wallTransmittance[c];
+  }
+  return m;
 }
 
 PellucidResult readFrame(const PellucidFrame* frame, Findings& out, FrameFacts* facts) {

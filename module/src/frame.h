@@ -3,6 +3,7 @@
 
 #include <glm/glm.hpp>
 
+#include "ambient.h"
 #include "camera.h"
 #include "constants_layout.h"
 #include "cull.h"
@@ -35,7 +36,8 @@ struct FrameFacts {
   Pyramid pyramid;
 
   // ---- Of the materials
-  bool diffuses = false;  // a material does
+  bool diffuses = false;                   // a material does
+  bool thinWalls = false, solids = false;  // a material is thin-walled; one is not
   DiffusionReach reach{};
 
   // ---- Of the gather
@@ -46,6 +48,7 @@ struct FrameFacts {
   float longestEntrySide = 0;            // see entry_points.h
 
   // ---- Of the lights
+  PellucidLight ambient{};  // see ambient.h
   bool needsChord = false;  // thickness along view rays is asked for
   LightGroups lights;
 
@@ -60,6 +63,8 @@ struct FrameFacts {
 
   bool has(PellucidResource image) const { return (images & 1u << image) != 0; }
   bool debug() const { return frame.debugView != PELLUCID_DEBUG_NONE; }
+  // The output shares no memory with the irradiance.
+  bool separate() const { return frame.separateOutput != 0 || frame.outputMode == PELLUCID_OUTPUT_ADD; }
   // All maps of a light hold the same faces.
   bool holdsBackFaces(const PellucidLight& light) const {
     return light.shadowMapCount > 0 && frame.shadowMaps[light.firstShadowMap].faces == PELLUCID_FACES_BACK;
@@ -73,7 +78,13 @@ struct FrameFacts {
            holdsBackFaces(light);
   }
 
-  // frame.materials[index] with the defaults of fields that the caller's lacks.
+  // True where solids have no thickness for the light.
+  bool lacksChord(const PellucidLight& light) const {
+    return takesChord(light) && !has(PELLUCID_RESOURCE_BACK_DEPTH);
+  }
+
+  // frame.materials[index] with the defaults of fields that the caller's lacks. A thin wall's T(d) is
+  // constant.
   PellucidMaterial material(uint32_t index) const;
 
   // Why a light adds nothing to the frame, or nullptr. Static string.
@@ -92,20 +103,27 @@ struct FrameFacts {
   void placeLights(bool beside, OnLight&& light, OnGroup&& group) const {
     LightGroup current;
     current.beside = beside;
-    for (const bool gathered : {true, false})
-      for (uint32_t i = 0; i < frame.lightCount; ++i) {
-        const PellucidLight& l = frame.lights[i];
-        if (isGathered(l) != gathered || whySkipped(l)) continue;
-        if (!current.addLight(*this, l)) {
-          group(static_cast<const LightGroup&>(current));
-          current = current.next();
-          current.addLight(*this, l);
-        }
-        light(static_cast<const LightGroup&>(current), l);
+    const auto place = [&](const PellucidLight& l) {
+      if (whySkipped(l)) return;
+      if (!current.addLight(*this, l)) {
+        group(static_cast<const LightGroup&>(current));
+        current = current.next();
+        current.addLight(*this, l);
       }
+      light(static_cast<const LightGroup&>(current), l);
+    };
+    for (const bool gathered : {true, false})
+      for (uint32_t i = 0; i < frame.lightCount; ++i)
+        if (isGathered(frame.lights[i]) == gathered) place(frame.lights[i]);
+    place(ambient);
     if (current.lightCount > 0) group(static_cast<const LightGroup&>(current));
   }
 };
+
+// Bits of a material value that may hold the index.
+inline uint32_t materialBits(const PellucidFrame& frame) {
+  return (frame.materialMask == 0 ? UINT32_MAX : frame.materialMask) >> frame.materialShift;
+}
 
 // Checks everything that a plan relies on, image views not among it, and fills `facts`, in the order in which
 // one needs the other. PELLUCID_OK: all of `facts` holds.

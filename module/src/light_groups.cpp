@@ -86,6 +86,10 @@ LightGroups::LightGroups(const FrameFacts& facts, bool withBeside) : beside(with
       });
 }
 
+uint32_t LightGroups::walls(const FrameFacts& facts) const {
+  return facts.gathers && facts.thinWalls ? count : 0;
+}
+
 LightGroups LightGroups::of(const FrameFacts& facts) {
   const PellucidFrame& frame = facts.frame;
   const LightGroups groups(facts, true);
@@ -98,7 +102,8 @@ LightGroups LightGroups::of(const FrameFacts& facts) {
   // Debug views of light need all lights in one dispatch.
   const bool binds = facts.debug() && frame.debugView != PELLUCID_DEBUG_IRRADIANCE
                          ? groups.count <= 1
-                         : groups.fused() + groups.gatherDispatches() + kOthers <= PELLUCID_MAX_DISPATCHES;
+                         : groups.fused() + groups.gatherDispatches() + groups.walls(facts) + kOthers <=
+                               PELLUCID_MAX_DISPATCHES;
   return binds ? groups : LightGroups(facts, false);
 }
 

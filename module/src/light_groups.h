@@ -65,6 +65,9 @@ struct LightGroups {
   // Dispatches over all pixels. What is gathered in several groups is added at once.
   uint32_t fused() const { return count - (gathered > 0 ? gathered - 1 : 0); }
 
+  // Dispatches of thin walls' light beside a gather. Without one, what adds solids' light adds theirs.
+  uint32_t walls(const FrameFacts& facts) const;
+
 private:
   LightGroups(const FrameFacts& facts, bool withBeside);
   friend struct FrameFacts;

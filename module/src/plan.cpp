@@ -42,15 +42,22 @@ void skipBeside(PlanBuilder& b) {
 // Skips: all that does not run, and why.
 void addSkips(PlanBuilder& b) {
   const FrameFacts& f = b.facts;
-  for (uint32_t i = 0; i < f.frame.lightCount; ++i)
-    if (const char* reason = f.whySkipped(f.frame.lights[i])) b.skip("light", reason);
+  const auto skipLight = [&](const PellucidLight& light, const char* what) {
+    if (const char* reason = f.whySkipped(light))
+      b.skip(what, reason);
+    else if (f.lacksChord(light) && f.solids)
+      b.skip("light in solids", "no back depth to take a thickness from: thin walls alone let it through");
+  };
+  for (uint32_t i = 0; i < f.frame.lightCount; ++i) skipLight(f.frame.lights[i], "light");
+  if (f.ambient.intensity > 0) skipLight(f.ambient, "ambient light");
   if (!(f.frame.features & PELLUCID_FEATURE_TRANSLUCENCY))
     b.skip("translucency", "not among the features");
   else if (f.lights.lightCount == 0)
     b.skip("translucency", "no light can contribute");
   else
     skipBeside(b);
-  if (f.frame.gatherSamples == PELLUCID_GATHER_BY_QUALITY && f.frame.quality > 0 && f.whyNotGathered)
+  const bool byQuality = f.frame.gatherSamples == PELLUCID_GATHER_BY_QUALITY;
+  if ((byQuality ? f.frame.quality : f.frame.gatherSamples) > 0 && f.gatherSamples == 0 && f.whyNotGathered)
     b.skip("gather", f.whyNotGathered);
   if (!(f.frame.features & PELLUCID_FEATURE_DIFFUSION))
     b.skip("diffusion", "not among the features");
@@ -82,6 +89,7 @@ public:
     if (stages_.tiles) addTileLists(b_);
     // Gathered light has already spread on its way through; diffusing it again would spread it twice.
     if (b_.facts.gathers) {
+      thinWalls();
       diffusion();
       translucency();
     } else {
@@ -111,6 +119,16 @@ private:
       if (++index < stages_.gathered) continue;
       if (gathers) addSpatialFilter(b_);
       fused(group);
+    }
+  }
+
+  // Before the diffusion, as without a gather: materials say whether light spreads within a sheet.
+  void thinWalls() {
+    if (stages_.walls == 0) return;
+    for (const LightGroup& group : b_.facts.lights.list()) {
+      const uint32_t to = destination();
+      addThinWalls(b_, group, source_, to);
+      source_ = to;
     }
   }
 

@@ -115,6 +115,9 @@ void PlanBuilder::common(PellucidDispatch* d, uint32_t source, uint32_t destinat
   pixelInputs(d, source);
   const bool last = destination == PELLUCID_RESOURCE_OUTPUT;
   optional(d, PELLUCID_BINDING_ALBEDO, PELLUCID_RESOURCE_ALBEDO, last ? 4 : 0);
+  const bool adds = last && facts.frame.outputMode == PELLUCID_OUTPUT_ADD;
+  image(d, PELLUCID_BINDING_HELD, adds ? PELLUCID_RESOURCE_OUTPUT : PELLUCID_RESOURCE_FRONT_DEPTH,
+        adds ? colorBytes() : 0);
   bind(d, PELLUCID_BINDING_DESTINATION, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, destination);
   d->modeledBytes += colorBytes() * pixels();
 }

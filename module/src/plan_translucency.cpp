@@ -4,6 +4,31 @@
 
 namespace pellucid {
 
+namespace {
+
+// What every dispatch over all pixels reads to add a group's lights. `images`: the group's, or none.
+void addLights(PlanBuilder& b, PellucidDispatch* d, const LightGroup& group, uint32_t source,
+               uint32_t destination, const LightGroup& images) {
+  const FrameFacts& f = b.facts;
+  d->pushConstants[1] = group.lightCount;
+  d->pushConstants[2] = destination == PELLUCID_RESOURCE_OUTPUT;
+  b.common(d, source, destination);
+  if (destination == PELLUCID_RESOURCE_HISTORY && group.firstLight == 0) {
+    d->pushConstants[2] = PELLUCID_WRITE_STARTS;
+    d->modeledBytes -= b.colorBytes() * b.pixels();  // what is there is not read
+  }
+  const ConstantsLayout& layout = f.constants;
+  b.constants(d, PELLUCID_BINDING_MATERIALS, layout.materials);
+  b.optional(d, PELLUCID_BINDING_NORMAL, PELLUCID_RESOURCE_NORMAL, 4);
+  b.constants(d, PELLUCID_BINDING_LIGHTS, {layout.lights.offset + group.lightBytes, kLightWindow});
+  b.constants(d, PELLUCID_BINDING_SHADOWS, {layout.shadows.offset + group.shadowBytes, kShadowWindow});
+  b.optional(d, PELLUCID_BINDING_BACK_DEPTH, PELLUCID_RESOURCE_BACK_DEPTH,
+             f.needsChord ? kUnknownDepthBytes : 0);
+  b.shadowImages(d, images);
+}
+
+}  // namespace
+
 void addTranslucency(PlanBuilder& b, const LightGroup& group, uint32_t source, uint32_t destination) {
   const FrameFacts& f = b.facts;
   const bool gathered = group.gathered > 0 && !f.debug();
@@ -19,23 +44,17 @@ void addTranslucency(PlanBuilder& b, const LightGroup& group, uint32_t source, u
     d->pushConstants[3] = group.gathered;
   } else {
     b.listed(d, PELLUCID_LIST_TILES);
+    d->pushConstants[0] = f.stages.walls > 0 ? PELLUCID_LIGHT_SOLIDS : PELLUCID_LIGHT_ALL;
   }
-  d->pushConstants[1] = group.lightCount;
-  d->pushConstants[2] = destination == PELLUCID_RESOURCE_OUTPUT;
-  b.common(d, source, destination);
-  if (destination == PELLUCID_RESOURCE_HISTORY && group.firstLight == 0) {
-    d->pushConstants[2] = PELLUCID_WRITE_STARTS;
-    d->modeledBytes -= b.colorBytes() * b.pixels();  // what is there is not read
-  }
-  const ConstantsLayout& layout = f.constants;
-  b.constants(d, PELLUCID_BINDING_MATERIALS, layout.materials);
-  b.optional(d, PELLUCID_BINDING_NORMAL, PELLUCID_RESOURCE_NORMAL, 4);
-  b.constants(d, PELLUCID_BINDING_LIGHTS, {layout.lights.offset + group.lightBytes, kLightWindow});
-  b.constants(d, PELLUCID_BINDING_SHADOWS, {layout.shadows.offset + group.shadowBytes, kShadowWindow});
-  b.optional(d, PELLUCID_BINDING_BACK_DEPTH, PELLUCID_RESOURCE_BACK_DEPTH,
-             f.needsChord ? kUnknownDepthBytes : 0);
   // Lights that are gathered from have been.
-  b.shadowImages(d, group.gathered > 0 ? LightGroup{} : group);
+  addLights(b, d, group, source, destination, group.gathered > 0 ? LightGroup{} : group);
+}
+
+void addThinWalls(PlanBuilder& b, const LightGroup& group, uint32_t source, uint32_t destination) {
+  PellucidDispatch* d = b.dispatch("thin walls", Pipeline::Translucency);
+  b.listed(d, PELLUCID_LIST_TILES);
+  d->pushConstants[0] = PELLUCID_LIGHT_WALLS;
+  addLights(b, d, group, source, destination, group);
 }
 
 void addHistory(PlanBuilder& b, uint32_t source, uint32_t destination) {

@@ -9,6 +9,9 @@ namespace pellucid {
 // others. Debug views are of this dispatch.
 void addTranslucency(PlanBuilder& b, const LightGroup& group, uint32_t source, uint32_t destination);
 
+// All lights of a group that thin walls let through, in a frame that gathers.
+void addThinWalls(PlanBuilder& b, const LightGroup& group, uint32_t source, uint32_t destination);
+
 // The light that an earlier dispatch or frame left in frame.history.
 void addHistory(PlanBuilder& b, uint32_t source, uint32_t destination);
 

@@ -12,6 +12,7 @@ glm::dvec3 vec(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 
 // Cosine between the camera's axis and the direction to the light.
 float cameraLightDot(const FrameFacts& f, const PellucidLight& light) {
+  if (isAmbient(light)) return 0;  // from everywhere alike
   const glm::dmat4& view = f.viewFromWorld;
   const glm::dvec3 axis = f.depthRange.forward * glm::dvec3(view[0][2], view[1][2], view[2][2]);
   const glm::dvec3 toLight = light.type == PELLUCID_LIGHT_DIRECTIONAL
@@ -24,7 +25,8 @@ float cameraLightDot(const FrameFacts& f, const PellucidLight& light) {
 // What was kept is of the same pixels and as many lights.
 bool fits(const History& kept, const History& now) {
   return kept.valid != 0 && kept.lightCount == now.lightCount && kept.format == now.format &&
-         kept.gatherSpacing == now.gatherSpacing && std::equal(kept.extent, kept.extent + 2, now.extent) &&
+         kept.gatherSpacing == now.gatherSpacing && kept.preExposure == now.preExposure &&
+         std::equal(kept.extent, kept.extent + 2, now.extent) &&
          std::equal(kept.rect, kept.rect + 4, now.rect);
 }
 
@@ -44,6 +46,7 @@ bool decideReuse(const FrameFacts& f, const History& kept, History* result) {
   now.valid = 1;
   now.format = f.stages.keepsProbes ? VK_FORMAT_R32G32B32A32_UINT : f.colorFormat;
   now.gatherSpacing = f.stages.keepsProbes ? f.gatherSpacing : 0;
+  now.preExposure = f.frame.preExposure;
   const uint32_t rect[4] = {f.rect.x, f.rect.y, f.rect.width, f.rect.height};
   std::copy(f.frame.imageExtent, f.frame.imageExtent + 2, now.extent);
   std::copy(rect, rect + 4, now.rect);

@@ -18,6 +18,7 @@ struct History {
   uint32_t lightCount;               // above kCoherentLights, COHERENCE refreshes every frame
   float lightDots[kCoherentLights];  // camera axis and direction to the light, when written
   uint32_t gatherSpacing;            // of the probes that it holds; 0: it holds the light of pixels
+  float preExposure;                 // of the light that it holds
 };
 
 // For a frame that keeps its transmitted light: whether `kept`, of the previous plan, stands in for this

@@ -23,9 +23,10 @@ Stages::Stages(const FrameFacts& facts) {
   if (translucency || facts.debug()) {
     gathered = facts.lights.gathered;
     fused = addsProbes ? 0 : facts.lights.fused();
+    walls = facts.lights.walls(facts);
   }
   lights = fused > 0;
-  copies = diffusion && !lights && !frame.separateOutput;
+  copies = diffusion && !lights && walls == 0 && !facts.separate();
   // Without diffusion the fused pass still has to bring irradiance (times albedo) to the output, unless that
   // is what it is.
   nothing = writers() == 0 && facts.inPlace && !facts.has(PELLUCID_RESOURCE_ALBEDO);

@@ -15,6 +15,7 @@ struct Stages {
   bool lights = false;   // the fused dispatches carry lights
   bool diffusion = false;
   uint32_t fused = 0;         // fused dispatches
+  uint32_t walls = 0;         // beside a gather: dispatches of thin walls' light, before what is diffused
   uint32_t gathered = 0;      // groups of lights that are gathered from
   bool keepsHistory = false;  // the frame keeps its transmitted light in frame.history:
   bool keepsProbes = false;   // the gather's filtered probes: the fused dispatches read them, or
@@ -32,7 +33,7 @@ struct Stages {
   explicit Stages(const FrameFacts& facts);
 
   // Dispatches that write a color transient or the output.
-  uint32_t writers() const { return (history ? 1 : fused) + (diffusion ? 1 : 0) + (copies ? 1 : 0); }
+  uint32_t writers() const { return walls + (history ? 1 : fused) + (diffusion ? 1 : 0) + (copies ? 1 : 0); }
   uint32_t colorTransients() const { return nothing ? 0 : std::min(writers() - 1, 2u); }
   // Images of packed texels: the pyramid's; the gather's probes; entry points, if they do not lie where level
   // 1 was.

@@ -26,6 +26,21 @@ void checkImageSize(const PellucidFrame& f, Findings& out) {
               " image");
 }
 
+// All indices must come through the mask.
+void checkMaterialBits(const PellucidFrame& f, Findings& out) {
+  if (f.materialShift > 31) return;  // its domain says so
+  const uint32_t below = (1u << f.materialShift) - 1;
+  if ((f.materialMask & below) != 0)
+    out.error("materialMask", "is ", f.materialMask, ", whose last bits materialShift ", f.materialShift,
+              " drops");
+  uint32_t indices = 0;
+  while (indices < f.materialCount && indices < 255) indices = indices << 1 | 1;
+  if ((indices & ~materialBits(f)) != 0)
+    out.error("materialMask", "is ", f.materialMask, " with materialShift ", f.materialShift,
+              ", which leave ", materialBits(f), "; the indices of ", f.materialCount, " materials take ",
+              indices);
+}
+
 void checkMinimumDotTable(const PellucidThesisOptions& t, Findings& out) {
   const bool azimuth = t.angleModel == PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH;
   if (!azimuth && t.angleModel != PELLUCID_ANGLE_MINIMUM_DOT_SPHERE) return;
@@ -80,6 +95,10 @@ void checkMaterial(const PellucidMaterial& m, uint32_t index, Findings& out) {
                 ", ", t[2], ", ", t[4]);
     if (m.transmittanceModel == PELLUCID_TRANSMITTANCE_LINEAR && !(t[0] > 0))
       out.error(field("transmittance"), "of channel ", c, " has dmax ", t[0], "; must be > 0");
+    // Rounding of floats.
+    if (m.thinWalled != 0 && !(m.reflectance[c] + m.wallTransmittance[c] <= 1 + 1e-6f))
+      out.error(field("wallTransmittance"), "of channel ", c, " is ", m.wallTransmittance[c],
+                " with a reflectance of ", m.reflectance[c], "; more light leaves a thin wall than arrives");
     float sum = 0;
     for (uint32_t i = 0; i < m.gaussianCount; ++i) sum += m.gaussianWeight[c][i];
     // 1e-3: the accuracy to which constant irradiance is promised to stay constant.
@@ -163,10 +182,17 @@ void checkFields(const FrameFacts& facts, Findings& out) {
   // 255: the material image is r8ui and 0 means none.
   if (f.materialCount == 0 || f.materialCount > 255 || !f.materials)
     out.error("materials", "has ", f.materialCount, f.materials ? "" : " at NULL", "; needs 1..255");
+  checkMaterialBits(f, out);
   const uint32_t mark = facts.thesis.materialMarkBit;
   if (mark != 0 && ((mark & (mark - 1)) != 0 || mark <= f.materialCount))
     out.error("thesis.materialMarkBit", "is ", mark, "; must be 0 or a power of two above the ",
               f.materialCount, " materials");
+  else if (mark != 0 && f.materialShift < 32 && (mark & materialBits(f)) == 0)
+    out.error("thesis.materialMarkBit", "is ", mark, ", which materialMask ", f.materialMask,
+              " and materialShift ", f.materialShift, " leave out");
+  for (uint32_t i = 0; f.ambient && i < kAmbientCoefficients; ++i)
+    if (!(std::abs(f.ambient[i]) <= 1e15f))
+      out.error("ambient", "[", i, "] is ", f.ambient[i], ", outside [-1e+15, 1e+15]");
   if (f.lightCount > 0 && !f.lights) out.error("lights", "is NULL, but lightCount is ", f.lightCount);
   if (f.shadowMapCount > 0 && !f.shadowMaps)
     out.error("shadowMaps", "is NULL, but shadowMapCount is ", f.shadowMapCount);
@@ -214,6 +240,9 @@ void checkGroups(const FrameFacts& facts, Findings& out) {
   for (uint32_t i = 0; i < f.lightCount; ++i)
     if (const char* reason = facts.whySkipped(f.lights[i]))
       out.warning(Field("lights[", i, "]"), "adds nothing: ", reason);
+  if (facts.ambient.intensity > 0)
+    if (const char* reason = facts.whySkipped(facts.ambient))
+      out.warning("ambient", "adds nothing: ", reason);
   warnOfShadowMaps(facts, out);
   if (facts.lights.count > 1 && facts.debug() && f.debugView != PELLUCID_DEBUG_IRRADIANCE)
     out.error("debugView", "is ", f.debugView, ", which needs all lights in one dispatch; they use ",
@@ -261,6 +290,8 @@ void checkViews(const FrameFacts& facts, Findings& out) {
       out.error(Field("transients[", i, "]"), "has no view; see pellucidGetImageNeeds");
   if (f.separateOutput && given(f.output) && f.output.view == f.irradiance.view)
     out.error("separateOutput", "is 1, but the output is the irradiance's view");
+  if (f.outputMode == PELLUCID_OUTPUT_ADD && given(f.output) && f.output.view == f.irradiance.view)
+    out.error("outputMode", "is ADD, but the output is the irradiance's view");
   if (f.output.layout != VK_IMAGE_LAYOUT_GENERAL && given(f.output))
     out.error("output", "is in VkImageLayout ", static_cast<int>(f.output.layout),
               "; storage writes need GENERAL");

@@ -147,6 +147,8 @@ FrameInput::FrameInput(std::span<const uint8_t> bytes, size_t edits) {
   table_.assign(entries, header[7] < 200 ? -0.25f : 1.0f);
   table_.shrink_to_fit();
   thesis_.minimumDotTable = header[6] & 16 ? nullptr : table_.data();
+  ambient_.assign(27, header[7] < 200 ? 0.25f : -1e30f);
+  frame.ambient = header[6] & 64 ? ambient_.data() : nullptr;
   frame.thesis = header[6] & 32 ? nullptr : &thesis_;
 }
 

@@ -30,7 +30,7 @@ private:
   std::vector<PellucidLight> lights_;
   std::vector<PellucidShadowMap> maps_;
   std::vector<PellucidImage> images_;
-  std::vector<float> table_;
+  std::vector<float> table_, ambient_;
 };
 
 }  // namespace pellucid::fuzz

@@ -11,6 +11,7 @@
 #include "common/compare.h"
 #include "common/error.h"
 #include "gpu/gpu_fixture.h"
+#include "scene/environment.h"
 #include "scene/scene.h"
 
 namespace {
@@ -49,6 +50,7 @@ void PrintTo(const Row& row, std::ostream* out) { *out << row.key; }
 const Assignments kAzimuth = {"angle=minimum-dot-azimuth", "minimum-dots=-.1,-.6,-.3"};
 
 const std::vector<Row> kRows = {
+    {"ambient", {}, "0", Effect::Changes, {{"2", By::Key, "--set ambient: \"2\" is not one of 0, 1"}}},
     {"alias", {}, "1", Effect::Keeps, {{"2", By::Key, "--set alias: \"2\" is not one of 0, 1"}}},
     {"angle",
      {},
@@ -221,6 +223,7 @@ protected:
     p.shadowSize = 32;
     p.lightType = PELLUCID_LIGHT_POINT;
     capture_ = makeScene(p);
+    capture_.environment = Environment{{0.1, 0.1, 0.1}, {0.1, 0.1, 0.1}}.harmonics();
   }
 
   // As `pellucid replay` does.

@@ -39,6 +39,28 @@ TEST_F(Cli, TruthRefusesByName) {
   EXPECT_FALSE(fs::exists(path("t.exr")));
 }
 
+// An open sheet, lit from behind, through the whole chain; its light is exact.
+TEST_F(Cli, TruthTracesThinWalls) {
+  GltfBuilder b;
+  const std::vector<float> corners = {-1, -1, 0, 1, -1, 0, 0, 1, 0};
+  b.json["meshes"] = {
+      {{"primitives", {{{"attributes", {{"POSITION", b.vectors(corners)}}}, {"material", 0}}}}}};
+  b.json["materials"] = {{{"name", "paper"}, {"doubleSided", true}}};
+  b.json["nodes"] = {{{"mesh", 0}}};
+  const std::string model = path("sheet.glb"), file = path("t.exr"), out = path("o.exr");
+  std::ofstream(model, std::ios::binary) << b.glb();
+  const std::string scene =
+      "truth " + model + " --size 24x24 --spp 2 --light directional:0.5,0,1:2 -o " + file;
+  expect(3, scene + " --material paper=thin:0.5,0.25", "\"thin:0.5,0.25\" is not thin:R,G,B");
+  expect(0, scene + " --material paper=thin:0.5,0.25,0", "paths a second");
+  expect(0, "info " + file, "thin wall");
+  for (const char* quality : {"0", "1"}) {
+    expect(0, "replay " + file + " --repeat 0 --set quality=" + quality + " -o " + out, "");
+    expect(0, "compare " + out + " " + file + " --limit rel_rmse=0.001 --limit max=0.001", "");
+  }
+  expect(3, scene + " --overwrite --material paper=thin:0.5,0.25,0 --entry refracted", "--entry lambert");
+}
+
 // A pyramid without its base, then closed.
 TEST_F(Cli, TruthClosesHolesOrNamesThem) {
   GltfBuilder b;

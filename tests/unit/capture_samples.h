@@ -35,6 +35,8 @@ inline Image sampleImage(int width, int height, int channels, float first) {
 // Every buffer, a light of each type, a material of each form, a truth.
 inline Capture sampleCapture() {
   Capture capture;
+  capture.environment.emplace();
+  for (std::size_t i = 0; i < 9; ++i) (*capture.environment)[i] = {1.0 / double(i + 3), -0.5, double(i)};
   capture.width = kSampleWidth;
   capture.height = kSampleHeight;
   capture.metersPerUnit = 0.001;
@@ -106,6 +108,8 @@ inline Capture sampleCapture() {
                                       std::array<std::array<double, 4>, 3>{
                                           {{0.5, 1, 0.25, 2}, {0.5, 3, 0.25, 4}, {0.5, 5, 0.25, 6}}}},
                        GaussianMaterial{{0.5, 2}, {{0.25, 0.5, 0.75}, {0.75, 0.5, 0.25}}},
+                       ThinWallMaterial{{0.25, 0.5, 0.125}, {0.5, 0.25, 0.75}, {}},
+                       ThinWallMaterial{{0, 0.5, 1}, {1, 0.25, 0}, {{1, 2, 3}}},
                        OpenPbrMaterial{{0.8, 0.5, 0.3}, 2.5, {0.5, 0.25, 0.125}, 0.6, 1.3},
                        SkinMaterial{0.1, 0.7, 0.02, 1.45}};
   return capture;

@@ -42,6 +42,8 @@ TEST(CaptureRoundTrip, IsBitExactWithFloat) {
   EXPECT_EQ(read.truth->seed, written.truth->seed);
   EXPECT_EQ(read.truth->scene, written.truth->scene);
   EXPECT_EQ(read.material, written.material);
+  EXPECT_EQ(read.environment, written.environment);
+  EXPECT_TRUE(read.environment);
 
   ASSERT_EQ(read.lights.size(), written.lights.size());
   for (std::size_t i = 0; i < read.lights.size(); ++i) {
@@ -74,7 +76,7 @@ TEST(CaptureRoundTrip, IsBitExactWithFloat) {
     }
   }
 
-  ASSERT_EQ(read.materials.size(), 6u);
+  ASSERT_EQ(read.materials.size(), 8u);
   EXPECT_EQ(std::get<PresetMaterial>(read.materials[0]).preset, "skin1");
   const auto& coefficients = std::get<CoefficientMaterial>(read.materials[1]);
   const auto& expected = std::get<CoefficientMaterial>(written.materials[1]);
@@ -88,8 +90,15 @@ TEST(CaptureRoundTrip, IsBitExactWithFloat) {
   const auto& gaussians = std::get<GaussianMaterial>(read.materials[3]);
   EXPECT_EQ(gaussians.variance, std::get<GaussianMaterial>(written.materials[3]).variance);
   EXPECT_EQ(gaussians.weight, std::get<GaussianMaterial>(written.materials[3]).weight);
-  EXPECT_EQ(std::get<OpenPbrMaterial>(read.materials[4]), std::get<OpenPbrMaterial>(written.materials[4]));
-  EXPECT_EQ(std::get<SkinMaterial>(read.materials[5]), std::get<SkinMaterial>(written.materials[5]));
+  for (const std::size_t i : {4u, 5u}) {
+    const auto &wall = std::get<ThinWallMaterial>(read.materials[i]),
+               &same = std::get<ThinWallMaterial>(written.materials[i]);
+    EXPECT_EQ(wall.reflectance, same.reflectance);
+    EXPECT_EQ(wall.transmittance, same.transmittance);
+    EXPECT_EQ(wall.distance, same.distance);
+  }
+  EXPECT_EQ(std::get<OpenPbrMaterial>(read.materials[6]), std::get<OpenPbrMaterial>(written.materials[6]));
+  EXPECT_EQ(std::get<SkinMaterial>(read.materials[7]), std::get<SkinMaterial>(written.materials[7]));
 }
 
 TEST(CaptureRoundTrip, MinimalCaptureHasNoOptionalParts) {
@@ -461,6 +470,8 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     Unknown, Mistakes,
     testing::Values(
+        Mistake{"/environment", "[[1, 1, 1]]", {"environment", "needs 9 coefficients", "has 1"}},
+        Mistake{"/environment", "[[1, 1], 1, 1, 1, 1, 1, 1, 1, 1]", {"environment[0]", "3"}},
         Mistake{"/exposure", "1", {"m.json", "exposure", "unknown key"}},
         Mistake{"/camera/fov", "1", {"camera.fov", "unknown key"}},
         Mistake{"/buffers/depth", "{}", {"buffers.depth", "unknown key", "frontDepth"}},
@@ -577,6 +588,12 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"/materials/0",
                 R"({"gaussians": {"variance": [1], "weight": [[1, 1, 0.5]]}})",
                 {"materials[0].gaussians.weight", "sum"}},
+        Mistake{"/materials/0",
+                R"({"thinWalled": {"reflectance": [0.5, 0.5, 0.5], "transmittance": [0.5, 0.6, 0]}})",
+                {"materials[0].thinWalled.transmittance", "1.1"}},
+        Mistake{"/materials/0",
+                R"({"thinWalled": {"reflectance": [0.5, -1, 0.5], "transmittance": [0, 0, 0]}})",
+                {"materials[0].thinWalled.reflectance", "from 0 to 1"}},
         Mistake{"/truth/scale", "\"pi\"", {"truth.scale", "pi"}}));
 
 TEST_F(Manifests, UnknownPresetIsNamedWhenCompiled) {
@@ -622,13 +639,16 @@ TEST(Materials, OpenPbrMediaKeepTheirColorAtAnotherIndex) {
 
 TEST(Materials, EveryFormCompiles) {
   const auto materials = compileMaterials(sampleCapture());
-  ASSERT_EQ(materials.size(), 6u);
+  ASSERT_EQ(materials.size(), 8u);
   EXPECT_FLOAT_EQ(materials[2].transmittance[1][1], 3.0f);  // k1 of green, as given
   EXPECT_EQ(materials[3].gaussianCount, 2u);
   EXPECT_FLOAT_EQ(materials[3].gaussianWeight[2][1], 0.25f);
-  EXPECT_GT(materials[4].reflectance[0], materials[4].reflectance[1]) << "the color's order";
-  EXPECT_GT(materials[4].radius[0], materials[4].radius[2]) << "the scale's order";
-  EXPECT_GT(materials[5].reflectance[0], materials[5].reflectance[2]) << "skin is red";
+  EXPECT_EQ(materials[4].thinWalled, 1u);
+  EXPECT_FLOAT_EQ(materials[4].wallTransmittance[2], 0.75f);
+  EXPECT_FLOAT_EQ(materials[5].burleyDistance[1], 2.0f);
+  EXPECT_GT(materials[6].reflectance[0], materials[6].reflectance[1]) << "the color's order";
+  EXPECT_GT(materials[6].radius[0], materials[6].radius[2]) << "the scale's order";
+  EXPECT_GT(materials[7].reflectance[0], materials[7].reflectance[2]) << "skin is red";
 }
 
 // ---- The path-traced captures, where they are

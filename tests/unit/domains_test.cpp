@@ -30,6 +30,10 @@ struct Whole : Frame {
 const std::vector<std::function<void(Frame&)>> kFrames = {
     [](Frame&) {},
     [](Frame& f) {
+      f.material.thinWalled = 1;
+      std::fill_n(f.material.wallTransmittance, 3, 0.5f);
+    },
+    [](Frame& f) {
       static const float table[9] = {};
       f.thesis.angleModel = PELLUCID_ANGLE_MINIMUM_DOT_SPHERE;
       f.thesis.minimumDotTableSize = 3;
@@ -287,6 +291,11 @@ const std::vector<IntegerRule> kIntegerRules = {
      "thesis.materialMarkBit",
      [](Frame& f, uint32_t v) { f.thesis.materialMarkBit = v; },
      {1, 3, 192, 0xFFFFFFFF}},
+    {"PellucidFrame",
+     "materialMask",
+     "materialMask",
+     [](Frame& f, uint32_t v) { f.frame.materialMask = v; },
+     {2, 0x80000000, 0xFFFFFFFE}},
     {"PellucidFrame",
      "reuse",
      "reuse",

@@ -332,10 +332,31 @@ TEST_F(Gltf, DiffuseTransmissionBecomesAnExponential) {
   EXPECT_EQ(surface.baseColor, (std::array<double, 3>{1, 1, 1}));
   EXPECT_EQ(surface.displaced, 0.5);
   EXPECT_EQ(surface.backscatter, 0);
-  // A thin wall: nothing absorbs on the way.
+  EXPECT_EQ(compiled.thinWalled, 0u);
   b.json["materials"][0]["extensions"].erase("KHR_materials_volume");
   const PellucidMaterial thin = compileMaterial(loadGltf(write("t.glb", b.glb())).model.materials[0], "test");
-  EXPECT_NEAR(pellucidEvaluateTransmittance(&thin, 0, 10), 1, 1e-4);
+  EXPECT_EQ(thin.thinWalled, 1u) << "without a volume";
+  for (int c = 0; c < 3; ++c)
+    EXPECT_EQ(thin.wallTransmittance[c], thin.reflectance[c]) << "the albedo is addedColor's";
+}
+
+TEST_F(Gltf, ThinWallsReplaceMaterialsByName) {
+  GltfBuilder b = square();
+  b.json["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = {0.5, 1, 0.25, 1};
+  b.json["materials"][0]["extensions"] = scatterExtensions();
+  GltfOptions options;
+  options.presets = {{"m", "thin:0.25,0.5,0"}};
+  const Model m = loadGltf(write("t.glb", b.glb()), options).model;
+  const PellucidMaterial wall = compileMaterial(m.materials.at(0), "test");
+  EXPECT_EQ(wall.thinWalled, 1u);
+  EXPECT_EQ(m.surfaces[0].addedColor, (std::array<double, 3>{0.25, 0.5, 0}));
+  EXPECT_EQ(m.surfaces[0].baseColor, (std::array<double, 3>{0.375, 0.5, 0.25})) << "of the rest";
+  EXPECT_EQ(m.surfaces[0].lobes, SurfaceLobes::Apart);
+  for (const char* wrong :
+       {"thin:", "thin:1,1", "thin:1,1,2", "thin:1,1,1,1", "thin:0,0,x", "thin:0,0,0,", "thin:nan,0,0"}) {
+    options.presets = {{"m", wrong}};
+    expectRefused(b.glb(), {"material \"m\"", wrong, "transmittance from 0 to 1"}, "t.glb", options);
+  }
 }
 
 TEST_F(Gltf, PresetsOverrideByName) {

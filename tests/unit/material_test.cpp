@@ -348,6 +348,35 @@ TEST(Material, SlabTransport) {
   EXPECT_EQ(complaint.field, "thickness");
 }
 
+TEST(Material, ThinWallsTransmitTheSameAtEveryThickness) {
+  PellucidMaterialDesc desc;
+  pellucidInitMaterialDesc(&desc);
+  desc.kind = PELLUCID_MATERIAL_THIN_WALL;
+  const double reflectance[] = {0.25, 0.5, 0}, transmittance[] = {0.5, 0.25, 1};
+  std::copy_n(reflectance, 3, desc.wallReflectance);
+  std::copy_n(transmittance, 3, desc.wallTransmittance);
+  const Compiled wall = compile(desc);
+  EXPECT_STREQ(wall.report.name, "thin_wall");
+  EXPECT_EQ(wall.material.thinWalled, 1u);
+  EXPECT_EQ(wall.material.gaussianCount, 0u) << "light does not spread sideways";
+  const double thickness[] = {0, 3};
+  PellucidSlab slabs[6];
+  ASSERT_EQ(pellucidMaterialSlabs(&desc, 2, thickness, slabs, nullptr, nullptr), PELLUCID_OK);
+  for (std::uint32_t c = 0; c < 3; ++c) {
+    // Reflectances divide, so that they are 1e-4 at least.
+    EXPECT_NEAR(wall.material.reflectance[c], reflectance[c], 1e-4);
+    EXPECT_LE(wall.material.reflectance[c] + wall.material.wallTransmittance[c], 1.0f);
+    for (const double d : thickness)
+      EXPECT_NEAR(pellucidEvaluateTransmittance(&wall.material, c, d), transmittance[c], 2e-4);
+    EXPECT_NEAR(slabs[3 + c].transmittance, transmittance[c], 2e-4);
+    EXPECT_EQ(slabs[3 + c].reflectance, reflectance[c]);
+  }
+  std::fill_n(desc.burleyDistance, 3, 2.0);
+  const Compiled spreads = compile(desc);
+  EXPECT_EQ(spreads.material.gaussianCount, desc.gaussianCount);
+  EXPECT_EQ(spreads.material.burleyDistance[1], 2.0f);
+}
+
 struct BadCase {
   const char* field;
   void (*spoil)(PellucidMaterialDesc&);
@@ -391,6 +420,17 @@ TEST(Material, BadInputNamesTheField) {
          d.kind = PELLUCID_MATERIAL_GAUSSIANS;
          std::fill_n(d.gaussianVariance, 8, 1.0);
        }},
+      {"wallReflectance[1]",
+       [](PellucidMaterialDesc& d) { d.kind = PELLUCID_MATERIAL_THIN_WALL, d.wallReflectance[1] = 1.5; }},
+      {"wallTransmittance[0]",
+       [](PellucidMaterialDesc& d) { d.kind = PELLUCID_MATERIAL_THIN_WALL, d.wallTransmittance[0] = -0.5; }},
+      {"wallTransmittance[2]",
+       [](PellucidMaterialDesc& d) {
+         d.kind = PELLUCID_MATERIAL_THIN_WALL;
+         d.wallReflectance[2] = d.wallTransmittance[2] = 0.75;
+       }},
+      {"burleyDistance[1]",
+       [](PellucidMaterialDesc& d) { d.kind = PELLUCID_MATERIAL_THIN_WALL, d.burleyDistance[0] = 1; }},
       {"spectrum.count", [](PellucidMaterialDesc& d) { d.kind = PELLUCID_MATERIAL_SPECTRAL; }},
       {"spectrum.wavelength[1]",
        [](PellucidMaterialDesc& d) {

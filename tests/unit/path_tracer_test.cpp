@@ -107,7 +107,8 @@ TEST(PathTracer, AnisotropicSlabIsVanDeHulsts) {
   expectNear(back, glm::dvec3(.09739), 3, "R");
 }
 
-// Exitance under a directional light, against walks of single channels, which share sampling and boundary alone.
+// Exitance under a directional light, against walks of single channels, which share sampling and boundary
+// alone.
 TEST(PathTracer, BodiesGlowAsSingleChannelWalksSay) {
   const glm::dvec3 toLight = glm::normalize(glm::dvec3(0.5, 0.3, -0.8));
   const SceneModel model = oneSolid(std::make_unique<Ellipsoid>(glm::dvec3(0), glm::dvec3(3)));
@@ -383,6 +384,7 @@ TEST(PathTracer, MediaThatNoWalkKnowsAreRefusedByName) {
   EXPECT_NE(complaint(PresetMaterial{"nothing"}).find("\"nothing\""), std::string::npos);
   EXPECT_NE(complaint(CoefficientMaterial{{1, 1, 1}, {0, 0, 0}, 1, 1.4}).find("g: 1"), std::string::npos);
   EXPECT_EQ(complaint(PresetMaterial{"marble"}), "accepted");
+  EXPECT_EQ(complaint(ThinWallMaterial{{0.5, 0.5, 0.5}, {0.5, 0.5, 0.5}, {}}), "accepted");
   EXPECT_EQ(traceMedia({PresetMaterial{"marble"}}, "")[0].scattering.x, 2.19);
 }
 

@@ -45,6 +45,39 @@ TEST(Plan, WholeFrameIsFusedDispatchAndPyramid) {
   EXPECT_EQ(plan.dispatches[0].groups[1], 4u) << "50 pixels in groups of 16";
 }
 
+// Frames in which every light is in a dispatch of its own, and frames of one dispatch.
+TEST(Plan, ConstantsSizeBoundsThatOfFrames) {
+  for (const uint32_t lights : {0u, 1u, 3u, 9u, 16u, 150u})
+    for (const uint32_t samples : {0u, 8u})
+      for (const uint32_t mapsOfALight : {0u, 1u, 6u})
+        for (const uint32_t indirect : {0u, 1u}) {
+          Frame f(0);
+          f.frame.gatherSamples = samples;
+          f.frame.indirectDispatches = indirect;
+          f.lights.clear();
+          const Frame one(1);
+          for (uint32_t i = 0; i < lights; ++i) {
+            f.lights.push_back(Frame::light(static_cast<uint32_t>(f.maps.size()), mapsOfALight));
+            for (uint32_t k = 0; k < mapsOfALight; ++k) {
+              f.maps.push_back(one.maps[0]);
+              // All maps of light 3 n share images, those of the others are their own.
+              f.maps.back().image = i % 3 == 0 ? 0 : static_cast<uint32_t>(f.images.size());
+              if (i % 3 != 0 || f.images.empty()) f.images.push_back(Frame::view());
+            }
+          }
+          f.use();
+          PellucidPlan plan;
+          const PellucidResult result = pellucidBuildPlan(&f.frame, nullptr, &plan);
+          if (result == PELLUCID_ERROR_CAPACITY) continue;
+          ASSERT_EQ(result, PELLUCID_OK) << f.problems();
+          const VkDeviceSize bound = pellucidGetConstantsSize(1, lights, lights * mapsOfALight);
+          EXPECT_EQ(bound % 256, 0u);
+          EXPECT_LE(plan.constantsSize, bound) << lights << " lights of " << mapsOfALight << " maps";
+          // A gather takes 512 bytes a map besides, which frames without one lack.
+          EXPECT_LT(bound, 4 * plan.constantsSize) << lights << " lights of " << mapsOfALight;
+        }
+}
+
 TEST(Plan, SameInputSamePlan) {
   Frame f;
   const PellucidPlan a = f.plan(), b = f.plan();
@@ -263,6 +296,67 @@ std::array<uint32_t, 2> workgroupOf(uint32_t pipeline) {
 }
 
 // Tiles that overlap would be done twice, and no pixel would say so.
+// A light without a map, in the dispatch of the others or one of its own beside gathered ones.
+TEST(Plan, AmbientLightIsALightOfItsOwn) {
+  std::array<float, 27> sky{};
+  Frame f;
+  f.frame.ambient = sky.data();
+  EXPECT_EQ(f.plan().activeLights, 1u) << "all coefficients are 0";
+  sky[4] = -1;
+  EXPECT_EQ(f.plan().activeLights, 2u);
+  f.lights.clear();
+  f.use();
+  EXPECT_EQ(names(f.plan()).front(), "translucency");
+  f.frame.backDepth = {};
+  EXPECT_EQ(f.plan().activeLights, 0u);
+  EXPECT_TRUE(skips(f.plan(), "ambient light", "no back depth to take a thickness from"));
+  EXPECT_NE(f.problems(PELLUCID_SEVERITY_WARNING).find("ambient adds nothing: no back depth"),
+            std::string::npos);
+
+  Frame gathered;
+  gathered.frame.gatherSamples = 8;
+  gathered.frame.gatherSpacing = 4;
+  gathered.frame.normal = Frame::view();
+  const auto without = names(gathered.plan());
+  EXPECT_EQ(std::count(without.begin(), without.end(), "add gathered"), 0);
+  gathered.frame.ambient = sky.data();
+  const auto with = names(gathered.plan());
+  EXPECT_EQ(std::count(with.begin(), with.end(), "add gathered"), 1);
+}
+
+// Recording refuses a plan of another sky.
+TEST(Plan, AnotherSkyIsAnotherFrame) {
+  std::array<float, 27> sky{};
+  sky[0] = 1;
+  Frame f;
+  f.frame.ambient = sky.data();
+  const PellucidPlan one = f.plan();
+  sky[0] = 2;
+  const PellucidPlan two = f.plan();
+  EXPECT_NE(std::memcmp(&one.state, &two.state, sizeof one.state), 0);
+}
+
+// Tiles of one atlas, which a dispatch binds once.
+TEST(Plan, AnAtlasHoldsTheMapsOfManyLights) {
+  for (const uint32_t lights : {64u, 300u}) {
+    Frame f;
+    f.lights.clear();
+    const PellucidShadowMap map = f.maps[0];
+    f.maps.clear();
+    for (uint32_t i = 0; i < lights; ++i) {
+      f.maps.push_back(map);
+      f.maps.back().offset[0] = i % 20 * map.extent[0];
+      f.maps.back().offset[1] = i / 20 * map.extent[1];
+      f.lights.push_back(Frame::light(i, 1));
+    }
+    f.use();
+    const PellucidPlan plan = f.plan();
+    EXPECT_EQ(plan.activeLights, lights);
+    const auto all = names(plan);
+    EXPECT_EQ(std::count(all.begin(), all.end(), "translucency"), lights == 64 ? 1 : 3) << "112 maps each";
+  }
+}
+
 TEST(Plan, TilesAreThoseOfTheShader) {
   Frame f;
   const PellucidPlan plan = f.plan();

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "common/error.h"
+#include "reference/ambient.h"
 #include "reference/light.h"
 #include "reference_captures.h"
 
@@ -29,6 +30,49 @@ Light backLight() {
   light.direction = {0, 0, 1};
   light.intensity = 3;
   return light;
+}
+
+// Each band alone against the integral of the clamped cosine times the basis, whose definition this is.
+TEST(AmbientReference, IrradianceIsTheIntegralOfRadiance) {
+  const auto basis = [](int i, const glm::dvec3& w) {
+    const double x = w.x, y = w.y, z = w.z;
+    const double of[9] = {0.282095,
+                          0.488603 * y,
+                          0.488603 * z,
+                          0.488603 * x,
+                          1.092548 * x * y,
+                          1.092548 * y * z,
+                          0.315392 * (3 * z * z - 1),
+                          1.092548 * x * z,
+                          0.546274 * (x * x - y * y)};
+    return of[i];
+  };
+  const glm::dvec3 normals[] = {{0, 0, 1},
+                                {0, 1, 0},
+                                {1, 0, 0},
+                                glm::normalize(glm::dvec3(1, -2, 3)),
+                                glm::normalize(glm::dvec3(-2, 1, 0.5))};
+  for (int i = 0; i < 9; ++i)
+    for (const glm::dvec3& n : normals) {
+      // Radiance 1 besides, so that no irradiance is below 0.
+      Harmonics environment{};
+      environment[0] = {1 / 0.282095, 1 / 0.282095, 1 / 0.282095};
+      environment[static_cast<std::size_t>(i)][1] += 0.5;
+      double sum = 0;
+      constexpr int kSteps = 400;
+      for (int t = 0; t < kSteps; ++t)
+        for (int p = 0; p < 2 * kSteps; ++p) {
+          const double theta = (t + 0.5) / kSteps * 3.14159265358979,
+                       phi = (p + 0.5) / kSteps * 3.14159265358979;
+          const glm::dvec3 w(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
+                             std::cos(theta));
+          const double solid = std::sin(theta) * 3.14159265358979 / kSteps * 3.14159265358979 / kSteps;
+          sum += (1 + 0.5 * basis(i, w)) * std::max(glm::dot(n, w), 0.0) * solid;
+        }
+      // The integral's steps and the constants' digits.
+      EXPECT_NEAR(Ambient::irradiance(environment, n).y, sum, 1e-4) << "coefficient " << i;
+      EXPECT_NEAR(Ambient::irradiance(environment, n).x, 3.14159265358979, 1e-5);
+    }
 }
 
 // Slab 4 mm thick facing the camera, lit from behind, dark in front.

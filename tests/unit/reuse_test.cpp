@@ -46,6 +46,16 @@ TEST(Reuse, NoneNeverReuses) {
   EXPECT_EQ(stateOf(s.last).history.valid, 0u);
 }
 
+// What was kept is in units of the exposure of its frame.
+TEST(Reuse, AnotherPreExposureRefreshes) {
+  Sequence s(PELLUCID_REUSE_COHERENCE);
+  EXPECT_TRUE(s.refreshes());
+  EXPECT_FALSE(s.refreshes());
+  s.frame.preExposure = 0.5f;
+  EXPECT_TRUE(s.refreshes());
+  EXPECT_FALSE(s.refreshes());
+}
+
 TEST(Reuse, AlternateRefreshesEverySecondFrame) {
   Sequence s(PELLUCID_REUSE_ALTERNATE);
   for (int i = 0; i < 10; ++i) EXPECT_EQ(s.refreshes(), i % 2 == 0) << i;

@@ -80,6 +80,10 @@ struct Unusual : Frame {
     frame.nearestDistance = 13;
     frame.separateOutput = 1;
     frame.indirectDispatches = 1;
+    frame.materialShift = 1;
+    frame.materialMask = 0x1FE;
+    frame.outputMode = PELLUCID_OUTPUT_ADD;
+    frame.preExposure = 0.5f;
   }
 };
 

@@ -1,6 +1,7 @@
 // Each convention violated once: the field is named, the value is in the sentence, and no plan is made.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <ostream>
 
 #include <cmath>
@@ -44,6 +45,34 @@ const std::vector<Violation> kViolations = {
     {"PrescaleAngle", "thesis.prescaleAngle", "2", [](Frame& f) { f.thesis.prescaleAngle = 2; }},
     {"SeparateOutput", "separateOutput", "2", [](Frame& f) { f.frame.separateOutput = 2; }},
     {"IndirectDispatches", "indirectDispatches", "3", [](Frame& f) { f.frame.indirectDispatches = 3; }},
+    {"MaterialShift", "materialShift", "32", [](Frame& f) { f.frame.materialShift = 32; }},
+    {"MaterialMaskBelowShift", "materialMask", "whose last bits materialShift 4 drops",
+     [](Frame& f) {
+       f.frame.materialShift = 4;
+       f.frame.materialMask = 0xFF;
+     }},
+    {"MaterialMaskWithoutIndices", "materialMask", "leave 14; the indices of 1 materials take 1",
+     [](Frame& f) {
+       f.frame.materialShift = 4;
+       f.frame.materialMask = 0xE0;
+     }},
+    {"MarkBitOutsideTheMask", "thesis.materialMarkBit", "which materialMask 112 and materialShift 4",
+     [](Frame& f) {
+       f.frame.materialShift = 4;
+       f.frame.materialMask = 0x70;
+       f.thesis.materialMarkBit = 8;
+     }},
+    {"OutputMode", "outputMode", "2", [](Frame& f) { f.frame.outputMode = 2; }},
+    {"Ambient", "ambient", "[26] is nan",
+     [](Frame& f) {
+       static const auto sky = [] {
+         std::array<float, 27> s{};
+         s[26] = NAN;
+         return s;
+       }();
+       f.frame.ambient = sky.data();
+     }},
+    {"PreExposure", "preExposure", "0", [](Frame& f) { f.frame.preExposure = 0; }},
     {"FrameLoad", "frameLoad", "-1", [](Frame& f) { f.frame.frameLoad = -1; }},
     {"Quality", "quality", "3, outside 0..2", [](Frame& f) { f.frame.quality = 3; }},
     {"TargetError", "targetError", "inf", [](Frame& f) { f.frame.targetError = INFINITY; }},
@@ -291,6 +320,17 @@ TEST(Validate, TilesMayMeet) {
     f.use();
     EXPECT_EQ(f.problems(PELLUCID_SEVERITY_WARNING), "");
   }
+}
+
+TEST(Validate, NothingIsAddedToTheIrradiance) {
+  Frame f;
+  for (PellucidImage& image : f.frame.transients) image = Frame::view();
+  f.frame.outputMode = PELLUCID_OUTPUT_ADD;
+  EXPECT_NE(f.problems().find("outputMode is ADD, but the output is the irradiance's view"),
+            std::string::npos)
+      << f.problems();
+  f.frame.output.view = reinterpret_cast<VkImageView>(uintptr_t{2});
+  EXPECT_EQ(f.problems(), "");
 }
 
 TEST(Validate, SeparateOutputIsNotTheIrradiance) {

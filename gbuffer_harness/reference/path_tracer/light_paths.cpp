@@ -28,6 +28,8 @@ LightPaths::LightPaths(const Capture& capture, const TraceScene& scene, const st
   if (!bounds || emitters.paint)
     throw InputError(capture.name, "lights",
                      "paths from lights need a scene with an end and lights; --entry lambert needs neither");
+  if (std::any_of(media.begin(), media.end(), [](const TraceMedium& m) { return m.wall.has_value(); }))
+    throw InputError(capture.name, "materials", "one is thin-walled, which --entry lambert alone traces");
   bounds_ = *bounds;
   const glm::dmat4 worldFromView = glm::inverse(toGlm(capture.viewFromWorld));
   eye_ = scene.fromWorld(glm::dvec3(worldFromView[3]));

@@ -26,6 +26,12 @@ std::vector<TraceMedium> traceMedia(const std::vector<MaterialSource>& materials
   std::vector<TraceMedium> media;
   for (std::size_t i = 0; i < materials.size(); ++i) {
     const std::string name = where + ": materials[" + std::to_string(i) + "]";
+    if (std::holds_alternative<ThinWallMaterial>(materials[i])) {
+      const PellucidMaterial m = compileMaterial(materials[i], name);
+      const float *r = m.reflectance, *t = m.wallTransmittance;
+      media.emplace_back().wall = TraceMedium::Wall{{r[0], r[1], r[2]}, {t[0], t[1], t[2]}};
+      continue;
+    }
     const CoefficientMaterial material = coefficientsOf(materials[i], name);
     TraceMedium medium;
     for (int c = 0; c < 3; ++c) {
@@ -47,6 +53,7 @@ std::vector<TraceMedium> traceMedia(const std::vector<MaterialSource>& materials
 }
 
 glm::dvec3 halfSpaceReflectance(const TraceMedium& medium) {
+  if (medium.wall) return medium.wall->reflectance;
   glm::dvec3 rho;
   for (int c = 0; c < 3; ++c) {
     PellucidSlab slab;

@@ -11,11 +11,11 @@ namespace pellucid::harness::reference {
 
 TruthTracer::TruthTracer(const Capture& capture, const VisibleSurface& surface, const TraceScene& scene,
                          const std::vector<TraceMedium>& media, const Emitters& emitters)
-    : surface_(surface),
+    : capture_(capture),
+      surface_(surface),
       scene_(scene),
       media_(media),
       emitters_(emitters),
-      material_(capture.material),
       scale_(albedoOverRho(capture, media)) {}
 
 std::vector<glm::dvec3> albedoOverRho(const Capture& capture, const std::vector<TraceMedium>& media) {
@@ -37,9 +37,21 @@ std::vector<glm::dvec3> albedoOverRho(const Capture& capture, const std::vector<
   return scale;
 }
 
+glm::dvec3 TruthTracer::sampleWall(std::size_t pixel, const TraceMedium::Wall& wall,
+                                   PathRandom& random) const {
+  SurfacePoint other = *surface_.points[pixel];
+  other.face = -other.face;
+  other.normal = -other.normal;
+  const float* e = capture_.irradiance.data.data() + 3 * pixel;
+  const glm::dvec3 reflected = wall.reflectance * glm::dvec3(e[0], e[1], e[2]);
+  return scale_[pixel] *
+         (reflected + wall.transmittance * sampleIrradiance(scene_, emitters_, other, random));
+}
+
 glm::dvec3 TruthTracer::sample(std::size_t pixel, std::uint64_t number, std::uint64_t seed) const {
   PathRandom random(seed, pixel, number);
-  const TraceMedium& medium = media_[material_[pixel] - 1u];
+  const TraceMedium& medium = media_[capture_.material[pixel] - 1u];
+  if (medium.wall) return sampleWall(pixel, *medium.wall, random);
   const std::optional<WalkExit> exit = walk(scene_, medium, *surface_.points[pixel], random);
   // Light does not enter where the body is opaque.
   if (!exit || exit->surface.material == 0) return glm::dvec3(0);

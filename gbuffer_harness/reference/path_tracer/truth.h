@@ -23,8 +23,9 @@ struct TruthSums {
 std::vector<glm::dvec3> albedoOverRho(const Capture& capture, const std::vector<TraceMedium>& media);
 
 // A sample is a path from the surface at a pixel's center and estimates the exitance there (walk.h), times
-// albedo / rho: a flat body gives albedo times E, as a replay does. Its random numbers depend on seed, pixel
-// and sample alone.
+// albedo / rho: a flat body gives albedo times E, as a replay does. A thin wall gives albedo times the
+// capture's irradiance, and its transmittance of what arrives at its other face, likewise times albedo / rho.
+// Random numbers depend on seed, pixel and sample alone.
 class TruthTracer {
 public:
   // All arguments must outlive the tracer. Throws as albedoOverRho() does.
@@ -38,12 +39,13 @@ public:
 
 private:
   glm::dvec3 sample(std::size_t pixel, std::uint64_t number, std::uint64_t seed) const;
+  glm::dvec3 sampleWall(std::size_t pixel, const TraceMedium::Wall& wall, PathRandom& random) const;
 
+  const Capture& capture_;
   const VisibleSurface& surface_;
   const TraceScene& scene_;
   const std::vector<TraceMedium>& media_;
   const Emitters& emitters_;
-  std::vector<std::uint8_t> material_;
   std::vector<glm::dvec3> scale_;  // albedo / rho of each pixel
 };
 

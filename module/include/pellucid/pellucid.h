@@ -66,6 +66,10 @@ typedef struct PellucidMaterial {
   /* ---- fields that may be missing ---- */
   float burleyDistance[3];    /* mm; d of Christensen & Burley 2015 eq. 3 that the Gaussians fit and the
                                  diffusion takes in their place; 0 (default): the Gaussians */
+  uint32_t thinWalled;        /* 1: a sheet without thickness, like leaves and paper. Light that arrives at one face leaves
+                                 by the other times wallTransmittance, and `transmittance` is not read. Shadow maps only
+                                 say whether something else blocks the light. Not gathered. 0 (default): a solid */
+  float wallTransmittance[3]; /* of the irradiance of the other face, [0, 1]; with `reflectance` at most 1 */
 } PellucidMaterial;
 
 /* ---- Frame ----------------------------------------------------------------------------------- */
@@ -141,6 +145,14 @@ typedef enum PellucidDebugView {
   PELLUCID_DEBUG_IRRADIANCE = 4     /* irradiance + transmitted/rho: what the diffusion reads */
 } PellucidDebugView;
 
+/* What happens to the output's pixels that have a material: */
+typedef enum PellucidOutputMode {
+  PELLUCID_OUTPUT_REPLACE = 0, /* they become the result */
+  PELLUCID_OUTPUT_ADD = 1      /* the result is added to their color, which is specular light, say, and their alpha
+                                  stays. The sum is clamped as a result is: 0..65504, and NaN counts as 0. The output is not the
+                                  irradiance image, and its image has usage SAMPLED, too. Debug views replace */
+} PellucidOutputMode;
+
 /* The GPU decides how many workgroups run: */
 typedef enum PellucidIndirect {
   PELLUCID_INDIRECT_NONE = 0,     /* nowhere: all passes run over the whole rect */
@@ -167,9 +179,10 @@ typedef struct PellucidFrame {
   PellucidImage frontDepth; /* required; one float channel */
   PellucidImage backDepth;  /* nearest back face behind the front; without it no camera-space thickness */
   PellucidImage irradiance; /* required; E, not divided by pi, not multiplied by albedo */
-  PellucidImage normal;     /* outward unit vectors, components -1..1 */
+  PellucidImage normal;     /* outward unit vectors, as PellucidContextDesc::normalEncoding says */
   PellucidImage albedo;     /* multiplied after scattering */
-  PellucidImage material;   /* required; unsigned integer, 0 none, i: materials[i - 1] */
+  PellucidImage material;   /* required; unsigned integer, 0 none, i: materials[i - 1]; see materialMask. A view's
+                               component mapping brings another channel to R */
   PellucidImage output;     /* required; storage image of outputFormat; may be the irradiance image. Pixels of
                                material 0 are not written; alpha is the irradiance's */
   PellucidImage transients[PELLUCID_MAX_TRANSIENTS]; /* as listed by pellucidGetImageNeeds */
@@ -194,7 +207,7 @@ typedef struct PellucidFrame {
   uint32_t gatherSamples;   /* entry points of the shadow map that each probe gathers light from, for lights with a
                                map: a multiple of 4, at most 64; needs materials of EXP2 or SINH_EXP. 0: one
                                light-space thickness. PELLUCID_GATHER_BY_QUALITY (default): 0, 8 or 16 at quality
-                               0, 1 or 2; 0, which the plan's skips say, with a material of another model,
+                               0, 1 or 2; 0, which the plan's skips say, with a solid of another model,
                                thickness from the camera, and thesis options of one thickness a pixel */
   uint32_t reuse;           /* PellucidReuse. Kept light is looked up at the same pixel: pass no previous plan
                                after a cut, and expect a lag of the frames in between where things move.
@@ -218,6 +231,18 @@ typedef struct PellucidFrame {
   uint32_t separateOutput;  /* 1: the output shares no memory with the irradiance, of which diffusion without a fused
                                dispatch before it then needs no copy; 0 (default): it may be the same image */
   uint32_t indirectDispatches; /* PellucidIndirect; but for NONE the constants' buffer has usage INDIRECT_BUFFER, too */
+  uint32_t materialShift, materialMask; /* the index is (R of the material image & mask) >> shift, so that other bits may
+                                           hold anything; shift 0..31, and the mask has the bits of all indices; mask 0
+                                           (default): all bits. thesis->materialMarkBit is a bit of the shifted value */
+  uint32_t outputMode;      /* PellucidOutputMode */
+  float preExposure;        /* the irradiance image holds E times this, and so does the output; lights keep their units.
+                               1e-9..1e9; default 1. Light that is reused was stored by the factor of its own frame: a
+                               change of the factor computes it anew */
+  const float* ambient;     /* light from all around that comes through thin parts, or NULL (default): 9 x RGB coefficients of
+                               radiance, -1e15..1e15, of the real orthonormal spherical harmonics of the world direction that
+                               light comes from, in the order 1, y, z, x, xy, yz, 3 z^2 - 1, xz, x^2 - y^2. The irradiance
+                               image has what lies on visible faces. Needs backDepth; nothing shadows hidden faces.
+                               Not in the debug views of light */
 } PellucidFrame;
 
 /* ---- Plan ------------------------------------------------------------------------------------ */
@@ -242,7 +267,7 @@ typedef struct PellucidContext PellucidContext;
 /* Uses that frames ask of a context. A pipeline is made if all that it is for is asked for; recording refuses a plan that
  * needs one of the others. */
 typedef enum PellucidUse {
-  PELLUCID_USE_TRANSLUCENCY = 1 << 0, /* lights that are not gathered from, and frames without diffusion */
+  PELLUCID_USE_TRANSLUCENCY = 1 << 0, /* lights that are not gathered from, thin walls, and frames without diffusion */
   PELLUCID_USE_GATHER = 1 << 1,       /* gathered light */
   PELLUCID_USE_DIFFUSION = 1 << 2,
   PELLUCID_USE_QUALITY_0 = 1 << 3,    /* besides qualities 1 and 2, which take the same pipelines */
@@ -252,6 +277,15 @@ typedef enum PellucidUse {
 
 /* Calls job(data, i) for each i below count, on any threads and in any order, and returns when all have returned. */
 typedef void (*PellucidParallelForFn)(void* user, uint32_t count, void (*job)(void* data, uint32_t index), void* data);
+
+/* How the normal image holds a vector n, of world space or of view space by frame.normalsInViewSpace. */
+typedef enum PellucidNormalEncoding {
+  PELLUCID_NORMALS_SNORM = 0,            /* n in RGB, -1..1: SNORM and float formats; (0, 0, 0): none at this pixel */
+  PELLUCID_NORMALS_UNORM = 1,            /* (n + 1) / 2 in RGB, 0..1; (0, 0, 0), which is none of them: none */
+  PELLUCID_NORMALS_OCTAHEDRAL = 2,       /* "oct" of Cigolle et al. 2014 in RG, -1..1: n / (|x| + |y| + |z|), whose lower
+                                            half, z < 0, is folded over the corners; cannot say none */
+  PELLUCID_NORMALS_OCTAHEDRAL_UNORM = 3  /* (that + 1) / 2 in RG, 0..1 */
+} PellucidNormalEncoding;
 
 typedef struct PellucidContextDesc {
   uint32_t structSize;    /* sizeof(PellucidContextDesc), written by pellucidInitContextDesc */
@@ -274,7 +308,8 @@ typedef struct PellucidContextDesc {
   void* parallelUser;
   VkImageViewType shadowViewType; /* of all shadow images of all frames: 2D (default), or 2D_ARRAY, of which one view of all
                                      layers serves every map in them; each frame then has a shadow image, maps or not */
-  uint32_t reserved;              /* 0, for a later field */
+  uint32_t normalEncoding;        /* PellucidNormalEncoding of all frames; default SNORM. A specialization constant. Unused by
+                                     a library built with PELLUCID_GBUFFER_DECODE, whose file decodes */
 } PellucidContextDesc;
 
 /* The defaults, written into a struct of that many bytes; pellucidInit* without it have the header's size. */
@@ -297,6 +332,11 @@ static inline void pellucidInitFrame(PellucidFrame* f) { pellucidInitFrameSized(
  * *count to the number there are; `needs` may be NULL. Views are not looked at: call it before creating them. */
 PellucidResult pellucidGetImageNeeds(const PellucidFrame* frame, uint32_t* count, PellucidImageNeed* needs);
 
+/* Bytes of a constants slice for any frame of at most so many materials, lights and shadow maps, whatever else it holds:
+ * plan.constantsSize is never more. shadowMapCount: the sum over the lights, so that a map of two lights counts twice. No
+ * frame, image or device is needed, so a ring of slices can be allocated first. */
+VkDeviceSize pellucidGetConstantsSize(uint32_t materialCount, uint32_t lightCount, uint32_t shadowMapCount);
+
 /* Checks every convention and the domains of all fields (docs/domains.md); calls `fn` for each finding. PELLUCID_OK
  * unless one is an error. PELLUCID_ERROR_CAPACITY exactly where pellucidBuildPlan returns it, too: more shadow images
  * than a plan can bind. */
@@ -312,16 +352,20 @@ PellucidResult pellucidBuildPlan(const PellucidFrame* frame, const PellucidPlan*
 
 /* Host-visible, host-coherent memory for one recording, usage STORAGE_BUFFER | UNIFORM_BUFFER, with
  * frame.indirectDispatches INDIRECT_BUFFER, too: then the device writes there what it decides, which holds until the
- * constants are written again. All passes read it, so it should be device-local, too, where there is such memory. */
+ * constants are written again. All passes read it, so it should be device-local, too, where there is such memory.
+ * Recording writes the slice at once, and the device reads it when the commands run. Each recording that the device has
+ * not finished needs a slice of its own: a ring of as many as there are frames in flight. Neither this library nor
+ * Vulkan's validation sees one that is written too early; the earlier frame then has the later one's camera and lights. */
 typedef struct PellucidConstantsSlice {
   VkBuffer buffer;
   VkDeviceSize offset; /* multiple of 256, the largest alignment Vulkan lets a device ask for */
-  VkDeviceSize size;   /* >= plan.constantsSize */
+  VkDeviceSize size;   /* >= plan.constantsSize, which pellucidGetConstantsSize bounds */
   void* mapped;        /* address of `offset` */
 } PellucidConstantsSlice;
 
 /* Writes the slice and records every dispatch and the barriers between them. Before: the inputs are readable by, and
- * the output and transients free for, COMPUTE_SHADER. After: `output` was written by COMPUTE_SHADER / SHADER_WRITE.
+ * the output and transients free for, COMPUTE_SHADER; PELLUCID_OUTPUT_ADD reads the output, too. After: `output` was
+ * written by COMPUTE_SHADER / SHADER_WRITE.
  * Compute pipeline, push constants and set 0 are left changed. `frame` is the one that made the plan, with its views
  * filled in. One that differs in anything else, or lacks an image of the plan's, is PELLUCID_ERROR_INVALID_ARGUMENT;
  * the message names the part that differs. */

@@ -24,7 +24,8 @@ typedef enum PellucidMaterialKind {
   PELLUCID_MATERIAL_BURLEY = 2,       /* burleyDistance, transmittance */
   PELLUCID_MATERIAL_GAUSSIANS = 3,    /* gaussianCount, gaussianVariance, gaussianWeight */
   PELLUCID_MATERIAL_SPECTRAL = 4,     /* spectrum, illuminant, g, ior, millimetersPerUnit */
-  PELLUCID_MATERIAL_SKIN = 5          /* melanin, melaninType, hemoglobin, illuminant, ior */
+  PELLUCID_MATERIAL_SKIN = 5,         /* melanin, melaninType, hemoglobin, illuminant, ior */
+  PELLUCID_MATERIAL_THIN_WALL = 6     /* wallReflectance, wallTransmittance, burleyDistance */
 } PellucidMaterialKind;
 
 /* The light under which values per wavelength (T(d), rho) become linear Rec. 709, with the CIE 1931
@@ -59,7 +60,8 @@ typedef struct PellucidMaterialDesc {
   double ior;                /* relative index of refraction, [1, 3]; 0: the preset's own, else 1.4 */
   double millimetersPerUnit; /* of the unit the coefficients are inverse to; 0: 1 (1/mm); 10: 1/cm */
 
-  double burleyDistance[3];   /* mm, > 0; d of Christensen & Burley 2015 eq. 3 */
+  double burleyDistance[3]; /* mm, > 0; d of Christensen & Burley 2015 eq. 3. THIN_WALL: within the sheet; all
+                               0 (default): light does not spread sideways */
   double transmittance[3][4]; /* a1, k1, a2, k2 of T(d) = a1 e^{-k1 d} + a2 e^{-k2 d}, decreasing and
                                  within [0, 1]; all 0: Burley's slab 1/4 e^{-d/l} + 3/4 e^{-d/3l} */
 
@@ -73,6 +75,10 @@ typedef struct PellucidMaterialDesc {
   double melaninType; /* beta_m, share of eumelanin, [0, 1]; default .5 */
   double hemoglobin;  /* C_h, volume fraction of blood in the dermis, [0, 1]; pale .001, flushed .1;
                          default .005 */
+
+  /* A sheet without thickness: parts of the irradiance of a face, [0, 1], together at most 1 */
+  double wallReflectance[3];   /* that leave by the same face; what the albedo stands for */
+  double wallTransmittance[3]; /* that leave by the other face */
 } PellucidMaterialDesc;
 
 /* What one channel was compiled from and how well the result fits. */
@@ -80,7 +86,8 @@ typedef struct PellucidChannelReport {
   double scattering, absorption;     /* sigma_s', sigma_a, 1/mm; 0 for kinds without RGB coefficients */
   double rho;                        /* diffuse reflectance of the half-space under Lambertian light from
                                         outside; the light reflected without entering is not counted.
-                                        1 for kinds BURLEY and GAUSSIANS, whose albedo is the engine's.
+                                        1 for kinds BURLEY and GAUSSIANS, whose albedo is the engine's;
+                                        of THIN_WALL wallReflectance.
                                         PellucidMaterial::reflectance is this, at least 1e-4 */
   double transmittanceError;         /* largest |T_fit / T - 1| on the thicknesses fitted, of the float
                                         coefficients. Where wavelengths mix, T in the denominator is at
@@ -121,7 +128,8 @@ PellucidResult pellucidSlabTransport(double scattering, double absorption, doubl
                                      PellucidSlab* slab, PellucidMessageFn message, void* messageUser);
 
 /* What a material's T(d) was fitted to: slabs[3 * i + channel] for thickness[i], >= 0 mm. Of BURLEY
- * and GAUSSIANS it is the function they define, for both incidences, and reflectance is 0. */
+ * and GAUSSIANS it is the function they define, for both incidences, and reflectance is 0. A THIN_WALL has
+ * wallTransmittance and wallReflectance at every thickness. */
 PellucidResult pellucidMaterialSlabs(const PellucidMaterialDesc* desc, uint32_t count,
                                      const double* thickness, PellucidSlab* slabs, PellucidMessageFn message,
                                      void* messageUser);

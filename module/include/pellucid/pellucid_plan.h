@@ -102,6 +102,10 @@ typedef struct PellucidShader {
   const PellucidSpecialization* constants;
 } PellucidShader;
 
+/* Id of the specialization constant of all shaders that holds PellucidContextDesc::normalEncoding, which is not among
+ * PellucidShader::constants. */
+enum { PELLUCID_SPECIALIZATION_NORMALS = 4 };
+
 /* The constants that pellucidRecordPlan would write, and what each pipeline is made of; shadowViewType as in
  * PellucidContextDesc. */
 PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const PellucidFrame* frame,

@@ -1,0 +1,61 @@
+#include "reference/ambient.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "reference/transmittance.h"
+
+namespace pellucid::harness::reference {
+
+Ambient::Ambient(const Capture& capture, const SurfaceReader& surfaces,
+                 const std::vector<PellucidMaterial>& materials)
+    : capture_(capture), surfaces_(surfaces), materials_(materials), kernels_(materials.size()) {
+  if (!capture.environment) return;
+  for (std::size_t i = 0; i < materials.size(); ++i)
+    if (materials[i].transmittanceModel == PELLUCID_TRANSMITTANCE_EXP2 ||
+        materials[i].transmittanceModel == PELLUCID_TRANSMITTANCE_SINH_EXP)
+      kernels_[i].emplace(materials[i]);
+}
+
+// Convolved with the clamped cosine, band by band: pi, 2 pi / 3, pi / 4.
+glm::dvec3 Ambient::irradiance(const Harmonics& environment, const glm::dvec3& n) {
+  constexpr double pi = std::numbers::pi;
+  const double y0 = 0.5 / std::sqrt(pi), y1 = std::sqrt(3 / (4 * pi)), y2 = std::sqrt(15 / (4 * pi));
+  const double basis[9] = {y0,
+                           y1 * n.y,
+                           y1 * n.z,
+                           y1 * n.x,
+                           y2 * n.x * n.y,
+                           y2 * n.y * n.z,
+                           std::sqrt(5 / (16 * pi)) * (3 * n.z * n.z - 1),
+                           y2 * n.x * n.z,
+                           y2 / 2 * (n.x * n.x - n.y * n.y)};
+  glm::dvec3 sum(0);
+  for (std::size_t i = 0; i < 9; ++i) {
+    const double band = i == 0 ? pi : i < 4 ? 2 * pi / 3 : pi / 4;
+    sum += band * basis[i] * glm::dvec3(environment[i][0], environment[i][1], environment[i][2]);
+  }
+  return glm::max(sum, glm::dvec3(0));
+}
+
+glm::dvec3 Ambient::at(const Surface& s, std::size_t material) const {
+  if (!capture_.environment) return glm::dvec3(0);
+  const PellucidMaterial& m = materials_[material];
+  const glm::dvec3 front = s.normal.value_or(-s.ray);
+  const glm::dmat3 world(surfaces_.worldFromView());
+  if (m.thinWalled)
+    return glm::dvec3(m.wallTransmittance[0], m.wallTransmittance[1], m.wallTransmittance[2]) *
+           irradiance(*capture_.environment, world * -front);
+  if (!s.chord) return glm::dvec3(0);
+  const std::optional<glm::dvec3> towardsEye = surfaces_.backFacet(s);
+  const glm::dvec3 back = towardsEye ? -*towardsEye : -front;
+  const double h = 0.5 * *s.chord * surfaces_.millimetersPerUnit() *
+                   (std::abs(glm::dot(front, s.ray)) + std::abs(glm::dot(back, s.ray)));
+  const glm::dvec3 rho(m.reflectance[0], m.reflectance[1], m.reflectance[2]);
+  const glm::dvec3 kept = kernels_[material] ? kernels_[material]->slabReflectance(h) : glm::dvec3(1);
+  const glm::dvec3 through = transmittance(m, h) * irradiance(*capture_.environment, world * back);
+  const glm::dvec3 lost = (1.0 - kept) * rho * irradiance(*capture_.environment, world * front);
+  return (0.5 - 0.5 * glm::dot(front, back)) * (through - lost);
+}
+
+}  // namespace pellucid::harness::reference

@@ -1,0 +1,39 @@
+#include "ambient.h"
+
+#include <algorithm>
+
+#include "frame.h"
+
+namespace pellucid {
+
+PellucidLight ambientLight(const PellucidFrame& frame) {
+  PellucidLight light{};
+  light.type = PELLUCID_SHADER_LIGHT_AMBIENT;
+  std::fill_n(light.color, 3, 1.0f);
+  const auto isThere = [](float coefficient) { return coefficient != 0; };
+  light.intensity =
+      frame.ambient && std::any_of(frame.ambient, frame.ambient + kAmbientCoefficients, isThere) ? 1 : 0;
+  return light;
+}
+
+// Ramamoorthi & Hanrahan 2001, equations 11 and 12.
+std::array<glm::mat4, 3> ambientIrradiance(const FrameFacts& f) {
+  std::array<glm::mat4, 3> result{};
+  if (!f.frame.ambient) return result;
+  constexpr double c1 = 0.42904276540489, c2 = 0.51166335397324, c3 = 0.74312386836844, c4 = 0.88622692545276,
+                   c5 = 0.24770795612281;
+  const glm::dmat4 rotation(glm::dmat3(f.viewFromWorld));
+  for (size_t c = 0; c < 3; ++c) {
+    double l[9];
+    for (size_t i = 0; i < 9; ++i)
+      l[i] = static_cast<double>(f.frame.ambient[3 * i + c]) * static_cast<double>(f.frame.preExposure);
+    const glm::dmat4 world(c1 * l[8], c1 * l[4], c1 * l[7], c2 * l[3],   //
+                           c1 * l[4], -c1 * l[8], c1 * l[5], c2 * l[1],  //
+                           c1 * l[7], c1 * l[5], c3 * l[6], c2 * l[2],   //
+                           c2 * l[3], c2 * l[1], c2 * l[2], c4 * l[0] - c5 * l[6]);
+    result[c] = glm::mat4(rotation * world * glm::transpose(rotation));
+  }
+  return result;
+}
+
+}  // namespace pellucid

@@ -1,0 +1,178 @@
+// Light from all around through thin parts: the closed form of a slab, and the float64 reference.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "gpu_fixture.h"
+#include "pellucid/pellucid_material.h"
+#include "reference/reference.h"
+#include "scene/environment.h"
+#include "scene/scene.h"
+
+namespace pellucid::test {
+namespace {
+
+using AmbientLight = GpuTest;
+
+PellucidMaterial skin() {
+  PellucidMaterialDesc desc;
+  pellucidInitMaterialDesc(&desc);
+  desc.kind = PELLUCID_MATERIAL_PRESET;
+  desc.preset = "skin1";
+  PellucidMaterial m;
+  EXPECT_EQ(pellucidCompileMaterial(&desc, &m, nullptr, nullptr, nullptr), PELLUCID_OK);
+  return m;
+}
+
+ReplaySettings through() {
+  ReplaySettings s;
+  s.features = PELLUCID_FEATURE_TRANSLUCENCY;
+  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  s.translucency.gatherSamples = 0;
+  return s;
+}
+
+// A slab of 1 mm whose hidden face looks along -z: light from there comes through, and light from +z is what
+// the visible face loses.
+TEST_F(AmbientLight, SlabSendsOnWhatComesFromBehind) {
+  const PellucidMaterial m = testMaterial();
+  Capture c = flatCapture(16, 12);
+  const double t[3] = {std::exp(-0.5), std::exp(-1.0), 0.7 * std::exp(-2.0) + 0.3 * std::exp(-0.25)};
+  for (const double behind : {0.0, 0.25, 1.0})
+    for (const double inFront : {0.0, 0.5}) {
+      // Linear in z: irradiance is pi (mean +- 2/3 slope).
+      const double mean = 0.5 * (behind + inFront), slope = 0.5 * (inFront - behind);
+      c.environment = Harmonics{};
+      for (size_t k = 0; k < 3; ++k) {
+        (*c.environment)[0][k] = mean * std::sqrt(4 * std::numbers::pi);
+        (*c.environment)[2][k] = slope * std::sqrt(4 * std::numbers::pi / 3);
+      }
+      const Image out = replay(c, m, through());
+      for (size_t k = 0; k < 3; ++k) {
+        const double rho = double(m.reflectance[k]), a = 0.5 * (1 / rho + rho);
+        const double hidden = std::numbers::pi * (mean - slope * 2 / 3),
+                     visible = std::numbers::pi * (mean + slope * 2 / 3);
+        // T(0) = 1 has no boundary: R(0) = 0.
+        const double scale = a * a - (a * a - 1);
+        const double returned = a - std::sqrt(scale * t[k] * t[k] + a * a - 1);
+        const double expected =
+            double(c.irradiance.data[k]) + (t[k] * hidden - (rho - returned) * visible) / rho;
+        EXPECT_NEAR(double(out.at(8, 6)[k]), std::max(expected, 0.0), 2e-5)
+            << behind << " behind, " << inFront << " in front, channel " << k;
+      }
+    }
+}
+
+TEST_F(AmbientLight, NoEnvironmentAndNoBackDepthAddNothing) {
+  Capture c = flatCapture(16, 12);
+  const Image none = replay(c, testMaterial(), through());
+  c.environment = Environment{}.harmonics();
+  ReplaySettings off = through();
+  off.ambient = false;
+  EXPECT_TRUE(sameBits(replay(c, testMaterial(), off), none));
+  EXPECT_FALSE(sameBits(replay(c, testMaterial(), through()), none));
+  c.backDepth.image = {};
+  EXPECT_TRUE(sameBits(replay(c, testMaterial(), through()), none));
+}
+
+// A sheet sends on its part of what its hidden face has, loses nothing, and needs no back depth.
+TEST_F(AmbientLight, ThinWallsSendOnTheirPart) {
+  PellucidMaterial m = testMaterial();
+  m.thinWalled = 1;
+  for (int k = 0; k < 3; ++k) {
+    m.reflectance[k] = 0.5f;
+    m.wallTransmittance[k] = 0.1f * static_cast<float>(k + 1);
+  }
+  Capture c = flatCapture(16, 12);
+  c.backDepth.image = {};
+  c.environment = Environment{{2, 2, 2}, {2, 2, 2}}.harmonics();
+  const Image out = replay(c, m, through());
+  for (size_t k = 0; k < 3; ++k)
+    EXPECT_NEAR(double(out.at(8, 6)[k]),
+                double(c.irradiance.data[k]) + double(m.wallTransmittance[k]) * 2 * std::numbers::pi / 0.5,
+                1e-4)
+        << k;
+}
+
+// Exposed irradiance takes ambient light of its units.
+TEST_F(AmbientLight, PreExposureScalesAmbientLight) {
+  Capture c = flatCapture(16, 12);
+  c.environment = Environment{}.harmonics();
+  ReplaySettings s = through();
+  const Image plain = replay(c, testMaterial(), s);
+  s.preExposure = 0.125f;
+  const Image exposed = replay(c, testMaterial(), s);
+  for (size_t k = 0; k < 3; ++k) EXPECT_NEAR(exposed.at(8, 6)[k] * 8, plain.at(8, 6)[k], 1e-5f) << k;
+}
+
+// Seven of nine coefficients at once, of either sign, under a turned camera; one thickness a pixel, and
+// gathered lights beside.
+TEST_F(AmbientLight, AgreesWithTheReference) {
+  for (const char* name : {"ear", "head"}) {
+    SceneParameters p;
+    p.name = name;
+    p.width = 64;
+    p.height = 48;
+    p.shadowSize = 64;
+    Capture c = makeScene(p);
+    c.environment = Harmonics{{{3, 2, 1},
+                               {0.5, -0.25, 0},
+                               {-1, 0.5, 0.25},
+                               {0.75, 0, 0.5},
+                               {0.3, 0.2, 0.1},
+                               {0, 0.4, -0.3},
+                               {0.2, -0.2, 0.2},
+                               {-0.1, 0.3, 0.5},
+                               {0.25, 0.5, -0.75}}};
+    const std::vector<PellucidMaterial> materials(c.materials.size(), skin());
+    const ReplaySettings s = through();
+    pellucid::harness::reference::Settings r;
+    r.features = s.features;
+    r.translucency = s.translucency;
+    const Image ref = pellucid::harness::reference::compute(c, materials, r).image;
+    const Image gpu = replayer().run(c, materials, s).output;
+    ReplaySettings off = s;
+    off.ambient = false;
+    const Image without = replayer().run(c, materials, off).output;
+    std::vector<double> errors, changes;
+    for (size_t i = 0; i < gpu.pixels(); ++i)
+      for (size_t k = 0; k < 3 && c.material[i] != 0; ++k) {
+        errors.push_back(std::abs(double(gpu.data[4 * i + k]) - double(ref.data[3 * i + k])));
+        changes.push_back(std::abs(double(gpu.data[4 * i + k]) - double(without.data[4 * i + k])));
+      }
+    std::sort(errors.begin(), errors.end());
+    // Of the pixels 2 in 1000 have another texel of a shadow map by rounding, or another neighbor in their
+    // facet.
+    EXPECT_LT(errors[static_cast<size_t>(0.998 * double(errors.size() - 1))], 1e-3) << name;
+    EXPECT_GT(*std::max_element(changes.begin(), changes.end()), 0.1) << name;
+  }
+}
+
+// What the pass that adds gathered light makes of it is what the other makes: light without a map is not
+// gathered.
+TEST_F(AmbientLight, IsTheSameBesideGatheredLight) {
+  SceneParameters p;
+  p.name = "ear";
+  p.width = 64;
+  p.height = 48;
+  p.shadowSize = 64;
+  Capture c = makeScene(p);
+  c.albedo = {};
+  const std::vector<PellucidMaterial> materials(c.materials.size(), skin());
+  Capture sky = c;
+  sky.environment = Environment{{1, 2, 3}, {0.5, 0.5, 0.5}}.harmonics();
+  ReplaySettings s = through(), gathered = s;
+  gathered.translucency.gatherSamples = 8;
+  const Image plain = replayer().run(c, materials, s).output,
+              plainSky = replayer().run(sky, materials, s).output;
+  const Image other = replayer().run(c, materials, gathered).output,
+              otherSky = replayer().run(sky, materials, gathered).output;
+  for (size_t i = 0; i < plain.data.size(); ++i) {
+    // Results below 0 are 0.
+    if (plainSky.data[i] == 0 || otherSky.data[i] == 0) continue;
+    ASSERT_NEAR(otherSky.data[i] - other.data[i], plainSky.data[i] - plain.data[i], 1e-4f) << i;
+  }
+}
+
+}  // namespace
+}  // namespace pellucid::test

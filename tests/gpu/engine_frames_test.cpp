@@ -1,0 +1,314 @@
+// Frames as engines have them: encodings of normals and materials, formats of irradiance, outputs that are
+// added to, and pre-exposed irradiance.
+#include <algorithm>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <glm/gtc/packing.hpp>
+#include <map>
+
+#include "capture/material.h"
+#include "gpu_fixture.h"
+#include "scene/scene.h"
+
+namespace pellucid::test {
+namespace {
+
+using EngineFrames = GpuTest;
+
+const PellucidMaterial& skin() {
+  static const PellucidMaterial compiled = compileMaterial(PresetMaterial{"skin1"}, "skin1");
+  return compiled;
+}
+
+// Made once: the head takes longer than the passes over it.
+const Capture& head() {
+  static const Capture made = [] {
+    SceneParameters p;
+    p.name = "head";
+    p.width = 160;
+    p.height = 90;
+    p.shadowSize = 256;
+    return makeScene(p);
+  }();
+  return made;
+}
+
+ReplaySettings wide() {
+  ReplaySettings s;
+  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  s.translucency.gatherSamples = 8;
+  return s;
+}
+
+std::vector<PellucidMaterial> materialsOf(const Capture& c) {
+  return std::vector<PellucidMaterial>(c.materials.size(), skin());
+}
+
+// Of a from b where there is a material.
+double relativeRmse(const Image& a, const Image& b, const std::vector<std::uint8_t>& material) {
+  double square = 0, power = 0;
+  for (size_t i = 0; i < a.pixels(); ++i)
+    for (size_t k = 0; k < 3 && material[i] != 0; ++k) {
+      const auto va = double(a.data[i * static_cast<size_t>(a.channels) + k]);
+      const auto vb = double(b.data[i * static_cast<size_t>(b.channels) + k]);
+      square += (va - vb) * (va - vb);
+      power += vb * vb;
+    }
+  return std::sqrt(square / power);
+}
+
+// ---- Normals
+
+// Independent of compute/: Cigolle et al. 2014, listing 1.
+glm::vec2 octahedral(glm::vec3 n) {
+  const glm::vec2 p = glm::vec2(n) / (std::abs(n.x) + std::abs(n.y) + std::abs(n.z));
+  const glm::vec2 signs(p.x >= 0 ? 1 : -1, p.y >= 0 ? 1 : -1);
+  return n.z <= 0 ? (1.0f - glm::abs(glm::vec2(p.y, p.x))) * signs : p;
+}
+
+Capture withNormals(Capture c, PellucidNormalEncoding encoding) {
+  for (size_t i = 0; i < c.normal.pixels(); ++i) {
+    float* stored = c.normal.data.data() + 3 * i;
+    const glm::vec3 n(stored[0], stored[1], stored[2]);
+    if (glm::dot(n, n) == 0) continue;  // nothing there
+    glm::vec3 v = n;
+    if (encoding == PELLUCID_NORMALS_OCTAHEDRAL || encoding == PELLUCID_NORMALS_OCTAHEDRAL_UNORM)
+      v = glm::vec3(octahedral(n), 0);
+    if (encoding == PELLUCID_NORMALS_UNORM || encoding == PELLUCID_NORMALS_OCTAHEDRAL_UNORM)
+      v = 0.5f * v + 0.5f;
+    for (int k = 0; k < 3; ++k) stored[k] = v[k];
+  }
+  return c;
+}
+
+struct Encoded {
+  const char* name;
+  PellucidNormalEncoding encoding;
+  VkFormat format;
+  bool whole;  // with the gather and diffusion, whose pipelines take seconds to make
+  // Relative RMSE of the picture: by how far in radians the encoding's steps turn a normal, and 1/2048 where
+  // the diffusion rounds to halves.
+  double most;
+};
+
+constexpr double kHalf = 1.0 / 2048;
+constexpr Encoded kEncoded[] = {
+    {"octahedral, 16 bits", PELLUCID_NORMALS_OCTAHEDRAL, VK_FORMAT_R16G16_SNORM, true, kHalf + 1.0 / 32767},
+    {"octahedral, 32 bits", PELLUCID_NORMALS_OCTAHEDRAL, VK_FORMAT_R32G32B32A32_SFLOAT, true, 1e-5},
+    {"octahedral, 10 bits", PELLUCID_NORMALS_OCTAHEDRAL_UNORM, VK_FORMAT_A2B10G10R10_UNORM_PACK32, false,
+     1.0 / 512},
+    {"0..1, 10 bits", PELLUCID_NORMALS_UNORM, VK_FORMAT_A2B10G10R10_UNORM_PACK32, false, 1.0 / 512},
+    {"0..1, 8 bits", PELLUCID_NORMALS_UNORM, VK_FORMAT_R8G8B8A8_UNORM, false, 1.0 / 128},
+    {"-1..1, 8 bits", PELLUCID_NORMALS_SNORM, VK_FORMAT_R8G8B8A8_SNORM, false, 1.0 / 128}};
+
+Capture inViewSpace(Capture c) {
+  c.normalsInViewSpace = true;
+  for (size_t i = 0; i < c.normal.pixels(); ++i) {
+    float* stored = c.normal.data.data() + 3 * i;
+    const std::array<double, 3> n = {stored[0], stored[1], stored[2]};
+    for (size_t k = 0; k < 3; ++k)
+      stored[k] = static_cast<float>(c.viewFromWorld[k] * n[0] + c.viewFromWorld[4 + k] * n[1] +
+                                     c.viewFromWorld[8 + k] * n[2]);
+  }
+  return c;
+}
+
+TEST_F(EngineFrames, EncodedNormalsGiveThePictureOfPlainOnes) {
+  ReplaySettings chord = wide();
+  chord.features = PELLUCID_FEATURE_TRANSLUCENCY;
+  chord.translucency.gatherSamples = 0;
+  chord.translucency.thicknessSource = PELLUCID_THICKNESS_CAMERA;
+  const Image whole = replayer().run(head(), materialsOf(head()), wide()).output;
+  const Image through = replayer().run(head(), materialsOf(head()), chord).output;
+  std::map<PellucidNormalEncoding, std::unique_ptr<Context>> contexts;
+  for (const Encoded& e : kEncoded) {
+    std::unique_ptr<Context>& context = contexts[e.encoding];
+    if (!context)
+      context = std::make_unique<Context>(device(), [&](PellucidContextDesc& desc) {
+        desc.uses = e.whole ? PELLUCID_USE_DIFFUSION | PELLUCID_USE_GATHER : PELLUCID_USE_TRANSLUCENCY;
+        desc.normalEncoding = e.encoding;
+      });
+    for (const bool view : {false, true}) {
+      const Capture c = view ? inViewSpace(head()) : head();
+      ReplaySettings s = e.whole ? wide() : chord;
+      s.normalFormat = e.format;
+      const FrameRun run(device(), *context, withNormals(c, e.encoding), materialsOf(c), s);
+      device().run([&](VkCommandBuffer commandBuffer) { run.record(commandBuffer); });
+      EXPECT_LT(relativeRmse(run.output(), e.whole ? whole : through, c.material), e.most)
+          << e.name << (view ? ", view space" : "");
+    }
+  }
+  // The test sees a context that decodes something else.
+  chord.normalFormat = VK_FORMAT_R16G16_SNORM;
+  const Image wrong =
+      replayer().run(withNormals(head(), PELLUCID_NORMALS_OCTAHEDRAL), materialsOf(head()), chord).output;
+  EXPECT_GT(relativeRmse(wrong, through, head().material), 0.02);
+}
+
+TEST_F(EngineFrames, UnknownNormalEncodingIsRefused) {
+  try {
+    const Context context(device(), [](PellucidContextDesc& desc) { desc.normalEncoding = 4; });
+    ADD_FAILURE() << "no exception";
+  } catch (const std::exception& e) {
+    EXPECT_NE(std::string(e.what()).find("normalEncoding is 4"), std::string::npos) << e.what();
+  }
+}
+
+// ---- Materials
+
+TEST_F(EngineFrames, MaterialIndicesAmongOtherBitsGiveTheSameBits) {
+  struct Packed {
+    uint32_t shift, mask, mark;
+  };
+  Capture marked = head();
+  for (size_t i = 0; i < marked.material.size(); i += 3)
+    if (marked.material[i] != 0) marked.material[i] |= 0x20;
+  for (const Packed& p :
+       {Packed{0, 0xFF, 0}, Packed{4, 0x70, 0}, Packed{24, 0xFF000000, 0}, Packed{8, 0x3F00, 0x20}}) {
+    const Capture& c = p.mark ? marked : head();
+    ReplaySettings s = wide();
+    s.translucency.materialMarkBit = p.mark;
+    const Image plain = replayer().run(c, materialsOf(c), s).output;
+    s.materialShift = p.shift;
+    s.materialMask = p.mask;
+    EXPECT_TRUE(sameBits(replayer().run(c, materialsOf(c), s).output, plain)) << p.shift << " " << p.mask;
+  }
+}
+
+// ---- Outputs that are added to
+
+// Specular light, say: all pixels have some, and alpha.
+Image specular(const Capture& c) {
+  Image held(c.width, c.height, 4);
+  for (size_t i = 0; i < held.data.size(); ++i) held.data[i] = static_cast<float>((i * 37) % 64) / 64;
+  return held;
+}
+
+struct Added {
+  const char* name;
+  VkFormat format;
+  // Of the sum and of the result, as both are rounded; 11 bits have 6 of mantissa and the blue 10 have 5,
+  // which devices may truncate to.
+  double step;
+  double zero;  // what the test reads 0 as: GLM's 11 bits have none beside other colors
+};
+
+TEST_F(EngineFrames, ResultIsAddedToWhatTheOutputHolds) {
+  const Capture& c = head();
+  const Image held = specular(c);
+  const std::function<void(ReplaySettings&)> changes[] = {
+      [](ReplaySettings&) {},
+      [](ReplaySettings& s) { s.quality = 0, s.translucency.gatherSamples = 0; },
+      [](ReplaySettings& s) { s.translucency.gatherSpacing = 1; },
+      [](ReplaySettings& s) { s.features = PELLUCID_FEATURE_TRANSLUCENCY; },
+      [](ReplaySettings& s) { s.features = PELLUCID_FEATURE_DIFFUSION; },
+      [](ReplaySettings& s) { s.features = 0; },
+      [](ReplaySettings& s) { s.reuse = PELLUCID_REUSE_ALTERNATE, s.translucency.gatherSamples = 0; }};
+  for (const Added& a : {Added{"rgba32f", VK_FORMAT_R32G32B32A32_SFLOAT, 1e-6, 1e-7},
+                         Added{"rgba16f", VK_FORMAT_R16G16B16A16_SFLOAT, 1.0 / 2048, 1e-7},
+                         Added{"rg11b10f", VK_FORMAT_B10G11R11_UFLOAT_PACK32, 1.0 / 32, 1.0 / 32768}}) {
+    const bool wideOnly = a.format != VK_FORMAT_R32G32B32A32_SFLOAT;
+    for (size_t change = 0; change < (wideOnly ? 2 : std::size(changes)); ++change) {
+      ReplaySettings s = wide();
+      s.outputFormat = a.format;
+      changes[change](s);
+      const auto render = [&](const FrameRun& run) {
+        device().run([&](VkCommandBuffer commandBuffer) { run.record(commandBuffer); });
+        return run.output();
+      };
+      const Context& context = replayer().contextFor(c);
+      const Image result = render(FrameRun(device(), context, c, materialsOf(c), s));
+      s.outputMode = PELLUCID_OUTPUT_ADD;
+      const FrameRun run(device(), context, c, materialsOf(c), s);
+      run.uploadOutput(held);
+      const Image before = run.output();
+      const Image sum = render(run);
+      const auto channels = static_cast<size_t>(sum.channels);
+      for (size_t i = 0; i < sum.pixels(); ++i)
+        for (size_t k = 0; k < channels; ++k) {
+          const double was = double(before.data[channels * i + k]), is = double(sum.data[channels * i + k]);
+          if (c.material[i] == 0 || k == 3) {
+            ASSERT_EQ(is, was) << a.name << ", change " << change << ", pixel " << i << ", channel " << k;
+            continue;
+          }
+          const double more = double(result.data[channels * i + k]);
+          ASSERT_NEAR(is, was + more, a.step * (was + 2 * more) + a.zero)
+              << a.name << ", change " << change << ", pixel " << i << ", channel " << k;
+        }
+    }
+  }
+}
+
+// ---- Pre-exposure
+
+TEST_F(EngineFrames, PreExposureScalesTheResult) {
+  ReplaySettings s = wide();
+  const Image plain = replayer().run(head(), materialsOf(head()), s).output;
+  s.preExposure = 0.25f;
+  Image quarter = replayer().run(head(), materialsOf(head()), s).output;
+  for (float& v : quarter.data) v *= 4;
+  // The diffusion works in halves, of which the darkest lose bits.
+  EXPECT_LT(relativeRmse(quarter, plain, head().material), 1e-4);
+}
+
+// Sunlight in lux is beyond what halves hold.
+TEST_F(EngineFrames, PreExposureKeepsSunlightInHalves) {
+  ReplaySettings s = wide();
+  s.outputFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
+  const Image plain = replayer().run(head(), materialsOf(head()), s).output;
+  Capture bright = head();
+  constexpr float kLux = 131072;
+  for (float& v : bright.irradiance.data) v *= kLux;
+  for (Light& light : bright.lights) light.intensity *= kLux;
+  EXPECT_GT(relativeRmse(replayer().run(bright, materialsOf(bright), s).output, plain, bright.material), 1.0);
+  s.preExposure = 1 / kLux;
+  EXPECT_LT(relativeRmse(replayer().run(bright, materialsOf(bright), s).output, plain, bright.material),
+            1e-4);
+}
+
+// ---- Formats of irradiance
+
+glm::vec3 throughRgb9e5(const glm::vec3& v) { return glm::unpackF3x9_E1x5(glm::packF3x9_E1x5(v)); }
+glm::vec3 throughRg11b10(const glm::vec3& v) { return glm::unpackF2x11_1x10(glm::packF2x11_1x10(v)); }
+
+TEST_F(EngineFrames, PackedIrradianceGivesThePictureOfItsColors) {
+  struct Packed {
+    VkFormat format;
+    glm::vec3 (*through)(const glm::vec3&);
+  };
+  for (const Packed& p : {Packed{VK_FORMAT_E5B9G9R9_UFLOAT_PACK32, &throughRgb9e5},
+                          Packed{VK_FORMAT_B10G11R11_UFLOAT_PACK32, &throughRg11b10}}) {
+    Capture rounded = head();
+    for (size_t i = 0; i < rounded.irradiance.pixels(); ++i) {
+      float* color = rounded.irradiance.data.data() + i * static_cast<size_t>(rounded.irradiance.channels);
+      const glm::vec3 through = p.through({color[0], color[1], color[2]});
+      for (int k = 0; k < 3; ++k) color[k] = through[k];
+    }
+    for (const uint32_t quality : {0u, 1u}) {
+      ReplaySettings s = wide();
+      s.quality = quality;
+      if (quality == 0) s.translucency.gatherSamples = 0;
+      s.irradianceFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+      const Image expected = replayer().run(rounded, materialsOf(rounded), s).output;
+      s.irradianceFormat = p.format;
+      EXPECT_TRUE(sameBits(replayer().run(head(), materialsOf(head()), s).output, expected))
+          << p.format << ", quality " << quality;
+    }
+  }
+}
+
+TEST_F(EngineFrames, PackedFloatsInPlaceAreThoseOfAnOwnOutput) {
+  if (!device().writesWithoutFormat()) GTEST_SKIP() << "the device writes no image without a format";
+  ReplaySettings s = wide();
+  s.outputFormat = VK_FORMAT_B10G11R11_UFLOAT_PACK32;
+  const Capture& c = head();
+  const Image own = replayer().run(c, materialsOf(c), s).output;
+  s.aliasOutput = true;
+  const Image inPlace = replayer().run(c, materialsOf(c), s).output;
+  for (size_t i = 0; i < own.pixels(); ++i)
+    for (size_t k = 0; k < 3 && c.material[i] != 0; ++k)
+      ASSERT_EQ(inPlace.data[3 * i + k], own.data[3 * i + k]) << i;
+}
+
+}  // namespace
+}  // namespace pellucid::test
