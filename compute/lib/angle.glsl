@@ -9,9 +9,11 @@ float angleInverseCosine(float x) {
   return clamp(1.0 - kTwoOverPi * acos(clamp(x, -1.0, 1.0)), 0.0, 1.0);
 }
 
-// Whelan 2009, eqs. 4.4 and 4.5. The clamp matters: the printed quadratic is negative near 120 degrees.
+// Of the angle between the directions to eye and light, as Whelan 2009, eqs. 4.4 and 4.5. The outer clamp matters: the
+// quadratic is negative from 96 to 123 degrees.
 float anglePolynomial(vec4 c, float x) {
-  return x > 0.0 ? clamp(c.x + x * (c.y + x * (c.z + x * c.w)), 0.0, 1.0) : 0.0;
+  float angle = 3.14159265 - acos(clamp(x, -1.0, 1.0));
+  return x > 0.0 ? clamp(c.x + angle * (c.y + angle * (c.z + angle * c.w)), 0.0, 1.0) : 0.0;
 }
 
 #endif

@@ -47,8 +47,8 @@ std::vector<std::vector<Curve>> curves() {
            {"inverse cosine", kBlue, module({"angle=inverse-cosine"})}},
           {{"quadratic, eq. 4.4", kRed, printedQuadratic},
            {"cubic, eq. 4.5", kBlue, printedCubic},
-           {"--set polynomial=quadratic", kGray, module({"angle=polynomial", "polynomial=quadratic"})},
-           {"--set polynomial=cubic", kGreen, module({"angle=polynomial", "polynomial=cubic"})}}};
+           {"clamped, polynomial=quadratic", kGray, module({"angle=polynomial", "polynomial=quadratic"})},
+           {"clamped, polynomial=cubic", kGreen, module({"angle=polynomial", "polynomial=cubic"})}}};
 }
 
 void plot(const std::string& output) {

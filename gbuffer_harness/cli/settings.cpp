@@ -45,9 +45,9 @@ const Names<PellucidReuse> kReuse = {{"none", PELLUCID_REUSE_NONE},
 const Names<PellucidIndirect> kIndirect = {{"none", PELLUCID_INDIRECT_NONE},
                                            {"material", PELLUCID_INDIRECT_MATERIAL},
                                            {"light", PELLUCID_INDIRECT_LIGHT}};
-// Through the values that Whelan 2009's curves are known to take; docs/thesis.md.
-const Names<std::array<float, 4>> kPolynomials = {{"quadratic", {0, -0.9214f, 1.7884f, 0}},
-                                                  {"cubic", {0, 0, -0.744f, 1.744f}}};
+// Whelan 2009, eqs. 4.4 and 4.5.
+const Names<std::array<float, 4>> kPolynomials = {{"quadratic", {2.14506f, -2.27844f, 0.595752f, 0}},
+                                                  {"cubic", {-5.07621f, 7.75534f, -3.9017f, 0.650897f}}};
 const Names<bool> kViews = {{"pixel", false}, {"constant", true}};
 const Names<bool> kBooleans = {{"0", false}, {"1", true}};
 
@@ -120,7 +120,7 @@ const std::map<std::string, Key> kKeys = {
         s.translucency.angleModel = lookUp(kAngles, key, value);
       }}},
     {"polynomial",
-     {"c0,c1,c2,c3 of angle=polynomial, or quadratic|cubic",
+     {"c0,c1,c2,c3 of angle=polynomial, in radians, or quadratic|cubic",
       [](const auto& key, const auto& value, ReplaySettings& s) {
         const bool named = value.find_first_of(",0123456789") == std::string::npos;
         s.translucency.anglePolynomial = named ? lookUp(kPolynomials, key, value) : reals<4>(key, value);

@@ -12,7 +12,7 @@ namespace pellucid::harness {
 struct TranslucencySettings {
   PellucidThicknessSource thicknessSource = PELLUCID_THICKNESS_LIGHT;
   PellucidAngleModel angleModel = PELLUCID_ANGLE_NORMAL;
-  std::array<float, 4> anglePolynomial = {0, 1, 0, 0};
+  std::array<float, 4> anglePolynomial = {-1, 0.63661977f, 0, 0};  // linear in the angle
   float minimumDot = 0;
   bool constantViewDirection = false;
   bool chordThickness = false;

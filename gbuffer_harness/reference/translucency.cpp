@@ -46,11 +46,12 @@ double angleFactor(const TranslucencySettings& settings, double x, double minimu
   switch (settings.angleModel) {
     case PELLUCID_ANGLE_INVERSE_COSINE:
       return std::max(0.0, 1 - std::acos(x) * 2 / std::numbers::pi);
-    case PELLUCID_ANGLE_POLYNOMIAL:
-      return x > 0 ? std::clamp(
-                         double(c[0]) + double(c[1]) * x + double(c[2]) * x * x + double(c[3]) * x * x * x,
-                         0.0, 1.0)
-                   : 0.0;
+    case PELLUCID_ANGLE_POLYNOMIAL: {
+      const double angle = std::numbers::pi - std::acos(x);
+      const double value =
+          double(c[0]) + angle * (double(c[1]) + angle * (double(c[2]) + angle * double(c[3])));
+      return x > 0 ? std::clamp(value, 0.0, 1.0) : 0.0;
+    }
     case PELLUCID_ANGLE_MINIMUM_DOT:
     case PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH:
     case PELLUCID_ANGLE_MINIMUM_DOT_SPHERE:

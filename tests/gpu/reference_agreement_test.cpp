@@ -172,7 +172,7 @@ const Option kOptions[] = {
     {"Polynomial",
      [](TranslucencySettings& t) {
        t.angleModel = PELLUCID_ANGLE_POLYNOMIAL;
-       t.anglePolynomial = {0.02f, -0.9f, 1.8f, 0.1f};  // negative in between
+       t.anglePolynomial = {2.14506f, -2.27844f, 0.595752f, 0};  // negative in between
      }},
     {"MinimumDot",
      [](TranslucencySettings& t) {
@@ -199,7 +199,7 @@ const Option kOptions[] = {
     {"PrescaledPolynomial",
      [](TranslucencySettings& t) {
        t.angleModel = PELLUCID_ANGLE_POLYNOMIAL;
-       t.anglePolynomial = {0.1f, -0.9214f, 1.7884f, 0};
+       t.anglePolynomial = {-5.07621f, 7.75534f, -3.9017f, 0.650897f};
        t.minimumDot = -0.5f;
        t.prescaleAngle = true;
      }},

@@ -156,7 +156,7 @@ const std::vector<Row> kRows = {
       {"nan", By::Key, "--set nearest-distance: \"nan\" is not a number"}}},
     {"polynomial",
      {"angle=polynomial"},
-     "0,0,1,0",
+     "-.5,.3,0,0",
      Effect::Changes,
      {{"1,2,3", By::Key, "--set polynomial: \"1,2,3\" is not 4 numbers"},
       {"1,2,3,x", By::Key, "--set polynomial: \"x\" is not a number"},

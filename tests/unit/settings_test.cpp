@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 namespace {
 
 using namespace pellucid::harness;
@@ -18,17 +20,18 @@ double value(const std::string& name, double x) {
   return sum;
 }
 
-// Values known of Whelan 2009, eqs. 4.4 and 4.5, with as many digits; x = .5 is 120 degrees between the
-// directions to eye and light, 1 is 180.
-TEST(Settings, PolynomialsTakeTheKnownValues) {
-  EXPECT_NEAR(value("quadratic", 0.5), -0.0136, 0.5e-4);
-  EXPECT_NEAR(value("quadratic", 1), 0.867, 0.5e-3);
-  EXPECT_NEAR(value("cubic", 0.5), 0.032, 0.5e-3);
-  // Chosen ends.
-  EXPECT_EQ(value("quadratic", 0), 0);
-  EXPECT_EQ(value("cubic", 0), 0);
-  EXPECT_NEAR(value("cubic", 1), 1, 1e-6);
-  EXPECT_NEAR(value("cubic", 1e-4) / 1e-4, 0, 1e-3);  // no slope
+// Whelan 2009, eqs. 4.4 and 4.5, at the ends of the angle between camera and light and where the quadratic is
+// negative.
+TEST(Settings, PolynomialsAreThoseOfTheThesis) {
+  constexpr double kPi = std::numbers::pi;
+  EXPECT_NEAR(value("quadratic", kPi / 2), 0.036, 5e-4);
+  EXPECT_NEAR(value("cubic", kPi / 2), 0.002, 5e-4);
+  EXPECT_NEAR(value("quadratic", kPi), 0.867, 5e-4);
+  EXPECT_NEAR(value("cubic", kPi), 0.962, 5e-4);
+  EXPECT_GT(value("quadratic", 1.67), 0);
+  EXPECT_LT(value("quadratic", 1.69), 0);
+  EXPECT_LT(value("quadratic", 2.14), 0);
+  EXPECT_GT(value("quadratic", 2.16), 0);
 }
 
 TEST(Settings, LaterPolynomialsWin) {

@@ -17,8 +17,9 @@ typedef enum PellucidAngleModel {
                                         there is no normal */
   PELLUCID_ANGLE_COSINE = 1,         /* x (Whelan 2009, 4.2) */
   PELLUCID_ANGLE_INVERSE_COSINE = 2, /* 1 - acos(x) 2/pi (Whelan 2009, 4.4) */
-  PELLUCID_ANGLE_POLYNOMIAL = 3,     /* c0 + c1 x + c2 x^2 + c3 x^3 for x > 0, else 0: the form of the
-                                        quadratic and cubic of Whelan 2009, eqs. 4.4 and 4.5 */
+  PELLUCID_ANGLE_POLYNOMIAL = 3,     /* c0 + c1 a + c2 a^2 + c3 a^3 of the angle between the directions to
+                                        eye and light, a = pi - acos(x) in radians, for x > 0, else 0
+                                        (Whelan 2009, eqs. 4.4 and 4.5) */
   PELLUCID_ANGLE_MINIMUM_DOT = 4,    /* (m + x) / (m + 1), m = minimumDot (Whelan 2009, eq. 4.6) */
   PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH = 5, /* m per light from minimumDotTable by the light's azimuth around
                                              the object (Whelan 2009, 4.6.2) */
