@@ -65,8 +65,9 @@ PellucidResult checkPlan(const PellucidContext& c, const PellucidPlan& plan, con
       return refuse(c, "plan", sentence);
     }
     for (uint32_t b = 0; b < d.bindingCount; ++b) {
-      const uint32_t resource = d.bindings[b].resource, binding = d.bindings[b].binding;
-      if (resource == PELLUCID_RESOURCE_FRONT_DEPTH && binding >= PELLUCID_BINDING_SHADOW_IMAGES &&
+      const uint32_t resource = d.bindings[b].resource;
+      const uint32_t slot = d.bindings[b].binding - PELLUCID_BINDING_SHADOW_IMAGES;  // huge before the first
+      if (resource == PELLUCID_RESOURCE_FRONT_DEPTH && slot < PELLUCID_SHADOW_IMAGE_COUNT &&
           c.shadowViewType == VK_IMAGE_VIEW_TYPE_2D_ARRAY)
         return refuse(c, "shadowImages",
                       "has no view, but PellucidContextDesc::shadowViewType is 2D_ARRAY, and passes bind one "
