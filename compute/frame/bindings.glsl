@@ -30,7 +30,7 @@ layout(set = 0, binding = PELLUCID_BINDING_ALBEDO) uniform texture2D albedoImage
 layout(set = 0, binding = PELLUCID_BINDING_MATERIAL) uniform utexture2D materialImage;
 // The destination has no format, so that one shader writes every output format; see module/src/pipelines.cpp.
 layout(set = 0, binding = PELLUCID_BINDING_DESTINATION) uniform writeonly image2D destinationImage;
-// What the output holds, if the frame adds to it. An invocation reads its pixel before it writes it.
+// The output's content, if the frame adds to it. An invocation reads its pixel before it writes it.
 layout(set = 0, binding = PELLUCID_BINDING_HELD) uniform texture2D heldImage;
 
 #include "frame/flags.glsl"

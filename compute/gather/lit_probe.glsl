@@ -4,7 +4,7 @@
 
 const uint kAdds = 1u << 31; // of pass.value.z
 
-// What one of a cell's two invocations tells the other: how thin the body is, then light.
+// One of a cell's two invocations tells the other how thin the body is, then light.
 shared vec3 told[GROUP_SIDE * GROUP_SIDE];
 
 // Sets the probe's normal and light, where one was found. `normalTexel`: of the normal image at the probe's pixel. For all

@@ -9,7 +9,7 @@ float angleInverseCosine(float x) {
   return clamp(1.0 - kTwoOverPi * acos(clamp(x, -1.0, 1.0)), 0.0, 1.0);
 }
 
-// Of the angle between the directions to eye and light, as Whelan 2009, eqs. 4.4 and 4.5. The outer clamp matters: the
+// A polynomial of the angle between eye and light: Whelan 2009, eqs. 4.4 and 4.5. The outer clamp matters: the
 // quadratic is negative from 96 to 123 degrees.
 float anglePolynomial(vec4 c, float x) {
   float angle = 3.14159265 - acos(clamp(x, -1.0, 1.0));

@@ -7,7 +7,7 @@ vec3 ambientIrradiance(vec3 normal) {
   return max(vec3(dot(n, frame.ambient[0] * n), dot(n, frame.ambient[1] * n), dot(n, frame.ambient[2] * n)), vec3(0.0));
 }
 
-// What leaves the visible face besides the light that the irradiance image has: below 0 where more goes through than comes.
+// Light that leaves the visible face besides what the irradiance image has: below 0 where more goes through than comes.
 vec3 ambientExitance(Surface s, ivec2 pixel, uint m) {
   vec3 front = s.hasNormal ? s.normal : -s.view;
   // A sheet's T is the same at any thickness, and its reflectance is its own.

@@ -37,7 +37,7 @@ const std::string* presetFor(const std::string& name, const GltfOptions& options
   return nullptr;
 }
 
-// Of "thin:R,G,B".
+// Reads "thin:R,G,B".
 std::optional<Rgb> thinTransmittance(const GltfDocument& document, const std::string& name,
                                      const std::string& text) {
   constexpr std::string_view kThin = "thin:";

@@ -21,7 +21,7 @@ public:
   // visible face does not return of its own. 0 without an environment or a back depth. `material`: from 0.
   glm::dvec3 at(const Surface& surface, std::size_t material) const;
 
-  // Of a face with a unit normal in world space.
+  // Irradiance of a face with a unit normal in world space.
   static glm::dvec3 irradiance(const Harmonics& environment, const glm::dvec3& normal);
 
 private:

@@ -105,7 +105,7 @@ public:
   // that is not the irradiance, which becomes 0xFF bytes: NaN in both formats.
   void fillGarbage(std::uint64_t seed) const;
 
-  // What an output that is not the irradiance holds before the first recording.
+  // Content of an output that is not the irradiance before the first recording.
   void uploadOutput(const Image& content) const;
 
   // RGBA. Outside the rect and at material 0: irradiance times albedo, as an engine that composites in

@@ -191,7 +191,7 @@ shared::MaterialConstants materialConstants(const FrameFacts& f, const PellucidM
   const float exponent = m.transmittanceModel == PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED ? 1.0f : 0.5f;
   const bool canGather = canBeGathered(m.transmittanceModel) && m.thinWalled == 0;
   if ((f.gathers || f.ambient.intensity > 0) && canGather) c.gather = gatherConstants(m);
-  // Of other models the ambient light takes nothing from visible faces.
+  // From other models the ambient light takes nothing from visible faces.
   for (glm::vec4& reflectance : c.gather.reflectance)
     if (!canGather) reflectance.x = 1;
   if (f.stages.lights) {  // one thickness a pixel

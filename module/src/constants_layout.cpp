@@ -35,7 +35,7 @@ namespace {
 // A plan holds no more groups of lights than dispatches.
 VkDeviceSize mostConstants(VkDeviceSize materials, VkDeviceSize lights, VkDeviceSize maps) {
   const VkDeviceSize groups = std::clamp(lights, VkDeviceSize{1}, VkDeviceSize{PELLUCID_MAX_DISPATCHES});
-  // What a range holds of the groups before the last one, each rounded up, and the last one's window.
+  // The bytes that a range holds of the groups before the last one, each rounded up, and the last one's window.
   const auto grouped = [groups](VkDeviceSize bytes, VkDeviceSize window) {
     return aligned(bytes + (groups - 1) * (aligned(1) - 1) + window);
   };

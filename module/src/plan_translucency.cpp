@@ -6,7 +6,7 @@ namespace pellucid {
 
 namespace {
 
-// What every dispatch over all pixels reads to add a group's lights. `images`: the group's, or none.
+// All that every dispatch over all pixels reads to add a group's lights. `images`: the group's, or none.
 void addLights(PlanBuilder& b, PellucidDispatch* d, const LightGroup& group, uint32_t source,
                uint32_t destination, const LightGroup& images) {
   const FrameFacts& f = b.facts;

@@ -19,7 +19,7 @@ inline double transmittance(uint32_t model, const float* parameters, double d) {
   return p(0) * 2 * std::exp(-y) / -std::expm1(-2 * y) + p(3) * std::exp(-p(4) * d);
 }
 
-// Of a thin wall, or of any model; NaN for one that is not known.
+// T of a thin wall, or of any model; NaN for one that is not known.
 inline double transmittance(const PellucidMaterial& m, size_t channel, double d) {
   if (m.thinWalled != 0) return static_cast<double>(m.wallTransmittance[channel]);
   switch (m.transmittanceModel) {

@@ -34,7 +34,7 @@ using namespace pellucid::harness;
 
 constexpr float kIntensity[] = {10, 20};  // of the light in two frames
 
-// What the two frames show in their middle, times the reflectance of skin1, RGB. `slices`: of constants that
+// Colors that the two frames show in their middle, times the reflectance of skin1, RGB. `slices`: of constants that
 // they have.
 std::array<std::array<double, 3>, 2> exitances(uint32_t slices) {
   Device device({"", true});

@@ -141,14 +141,14 @@ TEST_F(AmbientLight, AgreesWithTheReference) {
         changes.push_back(std::abs(double(gpu.data[4 * i + k]) - double(without.data[4 * i + k])));
       }
     std::sort(errors.begin(), errors.end());
-    // Of the pixels 2 in 1000 have another texel of a shadow map by rounding, or another neighbor in their
+    // 2 in 1000 pixels have another texel of a shadow map by rounding, or another neighbor in their
     // facet.
     EXPECT_LT(errors[static_cast<size_t>(0.998 * double(errors.size() - 1))], 1e-3) << name;
     EXPECT_GT(*std::max_element(changes.begin(), changes.end()), 0.1) << name;
   }
 }
 
-// What the pass that adds gathered light makes of it is what the other makes: light without a map is not
+// The pass that adds gathered light makes of it what the other makes: light without a map is not
 // gathered.
 TEST_F(AmbientLight, IsTheSameBesideGatheredLight) {
   SceneParameters p;

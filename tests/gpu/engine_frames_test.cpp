@@ -44,7 +44,7 @@ std::vector<PellucidMaterial> materialsOf(const Capture& c) {
   return std::vector<PellucidMaterial>(c.materials.size(), skin());
 }
 
-// Of a from b where there is a material.
+// Relative RMSE of a from b where there is a material.
 double relativeRmse(const Image& a, const Image& b, const std::vector<std::uint8_t>& material) {
   double square = 0, power = 0;
   for (size_t i = 0; i < a.pixels(); ++i)
@@ -187,7 +187,7 @@ Image specular(const Capture& c) {
 struct Added {
   const char* name;
   VkFormat format;
-  // Of the sum and of the result, as both are rounded; 11 bits have 6 of mantissa and the blue 10 have 5,
+  // Bounds of the sum and of the result, as both are rounded; 11 bits have 6 of mantissa and the blue 10 have 5,
   // which devices may truncate to.
   double step;
   double zero;  // what the test reads 0 as: GLM's 11 bits have none beside other colors

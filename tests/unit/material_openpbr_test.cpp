@@ -43,7 +43,7 @@ PellucidMaterialDesc described(const PellucidOpenPbr& material) {
   return desc;
 }
 
-// Of the light that enters along the normal, the share that photons bring back out.
+// The share of the light entering along the normal that photons bring back out.
 double seenColor(double scattering, double absorption, double g, double ior, int photons) {
   const monte_carlo::Setup setup{{{scattering, absorption, kHalfSpace}}, ior, g, true};
   return monte_carlo::totals(setup, photons, 7).reflected / (1 - fresnelReflectance(1, ior));

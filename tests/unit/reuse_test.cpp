@@ -46,7 +46,7 @@ TEST(Reuse, NoneNeverReuses) {
   EXPECT_EQ(stateOf(s.last).history.valid, 0u);
 }
 
-// What was kept is in units of the exposure of its frame.
+// Kept light is in units of the exposure of its frame.
 TEST(Reuse, AnotherPreExposureRefreshes) {
   Sequence s(PELLUCID_REUSE_COHERENCE);
   EXPECT_TRUE(s.refreshes());

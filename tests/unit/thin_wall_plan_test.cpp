@@ -125,7 +125,7 @@ TEST(ThinWall, LightsNeedNoBackDepth) {
   EXPECT_EQ(f.plan().activeLights, 0u);
 }
 
-// What T(d) would be does not count, unlike with solids.
+// T(d) does not count, unlike with solids.
 TEST(ThinWall, TransmittanceIsNotRead) {
   Mixed f;
   f.frame.gatherSamples = 8;

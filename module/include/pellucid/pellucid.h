@@ -145,7 +145,7 @@ typedef enum PellucidDebugView {
   PELLUCID_DEBUG_IRRADIANCE = 4     /* irradiance + transmitted/rho: what the diffusion reads */
 } PellucidDebugView;
 
-/* What happens to the output's pixels that have a material: */
+/* The fate of the output's pixels that have a material: */
 typedef enum PellucidOutputMode {
   PELLUCID_OUTPUT_REPLACE = 0, /* they become the result */
   PELLUCID_OUTPUT_ADD = 1      /* the result is added to their color, which is specular light, say, and their alpha
