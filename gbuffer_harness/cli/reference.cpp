@@ -38,6 +38,7 @@ reference::Settings toSettings(const Options& options, const ReplaySettings& rep
   reference::Settings settings;
   settings.features = replay.features;
   settings.translucency = replay.translucency;
+  settings.ambient = replay.ambient;
   settings.debugView = replay.debugView;
   settings.diffusion.source = options.profile;
   settings.diffusion.discardedEnergy = options.discardedEnergy;

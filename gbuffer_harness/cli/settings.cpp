@@ -212,7 +212,7 @@ const std::map<std::string, Key> kKeys = {
      {"rgba16f|rgba32f|rg11b10f", [](const auto& key, const auto& value,
                                      ReplaySettings& s) { s.outputFormat = lookUp(kFormats, key, value); }}},
     {"ambient",
-     {"0|1: the capture's environment comes through thin parts",
+     {"0|1: the capture's environment comes through thin parts; default 0",
       [](const auto& key, const auto& value, ReplaySettings& s) {
         s.ambient = lookUp(kBooleans, key, value);
       }}},

@@ -137,7 +137,8 @@ private:
   glm::dvec3 transmitted(int x, int y, std::size_t i) const {
     const float* rho = material(i).reflectance;
     glm::dvec3 exitance = transmission(x, y, i).transmitted;
-    if (const std::optional<Surface> surface = surfaces_.at(x, y); surface && marks_.count(i) == 0)
+    if (const std::optional<Surface> surface = surfaces_.at(x, y);
+        settings_.ambient && surface && marks_.count(i) == 0)
       exitance += ambient_.at(*surface, capture_.material[i] - 1u);
     return exitance / glm::dvec3(rho[0], rho[1], rho[2]);
   }

@@ -27,7 +27,7 @@ struct ReplaySettings {
   VkFormat normalFormat = VK_FORMAT_R32G32B32A32_SFLOAT;  // of the image that normals are uploaded to
   // See PellucidFrame. With a mask, the other bits of the 32 of the uploaded material image hold noise.
   uint32_t materialShift = 0, materialMask = 0;
-  bool ambient = true;  // the capture's environment comes through thin parts
+  bool ambient = false;  // the capture's environment comes through thin parts
   PellucidOutputMode outputMode = PELLUCID_OUTPUT_REPLACE;  // ADD: FrameRun::uploadOutput says to what
   float preExposure = 1;  // the uploaded irradiance is the capture's times this
   PellucidReuse reuse = PELLUCID_REUSE_NONE;

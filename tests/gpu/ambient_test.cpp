@@ -29,6 +29,7 @@ ReplaySettings through() {
   s.features = PELLUCID_FEATURE_TRANSLUCENCY;
   s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
   s.translucency.gatherSamples = 0;
+  s.ambient = true;
   return s;
 }
 
@@ -129,6 +130,7 @@ TEST_F(AmbientLight, AgreesWithTheReference) {
     pellucid::harness::reference::Settings r;
     r.features = s.features;
     r.translucency = s.translucency;
+    r.ambient = s.ambient;
     const Image ref = pellucid::harness::reference::compute(c, materials, r).image;
     const Image gpu = replayer().run(c, materials, s).output;
     ReplaySettings off = s;

@@ -50,7 +50,7 @@ void PrintTo(const Row& row, std::ostream* out) { *out << row.key; }
 const Assignments kAzimuth = {"angle=minimum-dot-azimuth", "minimum-dots=-.1,-.6,-.3"};
 
 const std::vector<Row> kRows = {
-    {"ambient", {}, "0", Effect::Changes, {{"2", By::Key, "--set ambient: \"2\" is not one of 0, 1"}}},
+    {"ambient", {}, "1", Effect::Changes, {{"2", By::Key, "--set ambient: \"2\" is not one of 0, 1"}}},
     {"alias", {}, "1", Effect::Keeps, {{"2", By::Key, "--set alias: \"2\" is not one of 0, 1"}}},
     {"angle",
      {},
