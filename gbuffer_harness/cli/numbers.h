@@ -2,10 +2,10 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "common/error.h"
 #include "common/number.h"
+#include "common/split.h"
 
 namespace pellucid::harness {
 
@@ -15,17 +15,6 @@ T parseNumber(const std::string& option, const std::string& text) {
   const std::optional<T> value = numberIn<T>(text);
   if (!value) throw UsageError(option + ": \"" + text + "\" is not a number");
   return *value;
-}
-
-inline std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> parts = {""};
-  for (const char c : text) {
-    if (c == separator)
-      parts.emplace_back();
-    else
-      parts.back() += c;
-  }
-  return parts;
 }
 
 struct Assignment {

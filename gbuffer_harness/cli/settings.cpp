@@ -9,6 +9,7 @@
 #include "capture/json_field.h"
 #include "common/error.h"
 #include "common/number.h"
+#include "common/split.h"
 
 namespace pellucid::harness {
 namespace {
@@ -50,17 +51,6 @@ const Names<std::array<float, 4>> kPolynomials = {{"quadratic", {2.14506f, -2.27
                                                   {"cubic", {-5.07621f, 7.75534f, -3.9017f, 0.650897f}}};
 const Names<bool> kViews = {{"pixel", false}, {"constant", true}};
 const Names<bool> kBooleans = {{"0", false}, {"1", true}};
-
-std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> parts(1);
-  for (char c : text) {
-    if (c == separator)
-      parts.emplace_back();
-    else
-      parts.back() += c;
-  }
-  return parts;
-}
 
 template <class T>
 T lookUp(const Names<T>& names, const std::string& key, const std::string& value) {

@@ -8,6 +8,7 @@
 #include "capture/manifest_material.h"
 #include "capture/material.h"
 #include "common/number.h"
+#include "common/split.h"
 #include "pellucid/pellucid_material.h"
 
 namespace pellucid::harness {
@@ -42,19 +43,16 @@ std::optional<Rgb> thinTransmittance(const GltfDocument& document, const std::st
                                      const std::string& text) {
   constexpr std::string_view kThin = "thin:";
   if (text.rfind(kThin, 0) != 0) return std::nullopt;
+  const std::vector<std::string> parts = split(text.substr(kThin.size()), ',');
   Rgb color{};
-  std::size_t from = kThin.size();
-  for (std::size_t c = 0; c < 3; ++c) {
-    const std::size_t end = c < 2 ? text.find(',', from) : text.size();
-    const auto value = end < from || end == std::string::npos
-                           ? std::nullopt
-                           : numberIn<double>(std::string_view(text).substr(from, end - from));
-    if (!value || *value < 0 || *value > 1)
-      document.fail("material \"" + name + "\"",
-                    "\"" + text + "\" is not thin:R,G,B with a transmittance from 0 to 1 of each");
-    color[c] = *value;
-    from = end + 1;
+  bool isColor = parts.size() == 3;
+  for (std::size_t c = 0; c < 3 && isColor; ++c) {
+    color[c] = numberIn<double>(parts[c]).value_or(-1);
+    isColor = color[c] >= 0 && color[c] <= 1;
   }
+  if (!isColor)
+    document.fail("material \"" + name + "\"",
+                  "\"" + text + "\" is not thin:R,G,B with a transmittance from 0 to 1 of each");
   return color;
 }
 
