@@ -222,15 +222,6 @@ Result compile(const PellucidMaterialDesc& desc) {
 
 // ---- The C boundary ----------------------------------------------------------------------------
 
-void requireDesc(const PellucidMaterialDesc* desc) {
-  if (desc == nullptr) throw Refusal("desc", "NULL");
-  if (desc->structSize != sizeof(PellucidMaterialDesc))
-    throw Refusal("structSize",
-                  std::to_string(desc->structSize) + " is not this library's " +
-                      std::to_string(sizeof(PellucidMaterialDesc)),
-                  PELLUCID_ERROR_VERSION);
-}
-
 PellucidSlab publicSlab(const Slab& slab) {
   return {slab.transmittance, slab.transmittanceNormal, slab.reflectance};
 }
@@ -253,7 +244,7 @@ PellucidResult pellucidCompileMaterial(const PellucidMaterialDesc* desc, Pelluci
                                        PellucidMaterialReport* report, PellucidMessageFn message,
                                        void* messageUser) {
   return guarded(message, messageUser, [&] {
-    requireDesc(desc);
+    requireStruct("desc", desc);
     if (material == nullptr) throw Refusal("material", "NULL");
     const Result result = compile(*desc);
     *material = result.material;
@@ -280,7 +271,7 @@ PellucidResult pellucidMaterialSlabs(const PellucidMaterialDesc* desc, uint32_t 
                                      const double* thickness, PellucidSlab* slabs, PellucidMessageFn message,
                                      void* messageUser) {
   return guarded(message, messageUser, [&] {
-    requireDesc(desc);
+    requireStruct("desc", desc);
     if (count > 0 && thickness == nullptr) throw Refusal("thickness", "NULL");
     if (count > 0 && slabs == nullptr) throw Refusal("slabs", "NULL");
     for (std::size_t i = 0; i < count; ++i)

@@ -34,15 +34,6 @@ double reducedAbsorption(const Angles& angles, double color) {
   return absorbed * absorbed;
 }
 
-void requireOpenPbr(const PellucidOpenPbr* material) {
-  if (material == nullptr) throw Refusal("material", "NULL");
-  if (material->structSize != sizeof(PellucidOpenPbr))
-    throw Refusal("structSize",
-                  std::to_string(material->structSize) + " is not this library's " +
-                      std::to_string(sizeof(PellucidOpenPbr)),
-                  PELLUCID_ERROR_VERSION);
-}
-
 void requirePositive(const std::string& field, double value) {
   if (!(value > 0 && std::isfinite(value)))
     throw Refusal(field, number(value) + " is not a finite number above 0");
@@ -99,7 +90,7 @@ void pellucidInitOpenPbr(PellucidOpenPbr* material) {
 PellucidResult pellucidDescribeOpenPbr(const PellucidOpenPbr* material, PellucidMaterialDesc* desc,
                                        PellucidMessageFn message, void* messageUser) {
   return guarded(message, messageUser, [&] {
-    requireOpenPbr(material);
+    requireStruct("material", material);
     if (desc == nullptr) throw Refusal("desc", "NULL");
     *desc = describeOpenPbr(*material);
   });
