@@ -32,13 +32,19 @@ MaterialSource readCoefficients(const Field& field) {
   return material;
 }
 
+// Burley's d of each channel.
+std::array<double, 3> readDistance(const Field& field) {
+  const auto distance = field.numbers<3>();
+  for (const double d : distance)
+    if (!(d > 0)) field.fail("must be positive (mm), is " + field.shown());
+  return distance;
+}
+
 MaterialSource readBurley(const Field& field) {
   field.allowKeys({"profile", "distance", "transmittance"});
   field["profile"].choice({"burley"});
   BurleyMaterial material;
-  material.distance = field["distance"].numbers<3>();
-  for (const double distance : material.distance)
-    if (!(distance > 0)) field["distance"].fail("must be positive (mm), is " + field["distance"].shown());
+  material.distance = readDistance(field["distance"]);
   if (const auto transmittance = field.find("transmittance")) {
     transmittance->allowKeys({"a1", "k1", "a2", "k2"});
     std::array<std::array<double, 4>, 3> exponentials = {};
@@ -153,11 +159,7 @@ MaterialSource readThinWall(const Field& field) {
   for (std::size_t channel = 0; channel < 3; ++channel)
     if (const double sum = material.reflectance[channel] + material.transmittance[channel]; sum > 1 + 1e-9)
       wall["transmittance"].fail("and reflectance must together be at most 1, are " + std::to_string(sum));
-  if (const auto distance = wall.find("distance")) {
-    material.distance = distance->numbers<3>();
-    for (const double d : *material.distance)
-      if (!(d > 0)) distance->fail("must be positive (mm), is " + distance->shown());
-  }
+  if (const auto distance = wall.find("distance")) material.distance = readDistance(*distance);
   return material;
 }
 
