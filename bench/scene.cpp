@@ -6,24 +6,15 @@
 #include <numbers>
 #include <random>
 
+#include "capture/material.h"
 #include "common/error.h"
-#include "pellucid/pellucid_material.h"
 #include "scene/scene.h"
 
 namespace pellucid::bench {
 
 using namespace harness;
 
-PellucidMaterial benchMaterial() {
-  PellucidMaterialDesc desc;
-  pellucidInitMaterialDesc(&desc);
-  desc.kind = PELLUCID_MATERIAL_PRESET;
-  desc.preset = "skin1";
-  PellucidMaterial material;
-  if (pellucidCompileMaterial(&desc, &material, nullptr, nullptr, nullptr) != PELLUCID_OK)
-    throw InputError("", "skin1", "does not compile");
-  return material;
-}
+PellucidMaterial benchMaterial() { return compileMaterial(PresetMaterial{"skin1"}, "skin1"); }
 
 double pixelSizeFor(const PellucidMaterial& material, double radius) {
   return static_cast<double>(*std::max_element(material.radius, material.radius + 3)) / radius;

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "capture/material.h"
 #include "gpu_fixture.h"
-#include "pellucid/pellucid_material.h"
 #include "reference/reference.h"
 #include "scene/environment.h"
 #include "scene/scene.h"
@@ -14,15 +14,7 @@ namespace {
 
 using AmbientLight = GpuTest;
 
-PellucidMaterial skin() {
-  PellucidMaterialDesc desc;
-  pellucidInitMaterialDesc(&desc);
-  desc.kind = PELLUCID_MATERIAL_PRESET;
-  desc.preset = "skin1";
-  PellucidMaterial m;
-  EXPECT_EQ(pellucidCompileMaterial(&desc, &m, nullptr, nullptr, nullptr), PELLUCID_OK);
-  return m;
-}
+PellucidMaterial skin() { return compileMaterial(PresetMaterial{"skin1"}, "skin1"); }
 
 ReplaySettings through() {
   ReplaySettings s;
