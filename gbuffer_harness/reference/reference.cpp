@@ -71,8 +71,9 @@ public:
         settings_(settings),
         surfaces_(capture),
         translucency_(capture, surfaces_, settings.translucency),
-        ambient_(capture, surfaces_, materials),
-        values_(capture.material.size()) {}
+        values_(capture.material.size()) {
+    if (settings.ambient) ambient_.emplace(capture, surfaces_, materials);
+  }
 
   Result run() {
     switch (settings_.debugView) {
@@ -138,8 +139,8 @@ private:
     const float* rho = material(i).reflectance;
     glm::dvec3 exitance = transmission(x, y, i).transmitted;
     if (const std::optional<Surface> surface = surfaces_.at(x, y);
-        settings_.ambient && surface && marks_.count(i) == 0)
-      exitance += ambient_.at(*surface, capture_.material[i] - 1u);
+        ambient_ && surface && marks_.count(i) == 0)
+      exitance += ambient_->at(*surface, capture_.material[i] - 1u);
     return exitance / glm::dvec3(rho[0], rho[1], rho[2]);
   }
 
@@ -204,7 +205,7 @@ private:
   const Settings& settings_;
   SurfaceReader surfaces_;
   Translucency translucency_;
-  Ambient ambient_;
+  std::optional<Ambient> ambient_;
   std::vector<glm::dvec3> values_;  // 0 where there is no material
 };
 
