@@ -1,6 +1,7 @@
 // `pellucid angles`: the curves by which Whelan 2009 weighs the angle between view and light.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -28,15 +29,24 @@ struct Curve {
   std::function<double(double x)> value;
 };
 
+TranslucencySettings settingsOf(std::vector<std::string> set) {
+  SettingsOptions options;
+  options.set = std::move(set);
+  return options.parse().translucency;
+}
+
 // Whelan 2009, eqs. 4.4 and 4.5, as printed; below 0 the quadratic takes light away.
-double printedQuadratic(double x) { return (0.595752 * x - 2.27844) * x + 2.14506; }
-double printedCubic(double x) { return ((0.650897 * x - 3.9017) * x + 7.75534) * x - 5.07621; }
+std::function<double(double)> printed(const std::string& name) {
+  const std::array<float, 4> c = settingsOf({"polynomial=" + name}).anglePolynomial;
+  return [c](double x) {
+    return static_cast<double>(c[0]) +
+           x * (static_cast<double>(c[1]) + x * (static_cast<double>(c[2]) + x * static_cast<double>(c[3])));
+  };
+}
 
 // The module's own curve, of `--set angle=MODEL`; it takes the cosine.
 std::function<double(double)> module(std::vector<std::string> set) {
-  SettingsOptions options;
-  options.set = std::move(set);
-  const TranslucencySettings settings = options.parse().translucency;
+  const TranslucencySettings settings = settingsOf(std::move(set));
   return [settings](double x) { return reference::angleFactor(settings, -std::cos(x), 0); };
 }
 
@@ -45,8 +55,8 @@ std::vector<std::vector<Curve>> curves() {
                   kGray = {120, 120, 120};
   return {{{"dot product", kRed, module({"angle=cosine"})},
            {"inverse cosine", kBlue, module({"angle=inverse-cosine"})}},
-          {{"quadratic, eq. 4.4", kRed, printedQuadratic},
-           {"cubic, eq. 4.5", kBlue, printedCubic},
+          {{"quadratic, eq. 4.4", kRed, printed("quadratic")},
+           {"cubic, eq. 4.5", kBlue, printed("cubic")},
            {"clamped, polynomial=quadratic", kGray, module({"angle=polynomial", "polynomial=quadratic"})},
            {"clamped, polynomial=cubic", kGreen, module({"angle=polynomial", "polynomial=cubic"})}}};
 }
