@@ -15,7 +15,7 @@ const int kMostWindow = (PELLUCID_DIFFUSE_COARSE_TEXELS_X + 2) * kWindowY;
 const int kColumns = 4 * PELLUCID_DIFFUSE_COARSE_TEXELS_X, kRows = 4, kMostRing = 2;
 
 // Edges are done a band of rows of texels at a time: the fine filter needs their pixels in shared memory.
-const int kBandRows = kFine ? 2 : kTexelsY, kBands = kTexelsY / kBandRows, kBandTexels = kBandRows * kTexelsX;
+const int kBandRows = kFine ? 2 : kTexelsY, kBandTexels = kBandRows * kTexelsX;
 const int kBandPixels = (4 * 2 + 2 * kMostRing) * kColumns;
 
 // Colors after the fine filter's vertical half. Later the colors and materials of a band's pixels and their ring.

@@ -7,16 +7,19 @@
 
 const int kAcross = PELLUCID_BLOCK / PELLUCID_FIND_GROUP, kPixels = kAcross * kAcross; // of an invocation
 
+// The invocation's i-th pixel of the block.
+ivec2 pixelInBlock(int i) { return ivec2(gl_LocalInvocationID.xy) + PELLUCID_FIND_GROUP * ivec2(i % kAcross, i / kAcross); }
+
 shared uint cells[2]; // bits of rows 0 to 3 and 4 to 7
 shared uint nearest, farthest; // bits of planar distances, which are above 0
 
 void main() {
   uint invocation = gl_LocalInvocationIndex;
   uvec2 block = gl_WorkGroupID.xy;
-  ivec2 local = ivec2(gl_LocalInvocationID.xy), first = firstBlockPixel() + PELLUCID_BLOCK * ivec2(block);
+  ivec2 first = firstBlockPixel() + PELLUCID_BLOCK * ivec2(block);
   uint values[kPixels];
   [[unroll]] for (int i = 0; i < kPixels; ++i) {
-    ivec2 pixel = first + local + PELLUCID_FIND_GROUP * ivec2(i % kAcross, i / kAcross);
+    ivec2 pixel = first + pixelInBlock(i);
     values[i] = insideRect(pixel) ? materialIndex(materialValueAt(pixel)) : 0u;
   }
   if (invocation < 2u) cells[invocation] = 0u;
@@ -31,9 +34,9 @@ void main() {
   // All loads come before the first use.
   if (any != 0u && pass.value.x != 0u)
     [[unroll]] for (int i = 0; i < kPixels; ++i)
-      stored[i] = texelFetch(frontDepthImage, withinRect(first + local + PELLUCID_FIND_GROUP * ivec2(i % kAcross, i / kAcross)), 0).x;
+      stored[i] = texelFetch(frontDepthImage, withinRect(first + pixelInBlock(i)), 0).x;
   [[unroll]] for (int i = 0; i < kPixels; ++i) {
-    ivec2 inBlock = local + PELLUCID_FIND_GROUP * ivec2(i % kAcross, i / kAcross), cell = inBlock >> kCellShift;
+    ivec2 cell = pixelInBlock(i) >> kCellShift;
     if (values[i] == 0u) continue;
     own[i / (kPixels / 2)] |= 1u << (8 * (cell.y & 3) + cell.x);
     float front = pass.value.x != 0u ? frontDistanceOf(stored[i]) : -1.0;
