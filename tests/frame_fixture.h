@@ -116,4 +116,11 @@ struct Frame {
   }
 };
 
+// Names of the plan's dispatches, in their order.
+inline std::vector<std::string> names(const PellucidPlan& plan) {
+  std::vector<std::string> result;
+  for (uint32_t i = 0; i < plan.dispatchCount; ++i) result.emplace_back(plan.dispatches[i].name);
+  return result;
+}
+
 }  // namespace pellucid::test

@@ -16,12 +16,7 @@
 namespace {
 
 using pellucid::test::Frame;
-
-std::vector<std::string> names(const PellucidPlan& plan) {
-  std::vector<std::string> result;
-  for (uint32_t i = 0; i < plan.dispatchCount; ++i) result.emplace_back(plan.dispatches[i].name);
-  return result;
-}
+using pellucid::test::names;
 
 bool skips(const PellucidPlan& plan, const std::string& what, const std::string& reason, uint32_t count = 1) {
   for (uint32_t i = 0; i < plan.skipCount; ++i)
@@ -295,7 +290,6 @@ std::array<uint32_t, 2> workgroupOf(uint32_t pipeline) {
   return {};
 }
 
-// Tiles that overlap would be done twice, and no pixel would say so.
 // A light without a map, in the dispatch of the others or one of its own beside gathered ones.
 TEST(Plan, AmbientLightIsALightOfItsOwn) {
   std::array<float, 27> sky{};
@@ -357,6 +351,7 @@ TEST(Plan, AnAtlasHoldsTheMapsOfManyLights) {
   }
 }
 
+// Tiles that overlap would be done twice, and no pixel would say so.
 TEST(Plan, TilesAreThoseOfTheShader) {
   Frame f;
   const PellucidPlan plan = f.plan();

@@ -9,6 +9,7 @@
 namespace {
 
 using pellucid::test::Frame;
+using pellucid::test::names;
 using pellucid::test::plainMaterial;
 
 PellucidMaterial paper() {
@@ -20,12 +21,6 @@ PellucidMaterial paper() {
     m.wallTransmittance[c] = 0.25f;
   }
   return m;
-}
-
-std::vector<std::string> names(const PellucidPlan& plan) {
-  std::vector<std::string> result;
-  for (uint32_t i = 0; i < plan.dispatchCount; ++i) result.emplace_back(plan.dispatches[i].name);
-  return result;
 }
 
 std::string reasonOf(const PellucidPlan& plan, const std::string& what) {
@@ -140,8 +135,7 @@ TEST(ThinWall, MoreLightThanArrivesIsRefusedByName) {
   f.materials[1].wallTransmittance[2] = 0.6f;
   EXPECT_EQ(f.problems(),
             "materials[1].wallTransmittance of channel 2 is 0.6 with a reflectance of 0.5; more light leaves "
-            "a thin "
-            "wall than arrives\n");
+            "a thin wall than arrives\n");
   f.materials[1].wallTransmittance[2] = -0.25f;
   EXPECT_NE(f.problems().find("materials[1].wallTransmittance [2] is -0.25"), std::string::npos)
       << f.problems();
