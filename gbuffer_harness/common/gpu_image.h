@@ -27,8 +27,8 @@ public:
   void upload(const std::vector<std::uint32_t>& source, int layer = 0);  // R32_UINT
   void clear(std::uint8_t byte = 0);                                     // every byte of every texel
   void fill(std::uint64_t seed);                                         // pseudo-random bits
-  Image download()
-      const;  // of formats that are usable as storage images, R32G32_SFLOAT, R8_UINT and R8_UNORM
+  // Reads formats that are usable as storage images, R32G32_SFLOAT, R8_UINT and R8_UNORM.
+  Image download() const;
 
   // How an engine hands it to Pellucid.
   PellucidImage use() const { return {view_, VK_IMAGE_LAYOUT_GENERAL}; }

@@ -157,7 +157,9 @@ ParameterGroup angles() {
                        FIELD(translucency.angleModel)),
                  oneThickness),
        usedWhere(
-           bound(real("polynomial", "c0 c1 c2 c3", "c0 + c1 a + c2 a^2 + c3 a^3 of the angle a between camera and light, radians.", -10, 10, 4),
+           bound(real("polynomial", "c0 c1 c2 c3",
+                      "c0 + c1 a + c2 a^2 + c3 a^3 of the angle a between camera and light, radians.", -10,
+                      10, 4),
                  FIELD(translucency.anglePolynomial)),
            [=](const ReplaySettings& s) { return oneThickness(s) && angleIs(s, PELLUCID_ANGLE_POLYNOMIAL); }),
        usedWhere(bound(real("minimum-dot", "minimum dot", "Cosine above which nothing comes through.", -1, 0),

@@ -65,8 +65,8 @@ void addGather(FrameFacts& f) {
 }
 
 void addLights(FrameFacts& f) {
-  // The debug view of thickness shows the chord, too.
   f.ambient = ambientLight(f.frame);
+  // The debug view of thickness shows the chord, too.
   f.needsChord = f.frame.thicknessSource == PELLUCID_THICKNESS_CAMERA || f.ambient.intensity > 0 ||
                  f.frame.debugView == PELLUCID_DEBUG_THICKNESS ||
                  std::any_of(f.frame.lights, f.frame.lights + f.frame.lightCount,

@@ -90,8 +90,8 @@ typedef struct PellucidChannelReport {
                                         of THIN_WALL wallReflectance.
                                         PellucidMaterial::reflectance is this, at least 1e-4 */
   double transmittanceError;         /* largest |T_fit / T - 1| on the thicknesses fitted, of the float
-                                        coefficients. Where wavelengths mix, T in the denominator is at
-                                        least half of the brightest channel's */
+                                        coefficients. T in the denominator is at least half of the
+                                        brightest channel's where wavelengths mix */
   double minThickness, maxThickness; /* mm; fitted: 0.01 to 20 as far as T > 1e-4, more for dense and
                                         thin media */
   double edgeError;                  /* largest difference of the blurred half-plane step, Gaussians
