@@ -17,10 +17,7 @@
 #ifndef GROUP_ROWS
 #define GROUP_ROWS GROUP_SIDE
 #endif
-#ifndef GROUP_DEPTH
-#define GROUP_DEPTH 1
-#endif
-layout(local_size_x = GROUP_SIDE, local_size_y = GROUP_ROWS, local_size_z = GROUP_DEPTH) in;
+layout(local_size_x = GROUP_SIDE, local_size_y = GROUP_ROWS) in;
 
 layout(push_constant) uniform Pass { PassConstants pass; };
 layout(set = 0, binding = PELLUCID_BINDING_FRAME) uniform Frame { FrameConstants frame; };

@@ -4,7 +4,6 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define GROUP_SIDE PELLUCID_PROBES_GROUP
-#define GROUP_DEPTH 2 // invocations of a cell: they share its lights
 #include "frame/work_group.glsl"
 #include "frame/chord.glsl"
 #include "gather/probe.glsl"
@@ -20,6 +19,8 @@ layout(set = 0, binding = PELLUCID_BINDING_PROBES, rgba32ui) uniform uimage2D pr
 layout(set = 0, binding = PELLUCID_BINDING_GATHER_DISPATCHES) coherent buffer Dispatches { GatherDispatches dispatches; };
 
 #include "frame/thin_walls.glsl"
+layout(local_size_z_id = PELLUCID_CONSTANT_SHARERS) in; // invocations of a cell: they share its lights
+
 #include "gather/translucent_pixels.glsl"
 #include "gather/lit_probe.glsl"
 

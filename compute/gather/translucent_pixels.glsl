@@ -9,7 +9,7 @@ uint cellInGroup() { return gl_LocalInvocationID.y * GROUP_SIDE + gl_LocalInvoca
 // Fills translucent[], which is 0, for all cells of the group. Neighboring invocations read neighboring pixels, so that a cell
 // without a material costs one coalesced read a pixel.
 void markTranslucent(ivec2 firstCell, int side) {
-  const int kInvocations = GROUP_SIDE * GROUP_SIDE * GROUP_DEPTH;
+  const int kInvocations = GROUP_SIDE * GROUP_SIDE * int(gl_WorkGroupSize.z);
   int shift = shiftOf(side), columns = GROUP_SIDE * side, rowShift = findMSB(columns), pixels = GROUP_SIDE * GROUP_SIDE * side * side;
   for (int first = int(gl_LocalInvocationIndex); first < pixels; first += 4 * kInvocations) {
     uint values[4];

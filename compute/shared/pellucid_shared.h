@@ -91,6 +91,7 @@ using glm::vec4;
 #define PELLUCID_CONSTANT_GATHERS 2
 #define PELLUCID_CONSTANT_DIRECTIONAL 3
 #define PELLUCID_CONSTANT_NORMALS 4
+#define PELLUCID_CONSTANT_SHARERS 5 // invocations that share a probe, 1 or 2
 
 // Values of the public enums the shaders branch on; constants.cpp asserts that they agree.
 #define PELLUCID_SHADER_LIGHT_DIRECTIONAL 0u
@@ -236,8 +237,7 @@ struct GatherDispatches {
 // probes: pixels a side of a cell, lights with maps, columns and rows of entry points and, in bit 31, 1 to add to what is
 // there, samples
 // filter probes: pixels a side of a cell
-// find cells: 1 to find distances, too
-// list groups: unused
+// find cells: 1 to find distances, too; list groups: unused
 struct PassConstants {
   uvec4 value;
 };

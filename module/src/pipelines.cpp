@@ -32,6 +32,7 @@ constexpr PellucidSpecialization kFine{PELLUCID_CONSTANT_FINE, 1}, kCoarse{PELLU
 constexpr PellucidSpecialization kGathered{PELLUCID_CONSTANT_GATHERS, 1};
 
 constexpr PellucidSpecialization kDirectional{PELLUCID_CONSTANT_DIRECTIONAL, 1};
+constexpr PellucidSpecialization kShared{PELLUCID_CONSTANT_SHARERS, 2};
 
 constexpr uint32_t kGather = PELLUCID_USE_GATHER, kDiffusion = PELLUCID_USE_DIFFUSION;
 constexpr uint32_t kQuality0 = kDiffusion | PELLUCID_USE_QUALITY_0;
@@ -54,6 +55,8 @@ const std::array<PipelineDesc, kPipelineCount> kPipelines = {
     desc("entry_points_directional", kEntryPoints, kGather, kDirectional),
     desc("probes", kProbes, kGather),
     desc("probes_directional", kProbes, kGather, kDirectional),
+    desc("probes_shared", kProbes, kGather, kShared),
+    desc("probes_shared_directional", kProbes, kGather, kDirectional, kShared),
     desc("filter_probes", kFilterProbes, kGather),
     desc("add_gathered", kAddGathered, kGather)};
 

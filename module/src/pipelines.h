@@ -27,6 +27,8 @@ enum class Pipeline : uint32_t {
   EntryPointsDirectional,  // see compute/frame/flags.glsl
   Probes,
   ProbesDirectional,
+  ProbesShared,  // two invocations each, for two lights and more
+  ProbesSharedDirectional,
   FilterProbes,
   AddGathered,
   Count

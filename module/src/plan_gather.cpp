@@ -49,8 +49,10 @@ void addEntryPoints(PlanBuilder& b, const LightGroup& group) {
 
 void addProbes(PlanBuilder& b, const LightGroup& group, bool adds) {
   const FrameFacts& f = b.facts;
-  PellucidDispatch* d =
-      b.dispatch("probes", isDirectional(f, group) ? Pipeline::ProbesDirectional : Pipeline::Probes);
+  const bool directional = isDirectional(f, group);
+  const Pipeline alone = directional ? Pipeline::ProbesDirectional : Pipeline::Probes;
+  const Pipeline shared = directional ? Pipeline::ProbesSharedDirectional : Pipeline::ProbesShared;
+  PellucidDispatch* d = b.dispatch("probes", group.gathered > 1 ? shared : alone);
   const Cells cells(f);
   b.listed(d, PELLUCID_LIST_PROBES);
   if (f.stages.skipsLight) b.decides();

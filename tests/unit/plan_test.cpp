@@ -486,7 +486,12 @@ TEST(Plan, ShadersAreSpirv) {
       ASSERT_EQ(pellucidGetShader(p, views, &shader), PELLUCID_OK);
       ASSERT_GT(shader.wordCount, 5u);
       EXPECT_EQ(shader.words[0], 0x07230203u);
-      for (uint32_t i = 0; i < shader.constantCount; ++i) EXPECT_LE(shader.constants[i].value, 1u);
+      // Switches, but for a number of invocations.
+      for (uint32_t i = 0; i < shader.constantCount; ++i)
+        if (const auto [id, value] = shader.constants[i]; id == PELLUCID_CONSTANT_SHARERS)
+          EXPECT_EQ(value, 2u);
+        else
+          EXPECT_LE(value, 1u);
       constexpr uint32_t kOpTypeImage = 25;
       bool array = false;
       for (size_t i = 5; i < shader.wordCount; i += shader.words[i] >> 16)
