@@ -5,6 +5,7 @@
 #include <glm/gtc/packing.hpp>
 
 #include "common/error.h"
+#include "common/srgb.h"
 
 namespace pellucid::harness {
 namespace {
@@ -28,6 +29,7 @@ Texel texelOf(VkFormat format) {
       return {4, 4};
     case VK_FORMAT_R8G8B8A8_SNORM:
     case VK_FORMAT_R8G8B8A8_UNORM:
+    case VK_FORMAT_R8G8B8A8_SRGB:
       return {4, 1};
     case VK_FORMAT_B10G11R11_UFLOAT_PACK32:  // one word
     case VK_FORMAT_E5B9G9R9_UFLOAT_PACK32:
@@ -52,6 +54,18 @@ glm::uint32 (*packing(VkFormat format))(const glm::vec4&) {
       return [](const glm::vec4& v) { return glm::packF3x9_E1x5(glm::vec3(v)); };
     case VK_FORMAT_A2B10G10R10_UNORM_PACK32:
       return [](const glm::vec4& v) { return glm::packUnorm3x10_1x2(v); };
+    default:
+      return nullptr;
+  }
+}
+
+// The way back of formats that download() reads.
+glm::vec3 (*unpacking(VkFormat format))(glm::uint32) {
+  switch (format) {
+    case VK_FORMAT_B10G11R11_UFLOAT_PACK32:
+      return [](glm::uint32 word) { return glm::unpackF2x11_1x10(word); };
+    case VK_FORMAT_A2B10G10R10_UNORM_PACK32:
+      return [](glm::uint32 word) { return glm::vec3(glm::unpackUnorm3x10_1x2(word)); };
     default:
       return nullptr;
   }
@@ -93,7 +107,8 @@ GpuImage::GpuImage(Device& device, int width, int height, VkFormat format, VkIma
       VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | more;
   constexpr VkFormat kNotStorage[] = {
       VK_FORMAT_R32G32_SFLOAT,          VK_FORMAT_R16G16_SNORM, VK_FORMAT_A2B10G10R10_UNORM_PACK32,
-      VK_FORMAT_E5B9G9R9_UFLOAT_PACK32, VK_FORMAT_R8_UINT,      VK_FORMAT_R8_UNORM};
+      VK_FORMAT_E5B9G9R9_UFLOAT_PACK32, VK_FORMAT_R8_UINT,      VK_FORMAT_R8_UNORM,
+      VK_FORMAT_R8G8B8A8_SRGB};
   if (std::find(std::begin(kNotStorage), std::end(kNotStorage), format) == std::end(kNotStorage))
     info.usage |= VK_IMAGE_USAGE_STORAGE_BIT;
   const auto limit = static_cast<int>(device.properties().limits.maxImageDimension2D);
@@ -215,8 +230,8 @@ void GpuImage::fill(std::uint64_t seed) {
 
 Image GpuImage::download() const {
   const Texel texel = texelOf(format_);
-  const bool packed = format_ == VK_FORMAT_B10G11R11_UFLOAT_PACK32;
-  Image result(width_, height_, packed ? 3 : texel.channels);
+  const auto unpack = unpacking(format_);
+  Image result(width_, height_, unpack ? 3 : texel.channels);
   HostBuffer staging(device_, bytes(), VK_BUFFER_USAGE_TRANSFER_DST_BIT);
   device_.run([&](VkCommandBuffer commandBuffer) {
     barrier(commandBuffer, image_, VK_IMAGE_LAYOUT_GENERAL);
@@ -227,12 +242,16 @@ Image GpuImage::download() const {
     vkCmdPipelineBarrier(commandBuffer, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1,
                          &toHost, 0, nullptr, 0, nullptr);
   });
-  if (packed) {
+  if (unpack) {
     const auto* words = static_cast<const glm::uint32*>(staging.mapped());
     for (size_t i = 0; i < result.pixels(); ++i) {
-      const glm::vec3 color = glm::unpackF2x11_1x10(words[i]);
+      const glm::vec3 color = unpack(words[i]);
       for (int c = 0; c < 3; ++c) result.data[3 * i + static_cast<size_t>(c)] = color[c];
     }
+  } else if (format_ == VK_FORMAT_R8G8B8A8_SRGB) {
+    const auto* bytes = static_cast<const std::uint8_t*>(staging.mapped());
+    for (size_t i = 0; i < result.data.size(); ++i)
+      result.data[i] = i % 4 == 3 ? glm::unpackUnorm1x8(bytes[i]) : static_cast<float>(linearOf(bytes[i]));
   } else if (texel.bytes == 4) {
     std::memcpy(result.data.data(), staging.mapped(), result.data.size() * sizeof(float));
   } else if (texel.bytes == 2) {

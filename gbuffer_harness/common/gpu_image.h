@@ -12,7 +12,8 @@ public:
   // Usable as sampled and storage image, for transfers, and as `more` says. Formats: R32_SFLOAT,
   // R16G16B16A16_SFLOAT, R32G32B32A32_SFLOAT, R8G8B8A8_SNORM, R8G8B8A8_UNORM, R32_UINT, R32G32B32A32_UINT,
   // B10G11R11_UFLOAT_PACK32; not storage: R32G32_SFLOAT, R16G16_SNORM, A2B10G10R10_UNORM_PACK32,
-  // E5B9G9R9_UFLOAT_PACK32, R8_UINT, R8_UNORM. layers: 0: a 2D view, else a view of all layers of an array.
+  // E5B9G9R9_UFLOAT_PACK32, R8_UINT, R8_UNORM, R8G8B8A8_SRGB, which is not for uploads. layers: 0: a 2D view,
+  // else a view of all layers of an array.
   GpuImage(Device& device, int width, int height, VkFormat format, VkImageUsageFlags more = 0,
            int layers = 0);
   ~GpuImage();
@@ -27,7 +28,8 @@ public:
   void upload(const std::vector<std::uint32_t>& source, int layer = 0);  // R32_UINT
   void clear(std::uint8_t byte = 0);                                     // every byte of every texel
   void fill(std::uint64_t seed);                                         // pseudo-random bits
-  // Reads formats that are usable as storage images, R32G32_SFLOAT, R8_UINT and R8_UNORM.
+  // Reads formats that are usable as storage images, R32G32_SFLOAT, R8_UINT, R8_UNORM, R8G8B8A8_SRGB as
+  // linear colors, and RGB of A2B10G10R10_UNORM_PACK32.
   Image download() const;
 
   // How an engine hands it to Pellucid.

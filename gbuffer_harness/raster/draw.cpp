@@ -9,7 +9,6 @@
 #include <glm/gtc/packing.hpp>
 
 #include "common/error.h"
-#include "common/srgb.h"
 #include "kRasterCaster.h"
 #include "kRasterCount.h"
 #include "kRasterDepth.h"
@@ -51,23 +50,6 @@ Spirv fragmentSpirv(FragmentShader shader) {
 template <class T>
 VkDeviceSize byteCount(const std::vector<T>& values) {
   return static_cast<VkDeviceSize>(values.size() * sizeof(T));
-}
-
-Image linearImage(const Texture& texture) {
-  std::array<float, 256> linear;
-  for (std::size_t i = 0; i < linear.size(); ++i)
-    linear[i] = texture.isNormalMap ? static_cast<float>(i) / 127.5f - 1
-                                    : static_cast<float>(linearOf(static_cast<std::uint8_t>(i)));
-  Image image(texture.width, texture.height, 4);
-  for (std::size_t i = 0; i < image.data.size(); ++i)
-    image.data[i] = i % 4 == 3 ? static_cast<float>(texture.rgba[i]) / 255.0f : linear[texture.rgba[i]];
-  return image;
-}
-
-VkSamplerAddressMode addressMode(TextureWrap wrap) {
-  return wrap == TextureWrap::Repeat  ? VK_SAMPLER_ADDRESS_MODE_REPEAT
-         : wrap == TextureWrap::Clamp ? VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE
-                                      : VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT;
 }
 
 glm::vec4 vec4(const std::array<double, 3>& rgb, double w) {
@@ -157,25 +139,11 @@ UploadedModel::UploadedModel(Device& device, const Model& model)
       model_(model),
       vertices_(device, byteCount(model.vertices), VK_BUFFER_USAGE_VERTEX_BUFFER_BIT),
       indices_(device, byteCount(model.indices), VK_BUFFER_USAGE_INDEX_BUFFER_BIT),
+      textures_(device, model),
       layout_(device, layoutBindings(), {kStages, 0, sizeof(DrawConstants)}) {
   if (!device.canDraw()) throw DeviceError(device.description() + " computes but has no queue that draws");
   std::memcpy(vertices_.mapped(), model.vertices.data(), static_cast<std::size_t>(vertices_.size()));
   std::memcpy(indices_.mapped(), model.indices.data(), static_cast<std::size_t>(indices_.size()));
-
-  const auto add = [&](const Texture& texture, VkFilter filter) {
-    textures_.push_back(
-        std::make_unique<GpuImage>(device, texture.width, texture.height, VK_FORMAT_R16G16B16A16_SFLOAT));
-    textures_.back()->upload(linearImage(texture));
-    VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
-    info.magFilter = info.minFilter = filter;
-    info.addressModeU = addressMode(texture.wrapU);
-    info.addressModeV = addressMode(texture.wrapV);
-    samplers_.push_back(std::make_unique<Owned<VkSampler, vkDestroySampler>>(device));
-    check(vkCreateSampler(device.handle(), &info, nullptr, samplers_.back()->receive()), "vkCreateSampler");
-  };
-  for (const Texture& texture : model.textures) add(texture, VK_FILTER_LINEAR);
-  // Its sampler also serves texelFetch from formats that need not filter.
-  add({1, 1, {255, 255, 255, 255}}, VK_FILTER_NEAREST);
 }
 
 VkPipeline UploadedModel::pipelineOf(const RenderTarget& target, const PipelineState& state) const {
@@ -210,8 +178,8 @@ void UploadedModel::create(Pipeline& pipeline, const RenderTarget& target, const
   drawn.blend.blendEnable = state.add;
   drawn.blend.srcColorBlendFactor = drawn.blend.dstColorBlendFactor = VK_BLEND_FACTOR_ONE;
   drawn.blend.srcAlphaBlendFactor = drawn.blend.dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
-  createPipeline(device_, target, layout_, {kRasterMesh, sizeof kRasterMesh}, fragmentSpirv(state.shader),
-                 drawn, pipeline);
+  createPipeline(device_, target.pass(), layout_, {kRasterMesh, sizeof kRasterMesh},
+                 fragmentSpirv(state.shader), drawn, pipeline);
 }
 
 void UploadedModel::draw(const RenderTarget& target, const DrawView& view, const PipelineState& state,
@@ -230,7 +198,8 @@ void UploadedModel::record(VkCommandBuffer commandBuffer, const RenderTarget& ta
   DrawConstants constants{};
   constants.clipFromWorld = glm::mat4(toGlm(view.clipFromView) * viewFromWorld);
   constants.planar = -glm::vec4(glm::transpose(viewFromWorld)[2]);
-  const GpuImage& white = *textures_.back();
+  const std::size_t none = textures_.white();
+  const GpuImage& white = textures_.image(none);
 
   target.begin(commandBuffer);
   const VkDeviceSize offset = 0;
@@ -241,18 +210,18 @@ void UploadedModel::record(VkCommandBuffer commandBuffer, const RenderTarget& ta
     const Surface& surface = model_.surfaces[part.surface];
     vkCmdBindPipeline(commandBuffer, VK_PIPELINE_BIND_POINT_GRAPHICS,
                       pipelineOf(target, surface.doubleSided ? doubleSided : state));
-    const std::size_t none = textures_.size() - 1;
     const auto textureOr = [none](int index) { return index < 0 ? none : static_cast<std::size_t>(index); };
     const std::size_t color = textureOr(surface.texture), normal = textureOr(surface.normalMap),
                       lobe = textureOr(surface.lobeMap);
     const GpuImage* const object = earlier.caster ? earlier.caster : earlier.albedoObject;
-    const GpuImage* images[kOwnBindings] = {textures_[color].get(), earlier.depth ? earlier.depth : &white,
-                                            object ? object : &white, textures_[normal].get(),
-                                            textures_[lobe].get()};
+    const GpuImage* images[kOwnBindings] = {&textures_.image(color), earlier.depth ? earlier.depth : &white,
+                                            object ? object : &white, &textures_.image(normal),
+                                            &textures_.image(lobe)};
     const std::size_t samplers[kOwnBindings] = {color, none, none, normal, lobe};
     DescriptorWrites writes;
     for (std::uint32_t i = 0; i < kOwnBindings; ++i)
-      writes.image(i, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, *samplers_[samplers[i]], images[i]->use());
+      writes.image(i, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, textures_.sampler(samplers[i]),
+                   images[i]->use());
     if (earlier.planned) addPlanned(*earlier.planned, writes);
     layout_.push(commandBuffer, VK_PIPELINE_BIND_POINT_GRAPHICS, writes.all());
     constants.baseColor = vec4(surface.baseColor, surface.alphaCutoff);

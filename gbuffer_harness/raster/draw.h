@@ -14,6 +14,7 @@
 #include "raster/model.h"
 #include "raster/pipeline.h"
 #include "raster/render_target.h"
+#include "raster/textures.h"
 
 namespace pellucid::harness {
 
@@ -83,8 +84,7 @@ private:
   Device& device_;
   const Model& model_;
   HostBuffer vertices_, indices_;
-  std::vector<std::unique_ptr<GpuImage>> textures_;  // as Model::textures, and a white one
-  std::vector<std::unique_ptr<Owned<VkSampler, vkDestroySampler>>> samplers_;
+  UploadedTextures textures_;
   PushLayout layout_;
   // By the target's depth format; created where they are drawn with first.
   mutable std::map<std::pair<VkFormat, PipelineState>, Pipeline> pipelines_;

@@ -8,7 +8,7 @@
 
 #include "common/device.h"
 #include "common/owned.h"
-#include "raster/render_target.h"
+#include "raster/draw_pass.h"
 
 namespace pellucid::harness {
 
@@ -47,14 +47,15 @@ struct DrawState {
   VkPipelineRasterizationStateCreateInfo raster{
       .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO, .lineWidth = 1};
   VkPipelineDepthStencilStateCreateInfo depth{VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO};
+  bool depthBiasIsDynamic = false;  // where raster.depthBiasEnable is set
   // Each color image likewise.
   VkPipelineColorBlendAttachmentState blend{.colorWriteMask =
                                                 VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
                                                 VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT};
 };
 
-// For targets like `target`. Viewport and scissor are dynamic.
-void createPipeline(const Device& device, const RenderTarget& target, const PushLayout& layout,
-                    const Spirv& vertex, const Spirv& fragment, const DrawState& state, Pipeline& pipeline);
+// Viewport and scissor are dynamic.
+void createPipeline(const Device& device, const DrawPass& pass, const PushLayout& layout, const Spirv& vertex,
+                    const Spirv& fragment, const DrawState& state, Pipeline& pipeline);
 
 }  // namespace pellucid::harness

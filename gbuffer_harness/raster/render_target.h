@@ -7,7 +7,8 @@
 
 #include "common/device.h"
 #include "common/gpu_image.h"
-#include "common/owned.h"
+#include "raster/depth_buffer.h"
+#include "raster/draw_pass.h"
 
 namespace pellucid::harness {
 
@@ -18,36 +19,27 @@ public:
     VkFormat format;
     VkClearColorValue clear;
   };
-  // depthFormat: of that buffer, D16_UNORM, X8_D24_UNORM_PACK32 or D32_SFLOAT. Throws DeviceError for one
-  // that the device does not draw to.
+  // depthFormat: of that buffer. Throws what DepthBuffer throws.
   RenderTarget(Device& device, int width, int height, const std::vector<Color>& colors,
                std::optional<float> clearDepth, VkFormat depthFormat = VK_FORMAT_D32_SFLOAT);
 
   GpuImage& image(std::size_t i) const { return *images_[i]; }
-  VkRenderPass renderPass() const { return renderPass_; }
+  const DrawPass& pass() const { return *pass_; }
+  VkRenderPass renderPass() const { return pass_->renderPass(); }
   VkFormat depthFormat() const { return depthFormat_; }
-  std::size_t colorCount() const { return images_.size(); }
   // The depth buffer as it was stored, one channel, 0..1.
-  Image depth() const;
+  Image depth() const { return depth_->download(); }
 
   // Clears, and waits for everything before; what is drawn is ready for everything after.
-  void begin(VkCommandBuffer commandBuffer) const;
+  void begin(VkCommandBuffer commandBuffer) const { pass_->begin(commandBuffer, {{0, 0}, extent_}); }
   void end(VkCommandBuffer commandBuffer) const { vkCmdEndRenderPass(commandBuffer); }
 
 private:
-  void createDepthBuffer(Device& device);
-  void createRenderPass(Device& device, const std::vector<Color>& colors);
-
-  Device& device_;
   VkExtent2D extent_;
   VkFormat depthFormat_;
-  std::vector<VkClearValue> clears_;
   std::vector<std::unique_ptr<GpuImage>> images_;
-  Owned<VkDeviceMemory, vkFreeMemory> depthMemory_;
-  Owned<VkImage, vkDestroyImage> depthImage_;
-  Owned<VkImageView, vkDestroyImageView> depthView_;
-  Owned<VkRenderPass, vkDestroyRenderPass> renderPass_;
-  Owned<VkFramebuffer, vkDestroyFramebuffer> framebuffer_;
+  std::optional<DepthBuffer> depth_;
+  std::optional<DrawPass> pass_;
 };
 
 }  // namespace pellucid::harness

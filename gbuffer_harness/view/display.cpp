@@ -45,7 +45,7 @@ DisplayPass::DisplayPass(Device& device, const RenderTarget& target)
   white_.upload(Image(1, 1, 4, 1.0f));
   const VkSamplerCreateInfo sampler{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};  // texels are fetched
   check(vkCreateSampler(device.handle(), &sampler, nullptr, sampler_.receive()), "vkCreateSampler");
-  createPipeline(device, target, layout_, {kDisplayVertex, sizeof kDisplayVertex},
+  createPipeline(device, target.pass(), layout_, {kDisplayVertex, sizeof kDisplayVertex},
                  {kDisplayFragment, sizeof kDisplayFragment}, {}, pipeline_);
 }
 

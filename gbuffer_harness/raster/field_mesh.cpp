@@ -1,0 +1,90 @@
+#include "raster/field_mesh.h"
+
+#include <cmath>
+
+#include "common/parallel.h"
+#include "scene/vector.h"
+
+namespace pellucid::harness {
+
+namespace {
+
+constexpr int kBlock = 8;  // corners along a side of what is skipped where no surface is near
+
+}  // namespace
+
+void addMesh(const DistanceField& field, const Vector3& center, double half, double cell, Model& model) {
+  const int blocks = static_cast<int>(std::ceil(2 * half / (cell * kBlock))), n = blocks * kBlock;
+  const glm::dvec3 origin = toGlm(center) - 0.5 * n * cell;
+  const auto index = [n](int x, int y, int z) {
+    return (static_cast<std::size_t>(z) * static_cast<std::size_t>(n) + static_cast<std::size_t>(y)) *
+               static_cast<std::size_t>(n) +
+           static_cast<std::size_t>(x);
+  };
+  const auto at = [&](double x, double y, double z) { return origin + cell * glm::dvec3(x, y, z); };
+  std::vector<float> distance(index(n - 1, n - 1, n - 1) + 1);
+  parallelRows(blocks * blocks, 0, [&](int row) {
+    for (int b = 0; b < blocks; ++b) {
+      const int x0 = b * kBlock, y0 = row % blocks * kBlock, z0 = row / blocks * kBlock;
+      const double middle = field.distance(at(x0 + 3.5, y0 + 3.5, z0 + 3.5));
+      const bool far = std::abs(middle) > 0.5 * std::sqrt(3.0) * kBlock * cell;
+      for (int i = 0; i < kBlock * kBlock * kBlock; ++i) {
+        const int x = x0 + i % kBlock, y = y0 + i / kBlock % kBlock, z = z0 + i / kBlock / kBlock;
+        distance[index(x, y, z)] = static_cast<float>(far ? middle : field.distance(at(x, y, z)));
+      }
+    }
+  });
+
+  // One vertex in each cell that the surface passes through.
+  std::vector<glm::dvec3> points;
+  std::vector<std::uint32_t> vertexOf(distance.size(), UINT32_MAX);
+  for (int z = 0; z + 1 < n; ++z)
+    for (int y = 0; y + 1 < n; ++y)
+      for (int x = 0; x + 1 < n; ++x) {
+        glm::dvec3 sum(0);
+        int crossings = 0;
+        for (int e = 0; e < 12; ++e) {  // an edge: along axis e / 4, at one of four places across
+          const int axis = e / 4, u = (axis + 1) % 3, v = (axis + 2) % 3;
+          glm::ivec3 a(x, y, z);
+          a[u] += e & 1;
+          a[v] += e >> 1 & 1;
+          glm::ivec3 b = a;
+          ++b[axis];
+          const double da = distance[index(a.x, a.y, a.z)], db = distance[index(b.x, b.y, b.z)];
+          if ((da < 0) == (db < 0)) continue;
+          sum += glm::mix(glm::dvec3(a), glm::dvec3(b), da / (da - db));
+          ++crossings;
+        }
+        if (crossings == 0) continue;
+        vertexOf[index(x, y, z)] = static_cast<std::uint32_t>(points.size());
+        points.push_back(at(sum.x / crossings, sum.y / crossings, sum.z / crossings));
+      }
+  const std::size_t first = model.vertices.size();
+  model.vertices.resize(first + points.size());
+  parallelRows(static_cast<int>(points.size()), 0, [&](int row) {
+    const auto i = static_cast<std::size_t>(row);
+    glm::dvec3 p = points[i];
+    for (int step = 0; step < 2; ++step) p -= field.distance(p) * field.normal(p);
+    const glm::vec3 position(p), normal(field.normal(p));
+    model.vertices[first + i] = {{position.x, position.y, position.z}, {normal.x, normal.y, normal.z}};
+  });
+
+  // One square across each edge that the surface passes through.
+  for (int z = 1; z + 1 < n; ++z)
+    for (int y = 1; y + 1 < n; ++y)
+      for (int x = 1; x + 1 < n; ++x)
+        for (int axis = 0; axis < 3; ++axis) {
+          glm::ivec3 b(x, y, z), u(0), v(0);
+          ++b[axis];
+          --u[(axis + 1) % 3];
+          --v[(axis + 2) % 3];
+          const bool inside = distance[index(x, y, z)] < 0;
+          if (inside == (distance[index(b.x, b.y, b.z)] < 0)) continue;
+          const auto vertex = [&](const glm::ivec3& o) { return vertexOf[index(x + o.x, y + o.y, z + o.z)]; };
+          const auto base = static_cast<std::uint32_t>(first);
+          const std::uint32_t c[] = {vertex({0, 0, 0}), vertex(u), vertex(u + v), vertex(v)};
+          for (const int k : {0, 1, 2, 0, 2, 3}) model.indices.push_back(base + c[inside ? k : (4 - k) % 4]);
+        }
+}
+
+}  // namespace pellucid::harness

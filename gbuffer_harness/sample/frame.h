@@ -1,0 +1,61 @@
+// What this engine knows of a frame.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "common/device.h"
+#include "common/error.h"
+#include "pellucid/pellucid.h"
+#include "raster/draw_pass.h"
+
+namespace pellucid::sample {
+
+using namespace pellucid::harness;
+
+constexpr std::uint32_t kFramesInFlight = 3, kMostMaterials = 255, kMostLights = 6, kMostTiles = 16,
+                        kShadowImages = 3;
+enum ShadowImage : std::uint32_t { kCascades, kAtlas, kCube };  // arrays of layers
+
+// A square of one of the shadow images. Depths are reversed: 1 is near.
+struct ShadowTile {
+  std::uint32_t image = kCascades, layer = 0, x = 0, y = 0, size = 0;  // texels
+  glm::dmat4 clipFromWorld{1};
+  double texel = 0;  // its side in scene units, per clip w
+  bool frontsCulled = false;
+  float biasConstant = 0, biasSlope = 0;  // as vkCmdSetDepthBias takes them
+  float depthStep = 0;                    // of stored depths; 0: floats
+};
+
+// Of a depth buffer that shaders read; other images are in GENERAL throughout.
+constexpr VkImageLayout kDepthRead = VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;
+
+// Of buffers for whatever passes compute with.
+constexpr VkBufferUsageFlags kConstantsUsage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
+                                               VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
+                                               VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
+
+// The engine keeps images as views with their layouts, and lights by the names and units of
+// KHR_lights_punctual: both are Pellucid's types.
+struct Frame {
+  std::uint64_t index = 0;
+  VkExtent2D extent{}, rect{};  // pixels of the images, and those rendered, from the images' corner
+  glm::dmat4 clipFromView, viewFromWorld;  // of the rect; clipFromView with jitter
+  float metersPerUnit = 1;
+  float preExposure = 1;  // the irradiance image holds E times this
+  PellucidImage normal{}, albedo{}, surface{}, depth{}, backDepth{}, irradiance{}, color{};
+  std::array<PellucidImage, kShadowImages> shadows{};
+  std::vector<PellucidLight> lights;
+  std::vector<ShadowTile> tiles;
+  bool hasAmbient = false;
+  std::array<glm::vec3, 9> ambient{};  // coefficients of radiance
+  std::uint32_t quality = 1;           // of Pellucid
+  // An image of that format and extent, usage SAMPLED | STORAGE, layout GENERAL: the slot's of frames before,
+  // or a new one.
+  std::function<PellucidImage(std::uint32_t slot, const PellucidImageNeed&)> transient;
+};
+
+}  // namespace pellucid::sample

@@ -1,0 +1,40 @@
+// What is drawn, and what lights it.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "raster/framing.h"
+#include "raster/model.h"
+#include "sample/frame.h"
+#include "view/camera.h"
+
+namespace pellucid::sample {
+
+struct SceneLight {
+  Light light;
+  std::vector<LightView> views;  // of its shadow maps; none of the sun, whose cascades follow the camera
+};
+
+struct Scene {
+  Model model;
+  ViewCamera camera;
+  Bounds bounds;  // of what casts shadows
+  SceneLight sun, point;
+  std::vector<SceneLight> spots;
+  Harmonics ambient{};  // of a sky
+  std::vector<PellucidMaterial> materials;
+  std::vector<std::string> notes;  // sentences for a person
+};
+
+// A glTF file under the sample's own lights; the file's are left out. presets: as GltfOptions takes them.
+// mapTexels: across a shadow map. Throws InputError as loadGltf() does, and where nothing scatters light.
+Scene fileScene(const std::filesystem::path& file, const std::map<std::string, std::string>& presets,
+                int mapTexels);
+
+// The head of the procedural scene "head" on a floor. cell: mm between the mesh's vertices, 1..20.
+Scene headScene(double cell, int mapTexels);
+
+}  // namespace pellucid::sample

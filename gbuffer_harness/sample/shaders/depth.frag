@@ -1,0 +1,12 @@
+#version 450
+// Shadow maps and the back faces' depth: holes are all that a texture says.
+#extension GL_GOOGLE_include_directive : require
+#include "mesh.glsl"
+
+layout(set = 0, binding = 1) uniform sampler2D baseColorTexture;
+
+layout(location = 1) in vec4 uvs;
+
+void main() {
+  if (texture(baseColorTexture, uvs.xy).a < draw.baseColor.a) discard;
+}
