@@ -8,13 +8,8 @@
 
 namespace pellucid::harness {
 
-DepthBuffer::DepthBuffer(Device& device, int width, int height, VkFormat format, int layers)
-    : device_(device),
-      extent_{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)},
-      format_(format),
-      memory_(device),
-      image_(device),
-      view_(device) {
+DepthBuffer::DepthBuffer(Device& device, VkExtent2D extent, VkFormat format, int layers)
+    : device_(device), extent_(extent), format_(format), memory_(device), image_(device), view_(device) {
   VkFormatProperties properties;
   vkGetPhysicalDeviceFormatProperties(device.physicalDevice(), format_, &properties);
   if (!(properties.optimalTilingFeatures & VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT))

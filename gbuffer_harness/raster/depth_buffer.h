@@ -15,7 +15,7 @@ class DepthBuffer {
 public:
   // format: D16_UNORM, X8_D24_UNORM_PACK32 or D32_SFLOAT. layers: 0: a 2D image, else an array. Throws
   // DeviceError for a format that the device does not draw to.
-  DepthBuffer(Device& device, int width, int height, VkFormat format, int layers = 0);
+  DepthBuffer(Device& device, VkExtent2D extent, VkFormat format, int layers = 0);
 
   VkFormat format() const { return format_; }
   VkExtent2D extent() const { return extent_; }

@@ -1,11 +1,7 @@
 #include "raster/draw.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
-#include <cstddef>
-#include <cstring>
-#include <deque>
 #include <glm/gtc/packing.hpp>
 
 #include "common/error.h"
@@ -47,11 +43,6 @@ Spirv fragmentSpirv(FragmentShader shader) {
   throw DeviceError("no such fragment shader");
 }
 
-template <class T>
-VkDeviceSize byteCount(const std::vector<T>& values) {
-  return static_cast<VkDeviceSize>(values.size() * sizeof(T));
-}
-
 glm::vec4 vec4(const std::array<double, 3>& rgb, double w) {
   return {static_cast<float>(rgb[0]), static_cast<float>(rgb[1]), static_cast<float>(rgb[2]),
           static_cast<float>(w)};
@@ -91,34 +82,6 @@ std::vector<VkDescriptorSetLayoutBinding> layoutBindings() {
   return bindings;
 }
 
-// The writes of one push, with what they point to.
-class DescriptorWrites {
-public:
-  void image(std::uint32_t binding, VkDescriptorType type, VkSampler sampler, const PellucidImage& use) {
-    images_.push_back({sampler, use.view, use.layout});
-    add(binding, type).pImageInfo = &images_.back();
-  }
-  void buffer(std::uint32_t binding, VkDescriptorType type, const VkDescriptorBufferInfo& range) {
-    buffers_.push_back(range);
-    add(binding, type).pBufferInfo = &buffers_.back();
-  }
-  const std::vector<VkWriteDescriptorSet>& all() const { return writes_; }
-
-private:
-  VkWriteDescriptorSet& add(std::uint32_t binding, VkDescriptorType type) {
-    VkWriteDescriptorSet& write =
-        writes_.emplace_back(VkWriteDescriptorSet{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET});
-    write.dstBinding = binding;
-    write.descriptorCount = 1;
-    write.descriptorType = type;
-    return write;
-  }
-
-  std::deque<VkDescriptorImageInfo> images_;  // a deque's elements stay where they are
-  std::deque<VkDescriptorBufferInfo> buffers_;
-  std::vector<VkWriteDescriptorSet> writes_;
-};
-
 void addPlanned(const PlannedInputs& planned, DescriptorWrites& writes) {
   for (const PlannedBinding& wanted : plannedBindings())
     for (std::uint32_t i = 0; i < planned.dispatch.bindingCount; ++i) {
@@ -137,14 +100,8 @@ void addPlanned(const PlannedInputs& planned, DescriptorWrites& writes) {
 UploadedModel::UploadedModel(Device& device, const Model& model)
     : device_(device),
       model_(model),
-      vertices_(device, byteCount(model.vertices), VK_BUFFER_USAGE_VERTEX_BUFFER_BIT),
-      indices_(device, byteCount(model.indices), VK_BUFFER_USAGE_INDEX_BUFFER_BIT),
-      textures_(device, model),
-      layout_(device, layoutBindings(), {kStages, 0, sizeof(DrawConstants)}) {
-  if (!device.canDraw()) throw DeviceError(device.description() + " computes but has no queue that draws");
-  std::memcpy(vertices_.mapped(), model.vertices.data(), static_cast<std::size_t>(vertices_.size()));
-  std::memcpy(indices_.mapped(), model.indices.data(), static_cast<std::size_t>(indices_.size()));
-}
+      mesh_(device, model),
+      layout_(device, layoutBindings(), {kStages, 0, sizeof(DrawConstants)}) {}
 
 VkPipeline UploadedModel::pipelineOf(const RenderTarget& target, const PipelineState& state) const {
   const auto [entry, isNew] = pipelines_.try_emplace({target.depthFormat(), state}, device_);
@@ -153,21 +110,8 @@ VkPipeline UploadedModel::pipelineOf(const RenderTarget& target, const PipelineS
 }
 
 void UploadedModel::create(Pipeline& pipeline, const RenderTarget& target, const PipelineState& state) const {
-  const VkVertexInputBindingDescription binding{0, sizeof(Vertex), VK_VERTEX_INPUT_RATE_VERTEX};
-  const VkVertexInputAttributeDescription attributes[] = {
-      {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, position)},
-      {1, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, normal)},
-      {2, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(Vertex, uv)},
-      {3, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, color)},
-      {4, 0, VK_FORMAT_R32_SFLOAT, offsetof(Vertex, mark)},
-      {5, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(Vertex, normalUv)},
-      {6, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Vertex, tangent)},
-      {7, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(Vertex, lobeUv)}};
   DrawState drawn;
-  drawn.input.vertexBindingDescriptionCount = 1;
-  drawn.input.pVertexBindingDescriptions = &binding;
-  drawn.input.vertexAttributeDescriptionCount = static_cast<std::uint32_t>(std::size(attributes));
-  drawn.input.pVertexAttributeDescriptions = attributes;
+  drawn.input = UploadedMesh::vertexInput();
   drawn.raster.cullMode = state.cull;
   drawn.raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
   drawn.raster.depthBiasEnable = state.depthBiasConstant != 0 || state.depthBiasSlope != 0;
@@ -198,14 +142,11 @@ void UploadedModel::record(VkCommandBuffer commandBuffer, const RenderTarget& ta
   DrawConstants constants{};
   constants.clipFromWorld = glm::mat4(toGlm(view.clipFromView) * viewFromWorld);
   constants.planar = -glm::vec4(glm::transpose(viewFromWorld)[2]);
-  const std::size_t none = textures_.white();
-  const GpuImage& white = textures_.image(none);
+  const std::size_t none = mesh_.white();
+  const GpuImage& white = mesh_.image(none);
 
   target.begin(commandBuffer);
-  const VkDeviceSize offset = 0;
-  const VkBuffer vertexBuffer = vertices_.handle();
-  vkCmdBindVertexBuffers(commandBuffer, 0, 1, &vertexBuffer, &offset);
-  vkCmdBindIndexBuffer(commandBuffer, indices_.handle(), 0, VK_INDEX_TYPE_UINT32);
+  mesh_.bind(commandBuffer);
   for (const Part& part : model_.parts) {
     const Surface& surface = model_.surfaces[part.surface];
     vkCmdBindPipeline(commandBuffer, VK_PIPELINE_BIND_POINT_GRAPHICS,
@@ -214,13 +155,13 @@ void UploadedModel::record(VkCommandBuffer commandBuffer, const RenderTarget& ta
     const std::size_t color = textureOr(surface.texture), normal = textureOr(surface.normalMap),
                       lobe = textureOr(surface.lobeMap);
     const GpuImage* const object = earlier.caster ? earlier.caster : earlier.albedoObject;
-    const GpuImage* images[kOwnBindings] = {&textures_.image(color), earlier.depth ? earlier.depth : &white,
-                                            object ? object : &white, &textures_.image(normal),
-                                            &textures_.image(lobe)};
+    const GpuImage* images[kOwnBindings] = {&mesh_.image(color), earlier.depth ? earlier.depth : &white,
+                                            object ? object : &white, &mesh_.image(normal),
+                                            &mesh_.image(lobe)};
     const std::size_t samplers[kOwnBindings] = {color, none, none, normal, lobe};
     DescriptorWrites writes;
     for (std::uint32_t i = 0; i < kOwnBindings; ++i)
-      writes.image(i, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, textures_.sampler(samplers[i]),
+      writes.image(i, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, mesh_.sampler(samplers[i]),
                    images[i]->use());
     if (earlier.planned) addPlanned(*earlier.planned, writes);
     layout_.push(commandBuffer, VK_PIPELINE_BIND_POINT_GRAPHICS, writes.all());

@@ -14,7 +14,7 @@
 #include "raster/model.h"
 #include "raster/pipeline.h"
 #include "raster/render_target.h"
-#include "raster/textures.h"
+#include "raster/uploaded_mesh.h"
 
 namespace pellucid::harness {
 
@@ -83,8 +83,7 @@ private:
 
   Device& device_;
   const Model& model_;
-  HostBuffer vertices_, indices_;
-  UploadedTextures textures_;
+  UploadedMesh mesh_;
   PushLayout layout_;
   // By the target's depth format; created where they are drawn with first.
   mutable std::map<std::pair<VkFormat, PipelineState>, Pipeline> pipelines_;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "common/error.h"
 #include "common/parallel.h"
 #include "scene/vector.h"
 
@@ -11,11 +12,11 @@ namespace {
 
 constexpr int kBlock = 8;  // corners along a side of what is skipped where no surface is near
 
-}  // namespace
+// Adds the surface within the cube of that half side around `center`.
 
-void addMesh(const DistanceField& field, const Vector3& center, double half, double cell, Model& model) {
+void addMesh(const DistanceField& field, const glm::dvec3& center, double half, double cell, Model& model) {
   const int blocks = static_cast<int>(std::ceil(2 * half / (cell * kBlock))), n = blocks * kBlock;
-  const glm::dvec3 origin = toGlm(center) - 0.5 * n * cell;
+  const glm::dvec3 origin = center - 0.5 * n * cell;
   const auto index = [n](int x, int y, int z) {
     return (static_cast<std::size_t>(z) * static_cast<std::size_t>(n) + static_cast<std::size_t>(y)) *
                static_cast<std::size_t>(n) +
@@ -85,6 +86,33 @@ void addMesh(const DistanceField& field, const Vector3& center, double half, dou
           const std::uint32_t c[] = {vertex({0, 0, 0}), vertex(u), vertex(u + v), vertex(v)};
           for (const int k : {0, 1, 2, 0, 2, 3}) model.indices.push_back(base + c[inside ? k : (4 - k) % 4]);
         }
+}
+
+}  // namespace
+
+Model meshOf(const SceneModel& scene, const std::string& name, double cell) {
+  Model model;
+  model.name = name;
+  model.metersPerUnit = 0.001;
+  model.materials = scene.materials;
+  for (const Object& object : scene.objects) {
+    const auto* field = dynamic_cast<const DistanceField*>(object.solid.get());
+    if (!field || object.materialAt)
+      throw InputError(name, "objects", "not all are distance fields of one material: they have no mesh");
+    Part part{static_cast<std::uint32_t>(model.indices.size())};
+    part.surface = part.object = static_cast<std::uint32_t>(model.parts.size());
+    const std::size_t first = model.vertices.size();
+    addMesh(*field, scene.center, scene.radius, cell, model);
+    part.indexCount = static_cast<std::uint32_t>(model.indices.size()) - part.firstIndex;
+    model.parts.push_back(part);
+    model.surfaces.emplace_back().material = object.material;
+    for (std::size_t i = first; scene.albedo && i < model.vertices.size(); ++i) {
+      const std::array<float, 3>& p = model.vertices[i].position;
+      const glm::vec3 color(scene.albedo({p[0], p[1], p[2]}));
+      model.vertices[i].color = {color.x, color.y, color.z};
+    }
+  }
+  return model;
 }
 
 }  // namespace pellucid::harness

@@ -1,13 +1,13 @@
-// Triangles of a distance field.
+// Triangles of procedural scenes.
 #pragma once
 
 #include "raster/model.h"
-#include "scene/solid.h"
+#include "scene/model.h"
 
 namespace pellucid::harness {
 
-// Adds vertices and indices of the field's surface inside the cube of that half side around `center`: surface
-// nets (Gibson 1998) whose vertices are then moved onto the surface. cell: scene units, > 0.
-void addMesh(const DistanceField& field, const Vector3& center, double half, double cell, Model& model);
+// The objects of a scene of distance fields, and its materials: surface nets (Gibson 1998) whose vertices are
+// then moved onto the surface. cell: mm between vertices, > 0. Throws InputError for other solids.
+Model meshOf(const SceneModel& scene, const std::string& name, double cell);
 
 }  // namespace pellucid::harness

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/glm.hpp>
+#include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 #include <numbers>
 
@@ -175,6 +176,32 @@ std::vector<LightView> frameLight(const Model& model, const Light& light, PointM
   const bool cube = maps == PointMaps::Six && light.type == PELLUCID_LIGHT_POINT;
   if (const auto view = cube ? std::nullopt : singleView(model, bounds, light)) return {*view};
   return maps == PointMaps::One ? std::vector<LightView>() : cubeViews(model, light, texels);
+}
+
+std::vector<LightView> frameCascades(const Bounds& bounds, const Light& light, const ModelCamera& camera,
+                                     double aspect, int count, int texels) {
+  constexpr double kBehind = 3;  // radii
+  const glm::dvec3 center = toGlm(bounds.center), direction = glm::normalize(toGlm(light.direction));
+  const Matrix fromLight = lookAt(fromGlm(center - 4 * bounds.radius * direction), bounds.center, {0, 1, 0});
+  const glm::dmat4 worldFromCamera = glm::inverse(toGlm(camera.viewFromWorld));
+  const double away = -(toGlm(camera.viewFromWorld) * glm::dvec4(center, 1)).z;
+  const double first = std::max(away - bounds.radius, 0.02 * bounds.radius),
+               last = std::max(away + bounds.radius, 2 * first);
+  const double tangent = std::tan(camera.verticalFov / 2) * std::hypot(1, aspect);  // of the image's corner
+  std::vector<LightView> views;
+  for (int i = 0; i < count; ++i) {
+    const double from = glm::mix(first, last, static_cast<double>(i) / count);
+    const double to =
+        i + 1 < count ? glm::mix(first, last, (i + 1.0) / count) : last + kBehind * bounds.radius;
+    const double middle = (from + to) / 2, radius = std::hypot(to - middle, to * tangent);
+    const double texel = 2 * radius / texels;
+    const glm::dvec3 seen = toGlm(fromLight) * worldFromCamera * glm::dvec4(0, 0, -middle, 1);
+    const glm::dvec3 place(glm::floor(glm::dvec2(seen) / texel) * texel, 0);
+    views.push_back(
+        {orthographic(2 * radius, 2 * radius, {0.1 * bounds.radius, (8 + kBehind) * bounds.radius, true}),
+         fromGlm(glm::translate(glm::dmat4(1), -place) * toGlm(fromLight))});
+  }
+  return views;
 }
 
 }  // namespace pellucid::harness

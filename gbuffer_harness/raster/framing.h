@@ -38,4 +38,11 @@ enum class PointMaps {
 // the world. texels: across one map, > 0.
 std::vector<LightView> frameLight(const Model& model, const Light& light, PointMaps maps, int texels);
 
+// Views of a directional light that hold slices of what a perspective camera sees, the nearest first. Their
+// sizes stay while the camera turns, and places move by whole texels, so that edges of shadows stand still.
+// covered: planar distances from the first to the last slice, all as deep. aspect: width / height. texels:
+// across one map. Casters and receivers are within `bounds`, and up to 3 radii behind it.
+std::vector<LightView> frameCascades(const Bounds& bounds, const Light& light, const ModelCamera& camera,
+                                     double aspect, int count, int texels);
+
 }  // namespace pellucid::harness

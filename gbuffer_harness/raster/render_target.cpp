@@ -15,7 +15,7 @@ RenderTarget::RenderTarget(Device& device, int width, int height, const std::vec
   }
   std::optional<Attachment> depth;
   if (clearDepth) {
-    depth_.emplace(device, width, height, depthFormat);
+    depth_.emplace(device, extent_, depthFormat);
     depth = {depth_->view(), depthFormat, {.depthStencil = {*clearDepth, 0}}, VK_IMAGE_LAYOUT_GENERAL};
   }
   pass_.emplace(device, extent_, attachments, depth);

@@ -30,15 +30,8 @@ Origin minus(Origin position, const Origin& origin) {
 }
 
 void addLight(const Light& light, const Origin& origin, const ShadowImages& images, FrameData& data) {
-  PellucidLight l{};
-  l.type = light.type;
+  PellucidLight l = pellucidLight(light);
   copy(minus(light.position, origin), l.position);
-  copy(light.direction, l.direction);
-  copy(light.color, l.color);
-  l.intensity = static_cast<float>(light.intensity);
-  l.range = static_cast<float>(light.range);
-  l.innerConeAngle = static_cast<float>(light.innerConeAngle);
-  l.outerConeAngle = static_cast<float>(light.outerConeAngle);
   l.firstShadowMap = static_cast<uint32_t>(data.shadowMaps.size());
   l.shadowMapCount = static_cast<uint32_t>(light.shadowMaps.size());
   for (const ShadowMap& map : light.shadowMaps) {
@@ -137,6 +130,19 @@ void fillPlaceholders(const Capture& capture, FrameData& data) {
 }
 
 }  // namespace
+
+PellucidLight pellucidLight(const Light& light) {
+  PellucidLight l{};
+  l.type = light.type;
+  copy(light.position, l.position);
+  copy(light.direction, l.direction);
+  copy(light.color, l.color);
+  l.intensity = static_cast<float>(light.intensity);
+  l.range = static_cast<float>(light.range);
+  l.innerConeAngle = static_cast<float>(light.innerConeAngle);
+  l.outerConeAngle = static_cast<float>(light.outerConeAngle);
+  return l;
+}
 
 ReplaySettings thesisSettings() {
   ReplaySettings s;

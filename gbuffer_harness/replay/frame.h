@@ -72,6 +72,9 @@ inline constexpr uint32_t kMaxImageNeeds = PELLUCID_MAX_TRANSIENTS + 1;
 void makeFrame(const Capture& capture, const std::vector<PellucidMaterial>& materials,
                const ReplaySettings& settings, FrameData& data);
 
+// Without shadow maps.
+PellucidLight pellucidLight(const Light& light);
+
 // The image that a PellucidBinding of an image resource means, for passes that bind what a plan does.
 const PellucidImage& imageOf(const PellucidFrame& frame, uint32_t resource);
 

@@ -1,6 +1,4 @@
-// The last frame as a capture, for the harness to replay.
-#include <numbers>
-
+// The last frame read back, and as a capture for the harness to replay.
 #include "sample/renderer.h"
 #include "scene/vector.h"
 
@@ -26,24 +24,14 @@ Image cropped(const Image& image, std::uint32_t left, std::uint32_t top, VkExten
 
 }  // namespace
 
-void Renderer::wait() const { check(vkQueueWaitIdle(device_.queue()), "vkQueueWaitIdle"); }
-
 const GpuImage& Renderer::picture() const {
-  wait();
-  return picture_;
+  check(vkQueueWaitIdle(device_.queue()), "vkQueueWaitIdle");
+  return *targets_[kPicture];
 }
 
 Image Renderer::rectOf(const Image& image) const { return cropped(image, 0, 0, frame_.rect); }
-
-Image Renderer::color() const {
-  wait();
-  return rgb(rectOf(color_.download()));
-}
-
-Image Renderer::irradiance() const {
-  wait();
-  return rgb(rectOf(irradiance_.download()));
-}
+Image Renderer::color() const { return rgb(rectOf(targets_[kColor]->download())); }
+Image Renderer::irradiance() const { return rgb(rectOf(targets_[kIrradiance]->download())); }
 
 Capture Renderer::capture() {
   Capture c;
@@ -55,53 +43,43 @@ Capture Renderer::capture() {
   c.viewFromWorld = fromGlm(frame_.viewFromWorld);
   c.materials = scene_.model.materials;
   if (frame_.hasAmbient) c.environment = scene_.ambient;
-
-  Image color = this->color();
   c.frontDepth = {rectOf(depth_.download(0, kDepthRead)), PELLUCID_DEPTH_DEVICE};
   c.backDepth = {rectOf(backDepth_.download(0, kDepthRead)), PELLUCID_DEPTH_DEVICE};
   c.irradiance = irradiance();
   for (float& value : c.irradiance.data) value /= frame_.preExposure;
-  c.albedo = rgb(rectOf(albedo_.download()));
-  c.normal = rectOf(normal_.download());
+  c.albedo = rgb(rectOf(targets_[kAlbedo]->download()));
+  c.normal = rectOf(targets_[kNormal]->download());
   for (std::size_t i = 0; i < c.normal.pixels(); ++i) {
     float* n = &c.normal.data[3 * i];
     const glm::vec3 normal = fromOctahedral({2 * n[0] - 1, 2 * n[1] - 1});
     for (int k = 0; k < 3; ++k) n[k] = normal[k];
   }
-  for (const float word : rectOf(surface_.download()).data)
+  for (const float word : rectOf(targets_[kSurface]->download()).data)
     c.material.push_back(static_cast<std::uint8_t>(std::bit_cast<std::uint32_t>(word) >> 16));
-
-  for (const PellucidLight& l : frame_.lights) {
-    Light& light = c.lights.emplace_back();
-    light.type = static_cast<PellucidLightType>(l.type);
-    std::copy_n(l.position, 3, light.position.begin());
-    std::copy_n(l.direction, 3, light.direction.begin());
-    std::copy_n(l.color, 3, light.color.begin());
-    light.intensity = static_cast<double>(l.intensity);
-    light.innerConeAngle = static_cast<double>(l.innerConeAngle);
-    light.outerConeAngle = static_cast<double>(l.outerConeAngle);
-    for (std::uint32_t i = 0; i < l.shadowMapCount; ++i) {
-      const ShadowTile& tile = frame_.tiles[l.firstShadowMap + i];
+  for (std::size_t i = 0; i < lit_.size(); ++i) {
+    Light& light = c.lights.emplace_back(*lit_[i]);
+    for (std::uint32_t k = 0; k < frame_.lights[i].shadowMapCount; ++k) {
+      const ShadowTile& t = frame_.tiles[frame_.lights[i].firstShadowMap + k];
       ShadowMap& map = light.shadowMaps.emplace_back();
-      const Image whole = shadows_[tile.image].download(static_cast<int>(tile.layer), kDepthRead);
-      map.depth = {cropped(whole, tile.x, tile.y, {tile.size, tile.size}), PELLUCID_DEPTH_DEVICE};
-      map.clipFromWorld = fromGlm(tile.clipFromWorld);
-      map.faces = tile.frontsCulled ? PELLUCID_FACES_BACK : PELLUCID_FACES_FRONT;
-      map.depthBiasConstant = static_cast<double>(tile.biasConstant * tile.depthStep);
-      map.depthBiasSlope = static_cast<double>(tile.biasSlope);
-      map.depthStep = static_cast<double>(tile.depthStep);
-      map.sharedImage = static_cast<int>(tile.image);
-      map.offset = {static_cast<int>(tile.x), static_cast<int>(tile.y)};
-      map.layer = static_cast<int>(tile.layer);
+      const Image layer = shadows_[t.image].download(static_cast<int>(t.layer), kDepthRead);
+      map.depth = {cropped(layer, t.x, t.y, {t.size, t.size}), PELLUCID_DEPTH_DEVICE};
+      map.clipFromWorld = fromGlm(t.clipFromWorld);
+      map.faces = t.frontsCulled ? PELLUCID_FACES_BACK : PELLUCID_FACES_FRONT;
+      map.depthBiasConstant = static_cast<double>(t.biasConstant * t.depthStep);
+      map.depthBiasSlope = static_cast<double>(t.biasSlope);
+      map.depthStep = static_cast<double>(t.depthStep);
+      map.sharedImage = static_cast<int>(t.image);
+      map.offset = {static_cast<int>(t.x), static_cast<int>(t.y)};
+      map.layer = static_cast<int>(t.layer);
     }
   }
-
   // Lit again, the color lacks what Pellucid added.
+  const Image after = color();
   device_.run([this](VkCommandBuffer commands) { light(commands); });
-  const Image before = this->color();
+  const Image before = color();
   c.truth.emplace().image = Image(c.width, c.height, 3);
-  for (std::size_t i = 0; i < color.data.size(); ++i)
-    c.truth->image.data[i] = (color.data[i] - before.data[i]) / frame_.preExposure;
+  for (std::size_t i = 0; i < after.data.size(); ++i)
+    c.truth->image.data[i] = (after.data[i] - before.data[i]) / frame_.preExposure;
   return c;
 }
 

@@ -7,6 +7,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "capture/capture.h"
 #include "common/device.h"
 #include "common/error.h"
 #include "pellucid/pellucid.h"

@@ -1,11 +1,11 @@
 #include "sample/renderer.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "kSampleDepth.h"
 #include "kSampleGbuffer.h"
@@ -13,7 +13,7 @@
 #include "kSampleMesh.h"
 #include "kSampleResolve.h"
 #include "kSampleScreen.h"
-#include "sample/shadow_tiles.h"
+#include "replay/frame.h"
 #include "scene/vector.h"
 
 namespace pellucid::sample {
@@ -25,23 +25,43 @@ struct DrawConstants {
   glm::mat4 clipFromWorld;
   glm::vec4 baseColor, surface;
 };
+// Of shaders/frame.glsl.
+struct UniformLight {
+  glm::vec4 position, direction, color;
+  glm::uvec4 tiles;
+};
+struct UniformTile {
+  glm::mat4 clipFromWorld;
+  glm::vec4 rect, places;
+};
+struct Uniforms {
+  glm::mat4 worldFromClip, previousFromCurrent;
+  glm::vec4 eye, rect, extent, jitter, scale;
+  glm::uvec4 flags;
+  glm::vec4 ambient[9];
+  UniformLight lights[kMostLights];
+  UniformTile tiles[kMostTiles];
+};
+
+constexpr VkDeviceSize kUniformSlice = (sizeof(Uniforms) + 255) / 256 * 256;
 constexpr VkShaderStageFlags kStages = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
 constexpr std::uint32_t kImages = 7;  // that a pass reads at most
-constexpr VkDeviceSize kUniformSlice = (sizeof(Uniforms) + 255) / 256 * 256;
-constexpr VkFormat kDepth = VK_FORMAT_D32_SFLOAT, kHalf = VK_FORMAT_R16G16B16A16_SFLOAT;
-constexpr VkImageUsageFlags kDrawn = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+constexpr std::uint32_t kCascadeCount = 4, kAtlasColumns = 2, kCubeFaces = 6;
+constexpr VkFormat kDepth = VK_FORMAT_D32_SFLOAT, kHalf = VK_FORMAT_R16G16B16A16_SFLOAT,
+                   kFormats[] = {VK_FORMAT_A2B10G10R10_UNORM_PACK32,
+                                 VK_FORMAT_R8G8B8A8_SRGB,
+                                 VK_FORMAT_R32_UINT,
+                                 kHalf,
+                                 kHalf,
+                                 kHalf,
+                                 kHalf,
+                                 VK_FORMAT_R8G8B8A8_UNORM};
 
 std::vector<VkDescriptorSetLayoutBinding> bindings() {
-  std::vector<VkDescriptorSetLayoutBinding> all = {
-      {0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1, kStages, nullptr}};
+  std::vector<VkDescriptorSetLayoutBinding> all = {{0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1, kStages}};
   for (std::uint32_t i = 1; i <= kImages; ++i)
-    all.push_back({i, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1, VK_SHADER_STAGE_FRAGMENT_BIT, nullptr});
+    all.push_back({i, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1, VK_SHADER_STAGE_FRAGMENT_BIT});
   return all;
-}
-
-template <class T>
-VkDeviceSize bytes(const std::vector<T>& values) {
-  return static_cast<VkDeviceSize>(values.size() * sizeof(T));
 }
 
 PellucidImage use(const DepthBuffer& depth) { return {depth.view(), kDepthRead}; }
@@ -53,23 +73,6 @@ double halton(std::uint64_t index, std::uint64_t base) {
   return result;
 }
 
-PellucidLight described(const SceneLight& light, std::uint32_t firstTile, std::size_t tileCount) {
-  PellucidLight l{};
-  l.type = light.light.type;
-  const auto copy = [](const Vector3& from, float(&to)[3]) {
-    std::transform(from.begin(), from.end(), to, [](double v) { return static_cast<float>(v); });
-  };
-  copy(light.light.position, l.position);
-  copy(light.light.direction, l.direction);
-  copy(light.light.color, l.color);
-  l.intensity = static_cast<float>(light.light.intensity);
-  l.innerConeAngle = static_cast<float>(light.light.innerConeAngle);
-  l.outerConeAngle = static_cast<float>(light.light.outerConeAngle);
-  l.firstShadowMap = firstTile;
-  l.shadowMapCount = static_cast<std::uint32_t>(tileCount);
-  return l;
-}
-
 }  // namespace
 
 Renderer::Renderer(Device& device, const Scene& scene, VkExtent2D extent, std::uint32_t mapTexels)
@@ -77,67 +80,53 @@ Renderer::Renderer(Device& device, const Scene& scene, VkExtent2D extent, std::u
       scene_(scene),
       extent_(extent),
       mapTexels_(mapTexels),
-      vertices_(device, bytes(scene.model.vertices), VK_BUFFER_USAGE_VERTEX_BUFFER_BIT),
-      indices_(device, bytes(scene.model.indices), VK_BUFFER_USAGE_INDEX_BUFFER_BIT),
-      textures_(device, scene.model),
-      normal_(device, width(), height(), VK_FORMAT_A2B10G10R10_UNORM_PACK32, kDrawn),
-      albedo_(device, width(), height(), VK_FORMAT_R8G8B8A8_SRGB, kDrawn),
-      surface_(device, width(), height(), VK_FORMAT_R32_UINT, kDrawn),
-      irradiance_(device, width(), height(), kHalf, kDrawn),
-      color_(device, width(), height(), kHalf, kDrawn),
-      picture_(device, width(), height(), VK_FORMAT_R8G8B8A8_UNORM, kDrawn),
-      depth_(device, width(), height(), kDepth),
-      backDepth_(device, width(), height(), kDepth),
-      shadows_{{{device, maps(1), maps(1), kDepth, kCascadeCount},
-                {device, maps(kAtlasColumns), maps(kAtlasColumns), VK_FORMAT_D16_UNORM, 1},
-                {device, maps(1), maps(1), kDepth, kCubeFaces}}},
+      mesh_(device, scene.model),
+      depth_(device, extent, kDepth),
+      backDepth_(device, extent, kDepth),
+      shadows_{{{device, {mapTexels, mapTexels}, kDepth, kCascadeCount},
+                {device, {mapTexels * kAtlasColumns, mapTexels * kAtlasColumns}, VK_FORMAT_D16_UNORM, 1},
+                {device, {mapTexels, mapTexels}, kDepth, kCubeFaces}}},
       layout_(device, bindings(), {kStages, 0, sizeof(DrawConstants)}),
       lighting_(device),
       resolve_(device),
       linear_(device),
       compare_(device),
       pool_(device),
+      slots_{Slot(device), Slot(device), Slot(device)},
       uniforms_(device, kFramesInFlight * kUniformSlice, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT),
       pellucid_(device, scene.materials) {
-  std::memcpy(vertices_.mapped(), scene.model.vertices.data(), static_cast<std::size_t>(vertices_.size()));
-  std::memcpy(indices_.mapped(), scene.model.indices.data(), static_cast<std::size_t>(indices_.size()));
-  for (auto& history : history_) {
-    history = std::make_unique<GpuImage>(device, width(), height(), kHalf, kDrawn);
-    history->clear();  // the first frame binds one that no frame has drawn
-  }
   createPasses();
   createSlots();
 }
 
-Renderer::~Renderer() { vkDeviceWaitIdle(device_.handle()); }
-
 void Renderer::createPasses() {
-  const VkClearValue zero{}, far{};  // depths are reversed: 0 is far
-  const auto color = [&](const GpuImage& image, VkFormat format) {
-    return Attachment{image.use().view, format, zero, VK_IMAGE_LAYOUT_GENERAL};
+  for (std::size_t i = 0; i < kTargets; ++i)
+    targets_[i] =
+        std::make_unique<GpuImage>(device_, static_cast<int>(extent_.width), static_cast<int>(extent_.height),
+                                   kFormats[i], VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);
+  targets_[kHistory + 1]->clear();  // the first frame binds it, and no frame has drawn it
+  const auto pass = [&](VkExtent2D extent, const std::vector<int>& colors, VkImageView depth,
+                        VkFormat depthFormat) {
+    std::vector<Attachment> attachments;  // cleared to 0, which is far of reversed depths
+    for (const int i : colors)
+      attachments.push_back({targets_[i]->use().view, kFormats[i], {}, VK_IMAGE_LAYOUT_GENERAL});
+    return std::make_unique<DrawPass>(
+        device_, extent, attachments,
+        depth ? std::optional(Attachment{depth, depthFormat, {}, kDepthRead}) : std::nullopt);
   };
-  const auto pass = [&](VkExtent2D extent, const std::vector<Attachment>& colors,
-                        const std::optional<Attachment>& depth) {
-    return std::make_unique<DrawPass>(device_, extent, colors, depth);
-  };
-  gbufferPass_ = pass(extent_,
-                      {color(normal_, VK_FORMAT_A2B10G10R10_UNORM_PACK32),
-                       color(albedo_, VK_FORMAT_R8G8B8A8_SRGB), color(surface_, VK_FORMAT_R32_UINT)},
-                      Attachment{depth_.view(), kDepth, far, kDepthRead});
-  backPass_ = pass(extent_, {}, Attachment{backDepth_.view(), kDepth, far, kDepthRead});
-  lightingPass_ = pass(extent_, {color(irradiance_, kHalf), color(color_, kHalf)}, {});
-  for (std::size_t i = 0; i < 2; ++i)
-    resolvePass_[i] =
-        pass(extent_, {color(*history_[i], kHalf), color(picture_, VK_FORMAT_R8G8B8A8_UNORM)}, {});
+  gbufferPass_ = pass(extent_, {kNormal, kAlbedo, kSurface}, depth_.view(), kDepth);
+  backPass_ = pass(extent_, {}, backDepth_.view(), kDepth);
+  lightingPass_ = pass(extent_, {kIrradiance, kColor}, VK_NULL_HANDLE, kDepth);
+  for (int i = 0; i < 2; ++i)
+    resolvePasses_[i] = pass(extent_, {kHistory + i, kPicture}, VK_NULL_HANDLE, kDepth);
   for (std::size_t i = 0; i < kShadowImages; ++i)
     for (std::size_t layer = 0; layer < shadows_[i].layers(); ++layer)
       shadowPasses_[i].push_back(
-          pass(shadows_[i].extent(), {},
-               Attachment{shadows_[i].layer(layer), shadows_[i].format(), far, kDepthRead}));
+          pass(shadows_[i].extent(), {}, shadows_[i].layer(layer), shadows_[i].format()));
   const Spirv screen{kSampleScreen, sizeof kSampleScreen};
   createPipeline(device_, *lightingPass_, layout_, screen, {kSampleLighting, sizeof kSampleLighting}, {},
                  lighting_);
-  createPipeline(device_, *resolvePass_[0], layout_, screen, {kSampleResolve, sizeof kSampleResolve}, {},
+  createPipeline(device_, *resolvePasses_[0], layout_, screen, {kSampleResolve, sizeof kSampleResolve}, {},
                  resolve_);
   VkSamplerCreateInfo sampler{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
   sampler.magFilter = sampler.minFilter = VK_FILTER_LINEAR;
@@ -149,30 +138,26 @@ void Renderer::createPasses() {
 }
 
 void Renderer::createSlots() {
-  VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
-  pool.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
-  pool.queueFamilyIndex = device_.queueFamily();
+  const VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO, nullptr,
+                                     VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT, device_.queueFamily()};
   check(vkCreateCommandPool(device_.handle(), &pool, nullptr, pool_.receive()), "vkCreateCommandPool");
   const VkCommandBufferAllocateInfo commands{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, nullptr, pool_,
                                              VK_COMMAND_BUFFER_LEVEL_PRIMARY, 1};
   const VkFenceCreateInfo fence{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO, nullptr, VK_FENCE_CREATE_SIGNALED_BIT};
   for (Slot& slot : slots_) {
     check(vkAllocateCommandBuffers(device_.handle(), &commands, &slot.commands), "vkAllocateCommandBuffers");
-    slot.done = std::make_unique<Owned<VkFence, vkDestroyFence>>(device_);
-    check(vkCreateFence(device_.handle(), &fence, nullptr, slot.done->receive()), "vkCreateFence");
+    check(vkCreateFence(device_.handle(), &fence, nullptr, slot.done.receive()), "vkCreateFence");
   }
 }
 
 void Renderer::draw(const Settings& settings, const ViewCamera& camera) {
   const Slot& slot = slots_[next_ % kFramesInFlight];
-  const VkFence done = *slot.done;
+  const VkFence done = slot.done;
   check(vkWaitForFences(device_.handle(), 1, &done, VK_TRUE, UINT64_MAX), "vkWaitForFences");
   check(vkResetFences(device_.handle(), 1, &done), "vkResetFences");
   settings_ = settings;
   makeFrame(camera);
-  const Uniforms constants = uniforms(camera);
-  std::memcpy(static_cast<char*>(uniforms_.mapped()) + next_ % kFramesInFlight * kUniformSlice, &constants,
-              sizeof constants);
+  writeUniforms(camera);
   const VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO, nullptr,
                                        VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
   check(vkBeginCommandBuffer(slot.commands, &begin), "vkBeginCommandBuffer");
@@ -197,56 +182,73 @@ void Renderer::makeFrame(const ViewCamera& camera) {
     return std::max(1u, static_cast<std::uint32_t>(std::lround(side * settings_.scale)));
   };
   f.rect = {scaled(extent_.width), scaled(extent_.height)};
-  const ModelCamera& lens = camera.lens;
   const double aspect = static_cast<double>(extent_.width) / extent_.height;
-  const glm::dmat4 still = toGlm(perspective(
-      lens.verticalFov, aspect, {lens.range.nearPlane, std::numeric_limits<double>::infinity(), true}));
-  f.viewFromWorld = toGlm(lens.viewFromWorld);
-  previous_ = next_ > 0 ? current_ : still * f.viewFromWorld;
-  current_ = still * f.viewFromWorld;
+  const ClipRange range{camera.lens.range.nearPlane, std::numeric_limits<double>::infinity(), true};
+  const glm::dmat4 still = toGlm(perspective(camera.lens.verticalFov, aspect, range));
+  f.viewFromWorld = toGlm(camera.lens.viewFromWorld);
+  previous_ = std::exchange(current_, still * f.viewFromWorld);
   const std::uint64_t sample = next_ % 8 + 1;
-  if (settings_.taa)
-    jitter_ = {halton(sample, 2) - 0.5, halton(sample, 3) - 0.5};
-  else
-    jitter_ = {0, 0};
+  jitter_ = settings_.taa ? glm::dvec2(halton(sample, 2), halton(sample, 3)) - 0.5 : glm::dvec2(0);
   const glm::dvec3 moved(2 * jitter_.x / f.rect.width, 2 * jitter_.y / f.rect.height, 0);
   f.clipFromView = glm::translate(glm::dmat4(1), moved) * still;
   f.metersPerUnit = static_cast<float>(scene_.model.metersPerUnit);
-  if (settings_.mistake == Mistake::Units)
-    f.metersPerUnit *= 10;  // centimeters, taken for millimeters' tenth
-  f.preExposure = settings_.exposure * std::numbers::inv_pi_v<float>;  // albedo times it is radiance
-  f.normal = normal_.use();
-  f.albedo = albedo_.use();
-  f.surface = surface_.use();
+  if (settings_.mistake == Mistake::Units) f.metersPerUnit /= 10;  // centimeters taken for millimeters
+  f.preExposure =
+      settings_.exposure * std::numbers::inv_pi_v<float>;  // albedo times what is stored is radiance
+  f.normal = targets_[kNormal]->use();
+  f.albedo = targets_[kAlbedo]->use();
+  f.surface = targets_[kSurface]->use();
   f.depth = use(depth_);
   f.backDepth = use(backDepth_);
-  f.irradiance = irradiance_.use();
-  f.color = color_.use();
-  for (std::size_t i = 0; i < kShadowImages; ++i) f.shadows[i] = use(shadows_[i]);
-  f.quality = settings_.quality;
-  f.transient = [this](std::uint32_t slot, const PellucidImageNeed& need) { return transient(slot, need); };
+  f.irradiance = targets_[kIrradiance]->use();
+  f.color = targets_[kColor]->use();
+  std::transform(shadows_.begin(), shadows_.end(), f.shadows.begin(), use);
   f.hasAmbient = settings_.ambient;
   for (std::size_t i = 0; i < f.ambient.size(); ++i) f.ambient[i] = toGlm(scene_.ambient[i]);
-  const auto add = [&](const SceneLight& light, const std::vector<ShadowTile>& tiles) {
-    f.lights.push_back(described(light, static_cast<std::uint32_t>(f.tiles.size()), tiles.size()));
-    f.tiles.insert(f.tiles.end(), tiles.begin(), tiles.end());
-  };
-  if (settings_.sun)
-    add(scene_.sun, cascades(scene_, glm::inverse(f.viewFromWorld), glm::inverse(still), mapTexels_));
-  for (std::uint32_t i = 0; settings_.spots && i < scene_.spots.size(); ++i) {
-    std::vector<ShadowTile> tiles = fixedTiles(scene_.spots[i], i, mapTexels_);
-    for (ShadowTile& tile : tiles) {  // what is drawn, unless that is forgotten
-      tile.frontsCulled = settings_.cullFronts && settings_.mistake != Mistake::FrontsUnsaid;
-      if (settings_.mistake == Mistake::BiasUnsaid) continue;
-      tile.biasConstant = -settings_.biasConstant;  // reversed depths
-      tile.biasSlope = -settings_.biasSlope;
-    }
-    add(scene_.spots[i], tiles);
+  f.quality = settings_.quality;
+  f.transient = [this](std::uint32_t slot, const PellucidImageNeed& need) { return transient(slot, need); };
+  lit_.clear();
+  for (const SceneLight& light : scene_.lights) {
+    const PellucidLightType type = light.light.type;
+    if (type == PELLUCID_LIGHT_SPOT    ? settings_.spots
+        : type == PELLUCID_LIGHT_POINT ? settings_.point
+                                       : settings_.sun)
+      addLight(light, type == PELLUCID_LIGHT_DIRECTIONAL
+                          ? frameCascades(scene_.bounds, light.light, camera.lens, aspect, kCascadeCount,
+                                          static_cast<int>(mapTexels_))
+                          : light.views);
   }
-  if (settings_.point) add(scene_.point, fixedTiles(scene_.point, 0, mapTexels_));
 }
 
-Uniforms Renderer::uniforms(const ViewCamera& camera) const {
+void Renderer::addLight(const SceneLight& light, const std::vector<LightView>& views) {
+  lit_.push_back(&light.light);
+  PellucidLight& l = frame_.lights.emplace_back(pellucidLight(light.light));
+  l.firstShadowMap = static_cast<std::uint32_t>(frame_.tiles.size());
+  l.shadowMapCount = static_cast<std::uint32_t>(views.size());
+  const bool spot = l.type == PELLUCID_LIGHT_SPOT;
+  const auto inAtlas = std::count_if(frame_.tiles.begin(), frame_.tiles.end(),
+                                     [](const ShadowTile& tile) { return tile.image == kAtlas; });
+  for (const LightView& view : views) {
+    ShadowTile& t = frame_.tiles.emplace_back();
+    t.image = spot ? kAtlas : l.type == PELLUCID_LIGHT_POINT ? kCube : kCascades;
+    t.size = mapTexels_;
+    t.clipFromWorld = toGlm(view.clipFromView) * toGlm(view.viewFromWorld);
+    t.texel = 2 / (view.clipFromView[0] * mapTexels_);
+    if (!spot) {
+      t.layer = static_cast<std::uint32_t>(frame_.tiles.size()) - 1 - l.firstShadowMap;
+      continue;
+    }
+    t.x = static_cast<std::uint32_t>(inAtlas) % kAtlasColumns * mapTexels_;
+    t.y = static_cast<std::uint32_t>(inAtlas) / kAtlasColumns * mapTexels_;
+    t.depthStep = 1.0f / 65535;
+    t.frontsCulled = settings_.cullFronts && settings_.mistake != Mistake::Fronts;
+    if (settings_.mistake == Mistake::Bias) continue;
+    t.biasConstant = -settings_.biasConstant;  // away from the light is less, as depths are reversed
+    t.biasSlope = -settings_.biasSlope;
+  }
+}
+
+void Renderer::writeUniforms(const ViewCamera& camera) const {
   const Frame& f = frame_;
   Uniforms u{};
   u.worldFromClip = glm::inverse(f.clipFromView * f.viewFromWorld);
@@ -260,12 +262,11 @@ Uniforms Renderer::uniforms(const ViewCamera& camera) const {
   for (std::size_t i = 0; f.hasAmbient && i < f.ambient.size(); ++i) u.ambient[i] = {f.ambient[i], 0};
   for (std::size_t i = 0; i < f.lights.size(); ++i) {
     const PellucidLight& l = f.lights[i];
-    const auto vec4 = [](const float(&v)[3], float w) { return glm::vec4(v[0], v[1], v[2], w); };
+    const auto vec4 = [](const float* v, float w) { return glm::vec4(v[0], v[1], v[2], w); };
     u.lights[i] = {vec4(l.position, static_cast<float>(l.type)),
                    vec4(l.direction, std::cos(l.innerConeAngle)),
-                   l.intensity * vec4(l.color, 0),
+                   vec4(l.color, 0) * l.intensity + glm::vec4(0, 0, 0, std::cos(l.outerConeAngle)),
                    {l.firstShadowMap, l.shadowMapCount, 0, 0}};
-    u.lights[i].color.w = std::cos(l.outerConeAngle);
   }
   for (std::size_t i = 0; i < f.tiles.size(); ++i) {
     const ShadowTile& t = f.tiles[i];
@@ -274,7 +275,7 @@ Uniforms Renderer::uniforms(const ViewCamera& camera) const {
                   {t.x * side, t.y * side, t.size * side, t.size * side},
                   {t.image, t.layer, t.texel, side}};
   }
-  return u;
+  std::memcpy(static_cast<char*>(uniforms_.mapped()) + next_ % kFramesInFlight * kUniformSlice, &u, sizeof u);
 }
 
 PellucidImage Renderer::transient(std::uint32_t slot, const PellucidImageNeed& need) {
@@ -291,50 +292,37 @@ VkPipeline Renderer::meshPipeline(const DrawPass& pass, VkCullModeFlags cull) {
   const auto [entry, isNew] =
       meshPipelines_.try_emplace({pass.depthFormat(), pass.colorCount(), cull}, device_);
   if (!isNew) return entry->second;
-  const VkVertexInputBindingDescription binding{0, sizeof(Vertex), VK_VERTEX_INPUT_RATE_VERTEX};
-  const VkVertexInputAttributeDescription attributes[] = {
-      {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, position)},
-      {1, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, normal)},
-      {2, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(Vertex, uv)},
-      {3, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, color)},
-      {4, 0, VK_FORMAT_R32_SFLOAT, offsetof(Vertex, mark)},
-      {5, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(Vertex, normalUv)},
-      {6, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Vertex, tangent)}};
   DrawState state;
-  state.input.vertexBindingDescriptionCount = 1;
-  state.input.pVertexBindingDescriptions = &binding;
-  state.input.vertexAttributeDescriptionCount = static_cast<std::uint32_t>(std::size(attributes));
-  state.input.pVertexAttributeDescriptions = attributes;
+  state.input = UploadedMesh::vertexInput();
   state.raster.cullMode = cull;
   state.raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
   state.raster.depthBiasEnable = state.depthBiasIsDynamic = true;
   state.depth.depthTestEnable = state.depth.depthWriteEnable = true;
   state.depth.depthCompareOp = VK_COMPARE_OP_GREATER;  // reversed
-  const Spirv depthOnly{kSampleDepth, sizeof kSampleDepth}, gbuffer{kSampleGbuffer, sizeof kSampleGbuffer};
-  createPipeline(device_, pass, layout_, {kSampleMesh, sizeof kSampleMesh},
-                 pass.colorCount() > 0 ? gbuffer : depthOnly, state, entry->second);
+  const Spirv vertex{kSampleMesh, sizeof kSampleMesh}, gbuffer{kSampleGbuffer, sizeof kSampleGbuffer},
+      depth{kSampleDepth, sizeof kSampleDepth};
+  createPipeline(device_, pass, layout_, vertex, pass.colorCount() > 0 ? gbuffer : depth, state,
+                 entry->second);
   return entry->second;
 }
 
 void Renderer::drawScene(VkCommandBuffer commands, const DrawPass& pass, const glm::dmat4& clipFromWorld,
                          VkCullModeFlags cull) {
-  const VkDeviceSize offset = 0;
-  const VkBuffer vertices = vertices_.handle();
-  vkCmdBindVertexBuffers(commands, 0, 1, &vertices, &offset);
-  vkCmdBindIndexBuffer(commands, indices_.handle(), 0, VK_INDEX_TYPE_UINT32);
+  mesh_.bind(commands);
   for (const Part& part : scene_.model.parts) {
     const Surface& surface = scene_.model.surfaces[part.surface];
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
                       meshPipeline(pass, surface.doubleSided ? VkCullModeFlags{VK_CULL_MODE_NONE} : cull));
     const auto texture = [&](int index) {
-      const std::size_t i = index < 0 ? textures_.white() : static_cast<std::size_t>(index);
-      return Bound{textures_.image(i).use(), textures_.sampler(i)};
+      const std::size_t i = index < 0 ? mesh_.white() : static_cast<std::size_t>(index);
+      return Bound{mesh_.image(i).use(), mesh_.sampler(i)};
     };
-    bind(commands, {texture(surface.texture), texture(surface.normalMap)});
-    const DrawConstants constants = {clipFromWorld,
-                                     glm::vec4(toGlm(surface.baseColor), surface.alphaCutoff),
-                                     {surface.material, surface.material ? 0.45 : 0.8,
-                                      surface.normalMap < 0 ? 0 : surface.normalScale, 0}};
+    bind(commands, std::array{texture(surface.texture), texture(surface.normalMap)});
+    const float roughness = surface.material ? 0.45f : 0.8f;  // the loader has none
+    const DrawConstants constants = {
+        clipFromWorld,
+        {toGlm(surface.baseColor), surface.alphaCutoff},
+        {surface.material, roughness, surface.normalMap < 0 ? 0 : surface.normalScale, 0}};
     vkCmdPushConstants(commands, layout_, kStages, 0, sizeof constants, &constants);
     vkCmdDrawIndexed(commands, part.indexCount, 1, part.firstIndex, 0, 0);
   }
@@ -346,47 +334,45 @@ void Renderer::drawShadows(VkCommandBuffer commands) {
       const DrawPass& pass = *shadowPasses_[image][layer];
       pass.begin(commands, {{0, 0}, shadows_[image].extent()});
       const bool spots = image == kAtlas;
+      const VkCullModeFlags cull =
+          spots && settings_.cullFronts ? VK_CULL_MODE_FRONT_BIT : VK_CULL_MODE_BACK_BIT;
       vkCmdSetDepthBias(commands, spots ? -settings_.biasConstant : 0, 0, spots ? -settings_.biasSlope : 0);
-      for (const ShadowTile& tile : frame_.tiles) {
-        if (tile.image != image || tile.layer != layer) continue;
-        setViewport(commands, {{static_cast<int>(tile.x), static_cast<int>(tile.y)}, {tile.size, tile.size}});
-        drawScene(commands, pass, tile.clipFromWorld,
-                  spots && settings_.cullFronts ? VK_CULL_MODE_FRONT_BIT : VK_CULL_MODE_BACK_BIT);
+      for (const ShadowTile& t : frame_.tiles) {
+        if (t.image != image || t.layer != layer) continue;
+        setViewport(commands, {{static_cast<int>(t.x), static_cast<int>(t.y)}, {t.size, t.size}});
+        drawScene(commands, pass, t.clipFromWorld, cull);
       }
       vkCmdEndRenderPass(commands);
     }
 }
 
 void Renderer::drawGbuffer(VkCommandBuffer commands) {
-  const glm::dmat4 clipFromWorld = frame_.clipFromView * frame_.viewFromWorld;
   vkCmdSetDepthBias(commands, 0, 0, 0);
   for (const auto& [pass, cull] : {std::pair(gbufferPass_.get(), VK_CULL_MODE_BACK_BIT),
                                    std::pair(backPass_.get(), VK_CULL_MODE_FRONT_BIT)}) {
     pass->begin(commands, {{0, 0}, frame_.rect});
-    drawScene(commands, *pass, clipFromWorld, cull);
+    drawScene(commands, *pass, frame_.clipFromView * frame_.viewFromWorld, cull);
     vkCmdEndRenderPass(commands);
   }
 }
 
-void Renderer::light(VkCommandBuffer commands) {
-  drawScreen(commands, *lightingPass_, frame_.rect, lighting_,
-             {{frame_.normal, nearest()},
-              {frame_.albedo, nearest()},
-              {frame_.surface, nearest()},
-              {frame_.depth, nearest()},
-              {frame_.shadows[0], compare_},
-              {frame_.shadows[1], compare_},
-              {frame_.shadows[2], compare_}});
+void Renderer::light(VkCommandBuffer commands) const {
+  std::vector<Bound> images;
+  for (const PellucidImage& image : {frame_.normal, frame_.albedo, frame_.surface, frame_.depth})
+    images.push_back({image, nearest()});
+  for (const PellucidImage& image : frame_.shadows) images.push_back({image, compare_});
+  drawScreen(commands, *lightingPass_, frame_.rect, lighting_, images);
 }
 
-void Renderer::resolve(VkCommandBuffer commands) {
+void Renderer::resolve(VkCommandBuffer commands) const {
+  const PellucidImage before = targets_[kHistory + (frame_.index + 1) % 2]->use();
   drawScreen(
-      commands, *resolvePass_[frame_.index % 2], extent_, resolve_,
-      {{frame_.color, linear_}, {frame_.depth, nearest()}, {history_[(frame_.index + 1) % 2]->use(), linear_}});
+      commands, *resolvePasses_[frame_.index % 2], extent_, resolve_,
+      std::array{Bound{frame_.color, linear_}, Bound{frame_.depth, nearest()}, Bound{before, linear_}});
 }
 
 void Renderer::drawScreen(VkCommandBuffer commands, const DrawPass& pass, VkExtent2D extent,
-                          VkPipeline pipeline, const std::vector<Bound>& images) const {
+                          VkPipeline pipeline, std::span<const Bound> images) const {
   pass.begin(commands, {{0, 0}, extent});
   vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
   bind(commands, images);
@@ -395,23 +381,13 @@ void Renderer::drawScreen(VkCommandBuffer commands, const DrawPass& pass, VkExte
 }
 
 // The frame's uniforms at binding 0, images from 1 on.
-void Renderer::bind(VkCommandBuffer commands, const std::vector<Bound>& images) const {
-  const VkDescriptorBufferInfo uniforms{uniforms_.handle(), frame_.index % kFramesInFlight * kUniformSlice,
-                                        kUniformSlice};
-  VkDescriptorImageInfo infos[kImages];
-  VkWriteDescriptorSet writes[kImages + 1];
-  for (std::uint32_t i = 0; i <= images.size(); ++i) {
-    writes[i] = {VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
-    writes[i].dstBinding = i;
-    writes[i].descriptorCount = 1;
-    writes[i].descriptorType =
-        i == 0 ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-    writes[i].pBufferInfo = &uniforms;
-    if (i == 0) continue;
-    infos[i - 1] = {images[i - 1].sampler, images[i - 1].image.view, images[i - 1].image.layout};
-    writes[i].pImageInfo = &infos[i - 1];
-  }
-  layout_.push(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, {writes, images.size() + 1});
+void Renderer::bind(VkCommandBuffer commands, std::span<const Bound> images) const {
+  DescriptorWrites writes;
+  writes.buffer(0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,
+                {uniforms_.handle(), frame_.index % kFramesInFlight * kUniformSlice, kUniformSlice});
+  for (std::uint32_t i = 0; i < images.size(); ++i)
+    writes.image(i + 1, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, images[i].sampler, images[i].image);
+  layout_.push(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, writes.all());
 }
 
 }  // namespace pellucid::sample

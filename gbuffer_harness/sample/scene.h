@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "raster/framing.h"
-#include "raster/model.h"
 #include "sample/frame.h"
 #include "view/camera.h"
 
@@ -21,15 +20,14 @@ struct SceneLight {
 struct Scene {
   Model model;
   ViewCamera camera;
-  Bounds bounds;  // of what casts shadows
-  SceneLight sun, point;
-  std::vector<SceneLight> spots;
-  Harmonics ambient{};  // of a sky
+  Bounds bounds;                   // of what casts shadows
+  std::vector<SceneLight> lights;  // a sun, three spots and a point light
+  Harmonics ambient;               // of a sky
   std::vector<PellucidMaterial> materials;
   std::vector<std::string> notes;  // sentences for a person
 };
 
-// A glTF file under the sample's own lights; the file's are left out. presets: as GltfOptions takes them.
+// A glTF file under the sample's own lights, which replace the file's. presets: as GltfOptions takes them.
 // mapTexels: across a shadow map. Throws InputError as loadGltf() does, and where nothing scatters light.
 Scene fileScene(const std::filesystem::path& file, const std::map<std::string, std::string>& presets,
                 int mapTexels);

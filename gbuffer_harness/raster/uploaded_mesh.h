@@ -1,4 +1,4 @@
-// The textures of a model in device memory.
+// A model in device memory.
 #pragma once
 
 #include <memory>
@@ -10,11 +10,16 @@
 
 namespace pellucid::harness {
 
-// Linear colors and vectors in halves, without mip levels.
-class UploadedTextures {
+// Textures are linear colors and vectors in halves, without mip levels.
+class UploadedMesh {
 public:
-  // Throws DeviceError where a texture does not fit the device. The model is not needed afterwards.
-  UploadedTextures(Device& device, const Model& model);
+  // Throws DeviceError where the device cannot draw or a texture does not fit it. The model is not needed
+  // afterwards.
+  UploadedMesh(Device& device, const Model& model);
+
+  // What pipelines read as locations 0 to 7: the members of Vertex, in their order.
+  static VkPipelineVertexInputStateCreateInfo vertexInput();
+  void bind(VkCommandBuffer commandBuffer) const;  // vertices and indices
 
   // Index into Model::textures, or white(), a white texel whose sampler needs no filter.
   const GpuImage& image(std::size_t i) const { return *images_[i]; }
@@ -24,6 +29,7 @@ public:
 private:
   void add(Device& device, const Texture& texture, VkFilter filter);
 
+  HostBuffer vertices_, indices_;
   std::vector<std::unique_ptr<GpuImage>> images_;
   std::vector<std::unique_ptr<Owned<VkSampler, vkDestroySampler>>> samplers_;
 };
