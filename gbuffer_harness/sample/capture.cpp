@@ -68,9 +68,10 @@ Capture Renderer::capture() {
       map.depthBiasConstant = static_cast<double>(t.biasConstant * t.depthStep);
       map.depthBiasSlope = static_cast<double>(t.biasSlope);
       map.depthStep = static_cast<double>(t.depthStep);
-      map.sharedImage = static_cast<int>(t.image);
       map.offset = {static_cast<int>(t.x), static_cast<int>(t.y)};
-      map.layer = static_cast<int>(t.layer);
+      // A manifest has one array of layers: the cube's follow the cascades.
+      map.sharedImage = t.image == kAtlas;
+      map.layer = static_cast<int>(t.layer + (t.image == kCube ? shadows_[kCascades].layers() : 0));
     }
   }
   // Lit again, the color lacks what Pellucid added.

@@ -1,0 +1,63 @@
+// `pellucid_sample` as a person runs it.
+#include <cstdlib>
+
+#include "capture/read.h"
+#include "cli_fixture.h"
+#include "gltf_builder.h"
+
+namespace {
+
+using namespace pellucid::test;
+
+const std::string kSmall = "--frames 2 --width 40 --height 32 --shadow-size 32 --cell 20 --validate ";
+
+class SampleCommand : public Cli {
+protected:
+  // Of a material that does not scatter.
+  std::string triangle() const {
+    GltfBuilder gltf;
+    const int positions = gltf.vectors({0, 0, 0, 1, 0, 0, 0, 1, 0}),
+              normals = gltf.vectors({0, 0, 1, 0, 0, 1, 0, 0, 1});
+    gltf.json["meshes"] = {
+        {{"primitives",
+          {{{"attributes", {{"POSITION", positions}, {"NORMAL", normals}}}, {"material", 0}}}}}};
+    gltf.json["nodes"] = {{{"mesh", 0}}};
+    gltf.json["materials"] = {{{"name", "skin"}}};
+    std::ofstream(path("triangle.glb"), std::ios::binary) << gltf.glb();
+    return path("triangle.glb");
+  }
+};
+
+TEST_F(SampleCommand, DrawsAndCapturesTheProceduralHead) {
+  expect(0, kSmall + "--headless --turn 5 -o " + path("a.png") + " --capture " + path("a.exr"),
+         "2 frames\nwrote");
+  EXPECT_EQ(bytes("a.png").substr(0, 4), "\x89PNG");
+  const pellucid::harness::Capture capture = pellucid::harness::readCapture(path("a.exr"));
+  EXPECT_EQ(capture.width, 40);
+  EXPECT_EQ(capture.lights.size(), 5u);
+  EXPECT_TRUE(capture.truth.has_value());
+}
+
+TEST_F(SampleCommand, DrawsFiles) {
+  expect(0, triangle() + " --material skin=skin1 --headless " + kSmall, "2 frames");
+}
+
+TEST_F(SampleCommand, NamesWhatIsWrong) {
+  expect(3, path("none.glb") + " --headless", "none.glb");
+  expect(3, triangle() + " --headless " + kSmall, "materials: none scatters light; --material");
+  expect(3, triangle() + " --material skin=butter --headless", "butter");
+  expect(2, "--material skin --headless", "\"skin\" is not NAME=PRESET");
+  expect(2, "--scale 2 --headless", "--scale");
+  expect(2, "--mistake typo --headless", "--mistake");
+  expect(4, "--device nothing-like-it --cell 20 --headless", "nothing-like-it");
+  expect(3, kSmall + "--headless -o " + path("none/a.png"), "cannot be written");
+}
+
+TEST_F(SampleCommand, WindowOfAVirtualDisplay) {
+  if (std::system("command -v xvfb-run >/dev/null") != 0) GTEST_SKIP() << "xvfb-run is not installed";
+  const Outcome outcome = run(kSmall, "exec xvfb-run -a -s '-screen 0 320x200x24' ");
+  EXPECT_EQ(outcome.code, 0) << outcome.text;
+  EXPECT_NE(outcome.text.find("2 frames"), std::string::npos) << outcome.text;
+}
+
+}  // namespace

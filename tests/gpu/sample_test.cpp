@@ -1,0 +1,215 @@
+// The deferred renderer of gbuffer_harness/sample: what each feature changes, and captures of its frames
+// replayed.
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <numeric>
+
+#include "capture/material.h"
+#include "common/compare.h"
+#include "gpu_fixture.h"
+#include "sample/renderer.h"
+
+namespace {
+
+using namespace pellucid::test;
+using namespace pellucid::sample;
+
+constexpr int kMapTexels = 256;
+constexpr std::uint32_t kSide = 96;
+
+class Sample : public GpuTest {
+protected:
+  static const Scene& scene() {
+    static const Scene shared = headScene(5, kMapTexels);
+    return shared;
+  }
+  static Renderer& renderer() {
+    static Renderer shared(device(), scene(), {kSide, kSide}, kMapTexels);
+    return shared;
+  }
+  static ViewCamera camera() {
+    ViewCamera camera = scene().camera;
+    fitRange(camera, scene().bounds.center, scene().bounds.radius);
+    return camera;
+  }
+  // Without antialiasing, so that frames do not depend on those before.
+  static Settings still() {
+    Settings settings;
+    settings.taa = false;
+    return settings;
+  }
+  static Image drawn(const Settings& settings) {
+    renderer().draw(settings, camera());
+    return renderer().color();
+  }
+};
+
+double mean(const Image& image) {
+  return std::accumulate(image.data.begin(), image.data.end(), 0.0) / static_cast<double>(image.data.size());
+}
+
+// RMS of the difference over the RMS of `truth`.
+double relativeError(const Image& image, const Image& truth) {
+  double difference = 0, square = 0;
+  for (std::size_t i = 0; i < truth.data.size(); ++i) {
+    const double a = static_cast<double>(image.data[i]), b = static_cast<double>(truth.data[i]);
+    difference += (a - b) * (a - b);
+    square += b * b;
+  }
+  return std::sqrt(difference / square);
+}
+
+TEST_F(Sample, EachFeatureOnAndOff) {
+  const Image all = drawn(still());
+  EXPECT_GT(mean(all), 0.05);
+  for (bool Settings::*const feature : {&Settings::pellucid, &Settings::sun, &Settings::spots,
+                                        &Settings::point, &Settings::ambient, &Settings::specular}) {
+    Settings settings = still();
+    settings.*feature = false;
+    const Image without = drawn(settings);
+    EXPECT_TRUE(
+        std::all_of(without.data.begin(), without.data.end(), [](float v) { return v >= 0 && v < 100; }));
+    EXPECT_GT(relativeError(without, all), 0.02);
+    EXPECT_LT(mean(without), mean(all));
+  }
+  EXPECT_TRUE(sameBits(drawn(still()), all)) << "nothing of other frames stays";
+}
+
+// docs/integration.md: the irradiance is the engine's, and Pellucid adds to the color alone.
+TEST_F(Sample, WithoutPellucidTheColorIsAlbedoTimesIrradiance) {
+  Settings settings = still();
+  settings.specular = false;
+  const Image with = drawn(settings), irradiance = renderer().irradiance();
+  settings.pellucid = false;
+  const Image without = drawn(settings);
+  EXPECT_TRUE(sameBits(renderer().irradiance(), irradiance));
+  const Capture capture = renderer().capture();
+  int covered = 0;
+  for (std::size_t i = 0; i < capture.material.size(); ++i)
+    for (std::size_t c = 0; capture.material[i] != 0 && c < 3; ++c, ++covered)
+      ASSERT_NEAR(without.data[3 * i + c], capture.albedo.data[3 * i + c] * irradiance.data[3 * i + c],
+                  0.01 * without.data[3 * i + c] + 1e-4);  // 0.7 % of llvmpipe's sRGB decoding
+  EXPECT_GT(covered, 3000);
+  EXPECT_GT(relativeError(with, without), 0.05);
+}
+
+// Jitter, a rect at the images' corner and exposure included. The replay lacks the rest of the images, and
+// its albedo is decoded by the CPU: llvmpipe's sRGB decoding differs by up to 0.7 %.
+TEST_F(Sample, CapturesReplayToTheSamePicture) {
+  Settings settings;
+  settings.exposure = 1.7f;
+  settings.cullFronts = true;
+  settings.biasConstant = 2;
+  for (const double scale : {1.0, 0.6}) {
+    settings.scale = scale;
+    for (int frame = 0; frame < 3; ++frame) renderer().draw(settings, camera());
+    const Capture capture = renderer().capture();
+    EXPECT_EQ(capture.width, scale < 1 ? 58 : 96);
+    ReplaySettings replayed;
+    replayed.ambient = true;
+    replayed.translucency.gatherSamples = PELLUCID_GATHER_BY_QUALITY;
+    const Image output = rgb(replayer().run(capture, compileMaterials(capture), replayed).output);
+    Image covered(capture.width, capture.height, 3), truth = covered;
+    for (std::size_t i = 0; i < output.data.size(); ++i)
+      if (capture.material[i / 3] != 0) {
+        covered.data[i] = output.data[i];
+        truth.data[i] = capture.truth->image.data[i];
+      }
+    EXPECT_LT(relativeError(covered, truth), 0.005) << scale;
+    EXPECT_GT(mean(truth), 0.02);
+  }
+}
+
+TEST_F(Sample, FramesInFlightKeepTheirConstants) {
+  const Image alone = drawn(still());
+  Settings other = still();
+  other.sun = other.ambient = false;
+  other.scale = 0.5;
+  renderer().picture();  // the device is idle
+  renderer().draw(other, camera());
+  renderer().draw(other, camera());
+  renderer().draw(still(), camera());  // the first may still run
+  EXPECT_TRUE(sameBits(renderer().color(), alone));
+  renderer().draw(still(), camera());
+  renderer().draw(other, camera());
+  const Image dim = renderer().color();
+  EXPECT_TRUE(sameBits(drawn(other), dim));
+}
+
+// A rect with a projection of its own is what images of its size would hold.
+TEST_F(Sample, ARectIsAsAnImageOfItsSize) {
+  Settings settings = still();
+  settings.scale = 0.5;
+  const Image rect = drawn(settings);
+  Renderer small(device(), scene(), {kSide / 2, kSide / 2}, kMapTexels);
+  small.draw(still(), camera());
+  EXPECT_LT(relativeError(rect, small.color()), 0.01);
+}
+
+// Still pictures become sharper; the mean stays.
+TEST_F(Sample, AntialiasingKeepsTheMean) {
+  Settings settings;
+  settings.pellucid = false;
+  const auto picture = [&](bool taa) {
+    settings.taa = taa;
+    for (int frame = 0; frame < 9; ++frame) renderer().draw(settings, camera());
+    return rgb(renderer().picture().download());
+  };
+  const Image jagged = picture(false), smooth = picture(true);
+  EXPECT_NEAR(mean(smooth) / mean(jagged), 1, 0.01);
+  const double difference = relativeError(smooth, jagged);
+  EXPECT_GT(difference, 0.005);
+  EXPECT_LT(difference, 0.1);
+}
+
+// What the head gets from the spots, relative to plain maps.
+class SpotMaps : public Sample {
+protected:
+  static Image skin(const Settings& settings) {
+    Image result = drawn(settings);
+    const std::vector<std::uint8_t> material = renderer().capture().material;
+    for (std::size_t i = 0; i < result.data.size(); ++i) result.data[i] *= material[i / 3] != 0;
+    return result;
+  }
+  static Settings plain() {
+    Settings settings = still();
+    settings.sun = settings.point = settings.ambient = settings.specular = false;
+    return settings;
+  }
+};
+
+// Bounds are the differences of the first commit, rounded up. Culled fronts lack what gathered light adds:
+// quality 1 is darker. Relative RMSE of biased maps is of single pixels: a bias of 2 slopes moves surfaces by
+// two texels.
+TEST_F(SpotMaps, CulledFrontsAndBiasGiveThePlainPictureWhereTheyAreSaid) {
+  for (const std::uint32_t quality : {0u, 1u}) {
+    Settings settings = plain();
+    settings.quality = quality;
+    const Image truth = skin(settings);
+    const auto ratio = [&](const Settings& changed) { return mean(skin(changed)) / mean(truth); };
+    settings.cullFronts = true;
+    EXPECT_NEAR(ratio(settings), 1, 0.06) << quality;
+    settings.mistake = Mistake::Fronts;
+    EXPECT_GT(ratio(settings), 3) << quality;
+    settings = plain();
+    settings.quality = quality;
+    settings.biasConstant = 20;
+    settings.biasSlope = 2;
+    const Image said = skin(settings);
+    EXPECT_NEAR(mean(said) / mean(truth), 1, 0.02) << quality;
+    settings.mistake = Mistake::Bias;
+    EXPECT_GT(relativeError(skin(settings), truth), 1.8 * relativeError(said, truth)) << quality;
+  }
+}
+
+TEST(SampleLines, AreFew) {
+  const auto lines = [](const std::filesystem::path& file) {
+    std::ifstream in(file);
+    return std::count(std::istreambuf_iterator<char>(in), {}, '\n');
+  };
+  const std::filesystem::path folder = PELLUCID_SOURCE_DIR "/gbuffer_harness/sample";
+  EXPECT_LE(lines(folder / "pellucid_pass.h"), 80);
+}
+
+}  // namespace
