@@ -7,7 +7,7 @@ pellucid=$1 work=$2 pictures=$3 page=$4 models=${5:-}
 seconds=${SECONDS_EACH:-30} size=${SIZE:-256x192}
 mkdir -p "$work" "$pictures"
 
-wax='{"subsurface_color": [0.85, 0.7, 0.45], "subsurface_radius": 1.5}'
+wax='{"subsurface_color": [0.8, 0.65, 0.4], "subsurface_radius": 1, "subsurface_radius_scale": [1, 1, 1]}'
 leaf='{"subsurface_color": [0.2, 0.4, 0.05], "subsurface_radius": 0.06, "subsurface_radius_scale": [1, 1, 1]}'
 credit=
 head=(--procedural head --set view=1) ear=(--procedural ear) sky=(--procedural ear --set backLight=0 --set frontLight=0)
@@ -62,11 +62,12 @@ error() { "$pellucid" compare "$1.after.exr" "$1.exr" --box 4 | awk '$1 ~ /^[RGB
 
 scene head Head "A key and a rim light. Light comes through ears and nose, and shadows have red edges." -- "${head[@]}"
 scene ear Ear "A strong light behind the ear, a weak one before." -- "${ear[@]}"
-scene shell "Hollow shell" "A ball of skin with a wall of 2 mm, lit from behind." -- --procedural hollow_sphere --material '*=skin2' --set extent=22
-scene marble Marble "A ring of marble, 10 mm thick." -- --procedural torus --material '*=marble' --set tube=0.42
+scene shell "Hollow shell" "A ball of skin with a wall of 2 mm, lit from behind. The result is wrong here: the rim is too bright, and the light that crosses the hollow
+is missing." -- --procedural hollow_sphere --material '*=skin2' --set extent=22
+scene marble Marble "A ring of marble, 5 mm thick, lit from behind." -- --procedural torus --material '*=marble' --set tube=0.2
 scene wax Wax "A carved sheet of wax before a lamp, described by OpenPBR's color and radius." -- --procedural noise --material "*=$wax"
 scene milk Milk "Drops of whole milk." -- --procedural spheres --material '*=whole_milk'
 scene leaf Leaves "Blades of grass, 0.4 mm thick." -- --procedural blades --material "*=$leaf"
-scene sky "Sky only" "No light but a sky, which comes through thin parts by \`--set ambient=1\`." --set ambient=1 -- "${sky[@]}" --environment gradient:0.6,0.8,1.2:0.4,0.3,0.2
+scene sky "Sky only" "No light but a sky. Its light on visible faces spreads; \`--set ambient=1\` would let it through thin parts, too." -- "${sky[@]}" --environment gradient:0.6,0.8,1.2:0.4,0.3,0.2
 scene lights "Many lights" "Twelve lights of all hues around a head, each with a shadow map." -- --procedural head --set view=1 --set keyLight=0 --set rimLight=0 \
   --set lights=12
