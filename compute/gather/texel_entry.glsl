@@ -1,4 +1,5 @@
 // The entry point of a texel of a shadow map.
+#define MORE_SHADOW_IMAGES
 #include "frame/shadow_images.glsl"
 #include "lib/occluder.glsl"
 #include "lib/shadow.glsl"
