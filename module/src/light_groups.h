@@ -25,7 +25,8 @@ struct LightGroup {
   uint32_t entryWidth = 0, entryHeight = 0;  // the most that one of them has
   bool beside = true;                        // exit depths and caster materials have slots among the images
   uint32_t imageCount = 0;
-  uint32_t mostImages = PELLUCID_SHADOW_IMAGE_COUNT;  // more where the entry points' dispatch alone reads them
+  uint32_t mostImages =
+      PELLUCID_SHADOW_IMAGE_COUNT;  // more where the entry points' dispatch alone reads them
   std::array<uint32_t, PELLUCID_ENTRY_IMAGE_COUNT> images{};  // into frame.shadowImages
 
   // Slot of an image, or mostImages.
