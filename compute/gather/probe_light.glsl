@@ -64,12 +64,13 @@ void addSample(inout Gathered sum, Surface x, uint m, vec4 lengths, EntryPoint e
   sum.through += flux * (diffuses ? entry.hidden + entry.seen : entry.hidden) * comes;
   if (!diffuses) return;
   vec3 reflected = gatherReflected(materials[m].gather.profile.rgb, near, far);
-  float area = axisCosine / entry.cosine;
+  // What a grazed texel stands for beyond five times its area lies further away: its light does not count as if it were here.
+  float area = axisCosine / max(entry.cosine, kLeastCosine), here = min(entry.cosine / kLeastCosine, 1.0) * flux;
   vec3 alike = (1.0 - opposite) * reflected;
-  sum.entering += flux * entry.hidden * alike;
+  sum.entering += here * entry.hidden * alike;
   sum.hidden += area * entry.hidden * alike;
   sum.opposite += flux * entry.seen * opposite * reflected;
-  sum.seenLight += flux * entry.seen * alike;
+  sum.seenLight += here * entry.seen * alike;
   sum.seen += area * entry.seen * alike;
 }
 

@@ -50,6 +50,8 @@ using glm::vec4;
 #define PELLUCID_BINDING_DESTINATION 11
 #define PELLUCID_BINDING_SHADOW_IMAGES 12 // and the next SHADOW_IMAGE_COUNT - 1
 #define PELLUCID_SHADOW_IMAGE_COUNT 8     // 16 sampled images in all, which every device has
+#define PELLUCID_BINDING_MORE_SHADOW_IMAGES PELLUCID_BINDING_BACK_DEPTH // of entry points, which read none of those four
+#define PELLUCID_ENTRY_IMAGE_COUNT (PELLUCID_SHADOW_IMAGE_COUNT + 4) // four maps with exit depth and caster material
 #define PELLUCID_BINDING_LEVELS 20        // written by the diffusion's passes, which read no shadow images:
 #define PELLUCID_BINDING_PYRAMID PELLUCID_BINDING_SHADOW_IMAGES // the level or levels that are read
 #define PELLUCID_BINDING_COARSER_LEVELS (PELLUCID_BINDING_SHADOW_IMAGES + 1) // of upsampling: levels 4 and 5
