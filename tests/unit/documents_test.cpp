@@ -106,6 +106,16 @@ TEST(Documents, LinksLeadSomewhere) {
   EXPECT_GT(checked, 100);
 }
 
+TEST(Documents, ShowEveryPicture) {
+  std::string all;
+  for (const fs::path& file : documents()) all += contents(file);
+  const std::vector<fs::path> pictures = filesOf({"docs/images"}, {".png", ".svg", ".jpg"});
+  EXPECT_GT(pictures.size(), 10u);
+  for (const fs::path& picture : pictures)
+    EXPECT_NE(all.find("/" + picture.filename().string() + ")"), std::string::npos)
+        << nameOf(picture) << " is in no document";
+}
+
 TEST(Documents, SourcesNameDocumentsThatExist) {
   static const std::regex name(R"(\b(docs/[\w/.-]+\.md))");
   int checked = 0;
