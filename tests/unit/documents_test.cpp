@@ -219,6 +219,28 @@ TEST(Documents, CommandsParse) {
   }
 }
 
+// The cheap ones that need no file: descriptions of materials compile.
+TEST(Documents, CommandsOfMaterialsRun) {
+  const fs::path folder = fs::path(testing::TempDir()) / "pellucid_documents";
+  fs::create_directories(folder);
+  const fs::path before = fs::current_path();
+  fs::current_path(folder);  // pictures
+  int count = 0;
+  for (const Command& command : commandsOf("pellucid")) {
+    if (command.words.size() < 2 || command.words[1] != "material") continue;
+    ++count;
+    CLI::App app("", "pellucid");
+    pellucid::harness::addCommands(app);
+    std::vector<std::string> reversed(command.words.rbegin(), command.words.rend() - 1);
+    testing::internal::CaptureStdout();
+    EXPECT_NO_THROW(app.parse(reversed)) << command.where;
+    EXPECT_FALSE(testing::internal::GetCapturedStdout().empty()) << command.where;
+  }
+  fs::current_path(before);
+  fs::remove_all(folder);
+  EXPECT_GE(count, 3);
+}
+
 TEST(Documents, CommandsOfTheBenchParse) {
   const std::vector<Command> commands = commandsOf("pellucid_bench");
   for (Command command : commands) {
