@@ -9,26 +9,17 @@ mkdir -p "$work" "$pictures"
 
 wax='{"subsurface_color": [0.8, 0.65, 0.4], "subsurface_radius": 1, "subsurface_radius_scale": [1, 1, 1]}'
 leaf='{"subsurface_color": [0.2, 0.4, 0.05], "subsurface_radius": 0.06, "subsurface_radius_scale": [1, 1, 1]}'
-credit=
+credit= device=
 head=(--procedural head --set view=1) ear=(--procedural ear) sky=(--procedural ear --set backLight=0 --set frontLight=0)
 if [[ -n $models ]]; then
   scan=("$models/head_views.glb" --unit 0.052 --material '*=skin1' --shadow-size 2048)
   head=("${scan[@]}" --camera auto --view 0.35,0.05,1 --fov 19 --light directional:0.6,-0.4,-0.7:2 --light directional:0.5,-0.2,0.85:2)
   ear=("${scan[@]}" --camera ear --light directional:0.06,-0.25,1:5 --light directional:0.8,-0.3,-0.6:0.5)
-  credit=' Model of head and ear: "Infinite, 3D Head Scan" by Lee Perry-Smith, [CC BY 3.0](https://creativecommons.org/licenses/by/3.0/).'
+  credit=' The picture of the README is the ear at 420x420 pixels. Model of head and ear: "Infinite, 3D Head Scan" by Lee Perry-Smith, [CC BY 3.0](https://creativecommons.org/licenses/by/3.0/).'
 fi
 
-cat >"$page" <<EOF
-# Gallery
-
-This page shows what Pellucid does to scenes of all kinds, and how near the result comes to path tracing. \`./run gallery\` makes the page and its
-pictures from procedural scenes, \`./run gallery MODELS\` with a head scan in the place of the procedural head and ear.
-
-Each picture has three panels under one exposure: without Pellucid | with Pellucid, quality 1 | path traced. Path tracing had $seconds seconds for
-each picture, so its panels are noisy. The number is the relative RMSE of red, green and blue against path tracing, over averages of 4x4 pixels, noise
-included.$credit
-
-EOF
+body=$work/body.md
+: >"$body"
 
 # scene NAME TITLE TEXT REPLAY_OPTION... -- CAPTURE_OPTION...
 scene() {
@@ -39,7 +30,7 @@ scene() {
   echo "$title"
   "$pellucid" truth "$@" --size "$size" --seconds "$seconds" --overwrite -o "$file.exr" >"$file.log" 2>&1 || { cat "$file.log" >&2; exit 1; }
   "$pellucid" replay "$file.exr" --repeat 0 --set features=none -o "$file.before.exr" >/dev/null
-  "$pellucid" replay "$file.exr" --repeat 0 "${replay[@]}" -o "$file.after.exr" >/dev/null
+  device=$("$pellucid" replay "$file.exr" --repeat 0 "${replay[@]}" -o "$file.after.exr" | sed -n 1p)
   "$pellucid" sheet "$file.before.exr" "$file.after.exr" "$file.exr@truth" --columns 3 -o "$pictures/$name.png" >/dev/null
   {
     printf '## %s\n\n%s Error: %s.\n\n![%s: before, after, path traced](%s/%s.png)\n\n' "$title" "$text" "$(error "$file")" "$title" \
@@ -54,7 +45,7 @@ scene() {
     printf '    pellucid replay %s.exr' "$name"
     if ((${#replay[@]})); then printf ' %s' "${replay[@]}"; fi
     printf ' -o %s.after.exr\n\n' "$name"
-  } >>"$page"
+  } >>"$body"
 }
 
 # error FILE: relative RMSE of red, green and blue
@@ -71,3 +62,15 @@ scene leaf Leaves "Blades of grass, 0.4 mm thick." -- --procedural blades --mate
 scene sky "Sky only" "No light but a sky. Its light on visible faces spreads; \`--set ambient=1\` would let it through thin parts, too." -- "${sky[@]}" --environment gradient:0.6,0.8,1.2:0.4,0.3,0.2
 scene lights "Many lights" "Twelve lights of all hues around a head, each with a shadow map." -- --procedural head --set view=1 --set keyLight=0 --set rimLight=0 \
   --set lights=12
+
+cat - "$body" >"$page" <<EOF
+# Gallery
+
+This page shows what Pellucid does to scenes of all kinds, and how near the result comes to path tracing. \`./run gallery\` makes the page and its
+pictures from procedural scenes, \`./run gallery MODELS\` with a head scan in the place of the procedural head and ear.
+
+Each picture has three panels under one exposure: without Pellucid | with Pellucid, quality 1 | path traced. Path tracing had $seconds seconds for
+each picture, so its panels are noisy. The number is the relative RMSE of red, green and blue against path tracing, over averages of 4x4 pixels, noise
+included. Device: $device; commit $(git describe --always --dirty --abbrev=12).$credit
+
+EOF
