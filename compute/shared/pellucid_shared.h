@@ -220,13 +220,6 @@ struct KernelConstants {
   vec4 pixelShare[PELLUCID_PIXEL_SHARES * PELLUCID_SHARE_ENTRIES];
 };
 
-// VkDispatchIndirectCommands of what follows the gather's probes; x: columns of groups, 0 where it does not run; w: where it
-// does.
-struct GatherDispatches {
-  uvec4 filterProbes, light; // if some probe has light, which the diffusion adds
-  uvec4 noLight;             // the diffusion alone, if none has
-};
-
 // Push constants of each pass:
 // translucency, debug view: PELLUCID_LIGHT_*, lights, PELLUCID_WRITE_*
 // add gathered: pixels a side of a cell, lights, PELLUCID_WRITE_*, lights that are gathered from
