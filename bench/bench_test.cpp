@@ -17,6 +17,7 @@
 #include "frame_errors.h"
 #include "reference/reference.h"
 #include "scene/scene.h"
+#include "submission.h"
 #include "turntable_shares.h"
 
 namespace pellucid::bench {
@@ -24,6 +25,52 @@ namespace {
 
 using namespace harness;
 using Json = nlohmann::json;
+
+// ---- Submissions
+
+Json measured() {
+  Json frame = {{"section", "frames"}, {"kind", "frame"}, {"frame", "far"},
+                {"size", "64x36"},     {"covered", 0.25}, {"name", "frame"}};
+  Json whole = {{"section", "frames"}, {"kind", "whole"}, {"frame", "far"},
+                {"size", "64x36"},     {"name", "HDRP"},  {"us", 12.5}};
+  Json part = whole;
+  part["kind"] = "diffusion";
+  part["name"] = "not submitted";
+  return {{"device", "a card, a driver 1.2"},
+          {"device_name", "a card"},
+          {"vulkan", "1.3.0"},
+          {"commit", "abc"},
+          {"repeat", 7},
+          {"results", {frame, whole, part}}};
+}
+
+TEST(Submission, HasDeviceDriverCommitAndWholeFrames) {
+  const nlohmann::ordered_json json = submission(measured());
+  EXPECT_EQ(json["device"], "a card");
+  EXPECT_EQ(json["driver"], "a driver 1.2");
+  EXPECT_EQ(json["commit"], "abc");
+  ASSERT_EQ(json["frames"].size(), 1u);
+  EXPECT_EQ(json["frames"][0]["covered"], 0.25);
+  EXPECT_EQ(json["frames"][0]["us"], Json({{"HDRP", 12.5}}));
+}
+
+TEST(Submission, NamesWhatResultsLack) {
+  Json old = measured(), empty = measured(), untimed = measured();
+  old.erase("device_name");
+  empty["results"] = Json::array();
+  untimed["results"].erase(1);
+  const auto complaint = [](const Json& results) -> std::string {
+    try {
+      submission(results);
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "none";
+  };
+  EXPECT_NE(complaint(old).find("device_name"), std::string::npos) << complaint(old);
+  EXPECT_NE(complaint(empty).find("no section \"frames\""), std::string::npos) << complaint(empty);
+  EXPECT_NE(complaint(untimed).find("far"), std::string::npos) << complaint(untimed);
+}
 
 // ---- Runs
 
@@ -283,6 +330,25 @@ TEST_F(Command, WithoutItsLibraryOnlyFilesAreRefused) {
       std::system((alone.string() + " --tables frames --models . >" + out.string() + " 2>&1").c_str());
   EXPECT_EQ(WEXITSTATUS(status), 3);
   EXPECT_NE(output().find("pellucid_bench_models.so: cannot be loaded"), std::string::npos) << output();
+}
+
+TEST_F(Command, SubmitsTheFramesOfARun) {
+  const std::filesystem::path file = folder / "submission.json";
+  ASSERT_EQ(runs("--tables frames --frame-names nothing --frame-sizes 32x32 --shadow-size 16 --error-pixels "
+                 "16 --repeat 1 --submit " +
+                 file.string()),
+            0)
+      << output();
+  const Json json = Json::parse(std::ifstream(file));
+  EXPECT_NE(json["device"], "");
+  EXPECT_NE(json["commit"], "");
+  ASSERT_EQ(json["frames"].size(), 1u);
+  EXPECT_EQ(json["frames"][0]["frame"], "nothing");
+  EXPECT_GT(json["frames"][0]["us"]["Pellucid, quality 1"], 0);
+  EXPECT_LT(std::filesystem::file_size(file), 4000u);
+  EXPECT_NE(runs("--tables context --submit " + file.string()), 0);
+  EXPECT_NE(output().find("the table frames"), std::string::npos) << output();
+  EXPECT_EQ(runs("--results " + file.string() + " --submit " + file.string()), 3);
 }
 
 TEST_F(Command, NeedsNoLibraryOfFiles) {

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <map>
 #include <optional>
 #include <vector>
@@ -10,6 +9,9 @@
 namespace pellucid::bench {
 
 namespace {
+
+constexpr const char* kSummarySize = "1920x1080";
+constexpr const char* kSummaryTruth = "head_ior1.4";  // a frame with path-traced truth
 
 const std::string kDefault = "Pellucid, quality 1", kWithoutGather = "Pellucid, quality 1 without a gather";
 
@@ -93,24 +95,28 @@ std::string header(const std::string& first, const std::vector<std::string>& col
   return text + "\n" + rule + "\n";
 }
 
-// Rows of the README's tables.
-const std::vector<std::string> kBrief = {"Pellucid, quality 0", "Pellucid, quality 1", "Pellucid, quality 2",
-                                         "Jimenez 2010 + 2015, 11 taps", "HDRP, 20 samples"};
-
-// One row a name of kBrief, one column a frame; `cell`: of a whole frame's row.
-std::string briefTable(const Frames& all, const std::string& size, const std::vector<std::string>& columns,
-                       const std::function<std::string(const Json&)>& cell) {
-  std::string table = header("", columns);
-  for (const std::string& name : kBrief) {
-    table += "| " + name + " |";
-    for (const std::string& frame : all.frames()) {
-      const Json* row = all.find(frame, size, "whole", name);
-      table += row ? cell(*row) : " |";
-    }
-    table += "\n";
-  }
-  return table;
+// Throws NotMeasured.
+const Json& whole(const Frames& all, const std::string& frame, const std::string& size,
+                  const std::string& name) {
+  if (const Json* row = all.find(frame, size, "whole", name)) return *row;
+  throw NotMeasured("no \"" + name + "\" of frame \"" + frame + "\" at " + size);
 }
+
+// What the README says of two runs: one with times, one with errors against path tracing; either run may have
+// both.
+class Summary {
+public:
+  explicit Summary(const std::vector<Json>& runs);  // throws NotMeasured
+  std::string heading() const;
+  // Cells of a whole frame's row. memory: of transients at the times' size.
+  std::string time(const std::string& frame, const std::string& name) const;
+  std::string error(const std::string& name) const;
+  std::string memory(const std::string& name) const;
+
+private:
+  const Json* times_ = nullptr;
+  const Json* errors_ = nullptr;
+};
 
 std::vector<std::string> coveredOf(const Frames& all) {
   std::vector<std::string> columns;
@@ -147,6 +153,41 @@ std::string listed(const std::vector<std::string>& words) {
   return text;
 }
 
+Summary::Summary(const std::vector<Json>& runs) {
+  for (const Json& run : runs)
+    for (const Json& r : run.at("results")) {
+      if (!times_ && r.value("size", "") == kSummarySize && r.contains("us")) times_ = &run;
+      if (!errors_ && r.value("frame", "") == kSummaryTruth && r.contains("truth_relative_rmse_rgb"))
+        errors_ = &run;
+    }
+  if (!times_) throw NotMeasured(std::string("no times at ") + kSummarySize);
+  if (!errors_) throw NotMeasured(std::string("no frame \"") + kSummaryTruth + "\" with path-traced truth");
+}
+
+std::string Summary::heading() const {
+  return format("Times at %s: %s. Errors of %s: ", kSummarySize, runOf(*times_).c_str(), kSummaryTruth) +
+         (times_->at("device") == errors_->at("device")
+              ? format("commit `%s`", errors_->at("commit").get<std::string>().c_str())
+              : runOf(*errors_)) +
+         ".\n\n";
+}
+
+std::string Summary::time(const std::string& frame, const std::string& name) const {
+  return format(" %s |", timeOf(whole(Frames(*times_), frame, kSummarySize, name)).c_str());
+}
+
+std::string Summary::error(const std::string& name) const {
+  const Frames all(*errors_);
+  const Json& row = whole(all, kSummaryTruth, all.sizes().front(), name);
+  return format(" %.3f | %.3f |", row.at("truth_relative_rmse_rgb").at(0).get<double>(),
+                row.at("flip").get<double>());
+}
+
+std::string Summary::memory(const std::string& name) const {
+  const Json& row = whole(Frames(*times_), "portrait", kSummarySize, name);
+  return format(" %.0f |", row.at("transient_bytes").get<double>() / 1e6);
+}
+
 }  // namespace
 
 std::string framesTable(const Json& results) {
@@ -157,16 +198,6 @@ std::string framesTable(const Json& results) {
   if (sizes.empty()) sizes = all.sizes();
   return all.heading("microseconds at " + listed(sizes) + ", then the error; in brackets: the covered part") +
          byFrame(all, "whole", sizes);
-}
-
-std::string framesBriefTable(const Json& results) {
-  const Frames all(results);
-  const std::vector<std::string>& sizes = all.sizes();
-  const std::string full = "1920x1080";
-  const std::string size = std::count(sizes.begin(), sizes.end(), full) > 0 ? full : sizes.front();
-  return all.heading("whole frames at " + size + " in microseconds; in brackets: the covered part") +
-         briefTable(all, size, coveredOf(all),
-                    [](const Json& row) { return format(" %s |", timeOf(row).c_str()); });
 }
 
 std::string frameSizesTable(const Json& results) {
@@ -274,18 +305,29 @@ std::string truthTable(const Json& results) {
          rows;
 }
 
-std::string truthBriefTable(const Json& results) {
-  const Frames all(results);
-  bool some = false;
-  const std::string table =
-      briefTable(all, all.sizes().front(), all.frames(), [&](const Json& row) -> std::string {
-        if (!row.contains("truth_relative_rmse_rgb")) return " |";
-        some = true;
-        return format(" %.3f, %.3f |", row.at("truth_relative_rmse_rgb").at(0).get<double>(),
-                      row.at("flip").get<double>());
-      });
-  if (!some) throw NotMeasured("no frame with path-traced truth");
-  return all.heading("whole frames, relative RMSE of red and mean FLIP") + table;
+std::string headlineTable(const std::vector<Json>& runs) {
+  const Summary summary(runs);
+  std::string table =
+      summary.heading() + header("whole frame", {"head, us", "face that fills the screen, us",
+                                                 "nothing on screen, us", "error in red", "mean FLIP"});
+  for (const std::string& name :
+       {std::string("Pellucid, quality 1"), std::string("Jimenez 2010 + 2015, 11 taps"),
+        std::string("HDRP, 20 samples")})
+    table += "| " + name + " |" + summary.time("portrait", name) + summary.time("closeup", name) +
+             summary.time("nothing", name) + summary.error(name) + "\n";
+  return table;
+}
+
+std::string qualitiesTable(const std::vector<Json>& runs) {
+  const Summary summary(runs);
+  std::string table =
+      summary.heading() + header("`quality`", {"head, us", "error in red", "mean FLIP", "transients, MB"});
+  for (const char* quality : {"0", "1", "2"}) {
+    const std::string name = std::string("Pellucid, quality ") + quality;
+    table += std::string("| ") + quality + " |" + summary.time("portrait", name) + summary.error(name) +
+             summary.memory(name) + "\n";
+  }
+  return table;
 }
 
 std::string contextTable(const Json& results) {

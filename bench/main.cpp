@@ -15,6 +15,7 @@
 #include "options.h"
 #include "plane.h"
 #include "scene.h"
+#include "submission.h"
 #include "sweep.h"
 #include "thesis.h"
 
@@ -76,7 +77,14 @@ public:
   Json measure(const Keep& keep) {
     std::fprintf(table_, "%s, commit %s, median of %d\n", device_.description().c_str(), PELLUCID_COMMIT,
                  repeat_);
-    json_ = {{"device", device_.description()}, {"commit", PELLUCID_COMMIT}, {"repeat", repeat_}};
+    const uint32_t vulkan = device_.properties().apiVersion;
+    json_ = {{"device", device_.description()},
+             {"device_name", device_.properties().deviceName},
+             {"vulkan", std::to_string(VK_API_VERSION_MAJOR(vulkan)) + "." +
+                            std::to_string(VK_API_VERSION_MINOR(vulkan)) + "." +
+                            std::to_string(VK_API_VERSION_PATCH(vulkan))},
+             {"commit", PELLUCID_COMMIT},
+             {"repeat", repeat_}};
     // Bad files are named before the context takes its time.
     std::vector<FrameSource> sources;
     if (wanted("frames")) sources = frameSources(device_, options_.frames);
@@ -149,6 +157,7 @@ int run(const Options& options) {
     if (options.json != "-") write(json, options);
   });
   if (!stored) write(now, options);
+  if (!options.submit.empty()) writeSubmission(now, options.submit);
   if (options.compare.empty()) return 0;
   return printWhatGrew(before, now, options.json == "-" ? stderr : stdout) > 0 ? 1 : 0;
 }

@@ -45,6 +45,7 @@ struct Options {
   FrameOptions frames;
   SweepOptions sweep;
   std::filesystem::path compare, results;
+  std::filesystem::path submit;  // file for a small extract of the results; empty: none
   // Options of the processes that the section context starts.
   bool createContext = false;
   std::filesystem::path loadCache, saveCache;

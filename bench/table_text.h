@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace pellucid::bench {
 
@@ -30,13 +31,15 @@ inline std::string runOf(const Json& results) {
 
 // Tables of the section "frames", and of "context creation". Throw NotMeasured.
 std::string framesTable(const Json& results);           // whole frames at two sizes beside their errors
-std::string framesBriefTable(const Json& results);      // times of a few of them at one size
 std::string frameSizesTable(const Json& results);       // whole frames at all sizes
 std::string framePartsTable(const Json& results);       // translucency and diffusion alone
 std::string frameDispatchesTable(const Json& results);  // of two settings, dispatch by dispatch
 std::string frameHostTable(const Json& results);        // CPU times, memory, dispatches
 std::string truthTable(const Json& results);  // of captures with path-traced truth: error and metrics
-std::string truthBriefTable(const Json& results);  // two of the metrics of a few frames
 std::string contextTable(const Json& results);
+
+// The README's tables, of the first run with times and the first with path-traced truth. Throw NotMeasured.
+std::string headlineTable(const std::vector<Json>& runs);   // times and errors beside others'
+std::string qualitiesTable(const std::vector<Json>& runs);  // time, error and memory of each quality
 
 }  // namespace pellucid::bench

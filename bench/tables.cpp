@@ -1,7 +1,7 @@
 // Prints the documentation's tables of measured times from the results of a run, or checks or rewrites them
 // in a file:
 //   pellucid_bench_tables RESULTS.json[,RESULTS.json...] TABLE [--check | --update FILE]
-// Of several files the first that has what the table shows.
+// Of several files the first that has what the table shows; headline and qualities join two of them.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -104,31 +104,42 @@ std::string sweep(const Json& results) {
   return table;
 }
 
-struct Table {
-  const char* name;
-  std::string (*make)(const Json& results);
-};
-
-constexpr Table kTables[] = {{"measured", measured},
-                             {"sweep", sweep},
-                             {"frames", framesTable},
-                             {"frames_brief", framesBriefTable},
-                             {"frame_sizes", frameSizesTable},
-                             {"frame_parts", framePartsTable},
-                             {"frame_dispatches", frameDispatchesTable},
-                             {"frame_host", frameHostTable},
-                             {"context", contextTable},
-                             {"truth", truthTable},
-                             {"truth_brief", truthBriefTable}};
-
-constexpr int kNothingMeasured = 77;  // CTest's word for a test that was skipped
-
 std::vector<std::string> split(const std::string& list) {
   std::vector<std::string> parts;
   std::stringstream text(list);
   for (std::string part; std::getline(text, part, ',');) parts.push_back(part);
   return parts;
 }
+
+// Of the first run that has what the table shows.
+template <std::string (*make)(const Json&)>
+std::string ofFirst(const std::vector<Json>& runs) {
+  for (const Json& run : runs) try {
+      return make(run);
+    } catch (const NotMeasured& e) {
+      std::fprintf(stderr, "%s; run passed over\n", e.what());
+    }
+  throw NotMeasured("nothing to make it of");
+}
+
+struct Table {
+  const char* name;
+  std::string (*make)(const std::vector<Json>& runs);
+};
+
+constexpr Table kTables[] = {{"measured", ofFirst<measured>},
+                             {"sweep", ofFirst<sweep>},
+                             {"frames", ofFirst<framesTable>},
+                             {"frame_sizes", ofFirst<frameSizesTable>},
+                             {"frame_parts", ofFirst<framePartsTable>},
+                             {"frame_dispatches", ofFirst<frameDispatchesTable>},
+                             {"frame_host", ofFirst<frameHostTable>},
+                             {"context", ofFirst<contextTable>},
+                             {"truth", ofFirst<truthTable>},
+                             {"headline", headlineTable},
+                             {"qualities", qualitiesTable}};
+
+constexpr int kNothingMeasured = 77;  // CTest's word for a test that was skipped
 
 }  // namespace
 
@@ -146,6 +157,7 @@ int main(int argc, char** argv) {
                  names.c_str());
     return 2;
   }
+  std::vector<Json> runs;
   for (const std::string& path : split(argv[1])) {
     std::ifstream file(path);
     if (!file) {
@@ -153,15 +165,19 @@ int main(int argc, char** argv) {
       continue;
     }
     try {
-      const std::string content = table->make(Json::parse(file));
-      return generatedBlock(argc - 3, argv + 3, name, content);
-    } catch (const NotMeasured& e) {
-      std::fprintf(stderr, "%s: %s; passed over\n", path.c_str(), e.what());
+      runs.push_back(Json::parse(file));
     } catch (const std::exception& e) {
       std::fprintf(stderr, "%s: %s\n", path.c_str(), e.what());
       return 1;
     }
   }
-  std::fprintf(stderr, "table %s: nothing to make it of\n", name.c_str());
-  return kNothingMeasured;
+  try {
+    return generatedBlock(argc - 3, argv + 3, name, table->make(runs));
+  } catch (const NotMeasured& e) {
+    std::fprintf(stderr, "table %s: %s\n", name.c_str(), e.what());
+    return kNothingMeasured;
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "%s: %s\n", argv[1], e.what());
+    return 1;
+  }
 }

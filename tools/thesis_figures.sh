@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # thesis_figures.sh PELLUCID FOLDER [MODEL.glb OPTION...]: figures of Whelan 2009 in FOLDER, thesis.png and angles.png. The ear of the
-# procedural scene, or a model with options of `pellucid capture`; figure 4.5 needs a model.
+# procedural scene, or a model with options of `pellucid capture`; figures 4.5 and 4.10 need a model.
 set -euo pipefail
 pellucid=$1 folder=$2
 shift 2
@@ -42,6 +42,11 @@ picture "4.6 without shadow map" unshadowed 1 "${camera[@]}"
 picture "4.6 with shadow map" scene 1 "${camera[@]}"
 picture "4.9 equal in R, G, B" scene 1 "${camera[@]}" --set filter=.373,.373,.373
 picture "4.9 .55 .29 .28" scene 1 "${camera[@]}" --set filter=.55,.29,.28
+if [[ ${source[0]} != --* ]]; then
+  capture simplified --simplify .05
+  picture "4.10 full model" scene 1 "${camera[@]}"
+  picture "4.10 a twentieth of the triangles" simplified 1 "${camera[@]}"
+fi
 picture "5.2 full light" scene 1 "${camera[@]}"
 picture "5.2 a quarter of it" scene 1 "${camera[@]}" --set filter=.25,.25,.25
 "$pellucid" truth "${source[@]}" --size "$size" --seconds 20 --overwrite -o "$folder/truth.exr" >/dev/null 2>&1

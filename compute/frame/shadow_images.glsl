@@ -1,4 +1,5 @@
-// The shadow images of one dispatch: 2D views, or with PELLUCID_SHADOW_ARRAY views of all layers of array images.
+// The shadow images of one dispatch: 2D views, or with PELLUCID_SHADOW_ARRAY views of all layers of array images. Entry
+// points define MORE_SHADOW_IMAGES.
 #ifndef PELLUCID_SHADOW_IMAGES_GLSL
 #define PELLUCID_SHADOW_IMAGES_GLSL
 
@@ -24,6 +25,19 @@ layout(set = 0, binding = SHADOW_BINDING + 4) uniform PELLUCID_SHADOW_TEXTURE sh
 layout(set = 0, binding = SHADOW_BINDING + 5) uniform PELLUCID_SHADOW_TEXTURE shadowImage5;
 layout(set = 0, binding = SHADOW_BINDING + 6) uniform PELLUCID_SHADOW_TEXTURE shadowImage6;
 layout(set = 0, binding = SHADOW_BINDING + 7) uniform PELLUCID_SHADOW_TEXTURE shadowImage7;
+#ifdef MORE_SHADOW_IMAGES
+layout(set = 0, binding = PELLUCID_BINDING_MORE_SHADOW_IMAGES + 0) uniform PELLUCID_SHADOW_TEXTURE shadowImage8;
+layout(set = 0, binding = PELLUCID_BINDING_MORE_SHADOW_IMAGES + 1) uniform PELLUCID_SHADOW_TEXTURE shadowImage9;
+layout(set = 0, binding = PELLUCID_BINDING_MORE_SHADOW_IMAGES + 2) uniform PELLUCID_SHADOW_TEXTURE shadowImage10;
+layout(set = 0, binding = PELLUCID_BINDING_MORE_SHADOW_IMAGES + 3) uniform PELLUCID_SHADOW_TEXTURE shadowImage11;
+#define PELLUCID_MORE_SLOTS(fetch)           \
+    case 8u: return fetch(shadowImage8);     \
+    case 9u: return fetch(shadowImage9);     \
+    case 10u: return fetch(shadowImage10);   \
+    case 11u: return fetch(shadowImage11);
+#else
+#define PELLUCID_MORE_SLOTS(fetch)
+#endif
 
 #define PELLUCID_TEXEL(slot, texel) texelFetch(slot, PELLUCID_SHADOW_PLACE(texel, image), 0).x
 
@@ -38,6 +52,7 @@ layout(set = 0, binding = SHADOW_BINDING + 7) uniform PELLUCID_SHADOW_TEXTURE sh
     case 4u: return fetch(shadowImage4);     \
     case 5u: return fetch(shadowImage5);     \
     case 6u: return fetch(shadowImage6);     \
+    PELLUCID_MORE_SLOTS(fetch)               \
     default: return fetch(shadowImage7);     \
   }
 
@@ -72,6 +87,7 @@ vec4 shadowQuad(uint image, ivec2 low, ivec2 high) { PELLUCID_RETURN_OF_SLOT(PEL
 #undef PELLUCID_CROSS
 #undef PELLUCID_QUAD
 #undef PELLUCID_RETURN_OF_SLOT
+#undef PELLUCID_MORE_SLOTS
 #undef PELLUCID_TEXEL
 
 #endif

@@ -12,10 +12,14 @@ struct EntryPoint {
   vec3 normal;  // unit, towards the light
   float hidden; // part of the light that enters where the camera does not see it
   float seen;   // part that enters where the camera does, and is in the irradiance
-  float cosine; // between normal and light, above 0
+  float cosine; // between normal and light, above 0; not held to kLeastCosine
   float exit;   // scene units along the light from the surface to the nearest back face behind it; kNoExit: not known
   uint material; // index + 1 of what light enters; 0: not known
 };
+
+// Least cosine at which a surface counts: a sample that stands for more than five times its own area shows as a dot at
+// terminators.
+const float kLeastCosine = 0.2;
 
 const float kNoExit = 6.0e4; // fits in a half
 const uvec4 kNoEntry = uvec4(0u), kSeveralSurfaces = uvec4(0u, 0u, 0u, 0x100u); // several: no mean makes sense

@@ -4,6 +4,9 @@
 
 const float kLastRing = 1.0e12; // squared radius of what lies beyond all samples
 
+// Largest distances looked for, 2 / kappa each, beyond which a lit surface brings nothing to an unlit point: T is below 1e-5.
+const float kFarthestLit = 6.0;
+
 // Side of the part of the map that a sample stands for, per radius of its ring: a twelfth of the ring.
 const float kSampleSide = 0.5;
 
@@ -64,12 +67,13 @@ void addSample(inout Gathered sum, Surface x, uint m, vec4 lengths, EntryPoint e
   sum.through += flux * (diffuses ? entry.hidden + entry.seen : entry.hidden) * comes;
   if (!diffuses) return;
   vec3 reflected = gatherReflected(materials[m].gather.profile.rgb, near, far);
-  float area = axisCosine / entry.cosine;
+  // What a grazed texel stands for beyond five times its area lies further away: its light does not count as if it were here.
+  float area = axisCosine / max(entry.cosine, kLeastCosine), here = min(entry.cosine / kLeastCosine, 1.0) * flux;
   vec3 alike = (1.0 - opposite) * reflected;
-  sum.entering += flux * entry.hidden * alike;
+  sum.entering += here * entry.hidden * alike;
   sum.hidden += area * entry.hidden * alike;
   sum.opposite += flux * entry.seen * opposite * reflected;
-  sum.seenLight += flux * entry.seen * alike;
+  sum.seenLight += here * entry.seen * alike;
   sum.seen += area * entry.seen * alike;
 }
 
@@ -135,13 +139,14 @@ vec3 gatherLight(uint m, LightConstants light, Surface x, Pattern pattern, vec3 
   Incident incident = incidentLight(light, x.position);
   GatherRings rings;
   if (!gatherRings(light, x, incident.toLight, incident.distanceTo, materials[m].gather.lengths.z, rings)) return vec3(0.0);
-  Gathered g = gatherSamples(m, light, x, pattern, incident, rings);
-  vec3 through = g.through * frame.filterAndLimit.rgb * materials[m].inverseReflectance.rgb;
-  if (!hasFlag(PELLUCID_FLAG_DIFFUSED)) return through;
   float cosine = x.hasNormal ? max(dot(x.normal, incident.toLight), 0.0) : 0.0;
   // The sums have the light's cone and range.
   float falloff = directional(light) ? 1.0 : 1.0 / max(incident.distanceTo * incident.distanceTo, 1.0e-12);
   float own = falloff * cosine * arrivesAt(rings, cosine);
+  if (own == 0.0 && rings.ahead > kFarthestLit * materials[m].gather.lengths.z) return vec3(0.0);
+  Gathered g = gatherSamples(m, light, x, pattern, incident, rings);
+  vec3 through = g.through * frame.filterAndLimit.rgb * materials[m].inverseReflectance.rgb;
+  if (!hasFlag(PELLUCID_FLAG_DIFFUSED)) return through;
   vec3 hidden = min(g.hidden, vec3(1.0)), seen = g.seenLight / max(g.seen, vec3(1.0e-12)), around = 0.5 * (own + seen);
   // Diffused light is no more than what lies around, and a dark point has next to none of its own to lose.
   vec3 opposite = min(g.opposite, through + own);

@@ -1,11 +1,8 @@
 // The entry point of a texel of a shadow map.
+#define MORE_SHADOW_IMAGES
 #include "frame/shadow_images.glsl"
 #include "lib/occluder.glsl"
 #include "lib/shadow.glsl"
-
-// Least cosine at which a surface counts: a sample that stands for more than five times its own area shows as a dot at
-// terminators.
-const float kLeastCosine = 0.2;
 
 // Slope towards the camera up to which a pixel's own slope excuses a point behind its depth: 63 degrees. Steeper limbs enter
 // light that their few pixels do not all show: without this end a sphere of 8 mm is off by a third more.
@@ -115,7 +112,7 @@ uvec4 entryOf(float depth, float share, vec3 normal, vec3 toLight, ivec2 pixel, 
     normal *= inversesqrt(squared);
     float cosine = dot(normal, toLight);
     r.normal = cosine < 0.0 ? -normal : normal;
-    r.cosine = max(abs(cosine), kLeastCosine);
+    r.cosine = abs(cosine);
   }
   if (cameraSees(pixel, front, planar, r.normal, tolerance, uncertain * dot(r.normal, toLight))) {
     r.seen = share;

@@ -50,6 +50,8 @@ using glm::vec4;
 #define PELLUCID_BINDING_DESTINATION 11
 #define PELLUCID_BINDING_SHADOW_IMAGES 12 // and the next SHADOW_IMAGE_COUNT - 1
 #define PELLUCID_SHADOW_IMAGE_COUNT 8     // 16 sampled images in all, which every device has
+#define PELLUCID_BINDING_MORE_SHADOW_IMAGES PELLUCID_BINDING_BACK_DEPTH // of entry points, which read none of those four
+#define PELLUCID_ENTRY_IMAGE_COUNT (PELLUCID_SHADOW_IMAGE_COUNT + 4) // four maps with exit depth and caster material
 #define PELLUCID_BINDING_LEVELS 20        // written by the diffusion's passes, which read no shadow images:
 #define PELLUCID_BINDING_PYRAMID PELLUCID_BINDING_SHADOW_IMAGES // the level or levels that are read
 #define PELLUCID_BINDING_COARSER_LEVELS (PELLUCID_BINDING_SHADOW_IMAGES + 1) // of upsampling: levels 4 and 5
@@ -216,13 +218,6 @@ struct KernelConstants {
   // For each side of a pixel: which part of all energy level 2 and coarser ones have, and these and the fine filter of the
   // pixel and its neighbors.
   vec4 pixelShare[PELLUCID_PIXEL_SHARES * PELLUCID_SHARE_ENTRIES];
-};
-
-// VkDispatchIndirectCommands of what follows the gather's probes; x: columns of groups, 0 where it does not run; w: where it
-// does.
-struct GatherDispatches {
-  uvec4 filterProbes, light; // if some probe has light, which the diffusion adds
-  uvec4 noLight;             // the diffusion alone, if none has
 };
 
 // Push constants of each pass:

@@ -8,7 +8,7 @@
 
 namespace pellucid::harness {
 
-// One material; docs/capture.md has its keys. Throws InputError for what it does not know.
+// One material; docs/materials.md has its keys. Throws InputError for what it does not know.
 MaterialSource readMaterial(const Field& field);
 
 // A material of the command line: a preset's name, or a manifest's object in braces. Throws InputError naming

@@ -6,6 +6,7 @@
 #include <map>
 #include <numbers>
 
+#include "capture/manifest_material.h"
 #include "capture/material.h"
 #include "cli/light_option.h"
 #include "cli/numbers.h"
@@ -123,6 +124,12 @@ void addCommonOptions(CLI::App& command, CaptureOptions& options) {
                      "texels across a shadow map; 0: none (default: a model 1024, a scene 512)");
   command
       .add_option(
+          "--material", options.presets,
+          "of a scene: *=PRESET or *={a manifest's material}, for all objects; of a model, repeatable: "
+          "NAME=PRESET, NAME={...} or NAME=thin:R,G,B, a thin wall's transmittance; NAME * means all others")
+      ->take_all();
+  command
+      .add_option(
           "--light", options.lights,
           std::string("of a scene: directional, point or spot; of a model, repeatable: ") + kLightSyntax)
       ->take_all();
@@ -131,13 +138,6 @@ void addCommonOptions(CLI::App& command, CaptureOptions& options) {
 void addModelOptions(CLI::App& command, CaptureOptions& options, SceneUse use) {
   const char* const group = kModelGroup;
   command.add_option("model", options.model, "glTF file, .glb or .gltf");
-  command
-      .add_option(
-          "--material", options.presets,
-          "NAME=PRESET, NAME={a manifest's material} or NAME=thin:R,G,B, a thin wall's transmittance; "
-          "repeatable; NAME * means all others")
-      ->take_all()
-      ->group(group);
   command
       .add_option("--unit", options.unit, "mm, cm, m or a number of meters: the length of the file's unit")
       ->capture_default_str()
@@ -236,8 +236,24 @@ bool isProcedural(const CLI::App& command, const CaptureOptions& options) {
   return procedural;
 }
 
+namespace {
+
+SceneMaterial sceneMaterial(const CaptureOptions& options) {
+  const Assignment set = parseAssignment("--material", options.presets.front());
+  if (options.presets.size() > 1 || set.key != "*")
+    throw UsageError("--material: the objects of a procedural scene have no names; *=PRESET is all of them");
+  SceneMaterial material{parseMaterial("--material *", set.value), {}};
+  if (options.ior) material.source = withIor(material.source, *options.ior, "--material *");
+  const PellucidMaterial compiled = compileMaterial(material.source, "--material *");
+  std::copy_n(compiled.reflectance, 3, material.albedo.begin());
+  return material;
+}
+
+}  // namespace
+
 SceneParameters procedural(const CaptureOptions& options) {
   SceneParameters scene = options.scene;
+  if (!options.presets.empty()) scene.material = sceneMaterial(options);
   setCommon(options, scene);
   scene.orthographic = options.orthographic;
   if (options.lights.size() > 1) throw UsageError("--light: a procedural scene has one light");

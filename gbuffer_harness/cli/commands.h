@@ -8,6 +8,8 @@ class App;
 
 namespace pellucid::harness {
 
+void addCommands(CLI::App& app);  // all of them, in the help's order
+
 void addAnglesCommand(CLI::App& app);
 void addInfoCommand(CLI::App& app);
 void addInitCommand(CLI::App& app);

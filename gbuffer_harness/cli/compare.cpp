@@ -32,7 +32,8 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kDefinitions =
     "rel_rmse: sqrt(mean (A-B)^2) / RMS(B). p999, max: of |A-B| / RMS(B). psnr: 20 log10(max B / RMSE), dB.\n"
     "bias: mean A / mean B - 1. Each channel by itself, over the samples.\n"
-    "isolated: pixels 1.3 times above or below all neighbors of their surface. tint: standard deviation of\n"
+    "isolated: pixels 1.3 times above or below all neighbors of their surface; not in B where B's pixel is\n"
+    "not 1.1 times above or below in the same way. tint: standard deviation of\n"
     "A / B over 8x8 averages, per channel and of red over green. flip: LDR-FLIP under one exposure, 0 .. 1.\n"
     "noise: B's standard errors over its RMS. chi2: sum of (A-B)^2 over the sum of squared standard errors,\n"
     "in samples wholly of mask: 1 where noise is all that differs. Both need files with standard errors.\n"
@@ -49,8 +50,9 @@ constexpr std::array<Measure, 5> kMeasures = {{{"rel_rmse", &ChannelDifference::
                                                {"bias", &ChannelDifference::bias}}};
 constexpr std::array<const char*, 3> kChannelNames = {"R", "G", "B"};
 
-const std::vector<LimitKind> kLimitKinds = {{"rel_rmse"}, {"p999"}, {"max"},  {"psnr", true}, {"bias"},
-                                            {"isolated"}, {"tint"}, {"flip"}, {"flip_p99"}};
+const std::vector<LimitKind> kLimitKinds = {
+    {"rel_rmse"}, {"p999"},           {"max"},  {"psnr", true}, {"bias"},
+    {"isolated"}, {"isolated_alone"}, {"tint"}, {"flip"},       {"flip_p99"}};
 
 struct Options {
   std::string a, b, mask, diff, ratio, isolated, layer, subset = "all";
@@ -66,6 +68,7 @@ struct Result {
   std::vector<double> noise, chi2;  // of B; empty where no standard errors are known
   Comparison comparison;
   IsolatedPixels isolatedA, isolatedB;
+  std::size_t aloneA = 0;  // of A's, those that do not stick out of B even a little
   Tint tint;
   Flip flip;
 };
@@ -123,7 +126,8 @@ Json toJson(const Result& result, const Options& options) {
       json[measure.name].push_back(channel.*measure.value);  // infinity becomes null
   if (!result.noise.empty()) json["noise"] = result.noise;
   if (!result.chi2.empty()) json["chi2"] = result.chi2;
-  json["isolated"] = {{"a", toJson(result.isolatedA)}, {"b", toJson(result.isolatedB)}};
+  json["isolated"] = {
+      {"a", toJson(result.isolatedA)}, {"b", toJson(result.isolatedB)}, {"aAlone", result.aloneA}};
   json["tint"] = toJson(result.tint);
   json["flip"] = toJson(result.flip);
   return json;
@@ -160,8 +164,8 @@ std::string toText(const Result& result, const Options& options) {
     return std::to_string(pixels.count) + " (" + std::to_string(pixels.bright) + " bright, " +
            std::to_string(pixels.dark) + " dark)";
   };
-  text << "  isolated pixels: A has " << isolated(result.isolatedA) << ", B " << isolated(result.isolatedB)
-       << "\n  tint: ";
+  text << "  isolated pixels: A has " << isolated(result.isolatedA) << ", " << result.aloneA
+       << " of them not in B, which has " << isolated(result.isolatedB) << "\n  tint: ";
   for (const double value : result.tint.channel) text << value << " ";
   text << "(R G B), red over green " << result.tint.redOverGreen << ", of " << result.tint.blocks
        << " blocks\n  flip: mean " << result.flip.mean << ", 99th percentile " << result.flip.p99
@@ -173,6 +177,7 @@ std::string toText(const Result& result, const Options& options) {
 void checkLimits(const Result& result, const Limits& limits) {
   const Comparison& comparison = result.comparison;
   std::vector<Measured> values = {{"isolated", "A", static_cast<double>(result.isolatedA.count)},
+                                  {"isolated_alone", "A", static_cast<double>(result.aloneA)},
                                   {"tint", "red over green", result.tint.redOverGreen},
                                   {"flip", "", result.flip.mean},
                                   {"flip_p99", "", result.flip.p99}};
@@ -217,6 +222,7 @@ void compare(const Options& options) {
   const Surfaces surfaces = capture ? Surfaces(*capture) : Surfaces(b.width, b.height);
   result.isolatedA = findIsolated(a, surfaces, mask);
   result.isolatedB = findIsolated(b, surfaces, mask);
+  result.aloneA = result.isolatedA.alone(findIsolated(b, surfaces, mask, kNearlyIsolated));
   result.tint = measureTint(a, b, mask);
   result.flip = measureFlip(a, b, mask, options.exposure);
   std::cout << (options.json ? toJson(result, options).dump(2) + "\n" : toText(result, options));
@@ -261,7 +267,7 @@ void addCompareCommand(CLI::App& app) {
       ->add_option(
           "--limit", options->limits,
           "exit with 1 when a channel exceeds it: rel_rmse=, p999=, max=, bias=, tint= (at most), psnr= (at "
-          "least); or the whole: isolated=, flip=, flip_p99= (at most)")
+          "least); or the whole: isolated=, isolated_alone=, flip=, flip_p99= (at most)")
       ->delimiter(',')
       ->take_all();
   command->add_option("--diff", options->diff, "write a PNG: A, B, 4 |A-B|");

@@ -34,23 +34,7 @@ int main(int argc, char** argv) {
   app.footer(
       "Exit codes: 0 ok, 1 comparison over its limit or stress violated, 2 usage, 3 bad input, 4 no usable "
       "device.");
-  addInfoCommand(app);
-  addInitCommand(app);
-  addReplayCommand(app);
-  addPlanCommand(app);
-  addMaterialCommand(app);
-  addReferenceCommand(app);
-  addTruthCommand(app);
-  addCompareCommand(app);
-  addEvaluateCommand(app);
-  addFlickerCommand(app);
-  addCaptureCommand(app);
-  addSheetCommand(app);
-  addMeasureDotsCommand(app);
-  addStressCommand(app);
-  addViewCommand(app);
-  addPerceptionCommand(app);
-  addAnglesCommand(app);
+  addCommands(app);
   try {
     app.parse(argc, argv);
     return OK;

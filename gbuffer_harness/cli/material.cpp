@@ -342,7 +342,7 @@ void addMaterialCommand(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("material", "Compile a material: its T(d), profile and what the shaders evaluate");
   command->add_option("NAME", options->name,
-                      "a preset, see --list, or a manifest's material in braces (docs/capture.md)");
+                      "a preset, see --list, or a manifest's material in braces (docs/materials.md)");
   command->add_flag("--list", options->list, "print the presets' names");
   command->add_option("--scattering", options->scattering, "sigma_s of R,G,B in 1/mm; reduced when --g is 0")
       ->delimiter(',')

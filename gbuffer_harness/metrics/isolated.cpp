@@ -11,7 +11,6 @@ namespace pellucid::harness {
 
 namespace {
 
-constexpr double kContrast = 1.3;
 constexpr int kFewestNeighbors = 5;
 constexpr std::uint8_t kBright = 1, kDark = 2;
 
@@ -40,7 +39,13 @@ Neighborhood around(const Image& image, const Surfaces& surfaces, const Mask& ma
 
 }  // namespace
 
-IsolatedPixels findIsolated(const Image& image, const Surfaces& surfaces, const Mask& mask) {
+std::size_t IsolatedPixels::alone(const IsolatedPixels& other) const {
+  std::size_t pixels = 0;
+  for (std::size_t i = 0; i < marks.size(); ++i) pixels += (marks[i] & ~other.marks[i]) != 0;
+  return pixels;
+}
+
+IsolatedPixels findIsolated(const Image& image, const Surfaces& surfaces, const Mask& mask, double contrast) {
   requireImage("image", image, surfaces.width(), surfaces.height(), mask);
   IsolatedPixels result;
   result.marks.resize(image.pixels());
@@ -53,8 +58,8 @@ IsolatedPixels findIsolated(const Image& image, const Surfaces& surfaces, const 
       std::uint8_t mark = 0;
       for (std::size_t c = 0; c < 3; ++c) {
         const double value = image.at(x, y)[c], seen = kDarkestPart * rms[c];
-        if (value > seen && value > kContrast * neighbors.largest[c]) mark |= kBright;
-        if (neighbors.least[c] > seen && value * kContrast < neighbors.least[c]) mark |= kDark;
+        if (value > seen && value > contrast * neighbors.largest[c]) mark |= kBright;
+        if (neighbors.least[c] > seen && value * contrast < neighbors.least[c]) mark |= kDark;
       }
       result.bright += (mark & kBright) != 0;
       result.dark += (mark & kDark) != 0;

@@ -127,9 +127,9 @@ Gather::Blocks Gather::collect(const Light& light, std::size_t mapIndex) const {
           const bool seen = cameraSees(*p, normal, kSeenTolerance * std::sqrt(across), off);
           if (seen && !diffused_) continue;
           const double area = across * mm_ * mm_;
-          const double cosine = std::max(glm::dot(normal, arrival.toLight), kLeastCosine);
-          block.texels.push_back(
-              {*p * mm_, normal, arrival.irradiance * area, area / cosine, seen, exit, of});
+          const double cosine = glm::dot(normal, arrival.toLight), held = std::max(cosine, kLeastCosine);
+          block.texels.push_back({*p * mm_, normal, arrival.irradiance * area, area / held,
+                                  std::max(cosine, 0.0) / held, seen, exit, of});
           low = glm::min(low, *p * mm_);
           high = glm::max(high, *p * mm_);
         }
@@ -287,10 +287,10 @@ Gather::Sums Gather::sums(const Blocks& blocks, const Exit& exit, const Place& p
           own ? kernel.reflectedWithin(side / std::sqrt(kPi)) / y.area : kernel.reflected(path.distance);
       if (y.seen) {
         sums.opposite += opposite * profile * y.flux;
-        sums.seenEntering += alike * profile * y.flux;
+        sums.seenEntering += alike * profile * y.within * y.flux;
         sums.seen += alike * profile * y.area;
       } else {
-        sums.entering += alike * profile * y.flux;
+        sums.entering += alike * profile * y.within * y.flux;
         sums.hidden += alike * profile * y.area;
       }
     }

@@ -42,7 +42,8 @@ private:
   struct Texel {
     glm::dvec3 position, normal;  // mm; unit, towards the light's side. World
     glm::dvec3 flux;              // RGB irradiance times mm^2
-    double area;                  // of the surface, mm^2
+    double area;                  // of the surface, mm^2; of a grazed one at most five times the texel's
+    double within;                // part of the flux that enters within the area
     bool seen;                    // by the camera
     double exit;                  // mm along the light to the nearest back face behind; INFINITY: not known
     std::uint8_t material;        // index + 1 of what light enters; 0: not known

@@ -1,6 +1,7 @@
 // Heads as a frame shows them: on a part of the screen, lit by a key and a rim light, or filling it.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "scene/field.h"
 #include "scene/model.h"
@@ -138,6 +139,16 @@ SceneModel buildHead(const SceneParameters& parameters, const OptionValues& opti
   key.distance = rim.distance = 5 * model.radius;
   key.coneRadius = rim.coneRadius = model.radius;
   model.lights = {placeLight(parameters, key), placeLight(parameters, rim)};
+  // Colors go round the circle of hues, so that each light shows where it falls.
+  const int further = static_cast<int>(std::lround(options["lights"]));
+  for (int i = 0; i < further; ++i) {
+    const double turn = 2 * std::numbers::pi * i / further;
+    LightPlacement light = key;
+    light.towardLight = {std::sin(turn), 0.25, std::cos(turn)};
+    light.irradiance = options["furtherLight"];
+    for (int c = 0; c < 3; ++c) light.color[c] = 0.5 + 0.5 * std::cos(turn - 2 * std::numbers::pi * c / 3);
+    model.lights.push_back(placeLight(parameters, light));
+  }
 
   // Diffuse reflectance of skin1 (Jensen et al. 2001, figure 5).
   model.albedo = [](const glm::dvec3&) { return glm::dvec3(0.44, 0.22, 0.13); };
@@ -151,7 +162,9 @@ std::vector<SceneDefinition> headScenes() {
             "Heads under a key and a rim light, as a frame shows them",
             {{"view", 0, 0, 3, "0: portrait, 1: a face fills the screen, 2: a crowd of nine, 3: far away"},
              {"keyLight", 2, 0, 1e6, "irradiance of the light from the front"},
-             {"rimLight", 2, 0, 1e6, "irradiance of the light from behind"}}},
+             {"rimLight", 2, 0, 1e6, "irradiance of the light from behind"},
+             {"lights", 0, 0, 64, "further lights in a circle around, of all hues"},
+             {"furtherLight", 1, 0, 1e6, "irradiance of each of them"}}},
            buildHead}};
 }
 

@@ -85,6 +85,10 @@ SceneModel sceneModel(const SceneParameters& parameters) {
     throw InputError("", "depthEncoding", "distance is an encoding of shadow maps only");
   }
   SceneModel model = scene.build(parameters, OptionValues(scene.info, parameters.options));
+  if (const auto& material = parameters.material) {
+    model.materials.assign(model.materials.size(), material->source);
+    model.albedo = [albedo = toGlm(material->albedo)](const glm::dvec3&) { return albedo; };
+  }
   applyAim(parameters, model);
   applyTurn(parameters, model);
   return model;

@@ -18,6 +18,12 @@ struct Aim {
   Vector3 toCamera, toLight;  // world, from the center; any length > 0
 };
 
+// A material for all objects in place of a scene's own, and the scene's albedo with it.
+struct SceneMaterial {
+  MaterialSource source;
+  Vector3 albedo;
+};
+
 struct SceneParameters {
   std::string name;                       // one of listScenes()
   int width = 256, height = 256;          // pixels, 1..8192
@@ -39,6 +45,7 @@ struct SceneParameters {
 
   // About the scene's center. Refused by name: the camera of an endless scene, lights of a painted one.
   Turn turn;
+  std::optional<SceneMaterial> material;
   std::optional<Aim> aim;  // refused likewise; `turn` comes after it
 };
 

@@ -10,12 +10,12 @@ namespace pellucid {
 uint32_t LightGroup::slot(uint32_t image) const {
   for (uint32_t i = 0; i < imageCount; ++i)
     if (images[i] == image) return i;
-  return PELLUCID_SHADOW_IMAGE_COUNT;
+  return mostImages;
 }
 
 bool LightGroup::addImage(uint32_t image) {
-  if (slot(image) < PELLUCID_SHADOW_IMAGE_COUNT) return true;
-  if (imageCount == PELLUCID_SHADOW_IMAGE_COUNT) return false;
+  if (slot(image) < mostImages) return true;
+  if (imageCount == mostImages) return false;
   images[imageCount++] = image;
   return true;
 }
@@ -37,6 +37,8 @@ bool LightGroup::addLight(const FrameFacts& facts, const PellucidLight& light) {
   // The pass that adds gathered light binds no shadow images.
   if (gathered > 0 && !facts.isGathered(light) && light.shadowMapCount > 0) return false;
   LightGroup grown = *this;
+  // Dispatches of thin walls' light would read the images, too.
+  if (facts.isGathered(light) && !facts.thinWalls) grown.mostImages = PELLUCID_ENTRY_IMAGE_COUNT;
   grown.shadowCount += light.shadowMapCount;
   if (lightCount == PELLUCID_DISPATCH_LIGHTS || grown.shadowCount > PELLUCID_DISPATCH_SHADOWS) return false;
   for (uint32_t i = 0; i < light.shadowMapCount; ++i) {

@@ -11,9 +11,9 @@ namespace pellucid {
 
 struct FrameFacts;
 
-// One fused dispatch binds PELLUCID_SHADOW_IMAGE_COUNT shadow images and windows of fixed size on the
-// constants of lights and shadow maps, so lights are taken in order into groups that need no more. Constants
-// are laid out light by light within the groups.
+// One dispatch binds a number of shadow images (see mostImages) and windows of fixed size on the constants of
+// lights and shadow maps, so lights are taken in order into groups that need no more. Constants are laid out
+// light by light within the groups.
 struct LightGroup {
   uint32_t firstLight = 0, lightCount = 0;       // among the lights that are not skipped
   uint32_t shadowCount = 0;                      // shadow maps
@@ -25,9 +25,11 @@ struct LightGroup {
   uint32_t entryWidth = 0, entryHeight = 0;  // the most that one of them has
   bool beside = true;                        // exit depths and caster materials have slots among the images
   uint32_t imageCount = 0;
-  std::array<uint32_t, PELLUCID_SHADOW_IMAGE_COUNT> images{};  // into frame.shadowImages
+  uint32_t mostImages =
+      PELLUCID_SHADOW_IMAGE_COUNT;  // more where the entry points' dispatch alone reads them
+  std::array<uint32_t, PELLUCID_ENTRY_IMAGE_COUNT> images{};  // into frame.shadowImages
 
-  // Slot of an image, or PELLUCID_SHADOW_IMAGE_COUNT.
+  // Slot of an image, or mostImages.
   uint32_t slot(uint32_t image) const;
   // Gives the images of a light's map slots; false if there are not enough.
   bool addImages(const FrameFacts& facts, const PellucidLight& light, const PellucidShadowMap& map);

@@ -90,17 +90,19 @@ void PlanBuilder::optional(PellucidDispatch* d, uint32_t binding, PellucidResour
   image(d, binding, PELLUCID_RESOURCE_FRONT_DEPTH, 0);
 }
 
-void PlanBuilder::shadowImages(PellucidDispatch* d, const LightGroup& group) const {
+void PlanBuilder::shadowImages(PellucidDispatch* d, const LightGroup& group, uint32_t count) const {
   // Slots that are not read hold a view of the type that shadow images have, as far as the frame has one.
   const PellucidFrame& f = facts.frame;
   const bool some = f.shadowImageCount > 0 && given(f.shadowImages[0]);
   const uint32_t standIn = group.imageCount > 0 ? kShadow0 + group.images[0]
                            : some               ? kShadow0
                                                 : static_cast<uint32_t>(PELLUCID_RESOURCE_FRONT_DEPTH);
-  for (uint32_t slot = 0; slot < PELLUCID_SHADOW_IMAGE_COUNT; ++slot) {
+  for (uint32_t slot = 0; slot < count; ++slot) {
     const bool used = slot < group.imageCount;
-    image(d, PELLUCID_BINDING_SHADOW_IMAGES + slot, used ? kShadow0 + group.images[slot] : standIn,
-          used ? kUnknownDepthBytes : 0);
+    const uint32_t binding = slot < PELLUCID_SHADOW_IMAGE_COUNT
+                                 ? PELLUCID_BINDING_SHADOW_IMAGES + slot
+                                 : PELLUCID_BINDING_MORE_SHADOW_IMAGES + slot - PELLUCID_SHADOW_IMAGE_COUNT;
+    image(d, binding, used ? kShadow0 + group.images[slot] : standIn, used ? kUnknownDepthBytes : 0);
   }
 }
 

@@ -70,7 +70,8 @@ struct PlanBuilder {
   // An input the frame may lack. The shader's flag keeps it unread, but every statically used binding
   // must hold a view: the front depth stands in.
   void optional(PellucidDispatch* d, uint32_t binding, PellucidResource resource, uint64_t bytes) const;
-  void shadowImages(PellucidDispatch* d, const LightGroup& group) const;
+  // `count`: slots of the pass, PELLUCID_SHADOW_IMAGE_COUNT or PELLUCID_ENTRY_IMAGE_COUNT.
+  void shadowImages(PellucidDispatch* d, const LightGroup& group, uint32_t count) const;
 
   // Images that every pass over pixels reads.
   void pixelInputs(PellucidDispatch* d, uint32_t source) const;

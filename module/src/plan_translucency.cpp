@@ -24,7 +24,7 @@ void addLights(PlanBuilder& b, PellucidDispatch* d, const LightGroup& group, uin
   b.constants(d, PELLUCID_BINDING_SHADOWS, {layout.shadows.offset + group.shadowBytes, kShadowWindow});
   b.optional(d, PELLUCID_BINDING_BACK_DEPTH, PELLUCID_RESOURCE_BACK_DEPTH,
              f.needsChord ? kUnknownDepthBytes : 0);
-  b.shadowImages(d, images);
+  b.shadowImages(d, images, PELLUCID_SHADOW_IMAGE_COUNT);
 }
 
 }  // namespace

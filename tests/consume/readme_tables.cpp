@@ -1,8 +1,7 @@
-// Prints the README's tables from the code, or checks or rewrites them in a file:
-//   pellucid_readme_tables [--check | --update README.md]
-// and likewise with the word quality after the file, docs/diffusion.md, the table of qualities, with domains,
-// docs/domains.md, what values fields may have, or with stress, docs/stress.md, what must hold for random
-// frames.
+// Checks or rewrites the tables of a document that are made from the code:
+//   pellucid_readme_tables --check|--update FILE TABLE
+// TABLE: inputs, README.md; features, docs/performance.md; quality, docs/diffusion.md; domains,
+// docs/domains.md, what values fields may have; stress, docs/stress.md, what must hold for random frames.
 #include <cstdio>
 #include <iterator>
 #include <string>
@@ -32,7 +31,8 @@ std::string imagesTable() {
        "the angle between view and light replaces -N.L, depths say how large surfaces are"},
       {PELLUCID_RESOURCE_ALBEDO, "post-scatter albedo", "the output is not multiplied"},
       {PELLUCID_RESOURCE_MATERIAL, "unsigned integer: 0 none, i for materials[i - 1]", ""},
-      {PELLUCID_RESOURCE_OUTPUT, "rgba16f, rgba32f or rg11b10f storage image; may be the irradiance image", ""},
+      {PELLUCID_RESOURCE_OUTPUT, "rgba16f, rgba32f or rg11b10f storage image; may be the irradiance image",
+       ""},
   };
   const uint32_t required =
       pellucidGetRequiredInputs(PELLUCID_FEATURE_TRANSLUCENCY | PELLUCID_FEATURE_DIFFUSION);
@@ -172,10 +172,20 @@ std::string stressTable() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const std::string block = argc == 4 ? argv[3] : "";
-  return generatedBlock(argc - 1, argv + 1, block.c_str(),
-                        block == "quality"   ? qualityTable()
-                        : block == "domains" ? domainsTable()
-                        : block == "stress"  ? stressTable()
-                                             : imagesTable() + "\n" + featuresTable());
+  struct Table {
+    const char* name;
+    std::string (*make)();
+  };
+  constexpr Table tables[] = {{"inputs", imagesTable},
+                              {"features", featuresTable},
+                              {"quality", qualityTable},
+                              {"domains", domainsTable},
+                              {"stress", stressTable}};
+  if (argc == 4)
+    for (const Table& table : tables)
+      if (table.name == std::string(argv[3]))
+        return generatedBlock(argc - 1, argv + 1, table.name, table.make());
+  std::fputs("usage: pellucid_readme_tables --check|--update FILE inputs|features|quality|domains|stress\n",
+             stderr);
+  return 2;
 }

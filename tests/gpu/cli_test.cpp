@@ -182,6 +182,8 @@ TEST_F(Cli, SequenceUsage) {
   expect(2, "capture --procedural ear --turntable 3 -o x.exr", "one run of #");
   expect(2, "capture --procedural ear --orbit -o x.exr", "--orbit: needs --turntable");
   expect(2, "capture --procedural ear --point-maps 6 -o x.exr", "--point-maps: needs a model");
+  expect(2, "capture --procedural ear --material skin=marble -o x.exr", "have no names");
+  expect(3, "capture --procedural ear --material *=granite -o x.exr", "granite");
   expect(2, "capture x.glb --seed 3 -o x.exr", "--seed: needs --procedural");
   expect(2, "capture x.glb --point-maps 2 -o x.exr", "--point-maps");
   for (const char* command : {"capture --procedural ear", "replay x.exr", "reference x.exr"})

@@ -277,11 +277,11 @@ TEST(CompareCommandOfImages, SaysWhatTheEyeSees) {
   EXPECT_GT(json["flip"]["p99"].get<double>(), json["flip"]["mean"].get<double>());
   for (const std::string& picture : {ratio, dots}) EXPECT_EQ(readText(picture).substr(1, 3), "PNG");
   const std::string text = runCompare({a, b});
-  for (const char* part : {"A has 1 (1 bright, 0 dark), B 0", "red over green", "99th percentile"})
+  for (const char* part : {"A has 1 (1 bright, 0 dark), 1 of them not in B, which has 0", "red over green", "99th percentile"})
     EXPECT_NE(text.find(part), std::string::npos) << text;
 
-  EXPECT_NO_THROW(runCompare({a, b, "--limit", "isolated=1,tint=0.06,flip=0.5,flip_p99=0.9"}));
-  for (const char* limit : {"isolated=0", "tint=0.04", "flip=0.001", "flip_p99=0.001"})
+  EXPECT_NO_THROW(runCompare({a, b, "--limit", "isolated=1,isolated_alone=1,tint=0.06,flip=0.5,flip_p99=0.9"}));
+  for (const char* limit : {"isolated=0", "isolated_alone=0", "tint=0.04", "flip=0.001", "flip_p99=0.001"})
     EXPECT_THROW(runCompare({a, b, "--limit", limit}), LimitExceeded) << limit;
   EXPECT_NO_THROW(runCompare({b, b, "--limit", "isolated=0,tint=0,flip=0,flip_p99=0"}));
   EXPECT_THROW(runCompare({a, b, "--exposure", "0"}), CLI::ValidationError);

@@ -145,6 +145,20 @@ TEST(Isolated, CountsWhatIsPlanted) {
   EXPECT_EQ(pixel(0, 0), (std::array<int, 3>{94, 94, 94}));  // half of sRGB 188
 }
 
+// A pixel that sticks out of another image as well, if less, is not alone.
+TEST(Isolated, SaysWhichAreAlone) {
+  Image image(32, 24, 3, 1.0f), other = image;
+  const std::vector<std::array<float, 2>> pairs = {{1.4f, 1.2f}, {1.4f, 1.05f}, {0.7f, 0.85f}, {0.7f, 1.5f}};
+  for (int i = 0; i < 4; ++i) {
+    image.at(4 + 6 * i, 8)[1] = pairs[static_cast<std::size_t>(i)][0];
+    other.at(4 + 6 * i, 8)[1] = pairs[static_cast<std::size_t>(i)][1];
+  }
+  const auto found = findIsolated(image, Surfaces(32, 24), everywhere(image));
+  EXPECT_EQ(found.count, 4u);
+  EXPECT_EQ(found.alone(findIsolated(other, Surfaces(32, 24), everywhere(other), kNearlyIsolated)), 2u)
+      << "the second, which hardly sticks out, and the last, which sticks out the other way";
+}
+
 TEST(Isolated, PairsAndRampsAreNot) {
   Image image(16, 16, 3, 1.0f);
   for (int c = 0; c < 3; ++c) image.at(4, 4)[c] = image.at(5, 4)[c] = 2;

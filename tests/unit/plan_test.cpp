@@ -233,6 +233,39 @@ TEST(Plan, ImagesBesideMapsCount) {
   EXPECT_STREQ(plan.dispatches[2].name, "base level");
 }
 
+// The dispatch of entry points has room for all images of four lights, so that the diffusion's last dispatch adds their light.
+TEST(Plan, FourGatheredLightsWithAllImagesShareADispatch) {
+  for (const uint32_t lights : {4u, 5u}) {
+    SCOPED_TRACE(lights);
+    Frame f(lights);
+    f.images.resize(3 * lights, Frame::view());
+    for (uint32_t i = 0; i < lights; ++i) {
+      f.maps[i].exitImage = lights + 2 * i + 1;
+      f.maps[i].casterMaterialImage = lights + 2 * i + 2;
+    }
+    f.use();
+    f.frame.gatherSamples = 8;
+    f.frame.gatherSpacing = PELLUCID_DIFFUSE_CELL;
+    const PellucidPlan plan = f.plan();
+    std::vector<uint32_t> bound;
+    uint32_t dispatches = 0;
+    for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
+      const PellucidDispatch& d = plan.dispatches[i];
+      if (std::string(d.name) != "entry points") continue;
+      ++dispatches;
+      for (uint32_t b = 0; b < d.bindingCount; ++b)
+        if (d.bindings[b].resource >= PELLUCID_RESOURCE_SHADOW0) bound.push_back(d.bindings[b].binding);
+    }
+    EXPECT_EQ(dispatches, lights == 4 ? 1u : 2u);
+    EXPECT_EQ(bound.size(), dispatches * PELLUCID_ENTRY_IMAGE_COUNT);
+    bound.resize(PELLUCID_ENTRY_IMAGE_COUNT);
+    std::sort(bound.begin(), bound.end());
+    EXPECT_EQ(std::adjacent_find(bound.begin(), bound.end()), bound.end()) << "a binding holds one image";
+    const std::vector<std::string> passes = names(plan);
+    EXPECT_EQ(std::count(passes.begin(), passes.end(), "add gathered"), lights == 4 ? 0 : 1);
+  }
+}
+
 // Many lights leave out what lies beside their maps before a frame fails that has room for the maps.
 TEST(Plan, ImagesBesideMapsAreLeftOutWhereTheyAreTooMany) {
   for (const uint32_t gather : {0u, 8u}) {

@@ -605,8 +605,40 @@ TEST(Scene, HeadsCoverAsMuchAsThoseOfAScan) {
     const Capture capture = makeScene(parameters);
     const auto none = std::count(capture.material.begin(), capture.material.end(), 0);
     // A twentieth, and half a row of pixels along the silhouette of one far away.
-    EXPECT_NEAR(1 - static_cast<double>(none) / (160 * 90), covered[view], 0.05 * covered[view] + 5e-4) << view;
+    EXPECT_NEAR(1 - static_cast<double>(none) / (160 * 90), covered[view], 0.05 * covered[view] + 5e-4)
+        << view;
   }
+}
+
+TEST(Scene, AMaterialIsThatOfAllObjects) {
+  SceneParameters parameters{.name = "two_materials", .width = 32, .height = 32, .shadowSize = 16};
+  parameters.material = SceneMaterial{PresetMaterial{"marble"}, {0.7, 0.6, 0.5}};
+  const Capture capture = makeScene(parameters);
+  ASSERT_EQ(capture.materials.size(), 2u);
+  for (const MaterialSource& source : capture.materials) {
+    ASSERT_TRUE(std::holds_alternative<PresetMaterial>(source));
+    EXPECT_EQ(std::get<PresetMaterial>(source).preset, "marble");
+  }
+  int surface = 0;
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 32; ++x) {
+      if (capture.material[static_cast<size_t>(32 * y + x)] == 0) continue;
+      ++surface;
+      EXPECT_FLOAT_EQ(capture.albedo.at(x, y)[0], 0.7f);
+      EXPECT_FLOAT_EQ(capture.albedo.at(x, y)[2], 0.5f);
+    }
+  EXPECT_GT(surface, 100);
+}
+
+// Hues cancel: lights all around are white together.
+TEST(Scene, AHeadMayHaveManyLights) {
+  const Capture capture =
+      makeScene({.name = "head", .width = 16, .height = 16, .options = {{"lights", 12}}, .shadowSize = 16});
+  ASSERT_EQ(capture.lights.size(), 14u);
+  double sum[3] = {};
+  for (size_t i = 2; i < 14; ++i)
+    for (size_t c = 0; c < 3; ++c) sum[c] += capture.lights[i].color[c] * capture.lights[i].intensity;
+  for (const double channel : sum) EXPECT_NEAR(channel, 6, 1e-9);
 }
 
 TEST(Scene, TheHeadsEarIsASheetOfThreeMillimeters) {
@@ -617,7 +649,8 @@ TEST(Scene, TheHeadsEarIsASheetOfThreeMillimeters) {
   const Capture capture = makeScene(parameters);
   const glm::dvec4 middle = toGlm(capture.clipFromView) * toGlm(capture.viewFromWorld) *
                             glm::dvec4(74 + 7, 2, -8 - 14 * std::sqrt(0.75), 1);
-  const int x = static_cast<int>((middle.x / middle.w + 1) * 128), y = static_cast<int>((middle.y / middle.w + 1) * 128);
+  const int x = static_cast<int>((middle.x / middle.w + 1) * 128),
+            y = static_cast<int>((middle.y / middle.w + 1) * 128);
   ASSERT_LT(*capture.frontDepth.image.at(x, y), kNoDepth);
   EXPECT_NEAR(*capture.backDepth.image.at(x, y) - *capture.frontDepth.image.at(x, y), 3, 0.1);
 }

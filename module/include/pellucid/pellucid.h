@@ -33,6 +33,8 @@
 extern "C" {
 #endif
 
+#define PELLUCID_VERSION "0.2.0" /* of the release */
+
 /* Passed in PellucidContextDesc; the library refuses a header it does not know. */
 #define PELLUCID_HEADER_VERSION 4u
 
@@ -77,10 +79,11 @@ typedef struct PellucidMaterial {
 /* An image the caller owns. The view must be 2D, one layer, one mip; the layout is the one the image
  * is in while the recorded commands run, GENERAL or a READ_ONLY one, and is never changed. A null view means "not given". */
 typedef struct PellucidImage {
-  VkImageView view;
-  VkImageLayout layout;
+  VkImageView view;     /* or a null handle: not given */
+  VkImageLayout layout; /* of the image while the commands run */
 } PellucidImage;
 
+/* What a depth image holds. */
 typedef enum PellucidDepthEncoding {
   PELLUCID_DEPTH_DEVICE = 0,  /* the 0..1 value of the matrix that rendered it; of the camera: other values, NaN,
                                  and distances of 1e9 and more: nothing there */
@@ -89,10 +92,11 @@ typedef enum PellucidDepthEncoding {
   PELLUCID_DEPTH_DISTANCE = 2 /* distance from the light, scene units (shadow maps only) */
 } PellucidDepthEncoding;
 
+/* Types of KHR_lights_punctual. */
 typedef enum PellucidLightType {
-  PELLUCID_LIGHT_DIRECTIONAL = 0,
-  PELLUCID_LIGHT_POINT = 1,
-  PELLUCID_LIGHT_SPOT = 2
+  PELLUCID_LIGHT_DIRECTIONAL = 0, /* from infinitely far away */
+  PELLUCID_LIGHT_POINT = 1,       /* in all directions */
+  PELLUCID_LIGHT_SPOT = 2         /* within a cone */
 } PellucidLightType;
 
 /* Names and units of KHR_lights_punctual. */
@@ -115,9 +119,10 @@ typedef struct PellucidLight {
  * more than a plan's dispatches can bind, all exit depths and caster materials are left out, which a skip says. */
 enum { PELLUCID_MAX_LIGHT_SHADOW_MAPS = 8, PELLUCID_MAX_TRANSIENTS = 7 };
 
+/* Parts of a frame. */
 typedef enum PellucidFeatureBits {
-  PELLUCID_FEATURE_TRANSLUCENCY = 1u << 0,
-  PELLUCID_FEATURE_DIFFUSION = 1u << 1
+  PELLUCID_FEATURE_TRANSLUCENCY = 1u << 0, /* light that comes through */
+  PELLUCID_FEATURE_DIFFUSION = 1u << 1     /* light that spreads under the surface */
 } PellucidFeatureBits;
 
 /* Source of the thickness of a light with a shadow map. Lights without one use the camera's depths. */
@@ -166,6 +171,7 @@ typedef struct PellucidThesisOptions PellucidThesisOptions;
 /* PellucidFrame::gatherSamples: frame.quality chooses. */
 #define PELLUCID_GATHER_BY_QUALITY 0xFFFFFFFFu
 
+/* All that one recording reads and writes. */
 typedef struct PellucidFrame {
   uint32_t structSize; /* sizeof(PellucidFrame), written by pellucidInitFrame */
   uint32_t features;   /* PellucidFeatureBits; default both */
@@ -192,11 +198,11 @@ typedef struct PellucidFrame {
   uint32_t frontDepthEncoding, backDepthEncoding; /* PELLUCID_DEPTH_DEVICE (default) or VIEW_Z */
   uint32_t normalsInViewSpace; /* 0: world (default) */
   uint32_t materialCount;   /* 1..255 */
-  const PellucidMaterial* materials;
+  const PellucidMaterial* materials; /* materialCount of them */
   uint32_t lightCount;      /* any number; 0: no translucency */
-  const PellucidLight* lights;
-  uint32_t shadowMapCount;
-  const PellucidShadowMap* shadowMaps;
+  const PellucidLight* lights; /* lightCount of them */
+  uint32_t shadowMapCount;  /* any number */
+  const PellucidShadowMap* shadowMaps; /* shadowMapCount of them */
   uint32_t shadowImageCount; /* any number */
   const PellucidImage* shadowImages; /* depth or one float channel, one view each of
                                         PellucidContextDesc::shadowViewType, of the depth aspect alone */
@@ -253,15 +259,16 @@ typedef struct PellucidPlan PellucidPlan;
 /* One transient the caller creates: 2D, one mip, of this format and extent (for any render rect), usage SAMPLED |
  * STORAGE. It holds nothing between frames: it may alias memory not used during dispatches first..last. */
 typedef struct PellucidImageNeed {
-  VkFormat format;
-  uint32_t extent[2];
-  uint32_t firstDispatch, lastDispatch;
-  uint64_t bytes;
+  VkFormat format;    /* of the image and its view */
+  uint32_t extent[2]; /* pixels */
+  uint32_t firstDispatch, lastDispatch; /* indices in plan.dispatches between which it is in use */
+  uint64_t bytes;     /* of texels, without what the device adds */
   uint32_t persistent; /* 1: for frame.history and not a transient; keeps its content between frames */
 } PellucidImageNeed;
 
 /* ---- Context --------------------------------------------------------------------------------- */
 
+/* The pipelines of one device. */
 typedef struct PellucidContext PellucidContext;
 
 /* Uses that frames ask of a context. A pipeline is made if all that it is for is asked for; recording refuses a plan that
@@ -269,10 +276,10 @@ typedef struct PellucidContext PellucidContext;
 typedef enum PellucidUse {
   PELLUCID_USE_TRANSLUCENCY = 1 << 0, /* lights that are not gathered from, thin walls, and frames without diffusion */
   PELLUCID_USE_GATHER = 1 << 1,       /* gathered light */
-  PELLUCID_USE_DIFFUSION = 1 << 2,
+  PELLUCID_USE_DIFFUSION = 1 << 2,    /* light that spreads under the surface */
   PELLUCID_USE_QUALITY_0 = 1 << 3,    /* besides qualities 1 and 2, which take the same pipelines */
   PELLUCID_USE_REUSE = 1 << 4,        /* frame.reuse without a gather */
-  PELLUCID_USE_DEBUG_VIEWS = 1 << 5
+  PELLUCID_USE_DEBUG_VIEWS = 1 << 5   /* frame.debugView */
 } PellucidUse;
 
 /* Calls job(data, i) for each i below count, on any threads and in any order, and returns when all have returned. */
@@ -287,25 +294,26 @@ typedef enum PellucidNormalEncoding {
   PELLUCID_NORMALS_OCTAHEDRAL_UNORM = 3  /* (that + 1) / 2 in RG, 0..1 */
 } PellucidNormalEncoding;
 
+/* What a context is made of. */
 typedef struct PellucidContextDesc {
   uint32_t structSize;    /* sizeof(PellucidContextDesc), written by pellucidInitContextDesc */
   uint32_t headerVersion; /* PELLUCID_HEADER_VERSION, likewise */
   uint32_t apiVersion;    /* the VkApplicationInfo::apiVersion in use, >= VK_API_VERSION_1_1 */
-  VkInstance instance;
-  VkPhysicalDevice physicalDevice;
+  VkInstance instance;    /* of the device */
+  VkPhysicalDevice physicalDevice; /* of the device */
   VkDevice device;        /* VK_KHR_push_descriptor enabled */
-  PFN_vkGetInstanceProcAddr getInstanceProcAddr;
+  PFN_vkGetInstanceProcAddr getInstanceProcAddr; /* from which all other functions come */
   /* ---- fields that may be missing ---- */
   VkPipelineCache pipelineCache;          /* optional */
   const VkAllocationCallbacks* allocator; /* optional; host memory of Vulkan objects */
   PellucidMessageFn message;              /* optional */
-  void* messageUser;
+  void* messageUser;                      /* passed to message */
   uint32_t uses;                          /* PellucidUse bits; 0 (default): all */
   VkFormat outputFormat; /* of all frames: R16G16B16A16_SFLOAT (default) or R32G32B32A32_SFLOAT; UNDEFINED: any, on a device
                             with shaderStorageImageWriteWithoutFormat enabled */
   PellucidParallelForFn parallelFor; /* optional: lends threads to the creation of pipelines; the allocator's and the
                                         cache's functions are called on them */
-  void* parallelUser;
+  void* parallelUser;                /* passed to parallelFor */
   VkImageViewType shadowViewType; /* of all shadow images of all frames: 2D (default), or 2D_ARRAY, of which one view of all
                                      layers serves every map in them; each frame then has a shadow image, maps or not */
   uint32_t normalEncoding;        /* PellucidNormalEncoding of all frames; default SNORM. A specialization constant. Unused by
@@ -314,6 +322,7 @@ typedef struct PellucidContextDesc {
 
 /* The defaults, written into a struct of that many bytes; pellucidInit* without it have the header's size. */
 void pellucidInitContextDescSized(PellucidContextDesc* desc, size_t structSize);
+/* The defaults. */
 static inline void pellucidInitContextDesc(PellucidContextDesc* d) { pellucidInitContextDescSized(d, sizeof *d); }
 
 /* Builds the pipelines of desc.uses. The context is immutable: any thread may use it. On failure *context is
@@ -325,7 +334,9 @@ void pellucidDestroyContext(PellucidContext* context);
 
 /* ---- Planning: pure functions, no device, no allocation -------------------------------------- */
 
+/* The defaults, written into a struct of that many bytes. */
 void pellucidInitFrameSized(PellucidFrame* frame, size_t structSize);
+/* The defaults. */
 static inline void pellucidInitFrame(PellucidFrame* f) { pellucidInitFrameSized(f, sizeof *f); }
 
 /* The transients of this frame in order, then with reuse the persistent image. Writes up to *count needs, sets
@@ -357,7 +368,7 @@ PellucidResult pellucidBuildPlan(const PellucidFrame* frame, const PellucidPlan*
  * not finished needs a slice of its own: a ring of as many as there are frames in flight. Neither this library nor
  * Vulkan's validation sees one that is written too early; the earlier frame then has the later one's camera and lights. */
 typedef struct PellucidConstantsSlice {
-  VkBuffer buffer;
+  VkBuffer buffer;     /* of the caller */
   VkDeviceSize offset; /* multiple of 256, the largest alignment Vulkan lets a device ask for */
   VkDeviceSize size;   /* >= plan.constantsSize, which pellucidGetConstantsSize bounds */
   void* mapped;        /* address of `offset` */

@@ -47,6 +47,7 @@ typedef struct PellucidSpectrum {
   const double* absorption; /* sigma_a, >= 0 */
 } PellucidSpectrum;
 
+/* A material as people describe it. */
 typedef struct PellucidMaterialDesc {
   uint32_t structSize;    /* sizeof(PellucidMaterialDesc), written by pellucidInitMaterialDesc */
   uint32_t kind;          /* PellucidMaterialKind */
@@ -68,7 +69,7 @@ typedef struct PellucidMaterialDesc {
   double gaussianVariance[PELLUCID_MAX_GAUSSIANS];  /* mm^2, > 0, of one axis */
   double gaussianWeight[3][PELLUCID_MAX_GAUSSIANS]; /* >= 0; normalized to sum 1 per channel */
 
-  PellucidSpectrum spectrum;
+  PellucidSpectrum spectrum; /* of SPECTRAL */
 
   /* Skin by physiology, Donner & Jensen 2006 */
   double melanin;     /* C_m, volume fraction in the epidermis, [0, 1]; fair .002, dark .3; default .005 */
@@ -98,13 +99,14 @@ typedef struct PellucidChannelReport {
                                         against Burley */
 } PellucidChannelReport;
 
+/* What a material was compiled from. */
 typedef struct PellucidMaterialReport {
   char name[64]; /* the preset's name, or the kind */
   double ior;    /* the one used; 0 for kinds without */
-  PellucidChannelReport channels[3];
+  PellucidChannelReport channels[3]; /* R, G, B */
 } PellucidMaterialReport;
 
-void pellucidInitMaterialDesc(PellucidMaterialDesc* desc);
+void pellucidInitMaterialDesc(PellucidMaterialDesc* desc); /* the defaults */
 
 /* Fills every field of *material, and *report when not NULL. On failure neither is written and
  * `message` (optional) names the field and its value. About 15 ms for RGB coefficients, 50 for
@@ -116,6 +118,7 @@ PellucidResult pellucidCompileMaterial(const PellucidMaterialDesc* desc, Pelluci
 
 /* ---- Exact transport ------------------------------------------------------------------------- */
 
+/* What one slab does with light. */
 typedef struct PellucidSlab {
   double transmittance;       /* flux out of the far face / Lambertian flux arriving on the near face */
   double transmittanceNormal; /* the same for a beam at normal incidence */
@@ -139,7 +142,7 @@ double pellucidEvaluateTransmittance(const PellucidMaterial* material, uint32_t 
 
 /* ---- Presets --------------------------------------------------------------------------------- */
 
-uint32_t pellucidPresetCount(void);
+uint32_t pellucidPresetCount(void); /* presets have the indices below it */
 
 /* Lower case, e.g. "skin1", "whole_milk"; static string, or NULL beyond the last. */
 const char* pellucidPresetName(uint32_t index);
@@ -164,7 +167,7 @@ typedef struct PellucidOpenPbr {
   double millimetersPerUnit;          /* of subsurfaceRadius; > 0; default 1 */
 } PellucidOpenPbr;
 
-void pellucidInitOpenPbr(PellucidOpenPbr* material);
+void pellucidInitOpenPbr(PellucidOpenPbr* material); /* the specification's defaults */
 
 /* Describes an OpenPBR medium as kind COEFFICIENTS, in 1/mm: extinction 1 / (radius scale), and the
  * single-scattering albedo that gives subsurfaceColor behind the smooth boundary of specularIor. The albedo

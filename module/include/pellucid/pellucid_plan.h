@@ -37,30 +37,33 @@ enum {
   PELLUCID_PLAN_STATE_WORDS = 40
 };
 
+/* One binding of a dispatch. */
 typedef struct PellucidBinding {
   uint32_t binding;            /* of set 0, the push-descriptor set */
-  VkDescriptorType type;
+  VkDescriptorType type;       /* of the binding */
   uint32_t resource;           /* PellucidResource */
   uint32_t level;              /* mip or pyramid level; 0 for a plain image */
   VkDeviceSize offset, size;   /* bytes in the constants slice; buffers only */
 } PellucidBinding;
 
+/* One dispatch of a plan. */
 typedef struct PellucidDispatch {
   const char* name;             /* static string */
   uint32_t pipeline;            /* index below pellucidGetPipelineCount(); pellucidPipelineName() reads it */
   uint32_t groups[3];           /* workgroups; the most there may be when indirect */
   uint32_t indirect;            /* 1: VkDispatchIndirectCommand at indirectOffset of indirectResource, which earlier
                                    dispatches decide */
-  uint32_t indirectResource;
-  VkDeviceSize indirectOffset;
+  uint32_t indirectResource;    /* PellucidResource; CONSTANTS when indirect */
+  VkDeviceSize indirectOffset;  /* bytes from the slice's offset */
   uint32_t barrierBefore;       /* 1: a compute-to-compute memory barrier precedes the dispatch */
   uint32_t barrierIndirect;     /* 1: DRAW_INDIRECT / INDIRECT_COMMAND_READ waits for that barrier, too */
-  uint32_t pushConstants[PELLUCID_PUSH_CONSTANT_BYTES / 4];
-  uint32_t bindingCount;
-  PellucidBinding bindings[PELLUCID_MAX_BINDINGS];
+  uint32_t pushConstants[PELLUCID_PUSH_CONSTANT_BYTES / 4]; /* from offset 0 on */
+  uint32_t bindingCount;        /* of bindings */
+  PellucidBinding bindings[PELLUCID_MAX_BINDINGS]; /* of set 0 */
   uint64_t modeledBytes;        /* least device-memory traffic: each image read once, written once */
 } PellucidDispatch;
 
+/* Something that a plan leaves out. */
 typedef struct PellucidSkip {
   const char* what;   /* static string */
   const char* reason; /* static string */
@@ -69,16 +72,16 @@ typedef struct PellucidSkip {
 
 /* The module's own part of a plan: how the next plan decides about reuse, and what recording compares frames by. */
 typedef struct PellucidPlanState {
-  uint32_t words[PELLUCID_PLAN_STATE_WORDS];
+  uint32_t words[PELLUCID_PLAN_STATE_WORDS]; /* not for callers */
 } PellucidPlanState;
 
 struct PellucidPlan {
-  uint32_t dispatchCount, barrierCount;
-  uint32_t skipCount;
+  uint32_t dispatchCount, barrierCount; /* of dispatches, and how many have a barrier before */
+  uint32_t skipCount;         /* of skips */
   uint32_t activeLights;      /* lights that can contribute; the others are in skips */
   VkDeviceSize constantsSize; /* bytes RecordPlan writes into the constants slice */
-  PellucidDispatch dispatches[PELLUCID_MAX_DISPATCHES];
-  PellucidSkip skips[PELLUCID_MAX_SKIPS];
+  PellucidDispatch dispatches[PELLUCID_MAX_DISPATCHES]; /* in order */
+  PellucidSkip skips[PELLUCID_MAX_SKIPS]; /* what is left out, and why */
   float largestRadius; /* pixels within which 99.9 % of the diffused energy lies, of the widest channel of all
                           materials at frame.nearestDistance; 0: not known, or nothing diffuses */
   uint32_t quality;    /* that the diffusion runs at: frame.quality, or what frame.targetError chose; 0 where
@@ -87,19 +90,21 @@ struct PellucidPlan {
                              with a shadow map have one thickness a pixel */
   uint32_t historyAge;    /* frames since frame.history was written, by the last frame that computed the light that
                              comes through; 0: this frame computes it */
-  PellucidPlanState state;
+  PellucidPlanState state; /* not for callers */
 };
 
+/* One specialization constant. */
 typedef struct PellucidSpecialization {
   uint32_t id, value; /* of 32 bits; booleans are 0 or 1 */
 } PellucidSpecialization;
 
+/* What a pipeline is made of. */
 typedef struct PellucidShader {
   const uint32_t* words; /* SPIR-V; entry point "main", push constants PELLUCID_PUSH_CONSTANT_BYTES. Declares
                             StorageImageWriteWithoutFormat */
-  size_t wordCount;
-  uint32_t constantCount;
-  const PellucidSpecialization* constants;
+  size_t wordCount;      /* of words */
+  uint32_t constantCount; /* of constants */
+  const PellucidSpecialization* constants; /* of the pipeline */
 } PellucidShader;
 
 /* Id of the specialization constant of all shaders that holds PellucidContextDesc::normalEncoding, which is not among
@@ -110,8 +115,9 @@ enum { PELLUCID_SPECIALIZATION_NORMALS = 4 };
  * PellucidContextDesc. */
 PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const PellucidFrame* frame,
                                       void* mapped, size_t size);
-uint32_t pellucidGetPipelineCount(void);
-PellucidResult pellucidGetShader(uint32_t pipeline, VkImageViewType shadowViewType, PellucidShader* shader);
+uint32_t pellucidGetPipelineCount(void); /* pipelines have the indices below it */
+PellucidResult pellucidGetShader(uint32_t pipeline, VkImageViewType shadowViewType,
+                                 PellucidShader* shader); /* INVALID_ARGUMENT: no such pipeline or type */
 
 /* Bit (1 << PellucidResource) of each screen-sized image that `features` cannot do without. */
 uint32_t pellucidGetRequiredInputs(uint32_t features);
@@ -121,7 +127,7 @@ uint32_t pellucidGetRequiredInputs(uint32_t features);
 PellucidResult pellucidPlanToJson(const PellucidPlan* plan, char* text, size_t* size);
 
 const char* pellucidResourceName(uint32_t resource); /* "frontDepth", ... */
-const char* pellucidPipelineName(uint32_t pipeline);
+const char* pellucidPipelineName(uint32_t pipeline); /* "unknown pipeline" beyond the last */
 
 #ifdef __cplusplus
 }

@@ -8,18 +8,20 @@
 extern "C" {
 #endif
 
+/* One of the values below. */
 typedef int32_t PellucidResult;
 enum {
-  PELLUCID_OK = 0,
+  PELLUCID_OK = 0,                      /* all is done */
   PELLUCID_ERROR_INVALID_ARGUMENT = -1, /* a field is wrong; the message names it */
   PELLUCID_ERROR_VERSION = -2,          /* structSize or headerVersion that this library cannot take */
   PELLUCID_ERROR_MISSING_FEATURE = -3,  /* no Vulkan 1.1, push descriptors or 24 KiB of shared memory a group */
-  PELLUCID_ERROR_OUT_OF_MEMORY = -4,
+  PELLUCID_ERROR_OUT_OF_MEMORY = -4,    /* of the host or the device */
   PELLUCID_ERROR_VULKAN = -5,        /* a Vulkan call failed; the message has the VkResult */
   PELLUCID_ERROR_CAPACITY = -6,      /* more dispatches or shadow images than a plan holds */
   PELLUCID_ERROR_BUFFER_TOO_SMALL = -7 /* constants slice or text buffer shorter than needed */
 };
 
+/* Whether a finding stops a frame. */
 typedef enum PellucidSeverity { PELLUCID_SEVERITY_WARNING = 0, PELLUCID_SEVERITY_ERROR = 1 } PellucidSeverity;
 
 /* `field` is the API field at fault ("lights[2].color"), `message` a UTF-8 sentence. Both are valid

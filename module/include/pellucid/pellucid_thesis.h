@@ -55,11 +55,12 @@ struct PellucidThesisOptions {
   float faceVector[3];   /* world, not along upAxis; default +z */
   float upAxis[3];       /* world; default +y */
   float objectCenter[3]; /* world; where point and spot lights are seen from */
-  const float* minimumDotTable;
+  const float* minimumDotTable; /* as said above */
 };
 
 /* The defaults, written into a struct of that many bytes. */
 void pellucidInitThesisOptionsSized(PellucidThesisOptions* options, size_t structSize);
+/* The defaults. */
 static inline void pellucidInitThesisOptions(PellucidThesisOptions* options) {
   pellucidInitThesisOptionsSized(options, sizeof(PellucidThesisOptions));
 }

@@ -1,0 +1,25 @@
+#include "cli/commands.h"
+
+namespace pellucid::harness {
+
+void addCommands(CLI::App& app) {
+  addInfoCommand(app);
+  addInitCommand(app);
+  addReplayCommand(app);
+  addPlanCommand(app);
+  addMaterialCommand(app);
+  addReferenceCommand(app);
+  addTruthCommand(app);
+  addCompareCommand(app);
+  addEvaluateCommand(app);
+  addFlickerCommand(app);
+  addCaptureCommand(app);
+  addSheetCommand(app);
+  addMeasureDotsCommand(app);
+  addStressCommand(app);
+  addViewCommand(app);
+  addPerceptionCommand(app);
+  addAnglesCommand(app);
+}
+
+}  // namespace pellucid::harness
