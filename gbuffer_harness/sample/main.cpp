@@ -17,7 +17,7 @@ namespace {
 
 struct Options {
   std::string file, output, capture, device;
-  std::map<std::string, std::string> materials;
+  GltfOptions gltf;
   int frames = 0, width = 640, height = 640, mapTexels = 1024;
   double turn = 0, cell = 1.5;
   bool headless = false, validate = false;
@@ -46,7 +46,7 @@ void addOptions(CLI::App& app, Options& o) {
     for (const std::string& text : given) {
       const std::size_t equals = text.find('=');
       if (equals == std::string::npos) throw CLI::ValidationError("\"" + text + "\" is not NAME=PRESET");
-      o.materials[text.substr(0, equals)] = text.substr(equals + 1);
+      o.gltf.presets[text.substr(0, equals)] = text.substr(equals + 1);
     }
     return true;
   };
@@ -62,6 +62,7 @@ void addOptions(CLI::App& app, Options& o) {
   number("--width", o.width, 1, 8192, "pixels");
   number("--height", o.height, 1, 8192, "pixels");
   number("--shadow-size", o.mapTexels, 16, 4096, "texels across a shadow map");
+  number("--meters-per-unit", o.gltf.metersPerUnit, 1e-6, 1e6, "of a file");
   number("--cell", o.cell, 1.0, 20.0, "mm between vertices of the procedural head");
   number("--quality", s.quality, 0, 2, "of Pellucid");
   number("--scale", s.scale, 0.1, 1.0, "rendered pixels per pixel of the picture along each side");
@@ -100,7 +101,7 @@ void save(const Image& picture, const std::string& file) {
 }
 
 void run(Options o) {
-  Scene scene = o.file.empty() ? headScene(o.cell, o.mapTexels) : fileScene(o.file, o.materials, o.mapTexels);
+  Scene scene = o.file.empty() ? headScene(o.cell, o.mapTexels) : fileScene(o.file, o.gltf, o.mapTexels);
   for (const std::string& note : scene.notes) std::fprintf(stderr, "%s\n", note.c_str());
   DeviceOptions wanted{o.device, o.validate};
   std::optional<Desktop> desktop;

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "capture/material.h"
-#include "gltf/gltf.h"
 #include "raster/field_mesh.h"
 #include "scene/environment.h"
 #include "scene/vector.h"
@@ -51,10 +50,7 @@ Scene sceneOf(Model model, const Vector3& toCamera, int mapTexels) {
 
 }  // namespace
 
-Scene fileScene(const std::filesystem::path& file, const std::map<std::string, std::string>& presets,
-                int mapTexels) {
-  GltfOptions options;
-  options.presets = presets;
+Scene fileScene(const std::filesystem::path& file, const GltfOptions& options, int mapTexels) {
   GltfScene loaded = loadGltf(file, options);
   if (loaded.model.materials.empty())
     throw InputError(file.string(), "materials", "none scatters light; --material NAME=PRESET gives one");

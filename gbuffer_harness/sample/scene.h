@@ -2,10 +2,10 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
 #include <string>
 #include <vector>
 
+#include "gltf/gltf.h"
 #include "raster/framing.h"
 #include "sample/frame.h"
 #include "view/camera.h"
@@ -27,10 +27,9 @@ struct Scene {
   std::vector<std::string> notes;  // sentences for a person
 };
 
-// A glTF file under the sample's own lights, which replace the file's. presets: as GltfOptions takes them.
-// mapTexels: across a shadow map. Throws InputError as loadGltf() does, and where nothing scatters light.
-Scene fileScene(const std::filesystem::path& file, const std::map<std::string, std::string>& presets,
-                int mapTexels);
+// A glTF file under the sample's own lights, which replace the file's. mapTexels: across a shadow map. Throws
+// InputError as loadGltf() does, and where nothing scatters light.
+Scene fileScene(const std::filesystem::path& file, const GltfOptions& options, int mapTexels);
 
 // The head of the procedural scene "head" on a floor. cell: mm between the mesh's vertices, 1..20.
 Scene headScene(double cell, int mapTexels);
