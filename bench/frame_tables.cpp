@@ -102,7 +102,7 @@ const Json& whole(const Frames& all, const std::string& frame, const std::string
   throw NotMeasured("no \"" + name + "\" of frame \"" + frame + "\" at " + size);
 }
 
-// What the README says of two runs: one with times, one with errors against path tracing; either run may have
+// The README's tables of two runs: one with times, one with errors against path tracing; either run may have
 // both.
 class Summary {
 public:

@@ -1,7 +1,7 @@
 // Prints the documentation's tables of measured times from the results of a run, or checks or rewrites them
 // in a file:
 //   pellucid_bench_tables RESULTS.json[,RESULTS.json...] TABLE [--check | --update FILE]
-// Of several files the first that has what the table shows; headline and qualities join two of them.
+// The first of several files that has what the table shows counts; headline and qualities join two of them.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -111,7 +111,7 @@ std::vector<std::string> split(const std::string& list) {
   return parts;
 }
 
-// Of the first run that has what the table shows.
+// The first run that has what the table shows counts.
 template <std::string (*make)(const Json&)>
 std::string ofFirst(const std::vector<Json>& runs) {
   for (const Json& run : runs) try {

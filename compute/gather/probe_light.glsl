@@ -67,7 +67,7 @@ void addSample(inout Gathered sum, Surface x, uint m, vec4 lengths, EntryPoint e
   sum.through += flux * (diffuses ? entry.hidden + entry.seen : entry.hidden) * comes;
   if (!diffuses) return;
   vec3 reflected = gatherReflected(materials[m].gather.profile.rgb, near, far);
-  // What a grazed texel stands for beyond five times its area lies further away: its light does not count as if it were here.
+  // A grazed texel stands for more than five times its area: the light beyond that lies further away and does not count here.
   float area = axisCosine / max(entry.cosine, kLeastCosine), here = min(entry.cosine / kLeastCosine, 1.0) * flux;
   vec3 alike = (1.0 - opposite) * reflected;
   sum.entering += here * entry.hidden * alike;

@@ -20,7 +20,7 @@ namespace pellucid::harness {
 
 namespace {
 
-// Of shaders/draw.glsl.
+// Push constants of shaders/draw.glsl.
 constexpr std::uint32_t kOwnBindings = 5, kBehindFront = 1, kBehindCaster = 2, kLobesApart = 256;
 constexpr VkShaderStageFlags kStages =  // that read DrawConstants
     VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;

@@ -46,14 +46,14 @@ struct DrawView {
   bool reversedDepth = true;
 };
 
-// What a fused dispatch of the module would bind, for FragmentShader::Transmit.
+// The bindings of a fused dispatch of the module, for FragmentShader::Transmit.
 struct PlannedInputs {
   const PellucidDispatch& dispatch;
   const PellucidFrame& frame;  // with its views
   VkBuffer constants;          // the slice that pellucidWriteConstants filled, from offset 0
 };
 
-// What an earlier pass drew of the same view.
+// Images that an earlier pass drew of the view.
 struct EarlierPass {
   const GpuImage* depth = nullptr;
   const GpuImage* albedoObject = nullptr;  // of shaders/surface.frag

@@ -1,4 +1,4 @@
-// What this engine knows of a frame.
+// A frame as this engine knows it.
 #pragma once
 
 #include <array>
@@ -31,10 +31,10 @@ struct ShadowTile {
   float depthStep = 0;                    // of stored depths; 0: floats
 };
 
-// Of a depth buffer that shaders read; other images are in GENERAL throughout.
+// The layout of a depth buffer that shaders read; other images are in GENERAL throughout.
 constexpr VkImageLayout kDepthRead = VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;
 
-// Of buffers for whatever passes compute with.
+// Usages of buffers for whatever passes compute with.
 constexpr VkBufferUsageFlags kConstantsUsage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
                                                VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
                                                VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;

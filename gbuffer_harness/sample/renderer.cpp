@@ -20,12 +20,12 @@ namespace pellucid::sample {
 
 namespace {
 
-// Of shaders/mesh.glsl.
+// Push constants of shaders/mesh.glsl.
 struct DrawConstants {
   glm::mat4 clipFromWorld;
   glm::vec4 baseColor, surface;
 };
-// Of shaders/frame.glsl.
+// Uniforms of shaders/frame.glsl.
 struct UniformLight {
   glm::vec4 position, direction, color;
   glm::uvec4 tiles;

@@ -14,7 +14,7 @@
 
 namespace pellucid::sample {
 
-// What an integration may get wrong, to see it: docs/integration.md. The shaders know the numbers.
+// Mistakes that an integration may make, to see them: docs/integration.md. The shaders know the numbers.
 enum class Mistake : std::uint32_t { None, Fronts, Bias, Units, Gamma, AlbedoTwice, SpecularDiffused };
 inline const std::vector<std::string> kMistakes = {"none",  "culled-fronts", "depth-bias",       "units",
                                                    "gamma", "albedo-twice",  "specular-diffused"};

@@ -27,7 +27,7 @@ void addLight(Scene& scene, int mapTexels, PellucidLightType type, const glm::dv
   if (type != PELLUCID_LIGHT_DIRECTIONAL) views = frameLight(scene.model, light, PointMaps::Six, mapTexels);
 }
 
-// Of a model: the camera around all of it, and the same lights for every model, two of them in front.
+// A model's scene: the camera around all of it, and the same lights for every model, two of them in front.
 Scene sceneOf(Model model, const Vector3& toCamera, int mapTexels) {
   constexpr double kFov = 0.5;  // radians
   Scene scene;

@@ -1,4 +1,4 @@
-// What is drawn, and what lights it.
+// The meshes that are drawn, and the lights on them.
 #pragma once
 
 #include <filesystem>

@@ -40,7 +40,7 @@ const Bump kFeatures[] = {{{38, -25, 55}, {22, 22, 22}, 18},   // cheek
                           {{0, -59, 79}, {20, 5.5, 7.5}, 4}};  // lower lip
 const Bump kSocket = {{31, 10, 80}, {20, 13, 16}, 10}, kEyeball = {{30, 9, 66}, {12, 12, 12}, 1};
 
-// Whether what lies in a ball may be nearer to p than `distance`.
+// True where a point of a ball may be nearer to p than `distance`.
 bool mayReach(const glm::dvec3& p, const glm::dvec3& center, double radius, double distance) {
   const double reach = distance + radius;
   const glm::dvec3 offset = p - center;
@@ -103,7 +103,7 @@ struct View {
   double extent;  // mm
 };
 
-// What a 16:9 image of them covers is what the frames of a head scan cover: .14, .95, .06, .003.
+// A 16:9 image of them covers as much as the frames of a head scan: .14, .95, .06, .003.
 constexpr View kViews[] = {{{0, -35, 0}, {0.35, 0.05, 1}, 703},
                            {{2, -14, 80}, {0.1, 0, 1}, 108},
                            {{0, -40, -400}, {0, 0.12, 1}, 3490},

@@ -13,7 +13,7 @@ const std::string kSmall = "--frames 2 --width 40 --height 32 --shadow-size 32 -
 
 class SampleCommand : public Cli {
 protected:
-  // Of a material that does not scatter.
+  // The file has a material that does not scatter.
   std::string triangle() const {
     GltfBuilder gltf;
     const int positions = gltf.vectors({0, 0, 0, 1, 0, 0, 0, 1, 0}),

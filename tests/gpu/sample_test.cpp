@@ -163,7 +163,7 @@ TEST_F(Sample, AntialiasingKeepsTheMean) {
   EXPECT_LT(difference, 0.1);
 }
 
-// What the head gets from the spots, relative to plain maps.
+// Light of the spots on the head, relative to plain maps.
 class SpotMaps : public Sample {
 protected:
   static Image skin(const Settings& settings) {

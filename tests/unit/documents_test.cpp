@@ -58,7 +58,7 @@ std::vector<std::string> lines(const std::string& text) {
 
 // ---- Links -----------------------------------------------------------------------------------------
 
-// Of a heading, as GitHub makes it of ASCII.
+// Anchor of a heading, as GitHub makes it of ASCII.
 std::string anchorOf(const std::string& heading) {
   static const std::regex link(R"(\[([^\]]*)\]\([^)]*\))");
   std::string anchor;

@@ -1,4 +1,4 @@
-// What all passes of a frame read; Uniforms of uniforms.h.
+// All passes of a frame read this; Uniforms of uniforms.h.
 #ifndef SAMPLE_FRAME_GLSL
 #define SAMPLE_FRAME_GLSL
 

@@ -31,7 +31,7 @@ float compared(uint image, vec3 at, float depth) {
   return image == 0u ? texture(cascades, where) : image == 1u ? texture(atlas, where) : texture(cube, where);
 }
 
-// Of the first tile that contains the point. Depths are reversed.
+// Visibility by the first tile that contains the point. Depths are reversed.
 float visibility(Light light, vec3 p, vec3 n) {
   for (uint i = 0u; i < light.tiles.y; ++i) {
     Tile tile = frame.tiles[light.tiles.x + i];

@@ -83,7 +83,7 @@ typedef struct PellucidImage {
   VkImageLayout layout; /* of the image while the commands run */
 } PellucidImage;
 
-/* What a depth image holds. */
+/* Content of a depth image. */
 typedef enum PellucidDepthEncoding {
   PELLUCID_DEPTH_DEVICE = 0,  /* the 0..1 value of the matrix that rendered it; of the camera: other values, NaN,
                                  and distances of 1e9 and more: nothing there */
@@ -294,7 +294,7 @@ typedef enum PellucidNormalEncoding {
   PELLUCID_NORMALS_OCTAHEDRAL_UNORM = 3  /* (that + 1) / 2 in RG, 0..1 */
 } PellucidNormalEncoding;
 
-/* What a context is made of. */
+/* Description of a context. */
 typedef struct PellucidContextDesc {
   uint32_t structSize;    /* sizeof(PellucidContextDesc), written by pellucidInitContextDesc */
   uint32_t headerVersion; /* PELLUCID_HEADER_VERSION, likewise */

@@ -82,7 +82,7 @@ typedef struct PellucidMaterialDesc {
   double wallTransmittance[3]; /* that leave by the other face */
 } PellucidMaterialDesc;
 
-/* What one channel was compiled from and how well the result fits. */
+/* A channel's input, and how well the result fits. */
 typedef struct PellucidChannelReport {
   double scattering, absorption;     /* sigma_s', sigma_a, 1/mm; 0 for kinds without RGB coefficients */
   double rho;                        /* diffuse reflectance of the half-space under Lambertian light from
@@ -99,7 +99,7 @@ typedef struct PellucidChannelReport {
                                         against Burley */
 } PellucidChannelReport;
 
-/* What a material was compiled from. */
+/* Input of a compiled material. */
 typedef struct PellucidMaterialReport {
   char name[64]; /* the preset's name, or the kind */
   double ior;    /* the one used; 0 for kinds without */
@@ -118,7 +118,7 @@ PellucidResult pellucidCompileMaterial(const PellucidMaterialDesc* desc, Pelluci
 
 /* ---- Exact transport ------------------------------------------------------------------------- */
 
-/* What one slab does with light. */
+/* Light that a slab transmits and reflects. */
 typedef struct PellucidSlab {
   double transmittance;       /* flux out of the far face / Lambertian flux arriving on the near face */
   double transmittanceNormal; /* the same for a beam at normal incidence */
@@ -130,7 +130,7 @@ typedef struct PellucidSlab {
 PellucidResult pellucidSlabTransport(double scattering, double absorption, double ior, double thickness,
                                      PellucidSlab* slab, PellucidMessageFn message, void* messageUser);
 
-/* What a material's T(d) was fitted to: slabs[3 * i + channel] for thickness[i], >= 0 mm. Of BURLEY
+/* Slabs that a material's T(d) was fitted to: slabs[3 * i + channel] for thickness[i], >= 0 mm. Of BURLEY
  * and GAUSSIANS it is the function they define, for both incidences, and reflectance is 0. A THIN_WALL has
  * wallTransmittance and wallReflectance at every thickness. */
 PellucidResult pellucidMaterialSlabs(const PellucidMaterialDesc* desc, uint32_t count,

@@ -98,7 +98,7 @@ typedef struct PellucidSpecialization {
   uint32_t id, value; /* of 32 bits; booleans are 0 or 1 */
 } PellucidSpecialization;
 
-/* What a pipeline is made of. */
+/* Description of a pipeline. */
 typedef struct PellucidShader {
   const uint32_t* words; /* SPIR-V; entry point "main", push constants PELLUCID_PUSH_CONSTANT_BYTES. Declares
                             StorageImageWriteWithoutFormat */

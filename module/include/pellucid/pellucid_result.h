@@ -21,7 +21,7 @@ enum {
   PELLUCID_ERROR_BUFFER_TOO_SMALL = -7 /* constants slice or text buffer shorter than needed */
 };
 
-/* Whether a finding stops a frame. */
+/* Severity of a finding; an error stops a frame. */
 typedef enum PellucidSeverity { PELLUCID_SEVERITY_WARNING = 0, PELLUCID_SEVERITY_ERROR = 1 } PellucidSeverity;
 
 /* `field` is the API field at fault ("lights[2].color"), `message` a UTF-8 sentence. Both are valid
