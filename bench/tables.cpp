@@ -8,10 +8,10 @@
 #include <exception>
 #include <fstream>
 #include <iterator>
-#include <sstream>
 #include <string>
 #include <vector>
 
+#include "common/split.h"
 #include "generated_block.h"
 #include "table_text.h"
 
@@ -104,13 +104,6 @@ std::string sweep(const Json& results) {
   return table;
 }
 
-std::vector<std::string> split(const std::string& list) {
-  std::vector<std::string> parts;
-  std::stringstream text(list);
-  for (std::string part; std::getline(text, part, ',');) parts.push_back(part);
-  return parts;
-}
-
 // The first run that has what the table shows counts.
 template <std::string (*make)(const Json&)>
 std::string ofFirst(const std::vector<Json>& runs) {
@@ -158,7 +151,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   std::vector<Json> runs;
-  for (const std::string& path : split(argv[1])) {
+  for (const std::string& path : pellucid::harness::split(argv[1], ',')) {
     std::ifstream file(path);
     if (!file) {
       std::fprintf(stderr, "%s: not there; passed over\n", path.c_str());

@@ -16,11 +16,16 @@ capture() {
   "$pellucid" capture "${source[@]}" --size "$size" "${@:2}" -o "$folder/$1.exr" >"$folder/$1.log" 2>&1 || { cat "$folder/$1.log" >&2; exit 1; }
 }
 
+declare -A replayed # images by capture and options: figures share pictures
+
 # picture LABEL CAPTURE EXPOSURE OPTION...: one picture of the sheet, replayed as the thesis does
 picture() {
-  local name="$folder/picture.${#images[@]}.exr"
-  "$pellucid" replay "$folder/$2.exr" --mode thesis --repeat 0 "${@:4}" -o "$name" >/dev/null
-  images+=("$name") labels+=("$1") exposures+=("$3")
+  local key="$2 ${*:4}"
+  if [[ -z ${replayed[$key]:-} ]]; then
+    replayed[$key]="$folder/picture.${#images[@]}.exr"
+    "$pellucid" replay "$folder/$2.exr" --mode thesis --repeat 0 "${@:4}" -o "${replayed[$key]}" >/dev/null
+  fi
+  images+=("${replayed[$key]}") labels+=("$1") exposures+=("$3")
 }
 
 # Exposures: 20 mm of thickness are white, and all light is as it is.

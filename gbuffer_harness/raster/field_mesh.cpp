@@ -13,7 +13,6 @@ namespace {
 constexpr int kBlock = 8;  // corners along a side of what is skipped where no surface is near
 
 // Adds the surface within the cube of that half side around `center`.
-
 void addMesh(const DistanceField& field, const glm::dvec3& center, double half, double cell, Model& model) {
   const int blocks = static_cast<int>(std::ceil(2 * half / (cell * kBlock))), n = blocks * kBlock;
   const glm::dvec3 origin = center - 0.5 * n * cell;

@@ -1,4 +1,4 @@
-// All passes of a frame read this; Uniforms of uniforms.h.
+// All passes of a frame read this; Uniforms of renderer.cpp.
 #ifndef SAMPLE_FRAME_GLSL
 #define SAMPLE_FRAME_GLSL
 
@@ -28,7 +28,7 @@ layout(set = 0, binding = 0, std140) uniform Frame {
   Tile tiles[16];
 } frame;
 
-// Mistakes of integrations, shown on purpose; Mistake of frame.h.
+// Mistakes of integrations, shown on purpose; Mistake of renderer.h.
 #define MISTAKE_GAMMA 4u
 #define MISTAKE_ALBEDO_TWICE 5u
 #define MISTAKE_SPECULAR_DIFFUSED 6u
