@@ -126,13 +126,6 @@ void UploadedModel::create(Pipeline& pipeline, const RenderTarget& target, const
                  fragmentSpirv(state.shader), drawn, pipeline);
 }
 
-void UploadedModel::draw(const RenderTarget& target, const DrawView& view, const PipelineState& state,
-                         VkCullModeFlags doubleSidedCull, const EarlierPass& earlier) const {
-  device_.run([&](VkCommandBuffer commandBuffer) {
-    record(commandBuffer, target, view, state, doubleSidedCull, earlier);
-  });
-}
-
 void UploadedModel::record(VkCommandBuffer commandBuffer, const RenderTarget& target, const DrawView& view,
                            const PipelineState& state, VkCullModeFlags doubleSidedCull,
                            const EarlierPass& earlier) const {

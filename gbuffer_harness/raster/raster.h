@@ -10,8 +10,6 @@
 
 namespace pellucid::harness {
 
-class UploadedModel;
-
 enum class BackFace {
   Nearest,  // of those behind the front: the thickness of the first layer
   Farthest  // the thickness of everything, hollows included
@@ -69,9 +67,5 @@ struct RasterResult {
 // DeviceError when the device cannot draw.
 RasterResult rasterize(Device& device, const Model& model, const ModelCamera& camera,
                        const RasterOptions& options);
-
-// Draws a model that is on the device already. `model` is the uploaded one, whose lights may have changed.
-RasterResult rasterize(Device& device, const Model& model, const UploadedModel& uploaded,
-                       const ModelCamera& camera, const RasterOptions& options);
 
 }  // namespace pellucid::harness

@@ -112,7 +112,7 @@ private:
   }
 
   ScreenRect picture() const {
-    return fitted(pictureArea(), frames_->capture().width, frames_->capture().height);
+    return fitted(pictureArea(), frames_->outline().width, frames_->outline().height);
   }
 
   // One frame of the screen; true where another one has to follow.
@@ -175,7 +175,8 @@ private:
     FrameTime time;
     time.frame = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
     time.scene = frames_->sceneMilliseconds();
-    for (const DispatchTime& dispatch : frames_->times()) time.module += dispatch.microseconds / 1000;
+    time.rasterizer = sumOf(frames_->sceneTimes()) / 1000;
+    time.module = sumOf(frames_->times()) / 1000;
     report_.moving.add(time);
   }
 

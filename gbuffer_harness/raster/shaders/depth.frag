@@ -22,7 +22,7 @@ void main() {
   if (draw.ids.z != 0u) {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     vec4 front = texelFetch(frontObject, pixel, 0);
-    bool sameObject = (draw.ids.z == BEHIND_CASTER ? front.y : front.a) == draw.addedColor.a;
+    bool sameObject = (draw.ids.z == BEHIND_CASTER ? front.r : front.a) == draw.addedColor.a;
     float frontDepth = texelFetch(earlierDepth, pixel, 0).r;
     bool behind = draw.ids.z == BEHIND_CASTER ? isNearer(frontDepth, gl_FragCoord.z)
                                               : isBehind(gl_FragCoord.z, slope, frontDepth);

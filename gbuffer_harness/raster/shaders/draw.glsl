@@ -18,7 +18,7 @@ layout(set = 0, binding = 0) uniform sampler2D baseColorTexture;
 layout(set = 0, binding = 1) uniform sampler2D earlierDepth;
 // Object of the front faces.
 #define BEHIND_FRONT 1u  // a: of surface.frag
-#define BEHIND_CASTER 2u // y: of caster.frag
+#define BEHIND_CASTER 2u // r: of caster.frag
 layout(set = 0, binding = 2) uniform sampler2D frontObject;
 layout(set = 0, binding = 3) uniform sampler2D normalMap; // vectors
 layout(set = 0, binding = 4) uniform sampler2D lobeMap;   // linear rgb; a: strength
