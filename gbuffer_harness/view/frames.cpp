@@ -14,14 +14,23 @@ namespace pellucid::harness {
 
 namespace {
 
-// Irradiance times albedo, as an image of the format holds it: what a replay leaves where no material is.
+// Of an output, which has an alpha in most formats.
+Image rgbOf(Image output) { return output.channels == 3 ? output : rgb(output); }
+
+// RGB as an image of the format holds it.
+void store(float* rgb, VkFormat format) {
+  if (format == VK_FORMAT_R16G16B16A16_SFLOAT)
+    for (int c = 0; c < 3; ++c) rgb[c] = glm::unpackHalf1x16(glm::packHalf1x16(rgb[c]));
+  if (format != VK_FORMAT_B10G11R11_UFLOAT_PACK32) return;
+  const glm::vec3 packed = glm::unpackF2x11_1x10(glm::packF2x11_1x10({rgb[0], rgb[1], rgb[2]}));
+  for (int c = 0; c < 3; ++c) rgb[c] = packed[c];
+}
+
+// Irradiance times albedo: what a replay leaves where no material is.
 Image composited(const Capture& capture, VkFormat format) {
   Image result = capture.irradiance;
-  for (std::size_t i = 0; i < result.data.size(); ++i) {
-    if (!capture.albedo.empty()) result.data[i] *= capture.albedo.data[i];
-    if (format == VK_FORMAT_R16G16B16A16_SFLOAT)
-      result.data[i] = glm::unpackHalf1x16(glm::packHalf1x16(result.data[i]));
-  }
+  for (std::size_t i = 0; i < capture.albedo.data.size(); ++i) result.data[i] *= capture.albedo.data[i];
+  for (std::size_t i = 0; i < result.pixels(); ++i) store(&result.data[3 * i], format);
   return result;
 }
 
@@ -246,16 +255,16 @@ Image ViewFrames::pixels(Shown shown, const Capture& surfaces, const VkRect2D& r
   switch (shown) {
     case Shown::After: {
       const FrameRun& frame = run(shown);
-      const Image output = frame.output(rect);
+      const Image output = rgbOf(frame.output(rect));
       Image result = composited(surfaces, frame.frame().outputFormat);
       for (std::size_t i = 0; i < result.pixels(); ++i)
-        if (material[i] != 0) std::copy_n(&output.data[4 * i], 3, &result.data[3 * i]);
+        if (material[i] != 0) std::copy_n(&output.data[3 * i], 3, &result.data[3 * i]);
       return result;
     }
     case Shown::Before:
       return composited(surfaces, VK_FORMAT_R32G32B32A32_SFLOAT);
     case Shown::Through: {
-      Image result = rgb(run(shown).output(rect));
+      Image result = rgbOf(run(shown).output(rect));
       const Image before = pixels(Shown::Before, surfaces, rect);
       for (std::size_t i = 0; i < result.pixels(); ++i)
         for (std::size_t c = 0; c < 3; ++c) {
@@ -274,7 +283,7 @@ Image ViewFrames::pixels(Shown shown, const Capture& surfaces, const VkRect2D& r
     case Shown::Truth:
       return outline().truth ? partOf(outline().truth->image, rect) : Image(width, height, 3);
     case Shown::Debug:
-      return rgb(run(shown).output(rect));
+      return rgbOf(run(shown).output(rect));
     case Shown::FrontDepth:
       return surfaces.frontDepth.image;
     case Shown::Normal: {
