@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <numeric>
+#include <utility>
 
 namespace pellucid::harness {
 
@@ -12,35 +14,33 @@ void MovingTimes::add(const FrameTime& time) {
     times_.push_back(time);
 }
 
-FrameTime MovingTimes::mean() const {
-  FrameTime sum;
-  if (times_.empty()) return sum;
-  for (const FrameTime& time : times_) {
-    sum.frame += time.frame;
-    sum.scene += time.scene;
-    sum.rasterizer += time.rasterizer;
-    sum.module += time.module;
-  }
-  const auto count = static_cast<double>(times_.size());
-  return {sum.frame / count, sum.scene / count, sum.rasterizer / count, sum.module / count};
+MovingTimes::Summary MovingTimes::of(double FrameTime::*part) const {
+  std::vector<double> values;
+  for (const FrameTime& time : times_) values.push_back(time.*part);
+  if (values.empty()) return {};
+  std::sort(values.begin(), values.end());
+  const std::size_t count = values.size();
+  return {std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(count),
+          (values[(count - 1) / 2] + values[count / 2]) / 2, values.front()};
 }
 
-double MovingTimes::medianFrame() const {
-  if (times_.empty()) return 0;
-  std::vector<double> frames;
-  for (const FrameTime& time : times_) frames.push_back(time.frame);
-  std::sort(frames.begin(), frames.end());
-  return (frames[(frames.size() - 1) / 2] + frames[frames.size() / 2]) / 2;
-}
-
-std::string MovingTimes::sentence() const {
+std::string MovingTimes::table() const {
   if (times_.empty()) return {};
-  const FrameTime time = mean();
-  char text[256];
-  std::snprintf(text, sizeof text,
-                "%zu moving frames: mean %.3f ms, median %.3f ms; of the mean, the scene takes %.3f ms; by the "
-                "GPU's clock, the rasterizer takes %.3f ms and Pellucid %.3f ms",
-                count(), time.frame, medianFrame(), time.scene, time.rasterizer, time.module);
+  const std::pair<const char*, double FrameTime::*> parts[] = {
+      {"whole frame", &FrameTime::frame},
+      {"scene", &FrameTime::scene},
+      {"rasterizer, GPU's clock", &FrameTime::rasterizer},
+      {"Pellucid, GPU's clock", &FrameTime::module}};
+  char line[128];
+  std::snprintf(line, sizeof line, "%-26s%10s%10s%10s\n",
+                (std::to_string(count()) + " moving frames, ms").c_str(), "mean", "median", "best");
+  std::string text = line;
+  for (const auto& [name, part] : parts) {
+    const Summary summary = of(part);
+    std::snprintf(line, sizeof line, "%-26s%10.3f%10.3f%10.3f\n", name, summary.mean, summary.median,
+                  summary.best);
+    text += line;
+  }
   return text;
 }
 

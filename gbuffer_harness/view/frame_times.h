@@ -21,9 +21,12 @@ public:
 
   void add(const FrameTime& time);
   std::size_t count() const { return times_.size(); }
-  FrameTime mean() const;       // 0 without frames
-  double medianFrame() const;   // of FrameTime::frame; 0 without frames
-  std::string sentence() const;  // of all these; empty without frames
+
+  struct Summary {
+    double mean = 0, median = 0, best = 0;  // 0 without frames
+  };
+  Summary of(double FrameTime::*part) const;
+  std::string table() const;  // of all parts; empty without frames
 
 private:
   std::size_t leftOut_ = 0;

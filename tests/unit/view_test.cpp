@@ -498,16 +498,21 @@ TEST(MovingTimes, LeaveOutTheFirstFramesAndAverageTheOthers) {
   MovingTimes times;
   for (std::size_t i = 0; i < MovingTimes::kLeftOut; ++i) times.add({1000, 900, 800, 50});
   EXPECT_EQ(times.count(), 0u);
-  EXPECT_EQ(times.sentence(), "");
+  EXPECT_EQ(times.table(), "");
   times.add({10, 6, 4, 2});
   times.add({30, 8, 6, 4});
   times.add({11, 7, 5, 3});
   EXPECT_EQ(times.count(), 3u);
-  EXPECT_DOUBLE_EQ(times.mean().frame, 17);
-  EXPECT_DOUBLE_EQ(times.medianFrame(), 11);
-  EXPECT_EQ(times.sentence(),
-            "3 moving frames: mean 17.000 ms, median 11.000 ms; of the mean, the scene takes 7.000 ms; by the "
-            "GPU's clock, the rasterizer takes 5.000 ms and Pellucid 3.000 ms");
+  const MovingTimes::Summary frame = times.of(&FrameTime::frame);
+  EXPECT_DOUBLE_EQ(frame.mean, 17);
+  EXPECT_DOUBLE_EQ(frame.median, 11);
+  EXPECT_DOUBLE_EQ(frame.best, 10);
+  EXPECT_EQ(times.table(),
+            "3 moving frames, ms             mean    median      best\n"
+            "whole frame                   17.000    11.000    10.000\n"
+            "scene                          7.000     7.000     6.000\n"
+            "rasterizer, GPU's clock        5.000     5.000     4.000\n"
+            "Pellucid, GPU's clock          3.000     3.000     2.000\n");
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ layout(location = 3) out vec4 outDepthNormal; // yzw: without the normal map
 vec3 mappedNormal(vec3 n) {
   float scale = uintBitsToFloat(draw.ids.w);
   if (scale == 0.0) return n;
-  vec3 m = meanOf(normalMap, normalUv).rgb * vec3(scale, scale, 1.0);
+  vec3 m = meanOf(normalMap, normalUv, scale != 0.0).rgb * vec3(scale, scale, 1.0);
   vec2 ux = dFdx(normalUv), uy = dFdy(normalUv);
   vec3 px = dFdx(position), py = dFdy(position);
   float orientation = sign(ux.x * uy.y - uy.x * ux.y);
