@@ -79,11 +79,22 @@ Constants constantsOf(const LitSurfaces& surfaces, const Light& light,
   return constants;
 }
 
+constexpr VkSpecializationMapEntry kMapsEntry{0, 0, sizeof(std::uint32_t)};
+constexpr std::uint32_t kOneMap = 1, kAllMaps = kShadowMaps;
+
+PixelPass passOf(Device& device, const std::uint32_t& maps) {
+  return {device,
+          {kRasterIrradiance, sizeof kRasterIrradiance},
+          {std::begin(kBindings), std::end(kBindings)},
+          0,
+          {1, &kMapsEntry, sizeof maps, &maps}};
+}
+
 }  // namespace
 
 IrradiancePass::IrradiancePass(Device& device)
-    : pass_(device, {kRasterIrradiance, sizeof kRasterIrradiance},
-            {std::begin(kBindings), std::end(kBindings)}),
+    : one_(passOf(device, kOneMap)),
+      six_(passOf(device, kAllMaps)),
       constants_(device, sizeof(Constants),
                  VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT) {}
 
@@ -95,8 +106,9 @@ void IrradiancePass::record(VkCommandBuffer commands, const LitSurfaces& surface
   barrier(commands, {VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT},
           {VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_UNIFORM_READ_BIT});
 
+  const PixelPass& pass = shadows.size() <= kOneMap ? one_ : six_;
   const auto imageInfo = [&](const GpuImage& image) {
-    return VkDescriptorImageInfo{pass_.sampler(), image.use().view, image.use().layout};
+    return VkDescriptorImageInfo{pass.sampler(), image.use().view, image.use().layout};
   };
   const VkDescriptorBufferInfo bufferInfo{constants_.handle(), 0, VK_WHOLE_SIZE};
   const VkDescriptorImageInfo surface = imageInfo(surfaces.normalPlanar),
@@ -118,7 +130,7 @@ void IrradiancePass::record(VkCommandBuffer commands, const LitSurfaces& surface
   writes[kShadowBinding].pImageInfo = maps;
   writes[kIrradianceBinding].pImageInfo = &target;
   writes[kTrianglesBinding].pImageInfo = &triangles;
-  pass_.record(commands, writes, surfaces.irradiance.width(), surfaces.irradiance.height());
+  pass.record(commands, writes, surfaces.irradiance.width(), surfaces.irradiance.height());
 }
 
 }  // namespace pellucid::harness

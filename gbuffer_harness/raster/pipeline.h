@@ -71,7 +71,8 @@ private:
   std::vector<VkWriteDescriptorSet> writes_;
 };
 
-void createPipeline(const Device& device, const PushLayout& layout, const Spirv& compute, Pipeline& pipeline);
+void createPipeline(const Device& device, const PushLayout& layout, const Spirv& compute,
+                    const VkSpecializationInfo& constants, Pipeline& pipeline);
 
 // Triangles without vertex buffers, of both faces, without a depth test; colors replace what is there.
 struct DrawState {

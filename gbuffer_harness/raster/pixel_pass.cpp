@@ -19,14 +19,14 @@ std::uint32_t groups(int pixels, int size) { return static_cast<std::uint32_t>((
 }  // namespace
 
 PixelPass::PixelPass(Device& device, const Spirv& code, const std::vector<Binding>& bindings,
-                     std::uint32_t pushSize)
+                     std::uint32_t pushSize, const VkSpecializationInfo& constants)
     : pushSize_(pushSize),
       sampler_(device),
       layout_(device, layoutBindings(bindings), {VK_SHADER_STAGE_COMPUTE_BIT, 0, pushSize}),
       pipeline_(device) {
   const VkSamplerCreateInfo sampler{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
   check(vkCreateSampler(device.handle(), &sampler, nullptr, sampler_.receive()), "vkCreateSampler");
-  createPipeline(device, layout_, code, pipeline_);
+  createPipeline(device, layout_, code, constants, pipeline_);
 }
 
 void PixelPass::record(VkCommandBuffer commands, std::span<const VkWriteDescriptorSet> writes, int width,

@@ -17,9 +17,9 @@ public:
     VkDescriptorType type;
     std::uint32_t count = 1;
   };
-  // bindings: 0, 1 and so on. pushSize: bytes of push constants.
+  // bindings: 0, 1 and so on. pushSize: bytes of push constants. constants: of the code's specialization.
   PixelPass(Device& device, const Spirv& code, const std::vector<Binding>& bindings,
-            std::uint32_t pushSize = 0);
+            std::uint32_t pushSize = 0, const VkSpecializationInfo& constants = {});
 
   VkSampler sampler() const { return sampler_; }  // for texelFetch
 
