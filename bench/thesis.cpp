@@ -222,9 +222,8 @@ private:
     GpuImage irradiance(device_, raster_.width, raster_.height, VK_FORMAT_R32G32B32A32_SFLOAT);
     irradiance.clear();
     const LitSurfaces surfaces{front.normalPlanar(), front.depthNormal(), irradiance, view};
-    sum.lighting += time([&](VkCommandBuffer commands) {
-      pass.record(commands, surfaces, light, shadowImagesOf(drawn));
-    });
+    sum.lighting += time(
+        [&](VkCommandBuffer commands) { pass.record(commands, surfaces, light, shadowImagesOf(drawn)); });
   }
 
   void addTranslucency(Passes& sum, const std::shared_ptr<const BenchFrame>& frame, const DrawView& view,

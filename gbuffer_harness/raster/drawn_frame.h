@@ -19,8 +19,8 @@ public:
     FrontTarget front;
     std::shared_ptr<GpuImage> frontDepth, backDepth;  // as the options store them
     std::shared_ptr<GpuImage> irradiance;             // R32G32B32A32_SFLOAT
-    std::shared_ptr<const RenderTarget> share;        // the reflected one; null: no surface has its lobes apart
-    std::vector<std::vector<DrawnMap>> maps;          // of each light
+    std::shared_ptr<const RenderTarget> share;  // the reflected one; null: no surface has its lobes apart
+    std::vector<std::vector<DrawnMap>> maps;    // of each light
   };
 
   // outline: the capture but for its images, whose lights have no maps yet.
@@ -31,7 +31,7 @@ public:
   const Capture& outline() const { return outline_; }
   const DepthCounts& counts() const { return counts_; }
   const std::vector<DispatchTime>& times() const { return times_; }  // of drawing, by the GPU's clock
-  std::vector<std::string> warnings() const;                        // sentences for a person
+  std::vector<std::string> warnings() const;                         // sentences for a person
 
   // What a frame of these settings reads. Nothing goes to the host, but for what is to be stored in ways that
   // no engine's images have here: normals in view space, distances in shadow maps, maps drawn as an engine
@@ -39,9 +39,9 @@ public:
   std::shared_ptr<const InputImages> inputs(const ReplaySettings& settings) const;
 
   // What the device has, downloaded anew by each call.
-  Capture capture() const;                          // all of it
-  Capture surfaces(const VkRect2D& rect) const;     // a part of the images of the surfaces, in its size
-  std::vector<Light> lights() const;                // with their maps' images
+  Capture capture() const;                       // all of it
+  Capture surfaces(const VkRect2D& rect) const;  // a part of the images of the surfaces, in its size
+  std::vector<Light> lights() const;             // with their maps' images
   std::vector<std::uint8_t> material() const;
   RasterResult result() const;
 

@@ -39,7 +39,7 @@ public:
               const std::vector<ShadowImage>& shadows) const;
 
 private:
-  PixelPass one_, six_;  // shadow maps at most: a CPU computes every branch of a choice among six
+  PixelPass one_, six_;   // shadow maps at most: a CPU computes every branch of a choice among six
   HostBuffer constants_;  // written by the commands, so that those of the next light may follow
 };
 

@@ -28,7 +28,8 @@ public:
 
   // Writes the depths as options store them. The counts are there once the commands have run.
   void recordDepths(VkCommandBuffer commands, const FrontTarget& front, const BackFaces& back,
-                    const GpuImage& frontDepth, const GpuImage& backDepth, const RasterOptions& options) const;
+                    const GpuImage& frontDepth, const GpuImage& backDepth,
+                    const RasterOptions& options) const;
   DepthCounts counts() const;
 
   // irradiance *= share, which FragmentShader::Reflected drew.

@@ -33,8 +33,7 @@ void PixelPass::record(VkCommandBuffer commands, std::span<const VkWriteDescript
                        int height, const void* push) const {
   vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_);
   layout_.push(commands, VK_PIPELINE_BIND_POINT_COMPUTE, writes);
-  if (pushSize_ > 0)
-    vkCmdPushConstants(commands, layout_, VK_SHADER_STAGE_COMPUTE_BIT, 0, pushSize_, push);
+  if (pushSize_ > 0) vkCmdPushConstants(commands, layout_, VK_SHADER_STAGE_COMPUTE_BIT, 0, pushSize_, push);
   vkCmdDispatch(commands, groups(width, PELLUCID_GROUP_X), groups(height, PELLUCID_GROUP_Y), 1);
   barrier(commands, {VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT},
           {VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT});

@@ -51,16 +51,15 @@ BackFaces recordBack(VkCommandBuffer commands, TargetPool& targets, const Upload
                      const DrawView& view, const FrontTarget& front, const RasterOptions& options) {
   const bool keepGreater = options.reversedZ != (options.backFace == BackFace::Farthest);
   // Half floats count to 2048 and every device can blend them.
-  const BackFaces back{targets.take(options.width, options.height, depthColors(options.reversedZ),
-                                    farDepth(keepGreater)),
-                       targets.take(options.width, options.height,
-                                    {{VK_FORMAT_R16G16B16A16_SFLOAT, clearTo(0)}}, std::nullopt)};
+  const BackFaces back{
+      targets.take(options.width, options.height, depthColors(options.reversedZ), farDepth(keepGreater)),
+      targets.take(options.width, options.height, {{VK_FORMAT_R16G16B16A16_SFLOAT, clearTo(0)}},
+                   std::nullopt)};
   model.record(commands, *back.depths, view,
                {FragmentShader::Depth, VK_CULL_MODE_FRONT_BIT, nearer(keepGreater), false},
                VK_CULL_MODE_FRONT_BIT, {&front.depthNormal(), &front.albedoObject()});
-  model.record(commands, *back.counts, view,
-               {FragmentShader::Count, VK_CULL_MODE_NONE, std::nullopt, true}, VK_CULL_MODE_NONE,
-               {&back.depths->image(kDeviceDepth), &front.albedoObject()});
+  model.record(commands, *back.counts, view, {FragmentShader::Count, VK_CULL_MODE_NONE, std::nullopt, true},
+               VK_CULL_MODE_NONE, {&back.depths->image(kDeviceDepth), &front.albedoObject()});
   return back;
 }
 
@@ -167,8 +166,7 @@ std::shared_ptr<const DrawnFrame> Rasterizer::draw(const ModelCamera& camera, co
     images.front.record(commands, uploaded_, view);
   });
   steps.add("back faces", [&](VkCommandBuffer commands) {
-    const BackFaces back =
-        recordBack(commands, passes_->targets, transmission, view, images.front, options);
+    const BackFaces back = recordBack(commands, passes_->targets, transmission, view, images.front, options);
     passes_->recordDepths(commands, images.front, back, *images.frontDepth, *images.backDepth, options);
   });
   const LitSurfaces surfaces{images.front.normalPlanar(), images.front.depthNormal(), *images.irradiance,
@@ -192,9 +190,9 @@ std::shared_ptr<const DrawnFrame> Rasterizer::draw(const ModelCamera& camera, co
   }
   if (hasLobesApart(model_))
     steps.add("reflected share", [&](VkCommandBuffer commands) {
-      images.share = passes_->targets.take(options.width, options.height,
-                                           {{VK_FORMAT_R32G32B32A32_SFLOAT, clearTo(0)}},
-                                           farDepth(options.reversedZ));
+      images.share =
+          passes_->targets.take(options.width, options.height, {{VK_FORMAT_R32G32B32A32_SFLOAT, clearTo(0)}},
+                                farDepth(options.reversedZ));
       uploaded_.record(commands, *images.share, view,
                        {FragmentShader::Reflected, VK_CULL_MODE_BACK_BIT, nearer(options.reversedZ), false},
                        VK_CULL_MODE_NONE);

@@ -54,8 +54,7 @@ Target recordSurface(VkCommandBuffer commands, TargetPool& targets, const Upload
 // The nearest back face behind the map's surface, of the object that is entered there.
 Target recordExit(VkCommandBuffer commands, TargetPool& targets, const UploadedModel& model,
                   const DrawView& view, const RenderTarget& surface, int size) {
-  Target target =
-      targets.take(size, size, depthColors(view.reversedDepth), farDepth(view.reversedDepth));
+  Target target = targets.take(size, size, depthColors(view.reversedDepth), farDepth(view.reversedDepth));
   EarlierPass earlier{&surface.image(kDeviceDepth)};
   earlier.caster = &surface.image(kCasterObject);
   model.record(commands, *target, view,

@@ -13,7 +13,7 @@ namespace pellucid::harness {
 
 // One map on the device.
 struct DrawnMap {
-  ShadowMap outline;  // without images
+  ShadowMap outline;   // without images
   ShadowImage planar;  // for the irradiance, of `surface`
   std::shared_ptr<const RenderTarget> surface;
   std::shared_ptr<const RenderTarget> exit;    // null: the map has no exit depth and no casters

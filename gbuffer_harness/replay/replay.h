@@ -89,8 +89,8 @@ public:
   // Content of an output that is not the irradiance before the first recording.
   void uploadOutput(const Image& content) const;
 
-  // RGBA, of packed floats RGB. Outside the rect and at material 0: irradiance times albedo, as an engine that composites in
-  // place would have there; 0 for debug views.
+  // RGBA, of packed floats RGB. Outside the rect and at material 0: irradiance times albedo, as an engine
+  // that composites in place would have there; 0 for debug views.
   Image output() const;
   Image output(const VkRect2D& rect) const;  // of a part
   // RGBA of the irradiance in its format, which an output that is the irradiance replaces.

@@ -44,9 +44,9 @@ struct ApplicationOptions {
 };
 
 struct ApplicationReport {
-  std::string device;              // its description
-  int frames = 0;                  // of the screen that were drawn
-  std::uint64_t recorded = 0;      // of the module
+  std::string device;          // its description
+  int frames = 0;              // of the screen that were drawn
+  std::uint64_t recorded = 0;  // of the module
   MovingTimes moving;
   std::vector<std::string> saved;  // files
 };

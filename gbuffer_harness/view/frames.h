@@ -24,7 +24,8 @@ public:
 
   // Size, lights and materials; images, where the scene is not on the device, and the truth.
   const Capture& outline() const { return scene_.capture; }
-  // With all images; with those of the surfaces alone; the material. Downloaded when they are first asked for.
+  // With all images; with those of the surfaces alone; the material. Downloaded when they are first asked
+  // for.
   const Capture& capture() const;
   const Capture& surfaces() const;
   const std::vector<std::uint8_t>& material() const;
@@ -41,7 +42,8 @@ public:
   // The shown picture before exposure: RGB, or one channel or three for false colors. Pixels without a
   // material: as a replay has them.
   const Image& image(Shown shown) const;
-  // One texel of image(), one or three channels, for which no more than texels go to the host where it can be.
+  // One texel of image(), one or three channels, for which no more than texels go to the host where it can
+  // be.
   std::vector<float> value(Shown shown, int x, int y) const;
 
   // Times of the last recording of Shown::After, and of drawing the scene, by the GPU's clock.

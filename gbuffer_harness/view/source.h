@@ -38,8 +38,8 @@ public:
   virtual std::string fixedLights() const { return {}; }
 };
 
-// Drawn by the device's rasterizer, which throws where the device cannot draw. The images stay on the device. The camera and the lights are
-// where it begins; `raster` has the rest, whose size is the first.
+// Drawn by the device's rasterizer, which throws where the device cannot draw. The images stay on the device.
+// The camera and the lights are where it begins; `raster` has the rest, whose size is the first.
 std::unique_ptr<Source> modelSource(Device& device, Model model, const ModelCamera& camera,
                                     const RasterOptions& raster);
 

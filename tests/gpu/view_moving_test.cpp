@@ -7,6 +7,7 @@
 #include <random>
 
 #include "capture/material.h"
+#include "common/error.h"
 #include "gpu_fixture.h"
 #include "model_builder.h"
 #include "raster/passes.h"
@@ -183,8 +184,8 @@ TEST_F(Moving, ValuesAreThoseOfTheWholeImages) {
   state_.display.left = Shown::Through;
   move();
   const int places[][2] = {{kSize / 2, kSize / 2}, {3, kSize - 5}, {0, 0}, {kSize - 1, kSize - 1}};
-  const Shown all[] = {Shown::After, Shown::Before, Shown::Through, Shown::Difference, Shown::Truth, Shown::Debug,
-                       Shown::FrontDepth, Shown::Normal, Shown::Albedo, Shown::Material};
+  const Shown all[] = {Shown::After, Shown::Before,     Shown::Through, Shown::Difference, Shown::Truth,
+                       Shown::Debug, Shown::FrontDepth, Shown::Normal,  Shown::Albedo,     Shown::Material};
   std::vector<std::vector<float>> values;
   const std::uint64_t before = device().transfers().downloaded;
   for (const Shown shown : all)
@@ -232,6 +233,19 @@ TEST_F(Moving, ImagesTakeTurns) {
   }
 }
 
+// What was drawn for a refused frame lies beside what is seen, which can still be saved.
+TEST_F(Moving, RefusedMovesLeaveWhatIsSeen) {
+  open(sphereAndSheet());
+  move();
+  const ViewState seen = state_;
+  for (int i = 0; i < 3; ++i) {
+    state_.settings.translucency.maximumThickness = -1;
+    EXPECT_THROW(move(), InputError);
+  }
+  state_ = seen;
+  expectReplays("after three refusals");
+}
+
 // Rounding of every kind: ties, denormal halves, carries into the exponent, overflow.
 TEST_F(Moving, HalvesAreThoseOfUploads) {
   constexpr int kSide = 64;
@@ -240,9 +254,20 @@ TEST_F(Moving, HalvesAreThoseOfUploads) {
   std::uniform_real_distribution<float> exponent(-30, 18), mantissa(1, 2);
   for (std::size_t i = 0; i < image.data.size(); ++i)
     if (i % 4 < 3) image.data[i] = std::ldexp(mantissa(random), static_cast<int>(exponent(random)));
-  const float ends[] = {0, std::ldexp(1.0f, -24), std::ldexp(1.0f, -25), std::ldexp(3.0f, -25), 1 + 1 / 2048.0f,
-                        1 + 3 / 2048.0f, 2 - 1 / 2048.0f, 65504, 65519.99f, 65520, 1e30f,
-                        std::numeric_limits<float>::infinity(), std::ldexp(2047.5f, -25), 1e-40f};
+  const float ends[] = {0,
+                        std::ldexp(1.0f, -24),
+                        std::ldexp(1.0f, -25),
+                        std::ldexp(3.0f, -25),
+                        1 + 1 / 2048.0f,
+                        1 + 3 / 2048.0f,
+                        2 - 1 / 2048.0f,
+                        65504,
+                        65519.99f,
+                        65520,
+                        1e30f,
+                        std::numeric_limits<float>::infinity(),
+                        std::ldexp(2047.5f, -25),
+                        1e-40f};
   for (std::size_t i = 0; i < std::size(ends); ++i) image.data[4 * i] = ends[i];
   GpuImage floats(device(), kSide, kSide, VK_FORMAT_R32G32B32A32_SFLOAT),
       uploaded(device(), kSide, kSide, VK_FORMAT_R16G16B16A16_SFLOAT),
