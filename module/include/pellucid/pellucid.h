@@ -374,9 +374,17 @@ typedef struct PellucidConstantsSlice {
   void* mapped;        /* address of `offset` */
 } PellucidConstantsSlice;
 
-/* Writes the slice and records every dispatch and the barriers between them. Before: the inputs are readable by, and
- * the output and transients free for, COMPUTE_SHADER; PELLUCID_OUTPUT_ADD reads the output, too. After: `output` was
- * written by COMPUTE_SHADER / SHADER_WRITE.
+/* Scopes of the barriers around a recording, on any queue of a family that computes. A semaphore between two submissions
+ * takes the place of a barrier. */
+enum {
+  PELLUCID_STAGES = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, /* that touch the caller's images */
+  PELLUCID_READS = VK_ACCESS_SHADER_READ_BIT,             /* accesses to inputs, and to an output that is added to */
+  PELLUCID_WRITES = VK_ACCESS_SHADER_WRITE_BIT            /* to the output. Transients and history: both */
+};
+
+/* Writes the slice and records every dispatch and the barriers between them. Before: what wrote the inputs is visible to
+ * PELLUCID_STAGES / PELLUCID_READS, and the output and transients are free for PELLUCID_WRITES. After: `output` was written
+ * by PELLUCID_STAGES / PELLUCID_WRITES.
  * Compute pipeline, push constants and set 0 are left changed. `frame` is the one that made the plan, with its views
  * filled in. One that differs in anything else, or lacks an image of the plan's, is PELLUCID_ERROR_INVALID_ARGUMENT;
  * the message names the part that differs. */
