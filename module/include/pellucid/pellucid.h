@@ -204,9 +204,9 @@ typedef struct PellucidFrame {
   uint32_t quality;       /* 0: one thickness a pixel, and no filter of each pixel's neighbors; 1 (default): gathered
                              light, and that filter; 2: twice the samples, at twice the probes along each side.
                              gatherSamples and gatherSpacing override it */
-  float targetError;      /* > 0: in place of the diffusion's quality, the least one whose measured error stays
-                             below it: relative RMSE from brute force, the worst of several scenes, at the
-                             frame's radii; the best and a skip if none does; 0 (default): off */
+  float targetError;      /* > 0: in place of quality, the least one whose measured error, a relative RMSE, stays below it:
+                             with lights that of the worst frame against path tracing, else that of the diffusion from
+                             brute force at the frame's radii; the best and a skip if none does; 0 (default): off */
   float nearestDistance;  /* planar distance of the nearest surface that diffuses, scene units, or less: it leaves out
                              levels for radii that are small in pixels; nearer surfaces are then diffused too little.
                              Orthographic cameras need none. 0 (default): not known, radii count as the largest */
