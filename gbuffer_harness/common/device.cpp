@@ -222,6 +222,7 @@ void Device::createDevice(const DeviceOptions& options) {
   VkPhysicalDeviceFeatures available, features{};
   vkGetPhysicalDeviceFeatures(physicalDevice_, &available);
   features.shaderStorageImageWriteWithoutFormat = available.shaderStorageImageWriteWithoutFormat;
+  features.shaderStorageImageMultisample = available.shaderStorageImageMultisample;
   writesWithoutFormat_ = features.shaderStorageImageWriteWithoutFormat;
   VkDeviceCreateInfo info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO};
   info.queueCreateInfoCount = apart ? 2 : 1;
