@@ -8,12 +8,14 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 
 #include "capture/material.h"
 #include "capture/write.h"
 #include "common/error.h"
 #include "compare_runs.h"
+#include "frame_error_table.h"
 #include "frame_errors.h"
 #include "reference/reference.h"
 #include "scene/scene.h"
@@ -141,6 +143,24 @@ TEST(CompareRuns, TimesOfTwoDevicesAreRefused) {
 TEST(CompareRuns, WhatIsNoRunIsRefused) { EXPECT_THROW(grew(Json::object(), run()), InputError); }
 
 // ---- Shares of a turntable
+
+// The frames that bench/baselines keeps err less than what frame.targetError goes by.
+TEST(FrameErrorTable, HoldsForTheFramesOfTheBaseline) {
+  std::ifstream file(PELLUCID_SOURCE_DIR "/bench/baselines/nvidia-h100-truth.json");
+  const Json results = Json::parse(file).at("results");
+  for (uint32_t quality = 0; quality < std::size(kFrameError); ++quality) {
+    size_t frames = 0;
+    for (const Json& r : results) {
+      if (r.value("kind", "") != "whole" || r.at("name") != "Pellucid, quality " + std::to_string(quality))
+        continue;
+      ++frames;
+      for (const double channel : r.at("truth_relative_rmse_rgb"))
+        EXPECT_LT(channel, static_cast<double>(kFrameError[quality]))
+            << r.at("frame") << ", quality " << quality;
+    }
+    EXPECT_EQ(frames, 4u) << quality;
+  }
+}
 
 TEST(TurntableShares, AreThoseOfALinearCosine) {
   // By .0026 a frame: .005 and .01 are exceeded by every second and fourth frame.

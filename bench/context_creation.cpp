@@ -150,7 +150,10 @@ int createContext(const Options& options) {
   const auto start = std::chrono::steady_clock::now();
   const std::clock_t cpuStart = std::clock();  // of all threads
   {
-    const Context context(device, [&](PellucidContextDesc& desc) { desc.pipelineCache = cache; });
+    const Context context(device, [&](PellucidContextDesc& desc) {
+      desc.pipelineCache = cache;
+      desc.uses = options.uses;
+    });
     const double cpu = 1e6 * static_cast<double>(std::clock() - cpuStart) / CLOCKS_PER_SEC;
     const double wall =
         std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
@@ -171,6 +174,9 @@ void measureContextCreation(const std::string& device, int repeat, Report& repor
     return costs;
   };
   add(report, "no driver cache", {createdBy({}, device, kWithoutCache)});
+  constexpr std::uint32_t kDefaultFrame = PELLUCID_USE_GATHER | PELLUCID_USE_DIFFUSION;
+  add(report, "no driver cache, uses of a default frame whose lights have maps",
+      {createdBy({"--uses", std::to_string(kDefaultFrame)}, device, kWithoutCache)});
   createdBy({}, device, cacheIn(folder.path()));
   add(report, "driver cache", several({}, cacheIn(folder.path())));
   const std::string file = folder.path() / "pipelines";

@@ -95,6 +95,7 @@ int readOptions(int argc, char** argv, Options& options) {
       "JSON to write: device, driver, commit and the times of whole frames, small enough for an issue");
 
   app.add_flag("--create-context", options.createContext)->group("");
+  app.add_option("--uses", options.uses)->group("");
   app.add_option("--load-cache", options.loadCache)->group("");
   app.add_option("--save-cache", options.saveCache)->group("");
   try {

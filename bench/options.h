@@ -48,6 +48,7 @@ struct Options {
   std::filesystem::path submit;  // file for a small extract of the results; empty: none
   // Options of the processes that the section context starts.
   bool createContext = false;
+  std::uint32_t uses = 0;  // of that context; PellucidContextDesc::uses
   std::filesystem::path loadCache, saveCache;
 };
 

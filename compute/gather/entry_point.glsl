@@ -1,5 +1,6 @@
 // Entry points of the gather: what a sample needs to know of a texel of a shadow map, made once for all pixels, and means of
 // 2x2 to 8x8 of them for samples that stand for a larger part of the map.
+#include "frame/light_tables.glsl"
 #include "lib/octahedral.glsl"
 
 layout(set = 0, binding = PELLUCID_BINDING_LIGHTS) uniform Lights { LightConstants lights[PELLUCID_DISPATCH_LIGHTS]; };

@@ -136,7 +136,7 @@ Gathered gatherSamples(uint m, LightConstants light, Surface x, Pattern pattern,
 // The diffusion is normalized over what the camera sees: what enters hidden displaces its part of what the light itself brings
 // to x and to the surroundings. `loss`: see thinLoss.
 vec3 gatherLight(uint m, LightConstants light, Surface x, Pattern pattern, vec3 loss) {
-  Incident incident = incidentLight(light, x.position);
+  Incident incident = lightAt(light, x.position);
   GatherRings rings;
   if (!gatherRings(light, x, incident.toLight, incident.distanceTo, materials[m].gather.lengths.z, rings)) return vec3(0.0);
   float cosine = x.hasNormal ? max(dot(x.normal, incident.toLight), 0.0) : 0.0;
@@ -150,6 +150,6 @@ vec3 gatherLight(uint m, LightConstants light, Surface x, Pattern pattern, vec3 
   vec3 hidden = min(g.hidden, vec3(1.0)), seen = g.seenLight / max(g.seen, vec3(1.0e-12)), around = 0.5 * (own + seen);
   // Diffused light is no more than what lies around, and a dark point has next to none of its own to lose.
   vec3 opposite = min(g.opposite, through + own);
-  vec3 lost = min(seen, vec3(2.0 * own)) * lightShare(light, incident.toLight, incident.distanceTo);
+  vec3 lost = min(seen, vec3(2.0 * own)) * shareOfLight(light, incident.toLight, incident.distanceTo);
   return through + g.entering - opposite - hidden * around - (1.0 - hidden) * loss * lost;
 }

@@ -8,7 +8,6 @@
 #include "frame/chord.glsl"
 #include "gather/probe.glsl"
 #include "gather/entry_point.glsl"
-#include "lib/light.glsl"
 #include "lib/surface.glsl"
 
 layout(set = 0, binding = PELLUCID_BINDING_MATERIALS) readonly buffer Materials { MaterialConstants materials[]; };

@@ -223,7 +223,7 @@ uvec4 perspectiveEntry(EntryMapConstants map, ivec2 texel, ShadowTexels stored, 
   vec3 toLight = map.ray.xyz - y;
   float distanceTo = length(toLight);
   toLight /= max(distanceTo, 1.0e-12);
-  float share = lightShare(lights[map.map.w], toLight, distanceTo);
+  float share = shareOfLight(lights[map.map.w], toLight, distanceTo);
   float tolerance = abs(depth) * map.seen.x;
   ivec2 inImage = texel + firstTexel(map.occluder);
   Behind b = behind(map, inImage);

@@ -94,6 +94,7 @@ using glm::vec4;
 #define PELLUCID_CONSTANT_DIRECTIONAL 3
 #define PELLUCID_CONSTANT_NORMALS 4
 #define PELLUCID_CONSTANT_SHARERS 5 // invocations that share a probe, 1 or 2
+#define PELLUCID_CONSTANT_LIGHT_TABLES 6
 
 // Values of the public enums the shaders branch on; constants.cpp asserts that they agree.
 #define PELLUCID_SHADER_LIGHT_DIRECTIONAL 0u
@@ -129,6 +130,8 @@ using glm::vec4;
 #define PELLUCID_WRITE_STARTS 2u // of a history, from 0
 
 #define PELLUCID_GAUSSIANS 8
+#define PELLUCID_LIGHT_TABLES 16
+#define PELLUCID_LIGHT_ENTRIES 64 // of a light table
 #define PELLUCID_GATHER_ENTRIES 64
 
 // The diffusion pyramid's levels are 1..LAST_LEVEL; a texel of the last one is 128 pixels wide.
@@ -167,12 +170,13 @@ struct FrameConstants {
   vec4 normalRay[3]; // xyz: in the normal image's space
   vec4 facingRay[2]; // along pixels' columns and rows; xy, zw, xy
   mat4 ambient[3];   // per channel: the form whose value at a normal, 1 is the ambient light's irradiance
+  uvec4 lightTables[PELLUCID_LIGHT_TABLES * PELLUCID_LIGHT_ENTRIES / 8]; // entries as halves, the first in the low bits
 };
 
 struct LightConstants {
   vec4 position;  // view space; w: 1 / range, 0 unlimited
-  vec4 direction; // of travel, view space, unit
-  vec4 radiance;  // color times intensity
+  vec4 direction; // of travel, view space, unit; w: 1 / range of a distance table
+  vec4 radiance;  // color times intensity; w: PELLUCID_LIGHT_TABLES + 1 times the angle table + the distance table; 0: none
   vec4 cone;      // KHR_lights_punctual: x: scale, y: offset of the cosine; z: scale, w: offset of the
                   // minimum dot's (m + x) / (m + 1)
   uvec4 meta;     // x: type; y: first of shadows[]; z: how many; w: 1: they hold back faces

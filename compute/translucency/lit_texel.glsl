@@ -41,7 +41,7 @@ vec3 resultAt(ivec2 pixel, Texels t, float front, uint m) {
         arriving += through.arriving;
         visible += through.arriving * through.visible;
         if (through.visible > 0.0 && thickness.b < 0.0) thickness.b = through.thickness * mm;
-        LightTexels l = lightTexels(light, incidentLight(light, s.position), s, s.position, 0.0, kEverywhere);
+        LightTexels l = lightTexels(light, lightAt(light, s.position), s, s.position, 0.0, kEverywhere);
         if (l.held != vec4(0.0) && light.meta.w == 0u && thickness.g < 0.0) thickness.g = meanThickness(l.held, l.thickness, m) * mm;
       }
     }

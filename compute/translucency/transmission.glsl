@@ -12,7 +12,7 @@
 #include "lib/angle.glsl"
 #include "frame/flags.glsl"
 #include "frame/thin_walls.glsl"
-#include "lib/light.glsl"
+#include "frame/light_tables.glsl"
 #include "lib/surface.glsl"
 #include "lib/thickness.glsl"
 #include "lib/transmittance.glsl"
@@ -63,7 +63,7 @@ float hiddenCosine(LightConstants light, Surface s, vec3 toLight) {
 // Light along the chord, of a light without shadow maps.
 Transmitted chordTransmission(LightConstants light, Surface s) {
   if (s.chord < 0.0) return Transmitted(-1.0, vec3(0.0), 0.0);
-  Incident incident = incidentLight(light, s.position + s.chord * s.view);
+  Incident incident = lightAt(light, s.position + s.chord * s.view);
   // A slab's thickness along its normal, from the chord along the view ray.
   bool alongNormal = s.hasNormal && !hasFlag(PELLUCID_FLAG_CHORD_THICKNESS);
   float thickness = alongNormal ? s.chord * abs(dot(s.normal, s.view)) : s.chord;
@@ -80,12 +80,12 @@ Transmitted lightTransmission(LightConstants light, Surface s, ivec2 pixel) {
     Transmitted t = chordTransmission(light, s);
     if (light.meta.z == 0u || t.thickness < 0.0) return t;
     vec3 back = s.position + s.chord * s.view;
-    Incident incident = incidentLight(light, back);
+    Incident incident = lightAt(light, back);
     LightTexels l = lightTexels(light, incident, s, back, 0.0, kEverywhere);
     t.visible = litPart(l, pixel, s.material, incident.toLight, holdsExits);
     return t;
   }
-  Incident incident = incidentLight(light, s.position);
+  Incident incident = lightAt(light, s.position);
   float cosine = hiddenCosine(light, s, incident.toLight);
   vec3 arriving = incident.irradiance * cosine;
   // Most pixels face some lights, whose maps need no reading.

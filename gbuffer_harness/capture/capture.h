@@ -51,6 +51,8 @@ struct Light {
   double range = 0;
   double radius = 0;  // scene units; > 0: a point light that is a sphere, which only truth sees as one
   double innerConeAngle = 0, outerConeAngle = 0.785;
+  // Factors as PellucidLightTable has them, by angle and by distance; empty: none.
+  std::vector<double> angleTable, distanceTable;
   // A receiver's is the first that contains it: six of a cube, or cascades. Up to
   // PELLUCID_MAX_LIGHT_SHADOW_MAPS; none: nothing shadows the light.
   std::vector<ShadowMap> shadowMaps;

@@ -11,6 +11,7 @@
 #include "capture/blender.h"
 #include "capture/exr.h"
 #include "capture/json_field.h"
+#include "capture/light_table.h"
 #include "capture/manifest_material.h"
 #include "capture/manifest_matrix.h"
 #include "capture/manifest_parts.h"
@@ -169,7 +170,7 @@ std::vector<Field> shadowMapsOf(const Field& light) {
 
 Light readLight(const Field& field) {
   field.allowKeys({"type", "position", "direction", "color", "intensity", "range", "radius", "innerConeAngle",
-                   "outerConeAngle", "shadowMap", "shadowMaps"});
+                   "outerConeAngle", "angleTable", "distanceTable", "shadowMap", "shadowMaps"});
   constexpr double kMost = 1e30;  // its square times a scene's extent still fits a float64
   Light light;
   constexpr PellucidLightType kTypes[] = {PELLUCID_LIGHT_DIRECTIONAL, PELLUCID_LIGHT_POINT,
@@ -177,7 +178,7 @@ Light readLight(const Field& field) {
   light.type = kTypes[field["type"].choice({"directional", "point", "spot"})];
   if (field.has("position") || light.type != PELLUCID_LIGHT_DIRECTIONAL)
     light.position = field["position"].numbers<3>();
-  if (field.has("direction") || light.type != PELLUCID_LIGHT_POINT) {
+  if (field.has("direction") || field.has("angleTable") || light.type != PELLUCID_LIGHT_POINT) {
     const Field direction = field["direction"];
     light.direction = direction.numbers<3>();
     if (!(std::hypot(light.direction[0], light.direction[1], light.direction[2]) > 0))
@@ -190,6 +191,11 @@ Light readLight(const Field& field) {
   }
   if (const auto intensity = field.find("intensity")) light.intensity = intensity->number(0, kMost);
   if (const auto range = field.find("range")) light.range = range->number(0, kMost);
+  if (const auto table = field.find("angleTable")) light.angleTable = readLightTable(*table, light.type);
+  if (const auto table = field.find("distanceTable")) {
+    light.distanceTable = readLightTable(*table, light.type);
+    if (!(light.range > 0)) table->fail("needs a range above 0, over which its factors lie");
+  }
   if (const auto radius = field.find("radius")) {
     light.radius = radius->number(0, kMost);
     if (light.radius > 0 && light.type != PELLUCID_LIGHT_POINT)

@@ -117,6 +117,8 @@ Json lightJson(const Light& light) {
   Json json = {{"type", types[light.type]}, {"position", light.position},   {"direction", light.direction},
                {"color", light.color},      {"intensity", light.intensity}, {"range", light.range}};
   if (light.radius > 0) json["radius"] = light.radius;
+  if (!light.angleTable.empty()) json["angleTable"] = light.angleTable;
+  if (!light.distanceTable.empty()) json["distanceTable"] = light.distanceTable;
   if (light.type == PELLUCID_LIGHT_SPOT) {
     json["innerConeAngle"] = light.innerConeAngle;
     json["outerConeAngle"] = light.outerConeAngle;

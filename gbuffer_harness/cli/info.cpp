@@ -262,6 +262,9 @@ Json describe(const std::filesystem::path& path, ManifestPreset preset) {
   for (std::size_t i = 0; i < capture.lights.size(); ++i) {
     const Light& light = capture.lights[i];
     Json entry = {{"type", kLightTypes[light.type]}, {"color", light.color}, {"intensity", light.intensity}};
+    for (const auto& [name, table] :
+         {std::pair("angle", &light.angleTable), std::pair("distance", &light.distanceTable)})
+      if (!table->empty()) entry["tables"].push_back(name);
     for (std::size_t k = 0; k < light.shadowMaps.size(); ++k)
       entry["shadowMaps"].push_back(shadowJson(manifest.shadowMaps[i][k], light.shadowMaps[k]));
     json["lights"].push_back(std::move(entry));

@@ -193,7 +193,7 @@ const std::map<std::string, Key> kKeys = {
      {"of the frame, 0..2, 2 best; 1 and 2 gather light",
       [](const auto& key, const auto& value, ReplaySettings& s) { s.quality = number(key, value); }}},
     {"target-error",
-     {"relative RMSE of the diffusion that chooses the quality, 0 for none",
+     {"relative RMSE that chooses the quality, 0 for none",
       [](const auto& key, const auto& value, ReplaySettings& s) { s.targetError = real(key, value); }}},
     {"nearest-distance",
      {"of what diffuses from the camera's plane, scene units, 0 for not known",

@@ -36,20 +36,35 @@ struct QueueFamily {
   bool canDraw;
 };
 
-// A family that computes and that `accepts` takes, if possible one that draws too.
-std::optional<QueueFamily> findFamily(VkPhysicalDevice device,
-                                      const std::function<bool(uint32_t family)>& accepts) {
+std::vector<VkQueueFamilyProperties> familiesOf(VkPhysicalDevice device) {
   uint32_t count = 0;
   vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
   std::vector<VkQueueFamilyProperties> families(count);
   vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
+  return families;
+}
+
+// A family that computes and that `accepts` takes, if possible one that draws too.
+std::optional<QueueFamily> findFamily(VkPhysicalDevice device,
+                                      const std::function<bool(uint32_t family)>& accepts) {
+  const std::vector<VkQueueFamilyProperties> families = familiesOf(device);
   std::optional<QueueFamily> best;
-  for (uint32_t i = 0; i < count; ++i) {
+  for (uint32_t i = 0; i < families.size(); ++i) {
     if (!(families[i].queueFlags & VK_QUEUE_COMPUTE_BIT) || families[i].timestampValidBits == 0 ||
         !accepts(i))
       continue;
     const bool canDraw = families[i].queueFlags & VK_QUEUE_GRAPHICS_BIT;
     if (!best || (canDraw && !best->canDraw)) best = {i, canDraw};
+  }
+  return best;
+}
+
+// The family of a second queue that computes: if possible another one, if possible one that does not draw.
+uint32_t secondFamily(const std::vector<VkQueueFamilyProperties>& families, uint32_t first) {
+  uint32_t best = first;
+  for (uint32_t i = 0; i < families.size(); ++i) {
+    if (i == first || !(families[i].queueFlags & VK_QUEUE_COMPUTE_BIT)) continue;
+    if (best == first || !(families[i].queueFlags & VK_QUEUE_GRAPHICS_BIT)) best = i;
   }
   return best;
 }
@@ -83,7 +98,7 @@ Device::Device(const DeviceOptions& options) {
   try {
     createInstance(options);
     chooseDevice(options);
-    createDevice(options.presents != nullptr);
+    createDevice(options);
   } catch (...) {
     release();
     throw;
@@ -174,7 +189,7 @@ void Device::chooseDevice(const DeviceOptions& options) {
     best = speed(properties.deviceType);
     physicalDevice_ = candidate;
     properties_ = properties;
-    queueFamily_ = family->index;
+    families_[0] = families_[1] = family->index;
     canDraw_ = family->canDraw;
   }
   if (!physicalDevice_)
@@ -185,7 +200,7 @@ void Device::chooseDevice(const DeviceOptions& options) {
                                 "; there are:" + seen);
 }
 
-void Device::createDevice(bool presents) {
+void Device::createDevice(const DeviceOptions& options) {
   VkPhysicalDeviceDriverProperties driver{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
   VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
   // Core in 1.2; an older device would ignore the struct and leave the strings empty.
@@ -193,28 +208,34 @@ void Device::createDevice(bool presents) {
   vkGetPhysicalDeviceProperties2(physicalDevice_, &properties);
   driver_ = std::string(driver.driverName) + " " + driver.driverInfo;
 
-  const float priority = 1;
-  VkDeviceQueueCreateInfo queue{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO};
-  queue.queueFamilyIndex = queueFamily_;
-  queue.queueCount = 1;
-  queue.pQueuePriorities = &priority;
+  const std::vector<VkQueueFamilyProperties> families = familiesOf(physicalDevice_);
+  if (options.computeQueue) families_[1] = secondFamily(families, families_[0]);
+  const bool apart = families_[1] != families_[0];
+  const uint32_t second = options.computeQueue && !apart && families[families_[0]].queueCount > 1 ? 1 : 0;
+  const float priorities[] = {1, 1};
+  VkDeviceQueueCreateInfo queues[2] = {};
+  for (int i = 0; i < 2; ++i)
+    queues[i] = {
+        VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO, nullptr, 0, families_[i], 1 + second, priorities};
   std::vector<const char*> extensions = {VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
-  if (presents) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+  if (options.presents) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
   VkPhysicalDeviceFeatures available, features{};
   vkGetPhysicalDeviceFeatures(physicalDevice_, &available);
   features.shaderStorageImageWriteWithoutFormat = available.shaderStorageImageWriteWithoutFormat;
+  features.shaderStorageImageMultisample = available.shaderStorageImageMultisample;
   writesWithoutFormat_ = features.shaderStorageImageWriteWithoutFormat;
   VkDeviceCreateInfo info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO};
-  info.queueCreateInfoCount = 1;
-  info.pQueueCreateInfos = &queue;
+  info.queueCreateInfoCount = apart ? 2 : 1;
+  info.pQueueCreateInfos = queues;
   info.enabledExtensionCount = static_cast<uint32_t>(extensions.size());
   info.ppEnabledExtensionNames = extensions.data();
   info.pEnabledFeatures = &features;
   check(vkCreateDevice(physicalDevice_, &info, nullptr, &device_), "vkCreateDevice");
-  vkGetDeviceQueue(device_, queueFamily_, 0, &queue_);
+  vkGetDeviceQueue(device_, families_[0], 0, &queue_);
+  vkGetDeviceQueue(device_, families_[1], second, &computeQueue_);
   VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
   pool.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT;
-  pool.queueFamilyIndex = queueFamily_;
+  pool.queueFamilyIndex = families_[0];
   check(vkCreateCommandPool(device_, &pool, nullptr, &pool_), "vkCreateCommandPool");
 }
 
@@ -282,6 +303,7 @@ HostBuffer::HostBuffer(const Device& device, VkDeviceSize size, VkBufferUsageFla
   VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
   info.size = size;
   info.usage = usage;
+  device.share(info);
   check(vkCreateBuffer(device.handle(), &info, nullptr, &buffer_), "vkCreateBuffer");
   VkMemoryRequirements needs;
   vkGetBufferMemoryRequirements(device.handle(), buffer_, &needs);

@@ -1,4 +1,4 @@
-// A Vulkan device with one queue: what an engine already has before it meets Pellucid.
+// A Vulkan device with its queues: what an engine already has before it meets Pellucid.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -21,6 +21,7 @@ struct DeviceOptions {
   // `presents` the device has VK_KHR_swapchain; without, the device shows nothing.
   std::vector<const char*> instanceExtensions = {};
   std::function<bool(VkInstance, VkPhysicalDevice, uint32_t family)> presents = {};
+  bool computeQueue = false;  // a second queue, if possible of a family that does not draw
 };
 
 // Bytes of images that went between host and device.
@@ -39,8 +40,19 @@ public:
   VkInstance instance() const { return instance_; }
   VkPhysicalDevice physicalDevice() const { return physicalDevice_; }
   VkDevice handle() const { return device_; }
-  uint32_t queueFamily() const { return queueFamily_; }
+  uint32_t queueFamily() const { return families_[0]; }
   VkQueue queue() const { return queue_; }
+  // The second queue; the first one where none was asked for or the device has no other.
+  VkQueue computeQueue() const { return computeQueue_; }
+  uint32_t computeFamily() const { return families_[1]; }
+  // Images and buffers belong to the families of both queues.
+  template <class CreateInfo>
+  void share(CreateInfo& info) const {
+    if (families_[0] == families_[1]) return;
+    info.sharingMode = VK_SHARING_MODE_CONCURRENT;
+    info.queueFamilyIndexCount = 2;
+    info.pQueueFamilyIndices = families_;
+  }
   const VkPhysicalDeviceProperties& properties() const { return properties_; }
   std::string description() const;           // "name, driver and version"
   bool canDraw() const { return canDraw_; }  // the queue does graphics besides compute
@@ -66,7 +78,7 @@ public:
 private:
   void createInstance(const DeviceOptions& options);
   void chooseDevice(const DeviceOptions& options);
-  void createDevice(bool presents);
+  void createDevice(const DeviceOptions& options);
   void release();
   static VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT,
                                                   VkDebugUtilsMessageTypeFlagsEXT,
@@ -77,10 +89,10 @@ private:
   VkPhysicalDevice physicalDevice_ = VK_NULL_HANDLE;
   VkPhysicalDeviceProperties properties_{};
   std::string driver_;
-  uint32_t queueFamily_ = 0;
+  uint32_t families_[2] = {0, 0};  // of the queues
   bool canDraw_ = false, writesWithoutFormat_ = false;
   VkDevice device_ = VK_NULL_HANDLE;
-  VkQueue queue_ = VK_NULL_HANDLE;
+  VkQueue queue_ = VK_NULL_HANDLE, computeQueue_ = VK_NULL_HANDLE;
   VkCommandPool pool_ = VK_NULL_HANDLE;
   Transfers transfers_;
   mutable std::mutex messagesMutex_;

@@ -115,6 +115,7 @@ GpuImage::GpuImage(Device& device, int width, int height, VkFormat format, VkIma
   if (width < 1 || height < 1 || width > limit || height > limit)
     throw DeviceError("an image of " + std::to_string(width) + " x " + std::to_string(height) +
                       " does not fit the device, whose limit is " + std::to_string(limit));
+  device.share(info);
   check(vkCreateImage(device.handle(), &info, nullptr, &image_), "vkCreateImage");
   VkMemoryRequirements needs;
   vkGetImageMemoryRequirements(device.handle(), image_, &needs);

@@ -24,6 +24,7 @@ DepthBuffer::DepthBuffer(Device& device, VkExtent2D extent, VkFormat format, int
   info.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
   if (properties.optimalTilingFeatures & VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT)
     info.usage |= VK_IMAGE_USAGE_SAMPLED_BIT;
+  device.share(info);
   check(vkCreateImage(device.handle(), &info, nullptr, image_.receive()), "vkCreateImage");
   VkMemoryRequirements needs;
   vkGetImageMemoryRequirements(device.handle(), image_, &needs);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "common/error.h"
 #include "reference/camera.h"
@@ -26,6 +27,25 @@ double coneFalloff(const Light& light, const glm::dvec3& toLight) {
   return t * t;
 }
 
+// at: 0..1, between the first entry and the last.
+double factorAt(const std::vector<double>& table, double at) {
+  const double place = at * static_cast<double>(table.size() - 1);
+  const std::size_t below = std::min(static_cast<std::size_t>(place), table.size() - 2);
+  return std::lerp(table[below], table[below + 1], place - static_cast<double>(below));
+}
+
+double distanceFalloff(const Light& light, double distance) {
+  if (light.distanceTable.empty()) return rangeWindow(distance, light.range);
+  return distance < light.range ? factorAt(light.distanceTable, distance / light.range) : 0;
+}
+
+double angleFalloff(const Light& light, const glm::dvec3& toLight) {
+  const double cone = light.type == PELLUCID_LIGHT_SPOT ? coneFalloff(light, toLight) : 1;
+  if (light.angleTable.empty()) return cone;
+  const double cosine = glm::dot(glm::normalize(toVector(light.direction)), -toLight);
+  return cone * factorAt(light.angleTable, std::acos(std::clamp(cosine, -1.0, 1.0)) / std::numbers::pi);
+}
+
 }  // namespace
 
 Arrival arrivalAt(const Light& light, const glm::dvec3& point) {
@@ -35,8 +55,8 @@ Arrival arrivalAt(const Light& light, const glm::dvec3& point) {
   const double distance = glm::length(offset);
   if (!(distance > 0)) return {glm::dvec3(0, 0, 1), glm::dvec3(0)};
   const glm::dvec3 toLight = offset / distance;
-  const double cone = light.type == PELLUCID_LIGHT_SPOT ? coneFalloff(light, toLight) : 1;
-  return {toLight, emitted * (cone * rangeWindow(distance, light.range) / (distance * distance))};
+  const double falloff = angleFalloff(light, toLight) * distanceFalloff(light, distance);
+  return {toLight, emitted * (falloff / (distance * distance))};
 }
 
 bool holdsBackFaces(const Light& light) {

@@ -16,7 +16,8 @@ struct Arrival {
 };
 
 // KHR_lights_punctual: directional intensity is irradiance; point and spot give intensity / r^2 times
-// the range window max(0, min(1, 1 - (r/range)^4)) and the spot's angular falloff.
+// the range window max(0, min(1, 1 - (r/range)^4)) and the spot's angular falloff. Tables of the light: as
+// PellucidLight has them.
 Arrival arrivalAt(const Light& light, const glm::dvec3& point);
 
 // True where the light's maps hold the faces that light leaves by; all of them do, or none.

@@ -29,8 +29,25 @@ Origin minus(Origin position, const Origin& origin) {
   return position;
 }
 
+// Index plus 1 of the table among the frame's, where lights with equal ones share it; 0: none.
+uint32_t addTable(const std::vector<double>& factors, FrameData& data) {
+  if (factors.empty()) return 0;
+  PellucidLightTable table{};
+  std::transform(factors.begin(), factors.end(), table.factor,
+                 [](double v) { return static_cast<float>(v); });
+  std::vector<PellucidLightTable>& all = data.lightTables;
+  const auto same = std::find_if(all.begin(), all.end(), [&](const PellucidLightTable& other) {
+    return std::equal(table.factor, std::end(table.factor), other.factor);
+  });
+  const auto index = same - all.begin();
+  if (same == all.end()) all.push_back(table);
+  return static_cast<uint32_t>(index + 1);
+}
+
 void addLight(const Light& light, const Origin& origin, const FrameShape& shape, FrameData& data) {
   PellucidLight l = pellucidLight(light);
+  l.angleTable = addTable(light.angleTable, data);
+  l.distanceTable = addTable(light.distanceTable, data);
   copy(minus(light.position, origin), l.position);
   l.firstShadowMap = static_cast<uint32_t>(data.shadowMaps.size());
   l.shadowMapCount = static_cast<uint32_t>(light.shadowMaps.size());
@@ -219,6 +236,8 @@ void makeFrame(const Capture& capture, const FrameShape& shape,
   f.materials = data.materials.data();
   f.lightCount = static_cast<uint32_t>(data.lights.size());
   f.lights = data.lights.data();
+  f.lightTableCount = static_cast<uint32_t>(data.lightTables.size());
+  f.lightTables = data.lightTables.data();
   f.shadowMapCount = static_cast<uint32_t>(data.shadowMaps.size());
   f.shadowMaps = data.shadowMaps.data();
   f.shadowImageCount = static_cast<uint32_t>(data.shadowImages.size());

@@ -60,6 +60,7 @@ struct FrameData {
   std::vector<PellucidImage> shadowImages;
   std::vector<float> minimumDotTable;
   std::vector<float> ambient;
+  std::vector<PellucidLightTable> lightTables;
 
   FrameData() = default;
   FrameData(const FrameData&) = delete;  // frame points to the others
@@ -94,7 +95,7 @@ void makeFrame(const Capture& capture, const FrameShape& shape,
                const std::vector<PellucidMaterial>& materials, const ReplaySettings& settings,
                FrameData& data);
 
-// Without shadow maps.
+// Without shadow maps and tables.
 PellucidLight pellucidLight(const Light& light);
 
 // The image that a PellucidBinding of an image resource means, for passes that bind what a plan does.

@@ -140,13 +140,19 @@ Contexts::Contexts(Device& device, std::uint32_t uses)
       context_(device, [uses](PellucidContextDesc& desc) { desc.uses = uses; }) {}
 
 const Context& Contexts::of(const Capture& capture) {
-  if (!hasLayers(capture.lights)) return context_;
-  if (!arrays_)
-    arrays_ = std::make_unique<Context>(device_, [this](PellucidContextDesc& desc) {
+  const bool arrays = hasLayers(capture.lights);
+  const bool tables = std::any_of(capture.lights.begin(), capture.lights.end(), [](const Light& light) {
+    return !light.angleTable.empty() || !light.distanceTable.empty();
+  });
+  if (!arrays && !tables) return context_;
+  std::unique_ptr<Context>& other = others_[2 * arrays + tables];
+  if (!other)
+    other = std::make_unique<Context>(device_, [&](PellucidContextDesc& desc) {
       desc.uses = uses_;
-      desc.shadowViewType = VK_IMAGE_VIEW_TYPE_2D_ARRAY;
+      if (arrays) desc.shadowViewType = VK_IMAGE_VIEW_TYPE_2D_ARRAY;
+      desc.lightTables = tables;
     });
-  return *arrays_;
+  return *other;
 }
 
 FrameRun::FrameRun(Device& device, const Context& context, const Capture& capture,

@@ -34,7 +34,8 @@ private:
   std::string message_;
 };
 
-// Contexts of a device whose shadow views fit captures: 2D, or of arrays where maps lie in layers.
+// Contexts of a device that fit captures: shadow views of arrays where maps lie in layers, else 2D ones, and
+// pipelines that look for light tables where there are some.
 class Contexts {
 public:
   // `uses`: PellucidUse bits of the frames, whose pipelines take a second to create on a CPU; 0: all.
@@ -46,7 +47,7 @@ private:
   Device& device_;
   std::uint32_t uses_;
   Context context_;
-  std::unique_ptr<Context> arrays_;  // made when first asked for
+  std::unique_ptr<Context> others_[4];  // made when first asked for
 };
 
 // One capture on the device, planned and ready to record as often as wanted.

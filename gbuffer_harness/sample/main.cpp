@@ -69,6 +69,10 @@ void addOptions(CLI::App& app, Options& o) {
   number("--exposure", s.exposure, 1e-6, 1e6, "factor");
   number("--bias", s.biasConstant, 0.0, 1000.0, "constant depth bias of the spots' shadow maps");
   number("--slope-bias", s.biasSlope, 0.0, 1000.0, "slope factor of the same");
+  const auto queue = [&s](const std::string& name) { s.ownQueue = name == "compute"; };
+  app.add_option_function<std::string>("--queue", queue,
+                                       "of Pellucid: graphics (default), or compute, its own")
+      ->check(CLI::IsMember({"graphics", "compute"}));
   app.add_flag("--cull-fronts", s.cullFronts, "the spots' shadow maps hold back faces");
   for (const Switch& option : kSwitches)
     app.add_flag(std::string("--") + option.name + ",!--no-" + option.name, s.*option.on, "on by default");
@@ -104,6 +108,7 @@ void run(Options o) {
   Scene scene = o.file.empty() ? headScene(o.cell, o.mapTexels) : fileScene(o.file, o.gltf, o.mapTexels);
   for (const std::string& note : scene.notes) std::fprintf(stderr, "%s\n", note.c_str());
   DeviceOptions wanted{o.device, o.validate};
+  wanted.computeQueue = o.settings.ownQueue;
   std::optional<Desktop> desktop;
   if (!o.headless) desktop.emplace().require(wanted);
   Device device(wanted);
@@ -129,6 +134,11 @@ void run(Options o) {
   const std::vector<std::string> messages = device.validationMessages();
   if (!messages.empty()) throw DeviceError("validation: " + messages.front());
   std::printf("%s\n%d frames\n", device.description().c_str(), frames);
+  if (o.settings.ownQueue && device.computeQueue() == device.queue())
+    std::printf("the device has one queue: Pellucid had submissions of its own on it\n");
+  else if (o.settings.ownQueue)
+    std::printf("Pellucid ran on a queue of family %u, drawing on one of family %u\n", device.computeFamily(),
+                device.queueFamily());
   for (const std::string& file : {o.output, o.capture})
     if (!file.empty()) std::printf("wrote %s\n", file.c_str());
 }

@@ -55,13 +55,14 @@ public:
     if (f.index == 0) require(pellucidValidateFrame(&frame, report, nullptr));
     require(pellucidBuildPlan(&frame, nullptr, plan_.get()));
     const VkDeviceSize at = f.index % kFramesInFlight * slice_;  // the GPU still reads the other slices
-    barrier(commands, kDrawing, kComputing);
+    if (!f.ownQueue) barrier(commands, kDrawing, kScope);
     const PellucidConstantsSlice slice{ring_.handle(), at, slice_, static_cast<char*>(ring_.mapped()) + at};
     require(pellucidRecordPlan(context_, commands, plan_.get(), &frame, &slice));
-    barrier(commands, kComputing, kDrawing);
+    if (!f.ownQueue) barrier(commands, kScope, kDrawing);
   }
 
 private:
+  static constexpr Scope kScope{PELLUCID_STAGES, PELLUCID_READS | PELLUCID_WRITES};
   static void report(void*, PellucidSeverity, const char* field, const char* sentence) {
     std::fprintf(stderr, "Pellucid: %s: %s\n", field, sentence);
   }

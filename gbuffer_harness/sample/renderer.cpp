@@ -91,12 +91,10 @@ Renderer::Renderer(Device& device, const Scene& scene, VkExtent2D extent, std::u
       resolve_(device),
       linear_(device),
       compare_(device),
-      pool_(device),
-      slots_{Slot(device), Slot(device), Slot(device)},
+      submissions_(device),
       uniforms_(device, kFramesInFlight * kUniformSlice, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT),
       pellucid_(device, scene.materials) {
   createPasses();
-  createSlots();
 }
 
 void Renderer::createPasses() {
@@ -137,40 +135,22 @@ void Renderer::createPasses() {
   check(vkCreateSampler(device_.handle(), &sampler, nullptr, compare_.receive()), "vkCreateSampler");
 }
 
-void Renderer::createSlots() {
-  const VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO, nullptr,
-                                     VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT, device_.queueFamily()};
-  check(vkCreateCommandPool(device_.handle(), &pool, nullptr, pool_.receive()), "vkCreateCommandPool");
-  const VkCommandBufferAllocateInfo commands{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, nullptr, pool_,
-                                             VK_COMMAND_BUFFER_LEVEL_PRIMARY, 1};
-  const VkFenceCreateInfo fence{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO, nullptr, VK_FENCE_CREATE_SIGNALED_BIT};
-  for (Slot& slot : slots_) {
-    check(vkAllocateCommandBuffers(device_.handle(), &commands, &slot.commands), "vkAllocateCommandBuffers");
-    check(vkCreateFence(device_.handle(), &fence, nullptr, slot.done.receive()), "vkCreateFence");
-  }
-}
-
 void Renderer::draw(const Settings& settings, const ViewCamera& camera) {
-  const Slot& slot = slots_[next_ % kFramesInFlight];
-  const VkFence done = slot.done;
-  check(vkWaitForFences(device_.handle(), 1, &done, VK_TRUE, UINT64_MAX), "vkWaitForFences");
-  check(vkResetFences(device_.handle(), 1, &done), "vkResetFences");
+  VkCommandBuffer commands = submissions_.begin(next_);
   settings_ = settings;
   makeFrame(camera);
   writeUniforms(camera);
-  const VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO, nullptr,
-                                       VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
-  check(vkBeginCommandBuffer(slot.commands, &begin), "vkBeginCommandBuffer");
-  drawShadows(slot.commands);
-  drawGbuffer(slot.commands);
-  light(slot.commands);
-  if (settings.pellucid) pellucid_.record(slot.commands, frame_);
-  resolve(slot.commands);
-  check(vkEndCommandBuffer(slot.commands), "vkEndCommandBuffer");
-  VkSubmitInfo submit{VK_STRUCTURE_TYPE_SUBMIT_INFO};
-  submit.commandBufferCount = 1;
-  submit.pCommandBuffers = &slot.commands;
-  check(vkQueueSubmit(device_.queue(), 1, &submit, done), "vkQueueSubmit");
+  drawShadows(commands);
+  drawGbuffer(commands);
+  light(commands);
+  if (frame_.ownQueue) {
+    pellucid_.record(submissions_.beginComputing(), frame_);
+    commands = submissions_.beginDrawingAgain();
+  } else if (settings.pellucid) {
+    pellucid_.record(commands, frame_);
+  }
+  resolve(commands);
+  submissions_.end();
   ++next_;
 }
 
@@ -206,6 +186,7 @@ void Renderer::makeFrame(const ViewCamera& camera) {
   f.hasAmbient = settings_.ambient;
   for (std::size_t i = 0; i < f.ambient.size(); ++i) f.ambient[i] = toGlm(scene_.ambient[i]);
   f.quality = settings_.quality;
+  f.ownQueue = settings_.pellucid && settings_.ownQueue;
   f.transient = [this](std::uint32_t slot, const PellucidImageNeed& need) { return transient(slot, need); };
   lit_.clear();
   for (const SceneLight& light : scene_.lights) {

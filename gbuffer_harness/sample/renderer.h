@@ -11,6 +11,7 @@
 #include "raster/uploaded_mesh.h"
 #include "sample/pellucid_pass.h"
 #include "sample/scene.h"
+#include "sample/submissions.h"
 
 namespace pellucid::sample {
 
@@ -22,6 +23,7 @@ inline const std::vector<std::string> kMistakes = {"none",  "culled-fronts", "de
 struct Settings {
   bool pellucid = true;
   std::uint32_t quality = 1;  // of Pellucid, 0..2
+  bool ownQueue = false;      // Pellucid runs on the device's computeQueue(), between semaphores
   bool sun = true, spots = true, point = true, ambient = true, specular = true, taa = true;
   double scale = 1;                       // of the rendered rect to the picture along each side, (0, 1]
   bool cullFronts = false;                // of the spots' shadow maps
@@ -56,18 +58,12 @@ private:
     kPicture = kHistory + 2,
     kTargets
   };
-  struct Slot {
-    explicit Slot(const Device& device) : done(device) {}
-    VkCommandBuffer commands = VK_NULL_HANDLE;
-    Owned<VkFence, vkDestroyFence> done;
-  };
   struct Bound {
     PellucidImage image;
     VkSampler sampler;
   };
 
   void createPasses();
-  void createSlots();
   void makeFrame(const ViewCamera& camera);
   void addLight(const SceneLight& light, const std::vector<LightView>& views);
   void writeUniforms(const ViewCamera& camera) const;
@@ -101,8 +97,7 @@ private:
   std::map<std::tuple<VkFormat, std::size_t, VkCullModeFlags>, Pipeline> meshPipelines_;
   Pipeline lighting_, resolve_;
   Owned<VkSampler, vkDestroySampler> linear_, compare_;
-  Owned<VkCommandPool, vkDestroyCommandPool> pool_;
-  Slot slots_[kFramesInFlight];
+  Submissions submissions_;
   HostBuffer uniforms_;
   PellucidPass pellucid_;
   Settings settings_;

@@ -5,6 +5,7 @@
 
 #include "constants.h"
 #include "diffusion_profile.h"
+#include "domains.h"
 #include "entry_points.h"
 #include "gather.h"
 #include "minimum_dot.h"
@@ -34,6 +35,9 @@ static_assert(PELLUCID_SHADER_NORMALS_UNORM == PELLUCID_NORMALS_UNORM);
 static_assert(PELLUCID_SHADER_NORMALS_OCTAHEDRAL == PELLUCID_NORMALS_OCTAHEDRAL);
 static_assert(PELLUCID_SHADER_NORMALS_OCTAHEDRAL_UNORM == PELLUCID_NORMALS_OCTAHEDRAL_UNORM);
 static_assert(PELLUCID_CONSTANT_NORMALS == PELLUCID_SPECIALIZATION_NORMALS);
+static_assert(PELLUCID_CONSTANT_LIGHT_TABLES == PELLUCID_SPECIALIZATION_LIGHT_TABLES);
+static_assert(PELLUCID_LIGHT_TABLES == PELLUCID_MAX_LIGHT_TABLES);
+static_assert(PELLUCID_LIGHT_ENTRIES == PELLUCID_LIGHT_TABLE_ENTRIES);
 static_assert(PELLUCID_GAUSSIANS == PELLUCID_MAX_GAUSSIANS);
 static_assert(PELLUCID_MAX_LIGHT_SHADOW_MAPS <= PELLUCID_SHADOW_IMAGE_COUNT);
 
@@ -115,7 +119,9 @@ shared::LightConstants lightConstants(const FrameFacts& f, const PellucidLight& 
     const glm::dvec4 position(l.position[0], l.position[1], l.position[2], 1);
     c.position = glm::vec4(glm::vec3(viewFromWorld * position), l.range > 0 ? 1 / l.range : 0);
   }
-  if (l.type != PELLUCID_LIGHT_POINT) c.direction = glm::vec4(glm::dmat3(viewFromWorld) * travel(l), 0);
+  if (hasDirection(l)) c.direction = glm::vec4(glm::dmat3(viewFromWorld) * travel(l), 0);
+  if (l.distanceTable > 0) std::swap(c.position.w, c.direction.w);
+  c.radiance.w = static_cast<float>(l.angleTable * (PELLUCID_LIGHT_TABLES + 1) + l.distanceTable);
   if (l.type == PELLUCID_LIGHT_SPOT) {
     // KHR_lights_punctual, "Inner and Outer Cone Angles"; 0.001 is its own guard.
     const double inner = std::cos(static_cast<double>(l.innerConeAngle));
@@ -218,6 +224,18 @@ void put(void* slice, VkDeviceSize offset, const T& value) {
   std::memcpy(static_cast<char*>(slice) + offset, &value, sizeof value);
 }
 
+void putLightTables(const FrameFacts& f, void* mapped) {
+  for (uint32_t table = 0; table < f.frame.lightTableCount; ++table) {
+    std::array<uint32_t, PELLUCID_LIGHT_ENTRIES / 2> halves;
+    const float* factor = f.frame.lightTables[table].factor;
+    for (size_t i = 0; i < halves.size(); ++i)
+      halves[i] = glm::packHalf2x16({factor[2 * i], factor[2 * i + 1]});
+    put(mapped,
+        f.constants.frame.offset + offsetof(shared::FrameConstants, lightTables) + table * sizeof halves,
+        halves);
+  }
+}
+
 // Lights, their shadow maps and what the gather knows of these.
 void putLights(const FrameFacts& f, void* mapped) {
   const ConstantsLayout& layout = f.constants;
@@ -294,6 +312,7 @@ PellucidResult writeConstants(const FrameFacts& f, const PellucidPlan& plan, voi
 
   std::memset(mapped, 0, static_cast<size_t>(layout.size));
   put(mapped, layout.frame.offset, frameConstants(f));
+  putLightTables(f, mapped);
   putLights(f, mapped);
   if (f.stages.tiles) put(mapped, layout.tileCommands.offset, tileCommands(f));
   putIndirect(f, plan, mapped);

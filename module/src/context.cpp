@@ -74,6 +74,10 @@ PellucidResult checkDesc(const PellucidContextDesc& desc, Findings& out) {
              ", not a PellucidNormalEncoding");
     return out.result();
   }
+  if (desc.lightTables > 1) {
+    out.fail(PELLUCID_ERROR_INVALID_ARGUMENT, "lightTables", "is ", desc.lightTables, ", not 0 or 1");
+    return out.result();
+  }
   if (desc.uses & ~kAllUses) {
     out.fail(PELLUCID_ERROR_INVALID_ARGUMENT, "uses", "has unknown bits ", desc.uses & ~kAllUses);
     return out.result();
@@ -146,10 +150,11 @@ VkResult createPipeline(const PellucidContextDesc& desc, const PellucidContext& 
   VkResult result = c.vk.vkCreateShaderModule(c.device, &moduleInfo, c.callbacks(), &module);
   if (result != VK_SUCCESS) return result;
 
-  std::array<PellucidSpecialization, std::tuple_size_v<decltype(p.constants)> + 1> constants;
-  *std::copy_n(p.constants.begin(), p.constantCount, constants.begin()) = {PELLUCID_SPECIALIZATION_NORMALS,
-                                                                           desc.normalEncoding};
-  const uint32_t count = p.constantCount + 1;
+  std::array<PellucidSpecialization, std::tuple_size_v<decltype(p.constants)> + 2> constants;
+  auto* own = std::copy_n(p.constants.begin(), p.constantCount, constants.begin());
+  own[0] = {PELLUCID_SPECIALIZATION_NORMALS, desc.normalEncoding};
+  own[1] = {PELLUCID_SPECIALIZATION_LIGHT_TABLES, desc.lightTables};
+  const uint32_t count = p.constantCount + 2;
   std::array<VkSpecializationMapEntry, std::tuple_size_v<decltype(constants)>> entries;
   for (uint32_t i = 0; i < count; ++i)
     entries[i] = {constants[i].id,
@@ -229,6 +234,7 @@ extern "C" PellucidResult pellucidCreateContext(const PellucidContextDesc* given
   c->messageUser = desc->messageUser;
   c->shadowViewType = desc->shadowViewType;
   c->outputFormat = desc->outputFormat;
+  c->lightTables = desc->lightTables != 0;
   const auto getDeviceProcAddr = reinterpret_cast<PFN_vkGetDeviceProcAddr>(
       desc->getInstanceProcAddr(desc->instance, "vkGetDeviceProcAddr"));
   const char* missing =

@@ -19,6 +19,7 @@ struct PellucidContext {
   std::array<VkPipeline, pellucid::kPipelineCount> pipelines{};  // NULL: not among desc.uses
   VkFormat outputFormat = VK_FORMAT_UNDEFINED;                   // of all frames; UNDEFINED: any
   VkImageViewType shadowViewType = VK_IMAGE_VIEW_TYPE_2D;        // of all frames' shadow images
+  bool lightTables = false;                                      // frames may have some
 
   const VkAllocationCallbacks* callbacks() const { return hasAllocator ? &allocator : nullptr; }
 };

@@ -26,9 +26,7 @@ bool looksMinimumDotsUp(const void* object, uint32_t) {
 bool hasPosition(const void* object, uint32_t) {
   return as<PellucidLight>(object).type != PELLUCID_LIGHT_DIRECTIONAL;
 }
-bool hasDirection(const void* object, uint32_t) {
-  return as<PellucidLight>(object).type != PELLUCID_LIGHT_POINT;
-}
+bool readsDirection(const void* object, uint32_t) { return hasDirection(as<PellucidLight>(object)); }
 bool isSpot(const void* object, uint32_t) { return as<PellucidLight>(object).type == PELLUCID_LIGHT_SPOT; }
 bool readsView(const void* object, uint32_t) {
   return as<PellucidShadowMap>(object).encoding != PELLUCID_DEPTH_DEVICE;
@@ -65,6 +63,7 @@ constexpr auto kFrameIntegers = std::to_array<IntegerDomain>({
     {FIELD(PellucidFrame, indirectDispatches), 0, PELLUCID_INDIRECT_LIGHT},
     {FIELD(PellucidFrame, materialShift), 0, 31},
     {FIELD(PellucidFrame, outputMode), 0, PELLUCID_OUTPUT_ADD},
+    {FIELD(PellucidFrame, lightTableCount), 0, PELLUCID_MAX_LIGHT_TABLES},
 });
 
 constexpr auto kThesisFloats = std::to_array<FloatDomain>({
@@ -106,8 +105,8 @@ constexpr auto kMaterialIntegers = std::to_array<IntegerDomain>({
 
 constexpr auto kLightFloats = std::to_array<FloatDomain>({
     {FIELD(PellucidLight, position), 0, -kLongest, kLongest, false, hasPosition, "point and spot lights"},
-    {FIELD(PellucidLight, direction), 0, -kLongest, kLongest, false, hasDirection,
-     "directional and spot lights"},
+    {FIELD(PellucidLight, direction), 0, -kLongest, kLongest, false, readsDirection,
+     "directional and spot lights, and with an `angleTable`"},
     {FIELD(PellucidLight, color), 0, 0, kBrightest, false, nullptr, nullptr},
     {FIELD(PellucidLight, intensity), 0, 0, kBrightest, false, nullptr, nullptr},
     {FIELD(PellucidLight, range), 0, 0, kLongest, false, hasPosition, "point and spot lights"},
@@ -118,6 +117,9 @@ constexpr auto kLightFloats = std::to_array<FloatDomain>({
 
 constexpr auto kLightIntegers =
     std::to_array<IntegerDomain>({{FIELD(PellucidLight, type), 0, PELLUCID_LIGHT_SPOT}});
+
+constexpr auto kLightTableFloats =
+    std::to_array<FloatDomain>({{FIELD(PellucidLightTable, factor), 0, 0, 1, false, nullptr, nullptr}});
 
 constexpr auto kMapFloats = std::to_array<FloatDomain>({
     {FIELD(PellucidShadowMap, clipFromWorld), 0, -kLongest, kLongest, false, nullptr, nullptr},
@@ -156,6 +158,10 @@ Domains domainsOf<PellucidMaterial>() {
 template <>
 Domains domainsOf<PellucidLight>() {
   return {kLightFloats, kLightIntegers};
+}
+template <>
+Domains domainsOf<PellucidLightTable>() {
+  return {kLightTableFloats, {}};
 }
 template <>
 Domains domainsOf<PellucidShadowMap>() {

@@ -44,7 +44,14 @@ Domains domainsOf<PellucidMaterial>();
 template <>
 Domains domainsOf<PellucidLight>();
 template <>
+Domains domainsOf<PellucidLightTable>();
+template <>
 Domains domainsOf<PellucidShadowMap>();
+
+// True where the frame reads the light's direction.
+inline bool hasDirection(const PellucidLight& light) {
+  return light.type != PELLUCID_LIGHT_POINT || light.angleTable > 0;
+}
 
 // Element `index` of the field.
 inline float valueOf(const FloatDomain& d, const void* object, uint32_t index) {

@@ -55,6 +55,7 @@ void addMaterials(FrameFacts& f) {
 
 void addGather(FrameFacts& f) {
   f.whyNotGathered = whyNotGathered(f);
+  if (f.frame.targetError > 0) f.missesTarget = !qualityOfTarget(f, &f.frame.quality);
   const bool byQuality = f.frame.gatherSamples == PELLUCID_GATHER_BY_QUALITY;
   f.gatherSamples = !f.solids || (byQuality && f.whyNotGathered) ? 0
                     : byQuality                                  ? kQualities[f.frame.quality].gatherSamples
@@ -76,7 +77,6 @@ void addLights(FrameFacts& f) {
 
 void addDiffusion(FrameFacts& f) {
   f.quality = f.frame.quality;
-  f.missesTarget = f.frame.targetError > 0 && !qualityFor(f.frame.targetError, f.reach.radius, &f.quality);
   while (f.reach.deviation > 0 && f.coarsestLevel > kFirstLevel + 2 &&
          f.reach.deviation <= deviationWithin(f.coarsestLevel - 2))
     f.coarsestLevel -= 2;

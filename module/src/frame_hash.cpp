@@ -57,6 +57,7 @@ FrameHash hashOf(const FrameFacts& facts) {
     of(FramePart::Materials).add(&material, sizeof material);
   }
   of(FramePart::Lights).add(f.lights, f.lightCount * sizeof(PellucidLight));
+  of(FramePart::Lights).add(f.lightTables, f.lightTableCount * sizeof(PellucidLightTable));
   of(FramePart::ShadowMaps).add(f.shadowMaps, f.shadowMapCount * sizeof(PellucidShadowMap));
   of(FramePart::ShadowImages).add(RANGE(f, shadowImageCount, shadowImageCount));
   FrameHash result;

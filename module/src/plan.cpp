@@ -68,8 +68,8 @@ void addSkips(PlanBuilder& b) {
   if (f.stages.nothing)
     b.skip("all dispatches",
            "no light comes through, nothing diffuses, and the output is the irradiance image");
-  if (!f.stages.diffusion) return;
   if (f.missesTarget) b.skip("targetError", "no quality is that exact");
+  if (!f.stages.diffusion) return;
   if (f.frame.indirectDispatches == PELLUCID_INDIRECT_MATERIAL && !f.stages.tiles)
     b.skip("tile lists", whyNoTileLists(f));
   for (uint32_t i = 0; i < f.frame.materialCount; ++i)

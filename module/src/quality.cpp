@@ -6,6 +6,7 @@
 
 #include "diffusion_error_table.h"
 #include "frame.h"
+#include "frame_error_table.h"
 #include "pyramid_energy.h"
 #include "shared/pellucid_filters.h"
 
@@ -26,6 +27,34 @@ double pixelsPerMm(const FrameFacts& facts) {
                                glm::length(inverse[1]) * 2 / f.imageExtent[1]);
   const double mm = side * std::abs(w) * static_cast<double>(f.metersPerUnit) * 1000;
   return mm > 0 ? 1 / mm : 0;
+}
+
+// The worst at radii up to `radius` pixels; 0: at all.
+float diffusionError(uint32_t quality, double radius) {
+  // Errors were measured at some radii; up to the first one that is not less than the frame's.
+  size_t count = std::size(kErrorRadii);
+  if (radius > 0) {
+    const float* least = std::lower_bound(std::begin(kErrorRadii), std::end(kErrorRadii), radius);
+    count = std::min(count, static_cast<size_t>(least - kErrorRadii) + 1);
+  }
+  const float* errors = kWorstError[kQualities[quality].fineFilter ? 1 : 0];
+  return *std::max_element(errors, errors + count);
+}
+
+// Only maps let light be gathered. Lights have not been checked yet.
+bool someLightHasMap(const PellucidFrame& f) {
+  return f.lights && std::any_of(f.lights, f.lights + f.lightCount,
+                                 [](const PellucidLight& light) { return light.shadowMapCount > 0; });
+}
+
+// Of the frame at a quality.
+float measuredError(const FrameFacts& f, uint32_t quality) {
+  if ((f.frame.features & PELLUCID_FEATURE_TRANSLUCENCY) == 0 || f.frame.lightCount == 0)
+    return diffusionError(quality, f.reach.radius);
+  const bool byQuality = f.frame.gatherSamples == PELLUCID_GATHER_BY_QUALITY;
+  const uint32_t samples = byQuality ? kQualities[quality].gatherSamples : f.frame.gatherSamples;
+  const bool gathers = !f.whyNotGathered && samples > 0 && someLightHasMap(f.frame);
+  return kFrameError[gathers ? std::max(quality, 1u) : 0];
 }
 
 }  // namespace
@@ -59,18 +88,9 @@ DiffusionReach diffusionReach(const FrameFacts& facts) {
   return reach;
 }
 
-bool qualityFor(float error, double radius, uint32_t* quality) {
-  // Errors were measured at some radii; up to the first one that is not less than the frame's.
-  size_t count = std::size(kErrorRadii);
-  if (radius > 0)
-    count = std::min(
-        count, static_cast<size_t>(std::lower_bound(std::begin(kErrorRadii), std::end(kErrorRadii), radius) -
-                                   kErrorRadii) +
-                   1);
-  for (*quality = 0; *quality <= kBestQuality; ++*quality) {
-    const float* errors = kWorstError[kQualities[*quality].fineFilter ? 1 : 0];
-    if (*std::max_element(errors, errors + count) < error) return true;
-  }
+bool qualityOfTarget(const FrameFacts& facts, uint32_t* quality) {
+  for (*quality = 0; *quality <= kBestQuality; ++*quality)
+    if (measuredError(facts, *quality) < facts.frame.targetError) return true;
   *quality = kBestQuality;
   return false;
 }

@@ -39,8 +39,8 @@ struct Quality {
 constexpr Quality kQualities[] = {{0, 1, false}, {8, 1, true}, {16, 2, true}};
 constexpr uint32_t kBestQuality = std::size(kQualities) - 1;
 
-// The least quality whose measured error at radii up to `radius` pixels (0: all) is below `error`. False, and
-// the best quality, if there is none.
-bool qualityFor(float error, double radius, uint32_t* quality);
+// The least quality whose measured error is below frame.targetError. False, and the best quality, if there is
+// none. Reads what the facts have of the materials and of the gather's obstacles.
+bool qualityOfTarget(const FrameFacts& facts, uint32_t* quality);
 
 }  // namespace pellucid

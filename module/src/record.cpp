@@ -49,6 +49,9 @@ PellucidResult checkPlan(const PellucidContext& c, const PellucidPlan& plan, con
   if (c.outputFormat != VK_FORMAT_UNDEFINED && c.outputFormat != facts.frame.outputFormat)
     return refuse(c, "outputFormat",
                   "is not PellucidContextDesc::outputFormat, which the context writes alone");
+  if (facts.frame.lightTableCount > 0 && !c.lightTables)
+    return refuse(c, "lightTableCount",
+                  "is above 0, but PellucidContextDesc::lightTables is 0: the pipelines do not look for any");
   for (uint32_t i = 0; i < facts.frame.shadowMapCount; ++i)
     if (const uint32_t layer = facts.frame.shadowMaps[i].layer;
         layer != 0 && c.shadowViewType != VK_IMAGE_VIEW_TYPE_2D_ARRAY) {

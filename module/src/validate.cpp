@@ -107,6 +107,30 @@ void checkMaterial(const PellucidMaterial& m, uint32_t index, Findings& out) {
   }
 }
 
+void checkLightTables(const PellucidFrame& f, Findings& out) {
+  if (f.lightTableCount > PELLUCID_MAX_LIGHT_TABLES) return;  // its domain says so
+  if (f.lightTableCount > 0 && !f.lightTables)
+    out.error("lightTables", "is NULL, but lightTableCount is ", f.lightTableCount);
+  for (uint32_t i = 0; f.lightTables && i < f.lightTableCount; ++i)
+    checkDomains(f.lightTables[i], Field("lightTables[", i, "]."), out);
+}
+
+// A light's own falloff.
+void checkFalloff(const PellucidFrame& f, uint32_t index, Findings& out) {
+  const PellucidLight& l = f.lights[index];
+  const auto checkTable = [&](const char* name, uint32_t table) {
+    const Field field("lights[", index, "].", name);
+    if (table > f.lightTableCount)
+      out.error(field, "is ", table, " (an index plus 1), but there are ", f.lightTableCount, " lightTables");
+    else if (table > 0 && l.type == PELLUCID_LIGHT_DIRECTIONAL)
+      out.error(field, "is ", table, ", but the light is directional");
+  };
+  checkTable("angleTable", l.angleTable);
+  checkTable("distanceTable", l.distanceTable);
+  if (l.distanceTable > 0 && l.range == 0)
+    out.error(Field("lights[", index, "].range"), "is 0, but distanceTable is ", l.distanceTable);
+}
+
 void checkLight(const FrameFacts& facts, uint32_t index, Findings& out) {
   const PellucidFrame& f = facts.frame;
   const PellucidLight& l = f.lights[index];
@@ -114,8 +138,9 @@ void checkLight(const FrameFacts& facts, uint32_t index, Findings& out) {
   checkDomains(l, field(""), out);
   if (l.type > PELLUCID_LIGHT_SPOT) return;
   const float length = std::hypot(l.direction[0], l.direction[1], l.direction[2]);
-  if (l.type != PELLUCID_LIGHT_POINT && !(length > 0 && std::isfinite(length)))
+  if (hasDirection(l) && !(length > 0 && std::isfinite(length)))
     out.error(field("direction"), "has length ", length);
+  checkFalloff(f, index, out);
   if (l.type == PELLUCID_LIGHT_SPOT &&
       !(l.innerConeAngle >= 0 && l.innerConeAngle < l.outerConeAngle && l.outerConeAngle <= 1.5707964f))
     out.error(field("outerConeAngle"), "is ", l.outerConeAngle, " with inner ", l.innerConeAngle,
@@ -193,6 +218,7 @@ void checkFields(const FrameFacts& facts, Findings& out) {
   for (uint32_t i = 0; f.ambient && i < kAmbientCoefficients; ++i)
     if (!(std::abs(f.ambient[i]) <= 1e15f))
       out.error("ambient", "[", i, "] is ", f.ambient[i], ", outside [-1e+15, 1e+15]");
+  checkLightTables(f, out);
   if (f.lightCount > 0 && !f.lights) out.error("lights", "is NULL, but lightCount is ", f.lightCount);
   if (f.shadowMapCount > 0 && !f.shadowMaps)
     out.error("shadowMaps", "is NULL, but shadowMapCount is ", f.shadowMapCount);

@@ -12,6 +12,8 @@ int main(void) {
   PellucidFrame frame;
   PellucidThesisOptions thesis;
   PellucidBudgetState budget;
+  PellucidContextDesc context;
+  PellucidContext* none;
   static PellucidPlan plan;
   pellucidInitMaterialDesc(&desc);
   desc.kind = PELLUCID_MATERIAL_PRESET;
@@ -31,5 +33,8 @@ int main(void) {
   frame.clipFromView[5] = frame.clipFromView[11] = -1;
   frame.clipFromView[14] = 0.1f;
   if (pellucidBuildPlan(&frame, NULL, &plan) != PELLUCID_OK) return 3;
-  return strcmp(plan.dispatches[0].name, "base level") == 0 ? 0 : 4;
+  if (strcmp(plan.dispatches[0].name, "base level") != 0) return 4;
+  /* No device yet: refused. */
+  pellucidInitContextDesc(&context);
+  return pellucidCreateContext(&context, &none) == PELLUCID_ERROR_INVALID_ARGUMENT ? 0 : 5;
 }

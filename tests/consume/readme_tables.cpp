@@ -153,6 +153,7 @@ std::string domainsTable() {
   addDomains<PellucidThesisOptions>("PellucidThesisOptions", &table);
   addDomains<PellucidMaterial>("PellucidMaterial", &table);
   addDomains<PellucidLight>("PellucidLight", &table);
+  addDomains<PellucidLightTable>("PellucidLightTable", &table);
   addDomains<PellucidShadowMap>("PellucidShadowMap", &table);
   return table;
 }

@@ -42,12 +42,20 @@ TEST_F(SampleCommand, DrawsFiles) {
   expect(0, triangle() + " --material skin=skin1 --headless " + kSmall, "2 frames");
 }
 
+TEST_F(SampleCommand, SaysWhichQueuePellucidRanOn) {
+  const std::string text = run("--headless --queue compute " + kSmall).text;
+  EXPECT_NE(text.find("the device has one queue: Pellucid had submissions of its own on it"),
+            text.find("Pellucid ran on a queue of family "))
+      << text;
+}
+
 TEST_F(SampleCommand, NamesWhatIsWrong) {
   expect(3, path("none.glb") + " --headless", "none.glb");
   expect(3, triangle() + " --headless " + kSmall, "materials: none scatters light; --material");
   expect(3, triangle() + " --material skin=butter --headless", "butter");
   expect(2, "--material skin --headless", "\"skin\" is not NAME=PRESET");
   expect(2, "--scale 2 --headless", "--scale");
+  expect(2, "--queue copy --headless", "--queue: copy not in");
   expect(2, "--mistake typo --headless", "--mistake");
   expect(4, "--device nothing-like-it --cell 20 --headless", "nothing-like-it");
   expect(3, kSmall + "--headless -o " + path("none/a.png"), "cannot be written");

@@ -20,6 +20,19 @@ constexpr std::uint32_t kSide = 96;
 
 class Sample : public GpuTest {
 protected:
+  // The sample's own device has a second queue where there is one.
+  static Device& device() {
+    static Device shared([] {
+      DeviceOptions options{"", true};
+      options.computeQueue = true;
+      return options;
+    }());
+    return shared;
+  }
+  void TearDown() override {
+    GpuTest::TearDown();
+    EXPECT_EQ(device().validationMessages(), std::vector<std::string>());
+  }
   static const Scene& scene() {
     static const Scene shared = headScene(5, kMapTexels);
     return shared;
@@ -135,6 +148,26 @@ TEST_F(Sample, FramesInFlightKeepTheirConstants) {
   renderer().draw(other, camera());
   const Image dim = renderer().color();
   EXPECT_TRUE(sameBits(drawn(other), dim));
+}
+
+// After frames in flight of all kinds. A device that has one queue takes the submissions of both in turn.
+TEST_F(Sample, AQueueOfItsOwnGivesTheSamePicture) {
+  const Image color = drawn(still()), picture = renderer().picture().download();
+  Settings settings;
+  for (const auto& [own, pellucid, scale] : {std::tuple(true, true, 1.0),
+                                             {true, true, 0.7},
+                                             {false, true, 1.0},
+                                             {true, false, 1.0},
+                                             {true, true, 1.0}}) {
+    settings.ownQueue = own;
+    settings.pellucid = pellucid;
+    settings.scale = scale;
+    renderer().draw(settings, camera());
+  }
+  settings = still();
+  settings.ownQueue = true;
+  EXPECT_TRUE(sameBits(drawn(settings), color));
+  EXPECT_TRUE(sameBits(renderer().picture().download(), picture));
 }
 
 // A rect with a projection of its own is what images of its size would hold.

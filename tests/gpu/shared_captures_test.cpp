@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <iterator>
 
 #include "capture/material.h"
 #include "capture/read.h"
 #include "common/compare.h"
+#include "frame_error_table.h"
 #include "reference/diffusion.h"
 #include "reference/reference.h"
 #include "reference/surface.h"
@@ -115,6 +117,35 @@ TEST_P(SharedCaptureGather, IsNearAllTexels) {
           .channels;
   for (size_t c = 0; c < 3; ++c) EXPECT_LT(channels[c].relativeRmse, GetParam().ofAllTexels[c]) << c;
 }
+
+// What frame.targetError goes by is this ear's error, the worst of the frames that the table names.
+struct Ear {
+  const char* name;
+};
+
+void PrintTo(const Ear& value, std::ostream* out) { *out << value.name; }
+
+using SharedCaptureTarget = CaptureTest<Ear>;
+
+TEST_P(SharedCaptureTarget, TableOfFrameErrorsIsMeasured) {
+  for (uint32_t quality = 0; quality < std::size(pellucid::kFrameError); ++quality) {
+    ReplaySettings s;
+    s.quality = quality;
+    s.translucency.gatherSamples = PELLUCID_GATHER_BY_QUALITY;
+    double worst = 0;
+    for (const auto& channel :
+         compareImages(rgb(replayer().run(capture, materials, s).output), capture.truth->image,
+                       comparisonMask(capture.material, capture.irradiance, Subset::All), 4)
+             .channels)
+      worst = std::max(worst, channel.relativeRmse);
+    const auto stated = static_cast<double>(pellucid::kFrameError[quality]);
+    EXPECT_LT(worst, stated) << quality;
+    EXPECT_GT(worst, 0.97 * stated) << quality << ": the table is not of this module";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Truth, SharedCaptureTarget, testing::Values(Ear{"ear_backlit"}),
+                         [](const auto& test) { return std::string(test.param.name); });
 
 // Diffusion alone from brute force: relative RMSE R G B of the default.
 struct DiffusionExpectation {

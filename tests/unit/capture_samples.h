@@ -77,6 +77,10 @@ inline Capture sampleCapture() {
   lamp.position = {1.5, 2.5, -3.5};
   lamp.range = 40;
   lamp.radius = 0.25;
+  for (int i = 0; i < PELLUCID_LIGHT_TABLE_ENTRIES; ++i) {
+    lamp.angleTable.push_back(1.0 / (1 + i));
+    lamp.distanceTable.push_back(i / 64.0);
+  }
   Light spot;
   spot.type = PELLUCID_LIGHT_SPOT;
   spot.position = {0, 0, -9};

@@ -58,6 +58,8 @@ TEST(CaptureRoundTrip, IsBitExactWithFloat) {
     EXPECT_EQ(a.radius, b.radius);
     EXPECT_EQ(a.innerConeAngle, b.innerConeAngle);
     EXPECT_EQ(a.outerConeAngle, b.outerConeAngle);
+    EXPECT_EQ(a.angleTable, b.angleTable);
+    EXPECT_EQ(a.distanceTable, b.distanceTable);
     ASSERT_EQ(a.shadowMaps.size(), b.shadowMaps.size());
     for (std::size_t k = 0; k < a.shadowMaps.size(); ++k) {
       expectSame(a.shadowMaps[k].depth, b.shadowMaps[k].depth);
@@ -189,6 +191,37 @@ TEST_F(Manifests, DefaultsAreThoseOfTheStructures) {
   EXPECT_EQ(light.intensity, 1);
   EXPECT_EQ(light.range, 0);
   EXPECT_TRUE(light.shadowMaps.empty());
+}
+
+TEST_F(Manifests, LightTablesOfAnyLengthBecomeThoseOfTheModule) {
+  manifest["lights"] = {{{"type", "point"},
+                         {"position", {1, 2, 3}},
+                         {"direction", {0, 0, 1}},
+                         {"range", 10},
+                         {"angleTable", {1, 0}},
+                         {"distanceTable", {0, 1, 0.5}}}};
+  const Light light = read().lights[0];
+  EXPECT_EQ(light.direction[2], 1);
+  ASSERT_EQ(light.angleTable.size(), 64u);
+  for (std::size_t i = 0; i < 64; ++i) {
+    const double at = static_cast<double>(i) / 63;
+    EXPECT_DOUBLE_EQ(light.angleTable[i], 1 - at);
+    EXPECT_DOUBLE_EQ(light.distanceTable[i], at < 0.5 ? 2 * at : 1.5 - at);
+  }
+}
+
+TEST_F(Manifests, LightTablesNeedWhatTheyAreOver) {
+  const auto mistake = [&](const nlohmann::json& changed) {
+    manifest["lights"] = {{{"type", "point"}, {"position", {1, 2, 3}}}};
+    manifest["lights"][0].update(changed);
+    return error();
+  };
+  EXPECT_NE(mistake({{"angleTable", {1, 0}}}).find("lights[0].direction"), std::string::npos);
+  EXPECT_NE(mistake({{"distanceTable", {1, 0}}}).find("lights[0].distanceTable: needs a range above 0"),
+            std::string::npos);
+  EXPECT_NE(mistake({{"type", "directional"}, {"direction", {0, 0, 1}}, {"angleTable", {1, 0}}})
+                .find("lights[0].angleTable: is of point and spot lights"),
+            std::string::npos);
 }
 
 TEST_F(Manifests, SeveralShadowMapsKeepTheirOrder) {
@@ -478,6 +511,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"/buffers/normal/layer", "\"x\"", {"buffers.normal.layer", "unknown key"}},
         Mistake{"/buffers/material/channels", "[]", {"buffers.material.channels", "unknown key"}},
         Mistake{"/lights/0/glow", "1", {"lights[0].glow", "unknown key"}},
+        Mistake{"/lights/0/cookie", "{}", {"lights[0].cookie", "unknown key", "angleTable"}},
         Mistake{"/lights/0/radius", "1", {"lights[0].radius", "only a point light"}},
         Mistake{"/lights/0/shadowMap/bias", "1", {"lights[0].shadowMap.bias", "unknown key"}},
         Mistake{"/lights/0/shadowMap/faces", "\"both\"", {"lights[0].shadowMap.faces", "both"}},
@@ -548,6 +582,8 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"/lights/0/color", "[1,-1,1]", {"lights[0].color", "negative", "-1"}},
         Mistake{"/lights/0/intensity", "-2", {"lights[0].intensity", "-2"}},
         Mistake{"/lights/0/range", "-1", {"lights[0].range", "-1"}},
+        Mistake{"/lights/0/angleTable", "[1]", {"lights[0].angleTable", "two factors", "1"}},
+        Mistake{"/lights/0/angleTable", "[1, 2]", {"lights[0].angleTable[1]", "2"}},
         Mistake{"/lights/0/outerConeAngle", "1.6", {"lights[0].outerConeAngle", "1.6"}},
         Mistake{"/lights/0/innerConeAngle", "0.8", {"lights[0].innerConeAngle", "0.8"}},
         Mistake{"/materials", "[]", {"materials", "0"}},

@@ -21,8 +21,12 @@ using pellucid::test::Frame;
 
 // Lacks nothing.
 struct Whole : Frame {
+  PellucidLightTable table{};
+
   Whole() {
     for (PellucidImage& image : frame.transients) image = view();
+    frame.lightTableCount = 1;
+    frame.lightTables = &table;
   }
 };
 
@@ -89,11 +93,17 @@ PellucidShadowMap& objectOf(Frame& f) {
   return f.maps[0];
 }
 
+template <>
+PellucidLightTable& objectOf(Frame& f) {
+  return static_cast<Whole&>(f).table;
+}
+
 template <class Struct>
 const char* prefix() {
   if constexpr (std::is_same_v<Struct, PellucidThesisOptions>) return "thesis.";
   if constexpr (std::is_same_v<Struct, PellucidMaterial>) return "materials[0].";
   if constexpr (std::is_same_v<Struct, PellucidLight>) return "lights[0].";
+  if constexpr (std::is_same_v<Struct, PellucidLightTable>) return "lightTables[0].";
   if constexpr (std::is_same_v<Struct, PellucidShadowMap>) return "shadowMaps[0].";
   return "";
 }
@@ -106,8 +116,8 @@ void set(void* object, size_t offset, uint32_t index, Value value) {
 template <class Struct>
 class Domains : public testing::Test {};
 
-using Structs =
-    testing::Types<PellucidFrame, PellucidThesisOptions, PellucidMaterial, PellucidLight, PellucidShadowMap>;
+using Structs = testing::Types<PellucidFrame, PellucidThesisOptions, PellucidMaterial, PellucidLight,
+                               PellucidLightTable, PellucidShadowMap>;
 TYPED_TEST_SUITE(Domains, Structs);
 
 TYPED_TEST(Domains, FloatsOutsideAreNamed) {
@@ -150,9 +160,10 @@ TYPED_TEST(Domains, IntegersOutsideAreNamed) {
 
 // Names of the fields of a type that the headers declare in a struct.
 std::set<std::string> declared(const std::string& type, const std::string& name) {
-  const char* const header = name == "PellucidThesisOptions" ? "pellucid_thesis.h"
-                             : name == "PellucidShadowMap"   ? "pellucid_shadow_map.h"
-                                                             : "pellucid.h";
+  const char* const header = name == "PellucidThesisOptions"     ? "pellucid_thesis.h"
+                             : name.starts_with("PellucidLight") ? "pellucid_light.h"
+                             : name == "PellucidShadowMap"       ? "pellucid_shadow_map.h"
+                                                                 : "pellucid.h";
   std::ifstream file(std::string(PELLUCID_SOURCE_DIR) + "/module/include/pellucid/" + header);
   std::stringstream text;
   text << file.rdbuf();
@@ -177,6 +188,7 @@ const char* nameOf() {
          : std::is_same_v<Struct, PellucidThesisOptions> ? "PellucidThesisOptions"
          : std::is_same_v<Struct, PellucidMaterial>      ? "PellucidMaterial"
          : std::is_same_v<Struct, PellucidLight>         ? "PellucidLight"
+         : std::is_same_v<Struct, PellucidLightTable>    ? "PellucidLightTable"
                                                          : "PellucidShadowMap";
 }
 
@@ -321,6 +333,16 @@ const std::vector<IntegerRule> kIntegerRules = {
      "lights[0].shadowMapCount",
      [](Frame& f, uint32_t v) { f.lights[0].shadowMapCount = v; },
      {2, PELLUCID_MAX_LIGHT_SHADOW_MAPS + 1, 0x80000000, 0xFFFFFFFF}},
+    {"PellucidLight",  // which is directional
+     "angleTable",
+     "lights[0].angleTable",
+     [](Frame& f, uint32_t v) { f.lights[0].angleTable = v; },
+     {1, 2, 0xFFFFFFFF}},
+    {"PellucidLight",
+     "distanceTable",
+     "lights[0].distanceTable",
+     [](Frame& f, uint32_t v) { f.lights[0].distanceTable = v; },
+     {1, 2, 0xFFFFFFFF}},
     {"PellucidShadowMap",
      "image",
      "shadowMaps[0].image",

@@ -80,6 +80,15 @@ TEST_F(InfoCommand, SaysWhatIsThere) {
   EXPECT_TRUE(capture["missing"].empty()) << capture["missing"];
 }
 
+TEST_F(InfoCommand, NamesTheTablesOfALight) {
+  manifest["lights"][0]["angleTable"] = {1, 0};
+  manifest["lights"][0]["range"] = 5;
+  manifest["lights"][0]["distanceTable"] = {0, 1};
+  EXPECT_EQ(info()["lights"][0]["tables"], json({"angle", "distance"}));
+  EXPECT_NE(run().find("tables angle distance"), std::string::npos) << run();
+  EXPECT_FALSE(info()["lights"][1].contains("tables"));
+}
+
 TEST_F(InfoCommand, SaysWhatIsMissing) {
   for (const char* buffer : {"backDepth", "normal", "albedo"}) manifest["buffers"].erase(buffer);
   manifest.erase("truth");

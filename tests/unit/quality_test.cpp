@@ -6,12 +6,14 @@
 #include <utility>
 
 #include "diffusion_error_table.h"
+#include "frame_error_table.h"
 #include "frame_fixture.h"
 #include "shared/pellucid_shared.h"
 
 namespace {
 
 using pellucid::kErrorRadii;
+using pellucid::kFrameError;
 using pellucid::kWorstError;
 using pellucid::test::Frame;
 
@@ -206,6 +208,7 @@ TEST(Quality, SaysWhyNothingIsGathered) {
 // Against the table: the least quality that is below the target at every radius up to the frame's.
 TEST(Quality, TargetErrorChoosesTheLeastThatHolds) {
   Frame f;
+  f.frame.features = PELLUCID_FEATURE_DIFFUSION;
   f.frame.quality = 1;
   uint32_t chosen[kQualities] = {}, none = 0;
   for (const float radius : {0.0f, 0.4f, 0.5f, 1.9f, 7.0f, 30.0f, 128.0f, 400.0f}) {
@@ -233,6 +236,40 @@ TEST(Quality, TargetErrorChoosesTheLeastThatHolds) {
   EXPECT_GT(chosen[1], 0u);
   EXPECT_EQ(chosen[2], 0u) << "its diffusion is that of quality 1";
   EXPECT_GT(none, 0u);
+}
+
+// With light that comes through, the target is an error of the whole frame.
+TEST(Quality, TargetErrorOfWholeFramesChoosesTheGather) {
+  Frame f;
+  f.frame.gatherSamples = PELLUCID_GATHER_BY_QUALITY;
+  const auto chosen = [&](float target) {
+    f.frame.targetError = target;
+    const PellucidPlan plan = f.plan();
+    return std::pair(plan.quality, plan.gatherSamples);
+  };
+  EXPECT_EQ(chosen(kFrameError[0] * 1.01f), std::pair(0u, 0u));
+  EXPECT_EQ(chosen(kFrameError[0]), std::pair(1u, 8u)) << "an error stays below its target";
+  EXPECT_EQ(chosen(kFrameError[1]), std::pair(2u, 16u));
+  EXPECT_EQ(chosen(kFrameError[2]), std::pair(2u, 16u)) << "no quality is that exact";
+  EXPECT_EQ(skipped(f.plan(), "targetError"), 1u);
+  f.frame.gatherSamples = 4;
+  EXPECT_EQ(chosen(kFrameError[0]), std::pair(0u, 4u)) << "samples of the caller's";
+  f.frame.gatherSamples = 0;
+  EXPECT_EQ(chosen(kFrameError[0] * 1.01f), std::pair(0u, 0u));
+  EXPECT_EQ(chosen(kFrameError[0]), std::pair(2u, 0u));
+}
+
+// One thickness a pixel has one error at every quality.
+TEST(Quality, TargetErrorKnowsWhereNothingIsGathered) {
+  Frame f;
+  f.frame.gatherSamples = PELLUCID_GATHER_BY_QUALITY;
+  f.frame.targetError = kFrameError[1] * 1.01f;
+  EXPECT_EQ(skipped(f.plan(), "targetError"), 0u);
+  f.thesis.angleModel = PELLUCID_ANGLE_COSINE;
+  EXPECT_EQ(skipped(f.plan(), "targetError"), 1u);
+  f.thesis.angleModel = PELLUCID_ANGLE_NORMAL;
+  for (PellucidLight& light : f.lights) light.shadowMapCount = 0;
+  EXPECT_EQ(skipped(f.plan(), "targetError"), 1u);
 }
 
 TEST(Quality, IsInThePlansText) {

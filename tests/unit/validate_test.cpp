@@ -21,6 +21,21 @@ struct Violation {
 // GoogleTest would print the bytes.
 void PrintTo(const Violation& value, std::ostream* out) { *out << value.name; }
 
+// Ones, but for one entry.
+void addTable(Frame& f, float entry) {
+  static PellucidLightTable table;
+  std::fill_n(table.factor, PELLUCID_LIGHT_TABLE_ENTRIES, 1.0f);
+  table.factor[5] = entry;
+  f.frame.lightTableCount = 1;
+  f.frame.lightTables = &table;
+}
+
+PellucidLight& makePoint(Frame& f) {
+  f.lights[0].type = PELLUCID_LIGHT_POINT;
+  f.lights[0].shadowMapCount = 0;
+  return f.lights[0];
+}
+
 const std::vector<Violation> kViolations = {
     {"StructSize", "structSize", "pellucidInitFrame", [](Frame& f) { f.frame.structSize = 7; }},
     {"Features", "features", "unknown bits: 64", [](Frame& f) { f.frame.features = 64; }},
@@ -181,6 +196,31 @@ const std::vector<Violation> kViolations = {
     {"LightDirection", "lights[0].direction", "length 0", [](Frame& f) { f.lights[0].direction[2] = 0; }},
     {"SpotCone", "lights[0].outerConeAngle", "inner",
      [](Frame& f) { f.lights[0].type = PELLUCID_LIGHT_SPOT; }},
+    {"LightTablesMissing", "lightTables", "is NULL, but lightTableCount is 1",
+     [](Frame& f) { f.frame.lightTableCount = 1; }},
+    {"LightTableFactor", "lightTables[0].factor", "[5] is 1.5", [](Frame& f) { addTable(f, 1.5f); }},
+    {"LightTableIndex", "lights[0].angleTable", "is 2 (an index plus 1), but there are 1 lightTables",
+     [](Frame& f) {
+       addTable(f, 1);
+       makePoint(f).angleTable = 2;
+     }},
+    {"LightTableOfASun", "lights[0].distanceTable", "is 1, but the light is directional",
+     [](Frame& f) {
+       addTable(f, 1);
+       f.lights[0].distanceTable = 1;
+     }},
+    {"DistanceTableWithoutRange", "lights[0].range", "is 0, but distanceTable is 1",
+     [](Frame& f) {
+       addTable(f, 1);
+       makePoint(f).distanceTable = 1;
+     }},
+    {"AngleTableWithoutDirection", "lights[0].direction", "has length 0",
+     [](Frame& f) {
+       addTable(f, 1);
+       PellucidLight& point = makePoint(f);
+       point.angleTable = 1;
+       point.direction[2] = 0;
+     }},
     {"LightMaps", "lights[0].shadowMapCount", "is 3", [](Frame& f) { f.lights[0].shadowMapCount = 3; }},
     {"PointWithOrthographicMap", "lights[0].firstShadowMap", "orthographic",
      [](Frame& f) { f.lights[0].type = PELLUCID_LIGHT_POINT; }},

@@ -4,8 +4,8 @@
  * object: the module creates pipelines and layouts, records vkCmd* calls into the caller's command
  * buffer, and never allocates device memory, transitions an image layout, submits or waits.
  * pellucid_plan.h, which this header includes at its end, has what a plan holds, for engines that record
- * plans themselves. pellucid_shadow_map.h describes a light's shadow map, pellucid_thesis.h has the options of
- * Whelan 2009, pellucid_budget.h a frame budget, pellucid_material.h the material compiler.
+ * plans themselves. pellucid_light.h describes a light, pellucid_shadow_map.h its shadow map. pellucid_thesis.h has the
+ * options of Whelan 2009, pellucid_budget.h a frame budget, pellucid_material.h the material compiler.
  *
  * Conventions, unless a field says otherwise:
  * - matrices: 16 floats, column-major, column vectors (GLM and Vulkan memory order);
@@ -26,6 +26,7 @@
 #include <stdint.h>
 #include <vulkan/vulkan_core.h>
 
+#include "pellucid_light.h"
 #include "pellucid_result.h"
 #include "pellucid_shadow_map.h"
 
@@ -91,28 +92,6 @@ typedef enum PellucidDepthEncoding {
                                  >= 1e9, inf or NaN: nothing there */
   PELLUCID_DEPTH_DISTANCE = 2 /* distance from the light, scene units (shadow maps only) */
 } PellucidDepthEncoding;
-
-/* Types of KHR_lights_punctual. */
-typedef enum PellucidLightType {
-  PELLUCID_LIGHT_DIRECTIONAL = 0, /* from infinitely far away */
-  PELLUCID_LIGHT_POINT = 1,       /* in all directions */
-  PELLUCID_LIGHT_SPOT = 2         /* within a cone */
-} PellucidLightType;
-
-/* Names and units of KHR_lights_punctual. */
-typedef struct PellucidLight {
-  uint32_t type;        /* PellucidLightType */
-  float position[3];    /* world; point and spot */
-  float direction[3];   /* world, direction of travel; directional and spot; any length > 0 */
-  float color[3];       /* linear, >= 0 */
-  float intensity;      /* directional: irradiance at normal incidence; else E = intensity cos/r^2, r in units */
-  float range;          /* scene units; 0: unlimited (window of KHR_lights_punctual) */
-  float innerConeAngle; /* radians from the axis; spot; < outerConeAngle */
-  float outerConeAngle; /* radians, (0, pi/2]; spot */
-  uint32_t firstShadowMap, shadowMapCount; /* into frame.shadowMaps, 0..PELLUCID_MAX_LIGHT_SHADOW_MAPS; the first
-                                              that contains the receiver is used: 6 for a cube, n for cascades.
-                                              0 maps: unshadowed, thickness from the camera's depths */
-} PellucidLight;
 
 /* A fused dispatch binds 8 shadow images and takes 128 lights and 112 shadow maps; a frame with more gets several. Exit
  * depths and caster materials count; the images of one light must fit into one dispatch. Where those of all lights are
@@ -225,9 +204,9 @@ typedef struct PellucidFrame {
   uint32_t quality;       /* 0: one thickness a pixel, and no filter of each pixel's neighbors; 1 (default): gathered
                              light, and that filter; 2: twice the samples, at twice the probes along each side.
                              gatherSamples and gatherSpacing override it */
-  float targetError;      /* > 0: in place of the diffusion's quality, the least one whose measured error stays
-                             below it: relative RMSE from brute force, the worst of several scenes, at the
-                             frame's radii; the best and a skip if none does; 0 (default): off */
+  float targetError;      /* > 0: in place of quality, the least one whose measured error, a relative RMSE, stays below it:
+                             with lights that of the worst frame against path tracing, else that of the diffusion from
+                             brute force at the frame's radii; the best and a skip if none does; 0 (default): off */
   float nearestDistance;  /* planar distance of the nearest surface that diffuses, scene units, or less: it leaves out
                              levels for radii that are small in pixels; nearer surfaces are then diffused too little.
                              Orthographic cameras need none. 0 (default): not known, radii count as the largest */
@@ -249,6 +228,8 @@ typedef struct PellucidFrame {
                                light comes from, in the order 1, y, z, x, xy, yz, 3 z^2 - 1, xz, x^2 - y^2. The irradiance
                                image has what lies on visible faces. Needs backDepth; nothing shadows hidden faces.
                                Not in the debug views of light */
+  uint32_t lightTableCount; /* 0..PELLUCID_MAX_LIGHT_TABLES; above 0 only with PellucidContextDesc::lightTables */
+  const PellucidLightTable* lightTables; /* lightTableCount of them, which lights may share */
 } PellucidFrame;
 
 /* ---- Plan ------------------------------------------------------------------------------------ */
@@ -318,6 +299,9 @@ typedef struct PellucidContextDesc {
                                      layers serves every map in them; each frame then has a shadow image, maps or not */
   uint32_t normalEncoding;        /* PellucidNormalEncoding of all frames; default SNORM. A specialization constant. Unused by
                                      a library built with PELLUCID_GBUFFER_DECODE, whose file decodes */
+  uint32_t lightTables;           /* 1: frames may have light tables, which pipelines without them need not look for; 0
+                                     (default): none has. A specialization constant */
+  uint32_t reserved;              /* 0 */
 } PellucidContextDesc;
 
 /* The defaults, written into a struct of that many bytes; pellucidInit* without it have the header's size. */
@@ -374,9 +358,17 @@ typedef struct PellucidConstantsSlice {
   void* mapped;        /* address of `offset` */
 } PellucidConstantsSlice;
 
-/* Writes the slice and records every dispatch and the barriers between them. Before: the inputs are readable by, and
- * the output and transients free for, COMPUTE_SHADER; PELLUCID_OUTPUT_ADD reads the output, too. After: `output` was
- * written by COMPUTE_SHADER / SHADER_WRITE.
+/* Scopes of the barriers around a recording, on any queue of a family that computes. A semaphore between two submissions
+ * takes the place of a barrier. */
+enum {
+  PELLUCID_STAGES = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, /* that touch the caller's images */
+  PELLUCID_READS = VK_ACCESS_SHADER_READ_BIT,             /* accesses to inputs, and to an output that is added to */
+  PELLUCID_WRITES = VK_ACCESS_SHADER_WRITE_BIT            /* to the output. Transients and history: both */
+};
+
+/* Writes the slice and records every dispatch and the barriers between them. Before: what wrote the inputs is visible to
+ * PELLUCID_STAGES / PELLUCID_READS, and the output and transients are free for PELLUCID_WRITES. After: `output` was written
+ * by PELLUCID_STAGES / PELLUCID_WRITES.
  * Compute pipeline, push constants and set 0 are left changed. `frame` is the one that made the plan, with its views
  * filled in. One that differs in anything else, or lacks an image of the plan's, is PELLUCID_ERROR_INVALID_ARGUMENT;
  * the message names the part that differs. */

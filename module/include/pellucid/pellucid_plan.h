@@ -107,9 +107,9 @@ typedef struct PellucidShader {
   const PellucidSpecialization* constants; /* of the pipeline */
 } PellucidShader;
 
-/* Id of the specialization constant of all shaders that holds PellucidContextDesc::normalEncoding, which is not among
- * PellucidShader::constants. */
-enum { PELLUCID_SPECIALIZATION_NORMALS = 4 };
+/* Ids of the specialization constants of all shaders that hold PellucidContextDesc::normalEncoding and lightTables, which are
+ * not among PellucidShader::constants. */
+enum { PELLUCID_SPECIALIZATION_NORMALS = 4, PELLUCID_SPECIALIZATION_LIGHT_TABLES = 6 };
 
 /* The constants that pellucidRecordPlan would write, and what each pipeline is made of; shadowViewType as in
  * PellucidContextDesc. */

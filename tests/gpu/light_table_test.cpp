@@ -1,0 +1,190 @@
+// Lights with falloff of their own: analytic answers, and the float64 reference.
+#include <numbers>
+
+#include "capture/material.h"
+#include "common/compare.h"
+#include "gpu_fixture.h"
+#include "reference/gather.h"
+#include "reference/reference.h"
+#include "scene/scene.h"
+
+namespace {
+
+using namespace pellucid::test;
+namespace reference = pellucid::harness::reference;
+
+constexpr int kEntries = PELLUCID_LIGHT_TABLE_ENTRIES;
+
+std::vector<double> table(double (*factor)(double at)) {
+  std::vector<double> result;
+  for (int i = 0; i < kEntries; ++i) result.push_back(factor(i / (kEntries - 1.0)));
+  return result;
+}
+double line(double at) { return 1 - at; }
+double square(double at) { return at * at; }
+double one(double) { return 1; }
+// An IES profile as lamps have them: two lobes beside the axis.
+double lobes(double at) {
+  return 0.95 * std::pow(std::sin(4 * std::numbers::pi * std::min(at, 0.25)), 2) + 0.05;
+}
+
+ReplaySettings translucency() {
+  ReplaySettings s;
+  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  s.features = PELLUCID_FEATURE_TRANSLUCENCY;
+  return s;
+}
+
+class LightTables : public GpuTest {};
+
+// Light comes through a slab of 1 mm; what arrives behind it is known in closed form.
+TEST_F(LightTables, FactorsAreThoseOfAngleAndDistance) {
+  Capture c = flatCapture(48, 40);
+  std::fill(c.irradiance.data.begin(), c.irradiance.data.end(), 0.0f);
+  Light lamp;
+  lamp.type = PELLUCID_LIGHT_POINT;
+  lamp.position = {1.5, -1, -16};
+  lamp.direction = {0.6, 0, 0.8};
+  lamp.intensity = 100;
+  c.lights = {lamp};
+  const Image plain = replay(c, testMaterial(), translucency());
+  c.lights[0].angleTable = table(line);
+  const Image byAngle = replay(c, testMaterial(), translucency());
+  c.lights[0].angleTable = {};
+  c.lights[0].range = 9;
+  c.lights[0].distanceTable = table(square);
+  const Image byDistance = replay(c, testMaterial(), translucency());
+  int beyond = 0;
+  for (int y = 0; y < c.height; ++y)
+    for (int x = 0; x < c.width; ++x) {
+      const double px = ((x + 0.5) / c.width * 2 - 1) / c.clipFromView[0] - lamp.position[0],
+                   py = ((y + 0.5) / c.height * 2 - 1) / c.clipFromView[5] - lamp.position[1], pz = 5,
+                   away = std::hypot(px, py, pz);
+      const double angle = std::acos((px * lamp.direction[0] + pz * lamp.direction[2]) / away);
+      ASSERT_GT(*plain.at(x, y), 0.01f);
+      // Entries are halves.
+      ASSERT_NEAR(double(*byAngle.at(x, y)) / double(*plain.at(x, y)), 1 - angle / std::numbers::pi, 5e-4);
+      const double at = away / 9, place = at * (kEntries - 1), below = std::floor(place);
+      const double factor =
+          std::lerp(square(below / (kEntries - 1)), square((below + 1) / (kEntries - 1)), place - below);
+      ASSERT_NEAR(double(*byDistance.at(x, y)) / double(*plain.at(x, y)), at < 1 ? factor : 0, 5e-4);
+      beyond += at >= 1;
+    }
+  EXPECT_GT(beyond, 50);
+  EXPECT_LT(beyond, 1000);
+}
+
+TEST_F(LightTables, ATableOfOnesChangesNothing) {
+  Capture c = makeScene(
+      {.name = "sphere", .width = 64, .height = 64, .lightType = PELLUCID_LIGHT_SPOT, .shadowSize = 128});
+  for (const uint32_t samples : {0u, 8u}) {
+    ReplaySettings s;
+    s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+    s.translucency.gatherSamples = samples;
+    const auto rendered = [&] {
+      return replayer().run(c, std::vector<PellucidMaterial>(c.materials.size(), testMaterial()), s).output;
+    };
+    c.lights[0].angleTable = {};
+    const Image plain = rendered();
+    c.lights[0].angleTable = table(one);
+    const Image ones = rendered();
+    for (size_t i = 0; i < plain.data.size(); ++i)
+      ASSERT_NEAR(ones.data[i], plain.data[i], 1e-5f * std::abs(plain.data[i])) << samples;
+  }
+}
+
+// One thickness a pixel, from maps and from the camera.
+TEST_F(LightTables, AgreeWithTheReference) {
+  for (const auto type : {PELLUCID_LIGHT_POINT, PELLUCID_LIGHT_SPOT}) {
+    Capture c =
+        makeScene({.name = "sphere", .width = 64, .height = 64, .lightType = type, .shadowSize = 128});
+    const std::vector<PellucidMaterial> materials(c.materials.size(), testMaterial());
+    Light& light = c.lights[0];
+    const Vector3 center = sceneCenter({.name = "sphere"});
+    double away = 0;
+    for (size_t i = 0; i < 3; ++i) away += std::pow(center[i] - light.position[i], 2);
+    light.range = 1.2 * std::sqrt(away);
+    light.distanceTable = table(square);
+    light.angleTable = table(lobes);
+    for (size_t i = 0; i < 3; ++i) light.direction[i] = (center[i] - light.position[i]) / std::sqrt(away);
+    for (const auto source : {PELLUCID_THICKNESS_LIGHT, PELLUCID_THICKNESS_CAMERA}) {
+      ReplaySettings s = translucency();
+      s.translucency.thicknessSource = source;
+      reference::Settings r;
+      r.features = PELLUCID_FEATURE_TRANSLUCENCY;
+      r.translucency.thicknessSource = source;
+      const Image gpu = rgb(replayer().run(c, materials, s).output),
+                  truth = reference::compute(c, materials, r).image;
+      const auto metrics =
+          compareImages(gpu, truth, comparisonMask(c.material, c.irradiance, Subset::All), 1);
+      for (const auto& channel : metrics.channels) EXPECT_LT(channel.relativeRmse, 5e-4) << type << source;
+    }
+  }
+}
+
+// The gather against all texels of the map, as tests/gpu/gather_agreement_test.cpp has it for other lights.
+// Diffusion leaves constant irradiance alone.
+TEST_F(LightTables, GatheredLightIsNearAllTexels) {
+  const PellucidMaterial skin = compileMaterial(PresetMaterial{"skin1"}, "skin1");
+  Capture c = makeScene({.name = "slab",
+                         .width = 64,
+                         .height = 64,
+                         .options = {{"thickness", 2}, {"tilt", 35}, {"extent", 24}},
+                         .orthographic = false,
+                         .lightType = PELLUCID_LIGHT_SPOT,
+                         .shadowSize = 160});
+  std::fill(c.irradiance.data.begin(), c.irradiance.data.end(), 0.2f);
+  c.albedo = {};
+  const std::vector<PellucidMaterial> materials(c.materials.size(), skin);
+  ReplaySettings s;
+  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  s.translucency.gatherSamples = 16;
+  const Image plain = rgb(replayer().run(c, materials, s).output);
+  c.lights[0].angleTable = table([](double at) { return std::max(0.0, 1 - 8 * at); });
+  const Image gpu = rgb(replayer().run(c, materials, s).output);
+
+  const reference::SurfaceReader surfaces(c);
+  const reference::Gather gather(c, surfaces, materials);
+  Image truth(c.width, c.height, 3);
+  std::vector<std::uint8_t> compared(c.material.size());
+  for (int y = 0; y < c.height; ++y)
+    for (int x = 0; x < c.width; ++x) {
+      const auto i = static_cast<size_t>(y * c.width + x);
+      const auto surface = surfaces.at(x, y);
+      if ((x / 4 + y / 4) % 4 != 0 || c.material[i] == 0 || !surface) continue;
+      compared[i] = 1;
+      const reference::Gathered g = gather.at(*surface, c.material[i] - 1u);
+      for (int k = 0; k < 3; ++k)
+        truth.at(x, y)[k] =
+            static_cast<float>(std::max(0.0, (1 + g.convexity[k]) * 0.2 + g.returned[k] +
+                                                 g.transmitted[k] / double(skin.reflectance[k])));
+    }
+  const auto error = [&](const Image& image) {
+    return compareImages(image, truth, comparisonMask(compared, c.irradiance, Subset::All), 4)
+        .channels[0]
+        .relativeRmse;
+  };
+  std::printf("gathered light with an angle table: %.4f of all texels; without %.4f\n", error(gpu),
+              error(plain));
+  EXPECT_LT(error(gpu), 0.03);
+  EXPECT_GT(error(plain), 0.1);
+}
+
+TEST_F(LightTables, ContextsWithoutRefuseThem) {
+  Capture c = flatCapture(16, 16);
+  Light lamp;
+  lamp.type = PELLUCID_LIGHT_POINT;
+  lamp.position = {0, 0, -16};
+  lamp.direction = {0, 0, 1};
+  lamp.angleTable = table(line);
+  c.lights = {lamp};
+  const Context plain(device(), [](PellucidContextDesc& desc) { desc.uses = PELLUCID_USE_TRANSLUCENCY; });
+  const FrameRun run(device(), plain, c, {testMaterial()}, translucency());
+  device().run([&](VkCommandBuffer commandBuffer) { EXPECT_ANY_THROW(run.record(commandBuffer)); });
+  EXPECT_NE(plain.message().find("lightTableCount is above 0, but PellucidContextDesc::lightTables is 0"),
+            std::string::npos)
+      << plain.message();
+  EXPECT_THROW(Context(device(), [](PellucidContextDesc& desc) { desc.lightTables = 2; }), DeviceError);
+}
+
+}  // namespace
