@@ -145,7 +145,7 @@ private:
       gui_->record(commandBuffer);
       screen_->end(commandBuffer);
     });
-    if (changes.scene) addMoving(begin);
+    if (changes.scene && !panel_.isError) addMoving(begin);
     bool again = changes.any();
     if (window_ && !window_->present(screen_->image(0), width_, height_)) again = true;
     if (panel_.save) save(panel_.savePath);

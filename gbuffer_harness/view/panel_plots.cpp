@@ -105,10 +105,8 @@ Changes drawCost(ViewState& state, PanelState& panel, const ViewFrames& frames) 
   ImGui::Text("%.3f ms in %u dispatches; material covers %.1f %%", panel.cost.smoothedSum() / 1000,
               plan.dispatchCount, 100 * frames.coveredPart());
   ImGui::Text("scene: %.2f ms on the CPU's clock", frames.sceneMilliseconds());
-  if (!frames.sceneTimes().empty()) {
-    ImGui::SameLine();
-    ImGui::Text("of them rasterizer: %.3f ms", sumOf(frames.sceneTimes()) / 1000);
-  }
+  if (!frames.sceneTimes().empty())
+    ImGui::Text("of it, rasterizer: %.3f ms by the GPU's", sumOf(frames.sceneTimes()) / 1000);
   plotStack(panel.cost, panel.budget.on ? 1000 * static_cast<double>(panel.budget.milliseconds) : 0);
   for (std::size_t k = 0; k < panel.cost.dispatches().size(); ++k) {
     const CostHistory::Dispatch& dispatch = panel.cost.dispatches()[k];
