@@ -16,6 +16,7 @@
 #include "raster/framing.h"
 #include "raster/front.h"
 #include "raster/irradiance.h"
+#include "raster/rasterizer.h"
 #include "raster/shadow.h"
 #include "raster/simplify.h"
 #include "scene.h"
@@ -80,9 +81,9 @@ public:
         repeat_(repeat),
         model_(readModelFile({options.models / "head_views.glb", 0.052, {{"*", "skin1"}}})),
         simple_(simplified(model_, options.simplify)),
-        bounds_(boundsOf(model_)),
-        light_(lightAt(bounds_)),
-        uploaded_(device, model_),
+        points_(pointsOf(model_)),
+        light_(lightAt(points_.bounds)),
+        rasterizer_(device, model_),
         simpleUploaded_(device, simple_) {
     const bool software = device.properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
     const auto [width, height] = options.sizes.empty()
@@ -136,15 +137,15 @@ private:
     const double head = 2 * std::numbers::pi * kHeadTurns * k / kFrames;
     const double light = 2 * std::numbers::pi * kLightTurns * k / kFrames;
     turned_ = camera_;
-    turned_.viewFromWorld = turnedView(camera_.viewFromWorld, bounds_.center, -head);
-    model_.lights = {turnedLight(light_, bounds_.center, light - head)};
+    turned_.viewFromWorld = turnedView(camera_.viewFromWorld, points_.bounds.center, -head);
+    model_.lights = {turnedLight(light_, points_.bounds.center, light - head)};
   }
 
   // Between the directions from the head to the eye and to the light.
   double cosine() const {
     const glm::dmat4 world = glm::inverse(toGlm(turned_.viewFromWorld));
     return glm::dot(glm::dvec3(world[2]),
-                    glm::normalize(toGlm(model_.lights[0].position) - toGlm(bounds_.center)));
+                    glm::normalize(toGlm(model_.lights[0].position) - toGlm(points_.bounds.center)));
   }
   // The thesis's test, at the angle where its curves begin. The module's own asks whether light could come
   // through at any pixel, which a light beside the head always could.
@@ -166,14 +167,15 @@ private:
   }
 
   void addFrame(Passes& sum, int& withLight) {
-    Capture capture = withMapsAlone(rasterize(device_, model_, uploaded_, turned_, raster_).capture);
+    Capture capture = withMapsAlone(rasterizer_.draw(turned_, raster_)->capture());
     capture.albedo = {};
     const std::vector<PellucidMaterial> materials = compileMaterials(capture);
     const bool reversed = raster_.reversedZ;
     const DrawView view{capture.clipFromView, capture.viewFromWorld, reversed};
-    const FrontTarget front(device_, raster_);
-    front.draw(uploaded_, view);
-    sum.gbuffer += draw(uploaded_, front.target, view,
+    TargetPool targets(device_);
+    const FrontTarget front(targets, raster_);
+    device_.run([&](VkCommandBuffer commands) { front.record(commands, rasterizer_.uploaded(), view); });
+    sum.gbuffer += draw(rasterizer_.uploaded(), *front.target, view,
                         {FragmentShader::Surface, VK_CULL_MODE_BACK_BIT, nearer(reversed), false});
     const RenderTarget depth(device_, raster_.width, raster_.height, depthColors(reversed),
                              farDepth(reversed));
@@ -204,17 +206,24 @@ private:
 
   void addLight(Passes& sum, const DrawView& view, const FrontTarget& front) {
     const Light& light = model_.lights[0];
-    const DrawnShadows drawn = drawShadows(device_, model_, uploaded_, light, raster_);
-    if (drawn.images.size() != 1) throw DeviceError("the point light has no single shadow map");
+    TargetPool targets(device_);
+    std::vector<DrawnMap> drawn;
+    device_.run([&](VkCommandBuffer commands) {
+      drawn = recordShadows(commands, targets, points_, rasterizer_.uploaded(), light, raster_);
+    });
+    if (drawn.size() != 1) throw DeviceError("the point light has no single shadow map");
     constexpr bool kReversed = true;
-    const DrawView lightView{drawn.images[0].clipFromView, drawn.images[0].viewFromWorld, kReversed};
+    const DrawView lightView{drawn[0].planar.clipFromView, drawn[0].planar.viewFromWorld, kReversed};
     const RenderTarget map(device_, raster_.shadowSize, raster_.shadowSize, depthColors(kReversed),
                            farDepth(kReversed));
     sum.shadow += draw(simpleUploaded_, map, lightView,
                        {FragmentShader::Depth, VK_CULL_MODE_NONE, nearer(kReversed), false});
-    const IrradiancePass irradiance(device_, front.normalPlanar(), front.depthNormal(), raster_.width,
-                                    raster_.height, view);
-    sum.lighting += time(irradiance.recorder(light, drawn.images));
+    const IrradiancePass pass(device_);
+    GpuImage irradiance(device_, raster_.width, raster_.height, VK_FORMAT_R32G32B32A32_SFLOAT);
+    irradiance.clear();
+    const LitSurfaces surfaces{front.normalPlanar(), front.depthNormal(), irradiance, view};
+    sum.lighting += time(
+        [&](VkCommandBuffer commands) { pass.record(commands, surfaces, light, shadowImagesOf(drawn)); });
   }
 
   void addTranslucency(Passes& sum, const std::shared_ptr<const BenchFrame>& frame, const DrawView& view,
@@ -231,7 +240,7 @@ private:
                               {{VK_FORMAT_R32G32B32A32_SFLOAT, clearTo(0)}}, farDepth(keepGreater));
     const auto constants = std::get<VkDescriptorBufferInfo>(frame->planned(PELLUCID_BINDING_FRAME)).buffer;
     const PlannedInputs planned{frame->run().plan().dispatches[0], frame->images(), constants};
-    sum.backFace += draw(uploaded_, target, view,
+    sum.backFace += draw(rasterizer_.uploaded(), target, view,
                          {FragmentShader::Transmit, VK_CULL_MODE_FRONT_BIT, nearer(keepGreater), false},
                          {&front.depthNormal(), &front.albedoObject(), &planned});
   }
@@ -265,9 +274,9 @@ private:
   int repeat_;
   Model model_;
   Model simple_;
-  Bounds bounds_;
+  ModelPoints points_;
   Light light_;
-  UploadedModel uploaded_;
+  Rasterizer rasterizer_;
   UploadedModel simpleUploaded_;  // of the depth maps
   RasterOptions raster_;
   int timed_ = 0;

@@ -309,13 +309,23 @@ HostBuffer::HostBuffer(const Device& device, VkDeviceSize size, VkBufferUsageFla
   vkGetBufferMemoryRequirements(device.handle(), buffer_, &needs);
   VkMemoryAllocateInfo allocate{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
   allocate.allocationSize = needs.size;
-  // What shaders read lies beside them: across a bus each group would wait for it anew.
-  constexpr VkBufferUsageFlags kShaders =
-      VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
-  allocate.memoryTypeIndex = device.memoryType(
-      needs.memoryTypeBits, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT,
-      usage & kShaders ? VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT : 0);
-  check(vkAllocateMemory(device.handle(), &allocate, nullptr, &memory_), "vkAllocateMemory");
+  // What shaders and draws read lies beside them: across a bus each group would wait for it anew. The host
+  // reads from memory without a cache word by word.
+  constexpr VkBufferUsageFlags kRead = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
+                                       VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
+                                       VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT;
+  const auto allocateIn = [&](VkMemoryPropertyFlags preferred) {
+    allocate.memoryTypeIndex = device.memoryType(
+        needs.memoryTypeBits, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT,
+        preferred);
+    return vkAllocateMemory(device.handle(), &allocate, nullptr, &memory_);
+  };
+  VkResult result = allocateIn(usage & kRead ? VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT
+                               : usage & VK_BUFFER_USAGE_TRANSFER_DST_BIT ? VK_MEMORY_PROPERTY_HOST_CACHED_BIT
+                                                                          : 0);
+  // Some devices show the host no more than 256 MB of their memory.
+  if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY) result = allocateIn(0);
+  check(result, "vkAllocateMemory");
   check(vkBindBufferMemory(device.handle(), buffer_, memory_, 0), "vkBindBufferMemory");
   check(vkMapMemory(device.handle(), memory_, 0, VK_WHOLE_SIZE, 0, &mapped_), "vkMapMemory");
 }

@@ -3,6 +3,7 @@
 
 #include <vulkan/vulkan.h>
 
+#include <cstdint>
 #include <functional>
 #include <mutex>
 #include <string>
@@ -21,6 +22,11 @@ struct DeviceOptions {
   std::vector<const char*> instanceExtensions = {};
   std::function<bool(VkInstance, VkPhysicalDevice, uint32_t family)> presents = {};
   bool computeQueue = false;  // a second queue, if possible of a family that does not draw
+};
+
+// Bytes of images that went between host and device.
+struct Transfers {
+  std::uint64_t uploaded = 0, downloaded = 0;
 };
 
 class Device {
@@ -59,6 +65,13 @@ public:
   uint32_t memoryType(uint32_t typeBits, VkMemoryPropertyFlags flags,
                       VkMemoryPropertyFlags preferred = 0) const;
 
+  // So far.
+  const Transfers& transfers() const { return transfers_; }
+  void countTransfer(std::uint64_t uploaded, std::uint64_t downloaded) {
+    transfers_.uploaded += uploaded;
+    transfers_.downloaded += downloaded;
+  }
+
   // What the validation layers have said so far; warnings and errors.
   std::vector<std::string> validationMessages() const;
 
@@ -81,11 +94,13 @@ private:
   VkDevice device_ = VK_NULL_HANDLE;
   VkQueue queue_ = VK_NULL_HANDLE, computeQueue_ = VK_NULL_HANDLE;
   VkCommandPool pool_ = VK_NULL_HANDLE;
+  Transfers transfers_;
   mutable std::mutex messagesMutex_;
   std::vector<std::string> messages_;
 };
 
-// Host-visible, coherent, mapped; what shaders read is device-local where there is such memory.
+// Host-visible, coherent, mapped. What shaders and draws read is device-local, and what the device writes for
+// the host is cached, where there is such memory.
 class HostBuffer {
 public:
   HostBuffer(const Device& device, VkDeviceSize size, VkBufferUsageFlags usage);

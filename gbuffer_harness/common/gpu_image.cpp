@@ -138,10 +138,9 @@ GpuImage::~GpuImage() {
   vkFreeMemory(device_.handle(), memory_, nullptr);
 }
 
-VkDeviceSize GpuImage::bytes() const {
+VkDeviceSize GpuImage::bytes(int width, int height) const {
   const Texel texel = texelOf(format_);
-  return static_cast<VkDeviceSize>(width_) *
-         static_cast<VkDeviceSize>(height_ * texel.channels * texel.bytes);
+  return static_cast<VkDeviceSize>(width) * static_cast<VkDeviceSize>(height * texel.channels * texel.bytes);
 }
 
 void GpuImage::copyFrom(VkCommandBuffer commandBuffer, VkBuffer buffer, int layer) const {
@@ -155,6 +154,7 @@ void GpuImage::transfer(const void* source, int layer) {
   const HostBuffer staging(device_, bytes(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
   std::memcpy(staging.mapped(), source, static_cast<size_t>(bytes()));
   device_.run([&](VkCommandBuffer commandBuffer) { copyFrom(commandBuffer, staging.handle(), layer); });
+  device_.countTransfer(bytes(), 0);
 }
 
 void GpuImage::upload(const Image& source, int layer) {
@@ -204,6 +204,14 @@ void GpuImage::upload(const std::vector<std::uint8_t>& source, int layer) {
 }
 
 void GpuImage::clear(std::uint8_t byte) {
+  if (byte == 0)
+    return device_.run([&](VkCommandBuffer commandBuffer) {
+      barrier(commandBuffer, image_, VK_IMAGE_LAYOUT_UNDEFINED);
+      constexpr VkClearColorValue kZero{};
+      constexpr VkImageSubresourceRange kFirst{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+      vkCmdClearColorImage(commandBuffer, image_, VK_IMAGE_LAYOUT_GENERAL, &kZero, 1, &kFirst);
+      barrier(commandBuffer, image_, VK_IMAGE_LAYOUT_GENERAL);
+    });
   // Fills go by whole words.
   const HostBuffer staging(device_, (bytes() + 3) / 4 * 4,
                            VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT);
@@ -230,13 +238,20 @@ void GpuImage::fill(std::uint64_t seed) {
 }
 
 Image GpuImage::download() const {
+  return download({{0, 0}, {static_cast<uint32_t>(width_), static_cast<uint32_t>(height_)}});
+}
+
+Image GpuImage::download(const VkRect2D& rect) const {
   const Texel texel = texelOf(format_);
   const auto unpack = unpacking(format_);
-  Image result(width_, height_, unpack ? 3 : texel.channels);
-  HostBuffer staging(device_, bytes(), VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+  const int width = static_cast<int>(rect.extent.width), height = static_cast<int>(rect.extent.height);
+  Image result(width, height, unpack ? 3 : texel.channels);
+  HostBuffer staging(device_, bytes(width, height), VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+  device_.countTransfer(0, bytes(width, height));
   device_.run([&](VkCommandBuffer commandBuffer) {
     barrier(commandBuffer, image_, VK_IMAGE_LAYOUT_GENERAL);
-    const VkBufferImageCopy region = wholeImage(width_, height_);
+    VkBufferImageCopy region = wholeImage(width, height);
+    region.imageOffset = {rect.offset.x, rect.offset.y, 0};
     vkCmdCopyImageToBuffer(commandBuffer, image_, VK_IMAGE_LAYOUT_GENERAL, staging.handle(), 1, &region);
     VkMemoryBarrier toHost{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr, VK_ACCESS_TRANSFER_WRITE_BIT,
                            VK_ACCESS_HOST_READ_BIT};

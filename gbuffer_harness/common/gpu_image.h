@@ -31,13 +31,18 @@ public:
   // Reads formats that are usable as storage images, R32G32_SFLOAT, R8_UINT, R8_UNORM, R8G8B8A8_SRGB as
   // linear colors, and RGB of A2B10G10R10_UNORM_PACK32.
   Image download() const;
+  Image download(const VkRect2D& rect) const;  // of a part
 
   // How an engine hands it to Pellucid.
   PellucidImage use() const { return {view_, VK_IMAGE_LAYOUT_GENERAL}; }
   VkImage handle() const { return image_; }
+  int width() const { return width_; }
+  int height() const { return height_; }
+  VkFormat format() const { return format_; }
 
 private:
-  VkDeviceSize bytes() const;
+  VkDeviceSize bytes() const { return bytes(width_, height_); }
+  VkDeviceSize bytes(int width, int height) const;
   void transfer(const void* source, int layer = 0);
   void copyFrom(VkCommandBuffer commandBuffer, VkBuffer buffer, int layer = 0) const;
 

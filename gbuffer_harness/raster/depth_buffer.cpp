@@ -76,6 +76,7 @@ Image DepthBuffer::download(int layer, VkImageLayout layout) const {
                          VK_PIPELINE_STAGE_HOST_BIT | VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 1, &toHost, 0,
                          nullptr, 1, &back);
   });
+  device_.countTransfer(0, texels * bytes);
   Image result(static_cast<int>(extent_.width), static_cast<int>(extent_.height), 1);
   const auto* read = static_cast<const unsigned char*>(staging.mapped());
   for (std::size_t i = 0; i < texels; ++i) {

@@ -21,7 +21,8 @@ namespace pellucid::harness {
 namespace {
 
 // Push constants of shaders/draw.glsl.
-constexpr std::uint32_t kOwnBindings = 5, kBehindFront = 1, kBehindCaster = 2, kLobesApart = 256;
+constexpr std::uint32_t kOwnBindings = 5, kBehindFront = 1, kBehindCaster = 2, kHasColor = 4, kHasLobes = 8,
+                        kLobesApart = 256;
 constexpr VkShaderStageFlags kStages =  // that read DrawConstants
     VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
 
@@ -126,13 +127,6 @@ void UploadedModel::create(Pipeline& pipeline, const RenderTarget& target, const
                  fragmentSpirv(state.shader), drawn, pipeline);
 }
 
-void UploadedModel::draw(const RenderTarget& target, const DrawView& view, const PipelineState& state,
-                         VkCullModeFlags doubleSidedCull, const EarlierPass& earlier) const {
-  device_.run([&](VkCommandBuffer commandBuffer) {
-    record(commandBuffer, target, view, state, doubleSidedCull, earlier);
-  });
-}
-
 void UploadedModel::record(VkCommandBuffer commandBuffer, const RenderTarget& target, const DrawView& view,
                            const PipelineState& state, VkCullModeFlags doubleSidedCull,
                            const EarlierPass& earlier) const {
@@ -170,8 +164,9 @@ void UploadedModel::record(VkCommandBuffer commandBuffer, const RenderTarget& ta
     const float normalScale = surface.normalMap < 0 ? 0 : static_cast<float>(surface.normalScale);
     const std::uint32_t behind = earlier.depth == nullptr ? 0 : earlier.caster ? kBehindCaster : kBehindFront;
     const std::uint32_t apart = surface.lobes == SurfaceLobes::Apart ? kLobesApart : 0;
+    const std::uint32_t has = (surface.texture < 0 ? 0 : kHasColor) | (surface.lobeMap < 0 ? 0 : kHasLobes);
     constants.ids = {surface.material | apart | highHalf(surface.displaced),
-                     view.reversedDepth | highHalf(surface.backscatter), behind,
+                     view.reversedDepth | highHalf(surface.backscatter), behind | has,
                      earlier.planned ? earlier.planned->dispatch.pushConstants[1]
                                      : std::bit_cast<std::uint32_t>(normalScale)};
     vkCmdPushConstants(commandBuffer, layout_, kStages, 0, sizeof constants, &constants);

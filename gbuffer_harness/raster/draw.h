@@ -58,7 +58,7 @@ struct EarlierPass {
   const GpuImage* depth = nullptr;
   const GpuImage* albedoObject = nullptr;  // of shaders/surface.frag
   const PlannedInputs* planned = nullptr;
-  const GpuImage* caster = nullptr;  // of shaders/caster.frag, in place of albedoObject
+  const GpuImage* caster = nullptr;  // objects of shaders/caster.frag, in place of albedoObject
 };
 
 // A model in device memory.
@@ -67,12 +67,9 @@ public:
   // Throws DeviceError when the device cannot draw or a texture does not fit it. `model` must outlive it.
   UploadedModel(Device& device, const Model& model);
 
-  // Draws every part. Single-sided surfaces get `state.cull`; those that are double-sided too, unless
-  // `doubleSidedCull` differs. One submission. Targets of one fragment shader have the same color formats.
-  void draw(const RenderTarget& target, const DrawView& view, const PipelineState& state,
-            VkCullModeFlags doubleSidedCull, const EarlierPass& earlier = {}) const;
-
-  // Records draw() into a command buffer of the caller's, whose resources must live until it has run.
+  // Records the drawing of every part. Single-sided surfaces get `state.cull`; those that are double-sided
+  // too, unless `doubleSidedCull` differs. Targets of one fragment shader have the same color formats. What
+  // the commands read and write must live until they have run.
   void record(VkCommandBuffer commandBuffer, const RenderTarget& target, const DrawView& view,
               const PipelineState& state, VkCullModeFlags doubleSidedCull,
               const EarlierPass& earlier = {}) const;

@@ -30,6 +30,11 @@ void forEachPosition(const Model& model, const Visit& visit) {
       visit(positionOf(model.vertices[model.indices[part.firstIndex + i]]));
 }
 
+template <class Visit>
+void forEachPosition(const ModelPoints& model, const Visit& visit) {
+  for (const Vector3& vertex : model.vertices) visit(toGlm(vertex));
+}
+
 // Extent of the model as a view sees it.
 struct Extent {
   double nearest = std::numeric_limits<double>::infinity(), farthest = -nearest;  // planar distance
@@ -37,7 +42,7 @@ struct Extent {
   double tangent = 0;  // largest |x| or |y| per planar distance; infinite when something is not in front
 };
 
-Extent extentIn(const Model& model, const Matrix& viewFromWorld) {
+Extent extentIn(const ModelPoints& model, const Matrix& viewFromWorld) {
   const glm::dmat4 view = toGlm(viewFromWorld);
   Extent extent;
   forEachPosition(model, [&](const glm::dvec3& position) {
@@ -61,7 +66,7 @@ ClipRange clipAround(const Extent& extent, bool perspective) {
   return range;
 }
 
-std::optional<LightView> perspectiveView(const Model& model, const Light& light, const glm::dvec3& axis,
+std::optional<LightView> perspectiveView(const ModelPoints& model, const Light& light, const glm::dvec3& axis,
                                          double halfAngle) {
   LightView view;
   view.viewFromWorld = lookAt(light.position, fromGlm(toGlm(light.position) + axis), {0, 1, 0});
@@ -72,7 +77,8 @@ std::optional<LightView> perspectiveView(const Model& model, const Light& light,
   return view;
 }
 
-LightView parallelView(const Model& model, const Bounds& bounds, const Light& light) {
+LightView parallelView(const ModelPoints& model, const Light& light) {
+  const Bounds& bounds = model.bounds;
   LightView view;
   const glm::dvec3 axis = glm::normalize(toGlm(light.direction));
   view.viewFromWorld =
@@ -83,7 +89,8 @@ LightView parallelView(const Model& model, const Bounds& bounds, const Light& li
   return view;
 }
 
-std::optional<LightView> singleView(const Model& model, const Bounds& bounds, const Light& light) {
+std::optional<LightView> singleView(const ModelPoints& model, const Light& light) {
+  const Bounds& bounds = model.bounds;
   std::optional<LightView> view;
   const glm::dvec3 toCenter = toGlm(bounds.center) - toGlm(light.position);
   if (glm::length(toCenter) > bounds.radius)
@@ -99,7 +106,7 @@ std::optional<LightView> singleView(const Model& model, const Bounds& bounds, co
 
 // Six faces, each a little wider than 90 degrees: a point on a seam must find its texel whichever way
 // rounding puts it, and the irradiance pass moves points by up to 2.2 texels and blends the one beyond.
-std::vector<LightView> cubeViews(const Model& model, const Light& light, int texels) {
+std::vector<LightView> cubeViews(const ModelPoints& model, const Light& light, int texels) {
   constexpr int kSeamTexels = 4;
   const double tangent = texels / std::max<double>(texels - 2 * kSeamTexels, 0.5 * texels);
   double farthest = 0;  // planar distance from the face that looks there
@@ -132,6 +139,16 @@ Bounds boundsOf(const Model& model) {
   if (!(low.x <= high.x)) throw InputError(model.name, "meshes", "there is no triangle to draw");
   const double radius = 0.5 * glm::length(high - low);
   return {fromGlm(0.5 * (low + high)), std::max(radius, 1e-6 * glm::length(high) + 1e-30)};
+}
+
+ModelPoints pointsOf(const Model& model) {
+  ModelPoints points{{}, boundsOf(model)};
+  std::vector<bool> isUsed(model.vertices.size());
+  for (const Part& part : model.parts)
+    for (std::uint32_t i = 0; i < part.indexCount; ++i) isUsed[model.indices[part.firstIndex + i]] = true;
+  for (std::size_t i = 0; i < isUsed.size(); ++i)
+    if (isUsed[i]) points.vertices.push_back(fromGlm(positionOf(model.vertices[i])));
+  return points;
 }
 
 ModelCamera frameModel(const Model& model, const Vector3& toCamera, double verticalFov, double aspect,
@@ -171,10 +188,13 @@ ModelCamera frameModel(const Model& model, const Vector3& toCamera, double verti
 }
 
 std::vector<LightView> frameLight(const Model& model, const Light& light, PointMaps maps, int texels) {
-  const Bounds bounds = boundsOf(model);
-  if (light.type == PELLUCID_LIGHT_DIRECTIONAL) return {parallelView(model, bounds, light)};
+  return frameLight(pointsOf(model), light, maps, texels);
+}
+
+std::vector<LightView> frameLight(const ModelPoints& model, const Light& light, PointMaps maps, int texels) {
+  if (light.type == PELLUCID_LIGHT_DIRECTIONAL) return {parallelView(model, light)};
   const bool cube = maps == PointMaps::Six && light.type == PELLUCID_LIGHT_POINT;
-  if (const auto view = cube ? std::nullopt : singleView(model, bounds, light)) return {*view};
+  if (const auto view = cube ? std::nullopt : singleView(model, light)) return {*view};
   return maps == PointMaps::One ? std::vector<LightView>() : cubeViews(model, light, texels);
 }
 

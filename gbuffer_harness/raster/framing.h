@@ -14,6 +14,13 @@ struct Bounds {
 };
 Bounds boundsOf(const Model& model);
 
+// What framing needs of a model, for lights that are framed again and again.
+struct ModelPoints {
+  std::vector<Vector3> vertices;  // that parts use, each once
+  Bounds bounds;
+};
+ModelPoints pointsOf(const Model& model);  // throws as boundsOf()
+
 // A camera that sees the whole model from the direction `toCamera` (any length > 0) with a margin of 5 %.
 // verticalFov: radians, (0, pi); an orthographic camera takes only its size from it. aspect: width / height.
 // It sees the whole model also after turnedView() by each of `turns` (radians) about the model's center.
@@ -36,6 +43,7 @@ enum class PointMaps {
 // model. Point: a perspective around the whole model, which is impossible when the light stands within or
 // close to it. Spot: its cone or the model, whichever is narrower. Six: along +x, -x, +y, -y, +z and -z of
 // the world. texels: across one map, > 0.
+std::vector<LightView> frameLight(const ModelPoints& model, const Light& light, PointMaps maps, int texels);
 std::vector<LightView> frameLight(const Model& model, const Light& light, PointMaps maps, int texels);
 
 // Views of a directional light that hold slices of what a perspective camera sees, the nearest first. Their

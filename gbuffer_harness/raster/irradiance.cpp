@@ -2,8 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <memory>
+#include <iterator>
 
 #include "kRasterIrradiance.h"
 #include "scene/vector.h"
@@ -13,17 +12,19 @@ namespace pellucid::harness {
 
 namespace {
 
-// The bindings of shaders/irradiance.comp.
-constexpr VkDescriptorType kTypes[] = {
-    VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-    VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
-    VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER};
-constexpr std::uint32_t kShadowBinding = 2, kIrradianceBinding = 3, kTrianglesBinding = 4;
-
 static_assert(PELLUCID_SHADER_LIGHT_DIRECTIONAL == PELLUCID_LIGHT_DIRECTIONAL);
 static_assert(PELLUCID_SHADER_LIGHT_SPOT == PELLUCID_LIGHT_SPOT);
 
 constexpr std::uint32_t kShadowMaps = 6;  // SHADOW_MAPS
+
+// The bindings of shaders/irradiance.comp.
+constexpr VkDescriptorType kSampled = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+constexpr PixelPass::Binding kBindings[] = {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
+                                            {kSampled},
+                                            {kSampled, kShadowMaps},
+                                            {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
+                                            {kSampled}};
+constexpr std::uint32_t kShadowBinding = 2, kIrradianceBinding = 3, kTrianglesBinding = 4;
 
 // The uniform block.
 struct Constants {
@@ -65,108 +66,71 @@ void setShadows(Constants& constants, const std::vector<ShadowImage>& shadows,
   constants.shadow = glm::vec4(first.size, first.perspective, texel, shadows.size());
 }
 
-std::vector<VkDescriptorSetLayoutBinding> layoutBindings() {
-  std::vector<VkDescriptorSetLayoutBinding> bindings;
-  for (std::uint32_t i = 0; i < std::size(kTypes); ++i)
-    bindings.push_back(
-        {i, kTypes[i], i == kShadowBinding ? kShadowMaps : 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
-  return bindings;
+Constants constantsOf(const LitSurfaces& surfaces, const Light& light,
+                      const std::vector<ShadowImage>& shadows) {
+  const Matrix& clipFromView = surfaces.view.clipFromView;
+  const glm::dmat4 viewFromWorld = toGlm(surfaces.view.viewFromWorld);
+  Constants constants{};
+  constants.viewFromWorld = glm::mat4(viewFromWorld);
+  constants.light = lightConstants(light, viewFromWorld);
+  const bool perspective = clipFromView[15] == 0;
+  constants.eye = glm::vec4(1 / clipFromView[0], 1 / clipFromView[5], perspective, 0);
+  setShadows(constants, shadows, glm::inverse(viewFromWorld));
+  return constants;
+}
+
+constexpr VkSpecializationMapEntry kMapsEntry{0, 0, sizeof(std::uint32_t)};
+constexpr std::uint32_t kOneMap = 1, kAllMaps = kShadowMaps;
+
+PixelPass passOf(Device& device, const std::uint32_t& maps) {
+  return {device,
+          {kRasterIrradiance, sizeof kRasterIrradiance},
+          {std::begin(kBindings), std::end(kBindings)},
+          0,
+          {1, &kMapsEntry, sizeof maps, &maps}};
 }
 
 }  // namespace
 
-IrradiancePass::IrradiancePass(Device& device, const GpuImage& normalPlanar, const GpuImage& depthNormal,
-                               int width, int height, const DrawView& view)
-    : device_(device),
-      normalPlanar_(normalPlanar),
-      depthNormal_(depthNormal),
-      width_(width),
-      height_(height),
-      view_(view),
-      irradiance_(device, width, height, VK_FORMAT_R32G32B32A32_SFLOAT),
-      sampler_(device),
-      layout_(device, layoutBindings()),
-      pipeline_(device) {
-  irradiance_.clear();
-  createPipeline();
-}
+IrradiancePass::IrradiancePass(Device& device)
+    : one_(passOf(device, kOneMap)),
+      six_(passOf(device, kAllMaps)),
+      constants_(device, sizeof(Constants),
+                 VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT) {}
 
-void IrradiancePass::createPipeline() {
-  VkSamplerCreateInfo sampler{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
-  check(vkCreateSampler(device_.handle(), &sampler, nullptr, sampler_.receive()), "vkCreateSampler");
-
-  ShaderModule shader(device_);
-  VkComputePipelineCreateInfo info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
-  info.stage =
-      loadStage(device_, VK_SHADER_STAGE_COMPUTE_BIT, {kRasterIrradiance, sizeof kRasterIrradiance}, shader);
-  info.layout = layout_;
-  check(vkCreateComputePipelines(device_.handle(), VK_NULL_HANDLE, 1, &info, nullptr, pipeline_.receive()),
-        "vkCreateComputePipelines");
-}
-
-void IrradiancePass::add(const Light& light, const std::vector<ShadowImage>& shadows) {
-  device_.run(recorder(light, shadows));
-}
-
-std::function<void(VkCommandBuffer)> IrradiancePass::recorder(const Light& light,
-                                                              const std::vector<ShadowImage>& shadows) const {
-  const glm::dmat4 viewFromWorld = toGlm(view_.viewFromWorld);
-  Constants constants{};
-  constants.viewFromWorld = glm::mat4(viewFromWorld);
-  constants.light = lightConstants(light, viewFromWorld);
-  const bool perspective = view_.clipFromView[15] == 0;
-  constants.eye = glm::vec4(1 / view_.clipFromView[0], 1 / view_.clipFromView[5], perspective, 0);
-  setShadows(constants, shadows, glm::inverse(viewFromWorld));
-  const auto buffer =
-      std::make_shared<HostBuffer>(device_, sizeof constants, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
-  std::memcpy(buffer->mapped(), &constants, sizeof constants);
-  return [this, buffer, shadows](VkCommandBuffer commandBuffer) { record(commandBuffer, *buffer, shadows); };
-}
-
-void IrradiancePass::record(VkCommandBuffer commandBuffer, const HostBuffer& constants,
+void IrradiancePass::record(VkCommandBuffer commands, const LitSurfaces& surfaces, const Light& light,
                             const std::vector<ShadowImage>& shadows) const {
+  const Constants constants = constantsOf(surfaces, light, shadows);
+  // The light before is done with the buffer: PixelPass ends with a barrier.
+  vkCmdUpdateBuffer(commands, constants_.handle(), 0, sizeof constants, &constants);
+  barrier(commands, {VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT},
+          {VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_UNIFORM_READ_BIT});
+
+  const PixelPass& pass = shadows.size() <= kOneMap ? one_ : six_;
   const auto imageInfo = [&](const GpuImage& image) {
-    return VkDescriptorImageInfo{sampler_, image.use().view, image.use().layout};
+    return VkDescriptorImageInfo{pass.sampler(), image.use().view, image.use().layout};
   };
-  const VkDescriptorBufferInfo bufferInfo{constants.handle(), 0, VK_WHOLE_SIZE};
-  const VkDescriptorImageInfo surface = imageInfo(normalPlanar_), triangles = imageInfo(depthNormal_),
-                              target = imageInfo(irradiance_);
+  const VkDescriptorBufferInfo bufferInfo{constants_.handle(), 0, VK_WHOLE_SIZE};
+  const VkDescriptorImageInfo surface = imageInfo(surfaces.normalPlanar),
+                              triangles = imageInfo(surfaces.depthNormal),
+                              target = imageInfo(surfaces.irradiance);
   // A descriptor that is not read must be valid all the same.
   VkDescriptorImageInfo maps[kShadowMaps];
   for (std::size_t i = 0; i < kShadowMaps; ++i)
-    maps[i] = imageInfo(i < shadows.size() ? *shadows[i].planar : normalPlanar_);
-  VkWriteDescriptorSet writes[std::size(kTypes)];
+    maps[i] = imageInfo(i < shadows.size() ? *shadows[i].planar : surfaces.normalPlanar);
+  VkWriteDescriptorSet writes[std::size(kBindings)];
   for (std::uint32_t i = 0; i < std::size(writes); ++i) {
     writes[i] = {VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
     writes[i].dstBinding = i;
-    writes[i].descriptorCount = i == kShadowBinding ? kShadowMaps : 1;
-    writes[i].descriptorType = kTypes[i];
+    writes[i].descriptorCount = kBindings[i].count;
+    writes[i].descriptorType = kBindings[i].type;
   }
   writes[0].pBufferInfo = &bufferInfo;
   writes[1].pImageInfo = &surface;
   writes[kShadowBinding].pImageInfo = maps;
   writes[kIrradianceBinding].pImageInfo = &target;
   writes[kTrianglesBinding].pImageInfo = &triangles;
-  vkCmdBindPipeline(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_);
-  layout_.push(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, writes);
-  const auto groups = [](int pixels, int size) {
-    return static_cast<std::uint32_t>((pixels + size - 1) / size);
-  };
-  vkCmdDispatch(commandBuffer, groups(width_, PELLUCID_GROUP_X), groups(height_, PELLUCID_GROUP_Y), 1);
-  // The next light, or the download, reads what this one wrote.
-  const VkMemoryBarrier barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr, VK_ACCESS_SHADER_WRITE_BIT,
-                                VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT};
-  vkCmdPipelineBarrier(commandBuffer, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
-                       VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 1, &barrier, 0, nullptr, 0, nullptr);
-}
-
-Image IrradiancePass::irradiance() const {
-  const Image rgba = irradiance_.download();
-  Image rgb(width_, height_, 3);
-  for (std::size_t i = 0; i < rgb.pixels(); ++i)
-    std::copy_n(rgba.data.begin() + static_cast<std::ptrdiff_t>(4 * i), 3,
-                rgb.data.begin() + static_cast<std::ptrdiff_t>(3 * i));
-  return rgb;
+  pass.record(commands, writes, surfaces.irradiance.width(), surfaces.irradiance.height());
 }
 
 }  // namespace pellucid::harness

@@ -1,13 +1,12 @@
 // Irradiance of the visible surfaces, light by light.
 #pragma once
 
-#include <functional>
 #include <vector>
 
 #include "common/device.h"
 #include "common/gpu_image.h"
 #include "raster/draw.h"
-#include "raster/pipeline.h"
+#include "raster/pixel_pass.h"
 
 namespace pellucid::harness {
 
@@ -19,38 +18,29 @@ struct ShadowImage {
   bool perspective = false;
 };
 
+// What lights shine on.
+struct LitSurfaces {
+  // World normal and planar distance in front of `view`, which is symmetric about its axis; a distance <= 0
+  // holds nothing and gets no light.
+  const GpuImage& normalPlanar;
+  const GpuImage& depthNormal;  // in yzw the normal of the triangles, by which shadows are offset
+  const GpuImage& irradiance;   // R32G32B32A32_SFLOAT, of the same size
+  DrawView view;
+};
+
 class IrradiancePass {
 public:
-  // normalPlanar: world normal and planar distance in front of `view`, which is symmetric about its axis;
-  // a distance <= 0 holds nothing and gets no light. depthNormal: in yzw the normal of the triangles, by
-  // which shadows are offset. The images must outlive this.
-  IrradiancePass(Device& device, const GpuImage& normalPlanar, const GpuImage& depthNormal, int width,
-                 int height, const DrawView& view);
+  explicit IrradiancePass(Device& device);
 
   // Adds color * intensity * max(N.L, 0) and the attenuation of KHR_lights_punctual, times the part of the
   // shadow maps' texels that see the surface. Outside the map, or without one, nothing shadows.
   // shadows: none, one, or the six of a cube, which have the same size and projection.
-  void add(const Light& light, const std::vector<ShadowImage>& shadows);
-
-  // Records the commands of add(). The function keeps what the commands read besides this and the images.
-  std::function<void(VkCommandBuffer)> recorder(const Light& light,
-                                                const std::vector<ShadowImage>& shadows) const;
-
-  Image irradiance() const;  // RGB
-
-private:
-  void createPipeline();
-  void record(VkCommandBuffer commandBuffer, const HostBuffer& constants,
+  void record(VkCommandBuffer commands, const LitSurfaces& surfaces, const Light& light,
               const std::vector<ShadowImage>& shadows) const;
 
-  Device& device_;
-  const GpuImage &normalPlanar_, &depthNormal_;
-  int width_, height_;
-  DrawView view_;
-  GpuImage irradiance_;
-  Owned<VkSampler, vkDestroySampler> sampler_;
-  PushLayout layout_;
-  Pipeline pipeline_;
+private:
+  PixelPass one_, six_;   // shadow maps at most: a CPU computes every branch of a choice among six
+  HostBuffer constants_;  // written by the commands, so that those of the next light may follow
 };
 
 }  // namespace pellucid::harness

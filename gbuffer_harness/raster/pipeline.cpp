@@ -45,6 +45,17 @@ void PushLayout::push(VkCommandBuffer commandBuffer, VkPipelineBindPoint point,
                    writes.data());
 }
 
+void createPipeline(const Device& device, const PushLayout& layout, const Spirv& compute,
+                    const VkSpecializationInfo& constants, Pipeline& pipeline) {
+  ShaderModule shader(device);
+  VkComputePipelineCreateInfo info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
+  info.stage = loadStage(device, VK_SHADER_STAGE_COMPUTE_BIT, compute, shader);
+  info.stage.pSpecializationInfo = &constants;
+  info.layout = layout;
+  check(vkCreateComputePipelines(device.handle(), VK_NULL_HANDLE, 1, &info, nullptr, pipeline.receive()),
+        "vkCreateComputePipelines");
+}
+
 void createPipeline(const Device& device, const DrawPass& pass, const PushLayout& layout, const Spirv& vertex,
                     const Spirv& fragment, const DrawState& state, Pipeline& pipeline) {
   ShaderModule vertexShader(device), fragmentShader(device);

@@ -71,6 +71,9 @@ private:
   std::vector<VkWriteDescriptorSet> writes_;
 };
 
+void createPipeline(const Device& device, const PushLayout& layout, const Spirv& compute,
+                    const VkSpecializationInfo& constants, Pipeline& pipeline);
+
 // Triangles without vertex buffers, of both faces, without a depth test; colors replace what is there.
 struct DrawState {
   VkPipelineVertexInputStateCreateInfo input{VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};

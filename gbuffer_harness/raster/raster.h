@@ -10,8 +10,6 @@
 
 namespace pellucid::harness {
 
-class UploadedModel;
-
 enum class BackFace {
   Nearest,  // of those behind the front: the thickness of the first layer
   Farthest  // the thickness of everything, hollows included
@@ -45,8 +43,8 @@ struct RasterOptions {
   int shadowSize = 1024;  // texels across a shadow map, 0..8192; 0: no shadow maps and no shadows
   PellucidDepthEncoding shadowEncoding = PELLUCID_DEPTH_DEVICE;
   PointMaps pointMaps = PointMaps::Auto;
-  // Part of the model's triangles, (0, 1], in back depth and in the shadow maps that the capture keeps (Whelan
-  // 2009, 4.7.3). Front depth, irradiance and its own shadows have all triangles.
+  // Part of the model's triangles, (0, 1], in back depth and in the shadow maps that the capture keeps
+  // (Whelan 2009, 4.7.3). Front depth, irradiance and its own shadows have all triangles.
   double simplify = 1;
   ShadowDrawing shadow;  // other than plain in DEVICE encoding alone; placement in any
 };
@@ -69,9 +67,5 @@ struct RasterResult {
 // DeviceError when the device cannot draw.
 RasterResult rasterize(Device& device, const Model& model, const ModelCamera& camera,
                        const RasterOptions& options);
-
-// Draws a model that is on the device already. `model` is the uploaded one, whose lights may have changed.
-RasterResult rasterize(Device& device, const Model& model, const UploadedModel& uploaded,
-                       const ModelCamera& camera, const RasterOptions& options);
 
 }  // namespace pellucid::harness

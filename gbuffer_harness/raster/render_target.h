@@ -1,12 +1,15 @@
 // Images that a model is drawn into.
 #pragma once
 
+#include <algorithm>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "common/device.h"
 #include "common/gpu_image.h"
+#include "common/pool.h"
 #include "raster/depth_buffer.h"
 #include "raster/draw_pass.h"
 
@@ -18,6 +21,10 @@ public:
   struct Color {
     VkFormat format;
     VkClearColorValue clear;
+    bool operator==(const Color& other) const {
+      return format == other.format &&
+             std::equal(std::begin(clear.uint32), std::end(clear.uint32), std::begin(other.clear.uint32));
+    }
   };
   // depthFormat: of that buffer. Throws what DepthBuffer throws.
   RenderTarget(Device& device, int width, int height, const std::vector<Color>& colors,
@@ -40,6 +47,34 @@ private:
   std::vector<std::unique_ptr<GpuImage>> images_;
   std::optional<DepthBuffer> depth_;
   std::optional<DrawPass> pass_;
+};
+
+// Targets that frames use in turns.
+class TargetPool {
+public:
+  explicit TargetPool(Device& device) : device_(device) {}
+
+  // Arguments and errors are those of RenderTarget.
+  std::shared_ptr<const RenderTarget> take(int width, int height,
+                                           const std::vector<RenderTarget::Color>& colors,
+                                           std::optional<float> clearDepth,
+                                           VkFormat depthFormat = VK_FORMAT_D32_SFLOAT) {
+    return pool_.take({width, height, colors, clearDepth, depthFormat}, [&] {
+      return std::make_shared<const RenderTarget>(device_, width, height, colors, clearDepth, depthFormat);
+    });
+  }
+  void nextFrame() { pool_.nextFrame(); }
+
+private:
+  struct Key {
+    int width, height;
+    std::vector<RenderTarget::Color> colors;
+    std::optional<float> clearDepth;
+    VkFormat depthFormat;
+    bool operator==(const Key&) const = default;
+  };
+  Device& device_;
+  Pool<Key, const RenderTarget> pool_;
 };
 
 }  // namespace pellucid::harness

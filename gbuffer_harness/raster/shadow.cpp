@@ -14,9 +14,12 @@ namespace {
 
 constexpr bool kReversed = true;
 
-DepthImage encodeShadow(const RenderTarget& target, const ShadowImage& view, PellucidDepthEncoding encoding) {
-  if (encoding == PELLUCID_DEPTH_DEVICE) return {target.image(kDeviceDepth).download(), encoding};
-  DepthImage depth{target.image(kPlanar).download(), encoding};
+std::size_t depthIndex(PellucidDepthEncoding encoding) {
+  return encoding == PELLUCID_DEPTH_DEVICE ? kDeviceDepth : kPlanar;
+}
+
+Image downloadDepth(const RenderTarget& target, const ShadowImage& view, PellucidDepthEncoding encoding) {
+  Image depth = target.image(depthIndex(encoding)).download();
   if (encoding != PELLUCID_DEPTH_DISTANCE || !view.perspective) return depth;
   // Length of the ray through a texel per planar distance.
   const double tangent = 1 / view.clipFromView[0];
@@ -24,43 +27,40 @@ DepthImage encodeShadow(const RenderTarget& target, const ShadowImage& view, Pel
     for (int x = 0; x < view.size; ++x) {
       const double u = ((x + 0.5) / view.size * 2 - 1) * tangent;
       const double v = ((y + 0.5) / view.size * 2 - 1) * tangent;
-      float& value = *depth.image.at(x, y);
+      float& value = *depth.at(x, y);
       if (value < kNoDepth) value = static_cast<float>(value * std::sqrt(1 + u * u + v * v));
     }
   return depth;
 }
 
+using Target = std::shared_ptr<const RenderTarget>;
+
 // A light's view of the model: its shadow map's surface, and with `casters` what casts the shadow.
-std::unique_ptr<RenderTarget> drawShadow(Device& device, const UploadedModel& model, const DrawView& view,
-                                         int size, bool casters) {
+Target recordSurface(VkCommandBuffer commands, TargetPool& targets, const UploadedModel& model,
+                     const DrawView& view, int size, bool casters) {
   std::vector<RenderTarget::Color> colors = depthColors(view.reversedDepth);
-  if (casters) colors.push_back({VK_FORMAT_R32G32_SFLOAT, clearTo(0)});
-  auto target = std::make_unique<RenderTarget>(device, size, size, colors, farDepth(view.reversedDepth));
-  model.draw(*target, view,
-             {casters ? FragmentShader::Caster : FragmentShader::Depth, VK_CULL_MODE_NONE,
-              nearer(view.reversedDepth), false},
-             VK_CULL_MODE_NONE);
+  if (casters) {
+    colors.push_back({VK_FORMAT_R32_SFLOAT, clearTo(0)});
+    colors.push_back({VK_FORMAT_R8_UNORM, clearTo(0)});
+  }
+  Target target = targets.take(size, size, colors, farDepth(view.reversedDepth));
+  model.record(commands, *target, view,
+               {casters ? FragmentShader::Caster : FragmentShader::Depth, VK_CULL_MODE_NONE,
+                nearer(view.reversedDepth), false},
+               VK_CULL_MODE_NONE);
   return target;
 }
 
 // The nearest back face behind the map's surface, of the object that is entered there.
-DepthImage exitDepth(Device& device, const UploadedModel& model, const DrawView& view,
-                     const RenderTarget& shadow, const ShadowImage& image, PellucidDepthEncoding encoding) {
-  const RenderTarget target(device, image.size, image.size, depthColors(view.reversedDepth),
-                            farDepth(view.reversedDepth));
-  EarlierPass earlier{&shadow.image(kDeviceDepth)};
-  earlier.caster = &shadow.image(kCaster);
-  model.draw(target, view, {FragmentShader::Depth, VK_CULL_MODE_FRONT_BIT, nearer(view.reversedDepth), false},
-             VK_CULL_MODE_FRONT_BIT, earlier);
-  return encodeShadow(target, image, encoding);
-}
-
-std::vector<std::uint8_t> casterMaterial(const RenderTarget& shadow) {
-  const Image caster = shadow.image(kCaster).download();
-  std::vector<std::uint8_t> materials(caster.pixels());
-  for (std::size_t i = 0; i < materials.size(); ++i)
-    materials[i] = static_cast<std::uint8_t>(caster.data[2 * i]);
-  return materials;
+Target recordExit(VkCommandBuffer commands, TargetPool& targets, const UploadedModel& model,
+                  const DrawView& view, const RenderTarget& surface, int size) {
+  Target target = targets.take(size, size, depthColors(view.reversedDepth), farDepth(view.reversedDepth));
+  EarlierPass earlier{&surface.image(kDeviceDepth)};
+  earlier.caster = &surface.image(kCasterObject);
+  model.record(commands, *target, view,
+               {FragmentShader::Depth, VK_CULL_MODE_FRONT_BIT, nearer(view.reversedDepth), false},
+               VK_CULL_MODE_FRONT_BIT, earlier);
+  return target;
 }
 
 bool isPlain(const ShadowDrawing& drawing) {
@@ -78,11 +78,11 @@ VkFormat formatOf(const ShadowDrawing& drawing) {
 double depthUnit(const ShadowDrawing& drawing) { return drawing.bits == 16 ? 1.0 / 65535 : std::exp2(-24); }
 
 // Draws the map as an engine's depth buffer holds it.
-void drawAsEngine(Device& device, const UploadedModel& model, const DrawView& view,
-                  const RasterOptions& options, ShadowMap& map) {
+Target recordAsEngine(VkCommandBuffer commands, TargetPool& targets, const UploadedModel& model,
+                      const DrawView& view, const RasterOptions& options) {
   const ShadowDrawing& drawing = options.shadow;
-  const RenderTarget target(device, options.shadowSize, options.shadowSize, depthColors(kReversed),
-                            farDepth(kReversed), formatOf(drawing));
+  Target target = targets.take(options.shadowSize, options.shadowSize, depthColors(kReversed),
+                               farDepth(kReversed), formatOf(drawing));
   PipelineState state{FragmentShader::Depth, VK_CULL_MODE_NONE, nearer(kReversed), false};
   state.cull = drawing.cull == MapCull::Front  ? VK_CULL_MODE_FRONT_BIT
                : drawing.cull == MapCull::Back ? VK_CULL_MODE_BACK_BIT
@@ -90,43 +90,76 @@ void drawAsEngine(Device& device, const UploadedModel& model, const DrawView& vi
   state.depthBiasConstant = static_cast<float>(-drawing.depthBiasConstant);
   state.depthBiasSlope = static_cast<float>(-drawing.depthBiasSlope);
   // Engines cull nothing of double-sided surfaces.
-  model.draw(target, view, state, VK_CULL_MODE_NONE);
-  map.depth = {target.depth(), PELLUCID_DEPTH_DEVICE};
+  model.record(commands, *target, view, state, VK_CULL_MODE_NONE);
+  return target;
+}
+
+ShadowMap outlineOf(const DrawView& view, const RasterOptions& options) {
+  ShadowMap map;
+  map.depth.encoding = options.shadowEncoding;
+  map.clipFromWorld = multiply(view.clipFromView, view.viewFromWorld);
+  map.viewFromWorld = view.viewFromWorld;
+  if (isPlain(options.shadow)) return map;
+  const ShadowDrawing& drawing = options.shadow;
   map.faces = drawing.cull == MapCull::Front ? PELLUCID_FACES_BACK : PELLUCID_FACES_FRONT;
   map.depthBiasConstant = -drawing.depthBiasConstant * depthUnit(drawing);
   map.depthBiasSlope = -drawing.depthBiasSlope;
   map.depthStep = drawing.bits == 32 ? 0 : depthUnit(drawing);
+  return map;
 }
 
 }  // namespace
 
-DrawnShadows drawShadows(Device& device, const Model& model, const UploadedModel& uploaded,
-                         const Light& light, const RasterOptions& options) {
-  DrawnShadows drawn;
-  const std::vector<LightView> views = frameLight(model, light, options.pointMaps, options.shadowSize);
+std::vector<DrawnMap> recordShadows(VkCommandBuffer commands, TargetPool& targets, const ModelPoints& points,
+                                    const UploadedModel& uploaded, const Light& light,
+                                    const RasterOptions& options) {
+  std::vector<DrawnMap> maps;
+  const int size = options.shadowSize;
+  const std::vector<LightView> views = frameLight(points, light, options.pointMaps, size);
   // Six maps with images of their own would have more than a dispatch binds.
   const bool few =
       options.shadow.placement != MapPlacement::Separate || 3 * views.size() <= PELLUCID_SHADOW_IMAGE_COUNT;
   const bool casters = few && options.shadow.cull != MapCull::Front;
   for (const LightView& lightView : views) {
     const DrawView view{lightView.clipFromView, lightView.viewFromWorld, kReversed};
-    drawn.targets.push_back(drawShadow(device, uploaded, view, options.shadowSize, casters));
-    const RenderTarget& target = *drawn.targets.back();
-    drawn.images.push_back({&target.image(kPlanar), options.shadowSize, view.clipFromView, view.viewFromWorld,
-                            light.type != PELLUCID_LIGHT_DIRECTIONAL});
-    ShadowMap& map = drawn.maps.emplace_back();
-    if (isPlain(options.shadow))
-      map.depth = encodeShadow(target, drawn.images.back(), options.shadowEncoding);
-    else
-      drawAsEngine(device, uploaded, view, options, map);
-    map.clipFromWorld = multiply(view.clipFromView, view.viewFromWorld);
-    map.viewFromWorld = view.viewFromWorld;
-    if (!casters) continue;
-    map.exitDepth =
-        exitDepth(device, uploaded, view, target, drawn.images.back(), options.shadowEncoding).image;
-    map.casterMaterial = casterMaterial(target);
+    DrawnMap& map = maps.emplace_back();
+    map.outline = outlineOf(view, options);
+    map.surface = recordSurface(commands, targets, uploaded, view, size, casters);
+    map.planar = {&map.surface->image(kPlanar), size, view.clipFromView, view.viewFromWorld,
+                  light.type != PELLUCID_LIGHT_DIRECTIONAL};
+    if (!isPlain(options.shadow)) map.engine = recordAsEngine(commands, targets, uploaded, view, options);
+    if (casters) map.exit = recordExit(commands, targets, uploaded, view, *map.surface, size);
   }
-  return drawn;
+  return maps;
+}
+
+std::vector<ShadowImage> shadowImagesOf(const std::vector<DrawnMap>& maps) {
+  std::vector<ShadowImage> images;
+  for (const DrawnMap& map : maps) images.push_back(map.planar);
+  return images;
+}
+
+ShadowMap downloadMap(const DrawnMap& map, const RasterOptions& options) {
+  ShadowMap result = map.outline;
+  result.depth.image =
+      map.engine ? map.engine->depth() : downloadDepth(*map.surface, map.planar, options.shadowEncoding);
+  if (!map.exit) return result;
+  result.exitDepth = downloadDepth(*map.exit, map.planar, options.shadowEncoding);
+  for (const float material : map.surface->image(kCasterMaterial).download().data)
+    result.casterMaterial.push_back(static_cast<std::uint8_t>(std::lround(255 * material)));
+  return result;
+}
+
+bool areOnDevice(const RasterOptions& options) {
+  return isPlain(options.shadow) && options.shadow.placement == MapPlacement::Separate &&
+         options.shadowEncoding != PELLUCID_DEPTH_DISTANCE;
+}
+
+DeviceMap deviceMap(const DrawnMap& map, const RasterOptions& options) {
+  const std::size_t depth = depthIndex(options.shadowEncoding);
+  if (!map.exit) return {sharedImage(map.surface, depth), nullptr, nullptr};
+  return {sharedImage(map.surface, depth), sharedImage(map.exit, depth),
+          sharedImage(map.surface, kCasterMaterial)};
 }
 
 void checkShadowDrawing(const Model& model, const RasterOptions& options) {
@@ -145,7 +178,7 @@ void checkShadowDrawing(const Model& model, const RasterOptions& options) {
     throw InputError(model.name, "shadowSize", "is 0, but something is asked of the shadow maps");
 }
 
-void placeShadowMaps(MapPlacement placement, std::vector<Light>& lights) {
+void placeShadowMaps(MapPlacement placement, int size, std::vector<Light>& lights) {
   if (placement == MapPlacement::Separate) return;
   int count = 0;
   for (const Light& light : lights) count += static_cast<int>(light.shadowMaps.size());
@@ -157,7 +190,7 @@ void placeShadowMaps(MapPlacement placement, std::vector<Light>& lights) {
       if (placement == MapPlacement::Array)
         map.layer = index;
       else
-        map.offset = {index % columns * map.depth.image.width, index / columns * map.depth.image.height};
+        map.offset = {index % columns * size, index / columns * size};
       ++index;
     }
 }

@@ -5,25 +5,45 @@
 #include <vector>
 
 #include "raster/draw.h"
+#include "raster/framing.h"
 #include "raster/irradiance.h"
 #include "raster/raster.h"
 
 namespace pellucid::harness {
 
-struct DrawnShadows {
-  std::vector<ShadowMap> maps;      // for the capture
-  std::vector<ShadowImage> images;  // for the irradiance, of the targets
-  std::vector<std::unique_ptr<RenderTarget>> targets;
+// One map on the device.
+struct DrawnMap {
+  ShadowMap outline;   // without images
+  ShadowImage planar;  // for the irradiance, of `surface`
+  std::shared_ptr<const RenderTarget> surface;
+  std::shared_ptr<const RenderTarget> exit;    // null: the map has no exit depth and no casters
+  std::shared_ptr<const RenderTarget> engine;  // whose depth buffer the map keeps; null: a depth of `surface`
 };
 
+// Records the drawing of a light's maps. points: of the whole model, which `uploaded` may be a part of.
 // options.shadowSize > 0.
-DrawnShadows drawShadows(Device& device, const Model& model, const UploadedModel& uploaded,
-                         const Light& light, const RasterOptions& options);
+std::vector<DrawnMap> recordShadows(VkCommandBuffer commands, TargetPool& targets, const ModelPoints& points,
+                                    const UploadedModel& uploaded, const Light& light,
+                                    const RasterOptions& options);
+
+std::vector<ShadowImage> shadowImagesOf(const std::vector<DrawnMap>& maps);
+
+// The map with its images.
+ShadowMap downloadMap(const DrawnMap& map, const RasterOptions& options);
+
+// True where device images hold what downloadMap() returns.
+bool areOnDevice(const RasterOptions& options);
+
+// The images that these are, in the order of the frame's; null: the map has none.
+struct DeviceMap {
+  std::shared_ptr<GpuImage> depth, exit, casterMaterial;
+};
+DeviceMap deviceMap(const DrawnMap& map, const RasterOptions& options);
 
 // Throws InputError for options that no map can be drawn with.
 void checkShadowDrawing(const Model& model, const RasterOptions& options);
 
-// Gives all maps of the lights places in one image, or leaves each its own.
-void placeShadowMaps(MapPlacement placement, std::vector<Light>& lights);
+// Gives all maps of the lights places in one image, or leaves each its own. size: of a map.
+void placeShadowMaps(MapPlacement placement, int size, std::vector<Light>& lights);
 
 }  // namespace pellucid::harness

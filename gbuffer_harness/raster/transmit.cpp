@@ -39,14 +39,18 @@ Image rasterizeTransmitted(Device& device, const Model& model, const Capture& ca
 
   const UploadedModel uploaded(device, model);
   const DrawView view{capture.clipFromView, capture.viewFromWorld, options.reversedZ};
-  const FrontTarget front(device, options);
-  front.draw(uploaded, view);
+  TargetPool targets(device);
+  const FrontTarget front(targets, options);
   const bool keepGreater = options.reversedZ != (options.backFace == BackFace::Farthest);
   const RenderTarget target(device, options.width, options.height,
                             {{VK_FORMAT_R32G32B32A32_SFLOAT, clearTo(0)}}, farDepth(keepGreater));
   const PlannedInputs planned{dispatch, frame, constants.handle()};
-  uploaded.draw(target, view, {FragmentShader::Transmit, VK_CULL_MODE_FRONT_BIT, nearer(keepGreater), false},
-                VK_CULL_MODE_FRONT_BIT, {&front.depthNormal(), &front.albedoObject(), &planned});
+  device.run([&](VkCommandBuffer commands) {
+    front.record(commands, uploaded, view);
+    uploaded.record(commands, target, view,
+                    {FragmentShader::Transmit, VK_CULL_MODE_FRONT_BIT, nearer(keepGreater), false},
+                    VK_CULL_MODE_FRONT_BIT, {&front.depthNormal(), &front.albedoObject(), &planned});
+  });
   return rgb(target.image(0).download());
 }
 

@@ -44,7 +44,7 @@ uint32_t addTable(const std::vector<double>& factors, FrameData& data) {
   return static_cast<uint32_t>(index + 1);
 }
 
-void addLight(const Light& light, const Origin& origin, const ShadowImages& images, FrameData& data) {
+void addLight(const Light& light, const Origin& origin, const FrameShape& shape, FrameData& data) {
   PellucidLight l = pellucidLight(light);
   l.angleTable = addTable(light.angleTable, data);
   l.distanceTable = addTable(light.distanceTable, data);
@@ -53,7 +53,8 @@ void addLight(const Light& light, const Origin& origin, const ShadowImages& imag
   l.shadowMapCount = static_cast<uint32_t>(light.shadowMaps.size());
   for (const ShadowMap& map : light.shadowMaps) {
     PellucidShadowMap s{};
-    const auto& [depth, exit, caster] = images.ofMap[data.shadowMaps.size()];
+    const auto& [images, extent] = shape.maps[data.shadowMaps.size()];
+    const auto& [depth, exit, caster] = images;
     s.image = static_cast<uint32_t>(depth);
     s.exitImage = static_cast<uint32_t>(exit + 1);
     s.casterMaterialImage = static_cast<uint32_t>(caster + 1);
@@ -64,8 +65,7 @@ void addLight(const Light& light, const Origin& origin, const ShadowImages& imag
     s.depthBiasSlope = static_cast<float>(map.depthBiasSlope);
     s.offsetLength = static_cast<float>(map.offsetLength);
     s.depthStep = static_cast<float>(map.depthStep);
-    s.extent[0] = static_cast<uint32_t>(map.depth.image.width);
-    s.extent[1] = static_cast<uint32_t>(map.depth.image.height);
+    for (std::size_t i = 0; i < 2; ++i) s.extent[i] = static_cast<uint32_t>(extent[i]);
     s.encoding = map.depth.encoding;
     copy(fromOrigin(map.clipFromWorld, origin), s.clipFromWorld);
     copy(fromOrigin(map.viewFromWorld.value_or(kIdentity), origin), s.viewFromWorld);
@@ -128,15 +128,15 @@ private:
   std::uintptr_t count_ = 0;
 };
 
-void fillPlaceholders(const Capture& capture, FrameData& data) {
+void fillPlaceholders(const FrameShape& shape, FrameData& data) {
   PellucidFrame& f = data.frame;
   Placeholders next;
   for (PellucidImage& map : data.shadowImages) map = next();
   f.frontDepth = next();
-  if (!capture.backDepth.image.empty()) f.backDepth = next();
+  if (shape.backDepth) f.backDepth = next();
   f.irradiance = next();
-  if (!capture.normal.empty()) f.normal = next();
-  if (!capture.albedo.empty()) f.albedo = next();
+  if (shape.normal) f.normal = next();
+  if (shape.albedo) f.albedo = next();
   f.material = next();
   f.output = f.separateOutput ? next() : f.irradiance;
   PellucidImageNeed needs[kMaxImageNeeds];
@@ -192,13 +192,32 @@ std::vector<PellucidMaterial> withTransmittance(std::vector<PellucidMaterial> ma
   return materials;
 }
 
+FrameShape shapeOf(const Capture& capture) {
+  FrameShape shape;
+  shape.backDepth = !capture.backDepth.image.empty();
+  shape.normal = !capture.normal.empty();
+  shape.albedo = !capture.albedo.empty();
+  const ShadowImages images = shadowImages(capture.lights);
+  shape.shadowImages = images.images.size();
+  for (const Light& light : capture.lights)
+    for (const ShadowMap& map : light.shadowMaps)
+      shape.maps.push_back(
+          {images.ofMap[shape.maps.size()], {map.depth.image.width, map.depth.image.height}});
+  return shape;
+}
+
 void makeFrame(const Capture& capture, const std::vector<PellucidMaterial>& materials,
                const ReplaySettings& settings, FrameData& data) {
+  makeFrame(capture, shapeOf(capture), materials, settings, data);
+}
+
+void makeFrame(const Capture& capture, const FrameShape& shape,
+               const std::vector<PellucidMaterial>& materials, const ReplaySettings& settings,
+               FrameData& data) {
   data.materials = withTransmittance(materials, settings.transmittance);
-  const ShadowImages images = shadowImages(capture.lights);
   const Origin origin = worldOrigin(capture);
-  for (const Light& light : capture.lights) addLight(light, origin, images, data);
-  data.shadowImages.resize(images.images.size());
+  for (const Light& light : capture.lights) addLight(light, origin, shape, data);
+  data.shadowImages.resize(shape.shadowImages);
 
   PellucidFrame& f = data.frame;
   pellucidInitFrame(&f);
@@ -246,7 +265,7 @@ void makeFrame(const Capture& capture, const std::vector<PellucidMaterial>& mate
   f.outputMode = settings.outputMode;
   f.preExposure = settings.preExposure;
   f.debugView = settings.debugView;
-  fillPlaceholders(capture, data);
+  fillPlaceholders(shape, data);
 }
 
 const PellucidImage& imageOf(const PellucidFrame& frame, uint32_t resource) {

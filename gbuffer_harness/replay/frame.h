@@ -1,6 +1,8 @@
 // Capture -> PellucidFrame: what an engine does with its own scene description.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <vector>
 
 #include "capture/capture.h"
@@ -65,6 +67,21 @@ struct FrameData {
   FrameData& operator=(const FrameData&) = delete;
 };
 
+// What a frame knows of its images besides their content.
+struct FrameShape {
+  struct Map {
+    // Indices into the frame's shadow images of depth, exit depth and caster material; -1: none.
+    std::array<int, 3> images = {-1, -1, -1};
+    std::array<int, 2> extent = {0, 0};  // texels, of the map's tile
+  };
+
+  bool backDepth = false, normal = false, albedo = false;
+  std::vector<Map> maps;  // of all lights, in their order
+  std::size_t shadowImages = 0;
+};
+
+FrameShape shapeOf(const Capture& capture);
+
 // What pellucidGetImageNeeds lists at most: transients and a history.
 inline constexpr uint32_t kMaxImageNeeds = PELLUCID_MAX_TRANSIENTS + 1;
 
@@ -72,6 +89,11 @@ inline constexpr uint32_t kMaxImageNeeds = PELLUCID_MAX_TRANSIENTS + 1;
 // so that the frame can be planned and validated without a device. `capture` must outlive `data`.
 void makeFrame(const Capture& capture, const std::vector<PellucidMaterial>& materials,
                const ReplaySettings& settings, FrameData& data);
+
+// Of a capture whose images are elsewhere, and as `shape` says.
+void makeFrame(const Capture& capture, const FrameShape& shape,
+               const std::vector<PellucidMaterial>& materials, const ReplaySettings& settings,
+               FrameData& data);
 
 // Without shadow maps and tables.
 PellucidLight pellucidLight(const Light& light);

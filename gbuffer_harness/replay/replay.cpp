@@ -22,80 +22,12 @@ double median(std::vector<double> values) {
 
 }  // namespace
 
-InputImages::InputImages(Device& device, const Capture& capture, const ReplaySettings& settings) {
-  frontDepth_ = add(device, capture.frontDepth.image, VK_FORMAT_R32_SFLOAT);
-  if (!capture.backDepth.image.empty())
-    backDepth_ = add(device, capture.backDepth.image, VK_FORMAT_R32_SFLOAT);
-  Image irradiance = capture.irradiance;
-  for (size_t i = 0; settings.preExposure != 1 && i < irradiance.data.size(); ++i)
-    if (irradiance.channels == 3 || i % 4 != 3) irradiance.data[i] *= settings.preExposure;
-  add(device, irradiance,
-      settings.irradianceFormat == VK_FORMAT_UNDEFINED ? settings.outputFormat : settings.irradianceFormat);
-  irradiance_ = images_.back().get();
-  if (!capture.normal.empty()) normal_ = add(device, capture.normal, settings.normalFormat);
-  if (!capture.albedo.empty()) albedo_ = add(device, capture.albedo, VK_FORMAT_R32G32B32A32_SFLOAT);
-  addMaterial(device, capture, settings);
-  const bool array = hasLayers(capture.lights);
-  for (const ShadowImageSource& source : shadowImages(capture.lights).images)
-    shadows_.push_back(add(device, source, array));
-}
-
-PellucidImage InputImages::add(Device& device, const ShadowImageSource& source, bool array) {
-  const bool caster = source.content == ShadowContent::Caster;
-  images_.push_back(std::make_unique<GpuImage>(device, source.width, source.height,
-                                               caster ? VK_FORMAT_R8_UNORM : VK_FORMAT_R32_SFLOAT, 0,
-                                               array ? source.layers : 0));
-  for (int layer = 0; layer < source.layers; ++layer) {
-    const Image image = source.layer(layer);
-    if (caster)
-      images_.back()->upload(std::vector<std::uint8_t>(image.data.begin(), image.data.end()), layer);
-    else
-      images_.back()->upload(image, layer);
-  }
-  return images_.back()->use();
-}
-
-PellucidImage InputImages::add(Device& device, const Image& image, VkFormat format) {
-  images_.push_back(std::make_unique<GpuImage>(device, image.width, image.height, format));
-  images_.back()->upload(image);
-  return images_.back()->use();
-}
-
-void InputImages::addMaterial(Device& device, const Capture& capture, const ReplaySettings& settings) {
-  const bool packed = settings.materialMask != 0;
-  images_.push_back(std::make_unique<GpuImage>(device, capture.width, capture.height,
-                                               packed ? VK_FORMAT_R32_UINT : VK_FORMAT_R8_UINT));
-  if (packed) {
-    std::vector<std::uint32_t> words(capture.material.size());
-    for (size_t i = 0; i < words.size(); ++i) {
-      const std::uint32_t noise = static_cast<std::uint32_t>(i) * 2654435761u + 12345u;  // Knuth's hash
-      words[i] = (noise & ~settings.materialMask) | std::uint32_t{capture.material[i]}
-                                                        << settings.materialShift;
-    }
-    images_.back()->upload(words);
-  } else {
-    images_.back()->upload(capture.material);
-  }
-  material_ = images_.back()->use();
-}
-
-void InputImages::bind(FrameData& data) const {
-  PellucidFrame& f = data.frame;
-  f.frontDepth = frontDepth_;
-  f.backDepth = backDepth_;
-  f.irradiance = irradiance_->use();
-  f.normal = normal_;
-  f.albedo = albedo_;
-  f.material = material_;
-  std::copy(shadows_.begin(), shadows_.end(), data.shadowImages.begin());
-}
-
 // The device images of one frame.
 class FrameRun::Images {
 public:
   Images(Device& device, const Capture& capture, const ReplaySettings& settings, FrameData& data,
-         std::shared_ptr<const InputImages> inputs, const Images* previous)
-      : device_(device), inputs_(std::move(inputs)) {
+         std::shared_ptr<const InputImages> inputs, const Images* previous, ImagePool* pool)
+      : device_(device), pool_(pool), inputs_(std::move(inputs)) {
     const bool shared = inputs_ != nullptr;
     if (!shared) inputs_ = std::make_shared<InputImages>(device, capture, settings);
     inputs_->bind(data);
@@ -129,7 +61,7 @@ public:
       }
       GpuImage& image =
           create(static_cast<int>(needs[i].extent[0]), static_cast<int>(needs[i].extent[1]), needs[i].format);
-      image.clear(0xFF);  // brings it into GENERAL; what it holds must not matter
+      if (!pool) image.clear(0xFF);  // brings it into GENERAL; what it holds must not matter
       transients_.push_back(&image);
       f.transients[i] = image.use();
     }
@@ -146,7 +78,7 @@ public:
     }
   }
   void uploadOutput(const Image& content) const { output_->upload(content); }
-  Image output() const { return output_->download(); }
+  const GpuImage& output() const { return *output_; }
   Image irradiance() const { return inputs_->irradiance().download(); }
   void restoreIrradiance(const Capture& capture) const {
     if (outputIsIrradiance_) inputs_->irradiance().upload(capture.irradiance);
@@ -154,7 +86,8 @@ public:
 
 private:
   GpuImage& create(int width, int height, VkFormat format) {
-    images_.push_back(std::make_unique<GpuImage>(device_, width, height, format));
+    images_.push_back(pool_ ? pool_->take(width, height, format)
+                            : std::make_shared<GpuImage>(device_, width, height, format));
     return *images_.back();
   }
   static Image composited(const Capture& capture) {
@@ -166,8 +99,9 @@ private:
   }
 
   Device& device_;
+  ImagePool* pool_;
   std::shared_ptr<const InputImages> inputs_;
-  std::vector<std::unique_ptr<GpuImage>> images_;
+  std::vector<std::shared_ptr<GpuImage>> images_;
   std::vector<GpuImage*> transients_;
   GpuImage* output_ = nullptr;
   bool outputIsIrradiance_ = false;
@@ -227,19 +161,19 @@ FrameRun::FrameRun(Device& device, const Context& context, const Capture& captur
     : context_(context), name_(capture.name), plan_(std::make_unique<PellucidPlan>()) {
   makeFrame(capture, materials, settings, data_);
   images_ = std::make_unique<Images>(device, capture, settings, data_, nullptr,
-                                     previous ? previous->images_.get() : nullptr);
+                                     previous ? previous->images_.get() : nullptr, nullptr);
   plan(device, previous ? previous->plan_.get() : nullptr);
 }
 
 FrameRun::FrameRun(Device& device, const Context& context, const Capture& capture,
                    const std::vector<PellucidMaterial>& materials, const ReplaySettings& settings,
-                   std::shared_ptr<const InputImages> inputs, const FrameRun* previous)
+                   std::shared_ptr<const InputImages> inputs, const FrameRun* previous, ImagePool* pool)
     : context_(context), name_(capture.name), plan_(std::make_unique<PellucidPlan>()) {
-  makeFrame(capture, materials, settings, data_);
+  makeFrame(capture, inputs->shape(), materials, settings, data_);
   if (!data_.frame.separateOutput)
     throw InputError(name_, "aliasOutput", "the inputs are other frames', too");
   images_ = std::make_unique<Images>(device, capture, settings, data_, std::move(inputs),
-                                     previous ? previous->images_.get() : nullptr);
+                                     previous ? previous->images_.get() : nullptr, pool);
   plan(device, previous ? previous->plan_.get() : nullptr);
 }
 
@@ -295,7 +229,9 @@ std::uint64_t FrameRun::groupsRun(std::uint32_t dispatch) const {
   return std::uint64_t{ran.x} * ran.y * ran.z;
 }
 
-Image FrameRun::output() const { return images_->output(); }
+Image FrameRun::output() const { return images_->output().download(); }
+
+Image FrameRun::output(const VkRect2D& rect) const { return images_->output().download(rect); }
 
 Image FrameRun::irradiance() const { return images_->irradiance(); }
 

@@ -7,12 +7,11 @@
 #include <vector>
 
 #include "common/device.h"
-#include "common/gpu_image.h"
+#include "common/pool.h"
 #include "replay/frame.h"
+#include "replay/inputs.h"
 
 namespace pellucid::harness {
-
-struct ShadowImageSource;
 
 // The module's defaults for a context on the device.
 PellucidContextDesc contextDesc(const Device& device);
@@ -51,26 +50,6 @@ private:
   std::unique_ptr<Context> others_[4];  // made when first asked for
 };
 
-// What frames of one capture read, on the device.
-class InputImages {
-public:
-  // As settings say: formats, material bits, pre-exposure. The capture is not needed afterwards.
-  InputImages(Device& device, const Capture& capture, const ReplaySettings& settings);
-
-  void bind(FrameData& data) const;
-  GpuImage& irradiance() const { return *irradiance_; }
-
-private:
-  PellucidImage add(Device& device, const Image& image, VkFormat format);
-  void addMaterial(Device& device, const Capture& capture, const ReplaySettings& settings);
-  PellucidImage add(Device& device, const ShadowImageSource& source, bool array);
-
-  std::vector<std::unique_ptr<GpuImage>> images_;
-  GpuImage* irradiance_ = nullptr;
-  PellucidImage frontDepth_{}, backDepth_{}, normal_{}, albedo_{}, material_{};
-  std::vector<PellucidImage> shadows_;
-};
-
 // One capture on the device, planned and ready to record as often as wanted.
 class FrameRun {
 public:
@@ -80,11 +59,13 @@ public:
   FrameRun(Device& device, const Context& context, const Capture& capture,
            const std::vector<PellucidMaterial>& materials, const ReplaySettings& settings,
            const FrameRun* previous = nullptr);
-  // The same with inputs that other frames of this capture read, too: not where settings.aliasOutput makes
-  // the irradiance the output. Pixels that the pass does not write hold 0.
+  // The same with inputs that other frames read, too: not where settings.aliasOutput makes the irradiance the
+  // output. Pixels that the pass does not write hold 0. The capture's own images are not read. `pool`: lends
+  // images; null: they are the run's own.
   FrameRun(Device& device, const Context& context, const Capture& capture,
            const std::vector<PellucidMaterial>& materials, const ReplaySettings& settings,
-           std::shared_ptr<const InputImages> inputs, const FrameRun* previous = nullptr);
+           std::shared_ptr<const InputImages> inputs, const FrameRun* previous = nullptr,
+           ImagePool* pool = nullptr);
   ~FrameRun();
 
   const PellucidPlan& plan() const { return *plan_; }
@@ -109,9 +90,10 @@ public:
   // Content of an output that is not the irradiance before the first recording.
   void uploadOutput(const Image& content) const;
 
-  // RGBA. Outside the rect and at material 0: irradiance times albedo, as an engine that composites in
-  // place would have there; 0 for debug views.
+  // RGBA, of packed floats RGB. Outside the rect and at material 0: irradiance times albedo, as an engine
+  // that composites in place would have there; 0 for debug views.
   Image output() const;
+  Image output(const VkRect2D& rect) const;  // of a part
   // RGBA of the irradiance in its format, which an output that is the irradiance replaces.
   Image irradiance() const;
 

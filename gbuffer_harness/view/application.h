@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "view/frame_times.h"
 #include "view/source.h"
 #include "view/state.h"
 
@@ -43,9 +44,10 @@ struct ApplicationOptions {
 };
 
 struct ApplicationReport {
-  std::string device;              // its description
-  int frames = 0;                  // of the screen that were drawn
-  std::uint64_t recorded = 0;      // of the module
+  std::string device;          // its description
+  int frames = 0;              // of the screen that were drawn
+  std::uint64_t recorded = 0;  // of the module
+  MovingTimes moving;
   std::vector<std::string> saved;  // files
 };
 

@@ -10,6 +10,12 @@ constexpr double kNewShare = 0.109;  // 1 - 2^(-1/6)
 
 }  // namespace
 
+double sumOf(const std::vector<DispatchTime>& times) {
+  double sum = 0;
+  for (const DispatchTime& time : times) sum += time.microseconds;
+  return sum;
+}
+
 bool CostHistory::add(std::uint64_t frame, const std::vector<DispatchTime>& times) {
   if (frame == last_) return false;
   last_ = frame;

@@ -12,6 +12,8 @@
 
 namespace pellucid::harness {
 
+double sumOf(const std::vector<DispatchTime>& times);  // microseconds
+
 class CostHistory {
 public:
   // GPU times of one frame; `frame` counts recordings. False: that one was added before, and is not again.

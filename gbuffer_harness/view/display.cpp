@@ -87,7 +87,7 @@ void DisplayPass::draw(VkCommandBuffer commandBuffer, const ViewFrames& frames, 
 void DisplayPass::draw(VkCommandBuffer commandBuffer, const ViewFrames& frames, const Display& display,
                        Shown shown, const ScreenRect& picture, const ScreenRect& clip, float low,
                        float high) const {
-  const Capture& capture = frames.capture();
+  const Capture& capture = frames.outline();
   Push push{};
   push.origin[0] = picture.x;
   push.origin[1] = picture.y;

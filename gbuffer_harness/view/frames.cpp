@@ -14,26 +14,35 @@ namespace pellucid::harness {
 
 namespace {
 
-// Irradiance times albedo, as an image of the format holds it: what a replay leaves where no material is.
+// Of an output, which has an alpha in most formats.
+Image rgbOf(Image output) { return output.channels == 3 ? output : rgb(output); }
+
+// RGB as an image of the format holds it.
+void store(float* rgb, VkFormat format) {
+  if (format == VK_FORMAT_R16G16B16A16_SFLOAT)
+    for (int c = 0; c < 3; ++c) rgb[c] = glm::unpackHalf1x16(glm::packHalf1x16(rgb[c]));
+  if (format != VK_FORMAT_B10G11R11_UFLOAT_PACK32) return;
+  const glm::vec3 packed = glm::unpackF2x11_1x10(glm::packF2x11_1x10({rgb[0], rgb[1], rgb[2]}));
+  for (int c = 0; c < 3; ++c) rgb[c] = packed[c];
+}
+
+// Irradiance times albedo: what a replay leaves where no material is.
 Image composited(const Capture& capture, VkFormat format) {
   Image result = capture.irradiance;
-  for (std::size_t i = 0; i < result.data.size(); ++i) {
-    if (!capture.albedo.empty()) result.data[i] *= capture.albedo.data[i];
-    if (format == VK_FORMAT_R16G16B16A16_SFLOAT)
-      result.data[i] = glm::unpackHalf1x16(glm::packHalf1x16(result.data[i]));
-  }
+  for (std::size_t i = 0; i < capture.albedo.data.size(); ++i) result.data[i] *= capture.albedo.data[i];
+  for (std::size_t i = 0; i < result.pixels(); ++i) store(&result.data[3 * i], format);
   return result;
 }
 
-Image coveredTiles(const Capture& capture) {
+Image coveredTiles(int width, int height, const std::vector<std::uint8_t>& material) {
   constexpr int kTile = PELLUCID_TILE;
-  Image result(capture.width, capture.height, 1);
-  for (int top = 0; top < capture.height; top += kTile)
-    for (int left = 0; left < capture.width; left += kTile) {
-      const int bottom = std::min(top + kTile, capture.height), right = std::min(left + kTile, capture.width);
+  Image result(width, height, 1);
+  for (int top = 0; top < height; top += kTile)
+    for (int left = 0; left < width; left += kTile) {
+      const int bottom = std::min(top + kTile, height), right = std::min(left + kTile, width);
       int covered = 0;
       for (int y = top; y < bottom; ++y)
-        for (int x = left; x < right; ++x) covered += capture.material[pixelIndex(result, x, y)] != 0;
+        for (int x = left; x < right; ++x) covered += material[pixelIndex(result, x, y)] != 0;
       const float part = static_cast<float>(covered) / static_cast<float>((bottom - top) * (right - left));
       for (int y = top; y < bottom; ++y)
         std::fill(result.at(left, y), result.at(left, y) + (right - left), part);
@@ -41,11 +50,26 @@ Image coveredTiles(const Capture& capture) {
   return result;
 }
 
-template <class Function>
-Image combined(const Image& a, const Image& b, const Function& of) {
-  Image result = a;
-  for (std::size_t i = 0; i < result.data.size(); ++i) result.data[i] = of(a.data[i], b.data[i]);
-  return result;
+// Of one pixel, whatever the others hold.
+bool isOfOnePixel(Shown shown) { return shown != Shown::Tiles && shown != Shown::Isolated; }
+
+VkRect2D rectOf(int x, int y, int width, int height) {
+  return {{x, y}, {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)}};
+}
+
+// Of an image that the host has.
+Image partOf(const Image& image, const VkRect2D& rect) {
+  Image part(static_cast<int>(rect.extent.width), static_cast<int>(rect.extent.height), image.channels);
+  for (int y = 0; y < part.height; ++y)
+    std::copy_n(image.at(rect.offset.x, rect.offset.y + y), part.width * part.channels, part.at(0, y));
+  return part;
+}
+
+double coveredPartOf(const Scene& scene) {
+  const Capture& capture = scene.capture;
+  const double pixels = static_cast<double>(capture.width) * capture.height;
+  if (scene.drawn) return scene.drawn->counts().material / pixels;
+  return 1 - static_cast<double>(std::count(capture.material.begin(), capture.material.end(), 0)) / pixels;
 }
 
 // Names the frame whose output or inputs a picture shows.
@@ -57,18 +81,18 @@ Shown hostImageOf(Shown shown) { return shown == Shown::Difference ? Shown::Trut
 }  // namespace
 
 ViewFrames::ViewFrames(Device& device, Contexts& contexts, Source& source)
-    : device_(device), source_(source), contexts_(contexts) {}
+    : device_(device), source_(source), contexts_(contexts), pool_(device) {}
 
-ViewFrames::Frame ViewFrames::make(const ViewState& state, Shown shown, const Capture& capture,
+ViewFrames::Frame ViewFrames::make(const ViewState& state, Shown shown, const Capture& outline,
                                    const std::vector<PellucidMaterial>& materials,
-                                   const std::shared_ptr<const InputImages>& inputs) const {
+                                   const std::shared_ptr<const InputImages>& inputs) {
   const auto before = runs_.find(shown);
-  const bool goesOn = before != runs_.end() && !forget_ && capture.width == capture_.width &&
-                      capture.height == capture_.height;
+  const bool goesOn = before != runs_.end() && !forget_ && outline.width == this->outline().width &&
+                      outline.height == this->outline().height;
   Frame frame;
-  frame.run = std::make_shared<const FrameRun>(device_, contexts_.of(capture), capture, materials,
+  frame.run = std::make_shared<const FrameRun>(device_, contexts_.of(outline), outline, materials,
                                                settingsFor(state, shown), inputs,
-                                               goesOn ? before->second.get() : nullptr);
+                                               goesOn ? before->second.get() : nullptr, &pool_);
   const PellucidPlan& plan = frame.run->plan();
   const Timestamps timestamps(device_, plan.dispatchCount + 1);
   device_.run([&](VkCommandBuffer commandBuffer) {
@@ -91,12 +115,13 @@ void ViewFrames::update(const ViewState& state, const Changes& changes) {
   const bool compile = changes.materials || !inputs_;
   const bool frames = upload || compile || changes.frame;
   const auto start = std::chrono::steady_clock::now();
-  std::optional<Capture> rendered;
-  std::vector<std::string> warnings;
-  if (scene) rendered = source_.render(state, warnings);
-  const Capture& capture = rendered ? *rendered : capture_;
+  std::optional<Scene> rendered;
+  if (scene) rendered = source_.render(state);
+  const Scene& seen = rendered ? *rendered : scene_;
   const std::shared_ptr<const InputImages> inputs =
-      upload ? std::make_shared<const InputImages>(device_, capture, state.settings) : inputs_;
+      !upload      ? inputs_
+      : seen.drawn ? seen.drawn->inputs(state.settings)
+                   : std::make_shared<const InputImages>(device_, seen.capture, state.settings);
   const double milliseconds =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   std::vector<PellucidMaterial> materials = materials_;
@@ -109,8 +134,9 @@ void ViewFrames::update(const ViewState& state, const Changes& changes) {
   const auto need = [&](Shown shown) {
     const Shown of = frameOf(shown);
     if ((frames || runs_.count(of) == 0) && made.count(of) == 0)
-      made[of] = make(state, of, capture, materials, inputs);
+      made[of] = make(state, of, seen.capture, materials, inputs);
   };
+  if (frames) pool_.nextFrame();
   need(Shown::After);
   need(state.display.shown);
   if (state.display.split) need(state.display.left);
@@ -129,11 +155,12 @@ void ViewFrames::update(const ViewState& state, const Changes& changes) {
     forget_ = false;
   }
   if (scene) {
-    capture_ = std::move(*rendered);
-    warnings_ = std::move(warnings);
+    scene_ = std::move(*rendered);
+    hasSurfaces_ = hasMaps_ = hasMaterial_ = !scene_.drawn;
+    coveredPart_ = coveredPartOf(scene_);
     sceneMilliseconds_ = milliseconds;
   }
-  capture_.materials = state.materials;
+  scene_.capture.materials = state.materials;
   inputs_ = inputs;
   format_ = state.settings.outputFormat;
   uploadHostImage(state.display.shown);
@@ -143,10 +170,10 @@ void ViewFrames::update(const ViewState& state, const Changes& changes) {
 void ViewFrames::uploadHostImage(Shown shown) {
   shown = hostImageOf(shown);
   const bool isHosts =
-      shown == Shown::Tiles || shown == Shown::Isolated || (shown == Shown::Truth && capture_.truth);
+      shown == Shown::Tiles || shown == Shown::Isolated || (shown == Shown::Truth && outline().truth);
   if (!isHosts || hostImages_.count(shown) > 0) return;
   auto image =
-      std::make_unique<GpuImage>(device_, capture_.width, capture_.height, VK_FORMAT_R32G32B32A32_SFLOAT);
+      std::make_unique<GpuImage>(device_, outline().width, outline().height, VK_FORMAT_R32G32B32A32_SFLOAT);
   image->upload(this->image(shown));
   hostImages_[shown] = std::move(image);
 }
@@ -161,66 +188,120 @@ const FrameRun& ViewFrames::run(Shown shown) const {
   return *(found != runs_.end() ? found : runs_.find(Shown::After))->second;
 }
 
+const Capture& ViewFrames::surfaces() const {
+  if (!hasSurfaces_) {
+    Capture& capture = scene_.capture;
+    Capture downloaded = scene_.drawn->surfaces(rectOf(0, 0, capture.width, capture.height));
+    downloaded.lights = std::move(capture.lights);
+    downloaded.materials = std::move(capture.materials);
+    capture = std::move(downloaded);
+    hasSurfaces_ = hasMaterial_ = true;
+  }
+  return scene_.capture;
+}
+
+const Capture& ViewFrames::capture() const {
+  surfaces();
+  if (!hasMaps_) scene_.capture.lights = scene_.drawn->lights();
+  hasMaps_ = true;
+  return scene_.capture;
+}
+
+const std::vector<std::uint8_t>& ViewFrames::material() const {
+  if (!hasMaterial_) scene_.capture.material = scene_.drawn->material();
+  hasMaterial_ = true;
+  return scene_.capture.material;
+}
+
+const std::vector<DispatchTime>& ViewFrames::sceneTimes() const {
+  static const std::vector<DispatchTime> kNone;
+  return scene_.drawn ? scene_.drawn->times() : kNone;
+}
+
 const Image& ViewFrames::image(Shown shown) const {
   const auto found = images_.find(shown);
   return found != images_.end() ? found->second : images_.emplace(shown, made(shown)).first->second;
 }
 
+std::vector<float> ViewFrames::value(Shown shown, int x, int y) const {
+  const VkRect2D rect = rectOf(x, y, 1, 1);
+  const bool isHosts = hasSurfaces_ || images_.count(shown) > 0 || !isOfOnePixel(shown);
+  if (isHosts) return partOf(image(shown), rect).data;
+  return pixels(shown, scene_.drawn->surfaces(rect), rect).data;
+}
+
 Image ViewFrames::made(Shown shown) const {
+  const int width = outline().width, height = outline().height;
+  switch (shown) {
+    case Shown::Tiles:
+      return coveredTiles(width, height, material());
+    case Shown::Isolated: {
+      const std::vector<std::uint8_t> marks =
+          findIsolated(image(Shown::After), Surfaces(surfaces()), material()).marks;
+      Image result(width, height, 1);
+      std::copy(marks.begin(), marks.end(), result.data.begin());
+      return result;
+    }
+    default:
+      return pixels(shown, surfaces(), rectOf(0, 0, width, height));
+  }
+}
+
+// `surfaces`: of the pixels in `rect`.
+Image ViewFrames::pixels(Shown shown, const Capture& surfaces, const VkRect2D& rect) const {
+  const std::vector<std::uint8_t>& material = surfaces.material;
+  const Image& irradiance = surfaces.irradiance;
+  const int width = irradiance.width, height = irradiance.height;
   switch (shown) {
     case Shown::After: {
       const FrameRun& frame = run(shown);
-      const Image output = frame.output();
-      Image result = composited(capture_, frame.frame().outputFormat);
+      const Image output = rgbOf(frame.output(rect));
+      Image result = composited(surfaces, frame.frame().outputFormat);
       for (std::size_t i = 0; i < result.pixels(); ++i)
-        if (capture_.material[i] != 0) std::copy_n(&output.data[4 * i], 3, &result.data[3 * i]);
+        if (material[i] != 0) std::copy_n(&output.data[3 * i], 3, &result.data[3 * i]);
       return result;
     }
     case Shown::Before:
-      return composited(capture_, VK_FORMAT_R32G32B32A32_SFLOAT);
+      return composited(surfaces, VK_FORMAT_R32G32B32A32_SFLOAT);
     case Shown::Through: {
-      Image result = rgb(run(shown).output());
-      const Image& before = image(Shown::Before);
+      Image result = rgbOf(run(shown).output(rect));
+      const Image before = pixels(Shown::Before, surfaces, rect);
       for (std::size_t i = 0; i < result.pixels(); ++i)
         for (std::size_t c = 0; c < 3; ++c) {
           float& value = result.data[3 * i + c];
-          value = capture_.material[i] != 0 ? std::max(value - before.data[3 * i + c], 0.0f) : 0;
+          value = material[i] != 0 ? std::max(value - before.data[3 * i + c], 0.0f) : 0;
         }
       return result;
     }
-    case Shown::Difference:
-      return combined(image(Shown::After), image(capture_.truth ? Shown::Truth : Shown::Before),
-                      [](float a, float b) { return std::abs(a - b); });
+    case Shown::Difference: {
+      Image result = pixels(Shown::After, surfaces, rect);
+      const Image other = pixels(outline().truth ? Shown::Truth : Shown::Before, surfaces, rect);
+      for (std::size_t i = 0; i < result.data.size(); ++i)
+        result.data[i] = std::abs(result.data[i] - other.data[i]);
+      return result;
+    }
     case Shown::Truth:
-      return capture_.truth ? capture_.truth->image : Image(capture_.width, capture_.height, 3);
+      return outline().truth ? partOf(outline().truth->image, rect) : Image(width, height, 3);
     case Shown::Debug:
-      return rgb(run(shown).output());
+      return rgbOf(run(shown).output(rect));
     case Shown::FrontDepth:
-      return capture_.frontDepth.image;
+      return surfaces.frontDepth.image;
     case Shown::Normal: {
-      if (capture_.normal.empty()) return Image(capture_.width, capture_.height, 3);
-      Image result = capture_.normal;
+      if (surfaces.normal.empty()) return Image(width, height, 3);
+      Image result = surfaces.normal;
       for (float& n : result.data) n = 0.5f * n + 0.5f;
       return result;
     }
     case Shown::Albedo:
-      return capture_.albedo.empty() ? Image(capture_.width, capture_.height, 3, 1.0f) : capture_.albedo;
+      return surfaces.albedo.empty() ? Image(width, height, 3, 1.0f) : surfaces.albedo;
     case Shown::Material: {
-      Image result(capture_.width, capture_.height, 1);
-      std::copy(capture_.material.begin(), capture_.material.end(), result.data.begin());
+      Image result(width, height, 1);
+      std::copy(material.begin(), material.end(), result.data.begin());
       return result;
     }
-    case Shown::Tiles:
-      return coveredTiles(capture_);
-    case Shown::Isolated: {
-      const std::vector<std::uint8_t> marks =
-          findIsolated(image(Shown::After), Surfaces(capture_), capture_.material).marks;
-      Image result(capture_.width, capture_.height, 1);
-      std::copy(marks.begin(), marks.end(), result.data.begin());
-      return result;
-    }
+    default:  // whole images alone
+      return {};
   }
-  return {};
 }
 
 }  // namespace pellucid::harness

@@ -22,9 +22,16 @@ public:
   // frames stay as they were.
   void update(const ViewState& state, const Changes& changes);
 
-  const Capture& capture() const { return capture_; }
+  // Size, lights and materials; images, where the scene is not on the device, and the truth.
+  const Capture& outline() const { return scene_.capture; }
+  // With all images; with those of the surfaces alone; the material. Downloaded when they are first asked
+  // for.
+  const Capture& capture() const;
+  const Capture& surfaces() const;
+  const std::vector<std::uint8_t>& material() const;
   const std::vector<PellucidMaterial>& materials() const { return materials_; }  // with their own T(d)
-  const std::vector<std::string>& warnings() const { return warnings_; }
+  const std::vector<std::string>& warnings() const { return scene_.warnings; }
+  double coveredPart() const { return coveredPart_; }  // of the pixels that have a material
 
   // The frame whose output is looked at; what shows inputs has that of Shown::After.
   const FrameRun& run(Shown shown) const;
@@ -35,10 +42,14 @@ public:
   // The shown picture before exposure: RGB, or one channel or three for false colors. Pixels without a
   // material: as a replay has them.
   const Image& image(Shown shown) const;
+  // One texel of image(), one or three channels, for which no more than texels go to the host where it can
+  // be.
+  std::vector<float> value(Shown shown, int x, int y) const;
 
-  // Times of the last recording of Shown::After, by the GPU's clock.
+  // Times of the last recording of Shown::After, and of drawing the scene, by the GPU's clock.
   const std::vector<DispatchTime>& times() const { return times_; }
-  // Wall-clock time of the last source.render() and upload.
+  const std::vector<DispatchTime>& sceneTimes() const;  // empty for scenes that the host makes
+  // Wall-clock time of the last source.render() and of handing it over.
   double sceneMilliseconds() const { return sceneMilliseconds_; }
   // How often Shown::After was recorded.
   std::uint64_t recorded() const { return recorded_; }
@@ -51,18 +62,21 @@ private:
     std::shared_ptr<const FrameRun> run;
     std::vector<DispatchTime> times;
   };
-  Frame make(const ViewState& state, Shown shown, const Capture& capture,
+  Frame make(const ViewState& state, Shown shown, const Capture& outline,
              const std::vector<PellucidMaterial>& materials,
-             const std::shared_ptr<const InputImages>& inputs) const;
+             const std::shared_ptr<const InputImages>& inputs);
   Image made(Shown shown) const;
+  Image pixels(Shown shown, const Capture& surfaces, const VkRect2D& rect) const;
   void uploadHostImage(Shown shown);
 
   Device& device_;
   Source& source_;
   Contexts& contexts_;
-  Capture capture_;
+  ImagePool pool_;
+  mutable Scene scene_;  // its images are downloaded into the capture
+  mutable bool hasSurfaces_ = false, hasMaps_ = false, hasMaterial_ = false;
+  double coveredPart_ = 0;
   std::vector<PellucidMaterial> materials_;
-  std::vector<std::string> warnings_;
   std::shared_ptr<const InputImages> inputs_;
   std::map<Shown, std::unique_ptr<GpuImage>> hostImages_;
   std::map<Shown, std::shared_ptr<const FrameRun>> runs_;  // of After, Through and Debug

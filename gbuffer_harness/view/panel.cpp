@@ -121,7 +121,7 @@ Changes drawDisplay(ViewState& state, const PanelState& panel, const ViewFrames&
   int tone = static_cast<int>(display.toneMap);
   changes.shown |= combo("tone mapping", tone, toneMapNames());
   display.toneMap = static_cast<ToneMap>(tone);
-  const Capture& capture = frames.capture();
+  const Capture& capture = frames.outline();  // whole, as those of all truths are
   if (!capture.truth) return changes;
   const Comparison error = compareImages(frames.image(Shown::After), capture.truth->image, capture.material);
   ImGui::Text("relative RMSE from the truth: %.4f %.4f %.4f", error.channels[0].relativeRmse,
@@ -246,16 +246,14 @@ void drawOverlay(const ViewState& state, const PanelState& panel, const ViewFram
     text(legend.x, legend.y - 20, ends[0]);
     text(legend.x, legend.y + legend.height + 6, ends[1]);
   }
-  const Capture& capture = frames.capture();
+  const Capture& capture = frames.outline();
   const auto texel = texelAt(picture, capture.width, capture.height, cursorX, cursorY);
   if (!texel) return;
   const Shown shown = display.split && cursorX < split ? display.left : display.shown;
-  const Image& image = frames.image(shown);
-  const float* const value = image.at(texel->x, texel->y);
   std::string words = name(shown) + " at " + std::to_string(texel->x) + ", " + std::to_string(texel->y) + ":";
-  for (int c = 0; c < image.channels; ++c) {
+  for (const float value : frames.value(shown, texel->x, texel->y)) {
     char number[32];
-    std::snprintf(number, sizeof number, " %.4g", static_cast<double>(value[c]));
+    std::snprintf(number, sizeof number, " %.4g", static_cast<double>(value));
     words += number;
   }
   text(picture.x + 8, picture.y + picture.height - 22, words);

@@ -84,11 +84,6 @@ void plotStack(const CostHistory& cost, double budget) {
   list->AddText({frame.low.x + 3, frame.low.y + 1}, IM_COL32(255, 255, 255, 200), top);
 }
 
-double coveredPart(const Capture& capture) {
-  const auto empty = std::count(capture.material.begin(), capture.material.end(), 0);
-  return 1 - static_cast<double>(empty) / static_cast<double>(capture.material.size());
-}
-
 }  // namespace
 
 void drawCurves(const ViewState& state, const ViewFrames& frames) {
@@ -108,8 +103,12 @@ Changes drawCost(ViewState& state, PanelState& panel, const ViewFrames& frames) 
   if (!ImGui::CollapsingHeader("GPU time", ImGuiTreeNodeFlags_DefaultOpen)) return changes;
   const PellucidPlan& plan = frames.run(Shown::After).plan();
   ImGui::Text("%.3f ms in %u dispatches; material covers %.1f %%", panel.cost.smoothedSum() / 1000,
-              plan.dispatchCount, 100 * coveredPart(frames.capture()));
-  ImGui::Text("scene: %.1f ms on the CPU's clock", frames.sceneMilliseconds());
+              plan.dispatchCount, 100 * frames.coveredPart());
+  ImGui::Text("scene: %.2f ms on the CPU's clock", frames.sceneMilliseconds());
+  if (!frames.sceneTimes().empty()) {
+    ImGui::SameLine();
+    ImGui::Text("of them rasterizer: %.3f ms", sumOf(frames.sceneTimes()) / 1000);
+  }
   plotStack(panel.cost, panel.budget.on ? 1000 * static_cast<double>(panel.budget.milliseconds) : 0);
   for (std::size_t k = 0; k < panel.cost.dispatches().size(); ++k) {
     const CostHistory::Dispatch& dispatch = panel.cost.dispatches()[k];

@@ -15,7 +15,7 @@ FalseColors falseColorsOf(const Display& display, const ViewFrames& frames) {
   const std::optional<Shown> shown = falseColored(display);
   if (!shown || display.falseLow != display.falseHigh) return {display.falseLow, display.falseHigh};
   const Image& image = frames.image(*shown);
-  const std::vector<std::uint8_t>& material = frames.capture().material;
+  const std::vector<std::uint8_t>& material = frames.material();
   const auto channels = static_cast<std::size_t>(image.channels);
   const std::size_t channel = std::min(static_cast<std::size_t>(display.channel), channels - 1);
   float low = INFINITY, high = -INFINITY;

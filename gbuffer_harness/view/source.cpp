@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "metrics/masked_image.h"
-#include "raster/draw.h"
+#include "raster/rasterizer.h"
 #include "reference/camera.h"
 #include "scene/model.h"
 #include "scene/render.h"
@@ -32,11 +32,7 @@ std::vector<Light> lit(const std::vector<ViewLight>& lights) {
 class ModelSource : public Source {
 public:
   ModelSource(Device& device, Model model, const ModelCamera& camera, const RasterOptions& raster)
-      : device_(device),
-        model_(std::move(model)),
-        raster_(raster),
-        bounds_(boundsOf(model_)),
-        uploaded_(device, model_) {
+      : model_(std::move(model)), raster_(raster), bounds_(boundsOf(model_)), rasterizer_(device, model_) {
     start_.width = raster.width;
     start_.height = raster.height;
     start_.camera = {camera, bounds_.center};
@@ -48,23 +44,21 @@ public:
   Vector3 center() const override { return bounds_.center; }
   double radius() const override { return bounds_.radius; }
 
-  Capture render(const ViewState& state, std::vector<std::string>& warnings) override {
+  Scene render(const ViewState& state) override {
     RasterOptions options = raster_;
     options.width = state.width;
     options.height = state.height;
     model_.lights = lit(state.lights);
     model_.materials = state.materials;
-    RasterResult result = rasterize(device_, model_, uploaded_, state.camera.lens, options);
-    warnings = std::move(result.warnings);
-    return std::move(result.capture);
+    std::shared_ptr<const DrawnFrame> drawn = rasterizer_.draw(state.camera.lens, options);
+    return {drawn->outline(), drawn, drawn->warnings()};
   }
 
 private:
-  Device& device_;
   Model model_;
   RasterOptions raster_;
   Bounds bounds_;
-  UploadedModel uploaded_;  // of model_
+  Rasterizer rasterizer_;  // of model_
   ViewState start_;
 };
 
@@ -101,8 +95,7 @@ public:
     return scene_.paint ? "this scene has a painted irradiance, and no lights" : "";
   }
 
-  Capture render(const ViewState& state, std::vector<std::string>& warnings) override {
-    warnings.clear();
+  Scene render(const ViewState& state) override {
     parameters_.width = state.width;
     parameters_.height = state.height;
     const ModelCamera& lens = state.camera.lens;
@@ -116,7 +109,7 @@ public:
                                      : perspective(lens.verticalFov, aspect, scene_.camera.range);
     if (!scene_.paint) scene_.lights = lit(state.lights);
     scene_.materials = state.materials;
-    return renderCapture(scene_, parameters_, nullptr);
+    return {renderCapture(scene_, parameters_, nullptr), nullptr, {}};
   }
 
 private:
@@ -147,8 +140,7 @@ public:
            "maps were drawn";
   }
 
-  Capture render(const ViewState& state, std::vector<std::string>& warnings) override {
-    warnings.clear();
+  Scene render(const ViewState& state) override {
     Capture capture = capture_;
     capture.materials = state.materials;
     capture.lights.clear();
@@ -157,7 +149,7 @@ public:
       capture.lights.push_back(state.lights[i].light);
       if (i < maps_.size()) capture.lights.back().shadowMaps = maps_[i];
     }
-    return capture;
+    return {std::move(capture), nullptr, {}};
   }
 
 private:

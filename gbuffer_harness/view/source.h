@@ -7,11 +7,18 @@
 
 #include "capture/capture.h"
 #include "common/device.h"
-#include "raster/raster.h"
+#include "raster/drawn_frame.h"
 #include "scene/scene.h"
 #include "view/state.h"
 
 namespace pellucid::harness {
+
+// What a source makes of a state.
+struct Scene {
+  Capture capture;                          // without the images that `drawn` has
+  std::shared_ptr<const DrawnFrame> drawn;  // null: the capture is whole
+  std::vector<std::string> warnings;        // sentences for a person
+};
 
 class Source {
 public:
@@ -19,8 +26,8 @@ public:
 
   virtual ViewState start() const = 0;  // as it is opened: size, camera, lights, materials
 
-  // The capture of the state. Throws what the maker of captures throws. `warnings` receives sentences.
-  virtual Capture render(const ViewState& state, std::vector<std::string>& warnings) = 0;
+  // Throws what the maker of captures throws.
+  virtual Scene render(const ViewState& state) = 0;
 
   virtual Vector3 center() const = 0;  // world; what lights are dragged round
   virtual double radius() const = 0;   // scene units, > 0
@@ -31,8 +38,8 @@ public:
   virtual std::string fixedLights() const { return {}; }
 };
 
-// Drawn by the device's rasterizer, which throws where the device cannot draw. The camera and the lights are
-// where it begins; `raster` has the rest, whose size is the first.
+// Drawn by the device's rasterizer, which throws where the device cannot draw. The images stay on the device.
+// The camera and the lights are where it begins; `raster` has the rest, whose size is the first.
 std::unique_ptr<Source> modelSource(Device& device, Model model, const ModelCamera& camera,
                                     const RasterOptions& raster);
 

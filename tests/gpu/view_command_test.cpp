@@ -76,7 +76,8 @@ TEST_F(View, MaterialsOfEveryDescriptionAreSavedAndOpened) {
   expect(3, kScene + "--no-window --frames 2 " + script("1 material {\"melanin\":2}\n"), "material: melanin");
 }
 
-// The options that take a list must not swallow the model.
+// The options that take a list must not swallow the model, which turns, is saved and opened where it was
+// left.
 TEST_F(View, ASavedViewOfAModelOpensWithItsLightsAndMaterials) {
   GltfBuilder b;
   const int position = b.vectors({0, 0, 0, 2, 0, 0, 0, 2, 0});
@@ -86,8 +87,10 @@ TEST_F(View, ASavedViewOfAModelOpensWithItsLightsAndMaterials) {
   std::ofstream(path("t.glb"), std::ios::binary) << b.glb();
   expect(0,
          "view " + path("t.glb") + " --material wax=skin1 --light point:0,0,10:100 directional:0,0,-1:2" +
-             " --size 32x32 --shadow-size 32 --validate --no-window --frames 1 --save " + path("a.exr"),
-         "wrote");
+             " --size 32x32 --shadow-size 32 --validate --no-window --frames 6 " + script("1 turn 40 16\n") +
+             "--save " + path("a.exr"),
+         "3 moving frames, ms");
+  expectReplays("a");
   expect(0, "view " + path("a.view.json") + " --validate --no-window --frames 1 --save " + path("b.exr"),
          "wrote");
   EXPECT_EQ(bytes("a.exr"), bytes("b.exr"));

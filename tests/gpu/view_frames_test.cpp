@@ -37,9 +37,9 @@ class CountingSource : public Source {
 public:
   explicit CountingSource(std::unique_ptr<Source> source) : source_(std::move(source)) {}
   ViewState start() const override { return source_->start(); }
-  Capture render(const ViewState& state, std::vector<std::string>& warnings) override {
+  Scene render(const ViewState& state) override {
     ++renders;
-    return source_->render(state, warnings);
+    return source_->render(state);
   }
   Vector3 center() const override { return source_->center(); }
   double radius() const override { return source_->radius(); }
@@ -268,8 +268,7 @@ TEST_F(ViewSources, CapturesKeepTheirCameraAndFindTheirCenter) {
   EXPECT_LT(center[2], 6);
   ViewState state = source->start();
   state.lights[0].on = false;
-  std::vector<std::string> warnings;
-  const Capture seen = source->render(state, warnings);
+  const Capture seen = source->render(state).capture;
   EXPECT_EQ(seen.lights.size(), 1u);
   EXPECT_FALSE(seen.lights[0].shadowMaps.empty());
   EXPECT_TRUE(sameBits(seen.irradiance, capture.irradiance));
@@ -282,8 +281,7 @@ TEST_F(ViewSources, ScenesAreThoseOfCaptures) {
   parameters.shadowSize = 32;
   const Capture expected = makeScene(parameters);
   const std::unique_ptr<Source> source = sceneSource(parameters, expected.materials);
-  std::vector<std::string> warnings;
-  const Capture seen = source->render(source->start(), warnings);
+  const Capture seen = source->render(source->start()).capture;
   EXPECT_TRUE(sameBits(seen.frontDepth.image, expected.frontDepth.image));
   EXPECT_TRUE(sameBits(seen.irradiance, expected.irradiance));
   EXPECT_EQ(seen.material, expected.material);

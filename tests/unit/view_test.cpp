@@ -12,6 +12,7 @@
 #include "temporary_directory.h"
 #include "view/cost.h"
 #include "view/curves.h"
+#include "view/frame_times.h"
 #include "view/input.h"
 #include "view/material_kind.h"
 #include "view/parameters.h"
@@ -161,7 +162,7 @@ TEST(ViewLights, PullKeepsWhatArrives) {
 class FakeSource : public Source {
 public:
   ViewState start() const override { return {}; }
-  Capture render(const ViewState&, std::vector<std::string>&) override { return {}; }
+  Scene render(const ViewState&) override { return {}; }
   Vector3 center() const override { return {0, 0, 0}; }
   double radius() const override { return 1; }
   std::string fixedCamera() const override { return fixed ? "fixed" : ""; }
@@ -491,6 +492,27 @@ TEST(ViewCurves, AreThoseOfTheMaterial) {
   const Curves r = profileCurves(material, 3);
   EXPECT_NEAR(r.end, std::sqrt(2 * std::log(20)), 1e-4);  // 95 % of a Gaussian's energy; rounded up
   EXPECT_NEAR(r.values[1][1], r.end / 2 * std::exp(-r.end * r.end / 8), 1e-6);
+}
+
+TEST(MovingTimes, LeaveOutTheFirstFramesAndAverageTheOthers) {
+  MovingTimes times;
+  for (std::size_t i = 0; i < MovingTimes::kLeftOut; ++i) times.add({1000, 900, 800, 50});
+  EXPECT_EQ(times.count(), 0u);
+  EXPECT_EQ(times.table(), "");
+  times.add({10, 6, 4, 2});
+  times.add({30, 8, 6, 4});
+  times.add({11, 7, 5, 3});
+  EXPECT_EQ(times.count(), 3u);
+  const MovingTimes::Summary frame = times.of(&FrameTime::frame);
+  EXPECT_DOUBLE_EQ(frame.mean, 17);
+  EXPECT_DOUBLE_EQ(frame.median, 11);
+  EXPECT_DOUBLE_EQ(frame.best, 10);
+  EXPECT_EQ(times.table(),
+            "3 moving frames, ms             mean    median      best\n"
+            "whole frame                   17.000    11.000    10.000\n"
+            "scene                          7.000     7.000     6.000\n"
+            "rasterizer, GPU's clock        5.000     5.000     4.000\n"
+            "Pellucid, GPU's clock          3.000     3.000     2.000\n");
 }
 
 }  // namespace

@@ -9,11 +9,13 @@ layout(location = 3) in float planar;
 
 layout(location = 0) out float outPlanar;
 layout(location = 1) out float outDepth;
-layout(location = 2) out vec2 outCaster; // x: material; y: object; -1: seen from within, so that it has no exit
+layout(location = 2) out float outObject;   // -1: seen from within, so that it has no exit
+layout(location = 3) out float outMaterial; // index / 255
 
 void main() {
   if (isHole(uv)) discard;
   outPlanar = planar;
   outDepth = gl_FragCoord.z;
-  outCaster = vec2(colorMark.a >= 0.5 ? partMaterial() : 0u, gl_FrontFacing ? draw.addedColor.a : -1.0);
+  outObject = gl_FrontFacing ? draw.addedColor.a : -1.0;
+  outMaterial = float(colorMark.a >= 0.5 ? partMaterial() : 0u) / 255.0;
 }

@@ -19,12 +19,12 @@ bool isBehind(float depth, float slope, float front) {
 void main() {
   float slope = fwidth(gl_FragCoord.z);
   if (isHole(uv)) discard;
-  if (draw.ids.z != 0u) {
+  if (behindWhat() != 0u) {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     vec4 front = texelFetch(frontObject, pixel, 0);
-    bool sameObject = (draw.ids.z == BEHIND_CASTER ? front.y : front.a) == draw.addedColor.a;
+    bool sameObject = (behindWhat() == BEHIND_CASTER ? front.r : front.a) == draw.addedColor.a;
     float frontDepth = texelFetch(earlierDepth, pixel, 0).r;
-    bool behind = draw.ids.z == BEHIND_CASTER ? isNearer(frontDepth, gl_FragCoord.z)
+    bool behind = behindWhat() == BEHIND_CASTER ? isNearer(frontDepth, gl_FragCoord.z)
                                               : isBehind(gl_FragCoord.z, slope, frontDepth);
     if (!sameObject || !behind) discard;
   }

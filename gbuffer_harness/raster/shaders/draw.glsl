@@ -9,7 +9,7 @@ layout(push_constant) uniform Draw {
   vec4 addedColor; // a: object
   uvec4 ids;       // x: material, LOBES_APART, and in the upper half how much the lobe map displaces;
                    // y: 1 reversed depth, and in the upper half the backscatter;
-                   // z: 0, or one of BEHIND_* where only back faces behind the front count;
+                   // z: 0, or one of BEHIND_* where only back faces behind the front count; and HAS_*
                    // w: lights in transmit.frag, else bits of the normal map's scale, 0: no map
 } draw;
 
@@ -18,12 +18,17 @@ layout(set = 0, binding = 0) uniform sampler2D baseColorTexture;
 layout(set = 0, binding = 1) uniform sampler2D earlierDepth;
 // Object of the front faces.
 #define BEHIND_FRONT 1u  // a: of surface.frag
-#define BEHIND_CASTER 2u // y: of caster.frag
+#define BEHIND_CASTER 2u // r: of caster.frag
 layout(set = 0, binding = 2) uniform sampler2D frontObject;
 layout(set = 0, binding = 3) uniform sampler2D normalMap; // vectors
 layout(set = 0, binding = 4) uniform sampler2D lobeMap;   // linear rgb; a: strength
 
 #define LOBES_APART 256u
+// Images of the part; others are one white texel.
+#define HAS_COLOR 4u
+#define HAS_LOBES 8u
+
+uint behindWhat() { return draw.ids.z & 3u; }
 
 uint partMaterial() { return draw.ids.x & 255u; }
 

@@ -6,6 +6,7 @@
 layout(local_size_x = PELLUCID_GROUP_X, local_size_y = PELLUCID_GROUP_Y) in;
 
 #define SHADOW_MAPS 6
+layout(constant_id = 0) const uint kMaps = SHADOW_MAPS; // at most
 
 struct ShadowView {
   mat4 clipFromView; // clip space of the shadow map from the camera's view space
@@ -26,6 +27,7 @@ layout(set = 0, binding = 4) uniform sampler2D depthNormal; // yzw: the triangle
 
 // Constant indices: not every device can index samplers otherwise.
 float shadowTexel(int map, ivec2 t) {
+  if (kMaps == 1u) return texelFetch(shadowMaps[0], t, 0).r;
   switch (map) {
     case 0: return texelFetch(shadowMaps[0], t, 0).r;
     case 1: return texelFetch(shadowMaps[1], t, 0).r;

@@ -3,16 +3,18 @@
 #define PELLUCID_RASTER_LOBES_GLSL
 #include "draw.glsl"
 
-// Mean over the pixel's footprint: there are no mip levels.
-vec4 meanOf(sampler2D image, vec2 uv) {
-  const int n = 4;
+// Mean over the pixel's footprint: there are no mip levels. varies: false for an image of one texel.
+vec4 meanOf(sampler2D image, vec2 uv, bool varies) {
+  int n = varies ? 4 : 1;
+  float part = varies ? 0.25 : 1.0;
   vec2 dx = dFdx(uv), dy = dFdy(uv);
   vec4 sum = vec4(0.0);
-  for (int i = 0; i < n * n; ++i) {
-    vec2 offset = (vec2(i % n, i / n) + 0.5) / float(n) - 0.5;
-    sum += textureLod(image, uv + dx * offset.x + dy * offset.y, 0.0);
-  }
-  return sum / float(n * n);
+  for (int y = 0; y < n; ++y)
+    for (int x = 0; x < n; ++x) {
+      vec2 offset = (vec2(x, y) + 0.5) * part - 0.5;
+      sum += textureLod(image, uv + dx * offset.x + dy * offset.y, 0.0);
+    }
+  return sum * (part * part);
 }
 
 struct Lobes {
@@ -20,10 +22,11 @@ struct Lobes {
 };
 
 Lobes lobesOf(vec2 uv, vec2 lobeUv, vec3 vertexColor) {
-  vec4 map = meanOf(lobeMap, lobeUv);
+  vec4 map = meanOf(lobeMap, lobeUv, (draw.ids.z & HAS_LOBES) != 0u);
   float displaced = unpackHalf2x16(draw.ids.x).y;
   Lobes lobes;
-  lobes.reflected = meanOf(baseColorTexture, uv).rgb * draw.baseColor.rgb * vertexColor * (1.0 - displaced * map.a);
+  vec4 color = meanOf(baseColorTexture, uv, (draw.ids.z & HAS_COLOR) != 0u);
+  lobes.reflected = color.rgb * draw.baseColor.rgb * vertexColor * (1.0 - displaced * map.a);
   lobes.through = draw.addedColor.rgb * map.rgb * map.a;
   return lobes;
 }

@@ -22,7 +22,7 @@ layout(location = 3) out vec4 outDepthNormal; // yzw: without the normal map
 vec3 mappedNormal(vec3 n) {
   float scale = uintBitsToFloat(draw.ids.w);
   if (scale == 0.0) return n;
-  vec3 m = meanOf(normalMap, normalUv).rgb * vec3(scale, scale, 1.0);
+  vec3 m = meanOf(normalMap, normalUv, scale != 0.0).rgb * vec3(scale, scale, 1.0);
   vec2 ux = dFdx(normalUv), uy = dFdy(normalUv);
   vec3 px = dFdx(position), py = dFdy(position);
   float orientation = sign(ux.x * uy.y - uy.x * ux.y);
@@ -48,8 +48,9 @@ void main() {
   vec3 mapped = mappedNormal(n);
   if (isHole(uv)) discard; // after the derivatives
   float facing = gl_FrontFacing ? 1.0 : -1.0;
-  outNormalPlanar = vec4(facing * mapped, planar);
-  outAlbedoObject = vec4(albedo, draw.addedColor.a);
-  outMaterial = colorMark.a >= 0.5 ? partMaterial() : 0u;
+  bool inFront = planar > 0.0; // always, but in orthographic views whose near plane lies behind the eye
+  outNormalPlanar = vec4(inFront ? facing * mapped : vec3(0.0), planar);
+  outAlbedoObject = vec4(inFront ? albedo : vec3(0.0), draw.addedColor.a);
+  outMaterial = inFront && colorMark.a >= 0.5 ? partMaterial() : 0u;
   outDepthNormal = vec4(gl_FragCoord.z, facing * n);
 }

@@ -1,0 +1,62 @@
+// A model as the rasterizer drew it: images on the device, which become a capture when somebody asks.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "raster/passes.h"
+#include "raster/raster.h"
+#include "raster/shadow.h"
+#include "replay/inputs.h"
+#include "replay/replay.h"
+
+namespace pellucid::harness {
+
+class DrawnFrame {
+public:
+  struct Images {
+    FrontTarget front;
+    std::shared_ptr<GpuImage> frontDepth, backDepth;  // as the options store them
+    std::shared_ptr<GpuImage> irradiance;             // R32G32B32A32_SFLOAT
+    std::shared_ptr<const RenderTarget> share;  // the reflected one; null: no surface has its lobes apart
+    std::vector<std::vector<DrawnMap>> maps;    // of each light
+  };
+
+  // outline: the capture but for its images, whose lights have no maps yet.
+  DrawnFrame(Device& device, std::shared_ptr<DrawPasses> passes, const RasterOptions& options,
+             Capture outline, Images images, const DepthCounts& counts, std::vector<DispatchTime> times);
+
+  // Without images: size, matrices, encodings, lights with the places of their maps, materials.
+  const Capture& outline() const { return outline_; }
+  const DepthCounts& counts() const { return counts_; }
+  const std::vector<DispatchTime>& times() const { return times_; }  // of drawing, by the GPU's clock
+  std::vector<std::string> warnings() const;                         // sentences for a person
+
+  // What a frame of these settings reads. Nothing goes to the host, but for what is to be stored in ways that
+  // no engine's images have here: normals in view space, distances in shadow maps, maps drawn as an engine
+  // does or in one image, other formats than floats and halves.
+  std::shared_ptr<const InputImages> inputs(const ReplaySettings& settings) const;
+
+  // What the device has, downloaded anew by each call.
+  Capture capture() const;                       // all of it
+  Capture surfaces(const VkRect2D& rect) const;  // a part of the images of the surfaces, in its size
+  std::vector<Light> lights() const;             // with their maps' images
+  std::vector<std::uint8_t> material() const;
+  RasterResult result() const;
+
+private:
+  VkRect2D whole() const;
+  std::shared_ptr<GpuImage> irradianceIn(VkFormat format) const;
+  bool hasBackDepth() const { return counts_.open == 0 || counts_.back > 0; }
+
+  Device& device_;
+  std::shared_ptr<DrawPasses> passes_;
+  RasterOptions options_;
+  Capture outline_;
+  Images images_;
+  DepthCounts counts_;
+  std::vector<DispatchTime> times_;
+};
+
+}  // namespace pellucid::harness

@@ -1,0 +1,37 @@
+// Compute passes that visit every pixel of an image.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/device.h"
+#include "common/owned.h"
+#include "raster/pipeline.h"
+
+namespace pellucid::harness {
+
+class PixelPass {
+public:
+  struct Binding {
+    VkDescriptorType type;
+    std::uint32_t count = 1;
+  };
+  // bindings: 0, 1 and so on. pushSize: bytes of push constants. constants: of the code's specialization.
+  PixelPass(Device& device, const Spirv& code, const std::vector<Binding>& bindings,
+            std::uint32_t pushSize = 0, const VkSpecializationInfo& constants = {});
+
+  VkSampler sampler() const { return sampler_; }  // for texelFetch
+
+  // In groups of PELLUCID_GROUP_X x PELLUCID_GROUP_Y. Everything after waits for what it writes.
+  void record(VkCommandBuffer commands, std::span<const VkWriteDescriptorSet> writes, int width, int height,
+              const void* push = nullptr) const;
+
+private:
+  std::uint32_t pushSize_;
+  Owned<VkSampler, vkDestroySampler> sampler_;
+  PushLayout layout_;
+  Pipeline pipeline_;
+};
+
+}  // namespace pellucid::harness

@@ -1,0 +1,211 @@
+#include "raster/rasterizer.h"
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/error.h"
+#include "raster/simplify.h"
+#include "scene/vector.h"
+
+namespace pellucid::harness {
+
+namespace {
+
+constexpr int kLargestSide = 8192;
+
+void checkSide(const Model& model, const char* field, int value, int smallest) {
+  if (value < smallest || value > kLargestSide)
+    throw InputError(model.name, field,
+                     std::to_string(value) + " is outside " + std::to_string(smallest) + " .. " +
+                         std::to_string(kLargestSide));
+}
+
+Matrix projection(const ModelCamera& camera, const RasterOptions& options) {
+  const double aspect = static_cast<double>(options.width) / options.height;
+  ClipRange range = camera.range;
+  range.reversed = options.reversedZ;
+  if (options.infiniteFar) {
+    if (camera.orthographic)
+      throw InputError("", "infiniteFar",
+                       "camera \"" + camera.name + "\" is orthographic and needs a far plane");
+    range.farPlane = std::numeric_limits<double>::infinity();
+  }
+  return camera.orthographic ? orthographic(camera.height * aspect, camera.height, range)
+                             : perspective(camera.verticalFov, aspect, range);
+}
+
+void checkOptions(const Model& model, const RasterOptions& options) {
+  checkSide(model, "width", options.width, 1);
+  checkSide(model, "height", options.height, 1);
+  checkSide(model, "shadowSize", options.shadowSize, 0);
+  if (options.depthEncoding == PELLUCID_DEPTH_DISTANCE)
+    throw InputError(model.name, "depthEncoding", "distance is an encoding of shadow maps only");
+  checkShadowDrawing(model, options);
+}
+
+BackFaces recordBack(VkCommandBuffer commands, TargetPool& targets, const UploadedModel& model,
+                     const DrawView& view, const FrontTarget& front, const RasterOptions& options) {
+  const bool keepGreater = options.reversedZ != (options.backFace == BackFace::Farthest);
+  // Half floats count to 2048 and every device can blend them.
+  const BackFaces back{
+      targets.take(options.width, options.height, depthColors(options.reversedZ), farDepth(keepGreater)),
+      targets.take(options.width, options.height, {{VK_FORMAT_R16G16B16A16_SFLOAT, clearTo(0)}},
+                   std::nullopt)};
+  model.record(commands, *back.depths, view,
+               {FragmentShader::Depth, VK_CULL_MODE_FRONT_BIT, nearer(keepGreater), false},
+               VK_CULL_MODE_FRONT_BIT, {&front.depthNormal(), &front.albedoObject()});
+  model.record(commands, *back.counts, view, {FragmentShader::Count, VK_CULL_MODE_NONE, std::nullopt, true},
+               VK_CULL_MODE_NONE, {&back.depths->image(kDeviceDepth), &front.albedoObject()});
+  return back;
+}
+
+void recordClear(VkCommandBuffer commands, const GpuImage& image) {
+  constexpr VkClearColorValue kZero{};
+  constexpr VkImageSubresourceRange kAll{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+  vkCmdClearColorImage(commands, image.handle(), VK_IMAGE_LAYOUT_GENERAL, &kZero, 1, &kAll);
+  barrier(commands, {VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT}, kComputing);
+}
+
+bool hasLobesApart(const Model& model) {
+  return std::any_of(model.surfaces.begin(), model.surfaces.end(),
+                     [](const Surface& s) { return s.lobes == SurfaceLobes::Apart; });
+}
+
+// Parts of a frame, timed one by one.
+class Steps {
+public:
+  void add(std::string name, std::function<void(VkCommandBuffer)> record) {
+    steps_.push_back({std::move(name), std::move(record)});
+  }
+
+  std::vector<DispatchTime> run(Device& device) const {
+    const Timestamps timestamps(device, static_cast<std::uint32_t>(steps_.size()) + 1);
+    device.run([&](VkCommandBuffer commands) {
+      timestamps.reset(commands);
+      timestamps.mark(commands, 0);
+      for (std::size_t i = 0; i < steps_.size(); ++i) {
+        steps_[i].record(commands);
+        timestamps.mark(commands, static_cast<std::uint32_t>(i) + 1);
+      }
+    });
+    const std::vector<double> intervals = timestamps.intervals();
+    std::vector<DispatchTime> times;
+    for (std::size_t i = 0; i < steps_.size(); ++i) times.push_back({steps_[i].name, intervals[i]});
+    return times;
+  }
+
+private:
+  struct Step {
+    std::string name;
+    std::function<void(VkCommandBuffer)> record;
+  };
+  std::vector<Step> steps_;
+};
+
+}  // namespace
+
+struct Rasterizer::Simplified {
+  double ratio;
+  Model model;
+  UploadedModel uploaded;
+
+  Simplified(Device& device, const Model& whole, double share)
+      : ratio(share), model(simplified(whole, share)), uploaded(device, model) {}
+};
+
+Rasterizer::Rasterizer(Device& device, const Model& model)
+    : device_(device),
+      model_(model),
+      points_(pointsOf(model)),
+      uploaded_(device, model),
+      passes_(std::make_shared<DrawPasses>(device)) {}
+
+Rasterizer::~Rasterizer() = default;
+
+const UploadedModel& Rasterizer::transmission(double simplify) {
+  if (simplify == 1) return uploaded_;
+  if (!simplified_ || simplified_->ratio != simplify)
+    simplified_ = std::make_unique<Simplified>(device_, model_, simplify);
+  return simplified_->uploaded;
+}
+
+std::shared_ptr<const DrawnFrame> Rasterizer::draw(const ModelCamera& camera, const RasterOptions& options) {
+  checkOptions(model_, options);
+  passes_->nextFrame();
+  const UploadedModel& transmission = this->transmission(options.simplify);
+
+  Capture outline;
+  outline.name = model_.name;
+  outline.width = options.width;
+  outline.height = options.height;
+  outline.metersPerUnit = model_.metersPerUnit;
+  outline.clipFromView = projection(camera, options);
+  outline.viewFromWorld = camera.viewFromWorld;
+  outline.normalsInViewSpace = options.normalsInViewSpace;
+  outline.frontDepth.encoding = outline.backDepth.encoding = options.depthEncoding;
+  outline.materials = model_.materials;
+  outline.lights = model_.lights;
+
+  const DrawView view{outline.clipFromView, outline.viewFromWorld, options.reversedZ};
+  const auto image = [&](VkFormat format) {
+    return passes_->images.take(options.width, options.height, format);
+  };
+  DrawnFrame::Images images{FrontTarget(passes_->targets, options),
+                            image(VK_FORMAT_R32_SFLOAT),
+                            image(VK_FORMAT_R32_SFLOAT),
+                            image(VK_FORMAT_R32G32B32A32_SFLOAT),
+                            nullptr,
+                            std::vector<std::vector<DrawnMap>>(model_.lights.size())};
+  Steps steps;
+  steps.add("surfaces", [&](VkCommandBuffer commands) {
+    recordClear(commands, *images.irradiance);
+    images.front.record(commands, uploaded_, view);
+  });
+  steps.add("back faces", [&](VkCommandBuffer commands) {
+    const BackFaces back = recordBack(commands, passes_->targets, transmission, view, images.front, options);
+    passes_->recordDepths(commands, images.front, back, *images.frontDepth, *images.backDepth, options);
+  });
+  const LitSurfaces surfaces{images.front.normalPlanar(), images.front.depthNormal(), *images.irradiance,
+                             view};
+  // Maps of all triangles shadow the irradiance where the capture's have fewer.
+  std::vector<std::vector<DrawnMap>> shadows(model_.lights.size());
+  for (std::size_t i = 0; i < model_.lights.size(); ++i) {
+    const Light& light = model_.lights[i];
+    const auto draw = [&](VkCommandBuffer commands, const UploadedModel& model) {
+      return recordShadows(commands, passes_->targets, points_, model, light, options);
+    };
+    if (options.shadowSize > 0)
+      steps.add("shadow maps", [&, draw, i](VkCommandBuffer commands) {
+        shadows[i] = draw(commands, uploaded_);
+        images.maps[i] = &transmission == &uploaded_ ? shadows[i] : draw(commands, transmission);
+      });
+    if (light.radius == 0)
+      steps.add("irradiance", [&, i](VkCommandBuffer commands) {
+        passes_->irradiance.record(commands, surfaces, model_.lights[i], shadowImagesOf(shadows[i]));
+      });
+  }
+  if (hasLobesApart(model_))
+    steps.add("reflected share", [&](VkCommandBuffer commands) {
+      images.share =
+          passes_->targets.take(options.width, options.height, {{VK_FORMAT_R32G32B32A32_SFLOAT, clearTo(0)}},
+                                farDepth(options.reversedZ));
+      uploaded_.record(commands, *images.share, view,
+                       {FragmentShader::Reflected, VK_CULL_MODE_BACK_BIT, nearer(options.reversedZ), false},
+                       VK_CULL_MODE_NONE);
+      passes_->recordReflection(commands, *images.irradiance, images.share->image(0));
+    });
+  std::vector<DispatchTime> times = steps.run(device_);
+  return std::make_shared<DrawnFrame>(device_, passes_, options, std::move(outline), std::move(images),
+                                      passes_->counts(), std::move(times));
+}
+
+RasterResult rasterize(Device& device, const Model& model, const ModelCamera& camera,
+                       const RasterOptions& options) {
+  return Rasterizer(device, model).draw(camera, options)->result();
+}
+
+}  // namespace pellucid::harness
