@@ -1,4 +1,4 @@
-// What stands for a pixel of a multisampled G-buffer.
+// The samples that stand for a pixel of a multisampled G-buffer.
 #ifndef PELLUCID_MULTISAMPLE_GLSL
 #define PELLUCID_MULTISAMPLE_GLSL
 

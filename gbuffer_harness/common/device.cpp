@@ -309,8 +309,8 @@ HostBuffer::HostBuffer(const Device& device, VkDeviceSize size, VkBufferUsageFla
   vkGetBufferMemoryRequirements(device.handle(), buffer_, &needs);
   VkMemoryAllocateInfo allocate{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
   allocate.allocationSize = needs.size;
-  // What shaders and draws read lies beside them: across a bus each group would wait for it anew. The host
-  // reads from memory without a cache word by word.
+  // Data that shaders and draws read lies beside them: across a bus each group would wait for it anew. The
+  // host reads from memory without a cache word by word.
   constexpr VkBufferUsageFlags kRead = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
                                        VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
                                        VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT;

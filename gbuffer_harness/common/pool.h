@@ -1,4 +1,4 @@
-// What frames share in turns, so that a frame need not make what an earlier one has made.
+// Objects that frames share in turns, so that a frame need not make what an earlier one has made.
 #pragma once
 
 #include <memory>

@@ -33,12 +33,12 @@ public:
   const std::vector<DispatchTime>& times() const { return times_; }  // of drawing, by the GPU's clock
   std::vector<std::string> warnings() const;                         // sentences for a person
 
-  // What a frame of these settings reads. Nothing goes to the host, but for what is to be stored in ways that
-  // no engine's images have here: normals in view space, distances in shadow maps, maps drawn as an engine
-  // does or in one image, other formats than floats and halves.
+  // Images that a frame of these settings reads. Nothing goes to the host, but for what is to be stored in
+  // ways that no engine's images have here: normals in view space, distances in shadow maps, maps drawn as an
+  // engine does or in one image, other formats than floats and halves.
   std::shared_ptr<const InputImages> inputs(const ReplaySettings& settings) const;
 
-  // What the device has, downloaded anew by each call.
+  // The device's images, downloaded anew by each call.
   Capture capture() const;                       // all of it
   Capture surfaces(const VkRect2D& rect) const;  // a part of the images of the surfaces, in its size
   std::vector<Light> lights() const;             // with their maps' images

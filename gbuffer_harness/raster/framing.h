@@ -14,7 +14,7 @@ struct Bounds {
 };
 Bounds boundsOf(const Model& model);
 
-// What framing needs of a model, for lights that are framed again and again.
+// Bounds that framing needs of a model, for lights that are framed again and again.
 struct ModelPoints {
   std::vector<Vector3> vertices;  // that parts use, each once
   Bounds bounds;

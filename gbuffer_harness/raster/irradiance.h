@@ -18,7 +18,7 @@ struct ShadowImage {
   bool perspective = false;
 };
 
-// What lights shine on.
+// Surfaces that lights shine on.
 struct LitSurfaces {
   // World normal and planar distance in front of `view`, which is symmetric about its axis; a distance <= 0
   // holds nothing and gets no light.

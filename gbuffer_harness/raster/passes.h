@@ -1,4 +1,4 @@
-// What drawing needs besides the model, kept from frame to frame: compute passes, and images in turns.
+// Resources of drawing besides the model, kept from frame to frame: compute passes, and images in turns.
 #pragma once
 
 #include <cstdint>

@@ -67,7 +67,7 @@ struct FrameData {
   FrameData& operator=(const FrameData&) = delete;
 };
 
-// What a frame knows of its images besides their content.
+// Facts that a frame knows of its images besides their content.
 struct FrameShape {
   struct Map {
     // Indices into the frame's shadow images of depth, exit depth and caster material; -1: none.
@@ -90,7 +90,7 @@ inline constexpr uint32_t kMaxImageNeeds = PELLUCID_MAX_TRANSIENTS + 1;
 void makeFrame(const Capture& capture, const std::vector<PellucidMaterial>& materials,
                const ReplaySettings& settings, FrameData& data);
 
-// Of a capture whose images are elsewhere, and as `shape` says.
+// Makes that frame of a capture whose images are elsewhere, and as `shape` says.
 void makeFrame(const Capture& capture, const FrameShape& shape,
                const std::vector<PellucidMaterial>& materials, const ReplaySettings& settings,
                FrameData& data);

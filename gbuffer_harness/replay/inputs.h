@@ -1,4 +1,4 @@
-// What frames read, on the device.
+// Images that frames read, on the device.
 #pragma once
 
 #include <memory>

@@ -59,7 +59,7 @@ public:
   FrameRun(Device& device, const Context& context, const Capture& capture,
            const std::vector<PellucidMaterial>& materials, const ReplaySettings& settings,
            const FrameRun* previous = nullptr);
-  // The same with inputs that other frames read, too: not where settings.aliasOutput makes the irradiance the
+  // Inputs may be those that other frames read, too: not where settings.aliasOutput makes the irradiance the
   // output. Pixels that the pass does not write hold 0. The capture's own images are not read. `pool`: lends
   // images; null: they are the run's own.
   FrameRun(Device& device, const Context& context, const Capture& capture,

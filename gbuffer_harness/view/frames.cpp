@@ -14,7 +14,7 @@ namespace pellucid::harness {
 
 namespace {
 
-// Of an output, which has an alpha in most formats.
+// Reads an output, which has an alpha in most formats.
 Image rgbOf(Image output) { return output.channels == 3 ? output : rgb(output); }
 
 // RGB as an image of the format holds it.
@@ -50,14 +50,14 @@ Image coveredTiles(int width, int height, const std::vector<std::uint8_t>& mater
   return result;
 }
 
-// Of one pixel, whatever the others hold.
+// Reads one pixel, whatever the others hold.
 bool isOfOnePixel(Shown shown) { return shown != Shown::Tiles && shown != Shown::Isolated; }
 
 VkRect2D rectOf(int x, int y, int width, int height) {
   return {{x, y}, {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)}};
 }
 
-// Of an image that the host has.
+// Reads an image that the host has.
 Image partOf(const Image& image, const VkRect2D& rect) {
   Image part(static_cast<int>(rect.extent.width), static_cast<int>(rect.extent.height), image.channels);
   for (int y = 0; y < part.height; ++y)

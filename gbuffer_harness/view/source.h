@@ -13,7 +13,7 @@
 
 namespace pellucid::harness {
 
-// What a source makes of a state.
+// The scene that a source makes of a state.
 struct Scene {
   Capture capture;                          // without the images that `drawn` has
   std::shared_ptr<const DrawnFrame> drawn;  // null: the capture is whole

@@ -47,7 +47,7 @@ bool someLightHasMap(const PellucidFrame& f) {
                                  [](const PellucidLight& light) { return light.shadowMapCount > 0; });
 }
 
-// Of the frame at a quality.
+// The frame's error at a quality.
 float measuredError(const FrameFacts& f, uint32_t quality) {
   if ((f.frame.features & PELLUCID_FEATURE_TRANSLUCENCY) == 0 || f.frame.lightCount == 0)
     return diffusionError(quality, f.reach.radius);

@@ -178,7 +178,7 @@ protected:
   }
 };
 
-// Of the four pixels.
+// A sample is one of the four pixels.
 int place(int x, int y, int sample) { return (2 * y + (sample >> 1)) * 2 * kSide + 2 * x + (sample & 1); }
 
 TEST_F(Multisample, ThePixelIsItsMostFrequentMaterial) {
@@ -282,7 +282,7 @@ TEST_F(Multisample, EdgesAreNearThoseOfFourPixels) {
   std::printf("edge pixels %.4f, all %.4f; averaged G-buffer %.4f, %.4f; one sample %.4f, %.4f; halo %.4f\n",
               errors[0].edge, errors[0].all, errors[1].edge, errors[1].all, errors[2].edge, errors[2].all,
               halo);
-  // Of which most is what a frame of a quarter of the pixels differs by.
+  // Most of it is what a frame of a quarter of the pixels differs by.
   EXPECT_LT(errors[0].edge, 0.04);
   EXPECT_LT(errors[0].all, 0.04);
   EXPECT_LT(halo, 0.01);

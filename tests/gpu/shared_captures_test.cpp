@@ -118,7 +118,7 @@ TEST_P(SharedCaptureGather, IsNearAllTexels) {
   for (size_t c = 0; c < 3; ++c) EXPECT_LT(channels[c].relativeRmse, GetParam().ofAllTexels[c]) << c;
 }
 
-// What frame.targetError goes by is this ear's error, the worst of the frames that the table names.
+// frame.targetError goes by this ear's error, the worst of the frames that the table names.
 struct Ear {
   const char* name;
 };

@@ -233,7 +233,7 @@ TEST_F(Moving, ImagesTakeTurns) {
   }
 }
 
-// What was drawn for a refused frame lies beside what is seen, which can still be saved.
+// Images that were drawn for a refused frame lie beside those that are seen, which can still be saved.
 TEST_F(Moving, RefusedMovesLeaveWhatIsSeen) {
   open(sphereAndSheet());
   move();
