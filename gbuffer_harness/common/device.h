@@ -99,8 +99,8 @@ private:
   std::vector<std::string> messages_;
 };
 
-// Host-visible, coherent, mapped. What shaders and draws read is device-local, and what the device writes for
-// the host is cached, where there is such memory.
+// Host-visible, coherent, mapped memory. Data that shaders and draws read is device-local, and data that the
+// device writes for the host is cached, where there is such memory.
 class HostBuffer {
 public:
   HostBuffer(const Device& device, VkDeviceSize size, VkBufferUsageFlags usage);

@@ -203,13 +203,17 @@ void GpuImage::upload(const std::vector<std::uint8_t>& source, int layer) {
   transfer(source.data(), layer);
 }
 
+void GpuImage::recordClear(VkCommandBuffer commandBuffer) const {
+  constexpr VkClearColorValue kZero{};
+  constexpr VkImageSubresourceRange kFirst{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+  vkCmdClearColorImage(commandBuffer, image_, VK_IMAGE_LAYOUT_GENERAL, &kZero, 1, &kFirst);
+}
+
 void GpuImage::clear(std::uint8_t byte) {
   if (byte == 0)
     return device_.run([&](VkCommandBuffer commandBuffer) {
       barrier(commandBuffer, image_, VK_IMAGE_LAYOUT_UNDEFINED);
-      constexpr VkClearColorValue kZero{};
-      constexpr VkImageSubresourceRange kFirst{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-      vkCmdClearColorImage(commandBuffer, image_, VK_IMAGE_LAYOUT_GENERAL, &kZero, 1, &kFirst);
+      recordClear(commandBuffer);
       barrier(commandBuffer, image_, VK_IMAGE_LAYOUT_GENERAL);
     });
   // Fills go by whole words.

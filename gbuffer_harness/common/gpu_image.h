@@ -27,7 +27,8 @@ public:
   void upload(const std::vector<std::uint8_t>& source, int layer = 0);
   void upload(const std::vector<std::uint32_t>& source, int layer = 0);  // R32_UINT
   void clear(std::uint8_t byte = 0);                                     // every byte of every texel
-  void fill(std::uint64_t seed);                                         // pseudo-random bits
+  void recordClear(VkCommandBuffer commandBuffer) const;  // with 0, in GENERAL; without barriers
+  void fill(std::uint64_t seed);                          // pseudo-random bits
   // Reads formats that are usable as storage images, R32G32_SFLOAT, R8_UINT, R8_UNORM, R8G8B8A8_SRGB as
   // linear colors, and RGB of A2B10G10R10_UNORM_PACK32.
   Image download() const;

@@ -63,13 +63,6 @@ BackFaces recordBack(VkCommandBuffer commands, TargetPool& targets, const Upload
   return back;
 }
 
-void recordClear(VkCommandBuffer commands, const GpuImage& image) {
-  constexpr VkClearColorValue kZero{};
-  constexpr VkImageSubresourceRange kAll{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-  vkCmdClearColorImage(commands, image.handle(), VK_IMAGE_LAYOUT_GENERAL, &kZero, 1, &kAll);
-  barrier(commands, {VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT}, kComputing);
-}
-
 bool hasLobesApart(const Model& model) {
   return std::any_of(model.surfaces.begin(), model.surfaces.end(),
                      [](const Surface& s) { return s.lobes == SurfaceLobes::Apart; });
@@ -162,7 +155,8 @@ std::shared_ptr<const DrawnFrame> Rasterizer::draw(const ModelCamera& camera, co
                             std::vector<std::vector<DrawnMap>>(model_.lights.size())};
   Steps steps;
   steps.add("surfaces", [&](VkCommandBuffer commands) {
-    recordClear(commands, *images.irradiance);
+    images.irradiance->recordClear(commands);
+    barrier(commands, {VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT}, kComputing);
     images.front.record(commands, uploaded_, view);
   });
   steps.add("back faces", [&](VkCommandBuffer commands) {

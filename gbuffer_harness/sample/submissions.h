@@ -12,9 +12,9 @@ public:
 
   // The frame's commands, once the frame kFramesInFlight before has finished.
   VkCommandBuffer begin(std::uint64_t frame);
-  // Submits these. What follows runs after them, on the device's computeQueue().
+  // Submits these. Later commands run after them, on the device's computeQueue().
   VkCommandBuffer beginComputing();
-  // Submits these. What follows, and drawing of later frames, runs after them, on the device's queue().
+  // Submits these. Later commands, and drawing of later frames, run after them, on the device's queue().
   VkCommandBuffer beginDrawingAgain();
   void end();  // submits the last ones
 

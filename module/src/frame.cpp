@@ -56,10 +56,7 @@ void addMaterials(FrameFacts& f) {
 void addGather(FrameFacts& f) {
   f.whyNotGathered = whyNotGathered(f);
   if (f.frame.targetError > 0) f.missesTarget = !qualityOfTarget(f, &f.frame.quality);
-  const bool byQuality = f.frame.gatherSamples == PELLUCID_GATHER_BY_QUALITY;
-  f.gatherSamples = !f.solids || (byQuality && f.whyNotGathered) ? 0
-                    : byQuality                                  ? kQualities[f.frame.quality].gatherSamples
-                                                                 : f.frame.gatherSamples;
+  f.gatherSamples = gatherSamplesAt(f, f.frame.quality);
   f.gatherSpacing = gatherSpacing(f.frame);
   f.longestEntrySide = longestEntrySide(f);
   f.gathers = (f.frame.features & PELLUCID_FEATURE_TRANSLUCENCY) != 0 && f.gatherSamples > 0 && !f.debug();

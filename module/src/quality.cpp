@@ -51,9 +51,7 @@ bool someLightHasMap(const PellucidFrame& f) {
 float measuredError(const FrameFacts& f, uint32_t quality) {
   if ((f.frame.features & PELLUCID_FEATURE_TRANSLUCENCY) == 0 || f.frame.lightCount == 0)
     return diffusionError(quality, f.reach.radius);
-  const bool byQuality = f.frame.gatherSamples == PELLUCID_GATHER_BY_QUALITY;
-  const uint32_t samples = byQuality ? kQualities[quality].gatherSamples : f.frame.gatherSamples;
-  const bool gathers = !f.whyNotGathered && samples > 0 && someLightHasMap(f.frame);
+  const bool gathers = !f.whyNotGathered && gatherSamplesAt(f, quality) > 0 && someLightHasMap(f.frame);
   return kFrameError[gathers ? std::max(quality, 1u) : 0];
 }
 
@@ -86,6 +84,12 @@ DiffusionReach diffusionReach(const FrameFacts& facts) {
     reach.deviation = std::max(reach.deviation, pixels(widestDeviation(m)));
   }
   return reach;
+}
+
+uint32_t gatherSamplesAt(const FrameFacts& f, uint32_t quality) {
+  if (!f.solids) return 0;
+  if (f.frame.gatherSamples != PELLUCID_GATHER_BY_QUALITY) return f.frame.gatherSamples;
+  return f.whyNotGathered ? 0 : kQualities[quality].gatherSamples;
 }
 
 bool qualityOfTarget(const FrameFacts& facts, uint32_t* quality) {

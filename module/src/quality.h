@@ -39,6 +39,10 @@ struct Quality {
 constexpr Quality kQualities[] = {{0, 1, false}, {8, 1, true}, {16, 2, true}};
 constexpr uint32_t kBestQuality = std::size(kQualities) - 1;
 
+// Samples of each probe of the gather at a quality: frame.gatherSamples, if that does not leave them to the
+// quality. Reads what the facts have of the materials and of the gather's obstacles.
+uint32_t gatherSamplesAt(const FrameFacts& facts, uint32_t quality);
+
 // The least quality whose measured error is below frame.targetError. False, and the best quality, if there is
 // none. Reads what the facts have of the materials and of the gather's obstacles.
 bool qualityOfTarget(const FrameFacts& facts, uint32_t* quality);

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "raster/model.h"
+#include "raster/raster.h"
 #include "scene/camera.h"
 
 namespace pellucid::test {
@@ -19,6 +20,14 @@ inline Vertex vertexAt(const Vector3& position, const Vector3& normal) {
     v.normal[i] = static_cast<float>(normal[i]);
   }
   return v;
+}
+
+// Square frames of `side` pixels, with maps that cost little.
+inline RasterOptions smallRaster(int side) {
+  RasterOptions options;
+  options.width = options.height = side;
+  options.shadowSize = 64;
+  return options;
 }
 
 // Model of one surface of material 1, "skin1"; 1 unit is 1 mm.

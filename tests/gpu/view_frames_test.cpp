@@ -25,13 +25,6 @@ Model litSphere() {
   return model;
 }
 
-RasterOptions smallRaster() {
-  RasterOptions options;
-  options.width = options.height = kSize;
-  options.shadowSize = 64;
-  return options;
-}
-
 // Counts what it is asked for.
 class CountingSource : public Source {
 public:
@@ -54,7 +47,7 @@ protected:
   void SetUp() override {
     GpuTest::SetUp();
     source_ = std::make_unique<CountingSource>(
-        modelSource(device(), litSphere(), frontCamera(false), smallRaster()));
+        modelSource(device(), litSphere(), frontCamera(false), smallRaster(kSize)));
     state_ = source_->start();
     static Contexts contexts(device());  // a second of pipelines, once
     frames_ = std::make_unique<ViewFrames>(device(), contexts, *source_);
@@ -258,7 +251,7 @@ class ViewSources : public GpuTest {};
 
 TEST_F(ViewSources, CapturesKeepTheirCameraAndFindTheirCenter) {
   const Model model = litSphere();
-  const Capture capture = rasterize(device(), model, frontCamera(false), smallRaster()).capture;
+  const Capture capture = rasterize(device(), model, frontCamera(false), smallRaster(kSize)).capture;
   const std::unique_ptr<Source> source = captureSource(capture);
   EXPECT_FALSE(source->fixedCamera().empty());
   const Vector3 center = source->center();

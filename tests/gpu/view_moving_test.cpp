@@ -40,16 +40,10 @@ Light pointLight() {
   return light;
 }
 
-RasterOptions smallRaster() {
-  RasterOptions options;
-  options.width = options.height = kSize;
-  options.shadowSize = 64;
-  return options;
-}
-
 class Moving : public GpuTest {
 protected:
-  void open(Model model, const RasterOptions& options = smallRaster(), const ReplaySettings& settings = {}) {
+  void open(Model model, const RasterOptions& options = smallRaster(kSize),
+            const ReplaySettings& settings = {}) {
     frames_.reset();  // before the source that it draws from
     source_ = modelSource(device(), std::move(model), frontCamera(false), options);
     state_ = source_->start();
@@ -94,7 +88,7 @@ protected:
 struct Way {
   std::string name;
   bool staysOnDevice;
-  RasterOptions raster = smallRaster();
+  RasterOptions raster = smallRaster(kSize);
   ReplaySettings settings = {};
   bool point = false;  // light
 };
