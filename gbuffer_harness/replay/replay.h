@@ -8,6 +8,7 @@
 
 #include "common/device.h"
 #include "common/pool.h"
+#include "pellucid/pellucid_statistics.h"
 #include "replay/frame.h"
 #include "replay/inputs.h"
 
@@ -72,8 +73,11 @@ public:
   const PellucidFrame& frame() const { return data_.frame; }
   // The slice as the device left it: with what it decided about indirect dispatches.
   const void* constants() const;
-  // Groups of a dispatch that ran in the last recording that the device finished.
-  std::uint64_t groupsRun(std::uint32_t dispatch) const;
+  const std::string& name() const { return name_; }  // of the capture
+  // What the device decided in the last recording, which it has finished.
+  PellucidStatistics statistics() const;
+  // The words of that recording's tile lists (compute/frame/tile_words.glsl); none in plans without.
+  std::vector<std::uint32_t> tileWords() const;
 
   void record(VkCommandBuffer commandBuffer) const;                     // the whole plan
   void record(VkCommandBuffer commandBuffer, uint32_t dispatch) const;  // one dispatch of it, in its turn
@@ -101,6 +105,7 @@ private:
   class Images;
 
   void plan(Device& device, const PellucidPlan* previous);
+  PellucidConstantsSlice slice() const;
   void record(VkCommandBuffer commandBuffer, const PellucidPlan& plan) const;
   PellucidPlan only(uint32_t dispatch) const;
 
@@ -120,8 +125,7 @@ struct DispatchTime {
 struct ReplayResult {
   Image output;  // as FrameRun::output
   PellucidPlan plan;
-  std::vector<std::uint64_t>
-      groups;                       // that ran, one for each dispatch: of indirect ones what the GPU decided
+  PellucidStatistics statistics;    // of the plan
   std::vector<DispatchTime> times;  // one per dispatch; none without timed frames
 };
 
@@ -136,9 +140,11 @@ public:
   const Context& contextFor(const Capture& capture) { return contexts_.of(capture); }
 
   // `timedFrames`: recordings of the frame after the one that makes the output, in which drivers may still
-  // compile shaders. Times are medians of their GPU timestamps, microseconds.
+  // compile shaders. Times are medians of their GPU timestamps, microseconds. `look` sees that first
+  // recording when the device has finished it.
   ReplayResult run(const Capture& capture, const std::vector<PellucidMaterial>& materials,
-                   const ReplaySettings& settings, uint32_t timedFrames = 0);
+                   const ReplaySettings& settings, uint32_t timedFrames = 0,
+                   const std::function<void(const FrameRun&)>& look = {});
 
 private:
   Device& device_;
