@@ -9,7 +9,7 @@ namespace {
 
 using namespace pellucid::test;
 
-class Statistics : public Cli {
+class StatisticsCommand : public Cli {
 protected:
   void SetUp() override {
     ASSERT_EQ(run("capture --procedural ear --size 96x64 --shadow-size 32 -o " + capture_).code, 0);
@@ -32,7 +32,7 @@ Color colorAt(const Pixels& picture, int x, int y) {
 // Of a tile without material that no group reaches, and of one with all passes.
 constexpr Color kBlack = {0, 0, 0}, kGreen = {0, 158, 115};
 
-TEST_F(Statistics, AreATableAndAPicture) {
+TEST_F(StatisticsCommand, AreATableAndAPicture) {
   const Outcome outcome = run(replay("--stats --debug tiles --tonemap agx"));
   EXPECT_EQ(outcome.code, 0) << outcome.text;
   for (const char* part : {"statistics ", "groups run", "of most", "base level ", "tiles with material ",
@@ -68,7 +68,7 @@ TEST_F(Statistics, AreATableAndAPicture) {
   expect(0, "compare " + out_ + " " + plain + " --mask " + capture_ + " --limit max=0", "rel_rmse");
 }
 
-TEST_F(Statistics, SayWhatIsMissing) {
+TEST_F(StatisticsCommand, SayWhatIsMissing) {
   const std::string quick = replay("--set quality=0 --set gather=0 --set indirect=light ");
   expect(0, quick + "--stats", "no tile lists: frame.indirectDispatches asks for none");
   expect(3, quick + "--debug tiles", "has no tile lists to draw: frame.indirectDispatches asks for none");
@@ -76,7 +76,7 @@ TEST_F(Statistics, SayWhatIsMissing) {
   expect(2, "replay x.exr --debug soul", "\"soul\" is not one of irradiance, occlusion, thickness, tiles");
 }
 
-TEST_F(Statistics, OfASequence) {
+TEST_F(StatisticsCommand, OfASequence) {
   std::filesystem::copy_file(capture_, path("ear.1.exr"));
   const std::string sequence = "replay " + path("ear.#.exr") + " -o " + path("o.#.exr") + " --set quality=0 ";
   expect(2, sequence + "--stats", "--stats is of one capture, not a sequence");
