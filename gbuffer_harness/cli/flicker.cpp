@@ -125,7 +125,7 @@ std::vector<Row> measure(const Options& options, const std::vector<int>& pixels,
     throw InputError(frames.still.name, "material",
                      "is 0 but for a rim of " + std::to_string(rim) + " pixels: there is nothing to compare");
 
-  Replayer replayer(device, usesOf(settings));
+  Replayer replayer(device);
   Progress progress("replaying", pixels.size() + (frames.turned ? 2 : 1));
   const auto run = [&](const Capture& capture) {
     Image image = rgb(replayer.run(capture, materials, settings).output);

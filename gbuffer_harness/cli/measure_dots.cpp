@@ -141,7 +141,7 @@ void measure(const Options& options) {
   const DotTable table = tableOf(options);
   const ReplaySettings settings = settingsOf(options);
   Device device({options.device, false});
-  Replayer replayer(device, usesOf(settings));
+  Replayer replayer(device);
   const Object object = options.model.empty() ? proceduralObject(options) : modelObject(options, device);
   const std::size_t entries = lightDirections(table).size();
   Progress progress("measuring", entries * (2 * static_cast<std::size_t>(options.swing.steps) + 1));

@@ -141,7 +141,7 @@ void replayOne(const Options& options, const ReplaySettings& settings) {
   const std::vector<PellucidMaterial> materials = compileMaterials(capture);
   requireNearestDistance(capture, materials, settings);
   Device device({options.device, false});
-  Replayer replayer(device, usesOf(settings));
+  Replayer replayer(device);
   const uint32_t repeat = options.repeat.value_or(kDefaultRepeat);
   const Replayed frame = runFrame(options, replayer, capture, materials, settings, repeat);
   const ReplayResult& result = frame.result;
@@ -189,7 +189,7 @@ void replaySequence(const Options& options, const ReplaySettings& settings) {
   const std::vector<int> frames = options.frames.empty() ? input.existing() : parseFrames(options.frames);
   if (frames.empty()) throw InputError(options.input, "", "no file has such a name");
   Device device({options.device, false});
-  Replayer replayer(device, usesOf(settings));
+  Replayer replayer(device);
   Progress progress("replaying", frames.size());
   std::mutex deviceMutex, reportMutex;
   std::map<int, std::string> failures;

@@ -129,7 +129,7 @@ PellucidContextDesc contextDesc(const Device& device) {
   return desc;
 }
 
-Context::Context(Device& device, const std::function<void(PellucidContextDesc&)>& change) {
+Context::Context(Device& device, const std::function<void(PellucidContextDesc&)>& change, Compile compile) {
   PellucidContextDesc desc = contextDesc(device);
   desc.message = &appendError;
   desc.messageUser = &message_;
@@ -138,32 +138,32 @@ Context::Context(Device& device, const std::function<void(PellucidContextDesc&)>
     parallelRows(static_cast<int>(count), 0, [&](int i) { job(data, static_cast<uint32_t>(i)); });
   };
   if (change) change(desc);
-  const ProgressLine progress("compiling shaders");
+  if (compile == Compile::WhenPlanned) {
+    deferred_ = std::make_unique<DeferredPipelines>();
+    deferred_->defer(desc);
+  }
   const PellucidResult result = pellucidCreateContext(&desc, &context_);
   if (result != PELLUCID_OK) throw DeviceError(std::string(pellucidResultName(result)) + ": " + message_);
 }
 
 Context::~Context() { pellucidDestroyContext(context_); }
 
-Contexts::Contexts(Device& device, std::uint32_t uses)
-    : device_(device),
-      uses_(uses),
-      context_(device, [uses](PellucidContextDesc& desc) { desc.uses = uses; }) {}
+void Context::prepare(const PellucidPlan& plan) const {
+  if (deferred_) deferred_->prepare(plan);
+}
 
 const Context& Contexts::of(const Capture& capture) {
   const bool arrays = hasLayers(capture.lights);
   const bool tables = std::any_of(capture.lights.begin(), capture.lights.end(), [](const Light& light) {
     return !light.angleTable.empty() || !light.distanceTable.empty();
   });
-  if (!arrays && !tables) return context_;
-  std::unique_ptr<Context>& other = others_[2 * arrays + tables];
-  if (!other)
-    other = std::make_unique<Context>(device_, [&](PellucidContextDesc& desc) {
-      desc.uses = uses_;
+  std::unique_ptr<Context>& context = contexts_[2 * arrays + tables];
+  if (!context)
+    context = std::make_unique<Context>(device_, [&](PellucidContextDesc& desc) {
       if (arrays) desc.shadowViewType = VK_IMAGE_VIEW_TYPE_2D_ARRAY;
       desc.lightTables = tables;
     });
-  return *other;
+  return *context;
 }
 
 FrameRun::FrameRun(Device& device, const Context& context, const Capture& capture,
@@ -192,6 +192,7 @@ void FrameRun::plan(Device& device, const PellucidPlan* previous) {
   const PellucidFrame& frame = data_.frame;
   requireOk(pellucidValidateFrame(&frame, nullptr, nullptr), frame, name_);
   requireOk(pellucidBuildPlan(&frame, previous, plan_.get()), frame, name_);
+  context_.prepare(*plan_);
   constants_ =
       std::make_unique<HostBuffer>(device, plan_->constantsSize,
                                    VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
@@ -263,21 +264,6 @@ void FrameRun::fillGarbage(std::uint64_t seed) const {
 void FrameRun::uploadOutput(const Image& content) const { images_->uploadOutput(content); }
 
 void FrameRun::restoreIrradiance(const Capture& capture) const { images_->restoreIrradiance(capture); }
-
-std::uint32_t usesOf(const ReplaySettings& settings) {
-  std::uint32_t uses = 0;
-  const bool translucency = settings.features & PELLUCID_FEATURE_TRANSLUCENCY;
-  const bool diffusion = settings.features & PELLUCID_FEATURE_DIFFUSION;
-  // Also where the features are none or no material diffuses: one dispatch brings the irradiance to the
-  // output.
-  uses |= PELLUCID_USE_TRANSLUCENCY;
-  if (translucency && settings.translucency.gatherSamples > 0) uses |= PELLUCID_USE_GATHER;
-  if (diffusion) uses |= PELLUCID_USE_DIFFUSION;
-  if (diffusion && (settings.quality == 0 || settings.targetError > 0)) uses |= PELLUCID_USE_QUALITY_0;
-  if (settings.reuse != PELLUCID_REUSE_NONE) uses |= PELLUCID_USE_REUSE;
-  if (settings.debugView != PELLUCID_DEBUG_NONE) uses |= PELLUCID_USE_DEBUG_VIEWS;
-  return uses;
-}
 
 ReplayResult Replayer::run(const Capture& capture, const std::vector<PellucidMaterial>& materials,
                            const ReplaySettings& settings, uint32_t timedFrames,

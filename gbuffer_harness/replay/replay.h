@@ -9,6 +9,7 @@
 #include "common/device.h"
 #include "common/pool.h"
 #include "pellucid/pellucid_statistics.h"
+#include "replay/deferred_pipelines.h"
 #include "replay/frame.h"
 #include "replay/inputs.h"
 
@@ -17,12 +18,17 @@ namespace pellucid::harness {
 // The module's defaults for a context on the device.
 PellucidContextDesc contextDesc(const Device& device);
 
+// When drivers compile a context's pipelines: those of a plan when a frame is planned, or those of desc.uses
+// when the context is made, as engines have it.
+enum class Compile { WhenPlanned, AtCreation };
+
 // A module context on a device.
 class Context {
 public:
   // Throws DeviceError with the module's sentence. `change`: of what the context is made for, which is
-  // everything.
-  explicit Context(Device& device, const std::function<void(PellucidContextDesc&)>& change = {});
+  // everything. Compile::WhenPlanned takes no notice of desc.uses, parallelFor and pipelineCache.
+  explicit Context(Device& device, const std::function<void(PellucidContextDesc&)>& change = {},
+                   Compile compile = Compile::WhenPlanned);
   ~Context();
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
@@ -30,7 +36,11 @@ public:
   const PellucidContext* handle() const { return context_; }
   const std::string& message() const { return message_; }  // the module's errors since creation
 
+  // Before the plan is recorded. Throws DeviceError if the driver does not compile a pipeline.
+  void prepare(const PellucidPlan& plan) const;
+
 private:
+  std::unique_ptr<DeferredPipelines> deferred_;  // none at Compile::AtCreation
   PellucidContext* context_ = nullptr;
   std::string message_;
 };
@@ -39,16 +49,13 @@ private:
 // pipelines that look for light tables where there are some.
 class Contexts {
 public:
-  // `uses`: PellucidUse bits of the frames, whose pipelines take a second to create on a CPU; 0: all.
-  explicit Contexts(Device& device, std::uint32_t uses = 0);
+  explicit Contexts(Device& device) : device_(device) {}
 
   const Context& of(const Capture& capture);
 
 private:
   Device& device_;
-  std::uint32_t uses_;
-  Context context_;
-  std::unique_ptr<Context> others_[4];  // made when first asked for
+  std::unique_ptr<Context> contexts_[4];  // made when first asked for
 };
 
 // One capture on the device, planned and ready to record as often as wanted.
@@ -129,13 +136,9 @@ struct ReplayResult {
   std::vector<DispatchTime> times;  // one per dispatch; none without timed frames
 };
 
-// PellucidUse bits of frames with these settings, of any capture.
-std::uint32_t usesOf(const ReplaySettings& settings);
-
 class Replayer {
 public:
-  // `uses`: as Contexts takes them.
-  explicit Replayer(Device& device, std::uint32_t uses = 0) : device_(device), contexts_(device, uses) {}
+  explicit Replayer(Device& device) : device_(device), contexts_(device) {}
 
   const Context& contextFor(const Capture& capture) { return contexts_.of(capture); }
 

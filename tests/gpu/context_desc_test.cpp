@@ -22,7 +22,8 @@ TEST_F(ContextTest, FormatsPatchedIntoShadersWriteTheSameBits) {
     s.outputFormat = format;
     const Capture c = litSlab();
     const Image expected = replay(c, testMaterial(), s);
-    const Context fixed(device(), [&](PellucidContextDesc& desc) { desc.outputFormat = format; });
+    const Context fixed(
+        device(), [&](PellucidContextDesc& desc) { desc.outputFormat = format; }, Compile::AtCreation);
     const FrameRun run(device(), fixed, c, {testMaterial()}, s);
     device().run([&](VkCommandBuffer commandBuffer) { run.record(commandBuffer); });
     EXPECT_TRUE(sameBits(run.output(), expected)) << format;
@@ -44,10 +45,8 @@ std::string refusal(Device& device, const Context& context, const ReplaySettings
 }
 
 TEST_F(ContextTest, RefusesOtherFormatsThanItsOwn) {
-  const Context half(device(), [](PellucidContextDesc& desc) {
-    desc.uses = PELLUCID_USE_TRANSLUCENCY;
-    desc.outputFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
-  });
+  const Context half(device(),
+                     [](PellucidContextDesc& desc) { desc.outputFormat = VK_FORMAT_R16G16B16A16_SFLOAT; });
   ReplaySettings s;
   s.features = PELLUCID_FEATURE_TRANSLUCENCY;
   s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
@@ -83,7 +82,7 @@ TEST_F(ContextTest, MakesThePipelinesOfItsUsesOnLentThreads) {
     std::set<uint32_t> jobs;
     uint32_t count = 0;
   } lent;
-  const Context diffusion(device(), [&](PellucidContextDesc& desc) {
+  const auto change = [&](PellucidContextDesc& desc) {
     desc.uses = PELLUCID_USE_DIFFUSION;
     desc.parallelUser = &lent;
     desc.parallelFor = [](void* user, uint32_t count, void (*job)(void*, uint32_t), void* data) {
@@ -94,7 +93,8 @@ TEST_F(ContextTest, MakesThePipelinesOfItsUsesOnLentThreads) {
         l.jobs.insert(i);
       }
     };
-  });
+  };
+  const Context diffusion(device(), change, Compile::AtCreation);
   EXPECT_EQ(lent.count, 6u) << "find cells, list groups, base level, downsample, upsample, diffuse";
   EXPECT_EQ(lent.jobs.size(), lent.count);
 
@@ -106,7 +106,8 @@ TEST_F(ContextTest, MakesThePipelinesOfItsUsesOnLentThreads) {
 
   s.quality = 0;
   EXPECT_NE(refusal(device(), diffusion, s).find("plan needs pipeline diffuse_coarse"), std::string::npos);
-  EXPECT_THROW(Context(device(), [](PellucidContextDesc& desc) { desc.uses = 1u << 20; }), DeviceError);
+  const auto unknown = [](PellucidContextDesc& desc) { desc.uses = 1u << 20; };
+  EXPECT_THROW(Context(device(), unknown, Compile::AtCreation), DeviceError);
 }
 
 // Not as far as halves keep it.
