@@ -40,7 +40,7 @@ struct Options {
   float exposure = 0;
   ToneMap toneMap = ToneMap::None;
   int jobs = 2;
-  std::optional<uint32_t> repeat;
+  std::optional<uint32_t> repeat, views;
   ManifestPreset preset = ManifestPreset::None;
   SettingsOptions settings;
 };
@@ -126,6 +126,11 @@ void replayOne(const Options& options, const ReplaySettings& settings) {
   const uint32_t repeat = options.repeat.value_or(kDefaultRepeat);
   const ReplayResult result = replayer.run(capture, materials, settings, repeat);
   print(device, result, repeat);
+  if (options.views) {
+    const ViewTimes times = replayer.timeViews(capture, materials, settings, *options.views, repeat);
+    std::printf("%u views: %.1f us in one recording, %.1f us in one each\n", *options.views, times.together,
+                times.apart);
+  }
 
   std::filesystem::path output = options.output;
   if (output.empty()) output = std::filesystem::path(options.input).stem().string() + ".pellucid.exr";
@@ -229,6 +234,7 @@ void replay(const Options& options) {
     throw UsageError("--tonemap: a debug view holds data, which a tone map would change");
   if (options.toneMap != ToneMap::None && !options.png && options.triptych.empty())
     throw UsageError("--tonemap is of PNGs: --png or --triptych");
+  if (options.views && options.repeat == 0u) throw UsageError("--views times frames, and --repeat is 0");
   const bool isSequence = !options.frames.empty() || (options.input.find('#') != std::string::npos &&
                                                       !std::filesystem::exists(options.input));
   if (!isSequence) {
@@ -236,6 +242,7 @@ void replay(const Options& options) {
   }
   if (!options.triptych.empty()) throw UsageError("--triptych shows one capture, not a sequence");
   if (options.repeat) throw UsageError("--repeat times one capture, not a sequence");
+  if (options.views) throw UsageError("--views times one capture, not a sequence");
   if (options.output.empty()) throw UsageError("a sequence: -o with #### is required");
   if (wantsPng(options, settings) && !(options.exposure > 0))
     throw UsageError("a sequence: PNGs need --exposure, one for the whole");
@@ -266,6 +273,12 @@ void addReplayCommand(CLI::App& app) {
           "frames that are timed, after a first one that compiles shaders: the median is printed; 0: "
           "no times; default: 3, not of a sequence")
       ->check(CLI::Range(0, 1000));
+  command
+      ->add_option(
+          "--views", options->views,
+          "also time as many copies of the frame, which must have the same bits, in one recording and "
+          "in one each; not of a sequence")
+      ->check(CLI::Range(2, 64));
   command->add_flag("--keep-layers", options->keepLayers,
                     "also write the alpha and the other channels of the irradiance's file");
   command->add_flag("--png", options->png, "also write a PNG beside the EXR (--debug always does)");

@@ -75,7 +75,9 @@ public:
   // Groups of a dispatch that ran in the last recording that the device finished.
   std::uint64_t groupsRun(std::uint32_t dispatch) const;
 
-  void record(VkCommandBuffer commandBuffer) const;                     // the whole plan
+  void record(VkCommandBuffer commandBuffer) const;  // the whole plan
+  // The whole plans of several runs of one context, side by side.
+  static void recordTogether(VkCommandBuffer commandBuffer, const std::vector<const FrameRun*>& runs);
   void record(VkCommandBuffer commandBuffer, uint32_t dispatch) const;  // one dispatch of it, in its turn
   // One dispatch of it, also where the GPU would find nothing to do for it.
   void recordAlone(VkCommandBuffer commandBuffer, uint32_t dispatch) const;
@@ -101,7 +103,9 @@ private:
   class Images;
 
   void plan(Device& device, const PellucidPlan* previous);
+  PellucidConstantsSlice slice() const;
   void record(VkCommandBuffer commandBuffer, const PellucidPlan& plan) const;
+  void requireRecorded(PellucidResult result) const;
   PellucidPlan only(uint32_t dispatch) const;
 
   const Context& context_;
@@ -125,6 +129,12 @@ struct ReplayResult {
   std::vector<DispatchTime> times;  // one per dispatch; none without timed frames
 };
 
+// Microseconds of all views, medians of GPU timestamps.
+struct ViewTimes {
+  double together;  // in one recording
+  double apart;     // in one each, one after the other in one command buffer
+};
+
 // PellucidUse bits of frames with these settings, of any capture.
 std::uint32_t usesOf(const ReplaySettings& settings);
 
@@ -139,6 +149,11 @@ public:
   // compile shaders. Times are medians of their GPU timestamps, microseconds.
   ReplayResult run(const Capture& capture, const std::vector<PellucidMaterial>& materials,
                    const ReplaySettings& settings, uint32_t timedFrames = 0);
+
+  // `views` copies of the frame, which share inputs that are not written. Throws DeviceError where the
+  // copies' bits are not the same either way.
+  ViewTimes timeViews(const Capture& capture, const std::vector<PellucidMaterial>& materials,
+                      const ReplaySettings& settings, uint32_t views, uint32_t timedFrames);
 
 private:
   Device& device_;
