@@ -4,6 +4,7 @@
 #include <pellucid/pellucid_material.h>
 #include <pellucid/pellucid_plan.h>
 #include <pellucid/pellucid_thesis.h>
+#include <pellucid/pellucid_views.h>
 #include <string.h>
 
 int main(void) {
@@ -34,7 +35,8 @@ int main(void) {
   frame.clipFromView[14] = 0.1f;
   if (pellucidBuildPlan(&frame, NULL, &plan) != PELLUCID_OK) return 3;
   if (strcmp(plan.dispatches[0].name, "base level") != 0) return 4;
-  /* No device yet: refused. */
+  /* No context and no device yet: refused. */
+  if (pellucidRecordViews(NULL, VK_NULL_HANDLE, 0, NULL) != PELLUCID_ERROR_INVALID_ARGUMENT) return 6;
   pellucidInitContextDesc(&context);
   return pellucidCreateContext(&context, &none) == PELLUCID_ERROR_INVALID_ARGUMENT ? 0 : 5;
 }
