@@ -19,6 +19,7 @@
 #include "cli/plan_text.h"
 #include "cli/preset.h"
 #include "cli/settings.h"
+#include "cli/statistics.h"
 #include "cli/tone_map_option.h"
 #include "common/error.h"
 #include "common/parallel.h"
@@ -26,6 +27,7 @@
 #include "common/progress.h"
 #include "common/whole_file.h"
 #include "replay/replay.h"
+#include "replay/tile_map.h"
 
 namespace pellucid::harness {
 namespace {
@@ -36,7 +38,7 @@ constexpr uint32_t kDefaultRepeat = 3;
 
 struct Options {
   std::string input, output, device, triptych, frames;
-  bool png = false, overwrite = false, keepLayers = false;
+  bool png = false, stats = false, overwrite = false, keepLayers = false;
   float exposure = 0;
   ToneMap toneMap = ToneMap::None;
   int jobs = 2;
@@ -58,7 +60,7 @@ void print(const Device& device, const ReplayResult& result, uint32_t repeat) {
     const std::string groups =
         std::to_string(d.groups[0]) + "x" + std::to_string(d.groups[1]) + "x" + std::to_string(d.groups[2]);
     std::printf("%-22s %-22s %12s %10llu %14llu", d.name, pellucidPipelineName(d.pipeline), groups.c_str(),
-                static_cast<unsigned long long>(result.groups[i]),
+                static_cast<unsigned long long>(result.statistics.dispatches[i].run),
                 static_cast<unsigned long long>(d.modeledBytes));
     if (repeat > 0) std::printf(" %10.1f", result.times[i].microseconds);
     std::printf("\n");
@@ -92,21 +94,38 @@ void writeTriptych(const Options& options, const Capture& capture,
 }
 
 bool wantsPng(const Options& options, const ReplaySettings& settings) {
-  return options.png || settings.debugView != PELLUCID_DEBUG_NONE;
+  return options.png || settings.debugView != PELLUCID_DEBUG_NONE || options.settings.showsTiles();
+}
+
+// A frame on the device, and its tiles where they are shown.
+struct Replayed {
+  ReplayResult result;
+  std::optional<TileMap> tiles;
+};
+
+Replayed runFrame(const Options& options, Replayer& replayer, const Capture& capture,
+                  const std::vector<PellucidMaterial>& materials, const ReplaySettings& settings,
+                  uint32_t repeat) {
+  Replayed frame;
+  frame.result = replayer.run(capture, materials, settings, repeat, [&](const FrameRun& run) {
+    if (options.settings.showsTiles()) frame.tiles = readTileMap(run);
+  });
+  return frame;
 }
 
 // The PNG comes first: a frame whose EXR is there is finished.
 void writeFrame(const Options& options, const std::filesystem::path& output, const Capture& capture,
-                const Device& device, const PellucidPlan& plan, const Image& image, bool png,
-                float exposure) {
+                const Device& device, const Replayed& frame, const Image& image, bool png, float exposure) {
   if (png)
     writeWhole(std::filesystem::path(output).replace_extension(".png"), [&](const auto& file) {
-      writePng(file, image.width, image.height, toSrgb(image, exposure, options.toneMap));
+      std::vector<std::uint8_t> picture = toSrgb(image, exposure, options.toneMap);
+      if (frame.tiles) drawTileMap(*frame.tiles, image.width, image.height, picture);
+      writePng(file, image.width, image.height, picture);
     });
   ExrPart part;
   part.attributes = {{"pellucid.device", device.description()},
                      {"pellucid.capture", capture.name},
-                     {"pellucid.plan", planJson(plan)},
+                     {"pellucid.plan", planJson(frame.result.plan)},
                      {kSettingsAttribute, options.settings.text()},
                      {kDebugAttribute, options.settings.debug}};
   const char* const names[] = {"R", "G", "B"};
@@ -124,20 +143,23 @@ void replayOne(const Options& options, const ReplaySettings& settings) {
   Device device({options.device, false});
   Replayer replayer(device, usesOf(settings));
   const uint32_t repeat = options.repeat.value_or(kDefaultRepeat);
-  const ReplayResult result = replayer.run(capture, materials, settings, repeat);
+  const Replayed frame = runFrame(options, replayer, capture, materials, settings, repeat);
+  const ReplayResult& result = frame.result;
   print(device, result, repeat);
   if (options.views) {
     const ViewTimes times = replayer.timeViews(capture, materials, settings, *options.views, repeat);
     std::printf("%u views: %.1f us in one recording, %.1f us in one each\n", *options.views, times.together,
                 times.apart);
   }
+  if (options.stats) std::printf("\n%s", statisticsText(result.plan, result.statistics).c_str());
+  if (frame.tiles) std::printf("\n%s", tileLegend(*frame.tiles).c_str());
 
   std::filesystem::path output = options.output;
   if (output.empty()) output = std::filesystem::path(options.input).stem().string() + ".pellucid.exr";
   const Image image = rgb(result.output);
   const float exposure = options.exposure > 0 ? options.exposure : autoExposure(image);
   const bool png = wantsPng(options, settings);
-  writeFrame(options, output, capture, device, result.plan, image, png, exposure);
+  writeFrame(options, output, capture, device, frame, image, png, exposure);
   std::printf("wrote %s\n", output.string().c_str());
   if (png)
     std::printf("wrote %s (exposure %g)\n",
@@ -192,9 +214,9 @@ void replaySequence(const Options& options, const ReplaySettings& settings) {
         const std::vector<PellucidMaterial> materials = compileMaterials(capture);
         requireNearestDistance(capture, materials, settings);
         std::unique_lock lock(deviceMutex);
-        const ReplayResult result = replayer.run(capture, materials, settings);
+        const Replayed replayed = runFrame(options, replayer, capture, materials, settings, 0);
         lock.unlock();
-        writeFrame(options, output(frame), capture, device, result.plan, rgb(result.output),
+        writeFrame(options, output(frame), capture, device, replayed, rgb(replayed.result.output),
                    wantsPng(options, settings), options.exposure);
       }
     } catch (const DeviceError&) {
@@ -232,7 +254,7 @@ void replay(const Options& options) {
     throw UsageError("--triptych shows results and cannot be combined with --debug");
   if (options.toneMap != ToneMap::None && settings.debugView != PELLUCID_DEBUG_NONE)
     throw UsageError("--tonemap: a debug view holds data, which a tone map would change");
-  if (options.toneMap != ToneMap::None && !options.png && options.triptych.empty())
+  if (options.toneMap != ToneMap::None && !wantsPng(options, settings) && options.triptych.empty())
     throw UsageError("--tonemap is of PNGs: --png or --triptych");
   if (options.views && options.repeat == 0u) throw UsageError("--views times frames, and --repeat is 0");
   const bool isSequence = !options.frames.empty() || (options.input.find('#') != std::string::npos &&
@@ -243,6 +265,7 @@ void replay(const Options& options) {
   if (!options.triptych.empty()) throw UsageError("--triptych shows one capture, not a sequence");
   if (options.repeat) throw UsageError("--repeat times one capture, not a sequence");
   if (options.views) throw UsageError("--views times one capture, not a sequence");
+  if (options.stats) throw UsageError("--stats is of one capture, not a sequence");
   if (options.output.empty()) throw UsageError("a sequence: -o with #### is required");
   if (wantsPng(options, settings) && !(options.exposure > 0))
     throw UsageError("a sequence: PNGs need --exposure, one for the whole");
@@ -279,6 +302,8 @@ void addReplayCommand(CLI::App& app) {
           "also time as many copies of the frame, which must have the same bits, in one recording and "
           "in one each; not of a sequence")
       ->check(CLI::Range(2, 64));
+  command->add_flag("--stats", options->stats,
+                    "print what the device decided: groups run, tiles with material, gathered light");
   command->add_flag("--keep-layers", options->keepLayers,
                     "also write the alpha and the other channels of the irradiance's file");
   command->add_flag("--png", options->png, "also write a PNG beside the EXR (--debug always does)");
@@ -289,6 +314,7 @@ void addReplayCommand(CLI::App& app) {
                       "part of the Vulkan device's name; default: the fastest kind");
   addToneMapOption(*command, options->toneMap);
   addPresetOption(*command, options->preset);
+  options->settings.tiles = true;
   options->settings.addTo(*command);
   command->callback([options] { replay(*options); });
 }

@@ -277,8 +277,10 @@ void SettingsOptions::addTo(CLI::App& command) {
   for (const auto& [name, key] : kKeys) help += " " + name + "=" + key.help + ";";
   command.add_option("--mode", mode, "physical (default) or thesis: Whelan 2009's; --set changes either");
   command.add_option("--set", set, help);
-  command.add_option("--debug", debug,
-                     "write an intermediate: thickness (mm), transmittance, occlusion, irradiance");
+  command.add_option(
+      "--debug", debug,
+      std::string("write an intermediate: thickness (mm), transmittance, occlusion, irradiance") +
+          (tiles ? "; tiles: the result, and a PNG of it under the tiles by what ran" : ""));
 }
 
 ReplaySettings SettingsOptions::parse() const {
@@ -288,7 +290,9 @@ ReplaySettings SettingsOptions::parse() const {
     settings = thesisSettings();
   else if (mode != "physical")
     throw UsageError("--mode: \"" + mode + "\" is not one of physical, thesis");
-  if (!debug.empty()) settings.debugView = lookUp(kDebugViews, "--debug", debug);
+  Names<PellucidDebugView> views = kDebugViews;
+  if (tiles) views["tiles"] = PELLUCID_DEBUG_NONE;
+  if (!debug.empty()) settings.debugView = lookUp(views, "--debug", debug);
   for (const std::string& assignment : assignments()) {
     const size_t equals = assignment.find('=');
     if (equals == std::string::npos) throw UsageError("--set: \"" + assignment + "\" is not key=value");

@@ -13,6 +13,9 @@ struct SettingsOptions {
   std::vector<std::string> set;  // key=value or @FILE
   std::string debug;
   std::string mode = "physical";
+  bool tiles = false;  // --debug takes "tiles", too, which is no view of the module
+
+  bool showsTiles() const { return tiles && debug == "tiles"; }
 
   void addTo(CLI::App& command);
 

@@ -260,6 +260,11 @@ void Device::run(const std::function<void(VkCommandBuffer)>& record) {
   try {
     check(vkBeginCommandBuffer(commandBuffer, &begin), "vkBeginCommandBuffer");
     record(commandBuffer);
+    // A fence alone does not show the host what the device wrote.
+    const VkMemoryBarrier toHost{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr, VK_ACCESS_MEMORY_WRITE_BIT,
+                                 VK_ACCESS_HOST_READ_BIT};
+    vkCmdPipelineBarrier(commandBuffer, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1,
+                         &toHost, 0, nullptr, 0, nullptr);
     check(vkEndCommandBuffer(commandBuffer), "vkEndCommandBuffer");
     VkFenceCreateInfo fenceInfo{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
     check(vkCreateFence(device_, &fenceInfo, nullptr, &fence), "vkCreateFence");

@@ -59,7 +59,7 @@ public:
   // Storage images need no format in shaders.
   bool writesWithoutFormat() const { return writesWithoutFormat_; }
 
-  // Records with `record`, submits and waits.
+  // Records with `record`, submits and waits; then the host sees all that was written.
   void run(const std::function<void(VkCommandBuffer)>& record);
 
   uint32_t memoryType(uint32_t typeBits, VkMemoryPropertyFlags flags,

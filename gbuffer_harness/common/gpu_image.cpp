@@ -257,10 +257,6 @@ Image GpuImage::download(const VkRect2D& rect) const {
     VkBufferImageCopy region = wholeImage(width, height);
     region.imageOffset = {rect.offset.x, rect.offset.y, 0};
     vkCmdCopyImageToBuffer(commandBuffer, image_, VK_IMAGE_LAYOUT_GENERAL, staging.handle(), 1, &region);
-    VkMemoryBarrier toHost{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr, VK_ACCESS_TRANSFER_WRITE_BIT,
-                           VK_ACCESS_HOST_READ_BIT};
-    vkCmdPipelineBarrier(commandBuffer, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1,
-                         &toHost, 0, nullptr, 0, nullptr);
   });
   if (unpack) {
     const auto* words = static_cast<const glm::uint32*>(staging.mapped());

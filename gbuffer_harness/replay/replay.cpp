@@ -81,6 +81,17 @@ public:
   void uploadOutput(const Image& content) const { output_->upload(content); }
   const GpuImage& output() const { return *output_; }
   Image irradiance() const { return inputs_->irradiance().download(); }
+  // Tile lists are the transient of whole numbers of 32 bits.
+  std::vector<std::uint32_t> tileWords() const {
+    for (const GpuImage* image : transients_) {
+      if (image->format() != VK_FORMAT_R32_UINT) continue;
+      const Image bits = image->download();
+      std::vector<std::uint32_t> words(bits.data.size());
+      std::memcpy(words.data(), bits.data.data(), words.size() * sizeof words[0]);
+      return words;
+    }
+    return {};
+  }
   void restoreIrradiance(const Capture& capture) const {
     if (outputIsIrradiance_) inputs_->irradiance().upload(capture.irradiance);
   }
@@ -239,12 +250,17 @@ void FrameRun::recordAlone(VkCommandBuffer commandBuffer, uint32_t dispatch) con
 
 const void* FrameRun::constants() const { return constants_->mapped(); }
 
-std::uint64_t FrameRun::groupsRun(std::uint32_t dispatch) const {
-  const PellucidDispatch& d = plan_->dispatches[dispatch];
-  VkDispatchIndirectCommand ran = {d.groups[0], d.groups[1], d.groups[2]};
-  if (d.indirect) std::memcpy(&ran, static_cast<const char*>(constants()) + d.indirectOffset, sizeof ran);
-  return std::uint64_t{ran.x} * ran.y * ran.z;
+PellucidStatistics FrameRun::statistics() const {
+  const PellucidConstantsSlice slice = this->slice();
+  PellucidStatistics statistics;
+  pellucidInitStatistics(&statistics);
+  std::string sentences;
+  if (pellucidReadStatistics(plan_.get(), &slice, &statistics, &appendError, &sentences) != PELLUCID_OK)
+    throw InputError(name_, "", sentences);
+  return statistics;
 }
+
+std::vector<std::uint32_t> FrameRun::tileWords() const { return images_->tileWords(); }
 
 Image FrameRun::output() const { return images_->output().download(); }
 
@@ -277,14 +293,16 @@ std::uint32_t usesOf(const ReplaySettings& settings) {
 }
 
 ReplayResult Replayer::run(const Capture& capture, const std::vector<PellucidMaterial>& materials,
-                           const ReplaySettings& settings, uint32_t timedFrames) {
+                           const ReplaySettings& settings, uint32_t timedFrames,
+                           const std::function<void(const FrameRun&)>& look) {
   const FrameRun run(device_, contextFor(capture), capture, materials, settings);
   ReplayResult result;
   result.plan = run.plan();
   const auto recordFirst = [&] {
     device_.run([&](VkCommandBuffer commandBuffer) { run.record(commandBuffer); });
     result.output = run.output();
-    for (uint32_t i = 0; i < result.plan.dispatchCount; ++i) result.groups.push_back(run.groupsRun(i));
+    result.statistics = run.statistics();
+    if (look) look(run);
   };
   if (timedFrames == 0) {
     recordFirst();

@@ -8,6 +8,7 @@
 
 #include "common/device.h"
 #include "common/pool.h"
+#include "pellucid/pellucid_statistics.h"
 #include "replay/frame.h"
 #include "replay/inputs.h"
 
@@ -72,8 +73,11 @@ public:
   const PellucidFrame& frame() const { return data_.frame; }
   // The slice as the device left it: with what it decided about indirect dispatches.
   const void* constants() const;
-  // Groups of a dispatch that ran in the last recording that the device finished.
-  std::uint64_t groupsRun(std::uint32_t dispatch) const;
+  const std::string& name() const { return name_; }  // of the capture
+  // What the device decided in the last recording, which it has finished.
+  PellucidStatistics statistics() const;
+  // The words of that recording's tile lists (compute/frame/tile_words.glsl); none in plans without.
+  std::vector<std::uint32_t> tileWords() const;
 
   void record(VkCommandBuffer commandBuffer) const;  // the whole plan
   // The whole plans of several runs of one context, side by side.
@@ -124,8 +128,7 @@ struct DispatchTime {
 struct ReplayResult {
   Image output;  // as FrameRun::output
   PellucidPlan plan;
-  std::vector<std::uint64_t>
-      groups;                       // that ran, one for each dispatch: of indirect ones what the GPU decided
+  PellucidStatistics statistics;    // of the plan
   std::vector<DispatchTime> times;  // one per dispatch; none without timed frames
 };
 
@@ -146,9 +149,11 @@ public:
   const Context& contextFor(const Capture& capture) { return contexts_.of(capture); }
 
   // `timedFrames`: recordings of the frame after the one that makes the output, in which drivers may still
-  // compile shaders. Times are medians of their GPU timestamps, microseconds.
+  // compile shaders. Times are medians of their GPU timestamps, microseconds. `look` sees that first
+  // recording when the device has finished it.
   ReplayResult run(const Capture& capture, const std::vector<PellucidMaterial>& materials,
-                   const ReplaySettings& settings, uint32_t timedFrames = 0);
+                   const ReplaySettings& settings, uint32_t timedFrames = 0,
+                   const std::function<void(const FrameRun&)>& look = {});
 
   // `views` copies of the frame, which share inputs that are not written. Throws DeviceError where the
   // copies' bits are not the same either way.

@@ -39,7 +39,7 @@ Extent tilesExtent(const FrameFacts& f) {
   return {TileLists::kColumns, parts(lists.words, TileLists::kColumns)};
 }
 
-// The dispatches of the plan that bind the image.
+// The dispatches of the plan that bind the image, with those that run beside them: no barrier lies between.
 void addUse(const PellucidPlan& plan, uint32_t resource, PellucidImageNeed& need) {
   need.firstDispatch = UINT32_MAX;
   for (uint32_t d = 0; d < plan.dispatchCount; ++d)
@@ -48,6 +48,10 @@ void addUse(const PellucidPlan& plan, uint32_t resource, PellucidImageNeed& need
         need.firstDispatch = std::min(need.firstDispatch, d);
         need.lastDispatch = d;
       }
+  if (need.firstDispatch > need.lastDispatch) return;  // not in use
+  while (need.firstDispatch > 0 && !plan.dispatches[need.firstDispatch].barrierBefore) --need.firstDispatch;
+  while (need.lastDispatch + 1 < plan.dispatchCount && !plan.dispatches[need.lastDispatch + 1].barrierBefore)
+    ++need.lastDispatch;
 }
 
 }  // namespace

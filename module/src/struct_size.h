@@ -16,12 +16,18 @@ constexpr size_t kLargestStruct = 4096;
 // The size of a struct that ends before its first field that may be missing, which is `field`.
 #define PELLUCID_LEAST_SIZE(Struct, field) offsetof(Struct, field)
 
+// True for sizes that some version of the struct may have.
+template <class Struct>
+bool isStructSize(size_t size, size_t least) {
+  return size >= least && size <= kLargestStruct && size % alignof(Struct) == 0;
+}
+
 // True where a caller's struct of that size can be read: `least` bytes or more, whole fields (pointers are
 // the widest), and zeros where this library knows no fields.
 template <class Struct>
 bool canReadStruct(const Struct* given, size_t least) {
   const size_t size = given->structSize;
-  if (size < least || size > kLargestStruct || size % alignof(Struct) != 0) return false;
+  if (!isStructSize<Struct>(size, least)) return false;
   const auto* bytes = reinterpret_cast<const unsigned char*>(given);
   return size <= sizeof(Struct) ||
          std::all_of(bytes + sizeof(Struct), bytes + size, [](unsigned char byte) { return byte == 0; });

@@ -471,6 +471,26 @@ TEST(Plan, ImageNeedsCoverThePlan) {
   }
 }
 
+// Memory of an image may serve another from the next barrier on, not from the next dispatch.
+TEST(Plan, ImagesAreInUseFromBarrierToBarrier) {
+  for (const uint32_t indirect : {PELLUCID_INDIRECT_NONE, PELLUCID_INDIRECT_MATERIAL}) {
+    Frame f;
+    f.frame.indirectDispatches = indirect;
+    f.frame.gatherSamples = 8;
+    f.frame.gatherSpacing = 4;
+    PellucidImageNeed needs[PELLUCID_MAX_TRANSIENTS];
+    uint32_t count = PELLUCID_MAX_TRANSIENTS;
+    ASSERT_EQ(pellucidGetImageNeeds(&f.frame, &count, needs), PELLUCID_OK);
+    const PellucidPlan plan = f.plan();
+    ASSERT_LT(plan.barrierCount + 1, plan.dispatchCount) << "some dispatches run beside others";
+    for (uint32_t i = 0; i < count; ++i) {
+      const uint32_t first = needs[i].firstDispatch, next = needs[i].lastDispatch + 1;
+      EXPECT_TRUE(first == 0 || plan.dispatches[first].barrierBefore) << "transient " << i;
+      EXPECT_TRUE(next == plan.dispatchCount || plan.dispatches[next].barrierBefore) << "transient " << i;
+    }
+  }
+}
+
 // D3D12, Metal and WebGPU forbid what Vulkan allows in GENERAL. A history is added to in place, pixel by
 // pixel.
 TEST(Plan, NoDispatchReadsAndWritesATransient) {

@@ -1,0 +1,130 @@
+// Constants slice -> statistics. Pure: no device, no allocation.
+#include "pellucid/pellucid_statistics.h"
+
+#include "findings.h"
+#include "pipelines.h"
+#include "shared/pellucid_shared.h"
+#include "struct_size.h"
+
+namespace pellucid {
+namespace {
+
+// Other headers' structs are longer, or end before fields that come after these.
+constexpr size_t kLeastStatistics = sizeof(PellucidStatistics);
+static_assert(offsetof(PellucidStatistics, reserved) + sizeof(uint32_t) == sizeof(PellucidStatistics));
+static_assert(PELLUCID_STATISTICS_TILE == PELLUCID_TILE);
+static_assert(PELLUCID_ENTRY_POINTS_GROUP == 16 && PELLUCID_PROBES_GROUP == 8);  // as the header says
+
+void add(PellucidGroups* all, const PellucidGroups& groups) {
+  all->run += groups.run;
+  all->most += groups.most;
+}
+
+// Groups of a dispatch; an error where the slice cannot be one of the plan.
+PellucidGroups groupsOf(const PellucidPlan& plan, uint32_t index, const PellucidConstantsSlice& slice,
+                        Findings& out) {
+  const PellucidDispatch& d = plan.dispatches[index];
+  const uint64_t most = uint64_t{d.groups[0]} * d.groups[1] * d.groups[2];
+  if (!d.indirect) return {most, most};
+  VkDispatchIndirectCommand ran;
+  if (d.indirectOffset > plan.constantsSize || plan.constantsSize - d.indirectOffset < sizeof ran) {
+    out.error(Field("plan.dispatches[", index, "].indirectOffset"), "is ", d.indirectOffset,
+              ", beyond the plan's ", plan.constantsSize, " bytes of constants");
+    return {};
+  }
+  std::memcpy(&ran, static_cast<const char*>(slice.mapped) + d.indirectOffset, sizeof ran);
+  if (ran.x > d.groups[0] || ran.y > d.groups[1] || ran.z > d.groups[2])
+    out.error("constants.mapped", "has ", ran.x, " x ", ran.y, " x ", ran.z, " groups of \"", d.name,
+              "\", which are at most ", d.groups[0], " x ", d.groups[1], " x ", d.groups[2],
+              ": it is not the slice of a recording of this plan");
+  return {uint64_t{ran.x} * ran.y * ran.z, most};
+}
+
+// Adds a dispatch to the totals of its pass.
+void count(const PellucidDispatch& d, const PellucidGroups& groups, PellucidStatistics* s) {
+  switch (static_cast<Pipeline>(d.pipeline)) {
+    case Pipeline::BaseLevel:
+      s->tiles = groups;
+      s->tileLists = d.indirect;
+      break;
+    case Pipeline::Diffuse:
+    case Pipeline::DiffuseCoarse:
+    case Pipeline::DiffuseGathered:
+    case Pipeline::DiffuseCoarseGathered:
+      // A plan with two of them runs one.
+      s->diffusion = {s->diffusion.run + groups.run, groups.most};
+      break;
+    case Pipeline::EntryPoints:
+    case Pipeline::EntryPointsDirectional:
+      add(&s->entryPoints, groups);
+      break;
+    case Pipeline::Probes:
+    case Pipeline::ProbesDirectional:
+    case Pipeline::ProbesShared:
+    case Pipeline::ProbesSharedDirectional:
+      add(&s->probes, groups);
+      break;
+    default:
+      break;
+  }
+}
+
+// The device decides where the plan has the diffusion with gathered light and without.
+PellucidGatheredLight gatheredLight(const PellucidPlan& plan, const PellucidStatistics& s) {
+  bool alone = false, gathered = false, ran = false;
+  for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
+    const auto pipeline = static_cast<Pipeline>(plan.dispatches[i].pipeline);
+    alone = alone || pipeline == Pipeline::Diffuse || pipeline == Pipeline::DiffuseCoarse;
+    if (pipeline != Pipeline::DiffuseGathered && pipeline != Pipeline::DiffuseCoarseGathered) continue;
+    gathered = true;
+    ran = s.dispatches[i].run > 0;
+  }
+  if (!alone || !gathered) return PELLUCID_GATHERED_UNKNOWN;
+  return ran ? PELLUCID_GATHERED_SOME : PELLUCID_GATHERED_NONE;
+}
+
+}  // namespace
+}  // namespace pellucid
+
+using namespace pellucid;
+
+extern "C" void pellucidInitStatisticsSized(PellucidStatistics* statistics, size_t structSize) {
+  writeStruct(statistics, structSize, PellucidStatistics{});
+}
+
+extern "C" PellucidResult pellucidReadStatistics(const PellucidPlan* plan,
+                                                 const PellucidConstantsSlice* constants,
+                                                 PellucidStatistics* statistics, PellucidMessageFn fn,
+                                                 void* user) {
+  Findings out(fn, user);
+  if (!plan) out.error("plan", "is NULL");
+  if (!constants)
+    out.error("constants", "is NULL");
+  else if (!constants->mapped)
+    out.error("constants.mapped", "is NULL");
+  if (!statistics) out.error("statistics", "is NULL");
+  if (out.result() != PELLUCID_OK) return out.result();
+  if (!isStructSize<PellucidStatistics>(statistics->structSize, kLeastStatistics))
+    out.fail(PELLUCID_ERROR_VERSION, "statistics.structSize", "is ", statistics->structSize,
+             "; this library writes ", kLeastStatistics, " to ", kLargestStruct,
+             " bytes (call pellucidInitStatistics)");
+  else if (plan->dispatchCount > PELLUCID_MAX_DISPATCHES)
+    out.error("plan.dispatchCount", "is ", plan->dispatchCount, ", more than ",
+              static_cast<int>(PELLUCID_MAX_DISPATCHES));
+  else if (constants->size < plan->constantsSize)
+    out.fail(PELLUCID_ERROR_BUFFER_TOO_SMALL, "constants.size", "is ", constants->size, "; the plan has ",
+             plan->constantsSize, " bytes");
+  if (out.result() != PELLUCID_OK) return out.result();
+
+  PellucidStatistics s{};
+  s.dispatchCount = plan->dispatchCount;
+  s.activeLights = plan->activeLights;
+  for (uint32_t i = 0; i < plan->dispatchCount; ++i) {
+    s.dispatches[i] = groupsOf(*plan, i, *constants, out);
+    count(plan->dispatches[i], s.dispatches[i], &s);
+  }
+  if (out.result() != PELLUCID_OK) return out.result();
+  s.gatheredLight = gatheredLight(*plan, s);
+  writeStruct(statistics, statistics->structSize, s);
+  return PELLUCID_OK;
+}
