@@ -182,7 +182,7 @@ void Renderer::makeFrame(const ViewCamera& camera) {
   f.quality = settings_.quality;
   f.ownQueue = settings_.pellucid && settings_.ownQueue;
   transients_.clear();
-  pool_.nextFrame();
+  pool_.nextFrame();  // keeps what the frames in flight use
   f.transient = [this](const PellucidImageNeed& need) {
     const int width = static_cast<int>(need.extent[0]), height = static_cast<int>(need.extent[1]);
     return transients_.emplace_back(pool_.take(width, height, need.format))->use();

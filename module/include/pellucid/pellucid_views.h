@@ -29,8 +29,8 @@ typedef struct PellucidView {
  * frames' renderRects have no pixel in common. All other inputs may be shared.
  *
  * PELLUCID_ERROR_INVALID_ARGUMENT for one image view that breaks this rule, and for slices of one buffer, or mapped
- * addresses, that overlap in what the plans need of them. Two image views of one image, and memory that aliases, are for
- * Vulkan's validation to see. Every other error is one of pellucidRecordPlan. The message's field names the view:
+ * addresses, that overlap in what the plans need of them. Handles are compared: two image views of one image, and memory
+ * that aliases, go unnoticed. Every other error is one of pellucidRecordPlan. The message's field names the view:
  * "views[1].output". After an error nothing is recorded; the slices of the views before that one may have been written. */
 PellucidResult pellucidRecordViews(const PellucidContext* context, VkCommandBuffer commandBuffer, uint32_t viewCount,
                                    const PellucidView* views);
