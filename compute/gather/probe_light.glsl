@@ -30,7 +30,7 @@ float staysInside(GatherRings rings, EntryPoint entry, vec3 to, vec3 toLight) {
 // A sample's place from x, mm.
 vec3 onRing(vec3 center, vec3 across, vec3 along, vec2 offset) { return center + offset.x * across + offset.y * along; }
 
-// A cell takes one of thirteen patterns. Probes that are too far apart to share all take the middle one.
+// A cell takes one of 25 patterns. Probes that are too far apart to share all take the middle one.
 struct Pattern {
   float within, turn; // [0, 1): place in a ring, turn of the first sample
 };
@@ -38,10 +38,10 @@ struct Pattern {
 Pattern patternOf(ivec2 cell, uint m, float front) {
   vec2 spacing = float(pass.value.x) * pixelSize(frame.camera, front);
   float vary = clamp(2.0 - dot(spacing, spacing) * materials[m].gather.profile.w, 0.0, 1.0);
-  // A cell and the twelve that it shares with have one pattern each. A lattice fills the strata, and the turn between a sample
-  // and its like. Turns begin off the axes, along which edges often lie: of eight first turns this one errs least.
-  int turn = (cell.x + 5 * cell.y) % 13, within = turn * 5 % 13;
-  return Pattern(0.5 + vary * (float(within) - 6.0) / 13.0, vary * (float(turn) / 13.0 + 0.025));
+  // A cell and the 24 that it shares with have one pattern each. A lattice fills the strata, and the turn between a sample and
+  // its like; of five lattices this one leaves fewest dots. Turns begin off the axes, along which edges often lie.
+  int turn = (cell.x + 7 * cell.y) % 25, within = turn * 11 % 25;
+  return Pattern(0.5 + vary * (float(within) - 12.0) / 25.0, vary * (float(turn) / 25.0 + 0.025));
 }
 
 // Sums over samples, of a light of radiance 1; docs/gather.md derives them. hidden, seen: from the camera.

@@ -1,5 +1,5 @@
 // Gather probes: in each cell of 2x2 or 4x4 pixels one gathers, from entry points, what each light brings beyond its diffused
-// irradiance. Neighbors take samples of their own, by thirteen patterns; filter_probes.comp shares what they find.
+// irradiance. Neighbors take samples of their own, by 25 patterns; filter_probes.comp shares what they find.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

@@ -1,6 +1,6 @@
 // The spatial filter of a group's probes, from shared memory.
 
-const int kReach = 2; // cells, across and along together
+const int kReach = 3; // cells, across and along together
 const int kSquare = 2 * kReach + 1, kRow = PELLUCID_FILTER_GROUP + 2 * kReach;
 const int kBorder = kRow * kRow - PELLUCID_FILTER_GROUP * PELLUCID_FILTER_GROUP;
 

@@ -96,9 +96,9 @@ GroupGrids groupGrids(const FrameFacts& f, const Rect& rect, const Pyramid& pyra
       PELLUCID_RUNS_WITH_BLOCKS, grown(upsampleGrid(pyramid), 4 * PELLUCID_DIFFUSE_COARSE_TEXELS_X + 4,
                                        4 * PELLUCID_DIFFUSE_TEXELS_Y + 4));
   grids[PELLUCID_LIST_DIFFUSE] = diffuseGrid(pyramid, kQualities[f.quality].fineFilter);
-  // A pixel reads the next cell's filtered probe, which is of the probes two cells around.
+  // A pixel reads the next cell's filtered probe, which is of the probes three cells around.
   grids[PELLUCID_LIST_PROBES] =
-      grown(cellGrid(rect, f.gatherSpacing, PELLUCID_PROBES_GROUP), 4 * spacing, 4 * spacing);
+      grown(cellGrid(rect, f.gatherSpacing, PELLUCID_PROBES_GROUP), 5 * spacing, 5 * spacing);
   grids[PELLUCID_LIST_FILTER_PROBES] =
       grown(cellGrid(rect, f.gatherSpacing, PELLUCID_FILTER_GROUP), 2 * spacing, 2 * spacing);
   return grids;
