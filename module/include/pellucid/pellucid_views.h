@@ -36,8 +36,8 @@ typedef struct PellucidView {
  * image, and memory that aliases, go unnoticed. Every other error is one of pellucidRecordPlan. The message's
  * field names the view: "views[1].output". After an error nothing is recorded; the slices of the views before
  * that one may have been written. */
-PellucidResult pellucidRecordViews(const PellucidContext* context, VkCommandBuffer commandBuffer,
-                                   uint32_t viewCount, const PellucidView* views);
+PELLUCID_API PellucidResult pellucidRecordViews(const PellucidContext* context, VkCommandBuffer commandBuffer,
+                                                uint32_t viewCount, const PellucidView* views);
 
 #ifdef __cplusplus
 }
