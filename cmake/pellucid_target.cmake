@@ -2,8 +2,20 @@
 function(pellucid_target target)
   set_target_properties(${target} PROPERTIES
     CXX_STANDARD 20 CXX_STANDARD_REQUIRED ON CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
-  target_compile_options(${target} PRIVATE
-    -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
-    -Wno-missing-field-initializers # Vulkan structs start with sType and mean zero for the rest
-    $<$<BOOL:${PELLUCID_WARNINGS_AS_ERRORS}>:-Werror>)
+  if(MSVC)
+    target_compile_options(${target} PRIVATE /W4 $<$<BOOL:${PELLUCID_WARNINGS_AS_ERRORS}>:/WX>)
+  else()
+    target_compile_options(${target} PRIVATE
+      -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+      -Wno-missing-field-initializers # Vulkan structs start with sType and mean zero for the rest
+      $<$<BOOL:${PELLUCID_WARNINGS_AS_ERRORS}>:-Werror>)
+  endif()
+endfunction()
+
+# A library that others link, shared with BUILD_SHARED_LIBS: it exports what has PELLUCID_API alone.
+function(pellucid_library target)
+  set_target_properties(${target} PROPERTIES
+    CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
+    VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  target_compile_definitions(${target} PRIVATE PELLUCID_EXPORTS PUBLIC $<$<BOOL:${BUILD_SHARED_LIBS}>:PELLUCID_SHARED>)
 endfunction()

@@ -6,14 +6,26 @@
 #include <cstdlib>
 #include <cstring>
 #include <string>
+#include <vector>
 
 #include "pellucid/pellucid.h"
 
 namespace pellucid::test {
 
-// One command buffer: counts, and the first rule of Vulkan or of pellucid.h that was broken.
+// A barrier, or a dispatch.
+struct NullCommand {
+  bool barrier = false;
+  bool indirect = false;  // the barrier is one for commands of dispatches, or the dispatch has such
+  VkImageView image = VK_NULL_HANDLE;  // the first that the dispatch binds
+  VkPipeline pipeline = VK_NULL_HANDLE;
+  bool operator==(const NullCommand&) const = default;
+};
+
+// One command buffer: counts, its commands in their order, and the first rule of Vulkan or of pellucid.h that
+// was broken.
 struct NullCommands {
   uint32_t dispatches = 0, barriers = 0;
+  std::vector<NullCommand> commands;
   std::string problem;
   VkDeviceSize sliceOffset = 0, sliceSize = 0;  // set by the test: what buffers may be bound and read
 
@@ -27,6 +39,8 @@ struct NullCommands {
   }
 
   bool hasPipeline = false, hasBindings = false, hasConstants = false;
+  VkPipeline pipeline = VK_NULL_HANDLE;  // that is bound
+  VkImageView firstImage = VK_NULL_HANDLE;
 };
 
 class NullDevice {
@@ -106,6 +120,7 @@ private:
     NullCommands& c = of(buffer);
     c.require(point == VK_PIPELINE_BIND_POINT_COMPUTE && pipeline, "vkCmdBindPipeline without a pipeline");
     c.hasPipeline = true;
+    c.pipeline = pipeline;
   }
   static void VKAPI_PTR pushConstants(VkCommandBuffer buffer, VkPipelineLayout layout, VkShaderStageFlags,
                                       uint32_t offset, uint32_t size, const void* values) {
@@ -118,6 +133,7 @@ private:
                                           uint32_t set, uint32_t count, const VkWriteDescriptorSet* writes) {
     NullCommands& c = of(buffer);
     c.require(set == 0 && count > 0 && count <= PELLUCID_MAX_BINDINGS, "wrong number of bindings");
+    c.firstImage = VK_NULL_HANDLE;
     for (uint32_t i = 0; i < count; ++i) {
       const VkWriteDescriptorSet& w = writes[i];
       for (uint32_t k = 0; k < i; ++k)
@@ -129,32 +145,35 @@ private:
         c.require((b.offset - c.sliceOffset) % 256 == 0, "a buffer's offset is no multiple of 256");
       } else {
         c.require(w.pImageInfo && w.pImageInfo->imageView, "an image is bound without a view");
+        if (w.pImageInfo && !c.firstImage) c.firstImage = w.pImageInfo->imageView;
       }
     }
     c.hasBindings = true;
   }
-  static void VKAPI_PTR barrier(VkCommandBuffer buffer, VkPipelineStageFlags, VkPipelineStageFlags,
+  static void VKAPI_PTR barrier(VkCommandBuffer buffer, VkPipelineStageFlags, VkPipelineStageFlags after,
                                 VkDependencyFlags, uint32_t, const VkMemoryBarrier*, uint32_t,
                                 const VkBufferMemoryBarrier*, uint32_t, const VkImageMemoryBarrier*) {
     ++of(buffer).barriers;
+    of(buffer).commands.push_back({true, (after & VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT) != 0});
   }
-  static void dispatchAny(NullCommands& c) {
+  static void dispatchAny(NullCommands& c, bool indirect) {
     c.require(c.hasPipeline && c.hasBindings && c.hasConstants, "a dispatch without what it needs");
     c.hasPipeline = c.hasBindings = c.hasConstants = false;
     ++c.dispatches;
+    c.commands.push_back({false, indirect, c.firstImage, c.pipeline});
   }
   static void VKAPI_PTR dispatch(VkCommandBuffer buffer, uint32_t x, uint32_t y, uint32_t z) {
     NullCommands& c = of(buffer);
     // The least maxComputeWorkGroupCount that Vulkan allows a device.
     for (const uint32_t groups : {x, y, z})
       c.require(groups >= 1 && groups <= 65535, "groups outside 1..65535");
-    dispatchAny(c);
+    dispatchAny(c, false);
   }
   static void VKAPI_PTR dispatchIndirect(VkCommandBuffer buffer, VkBuffer commands, VkDeviceSize offset) {
     NullCommands& c = of(buffer);
     c.require(commands && offset % 4 == 0 && c.isInSlice(offset, sizeof(VkDispatchIndirectCommand)),
               "an indirect command outside the slice");
-    dispatchAny(c);
+    dispatchAny(c, true);
   }
 
   static void VKAPI_PTR getProperties(VkPhysicalDevice, VkPhysicalDeviceProperties* properties) {

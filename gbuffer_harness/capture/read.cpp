@@ -141,9 +141,7 @@ void crop(const BufferSource& source, const ShadowMap& map, const std::array<int
                      "the tile of " + sizeText(size[0], size[1]) + " texels at (" + std::to_string(x) + ", " +
                          std::to_string(y) + ") is outside the image of " +
                          sizeText(image.width, image.height));
-  Image tile(size[0], size[1], 1);
-  for (int row = 0; row < size[1]; ++row) std::copy_n(image.at(x, y + row), size[0], tile.at(0, row));
-  image = std::move(tile);
+  image = cropped(image, x, y, size[0], size[1]);
 }
 
 std::vector<std::uint8_t> materialIndices(const Manifest& manifest, const BufferSource& source,

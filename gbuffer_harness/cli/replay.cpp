@@ -42,7 +42,7 @@ struct Options {
   float exposure = 0;
   ToneMap toneMap = ToneMap::None;
   int jobs = 2;
-  std::optional<uint32_t> repeat;
+  std::optional<uint32_t> repeat, views;
   ManifestPreset preset = ManifestPreset::None;
   SettingsOptions settings;
 };
@@ -146,6 +146,11 @@ void replayOne(const Options& options, const ReplaySettings& settings) {
   const Replayed frame = runFrame(options, replayer, capture, materials, settings, repeat);
   const ReplayResult& result = frame.result;
   print(device, result, repeat);
+  if (options.views) {
+    const ViewTimes times = replayer.timeViews(capture, materials, settings, *options.views, repeat);
+    std::printf("%u views: %.1f us in one recording, %.1f us in one each\n", *options.views, times.together,
+                times.apart);
+  }
   if (options.stats) std::printf("\n%s", statisticsText(result.plan, result.statistics).c_str());
   if (frame.tiles) std::printf("\n%s", tileLegend(*frame.tiles).c_str());
 
@@ -251,6 +256,7 @@ void replay(const Options& options) {
     throw UsageError("--tonemap: a debug view holds data, which a tone map would change");
   if (options.toneMap != ToneMap::None && !wantsPng(options, settings) && options.triptych.empty())
     throw UsageError("--tonemap is of PNGs: --png or --triptych");
+  if (options.views && options.repeat == 0u) throw UsageError("--views times frames, and --repeat is 0");
   const bool isSequence = !options.frames.empty() || (options.input.find('#') != std::string::npos &&
                                                       !std::filesystem::exists(options.input));
   if (!isSequence) {
@@ -258,6 +264,7 @@ void replay(const Options& options) {
   }
   if (!options.triptych.empty()) throw UsageError("--triptych shows one capture, not a sequence");
   if (options.repeat) throw UsageError("--repeat times one capture, not a sequence");
+  if (options.views) throw UsageError("--views times one capture, not a sequence");
   if (options.stats) throw UsageError("--stats is of one capture, not a sequence");
   if (options.output.empty()) throw UsageError("a sequence: -o with #### is required");
   if (wantsPng(options, settings) && !(options.exposure > 0))
@@ -289,6 +296,12 @@ void addReplayCommand(CLI::App& app) {
           "frames that are timed, after a first one that compiles shaders: the median is printed; 0: "
           "no times; default: 3, not of a sequence")
       ->check(CLI::Range(0, 1000));
+  command
+      ->add_option(
+          "--views", options->views,
+          "also time as many copies of the frame, which must have the same bits, in one recording and "
+          "in one each; not of a sequence")
+      ->check(CLI::Range(2, 64));
   command->add_flag("--stats", options->stats,
                     "print what the device decided: groups run, tiles with material, gathered light");
   command->add_flag("--keep-layers", options->keepLayers,

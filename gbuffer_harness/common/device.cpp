@@ -110,6 +110,7 @@ Device::~Device() { release(); }
 void Device::release() {
   if (device_) {
     vkDeviceWaitIdle(device_);
+    kept_.clear();
     vkDestroyCommandPool(device_, pool_, nullptr);
     vkDestroyDevice(device_, nullptr);
   }

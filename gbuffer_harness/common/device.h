@@ -5,8 +5,11 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
+#include <memory>
 #include <mutex>
 #include <string>
+#include <typeindex>
 #include <vector>
 
 namespace pellucid::harness {
@@ -62,6 +65,15 @@ public:
   // Records with `record`, submits and waits; then the host sees all that was written.
   void run(const std::function<void(VkCommandBuffer)>& record);
 
+  // The one T(*this) of the device, made when first asked for and destroyed with the device: pipelines, which
+  // outlive what draws with them. One thread at a time.
+  template <class T>
+  T& kept() {
+    std::shared_ptr<void>& slot = kept_[typeid(T)];
+    if (!slot) slot = std::make_shared<T>(*this);
+    return *std::static_pointer_cast<T>(slot);
+  }
+
   uint32_t memoryType(uint32_t typeBits, VkMemoryPropertyFlags flags,
                       VkMemoryPropertyFlags preferred = 0) const;
 
@@ -95,6 +107,7 @@ private:
   VkQueue queue_ = VK_NULL_HANDLE, computeQueue_ = VK_NULL_HANDLE;
   VkCommandPool pool_ = VK_NULL_HANDLE;
   Transfers transfers_;
+  std::map<std::type_index, std::shared_ptr<void>> kept_;
   mutable std::mutex messagesMutex_;
   std::vector<std::string> messages_;
 };

@@ -45,4 +45,12 @@ inline Image rgb(const Image& rgba) {
   return result;
 }
 
+// The rect from (x, y) on, which lies inside the image.
+inline Image cropped(const Image& image, int x, int y, int width, int height) {
+  Image result(width, height, image.channels);
+  for (int row = 0; row < height; ++row)
+    std::copy_n(image.at(x, y + row), width * image.channels, result.at(0, row));
+  return result;
+}
+
 }  // namespace pellucid::harness

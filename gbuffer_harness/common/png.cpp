@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "common/error.h"
+#include "common/whole_file.h"
 
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STB_IMAGE_WRITE_STATIC
@@ -36,6 +37,13 @@ void writePng(const std::filesystem::path& path, int width, int height,
   if (!file || !stbi_write_png_to_func(append, &file, width, height, 3, rgb.data(), width * 3) ||
       !file.flush())
     throw InputError(path.string(), "", "the PNG cannot be written");
+}
+
+void savePicture(const std::filesystem::path& png, const Image& screen) {
+  std::vector<std::uint8_t> bytes(screen.pixels() * 3);
+  for (std::size_t i = 0; i < bytes.size(); ++i)
+    bytes[i] = static_cast<std::uint8_t>(std::lround(screen.data[i / 3 * 4 + i % 3] * 255));
+  writeWhole(png, [&](const auto& file) { writePng(file, screen.width, screen.height, bytes); });
 }
 
 std::vector<std::uint8_t> toSrgb(const Image& image, float exposure, ToneMap map) {

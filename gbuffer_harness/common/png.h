@@ -13,6 +13,9 @@ namespace pellucid::harness {
 // `rgb`: width * height * 3 bytes, row 0 at the top. Throws InputError when the file cannot be written.
 void writePng(const std::filesystem::path& path, int width, int height, const std::vector<std::uint8_t>& rgb);
 
+// A screenshot: RGBA, 0..1, values of the screen; a whole file or none. Throws InputError likewise.
+void savePicture(const std::filesystem::path& png, const Image& screen);
+
 // Linear to display: times `exposure`, tone mapped, the exact sRGB curve (IEC 61966-2-1), clamped to 0..255.
 // One channel becomes gray, channels past the third are left out. NaN and infinity are magenta.
 std::vector<std::uint8_t> toSrgb(const Image& image, float exposure = 1.0f, ToneMap map = ToneMap::None);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 #include <glm/gtc/packing.hpp>
+#include <map>
+#include <utility>
 
 #include "common/error.h"
 #include "kRasterCaster.h"
@@ -98,34 +100,45 @@ void addPlanned(const PlannedInputs& planned, DescriptorWrites& writes) {
 
 }  // namespace
 
+class UploadedModel::Pipelines {
+public:
+  explicit Pipelines(Device& device)
+      : device_(device), layout_(device, layoutBindings(), {kStages, 0, sizeof(DrawConstants)}) {}
+
+  const PushLayout& layout() const { return layout_; }
+
+  VkPipeline of(const RenderTarget& target, const PipelineState& state) {
+    const auto [entry, isNew] = pipelines_.try_emplace({target.depthFormat(), state}, device_);
+    if (isNew) create(entry->second, target, state);
+    return entry->second;
+  }
+
+private:
+  void create(Pipeline& pipeline, const RenderTarget& target, const PipelineState& state) const {
+    DrawState drawn;
+    drawn.input = UploadedMesh::vertexInput();
+    drawn.raster.cullMode = state.cull;
+    drawn.raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
+    drawn.raster.depthBiasEnable = state.depthBiasConstant != 0 || state.depthBiasSlope != 0;
+    drawn.raster.depthBiasConstantFactor = state.depthBiasConstant;
+    drawn.raster.depthBiasSlopeFactor = state.depthBiasSlope;
+    drawn.depth.depthTestEnable = drawn.depth.depthWriteEnable = state.depthTest.has_value();
+    drawn.depth.depthCompareOp = state.depthTest.value_or(VK_COMPARE_OP_ALWAYS);
+    drawn.blend.blendEnable = state.add;
+    drawn.blend.srcColorBlendFactor = drawn.blend.dstColorBlendFactor = VK_BLEND_FACTOR_ONE;
+    drawn.blend.srcAlphaBlendFactor = drawn.blend.dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
+    createPipeline(device_, target.pass(), layout_, {kRasterMesh, sizeof kRasterMesh},
+                   fragmentSpirv(state.shader), drawn, pipeline);
+  }
+
+  Device& device_;
+  PushLayout layout_;
+  // By the target's depth format; created where they are drawn with first.
+  std::map<std::pair<VkFormat, PipelineState>, Pipeline> pipelines_;
+};
+
 UploadedModel::UploadedModel(Device& device, const Model& model)
-    : device_(device),
-      model_(model),
-      mesh_(device, model),
-      layout_(device, layoutBindings(), {kStages, 0, sizeof(DrawConstants)}) {}
-
-VkPipeline UploadedModel::pipelineOf(const RenderTarget& target, const PipelineState& state) const {
-  const auto [entry, isNew] = pipelines_.try_emplace({target.depthFormat(), state}, device_);
-  if (isNew) create(entry->second, target, state);
-  return entry->second;
-}
-
-void UploadedModel::create(Pipeline& pipeline, const RenderTarget& target, const PipelineState& state) const {
-  DrawState drawn;
-  drawn.input = UploadedMesh::vertexInput();
-  drawn.raster.cullMode = state.cull;
-  drawn.raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
-  drawn.raster.depthBiasEnable = state.depthBiasConstant != 0 || state.depthBiasSlope != 0;
-  drawn.raster.depthBiasConstantFactor = state.depthBiasConstant;
-  drawn.raster.depthBiasSlopeFactor = state.depthBiasSlope;
-  drawn.depth.depthTestEnable = drawn.depth.depthWriteEnable = state.depthTest.has_value();
-  drawn.depth.depthCompareOp = state.depthTest.value_or(VK_COMPARE_OP_ALWAYS);
-  drawn.blend.blendEnable = state.add;
-  drawn.blend.srcColorBlendFactor = drawn.blend.dstColorBlendFactor = VK_BLEND_FACTOR_ONE;
-  drawn.blend.srcAlphaBlendFactor = drawn.blend.dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
-  createPipeline(device_, target.pass(), layout_, {kRasterMesh, sizeof kRasterMesh},
-                 fragmentSpirv(state.shader), drawn, pipeline);
-}
+    : model_(model), mesh_(device, model), pipelines_(device.kept<Pipelines>()) {}
 
 void UploadedModel::record(VkCommandBuffer commandBuffer, const RenderTarget& target, const DrawView& view,
                            const PipelineState& state, VkCullModeFlags doubleSidedCull,
@@ -144,7 +157,7 @@ void UploadedModel::record(VkCommandBuffer commandBuffer, const RenderTarget& ta
   for (const Part& part : model_.parts) {
     const Surface& surface = model_.surfaces[part.surface];
     vkCmdBindPipeline(commandBuffer, VK_PIPELINE_BIND_POINT_GRAPHICS,
-                      pipelineOf(target, surface.doubleSided ? doubleSided : state));
+                      pipelines_.of(target, surface.doubleSided ? doubleSided : state));
     const auto textureOr = [none](int index) { return index < 0 ? none : static_cast<std::size_t>(index); };
     const std::size_t color = textureOr(surface.texture), normal = textureOr(surface.normalMap),
                       lobe = textureOr(surface.lobeMap);
@@ -158,7 +171,7 @@ void UploadedModel::record(VkCommandBuffer commandBuffer, const RenderTarget& ta
       writes.image(i, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, mesh_.sampler(samplers[i]),
                    images[i]->use());
     if (earlier.planned) addPlanned(*earlier.planned, writes);
-    layout_.push(commandBuffer, VK_PIPELINE_BIND_POINT_GRAPHICS, writes.all());
+    pipelines_.layout().push(commandBuffer, VK_PIPELINE_BIND_POINT_GRAPHICS, writes.all());
     constants.baseColor = vec4(surface.baseColor, surface.alphaCutoff);
     constants.addedColor = vec4(surface.addedColor, part.object);
     const float normalScale = surface.normalMap < 0 ? 0 : static_cast<float>(surface.normalScale);
@@ -169,7 +182,7 @@ void UploadedModel::record(VkCommandBuffer commandBuffer, const RenderTarget& ta
                      view.reversedDepth | highHalf(surface.backscatter), behind | has,
                      earlier.planned ? earlier.planned->dispatch.pushConstants[1]
                                      : std::bit_cast<std::uint32_t>(normalScale)};
-    vkCmdPushConstants(commandBuffer, layout_, kStages, 0, sizeof constants, &constants);
+    vkCmdPushConstants(commandBuffer, pipelines_.layout(), kStages, 0, sizeof constants, &constants);
     vkCmdDrawIndexed(commandBuffer, part.indexCount, 1, part.firstIndex, 0, 0);
   }
   target.end(commandBuffer);

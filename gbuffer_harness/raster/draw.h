@@ -3,7 +3,6 @@
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
-#include <map>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -75,15 +74,11 @@ public:
               const EarlierPass& earlier = {}) const;
 
 private:
-  VkPipeline pipelineOf(const RenderTarget& target, const PipelineState& state) const;
-  void create(Pipeline& pipeline, const RenderTarget& target, const PipelineState& state) const;
+  class Pipelines;  // all models of a device share them
 
-  Device& device_;
   const Model& model_;
   UploadedMesh mesh_;
-  PushLayout layout_;
-  // By the target's depth format; created where they are drawn with first.
-  mutable std::map<std::pair<VkFormat, PipelineState>, Pipeline> pipelines_;
+  Pipelines& pipelines_;
 };
 
 }  // namespace pellucid::harness

@@ -1,5 +1,9 @@
 #include "raster/pixel_pass.h"
 
+#include <map>
+#include <string>
+#include <utility>
+
 #include "shared/pellucid_shared.h"
 
 namespace pellucid::harness {
@@ -18,22 +22,45 @@ std::uint32_t groups(int pixels, int size) { return static_cast<std::uint32_t>((
 
 }  // namespace
 
+struct PixelPass::Shared {
+  Owned<VkSampler, vkDestroySampler> sampler;
+  PushLayout layout;
+  Pipeline pipeline;
+
+  Shared(Device& device, const Spirv& code, const std::vector<Binding>& bindings, std::uint32_t pushSize,
+         const VkSpecializationInfo& constants)
+      : sampler(device),
+        layout(device, layoutBindings(bindings), {VK_SHADER_STAGE_COMPUTE_BIT, 0, pushSize}),
+        pipeline(device) {
+    const VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
+    check(vkCreateSampler(device.handle(), &info, nullptr, sampler.receive()), "vkCreateSampler");
+    createPipeline(device, layout, code, constants, pipeline);
+  }
+};
+
+// By code and the bytes of its constants.
+struct PixelPass::AllShared
+    : std::map<std::pair<const std::uint32_t*, std::string>, std::shared_ptr<const Shared>> {
+  explicit AllShared(Device&) {}
+};
+
 PixelPass::PixelPass(Device& device, const Spirv& code, const std::vector<Binding>& bindings,
                      std::uint32_t pushSize, const VkSpecializationInfo& constants)
-    : pushSize_(pushSize),
-      sampler_(device),
-      layout_(device, layoutBindings(bindings), {VK_SHADER_STAGE_COMPUTE_BIT, 0, pushSize}),
-      pipeline_(device) {
-  const VkSamplerCreateInfo sampler{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
-  check(vkCreateSampler(device.handle(), &sampler, nullptr, sampler_.receive()), "vkCreateSampler");
-  createPipeline(device, layout_, code, constants, pipeline_);
+    : pushSize_(pushSize) {
+  const std::string bytes(static_cast<const char*>(constants.pData), constants.dataSize);
+  std::shared_ptr<const Shared>& shared = device.kept<AllShared>()[{code.words, bytes}];
+  if (!shared) shared = std::make_shared<const Shared>(device, code, bindings, pushSize, constants);
+  shared_ = shared;
 }
+
+VkSampler PixelPass::sampler() const { return shared_->sampler; }
 
 void PixelPass::record(VkCommandBuffer commands, std::span<const VkWriteDescriptorSet> writes, int width,
                        int height, const void* push) const {
-  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_);
-  layout_.push(commands, VK_PIPELINE_BIND_POINT_COMPUTE, writes);
-  if (pushSize_ > 0) vkCmdPushConstants(commands, layout_, VK_SHADER_STAGE_COMPUTE_BIT, 0, pushSize_, push);
+  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, shared_->pipeline);
+  shared_->layout.push(commands, VK_PIPELINE_BIND_POINT_COMPUTE, writes);
+  if (pushSize_ > 0)
+    vkCmdPushConstants(commands, shared_->layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, pushSize_, push);
   vkCmdDispatch(commands, groups(width, PELLUCID_GROUP_X), groups(height, PELLUCID_GROUP_Y), 1);
   barrier(commands, {VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT},
           {VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT});

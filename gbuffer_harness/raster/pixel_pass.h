@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -18,20 +19,22 @@ public:
     std::uint32_t count = 1;
   };
   // bindings: 0, 1 and so on. pushSize: bytes of push constants. constants: of the code's specialization.
+  // Passes of a device that have the same code and constants share a pipeline.
   PixelPass(Device& device, const Spirv& code, const std::vector<Binding>& bindings,
             std::uint32_t pushSize = 0, const VkSpecializationInfo& constants = {});
 
-  VkSampler sampler() const { return sampler_; }  // for texelFetch
+  VkSampler sampler() const;  // for texelFetch
 
   // In groups of PELLUCID_GROUP_X x PELLUCID_GROUP_Y. Everything after waits for what it writes.
   void record(VkCommandBuffer commands, std::span<const VkWriteDescriptorSet> writes, int width, int height,
               const void* push = nullptr) const;
 
 private:
+  struct Shared;
+  struct AllShared;
+
   std::uint32_t pushSize_;
-  Owned<VkSampler, vkDestroySampler> sampler_;
-  PushLayout layout_;
-  Pipeline pipeline_;
+  std::shared_ptr<const Shared> shared_;
 };
 
 }  // namespace pellucid::harness

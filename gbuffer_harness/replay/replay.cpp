@@ -9,6 +9,7 @@
 #include "common/error.h"
 #include "common/parallel.h"
 #include "common/progress.h"
+#include "pellucid/pellucid_views.h"
 
 namespace pellucid::harness {
 
@@ -205,12 +206,24 @@ PellucidConstantsSlice FrameRun::slice() const {
   return {constants_->handle(), 0, constants_->size(), constants_->mapped()};
 }
 
-void FrameRun::record(VkCommandBuffer commandBuffer, const PellucidPlan& plan) const {
-  const PellucidConstantsSlice slice = this->slice();
-  const PellucidResult result =
-      pellucidRecordPlan(context_.handle(), commandBuffer, &plan, &data_.frame, &slice);
+void FrameRun::requireRecorded(PellucidResult result) const {
   if (result == PELLUCID_OK) return;
   throw InputError(name_, "", context_.message().empty() ? pellucidResultName(result) : context_.message());
+}
+
+void FrameRun::record(VkCommandBuffer commandBuffer, const PellucidPlan& plan) const {
+  const PellucidConstantsSlice constants = slice();
+  requireRecorded(pellucidRecordPlan(context_.handle(), commandBuffer, &plan, &data_.frame, &constants));
+}
+
+void FrameRun::recordTogether(VkCommandBuffer commandBuffer, const std::vector<const FrameRun*>& runs) {
+  std::vector<PellucidConstantsSlice> slices;
+  for (const FrameRun* run : runs) slices.push_back(run->slice());
+  std::vector<PellucidView> views;
+  for (size_t i = 0; i < runs.size(); ++i)
+    views.push_back({runs[i]->plan_.get(), &runs[i]->data_.frame, &slices[i]});
+  runs.at(0)->requireRecorded(pellucidRecordViews(runs[0]->context_.handle(), commandBuffer,
+                                                  static_cast<uint32_t>(views.size()), views.data()));
 }
 
 void FrameRun::record(VkCommandBuffer commandBuffer) const { record(commandBuffer, *plan_); }
@@ -305,6 +318,53 @@ ReplayResult Replayer::run(const Capture& capture, const std::vector<PellucidMat
   for (uint32_t i = 0; i < count; ++i)
     result.times.push_back({result.plan.dispatches[i].name, median(times[i])});
   return result;
+}
+
+ViewTimes Replayer::timeViews(const Capture& capture, const std::vector<PellucidMaterial>& materials,
+                              const ReplaySettings& settings, uint32_t views, uint32_t timedFrames) {
+  const Context& context = contextFor(capture);
+  const auto inputs = std::make_shared<const InputImages>(device_, capture, settings);
+  std::vector<std::unique_ptr<FrameRun>> owned;
+  std::vector<const FrameRun*> runs;
+  for (uint32_t i = 0; i < views; ++i) {
+    owned.push_back(settings.aliasOutput
+                        ? std::make_unique<FrameRun>(device_, context, capture, materials, settings)
+                        : std::make_unique<FrameRun>(device_, context, capture, materials, settings, inputs));
+    runs.push_back(owned.back().get());
+  }
+  const Timestamps timestamps(device_, 2);
+  const auto time = [&](bool together) {
+    for (const FrameRun* run : runs) run->restoreIrradiance(capture);
+    device_.run([&](VkCommandBuffer commandBuffer) {
+      timestamps.reset(commandBuffer);
+      timestamps.mark(commandBuffer, 0);
+      if (together)
+        FrameRun::recordTogether(commandBuffer, runs);
+      else
+        for (const FrameRun* run : runs) run->record(commandBuffer);
+      timestamps.mark(commandBuffer, 1);
+    });
+    return timestamps.intervals()[0];
+  };
+  // First recordings, in which drivers may still compile shaders.
+  time(false);
+  std::vector<Image> expected;
+  for (const FrameRun* run : runs) {
+    expected.push_back(run->output());
+    if (!settings.aliasOutput) run->uploadOutput(Image(capture.width, capture.height, 4));  // as it was
+  }
+  time(true);
+  for (uint32_t i = 0; i < views; ++i) {
+    const std::vector<float> output = runs[i]->output().data;
+    if (std::memcmp(output.data(), expected[i].data.data(), output.size() * sizeof output[0]) != 0)
+      throw DeviceError("views[" + std::to_string(i) + "] recorded with others has other bits than alone");
+  }
+  std::vector<double> together, apart;
+  for (uint32_t frame = 0; frame < timedFrames; ++frame) {
+    together.push_back(time(true));
+    apart.push_back(time(false));
+  }
+  return {median(together), median(apart)};
 }
 
 }  // namespace pellucid::harness

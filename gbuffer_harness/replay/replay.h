@@ -86,7 +86,9 @@ public:
   // The words of that recording's tile lists (compute/frame/tile_words.glsl); none in plans without.
   std::vector<std::uint32_t> tileWords() const;
 
-  void record(VkCommandBuffer commandBuffer) const;                     // the whole plan
+  void record(VkCommandBuffer commandBuffer) const;  // the whole plan
+  // The whole plans of several runs of one context, side by side.
+  static void recordTogether(VkCommandBuffer commandBuffer, const std::vector<const FrameRun*>& runs);
   void record(VkCommandBuffer commandBuffer, uint32_t dispatch) const;  // one dispatch of it, in its turn
   // One dispatch of it, also where the GPU would find nothing to do for it.
   void recordAlone(VkCommandBuffer commandBuffer, uint32_t dispatch) const;
@@ -114,6 +116,7 @@ private:
   void plan(Device& device, const PellucidPlan* previous);
   PellucidConstantsSlice slice() const;
   void record(VkCommandBuffer commandBuffer, const PellucidPlan& plan) const;
+  void requireRecorded(PellucidResult result) const;
   PellucidPlan only(uint32_t dispatch) const;
 
   const Context& context_;
@@ -136,6 +139,12 @@ struct ReplayResult {
   std::vector<DispatchTime> times;  // one per dispatch; none without timed frames
 };
 
+// Microseconds of all views, medians of GPU timestamps.
+struct ViewTimes {
+  double together;  // in one recording
+  double apart;     // in one each, one after the other in one command buffer
+};
+
 class Replayer {
 public:
   explicit Replayer(Device& device) : device_(device), contexts_(device) {}
@@ -148,6 +157,11 @@ public:
   ReplayResult run(const Capture& capture, const std::vector<PellucidMaterial>& materials,
                    const ReplaySettings& settings, uint32_t timedFrames = 0,
                    const std::function<void(const FrameRun&)>& look = {});
+
+  // `views` copies of the frame, which share inputs that are not written. Throws DeviceError where the
+  // copies' bits are not the same either way.
+  ViewTimes timeViews(const Capture& capture, const std::vector<PellucidMaterial>& materials,
+                      const ReplaySettings& settings, uint32_t views, uint32_t timedFrames);
 
 private:
   Device& device_;

@@ -14,14 +14,6 @@ glm::vec3 fromOctahedral(glm::vec2 p) {
   return glm::normalize(n);
 }
 
-Image cropped(const Image& image, std::uint32_t left, std::uint32_t top, VkExtent2D extent) {
-  Image result(static_cast<int>(extent.width), static_cast<int>(extent.height), image.channels);
-  for (int y = 0; y < result.height; ++y)
-    std::copy_n(image.at(static_cast<int>(left), static_cast<int>(top) + y), result.width * image.channels,
-                result.at(0, y));
-  return result;
-}
-
 }  // namespace
 
 const GpuImage& Renderer::picture() const {
@@ -29,7 +21,9 @@ const GpuImage& Renderer::picture() const {
   return *targets_[kPicture];
 }
 
-Image Renderer::rectOf(const Image& image) const { return cropped(image, 0, 0, frame_.rect); }
+Image Renderer::rectOf(const Image& image) const {
+  return cropped(image, 0, 0, static_cast<int>(frame_.rect.width), static_cast<int>(frame_.rect.height));
+}
 Image Renderer::color() const { return rgb(rectOf(targets_[kColor]->download())); }
 Image Renderer::irradiance() const { return rgb(rectOf(targets_[kIrradiance]->download())); }
 
@@ -62,13 +56,14 @@ Capture Renderer::capture() {
       const ShadowTile& t = frame_.tiles[frame_.lights[i].firstShadowMap + k];
       ShadowMap& map = light.shadowMaps.emplace_back();
       const Image layer = shadows_[t.image].download(static_cast<int>(t.layer), kDepthRead);
-      map.depth = {cropped(layer, t.x, t.y, {t.size, t.size}), PELLUCID_DEPTH_DEVICE};
+      map.offset = {static_cast<int>(t.x), static_cast<int>(t.y)};
+      const int size = static_cast<int>(t.size);
+      map.depth = {cropped(layer, map.offset[0], map.offset[1], size, size), PELLUCID_DEPTH_DEVICE};
       map.clipFromWorld = fromGlm(t.clipFromWorld);
       map.faces = t.frontsCulled ? PELLUCID_FACES_BACK : PELLUCID_FACES_FRONT;
       map.depthBiasConstant = static_cast<double>(t.biasConstant * t.depthStep);
       map.depthBiasSlope = static_cast<double>(t.biasSlope);
       map.depthStep = static_cast<double>(t.depthStep);
-      map.offset = {static_cast<int>(t.x), static_cast<int>(t.y)};
       // A manifest has one array of layers: the cube's follow the cascades.
       map.sharedImage = t.image == kAtlas;
       map.layer = static_cast<int>(t.layer + (t.image == kCube ? shadows_[kCascades].layers() : 0));

@@ -55,9 +55,8 @@ struct Frame {
   std::array<glm::vec3, 9> ambient{};  // coefficients of radiance
   std::uint32_t quality = 1;           // of Pellucid
   bool ownQueue = false;  // Pellucid's commands have a submission of their own, between semaphores
-  // An image of that format and extent, usage SAMPLED | STORAGE, layout GENERAL: the slot's of frames before,
-  // or a new one.
-  std::function<PellucidImage(std::uint32_t slot, const PellucidImageNeed&)> transient;
+  // An image of that format and extent, usage SAMPLED | STORAGE, layout GENERAL, for this frame alone.
+  std::function<PellucidImage(const PellucidImageNeed&)> transient;
 };
 
 }  // namespace pellucid::sample

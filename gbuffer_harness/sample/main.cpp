@@ -2,11 +2,11 @@
 #include <GLFW/glfw3.h>
 
 #include <CLI/CLI.hpp>
-#include <cmath>
 #include <cstdio>
 #include <numbers>
 
 #include "capture/write.h"
+#include "cli/numbers.h"
 #include "common/png.h"
 #include "sample/renderer.h"
 #include "view/window.h"
@@ -44,9 +44,8 @@ void addOptions(CLI::App& app, Options& o) {
   };
   const auto material = [&o](const std::vector<std::string>& given) {
     for (const std::string& text : given) {
-      const std::size_t equals = text.find('=');
-      if (equals == std::string::npos) throw CLI::ValidationError("\"" + text + "\" is not NAME=PRESET");
-      o.gltf.presets[text.substr(0, equals)] = text.substr(equals + 1);
+      const Assignment set = parseAssignment("--material", text);
+      o.gltf.presets[set.key] = set.value;
     }
     return true;
   };
@@ -97,13 +96,6 @@ void handleKeys(GLFWwindow* window, Settings& settings, ViewCamera& camera) {
   zoom(camera, 1 + step(GLFW_KEY_PAGE_UP, GLFW_KEY_PAGE_DOWN));
 }
 
-void save(const Image& picture, const std::string& file) {
-  std::vector<std::uint8_t> bytes;
-  for (const float value : rgb(picture).data)
-    bytes.push_back(static_cast<std::uint8_t>(std::lround(255 * value)));
-  writePng(file, picture.width, picture.height, bytes);
-}
-
 void run(Options o) {
   Scene scene = o.file.empty() ? headScene(o.cell, o.mapTexels) : fileScene(o.file, o.gltf, o.mapTexels);
   for (const std::string& note : scene.notes) std::fprintf(stderr, "%s\n", note.c_str());
@@ -129,7 +121,7 @@ void run(Options o) {
     renderer.draw(o.settings, scene.camera);
     if (window) window->present(renderer.picture(), o.width, o.height);
   }
-  if (!o.output.empty()) save(renderer.picture().download(), o.output);
+  if (!o.output.empty()) savePicture(o.output, renderer.picture().download());
   if (!o.capture.empty()) writeCapture(renderer.capture(), o.capture);
   const std::vector<std::string> messages = device.validationMessages();
   if (!messages.empty()) throw DeviceError("validation: " + messages.front());
@@ -141,11 +133,6 @@ void run(Options o) {
                 device.queueFamily());
   for (const std::string& file : {o.output, o.capture})
     if (!file.empty()) std::printf("wrote %s\n", file.c_str());
-}
-
-int fail(int code, const std::exception& error) {
-  std::fprintf(stderr, "pellucid_sample: %s\n", error.what());
-  return code;
 }
 
 }  // namespace
@@ -164,9 +151,9 @@ int main(int argc, char** argv) {
     return 0;
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
-  } catch (const DeviceError& error) {
-    return fail(4, error);
   } catch (const std::exception& error) {
-    return fail(3, error);
+    std::fprintf(stderr, "pellucid_sample: %s\n", error.what());
+    if (dynamic_cast<const UsageError*>(&error)) return 2;
+    return dynamic_cast<const DeviceError*>(&error) ? 4 : 3;
   }
 }

@@ -51,7 +51,7 @@ public:
     PellucidImageNeed needs[PELLUCID_MAX_TRANSIENTS];
     uint32_t count = std::size(needs);
     require(pellucidGetImageNeeds(&frame, &count, needs));
-    for (uint32_t i = 0; i < count; ++i) frame.transients[i] = f.transient(i, needs[i]);
+    for (uint32_t i = 0; i < count; ++i) frame.transients[i] = f.transient(needs[i]);
     if (f.index == 0) require(pellucidValidateFrame(&frame, report, nullptr));
     require(pellucidBuildPlan(&frame, nullptr, plan_.get()));
     const VkDeviceSize at = f.index % kFramesInFlight * slice_;  // the GPU still reads the other slices

@@ -20,12 +20,11 @@ namespace pellucid::sample {
 
 namespace {
 
-// Push constants of shaders/mesh.glsl.
+// Push constants and uniforms of shaders/frame.glsl.
 struct DrawConstants {
   glm::mat4 clipFromWorld;
   glm::vec4 baseColor, surface;
 };
-// Uniforms of shaders/frame.glsl.
 struct UniformLight {
   glm::vec4 position, direction, color;
   glm::uvec4 tiles;
@@ -47,8 +46,8 @@ constexpr VkDeviceSize kUniformSlice = (sizeof(Uniforms) + 255) / 256 * 256;
 constexpr VkShaderStageFlags kStages = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
 constexpr std::uint32_t kImages = 7;  // that a pass reads at most
 constexpr std::uint32_t kCascadeCount = 4, kAtlasColumns = 2, kCubeFaces = 6;
-constexpr VkFormat kDepth = VK_FORMAT_D32_SFLOAT, kHalf = VK_FORMAT_R16G16B16A16_SFLOAT,
-                   kFormats[] = {VK_FORMAT_A2B10G10R10_UNORM_PACK32,
+constexpr VkFormat kDepth = VK_FORMAT_D32_SFLOAT, kHalf = VK_FORMAT_R16G16B16A16_SFLOAT;
+constexpr VkFormat kFormats[] = {VK_FORMAT_A2B10G10R10_UNORM_PACK32,
                                  VK_FORMAT_R8G8B8A8_SRGB,
                                  VK_FORMAT_R32_UINT,
                                  kHalf,
@@ -66,13 +65,6 @@ std::vector<VkDescriptorSetLayoutBinding> bindings() {
 
 PellucidImage use(const DepthBuffer& depth) { return {depth.view(), kDepthRead}; }
 
-double halton(std::uint64_t index, std::uint64_t base) {
-  double result = 0, part = 1;
-  for (; index > 0; index /= base)
-    result += (part /= static_cast<double>(base)) * static_cast<double>(index % base);
-  return result;
-}
-
 }  // namespace
 
 Renderer::Renderer(Device& device, const Scene& scene, VkExtent2D extent, std::uint32_t mapTexels)
@@ -86,6 +78,7 @@ Renderer::Renderer(Device& device, const Scene& scene, VkExtent2D extent, std::u
       shadows_{{{device, {mapTexels, mapTexels}, kDepth, kCascadeCount},
                 {device, {mapTexels * kAtlasColumns, mapTexels * kAtlasColumns}, VK_FORMAT_D16_UNORM, 1},
                 {device, {mapTexels, mapTexels}, kDepth, kCubeFaces}}},
+      pool_(device),
       layout_(device, bindings(), {kStages, 0, sizeof(DrawConstants)}),
       lighting_(device),
       resolve_(device),
@@ -144,8 +137,8 @@ void Renderer::draw(const Settings& settings, const ViewCamera& camera) {
   drawGbuffer(commands);
   light(commands);
   if (frame_.ownQueue) {
-    pellucid_.record(submissions_.beginComputing(), frame_);
-    commands = submissions_.beginDrawingAgain();
+    pellucid_.record(submissions_.goOn(device_.computeQueue(), PELLUCID_STAGES), frame_);
+    commands = submissions_.goOn(device_.queue(), kDrawing.stages);
   } else if (settings.pellucid) {
     pellucid_.record(commands, frame_);
   }
@@ -167,8 +160,9 @@ void Renderer::makeFrame(const ViewCamera& camera) {
   const glm::dmat4 still = toGlm(perspective(camera.lens.verticalFov, aspect, range));
   f.viewFromWorld = toGlm(camera.lens.viewFromWorld);
   previous_ = std::exchange(current_, still * f.viewFromWorld);
-  const std::uint64_t sample = next_ % 8 + 1;
-  jitter_ = settings_.taa ? glm::dvec2(halton(sample, 2), halton(sample, 3)) - 0.5 : glm::dvec2(0);
+  // The sequence R2 of Roberts 2018, eight samples in turns.
+  const double sample = settings_.taa ? static_cast<double>(next_ % 8) : 0;
+  jitter_ = glm::fract(0.5 + sample * glm::dvec2(0.7548776662466927, 0.5698402909980532)) - 0.5;
   const glm::dvec3 moved(2 * jitter_.x / f.rect.width, 2 * jitter_.y / f.rect.height, 0);
   f.clipFromView = glm::translate(glm::dmat4(1), moved) * still;
   f.metersPerUnit = static_cast<float>(scene_.model.metersPerUnit);
@@ -187,17 +181,19 @@ void Renderer::makeFrame(const ViewCamera& camera) {
   for (std::size_t i = 0; i < f.ambient.size(); ++i) f.ambient[i] = toGlm(scene_.ambient[i]);
   f.quality = settings_.quality;
   f.ownQueue = settings_.pellucid && settings_.ownQueue;
-  f.transient = [this](std::uint32_t slot, const PellucidImageNeed& need) { return transient(slot, need); };
+  transients_.clear();
+  pool_.nextFrame();  // keeps what the frames in flight use
+  f.transient = [this](const PellucidImageNeed& need) {
+    const int width = static_cast<int>(need.extent[0]), height = static_cast<int>(need.extent[1]);
+    return transients_.emplace_back(pool_.take(width, height, need.format))->use();
+  };
   lit_.clear();
   for (const SceneLight& light : scene_.lights) {
-    const PellucidLightType type = light.light.type;
-    if (type == PELLUCID_LIGHT_SPOT    ? settings_.spots
-        : type == PELLUCID_LIGHT_POINT ? settings_.point
-                                       : settings_.sun)
-      addLight(light, type == PELLUCID_LIGHT_DIRECTIONAL
-                          ? frameCascades(scene_.bounds, light.light, camera.lens, aspect, kCascadeCount,
-                                          static_cast<int>(mapTexels_))
-                          : light.views);
+    if (light.light.type == PELLUCID_LIGHT_SPOT && settings_.spots) addLight(light, light.views);
+    if (light.light.type == PELLUCID_LIGHT_POINT && settings_.point) addLight(light, light.views);
+    if (light.light.type == PELLUCID_LIGHT_DIRECTIONAL && settings_.sun)
+      addLight(light, frameCascades(scene_.bounds, light.light, camera.lens, aspect, kCascadeCount,
+                                    static_cast<int>(mapTexels_)));
   }
 }
 
@@ -257,16 +253,6 @@ void Renderer::writeUniforms(const ViewCamera& camera) const {
                   {t.image, t.layer, t.texel, side}};
   }
   std::memcpy(static_cast<char*>(uniforms_.mapped()) + next_ % kFramesInFlight * kUniformSlice, &u, sizeof u);
-}
-
-PellucidImage Renderer::transient(std::uint32_t slot, const PellucidImageNeed& need) {
-  auto& image = transients_[{slot, need.format, need.extent[0], need.extent[1]}];
-  if (!image) {
-    image = std::make_unique<GpuImage>(device_, static_cast<int>(need.extent[0]),
-                                       static_cast<int>(need.extent[1]), need.format);
-    image->clear();  // from UNDEFINED to GENERAL
-  }
-  return image->use();
 }
 
 VkPipeline Renderer::meshPipeline(const DrawPass& pass, VkCullModeFlags cull) {

@@ -6,6 +6,7 @@
 #include <span>
 #include <tuple>
 
+#include "common/pool.h"
 #include "raster/depth_buffer.h"
 #include "raster/pipeline.h"
 #include "raster/uploaded_mesh.h"
@@ -48,16 +49,8 @@ public:
   Capture capture();                // what Pellucid read, and as the truth what it added, free of exposure
 
 private:
-  enum Target {
-    kNormal,
-    kAlbedo,
-    kSurface,
-    kIrradiance,
-    kColor,
-    kHistory,
-    kPicture = kHistory + 2,
-    kTargets
-  };
+  // Two histories in turns.
+  enum Target { kNormal, kAlbedo, kSurface, kIrradiance, kColor, kHistory, kPicture = 7, kTargets };
   struct Bound {
     PellucidImage image;
     VkSampler sampler;
@@ -67,7 +60,6 @@ private:
   void makeFrame(const ViewCamera& camera);
   void addLight(const SceneLight& light, const std::vector<LightView>& views);
   void writeUniforms(const ViewCamera& camera) const;
-  PellucidImage transient(std::uint32_t slot, const PellucidImageNeed& need);
   VkPipeline meshPipeline(const DrawPass& pass, VkCullModeFlags cull);
   void drawScene(VkCommandBuffer commands, const DrawPass& pass, const glm::dmat4& clipFromWorld,
                  VkCullModeFlags cull);
@@ -89,8 +81,8 @@ private:
   std::array<std::unique_ptr<GpuImage>, kTargets> targets_;
   DepthBuffer depth_, backDepth_;
   std::array<DepthBuffer, kShadowImages> shadows_;
-  std::map<std::tuple<std::uint32_t, VkFormat, std::uint32_t, std::uint32_t>, std::unique_ptr<GpuImage>>
-      transients_;  // by slot, format and extent
+  ImagePool pool_;
+  std::vector<std::shared_ptr<GpuImage>> transients_;  // of the last frame
   std::unique_ptr<DrawPass> gbufferPass_, backPass_, lightingPass_, resolvePasses_[2];
   std::vector<std::unique_ptr<DrawPass>> shadowPasses_[kShadowImages];  // one a layer
   PushLayout layout_;

@@ -17,57 +17,42 @@ Submissions::Submissions(const Device& device)
   const VkFenceCreateInfo fence{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO, nullptr, VK_FENCE_CREATE_SIGNALED_BIT};
   const VkSemaphoreCreateInfo semaphore{VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO};
   for (Slot& slot : slots_) {
-    allocate(pool_, slot.drawing);
-    allocate(computePool_, slot.computing);
-    allocate(pool_, slot.drawingAgain);
+    for (int i = 0; i < 3; ++i) allocate(i == 1 ? computePool_ : pool_, slot.commands[i]);
     check(vkCreateFence(device.handle(), &fence, nullptr, slot.done.receive()), "vkCreateFence");
-    for (auto* order : {&slot.drawn, &slot.computed})
-      check(vkCreateSemaphore(device.handle(), &semaphore, nullptr, order->receive()), "vkCreateSemaphore");
+    for (Semaphore& after : slot.after)
+      check(vkCreateSemaphore(device.handle(), &semaphore, nullptr, after.receive()), "vkCreateSemaphore");
   }
 }
 
-VkCommandBuffer Submissions::start(VkCommandBuffer commands) {
+VkCommandBuffer Submissions::start(std::uint32_t step, VkQueue queue, VkPipelineStageFlags stages) {
+  step_ = step, queue_ = queue, stages_ = stages;
   const VkCommandBufferBeginInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO, nullptr,
                                       VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
-  check(vkBeginCommandBuffer(commands, &info), "vkBeginCommandBuffer");
-  return commands_ = commands;
+  check(vkBeginCommandBuffer(slot_->commands[step], &info), "vkBeginCommandBuffer");
+  return slot_->commands[step];
 }
 
 VkCommandBuffer Submissions::begin(std::uint64_t frame) {
   slot_ = &slots_[frame % kFramesInFlight];
-  again_ = false;
   const VkFence done = slot_->done;
   check(vkWaitForFences(device_.handle(), 1, &done, VK_TRUE, UINT64_MAX), "vkWaitForFences");
   check(vkResetFences(device_.handle(), 1, &done), "vkResetFences");
-  return start(slot_->drawing);
+  return start(0, device_.queue(), 0);
 }
 
-VkCommandBuffer Submissions::beginComputing() {
-  submit(device_.queue(), {.signal = slot_->drawn});
-  return start(slot_->computing);
+VkCommandBuffer Submissions::goOn(VkQueue queue, VkPipelineStageFlags stages) {
+  submit(slot_->after[step_], VK_NULL_HANDLE);
+  return start(step_ + 1, queue, stages);
 }
 
-VkCommandBuffer Submissions::beginDrawingAgain() {
-  submit(device_.computeQueue(), {slot_->drawn, PELLUCID_STAGES, slot_->computed});
-  again_ = true;
-  return start(slot_->drawingAgain);
-}
+void Submissions::end() { submit(VK_NULL_HANDLE, slot_->done); }
 
-void Submissions::end() {
-  submit(device_.queue(), again_ ? Order{slot_->computed, kDrawing.stages} : Order{}, slot_->done);
-}
-
-void Submissions::submit(VkQueue queue, const Order& order, VkFence done) const {
-  check(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
-  VkSubmitInfo info{VK_STRUCTURE_TYPE_SUBMIT_INFO};
-  info.waitSemaphoreCount = order.wait ? 1 : 0;
-  info.pWaitSemaphores = &order.wait;
-  info.pWaitDstStageMask = &order.stages;
-  info.commandBufferCount = 1;
-  info.pCommandBuffers = &commands_;
-  info.signalSemaphoreCount = order.signal ? 1 : 0;
-  info.pSignalSemaphores = &order.signal;
-  check(vkQueueSubmit(queue, 1, &info, done), "vkQueueSubmit");
+void Submissions::submit(VkSemaphore signal, VkFence done) const {
+  check(vkEndCommandBuffer(slot_->commands[step_]), "vkEndCommandBuffer");
+  const VkSemaphore wait = step_ > 0 ? VkSemaphore{slot_->after[step_ - 1]} : VK_NULL_HANDLE;
+  const VkSubmitInfo info{VK_STRUCTURE_TYPE_SUBMIT_INFO, nullptr,          wait ? 1u : 0u, &wait, &stages_, 1,
+                          &slot_->commands[step_],       signal ? 1u : 0u, &signal};
+  check(vkQueueSubmit(queue_, 1, &info, done), "vkQueueSubmit");
 }
 
 }  // namespace pellucid::sample

@@ -12,35 +12,30 @@ public:
 
   // The frame's commands, once the frame kFramesInFlight before has finished.
   VkCommandBuffer begin(std::uint64_t frame);
-  // Submits these. Later commands run after them, on the device's computeQueue().
-  VkCommandBuffer beginComputing();
-  // Submits these. Later commands, and drawing of later frames, run after them, on the device's queue().
-  VkCommandBuffer beginDrawingAgain();
+  // Submits these. The stages of the frame's next commands, on this queue, wait for them: first
+  // computeQueue(), then queue() again.
+  VkCommandBuffer goOn(VkQueue queue, VkPipelineStageFlags stages);
   void end();  // submits the last ones
 
 private:
+  using Semaphore = Owned<VkSemaphore, vkDestroySemaphore>;
   struct Slot {
-    explicit Slot(const Device& device) : done(device), drawn(device), computed(device) {}
-    VkCommandBuffer drawing = VK_NULL_HANDLE, computing = VK_NULL_HANDLE, drawingAgain = VK_NULL_HANDLE;
+    explicit Slot(const Device& device) : done(device), after{Semaphore(device), Semaphore(device)} {}
+    VkCommandBuffer commands[3] = {};  // draw, compute, draw
     Owned<VkFence, vkDestroyFence> done;
-    Owned<VkSemaphore, vkDestroySemaphore> drawn, computed;
-  };
-  // Semaphores of a submission: the one that `stages` wait for, and the one that it signals.
-  struct Order {
-    VkSemaphore wait = VK_NULL_HANDLE;
-    VkPipelineStageFlags stages = 0;
-    VkSemaphore signal = VK_NULL_HANDLE;
+    Semaphore after[2];  // drawn, computed
   };
 
-  VkCommandBuffer start(VkCommandBuffer commands);
-  void submit(VkQueue queue, const Order& order, VkFence done = VK_NULL_HANDLE) const;
+  VkCommandBuffer start(std::uint32_t step, VkQueue queue, VkPipelineStageFlags stages);
+  void submit(VkSemaphore signal, VkFence done) const;
 
   const Device& device_;
   Owned<VkCommandPool, vkDestroyCommandPool> pool_, computePool_;
   Slot slots_[kFramesInFlight];
-  Slot* slot_ = nullptr;  // the frame's
-  VkCommandBuffer commands_ = VK_NULL_HANDLE;
-  bool again_ = false;
+  Slot* slot_ = nullptr;    // the frame's
+  std::uint32_t step_ = 0;  // of its commands
+  VkQueue queue_ = VK_NULL_HANDLE;
+  VkPipelineStageFlags stages_ = 0;  // that wait for the step before
 };
 
 }  // namespace pellucid::sample

@@ -12,7 +12,4 @@ namespace pellucid::harness {
 void saveView(const SavedFiles& files, const ViewFrames& frames, const std::string& settings,
               Session session);
 
-// A screenshot: RGBA, 0..1, values of the screen. Throws InputError likewise.
-void savePicture(const std::filesystem::path& png, const Image& screen);
-
 }  // namespace pellucid::harness

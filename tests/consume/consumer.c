@@ -5,6 +5,7 @@
 #include <pellucid/pellucid_plan.h>
 #include <pellucid/pellucid_statistics.h>
 #include <pellucid/pellucid_thesis.h>
+#include <pellucid/pellucid_views.h>
 #include <string.h>
 
 int main(void) {
@@ -40,7 +41,8 @@ int main(void) {
   /* No slice yet: refused. */
   pellucidInitStatistics(&statistics);
   if (pellucidReadStatistics(&plan, &slice, &statistics, NULL, NULL) != PELLUCID_ERROR_INVALID_ARGUMENT) return 6;
-  /* No device yet: refused. */
+  /* No context and no device yet: refused. */
+  if (pellucidRecordViews(NULL, VK_NULL_HANDLE, 0, NULL) != PELLUCID_ERROR_INVALID_ARGUMENT) return 7;
   pellucidInitContextDesc(&context);
   return pellucidCreateContext(&context, &none) == PELLUCID_ERROR_INVALID_ARGUMENT ? 0 : 5;
 }

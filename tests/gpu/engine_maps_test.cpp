@@ -196,7 +196,7 @@ TEST_F(EngineMaps, LayersNeedAnArrayContext) {
   c.lights[0].shadowMaps = {flatShadowMap(-11, PELLUCID_DEPTH_DEVICE)};
   c.lights[0].shadowMaps[0].sharedImage = 0;
   c.lights[0].shadowMaps[0].layer = 3;
-  const Context flat(device(), [](PellucidContextDesc& desc) { desc.uses = PELLUCID_USE_TRANSLUCENCY; });
+  const Context flat(device());
   ReplaySettings s;
   s.features = PELLUCID_FEATURE_TRANSLUCENCY;
   const FrameRun run(device(), flat, c, {testMaterial()}, s);
@@ -214,10 +214,8 @@ TEST_F(EngineMaps, LayersNeedAnArrayContext) {
 // Passes of an array context bind array views, those without lights and those after a gather among them.
 TEST_F(EngineMaps, ArrayContextsBindArrayViewsAlone) {
   Capture c = flatCapture(8, 8);
-  const Context arrays(device(), [](PellucidContextDesc& desc) {
-    desc.uses = PELLUCID_USE_TRANSLUCENCY;
-    desc.shadowViewType = VK_IMAGE_VIEW_TYPE_2D_ARRAY;
-  });
+  const Context arrays(device(),
+                       [](PellucidContextDesc& desc) { desc.shadowViewType = VK_IMAGE_VIEW_TYPE_2D_ARRAY; });
   ReplaySettings s;
   s.features = 0;
   const FrameRun none(device(), arrays, c, {testMaterial()}, s);

@@ -178,7 +178,7 @@ TEST_F(LightTables, ContextsWithoutRefuseThem) {
   lamp.direction = {0, 0, 1};
   lamp.angleTable = table(line);
   c.lights = {lamp};
-  const Context plain(device(), [](PellucidContextDesc& desc) { desc.uses = PELLUCID_USE_TRANSLUCENCY; });
+  const Context plain(device());
   const FrameRun run(device(), plain, c, {testMaterial()}, translucency());
   device().run([&](VkCommandBuffer commandBuffer) { EXPECT_ANY_THROW(run.record(commandBuffer)); });
   EXPECT_NE(plain.message().find("lightTableCount is above 0, but PellucidContextDesc::lightTables is 0"),

@@ -53,7 +53,7 @@ TEST_F(SampleCommand, NamesWhatIsWrong) {
   expect(3, path("none.glb") + " --headless", "none.glb");
   expect(3, triangle() + " --headless " + kSmall, "materials: none scatters light; --material");
   expect(3, triangle() + " --material skin=butter --headless", "butter");
-  expect(2, "--material skin --headless", "\"skin\" is not NAME=PRESET");
+  expect(2, "--material skin --headless", "--material: \"skin\" is not key=value");
   expect(2, "--scale 2 --headless", "--scale");
   expect(2, "--queue copy --headless", "--queue: copy not in");
   expect(2, "--mistake typo --headless", "--mistake");

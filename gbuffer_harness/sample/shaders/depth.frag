@@ -1,7 +1,7 @@
 #version 450
 // Shadow maps and the back faces' depth: holes are all that a texture says.
 #extension GL_GOOGLE_include_directive : require
-#include "mesh.glsl"
+#include "frame.glsl"
 
 layout(set = 0, binding = 1) uniform sampler2D baseColorTexture;
 

@@ -1,4 +1,4 @@
-// All passes of a frame read this; Uniforms of renderer.cpp.
+// What all shaders share; Uniforms and DrawConstants of renderer.cpp.
 #ifndef SAMPLE_FRAME_GLSL
 #define SAMPLE_FRAME_GLSL
 
@@ -28,6 +28,12 @@ layout(set = 0, binding = 0, std140) uniform Frame {
   Tile tiles[16];
 } frame;
 
+layout(push_constant) uniform Draw {
+  mat4 clipFromWorld;
+  vec4 baseColor; // a: texels of less alpha are holes; 0: none are
+  vec4 surface;   // x: material, y: roughness, z: scale of the normal map, 0: none
+} draw;
+
 // Mistakes of integrations, shown on purpose; Mistake of renderer.h.
 #define MISTAKE_GAMMA 4u
 #define MISTAKE_ALBEDO_TWICE 5u
@@ -37,10 +43,5 @@ layout(set = 0, binding = 0, std140) uniform Frame {
 uint packedSurface(float roughness, uint material) { return uint(roughness * 255.0 + 0.5) | material << 16; }
 float roughnessOf(uint surface) { return float(surface & 255u) / 255.0; }
 uint materialOf(uint surface) { return surface >> 16 & 255u; }
-
-// IEC 61966-2-1.
-vec3 srgb(vec3 linear) {
-  return mix(1.055 * pow(linear, vec3(1.0 / 2.4)) - 0.055, 12.92 * linear, lessThanEqual(linear, vec3(0.0031308)));
-}
 
 #endif

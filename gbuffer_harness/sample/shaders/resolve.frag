@@ -1,6 +1,7 @@
 #version 450
 // The rect becomes the whole picture, with temporal antialiasing, and that becomes what a display shows.
 #extension GL_GOOGLE_include_directive : require
+#include "../../common/shaders/srgb.glsl"
 #include "frame.glsl"
 
 layout(set = 0, binding = 1) uniform sampler2D colorImage;

@@ -25,6 +25,7 @@ layout(push_constant) uniform Push {
 
 layout(location = 0) out vec4 color;
 
+#include "../../common/shaders/srgb.glsl"
 #include "tone_map.glsl"
 
 const int kAfter = 0, kBefore = 1, kThrough = 2, kDifference = 3, kTruth = 4, kDebug = 5, kFrontDepth = 6,
@@ -51,12 +52,6 @@ vec3 valueAt(ivec2 p) {
     case kIsolated: return fetch(hostImage, p).rrr;
     default: return after(p);
   }
-}
-
-// IEC 61966-2-1.
-vec3 srgb(vec3 c) {
-  c = clamp(c, 0.0, 1.0);
-  return mix(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, 12.92 * c, lessThanEqual(c, vec3(0.0031308)));
 }
 
 // 0..1 to black, blue, magenta, orange, yellow, white, whose luminance rises all the way; already sRGB.

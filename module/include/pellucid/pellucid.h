@@ -1,11 +1,12 @@
 /* Pellucid: screen-space translucency and subsurface diffusion as Vulkan compute dispatches.
  *
- * The run-time API: frame, images, context. C ABI, Vulkan headers only. The caller owns every Vulkan
+ * The run-time API: frame, images, recording. C ABI, Vulkan headers only. The caller owns every Vulkan
  * object: the module creates pipelines and layouts, records vkCmd* calls into the caller's command
  * buffer, and never allocates device memory, transitions an image layout, submits or waits.
  * pellucid_plan.h, which this header includes at its end, has what a plan holds, for engines that record
- * plans themselves. pellucid_light.h describes a light, pellucid_shadow_map.h its shadow map. pellucid_thesis.h has the
- * options of Whelan 2009, pellucid_budget.h a frame budget, pellucid_material.h the material compiler.
+ * plans themselves. pellucid_context.h makes pipelines, pellucid_light.h describes a light, pellucid_shadow_map.h its
+ * shadow map. Not included: pellucid_material.h, the material compiler; pellucid_views.h, several views in one recording;
+ * pellucid_statistics.h, what the device decided; pellucid_thesis.h, options of Whelan 2009; pellucid_budget.h, a frame budget.
  *
  * Conventions, unless a field says otherwise:
  * - matrices: 16 floats, column-major, column vectors (GLM and Vulkan memory order);
@@ -26,6 +27,7 @@
 #include <stdint.h>
 #include <vulkan/vulkan_core.h>
 
+#include "pellucid_context.h"
 #include "pellucid_light.h"
 #include "pellucid_result.h"
 #include "pellucid_shadow_map.h"
@@ -247,101 +249,32 @@ typedef struct PellucidImageNeed {
   uint32_t persistent; /* 1: for frame.history and not a transient; keeps its content between frames */
 } PellucidImageNeed;
 
-/* ---- Context --------------------------------------------------------------------------------- */
-
-/* The pipelines of one device. */
-typedef struct PellucidContext PellucidContext;
-
-/* Uses that frames ask of a context. A pipeline is made if all that it is for is asked for; recording refuses a plan that
- * needs one of the others. */
-typedef enum PellucidUse {
-  PELLUCID_USE_TRANSLUCENCY = 1 << 0, /* lights that are not gathered from, thin walls, and frames without diffusion */
-  PELLUCID_USE_GATHER = 1 << 1,       /* gathered light */
-  PELLUCID_USE_DIFFUSION = 1 << 2,    /* light that spreads under the surface */
-  PELLUCID_USE_QUALITY_0 = 1 << 3,    /* besides qualities 1 and 2, which take the same pipelines */
-  PELLUCID_USE_REUSE = 1 << 4,        /* frame.reuse without a gather */
-  PELLUCID_USE_DEBUG_VIEWS = 1 << 5   /* frame.debugView */
-} PellucidUse;
-
-/* Calls job(data, i) for each i below count, on any threads and in any order, and returns when all have returned. */
-typedef void (*PellucidParallelForFn)(void* user, uint32_t count, void (*job)(void* data, uint32_t index), void* data);
-
-/* How the normal image holds a vector n, of world space or of view space by frame.normalsInViewSpace. */
-typedef enum PellucidNormalEncoding {
-  PELLUCID_NORMALS_SNORM = 0,            /* n in RGB, -1..1: SNORM and float formats; (0, 0, 0): none at this pixel */
-  PELLUCID_NORMALS_UNORM = 1,            /* (n + 1) / 2 in RGB, 0..1; (0, 0, 0), which is none of them: none */
-  PELLUCID_NORMALS_OCTAHEDRAL = 2,       /* "oct" of Cigolle et al. 2014 in RG, -1..1: n / (|x| + |y| + |z|), whose lower
-                                            half, z < 0, is folded over the corners; cannot say none */
-  PELLUCID_NORMALS_OCTAHEDRAL_UNORM = 3  /* (that + 1) / 2 in RG, 0..1 */
-} PellucidNormalEncoding;
-
-/* Description of a context. */
-typedef struct PellucidContextDesc {
-  uint32_t structSize;    /* sizeof(PellucidContextDesc), written by pellucidInitContextDesc */
-  uint32_t headerVersion; /* PELLUCID_HEADER_VERSION, likewise */
-  uint32_t apiVersion;    /* the VkApplicationInfo::apiVersion in use, >= VK_API_VERSION_1_1 */
-  VkInstance instance;    /* of the device */
-  VkPhysicalDevice physicalDevice; /* of the device */
-  VkDevice device;        /* VK_KHR_push_descriptor enabled */
-  PFN_vkGetInstanceProcAddr getInstanceProcAddr; /* from which all other functions come */
-  /* ---- fields that may be missing ---- */
-  VkPipelineCache pipelineCache;          /* optional */
-  const VkAllocationCallbacks* allocator; /* optional; host memory of Vulkan objects */
-  PellucidMessageFn message;              /* optional */
-  void* messageUser;                      /* passed to message */
-  uint32_t uses;                          /* PellucidUse bits; 0 (default): all */
-  VkFormat outputFormat; /* of all frames: R16G16B16A16_SFLOAT (default) or R32G32B32A32_SFLOAT; UNDEFINED: any, on a device
-                            with shaderStorageImageWriteWithoutFormat enabled */
-  PellucidParallelForFn parallelFor; /* optional: lends threads to the creation of pipelines; the allocator's and the
-                                        cache's functions are called on them */
-  void* parallelUser;                /* passed to parallelFor */
-  VkImageViewType shadowViewType; /* of all shadow images of all frames: 2D (default), or 2D_ARRAY, of which one view of all
-                                     layers serves every map in them; each frame then has a shadow image, maps or not */
-  uint32_t normalEncoding;        /* PellucidNormalEncoding of all frames; default SNORM. A specialization constant. Unused by
-                                     a library built with PELLUCID_GBUFFER_DECODE, whose file decodes */
-  uint32_t lightTables;           /* 1: frames may have light tables, which pipelines without them need not look for; 0
-                                     (default): none has. A specialization constant */
-  uint32_t reserved;              /* 0 */
-} PellucidContextDesc;
-
-/* The defaults, written into a struct of that many bytes; pellucidInit* without it have the header's size. */
-void pellucidInitContextDescSized(PellucidContextDesc* desc, size_t structSize);
-/* The defaults. */
-static inline void pellucidInitContextDesc(PellucidContextDesc* d) { pellucidInitContextDescSized(d, sizeof *d); }
-
-/* Builds the pipelines of desc.uses. The context is immutable: any thread may use it. On failure *context is
- * NULL and the message callback has the sentence. */
-PellucidResult pellucidCreateContext(const PellucidContextDesc* desc, PellucidContext** context);
-
-/* The device must have finished with commands recorded through the context. NULL is allowed. */
-void pellucidDestroyContext(PellucidContext* context);
-
 /* ---- Planning: pure functions, no device, no allocation -------------------------------------- */
 
 /* The defaults, written into a struct of that many bytes. */
-void pellucidInitFrameSized(PellucidFrame* frame, size_t structSize);
+PELLUCID_API void pellucidInitFrameSized(PellucidFrame* frame, size_t structSize);
 /* The defaults. */
 static inline void pellucidInitFrame(PellucidFrame* f) { pellucidInitFrameSized(f, sizeof *f); }
 
 /* The transients of this frame in order, then with reuse the persistent image. Writes up to *count needs, sets
  * *count to the number there are; `needs` may be NULL. Views are not looked at: call it before creating them. */
-PellucidResult pellucidGetImageNeeds(const PellucidFrame* frame, uint32_t* count, PellucidImageNeed* needs);
+PELLUCID_API PellucidResult pellucidGetImageNeeds(const PellucidFrame* frame, uint32_t* count, PellucidImageNeed* needs);
 
 /* Bytes of a constants slice for any frame of at most so many materials, lights and shadow maps, whatever else it holds:
  * plan.constantsSize is never more. shadowMapCount: the sum over the lights, so that a map of two lights counts twice. No
  * frame, image or device is needed, so a ring of slices can be allocated first. */
-VkDeviceSize pellucidGetConstantsSize(uint32_t materialCount, uint32_t lightCount, uint32_t shadowMapCount);
+PELLUCID_API VkDeviceSize pellucidGetConstantsSize(uint32_t materialCount, uint32_t lightCount, uint32_t shadowMapCount);
 
 /* Checks every convention and the domains of all fields (docs/domains.md); calls `fn` for each finding. PELLUCID_OK
  * unless one is an error. PELLUCID_ERROR_CAPACITY exactly where pellucidBuildPlan returns it, too: more shadow images
  * than a plan can bind. */
-PellucidResult pellucidValidateFrame(const PellucidFrame* frame, PellucidMessageFn fn, void* user);
+PELLUCID_API PellucidResult pellucidValidateFrame(const PellucidFrame* frame, PellucidMessageFn fn, void* user);
 
 /* Same frame and previous plan, same plan. `previous` is the last recorded frame's plan or NULL; history comes in here
  * and nowhere else; see PellucidReuse. The plan keeps no pointer to the frame. It depends
  * on which optional inputs have views, and on output and irradiance being one view: then a frame with nothing to do has
  * no dispatches. */
-PellucidResult pellucidBuildPlan(const PellucidFrame* frame, const PellucidPlan* previous, PellucidPlan* plan);
+PELLUCID_API PellucidResult pellucidBuildPlan(const PellucidFrame* frame, const PellucidPlan* previous, PellucidPlan* plan);
 
 /* ---- Recording ------------------------------------------------------------------------------- */
 
@@ -372,9 +305,9 @@ enum {
  * Compute pipeline, push constants and set 0 are left changed. `frame` is the one that made the plan, with its views
  * filled in. One that differs in anything else, or lacks an image of the plan's, is PELLUCID_ERROR_INVALID_ARGUMENT;
  * the message names the part that differs. */
-PellucidResult pellucidRecordPlan(const PellucidContext* context, VkCommandBuffer commandBuffer,
-                                  const PellucidPlan* plan, const PellucidFrame* frame,
-                                  const PellucidConstantsSlice* constants);
+PELLUCID_API PellucidResult pellucidRecordPlan(const PellucidContext* context, VkCommandBuffer commandBuffer,
+                                               const PellucidPlan* plan, const PellucidFrame* frame,
+                                               const PellucidConstantsSlice* constants);
 
 
 #ifdef __cplusplus

@@ -4,6 +4,8 @@
 
 #include <stdint.h>
 
+#include "pellucid_result.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -22,14 +24,14 @@ typedef struct PellucidBudgetState {
   uint32_t easierFrames;              /* on end well below raisedMs after that step failed */
 } PellucidBudgetState;
 
-void pellucidInitBudgetState(PellucidBudgetState* state); /* quality 2, no reuse */
+PELLUCID_API void pellucidInitBudgetState(PellucidBudgetState* state); /* quality 2, no reuse */
 
 /* One frame's time, ms, against the budget (Whelan 2009, 6.2.5). Pure. Goes one setting down (reuse first,
  * then quality) after 3 frames on end above the budget, so a setting that fits is reached within 20 frames;
  * one up after waitFrames at most 70 % of it. An upward step that does not hold doubles the wait, until
  * 30 frames on end take 70 % of the time from before it. Times that are negative or not finite, and
  * budgets that are not > 0, change nothing. A damaged state goes on from the nearest valid one. */
-void pellucidStepBudget(PellucidBudgetState* state, float measuredMs, float budgetMs);
+PELLUCID_API void pellucidStepBudget(PellucidBudgetState* state, float measuredMs, float budgetMs);
 
 #ifdef __cplusplus
 }

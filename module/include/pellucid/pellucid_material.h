@@ -106,15 +106,15 @@ typedef struct PellucidMaterialReport {
   PellucidChannelReport channels[3]; /* R, G, B */
 } PellucidMaterialReport;
 
-void pellucidInitMaterialDesc(PellucidMaterialDesc* desc); /* the defaults */
+PELLUCID_API void pellucidInitMaterialDesc(PellucidMaterialDesc* desc); /* the defaults */
 
 /* Fills every field of *material, and *report when not NULL. On failure neither is written and
  * `message` (optional) names the field and its value. About 15 ms for RGB coefficients, 50 for
  * spectra, 200 for skin by physiology.
  * Errors: INVALID_ARGUMENT, VERSION, OUT_OF_MEMORY. */
-PellucidResult pellucidCompileMaterial(const PellucidMaterialDesc* desc, PellucidMaterial* material,
-                                       PellucidMaterialReport* report, PellucidMessageFn message,
-                                       void* messageUser);
+PELLUCID_API PellucidResult pellucidCompileMaterial(const PellucidMaterialDesc* desc, PellucidMaterial* material,
+                                                    PellucidMaterialReport* report, PellucidMessageFn message,
+                                                    void* messageUser);
 
 /* ---- Exact transport ------------------------------------------------------------------------- */
 
@@ -127,30 +127,30 @@ typedef struct PellucidSlab {
 
 /* One slab of thickness d >= 0 mm; d = INFINITY is the half-space. scattering is sigma_s'.
  * Errors: INVALID_ARGUMENT, OUT_OF_MEMORY. */
-PellucidResult pellucidSlabTransport(double scattering, double absorption, double ior, double thickness,
-                                     PellucidSlab* slab, PellucidMessageFn message, void* messageUser);
+PELLUCID_API PellucidResult pellucidSlabTransport(double scattering, double absorption, double ior, double thickness,
+                                                  PellucidSlab* slab, PellucidMessageFn message, void* messageUser);
 
 /* Slabs that a material's T(d) was fitted to: slabs[3 * i + channel] for thickness[i], >= 0 mm. Of BURLEY
  * and GAUSSIANS it is the function they define, for both incidences, and reflectance is 0. A THIN_WALL has
  * wallTransmittance and wallReflectance at every thickness. */
-PellucidResult pellucidMaterialSlabs(const PellucidMaterialDesc* desc, uint32_t count,
-                                     const double* thickness, PellucidSlab* slabs, PellucidMessageFn message,
-                                     void* messageUser);
+PELLUCID_API PellucidResult pellucidMaterialSlabs(const PellucidMaterialDesc* desc, uint32_t count,
+                                                  const double* thickness, PellucidSlab* slabs, PellucidMessageFn message,
+                                                  void* messageUser);
 
 /* T(d) as the shaders evaluate it, d >= 0 mm, channel 0..2; NaN for a bad channel or model. */
-double pellucidEvaluateTransmittance(const PellucidMaterial* material, uint32_t channel, double thickness);
+PELLUCID_API double pellucidEvaluateTransmittance(const PellucidMaterial* material, uint32_t channel, double thickness);
 
 /* ---- Presets --------------------------------------------------------------------------------- */
 
-uint32_t pellucidPresetCount(void); /* presets have the indices below it */
+PELLUCID_API uint32_t pellucidPresetCount(void); /* presets have the indices below it */
 
 /* Lower case, e.g. "skin1", "whole_milk"; static string, or NULL beyond the last. */
-const char* pellucidPresetName(uint32_t index);
+PELLUCID_API const char* pellucidPresetName(uint32_t index);
 
 /* Describes a preset: RGB coefficients as kind COEFFICIENTS with its index of refraction, layered skin
  * as kind PRESET. Case and the difference between ' ', '-', '_' do not matter. Other fields get their
  * defaults. INVALID_ARGUMENT when there is no such preset. */
-PellucidResult pellucidFindPreset(const char* name, PellucidMaterialDesc* desc);
+PELLUCID_API PellucidResult pellucidFindPreset(const char* name, PellucidMaterialDesc* desc);
 
 /* ---- OpenPBR --------------------------------------------------------------------------------- */
 
@@ -167,7 +167,7 @@ typedef struct PellucidOpenPbr {
   double millimetersPerUnit;          /* of subsurfaceRadius; > 0; default 1 */
 } PellucidOpenPbr;
 
-void pellucidInitOpenPbr(PellucidOpenPbr* material); /* the specification's defaults */
+PELLUCID_API void pellucidInitOpenPbr(PellucidOpenPbr* material); /* the specification's defaults */
 
 /* Describes an OpenPBR medium as kind COEFFICIENTS, in 1/mm: extinction 1 / (radius scale), and the
  * single-scattering albedo that gives subsurfaceColor behind the smooth boundary of specularIor. The albedo
@@ -175,8 +175,8 @@ void pellucidInitOpenPbr(PellucidOpenPbr* material); /* the specification's defa
  * g = 0, and by similarity for others. Other fields of *desc get their defaults. On failure *desc stays as
  * it is and `message` (optional) names the field and its value. About 20 ms.
  * Errors: INVALID_ARGUMENT, VERSION, OUT_OF_MEMORY. */
-PellucidResult pellucidDescribeOpenPbr(const PellucidOpenPbr* material, PellucidMaterialDesc* desc,
-                                       PellucidMessageFn message, void* messageUser);
+PELLUCID_API PellucidResult pellucidDescribeOpenPbr(const PellucidOpenPbr* material, PellucidMaterialDesc* desc,
+                                                    PellucidMessageFn message, void* messageUser);
 
 #ifdef __cplusplus
 }

@@ -113,21 +113,21 @@ enum { PELLUCID_SPECIALIZATION_NORMALS = 4, PELLUCID_SPECIALIZATION_LIGHT_TABLES
 
 /* The constants that pellucidRecordPlan would write, and what each pipeline is made of; shadowViewType as in
  * PellucidContextDesc. */
-PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const PellucidFrame* frame,
-                                      void* mapped, size_t size);
-uint32_t pellucidGetPipelineCount(void); /* pipelines have the indices below it */
-PellucidResult pellucidGetShader(uint32_t pipeline, VkImageViewType shadowViewType,
-                                 PellucidShader* shader); /* INVALID_ARGUMENT: no such pipeline or type */
+PELLUCID_API PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const PellucidFrame* frame,
+                                                   void* mapped, size_t size);
+PELLUCID_API uint32_t pellucidGetPipelineCount(void); /* pipelines have the indices below it */
+PELLUCID_API PellucidResult pellucidGetShader(uint32_t pipeline, VkImageViewType shadowViewType,
+                                              PellucidShader* shader); /* INVALID_ARGUMENT: no such pipeline or type */
 
 /* Bit (1 << PellucidResource) of each screen-sized image that `features` cannot do without. */
-uint32_t pellucidGetRequiredInputs(uint32_t features);
+PELLUCID_API uint32_t pellucidGetRequiredInputs(uint32_t features);
 
 /* Zero-terminated JSON. *size is the room in `text` and becomes the bytes needed, terminator
  * included; `text` may be NULL to ask. */
-PellucidResult pellucidPlanToJson(const PellucidPlan* plan, char* text, size_t* size);
+PELLUCID_API PellucidResult pellucidPlanToJson(const PellucidPlan* plan, char* text, size_t* size);
 
-const char* pellucidResourceName(uint32_t resource); /* "frontDepth", ... */
-const char* pellucidPipelineName(uint32_t pipeline); /* "unknown pipeline" beyond the last */
+PELLUCID_API const char* pellucidResourceName(uint32_t resource); /* "frontDepth", ... */
+PELLUCID_API const char* pellucidPipelineName(uint32_t pipeline); /* "unknown pipeline" beyond the last */
 
 #ifdef __cplusplus
 }

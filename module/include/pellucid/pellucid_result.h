@@ -8,6 +8,19 @@
 extern "C" {
 #endif
 
+/* Functions that a shared library exports. Whoever links one on Windows defines PELLUCID_SHARED, as its CMake target does. */
+#if defined(_WIN32) && defined(PELLUCID_SHARED)
+#ifdef PELLUCID_EXPORTS /* the library itself */
+#define PELLUCID_API __declspec(dllexport)
+#else
+#define PELLUCID_API __declspec(dllimport)
+#endif
+#elif defined(__GNUC__)
+#define PELLUCID_API __attribute__((visibility("default")))
+#else
+#define PELLUCID_API
+#endif
+
 /* One of the values below. */
 typedef int32_t PellucidResult;
 enum {
@@ -28,7 +41,7 @@ typedef enum PellucidSeverity { PELLUCID_SEVERITY_WARNING = 0, PELLUCID_SEVERITY
  * during the call only. Called on the thread that made the API call. */
 typedef void (*PellucidMessageFn)(void* user, PellucidSeverity severity, const char* field, const char* message);
 
-const char* pellucidResultName(PellucidResult result); /* "PELLUCID_OK", ... */
+PELLUCID_API const char* pellucidResultName(PellucidResult result); /* "PELLUCID_OK", ... */
 
 #ifdef __cplusplus
 }

@@ -49,7 +49,7 @@ typedef struct PellucidStatistics {
 } PellucidStatistics;
 
 /* Zeros and the size, written into a struct of that many bytes. */
-void pellucidInitStatisticsSized(PellucidStatistics* statistics, size_t structSize);
+PELLUCID_API void pellucidInitStatisticsSized(PellucidStatistics* statistics, size_t structSize);
 /* Zeros and the size. */
 static inline void pellucidInitStatistics(PellucidStatistics* s) { pellucidInitStatisticsSized(s, sizeof *s); }
 
@@ -59,8 +59,8 @@ static inline void pellucidInitStatistics(PellucidStatistics* s) { pellucidInitS
  * - INVALID_ARGUMENT: a null pointer, or a slice with more groups than there may be, which is another plan's;
  * - BUFFER_TOO_SMALL: constants->size is below plan->constantsSize;
  * - VERSION: a structSize that this library cannot write. */
-PellucidResult pellucidReadStatistics(const PellucidPlan* plan, const PellucidConstantsSlice* constants,
-                                      PellucidStatistics* statistics, PellucidMessageFn fn, void* user);
+PELLUCID_API PellucidResult pellucidReadStatistics(const PellucidPlan* plan, const PellucidConstantsSlice* constants,
+                                                   PellucidStatistics* statistics, PellucidMessageFn fn, void* user);
 
 #ifdef __cplusplus
 }

@@ -59,7 +59,7 @@ struct PellucidThesisOptions {
 };
 
 /* The defaults, written into a struct of that many bytes. */
-void pellucidInitThesisOptionsSized(PellucidThesisOptions* options, size_t structSize);
+PELLUCID_API void pellucidInitThesisOptionsSized(PellucidThesisOptions* options, size_t structSize);
 /* The defaults. */
 static inline void pellucidInitThesisOptions(PellucidThesisOptions* options) {
   pellucidInitThesisOptionsSized(options, sizeof(PellucidThesisOptions));
