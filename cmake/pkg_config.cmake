@@ -1,5 +1,5 @@
 # pellucid_pkg_config(target name description [requires]): installs name.pc. It finds its prefix from where it lies, so that an installed
-# folder can move. C programs link a static library with the C++ runtime that the compiler says.
+# folder can move. With static libraries a C program links the C++ runtime, too, which the compiler names.
 function(pellucid_pkg_config target name description)
   set(requires ${ARGN})
   file(RELATIVE_PATH to_prefix ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
