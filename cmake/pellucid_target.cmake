@@ -1,7 +1,10 @@
-# Language level and warnings of Pellucid's own targets; never imposed on those who link them.
+# Language level and, where Pellucid is not part of another project, warnings of its own targets; never imposed on those who link them.
 function(pellucid_target target)
   set_target_properties(${target} PROPERTIES
     CXX_STANDARD 20 CXX_STANDARD_REQUIRED ON CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
+  if(NOT PROJECT_IS_TOP_LEVEL AND NOT PELLUCID_WARNINGS_AS_ERRORS)
+    return()
+  endif()
   if(MSVC)
     target_compile_options(${target} PRIVATE /W4 $<$<BOOL:${PELLUCID_WARNINGS_AS_ERRORS}>:/WX>)
   else()

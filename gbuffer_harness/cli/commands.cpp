@@ -20,6 +20,7 @@ void addCommands(CLI::App& app) {
   addViewCommand(app);
   addPerceptionCommand(app);
   addAnglesCommand(app);
+  addShadersCommand(app);
 }
 
 }  // namespace pellucid::harness

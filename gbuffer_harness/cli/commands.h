@@ -27,5 +27,6 @@ void addMeasureDotsCommand(CLI::App& app);
 void addStressCommand(CLI::App& app);
 void addViewCommand(CLI::App& app);
 void addPerceptionCommand(CLI::App& app);
+void addShadersCommand(CLI::App& app);
 
 }  // namespace pellucid::harness

@@ -11,7 +11,7 @@ namespace pellucid {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr int kEntries = PELLUCID_GATHER_ENTRIES;
+constexpr int kGatherEntries = PELLUCID_GATHER_ENTRIES;
 
 // T(d) of one channel and how fast it spreads sideways.
 struct Channel {
@@ -100,7 +100,7 @@ shared::GatherConstants gatherConstants(const PellucidMaterial& m) {
   const double depthScale = 0.5 / slowest;
   g.lengths = {static_cast<float>(shortest), static_cast<float>(std::log2(longest / shortest)),
                static_cast<float>(2 / slowest), static_cast<float>(depthScale)};
-  std::array<glm::vec4, kEntries> slab{}, decay{};
+  std::array<glm::vec4, kGatherEntries> slab{}, decay{};
   for (int c = 0; c < 3; ++c) {
     const double d = profileLength(m, c);
     g.profile[c] = static_cast<float>(d > 0 ? 1 / (3 * d) : 0);
@@ -109,9 +109,9 @@ shared::GatherConstants gatherConstants(const PellucidMaterial& m) {
     g.reflectance[c] = slabReflectance(channels[c].transmittance(0), static_cast<double>(m.reflectance[c]));
     // To both sides: as far as the light comes from.
     g.convexity.w = std::max(g.convexity.w, static_cast<float>(more));
-    for (int i = 0; i < kEntries; ++i) {
+    for (int i = 0; i < kGatherEntries; ++i) {
       // Beyond 500 decay lengths T is below the least double; its logarithm goes on as a line.
-      const double v = static_cast<double>(i) / (kEntries - 1), farthest = 500 / channels[c].slowest;
+      const double v = static_cast<double>(i) / (kGatherEntries - 1), farthest = 500 / channels[c].slowest;
       const double h = v < 1 ? std::min(depthScale * v / (1 - v), farthest) : farthest;
       const double q = channels[c].decay(h);
       slab[i][c] = static_cast<float>((std::log(std::max(channels[c].transmittance(h), 1e-300)) + q * h) /
@@ -119,8 +119,8 @@ shared::GatherConstants gatherConstants(const PellucidMaterial& m) {
       decay[i][c] = static_cast<float>(q / std::numbers::ln2);
     }
   }
-  for (int i = 0; i < kEntries; ++i) {
-    const int next = std::min(i + 1, kEntries - 1);
+  for (int i = 0; i < kGatherEntries; ++i) {
+    const int next = std::min(i + 1, kGatherEntries - 1);
     const glm::vec4 step = slab[next] - slab[i], decayStep = decay[next] - decay[i];
     g.entries[3 * i] = glm::vec4(glm::vec3(slab[i]), step.r);
     g.entries[3 * i + 1] = {step.g, step.b, decay[i].r, decay[i].g};

@@ -1,0 +1,254 @@
+#include "cli/shader_translation.h"
+
+#include <algorithm>
+#include <array>
+#include <spirv_hlsl.hpp>
+#include <spirv_msl.hpp>
+#include <string_view>
+#include <utility>
+
+#include "common/error.h"
+
+namespace pellucid::harness {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using spirv_cross::Compiler;
+using spirv_cross::Resource;
+
+// Names by the id of a specialization constant; the shaders hold none.
+constexpr std::array<const char*, 7> kConstantNames = {
+    "debugViews", "fine", "gathers", "directional", "normalEncoding", "sharers", "lightTables"};
+
+// Names of what pipelines bind, as in the sources of the shaders: the first row of the binding whose pipeline
+// begins a name holds.
+struct BindingName {
+  uint32_t binding;
+  std::string_view pipeline, name;
+};
+constexpr BindingName kBindingNames[] = {{0, "", "frame"},
+                                         {1, "", "lights"},
+                                         {2, "list_groups", "gatherMaps"},
+                                         {2, "entry_points", "gatherMaps"},
+                                         {2, "probes", "gatherMaps"},
+                                         {2, "", "shadows"},
+                                         {3, "", "materials"},
+                                         {4, "find_cells", "tileCommands"},
+                                         {4, "list_groups", "tileCommands"},
+                                         {4, "entry_points", "entryMaps"},
+                                         {4, "probes", "gatherDispatches"},
+                                         {4, "", "kernels"},
+                                         {5, "", "frontDepthImage"},
+                                         {6, "entry_points", "shadowImage8"},
+                                         {6, "", "backDepthImage"},
+                                         {7, "entry_points", "shadowImage9"},
+                                         {7, "", "sourceImage"},
+                                         {8, "entry_points", "shadowImage10"},
+                                         {8, "add_history", "historyImage"},
+                                         {8, "", "normalImage"},
+                                         {9, "entry_points", "shadowImage11"},
+                                         {9, "", "albedoImage"},
+                                         {10, "", "materialImage"},
+                                         {11, "", "destinationImage"},
+                                         {12, "probes", "entriesImage"},
+                                         {12, "filter_probes", "foundImage"},
+                                         {12, "downsample", "pyramidImage"},
+                                         {12, "upsample", "pyramidImage"},
+                                         {12, "diffuse", "pyramidImage"},
+                                         {12, "", "shadowImage0"},
+                                         {13, "upsample", "coarserLevelsImage"},
+                                         {13, "diffuse", "probesImage"},
+                                         {13, "", "shadowImage1"},
+                                         {14, "", "shadowImage2"},
+                                         {15, "", "shadowImage3"},
+                                         {16, "", "shadowImage4"},
+                                         {17, "", "shadowImage5"},
+                                         {18, "", "shadowImage6"},
+                                         {19, "", "shadowImage7"},
+                                         {20, "find_cells", "tilesDestination"},
+                                         {20, "list_groups", "tilesDestination"},
+                                         {20, "entry_points", "entriesDestination"},
+                                         {20, "probes", "probesImage"},
+                                         {20, "filter_probes", "sharedImage"},
+                                         {20, "", "levelsDestination"},
+                                         {21, "", "tilesImage"},
+                                         {22, "", "heldImage"}};
+
+std::string bindingName(const std::string& pipeline, uint32_t binding) {
+  for (const BindingName& row : kBindingNames)
+    if (row.binding == binding && pipeline.starts_with(row.pipeline)) return std::string(row.name);
+  throw InputError(pipeline, "binding", std::to_string(binding) + " has no name");
+}
+
+std::string constantName(const std::string& pipeline, uint32_t id) {
+  if (id < kConstantNames.size()) return kConstantNames[id];
+  throw InputError(pipeline, "specialization constant", std::to_string(id) + " has no name");
+}
+
+// The pipeline's values in place of the defaults.
+Json specialize(Compiler& compiler, const PipelineShader& pipeline) {
+  const PellucidShader& shader = pipeline.shader;
+  Json constants = Json::array();
+  for (const spirv_cross::SpecializationConstant& constant : compiler.get_specialization_constants()) {
+    spirv_cross::SPIRConstant& value = compiler.get_constant(constant.id);
+    for (uint32_t i = 0; i < shader.constantCount; ++i)
+      if (shader.constants[i].id == constant.constant_id) value.m.c[0].r[0].u32 = shader.constants[i].value;
+    const std::string name = constantName(pipeline.name, constant.constant_id);
+    compiler.set_name(constant.id, name);
+    const bool isBool = compiler.get_type(value.constant_type).basetype == spirv_cross::SPIRType::Boolean;
+    constants.push_back({{"id", constant.constant_id},
+                         {"name", name},
+                         {"type", isBool ? "bool" : "uint"},
+                         {"value", value.scalar()}});
+  }
+  std::sort(constants.begin(), constants.end(),
+            [](const Json& a, const Json& b) { return a["id"] < b["id"]; });
+  return constants;
+}
+
+Json workgroupSize(const Compiler& compiler) {
+  spirv_cross::SpecializationConstant constants[3];
+  compiler.get_work_group_size_specialization_constants(constants[0], constants[1], constants[2]);
+  Json size = Json::array();
+  for (uint32_t i = 0; i < 3; ++i)
+    size.push_back(constants[i].id ? compiler.get_constant(constants[i].id).scalar()
+                                   : compiler.get_execution_mode_argument(spv::ExecutionModeLocalSize, i));
+  return size;
+}
+
+struct BindingType {
+  const char* name;
+  bool isBuffer, isWritten;
+};
+
+Json describeBinding(Compiler& compiler, const std::string& pipeline, const Resource& resource,
+                     const BindingType& type, ShaderLanguage language) {
+  const uint32_t binding = compiler.get_decoration(resource.id, spv::DecorationBinding);
+  const std::string name = bindingName(pipeline, binding), number = std::to_string(binding);
+  compiler.set_name(resource.id, name);
+  if (type.isBuffer) compiler.set_name(resource.base_type_id, name + "Block");
+  Json json = {{"binding", binding}, {"type", type.name}, {"name", name}};
+  if (language == ShaderLanguage::Hlsl)
+    json["register"] = (type.isWritten                                   ? "u"
+                        : type.name == std::string_view("uniformBuffer") ? "b"
+                                                                         : "t") +
+                       number;
+  if (language == ShaderLanguage::Msl)
+    json["argument"] = (type.isBuffer ? "buffer(" : "texture(") + number + ")";
+  return json;
+}
+
+// What the shader accesses, by number. Unused bindings of other passes share numbers with these.
+Json describeBindings(Compiler& compiler, const std::string& pipeline, ShaderLanguage language) {
+  const spirv_cross::ShaderResources all =
+      compiler.get_shader_resources(compiler.get_active_interface_variables());
+  Json bindings = Json::array();
+  const auto add = [&](const Resource& resource, const BindingType& type) {
+    bindings.push_back(describeBinding(compiler, pipeline, resource, type, language));
+  };
+  for (const Resource& r : all.uniform_buffers) add(r, {"uniformBuffer", true, false});
+  for (const Resource& r : all.storage_buffers) {
+    const bool isRead = compiler.get_buffer_block_flags(r.id).get(spv::DecorationNonWritable);
+    add(r, {isRead ? "readOnlyStorageBuffer" : "storageBuffer", true, !isRead});
+  }
+  for (const Resource& r : all.separate_images) add(r, {"sampledImage", false, false});
+  for (const Resource& r : all.storage_images) add(r, {"storageImage", false, true});
+  std::sort(bindings.begin(), bindings.end(),
+            [](const Json& a, const Json& b) { return a["binding"] < b["binding"]; });
+  return bindings;
+}
+
+// Describes the shader and readies `compiler`, whose names the translation then has.
+Json describe(Compiler& compiler, const PipelineShader& shader, ShaderLanguage language) {
+  const std::string entryPoint = language == ShaderLanguage::Spirv ? "main" : shader.name;
+  compiler.rename_entry_point("main", entryPoint, spv::ExecutionModelGLCompute);
+  compiler.set_enabled_interface_variables(compiler.get_active_interface_variables());
+  const Json constants = specialize(compiler, shader);
+  const bool pushes =
+      !compiler.get_shader_resources(compiler.get_active_interface_variables()).push_constant_buffers.empty();
+  return {{"pipeline", shader.pipeline},
+          {"name", pellucidPipelineName(shader.pipeline)},
+          {"shadowViewType", shader.shadowViewType},
+          {"entryPoint", entryPoint},
+          {"workgroupSize", workgroupSize(compiler)},
+          {"specializationConstants", constants},
+          {"pushConstantBytes", pushes ? PELLUCID_PUSH_CONSTANT_BYTES : 0},
+          {"bindings", describeBindings(compiler, pellucidPipelineName(shader.pipeline), language)}};
+}
+
+const char* languageName(ShaderLanguage language) {
+  return language == ShaderLanguage::Hlsl ? "HLSL" : language == ShaderLanguage::Msl ? "MSL" : "SPIR-V";
+}
+
+TranslatedShader toHlsl(const PipelineShader& shader) {
+  spirv_cross::CompilerHLSL compiler(shader.shader.words, shader.shader.wordCount);
+  Json description = describe(compiler, shader, ShaderLanguage::Hlsl);
+  spirv_cross::CompilerHLSL::Options options;
+  options.shader_model = 60;
+  options.use_entry_point_name = true;
+  compiler.set_hlsl_options(options);
+  compiler.set_root_constant_layouts({{0, PELLUCID_PUSH_CONSTANT_BYTES, 0, kHlslConstantSpace}});
+  const spirv_cross::VariableID groups = compiler.remap_num_workgroups_builtin();
+  if (groups) {
+    compiler.set_decoration(groups, spv::DecorationDescriptorSet, kHlslConstantSpace);
+    compiler.set_decoration(groups, spv::DecorationBinding, 1);
+    auto enabled = compiler.get_active_interface_variables();
+    enabled.insert(groups);
+    compiler.set_enabled_interface_variables(std::move(enabled));
+  }
+  description["readsGroups"] = groups != 0;
+  return {compiler.compile(), description};
+}
+
+TranslatedShader toMsl(const PipelineShader& shader) {
+  spirv_cross::CompilerMSL compiler(shader.shader.words, shader.shader.wordCount);
+  const Json description = describe(compiler, shader, ShaderLanguage::Msl);
+  spirv_cross::CompilerMSL::Options options;
+  options.set_msl_version(2, 3);
+  options.enable_decoration_binding = true;
+  compiler.set_msl_options(options);
+  spirv_cross::MSLResourceBinding push;
+  push.stage = spv::ExecutionModelGLCompute;
+  push.desc_set = spirv_cross::kPushConstDescSet;
+  push.binding = spirv_cross::kPushConstBinding;
+  push.count = 1;
+  push.msl_buffer = kMslPushConstantBuffer;
+  compiler.add_msl_resource_binding(push);
+  return {compiler.compile(), description};
+}
+
+TranslatedShader toSpirv(const PipelineShader& shader) {
+  const PellucidShader& spirv = shader.shader;
+  Compiler compiler(spirv.words, spirv.wordCount);
+  return {{reinterpret_cast<const char*>(spirv.words), spirv.wordCount * sizeof *spirv.words},
+          describe(compiler, shader, ShaderLanguage::Spirv)};
+}
+
+}  // namespace
+
+std::vector<PipelineShader> pipelineShaders() {
+  std::vector<PipelineShader> shaders;
+  for (uint32_t i = 0; i < pellucidGetPipelineCount(); ++i) {
+    PellucidShader plain, array;
+    pellucidGetShader(i, VK_IMAGE_VIEW_TYPE_2D, &plain);
+    pellucidGetShader(i, VK_IMAGE_VIEW_TYPE_2D_ARRAY, &array);
+    const std::string name = pellucidPipelineName(i);
+    const bool same = plain.words == array.words;
+    shaders.push_back({name, same ? "any" : "2D", i, plain});
+    if (!same) shaders.push_back({name + "_array", "2D_ARRAY", i, array});
+  }
+  return shaders;
+}
+
+TranslatedShader translateShader(const PipelineShader& shader, ShaderLanguage language) {
+  try {
+    return language == ShaderLanguage::Hlsl  ? toHlsl(shader)
+           : language == ShaderLanguage::Msl ? toMsl(shader)
+                                             : toSpirv(shader);
+  } catch (const spirv_cross::CompilerError& error) {
+    throw InputError("pipeline " + shader.name, languageName(language), error.what());
+  }
+}
+
+}  // namespace pellucid::harness
