@@ -139,10 +139,7 @@ Context::Context(Device& device, const std::function<void(PellucidContextDesc&)>
     parallelRows(static_cast<int>(count), 0, [&](int i) { job(data, static_cast<uint32_t>(i)); });
   };
   if (change) change(desc);
-  if (compile == Compile::WhenPlanned) {
-    deferred_ = std::make_unique<DeferredPipelines>();
-    deferred_->defer(desc);
-  }
+  desc.deferPipelines = compile == Compile::WhenPlanned;
   const PellucidResult result = pellucidCreateContext(&desc, &context_);
   if (result != PELLUCID_OK) throw DeviceError(std::string(pellucidResultName(result)) + ": " + message_);
 }
@@ -150,7 +147,10 @@ Context::Context(Device& device, const std::function<void(PellucidContextDesc&)>
 Context::~Context() { pellucidDestroyContext(context_); }
 
 void Context::prepare(const PellucidPlan& plan) const {
-  if (deferred_) deferred_->prepare(plan);
+  const std::scoped_lock lock(mutex_);
+  const ProgressLine progress("compiling shaders");
+  const PellucidResult result = pellucidCreatePipelines(context_, &plan);
+  if (result != PELLUCID_OK) throw DeviceError(std::string(pellucidResultName(result)) + ": " + message_);
 }
 
 const Context& Contexts::of(const Capture& capture) {

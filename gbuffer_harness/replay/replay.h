@@ -3,13 +3,13 @@
 
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
 #include "common/device.h"
 #include "common/pool.h"
 #include "pellucid/pellucid_statistics.h"
-#include "replay/deferred_pipelines.h"
 #include "replay/frame.h"
 #include "replay/inputs.h"
 
@@ -26,7 +26,7 @@ enum class Compile { WhenPlanned, AtCreation };
 class Context {
 public:
   // Throws DeviceError with the module's sentence. `change`: of what the context is made for, which is
-  // everything. Compile::WhenPlanned takes no notice of desc.uses, parallelFor and pipelineCache.
+  // everything.
   explicit Context(Device& device, const std::function<void(PellucidContextDesc&)>& change = {},
                    Compile compile = Compile::WhenPlanned);
   ~Context();
@@ -36,11 +36,12 @@ public:
   const PellucidContext* handle() const { return context_; }
   const std::string& message() const { return message_; }  // the module's errors since creation
 
-  // Before the plan is recorded. Throws DeviceError if the driver does not compile a pipeline.
+  // Before the plan is recorded, while no other thread records. Throws DeviceError if a pipeline cannot be
+  // made.
   void prepare(const PellucidPlan& plan) const;
 
 private:
-  std::unique_ptr<DeferredPipelines> deferred_;  // none at Compile::AtCreation
+  mutable std::mutex mutex_;  // of pipelines that are made for plans
   PellucidContext* context_ = nullptr;
   std::string message_;
 };

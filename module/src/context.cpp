@@ -2,6 +2,7 @@
 #include "context.h"
 
 #include <algorithm>
+#include <bitset>
 #include <memory>
 #include <new>
 
@@ -74,6 +75,10 @@ PellucidResult checkDesc(const PellucidContextDesc& desc, Findings& out) {
              ", not a PellucidNormalEncoding");
     return out.result();
   }
+  if (desc.deferPipelines > 1) {
+    out.fail(PELLUCID_ERROR_INVALID_ARGUMENT, "deferPipelines", "is ", desc.deferPipelines, ", not 0 or 1");
+    return out.result();
+  }
   if (desc.lightTables > 1) {
     out.fail(PELLUCID_ERROR_INVALID_ARGUMENT, "lightTables", "is ", desc.lightTables, ", not 0 or 1");
     return out.result();
@@ -128,14 +133,13 @@ PellucidResult createLayouts(PellucidContext& c, Findings& out) {
 
 // One pipeline for each thread that the caller lends.
 struct PipelineJobs {
-  const PellucidContextDesc& desc;
   PellucidContext& context;
   std::array<uint32_t, kPipelineCount> pipelines{};  // to make
   std::array<VkResult, kPipelineCount> results{};
 };
 
-VkResult createPipeline(const PellucidContextDesc& desc, const PellucidContext& c, const PipelineDesc& p,
-                        VkPipeline* pipeline) {
+VkResult createPipeline(const PellucidContext& c, const PipelineDesc& p, VkPipeline* pipeline) {
+  const PellucidContextDesc& desc = c.desc;
   std::unique_ptr<uint32_t[]> patched;
   if (desc.outputFormat != VK_FORMAT_UNDEFINED) {
     patched.reset(new (std::nothrow) uint32_t[p.wordCount]);
@@ -174,15 +178,19 @@ VkResult createPipeline(const PellucidContextDesc& desc, const PellucidContext& 
   return result;
 }
 
-PellucidResult createPipelines(const PellucidContextDesc& desc, PellucidContext& c, Findings& out) {
-  PipelineJobs jobs{desc, c};
+// Makes the pipelines among `wanted`, bits by index, that are of the context's uses and not there.
+PellucidResult createPipelines(PellucidContext& c, std::bitset<kPipelineCount> wanted, Findings& out) {
+  const PellucidContextDesc& desc = c.desc;
+  PipelineJobs jobs{c};
   uint32_t count = 0;
   for (uint32_t i = 0; i < kPipelineCount; ++i)
-    if (desc.uses == 0 || (pipelineDesc(i).uses & ~desc.uses) == 0) jobs.pipelines[count++] = i;
+    if (wanted[i] && !c.pipelines[i] && (desc.uses == 0 || (pipelineDesc(i).uses & ~desc.uses) == 0))
+      jobs.pipelines[count++] = i;
+  if (count == 0) return PELLUCID_OK;
   const auto job = [](void* data, uint32_t i) {
     auto& all = *static_cast<PipelineJobs*>(data);
     const uint32_t pipeline = all.pipelines[i];
-    all.results[i] = createPipeline(all.desc, all.context, pipelineDesc(pipeline, all.desc.shadowViewType),
+    all.results[i] = createPipeline(all.context, pipelineDesc(pipeline, all.context.desc.shadowViewType),
                                     &all.context.pipelines[pipeline]);
   };
   if (desc.parallelFor)
@@ -230,11 +238,7 @@ extern "C" PellucidResult pellucidCreateContext(const PellucidContextDesc* given
     c->allocator = *desc->allocator;
     c->hasAllocator = true;
   }
-  c->message = desc->message;
-  c->messageUser = desc->messageUser;
-  c->shadowViewType = desc->shadowViewType;
-  c->outputFormat = desc->outputFormat;
-  c->lightTables = desc->lightTables != 0;
+  c->desc = *desc;
   const auto getDeviceProcAddr = reinterpret_cast<PFN_vkGetDeviceProcAddr>(
       desc->getInstanceProcAddr(desc->instance, "vkGetDeviceProcAddr"));
   const char* missing =
@@ -246,13 +250,23 @@ extern "C" PellucidResult pellucidCreateContext(const PellucidContextDesc* given
     return out.result();
   }
   result = createLayouts(*c, out);
-  if (result == PELLUCID_OK) result = createPipelines(*desc, *c, out);
+  if (result == PELLUCID_OK && !desc->deferPipelines)
+    result = createPipelines(*c, std::bitset<kPipelineCount>().set(), out);
   if (result != PELLUCID_OK) {
     pellucidDestroyContext(c);
     return result;
   }
   *context = c;
   return PELLUCID_OK;
+}
+
+extern "C" PellucidResult pellucidCreatePipelines(PellucidContext* c, const PellucidPlan* plan) {
+  if (!c || !plan) return PELLUCID_ERROR_INVALID_ARGUMENT;
+  std::bitset<kPipelineCount> wanted;
+  for (uint32_t i = 0; i < plan->dispatchCount; ++i)
+    if (plan->dispatches[i].pipeline < kPipelineCount) wanted.set(plan->dispatches[i].pipeline);
+  Findings out(c->desc.message, c->desc.messageUser);
+  return createPipelines(*c, wanted, out);
 }
 
 extern "C" void pellucidDestroyContext(PellucidContext* c) {

@@ -8,7 +8,7 @@ namespace {
 static_assert(ENDS_WITH(PellucidFrame, lightTables));
 static_assert(ENDS_WITH(PellucidMaterial, wallTransmittance));
 static_assert(ENDS_WITH(PellucidThesisOptions, minimumDotTable));
-static_assert(ENDS_WITH(PellucidContextDesc, reserved));
+static_assert(ENDS_WITH(PellucidContextDesc, deferPipelines));
 #undef ENDS_WITH
 
 }  // namespace

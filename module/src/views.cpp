@@ -16,8 +16,8 @@ struct ViewErrors {
   // A PellucidMessageFn. Warnings are validation's.
   static void pass(void* user, PellucidSeverity severity, const char* field, const char* message) {
     const auto& [context, prefix] = *static_cast<const ViewErrors*>(user);
-    if (severity == PELLUCID_SEVERITY_ERROR && context.message)
-      context.message(context.messageUser, severity, Field(prefix, field), message);
+    if (severity == PELLUCID_SEVERITY_ERROR && context.desc.message)
+      context.desc.message(context.desc.messageUser, severity, Field(prefix, field), message);
   }
 };
 
@@ -28,28 +28,31 @@ void checkPlan(const PellucidContext& c, const PellucidPlan& plan, const FrameFa
     if (now[i] != then[i])
       return out.error("plan", "was made from another frame, whose ", nameOf(static_cast<FramePart>(i)),
                        " differs");
-  if (c.outputFormat != VK_FORMAT_UNDEFINED && c.outputFormat != facts.frame.outputFormat)
+  if (c.desc.outputFormat != VK_FORMAT_UNDEFINED && c.desc.outputFormat != facts.frame.outputFormat)
     return out.error("outputFormat",
                      "is not PellucidContextDesc::outputFormat, which the context writes alone");
-  if (facts.frame.lightTableCount > 0 && !c.lightTables)
+  if (facts.frame.lightTableCount > 0 && !c.desc.lightTables)
     return out.error(
         "lightTableCount",
         "is above 0, but PellucidContextDesc::lightTables is 0: the pipelines do not look for any");
   for (uint32_t i = 0; i < facts.frame.shadowMapCount; ++i)
     if (const uint32_t layer = facts.frame.shadowMaps[i].layer;
-        layer != 0 && c.shadowViewType != VK_IMAGE_VIEW_TYPE_2D_ARRAY)
+        layer != 0 && c.desc.shadowViewType != VK_IMAGE_VIEW_TYPE_2D_ARRAY)
       return out.error(Field("shadowMaps[", i, "].layer"), "is ", layer,
                        ", but PellucidContextDesc::shadowViewType is 2D");
   for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
     const PellucidDispatch& d = plan.dispatches[i];
     if (d.pipeline >= kPipelineCount || c.pipelines[d.pipeline] == VK_NULL_HANDLE)
-      return out.error("plan", "needs pipeline ", pellucidPipelineName(d.pipeline),
-                       ", which PellucidContextDesc::uses leaves out");
+      return out.error(
+          "plan", "needs pipeline ", pellucidPipelineName(d.pipeline),
+          c.desc.deferPipelines
+              ? ", which pellucidCreatePipelines has not made or PellucidContextDesc::uses leaves out"
+              : ", which PellucidContextDesc::uses leaves out");
     for (uint32_t b = 0; b < d.bindingCount; ++b) {
       const uint32_t resource = d.bindings[b].resource;
       const uint32_t slot = d.bindings[b].binding - PELLUCID_BINDING_SHADOW_IMAGES;  // huge before the first
       if (resource == PELLUCID_RESOURCE_FRONT_DEPTH && slot < PELLUCID_SHADOW_IMAGE_COUNT &&
-          c.shadowViewType == VK_IMAGE_VIEW_TYPE_2D_ARRAY)
+          c.desc.shadowViewType == VK_IMAGE_VIEW_TYPE_2D_ARRAY)
         return out.error("shadowImages",
                          "has no view, but PellucidContextDesc::shadowViewType is 2D_ARRAY, and passes bind "
                          "one such view even where no light has a map");

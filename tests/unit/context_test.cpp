@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <new>
+#include <set>
 #include <thread>
 #include <vector>
 
@@ -156,6 +157,45 @@ TEST(ContextRecording, FramesThatAreNotValidAreRefused) {
     EXPECT_EQ(commands.dispatches, 0u);
   }
   pellucidDestroyContext(context);
+}
+
+// A context that defers has the pipelines of the plans that it was asked for, once each.
+TEST(ContextPipelines, AreMadeForPlans) {
+  NullDevice device;
+  Sentences sentences;
+  PellucidContextDesc desc = descOf(device, sentences);
+  desc.deferPipelines = 1;
+  PellucidContext* context = nullptr;
+  ASSERT_EQ(pellucidCreateContext(&desc, &context), PELLUCID_OK);
+  const int layouts = device.live;
+  Frame f;
+  for (PellucidImage& image : f.frame.transients) image = Frame::view();
+  f.frame.features = PELLUCID_FEATURE_DIFFUSION;
+  const PellucidPlan plan = f.plan();
+  std::vector<unsigned char> constants(plan.constantsSize);
+  NullCommands commands;
+  commands.sliceSize = plan.constantsSize;
+  const PellucidConstantsSlice slice{reinterpret_cast<VkBuffer>(uintptr_t{1}), 0, plan.constantsSize,
+                                     constants.data()};
+  EXPECT_EQ(pellucidRecordPlan(context, commands.handle(), &plan, &f.frame, &slice),
+            PELLUCID_ERROR_INVALID_ARGUMENT);
+  EXPECT_NE(sentences.last.find("which pellucidCreatePipelines has not made"), std::string::npos)
+      << sentences.last;
+  EXPECT_EQ(commands.dispatches, 0u);
+  std::set<uint32_t> pipelines;
+  for (uint32_t i = 0; i < plan.dispatchCount; ++i) pipelines.insert(plan.dispatches[i].pipeline);
+  for (int times = 0; times < 2; ++times) {
+    EXPECT_EQ(pellucidCreatePipelines(context, &plan), PELLUCID_OK);
+    EXPECT_EQ(device.live, layouts + static_cast<int>(pipelines.size()));
+  }
+  EXPECT_EQ(pellucidRecordPlan(context, commands.handle(), &plan, &f.frame, &slice), PELLUCID_OK);
+  EXPECT_EQ(commands.dispatches, plan.dispatchCount);
+  EXPECT_EQ(pellucidCreatePipelines(nullptr, &plan), PELLUCID_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(pellucidCreatePipelines(context, nullptr), PELLUCID_ERROR_INVALID_ARGUMENT);
+  pellucidDestroyContext(context);
+  desc.deferPipelines = 2;
+  EXPECT_EQ(pellucidCreateContext(&desc, &context), PELLUCID_ERROR_INVALID_ARGUMENT);
+  EXPECT_NE(sentences.last.find("deferPipelines is 2"), std::string::npos) << sentences.last;
 }
 
 // Frames of different kinds, so that threads run different code at once.

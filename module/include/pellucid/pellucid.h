@@ -299,6 +299,11 @@ enum {
   PELLUCID_WRITES = VK_ACCESS_SHADER_WRITE_BIT            /* to the output. Transients and history: both */
 };
 
+/* Makes those pipelines that the plan dispatches and a context with desc.deferPipelines lacks, of those of desc.uses: for tools,
+ * which render few frames. desc.pipelineCache and parallelFor must be alive still. No other thread uses the context at the
+ * same time. On failure the message callback has the sentence, and pipelines made so far stay. */
+PELLUCID_API PellucidResult pellucidCreatePipelines(PellucidContext* context, const PellucidPlan* plan);
+
 /* Writes the slice and records every dispatch and the barriers between them. Before: what wrote the inputs is visible to
  * PELLUCID_STAGES / PELLUCID_READS, and the output and transients are free for PELLUCID_WRITES. After: `output` was written
  * by PELLUCID_STAGES / PELLUCID_WRITES.

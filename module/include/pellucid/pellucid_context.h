@@ -64,7 +64,8 @@ typedef struct PellucidContextDesc {
                                      a library built with PELLUCID_GBUFFER_DECODE, whose file decodes */
   uint32_t lightTables;           /* 1: frames may have light tables, which pipelines without them need not look for; 0
                                      (default): none has. A specialization constant */
-  uint32_t reserved;              /* 0 */
+  uint32_t deferPipelines;        /* 1: creation makes no pipelines, pellucidCreatePipelines makes those of a plan; 0 (default):
+                                     creation makes all of `uses` */
 } PellucidContextDesc;
 
 /* The defaults, written into a struct of that many bytes; pellucidInit* without it have the header's size. */
@@ -72,8 +73,8 @@ PELLUCID_API void pellucidInitContextDescSized(PellucidContextDesc* desc, size_t
 /* The defaults. */
 static inline void pellucidInitContextDesc(PellucidContextDesc* d) { pellucidInitContextDescSized(d, sizeof *d); }
 
-/* Builds the pipelines of desc.uses. The context is immutable: any thread may use it. On failure *context is
- * NULL and the message callback has the sentence. */
+/* Builds the pipelines of desc.uses. The context is immutable but for pellucidCreatePipelines: any thread may use it. On
+ * failure *context is NULL and the message callback has the sentence. */
 PELLUCID_API PellucidResult pellucidCreateContext(const PellucidContextDesc* desc, PellucidContext** context);
 
 /* The device must have finished with commands recorded through the context. NULL is allowed. */
