@@ -139,7 +139,7 @@ Json describeBinding(Compiler& compiler, const std::string& pipeline, const Reso
   return json;
 }
 
-// What the shader accesses, by number. Unused bindings of other passes share numbers with these.
+// Bindings that the shader accesses, by number. Unused bindings of other passes share numbers with these.
 Json describeBindings(Compiler& compiler, const std::string& pipeline, ShaderLanguage language) {
   const spirv_cross::ShaderResources all =
       compiler.get_shader_resources(compiler.get_active_interface_variables());

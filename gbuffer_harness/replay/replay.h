@@ -82,7 +82,7 @@ public:
   // The slice as the device left it: with what it decided about indirect dispatches.
   const void* constants() const;
   const std::string& name() const { return name_; }  // of the capture
-  // What the device decided in the last recording, which it has finished.
+  // The device's decisions in the last recording, which is finished.
   PellucidStatistics statistics() const;
   // The words of that recording's tile lists (compute/frame/tile_words.glsl); none in plans without.
   std::vector<std::uint32_t> tileWords() const;

@@ -39,8 +39,8 @@ struct TileMap {
   std::array<std::uint64_t, kTileClasses> counts() const;  // of tiles, by class
 };
 
-// Of the last recording, which the device has finished. Throws InputError with the reason where the frame
-// has no tile lists.
+// The map of the last recording, which the device has finished. Throws InputError with the reason where the
+// frame has no tile lists.
 TileMap readTileMap(const FrameRun& run);
 
 // Draws the classes over a picture of the frame, `width` x `height` pixels of three bytes: each tile's first

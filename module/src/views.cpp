@@ -88,7 +88,7 @@ Field fieldOf(uint32_t resource) {
 
 bool isOfScreen(uint32_t resource) { return resource <= PELLUCID_RESOURCE_OUTPUT; }
 
-// Of screen-sized images pixels outside the rect are neither read nor written.
+// Pixels of screen-sized images outside the rect are neither read nor written.
 bool rectsMeet(const PellucidFrame& a, const PellucidFrame& b) {
   const Rect r = renderRect(a), s = renderRect(b);
   return r.x < s.x + s.width && s.x < r.x + r.width && r.y < s.y + s.height && s.y < r.y + r.height;

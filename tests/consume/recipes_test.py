@@ -17,7 +17,7 @@ sys.dont_write_bytecode = True
 ROOT, VERSION, CMAKE, GENERATOR = sys.argv[1:5]
 PORT = os.path.join(ROOT, "packaging", "vcpkg", "pellucid")
 
-# What the port calls. The functions that only move installed files have nothing to do.
+# Functions that the port calls. The functions that only move installed files have nothing to do.
 VCPKG = """cmake_minimum_required(VERSION 3.25)
 function(vcpkg_check_features)
   cmake_parse_arguments(A "" "OUT_FEATURE_OPTIONS" "FEATURES" ${ARGN})

@@ -29,7 +29,7 @@ Color colorAt(const Pixels& picture, int x, int y) {
   return {pixel[0], pixel[1], pixel[2]};
 }
 
-// Of a tile without material that no group reaches, and of one with all passes.
+// Colors of a tile without material that no group reaches, and of one with all passes.
 constexpr Color kBlack = {0, 0, 0}, kGreen = {0, 158, 115};
 
 TEST_F(StatisticsCommand, AreATableAndAPicture) {

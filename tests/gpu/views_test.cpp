@@ -95,7 +95,7 @@ TEST_F(ViewsTest, EyesHaveTheSameBitsTogether) {
 
 const Capture& left() { return eye(0); }
 const Capture& right() { return eye(1); }
-// Of another size, and without albedo.
+// A capture of another size, without albedo.
 const Capture& slab() {
   static const Capture made = [] {
     Capture c = flatCapture(24, 16);

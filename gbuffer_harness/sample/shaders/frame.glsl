@@ -1,4 +1,4 @@
-// What all shaders share; Uniforms and DrawConstants of renderer.cpp.
+// Declarations that all shaders share; Uniforms and DrawConstants of renderer.cpp.
 #ifndef SAMPLE_FRAME_GLSL
 #define SAMPLE_FRAME_GLSL
 

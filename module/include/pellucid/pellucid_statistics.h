@@ -1,4 +1,4 @@
-/* What the device decided in a frame that it has finished: groups that ran, tiles with material, gathered
+/* The decisions of the device in a frame that it has finished: groups that ran, tiles with material, gathered
  * light.
  *
  * The indirect commands of a plan lie in the caller's constants slice, where the device counted. Reading them
@@ -54,7 +54,7 @@ PELLUCID_API void pellucidInitStatisticsSized(PellucidStatistics* statistics, si
 static inline void pellucidInitStatistics(PellucidStatistics* s) { pellucidInitStatisticsSized(s, sizeof *s); }
 
 /* Reads what the device left in the slice of the last recording of `plan`. Pure. At most 12 bytes a dispatch are read, so that
- * the memory need not be HOST_CACHED. Of `constants`, `mapped` and `size` are used. `fn`, which may be NULL, gets a sentence for
+ * the memory need not be HOST_CACHED. `mapped` and `size` of `constants` are used. `fn`, which may be NULL, gets a sentence for
  * each error; *statistics then stays as it was. Errors:
  * - INVALID_ARGUMENT: a null pointer, or a slice with more groups than there may be, which is another plan's;
  * - BUFFER_TOO_SMALL: constants->size is below plan->constantsSize;

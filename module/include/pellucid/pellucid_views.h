@@ -27,9 +27,10 @@ typedef struct PellucidView {
  * with as many barriers as the plan with the most has. Stages, accesses and what is left changed are those of
  * pellucidRecordPlan. 0 views: nothing is recorded.
  *
- * What one view writes, no other view of the recording uses: each has transients, a history and a slice of
- * its own, and transients of two views must not alias. Outputs, and inputs that are written in place, may be
- * one image where the frames' renderRects have no pixel in common. All other inputs may be shared.
+ * No other view of the recording uses an image that one view writes: each has transients, a history and a
+ * slice of its own, and transients of two views must not alias. Outputs, and inputs that are written in
+ * place, may be one image where the frames' renderRects have no pixel in common. All other inputs may be
+ * shared.
  *
  * PELLUCID_ERROR_INVALID_ARGUMENT for one image view that breaks this rule, and for slices of one buffer, or
  * mapped addresses, that overlap in what the plans need of them. Handles are compared: two image views of one
