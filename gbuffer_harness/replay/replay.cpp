@@ -135,7 +135,9 @@ Context::Context(Device& device, const std::function<void(PellucidContextDesc&)>
   desc.message = &appendError;
   desc.messageUser = &message_;
   if (device.writesWithoutFormat()) desc.outputFormat = VK_FORMAT_UNDEFINED;
+  // Called where there are pipelines to make.
   desc.parallelFor = [](void*, uint32_t count, void (*job)(void*, uint32_t), void* data) {
+    const ProgressLine progress("compiling shaders");
     parallelRows(static_cast<int>(count), 0, [&](int i) { job(data, static_cast<uint32_t>(i)); });
   };
   if (change) change(desc);
@@ -148,7 +150,6 @@ Context::~Context() { pellucidDestroyContext(context_); }
 
 void Context::prepare(const PellucidPlan& plan) const {
   const std::scoped_lock lock(mutex_);
-  const ProgressLine progress("compiling shaders");
   const PellucidResult result = pellucidCreatePipelines(context_, &plan);
   if (result != PELLUCID_OK) throw DeviceError(std::string(pellucidResultName(result)) + ": " + message_);
 }

@@ -225,7 +225,7 @@ TEST_F(ViewsTest, LayersOfArraysHaveTheBitsOfImages) {
   std::vector<std::unique_ptr<InputImages>> shadows;
   for (size_t i = 0; i < 2; ++i) {
     makeFrame(eye(i), materials(eye(i)), s, data[i]);
-    // Of which the shadow maps stay.
+    // The shadow maps of these images stay in the frame.
     shadows.push_back(std::make_unique<InputImages>(device(), eye(i), s));
     shadows[i]->bind(data[i]);
   }

@@ -49,6 +49,16 @@ PellucidContextDesc descOf(NullDevice& device, Sentences& sentences) {
   return desc;
 }
 
+// Records on a null device, with a slice of the plan's size that keeps its content.
+PellucidResult recordOnNull(const PellucidContext* context, NullCommands& commands, const PellucidPlan& plan,
+                            const PellucidFrame& frame, std::vector<unsigned char>& constants) {
+  constants.resize(plan.constantsSize);
+  commands.sliceSize = plan.constantsSize;
+  const PellucidConstantsSlice slice{reinterpret_cast<VkBuffer>(uintptr_t{1}), 0, plan.constantsSize,
+                                     constants.data()};
+  return pellucidRecordPlan(context, commands.handle(), &plan, &frame, &slice);
+}
+
 TEST(ContextMemory, EveryFailingAllocationIsReportedAndNothingLeaks) {
   int allocations = 0;
   for (int n = 0;; ++n) {
@@ -146,13 +156,9 @@ TEST(ContextRecording, FramesThatAreNotValidAreRefused) {
     ASSERT_EQ(f.problems(), "");
     const PellucidPlan plan = f.plan();
     damage(f);
-    std::vector<unsigned char> constants(plan.constantsSize);
+    std::vector<unsigned char> constants;
     NullCommands commands;
-    commands.sliceSize = plan.constantsSize;
-    const PellucidConstantsSlice slice{reinterpret_cast<VkBuffer>(uintptr_t{1}), 0, plan.constantsSize,
-                                       constants.data()};
-    EXPECT_EQ(pellucidRecordPlan(context, commands.handle(), &plan, &f.frame, &slice),
-              PELLUCID_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(recordOnNull(context, commands, plan, f.frame, constants), PELLUCID_ERROR_INVALID_ARGUMENT);
     EXPECT_NE(sentences.last.find(words), std::string::npos) << sentences.last;
     EXPECT_EQ(commands.dispatches, 0u);
   }
@@ -172,13 +178,9 @@ TEST(ContextPipelines, AreMadeForPlans) {
   for (PellucidImage& image : f.frame.transients) image = Frame::view();
   f.frame.features = PELLUCID_FEATURE_DIFFUSION;
   const PellucidPlan plan = f.plan();
-  std::vector<unsigned char> constants(plan.constantsSize);
+  std::vector<unsigned char> constants;
   NullCommands commands;
-  commands.sliceSize = plan.constantsSize;
-  const PellucidConstantsSlice slice{reinterpret_cast<VkBuffer>(uintptr_t{1}), 0, plan.constantsSize,
-                                     constants.data()};
-  EXPECT_EQ(pellucidRecordPlan(context, commands.handle(), &plan, &f.frame, &slice),
-            PELLUCID_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(recordOnNull(context, commands, plan, f.frame, constants), PELLUCID_ERROR_INVALID_ARGUMENT);
   EXPECT_NE(sentences.last.find("which pellucidCreatePipelines has not made"), std::string::npos)
       << sentences.last;
   EXPECT_EQ(commands.dispatches, 0u);
@@ -188,7 +190,7 @@ TEST(ContextPipelines, AreMadeForPlans) {
     EXPECT_EQ(pellucidCreatePipelines(context, &plan), PELLUCID_OK);
     EXPECT_EQ(device.live, layouts + static_cast<int>(pipelines.size()));
   }
-  EXPECT_EQ(pellucidRecordPlan(context, commands.handle(), &plan, &f.frame, &slice), PELLUCID_OK);
+  EXPECT_EQ(recordOnNull(context, commands, plan, f.frame, constants), PELLUCID_OK);
   EXPECT_EQ(commands.dispatches, plan.dispatchCount);
   EXPECT_EQ(pellucidCreatePipelines(nullptr, &plan), PELLUCID_ERROR_INVALID_ARGUMENT);
   EXPECT_EQ(pellucidCreatePipelines(context, nullptr), PELLUCID_ERROR_INVALID_ARGUMENT);
@@ -226,13 +228,8 @@ std::string record(const PellucidContext* context, uint32_t kind, Recorded* out)
   if (pellucidGetImageNeeds(&f.frame, &count, needs) != PELLUCID_OK) return "no needs";
   PellucidPlan plan;
   if (pellucidBuildPlan(&f.frame, nullptr, &plan) != PELLUCID_OK) return "no plan";
-  out->constants.resize(plan.constantsSize);
   NullCommands commands;
-  commands.sliceSize = plan.constantsSize;
-  const PellucidConstantsSlice slice{reinterpret_cast<VkBuffer>(uintptr_t{1}), 0, plan.constantsSize,
-                                     out->constants.data()};
-  if (pellucidRecordPlan(context, commands.handle(), &plan, &f.frame, &slice) != PELLUCID_OK)
-    return "not recorded";
+  if (recordOnNull(context, commands, plan, f.frame, out->constants) != PELLUCID_OK) return "not recorded";
   out->dispatches = commands.dispatches;
   size_t size = 0;
   pellucidPlanToJson(&plan, nullptr, &size);

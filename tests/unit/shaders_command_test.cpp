@@ -271,7 +271,7 @@ TEST(ShadersCommand, PlansBindWhatIsDescribed) {
       {"readOnlyStorageBuffer", VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
       {"sampledImage", VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
       {"storageImage", VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}};
-  // Where the frame has all of them; nothing stands in.
+  // The frame has all of these images, so that none stands in for another.
   static const std::map<std::string, uint32_t> inputs = {{"frontDepthImage", PELLUCID_RESOURCE_FRONT_DEPTH},
                                                          {"backDepthImage", PELLUCID_RESOURCE_BACK_DEPTH},
                                                          {"normalImage", PELLUCID_RESOURCE_NORMAL},
