@@ -23,6 +23,8 @@ namespace pellucid::harness {
 
 namespace {
 
+bool isDown(unsigned char key) { return ImGui::GetIO().KeysDown[key]; }
+
 // Dear ImGui shows what a click did in the frames after it.
 constexpr int kFramesAfterInput = 3;
 constexpr VkFormat kScreenFormat = VK_FORMAT_R8G8B8A8_UNORM;
@@ -219,12 +221,12 @@ private:
       result.shift = io.KeyShift;
     }
     if (io.WantCaptureKeyboard) return result;
-    result.forward = io.KeysDown['W'];
-    result.back = io.KeysDown['S'];
-    result.stepLeft = io.KeysDown['A'];
-    result.stepRight = io.KeysDown['D'];
-    result.up = io.KeysDown['E'];
-    result.down = io.KeysDown['Q'];
+    result.forward = isDown('W');
+    result.back = isDown('S');
+    result.stepLeft = isDown('A');
+    result.stepRight = isDown('D');
+    result.up = isDown('E');
+    result.down = isDown('Q');
     result.seconds = std::min(io.DeltaTime, 0.1f);  // a slow frame is no leap
     return result;
   }
@@ -327,7 +329,7 @@ Changes Application::askForColor() {
   Changes changes;
   changes.frame = drawColorQuestion(color, scene_ + 1, test.scenes.size(), static_cast<float>(width_),
                                     static_cast<float>(height_));
-  const bool down = ImGui::GetIO().KeysDown[' '], pressed = down && !spaceDown_;
+  const bool down = isDown(' '), pressed = down && !spaceDown_;
   spaceDown_ = down;
   if (!pressed) return changes;
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - sceneBegin_;

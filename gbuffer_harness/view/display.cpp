@@ -37,8 +37,7 @@ std::optional<Texel> texelAt(const ScreenRect& picture, int width, int height, f
 }
 
 DisplayPass::DisplayPass(Device& device, const RenderTarget& target)
-    : device_(device),
-      white_(device, 1, 1, VK_FORMAT_R32G32B32A32_SFLOAT),
+    : white_(device, 1, 1, VK_FORMAT_R32G32B32A32_SFLOAT),
       sampler_(device),
       layout_(device, layoutBindings(), {VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof(Push)}),
       pipeline_(device) {

@@ -50,7 +50,6 @@ private:
   void draw(VkCommandBuffer commandBuffer, const ViewFrames& frames, Shown shown, const Push& push,
             const ScreenRect& clip) const;
 
-  Device& device_;
   GpuImage white_;  // of one texel, for what a frame does not have
   Owned<VkSampler, vkDestroySampler> sampler_;
   PushLayout layout_;
