@@ -6,7 +6,7 @@
 #include "common/device.h"
 #include "common/gpu_image.h"
 #include "raster/draw.h"
-#include "raster/pixel_pass.h"
+#include "common/pixel_pass.h"
 
 namespace pellucid::harness {
 

@@ -5,7 +5,7 @@
 
 #include "raster/front.h"
 #include "raster/irradiance.h"
-#include "raster/pixel_pass.h"
+#include "common/pixel_pass.h"
 
 namespace pellucid::harness {
 
