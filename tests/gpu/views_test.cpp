@@ -125,7 +125,8 @@ constexpr Kind kKinds[] = {
     {"reuse", left, [](ReplaySettings& s) { s.reuse = PELLUCID_REUSE_ALTERNATE; }, true},
     {"reuse without a gather", right,
      [](ReplaySettings& s) { s.reuse = PELLUCID_REUSE_ALTERNATE, s.translucency.gatherSamples = 0; }, true},
-    {"cells of the engine's", left, [](ReplaySettings& s) { s.indirectDispatches = PELLUCID_INDIRECT_CELLS; }},
+    {"cells of the engine's", left,
+     [](ReplaySettings& s) { s.indirectDispatches = PELLUCID_INDIRECT_CELLS; }},
     {"slab", slab, [](ReplaySettings&) {}},
     {"nothing to do", slab, [](ReplaySettings& s) { s.features = 0, s.aliasOutput = true; }, false, true}};
 

@@ -227,7 +227,8 @@ TEST(Plan, ImagesBesideMapsCount) {
   EXPECT_STREQ(plan.dispatches[2].name, "base level");
 }
 
-// The dispatch of entry points has room for all images of four lights, so that the diffusion's last dispatch adds their light.
+// The dispatch of entry points has room for all images of four lights, so that the diffusion's last dispatch
+// adds their light.
 TEST(Plan, FourGatheredLightsWithAllImagesShareADispatch) {
   for (const uint32_t lights : {4u, 5u}) {
     SCOPED_TRACE(lights);
@@ -467,7 +468,8 @@ TEST(Plan, ImageNeedsCoverThePlan) {
 
 // Memory of an image may serve another from the next barrier on, not from the next dispatch.
 TEST(Plan, ImagesAreInUseFromBarrierToBarrier) {
-  for (const uint32_t indirect : {PELLUCID_INDIRECT_NONE, PELLUCID_INDIRECT_MATERIAL, PELLUCID_INDIRECT_CELLS}) {
+  for (const uint32_t indirect :
+       {PELLUCID_INDIRECT_NONE, PELLUCID_INDIRECT_MATERIAL, PELLUCID_INDIRECT_CELLS}) {
     Frame f;
     f.frame.indirectDispatches = indirect;
     f.frame.gatherSamples = 8;
