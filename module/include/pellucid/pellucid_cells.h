@@ -9,8 +9,8 @@
  * - words 0 and 1 of a block have a bit for each cell of PELLUCID_CELL_PIXELS a side: bit 8 * (row % 4) + column of word
  *   row / 4, for rows and columns 0..7. The bit is set where a pixel of the rect has a material;
  * - words 2 and 3 are the bits of two floats, the nearest and the farthest planar distance of the surfaces that the
- *   block's pixels with material show, scene units: 0 <= nearest <= farthest <= 1e9. Farthest 0: no surface. The two
- *   words may hold anything where PellucidCells::distances is 0.
+ *   block's pixels with material show, scene units: 0 <= nearest <= farthest <= 1e9. Farthest 0, with any nearest: no
+ *   surface. The two words may hold anything where PellucidCells::distances is 0.
  * compute/lib/cell_words.glsl has the places and the bits.
  *
  * Words may say more than there is: more bits, and a wider interval, cost time and change no pixel. Pixels of a cell
@@ -21,8 +21,8 @@
  * PellucidImageNeed::lastDispatch, the image's memory is in use.
  *
  * Writing the constants (pellucidRecordPlan, pellucidRecordViews, pellucidWriteConstants) empties the lists, in place of
- * "find cells". So commands that run again need constants that were written again: without, their pixels are undefined,
- * which neither this library nor Vulkan's validation sees. pellucid.h does not include this header.
+ * "find cells". Commands that run again without new constants leave undefined pixels, which neither this library nor
+ * Vulkan's validation sees. pellucid.h does not include this header.
  */
 #ifndef PELLUCID_CELLS_H
 #define PELLUCID_CELLS_H
