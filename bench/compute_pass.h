@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "common/device.h"
+#include "common/push_layout.h"
 #include "pellucid/pellucid.h"
-#include "raster/pipeline.h"
 
 namespace pellucid::bench {
 

@@ -123,4 +123,12 @@ inline std::vector<std::string> names(const PellucidPlan& plan) {
   return result;
 }
 
+inline bool skips(const PellucidPlan& plan, const std::string& what, const std::string& reason,
+                  uint32_t count = 1) {
+  for (uint32_t i = 0; i < plan.skipCount; ++i)
+    if (plan.skips[i].what == what && plan.skips[i].reason == reason && plan.skips[i].count == count)
+      return true;
+  return false;
+}
+
 }  // namespace pellucid::test

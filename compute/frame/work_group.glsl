@@ -22,16 +22,16 @@ uvec2 workGroup(uint list) { return goesByLists() ? unpackGroup(listedWord(list)
 // first one.
 bool isNearMaterial(ivec2 pixel) {
   // Levels have a border beyond the image, which counts with the nearest block.
-  ivec2 block = clamp((pixel - firstBlockPixel()) >> kBlockShift, ivec2(0), ivec2(frame.blocks.xy) - 1);
+  ivec2 block = clamp(blockOfPixel(pixel - firstBlockPixel()), ivec2(0), ivec2(frame.blocks.xy) - 1);
   return tileWord(frame.blocks.z + uint(block.y) * frame.blocks.x + uint(block.x)) != 0u;
 }
 
 // True where a pixel's cell of 8 x 8 has material.
 bool isInCell(ivec2 pixel) {
-  ivec2 at = pixel - firstBlockPixel(), block = at >> kBlockShift;
+  ivec2 at = pixel - firstBlockPixel(), block = blockOfPixel(at);
   if (!contains(ivec4(0, 0, frame.blocks.xy), block)) return false;
-  ivec2 cell = (at & (PELLUCID_BLOCK - 1)) >> kCellShift;
-  return (tileWord(blockWord(uvec2(block)) + uint(cell.y >> 2)) >> (8 * (cell.y & 3) + cell.x) & 1u) != 0u;
+  ivec2 cell = cellOfPixel(at);
+  return (tileWord(blockWord(uvec2(block)) + wordOfCell(cell)) & bitOfCell(cell)) != 0u;
 }
 
 #endif

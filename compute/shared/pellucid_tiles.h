@@ -20,6 +20,12 @@
 #define PELLUCID_ENTRY_GROUP_WORDS 128 // a bit for each of a map's groups of entry points, at most 64 x 64
 #define PELLUCID_BLOCK_WORDS 4 // bits of cells' rows 0 to 3 and 4 to 7; bits of the nearest and farthest planar distance
 
+// A listed group is a word: its column, a flag, and its row; of entry points its column, from bit 8 on its row, and its map.
+#define PELLUCID_GROUP_COLUMN 0x7FFFu
+#define PELLUCID_GROUP_WHOLE 0x8000u // all that the group reads of the pass before has been written
+#define PELLUCID_GROUP_ROW_SHIFT 16
+#define PELLUCID_GROUP_MAP_SHIFT 16
+
 #ifdef __cplusplus
 namespace pellucid::shared {
 #endif

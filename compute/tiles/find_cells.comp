@@ -36,9 +36,8 @@ void main() {
     [[unroll]] for (int i = 0; i < kPixels; ++i)
       stored[i] = texelFetch(frontDepthImage, withinRect(first + pixelInBlock(i)), 0).x;
   [[unroll]] for (int i = 0; i < kPixels; ++i) {
-    ivec2 cell = pixelInBlock(i) >> kCellShift;
     if (values[i] == 0u) continue;
-    own[i / (kPixels / 2)] |= 1u << (8 * (cell.y & 3) + cell.x);
+    own[i / (kPixels / 2)] |= bitOfCell(cellOfPixel(pixelInBlock(i)));
     float front = pass.value.x != 0u ? frontDistanceOf(stored[i]) : -1.0;
     if (!(front > 0.0)) continue;
     least = min(least, front);

@@ -45,7 +45,10 @@ const Names<PellucidReuse> kReuse = {{"none", PELLUCID_REUSE_NONE},
                                      {"coherence", PELLUCID_REUSE_COHERENCE}};
 const Names<PellucidIndirect> kIndirect = {{"none", PELLUCID_INDIRECT_NONE},
                                            {"material", PELLUCID_INDIRECT_MATERIAL},
-                                           {"light", PELLUCID_INDIRECT_LIGHT}};
+                                           {"light", PELLUCID_INDIRECT_LIGHT},
+                                           {"cells", PELLUCID_INDIRECT_CELLS}};
+const Names<CellWords> kCells = {
+    {"found", CellWords::Found}, {"more", CellWords::More}, {"all", CellWords::All}};
 // Whelan 2009, eqs. 4.4 and 4.5.
 const Names<std::array<float, 4>> kPolynomials = {{"quadratic", {2.14506f, -2.27844f, 0.595752f, 0}},
                                                   {"cubic", {-5.07621f, 7.75534f, -3.9017f, 0.650897f}}};
@@ -212,11 +215,14 @@ const std::map<std::string, Key> kKeys = {
         s.aliasOutput = lookUp(kBooleans, key, value);
       }}},
     {"indirect",
-     {"none|material|light: passes run everywhere, where the GPU finds material and light, where it finds "
-      "light",
+     {"none|material|light|cells: passes run everywhere, where the GPU finds material and light, where it "
+      "finds light, as material but with cells that the replayer finds in the engine's place",
       [](const auto& key, const auto& value, ReplaySettings& s) {
         s.indirectDispatches = lookUp(kIndirect, key, value);
       }}},
+    {"cells",
+     {"found|more|all: cells that indirect=cells hands in: those with material, others besides, all",
+      [](const auto& key, const auto& value, ReplaySettings& s) { s.cells = lookUp(kCells, key, value); }}},
     {"rect",
      {"x,y,width,height",
       [](const auto& key, const auto& value, ReplaySettings& s) {
@@ -351,6 +357,7 @@ std::string settingsJson(const ReplaySettings& s) {
                                  {"ambient", s.ambient ? "1" : "0"},
                                  {"alias", s.aliasOutput ? "1" : "0"},
                                  {"indirect", nameOf(kIndirect, s.indirectDispatches)},
+                                 {"cells", nameOf(kCells, s.cells)},
                                  {"rect", s.renderRect}};
   if (t.gatherSamples != PELLUCID_GATHER_BY_QUALITY) json["gather"] = t.gatherSamples;
   if (!t.minimumDotTable.empty()) json["minimum-dots"] = t.minimumDotTable;

@@ -5,8 +5,8 @@
 
 #include "common/device.h"
 #include "common/gpu_image.h"
+#include "common/pixel_pass.h"
 #include "raster/draw.h"
-#include "raster/pixel_pass.h"
 
 namespace pellucid::harness {
 

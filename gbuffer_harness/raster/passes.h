@@ -3,9 +3,9 @@
 
 #include <cstdint>
 
+#include "common/pixel_pass.h"
 #include "raster/front.h"
 #include "raster/irradiance.h"
-#include "raster/pixel_pass.h"
 
 namespace pellucid::harness {
 

@@ -19,6 +19,13 @@ enum class TransmittanceChoice {
   GaussiansAsPrinted
 };
 
+// Words that the replayer writes for PELLUCID_INDIRECT_CELLS.
+enum class CellWords {
+  Found,  // of the cells that have material
+  More,   // of others besides, and intervals that are wider than need be
+  All     // of every cell, and of all distances
+};
+
 struct ReplaySettings {
   uint32_t features = PELLUCID_FEATURE_TRANSLUCENCY | PELLUCID_FEATURE_DIFFUSION;
   TranslucencySettings translucency;
@@ -39,6 +46,7 @@ struct ReplaySettings {
   float targetError = 0, nearestDistance = 0;  // see PellucidFrame
   bool aliasOutput = false;                    // output is the irradiance image; ignored for debug views
   PellucidIndirect indirectDispatches = PELLUCID_INDIRECT_MATERIAL;
+  CellWords cells = CellWords::Found;
   std::array<uint32_t, 4> renderRect = {0, 0, 0, 0};  // width 0: everything
 };
 

@@ -171,7 +171,10 @@ const Context& Contexts::of(const Capture& capture) {
 FrameRun::FrameRun(Device& device, const Context& context, const Capture& capture,
                    const std::vector<PellucidMaterial>& materials, const ReplaySettings& settings,
                    const FrameRun* previous)
-    : context_(context), name_(capture.name), plan_(std::make_unique<PellucidPlan>()) {
+    : context_(context),
+      name_(capture.name),
+      plan_(std::make_unique<PellucidPlan>()),
+      cellWords_(settings.cells) {
   makeFrame(capture, materials, settings, data_);
   images_ = std::make_unique<Images>(device, capture, settings, data_, nullptr,
                                      previous ? previous->images_.get() : nullptr, nullptr);
@@ -181,7 +184,10 @@ FrameRun::FrameRun(Device& device, const Context& context, const Capture& captur
 FrameRun::FrameRun(Device& device, const Context& context, const Capture& capture,
                    const std::vector<PellucidMaterial>& materials, const ReplaySettings& settings,
                    std::shared_ptr<const InputImages> inputs, const FrameRun* previous, ImagePool* pool)
-    : context_(context), name_(capture.name), plan_(std::make_unique<PellucidPlan>()) {
+    : context_(context),
+      name_(capture.name),
+      plan_(std::make_unique<PellucidPlan>()),
+      cellWords_(settings.cells) {
   makeFrame(capture, inputs->shape(), materials, settings, data_);
   if (!data_.frame.separateOutput)
     throw InputError(name_, "aliasOutput", "the inputs are other frames', too");
@@ -199,6 +205,8 @@ void FrameRun::plan(Device& device, const PellucidPlan* previous) {
       std::make_unique<HostBuffer>(device, plan_->constantsSize,
                                    VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
                                        VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
+  requireOk(pellucidGetCells(&frame, &cells_), frame, name_);
+  if (cells_.blocks[0] > 0) cellPass_ = std::make_unique<CellPass>(device);
 }
 
 FrameRun::~FrameRun() = default;
@@ -219,7 +227,10 @@ void FrameRun::record(VkCommandBuffer commandBuffer, const PellucidPlan& plan) c
 
 void FrameRun::recordTogether(VkCommandBuffer commandBuffer, const std::vector<const FrameRun*>& runs) {
   std::vector<PellucidConstantsSlice> slices;
-  for (const FrameRun* run : runs) slices.push_back(run->slice());
+  for (const FrameRun* run : runs) {
+    slices.push_back(run->slice());
+    run->recordCells(commandBuffer);
+  }
   std::vector<PellucidView> views;
   for (size_t i = 0; i < runs.size(); ++i)
     views.push_back({runs[i]->plan_.get(), &runs[i]->data_.frame, &slices[i]});
@@ -227,7 +238,14 @@ void FrameRun::recordTogether(VkCommandBuffer commandBuffer, const std::vector<c
                                                   static_cast<uint32_t>(views.size()), views.data()));
 }
 
-void FrameRun::record(VkCommandBuffer commandBuffer) const { record(commandBuffer, *plan_); }
+void FrameRun::record(VkCommandBuffer commandBuffer) const {
+  recordCells(commandBuffer);
+  record(commandBuffer, *plan_);
+}
+
+void FrameRun::recordCells(VkCommandBuffer commandBuffer) const {
+  if (cellPass_) cellPass_->record(commandBuffer, data_.frame, cells_, cellWords_);
+}
 
 PellucidPlan FrameRun::only(uint32_t dispatch) const {
   PellucidPlan single = *plan_;
@@ -307,6 +325,7 @@ ReplayResult Replayer::run(const Capture& capture, const std::vector<PellucidMat
     run.restoreIrradiance(capture);
     device_.run([&](VkCommandBuffer commandBuffer) {
       timestamps.reset(commandBuffer);
+      run.recordCells(commandBuffer);  // the engine's, which is no dispatch of the plan
       timestamps.mark(commandBuffer, 0);
       for (uint32_t i = 0; i < count; ++i) {
         run.record(commandBuffer, i);

@@ -10,6 +10,7 @@
 #include "common/device.h"
 #include "common/pool.h"
 #include "pellucid/pellucid_statistics.h"
+#include "replay/cell_pass.h"
 #include "replay/frame.h"
 #include "replay/inputs.h"
 
@@ -87,9 +88,11 @@ public:
   // The words of that recording's tile lists (compute/frame/tile_words.glsl); none in plans without.
   std::vector<std::uint32_t> tileWords() const;
 
-  void record(VkCommandBuffer commandBuffer) const;  // the whole plan
+  // The whole plan, after the words of cells that the frame takes from an engine.
+  void record(VkCommandBuffer commandBuffer) const;
   // The whole plans of several runs of one context, side by side.
   static void recordTogether(VkCommandBuffer commandBuffer, const std::vector<const FrameRun*>& runs);
+  void recordCells(VkCommandBuffer commandBuffer) const;                // these words alone
   void record(VkCommandBuffer commandBuffer, uint32_t dispatch) const;  // one dispatch of it, in its turn
   // One dispatch of it, also where the GPU would find nothing to do for it.
   void recordAlone(VkCommandBuffer commandBuffer, uint32_t dispatch) const;
@@ -126,6 +129,9 @@ private:
   std::unique_ptr<Images> images_;
   std::unique_ptr<PellucidPlan> plan_;  // too large for a stack
   std::unique_ptr<HostBuffer> constants_;
+  std::unique_ptr<CellPass> cellPass_;  // null where the frame takes no words
+  PellucidCells cells_{};
+  CellWords cellWords_;
 };
 
 struct DispatchTime {

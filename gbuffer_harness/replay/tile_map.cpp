@@ -12,12 +12,13 @@
 namespace pellucid::harness {
 namespace {
 
-// As compute/frame/tile_words.glsl packs groups.
 struct Group {
   int x, y;
 };
-Group groupIn(std::uint32_t word) { return {static_cast<int>(word & 0x7FFFu), static_cast<int>(word >> 16)}; }
-std::size_t mapIn(std::uint32_t word) { return word >> 16; }
+Group groupIn(std::uint32_t word) {
+  return {static_cast<int>(word & PELLUCID_GROUP_COLUMN), static_cast<int>(word >> PELLUCID_GROUP_ROW_SHIFT)};
+}
+std::size_t mapIn(std::uint32_t word) { return word >> PELLUCID_GROUP_MAP_SHIFT; }
 
 const PellucidDispatch* dispatchOf(const PellucidPlan& plan, const char* name) {
   const auto* end = plan.dispatches + plan.dispatchCount;

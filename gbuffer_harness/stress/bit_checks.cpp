@@ -48,6 +48,17 @@ std::optional<Worst> alias(Subject& s) {
   return differentBits(s.output, s.renderer.render(other, *run, other.index), s.owned);
 }
 
+std::optional<Worst> engineCells(Subject& s) {
+  StressFrame other = s.frame;
+  const bool hands = s.frame.settings.indirectDispatches == PELLUCID_INDIRECT_CELLS;
+  other.settings.indirectDispatches = hands ? PELLUCID_INDIRECT_NONE : PELLUCID_INDIRECT_CELLS;
+  const std::unique_ptr<FrameRun> run = s.renderer.prepare(other);
+  PellucidCells cells{};
+  pellucidGetCells(hands ? &s.run->frame() : &run->frame(), &cells);
+  if (cells.blocks[0] == 0) return {};
+  return differentBits(s.output, s.renderer.render(other, *run, other.index), s.owned);
+}
+
 // Bits of `frame` with `change` made to each pixel that is not owned; none if all are owned.
 template <class Change>
 std::optional<Worst> withUnowned(Subject& s, const Change& change) {
@@ -169,6 +180,8 @@ std::span<const Check> bitChecks() {
       {"same-bits", "a second recording over other garbage has the same bits", "all", 0, 0, kBits, &sameBits},
       {"alias", "an output that is the irradiance has the bits of one that is not",
        "frames with dispatches, but for debug views", 0, 0, kBits, &alias},
+      {"engine-cells", "tile lists of cells that an engine hands in change no bit", "those with tile lists",
+       0, 0, kBits, &engineCells},
       {"unowned-pixels", "irradiance, normals and albedo of pixels that are not owned change no bit",
        "those with such pixels", 0, 0, kBits, &unownedPixels},
       {"unowned-depths", "depths of pixels that are not owned change no bit", "those with such pixels", 0, 0,

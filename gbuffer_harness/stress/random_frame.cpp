@@ -92,8 +92,10 @@ void randomSettings(Random& random, const View& view, const FrameLimits& limits,
   if (random.chance(0.1)) s.targetError = static_cast<float>(random.magnitude(0.001, 1));
   if (random.chance(0.3)) s.nearestDistance = nearestDistance(frame, view);
   s.aliasOutput = random.chance(0.3);
-  s.indirectDispatches = random.of({PELLUCID_INDIRECT_NONE, PELLUCID_INDIRECT_MATERIAL,
-                                    PELLUCID_INDIRECT_MATERIAL, PELLUCID_INDIRECT_LIGHT});
+  s.indirectDispatches =
+      random.of({PELLUCID_INDIRECT_NONE, PELLUCID_INDIRECT_MATERIAL, PELLUCID_INDIRECT_MATERIAL,
+                 PELLUCID_INDIRECT_LIGHT, PELLUCID_INDIRECT_CELLS});
+  s.cells = random.of({CellWords::Found, CellWords::More, CellWords::All});
   if (random.chance(0.1)) s.reuse = random.of({PELLUCID_REUSE_ALTERNATE, PELLUCID_REUSE_COHERENCE});
   // Views of lights need all in one dispatch.
   if (random.chance(0.08))

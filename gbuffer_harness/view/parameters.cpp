@@ -112,8 +112,9 @@ ParameterGroup quality() {
        bound(real("target-error", "target error",
                   "Above 0: the least quality of the diffusion whose relative RMSE stays below.", 0, 0.2f),
              FIELD(targetError)),
-       bound(choice("indirect", "indirect", "Passes run everywhere, where there is material, or light.",
-                    {"none", "material", "light"}),
+       bound(choice("indirect", "indirect",
+                    "Passes run everywhere, where there is material, light, or cells of the engine's.",
+                    {"none", "material", "light", "cells"}),
              FIELD(indirectDispatches))}};
 }
 

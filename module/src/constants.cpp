@@ -290,7 +290,7 @@ void putIndirect(const FrameFacts& facts, const PellucidPlan& plan, void* mapped
   for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
     const PellucidDispatch& d = plan.dispatches[i];
     if (!d.indirect) continue;
-    if (facts.stages.tiles) {  // all that is indirect: the GPU counts groups
+    if (facts.stages.tiles) {  // all that is indirect: the GPU counts groups, from 0 on
       put(mapped, d.indirectOffset, glm::uvec4(0, 1, 1, 0));
       continue;
     }

@@ -60,7 +60,7 @@ constexpr auto kFrameIntegers = std::to_array<IntegerDomain>({
     {FIELD(PellucidFrame, debugView), 0, PELLUCID_DEBUG_IRRADIANCE},
     {FIELD(PellucidFrame, quality), 0, kBestQuality},
     {FIELD(PellucidFrame, separateOutput), 0, 1},
-    {FIELD(PellucidFrame, indirectDispatches), 0, PELLUCID_INDIRECT_LIGHT},
+    {FIELD(PellucidFrame, indirectDispatches), 0, PELLUCID_INDIRECT_CELLS},
     {FIELD(PellucidFrame, materialShift), 0, 31},
     {FIELD(PellucidFrame, outputMode), 0, PELLUCID_OUTPUT_ADD},
     {FIELD(PellucidFrame, lightTableCount), 0, PELLUCID_MAX_LIGHT_TABLES},

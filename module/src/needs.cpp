@@ -71,7 +71,7 @@ PellucidResult imageNeeds(const FrameFacts& f, uint32_t* count, PellucidImageNee
                                                  : 0;
   for (uint32_t i = 0; i < *count && i < room; ++i) {
     const bool persistent = i == transients;
-    const bool tiles = stages.tiles && i + 1 == transients;
+    const bool tiles = stages.tiles && i == stages.tilesTransient();
     const bool texels = persistent ? stages.keepsProbes : i >= colors && !tiles;
     const Extent size = tiles    ? tilesExtent(f)
                         : texels ? texelExtent(f, persistent ? stages.pyramidImages() : i - colors)

@@ -70,8 +70,7 @@ void addSkips(PlanBuilder& b) {
            "no light comes through, nothing diffuses, and the output is the irradiance image");
   if (f.missesTarget) b.skip("targetError", "no quality is that exact");
   if (!f.stages.diffusion) return;
-  if (f.frame.indirectDispatches == PELLUCID_INDIRECT_MATERIAL && !f.stages.tiles)
-    b.skip("tile lists", whyNoTileLists(f));
+  if (asksForTileLists(f.frame) && !f.stages.tiles) b.skip("tile lists", whyNoTileLists(f));
   for (uint32_t i = 0; i < f.frame.materialCount; ++i)
     if (f.reach.pixelsPerMm * widestDeviation(f.material(i)) > levelDeviation(f.pyramid.coarsest))
       b.skip("diffusion radius", "wider than the pyramid holds");

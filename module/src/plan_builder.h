@@ -38,7 +38,7 @@ struct PlanBuilder {
   uint32_t entryPointsImage() const {
     return facts.stages.entriesApart() ? probesImage() + 1 : pyramidImage(kFirstLevel);
   }
-  uint32_t tilesImage() const { return kTransient0 + facts.stages.transients() - 1; }
+  uint32_t tilesImage() const { return kTransient0 + facts.stages.tilesTransient(); }
   uint32_t filteredProbesImage() const {
     return facts.stages.keepsProbes ? static_cast<uint32_t>(PELLUCID_RESOURCE_HISTORY) : entryPointsImage();
   }

@@ -10,11 +10,8 @@ void bindLists(PlanBuilder& b, PellucidDispatch* d) {
   b.constants(d, PELLUCID_BINDING_TILE_COMMANDS, layout.tileCommands);
 }
 
-}  // namespace
-
-void addTileLists(PlanBuilder& b) {
+void findCells(PlanBuilder& b, bool gathers) {
   const FrameFacts& f = b.facts;
-  const bool gathers = f.stages.gathered > 0;
   PellucidDispatch* find = b.dispatch("find cells", Pipeline::FindCells);
   find->groups[0] = f.tiles.blocks[0];
   find->groups[1] = f.tiles.blocks[1];
@@ -23,7 +20,14 @@ void addTileLists(PlanBuilder& b) {
   b.image(find, PELLUCID_BINDING_MATERIAL, PELLUCID_RESOURCE_MATERIAL, 1);
   b.image(find, PELLUCID_BINDING_FRONT_DEPTH, PELLUCID_RESOURCE_FRONT_DEPTH,
           gathers ? kUnknownDepthBytes : 0);
+}
 
+}  // namespace
+
+void addTileLists(PlanBuilder& b) {
+  const FrameFacts& f = b.facts;
+  const bool gathers = f.stages.gathered > 0;
+  if (f.frame.indirectDispatches == PELLUCID_INDIRECT_MATERIAL) findCells(b, gathers);
   PellucidDispatch* list = b.dispatch("list groups", Pipeline::ListGroups);
   b.decides();
   list->groups[0] = f.tiles.groups;

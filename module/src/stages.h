@@ -43,6 +43,7 @@ struct Stages {
     return pyramidImages() + (gathered > 0 ? 1 : 0) + (entriesApart() ? 1 : 0);
   }
   uint32_t transients() const { return colorTransients() + texelTransients() + (tiles ? 1 : 0); }
+  uint32_t tilesTransient() const { return transients() - 1; }  // with tiles
 };
 
 }  // namespace pellucid

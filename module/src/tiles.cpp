@@ -130,8 +130,7 @@ TileLists::TileLists(const FrameFacts& f, const Rect& rect, const GroupGrids& gr
 }
 
 const char* whyNoTileLists(const FrameFacts& f) {
-  if (f.frame.indirectDispatches != PELLUCID_INDIRECT_MATERIAL)
-    return "frame.indirectDispatches asks for none";
+  if (!asksForTileLists(f.frame)) return "frame.indirectDispatches asks for none";
   if (f.stages.history) return "frame.reuse keeps the light of pixels, all of which it writes";
   if (f.lights.count > kMostLightGroups || f.stages.gathered > 1) return "lights need several dispatches";
   for (const GroupGrid& grid : f.grids)

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 
+#include "pellucid/pellucid.h"
 #include "pyramid.h"
 #include "rect.h"
 #include "shared/pellucid_shared.h"
@@ -12,6 +13,12 @@
 namespace pellucid {
 
 struct FrameFacts;
+
+// True where passes are to run over lists of groups with material.
+inline bool asksForTileLists(const PellucidFrame& frame) {
+  return frame.indirectDispatches == PELLUCID_INDIRECT_MATERIAL ||
+         frame.indirectDispatches == PELLUCID_INDIRECT_CELLS;
+}
 
 // The groups of a pass. A group makes the part of the image that begins at `first` + its place * `step`,
 // `size` pixels; parts that others read are larger by as much as that takes.

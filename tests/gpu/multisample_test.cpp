@@ -5,11 +5,12 @@
 #include <cstdio>
 
 #include "capture/material.h"
+#include "common/barrier.h"
+#include "common/push_layout.h"
 #include "gpu_fixture.h"
 #include "kFillSamples.h"
 #include "kFillWholeSamples.h"
 #include "kResolveGbuffer.h"
-#include "raster/pipeline.h"
 #include "scene/scene.h"
 
 namespace {

@@ -81,6 +81,84 @@ TEST_F(TileLists, ChangeNoPixel) {
     }
 }
 
+// Device depths of the capture's camera in place of planar distances.
+Capture withDeviceDepth(Capture c) {
+  c.frontDepth.encoding = PELLUCID_DEPTH_DEVICE;
+  const Matrix& m = c.clipFromView;  // view z is negative in front of the eye
+  for (float& depth : c.frontDepth.image.data) {
+    const double z = -static_cast<double>(depth);
+    depth = static_cast<float>((m[10] * z + m[14]) / (m[11] * z + m[15]));
+  }
+  return c;
+}
+
+Capture inPerspective(Capture c) {
+  const Capture other = perspectiveCapture(std::max(c.width, c.height));
+  c.clipFromView = other.clipFromView;
+  return c;
+}
+
+constexpr CellWords kWords[] = {CellWords::Found, CellWords::More, CellWords::All};
+
+// Cells that an engine finds lead to the same bits as those that the module finds, and so do more cells than
+// have material.
+TEST_F(TileLists, CellsOfTheEngineChangeNoPixel) {
+  unsigned seed = 10;
+  for (const Way& way : kWays) {
+    ++seed;
+    Capture c = islands(190 + static_cast<int>(seed), 124, seed);
+    if (seed % 2 == 0) c = inPerspective(std::move(c));
+    if (seed % 3 != 0) c = withDeviceDepth(std::move(c));
+    ReplaySettings s;
+    s.translucency.gatherSamples = 8;
+    // Indices with noise around them, and a mark.
+    s.materialShift = seed % 2 * 4;
+    s.materialMask = seed % 2 * 0xFF0;
+    s.translucency.materialMarkBit = seed % 4 == 0 ? 128 : 0;
+    way.change(s);
+    s.indirectDispatches = PELLUCID_INDIRECT_NONE;
+    const Image whole = replayer().run(c, {testMaterial()}, s).output;
+    s.indirectDispatches = PELLUCID_INDIRECT_MATERIAL;
+    EXPECT_TRUE(sameBits(replayer().run(c, {testMaterial()}, s).output, whole)) << way.name;
+    s.indirectDispatches = PELLUCID_INDIRECT_CELLS;
+    for (const CellWords words : kWords) {
+      s.cells = words;
+      const FrameRun run(device(), replayer().contextFor(c), c, {testMaterial()}, s);
+      // Each recording writes the constants, which empties the lists.
+      for (int times = 0; times < (words == CellWords::Found ? 2 : 1); ++times) {
+        device().run([&](VkCommandBuffer commands) { run.record(commands); });
+        EXPECT_TRUE(sameBits(run.output(), whole))
+            << way.name << ", words " << static_cast<int>(words) << ", run " << times;
+      }
+    }
+  }
+}
+
+TEST_F(TileLists, CellsOfTheEngineListTheGroups) {
+  const Capture c = islands(256, 256, 1);
+  ReplaySettings s;
+  s.translucency.gatherSamples = 8;
+  const auto statistics = [&] { return replayer().run(c, {testMaterial()}, s).statistics; };
+  const PellucidStatistics found = statistics();
+  s.indirectDispatches = PELLUCID_INDIRECT_CELLS;
+  const PellucidStatistics same = statistics();
+  EXPECT_EQ(same.tileLists, 1u);
+  EXPECT_EQ(same.tiles.run, found.tiles.run);
+  EXPECT_EQ(same.diffusion.run, found.diffusion.run);
+  EXPECT_EQ(same.probes.run, found.probes.run);
+  EXPECT_LT(same.tiles.run, same.tiles.most);
+  EXPECT_GE(same.entryPoints.run, found.entryPoints.run);  // of distances that may be a bit farther apart
+  EXPECT_LT(same.entryPoints.run, same.entryPoints.most);
+  s.cells = CellWords::More;
+  const PellucidStatistics more = statistics();
+  EXPECT_GT(more.tiles.run, same.tiles.run);
+  EXPECT_LT(more.tiles.run, more.tiles.most);
+  s.cells = CellWords::All;
+  const PellucidStatistics all = statistics();
+  EXPECT_EQ(all.tiles.run, all.tiles.most);
+  EXPECT_EQ(all.probes.run, all.probes.most);
+}
+
 TEST_F(TileLists, GroupsFollowTheMaterial) {
   const Context context(device());
   ReplaySettings s;

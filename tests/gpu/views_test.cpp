@@ -81,7 +81,8 @@ protected:
 };
 
 TEST_F(ViewsTest, EyesHaveTheSameBitsTogether) {
-  for (const PellucidIndirect indirect : {PELLUCID_INDIRECT_NONE, PELLUCID_INDIRECT_MATERIAL}) {
+  for (const PellucidIndirect indirect :
+       {PELLUCID_INDIRECT_NONE, PELLUCID_INDIRECT_MATERIAL, PELLUCID_INDIRECT_CELLS}) {
     ReplaySettings s = gathered();
     s.indirectDispatches = indirect;
     const auto left = make(eye(0), s), right = make(eye(1), s);
@@ -124,6 +125,8 @@ constexpr Kind kKinds[] = {
     {"reuse", left, [](ReplaySettings& s) { s.reuse = PELLUCID_REUSE_ALTERNATE; }, true},
     {"reuse without a gather", right,
      [](ReplaySettings& s) { s.reuse = PELLUCID_REUSE_ALTERNATE, s.translucency.gatherSamples = 0; }, true},
+    {"cells of the engine's", left,
+     [](ReplaySettings& s) { s.indirectDispatches = PELLUCID_INDIRECT_CELLS; }},
     {"slab", slab, [](ReplaySettings&) {}},
     {"nothing to do", slab, [](ReplaySettings& s) { s.features = 0, s.aliasOutput = true; }, false, true}};
 

@@ -30,7 +30,8 @@ struct Way {
 const Way kWays[] = {{"", PELLUCID_DEBUG_NONE, 0, 0},
                      {" debug view", PELLUCID_DEBUG_THICKNESS, 0, 0},
                      {" gather", PELLUCID_DEBUG_NONE, 8, 0},
-                     {" gather, indirect", PELLUCID_DEBUG_NONE, 8, 1}};
+                     {" gather, indirect", PELLUCID_DEBUG_NONE, 8, 1},
+                     {" gather, cells", PELLUCID_DEBUG_NONE, 8, 3}};
 // value: lights with a shadow map each; 0: one without.
 const Choice kLights[] = {
     {"1 light without a map", 0}, {"1 light", 1}, {"8 lights", 8}, {"9 lights", 9}, {"20 lights", 20}};

@@ -17,13 +17,7 @@ namespace {
 
 using pellucid::test::Frame;
 using pellucid::test::names;
-
-bool skips(const PellucidPlan& plan, const std::string& what, const std::string& reason, uint32_t count = 1) {
-  for (uint32_t i = 0; i < plan.skipCount; ++i)
-    if (plan.skips[i].what == what && plan.skips[i].reason == reason && plan.skips[i].count == count)
-      return true;
-  return false;
-}
+using pellucid::test::skips;
 
 TEST(Plan, WholeFrameIsFusedDispatchAndPyramid) {
   Frame f;
@@ -45,7 +39,7 @@ TEST(Plan, ConstantsSizeBoundsThatOfFrames) {
   for (const uint32_t lights : {0u, 1u, 3u, 9u, 16u, 150u})
     for (const uint32_t samples : {0u, 8u})
       for (const uint32_t mapsOfALight : {0u, 1u, 6u})
-        for (const uint32_t indirect : {0u, 1u}) {
+        for (const uint32_t indirect : {0u, 1u, 3u}) {
           Frame f(0);
           f.frame.gatherSamples = samples;
           f.frame.indirectDispatches = indirect;
@@ -233,7 +227,8 @@ TEST(Plan, ImagesBesideMapsCount) {
   EXPECT_STREQ(plan.dispatches[2].name, "base level");
 }
 
-// The dispatch of entry points has room for all images of four lights, so that the diffusion's last dispatch adds their light.
+// The dispatch of entry points has room for all images of four lights, so that the diffusion's last dispatch
+// adds their light.
 TEST(Plan, FourGatheredLightsWithAllImagesShareADispatch) {
   for (const uint32_t lights : {4u, 5u}) {
     SCOPED_TRACE(lights);
@@ -473,7 +468,8 @@ TEST(Plan, ImageNeedsCoverThePlan) {
 
 // Memory of an image may serve another from the next barrier on, not from the next dispatch.
 TEST(Plan, ImagesAreInUseFromBarrierToBarrier) {
-  for (const uint32_t indirect : {PELLUCID_INDIRECT_NONE, PELLUCID_INDIRECT_MATERIAL}) {
+  for (const uint32_t indirect :
+       {PELLUCID_INDIRECT_NONE, PELLUCID_INDIRECT_MATERIAL, PELLUCID_INDIRECT_CELLS}) {
     Frame f;
     f.frame.indirectDispatches = indirect;
     f.frame.gatherSamples = 8;

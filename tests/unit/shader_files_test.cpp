@@ -43,10 +43,8 @@ TEST(ShaderFiles, AreShort) {
   EXPECT_GT(entryPoints, 0);
 }
 
-// Compiles a shader that includes `file` of `folder` and defines nothing before it.
-bool compilesAlone(const fs::path& folder, const std::string& file) {
-  const std::string shader = "#version 460\n#extension GL_GOOGLE_include_directive : require\n#include \"" +
-                             file + "\"\nvoid main() {}\n";
+// Compiles a compute shader that includes files of `folder`.
+bool compiles(const fs::path& folder, const std::string& shader) {
   const std::string command = std::string("\"") + PELLUCID_GLSLANG +
                               "\" --quiet -V --target-env vulkan1.1 -I\"" + folder.string() +
                               "\" --stdin -S comp -o /dev/null";
@@ -56,10 +54,24 @@ bool compilesAlone(const fs::path& folder, const std::string& file) {
   return pclose(glslang) == 0;
 }
 
+// `file` of `folder`, with nothing defined before it.
+bool compilesAlone(const fs::path& folder, const std::string& file) {
+  return compiles(folder, "#version 460\n#extension GL_GOOGLE_include_directive : require\n#include \"" +
+                              file + "\"\nvoid main() {}\n");
+}
+
 TEST(ShaderLibrary, EachFileCompilesAlone) {
   for (const fs::path& file : files(kCompute / "lib"))
     EXPECT_TRUE(compilesAlone(kCompute, "lib/" + file.filename().string()))
         << file << " uses a name that it neither defines nor includes";
+}
+
+TEST(ShaderLibrary, TheDocumentedPassCompiles) {
+  std::ifstream in(fs::path(PELLUCID_SOURCE_DIR) / "docs/integration.md");
+  const std::string text{std::istreambuf_iterator<char>(in), {}}, mark = "<!-- snippet: cells -->\n```glsl\n";
+  const size_t found = text.find(mark), first = found + mark.size();
+  ASSERT_NE(found, std::string::npos);
+  EXPECT_TRUE(compiles(kCompute, text.substr(first, text.find("```", first) - first)));
 }
 
 TEST(ShaderLibrary, UndefinedNamesAreFound) {

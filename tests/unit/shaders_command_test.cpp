@@ -280,7 +280,7 @@ TEST(ShadersCommand, PlansBindWhatIsDescribed) {
   std::set<uint32_t> seen;
   for (const uint32_t quality : {0u, 1u, 2u})
     for (const uint32_t samples : {0u, 8u})
-      for (const uint32_t indirect : {0u, 1u, 2u}) {
+      for (const uint32_t indirect : {0u, 1u, 2u, 3u}) {
         pellucid::test::Frame f(2);
         f.frame.normal = f.frame.albedo = f.view();
         for (PellucidImage& transient : f.frame.transients) transient = f.view();

@@ -59,7 +59,7 @@ const std::vector<Violation> kViolations = {
     {"CoherenceThreshold", "coherenceThreshold", "nan", [](Frame& f) { f.frame.coherenceThreshold = NAN; }},
     {"PrescaleAngle", "thesis.prescaleAngle", "2", [](Frame& f) { f.thesis.prescaleAngle = 2; }},
     {"SeparateOutput", "separateOutput", "2", [](Frame& f) { f.frame.separateOutput = 2; }},
-    {"IndirectDispatches", "indirectDispatches", "3", [](Frame& f) { f.frame.indirectDispatches = 3; }},
+    {"IndirectDispatches", "indirectDispatches", "4", [](Frame& f) { f.frame.indirectDispatches = 4; }},
     {"MaterialShift", "materialShift", "32", [](Frame& f) { f.frame.materialShift = 32; }},
     {"MaterialMaskBelowShift", "materialMask", "whose last bits materialShift 4 drops",
      [](Frame& f) {

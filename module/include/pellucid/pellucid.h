@@ -6,7 +6,8 @@
  * pellucid_plan.h, which this header includes at its end, has what a plan holds, for engines that record
  * plans themselves. pellucid_context.h makes pipelines, pellucid_light.h describes a light, pellucid_shadow_map.h its
  * shadow map. Not included: pellucid_material.h, the material compiler; pellucid_views.h, several views in one recording;
- * pellucid_statistics.h, what the device decided; pellucid_thesis.h, options of Whelan 2009; pellucid_budget.h, a frame budget.
+ * pellucid_statistics.h, what the device decided; pellucid_cells.h, cells with material that the caller found;
+ * pellucid_thesis.h, options of Whelan 2009; pellucid_budget.h, a frame budget.
  *
  * Conventions, unless a field says otherwise:
  * - matrices: 16 floats, column-major, column vectors (GLM and Vulkan memory order);
@@ -143,7 +144,8 @@ typedef enum PellucidOutputMode {
 typedef enum PellucidIndirect {
   PELLUCID_INDIRECT_NONE = 0,     /* nowhere: all passes run over the whole rect */
   PELLUCID_INDIRECT_MATERIAL = 1, /* where it finds material, and passes of a gather where it finds light, too */
-  PELLUCID_INDIRECT_LIGHT = 2     /* the latter alone: where materials cover most of the rect, finding them costs more */
+  PELLUCID_INDIRECT_LIGHT = 2,    /* the latter alone: where materials cover most of the rect, finding them costs more */
+  PELLUCID_INDIRECT_CELLS = 3     /* as MATERIAL, where the caller has found material; see pellucid_cells.h */
 } PellucidIndirect;
 
 /* Options of Whelan 2009, pellucid_thesis.h. */
@@ -240,7 +242,8 @@ typedef struct PellucidFrame {
 typedef struct PellucidPlan PellucidPlan;
 
 /* One transient the caller creates: 2D, one mip, of this format and extent (for any render rect), usage SAMPLED |
- * STORAGE. It holds nothing between frames: it may alias memory not used during dispatches first..last. */
+ * STORAGE. It holds nothing between frames: it may alias memory not used during dispatches first..last. With
+ * PELLUCID_INDIRECT_CELLS one of them is in use from the caller's writes on. */
 typedef struct PellucidImageNeed {
   VkFormat format;    /* of the image and its view */
   uint32_t extent[2]; /* pixels */

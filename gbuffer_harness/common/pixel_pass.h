@@ -8,7 +8,7 @@
 
 #include "common/device.h"
 #include "common/owned.h"
-#include "raster/pipeline.h"
+#include "common/push_layout.h"
 
 namespace pellucid::harness {
 

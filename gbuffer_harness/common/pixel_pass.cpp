@@ -1,9 +1,10 @@
-#include "raster/pixel_pass.h"
+#include "common/pixel_pass.h"
 
 #include <map>
 #include <string>
 #include <utility>
 
+#include "common/barrier.h"
 #include "shared/pellucid_shared.h"
 
 namespace pellucid::harness {
