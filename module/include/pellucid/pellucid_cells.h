@@ -48,7 +48,7 @@ typedef struct PellucidCells {
   uint32_t distances;     /* 1: the frame gathers and reads words 2 and 3, 0: it does not */
 } PellucidCells;
 
-/* What to write for this frame, which pellucidBuildPlan takes, too. Frames without PELLUCID_INDIRECT_CELLS take no
+/* The words to write for this frame, which pellucidBuildPlan takes, too. Frames without PELLUCID_INDIRECT_CELLS take no
  * words. Neither do frames that go without tile lists; the plan's skips say why. Pure: no device, no allocation.
  * INVALID_ARGUMENT for a null pointer; of a frame that is refused, the error that pellucidValidateFrame explains.
  * *cells then stays as it was. */
