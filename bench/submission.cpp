@@ -32,8 +32,10 @@ ordered_json submission(const json& results) {
                         {"covered", row.at("covered")},
                         {"us", ordered_json::object()}});
     if (!isFrame(row, "whole") || !row.contains("us")) continue;
-    if (frames.empty() || frames.back()["frame"] != row.at("frame") ||
-        frames.back()["size"] != row.at("size"))
+    const auto differs = [&](const char* field) {
+      return frames.back()[field].get<std::string>() != row.at(field).get<std::string>();
+    };
+    if (frames.empty() || differs("frame") || differs("size"))
       throw InputError("--submit", row.at("frame"), "has times before it is described");
     frames.back()["us"][row.at("name").get<std::string>()] = row["us"];
   }

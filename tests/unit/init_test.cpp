@@ -202,7 +202,7 @@ TEST_F(Init, BlendersPassesAreKnown) {
   EXPECT_EQ(capture.viewFromWorld, kIdentity);
   EXPECT_TRUE(guessed.json.contains("// camera"));
   expectSameRays(capture.clipFromView, frame_.clipFromView);
-  EXPECT_EQ(guessed.json["buffers"]["material"]["map"], (nlohmann::json{{"0", 0}, {"3", 1}}));
+  EXPECT_EQ(guessed.json["buffers"]["material"]["map"], (nlohmann::ordered_json{{"0", 0}, {"3", 1}}));
 
   words.roles = {{Role::Irradiance, "ViewLayer.Combined"}};
   EXPECT_EQ(guess({"render.exr"}, words).json["buffers"]["irradiance"]["channels"][0],
