@@ -53,7 +53,7 @@ TEST(Submission, HasDeviceDriverCommitAndWholeFrames) {
   EXPECT_EQ(json["commit"], "abc");
   ASSERT_EQ(json["frames"].size(), 1u);
   EXPECT_EQ(json["frames"][0]["covered"], 0.25);
-  EXPECT_EQ(json["frames"][0]["us"], Json({{"HDRP", 12.5}}));
+  EXPECT_EQ(json["frames"][0]["us"], nlohmann::ordered_json({{"HDRP", 12.5}}));
 }
 
 TEST(Submission, NamesWhatResultsLack) {

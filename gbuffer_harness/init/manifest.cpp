@@ -297,7 +297,7 @@ GuessedManifest Builder::build() {
   addNormal();
   addMaterial();
   result_.json["lights"] = words_.lights;
-  result_.json["materials"] = {materialJson(parseMaterial("--material", words_.material))};
+  result_.json["materials"] = Json::array({materialJson(parseMaterial("--material", words_.material))});
   addMissing();
   return std::move(result_);
 }
