@@ -61,7 +61,7 @@ void CellPass::record(VkCommandBuffer commandBuffer, const PellucidFrame& frame,
   writes.image(0, kSampled, pass_.sampler(), frame.material);
   writes.image(1, kSampled, pass_.sampler(), frame.frontDepth);
   writes.image(2, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_NULL_HANDLE, frame.transients[cells.transient]);
-  // What is a pixel to other passes is a cell here.
+  // The grid of invocations is one of cells here, not of pixels.
   constexpr std::uint32_t kCells = PELLUCID_CELL_BLOCK_PIXELS / PELLUCID_CELL_PIXELS;
   pass_.record(commandBuffer, writes.all(), static_cast<int>(kCells * cells.blocks[0]),
                static_cast<int>(kCells * cells.blocks[1]), &push);
