@@ -35,16 +35,17 @@ function(pellucid_shader target array source)
   set(header ${directory}/${array}.h)
   file(MAKE_DIRECTORY ${directory})
   set(definitions ${arg_UNPARSED_ARGUMENTS} ${PELLUCID_FILTER_CONSTANT})
-  set(optimizes FALSE)
-  if(arg_OPTIMIZED AND PELLUCID_GLSLANG_OPTIMIZES AND NOT PELLUCID_SHADER_DEBUG)
-    set(optimizes TRUE)
-  endif()
   list(TRANSFORM definitions PREPEND -D)
+  if(PELLUCID_SHADER_DEBUG)
+    set(form -gVS)
+  elseif(arg_OPTIMIZED AND PELLUCID_GLSLANG_OPTIMIZES)
+    set(form -g0 -Os)
+  else()
+    set(form -g0)
+  endif()
   add_custom_command(
     OUTPUT ${header}
-    COMMAND ${PELLUCID_GLSLANG} --quiet -V --target-env vulkan1.1
-            "$<$<BOOL:${optimizes}>:-Os>"
-            $<IF:$<BOOL:${PELLUCID_SHADER_DEBUG}>,-gVS,-g0>
+    COMMAND ${PELLUCID_GLSLANG} --quiet -V --target-env vulkan1.1 ${form}
             "$<$<BOOL:${PELLUCID_DECODE_INCLUDE}>:-I${PELLUCID_DECODE_INCLUDE}>"
             -I${PROJECT_SOURCE_DIR}/compute ${definitions}
             --depfile ${header}.d --vn ${array} -o ${header} ${source}
