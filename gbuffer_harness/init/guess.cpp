@@ -150,9 +150,9 @@ const char* roleName(Role role) {
 std::map<Role, Guess> guessRoles(const std::vector<ChannelGroup>& groups,
                                  const std::map<Role, std::string>& given) {
   std::map<Role, Guess> guesses;
-  for (const auto& [givenRole, givenName] : given) {
-    const Role role = givenRole;  // Clang 14 does not capture structured bindings
-    const std::string& name = givenName;
+  for (const auto& entry : given) {
+    const Role role = entry.first;  // no structured bindings: Clang 14 does not capture them
+    const std::string& name = entry.second;
     const auto found = std::find_if(groups.begin(), groups.end(), [&](const ChannelGroup& group) {
       return hasShapeOf(role, group) && (group.name == name || group.channels.front() == name);
     });
