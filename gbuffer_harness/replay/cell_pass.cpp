@@ -50,21 +50,22 @@ Push pushOf(const PellucidFrame& f, const PellucidCells& cells, CellWords words)
 
 }  // namespace
 
-CellPass::CellPass(Device& device)
+CellPass::CellPass(Device& device, const PellucidCells& cells, CellWords words)
     : pass_(device, {kEngineCells, sizeof kEngineCells},
-            {{kSampled}, {kSampled}, {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}}, sizeof(Push)) {}
+            {{kSampled}, {kSampled}, {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}}, sizeof(Push)),
+      cells_(cells),
+      words_(words) {}
 
-void CellPass::record(VkCommandBuffer commandBuffer, const PellucidFrame& frame, const PellucidCells& cells,
-                      CellWords words) const {
-  const Push push = pushOf(frame, cells, words);
+void CellPass::record(VkCommandBuffer commandBuffer, const PellucidFrame& frame) const {
+  const Push push = pushOf(frame, cells_, words_);
   DescriptorWrites writes;
   writes.image(0, kSampled, pass_.sampler(), frame.material);
   writes.image(1, kSampled, pass_.sampler(), frame.frontDepth);
-  writes.image(2, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_NULL_HANDLE, frame.transients[cells.transient]);
+  writes.image(2, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_NULL_HANDLE, frame.transients[cells_.transient]);
   // The grid of invocations is one of cells here, not of pixels.
   constexpr std::uint32_t kCells = PELLUCID_CELL_BLOCK_PIXELS / PELLUCID_CELL_PIXELS;
-  pass_.record(commandBuffer, writes.all(), static_cast<int>(kCells * cells.blocks[0]),
-               static_cast<int>(kCells * cells.blocks[1]), &push);
+  pass_.record(commandBuffer, writes.all(), static_cast<int>(kCells * cells_.blocks[0]),
+               static_cast<int>(kCells * cells_.blocks[1]), &push);
 }
 
 }  // namespace pellucid::harness

@@ -9,14 +9,16 @@ namespace pellucid::harness {
 
 class CellPass {
 public:
-  explicit CellPass(Device& device);
+  // cells: of the frames that are recorded; `words`: which of them to write.
+  CellPass(Device& device, const PellucidCells& cells, CellWords words);
 
-  // Writes the words that `cells` of the frame asks for into its transient, for what is recorded afterwards.
-  void record(VkCommandBuffer commandBuffer, const PellucidFrame& frame, const PellucidCells& cells,
-              CellWords words) const;
+  // Writes the words into the frame's transient, for what is recorded afterwards.
+  void record(VkCommandBuffer commandBuffer, const PellucidFrame& frame) const;
 
 private:
   PixelPass pass_;
+  PellucidCells cells_;
+  CellWords words_;
 };
 
 }  // namespace pellucid::harness

@@ -171,32 +171,26 @@ const Context& Contexts::of(const Capture& capture) {
 FrameRun::FrameRun(Device& device, const Context& context, const Capture& capture,
                    const std::vector<PellucidMaterial>& materials, const ReplaySettings& settings,
                    const FrameRun* previous)
-    : context_(context),
-      name_(capture.name),
-      plan_(std::make_unique<PellucidPlan>()),
-      cellWords_(settings.cells) {
+    : context_(context), name_(capture.name), plan_(std::make_unique<PellucidPlan>()) {
   makeFrame(capture, materials, settings, data_);
   images_ = std::make_unique<Images>(device, capture, settings, data_, nullptr,
                                      previous ? previous->images_.get() : nullptr, nullptr);
-  plan(device, previous ? previous->plan_.get() : nullptr);
+  plan(device, settings, previous ? previous->plan_.get() : nullptr);
 }
 
 FrameRun::FrameRun(Device& device, const Context& context, const Capture& capture,
                    const std::vector<PellucidMaterial>& materials, const ReplaySettings& settings,
                    std::shared_ptr<const InputImages> inputs, const FrameRun* previous, ImagePool* pool)
-    : context_(context),
-      name_(capture.name),
-      plan_(std::make_unique<PellucidPlan>()),
-      cellWords_(settings.cells) {
+    : context_(context), name_(capture.name), plan_(std::make_unique<PellucidPlan>()) {
   makeFrame(capture, inputs->shape(), materials, settings, data_);
   if (!data_.frame.separateOutput)
     throw InputError(name_, "aliasOutput", "the inputs are other frames', too");
   images_ = std::make_unique<Images>(device, capture, settings, data_, std::move(inputs),
                                      previous ? previous->images_.get() : nullptr, pool);
-  plan(device, previous ? previous->plan_.get() : nullptr);
+  plan(device, settings, previous ? previous->plan_.get() : nullptr);
 }
 
-void FrameRun::plan(Device& device, const PellucidPlan* previous) {
+void FrameRun::plan(Device& device, const ReplaySettings& settings, const PellucidPlan* previous) {
   const PellucidFrame& frame = data_.frame;
   requireOk(pellucidValidateFrame(&frame, nullptr, nullptr), frame, name_);
   requireOk(pellucidBuildPlan(&frame, previous, plan_.get()), frame, name_);
@@ -205,8 +199,9 @@ void FrameRun::plan(Device& device, const PellucidPlan* previous) {
       std::make_unique<HostBuffer>(device, plan_->constantsSize,
                                    VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
                                        VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
-  requireOk(pellucidGetCells(&frame, &cells_), frame, name_);
-  if (cells_.blocks[0] > 0) cellPass_ = std::make_unique<CellPass>(device);
+  PellucidCells cells;
+  requireOk(pellucidGetCells(&frame, &cells), frame, name_);
+  if (cells.blocks[0] > 0) cellPass_ = std::make_unique<CellPass>(device, cells, settings.cells);
 }
 
 FrameRun::~FrameRun() = default;
@@ -244,7 +239,7 @@ void FrameRun::record(VkCommandBuffer commandBuffer) const {
 }
 
 void FrameRun::recordCells(VkCommandBuffer commandBuffer) const {
-  if (cellPass_) cellPass_->record(commandBuffer, data_.frame, cells_, cellWords_);
+  if (cellPass_) cellPass_->record(commandBuffer, data_.frame);
 }
 
 PellucidPlan FrameRun::only(uint32_t dispatch) const {

@@ -117,7 +117,7 @@ public:
 private:
   class Images;
 
-  void plan(Device& device, const PellucidPlan* previous);
+  void plan(Device& device, const ReplaySettings& settings, const PellucidPlan* previous);
   PellucidConstantsSlice slice() const;
   void record(VkCommandBuffer commandBuffer, const PellucidPlan& plan) const;
   void requireRecorded(PellucidResult result) const;
@@ -130,8 +130,6 @@ private:
   std::unique_ptr<PellucidPlan> plan_;  // too large for a stack
   std::unique_ptr<HostBuffer> constants_;
   std::unique_ptr<CellPass> cellPass_;  // null where the frame takes no words
-  PellucidCells cells_{};
-  CellWords cellWords_;
 };
 
 struct DispatchTime {
