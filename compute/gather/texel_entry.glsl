@@ -1,8 +1,10 @@
 // The entry point of a texel of a shadow map.
 #define MORE_SHADOW_IMAGES
 #include "frame/shadow_images.glsl"
+#include "frame/normal_image.glsl"
 #include "lib/occluder.glsl"
 #include "lib/shadow.glsl"
+#include "lib/surface.glsl"
 
 // Slope towards the camera up to which a pixel's own slope excuses a point behind its depth: 63 degrees. Steeper limbs enter
 // light that their few pixels do not all show: without this end a sphere of 8 mm is off by a third more.
@@ -27,6 +29,18 @@ float frontAround(ivec2 pixel) {
   ivec2 at = withinRect(pixel);
   float front = frontDistance(at);
   return materialAt(at) != 0u ? front : -1.0;
+}
+
+// Unit outward normal of what a pixel shows, from the normal image or the depths around; 0: none.
+vec3 shownNormal(ivec2 pixel, float front) {
+  if (hasFlag(PELLUCID_FLAG_NORMAL)) {
+    vec3 normal = mat3(frame.viewFromNormal) * normalAt(withinRect(pixel));
+    float squared = dot(normal, normal);
+    return squared > 1.0e-8 && squared < 1.0e8 ? normal * inversesqrt(squared) : vec3(0.0); // false for NaN
+  }
+  vec4 beside = vec4(frontAround(pixel + ivec2(1, 0)), frontAround(pixel - ivec2(1, 0)), frontAround(pixel + ivec2(0, 1)),
+                     frontAround(pixel - ivec2(0, 1)));
+  return normalOfDepths(frame.camera, pixel, front, beside);
 }
 
 // The surface that a texel of a perspective map stores, as EntryMapConstants says; depth: as entry points store it.
@@ -101,10 +115,11 @@ Behind behind(EntryMapConstants map, ivec2 texel) {
   return b;
 }
 
-// The entry of a surface that part `share` of the light enters. `normal`: not normalized, 0 where no neighbor says.
-// `uncertain`: scene units along the light that the surface may be off by.
-uvec4 entryOf(float depth, float share, vec3 normal, vec3 toLight, ivec2 pixel, float front, float planar,
-               float tolerance, float uncertain, Behind b) {
+// The entry of a surface at y that part `share` of the light enters. `normal`: of the map, not normalized, 0 where no neighbor
+// says. `pixel`, `front`, `planar`: where the camera sees y, what it shows there, and y's planar distance. `tolerance`: half a
+// texel, scene units; `uncertain`: scene units along the light that the surface may be off by.
+uvec4 entryOf(float depth, vec3 y, float share, vec3 normal, vec3 toLight, ivec2 pixel, float front, float planar,
+              float tolerance, float uncertain, Behind b) {
   if (b.opaque) share = 0.0;
   EntryPoint r = EntryPoint(depth, toLight, share, 0.0, 1.0, b.exit, b.material);
   float squared = dot(normal, normal);
@@ -114,7 +129,18 @@ uvec4 entryOf(float depth, float share, vec3 normal, vec3 toLight, ivec2 pixel, 
     r.normal = cosine < 0.0 ? -normal : normal;
     r.cosine = abs(cosine);
   }
-  if (cameraSees(pixel, front, planar, r.normal, tolerance, uncertain * dot(r.normal, toLight))) {
+  bool shown = false;
+  if (insideRect(pixel) && front > 0.0) {
+    vec3 own = shownNormal(pixel, front);
+    ViewRay ray = viewRay(frame.camera, pixel);
+    float cosine = dot(own, toLight), above = dot(own, y - ray.origin - front * ray.direction);
+    shown = dot(own, own) > 0.0 && abs(above) <= tolerance + uncertain * abs(cosine);
+    if (shown) {
+      r.normal = own;
+      r.cosine = max(cosine, 0.0);
+    }
+  }
+  if (shown || cameraSees(pixel, front, planar, r.normal, tolerance, uncertain * dot(r.normal, toLight))) {
     r.seen = share;
     r.hidden = 0.0;
   }
@@ -187,10 +213,11 @@ uvec4 parallelEntry(EntryMapConstants map, ivec2 texel, ShadowTexels stored, flo
   float front = frontAround(pixel);
   float squareX = dot(map.stepX.xyz, map.stepX.xyz), squareY = dot(map.stepY.xyz, map.stepY.xyz);
   float ray2 = map.across[1].w;
-  float x = parallelSlope(texel.x, int(map.map.x), map.stepX.w, squareX, map.normal.w, ray2, grows.xy);
-  float y = parallelSlope(texel.y, int(map.map.y), map.stepY.w, squareY, map.across[0].w, ray2, grows.zw);
+  float slopeX = parallelSlope(texel.x, int(map.map.x), map.stepX.w, squareX, map.normal.w, ray2, grows.xy);
+  float slopeY = parallelSlope(texel.y, int(map.map.y), map.stepY.w, squareY, map.across[0].w, ray2, grows.zw);
   vec3 normal = vec3(0.0);
-  if (x < kNoDepth && y < kNoDepth) normal = map.normal.xyz + x * map.across[0].xyz + y * map.across[1].xyz;
+  if (slopeX < kNoDepth && slopeY < kNoDepth)
+    normal = map.normal.xyz + slopeX * map.across[0].xyz + slopeY * map.across[1].xyz;
   ivec2 inImage = texel + firstTexel(map.occluder);
   Behind b = behind(map, inImage);
   if (map.occluder.x != 0u) {
@@ -198,7 +225,8 @@ uvec4 parallelEntry(EntryMapConstants map, ivec2 texel, ShadowTexels stored, flo
     // Depths of entry points grow towards the light.
     if (shadowHolds(map.meta, exit)) b.exit = max((stored.own - exit) * map.ray.w + map.offsets.z, 0.0);
   }
-  return entryOf(depth, 1.0, normal, map.toLight.xyz, pixel, front, planar, map.seen.x, uncertain * abs(map.ray.w), b);
+  vec3 y = map.origin.xyz + p.x * map.stepX.xyz + p.y * map.stepY.xyz + depth * map.ray.xyz;
+  return entryOf(depth, y, 1.0, normal, map.toLight.xyz, pixel, front, planar, map.seen.x, uncertain * abs(map.ray.w), b);
 }
 
 // `stored`, `uncertain`: as parallelEntry takes them.
@@ -232,7 +260,7 @@ uvec4 perspectiveEntry(EntryMapConstants map, ivec2 texel, ShadowTexels stored, 
     vec3 e = surfacePoint(map, texel, exit, exitDepth);
     if (shadowHolds(map.meta, exit) && abs(exitDepth) < kNoDepth) b.exit = distance(e, y);
   }
-  return entryOf(depth, share, normal, toLight, pixel, front, y.z * frame.camera.range.x, tolerance, uncertain, b);
+  return entryOf(depth, y, share, normal, toLight, pixel, front, y.z * frame.camera.range.x, tolerance, uncertain, b);
 }
 
 // `texel`: of the map's tile.

@@ -50,7 +50,11 @@ using glm::vec4;
 #define PELLUCID_BINDING_DESTINATION 11
 #define PELLUCID_BINDING_SHADOW_IMAGES 12 // and the next SHADOW_IMAGE_COUNT - 1
 #define PELLUCID_SHADOW_IMAGE_COUNT 8     // 16 sampled images in all, which every device has
-#define PELLUCID_BINDING_MORE_SHADOW_IMAGES PELLUCID_BINDING_BACK_DEPTH // of entry points, which read none of those four
+// The last four of the entry points, which read none of these images:
+#define PELLUCID_BINDING_SHADOW_IMAGE_8 PELLUCID_BINDING_BACK_DEPTH
+#define PELLUCID_BINDING_SHADOW_IMAGE_9 PELLUCID_BINDING_SOURCE
+#define PELLUCID_BINDING_SHADOW_IMAGE_10 PELLUCID_BINDING_ALBEDO
+#define PELLUCID_BINDING_SHADOW_IMAGE_11 PELLUCID_BINDING_HELD
 #define PELLUCID_ENTRY_IMAGE_COUNT (PELLUCID_SHADOW_IMAGE_COUNT + 4) // four maps with exit depth and caster material
 #define PELLUCID_BINDING_LEVELS 20        // written by the diffusion's passes, which read no shadow images:
 #define PELLUCID_BINDING_PYRAMID PELLUCID_BINDING_SHADOW_IMAGES // the level or levels that are read

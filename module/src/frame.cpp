@@ -60,6 +60,8 @@ void addGather(FrameFacts& f) {
   f.gatherSpacing = gatherSpacing(f.frame);
   f.longestEntrySide = longestEntrySide(f);
   f.gathers = (f.frame.features & PELLUCID_FEATURE_TRANSLUCENCY) != 0 && f.gatherSamples > 0 && !f.debug();
+  f.shapes = f.gathers && (f.frame.features & PELLUCID_FEATURE_DIFFUSION) != 0 && f.diffuses &&
+             f.has(PELLUCID_RESOURCE_NORMAL);
 }
 
 void addLights(FrameFacts& f) {

@@ -45,6 +45,7 @@ struct FrameFacts {
   uint32_t gatherSamples = 0;            // of each probe, by frame.quality if that chooses
   uint32_t gatherSpacing = 0;            // pixels a side of what one probe stands for
   bool gathers = false;                  // lights with a map are gathered from
+  bool shapes = false;                   // curved surfaces return more or less light than planes, as probes find
   float longestEntrySide = 0;            // see entry_points.h
 
   // ---- Of the lights
@@ -103,6 +104,7 @@ struct FrameFacts {
   void placeLights(bool beside, OnLight&& light, OnGroup&& group) const {
     LightGroup current;
     current.beside = beside;
+    current.shapes = shapes;
     const auto place = [&](const PellucidLight& l) {
       if (whySkipped(l)) return;
       if (!current.addLight(*this, l)) {
@@ -116,7 +118,7 @@ struct FrameFacts {
       for (uint32_t i = 0; i < frame.lightCount; ++i)
         if (isGathered(frame.lights[i]) == gathered) place(frame.lights[i]);
     place(ambient);
-    if (current.lightCount > 0) group(static_cast<const LightGroup&>(current));
+    if (current.lightCount > 0 || current.shapes) group(static_cast<const LightGroup&>(current));
   }
 };
 

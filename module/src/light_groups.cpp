@@ -35,7 +35,7 @@ bool LightGroup::readsExit(const FrameFacts& facts, const PellucidLight& light,
 bool LightGroup::addLight(const FrameFacts& facts, const PellucidLight& light) {
   const PellucidFrame& frame = facts.frame;
   // The pass that adds gathered light binds no shadow images.
-  if (gathered > 0 && !facts.isGathered(light) && light.shadowMapCount > 0) return false;
+  if (hasProbes() && !facts.isGathered(light) && light.shadowMapCount > 0) return false;
   LightGroup grown = *this;
   // Dispatches of thin walls' light would read the images, too.
   if (facts.isGathered(light) && !facts.thinWalls) grown.mostImages = PELLUCID_ENTRY_IMAGE_COUNT;
@@ -82,14 +82,15 @@ LightGroups::LightGroups(const FrameFacts& facts, bool withBeside) : beside(with
         if (count < first.size()) first[count] = group;
         last = group;
         ++count;
-        if (group.gathered > 0) ++gathered;
+        if (group.hasProbes()) ++gathered;
         entryColumns = std::max(entryColumns, group.entryColumns);
         entryRows = std::max(entryRows, group.entryRows);
       });
 }
 
 uint32_t LightGroups::walls(const FrameFacts& facts) const {
-  return facts.gathers && facts.thinWalls ? count : 0;
+  if (!facts.gathers || !facts.thinWalls || lightCount == 0) return 0;
+  return count - (first[0].lightCount == 0 ? 1 : 0);
 }
 
 LightGroups LightGroups::of(const FrameFacts& facts) {

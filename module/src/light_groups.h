@@ -20,6 +20,7 @@ struct LightGroup {
   VkDeviceSize lightBytes = 0, shadowBytes = 0;  // of the groups before, in the constants
   VkDeviceSize gatherMapBytes = 0, entryMapBytes = 0;
   uint32_t gathered = 0;                     // lights that are gathered from; the first ones
+  bool shapes = false;                       // its probes say how much light curved surfaces return
   bool directional = true;                   // these are directional with one shadow map of device depth
   uint32_t entryColumns = 0, entryRows = 0;  // of their maps' entry points
   uint32_t entryWidth = 0, entryHeight = 0;  // the most that one of them has
@@ -35,6 +36,8 @@ struct LightGroup {
   bool addImages(const FrameFacts& facts, const PellucidLight& light, const PellucidShadowMap& map);
   // Adds the light, its maps and their images; false (and no change) if they do not fit.
   bool addLight(const FrameFacts& facts, const PellucidLight& light);
+  // Probes find the light that comes through, and shapes where the frame has no such light.
+  bool hasProbes() const { return gathered > 0 || shapes; }
   // An empty group whose constants follow this one's.
   LightGroup next() const;
   // True where what lies beside the light's map is read. Thickness from the camera knows nothing of the
@@ -47,13 +50,14 @@ private:
 };
 
 // All groups of a frame. Lights that are gathered from come first: all of them are added to the pixels at
-// once.
+// once. What a curved surface returns does not depend on lights: a frame without gathered lights has a first
+// group without them where surfaces have shapes.
 struct LightGroups {
   // With exit depths and caster materials, unless those need more dispatches than a plan has: then they are
   // left out as if the frame had only the maps.
   static LightGroups of(const FrameFacts& facts);
 
-  uint32_t count = 0, gathered = 0;          // gathered: with lights that are gathered from
+  uint32_t count = 0, gathered = 0;          // gathered: with probes
   uint32_t lightCount = 0;                   // lights that are not skipped
   uint32_t entryColumns = 0, entryRows = 0;  // the most of a group
   bool beside = true;                        // see LightGroup
@@ -62,8 +66,10 @@ struct LightGroups {
 
   bool fitPlan() const { return count <= first.size(); }
   std::span<const LightGroup> list() const { return {first.data(), fitPlan() ? count : first.size()}; }
-  // Dispatches besides those over all pixels.
-  uint32_t gatherDispatches() const { return gathered > 0 ? 2 * gathered + 1 : 0; }
+  // Dispatches besides those over all pixels: probes, entry points where lights are gathered, and one filter.
+  uint32_t gatherDispatches() const {
+    return gathered > 0 ? 2 * gathered + (first[0].gathered > 0 ? 1 : 0) : 0;
+  }
   // Dispatches over all pixels. What is gathered in several groups is added at once.
   uint32_t fused() const { return count - (gathered > 0 ? gathered - 1 : 0); }
 

@@ -110,9 +110,9 @@ private:
   void forEachFused(Fused&& fused) {
     uint32_t index = 0;
     for (const LightGroup& group : b_.facts.lights.list()) {
-      const bool gathers = group.gathered > 0 && !reused_ && !stages_.overlaps;
+      const bool gathers = group.hasProbes() && !reused_ && !stages_.overlaps;
       if (gathers) {
-        addEntryPoints(b_, group);
+        if (group.gathered > 0) addEntryPoints(b_, group);
         addProbes(b_, group, index > 0);
       }
       if (++index < stages_.gathered) continue;
@@ -125,6 +125,7 @@ private:
   void thinWalls() {
     if (stages_.walls == 0) return;
     for (const LightGroup& group : b_.facts.lights.list()) {
+      if (group.lightCount == 0) continue;
       const uint32_t to = destination();
       addThinWalls(b_, group, source_, to);
       source_ = to;
@@ -165,6 +166,7 @@ private:
       const uint32_t step = left--;
       if (!stages_.overlaps || reused_ || step > 3) return;
       const LightGroup& group = b_.facts.lights.list().front();
+      if (step == 3 && group.gathered == 0) return;
       b_.alongside = true;
       if (step == 3)
         addEntryPoints(b_, group);

@@ -97,11 +97,12 @@ void PlanBuilder::shadowImages(PellucidDispatch* d, const LightGroup& group, uin
   const uint32_t standIn = group.imageCount > 0 ? kShadow0 + group.images[0]
                            : some               ? kShadow0
                                                 : static_cast<uint32_t>(PELLUCID_RESOURCE_FRONT_DEPTH);
+  constexpr uint32_t kMore[] = {PELLUCID_BINDING_SHADOW_IMAGE_8, PELLUCID_BINDING_SHADOW_IMAGE_9,
+                                PELLUCID_BINDING_SHADOW_IMAGE_10, PELLUCID_BINDING_SHADOW_IMAGE_11};
   for (uint32_t slot = 0; slot < count; ++slot) {
     const bool used = slot < group.imageCount;
-    const uint32_t binding = slot < PELLUCID_SHADOW_IMAGE_COUNT
-                                 ? PELLUCID_BINDING_SHADOW_IMAGES + slot
-                                 : PELLUCID_BINDING_MORE_SHADOW_IMAGES + slot - PELLUCID_SHADOW_IMAGE_COUNT;
+    const uint32_t binding = slot < PELLUCID_SHADOW_IMAGE_COUNT ? PELLUCID_BINDING_SHADOW_IMAGES + slot
+                                                                : kMore[slot - PELLUCID_SHADOW_IMAGE_COUNT];
     image(d, binding, used ? kShadow0 + group.images[slot] : standIn, used ? kUnknownDepthBytes : 0);
   }
 }

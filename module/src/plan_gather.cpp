@@ -42,6 +42,7 @@ void addEntryPoints(PlanBuilder& b, const LightGroup& group) {
       {layout.entryMaps.offset + group.entryMapBytes, group.shadowCount * sizeof(shared::EntryMapConstants)});
   b.image(d, PELLUCID_BINDING_FRONT_DEPTH, PELLUCID_RESOURCE_FRONT_DEPTH, kUnknownDepthBytes);
   b.image(d, PELLUCID_BINDING_MATERIAL, PELLUCID_RESOURCE_MATERIAL, 1);
+  b.optional(d, PELLUCID_BINDING_NORMAL, PELLUCID_RESOURCE_NORMAL, 4);
   b.shadowImages(d, group, PELLUCID_ENTRY_IMAGE_COUNT);
   b.bind(d, PELLUCID_BINDING_LEVELS, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, b.entryPointsImage());
   d->modeledBytes += entryPointBytes(group);

@@ -31,7 +31,7 @@ void addLights(PlanBuilder& b, PellucidDispatch* d, const LightGroup& group, uin
 
 void addTranslucency(PlanBuilder& b, const LightGroup& group, uint32_t source, uint32_t destination) {
   const FrameFacts& f = b.facts;
-  const bool gathered = group.gathered > 0 && !f.debug();
+  const bool gathered = group.hasProbes() && !f.debug();
   PellucidDispatch* d = f.debug()  ? b.dispatch("debug view", Pipeline::DebugView)
                         : gathered ? b.dispatch("add gathered", Pipeline::AddGathered)
                                    : b.dispatch("translucency", Pipeline::Translucency);
@@ -47,7 +47,7 @@ void addTranslucency(PlanBuilder& b, const LightGroup& group, uint32_t source, u
     d->pushConstants[0] = f.stages.walls > 0 ? PELLUCID_LIGHT_SOLIDS : PELLUCID_LIGHT_ALL;
   }
   // Lights that are gathered from have been.
-  addLights(b, d, group, source, destination, group.gathered > 0 ? LightGroup{} : group);
+  addLights(b, d, group, source, destination, gathered ? LightGroup{} : group);
 }
 
 void addThinWalls(PlanBuilder& b, const LightGroup& group, uint32_t source, uint32_t destination) {

@@ -32,7 +32,7 @@ Stages::Stages(const FrameFacts& facts) {
   nothing = writers() == 0 && facts.inPlace && !facts.has(PELLUCID_RESOURCE_ALBEDO);
   if (writers() == 0 && !nothing) fused = 1;
   keepsHistory =
-      frame.reuse != PELLUCID_REUSE_NONE && !facts.debug() && translucency && facts.lights.count > 0;
+      frame.reuse != PELLUCID_REUSE_NONE && !facts.debug() && translucency && facts.lights.lightCount > 0;
   keepsProbes = keepsHistory && facts.lights.gathered > 0;
   history = keepsHistory && !keepsProbes;
   // More would be more transients than there are.
