@@ -1,28 +1,52 @@
 // The entry point of a texel of a shadow map.
 #define MORE_SHADOW_IMAGES
-#include "frame/shadow_images.glsl"
 #include "frame/normal_image.glsl"
+#include "frame/shadow_images.glsl"
 #include "lib/occluder.glsl"
 #include "lib/shadow.glsl"
 #include "lib/surface.glsl"
 
-// Slope towards the camera up to which a pixel's own slope excuses a point behind its depth: 63 degrees. Steeper limbs enter
-// light that their few pixels do not all show: without this end a sphere of 8 mm is off by a third more.
-const float kSteepestSeen = 2.0;
+// A point of the surface that a map stores.
+struct MapPoint {
+  vec3 position; // view space
+  float depth;   // as entry points store it; kNoDepth: none
+};
 
-// True where a point does not lie behind the surface that its pixel shows: the light that enters there is in the irradiance
-// that diffusion spreads. A surface that faces away cannot be seen, however thin the part is. `front`: of the pixel;
-// `uncertain`: along the normal.
-bool cameraSees(ivec2 pixel, float front, float planar, vec3 normal, float tolerance, float uncertain) {
-  vec3 ray = viewRay(frame.camera, pixel).direction;
-  float facing = dot(normal, ray), slope = slopeOf(facing * inversesqrt(dot(ray, ray)));
-  if (slope >= kSteepestSeen) slope = 0.0;
-  vec2 squared = squaredPixelSize(frame.camera, front);
-  // Up to half a pixel's diagonal lies between the point and the pixel's center.
-  tolerance += 0.70710678 * sqrt(max(squared.x, squared.y)) * slope;
-  return insideRect(pixel) && facing < 0.0 && front > 0.0 &&
-         planar <= front + tolerance + uncertain / max(-facing, kLeastCosine);
+MapPoint pointOf(EntryMapConstants map, ivec2 texel, float stored) {
+  vec2 p = vec2(texel) + 0.5;
+  vec4 at = map.origin + p.x * map.stepX + p.y * map.stepY;
+  float depth;
+  if (map.meta.z == 0u) {
+    depth = stored * map.ray.w + at.w + map.offsets.z;
+    return MapPoint(at.xyz + depth * map.ray.xyz, abs(depth) < kNoDepth ? depth : kNoDepth);
+  }
+  float dividend = stored, divisor = at.w;
+  if (map.meta.y == PELLUCID_SHADER_DEPTH_DEVICE) {
+    dividend = map.ray.w;
+    divisor = stored - at.w;
+  } else if (map.meta.y == PELLUCID_SHADER_DEPTH_DISTANCE) {
+    divisor = length(at.xyz);
+  }
+  // The product is 0 or negative only at infinity.
+  if (!(dividend * divisor > 0.0)) return MapPoint(map.ray.xyz, kNoDepth);
+  depth = dividend / divisor;
+  // Not beyond the light.
+  if (map.offsets.z > 0.0) depth *= max(1.0 - map.offsets.z / max(depth * length(at.xyz), 1.0e-12), 1.0e-3);
+  return MapPoint(map.ray.xyz + depth * at.xyz, abs(depth) < kNoDepth ? depth : kNoDepth);
 }
+
+// ---- What the camera shows
+
+const ivec2 kNoPixel = ivec2(-1);
+
+// What the camera shows where a point lies.
+struct Shown {
+  ivec2 pixel;  // kNoPixel: the camera does not see the point's direction
+  float planar; // of the point
+  float front;  // of a surface with material; -1: none
+  vec3 normal;  // unit, outward; 0: not known
+  float above;  // how far the point lies before the surface, along its normal
+};
 
 // Front of a pixel that has a material; others show nothing, whatever depth they hold, as their light is not diffused.
 float frontAround(ivec2 pixel) {
@@ -31,7 +55,7 @@ float frontAround(ivec2 pixel) {
   return materialAt(at) != 0u ? front : -1.0;
 }
 
-// Unit outward normal of what a pixel shows, from the normal image or the depths around; 0: none.
+// From the normal image or the depths around.
 vec3 shownNormal(ivec2 pixel, float front) {
   if (hasFlag(PELLUCID_FLAG_NORMAL)) {
     vec3 normal = mat3(frame.viewFromNormal) * normalAt(withinRect(pixel));
@@ -43,22 +67,42 @@ vec3 shownNormal(ivec2 pixel, float front) {
   return normalOfDepths(frame.camera, pixel, front, beside);
 }
 
-// The surface that a texel of a perspective map stores, as EntryMapConstants says; depth: as entry points store it.
-vec3 surfacePoint(EntryMapConstants map, ivec2 texel, float stored, out float depth) {
-  vec2 p = vec2(texel) + 0.5;
-  vec4 at = map.origin + p.x * map.stepX + p.y * map.stepY;
-  float divisor = at.w;
-  float dividend = stored;
-  if (map.meta.y == PELLUCID_SHADER_DEPTH_DEVICE) {
-    dividend = map.ray.w;
-    divisor = stored - at.w;
-  } else if (map.meta.y == PELLUCID_SHADER_DEPTH_DISTANCE) {
-    divisor = length(at.xyz);
-  }
-  // The product is 0 or negative only at infinity.
-  depth = dividend * divisor > 0.0 ? dividend / divisor : kNoDepth;
-  return map.ray.xyz + depth * at.xyz;
+Shown shownAt(vec3 position) {
+  Shown s = Shown(kNoPixel, position.z * frame.camera.range.x, -1.0, vec3(0.0), 0.0);
+  ivec2 pixel;
+  if (!projectToPixel(frame.camera, position, pixel) || !insideRect(pixel)) return s;
+  s.pixel = pixel;
+  s.front = frontAround(pixel);
+  if (!(s.front > 0.0)) return s;
+  s.normal = shownNormal(pixel, s.front);
+  ViewRay ray = viewRay(frame.camera, pixel);
+  s.above = dot(s.normal, position - ray.origin - s.front * ray.direction);
+  return s;
 }
+
+// True where the point is of the surface that its pixel shows. `tolerance`: scene units; `uncertain`: along the light.
+bool liesOn(Shown s, vec3 toLight, float tolerance, float uncertain) {
+  return dot(s.normal, s.normal) > 0.0 && abs(s.above) <= tolerance + uncertain * abs(dot(s.normal, toLight));
+}
+
+// Slope towards the camera up to which a pixel's own slope excuses a point behind its depth: 63 degrees. Steeper limbs enter
+// light that their few pixels do not all show: without this end a sphere of 8 mm is off by a third more.
+const float kSteepestSeen = 2.0;
+
+// True where a point does not lie behind the surface that its pixel shows: the light that enters there is in the irradiance
+// that diffusion spreads. A surface that faces away cannot be seen, however thin the part is. `uncertain`: along the normal.
+bool cameraSees(Shown s, vec3 normal, float tolerance, float uncertain) {
+  if (!(s.front > 0.0)) return false;
+  vec3 ray = viewRay(frame.camera, s.pixel).direction;
+  float facing = dot(normal, ray), slope = slopeOf(facing * inversesqrt(dot(ray, ray)));
+  if (slope >= kSteepestSeen) slope = 0.0;
+  vec2 squared = squaredPixelSize(frame.camera, s.front);
+  // Up to half a pixel's diagonal lies between the point and the pixel's center.
+  tolerance += 0.70710678 * sqrt(max(squared.x, squared.y)) * slope;
+  return facing < 0.0 && s.planar <= s.front + tolerance + uncertain / max(-facing, kLeastCosine);
+}
+
+// ---- What the map's neighbors say
 
 // One texel's step along an axis of the map from y, towards whichever neighbor is nearer, because the other may lie across an
 // edge. `stored`: of the neighbors forwards and backwards; `squaredStep`: of a texel across the light.
@@ -71,8 +115,7 @@ vec3 entrySlope(EntryMapConstants map, ivec2 texel, vec3 y, ivec2 axis, vec2 sto
     if (any(lessThan(neighbor, ivec2(0))) || any(greaterThanEqual(neighbor, ivec2(map.map.xy)))) continue;
     float theirs = i == 0 ? stored.x : stored.y;
     if (!shadowHolds(map.meta, theirs)) continue;
-    float depth;
-    vec3 toward = float(side) * (surfacePoint(map, neighbor, theirs, depth) - y);
+    vec3 toward = float(side) * (pointOf(map, neighbor, theirs).position - y);
     float squared = dot(toward, toward);
     if (squared < least) {
       least = squared;
@@ -84,70 +127,16 @@ vec3 entrySlope(EntryMapConstants map, ivec2 texel, vec3 y, ivec2 axis, vec2 sto
   return best;
 }
 
-// For parallel rays: how much more depth grows along a texel's step than on a plane across the light, to whichever neighbor is
-// nearer; kNoDepth: there is none. `at`, `texels`: of the step's axis; `plane`: what depth grows on a plane; `across`: twice the
-// step times the ray; `grows`: to the neighbors forwards and backwards.
-float parallelSlope(int at, int texels, float plane, float squaredStep, float across, float ray2, vec2 grows) {
-  vec2 change = vec2(1.0, -1.0) * grows + plane;
-  vec2 squared = squaredStep + change * (across + change * ray2);
-  bool forward = at + 1 < texels && grows.x < kNoDepth, backward = at > 0 && grows.y < kNoDepth;
-  // A step less steep than 60 degrees is no edge.
-  if (forward && (!backward || squared.x < 4.0 * squaredStep || squared.x <= squared.y)) return change.x;
-  return backward ? change.y : kNoDepth;
-}
-
-// A texel's caster: what lies behind the stored surface, and the surface's material.
-struct Behind {
-  float exit; // see EntryPoint
-  uint material;
-  bool opaque; // no light enters
-};
-
-// `texel`: of the image.
-Behind behind(EntryMapConstants map, ivec2 texel) {
-  Behind b = Behind(kNoExit, 0u, false);
-  if (map.occluder.y != 0u) {
-    float index = shadowTexel(map.occluder.y - 1u, texel) * uintBitsToFloat(map.occluder.z);
-    // NaN counts as opaque.
-    b.material = index >= 0.5 && index < 255.5 ? uint(index + 0.5) : 0u;
-    b.opaque = b.material == 0u;
-  }
-  return b;
-}
-
-// The entry of a surface at y that part `share` of the light enters. `normal`: of the map, not normalized, 0 where no neighbor
-// says. `pixel`, `front`, `planar`: where the camera sees y, what it shows there, and y's planar distance. `tolerance`: half a
-// texel, scene units; `uncertain`: scene units along the light that the surface may be off by.
-uvec4 entryOf(float depth, vec3 y, float share, vec3 normal, vec3 toLight, ivec2 pixel, float front, float planar,
-              float tolerance, float uncertain, Behind b) {
-  if (b.opaque) share = 0.0;
-  EntryPoint r = EntryPoint(depth, toLight, share, 0.0, 1.0, b.exit, b.material);
+// Unit normal towards the light of the surface at y; towards the light itself where no neighbor says.
+vec3 mapNormal(EntryMapConstants map, ivec2 texel, MapPoint y, vec4 beside, vec3 toLight) {
+  float scale = map.meta.z == 0u ? 1.0 : y.depth * y.depth;
+  float squareX = scale * dot(map.stepX.xyz, map.stepX.xyz), squareY = scale * dot(map.stepY.xyz, map.stepY.xyz);
+  vec3 normal = cross(entrySlope(map, texel, y.position, ivec2(1, 0), beside.xy, squareX),
+                      entrySlope(map, texel, y.position, ivec2(0, 1), beside.zw, squareY));
   float squared = dot(normal, normal);
-  if (squared > 0.0) {
-    normal *= inversesqrt(squared);
-    float cosine = dot(normal, toLight);
-    r.normal = cosine < 0.0 ? -normal : normal;
-    r.cosine = abs(cosine);
-  }
-  bool shown = false;
-  if (insideRect(pixel) && front > 0.0) {
-    vec3 own = shownNormal(pixel, front);
-    ViewRay ray = viewRay(frame.camera, pixel);
-    float cosine = dot(own, toLight), above = dot(own, y - ray.origin - front * ray.direction);
-    shown = dot(own, own) > 0.0 && abs(above) <= tolerance + uncertain * abs(cosine);
-    if (shown) {
-      r.normal = own;
-      r.cosine = max(cosine, 0.0);
-    }
-  }
-  if (shown || cameraSees(pixel, front, planar, r.normal, tolerance, uncertain * dot(r.normal, toLight))) {
-    r.seen = share;
-    r.hidden = 0.0;
-  }
-  return packEntry(r);
+  if (!(squared > 0.0)) return toLight;
+  return normal * (dot(normal, toLight) < 0.0 ? -inversesqrt(squared) : inversesqrt(squared));
 }
-
-const ivec2 kNoPixel = ivec2(-1);
 
 bvec4 neighborsHold(EntryMapConstants map, vec4 beside) {
   return bvec4(shadowHolds(map.meta, beside.x), shadowHolds(map.meta, beside.y), shadowHolds(map.meta, beside.z),
@@ -196,80 +185,72 @@ ShadowTexels drawnTexels(EntryMapConstants map, ivec2 texel, ShadowTexels stored
   return ShadowTexels(drawn.depth, mix(stored.beside, drawn.depth + steps, stores));
 }
 
-// stored: as drawn; `uncertain`: see drawnTexels.
-uvec4 parallelEntry(EntryMapConstants map, ivec2 texel, ShadowTexels stored, float uncertain) {
-  vec4 beside = stored.beside;
-  bvec4 holds = neighborsHold(map, beside);
-  vec4 grows = mix(vec4(2.0 * kNoDepth), (beside - stored.own) * map.ray.w, holds);
-  vec2 p = vec2(texel) + 0.5;
-  float depth = stored.own * map.ray.w + (map.origin.w + p.x * map.stepX.w + p.y * map.stepY.w) + map.offsets.z;
-  if (!(abs(depth) < kNoDepth)) return kNoEntry;
-  vec4 q = vec4(p, depth, 1.0);
-  float w = dot(map.pixelW, q), planar = dot(map.planar, q);
-  ivec2 pixel = kNoPixel;
-  // Far outside stays outside after the conversion.
-  if (abs(w) > 0.0 && planar > 0.0)
-    pixel = ivec2(floor(clamp(vec2(dot(map.pixelX, q), dot(map.pixelY, q)) / w, vec2(-1.0e6), vec2(1.0e6))));
-  float front = frontAround(pixel);
-  float squareX = dot(map.stepX.xyz, map.stepX.xyz), squareY = dot(map.stepY.xyz, map.stepY.xyz);
-  float ray2 = map.across[1].w;
-  float slopeX = parallelSlope(texel.x, int(map.map.x), map.stepX.w, squareX, map.normal.w, ray2, grows.xy);
-  float slopeY = parallelSlope(texel.y, int(map.map.y), map.stepY.w, squareY, map.across[0].w, ray2, grows.zw);
-  vec3 normal = vec3(0.0);
-  if (slopeX < kNoDepth && slopeY < kNoDepth)
-    normal = map.normal.xyz + slopeX * map.across[0].xyz + slopeY * map.across[1].xyz;
-  ivec2 inImage = texel + firstTexel(map.occluder);
-  Behind b = behind(map, inImage);
-  if (map.occluder.x != 0u) {
-    float exit = shadowTexel(map.occluder.x - 1u, inImage);
-    // Depths of entry points grow towards the light.
-    if (shadowHolds(map.meta, exit)) b.exit = max((stored.own - exit) * map.ray.w + map.offsets.z, 0.0);
-  }
-  vec3 y = map.origin.xyz + p.x * map.stepX.xyz + p.y * map.stepY.xyz + depth * map.ray.xyz;
-  return entryOf(depth, y, 1.0, normal, map.toLight.xyz, pixel, front, planar, map.seen.x, uncertain * abs(map.ray.w), b);
+// Largest slope of a surface in the map's texels: 87 degrees.
+const float kLeastAlong = 0.05;
+
+// The larger change of the stored device depth from texel to texel on a plane through a point, which the rasterizer's slope bias
+// has multiplied.
+float slopeOnPlane(EntryMapConstants map, vec3 position, vec3 normal) {
+  bool parallel = map.meta.z == 0u;
+  vec3 ray = parallel ? map.ray.xyz : position - map.ray.xyz;
+  float along = dot(normal, ray), least = max(kLeastAlong * length(ray), 1.0e-12);
+  if (abs(along) < least) along = along < 0.0 ? -least : least;
+  vec2 onPlane = vec2(dot(normal, map.stepX.xyz), dot(normal, map.stepY.xyz)) / along, affine = vec2(map.stepX.w, map.stepY.w);
+  vec2 steps = abs(parallel ? (onPlane + affine) / map.ray.w : affine + map.ray.w * onPlane); // ray.w is not 0
+  return max(steps.x, steps.y);
 }
 
-// `stored`, `uncertain`: as parallelEntry takes them.
-uvec4 perspectiveEntry(EntryMapConstants map, ivec2 texel, ShadowTexels stored, float uncertain) {
-  float depth, beside;
-  vec3 y = surfacePoint(map, texel, stored.own, depth);
-  if (!(abs(depth) < kNoDepth)) return kNoEntry;
-  float scale = depth * depth;
-  float squareX = scale * dot(map.stepX.xyz, map.stepX.xyz), squareY = scale * dot(map.stepY.xyz, map.stepY.xyz);
-  vec3 normal = cross(entrySlope(map, texel, y, ivec2(1, 0), stored.beside.xy, squareX),
-                      entrySlope(map, texel, y, ivec2(0, 1), stored.beside.zw, squareY));
-  if (uncertain > 0.0) uncertain = min(distance(surfacePoint(map, texel, stored.own + uncertain, beside), y), kNoDepth);
-  if (map.offsets.z > 0.0) {
-    // Not beyond the light.
-    float part = max(1.0 - map.offsets.z / max(distance(y, map.ray.xyz), 1.0e-12), 1.0e-3);
-    y = map.ray.xyz + part * (y - map.ray.xyz);
-    depth *= part;
-  }
-  ivec2 pixel;
-  if (!projectToPixel(frame.camera, y, pixel)) pixel = kNoPixel;
-  float front = frontAround(pixel);
-  vec3 toLight = map.ray.xyz - y;
-  float distanceTo = length(toLight);
-  toLight /= max(distanceTo, 1.0e-12);
-  float share = shareOfLight(lights[map.map.w], toLight, distanceTo);
-  float tolerance = abs(depth) * map.seen.x;
-  ivec2 inImage = texel + firstTexel(map.occluder);
-  Behind b = behind(map, inImage);
-  if (map.occluder.x != 0u) {
-    float exit = shadowTexel(map.occluder.x - 1u, inImage), exitDepth;
-    vec3 e = surfacePoint(map, texel, exit, exitDepth);
-    if (shadowHolds(map.meta, exit) && abs(exitDepth) < kNoDepth) b.exit = distance(e, y);
-  }
-  return entryOf(depth, y, share, normal, toLight, pixel, front, y.z * frame.camera.range.x, tolerance, uncertain, b);
-}
+// ---- The entry point
 
 // `texel`: of the map's tile.
 uvec4 entryOf(EntryMapConstants map, ivec2 texel) {
-  ivec2 first = firstTexel(map.occluder);
-  ShadowTexels stored = shadowTexels(map.meta.x, texel + first, first, first + ivec2(map.map.xy) - 1);
+  ivec2 first = firstTexel(map.occluder), inImage = texel + first;
+  ShadowTexels stored = shadowTexels(map.meta.x, inImage, first, first + ivec2(map.map.xy) - 1);
   if (!shadowHolds(map.meta, stored.own)) return kNoEntry;
-  float uncertain = 0.0;
+  float asDrawn = stored.own, uncertain = 0.0;
   if (any(notEqual(map.offsets.xyw, vec3(0.0)))) stored = drawnTexels(map, texel, stored, uncertain);
-  if (map.meta.z != 0u) return perspectiveEntry(map, texel, stored, uncertain);
-  return parallelEntry(map, texel, stored, uncertain);
+  MapPoint y = pointOf(map, texel, stored.own);
+  if (!(abs(y.depth) < kNoDepth)) return kNoEntry;
+  bool parallel = map.meta.z == 0u;
+  vec3 toLight = parallel ? map.toLight.xyz : normalize(map.ray.xyz - y.position);
+  vec3 normal = mapNormal(map, texel, y, stored.beside, toLight);
+  float tolerance = map.seen.x * (parallel ? 1.0 : abs(y.depth)); // half a texel
+  if (uncertain > 0.0) uncertain = min(distance(pointOf(map, texel, stored.own + uncertain).position, y.position), kNoDepth);
+
+  // Where the camera shows the surface, its normal is known. The map's neighbors err where it is steep and between triangles
+  // that a slope bias moved apart: light between points of one lit surface would then seem to come through.
+  Shown shown = shownAt(y.position);
+  bool isShown = liesOn(shown, toLight, tolerance, uncertain);
+  bool moved = map.offsets.y != 0.0 && map.meta.y == PELLUCID_SHADER_DEPTH_DEVICE;
+  Shown next = shown;
+  for (int i = 0; i < 2 && moved && !isShown; ++i) {
+    if (next.normal == vec3(0.0)) break;
+    MapPoint again = pointOf(map, texel, asDrawn - map.offsets.x - map.offsets.y * slopeOnPlane(map, y.position, next.normal));
+    if (!(abs(again.depth) < kNoDepth)) break;
+    next = shownAt(again.position);
+    isShown = liesOn(next, toLight, tolerance, uncertain);
+    if (isShown) {
+      y = again;
+      shown = next;
+    }
+  }
+  if (isShown) normal = shown.normal;
+
+  float share = parallel ? 1.0 : shareOfLight(lights[map.map.w], toLight, distance(map.ray.xyz, y.position));
+  uint material = 0u;
+  if (map.occluder.y != 0u) {
+    float index = shadowTexel(map.occluder.y - 1u, inImage) * uintBitsToFloat(map.occluder.z);
+    material = index >= 0.5 && index < 255.5 ? uint(index + 0.5) : 0u;
+    if (material == 0u) share = 0.0; // opaque, as is NaN
+  }
+  float exit = kNoExit;
+  if (map.occluder.x != 0u) {
+    float exitStored = shadowTexel(map.occluder.x - 1u, inImage);
+    MapPoint behind = pointOf(map, texel, exitStored);
+    if (shadowHolds(map.meta, exitStored) && abs(behind.depth) < kNoDepth)
+      exit = max(dot(y.position - behind.position, toLight) + map.offsets.z, 0.0); // the exit has no offset
+  }
+  float cosine = max(dot(normal, toLight), 0.0);
+  bool seen = isShown || cameraSees(shown, normal, tolerance, uncertain * cosine);
+  return packEntry(EntryPoint(y.depth, normal, seen ? 0.0 : share, seen ? share : 0.0, cosine, exit, material));
 }
