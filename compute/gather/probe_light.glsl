@@ -55,8 +55,9 @@ struct Gathered {
 
 // Adds a sample. `to`: from the lit point to x; `near`, `far`: distances of its ring from x; `flux`: per area across the axis.
 void addSample(inout Gathered sum, Surface x, uint m, vec4 lengths, EntryPoint entry, vec3 to, float near, float far,
-               float flux, float axisCosine) {
+               float flux, float axisCosine, float uncertain) {
   float squared = dot(to, to);
+  if (x.hasNormal && entry.hidden > 0.0 && entry.seen == 0.0 && abs(dot(x.normal, to)) <= uncertain) entry.normal = x.normal;
   float opposite = x.hasNormal ? 0.5 - 0.5 * dot(x.normal, entry.normal) : 1.0; // 1 - m
   float through = max(-dot(entry.normal, to), 0.0);
   float squaredH = x.hasNormal ? through * max(dot(x.normal, to), 0.0) / max(opposite, 1.0e-4) : through * through;
@@ -127,7 +128,7 @@ Gathered gatherSamples(uint m, LightConstants light, Surface x, Pattern pattern,
     float inside = staysInside(rings, entry, to, parallel ? incident.toLight : normalize(toLight));
     entry.hidden *= inside;
     entry.seen *= inside;
-    addSample(sum, x, m, lengths, entry, to, sqrt(plane + from), sqrt(plane + inner), flux, rings.axisCosine);
+    addSample(sum, x, m, lengths, entry, to, sqrt(plane + from), sqrt(plane + inner), flux, rings.axisCosine, rings.entrySide * 0.0);
   }
   return sum;
 }

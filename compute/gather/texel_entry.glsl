@@ -81,8 +81,12 @@ Shown shownAt(vec3 position) {
 }
 
 // True where the point is of the surface that its pixel shows. `tolerance`: scene units; `uncertain`: along the light.
-bool liesOn(Shown s, vec3 toLight, float tolerance, float uncertain) {
-  return dot(s.normal, s.normal) > 0.0 && abs(s.above) <= tolerance + uncertain * abs(dot(s.normal, toLight));
+bool liesOn(Shown s, vec3 toLight, float tolerance, float uncertain, bool moved) {
+  vec3 vr = viewRay(frame.camera, s.pixel).direction;
+  if (!moved && slopeOf(dot(s.normal, vr) * inversesqrt(dot(vr, vr))) >= 2.0) return false;
+  vec2 squaredP = squaredPixelSize(frame.camera, s.front);
+  tolerance = min(tolerance, 0.5 * sqrt(max(squaredP.x, squaredP.y)));
+  return dot(s.normal, toLight) > 0.0 && abs(s.above) <= tolerance + uncertain * abs(dot(s.normal, toLight));
 }
 
 // Slope towards the camera up to which a pixel's own slope excuses a point behind its depth: 63 degrees. Steeper limbs enter
@@ -220,7 +224,7 @@ uvec4 entryOf(EntryMapConstants map, ivec2 texel) {
   // Where the camera shows the surface, its normal is known. The map's neighbors err where it is steep and between triangles
   // that a slope bias moved apart: light between points of one lit surface would then seem to come through.
   Shown shown = shownAt(y.position);
-  bool isShown = liesOn(shown, toLight, tolerance, uncertain);
+  bool isShown = liesOn(shown, toLight, tolerance, uncertain, map.offsets.y != 0.0);
   bool moved = map.offsets.y != 0.0 && map.meta.y == PELLUCID_SHADER_DEPTH_DEVICE;
   Shown next = shown;
   for (int i = 0; i < 2 && moved && !isShown; ++i) {
@@ -228,7 +232,7 @@ uvec4 entryOf(EntryMapConstants map, ivec2 texel) {
     MapPoint again = pointOf(map, texel, asDrawn - map.offsets.x - map.offsets.y * slopeOnPlane(map, y.position, next.normal));
     if (!(abs(again.depth) < kNoDepth)) break;
     next = shownAt(again.position);
-    isShown = liesOn(next, toLight, tolerance, uncertain);
+    isShown = liesOn(next, toLight, tolerance, uncertain, moved);
     if (isShown) {
       y = again;
       shown = next;
