@@ -57,7 +57,8 @@ struct Gathered {
 void addSample(inout Gathered sum, Surface x, uint m, vec4 lengths, EntryPoint entry, vec3 to, float near, float far,
                float flux, float axisCosine, float uncertain) {
   float squared = dot(to, to);
-  if (x.hasNormal && entry.hidden > 0.0 && entry.seen == 0.0 && abs(dot(x.normal, to)) <= uncertain) entry.normal = x.normal;
+  // A point that a bias moved off the surface of x, as far as anybody knows, is of that surface.
+  if (x.hasNormal && entry.seen == 0.0 && abs(dot(x.normal, to)) < uncertain) entry.normal = x.normal;
   float opposite = x.hasNormal ? 0.5 - 0.5 * dot(x.normal, entry.normal) : 1.0; // 1 - m
   float through = max(-dot(entry.normal, to), 0.0);
   float squaredH = x.hasNormal ? through * max(dot(x.normal, to), 0.0) / max(opposite, 1.0e-4) : through * through;
@@ -128,7 +129,7 @@ Gathered gatherSamples(uint m, LightConstants light, Surface x, Pattern pattern,
     float inside = staysInside(rings, entry, to, parallel ? incident.toLight : normalize(toLight));
     entry.hidden *= inside;
     entry.seen *= inside;
-    addSample(sum, x, m, lengths, entry, to, sqrt(plane + from), sqrt(plane + inner), flux, rings.axisCosine, rings.entrySide * 0.0);
+    addSample(sum, x, m, lengths, entry, to, sqrt(plane + from), sqrt(plane + inner), flux, rings.axisCosine, rings.entrySide * maps[map].stepY.w);
   }
   return sum;
 }

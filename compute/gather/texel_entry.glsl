@@ -86,7 +86,7 @@ bool liesOn(Shown s, vec3 toLight, float tolerance, float uncertain, bool moved)
   if (!moved && slopeOf(dot(s.normal, vr) * inversesqrt(dot(vr, vr))) >= 2.0) return false;
   vec2 squaredP = squaredPixelSize(frame.camera, s.front);
   tolerance = min(tolerance, 0.5 * sqrt(max(squaredP.x, squaredP.y)));
-  return dot(s.normal, toLight) > 0.0 && abs(s.above) <= tolerance + uncertain * abs(dot(s.normal, toLight));
+  return dot(s.normal, s.normal) > 0.0 && abs(s.above) <= tolerance + uncertain * abs(dot(s.normal, toLight));
 }
 
 // Slope towards the camera up to which a pixel's own slope excuses a point behind its depth: 63 degrees. Steeper limbs enter
@@ -227,7 +227,7 @@ uvec4 entryOf(EntryMapConstants map, ivec2 texel) {
   bool isShown = liesOn(shown, toLight, tolerance, uncertain, map.offsets.y != 0.0);
   bool moved = map.offsets.y != 0.0 && map.meta.y == PELLUCID_SHADER_DEPTH_DEVICE;
   Shown next = shown;
-  for (int i = 0; i < 2 && moved && !isShown; ++i) {
+  for (int i = 0; i < 3 && moved && !isShown; ++i) {
     if (next.normal == vec3(0.0)) break;
     MapPoint again = pointOf(map, texel, asDrawn - map.offsets.x - map.offsets.y * slopeOnPlane(map, y.position, next.normal));
     if (!(abs(again.depth) < kNoDepth)) break;
