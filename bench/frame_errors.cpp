@@ -7,12 +7,14 @@
 #include <fstream>
 #include <random>
 #include <type_traits>
+#include <utility>
 
 #include "common/compare.h"
 #include "common/error.h"
 #include "common/parallel.h"
 #include "common/whole_file.h"
 #include "metrics/eye.h"
+#include "metrics/flicker.h"
 #include "reference/diffusion.h"
 #include "reference/surface.h"
 
@@ -195,9 +197,18 @@ double rootMeanSquare(const ChannelErrors& errors) {
   return std::sqrt(sum / static_cast<double>(errors.size()));
 }
 
+namespace {
+
+Image timesAlbedo(Image image, const Capture& capture) {
+  for (size_t i = 0; i < image.data.size() && !capture.albedo.empty(); ++i)
+    image.data[i] *= capture.albedo.data[i];
+  return image;
+}
+
+}  // namespace
+
 nlohmann::json errorFields(Image result, const Capture& capture) {
-  for (size_t i = 0; i < result.data.size() && !capture.albedo.empty(); ++i)
-    result.data[i] *= capture.albedo.data[i];
+  result = timesAlbedo(std::move(result), capture);
   const Comparison comparison = compareImages(
       result, capture.truth->image, comparisonMask(capture.material, capture.irradiance, Subset::All), kBox);
   ChannelErrors errors{};
@@ -206,10 +217,27 @@ nlohmann::json errorFields(Image result, const Capture& capture) {
   return {{"truth_relative_rmse", rootMeanSquare(errors)},
           {"truth_relative_rmse_rgb", errors},
           {"isolated", eye.isolated},
+          {"spots", eye.spots},
           {"tint", eye.tint.channel},
           {"tint_red_green", eye.tint.redOverGreen},
           {"flip", eye.flip.mean},
           {"flip_p99", eye.flip.p99}};
+}
+
+nlohmann::json flickerFields(Image result, Image turnedResult, const Capture& capture,
+                             const Capture& turned) {
+  result = timesAlbedo(std::move(result), capture);
+  turnedResult = timesAlbedo(std::move(turnedResult), turned);
+  const Surfaces surfaces(capture);
+  const Mask mask = comparisonMask(capture.material, capture.irradiance, Subset::All);
+  const auto spotsOf = [&](const Image& image) { return SpotImage(image, surfaces, mask); };
+  const SpotFlicker spots = compareSpots(spotsOf(result), spotsOf(litAlbedo(capture)), spotsOf(turnedResult),
+                                         spotsOf(litAlbedo(turned)));
+  return {{"flicker_rgb", compareTurned(result, turnedResult, surfaces, mask).relativeRmse},
+          {"flicker_irradiance_rgb",
+           compareTurned(capture.irradiance, turned.irradiance, surfaces, mask).relativeRmse},
+          {"spots_appear", spots.appear},
+          {"spots_vanish", spots.vanish}};
 }
 
 }  // namespace pellucid::bench

@@ -31,9 +31,15 @@ ChannelErrors diffusionErrors(const harness::Image& result, const DiffusionTruth
 double rootMeanSquare(const ChannelErrors& errors);
 
 // The fields that a row gets of its image, which albedo has not multiplied, and the capture's path-traced
-// truth: "truth_relative_rmse" and "truth_relative_rmse_rgb", over 4x4 averages, and "isolated", "tint",
-// "tint_red_green", "flip" and "flip_p99" of metrics/eye.h. Every measure of whole images belongs here. The
-// capture has a truth.
+// truth: "truth_relative_rmse" and "truth_relative_rmse_rgb", over 4x4 averages, and "isolated", "spots",
+// "tint", "tint_red_green", "flip" and "flip_p99" of metrics/eye.h. Every measure of whole images belongs
+// here. The capture has a truth.
 nlohmann::json errorFields(harness::Image result, const harness::Capture& capture);
+
+// The fields that a row gets of its image and of that of `turned`, the frame after its lights turned a
+// little: "flicker_rgb" and "flicker_irradiance_rgb", relative RMSE of compareTurned(), and "spots_appear"
+// and "spots_vanish". Albedo has multiplied neither image.
+nlohmann::json flickerFields(harness::Image result, harness::Image turnedResult,
+                             const harness::Capture& capture, const harness::Capture& turned);
 
 }  // namespace pellucid::bench

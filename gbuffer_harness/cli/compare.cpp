@@ -22,6 +22,7 @@
 #include "common/png.h"
 #include "metrics/isolated.h"
 #include "metrics/ratio_map.h"
+#include "metrics/spots.h"
 
 namespace pellucid::harness {
 
@@ -33,7 +34,10 @@ constexpr const char* kDefinitions =
     "rel_rmse: sqrt(mean (A-B)^2) / RMS(B). p999, max: of |A-B| / RMS(B). psnr: 20 log10(max B / RMSE), dB.\n"
     "bias: mean A / mean B - 1. Each channel by itself, over the samples.\n"
     "isolated: pixels 1.3 times above or below all neighbors of their surface; not in B where B's pixel is\n"
-    "not 1.1 times above or below in the same way. tint: standard deviation of\n"
+    "not 1.1 times above or below in the same way. spots: regions of up to 5x5 pixels 1.3 times above or "
+    "below\n"
+    "the median of their surface around, by more than the irradiance of the capture has; not in B where A's\n"
+    "contrast is 1.3 times B's. tint: standard deviation of\n"
     "A / B over 8x8 averages, per channel and of red over green. flip: LDR-FLIP under one exposure, 0 .. 1.\n"
     "noise: B's standard errors over its RMS. chi2: sum of (A-B)^2 over the sum of squared standard errors,\n"
     "in samples wholly of mask: 1 where noise is all that differs. Both need files with standard errors.\n"
@@ -51,8 +55,8 @@ constexpr std::array<Measure, 5> kMeasures = {{{"rel_rmse", &ChannelDifference::
 constexpr std::array<const char*, 3> kChannelNames = {"R", "G", "B"};
 
 const std::vector<LimitKind> kLimitKinds = {
-    {"rel_rmse"}, {"p999"},           {"max"},  {"psnr", true}, {"bias"},
-    {"isolated"}, {"isolated_alone"}, {"tint"}, {"flip"},       {"flip_p99"}};
+    {"rel_rmse"},       {"p999"},  {"max"},         {"psnr", true}, {"bias"}, {"isolated"},
+    {"isolated_alone"}, {"spots"}, {"spots_alone"}, {"tint"},       {"flip"}, {"flip_p99"}};
 
 struct Options {
   std::string a, b, mask, diff, ratio, isolated, layer, subset = "all";
@@ -69,6 +73,7 @@ struct Result {
   Comparison comparison;
   IsolatedPixels isolatedA, isolatedB;
   std::size_t aloneA = 0;  // of A's, those that do not stick out of B even a little
+  std::vector<Spot> spotsA, spotsB, spotsAloneA;
   Tint tint;
   Flip flip;
 };
@@ -112,6 +117,11 @@ Json toJson(const IsolatedPixels& isolated) {
   return {{"count", isolated.count}, {"bright", isolated.bright}, {"dark", isolated.dark}};
 }
 
+Json toJson(const std::vector<Spot>& spots) {
+  const std::size_t bright = brightOf(spots);
+  return {{"count", spots.size()}, {"bright", bright}, {"dark", spots.size() - bright}};
+}
+
 Json toJson(const Result& result, const Options& options) {
   const Comparison& comparison = result.comparison;
   Json json = {{"a", options.a},
@@ -128,6 +138,8 @@ Json toJson(const Result& result, const Options& options) {
   if (!result.chi2.empty()) json["chi2"] = result.chi2;
   json["isolated"] = {
       {"a", toJson(result.isolatedA)}, {"b", toJson(result.isolatedB)}, {"aAlone", result.aloneA}};
+  json["spots"] = {
+      {"a", toJson(result.spotsA)}, {"b", toJson(result.spotsB)}, {"aAlone", toJson(result.spotsAloneA)}};
   json["tint"] = toJson(result.tint);
   json["flip"] = toJson(result.flip);
   return json;
@@ -160,12 +172,20 @@ std::string toText(const Result& result, const Options& options) {
   };
   numbers("noise of B", result.noise);
   numbers("chi2", result.chi2);
-  const auto isolated = [](const IsolatedPixels& pixels) {
-    return std::to_string(pixels.count) + " (" + std::to_string(pixels.bright) + " bright, " +
-           std::to_string(pixels.dark) + " dark)";
+  const auto counted = [](std::size_t count, std::size_t bright, std::size_t dark) {
+    return std::to_string(count) + " (" + std::to_string(bright) + " bright, " + std::to_string(dark) +
+           " dark)";
+  };
+  const auto isolated = [&](const IsolatedPixels& pixels) {
+    return counted(pixels.count, pixels.bright, pixels.dark);
+  };
+  const auto spots = [&](const std::vector<Spot>& all) {
+    return counted(all.size(), brightOf(all), all.size() - brightOf(all));
   };
   text << "  isolated pixels: A has " << isolated(result.isolatedA) << ", " << result.aloneA
-       << " of them not in B, which has " << isolated(result.isolatedB) << "\n  tint: ";
+       << " of them not in B, which has " << isolated(result.isolatedB) << "\n  spots: A has "
+       << spots(result.spotsA) << ", " << result.spotsAloneA.size() << " of them not in B, which has "
+       << spots(result.spotsB) << "\n  tint: ";
   for (const double value : result.tint.channel) text << value << " ";
   text << "(R G B), red over green " << result.tint.redOverGreen << ", of " << result.tint.blocks
        << " blocks\n  flip: mean " << result.flip.mean << ", 99th percentile " << result.flip.p99
@@ -178,6 +198,8 @@ void checkLimits(const Result& result, const Limits& limits) {
   const Comparison& comparison = result.comparison;
   std::vector<Measured> values = {{"isolated", "A", static_cast<double>(result.isolatedA.count)},
                                   {"isolated_alone", "A", static_cast<double>(result.aloneA)},
+                                  {"spots", "A", static_cast<double>(result.spotsA.size())},
+                                  {"spots_alone", "A", static_cast<double>(result.spotsAloneA.size())},
                                   {"tint", "red over green", result.tint.redOverGreen},
                                   {"flip", "", result.flip.mean},
                                   {"flip_p99", "", result.flip.p99}};
@@ -223,6 +245,13 @@ void compare(const Options& options) {
   result.isolatedA = findIsolated(a, surfaces, mask);
   result.isolatedB = findIsolated(b, surfaces, mask);
   result.aloneA = result.isolatedA.alone(findIsolated(b, surfaces, mask, kNearlyIsolated));
+  const SpotImage spotImageA(a, surfaces, mask), spotImageB(b, surfaces, mask);
+  std::optional<SpotImage> input;
+  if (capture) input.emplace(litAlbedo(*capture), surfaces, mask);
+  const SpotImage* explains = input ? &*input : nullptr;
+  result.spotsA = spotImageA.find(explains);
+  result.spotsB = spotImageB.find(explains);
+  result.spotsAloneA = spotImageA.lackedBy(spotImageB, result.spotsA);
   result.tint = measureTint(a, b, mask);
   result.flip = measureFlip(a, b, mask, options.exposure);
   std::cout << (options.json ? toJson(result, options).dump(2) + "\n" : toText(result, options));
@@ -230,7 +259,8 @@ void compare(const Options& options) {
   if (!options.ratio.empty()) writePng(options.ratio, b.width, b.height, ratioMap(a, b, mask));
   if (!options.isolated.empty())
     writePng(options.isolated, a.width, a.height,
-             markIsolated(a, result.isolatedA, static_cast<float>(result.flip.exposure)));
+             markSpots(markIsolated(a, result.isolatedA, static_cast<float>(result.flip.exposure)), a,
+                       result.spotsA, result.spotsAloneA));
   checkLimits(result, limits);
 }
 
@@ -267,13 +297,15 @@ void addCompareCommand(CLI::App& app) {
       ->add_option(
           "--limit", options->limits,
           "exit with 1 when a channel exceeds it: rel_rmse=, p999=, max=, bias=, tint= (at most), psnr= (at "
-          "least); or the whole: isolated=, isolated_alone=, flip=, flip_p99= (at most)")
+          "least); or the whole: isolated=, isolated_alone=, spots=, spots_alone=, flip=, "
+          "flip_p99= (at most)")
       ->delimiter(',')
       ->take_all();
   command->add_option("--diff", options->diff, "write a PNG: A, B, 4 |A-B|");
   command->add_option("--ratio", options->ratio,
                       "write a PNG of A / B over 4x4 averages: gray where right, full color at 10 % off");
-  command->add_option("--isolated", options->isolated, "write a PNG of A with its isolated pixels framed");
+  command->add_option("--isolated", options->isolated,
+                      "write a PNG of A with its isolated pixels and its spots framed");
   command
       ->add_option("--exposure", options->exposure,
                    "factor for flip and --isolated; default: B's 99th percentile to 0.8")

@@ -36,8 +36,9 @@ std::string eyeCells(const EyeMetrics& eye) {
                                                  tint[2], eye.tint.redOverGreen),
                                    text)
                                 : "no such blocks | ";
-  std::snprintf(text, sizeof text, "%zu (%zu) | %s | %.3f | %.3f | %.3g", eye.isolated, eye.isolatedInTruth,
-                tints.c_str(), eye.flip.mean, eye.flip.p99, eye.flip.exposure);
+  std::snprintf(text, sizeof text, "%zu (%zu) | %zu | %s | %.3f | %.3f | %.3g", eye.isolated,
+                eye.isolatedInTruth, eye.spots, tints.c_str(), eye.flip.mean, eye.flip.p99,
+                eye.flip.exposure);
   return text;
 }
 
@@ -110,10 +111,11 @@ std::string evaluationMarkdown(const std::vector<Evaluation>& evaluations, const
     text << "| " << e.capture << " | " << e.model << " | " << errorCells(e.all) << " | "
          << errorCells(e.unlit) << " |\n";
   text << "\nWhat the eye sees against path-traced truth: isolated pixels (those of the truth in "
-          "parentheses), "
+          "parentheses), spots that the truth lacks, "
           "tint of 8x8 averages (R G B, then red over green), FLIP.\n\n"
-       << "| capture | model | isolated | tint | red/green | FLIP mean | 99th percentile | at exposure |\n"
-       << "|-|-|-|-|-|-|-|-|\n";
+       << "| capture | model | isolated | spots | tint | red/green | FLIP mean | 99th percentile | at "
+          "exposure |\n"
+       << "|-|-|-|-|-|-|-|-|-|\n";
   for (const Evaluation& e : evaluations)
     text << "| " << e.capture << " | " << e.model << " | " << eyeCells(e.eye) << " |\n";
   text << noiseTable(evaluations, boxes);
@@ -129,6 +131,7 @@ std::string evaluationJson(const std::vector<Evaluation>& evaluations, const Eva
                        {"unlit", toJson(e.unlit)},
                        {"isolated", e.eye.isolated},
                        {"isolatedInTruth", e.eye.isolatedInTruth},
+                       {"spots", e.eye.spots},
                        {"tint", toJson(e.eye.tint)},
                        {"flip", toJson(e.eye.flip)},
                        {"truthNoise", e.noise},

@@ -40,9 +40,12 @@ constexpr const char* kDefinitions =
     "lights turned: the lights turn about the vertical through the scene's center. The difference is the\n"
     "change less its mean over 5x5 pixels, as diffused light changes evenly; hard shadows' edges count.\n"
     "irradiance: the input is compared likewise, before any diffusion.\n"
+    "spots: regions of up to 5x5 pixels that stand out of their surface, as compare counts them, that only "
+    "the\n"
+    "frame of turned lights has (appear), or only the still one (vanish).\n"
     "docs/accuracy.md has the definitions.\n";
 
-const std::vector<LimitKind> kLimitKinds = {{"rel_rmse"}, {"p999"}, {"worst"}};
+const std::vector<LimitKind> kLimitKinds = {{"rel_rmse"}, {"p999"}, {"worst"}, {"spots"}};
 
 struct Options {
   CaptureOptions scene;
@@ -62,6 +65,7 @@ struct Frames {
 struct Row {
   std::string change;
   Flicker flicker;
+  std::optional<SpotFlicker> spots;  // of results whose lights turned
 };
 
 bool isCaptureFile(const std::string& path) {
@@ -137,7 +141,7 @@ std::vector<Row> measure(const Options& options, const std::vector<int>& pixels,
   for (const int k : pixels) {
     const Image moved = run(movedCapture(frames.still, k, 0, rim));
     rows.push_back({"moved by " + std::to_string(k) + (std::abs(k) == 1 ? " pixel" : " pixels"),
-                    compareShifted(still, moved, mask, k, 0)});
+                    compareShifted(still, moved, mask, k, 0), std::nullopt});
   }
   if (frames.turned) {
     const Capture turned = movedCapture(*frames.turned, 0, 0, rim);
@@ -145,9 +149,13 @@ std::vector<Row> measure(const Options& options, const std::vector<int>& pixels,
     char degrees[32];
     std::snprintf(degrees, sizeof degrees, "%g", options.lightDegrees);
     const std::string change = std::string("lights turned by ") + degrees + " degrees";
-    rows.push_back({change, compareTurned(still, run(turned), surfaces, mask)});
+    const Image after = run(turned);
+    const auto spotsOf = [&](const Image& image) { return SpotImage(image, surfaces, mask); };
     rows.push_back(
-        {change + ", irradiance", compareTurned(base.irradiance, turned.irradiance, surfaces, mask)});
+        {change, compareTurned(still, after, surfaces, mask),
+         compareSpots(spotsOf(still), spotsOf(litAlbedo(base)), spotsOf(after), spotsOf(litAlbedo(turned)))});
+    rows.push_back({change + ", irradiance",
+                    compareTurned(base.irradiance, turned.irradiance, surfaces, mask), std::nullopt});
   }
   return rows;
 }
@@ -162,6 +170,11 @@ std::string toMarkdown(const std::vector<Row>& rows) {
                   row.flicker.worstPixel[0], row.flicker.worstPixel[1]);
     text += line;
   }
+  for (const Row& row : rows)
+    if (row.spots)
+      text += "\nspots, " + row.change + ": " + std::to_string(row.spots->still) + " before, " +
+              std::to_string(row.spots->turned) + " after; " + std::to_string(row.spots->appear) +
+              " appear, " + std::to_string(row.spots->vanish) + " vanish\n";
   return text;
 }
 
@@ -186,6 +199,7 @@ void flicker(const CLI::App& command, const std::vector<const CLI::Option*>& sce
     for (const Row& row : rows) {
       Json change = toJson(row.flicker);
       change["change"] = row.change;
+      if (row.spots) change["spots"] = toJson(*row.spots);
       changes.push_back(std::move(change));
     }
     std::cout << Json{{"frame", frames.still.name},
@@ -205,6 +219,8 @@ void flicker(const CLI::App& command, const std::vector<const CLI::Option*>& sce
   std::vector<Measured> values;
   for (const Row& row : rows) {
     if (row.change.ends_with("irradiance")) continue;  // the input's
+    if (row.spots)
+      values.push_back({"spots", row.change, static_cast<double>(row.spots->appear + row.spots->vanish)});
     for (std::size_t c = 0; c < 3; ++c) {
       const std::string of = std::string(1, "RGB"[c]) + " " + row.change;
       values.push_back({"rel_rmse", of, row.flicker.relativeRmse[c]});
@@ -235,7 +251,9 @@ void addFlickerCommand(CLI::App& app) {
       ->capture_default_str();
   command
       ->add_option("--limit", options->limits,
-                   "exit with 1 when any channel of any change exceeds it: rel_rmse=, p999=, worst=")
+                   "exit with 1 when any channel of any change exceeds it: rel_rmse=, p999=, worst=; or when "
+                   "more spots "
+                   "appear and vanish: spots=")
       ->delimiter(',')
       ->take_all();
   command->add_flag("--json", options->json, "print JSON");

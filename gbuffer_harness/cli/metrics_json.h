@@ -25,4 +25,11 @@ inline nlohmann::ordered_json toJson(const Flicker& flicker) {
           {"pixels", flicker.pixels}};
 }
 
+inline nlohmann::ordered_json toJson(const SpotFlicker& spots) {
+  return {{"still", spots.still},
+          {"turned", spots.turned},
+          {"appear", spots.appear},
+          {"vanish", spots.vanish}};
+}
+
 }  // namespace pellucid::harness

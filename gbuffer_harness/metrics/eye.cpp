@@ -13,6 +13,8 @@ EyeMetrics measureEye(const Image& result, const Capture& capture, double exposu
   EyeMetrics metrics;
   metrics.isolated = findIsolated(result, surfaces, mask).count;
   metrics.isolatedInTruth = findIsolated(truth, surfaces, mask).count;
+  const SpotImage input(litAlbedo(capture), surfaces, mask), seen(result, surfaces, mask);
+  metrics.spots = seen.lackedBy(SpotImage(truth, surfaces, mask), seen.find(&input)).size();
   metrics.tint = measureTint(result, truth, mask);
   metrics.flip = measureFlip(result, truth, mask, exposure);
   return metrics;

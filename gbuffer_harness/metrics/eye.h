@@ -4,12 +4,14 @@
 #include "capture/capture.h"
 #include "metrics/flip.h"
 #include "metrics/isolated.h"
+#include "metrics/spots.h"
 #include "metrics/tint.h"
 
 namespace pellucid::harness {
 
 struct EyeMetrics {
   std::size_t isolated = 0, isolatedInTruth = 0;  // pixels
+  std::size_t spots = 0;                          // that irradiance and truth lack
   Tint tint;
   Flip flip;
 };

@@ -85,4 +85,11 @@ Flicker compareTurned(const Image& still, const Image& turned, const Surfaces& s
   return measure(still, d, mask, differences);
 }
 
+SpotFlicker compareSpots(const SpotImage& still, const SpotImage& stillInput, const SpotImage& turned,
+                         const SpotImage& turnedInput) {
+  const std::vector<Spot> ofStill = still.find(&stillInput), ofTurned = turned.find(&turnedInput);
+  return {ofStill.size(), ofTurned.size(), turned.lackedBy(still, ofTurned).size(),
+          still.lackedBy(turned, ofStill).size()};
+}
+
 }  // namespace pellucid::harness

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "metrics/masked_image.h"
+#include "metrics/spots.h"
 #include "metrics/surface.h"
 
 namespace pellucid::harness {
@@ -29,5 +30,14 @@ Flicker compareShifted(const Image& still, const Image& moved, const Mask& mask,
 // not wholly of surface, or do not all count, are left out; edges of hard shadows that move are not. Throws
 // likewise.
 Flicker compareTurned(const Image& still, const Image& turned, const Surfaces& surfaces, const Mask& mask);
+
+// Spots of two such frames (metrics/spots.h). `stillInput`, `turnedInput`: what explains each frame's.
+struct SpotFlicker {
+  std::size_t still = 0, turned = 0;  // that the frame has
+  std::size_t appear = 0,
+              vanish = 0;  // of `turned` that the still frame lacks; of `still` that the turned one lacks
+};
+SpotFlicker compareSpots(const SpotImage& still, const SpotImage& stillInput, const SpotImage& turned,
+                         const SpotImage& turnedInput);
 
 }  // namespace pellucid::harness

@@ -58,6 +58,8 @@ TEST_F(Cli, FlickerOfPixelsByThemselves) {
     EXPECT_GT(changes[2]["worst"][c].get<double>(), 0.01);
   }
   EXPECT_GT(changes[0]["pixels"], 500);
+  EXPECT_TRUE(changes[2].contains("spots"));
+  EXPECT_FALSE(changes[0].contains("spots") || changes[3].contains("spots"));
 }
 
 TEST_F(Cli, FlickerUsage) {
@@ -67,7 +69,7 @@ TEST_F(Cli, FlickerUsage) {
   expect(2, plane + "--pixels 1,0", "\"0\" is not a number of pixels");
   expect(2, plane + "--pixels 1,x", "\"x\" is not a number");
   expect(2, plane + "--debug thickness", "--debug");
-  expect(2, plane + "--limit max=1", "must be one of rel_rmse=, p999=, worst=");
+  expect(2, plane + "--limit max=1", "must be one of rel_rmse=, p999=, worst=, spots=");
   expect(2, plane + "--set period=3", "unknown key \"period\"");
   expect(3, plane + "--scene-set period=3", "period");
   expect(3, plane + "--pixels 8", "a rim of 8 pixels");

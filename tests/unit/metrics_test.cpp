@@ -1,8 +1,10 @@
 // Metrics of what the eye sees, on images whose answers are known.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include "common/error.h"
 #include "metrics/eye.h"
@@ -10,6 +12,7 @@
 #include "metrics/isolated.h"
 #include "metrics/moved_capture.h"
 #include "metrics/ratio_map.h"
+#include "metrics/spots.h"
 #include "metrics/surface.h"
 #include "metrics/tint.h"
 #include "reference/camera.h"
@@ -199,6 +202,188 @@ TEST(Isolated, DarkPartsMaskAndNanAreLeftOut) {
   EXPECT_EQ(findIsolated(image, Surfaces(20, 20), mask).count, 0u);
   EXPECT_THROW(findIsolated(image, Surfaces(20, 21), mask), InputError);
   EXPECT_THROW(findIsolated(Image(20, 20, 1), Surfaces(20, 20), mask), InputError);
+}
+
+// ---- Spots
+
+// Multiplies all channels of the pixels of a rectangle.
+void scale(Image& image, int left, int top, int width, int height, float factor) {
+  for (int y = top; y < top + height; ++y)
+    for (int x = left; x < left + width; ++x)
+      for (int c = 0; c < 3; ++c) image.at(x, y)[c] *= factor;
+}
+
+// Light that falls by 6 % from pixel to pixel, as near a terminator: by a factor of 1.3 within five pixels.
+Image slope(int width, int height) {
+  Image image(width, height, 3);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      for (int c = 0; c < 3; ++c) image.at(x, y)[c] = static_cast<float>(std::pow(0.94, x));
+  return image;
+}
+
+SpotImage seen(const Image& image) { return {image, Surfaces(image.width, image.height), everywhere(image)}; }
+std::vector<Spot> spotsOf(const Image& image) { return seen(image).find(nullptr); }
+
+TEST(Spots, ARegionOnASlopeCountsOnce) {
+  Image image = slope(48, 40);
+  EXPECT_EQ(spotsOf(image).size(), 0u) << "slopes and their ends at the image's edge";
+  scale(image, 20, 12, 3, 3, 1.6f);
+  scale(image, 8, 28, 2, 4, 0.6f);
+  image.at(30, 20)[2] *= 1.5f;  // a lone pixel, blue alone
+  const std::vector<Spot> spots = spotsOf(image);
+  ASSERT_EQ(spots.size(), 3u);
+  EXPECT_EQ(brightOf(spots), 2u);
+  EXPECT_TRUE(spots[0].isBright);
+  EXPECT_EQ(spots[0].low, (std::array<int, 2>{20, 12}));
+  EXPECT_EQ(spots[0].high, (std::array<int, 2>{22, 14}));
+  EXPECT_EQ(spots[0].pixels.size(), 9u);
+  EXPECT_EQ(spots[1].pixels.size(), 1u);
+  EXPECT_FALSE(spots[2].isBright);
+  EXPECT_EQ(spots[2].pixels.size(), 8u);
+}
+
+TEST(Spots, HaveFivePixelsAtMost) {
+  for (const auto& [width, height, count] :
+       {std::array{5, 5, 1}, {1, 5, 1}, {6, 2, 0}, {7, 7, 0}, {2, 30, 0}}) {
+    Image image(48, 48, 3, 1.0f);
+    scale(image, 9, 9, width, height, 1.5f);
+    EXPECT_EQ(spotsOf(image).size(), static_cast<std::size_t>(count)) << width << " x " << height;
+    Image dark(48, 48, 3, 1.0f);
+    scale(dark, 9, 9, width, height, 1 / 1.5f);
+    EXPECT_EQ(spotsOf(dark).size(), static_cast<std::size_t>(count)) << width << " x " << height;
+  }
+}
+
+TEST(Spots, ContrastDecides) {
+  Image image(32, 32, 3, 1.0f);
+  scale(image, 6, 6, 3, 3, 1.29f);
+  scale(image, 20, 20, 3, 3, 1 / 1.29f);
+  EXPECT_EQ(spotsOf(image).size(), 0u);
+  scale(image, 6, 6, 3, 3, 1.02f);
+  scale(image, 20, 20, 3, 3, 1 / 1.02f);
+  EXPECT_EQ(spotsOf(image).size(), 2u);
+}
+
+// Sixteen passes of a 3x3 mean: what diffusion over some five pixels makes of an image.
+Image softened(Image image) {
+  for (int pass = 0; pass < 16; ++pass) {
+    const Image before = image;
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x)
+        for (int c = 0; c < 3; ++c) {
+          float sum = 0;
+          for (int dy = -1; dy <= 1; ++dy)
+            for (int dx = -1; dx <= 1; ++dx)
+              sum += before.at(std::clamp(x + dx, 0, image.width - 1),
+                               std::clamp(y + dy, 0, image.height - 1))[c];
+          image.at(x, y)[c] = sum / 9;
+        }
+  }
+  return image;
+}
+
+TEST(Spots, WhatTheIrradianceHasIsNone) {
+  // A lit triangle in half shadow, whose corners are sharp, beside a lit patch of 3x3 pixels.
+  Image irradiance(64, 64, 3, 0.3f);
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 64; ++x)
+      for (int c = 0; c < 3; ++c)
+        if ((x > 12 && y < 50 && 2 * (y - 10) > x) || (std::abs(x - 50) < 2 && std::abs(y - 20) < 2))
+          irradiance.at(x, y)[c] = 1;
+  Image diffused = softened(irradiance);
+  for (std::size_t i = 0; i < diffused.data.size(); ++i)  // the first pixel keeps some of its light
+    diffused.data[i] = 0.8f * diffused.data[i] + 0.2f * irradiance.data[i];
+  const SpotImage input = seen(irradiance);
+  EXPECT_EQ(seen(irradiance).find(&input).size(), 0u);
+  EXPECT_EQ(seen(diffused).find(&input).size(), 0u);
+  EXPECT_GE(spotsOf(diffused).size(), 1u) << "the patch, where nothing explains it";
+  scale(diffused, 30, 40, 4, 4, 1.5f);  // in the light
+  scale(diffused, 4, 40, 1, 1, 1.5f);   // in the shadow
+  const std::vector<Spot> spots = seen(diffused).find(&input);
+  EXPECT_EQ(spots.size(), 2u);
+}
+
+TEST(Spots, WhatTheTruthHasIsNotLacked) {
+  Image image(48, 32, 3, 1.0f);
+  scale(image, 6, 6, 3, 3, 1.6f);
+  scale(image, 20, 6, 3, 3, 1.6f);
+  scale(image, 34, 6, 3, 3, 1 / 1.6f);
+  Image truth(48, 32, 3, 1.0f);
+  scale(truth, 6, 6, 3, 3, 1.3f);   // less, but the rest is no spot
+  scale(truth, 34, 6, 3, 3, 1.6f);  // bright where the other is dark
+  std::mt19937 random(7);
+  std::normal_distribution<float> noise(1, 0.1f);
+  for (float& value : truth.data) value *= noise(random);
+  const SpotImage a = seen(image);
+  const std::vector<Spot> lacked = a.lackedBy(seen(truth), a.find(nullptr));
+  ASSERT_EQ(lacked.size(), 2u);
+  EXPECT_EQ(lacked[0].low[0], 20);
+  EXPECT_EQ(lacked[1].low[0], 34);
+  EXPECT_EQ(a.lackedBy(a, a.find(nullptr)).size(), 0u);
+}
+
+// Noise of 15 % a pixel makes thousands of pixels that are 1.3 times their median, and no spot.
+TEST(Spots, NoiseIsNone) {
+  Image image = slope(96, 96);
+  std::mt19937 random(3);
+  std::normal_distribution<float> noise(1, 0.15f);
+  for (float& value : image.data) value *= noise(random);
+  EXPECT_LE(spotsOf(image).size(), 1u);  // of 27000 values 5 standard deviations off
+  scale(image, 20, 40, 3, 3, 2.5f);
+  EXPECT_GE(spotsOf(image).size(), 1u);
+}
+
+TEST(Spots, OtherSurfacesDarkPartsAndNanAreLeftOut) {
+  // The stripe of the second surface is five times as bright; each surface has a spot beside the edge.
+  const Capture c = shape(32, 32, [](int x, int) { return x < 16 ? 100 : 150; });
+  Image image(32, 32, 3, 1.0f);
+  scale(image, 16, 0, 16, 32, 5);
+  const auto find = [&](const Mask& mask) { return SpotImage(image, Surfaces(c), mask).find(nullptr); };
+  EXPECT_EQ(find(everywhere(image)).size(), 0u);
+  scale(image, 14, 8, 2, 2, 1.5f);
+  scale(image, 16, 20, 2, 2, 1.5f);
+  EXPECT_EQ(find(everywhere(image)).size(), 2u);
+  Mask mask = everywhere(image);
+  for (int x = 14; x < 16; ++x)
+    for (int y = 8; y < 10; ++y) mask[static_cast<std::size_t>(32 * y + x)] = 0;
+  EXPECT_EQ(find(mask).size(), 1u);
+  image.at(16, 20)[0] = kNan;
+  EXPECT_EQ(find(mask).size(), 1u) << "three pixels are left";
+  EXPECT_THROW(SpotImage(image, Surfaces(32, 31), mask), InputError);
+
+  Image dark(32, 32, 3, 1.0f);
+  scale(dark, 0, 0, 32, 16, 0.001f);
+  scale(dark, 8, 4, 3, 3, 20);  // .02, 2.8 % of the RMS; the surroundings count as 2 %
+  EXPECT_EQ(spotsOf(dark).size(), 1u);
+  scale(dark, 8, 4, 3, 3, 0.8f);
+  EXPECT_EQ(spotsOf(dark).size(), 0u);
+}
+
+TEST(Spots, AreFramed) {
+  Image image(32, 24, 3, 1.0f);
+  scale(image, 10, 10, 2, 3, 1.5f);
+  const std::vector<std::uint8_t> picture =
+      markSpots(std::vector<std::uint8_t>(3 * image.pixels()), image, spotsOf(image), spotsOf(image));
+  std::size_t framed = 0;
+  for (std::size_t i = 0; i < image.pixels(); ++i)
+    framed += picture[3 * i] == 255 && picture[3 * i + 2] == 40;
+  EXPECT_EQ(framed, 2u * 6 + 2u * 5);  // around 6 x 7 pixels
+}
+
+TEST(Spots, ThatJumpWhenLightsTurn) {
+  const Image even(48, 32, 3, 1.0f);
+  Image still = even, turned = even;
+  scale(still, 6, 6, 3, 3, 1.6f);
+  scale(turned, 6, 6, 3, 3, 1.5f);    // stays
+  scale(still, 20, 6, 2, 2, 1.6f);    // vanishes
+  scale(turned, 20, 20, 2, 2, 1.6f);  // appear
+  scale(turned, 30, 20, 2, 2, 0.6f);
+  const SpotFlicker flicker = compareSpots(seen(still), seen(even), seen(turned), seen(even));
+  EXPECT_EQ(flicker.still, 2u);
+  EXPECT_EQ(flicker.turned, 3u);
+  EXPECT_EQ(flicker.appear, 2u);
+  EXPECT_EQ(flicker.vanish, 1u);
 }
 
 // ---- Tint
