@@ -163,7 +163,7 @@ TEST(Readme, NamesWhatTheBuildNeeds) {
   const std::regex search(R"(find_(?:package|path|program|library)\((\w+))");
   std::set<std::string> found;
   for (const char* file : {"CMakeLists.txt", "cmake/shaders.cmake", "cmake/pellucid_target.cmake",
-                           "module/CMakeLists.txt", "module/material/CMakeLists.txt"}) {
+                           "cmake/vulkan_headers.cmake", "module/CMakeLists.txt", "module/material/CMakeLists.txt"}) {
     const std::string text = textOf(file);
     for (std::sregex_iterator match(text.begin(), text.end(), search), end; match != end; ++match) {
       const std::string name = (*match)[1];
