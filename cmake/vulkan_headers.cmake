@@ -1,5 +1,5 @@
-# The Vulkan headers: those of the target Vulkan::Headers where the project around has one (find_package(Vulkan), or a folder of
-# Vulkan-Headers that it adds), so that all of a program reads the same; else those that CMake finds.
+# The Vulkan headers: those of the target Vulkan::Headers where the project around has one, of CMake's FindVulkan or of a folder of
+# Vulkan-Headers, so that all of a program reads the same; else those that CMake finds.
 if(NOT TARGET Vulkan::Headers)
   find_path(PELLUCID_VULKAN_INCLUDE vulkan/vulkan_core.h REQUIRED)
 endif()
