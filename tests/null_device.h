@@ -122,16 +122,19 @@ private:
     c.hasPipeline = true;
     c.pipeline = pipeline;
   }
-  static void VKAPI_PTR pushConstants(VkCommandBuffer buffer, VkPipelineLayout layout, VkShaderStageFlags,
-                                      uint32_t offset, uint32_t size, const void* values) {
+  static void VKAPI_PTR pushConstants(VkCommandBuffer buffer, VkPipelineLayout layout,
+                                      VkShaderStageFlags stages, uint32_t offset, uint32_t size,
+                                      const void* values) {
     NullCommands& c = of(buffer);
+    c.require(stages == VK_SHADER_STAGE_COMPUTE_BIT, "vkCmdPushConstants of other stages");
     c.require(layout && values && offset == 0 && size == PELLUCID_PUSH_CONSTANT_BYTES,
               "vkCmdPushConstants of another range than the layout's");
     c.hasConstants = true;
   }
-  static void VKAPI_PTR pushDescriptorSet(VkCommandBuffer buffer, VkPipelineBindPoint, VkPipelineLayout,
+  static void VKAPI_PTR pushDescriptorSet(VkCommandBuffer buffer, VkPipelineBindPoint point, VkPipelineLayout,
                                           uint32_t set, uint32_t count, const VkWriteDescriptorSet* writes) {
     NullCommands& c = of(buffer);
+    c.require(point == VK_PIPELINE_BIND_POINT_COMPUTE, "bindings of another bind point");
     c.require(set == 0 && count > 0 && count <= PELLUCID_MAX_BINDINGS, "wrong number of bindings");
     c.firstImage = VK_NULL_HANDLE;
     for (uint32_t i = 0; i < count; ++i) {
@@ -151,8 +154,9 @@ private:
     c.hasBindings = true;
   }
   static void VKAPI_PTR barrier(VkCommandBuffer buffer, VkPipelineStageFlags, VkPipelineStageFlags after,
-                                VkDependencyFlags, uint32_t, const VkMemoryBarrier*, uint32_t,
-                                const VkBufferMemoryBarrier*, uint32_t, const VkImageMemoryBarrier*) {
+                                VkDependencyFlags, uint32_t, const VkMemoryBarrier*, uint32_t buffers,
+                                const VkBufferMemoryBarrier*, uint32_t images, const VkImageMemoryBarrier*) {
+    of(buffer).require(buffers == 0 && images == 0, "a barrier of the caller's images or buffers");
     ++of(buffer).barriers;
     of(buffer).commands.push_back({true, (after & VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT) != 0});
   }

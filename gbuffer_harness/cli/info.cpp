@@ -136,7 +136,7 @@ std::vector<std::string> missingParts(const Capture& capture) {
   if (capture.backDepth.image.empty())
     missing.push_back(
         "no backDepth: no camera-space thickness; lights without a shadow map and environments add no "
-        "translucency");
+        "translucency, and gathers let thin parts return as much light as thick ones");
   if (capture.normal.empty())
     missing.push_back("no normal: the angle between view and light takes the place of -N.L");
   if (capture.albedo.empty()) missing.push_back("no albedo: the output is not multiplied by a surface color");

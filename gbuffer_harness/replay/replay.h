@@ -127,7 +127,7 @@ private:
   std::string name_;
   FrameData data_;
   std::unique_ptr<Images> images_;
-  std::unique_ptr<PellucidPlan> plan_;  // too large for a stack
+  std::unique_ptr<PellucidPlan> plan_;  // 28 KB
   std::unique_ptr<HostBuffer> constants_;
   std::unique_ptr<CellPass> cellPass_;  // null where the frame takes no words
 };

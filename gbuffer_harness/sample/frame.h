@@ -28,7 +28,7 @@ struct ShadowTile {
   double texel = 0;  // its side in scene units, per clip w
   bool frontsCulled = false;
   float biasConstant = 0, biasSlope = 0;  // as vkCmdSetDepthBias takes them
-  float depthStep = 0;                    // of stored depths; 0: floats
+  float depthStep = 0;                    // of stored depths
 };
 
 // The layout of a depth buffer that shaders read; other images are in GENERAL throughout.

@@ -66,7 +66,7 @@ void addOptions(CLI::App& app, Options& o) {
   number("--quality", s.quality, 0, 2, "of Pellucid");
   number("--scale", s.scale, 0.1, 1.0, "rendered pixels per pixel of the picture along each side");
   number("--exposure", s.exposure, 1e-6, 1e6, "factor");
-  number("--bias", s.biasConstant, 0.0, 1000.0, "constant depth bias of the spots' shadow maps");
+  number("--bias", s.biasConstant, 0.0, 1000.0, "constant depth bias of the shadow maps");
   number("--slope-bias", s.biasSlope, 0.0, 1000.0, "slope factor of the same");
   const auto queue = [&s](const std::string& name) { s.ownQueue = name == "compute"; };
   app.add_option_function<std::string>("--queue", queue,

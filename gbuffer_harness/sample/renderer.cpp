@@ -46,7 +46,8 @@ constexpr VkDeviceSize kUniformSlice = (sizeof(Uniforms) + 255) / 256 * 256;
 constexpr VkShaderStageFlags kStages = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
 constexpr std::uint32_t kImages = 7;  // that a pass reads at most
 constexpr std::uint32_t kCascadeCount = 4, kAtlasColumns = 2, kCubeFaces = 6;
-constexpr VkFormat kDepth = VK_FORMAT_D32_SFLOAT, kHalf = VK_FORMAT_R16G16B16A16_SFLOAT;
+constexpr VkFormat kDepth = VK_FORMAT_D32_SFLOAT, kShadowDepth = VK_FORMAT_D16_UNORM,
+                   kHalf = VK_FORMAT_R16G16B16A16_SFLOAT;
 constexpr VkFormat kFormats[] = {VK_FORMAT_A2B10G10R10_UNORM_PACK32,
                                  VK_FORMAT_R8G8B8A8_SRGB,
                                  VK_FORMAT_R32_UINT,
@@ -75,9 +76,9 @@ Renderer::Renderer(Device& device, const Scene& scene, VkExtent2D extent, std::u
       mesh_(device, scene.model),
       depth_(device, extent, kDepth),
       backDepth_(device, extent, kDepth),
-      shadows_{{{device, {mapTexels, mapTexels}, kDepth, kCascadeCount},
-                {device, {mapTexels * kAtlasColumns, mapTexels * kAtlasColumns}, VK_FORMAT_D16_UNORM, 1},
-                {device, {mapTexels, mapTexels}, kDepth, kCubeFaces}}},
+      shadows_{{{device, {mapTexels, mapTexels}, kShadowDepth, kCascadeCount},
+                {device, {mapTexels * kAtlasColumns, mapTexels * kAtlasColumns}, kShadowDepth, 1},
+                {device, {mapTexels, mapTexels}, kShadowDepth, kCubeFaces}}},
       pool_(device),
       layout_(device, bindings(), {kStages, 0, sizeof(DrawConstants)}),
       lighting_(device),
@@ -211,17 +212,18 @@ void Renderer::addLight(const SceneLight& light, const std::vector<LightView>& v
     t.size = mapTexels_;
     t.clipFromWorld = toGlm(view.clipFromView) * toGlm(view.viewFromWorld);
     t.texel = 2 / (view.clipFromView[0] * mapTexels_);
+    t.depthStep = 1.0f / 65535;  // of kShadowDepth
+    if (settings_.mistake != Mistake::Bias) {
+      t.biasConstant = -settings_.biasConstant;  // away from the light is less, as depths are reversed
+      t.biasSlope = -settings_.biasSlope;
+    }
     if (!spot) {
       t.layer = static_cast<std::uint32_t>(frame_.tiles.size()) - 1 - l.firstShadowMap;
       continue;
     }
     t.x = static_cast<std::uint32_t>(inAtlas) % kAtlasColumns * mapTexels_;
     t.y = static_cast<std::uint32_t>(inAtlas) / kAtlasColumns * mapTexels_;
-    t.depthStep = 1.0f / 65535;
     t.frontsCulled = settings_.cullFronts && settings_.mistake != Mistake::Fronts;
-    if (settings_.mistake == Mistake::Bias) continue;
-    t.biasConstant = -settings_.biasConstant;  // away from the light is less, as depths are reversed
-    t.biasSlope = -settings_.biasSlope;
   }
 }
 
@@ -296,14 +298,13 @@ void Renderer::drawScene(VkCommandBuffer commands, const DrawPass& pass, const g
 }
 
 void Renderer::drawShadows(VkCommandBuffer commands) {
+  vkCmdSetDepthBias(commands, -settings_.biasConstant, 0, -settings_.biasSlope);
   for (std::uint32_t image = 0; image < kShadowImages; ++image)
     for (std::uint32_t layer = 0; layer < shadowPasses_[image].size(); ++layer) {
       const DrawPass& pass = *shadowPasses_[image][layer];
       pass.begin(commands, {{0, 0}, shadows_[image].extent()});
-      const bool spots = image == kAtlas;
       const VkCullModeFlags cull =
-          spots && settings_.cullFronts ? VK_CULL_MODE_FRONT_BIT : VK_CULL_MODE_BACK_BIT;
-      vkCmdSetDepthBias(commands, spots ? -settings_.biasConstant : 0, 0, spots ? -settings_.biasSlope : 0);
+          image == kAtlas && settings_.cullFronts ? VK_CULL_MODE_FRONT_BIT : VK_CULL_MODE_BACK_BIT;
       for (const ShadowTile& t : frame_.tiles) {
         if (t.image != image || t.layer != layer) continue;
         setViewport(commands, {{static_cast<int>(t.x), static_cast<int>(t.y)}, {t.size, t.size}});

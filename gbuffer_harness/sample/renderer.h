@@ -28,7 +28,7 @@ struct Settings {
   bool sun = true, spots = true, point = true, ambient = true, specular = true, taa = true;
   double scale = 1;                       // of the rendered rect to the picture along each side, (0, 1]
   bool cullFronts = false;                // of the spots' shadow maps
-  float biasConstant = 0, biasSlope = 0;  // of the same, away from the light, >= 0
+  float biasConstant = 4, biasSlope = 3;  // depth bias of all shadow maps, away from the light, >= 0
   float exposure = 1;
   Mistake mistake = Mistake::None;
 };

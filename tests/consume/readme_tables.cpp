@@ -25,13 +25,17 @@ std::string imagesTable() {
   const Row rows[] = {
       {PELLUCID_RESOURCE_FRONT_DEPTH, "device depth or view z of the visible surface", ""},
       {PELLUCID_RESOURCE_BACK_DEPTH, "the same of the nearest back face behind it",
-       "lights without a shadow map give no translucency"},
-      {PELLUCID_RESOURCE_IRRADIANCE, "linear irradiance E", ""},
+       "no light comes through of lights without a shadow map, of maps of back faces and of `ambient`; at "
+       "qualities 1 and 2 thin parts return as much light as thick ones"},
+      {PELLUCID_RESOURCE_IRRADIANCE,
+       "linear irradiance E times `frame.preExposure`, which is 1 / pi for E / pi", ""},
       {PELLUCID_RESOURCE_NORMAL, "outward normal, world or view space",
        "the angle between view and light replaces -N.L, depths say how large surfaces are"},
       {PELLUCID_RESOURCE_ALBEDO, "post-scatter albedo", "the output is not multiplied"},
       {PELLUCID_RESOURCE_MATERIAL, "unsigned integer: 0 none, i for materials[i - 1]", ""},
-      {PELLUCID_RESOURCE_OUTPUT, "rgba16f, rgba32f or rg11b10f storage image; may be the irradiance image",
+      {PELLUCID_RESOURCE_OUTPUT,
+       "rgba16f, rgba32f or rg11b10f storage image; may be the irradiance image; pixels with a material are "
+       "written",
        ""},
   };
   const uint32_t required =

@@ -5,9 +5,11 @@
 #include <glm/glm.hpp>
 #include <glm/gtc/packing.hpp>
 #include <map>
+#include <numbers>
 
 #include "capture/material.h"
 #include "gpu_fixture.h"
+#include "scene/environment.h"
 #include "scene/scene.h"
 
 namespace pellucid::test {
@@ -187,8 +189,8 @@ Image specular(const Capture& c) {
 struct Added {
   const char* name;
   VkFormat format;
-  // Bounds of the sum and of the result, as both are rounded; 11 bits have 6 of mantissa and the blue 10 have 5,
-  // which devices may truncate to.
+  // Bounds of the sum and of the result, as both are rounded; 11 bits have 6 of mantissa and the blue 10 have
+  // 5, which devices may truncate to.
   double step;
   double zero;  // what the test reads 0 as: GLM's 11 bits have none beside other colors
 };
@@ -241,14 +243,30 @@ TEST_F(EngineFrames, ResultIsAddedToWhatTheOutputHolds) {
 
 // ---- Pre-exposure
 
+// The irradiance of engines: exposed, over pi, and without what a diffuse term of the factor 1 - F loses at
+// an index of 1.5. Lights and the sky keep their units.
 TEST_F(EngineFrames, PreExposureScalesTheResult) {
+  Capture c = head();
+  c.environment = Environment{}.harmonics();
   ReplaySettings s = wide();
-  const Image plain = replayer().run(head(), materialsOf(head()), s).output;
-  s.preExposure = 0.25f;
-  Image quarter = replayer().run(head(), materialsOf(head()), s).output;
-  for (float& v : quarter.data) v *= 4;
-  // The diffusion works in halves, of which the darkest lose bits.
-  EXPECT_LT(relativeRmse(quarter, plain, head().material), 1e-4);
+  s.ambient = true;
+  const Image plain = replayer().run(c, materialsOf(c), s).output;
+  for (const float factor :
+       {0.25f, std::numbers::inv_pi_v<float>, 0.96f, 0.96f * std::numbers::inv_pi_v<float>}) {
+    const auto unscaled = [&](const Capture& frame, float preExposure) {
+      s.preExposure = preExposure;
+      Image output = replayer().run(frame, materialsOf(frame), s).output;
+      for (float& v : output.data) v /= factor;
+      return relativeRmse(output, plain, c.material);
+    };
+    // The diffusion works in halves: of a power of two the darkest alone lose bits, of others all are rounded
+    // anew.
+    EXPECT_LT(unscaled(c, factor), factor == 0.25f ? 1e-4 : kHalf) << factor;
+    // An image that holds the factor without saying so gets too much light that comes through.
+    Capture silent = c;
+    for (float& v : silent.irradiance.data) v *= factor;
+    EXPECT_GT(unscaled(silent, 1), 5e-3) << factor;
+  }
 }
 
 // Sunlight in lux is beyond what halves hold.

@@ -1,4 +1,5 @@
 // Lights with falloff of their own: analytic answers, and the float64 reference.
+#include <algorithm>
 #include <numbers>
 
 #include "capture/material.h"
@@ -7,6 +8,10 @@
 #include "reference/gather.h"
 #include "reference/reference.h"
 #include "scene/scene.h"
+
+namespace engine {
+#include "falloff_snippet.inc"  // of docs/integration.md
+}
 
 namespace {
 
@@ -72,6 +77,41 @@ TEST_F(LightTables, FactorsAreThoseOfAngleAndDistance) {
     }
   EXPECT_GT(beyond, 50);
   EXPECT_LT(beyond, 1000);
+}
+
+// The code that docs/integration.md shows, on the device: the light is what the engine's function says.
+TEST_F(LightTables, FalloffsOfEnginesAreThoseOfTheirTables) {
+  constexpr float kRange = 9;
+  Capture c = flatCapture(48, 40);
+  std::fill(c.irradiance.data.begin(), c.irradiance.data.end(), 0.0f);
+  Light lamp;
+  lamp.type = PELLUCID_LIGHT_POINT;
+  lamp.position = {1.5, -1, -16};
+  lamp.intensity = 100;
+  c.lights = {lamp};
+  const Image plain = replay(c, testMaterial(), translucency());
+  for (float (*const falloff)(float, float) : {engine::inverseSquare, engine::smoothWindow}) {
+    float most = 0;
+    const PellucidLightTable made = engine::falloffTable(kRange, falloff, &most);
+    EXPECT_EQ(*std::max_element(std::begin(made.factor), std::end(made.factor)), 1);
+    c.lights[0].range = static_cast<double>(kRange);
+    c.lights[0].distanceTable.assign(std::begin(made.factor), std::end(made.factor));
+    c.lights[0].intensity = lamp.intensity * static_cast<double>(most);
+    const Image output = replay(c, testMaterial(), translucency());
+    for (int y = 0; y < c.height; ++y)
+      for (int x = 0; x < c.width; ++x) {
+        const double px = ((x + 0.5) / c.width * 2 - 1) / c.clipFromView[0] - lamp.position[0],
+                     py = ((y + 0.5) / c.height * 2 - 1) / c.clipFromView[5] - lamp.position[1], pz = 5,
+                     away = std::hypot(px, py, pz);
+        const double expected =
+            away < static_cast<double>(kRange)
+                ? away * away * static_cast<double>(falloff(static_cast<float>(away), kRange))
+                : 0;
+        // Of the most: 63 lines in place of curves whose second derivative is at most 47, and halves.
+        ASSERT_NEAR(double(*output.at(x, y)) / double(*plain.at(x, y)), expected,
+                    (47.0 / 8 / (63 * 63) + 5e-4) * static_cast<double>(most));
+      }
+  }
 }
 
 TEST_F(LightTables, ATableOfOnesChangesNothing) {

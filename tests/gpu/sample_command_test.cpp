@@ -36,6 +36,15 @@ TEST_F(SampleCommand, DrawsAndCapturesTheProceduralHead) {
   EXPECT_EQ(capture.width, 40);
   EXPECT_EQ(capture.lights.size(), 5u);
   EXPECT_TRUE(capture.truth.has_value());
+  // D16 with the bias of engines, of reversed depths.
+  for (const pellucid::harness::Light& light : capture.lights) {
+    EXPECT_FALSE(light.shadowMaps.empty());
+    for (const pellucid::harness::ShadowMap& map : light.shadowMaps) {
+      EXPECT_NEAR(map.depthStep, 1.0 / 65535, 1e-9);
+      EXPECT_NEAR(map.depthBiasConstant, -4.0 / 65535, 1e-9);
+      EXPECT_EQ(map.depthBiasSlope, -3);
+    }
+  }
 }
 
 TEST_F(SampleCommand, DrawsFiles) {

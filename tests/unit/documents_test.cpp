@@ -300,6 +300,17 @@ TEST(Documents, TasksExist) {
   }
 }
 
+// What a recording disturbs follows from the commands that it calls.
+TEST(Documents, NameEveryCommandThatIsRecorded) {
+  const std::string table = contents(kRoot / "module/src/vk_table.h");
+  const std::string page = contents(kRoot / "docs/integration.md");
+  const std::regex command(R"(X\((vkCmd\w+)\))");
+  int found = 0;
+  for (std::sregex_iterator match(table.begin(), table.end(), command), end; match != end; ++match, ++found)
+    EXPECT_NE(page.find("`" + (*match)[1].str() + "`"), std::string::npos) << (*match)[1];
+  EXPECT_GT(found, 3);
+}
+
 // ---- README and versions ---------------------------------------------------------------------------
 
 TEST(Documents, ReadmeIsReadInAMinute) { EXPECT_LE(lines(contents(kRoot / "README.md")).size(), 180u); }

@@ -13,6 +13,8 @@
 #include "output_format.h"
 #include "shared/pellucid_shared.h"
 
+static_assert(sizeof(PellucidPlan) <= 28 * 1024);  // as pellucid.h and the README say
+
 namespace {
 
 using pellucid::test::Frame;

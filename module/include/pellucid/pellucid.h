@@ -137,7 +137,8 @@ typedef enum PellucidOutputMode {
   PELLUCID_OUTPUT_REPLACE = 0, /* they become the result */
   PELLUCID_OUTPUT_ADD = 1      /* the result is added to their color, which is specular light, say, and their alpha
                                   stays. The sum is clamped as a result is: 0..65504, and NaN counts as 0. The output is not the
-                                  irradiance image, and its image has usage SAMPLED, too. Debug views replace */
+                                  irradiance image, and its image has usage SAMPLED, too. Debug views replace. For renderers
+                                  without a pass that composites; see docs/integration.md */
 } PellucidOutputMode;
 
 /* The GPU decides how many workgroups run: */
@@ -166,14 +167,16 @@ typedef struct PellucidFrame {
   float viewFromWorld[16]; /* rigid; default identity; far from the origin, docs/design.md */
 
   PellucidImage frontDepth; /* required; one float channel */
-  PellucidImage backDepth;  /* nearest back face behind the front; without it no camera-space thickness */
-  PellucidImage irradiance; /* required; E, not divided by pi, not multiplied by albedo */
+  PellucidImage backDepth;  /* nearest back face behind the front; without it no camera-space thickness, and in a gather thin
+                               parts return as much light as thick ones */
+  PellucidImage irradiance; /* required; E that arrives outside of the surface, not divided by pi, without the factor 1 - F of
+                               a diffuse term, not multiplied by albedo; preExposure says what else the image holds */
   PellucidImage normal;     /* outward unit vectors, as PellucidContextDesc::normalEncoding says */
   PellucidImage albedo;     /* multiplied after scattering */
   PellucidImage material;   /* required; unsigned integer, 0 none, i: materials[i - 1]; see materialMask. A view's
                                component mapping brings another channel to R */
   PellucidImage output;     /* required; storage image of outputFormat; may be the irradiance image. Pixels of
-                               material 0 are not written; alpha is the irradiance's */
+                               material 0 are not written, and all others of the rect are; alpha is the irradiance's */
   PellucidImage transients[PELLUCID_MAX_TRANSIENTS]; /* as listed by pellucidGetImageNeeds */
   VkFormat outputFormat;    /* R16G16B16A16_SFLOAT (default), R32G32B32A32_SFLOAT or B10G11R11_UFLOAT_PACK32, which has no
                                alpha; see PellucidContextDesc::outputFormat. 32 bits keep alpha to the bit and colors up
@@ -224,9 +227,10 @@ typedef struct PellucidFrame {
                                            hold anything; shift 0..31, and the mask has the bits of all indices; mask 0
                                            (default): all bits. thesis->materialMarkBit is a bit of the shifted value */
   uint32_t outputMode;      /* PellucidOutputMode */
-  float preExposure;        /* the irradiance image holds E times this, and so does the output; lights keep their units.
-                               1e-9..1e9; default 1. Light that is reused was stored by the factor of its own frame: a
-                               change of the factor computes it anew */
+  float preExposure;        /* the irradiance image holds E times this, and so does the output; lights and ambient keep their
+                               units. The product of 1 / pi for an image of E / pi, 1 - F at normal incidence for one whose
+                               lights lose F, and the exposure. 1e-9..1e9; default 1. Light that is reused was stored by the
+                               factor of its own frame: a change of the factor computes it anew */
   const float* ambient;     /* light from all around that comes through thin parts, or NULL (default): 9 x RGB coefficients of
                                radiance, -1e15..1e15, of the real orthonormal spherical harmonics of the world direction that
                                light comes from, in the order 1, y, z, x, xy, yz, 3 z^2 - 1, xz, x^2 - y^2. The irradiance
@@ -238,7 +242,8 @@ typedef struct PellucidFrame {
 
 /* ---- Plan ------------------------------------------------------------------------------------ */
 
-/* The dispatches of a frame. A complete type of pellucid_plan.h that the caller allocates. */
+/* The dispatches of a frame. A complete type of pellucid_plan.h, 28 KB, that the caller allocates: with the object that
+ * records, and not on the stack of a job. Read while it is recorded, and by the next plan as `previous`. */
 typedef struct PellucidPlan PellucidPlan;
 
 /* One transient the caller creates: 2D, one mip, of this format and extent (for any render rect), usage SAMPLED |
@@ -310,7 +315,8 @@ PELLUCID_API PellucidResult pellucidCreatePipelines(PellucidContext* context, co
 /* Writes the slice and records every dispatch and the barriers between them. Before: what wrote the inputs is visible to
  * PELLUCID_STAGES / PELLUCID_READS, and the output and transients are free for PELLUCID_WRITES. After: `output` was written
  * by PELLUCID_STAGES / PELLUCID_WRITES.
- * Compute pipeline, push constants and set 0 are left changed. `frame` is the one that made the plan, with its views
+ * Outside of render passes. Left changed: pipeline and sets of the compute bind point, and 16 bytes of push constants of all
+ * bind points (docs/integration.md). `frame` is the one that made the plan, with its views
  * filled in. One that differs in anything else, or lacks an image of the plan's, is PELLUCID_ERROR_INVALID_ARGUMENT;
  * the message names the part that differs. */
 PELLUCID_API PellucidResult pellucidRecordPlan(const PellucidContext* context, VkCommandBuffer commandBuffer,
