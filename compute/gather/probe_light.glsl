@@ -53,11 +53,12 @@ struct Gathered {
   vec3 seenLight, seen; // diffused irradiance of what enters seen, and its part of the profile
 };
 
-// Adds a sample. `to`: from the lit point to x; `near`, `far`: distances of its ring from x; `flux`: per area across the axis.
+// Adds a sample. `to`: from the lit point to x; `near`, `far`: distances of its ring from x; `flux`: per area across the axis;
+// `uncertain`: how far a hidden surface may lie off along its normal, mm.
 void addSample(inout Gathered sum, Surface x, uint m, vec4 lengths, EntryPoint entry, vec3 to, float near, float far,
                float flux, float axisCosine, float uncertain) {
   float squared = dot(to, to);
-  // A point that a bias moved off the surface of x, as far as anybody knows, is of that surface.
+  // A hidden point that a bias may have moved off the plane of x is of the surface of x: nothing comes through.
   if (x.hasNormal && entry.seen == 0.0 && abs(dot(x.normal, to)) < uncertain) entry.normal = x.normal;
   float opposite = x.hasNormal ? 0.5 - 0.5 * dot(x.normal, entry.normal) : 1.0; // 1 - m
   float through = max(-dot(entry.normal, to), 0.0);

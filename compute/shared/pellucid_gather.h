@@ -23,7 +23,7 @@ struct GatherMapConstants {
   vec4 depth;       // what entry points store. Directional: scene units towards the light; perspective: clip w
   ivec4 place;      // x, y: of the first entry in the image; z, w: how many
   vec4 stepX, stepY; // from an entry point to the next, scene units; perspective: times depth. stepX.w: 1 perspective;
-                     // stepY.w: how far hidden surfaces may lie off along their normals, entry points
+                     // stepY.w: how far hidden surfaces may lie off along their normals, sides of an entry point
 };
 
 // The surface that a map stores, by its texel coordinates p. Affine in p:
@@ -38,10 +38,6 @@ struct EntryMapConstants {
   vec4 offsets; // as ShadowConstants::offsets
   vec4 toLight; // xyz: directional: unit
   uvec4 occluder; // as ShadowConstants::occluder
-  // Directional: dot products with (p, depth, 1) say what the camera sees it on: pixelX / pixelW, pixelY / pixelW and
-  // the planar distance. normal + x across[0] + y across[1] is the normal where depth grows by x and y beyond a plane's
-  // along the steps of p. w, normal: 2 stepX ray, across: 2 stepY ray and ray^2.
-  vec4 pixelX, pixelY, pixelW, planar, normal, across[2];
 };
 
 // VkDispatchIndirectCommands of what follows the gather's probes; x: columns of groups, 0 where it does not run; w: where it

@@ -255,7 +255,7 @@ void putLights(const FrameFacts& f, void* mapped) {
       if (!gathered) continue;
       const EntryExtent extent = entryExtent(f, l, i);
       const EntryConstants entry =
-          entryConstants(f.frame, s, l, constants, f.viewFromWorld, extent, row, group.lightCount - 1);
+          entryConstants(s, l, constants, f.viewFromWorld, extent, row, group.lightCount - 1);
       row += entryGroups(extent.height);
       put(mapped, layout.gatherMaps.offset + group.gatherMapBytes + shadow * sizeof entry.gather,
           entry.gather);

@@ -48,7 +48,7 @@ EntryExtent entryExtent(const FrameFacts& facts, const PellucidLight& light, uin
   return {parts(maps[map].extent[0], side), parts(maps[map].extent[1], side), side};
 }
 
-EntryConstants entryConstants(const PellucidFrame& frame, const PellucidShadowMap& s, const PellucidLight& l,
+EntryConstants entryConstants(const PellucidShadowMap& s, const PellucidLight& l,
                               const shared::ShadowConstants& shadow, const glm::dmat4& viewFromWorld,
                               EntryExtent extent, uint32_t row, uint32_t lightIndex) {
   const bool perspective = l.type != PELLUCID_LIGHT_DIRECTIONAL;
@@ -101,27 +101,14 @@ EntryConstants entryConstants(const PellucidFrame& frame, const PellucidShadowMa
     r.ray = glm::vec4(g[2], scale);
     c.gather.depth = glm::vec4(toLight, 0);
     r.toLight = c.gather.depth;
-    const glm::dvec3 ray = g[2];
-    r.normal = glm::vec4(glm::cross(stepX, stepY), 2 * glm::dot(stepX, ray));
-    r.across[0] = glm::vec4(glm::cross(ray, stepY), 2 * glm::dot(stepY, ray));
-    r.across[1] = glm::vec4(glm::cross(stepX, ray), glm::dot(ray, ray));
-    const glm::dmat4 clipFromView = toMatrix(frame.clipFromView);
-    DepthRange range{};
-    readDepthRange(clipFromView, &range);
-    const glm::dmat4 viewFromMap(glm::dvec4(stepX, 0), glm::dvec4(stepY, 0), glm::dvec4(ray, 0),
-                                 glm::dvec4(origin, 1));
-    const glm::dmat4 seen = glm::transpose(clipFromView * viewFromMap);
-    r.pixelX = glm::vec4(0.5 * frame.imageExtent[0] * (seen[0] + seen[3]));
-    r.pixelY = glm::vec4(0.5 * frame.imageExtent[1] * (seen[1] + seen[3]));
-    r.pixelW = glm::vec4(seen[3]);
-    r.planar = glm::vec4(range.forward * glm::transpose(viewFromMap)[2]);
   }
   r.meta = shadow.meta;
   r.occluder = shadow.occluder;
   c.gather.stepX = glm::vec4(glm::vec3(stepX) * static_cast<float>(extent.side), perspective ? 1 : 0);
-  // Slopes that undo a bias miss up to 30 % between neighbors (kMissedSlope of compute/lib/shadow.glsl).
-  const float moved = std::abs(s.depthBiasSlope), off = moved > 0 ? 0.5f + 0.3f * moved : 0;
-  c.gather.stepY = glm::vec4(glm::vec3(stepY) * static_cast<float>(extent.side), off / static_cast<float>(extent.side));
+  // A hidden surface that a slope bias moved may lie off along its normal by half a texel and by what slopes between
+  // texels miss of the bias (kMissedSlope of compute/lib/shadow.glsl).
+  const float bias = std::abs(s.depthBiasSlope);
+  c.gather.stepY = glm::vec4(glm::vec3(stepY) * static_cast<float>(extent.side), bias > 0 ? 0.5f + 0.3f * bias : 0);
   r.map = {s.extent[0], s.extent[1], extent.side, lightIndex};
   // The camera may miss a texel's point by the slope of the surface within half a texel and the pixel.
   r.seen = {static_cast<float>(0.5 * std::sqrt(glm::length(stepX) * glm::length(stepY))), 0, 0, 0};

@@ -41,7 +41,7 @@ struct EntryConstants {
   shared::GatherMapConstants gather;
   shared::EntryMapConstants map;
 };
-EntryConstants entryConstants(const PellucidFrame& frame, const PellucidShadowMap& map,
+EntryConstants entryConstants(const PellucidShadowMap& map,
                               const PellucidLight& light, const shared::ShadowConstants& shadow,
                               const glm::dmat4& viewFromWorld, EntryExtent extent, uint32_t row,
                               uint32_t lightIndex);
