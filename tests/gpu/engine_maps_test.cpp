@@ -428,7 +428,9 @@ TEST_F(EngineMaps, FilteredShadowsAreRamps) {
   options.width = options.height = 200;  // .1 mm a pixel
   options.shadowSize = 128;
   options.shadow.bits = 24;
-  options.shadow.depthBiasConstant = 1000;
+  options.shadow.depthBiasConstant = 10;
+  constexpr float kRounding = 1e-4f;  // of the weights' sum
+  options.shadow.depthBiasSlope = 6;  // texels, beyond the reach of the widest filter
   for (const int filter : {1, 3, 7}) {
     options.shadow.filter = filter;
     const Capture c = rasterize(device(), model, frontCamera(true), options).capture;
@@ -439,13 +441,13 @@ TEST_F(EngineMaps, FilteredShadowsAreRamps) {
     // Along y, across which the light does not lean: from the shadow's middle to beyond its edge at 3 mm.
     for (int y = 100; y > 20; --y) {
       const float e = c.irradiance.at(160, y)[0];
-      EXPECT_GE(e, last - 1e-6f * lit);
+      EXPECT_GE(e, last - kRounding * lit);
       last = e;
-      soft += e > 0 && e < lit;
+      soft += e > kRounding * lit && e < (1 - kRounding) * lit;
     }
-    EXPECT_EQ(last, lit);
+    EXPECT_NEAR(last, lit, kRounding * lit);
     EXPECT_EQ(c.irradiance.at(160, 100)[0], 0);
-    EXPECT_NEAR(0.1 * soft, filter * std::abs(texel), 0.11) << filter;  // a pixel
+    EXPECT_NEAR(0.1 * soft, filter * std::abs(texel), 0.15) << filter;  // a pixel and a half
   }
 }
 
