@@ -260,6 +260,33 @@ TEST_F(FrameErrors, AlbedoMultipliesBeforeTruthIsCompared) {
   EXPECT_NEAR(errorFields(result, capture)["truth_relative_rmse"], 0.1, 1e-5);
 }
 
+TEST_F(FrameErrors, SpotsOfOneFrameAloneAppearOrVanish) {
+  capture.truth = Truth{capture.irradiance};
+  capture.albedo = {};
+  const auto same = flickerFields(capture.irradiance, capture.irradiance, capture, capture);
+  EXPECT_EQ(same["spots_appear"], 0);
+  EXPECT_EQ(same["spots_vanish"], 0);
+  EXPECT_EQ(same["flicker_rgb"][0], 0);
+  // Twice as bright where the face is lit and wholly of material around.
+  Image spotted = capture.irradiance;
+  for (int y = 4; y < capture.height - 4; ++y)
+    for (int x = 4; x < capture.width - 4; ++x) {
+      bool isLit = x % 12 == 0 && y % 12 == 0;
+      for (int dy = -4; dy <= 4; ++dy)
+        for (int dx = -4; dx <= 4; ++dx) isLit = isLit && capture.irradiance.at(x + dx, y + dy)[0] > 0.1f;
+      for (int c = 0; c < 3 && isLit; ++c) spotted.at(x, y)[c] *= 2;
+    }
+  const auto appear = flickerFields(capture.irradiance, spotted, capture, capture);
+  EXPECT_GT(appear["spots_appear"], 0);
+  EXPECT_EQ(appear["spots_vanish"], 0);
+  EXPECT_GT(appear["flicker_rgb"][0], 0);
+  EXPECT_EQ(appear["flicker_irradiance_rgb"][0], 0);
+  const auto vanish = flickerFields(spotted, capture.irradiance, capture, capture);
+  EXPECT_EQ(vanish["spots_vanish"], appear["spots_appear"]);
+  EXPECT_EQ(errorFields(spotted, capture)["spots"], appear["spots_appear"]);
+  EXPECT_EQ(errorFields(capture.irradiance, capture)["spots"], 0);
+}
+
 // ---- The command
 
 class Command : public testing::Test {
@@ -290,6 +317,7 @@ TEST_F(Command, MeasuresACaptureAndNothingAndComparesRuns) {
   const std::string exr = folder / "face.exr", json = folder / "run.json",
                     doctored = folder / "doctored.json";
   writeCapture(capture, exr);
+  writeCapture(capture, folder / "face.turned.exr");
   ASSERT_EQ(runs("--tables frames --frames " + exr +
                  " --frame-names nothing --frame-sizes 32x32 --shadow-size 16 --repeat 1 --error-pixels 50 "
                  "--cache " +
@@ -315,6 +343,11 @@ TEST_F(Command, MeasuresACaptureAndNothingAndComparesRuns) {
     if (r["kind"] != "whole") continue;
     ++wholes;
     EXPECT_GT(r["truth_relative_rmse"], 0) << r;
+    EXPECT_TRUE(r.contains("spots")) << r;
+    if (r["name"].get<std::string>().starts_with("Pellucid")) {
+      EXPECT_EQ(r["flicker_rgb"][0], 0) << r;  // nothing turned
+      EXPECT_EQ(r["spots_appear"], 0) << r;
+    }
     EXPECT_GT(r["us"], 0) << r;
   }
   EXPECT_EQ(wholes, 3 + 1 + 7);  // qualities, without a gather, others

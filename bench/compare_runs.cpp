@@ -11,7 +11,8 @@ using Json = nlohmann::json;
 
 namespace {
 
-const char* const kErrors[] = {"relative_rmse", "truth_relative_rmse"};
+const char* const kErrors[] = {"relative_rmse", "truth_relative_rmse", "flip",
+                               "spots",         "spots_appear",        "spots_vanish"};
 
 // Names what a row measures, in words that sort.
 std::string keyOf(const Json& row) {

@@ -37,6 +37,20 @@ Capture named(Capture capture, const std::string& name) {
   return capture;
 }
 
+// What lies beside a capture's file, or null.
+std::shared_ptr<const Capture> turnedOf(const std::filesystem::path& file, const Capture& capture) {
+  std::filesystem::path path = file;
+  path.replace_extension(".turned" + file.extension().string());
+  if (!std::filesystem::exists(path)) return nullptr;
+  auto turned = std::make_shared<const Capture>(readCaptureFile(path));
+  if (turned->width != capture.width || turned->height != capture.height)
+    throw InputError(path.string(), "size", "is not that of " + file.string());
+  if (turned->material != capture.material)
+    throw InputError(path.string(), "material",
+                     "is not that of " + file.string() + ": lights alone may turn");
+  return turned;
+}
+
 // A scan of a head under a key and a rim light, as the harness's rasterizer draws it.
 class DrawnFrames {
 public:
@@ -123,7 +137,7 @@ std::vector<FrameSource> frameSources(Device& device, const FrameOptions& option
         path.extension() == ".json" ? path.parent_path().filename().string() : path.stem().string();
     // Read at once: what is wrong with a file shows before a run of minutes.
     const auto capture = std::make_shared<const Capture>(named(readCaptureFile(path), name));
-    sources.push_back({name, [=] { return *capture; }});
+    sources.push_back({name, [=] { return *capture; }, turnedOf(path, *capture)});
   }
   if (!options.captures.empty() && options.models.empty() && options.names.empty()) return sources;
 
@@ -149,10 +163,12 @@ std::vector<FrameSource> frameSources(Device& device, const FrameOptions& option
   }
   for (const auto& [width, height] : sizes)
     for (const std::string& name : names)
-      sources.push_back({name, [=, w = width, h = height] {
+      sources.push_back({name,
+                         [=, w = width, h = height] {
                            const Capture capture = withMapsAlone(made(drawnAs(name), w, h));
                            return named(name == kNothing ? withoutMaterial(capture) : capture, name);
-                         }});
+                         },
+                         nullptr});
   return sources;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,8 @@ inline constexpr const char* kFrameNames[] = {"portrait", "closeup", "crowd", "f
 struct FrameSource {
   std::string name;
   std::function<harness::Capture()> make;  // seconds
+  // The frame after its lights turned a little: of a capture NAME.exr that has NAME.turned.exr beside it.
+  std::shared_ptr<const harness::Capture> turned = nullptr;
 };
 
 // Captures of files come first, then every name at each size; only the former where there are some and

@@ -305,6 +305,33 @@ std::string truthTable(const Json& results) {
          rows;
 }
 
+std::string engineTable(const Json& results) {
+  const Frames all(results);
+  std::string rows;
+  for (const std::string& frame : all.frames())
+    for (const std::string& size : all.sizes())
+      for (const std::string& name : all.names("whole")) {
+        const Json* row = all.find(frame, size, "whole", name);
+        if (!row || !row->contains("truth_relative_rmse_rgb") || !row->contains("flicker_rgb")) continue;
+        const auto rgb = [&](const char* field) {
+          const Json& v = row->at(field);
+          return format(" %.3f %.3f %.3f |", v.at(0).get<double>(), v.at(1).get<double>(),
+                        v.at(2).get<double>());
+        };
+        rows += "| " + frame + " " + size + " | " + name.substr(name.find("quality")) + " |" +
+                rgb("truth_relative_rmse_rgb") +
+                format(" %.3f | %d |", row->at("flip").get<double>(), row->at("spots").get<int>()) +
+                rgb("flicker_rgb") + rgb("flicker_irradiance_rgb") +
+                format(" %d, %d |\n", row->at("spots_appear").get<int>(), row->at("spots_vanish").get<int>());
+      }
+  if (rows.empty()) throw NotMeasured("no frame with path-traced truth and turned lights");
+  return results.at("device").get<std::string>() + ", commit `" + results.at("commit").get<std::string>() +
+         "`:\n\n" +
+         header("frame", {"Pellucid", "relative RMSE", "FLIP mean", "spots", "flicker", "of the irradiance",
+                          "spots appear, vanish"}) +
+         rows;
+}
+
 std::string headlineTable(const std::vector<Json>& runs) {
   const Summary summary(runs);
   std::string table =

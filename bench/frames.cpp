@@ -40,12 +40,13 @@ double median(std::vector<double> values) {
 // One frame at one size.
 class FrameBench {
 public:
-  FrameBench(Device& device, const Context& context, const FrameOptions& options, int repeat, Capture capture,
-             Report& report)
+  FrameBench(Device& device, const Context& context, const FrameOptions& options, int repeat,
+             const FrameSource& source, Report& report)
       : device_(device),
         context_(context),
         repeat_(repeat),
-        capture_(std::move(capture)),
+        capture_(source.make()),
+        turned_(source.turned),
         materials_(compileMaterials(capture_)),
         truth_(diffusionTruth(capture_, materials_, options.errorPixels, options.cache)),
         report_(report) {
@@ -185,16 +186,31 @@ private:
     }
   }
 
+  nlohmann::json flickerOf(const Variant& still, ReplaySettings settings) const {
+    settings.normalFormat = VK_FORMAT_R8G8B8A8_SNORM;
+    Capture linear = *turned_;
+    linear.albedo = {};
+    const Variant turned = moduleVariant(
+        std::make_shared<BenchFrame>(device_, context_, linear, materials_, settings), still.name);
+    device_.run(still.record);
+    const Image before = still.output();
+    device_.run(turned.record);
+    return flickerFields(before, turned.output(), capture_, *turned_);
+  }
+
   void wholeFrame(const std::string& name, uint32_t quality, uint32_t gather) {
-    const auto f =
-        frame(settings(PELLUCID_FEATURE_TRANSLUCENCY | PELLUCID_FEATURE_DIFFUSION, quality, gather));
+    const ReplaySettings whole =
+        settings(PELLUCID_FEATURE_TRANSLUCENCY | PELLUCID_FEATURE_DIFFUSION, quality, gather);
+    const auto f = frame(whole);
     const Variant v = moduleVariant(f, name);
     std::vector<double> recordings;
     const Time time = measure(device_, repeat_, [&](VkCommandBuffer commandBuffer) {
       recordings.push_back(hostTime([&] { v.record(commandBuffer); }));
     });
     const nlohmann::json host = hostTimes(*f, std::move(recordings));
-    add("whole", v, time, qualityName(std::min(quality, kModuleDiffusions - 1u)), host);
+    nlohmann::json more = host;
+    if (turned_) more.update(flickerOf(v, whole));
+    add("whole", v, time, qualityName(std::min(quality, kModuleDiffusions - 1u)), more);
     char text[160];
     std::snprintf(
         text, sizeof text,
@@ -242,6 +258,7 @@ private:
   const Context& context_;
   int repeat_;
   Capture capture_, withoutAlbedo_;
+  std::shared_ptr<const Capture> turned_;  // null: nothing is known of turned lights
   std::vector<PellucidMaterial> materials_;
   DiffusionTruth truth_;
   Report& report_;
@@ -263,7 +280,7 @@ std::map<std::string, std::vector<Plot>> measureFrames(Device& device, const Con
   std::map<std::string, double> floors;  // by size
   std::map<std::string, std::vector<Plot>> plots;
   for (const FrameSource& source : sources) {
-    FrameBench bench(device, context, options, repeat, source.make(), report);
+    FrameBench bench(device, context, options, repeat, source, report);
     const auto [floor, isNew] = floors.try_emplace(bench.size());
     if (isNew)
       floor->second =

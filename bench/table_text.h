@@ -35,7 +35,8 @@ std::string frameSizesTable(const Json& results);       // whole frames at all s
 std::string framePartsTable(const Json& results);       // translucency and diffusion alone
 std::string frameDispatchesTable(const Json& results);  // of two settings, dispatch by dispatch
 std::string frameHostTable(const Json& results);        // CPU times, memory, dispatches
-std::string truthTable(const Json& results);  // of captures with path-traced truth: error and metrics
+std::string truthTable(const Json& results);   // of captures with path-traced truth: error and metrics
+std::string engineTable(const Json& results);  // of captures as engines make them, with turned lights beside
 std::string contextTable(const Json& results);
 
 // The README's tables, of the first run with times and the first with path-traced truth. Throw NotMeasured.

@@ -129,6 +129,7 @@ constexpr Table kTables[] = {{"measured", ofFirst<measured>},
                              {"frame_host", ofFirst<frameHostTable>},
                              {"context", ofFirst<contextTable>},
                              {"truth", ofFirst<truthTable>},
+                             {"engine", ofFirst<engineTable>},
                              {"headline", headlineTable},
                              {"qualities", qualitiesTable}};
 

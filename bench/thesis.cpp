@@ -209,11 +209,13 @@ private:
     TargetPool targets(device_);
     std::vector<DrawnMap> drawn;
     device_.run([&](VkCommandBuffer commands) {
-      drawn = recordShadows(commands, targets, points_, rasterizer_.uploaded(), light, raster_);
+      drawn =
+          recordShadows(commands, targets, frameLight(points_, light, raster_.pointMaps, raster_.shadowSize),
+                        rasterizer_.uploaded(), light, raster_);
     });
     if (drawn.size() != 1) throw DeviceError("the point light has no single shadow map");
     constexpr bool kReversed = true;
-    const DrawView lightView{drawn[0].planar.clipFromView, drawn[0].planar.viewFromWorld, kReversed};
+    const DrawView lightView{drawn[0].image.clipFromView, drawn[0].image.viewFromWorld, kReversed};
     const RenderTarget map(device_, raster_.shadowSize, raster_.shadowSize, depthColors(kReversed),
                            farDepth(kReversed));
     sum.shadow += draw(simpleUploaded_, map, lightView,
@@ -223,7 +225,7 @@ private:
     irradiance.clear();
     const LitSurfaces surfaces{front.normalPlanar(), front.depthNormal(), irradiance, view};
     sum.lighting += time(
-        [&](VkCommandBuffer commands) { pass.record(commands, surfaces, light, shadowImagesOf(drawn)); });
+        [&](VkCommandBuffer commands) { pass.record(commands, surfaces, light, shadowsOf(drawn, raster_)); });
   }
 
   void addTranslucency(Passes& sum, const std::shared_ptr<const BenchFrame>& frame, const DrawView& view,

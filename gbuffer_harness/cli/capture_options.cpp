@@ -1,6 +1,7 @@
 #include "cli/capture_options.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -77,19 +78,26 @@ void refuseOptionsOf(const CLI::App& command, const char* group, const char* nee
       throw UsageError(option->get_name() + ": needs " + needs);
 }
 
+std::array<double, 2> parsePair(const char* option, const std::string& text, const char* syntax) {
+  const std::vector<std::string> parts = split(text, ',');
+  if (parts.size() != 2) throw UsageError(std::string(option) + ": \"" + text + "\" is not " + syntax);
+  return {parseNumber<double>(option, parts[0]), parseNumber<double>(option, parts[1])};
+}
+
 ShadowDrawing shadowDrawing(const CaptureOptions& options) {
   ShadowDrawing drawing;
   drawing.cull = options.shadowCull;
   drawing.bits = options.shadowBits;
+  drawing.normalOffset = options.shadowNormalOffset;
+  drawing.cascades = options.shadowCascades;
+  drawing.filter = options.shadowFilter;
   drawing.placement = options.shadowAtlas   ? MapPlacement::Atlas
                       : options.shadowArray ? MapPlacement::Array
                                             : MapPlacement::Separate;
   if (options.shadowDepthBias.empty()) return drawing;
-  const std::vector<std::string> factors = split(options.shadowDepthBias, ',');
-  if (factors.size() != 2)
-    throw UsageError("--shadow-depth-bias: \"" + options.shadowDepthBias + "\" is not CONSTANT,SLOPE");
-  drawing.depthBiasConstant = parseNumber<double>("--shadow-depth-bias", factors[0]);
-  drawing.depthBiasSlope = parseNumber<double>("--shadow-depth-bias", factors[1]);
+  const auto [constant, slope] = parsePair("--shadow-depth-bias", options.shadowDepthBias, "CONSTANT,SLOPE");
+  drawing.depthBiasConstant = constant;
+  drawing.depthBiasSlope = slope;
   return drawing;
 }
 
@@ -189,6 +197,31 @@ void addModelOptions(CLI::App& command, CaptureOptions& options, SceneUse use) {
   command.add_option("--shadow-bits", options.shadowBits, "of a shadow map's depth: 16, 24 or 32, a float")
       ->check(CLI::IsMember({16, 24, 32}))
       ->capture_default_str()
+      ->group(group);
+  command
+      .add_option(
+          "--shadow-normal-offset", options.shadowNormalOffset,
+          "texels times 1 - cosine to the light by which a map's vertices move inward along their normals")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str()
+      ->group(group);
+  command
+      .add_option("--shadow-cascades", options.shadowCascades,
+                  "maps of a directional light that follow the camera; 0: one around the model")
+      ->check(CLI::Range(0, 6))
+      ->capture_default_str()
+      ->group(group);
+  command
+      .add_option(
+          "--shadow-filter", options.shadowFilter,
+          "taps across, odd, with which the irradiance filters these maps; 0: it has plain maps of its own")
+      ->check(CLI::IsMember({0, 1, 3, 5, 7, 9, 11, 13, 15}))
+      ->capture_default_str()
+      ->group(group);
+  command
+      .add_option(
+          "--jitter", options.jitter,
+          "X,Y in pixels, -1 .. 1, by which the projection moves the picture, as for temporal antialiasing")
       ->group(group);
   CLI::Option* atlas =
       command.add_flag("--shadow-atlas", options.shadowAtlas, "all shadow maps as tiles of one image")
@@ -320,6 +353,7 @@ CaptureModel captureModel(const CaptureOptions& options, const std::vector<doubl
                             : options.pointMaps == "6" ? PointMaps::Six
                                                        : PointMaps::Auto;
   result.raster.shadow = shadowDrawing(options);
+  if (!options.jitter.empty()) result.raster.jitter = parsePair("--jitter", options.jitter, "X,Y");
   result.raster.simplify = options.simplify;
   GltfOptions gltf;
   gltf.metersPerUnit = parseUnit(options.unit);

@@ -38,7 +38,9 @@ struct CaptureOptions {
   BackFace backFace = BackFace::Nearest;
   MapCull shadowCull = MapCull::None;
   std::string shadowDepthBias;  // "": none
-  int shadowBits = 32;
+  int shadowBits = 32, shadowCascades = 0, shadowFilter = 0;
+  double shadowNormalOffset = 0;  // texels
+  std::string jitter;             // "": none
   bool shadowAtlas = false, shadowArray = false;
 };
 

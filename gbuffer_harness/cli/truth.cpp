@@ -237,9 +237,9 @@ private:
 
 // Refuses options that a capture given by --like answers itself.
 void refuseScene(const CLI::App& command) {
-  for (const char* name :
-       {"--size", "--camera", "--view", "--fov", "--projection", "--light", "--ior", "--shadow-size",
-        "--shadow-depth", "--depth", "--back", "--point-maps", "--infinite-far", "--view-normals"})
+  for (const char* name : {"--size", "--camera", "--view", "--fov", "--projection", "--light", "--ior",
+                           "--shadow-size", "--shadow-depth", "--jitter", "--depth", "--back", "--point-maps",
+                           "--infinite-far", "--view-normals"})
     if (command.count(name) > 0)
       throw UsageError(std::string(name) +
                        ": --like takes camera, size, lights and materials of the capture");

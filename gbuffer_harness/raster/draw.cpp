@@ -24,7 +24,7 @@ namespace {
 
 // Push constants of shaders/draw.glsl.
 constexpr std::uint32_t kOwnBindings = 5, kBehindFront = 1, kBehindCaster = 2, kHasColor = 4, kHasLobes = 8,
-                        kLobesApart = 256;
+                        kLobesApart = 256, kIsOffset = 2;
 constexpr VkShaderStageFlags kStages =  // that read DrawConstants
     VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
 
@@ -178,10 +178,13 @@ void UploadedModel::record(VkCommandBuffer commandBuffer, const RenderTarget& ta
     const std::uint32_t behind = earlier.depth == nullptr ? 0 : earlier.caster ? kBehindCaster : kBehindFront;
     const std::uint32_t apart = surface.lobes == SurfaceLobes::Apart ? kLobesApart : 0;
     const std::uint32_t has = (surface.texture < 0 ? 0 : kHasColor) | (surface.lobeMap < 0 ? 0 : kHasLobes);
-    constants.ids = {surface.material | apart | highHalf(surface.displaced),
-                     view.reversedDepth | highHalf(surface.backscatter), behind | has,
-                     earlier.planned ? earlier.planned->dispatch.pushConstants[1]
-                                     : std::bit_cast<std::uint32_t>(normalScale)};
+    constants.ids = {
+        surface.material | apart | highHalf(surface.displaced),
+        view.reversedDepth | (view.normalOffset != 0 ? kIsOffset : 0) | highHalf(surface.backscatter),
+        behind | has,
+        earlier.planned ? earlier.planned->dispatch.pushConstants[1]
+                        : std::bit_cast<std::uint32_t>(
+                              view.normalOffset != 0 ? static_cast<float>(view.normalOffset) : normalScale)};
     vkCmdPushConstants(commandBuffer, pipelines_.layout(), kStages, 0, sizeof constants, &constants);
     vkCmdDrawIndexed(commandBuffer, part.indexCount, 1, part.firstIndex, 0, 0);
   }

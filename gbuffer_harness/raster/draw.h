@@ -43,6 +43,9 @@ static_assert(sizeof(DrawConstants) == 128, "what every device has for push cons
 struct DrawView {
   Matrix clipFromView, viewFromWorld;
   bool reversedDepth = true;
+  // Of orthographic views, scene units: vertices move inward along their normals by this times 1 - cosine to
+  // the direction that the view comes from. Not for FragmentShader::Surface and Transmit.
+  double normalOffset = 0;
 };
 
 // The bindings of a fused dispatch of the module, for FragmentShader::Transmit.

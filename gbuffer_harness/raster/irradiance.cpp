@@ -30,11 +30,12 @@ constexpr std::uint32_t kShadowBinding = 2, kIrradianceBinding = 3, kTrianglesBi
 struct Constants {
   struct ShadowView {
     glm::mat4 clipFromView;
-    glm::vec4 planar;
+    glm::vec4 planar, texel;
   };
   glm::mat4 viewFromWorld;
   ShadowView shadowViews[kShadowMaps];
   glm::vec4 shadow, eye;
+  glm::ivec4 lookup;
   shared::LightConstants light;
 };
 
@@ -52,29 +53,34 @@ shared::LightConstants lightConstants(const Light& light, const glm::dmat4& view
   return constants;
 }
 
-void setShadows(Constants& constants, const std::vector<ShadowImage>& shadows,
-                const glm::dmat4& worldFromView) {
-  for (std::size_t i = 0; i < shadows.size(); ++i) {
-    const glm::dmat4 shadowView = toGlm(shadows[i].viewFromWorld) * worldFromView;
-    constants.shadowViews[i] = {glm::mat4(toGlm(shadows[i].clipFromView) * shadowView),
-                                -glm::vec4(glm::transpose(shadowView)[2])};
+void setShadows(Constants& constants, const Shadows& shadows, const glm::dmat4& worldFromView) {
+  for (std::size_t i = 0; i < shadows.images.size(); ++i) {
+    const ShadowImage& image = shadows.images[i];
+    const glm::dmat4 shadowView = toGlm(image.viewFromWorld) * worldFromView;
+    // The view is 2 / clipFromView[0] wide, at planar distance 1 if it is a perspective.
+    constants.shadowViews[i] = {glm::mat4(toGlm(image.clipFromView) * shadowView),
+                                -glm::vec4(glm::transpose(shadowView)[2]),
+                                glm::vec4(static_cast<float>(2 / image.clipFromView[0] / image.size))};
   }
-  if (shadows.empty()) return;
-  // The view is 2 / clipFromView[0] wide, at planar distance 1 if it is a perspective.
-  const ShadowImage& first = shadows.front();
-  const double texel = 2 / first.clipFromView[0] / first.size;
-  constants.shadow = glm::vec4(first.size, first.perspective, texel, shadows.size());
+  if (shadows.images.empty()) return;
+  const ShadowImage& first = shadows.images.front();
+  constants.shadow = glm::vec4(first.size, first.perspective, 0, 0);
+  constants.lookup.x = static_cast<int>(shadows.images.size());
+  constants.lookup.y = first.perspective && shadows.images.size() > 1;
+  constants.lookup.z = shadows.filter;
 }
 
-Constants constantsOf(const LitSurfaces& surfaces, const Light& light,
-                      const std::vector<ShadowImage>& shadows) {
+Constants constantsOf(const LitSurfaces& surfaces, const Light& light, const Shadows& shadows) {
   const Matrix& clipFromView = surfaces.view.clipFromView;
   const glm::dmat4 viewFromWorld = toGlm(surfaces.view.viewFromWorld);
   Constants constants{};
   constants.viewFromWorld = glm::mat4(viewFromWorld);
   constants.light = lightConstants(light, viewFromWorld);
   const bool perspective = clipFromView[15] == 0;
-  constants.eye = glm::vec4(1 / clipFromView[0], 1 / clipFromView[5], perspective, 0);
+  constants.eye =
+      glm::vec4(1 / clipFromView[0], 1 / clipFromView[5], perspective ? -clipFromView[8] : clipFromView[12],
+                perspective ? -clipFromView[9] : clipFromView[13]);
+  constants.lookup.w = perspective;
   setShadows(constants, shadows, glm::inverse(viewFromWorld));
   return constants;
 }
@@ -99,17 +105,19 @@ IrradiancePass::IrradiancePass(Device& device)
                  VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT) {}
 
 void IrradiancePass::record(VkCommandBuffer commands, const LitSurfaces& surfaces, const Light& light,
-                            const std::vector<ShadowImage>& shadows) const {
+                            const Shadows& shadows) const {
   const Constants constants = constantsOf(surfaces, light, shadows);
   // The light before is done with the buffer: PixelPass ends with a barrier.
   vkCmdUpdateBuffer(commands, constants_.handle(), 0, sizeof constants, &constants);
   barrier(commands, {VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT},
           {VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_UNIFORM_READ_BIT});
 
-  const PixelPass& pass = shadows.size() <= kOneMap ? one_ : six_;
-  const auto imageInfo = [&](const GpuImage& image) {
-    return VkDescriptorImageInfo{pass.sampler(), image.use().view, image.use().layout};
+  const std::vector<ShadowImage>& images = shadows.images;
+  const PixelPass& pass = images.size() <= kOneMap ? one_ : six_;
+  const auto useInfo = [&](const PellucidImage& image) {
+    return VkDescriptorImageInfo{pass.sampler(), image.view, image.layout};
   };
+  const auto imageInfo = [&](const GpuImage& image) { return useInfo(image.use()); };
   const VkDescriptorBufferInfo bufferInfo{constants_.handle(), 0, VK_WHOLE_SIZE};
   const VkDescriptorImageInfo surface = imageInfo(surfaces.normalPlanar),
                               triangles = imageInfo(surfaces.depthNormal),
@@ -117,7 +125,9 @@ void IrradiancePass::record(VkCommandBuffer commands, const LitSurfaces& surface
   // A descriptor that is not read must be valid all the same.
   VkDescriptorImageInfo maps[kShadowMaps];
   for (std::size_t i = 0; i < kShadowMaps; ++i)
-    maps[i] = imageInfo(i < shadows.size() ? *shadows[i].planar : surfaces.normalPlanar);
+    maps[i] = useInfo(i >= images.size()   ? surfaces.normalPlanar.use()
+                      : shadows.filter > 0 ? images[i].depths
+                                           : images[i].planar);
   VkWriteDescriptorSet writes[std::size(kBindings)];
   for (std::uint32_t i = 0; i < std::size(writes); ++i) {
     writes[i] = {VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};

@@ -1,6 +1,7 @@
 // A model through the rasterizer: the G-buffer an engine would hand to Pellucid.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -23,13 +24,24 @@ enum class MapPlacement {
   Array      // layers of one image
 };
 
-// How the maps that a capture keeps are drawn, as engines do. The irradiance's own map stays plain.
+// How the maps that a capture keeps are drawn, as engines do. The irradiance's own maps stay plain unless
+// `filter` says that it reads the same ones.
 struct ShadowDrawing {
   MapCull cull = MapCull::None;
   // Factors of vkCmdSetDepthBias that move away from the light, -1e3..1e3: the harness's depths are reversed,
   // so that both are drawn, and kept in the capture, with the other sign.
   double depthBiasConstant = 0, depthBiasSlope = 0;
   int bits = 32;  // of the depth buffer: 16, 24 or 32, a float
+  // Texels, 0..100. Vertices move inward along their normals by this times 1 - cosine to the light, as by the
+  // normal bias of Unity. On a sphere the surface moves along the ray by this on average, which is the map's
+  // offsetLength. Directional lights only.
+  double normalOffset = 0;
+  // Maps of a directional light that follow the camera, 0..6; 0: one around the model.
+  int cascades = 0;
+  // Texels across of percentage-closer filtering, odd, at most 15: the irradiance compares with the maps as
+  // they are drawn, at this many taps along each axis, each weighted among its four texels. 0: irradiance of
+  // plain maps.
+  int filter = 0;
   MapPlacement placement = MapPlacement::Separate;
 };
 
@@ -39,6 +51,7 @@ struct RasterOptions {
   bool infiniteFar = false;                                     // perspective cameras only
   PellucidDepthEncoding depthEncoding = PELLUCID_DEPTH_DEVICE;  // DEVICE or VIEW_Z
   bool normalsInViewSpace = false;
+  std::array<double, 2> jitter = {0, 0};  // pixels right and down, -1..1, by which the picture moves
   BackFace backFace = BackFace::Nearest;
   int shadowSize = 1024;  // texels across a shadow map, 0..8192; 0: no shadow maps and no shadows
   PellucidDepthEncoding shadowEncoding = PELLUCID_DEPTH_DEVICE;

@@ -1,6 +1,7 @@
 #include "raster/rasterizer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <string>
@@ -34,17 +35,25 @@ Matrix projection(const ModelCamera& camera, const RasterOptions& options) {
                        "camera \"" + camera.name + "\" is orthographic and needs a far plane");
     range.farPlane = std::numeric_limits<double>::infinity();
   }
-  return camera.orthographic ? orthographic(camera.height * aspect, camera.height, range)
-                             : perspective(camera.verticalFov, aspect, range);
+  Matrix clip = camera.orthographic ? orthographic(camera.height * aspect, camera.height, range)
+                                    : perspective(camera.verticalFov, aspect, range);
+  const double moved[] = {2 * options.jitter[0] / options.width, 2 * options.jitter[1] / options.height};
+  for (std::size_t axis = 0; axis < 2; ++axis)
+    for (std::size_t column = 0; column < 4; ++column)
+      clip[4 * column + axis] += moved[axis] * clip[4 * column + 3];
+  return clip;
 }
 
-void checkOptions(const Model& model, const RasterOptions& options) {
+void checkOptions(const Model& model, const ModelCamera& camera, const RasterOptions& options) {
   checkSide(model, "width", options.width, 1);
   checkSide(model, "height", options.height, 1);
   checkSide(model, "shadowSize", options.shadowSize, 0);
   if (options.depthEncoding == PELLUCID_DEPTH_DISTANCE)
     throw InputError(model.name, "depthEncoding", "distance is an encoding of shadow maps only");
-  checkShadowDrawing(model, options);
+  for (const double pixels : options.jitter)
+    if (!(std::abs(pixels) <= 1))
+      throw InputError(model.name, "jitter", std::to_string(pixels) + " is outside -1 .. 1");
+  checkShadowDrawing(model, camera, options);
 }
 
 BackFaces recordBack(VkCommandBuffer commands, TargetPool& targets, const UploadedModel& model,
@@ -127,7 +136,7 @@ const UploadedModel& Rasterizer::transmission(double simplify) {
 }
 
 std::shared_ptr<const DrawnFrame> Rasterizer::draw(const ModelCamera& camera, const RasterOptions& options) {
-  checkOptions(model_, options);
+  checkOptions(model_, camera, options);
   passes_->nextFrame();
   const UploadedModel& transmission = this->transmission(options.simplify);
 
@@ -169,8 +178,10 @@ std::shared_ptr<const DrawnFrame> Rasterizer::draw(const ModelCamera& camera, co
   std::vector<std::vector<DrawnMap>> shadows(model_.lights.size());
   for (std::size_t i = 0; i < model_.lights.size(); ++i) {
     const Light& light = model_.lights[i];
-    const auto draw = [&](VkCommandBuffer commands, const UploadedModel& model) {
-      return recordShadows(commands, passes_->targets, points_, model, light, options);
+    const std::vector<LightView> views =
+        options.shadowSize > 0 ? shadowViews(points_, light, camera, options) : std::vector<LightView>();
+    const auto draw = [&, views](VkCommandBuffer commands, const UploadedModel& model) {
+      return recordShadows(commands, passes_->targets, views, model, light, options);
     };
     if (options.shadowSize > 0)
       steps.add("shadow maps", [&, draw, i](VkCommandBuffer commands) {
@@ -179,7 +190,7 @@ std::shared_ptr<const DrawnFrame> Rasterizer::draw(const ModelCamera& camera, co
       });
     if (light.radius == 0)
       steps.add("irradiance", [&, i](VkCommandBuffer commands) {
-        passes_->irradiance.record(commands, surfaces, model_.lights[i], shadowImagesOf(shadows[i]));
+        passes_->irradiance.record(commands, surfaces, model_.lights[i], shadowsOf(shadows[i], options));
       });
   }
   if (hasLobesApart(model_))

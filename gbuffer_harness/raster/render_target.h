@@ -36,6 +36,7 @@ public:
   VkFormat depthFormat() const { return depthFormat_; }
   // The depth buffer as it was stored, one channel, 0..1.
   Image depth() const { return depth_->download(); }
+  PellucidImage depthUse() const { return {depth_->view(), VK_IMAGE_LAYOUT_GENERAL}; }
 
   // Clears, and waits for everything before; what is drawn is ready for everything after.
   void begin(VkCommandBuffer commandBuffer) const { pass_->begin(commandBuffer, {{0, 0}, extent_}); }

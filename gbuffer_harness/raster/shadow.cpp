@@ -13,6 +13,7 @@ namespace pellucid::harness {
 namespace {
 
 constexpr bool kReversed = true;
+constexpr int kMostCascades = 6;  // maps that the irradiance reads
 
 std::size_t depthIndex(PellucidDepthEncoding encoding) {
   return encoding == PELLUCID_DEPTH_DEVICE ? kDeviceDepth : kPlanar;
@@ -65,7 +66,12 @@ Target recordExit(VkCommandBuffer commands, TargetPool& targets, const UploadedM
 
 bool isPlain(const ShadowDrawing& drawing) {
   return drawing.cull == MapCull::None && drawing.depthBiasConstant == 0 && drawing.depthBiasSlope == 0 &&
-         drawing.bits == 32;
+         drawing.normalOffset == 0 && drawing.bits == 32;
+}
+
+// Scene units by which a view's vertices move.
+double offsetOf(const LightView& view, const RasterOptions& options) {
+  return options.shadow.normalOffset * 2 / view.clipFromView[0] / options.shadowSize;
 }
 
 VkFormat formatOf(const ShadowDrawing& drawing) {
@@ -94,7 +100,7 @@ Target recordAsEngine(VkCommandBuffer commands, TargetPool& targets, const Uploa
   return target;
 }
 
-ShadowMap outlineOf(const DrawView& view, const RasterOptions& options) {
+ShadowMap outlineOf(const LightView& view, const RasterOptions& options) {
   ShadowMap map;
   map.depth.encoding = options.shadowEncoding;
   map.clipFromWorld = multiply(view.clipFromView, view.viewFromWorld);
@@ -104,18 +110,27 @@ ShadowMap outlineOf(const DrawView& view, const RasterOptions& options) {
   map.faces = drawing.cull == MapCull::Front ? PELLUCID_FACES_BACK : PELLUCID_FACES_FRONT;
   map.depthBiasConstant = -drawing.depthBiasConstant * depthUnit(drawing);
   map.depthBiasSlope = -drawing.depthBiasSlope;
+  map.offsetLength = offsetOf(view, options);
   map.depthStep = drawing.bits == 32 ? 0 : depthUnit(drawing);
   return map;
 }
 
 }  // namespace
 
-std::vector<DrawnMap> recordShadows(VkCommandBuffer commands, TargetPool& targets, const ModelPoints& points,
-                                    const UploadedModel& uploaded, const Light& light,
-                                    const RasterOptions& options) {
+std::vector<LightView> shadowViews(const ModelPoints& points, const Light& light, const ModelCamera& camera,
+                                   const RasterOptions& options) {
+  const int cascades = options.shadow.cascades;
+  if (cascades == 0 || light.type != PELLUCID_LIGHT_DIRECTIONAL)
+    return frameLight(points, light, options.pointMaps, options.shadowSize);
+  return frameCascades(points.bounds, light, camera, static_cast<double>(options.width) / options.height,
+                       cascades, options.shadowSize);
+}
+
+std::vector<DrawnMap> recordShadows(VkCommandBuffer commands, TargetPool& targets,
+                                    const std::vector<LightView>& views, const UploadedModel& uploaded,
+                                    const Light& light, const RasterOptions& options) {
   std::vector<DrawnMap> maps;
   const int size = options.shadowSize;
-  const std::vector<LightView> views = frameLight(points, light, options.pointMaps, size);
   // Six maps with images of their own would have more than a dispatch binds.
   const bool few =
       options.shadow.placement != MapPlacement::Separate || 3 * views.size() <= PELLUCID_SHADOW_IMAGE_COUNT;
@@ -123,35 +138,42 @@ std::vector<DrawnMap> recordShadows(VkCommandBuffer commands, TargetPool& target
   for (const LightView& lightView : views) {
     const DrawView view{lightView.clipFromView, lightView.viewFromWorld, kReversed};
     DrawnMap& map = maps.emplace_back();
-    map.outline = outlineOf(view, options);
+    map.outline = outlineOf(lightView, options);
     map.surface = recordSurface(commands, targets, uploaded, view, size, casters);
-    map.planar = {&map.surface->image(kPlanar), size, view.clipFromView, view.viewFromWorld,
-                  light.type != PELLUCID_LIGHT_DIRECTIONAL};
-    if (!isPlain(options.shadow)) map.engine = recordAsEngine(commands, targets, uploaded, view, options);
+    map.image = {map.surface->image(kPlanar).use(), size, view.clipFromView, view.viewFromWorld,
+                 light.type != PELLUCID_LIGHT_DIRECTIONAL};
+    if (!isPlain(options.shadow) || options.shadow.filter > 0) {
+      DrawView drawn = view;
+      drawn.normalOffset = offsetOf(lightView, options);
+      map.engine = recordAsEngine(commands, targets, uploaded, drawn, options);
+    }
+    if (options.shadow.filter > 0) map.image.depths = map.engine->depthUse();
     if (casters) map.exit = recordExit(commands, targets, uploaded, view, *map.surface, size);
   }
   return maps;
 }
 
-std::vector<ShadowImage> shadowImagesOf(const std::vector<DrawnMap>& maps) {
-  std::vector<ShadowImage> images;
-  for (const DrawnMap& map : maps) images.push_back(map.planar);
-  return images;
+Shadows shadowsOf(const std::vector<DrawnMap>& maps, const RasterOptions& options) {
+  Shadows shadows;
+  for (const DrawnMap& map : maps) shadows.images.push_back(map.image);
+  shadows.filter = options.shadow.filter;
+  return shadows;
 }
 
 ShadowMap downloadMap(const DrawnMap& map, const RasterOptions& options) {
   ShadowMap result = map.outline;
   result.depth.image =
-      map.engine ? map.engine->depth() : downloadDepth(*map.surface, map.planar, options.shadowEncoding);
+      map.engine ? map.engine->depth() : downloadDepth(*map.surface, map.image, options.shadowEncoding);
   if (!map.exit) return result;
-  result.exitDepth = downloadDepth(*map.exit, map.planar, options.shadowEncoding);
+  result.exitDepth = downloadDepth(*map.exit, map.image, options.shadowEncoding);
   for (const float material : map.surface->image(kCasterMaterial).download().data)
     result.casterMaterial.push_back(static_cast<std::uint8_t>(std::lround(255 * material)));
   return result;
 }
 
 bool areOnDevice(const RasterOptions& options) {
-  return isPlain(options.shadow) && options.shadow.placement == MapPlacement::Separate &&
+  return isPlain(options.shadow) && options.shadow.filter == 0 &&
+         options.shadow.placement == MapPlacement::Separate &&
          options.shadowEncoding != PELLUCID_DEPTH_DISTANCE;
 }
 
@@ -162,19 +184,37 @@ DeviceMap deviceMap(const DrawnMap& map, const RasterOptions& options) {
           sharedImage(map.surface, kCasterMaterial)};
 }
 
-void checkShadowDrawing(const Model& model, const RasterOptions& options) {
+void checkShadowDrawing(const Model& model, const ModelCamera& camera, const RasterOptions& options) {
   const ShadowDrawing& drawing = options.shadow;
+  const auto refuse = [&](const char* field, const std::string& why) {
+    throw InputError(model.name, field, why);
+  };
+  if (!(drawing.normalOffset >= 0 && drawing.normalOffset <= 100))
+    refuse("shadowNormalOffset", std::to_string(drawing.normalOffset) + " is outside 0 .. 100");
+  if (drawing.normalOffset > 0)
+    for (const Light& light : model.lights)
+      if (light.type != PELLUCID_LIGHT_DIRECTIONAL)
+        refuse("shadowNormalOffset", "needs directional lights alone");
+  if (drawing.cascades < 0 || drawing.cascades > kMostCascades)
+    refuse("shadowCascades", std::to_string(drawing.cascades) + " is outside 0 .. 6");
+  if (drawing.cascades > 0 && camera.orthographic)
+    refuse("shadowCascades", "camera \"" + camera.name + "\" is orthographic: its depths have no slices");
+  if (drawing.filter != 0 && (drawing.filter < 0 || drawing.filter > 15 || drawing.filter % 2 == 0))
+    refuse("shadowFilter", std::to_string(drawing.filter) + " is not 0 or an odd number of at most 15");
   constexpr double kMostBias = 1e3;
   for (const double bias : {drawing.depthBiasConstant, drawing.depthBiasSlope})
     if (!(std::abs(bias) <= kMostBias))
       throw InputError(model.name, "shadowDepthBias", std::to_string(bias) + " is outside -1000 .. 1000");
   if (drawing.bits != 16 && drawing.bits != 24 && drawing.bits != 32)
     throw InputError(model.name, "shadowBits", std::to_string(drawing.bits) + " is not 16, 24 or 32");
-  if (!isPlain(drawing) && options.shadowEncoding != PELLUCID_DEPTH_DEVICE)
+  const bool isDrawn = !isPlain(drawing) || drawing.filter > 0;
+  if (isDrawn && options.shadowEncoding != PELLUCID_DEPTH_DEVICE)
     throw InputError(
         model.name, "shadowDepth",
-        "must be device where maps are culled, biased or of other than 32 bits: only depth buffers are");
-  if (options.shadowSize == 0 && (!isPlain(drawing) || drawing.placement != MapPlacement::Separate))
+        "must be device where maps are culled, biased, offset, filtered or of other than 32 bits: "
+        "only depth buffers are");
+  if (options.shadowSize == 0 &&
+      (isDrawn || drawing.cascades > 0 || drawing.placement != MapPlacement::Separate))
     throw InputError(model.name, "shadowSize", "is 0, but something is asked of the shadow maps");
 }
 

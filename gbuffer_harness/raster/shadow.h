@@ -13,20 +13,24 @@ namespace pellucid::harness {
 
 // One map on the device.
 struct DrawnMap {
-  ShadowMap outline;   // without images
-  ShadowImage planar;  // for the irradiance, of `surface`
+  ShadowMap outline;  // without images
+  ShadowImage image;  // for the irradiance
   std::shared_ptr<const RenderTarget> surface;
   std::shared_ptr<const RenderTarget> exit;    // null: the map has no exit depth and no casters
   std::shared_ptr<const RenderTarget> engine;  // whose depth buffer the map keeps; null: a depth of `surface`
 };
 
-// Records the drawing of a light's maps. points: of the whole model, which `uploaded` may be a part of.
-// options.shadowSize > 0.
-std::vector<DrawnMap> recordShadows(VkCommandBuffer commands, TargetPool& targets, const ModelPoints& points,
-                                    const UploadedModel& uploaded, const Light& light,
-                                    const RasterOptions& options);
+// What the maps of a light of this model show.
+std::vector<LightView> shadowViews(const ModelPoints& points, const Light& light, const ModelCamera& camera,
+                                   const RasterOptions& options);
 
-std::vector<ShadowImage> shadowImagesOf(const std::vector<DrawnMap>& maps);
+// Records the drawing of a light's maps. options.shadowSize > 0.
+std::vector<DrawnMap> recordShadows(VkCommandBuffer commands, TargetPool& targets,
+                                    const std::vector<LightView>& views, const UploadedModel& uploaded,
+                                    const Light& light, const RasterOptions& options);
+
+// For the irradiance.
+Shadows shadowsOf(const std::vector<DrawnMap>& maps, const RasterOptions& options);
 
 // The map with its images.
 ShadowMap downloadMap(const DrawnMap& map, const RasterOptions& options);
@@ -41,7 +45,7 @@ struct DeviceMap {
 DeviceMap deviceMap(const DrawnMap& map, const RasterOptions& options);
 
 // Throws InputError for options that no map can be drawn with.
-void checkShadowDrawing(const Model& model, const RasterOptions& options);
+void checkShadowDrawing(const Model& model, const ModelCamera& camera, const RasterOptions& options);
 
 // Gives all maps of the lights places in one image, or leaves each its own. size: of a map.
 void placeShadowMaps(MapPlacement placement, int size, std::vector<Light>& lights);

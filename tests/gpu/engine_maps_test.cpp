@@ -13,6 +13,7 @@
 #include "model_builder.h"
 #include "raster/raster.h"
 #include "reference/reference.h"
+#include "scene/vector.h"
 
 namespace {
 
@@ -386,6 +387,10 @@ TEST_F(EngineMaps, DrawingsThatNoMapHasAreRefused) {
          o.shadow.cull = MapCull::Front;
          o.shadowEncoding = PELLUCID_DEPTH_VIEW_Z;
        }},
+      {"shadowNormalOffset: -1", [](RasterOptions& o) { o.shadow.normalOffset = -1; }},
+      {"shadowCascades: 7", [](RasterOptions& o) { o.shadow.cascades = 7; }},
+      {"shadowFilter: 4 is not 0 or an odd number", [](RasterOptions& o) { o.shadow.filter = 4; }},
+      {"jitter: 1.5", [](RasterOptions& o) { o.jitter[1] = 1.5; }},
       {"shadowSize: is 0", [](RasterOptions& o) {
          o.shadow.placement = MapPlacement::Atlas;
          o.shadowSize = 0;
@@ -400,6 +405,123 @@ TEST_F(EngineMaps, DrawingsThatNoMapHasAreRefused) {
     } catch (const InputError& error) {
       EXPECT_NE(std::string(error.what()).find(sentence), std::string::npos) << error.what();
     }
+  }
+}
+
+// ---- What the irradiance and the camera of an engine have
+
+// A square that casts a shadow onto a larger one, 20 mm behind. The light falls straight.
+Model squareAndShadow() {
+  Model model = emptyModel();
+  addSquare(model, 0, 0, 0, 9);
+  endPart(model, 0);
+  addSquare(model, 0, 0, 20, 3);
+  endPart(model, 1);
+  model.lights = {directional({0.3, 0, -1})};  // the shadow's edges are at x = 3 and 9
+  return model;
+}
+
+// N taps across make a ramp of N texels: a bilinear one of one texel, and N - 1 that further taps add.
+TEST_F(EngineMaps, FilteredShadowsAreRamps) {
+  const Model model = squareAndShadow();
+  RasterOptions options;
+  options.width = options.height = 200;  // .1 mm a pixel
+  options.shadowSize = 128;
+  options.shadow.bits = 24;
+  options.shadow.depthBiasConstant = 10;
+  constexpr float kRounding = 1e-4f;  // of the weights' sum
+  options.shadow.depthBiasSlope = 6;  // texels, beyond the reach of the widest filter
+  for (const int filter : {1, 3, 7}) {
+    options.shadow.filter = filter;
+    const Capture c = rasterize(device(), model, frontCamera(true), options).capture;
+    const double texel = 2 / c.lights[0].shadowMaps[0].clipFromWorld[5] / -options.shadowSize;
+    const float lit = c.irradiance.at(20, 20)[0];
+    int soft = 0;
+    float last = 0;
+    // Along y, across which the light does not lean: from the shadow's middle to beyond its edge at 3 mm.
+    for (int y = 100; y > 20; --y) {
+      const float e = c.irradiance.at(160, y)[0];
+      EXPECT_GE(e, last - kRounding * lit);
+      last = e;
+      soft += e > kRounding * lit && e < (1 - kRounding) * lit;
+    }
+    EXPECT_NEAR(last, lit, kRounding * lit);
+    EXPECT_EQ(c.irradiance.at(160, 100)[0], 0);
+    EXPECT_NEAR(0.1 * soft, filter * std::abs(texel), 0.15) << filter;  // a pixel and a half
+  }
+}
+
+// A face that the light meets straight stays; one that it meets at 60 degrees moves by half the offset.
+TEST_F(EngineMaps, NormalOffsetsGrowWithTheAngle) {
+  for (const double lean : {0.0, std::sqrt(3.0)}) {
+    Model model = emptyModel();
+    addSquare(model, 0, 0, 0, 9);
+    endPart(model, 0);
+    model.lights = {directional({lean, 0, -1})};
+    const auto mapOf = [&](double offset) {
+      ShadowDrawing drawing;
+      drawing.normalOffset = offset;
+      return draw(model, drawing, 64).lights[0].shadowMaps[0];
+    };
+    const ShadowMap plainMap = mapOf(0), movedMap = mapOf(4);
+    EXPECT_EQ(plainMap.offsetLength, 0);
+    const double texel = movedMap.offsetLength / 4;
+    EXPECT_GT(texel, 0);
+    // By 4 texels times 1 - cosine along the normal; the plane moves along the ray by that over the cosine.
+    const double cosine = 1 / std::hypot(1, lean), along = 4 * texel * (1 - cosine) / cosine;
+    const glm::dvec3 axis = glm::normalize(toGlm(model.lights[0].direction));
+    const double depthPerLength = movedMap.clipFromWorld[2] * axis.x + movedMap.clipFromWorld[10] * axis.z;
+    const double change = *movedMap.depth.image.at(32, 32) - *plainMap.depth.image.at(32, 32);
+    EXPECT_NEAR(change / depthPerLength, along, 0.02 * texel) << lean;  // rounding of floats
+  }
+}
+
+TEST_F(EngineMaps, CascadesFollowTheCamera) {
+  Model model = ballAndEar();
+  model.lights.resize(1);
+  RasterOptions options;
+  options.width = options.height = 96;
+  options.shadowSize = 256;
+  const Capture whole = rasterize(device(), model, frontCamera(false), options).capture;
+  options.shadow.cascades = 3;
+  options.shadow.placement = MapPlacement::Array;
+  const Capture c = rasterize(device(), model, frontCamera(false), options).capture;
+  ASSERT_EQ(c.lights[0].shadowMaps.size(), 3u);
+  for (const ShadowMap& map : c.lights[0].shadowMaps) EXPECT_GE(map.layer, 0);
+  // Shadows are those of one map but for texels at their edges.
+  std::size_t differ = 0, lit = 0;
+  for (std::size_t i = 0; i < c.material.size(); ++i) {
+    lit += whole.irradiance.data[3 * i] > 0;
+    differ += std::abs(whole.irradiance.data[3 * i] - c.irradiance.data[3 * i]) > 0.02f;
+  }
+  EXPECT_GT(lit, 1000u);
+  EXPECT_LT(differ, lit / 50);
+  ModelCamera parallel = frontCamera(true);
+  EXPECT_THROW(rasterize(device(), model, parallel, options), InputError);
+}
+
+// A jitter of a whole pixel shows the same points one pixel on, with their irradiance.
+TEST_F(EngineMaps, JitterMovesThePicture) {
+  const Model model = ballAndEar();
+  for (const bool orthographic : {false, true}) {
+    RasterOptions options;
+    options.width = options.height = 96;
+    options.shadowSize = 128;
+    const Capture still = rasterize(device(), model, frontCamera(orthographic), options).capture;
+    options.jitter = {1, -1};
+    const Capture moved = rasterize(device(), model, frontCamera(orthographic), options).capture;
+    std::size_t differ = 0, covered = 0;
+    for (int y = 1; y < 96; ++y)
+      for (int x = 0; x + 1 < 96; ++x) {
+        const float a = still.irradiance.at(x, y)[0], b = moved.irradiance.at(x + 1, y - 1)[0];
+        covered += a > 0;
+        differ += std::abs(a - b) > 1e-3f;  // an edge that rounding moves
+      }
+    EXPECT_GT(covered, 1000u);
+    EXPECT_LT(differ, covered / 100);
+    options.jitter = {0.5, 0};
+    EXPECT_NE(rasterize(device(), model, frontCamera(orthographic), options).capture.irradiance.data,
+              still.irradiance.data);
   }
 }
 

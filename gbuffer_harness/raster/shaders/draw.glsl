@@ -8,9 +8,10 @@ layout(push_constant) uniform Draw {
   vec4 baseColor;  // a: alpha below this is a hole
   vec4 addedColor; // a: object
   uvec4 ids;       // x: material, LOBES_APART, and in the upper half how much the lobe map displaces;
-                   // y: 1 reversed depth, and in the upper half the backscatter;
+                   // y: 1 reversed depth, IS_OFFSET, and in the upper half the backscatter;
                    // z: 0, or one of BEHIND_* where only back faces behind the front count; and HAS_*
-                   // w: lights in transmit.frag, else bits of the normal map's scale, 0: no map
+                   // w: lights in transmit.frag, with IS_OFFSET bits of the offset, else bits of the normal map's
+                   // scale, 0: no map
 } draw;
 
 layout(set = 0, binding = 0) uniform sampler2D baseColorTexture;
@@ -24,6 +25,7 @@ layout(set = 0, binding = 3) uniform sampler2D normalMap; // vectors
 layout(set = 0, binding = 4) uniform sampler2D lobeMap;   // linear rgb; a: strength
 
 #define LOBES_APART 256u
+#define IS_OFFSET 2u
 // Images of the part; others are one white texel.
 #define HAS_COLOR 4u
 #define HAS_LOBES 8u

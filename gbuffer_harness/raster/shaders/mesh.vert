@@ -24,11 +24,14 @@ layout(location = 7) out vec2 outLobeUv;
 invariant gl_Position;
 
 void main() {
-  gl_Position = draw.clipFromWorld * vec4(position, 1.0);
+  // An engine's normal bias. The axis of an orthographic view of unit length is planar.xyz.
+  float offset = (draw.ids.y & IS_OFFSET) != 0u ? uintBitsToFloat(draw.ids.w) * (1.0 + min(dot(draw.planar.xyz, normal), 0.0)) : 0.0;
+  vec3 drawn = position - offset * normal;
+  gl_Position = draw.clipFromWorld * vec4(drawn, 1.0);
   outNormal = normal;
   outUv = uv;
   outColorMark = vec4(color, mark);
-  outPlanar = dot(draw.planar, vec4(position, 1.0));
+  outPlanar = dot(draw.planar, vec4(drawn, 1.0));
   outNormalUv = normalUv;
   outTangent = tangent;
   outPosition = position;
