@@ -23,6 +23,8 @@ constexpr double kSteepestOwn = 4;
 constexpr double kMostConvexity = 0.1;
 // Texels: a point on a surface and the pixel that shows it are apart by the slope within them.
 constexpr double kSeenTolerance = 0.5;
+// Slope towards the camera from which a surface is a limb.
+constexpr double kSteepestSeen = 2;
 
 bool contains(const ShadowMap& map, const glm::dvec3& point) {
   const glm::dvec4 clip = toMatrix(map.clipFromWorld) * glm::dvec4(point, 1);
@@ -48,6 +50,38 @@ Gather::Gather(const Capture& capture, const SurfaceReader& surfaces,
       std::move(more.begin(), more.end(), std::back_inserter(blocks));
     }
   }
+}
+
+// The camera knows the normals of what it shows better than the neighbors of a texel that the light grazes.
+std::optional<glm::dvec3> Gather::shownNormal(const glm::dvec3& world, const glm::dvec3& toLight,
+                                              double tolerance, double uncertain, bool biased) const {
+  const glm::dvec3 view(glm::inverse(surfaces_.worldFromView()) * glm::dvec4(world, 1));
+  const Camera& camera = surfaces_.camera();
+  if (!(camera.planarDepth(view) > 0)) return std::nullopt;
+  const glm::dvec2 pixel = glm::floor(camera.project(view));
+  if (!(pixel.x >= 0 && pixel.y >= 0 && pixel.x < capture_.width && pixel.y < capture_.height))
+    return std::nullopt;
+  const int x = static_cast<int>(pixel.x), y = static_cast<int>(pixel.y);
+  if (capture_.material[static_cast<std::size_t>(y) * static_cast<std::size_t>(capture_.width) +
+                        static_cast<std::size_t>(x)] == 0)
+    return std::nullopt;
+  const std::optional<Surface> shown = surfaces_.at(x, y);
+  if (!shown) return std::nullopt;
+  const std::optional<glm::dvec3> normal = shown->normal ? shown->normal : surfaces_.facet(*shown);
+  if (!normal) return std::nullopt;
+  // Limbs, seen at 63 degrees and more, show few of the points where light enters.
+  const double facing = std::abs(glm::dot(*normal, shown->ray));
+  if (!biased && facing * kSteepestSeen <= std::sqrt(1 - std::min(facing * facing, 1.0))) return std::nullopt;
+  const double planar = camera.planarDepth(shown->position);
+  const auto side = [&](glm::dvec2 step) {
+    return glm::distance(camera.position(pixel + 0.5 + step, planar), camera.position(pixel + 0.5, planar));
+  };
+  const double pixelSide = std::max(side({1, 0}), side({0, 1}));
+  const glm::dvec3 outward = glm::dmat3(surfaces_.worldFromView()) * *normal;
+  if (std::abs(glm::dot(*normal, view - shown->position)) >
+      std::min(tolerance, 0.5 * pixelSide) + uncertain * std::abs(glm::dot(outward, toLight)))
+    return std::nullopt;
+  return outward;
 }
 
 // What faces away cannot be seen, however thin the part is; what faces the camera is seen unless
@@ -122,9 +156,12 @@ Gather::Blocks Gather::collect(const Light& light, std::size_t mapIndex) const {
           double exit = INFINITY;
           if (!map.exitDepth.empty())
             if (const auto e = texels.at(x, y, *map.exitDepth.at(x, y))) exit = mm_ * glm::distance(*e, *p);
+          const double half = kSeenTolerance * std::sqrt(across), uncertain = texels.uncertain(x, y);
+          const auto shown = shownNormal(*p, arrival.toLight, half, uncertain, map.depthBiasSlope != 0);
+          if (shown) normal = *shown;
           // A depth that is off along the light moves the surface along its normal.
-          const double off = texels.uncertain(x, y) * glm::dot(normal, arrival.toLight);
-          const bool seen = cameraSees(*p, normal, kSeenTolerance * std::sqrt(across), off);
+          const bool seen =
+              shown || cameraSees(*p, normal, half, uncertain * glm::dot(normal, arrival.toLight));
           if (seen && !diffused_) continue;
           const double area = across * mm_ * mm_;
           const double cosine = glm::dot(normal, arrival.toLight), held = std::max(cosine, kLeastCosine);
