@@ -97,6 +97,28 @@ TEST_F(GatherLinear, TwoLightsAddUp) {
   EXPECT_LT(difference(both, gathered(swapped), gathered(both)).rmse, 1e-3);
 }
 
+// What curved surfaces return does not depend on lights: a light of next to nothing leaves skin under even light as it is. The
+// light's irradiance is not in the image, and its transmitted light is below the last half.
+TEST_F(GatherLinear, ALightOfNextToNothingChangesNothing) {
+  Capture dark = head({{"rimLight", 0}});
+  std::fill(dark.irradiance.data.begin(), dark.irradiance.data.end(), 0.25f);
+  for (const uint32_t spacing : {1u, 2u, 4u})
+    for (const bool mapped : {true, false}) {
+      Capture lit = dark;
+      dark.lights.front().intensity = 0;
+      lit.lights.front().intensity = 1e-6;
+      if (!mapped) lit.lights.front().shadowMaps.clear();
+      const Difference d = difference(dark, gathered(lit, spacing), gathered(dark, spacing));
+      EXPECT_LT(d.worst, 0x1p-11) << "spacing " << spacing << ", mapped " << mapped;
+      Capture none = dark;
+      none.lights.clear();
+      EXPECT_LT(difference(dark, gathered(none, spacing), gathered(dark, spacing)).worst, 0x1p-11);
+    }
+  // And curvature does return more and less than a plane.
+  const Image out = gathered(dark, 1);
+  EXPECT_GT(*std::max_element(out.data.begin(), out.data.end()), 0.25f * 1.02f);
+}
+
 // The key light as nine of a ninth each, which need two groups: eight shadow images are a dispatch's.
 TEST_F(GatherLinear, ManyLightsInSeveralGroupsAddUp) {
   const Capture one = head({{"rimLight", 0}});
