@@ -5,6 +5,8 @@
 #include <atomic>
 #include <cstdlib>
 #include <cstring>
+#include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -38,6 +40,7 @@ struct NullCommands {
     return offset >= sliceOffset && size <= sliceSize && offset - sliceOffset <= sliceSize - size;
   }
 
+  std::set<VkDescriptorSet> sets;  // that were bound
   bool hasPipeline = false, hasBindings = false, hasConstants = false;
   VkPipeline pipeline = VK_NULL_HANDLE;  // that is bound
   VkImageView firstImage = VK_NULL_HANDLE;
@@ -53,6 +56,10 @@ public:
 
   std::atomic<int> live = 0;      // Vulkan objects
   const char* missing = nullptr;  // a device function that does not exist
+  VkPhysicalDeviceLimits limits = leastLimits();
+  bool writesWithoutFormat = true;      // shaderStorageImageWriteWithoutFormat
+  uint32_t mostPushed = 32;             // the least that Vulkan lets a device have
+  VkFormat notStorage = VK_FORMAT_UNDEFINED;  // a format without storage images
 
   PellucidContextDesc desc() {
     PellucidContextDesc d;
@@ -64,11 +71,27 @@ public:
     return d;
   }
 
+  // A function of the device by its name, or nullptr.
+  PFN_vkVoidFunction function(const char* name) {
+    return getDeviceProcAddr(reinterpret_cast<VkDevice>(this), name);
+  }
+
 private:
   using Function = PFN_vkVoidFunction;
   template <class F>
   static Function function(F* f) {
     return reinterpret_cast<Function>(f);
+  }
+
+  struct NamedFunction {
+    const char* name;
+    Function function;
+  };
+  template <size_t N>
+  static Function find(const NamedFunction (&table)[N], const char* name) {
+    for (const NamedFunction& entry : table)
+      if (std::strcmp(name, entry.name) == 0) return entry.function;
+    return nullptr;
   }
 
   static NullDevice& of(VkDevice device) { return *reinterpret_cast<NullDevice*>(device); }
@@ -135,7 +158,11 @@ private:
                                           uint32_t set, uint32_t count, const VkWriteDescriptorSet* writes) {
     NullCommands& c = of(buffer);
     c.require(point == VK_PIPELINE_BIND_POINT_COMPUTE, "bindings of another bind point");
-    c.require(set == 0 && count > 0 && count <= PELLUCID_MAX_BINDINGS, "wrong number of bindings");
+    c.require(set == 0, "another set than the first");
+    takeBindings(c, count, writes);
+  }
+  static void takeBindings(NullCommands& c, uint32_t count, const VkWriteDescriptorSet* writes) {
+    c.require(count > 0 && count <= PELLUCID_MAX_BINDINGS, "wrong number of bindings");
     c.firstImage = VK_NULL_HANDLE;
     for (uint32_t i = 0; i < count; ++i) {
       const VkWriteDescriptorSet& w = writes[i];
@@ -152,6 +179,65 @@ private:
       }
     }
     c.hasBindings = true;
+  }
+  // A set of a pool keeps what is written to it.
+  struct NullSet {
+    std::vector<VkWriteDescriptorSet> writes;
+    std::vector<VkDescriptorBufferInfo> buffers;
+    std::vector<VkDescriptorImageInfo> images;
+  };
+  struct NullPool {
+    uint32_t most = 0;
+    std::vector<std::unique_ptr<NullSet>> sets;
+  };
+  static NullPool& of(VkDescriptorPool pool) { return *reinterpret_cast<NullPool*>(pool); }
+  static NullSet& of(VkDescriptorSet set) { return *reinterpret_cast<NullSet*>(set); }
+  static VkResult VKAPI_PTR createPool(VkDevice device, const VkDescriptorPoolCreateInfo* info,
+                                       const VkAllocationCallbacks*, VkDescriptorPool* pool) {
+    auto* made = new NullPool;
+    made->most = info->maxSets;
+    for (uint32_t i = 0; i < info->poolSizeCount; ++i)
+      if (info->pPoolSizes[i].descriptorCount < info->maxSets) made->most = 0;  // no room for any set
+    *pool = reinterpret_cast<VkDescriptorPool>(made);
+    ++of(device).live;
+    return VK_SUCCESS;
+  }
+  static void VKAPI_PTR destroyPool(VkDevice device, VkDescriptorPool pool, const VkAllocationCallbacks*) {
+    delete &of(pool);
+    --of(device).live;
+  }
+  static VkResult VKAPI_PTR resetPool(VkDevice, VkDescriptorPool pool, VkDescriptorPoolResetFlags) {
+    of(pool).sets.clear();
+    return VK_SUCCESS;
+  }
+  static VkResult VKAPI_PTR allocateSets(VkDevice, const VkDescriptorSetAllocateInfo* info,
+                                         VkDescriptorSet* sets) {
+    NullPool& pool = of(info->descriptorPool);
+    for (uint32_t i = 0; i < info->descriptorSetCount; ++i) {
+      if (pool.sets.size() == pool.most) return VK_ERROR_OUT_OF_POOL_MEMORY;
+      pool.sets.push_back(std::make_unique<NullSet>());
+      sets[i] = reinterpret_cast<VkDescriptorSet>(pool.sets.back().get());
+    }
+    return VK_SUCCESS;
+  }
+  static void VKAPI_PTR updateSets(VkDevice, uint32_t count, const VkWriteDescriptorSet* writes, uint32_t,
+                                   const VkCopyDescriptorSet*) {
+    NullSet& set = of(writes[0].dstSet);
+    set.writes.assign(writes, writes + count);
+    set.buffers.resize(count);
+    set.images.resize(count);
+    for (uint32_t i = 0; i < count; ++i) {
+      if (writes[i].pBufferInfo) set.writes[i].pBufferInfo = &(set.buffers[i] = *writes[i].pBufferInfo);
+      if (writes[i].pImageInfo) set.writes[i].pImageInfo = &(set.images[i] = *writes[i].pImageInfo);
+    }
+  }
+  static void VKAPI_PTR bindSets(VkCommandBuffer buffer, VkPipelineBindPoint, VkPipelineLayout, uint32_t first,
+                                 uint32_t count, const VkDescriptorSet* sets, uint32_t, const uint32_t*) {
+    NullCommands& c = of(buffer);
+    c.require(first == 0 && count == 1, "another set than the first");
+    c.require(c.sets.insert(sets[0]).second, "a set is bound for two dispatches");
+    const NullSet& set = of(sets[0]);
+    takeBindings(c, static_cast<uint32_t>(set.writes.size()), set.writes.data());
   }
   static void VKAPI_PTR barrier(VkCommandBuffer buffer, VkPipelineStageFlags, VkPipelineStageFlags after,
                                 VkDependencyFlags, uint32_t, const VkMemoryBarrier*, uint32_t buffers,
@@ -180,23 +266,53 @@ private:
     dispatchAny(c, true);
   }
 
-  static void VKAPI_PTR getProperties(VkPhysicalDevice, VkPhysicalDeviceProperties* properties) {
+  // Those of the module's needs, as little as Vulkan allows but for the invocations of a group.
+  static VkPhysicalDeviceLimits leastLimits() {
+    VkPhysicalDeviceLimits l{};
+    l.maxComputeWorkGroupInvocations = 256;
+    l.maxComputeSharedMemorySize = 16384;
+    l.maxPushConstantsSize = 128;
+    l.maxUniformBufferRange = 16384;
+    l.maxPerStageDescriptorUniformBuffers = 12;
+    l.maxPerStageDescriptorStorageBuffers = l.maxPerStageDescriptorStorageImages = 4;
+    l.maxPerStageDescriptorSampledImages = 16;
+    l.maxPerStageResources = 128;
+    return l;
+  }
+  static NullDevice& of(VkPhysicalDevice device) { return *reinterpret_cast<NullDevice*>(device); }
+  static void VKAPI_PTR getProperties(VkPhysicalDevice device, VkPhysicalDeviceProperties* properties) {
     *properties = {};
     properties->apiVersion = VK_API_VERSION_1_1;
+    properties->limits = of(device).limits;
     std::strcpy(properties->deviceName, "null device");
+  }
+  static void VKAPI_PTR getProperties2(VkPhysicalDevice device, VkPhysicalDeviceProperties2* properties) {
+    getProperties(device, &properties->properties);
+    static_cast<VkPhysicalDevicePushDescriptorPropertiesKHR*>(properties->pNext)->maxPushDescriptors =
+        of(device).mostPushed;
+  }
+  static void VKAPI_PTR getFeatures(VkPhysicalDevice device, VkPhysicalDeviceFeatures* features) {
+    *features = {};
+    features->shaderStorageImageWriteWithoutFormat = of(device).writesWithoutFormat;
+  }
+  static void VKAPI_PTR getFormat(VkPhysicalDevice device, VkFormat format, VkFormatProperties* properties) {
+    *properties = {};
+    if (format != of(device).notStorage)
+      properties->optimalTilingFeatures = VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT;
   }
 
   static Function VKAPI_PTR getInstanceProcAddr(VkInstance, const char* name) {
-    if (std::strcmp(name, "vkGetPhysicalDeviceProperties") == 0) return function(getProperties);
-    return std::strcmp(name, "vkGetDeviceProcAddr") == 0 ? function(getDeviceProcAddr) : nullptr;
+    const NamedFunction table[] = {{"vkGetPhysicalDeviceProperties", function(getProperties)},
+                                   {"vkGetPhysicalDeviceProperties2", function(getProperties2)},
+                                   {"vkGetPhysicalDeviceFeatures", function(getFeatures)},
+                                   {"vkGetPhysicalDeviceFormatProperties", function(getFormat)},
+                                   {"vkGetDeviceProcAddr", function(getDeviceProcAddr)}};
+    return find(table, name);
   }
 
   static Function VKAPI_PTR getDeviceProcAddr(VkDevice device, const char* name) {
     if (of(device).missing && std::strcmp(name, of(device).missing) == 0) return nullptr;
-    const struct {
-      const char* name;
-      Function function;
-    } table[] = {
+    const NamedFunction table[] = {
         {"vkCreateDescriptorSetLayout",
          function(createFrom<VkDescriptorSetLayout, VkDescriptorSetLayoutCreateInfo>)},
         {"vkDestroyDescriptorSetLayout", function(destroy<VkDescriptorSetLayout>)},
@@ -209,12 +325,16 @@ private:
         {"vkCmdBindPipeline", function(bindPipeline)},
         {"vkCmdPushConstants", function(pushConstants)},
         {"vkCmdPushDescriptorSetKHR", function(pushDescriptorSet)},
+        {"vkCreateDescriptorPool", function(createPool)},
+        {"vkDestroyDescriptorPool", function(destroyPool)},
+        {"vkResetDescriptorPool", function(resetPool)},
+        {"vkAllocateDescriptorSets", function(allocateSets)},
+        {"vkUpdateDescriptorSets", function(updateSets)},
+        {"vkCmdBindDescriptorSets", function(bindSets)},
         {"vkCmdPipelineBarrier", function(barrier)},
         {"vkCmdDispatch", function(dispatch)},
         {"vkCmdDispatchIndirect", function(dispatchIndirect)}};
-    for (const auto& entry : table)
-      if (std::strcmp(name, entry.name) == 0) return entry.function;
-    return nullptr;
+    return find(table, name);
   }
 };
 

@@ -20,6 +20,6 @@ uvec2 bordersFirst() {
 }
 
 // As workGroup, and borders first where all groups run.
-uvec2 workGroupBordersFirst(uint list) { return goesByLists() ? unpackGroup(listedWord(list)) : bordersFirst(); }
+uvec2 workGroupBordersFirst(uint list) { return goesByLists() ? workGroup(list) : bordersFirst(); }
 
 #endif

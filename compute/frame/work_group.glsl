@@ -16,7 +16,11 @@ uint listedWord(uint list) { return tileWord(frame.lists[list >> 2][list & 3u] +
 // True unless the group's list says that all it reads has been written.
 bool readsUnwritten(uint list) { return goesByLists() && !isWhole(listedWord(list)); }
 
-uvec2 workGroup(uint list) { return goesByLists() ? unpackGroup(listedWord(list)) : gl_WorkGroupID.xy; }
+uvec2 workGroup(uint list) {
+  if (!goesByLists()) return gl_WorkGroupID.xy;
+  uvec2 listed = unpackGroup(listedWord(list));
+  return uvec2(listed.x, listed.y * frame.listRows[list >> 2][list & 3u] + gl_WorkGroupID.y);
+}
 
 // True where the pass before wrote a texel: in a block with material or beside one. All else is nothing. `pixel`: the texel's
 // first one.

@@ -35,8 +35,9 @@ void main() {
   }
   barrier();
   if (any(greaterThanEqual(cell, cells.zw))) return;
+  // Cells that no group of probes wrote hold anything, a material beyond the list, too. No pixel reads what becomes of them.
   uint material = own.z & 0xFFu;
-  if (shares && material != 0u) {
+  if (shares && material != 0u && material <= frame.flags.y) {
     float mm = frame.camera.range.w;
     own = filtered(local, own, materials[material - 1u].gather.profile.w * mm * mm);
   }

@@ -12,8 +12,9 @@ const float kSampleSide = 0.5;
 
 GatherSlab slabOf(uint m, vec4 lengths, float h) {
   float place = gatherPlace(lengths, h);
-  int i = 3 * int(place);
-  return gatherSlab(materials[m].gather.entries[i], materials[m].gather.entries[i + 1], materials[m].gather.entries[i + 2],
+  // Whatever a NaN converts to, the entry is one of the material's.
+  uint i = 3u * min(uint(place), uint(PELLUCID_GATHER_ENTRIES - 1));
+  return gatherSlab(materials[m].gather.entries[i], materials[m].gather.entries[i + 1u], materials[m].gather.entries[i + 2u],
                     fract(place));
 }
 

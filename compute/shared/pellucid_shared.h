@@ -170,6 +170,7 @@ struct FrameConstants {
   uvec4 blocks;
   uvec4 lists[PELLUCID_LISTS / 4]; // first words
   uvec4 listGroups[PELLUCID_LISTS / 4]; // first groups of the pass that makes them
+  uvec4 listRows[PELLUCID_LISTS / 4]; // rows of groups that a listed word stands for
   // View ray of planar length 1: of pixel (0, 0), changes per pixel in x and y.
   vec4 normalRay[3]; // xyz: in the normal image's space
   vec4 facingRay[2]; // along pixels' columns and rows; xy, zw, xy

@@ -21,6 +21,8 @@
 #define PELLUCID_BLOCK_WORDS 4 // bits of cells' rows 0 to 3 and 4 to 7; bits of the nearest and farthest planar distance
 
 // A listed group is a word: its column, a flag, and its row; of entry points its column, from bit 8 on its row, and its map.
+// Images of many groups list some rows of them together (FrameConstants::listRows), which the dispatch has in y: all devices
+// take 65535 groups along an axis, and no more of them need be promised.
 #define PELLUCID_GROUP_COLUMN 0x7FFFu
 #define PELLUCID_GROUP_WHOLE 0x8000u // all that the group reads of the pass before has been written
 #define PELLUCID_GROUP_ROW_SHIFT 16
@@ -30,11 +32,11 @@
 namespace pellucid::shared {
 #endif
 
-// Groups of a pass that has a list. A group has work if there is material in its part of the image.
+// Groups of a pass as its list has them. A group has work if there is material in its part of the image.
 struct GroupList {
   ivec4 places; // xy: first pixel of group (0, 0)'s part, from the first block on; zw: pixels from a group to the next
   ivec4 size;   // xy: pixels of a part; z: PELLUCID_RUNS_*
-  uvec4 count;  // x, y: groups
+  uvec4 count;  // x, y: groups; z: rows of the pass in each
 };
 
 // Buffer that the passes read and write which make tile lists.

@@ -13,8 +13,7 @@ DrawnDepth drawnDepth(ShadowConstants shadow, ivec2 texel, float stored) {
   uint image = shadow.meta.x;
   ivec2 first = firstTexel(shadow.occluder), last = first + ivec2(shadow.depth.zw) - 1;
   ivec2 low = max(texel - 1, first), high = min(texel + 1, last);
-  vec4 beside = vec4(shadowTexel(image, ivec2(high.x, texel.y)), shadowTexel(image, ivec2(low.x, texel.y)),
-                     shadowTexel(image, ivec2(texel.x, high.y)), shadowTexel(image, ivec2(texel.x, low.y)));
+  vec4 beside = shadowTexels(image, texel, first, last).beside;
   bvec4 holds = bvec4(high.x > texel.x && shadowHolds(shadow.meta, beside.x), low.x < texel.x && shadowHolds(shadow.meta, beside.y),
                       high.y > texel.y && shadowHolds(shadow.meta, beside.z), low.y < texel.y && shadowHolds(shadow.meta, beside.w));
   return drawnDepth(shadow.offsets, stored, beside, holds);

@@ -12,6 +12,7 @@
 #include "cli/commands.h"
 #include "cli/stress_failure.h"
 #include "common/error.h"
+#include "common/guarded_memory.h"
 #include "common/progress.h"
 #include "common/whole_file.h"
 #include "stress/results.h"
@@ -31,9 +32,23 @@ constexpr int kShown = 3;
 struct Options {
   StressOptions stress;
   std::string device, folder, json, results, compareWith, quality = "any";
+  bool guarded = false;
 };
 
 std::string kindOf(const StressFrame& frame) { return frame.wild ? "wild" : "tame"; }
+
+// The command that runs one frame again.
+std::string againText(const Options& options, std::uint64_t frame) {
+  const StressOptions defaults, &given = options.stress;
+  std::string text = "pellucid stress --seed " + std::to_string(given.seed) + " --first " +
+                     std::to_string(frame) + " --frames 1";
+  if (given.limits.quality != defaults.limits.quality) text += " --quality " + options.quality;
+  if (given.limits.pixels != defaults.limits.pixels)
+    text += " --pixels " + std::to_string(given.limits.pixels);
+  if (given.validate) text += " --validate";
+  if (options.guarded) text += " --guarded";
+  return text;
+}
 
 class Reporter {
 public:
@@ -50,9 +65,7 @@ public:
       std::printf("%s%s\n", v.sentence.empty() ? "" : ": ", v.sentence.c_str());
     }
     if (!shown) return;
-    std::printf("  again: pellucid stress --seed %llu --first %llu --frames 1%s%s\n",
-                static_cast<unsigned long long>(frame.seed), static_cast<unsigned long long>(frame.index),
-                limits().c_str(), options_.stress.validate ? " --validate" : "");
+    std::printf("  again: %s\n", againText(options_, frame.index).c_str());
     if (!options_.folder.empty()) {
       std::printf("  or:    %s\n", writeFailure(options_.folder, frame).c_str());
       if (!frame.notInCapture.empty())
@@ -62,15 +75,6 @@ public:
   }
 
 private:
-  std::string limits() const {
-    const StressOptions defaults, &given = options_.stress;
-    std::string text;
-    if (given.limits.quality != defaults.limits.quality) text += " --quality " + options_.quality;
-    if (given.limits.pixels != defaults.limits.pixels)
-      text += " --pixels " + std::to_string(given.limits.pixels);
-    return text;
-  }
-
   const Options& options_;
   std::map<std::string, int> count_;
 };
@@ -141,9 +145,13 @@ void run(Options& options) {
   std::optional<stress::ResultsReader> reader;
   if (!options.results.empty()) writer.emplace(options.results);
   if (!options.compareWith.empty()) reader.emplace(options.compareWith);
-  stress::Renderer renderer({options.device, s.validate});
+  DeviceOptions wanted{options.device, s.validate};
+  wanted.guarded = options.guarded;
+  stress::Renderer renderer(wanted);
   Reporter reporter(options);
   stress::StressEvents events;
+  if (options.guarded)
+    events.started = [&](std::uint64_t frame) { reportGuardFaults(againText(options, frame).c_str()); };
   events.violated = [&](const StressFrame& frame, const std::vector<Violation>& violations) {
     reporter(frame, violations);
   };
@@ -201,6 +209,9 @@ void addStressCommand(CLI::App& app) {
   command->add_option("--only", s.only, "one check by its name; docs/stress.md has them");
   command->add_flag("--validate", s.validate,
                     "with Vulkan's core and synchronization validation, whose messages are violations");
+  command->add_flag("--guarded", options->guarded,
+                    "constants in memory that ends at pages without access, and transients that hold 0xFF or what looks "
+                    "like indices: an access beyond the constants ends the command");
   command->add_option("-o,--output", options->folder, "folder for captures of frames that violate a check");
   command->add_option("--json", options->json, "file for the summary");
   command->add_option("--results", options->results,

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "common/error.h"
+#include "common/guarded_memory.h"
 #include "common/lower.h"
 
 namespace pellucid::harness {
@@ -111,6 +112,7 @@ void Device::release() {
   if (device_) {
     vkDeviceWaitIdle(device_);
     kept_.clear();
+    for (VkDescriptorPool pool : setPools_) vkDestroyDescriptorPool(device_, pool, nullptr);
     vkDestroyCommandPool(device_, pool_, nullptr);
     vkDestroyDevice(device_, nullptr);
   }
@@ -177,8 +179,10 @@ void Device::chooseDevice(const DeviceOptions& options) {
     std::string why;
     if (properties.apiVersion < VK_API_VERSION_1_1)
       why = "Vulkan 1.1 is missing";
-    else if (!hasExtension(candidate, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME))
+    else if (options.pushes && !hasExtension(candidate, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME))
       why = "VK_KHR_push_descriptor is missing";
+    else if (options.guarded && !hasExtension(candidate, VK_EXT_EXTERNAL_MEMORY_HOST_EXTENSION_NAME))
+      why = "VK_EXT_external_memory_host is missing";
     else if (options.presents && !hasExtension(candidate, VK_KHR_SWAPCHAIN_EXTENSION_NAME))
       why = "VK_KHR_swapchain is missing";
     else if (!family)
@@ -218,7 +222,11 @@ void Device::createDevice(const DeviceOptions& options) {
   for (int i = 0; i < 2; ++i)
     queues[i] = {
         VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO, nullptr, 0, families_[i], 1 + second, priorities};
-  std::vector<const char*> extensions = {VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
+  std::vector<const char*> extensions;
+  pushes_ = hasExtension(physicalDevice_, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME);
+  if (pushes_) extensions.push_back(VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME);
+  guarded_ = options.guarded;
+  if (guarded_) extensions.push_back(VK_EXT_EXTERNAL_MEMORY_HOST_EXTENSION_NAME);
   if (options.presents) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
   VkPhysicalDeviceFeatures available, features{};
   vkGetPhysicalDeviceFeatures(physicalDevice_, &available);
@@ -257,6 +265,7 @@ void Device::run(const std::function<void(VkCommandBuffer)>& record) {
   const auto release = [&] {
     vkDestroyFence(device_, fence, nullptr);
     vkFreeCommandBuffers(device_, pool_, 1, &commandBuffer);
+    for (VkDescriptorPool pool : setPools_) vkResetDescriptorPool(device_, pool, 0);
   };
   try {
     check(vkBeginCommandBuffer(commandBuffer, &begin), "vkBeginCommandBuffer");
@@ -279,6 +288,31 @@ void Device::run(const std::function<void(VkCommandBuffer)>& record) {
     throw;
   }
   release();
+}
+
+VkDescriptorSet Device::setForRun(VkDescriptorSetLayout layout) {
+  constexpr uint32_t kSets = 64, kOfEachType = 16 * kSets;
+  VkDescriptorSetAllocateInfo allocate{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO};
+  allocate.descriptorSetCount = 1;
+  allocate.pSetLayouts = &layout;
+  VkDescriptorSet set = VK_NULL_HANDLE;
+  for (VkDescriptorPool pool : setPools_) {
+    allocate.descriptorPool = pool;
+    if (vkAllocateDescriptorSets(device_, &allocate, &set) == VK_SUCCESS) return set;
+  }
+  VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, kOfEachType},
+                                  {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, kOfEachType},
+                                  {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, kOfEachType},
+                                  {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, kOfEachType},
+                                  {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kOfEachType}};
+  VkDescriptorPoolCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
+  info.maxSets = kSets;
+  info.poolSizeCount = static_cast<uint32_t>(std::size(sizes));
+  info.pPoolSizes = sizes;
+  check(vkCreateDescriptorPool(device_, &info, nullptr, &allocate.descriptorPool), "vkCreateDescriptorPool");
+  setPools_.push_back(allocate.descriptorPool);
+  check(vkAllocateDescriptorSets(device_, &allocate, &set), "vkAllocateDescriptorSets");
+  return set;
 }
 
 uint32_t Device::memoryType(uint32_t typeBits, VkMemoryPropertyFlags flags,
@@ -306,13 +340,25 @@ VkBool32 Device::onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsM
 
 HostBuffer::HostBuffer(const Device& device, VkDeviceSize size, VkBufferUsageFlags usage)
     : device_(device), size_(size) {
+  const bool guarded = device.guarded() && usage & VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+  const VkExternalMemoryBufferCreateInfo external{VK_STRUCTURE_TYPE_EXTERNAL_MEMORY_BUFFER_CREATE_INFO,
+                                                  nullptr,
+                                                  VK_EXTERNAL_MEMORY_HANDLE_TYPE_HOST_ALLOCATION_BIT_EXT};
   VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
+  if (guarded) info.pNext = &external;
   info.size = size;
   info.usage = usage;
   device.share(info);
   check(vkCreateBuffer(device.handle(), &info, nullptr, &buffer_), "vkCreateBuffer");
+  if (guarded)
+    import();
+  else
+    allocate(usage);
+}
+
+void HostBuffer::allocate(VkBufferUsageFlags usage) {
   VkMemoryRequirements needs;
-  vkGetBufferMemoryRequirements(device.handle(), buffer_, &needs);
+  vkGetBufferMemoryRequirements(device_.handle(), buffer_, &needs);
   VkMemoryAllocateInfo allocate{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
   allocate.allocationSize = needs.size;
   // Data that shaders and draws read lies beside them: across a bus each group would wait for it anew. The
@@ -321,10 +367,10 @@ HostBuffer::HostBuffer(const Device& device, VkDeviceSize size, VkBufferUsageFla
                                        VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
                                        VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT;
   const auto allocateIn = [&](VkMemoryPropertyFlags preferred) {
-    allocate.memoryTypeIndex = device.memoryType(
+    allocate.memoryTypeIndex = device_.memoryType(
         needs.memoryTypeBits, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT,
         preferred);
-    return vkAllocateMemory(device.handle(), &allocate, nullptr, &memory_);
+    return vkAllocateMemory(device_.handle(), &allocate, nullptr, &memory_);
   };
   VkResult result = allocateIn(usage & kRead ? VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT
                                : usage & VK_BUFFER_USAGE_TRANSFER_DST_BIT ? VK_MEMORY_PROPERTY_HOST_CACHED_BIT
@@ -332,8 +378,35 @@ HostBuffer::HostBuffer(const Device& device, VkDeviceSize size, VkBufferUsageFla
   // Some devices show the host no more than 256 MB of their memory.
   if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY) result = allocateIn(0);
   check(result, "vkAllocateMemory");
-  check(vkBindBufferMemory(device.handle(), buffer_, memory_, 0), "vkBindBufferMemory");
-  check(vkMapMemory(device.handle(), memory_, 0, VK_WHOLE_SIZE, 0, &mapped_), "vkMapMemory");
+  check(vkBindBufferMemory(device_.handle(), buffer_, memory_, 0), "vkBindBufferMemory");
+  check(vkMapMemory(device_.handle(), memory_, 0, VK_WHOLE_SIZE, 0, &mapped_), "vkMapMemory");
+}
+
+void HostBuffer::import() {
+  constexpr auto kType = VK_EXTERNAL_MEMORY_HANDLE_TYPE_HOST_ALLOCATION_BIT_EXT;
+  VkPhysicalDeviceExternalMemoryHostPropertiesEXT host{
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_EXTERNAL_MEMORY_HOST_PROPERTIES_EXT};
+  VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &host, {}};
+  vkGetPhysicalDeviceProperties2(device_.physicalDevice(), &properties);
+  VkMemoryRequirements needs;
+  vkGetBufferMemoryRequirements(device_.handle(), buffer_, &needs);
+  pages_ = std::make_unique<GuardedMemory>(static_cast<size_t>(needs.size),
+                                           static_cast<size_t>(host.minImportedHostPointerAlignment));
+  const auto getPointer = reinterpret_cast<PFN_vkGetMemoryHostPointerPropertiesEXT>(
+      vkGetDeviceProcAddr(device_.handle(), "vkGetMemoryHostPointerPropertiesEXT"));
+  VkMemoryHostPointerPropertiesEXT pointer{VK_STRUCTURE_TYPE_MEMORY_HOST_POINTER_PROPERTIES_EXT};
+  check(getPointer(device_.handle(), kType, pages_->data(), &pointer), "vkGetMemoryHostPointerPropertiesEXT");
+  const VkImportMemoryHostPointerInfoEXT import{VK_STRUCTURE_TYPE_IMPORT_MEMORY_HOST_POINTER_INFO_EXT, nullptr,
+                                                kType, pages_->data()};
+  VkMemoryAllocateInfo allocate{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, &import};
+  allocate.allocationSize = pages_->size();
+  allocate.memoryTypeIndex =
+      device_.memoryType(needs.memoryTypeBits & pointer.memoryTypeBits,
+                         VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
+  check(vkAllocateMemory(device_.handle(), &allocate, nullptr, &memory_), "vkAllocateMemory");
+  const VkDeviceSize offset = (pages_->size() - needs.size) / needs.alignment * needs.alignment;
+  check(vkBindBufferMemory(device_.handle(), buffer_, memory_, offset), "vkBindBufferMemory");
+  mapped_ = static_cast<char*>(pages_->data()) + offset;
 }
 
 HostBuffer::~HostBuffer() {

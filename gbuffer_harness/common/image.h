@@ -38,10 +38,12 @@ inline Image channel(const Image& image, int c) {
   return result;
 }
 
-// The first three channels of an image of four.
-inline Image rgb(const Image& rgba) {
-  Image result(rgba.width, rgba.height, 3);
-  for (std::size_t i = 0; i < rgba.pixels(); ++i) std::copy_n(&rgba.data[i * 4], 3, &result.data[i * 3]);
+// The first three channels of an image of three or four.
+inline Image rgb(const Image& image) {
+  Image result(image.width, image.height, 3);
+  const auto stride = static_cast<std::size_t>(image.channels);
+  for (std::size_t i = 0; i < image.pixels(); ++i)
+    std::copy_n(&image.data[i * stride], 3, &result.data[i * 3]);
   return result;
 }
 

@@ -15,14 +15,15 @@ VkPipelineShaderStageCreateInfo loadStage(const Device& device, VkShaderStageFla
   return result;
 }
 
-PushLayout::PushLayout(const Device& device, const std::vector<VkDescriptorSetLayoutBinding>& bindings,
+PushLayout::PushLayout(Device& device, const std::vector<VkDescriptorSetLayoutBinding>& bindings,
                        const VkPushConstantRange& constants)
-    : setLayout_(device),
+    : device_(device),
+      setLayout_(device),
       layout_(device),
       pushDescriptors_(reinterpret_cast<PFN_vkCmdPushDescriptorSetKHR>(
           vkGetDeviceProcAddr(device.handle(), "vkCmdPushDescriptorSetKHR"))) {
   VkDescriptorSetLayoutCreateInfo set{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
-  set.flags = VK_DESCRIPTOR_SET_LAYOUT_CREATE_PUSH_DESCRIPTOR_BIT_KHR;
+  if (device.pushes()) set.flags = VK_DESCRIPTOR_SET_LAYOUT_CREATE_PUSH_DESCRIPTOR_BIT_KHR;
   set.bindingCount = static_cast<std::uint32_t>(bindings.size());
   set.pBindings = bindings.data();
   check(vkCreateDescriptorSetLayout(device.handle(), &set, nullptr, setLayout_.receive()),
@@ -39,8 +40,13 @@ PushLayout::PushLayout(const Device& device, const std::vector<VkDescriptorSetLa
 
 void PushLayout::push(VkCommandBuffer commandBuffer, VkPipelineBindPoint point,
                       std::span<const VkWriteDescriptorSet> writes) const {
-  pushDescriptors_(commandBuffer, point, layout_, 0, static_cast<std::uint32_t>(writes.size()),
-                   writes.data());
+  const auto count = static_cast<std::uint32_t>(writes.size());
+  if (device_.pushes()) return pushDescriptors_(commandBuffer, point, layout_, 0, count, writes.data());
+  const VkDescriptorSet set = device_.setForRun(setLayout_);
+  std::vector<VkWriteDescriptorSet> ofSet(writes.begin(), writes.end());
+  for (VkWriteDescriptorSet& write : ofSet) write.dstSet = set;
+  vkUpdateDescriptorSets(device_.handle(), count, ofSet.data(), 0, nullptr);
+  vkCmdBindDescriptorSets(commandBuffer, point, layout_, 0, 1, &set, 0, nullptr);
 }
 
 void createPipeline(const Device& device, const PushLayout& layout, const Spirv& compute,

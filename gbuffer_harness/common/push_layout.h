@@ -29,14 +29,16 @@ VkPipelineShaderStageCreateInfo loadStage(const Device& device, VkShaderStageFla
 class PushLayout {
 public:
   // constants: absent where `size` is 0.
-  PushLayout(const Device& device, const std::vector<VkDescriptorSetLayoutBinding>& bindings,
+  PushLayout(Device& device, const std::vector<VkDescriptorSetLayoutBinding>& bindings,
              const VkPushConstantRange& constants = {});
 
   operator VkPipelineLayout() const { return layout_; }
+  // On devices that do not push descriptors: for commands of Device::run alone.
   void push(VkCommandBuffer commandBuffer, VkPipelineBindPoint point,
             std::span<const VkWriteDescriptorSet> writes) const;
 
 private:
+  Device& device_;
   Owned<VkDescriptorSetLayout, vkDestroyDescriptorSetLayout> setLayout_;
   Owned<VkPipelineLayout, vkDestroyPipelineLayout> layout_;
   PFN_vkCmdPushDescriptorSetKHR pushDescriptors_;

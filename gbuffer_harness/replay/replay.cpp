@@ -15,6 +15,9 @@ namespace pellucid::harness {
 
 namespace {
 
+// The recording of FrameRun::frameFor that is no single dispatch's.
+constexpr std::uint32_t kWholePlan = PELLUCID_MAX_DISPATCHES;
+
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const size_t half = values.size() / 2;
@@ -68,6 +71,16 @@ public:
     }
   }
 
+  // Bytes of 0xFF, or of 0 to a little more than what indices may be.
+  void poison(std::uint64_t seed, std::uint32_t materials) const {
+    if (!outputIsIrradiance_) output_->clear(0xFF);
+    for (GpuImage* image : transients_) {
+      if (seed % 2 == 0)
+        image->clear(0xFF);
+      else
+        image->fill(seed, std::min(materials + 1, 255u));
+    }
+  }
   void fillGarbage(std::uint64_t seed) const {
     if (!outputIsIrradiance_) output_->clear(0xFF);
     constexpr std::uint8_t kBytes[] = {0x00, 0xFF, 0x7B};  // 0, NaN, large finite numbers in both formats
@@ -127,6 +140,7 @@ PellucidContextDesc contextDesc(const Device& device) {
   desc.physicalDevice = device.physicalDevice();
   desc.device = device.handle();
   desc.getInstanceProcAddr = &vkGetInstanceProcAddr;
+  desc.descriptorPools = !device.pushes();
   return desc;
 }
 
@@ -171,37 +185,37 @@ const Context& Contexts::of(const Capture& capture) {
 FrameRun::FrameRun(Device& device, const Context& context, const Capture& capture,
                    const std::vector<PellucidMaterial>& materials, const ReplaySettings& settings,
                    const FrameRun* previous)
-    : context_(context), name_(capture.name), plan_(std::make_unique<PellucidPlan>()) {
+    : device_(device), context_(context), name_(capture.name), plan_(std::make_unique<PellucidPlan>()) {
   makeFrame(capture, materials, settings, data_);
   images_ = std::make_unique<Images>(device, capture, settings, data_, nullptr,
                                      previous ? previous->images_.get() : nullptr, nullptr);
-  plan(device, settings, previous ? previous->plan_.get() : nullptr);
+  plan(settings, previous ? previous->plan_.get() : nullptr);
 }
 
 FrameRun::FrameRun(Device& device, const Context& context, const Capture& capture,
                    const std::vector<PellucidMaterial>& materials, const ReplaySettings& settings,
                    std::shared_ptr<const InputImages> inputs, const FrameRun* previous, ImagePool* pool)
-    : context_(context), name_(capture.name), plan_(std::make_unique<PellucidPlan>()) {
+    : device_(device), context_(context), name_(capture.name), plan_(std::make_unique<PellucidPlan>()) {
   makeFrame(capture, inputs->shape(), materials, settings, data_);
   if (!data_.frame.separateOutput)
     throw InputError(name_, "aliasOutput", "the inputs are other frames', too");
   images_ = std::make_unique<Images>(device, capture, settings, data_, std::move(inputs),
                                      previous ? previous->images_.get() : nullptr, pool);
-  plan(device, settings, previous ? previous->plan_.get() : nullptr);
+  plan(settings, previous ? previous->plan_.get() : nullptr);
 }
 
-void FrameRun::plan(Device& device, const ReplaySettings& settings, const PellucidPlan* previous) {
+void FrameRun::plan(const ReplaySettings& settings, const PellucidPlan* previous) {
   const PellucidFrame& frame = data_.frame;
   requireOk(pellucidValidateFrame(&frame, nullptr, nullptr), frame, name_);
   requireOk(pellucidBuildPlan(&frame, previous, plan_.get()), frame, name_);
   context_.prepare(*plan_);
   constants_ =
-      std::make_unique<HostBuffer>(device, plan_->constantsSize,
+      std::make_unique<HostBuffer>(device_, plan_->constantsSize,
                                    VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
                                        VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
   PellucidCells cells;
   requireOk(pellucidGetCells(&frame, &cells), frame, name_);
-  if (cells.blocks[0] > 0) cellPass_ = std::make_unique<CellPass>(device, cells, settings.cells);
+  if (cells.blocks[0] > 0) cellPass_ = std::make_unique<CellPass>(device_, cells, settings.cells);
 }
 
 FrameRun::~FrameRun() = default;
@@ -215,9 +229,20 @@ void FrameRun::requireRecorded(PellucidResult result) const {
   throw InputError(name_, "", context_.message().empty() ? pellucidResultName(result) : context_.message());
 }
 
-void FrameRun::record(VkCommandBuffer commandBuffer, const PellucidPlan& plan) const {
+PellucidFrame FrameRun::frameFor(std::uint32_t recording) const {
+  PellucidFrame frame = data_.frame;
+  if (device_.pushes()) return frame;
+  const auto [pool, isNew] = pools_.try_emplace(recording, device_);
+  if (isNew) requireRecorded(pellucidCreateDescriptorPool(context_.handle(), pool->second.receive()));
+  frame.descriptorPool = pool->second;
+  return frame;
+}
+
+void FrameRun::record(VkCommandBuffer commandBuffer, const PellucidPlan& plan,
+                      std::uint32_t recording) const {
   const PellucidConstantsSlice constants = slice();
-  requireRecorded(pellucidRecordPlan(context_.handle(), commandBuffer, &plan, &data_.frame, &constants));
+  const PellucidFrame frame = frameFor(recording);
+  requireRecorded(pellucidRecordPlan(context_.handle(), commandBuffer, &plan, &frame, &constants));
 }
 
 void FrameRun::recordTogether(VkCommandBuffer commandBuffer, const std::vector<const FrameRun*>& runs) {
@@ -226,16 +251,17 @@ void FrameRun::recordTogether(VkCommandBuffer commandBuffer, const std::vector<c
     slices.push_back(run->slice());
     run->recordCells(commandBuffer);
   }
+  std::vector<PellucidFrame> frames;
+  for (const FrameRun* run : runs) frames.push_back(run->frameFor(kWholePlan));
   std::vector<PellucidView> views;
-  for (size_t i = 0; i < runs.size(); ++i)
-    views.push_back({runs[i]->plan_.get(), &runs[i]->data_.frame, &slices[i]});
+  for (size_t i = 0; i < runs.size(); ++i) views.push_back({runs[i]->plan_.get(), &frames[i], &slices[i]});
   runs.at(0)->requireRecorded(pellucidRecordViews(runs[0]->context_.handle(), commandBuffer,
                                                   static_cast<uint32_t>(views.size()), views.data()));
 }
 
 void FrameRun::record(VkCommandBuffer commandBuffer) const {
   recordCells(commandBuffer);
-  record(commandBuffer, *plan_);
+  record(commandBuffer, *plan_, kWholePlan);
 }
 
 void FrameRun::recordCells(VkCommandBuffer commandBuffer) const {
@@ -250,7 +276,7 @@ PellucidPlan FrameRun::only(uint32_t dispatch) const {
 }
 
 void FrameRun::record(VkCommandBuffer commandBuffer, uint32_t dispatch) const {
-  record(commandBuffer, only(dispatch));
+  record(commandBuffer, only(dispatch), dispatch);
   // Of all dispatches, that the GPU decides by.
   requireOk(pellucidWriteConstants(plan_.get(), &data_.frame, constants_->mapped(),
                                    static_cast<size_t>(constants_->size())),
@@ -260,7 +286,7 @@ void FrameRun::record(VkCommandBuffer commandBuffer, uint32_t dispatch) const {
 void FrameRun::recordAlone(VkCommandBuffer commandBuffer, uint32_t dispatch) const {
   PellucidPlan single = only(dispatch);
   single.dispatches[0].indirect = 0;
-  record(commandBuffer, single);
+  record(commandBuffer, single, dispatch);
 }
 
 const void* FrameRun::constants() const { return constants_->mapped(); }
@@ -284,7 +310,10 @@ Image FrameRun::output(const VkRect2D& rect) const { return images_->output().do
 Image FrameRun::irradiance() const { return images_->irradiance(); }
 
 void FrameRun::fillGarbage(std::uint64_t seed) const {
-  images_->fillGarbage(seed);
+  if (device_.guarded())
+    images_->poison(seed, data_.frame.materialCount);
+  else
+    images_->fillGarbage(seed);
   std::memset(constants_->mapped(), static_cast<int>(seed & 0xFF), static_cast<size_t>(constants_->size()));
 }
 

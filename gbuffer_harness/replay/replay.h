@@ -2,12 +2,14 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
 #include <vector>
 
 #include "common/device.h"
+#include "common/owned.h"
 #include "common/pool.h"
 #include "pellucid/pellucid_statistics.h"
 #include "replay/cell_pass.h"
@@ -101,7 +103,8 @@ public:
   void restoreIrradiance(const Capture& capture) const;
 
   // Other bits where a recording must not depend on them: in transients, the constants' memory, and an output
-  // that is not the irradiance, which becomes 0xFF bytes: NaN in both formats.
+  // that is not the irradiance, which becomes 0xFF bytes: NaN in both formats. On guarded devices transients
+  // hold 0xFF bytes or what looks like indices, by turns.
   void fillGarbage(std::uint64_t seed) const;
 
   // Content of an output that is not the irradiance before the first recording.
@@ -117,15 +120,22 @@ public:
 private:
   class Images;
 
-  void plan(Device& device, const ReplaySettings& settings, const PellucidPlan* previous);
+  void plan(const ReplaySettings& settings, const PellucidPlan* previous);
   PellucidConstantsSlice slice() const;
-  void record(VkCommandBuffer commandBuffer, const PellucidPlan& plan) const;
+  // The frame with a pool for descriptors, where they are not pushed. `recording`: of those in one command
+  // buffer, which share the slice and need pools of their own.
+  PellucidFrame frameFor(std::uint32_t recording) const;
+  void record(VkCommandBuffer commandBuffer, const PellucidPlan& plan, std::uint32_t recording) const;
   void requireRecorded(PellucidResult result) const;
   PellucidPlan only(uint32_t dispatch) const;
 
+  using DescriptorPool = Owned<VkDescriptorPool, vkDestroyDescriptorPool>;
+
+  Device& device_;
   const Context& context_;
   std::string name_;
   FrameData data_;
+  mutable std::map<std::uint32_t, DescriptorPool> pools_;  // by recording, made when first asked for
   std::unique_ptr<Images> images_;
   std::unique_ptr<PellucidPlan> plan_;  // 28 KB
   std::unique_ptr<HostBuffer> constants_;

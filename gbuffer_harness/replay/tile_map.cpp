@@ -101,9 +101,10 @@ TileMap readTileMap(const FrameRun& run) {
     throw InputError(run.name(), "", "has no tile lists to draw: " + whyNoTileLists(plan));
   const Layout layout(run.constants(), *dispatchOf(plan, "base level"));
   const std::vector<std::uint32_t> words = run.tileWords();
-  // Groups of a list, each at `each(word)`.
+  // Groups of a list, each at `each(word)`. `count`: groups that ran, of all rows.
   const auto forEach = [&](std::uint32_t list, std::uint64_t count, auto&& each) {
-    for (std::uint64_t i = 0; i < count; ++i) each(words.at(layout.firstWord(list) + i));
+    const std::uint32_t rows = std::max(layout.tiles.groups[list].count.z, 1u);
+    for (std::uint64_t i = 0; i < count / rows; ++i) each(words.at(layout.firstWord(list) + i));
   };
 
   TileMap map;
@@ -116,8 +117,7 @@ TileMap readTileMap(const FrameRun& run) {
   map.rows = (map.rect[3] - map.y + PELLUCID_TILE - 1) / PELLUCID_TILE;
   map.bits.resize(static_cast<std::size_t>(map.columns) * static_cast<std::size_t>(map.rows));
   forEach(PELLUCID_LIST_TILES, statistics.tiles.run, [&](std::uint32_t word) {
-    const Group at = groupIn(word);
-    map.bits.at(static_cast<std::size_t>(at.y * map.columns + at.x)) |= kTileMaterial;
+    mark(map, layout.tiles.groups[PELLUCID_LIST_TILES], groupIn(word), kTileMaterial);
   });
   forEach(PELLUCID_LIST_DIFFUSE, statistics.diffusion.run, [&](std::uint32_t word) {
     mark(map, layout.tiles.groups[PELLUCID_LIST_DIFFUSE], groupIn(word), kTileDiffuses);

@@ -101,6 +101,7 @@ void run(Options o) {
   for (const std::string& note : scene.notes) std::fprintf(stderr, "%s\n", note.c_str());
   DeviceOptions wanted{o.device, o.validate};
   wanted.computeQueue = o.settings.ownQueue;
+  wanted.pushes = true;  // frames in flight have no pools of their own
   std::optional<Desktop> desktop;
   if (!o.headless) desktop.emplace().require(wanted);
   Device device(wanted);

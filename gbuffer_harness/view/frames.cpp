@@ -15,7 +15,6 @@ namespace pellucid::harness {
 namespace {
 
 // Reads an output, which has an alpha in most formats.
-Image rgbOf(Image output) { return output.channels == 3 ? output : rgb(output); }
 
 // RGB as an image of the format holds it.
 void store(float* rgb, VkFormat format) {
@@ -255,7 +254,7 @@ Image ViewFrames::pixels(Shown shown, const Capture& surfaces, const VkRect2D& r
   switch (shown) {
     case Shown::After: {
       const FrameRun& frame = run(shown);
-      const Image output = rgbOf(frame.output(rect));
+      const Image output = rgb(frame.output(rect));
       Image result = composited(surfaces, frame.frame().outputFormat);
       for (std::size_t i = 0; i < result.pixels(); ++i)
         if (material[i] != 0) std::copy_n(&output.data[3 * i], 3, &result.data[3 * i]);
@@ -264,7 +263,7 @@ Image ViewFrames::pixels(Shown shown, const Capture& surfaces, const VkRect2D& r
     case Shown::Before:
       return composited(surfaces, VK_FORMAT_R32G32B32A32_SFLOAT);
     case Shown::Through: {
-      Image result = rgbOf(run(shown).output(rect));
+      Image result = rgb(run(shown).output(rect));
       const Image before = pixels(Shown::Before, surfaces, rect);
       for (std::size_t i = 0; i < result.pixels(); ++i)
         for (std::size_t c = 0; c < 3; ++c) {
@@ -283,7 +282,7 @@ Image ViewFrames::pixels(Shown shown, const Capture& surfaces, const VkRect2D& r
     case Shown::Truth:
       return outline().truth ? partOf(outline().truth->image, rect) : Image(width, height, 3);
     case Shown::Debug:
-      return rgbOf(run(shown).output(rect));
+      return rgb(run(shown).output(rect));
     case Shown::FrontDepth:
       return surfaces.frontDepth.image;
     case Shown::Normal: {

@@ -70,6 +70,7 @@ void Desktop::require(DeviceOptions& options) const {
   const char** const names = glfwGetRequiredInstanceExtensions(&count);
   if (!names) throw DeviceError("no window can show what Vulkan draws: " + lastError());
   options.instanceExtensions.assign(names, names + count);
+  options.pushes = true;  // what is drawn is not waited for
   options.presents = [](VkInstance instance, VkPhysicalDevice device, std::uint32_t family) {
     return glfwGetPhysicalDevicePresentationSupport(instance, device, family) == GLFW_TRUE;
   };

@@ -98,6 +98,7 @@ shared::FrameConstants frameConstants(const FrameFacts& facts) {
   for (uint32_t list = 0; list < PELLUCID_LISTS; ++list) {
     c.lists[list / 4][static_cast<int>(list % 4)] = tiles.first[list];
     c.listGroups[list / 4][static_cast<int>(list % 4)] = tiles.firstGroup[list];
+    c.listRows[list / 4][static_cast<int>(list % 4)] = facts.grids[list].rowsEach;
   }
   return c;
 }
@@ -269,11 +270,13 @@ shared::TileCommands tileCommands(const FrameFacts& f) {
   shared::TileCommands c{};
   for (uint32_t list = 0; list < PELLUCID_LISTS; ++list) {
     const GroupGrid& grid = f.grids[list];
+    const auto rows = static_cast<int32_t>(grid.rowsEach);
     c.groups[list].places = {grid.first[0] - static_cast<int32_t>(f.tiles.firstPixel[0]),
                              grid.first[1] - static_cast<int32_t>(f.tiles.firstPixel[1]), grid.step[0],
-                             grid.step[1]};
-    c.groups[list].size = {grid.size[0], grid.size[1], static_cast<int32_t>(grid.runs), 0};
-    c.groups[list].count = {grid.columns, grid.rows, 0, 0};
+                             grid.step[1] * rows};
+    c.groups[list].size = {grid.size[0], grid.size[1] + (rows - 1) * grid.step[1],
+                           static_cast<int32_t>(grid.runs), 0};
+    c.groups[list].count = {grid.columns, grid.listedRows(), grid.rowsEach, 0};
   }
   c.maps = {f.tiles.maps, f.stages.skipsLight, 0, 0};
   float reach = 0;
@@ -291,7 +294,7 @@ void putIndirect(const FrameFacts& facts, const PellucidPlan& plan, void* mapped
     const PellucidDispatch& d = plan.dispatches[i];
     if (!d.indirect) continue;
     if (facts.stages.tiles) {  // all that is indirect: the GPU counts groups, from 0 on
-      put(mapped, d.indirectOffset, glm::uvec4(0, 1, 1, 0));
+      put(mapped, d.indirectOffset, glm::uvec4(0, d.groups[1], 1, 0));
       continue;
     }
     // Until the GPU finds light there is none.

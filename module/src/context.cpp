@@ -7,14 +7,13 @@
 #include <new>
 
 #include "defaults.h"
-#include "findings.h"
+#include "device_limits.h"
 #include "output_format.h"
 #include "pipelines.h"
 #include "shared/pellucid_shared.h"
 #include "text.h"
 
 namespace pellucid {
-namespace {
 
 PellucidResult vulkanError(Findings& out, const char* call, VkResult result) {
   const bool memory = result == VK_ERROR_OUT_OF_HOST_MEMORY || result == VK_ERROR_OUT_OF_DEVICE_MEMORY;
@@ -22,6 +21,8 @@ PellucidResult vulkanError(Findings& out, const char* call, VkResult result) {
            " returned VkResult ", static_cast<int>(result));
   return out.result();
 }
+
+namespace {
 
 constexpr uint32_t kAllUses = PELLUCID_USE_TRANSLUCENCY | PELLUCID_USE_GATHER | PELLUCID_USE_DIFFUSION |
                               PELLUCID_USE_QUALITY_0 | PELLUCID_USE_REUSE | PELLUCID_USE_DEBUG_VIEWS;
@@ -83,6 +84,10 @@ PellucidResult checkDesc(const PellucidContextDesc& desc, Findings& out) {
     out.fail(PELLUCID_ERROR_INVALID_ARGUMENT, "lightTables", "is ", desc.lightTables, ", not 0 or 1");
     return out.result();
   }
+  if (desc.descriptorPools > 1) {
+    out.fail(PELLUCID_ERROR_INVALID_ARGUMENT, "descriptorPools", "is ", desc.descriptorPools, ", not 0 or 1");
+    return out.result();
+  }
   if (desc.uses & ~kAllUses) {
     out.fail(PELLUCID_ERROR_INVALID_ARGUMENT, "uses", "has unknown bits ", desc.uses & ~kAllUses);
     return out.result();
@@ -107,7 +112,8 @@ PellucidResult checkDesc(const PellucidContextDesc& desc, Findings& out) {
              "; 1.1 is required");
     return out.result();
   }
-  return PELLUCID_OK;
+  checkLimits(desc, properties, out);
+  return out.result();
 }
 
 PellucidResult createLayouts(PellucidContext& c, Findings& out) {
@@ -115,7 +121,7 @@ PellucidResult createLayouts(PellucidContext& c, Findings& out) {
   for (uint32_t i = 0; i < PELLUCID_BINDING_COUNT; ++i)
     bindings[i] = {i, descriptorType(i), 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr};
   VkDescriptorSetLayoutCreateInfo set{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
-  set.flags = VK_DESCRIPTOR_SET_LAYOUT_CREATE_PUSH_DESCRIPTOR_BIT_KHR;
+  if (!c.desc.descriptorPools) set.flags = VK_DESCRIPTOR_SET_LAYOUT_CREATE_PUSH_DESCRIPTOR_BIT_KHR;
   set.bindingCount = PELLUCID_BINDING_COUNT;
   set.pBindings = bindings;
   VkResult result = c.vk.vkCreateDescriptorSetLayout(c.device, &set, c.callbacks(), &c.setLayout);
@@ -244,8 +250,14 @@ extern "C" PellucidResult pellucidCreateContext(const PellucidContextDesc* given
   const char* missing =
       getDeviceProcAddr ? loadVkTable(getDeviceProcAddr, desc->device, &c->vk) : "vkGetDeviceProcAddr";
   if (missing) {
-    out.fail(PELLUCID_ERROR_MISSING_FEATURE, "device", "has no ", missing,
-             "; is VK_KHR_push_descriptor enabled?");
+    out.fail(PELLUCID_ERROR_MISSING_FEATURE, "device", "has no ", missing);
+    delete c;
+    return out.result();
+  }
+  if (!desc->descriptorPools && !c->vk.pushDescriptorSet) {
+    out.fail(PELLUCID_ERROR_MISSING_FEATURE, "device",
+             "has no vkCmdPushDescriptorSetKHR; is VK_KHR_push_descriptor enabled? Devices without it need "
+             "descriptorPools = 1");
     delete c;
     return out.result();
   }
@@ -267,6 +279,21 @@ extern "C" PellucidResult pellucidCreatePipelines(PellucidContext* c, const Pell
     if (plan->dispatches[i].pipeline < kPipelineCount) wanted.set(plan->dispatches[i].pipeline);
   Findings out(c->desc.message, c->desc.messageUser);
   return createPipelines(*c, wanted, out);
+}
+
+extern "C" PellucidResult pellucidCreateDescriptorPool(const PellucidContext* c, VkDescriptorPool* pool) {
+  if (!c || !pool) return PELLUCID_ERROR_INVALID_ARGUMENT;
+  *pool = VK_NULL_HANDLE;
+  Findings out(c->desc.message, c->desc.messageUser);
+  VkDescriptorPoolSize sizes[PELLUCID_BINDING_COUNT];
+  for (uint32_t i = 0; i < PELLUCID_BINDING_COUNT; ++i)
+    sizes[i] = {descriptorType(i), PELLUCID_MAX_DISPATCHES};
+  VkDescriptorPoolCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
+  info.maxSets = PELLUCID_MAX_DISPATCHES;
+  info.poolSizeCount = PELLUCID_BINDING_COUNT;
+  info.pPoolSizes = sizes;
+  const VkResult result = c->vk.vkCreateDescriptorPool(c->device, &info, c->callbacks(), pool);
+  return result == VK_SUCCESS ? PELLUCID_OK : vulkanError(out, "vkCreateDescriptorPool", result);
 }
 
 extern "C" void pellucidDestroyContext(PellucidContext* c) {

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "findings.h"
 #include "pellucid/pellucid.h"
 #include "pipelines.h"
 #include "vk_table.h"
@@ -19,3 +20,10 @@ struct PellucidContext {
 
   const VkAllocationCallbacks* callbacks() const { return hasAllocator ? &allocator : nullptr; }
 };
+
+namespace pellucid {
+
+// Reports a call that failed; the result of that.
+PellucidResult vulkanError(Findings& out, const char* call, VkResult result);
+
+}  // namespace pellucid

@@ -42,16 +42,17 @@ void PlanBuilder::listed(PellucidDispatch* d, uint32_t list) const {
   const GroupGrid& grid = facts.grids[list];
   d->groups[0] = grid.columns;
   d->groups[1] = grid.rows;
-  goByList(d, list);
+  goByList(d, list, grid.listed(), grid.rowsEach);
 }
 
-void PlanBuilder::goByList(PellucidDispatch* d, uint32_t list) const {
+void PlanBuilder::goByList(PellucidDispatch* d, uint32_t list, uint32_t most, uint32_t rowsEach) const {
   // The material image stands in.
   bind(d, PELLUCID_BINDING_TILES, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE,
        facts.stages.tiles ? tilesImage() : static_cast<uint32_t>(PELLUCID_RESOURCE_MATERIAL));
   if (!facts.stages.tiles) return;
-  d->groups[0] *= d->groups[1] * d->groups[2];
-  d->groups[1] = d->groups[2] = 1;
+  d->groups[0] = most;
+  d->groups[1] = rowsEach;
+  d->groups[2] = 1;
   indirect(d, facts.constants.tileCommands.offset + offsetof(shared::TileCommands, commands) +
                   list * sizeof(glm::uvec4));
 }

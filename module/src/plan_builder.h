@@ -56,8 +56,8 @@ struct PlanBuilder {
   }
   // The groups of a list's grid; with tile lists those of them that the GPU lists.
   void listed(PellucidDispatch* d, uint32_t list) const;
-  // With tile lists: as many groups as the list has, of those that the dispatch has so far.
-  void goByList(PellucidDispatch* d, uint32_t list) const;
+  // With tile lists: as many groups as the list has, at most `most`, of `rowsEach` rows each.
+  void goByList(PellucidDispatch* d, uint32_t list, uint32_t most, uint32_t rowsEach = 1) const;
 
   // Runs as earlier dispatches say at `offset` of the constants.
   void indirect(PellucidDispatch* d, VkDeviceSize offset) const;

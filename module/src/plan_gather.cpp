@@ -30,7 +30,7 @@ void addEntryPoints(PlanBuilder& b, const LightGroup& group) {
                  isDirectional(b.facts, group) ? Pipeline::EntryPointsDirectional : Pipeline::EntryPoints);
   b.groups(d, group.entryWidth, group.entryHeight, PELLUCID_ENTRY_POINTS_GROUP);
   d->groups[2] = group.shadowCount;
-  b.goByList(d, PELLUCID_LIST_ENTRY_POINTS);
+  b.goByList(d, PELLUCID_LIST_ENTRY_POINTS, d->groups[0] * d->groups[1] * d->groups[2]);
   d->pushConstants[1] = group.entryColumns | group.entryRows << 16;
   const ConstantsLayout& layout = b.facts.constants;
   b.constants(d, PELLUCID_BINDING_FRAME, layout.frame);

@@ -7,14 +7,25 @@
 namespace pellucid {
 namespace {
 
-void pushBindings(const PellucidContext& c, VkCommandBuffer commandBuffer, const PellucidDispatch& d,
-                  const PellucidFrame& f, const PellucidConstantsSlice& slice) {
+// Pushes the dispatch's bindings, or binds a set of the frame's pool.
+VkResult bind(const PellucidContext& c, VkCommandBuffer commandBuffer, const PellucidDispatch& d,
+              const PellucidFrame& f, const PellucidConstantsSlice& slice) {
+  VkDescriptorSet set = VK_NULL_HANDLE;
+  if (c.desc.descriptorPools) {
+    VkDescriptorSetAllocateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO};
+    info.descriptorPool = f.descriptorPool;
+    info.descriptorSetCount = 1;
+    info.pSetLayouts = &c.setLayout;
+    const VkResult result = c.vk.vkAllocateDescriptorSets(c.device, &info, &set);
+    if (result != VK_SUCCESS) return result;
+  }
   VkWriteDescriptorSet writes[PELLUCID_MAX_BINDINGS];
   VkDescriptorImageInfo images[PELLUCID_MAX_BINDINGS];
   VkDescriptorBufferInfo buffers[PELLUCID_MAX_BINDINGS];
   for (uint32_t i = 0; i < d.bindingCount; ++i) {
     const PellucidBinding& b = d.bindings[i];
     writes[i] = VkWriteDescriptorSet{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
+    writes[i].dstSet = set;  // unused where they are pushed
     writes[i].dstBinding = b.binding;
     writes[i].descriptorCount = 1;
     writes[i].descriptorType = b.type;
@@ -27,14 +38,22 @@ void pushBindings(const PellucidContext& c, VkCommandBuffer commandBuffer, const
       writes[i].pImageInfo = &images[i];
     }
   }
-  c.vk.vkCmdPushDescriptorSetKHR(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, c.pipelineLayout, 0,
-                                 d.bindingCount, writes);
+  if (c.desc.descriptorPools) {
+    c.vk.vkUpdateDescriptorSets(c.device, d.bindingCount, writes, 0, nullptr);
+    c.vk.vkCmdBindDescriptorSets(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, c.pipelineLayout, 0, 1, &set,
+                                 0, nullptr);
+  } else {
+    c.vk.pushDescriptorSet(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, c.pipelineLayout, 0,
+                           d.bindingCount, writes);
+  }
+  return VK_SUCCESS;
 }
 
-void recordDispatch(const PellucidContext& c, VkCommandBuffer commandBuffer, const PellucidDispatch& d,
-                    const PellucidView& view) {
+VkResult recordDispatch(const PellucidContext& c, VkCommandBuffer commandBuffer, const PellucidDispatch& d,
+                        const PellucidView& view) {
   c.vk.vkCmdBindPipeline(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, c.pipelines[d.pipeline]);
-  pushBindings(c, commandBuffer, d, *view.frame, *view.constants);
+  const VkResult result = bind(c, commandBuffer, d, *view.frame, *view.constants);
+  if (result != VK_SUCCESS) return result;
   c.vk.vkCmdPushConstants(commandBuffer, c.pipelineLayout, VK_SHADER_STAGE_COMPUTE_BIT, 0,
                           PELLUCID_PUSH_CONSTANT_BYTES, d.pushConstants);
   if (d.indirect)
@@ -42,6 +61,7 @@ void recordDispatch(const PellucidContext& c, VkCommandBuffer commandBuffer, con
                                view.constants->offset + d.indirectOffset);
   else
     c.vk.vkCmdDispatch(commandBuffer, d.groups[0], d.groups[1], d.groups[2]);
+  return VK_SUCCESS;
 }
 
 void recordBarrier(const PellucidContext& c, VkCommandBuffer commandBuffer, bool indirect) {
@@ -84,9 +104,16 @@ PellucidResult record(const PellucidContext& c, VkCommandBuffer commandBuffer,
       forSegment(*view.plan, segment,
                  [&](const PellucidDispatch& d) { indirect |= d.barrierBefore && d.barrierIndirect; });
     if (segment > 0) recordBarrier(c, commandBuffer, indirect);
+    VkResult result = VK_SUCCESS;
     for (const PellucidView& view : views)
-      forSegment(*view.plan, segment,
-                 [&](const PellucidDispatch& d) { recordDispatch(c, commandBuffer, d, view); });
+      forSegment(*view.plan, segment, [&](const PellucidDispatch& d) {
+        if (result == VK_SUCCESS) result = recordDispatch(c, commandBuffer, d, view);
+      });
+    // A pool has room for all sets: only the driver's own memory ends.
+    if (result != VK_SUCCESS) {
+      Findings out(c.desc.message, c.desc.messageUser);
+      return vulkanError(out, "vkAllocateDescriptorSets", result);
+    }
   }
   return PELLUCID_OK;
 }

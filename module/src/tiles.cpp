@@ -8,8 +8,10 @@
 namespace pellucid {
 namespace {
 
-// The least limit of workgroups in a dispatch's row, of all devices.
+// The least limit of workgroups along an axis, of all devices.
 constexpr uint32_t kMostGroups = 65535;
+// No pass has as many groups in images of so many pixels: the smallest do 8 x 8.
+constexpr uint64_t kFewPixels = 1u << 21;
 constexpr uint32_t kMostLightGroups = 8;  // leaves room for the lists' dispatches in any plan
 
 // A bit for each of a map's groups of entry points.
@@ -80,9 +82,7 @@ GroupGrid running(uint32_t runs, GroupGrid grid) {
   return grid;
 }
 
-}  // namespace
-
-GroupGrids groupGrids(const FrameFacts& f, const Rect& rect, const Pyramid& pyramid) {
+GroupGrids gridsOf(const FrameFacts& f, const Rect& rect, const Pyramid& pyramid) {
   const auto spacing = static_cast<int32_t>(f.gatherSpacing);
   GroupGrids grids;
   grids[PELLUCID_LIST_TILES] = tileGrid(rect);
@@ -104,6 +104,24 @@ GroupGrids groupGrids(const FrameFacts& f, const Rect& rect, const Pyramid& pyra
   return grids;
 }
 
+// As few rows of a list as let its groups lie in a row.
+uint32_t rowsEach(const GroupGrid& grid) {
+  return parts(grid.rows, std::max(kMostGroups / std::max(grid.columns, 1u), 1u));
+}
+
+}  // namespace
+
+GroupGrids groupGrids(const FrameFacts& f, const Rect& rect, const Pyramid& pyramid) {
+  GroupGrids grids = gridsOf(f, rect, pyramid);
+  // The whole image decides, so that no rect needs more words than its lists have.
+  const Rect all{0, 0, f.frame.imageExtent[0], f.frame.imageExtent[1]};
+  if (uint64_t{all.width} * all.height <= kFewPixels) return grids;
+  const GroupGrids whole = gridsOf(f, all, Pyramid(f.frame.imageExtent, all));
+  for (uint32_t list = 0; list < PELLUCID_LIST_ENTRY_POINTS; ++list)
+    grids[list].rowsEach = rowsEach(whole[list]);
+  return grids;
+}
+
 TileLists::TileLists(const FrameFacts& f, const Rect& rect, const GroupGrids& grids)
     : firstPixel{rect.x & ~1u, rect.y & ~1u},
       blocks{parts(rect.x + rect.width - firstPixel[0], PELLUCID_BLOCK),
@@ -114,7 +132,7 @@ TileLists::TileLists(const FrameFacts& f, const Rect& rect, const GroupGrids& gr
   marks = PELLUCID_BLOCK_WORDS * blockCount;
   words = marks + blockCount;
   for (uint32_t list = 0; list < PELLUCID_LIST_ENTRY_POINTS; ++list) {
-    const uint32_t count = list < PELLUCID_LIST_PROBES || f.stages.gathered > 0 ? grids[list].count() : 0;
+    const uint32_t count = list < PELLUCID_LIST_PROBES || f.stages.gathered > 0 ? grids[list].listed() : 0;
     first[list] = words;
     words += count;
     firstGroup[list] = groups;
@@ -133,8 +151,12 @@ const char* whyNoTileLists(const FrameFacts& f) {
   if (!asksForTileLists(f.frame)) return "frame.indirectDispatches asks for none";
   if (f.stages.history) return "frame.reuse keeps the light of pixels, all of which it writes";
   if (f.lights.count > kMostLightGroups || f.stages.gathered > 1) return "lights need several dispatches";
-  for (const GroupGrid& grid : f.grids)
-    if (grid.count() > kMostGroups) return "the image has more tiles than a row of workgroups";
+  const auto isTooLarge = [](const GroupGrid& grid) {
+    return grid.columns > PELLUCID_GROUP_COLUMN || grid.listed() > kMostGroups;
+  };
+  if (std::any_of(f.grids.begin(), f.grids.end(), isTooLarge) ||
+      TileLists(f, f.rect, f.grids).groups > kMostGroups)
+    return "the image has more groups than lists can hold";
   return nullptr;
 }
 

@@ -26,8 +26,10 @@ struct GroupGrid {
   uint32_t columns = 0, rows = 0;
   std::array<int32_t, 2> first{}, step{}, size{};  // pixels
   uint32_t runs = PELLUCID_RUNS_WITH_CELLS;
+  uint32_t rowsEach = 1;  // rows of groups that its list holds as one
 
-  uint32_t count() const { return columns * rows; }
+  uint32_t listedRows() const { return parts(rows, rowsEach); }
+  uint32_t listed() const { return columns * listedRows(); }  // at most
 };
 
 // By PELLUCID_LIST_*; entry points have none.

@@ -141,7 +141,9 @@ PellucidResult prepareView(const PellucidContext& c, std::span<const PellucidVie
   if (out.result() == PELLUCID_OK) checkPlan(c, *view.plan, facts, out);
   const PellucidConstantsSlice& slice = *view.constants;
   if (out.result() != PELLUCID_OK) return out.result();
-  if (slice.size < view.plan->constantsSize)
+  if (c.desc.descriptorPools && !facts.frame.descriptorPool)
+    out.error("descriptorPool", "is NULL, but PellucidContextDesc::descriptorPools is 1");
+  else if (slice.size < view.plan->constantsSize)
     out.fail(PELLUCID_ERROR_BUFFER_TOO_SMALL, "constants.size", "is ", slice.size, "; the plan needs ",
              view.plan->constantsSize);
   else if (!slice.mapped)
@@ -149,8 +151,12 @@ PellucidResult prepareView(const PellucidContext& c, std::span<const PellucidVie
   for (uint32_t other = 0; other < index && out.result() == PELLUCID_OK; ++other) {
     checkImages(view, views[other], other, out);
     checkSlices(view, views[other], other, out);
+    // Frames of views before this one were read, so that they have the field.
+    if (c.desc.descriptorPools && views[other].frame->descriptorPool == facts.frame.descriptorPool)
+      out.error("descriptorPool", "is views[", other, "].descriptorPool, too");
   }
   if (out.result() != PELLUCID_OK) return out.result();
+  if (c.desc.descriptorPools) c.vk.vkResetDescriptorPool(c.device, facts.frame.descriptorPool, 0);
   return writeConstants(facts, *view.plan, slice.mapped, static_cast<size_t>(slice.size));
 }
 

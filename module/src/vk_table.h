@@ -16,7 +16,11 @@ namespace pellucid {
   X(vkDestroyPipeline)               \
   X(vkCmdBindPipeline)               \
   X(vkCmdPushConstants)              \
-  X(vkCmdPushDescriptorSetKHR)       \
+  X(vkCreateDescriptorPool)          \
+  X(vkResetDescriptorPool)           \
+  X(vkAllocateDescriptorSets)        \
+  X(vkUpdateDescriptorSets)          \
+  X(vkCmdBindDescriptorSets)         \
   X(vkCmdPipelineBarrier)            \
   X(vkCmdDispatch)                   \
   X(vkCmdDispatchIndirect)
@@ -25,6 +29,7 @@ struct VkTable {
 #define PELLUCID_MEMBER(name) PFN_##name name = nullptr;
   PELLUCID_DEVICE_FUNCTIONS(PELLUCID_MEMBER)
 #undef PELLUCID_MEMBER
+  PFN_vkCmdPushDescriptorSetKHR pushDescriptorSet = nullptr;  // of the extension or of Vulkan 1.4; or nullptr
 };
 
 // The name of the first function the device does not have, or nullptr when the table is complete.

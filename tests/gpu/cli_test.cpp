@@ -44,6 +44,25 @@ TEST_F(Cli, CaptureReplayComparePlan) {
 }
 
 // Whelan 2009, eqs. 4.4 and 4.5 as printed, at both ends.
+// Each output format reads back as the picture that it is.
+TEST_F(Cli, EveryOutputFormatReadsBack) {
+  ASSERT_EQ(run("capture --procedural ear --size 64x48 -o " + path("ear.exr")).code, 0);
+  const auto replay = [&](const std::string& format) {
+    const Outcome outcome = run("replay " + path("ear.exr") + " --repeat 0 --set format=" + format + " -o " +
+                                path(format + ".exr"));
+    EXPECT_EQ(outcome.code, 0) << outcome.text;
+  };
+  replay("rgba32f");
+  // Halves round to 5e-4; packed floats cut 6 bits off red and green and 5 off blue, which is up to 1/32.
+  const std::pair<const char*, const char*> formats[] = {{"rgba32f", "0"}, {"rgba16f", "1e-3"}, {"rg11b10f", "0.032"}};
+  for (const auto& [format, most] : formats) {
+    replay(format);
+    const Outcome outcome = run("compare " + path(std::string(format) + ".exr") + " " + path("rgba32f.exr") +
+                                " --limit rel_rmse=" + most);
+    EXPECT_EQ(outcome.code, 0) << format << "\n" << outcome.text;
+  }
+}
+
 TEST_F(Cli, AnglesAreThePrintedEquations) {
   expect(0, "angles",
          "90                            0.0000                      0.0000                      0.0361");

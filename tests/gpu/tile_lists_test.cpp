@@ -81,6 +81,29 @@ TEST_F(TileLists, ChangeNoPixel) {
     }
 }
 
+// 256 x 256 groups of probes are more than fit in a row: their list has two rows of groups in one.
+TEST_F(TileLists, HoldRowsOfGroupsInLargeImages) {
+  const Capture c = islands(2048, 2048, 5);
+  ReplaySettings s;
+  s.translucency.gatherSamples = 8;
+  s.translucency.gatherSpacing = 1;
+  s.indirectDispatches = PELLUCID_INDIRECT_NONE;
+  const Image whole = replayer().run(c, {testMaterial()}, s).output;
+  s.indirectDispatches = PELLUCID_INDIRECT_MATERIAL;
+  const ReplayResult listed = replayer().run(c, {testMaterial()}, s);
+  EXPECT_TRUE(sameBits(listed.output, whole));
+  uint32_t probes = 0;
+  for (uint32_t i = 0; i < listed.plan.dispatchCount; ++i)
+    if (listed.plan.dispatches[i].name == std::string("probes")) {
+      ++probes;
+      EXPECT_EQ(listed.plan.dispatches[i].groups[0], 256u * 128u);
+      EXPECT_EQ(listed.plan.dispatches[i].groups[1], 2u);
+      EXPECT_GT(listed.statistics.dispatches[i].run, 0u);
+      EXPECT_LT(listed.statistics.dispatches[i].run, 1000u);
+    }
+  EXPECT_EQ(probes, 1u);
+}
+
 // Device depths of the capture's camera in place of planar distances.
 Capture withDeviceDepth(Capture c) {
   c.frontDepth.encoding = PELLUCID_DEPTH_DEVICE;

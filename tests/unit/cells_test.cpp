@@ -50,6 +50,48 @@ TEST(Cells, BlocksCoverTheRectFromAnEvenPixelOn) {
   EXPECT_EQ(f.cells().blocks[1], 1u);
 }
 
+// Images of any size that devices have keep their lists: groups of a dispatch stay within 65535 along an axis, and
+// the image of words has room for the lists of any rect.
+TEST(Cells, LargeImagesKeepTheirLists) {
+  const auto wordsOf = [](const Handed& f) {
+    PellucidImageNeed needs[PELLUCID_MAX_TRANSIENTS + 1];
+    uint32_t count = PELLUCID_MAX_TRANSIENTS + 1;
+    EXPECT_EQ(pellucidGetImageNeeds(&f.frame, &count, needs), PELLUCID_OK);
+    for (uint32_t i = 0; i < count; ++i)
+      if (needs[i].format == VK_FORMAT_R32_UINT) return needs[i].extent[0] * needs[i].extent[1];
+    return 0u;
+  };
+  const struct {
+    uint32_t width, height, spacing, rows;  // rows: of tiles in a listed one
+  } sizes[] = {{4080, 4112, 0, 1}, {4096, 4096, 0, 2}, {7680, 4320, 0, 2}, {7680, 4320, 1, 2}, {16384, 4096, 0, 5}};
+  for (const auto& [width, height, spacing, rows] : sizes) {
+    SCOPED_TRACE(std::to_string(width) + " x " + std::to_string(height));
+    Handed f;
+    f.frame.imageExtent[0] = width;
+    f.frame.imageExtent[1] = height;
+    f.frame.gatherSpacing = spacing;
+    for (PellucidImage& image : f.frame.transients) image = Frame::view();
+    ASSERT_EQ(f.problems(), "");
+    const uint32_t words = wordsOf(f);
+    for (const bool half : {false, true}) {
+      if (half) f.setRect(33, 17, width / 2, height / 2);
+      const PellucidPlan plan = f.plan();
+      EXPECT_EQ(wordsOf(f), words) << "for any rect";
+      uint32_t listed = 0;
+      for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
+        const PellucidDispatch& d = plan.dispatches[i];
+        for (const uint32_t groups : d.groups) EXPECT_LE(groups, 65535u) << d.name;
+        listed += d.indirect;
+        if (d.name == std::string("base level")) {
+          EXPECT_EQ(d.groups[1], rows);
+        }
+      }
+      EXPECT_GT(listed, 5u);
+      EXPECT_FALSE(skips(plan, "tile lists", "the image has more groups than lists can hold"));
+    }
+  }
+}
+
 // The transient is the one of whole numbers, in use from the plan's beginning on, and has room for all words.
 TEST(Cells, LieInATransient) {
   for (const uint32_t samples : {0u, 8u}) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <functional>
 #include <new>
 #include <set>
 #include <thread>
@@ -123,6 +124,108 @@ TEST(ContextMemory, MissingFunctionsAreNamed) {
     EXPECT_EQ(pellucidCreateContext(&desc, &context), PELLUCID_ERROR_MISSING_FEATURE);
     EXPECT_NE(sentences.last.find(name), std::string::npos) << sentences.last;
   }
+}
+
+TEST(ContextLimits, AreNamedWithBothNumbers) {
+  using Limits = VkPhysicalDeviceLimits;
+  const struct {
+    const char* name;
+    uint32_t Limits::*limit;
+    uint32_t needed;
+  } rows[] = {{"maxComputeWorkGroupInvocations", &Limits::maxComputeWorkGroupInvocations, 256},
+              {"maxComputeSharedMemorySize", &Limits::maxComputeSharedMemorySize, 16384},
+              {"maxPushConstantsSize", &Limits::maxPushConstantsSize, 16},
+              {"maxUniformBufferRange", &Limits::maxUniformBufferRange, 16128},
+              {"maxPerStageDescriptorUniformBuffers", &Limits::maxPerStageDescriptorUniformBuffers, 3},
+              {"maxPerStageDescriptorStorageBuffers", &Limits::maxPerStageDescriptorStorageBuffers, 2},
+              {"maxPerStageDescriptorStorageImages", &Limits::maxPerStageDescriptorStorageImages, 2},
+              {"maxPerStageDescriptorSampledImages", &Limits::maxPerStageDescriptorSampledImages, 16},
+              {"maxPerStageResources", &Limits::maxPerStageResources, 23}};
+  for (const auto& [name, limit, needed] : rows)
+    for (const uint32_t less : {0u, 1u}) {
+      NullDevice device;
+      device.limits.*limit = needed - less;
+      Sentences sentences;
+      const PellucidContextDesc desc = descOf(device, sentences);
+      PellucidContext* context = nullptr;
+      if (less == 0) {
+        EXPECT_EQ(pellucidCreateContext(&desc, &context), PELLUCID_OK) << name << ": " << sentences.last;
+        pellucidDestroyContext(context);
+        continue;
+      }
+      EXPECT_EQ(pellucidCreateContext(&desc, &context), PELLUCID_ERROR_MISSING_FEATURE) << name;
+      EXPECT_NE(sentences.last.find(std::string(name) + " " + std::to_string(needed - 1) + "; " +
+                                    std::to_string(needed) + " is required"),
+                std::string::npos)
+          << sentences.last;
+    }
+}
+
+TEST(ContextLimits, DescriptorsThatArePushedAndFormatsAreNamed) {
+  const auto sentenceOf = [](NullDevice& device, const std::function<void(PellucidContextDesc&)>& change) {
+    Sentences sentences;
+    PellucidContextDesc desc = descOf(device, sentences);
+    if (change) change(desc);
+    PellucidContext* context = nullptr;
+    const PellucidResult result = pellucidCreateContext(&desc, &context);
+    EXPECT_EQ(result, sentences.count > 0 ? PELLUCID_ERROR_MISSING_FEATURE : PELLUCID_OK);
+    pellucidDestroyContext(context);
+    return sentences.last;
+  };
+  NullDevice few;
+  few.mostPushed = 22;
+  EXPECT_NE(sentenceOf(few, {}).find("maxPushDescriptors 22; 23 is required"), std::string::npos);
+  EXPECT_EQ(sentenceOf(few, [](PellucidContextDesc& d) { d.descriptorPools = 1; }), "");
+  NullDevice fixed;
+  fixed.writesWithoutFormat = false;
+  const auto anyFormat = [](PellucidContextDesc& d) { d.outputFormat = VK_FORMAT_UNDEFINED; };
+  EXPECT_NE(sentenceOf(fixed, anyFormat).find("shaderStorageImageWriteWithoutFormat"), std::string::npos);
+  EXPECT_EQ(sentenceOf(fixed, {}), "") << "formats that are fixed need no such feature";
+  fixed.writesWithoutFormat = true;
+  EXPECT_EQ(sentenceOf(fixed, anyFormat), "");
+  for (const VkFormat format :
+       {VK_FORMAT_R32_UINT, VK_FORMAT_R32G32B32A32_UINT, VK_FORMAT_R16G16B16A16_SFLOAT}) {
+    NullDevice device;
+    device.notStorage = format;
+    EXPECT_NE(sentenceOf(device, {}).find("VkFormat " + std::to_string(format)), std::string::npos);
+  }
+}
+
+// Without push descriptors, sets come from the frame's pool: as many recordings of a slice as there may be,
+// each dispatch with a set of its own.
+TEST(ContextRecording, SetsComeFromTheFramesPool) {
+  NullDevice device;
+  device.missing = "vkCmdPushDescriptorSetKHR";
+  Sentences sentences;
+  PellucidContextDesc desc = descOf(device, sentences);
+  PellucidContext* context = nullptr;
+  EXPECT_EQ(pellucidCreateContext(&desc, &context), PELLUCID_ERROR_MISSING_FEATURE);
+  EXPECT_NE(sentences.last.find("descriptorPools"), std::string::npos) << sentences.last;
+  desc.descriptorPools = 2;
+  EXPECT_EQ(pellucidCreateContext(&desc, &context), PELLUCID_ERROR_INVALID_ARGUMENT);
+  EXPECT_NE(sentences.last.find("descriptorPools is 2"), std::string::npos) << sentences.last;
+  desc.descriptorPools = 1;
+  ASSERT_EQ(pellucidCreateContext(&desc, &context), PELLUCID_OK) << sentences.last;
+  Frame f;
+  for (PellucidImage& image : f.frame.transients) image = Frame::view();
+  const PellucidPlan plan = f.plan();
+  std::vector<unsigned char> constants;
+  NullCommands refused;
+  EXPECT_EQ(recordOnNull(context, refused, plan, f.frame, constants), PELLUCID_ERROR_INVALID_ARGUMENT);
+  EXPECT_NE(sentences.last.find("descriptorPool is NULL"), std::string::npos) << sentences.last;
+  ASSERT_EQ(pellucidCreateDescriptorPool(context, &f.frame.descriptorPool), PELLUCID_OK);
+  for (int times = 0; times < 3; ++times) {
+    NullCommands commands;
+    ASSERT_EQ(recordOnNull(context, commands, plan, f.frame, constants), PELLUCID_OK) << sentences.last;
+    EXPECT_EQ(commands.problem, "");
+    EXPECT_EQ(commands.dispatches, plan.dispatchCount);
+    EXPECT_EQ(commands.sets.size(), plan.dispatchCount);
+  }
+  EXPECT_EQ(pellucidCreateDescriptorPool(context, nullptr), PELLUCID_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(pellucidCreateDescriptorPool(nullptr, &f.frame.descriptorPool), PELLUCID_ERROR_INVALID_ARGUMENT);
+  reinterpret_cast<PFN_vkDestroyDescriptorPool>(device.function("vkDestroyDescriptorPool"))(
+      desc.device, f.frame.descriptorPool, nullptr);
+  pellucidDestroyContext(context);
 }
 
 // A plan of a valid frame and a frame that is not: recording refuses it before it reads what is not there.

@@ -238,6 +238,9 @@ typedef struct PellucidFrame {
                                Not in the debug views of light */
   uint32_t lightTableCount; /* 0..PELLUCID_MAX_LIGHT_TABLES; above 0 only with PellucidContextDesc::lightTables */
   const PellucidLightTable* lightTables; /* lightTableCount of them, which lights may share */
+  VkDescriptorPool descriptorPool; /* with PellucidContextDesc::descriptorPools: by pellucidCreateDescriptorPool. Recording resets
+                                      it, so each recording that the device has not finished needs one of its own, as of
+                                      constants slices. Else unused; default NULL */
 } PellucidFrame;
 
 /* ---- Plan ------------------------------------------------------------------------------------ */

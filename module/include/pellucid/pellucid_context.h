@@ -45,7 +45,7 @@ typedef struct PellucidContextDesc {
   uint32_t apiVersion;    /* the VkApplicationInfo::apiVersion in use, >= VK_API_VERSION_1_1 */
   VkInstance instance;    /* of the device */
   VkPhysicalDevice physicalDevice; /* of the device */
-  VkDevice device;        /* VK_KHR_push_descriptor enabled */
+  VkDevice device;        /* VK_KHR_push_descriptor enabled, or pushDescriptor of Vulkan 1.4, or else descriptorPools below */
   PFN_vkGetInstanceProcAddr getInstanceProcAddr; /* from which all other functions come */
   /* ---- fields that may be missing ---- */
   VkPipelineCache pipelineCache;          /* optional */
@@ -66,6 +66,9 @@ typedef struct PellucidContextDesc {
                                      (default): none has. A specialization constant */
   uint32_t deferPipelines;        /* 1: creation makes no pipelines, pellucidCreatePipelines makes those of a plan; 0 (default):
                                      creation makes all of `uses` */
+  uint32_t descriptorPools;       /* 1: each frame brings a pool that its descriptors come from, for devices that cannot push them;
+                                     0 (default): they are pushed */
+  uint32_t reserved;              /* 0 */
 } PellucidContextDesc;
 
 /* The defaults, written into a struct of that many bytes; pellucidInit* without it have the header's size. */
@@ -73,9 +76,13 @@ PELLUCID_API void pellucidInitContextDescSized(PellucidContextDesc* desc, size_t
 /* The defaults. */
 static inline void pellucidInitContextDesc(PellucidContextDesc* d) { pellucidInitContextDescSized(d, sizeof *d); }
 
-/* Builds the pipelines of desc.uses. The context is immutable but for pellucidCreatePipelines: any thread may use it. On
+/* Checks the device's limits and builds the pipelines of desc.uses. The context is immutable but for pellucidCreatePipelines: any thread may use it. On
  * failure *context is NULL and the message callback has the sentence. */
 PELLUCID_API PellucidResult pellucidCreateContext(const PellucidContextDesc* desc, PellucidContext** context);
+
+/* Makes a frame.descriptorPool, with room for any plan's recording. vkDestroyDescriptorPool with desc.allocator destroys it. On
+ * failure *pool is NULL and the message callback has the sentence. */
+PELLUCID_API PellucidResult pellucidCreateDescriptorPool(const PellucidContext* context, VkDescriptorPool* pool);
 
 /* The device must have finished with commands recorded through the context. NULL is allowed. */
 PELLUCID_API void pellucidDestroyContext(PellucidContext* context);

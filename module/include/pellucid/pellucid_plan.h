@@ -39,7 +39,7 @@ enum {
 
 /* One binding of a dispatch. */
 typedef struct PellucidBinding {
-  uint32_t binding;            /* of set 0, the push-descriptor set */
+  uint32_t binding;            /* of set 0 */
   VkDescriptorType type;       /* of the binding */
   uint32_t resource;           /* PellucidResource */
   uint32_t level;              /* mip or pyramid level; 0 for a plain image */

@@ -27,7 +27,7 @@ enum {
   PELLUCID_OK = 0,                      /* all is done */
   PELLUCID_ERROR_INVALID_ARGUMENT = -1, /* a field is wrong; the message names it */
   PELLUCID_ERROR_VERSION = -2,          /* structSize or headerVersion that this library cannot take */
-  PELLUCID_ERROR_MISSING_FEATURE = -3,  /* no Vulkan 1.1, push descriptors or 24 KiB of shared memory a group */
+  PELLUCID_ERROR_MISSING_FEATURE = -3,  /* the device lacks a function, feature or limit; the message names it */
   PELLUCID_ERROR_OUT_OF_MEMORY = -4,    /* of the host or the device */
   PELLUCID_ERROR_VULKAN = -5,        /* a Vulkan call failed; the message has the VkResult */
   PELLUCID_ERROR_CAPACITY = -6,      /* more dispatches or shadow images than a plan holds */
