@@ -1,5 +1,5 @@
-// Registers, shared memory, code and waves of a context's pipelines, as a driver's compiler reports them. AMD's driver of Mesa
-// compiles for cards that are not there (./run shader-stats).
+// Registers, shared memory, code and waves of a context's pipelines, as a driver's compiler reports them.
+// AMD's driver of Mesa compiles for cards that are not there (./run shader-stats).
 #include <vulkan/vulkan.h>
 
 #include <CLI/CLI.hpp>
@@ -53,12 +53,14 @@ public:
     uint32_t count = 1;
     const VkResult found = vkEnumeratePhysicalDevices(instance, &count, &physical);
     if (count == 0 || (found != VK_SUCCESS && found != VK_INCOMPLETE))
-      throw std::runtime_error("the driver has no device; VK_DRIVER_FILES names the driver, RADV_FORCE_FAMILY a card of RADV");
+      throw std::runtime_error(
+          "the driver has no device; VK_DRIVER_FILES names the driver, RADV_FORCE_FAMILY a card of RADV");
     VkPhysicalDeviceProperties properties;
     vkGetPhysicalDeviceProperties(physical, &properties);
     name = properties.deviceName;
     const float priority = 1;
-    const VkDeviceQueueCreateInfo queue{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO, nullptr, 0, 0, 1, &priority};
+    const VkDeviceQueueCreateInfo queue{
+        VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO, nullptr, 0, 0, 1, &priority};
     VkPhysicalDevicePipelineExecutablePropertiesFeaturesKHR executables{
         VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PIPELINE_EXECUTABLE_PROPERTIES_FEATURES_KHR, nullptr, VK_TRUE};
     const char* const extensions[] = {VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME,
@@ -86,11 +88,13 @@ public:
 std::vector<VkPipeline> made;
 
 VkResult VKAPI_CALL createPipelines(VkDevice device, VkPipelineCache cache, uint32_t count,
-                                    const VkComputePipelineCreateInfo* infos, const VkAllocationCallbacks* allocator,
-                                    VkPipeline* pipelines) {
+                                    const VkComputePipelineCreateInfo* infos,
+                                    const VkAllocationCallbacks* allocator, VkPipeline* pipelines) {
   std::vector<VkComputePipelineCreateInfo> captured(infos, infos + count);
-  for (VkComputePipelineCreateInfo& info : captured) info.flags |= VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR;
-  const VkResult result = vkCreateComputePipelines(device, cache, count, captured.data(), allocator, pipelines);
+  for (VkComputePipelineCreateInfo& info : captured)
+    info.flags |= VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR;
+  const VkResult result =
+      vkCreateComputePipelines(device, cache, count, captured.data(), allocator, pipelines);
   if (result == VK_SUCCESS) made.insert(made.end(), pipelines, pipelines + count);
   return result;
 }
@@ -102,7 +106,8 @@ PFN_vkVoidFunction VKAPI_CALL deviceFunction(VkDevice device, const char* name) 
 }
 
 PFN_vkVoidFunction VKAPI_CALL instanceFunction(VkInstance instance, const char* name) {
-  if (std::strcmp(name, "vkGetDeviceProcAddr") == 0) return reinterpret_cast<PFN_vkVoidFunction>(deviceFunction);
+  if (std::strcmp(name, "vkGetDeviceProcAddr") == 0)
+    return reinterpret_cast<PFN_vkVoidFunction>(deviceFunction);
   return vkGetInstanceProcAddr(instance, name);
 }
 
@@ -120,10 +125,12 @@ uint64_t valueOf(const VkPipelineExecutableStatisticKHR& s) {
 Json statisticsOf(const Compiler& compiler, VkPipeline pipeline) {
   const auto get = reinterpret_cast<PFN_vkGetPipelineExecutableStatisticsKHR>(
       vkGetDeviceProcAddr(compiler.handle, "vkGetPipelineExecutableStatisticsKHR"));
-  const VkPipelineExecutableInfoKHR info{VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_INFO_KHR, nullptr, pipeline, 0};
+  const VkPipelineExecutableInfoKHR info{VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_INFO_KHR, nullptr, pipeline,
+                                         0};
   uint32_t count = 0;
   check(get(compiler.handle, &info, &count, nullptr), "vkGetPipelineExecutableStatisticsKHR");
-  std::vector<VkPipelineExecutableStatisticKHR> all(count, {VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_STATISTIC_KHR});
+  std::vector<VkPipelineExecutableStatisticKHR> all(count,
+                                                    {VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_STATISTIC_KHR});
   check(get(compiler.handle, &info, &count, all.data()), "vkGetPipelineExecutableStatisticsKHR");
   Json row;
   for (const Column& column : kColumns) {
@@ -246,12 +253,14 @@ int run(const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app("Registers, code and waves of all pipelines, as a driver's compiler reports them", "pellucid_shader_stats");
+  CLI::App app("Registers, code and waves of all pipelines, as a driver's compiler reports them",
+               "pellucid_shader_stats");
   app.add_option("--family", options.families, "cards of RADV to compile for, one or more")
       ->default_val(std::vector<std::string>{"navi21", "navi10", "vega20", "polaris10"});
   app.add_option("--json", options.json, "file for the results");
-  auto* compare = app.add_option("--compare", options.compare,
-                                 "results that were kept: exit code 1 where a pipeline has fewer waves than there");
+  auto* compare =
+      app.add_option("--compare", options.compare,
+                     "results that were kept: exit code 1 where a pipeline has fewer waves than there");
   app.add_option("--from", options.table, "results to read in place of measuring");
   app.add_option("--update", options.update, "document whose table is written anew")->excludes(compare);
   CLI11_PARSE(app, argc, argv);

@@ -57,8 +57,8 @@ public:
   std::atomic<int> live = 0;      // Vulkan objects
   const char* missing = nullptr;  // a device function that does not exist
   VkPhysicalDeviceLimits limits = leastLimits();
-  bool writesWithoutFormat = true;      // shaderStorageImageWriteWithoutFormat
-  uint32_t mostPushed = 32;             // the least that Vulkan lets a device have
+  bool writesWithoutFormat = true;            // shaderStorageImageWriteWithoutFormat
+  uint32_t mostPushed = 32;                   // the least that Vulkan lets a device have
   VkFormat notStorage = VK_FORMAT_UNDEFINED;  // a format without storage images
 
   PellucidContextDesc desc() {
@@ -231,8 +231,9 @@ private:
       if (writes[i].pImageInfo) set.writes[i].pImageInfo = &(set.images[i] = *writes[i].pImageInfo);
     }
   }
-  static void VKAPI_PTR bindSets(VkCommandBuffer buffer, VkPipelineBindPoint, VkPipelineLayout, uint32_t first,
-                                 uint32_t count, const VkDescriptorSet* sets, uint32_t, const uint32_t*) {
+  static void VKAPI_PTR bindSets(VkCommandBuffer buffer, VkPipelineBindPoint, VkPipelineLayout,
+                                 uint32_t first, uint32_t count, const VkDescriptorSet* sets, uint32_t,
+                                 const uint32_t*) {
     NullCommands& c = of(buffer);
     c.require(first == 0 && count == 1, "another set than the first");
     c.require(c.sets.insert(sets[0]).second, "a set is bound for two dispatches");

@@ -163,7 +163,8 @@ void diffuseEdge(ivec2 firstTexel, ivec2 local) {
   writeResult(pixel, color, source.a, pass.value.w != 0u);
 }
 
-// Follows diffusePlanes, which prepares the texels. For all invocations, as they wait for each other.
+// Follows diffusePlanes, which prepares the texels. For all invocations, as they wait for each other: no invocation has written
+// edgeBands since the last barrier before, so that all of them loop alike.
 void diffuseEdges(ivec2 firstTexel, int invocation) {
   for (uint bands = edgeBands; bands != 0u; bands &= bands - 1u) {
     int band = findLSB(bands), full = int(edgeCounts[band] & 0xFFFFu), count = full + int(edgeCounts[band] >> 16);

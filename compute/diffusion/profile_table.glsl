@@ -11,6 +11,7 @@ float shareEntry(uint m, float lengthMm) {
 
 // The coarser levels' share of the energy that `level` and they have, at texels with this entry.
 vec3 coarserShare(uint m, uint level, float entry) {
+  // In the table, whatever a NaN converts to, here and below.
   uint i = min(uint(entry), uint(PELLUCID_SHARE_ENTRIES - 2));
   uint first = min(level - 2u, uint(PELLUCID_SHARE_COARSER)) * uint(PELLUCID_SHARE_ENTRIES) + i;
   return mix(kernels[m].share[first].rgb, kernels[m].share[first + 1u].rgb, entry - float(i));

@@ -15,7 +15,7 @@ float lightTableEntry(uint table, uint entry) {
 // at: 0..1, from the first entry to the last.
 float lightTableAt(uint table, float at) {
   float place = at * float(PELLUCID_LIGHT_ENTRIES - 1);
-  uint entry = min(uint(place), uint(PELLUCID_LIGHT_ENTRIES - 2));
+  uint entry = min(uint(place), uint(PELLUCID_LIGHT_ENTRIES - 2)); // in the table, whatever a NaN converts to
   return mix(lightTableEntry(table, entry), lightTableEntry(table, entry + 1u), place - float(entry));
 }
 

@@ -19,6 +19,7 @@ uint packGroup(uvec2 group, bool whole) {
 uvec2 unpackGroup(uint word) { return uvec2(word & PELLUCID_GROUP_COLUMN, word >> PELLUCID_GROUP_ROW_SHIFT); }
 bool isWhole(uint word) { return (word & PELLUCID_GROUP_WHOLE) != 0u; }
 
+// Words are read as far as the list's command counts them, so that they hold what list_groups.comp wrote.
 // Groups of entry points have a map, too, which has at most 64 x 64 of them.
 uint packEntryGroup(uvec3 group) { return group.x | group.y << 8 | group.z << PELLUCID_GROUP_MAP_SHIFT; }
 uvec3 unpackEntryGroup(uint word) { return uvec3(word & 0xFFu, word >> 8 & 0xFFu, word >> PELLUCID_GROUP_MAP_SHIFT); }

@@ -3,10 +3,11 @@
 
 const float kLargestHalf = 65504.0;
 
-// Finite and >= 0. mix() selects by comparison, because max() may return either operand for NaN. No function loops over
-// components: compilers keep dynamically indexed vectors in memory.
+// Finite and >= 0. Bits say what is above 0 and no NaN, because compilers may take for granted that floats are none. No
+// function loops over components: compilers keep dynamically indexed vectors in memory.
 vec3 sanitize(vec3 v) {
-  return mix(vec3(0.0), min(v, vec3(kLargestHalf)), greaterThan(v, vec3(0.0)));
+  const uint kInfinity = 0x7F800000u;
+  return mix(vec3(0.0), min(v, vec3(kLargestHalf)), lessThan(floatBitsToUint(v) - 1u, uvec3(kInfinity)));
 }
 
 // v rounded to the nearest half, ties up; v >= 0. Image stores may truncate (Vulkan leaves it open), which darkens by up

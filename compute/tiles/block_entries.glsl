@@ -54,7 +54,7 @@ void listEntryGroups(uint map, uint blockIndex, int row) {
   vec4 entries = entriesInReach(map, ivec2(block), nearest, farthest);
   ivec2 last = maps[map].place.zw - 1;
   if (any(isnan(entries))) entries = vec4(vec2(0.0), vec2(last));
-  // Far outside stays outside after the conversion.
+  // Far outside stays outside after the conversion. Below, groups are within the map whatever a NaN would convert to.
   ivec4 within = ivec4(floor(clamp(entries, vec4(-1.0), vec4(last + 1, last + 1))));
   if (any(greaterThan(within.xy, last)) || any(lessThan(within.zw, ivec2(0)))) return;
   ivec4 groups = ivec4(max(within.xy, ivec2(0)), min(within.zw, last)) / PELLUCID_ENTRY_POINTS_GROUP;

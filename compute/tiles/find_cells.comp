@@ -43,7 +43,7 @@ void main() {
     least = min(least, front);
     most = max(most, front);
   }
-  // Read first: most invocations have nothing to add.
+  // Read first: most invocations have nothing to add. An old value costs an atomic more and changes nothing.
   for (int i = 0; i < 2; ++i)
     if ((own[i] & ~cells[i]) != 0u) atomicOr(cells[i], own[i]);
   if (most > 0.0) {

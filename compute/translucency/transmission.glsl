@@ -1,6 +1,7 @@
 // Light through one surface point, for any shader stage. Include it after declaring, from whatever bindings
 // the shader has: FrameConstants frame, ShadowConstants shadows[], MaterialConstants materials[], and
-//   float shadowTexel(uint image, ivec2 texel); // of the image and layer in ShadowConstants::meta.x
+//   ShadowTexels shadowTexels(uint image, ivec2 texel, ivec2 first, ivec2 last); // of the image and layer in
+//   ShadowConstants::meta.x, as frame/shadow_images.glsl has it
 //   vec4 shadowQuad(uint image, ivec2 low, ivec2 high); // as frame/shadow_images.glsl has it
 //   float distanceOf(ivec2 pixel, uint material, bool back); // planar distance of the front or back depth of a pixel that has
 //   the material (index + 1); <= 0 of others

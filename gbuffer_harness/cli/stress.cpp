@@ -209,9 +209,10 @@ void addStressCommand(CLI::App& app) {
   command->add_option("--only", s.only, "one check by its name; docs/stress.md has them");
   command->add_flag("--validate", s.validate,
                     "with Vulkan's core and synchronization validation, whose messages are violations");
-  command->add_flag("--guarded", options->guarded,
-                    "constants in memory that ends at pages without access, and transients that hold 0xFF or what looks "
-                    "like indices: an access beyond the constants ends the command");
+  command->add_flag(
+      "--guarded", options->guarded,
+      "constants in memory that ends at pages without access, and transients that hold 0xFF or what looks "
+      "like indices: an access beyond the constants ends the command");
   command->add_option("-o,--output", options->folder, "folder for captures of frames that violate a check");
   command->add_option("--json", options->json, "file for the summary");
   command->add_option("--results", options->results,

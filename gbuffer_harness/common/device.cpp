@@ -396,8 +396,8 @@ void HostBuffer::import() {
       vkGetDeviceProcAddr(device_.handle(), "vkGetMemoryHostPointerPropertiesEXT"));
   VkMemoryHostPointerPropertiesEXT pointer{VK_STRUCTURE_TYPE_MEMORY_HOST_POINTER_PROPERTIES_EXT};
   check(getPointer(device_.handle(), kType, pages_->data(), &pointer), "vkGetMemoryHostPointerPropertiesEXT");
-  const VkImportMemoryHostPointerInfoEXT import{VK_STRUCTURE_TYPE_IMPORT_MEMORY_HOST_POINTER_INFO_EXT, nullptr,
-                                                kType, pages_->data()};
+  const VkImportMemoryHostPointerInfoEXT import{VK_STRUCTURE_TYPE_IMPORT_MEMORY_HOST_POINTER_INFO_EXT,
+                                                nullptr, kType, pages_->data()};
   VkMemoryAllocateInfo allocate{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, &import};
   allocate.allocationSize = pages_->size();
   allocate.memoryTypeIndex =

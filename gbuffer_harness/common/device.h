@@ -66,7 +66,7 @@ public:
   // Storage images need no format in shaders.
   bool writesWithoutFormat() const { return writesWithoutFormat_; }
 
-  bool pushes() const { return pushes_; }      // has VK_KHR_push_descriptor
+  bool pushes() const { return pushes_; }  // has VK_KHR_push_descriptor
   bool guarded() const { return guarded_; }
 
   // A set for commands of run(), which frees it at its end: for devices that do not push descriptors.
@@ -124,8 +124,8 @@ private:
 };
 
 // Host-visible, coherent, mapped memory. Data that shaders and draws read is device-local, and data that the
-// device writes for the host is cached, where there is such memory. On guarded devices buffers that shaders read
-// lie in pages of the host that end where the buffer does.
+// device writes for the host is cached, where there is such memory. On guarded devices buffers that shaders
+// read lie in pages of the host that end where the buffer does.
 class HostBuffer {
 public:
   HostBuffer(const Device& device, VkDeviceSize size, VkBufferUsageFlags usage);

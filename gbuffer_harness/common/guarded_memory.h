@@ -18,7 +18,8 @@ public:
   void* data() const { return data_; }
   std::size_t size() const { return size_; }
 
-  // Bytes without access on each side: an index of 16 bits into the largest struct of a constants slice stays in there.
+  // Bytes without access on each side: an index of 16 bits into the largest struct of a constants slice stays
+  // in there.
   static constexpr std::size_t kGuard = std::size_t{1} << 30;
 
 private:
@@ -27,8 +28,8 @@ private:
   std::size_t size_ = 0, reservedSize_ = 0, slot_ = 0;
 };
 
-// From now on, an access to a guard ends the process with this exit code after a line on stderr that says how far off
-// it was, and `text`: what ran, of at most 511 characters. Other faults stay what they were.
+// From now on, an access to a guard ends the process with this exit code after a line on stderr that says how
+// far off it was, and `text`: what ran, of at most 511 characters. Other faults stay what they were.
 inline constexpr int kGuardExitCode = 1;
 void reportGuardFaults(const char* text);
 

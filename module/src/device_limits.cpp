@@ -16,7 +16,8 @@ constexpr uint32_t kSharedBytes = 16384;
 
 // Descriptors of a type in the one set that every pass has; see descriptorType in context.cpp.
 constexpr uint32_t kUniformBuffers = 3, kStorageBuffers = 2, kStorageImages = 2;
-constexpr uint32_t kSampledImages = PELLUCID_BINDING_COUNT - kUniformBuffers - kStorageBuffers - kStorageImages;
+constexpr uint32_t kSampledImages =
+    PELLUCID_BINDING_COUNT - kUniformBuffers - kStorageBuffers - kStorageImages;
 
 struct Limit {
   const char* name;

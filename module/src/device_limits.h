@@ -6,6 +6,7 @@
 namespace pellucid {
 
 // Reports the first limit or feature that a context of this description lacks, by its name in Vulkan.
-void checkLimits(const PellucidContextDesc& desc, const VkPhysicalDeviceProperties& properties, Findings& out);
+void checkLimits(const PellucidContextDesc& desc, const VkPhysicalDeviceProperties& properties,
+                 Findings& out);
 
 }  // namespace pellucid

@@ -43,8 +43,8 @@ VkResult bind(const PellucidContext& c, VkCommandBuffer commandBuffer, const Pel
     c.vk.vkCmdBindDescriptorSets(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, c.pipelineLayout, 0, 1, &set,
                                  0, nullptr);
   } else {
-    c.vk.pushDescriptorSet(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, c.pipelineLayout, 0,
-                           d.bindingCount, writes);
+    c.vk.pushDescriptorSet(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, c.pipelineLayout, 0, d.bindingCount,
+                           writes);
   }
   return VK_SUCCESS;
 }

@@ -54,7 +54,8 @@ TEST_F(Cli, EveryOutputFormatReadsBack) {
   };
   replay("rgba32f");
   // Halves round to 5e-4; packed floats cut 6 bits off red and green and 5 off blue, which is up to 1/32.
-  const std::pair<const char*, const char*> formats[] = {{"rgba32f", "0"}, {"rgba16f", "1e-3"}, {"rg11b10f", "0.032"}};
+  const std::pair<const char*, const char*> formats[] = {
+      {"rgba32f", "0"}, {"rgba16f", "1e-3"}, {"rg11b10f", "0.032"}};
   for (const auto& [format, most] : formats) {
     replay(format);
     const Outcome outcome = run("compare " + path(std::string(format) + ".exr") + " " + path("rgba32f.exr") +

@@ -1,5 +1,5 @@
-// Another driver against the one that all other tests run on: every option at each quality, on captures of some
-// thousand pixels. `./run driver` names the other one; without a name there is nothing to compare.
+// Another driver against the one that all other tests run on: every option at each quality, on captures of
+// some thousand pixels. `./run driver` names the other one; without a name there is nothing to compare.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -18,8 +18,8 @@ constexpr const char* kVariable = "PELLUCID_OTHER_DEVICE";
 struct Option {
   const char* name;
   void (*change)(ReplaySettings& settings, Capture& capture);
-  // The largest difference of a value from llvmpipe's, over the larger of the two or 1e-3 of a white pixel, at
-  // all but one pixel in a thousand. Halves are apart by 1e-3, and a pass of the diffusion keeps them.
+  // The largest difference of a value from llvmpipe's, over the larger of the two or 1e-3 of a white pixel,
+  // at all but one pixel in a thousand. Halves are apart by 1e-3, and a pass of the diffusion keeps them.
   double tolerance = 3e-3;
 };
 
@@ -30,7 +30,8 @@ constexpr Option kOptions[] = {
      0.04},  // blue keeps 5 bits
     {"no lists", [](ReplaySettings& s, Capture&) { s.indirectDispatches = PELLUCID_INDIRECT_NONE; }},
     {"lists by light", [](ReplaySettings& s, Capture&) { s.indirectDispatches = PELLUCID_INDIRECT_LIGHT; }},
-    {"cells of the engine", [](ReplaySettings& s, Capture&) { s.indirectDispatches = PELLUCID_INDIRECT_CELLS; }},
+    {"cells of the engine",
+     [](ReplaySettings& s, Capture&) { s.indirectDispatches = PELLUCID_INDIRECT_CELLS; }},
     {"one thickness a pixel", [](ReplaySettings& s, Capture&) { s.translucency.gatherSamples = 0; }},
     {"cells of 2 pixels", [](ReplaySettings& s, Capture&) { s.translucency.gatherSpacing = 2; }},
     {"cells of 4 pixels", [](ReplaySettings& s, Capture&) { s.translucency.gatherSpacing = 4; }},
@@ -55,7 +56,8 @@ constexpr Option kOptions[] = {
     {"no albedo", [](ReplaySettings&, Capture& c) { c.albedo = {}; }},
     {"no back depth", [](ReplaySettings&, Capture& c) { c.backDepth.image = {}; }},
     {"no shadow map", [](ReplaySettings&, Capture& c) { c.lights.at(0).shadowMaps.clear(); }},
-    {"linear transmittance", [](ReplaySettings& s, Capture&) { s.transmittance = TransmittanceChoice::Linear; }},
+    {"linear transmittance",
+     [](ReplaySettings& s, Capture&) { s.transmittance = TransmittanceChoice::Linear; }},
     {"Gaussian transmittance",
      [](ReplaySettings& s, Capture&) { s.transmittance = TransmittanceChoice::Gaussians; }},
     {"inverse cosine",
@@ -113,8 +115,8 @@ TEST(Drivers, AgreeOnEveryOptionAndRepeatEachBit) {
     const std::vector<PellucidMaterial> materials = compileMaterials(whole);
     for (const Option& option : kOptions)
       for (const uint32_t quality : {0u, 1u, 2u}) {
-        SCOPED_TRACE(std::string(option.name) + (light ? ", spot light" : ", directional light") + ", quality " +
-                     std::to_string(quality));
+        SCOPED_TRACE(std::string(option.name) + (light ? ", spot light" : ", directional light") +
+                     ", quality " + std::to_string(quality));
         ReplaySettings settings;
         settings.quality = quality;
         Capture c = whole;

@@ -50,8 +50,8 @@ TEST(Cells, BlocksCoverTheRectFromAnEvenPixelOn) {
   EXPECT_EQ(f.cells().blocks[1], 1u);
 }
 
-// Images of any size that devices have keep their lists: groups of a dispatch stay within 65535 along an axis, and
-// the image of words has room for the lists of any rect.
+// Images of any size that devices have keep their lists: groups of a dispatch stay within 65535 along an
+// axis, and the image of words has room for the lists of any rect.
 TEST(Cells, LargeImagesKeepTheirLists) {
   const auto wordsOf = [](const Handed& f) {
     PellucidImageNeed needs[PELLUCID_MAX_TRANSIENTS + 1];
@@ -63,7 +63,8 @@ TEST(Cells, LargeImagesKeepTheirLists) {
   };
   const struct {
     uint32_t width, height, spacing, rows;  // rows: of tiles in a listed one
-  } sizes[] = {{4080, 4112, 0, 1}, {4096, 4096, 0, 2}, {7680, 4320, 0, 2}, {7680, 4320, 1, 2}, {16384, 4096, 0, 5}};
+  } sizes[] = {
+      {4080, 4112, 0, 1}, {4096, 4096, 0, 2}, {7680, 4320, 0, 2}, {7680, 4320, 1, 2}, {16384, 4096, 0, 5}};
   for (const auto& [width, height, spacing, rows] : sizes) {
     SCOPED_TRACE(std::to_string(width) + " x " + std::to_string(height));
     Handed f;
