@@ -53,6 +53,8 @@ struct Light {
   double innerConeAngle = 0, outerConeAngle = 0.785;
   // Factors as PellucidLightTable has them, by angle and by distance; empty: none.
   std::vector<double> angleTable, distanceTable;
+  // Largest difference of these from the factors that a file gave, which may be more of them.
+  double angleTableError = 0, distanceTableError = 0;
   // A receiver's is the first that contains it: six of a cube, or cascades. Up to
   // PELLUCID_MAX_LIGHT_SHADOW_MAPS; none: nothing shadows the light.
   std::vector<ShadowMap> shadowMaps;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <set>
 
+#include "common/bounds.h"
 #include "common/error.h"
 
 namespace pellucid::harness {
@@ -100,7 +101,7 @@ double Field::number() const {
 }
 
 double Field::number(double least, double most) const {
-  const double result = number();
+  const double result = fitted(number(), least, most);
   if (result < least) fail("must be at least " + json(least).dump() + ", is " + shown());
   if (result > most) fail("must be at most " + json(most).dump() + ", is " + shown());
   return result;
@@ -108,8 +109,13 @@ double Field::number(double least, double most) const {
 
 int Field::integer(int least, int most) const {
   const double result = number(least, most);
-  if (result != std::floor(result)) fail("must be a whole number, is " + shown());
+  if (result != number() || result != std::floor(result)) fail("must be a whole number, is " + shown());
   return static_cast<int>(result);
+}
+
+bool Field::boolean() const {
+  if (!value_->is_boolean()) fail("must be true or false, is " + shown());
+  return value_->get<bool>();
 }
 
 std::string Field::text() const {
@@ -136,8 +142,13 @@ std::size_t Field::choice(std::span<const std::string> choices) const {
 }
 
 std::vector<double> Field::numbers() const {
+  constexpr double kMost = std::numeric_limits<float>::max();
+  return numbers(-kMost, kMost);
+}
+
+std::vector<double> Field::numbers(double least, double most) const {
   std::vector<double> result;
-  for (const Field& item : items()) result.push_back(item.number());
+  for (const Field& item : items()) result.push_back(item.number(least, most));
   if (result.empty()) fail("must not be empty");
   return result;
 }

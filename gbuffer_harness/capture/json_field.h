@@ -44,23 +44,33 @@ public:
 
   // A number that a float can hold: finite, at most 3.4e38.
   double number() const;
-  double number(double least, double most) const;
+  double number(double least, double most) const;  // a value that lies a rounding outside becomes the bound
   int integer(int least, int most) const;
+  bool boolean() const;
   std::string text() const;  // not empty
   // Index of the string among `choices`.
   std::size_t choice(std::initializer_list<std::string_view> choices) const;
   std::size_t choice(std::span<const std::string> choices) const;
   std::vector<double> numbers() const;  // array of any length >= 1
+  std::vector<double> numbers(double least, double most) const;
   template <std::size_t N>
   std::array<double, N> numbers() const {
-    const std::vector<double> values = numbers();
+    return counted<N>(numbers());
+  }
+  template <std::size_t N>
+  std::array<double, N> numbers(double least, double most) const {
+    return counted<N>(numbers(least, most));
+  }
+
+private:
+  template <std::size_t N>
+  std::array<double, N> counted(const std::vector<double>& values) const {
     if (values.size() != N) failCount(N);
     std::array<double, N> result;
     for (std::size_t i = 0; i < N; ++i) result[i] = values[i];
     return result;
   }
 
-private:
   Field(const std::string& file, std::string path, const nlohmann::json& value)
       : file_(file), path_(std::move(path)), value_(&value) {}
   [[noreturn]] void failCount(std::size_t expected) const;

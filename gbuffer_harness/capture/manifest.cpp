@@ -4,13 +4,13 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
-#include <numbers>
 #include <sstream>
 #include <tuple>
 
 #include "capture/blender.h"
 #include "capture/exr.h"
 #include "capture/json_field.h"
+#include "capture/light_bounds.h"
 #include "capture/light_table.h"
 #include "capture/manifest_material.h"
 #include "capture/manifest_matrix.h"
@@ -171,54 +171,45 @@ std::vector<Field> shadowMapsOf(const Field& light) {
 Light readLight(const Field& field) {
   field.allowKeys({"type", "position", "direction", "color", "intensity", "range", "radius", "innerConeAngle",
                    "outerConeAngle", "angleTable", "distanceTable", "shadowMap", "shadowMaps"});
-  constexpr double kMost = 1e30;  // its square times a scene's extent still fits a float64
   Light light;
   constexpr PellucidLightType kTypes[] = {PELLUCID_LIGHT_DIRECTIONAL, PELLUCID_LIGHT_POINT,
                                           PELLUCID_LIGHT_SPOT};
   light.type = kTypes[field["type"].choice({"directional", "point", "spot"})];
   if (field.has("position") || light.type != PELLUCID_LIGHT_DIRECTIONAL)
     light.position = field["position"].numbers<3>();
-  if (field.has("direction") || field.has("angleTable") || light.type != PELLUCID_LIGHT_POINT) {
-    const Field direction = field["direction"];
-    light.direction = direction.numbers<3>();
-    if (!(std::hypot(light.direction[0], light.direction[1], light.direction[2]) > 0))
-      direction.fail("must have a length above 0, is " + direction.shown());
-  }
-  if (const auto color = field.find("color")) {
-    light.color = color->numbers<3>();
-    for (const double component : light.color)
-      if (component < 0) color->fail("must not be negative, is " + color->shown());
-  }
-  if (const auto intensity = field.find("intensity")) light.intensity = intensity->number(0, kMost);
-  if (const auto range = field.find("range")) light.range = range->number(0, kMost);
-  if (const auto table = field.find("angleTable")) light.angleTable = readLightTable(*table, light.type);
-  if (const auto table = field.find("distanceTable")) {
-    light.distanceTable = readLightTable(*table, light.type);
+  if (field.has("direction") || field.has("angleTable") || light.type != PELLUCID_LIGHT_POINT)
+    light.direction = field["direction"].numbers<3>();
+  if (const auto color = field.find("color")) light.color = color->numbers<3>();
+  const auto number = [&](const char* key, double& value) {
+    if (const auto given = field.find(key)) value = given->number();
+  };
+  number("intensity", light.intensity);
+  number("range", light.range);
+  number("radius", light.radius);
+  number("innerConeAngle", light.innerConeAngle);
+  number("outerConeAngle", light.outerConeAngle);
+  if (const auto table = field.find("angleTable"))
+    light.angleTable = readLightTable(*table, light.type, light.angleTableError);
+  if (const auto table = field.find("distanceTable"))
+    light.distanceTable = readLightTable(*table, light.type, light.distanceTableError);
+  fitLight(light, [&](const char* key, const std::string& sentence) {
+    throw InputError(field.file(), field.path() + "." + key, sentence);
+  });
+  if (const auto table = field.find("distanceTable"))
     if (!(light.range > 0)) table->fail("needs a range above 0, over which its factors lie");
-  }
-  if (const auto radius = field.find("radius")) {
-    light.radius = radius->number(0, kMost);
-    if (light.radius > 0 && light.type != PELLUCID_LIGHT_POINT)
-      radius->fail("only a point light has one, is " + radius->shown());
-  }
-  if (const auto inner = field.find("innerConeAngle")) light.innerConeAngle = inner->number();
-  if (const auto outer = field.find("outerConeAngle")) light.outerConeAngle = outer->number();
-  if (light.type == PELLUCID_LIGHT_SPOT) {
-    const auto fail = [&](const char* key, const std::string& sentence, double value) {
-      std::ostringstream number;
-      number << value;
-      throw InputError(field.file(), field.path() + "." + key, sentence + ", is " + number.str());
-    };
-    if (!(light.outerConeAngle > 0 && light.outerConeAngle <= std::numbers::pi / 2))
-      fail("outerConeAngle", "must be above 0 and at most pi/2 radians", light.outerConeAngle);
-    if (!(light.innerConeAngle >= 0 && light.innerConeAngle < light.outerConeAngle))
-      fail("innerConeAngle", "must be at least 0 and less than outerConeAngle", light.innerConeAngle);
-  }
   for (const Field& map : shadowMapsOf(field)) light.shadowMaps.push_back(readShadowMap(map));
   return light;
 }
 
 namespace {
+
+// The color that a pass of light was divided by.
+std::optional<BufferSource> readTimes(const Field& light, const BufferReader& read) {
+  const auto times = light.find("times");
+  if (!times) return std::nullopt;
+  times->allowKeys({"file", "part", "channels", "scale"});
+  return read(*times, 3);
+}
 
 void readBuffers(const Field& buffers, const BufferReader& read, Manifest& manifest) {
   buffers.allowKeys({"frontDepth", "backDepth", "irradiance", "normal", "albedo", "material"});
@@ -232,8 +223,15 @@ void readBuffers(const Field& buffers, const BufferReader& read, Manifest& manif
   if (const auto field = buffers.find("backDepth"))
     manifest.backDepth = depth(*field, manifest.capture.backDepth);
 
-  buffers["irradiance"].allowKeys({"file", "part", "channels", "constant", "scale"});
-  manifest.irradiance = read(buffers["irradiance"], 3);
+  const Field irradiance = buffers["irradiance"];
+  irradiance.allowKeys({"file", "part", "channels", "constant", "scale", "times", "includesAlbedo"});
+  manifest.irradiance = read(irradiance, 3);
+  manifest.irradianceTimes = readTimes(irradiance, read);
+  if (const auto includes = irradiance.find("includesAlbedo")) {
+    manifest.irradianceIncludesAlbedo = includes->boolean();
+    if (manifest.irradianceIncludesAlbedo && !buffers.has("albedo"))
+      includes->fail("needs the buffer \"albedo\", by which the irradiance is divided");
+  }
   if (const auto field = buffers.find("albedo")) {
     field->allowKeys({"file", "part", "channels", "constant", "scale"});
     manifest.albedo = read(*field, 3);
@@ -311,8 +309,7 @@ void parse(const Field& root, const BufferReader& read, Manifest& manifest) {
       {"pellucid", "metersPerUnit", "camera", "buffers", "lights", "environment", "materials", "truth"});
   Capture& capture = manifest.capture;
   if (const auto meters = root.find("metersPerUnit")) {
-    capture.metersPerUnit = meters->number();
-    if (!(capture.metersPerUnit > 0)) meters->fail("must be positive, is " + meters->shown());
+    capture.metersPerUnit = meters->number(1e-9, 1e9);  // of the module
   }
   const Field camera = root["camera"];
   camera.allowKeys({"clipFromView", "viewFromWorld"});
@@ -337,9 +334,10 @@ void parse(const Field& root, const BufferReader& read, Manifest& manifest) {
   }
   if (const auto environment = root.find("environment")) capture.environment = readHarmonics(*environment);
   if (const auto truth = root.find("truth")) {
-    truth->allowKeys(
-        {"file", "part", "channels", "constant", "scale", "standardError", "samples", "seed", "scene"});
+    truth->allowKeys({"file", "part", "channels", "constant", "scale", "times", "standardError", "samples",
+                      "seed", "scene"});
     manifest.truth = read(*truth, 3);
+    manifest.truthTimes = readTimes(*truth, read);
     manifest.capture.truth = readTruth(*truth);
     if (const auto error = truth->find("standardError")) {
       error->allowKeys({"file", "part", "channels", "constant"});

@@ -50,9 +50,11 @@ struct Manifest {
 
   BufferSource frontDepth, irradiance, material;
   std::optional<BufferSource> backDepth, normal, albedo, truth, truthStandardError;
-  std::vector<std::vector<ShadowSources>> shadowMaps;  // per light, as Light::shadowMaps
+  std::optional<BufferSource> irradianceTimes, truthTimes;  // by which reading multiplies the other
+  std::vector<std::vector<ShadowSources>> shadowMaps;       // per light, as Light::shadowMaps
   MaterialMap materialMap;
-  bool normalIsUnorm = false;  // 0 .. 1 for -1 .. 1
+  bool normalIsUnorm = false;             // 0 .. 1 for -1 .. 1
+  bool irradianceIncludesAlbedo = false;  // by which reading divides it
 };
 
 // Who made a file that is no capture of its own.

@@ -4,10 +4,15 @@
 #include <array>
 #include <cmath>
 #include <initializer_list>
+#include <limits>
 #include <string>
+
+#include "common/bounds.h"
 
 namespace pellucid::harness {
 namespace {
+
+constexpr double kMost = std::numeric_limits<float>::max();
 
 MaterialSource readCoefficients(const Field& field) {
   field.allowKeys({"scattering", "absorption", "g", "ior", "unit"});
@@ -18,11 +23,8 @@ MaterialSource readCoefficients(const Field& field) {
     perMillimeter = kScales[unit->choice({"1/mm", "1/cm", "1/m"})];
   }
   const auto coefficients = [&](const char* key) {
-    auto values = field[key].numbers<3>();
-    for (double& value : values) {
-      if (value < 0) field[key].fail("must not be negative, is " + field[key].shown());
-      value *= perMillimeter;
-    }
+    auto values = field[key].numbers<3>(0, kMost);
+    for (double& value : values) value *= perMillimeter;
     return values;
   };
   material.scattering = coefficients("scattering");
@@ -59,7 +61,7 @@ MaterialSource readBurley(const Field& field) {
       }
     }
     for (const auto& [a1, k1, a2, k2] : exponentials)
-      if (a1 + a2 < 0 || a1 + a2 > 1)
+      if (const double sum = fitted(a1 + a2, 0, 1); sum < 0 || sum > 1)
         transmittance->fail("T(0) = a1 + a2 must be from 0 to 1, is " + std::to_string(a1 + a2));
     material.transmittance = exponentials;
   }
@@ -81,11 +83,8 @@ MaterialSource readGaussians(const Field& field) {
   const Field weights = gaussians["weight"];
   std::array<double, 3> sum = {0, 0, 0};
   for (const Field& weight : weights.items()) {
-    material.weight.push_back(weight.numbers<3>());
-    for (std::size_t channel = 0; channel < 3; ++channel) {
-      if (material.weight.back()[channel] < 0) weight.fail("must not be negative, is " + weight.shown());
-      sum[channel] += material.weight.back()[channel];
-    }
+    material.weight.push_back(weight.numbers<3>(0, kMost));
+    for (std::size_t channel = 0; channel < 3; ++channel) sum[channel] += material.weight.back()[channel];
   }
   if (material.weight.size() != material.variance.size())
     weights.fail("needs one RGB triple per variance (" + std::to_string(material.variance.size()) +
@@ -111,11 +110,7 @@ MaterialSource readOpenPbr(const Field& field) {
     constexpr double kScales[] = {1, 10, 1000};
     millimeters = kScales[unit->choice({"mm", "cm", "m"})];
   }
-  if (const auto color = field.find(kColor)) {
-    material.color = color->numbers<3>();
-    for (const double value : material.color)
-      if (!(value >= 0 && value <= 1)) color->fail("must be within 0 and 1, is " + color->shown());
-  }
+  if (const auto color = field.find(kColor)) material.color = color->numbers<3>(0, 1);
   if (const auto radius = field.find(kRadius)) material.radius = radius->number();
   if (!(material.radius > 0)) field[kRadius].fail("must be above 0, is " + field[kRadius].shown());
   material.radius *= millimeters;
@@ -148,17 +143,14 @@ MaterialSource readThinWall(const Field& field) {
   const Field wall = field["thinWalled"];
   wall.allowKeys({"reflectance", "transmittance", "distance"});
   ThinWallMaterial material;
-  const auto parts = [&](const char* key) {
-    const auto values = wall[key].numbers<3>();
-    for (const double value : values)
-      if (!(value >= 0 && value <= 1)) wall[key].fail("must be from 0 to 1, is " + wall[key].shown());
-    return values;
-  };
-  material.reflectance = parts("reflectance");
-  material.transmittance = parts("transmittance");
-  for (std::size_t channel = 0; channel < 3; ++channel)
-    if (const double sum = material.reflectance[channel] + material.transmittance[channel]; sum > 1 + 1e-9)
+  material.reflectance = wall["reflectance"].numbers<3>(0, 1);
+  material.transmittance = wall["transmittance"].numbers<3>(0, 1);
+  for (std::size_t channel = 0; channel < 3; ++channel) {
+    const double sum = material.reflectance[channel] + material.transmittance[channel];
+    if (fitted(sum, 0, 1) > 1)
       wall["transmittance"].fail("and reflectance must together be at most 1, are " + std::to_string(sum));
+    if (sum > 1) material.transmittance[channel] = 1 - material.reflectance[channel];
+  }
   if (const auto distance = wall.find("distance")) material.distance = readDistance(*distance);
   return material;
 }

@@ -172,9 +172,37 @@ std::vector<std::uint8_t> materialIndices(const Manifest& manifest, const Buffer
   return indices;
 }
 
+bool holdsSurface(const DepthImage& depth, std::size_t pixel) {
+  const float value = depth.image.data[pixel];
+  return value > 0 && value < (depth.encoding == PELLUCID_DEPTH_DEVICE ? 1 : kLeastNoDepth);
+}
+
+void multiply(Image& image, const Image& times) {
+  for (std::size_t i = 0; i < times.data.size(); ++i) image.data[i] *= times.data[i];
+}
+
+// Of a black surface no light is known. Without a material none is needed.
+void divideByAlbedo(const Manifest& manifest, Capture& capture) {
+  for (std::size_t i = 0; i < capture.irradiance.data.size(); ++i) {
+    float& light = capture.irradiance.data[i];
+    const float albedo = capture.albedo.data[i];
+    const std::size_t pixel = i / 3, width = static_cast<std::size_t>(capture.width);
+    if (albedo > 0) {
+      light /= albedo;
+    } else if (capture.material[pixel] == 0 || !holdsSurface(capture.frontDepth, pixel)) {
+      light = 0;
+    } else {
+      std::ostringstream sentence;
+      sentence << "pixel (" << pixel % width << ", " << pixel / width << ") holds " << light << " in "
+               << "RGB"[i % 3] << ", which its albedo of " << albedo << " cannot divide";
+      throw InputError(manifest.path.string(), manifest.irradiance.field + ".includesAlbedo", sentence.str());
+    }
+  }
+}
+
 Capture readImages(const Manifest& manifest) {
   Capture capture = manifest.capture;
-  Image material;
+  Image material, irradianceTimes, truthTimes;
   Loader loader(manifest);
   loader.wantDepth(manifest.frontDepth, capture.frontDepth, true);
   if (manifest.backDepth) loader.wantDepth(*manifest.backDepth, capture.backDepth, true);
@@ -185,6 +213,8 @@ Capture readImages(const Manifest& manifest) {
   if (manifest.truth) loader.want(*manifest.truth, capture.truth->image, 3, 0, true);
   if (manifest.truthStandardError)
     loader.want(*manifest.truthStandardError, capture.truth->standardError, 3, 0, true);
+  if (manifest.irradianceTimes) loader.want(*manifest.irradianceTimes, irradianceTimes, 3, 0, true);
+  if (manifest.truthTimes) loader.want(*manifest.truthTimes, truthTimes, 3, 0, true);
   std::deque<Image> casters;
   for (std::size_t i = 0; i < capture.lights.size(); ++i)
     for (std::size_t k = 0; k < capture.lights[i].shadowMaps.size(); ++k) {
@@ -196,6 +226,9 @@ Capture readImages(const Manifest& manifest) {
         loader.wantBeside(depth, *sources.casterMaterial, casters.emplace_back(), kOutside, false);
     }
   loader.load(capture.width, capture.height);
+
+  multiply(capture.irradiance, irradianceTimes);
+  if (capture.truth) multiply(capture.truth->image, truthTimes);
 
   auto tile = casters.begin();
   for (std::size_t i = 0; i < capture.lights.size(); ++i)
@@ -215,6 +248,7 @@ Capture readImages(const Manifest& manifest) {
       if (const ShadowSources& sources = manifest.shadowMaps[i][k]; sources.casterMaterial)
         capture.lights[i].shadowMaps[k].casterMaterial =
             materialIndices(manifest, *sources.casterMaterial, sources.casterMaterialMap, *caster++);
+  if (manifest.irradianceIncludesAlbedo) divideByAlbedo(manifest, capture);
   if (manifest.normalIsUnorm)
     for (float& value : capture.normal.data) value = 2 * value - 1;
   return capture;

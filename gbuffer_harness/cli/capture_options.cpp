@@ -345,7 +345,8 @@ std::optional<Environment> environment(const CaptureOptions& options) {
   return Environment{color(parts[1]), color(parts[2])};
 }
 
-CaptureModel captureModel(const CaptureOptions& options, const std::vector<double>& turns) {
+CaptureModel captureModel(const CaptureOptions& options, const std::vector<double>& turns,
+                          const std::vector<std::string>& lightsOfNone) {
   CaptureModel result;
   setCommon(options, result.raster);
   result.raster.backFace = options.backFace;
@@ -380,8 +381,10 @@ CaptureModel captureModel(const CaptureOptions& options, const std::vector<doubl
         std::clamp(std::round(result.raster.height * result.camera.aspect), 1.0, double(kLargestSide)));
   std::vector<std::string> lights = options.lights;
   if (lights.empty() && result.model.lights.empty()) {
-    lights = {kBackLight};
-    result.warnings.push_back("the file has no lights: --light back is added");
+    lights = lightsOfNone;
+    std::string names;
+    for (const std::string& light : lights) names += " --light " + light;
+    result.warnings.push_back("the file has no lights; added:" + names);
   }
   if (!lights.empty()) result.model.lights.clear();
   for (const std::string& light : lights)

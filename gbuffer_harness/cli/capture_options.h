@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/light_option.h"
 #include "gltf/gltf.h"
 #include "raster/raster.h"
 #include "scene/environment.h"
@@ -86,7 +87,8 @@ inline constexpr const char* kEnvironmentSyntax = "uniform:R,G,B or gradient:R,G
 std::optional<Environment> environment(const CaptureOptions& options);
 
 // Reads the file. `turns` (radians): of the turntable's cameras, all of which the auto camera fits. Throws
-// UsageError and InputError.
-CaptureModel captureModel(const CaptureOptions& options, const std::vector<double>& turns = {0});
+// UsageError and InputError. lightsOfNone: kLightSyntax, of a file without lights.
+CaptureModel captureModel(const CaptureOptions& options, const std::vector<double>& turns = {0},
+                          const std::vector<std::string>& lightsOfNone = {kBackLight});
 
 }  // namespace pellucid::harness

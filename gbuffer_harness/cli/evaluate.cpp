@@ -56,6 +56,12 @@ std::vector<Model> qualities() {
   return all;
 }
 
+Image replayed(Replayer& replayer, const Capture& capture, const std::vector<PellucidMaterial>& materials,
+               ReplaySettings settings) {
+  settings.preExposure = 0;  // as `pellucid replay` has it
+  return rgb(replayer.run(capture, materials, settings).output);
+}
+
 // What the samples converge to, over brute-force diffusion.
 Image allTexels(const Capture& capture, const std::vector<PellucidMaterial>& materials) {
   reference::Settings settings;
@@ -70,7 +76,7 @@ void writePicture(const std::string& path, const Capture& capture,
   std::vector<Image> images;
   for (const ReplaySettings& settings :
        {thesisSettings(), ReplaySettings(), gather(PELLUCID_GATHER_BY_QUALITY)})
-    images.push_back(rgb(replayer.run(capture, materials, settings).output));
+    images.push_back(replayed(replayer, capture, materials, settings));
   images.push_back(capture.truth->image);
   std::vector<const Image*> pointers;
   for (Image& image : images) {
@@ -95,7 +101,7 @@ std::vector<Series> samplesAgainstError(const std::string& name, const Capture& 
     lines[c].name = name + std::string(" ") + "RGB"[c];
   }
   for (const std::uint32_t samples : {4u, 8u, 16u, 32u, 64u}) {
-    const Image image = rgb(replayer.run(capture, materials, gather(samples)).output);
+    const Image image = replayed(replayer, capture, materials, gather(samples));
     const Comparison comparison =
         compareImages(image, capture.truth->image, mask, options.boxes.side, options.boxes.coverage);
     for (std::size_t c = 0; c < 3; ++c) {
@@ -122,7 +128,7 @@ void run(const Options& options) {
       evaluations.push_back(evaluate(name, model, capture, image, options.boxes, options.exposure));
     };
     for (const Model& model : options.rows == "models" ? models() : qualities())
-      add(model.name, rgb(replayer.run(capture, materials, model.settings).output));
+      add(model.name, replayed(replayer, capture, materials, model.settings));
     if (options.reference) add("float64: all texels, exact diffusion", allTexels(capture, materials));
     if (!options.picture.empty() && &path == &options.captures.front())
       writePicture(options.picture, capture, materials, replayer);

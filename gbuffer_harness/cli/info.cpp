@@ -11,10 +11,12 @@
 #include <sstream>
 
 #include "capture/exr.h"
+#include "capture/light_table.h"
 #include "capture/material.h"
 #include "capture/read.h"
 #include "cli/commands.h"
 #include "cli/preset.h"
+#include "cli/thin_bodies.h"
 #include "reference/camera.h"
 #include "replay/frame.h"
 
@@ -275,6 +277,8 @@ Json describe(const std::filesystem::path& path, ManifestPreset preset) {
   std::vector<std::string> warnings;
   checkConventions(capture, materials, warnings);
   checkPixels(capture, camera, warnings);
+  for (auto& sentences : {coarseTables(capture), thinBodies(capture, materials)})
+    warnings.insert(warnings.end(), sentences.begin(), sentences.end());
   json["warnings"] = warnings;
   return json;
 }

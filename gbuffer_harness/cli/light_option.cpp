@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "capture/light_bounds.h"
 #include "cli/numbers.h"
 #include "raster/framing.h"
 
@@ -21,16 +22,18 @@ double parseUnit(const std::string& text) {
   if (text == "cm") return 0.01;
   if (text == "m") return 1;
   const double meters = parseNumber<double>("--unit", text);
-  if (!(meters > 0 && meters < 1e9)) throw UsageError("--unit: \"" + text + "\" is not a length in meters");
+  if (!(meters >= 1e-9 && meters <= 1e9))
+    throw UsageError("--unit: \"" + text + "\" is not a length from 1e-9 to 1e9 meters");
   return meters;
 }
 
 Light parseLight(const std::string& text, const Model& model, const ModelCamera& camera) {
   Light light;
-  if (text == kBackLight) {
+  if (text == kBackLight || text == kFrontLight) {
     // Columns of viewFromWorld's transpose are the view's axes in the world; +z is towards the camera.
     const Matrix& m = camera.viewFromWorld;
-    for (std::size_t i = 0; i < 3; ++i) light.direction[i] = m[4 * i + 2] - 0.4 * m[4 * i + 1];
+    const double sign = text == kBackLight ? 1 : -1;
+    for (std::size_t i = 0; i < 3; ++i) light.direction[i] = sign * m[4 * i + 2] - 0.4 * m[4 * i + 1];
     return light;
   }
   std::vector<std::string> parts = split(text, ':');
@@ -48,7 +51,6 @@ Light parseLight(const std::string& text, const Model& model, const ModelCamera&
   for (std::size_t i = 0; i < 3; ++i) where[i] = parseNumber<double>("--light", numbers[i]);
   if (parts[0] == "directional") {
     light.direction = where;
-    if (distance(where, {0, 0, 0}) == 0) throw UsageError("--light: \"" + text + "\" has no direction");
   } else {
     for (std::size_t i = 0; i < 3; ++i) where[i] -= model.origin[i];
     const Bounds bounds = boundsOf(model);
@@ -69,8 +71,9 @@ Light parseLight(const std::string& text, const Model& model, const ModelCamera&
     }
   }
   if (parts.size() == 3) light.intensity = parseNumber<double>("--light", parts[2]);
-  if (!(light.intensity >= 0 && light.intensity < 1e30))
-    throw UsageError("--light: \"" + text + "\": the intensity is not >= 0");
+  fitLight(light, [&](const char* key, const std::string& sentence) {
+    throw UsageError("--light: \"" + text + "\": " + key + " " + sentence);
+  });
   return light;
 }
 

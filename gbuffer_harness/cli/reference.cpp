@@ -1,5 +1,6 @@
 // `pellucid reference`: the float64 ground truth of a capture, to EXR.
 #include "reference/reference.h"
+#include "replay/exposure.h"
 
 #include <CLI/CLI.hpp>
 #include <chrono>
@@ -54,7 +55,8 @@ void runReference(const Options& options) {
   const std::vector<PellucidMaterial> compiled = compileMaterials(capture);
   resolveGather(replay, capture, compiled);
   const std::vector<PellucidMaterial> materials = withTransmittance(compiled, replay.transmittance);
-  const reference::Settings settings = toSettings(options, replay);
+  reference::Settings settings = toSettings(options, replay);
+  settings.brightest /= static_cast<double>(preExposureFor(capture));  // as `pellucid replay` has it
   const auto start = std::chrono::steady_clock::now();
   const reference::Result result = reference::compute(capture, materials, settings);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;

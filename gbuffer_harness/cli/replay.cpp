@@ -9,9 +9,11 @@
 
 #include "capture/exr.h"
 #include "capture/layers.h"
+#include "capture/light_table.h"
 #include "capture/manifest.h"
 #include "capture/material.h"
 #include "capture/read.h"
+#include "cli/capture_options.h"
 #include "cli/commands.h"
 #include "cli/frames.h"
 #include "cli/nearest_distance.h"
@@ -20,12 +22,14 @@
 #include "cli/preset.h"
 #include "cli/settings.h"
 #include "cli/statistics.h"
+#include "cli/thin_bodies.h"
 #include "cli/tone_map_option.h"
 #include "common/error.h"
 #include "common/parallel.h"
 #include "common/png.h"
 #include "common/progress.h"
 #include "common/whole_file.h"
+#include "replay/exposure.h"
 #include "replay/replay.h"
 #include "replay/tile_map.h"
 
@@ -139,6 +143,8 @@ void writeFrame(const Options& options, const std::filesystem::path& output, con
 void replayOne(const Options& options, const ReplaySettings& settings) {
   const Capture capture = readCapture(options.input, options.preset);
   const std::vector<PellucidMaterial> materials = compileMaterials(capture);
+  warn(coarseTables(capture));
+  warn(thinBodies(capture, materials));
   requireNearestDistance(capture, materials, settings);
   Device device({options.device, false});
   Replayer replayer(device);
@@ -146,6 +152,11 @@ void replayOne(const Options& options, const ReplaySettings& settings) {
   const Replayed frame = runFrame(options, replayer, capture, materials, settings, repeat);
   const ReplayResult& result = frame.result;
   print(device, result, repeat);
+  if (result.preExposure != 1)
+    std::printf(
+        "preExposure %g: the largest light is %g, and halves hold at most 65504; the result is free of the "
+        "factor\n",
+        static_cast<double>(result.preExposure), largestLight(capture));
   if (options.views) {
     const ViewTimes times = replayer.timeViews(capture, materials, settings, *options.views, repeat);
     std::printf("%u views: %.1f us in one recording, %.1f us in one each\n", *options.views, times.together,

@@ -25,6 +25,7 @@ void SceneHash::add(const Model& model) {
     for (const float x : vertex.uv) value(x);
     for (const float x : vertex.color) value(x);
     value(vertex.mark);
+    if (vertex.alpha != 1) value(vertex.alpha);
   }
   for (const std::uint32_t index : model.indices) value(index);
   for (const Part& part : model.parts) {

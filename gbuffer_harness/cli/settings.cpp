@@ -296,6 +296,7 @@ ReplaySettings SettingsOptions::parse() const {
     settings = thesisSettings();
   else if (mode != "physical")
     throw UsageError("--mode: \"" + mode + "\" is not one of physical, thesis");
+  settings.preExposure = 0;  // captures of physical units are brighter than halves hold
   Names<PellucidDebugView> views = kDebugViews;
   if (tiles) views["tiles"] = PELLUCID_DEBUG_NONE;
   if (!debug.empty()) settings.debugView = lookUp(views, "--debug", debug);

@@ -107,7 +107,8 @@ std::function<std::unique_ptr<Source>(Device&)> opener(const CLI::App& command, 
       return sceneSource(parameters, materials);
     };
   return [scene](Device& device) {
-    CaptureModel model = captureModel(scene);
+    // What comes through beside what is lit.
+    CaptureModel model = captureModel(scene, {0}, {kBackLight, kFrontLight});
     say(model);
     return modelSource(device, std::move(model.model), model.camera, model.raster);
   };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <glm/glm.hpp>
 #include <limits>
 #include <map>
@@ -10,6 +11,8 @@
 #include <optional>
 #include <utility>
 
+#include "capture/light_bounds.h"
+#include "capture/material.h"
 #include "common/error.h"
 #include "gltf/document.h"
 #include "gltf/material.h"
@@ -61,6 +64,7 @@ private:
   void addCamera(std::size_t node, const glm::dmat4& world);
   void addLight(std::size_t node, const glm::dmat4& world);
   Drawn& read(int material);
+  std::uint8_t indexOf(const MaterialSource& medium, const std::string& name);
   std::uint32_t surfaceOf(Drawn& drawn, bool hasVertexColors);
   int textureOf(const std::optional<TextureUse>& use, bool isNormalMap);
   void checkPresetNames();
@@ -73,6 +77,7 @@ private:
   std::vector<glm::dvec3> positions_;                     // of scene_.model.vertices
   std::uint32_t furtherObjects_ = 0;
   std::map<int, Drawn> drawn_;                    // by glTF material
+  std::vector<PellucidMaterial> compiled_;        // of scene_.model.materials
   std::map<std::pair<int, bool>, int> textures_;  // by glTF texture and whether it is a normal map
 };
 
@@ -106,6 +111,17 @@ int Loader::textureOf(const std::optional<TextureUse>& use, bool isNormalMap) {
   return entry->second;
 }
 
+// Parts of one medium diffuse into each other, whatever their materials' names are: they share a number.
+std::uint8_t Loader::indexOf(const MaterialSource& medium, const std::string& name) {
+  const PellucidMaterial compiled = compileMaterial(medium, document_.file + ": material \"" + name + "\"");
+  for (std::size_t i = 0; i < compiled_.size(); ++i)
+    if (std::memcmp(&compiled_[i], &compiled, sizeof compiled) == 0) return static_cast<std::uint8_t>(i + 1);
+  if (compiled_.size() == kMaxMaterials) document_.fail("materials", "more than 255 of them are translucent");
+  compiled_.push_back(compiled);
+  scene_.model.materials.push_back(medium);
+  return static_cast<std::uint8_t>(compiled_.size());
+}
+
 Drawn& Loader::read(int material) {
   if (const auto known = drawn_.find(material); known != drawn_.end()) return known->second;
   Model& model = scene_.model;
@@ -116,12 +132,7 @@ Drawn& Loader::read(int material) {
     read.surface.lobeMap = static_cast<int>(model.textures.size());
     model.textures.push_back(std::move(read.lobeMap->texture));
   }
-  if (read.medium) {
-    if (model.materials.size() == kMaxMaterials)
-      document_.fail("materials", "more than 255 of them are translucent");
-    model.materials.push_back(*read.medium);
-    read.surface.material = static_cast<std::uint8_t>(model.materials.size());
-  }
+  if (read.medium) read.surface.material = indexOf(*read.medium, read.surface.name);
   Drawn& drawn = drawn_[material];
   drawn.surface = read.surface;
   if (read.color) drawn.texCoords.color = read.color->coord;
@@ -141,6 +152,7 @@ std::uint32_t Loader::surfaceOf(Drawn& drawn, bool hasVertexColors) {
   if (reflecting) {
     const std::array<double, 3>& rho = *drawn.reflectance;
     model.surfaces.back().baseColor = rho;
+    model.surfaces.back().hasReflectance = true;
     char numbers[64];
     std::snprintf(numbers, sizeof numbers, "%.3g %.3g %.3g", rho[0], rho[1], rho[2]);
     scene_.notes.push_back("material \"" + drawn.surface.name +
@@ -245,35 +257,28 @@ void Loader::addLight(std::size_t node, const glm::dmat4& world) {
                                             document_.model.lights.size(), reference, "lights");
   const tinygltf::Light& source = document_.model.lights[index];
   const std::string field = "extensions.KHR_lights_punctual.lights[" + std::to_string(index) + "].";
-  const auto require = [&](bool holds, const char* key, const char* range) {
-    if (!holds) document_.fail(field + key, std::string("is not ") + range);
+  const auto fail = [&](const char* key, const std::string& sentence) {
+    document_.fail(field + key, sentence);
   };
   Light light;
   const std::map<std::string, PellucidLightType> types = {{"directional", PELLUCID_LIGHT_DIRECTIONAL},
                                                           {"point", PELLUCID_LIGHT_POINT},
                                                           {"spot", PELLUCID_LIGHT_SPOT}};
-  require(types.count(source.type), "type", "directional, point or spot");
+  if (!types.count(source.type)) fail("type", "is not directional, point or spot");
   light.type = types.at(source.type);
-  require(source.color.empty() || source.color.size() == 3, "color", "3 numbers");
-  for (std::size_t i = 0; i < source.color.size(); ++i) {
-    require(source.color[i] >= 0 && source.color[i] < 1e30, "color", ">= 0");
-    light.color[i] = source.color[i];
-  }
-  require(source.intensity >= 0 && source.intensity < 1e30, "intensity", ">= 0");
-  require(source.range >= 0 && source.range < 1e30, "range", ">= 0");
+  if (!source.color.empty() && source.color.size() != 3) fail("color", "is not 3 numbers");
+  std::copy(source.color.begin(), source.color.end(), light.color.begin());
   light.intensity = source.intensity;
   light.range = source.range;
   if (light.type == PELLUCID_LIGHT_SPOT) {
     light.innerConeAngle = source.spot.innerConeAngle;
     light.outerConeAngle = source.spot.outerConeAngle;
-    require(light.innerConeAngle >= 0 && light.innerConeAngle < light.outerConeAngle &&
-                light.outerConeAngle <= std::numbers::pi / 2 + 1e-6,
-            "spot", "0 <= innerConeAngle < outerConeAngle <= pi / 2");
   }
   const Frame frame = frameOf(world);
-  require(glm::length(frame.backward) > 0, "direction", "defined: its node is scaled by 0");
+  if (!(glm::length(frame.backward) > 0)) fail("direction", "is not defined: its node is scaled by 0");
   light.position = fromGlm(frame.position);
   light.direction = fromGlm(-glm::normalize(frame.backward));
+  fitLight(light, fail);
   scene_.model.lights.push_back(light);
 }
 

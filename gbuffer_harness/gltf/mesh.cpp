@@ -149,7 +149,11 @@ WorldVertices toWorld(const GltfDocument& document, const Attributes& attributes
       const std::array<float, 3> along = unit(normals.linear * glm::dvec3(toVec3(tangent)));
       v.tangent = {along[0], along[1], along[2], static_cast<float>(normals.sign) * tangent[3]};
     }
-    if (attributes.color) std::copy_n((*attributes.color)[i], 3, v.color.begin());
+    if (attributes.color) {
+      const float* const color = (*attributes.color)[i];
+      std::copy_n(color, 3, v.color.begin());
+      if (attributes.color->components == 4) v.alpha = color[3];
+    }
     if (attributes.mark) v.mark = *(*attributes.mark)[i];
   }
   return world;

@@ -20,15 +20,23 @@ struct Name {
   const char* doubt = "";
   double scale = 1;
   double metersPerUnit = 0;
+  bool includesAlbedo = false;
+  const char* beside = "";  // of a group that must be there, too
 };
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kCentimeter = 0.01;
 
-constexpr const char* kHasAlbedo =
-    "if the pass is multiplied by the surface color, divide it by the albedo, or leave \"albedo\" out";
 constexpr const char* kIsPicture =
     "a finished picture holds highlights and the surface color, too: render the irradiance instead";
+
+// Light that surfaces reflect is albedo E / pi. Passes before the albedo hold E / pi, others the product.
+constexpr Name raw(const char* text, const char* what) {
+  return {Role::Irradiance, Match::Holds, text, what, "", kPi};
+}
+constexpr Name product(Match match, const char* text, const char* what, const char* beside = "") {
+  return {Role::Irradiance, match, text, what, "", kPi, 0, true, beside};
+}
 
 // The first that fits a group wins; of several groups that of the earlier name.
 const Name kNames[] = {
@@ -49,21 +57,27 @@ const Name kNames[] = {
     {Role::FrontDepth, Match::Ends, "z", "OpenEXR's own channel of depths"},
     {Role::Irradiance, Match::Holds, "irradiance", "Pellucid's irradiance"},
     {Role::Irradiance, Match::Holds, "diffdir", "Blender's Diffuse Direct, which is E / pi", "", kPi},
-    {Role::Irradiance, Match::Holds, "diffuselighting", "a pass of diffuse light", kHasAlbedo},
+    raw("rawtotallight", "V-Ray's raw light, direct and indirect, which is E / pi"),
+    raw("rawlight", "V-Ray's raw light, which is E / pi"),
+    raw("diffuselightingraw", "Redshift's raw diffuse light, which is E / pi"),
     {Role::Irradiance, Match::Holds, "lightingonly", "Unreal's view of light alone",
      "Unreal's Lighting Only has a gray albedo of .5 and is pre-exposed: set the scale", 2},
-    {Role::Irradiance, Match::Holds, "vraylighting", "V-Ray's raw light times color", kHasAlbedo},
-    {Role::Irradiance, Match::Holds, "rawlight", "V-Ray's raw light"},
-    {Role::Irradiance, Match::Holds, "diffusedirect", "Arnold's direct diffuse light", kHasAlbedo},
-    {Role::Irradiance, Match::Holds, "directdiffuse", "a pass of direct diffuse light", kHasAlbedo},
-    {Role::Irradiance, Match::Holds, "diffuselight", "a pass of diffuse light", kHasAlbedo},
-    {Role::Irradiance, Match::Holds, "lighting", "a pass of light", kHasAlbedo},
+    product(Match::Holds, "totallight", "V-Ray's light times color, direct and indirect"),
+    product(Match::Holds, "vraylighting", "V-Ray's light times color"),
+    product(Match::Is, "diffuse", "Arnold's diffuse light, direct and indirect", "diffusealbedo"),
+    product(Match::Holds, "diffuselighting", "a pass of diffuse light"),
+    product(Match::Holds, "diffusedirect", "Arnold's direct diffuse light"),
+    product(Match::Holds, "directdiffuse", "a pass of direct diffuse light"),
+    product(Match::Holds, "diffuselight", "a pass of diffuse light"),
+    product(Match::Holds, "lighting", "a pass of light"),
+    {Role::Albedo, Match::Holds, "diffusealbedo", "Arnold's diffuse albedo"},
     {Role::Albedo, Match::Holds, "albedo", "an albedo"},
     {Role::Albedo, Match::Holds, "diffcol", "Blender's Diffuse Color"},
     {Role::Albedo, Match::Holds, "basecolor", "a base color"},
     {Role::Albedo, Match::Holds, "gbufferc", "Unreal's base color"},
     {Role::Albedo, Match::Holds, "diffusefilter", "V-Ray's diffuse color"},
     {Role::Albedo, Match::Holds, "diffusecolor", "a diffuse color"},
+    {Role::Albedo, Match::Is, "diffuse", "V-Ray's diffuse color"},
     {Role::Normal, Match::Is, "n", "a pass of normals"},
     {Role::Normal, Match::Ends, "normal", "a pass of normals"},
     {Role::Normal, Match::Ends, "normals", "a pass of normals"},
@@ -72,6 +86,7 @@ const Name kNames[] = {
     {Role::Material, Match::Holds, "indexma", "Blender's Material Index"},
     {Role::Material, Match::Holds, "materialid", "a material's number"},
     {Role::Material, Match::Holds, "matid", "a material's number"},
+    {Role::Material, Match::Holds, "mtlid", "V-Ray's number of a material"},
     {Role::Material, Match::Ends, "material", "a material's number"},
     {Role::Material, Match::Holds, "shadingmodel", "Unreal's shading model"},
     {Role::Material, Match::Holds, "customstencil", "Unreal's custom stencil"},
@@ -110,9 +125,11 @@ bool fits(const std::string& name, const Name& known) {
 // The role's buffer has three numbers a pixel.
 bool isTriple(Role role) { return role == Role::Irradiance || role == Role::Normal || role == Role::Albedo; }
 
-// A single number may be the first of a color: RenderDoc saves every texture as one.
+// A single number may be the first of a color: RenderDoc saves every texture as one, and V-Ray every number.
 bool hasShapeOf(Role role, const ChannelGroup& group) {
-  return isTriple(role) ? group.channels.size() == 3 : group.channels.size() == 1 || !group.isNamed;
+  if (isTriple(role)) return group.channels.size() == 3;
+  const bool isNumber = role == Role::Material && plain(group.name).ends_with("id");
+  return group.channels.size() == 1 || !group.isNamed || isNumber;
 }
 
 // Names by which a group may be known: its layer, and of single channels the whole name.
@@ -125,8 +142,24 @@ std::vector<std::string> namesOf(const ChannelGroup& group) {
   return names;
 }
 
+bool hasName(const ChannelGroup& group, const Name& known) {
+  const std::vector<std::string> names = namesOf(group);
+  return std::any_of(names.begin(), names.end(), [&](const std::string& name) { return fits(name, known); });
+}
+
+bool hasNameOf(const ChannelGroup& group, const Name& known, const std::vector<ChannelGroup>& groups) {
+  const auto isBeside = [&](const ChannelGroup& other) {
+    return plain(other.name).find(known.beside) != std::string::npos;
+  };
+  return hasName(group, known) && std::any_of(groups.begin(), groups.end(), isBeside);
+}
+
 Guess guessOf(const ChannelGroup& group, const Name& known) {
-  Guess guess{group, std::string("its name is that of ") + known.what, known.doubt, known.scale,
+  Guess guess{group,
+              std::string("its name is that of ") + known.what,
+              known.doubt,
+              known.scale,
+              known.includesAlbedo,
               known.metersPerUnit};
   if (!isTriple(known.role)) guess.group.channels.resize(1);
   return guess;
@@ -165,15 +198,22 @@ std::map<Role, Guess> guessRoles(const std::vector<ChannelGroup>& groups,
     }
     Guess guess = guessOf(*found, {role, Match::Is, "", ""});
     guess.why = "you named it";
+    // Its name still says what the numbers are.
+    const auto known = std::find_if(std::begin(kNames), std::end(kNames), [&](const Name& candidate) {
+      return candidate.role == role && hasNameOf(*found, candidate, groups);
+    });
+    if (known != std::end(kNames)) {
+      guess.scale = known->scale;
+      guess.includesAlbedo = known->includesAlbedo;
+      guess.metersPerUnit = known->metersPerUnit;
+    }
     guesses[role] = guess;
   }
   for (const Name& known : kNames) {
     if (guesses.count(known.role)) continue;
     for (const ChannelGroup& group : groups) {
       if (!hasShapeOf(known.role, group) || isTaken(guesses, group)) continue;
-      const std::vector<std::string> names = namesOf(group);
-      if (std::none_of(names.begin(), names.end(), [&](const std::string& n) { return fits(n, known); }))
-        continue;
+      if (!hasNameOf(group, known, groups)) continue;
       guesses[known.role] = guessOf(group, known);
       break;
     }

@@ -22,6 +22,7 @@ struct Guess {
   std::string why;     // a sentence's end: "its name is that of ..."
   std::string doubt;   // what it would take to be sure; empty: nothing
   double scale = 1;
+  bool includesAlbedo = false;
   double metersPerUnit = 0;  // 0: the name says nothing
 };
 

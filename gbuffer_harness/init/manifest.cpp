@@ -9,6 +9,7 @@
 #include "capture/manifest_material.h"
 #include "capture/manifest_parts.h"
 #include "common/error.h"
+#include "reference/camera.h"
 #include "scene/vector.h"
 
 namespace pellucid::harness {
@@ -143,14 +144,21 @@ void Builder::addDepths() {
 }
 
 void Builder::addIrradiance() {
-  const Guess& guess = guesses_.at(Role::Irradiance);
+  Guess& guess = guesses_.at(Role::Irradiance);
+  const bool hasAlbedo = guesses_.count(Role::Albedo) > 0;
   read(Role::Irradiance);
   Json json = sourceOf(Role::Irradiance);
   const double scale = words_.irradianceScale.value_or(guess.scale);
   if (scale != 1) json["scale"] = scale;
+  if (guess.includesAlbedo && hasAlbedo) json["includesAlbedo"] = true;
+  if (guess.includesAlbedo && !hasAlbedo)
+    guess.doubt =
+        "the pass is light times the surface color: --albedo names the color's pass, which divides it";
   result_.json["buffers"]["irradiance"] = json;
-  say(Role::Irradiance, scale != 1 ? "times " + number(scale) : "");
-  if (!guesses_.count(Role::Albedo)) return;
+  std::string how = scale != 1 ? "times " + number(scale) : "";
+  if (json.contains("includesAlbedo")) how += std::string(how.empty() ? "" : ", ") + "divided by the albedo";
+  say(Role::Irradiance, how);
+  if (!hasAlbedo) return;
   read(Role::Albedo);
   result_.json["buffers"]["albedo"] = sourceOf(Role::Albedo);
   say(Role::Albedo, "");
@@ -159,7 +167,7 @@ void Builder::addIrradiance() {
 // The part of the normals, within -1 .. 1, that face the camera.
 double Builder::facing(const Image& normal, bool unorm, const Matrix& viewFromNormal) const {
   const glm::dmat3 rotation(toGlm(viewFromNormal));
-  const Matrix& clip = camera_.clipFromView;
+  const reference::Camera camera(camera_.clipFromView, width_, height_);
   std::size_t count = 0, facing = 0;
   for (int y = 0; y < height_; ++y)
     for (int x = 0; x < width_; ++x) {
@@ -169,12 +177,9 @@ double Builder::facing(const Image& normal, bool unorm, const Matrix& viewFromNo
       const float depth = *front_.at(x, y);
       const bool isEmpty = depth_.isDevice ? depth == 0 || depth == 1 : !(depth > 0 && depth < kLeastNoDepth);
       if (isEmpty || !(glm::length(n) > 0.5)) continue;
-      const double u = ((x + 0.5) / width_ * 2 - 1 - clip[12]) / clip[0],
-                   w = ((y + 0.5) / height_ * 2 - 1 - clip[13]) / clip[5];
-      const glm::dvec3 ray = clip[15] == 0 ? glm::dvec3(u, w, -1) : glm::dvec3(0, 0, -1);
+      const glm::dvec3 ray = camera.rayThrough(camera.position({x + 0.5, y + 0.5}, 1));
       ++count;
-      facing += glm::dot(glm::normalize(rotation * n), glm::normalize(ray)) <
-                0.1;  // smoothed normals turn away a little
+      facing += glm::dot(glm::normalize(rotation * n), ray) < 0.1;  // smoothed normals turn away a little
     }
   return count == 0 ? 0 : static_cast<double>(facing) / static_cast<double>(count);
 }

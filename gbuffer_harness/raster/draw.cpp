@@ -143,8 +143,9 @@ UploadedModel::UploadedModel(Device& device, const Model& model)
 void UploadedModel::record(VkCommandBuffer commandBuffer, const RenderTarget& target, const DrawView& view,
                            const PipelineState& state, VkCullModeFlags doubleSidedCull,
                            const EarlierPass& earlier) const {
-  PipelineState doubleSided = state;
+  PipelineState doubleSided = state, opaque = state;
   doubleSided.cull = doubleSidedCull;
+  opaque.cull = VK_CULL_MODE_NONE;
   const glm::dmat4 viewFromWorld = toGlm(view.viewFromWorld);
   DrawConstants constants{};
   constants.clipFromWorld = glm::mat4(toGlm(view.clipFromView) * viewFromWorld);
@@ -156,8 +157,12 @@ void UploadedModel::record(VkCommandBuffer commandBuffer, const RenderTarget& ta
   mesh_.bind(commandBuffer);
   for (const Part& part : model_.parts) {
     const Surface& surface = model_.surfaces[part.surface];
+    // What is opaque ends the light's way by either side.
+    const bool ends = earlier.caster && surface.material == 0;
     vkCmdBindPipeline(commandBuffer, VK_PIPELINE_BIND_POINT_GRAPHICS,
-                      pipelines_.of(target, surface.doubleSided ? doubleSided : state));
+                      pipelines_.of(target, ends                  ? opaque
+                                            : surface.doubleSided ? doubleSided
+                                                                  : state));
     const auto textureOr = [none](int index) { return index < 0 ? none : static_cast<std::size_t>(index); };
     const std::size_t color = textureOr(surface.texture), normal = textureOr(surface.normalMap),
                       lobe = textureOr(surface.lobeMap);

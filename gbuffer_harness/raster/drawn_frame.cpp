@@ -38,7 +38,7 @@ std::vector<std::string> DrawnFrame::warnings() const {
 }
 
 std::shared_ptr<const InputImages> DrawnFrame::inputs(const ReplaySettings& settings) const {
-  if (!areOnDevice(options_) || options_.normalsInViewSpace || settings.preExposure != 1 ||
+  if (!areOnDevice(options_) || options_.normalsInViewSpace || preExposureOf(settings) != 1 ||
       settings.materialMask != 0 || settings.normalFormat != VK_FORMAT_R32G32B32A32_SFLOAT)
     return std::make_shared<const InputImages>(device_, capture(), settings);
   InputImages::Images inputs;

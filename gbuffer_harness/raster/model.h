@@ -23,6 +23,7 @@ struct Vertex {
   // follow from positions and normalUv.
   std::array<float, 4> tangent = {0, 0, 0, 0};
   std::array<float, 2> lobeUv = {0, 0};  // of the lobe map
+  float alpha = 1;                       // multiplies that of the base color's texel
 };
 
 enum class TextureWrap { Repeat, Clamp, Mirror };
@@ -45,9 +46,10 @@ enum class SurfaceLobes {
 struct Surface {
   std::string name;
   std::array<double, 3> baseColor = {1, 1, 1};   // linear
+  bool hasReflectance = false;                   // baseColor is the diffuse reflectance of the material
   std::array<double, 3> addedColor = {0, 0, 0};  // linear
   int texture = -1;                              // into Model::textures; -1: white
-  double alphaCutoff = 0;                        // texels of less alpha are holes; 0: none are
+  double alphaCutoff = 0;                        // where alpha is less there is a hole; 0: nowhere
   bool doubleSided = false;                      // drawn from behind too, with the normal turned round
   std::uint8_t material = 0;                     // index in the material image; 0: not translucent
   int normalMap = -1;                            // into Model::textures; -1: none

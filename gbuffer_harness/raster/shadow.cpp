@@ -52,7 +52,8 @@ Target recordSurface(VkCommandBuffer commands, TargetPool& targets, const Upload
   return target;
 }
 
-// The nearest back face behind the map's surface, of the object that is entered there.
+// The nearest back face behind the map's surface, of the object that is entered there, or what is opaque
+// before it.
 Target recordExit(VkCommandBuffer commands, TargetPool& targets, const UploadedModel& model,
                   const DrawView& view, const RenderTarget& surface, int size) {
   Target target = targets.take(size, size, depthColors(view.reversedDepth), farDepth(view.reversedDepth));

@@ -56,7 +56,8 @@ VkPipelineVertexInputStateCreateInfo UploadedMesh::vertexInput() {
       {4, 0, VK_FORMAT_R32_SFLOAT, offsetof(Vertex, mark)},
       {5, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(Vertex, normalUv)},
       {6, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Vertex, tangent)},
-      {7, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(Vertex, lobeUv)}};
+      {7, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(Vertex, lobeUv)},
+      {8, 0, VK_FORMAT_R32_SFLOAT, offsetof(Vertex, alpha)}};
   VkPipelineVertexInputStateCreateInfo input{VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
   input.vertexBindingDescriptionCount = 1;
   input.pVertexBindingDescriptions = &binding;

@@ -17,7 +17,7 @@ public:
   // afterwards.
   UploadedMesh(Device& device, const Model& model);
 
-  // Pipelines read locations 0 to 7: the members of Vertex, in their order.
+  // Pipelines read locations 0 to 8: the members of Vertex, in their order.
   static VkPipelineVertexInputStateCreateInfo vertexInput();
   void bind(VkCommandBuffer commandBuffer) const;  // vertices and indices
 

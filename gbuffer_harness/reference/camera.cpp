@@ -51,7 +51,10 @@ glm::dvec3 Camera::position(glm::dvec2 pixel, double planarDepth) const {
 }
 
 glm::dvec3 Camera::rayThrough(const glm::dvec3& viewPosition) const {
-  return orthographic_ ? glm::dvec3(0, 0, forward_) : glm::normalize(viewPosition);
+  if (!orthographic_) return glm::normalize(viewPosition);
+  const glm::dmat4& m = clipFromView_;
+  const glm::dmat2 clipFromPlane(m[0][0], m[0][1], m[1][0], m[1][1]);
+  return forward_ * glm::normalize(glm::dvec3(-(glm::inverse(clipFromPlane) * glm::dvec2(m[2])), 1));
 }
 
 glm::dvec2 Camera::project(const glm::dvec3& viewPosition) const {

@@ -30,7 +30,9 @@ public:
   // View-space point seen at a pixel coordinate and planar depth.
   glm::dvec3 position(glm::dvec2 pixel, double planarDepth) const;
 
-  // Unit vector from the eye through a view-space point; the viewing direction when orthographic.
+  // Unit vector along which the camera sees a view-space point: all points of a pixel lie along it. It is
+  // that from the eye; of an orthographic camera one for all points, which a sheared matrix turns away from
+  // the view axis.
   glm::dvec3 rayThrough(const glm::dvec3& viewPosition) const;
 
   // Pixel coordinates of a view-space point in front of the eye.

@@ -18,9 +18,7 @@
 namespace pellucid::harness::reference {
 namespace {
 
-constexpr double kLargestHalf = 65504;
-
-double sanitized(float e) { return e > 0 ? std::min(double(e), kLargestHalf) : 0.0; }
+double sanitized(float e, double brightest) { return e > 0 ? std::min(double(e), brightest) : 0.0; }
 
 glm::dvec3 dividedOrZero(const glm::dvec3& a, const glm::dvec3& b) {
   const auto divide = [](double n, double d) { return d > 0 ? n / d : 0.0; };
@@ -128,7 +126,7 @@ private:
   void addIrradiance(Through&& through) {
     forEachPixel("translucency", [&](int x, int y, std::size_t i) {
       const float* e = capture_.irradiance.at(x, y);
-      values_[i] = {sanitized(e[0]), sanitized(e[1]), sanitized(e[2])};
+      for (int c = 0; c < 3; ++c) values_[i][c] = sanitized(e[c], settings_.brightest);
       if (settings_.features & PELLUCID_FEATURE_TRANSLUCENCY && through(material(i)))
         values_[i] = glm::max(values_[i] + transmitted(x, y, i), 0.0);
     });

@@ -263,7 +263,7 @@ void makeFrame(const Capture& capture, const FrameShape& shape,
   f.materialShift = settings.materialShift;
   f.materialMask = settings.materialMask;
   f.outputMode = settings.outputMode;
-  f.preExposure = settings.preExposure;
+  f.preExposure = preExposureOf(settings);
   f.debugView = settings.debugView;
   fillPlaceholders(shape, data);
 }

@@ -38,7 +38,9 @@ struct ReplaySettings {
   uint32_t materialShift = 0, materialMask = 0;
   bool ambient = false;  // the capture's environment comes through thin parts
   PellucidOutputMode outputMode = PELLUCID_OUTPUT_REPLACE;  // ADD: FrameRun::uploadOutput says to what
-  float preExposure = 1;  // the uploaded irradiance is the capture's times this
+  // The uploaded irradiance is the capture's times this. 0: of Replayer::run preExposureFor() the capture, by
+  // which its output is divided again; elsewhere 1.
+  float preExposure = 1;
   PellucidReuse reuse = PELLUCID_REUSE_NONE;
   float coherenceThreshold = 0.005f;
   float frameLoad = 0;
@@ -57,6 +59,10 @@ ReplaySettings thesisSettings();
 // `materials` with T(d) exchanged as `choice` says.
 std::vector<PellucidMaterial> withTransmittance(std::vector<PellucidMaterial> materials,
                                                 TransmittanceChoice choice);
+
+inline float preExposureOf(const ReplaySettings& settings) {
+  return settings.preExposure > 0 ? settings.preExposure : 1;
+}
 
 // A frame and the arrays it points to. shadowImages are as shadowImages() of the capture's lights has them.
 struct FrameData {

@@ -7,6 +7,11 @@
 
 namespace pellucid::harness {
 
+void scaleColors(Image& image, float factor) {
+  for (size_t i = 0; factor != 1 && i < image.data.size(); ++i)
+    if (image.channels == 3 || i % 4 != 3) image.data[i] *= factor;
+}
+
 namespace {
 
 std::shared_ptr<GpuImage> uploaded(Device& device, const Image& image, VkFormat format) {
@@ -61,8 +66,7 @@ InputImages::InputImages(Device& device, const Capture& capture, const ReplaySet
   images_.frontDepth = uploaded(device, capture.frontDepth.image, VK_FORMAT_R32_SFLOAT);
   images_.backDepth = uploaded(device, capture.backDepth.image, VK_FORMAT_R32_SFLOAT);
   Image irradiance = capture.irradiance;
-  for (size_t i = 0; settings.preExposure != 1 && i < irradiance.data.size(); ++i)
-    if (irradiance.channels == 3 || i % 4 != 3) irradiance.data[i] *= settings.preExposure;
+  scaleColors(irradiance, preExposureOf(settings));
   images_.irradiance = uploaded(device, irradiance, irradianceFormat(settings));
   images_.normal = uploaded(device, capture.normal, settings.normalFormat);
   images_.albedo = uploaded(device, capture.albedo, VK_FORMAT_R32G32B32A32_SFLOAT);

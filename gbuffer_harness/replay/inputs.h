@@ -33,6 +33,9 @@ private:
   Images images_;
 };
 
+// Multiplies all channels but the alpha of images that have one.
+void scaleColors(Image& image, float factor);
+
 // The format of the irradiance that a frame of these settings reads.
 VkFormat irradianceFormat(const ReplaySettings& settings);
 

@@ -10,6 +10,7 @@
 #include "common/parallel.h"
 #include "common/progress.h"
 #include "pellucid/pellucid_views.h"
+#include "replay/exposure.h"
 
 namespace pellucid::harness {
 
@@ -31,7 +32,7 @@ class FrameRun::Images {
 public:
   Images(Device& device, const Capture& capture, const ReplaySettings& settings, FrameData& data,
          std::shared_ptr<const InputImages> inputs, const Images* previous, ImagePool* pool)
-      : device_(device), pool_(pool), inputs_(std::move(inputs)) {
+      : device_(device), pool_(pool), preExposure_(preExposureOf(settings)), inputs_(std::move(inputs)) {
     const bool shared = inputs_ != nullptr;
     if (!shared) inputs_ = std::make_shared<InputImages>(device, capture, settings);
     inputs_->bind(data);
@@ -47,7 +48,7 @@ public:
       if (shared || settings.debugView != PELLUCID_DEBUG_NONE)
         output.clear();
       else
-        output.upload(composited(capture));
+        output.upload(exposed(composited(capture)));
     }
     PellucidImageNeed needs[kMaxImageNeeds];
     uint32_t count = kMaxImageNeeds;
@@ -106,7 +107,7 @@ public:
     return {};
   }
   void restoreIrradiance(const Capture& capture) const {
-    if (outputIsIrradiance_) inputs_->irradiance().upload(capture.irradiance);
+    if (outputIsIrradiance_) inputs_->irradiance().upload(exposed(capture.irradiance));
   }
 
 private:
@@ -114,6 +115,10 @@ private:
     images_.push_back(pool_ ? pool_->take(width, height, format)
                             : std::make_shared<GpuImage>(device_, width, height, format));
     return *images_.back();
+  }
+  Image exposed(Image image) const {
+    scaleColors(image, preExposure_);
+    return image;
   }
   static Image composited(const Capture& capture) {
     Image result = capture.irradiance;
@@ -125,6 +130,7 @@ private:
 
   Device& device_;
   ImagePool* pool_;
+  float preExposure_;
   std::shared_ptr<const InputImages> inputs_;
   std::vector<std::shared_ptr<GpuImage>> images_;
   std::vector<GpuImage*> transients_;
@@ -322,14 +328,21 @@ void FrameRun::uploadOutput(const Image& content) const { images_->uploadOutput(
 void FrameRun::restoreIrradiance(const Capture& capture) const { images_->restoreIrradiance(capture); }
 
 ReplayResult Replayer::run(const Capture& capture, const std::vector<PellucidMaterial>& materials,
-                           const ReplaySettings& settings, uint32_t timedFrames,
+                           const ReplaySettings& given, uint32_t timedFrames,
                            const std::function<void(const FrameRun&)>& look) {
+  ReplaySettings settings = given;
+  const bool choose = given.preExposure == 0;
+  if (choose) settings.preExposure = preExposureFor(capture);
   const FrameRun run(device_, contextFor(capture), capture, materials, settings);
   ReplayResult result;
   result.plan = run.plan();
+  result.preExposure = settings.preExposure;
   const auto recordFirst = [&] {
     device_.run([&](VkCommandBuffer commandBuffer) { run.record(commandBuffer); });
     result.output = run.output();
+    const bool holdsLight =
+        settings.debugView == PELLUCID_DEBUG_NONE || settings.debugView == PELLUCID_DEBUG_IRRADIANCE;
+    if (choose && holdsLight) scaleColors(result.output, 1 / settings.preExposure);
     result.statistics = run.statistics();
     if (look) look(run);
   };

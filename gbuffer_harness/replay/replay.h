@@ -148,7 +148,8 @@ struct DispatchTime {
 };
 
 struct ReplayResult {
-  Image output;  // as FrameRun::output
+  Image output;  // as FrameRun::output; divided by preExposure where that was chosen
+  float preExposure = 1;
   PellucidPlan plan;
   PellucidStatistics statistics;    // of the plan
   std::vector<DispatchTime> times;  // one per dispatch; none without timed frames

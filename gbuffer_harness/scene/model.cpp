@@ -15,6 +15,7 @@ Ray Camera::ray(double x, double y, int width, int height) const {
   glm::dvec3 origin(0), direction(0, 0, -1);
   if (orthographic) {
     origin = {(ndcX - clipFromView[12]) / clipFromView[0], (ndcY - clipFromView[13]) / clipFromView[5], 0};
+    direction = {clipFromView[8] / clipFromView[0], clipFromView[9] / clipFromView[5], -1};  // sheared: not 0
   } else {
     direction = {(ndcX + clipFromView[8]) / clipFromView[0], (ndcY + clipFromView[9]) / clipFromView[5], -1};
   }

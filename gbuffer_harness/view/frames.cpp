@@ -8,6 +8,7 @@
 
 #include "capture/material.h"
 #include "metrics/isolated.h"
+#include "replay/exposure.h"
 #include "shared/pellucid_shared.h"
 
 namespace pellucid::harness {
@@ -109,13 +110,19 @@ ViewFrames::Frame ViewFrames::make(const ViewState& state, Shown shown, const Ca
 }
 
 void ViewFrames::update(const ViewState& state, const Changes& changes) {
-  const bool scene = changes.scene || !inputs_;
+  const bool scene = changes.scene || !inputs_ || (changes.materials && source_.drawsMaterials());
   const bool upload = scene || state.settings.outputFormat != format_;
   const bool compile = changes.materials || !inputs_;
   const bool frames = upload || compile || changes.frame;
   const auto start = std::chrono::steady_clock::now();
   std::optional<Scene> rendered;
-  if (scene) rendered = source_.render(state);
+  if (scene) {
+    rendered = source_.render(state);
+    constexpr double kLargestHalf = 65504;
+    if (const double light = largestLight(rendered->capture); light > kLargestHalf)
+      rendered->warnings.push_back("lights bring an irradiance of " + std::to_string(std::lround(light)) +
+                                   ": the view cuts it at 65504; `pellucid replay` does not");
+  }
   const Scene& seen = rendered ? *rendered : scene_;
   const std::shared_ptr<const InputImages> inputs =
       !upload      ? inputs_

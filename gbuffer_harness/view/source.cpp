@@ -1,9 +1,16 @@
 #include "view/source.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
 #include <utility>
 
+#include "capture/manifest_parts.h"
+#include "capture/material.h"
 #include "metrics/masked_image.h"
 #include "raster/rasterizer.h"
 #include "reference/camera.h"
@@ -41,6 +48,10 @@ public:
   }
 
   ViewState start() const override { return start_; }
+  bool drawsMaterials() const override {
+    return std::any_of(model_.surfaces.begin(), model_.surfaces.end(),
+                       [](const Surface& surface) { return surface.hasReflectance; });
+  }
   Vector3 center() const override { return bounds_.center; }
   double radius() const override { return bounds_.radius; }
 
@@ -50,12 +61,30 @@ public:
     options.height = state.height;
     model_.lights = lit(state.lights);
     model_.materials = state.materials;
+    takeReflectances();
     std::shared_ptr<const DrawnFrame> drawn = rasterizer_.draw(state.camera.lens, options);
     return {drawn->outline(), drawn, drawn->warnings()};
   }
 
 private:
+  // Colors of surfaces that have none of their own.
+  void takeReflectances() {
+    for (Surface& surface : model_.surfaces) {
+      if (!surface.hasReflectance) continue;
+      const std::size_t i = surface.material - 1u;
+      const MaterialSource& source = model_.materials.at(i);
+      const std::string key = materialJson(source).dump();
+      const auto [entry, isNew] = reflectances_.try_emplace(key);
+      if (isNew) {
+        const PellucidMaterial compiled = compileMaterial(source, "materials[" + std::to_string(i) + "]");
+        std::copy_n(compiled.reflectance, 3, entry->second.begin());
+      }
+      surface.baseColor = entry->second;
+    }
+  }
+
   Model model_;
+  std::map<std::string, std::array<double, 3>> reflectances_;  // of compiled materials, by their JSON
   RasterOptions raster_;
   Bounds bounds_;
   Rasterizer rasterizer_;  // of model_

@@ -29,6 +29,9 @@ public:
   // Throws what the maker of captures throws.
   virtual Scene render(const ViewState& state) = 0;
 
+  // True where the scene's colors are those of its materials, which have to be drawn anew with them.
+  virtual bool drawsMaterials() const { return false; }
+
   virtual Vector3 center() const = 0;  // world; what lights are dragged round
   virtual double radius() const = 0;   // scene units, > 0
 

@@ -1,5 +1,6 @@
 #include "validate.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "defaults.h"
@@ -258,7 +259,16 @@ void checkMaterials(const FrameFacts& facts, Findings& out) {
 }
 
 void checkLights(const FrameFacts& facts, Findings& out) {
-  for (uint32_t i = 0; i < facts.frame.lightCount; ++i) checkLight(facts, i, out);
+  const PellucidFrame& f = facts.frame;
+  for (uint32_t i = 0; i < f.lightCount; ++i) {
+    checkLight(facts, i, out);
+    const PellucidLight& l = f.lights[i];
+    constexpr float kLargestHalf = 65504;
+    const float arrives = l.intensity * std::max({l.color[0], l.color[1], l.color[2]}) * f.preExposure;
+    if (l.type == PELLUCID_LIGHT_DIRECTIONAL && arrives > kLargestHalf)
+      out.warning(Field("lights[", i, "].intensity"), "brings an irradiance of ", arrives,
+                  " with preExposure ", f.preExposure, "; light above 65504 is cut");
+  }
 }
 
 void checkGroups(const FrameFacts& facts, Findings& out) {

@@ -9,6 +9,7 @@
 
 #include "capture/material.h"
 #include "gpu_fixture.h"
+#include "replay/exposure.h"
 #include "scene/environment.h"
 #include "scene/scene.h"
 
@@ -282,6 +283,26 @@ TEST_F(EngineFrames, PreExposureKeepsSunlightInHalves) {
   s.preExposure = 1 / kLux;
   EXPECT_LT(relativeRmse(replayer().run(bright, materialsOf(bright), s).output, plain, bright.material),
             1e-4);
+}
+
+// The same for captures of any unit, without being asked.
+TEST_F(EngineFrames, ReplayChoosesThePreExposure) {
+  ReplaySettings s = wide();
+  s.outputFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
+  s.preExposure = 0;
+  const ReplayResult plain = replayer().run(head(), materialsOf(head()), s);
+  EXPECT_EQ(plain.preExposure, 1);
+  for (const float unit : {1e5f, 3e7f, 1e-5f, 1e-7f}) {
+    Capture other = head();
+    for (float& v : other.irradiance.data) v *= unit;
+    for (Light& light : other.lights) light.intensity *= static_cast<double>(unit);
+    ReplayResult result = replayer().run(other, materialsOf(other), s);
+    const double exposed = largestLight(other) * static_cast<double>(result.preExposure);
+    EXPECT_TRUE(exposed >= 1 && exposed < 2) << exposed;
+    for (float& v : result.output.data) v /= unit;
+    // The diffusion works in halves, which round at other places.
+    EXPECT_LT(relativeRmse(result.output, plain.output, head().material), 5e-4) << unit;
+  }
 }
 
 // ---- Formats of irradiance

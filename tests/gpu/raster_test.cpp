@@ -558,6 +558,29 @@ TEST_F(Raster, TexturesMarksAndHoles) {
   EXPECT_NEAR(planar(c, c.frontDepth, 6, 33), 100, 2e-4) << "but there";
 }
 
+// glTF 2.0, 3.9.2: COLOR_0 multiplies the base color, its alpha the base color's.
+TEST_F(Raster, AlphaOfVerticesMakesHolesForCameraAndLights) {
+  Model model = emptyModel();
+  addSquare(model, 0, 0, 4, 8);  // a card before a slab that it would hide and shadow
+  endPart(model, 0);
+  for (std::size_t i = 0; i < 4; ++i) model.vertices[i].alpha = i % 3 == 0 ? 0 : 1;  // 0 at the left edge
+  addSquare(model, 0, 0, 0, 10);
+  endPart(model, 1, 1);
+  model.surfaces.push_back(model.surfaces[0]);
+  model.surfaces[0].alphaCutoff = 0.5;
+  Light light;
+  light.direction = {0, 0, -1};
+  model.lights = {light};
+  RasterOptions options = smallRaster(40);
+  const Capture c = rasterize(model, frontCamera(true), options).capture;
+  EXPECT_NEAR(planar(c, c.frontDepth, 30, 20), 96, 2e-4);
+  EXPECT_NEAR(planar(c, c.frontDepth, 14, 20), 100, 2e-4) << "alpha .33 is below the cutoff";
+  EXPECT_NEAR(c.irradiance.at(14, 20)[0], 1, 1e-5) << "and casts no shadow";
+  model.surfaces[0].alphaCutoff = 0.3;
+  const Capture whole = rasterize(model, frontCamera(true), options).capture;
+  EXPECT_NEAR(planar(whole, whole.frontDepth, 14, 20), 96, 2e-4);
+}
+
 TEST_F(Raster, NormalsInViewSpace) {
   Model model = emptyModel();
   addSphere(model, {0, 0, 0}, 8, 64);

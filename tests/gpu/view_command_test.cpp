@@ -2,6 +2,7 @@
 #include <cstdlib>
 
 #include "capture/exr.h"
+#include "capture/read.h"
 #include "cli_fixture.h"
 #include "gltf_builder.h"
 #include "gpu_fixture.h"
@@ -94,6 +95,30 @@ TEST_F(View, ASavedViewOfAModelOpensWithItsLightsAndMaterials) {
   expect(0, "view " + path("a.view.json") + " --validate --no-window --frames 1 --save " + path("b.exr"),
          "wrote");
   EXPECT_EQ(bytes("a.exr"), bytes("b.exr"));
+}
+
+// A model that nobody colored has the color of its medium, in the viewer as in a capture.
+TEST_F(View, APresetBringsItsAlbedoToAModelWithoutColor) {
+  GltfBuilder b;
+  const int position = b.vectors({0, 0, 0, 2, 0, 0, 0, 2, 0});
+  b.json["meshes"] = {{{"primitives", {{{"attributes", {{"POSITION", position}}}, {"material", 0}}}}}};
+  b.json["materials"] = {{{"name", "wax"}}};
+  b.json["nodes"] = {{{"mesh", 0}}};
+  std::ofstream(path("t.glb"), std::ios::binary) << b.glb();
+  const std::string model = path("t.glb") + " --size 32x32 --shadow-size 16 --material 'wax=";
+  expect(0,
+         "view " + model + "skin1' --validate --no-window --frames 4 " + script("2 material marble\n") +
+             "--save " + path("v.exr"),
+         "added: --light back --light front");
+  expectReplays("v");
+  expect(0, "capture " + model + "marble' -o " + path("c.exr"), "added: --light back");
+  const auto viewed = harness::readCapture(path("v.exr")), captured = harness::readCapture(path("c.exr"));
+  EXPECT_EQ(viewed.material, captured.material);
+  EXPECT_TRUE(sameBits(viewed.albedo, captured.albedo));
+  ASSERT_EQ(viewed.lights.size(), 2u);
+  EXPECT_EQ(captured.lights.size(), 1u);
+  EXPECT_LT(viewed.lights[0].direction[2] * viewed.lights[1].direction[2], 0)
+      << "from behind and from the front";
 }
 
 TEST_F(View, RefusesInASentence) {

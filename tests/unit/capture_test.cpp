@@ -1,9 +1,12 @@
 // Captures from and to disk: what is read is what was written, and what is wrong is named.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
+#include <numbers>
 
 #include "capture/layers.h"
+#include "capture/light_table.h"
 #include "capture/manifest_material.h"
 #include "capture/material.h"
 #include "capture/read.h"
@@ -193,6 +196,52 @@ TEST_F(Manifests, DefaultsAreThoseOfTheStructures) {
   EXPECT_TRUE(light.shadowMaps.empty());
 }
 
+// Programs write bounds as float32 or with seven digits, and both may lie outside.
+TEST_F(Manifests, ValuesWithinARoundingOfABoundAreTheBound) {
+  const double halfPi = std::numbers::pi / 2, asFloat = static_cast<double>(static_cast<float>(halfPi));
+  ASSERT_GT(asFloat, halfPi);
+  struct Cone {
+    double inner, outer;
+  };
+  for (const auto& [inner, outer] : {Cone{0, asFloat},
+                                     {-1e-9, 1.570797},
+                                     {0.5, 0.5},
+                                     {0.7000001, 0.7},
+                                     {asFloat, asFloat},
+                                     {std::nextafter(0.3, 0), 0.3}}) {
+    SCOPED_TRACE(testing::Message() << inner << " " << outer);
+    manifest["lights"][0]["innerConeAngle"] = inner;
+    manifest["lights"][0]["outerConeAngle"] = outer;
+    const Capture capture = read();
+    const Light& light = capture.lights[0];
+    EXPECT_NEAR(light.outerConeAngle, outer, 1e-6);
+    EXPECT_NEAR(light.innerConeAngle, inner, 2e-6);  // of pi / 2 that is a rounding
+    // As the module takes it.
+    EXPECT_LE(static_cast<float>(light.outerConeAngle), 1.5707964f);
+    EXPECT_GE(light.innerConeAngle, 0);
+    EXPECT_LT(static_cast<float>(light.innerConeAngle), static_cast<float>(light.outerConeAngle));
+    // What is written is read, to the bit.
+    writeCapture(capture, directory / "again.exr");
+    const Light again = readCapture(directory / "again.exr").lights[0];
+    EXPECT_EQ(again.innerConeAngle, light.innerConeAngle);
+    EXPECT_EQ(again.outerConeAngle, light.outerConeAngle);
+  }
+  manifest["lights"][0]["innerConeAngle"] = 0.1;
+  manifest["lights"][0]["color"] = {1, -1e-8, 1};
+  manifest["lights"][0]["intensity"] = -1e-7;
+  manifest["materials"][0] = {{"subsurface_color", {1.0000001, 0.5, -1e-9}}, {"specular_ior", 0.9999999}};
+  const Capture capture = read();
+  EXPECT_EQ(capture.lights[0].color[1], 0);
+  EXPECT_EQ(capture.lights[0].intensity, 0);
+  const auto& medium = std::get<OpenPbrMaterial>(capture.materials[0]);
+  EXPECT_EQ(medium.color, (std::array<double, 3>{1, 0.5, 0}));
+  EXPECT_EQ(medium.ior, 1);
+  manifest["materials"][0] = {
+      {"thinWalled", {{"reflectance", {0.3, 0.5, 1}}, {"transmittance", {0.7000001, 0.4, 0}}}}};
+  const auto wall = std::get<ThinWallMaterial>(read().materials[0]);
+  EXPECT_EQ(wall.transmittance[0], 1 - 0.3);
+}
+
 TEST_F(Manifests, LightTablesOfAnyLengthBecomeThoseOfTheModule) {
   manifest["lights"] = {{{"type", "point"},
                          {"position", {1, 2, 3}},
@@ -208,6 +257,30 @@ TEST_F(Manifests, LightTablesOfAnyLengthBecomeThoseOfTheModule) {
     EXPECT_DOUBLE_EQ(light.angleTable[i], 1 - at);
     EXPECT_DOUBLE_EQ(light.distanceTable[i], at < 0.5 ? 2 * at : 1.5 - at);
   }
+}
+
+// A beam 1 degree wide between two of the 64 angles is lost whole, one of 12 degrees is not.
+TEST_F(Manifests, LightTablesSayWhatTheyLose) {
+  const auto beam = [](double at, double halfWidth) {
+    std::vector<double> factors(361);
+    for (std::size_t i = 0; i < factors.size(); ++i)
+      factors[i] = std::max(0.0, 1 - std::abs(0.5 * static_cast<double>(i) - at) / halfWidth);
+    return factors;
+  };
+  const double step = 180.0 / (PELLUCID_LIGHT_TABLE_ENTRIES - 1);
+  manifest["lights"][0]["angleTable"] = beam(1.5, 1);
+  Capture capture = read();
+  EXPECT_EQ(capture.lights[0].angleTableError, 1)
+      << "all angles of the table are outside of 0.5 .. 2.5 degrees";
+  ASSERT_EQ(coarseTables(capture).size(), 1u);
+  expectNames(coarseTables(capture)[0], {"lights[0].angleTable", "1/63", "1 of the most"});
+  manifest["lights"][0]["angleTable"] = beam(10, 12);
+  capture = read();
+  // A tent loses at its top at most what half a step takes off.
+  EXPECT_LE(capture.lights[0].angleTableError, step / 2 / 12 + 1e-9);
+  manifest["lights"][0]["angleTable"] = beam(0, 180);
+  EXPECT_LT(read().lights[0].angleTableError, 1e-9) << "a line";
+  EXPECT_TRUE(coarseTables(read()).empty());
 }
 
 TEST_F(Manifests, LightTablesNeedWhatTheyAreOver) {
@@ -340,6 +413,30 @@ TEST_F(Manifests, StoredValuesMayHaveAScale) {
   EXPECT_EQ(scaled.albedo.data[1], 1);
   EXPECT_EQ(scaled.normal.data[0], 0);
   EXPECT_EQ(scaled.normal.data[2], 1);
+}
+
+// Renderers keep light and color apart, or multiplied: what is read is the irradiance, and the whole truth.
+TEST_F(Manifests, LightMayBeAColorsMultipleOrPart) {
+  const Capture plain = read();
+  Image color(kSampleWidth, kSampleHeight, 3);
+  for (std::size_t i = 0; i < color.data.size(); ++i) color.data[i] = i % 5 == 0 ? 0.5f : 0.25f;
+  writeExr(directory / "color.exr", color, {"R", "G", "B"});
+  const json times = {{"file", "color.exr"}, {"channels", {"R", "G", "B"}}};
+  manifest["buffers"]["irradiance"]["times"] = times;
+  manifest["truth"]["times"] = times;
+  const Capture product = read();
+  for (std::size_t i = 0; i < color.data.size(); ++i) {
+    ASSERT_EQ(product.irradiance.data[i], plain.irradiance.data[i] * color.data[i]) << i;
+    ASSERT_EQ(product.truth->image.data[i], plain.truth->image.data[i] * color.data[i]) << i;
+  }
+  manifest["buffers"]["irradiance"]["includesAlbedo"] = true;
+  manifest["buffers"]["albedo"] = times;
+  EXPECT_TRUE(sameBits(read().irradiance, plain.irradiance)) << "powers of two";
+  manifest["buffers"]["irradiance"]["includesAlbedo"] = 1;
+  expectNames(errorOf([&] { read(); }), {"buffers.irradiance.includesAlbedo", "true or false"});
+  manifest["buffers"]["irradiance"]["includesAlbedo"] = true;
+  manifest["buffers"].erase("albedo");
+  expectNames(errorOf([&] { read(); }), {"buffers.irradiance.includesAlbedo", "albedo"});
 }
 
 TEST_F(Manifests, OtherLayersOfTheIrradiancesFileAreKept) {
@@ -548,7 +645,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"/lights/1/shadowMaps", "[]", {"lights[1].shadowMaps", "has 0"}},
         Mistake{"/lights/1/shadowMaps", "{}", {"lights[1].shadowMaps", "array"}},
         Mistake{"/pellucid", "2", {"m.json", "pellucid", "version 2"}},
-        Mistake{"/metersPerUnit", "0", {"metersPerUnit", "positive", "0"}},
+        Mistake{"/metersPerUnit", "0", {"metersPerUnit", "at least", "0"}},
         Mistake{"/metersPerUnit", "\"1\"", {"metersPerUnit", "number", "\"1\""}},
         Mistake{"/metersPerUnit", "1e300", {"metersPerUnit", "1e+300"}},
         Mistake{"/camera/clipFromView", "[1,2,3]", {"camera.clipFromView", "16", "3"}},
@@ -594,7 +691,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"/materials/0", "{}", {"materials[0]", "preset", "subsurface_color"}},
         Mistake{"/materials/0",
                 R"({"subsurface_color": [0.5, 1.5, 0]})",
-                {"materials[0].subsurface_color", "within 0 and 1", "1.5"}},
+                {"materials[0].subsurface_color[1]", "at most 1", "1.5"}},
         Mistake{"/materials/0",
                 R"({"subsurface_radius": 0})",
                 {"materials[0].subsurface_radius", "above 0", "0"}},
@@ -629,7 +726,7 @@ INSTANTIATE_TEST_SUITE_P(
                 {"materials[0].thinWalled.transmittance", "1.1"}},
         Mistake{"/materials/0",
                 R"({"thinWalled": {"reflectance": [0.5, -1, 0.5], "transmittance": [0, 0, 0]}})",
-                {"materials[0].thinWalled.reflectance", "from 0 to 1"}},
+                {"materials[0].thinWalled.reflectance[1]", "at least 0"}},
         Mistake{"/truth/scale", "\"pi\"", {"truth.scale", "pi"}}));
 
 TEST_F(Manifests, UnknownPresetIsNamedWhenCompiled) {

@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "capture/material.h"
 #include "cli/light_option.h"
@@ -101,8 +102,8 @@ TEST_F(Gltf, QuantizedAndOtherAttributes) {
       b.accessor(std::vector<std::int8_t>{0, 0, 127, 0, 0, 0, 127, 0, 0, 0, -128, 0}, 5120, "VEC3", 4);
   b.json["bufferViews"].back()["byteStride"] = 4;
   b.json["accessors"].back()["normalized"] = true;
-  const int color = b.accessor(std::vector<std::uint8_t>{255, 0, 51, 255, 255, 0, 51, 255, 255, 0, 51, 255},
-                               5121, "VEC4", 4);
+  const int color =
+      b.accessor(std::vector<std::uint8_t>{255, 0, 51, 255, 255, 0, 51, 0, 255, 0, 51, 51}, 5121, "VEC4", 4);
   b.json["accessors"].back()["normalized"] = true;
   const int mark = b.accessor(std::vector<float>{1, 0, 0.5f}, 5126, "SCALAR", 1);
   b.json["extensionsRequired"] = {"KHR_mesh_quantization"};
@@ -117,6 +118,9 @@ TEST_F(Gltf, QuantizedAndOtherAttributes) {
   expectVector(m.vertices[0].normal, 0, 0, 1);
   expectVector(m.vertices[2].normal, 0, 0, -1);
   expectVector(m.vertices[1].color, 1, 0, 0.2);
+  EXPECT_EQ(m.vertices[0].alpha, 1);
+  EXPECT_EQ(m.vertices[1].alpha, 0);
+  EXPECT_EQ(m.vertices[2].alpha, 0.2f);
   EXPECT_EQ(m.vertices[1].mark, 0);
   EXPECT_EQ(m.vertices[2].mark, 0.5f);
 }
@@ -175,6 +179,19 @@ TEST_F(Gltf, CamerasAndLights) {
   EXPECT_EQ(m.lights[1].range, 7);
   EXPECT_EQ(m.lights[1].outerConeAngle, 0.3);
   EXPECT_EQ(scene.warnings, std::vector<std::string>{"extension VENDOR_thing is ignored"});
+}
+
+TEST_F(Gltf, ConesWithinARoundingOfTheirBoundsAreThoseOfAManifest) {
+  GltfBuilder b = square();
+  b.json["extensionsUsed"] = {"KHR_lights_punctual"};
+  b.json["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0;
+  Json& light = b.json["extensions"]["KHR_lights_punctual"]["lights"][0];
+  light = {{"type", "spot"}, {"spot", {{"innerConeAngle", 1.5707963705}, {"outerConeAngle", 1.5707963705}}}};
+  const Light spot = loadGltf(write("t.glb", b.glb())).model.lights[0];
+  EXPECT_EQ(spot.outerConeAngle, std::numbers::pi / 2);
+  EXPECT_LT(static_cast<float>(spot.innerConeAngle), static_cast<float>(spot.outerConeAngle));
+  light["spot"]["outerConeAngle"] = 1.6;
+  expectRefused(b.glb(), {"lights[0].outerConeAngle", "1.6"});
 }
 
 TEST_F(Gltf, TexturesAreDecoded) {

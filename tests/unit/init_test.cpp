@@ -68,6 +68,41 @@ protected:
     return image;
   }
 
+  Image constantImage(const std::array<float, 3>& color) const {
+    Image image(frame_.width, frame_.height, 3);
+    for (std::size_t i = 0; i < image.data.size(); ++i) image.data[i] = color[i % 3];
+    return image;
+  }
+  static Image times(Image image, const Image& by, float factor) {
+    for (std::size_t i = 0; i < image.data.size(); ++i) image.data[i] *= by.data[i] * factor;
+    return image;
+  }
+  // Three roundings lie between: factor, product, quotient.
+  static void expectLight(const Image& a, const Image& b) {
+    ASSERT_EQ(a.data.size(), b.data.size());
+    for (std::size_t i = 0; i < a.data.size(); ++i) ASSERT_NEAR(a.data[i], b.data[i], 4e-7f * b.data[i]) << i;
+  }
+  // The irradiance of a file with these passes of light beside depth, an albedo and numbers of materials.
+  struct Pass {
+    std::string name;
+    Image image;
+  };
+  GuessedManifest guessPasses(const std::vector<Pass>& passes) const {
+    const Image id = materialImage(5);
+    std::vector<Channel> channels = {{"Z", &frame_.frontDepth.image, 0}};
+    // V-Ray saves numbers as colors.
+    for (const char* channel : {"VRayMtlID.R", "VRayMtlID.G", "VRayMtlID.B"})
+      channels.push_back({channel, &id, 0});
+    for (const Pass& pass : passes)
+      for (const Channel& channel : triple(pass.name + ".", "RGB", pass.image)) channels.push_back(channel);
+    write("passes.exr", channels);
+    InitWords words;
+    words.camera.verticalFov = fov_;
+    return guess({"passes.exr"}, words);
+  }
+
+  static constexpr float kPi = std::numbers::pi_v<float>;
+
   GuessedManifest guess(const std::vector<std::string>& names, const InitWords& words) const {
     std::vector<std::filesystem::path> files;
     for (const std::string& name : names) files.push_back(folder_ / name);
@@ -101,12 +136,12 @@ protected:
 
 // One file of layers and OpenEXR's camera attributes, as Arnold and Nuke write them.
 TEST_F(Init, LayersWithOpenExrsCameraNeedNoWords) {
-  const Image id = materialImage(1);
+  const Image id = materialImage(1), albedo = constantImage({0.5f, 0.25f, 0.125f});
+  const Image product = times(frame_.irradiance, albedo, 1 / kPi);
   std::vector<Channel> channels = {
       {"Z", &frame_.frontDepth.image, 0}, {"back.Z", &frame_.backDepth.image, 0}, {"id", &id, 0}};
-  for (const auto& layer :
-       {triple("direct_diffuse.", "RGB", frame_.irradiance), triple("N.", "XYZ", frame_.normal),
-        triple("albedo.", "RGB", frame_.albedo.empty() ? frame_.irradiance : frame_.albedo)})
+  for (const auto& layer : {triple("direct_diffuse.", "RGB", product), triple("N.", "XYZ", frame_.normal),
+                            triple("albedo.", "RGB", albedo)})
     channels.insert(channels.end(), layer.begin(), layer.end());
   // OpenEXR: a left-handed camera space, row vectors; the image is 0 .. 1 with y down.
   Imath::M44f worldToCamera, worldToNdc;
@@ -127,14 +162,14 @@ TEST_F(Init, LayersWithOpenExrsCameraNeedNoWords) {
   expectSameRays(capture.clipFromView, frame_.clipFromView);
   EXPECT_TRUE(sameBits(capture.frontDepth.image, frame_.frontDepth.image));
   EXPECT_TRUE(sameBits(capture.backDepth.image, frame_.backDepth.image));
-  EXPECT_TRUE(sameBits(capture.irradiance, frame_.irradiance));
+  expectLight(capture.irradiance, frame_.irradiance);
   EXPECT_TRUE(sameBits(capture.normal, frame_.normal));
   EXPECT_FALSE(capture.normalsInViewSpace);
   EXPECT_EQ(capture.material, frame_.material);
   ASSERT_FALSE(guessed.missing.empty());
   EXPECT_NE(guessed.missing[0].find("lights: without a light"), std::string::npos);
   EXPECT_TRUE(guessed.json.contains("// lights"));
-  EXPECT_TRUE(guessed.json.contains("// irradiance")) << "it may hold the albedo";
+  EXPECT_TRUE(guessed.json["buffers"]["irradiance"]["includesAlbedo"]);
 }
 
 // A file for each texture of four channels, a reversed depth buffer, normals as 0 .. 1: what RenderDoc saves.
@@ -209,6 +244,73 @@ TEST_F(Init, BlendersPassesAreKnown) {
             "ViewLayer.Combined.R");
   words.roles = {{Role::Irradiance, "ViewLayer.None"}};
   EXPECT_NE(errorOf([&] { guess({"render.exr"}, words); }).find("ViewLayer.Combined"), std::string::npos);
+}
+
+// Renderers store E / pi, the albedo's part of it, or both; all give back E.
+TEST_F(Init, PassesOfLightOfEachRendererGiveTheIrradiance) {
+  const Image& light = frame_.irradiance;
+  const Image white = constantImage({1, 1, 1}), albedo = constantImage({0.5f, 0.25f, 0.125f});
+  const Image rawPass = times(light, white, 1 / kPi), product = times(light, albedo, 1 / kPi),
+              half = times(rawPass, white, 0.5f);
+  struct Case {
+    const char* renderer;
+    std::vector<Pass> passes;
+    const char* taken;
+  };
+  const std::vector<Case> cases = {
+      {"V-Ray",
+       {{"VRayDiffuseFilter", albedo}, {"VRayLighting", product}, {"VRayRawLighting", rawPass}},
+       "VRayRawLighting.R"},
+      {"V-Ray, with indirect light",
+       {{"VRayDiffuseFilter", albedo},
+        {"VRayRawLighting", half},
+        {"VRayRawTotalLighting", rawPass},
+        {"VRayTotalLighting", product}},
+       "VRayRawTotalLighting.R"},
+      {"V-Ray, the product alone",
+       {{"VRayDiffuseFilter", albedo}, {"VRayLighting", product}},
+       "VRayLighting.R"},
+      {"V-Ray of Maya", {{"diffuse", albedo}, {"lighting", product}, {"rawLight", rawPass}}, "rawLight.R"},
+      {"Arnold",
+       {{"diffuse_albedo", albedo}, {"diffuse_direct", half}, {"diffuse", product}, {"albedo", white}},
+       "diffuse.R"},
+      {"Arnold, direct light", {{"diffuse_albedo", albedo}, {"diffuse_direct", product}}, "diffuse_direct.R"},
+      {"Redshift",
+       {{"DiffuseFilter", albedo}, {"DiffuseLighting", product}, {"DiffuseLightingRaw", rawPass}},
+       "DiffuseLightingRaw.R"},
+  };
+  for (const Case& c : cases) {
+    SCOPED_TRACE(c.renderer);
+    const GuessedManifest guessed = guessPasses(c.passes);
+    EXPECT_EQ(guessed.json["buffers"]["irradiance"]["channels"][0], c.taken);
+    const Capture capture = read(guessed);
+    expectLight(capture.irradiance, light);
+    EXPECT_TRUE(sameBits(capture.albedo, albedo));
+    EXPECT_EQ(capture.material, frame_.material);
+    EXPECT_EQ(guessed.json["buffers"]["material"]["channel"], "VRayMtlID.R");
+  }
+}
+
+TEST_F(Init, AProductNeedsAnAlbedoAboveZero) {
+  Image black = constantImage({0.5f, 0, 0.5f});
+  const std::string error = errorOf([&] {
+    read(guessPasses(
+        {{"VRayDiffuseFilter", black}, {"VRayLighting", times(frame_.irradiance, black, 1 / kPi)}}));
+  });
+  for (const char* part :
+       {"capture.json", "buffers.irradiance.includesAlbedo", "pixel (", "in G", "albedo of 0"})
+    EXPECT_NE(error.find(part), std::string::npos) << part << " in: " << error;
+  // Where nothing is translucent there is no light to know.
+  for (std::size_t i = 0; i < black.data.size(); ++i)
+    if (frame_.material[i / 3] != 0) black.data[i] = 0.5f;
+  const Capture capture = read(guessPasses(
+      {{"VRayDiffuseFilter", black}, {"VRayLighting", times(frame_.irradiance, black, 1 / kPi)}}));
+  for (std::size_t i = 0; i < black.data.size(); ++i)
+    ASSERT_NEAR(capture.irradiance.data[i], black.data[i] > 0 ? frame_.irradiance.data[i] : 0, 1e-5f) << i;
+  // Without an albedo the product stays, and the person is told.
+  const GuessedManifest alone = guessPasses({{"VRayLighting", frame_.irradiance}});
+  EXPECT_FALSE(alone.json["buffers"]["irradiance"].contains("includesAlbedo"));
+  EXPECT_NE(alone.json["// irradiance"].get<std::string>().find("--albedo"), std::string::npos);
 }
 
 TEST_F(Init, WhatCannotBeACaptureIsNamed) {

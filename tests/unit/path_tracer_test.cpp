@@ -193,6 +193,79 @@ TEST(PathTracer, MeshesAreTheSolidsTheyEnclose) {
                 3 * std::hypot(means[0].standardError()[c], means[1].standardError()[c]));
 }
 
+// A plate without a material inside the cube: of a node of its own, or a second primitive of the cube's node.
+Model cubeWithPlate(bool ownObject, double halfWidth) {
+  Model model = cube(1.5, false);
+  const Model plate = cube(1, false);
+  const auto first = static_cast<std::uint32_t>(model.vertices.size());
+  for (Vertex vertex : plate.vertices) {
+    for (std::size_t i = 0; i < 3; ++i) vertex.position[i] *= static_cast<float>(i == 2 ? 0.2 : halfWidth);
+    model.vertices.push_back(vertex);
+  }
+  Part part = plate.parts[0];
+  part.firstIndex = static_cast<std::uint32_t>(model.indices.size());
+  for (const std::uint32_t i : plate.indices) model.indices.push_back(first + i);
+  model.surfaces.emplace_back();
+  part.surface = 1;
+  part.object = ownObject ? 7 : 0;
+  model.parts.push_back(part);
+  return model;
+}
+
+TEST(PathTracer, OpaqueBodiesWithinAMediumEndPaths) {
+  for (const double ior : {1.0, 1.4}) {
+    const std::unique_ptr<TraceScene> whole = makeMeshScene(cube(1.5, false)),
+                                      node = makeMeshScene(cubeWithPlate(true, 1)),
+                                      primitive = makeMeshScene(cubeWithPlate(false, 1)),
+                                      wall = makeMeshScene(cubeWithPlate(true, 1.6));
+    const auto start = whole->first({{0.3, 0.4, 9}, {0, 0, -1}}, 0);
+    ASSERT_TRUE(start);
+    int through = 0, past = 0;
+    for (std::uint64_t i = 0; i < 20000; ++i) {
+      const auto exitOf = [&](const TraceScene& scene) {
+        PathRandom random(1, 0, i);
+        return walk(scene, skin1(ior), *start, random);
+      };
+      const auto isFar = [](const std::optional<WalkExit>& exit) {
+        return exit && exit->surface.position.z < -1.4;
+      };
+      const std::optional<WalkExit> a = exitOf(*node), b = exitOf(*primitive);
+      ASSERT_EQ(a.has_value(), b.has_value()) << "however the file writes the plate";
+      if (a) {
+        ASSERT_EQ(a->surface.position, b->surface.position);
+      }
+      through += isFar(exitOf(*whole));
+      past += isFar(a);
+      ASSERT_FALSE(isFar(exitOf(*wall))) << "a plate from wall to wall lets nothing by";
+    }
+    EXPECT_GT(through, 1000);
+    EXPECT_LT(3 * past, through)
+        << "the gap of 1/2 at each side is 5/9 of the section, but far from the middle";
+    EXPECT_GT(past, 0);
+  }
+}
+
+TEST(PathTracer, OpaqueSolidsWithinAMediumEndPathsToo) {
+  SceneModel model =
+      oneSolid(std::make_unique<Polyhedron>(Polyhedron::box(glm::dvec3(0), glm::dmat3(1), glm::dvec3(1.5))));
+  model.objects.push_back(
+      {std::make_unique<Polyhedron>(Polyhedron::box(glm::dvec3(0), glm::dmat3(1), glm::dvec3(1.6, 1.6, 0.2))),
+       0,
+       {}});
+  const auto scene = makeSolidScene(model);
+  const SurfacePoint start{{0.3, 0.4, 1.5}, {0, 0, 1}, {0, 0, 1}, 0, 1};
+  int left = 0;
+  for (std::uint64_t i = 0; i < 5000; ++i) {
+    PathRandom random(1, 0, i);
+    const auto exit = walk(*scene, skin1(1), start, random);
+    left += exit.has_value();
+    if (exit) {
+      ASSERT_GT(exit->surface.position.z, 0);
+    }
+  }
+  EXPECT_GT(left, 1000);
+}
+
 TEST(PathTracer, HolesAreFoundAndFilled) {
   EXPECT_TRUE(openObjects(cube(1, false)).empty()) << "eight corners, each three vertices at one place";
   Model model = cube(1, true);

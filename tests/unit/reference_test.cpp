@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <string>
 
@@ -73,6 +75,87 @@ TEST(AmbientReference, IrradianceIsTheIntegralOfRadiance) {
       EXPECT_NEAR(Ambient::irradiance(environment, n).y, sum, 1e-4) << "coefficient " << i;
       EXPECT_NEAR(Ambient::irradiance(environment, n).x, 3.14159265358979, 1e-5);
     }
+}
+
+// A ball of 8 mm seen along (.4, -.3, -1), by a camera that looks along -z and is sheared, or by one that
+// looks that way.
+Capture obliqueBall(bool sheared, double* cosines) {
+  constexpr int kSide = 80;
+  constexpr double kRadius = 8, kPixel = 0.25;
+  const glm::dvec3 along(0.4, -0.3, -1), direction = glm::normalize(along);
+  Capture c = facingPlane(kSide, kSide, kPixel);
+  c.viewFromWorld[14] = -40;
+  if (sheared) {  // x + .4 z, y - .3 z: all points of a ray have one place in the image
+    c.clipFromView[8] = 0.4 * c.clipFromView[0];
+    c.clipFromView[9] = -0.3 * c.clipFromView[5];
+    c.clipFromView[12] = 40 * c.clipFromView[8];
+    c.clipFromView[13] = 40 * c.clipFromView[9];
+  } else {
+    const glm::dvec3 x = glm::normalize(glm::cross(direction, glm::dvec3(0, 1, 0))),
+                     y = glm::cross(x, direction);
+    for (std::size_t i = 0; i < 3; ++i) {
+      c.viewFromWorld[4 * i] = x[static_cast<int>(i)];
+      c.viewFromWorld[4 * i + 1] = y[static_cast<int>(i)];
+      c.viewFromWorld[4 * i + 2] = -direction[static_cast<int>(i)];
+    }
+  }
+  c.normalsInViewSpace = false;
+  const glm::dmat4 viewFromWorld = toMatrix(c.viewFromWorld), worldFromView = glm::inverse(viewFromWorld);
+  const Camera camera(c.clipFromView, kSide, kSide);
+  for (int py = 0; py < kSide; ++py)
+    for (int px = 0; px < kSide; ++px) {
+      const std::size_t pixel = static_cast<std::size_t>(py) * kSide + static_cast<std::size_t>(px);
+      const glm::dvec3 origin(worldFromView * glm::dvec4(camera.position({px + 0.5, py + 0.5}, 1), 1));
+      const double b = glm::dot(origin, direction),
+                   inside = b * b - glm::dot(origin, origin) + kRadius * kRadius;
+      c.material[pixel] = inside > 0;
+      cosines[pixel] = 0;
+      if (!(inside > 0)) {
+        c.frontDepth.image.data[pixel] = kNoDepth;
+        continue;
+      }
+      const glm::dvec3 p = origin - (b + std::sqrt(inside)) * direction, n = p / kRadius;
+      c.frontDepth.image.data[pixel] = static_cast<float>(-(viewFromWorld * glm::dvec4(p, 1)).z);
+      cosines[pixel] = -glm::dot(n, direction);
+      for (int i = 0; i < 3; ++i) {
+        c.normal.data[3 * pixel + static_cast<std::size_t>(i)] = static_cast<float>(n[i]);
+        c.irradiance.data[3 * pixel + static_cast<std::size_t>(i)] =
+            static_cast<float>(1 + 0.9 * std::sin(2 * p.x));
+      }
+    }
+  return c;
+}
+
+// Area of the cap that faces the rays by more than a cosine, 2 pi R^2 (1 - cosine), and the light on it after
+// diffusion, over that area, are those of the body and not of the camera.
+TEST(ReferenceCamera, ShearedViewsSeeTheBodyOfStraightOnes) {
+  constexpr double kCosine = 0.35, kCap = 2 * std::numbers::pi * 64 * (1 - kCosine);
+  double light[2];
+  for (const bool sheared : {false, true}) {
+    std::vector<double> cosines(80 * 80);
+    const Capture c = obliqueBall(sheared, cosines.data());
+    const SurfaceReader surfaces(c);
+    Settings settings;
+    settings.features = PELLUCID_FEATURE_DIFFUSION;
+    const Image image = compute(c, {burleyMaterial(1)}, settings).image;
+    double area = 0, sum = 0;
+    for (int y = 0; y < c.height; ++y)
+      for (int x = 0; x < c.width; ++x) {
+        const std::size_t pixel = static_cast<std::size_t>(y * c.width + x);
+        if (!(cosines[pixel] > kCosine)) continue;
+        const std::optional<Surface> s = surfaces.at(x, y);
+        ASSERT_TRUE(s);
+        EXPECT_NEAR(-glm::dot(*s->normal, s->ray), cosines[pixel], 1e-5);
+        const SurfaceReader::Footprint f = surfaces.footprint(x, y, *s);
+        const double part = 4 * glm::length(glm::cross(f.halfX, f.halfY));
+        area += part;
+        sum += part * static_cast<double>(image.at(x, y)[0]);
+      }
+    // Pixels at the cap's rim: some 200 of 3,000, each counted whole or not at all.
+    EXPECT_NEAR(area, kCap, 0.01 * kCap) << sheared;
+    light[sheared] = sum / area;
+  }
+  EXPECT_NEAR(light[1], light[0], 0.01 * light[0]);
 }
 
 // Slab 4 mm thick facing the camera, lit from behind, dark in front.

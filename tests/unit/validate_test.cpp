@@ -343,6 +343,23 @@ TEST(Validate, WarnsOfShadowMaps) {
   }
 }
 
+// 65504 is the largest half, which exposed light must not exceed.
+TEST(Validate, WarnsOfLightThatHalvesCut) {
+  Frame f;
+  for (PellucidImage& image : f.frame.transients) image = Frame::view();
+  f.lights[0].color[0] = f.lights[0].color[1] = f.lights[0].color[2] = 0.5f;
+  f.lights[0].intensity = 2 * 65504;
+  EXPECT_EQ(f.problems(PELLUCID_SEVERITY_WARNING), "");
+  f.lights[0].intensity = 2 * 65536;
+  EXPECT_EQ(f.problems(), "");
+  const std::string warnings = f.problems(PELLUCID_SEVERITY_WARNING);
+  EXPECT_NE(warnings.find("lights[0].intensity brings an irradiance of 65536 with preExposure 1"),
+            std::string::npos)
+      << warnings;
+  f.frame.preExposure = 0.5f;
+  EXPECT_EQ(f.problems(PELLUCID_SEVERITY_WARNING), "");
+}
+
 // Tiles that meet, other layers and one map of two lights are no overlap.
 TEST(Validate, TilesMayMeet) {
   const std::vector<std::function<void(PellucidShadowMap&)>> changes = {

@@ -5,6 +5,7 @@
 
 layout(location = 1) in vec2 uv;
 layout(location = 3) in float planar;
+layout(location = 8) in float alpha;
 
 layout(location = 0) out float outPlanar;
 layout(location = 1) out float outDepth;
@@ -18,11 +19,13 @@ bool isBehind(float depth, float slope, float front) {
 
 void main() {
   float slope = fwidth(gl_FragCoord.z);
-  if (isHole(uv)) discard;
+  if (isHole(uv, alpha)) discard;
   if (behindWhat() != 0u) {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     vec4 front = texelFetch(frontObject, pixel, 0);
     bool sameObject = (behindWhat() == BEHIND_CASTER ? front.r : front.a) == draw.addedColor.a;
+    // Light's way through a body also ends at what is opaque, whatever object it is.
+    if (behindWhat() == BEHIND_CASTER && front.r >= 0.0 && partMaterial() == 0u) sameObject = true;
     float frontDepth = texelFetch(earlierDepth, pixel, 0).r;
     bool behind = behindWhat() == BEHIND_CASTER ? isNearer(frontDepth, gl_FragCoord.z)
                                               : isBehind(gl_FragCoord.z, slope, frontDepth);

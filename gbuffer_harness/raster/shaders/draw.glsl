@@ -38,9 +38,10 @@ bool isNearer(float depth, float other) {
   return (draw.ids.y & 1u) != 0u ? depth > other : depth < other;
 }
 
-bool isHole(vec2 uv) {
+// alpha: the vertices'.
+bool isHole(vec2 uv, float alpha) {
   // Level 0 and one sample, so that every pass agrees.
-  return draw.baseColor.a > 0.0 && textureLod(baseColorTexture, uv, 0.0).a < draw.baseColor.a;
+  return draw.baseColor.a > 0.0 && textureLod(baseColorTexture, uv, 0.0).a * alpha < draw.baseColor.a;
 }
 
 #endif

@@ -10,6 +10,7 @@ layout(location = 4) in float mark;
 layout(location = 5) in vec2 normalUv;
 layout(location = 6) in vec4 tangent;
 layout(location = 7) in vec2 lobeUv;
+layout(location = 8) in float alpha;
 
 layout(location = 0) out vec3 outNormal;
 layout(location = 1) out vec2 outUv;
@@ -19,6 +20,7 @@ layout(location = 4) out vec2 outNormalUv;
 layout(location = 5) out vec4 outTangent;
 layout(location = 6) out vec3 outPosition;
 layout(location = 7) out vec2 outLobeUv;
+layout(location = 8) out float outAlpha;
 
 // Passes compare depths of the same triangle for equality.
 invariant gl_Position;
@@ -36,4 +38,5 @@ void main() {
   outTangent = tangent;
   outPosition = position;
   outLobeUv = lobeUv;
+  outAlpha = alpha;
 }

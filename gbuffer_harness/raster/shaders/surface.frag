@@ -11,6 +11,7 @@ layout(location = 4) in vec2 normalUv;
 layout(location = 5) in vec4 tangent;
 layout(location = 6) in vec3 position;
 layout(location = 7) in vec2 lobeUv;
+layout(location = 8) in float alpha;
 
 layout(location = 0) out vec4 outNormalPlanar;
 layout(location = 1) out vec4 outAlbedoObject;
@@ -46,7 +47,7 @@ void main() {
   float size = length(normal);
   vec3 n = size > 0.0 ? normal / size : vec3(0.0, 0.0, 1.0);
   vec3 mapped = mappedNormal(n);
-  if (isHole(uv)) discard; // after the derivatives
+  if (isHole(uv, alpha)) discard; // after the derivatives
   float facing = gl_FrontFacing ? 1.0 : -1.0;
   bool inFront = planar > 0.0; // always, but in orthographic views whose near plane lies behind the eye
   outNormalPlanar = vec4(inFront ? facing * mapped : vec3(0.0), planar);

@@ -12,6 +12,7 @@
 #include "shared/pellucid_shared.h"
 
 layout(location = 1) in vec2 uv;
+layout(location = 8) in float alpha;
 
 layout(location = 0) out vec4 outTransmitted; // rgb: transmitted / rho, to be added to the irradiance
 
@@ -48,7 +49,7 @@ void main() {
   float front = texelFetch(earlierDepth, pixel, 0).r;
   uint material = decodeMaterial(texelFetch(materialImage, pixel, 0));
   bool sameObject = texelFetch(frontObject, pixel, 0).a == draw.addedColor.a;
-  if (isHole(uv) || !sameObject || !isNearer(front, gl_FragCoord.z)) discard;
+  if (isHole(uv, alpha) || !sameObject || !isNearer(front, gl_FragCoord.z)) discard;
   if (material == 0u || material > frame.flags.y) discard;
 
   vec3 normal = vec3(0.0);

@@ -5,6 +5,7 @@
 
 #include "common/error.h"
 #include "common/parallel.h"
+#include "reference/camera.h"
 #include "reference/path_tracer/emission.h"
 #include "reference/path_tracer/walk.h"
 #include "scene/vector.h"
@@ -34,6 +35,8 @@ LightPaths::LightPaths(const Capture& capture, const TraceScene& scene, const st
   const glm::dmat4 worldFromView = glm::inverse(toGlm(capture.viewFromWorld));
   eye_ = scene.fromWorld(glm::dvec3(worldFromView[3]));
   forward_ = -glm::dvec3(worldFromView[2]);
+  parallel_ =
+      glm::dmat3(worldFromView) * Camera(capture.clipFromView, width_, height_).rayThrough({0, 0, -1});
   const double unit = orthographic_ ? scene.millimetersPerUnit() : 1;
   pixelSize_ = {2 * unit / std::abs(capture.clipFromView[0]) / width_,
                 2 * unit / std::abs(capture.clipFromView[5]) / height_};
@@ -47,21 +50,18 @@ std::optional<LightPaths::Arrival> LightPaths::seen(const SurfacePoint& point, c
   const auto pixel =
       static_cast<std::size_t>(py) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(px);
   if (material_[pixel] == 0 || material_[pixel] != point.material) return std::nullopt;
-  glm::dvec3 toEye = orthographic_ ? -forward_ : eye_ - point.position;
+  glm::dvec3 toEye = orthographic_ ? -parallel_ : eye_ - point.position;
   const double distance = glm::length(toEye);  // above 0: clip.w is
   toEye /= distance;
   const double cosine = glm::dot(toEye, point.face);
   if (!(cosine > 0)) return std::nullopt;
-  const double reach = orthographic_ ? glm::dot(point.position - eye_, forward_) : distance;
+  const double along = -glm::dot(toEye, forward_);  // above 0: the point is in front of the eye
+  const double reach = orthographic_ ? glm::dot(point.position - eye_, forward_) / along : distance;
   if (scene_.occluded({point.position + scene_.offset() * point.face, toEye}, reach)) return std::nullopt;
   // Area of surface that the pixel sees: its own, at this depth, over the cosine. A plane's area at depth z
   // lies under the angle of its normal, the view axis, to the ray.
-  double area = pixelSize_.x * pixelSize_.y / cosine;
-  if (!orthographic_) {
-    const double along = -glm::dot(toEye, forward_);  // above 0: the point is in front of the eye
-    const double depth = distance * along;
-    area *= depth * depth * along;
-  }
+  double area = pixelSize_.x * pixelSize_.y * along / cosine;
+  if (!orthographic_) area *= distance * along * distance * along;
   return Arrival{pixel, scale_[pixel] * flux / area, 0};
 }
 

@@ -46,6 +46,7 @@ private:
   int width_, height_;
   glm::dmat4 clipFromWorld_;
   glm::dvec3 eye_, forward_;  // of the scene's coordinates
+  glm::dvec3 parallel_;       // along the rays of an orthographic camera
   bool orthographic_;
   glm::dvec2 pixelSize_;  // mm on a plane at distance 1 mm, or of any plane of an orthographic camera
   std::vector<std::uint8_t> material_;

@@ -118,6 +118,7 @@ public:
     }
     for (TriangleScene& body : bodies_)
       if (!body.triangles.empty()) fill(body, device_.get());
+    if (!opaque_.triangles.empty()) fill(opaque_, device_.get());
     if (all_.triangles.empty()) throw InputError(model.name, "", "has no triangle that has an area");
     fill(all_, device_.get());
   }
@@ -155,6 +156,18 @@ public:
   }
 
   std::optional<SurfacePoint> exit(int body, const Ray& ray, double limit) const override {
+    std::optional<SurfacePoint> exit = ownExit(body, ray, limit);
+    if (opaque_.triangles.empty()) return exit;
+    const auto block = opaque_.hit(ray, 0, exit ? glm::distance(ray.origin, exit->position) : limit);
+    return block ? opaque_.point(*block) : exit;
+  }
+
+  std::optional<Sphere> bounds() const override { return Sphere{glm::dvec3(0), radius_}; }
+  double offset() const override { return offset_; }
+
+private:
+  // The exit where nothing opaque stands before it.
+  std::optional<SurfacePoint> ownExit(int body, const Ray& ray, double limit) const {
     const TriangleScene& scene = bodies_[static_cast<std::size_t>(body)];
     double from = 0;
     for (;;) {
@@ -166,10 +179,6 @@ public:
     }
   }
 
-  std::optional<Sphere> bounds() const override { return Sphere{glm::dvec3(0), radius_}; }
-  double offset() const override { return offset_; }
-
-private:
   // Distance at which the search for the next hit begins: further on even where the offset is below a float's
   // step.
   double behind(const RTCRayHit& hit) const {
@@ -195,7 +204,8 @@ private:
       triangle.face = across / area;
       triangle.material = surface.material;
       triangle.doubleSided = surface.doubleSided;
-      for (TriangleScene* scene : {&own, &all_}) {
+      for (TriangleScene* scene : {&own, &all_, &opaque_}) {
+        if (scene == &opaque_ && triangle.material != 0) continue;
         scene->triangles.push_back(triangle);
         scene->body.push_back(body);
       }
@@ -205,7 +215,7 @@ private:
   double radius_, offset_;
   EmbreeDevice device_;
   std::vector<TriangleScene> bodies_;
-  TriangleScene all_;
+  TriangleScene all_, opaque_;
 };
 
 }  // namespace

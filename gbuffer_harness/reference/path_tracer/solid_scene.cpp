@@ -34,6 +34,12 @@ public:
     for (;;) {
       const Ray rest{ray.at(passed), ray.direction};
       const std::optional<double> length = object->solid->exit(rest, limit - passed);
+      const double reach = length.value_or(limit - passed);
+      if (const Object* block = blocking(rest, reach)) {
+        SurfacePoint blocked = point(*block, rest.at(reach));
+        blocked.material = 0;
+        return blocked;
+      }
       if (!length) return std::nullopt;
       passed += *length;
       const Object* next = around(ray.at(passed + offset_), *object);
@@ -55,10 +61,19 @@ private:
             object.materialAt ? object.materialAt(position) : object.material};
   }
 
-  // Another object that holds the point.
+  // Another translucent object that holds the point.
   const Object* around(const glm::dvec3& position, const Object& besides) const {
     for (const Object& object : model_.objects)
-      if (&object != &besides && object.solid->contains(position)) return &object;
+      if (&object != &besides && !isOpaque(object) && object.solid->contains(position)) return &object;
+    return nullptr;
+  }
+
+  static bool isOpaque(const Object& object) { return object.material == 0 && !object.materialAt; }
+
+  // Something opaque within the distance.
+  const Object* blocking(const Ray& ray, double distance) const {
+    for (const Object& object : model_.objects)
+      if (isOpaque(object) && object.solid->blocks(ray, 0, distance)) return &object;
     return nullptr;
   }
 

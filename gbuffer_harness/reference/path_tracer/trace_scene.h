@@ -28,7 +28,8 @@ public:
   // True when anything stands within `distance` of the ray's origin.
   virtual bool occluded(const Ray& ray, double distance) const = 0;
 
-  // The point at which a ray that starts inside a body leaves it, if that is nearer than `limit`.
+  // The point at which a ray that starts inside a body leaves it, or meets something opaque of any body,
+  // whose material is 0; if that is nearer than `limit`.
   virtual std::optional<SurfacePoint> exit(int body, const Ray& ray, double limit) const = 0;
 
   // A sphere around all of it; nothing for scenes without end.

@@ -53,8 +53,7 @@ glm::dvec3 TruthTracer::sample(std::size_t pixel, std::uint64_t number, std::uin
   const TraceMedium& medium = media_[capture_.material[pixel] - 1u];
   if (medium.wall) return sampleWall(pixel, *medium.wall, random);
   const std::optional<WalkExit> exit = walk(scene_, medium, *surface_.points[pixel], random);
-  // Light does not enter where the body is opaque.
-  if (!exit || exit->surface.material == 0) return glm::dvec3(0);
+  if (!exit) return glm::dvec3(0);
   return scale_[pixel] * exit->weight * sampleIrradiance(scene_, emitters_, exit->surface, random);
 }
 

@@ -80,6 +80,7 @@ std::optional<WalkExit> walkFrom(const TraceScene& scene, const TraceMedium& med
     const double distance = -std::log(1 - random.uniform()) / extinction[channel(random.uniform())];
     const std::optional<SurfacePoint> exit = scene.exit(body, {position, direction}, distance);
     if (exit) {
+      if (exit->material == 0) return std::nullopt;  // what is opaque absorbs all
       const glm::dvec3 passed = glm::exp(-extinction * glm::distance(position, exit->position));
       throughput *= passed / glm::dot(channel.probability, passed);  // one of them is not 0: it got here
       const double cosine = std::min(1.0, std::abs(glm::dot(direction, exit->face)));

@@ -6,7 +6,8 @@
 layout(set = 0, binding = 1) uniform sampler2D baseColorTexture;
 
 layout(location = 1) in vec4 uvs;
+layout(location = 4) in float alpha;
 
 void main() {
-  if (texture(baseColorTexture, uvs.xy).a < draw.baseColor.a) discard;
+  if (texture(baseColorTexture, uvs.xy).a * alpha < draw.baseColor.a) discard;
 }

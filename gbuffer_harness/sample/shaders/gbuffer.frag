@@ -11,6 +11,7 @@ layout(location = 0) in vec3 normal;
 layout(location = 1) in vec4 uvs;
 layout(location = 2) in vec4 colorMark;
 layout(location = 3) in vec4 tangent; // 0: the file has none, and the normal map is not used
+layout(location = 4) in float alpha;
 
 layout(location = 0) out vec4 outNormal;
 layout(location = 1) out vec4 outAlbedo;
@@ -26,7 +27,7 @@ vec3 mappedNormal(vec3 n) {
 
 void main() {
   vec4 texel = texture(baseColorTexture, uvs.xy);
-  if (texel.a < draw.baseColor.a) discard;
+  if (texel.a * alpha < draw.baseColor.a) discard;
   vec3 n = mappedNormal(normalize(normal)) * (gl_FrontFacing ? 1.0 : -1.0);
   vec3 albedo = texel.rgb * draw.baseColor.rgb * colorMark.rgb;
   outNormal = vec4(octahedral(n) * 0.5 + 0.5, 0.0, 0.0);
