@@ -32,7 +32,7 @@ light=(--light directional:0.6,-0.75,-0.45:3)
 frame portrait_grazing head_views.glb portrait 640x360 --shadow-size 2048
 frame closeup_d16 head_views.glb closeup 480x270 --shadow-size 1024 --shadow-bits 16 --shadow-depth-bias 4,3
 frame portrait_d24 head_views.glb portrait 640x360 --shadow-size 2048 --shadow-bits 24 --shadow-depth-bias 1.25,1.75 --shadow-filter 1
-frame closeup_cascades head_views.glb closeup 480x270 --shadow-size 1024 --shadow-cascades 4 --shadow-array --shadow-bits 16 \
+frame closeup_cascades head_views.glb closeup 480x270 --shadow-size 1024 --shadow-cascades 4 --shadow-bits 16 \
   --shadow-depth-bias 4,3 --shadow-filter 3
 frame portrait_filtered head_views.glb portrait 640x360 --shadow-size 2048 --shadow-depth-bias 1.25,4 --shadow-filter 5
 frame portrait_jittered head_views.glb portrait 640x360 --shadow-size 2048 --shadow-bits 16 --shadow-depth-bias 4,3 --shadow-filter 1 \

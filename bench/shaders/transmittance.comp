@@ -22,6 +22,15 @@ layout(set = 0, binding = 8) uniform texture2D shadowImage;
 layout(set = 0, binding = 9, rgba16f) uniform writeonly image2D transmittedImage;
 
 float shadowTexel(uint image, ivec2 texel) { return texelFetch(shadowImage, texel, 0).x; }
+struct ShadowTexels {
+  float own;
+  vec4 beside;
+};
+ShadowTexels shadowTexels(uint image, ivec2 texel, ivec2 first, ivec2 last) {
+  ivec2 low = max(texel - 1, first), high = min(texel + 1, last);
+  return ShadowTexels(shadowTexel(image, texel), vec4(shadowTexel(image, ivec2(high.x, texel.y)), shadowTexel(image, ivec2(low.x, texel.y)),
+                                                      shadowTexel(image, ivec2(texel.x, high.y)), shadowTexel(image, ivec2(texel.x, low.y))));
+}
 vec4 shadowQuad(uint image, ivec2 low, ivec2 high) {
   return vec4(shadowTexel(image, low), shadowTexel(image, ivec2(high.x, low.y)), shadowTexel(image, ivec2(low.x, high.y)),
               shadowTexel(image, high));
