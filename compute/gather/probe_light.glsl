@@ -54,13 +54,10 @@ struct Gathered {
   vec3 seenLight, seen; // diffused irradiance of what enters seen, and its part of the profile
 };
 
-// Adds a sample. `to`: from the lit point to x; `near`, `far`: distances of its ring from x; `flux`: per area across the axis;
-// `uncertain`: how far a hidden surface may lie off along its normal, mm.
+// Adds a sample. `to`: from the lit point to x; `near`, `far`: distances of its ring from x; `flux`: per area across the axis.
 void addSample(inout Gathered sum, Surface x, uint m, vec4 lengths, EntryPoint entry, vec3 to, float near, float far,
-               float flux, float axisCosine, float uncertain) {
+               float flux, float axisCosine) {
   float squared = dot(to, to);
-  // A hidden point that a bias may have moved off the plane of x is of the surface of x: nothing comes through.
-  if (x.hasNormal && entry.seen == 0.0 && abs(dot(x.normal, to)) < uncertain) entry.normal = x.normal;
   float opposite = x.hasNormal ? 0.5 - 0.5 * dot(x.normal, entry.normal) : 1.0; // 1 - m
   float through = max(-dot(entry.normal, to), 0.0);
   float squaredH = x.hasNormal ? through * max(dot(x.normal, to), 0.0) / max(opposite, 1.0e-4) : through * through;
@@ -118,10 +115,10 @@ Gathered gatherSamples(uint m, LightConstants light, Surface x, Pattern pattern,
     vec3 s = onRing(center, across, along, offset);
     vec3 toLight = parallel ? incident.toLight * mm : (light.position.xyz - x.position) * mm - s;
     float ahead = distanceAhead(parallel, entry.depth, at.z);
-    // The entry point's plane goes on to the sample's own ray.
+    // The entry point's plane goes on to the sample's own ray, if the plane faces the light: a shown normal may turn away.
     vec3 middle = (off.x * maps[map].stepX.xyz + off.y * maps[map].stepY.xyz) * mm * (parallel ? 1.0 : entry.depth);
     float towards = dot(entry.normal, toLight), most = 2.0 * length(middle) * inversesqrt(max(dot(toLight, toLight), 1.0e-12));
-    ahead += clamp(dot(entry.normal, middle) / max(towards, 1.0e-6 * mm), -most, most);
+    if (towards > 0.0) ahead += clamp(dot(entry.normal, middle) / max(towards, 1.0e-6 * mm), -most, most);
     vec3 to = -(s + ahead * toLight);
     // The ring counts as if all of it lay in the lit point's plane across the axis.
     float plane = max(dot(to, to) - dot(offset, offset), 0.0);
@@ -131,7 +128,7 @@ Gathered gatherSamples(uint m, LightConstants light, Surface x, Pattern pattern,
     float inside = staysInside(rings, entry, to, parallel ? incident.toLight : normalize(toLight));
     entry.hidden *= inside;
     entry.seen *= inside;
-    addSample(sum, x, m, lengths, entry, to, sqrt(plane + from), sqrt(plane + inner), flux, rings.axisCosine, rings.entrySide * maps[map].stepY.w);
+    addSample(sum, x, m, lengths, entry, to, sqrt(plane + from), sqrt(plane + inner), flux, rings.axisCosine);
   }
   return sum;
 }

@@ -81,6 +81,10 @@ Shown shownAt(vec3 position) {
 // Without this end a sphere of 8 mm is off by a third more.
 const float kSteepestSeen = 2.0;
 
+// Cosine up to which a shown normal may turn away from the light that enters there: normals are interpolated, and texels reach
+// around 30 degrees of curvature. What turns away further is the other face of a thin part.
+const float kMostTurned = 0.5;
+
 float slopeToCamera(ivec2 pixel, vec3 normal) {
   vec3 ray = viewRay(frame.camera, pixel).direction;
   return slopeOf(dot(normal, ray) * inversesqrt(dot(ray, ray)));
@@ -93,10 +97,11 @@ float largerPixelSide(float front) {
 
 // True where a point is of the surface that its pixel shows: it lies no further off along the normal than the pixel's plane can
 // tell and its map leaves open. Limbs count only where a bias moved the map's points, which then know less of them than the
-// pixels. `tolerance`: half a texel; `uncertain`: along the light; scene units.
-bool liesOn(Shown s, vec3 toLight, float tolerance, float uncertain, bool biased) {
+// pixels. `tolerance`: half a texel; `uncertain`: along the light; `offset`: along normals; scene units.
+bool liesOn(Shown s, vec3 toLight, float tolerance, float uncertain, float offset, bool biased) {
   if (s.normal == vec3(0.0) || (!biased && slopeToCamera(s.pixel, s.normal) >= kSteepestSeen)) return false;
-  return abs(s.above) <= min(tolerance, 0.5 * largerPixelSide(s.front)) + uncertain * abs(dot(s.normal, toLight));
+  float cosine = dot(s.normal, toLight);
+  return cosine > -kMostTurned && abs(s.above) <= min(tolerance, 0.5 * largerPixelSide(s.front)) + offset + uncertain * abs(cosine);
 }
 
 // True where a point does not lie behind the surface that its pixel shows: the light that enters there is in the irradiance
@@ -229,10 +234,12 @@ uvec4 entryOf(EntryMapConstants map, ivec2 texel) {
 
   // Where the camera shows the surface, it knows the normal. The map's neighbors miss normals of surfaces that the light grazes,
   // and between triangles that a slope bias moved apart: light would seem to come through between points of one lit surface.
-  bool biased = map.offsets.y != 0.0;
+  bool biased = map.offsets.y != 0.0 || map.offsets.z != 0.0;
+  // An offset along normals is undone by its mean, which is off by as much where the light grazes.
+  float offset = abs(map.offsets.z);
   Shown shown = shownAt(y.position);
-  bool isShown = liesOn(shown, toLight, tolerance, uncertain, biased);
-  if (biased && !isShown && map.meta.y == PELLUCID_SHADER_DEPTH_DEVICE) {
+  bool isShown = liesOn(shown, toLight, tolerance, uncertain, offset, biased);
+  if (map.offsets.y != 0.0 && !isShown && map.meta.y == PELLUCID_SHADER_DEPTH_DEVICE) {
     // The slope of what the camera shows undoes the bias again, until that leads to a point of what the camera shows there.
     Shown next = shown;
     for (int i = 0; i < kMostAgain && !isShown && next.normal != vec3(0.0); ++i) {
@@ -240,7 +247,7 @@ uvec4 entryOf(EntryMapConstants map, ivec2 texel) {
       MapPoint again = pointOf(map, texel, asDrawn - bias);
       if (!(abs(again.depth) < kNoDepth)) break;
       next = shownAt(again.position);
-      isShown = liesOn(next, toLight, tolerance, uncertain, biased);
+      isShown = liesOn(next, toLight, tolerance, uncertain, offset, biased);
       if (isShown) {
         y = again;
         shown = next;

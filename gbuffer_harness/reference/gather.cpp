@@ -54,7 +54,8 @@ Gather::Gather(const Capture& capture, const SurfaceReader& surfaces,
 
 // The camera knows the normals of what it shows better than the neighbors of a texel that the light grazes.
 std::optional<glm::dvec3> Gather::shownNormal(const glm::dvec3& world, const glm::dvec3& toLight,
-                                              double tolerance, double uncertain, bool biased) const {
+                                              double tolerance, double uncertain, double offset,
+                                              bool biased) const {
   const glm::dvec3 view(glm::inverse(surfaces_.worldFromView()) * glm::dvec4(world, 1));
   const Camera& camera = surfaces_.camera();
   if (!(camera.planarDepth(view) > 0)) return std::nullopt;
@@ -78,8 +79,10 @@ std::optional<glm::dvec3> Gather::shownNormal(const glm::dvec3& world, const glm
   };
   const double pixelSide = std::max(side({1, 0}), side({0, 1}));
   const glm::dvec3 outward = glm::dmat3(surfaces_.worldFromView()) * *normal;
+  // What turns away from the light by more than 30 degrees is the other face of a thin part.
+  if (glm::dot(outward, toLight) <= -0.5) return std::nullopt;
   if (std::abs(glm::dot(*normal, view - shown->position)) >
-      std::min(tolerance, 0.5 * pixelSide) + uncertain * std::abs(glm::dot(outward, toLight)))
+      std::min(tolerance, 0.5 * pixelSide) + offset + uncertain * std::abs(glm::dot(outward, toLight)))
     return std::nullopt;
   return outward;
 }
@@ -157,7 +160,8 @@ Gather::Blocks Gather::collect(const Light& light, std::size_t mapIndex) const {
           if (!map.exitDepth.empty())
             if (const auto e = texels.at(x, y, *map.exitDepth.at(x, y))) exit = mm_ * glm::distance(*e, *p);
           const double half = kSeenTolerance * std::sqrt(across), uncertain = texels.uncertain(x, y);
-          const auto shown = shownNormal(*p, arrival.toLight, half, uncertain, map.depthBiasSlope != 0);
+          const auto shown = shownNormal(*p, arrival.toLight, half, uncertain, std::abs(map.offsetLength),
+                                         map.depthBiasSlope != 0 || map.offsetLength != 0);
           if (shown) normal = *shown;
           // A depth that is off along the light moves the surface along its normal.
           const bool seen =

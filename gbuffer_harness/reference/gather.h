@@ -80,10 +80,11 @@ private:
   double meanCurvature(const Surface& surface, double reach) const;
   // 1 - R(h) / rho of the body there, weighted with how opposite its faces are.
   glm::dvec3 thinLoss(const Surface& surface, std::size_t material) const;
-  // Normal of what the camera shows at a lit point of a map, world; nothing where it shows something else there.
-  // `tolerance`: half a texel; `uncertain`: along the light; scene units. `biased`: a slope bias moved the map.
+  // Normal of what the camera shows at a lit point of a map, world; nothing where it shows something else
+  // there. `tolerance`: half a texel; `uncertain`: along the light; `offset`: along normals; scene units.
+  // `biased`: a slope bias or an offset moved the map.
   std::optional<glm::dvec3> shownNormal(const glm::dvec3& world, const glm::dvec3& toLight, double tolerance,
-                                        double uncertain, bool biased) const;
+                                        double uncertain, double offset, bool biased) const;
   // off: scene units along the normal that the point may be off by, besides the tolerance along the ray.
   bool cameraSees(const glm::dvec3& world, const glm::dvec3& normal, double tolerance, double off) const;
 

@@ -105,10 +105,7 @@ EntryConstants entryConstants(const PellucidShadowMap& s, const PellucidLight& l
   r.meta = shadow.meta;
   r.occluder = shadow.occluder;
   c.gather.stepX = glm::vec4(glm::vec3(stepX) * static_cast<float>(extent.side), perspective ? 1 : 0);
-  // A hidden surface that a slope bias moved may lie off along its normal by half a texel and by what slopes between
-  // texels miss of the bias (kMissedSlope of compute/lib/shadow.glsl).
-  const float bias = std::abs(s.depthBiasSlope);
-  c.gather.stepY = glm::vec4(glm::vec3(stepY) * static_cast<float>(extent.side), bias > 0 ? 0.5f + 0.3f * bias : 0);
+  c.gather.stepY = glm::vec4(glm::vec3(stepY) * static_cast<float>(extent.side), 0);
   r.map = {s.extent[0], s.extent[1], extent.side, lightIndex};
   // The camera may miss a texel's point by the slope of the surface within half a texel and the pixel.
   r.seen = {static_cast<float>(0.5 * std::sqrt(glm::length(stepX) * glm::length(stepY))), 0, 0, 0};

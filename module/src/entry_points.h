@@ -27,8 +27,8 @@ struct EntryExtent {
   uint32_t side;  // texels of the map that an entry point stands for, a side
 };
 
-// Longest side of an entry point across the light, scene units: of a frame's shortest mean free path a half, and by
-// frame.quality finer. A half costs heads 3 % of the gather's error, twice as much 60 %
+// Longest side of an entry point across the light, scene units: of a frame's shortest mean free path a half,
+// and by frame.quality finer. A half costs heads 3 % of the gather's error, twice as much 60 %
 // (docs/lab/2026-11-26-entry-points.md).
 float longestEntrySide(const FrameFacts& facts);
 
@@ -41,9 +41,8 @@ struct EntryConstants {
   shared::GatherMapConstants gather;
   shared::EntryMapConstants map;
 };
-EntryConstants entryConstants(const PellucidShadowMap& map,
-                              const PellucidLight& light, const shared::ShadowConstants& shadow,
-                              const glm::dmat4& viewFromWorld, EntryExtent extent, uint32_t row,
-                              uint32_t lightIndex);
+EntryConstants entryConstants(const PellucidShadowMap& map, const PellucidLight& light,
+                              const shared::ShadowConstants& shadow, const glm::dmat4& viewFromWorld,
+                              EntryExtent extent, uint32_t row, uint32_t lightIndex);
 
 }  // namespace pellucid

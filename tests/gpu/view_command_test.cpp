@@ -112,7 +112,8 @@ TEST_F(View, APresetBringsItsAlbedoToAModelWithoutColor) {
          "added: --light back --light front");
   expectReplays("v");
   expect(0, "capture " + model + "marble' -o " + path("c.exr"), "added: --light back");
-  const auto viewed = pellucid::harness::readCapture(path("v.exr")), captured = pellucid::harness::readCapture(path("c.exr"));
+  const auto viewed = pellucid::harness::readCapture(path("v.exr")),
+             captured = pellucid::harness::readCapture(path("c.exr"));
   EXPECT_EQ(viewed.material, captured.material);
   EXPECT_TRUE(sameBits(viewed.albedo, captured.albedo));
   ASSERT_EQ(viewed.lights.size(), 2u);
