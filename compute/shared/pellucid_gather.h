@@ -22,8 +22,7 @@ struct GatherMapConstants {
   vec4 column, row; // in entry points from the map's first one; perspective: times depth
   vec4 depth;       // what entry points store. Directional: scene units towards the light; perspective: clip w
   ivec4 place;      // x, y: of the first entry in the image; z, w: how many
-  vec4 stepX, stepY; // from an entry point to the next, scene units; perspective: times depth. stepX.w: 1 perspective;
-                     // stepY.w: how far hidden surfaces may lie off along their normals, sides of an entry point
+  vec4 stepX, stepY; // from an entry point to the next, scene units; perspective: times depth. stepX.w: 1 perspective
 };
 
 // The surface that a map stores, by its texel coordinates p. Affine in p:

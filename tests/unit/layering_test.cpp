@@ -54,7 +54,7 @@ const std::vector<Rule> kRules = {
     {"module", R"(\bprintf|\bfprintf|#include\s*<(iostream|fstream|cstdio)>)",
      "the module writes no files and no output", ""},
     {"module",
-     R"(vkAllocateMemory|vkQueueSubmit|vkQueueWaitIdle|vkDeviceWaitIdle|vkCreateDescriptorPool|vkWaitForFences|vkCreateImage\b)",
+     R"(vkAllocateMemory|vkQueueSubmit|vkQueueWaitIdle|vkDeviceWaitIdle|vkWaitForFences|vkCreateImage\b)",
      "the caller owns memory, submission and waits", ""},
     {"module", R"(vk\.vkCmd)", "only record.cpp records", "record.cpp"},
     {"module/src", R"(#include\s*<Eigen)", "Eigen is the material compiler's", ""},

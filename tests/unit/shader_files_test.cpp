@@ -1,4 +1,4 @@
-// Files of compute/: the lines they may have, and that lib/ is maths with parameters only.
+// Files of compute/: lib/ is maths with parameters only.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -15,32 +15,12 @@ namespace fs = std::filesystem;
 
 const fs::path kCompute = fs::path(PELLUCID_SOURCE_DIR) / "compute";
 
-// Bodies of passes are in files of their own: an entry point addresses and loads.
-constexpr int kMostLines = 250, kMostEntryPointLines = 60;
-
-int lines(const fs::path& file) {
-  std::ifstream in(file);
-  int count = 0;
-  for (std::string line; std::getline(in, line);) ++count;
-  return count;
-}
-
 std::vector<fs::path> files(const fs::path& folder) {
   std::vector<fs::path> found;
   for (const auto& entry : fs::recursive_directory_iterator(folder))
     if (entry.is_regular_file()) found.push_back(entry.path());
   EXPECT_FALSE(found.empty()) << folder << " is empty: the test looks in the wrong place";
   return found;
-}
-
-TEST(ShaderFiles, AreShort) {
-  int entryPoints = 0;
-  for (const fs::path& file : files(kCompute)) {
-    const bool entryPoint = file.extension() == ".comp";
-    entryPoints += entryPoint;
-    EXPECT_LE(lines(file), entryPoint ? kMostEntryPointLines : kMostLines) << file;
-  }
-  EXPECT_GT(entryPoints, 0);
 }
 
 // Compiles a compute shader that includes files of `folder`.
