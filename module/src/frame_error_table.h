@@ -6,6 +6,6 @@
 
 namespace pellucid {
 
-constexpr float kFrameError[] = {0.177f, 0.0625f, 0.0615f};
+constexpr float kFrameError[] = {0.177f, 0.0605f, 0.0598f};
 
 }  // namespace pellucid

@@ -38,7 +38,7 @@ TEST_F(GltfCommand, AModelWithoutATranslucentMaterialIsRefused) {
   EXPECT_FALSE(std::filesystem::exists(out));
   expect(0, capture + R"( --material 'wax={"subsurface_color": [0.8, 0.5, 0.3]}')", "wrote");
   expect(3, capture + R"( --material 'wax={"subsurface_color": [0.8, 0.5, 3]}')",
-         "subsurface_color: must be");
+         "subsurface_color[2]: must be");
   expect(0, capture + " --material 'wax=skin1'", "wrote");
   expect(0, "info " + out, "skin1");
   GltfBuilder b = triangle();
