@@ -10,7 +10,7 @@ layout(set = 0, binding = PELLUCID_BINDING_GATHER_MAPS) uniform GatherMaps {
 
 struct EntryPoint {
   float depth;  // of the lit surface, see GatherMapConstants::depth
-  vec3 normal;  // unit, towards the light
+  vec3 normal;  // unit; of the map towards the light, of a pixel up to 30 degrees away from it
   float hidden; // part of the light that enters where the camera does not see it
   float seen;   // part that enters where the camera does, and is in the irradiance
   float cosine; // between normal and light, above 0; not held to kLeastCosine

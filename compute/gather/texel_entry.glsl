@@ -36,7 +36,7 @@ MapPoint pointOf(EntryMapConstants map, ivec2 texel, float stored) {
 
 // ---- What the camera shows
 
-// What the camera shows where a point lies.
+// The surface that the camera shows at the pixel of a point.
 struct Shown {
   ivec2 pixel;  // with a front
   float planar; // of the point
@@ -82,7 +82,7 @@ Shown shownAt(vec3 position) {
 const float kSteepestSeen = 2.0;
 
 // Cosine up to which a shown normal may turn away from the light that enters there: normals are interpolated, and texels reach
-// around 30 degrees of curvature. What turns away further is the other face of a thin part.
+// around 30 degrees of curvature. A face that turns away further is the other face of a thin part.
 const float kMostTurned = 0.5;
 
 float slopeToCamera(ivec2 pixel, vec3 normal) {
