@@ -276,6 +276,12 @@ std::string frameHostTable(const Json& results) {
   return text;
 }
 
+// A JSON null is NaN: no block of a frame shows the measure.
+std::string rgbCell(const Json& rgb) {
+  const auto value = [&](size_t c) { return rgb.at(c).is_null() ? NAN : rgb.at(c).get<double>(); };
+  return format(" %.3f %.3f %.3f |", value(0), value(1), value(2));
+}
+
 std::string truthTable(const Json& results) {
   const Frames all(results);
   std::string rows;
@@ -284,14 +290,7 @@ std::string truthTable(const Json& results) {
       for (const std::string& name : all.names("whole")) {
         const Json* row = all.find(frame, size, "whole", name);
         if (!row || !row->contains("truth_relative_rmse_rgb")) continue;
-        const auto rgb = [&](const char* field) {
-          // A JSON null is NaN: no block of a frame shows what is measured.
-          const auto value = [&](size_t c) {
-            const Json& v = row->at(field).at(c);
-            return v.is_null() ? NAN : v.get<double>();
-          };
-          return format(" %.3f %.3f %.3f |", value(0), value(1), value(2));
-        };
+        const auto rgb = [&](const char* field) { return rgbCell(row->at(field)); };
         const Json& redGreen = row->at("tint_red_green");
         rows += "| " + frame + " " + size + " | " + name + " |" + rgb("truth_relative_rmse_rgb") +
                 format(" %d |", row->at("isolated").get<int>()) + rgb("tint") +
@@ -313,11 +312,7 @@ std::string engineTable(const Json& results) {
       for (const std::string& name : all.names("whole")) {
         const Json* row = all.find(frame, size, "whole", name);
         if (!row || !row->contains("truth_relative_rmse_rgb") || !row->contains("flicker_rgb")) continue;
-        const auto rgb = [&](const char* field) {
-          const Json& v = row->at(field);
-          return format(" %.3f %.3f %.3f |", v.at(0).get<double>(), v.at(1).get<double>(),
-                        v.at(2).get<double>());
-        };
+        const auto rgb = [&](const char* field) { return rgbCell(row->at(field)); };
         rows += "| " + frame + " " + size + " | " + name.substr(name.find("quality")) + " |" +
                 rgb("truth_relative_rmse_rgb") +
                 format(" %.3f | %d |", row->at("flip").get<double>(), row->at("spots").get<int>()) +

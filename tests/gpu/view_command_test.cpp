@@ -77,15 +77,20 @@ TEST_F(View, MaterialsOfEveryDescriptionAreSavedAndOpened) {
   expect(3, kScene + "--no-window --frames 2 " + script("1 material {\"melanin\":2}\n"), "material: melanin");
 }
 
-// The options that take a list must not swallow the model, which turns, is saved and opened where it was
-// left.
-TEST_F(View, ASavedViewOfAModelOpensWithItsLightsAndMaterials) {
+// A triangle whose material has a name and no color.
+void writeTriangle(const std::string& file) {
   GltfBuilder b;
   const int position = b.vectors({0, 0, 0, 2, 0, 0, 0, 2, 0});
   b.json["meshes"] = {{{"primitives", {{{"attributes", {{"POSITION", position}}}, {"material", 0}}}}}};
   b.json["materials"] = {{{"name", "wax"}}};
   b.json["nodes"] = {{{"mesh", 0}}};
-  std::ofstream(path("t.glb"), std::ios::binary) << b.glb();
+  std::ofstream(file, std::ios::binary) << b.glb();
+}
+
+// The options that take a list must not swallow the model, which turns, is saved and opened where it was
+// left.
+TEST_F(View, ASavedViewOfAModelOpensWithItsLightsAndMaterials) {
+  writeTriangle(path("t.glb"));
   expect(0,
          "view " + path("t.glb") + " --material wax=skin1 --light point:0,0,10:100 directional:0,0,-1:2" +
              " --size 32x32 --shadow-size 32 --validate --no-window --frames 6 " + script("1 turn 40 16\n") +
@@ -99,12 +104,7 @@ TEST_F(View, ASavedViewOfAModelOpensWithItsLightsAndMaterials) {
 
 // A model that nobody colored has the color of its medium, in the viewer as in a capture.
 TEST_F(View, APresetBringsItsAlbedoToAModelWithoutColor) {
-  GltfBuilder b;
-  const int position = b.vectors({0, 0, 0, 2, 0, 0, 0, 2, 0});
-  b.json["meshes"] = {{{"primitives", {{{"attributes", {{"POSITION", position}}}, {"material", 0}}}}}};
-  b.json["materials"] = {{{"name", "wax"}}};
-  b.json["nodes"] = {{{"mesh", 0}}};
-  std::ofstream(path("t.glb"), std::ios::binary) << b.glb();
+  writeTriangle(path("t.glb"));
   const std::string model = path("t.glb") + " --size 32x32 --shadow-size 16 --material 'wax=";
   expect(0,
          "view " + model + "skin1' --validate --no-window --frames 4 " + script("2 material marble\n") +
