@@ -18,7 +18,7 @@ struct GBuffer {
   uint32_t width, height, frameIndex, framesInFlight;
   float metersPerUnit;
   float projection[16], view[16];
-  VkImageView depth, backFaceDepth, irradiance, normal, materialId, scratch[4];
+  VkImageView depth, backFaceDepth, irradiance, normal, materialId, scratch[6];
   uint32_t lightCount;
   const PellucidLight* lights;
   VkBuffer ringBuffer;
@@ -86,8 +86,8 @@ std::array<std::array<double, 3>, 2> exitances(uint32_t slices) {
 
   PellucidFrame frame;
   describeFrame(g, t, frame);
-  PellucidImageNeed needs[5];
-  uint32_t count = 5;
+  PellucidImageNeed needs[7];
+  uint32_t count = 7;
   EXPECT_EQ(pellucidGetImageNeeds(&frame, &count, needs), PELLUCID_OK);
   EXPECT_EQ(count, std::size(g.scratch));
   std::vector<std::unique_ptr<GpuImage>> scratch;
