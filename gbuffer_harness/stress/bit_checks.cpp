@@ -190,7 +190,7 @@ std::span<const Check> bitChecks() {
        "frames with dispatches", 0, 0, kBits, &badValues},
       {"reach", "a pixel's irradiance changes no bit beyond the diffusion's kernel",
        "those larger than the kernel", 0, 0, kBits, &reach},
-      {"alpha", "alpha has the irradiance's bits, or is NaN as there", "all", 0, 0, kBits, &alpha},
+      {"alpha", "alpha has the irradiance's bits, or is not finite as there", "all", 0, 0, kBits, &alpha},
   };
   return table;
 }

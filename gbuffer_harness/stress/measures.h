@@ -29,7 +29,7 @@ Worst unwritten(const Image& after, const Pixels& pixels);
 // The largest difference of RGB, relative to the larger value; infinite where bits differ and one is not
 // finite.
 Worst differentBits(const Image& a, const Image& b, const Pixels& pixels);
-// The largest difference of alpha, likewise; any NaN is as another one.
+// The largest difference of alpha, likewise; infinities and NaN are alike.
 Worst differentAlpha(const Image& a, const Image& b, const Pixels& pixels);
 
 // Relative differences of RGB. Values below `kFloor` count as kFloor in the divisor, as halves have fewer
