@@ -19,7 +19,8 @@ const int kColumns = kPixelsX + 2 * kRing, kRows = kPixelsY + 2 * kRing;
 const int kLoads = (kColumns * kRows + kInvocations - 1) / kInvocations;
 
 shared uvec2 colors[kColumns * kRows]; // by packHalves; where there are edges, with materials
-shared float depths[kColumns * kRows]; // where there are edges
+// Colors after the fine filter's vertical half. Later, where there are edges, the bits of depths in x.
+shared uvec2 vertical[kColumns * kRows];
 shared uvec4 upsampled[kWindowX * kWindowY], shares[kWindowX * kWindowY];
 shared float spreads[kWindowX * kWindowY]; // inverseSpread of upsampled[]
 shared uint edges[kTexelsX * kTexelsY];    // columns and, from bit 8 on, rows of texels
@@ -30,6 +31,8 @@ ivec2 loaded(int i) {
   int at = int(gl_LocalInvocationIndex) + i * kInvocations;
   return ivec2(at % kColumns, at / kColumns);
 }
+
+float depthAt(int place) { return uintBitsToFloat(vertical[place].x); }
 
 // The quadratic B-spline at -1, 0 and 1 for a point at most half a texel from 0: it interpolates level 2.
 vec3 spline(float at) {
@@ -109,19 +112,20 @@ vec3 withProbes(vec3 diffused, ivec2 pixel, int side, float front, uint material
 
 // ---- Planes
 
+vec3 fineSum(vec3 a, vec3 b, vec3 c, vec3 d, vec3 e) {
+  return PELLUCID_FINE_OWN * c + PELLUCID_FINE_NEXT * (b + d) + PELLUCID_FINE_LAST * (a + e);
+}
+
+// The vertical half of the separable fine filter, of four pixels of a column with the ring.
+void filterColumn(int column, int row) {
+  vec3 rows[8];
+  [[unroll]] for (int y = 0; y < 8; ++y) rows[y] = unpackHalves(colors[(row + y) * kColumns + column]);
+  [[unroll]] for (int i = 0; i < 4; ++i)
+    vertical[(row + i) * kColumns + column] = packHalves(fineSum(rows[i], rows[i + 1], rows[i + 2], rows[i + 3], rows[i + 4]), 0u);
+}
+
 // Diffuses the invocation's column of four pixels, which is part of a plane. `texel`: in the window.
 void diffusePlane(ivec2 first, ivec2 local, int texel) {
-  // The separable fine filter: vertical sums of the column and of those beside.
-  vec3 fine[4] = vec3[4](vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0)), result[4];
-  [[unroll]] for (int x = -2; x <= 2; ++x) {
-    vec3 rows[8];
-    [[unroll]] for (int y = 0; y < 8; ++y) rows[y] = unpackHalves(colors[(local.y + y) * kColumns + local.x + kRing + x]);
-    [[unroll]] for (int i = 0; i < 4; ++i) {
-      fine[i] += fineWeight(x) * (PELLUCID_FINE_OWN * rows[i + 2] + PELLUCID_FINE_NEXT * (rows[i + 1] + rows[i + 3]) +
-                                  PELLUCID_FINE_LAST * (rows[i] + rows[i + 4]));
-      if (x == 0) result[i] = rows[i + 2];
-    }
-  }
   vec3 across = spline(0.25 * (float(local.x & 3) - 1.5)), level2[3]; // at the column, in three rows of texels
   [[unroll]] for (int y = 0; y < 3; ++y) {
     int row = texel + (y - 1) * kWindowX;
@@ -129,10 +133,14 @@ void diffusePlane(ivec2 first, ivec2 local, int texel) {
                 across.z * unpackHalves(upsampled[row + 1].xy);
   }
   PixelShares share = unpackShares(shares[texel].xyz);
+  vec3 result[4];
   [[unroll]] for (int i = 0; i < 4; ++i) {
     vec3 along = spline(0.25 * (float(i) - 1.5));
     vec3 coarser = along.x * level2[0] + along.y * level2[1] + along.z * level2[2];
-    result[i] = mix(coarser, mix(result[i], fine[i], share.fine), share.rest);
+    int place = (local.y + i) * kColumns + local.x + kRing;
+    vec3 fine = fineSum(unpackHalves(vertical[place - 2]), unpackHalves(vertical[place - 1]), unpackHalves(vertical[place]),
+                        unpackHalves(vertical[place + 1]), unpackHalves(vertical[place + 2]));
+    result[i] = mix(coarser, mix(unpackHalves(colors[place + kRing * kColumns]), fine, share.fine), share.rest);
   }
   if (pass.value.x != 0u) addProbesToPlane(first + local, int(pass.value.x), result);
   [[unroll]] for (int i = 0; i < 4; ++i) {
@@ -184,7 +192,7 @@ Around aroundPixel(int center, vec2 from, float depth, uint material, vec2 size)
 // in colors[].
 vec4 fineOfEdge(int place, vec2 slope, vec2 size) {
   uint material = colors[place].y >> 16;
-  float own = depths[place];
+  float own = depthAt(place);
   vec2 depthStep = slope * size;
   float spread2 = inverseSpread(slope, 2.0 * size);
   vec4 fine = vec4(0.0);
@@ -192,7 +200,7 @@ vec4 fineOfEdge(int place, vec2 slope, vec2 size) {
     // A row has no branch, so that latencies overlap.
     [[unroll]] for (int x = -2; x <= 2; ++x) {
       int at = place + y * kColumns + x;
-      float theirs = depths[at], along = dot(depthStep, vec2(x, y));
+      float theirs = depthAt(at), along = dot(depthStep, vec2(x, y));
       float w = tangentPlaneWeight(theirs - own - along, along, spread2, kPixelFalloff) * fineWeight(x) * fineWeight(y);
       bool counts = colors[at].y >> 16 == material && theirs > 0.0;
       fine += (counts ? w : 0.0) * vec4(unpackHalves(colors[at]), 1.0);
@@ -205,7 +213,7 @@ void diffuseEdge(ivec2 first, ivec2 local) {
   int place = (local.y + kRing) * kColumns + local.x + kRing;
   uint material = colors[place].y >> 16;
   if (material == 0u) return;
-  float depth = depths[place];
+  float depth = depthAt(place);
   vec3 own = unpackHalves(colors[place]), color = own;
   if (depth > 0.0) {
     vec2 size = texelSize(depth, 0u);
@@ -236,7 +244,7 @@ void keepEdges(ivec2 first) {
     ivec2 at = loaded(i);
     if (at.y >= kRows) continue;
     colors[at.y * kColumns + at.x].y |= materials[i] << 16;
-    depths[at.y * kColumns + at.x] = fronts[i];
+    vertical[at.y * kColumns + at.x].x = floatBitsToUint(fronts[i]);
   }
 }
 
@@ -263,12 +271,13 @@ void diffuse(ivec2 first) {
     if (contains(ivec4(0, 0, kTexelsX, kTexelsY), inside) && bits.y >> 16 != 0u && !isPlane(bits))
       edges[atomicAdd(edgeCount, 1u)] = uint(inside.x | inside.y << 8);
   }
+  for (int i = invocation; i < kColumns * kPixelsY / 4; i += kInvocations) filterColumn(i % kColumns, i / kColumns * 4);
   barrier();
   uint count = edgeCount;
   ivec2 column = ivec2(invocation % kPixelsX, invocation / kPixelsX * 4);
   int center = (column.y / 4 + 1) * kWindowX + column.x / 4 + 1;
   if (isPlane(upsampled[center])) diffusePlane(first, column, center);
-  barrier(); // the column's colors have been read
+  barrier(); // colors have been read
   if (count != 0u) keepEdges(first);
   barrier();
   // Sixteen invocations do a texel.
@@ -279,8 +288,8 @@ void diffuse(ivec2 first) {
 
 void main() {
   const ivec2 kPart = ivec2(kPixelsX, kPixelsY);
-  uint block = workBlock(materialList());
+  uint word = listedBlock(materialList());
   ivec2 part = partOfBlock(PELLUCID_BLOCK / kPixelsX, kPart);
   // Alike in all invocations.
-  if (partHoldsMaterial(block, part >> kCellShift, kPart >> kCellShift)) diffuse(firstPixel(block) + part);
+  if (partHoldsMaterial(word, part >> kCellShift, kPart >> kCellShift)) diffuse(firstPixel(blockOf(word)) + part);
 }

@@ -80,21 +80,28 @@ void listEntryGroups(uint map, uint block, int row) {
   }
 }
 
-bool blockHoldsMaterial(ivec2 at) {
-  if (!contains(ivec4(0, 0, frame.blocks.xy), at)) return false;
+uvec2 cellsOfBlock(ivec2 at) {
+  if (!contains(ivec4(0, 0, frame.blocks.xy), at)) return uvec2(0u);
   uint block = uint(at.y) * frame.blocks.x + uint(at.x);
-  return (readWord(blockWord(block, kCellWord)) | readWord(blockWord(block, kCellWord + 1u))) != 0u;
+  return uvec2(readWord(blockWord(block, kCellWord)), readWord(blockWord(block, kCellWord + 1u)));
 }
 
 void listBlock(uint block) {
   ivec2 at = ivec2(block % frame.blocks.x, block / frame.blocks.x);
-  bool near = false;
-  for (int i = 0; i < 9; ++i) near = blockHoldsMaterial(at + ivec2(i % 3, i / 3) - 1) || near; // no early exit: it waits for each
+  uvec2 some = uvec2(0u), all = uvec2(~0u);
+  for (int i = 0; i < 9; ++i) { // no early exit: it would wait for each word
+    uvec2 cells = cellsOfBlock(at + ivec2(i % 3, i / 3) - 1);
+    some |= cells;
+    all &= cells;
+  }
+  bool near = some != uvec2(0u);
   writeWord(blockWord(block, kNearWord), near ? 1u : 0u);
   if (!near) return;
+  bool holds = cellsOfBlock(at) != uvec2(0u);
+  if (all == uvec2(~0u)) block |= kWholeBlock;
   writeWord(nearList() + atomicAdd(lists.commands[PELLUCID_LIST_DOWNSAMPLE].x, 1u), block);
   atomicAdd(lists.commands[PELLUCID_LIST_UPSAMPLE].x, 1u);
-  if (!blockHoldsMaterial(at)) return;
+  if (!holds) return;
   uint place = atomicAdd(lists.commands[PELLUCID_LIST_DIFFUSE].x, 1u);
   writeWord(materialList() + place, block);
   atomicAdd(lists.commands[PELLUCID_LIST_PROBES].x, 1u);

@@ -61,18 +61,18 @@ uvec4 filtered(ivec2 local, uvec4 own, float perSquare) {
   return replaceLight(own, added / total, convexity / total);
 }
 
-// The probe of a cell; none where the cell's pixels have no material.
-uvec4 probeAt(ivec2 cell, int side) {
-  bool holds = contains(cellsOf(frame.rect, side), cell) && cellHoldsMaterial(side * cell);
+// The probe of a cell; none where the cell's pixels have no material. `whole`: all around have one.
+uvec4 probeAt(ivec2 cell, int side, bool whole) {
+  bool holds = contains(cellsOf(frame.rect, side), cell) && (whole || cellHoldsMaterial(side * cell));
   return holds ? texelFetch(foundImage, cell, 0) : kNoProbe;
 }
 
 // Filters the cells from `first` on, for all invocations, as they wait for each other.
-void filterCells(ivec2 first, int side) {
+void filterCells(ivec2 first, int side, bool whole) {
   int index = int(gl_LocalInvocationIndex);
   ivec2 local = ivec2(gl_LocalInvocationID.xy), cell = first + local, border = borderCell(index);
   bool hasBorder = index < kBorder;
-  uvec4 own = probeAt(cell, side), beside = hasBorder ? probeAt(first + border, side) : kNoProbe;
+  uvec4 own = probeAt(cell, side, whole), beside = hasBorder ? probeAt(first + border, side, whole) : kNoProbe;
   if (index == 0) someLight = someConvexity = 0u;
   barrier();
   if (hasLight(own) || hasLight(beside)) someLight = 1u; // whoever writes, writes this
@@ -95,8 +95,8 @@ void filterCells(ivec2 first, int side) {
 
 void main() {
   int side = int(pass.value.x), pixels = side * PELLUCID_FILTER_GROUP;
-  uint block = workBlock(materialList());
+  uint word = listedBlock(materialList());
   ivec2 part = partOfBlock(PELLUCID_BLOCK / pixels, ivec2(pixels));
   // Alike in all invocations.
-  if (partHoldsMaterial(block, part >> kCellShift, ivec2(pixels >> kCellShift))) filterCells((firstPixel(block) + part) / side, side);
+  if (partHoldsMaterial(word, part >> kCellShift, ivec2(pixels >> kCellShift))) filterCells((firstPixel(blockOf(word)) + part) / side, side, isWhole(word));
 }

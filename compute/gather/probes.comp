@@ -116,8 +116,8 @@ void makeProbes(ivec2 firstCell, int side) {
 
 void main() {
   int side = int(pass.value.x), pixels = side * PELLUCID_PROBES_GROUP;
-  uint block = workBlock(materialList());
+  uint word = listedBlock(materialList());
   ivec2 part = partOfBlock(PELLUCID_BLOCK / pixels, ivec2(pixels));
   // Alike in all invocations.
-  if (partHoldsMaterial(block, part >> kCellShift, ivec2(pixels >> kCellShift))) makeProbes((firstPixel(block) + part) / side, side);
+  if (partHoldsMaterial(word, part >> kCellShift, ivec2(pixels >> kCellShift))) makeProbes((firstPixel(blockOf(word)) + part) / side, side);
 }
