@@ -84,8 +84,7 @@ Json row(const char* name, double us, double error) {
 }
 
 Json run() {
-  return {{"device", "a"},
-          {"results", {row("Pellucid", 100, 0.01), row("HDRP, 20 samples", 50, 0.02)}}};
+  return {{"device", "a"}, {"results", {row("Pellucid", 100, 0.01), row("HDRP, 20 samples", 50, 0.02)}}};
 }
 
 int grew(const Json& before, const Json& now, std::string* said = nullptr) {

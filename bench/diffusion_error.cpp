@@ -95,7 +95,8 @@ void printTable(Bench& bench, const std::vector<double>& radii) {
   std::vector<double> errors;
   for (const double radius : radii) errors.push_back(bench.worst(radius));
   std::printf(
-      "// Relative RMSE of the diffusion from brute force, at each radius (pixels within which 99.9 %% of the\n"
+      "// Relative RMSE of the diffusion from brute force, at each radius (pixels within which 99.9 %% of "
+      "the\n"
       "// energy lies) the worst of the scenes of docs/diffusion.md. Written by\n"
       "// build/bin/pellucid_diffusion_error --table, which --check measures again.\n"
       "#pragma once\n\nnamespace pellucid {\n\nconstexpr float kErrorRadii[] = {");
