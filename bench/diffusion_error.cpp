@@ -1,5 +1,5 @@
 // pellucid_diffusion_error: the module's diffusion against the float64 reference, every pixel against every
-// other, over radii and scenes: the tables of docs/diffusion.md and of module/src/diffusion_error_table.h.
+// other, over radii and scenes: the tables of docs/accuracy.md and of module/src/diffusion_error_table.h.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -95,9 +95,11 @@ void printTable(Bench& bench, const std::vector<double>& radii) {
   std::vector<double> errors;
   for (const double radius : radii) errors.push_back(bench.worst(radius));
   std::printf(
-      "// Relative RMSE of the diffusion from brute force, at each radius (pixels within which 99.9 %% of the\n"
-      "// energy lies) the worst of the scenes of docs/diffusion.md. Written by\n"
-      "// build/bin/pellucid_diffusion_error --table, which --check measures again.\n"
+      "// Relative RMSE of the diffusion from brute force at each radius (pixels within which 99.9 %% of the "
+      "energy lies), the worst of\n"
+      "// the scenes of docs/accuracy.md. Written by build/bin/pellucid_diffusion_error --table, which "
+      "--check "
+      "measures again.\n"
       "#pragma once\n\nnamespace pellucid {\n\nconstexpr float kErrorRadii[] = {");
   for (size_t i = 0; i < radii.size(); ++i) std::printf("%s%g", i ? ", " : "", radii[i]);
   std::printf("};\nconstexpr float kWorstError[] = {");

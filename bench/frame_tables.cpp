@@ -312,8 +312,7 @@ std::string engineTable(const Json& results) {
         const Json* row = all.find(frame, size, "whole", name);
         if (!row || !row->contains("truth_relative_rmse_rgb") || !row->contains("flicker_rgb")) continue;
         const auto rgb = [&](const char* field) { return rgbCell(row->at(field)); };
-        rows += "| " + frame + " " + size + " | " + name + " |" +
-                rgb("truth_relative_rmse_rgb") +
+        rows += "| " + frame + " " + size + " | " + name + " |" + rgb("truth_relative_rmse_rgb") +
                 format(" %.3f | %d |", row->at("flip").get<double>(), row->at("spots").get<int>()) +
                 rgb("flicker_rgb") + rgb("flicker_irradiance_rgb") +
                 format(" %d, %d |\n", row->at("spots_appear").get<int>(), row->at("spots_vanish").get<int>());
@@ -321,8 +320,8 @@ std::string engineTable(const Json& results) {
   if (rows.empty()) throw NotMeasured("no frame with path-traced truth and turned lights");
   return results.at("device").get<std::string>() + ", commit `" + results.at("commit").get<std::string>() +
          "`:\n\n" +
-         header("frame", {"whole frame", "relative RMSE", "FLIP mean", "spots", "flicker", "of the irradiance",
-                          "spots appear, vanish"}) +
+         header("frame", {"whole frame", "relative RMSE", "FLIP mean", "spots", "flicker",
+                          "of the irradiance", "spots appear, vanish"}) +
          rows;
 }
 
@@ -340,8 +339,8 @@ std::string headlineTable(const std::vector<Json>& runs) {
 
 std::string samplesTable(const std::vector<Json>& runs) {
   const Summary summary(runs);
-  std::string table =
-      summary.heading() + header("`gatherSamples`", {"head, us", "error in red", "mean FLIP", "transients, MB"});
+  std::string table = summary.heading() +
+                      header("`gatherSamples`", {"head, us", "error in red", "mean FLIP", "transients, MB"});
   for (const std::uint32_t samples : kSamples) {
     const std::string name = nameOf(samples);
     table += "| " + std::to_string(samples) + " |" + summary.time("portrait", name) + summary.error(name) +

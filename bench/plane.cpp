@@ -120,9 +120,10 @@ std::vector<TimedError> gathered(const Bench& bench) {
     const Variant without = moduleVariant(frame(capture, 0, 0), ""),
                   with = moduleVariant(frame(capture, samples, spacing), "");
     const Time a = bench.time(without.record), b = bench.time(with.record);
-    bench.report.add({name, with.dispatches - without.dispatches, with.barriers - without.barriers,
-                      with.bytesPerPixel - without.bytesPerPixel, error},
-                     {b.median - a.median, b.low - a.high, b.high - a.low});
+    bench.report.add(
+        {name, int64_t{with.dispatches} - without.dispatches, int64_t{with.barriers} - without.barriers,
+         with.bytesPerPixel - without.bytesPerPixel, error},
+        {b.median - a.median, b.low - a.high, b.high - a.low});
     return b.median - a.median;
   };
   bench.report.section("gather, added to the frame; error: from all texels");

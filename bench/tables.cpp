@@ -44,10 +44,10 @@ std::string measured(const Json& results) {
   const char* const diffusion = "diffusion; error: from brute force";
   const char* const gather = "gather, added to the frame; error: from all texels";
   const Row rows[] = {
-      {"whole frame", module, "whole frame"},
-      {"whole frame, radii not known, as through a perspective camera", "module, radii not known",
+      {"whole frame, 0 samples", module, "whole frame"},
+      {"the same, radii not known, as through a perspective camera", "module, radii not known",
        "whole frame"},
-      {"whole frame, a quarter covered", "module, 25 % covered", "whole frame"},
+      {"the same, a quarter covered", "module, 25 % covered", "whole frame"},
       {"fused translucency dispatch alone", "fused dispatch", "1 lights, 1 maps"},
       {"diffusion alone", diffusion, "Pellucid"},
       {"Separable (Jimenez et al. 2015), 11 taps", diffusion, "Separable 2015, 11 taps"},

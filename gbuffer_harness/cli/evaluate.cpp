@@ -71,8 +71,7 @@ Image allTexels(const Capture& capture, const std::vector<PellucidMaterial>& mat
 void writePicture(const std::string& path, const Capture& capture,
                   const std::vector<PellucidMaterial>& materials, Replayer& replayer) {
   std::vector<Image> images;
-  for (const ReplaySettings& settings :
-       {thesisSettings(), ReplaySettings(), gather(kDefaultGatherSamples)})
+  for (const ReplaySettings& settings : {thesisSettings(), ReplaySettings(), gather(kDefaultGatherSamples)})
     images.push_back(replayed(replayer, capture, materials, settings));
   images.push_back(capture.truth->image);
   std::vector<const Image*> pointers;
@@ -151,8 +150,8 @@ void run(const Options& options) {
 
 void addEvaluateCommand(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("evaluate", "Compare translucency models or numbers of samples with captures' truth");
+  CLI::App* command = app.add_subcommand(
+      "evaluate", "Compare translucency models or numbers of samples with captures' truth");
   command->add_option("captures", options->captures, "captures with truth")->required();
   command->add_option("-o,--output", options->output,
                       "file to write the tables to; default: standard output");

@@ -312,7 +312,7 @@ void resolveGather(ReplaySettings& settings, const Capture& capture,
   const auto mapped = std::find_if(data.lights.begin(), data.lights.end(),
                                    [](const PellucidLight& light) { return light.shadowMapCount > 0; });
   data.frame.lightCount = mapped != data.lights.end();
-  data.frame.lights = &*mapped;
+  data.frame.lights = data.lights.data() + (mapped - data.lights.begin());
   const auto plan = std::make_unique<PellucidPlan>();
   requireOk(pellucidBuildPlan(&data.frame, nullptr, plan.get()), data.frame, capture.name);
   settings.translucency.gatherSamples = plan->gatherSamples;

@@ -66,8 +66,7 @@ BlockMap readBlockMap(const FrameRun& run) {
   const std::vector<std::uint32_t> words = run.blockWords();
   const auto count = static_cast<std::size_t>(map.columns) * static_cast<std::size_t>(map.rows);
   for (std::size_t i = 0; i < count; ++i)
-    map.blocks.push_back(
-        classOf(std::span(words).subspan(PELLUCID_BLOCK_WORDS * i, PELLUCID_BLOCK_WORDS)));
+    map.blocks.push_back(classOf(std::span(words).subspan(PELLUCID_BLOCK_WORDS * i, PELLUCID_BLOCK_WORDS)));
   return map;
 }
 
