@@ -8,12 +8,14 @@
 #include <numbers>
 #include <set>
 
+#include "capture/material.h"
 #include "capture/write.h"
 #include "cli/capture_options.h"
 #include "cli/commands.h"
 #include "cli/frames.h"
 #include "cli/output.h"
 #include "cli/scene_capture.h"
+#include "cli/thin_bodies.h"
 #include "common/error.h"
 #include "common/progress.h"
 #include "common/whole_file.h"
@@ -85,6 +87,12 @@ std::vector<CaptureFrame> framesOf(const Turntable& options, const std::string& 
   return frames;
 }
 
+// Of a turntable only the first frame is asked: each one has another size of the body.
+void warnOfThinBodies(const Capture& capture, const std::filesystem::path& file) {
+  for (const std::string& sentence : thinBodies(capture, compileMaterials(capture)))
+    warn({file.string() + ": " + sentence});
+}
+
 void captureProcedural(const Options& options) {
   SceneParameters scene = procedural(options.scene);
   const std::vector<CaptureFrame> frames = framesOf(options.turntable, options.output);
@@ -92,6 +100,7 @@ void captureProcedural(const Options& options) {
   for (const CaptureFrame& frame : frames) {
     scene.turn = frame.turn;
     const Capture capture = captureScene(scene, options.scene);
+    if (&frame == &frames.front()) warnOfThinBodies(capture, frame.output);
     writeWhole(frame.output, [&](const auto& file) { writeCapture(capture, file); });
     progress.advance();
   }
@@ -121,6 +130,7 @@ void captureGltf(const Options& options) {
     const RasterResult result = captureScene(device, scene.model, turned, scene.raster, sky);
     for (const std::string& warning : result.warnings)
       if (said.insert(warning).second) warn({frame.output.string() + ": " + warning});
+    if (&frame == &frames.front()) warnOfThinBodies(result.capture, frame.output);
     writeWhole(frame.output, [&](const auto& file) { writeCapture(result.capture, file); });
     progress.advance();
   }

@@ -58,11 +58,13 @@ const Name kNames[] = {
     {Role::Irradiance, Match::Holds, "irradiance", "Pellucid's irradiance"},
     {Role::Irradiance, Match::Holds, "diffdir", "Blender's Diffuse Direct, which is E / pi", "", kPi},
     raw("rawtotallight", "V-Ray's raw light, direct and indirect, which is E / pi"),
-    raw("rawlight", "V-Ray's raw light, which is E / pi"),
-    raw("diffuselightingraw", "Redshift's raw diffuse light, which is E / pi"),
+    raw("rawlight", "V-Ray's raw direct light, which is E / pi"),
+    raw("totaldiffuselightingraw", "Redshift's raw diffuse light, direct and indirect, which is E / pi"),
+    raw("diffuselightingraw", "Redshift's raw direct diffuse light, which is E / pi"),
     {Role::Irradiance, Match::Holds, "lightingonly", "Unreal's view of light alone",
      "Unreal's Lighting Only has a gray albedo of .5 and is pre-exposed: set the scale", 2},
     product(Match::Holds, "totallight", "V-Ray's light times color, direct and indirect"),
+    product(Match::Holds, "totaldiffuselight", "a pass of diffuse light, direct and indirect"),
     product(Match::Holds, "vraylighting", "V-Ray's light times color"),
     product(Match::Is, "diffuse", "Arnold's diffuse light, direct and indirect", "diffusealbedo"),
     product(Match::Holds, "diffuselighting", "a pass of diffuse light"),
@@ -142,8 +144,15 @@ std::vector<std::string> namesOf(const ChannelGroup& group) {
   return names;
 }
 
+// Passes of light that are none of the diffuse reflection, whose names else read like those that are.
+bool isSpecular(const std::string& name) {
+  return name.find("specular") != std::string::npos || name.find("reflect") != std::string::npos ||
+         name.find("refract") != std::string::npos;
+}
+
 bool hasName(const ChannelGroup& group, const Name& known) {
   const std::vector<std::string> names = namesOf(group);
+  if (known.role == Role::Irradiance && isSpecular(names[0])) return false;
   return std::any_of(names.begin(), names.end(), [&](const std::string& name) { return fits(name, known); });
 }
 

@@ -61,6 +61,27 @@ TEST_F(Cli, TruthTracesThinWalls) {
   expect(3, scene + " --overwrite --material paper=thin:0.5,0.25,0 --entry refracted", "--entry lambert");
 }
 
+// The numbers that info prints and docs/accuracy.md has, but for 64 samples a pixel and few pixels.
+TEST_F(Cli, LightsWithoutAShadowMapErrAsInfoSays) {
+  const auto bias = [&](const std::string& scene) {
+    const std::string both = " --procedural " + scene + " -o " + path("");
+    expect(0, "truth --spp 64 --overwrite" + both + "t.exr", "samples each");
+    expect(0, "capture --shadow-size 0" + both + "c.exr", "");
+    expect(0, "replay " + path("c.exr") + " --repeat 0 -o " + path("o.exr"), "");
+    const Outcome outcome = run("compare --json " + path("o.exr") + " " + path("t.exr"));
+    EXPECT_EQ(outcome.code, 0) << outcome.text;
+    return nlohmann::json::parse(outcome.text)["bias"].get<std::vector<double>>();
+  };
+  const std::vector<double> slab = bias("slab --size 32x32"), ear = bias("ear --size 32x32"),
+                            ball = bias("sphere --size 32x32 --set extent=18");
+  const double printed[] = {0.04, 0.12, 0.21};
+  for (std::size_t c = 0; c < 3; ++c) {
+    EXPECT_NEAR(slab[c], 0, 0.03) << c;  // noise: a pixel's is .2 to .4, over 32 along each side
+    EXPECT_NEAR(ear[c], printed[c], 0.03) << c;
+    EXPECT_GT(ball[c], 2) << c;  // 3 times as bright and more
+  }
+}
+
 // A pyramid without its base, then closed.
 TEST_F(Cli, TruthClosesHolesOrNamesThem) {
   GltfBuilder b;

@@ -129,6 +129,27 @@ TEST_F(InfoCommand, SaysWhatIsMissingBesideAShadowMap) {
   EXPECT_FALSE(has(missing, "lights[1]")) << missing;
 }
 
+// Of solids the line has the measured error; sheets have none, and without back depths the light adds
+// nothing.
+TEST_F(InfoCommand, SaysHowFarALightWithoutAShadowMapIsOff) {
+  EXPECT_FALSE(has(info()["missing"], "no shadow map"));
+  manifest["lights"][0].erase("shadowMap");
+  json missing = info()["missing"];
+  EXPECT_TRUE(has(missing, "lights[0] has no shadow map")) << missing;
+  EXPECT_TRUE(has(missing, "4, 12 and 21 %")) << missing;
+  EXPECT_FALSE(has(missing, "lights[1]")) << missing;
+  json sheets = manifest;
+  std::swap(sheets, manifest);
+  for (json& material : manifest["materials"])
+    material = {{"thinWalled", {{"reflectance", {0.4, 0.4, 0.4}}, {"transmittance", {0.4, 0.4, 0.4}}}}};
+  missing = info()["missing"];
+  EXPECT_TRUE(has(missing, "lights[0] has no shadow map")) << missing;
+  EXPECT_FALSE(has(missing, "%")) << missing;
+  manifest = sheets;
+  manifest["buffers"].erase("backDepth");
+  EXPECT_FALSE(has(info()["missing"], "lights[0] has no shadow map")) << info()["missing"];
+}
+
 TEST_F(InfoCommand, CountsWhatLooksWrong) {
   // Pixel (1, 0) has a material and an infinite front depth.
   json warnings = info()["warnings"];

@@ -278,6 +278,20 @@ TEST_F(Init, PassesOfLightOfEachRendererGiveTheIrradiance) {
       {"Redshift",
        {{"DiffuseFilter", albedo}, {"DiffuseLighting", product}, {"DiffuseLightingRaw", rawPass}},
        "DiffuseLightingRaw.R"},
+      {"Redshift, with indirect light",
+       {{"DiffuseFilter", albedo}, {"DiffuseLightingRaw", half}, {"TotalDiffuseLightingRaw", rawPass}},
+       "TotalDiffuseLightingRaw.R"},
+      {"a total of products beside its direct part",
+       {{"DiffuseFilter", albedo},
+        {"DiffuseLighting", times(product, white, 0.5f)},
+        {"TotalDiffuseLighting", product}},
+       "TotalDiffuseLighting.R"},
+      {"highlights, whose names come first",
+       {{"DiffuseFilter", albedo},
+        {"A.SpecularLightingRaw", white},
+        {"B.ReflectedLighting", white},
+        {"Lighting", product}},
+       "Lighting.R"},
   };
   for (const Case& c : cases) {
     SCOPED_TRACE(c.renderer);
