@@ -164,7 +164,7 @@ typedef struct PellucidFrame {
                               0: the whole image */
   float metersPerUnit;     /* default 1 */
   float clipFromView[16];  /* the projection that rendered the depths, jitter included */
-  float viewFromWorld[16]; /* rigid; default identity; far from the origin, docs/design.md */
+  float viewFromWorld[16]; /* rigid; default identity; far from the origin, docs/integration.md */
 
   PellucidImage frontDepth; /* required; one float channel */
   PellucidImage backDepth;  /* nearest back face behind the front; without it no camera-space thickness, and in a gather thin
