@@ -18,9 +18,8 @@ const int kWindowX = kTexelsX + 2, kWindowY = kTexelsY + 2, kRing = 2;
 const int kColumns = kPixelsX + 2 * kRing, kRows = kPixelsY + 2 * kRing;
 const int kLoads = (kColumns * kRows + kInvocations - 1) / kInvocations;
 
-shared uvec2 colors[kColumns * kRows]; // by packHalves; where there are edges, with materials
-// Colors after the fine filter's vertical half. Later, where there are edges, the bits of depths in x.
-shared uvec2 vertical[kColumns * kRows];
+shared uvec2 colors[kColumns * kRows];   // and alphas, as halves
+shared uvec2 surfaces[kColumns * kRows]; // where there are edges: bits of the depth; material
 shared uvec4 upsampled[kWindowX * kWindowY], shares[kWindowX * kWindowY];
 shared float spreads[kWindowX * kWindowY]; // inverseSpread of upsampled[]
 shared uint edges[kTexelsX * kTexelsY];    // columns and, from bit 8 on, rows of texels
@@ -32,7 +31,12 @@ ivec2 loaded(int i) {
   return ivec2(at % kColumns, at / kColumns);
 }
 
-float depthAt(int place) { return uintBitsToFloat(vertical[place].x); }
+float depthAt(int place) { return uintBitsToFloat(surfaces[place].x); }
+
+// Alpha of a pixel; `place`: in colors[]. Wide outputs keep what halves round.
+float alphaAt(ivec2 pixel, int place) {
+  return hasFlag(PELLUCID_FLAG_WIDE_OUTPUT) ? texelFetch(sourceImage, pixel, 0).a : unpackHalf2x16(colors[place].y).y;
+}
 
 // The quadratic B-spline at -1, 0 and 1 for a point at most half a texel from 0: it interpolates level 2.
 vec3 spline(float at) {
@@ -112,20 +116,19 @@ vec3 withProbes(vec3 diffused, ivec2 pixel, int side, float front, uint material
 
 // ---- Planes
 
-vec3 fineSum(vec3 a, vec3 b, vec3 c, vec3 d, vec3 e) {
-  return PELLUCID_FINE_OWN * c + PELLUCID_FINE_NEXT * (b + d) + PELLUCID_FINE_LAST * (a + e);
-}
-
-// The vertical half of the separable fine filter, of four pixels of a column with the ring.
-void filterColumn(int column, int row) {
-  vec3 rows[8];
-  [[unroll]] for (int y = 0; y < 8; ++y) rows[y] = unpackHalves(colors[(row + y) * kColumns + column]);
-  [[unroll]] for (int i = 0; i < 4; ++i)
-    vertical[(row + i) * kColumns + column] = packHalves(fineSum(rows[i], rows[i + 1], rows[i + 2], rows[i + 3], rows[i + 4]), 0u);
-}
-
 // Diffuses the invocation's column of four pixels, which is part of a plane. `texel`: in the window.
 void diffusePlane(ivec2 first, ivec2 local, int texel) {
+  // The fine filter is separable: vertical sums of the column and of those beside.
+  vec3 fine[4] = vec3[4](vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0)), result[4];
+  [[unroll]] for (int x = -2; x <= 2; ++x) {
+    vec3 rows[8];
+    [[unroll]] for (int y = 0; y < 8; ++y) rows[y] = unpackHalves(colors[(local.y + y) * kColumns + local.x + kRing + x]);
+    [[unroll]] for (int i = 0; i < 4; ++i) {
+      fine[i] += fineWeight(x) * (PELLUCID_FINE_OWN * rows[i + 2] + PELLUCID_FINE_NEXT * (rows[i + 1] + rows[i + 3]) +
+                                  PELLUCID_FINE_LAST * (rows[i] + rows[i + 4]));
+      if (x == 0) result[i] = rows[i + 2];
+    }
+  }
   vec3 across = spline(0.25 * (float(local.x & 3) - 1.5)), level2[3]; // at the column, in three rows of texels
   [[unroll]] for (int y = 0; y < 3; ++y) {
     int row = texel + (y - 1) * kWindowX;
@@ -133,19 +136,15 @@ void diffusePlane(ivec2 first, ivec2 local, int texel) {
                 across.z * unpackHalves(upsampled[row + 1].xy);
   }
   PixelShares share = unpackShares(shares[texel].xyz);
-  vec3 result[4];
   [[unroll]] for (int i = 0; i < 4; ++i) {
     vec3 along = spline(0.25 * (float(i) - 1.5));
     vec3 coarser = along.x * level2[0] + along.y * level2[1] + along.z * level2[2];
-    int place = (local.y + i) * kColumns + local.x + kRing;
-    vec3 fine = fineSum(unpackHalves(vertical[place - 2]), unpackHalves(vertical[place - 1]), unpackHalves(vertical[place]),
-                        unpackHalves(vertical[place + 1]), unpackHalves(vertical[place + 2]));
-    result[i] = mix(coarser, mix(unpackHalves(colors[place + kRing * kColumns]), fine, share.fine), share.rest);
+    result[i] = mix(coarser, mix(result[i], fine[i], share.fine), share.rest);
   }
   if (pass.value.x != 0u) addProbesToPlane(first + local, int(pass.value.x), result);
   [[unroll]] for (int i = 0; i < 4; ++i) {
     ivec2 pixel = first + local + ivec2(0, i);
-    writeResult(pixel, result[i], texelFetch(sourceImage, pixel, 0).a, pass.value.z != 0u);
+    writeResult(pixel, result[i], alphaAt(pixel, (local.y + i + kRing) * kColumns + local.x + kRing), pass.value.z != 0u);
   }
 }
 
@@ -191,7 +190,7 @@ Around aroundPixel(int center, vec2 from, float depth, uint material, vec2 size)
 // The fine filter of a pixel on a surface of that slope; w: the part of its weight that lies on the surface. `place`: of the pixel
 // in colors[].
 vec4 fineOfEdge(int place, vec2 slope, vec2 size) {
-  uint material = colors[place].y >> 16;
+  uint material = surfaces[place].y;
   float own = depthAt(place);
   vec2 depthStep = slope * size;
   float spread2 = inverseSpread(slope, 2.0 * size);
@@ -202,7 +201,7 @@ vec4 fineOfEdge(int place, vec2 slope, vec2 size) {
       int at = place + y * kColumns + x;
       float theirs = depthAt(at), along = dot(depthStep, vec2(x, y));
       float w = tangentPlaneWeight(theirs - own - along, along, spread2, kPixelFalloff) * fineWeight(x) * fineWeight(y);
-      bool counts = colors[at].y >> 16 == material && theirs > 0.0;
+      bool counts = surfaces[at].y == material && theirs > 0.0;
       fine += (counts ? w : 0.0) * vec4(unpackHalves(colors[at]), 1.0);
     }
   return fine;
@@ -211,7 +210,7 @@ vec4 fineOfEdge(int place, vec2 slope, vec2 size) {
 void diffuseEdge(ivec2 first, ivec2 local) {
   ivec2 pixel = first + local;
   int place = (local.y + kRing) * kColumns + local.x + kRing;
-  uint material = colors[place].y >> 16;
+  uint material = surfaces[place].y;
   if (material == 0u) return;
   float depth = depthAt(place);
   vec3 own = unpackHalves(colors[place]), color = own;
@@ -227,7 +226,7 @@ void diffuseEdge(ivec2 first, ivec2 local) {
     color = mix(own, max(sum, vec3(0.0)) / max(divisor, vec3(1.0e-6)), greaterThan(divisor, vec3(1.0e-6)));
     if (pass.value.x != 0u) color = withProbes(color, pixel, int(pass.value.x), depth, material);
   }
-  writeResult(pixel, color, texelFetch(sourceImage, pixel, 0).a, pass.value.z != 0u);
+  writeResult(pixel, color, alphaAt(pixel, place), pass.value.z != 0u);
 }
 
 // Keeps materials and depths of the group's pixels with their ring.
@@ -243,8 +242,7 @@ void keepEdges(ivec2 first) {
   [[unroll]] for (int i = 0; i < kLoads; ++i) {
     ivec2 at = loaded(i);
     if (at.y >= kRows) continue;
-    colors[at.y * kColumns + at.x].y |= materials[i] << 16;
-    vertical[at.y * kColumns + at.x].x = floatBitsToUint(fronts[i]);
+    surfaces[at.y * kColumns + at.x] = uvec2(floatBitsToUint(fronts[i]), materials[i]);
   }
 }
 
@@ -253,31 +251,34 @@ void diffuse(ivec2 first) {
   int invocation = int(gl_LocalInvocationIndex);
   ivec2 inWindow = ivec2(invocation % kWindowX, invocation / kWindowX), texel = (first >> 2) + inWindow - 1;
   uvec4 bits = uvec4(0u), texelShares = uvec4(0u);
-  if (inWindow.y < kWindowY && contains(levelRect(2u), texel)) {
+  ivec4 rect = levelRect(2u);
+  texel = clamp(texel, rect.xy, rect.zw - 1); // nothing is known beyond the rect
+  if (inWindow.y < kWindowY) {
     bits = texelFetch(pyramidImage, upsampledPlace(texel), 0);
     texelShares = texelFetch(pyramidImage, sharesPlace(texel), 0);
   }
-  vec3 sources[kLoads];
-  [[unroll]] for (int i = 0; i < kLoads; ++i) sources[i] = texelFetch(sourceImage, withinRect(first + loaded(i) - kRing), 0).rgb;
+  vec4 sources[kLoads];
+  [[unroll]] for (int i = 0; i < kLoads; ++i) sources[i] = texelFetch(sourceImage, withinRect(first + loaded(i) - kRing), 0);
   if (invocation == 0) edgeCount = 0u;
-  [[unroll]] for (int i = 0; i < kLoads; ++i)
-    if (loaded(i).y < kRows) colors[loaded(i).y * kColumns + loaded(i).x] = packHalves(roundToHalf(sanitize(sources[i])), 0u);
+  [[unroll]] for (int i = 0; i < kLoads; ++i) {
+    vec3 color = roundToHalf(sanitize(sources[i].rgb));
+    if (loaded(i).y < kRows)
+      colors[loaded(i).y * kColumns + loaded(i).x] = uvec2(packHalf2x16(color.rg), packHalf2x16(vec2(color.b, sources[i].a)));
+  }
   barrier();
   if (inWindow.y < kWindowY) {
     upsampled[invocation] = bits;
     shares[invocation] = texelShares;
     spreads[invocation] = inverseSpread(unpackHalf2x16(bits.w), texelSize(uintBitsToFloat(bits.z), 2u));
     ivec2 inside = inWindow - 1;
-    if (contains(ivec4(0, 0, kTexelsX, kTexelsY), inside) && bits.y >> 16 != 0u && !isPlane(bits))
+    if (contains(ivec4(0, 0, kTexelsX, kTexelsY), inside) && contains(rect, (first >> 2) + inside) && bits.y >> 16 != 0u && !isPlane(bits))
       edges[atomicAdd(edgeCount, 1u)] = uint(inside.x | inside.y << 8);
   }
-  for (int i = invocation; i < kColumns * kPixelsY / 4; i += kInvocations) filterColumn(i % kColumns, i / kColumns * 4);
   barrier();
   uint count = edgeCount;
   ivec2 column = ivec2(invocation % kPixelsX, invocation / kPixelsX * 4);
   int center = (column.y / 4 + 1) * kWindowX + column.x / 4 + 1;
-  if (isPlane(upsampled[center])) diffusePlane(first, column, center);
-  barrier(); // colors have been read
+  if (isPlane(upsampled[center]) && contains(rect, (first + column) >> 2)) diffusePlane(first, column, center);
   if (count != 0u) keepEdges(first);
   barrier();
   // Sixteen invocations do a texel.

@@ -87,6 +87,13 @@ float depthStep(int first, int stride, Source center, ivec2 at, ivec2 direction)
   return best;
 }
 
+// Part of the filter that lies in the rect along an axis; `first`: the first of four texels, [begin, end): the rect's.
+float insideOf(int first, int begin, int end) {
+  float inside = 0.0;
+  [[unroll]] for (int i = 0; i < 4; ++i) inside += first + i >= begin && first + i < end ? weight(i) : 0.0;
+  return inside; // above 0: a texel that the rect touches has one of the two in the middle
+}
+
 // Texel from 4 x 4 texels that are not one plane.
 uvec4 downsampledEdge(uint finer, ivec2 texel, int first, int stride) {
   int chosen = surfaceOf(first, stride);
@@ -131,7 +138,10 @@ uvec4 downsampledEdge(uint finer, ivec2 texel, int first, int stride) {
   vec2 center = vec2(1.5) - vec2(nearest);
   float depth = surface.depth + dot(slope, center * size) + off * inverse;
   slope += tilt / max(spread, 1.0e-6 * size * size + 1.0e-30);
-  return packTexel(Texel(color / area, area, surface.material, depth, slope), 0u);
+  // Beyond the rect nothing is known: its border takes nothing from the surface.
+  ivec4 rect = levelRect(finer);
+  float inside = insideOf(2 * texel.x - 1, rect.x, rect.z) * insideOf(2 * texel.y - 1, rect.y, rect.w);
+  return packTexel(Texel(color / area, area / inside, surface.material, depth, slope), 0u);
 }
 
 // Texel of the level after `finer` from the 4 x 4 at `first`.

@@ -29,14 +29,6 @@ vec3 beyondPixel(uint m, uint element, float entry) {
   return mix(kernels[m].pixelShare[first].rgb, next, entry - float(i));
 }
 
-// Shares of pixels of a texel of level 2; `lengthMm`: of the texel.
-PixelShares pixelShares(uint m, float lengthMm) {
-  float entry = shareEntry(m, 0.25 * lengthMm);
-  vec3 coarser = beyondPixel(m, 0u, entry), beyond = max(beyondPixel(m, 1u, entry), coarser);
-  // One Gaussian may ask for more than all.
-  return PixelShares(1.0 - coarser, min((beyond - coarser) / max(1.0 - coarser, vec3(1.0e-3)), vec3(kMostFine)));
-}
-
 // First fundamental form of the surface over a texel, reduced to what the kernel needs.
 struct Foreshortening {
   float lengthMm; // of a texel along the foreshortened direction, the longest on the surface
@@ -61,6 +53,19 @@ Foreshortening foreshortening(ivec2 texel, uint level, float depth, vec2 slope) 
   float least = max(middle - root, 1.0e-6 * middle);
   // middle > 0 in front of the eye; the floor is for cameras without a pixel size.
   return Foreshortening(sqrt(middle + root) * c.range.w, (middle + root) / max(least, 1.0e-30) - 1.0, axis);
+}
+
+// Shares of pixels of a texel of level 2. The octaves between the kernel's sides count by factors of pellucid_filters.h, and not at
+// silhouettes, where surfaces leave their tangent planes.
+PixelShares pixelShares(uint m, Foreshortening f) {
+  // The stretch is >= 0 but for rounding.
+  float longer = 0.5 * log2(1.0 + max(f.stretch, 0.0)), octaves = clamp(2.5 - longer, 0.0, min(longer, 1.0));
+  float entry = shareEntry(m, 0.25 * f.lengthMm), perOctave = kernels[m].range.y * octaves; // of a pixel, 1/4 of the texel
+  float straight = abs(f.axis.x * f.axis.x - f.axis.y * f.axis.y); // 1: along rows or columns, 0: along a diagonal
+  vec3 coarser = beyondPixel(m, 0u, entry - perOctave * (PELLUCID_FORESHORTENED_COARSER - PELLUCID_FORESHORTENED_STRAIGHT * straight));
+  vec3 beyond = max(beyondPixel(m, 1u, entry - perOctave * PELLUCID_FORESHORTENED_FINE), coarser);
+  // One Gaussian may ask for more than all.
+  return PixelShares(1.0 - coarser, min((beyond - coarser) / max(1.0 - coarser, vec3(1.0e-3)), vec3(kMostFine)));
 }
 
 #endif

@@ -87,7 +87,7 @@ struct Own {
   Texel texel;
   vec4 here;  // the level's own part, times its kernel coverage, which is in a
   vec3 share; // of the coarser levels
-  float lengthMm; // see Foreshortening
+  Foreshortening foreshortening;
 };
 
 // The function has no branches, so that the invocation waits for memory once.
@@ -101,7 +101,7 @@ Own ownPart(uint level, ivec2 texel, uvec4 bits) {
   // Material 0 looks up what it does not use.
   uint m = max(own.texel.material, 1u) - 1u;
   own.share = coarserShare(m, level, shareEntry(m, f.lengthMm));
-  own.lengthMm = f.lengthMm;
+  own.foreshortening = f;
   return own;
 }
 
@@ -125,8 +125,9 @@ Level withCoarser(Own own, uint level, ivec2 texel, Window window) {
   vec2 size = texelSize(own.texel.depth, level + 1u);
   float spread2 = inverseSpread(own.texel.slope, size);
   vec3 coarser = vec3(0.0), found = vec3(0.0);
+  ivec4 rect = levelRect(level + 1u);
   [[unroll]] for (int i = 0; i < 4; ++i) {
-    ivec2 at = nearest + toward * ivec2(i & 1, i >> 1);
+    ivec2 at = clamp(nearest + toward * ivec2(i & 1, i >> 1), rect.xy, rect.zw - 1); // nothing is known beyond the rect
     uvec4 theirs = upsampled[indexOf(window, at)];
     vec2 off = vec2(at) + 0.5 - 0.5 * (vec2(texel) + 0.5);
     float w = (i == 0 ? kNear * kNear : i == 3 ? kFar * kFar : kNear * kFar) / kCoverageOne;
@@ -164,7 +165,7 @@ void upsampleFine(ivec2 texel, ivec2 k, uvec4 bits) {
   uint upper = bits.y >> 16 & ~(kPlane >> 16);
   if ((bits.x & kFlat) != 0u) upper |= kPlane >> 16;
   writeUpsampled(texel, uvec4(packColor(r.color, upper), bits.zw),
-                 uvec4(packShares(pixelShares(own.texel.material - 1u, own.lengthMm)), packCoverage(r.coverage)));
+                 uvec4(packShares(pixelShares(own.texel.material - 1u, own.foreshortening)), packCoverage(r.coverage)));
 }
 
 void main() {

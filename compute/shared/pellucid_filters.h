@@ -18,6 +18,12 @@
 #define PELLUCID_FINE_LAST (1.0 / 19.0)
 #define PELLUCID_FINE_OWN (1.0 - 2.0 * (PELLUCID_FINE_NEXT + PELLUCID_FINE_LAST))
 
+// Octaves by which the shares of pixels follow the longer side of a foreshortened kernel, of each octave that it is longer:
+// level 2 and coarser ones of a kernel along a diagonal, how much less of it along rows or columns, and the fine filter.
+#define PELLUCID_FORESHORTENED_COARSER 0.3
+#define PELLUCID_FORESHORTENED_STRAIGHT 0.15
+#define PELLUCID_FORESHORTENED_FINE 0.5
+
 // Variance of a refinement, squared texels of the finer level: the coarser centers are 1/2 and 3/2 of its texels away.
 #define PELLUCID_REFINEMENT_VARIANCE (0.25 * PELLUCID_REFINEMENT_NEAR + 2.25 * PELLUCID_REFINEMENT_FAR)
 
