@@ -307,10 +307,9 @@ TEST(ContextPipelines, AreMadeForPlans) {
 void shape(Frame& f, uint32_t kind) {
   for (PellucidImage& image : f.frame.transients) image = Frame::view();
   f.frame.imageExtent[0] = 64 + 100 * (kind % 7);
-  if (kind % 3 == 1) f.frame.gatherSamples = PELLUCID_GATHER_BY_QUALITY;
+  if (kind % 3 == 1) f.frame.gatherSamples = 8;
   if (kind % 3 == 2) f.frame.features = PELLUCID_FEATURE_DIFFUSION;
   if (kind % 4 == 1) f.frame.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
-  f.frame.quality = kind % 3;
   if (kind % 5 == 1) f.frame.normal = Frame::view();
 }
 
