@@ -121,7 +121,7 @@ std::string errorsTable() {
   char text[48];
   for (size_t i = 0; i < std::size(pellucid::kErrorRadii); ++i) {
     std::snprintf(text, sizeof text, "| %g px | %.4f |\n", static_cast<double>(pellucid::kErrorRadii[i]),
-                  static_cast<double>(pellucid::kWorstError[0][i]));
+                  static_cast<double>(pellucid::kWorstError[i]));
     table += text;
   }
   return table;

@@ -198,7 +198,7 @@ TEST(AccuracyPlan, TargetErrorOfTheDiffusionIsHeldOrReported) {
       bool holds = true;
       for (size_t i = 0; i < std::size(kErrorRadii); ++i) {
         const bool reached = radius == 0 || i == 0 || kErrorRadii[i - 1] < radius;
-        holds = holds && (!reached || kWorstError[0][i] < target);
+        holds = holds && (!reached || kWorstError[i] < target);
       }
       EXPECT_EQ(skipped(f.plan(), "targetError"), holds ? 0u : 1u) << radius << " pixels, " << target;
       ++(holds ? held : missed);
