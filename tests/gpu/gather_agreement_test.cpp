@@ -1,4 +1,5 @@
 // The GPU's samples against the float64 gather over all texels, and what maps and conventions cost.
+#include "all_texels.h"
 #include "gpu_fixture.h"
 
 #include <cstdio>
@@ -6,14 +7,11 @@
 
 #include "capture/material.h"
 #include "common/compare.h"
-#include "common/parallel.h"
-#include "reference/gather.h"
 #include "scene/scene.h"
 
 namespace {
 
 using namespace pellucid::test;
-namespace reference = pellucid::harness::reference;
 
 const PellucidMaterial& skin() {
   static const PellucidMaterial compiled = compileMaterial(PresetMaterial{"skin1"}, "skin1");
@@ -35,26 +33,10 @@ Image gpuGather(Replayer& replayer, const Capture& c, uint32_t samples) {
   return rgb(replayer.run(c, std::vector<PellucidMaterial>(c.materials.size(), skin()), s).output);
 }
 
-// The same, over all texels, at the pixels that `wanted` names; 0 elsewhere. Diffusion, where any, is the
-// GPU's own: what is compared is the gather.
-Image allTexels(const Capture& c, const Image& diffused, const std::function<bool(int, int)>& wanted) {
-  const PellucidMaterial material = skin();
-  const reference::SurfaceReader surfaces(c);
-  const reference::Gather gather(c, surfaces, std::vector<PellucidMaterial>(c.materials.size(), material));
-  Image out(c.width, c.height, 3);
-  parallelRows(c.height, 0, [&](int y) {
-    for (int x = 0; x < c.width; ++x) {
-      const size_t i = static_cast<size_t>(y * c.width + x);
-      const auto surface = surfaces.at(x, y);
-      if (c.material[i] == 0 || !surface || !wanted(x, y)) continue;
-      const reference::Gathered g = gather.at(*surface, c.material[i] - 1u);
-      for (int k = 0; k < 3; ++k)
-        out.at(x, y)[k] = static_cast<float>(
-            std::max(0.0, (1 + g.convexity[k]) * double(diffused.at(x, y)[k]) + g.returned[k] +
-                              g.transmitted[k] / double(material.reflectance[k])));
-    }
-  });
-  return out;
+// The same, over all texels. Diffusion, where any, is the GPU's own: what is compared is the gather.
+Image gatherOfAllTexels(const Capture& c, const Image& diffused,
+                        const std::function<bool(int, int)>& wanted) {
+  return allTexels(c, std::vector<PellucidMaterial>(c.materials.size(), skin()), diffused, wanted);
 }
 
 // Relative RMSE of 4x4 averages, the worst channel.
@@ -102,7 +84,7 @@ TEST_F(GatherAgreement, SixteenSamplesAreNearAllTexels) {
     const Capture c = evenlyLit(p);
     // Every fourth of the blocks that error() averages, along each row another one.
     const auto wanted = [](int x, int y) { return (x / 4 + y / 4) % 4 == 0; };
-    const Image all = allTexels(c, c.irradiance, wanted);
+    const Image all = gatherOfAllTexels(c, c.irradiance, wanted);
     Capture compared = c;
     for (int y = 0; y < c.height; ++y)
       for (int x = 0; x < c.width; ++x)
@@ -269,7 +251,8 @@ TEST_F(GatherAgreement, TerminatorIsContinuous) {
       ReplaySettings spread;
       spread.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
       spread.features = PELLUCID_FEATURE_DIFFUSION;
-      const Image all = allTexels(c, rgb(replay(c, skin(), spread)), [](int, int y) { return y == 48; });
+      const Image all =
+          gatherOfAllTexels(c, rgb(replay(c, skin(), spread)), [](int, int y) { return y == 48; });
       const Image gpu = gpuGather(replayer(), c, 16);
       // Along the middle row, inside the outline: the largest second difference relative to the peak.
       double worstGpu[3] = {}, worstAll[3] = {}, peak[3] = {};

@@ -84,7 +84,7 @@ TEST(StressFrames, HoldEveryOptionAndAreAccepted) {
     const auto see = [&](const char* what, auto value) {
       ++seen[what + std::to_string(static_cast<int>(value))];
     };
-    see("quality ", s.quality);
+    see("eights of samples ", s.translucency.gatherSamples / 8);
     see("features ", s.features);
     see("debug ", s.debugView);
     see("angle ", s.translucency.angleModel);
@@ -107,11 +107,21 @@ TEST(StressFrames, HoldEveryOptionAndAreAccepted) {
   }
   // A twentieth at most, or wild frames would stress validation alone.
   EXPECT_LE(refused, kFrames / 40);
-  const std::map<std::string, int> counts = {{"quality ", 3}, {"features ", 4},      {"debug ", 5},
-                                             {"angle ", 7},   {"reuse ", 3},         {"alias ", 2},
-                                             {"front ", 2},   {"transmittance ", 4}, {"half ", 2},
-                                             {"light ", 3},   {"map ", 3},           {"perspective ", 2},
-                                             {"maps ", 2},    {"left-handed ", 2},   {"bad irradiance ", 2}};
+  const std::map<std::string, int> counts = {{"eights of samples ", 3},
+                                             {"features ", 4},
+                                             {"debug ", 5},
+                                             {"angle ", 7},
+                                             {"reuse ", 3},
+                                             {"alias ", 2},
+                                             {"front ", 2},
+                                             {"transmittance ", 4},
+                                             {"half ", 2},
+                                             {"light ", 3},
+                                             {"map ", 3},
+                                             {"perspective ", 2},
+                                             {"maps ", 2},
+                                             {"left-handed ", 2},
+                                             {"bad irradiance ", 2}};
   for (const auto& [what, count] : counts)
     for (int i = 0; i < count; ++i) EXPECT_GE(seen[what + std::to_string(i)], 5) << what << i;
 }

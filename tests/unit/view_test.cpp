@@ -404,7 +404,7 @@ TEST_F(ViewFiles, ScriptsAreRefusedByLine) {
     });
   };
   for (const char* text : {"1 jump 3", "1 move 3", "0 wheel 1", "x wheel 1", "1 press elbow", "1 set gather",
-                           "1 set gather=9", "1 set speed=1", "1 set filter=1,1,1,1,1", "1 show soul",
+                           "1 set gather=99", "1 set speed=1", "1 set filter=1,1,1,1,1", "1 show soul",
                            "1 exposure much", "2 wheel 1\n1 wheel 1"}) {
     const std::string sentence = refused(std::string("# first\n") + text);
     EXPECT_NE(sentence.find("bad.txt:"), std::string::npos) << text << " gives: " << sentence;
