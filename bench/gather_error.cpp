@@ -20,8 +20,8 @@ std::vector<double> gatherErrors(const Site& site, const std::vector<uint32_t>& 
   Capture capture = makeScene(p);
   capture.albedo = {};
   capture.lights.resize(1);
+  std::fill(capture.irradiance.data.begin(), capture.irradiance.data.end(), 0.0f);  // gathered light alone
   ReplaySettings settings;
-  settings.features = PELLUCID_FEATURE_TRANSLUCENCY;
   settings.translucency.gatherSamples = samples.front();
   reference::Settings all;
   all.features = settings.features;

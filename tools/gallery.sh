@@ -69,7 +69,7 @@ cat - "$body" >"$page" <<EOF
 This page shows what Pellucid does to scenes of all kinds, and how near the result comes to path tracing. \`./run gallery\` makes the page and its
 pictures from procedural scenes, \`./run gallery MODELS\` with a head scan in the place of the procedural head and ear.
 
-Each picture has three panels under one exposure: without Pellucid | with Pellucid, quality 1 | path traced. Path tracing had $seconds seconds for
+Each picture has three panels under one exposure: without Pellucid | with Pellucid | path traced. Path tracing had $seconds seconds for
 each picture, so its panels are noisy. The number is the relative RMSE of red, green and blue against path tracing, over averages of 4x4 pixels, noise
 included. Device: $device; commit $(git describe --always --dirty --abbrev=12).$credit
 

@@ -3,11 +3,15 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "pellucid/pellucid_thesis.h"
 
 namespace pellucid::harness {
+
+// PellucidFrame::gatherSamples, as pellucidInitFrame has it.
+inline constexpr std::uint32_t kDefaultGatherSamples = 8;
 
 struct TranslucencySettings {
   PellucidThicknessSource thicknessSource = PELLUCID_THICKNESS_LIGHT;

@@ -99,7 +99,7 @@ typedef enum PellucidDepthEncoding {
 /* A fused dispatch binds 8 shadow images and takes 128 lights and 112 shadow maps; a frame with more gets several. Exit
  * depths and caster materials count; the images of one light must fit into one dispatch. Where those of all lights are
  * more than a plan's dispatches can bind, all exit depths and caster materials are left out, which a skip says. */
-enum { PELLUCID_MAX_LIGHT_SHADOW_MAPS = 8, PELLUCID_MAX_TRANSIENTS = 7 };
+enum { PELLUCID_MAX_LIGHT_SHADOW_MAPS = 8, PELLUCID_MAX_TRANSIENTS = 8 };
 
 /* Parts of a frame. */
 typedef enum PellucidFeatureBits {
