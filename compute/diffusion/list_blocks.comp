@@ -92,7 +92,8 @@ void listBlock(uint block) {
   for (int i = 0; i < 9; ++i) near = blockHoldsMaterial(at + ivec2(i % 3, i / 3) - 1) || near; // no early exit: it waits for each
   writeWord(blockWord(block, kNearWord), near ? 1u : 0u);
   if (!near) return;
-  writeWord(nearList() + atomicAdd(lists.commands[PELLUCID_LIST_NEAR].x, 1u), block);
+  writeWord(nearList() + atomicAdd(lists.commands[PELLUCID_LIST_DOWNSAMPLE].x, 1u), block);
+  atomicAdd(lists.commands[PELLUCID_LIST_UPSAMPLE].x, 1u);
   if (!blockHoldsMaterial(at)) return;
   uint place = atomicAdd(lists.commands[PELLUCID_LIST_DIFFUSE].x, 1u);
   writeWord(materialList() + place, block);

@@ -213,15 +213,16 @@ struct KernelConstants {
   vec4 pixelShare[PELLUCID_PIXEL_SHARES * PELLUCID_SHARE_ENTRIES];
 };
 
-// A list of the groups that have work: those of blocks, in the order of their VkDispatchIndirectCommands.
-#define PELLUCID_LIST_NEAR 0u     // blocks with material and those beside: levels 2 and 3, and upsampling
-#define PELLUCID_LIST_DIFFUSE 1u  // blocks with material
-#define PELLUCID_LIST_PROBES 2u   // the same ones
-#define PELLUCID_LIST_FILTER 3u   // the same ones
-#define PELLUCID_LIST_COARSE 4u   // levels 4 and 5: all groups, if there is material
-#define PELLUCID_LIST_COARSEST 5u // levels 6 and 7: the same
-#define PELLUCID_LIST_ENTRIES 6u  // groups of entry points within reach of what blocks show
-#define PELLUCID_LISTS 7
+// VkDispatchIndirectCommands of the passes, which do
+#define PELLUCID_LIST_DOWNSAMPLE 0u // levels 2 and 3: blocks with material and those beside
+#define PELLUCID_LIST_UPSAMPLE 1u   // the same ones
+#define PELLUCID_LIST_DIFFUSE 2u    // blocks with material
+#define PELLUCID_LIST_PROBES 3u     // the same ones
+#define PELLUCID_LIST_FILTER 4u     // the same ones
+#define PELLUCID_LIST_COARSE 5u     // levels 4 and 5: all groups, if there is material
+#define PELLUCID_LIST_COARSEST 6u   // levels 6 and 7: the same
+#define PELLUCID_LIST_ENTRIES 7u    // groups of entry points within reach of what blocks show
+#define PELLUCID_LISTS 8
 #define PELLUCID_BLOCK_WORDS 5    // see compute/frame/blocks.glsl
 #define PELLUCID_BLOCK_WORDS_SHIFT 10 // log2 of the columns of their image
 #define PELLUCID_ENTRY_GROUP_WORDS 128 // a bit for each of a map's groups of entry points, at most 64 x 64

@@ -29,9 +29,9 @@
 #include "common/png.h"
 #include "common/progress.h"
 #include "common/whole_file.h"
+#include "replay/block_map.h"
 #include "replay/exposure.h"
 #include "replay/replay.h"
-
 
 namespace pellucid::harness {
 namespace {

@@ -59,7 +59,7 @@ void addDownsample(PlanBuilder& b, uint32_t finer) {
   PellucidDispatch* d = b.dispatch("downsample", Pipeline::Downsample);
   d->pushConstants[0] = finer;
   if (finer == kFirstLevel) {
-    b.byBlock(d, PELLUCID_LIST_NEAR, 8 / PELLUCID_DOWNSAMPLE_ROWS);
+    b.byBlock(d, PELLUCID_LIST_DOWNSAMPLE, 8 / PELLUCID_DOWNSAMPLE_ROWS);
   } else {
     const auto groups = [&](int32_t first, int32_t size, int32_t side) {
       return static_cast<uint32_t>((first + size - 1) / side - first / side + 1);
@@ -80,7 +80,7 @@ void addDownsample(PlanBuilder& b, uint32_t finer) {
 void addUpsample(PlanBuilder& b, uint32_t coarsest) {
   const FrameFacts& f = b.facts;
   PellucidDispatch* d = b.dispatch("upsample", Pipeline::Upsample);
-  b.byBlock(d, PELLUCID_LIST_NEAR, 1);
+  b.byBlock(d, PELLUCID_LIST_UPSAMPLE, 1);
   d->pushConstants[0] = coarsest;
   b.constants(d, PELLUCID_BINDING_FRAME, f.constants.frame);
   b.constants(d, PELLUCID_BINDING_KERNELS, f.constants.kernels);
