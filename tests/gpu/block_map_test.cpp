@@ -162,12 +162,6 @@ TEST_F(BlockMaps, SayWhyThereAreNone) {
             "flat: has no lists of blocks to draw: frame.indirectDispatches asks for none");
   EXPECT_EQ(why([](ReplaySettings& s) { s.features = PELLUCID_FEATURE_TRANSLUCENCY; }),
             "flat: has no lists of blocks to draw: nothing diffuses: not among the features");
-  EXPECT_EQ(
-      why([](ReplaySettings& s) {
-        s.translucency.gatherSamples = 0;
-        s.reuse = PELLUCID_REUSE_ALTERNATE;
-      }),
-      "flat: has no lists of blocks to draw: frame.reuse keeps the light of pixels, all of which it writes");
 }
 
 }  // namespace

@@ -138,8 +138,8 @@ TEST(ContextLimits, AreNamedWithBothNumbers) {
               {"maxUniformBufferRange", &Limits::maxUniformBufferRange, 16128},
               {"maxPerStageDescriptorUniformBuffers", &Limits::maxPerStageDescriptorUniformBuffers, 3},
               {"maxPerStageDescriptorStorageBuffers", &Limits::maxPerStageDescriptorStorageBuffers, 2},
-              {"maxPerStageDescriptorStorageImages", &Limits::maxPerStageDescriptorStorageImages, 2},
-              {"maxPerStageDescriptorSampledImages", &Limits::maxPerStageDescriptorSampledImages, 16},
+              {"maxPerStageDescriptorStorageImages", &Limits::maxPerStageDescriptorStorageImages, 3},
+              {"maxPerStageDescriptorSampledImages", &Limits::maxPerStageDescriptorSampledImages, 15},
               {"maxPerStageResources", &Limits::maxPerStageResources, 23}};
   for (const auto& [name, limit, needed] : rows)
     for (const uint32_t less : {0u, 1u}) {
