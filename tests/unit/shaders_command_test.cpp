@@ -278,9 +278,9 @@ TEST(ShadersCommand, PlansBindWhatIsDescribed) {
                                                          {"albedoImage", PELLUCID_RESOURCE_ALBEDO},
                                                          {"materialImage", PELLUCID_RESOURCE_MATERIAL}};
   std::set<uint32_t> seen;
-  for (const uint32_t samples : {0u, 8u})
+  for (const auto& [lights, samples] : {std::pair(1u, 0u), {1u, 8u}, {2u, 8u}})
     for (const uint32_t indirect : {0u, 1u}) {
-      pellucid::test::Frame f(2);
+      pellucid::test::Frame f(lights);
       f.frame.normal = f.frame.albedo = f.view();
       for (PellucidImage& transient : f.frame.transients) transient = f.view();
       f.frame.gatherSamples = samples;
