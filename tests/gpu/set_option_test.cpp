@@ -123,7 +123,7 @@ const std::vector<Row> kRows = {
      Effect::Keeps,
      {{"2", By::Key, "--set indirect: \"2\" is not one of material, none"}}},
     {"mark-bit",
-     {},
+     {"gather=0"},
      "128",
      Effect::Keeps,
      {{"3", By::Frame, "materialMarkBit is 3; must be 0 or a power of two above the 1 materials"},
