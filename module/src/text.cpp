@@ -112,7 +112,7 @@ extern "C" PellucidResult pellucidPlanToJson(const PellucidPlan* plan, char* tex
   if (!plan || !size) return PELLUCID_ERROR_INVALID_ARGUMENT;
   Text out(text, *size);
   out << "{\"dispatchCount\":" << plan->dispatchCount << ",\"barrierCount\":" << plan->barrierCount
-      << ",\"activeLights\":" << plan->activeLights << ""
+      << ",\"activeLights\":" << plan->activeLights << ",\"gatherSamples\":" << plan->gatherSamples
       << ",\"largestRadius\":" << plan->largestRadius << ",\"constantsSize\":" << plan->constantsSize
       << ",\"dispatches\":[";
   for (uint32_t i = 0; i < plan->dispatchCount; ++i) {
