@@ -104,7 +104,7 @@ float tangentPlaneWeight(float off, float along, float inverseSpread2, vec2 fall
 const float kPlaneOffset = 0.1;
 
 // Falloffs of downsampling, of the stretch and the coarser levels of upsampling, and of the last pass. They have the least
-// errors on the scenes and captures of docs/diffusion.md of those that let no more light over a gap than the profile does.
+// errors on the scenes of `./run sweep` of those that let no more light over a gap than the profile does.
 const vec2 kDownsampleFalloff = vec2(PELLUCID_DOWNSAMPLE_FALLOFF), kStretchFalloff = vec2(PELLUCID_STRETCH_FALLOFF),
            kUpsampleFalloff = vec2(PELLUCID_UPSAMPLE_FALLOFF), kPixelFalloff = vec2(PELLUCID_PIXEL_FALLOFF);
 

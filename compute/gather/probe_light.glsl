@@ -159,7 +159,7 @@ Pattern patternOf(ivec2 cell, uint m, float front) {
   return Pattern(0.5 + vary * (float(within) - 12.0) / 25.0, vary * (float(turn) / 25.0 + 0.025));
 }
 
-// Sums over samples, of a light of radiance 1; docs/gather.md derives them. hidden, seen: from the camera.
+// Sums over samples, of a light of radiance 1; docs/how-it-works.md derives them. hidden, seen: from the camera.
 struct Gathered {
   vec3 through;  // exitance of all that enters opposite to x
   vec3 entering; // diffused irradiance of what enters hidden and faces the way x does

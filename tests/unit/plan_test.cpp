@@ -525,7 +525,7 @@ TEST(Plan, LargeImagesKeepTheirLists) {
     }
 }
 
-// The default frame, as docs/design.md draws it.
+// The default frame, as docs/how-it-works.md draws it.
 TEST(Plan, GathersBesideTheDiffusion) {
   const std::vector<std::string> all = {"base level", "list blocks", "downsample", "entry points",
                                         "downsample", "probes",      "downsample", "filter probes",
