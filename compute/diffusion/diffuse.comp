@@ -33,11 +33,6 @@ ivec2 loaded(int i) {
 
 float depthAt(int place) { return uintBitsToFloat(surfaces[place].x); }
 
-// Alpha of a pixel; `place`: in colors[]. Wide outputs keep what halves round.
-float alphaAt(ivec2 pixel, int place) {
-  return hasFlag(PELLUCID_FLAG_WIDE_OUTPUT) ? texelFetch(sourceImage, pixel, 0).a : unpackHalf2x16(colors[place].y).y;
-}
-
 // The quadratic B-spline at -1, 0 and 1 for a point at most half a texel from 0: it interpolates level 2.
 vec3 spline(float at) {
   return vec3(0.5 * (0.5 - at) * (0.5 - at), 0.75 - at * at, 0.5 * (0.5 + at) * (0.5 + at));
@@ -142,10 +137,21 @@ void diffusePlane(ivec2 first, ivec2 local, int texel) {
     result[i] = mix(coarser, mix(result[i], fine[i], share.fine), share.rest);
   }
   if (pass.value.x != 0u) addProbesToPlane(first + local, int(pass.value.x), result);
+  // All pixels share a branch, so that the latencies of their loads overlap.
+  bool last = pass.value.z != 0u;
+  ivec2 top = first + local;
+  vec4 written[4];
   [[unroll]] for (int i = 0; i < 4; ++i) {
-    ivec2 pixel = first + local + ivec2(0, i);
-    writeResult(pixel, result[i], alphaAt(pixel, (local.y + i + kRing) * kColumns + local.x + kRing), pass.value.z != 0u);
+    int place = (local.y + i + kRing) * kColumns + local.x + kRing;
+    written[i] = vec4(sanitize(result[i]), unpackHalf2x16(colors[place].y).y);
   }
+  if (hasFlag(PELLUCID_FLAG_WIDE_OUTPUT)) // keeps what halves round
+    [[unroll]] for (int i = 0; i < 4; ++i) written[i].a = texelFetch(sourceImage, top + ivec2(0, i), 0).a;
+  if (tinted(last))
+    [[unroll]] for (int i = 0; i < 4; ++i) written[i].rgb = sanitize(written[i].rgb * albedoAt(top + ivec2(0, i)));
+  if (adds(last))
+    [[unroll]] for (int i = 0; i < 4; ++i) written[i] = onHeld(top + ivec2(0, i), written[i].rgb);
+  [[unroll]] for (int i = 0; i < 4; ++i) imageStore(destinationImage, top + ivec2(0, i), vec4(asStored(written[i].rgb), written[i].a));
 }
 
 // ---- Edges: texels of level 2 that are no plane, or whose neighbors are none
@@ -226,7 +232,7 @@ void diffuseEdge(ivec2 first, ivec2 local) {
     color = mix(own, max(sum, vec3(0.0)) / max(divisor, vec3(1.0e-6)), greaterThan(divisor, vec3(1.0e-6)));
     if (pass.value.x != 0u) color = withProbes(color, pixel, int(pass.value.x), depth, material);
   }
-  writeResult(pixel, color, alphaAt(pixel, place), pass.value.z != 0u);
+  writeResult(pixel, color, texelFetch(sourceImage, pixel, 0).a, pass.value.z != 0u);
 }
 
 // Keeps materials and depths of the group's pixels with their ring.
