@@ -1,4 +1,4 @@
-"""Renders a scene of Blender as captures: passes, back faces, shadow maps, and one whole manifest a frame.  docs/blender.md
+"""Renders a scene of Blender as captures: passes, back faces, shadow maps, and one whole manifest a frame.  docs/captures.md
 
     blender -b scene.blend -P blender_capture.py -- -o out/                   the current frame: out/capture.json
     blender -b scene.blend -P blender_capture.py -- -o out/ --frames 1-250    out/capture.0001.json and so on

@@ -1,5 +1,5 @@
 """Writes what a multilayer EXR of Cycles does not say: camera, lights and materials, for `pellucid --preset
-blender`.  docs/blender.md has the recipe.
+blender`.  docs/captures.md has the recipe.
 
     blender -b scene.blend -P blender_export.py -- render.json         the current frame
     blender -b scene.blend -P blender_export.py -- render.####.json    all frames of the scene

@@ -4,7 +4,7 @@ Name your engine's textures below, then run this in RenderDoc's own Python: in i
 `qrenderdoc --ui-python renderdoc_capture.py frame.rdc`: `--python` runs before the capture is loaded), or where its
 `renderdoc` module can be imported: python3 renderdoc_capture.py frame.rdc.  `pellucid info FOLDER/manifest.json` then
 names what is still to be filled in: matrices that MATRICES does not name (null) and whatever has no texture. `pellucid
-init FOLDER/*.exr` asks for the camera's numbers instead of its matrices.  docs/scenes.md has the recipe.
+init FOLDER/*.exr` asks for the camera's numbers instead of its matrices.  docs/captures.md has the recipe.
 """
 import json
 import os

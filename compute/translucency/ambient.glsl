@@ -1,5 +1,5 @@
 // Light from all around through thin parts. A thin body sends on what comes from behind, and returns less of what lies on it
-// than a half-space does; docs/design.md says why both count. Include it after translucency/transmission.glsl.
+// than a half-space does; docs/integration.md says why both count. Include it after translucency/transmission.glsl.
 
 // Irradiance of a face, in the units of the irradiance image. `normal`: unit, view space.
 vec3 ambientIrradiance(vec3 normal) {

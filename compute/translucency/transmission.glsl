@@ -73,7 +73,7 @@ Transmitted chordTransmission(LightConstants light, Surface s) {
 
 #include "translucency/wall_transmission.glsl"
 
-// docs/design.md says why each source is what it is. `pixel`: of the surface.
+// docs/integration.md says why each source is what it is. `pixel`: of the surface.
 Transmitted lightTransmission(LightConstants light, Surface s, ivec2 pixel) {
   bool wall = isThinWalled(s.material);
   bool holdsExits = light.meta.w != 0u; // which do not say where light enters

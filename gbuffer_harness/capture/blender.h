@@ -1,4 +1,4 @@
-// Renders of Blender's Cycles as captures: docs/blender.md has the recipe.
+// Renders of Blender's Cycles as captures: docs/captures.md has the recipe.
 #pragma once
 
 #include <filesystem>

@@ -14,7 +14,7 @@ inline void addPresetOption(CLI::App& command, ManifestPreset& preset) {
   command
       .add_option(
           "--preset", preset,
-          "blender: the capture is a multilayer EXR of Cycles with a JSON beside it (docs/blender.md)")
+          "blender: the capture is a multilayer EXR of Cycles with a JSON beside it (docs/captures.md)")
       ->transform(CLI::CheckedTransformer(presets));
 }
 

@@ -206,7 +206,7 @@ void addStressCommand(CLI::App& app) {
   command->add_option("--pixels", s.limits.pixels, "of the largest frame")
       ->check(CLI::Range(16, 1 << 26))
       ->capture_default_str();
-  command->add_option("--only", s.only, "one check by its name; docs/stress.md has them");
+  command->add_option("--only", s.only, "one check by its name; CONTRIBUTING.md has them");
   command->add_flag("--validate", s.validate,
                     "with Vulkan's core and synchronization validation, whose messages are violations");
   command->add_flag(

@@ -254,7 +254,7 @@ void addViewCommand(CLI::App& app) {
                    "of the screen, after which it ends; default: when the window is closed")
       ->check(CLI::Range(1, 1000000));
   command->add_flag("--no-window", options->noWindow, "draws into an image: needs no display");
-  command->add_option("--script", options->script, "input from a file (docs/view.md)");
+  command->add_option("--script", options->script, "input from a file (docs/thesis.md)");
   command->add_option("--screenshot", options->screenshot, "PNG of the last frame of the screen");
   command->add_option(
       "--save", options->save,

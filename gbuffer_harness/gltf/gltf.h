@@ -1,4 +1,4 @@
-// glTF 2.0 files (.glb, .gltf) as models for the rasterizer. docs/scenes.md has the mapping.
+// glTF 2.0 files (.glb, .gltf) as models for the rasterizer. docs/captures.md has the mapping.
 #pragma once
 
 #include <filesystem>

@@ -22,7 +22,7 @@ struct GltfMaterial {
   std::optional<std::array<double, 3>> reflectance;
 };
 
-// A material and what its extensions say, in Pellucid's terms; docs/scenes.md. `index` -1: the default
+// A material and what its extensions say, in Pellucid's terms; docs/captures.md. `index` -1: the default
 // material of glTF. Adds sentences to `warnings`.
 GltfMaterial readMaterial(const GltfDocument& document, int index, const GltfOptions& options,
                           std::vector<std::string>& warnings);

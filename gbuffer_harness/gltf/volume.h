@@ -13,7 +13,7 @@
 namespace pellucid::harness {
 
 // Result of KHR_materials_volume, _volume_scatter, _diffuse_transmission, _scatter and _transmission;
-// docs/scenes.md.
+// docs/captures.md.
 struct Scattering {
   std::optional<MaterialSource> medium;  // nothing: opaque
   std::optional<LobeMap> map;

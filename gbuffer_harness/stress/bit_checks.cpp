@@ -113,7 +113,7 @@ StressFrame withIrradiance(const StressFrame& frame, const std::vector<std::size
   return other;
 }
 
-// docs/design.md, "Numbers": NaN and what is negative counts as 0, 65504 is the ceiling.
+// docs/integration.md, "Conventions": NaN and what is negative counts as 0, 65504 is the ceiling.
 std::optional<Worst> badValues(Subject& s) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();

@@ -1,4 +1,4 @@
-// Values that the fields of the frame's structs may have. Validation checks these tables, docs/domains.md
+// Values that the fields of the frame's structs may have. Validation checks these tables, docs/materials.md
 // shows them, and tests/unit/domains_test.cpp tries what lies outside.
 #pragma once
 

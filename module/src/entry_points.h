@@ -29,7 +29,7 @@ struct EntryExtent {
 
 // Longest side of an entry point across the light, scene units: of a frame's shortest mean free path a half,
 // and by frame.quality finer. A half costs heads 3 % of the gather's error, twice as much 60 %
-// (docs/lab/2026-11-26-entry-points.md).
+// (docs/lab.md).
 float longestEntrySide(const FrameFacts& facts);
 
 // Extent of one of the light's maps: a power of two of texels a side, so that all of them fit. Orthographic

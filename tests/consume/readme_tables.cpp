@@ -1,7 +1,7 @@
 // Checks or rewrites the tables of a document that are made from the code:
 //   pellucid_readme_tables --check|--update FILE TABLE
 // TABLE: inputs, README.md; features, docs/performance.md; quality, docs/diffusion.md; domains,
-// docs/domains.md, what values fields may have; stress, docs/stress.md, what must hold for random frames.
+// docs/materials.md, what values fields may have; stress, CONTRIBUTING.md, what must hold for random frames.
 #include <cstdio>
 #include <iterator>
 #include <string>

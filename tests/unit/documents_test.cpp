@@ -43,7 +43,7 @@ std::vector<fs::path> documents() {
   std::vector<fs::path> found = filesOf({"docs", "bench", "packaging", ".github"}, {".md"});
   for (const auto& entry : fs::directory_iterator(kRoot))
     if (entry.path().extension() == ".md") found.push_back(entry.path());
-  EXPECT_GT(found.size(), 20u) << "the test looks in the wrong place";
+  EXPECT_GT(found.size(), 10u) << "the test looks in the wrong place";
   return found;
 }
 
@@ -103,7 +103,7 @@ TEST(Documents, LinksLeadSomewhere) {
       }
     }
   }
-  EXPECT_GT(checked, 100);
+  EXPECT_GT(checked, 60);
 }
 
 TEST(Documents, ShowEveryPicture) {
@@ -218,7 +218,7 @@ std::string parse(const Command& command) {
 
 TEST(Documents, CommandsParse) {
   const std::vector<Command> commands = commandsOf("pellucid");
-  EXPECT_GT(commands.size(), 30u);
+  EXPECT_GT(commands.size(), 20u);
   for (const Command& command : commands) EXPECT_EQ(parse(command), "") << command.where;
   EXPECT_NE(parse({"", {"pellucid", "replay"}}), "");
   EXPECT_NE(parse({"", {"pellucid", "replay", "a.exr", "--nothing"}}), "");

@@ -1,4 +1,4 @@
-// The include arrows of the project, and what a folder must not contain; docs/design.md has the reasons.
+// The include arrows of the project, and what a folder must not contain; CONTRIBUTING.md has the reasons.
 #include <gtest/gtest.h>
 
 #include <filesystem>

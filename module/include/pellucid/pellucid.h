@@ -164,7 +164,7 @@ typedef struct PellucidFrame {
                               0: the whole image */
   float metersPerUnit;     /* default 1 */
   float clipFromView[16];  /* the projection that rendered the depths, jitter included */
-  float viewFromWorld[16]; /* rigid; default identity; far from the origin, docs/design.md */
+  float viewFromWorld[16]; /* rigid; default identity; far from the origin, docs/integration.md */
 
   PellucidImage frontDepth; /* required; one float channel */
   PellucidImage backDepth;  /* nearest back face behind the front; without it no camera-space thickness, and in a gather thin
@@ -276,7 +276,7 @@ PELLUCID_API PellucidResult pellucidGetImageNeeds(const PellucidFrame* frame, ui
  * frame, image or device is needed, so a ring of slices can be allocated first. */
 PELLUCID_API VkDeviceSize pellucidGetConstantsSize(uint32_t materialCount, uint32_t lightCount, uint32_t shadowMapCount);
 
-/* Checks every convention and the domains of all fields (docs/domains.md); calls `fn` for each finding. PELLUCID_OK
+/* Checks every convention and the domains of all fields (docs/materials.md); calls `fn` for each finding. PELLUCID_OK
  * unless one is an error. PELLUCID_ERROR_CAPACITY exactly where pellucidBuildPlan returns it, too: more shadow images
  * than a plan can bind. */
 PELLUCID_API PellucidResult pellucidValidateFrame(const PellucidFrame* frame, PellucidMessageFn fn, void* user);

@@ -1,6 +1,6 @@
 /* A light's shadow map as the caller's engine drew it. pellucid.h includes this header.
  *
- * docs/design.md, "Shadow maps as engines draw them", says which field an engine's habit asks for. */
+ * docs/integration.md, "Shadow maps as engines draw them", says which field an engine's habit asks for. */
 #ifndef PELLUCID_SHADOW_MAP_H
 #define PELLUCID_SHADOW_MAP_H
 
