@@ -30,6 +30,7 @@ void main() {
   barrier();
   if (coarsest == 7u && level == 5u && reachesBeyond(texel, bits)) needsMade = 1u; // whoever writes, writes this
   barrier();
+  // One value for all invocations, as the barriers within need: none writes it after the last barrier.
   if (needsMade != 0u) {
     makeLevels(k, invocation);
     if (inside && level == 6u) bits = texelAt(6u, texel, k);
