@@ -276,7 +276,8 @@ std::string frameHostTable(const Json& results) {
 }
 
 // A JSON null is NaN: no block of a frame shows the measure.
-std::string rgbCell(const Json& rgb) {
+std::string rgbCell(const Json& row, const char* field) {
+  const Json& rgb = row.at(field);
   const auto value = [&](size_t c) { return rgb.at(c).is_null() ? NAN : rgb.at(c).get<double>(); };
   return format(" %.3f %.3f %.3f |", value(0), value(1), value(2));
 }
@@ -289,10 +290,9 @@ std::string truthTable(const Json& results) {
       for (const std::string& name : all.names("whole")) {
         const Json* row = all.find(frame, size, "whole", name);
         if (!row || !row->contains("truth_relative_rmse_rgb")) continue;
-        const auto rgb = [&](const char* field) { return rgbCell(row->at(field)); };
         const Json& redGreen = row->at("tint_red_green");
-        rows += "| " + frame + " " + size + " | " + name + " |" + rgb("truth_relative_rmse_rgb") +
-                format(" %d |", row->at("isolated").get<int>()) + rgb("tint") +
+        rows += "| " + frame + " " + size + " | " + name + " |" + rgbCell(*row, "truth_relative_rmse_rgb") +
+                format(" %d |", row->at("isolated").get<int>()) + rgbCell(*row, "tint") +
                 format(" %.3f | %.3f | %.3f |\n", redGreen.is_null() ? NAN : redGreen.get<double>(),
                        row->at("flip").get<double>(), row->at("flip_p99").get<double>());
       }
@@ -311,10 +311,9 @@ std::string engineTable(const Json& results) {
       for (const std::string& name : all.names("whole")) {
         const Json* row = all.find(frame, size, "whole", name);
         if (!row || !row->contains("truth_relative_rmse_rgb") || !row->contains("flicker_rgb")) continue;
-        const auto rgb = [&](const char* field) { return rgbCell(row->at(field)); };
-        rows += "| " + frame + " " + size + " | " + name + " |" + rgb("truth_relative_rmse_rgb") +
+        rows += "| " + frame + " " + size + " | " + name + " |" + rgbCell(*row, "truth_relative_rmse_rgb") +
                 format(" %.3f | %d |", row->at("flip").get<double>(), row->at("spots").get<int>()) +
-                rgb("flicker_rgb") + rgb("flicker_irradiance_rgb") +
+                rgbCell(*row, "flicker_rgb") + rgbCell(*row, "flicker_irradiance_rgb") +
                 format(" %d, %d |\n", row->at("spots_appear").get<int>(), row->at("spots_vanish").get<int>());
       }
   if (rows.empty()) throw NotMeasured("no frame with path-traced truth and turned lights");

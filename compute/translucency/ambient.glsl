@@ -2,7 +2,7 @@
 #define PELLUCID_AMBIENT_GLSL
 
 // Light from all around through thin parts. A thin body sends on what comes from behind, and returns less of what lies on it
-// than a half-space does; docs/integration.md has the sum. Include it after translucency/transmission.glsl.
+// than a half-space does; docs/integration.md says why both count. Include it after translucency/transmission.glsl.
 
 // Irradiance of a face, in the units of the irradiance image. `normal`: unit, view space.
 vec3 ambientIrradiance(vec3 normal) {

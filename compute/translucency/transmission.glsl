@@ -238,7 +238,7 @@ Transmitted wallTransmission(LightConstants light, Incident incident, Surface s,
   return Transmitted(0.0, incident.irradiance * cosine, behind * unblockedPart(light, l, facing));
 }
 
-// docs/integration.md has the sources of each kind of light. `pixel`: of the surface.
+// docs/integration.md says why each source is what it is. `pixel`: of the surface.
 Transmitted lightTransmission(LightConstants light, Surface s, ivec2 pixel) {
   bool wall = isThinWalled(s.material);
   bool holdsExits = light.meta.w != 0u; // which do not say where light enters

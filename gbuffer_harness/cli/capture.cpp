@@ -87,7 +87,8 @@ std::vector<CaptureFrame> framesOf(const Turntable& options, const std::string& 
   return frames;
 }
 
-// Of a turntable only the first frame is asked: each one has another size of the body.
+// A turntable warns of its first frame alone: the body's size differs in each frame, and so would each
+// warning.
 void warnOfThinBodies(const Capture& capture, const std::filesystem::path& file) {
   for (const std::string& sentence : thinBodies(capture, compileMaterials(capture)))
     warn({file.string() + ": " + sentence});

@@ -135,7 +135,7 @@ Json materialsJson(const Capture& capture, const std::vector<PellucidMaterial>& 
 constexpr const char* kErrorWithoutMap =
     "lit from behind, a slab is right, an ear 4, 12 and 21 % (R, G, B) too bright, a ball 3, 14 and 38 times";
 
-// Whether a pixel has a material that is no thin wall.
+// True where a pixel has a material with thickness.
 bool showsSolids(const Capture& capture, const std::vector<PellucidMaterial>& materials) {
   return std::any_of(capture.material.begin(), capture.material.end(),
                      [&](std::uint8_t index) { return index > 0 && !materials[index - 1u].thinWalled; });
@@ -153,10 +153,11 @@ std::vector<std::string> missingParts(const Capture& capture,
   if (capture.normal.empty())
     missing.push_back("no normal: the angle between view and light takes the place of -N.L");
   if (capture.albedo.empty()) missing.push_back("no albedo: the output is not multiplied by a surface color");
+  const bool solids = showsSolids(capture, materials);
   for (std::size_t i = 0; i < capture.lights.size(); ++i) {
     const std::vector<ShadowMap>& maps = capture.lights[i].shadowMaps;
     const std::string light = "lights[" + std::to_string(i) + "]";
-    if (maps.empty() && !showsSolids(capture, materials))
+    if (maps.empty() && !solids)
       missing.push_back(light + " has no shadow map: nothing shadows its light behind thin walls");
     else if (maps.empty() && !capture.backDepth.image.empty())
       missing.push_back(light +

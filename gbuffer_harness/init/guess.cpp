@@ -144,7 +144,7 @@ std::vector<std::string> namesOf(const ChannelGroup& group) {
   return names;
 }
 
-// Passes of light that are none of the diffuse reflection, whose names else read like those that are.
+// True of passes of specular light, whose names hold the names of diffuse passes, too.
 bool isSpecular(const std::string& name) {
   return name.find("specular") != std::string::npos || name.find("reflect") != std::string::npos ||
          name.find("refract") != std::string::npos;

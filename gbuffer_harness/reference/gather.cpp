@@ -23,6 +23,8 @@ constexpr double kSteepestOwn = 4;
 constexpr double kMostConvexity = 0.1;
 // Texels: a point on a surface and the pixel that shows it are apart by the slope within them.
 constexpr double kSeenTolerance = 0.5;
+// A face that turns away from the light by more than 30 degrees is the other face of a thin part.
+constexpr double kMostTurned = 0.5;
 // Slope towards the camera from which a surface is a limb.
 constexpr double kSteepestSeen = 2;
 
@@ -79,8 +81,7 @@ std::optional<glm::dvec3> Gather::shownNormal(const glm::dvec3& world, const glm
   };
   const double pixelSide = std::max(side({1, 0}), side({0, 1}));
   const glm::dvec3 outward = glm::dmat3(surfaces_.worldFromView()) * *normal;
-  // What turns away from the light by more than 30 degrees is the other face of a thin part.
-  if (glm::dot(outward, toLight) <= -0.5) return std::nullopt;
+  if (glm::dot(outward, toLight) <= -kMostTurned) return std::nullopt;
   if (std::abs(glm::dot(*normal, view - shown->position)) >
       std::min(tolerance, 0.5 * pixelSide) + offset + uncertain * std::abs(glm::dot(outward, toLight)))
     return std::nullopt;

@@ -97,9 +97,9 @@ TEST_F(GatherLinear, TwoLightsAddUp) {
   EXPECT_LT(difference(both, gathered(swapped), gathered(both)).rmse, 1e-3);
 }
 
-// What curved surfaces return does not depend on lights: a light of next to nothing leaves skin under even
-// light as it is. The light's irradiance is not in the image, and its transmitted light is below the last
-// half.
+// Curved surfaces return the same share of light with and without lights: a light of next to nothing leaves
+// skin under even light as it is. The light's irradiance is not in the image, and its transmitted light is
+// below the last half.
 TEST_F(GatherLinear, ALightOfNextToNothingChangesNothing) {
   Capture dark = head({{"rimLight", 0}});
   std::fill(dark.irradiance.data.begin(), dark.irradiance.data.end(), 0.25f);

@@ -129,8 +129,8 @@ TEST_F(InfoCommand, SaysWhatIsMissingBesideAShadowMap) {
   EXPECT_FALSE(has(missing, "lights[1]")) << missing;
 }
 
-// Of solids the line has the measured error; sheets have none, and without back depths the light adds
-// nothing.
+// The line has the measured error for solids and no error for sheets. Without back depths the light adds
+// nothing, and there is no line.
 TEST_F(InfoCommand, SaysHowFarALightWithoutAShadowMapIsOff) {
   EXPECT_FALSE(has(info()["missing"], "no shadow map"));
   manifest["lights"][0].erase("shadowMap");
