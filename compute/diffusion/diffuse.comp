@@ -257,9 +257,8 @@ void diffuse(ivec2 first) {
   int invocation = int(gl_LocalInvocationIndex);
   ivec2 inWindow = ivec2(invocation % kWindowX, invocation / kWindowX), texel = (first >> 2) + inWindow - 1;
   uvec4 bits = uvec4(0u), texelShares = uvec4(0u);
-  ivec4 rect = levelRect(2u);
-  texel = clamp(texel, rect.xy, rect.zw - 1); // nothing is known beyond the rect
-  if (inWindow.y < kWindowY) {
+  ivec4 touched = touchedTexels(2u);
+  if (inWindow.y < kWindowY && contains(levelRect(2u), texel)) {
     bits = texelFetch(pyramidImage, upsampledPlace(texel), 0);
     texelShares = texelFetch(pyramidImage, sharesPlace(texel), 0);
   }
@@ -277,14 +276,14 @@ void diffuse(ivec2 first) {
     shares[invocation] = texelShares;
     spreads[invocation] = inverseSpread(unpackHalf2x16(bits.w), texelSize(uintBitsToFloat(bits.z), 2u));
     ivec2 inside = inWindow - 1;
-    if (contains(ivec4(0, 0, kTexelsX, kTexelsY), inside) && contains(rect, (first >> 2) + inside) && bits.y >> 16 != 0u && !isPlane(bits))
+    if (contains(ivec4(0, 0, kTexelsX, kTexelsY), inside) && contains(touched, (first >> 2) + inside) && bits.y >> 16 != 0u && !isPlane(bits))
       edges[atomicAdd(edgeCount, 1u)] = uint(inside.x | inside.y << 8);
   }
   barrier();
   uint count = edgeCount;
   ivec2 column = ivec2(invocation % kPixelsX, invocation / kPixelsX * 4);
   int center = (column.y / 4 + 1) * kWindowX + column.x / 4 + 1;
-  if (isPlane(upsampled[center]) && contains(rect, (first + column) >> 2)) diffusePlane(first, column, center);
+  if (isPlane(upsampled[center]) && contains(touched, (first + column) >> 2)) diffusePlane(first, column, center);
   if (count != 0u) keepEdges(first);
   barrier();
   // Sixteen invocations do a texel.

@@ -87,15 +87,8 @@ float depthStep(int first, int stride, Source center, ivec2 at, ivec2 direction)
   return best;
 }
 
-// Part of the filter that lies in the rect along an axis; `first`: the first of four texels, [begin, end): the rect's.
-float insideOf(int first, int begin, int end) {
-  float inside = 0.0;
-  [[unroll]] for (int i = 0; i < 4; ++i) inside += first + i >= begin && first + i < end ? weight(i) : 0.0;
-  return inside; // above 0: a texel that the rect touches has one of the two in the middle
-}
-
 // Texel from 4 x 4 texels that are not one plane.
-uvec4 downsampledEdge(uint finer, ivec2 texel, int first, int stride) {
+uvec4 downsampledEdge(uint finer, int first, int stride) {
   int chosen = surfaceOf(first, stride);
   if (chosen < 0) {
     uint orphans = 0u;
@@ -138,10 +131,7 @@ uvec4 downsampledEdge(uint finer, ivec2 texel, int first, int stride) {
   vec2 center = vec2(1.5) - vec2(nearest);
   float depth = surface.depth + dot(slope, center * size) + off * inverse;
   slope += tilt / max(spread, 1.0e-6 * size * size + 1.0e-30);
-  // Beyond the rect nothing is known: its border takes nothing from the surface.
-  ivec4 rect = levelRect(finer);
-  float inside = insideOf(2 * texel.x - 1, rect.x, rect.z) * insideOf(2 * texel.y - 1, rect.y, rect.w);
-  return packTexel(Texel(color / area, area / inside, surface.material, depth, slope), 0u);
+  return packTexel(Texel(color / area, area, surface.material, depth, slope), 0u);
 }
 
 // Texel of the level after `finer` from the 4 x 4 at `first`.
@@ -169,7 +159,7 @@ uvec4 downsampled(uint finer, ivec2 texel, int first, int stride) {
                residual * inverseSpread(slope, 2.0 * size) < kPlaneResidual;
   uvec4 result = packTexel(Texel(color, areaOf(finer + 1u, texel, slope), bits >> 24, base + off, slope), kPlane);
   // Empty texels are too rare for a branch of their own.
-  if (!plane) result = (bits | different) >> 16 == 0u ? uvec4(0u) : downsampledEdge(finer, texel, first, stride);
+  if (!plane) result = (bits | different) >> 16 == 0u ? uvec4(0u) : downsampledEdge(finer, first, stride);
   return result;
 }
 
@@ -203,9 +193,8 @@ void main() {
   int invocation = int(gl_LocalInvocationIndex);
   uint finer = pass.value.x, columns = pass.value.y, word = finer == 1u ? listedBlock(nearList()) : 0u;
   // Levels 2 and 3 are made in blocks, all others everywhere.
-  const ivec2 kPart = ivec2(kSecond, kSecondRows);
   ivec2 own = finer == 1u ? (firstPixel(blockOf(word)) >> 3) + ivec2(0, int(gl_WorkGroupID.y) * kSecondRows)
-                          : (levelRect(finer + 2u).xy / kPart + ivec2(gl_WorkGroupID.x % columns, gl_WorkGroupID.x / columns)) * kPart;
+                          : ((levelRect(finer + 2u).xy >> ivec2(3, 2)) + ivec2(gl_WorkGroupID.x % columns, gl_WorkGroupID.x / columns)) * ivec2(kSecond, kSecondRows);
   ivec2 start = 2 * own - 1, inputStart = 2 * start - 1;
   if (invocation == 0) anySurface = 0u;
   barrier();

@@ -59,12 +59,15 @@ bool hasSurface(uvec4 texel) { return (texel.y & 0x7F0000u) != 0u; }
 bool isPlane(uvec4 texel) { return (texel.y & kPlane) != 0u; }
 uint materialBits(uvec4 texel) { return texel.y >> 24; }
 
-// Texels [xy, zw) of a level that the rect touches. No others are written or read.
-ivec4 levelRect(uint level) {
+// Texels [xy, zw) of a level that the rect touches.
+ivec4 touchedTexels(uint level) {
   ivec4 rect = ivec4(frame.rect);
   int l = int(level);
   return ivec4(rect.xy >> l, ((rect.zw - 1) >> l) + 1);
 }
+
+// From level 2 on a border of one texel keeps what the filter carries over the rect's edge. No other texels are written or read.
+ivec4 levelRect(uint level) { return touchedTexels(level) + (level > 1u ? ivec4(-1, -1, 1, 1) : ivec4(0)); }
 
 ivec2 inAtlas(uint level, ivec2 texel) { return frame.level[level].xy + texel; }
 

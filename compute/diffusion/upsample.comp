@@ -125,9 +125,8 @@ Level withCoarser(Own own, uint level, ivec2 texel, Window window) {
   vec2 size = texelSize(own.texel.depth, level + 1u);
   float spread2 = inverseSpread(own.texel.slope, size);
   vec3 coarser = vec3(0.0), found = vec3(0.0);
-  ivec4 rect = levelRect(level + 1u);
   [[unroll]] for (int i = 0; i < 4; ++i) {
-    ivec2 at = clamp(nearest + toward * ivec2(i & 1, i >> 1), rect.xy, rect.zw - 1); // nothing is known beyond the rect
+    ivec2 at = nearest + toward * ivec2(i & 1, i >> 1);
     uvec4 theirs = upsampled[indexOf(window, at)];
     vec2 off = vec2(at) + 0.5 - 0.5 * (vec2(texel) + 0.5);
     float w = (i == 0 ? kNear * kNear : i == 3 ? kFar * kFar : kNear * kFar) / kCoverageOne;

@@ -23,7 +23,8 @@ void writeWord(uint word, uint value) { imageStore(blocksImage, wordPlace(word),
 
 uint blockCount() { return frame.blocks.x * frame.blocks.y; }
 uint blockWord(uint block, uint word) { return uint(PELLUCID_BLOCK_WORDS) * block + word; }
-ivec2 firstBlock() { return ivec2(frame.rect.xy) >> kBlockShift; }
+// Blocks reach as far as texels of levels 2 and 3 that the rect needs: their border holds what filters carry over the rect's edge.
+ivec2 firstBlock() { return (ivec2(frame.rect.xy) - PELLUCID_BLOCK_BORDER) >> kBlockShift; }
 ivec2 firstPixel(uint block) {
   return (firstBlock() + ivec2(block % frame.blocks.x, block / frame.blocks.x)) << kBlockShift;
 }
@@ -62,10 +63,11 @@ bool cellHoldsMaterial(ivec2 pixel) {
   return (readWord(blockWord(uint(block.y) * frame.blocks.x + uint(block.x), cellWord(cell))) & cellBit(cell)) != 0u;
 }
 
-// True where the pixel's block or one beside it holds material: levels 2 and 3 of the pyramid hold something. `pixel`: of the rect.
+// True where the pixel's block or one beside it holds material: levels 2 and 3 of the pyramid hold something. `pixel`: of the rect
+// or at most PELLUCID_BLOCK_BORDER from it.
 bool isNearMaterial(ivec2 pixel) {
   if (!goesByLists()) return true;
-  ivec2 block = clamp((pixel >> kBlockShift) - firstBlock(), ivec2(0), ivec2(frame.blocks.xy) - 1);
+  ivec2 block = (pixel >> kBlockShift) - firstBlock();
   return readWord(blockWord(uint(block.y) * frame.blocks.x + uint(block.x), kNearWord)) != 0u;
 }
 

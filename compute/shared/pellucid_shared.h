@@ -19,6 +19,7 @@ using glm::vec4;
 #define PELLUCID_GROUP_X 8
 #define PELLUCID_TILE 16          // pixels of a group that does two each: one thickness a pixel
 #define PELLUCID_BLOCK 64         // pixels of a block, in which the image is divided from its first pixel on
+#define PELLUCID_BLOCK_BORDER 8   // pixels beyond the rect that blocks reach: a texel of level 3
 #define PELLUCID_CELL 8           // pixels of a cell: a block has a bit for each of its 8 x 8
 #define PELLUCID_BLOCK_GROUP 16   // of passes that do a block a group
 #define PELLUCID_DOWNSAMPLE_COLUMNS 8 // texels of the second of the two levels that a group makes

@@ -63,10 +63,21 @@ BlockMap readBlockMap(const FrameRun& run) {
   map.y = map.rect[1] / kBlock * kBlock;
   map.columns = (map.rect[2] - map.x + kBlock - 1) / kBlock;
   map.rows = (map.rect[3] - map.y + kBlock - 1) / kBlock;
+  // The words have blocks beyond the rect, too, where the pyramid's border touches them.
+  const auto withBorder = [](int pixel) {
+    return (pixel + kBlock) / kBlock - 1;
+  };  // rounds down from -kBlock on
+  const int left = withBorder(map.rect[0] - PELLUCID_BLOCK_BORDER),
+            top = withBorder(map.rect[1] - PELLUCID_BLOCK_BORDER);
+  const int pitch = withBorder(map.rect[2] - 1 + PELLUCID_BLOCK_BORDER) - left + 1;
   const std::vector<std::uint32_t> words = run.blockWords();
-  const auto count = static_cast<std::size_t>(map.columns) * static_cast<std::size_t>(map.rows);
-  for (std::size_t i = 0; i < count; ++i)
-    map.blocks.push_back(classOf(std::span(words).subspan(PELLUCID_BLOCK_WORDS * i, PELLUCID_BLOCK_WORDS)));
+  for (int y = 0; y < map.rows; ++y)
+    for (int x = 0; x < map.columns; ++x) {
+      const auto block =
+          static_cast<std::size_t>((map.y / kBlock + y - top) * pitch + map.x / kBlock + x - left);
+      map.blocks.push_back(
+          classOf(std::span(words).subspan(PELLUCID_BLOCK_WORDS * block, PELLUCID_BLOCK_WORDS)));
+    }
   return map;
 }
 

@@ -1,5 +1,7 @@
 #include "blocks.h"
 
+#include <bit>
+
 #include "entry_points.h"
 #include "frame.h"
 
@@ -13,15 +15,19 @@ constexpr uint32_t kMostGroups = 65535;
 constexpr uint32_t kEntryGroups = kEntryColumns / PELLUCID_ENTRY_POINTS_GROUP;
 static_assert(kEntryGroups * kEntryGroups <= 32 * PELLUCID_ENTRY_GROUP_WORDS);
 
-uint32_t blocksAlong(uint32_t first, uint32_t size) {
-  return (first + size - 1) / PELLUCID_BLOCK - first / PELLUCID_BLOCK + 1;
+// Blocks that pixels [first, first + size) touch. Shifts round down, as the border begins below 0.
+uint32_t blocksAlong(uint32_t first, uint32_t size, int border) {
+  constexpr int kShift = std::countr_zero(uint32_t{PELLUCID_BLOCK});
+  const int begin = static_cast<int>(first) - border, last = static_cast<int>(first + size) - 1 + border;
+  return static_cast<uint32_t>((last >> kShift) - (begin >> kShift) + 1);
 }
 
 }  // namespace
 
 Blocks::Blocks(const FrameFacts& f, const Rect& rect)
-    : columns(blocksAlong(rect.x, rect.width)),
-      rows(blocksAlong(rect.y, rect.height)),
+    : columns(blocksAlong(rect.x, rect.width, PELLUCID_BLOCK_BORDER)),
+      rows(blocksAlong(rect.y, rect.height, PELLUCID_BLOCK_BORDER)),
+      touched(blocksAlong(rect.x, rect.width, 0) * blocksAlong(rect.y, rect.height, 0)),
       maps(f.lights.gathered > 0 ? f.lights.list().front().shadowCount : 0),
       entryGroups(f.lights.entryColumns * f.lights.entryRows /
                   (PELLUCID_ENTRY_POINTS_GROUP * PELLUCID_ENTRY_POINTS_GROUP)) {}

@@ -1,5 +1,5 @@
-// Blocks of 64 x 64 pixels, in which the passes of the diffusion and of the gather run where the GPU finds material
-// (compute/frame/blocks.glsl).
+// Blocks of 64 x 64 pixels, in which the passes of the diffusion and of the gather run where the GPU finds
+// material (compute/frame/blocks.glsl).
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,8 @@ namespace pellucid {
 struct FrameFacts;
 
 struct Blocks {
-  uint32_t columns = 0, rows = 0;  // that the rect touches
+  uint32_t columns = 0, rows = 0;  // that the rect and PELLUCID_BLOCK_BORDER pixels around touch
+  uint32_t touched = 0;            // that the rect touches: no others hold material
   uint32_t maps = 0;               // shadow maps whose entry points are listed
   uint32_t entryGroups = 0;        // at most, of the list
 

@@ -26,8 +26,6 @@ void addView(FrameFacts& f) {
 }
 
 const char* whyNotGathered(const FrameFacts& f) {
-  if (!(f.frame.features & PELLUCID_FEATURE_DIFFUSION))
-    return "the diffusion, which adds gathered light, is not among the features";
   if (f.frame.thicknessSource == PELLUCID_THICKNESS_CAMERA) return "thickness comes from the camera";
   if (f.thesis.materialMarkBit != 0) return "materialMarkBit is of one thickness a pixel";
   if (f.thesis.angleModel != PELLUCID_ANGLE_NORMAL || f.thesis.constantViewDirection != 0 ||
@@ -118,6 +116,8 @@ PellucidMaterial FrameFacts::material(uint32_t index) const {
   const size_t offset = static_cast<size_t>(index) * frame.materials->structSize;
   PellucidMaterial m =
       readStruct(reinterpret_cast<const PellucidMaterial*>(bytes + offset), PellucidMaterial{});
+  // Without diffusion the passes that add gathered light keep each pixel's own irradiance.
+  if (!(frame.features & PELLUCID_FEATURE_DIFFUSION)) m.gaussianCount = 0;
   if (m.thinWalled == 0) return m;
   m.transmittanceModel = PELLUCID_TRANSMITTANCE_EXP2;
   for (int c = 0; c < 3; ++c) {

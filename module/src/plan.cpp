@@ -60,7 +60,7 @@ void addSkips(PlanBuilder& b) {
     b.skip("diffusion", "not among the features");
   else if (f.debug())
     b.skip("diffusion", "a debug view is written instead");
-  else if (!f.stages.diffusion)
+  else if (!f.diffuses)
     b.skip("diffusion", "no material diffuses");
   if (f.stages.nothing)
     b.skip("all dispatches",

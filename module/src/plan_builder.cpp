@@ -43,7 +43,9 @@ void PlanBuilder::blocks(PellucidDispatch* d) const {
 }
 
 void PlanBuilder::byBlock(PellucidDispatch* d, uint32_t list, uint32_t parts) const {
-  d->groups[0] = facts.blocks.count();
+  const bool holdsMaterial =
+      list == PELLUCID_LIST_PROBES || list == PELLUCID_LIST_FILTER || list == PELLUCID_LIST_DIFFUSE;
+  d->groups[0] = facts.stages.lists && holdsMaterial ? facts.blocks.touched : facts.blocks.count();
   d->groups[1] = parts;
   blocks(d);
   byList(d, list);
@@ -58,8 +60,8 @@ void PlanBuilder::byList(PellucidDispatch* d, uint32_t list) const {
   waits->barrierIndirect = 1;
   d->indirect = 1;
   d->indirectResource = PELLUCID_RESOURCE_CONSTANTS;
-  d->indirectOffset = facts.constants.lists.offset + offsetof(shared::BlockLists, commands) +
-                      list * sizeof(glm::uvec4);
+  d->indirectOffset =
+      facts.constants.lists.offset + offsetof(shared::BlockLists, commands) + list * sizeof(glm::uvec4);
 }
 
 void PlanBuilder::bind(PellucidDispatch* d, uint32_t binding, VkDescriptorType type, uint32_t resource,

@@ -1,6 +1,7 @@
 #include "plan_diffusion.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "plan_gather.h"
 
@@ -61,8 +62,10 @@ void addDownsample(PlanBuilder& b, uint32_t finer) {
   if (finer == kFirstLevel) {
     b.byBlock(d, PELLUCID_LIST_DOWNSAMPLE, 8 / PELLUCID_DOWNSAMPLE_ROWS);
   } else {
-    const auto groups = [&](int32_t first, int32_t size, int32_t side) {
-      return static_cast<uint32_t>((first + size - 1) / side - first / side + 1);
+    // Shifts round down, as the border's texels begin below 0.
+    const auto groups = [&](int32_t first, int32_t size, uint32_t side) {
+      const int shift = std::countr_zero(side);
+      return static_cast<uint32_t>(((first + size - 1) >> shift) - (first >> shift) + 1);
     };
     const auto& rect = b.facts.pyramid.levels[finer + 2].rect;
     d->pushConstants[1] = groups(rect.x, rect.width, PELLUCID_DOWNSAMPLE_COLUMNS);

@@ -25,8 +25,7 @@ uint64_t entryPointBytes(const LightGroup& group) {
 }  // namespace
 
 void addEntryPoints(PlanBuilder& b, const LightGroup& group) {
-  PellucidDispatch* d =
-      b.dispatch("entry points", Pipeline::EntryPoints);
+  PellucidDispatch* d = b.dispatch("entry points", Pipeline::EntryPoints);
   b.groups(d, group.entryWidth, group.entryHeight, PELLUCID_ENTRY_POINTS_GROUP);
   d->groups[2] = group.shadowCount;
   if (b.facts.stages.lists) {

@@ -5,8 +5,8 @@
 namespace pellucid {
 namespace {
 
-// Texels of a level under `pixels` in a row, wherever they start.
-uint32_t most(uint32_t pixels, uint32_t level) { return ((pixels - 1) >> level) + 2; }
+// Texels of a level under `pixels` in a row from 0 on, and one more on each side.
+uint32_t most(uint32_t pixels, uint32_t level) { return ((pixels - 1) >> level) + 3; }
 
 // Columns that level 1 takes, and in its place level 2 after upsampling beside its shares.
 uint32_t firstColumns(uint32_t pixels) { return std::max(most(pixels, kFirstLevel), 2 * most(pixels, 2)); }
@@ -23,8 +23,11 @@ Pyramid::Pyramid(const uint32_t (&imageExtent)[2], const Rect& r) : coarsest(kFi
       place.x = static_cast<int32_t>(most(imageExtent[0], level - 1));
     // The two coarsest levels lie below levels 2 and 3.
     if (level > 5) place.y = static_cast<int32_t>(most(imageExtent[1], 2));
-    const auto first = [&](uint32_t pixel) { return static_cast<int32_t>(pixel >> level); };
-    const auto end = [&](uint32_t pixels) { return static_cast<int32_t>((pixels - 1) >> level) + 1; };
+    const int32_t border = level > kFirstLevel ? 1 : 0;
+    const auto first = [&](uint32_t pixel) { return static_cast<int32_t>(pixel >> level) - border; };
+    const auto end = [&](uint32_t pixels) {
+      return static_cast<int32_t>((pixels - 1) >> level) + 1 + border;
+    };
     place.rect = {first(r.x), first(r.y), end(r.x + r.width) - first(r.x), end(r.y + r.height) - first(r.y)};
   }
   sharesColumn = levels[2].rect.width;

@@ -7,8 +7,7 @@ namespace pellucid {
 Stages::Stages(const FrameFacts& facts) {
   const PellucidFrame& frame = facts.frame;
   const bool translucency = (frame.features & PELLUCID_FEATURE_TRANSLUCENCY) != 0;
-  diffusion = frame.features & PELLUCID_FEATURE_DIFFUSION && !facts.debug() &&
-              (facts.diffuses || facts.lights.gathered > 0);
+  diffusion = !facts.debug() && (facts.diffuses || facts.lights.gathered > 0);
   if (translucency || facts.debug()) {
     gathered = facts.lights.gathered;
     fused = facts.lights.fused();

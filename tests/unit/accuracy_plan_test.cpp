@@ -158,7 +158,6 @@ TEST(AccuracyPlan, SaysWhyNothingIsGathered) {
     void (*change)(Frame&);
   };
   const Case cases[] = {{"thickness", [](Frame& f) { f.frame.thicknessSource = PELLUCID_THICKNESS_CAMERA; }},
-                        {"features", [](Frame& f) { f.frame.features = PELLUCID_FEATURE_TRANSLUCENCY; }},
                         {"mark bit", [](Frame& f) { f.thesis.materialMarkBit = 128; }},
                         {"angle", [](Frame& f) { f.thesis.angleModel = PELLUCID_ANGLE_COSINE; }},
                         {"view", [](Frame& f) { f.thesis.constantViewDirection = 1; }},

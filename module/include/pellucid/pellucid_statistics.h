@@ -30,7 +30,8 @@ typedef struct PellucidStatistics {
   uint32_t dispatchCount; /* of dispatches, 0..PELLUCID_MAX_DISPATCHES */
   PellucidGroups dispatches[PELLUCID_MAX_DISPATCHES]; /* those of the plan, in its order */
   PellucidGroups blocks;      /* of PELLUCID_STATISTICS_BLOCK pixels a side, at multiples of that: those with material, of those
-                                 that the rect touches. Without lists all; 0 of 0 where nothing diffuses */
+                                 that the rect touches. Without lists all, and those within 8 pixels of the rect; 0 of 0
+                                 where nothing diffuses or is gathered */
   PellucidGroups entryPoints; /* groups of 16 x 16 entry points, of all maps; 0 of 0 without a gather */
   PellucidGroups probes;      /* groups of 8 x 8 cells of the gather; 0 of 0 without a gather */
   uint32_t lists;         /* 1: the device listed where material is; 0: passes ran over the whole rect */
