@@ -19,7 +19,7 @@ const int kColumns = kPixelsX + 2 * kRing, kRows = kPixelsY + 2 * kRing;
 const int kLoads = (kColumns * kRows + kInvocations - 1) / kInvocations;
 
 shared uvec2 colors[kColumns * kRows];   // and alphas, as halves
-shared uvec2 surfaces[kColumns * kRows]; // where there are edges: bits of the depth; material
+shared uvec2 surfaces[kColumns * kRows]; // vertical sums of the fine filter and, where there are edges, bits of the depth; material
 shared uvec4 upsampled[kWindowX * kWindowY], shares[kWindowX * kWindowY];
 shared float spreads[kWindowX * kWindowY]; // inverseSpread of upsampled[]
 shared uint edges[kTexelsX * kTexelsY];    // columns and, from bit 8 on, rows of texels
@@ -65,10 +65,12 @@ void addProbesToPlane(ivec2 top, int side, inout vec3 column[4]) {
   }
 }
 
-// The probe of a cell; none where the cell's pixels have no material.
+// The probe of a cell; none where the cell's pixels have no material. Neither load waits for the other, and nothing branches.
 uvec4 probeOf(ivec2 cell, int side) {
-  bool holds = contains(cellsOf(frame.rect, side), cell) && cellHoldsMaterial(side * cell);
-  return holds ? texelFetch(probesImage, cell, 0) : kNoProbe;
+  ivec4 cells = cellsOf(frame.rect, side);
+  ivec2 within = clamp(cell, cells.xy, cells.zw - 1);
+  uvec4 bits = texelFetch(probesImage, within, 0);
+  return cellHoldsMaterial(side * within) && within == cell ? bits : kNoProbe;
 }
 
 // A pixel that is a quarter of its side off a probe's tangent plane is not of its surface. Half and a tenth of the side err
@@ -92,11 +94,12 @@ vec3 withProbes(vec3 diffused, ivec2 pixel, int side, float front, uint material
   float total = 0.0;
   vec3 added = vec3(0.0), convexity = vec3(0.0);
   vec2 fraction = vec2(pixel & (side - 1)) / float(side);
-  [[dont_unroll]] for (int i = 0; i < 4; ++i) {
+  uvec4 probes[4];
+  [[unroll]] for (int i = 0; i < 4; ++i) probes[i] = probeOf((pixel >> shiftOf(side)) + ivec2(i & 1, i >> 1), side);
+  [[unroll]] for (int i = 0; i < 4; ++i) {
     ivec2 corner = ivec2(i & 1, i >> 1), cell = (pixel >> shiftOf(side)) + corner;
     vec2 linear = mix(1.0 - fraction, fraction, vec2(corner));
-    uvec4 bits = probeOf(cell, side);
-    Probe p = unpackProbe(bits);
+    Probe p = unpackProbe(probes[i]);
     if (p.material != material) continue;
     float off = offPlane(p, pixelInCell(cell, side, p.index), pixel, front);
     // The floors leave a pixel without a like neighbor the most alike.
@@ -111,18 +114,29 @@ vec3 withProbes(vec3 diffused, ivec2 pixel, int side, float front, uint material
 
 // ---- Planes
 
+// Puts vertical sums of the fine filter, which is separable, into surfaces[]: an invocation sums four pixels of a column.
+void sumColumns() {
+  for (int at = int(gl_LocalInvocationIndex); at < kColumns * kTexelsY; at += kInvocations) {
+    int place = at % kColumns + 4 * (at / kColumns) * kColumns;
+    vec3 rows[8];
+    [[unroll]] for (int y = 0; y < 8; ++y) rows[y] = unpackHalves(colors[place + y * kColumns]);
+    [[unroll]] for (int i = 0; i < 4; ++i) {
+      vec3 sum = PELLUCID_FINE_OWN * rows[i + 2] + PELLUCID_FINE_NEXT * (rows[i + 1] + rows[i + 3]) +
+                 PELLUCID_FINE_LAST * (rows[i] + rows[i + 4]);
+      surfaces[place + i * kColumns] = packHalves(sum, 0u);
+    }
+  }
+}
+
 // Diffuses the invocation's column of four pixels, which is part of a plane. `texel`: in the window.
 void diffusePlane(ivec2 first, ivec2 local, int texel) {
-  // The fine filter is separable: vertical sums of the column and of those beside.
-  vec3 fine[4] = vec3[4](vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0)), result[4];
-  [[unroll]] for (int x = -2; x <= 2; ++x) {
-    vec3 rows[8];
-    [[unroll]] for (int y = 0; y < 8; ++y) rows[y] = unpackHalves(colors[(local.y + y) * kColumns + local.x + kRing + x]);
-    [[unroll]] for (int i = 0; i < 4; ++i) {
-      fine[i] += fineWeight(x) * (PELLUCID_FINE_OWN * rows[i + 2] + PELLUCID_FINE_NEXT * (rows[i + 1] + rows[i + 3]) +
-                                  PELLUCID_FINE_LAST * (rows[i] + rows[i + 4]));
-      if (x == 0) result[i] = rows[i + 2];
-    }
+  vec3 result[4], fine[4];
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    int place = (local.y + i) * kColumns + local.x + kRing;
+    result[i] = unpackHalves(colors[place + kRing * kColumns]);
+    fine[i] = PELLUCID_FINE_OWN * unpackHalves(surfaces[place]) +
+              PELLUCID_FINE_NEXT * (unpackHalves(surfaces[place - 1]) + unpackHalves(surfaces[place + 1])) +
+              PELLUCID_FINE_LAST * (unpackHalves(surfaces[place - 2]) + unpackHalves(surfaces[place + 2]));
   }
   vec3 across = spline(0.25 * (float(local.x & 3) - 1.5)), level2[3]; // at the column, in three rows of texels
   [[unroll]] for (int y = 0; y < 3; ++y) {
@@ -279,11 +293,13 @@ void diffuse(ivec2 first) {
     if (contains(ivec4(0, 0, kTexelsX, kTexelsY), inside) && contains(touched, (first >> 2) + inside) && bits.y >> 16 != 0u && !isPlane(bits))
       edges[atomicAdd(edgeCount, 1u)] = uint(inside.x | inside.y << 8);
   }
+  sumColumns();
   barrier();
   uint count = edgeCount;
   ivec2 column = ivec2(invocation % kPixelsX, invocation / kPixelsX * 4);
   int center = (column.y / 4 + 1) * kWindowX + column.x / 4 + 1;
   if (isPlane(upsampled[center]) && contains(touched, (first + column) >> 2)) diffusePlane(first, column, center);
+  barrier(); // keepEdges writes over the sums
   if (count != 0u) keepEdges(first);
   barrier();
   // Sixteen invocations do a texel.

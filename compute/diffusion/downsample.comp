@@ -213,14 +213,14 @@ void main() {
   barrier();
   bool some = anySurface != 0u; // texels of nothing are nothing
   uvec4 bits[kFirsts];
-  for (int i = 0; i < kFirsts; ++i) {
+  [[unroll]] for (int i = 0; i < kFirsts; ++i) { // else bits[] would lie in memory
     int place = invocation + i * kInvocations;
     ivec2 at = placeInFirst(place);
     bool makes = some && place < kFirst * kFirstRows && contains(levelRect(finer + 1u), start + at);
     bits[i] = makes ? downsampled(finer, start + at, 2 * at.y * kInput + at.x, kInput) : uvec4(0u);
   }
   barrier();
-  for (int i = 0; i < kFirsts; ++i)
+  [[unroll]] for (int i = 0; i < kFirsts; ++i)
     if (invocation + i * kInvocations < kFirst * kFirstRows) keepTexel(slot(placeInFirst(invocation + i * kInvocations), kFirst), bits[i]);
   barrier();
   ivec2 at = placeInFirst(invocation); // one of the inner ones

@@ -123,13 +123,12 @@ float areaOf(uint level, ivec2 texel, vec2 slope) {
 }
 
 // Level 2 after upsampling, with all coarser levels in it, lies in the image of level 1: kPlane says there that all around the
-// texel lies on its plane, too. Another texel holds the shares of the pixels under it and in w its kernel coverage. Planes
-// have all of the kernel.
+// texel lies on its plane, too. Another texel holds the shares of the pixels under it and in w its kernel coverage, by which
+// planes' shares have been weighted.
 ivec2 upsampledPlace(ivec2 texel) { return frame.level[0].xy + texel; }
 ivec2 sharesPlace(ivec2 texel) { return frame.level[0].zw + texel; }
 
-// Shares of a pixel on the surface of a texel, if that surface fills all of the kernel: of all but level 2 and coarser ones, and of
-// that the part of the fine filter. In halves, 1 is exact, and so is next to nothing.
+// Shares of a pixel on the surface of a texel: of all but level 2 and coarser ones, and of that the part of the fine filter. In halves, 1 is exact, and so is next to nothing.
 struct PixelShares {
   vec3 rest, fine;
 };

@@ -162,9 +162,12 @@ void upsampleFine(ivec2 texel, ivec2 k, uvec4 bits) {
   Own own = ownPart(2u, texel, bits);
   Level r = withCoarser(own, 2u, texel, windowOf(3u, k));
   uint upper = bits.y >> 16 & ~(kPlane >> 16);
-  if ((bits.x & kFlat) != 0u) upper |= kPlane >> 16;
-  writeUpsampled(texel, uvec4(packColor(r.color, upper), bits.zw),
-                 uvec4(packShares(pixelShares(own.texel.material - 1u, own.foreshortening)), packCoverage(r.coverage)));
+  PixelShares share = pixelShares(own.texel.material - 1u, own.foreshortening);
+  if ((bits.x & kFlat) != 0u) {
+    upper |= kPlane >> 16;
+    share.rest /= max(share.rest + (1.0 - share.rest) * r.coverage, vec3(1.0e-6)); // a small plane has not all of the kernel
+  }
+  writeUpsampled(texel, uvec4(packColor(r.color, upper), bits.zw), uvec4(packShares(share), packCoverage(r.coverage)));
 }
 
 void main() {

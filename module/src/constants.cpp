@@ -291,11 +291,9 @@ PellucidResult writeConstants(const FrameFacts& f, const PellucidPlan& plan, voi
   putLights(f, mapped);
   if (f.stages.diffusion) put(mapped, layout.lists.offset, blockLists(f, plan));
   for (uint32_t i = 0; i < f.frame.materialCount; ++i) {
-    const PellucidMaterial material = f.material(i);
     put(mapped, layout.materials.offset + i * sizeof(shared::MaterialConstants),
-        materialConstants(f, material));
-    put(mapped, layout.kernels.offset + i * sizeof(shared::KernelConstants),
-        kernelConstants(material));
+        materialConstants(f, f.material(i)));
+    put(mapped, layout.kernels.offset + i * sizeof(shared::KernelConstants), kernelConstants(f.diffused(i)));
   }
   return PELLUCID_OK;
 }

@@ -5,6 +5,6 @@
 namespace pellucid {
 
 constexpr float kErrorRadii[] = {0.5, 2, 8, 32, 128};
-constexpr float kWorstError[] = {0.0002f, 0.0064f, 0.0237f, 0.0367f, 0.0393f};
+constexpr float kWorstError[] = {0.0002f, 0.0091f, 0.0316f, 0.0415f, 0.0389f};
 
 }  // namespace pellucid

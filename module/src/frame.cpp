@@ -47,7 +47,7 @@ uint32_t gatherSpacing(const PellucidFrame& frame) {
 void addMaterials(FrameFacts& f) {
   for (uint32_t i = 0; i < f.frame.materialCount; ++i) {
     const PellucidMaterial m = f.material(i);
-    f.diffuses = f.diffuses || m.gaussianCount > 0;
+    f.diffuses = f.diffuses || f.diffused(i).gaussianCount > 0;
     (m.thinWalled != 0 ? f.thinWalls : f.solids) = true;
   }
   f.reach = diffusionReach(f);
@@ -116,14 +116,18 @@ PellucidMaterial FrameFacts::material(uint32_t index) const {
   const size_t offset = static_cast<size_t>(index) * frame.materials->structSize;
   PellucidMaterial m =
       readStruct(reinterpret_cast<const PellucidMaterial*>(bytes + offset), PellucidMaterial{});
-  // Without diffusion the passes that add gathered light keep each pixel's own irradiance.
-  if (!(frame.features & PELLUCID_FEATURE_DIFFUSION)) m.gaussianCount = 0;
   if (m.thinWalled == 0) return m;
   m.transmittanceModel = PELLUCID_TRANSMITTANCE_EXP2;
   for (int c = 0; c < 3; ++c) {
     std::fill_n(m.transmittance[c], 5, 0.0f);
     m.transmittance[c][0] = m.wallTransmittance[c];
   }
+  return m;
+}
+
+PellucidMaterial FrameFacts::diffused(uint32_t index) const {
+  PellucidMaterial m = material(index);
+  if (!(frame.features & PELLUCID_FEATURE_DIFFUSION)) m.gaussianCount = 0;
   return m;
 }
 

@@ -86,6 +86,10 @@ struct FrameFacts {
   // constant.
   PellucidMaterial material(uint32_t index) const;
 
+  // As the diffusion takes it: without a profile where the diffusion is not among the features. Its passes add
+  // gathered light there, too.
+  PellucidMaterial diffused(uint32_t index) const;
+
   // Why a light adds nothing to the frame, or nullptr. Static string.
   const char* whySkipped(const PellucidLight& light) const { return view.whySkipped(*this, light); }
 

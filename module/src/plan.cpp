@@ -69,7 +69,7 @@ void addSkips(PlanBuilder& b) {
   if (!f.stages.diffusion) return;
   if (f.frame.indirectDispatches != PELLUCID_INDIRECT_NONE && !f.stages.lists) b.skip("lists", whyNoLists(f));
   for (uint32_t i = 0; i < f.frame.materialCount; ++i)
-    if (f.reach.pixelsPerMm * widestDeviation(f.material(i)) > levelDeviation(f.pyramid.coarsest))
+    if (f.reach.pixelsPerMm * widestDeviation(f.diffused(i)) > levelDeviation(f.pyramid.coarsest))
       b.skip("diffusion radius", "wider than the pyramid holds");
 }
 

@@ -75,7 +75,7 @@ DiffusionReach diffusionReach(const FrameFacts& facts) {
   DiffusionReach reach{std::min(pixelsPerMm(facts), 1e30), 0, 0};
   const auto pixels = [&](double mm) { return std::min(mm * reach.pixelsPerMm, 1e30); };
   for (uint32_t i = 0; i < facts.frame.materialCount; ++i) {
-    const PellucidMaterial m = facts.material(i);
+    const PellucidMaterial m = facts.diffused(i);
     if (m.gaussianCount == 0) continue;
     const double radius = static_cast<double>(*std::max_element(m.radius, m.radius + 3));
     reach.radius = std::max(reach.radius, pixels(radius));

@@ -160,7 +160,10 @@ TEST_F(BlockMaps, SayWhyThereAreNone) {
   };
   EXPECT_EQ(why([](ReplaySettings& s) { s.indirectDispatches = PELLUCID_INDIRECT_NONE; }),
             "flat: has no lists of blocks to draw: frame.indirectDispatches asks for none");
-  EXPECT_EQ(why([](ReplaySettings& s) { s.features = PELLUCID_FEATURE_TRANSLUCENCY; }),
+  EXPECT_EQ(why([](ReplaySettings& s) {
+              s.features = PELLUCID_FEATURE_TRANSLUCENCY;
+              s.translucency.gatherSamples = 0;
+            }),
             "flat: has no lists of blocks to draw: nothing diffuses: not among the features");
 }
 

@@ -55,8 +55,32 @@ TEST_F(Gather, IsTheSlabsTransmittance) {
     }
 }
 
-// Rings are integrated, so that neither the number of samples nor the distance of probes matters where depth is
-// constant.
+// The passes of the diffusion add the light. Without the feature each pixel keeps its own irradiance under
+// it.
+TEST_F(Gather, NeedsNoDiffusion) {
+  Capture c = backlitSlab(2, PELLUCID_DEPTH_DEVICE);
+  for (size_t i = 0; i < c.irradiance.pixels(); ++i) c.irradiance.data[3 * i] = static_cast<float>(i % 5);
+  PellucidMaterial wide = testMaterial();
+  wide.gaussianCount = 1;
+  for (int k = 0; k < 3; ++k) {
+    wide.gaussianVariance[k][0] = 9;
+    wide.gaussianWeight[k][0] = 1;
+    wide.radius[k] = 12;
+  }
+  ReplaySettings s = settings(8);
+  s.features = PELLUCID_FEATURE_TRANSLUCENCY;
+  const Image out = replay(c, wide, s);
+  for (int y = 0; y < c.height; ++y)
+    for (int x = 0; x < c.width; ++x)
+      for (int k = 0; k < 3; ++k) {
+        const double exact = 6 * transmittance(k, 2),
+                     added = static_cast<double>(out.at(x, y)[k] - c.irradiance.at(x, y)[k]);
+        EXPECT_NEAR(added, exact, kFitted * exact) << x << ", " << y << " channel " << k;
+      }
+}
+
+// Rings are integrated, so that neither the number of samples nor the distance of probes matters where depth
+// is constant.
 TEST_F(Gather, SlabsAreRightWithFewSamplesAndProbes) {
   for (const uint32_t samples : {4u, 8u, 16u})
     for (const uint32_t spacing : {1u, 2u, 4u})
