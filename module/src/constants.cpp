@@ -186,12 +186,14 @@ shared::ShadowConstants shadowConstants(const FrameFacts& f, const PellucidShado
   return c;
 }
 
-shared::MaterialConstants materialConstants(const FrameFacts& f, const PellucidMaterial& m) {
+shared::MaterialConstants materialConstants(const FrameFacts& f, uint32_t index) {
+  const PellucidMaterial m = f.material(index);
   shared::MaterialConstants c{};
   c.meta = {m.transmittanceModel, m.gaussianCount, m.thinWalled, 0};
   const float exponent = m.transmittanceModel == PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED ? 1.0f : 0.5f;
   const bool canGather = canBeGathered(m.transmittanceModel) && m.thinWalled == 0;
-  if ((f.gathers || f.ambient.intensity > 0) && canGather) c.gather = gatherConstants(m);
+  // Without diffusion nothing of it is corrected.
+  if ((f.gathers || f.ambient.intensity > 0) && canGather) c.gather = gatherConstants(f.diffused(index));
   // From other models the ambient light takes nothing from visible faces.
   for (glm::vec4& reflectance : c.gather.reflectance)
     if (!canGather) reflectance.x = 1;
@@ -291,8 +293,7 @@ PellucidResult writeConstants(const FrameFacts& f, const PellucidPlan& plan, voi
   putLights(f, mapped);
   if (f.stages.diffusion) put(mapped, layout.lists.offset, blockLists(f, plan));
   for (uint32_t i = 0; i < f.frame.materialCount; ++i) {
-    put(mapped, layout.materials.offset + i * sizeof(shared::MaterialConstants),
-        materialConstants(f, f.material(i)));
+    put(mapped, layout.materials.offset + i * sizeof(shared::MaterialConstants), materialConstants(f, i));
     put(mapped, layout.kernels.offset + i * sizeof(shared::KernelConstants), kernelConstants(f.diffused(i)));
   }
   return PELLUCID_OK;

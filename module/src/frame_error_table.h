@@ -6,6 +6,6 @@
 
 namespace pellucid {
 
-constexpr float kFrameError[] = {0.177f, 0.0605f, 0.0598f};
+constexpr float kFrameError[] = {0.179f, 0.0605f, 0.0598f};
 
 }  // namespace pellucid
