@@ -277,7 +277,9 @@ uvec4 entryOf(EntryMapConstants map, ivec2 texel) {
   }
   float cosine = max(dot(normal, toLight), 0.0);
   bool seen = isShown || cameraSees(shown, normal, tolerance, uncertain * cosine);
-  return packEntry(EntryPoint(y.depth, normal, seen ? 0.0 : share, seen ? share : 0.0, cosine, exit, material));
+  // Without diffusion what the camera sees stays where it is.
+  float seenShare = seen && hasFlag(PELLUCID_FLAG_DIFFUSED) ? share : 0.0;
+  return packEntry(EntryPoint(y.depth, normal, seen ? 0.0 : share, seenShare, cosine, exit, material));
 }
 
 #endif

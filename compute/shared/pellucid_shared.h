@@ -81,6 +81,7 @@ using glm::vec4;
 #define PELLUCID_FLAG_CONSTANT_VIEW 64u
 #define PELLUCID_FLAG_CHORD_THICKNESS 128u
 #define PELLUCID_FLAG_CHORD 256u // some light, or a debug view, needs camera-space thickness
+#define PELLUCID_FLAG_DIFFUSED 512u // the diffusion spreads the light that the camera sees
 #define PELLUCID_FLAG_WIDE_OUTPUT 1024u // 32 bits a channel, which keep what halves round
 #define PELLUCID_FLAG_THIN_WALLS 2048u // some material is thin-walled
 #define PELLUCID_FLAG_ADDS 4096u // the result is added to what the output holds

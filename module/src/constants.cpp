@@ -78,6 +78,7 @@ shared::FrameConstants frameConstants(const FrameFacts& facts) {
   if (t.constantViewDirection) flags |= PELLUCID_FLAG_CONSTANT_VIEW;
   if (t.chordThickness) flags |= PELLUCID_FLAG_CHORD_THICKNESS;
   if (facts.needsChord) flags |= PELLUCID_FLAG_CHORD;
+  if (facts.diffuses) flags |= PELLUCID_FLAG_DIFFUSED;
   if (facts.wide) flags |= PELLUCID_FLAG_WIDE_OUTPUT;
   if (f.outputMode == PELLUCID_OUTPUT_ADD) flags |= PELLUCID_FLAG_ADDS;
   if (facts.thinWalls) flags |= PELLUCID_FLAG_THIN_WALLS;

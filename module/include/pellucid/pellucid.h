@@ -193,7 +193,7 @@ typedef struct PellucidFrame {
   const PellucidThesisOptions* thesis; /* NULL (default): none */
   uint32_t gatherSamples;   /* samples of the shadow map that each probe gathers light from, for lights with a map: a
                                multiple of 4, at most 64; default 8. More lower the noise of thin parts. 0: one light-space
-                               thickness a pixel; so it is, as the plan's skips say, without diffusion, with a solid that is
+                               thickness a pixel; so it is, as the plan's skips say, with a solid that is
                                not of EXP2 or SINH_EXP, thickness from the camera, a material mark bit, and thesis
                                options of one thickness a pixel */
   uint32_t reuse;           /* PellucidReuse. Kept light is looked up at the same pixel: pass no previous plan

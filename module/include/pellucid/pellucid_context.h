@@ -18,7 +18,7 @@ typedef struct PellucidContext PellucidContext;
 /* Uses that frames ask of a context. A pipeline is made if all that it is for is asked for; recording refuses a plan that
  * needs one of the others. */
 typedef enum PellucidUse {
-  PELLUCID_USE_TRANSLUCENCY = 1 << 0, /* lights that are not gathered from, thin walls, and frames without diffusion */
+  PELLUCID_USE_TRANSLUCENCY = 1 << 0, /* lights that are not gathered from, and thin walls */
   PELLUCID_USE_GATHER = 1 << 1,       /* gathered light */
   PELLUCID_USE_DIFFUSION = 1 << 2,    /* light that spreads under the surface */
   PELLUCID_USE_REUSE = 1 << 3,        /* frame.reuse without a gather */
