@@ -19,7 +19,9 @@ const int kColumns = kPixelsX + 2 * kRing, kRows = kPixelsY + 2 * kRing;
 const int kLoads = (kColumns * kRows + kInvocations - 1) / kInvocations;
 
 shared uvec2 colors[kColumns * kRows];   // and alphas, as halves
-shared uvec2 surfaces[kColumns * kRows]; // vertical sums of the fine filter and, where there are edges, bits of the depth; material
+// Vertical sums of the fine filter, from the group's first row of pixels on. Afterwards, where there are edges, bits of the depth and
+// the material, from the ring's first row on.
+shared uvec2 surfaces[kColumns * kRows];
 shared uvec4 upsampled[kWindowX * kWindowY], shares[kWindowX * kWindowY];
 shared float spreads[kWindowX * kWindowY]; // inverseSpread of upsampled[]
 shared uint edges[kTexelsX * kTexelsY];    // columns and, from bit 8 on, rows of texels
@@ -123,7 +125,7 @@ void sumColumns() {
     [[unroll]] for (int i = 0; i < 4; ++i) {
       vec3 sum = PELLUCID_FINE_OWN * rows[i + 2] + PELLUCID_FINE_NEXT * (rows[i + 1] + rows[i + 3]) +
                  PELLUCID_FINE_LAST * (rows[i] + rows[i + 4]);
-      surfaces[place + i * kColumns] = packHalves(sum, 0u);
+      surfaces[place + i * kColumns] = packHalves(roundToHalf(sum), 0u);
     }
   }
 }

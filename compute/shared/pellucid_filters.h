@@ -35,7 +35,7 @@
 
 // Constants that were chosen by measurement, not by the fit. `./run sweep CONSTANT VALUE...` measures others.
 
-// Factors x and y of sameSurface (compute/diffusion/texel.glsl), for downsampling, the stretch, upsampling and the last pass.
+// Factors x and y of tangentPlaneWeight (compute/diffusion/texel.glsl), for downsampling, the stretch, upsampling and the last pass.
 #ifndef PELLUCID_DOWNSAMPLE_FALLOFF
 #define PELLUCID_DOWNSAMPLE_FALLOFF 0.2, 0.5
 #endif

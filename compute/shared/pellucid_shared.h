@@ -156,7 +156,7 @@ struct FrameConstants {
   vec4 filterAndLimit;        // rgb: factor of T; w: largest thickness, mm
   ivec4 level[PELLUCID_LAST_LEVEL + 1]; // xy: where texel (0, 0) of the level lies in its image; of level 0, that
                                         // of the resolved level 2, zw: of its shares
-  uvec4 blocks; // x, y: columns and rows that the rect touches; z: first word of their lists; w: 1: groups go by lists
+  uvec4 blocks; // x, y: columns and rows that the rect and PELLUCID_BLOCK_BORDER pixels around it touch; z: first word of their lists; w: 1: groups go by lists
   // View ray of planar length 1: of pixel (0, 0), changes per pixel in x and y.
   vec4 normalRay[3]; // xyz: in the normal image's space
   vec4 facingRay[2]; // along pixels' columns and rows; xy, zw, xy
