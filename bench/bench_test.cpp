@@ -17,6 +17,7 @@
 #include "compare_runs.h"
 #include "frame_error_table.h"
 #include "frame_errors.h"
+#include "names.h"
 #include "reference/reference.h"
 #include "scene/scene.h"
 #include "submission.h"
@@ -83,8 +84,7 @@ Json row(const char* name, double us, double error) {
 }
 
 Json run() {
-  return {{"device", "a"},
-          {"results", {row("Pellucid, quality 1", 100, 0.01), row("HDRP, 20 samples", 50, 0.02)}}};
+  return {{"device", "a"}, {"results", {row("Pellucid", 100, 0.01), row("HDRP, 20 samples", 50, 0.02)}}};
 }
 
 int grew(const Json& before, const Json& now, std::string* said = nullptr) {
@@ -102,7 +102,7 @@ TEST(CompareRuns, TheSameRunDidNotGrow) { EXPECT_EQ(grew(run(), run()), 0); }
 
 TEST(CompareRuns, FasterAndMoreExactDidNotGrow) {
   Json now = run();
-  now["results"][0] = row("Pellucid, quality 1", 80, 0.005);
+  now["results"][0] = row("Pellucid", 80, 0.005);
   EXPECT_EQ(grew(run(), now), 0);
 }
 
@@ -148,17 +148,17 @@ TEST(CompareRuns, WhatIsNoRunIsRefused) { EXPECT_THROW(grew(Json::object(), run(
 TEST(FrameErrorTable, HoldsForTheFramesOfTheBaseline) {
   std::ifstream file(PELLUCID_SOURCE_DIR "/bench/baselines/nvidia-h100-truth.json");
   const Json results = Json::parse(file).at("results");
-  for (uint32_t quality = 0; quality < std::size(kFrameError); ++quality) {
+  static_assert(std::size(kFrameError) == std::size(kSamples));
+  for (size_t i = 0; i < std::size(kSamples); ++i) {
+    const std::string name = nameOf(kSamples[i]);
     size_t frames = 0;
     for (const Json& r : results) {
-      if (r.value("kind", "") != "whole" || r.at("name") != "Pellucid, quality " + std::to_string(quality))
-        continue;
+      if (r.value("kind", "") != "whole" || r.at("name") != name) continue;
       ++frames;
       for (const double channel : r.at("truth_relative_rmse_rgb"))
-        EXPECT_LT(channel, static_cast<double>(kFrameError[quality]))
-            << r.at("frame") << ", quality " << quality;
+        EXPECT_LT(channel, static_cast<double>(kFrameError[i])) << r.at("frame") << ", " << name;
     }
-    EXPECT_EQ(frames, 4u) << quality;
+    EXPECT_EQ(frames, 4u) << name;
   }
 }
 
@@ -351,10 +351,10 @@ TEST_F(Command, MeasuresACaptureAndNothingAndComparesRuns) {
     }
     EXPECT_GT(r["us"], 0) << r;
   }
-  EXPECT_EQ(wholes, 3 + 1 + 7);  // qualities, without a gather, others
+  EXPECT_EQ(wholes, 3 + 7);  // numbers of samples, others
   EXPECT_EQ(nothing, wholes);
-  EXPECT_EQ(diffusions, 2 + 7);
-  EXPECT_GT(dispatches, 2 * 10);
+  EXPECT_EQ(diffusions, 1 + 7);
+  EXPECT_GT(dispatches, 3 * 5);
   EXPECT_TRUE(std::filesystem::exists(folder / "frames_64x36.png"));
 
   EXPECT_EQ(runs("--compare " + json + " --results " + json), 0) << output();
@@ -398,7 +398,7 @@ TEST_F(Command, SubmitsTheFramesOfARun) {
   EXPECT_NE(json["commit"], "");
   ASSERT_EQ(json["frames"].size(), 1u);
   EXPECT_EQ(json["frames"][0]["frame"], "nothing");
-  EXPECT_GT(json["frames"][0]["us"]["Pellucid, quality 1"], 0);
+  EXPECT_GT(json["frames"][0]["us"]["Pellucid"], 0);
   EXPECT_LT(std::filesystem::file_size(file), 4000u);
   EXPECT_NE(runs("--tables context --submit " + file.string()), 0);
   EXPECT_NE(output().find("the table frames"), std::string::npos) << output();

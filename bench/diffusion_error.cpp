@@ -1,5 +1,5 @@
 // pellucid_diffusion_error: the module's diffusion against the float64 reference, every pixel against every
-// other, over radii and scenes: the tables of docs/diffusion.md and of module/src/diffusion_error_table.h.
+// other, over radii and scenes: the tables of docs/accuracy.md and of module/src/diffusion_error_table.h.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -36,39 +36,30 @@ struct Bench {
   Bench(const std::string& deviceName, int side, int errorPixels)
       : device({deviceName, false}), context(device), size(side), pixels(errorPixels) {}
 
-  // Of each quality, at a radius in pixels.
-  std::vector<double> errors(const ErrorScene& scene, double radius, const std::vector<uint32_t>& qualities) {
+  // At a radius in pixels.
+  double error(const ErrorScene& scene, double radius) {
     const Capture capture = makeErrorCapture(scene, size, 1);
     const PellucidMaterial material = burleyMaterial(radius);
     reference::Settings settings;
     settings.features = PELLUCID_FEATURE_DIFFUSION;
     settings.wanted = spreadPixels(capture, pixels);
     const Image truth = reference::compute(capture, {material}, settings).image;
-    std::vector<double> result;
-    for (const uint32_t quality : qualities) {
-      ReplaySettings replaySettings;
-      replaySettings.features = PELLUCID_FEATURE_DIFFUSION;
-      replaySettings.quality = quality;
-      FrameRun run(device, context, capture, {material}, replaySettings);
-      device.run([&](VkCommandBuffer c) { run.record(c); });
-      result.push_back(relativeRmse(rgb(run.output()), truth, settings.wanted));
-    }
-    return result;
+    ReplaySettings replaySettings;
+    replaySettings.features = PELLUCID_FEATURE_DIFFUSION;
+    FrameRun run(device, context, capture, {material}, replaySettings);
+    device.run([&](VkCommandBuffer c) { run.record(c); });
+    return relativeRmse(rgb(run.output()), truth, settings.wanted);
   }
 
   // Of the worst scene.
-  std::vector<double> worst(double radius, const std::vector<uint32_t>& qualities) {
-    std::vector<double> most(qualities.size());
-    for (const ErrorScene& scene : errorScenes()) {
-      const std::vector<double> all = errors(scene, radius, qualities);
-      std::transform(all.begin(), all.end(), most.begin(), most.begin(),
-                     [](double a, double b) { return std::max(a, b); });
-    }
+  double worst(double radius) {
+    double most = 0;
+    for (const ErrorScene& scene : errorScenes()) most = std::max(most, error(scene, radius));
     return most;
   }
 };
 
-void printScenes(Bench& bench, const std::vector<double>& radii, uint32_t quality) {
+void printScenes(Bench& bench, const std::vector<double>& radii) {
   std::printf("| scene, %d x %d pixels |", bench.size, bench.size);
   for (const double radius : radii) std::printf(" %g px |", radius);
   std::printf("\n|-|");
@@ -77,57 +68,46 @@ void printScenes(Bench& bench, const std::vector<double>& radii, uint32_t qualit
   for (const ErrorScene& scene : errorScenes()) {
     std::printf("| %s |", scene.title.c_str());
     for (const double radius : radii) {
-      std::printf(" %.4f |", bench.errors(scene, radius, {quality})[0]);
+      std::printf(" %.4f |", bench.error(scene, radius));
       std::fflush(stdout);
     }
     std::printf("\n");
   }
 }
 
-// One quality of each row of the table, without and with the fine filter.
-const std::vector<uint32_t> kQualities = {0, 1};
-
-// Root mean squares over the scenes, a row for each quality.
+// Root mean squares over the scenes.
 void printMeans(Bench& bench, const std::vector<double>& radii) {
-  std::vector<std::vector<double>> rows(kQualities.size());
+  std::printf("|");
   for (const double radius : radii) {
-    std::vector<double> squares(kQualities.size());
+    double squares = 0;
     for (const ErrorScene& scene : errorScenes()) {
-      const std::vector<double> all = bench.errors(scene, radius, kQualities);
-      for (size_t i = 0; i < all.size(); ++i) squares[i] += all[i] * all[i];
+      const double error = bench.error(scene, radius);
+      squares += error * error;
     }
-    for (size_t i = 0; i < squares.size(); ++i)
-      rows[i].push_back(std::sqrt(squares[i] / static_cast<double>(errorScenes().size())));
+    std::printf(" %.5f |", std::sqrt(squares / static_cast<double>(errorScenes().size())));
+    std::fflush(stdout);
   }
-  for (size_t i = 0; i < rows.size(); ++i) {
-    std::printf("| quality %u |", kQualities[i]);
-    for (const double mean : rows[i]) std::printf(" %.5f |", mean);
-    std::printf("\n");
-  }
+  std::printf("\n");
 }
 
 // module/src/diffusion_error_table.h.
 void printTable(Bench& bench, const std::vector<double>& radii) {
-  std::vector<std::vector<double>> columns;
-  for (const double radius : radii) columns.push_back(bench.worst(radius, kQualities));
+  std::vector<double> errors;
+  for (const double radius : radii) errors.push_back(bench.worst(radius));
   std::printf(
-      "// Relative RMSE of the diffusion from brute force, of qualities 0 and 1, which 2 shares, at each "
-      "radius "
-      "(pixels\n"
-      "// within which 99.9 %% of the energy lies) the worst of the scenes of docs/diffusion.md. Written by\n"
-      "// build/bin/pellucid_diffusion_error --table, which --check measures again.\n"
+      "// Relative RMSE of the diffusion from brute force at each radius (pixels within which 99.9 %% of the "
+      "energy lies), the worst of\n"
+      "// the scenes of docs/accuracy.md. Written by build/bin/pellucid_diffusion_error --table, which "
+      "--check "
+      "measures again.\n"
       "#pragma once\n\nnamespace pellucid {\n\nconstexpr float kErrorRadii[] = {");
   for (size_t i = 0; i < radii.size(); ++i) std::printf("%s%g", i ? ", " : "", radii[i]);
-  std::printf("};\nconstexpr float kWorstError[][%zu] = {", radii.size());
-  for (const uint32_t quality : kQualities) {
-    std::printf("\n    {");
-    for (size_t i = 0; i < radii.size(); ++i) std::printf("%s%.4ff", i ? ", " : "", columns[i][quality]);
-    std::printf("},");
-  }
-  std::printf("\n};\n\n}  // namespace pellucid\n");
+  std::printf("};\nconstexpr float kWorstError[] = {");
+  for (size_t i = 0; i < errors.size(); ++i) std::printf("%s%.4ff", i ? ", " : "", errors[i]);
+  std::printf("};\n\n}  // namespace pellucid\n");
 }
 
-// Whether errors at these radii, of all qualities, are at most a tenth above the module's table.
+// Whether errors at these radii are at most a tenth above the module's table.
 bool holdsTable(Bench& bench, const std::vector<double>& radii) {
   bool holds = true;
   for (const double radius : radii) {
@@ -135,14 +115,11 @@ bool holdsTable(Bench& bench, const std::vector<double>& radii) {
         std::find(std::begin(pellucid::kErrorRadii), std::end(pellucid::kErrorRadii), radius);
     if (column == std::end(pellucid::kErrorRadii))
       throw InputError("", "--radius", std::to_string(radius) + " is not in the module's table");
-    const std::vector<double> measured = bench.worst(radius, kQualities);
-    for (const uint32_t quality : kQualities) {
-      const auto stated = static_cast<double>(pellucid::kWorstError[quality][column - pellucid::kErrorRadii]);
-      const bool within = measured[quality] <= 1.1 * stated;
-      std::printf("quality %u, %g px: %.4f, stated %.4f%s\n", quality, radius, measured[quality], stated,
-                  within ? "" : " EXCEEDED");
-      holds = holds && within;
-    }
+    const double measured = bench.worst(radius);
+    const auto stated = static_cast<double>(pellucid::kWorstError[column - pellucid::kErrorRadii]);
+    const bool within = measured <= 1.1 * stated;
+    std::printf("%g px: %.4f, stated %.4f%s\n", radius, measured, stated, within ? "" : " EXCEEDED");
+    holds = holds && within;
   }
   return holds;
 }
@@ -152,7 +129,6 @@ bool holdsTable(Bench& bench, const std::vector<double>& radii) {
 int main(int argc, char** argv) {
   std::string device;
   int size = 96, pixels = std::numeric_limits<int>::max();
-  uint32_t quality = 1;
   bool table = false, check = false, means = false;
   std::vector<double> radii(std::begin(pellucid::kErrorRadii), std::end(pellucid::kErrorRadii));
   CLI::App app("Relative RMSE of the module's diffusion from brute force, worst channel.",
@@ -162,12 +138,9 @@ int main(int argc, char** argv) {
   app.add_option("--error-pixels", pixels,
                  "of a scene, at most, where brute force says the error; default all")
       ->check(CLI::Range(16, 1000000));
-  app.add_option("--quality", quality, "PellucidFrame::quality")
-      ->check(CLI::Range(0, 3))
-      ->capture_default_str();
   app.add_flag("--table", table, "print module/src/diffusion_error_table.h instead");
   app.add_flag("--check", check, "compare with it instead; 1 if an error is exceeded by a tenth");
-  app.add_flag("--mean", means, "print the root mean squares over the scenes instead, of qualities 0 and 1");
+  app.add_flag("--mean", means, "print the root mean squares over the scenes instead");
   app.add_option("--radius", radii, "pixels within which 99.9 % of the energy lies; several with commas")
       ->delimiter(',')
       ->check(CLI::Range(0.01, 1000.0))
@@ -182,7 +155,7 @@ int main(int argc, char** argv) {
     else if (check)
       return holdsTable(bench, radii) ? 0 : 1;
     else
-      printScenes(bench, radii, quality);
+      printScenes(bench, radii);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "pellucid_diffusion_error: %s\n", e.what());
     return dynamic_cast<const DeviceError*>(&e) ? 4 : 3;

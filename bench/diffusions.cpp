@@ -6,6 +6,7 @@
 
 #include "common/compare.h"
 #include "common/error.h"
+#include "names.h"
 #include "reference/reference.h"
 #include "scene.h"
 
@@ -53,11 +54,7 @@ std::vector<Variant> diffusions(const Site& site, const Capture& capture) {
   ReplaySettings settings;
   settings.features = PELLUCID_FEATURE_DIFFUSION;
   const auto frame = site.frame(capture, settings);
-  const auto ofQuality = [&](uint32_t quality) {
-    settings.quality = quality;
-    return moduleVariant(site.frame(capture, settings), "Pellucid, quality " + std::to_string(quality));
-  };
-  std::vector<Variant> all = {ofQuality(0), ofQuality(1)};
+  std::vector<Variant> all = {moduleVariant(frame, kModule)};
   for (Variant& v : baselines(frame)) all.push_back(std::move(v));
   return all;
 }

@@ -32,9 +32,8 @@ double requireNear(const Variant& v, const harness::Image& image, const harness:
                    const harness::Capture& capture, double limit,
                    const std::vector<std::uint8_t>& pixels = {});
 
-// The module's without and with the fine filter, and then the baselines.
+// The module's, and then the baselines.
 std::vector<Variant> diffusions(const Site& site, const harness::Capture& capture);
-inline constexpr uint32_t kModuleDiffusions = 2;
 
 // Of these: against the float64 reference, the largest of the scenes'.
 std::vector<double> diffusionErrors(const Site& site);

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "names.h"
 #include "table_text.h"
 
 namespace pellucid::bench {
@@ -12,8 +13,6 @@ namespace {
 
 constexpr const char* kSummarySize = "1920x1080";
 constexpr const char* kSummaryTruth = "head_ior1.4";  // a frame with path-traced truth
-
-const std::string kDefault = "Pellucid, quality 1", kWithoutGather = "Pellucid, quality 1 without a gather";
 
 template <class Value>
 void addNew(std::vector<Value>& values, const Value& value) {
@@ -239,7 +238,7 @@ std::string framePartsTable(const Json& results) {
 std::string frameDispatchesTable(const Json& results) {
   const Frames all(results);
   std::string text = all.heading("microseconds at " + listed(all.sizes()));
-  for (const std::string& whole : {kDefault, kWithoutGather}) {
+  for (const std::string& whole : {kModule, nameOf(0)}) {
     text += header(whole, all.frames());
     for (const std::string& name : all.names("dispatch", whole)) {
       text += "| " + name.substr(name.find_first_not_of(' ')) + " |";
@@ -312,8 +311,7 @@ std::string engineTable(const Json& results) {
       for (const std::string& name : all.names("whole")) {
         const Json* row = all.find(frame, size, "whole", name);
         if (!row || !row->contains("truth_relative_rmse_rgb") || !row->contains("flicker_rgb")) continue;
-        rows += "| " + frame + " " + size + " | " + name.substr(name.find("quality")) + " |" +
-                rgbCell(*row, "truth_relative_rmse_rgb") +
+        rows += "| " + frame + " " + size + " | " + name + " |" + rgbCell(*row, "truth_relative_rmse_rgb") +
                 format(" %.3f | %d |", row->at("flip").get<double>(), row->at("spots").get<int>()) +
                 rgbCell(*row, "flicker_rgb") + rgbCell(*row, "flicker_irradiance_rgb") +
                 format(" %d, %d |\n", row->at("spots_appear").get<int>(), row->at("spots_vanish").get<int>());
@@ -321,8 +319,8 @@ std::string engineTable(const Json& results) {
   if (rows.empty()) throw NotMeasured("no frame with path-traced truth and turned lights");
   return results.at("device").get<std::string>() + ", commit `" + results.at("commit").get<std::string>() +
          "`:\n\n" +
-         header("frame", {"Pellucid", "relative RMSE", "FLIP mean", "spots", "flicker", "of the irradiance",
-                          "spots appear, vanish"}) +
+         header("frame", {"whole frame", "relative RMSE", "FLIP mean", "spots", "flicker",
+                          "of the irradiance", "spots appear, vanish"}) +
          rows;
 }
 
@@ -332,20 +330,19 @@ std::string headlineTable(const std::vector<Json>& runs) {
       summary.heading() + header("whole frame", {"head, us", "face that fills the screen, us",
                                                  "nothing on screen, us", "error in red", "mean FLIP"});
   for (const std::string& name :
-       {std::string("Pellucid, quality 1"), std::string("Jimenez 2010 + 2015, 11 taps"),
-        std::string("HDRP, 20 samples")})
+       {kModule, std::string("Jimenez 2010 + 2015, 11 taps"), std::string("HDRP, 20 samples")})
     table += "| " + name + " |" + summary.time("portrait", name) + summary.time("closeup", name) +
              summary.time("nothing", name) + summary.error(name) + "\n";
   return table;
 }
 
-std::string qualitiesTable(const std::vector<Json>& runs) {
+std::string samplesTable(const std::vector<Json>& runs) {
   const Summary summary(runs);
-  std::string table =
-      summary.heading() + header("`quality`", {"head, us", "error in red", "mean FLIP", "transients, MB"});
-  for (const char* quality : {"0", "1", "2"}) {
-    const std::string name = std::string("Pellucid, quality ") + quality;
-    table += std::string("| ") + quality + " |" + summary.time("portrait", name) + summary.error(name) +
+  std::string table = summary.heading() +
+                      header("`gatherSamples`", {"head, us", "error in red", "mean FLIP", "transients, MB"});
+  for (const std::uint32_t samples : kSamples) {
+    const std::string name = nameOf(samples);
+    table += "| " + std::to_string(samples) + " |" + summary.time("portrait", name) + summary.error(name) +
              summary.memory(name) + "\n";
   }
   return table;

@@ -13,6 +13,7 @@
 #include "floor.h"
 #include "frame_errors.h"
 #include "measure.h"
+#include "names.h"
 #include "scene.h"
 
 namespace pellucid::bench {
@@ -21,7 +22,7 @@ using namespace harness;
 
 namespace {
 
-constexpr uint32_t kGathers[] = {8, 16};
+static_assert(kSamples[1] == kDefaultGatherSamples);
 
 // Microseconds.
 template <class Call>
@@ -84,14 +85,11 @@ private:
     settings.normalFormat = VK_FORMAT_R8G8B8A8_SNORM;
     return std::make_shared<BenchFrame>(device_, context_, withoutAlbedo_, materials_, settings, inputs_);
   }
-  static ReplaySettings settings(uint32_t features, uint32_t quality, uint32_t gather) {
+  static ReplaySettings alone(PellucidFeatureBits feature) {
     ReplaySettings s;
-    s.features = features;
-    s.quality = quality;
-    s.translucency.gatherSamples = gather;
+    s.features = feature;
     return s;
   }
-  static std::string qualityName(uint32_t quality) { return "Pellucid, quality " + std::to_string(quality); }
 
   void head(double floor) {
     const size_t covered =
@@ -121,8 +119,7 @@ private:
       device_.run(v.record);
       errors_[v.name] = diffusionErrors(v.output(), truth_);
     };
-    for (uint32_t q = 0; q < kModuleDiffusions; ++q)
-      add(moduleVariant(frame(settings(PELLUCID_FEATURE_DIFFUSION, q, 0)), qualityName(q)));
+    add(moduleVariant(frame(alone(PELLUCID_FEATURE_DIFFUSION)), kModule));
     for (const Variant& v : diffusionsOfOthers_) add(v);
   }
 
@@ -198,11 +195,11 @@ private:
     return flickerFields(before, turned.output(), capture_, *turned_);
   }
 
-  void wholeFrame(const std::string& name, uint32_t quality, uint32_t gather) {
-    const ReplaySettings whole =
-        settings(PELLUCID_FEATURE_TRANSLUCENCY | PELLUCID_FEATURE_DIFFUSION, quality, gather);
+  void wholeFrame(uint32_t samples) {
+    ReplaySettings whole;
+    whole.translucency.gatherSamples = samples;
     const auto f = frame(whole);
-    const Variant v = moduleVariant(f, name);
+    const Variant v = moduleVariant(f, nameOf(samples));
     std::vector<double> recordings;
     const Time time = measure(device_, repeat_, [&](VkCommandBuffer commandBuffer) {
       recordings.push_back(hostTime([&] { v.record(commandBuffer); }));
@@ -210,7 +207,7 @@ private:
     const nlohmann::json host = hostTimes(*f, std::move(recordings));
     nlohmann::json more = host;
     if (turned_) more.update(flickerOf(v, whole));
-    add("whole", v, time, qualityName(std::min(quality, kModuleDiffusions - 1u)), more);
+    add("whole", v, time, kModule, more);
     char text[160];
     std::snprintf(
         text, sizeof text,
@@ -223,29 +220,19 @@ private:
   }
 
   void wholeFramesOfModule() {
-    for (const uint32_t quality : {0u, 1u, 2u})
-      wholeFrame(qualityName(quality), quality, PELLUCID_GATHER_BY_QUALITY);
-    wholeFrame("Pellucid, quality 1 without a gather", 1, 0);
+    for (const uint32_t samples : kSamples) wholeFrame(samples);
   }
 
   // Translucency and diffusion alone.
   void parts() {
     report_.note("  translucency alone");
-    row("translucency", moduleVariant(frame(settings(PELLUCID_FEATURE_TRANSLUCENCY, 1, 0)), "Pellucid"), "");
-    for (const uint32_t gather : kGathers)
-      row("translucency",
-          moduleVariant(frame(settings(PELLUCID_FEATURE_TRANSLUCENCY, 1, gather)),
-                        "Pellucid gather " + std::to_string(gather)),
-          "");
+    row("translucency", moduleVariant(frame(alone(PELLUCID_FEATURE_TRANSLUCENCY)), kModule), "");
     if (why_.empty()) {
       row("translucency", gaussianTransmittance(others_).variant, "");
       row("translucency", burleyTransmittance(others_).variant, "");
     }
     report_.note("  diffusion alone");
-    for (uint32_t q = 0; q < kModuleDiffusions; ++q) {
-      const std::string name = qualityName(q);
-      row("diffusion", moduleVariant(frame(settings(PELLUCID_FEATURE_DIFFUSION, q, 0)), name), name);
-    }
+    row("diffusion", moduleVariant(frame(alone(PELLUCID_FEATURE_DIFFUSION)), kModule), kModule);
     for (const Variant& v : diffusionsOfOthers_) row("diffusion", v, v.name);
   }
 

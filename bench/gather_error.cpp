@@ -20,14 +20,17 @@ std::vector<double> gatherErrors(const Site& site, const std::vector<uint32_t>& 
   Capture capture = makeScene(p);
   capture.albedo = {};
   capture.lights.resize(1);
+  // Light that comes through alone: where surfaces are lit, more of what is gathered comes back from them.
+  const std::vector<std::uint8_t> unlit = comparisonMask(capture.material, capture.irradiance, Subset::Unlit);
+  std::fill(capture.irradiance.data.begin(), capture.irradiance.data.end(), 0.0f);
   ReplaySettings settings;
-  settings.features = PELLUCID_FEATURE_TRANSLUCENCY;
   settings.translucency.gatherSamples = samples.front();
   reference::Settings all;
   all.features = settings.features;
   all.translucency = settings.translucency;
   constexpr int kBox = 4;
   all.wanted = spreadPixels(capture, site.errorPixels, kBox);
+  for (size_t i = 0; i < unlit.size(); ++i) all.wanted[i] &= unlit[i];
   const std::vector<PellucidMaterial> materials(capture.materials.size(), site.material);
   const Image truth = reference::compute(capture, materials, all).image;
   std::vector<double> errors;

@@ -77,21 +77,18 @@ void dispatches(const Bench& bench, const BenchFrame& frame) {
 
 void modulePlans(const Bench& bench) {
   const auto [width, height] = bench.options.size;
-  const auto rows = [&](const std::string& title, const Capture& capture, const ReplaySettings& settings) {
+  const auto rows = [&](const std::string& title, const Capture& capture) {
     bench.report.section(title);
-    const auto frame = bench.frame(capture, settings);
+    const auto frame = bench.frame(capture, {});
     dispatches(bench, *frame);
     bench.row(moduleVariant(frame, "whole frame"), {});
   };
   for (const double coverage : bench.options.coverage) {
     char title[64];
     std::snprintf(title, sizeof title, "module, %g %% covered", coverage);
-    rows(title, slab(width, height, coverage / 100, bench.site.pixel), {});
+    rows(title, slab(width, height, coverage / 100, bench.site.pixel));
   }
-  rows("module, radii not known", inPerspective(bench.fullSlab()), {});
-  ReplaySettings cheapest;
-  cheapest.quality = 0;
-  rows("module, quality 0", bench.fullSlab(), cheapest);
+  rows("module, radii not known", inPerspective(bench.fullSlab()));
 }
 
 // The fused dispatch alone: by lights and by how many of them have a shadow map.
@@ -123,9 +120,10 @@ std::vector<TimedError> gathered(const Bench& bench) {
     const Variant without = moduleVariant(frame(capture, 0, 0), ""),
                   with = moduleVariant(frame(capture, samples, spacing), "");
     const Time a = bench.time(without.record), b = bench.time(with.record);
-    bench.report.add({name, with.dispatches - without.dispatches, with.barriers - without.barriers,
-                      with.bytesPerPixel - without.bytesPerPixel, error},
-                     {b.median - a.median, b.low - a.high, b.high - a.low});
+    bench.report.add(
+        {name, int64_t{with.dispatches} - without.dispatches, int64_t{with.barriers} - without.barriers,
+         with.bytesPerPixel - without.bytesPerPixel, error},
+        {b.median - a.median, b.low - a.high, b.high - a.low});
     return b.median - a.median;
   };
   bench.report.section("gather, added to the frame; error: from all texels");

@@ -1,6 +1,7 @@
 // The table that people read and the JSON that programs read, from the same rows.
 #pragma once
 
+#include <cstdint>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -22,7 +23,7 @@ public:
 
   struct Row {
     std::string name;
-    uint32_t dispatches, barriers;
+    std::int64_t dispatches, barriers;  // of a difference negative where there are fewer
     double bytesPerPixel;
     std::optional<double> error;  // relative RMSE; what against is in the section's title
     nlohmann::json more = {};     // fields of the JSON

@@ -55,7 +55,7 @@ nlohmann::json sweep(const Site& site, const SweepOptions& options, int repeat, 
     std::vector<std::vector<std::optional<Time>>> all(sizes.size());
     for (size_t s = sizes.size(); s-- > 0;) {
       all[s] = times(scaled, sizes[s], repeat, wanted);
-      for (size_t i = kModuleDiffusions; s + 1 == sizes.size() && i < errors.size(); ++i)
+      for (size_t i = 1; s + 1 == sizes.size() && i < errors.size(); ++i)
         wanted[i] = all[s][i]->median <= kSlowest * floors[s];
     }
     const std::vector<Variant> named = diffusions(scaled, slab(64, 64, 1, scaled.pixel));

@@ -40,7 +40,7 @@ std::string engineTable(const Json& results);  // of captures as engines make th
 std::string contextTable(const Json& results);
 
 // The README's tables, of the first run with times and the first with path-traced truth. Throw NotMeasured.
-std::string headlineTable(const std::vector<Json>& runs);   // times and errors beside others'
-std::string qualitiesTable(const std::vector<Json>& runs);  // time, error and memory of each quality
+std::string headlineTable(const std::vector<Json>& runs);  // times and errors beside others'
+std::string samplesTable(const std::vector<Json>& runs);   // time, error and memory by samples
 
 }  // namespace pellucid::bench

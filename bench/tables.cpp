@@ -1,7 +1,7 @@
 // Prints the documentation's tables of measured times from the results of a run, or checks or rewrites them
 // in a file:
 //   pellucid_bench_tables RESULTS.json[,RESULTS.json...] TABLE [--check | --update FILE]
-// The first of several files that has what the table shows counts; headline and qualities join two of them.
+// The first of several files that has what the table shows counts; headline and samples join two of them.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -44,14 +44,12 @@ std::string measured(const Json& results) {
   const char* const diffusion = "diffusion; error: from brute force";
   const char* const gather = "gather, added to the frame; error: from all texels";
   const Row rows[] = {
-      {"whole frame", module, "whole frame"},
-      {"whole frame, quality 0", "module, quality 0", "whole frame"},
-      {"whole frame, radii not known, as through a perspective camera", "module, radii not known",
+      {"whole frame, 0 samples", module, "whole frame"},
+      {"the same, radii not known, as through a perspective camera", "module, radii not known",
        "whole frame"},
-      {"whole frame, a quarter covered", "module, 25 % covered", "whole frame"},
+      {"the same, a quarter covered", "module, 25 % covered", "whole frame"},
       {"fused translucency dispatch alone", "fused dispatch", "1 lights, 1 maps"},
-      {"diffusion alone, quality 0", diffusion, "Pellucid, quality 0"},
-      {"quality 1", diffusion, "Pellucid, quality 1"},
+      {"diffusion alone", diffusion, "Pellucid"},
       {"Separable (Jimenez et al. 2015), 11 taps", diffusion, "Separable 2015, 11 taps"},
       {"Gaussian sum (d'Eon & Luebke 2007, Jimenez et al. 2009)", diffusion, "Gaussian sum 2009, 6 x 7"},
       {"Burley disk (Golubev 2018), 20 samples", diffusion, "Burley disk 2018, 20 samples"},
@@ -131,7 +129,7 @@ constexpr Table kTables[] = {{"measured", ofFirst<measured>},
                              {"truth", ofFirst<truthTable>},
                              {"engine", ofFirst<engineTable>},
                              {"headline", headlineTable},
-                             {"qualities", qualitiesTable}};
+                             {"samples", samplesTable}};
 
 constexpr int kNothingMeasured = 77;  // CTest's word for a test that was skipped
 

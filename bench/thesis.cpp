@@ -12,6 +12,7 @@
 #include "common/error.h"
 #include "frame_files.h"
 #include "measure.h"
+#include "names.h"
 #include "raster/draw.h"
 #include "raster/framing.h"
 #include "raster/front.h"
@@ -44,7 +45,7 @@ struct Passes {
   double front = 0, back = 0, thickness = 0, transmittance = 0, both = 0, addition = 0;
   double backFace = 0;           // the back-face pass that computes what comes through
   double fused = 0;              // the module's one dispatch
-  double module[3] = {0, 0, 0};  // its whole frames
+  double module[3] = {0, 0, 0};  // its whole frames, by kSamples
 };
 
 struct Row {
@@ -192,9 +193,9 @@ private:
     const auto frame = [&](const ReplaySettings& settings) {
       return std::make_shared<BenchFrame>(device_, context_, capture, materials, settings, inputs);
     };
-    for (std::uint32_t q = 0; q < 3; ++q) {
-      whole.quality = q;
-      sum.module[q] += time(moduleVariant(frame(whole), "").record);
+    for (std::size_t i = 0; i < std::size(kSamples); ++i) {
+      whole.translucency.gatherSamples = kSamples[i];
+      sum.module[i] += time(moduleVariant(frame(whole), "").record);
     }
     const auto thesis = std::make_shared<BenchFrame>(device_, context_, capture, linear(materials),
                                                      translucencyAlone(), inputs);
@@ -312,9 +313,9 @@ std::vector<Row> rowsOf(const Passes& p, const TurntableShares& s) {
       {"5.3", 7, "all", diffused + s.both[0] * alternate + s.necessary * add, 296},
       {"more", 0, "2 + transmittance in the back-face pass", diffused + p.backFace + add, 0},
       {"more", 0, "2 + back depth, one dispatch of Pellucid", diffused + p.back + p.fused, 0},
-      {"more", 0, "1 + Pellucid, quality 0", lit + p.module[0], 0},
-      {"more", 0, "1 + Pellucid, quality 1", lit + p.module[1], 0},
-      {"more", 0, "1 + Pellucid, quality 2", lit + p.module[2], 0},
+      {"more", 0, "1 + " + nameOf(kSamples[0]), lit + p.module[0], 0},
+      {"more", 0, "1 + " + nameOf(kSamples[1]), lit + p.module[1], 0},
+      {"more", 0, "1 + " + nameOf(kSamples[2]), lit + p.module[2], 0},
   };
 }
 

@@ -57,7 +57,7 @@ picture "5.2 a quarter of it" scene 1 "${camera[@]}" --set filter=.25,.25,.25
 "$pellucid" truth "${source[@]}" --size "$size" --seconds 20 --overwrite -o "$folder/truth.exr" >/dev/null 2>&1
 picture "5.3 thesis" scene 1 "${camera[@]}"
 images+=("$folder/physical.exr") labels+=("5.3 Pellucid") exposures+=(1)
-"$pellucid" replay "$folder/scene.exr" --repeat 0 --set quality=2 -o "$folder/physical.exr" >/dev/null
+"$pellucid" replay "$folder/scene.exr" --repeat 0 --set gather=16 -o "$folder/physical.exr" >/dev/null
 images+=("$folder/truth.exr@truth") labels+=("5.3 path traced, 20 s") exposures+=(1)
 
 IFS=,

@@ -1,4 +1,4 @@
-// Weights of the pyramid's elements that come nearest to a Gaussian; docs/diffusion.md, "Fitted tables".
+// Weights of the pyramid's elements that come nearest to a Gaussian; docs/how-it-works.md, "Fitted tables".
 #pragma once
 
 #include <Eigen/Dense>

@@ -14,7 +14,7 @@ namespace {
 
 static_assert(kTables == pellucid::kElements);
 
-// Measured on the checker of docs/diffusion.md at 2, 8, 32, 128 pixels: .001 gives .0052 .0050 .0076 .0079,
+// Measured on the checker of pellucid_diffusion_error at 2, 8, 32, 128 pixels: .001 gives .0052 .0050 .0076 .0079,
 // .01 .0046 .0050 .0075 .0076, .05 .0046 .0057 .0081 .0082. Without it narrow Gaussians have negative weights
 // of level 2, which the module cannot use.
 constexpr double kPenalty = 0.015;
@@ -114,7 +114,7 @@ std::string textOf(const EnergyTable& table) {
   std::string text =
       "// Cumulative weights of the pyramid's elements over the deviation of a Gaussian, fitted and written "
       "by `./run fit`;\n"
-      "// docs/diffusion.md, \"Fitted tables\". Each row: log2 of the first deviation, and samples "
+      "// docs/how-it-works.md, \"Fitted tables\". Each row: log2 of the first deviation, and samples "
       "EnergyFrom::kStep apart.\n"
       "#pragma once\n\n"
       "namespace pellucid {\n\n"

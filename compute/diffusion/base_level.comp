@@ -1,49 +1,180 @@
-// Makes the base level of the diffusion pyramid, level 1, from the pixels, and copies these where the plan asks for it.
+// Makes level 1 of the pyramid from the pixels, a block of 64 x 64 a group, and finds which cells of the block hold material and
+// how far away their surfaces are. It copies the pixels where the plan asks for it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
-#define FOUR_PIXELS
-#include "frame/tile.glsl"
-#include "frame/normal_image.glsl"
-#include "diffusion/pyramid.glsl"
-#include "diffusion/quad.glsl"
+#define GROUP_SIDE PELLUCID_BLOCK_GROUP
+#include "diffusion/texel.glsl"
 
-const int kTile = TILE_SIDE, kQuads = kTile / 2; // of a row
-shared uvec2 tileColors[kTile * kTile]; // colors and materials, by packHalves
-shared float tileDepths[kTile * kTile];
+layout(set = 0, binding = PELLUCID_BINDING_NORMAL) uniform texture2D normalImage;
+layout(set = 0, binding = PELLUCID_BINDING_LISTS) buffer Lists {
+  BlockLists lists;
+  uint entryGroups[];
+};
 
-void main() {
-  // The first invocations do a quad each.
-  bool hasQuad = gl_LocalInvocationIndex < uint(kQuads * kQuads);
-  ivec2 local = ivec2(gl_LocalInvocationIndex % uint(kQuads), gl_LocalInvocationIndex / uint(kQuads));
-  ivec2 tile = evenTile(), quad = (tile >> 1) + local;
-  uint material[kPixels];
-  float depth[kPixels];
-  vec4 source[kPixels];
+const int kQuads = PELLUCID_BLOCK / 2 / GROUP_SIDE; // a side, of an invocation
+
+shared uint cells[2];          // bits of rows 0 to 3 and 4 to 7
+shared uint nearest, farthest; // bits of planar distances, which are above 0
+
+// The invocation's i-th quad of the block, so that neighbors do neighbors.
+ivec2 quadInBlock(int i) { return ivec2(gl_LocalInvocationID.xy) + GROUP_SIDE * ivec2(i % kQuads, i / kQuads); }
+ivec2 cellOfQuad(ivec2 quad) { return quad >> (kCellShift - 1); }
+
+// Outward normal of any length, in the image's space; 0: none.
+vec3 normalAt(ivec2 pixel) {
+  return hasFlag(PELLUCID_FLAG_NORMAL) ? decodeNormal(texelFetch(normalImage, pixel, 0)) : vec3(0.0);
+}
+
+// ---- A texel from its quad: four pixels, rows first, packed by packHalves(color, material); depth <= 0: none
+
+// The pixel whose normal stands for a quad that is one surface: any of the four, by turns.
+ivec2 pixelOfQuad(ivec2 quad) { return 2 * quad + (quad.yx & 1); }
+
+// Cosine, of 87 degrees: surfaces closer to edge-on show no more area than one there.
+const float kLeastCosine = 0.05;
+
+// Projected-area weight of a pixel with a normal of any length > 0; 0: it has none.
+float areaOf(vec2 pixel, vec3 normal) {
+  // The ray is in the normal's space.
+  vec3 ray = frame.normalRay[0].xyz + pixel.x * frame.normalRay[1].xyz + pixel.y * frame.normalRay[2].xyz;
+  float squared = dot(normal, normal), along = dot(normal, ray);
+  // The comparison is false for NaN, too.
+  return squared > 1.0e-8 ? inversesqrt(max(along * along * (1.0 / squared), kLeastCosine * kLeastCosine)) : 0.0;
+}
+
+// Projected-area weight of a quad that is one surface, as its depths say.
+float areaOfQuad(ivec2 quad, float depth[4]) {
+  vec2 rise = 0.5 * vec2(depth[1] - depth[0] + depth[3] - depth[2], depth[2] - depth[0] + depth[3] - depth[1]);
+  return areaOf(1u, quad, rise * inversesqrt(max(squaredPixelSize(frame.camera, depth[0]), vec2(1.0e-30))));
+}
+
+// True where the four pixels are one surface.
+bool isWholeQuad(uvec2 packed[4], float depth[4]) {
+  uint first = packed[0].y, different = (first ^ packed[1].y) | (first ^ packed[2].y) | (first ^ packed[3].y);
+  float nearest = min(min(depth[0], depth[1]), min(depth[2], depth[3]));
+  float farthest = max(max(depth[0], depth[1]), max(depth[2], depth[3]));
+  bool one = nearest > 0.0 && first >> 16 != 0u && different >> 16 == 0u;
+  vec2 sides = squaredPixelSize(frame.camera, nearest);
+  float span = farthest - nearest;
+  return one && span * span < 64.0 * min(sides.x, sides.y);
+}
+
+uvec4 wholeQuadTexel(uvec2 packed[4], float depth[4], float area) {
+  vec3 color = unpackHalves(packed[0]) + unpackHalves(packed[1]) + unpackHalves(packed[2]) + unpackHalves(packed[3]);
+  float sum = depth[0] + depth[1] + depth[2] + depth[3];
+  return packTexel(Texel(0.25 * color, area, packed[0].y >> 16, 0.25 * sum, vec2(0.0)), kPlane);
+}
+
+// The texel takes the nearest surface and what lies behind it by no more than its own slope over a pixel, or within what a
+// surface 83 degrees from facing the camera has.
+uvec4 edgeQuadTexel(ivec2 quad, uvec2 packed[4], float depth[4]) {
+  vec4 area;
+  for (int i = 0; i < 4; ++i) {
+    ivec2 pixel = withinRect(2 * quad + ivec2(i & 1, i >> 1));
+    area[i] = areaOf(vec2(pixel), normalAt(pixel));
+  }
+  uint nearestMaterial = 0u, any = 0u;
+  float nearest = kNoDepth;
+  for (int i = 0; i < 4; ++i) {
+    uint material = packed[i].y >> 16;
+    any = max(any, material);
+    if (material == 0u || !(depth[i] > 0.0) || depth[i] >= nearest) continue;
+    nearest = depth[i];
+    nearestMaterial = material;
+  }
+  if (nearestMaterial == 0u) return uvec4(0u, any << 24, 0u, 0u);
+  vec2 sides = squaredPixelSize(frame.camera, nearest);
+  float side = sqrt(min(sides.x, sides.y));
+  vec3 mean = vec3(0.0);
+  float sum = 0.0, weights = 0.0, areas = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    bool counts = depth[i] > 0.0 && packed[i].y >> 16 == nearestMaterial &&
+                  depth[i] - nearest <= side * max(8.0, area[i]);
+    // Across an edge depths say nothing of slopes.
+    float w = counts ? 1.0 : 0.0, a = w * (area[i] > 0.0 ? area[i] : 1.0);
+    mean += a * unpackHalves(packed[i]);
+    sum += counts ? depth[i] : 0.0;
+    weights += w;
+    areas += a;
+  }
+  // The nearest counts, so weights >= 1; areas are positive.
+  return packTexel(Texel(mean / areas, 0.25 * areas, nearestMaterial, sum / weights, vec2(0.0)), 0u);
+}
+
+// `normal`: of pixelOfQuad(quad).
+uvec4 texelOfQuad(ivec2 quad, uvec2 packed[4], float depth[4], vec3 normal) {
+  // An empty quad looks nothing up.
+  if ((packed[0].y | packed[1].y | packed[2].y | packed[3].y) >> 16 == 0u) return uvec4(0u);
+  if (!isWholeQuad(packed, depth)) return edgeQuadTexel(quad, packed, depth);
+  float area = areaOf(vec2(pixelOfQuad(quad)), normal);
+  if (area == 0.0) area = areaOfQuad(quad, depth);
+  return wholeQuadTexel(packed, depth, area);
+}
+
+// Makes a quad's texel of level 1. `materials`: of its pixels, a byte each.
+void writeQuad(ivec2 quad, uint materials) {
+  uvec2 packed[4];
+  float depth[4];
+  vec4 source[4];
   // All loads come before the first use, so that their latencies overlap.
-  vec3 normal = hasQuad ? normalAt(withinRect(pixelOfQuad(quad))) : vec3(0.0);
-  for (int i = 0; i < kPixels; ++i) {
-    ivec2 pixel = tile + pixelInTile(i), at = withinRect(pixel);
-    material[i] = at == pixel ? materialAt(at) : 0u;
+  vec3 normal = normalAt(withinRect(pixelOfQuad(quad)));
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    ivec2 at = withinRect(2 * quad + ivec2(i & 1, i >> 1));
     depth[i] = frontDistance(at);
     source[i] = texelFetch(sourceImage, at, 0);
   }
-  for (int i = 0; i < kPixels; ++i) {
+  float least = kNoDepth, most = 0.0;
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    uint material = materials >> 8 * i & 255u;
     vec3 color = sanitize(source[i].rgb);
-    ivec2 inTile = pixelInTile(i);
-    if (pass.value.x != 0u && material[i] != 0u)
-      imageStore(destinationImage, tile + inTile, vec4(asStored(color), source[i].a));
-    tileColors[inTile.y * kTile + inTile.x] = packHalves(roundToHalf(color), material[i]);
-    tileDepths[inTile.y * kTile + inTile.x] = depth[i];
+    packed[i] = packHalves(roundToHalf(color), material);
+    if (material == 0u) continue;
+    if (pass.value.x != 0u) imageStore(destinationImage, 2 * quad + ivec2(i & 1, i >> 1), vec4(asStored(color), source[i].a));
+    if (!(depth[i] > 0.0)) continue;
+    least = min(least, depth[i]);
+    most = max(most, depth[i]);
+  }
+  writeLevel(1u, quad, texelOfQuad(quad, packed, depth, normal));
+  // Read first: most invocations have nothing to add. An old value costs an atomic more and changes nothing.
+  if (!(most > 0.0)) return;
+  if (floatBitsToUint(least) < nearest) atomicMin(nearest, floatBitsToUint(least));
+  if (floatBitsToUint(most) > farthest) atomicMax(farthest, floatBitsToUint(most));
+}
+
+void main() {
+  uint block = gl_WorkGroupID.x, invocation = gl_LocalInvocationIndex;
+  ivec2 first = firstPixel(block) / 2; // quad
+  uint materials[kQuads * kQuads];
+  [[unroll]] for (int i = 0; i < kQuads * kQuads; ++i) {
+    materials[i] = 0u;
+    [[unroll]] for (int k = 0; k < 4; ++k) {
+      ivec2 pixel = 2 * (first + quadInBlock(i)) + ivec2(k & 1, k >> 1);
+      materials[i] |= (insideRect(pixel) ? materialAt(pixel) : 0u) << 8 * k;
+    }
+  }
+  if (invocation < 2u) cells[invocation] = 0u;
+  if (invocation == 0u) {
+    nearest = floatBitsToUint(kNoDepth);
+    farthest = 0u;
   }
   barrier();
-  if (!hasQuad || !contains(levelRect(1u), quad)) return;
-  float depths[4];
-  uvec2 packed[4];
-  for (int i = 0; i < 4; ++i) {
-    int at = (2 * local.y + (i >> 1)) * kTile + 2 * local.x + (i & 1);
-    packed[i] = tileColors[at];
-    depths[i] = tileDepths[at];
+  [[unroll]] for (int i = 0; i < kQuads * kQuads; ++i) {
+    ivec2 cell = cellOfQuad(quadInBlock(i));
+    if (materials[i] != 0u && (cells[cell.y >> 2] & cellBit(cell)) == 0u) atomicOr(cells[cell.y >> 2], cellBit(cell));
   }
-  writeLevel(1u, quad, texelOfQuad(quad, packed, depths, normal));
+  barrier();
+  [[unroll]] for (int i = 0; i < kQuads * kQuads; ++i) {
+    ivec2 cell = cellOfQuad(quadInBlock(i)), quad = first + quadInBlock(i);
+    if ((cells[cell.y >> 2] & cellBit(cell)) != 0u && contains(levelRect(1u), quad)) writeQuad(quad, materials[i]);
+  }
+  barrier();
+  if (invocation < 2u) writeWord(blockWord(block, kCellWord + invocation), cells[invocation]);
+  if (invocation == 2u) writeWord(blockWord(block, kNearestWord), nearest);
+  if (invocation == 3u) writeWord(blockWord(block, kFarthestWord), farthest);
+  // All lists become empty: a recording may run more than once.
+  if (block == 0u) {
+    if (invocation < uint(PELLUCID_LISTS)) lists.commands[invocation].x = 0u;
+    for (uint i = invocation; i < lists.maps.x * uint(PELLUCID_ENTRY_GROUP_WORDS); i += uint(GROUP_SIDE * GROUP_SIDE)) entryGroups[i] = 0u;
+  }
 }

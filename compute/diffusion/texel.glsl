@@ -1,7 +1,14 @@
-// Texels of the diffusion pyramid. A texel of level l covers 2^l x 2^l pixels of the image, not of the rect, and stands
-// for one surface.
+// Texels of the pyramid of mip levels that the diffusion works on. A texel of level l covers 2^l x 2^l pixels of the image, not
+// of the rect, and stands for one surface.
+#ifndef PELLUCID_TEXEL_GLSL
+#define PELLUCID_TEXEL_GLSL
+
+#include "frame/blocks.glsl"
 #include "lib/halves.glsl"
 #include "shared/pellucid_filters.h"
+
+layout(set = 0, binding = PELLUCID_BINDING_PYRAMID) uniform utexture2D pyramidImage; // levels that the pass reads
+layout(set = 0, binding = PELLUCID_BINDING_LEVELS, rgba32ui) uniform writeonly uimage2D levelsDestination;
 
 struct Texel {
   vec3 color;    // mean over the surface's area
@@ -52,12 +59,28 @@ bool hasSurface(uvec4 texel) { return (texel.y & 0x7F0000u) != 0u; }
 bool isPlane(uvec4 texel) { return (texel.y & kPlane) != 0u; }
 uint materialBits(uvec4 texel) { return texel.y >> 24; }
 
-// Texels [xy, zw) of a level: those that the rect touches and, from level 2 on, a border of one, which keeps what
-// the filter carries over the edge. No others are written or read.
-ivec4 levelRect(uint level) {
+// Texels [xy, zw) of a level that the rect touches.
+ivec4 touchedTexels(uint level) {
   ivec4 rect = ivec4(frame.rect);
-  int l = int(level), border = level > 1u ? 1 : 0;
-  return ivec4((rect.xy >> l) - border, ((rect.zw - 1) >> l) + 1 + border);
+  int l = int(level);
+  return ivec4(rect.xy >> l, ((rect.zw - 1) >> l) + 1);
+}
+
+// From level 2 on a border of one texel keeps what the filter carries over the rect's edge. No other texels are written or read.
+ivec4 levelRect(uint level) { return touchedTexels(level) + (level > 1u ? ivec4(-1, -1, 1, 1) : ivec4(0)); }
+
+ivec2 inAtlas(uint level, ivec2 texel) { return frame.level[level].xy + texel; }
+
+void writeLevel(uint level, ivec2 texel, uvec4 value) { imageStore(levelsDestination, inAtlas(level, texel), value); }
+
+// A texel of the level that pyramidImage holds, nothing where none was written: level 1 is written where cells hold material, and
+// levels 2 and 3 in blocks with material and those beside.
+// `whole`: all around has been written.
+uvec4 writtenTexel(uint level, ivec2 texel, bool whole) {
+  if (!contains(levelRect(level), texel)) return uvec4(0u);
+  if (level == 1u && !whole && !cellHoldsMaterial(texel << 1)) return uvec4(0u);
+  if ((level == 2u || level == 3u) && !whole && !isNearMaterial(texel << level)) return uvec4(0u);
+  return texelFetch(pyramidImage, inAtlas(level, texel), 0);
 }
 
 // Scene units that a texel of the level covers in x and y at planar distance p, facing the camera.
@@ -84,7 +107,7 @@ float tangentPlaneWeight(float off, float along, float inverseSpread2, vec2 fall
 const float kPlaneOffset = 0.1;
 
 // Falloffs of downsampling, of the stretch and the coarser levels of upsampling, and of the last pass. They have the least
-// errors on the scenes and captures of docs/diffusion.md of those that let no more light over a gap than the profile does.
+// errors on the scenes of `./run sweep` of those that let no more light over a gap than the profile does.
 const vec2 kDownsampleFalloff = vec2(PELLUCID_DOWNSAMPLE_FALLOFF), kStretchFalloff = vec2(PELLUCID_STRETCH_FALLOFF),
            kUpsampleFalloff = vec2(PELLUCID_UPSAMPLE_FALLOFF), kPixelFalloff = vec2(PELLUCID_PIXEL_FALLOFF);
 
@@ -98,3 +121,28 @@ float areaOf(uint level, ivec2 texel, vec2 slope) {
   float facing = 1.0 + dot(slope, ray);
   return min(sqrt(dot(slope, slope) + facing * facing), kMostArea);
 }
+
+// Level 2 after upsampling, with all coarser levels in it, lies in the image of level 1: kPlane says there that all around the
+// texel lies on its plane, too. Another texel holds the shares of the pixels under it and in w its kernel coverage, by which
+// planes' shares have been weighted.
+ivec2 upsampledPlace(ivec2 texel) { return frame.level[0].xy + texel; }
+ivec2 sharesPlace(ivec2 texel) { return frame.level[0].zw + texel; }
+
+// Shares of a pixel on the surface of a texel: of all but level 2 and coarser ones, and of that the part of the fine filter. In halves, 1 is exact, and so is next to nothing.
+struct PixelShares {
+  vec3 rest, fine;
+};
+
+// The part of the fine filter at which the pixel itself counts 0, less what 8 bits round: 1 - f + f w^2 = 0, w of its own weight.
+const float kMostFine = 1.0 / (1.0 - PELLUCID_FINE_OWN * PELLUCID_FINE_OWN) - 0.003;
+
+uvec3 packShares(PixelShares s) {
+  uvec3 fine = uvec3(s.fine * (255.0 / kMostFine) + 0.5);
+  return uvec3(packHalves(s.rest, fine.r | fine.g << 8), fine.b);
+}
+
+PixelShares unpackShares(uvec3 u) {
+  return PixelShares(unpackHalves(u.xy), vec3((u.y >> 16) & 255u, u.y >> 24, u.z & 255u) * (kMostFine / 255.0));
+}
+
+#endif

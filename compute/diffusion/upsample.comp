@@ -1,61 +1,193 @@
-// Computes R_l = (1 - s) E_l + s R_(l+1), s the coarser levels' share of the profile, from the coarsest level of the pyramid
-// to level 2, and the shares of level 2's pixels. A group makes 32 x 16 texels of level 2 and, before them, what they need of
-// each coarser level. It makes levels 6 and 7 itself, so that no dispatch of few texels holds up the others.
+// Computes R_l = (1 - s) E_l + s R_(l+1), s the coarser levels' share of the profile, from the coarsest level of the pyramid to
+// level 2, and the shares of level 2's pixels. A group makes the 16 x 16 texels of level 2 of a block and, before them, what
+// they need of each coarser level.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
-#define GROUP_SIDE PELLUCID_UPSAMPLE_GROUP
-#include "diffusion/upsampled.glsl"
-#include "diffusion/level_filter.glsl"
-#include "diffusion/last_levels.glsl"
-#include "diffusion/level_2.glsl"
+#define GROUP_SIDE PELLUCID_BLOCK_GROUP
+#include "diffusion/profile.glsl"
+
+layout(set = 0, binding = PELLUCID_BINDING_COARSER_LEVELS) uniform utexture2D coarserLevelsImage; // 4 and 5; pyramidImage has all others
+
+uvec4 levelTexel(uint level, ivec2 texel) {
+  if (level != 4u && level != 5u) return writtenTexel(level, texel, false);
+  return contains(levelRect(level), texel) ? texelFetch(coarserLevelsImage, inAtlas(level, texel), 0) : uvec4(0u);
+}
+
+// ---- Parts of coarser levels that the group holds, whose texels have been upsampled: color and material as packed, depth and, in
+// place of the slope, the kernel coverage of each channel
+
+struct Window {
+  ivec2 corner; // first texel
+  int columns;  // texels, and as many rows
+  int first;    // in upsampled[]
+};
+
+const int kUpsampled = 100 + 36 + 16 + 9 + 9;
+shared uvec4 upsampled[kUpsampled];
+
+// `k`: the block. A texel takes the two nearest coarser ones along each axis.
+Window windowOf(uint level, ivec2 k) {
+  if (level == 3u) return Window(8 * k - 1, 10, 0);
+  if (level == 4u) return Window(4 * k - 1, 6, 100);
+  if (level == 5u) return Window(2 * k - 1, 4, 136);
+  if (level == 6u) return Window(k - 1, 3, 152);
+  return Window((k >> 1) - 1, 3, 161);
+}
+
+int indexOf(Window window, ivec2 texel) {
+  ivec2 at = texel - window.corner;
+  return window.first + at.y * window.columns + at.x;
+}
+
+// ---- A level's own part of the kernel, and the coarser levels under it
+
+const int kReach = 4; // of the stretch, texels
+
+// Foreshortened surfaces need a level's kernel longer along one axis: the filter is a 1-D Gaussian of what is missing, at the
+// texels nearest to the axis.
+vec4 stretched(ivec2 texel, uint level, Texel own, Foreshortening f) {
+  vec4 sum = own.area * vec4(own.color, 1.0);
+  float variance = (PELLUCID_LEVEL_VARIANCE_SCALE + PELLUCID_LEVEL_VARIANCE_REST * exp2(-2.0 * float(level))) * f.stretch;
+  bool alongX = abs(f.axis.x) >= abs(f.axis.y);
+  float dominant = alongX ? f.axis.x : f.axis.y; // its square is at least 1/2
+  float gradient = (alongX ? f.axis.y : f.axis.x) / dominant;
+  variance = min(variance * dominant * dominant, float(kReach));
+  if (own.area == 0.0 || variance < 0.02) return sum;
+  float weights = 1.0;
+  vec2 size = texelSize(own.depth, level);
+  float spread2 = inverseSpread(own.slope, size);
+  // The weight of the next texels. A narrow Gaussian at texels' centers alone has next to none of its variance; two taps
+  // beside one have all of it, up to where both are alike.
+  float next = max(exp(-0.5 / variance), min(0.5 * variance / (1.0 - min(variance, 0.5)), 0.17));
+  int reach = min(int(ceil(3.0 * sqrt(variance))), kReach); // three standard deviations
+  for (int i = 1; i <= reach; ++i) {
+    float weight = pow(next, float(i * i));
+    int across = int(floor(gradient * float(i) + 0.5));
+    ivec2 offset = alongX ? ivec2(i, across) : ivec2(across, i);
+    // Both sides are looked up at once, so that their latencies overlap.
+    uvec4 bits[2];
+    [[unroll]] for (int side = 0; side < 2; ++side) {
+      ivec2 at = texel + (1 - 2 * side) * offset;
+      weights += weight;
+      bits[side] = levelTexel(level, at);
+    }
+    [[unroll]] for (int side = 0; side < 2; ++side) {
+      Texel t = unpackTexel(bits[side]);
+      float along = dot(own.slope, vec2((1 - 2 * side) * offset) * size);
+      float w = weight * t.area * tangentPlaneWeight(t.depth - own.depth - along, along, spread2, kStretchFalloff);
+      sum += (t.area != 0.0 && t.material == own.material ? w : 0.0) * vec4(t.color, 1.0);
+    }
+  }
+  return sum / weights;
+}
+
+// A texel's own level, without the coarser ones.
+struct Own {
+  Texel texel;
+  vec4 here;  // the level's own part, times its kernel coverage, which is in a
+  vec3 share; // of the coarser levels
+  Foreshortening foreshortening;
+};
+
+// The function has no branches, so that the invocation waits for memory once.
+Own ownPart(uint level, ivec2 texel, uvec4 bits) {
+  Own own;
+  own.texel = unpackTexel(bits);
+  Foreshortening f = foreshortening(texel, level, own.texel.depth, own.texel.slope);
+  // A plane fills all of its kernel, however its area was rounded.
+  float area = isPlane(bits) ? own.texel.area : areaOf(level, texel, own.texel.slope);
+  own.here = stretched(texel, level, own.texel, f) / area;
+  // Material 0 looks up what it does not use.
+  uint m = max(own.texel.material, 1u) - 1u;
+  own.share = coarserShare(m, level, shareEntry(m, f.lengthMm));
+  own.foreshortening = f;
+  return own;
+}
+
+struct Level {
+  vec3 color, coverage; // kernel coverage of each channel
+};
+
+uvec4 packLevel(Level r, uvec4 bits) {
+  return uvec4(packColor(r.color, bits.y >> 16), bits.z, packCoverage(r.coverage));
+}
+
+Level alone(Own own) {
+  return Level(own.here.a > 0.0 ? own.here.rgb / own.here.a : own.texel.color, vec3(own.here.a));
+}
+
+// `window`: of the coarser level, which has been upsampled.
+Level withCoarser(Own own, uint level, ivec2 texel, Window window) {
+  // The refinement, of the four nearest.
+  const float kNear = PELLUCID_REFINEMENT_NEAR, kFar = PELLUCID_REFINEMENT_FAR;
+  ivec2 nearest = texel >> 1, toward = 2 * (texel & 1) - 1;
+  vec2 size = texelSize(own.texel.depth, level + 1u);
+  float spread2 = inverseSpread(own.texel.slope, size);
+  vec3 coarser = vec3(0.0), found = vec3(0.0);
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    ivec2 at = nearest + toward * ivec2(i & 1, i >> 1);
+    uvec4 theirs = upsampled[indexOf(window, at)];
+    vec2 off = vec2(at) + 0.5 - 0.5 * (vec2(texel) + 0.5);
+    float w = (i == 0 ? kNear * kNear : i == 3 ? kFar * kFar : kNear * kFar) / kCoverageOne;
+    float along = dot(own.texel.slope, off * size);
+    w *= tangentPlaneWeight(uintBitsToFloat(theirs.z) - own.texel.depth - along, along, spread2, kUpsampleFalloff);
+    w = materialBits(theirs) == own.texel.material ? w : 0.0;
+    vec3 coverage = w * unpackCoverage(theirs.w);
+    coarser += coverage * unpackHalves(theirs.xy);
+    found += coverage;
+  }
+  // Coverage weights both parts, which renormalizes at silhouettes and borders.
+  vec3 coverage = (1.0 - own.share) * own.here.a + own.share * found;
+  vec3 here = (1.0 - own.share) * own.here.rgb, light = here + own.share * coarser;
+  // The level's own color stands in for a channel that has nothing here: the finer level weights it with 0.
+  vec3 color = mix(own.texel.color, light / max(coverage, vec3(1.0e-6)), greaterThan(coverage, vec3(1.0e-6)));
+  return Level(color, coverage);
+}
+
+// ---- Level 2
+
+void writeUpsampled(ivec2 texel, uvec4 color, uvec4 shares) {
+  imageStore(levelsDestination, upsampledPlace(texel), color);
+  imageStore(levelsDestination, sharesPlace(texel), shares);
+}
+
+// `bits`: the texel of the pyramid; `k`: the block.
+void upsampleFine(ivec2 texel, ivec2 k, uvec4 bits) {
+  if (!contains(levelRect(2u), texel)) return;
+  if (!hasSurface(bits)) {
+    writeUpsampled(texel, uvec4(0u, bits.y & 0xFFFF0000u, 0u, 0u), uvec4(0u));
+    return;
+  }
+  Own own = ownPart(2u, texel, bits);
+  Level r = withCoarser(own, 2u, texel, windowOf(3u, k));
+  uint upper = bits.y >> 16 & ~(kPlane >> 16);
+  PixelShares share = pixelShares(own.texel.material - 1u, own.foreshortening);
+  if ((bits.x & kFlat) != 0u) {
+    upper |= kPlane >> 16;
+    share.rest /= max(share.rest + (1.0 - share.rest) * r.coverage, vec3(1.0e-6)); // a small plane has not all of the kernel
+  }
+  writeUpsampled(texel, uvec4(packColor(r.color, upper), bits.zw), uvec4(packShares(share), packCoverage(r.coverage)));
+}
 
 void main() {
   int invocation = int(gl_LocalInvocationIndex);
-  uint coarsest = pass.value.x;
-  // An invocation does two texels of level 2 and, before them, one of levels 3 to 6. The first ones have level 7, too.
-  ivec2 k = (((levelRect(2u).xy + 1) >> ivec2(5, 4)) + ivec2(workGroup(PELLUCID_LIST_UPSAMPLE))) * ivec2(2, 1);
-  ivec2 fine = 16 * k - 1 + ivec2(gl_LocalInvocationID.xy), nextFine = fine + ivec2(PELLUCID_UPSAMPLE_GROUP, 0);
-  uint level = 3u + uint(invocation >= 153) + uint(invocation >= 213) + uint(invocation >= 237);
-  Window window = windowOf(level, k), last = windowOf(7u, k);
-  bool within = invocation < last.first, hasLast = last.first + invocation < kUpsampled;
-  ivec2 texel = texelOf(window, invocation - window.first), lastTexel = texelOf(last, invocation);
-  bool inside = level <= coarsest && within && contains(levelRect(level), texel);
-  bool lastInside = coarsest == 7u && hasLast && contains(levelRect(7u), lastTexel);
-  if (invocation == 0) needsMade = 0u;
+  uint coarsest = pass.value.x, level = 3u + uint(invocation >= 100) + uint(invocation >= 136) + uint(invocation >= 152) + uint(invocation >= 161);
+  ivec2 k = firstPixel(blockOf(listedBlock(nearList()))) >> kBlockShift, fine = 16 * k + ivec2(gl_LocalInvocationID.xy);
+  // An invocation does a texel of level 2 and, before it, one of a coarser level.
+  Window window = windowOf(level, k);
+  int place = invocation - window.first;
+  ivec2 texel = window.corner + ivec2(place % window.columns, place / window.columns);
+  bool inside = level <= coarsest && invocation < kUpsampled;
   // All loads come before the first use.
-  uvec4 bits = inside && level <= 5u ? writtenTexel(level, texel) : uvec4(0u), lastBits = uvec4(0u);
-  uvec4 fineBits = contains(levelRect(2u), fine) ? writtenTexel(2u, fine) : uvec4(0u);
-  uvec4 nextBits = contains(levelRect(2u), nextFine) ? writtenTexel(2u, nextFine) : uvec4(0u);
-  barrier();
-  if (coarsest == 7u && level == 5u && reachesBeyond(texel, bits)) needsMade = 1u; // whoever writes, writes this
-  barrier();
-  // One value for all invocations, as the barriers within need: none writes it after the last barrier.
-  if (needsMade != 0u) {
-    makeLevels(k, invocation);
-    if (inside && level == 6u) bits = texelAt(6u, texel, k);
-    if (lastInside) lastBits = texelAt(7u, lastTexel, k);
-  } else {
-    coarsest = min(coarsest, 5u);
-  }
-  Foreshortening unused;
-  if (coarsest == 7u && hasLast) {
-    Own own = ownPart(7u, lastTexel, k, lastBits, unused);
-    upsampled[last.first + invocation] = own.texel.area > 0.0 ? packLevel(alone(own), lastBits) : uvec4(0u);
-  }
-  Own own = ownPart(level, texel, k, bits, unused);
-  for (uint l = min(coarsest, 6u); l > 2u; --l) {
-    barrier();
-    if (level == l && within) {
+  uvec4 bits = inside ? levelTexel(level, texel) : uvec4(0u), fineBits = levelTexel(2u, fine);
+  Own own = ownPart(level, texel, bits);
+  for (uint l = coarsest; l > 2u; --l) {
+    if (level == l && invocation < kUpsampled) {
       Level r = l == coarsest ? alone(own) : withCoarser(own, level, texel, windowOf(level + 1u, k));
       upsampled[invocation] = own.texel.area > 0.0 ? packLevel(r, bits) : uvec4(0u);
     }
+    barrier();
   }
-  barrier();
-  // The loop runs once for each texel of level 2: both in a row are a third more code and no faster.
-  for (int i = 0; i < 2; ++i) {
-    upsampleFine(fine, k, fineBits);
-    fine = nextFine;
-    fineBits = nextBits;
-  }
+  upsampleFine(fine, k, fineBits);
 }

@@ -2,6 +2,7 @@
 #ifndef PELLUCID_CHORD_GLSL
 #define PELLUCID_CHORD_GLSL
 
+#include "frame/frame.glsl"
 #include "lib/thickness.glsl"
 
 // Planar distance of the back surface, -1 where there is none.

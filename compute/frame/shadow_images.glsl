@@ -3,6 +3,8 @@
 #ifndef PELLUCID_SHADOW_IMAGES_GLSL
 #define PELLUCID_SHADOW_IMAGES_GLSL
 
+#include "shared/pellucid_shared.h"
+
 #ifdef PELLUCID_SHADOW_ARRAY
 #define PELLUCID_SHADOW_TEXTURE texture2DArray
 #define PELLUCID_SHADOW_SLOT(image) ((image) & 0xFFu)

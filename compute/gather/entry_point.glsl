@@ -1,5 +1,9 @@
-// Entry points of the gather: what a sample needs to know of a texel of a shadow map, made once for all pixels, and means of
+// Entry points of light: the facts of a texel of a shadow map that a sample needs, made once for all pixels, and means of
 // 2x2 to 8x8 of them for samples that stand for a larger part of the map.
+#ifndef PELLUCID_ENTRY_POINT_GLSL
+#define PELLUCID_ENTRY_POINT_GLSL
+
+#include "frame/frame.glsl"
 #include "frame/light_tables.glsl"
 #include "lib/octahedral.glsl"
 
@@ -47,3 +51,5 @@ ivec2 entryPlace(ivec2 first, int level, ivec2 size) {
   ivec2 corner = level == 0 ? ivec2(0) : ivec2(size.x, size.y - (size.y >> (level - 1)));
   return corner + (first >> level);
 }
+
+#endif

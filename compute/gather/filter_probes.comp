@@ -1,31 +1,81 @@
-// Gather probes share what they found with those that lie near on the same side.
+// Probes share the light that they found with those that lie near on the same side. A group does 16 x 16 cells.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
 #define GROUP_SIDE PELLUCID_FILTER_GROUP
-#include "frame/work_group.glsl"
 #include "gather/probe.glsl"
-#include "gather/spatial_filter.glsl"
 
 layout(set = 0, binding = PELLUCID_BINDING_MATERIALS) readonly buffer Materials { MaterialConstants materials[]; };
 layout(set = 0, binding = PELLUCID_BINDING_ENTRY_POINTS) uniform utexture2D foundImage;
 layout(set = 0, binding = PELLUCID_BINDING_PROBES, rgba32ui) uniform writeonly uimage2D sharedImage;
 
-uvec4 probeAt(ivec2 cell, ivec4 cells) {
-  return contains(cells, cell) ? texelFetch(foundImage, cell, 0) : kNoProbe;
+const int kReach = 3; // cells, across and along together
+const int kSquare = 2 * kReach + 1, kRow = PELLUCID_FILTER_GROUP + 2 * kReach;
+const int kBorder = kRow * kRow - PELLUCID_FILTER_GROUP * PELLUCID_FILTER_GROUP;
+
+shared vec4 places[kRow * kRow];  // position; w: bits of the material, 0: nothing there
+shared uvec4 found[kRow * kRow];  // as probes have light; the normal in halves, in place of the probes' own
+shared uint someLight, someConvexity;
+
+// The cell's place in the shared arrays; `local`: the cell from the group's first one.
+int placeOf(ivec2 local) { return (local.y + kReach) * kRow + local.x + kReach; }
+
+void keepProbe(ivec2 local, ivec2 cell, int side, uvec4 bits) {
+  vec3 normal = normalOf(bits);
+  places[placeOf(local)] = vec4(viewPosition(cell, side, unpackProbe(bits)), uintBitsToFloat(bits.z & 0xFFu));
+  found[placeOf(local)] = uvec4(bits.x, (bits.y & 0xFFFFu) | packHalf2x16(vec2(0.0, normal.x)), packHalf2x16(normal.yz),
+                                bits.w);
 }
 
-void main() {
-  int side = int(pass.value.x), index = int(gl_LocalInvocationIndex);
-  ivec4 cells = cellsOf(frame.rect, side);
-  ivec2 local = ivec2(gl_LocalInvocationID.xy), first = cells.xy + ivec2(workGroup(PELLUCID_LIST_FILTER_PROBES)) * PELLUCID_FILTER_GROUP;
-  ivec2 cell = first + local, border = borderCell(index);
+// The i-th cell of the border: whole rows above and below come first, then the rest row by row.
+ivec2 borderCell(int i) {
+  bool whole = i < 2 * kReach * kRow;
+  if (!whole) i -= 2 * kReach * kRow;
+  int columns = whole ? kRow : 2 * kReach, across = i % columns, along = i / columns;
+  int skips = (whole ? along : across) < kReach ? 0 : PELLUCID_FILTER_GROUP;
+  return (whole ? ivec2(across, along + skips) : ivec2(across + skips, along + kReach)) - kReach;
+}
+
+// The probe `own` with its filtered light. `perSquare`: falloff by distance, per squared scene unit.
+uvec4 filtered(ivec2 local, uvec4 own, float perSquare) {
+  int center = placeOf(local);
+  vec3 place = places[center].xyz, normal = vec3(unpackHalf2x16(found[center].y).y, unpackHalf2x16(found[center].z));
+  float total = 0.0;
+  vec3 added = vec3(0.0), convexity = vec3(0.0);
+  [[unroll]] for (int i = 0; i < kSquare * kSquare; ++i) {
+    ivec2 away = ivec2(i % kSquare, i / kSquare) - kReach;
+    if (abs(away.x) + abs(away.y) > kReach) continue; // known when compiled
+    vec4 theirs = places[center + away.y * kRow + away.x];
+    uvec4 bits = found[center + away.y * kRow + away.x];
+    vec3 apart = theirs.xyz - place;
+    vec2 middle = unpackHalf2x16(bits.y);
+    float facing = max(dot(vec3(middle.y, unpackHalf2x16(bits.z)), normal), 0.0);
+    // The fourth power keeps what surfaces turn over from being evened out.
+    facing *= facing;
+    float weight = floatBitsToUint(theirs.w) == (own.z & 0xFFu) ? exp2(-dot(apart, apart) * perSquare) * facing * facing : 0.0;
+    added += weight * vec3(unpackHalf2x16(bits.x), middle.x);
+    if (someConvexity != 0u) convexity += weight * convexityOf(bits);
+    total += weight;
+  }
+  // The probe itself is among them.
+  return replaceLight(own, added / total, convexity / total);
+}
+
+// The probe of a cell; none where the cell's pixels have no material. `whole`: all around have one.
+uvec4 probeAt(ivec2 cell, int side, bool whole) {
+  bool holds = contains(cellsOf(frame.rect, side), cell) && (whole || cellHoldsMaterial(side * cell));
+  return holds ? texelFetch(foundImage, cell, 0) : kNoProbe;
+}
+
+// Filters the cells from `first` on, for all invocations, as they wait for each other.
+void filterCells(ivec2 first, int side, bool whole) {
+  int index = int(gl_LocalInvocationIndex);
+  ivec2 local = ivec2(gl_LocalInvocationID.xy), cell = first + local, border = borderCell(index);
   bool hasBorder = index < kBorder;
-  uvec4 own = probeAt(cell, cells), beside = kNoProbe;
-  if (hasBorder) beside = probeAt(first + border, cells);
+  uvec4 own = probeAt(cell, side, whole), beside = hasBorder ? probeAt(first + border, side, whole) : kNoProbe;
   if (index == 0) someLight = someConvexity = 0u;
   barrier();
-  if (hasLight(own) || hasLight(beside)) someLight = 1u;
+  if (hasLight(own) || hasLight(beside)) someLight = 1u; // whoever writes, writes this
   if (hasConvexity(own) || hasConvexity(beside)) someConvexity = 1u;
   barrier();
   bool shares = someLight != 0u;
@@ -34,12 +84,19 @@ void main() {
     if (hasBorder) keepProbe(border, first + border, side, beside);
   }
   barrier();
-  if (any(greaterThanEqual(cell, cells.zw))) return;
-  // Cells that no group of probes wrote hold anything, a material beyond the list, too. No pixel reads what becomes of them.
+  // A material of another frame's list has no constants.
   uint material = own.z & 0xFFu;
   if (shares && material != 0u && material <= frame.flags.y) {
     float mm = frame.camera.range.w;
     own = filtered(local, own, materials[material - 1u].gather.profile.w * mm * mm);
   }
-  imageStore(sharedImage, cell, own);
+  if (contains(cellsOf(frame.rect, side), cell)) imageStore(sharedImage, cell, own);
+}
+
+void main() {
+  int side = int(pass.value.x), pixels = side * PELLUCID_FILTER_GROUP;
+  uint word = listedBlock(materialList());
+  ivec2 part = partOfBlock(PELLUCID_BLOCK / pixels, ivec2(pixels));
+  // Alike in all invocations.
+  if (partHoldsMaterial(word, part >> kCellShift, ivec2(pixels >> kCellShift))) filterCells((firstPixel(blockOf(word)) + part) / side, side, isWhole(word));
 }

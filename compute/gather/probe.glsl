@@ -1,4 +1,8 @@
-// Gather probes as one pass leaves them for the next. Cells are aligned to the image, not to the rect.
+// Probes as one pass leaves them for the next. Each stands for a cell of 1, 2 or 4 pixels a side, aligned to the image.
+#ifndef PELLUCID_PROBE_GLSL
+#define PELLUCID_PROBE_GLSL
+
+#include "frame/blocks.glsl"
 #include "lib/halves.glsl"
 #include "lib/octahedral.glsl"
 
@@ -53,18 +57,6 @@ Probe unpackProbe(uvec4 bits) {
                int(bits.w >> 27));
 }
 
-// Added light and convexity alone, in halves.
-uvec3 packLight(vec3 added, vec3 convexity) {
-  return uvec3(packHalf2x16(added.rg), packHalf2x16(vec2(added.b, convexity.r)), packHalf2x16(convexity.gb));
-}
-
-// `bits`: by packLight.
-void addLight(uvec3 bits, float weight, inout vec3 added, inout vec3 convexity) {
-  vec2 middle = unpackHalf2x16(bits.y);
-  added += weight * vec3(unpackHalf2x16(bits.x), middle.x);
-  convexity += weight * vec3(middle.y, unpackHalf2x16(bits.z));
-}
-
 // Cells have 1, 2 or 4 pixels a side, so that a shift replaces divisions, which take as long as the rest.
 int shiftOf(int side) { return side >> 1; }
 
@@ -82,3 +74,5 @@ ivec4 cellsOf(uvec4 rect, int side) {
   int shift = shiftOf(side);
   return ivec4(ivec2(rect.xy) >> shift, ((ivec2(rect.zw) - 1) >> shift) + 1);
 }
+
+#endif

@@ -1,6 +1,120 @@
-// Light that one light brings to a probe, by samples of its entry points.
+// Light that one light brings to a probe, by samples of its entry points on rings around the probe.
+#ifndef PELLUCID_PROBE_LIGHT_GLSL
+#define PELLUCID_PROBE_LIGHT_GLSL
+
+#include "gather/entry_point.glsl"
 #include "lib/gather.glsl"
-#include "gather/rings.glsl"
+#include "lib/occluder.glsl"
+#include "lib/surface.glsl"
+
+layout(set = 0, binding = PELLUCID_BINDING_MATERIALS) readonly buffer Materials { MaterialConstants materials[]; };
+layout(set = 0, binding = PELLUCID_BINDING_ENTRY_POINTS) uniform utexture2D entriesImage;
+
+// ---- Rings around the probe, and the entry points that a light has for them
+
+bool directional(LightConstants light) { return light.meta.x == PELLUCID_SHADER_LIGHT_DIRECTIONAL; }
+
+// Place of a view-space point's entry in a map, and the point's depth.
+vec3 mapPoint(uint map, vec4 position) {
+  return vec3(dot(maps[map].column, position), dot(maps[map].row, position), dot(maps[map].depth, position));
+}
+
+// Floats keep outside what is far outside.
+bool isInMap(uint map, vec2 at) {
+  return all(greaterThanEqual(at, vec2(0.0))) && all(lessThan(at, vec2(maps[map].place.zw)));
+}
+
+uvec4 entryAt(uint map, ivec2 entry, int level) {
+  ivec2 size = ivec2(pass.value.z & 0xFFFFu, pass.value.z >> 16 & 0x7FFFu);
+  return texelFetch(entriesImage, entryPlace(maps[map].place.xy + entry, level, size), 0);
+}
+
+// Fetches the entry of a point of the map from a level or, where that has several surfaces, from the first. false: the map
+// does not contain the point. `off`: from the point to the middle of what the entry stands for, in entry points.
+bool fetchEntry(uint map, bool parallel, vec3 point, int level, out uvec4 bits, out vec2 off) {
+  bits = kNoEntry;
+  off = vec2(0.0);
+  if (!parallel && !(point.z > 0.0)) return false;
+  vec2 at = parallel ? point.xy : point.xy / point.z;
+  if (!isInMap(map, at)) return false;
+  bits = entryAt(map, ivec2(at), level);
+  if (bits == kSeveralSurfaces) {
+    level = 0;
+    bits = entryAt(map, ivec2(at), 0);
+  }
+  off = (vec2(ivec2(at) >> level) + 0.5) * float(1 << level) - at;
+  return true;
+}
+
+// Fetches from the first of the light's maps that contains the position.
+bool fetchEntry(LightConstants light, vec3 position, int level, out uint map, out vec3 point, out uvec4 bits,
+                out vec2 off) {
+  for (map = light.meta.y; map < light.meta.y + light.meta.z; ++map) {
+    point = mapPoint(map, vec4(position, 1.0));
+    if (fetchEntry(map, directional(light), point, level, bits, off)) return true;
+  }
+  bits = kNoEntry;
+  return false;
+}
+
+// How far the lit surface is from a point along its light ray: scene units, or a fraction of the way to the light.
+float distanceAhead(bool parallel, float depth, float own) { return parallel ? depth - own : 1.0 - depth / own; }
+
+// The rings around an axis through x; lengths in mm.
+struct GatherRings {
+  vec3 axis;
+  float t, axisCosine; // along the axis from x to the lit surface; of the axis with the light's ray
+  float entrySide;     // side of an entry point of the first level
+  float ahead;         // along the light's ray from x to the lit surface
+  float tolerance;     // how far a receiver's own exit may be off
+  float shadowed;      // 1: x lies beyond the exit of its own ray, with air before it, 0: it does not
+  uint map;            // contains x
+};
+
+const float kSteepestOwn = 4.0; // largest slope of the surface at x within an entry point: 76 degrees
+
+// An axis between the light's ray and the inward normal suits slabs, whose rings lie around the foot of the perpendicular.
+// false: no map contains x, so that no light comes through it.
+bool gatherRings(LightConstants light, Surface x, vec3 toLight, float distanceTo, float longest,
+                 out GatherRings rings) {
+  float mm = frame.camera.range.w;
+  bool parallel = directional(light);
+  float facing = x.hasNormal ? max(-dot(x.normal, toLight), 0.0) : 0.0;
+  rings.axis = normalize(toLight - facing * x.normal); // the two are within 90 degrees
+  rings.axisCosine = dot(rings.axis, toLight);
+  rings.t = rings.ahead = rings.shadowed = 0.0;
+  vec3 point;
+  vec2 off;
+  uvec4 bits;
+  if (!fetchEntry(light, x.position, 0, rings.map, point, bits, off)) return false;
+  rings.entrySide = length(maps[rings.map].stepX.xyz) * mm * (parallel ? 1.0 : point.z);
+  // The slope of the surface counts within an entry point, and one entry point stands for its curvature.
+  rings.tolerance = rings.entrySide * (2.0 + min(slopeOf(x.hasNormal ? dot(x.normal, toLight) : 0.0), kSteepestOwn));
+  if (!holdsSurface(bits)) return true;
+  float perAhead = parallel ? 1.0 : distanceTo;
+  EntryPoint own = unpackEntry(bits);
+  rings.ahead = distanceAhead(parallel, own.depth, point.z) * perAhead * mm;
+  if (own.exit < kNoExit) rings.shadowed = clamp((rings.ahead - own.exit * mm) / rings.tolerance - 1.0, 0.0, 1.0);
+  float t = clamp(rings.ahead, 0.0, longest) / mm;
+  vec3 guess = x.position + t * rings.axis;
+  uint map;
+  if (fetchEntry(light, guess, 0, map, point, bits, off) && holdsSurface(bits)) {
+    vec3 y = guess + distanceAhead(parallel, unpackEntry(bits).depth, point.z) *
+                         (parallel ? toLight : light.position.xyz - guess);
+    t = clamp(dot(y - x.position, rings.axis), 0.0, longest / mm);
+  }
+  rings.t = t * mm;
+  return true;
+}
+
+// The part of the light that gets to x itself, as its map says: none where the lit surface lies further ahead than the
+// surface's slope makes it over an entry point. The part is continuous, because the map is coarse.
+float arrivesAt(GatherRings rings, float cosine) {
+  float own = rings.entrySide * (1.0 + min(slopeOf(cosine), kSteepestOwn));
+  return clamp(2.0 - rings.ahead / max(own, 1.0e-12), 0.0, 1.0);
+}
+
+// ---- Samples
 
 const float kLastRing = 1.0e12; // squared radius of what lies beyond all samples
 
@@ -45,7 +159,7 @@ Pattern patternOf(ivec2 cell, uint m, float front) {
   return Pattern(0.5 + vary * (float(within) - 12.0) / 25.0, vary * (float(turn) / 25.0 + 0.025));
 }
 
-// Sums over samples, of a light of radiance 1; docs/gather.md derives them. hidden, seen: from the camera.
+// Sums over samples, of a light of radiance 1; docs/how-it-works.md derives them. hidden, seen: from the camera.
 struct Gathered {
   vec3 through;  // exitance of all that enters opposite to x
   vec3 entering; // diffused irradiance of what enters hidden and faces the way x does
@@ -64,9 +178,7 @@ void addSample(inout Gathered sum, Surface x, uint m, vec4 lengths, EntryPoint e
   float h = sqrt(min(squaredH, squared));
   float curved = (1.0 - opposite) * min(squaredH / max(squared, 1.0e-12), 1.0);
   vec3 comes = opposite * gatherTransmitted(lengths, slabOf(m, lengths, h), curved, h, near, far);
-  bool diffuses = hasFlag(PELLUCID_FLAG_DIFFUSED);
-  sum.through += flux * (diffuses ? entry.hidden + entry.seen : entry.hidden) * comes;
-  if (!diffuses) return;
+  sum.through += flux * (entry.hidden + entry.seen) * comes;
   vec3 reflected = gatherReflected(materials[m].gather.profile.rgb, near, far);
   // A grazed texel stands for more than five times its area: the light beyond that lies further away and does not count here.
   float area = axisCosine / max(entry.cosine, kLeastCosine), here = min(entry.cosine / kLeastCosine, 1.0) * flux;
@@ -147,10 +259,11 @@ vec3 gatherLight(uint m, LightConstants light, Surface x, Pattern pattern, vec3 
   if (own == 0.0 && rings.ahead > kFarthestLit * materials[m].gather.lengths.z) return vec3(0.0);
   Gathered g = gatherSamples(m, light, x, pattern, incident, rings);
   vec3 through = g.through * frame.filterAndLimit.rgb * materials[m].inverseReflectance.rgb;
-  if (!hasFlag(PELLUCID_FLAG_DIFFUSED)) return through;
   vec3 hidden = min(g.hidden, vec3(1.0)), seen = g.seenLight / max(g.seen, vec3(1.0e-12)), around = 0.5 * (own + seen);
   // Diffused light is no more than what lies around, and a dark point has next to none of its own to lose.
   vec3 opposite = min(g.opposite, through + own);
   vec3 lost = min(seen, vec3(2.0 * own)) * shareOfLight(light, incident.toLight, incident.distanceTo);
   return through + g.entering - opposite - hidden * around - (1.0 - hidden) * loss * lost;
 }
+
+#endif

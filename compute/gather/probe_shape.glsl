@@ -1,4 +1,13 @@
-// Curvature of the surface at a gather probe, and thinness of the body there.
+// Curvature of the surface at a probe, and thinness of the body there.
+#ifndef PELLUCID_PROBE_SHAPE_GLSL
+#define PELLUCID_PROBE_SHAPE_GLSL
+
+#include "frame/chord.glsl"
+#include "gather/probe.glsl"
+#include "gather/probe_light.glsl"
+
+layout(set = 0, binding = PELLUCID_BINDING_BACK_DEPTH) uniform texture2D backDepthImage;
+layout(set = 0, binding = PELLUCID_BINDING_NORMAL) uniform texture2D normalImage;
 
 // Step from a probe to a pixel beside it.
 struct Beside {
@@ -101,3 +110,5 @@ vec3 thinLoss(ivec2 pixel, Surface x, uint m) {
   float opposite = 0.5 - 0.5 * dot(x.normal, normal);
   return opposite * clamp(1.0 - sent, vec3(0.0), vec3(1.0));
 }
+
+#endif

@@ -1,10 +1,15 @@
 // The entry point of a texel of a shadow map.
+#ifndef PELLUCID_TEXEL_ENTRY_GLSL
+#define PELLUCID_TEXEL_ENTRY_GLSL
+
 #define MORE_SHADOW_IMAGES
-#include "frame/normal_image.glsl"
+#include "gather/entry_point.glsl"
 #include "frame/shadow_images.glsl"
 #include "lib/occluder.glsl"
 #include "lib/shadow.glsl"
 #include "lib/surface.glsl"
+
+layout(set = 0, binding = PELLUCID_BINDING_NORMAL) uniform texture2D normalImage;
 
 // A point of the surface that a map stores.
 struct MapPoint {
@@ -55,7 +60,7 @@ float frontAround(ivec2 pixel) {
 // From the normal image or the depths around.
 vec3 shownNormal(ivec2 pixel, float front) {
   if (hasFlag(PELLUCID_FLAG_NORMAL)) {
-    vec3 normal = mat3(frame.viewFromNormal) * normalAt(withinRect(pixel));
+    vec3 normal = mat3(frame.viewFromNormal) * decodeNormal(texelFetch(normalImage, withinRect(pixel), 0));
     float squared = dot(normal, normal);
     return squared > 1.0e-8 && squared < 1.0e8 ? normal * inversesqrt(squared) : vec3(0.0); // false for NaN
   }
@@ -272,5 +277,9 @@ uvec4 entryOf(EntryMapConstants map, ivec2 texel) {
   }
   float cosine = max(dot(normal, toLight), 0.0);
   bool seen = isShown || cameraSees(shown, normal, tolerance, uncertain * cosine);
-  return packEntry(EntryPoint(y.depth, normal, seen ? 0.0 : share, seen ? share : 0.0, cosine, exit, material));
+  // Without diffusion what the camera sees stays where it is.
+  float seenShare = seen && hasFlag(PELLUCID_FLAG_DIFFUSED) ? share : 0.0;
+  return packEntry(EntryPoint(y.depth, normal, seen ? 0.0 : share, seenShare, cosine, exit, material));
 }
+
+#endif

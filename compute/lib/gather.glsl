@@ -1,5 +1,5 @@
 // Light-space gather. Light that enters the lit surface at y with flux F leaves x with exitance F (1 - m) K(r, h) and comes
-// back as diffused irradiance F m R(r), r = |x - y| in mm; docs/gather.md derives K.
+// back as diffused irradiance F m R(r), r = |x - y| in mm; docs/how-it-works.md derives K.
 #ifndef PELLUCID_GATHER_GLSL
 #define PELLUCID_GATHER_GLSL
 

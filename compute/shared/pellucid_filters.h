@@ -1,5 +1,5 @@
 // The diffusion pyramid's filters, read by GLSL and C++. `./run fit` fits module/src/pyramid_energy_table.h to them after a
-// change; docs/diffusion.md, "Fitted tables". Weights are along one axis.
+// change; docs/how-it-works.md, "Fitted tables". Weights are along one axis.
 #ifndef PELLUCID_FILTERS_H
 #define PELLUCID_FILTERS_H
 
@@ -13,14 +13,16 @@
 #define PELLUCID_REFINEMENT_NEAR (3.0 / 4.0)
 #define PELLUCID_REFINEMENT_FAR (1.0 - PELLUCID_REFINEMENT_NEAR)
 
-// The fine filter: the pixel, its neighbors on both sides and theirs, 9 4 1 over 19. The wide one, along the long axis of
-// a foreshortened kernel, is 2 2 1 over 8.
+// The fine filter: the pixel, its neighbors on both sides and theirs, 9 4 1 over 19.
 #define PELLUCID_FINE_NEXT (4.0 / 19.0)
 #define PELLUCID_FINE_LAST (1.0 / 19.0)
 #define PELLUCID_FINE_OWN (1.0 - 2.0 * (PELLUCID_FINE_NEXT + PELLUCID_FINE_LAST))
-#define PELLUCID_WIDE_FINE_NEXT (2.0 / 8.0)
-#define PELLUCID_WIDE_FINE_LAST (1.0 / 8.0)
-#define PELLUCID_WIDE_FINE_OWN (1.0 - 2.0 * (PELLUCID_WIDE_FINE_NEXT + PELLUCID_WIDE_FINE_LAST))
+
+// Octaves by which the shares of pixels follow the longer side of a foreshortened kernel, of each octave that it is longer:
+// level 2 and coarser ones of a kernel along a diagonal, how much less of it along rows or columns, and the fine filter.
+#define PELLUCID_FORESHORTENED_COARSER 0.3
+#define PELLUCID_FORESHORTENED_STRAIGHT 0.15
+#define PELLUCID_FORESHORTENED_FINE 0.5
 
 // Variance of a refinement, squared texels of the finer level: the coarser centers are 1/2 and 3/2 of its texels away.
 #define PELLUCID_REFINEMENT_VARIANCE (0.25 * PELLUCID_REFINEMENT_NEAR + 2.25 * PELLUCID_REFINEMENT_FAR)
@@ -33,7 +35,7 @@
 
 // Constants that were chosen by measurement, not by the fit. `./run sweep CONSTANT VALUE...` measures others.
 
-// Factors x and y of sameSurface (compute/diffusion/texel.glsl), for downsampling, the stretch, upsampling and the last pass.
+// Factors x and y of tangentPlaneWeight (compute/diffusion/texel.glsl), for downsampling, the stretch, upsampling and the last pass.
 #ifndef PELLUCID_DOWNSAMPLE_FALLOFF
 #define PELLUCID_DOWNSAMPLE_FALLOFF 0.2, 0.5
 #endif
@@ -45,23 +47,6 @@
 #endif
 #ifndef PELLUCID_PIXEL_FALLOFF
 #define PELLUCID_PIXEL_FALLOFF 0.45, 1.2
-#endif
-
-// Octaves by which the shares of pixels follow the longer side of a foreshortened kernel, of each octave that it is longer:
-// level 2 and coarser ones of a kernel along a diagonal, how much less of it along rows or columns, and the fine filter.
-#ifndef PELLUCID_FORESHORTENED_COARSER
-#define PELLUCID_FORESHORTENED_COARSER 0.3
-#endif
-#ifndef PELLUCID_FORESHORTENED_STRAIGHT
-#define PELLUCID_FORESHORTENED_STRAIGHT 0.15
-#endif
-#ifndef PELLUCID_FORESHORTENED_FINE
-#define PELLUCID_FORESHORTENED_FINE 0.5
-#endif
-
-// Without the fine filter level 2 takes this part of its energy and the pixel the rest.
-#ifndef PELLUCID_FINE_AT_LEVEL_2
-#define PELLUCID_FINE_AT_LEVEL_2 0.3
 #endif
 
 #endif

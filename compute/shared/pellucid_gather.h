@@ -39,13 +39,6 @@ struct EntryMapConstants {
   uvec4 occluder; // as ShadowConstants::occluder
 };
 
-// VkDispatchIndirectCommands of what follows the gather's probes; x: columns of groups, 0 where it does not run; w: where it
-// does.
-struct GatherDispatches {
-  uvec4 filterProbes, light; // if some probe has light, which the diffusion adds
-  uvec4 noLight;             // the diffusion alone, if none has
-};
-
 #ifdef __cplusplus
 } // namespace pellucid::shared
 #endif

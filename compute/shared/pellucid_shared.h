@@ -15,25 +15,21 @@ using glm::uvec4;
 using glm::vec4;
 #endif
 
+// Sides of workgroups and of what a group does.
 #define PELLUCID_GROUP_X 8
-#define PELLUCID_GROUP_Y 8
-#define PELLUCID_TILE 16 // a side, pixels that a group does whose invocations do two each
-#define PELLUCID_DIFFUSE_GROUP 16 // a side
-#define PELLUCID_DIFFUSE_TEXELS_X 15 // of level 2, 4 x 4 pixels each, that a group of the diffusion does
-#define PELLUCID_DIFFUSE_COARSE_TEXELS_X 16 // without the fine filter
-#define PELLUCID_DIFFUSE_TEXELS_Y 4
-#define PELLUCID_DIFFUSE_CELL 4 // pixels a side of the gather's cells where the diffusion adds what it found
-#define PELLUCID_UPSAMPLE_GROUP 16 // a side, texels of level 2, of which an invocation does two beside each other
-#define PELLUCID_DOWNSAMPLE_GROUP 16 // a side, of the pyramid's reductions
-#define PELLUCID_DOWNSAMPLE_TILE 7   // a side, texels of the second of the two levels that a group makes
-#define PELLUCID_GATHER_GROUP 16 // a side, of the pass that adds gathered light; an invocation does 2 x 2 pixels
-#define PELLUCID_ENTRY_POINTS_GROUP 16 // a side, of the gather's entry points; of what one of them summarizes
-#define PELLUCID_PROBES_GROUP 8   // a side, of the gather's points
-#define PELLUCID_FILTER_GROUP 16  // a side, where points share
-#define PELLUCID_BLOCK 64         // a side, pixels of a block of the tile lists; tiles of PELLUCID_TILE divide it
-#define PELLUCID_CELL 8           // a side, pixels of a cell: a block has a bit for each of its 8 x 8
-#define PELLUCID_FIND_GROUP 16    // a side, of the pass that finds cells with material
-#define PELLUCID_LIST_GROUP 16    // a side, of the pass that lists groups
+#define PELLUCID_TILE 16          // pixels of a group that does two each: one thickness a pixel
+#define PELLUCID_BLOCK 64         // pixels of a block, in which the image is divided from its first pixel on
+#define PELLUCID_BLOCK_BORDER 8   // pixels beyond the rect that blocks reach: a texel of level 3
+#define PELLUCID_CELL 8           // pixels of a cell: a block has a bit for each of its 8 x 8
+#define PELLUCID_BLOCK_GROUP 16   // of passes that do a block a group
+#define PELLUCID_DOWNSAMPLE_COLUMNS 8 // texels of the second of the two levels that a group makes
+#define PELLUCID_DOWNSAMPLE_ROWS 4
+#define PELLUCID_DIFFUSE_COLUMNS 32 // pixels that a group diffuses
+#define PELLUCID_DIFFUSE_ROWS 16
+#define PELLUCID_ENTRY_POINTS_GROUP 16
+#define PELLUCID_PROBES_GROUP 8   // cells of the gather
+#define PELLUCID_FILTER_GROUP 16  // cells of the gather
+#define PELLUCID_LIST_GROUP 256   // invocations of the pass that lists blocks, in a row
 
 #define PELLUCID_BINDING_FRAME 0
 #define PELLUCID_BINDING_LIGHTS 1
@@ -62,12 +58,11 @@ using glm::vec4;
 // The gather's passes know lights, maps and materials, and no kernels:
 #define PELLUCID_BINDING_GATHER_MAPS PELLUCID_BINDING_SHADOWS
 #define PELLUCID_BINDING_ENTRY_MAPS PELLUCID_BINDING_KERNELS
-#define PELLUCID_BINDING_GATHER_DISPATCHES PELLUCID_BINDING_KERNELS
 #define PELLUCID_BINDING_ENTRY_POINTS PELLUCID_BINDING_SHADOW_IMAGES
 #define PELLUCID_BINDING_PROBES PELLUCID_BINDING_LEVELS
 #define PELLUCID_BINDING_FILTERED_PROBES (PELLUCID_BINDING_SHADOW_IMAGES + 1) // of the diffusion, beside the pyramid
-#define PELLUCID_BINDING_TILES 21 // lists of groups with work; see compute/frame/tiles.glsl
-#define PELLUCID_BINDING_TILE_COMMANDS PELLUCID_BINDING_KERNELS // of the passes that make them
+#define PELLUCID_BINDING_BLOCKS 21 // words of the blocks and lists of them; see compute/frame/blocks.glsl
+#define PELLUCID_BINDING_LISTS PELLUCID_BINDING_KERNELS // BlockLists, of the passes that make them
 #define PELLUCID_BINDING_HELD 22 // the output's content before the frame
 #define PELLUCID_BINDING_COUNT 23
 
@@ -86,16 +81,13 @@ using glm::vec4;
 #define PELLUCID_FLAG_CONSTANT_VIEW 64u
 #define PELLUCID_FLAG_CHORD_THICKNESS 128u
 #define PELLUCID_FLAG_CHORD 256u // some light, or a debug view, needs camera-space thickness
-#define PELLUCID_FLAG_DIFFUSED 512u // what the gather adds to has been diffused
+#define PELLUCID_FLAG_DIFFUSED 512u // the diffusion spreads the light that the camera sees
 #define PELLUCID_FLAG_WIDE_OUTPUT 1024u // 32 bits a channel, which keep what halves round
 #define PELLUCID_FLAG_THIN_WALLS 2048u // some material is thin-walled
 #define PELLUCID_FLAG_ADDS 4096u // the result is added to what the output holds
 
 // Specialization constants
 #define PELLUCID_CONSTANT_DEBUG_VIEWS 0
-#define PELLUCID_CONSTANT_FINE 1
-#define PELLUCID_CONSTANT_GATHERS 2
-#define PELLUCID_CONSTANT_DIRECTIONAL 3
 #define PELLUCID_CONSTANT_NORMALS 4
 #define PELLUCID_CONSTANT_SHARERS 5 // invocations that share a probe, 1 or 2
 #define PELLUCID_CONSTANT_LIGHT_TABLES 6
@@ -121,8 +113,6 @@ using glm::vec4;
 #define PELLUCID_SHADER_DEBUG_THICKNESS 1u
 #define PELLUCID_SHADER_DEBUG_TRANSMITTANCE 2u
 #define PELLUCID_SHADER_DEBUG_OCCLUSION 3u
-
-#define PELLUCID_LISTS 8 // see pellucid_tiles.h
 
 // PassConstants::value.x of the translucency pass: the materials that light comes through
 #define PELLUCID_LIGHT_ALL 0u
@@ -166,11 +156,7 @@ struct FrameConstants {
   vec4 filterAndLimit;        // rgb: factor of T; w: largest thickness, mm
   ivec4 level[PELLUCID_LAST_LEVEL + 1]; // xy: where texel (0, 0) of the level lies in its image; of level 0, that
                                         // of the resolved level 2, zw: of its shares
-  // Tile lists. blocks: x, y: how many; z: first word of the marks of blocks near material; w: 1 if groups go by lists.
-  uvec4 blocks;
-  uvec4 lists[PELLUCID_LISTS / 4]; // first words
-  uvec4 listGroups[PELLUCID_LISTS / 4]; // first groups of the pass that makes them
-  uvec4 listRows[PELLUCID_LISTS / 4]; // rows of groups that a listed word stands for
+  uvec4 blocks; // x, y: columns and rows that the rect and PELLUCID_BLOCK_BORDER pixels around it touch; z: first word of their lists; w: 1: groups go by lists
   // View ray of planar length 1: of pixel (0, 0), changes per pixel in x and y.
   vec4 normalRay[3]; // xyz: in the normal image's space
   vec4 facingRay[2]; // along pixels' columns and rows; xy, zw, xy
@@ -229,19 +215,37 @@ struct KernelConstants {
   vec4 pixelShare[PELLUCID_PIXEL_SHARES * PELLUCID_SHARE_ENTRIES];
 };
 
+// VkDispatchIndirectCommands of the passes, which do
+#define PELLUCID_LIST_DOWNSAMPLE 0u // levels 2 and 3: blocks with material and those beside
+#define PELLUCID_LIST_UPSAMPLE 1u   // the same ones
+#define PELLUCID_LIST_DIFFUSE 2u    // blocks with material
+#define PELLUCID_LIST_PROBES 3u     // the same ones
+#define PELLUCID_LIST_FILTER 4u     // the same ones
+#define PELLUCID_LIST_COARSE 5u     // levels 4 and 5: all groups, if there is material
+#define PELLUCID_LIST_COARSEST 6u   // levels 6 and 7: the same
+#define PELLUCID_LIST_ENTRIES 7u    // groups of entry points within reach of what blocks show
+#define PELLUCID_LISTS 8
+#define PELLUCID_BLOCK_WORDS 5    // see compute/frame/blocks.glsl
+#define PELLUCID_BLOCK_WORDS_SHIFT 10 // log2 of the columns of their image
+#define PELLUCID_ENTRY_GROUP_WORDS 128 // a bit for each of a map's groups of entry points, at most 64 x 64
+
+// Buffer of the passes that find and list blocks. Bits of listed groups of entry points follow.
+struct BlockLists {
+  uvec4 commands[PELLUCID_LISTS]; // x: groups so far; y, z: of the pass; w: of lists of all groups: how many
+  uvec4 maps; // x: shadow maps that are gathered from
+  vec4 reach; // x: how far from a surface probes look for entry points, scene units
+};
+
 // Push constants of each pass:
 // translucency, debug view: PELLUCID_LIGHT_*, lights, PELLUCID_WRITE_*
-// add gathered: pixels a side of a cell, lights, PELLUCID_WRITE_*, lights that are gathered from
 // add history: unused, unused, 1 if this is the last dispatch
 // base level: 1 to copy the pixels
-// downsample: finer level, 16
-// upsample: coarsest level, 16
-// diffuse: unused, 1, unused, 1 if this is the last dispatch
+// downsample: finer level, columns of groups
+// upsample: coarsest level
+// diffuse: pixels a side of a cell, 0 without probes; unused; 1 if this is the last dispatch
 // entry points: unused, columns and, from bit 16 on, rows of entry points
-// probes: pixels a side of a cell, lights with maps, columns and rows of entry points and, in bit 31, 1 to add to what is
-// there, samples
+// probes: pixels a side of a cell, lights, columns and rows of entry points and, in bit 31, 1 to add to what is there, samples
 // filter probes: pixels a side of a cell
-// find cells: 1 to find distances, too; list groups: unused
 struct PassConstants {
   uvec4 value;
 };
@@ -250,5 +254,4 @@ struct PassConstants {
 } // namespace pellucid::shared
 #endif
 
-#include "pellucid_tiles.h"
 #endif

@@ -3,7 +3,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
-#include "frame/bindings.glsl"
+#include "frame/frame.glsl"
 
 layout(set = 0, binding = PELLUCID_BINDING_HISTORY) uniform texture2D historyImage;
 

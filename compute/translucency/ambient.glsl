@@ -1,3 +1,6 @@
+#ifndef PELLUCID_AMBIENT_GLSL
+#define PELLUCID_AMBIENT_GLSL
+
 // Light from all around through thin parts. A thin body sends on what comes from behind, and returns less of what lies on it
 // than a half-space does; docs/integration.md says why both count. Include it after translucency/transmission.glsl.
 
@@ -30,3 +33,5 @@ vec3 ambientExitance(Surface s, ivec2 pixel, uint m) {
   vec3 lost = (1.0 - kept) * ambientIrradiance(front) / materials[m].inverseReflectance.rgb;
   return opposite * (t * ambientIrradiance(back) - lost);
 }
+
+#endif

@@ -1,4 +1,4 @@
-// `pellucid evaluate`: models, or qualities, against the path-traced truth of captures.
+// `pellucid evaluate`: models, or numbers of samples, against the path-traced truth of captures.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fstream>
@@ -46,13 +46,10 @@ std::vector<Model> models() {
           {"gather, 64 samples", gather(64)}};
 }
 
-std::vector<Model> qualities() {
+std::vector<Model> samples() {
   std::vector<Model> all;
-  for (std::uint32_t quality = 0; quality <= 2; ++quality) {
-    Model& model =
-        all.emplace_back(Model{"quality " + std::to_string(quality), gather(PELLUCID_GATHER_BY_QUALITY)});
-    model.settings.quality = quality;
-  }
+  for (const std::uint32_t count : {0u, kDefaultGatherSamples, 16u})
+    all.push_back({std::to_string(count) + " samples", gather(count)});
   return all;
 }
 
@@ -70,12 +67,11 @@ Image allTexels(const Capture& capture, const std::vector<PellucidMaterial>& mat
   return reference::compute(capture, materials, settings).image;
 }
 
-// thesis | light-space thickness | quality 1 | truth, under one exposure.
+// thesis | light-space thickness | the default | truth, under one exposure.
 void writePicture(const std::string& path, const Capture& capture,
                   const std::vector<PellucidMaterial>& materials, Replayer& replayer) {
   std::vector<Image> images;
-  for (const ReplaySettings& settings :
-       {thesisSettings(), ReplaySettings(), gather(PELLUCID_GATHER_BY_QUALITY)})
+  for (const ReplaySettings& settings : {thesisSettings(), ReplaySettings(), gather(kDefaultGatherSamples)})
     images.push_back(replayed(replayer, capture, materials, settings));
   images.push_back(capture.truth->image);
   std::vector<const Image*> pointers;
@@ -127,7 +123,7 @@ void run(const Options& options) {
     const auto add = [&](const std::string& model, const Image& image) {
       evaluations.push_back(evaluate(name, model, capture, image, options.boxes, options.exposure));
     };
-    for (const Model& model : options.rows == "models" ? models() : qualities())
+    for (const Model& model : options.rows == "models" ? models() : samples())
       add(model.name, replayed(replayer, capture, materials, model.settings));
     if (options.reference) add("float64: all texels, exact diffusion", allTexels(capture, materials));
     if (!options.picture.empty() && &path == &options.captures.front())
@@ -154,13 +150,13 @@ void run(const Options& options) {
 
 void addEvaluateCommand(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("evaluate", "Compare translucency models or qualities with captures' truth");
+  CLI::App* command = app.add_subcommand(
+      "evaluate", "Compare translucency models or numbers of samples with captures' truth");
   command->add_option("captures", options->captures, "captures with truth")->required();
   command->add_option("-o,--output", options->output,
                       "file to write the tables to; default: standard output");
-  command->add_option("--rows", options->rows, "models, or qualities: 0 to 2")
-      ->check(CLI::IsMember({"models", "qualities"}))
+  command->add_option("--rows", options->rows, "models, or samples: 0, 8 and 16 of the gather")
+      ->check(CLI::IsMember({"models", "samples"}))
       ->capture_default_str();
   command->add_flag("--json", options->json, "JSON instead of Markdown tables");
   command
@@ -178,7 +174,7 @@ void addEvaluateCommand(CLI::App& app) {
   command->add_flag("--reference", options->reference,
                     "add the float64 gather over all texels with brute-force diffusion; takes minutes");
   command->add_option("--picture", options->picture,
-                      "PNG of the first capture: thesis, light-space thickness, quality 1, truth");
+                      "PNG of the first capture: thesis, light-space thickness, the default, truth");
   command->add_option("--plot", options->plot, "PNG of the error against the samples of the gather");
   command->add_option("--device", options->device, "part of the Vulkan device's name");
   command->callback([options] { run(*options); });

@@ -75,9 +75,7 @@ ReplaySettings settingsOf(const Options& options) {
     throw UsageError(
         "--set: features, format, alias, rect, reuse and --debug are not of the light that comes through");
   settings.features = PELLUCID_FEATURE_TRANSLUCENCY;
-  // Gathered light knows no minimum dot.
-  if (settings.translucency.gatherSamples == PELLUCID_GATHER_BY_QUALITY)
-    settings.translucency.gatherSamples = 0;
+  settings.translucency.gatherSamples = 0;  // gathered light knows no minimum dot
   settings.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
   return settings;
 }

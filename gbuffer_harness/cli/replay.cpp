@@ -29,9 +29,9 @@
 #include "common/png.h"
 #include "common/progress.h"
 #include "common/whole_file.h"
+#include "replay/block_map.h"
 #include "replay/exposure.h"
 #include "replay/replay.h"
-#include "replay/tile_map.h"
 
 namespace pellucid::harness {
 namespace {
@@ -98,13 +98,13 @@ void writeTriptych(const Options& options, const Capture& capture,
 }
 
 bool wantsPng(const Options& options, const ReplaySettings& settings) {
-  return options.png || settings.debugView != PELLUCID_DEBUG_NONE || options.settings.showsTiles();
+  return options.png || settings.debugView != PELLUCID_DEBUG_NONE || options.settings.showsBlocks();
 }
 
-// A frame on the device, and its tiles where they are shown.
+// A frame on the device, and its blocks where they are shown.
 struct Replayed {
   ReplayResult result;
-  std::optional<TileMap> tiles;
+  std::optional<BlockMap> blocks;
 };
 
 Replayed runFrame(const Options& options, Replayer& replayer, const Capture& capture,
@@ -112,7 +112,7 @@ Replayed runFrame(const Options& options, Replayer& replayer, const Capture& cap
                   uint32_t repeat) {
   Replayed frame;
   frame.result = replayer.run(capture, materials, settings, repeat, [&](const FrameRun& run) {
-    if (options.settings.showsTiles()) frame.tiles = readTileMap(run);
+    if (options.settings.showsBlocks()) frame.blocks = readBlockMap(run);
   });
   return frame;
 }
@@ -123,7 +123,7 @@ void writeFrame(const Options& options, const std::filesystem::path& output, con
   if (png)
     writeWhole(std::filesystem::path(output).replace_extension(".png"), [&](const auto& file) {
       std::vector<std::uint8_t> picture = toSrgb(image, exposure, options.toneMap);
-      if (frame.tiles) drawTileMap(*frame.tiles, image.width, image.height, picture);
+      if (frame.blocks) drawBlockMap(*frame.blocks, image.width, image.height, picture);
       writePng(file, image.width, image.height, picture);
     });
   ExrPart part;
@@ -163,7 +163,7 @@ void replayOne(const Options& options, const ReplaySettings& settings) {
                 times.apart);
   }
   if (options.stats) std::printf("\n%s", statisticsText(result.plan, result.statistics).c_str());
-  if (frame.tiles) std::printf("\n%s", tileLegend(*frame.tiles).c_str());
+  if (frame.blocks) std::printf("\n%s", blockLegend(*frame.blocks).c_str());
 
   std::filesystem::path output = options.output;
   if (output.empty()) output = std::filesystem::path(options.input).stem().string() + ".pellucid.exr";
@@ -314,7 +314,7 @@ void addReplayCommand(CLI::App& app) {
           "in one each; not of a sequence")
       ->check(CLI::Range(2, 64));
   command->add_flag("--stats", options->stats,
-                    "print what the device decided: groups run, tiles with material, gathered light");
+                    "print what the device decided: groups run, blocks with material");
   command->add_flag("--keep-layers", options->keepLayers,
                     "also write the alpha and the other channels of the irradiance's file");
   command->add_flag("--png", options->png, "also write a PNG beside the EXR (--debug always does)");
@@ -325,7 +325,7 @@ void addReplayCommand(CLI::App& app) {
                       "part of the Vulkan device's name; default: the fastest kind");
   addToneMapOption(*command, options->toneMap);
   addPresetOption(*command, options->preset);
-  options->settings.tiles = true;
+  options->settings.blocks = true;
   options->settings.addTo(*command);
   command->callback([options] { replay(*options); });
 }

@@ -44,11 +44,7 @@ const Names<PellucidReuse> kReuse = {{"none", PELLUCID_REUSE_NONE},
                                      {"alternate", PELLUCID_REUSE_ALTERNATE},
                                      {"coherence", PELLUCID_REUSE_COHERENCE}};
 const Names<PellucidIndirect> kIndirect = {{"none", PELLUCID_INDIRECT_NONE},
-                                           {"material", PELLUCID_INDIRECT_MATERIAL},
-                                           {"light", PELLUCID_INDIRECT_LIGHT},
-                                           {"cells", PELLUCID_INDIRECT_CELLS}};
-const Names<CellWords> kCells = {
-    {"found", CellWords::Found}, {"more", CellWords::More}, {"all", CellWords::All}};
+                                           {"material", PELLUCID_INDIRECT_MATERIAL}};
 // Whelan 2009, eqs. 4.4 and 4.5.
 const Names<std::array<float, 4>> kPolynomials = {{"quadratic", {2.14506f, -2.27844f, 0.595752f, 0}},
                                                   {"cubic", {-5.07621f, 7.75534f, -3.9017f, 0.650897f}}};
@@ -147,7 +143,7 @@ const std::map<std::string, Key> kKeys = {
         s.translucency.transmittanceFilter = reals<3>(key, value);
       }}},
     {"gather",
-     {"samples of the shadow map, 0..64; default: by the quality",
+     {"samples of the shadow map, a multiple of 4, 0..64; default 8, 0: one thickness a pixel",
       [](const auto& key, const auto& value, ReplaySettings& s) {
         s.translucency.gatherSamples = number(key, value);
       }}},
@@ -192,11 +188,8 @@ const std::map<std::string, Key> kKeys = {
     {"frame-load",
      {"frame time / budget, multiplies the coherence threshold above 1",
       [](const auto& key, const auto& value, ReplaySettings& s) { s.frameLoad = real(key, value); }}},
-    {"quality",
-     {"of the frame, 0..2, 2 best; 1 and 2 gather light",
-      [](const auto& key, const auto& value, ReplaySettings& s) { s.quality = number(key, value); }}},
     {"target-error",
-     {"relative RMSE that chooses the quality, 0 for none",
+     {"relative RMSE that chooses 0, 8 or 16 samples, 0 for none",
       [](const auto& key, const auto& value, ReplaySettings& s) { s.targetError = real(key, value); }}},
     {"nearest-distance",
      {"of what diffuses from the camera's plane, scene units, 0 for not known",
@@ -215,14 +208,10 @@ const std::map<std::string, Key> kKeys = {
         s.aliasOutput = lookUp(kBooleans, key, value);
       }}},
     {"indirect",
-     {"none|material|light|cells: passes run everywhere, where the GPU finds material and light, where it "
-      "finds light, as material but with cells that the replayer finds in the engine's place",
+     {"none|material: passes run everywhere, or where the GPU finds material",
       [](const auto& key, const auto& value, ReplaySettings& s) {
         s.indirectDispatches = lookUp(kIndirect, key, value);
       }}},
-    {"cells",
-     {"found|more|all: cells that indirect=cells hands in: those with material, others besides, all",
-      [](const auto& key, const auto& value, ReplaySettings& s) { s.cells = lookUp(kCells, key, value); }}},
     {"rect",
      {"x,y,width,height",
       [](const auto& key, const auto& value, ReplaySettings& s) {
@@ -286,19 +275,19 @@ void SettingsOptions::addTo(CLI::App& command) {
   command.add_option(
       "--debug", debug,
       std::string("write an intermediate: thickness (mm), transmittance, occlusion, irradiance") +
-          (tiles ? "; tiles: the result, and a PNG of it under the tiles by what ran" : ""));
+          (blocks ? "; blocks: the result, and a PNG of it under the blocks by what ran" : ""));
 }
 
 ReplaySettings SettingsOptions::parse() const {
   ReplaySettings settings;
-  settings.translucency.gatherSamples = PELLUCID_GATHER_BY_QUALITY;
+  settings.translucency.gatherSamples = kDefaultGatherSamples;
   if (mode == "thesis")
     settings = thesisSettings();
   else if (mode != "physical")
     throw UsageError("--mode: \"" + mode + "\" is not one of physical, thesis");
   settings.preExposure = 0;  // captures of physical units are brighter than halves hold
   Names<PellucidDebugView> views = kDebugViews;
-  if (tiles) views["tiles"] = PELLUCID_DEBUG_NONE;
+  if (blocks) views["blocks"] = PELLUCID_DEBUG_NONE;
   if (!debug.empty()) settings.debugView = lookUp(views, "--debug", debug);
   for (const std::string& assignment : assignments()) {
     const size_t equals = assignment.find('=');
@@ -317,14 +306,16 @@ ReplaySettings SettingsOptions::parse() const {
 
 void resolveGather(ReplaySettings& settings, const Capture& capture,
                    const std::vector<PellucidMaterial>& materials) {
-  std::uint32_t& samples = settings.translucency.gatherSamples;
-  if (samples != PELLUCID_GATHER_BY_QUALITY) return;
   FrameData data;
   makeFrame(capture, materials, settings, data);
-  data.frame.lightCount = 0;  // lights do not matter here, and a plan has no room for any number of them
+  // One light that is gathered from stands for all: a plan has no room for any number of them.
+  const auto mapped = std::find_if(data.lights.begin(), data.lights.end(),
+                                   [](const PellucidLight& light) { return light.shadowMapCount > 0; });
+  data.frame.lightCount = mapped != data.lights.end();
+  data.frame.lights = data.lights.data() + (mapped - data.lights.begin());
   const auto plan = std::make_unique<PellucidPlan>();
   requireOk(pellucidBuildPlan(&data.frame, nullptr, plan.get()), data.frame, capture.name);
-  samples = plan->gatherSamples;
+  settings.translucency.gatherSamples = plan->gatherSamples;
 }
 
 std::string settingsJson(const ReplaySettings& s) {
@@ -343,6 +334,7 @@ std::string settingsJson(const ReplaySettings& s) {
                                  {"chord", t.chordThickness ? "1" : "0"},
                                  {"max-thickness", t.maximumThickness},
                                  {"filter", t.transmittanceFilter},
+                                 {"gather", t.gatherSamples},
                                  {"gather-spacing", t.gatherSpacing},
                                  {"face", t.faceVector},
                                  {"up", t.upAxis},
@@ -351,16 +343,13 @@ std::string settingsJson(const ReplaySettings& s) {
                                  {"reuse", nameOf(kReuse, s.reuse)},
                                  {"coherence-threshold", s.coherenceThreshold},
                                  {"frame-load", s.frameLoad},
-                                 {"quality", s.quality},
                                  {"target-error", s.targetError},
                                  {"nearest-distance", s.nearestDistance},
                                  {"format", nameOf(kFormats, s.outputFormat)},
                                  {"ambient", s.ambient ? "1" : "0"},
                                  {"alias", s.aliasOutput ? "1" : "0"},
                                  {"indirect", nameOf(kIndirect, s.indirectDispatches)},
-                                 {"cells", nameOf(kCells, s.cells)},
                                  {"rect", s.renderRect}};
-  if (t.gatherSamples != PELLUCID_GATHER_BY_QUALITY) json["gather"] = t.gatherSamples;
   if (!t.minimumDotTable.empty()) json["minimum-dots"] = t.minimumDotTable;
   return json.dump(2) + "\n";
 }

@@ -13,9 +13,9 @@ struct SettingsOptions {
   std::vector<std::string> set;  // key=value or @FILE
   std::string debug;
   std::string mode = "physical";
-  bool tiles = false;  // --debug takes "tiles", too, which is no view of the module
+  bool blocks = false;  // --debug takes "blocks", too, which is no view of the module
 
-  bool showsTiles() const { return tiles && debug == "tiles"; }
+  bool showsBlocks() const { return blocks && debug == "blocks"; }
 
   void addTo(CLI::App& command);
 
@@ -34,9 +34,9 @@ private:
 std::string settingsJson(const ReplaySettings& settings);
 std::string debugOption(const ReplaySettings& settings);
 
-// Puts the number that the module chooses for the capture in the place of PELLUCID_GATHER_BY_QUALITY, for
-// what is not the module. `materials`: with their own T(d). Throws InputError where the module refuses the
-// frame.
+// Replaces the samples by those of the module's plan for the capture, which has none where it does not
+// gather, for what is not the module. `materials`: with their own T(d). Throws InputError where the module
+// refuses the frame.
 void resolveGather(ReplaySettings& settings, const Capture& capture,
                    const std::vector<PellucidMaterial>& materials);
 

@@ -1,7 +1,6 @@
 #include "cli/shader_translation.h"
 
 #include <algorithm>
-#include <array>
 #include <spirv_hlsl.hpp>
 #include <spirv_msl.hpp>
 #include <string_view>
@@ -18,8 +17,8 @@ using spirv_cross::Compiler;
 using spirv_cross::Resource;
 
 // Names by the id of a specialization constant; the shaders hold none.
-constexpr std::array<const char*, 7> kConstantNames = {
-    "debugViews", "fine", "gathers", "directional", "normalEncoding", "sharers", "lightTables"};
+constexpr std::pair<uint32_t, const char*> kConstantNames[] = {
+    {0, "debugViews"}, {4, "normalEncoding"}, {5, "sharers"}, {6, "lightTables"}};
 
 // Names of what pipelines bind, as in the sources of the shaders: the first row of the binding whose pipeline
 // begins a name holds.
@@ -29,15 +28,14 @@ struct BindingName {
 };
 constexpr BindingName kBindingNames[] = {{0, "", "frame"},
                                          {1, "", "lights"},
-                                         {2, "list_groups", "gatherMaps"},
+                                         {2, "list_blocks", "gatherMaps"},
                                          {2, "entry_points", "gatherMaps"},
                                          {2, "probes", "gatherMaps"},
                                          {2, "", "shadows"},
                                          {3, "", "materials"},
-                                         {4, "find_cells", "tileCommands"},
-                                         {4, "list_groups", "tileCommands"},
+                                         {4, "base_level", "lists"},
+                                         {4, "list_blocks", "lists"},
                                          {4, "entry_points", "entryMaps"},
-                                         {4, "probes", "gatherDispatches"},
                                          {4, "", "kernels"},
                                          {5, "", "frontDepthImage"},
                                          {6, "entry_points", "shadowImage8"},
@@ -65,13 +63,11 @@ constexpr BindingName kBindingNames[] = {{0, "", "frame"},
                                          {17, "", "shadowImage5"},
                                          {18, "", "shadowImage6"},
                                          {19, "", "shadowImage7"},
-                                         {20, "find_cells", "tilesDestination"},
-                                         {20, "list_groups", "tilesDestination"},
                                          {20, "entry_points", "entriesDestination"},
                                          {20, "probes", "probesImage"},
                                          {20, "filter_probes", "sharedImage"},
                                          {20, "", "levelsDestination"},
-                                         {21, "", "tilesImage"},
+                                         {21, "", "blocksImage"},
                                          {22, "entry_points", "shadowImage11"},
                                          {22, "", "heldImage"}};
 
@@ -82,7 +78,8 @@ std::string bindingName(const std::string& pipeline, uint32_t binding) {
 }
 
 std::string constantName(const std::string& pipeline, uint32_t id) {
-  if (id < kConstantNames.size()) return kConstantNames[id];
+  for (const auto& [named, name] : kConstantNames)
+    if (named == id) return name;
   throw InputError(pipeline, "specialization constant", std::to_string(id) + " has no name");
 }
 

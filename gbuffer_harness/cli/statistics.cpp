@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-#include "replay/tile_map.h"
+#include "replay/block_map.h"
 
 namespace pellucid::harness {
 namespace {
@@ -23,24 +23,16 @@ std::string heading(const char* first, const char* run) {
   return line;
 }
 
-const char* gatheredText(uint32_t gathered) {
-  return gathered == PELLUCID_GATHERED_SOME   ? "some"
-         : gathered == PELLUCID_GATHERED_NONE ? "none was found"
-                                              : "not decided by the device";
-}
-
 }  // namespace
 
 std::string statisticsText(const PellucidPlan& plan, const PellucidStatistics& s) {
   std::string text = heading("statistics", "groups run");
   for (uint32_t i = 0; i < s.dispatchCount; ++i) text += row(plan.dispatches[i].name, s.dispatches[i]);
   text += heading("total", "run");
-  if (s.tileLists) text += row("tiles with material", s.tiles);
-  if (s.diffusion.most > 0) text += row("diffusion groups", s.diffusion);
+  if (s.lists) text += row("blocks with material", s.blocks);
   if (s.probes.most > 0) text += row("probe groups", s.probes);
   if (s.entryPoints.most > 0) text += row("entry point groups", s.entryPoints);
-  if (!s.tileLists) text += "no tile lists: " + whyNoTileLists(plan) + "\n";
-  text += std::string("gathered light: ") + gatheredText(s.gatheredLight) + "\n";
+  if (!s.lists) text += "no lists of blocks: " + whyNoLists(plan) + "\n";
   return text + "lights that can contribute: " + std::to_string(s.activeLights) + "\n";
 }
 

@@ -31,7 +31,7 @@ constexpr int kShown = 3;
 
 struct Options {
   StressOptions stress;
-  std::string device, folder, json, results, compareWith, quality = "any";
+  std::string device, folder, json, results, compareWith;
   bool guarded = false;
 };
 
@@ -42,7 +42,7 @@ std::string againText(const Options& options, std::uint64_t frame) {
   const StressOptions defaults, &given = options.stress;
   std::string text = "pellucid stress --seed " + std::to_string(given.seed) + " --first " +
                      std::to_string(frame) + " --frames 1";
-  if (given.limits.quality != defaults.limits.quality) text += " --quality " + options.quality;
+  if (given.limits.gatherSamples) text += " --gather " + std::to_string(*given.limits.gatherSamples);
   if (given.limits.pixels != defaults.limits.pixels)
     text += " --pixels " + std::to_string(given.limits.pixels);
   if (given.validate) text += " --validate";
@@ -138,7 +138,6 @@ void print(const StressOptions& options, const StressResult& result) {
 
 void run(Options& options) {
   StressOptions& s = options.stress;
-  if (options.quality != "any") s.limits.quality = std::stoi(options.quality);
   // Errors of these options come before a device is opened.
   if (!s.only.empty()) stress::requireCheck(s.only);
   std::optional<stress::ResultsWriter> writer;
@@ -200,9 +199,8 @@ void addStressCommand(CLI::App& app) {
   command->add_option("--seed", s.seed, "of all frames")->capture_default_str();
   command->add_option("--first", s.first, "index of the first frame; even ones are tame, odd ones wild")
       ->capture_default_str();
-  command->add_option("--quality", options->quality, "of all frames")
-      ->check(CLI::IsMember({"0", "1", "2", "any"}))
-      ->capture_default_str();
+  command->add_option("--gather", s.limits.gatherSamples, "samples of all frames; default: any")
+      ->check(CLI::IsMember({0, 4, 8, 16, 32, 64}));
   command->add_option("--pixels", s.limits.pixels, "of the largest frame")
       ->check(CLI::Range(16, 1 << 26))
       ->capture_default_str();

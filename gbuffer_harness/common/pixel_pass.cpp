@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "common/barrier.h"
-#include "shared/pellucid_shared.h"
 
 namespace pellucid::harness {
 
@@ -19,7 +18,8 @@ std::vector<VkDescriptorSetLayoutBinding> layoutBindings(const std::vector<Pixel
   return result;
 }
 
-std::uint32_t groups(int pixels, int size) { return static_cast<std::uint32_t>((pixels + size - 1) / size); }
+constexpr int kGroup = 8;  // a side, pixels
+std::uint32_t groups(int pixels) { return static_cast<std::uint32_t>((pixels + kGroup - 1) / kGroup); }
 
 }  // namespace
 
@@ -62,7 +62,7 @@ void PixelPass::record(VkCommandBuffer commands, std::span<const VkWriteDescript
   shared_->layout.push(commands, VK_PIPELINE_BIND_POINT_COMPUTE, writes);
   if (pushSize_ > 0)
     vkCmdPushConstants(commands, shared_->layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, pushSize_, push);
-  vkCmdDispatch(commands, groups(width, PELLUCID_GROUP_X), groups(height, PELLUCID_GROUP_Y), 1);
+  vkCmdDispatch(commands, groups(width), groups(height), 1);
   barrier(commands, {VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT},
           {VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT});
 }

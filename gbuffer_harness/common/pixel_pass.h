@@ -25,7 +25,7 @@ public:
 
   VkSampler sampler() const;  // for texelFetch
 
-  // In groups of PELLUCID_GROUP_X x PELLUCID_GROUP_Y. Everything after waits for what it writes.
+  // In groups of 8 x 8. Everything after waits for what it writes.
   void record(VkCommandBuffer commands, std::span<const VkWriteDescriptorSet> writes, int width, int height,
               const void* push = nullptr) const;
 

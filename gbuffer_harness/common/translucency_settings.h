@@ -3,11 +3,15 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "pellucid/pellucid_thesis.h"
 
 namespace pellucid::harness {
+
+// PellucidFrame::gatherSamples, as pellucidInitFrame has it.
+inline constexpr std::uint32_t kDefaultGatherSamples = 8;
 
 struct TranslucencySettings {
   PellucidThicknessSource thicknessSource = PELLUCID_THICKNESS_LIGHT;
@@ -16,11 +20,11 @@ struct TranslucencySettings {
   float minimumDot = 0;
   bool constantViewDirection = false;
   bool chordThickness = false;
-  float maximumThickness = 0;                    // mm; 0: no limit
+  float maximumThickness = 0;  // mm; 0: no limit
   std::array<float, 3> transmittanceFilter = {1, 1, 1};
   std::uint32_t gatherSamples = 0;
   std::uint32_t gatherSpacing = 0;
-  std::vector<float> minimumDotTable; // entries of the azimuth, or rows of the square octahedral map
+  std::vector<float> minimumDotTable;  // entries of the azimuth, or rows of the square octahedral map
   std::array<float, 3> faceVector = {0, 0, 1}, upAxis = {0, 1, 0}, objectCenter = {0, 0, 0};
   uint32_t materialMarkBit = 0;
   bool prescaleAngle = false;
@@ -28,4 +32,4 @@ struct TranslucencySettings {
   bool operator==(const TranslucencySettings&) const = default;
 };
 
-} // namespace pellucid::harness
+}  // namespace pellucid::harness

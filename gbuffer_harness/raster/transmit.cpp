@@ -13,8 +13,6 @@ const PellucidDispatch& fusedDispatch(const FrameRun& run, const std::string& na
   const PellucidPlan& plan = run.plan();
   if (run.frame().thicknessSource != PELLUCID_THICKNESS_CAMERA)
     throw InputError(name, "thicknessSource", "light-space thickness does not need the back faces");
-  if (run.frame().gatherSamples > 0 && run.frame().gatherSamples != PELLUCID_GATHER_BY_QUALITY)
-    throw InputError(name, "gatherSamples", "gathering does not need the back faces");
   for (std::uint32_t i = 0; i < run.frame().shadowMapCount; ++i)
     if (run.frame().shadowMaps[i].layer > 0)
       throw InputError(name, "lights", "have shadow maps in layers; the back-face pass reads 2D images");

@@ -1,4 +1,4 @@
-// Light-space gather over every texel of the shadow maps (docs/gather.md): what the GPU's samples converge
+// Light-space gather over every texel of the shadow maps (docs/how-it-works.md): what the GPU's samples converge
 // to.
 #pragma once
 

@@ -1,4 +1,4 @@
-// The kernels of the light-space gather (docs/gather.md) in double precision. Lengths in mm.
+// The kernels of the light-space gather (docs/how-it-works.md) in double precision. Lengths in mm.
 #pragma once
 
 #include <array>

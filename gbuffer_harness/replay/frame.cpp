@@ -255,7 +255,6 @@ void makeFrame(const Capture& capture, const FrameShape& shape,
   f.reuse = settings.reuse;
   f.coherenceThreshold = settings.coherenceThreshold;
   f.frameLoad = settings.frameLoad;
-  f.quality = settings.quality;
   f.targetError = settings.targetError;
   f.nearestDistance = settings.nearestDistance;
   f.separateOutput = !settings.aliasOutput || settings.debugView != PELLUCID_DEBUG_NONE;

@@ -19,13 +19,6 @@ enum class TransmittanceChoice {
   GaussiansAsPrinted
 };
 
-// Words that the replayer writes for PELLUCID_INDIRECT_CELLS.
-enum class CellWords {
-  Found,  // of the cells that have material
-  More,   // of others besides, and intervals that are wider than need be
-  All     // of every cell, and of all distances
-};
-
 struct ReplaySettings {
   uint32_t features = PELLUCID_FEATURE_TRANSLUCENCY | PELLUCID_FEATURE_DIFFUSION;
   TranslucencySettings translucency;
@@ -44,11 +37,9 @@ struct ReplaySettings {
   PellucidReuse reuse = PELLUCID_REUSE_NONE;
   float coherenceThreshold = 0.005f;
   float frameLoad = 0;
-  uint32_t quality = 1;
   float targetError = 0, nearestDistance = 0;  // see PellucidFrame
   bool aliasOutput = false;                    // output is the irradiance image; ignored for debug views
   PellucidIndirect indirectDispatches = PELLUCID_INDIRECT_MATERIAL;
-  CellWords cells = CellWords::Found;
   std::array<uint32_t, 4> renderRect = {0, 0, 0, 0};  // width 0: everything
 };
 

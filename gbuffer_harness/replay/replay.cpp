@@ -95,8 +95,8 @@ public:
   void uploadOutput(const Image& content) const { output_->upload(content); }
   const GpuImage& output() const { return *output_; }
   Image irradiance() const { return inputs_->irradiance().download(); }
-  // Tile lists are the transient of whole numbers of 32 bits.
-  std::vector<std::uint32_t> tileWords() const {
+  // Words are in the transient of whole numbers of 32 bits.
+  std::vector<std::uint32_t> blockWords() const {
     for (const GpuImage* image : transients_) {
       if (image->format() != VK_FORMAT_R32_UINT) continue;
       const Image bits = image->download();
@@ -195,7 +195,7 @@ FrameRun::FrameRun(Device& device, const Context& context, const Capture& captur
   makeFrame(capture, materials, settings, data_);
   images_ = std::make_unique<Images>(device, capture, settings, data_, nullptr,
                                      previous ? previous->images_.get() : nullptr, nullptr);
-  plan(settings, previous ? previous->plan_.get() : nullptr);
+  plan(previous ? previous->plan_.get() : nullptr);
 }
 
 FrameRun::FrameRun(Device& device, const Context& context, const Capture& capture,
@@ -207,10 +207,10 @@ FrameRun::FrameRun(Device& device, const Context& context, const Capture& captur
     throw InputError(name_, "aliasOutput", "the inputs are other frames', too");
   images_ = std::make_unique<Images>(device, capture, settings, data_, std::move(inputs),
                                      previous ? previous->images_.get() : nullptr, pool);
-  plan(settings, previous ? previous->plan_.get() : nullptr);
+  plan(previous ? previous->plan_.get() : nullptr);
 }
 
-void FrameRun::plan(const ReplaySettings& settings, const PellucidPlan* previous) {
+void FrameRun::plan(const PellucidPlan* previous) {
   const PellucidFrame& frame = data_.frame;
   requireOk(pellucidValidateFrame(&frame, nullptr, nullptr), frame, name_);
   requireOk(pellucidBuildPlan(&frame, previous, plan_.get()), frame, name_);
@@ -219,9 +219,6 @@ void FrameRun::plan(const ReplaySettings& settings, const PellucidPlan* previous
       std::make_unique<HostBuffer>(device_, plan_->constantsSize,
                                    VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
                                        VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
-  PellucidCells cells;
-  requireOk(pellucidGetCells(&frame, &cells), frame, name_);
-  if (cells.blocks[0] > 0) cellPass_ = std::make_unique<CellPass>(device_, cells, settings.cells);
 }
 
 FrameRun::~FrameRun() = default;
@@ -253,10 +250,7 @@ void FrameRun::record(VkCommandBuffer commandBuffer, const PellucidPlan& plan,
 
 void FrameRun::recordTogether(VkCommandBuffer commandBuffer, const std::vector<const FrameRun*>& runs) {
   std::vector<PellucidConstantsSlice> slices;
-  for (const FrameRun* run : runs) {
-    slices.push_back(run->slice());
-    run->recordCells(commandBuffer);
-  }
+  for (const FrameRun* run : runs) slices.push_back(run->slice());
   std::vector<PellucidFrame> frames;
   for (const FrameRun* run : runs) frames.push_back(run->frameFor(kWholePlan));
   std::vector<PellucidView> views;
@@ -265,14 +259,7 @@ void FrameRun::recordTogether(VkCommandBuffer commandBuffer, const std::vector<c
                                                   static_cast<uint32_t>(views.size()), views.data()));
 }
 
-void FrameRun::record(VkCommandBuffer commandBuffer) const {
-  recordCells(commandBuffer);
-  record(commandBuffer, *plan_, kWholePlan);
-}
-
-void FrameRun::recordCells(VkCommandBuffer commandBuffer) const {
-  if (cellPass_) cellPass_->record(commandBuffer, data_.frame);
-}
+void FrameRun::record(VkCommandBuffer commandBuffer) const { record(commandBuffer, *plan_, kWholePlan); }
 
 PellucidPlan FrameRun::only(uint32_t dispatch) const {
   PellucidPlan single = *plan_;
@@ -307,7 +294,7 @@ PellucidStatistics FrameRun::statistics() const {
   return statistics;
 }
 
-std::vector<std::uint32_t> FrameRun::tileWords() const { return images_->tileWords(); }
+std::vector<std::uint32_t> FrameRun::blockWords() const { return images_->blockWords(); }
 
 Image FrameRun::output() const { return images_->output().download(); }
 
@@ -362,7 +349,6 @@ ReplayResult Replayer::run(const Capture& capture, const std::vector<PellucidMat
     run.restoreIrradiance(capture);
     device_.run([&](VkCommandBuffer commandBuffer) {
       timestamps.reset(commandBuffer);
-      run.recordCells(commandBuffer);  // the engine's, which is no dispatch of the plan
       timestamps.mark(commandBuffer, 0);
       for (uint32_t i = 0; i < count; ++i) {
         run.record(commandBuffer, i);

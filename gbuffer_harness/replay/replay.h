@@ -12,7 +12,6 @@
 #include "common/owned.h"
 #include "common/pool.h"
 #include "pellucid/pellucid_statistics.h"
-#include "replay/cell_pass.h"
 #include "replay/frame.h"
 #include "replay/inputs.h"
 
@@ -87,14 +86,12 @@ public:
   const std::string& name() const { return name_; }  // of the capture
   // The device's decisions in the last recording, which is finished.
   PellucidStatistics statistics() const;
-  // The words of that recording's tile lists (compute/frame/tile_words.glsl); none in plans without.
-  std::vector<std::uint32_t> tileWords() const;
+  // The words of that recording's blocks (compute/frame/blocks.glsl); none in plans without lists.
+  std::vector<std::uint32_t> blockWords() const;
 
-  // The whole plan, after the words of cells that the frame takes from an engine.
-  void record(VkCommandBuffer commandBuffer) const;
+  void record(VkCommandBuffer commandBuffer) const;  // the whole plan
   // The whole plans of several runs of one context, side by side.
   static void recordTogether(VkCommandBuffer commandBuffer, const std::vector<const FrameRun*>& runs);
-  void recordCells(VkCommandBuffer commandBuffer) const;                // these words alone
   void record(VkCommandBuffer commandBuffer, uint32_t dispatch) const;  // one dispatch of it, in its turn
   // One dispatch of it, also where the GPU would find nothing to do for it.
   void recordAlone(VkCommandBuffer commandBuffer, uint32_t dispatch) const;
@@ -120,7 +117,7 @@ public:
 private:
   class Images;
 
-  void plan(const ReplaySettings& settings, const PellucidPlan* previous);
+  void plan(const PellucidPlan* previous);
   PellucidConstantsSlice slice() const;
   // The frame with a pool for descriptors, where they are not pushed. `recording`: of those in one command
   // buffer, which share the slice and need pools of their own.
@@ -139,7 +136,6 @@ private:
   std::unique_ptr<Images> images_;
   std::unique_ptr<PellucidPlan> plan_;  // 28 KB
   std::unique_ptr<HostBuffer> constants_;
-  std::unique_ptr<CellPass> cellPass_;  // null where the frame takes no words
 };
 
 struct DispatchTime {

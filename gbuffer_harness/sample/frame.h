@@ -53,7 +53,7 @@ struct Frame {
   std::vector<ShadowTile> tiles;
   bool hasAmbient = false;
   std::array<glm::vec3, 9> ambient{};  // coefficients of radiance
-  std::uint32_t quality = 1;           // of Pellucid
+  std::uint32_t gatherSamples = 8;     // of Pellucid
   bool ownQueue = false;  // Pellucid's commands have a submission of their own, between semaphores
   // An image of that format and extent, usage SAMPLED | STORAGE, layout GENERAL, for this frame alone.
   std::function<PellucidImage(const PellucidImageNeed&)> transient;

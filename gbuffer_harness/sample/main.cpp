@@ -63,7 +63,7 @@ void addOptions(CLI::App& app, Options& o) {
   number("--shadow-size", o.mapTexels, 16, 4096, "texels across a shadow map");
   number("--meters-per-unit", o.gltf.metersPerUnit, 1e-6, 1e6, "of a file");
   number("--cell", o.cell, 1.0, 20.0, "mm between vertices of the procedural head");
-  number("--quality", s.quality, 0, 2, "of Pellucid");
+  number("--gather", s.gatherSamples, 0, 64, "samples of Pellucid's gather, a multiple of 4; 0: no gather");
   number("--scale", s.scale, 0.1, 1.0, "rendered pixels per pixel of the picture along each side");
   number("--exposure", s.exposure, 1e-6, 1e6, "factor");
   number("--bias", s.biasConstant, 0.0, 1000.0, "constant depth bias of the shadow maps");

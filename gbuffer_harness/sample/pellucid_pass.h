@@ -36,7 +36,7 @@ public:
     frame.output = f.color, frame.outputMode = PELLUCID_OUTPUT_ADD;                       // to specular light
     frame.materialCount = static_cast<uint32_t>(materials_.size()), frame.materials = materials_.data();
     frame.ambient = f.hasAmbient ? &f.ambient[0][0] : nullptr;
-    frame.quality = f.quality, frame.indirectDispatches = PELLUCID_INDIRECT_MATERIAL;
+    frame.gatherSamples = f.gatherSamples, frame.indirectDispatches = PELLUCID_INDIRECT_MATERIAL;
     frame.lightCount = static_cast<uint32_t>(f.lights.size()), frame.lights = f.lights.data();
     std::vector<PellucidShadowMap> maps;
     for (const ShadowTile& t : f.tiles) {

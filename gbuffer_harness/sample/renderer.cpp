@@ -180,7 +180,7 @@ void Renderer::makeFrame(const ViewCamera& camera) {
   std::transform(shadows_.begin(), shadows_.end(), f.shadows.begin(), use);
   f.hasAmbient = settings_.ambient;
   for (std::size_t i = 0; i < f.ambient.size(); ++i) f.ambient[i] = toGlm(scene_.ambient[i]);
-  f.quality = settings_.quality;
+  f.gatherSamples = settings_.gatherSamples;
   f.ownQueue = settings_.pellucid && settings_.ownQueue;
   transients_.clear();
   pool_.nextFrame();  // keeps what the frames in flight use

@@ -23,8 +23,8 @@ inline const std::vector<std::string> kMistakes = {"none",  "culled-fronts", "de
 
 struct Settings {
   bool pellucid = true;
-  std::uint32_t quality = 1;  // of Pellucid, 0..2
-  bool ownQueue = false;      // Pellucid runs on the device's computeQueue(), between semaphores
+  std::uint32_t gatherSamples = 8;  // of Pellucid
+  bool ownQueue = false;            // Pellucid runs on the device's computeQueue(), between semaphores
   bool sun = true, spots = true, point = true, ambient = true, specular = true, taa = true;
   double scale = 1;                       // of the rendered rect to the picture along each side, (0, 1]
   bool cullFronts = false;                // of the spots' shadow maps

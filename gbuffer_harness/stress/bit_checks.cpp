@@ -15,6 +15,13 @@ bool aliased(const StressFrame& f) {
   return f.settings.aliasOutput && f.settings.debugView == PELLUCID_DEBUG_NONE;
 }
 
+// Some groups go by lists of the device's.
+bool hasLists(const FrameRun& run) {
+  const PellucidPlan& plan = run.plan();
+  return std::any_of(plan.dispatches, plan.dispatches + plan.dispatchCount,
+                     [](const PellucidDispatch& d) { return d.indirect != 0; });
+}
+
 // A frame with nothing to do, whose output is the irradiance, stays as it is, bad values included.
 bool isLeft(const FrameRun& run) { return run.plan().dispatchCount == 0; }
 
@@ -48,14 +55,12 @@ std::optional<Worst> alias(Subject& s) {
   return differentBits(s.output, s.renderer.render(other, *run, other.index), s.owned);
 }
 
-std::optional<Worst> engineCells(Subject& s) {
+std::optional<Worst> lists(Subject& s) {
   StressFrame other = s.frame;
-  const bool hands = s.frame.settings.indirectDispatches == PELLUCID_INDIRECT_CELLS;
-  other.settings.indirectDispatches = hands ? PELLUCID_INDIRECT_NONE : PELLUCID_INDIRECT_CELLS;
+  const bool asks = s.frame.settings.indirectDispatches == PELLUCID_INDIRECT_MATERIAL;
+  other.settings.indirectDispatches = asks ? PELLUCID_INDIRECT_NONE : PELLUCID_INDIRECT_MATERIAL;
   const std::unique_ptr<FrameRun> run = s.renderer.prepare(other);
-  PellucidCells cells{};
-  pellucidGetCells(hands ? &s.run->frame() : &run->frame(), &cells);
-  if (cells.blocks[0] == 0) return {};
+  if (!hasLists(*s.run) && !hasLists(*run)) return {};
   return differentBits(s.output, s.renderer.render(other, *run, other.index), s.owned);
 }
 
@@ -180,8 +185,8 @@ std::span<const Check> bitChecks() {
       {"same-bits", "a second recording over other garbage has the same bits", "all", 0, 0, kBits, &sameBits},
       {"alias", "an output that is the irradiance has the bits of one that is not",
        "frames with dispatches, but for debug views", 0, 0, kBits, &alias},
-      {"engine-cells", "tile lists of cells that an engine hands in change no bit", "frames with tile lists",
-       0, 0, kBits, &engineCells},
+      {"lists", "groups that go by lists of blocks with material have the bits of all groups",
+       "frames with lists, or with lists where they were asked for", 0, 0, kBits, &lists},
       {"unowned-pixels", "irradiance, normals and albedo of pixels that are not owned change no bit",
        "frames with pixels that are not owned", 0, 0, kBits, &unownedPixels},
       {"unowned-depths", "depths of pixels that are not owned change no bit",

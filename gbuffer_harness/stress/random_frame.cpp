@@ -20,11 +20,6 @@ CoefficientMaterial coefficients(double scattering, double absorption) {
 
 BurleyMaterial burley(double distance) { return {{distance, distance / 1.4, distance / 2}, std::nullopt}; }
 
-bool gatherable(const PellucidMaterial& m) {
-  return m.transmittanceModel == PELLUCID_TRANSMITTANCE_EXP2 ||
-         m.transmittanceModel == PELLUCID_TRANSMITTANCE_SINH_EXP;
-}
-
 std::vector<float> minimumDots(Random& random, PellucidAngleModel model) {
   const int side = random.whole(3, 16);
   std::vector<float> table(static_cast<std::size_t>(model == PELLUCID_ANGLE_MINIMUM_DOT_SPHERE ? side * side
@@ -47,17 +42,14 @@ void randomAngles(Random& random, TranslucencySettings& t) {
 }
 
 void randomTranslucency(Random& random, bool wild, const StressFrame& frame, TranslucencySettings& t) {
-  t.gatherSamples = PELLUCID_GATHER_BY_QUALITY;
   if (random.chance(0.2)) t.thicknessSource = PELLUCID_THICKNESS_CAMERA;
   if (random.chance(0.25)) randomAngles(random, t);
   t.chordThickness = random.chance(0.2);
   if (random.chance(0.15)) t.maximumThickness = static_cast<float>(random.magnitude(0.1, wild ? 1e9 : 100));
   if (random.chance(0.2))
     t.transmittanceFilter = {static_cast<float>(random.real()), 1, random.of({0.0f, 0.5f})};
-  if (random.chance(0.3))
-    t.gatherSamples = std::all_of(frame.materials.begin(), frame.materials.end(), gatherable)
-                          ? static_cast<std::uint32_t>(4 * random.whole(0, 16))
-                          : 0;
+  t.gatherSamples = random.chance(0.7) ? random.of({0u, kDefaultGatherSamples, 16u})
+                                       : static_cast<std::uint32_t>(4 * random.whole(0, 16));
   if (random.chance(0.4)) t.gatherSpacing = random.of({1u, 2u, 4u});
   std::uint32_t mark = 1;
   while (mark <= frame.capture.materials.size()) mark *= 2;
@@ -88,14 +80,11 @@ void randomSettings(Random& random, const View& view, const FrameLimits& limits,
                              : 0;
   randomTranslucency(random, frame.wild, frame, s.translucency);
   s.outputFormat = random.of({VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT});
-  s.quality = static_cast<std::uint32_t>(limits.quality >= 0 ? limits.quality : random.whole(0, 2));
+  if (limits.gatherSamples) s.translucency.gatherSamples = *limits.gatherSamples;
   if (random.chance(0.1)) s.targetError = static_cast<float>(random.magnitude(0.001, 1));
   if (random.chance(0.3)) s.nearestDistance = nearestDistance(frame, view);
   s.aliasOutput = random.chance(0.3);
-  s.indirectDispatches =
-      random.of({PELLUCID_INDIRECT_NONE, PELLUCID_INDIRECT_MATERIAL, PELLUCID_INDIRECT_MATERIAL,
-                 PELLUCID_INDIRECT_LIGHT, PELLUCID_INDIRECT_CELLS});
-  s.cells = random.of({CellWords::Found, CellWords::More, CellWords::All});
+  s.indirectDispatches = random.chance(0.6) ? PELLUCID_INDIRECT_MATERIAL : PELLUCID_INDIRECT_NONE;
   if (random.chance(0.1)) s.reuse = random.of({PELLUCID_REUSE_ALTERNATE, PELLUCID_REUSE_COHERENCE});
   // Views of lights need all in one dispatch.
   if (random.chance(0.08))

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,9 +29,9 @@ private:
 };
 
 struct FrameLimits {
-  int quality = -1;    // of all frames; -1: any
-  int pixels = 65536;  // of the largest frame; few frames are above 64 x 64
-  int side = 16384;    // of the longest frame: what images of any Vulkan device may have is less or more
+  std::optional<std::uint32_t> gatherSamples;  // of all frames; none: any
+  int pixels = 65536;                          // of the largest frame; few frames are above 64 x 64
+  int side = 16384;  // of the longest frame: what images of any Vulkan device may have is less or more
 };
 
 struct StressFrame {

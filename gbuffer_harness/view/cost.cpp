@@ -64,8 +64,9 @@ bool Budget::step(double frameMilliseconds, ReplaySettings& settings) {
   if (!on) return false;
   pellucidStepBudget(&state, static_cast<float>(frameMilliseconds), milliseconds);
   const PellucidReuse reuse = state.reuse ? PELLUCID_REUSE_COHERENCE : PELLUCID_REUSE_NONE;
-  const bool changed = settings.quality != state.quality || settings.reuse != reuse;
-  settings.quality = state.quality;
+  std::uint32_t& samples = settings.translucency.gatherSamples;
+  const bool changed = samples != state.gatherSamples || settings.reuse != reuse;
+  samples = state.gatherSamples;
   settings.reuse = reuse;
   return changed;
 }

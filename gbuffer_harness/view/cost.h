@@ -43,7 +43,7 @@ struct Budget {
   PellucidBudgetState state{};
 
   Budget();
-  // After one frame of that time: true where settings.quality or settings.reuse changed.
+  // After one frame of that time: true where the samples or the reuse changed.
   bool step(double frameMilliseconds, ReplaySettings& settings);
 };
 

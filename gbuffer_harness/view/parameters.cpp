@@ -63,6 +63,11 @@ Parameter usedWhere(Parameter parameter, std::function<bool(const ReplaySettings
 }
 
 bool hasTranslucency(const ReplaySettings& s) { return s.features & PELLUCID_FEATURE_TRANSLUCENCY; }
+// Other settings of the frame may still keep light from being gathered; the plan's skips say so.
+bool gathers(const ReplaySettings& s) {
+  return hasTranslucency(s) && s.features & PELLUCID_FEATURE_DIFFUSION &&
+         s.translucency.thicknessSource == PELLUCID_THICKNESS_LIGHT;
+}
 bool angleIs(const ReplaySettings& s, PellucidAngleModel model) { return s.translucency.angleModel == model; }
 
 Parameter feature(const char* label, const char* help, std::uint32_t bit) {
@@ -88,10 +93,11 @@ Parameter numbered(Parameter parameter, const Access& field, std::vector<std::ui
 }
 
 Parameter gatherSamples() {
-  return numbered(
-      choice("gather", "samples", "Entry points of the shadow map that each probe gathers light from.",
-             {"by quality", "one thickness", "4", "8", "12", "16", "24", "32", "48", "64"}),
-      FIELD(translucency.gatherSamples), {PELLUCID_GATHER_BY_QUALITY, 0, 4, 8, 12, 16, 24, 32, 48, 64});
+  Parameter parameter =
+      whole("gather", "samples", "Of the shadow map, for each probe of the gather; 0: one thickness a pixel.",
+            0, 64);
+  parameter.step = 4;
+  return bound(parameter, FIELD(translucency.gatherSamples));
 }
 
 Parameter gatherSpacing() {
@@ -104,17 +110,16 @@ ParameterGroup quality() {
   return {
       "Quality",
       true,
-      {bound(whole("quality", "quality", "0: one thickness a pixel; 1 and 2 gather light.", 0, 2),
-             FIELD(quality)),
-       usedWhere(gatherSamples(), hasTranslucency), usedWhere(gatherSpacing(), hasTranslucency),
+      {usedWhere(gatherSamples(), [](const ReplaySettings& s) { return gathers(s) && s.targetError == 0; }),
+       usedWhere(gatherSpacing(), gathers),
        feature("translucency", "Light that comes through.", PELLUCID_FEATURE_TRANSLUCENCY),
        feature("diffusion", "Light that leaves beside where it enters.", PELLUCID_FEATURE_DIFFUSION),
        bound(real("target-error", "target error",
-                  "Above 0: the least quality of the diffusion whose relative RMSE stays below.", 0, 0.2f),
+                  "Above 0: in place of samples, the least of 0, 8 and 16 whose relative RMSE stays below.",
+                  0, 0.2f),
              FIELD(targetError)),
-       bound(choice("indirect", "indirect",
-                    "Passes run everywhere, where there is material, light, or cells of the engine's.",
-                    {"none", "material", "light", "cells"}),
+       bound(choice("indirect", "indirect", "Passes run everywhere, or where the GPU finds material.",
+                    {"none", "material"}),
              FIELD(indirectDispatches))}};
 }
 
@@ -146,8 +151,7 @@ ParameterGroup thickness() {
 
 ParameterGroup angles() {
   const auto oneThickness = [](const ReplaySettings& s) {
-    return hasTranslucency(s) && (s.quality == 0 || s.translucency.gatherSamples == 0 ||
-                                  s.translucency.thicknessSource == PELLUCID_THICKNESS_CAMERA);
+    return hasTranslucency(s) && (s.translucency.gatherSamples == 0 || !gathers(s));
   };
   // The models with tables of directions need tables that sliders cannot make.
   return {
@@ -206,7 +210,7 @@ void assign(const Parameter& parameter, ReplaySettings& settings, Values to) {
   for (std::size_t i = 0; i < to.size(); ++i) {
     if (std::isnan(to[i])) to[i] = before[i];
     to[i] = std::clamp(to[i], parameter.low, parameter.high);
-    if (parameter.kind != ParameterKind::Real) to[i] = std::round(to[i]);
+    if (parameter.kind != ParameterKind::Real) to[i] = parameter.step * std::round(to[i] / parameter.step);
   }
   parameter.set(settings, to);
 }

@@ -26,6 +26,7 @@ struct Parameter {
   ParameterKind kind = ParameterKind::Real;
   int components = 1;       // 1..4; of Real
   float low = 0, high = 1;  // both are allowed
+  float step = 1;           // of Whole: values are multiples of it
   std::vector<std::string> choices;
   std::function<Values(const ReplaySettings&)> get;
   std::function<void(ReplaySettings&, const Values&)> set;

@@ -67,6 +67,8 @@ void setParameter(const ScriptLine& line, ReplaySettings& settings) {
                                                    : parse(line, part);
     if (values[i] < parameter->low || values[i] > parameter->high)
       fail(line, "\"" + part + "\" is outside of what " + name + " allows");
+    if (parameter->kind == ParameterKind::Whole && std::fmod(values[i], parameter->step) != 0)
+      fail(line, "\"" + part + "\" is not a multiple of " + std::to_string(std::lround(parameter->step)));
   }
   assign(*parameter, settings, values);
 }

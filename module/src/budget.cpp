@@ -1,21 +1,22 @@
 // Holds a frame time. Whelan 2009, 6.2.5.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "pellucid/pellucid_budget.h"
-#include "quality.h"
 
 namespace {
 
-constexpr uint32_t kBest = pellucid::kBestQuality;
+constexpr uint32_t kSamples[] = {0, 4, 8, 16};  // of a probe, from the cheapest on
+constexpr uint32_t kBest = kSamples[3];
 constexpr uint32_t kOverFrames = 3;    // a single spike changes nothing
 constexpr uint32_t kSettleFrames = 2;  // GPU times arrive a frame or two late
 constexpr uint32_t kFirstWait = 30;    // frames of room before a better setting is tried
 constexpr uint32_t kLongestWait = 4096;
 constexpr float kRoom = 0.7f;  // of the budget; the next setting may cost as much again as it frees
 
-bool best(const PellucidBudgetState& s) { return s.quality == kBest && s.reuse == 0; }
-bool cheapest(const PellucidBudgetState& s) { return s.quality == 0; }
+bool best(const PellucidBudgetState& s) { return s.gatherSamples == kBest && s.reuse == 0; }
+bool cheapest(const PellucidBudgetState& s) { return s.gatherSamples == 0; }
 
 void changed(PellucidBudgetState& s) {
   s.overFrames = s.underFrames = s.easierFrames = 0;
@@ -24,7 +25,8 @@ void changed(PellucidBudgetState& s) {
 
 // A state that was never initialized or got damaged goes on from the nearest valid one.
 void mend(PellucidBudgetState& s) {
-  s.quality = std::min(s.quality, kBest);
+  s.gatherSamples = *std::find_if(std::begin(kSamples), std::end(kSamples) - 1,
+                                  [&](uint32_t samples) { return samples >= s.gatherSamples; });
   s.reuse = std::min(s.reuse, 1u);
   s.settleFrames = std::min(s.settleFrames, kSettleFrames);
   s.overFrames = std::min(s.overFrames, kOverFrames);
@@ -35,18 +37,18 @@ void mend(PellucidBudgetState& s) {
   if (!(s.raisedMs >= 0) || !std::isfinite(s.raisedMs)) s.raisedMs = 0;
 }
 
-// Reuse goes first: it costs a lag in the light, a lower quality costs sharpness.
+// Reuse goes first: it costs a lag in the light, fewer samples cost dots.
 void lower(PellucidBudgetState& s) {
   if (s.reuse == 0)
     s.reuse = 1;
   else
-    --s.quality;
+    s.gatherSamples = *(std::find(std::begin(kSamples), std::end(kSamples), s.gatherSamples) - 1);
   changed(s);
 }
 
 void raise(PellucidBudgetState& s) {
-  if (s.quality < kBest)
-    ++s.quality;
+  if (s.gatherSamples < kBest)
+    s.gatherSamples = *(std::find(std::begin(kSamples), std::end(kSamples), s.gatherSamples) + 1);
   else
     s.reuse = 0;
   changed(s);
@@ -57,7 +59,7 @@ void raise(PellucidBudgetState& s) {
 extern "C" void pellucidInitBudgetState(PellucidBudgetState* state) {
   if (!state) return;
   *state = {};
-  state->quality = kBest;
+  state->gatherSamples = kBest;
   state->waitFrames = kFirstWait;
 }
 

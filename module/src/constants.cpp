@@ -78,10 +78,10 @@ shared::FrameConstants frameConstants(const FrameFacts& facts) {
   if (t.constantViewDirection) flags |= PELLUCID_FLAG_CONSTANT_VIEW;
   if (t.chordThickness) flags |= PELLUCID_FLAG_CHORD_THICKNESS;
   if (facts.needsChord) flags |= PELLUCID_FLAG_CHORD;
+  if (facts.diffuses) flags |= PELLUCID_FLAG_DIFFUSED;
   if (facts.wide) flags |= PELLUCID_FLAG_WIDE_OUTPUT;
   if (f.outputMode == PELLUCID_OUTPUT_ADD) flags |= PELLUCID_FLAG_ADDS;
   if (facts.thinWalls) flags |= PELLUCID_FLAG_THIN_WALLS;
-  if (f.features & PELLUCID_FEATURE_DIFFUSION && facts.diffuses) flags |= PELLUCID_FLAG_DIFFUSED;
   c.flags = {flags, f.materialCount, f.debugView, t.angleModel};
   const float* p = t.anglePolynomial;
   c.anglePolynomial = {p[0], p[1], p[2], p[3]};
@@ -93,13 +93,8 @@ shared::FrameConstants frameConstants(const FrameFacts& facts) {
   }
   const PyramidPlace& second = facts.pyramid.levels[2];
   c.level[0] = {-second.rect.x, -second.rect.y, facts.pyramid.sharesColumn - second.rect.x, -second.rect.y};
-  const TileLists& tiles = facts.tiles;
-  c.blocks = {tiles.blocks[0], tiles.blocks[1], tiles.marks, facts.stages.tiles};
-  for (uint32_t list = 0; list < PELLUCID_LISTS; ++list) {
-    c.lists[list / 4][static_cast<int>(list % 4)] = tiles.first[list];
-    c.listGroups[list / 4][static_cast<int>(list % 4)] = tiles.firstGroup[list];
-    c.listRows[list / 4][static_cast<int>(list % 4)] = facts.grids[list].rowsEach;
-  }
+  const Blocks& blocks = facts.blocks;
+  c.blocks = {blocks.columns, blocks.rows, blocks.listWord(), facts.stages.lists};
   return c;
 }
 
@@ -192,12 +187,14 @@ shared::ShadowConstants shadowConstants(const FrameFacts& f, const PellucidShado
   return c;
 }
 
-shared::MaterialConstants materialConstants(const FrameFacts& f, const PellucidMaterial& m) {
+shared::MaterialConstants materialConstants(const FrameFacts& f, uint32_t index) {
+  const PellucidMaterial m = f.material(index);
   shared::MaterialConstants c{};
   c.meta = {m.transmittanceModel, m.gaussianCount, m.thinWalled, 0};
   const float exponent = m.transmittanceModel == PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED ? 1.0f : 0.5f;
   const bool canGather = canBeGathered(m.transmittanceModel) && m.thinWalled == 0;
-  if ((f.gathers || f.ambient.intensity > 0) && canGather) c.gather = gatherConstants(m);
+  // Without diffusion nothing of it is corrected.
+  if ((f.gathers || f.ambient.intensity > 0) && canGather) c.gather = gatherConstants(f.diffused(index));
   // From other models the ambient light takes nothing from visible faces.
   for (glm::vec4& reflectance : c.gather.reflectance)
     if (!canGather) reflectance.x = 1;
@@ -265,44 +262,22 @@ void putLights(const FrameFacts& f, void* mapped) {
   });
 }
 
-// Before the commands, which the plan knows.
-shared::TileCommands tileCommands(const FrameFacts& f) {
-  shared::TileCommands c{};
-  for (uint32_t list = 0; list < PELLUCID_LISTS; ++list) {
-    const GroupGrid& grid = f.grids[list];
-    const auto rows = static_cast<int32_t>(grid.rowsEach);
-    c.groups[list].places = {grid.first[0] - static_cast<int32_t>(f.tiles.firstPixel[0]),
-                             grid.first[1] - static_cast<int32_t>(f.tiles.firstPixel[1]), grid.step[0],
-                             grid.step[1] * rows};
-    c.groups[list].size = {grid.size[0], grid.size[1] + (rows - 1) * grid.step[1],
-                           static_cast<int32_t>(grid.runs), 0};
-    c.groups[list].count = {grid.columns, grid.listedRows(), grid.rowsEach, 0};
-  }
-  c.maps = {f.tiles.maps, f.stages.skipsLight, 0, 0};
+// The lists are empty, and their commands have the groups of the plan's dispatches.
+shared::BlockLists blockLists(const FrameFacts& f, const PellucidPlan& plan) {
+  shared::BlockLists c{};
+  c.maps.x = f.blocks.maps;
   float reach = 0;
   for (uint32_t i = 0; f.gathers && i < f.frame.materialCount; ++i)
     if (const PellucidMaterial m = f.material(i); m.thinWalled == 0)
       reach = std::max(reach, gatherReach(m, f.gatherSamples));
   c.reach.x = reach / (1000 * f.frame.metersPerUnit);
-  return c;
-}
-
-// Indirect commands of dispatches that the GPU decides about.
-void putIndirect(const FrameFacts& facts, const PellucidPlan& plan, void* mapped) {
-  const ConstantsLayout& layout = facts.constants;
   for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
     const PellucidDispatch& d = plan.dispatches[i];
     if (!d.indirect) continue;
-    if (facts.stages.tiles) {  // all that is indirect: the GPU counts groups, from 0 on
-      put(mapped, d.indirectOffset, glm::uvec4(0, d.groups[1], 1, 0));
-      continue;
-    }
-    // Until the GPU finds light there is none.
-    const bool starts =
-        d.indirectOffset == layout.gatherDispatches.offset + offsetof(shared::GatherDispatches, noLight);
-    put(mapped, d.indirectOffset,
-        glm::uvec4(starts ? d.groups[0] : 0, d.groups[1], d.groups[2], d.groups[0]));
+    const VkDeviceSize list = (d.indirectOffset - f.constants.lists.offset) / sizeof(glm::uvec4);
+    c.commands[list] = {0, d.groups[1], d.groups[2], d.groups[0]};
   }
+  return c;
 }
 
 }  // namespace
@@ -317,14 +292,10 @@ PellucidResult writeConstants(const FrameFacts& f, const PellucidPlan& plan, voi
   put(mapped, layout.frame.offset, frameConstants(f));
   putLightTables(f, mapped);
   putLights(f, mapped);
-  if (f.stages.tiles) put(mapped, layout.tileCommands.offset, tileCommands(f));
-  putIndirect(f, plan, mapped);
+  if (f.stages.diffusion) put(mapped, layout.lists.offset, blockLists(f, plan));
   for (uint32_t i = 0; i < f.frame.materialCount; ++i) {
-    const PellucidMaterial material = f.material(i);
-    put(mapped, layout.materials.offset + i * sizeof(shared::MaterialConstants),
-        materialConstants(f, material));
-    put(mapped, layout.kernels.offset + i * sizeof(shared::KernelConstants),
-        kernelConstants(material, kQualities[f.quality].fineFilter));
+    put(mapped, layout.materials.offset + i * sizeof(shared::MaterialConstants), materialConstants(f, i));
+    put(mapped, layout.kernels.offset + i * sizeof(shared::KernelConstants), kernelConstants(f.diffused(i)));
   }
   return PELLUCID_OK;
 }

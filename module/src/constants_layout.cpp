@@ -21,13 +21,10 @@ ConstantsLayout::ConstantsLayout(const FrameFacts& facts) {
   if (facts.gathers) {
     place(&gatherMaps, last.gatherMapBytes + kGatherMapWindow);
     place(&entryMaps, last.entryMapBytes + PELLUCID_DISPATCH_SHADOWS * sizeof(shared::EntryMapConstants));
-    if (!facts.stages.tiles) place(&gatherDispatches, sizeof(shared::GatherDispatches));
   }
-  if (facts.stages.tiles) {
-    place(&tileCommands,
-          sizeof(shared::TileCommands) + facts.tiles.maps * PELLUCID_ENTRY_GROUP_WORDS * sizeof(uint32_t));
-    gatherDispatches = {tileCommands.offset, sizeof(shared::GatherDispatches)};
-  }
+  if (facts.stages.diffusion)
+    place(&lists,
+          sizeof(shared::BlockLists) + facts.blocks.maps * PELLUCID_ENTRY_GROUP_WORDS * sizeof(uint32_t));
 }
 
 namespace {
@@ -46,7 +43,7 @@ VkDeviceSize mostConstants(VkDeviceSize materials, VkDeviceSize lights, VkDevice
          grouped(maps * sizeof(shared::GatherMapConstants), kGatherMapWindow) +
          grouped(maps * sizeof(shared::EntryMapConstants),
                  PELLUCID_DISPATCH_SHADOWS * sizeof(shared::EntryMapConstants)) +
-         aligned(sizeof(shared::TileCommands) + maps * PELLUCID_ENTRY_GROUP_WORDS * sizeof(uint32_t));
+         aligned(sizeof(shared::BlockLists) + maps * PELLUCID_ENTRY_GROUP_WORDS * sizeof(uint32_t));
 }
 
 }  // namespace

@@ -20,8 +20,8 @@ struct ConstantsLayout {
     VkDeviceSize offset, size;
   };
   Range frame{}, lights{}, shadows{}, materials{}, kernels{};
-  Range gatherMaps{}, entryMaps{}, gatherDispatches{};  // of frames that gather
-  Range tileCommands{};                                 // of frames with tile lists; begins with gatherDispatches
+  Range gatherMaps{}, entryMaps{};  // of frames that gather
+  Range lists{};                    // of frames that diffuse: BlockLists
   VkDeviceSize size = 0;
 
   ConstantsLayout() = default;

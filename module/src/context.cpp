@@ -25,7 +25,7 @@ PellucidResult vulkanError(Findings& out, const char* call, VkResult result) {
 namespace {
 
 constexpr uint32_t kAllUses = PELLUCID_USE_TRANSLUCENCY | PELLUCID_USE_GATHER | PELLUCID_USE_DIFFUSION |
-                              PELLUCID_USE_QUALITY_0 | PELLUCID_USE_REUSE | PELLUCID_USE_DEBUG_VIEWS;
+                              PELLUCID_USE_REUSE | PELLUCID_USE_DEBUG_VIEWS;
 
 VkDescriptorType descriptorType(uint32_t binding) {
   switch (binding) {
@@ -38,6 +38,7 @@ VkDescriptorType descriptorType(uint32_t binding) {
       return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     case PELLUCID_BINDING_DESTINATION:
     case PELLUCID_BINDING_LEVELS:
+    case PELLUCID_BINDING_BLOCKS:
       return VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
     default:
       return VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;

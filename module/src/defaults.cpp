@@ -21,8 +21,7 @@ PellucidFrame defaultFrame() {
   for (int i = 0; i < 4; ++i) frame.viewFromWorld[i * 5] = 1;
   frame.outputFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
   frame.coherenceThreshold = 0.005f;
-  frame.quality = 1;
-  frame.gatherSamples = PELLUCID_GATHER_BY_QUALITY;
+  frame.gatherSamples = 8;
   frame.preExposure = 1;
   return frame;
 }

@@ -8,14 +8,14 @@ namespace {
 
 // Groups have as many invocations, Vulkan promises 128.
 constexpr uint32_t kInvocations = 256;
-static_assert(kInvocations == PELLUCID_DIFFUSE_GROUP * PELLUCID_DIFFUSE_GROUP &&
-              kInvocations == PELLUCID_GATHER_GROUP * PELLUCID_GATHER_GROUP &&
-              kInvocations == PELLUCID_FILTER_GROUP * PELLUCID_FILTER_GROUP);
+static_assert(kInvocations == PELLUCID_BLOCK_GROUP * PELLUCID_BLOCK_GROUP &&
+              kInvocations == PELLUCID_FILTER_GROUP * PELLUCID_FILTER_GROUP &&
+              kInvocations == PELLUCID_LIST_GROUP);
 // Of the spatial filter, the pass with most; shader_files_test holds that all have less.
 constexpr uint32_t kSharedBytes = 16384;
 
 // Descriptors of a type in the one set that every pass has; see descriptorType in context.cpp.
-constexpr uint32_t kUniformBuffers = 3, kStorageBuffers = 2, kStorageImages = 2;
+constexpr uint32_t kUniformBuffers = 3, kStorageBuffers = 2, kStorageImages = 3;
 constexpr uint32_t kSampledImages =
     PELLUCID_BINDING_COUNT - kUniformBuffers - kStorageBuffers - kStorageImages;
 
@@ -91,7 +91,7 @@ void checkLimits(const PellucidContextDesc& desc, const VkPhysicalDeviceProperti
   if (!desc.descriptorPools)
     if (const uint32_t most = mostPushed(desc, get); most > 0 && most < PELLUCID_BINDING_COUNT)
       return refuse("maxPushDescriptors", most, PELLUCID_BINDING_COUNT);
-  // The diffusion's texels, words of tile lists, and the output where its format is known.
+  // The diffusion's texels, words of blocks, and the output where its format is known.
   for (const VkFormat format : {VK_FORMAT_R32G32B32A32_UINT, VK_FORMAT_R32_UINT, desc.outputFormat})
     if (format != VK_FORMAT_UNDEFINED && !isStorage(desc, get, format))
       return out.fail(PELLUCID_ERROR_MISSING_FEATURE, "physicalDevice", properties.deviceName,

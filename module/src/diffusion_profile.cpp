@@ -35,12 +35,12 @@ struct Energy {
 };
 
 // One Gaussian can ask for a negative weight of an element, which counts as 0. Where a level and coarser ones have nothing, the
-// level itself has what others give it: without the fine filter, a part of that one's energy.
+// level itself has what others give it.
 double shareOf(double coarser, double all) { return all > 1e-9 ? std::clamp(coarser / all, 0.0, 1.0) : 0; }
 
 }  // namespace
 
-shared::KernelConstants kernelConstants(const PellucidMaterial& m, bool fineFilter) {
+shared::KernelConstants kernelConstants(const PellucidMaterial& m) {
   shared::KernelConstants c{};
   if (m.gaussianCount == 0) return c;
   double deviation[3][PELLUCID_MAX_GAUSSIANS];  // log2, mm
@@ -78,10 +78,8 @@ shared::KernelConstants kernelConstants(const PellucidMaterial& m, bool fineFilt
       put(0, shareOf(level3Above.sum[i], level2.sum[i]));
       put(1, shareOf(coarserAbove.sum[i], level3.sum[i]));
       put(PELLUCID_SHARE_COARSER, shareOf(coarserAbove.sum[i], coarser.sum[i]));
-      double second = std::clamp(pixelLevel2.sum[i], 0.0, 1.0), neighbors = pixelFine.sum[i];
-      if (!fineFilter)
-        second = neighbors = std::clamp(std::lerp(second, neighbors, PELLUCID_FINE_AT_LEVEL_2), 0.0, 1.0);
-      const double shares[] = {second, std::max(second, neighbors)};
+      const double second = std::clamp(pixelLevel2.sum[i], 0.0, 1.0);
+      const double shares[] = {second, std::max(second, pixelFine.sum[i])};
       for (int k = 0; k < PELLUCID_PIXEL_SHARES; ++k)
         c.pixelShare[PELLUCID_PIXEL_SHARES * i + k][channel] = static_cast<float>(shares[k]);
     }

@@ -6,7 +6,7 @@
 
 namespace pellucid {
 
-// All zeros (the pixel keeps everything) for a material without Gaussians. `fineFilter`: as in Quality.
-shared::KernelConstants kernelConstants(const PellucidMaterial& material, bool fineFilter);
+// All zeros (the pixel keeps everything) for a material without Gaussians.
+shared::KernelConstants kernelConstants(const PellucidMaterial& material);
 
 }  // namespace pellucid

@@ -21,8 +21,7 @@ float longestEntrySide(const FrameFacts& facts) {
   for (uint32_t i = 0; i < facts.frame.materialCount; ++i)
     if (const PellucidMaterial m = facts.material(i); m.thinWalled == 0)
       shortest = std::min(shortest, meanFreePath(m));
-  return shortest / (kPerPath * static_cast<float>(kQualities[facts.frame.quality].finer) * 1000 *
-                     facts.frame.metersPerUnit);
+  return shortest / (kPerPath * 1000 * facts.frame.metersPerUnit);
 }
 
 EntryExtent entryExtent(const FrameFacts& facts, const PellucidLight& light, uint32_t map) {

@@ -27,8 +27,8 @@ struct EntryExtent {
   uint32_t side;  // texels of the map that an entry point stands for, a side
 };
 
-// Longest side of an entry point across the light, scene units: of a frame's shortest mean free path a half,
-// and by frame.quality finer. A half costs heads 3 % of the gather's error, twice as much 60 %
+// Longest side of an entry point across the light, scene units: of a frame's shortest mean free path a half.
+// A half costs heads 3 % of the gather's error, twice as much 60 %
 // (docs/lab.md).
 float longestEntrySide(const FrameFacts& facts);
 

@@ -27,6 +27,7 @@ void addView(FrameFacts& f) {
 
 const char* whyNotGathered(const FrameFacts& f) {
   if (f.frame.thicknessSource == PELLUCID_THICKNESS_CAMERA) return "thickness comes from the camera";
+  if (f.thesis.materialMarkBit != 0) return "materialMarkBit is of one thickness a pixel";
   if (f.thesis.angleModel != PELLUCID_ANGLE_NORMAL || f.thesis.constantViewDirection != 0 ||
       f.thesis.minimumDot != 0 || f.thesis.maximumThickness > 0)
     return "angleModel, constantViewDirection, minimumDot and maximumThickness are of one thickness a pixel";
@@ -40,14 +41,13 @@ const char* whyNotGathered(const FrameFacts& f) {
 uint32_t gatherSpacing(const PellucidFrame& frame) {
   if (frame.gatherSpacing != 0) return frame.gatherSpacing;
   const uint64_t pixels = static_cast<uint64_t>(frame.imageExtent[0]) * frame.imageExtent[1];
-  const uint32_t spacing = pixels > 1u << 20 ? 4 : pixels > 1u << 19 ? 2 : 1;
-  return std::max(spacing / kQualities[frame.quality].finer, 1u);
+  return pixels > 1u << 20 ? 4 : pixels > 1u << 19 ? 2 : 1;
 }
 
 void addMaterials(FrameFacts& f) {
   for (uint32_t i = 0; i < f.frame.materialCount; ++i) {
     const PellucidMaterial m = f.material(i);
-    f.diffuses = f.diffuses || m.gaussianCount > 0;
+    f.diffuses = f.diffuses || f.diffused(i).gaussianCount > 0;
     (m.thinWalled != 0 ? f.thinWalls : f.solids) = true;
   }
   f.reach = diffusionReach(f);
@@ -55,13 +55,12 @@ void addMaterials(FrameFacts& f) {
 
 void addGather(FrameFacts& f) {
   f.whyNotGathered = whyNotGathered(f);
-  if (f.frame.targetError > 0) f.missesTarget = !qualityOfTarget(f, &f.frame.quality);
-  f.gatherSamples = gatherSamplesAt(f, f.frame.quality);
+  if (f.frame.targetError > 0) f.missesTarget = !samplesOfTarget(f, &f.frame.gatherSamples);
+  f.gatherSamples = f.whyNotGathered ? 0 : f.frame.gatherSamples;
   f.gatherSpacing = gatherSpacing(f.frame);
   f.longestEntrySide = longestEntrySide(f);
   f.gathers = (f.frame.features & PELLUCID_FEATURE_TRANSLUCENCY) != 0 && f.gatherSamples > 0 && !f.debug();
-  f.shapes = f.gathers && (f.frame.features & PELLUCID_FEATURE_DIFFUSION) != 0 && f.diffuses &&
-             f.has(PELLUCID_RESOURCE_NORMAL);
+  f.shapes = f.gathers && f.diffuses && f.has(PELLUCID_RESOURCE_NORMAL);
 }
 
 void addLights(FrameFacts& f) {
@@ -74,20 +73,18 @@ void addLights(FrameFacts& f) {
   f.lights = LightGroups::of(f);
 }
 
-void addDiffusion(FrameFacts& f) {
-  f.quality = f.frame.quality;
+// Leaves out levels for radii that are small in pixels.
+void limitLevels(FrameFacts& f) {
   while (f.reach.deviation > 0 && f.coarsestLevel > kFirstLevel + 2 &&
          f.reach.deviation <= deviationWithin(f.coarsestLevel - 2))
     f.coarsestLevel -= 2;
 }
 
 void addStages(FrameFacts& f) {
+  f.blocks = Blocks(f, f.rect);
   f.stages = Stages(f);
   f.coarsestLevel = f.pyramid.coarsest;
-  if (f.stages.diffusion) addDiffusion(f);
-  f.grids = groupGrids(f, f.rect, f.pyramid);
-  f.stages.tiles = f.stages.diffusion && whyNoTileLists(f) == nullptr;
-  if (f.stages.tiles) f.tiles = TileLists(f, f.rect, f.grids);
+  if (f.stages.diffusion) limitLevels(f);
   f.constants = ConstantsLayout(f);
 }
 
@@ -125,6 +122,12 @@ PellucidMaterial FrameFacts::material(uint32_t index) const {
     std::fill_n(m.transmittance[c], 5, 0.0f);
     m.transmittance[c][0] = m.wallTransmittance[c];
   }
+  return m;
+}
+
+PellucidMaterial FrameFacts::diffused(uint32_t index) const {
+  PellucidMaterial m = material(index);
+  if (!(frame.features & PELLUCID_FEATURE_DIFFUSION)) m.gaussianCount = 0;
   return m;
 }
 

@@ -4,6 +4,7 @@
 #include <glm/glm.hpp>
 
 #include "ambient.h"
+#include "blocks.h"
 #include "camera.h"
 #include "constants_layout.h"
 #include "cull.h"
@@ -15,7 +16,6 @@
 #include "quality.h"
 #include "rect.h"
 #include "stages.h"
-#include "tiles.h"
 
 namespace pellucid {
 
@@ -41,8 +41,8 @@ struct FrameFacts {
   DiffusionReach reach{};
 
   // ---- Of the gather
-  const char* whyNotGathered = nullptr;  // why frame.quality cannot choose one; NULL: it can
-  uint32_t gatherSamples = 0;            // of each probe, by frame.quality if that chooses
+  const char* whyNotGathered = nullptr;  // NULL: lights with a map can be
+  uint32_t gatherSamples = 0;            // of each probe, by frame.targetError if that chooses
   uint32_t gatherSpacing = 0;            // pixels a side of what one probe stands for
   bool gathers = false;                  // lights with a map are gathered from
   bool shapes = false;                   // curved surfaces return more or less light than planes, as probes find
@@ -55,11 +55,9 @@ struct FrameFacts {
 
   // ---- Of what runs
   Stages stages;
-  uint32_t quality = 0;        // of the diffusion; 0 where nothing diffuses
-  bool missesTarget = false;   // no quality has frame.targetError
+  bool missesTarget = false;   // no number of samples has frame.targetError
   uint32_t coarsestLevel = 0;  // of the pyramid that the diffusion needs
-  GroupGrids grids{};          // of passes that have lists
-  TileLists tiles;             // with stages.tiles
+  Blocks blocks;
   ConstantsLayout constants;
 
   bool has(PellucidResource image) const { return (images & 1u << image) != 0; }
@@ -87,6 +85,10 @@ struct FrameFacts {
   // frame.materials[index] with the defaults of fields that the caller's lacks. A thin wall's T(d) is
   // constant.
   PellucidMaterial material(uint32_t index) const;
+
+  // As the diffusion takes it: without a profile where the diffusion is not among the features. Its passes add
+  // gathered light there, too.
+  PellucidMaterial diffused(uint32_t index) const;
 
   // Why a light adds nothing to the frame, or nullptr. Static string.
   const char* whySkipped(const PellucidLight& light) const { return view.whySkipped(*this, light); }

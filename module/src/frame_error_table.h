@@ -1,4 +1,4 @@
-// Relative RMSE of whole frames against path tracing, of qualities 0 to 2: the worst channel of the worst
+// Relative RMSE of whole frames against path tracing, with 0, 8 and 16 samples a probe: the worst channel of the worst
 // frame among the ear, the heads and the bunny of docs/accuracy.md, which is the ear.
 // tests/gpu/shared_captures_test.cpp measures the ear's again; bench/bench_test.cpp holds the other frames
 // against them.
@@ -6,6 +6,6 @@
 
 namespace pellucid {
 
-constexpr float kFrameError[] = {0.177f, 0.0605f, 0.0598f};
+constexpr float kFrameError[] = {0.179f, 0.0605f, 0.0598f};
 
 }  // namespace pellucid

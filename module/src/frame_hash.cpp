@@ -50,7 +50,7 @@ FrameHash hashOf(const FrameFacts& facts) {
   settings.add(RANGE(t, angleModel, objectCenter));
   if (t.minimumDotTable) settings.add(t.minimumDotTable, minimumDotEntries(t) * sizeof(float));
   settings.add(RANGE(f, gatherSamples, frameLoad));
-  settings.add(RANGE(f, quality, preExposure));
+  settings.add(RANGE(f, targetError, preExposure));
   if (f.ambient) of(FramePart::Lights).add(f.ambient, kAmbientCoefficients * sizeof *f.ambient);
   for (uint32_t i = 0; i < f.materialCount; ++i) {
     const PellucidMaterial material = facts.material(i);

@@ -1,4 +1,4 @@
-// A material's constants for the light-space gather (docs/gather.md). Pure.
+// A material's constants for the light-space gather (docs/how-it-works.md). Pure.
 #pragma once
 
 #include "pellucid/pellucid.h"

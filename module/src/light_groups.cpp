@@ -34,8 +34,8 @@ bool LightGroup::readsExit(const FrameFacts& facts, const PellucidLight& light,
 
 bool LightGroup::addLight(const FrameFacts& facts, const PellucidLight& light) {
   const PellucidFrame& frame = facts.frame;
-  // The pass that adds gathered light binds no shadow images.
-  if (hasProbes() && !facts.isGathered(light) && light.shadowMapCount > 0) return false;
+  // Probes and the pass of one thickness a pixel take groups of their own.
+  if (hasProbes() && !facts.isGathered(light)) return false;
   LightGroup grown = *this;
   // Dispatches of thin walls' light would read the images, too.
   if (facts.isGathered(light) && !facts.thinWalls) grown.mostImages = PELLUCID_ENTRY_IMAGE_COUNT;
@@ -55,9 +55,6 @@ bool LightGroup::addLight(const FrameFacts& facts, const PellucidLight& light) {
     }
     if (grown.entryRows > kEntryRows) return false;
     ++grown.gathered;
-    grown.directional = grown.directional && light.type == PELLUCID_LIGHT_DIRECTIONAL &&
-                        light.shadowMapCount == 1 &&
-                        frame.shadowMaps[light.firstShadowMap].encoding == PELLUCID_DEPTH_DEVICE;
   }
   ++grown.lightCount;
   *this = grown;

@@ -21,7 +21,6 @@ struct LightGroup {
   VkDeviceSize gatherMapBytes = 0, entryMapBytes = 0;
   uint32_t gathered = 0;                     // lights that are gathered from; the first ones
   bool shapes = false;                       // its probes say how much light curved surfaces return
-  bool directional = true;                   // these are directional with one shadow map of device depth
   uint32_t entryColumns = 0, entryRows = 0;  // of their maps' entry points
   uint32_t entryWidth = 0, entryHeight = 0;  // the most that one of them has
   bool beside = true;                        // exit depths and caster materials have slots among the images
@@ -70,10 +69,10 @@ struct LightGroups {
   uint32_t gatherDispatches() const {
     return gathered > 0 ? 2 * gathered + (first[0].gathered > 0 ? 1 : 0) : 0;
   }
-  // Dispatches over all pixels. What is gathered in several groups is added at once.
-  uint32_t fused() const { return count - (gathered > 0 ? gathered - 1 : 0); }
+  // Dispatches over all pixels, of one thickness a pixel.
+  uint32_t fused() const { return count - gathered; }
 
-  // Dispatches of thin walls' light beside a gather. Without one, what adds solids' light adds theirs.
+  // Dispatches of thin walls' light beside a gather. Without one, the pass of solids' light adds it.
   uint32_t walls(const FrameFacts& facts) const;
 
 private:

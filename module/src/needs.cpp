@@ -19,24 +19,18 @@ struct Extent {
 
 // Extents of images of packed texels, in their order: the pyramid's, probes, entry points.
 Extent texelExtent(const FrameFacts& f, uint32_t index) {
-  const Stages& stages = f.stages;
-  const uint32_t pyramid = stages.pyramidImages();
-  Extent size{1, 1};
-  if (index < pyramid) size = {f.pyramid.images[index].width, f.pyramid.images[index].height};
-  const bool entryPoints =
-      stages.gathered > 0 && index == (stages.entriesApart() ? pyramid + 1 : uint32_t{0});
-  if (entryPoints) size.fit(withCoarserEntries(f.lights.entryColumns), f.lights.entryRows);
+  const uint32_t pyramid = f.stages.pyramidImages();
+  if (index < pyramid) return {f.pyramid.images[index].width, f.pyramid.images[index].height};
+  Extent size{parts(f.frame.imageExtent[0], f.gatherSpacing), parts(f.frame.imageExtent[1], f.gatherSpacing)};
   // Filtered probes take the place of entry points.
-  if (entryPoints || (stages.gathered > 0 && index == pyramid))
-    size.fit(parts(f.frame.imageExtent[0], f.gatherSpacing), parts(f.frame.imageExtent[1], f.gatherSpacing));
+  if (index > pyramid) size.fit(withCoarserEntries(f.lights.entryColumns), f.lights.entryRows);
   return size;
 }
 
-// For any render rect: none has more blocks and groups than the whole image.
-Extent tilesExtent(const FrameFacts& f) {
-  const Rect all{0, 0, f.frame.imageExtent[0], f.frame.imageExtent[1]};
-  const TileLists lists(f, all, groupGrids(f, all, Pyramid(f.frame.imageExtent, all)));
-  return {TileLists::kColumns, parts(lists.words, TileLists::kColumns)};
+// For any render rect: none has more blocks than the whole image.
+Extent blocksExtent(const FrameFacts& f) {
+  const Blocks blocks(f, {0, 0, f.frame.imageExtent[0], f.frame.imageExtent[1]});
+  return {Blocks::kColumns, parts(blocks.words(), Blocks::kColumns)};
 }
 
 // The dispatches of the plan that bind the image, with those that run beside them: no barrier lies between.
@@ -71,17 +65,17 @@ PellucidResult imageNeeds(const FrameFacts& f, uint32_t* count, PellucidImageNee
                                                  : 0;
   for (uint32_t i = 0; i < *count && i < room; ++i) {
     const bool persistent = i == transients;
-    const bool tiles = stages.tiles && i == stages.tilesTransient();
-    const bool texels = persistent ? stages.keepsProbes : i >= colors && !tiles;
-    const Extent size = tiles    ? tilesExtent(f)
+    const bool blocks = stages.diffusion && i == stages.blocksTransient();
+    const bool texels = persistent ? stages.keepsProbes : i >= colors && !blocks;
+    const Extent size = blocks   ? blocksExtent(f)
                         : texels ? texelExtent(f, persistent ? stages.pyramidImages() : i - colors)
                                  : Extent{f.frame.imageExtent[0], f.frame.imageExtent[1]};
     PellucidImageNeed& need = needs[i];
     need = {};
-    need.format = tiles ? VK_FORMAT_R32_UINT : texels ? VK_FORMAT_R32G32B32A32_UINT : f.colorFormat;
+    need.format = blocks ? VK_FORMAT_R32_UINT : texels ? VK_FORMAT_R32G32B32A32_UINT : f.colorFormat;
     need.extent[0] = size.width;
     need.extent[1] = size.height;
-    need.bytes = (tiles ? 4 : texels ? kTexelBytes : f.wide ? 16 : 8) * size.width * size.height;
+    need.bytes = (blocks ? 4 : texels ? kTexelBytes : f.wide ? 16 : 8) * size.width * size.height;
     need.persistent = persistent;
     addUse(plan, persistent ? static_cast<uint32_t>(PELLUCID_RESOURCE_HISTORY) : kTransient0 + i, need);
     need.firstDispatch -= std::min(need.firstDispatch, refreshing);

@@ -14,23 +14,15 @@ enum class Pipeline : uint32_t {
   Translucency,
   DebugView,
   AddHistory,
-  FindCells,
-  ListGroups,
   BaseLevel,
+  ListBlocks,
   Downsample,
   Upsample,
   Diffuse,
-  DiffuseGathered,
-  DiffuseCoarse,  // without the fine filter: quality 0
-  DiffuseCoarseGathered,
   EntryPoints,
-  EntryPointsDirectional,  // see compute/frame/flags.glsl
   Probes,
-  ProbesDirectional,
   ProbesShared,  // two invocations each, for two lights and more
-  ProbesSharedDirectional,
   FilterProbes,
-  AddGathered,
   Count
 };
 
@@ -42,7 +34,7 @@ struct PipelineDesc {
   std::size_t wordCount;
   uint32_t uses;           // PellucidUse bits, all of which it takes to make it
   uint32_t constantCount;  // of constants
-  std::array<PellucidSpecialization, 2> constants;
+  std::array<PellucidSpecialization, 1> constants;
 };
 
 // `index` < kPipelineCount. shadowViewType: PellucidContextDesc's, 2D or 2D_ARRAY.

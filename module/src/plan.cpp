@@ -4,7 +4,6 @@
 #include "plan_diffusion.h"
 #include "plan_gather.h"
 #include "plan_state.h"
-#include "plan_tiles.h"
 #include "plan_translucency.h"
 
 namespace pellucid {
@@ -56,23 +55,21 @@ void addSkips(PlanBuilder& b) {
     b.skip("translucency", "no light can contribute");
   else
     skipBeside(b);
-  const bool byQuality = f.frame.gatherSamples == PELLUCID_GATHER_BY_QUALITY;
-  if ((byQuality ? f.frame.quality : f.frame.gatherSamples) > 0 && f.gatherSamples == 0 && f.whyNotGathered)
-    b.skip("gather", f.whyNotGathered);
+  if (f.frame.gatherSamples > 0 && f.whyNotGathered) b.skip("gather", f.whyNotGathered);
   if (!(f.frame.features & PELLUCID_FEATURE_DIFFUSION))
     b.skip("diffusion", "not among the features");
   else if (f.debug())
     b.skip("diffusion", "a debug view is written instead");
-  else if (!f.stages.diffusion)
+  else if (!f.diffuses)
     b.skip("diffusion", "no material diffuses");
   if (f.stages.nothing)
     b.skip("all dispatches",
            "no light comes through, nothing diffuses, and the output is the irradiance image");
-  if (f.missesTarget) b.skip("targetError", "no quality is that exact");
+  if (f.missesTarget) b.skip("targetError", "no number of samples is that exact");
   if (!f.stages.diffusion) return;
-  if (asksForTileLists(f.frame) && !f.stages.tiles) b.skip("tile lists", whyNoTileLists(f));
+  if (f.frame.indirectDispatches != PELLUCID_INDIRECT_NONE && !f.stages.lists) b.skip("lists", whyNoLists(f));
   for (uint32_t i = 0; i < f.frame.materialCount; ++i)
-    if (f.reach.pixelsPerMm * widestDeviation(f.material(i)) > levelDeviation(f.pyramid.coarsest))
+    if (f.reach.pixelsPerMm * widestDeviation(f.diffused(i)) > levelDeviation(f.pyramid.coarsest))
       b.skip("diffusion radius", "wider than the pyramid holds");
 }
 
@@ -85,7 +82,6 @@ public:
 
   void addAll() {
     if (stages_.nothing) return;
-    if (stages_.tiles) addTileLists(b_);
     // Gathered light has already spread on its way through; diffusing it again would spread it twice.
     if (b_.facts.gathers) {
       thinWalls();
@@ -105,20 +101,15 @@ private:
     return transient;
   }
 
-  // Calls fused(const LightGroup&) for each group after what is gathered from it.
-  template <class Fused>
-  void forEachFused(Fused&& fused) {
-    uint32_t index = 0;
-    for (const LightGroup& group : b_.facts.lights.list()) {
-      const bool gathers = group.hasProbes() && !reused_ && !stages_.overlaps;
-      if (gathers) {
-        if (group.gathered > 0) addEntryPoints(b_, group);
-        addProbes(b_, group, index > 0);
-      }
-      if (++index < stages_.gathered) continue;
-      if (gathers) addSpatialFilter(b_);
-      fused(group);
+  // Entry points and probes of each group, and what the groups share: all lights that are gathered from.
+  void gather() {
+    if (stages_.gathered == 0 || stages_.overlaps || reused_) return;
+    for (uint32_t i = 0; i < stages_.gathered; ++i) {
+      const LightGroup& group = b_.facts.lights.list()[i];
+      addEntryPoints(b_, group);
+      addProbes(b_, group, i > 0);
     }
+    addSpatialFilter(b_);
   }
 
   // Before the diffusion, as without a gather: materials say whether light spreads within a sheet.
@@ -139,16 +130,19 @@ private:
   }
 
   void translucency() {
+    const auto each = [&](auto&& add) {
+      for (const LightGroup& group : b_.facts.lights.list().subspan(stages_.gathered)) add(group);
+    };
     if (stages_.history) {
       if (!reused_)
-        forEachFused([&](const LightGroup& group) {
+        each([&](const LightGroup& group) {
           addTranslucency(b_, group, PELLUCID_RESOURCE_HISTORY, PELLUCID_RESOURCE_HISTORY);
         });
       const uint32_t to = destination();
       addHistory(b_, source_, to);
       source_ = to;
     } else if (stages_.lights) {
-      forEachFused([&](const LightGroup& group) { fused(group); });
+      each([&](const LightGroup& group) { fused(group); });
     } else if (stages_.fused > 0) {
       fused(LightGroup{});
     }
@@ -156,39 +150,32 @@ private:
 
   void diffusion() {
     if (!stages_.diffusion) return;
-    const uint32_t coarsest = b_.facts.coarsestLevel;
-    // The dispatch that upsamples makes the last two levels, so that none of few texels holds up the others.
-    const uint32_t downsampled = coarsest - (coarsest == PELLUCID_LAST_LEVEL ? 2 : 0);
-    // Entry points, probes and the spatial filter, each beside one of the last three dispatches before the
-    // one that adds probes: base level, downsampling and upsampling are at least as many.
-    uint32_t left = 2 + (downsampled - kFirstLevel) / 2;
-    const auto alongside = [&] {
-      const uint32_t step = left--;
-      if (!stages_.overlaps || reused_ || step > 3) return;
-      const LightGroup& group = b_.facts.lights.list().front();
-      if (step == 3 && group.gathered == 0) return;
-      b_.alongside = true;
-      if (step == 3)
-        addEntryPoints(b_, group);
-      else if (step == 2)
-        addProbes(b_, group, false);
-      else
-        addSpatialFilter(b_);
-      b_.alongside = false;
-    };
     const uint32_t copy = stages_.copies ? destination() : source_;
     addBaseLevel(b_, source_, copy);
-    alongside();
+    if (stages_.lists) addListBlocks(b_);
     source_ = copy;
-    for (uint32_t finer = kFirstLevel; finer < downsampled; finer += 2) {
+    gather();
+    // Entry points, probes and the spatial filter run beside one of the next dispatches each.
+    uint32_t step = stages_.overlaps && !reused_ ? 0 : 3;
+    const auto alongside = [&](bool beside) {
+      const LightGroup& group = b_.facts.lights.list().front();
+      if (step == 0 && group.gathered == 0) ++step;
+      b_.alongside = beside;
+      if (step == 0) addEntryPoints(b_, group);
+      if (step == 1) addProbes(b_, group, false);
+      if (step == 2) addSpatialFilter(b_);
+      b_.alongside = false;
+      ++step;
+    };
+    for (uint32_t finer = kFirstLevel; finer < b_.facts.coarsestLevel; finer += 2) {
       addDownsample(b_, finer);
-      alongside();
+      if (step < 3) alongside(true);
     }
-    addUpsample(b_, coarsest);
-    alongside();
+    addUpsample(b_, b_.facts.coarsestLevel);
+    if (step < 3) alongside(true);
+    while (step < 3) alongside(false);
     const uint32_t to = destination();
-    addDiffuse(b_, source_, to, stages_.addsProbes);
-    if (stages_.skipsLight) addDiffuse(b_, source_, to, false);
+    addDiffuse(b_, source_, to);
     source_ = to;
   }
 
@@ -206,10 +193,7 @@ PellucidResult buildPlan(const FrameFacts& f, const History& kept, PellucidPlan*
   plan->activeLights = f.lights.lightCount;
   plan->constantsSize = f.constants.size;
   plan->gatherSamples = f.gatherSamples;
-  if (f.stages.diffusion) {
-    plan->largestRadius = static_cast<float>(f.reach.radius);
-    plan->quality = f.quality;
-  }
+  if (f.stages.diffusion) plan->largestRadius = static_cast<float>(f.reach.radius);
   addSkips(b);
   PlanState state;
   const bool reused = f.stages.keepsHistory && decideReuse(f, kept, &state.history);

@@ -38,35 +38,30 @@ void PlanBuilder::groups(PellucidDispatch* d, uint32_t width, uint32_t height, u
   d->groups[2] = 1;
 }
 
-void PlanBuilder::listed(PellucidDispatch* d, uint32_t list) const {
-  const GroupGrid& grid = facts.grids[list];
-  d->groups[0] = grid.columns;
-  d->groups[1] = grid.rows;
-  goByList(d, list, grid.listed(), grid.rowsEach);
+void PlanBuilder::blocks(PellucidDispatch* d) const {
+  bind(d, PELLUCID_BINDING_BLOCKS, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, blocksImage());
 }
 
-void PlanBuilder::goByList(PellucidDispatch* d, uint32_t list, uint32_t most, uint32_t rowsEach) const {
-  // The material image stands in.
-  bind(d, PELLUCID_BINDING_TILES, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE,
-       facts.stages.tiles ? tilesImage() : static_cast<uint32_t>(PELLUCID_RESOURCE_MATERIAL));
-  if (!facts.stages.tiles) return;
-  d->groups[0] = most;
-  d->groups[1] = rowsEach;
-  d->groups[2] = 1;
-  indirect(d, facts.constants.tileCommands.offset + offsetof(shared::TileCommands, commands) +
-                  list * sizeof(glm::uvec4));
+void PlanBuilder::byBlock(PellucidDispatch* d, uint32_t list, uint32_t parts) const {
+  const bool holdsMaterial =
+      list == PELLUCID_LIST_PROBES || list == PELLUCID_LIST_FILTER || list == PELLUCID_LIST_DIFFUSE;
+  d->groups[0] = facts.stages.lists && holdsMaterial ? facts.blocks.touched : facts.blocks.count();
+  d->groups[1] = parts;
+  blocks(d);
+  byList(d, list);
 }
 
-void PlanBuilder::indirect(PellucidDispatch* d, VkDeviceSize offset) const {
-  if (!fits) return;
-  // The first barrier after the dispatch that decides makes its commands visible to all that follow; others
+void PlanBuilder::byList(PellucidDispatch* d, uint32_t list) const {
+  if (!facts.stages.lists || !fits) return;
+  // The first barrier after the dispatch that lists makes its commands visible to all that follow; others
   // would cost 2 us each.
   PellucidDispatch* waits = plan.dispatches + decider + 1;
   while (waits < d && !waits->barrierBefore) ++waits;
   waits->barrierIndirect = 1;
   d->indirect = 1;
   d->indirectResource = PELLUCID_RESOURCE_CONSTANTS;
-  d->indirectOffset = offset;
+  d->indirectOffset =
+      facts.constants.lists.offset + offsetof(shared::BlockLists, commands) + list * sizeof(glm::uvec4);
 }
 
 void PlanBuilder::bind(PellucidDispatch* d, uint32_t binding, VkDescriptorType type, uint32_t resource,

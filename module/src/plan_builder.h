@@ -28,17 +28,14 @@ struct PlanBuilder {
 
   // Image of a level, see Pyramid. The first holds level 2 after upsampling, too.
   uint32_t pyramidImage(uint32_t level) const {
-    return kTransient0 + facts.stages.colorTransients() + level / 2;
+    return kTransient0 + facts.stages.colorTransients() + (level < 6 ? level / 2 : 1);
   }
   // Images of the gather's probes; of the entry points of the maps and, in their place, the filtered probes.
-  // They lie where level 1 was unless both are in use at once.
   uint32_t probesImage() const {
     return kTransient0 + facts.stages.colorTransients() + facts.stages.pyramidImages();
   }
-  uint32_t entryPointsImage() const {
-    return facts.stages.entriesApart() ? probesImage() + 1 : pyramidImage(kFirstLevel);
-  }
-  uint32_t tilesImage() const { return kTransient0 + facts.stages.tilesTransient(); }
+  uint32_t entryPointsImage() const { return probesImage() + 1; }
+  uint32_t blocksImage() const { return kTransient0 + facts.stages.blocksTransient(); }
   uint32_t filteredProbesImage() const {
     return facts.stages.keepsProbes ? static_cast<uint32_t>(PELLUCID_RESOURCE_HISTORY) : entryPointsImage();
   }
@@ -54,13 +51,12 @@ struct PlanBuilder {
   static void groups(PellucidDispatch* d, uint32_t width, uint32_t height, uint32_t tile) {
     groups(d, width, height, tile, tile);
   }
-  // The groups of a list's grid; with tile lists those of them that the GPU lists.
-  void listed(PellucidDispatch* d, uint32_t list) const;
-  // With tile lists: as many groups as the list has, at most `most`, of `rowsEach` rows each.
-  void goByList(PellucidDispatch* d, uint32_t list, uint32_t most, uint32_t rowsEach = 1) const;
-
-  // Runs as earlier dispatches say at `offset` of the constants.
-  void indirect(PellucidDispatch* d, VkDeviceSize offset) const;
+  // The blocks' words, for passes that run by blocks.
+  void blocks(PellucidDispatch* d) const;
+  // `parts` groups for each block, or with lists for each that a list holds.
+  void byBlock(PellucidDispatch* d, uint32_t list, uint32_t parts) const;
+  // With lists, as many groups as the GPU counts, at most what the dispatch has.
+  void byList(PellucidDispatch* d, uint32_t list) const;
 
   static void bind(PellucidDispatch* d, uint32_t binding, VkDescriptorType type, uint32_t resource,
                    ConstantsLayout::Range range = {});

@@ -3,12 +3,6 @@
 namespace pellucid {
 namespace {
 
-// True where the frame is as compute/frame/flags.glsl takes for granted.
-bool isDirectional(const FrameFacts& f, const LightGroup& group) {
-  return group.directional && f.has(PELLUCID_RESOURCE_NORMAL) &&
-         f.frame.frontDepthEncoding == PELLUCID_DEPTH_DEVICE;
-}
-
 // Cells of the image that the rect touches; each has one probe.
 struct Cells {
   uint32_t width, height;
@@ -18,6 +12,12 @@ struct Cells {
         height(cellsAlong(f.rect.y, f.rect.height, f.gatherSpacing)) {}
 };
 
+// Groups of `side` x `side` cells in a block.
+uint32_t partsOfBlock(const FrameFacts& f, uint32_t side) {
+  const uint32_t along = PELLUCID_BLOCK / (side * f.gatherSpacing);
+  return along * along;
+}
+
 uint64_t entryPointBytes(const LightGroup& group) {
   return kTexelBytes * group.entryColumns * group.entryRows;
 }
@@ -25,12 +25,15 @@ uint64_t entryPointBytes(const LightGroup& group) {
 }  // namespace
 
 void addEntryPoints(PlanBuilder& b, const LightGroup& group) {
-  PellucidDispatch* d =
-      b.dispatch("entry points",
-                 isDirectional(b.facts, group) ? Pipeline::EntryPointsDirectional : Pipeline::EntryPoints);
+  PellucidDispatch* d = b.dispatch("entry points", Pipeline::EntryPoints);
   b.groups(d, group.entryWidth, group.entryHeight, PELLUCID_ENTRY_POINTS_GROUP);
   d->groups[2] = group.shadowCount;
-  b.goByList(d, PELLUCID_LIST_ENTRY_POINTS, d->groups[0] * d->groups[1] * d->groups[2]);
+  if (b.facts.stages.lists) {
+    d->groups[0] *= d->groups[1] * d->groups[2];
+    d->groups[1] = d->groups[2] = 1;
+  }
+  b.blocks(d);
+  b.byList(d, PELLUCID_LIST_ENTRIES);
   d->pushConstants[1] = group.entryColumns | group.entryRows << 16;
   const ConstantsLayout& layout = b.facts.constants;
   b.constants(d, PELLUCID_BINDING_FRAME, layout.frame);
@@ -50,13 +53,9 @@ void addEntryPoints(PlanBuilder& b, const LightGroup& group) {
 
 void addProbes(PlanBuilder& b, const LightGroup& group, bool adds) {
   const FrameFacts& f = b.facts;
-  const bool directional = isDirectional(f, group);
-  const Pipeline alone = directional ? Pipeline::ProbesDirectional : Pipeline::Probes;
-  const Pipeline shared = directional ? Pipeline::ProbesSharedDirectional : Pipeline::ProbesShared;
-  PellucidDispatch* d = b.dispatch("probes", group.gathered > 1 ? shared : alone);
+  PellucidDispatch* d = b.dispatch("probes", group.gathered > 1 ? Pipeline::ProbesShared : Pipeline::Probes);
   const Cells cells(f);
-  b.listed(d, PELLUCID_LIST_PROBES);
-  if (f.stages.skipsLight) b.decides();
+  b.byBlock(d, PELLUCID_LIST_PROBES, partsOfBlock(f, PELLUCID_PROBES_GROUP));
   d->pushConstants[0] = f.gatherSpacing;
   d->pushConstants[1] = group.gathered;
   d->pushConstants[2] = group.entryColumns | group.entryRows << 16 | (adds ? 1u << 31 : 0);
@@ -73,7 +72,6 @@ void addProbes(PlanBuilder& b, const LightGroup& group, bool adds) {
   b.optional(d, PELLUCID_BINDING_BACK_DEPTH, PELLUCID_RESOURCE_BACK_DEPTH, 0);
   b.bind(d, PELLUCID_BINDING_ENTRY_POINTS, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, b.entryPointsImage());
   b.bind(d, PELLUCID_BINDING_PROBES, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, b.probesImage());
-  b.constants(d, PELLUCID_BINDING_GATHER_DISPATCHES, layout.gatherDispatches);
   // One pixel's depth, material and normal of each cell.
   constexpr uint64_t kCellBytes = kUnknownDepthBytes + 1 + 4 + kTexelBytes;
   d->modeledBytes =
@@ -84,15 +82,13 @@ void addSpatialFilter(PlanBuilder& b) {
   const FrameFacts& f = b.facts;
   PellucidDispatch* d = b.dispatch("filter probes", Pipeline::FilterProbes);
   const Cells cells(f);
-  b.listed(d, PELLUCID_LIST_FILTER_PROBES);
+  b.byBlock(d, PELLUCID_LIST_FILTER, partsOfBlock(f, PELLUCID_FILTER_GROUP));
   d->pushConstants[0] = f.gatherSpacing;
   b.constants(d, PELLUCID_BINDING_FRAME, f.constants.frame);
   b.constants(d, PELLUCID_BINDING_MATERIALS, f.constants.materials);
   b.bind(d, PELLUCID_BINDING_ENTRY_POINTS, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, b.probesImage());
   b.bind(d, PELLUCID_BINDING_PROBES, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, b.filteredProbesImage());
   d->modeledBytes = 2 * kTexelBytes * cells.width * cells.height;
-  if (f.stages.skipsLight)
-    b.indirect(d, f.constants.gatherDispatches.offset + offsetof(shared::GatherDispatches, filterProbes));
 }
 
 void readProbes(const PlanBuilder& b, PellucidDispatch* d, uint32_t binding, VkDescriptorType type) {

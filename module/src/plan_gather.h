@@ -1,5 +1,5 @@
-// Dispatches of the light-space gather (docs/gather.md): where light enters, what probes find of it, and
-// their spatial filter. plan_translucency.h or plan_diffusion.h adds the filtered probes to the pixels.
+// Dispatches of the light-space gather (docs/how-it-works.md): where light enters, what probes find of it,
+// and their spatial filter. plan_translucency.h or plan_diffusion.h adds the filtered probes to the pixels.
 #pragma once
 
 #include "plan_builder.h"

@@ -1,15 +1,14 @@
 #include "plan_translucency.h"
 
-#include "plan_gather.h"
-
 namespace pellucid {
 
 namespace {
 
-// All that every dispatch over all pixels reads to add a group's lights. `images`: the group's, or none.
+// All that a dispatch over all pixels reads to add a group's lights.
 void addLights(PlanBuilder& b, PellucidDispatch* d, const LightGroup& group, uint32_t source,
-               uint32_t destination, const LightGroup& images) {
+               uint32_t destination) {
   const FrameFacts& f = b.facts;
+  b.groups(d, f.rect.width, f.rect.height, PELLUCID_TILE);
   d->pushConstants[1] = group.lightCount;
   d->pushConstants[2] = destination == PELLUCID_RESOURCE_OUTPUT;
   b.common(d, source, destination);
@@ -24,37 +23,23 @@ void addLights(PlanBuilder& b, PellucidDispatch* d, const LightGroup& group, uin
   b.constants(d, PELLUCID_BINDING_SHADOWS, {layout.shadows.offset + group.shadowBytes, kShadowWindow});
   b.optional(d, PELLUCID_BINDING_BACK_DEPTH, PELLUCID_RESOURCE_BACK_DEPTH,
              f.needsChord ? kUnknownDepthBytes : 0);
-  b.shadowImages(d, images, PELLUCID_SHADOW_IMAGE_COUNT);
+  b.shadowImages(d, group, PELLUCID_SHADOW_IMAGE_COUNT);
 }
 
 }  // namespace
 
 void addTranslucency(PlanBuilder& b, const LightGroup& group, uint32_t source, uint32_t destination) {
   const FrameFacts& f = b.facts;
-  const bool gathered = group.hasProbes() && !f.debug();
-  PellucidDispatch* d = f.debug()  ? b.dispatch("debug view", Pipeline::DebugView)
-                        : gathered ? b.dispatch("add gathered", Pipeline::AddGathered)
-                                   : b.dispatch("translucency", Pipeline::Translucency);
-  if (gathered) {
-    // Tiles are the image's.
-    constexpr uint32_t kTile = 2 * PELLUCID_GATHER_GROUP;
-    b.groups(d, f.rect.x % kTile + f.rect.width, f.rect.y % kTile + f.rect.height, kTile);
-    d->pushConstants[0] = f.gatherSpacing;
-    readProbes(b, d, PELLUCID_BINDING_PROBES, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE);
-    d->pushConstants[3] = group.gathered;
-  } else {
-    b.listed(d, PELLUCID_LIST_TILES);
-    d->pushConstants[0] = f.stages.walls > 0 ? PELLUCID_LIGHT_SOLIDS : PELLUCID_LIGHT_ALL;
-  }
-  // Lights that are gathered from have been.
-  addLights(b, d, group, source, destination, gathered ? LightGroup{} : group);
+  PellucidDispatch* d = f.debug() ? b.dispatch("debug view", Pipeline::DebugView)
+                                  : b.dispatch("translucency", Pipeline::Translucency);
+  d->pushConstants[0] = f.stages.walls > 0 ? PELLUCID_LIGHT_SOLIDS : PELLUCID_LIGHT_ALL;
+  addLights(b, d, group, source, destination);
 }
 
 void addThinWalls(PlanBuilder& b, const LightGroup& group, uint32_t source, uint32_t destination) {
   PellucidDispatch* d = b.dispatch("thin walls", Pipeline::Translucency);
-  b.listed(d, PELLUCID_LIST_TILES);
   d->pushConstants[0] = PELLUCID_LIGHT_WALLS;
-  addLights(b, d, group, source, destination, group);
+  addLights(b, d, group, source, destination);
 }
 
 void addHistory(PlanBuilder& b, uint32_t source, uint32_t destination) {

@@ -1,6 +1,5 @@
 // The API's functions that need no device: each reads the caller's frame once and asks for one result.
 #include "needs.h"
-#include "pellucid/pellucid_cells.h"
 #include "plan.h"
 #include "plan_state.h"
 #include "validate.h"
@@ -26,25 +25,6 @@ extern "C" PellucidResult pellucidGetImageNeeds(const PellucidFrame* frame, uint
   FrameFacts facts;
   const PellucidResult result = readFrame(frame, silent, &facts);
   return result == PELLUCID_OK ? imageNeeds(facts, count, needs) : result;
-}
-
-static_assert(PELLUCID_CELL_PIXELS == PELLUCID_CELL && PELLUCID_CELL_BLOCK_PIXELS == PELLUCID_BLOCK);
-static_assert(PELLUCID_CELL_BLOCK_WORDS == PELLUCID_BLOCK_WORDS);
-static_assert(PELLUCID_CELL_IMAGE_COLUMNS == TileLists::kColumns);
-
-extern "C" PellucidResult pellucidGetCells(const PellucidFrame* frame, PellucidCells* cells) {
-  if (!cells) return PELLUCID_ERROR_INVALID_ARGUMENT;
-  Findings silent(nullptr, nullptr);
-  FrameFacts f;
-  const PellucidResult result = readFrame(frame, silent, &f);
-  if (result != PELLUCID_OK) return result;
-  *cells = PellucidCells{};
-  if (!f.stages.tiles || f.frame.indirectDispatches != PELLUCID_INDIRECT_CELLS) return PELLUCID_OK;
-  cells->transient = f.stages.tilesTransient();
-  std::copy(f.tiles.blocks.begin(), f.tiles.blocks.end(), cells->blocks);
-  std::copy(f.tiles.firstPixel.begin(), f.tiles.firstPixel.end(), cells->firstPixel);
-  cells->distances = f.stages.gathered > 0;
-  return PELLUCID_OK;
 }
 
 extern "C" uint32_t pellucidGetRequiredInputs(uint32_t features) {

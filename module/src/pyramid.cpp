@@ -5,7 +5,7 @@
 namespace pellucid {
 namespace {
 
-// Texels of a level under `pixels` in a row, wherever they start, and one more on each side.
+// Texels of a level under `pixels` in a row from 0 on, and one more on each side.
 uint32_t most(uint32_t pixels, uint32_t level) { return ((pixels - 1) >> level) + 3; }
 
 // Columns that level 1 takes, and in its place level 2 after upsampling beside its shares.
@@ -21,6 +21,8 @@ Pyramid::Pyramid(const uint32_t (&imageExtent)[2], const Rect& r) : coarsest(kFi
     // The second level of an image lies beside the first.
     if (level > kFirstLevel && level % 2 != 0)
       place.x = static_cast<int32_t>(most(imageExtent[0], level - 1));
+    // The two coarsest levels lie below levels 2 and 3.
+    if (level > 5) place.y = static_cast<int32_t>(most(imageExtent[1], 2));
     const int32_t border = level > kFirstLevel ? 1 : 0;
     const auto first = [&](uint32_t pixel) { return static_cast<int32_t>(pixel >> level) - border; };
     const auto end = [&](uint32_t pixels) {
@@ -32,6 +34,7 @@ Pyramid::Pyramid(const uint32_t (&imageExtent)[2], const Rect& r) : coarsest(kFi
   images[0] = {firstColumns(imageExtent[0]), most(imageExtent[1], kFirstLevel)};
   for (uint32_t i = 1; i < kPyramidImages; ++i)
     images[i] = {most(imageExtent[0], 2 * i) + most(imageExtent[0], 2 * i + 1), most(imageExtent[1], 2 * i)};
+  images[1].height += most(imageExtent[1], 6);
 }
 
 }  // namespace pellucid

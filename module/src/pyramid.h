@@ -1,6 +1,5 @@
 // Places of the levels of the diffusion pyramid in its images. No dispatch reads the image that it writes:
-// level 1 has one, and so have the two levels that a dispatch makes of it, and the two of those. Upsampling
-// writes over level 1.
+// levels 1, levels 2, 3, 6 and 7, and levels 4 and 5 have one each. Upsampling writes over level 1.
 #pragma once
 
 #include <array>
@@ -33,8 +32,7 @@ struct Pyramid {
   // The column where the shares of level 2 begin after upsampling, in the image of level 1.
   int32_t sharesColumn = 0;
 
-  // Extents of the images, for any render rect: of level 1, of levels 2 and 3, of levels 4 and 5. The two
-  // coarsest are never stored.
+  // Extents of the images, for any render rect.
   struct Extent {
     uint32_t width, height;
   };

@@ -30,15 +30,14 @@ double pixelsPerMm(const FrameFacts& facts) {
 }
 
 // The worst at radii up to `radius` pixels; 0: at all.
-float diffusionError(uint32_t quality, double radius) {
+float diffusionError(double radius) {
   // Errors were measured at some radii; up to the first one that is not less than the frame's.
   size_t count = std::size(kErrorRadii);
   if (radius > 0) {
     const float* least = std::lower_bound(std::begin(kErrorRadii), std::end(kErrorRadii), radius);
     count = std::min(count, static_cast<size_t>(least - kErrorRadii) + 1);
   }
-  const float* errors = kWorstError[kQualities[quality].fineFilter ? 1 : 0];
-  return *std::max_element(errors, errors + count);
+  return *std::max_element(kWorstError, kWorstError + count);
 }
 
 // Only maps let light be gathered. Lights have not been checked yet.
@@ -47,12 +46,11 @@ bool someLightHasMap(const PellucidFrame& f) {
                                  [](const PellucidLight& light) { return light.shadowMapCount > 0; });
 }
 
-// The frame's error at a quality.
-float measuredError(const FrameFacts& f, uint32_t quality) {
+// The frame's error with the samples of kTargetSamples[choice].
+float measuredError(const FrameFacts& f, size_t choice) {
   if ((f.frame.features & PELLUCID_FEATURE_TRANSLUCENCY) == 0 || f.frame.lightCount == 0)
-    return diffusionError(quality, f.reach.radius);
-  const bool gathers = !f.whyNotGathered && gatherSamplesAt(f, quality) > 0 && someLightHasMap(f.frame);
-  return kFrameError[gathers ? std::max(quality, 1u) : 0];
+    return diffusionError(f.reach.radius);
+  return kFrameError[f.whyNotGathered || !someLightHasMap(f.frame) ? 0 : choice];
 }
 
 }  // namespace
@@ -77,7 +75,7 @@ DiffusionReach diffusionReach(const FrameFacts& facts) {
   DiffusionReach reach{std::min(pixelsPerMm(facts), 1e30), 0, 0};
   const auto pixels = [&](double mm) { return std::min(mm * reach.pixelsPerMm, 1e30); };
   for (uint32_t i = 0; i < facts.frame.materialCount; ++i) {
-    const PellucidMaterial m = facts.material(i);
+    const PellucidMaterial m = facts.diffused(i);
     if (m.gaussianCount == 0) continue;
     const double radius = static_cast<double>(*std::max_element(m.radius, m.radius + 3));
     reach.radius = std::max(reach.radius, pixels(radius));
@@ -86,16 +84,11 @@ DiffusionReach diffusionReach(const FrameFacts& facts) {
   return reach;
 }
 
-uint32_t gatherSamplesAt(const FrameFacts& f, uint32_t quality) {
-  if (!f.solids) return 0;
-  if (f.frame.gatherSamples != PELLUCID_GATHER_BY_QUALITY) return f.frame.gatherSamples;
-  return f.whyNotGathered ? 0 : kQualities[quality].gatherSamples;
-}
-
-bool qualityOfTarget(const FrameFacts& facts, uint32_t* quality) {
-  for (*quality = 0; *quality <= kBestQuality; ++*quality)
-    if (measuredError(facts, *quality) < facts.frame.targetError) return true;
-  *quality = kBestQuality;
+bool samplesOfTarget(const FrameFacts& facts, uint32_t* samples) {
+  for (size_t i = 0; i < std::size(kTargetSamples); ++i) {
+    *samples = kTargetSamples[i];
+    if (measuredError(facts, i) < facts.frame.targetError) return true;
+  }
   return false;
 }
 

@@ -1,4 +1,4 @@
-// How far a frame's diffusion reaches in pixels, and what its quality means.
+// How far a frame's diffusion reaches in pixels, and what error its samples have.
 #pragma once
 
 #include <iterator>
@@ -29,22 +29,11 @@ double levelDeviation(uint32_t level);
 // The widest Gaussian that has nothing in coarser levels than this one, from 3 on; pixels.
 double deviationWithin(uint32_t level);
 
-// Settings that frame.quality chooses, from the cheapest on.
-struct Quality {
-  uint32_t gatherSamples;  // of each probe; 0: one thickness a pixel
-  uint32_t finer;          // the spacing of probes is divided by it
-  bool fineFilter;  // a pixel's neighbors are filtered one by one, and do not give their part to it and level
-                    // 2
-};
-constexpr Quality kQualities[] = {{0, 1, false}, {8, 1, true}, {16, 2, true}};
-constexpr uint32_t kBestQuality = std::size(kQualities) - 1;
+// Samples of each probe that frame.targetError chooses among.
+constexpr uint32_t kTargetSamples[] = {0, 8, 16};
 
-// Samples of each probe of the gather at a quality: frame.gatherSamples, if that does not leave them to the
-// quality. Reads what the facts have of the materials and of the gather's obstacles.
-uint32_t gatherSamplesAt(const FrameFacts& facts, uint32_t quality);
-
-// The least quality whose measured error is below frame.targetError. False, and the best quality, if there is
-// none. Reads what the facts have of the materials and of the gather's obstacles.
-bool qualityOfTarget(const FrameFacts& facts, uint32_t* quality);
+// The least of them whose measured error is below frame.targetError. False, and the most, if there is none.
+// Reads what the facts have of the materials and of the gather's obstacles.
+bool samplesOfTarget(const FrameFacts& facts, uint32_t* samples);
 
 }  // namespace pellucid

@@ -11,8 +11,8 @@ namespace {
 
 // Other headers' structs are longer, or end before fields that come after these.
 constexpr size_t kLeastStatistics = sizeof(PellucidStatistics);
-static_assert(offsetof(PellucidStatistics, reserved) + sizeof(uint32_t) == sizeof(PellucidStatistics));
-static_assert(PELLUCID_STATISTICS_TILE == PELLUCID_TILE);
+static_assert(offsetof(PellucidStatistics, activeLights) + sizeof(uint32_t) == sizeof(PellucidStatistics));
+static_assert(PELLUCID_STATISTICS_BLOCK == PELLUCID_BLOCK);
 static_assert(PELLUCID_ENTRY_POINTS_GROUP == 16 && PELLUCID_PROBES_GROUP == 8);  // as the header says
 
 void add(PellucidGroups* all, const PellucidGroups& groups) {
@@ -43,44 +43,22 @@ PellucidGroups groupsOf(const PellucidPlan& plan, uint32_t index, const Pellucid
 // Adds a dispatch to the totals of its pass.
 void count(const PellucidDispatch& d, const PellucidGroups& groups, PellucidStatistics* s) {
   switch (static_cast<Pipeline>(d.pipeline)) {
-    case Pipeline::BaseLevel:
-      s->tiles = groups;
-      s->tileLists = d.indirect;
+    case Pipeline::Diffuse: {
+      const uint64_t parts = d.groups[1];
+      s->blocks = {groups.run / parts, groups.most / parts};
+      s->lists = d.indirect;
       break;
-    case Pipeline::Diffuse:
-    case Pipeline::DiffuseCoarse:
-    case Pipeline::DiffuseGathered:
-    case Pipeline::DiffuseCoarseGathered:
-      // A plan with two of them runs one.
-      s->diffusion = {s->diffusion.run + groups.run, groups.most};
-      break;
+    }
     case Pipeline::EntryPoints:
-    case Pipeline::EntryPointsDirectional:
       add(&s->entryPoints, groups);
       break;
     case Pipeline::Probes:
-    case Pipeline::ProbesDirectional:
     case Pipeline::ProbesShared:
-    case Pipeline::ProbesSharedDirectional:
       add(&s->probes, groups);
       break;
     default:
       break;
   }
-}
-
-// The device decides where the plan has the diffusion with gathered light and without.
-PellucidGatheredLight gatheredLight(const PellucidPlan& plan, const PellucidStatistics& s) {
-  bool alone = false, gathered = false, ran = false;
-  for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
-    const auto pipeline = static_cast<Pipeline>(plan.dispatches[i].pipeline);
-    alone = alone || pipeline == Pipeline::Diffuse || pipeline == Pipeline::DiffuseCoarse;
-    if (pipeline != Pipeline::DiffuseGathered && pipeline != Pipeline::DiffuseCoarseGathered) continue;
-    gathered = true;
-    ran = s.dispatches[i].run > 0;
-  }
-  if (!alone || !gathered) return PELLUCID_GATHERED_UNKNOWN;
-  return ran ? PELLUCID_GATHERED_SOME : PELLUCID_GATHERED_NONE;
 }
 
 }  // namespace
@@ -124,7 +102,6 @@ extern "C" PellucidResult pellucidReadStatistics(const PellucidPlan* plan,
     count(plan->dispatches[i], s.dispatches[i], &s);
   }
   if (out.result() != PELLUCID_OK) return out.result();
-  s.gatheredLight = gatheredLight(*plan, s);
   writeStruct(statistics, statistics->structSize, s);
   return PELLUCID_OK;
 }

@@ -47,8 +47,8 @@ extern "C" const char* pellucidResultName(PellucidResult result) {
 extern "C" const char* pellucidResourceName(uint32_t resource) {
   for (const ImageField& image : kImageFields)
     if (image.resource == resource) return image.name;
-  static constexpr const char* kTransients[] = {"transient0", "transient1", "transient2",
-                                                "transient3", "transient4", "transient5", "transient6"};
+  static constexpr const char* kTransients[] = {"transient0", "transient1", "transient2", "transient3",
+                                                "transient4", "transient5", "transient6", "transient7"};
   static_assert(std::size(kTransients) == PELLUCID_MAX_TRANSIENTS);
   const uint32_t transient = resource - PELLUCID_RESOURCE_TRANSIENT0;
   if (transient < PELLUCID_MAX_TRANSIENTS) return kTransients[transient];
@@ -112,7 +112,7 @@ extern "C" PellucidResult pellucidPlanToJson(const PellucidPlan* plan, char* tex
   if (!plan || !size) return PELLUCID_ERROR_INVALID_ARGUMENT;
   Text out(text, *size);
   out << "{\"dispatchCount\":" << plan->dispatchCount << ",\"barrierCount\":" << plan->barrierCount
-      << ",\"activeLights\":" << plan->activeLights << ",\"quality\":" << plan->quality
+      << ",\"activeLights\":" << plan->activeLights << ",\"gatherSamples\":" << plan->gatherSamples
       << ",\"largestRadius\":" << plan->largestRadius << ",\"constantsSize\":" << plan->constantsSize
       << ",\"dispatches\":[";
   for (uint32_t i = 0; i < plan->dispatchCount; ++i) {

@@ -202,7 +202,7 @@ void checkFields(const FrameFacts& facts, Findings& out) {
 
   if (f.gatherSpacing != 0 && f.gatherSpacing != 1 && f.gatherSpacing != 2 && f.gatherSpacing != 4)
     out.error("gatherSpacing", "is ", f.gatherSpacing, "; use 1, 2 or 4, or 0 to choose by the image's size");
-  if (f.gatherSamples != PELLUCID_GATHER_BY_QUALITY && (f.gatherSamples > 64 || f.gatherSamples % 4 != 0))
+  if (f.gatherSamples > 64 || f.gatherSamples % 4 != 0)
     out.error("gatherSamples", "is ", f.gatherSamples, "; needs a multiple of 4, at most 64");
 
   // 255: the material image is r8ui and 0 means none.
@@ -251,10 +251,6 @@ void checkMaterials(const FrameFacts& facts, Findings& out) {
   for (uint32_t i = 0; i < f.materialCount; ++i) {
     const PellucidMaterial material = facts.material(i);
     checkMaterial(material, i, out);
-    const uint32_t model = material.transmittanceModel;
-    if (f.gatherSamples > 0 && f.gatherSamples != PELLUCID_GATHER_BY_QUALITY && !canBeGathered(model))
-      out.error(Field("materials[", i, "].transmittanceModel"), "is ", model,
-                ", which cannot be gathered; use EXP2 or SINH_EXP");
   }
 }
 

@@ -1,7 +1,6 @@
 /* The headers are C: compiled as such, linked without any Vulkan loader. */
 #include <pellucid/pellucid.h>
 #include <pellucid/pellucid_budget.h>
-#include <pellucid/pellucid_cells.h>
 #include <pellucid/pellucid_material.h>
 #include <pellucid/pellucid_plan.h>
 #include <pellucid/pellucid_statistics.h>
@@ -19,7 +18,6 @@ int main(void) {
   PellucidContext* none;
   PellucidStatistics statistics;
   PellucidConstantsSlice slice = {0};
-  PellucidCells cells;
   static PellucidPlan plan;
   pellucidInitMaterialDesc(&desc);
   desc.kind = PELLUCID_MATERIAL_PRESET;
@@ -28,7 +26,7 @@ int main(void) {
   pellucidInitBudgetState(&budget);
   pellucidInitThesisOptions(&thesis);
   pellucidInitFrame(&frame);
-  frame.quality = budget.quality;
+  frame.gatherSamples = budget.gatherSamples;
   frame.thesis = &thesis;
   frame.materialCount = 1;
   frame.materials = &material;
@@ -40,9 +38,6 @@ int main(void) {
   frame.clipFromView[14] = 0.1f;
   if (pellucidBuildPlan(&frame, NULL, &plan) != PELLUCID_OK) return 3;
   if (strcmp(plan.dispatches[0].name, "base level") != 0) return 4;
-  /* 64 x 64 pixels from 0, 0 on. */
-  frame.indirectDispatches = PELLUCID_INDIRECT_CELLS;
-  if (pellucidGetCells(&frame, &cells) != PELLUCID_OK || cells.blocks[0] != 1 || cells.blocks[1] != 1) return 8;
   /* No slice yet: refused. */
   pellucidInitStatistics(&statistics);
   if (pellucidReadStatistics(&plan, &slice, &statistics, NULL, NULL) != PELLUCID_ERROR_INVALID_ARGUMENT) return 6;

@@ -1,6 +1,6 @@
 // Checks or rewrites the tables of a document that are made from the code:
 //   pellucid_readme_tables --check|--update FILE TABLE
-// TABLE: inputs, README.md; features, docs/performance.md; quality, docs/diffusion.md; domains,
+// TABLE: inputs, README.md; features, docs/performance.md; errors, docs/accuracy.md; domains,
 // docs/materials.md, what values fields may have; stress, CONTRIBUTING.md, what must hold for random frames.
 #include <cstdio>
 #include <iterator>
@@ -25,8 +25,8 @@ std::string imagesTable() {
   const Row rows[] = {
       {PELLUCID_RESOURCE_FRONT_DEPTH, "device depth or view z of the visible surface", ""},
       {PELLUCID_RESOURCE_BACK_DEPTH, "the same of the nearest back face behind it",
-       "no light comes through of lights without a shadow map, of maps of back faces and of `ambient`; at "
-       "qualities 1 and 2 thin parts return as much light as thick ones"},
+       "no light comes through of lights without a shadow map, of maps of back faces and of `ambient`; with "
+       "a gather thin parts return as much light as thick ones"},
       {PELLUCID_RESOURCE_IRRADIANCE,
        "linear irradiance E times `frame.preExposure`, which is 1 / pi for E / pi", ""},
       {PELLUCID_RESOURCE_NORMAL, "outward normal, world or view space",
@@ -116,22 +116,13 @@ std::string featuresTable() {
 }
 
 // Errors as the module states them.
-std::string qualityTable() {
-  std::string table = "| quality |", rule = "|-|";
-  char text[32];
-  for (const float radius : pellucid::kErrorRadii) {
-    std::snprintf(text, sizeof text, " %g px |", static_cast<double>(radius));
+std::string errorsTable() {
+  std::string table = "| radius | relative RMSE |\n|-|-|\n";
+  char text[48];
+  for (size_t i = 0; i < std::size(pellucid::kErrorRadii); ++i) {
+    std::snprintf(text, sizeof text, "| %g px | %.4f |\n", static_cast<double>(pellucid::kErrorRadii[i]),
+                  static_cast<double>(pellucid::kWorstError[i]));
     table += text;
-    rule += "-|";
-  }
-  table += "\n" + rule + "\n";
-  for (uint32_t quality = 0; quality < std::size(pellucid::kWorstError); ++quality) {
-    table += quality == 0 ? "| 0 |" : "| 1 and 2 |";
-    for (const float error : pellucid::kWorstError[quality]) {
-      std::snprintf(text, sizeof text, " %.4f |", static_cast<double>(error));
-      table += text;
-    }
-    table += "\n";
   }
   return table;
 }
@@ -183,14 +174,14 @@ int main(int argc, char** argv) {
   };
   constexpr Table tables[] = {{"inputs", imagesTable},
                               {"features", featuresTable},
-                              {"quality", qualityTable},
+                              {"errors", errorsTable},
                               {"domains", domainsTable},
                               {"stress", stressTable}};
   if (argc == 4)
     for (const Table& table : tables)
       if (table.name == std::string(argv[3]))
         return generatedBlock(argc - 1, argv + 1, table.name, table.make());
-  std::fputs("usage: pellucid_readme_tables --check|--update FILE inputs|features|quality|domains|stress\n",
+  std::fputs("usage: pellucid_readme_tables --check|--update FILE inputs|features|errors|domains|stress\n",
              stderr);
   return 2;
 }

@@ -18,7 +18,7 @@ struct GBuffer {
   uint32_t width, height, frameIndex, framesInFlight;
   float metersPerUnit;
   float projection[16], view[16];
-  VkImageView depth, backFaceDepth, irradiance, normal, materialId, scratch[6];
+  VkImageView depth, backFaceDepth, irradiance, normal, materialId, scratch[7];
   uint32_t lightCount;
   const PellucidLight* lights;
   VkBuffer ringBuffer;

@@ -1,6 +1,5 @@
 // Validation, plan, needs, constants, recording and JSON of any frame.
 #include <algorithm>
-#include <cstring>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -9,7 +8,6 @@
 #include "fuzz/frame_input.h"
 #include "fuzz/targets.h"
 #include "null_device.h"
-#include "pellucid/pellucid_cells.h"
 
 namespace pellucid::fuzz {
 
@@ -79,23 +77,6 @@ void checkNeeds(const PellucidFrame& frame, bool hasPlan) {
             "an image has a size and a format");
 }
 
-// Words that the caller hands in have room in their image, and the plan begins with their lists.
-void checkCells(const PellucidFrame& frame, const PellucidPlan& plan) {
-  PellucidCells cells;
-  require(pellucidGetCells(&frame, &cells) == PELLUCID_OK, "a frame with a plan says which words it takes");
-  if (cells.blocks[0] == 0) return;
-  PellucidImageNeed needs[PELLUCID_MAX_TRANSIENTS + 1];
-  uint32_t count = PELLUCID_MAX_TRANSIENTS + 1;
-  require(pellucidGetImageNeeds(&frame, &count, needs) == PELLUCID_OK && cells.transient < count,
-          "words lie in a transient");
-  const PellucidImageNeed& need = needs[cells.transient];
-  const uint64_t words = uint64_t{cells.blocks[0]} * cells.blocks[1] * PELLUCID_CELL_BLOCK_WORDS;
-  require(need.format == VK_FORMAT_R32_UINT && words <= uint64_t{need.extent[0]} * need.extent[1],
-          "the transient has room for the words");
-  require(plan.dispatchCount > 0 && std::strcmp(plan.dispatches[0].name, "list groups") == 0,
-          "a frame that takes words begins with lists of them");
-}
-
 // Writes the constants into memory of exactly the size that the plan asks for.
 PellucidResult record(const PellucidPlan& plan, const PellucidFrame& frame, VkDeviceSize size) {
   // Not a vector: 256-byte alignment, and ends where it ends.
@@ -139,7 +120,6 @@ bool fuzzFrame(std::span<const uint8_t> bytes) {
   }
   if (planned != PELLUCID_OK) return false;
   checkPlan(*plan);
-  checkCells(frame, *plan);
   const PellucidResult recorded = record(*plan, frame, plan->constantsSize);
   require((recorded == PELLUCID_OK) == (valid == PELLUCID_OK), "a valid frame is recorded, no other is");
   if (plan->constantsSize > 0 && valid == PELLUCID_OK)

@@ -81,7 +81,7 @@ FrameInput::FrameInput(std::span<const uint8_t> bytes, size_t edits) {
   if (header[4] & 4) frame.albedo = test::Frame::view();
   if (header[4] & 8) frame.backDepth = {};
   if (header[4] & 16) frame.history = test::Frame::view();
-  if (header[4] & 32) frame.gatherSamples = PELLUCID_GATHER_BY_QUALITY;
+  if (header[4] & 32) frame.gatherSamples = 8;
   choice = header[5];
 
   PellucidFrame edited = frame;

@@ -171,17 +171,16 @@ void gltfSeeds(Damage& damage, const Use& use) {
 void frameSeeds(Damage& damage, const Use& use) {
   const std::string header("\1\1\1\1\1\0\0\0", FrameInput::kHeaderBytes);
   use(header);
-  // Every PellucidIndirect, with a gather and without.
+  // Lists, with a gather and without.
   constexpr std::size_t kIndirect = offsetof(PellucidFrame, indirectDispatches) / 4;
-  for (const char gathers : {'\1', '\41'})
-    for (int indirect = 1; indirect <= PELLUCID_INDIRECT_CELLS; ++indirect) {
-      const char edit[FrameInput::kEditBytes] = {0, 0, static_cast<char>(kIndirect % 256),
-                                                 static_cast<char>(kIndirect / 256),
-                                                 static_cast<char>(indirect)};
-      std::string bytes = header;
-      bytes[4] = gathers;
-      use(bytes.append(edit, sizeof edit));
-    }
+  for (const char gathers : {'\1', '\41'}) {
+    const char edit[FrameInput::kEditBytes] = {0, 0, static_cast<char>(kIndirect % 256),
+                                               static_cast<char>(kIndirect / 256),
+                                               PELLUCID_INDIRECT_MATERIAL};
+    std::string bytes = header;
+    bytes[4] = gathers;
+    use(bytes.append(edit, sizeof edit));
+  }
   for (int i = 0; i < 2000; ++i) {
     std::string bytes = header;
     for (std::size_t k = 0; k < 6; ++k)

@@ -139,17 +139,17 @@ std::vector<HalfErrors> measureHalves(Replayer& replayer) {
   std::fill(c.backDepth.image.data.begin(), c.backDepth.image.data.end(), 11.0f);
   std::vector<HalfErrors> rows;
   for (const double irradiance : {1e-4, 1e-2, 1.0, 1e3})
-    for (uint32_t quality = 0; quality <= 2; ++quality) {
+    for (const uint32_t samples : {0u, 8u, 16u}) {
       std::mt19937 random(11);
       std::uniform_real_distribution<float> factor(0.25f, 4);
       for (float& value : c.irradiance.data) value = static_cast<float>(irradiance) * factor(random);
       c.lights[0].intensity = irradiance;
       ReplaySettings settings;
-      settings.quality = quality;
+      settings.translucency.gatherSamples = samples;
       const Image half = replayer.run(c, {material()}, settings).output;
       settings.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
       const Image whole = replayer.run(c, {material()}, settings).output;
-      HalfErrors errors{irradiance, quality, 0, 0};
+      HalfErrors errors{irradiance, samples, 0, 0};
       for (size_t i = 0; i < whole.pixels(); ++i)
         for (size_t k = 4 * i; k < 4 * i + 3; ++k) {
           const double exact = static_cast<double>(whole.data[k]);

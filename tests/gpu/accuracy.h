@@ -25,8 +25,8 @@ std::vector<DepthErrors> measureDepths(harness::Replayer& replayer);
 
 // The frame with 16-bit colors, output and intermediates, against the same with 32-bit ones.
 struct HalfErrors {
-  double irradiance;  // of about 1 in the middle
-  uint32_t quality;
+  double irradiance;   // of about 1 in the middle
+  uint32_t samples;    // of the gather
   double worst, rmse;  // relative to the 32-bit result of the pixel and channel
 };
 

@@ -34,9 +34,9 @@ std::string cancellation(harness::Replayer& replayer) {
 }
 
 std::string halves(harness::Replayer& replayer) {
-  std::string table = "| irradiance | quality | worst | RMSE |\n|-|-|-|-|\n";
+  std::string table = "| irradiance | samples | worst | RMSE |\n|-|-|-|-|\n";
   for (const test::HalfErrors& e : test::measureHalves(replayer))
-    table += format("| %g | %u | %.1e | %.1e |\n", e.irradiance, e.quality, e.worst, e.rmse);
+    table += format("| %g | %u | %.1e | %.1e |\n", e.irradiance, e.samples, e.worst, e.rmse);
   return table;
 }
 

@@ -23,7 +23,7 @@ TEST_F(Accuracy, ThicknessFromDeviceDepthKeepsWhatTheDepthsHold) {
 
 TEST_F(Accuracy, SixteenBitColorsRoundAFewTimes) {
   for (const HalfErrors& e : measureHalves(replayer())) {
-    SCOPED_TRACE(std::to_string(e.irradiance) + ", quality " + std::to_string(e.quality));
+    SCOPED_TRACE(std::to_string(e.irradiance) + ", " + std::to_string(e.samples) + " samples");
     // A half rounds by 2^-11 = 4.9e-4 down to 6e-5. The output rounds once, its irradiance and levels before
     // once each: averages of many, whose errors do not add up.
     EXPECT_LT(e.worst, 2e-3);

@@ -142,8 +142,7 @@ TEST_F(AmbientLight, AgreesWithTheReference) {
   }
 }
 
-// The pass that adds gathered light makes of it what the other makes: light without a map is not
-// gathered.
+// Light without a map is not gathered: after the diffusion it adds what it adds without one.
 TEST_F(AmbientLight, IsTheSameBesideGatheredLight) {
   SceneParameters p;
   p.name = "ear";
@@ -156,6 +155,7 @@ TEST_F(AmbientLight, IsTheSameBesideGatheredLight) {
   Capture sky = c;
   sky.environment = Environment{{1, 2, 3}, {0.5, 0.5, 0.5}}.harmonics();
   ReplaySettings s = through(), gathered = s;
+  gathered.features |= PELLUCID_FEATURE_DIFFUSION;
   gathered.translucency.gatherSamples = 8;
   const Image plain = replayer().run(c, materials, s).output,
               plainSky = replayer().run(sky, materials, s).output;

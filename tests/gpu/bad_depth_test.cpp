@@ -31,12 +31,10 @@ Capture scene(bool deviceDepth) {
 TEST_F(GpuTest, DepthsThatAreNoneAreNothingThere) {
   for (const bool device : {true, false}) {
     const float nothing = device ? 0.0f : -1.0f;
-    for (const uint32_t quality : {0u, 1u, 2u}) {
+    for (const uint32_t samples : {0u, 8u}) {
       Capture c = scene(device);
       ReplaySettings s;
-      s.quality = quality;
-      // Each quality gathers with one encoding and not with the other.
-      s.translucency.gatherSamples = (quality % 2 == 0) == device ? 8 : 0;
+      s.translucency.gatherSamples = samples;
       const auto at = [&](float depth) {
         for (const auto& [x, y] : {std::pair(40, 41), std::pair(55, 70), std::pair(56, 70)})
           c.frontDepth.image.at(x, y)[0] = depth;
@@ -48,7 +46,7 @@ TEST_F(GpuTest, DepthsThatAreNoneAreNothingThere) {
       for (const float depth :
            {kInfinity, -kInfinity, kNan, -2.0f, device ? 1e-40f : 2e9f, device ? 1e-12f : 1e38f})
         EXPECT_TRUE(sameBits(at(depth), expected))
-            << depth << ", device " << device << ", quality " << quality;
+            << depth << ", device " << device << ", samples " << samples;
     }
   }
 }

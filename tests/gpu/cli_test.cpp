@@ -10,7 +10,7 @@ TEST_F(Cli, CaptureReplayComparePlan) {
   const std::string capture = path("slab.exr"), out = path("out.exr"), again = path("again.exr");
   expect(0, "capture --procedural slab --size 48x32 --shadow-size 64 -o " + capture, "");
   expect(0, "info " + capture, "shadow");
-  expect(0, "plan " + capture, "\"dispatchCount\": 11");
+  expect(0, "plan " + capture, "\"dispatchCount\": 9");
   expect(0, "replay " + capture + " -o " + out + " --triptych " + path("t.png") + " --png", "upsample");
   const std::string linear = bytes("t.png");
   const std::string mapped = "replay " + capture + " --repeat 0 -o " + out + " --exposure 1 ";
@@ -106,16 +106,15 @@ TEST_F(Cli, Sheet) {
 TEST_F(Cli, SheetOfSweeps) {
   const std::string capture = path("ear.exr"), sheet = path("sheet.png");
   ASSERT_EQ(run("capture --procedural ear --size 96x64 --shadow-size 32 -o " + capture).code, 0);
-  expect(0,
-         "sheet " + capture + " --sweep quality=0,1 --sweep material=skin1,marble --exposure 1 -o " + sheet,
+  expect(0, "sheet " + capture + " --sweep gather=0,8 --sweep material=skin1,marble --exposure 1 -o " + sheet,
          "4 images");
   // Two rows of two, with gaps of 4: 196 x 132.
   const std::string png = bytes("sheet.png");
   EXPECT_EQ(png.substr(16, 8), std::string("\0\0\0\xC4\0\0\0\x84", 8));
-  expect(2, "sheet " + capture + " " + capture + " --sweep quality=0 -o " + sheet,
+  expect(2, "sheet " + capture + " " + capture + " --sweep gather=0 -o " + sheet,
          "--sweep: takes one capture");
   expect(2, "sheet " + capture + " --sweep color=red -o " + sheet, "unknown key \"color\"");
-  expect(2, "sheet " + capture + " --sweep quality -o " + sheet, "--sweep");
+  expect(2, "sheet " + capture + " --sweep gather -o " + sheet, "--sweep");
   expect(3, "sheet " + capture + " --sweep material=jade -o " + sheet, "jade");
 }
 

@@ -95,7 +95,7 @@ TEST_F(ContextTest, MakesThePipelinesOfItsUsesOnLentThreads) {
     };
   };
   const Context diffusion(device(), change, Compile::AtCreation);
-  EXPECT_EQ(lent.count, 6u) << "find cells, list groups, base level, downsample, upsample, diffuse";
+  EXPECT_EQ(lent.count, 5u) << "base level, list blocks, downsample, upsample, diffuse";
   EXPECT_EQ(lent.jobs.size(), lent.count);
 
   ReplaySettings s;
@@ -104,8 +104,7 @@ TEST_F(ContextTest, MakesThePipelinesOfItsUsesOnLentThreads) {
   device().run([&](VkCommandBuffer commandBuffer) { alone.record(commandBuffer); });
   EXPECT_TRUE(sameBits(alone.output(), replay(litSlab(), testMaterial(), s)));
 
-  s.quality = 0;
-  EXPECT_NE(refusal(device(), diffusion, s).find("plan needs pipeline diffuse_coarse"), std::string::npos);
+  EXPECT_NE(refusal(device(), diffusion, {}).find("plan needs pipeline translucency"), std::string::npos);
   const auto unknown = [](PellucidContextDesc& desc) { desc.uses = 1u << 20; };
   EXPECT_THROW(Context(device(), unknown, Compile::AtCreation), DeviceError);
 }
@@ -121,11 +120,8 @@ TEST_F(ContextTest, WideOutputsKeepAlphaToTheBit) {
   c.irradiance = rgba;
   ReplaySettings s;
   s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
-  for (const uint32_t quality : {0u, 1u}) {
-    s.quality = quality;
-    const Image out = replay(c, testMaterial(), s);
-    for (size_t i = 0; i < out.pixels(); ++i) ASSERT_EQ(out.data[4 * i + 3], rgba.data[4 * i + 3]) << i;
-  }
+  const Image out = replay(c, testMaterial(), s);
+  for (size_t i = 0; i < out.pixels(); ++i) ASSERT_EQ(out.data[4 * i + 3], rgba.data[4 * i + 3]) << i;
 }
 
 }  // namespace

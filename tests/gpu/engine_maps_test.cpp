@@ -20,10 +20,9 @@ namespace {
 using namespace pellucid::test;
 namespace reference = pellucid::harness::reference;
 
-ReplaySettings atQuality(uint32_t quality) {
+ReplaySettings gathering(uint32_t samples) {
   ReplaySettings s;
-  s.quality = quality;
-  s.translucency.gatherSamples = PELLUCID_GATHER_BY_QUALITY;
+  s.translucency.gatherSamples = samples;
   s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
   return s;
 }
@@ -61,13 +60,9 @@ protected:
     options.shadow = shadow;
     return rasterize(device(), model, frontCamera(false), options).capture;
   }
-  static Image render(const Capture& c, uint32_t quality) {
-    return replayer().run(c, compileMaterials(c), atQuality(quality)).output;
-  }
-  static Image renderUngathered(const Capture& c, uint32_t quality,
-                                PellucidThicknessSource source = PELLUCID_THICKNESS_LIGHT) {
-    ReplaySettings s = atQuality(quality);
-    s.translucency.gatherSamples = 0;
+  static Image render(const Capture& c, uint32_t samples,
+                      PellucidThicknessSource source = PELLUCID_THICKNESS_LIGHT) {
+    ReplaySettings s = gathering(samples);
     s.translucency.thicknessSource = source;
     return replayer().run(c, compileMaterials(c), s).output;
   }
@@ -105,16 +100,16 @@ TEST_F(EngineMaps, DepthBiasIsTakenBack) {
   for (const int bits : {16, 24, 32}) {
     Capture c = draw(model, biased(bits));
     EXPECT_LT(c.lights[0].shadowMaps[0].depthBiasSlope, 0) << "depths are reversed";
-    for (const uint32_t quality : {0u, 1u}) {
-      SCOPED_TRACE(std::to_string(bits) + " bits, quality " + std::to_string(quality));
-      expectNear(meanLit(c, render(c, quality)), meanLit(plain, render(plain, quality)), 0.02);
+    for (const uint32_t samples : {0u, 8u}) {
+      SCOPED_TRACE(std::to_string(bits) + " bits, samples " + std::to_string(samples));
+      expectNear(meanLit(c, render(c, samples)), meanLit(plain, render(plain, samples)), 0.02);
     }
     if (bits != 32) continue;
-    const std::array<double, 3> said = meanLit(c, render(c, 1));
+    const std::array<double, 3> said = meanLit(c, render(c, 8));
     for (Light& light : c.lights)
       for (ShadowMap& map : light.shadowMaps) map.depthBiasConstant = map.depthBiasSlope = 0;
-    const std::array<double, 3> expected = meanLit(plain, render(plain, 1));
-    const double unsaid = meanLit(c, render(c, 1))[0] / expected[0], saidRatio = said[0] / expected[0];
+    const std::array<double, 3> expected = meanLit(plain, render(plain, 8));
+    const double unsaid = meanLit(c, render(c, 8))[0] / expected[0], saidRatio = said[0] / expected[0];
     EXPECT_GT(unsaid, 1.012) << "a bias that the map does not say counts lit skin twice";
     // Hidden limbs that a bias moved count as shown: 1.1 % of the light that comes through goes.
     EXPECT_LT(std::abs(saidRatio - 1), 0.8 * (unsaid - 1));
@@ -131,14 +126,13 @@ TEST_F(EngineMaps, FrontFacesCulled) {
   EXPECT_EQ(c.lights[0].shadowMaps[0].faces, PELLUCID_FACES_BACK);
   Capture none = c;
   none.lights.clear();
-  for (const uint32_t quality : {0u, 1u}) {
-    SCOPED_TRACE(quality);
-    const Image image = render(c, quality),
-                expected = renderUngathered(plain, quality, PELLUCID_THICKNESS_CAMERA);
+  for (const uint32_t samples : {0u, 8u}) {
+    SCOPED_TRACE(samples);
+    const Image image = render(c, samples), expected = render(plain, 0, PELLUCID_THICKNESS_CAMERA);
     // On so small a ball points within a tolerance of the face that light leaves by are 2 % of the light. In
     // a frame that may gather, light that comes through is not diffused, and curved surfaces return up to a
     // tenth more than in the frame without a gather.
-    expectNear(meanLit(c, image), meanLit(plain, expected), quality == 0 ? 0.03 : 0.1);
+    expectNear(meanLit(c, image), meanLit(plain, expected), samples == 0 ? 0.03 : 0.1);
     // Never white: the light of rims, whose chord is short, is all that is brighter than with the plain map.
     const float brightest = *std::max_element(expected.data.begin(), expected.data.end());
     const auto white = std::count_if(image.data.begin(), image.data.end(),
@@ -146,12 +140,12 @@ TEST_F(EngineMaps, FrontFacesCulled) {
     EXPECT_LT(static_cast<double>(white), 0.02 * static_cast<double>(image.data.size()));
     Capture blind = c;
     blind.backDepth.image = {};
-    const ReplayResult without = replayer().run(blind, compileMaterials(blind), atQuality(quality));
-    EXPECT_TRUE(sameBits(without.output, render(none, quality)))
+    const ReplayResult without = replayer().run(blind, compileMaterials(blind), gathering(samples));
+    EXPECT_TRUE(sameBits(without.output, render(none, samples)))
         << "without back depth nothing comes through";
     EXPECT_EQ(without.plan.activeLights, 0u);
   }
-  const auto plan = replayer().run(c, compileMaterials(c), atQuality(1)).plan;
+  const auto plan = replayer().run(c, compileMaterials(c), gathering(8)).plan;
   std::string skips;
   for (uint32_t i = 0; i < plan.skipCount; ++i) skips += std::string(plan.skips[i].what) + ";";
   EXPECT_NE(skips.find("gather;"), std::string::npos) << skips;
@@ -187,9 +181,9 @@ TEST_F(EngineMaps, AtlasAndArrayAreAsSeparateMaps) {
     EXPECT_EQ(shadowImages(c.lights).images.size(), 3u)
         << "depth, exit depth and caster material of all maps";
     EXPECT_EQ(hasLayers(c.lights), placement == MapPlacement::Array);
-    for (const uint32_t quality : {0u, 1u})
-      EXPECT_TRUE(sameBits(render(c, quality), render(separate, quality)))
-          << "placement " << static_cast<int>(placement) << ", quality " << quality;
+    for (const uint32_t samples : {0u, 8u})
+      EXPECT_TRUE(sameBits(render(c, samples), render(separate, samples)))
+          << "placement " << static_cast<int>(placement) << ", samples " << samples;
   }
 }
 
@@ -251,13 +245,13 @@ TEST_F(EngineMaps, FewBitsMakeNoSeams) {
     drawing.bits = bits;
     const Capture c = draw(model, drawing);
     EXPECT_GT(c.lights[0].shadowMaps[0].depthStep, 0);
-    for (const uint32_t quality : {0u, 1u}) {
-      const Image image = render(c, quality), expected = render(plain, quality);
+    for (const uint32_t samples : {0u, 8u}) {
+      const Image image = render(c, samples), expected = render(plain, samples);
       const float peak = *std::max_element(expected.data.begin(), expected.data.end());
       float worst = 0;
       for (std::size_t i = 0; i < image.data.size(); ++i)
         worst = std::max(worst, std::abs(image.data[i] - expected.data[i]));
-      EXPECT_LT(worst, 0.01f * peak) << bits << " bits, quality " << quality;
+      EXPECT_LT(worst, 0.01f * peak) << bits << " bits, samples " << samples;
     }
   }
 }
@@ -288,12 +282,12 @@ TEST_F(EngineMaps, CascadesMeetWithoutASeam) {
     }
     c.lights[l].shadowMaps.push_back(coarse.lights[l].shadowMaps[0]);
   }
-  for (const uint32_t quality : {0u, 1u})
+  for (const uint32_t samples : {0u, 8u})
     for (std::size_t l = 0; l < c.lights.size(); ++l) {
       Capture one = c, reference = plain;
       one.lights = {c.lights[l]};
       reference.lights = {plain.lights[l]};
-      const Image image = render(one, quality), expected = render(reference, quality);
+      const Image image = render(one, samples), expected = render(reference, samples);
       // The light that comes through, over the plain map's, on both sides of the border.
       double sum[2] = {}, plainSum[2] = {};
       const double tangent = 0.1;  // of frontCamera
@@ -316,7 +310,7 @@ TEST_F(EngineMaps, CascadesMeetWithoutASeam) {
       ASSERT_GT(plainSum[0], 0);
       ASSERT_GT(plainSum[1], 0);
       EXPECT_NEAR(sum[0] / plainSum[0], sum[1] / plainSum[1], 0.01)
-          << "quality " << quality << ", light " << l;
+          << "samples " << samples << ", light " << l;
     }
 }
 
@@ -552,12 +546,12 @@ TEST_F(EngineMaps, Head) {
   ShadowDrawing culled;
   culled.cull = MapCull::Front;
   const Capture plain = draw({}), withBias = draw(biased(32)), back = draw(culled);
-  for (const uint32_t quality : {0u, 1u}) {
-    SCOPED_TRACE(quality);
-    const std::array<double, 3> expected = meanLit(plain, render(plain, quality));
-    expectNear(meanLit(withBias, render(withBias, quality)), expected, 0.02);
-    expectNear(meanLit(back, render(back, quality)), meanLit(plain, renderUngathered(plain, quality)),
-               quality == 0 ? 0.02 : 0.03);
+  for (const uint32_t samples : {0u, 8u}) {
+    SCOPED_TRACE(samples);
+    const std::array<double, 3> expected = meanLit(plain, render(plain, samples));
+    expectNear(meanLit(withBias, render(withBias, samples)), expected, 0.02);
+    expectNear(meanLit(back, render(back, samples)), meanLit(plain, render(plain, 0)),
+               samples == 0 ? 0.02 : 0.03);
   }
 }
 

@@ -9,32 +9,36 @@ using namespace pellucid::test;
 using Json = nlohmann::json;
 
 TEST_F(Cli, EvaluateFindsNothingInItsOwnTruth) {
-  // A checkered plane, and as its truth what quality 1 makes of it. Seen as the procedural scene has it, but
-  // for its camera: any orthographic one will do, as the truth is made with the same.
+  // A checkered plane, and as its truth what the module makes of it, which samples of no light do not change;
+  // then the plane's irradiance. Seen as the procedural scene has it, but for its camera: any orthographic
+  // one will do, as the truth is made with the same.
   expect(0, "capture --procedural checker --size 40x40 -o " + path("c.exr"), "");
-  Json manifest = Json::parse(R"({"pellucid": 1, "metersPerUnit": 0.001,
+  const Json plane = Json::parse(R"({"pellucid": 1, "metersPerUnit": 0.001,
     "camera": {"clipFromView": [0.1, 0, 0, 0, 0, -0.1, 0, 0, 0, 0, -0.001, 0, 0, 0, 0, 1],
                "viewFromWorld": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]},
     "buffers": {"frontDepth": {"constant": [100], "encoding": "viewZ"}, "material": {"constant": [1]},
                 "normal": {"constant": [0, 0, 1], "space": "world"},
                 "irradiance": {"file": "c.exr", "channels": ["irradiance.R", "irradiance.G", "irradiance.B"]}},
     "lights": [], "materials": [{"preset": "skin1"}]})");
-  std::ofstream(path("m.json")) << manifest.dump();
-  expect(0, "replay " + path("m.json") + " -o " + path("truth.exr"), "wrote");
-  manifest["truth"] = {{"file", "truth.exr"}, {"channels", {"R", "G", "B"}}};
-  std::ofstream(path("m.json")) << manifest.dump();
+  for (const bool same : {true, false}) {
+    const std::string truth = same ? "truth.exr" : "irradiance.exr";
+    Json manifest = plane;
+    std::ofstream(path("m.json")) << manifest.dump();
+    expect(0, "replay " + path("m.json") + " -o " + path(truth) + (same ? "" : " --set features=none"),
+           "wrote");
+    manifest["truth"] = {{"file", truth}, {"channels", {"R", "G", "B"}}};
+    std::ofstream(path("m.json")) << manifest.dump();
 
-  expect(0, "evaluate " + path("m.json") + " --rows qualities --json -o " + path("r.json"), "");
-  const Json report = Json::parse(bytes("r.json"));
-  ASSERT_EQ(report["results"].size(), 3u);
-  for (const Json& result : report["results"]) {
-    const bool same = result["model"] == "quality 1";
-    if (!same && result["model"] != "quality 0") continue;
-    EXPECT_EQ(result["tint"]["blocks"], 25);
-    EXPECT_TRUE(!same || result["isolated"] == result["isolatedInTruth"]) << result;
-    EXPECT_EQ(result["all"]["rel_rmse"][0] == 0, same) << result;
-    EXPECT_EQ(result["tint"]["channels"][0] == 0, same) << result;
-    EXPECT_EQ(result["flip"]["mean"] == 0, same) << result;
+    expect(0, "evaluate " + path("m.json") + " --rows samples --json -o " + path("r.json"), "");
+    const Json report = Json::parse(bytes("r.json"));
+    ASSERT_EQ(report["results"].size(), 3u);
+    for (const Json& result : report["results"]) {
+      EXPECT_EQ(result["tint"]["blocks"], 25);
+      EXPECT_TRUE(!same || result["isolated"] == result["isolatedInTruth"]) << result;
+      EXPECT_EQ(result["all"]["rel_rmse"][0] == 0, same) << result;
+      EXPECT_EQ(result["tint"]["channels"][0] == 0, same) << result;
+      EXPECT_EQ(result["flip"]["mean"] == 0, same) << result;
+    }
   }
 }
 

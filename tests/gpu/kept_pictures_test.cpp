@@ -40,7 +40,7 @@ protected:
 TEST_F(KeptPictures, AreMadeAgain) {
   expect(0, "capture --procedural ear --size 512x512 -o " + path("ear.exr"), "");
   expectAgain("", "demo.png");
-  expectAgain(" --set quality=0", "thickness.png");
+  expectAgain(" --set gather=0", "thickness.png");
 }
 
 }  // namespace

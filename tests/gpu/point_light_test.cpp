@@ -198,7 +198,6 @@ TEST_F(PointLights, GatherDoesNotEndAtSeams) {
   const Capture c = rasterize(model, cameraAt({60, 50, 40}, {0, 0, 0}, 0.2), options).capture;
   ReplaySettings settings;
   settings.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
-  settings.features = PELLUCID_FEATURE_TRANSLUCENCY;
   settings.translucency.gatherSamples = 64;
   const Image image = replay(c, testMaterial(), settings);
   double least[2] = {1e30, 1e30}, most[2] = {0, 0};  // away from seams and near them

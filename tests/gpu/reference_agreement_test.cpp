@@ -56,10 +56,9 @@ std::vector<PellucidMaterial> testMaterials(const Capture& c) {
 }
 
 // The diffusion alone.
-ReplaySettings diffusionOf(uint32_t quality) {
+ReplaySettings diffusionOnly() {
   ReplaySettings s;
   s.features = PELLUCID_FEATURE_DIFFUSION;
-  s.quality = quality;
   return s;
 }
 
@@ -386,7 +385,7 @@ TEST_F(GpuTest, DiffusionDistanceToBruteForce) {
     const std::vector<PellucidMaterial> materials = testMaterials(c);
     const std::vector<std::uint8_t> pixels = sampled(c, every);
     const Image truth = diffusionTruth(c, materials, pixels);
-    const Image gpu = rgb(replayer().run(c, materials, diffusionOf(1)).output);
+    const Image gpu = rgb(replayer().run(c, materials, diffusionOnly()).output);
     const Comparison d = compareImages(gpu, truth, pixels);
     std::printf("%-10s relative RMSE %.4f %.4f %.4f\n", name, d.channels[0].relativeRmse,
                 d.channels[1].relativeRmse, d.channels[2].relativeRmse);
@@ -408,12 +407,12 @@ TEST_F(GpuTest, DiffusionOnPlanesIsNearBruteForceInEveryDirection) {
                                             {18, 0, 1, 0.0148},
                                             {18, 1, -1, 0.0169},
                                             {26, 1, 0, 0.0154},
-                                            {34, 1, 0, 0.0146},
+                                            {34, 1, 0, 0.0190},
                                             {34, 1, 1, 0.0195},
-                                            {36, 1, 0, 0.0146},
+                                            {36, 1, 0, 0.0204},
                                             {46, 1, -1, 0.0263},
-                                            {60, 1, 0, 0.0294},
-                                            {60, 0, 1, 0.0294},
+                                            {60, 1, 0, 0.0553},
+                                            {60, 0, 1, 0.0585},
                                             {60, 1, 1, 0.0393},
                                             {60, -1, 1, 0.0393}}) {
     const double cosine = std::cos(glm::radians(tilt)), sine = std::sin(glm::radians(tilt));
@@ -442,7 +441,7 @@ TEST_F(GpuTest, DiffusionOnPlanesIsNearBruteForceInEveryDirection) {
         m.radius[channel] = static_cast<float>(3.8 * deviation);
       }
     const Image truth = diffusionTruth(c, {m}, middle);
-    const Comparison d = compareImages(rgb(replayer().run(c, {m}, diffusionOf(1)).output), truth, middle);
+    const Comparison d = compareImages(rgb(replayer().run(c, {m}, diffusionOnly()).output), truth, middle);
     std::printf("%g degrees, %d %d: %.4f %.4f %.4f\n", tilt, dx, dy, d.channels[0].relativeRmse,
                 d.channels[1].relativeRmse, d.channels[2].relativeRmse);
     for (const ChannelDifference& k : d.channels)
@@ -450,7 +449,7 @@ TEST_F(GpuTest, DiffusionOnPlanesIsNearBruteForceInEveryDirection) {
   }
 }
 
-// Pixels whose irradiance is none are black to the others, at every quality.
+// Pixels whose irradiance is none are black to the others.
 TEST_F(GpuTest, BadIrradianceIsBlackToBruteForce) {
   Capture c = flatCapture(64, 48);
   const float values[] = {std::numeric_limits<float>::quiet_NaN(), -std::numeric_limits<float>::infinity(),
@@ -459,15 +458,12 @@ TEST_F(GpuTest, BadIrradianceIsBlackToBruteForce) {
   for (int y = 3; y < c.height; y += 9)
     for (int x = 2; x < c.width; x += 7, ++i) c.irradiance.at(x, y)[i / 3 % 3] = values[i % 3];
   const Image truth = diffusionTruth(c, {testMaterial()}, {});
-  // Limits of each quality, a quarter above what is measured: relative RMSE and the worst pixel.
-  const double limits[][2] = {{0.011, 0.19}, {0.003, 0.022}, {0.003, 0.022}, {0.0002, 0.0013}};
-  for (uint32_t quality = 0; quality < 2; ++quality) {
-    const Comparison d = compareImages(rgb(replay(c, testMaterial(), diffusionOf(quality))), truth, {});
-    for (const ChannelDifference& k : d.channels) {
-      std::printf("quality %u: relative RMSE %.4f, worst %.4f\n", quality, k.relativeRmse, k.max);
-      EXPECT_LT(k.relativeRmse, limits[quality][0]) << "quality " << quality;
-      EXPECT_LT(k.max, limits[quality][1]) << "quality " << quality;
-    }
+  const Comparison d = compareImages(rgb(replay(c, testMaterial(), diffusionOnly())), truth, {});
+  for (const ChannelDifference& k : d.channels) {
+    std::printf("relative RMSE %.4f, worst %.4f\n", k.relativeRmse, k.max);
+    // A quarter above what is measured.
+    EXPECT_LT(k.relativeRmse, 0.003);
+    EXPECT_LT(k.max, 0.022);
   }
 }
 
@@ -496,7 +492,7 @@ TEST_F(GpuTest, KernelLargerThanTheImageKeepsItsContrast) {
     }
   const PellucidMaterial m = burley(kRadius * pixel);
   const std::vector<std::uint8_t> pixels = sampled(c, 8);
-  const Comparison d = compareImages(rgb(replayer().run(c, {m}, diffusionOf(1)).output),
+  const Comparison d = compareImages(rgb(replayer().run(c, {m}, diffusionOnly()).output),
                                      diffusionTruth(c, {m}, pixels), pixels);
   for (const ChannelDifference& k : d.channels) EXPECT_LT(k.relativeRmse, 0.0078);
 }
@@ -510,10 +506,9 @@ TEST_F(GpuTest, RadiiNeedNotBeKnown) {
     for (int x = 0; x < kSize; ++x)
       for (int k = 0; k < 3; ++k)
         c.irradiance.at(x, y)[k] = x < kSize / 2 ? 0.0f : 2 + 0.1f * static_cast<float>((x * 7 + y * 13) % 5);
-  for (const uint32_t quality : {0u, 1u})
-    for (const double radius : {10.0, 40.0, 70.0}) {
+  for (const double radius : {10.0, 40.0, 70.0}) {
       const PellucidMaterial m = burley(0.5 * radius);
-      ReplaySettings s = diffusionOf(quality);
+      ReplaySettings s = diffusionOnly();
       const ReplayResult unknown = replayer().run(c, {m}, s);
       s.nearestDistance = 10;
       const ReplayResult known = replayer().run(c, {m}, s);
@@ -525,7 +520,7 @@ TEST_F(GpuTest, RadiiNeedNotBeKnown) {
             std::abs(static_cast<double>(known.output.data[i]) - static_cast<double>(unknown.output.data[i]));
       // Levels 6 and 7 have that much of the widest radius, at most.
       EXPECT_LT(sum / static_cast<double>(known.output.data.size()), 2.2e-5)
-          << "radius " << radius << ", quality " << quality;
+          << "radius " << radius;
     }
 }
 

@@ -35,8 +35,7 @@ TEST_P(Sizes, ConstantIrradianceStays) {
   check(width - 1, height - 1);
 }
 
-// 121 to 500: three columns of groups and more, whose order is not that of their indices; all rows are looked
-// at.
+// Blocks, groups and quads that the image cuts.
 INSTANTIATE_TEST_SUITE_P(Replay, Sizes,
                          testing::Values(std::pair(1, 1), std::pair(3, 5), std::pair(64, 64),
                                          std::pair(121, 17), std::pair(244, 50), std::pair(500, 33),
@@ -316,9 +315,7 @@ TEST_F(Replay, DiffusionCountsBadIrradianceAsNone) {
   spoilIrradiance(bad, good);
   ReplaySettings s;
   s.features = PELLUCID_FEATURE_DIFFUSION;
-  for (const std::array<uint32_t, 4>& rect : {std::array<uint32_t, 4>{}, {1, 1, 62, 46}})
-    for (const uint32_t quality : {0u, 1u}) {
-      s.quality = quality;
+  for (const std::array<uint32_t, 4>& rect : {std::array<uint32_t, 4>{}, {1, 1, 62, 46}}) {
       s.renderRect = rect;
       const Image expected = replay(good, testMaterial(), s), out = replay(bad, testMaterial(), s);
       const int border = rect[0] == 0 ? 0 : 1;
@@ -327,12 +324,13 @@ TEST_F(Replay, DiffusionCountsBadIrradianceAsNone) {
           for (int k = 0; k < 4; ++k)
             ASSERT_NEAR(out.at(x, y)[k], expected.at(x, y)[k],
                         2e-3 * static_cast<double>(expected.at(x, y)[k]) + 1e-6)
-                << x << ", " << y << ", quality " << quality;
+                << x << ", " << y;
     }
 }
 
 TEST_F(Replay, PoisonNeverReachesTheOutput) {
   Capture c = busyCapture(64, 48);
+  c.lights[0].shadowMaps = {flatShadowMap(-12, PELLUCID_DEPTH_DEVICE)};
   const auto inside = [&](int x, int y) { return x >= 10 && x < 47 && y >= 7 && y < 36; };
   Capture poisoned = c;
   for (int y = 0; y < c.height; ++y)
@@ -341,17 +339,17 @@ TEST_F(Replay, PoisonNeverReachesTheOutput) {
       for (int k = 0; k < 3; ++k) poisoned.irradiance.at(x, y)[k] = poisoned.normal.at(x, y)[k] = kNan;
       poisoned.frontDepth.image.at(x, y)[0] = poisoned.backDepth.image.at(x, y)[0] = kNan;
     }
-  for (const uint32_t quality : {0u, 1u}) {
+  for (const uint32_t samples : {0u, 8u}) {
     ReplaySettings s;
     s.renderRect = {10, 7, 37, 29};
-    s.quality = quality;
+    s.translucency.gatherSamples = samples;
     const Image clean = replay(c, testMaterial(), s), out = replay(poisoned, testMaterial(), s);
     for (int y = 0; y < c.height; ++y)
       for (int x = 0; x < c.width; ++x) {
         const bool owned = inside(x, y) && c.material[static_cast<size_t>(y * c.width + x)] != 0;
         for (int k = 0; k < 3; ++k) {
           if (owned)
-            EXPECT_EQ(out.at(x, y)[k], clean.at(x, y)[k]) << x << ", " << y << ", quality " << quality;
+            EXPECT_EQ(out.at(x, y)[k], clean.at(x, y)[k]) << x << ", " << y << ", samples " << samples;
           else
             EXPECT_TRUE(std::isnan(out.at(x, y)[k])) << "written at " << x << ", " << y;
         }
@@ -376,16 +374,16 @@ TEST_F(Replay, BadValuesAtMaterialPixelsStayFinite) {
     }
   ReplaySettings s;
   for (const auto source : {PELLUCID_THICKNESS_LIGHT, PELLUCID_THICKNESS_CAMERA})
-    for (const uint32_t quality : {0u, 1u}) {
+    for (const uint32_t samples : {0u, 8u}) {
       s.translucency.thicknessSource = source;
-      s.quality = quality;
+      s.translucency.gatherSamples = samples;
       const Image out = replay(c, testMaterial(), s);
       for (int y = 0; y < 32; ++y)
         for (int x = 0; x < 32; ++x)
           for (int k = 0; k < 3; ++k)
             EXPECT_TRUE(c.material[static_cast<size_t>(y * 32 + x)] == 0 ||
                         (std::isfinite(out.at(x, y)[k]) && out.at(x, y)[k] >= 0))
-                << x << ", " << y << ", quality " << quality;
+                << x << ", " << y << ", samples " << samples;
     }
 }
 
@@ -430,14 +428,10 @@ TEST_F(Replay, DepthGapStopsDiffusion) {
         c.frontDepth.image.at(x, y)[0] = 18;
         for (int k = 0; k < 3; ++k) c.irradiance.at(x, y)[k] = 0;
       }
-    for (const uint32_t quality : {0u, 1u}) {
-      ReplaySettings s;
-      s.quality = quality;
-      const Image out = replay(c, testMaterial(), s);
-      for (int k = 0; k < 3; ++k)
-        EXPECT_LT(out.at(first, 4)[k], std::exp(-64.0 / 9) * c.irradiance.at(0, 0)[k])
-            << first << ", channel " << k << ", quality " << quality;
-    }
+    const Image out = replay(c, testMaterial());
+    for (int k = 0; k < 3; ++k)
+      EXPECT_LT(out.at(first, 4)[k], std::exp(-64.0 / 9) * c.irradiance.at(0, 0)[k])
+          << first << ", channel " << k;
   }
 }
 

@@ -120,7 +120,7 @@ TEST_F(Sample, CapturesReplayToTheSamePicture) {
     EXPECT_EQ(capture.width, scale < 1 ? 58 : 96);
     ReplaySettings replayed;
     replayed.ambient = true;
-    replayed.translucency.gatherSamples = PELLUCID_GATHER_BY_QUALITY;
+    replayed.translucency.gatherSamples = settings.gatherSamples;
     const Image output = rgb(replayer().run(capture, compileMaterials(capture), replayed).output);
     Image covered(capture.width, capture.height, 3), truth = covered;
     for (std::size_t i = 0; i < output.data.size(); ++i)
@@ -213,29 +213,29 @@ protected:
 };
 
 // Bounds are the differences of the first commit, rounded up. Culled fronts lack what gathered light adds:
-// quality 1 is darker. Relative RMSE of biased maps is of single pixels: a bias of 2 slopes moves surfaces by
-// two texels. The second bias is the sample's own.
+// with a gather they are darker. Relative RMSE of biased maps is of single pixels: a bias of 2 slopes moves
+// surfaces by two texels. The second bias is the sample's own.
 TEST_F(SpotMaps, CulledFrontsAndBiasGiveThePlainPictureWhereTheyAreSaid) {
-  for (const std::uint32_t quality : {0u, 1u}) {
+  for (const std::uint32_t samples : {0u, 8u}) {
     Settings settings = plain();
-    settings.quality = quality;
+    settings.gatherSamples = samples;
     const Image truth = skin(settings);
     const auto ratio = [&](const Settings& changed) { return mean(skin(changed)) / mean(truth); };
     settings.cullFronts = true;
-    EXPECT_NEAR(ratio(settings), 1, 0.06) << quality;
+    EXPECT_NEAR(ratio(settings), 1, 0.06) << samples;
     settings.mistake = Mistake::Fronts;
-    EXPECT_GT(ratio(settings), 3) << quality;
+    EXPECT_GT(ratio(settings), 3) << samples;
     for (const auto& [constant, slope] :
          {std::pair(20.0f, 2.0f), {Settings().biasConstant, Settings().biasSlope}}) {
       settings = plain();
-      settings.quality = quality;
+      settings.gatherSamples = samples;
       settings.biasConstant = constant;
       settings.biasSlope = slope;
       const Image said = skin(settings);
-      EXPECT_NEAR(mean(said) / mean(truth), 1, 0.04) << quality << ", bias " << constant;
+      EXPECT_NEAR(mean(said) / mean(truth), 1, 0.04) << samples << ", bias " << constant;
       settings.mistake = Mistake::Bias;
       EXPECT_GT(relativeError(skin(settings), truth), 1.25 * relativeError(said, truth))
-          << quality << ", bias " << constant;
+          << samples << ", bias " << constant;
     }
   }
 }

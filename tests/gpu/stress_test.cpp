@@ -29,7 +29,7 @@ const MaterialPool& pool() {
   return shared;
 }
 
-FrameLimits small() { return {-1, 1024, 1024}; }
+FrameLimits small() { return {std::nullopt, 1024, 1024}; }
 
 std::string bytesOf(const std::vector<float>& values) {
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)};
@@ -84,7 +84,7 @@ TEST(StressFrames, HoldEveryOptionAndAreAccepted) {
     const auto see = [&](const char* what, auto value) {
       ++seen[what + std::to_string(static_cast<int>(value))];
     };
-    see("quality ", s.quality);
+    see("eights of samples ", s.translucency.gatherSamples / 8);
     see("features ", s.features);
     see("debug ", s.debugView);
     see("angle ", s.translucency.angleModel);
@@ -107,11 +107,21 @@ TEST(StressFrames, HoldEveryOptionAndAreAccepted) {
   }
   // A twentieth at most, or wild frames would stress validation alone.
   EXPECT_LE(refused, kFrames / 40);
-  const std::map<std::string, int> counts = {{"quality ", 3}, {"features ", 4},      {"debug ", 5},
-                                             {"angle ", 7},   {"reuse ", 3},         {"alias ", 2},
-                                             {"front ", 2},   {"transmittance ", 4}, {"half ", 2},
-                                             {"light ", 3},   {"map ", 3},           {"perspective ", 2},
-                                             {"maps ", 2},    {"left-handed ", 2},   {"bad irradiance ", 2}};
+  const std::map<std::string, int> counts = {{"eights of samples ", 3},
+                                             {"features ", 4},
+                                             {"debug ", 5},
+                                             {"angle ", 7},
+                                             {"reuse ", 3},
+                                             {"alias ", 2},
+                                             {"front ", 2},
+                                             {"transmittance ", 4},
+                                             {"half ", 2},
+                                             {"light ", 3},
+                                             {"map ", 3},
+                                             {"perspective ", 2},
+                                             {"maps ", 2},
+                                             {"left-handed ", 2},
+                                             {"bad irradiance ", 2}};
   for (const auto& [what, count] : counts)
     for (int i = 0; i < count; ++i) EXPECT_GE(seen[what + std::to_string(i)], 5) << what << i;
 }
@@ -200,7 +210,7 @@ TEST_F(Stress, EveryCheckFindsAFault) {
   std::set<std::string> missing;
   for (const Check& check : checks()) missing.insert(check.name);
   for (std::uint64_t i = 0; i < 400 && !missing.empty(); i += 2) {
-    const StressFrame frame = randomFrame(11, i, pool(), {-1, 256, 256});
+    const StressFrame frame = randomFrame(11, i, pool(), {std::nullopt, 256, 256});
     if (firstWith(ownedPixels(frame), true) == ownedPixels(frame).size()) continue;
     Damaging& r = renderer();
     Subject subject(r, frame);
@@ -321,7 +331,7 @@ TEST_F(Stress, ShortRunHolds) {
   StressOptions options;
   options.seed = 40;
   options.frames = 10;
-  options.limits = {-1, 2048, 2048};
+  options.limits = {std::nullopt, 2048, 2048};
   options.validate = true;
   StressEvents events;
   events.violated = [](const StressFrame& frame, const std::vector<Violation>& violations) {

@@ -51,7 +51,7 @@ TEST_F(ThinWall, AgreesWithTheReference) {
             if (std::uint8_t& m = c.material[static_cast<std::size_t>(y * c.width + x)]; m != 0)
               m = static_cast<std::uint8_t>(materials.size());
       }
-      ReplaySettings s = quality(0);
+      ReplaySettings s = gathering(0);
       s.features = PELLUCID_FEATURE_TRANSLUCENCY;
       s.translucency.thicknessSource = row.source;
       reference::Settings r;
@@ -86,7 +86,7 @@ TEST_F(ThinWall, AgreesWithTheReferenceBesideAGather) {
   Capture c = draw(model, 64);
   c.lights[2].shadowMaps.clear();
   const std::vector<PellucidMaterial> materials = compileMaterials(c);
-  const ReplaySettings s = quality(1);
+  const ReplaySettings s = gathering(8);
   reference::Settings r;
   r.translucency = s.translucency;
   r.translucency.gatherSamples = 8;
@@ -114,8 +114,8 @@ TEST_F(ThinWall, AgreesWithPathTracing) {
   reference::TruthSums sums;
   reference::TruthTracer(c, surface, *scene, media, emitters).trace(sums, 2, 1, 0, [] {});
   const Image truth = reference::truthOf(sums).image;
-  for (const std::uint32_t q : {0u, 1u}) {
-    const Image output = run(c, quality(q));
+  for (const std::uint32_t samples : {0u, 8u}) {
+    const Image output = run(c, gathering(samples));
     double squares = 0, total = 0;
     std::size_t apart = 0, pixels = 0;
     for (std::size_t i = 0; i < output.pixels(); ++i)
@@ -129,8 +129,8 @@ TEST_F(ThinWall, AgreesWithPathTracing) {
       }
     EXPECT_GT(total / static_cast<double>(pixels), 0.1);
     // Edges of shadows alone, which maps filter over two texels: a pixel in twenty lies there.
-    EXPECT_LT(static_cast<double>(apart), 0.05 * static_cast<double>(pixels)) << q;
-    EXPECT_LT(std::sqrt(squares / total), 0.05) << q;
+    EXPECT_LT(static_cast<double>(apart), 0.05 * static_cast<double>(pixels)) << samples;
+    EXPECT_LT(std::sqrt(squares / total), 0.05) << samples;
   }
 }
 

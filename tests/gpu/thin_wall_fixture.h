@@ -32,7 +32,7 @@ inline void addOccluder(Model& model, double half, double z) {
   endPart(model, 1, static_cast<std::uint32_t>(model.surfaces.size() - 1));
 }
 
-// A sphere of skin beside the sheet, so that a frame of quality 1 or 2 gathers.
+// A sphere of skin beside the sheet, so that a frame may gather.
 inline void addSkin(Model& model, const Vector3& center, double radius) {
   Surface skin;
   skin.baseColor = {0.5, 0.5, 0.5};
@@ -52,11 +52,10 @@ protected:
     options.pointMaps = maps;
     return rasterize(device(), model, frontCamera(true), options).capture;
   }
-  static ReplaySettings quality(std::uint32_t quality) {
+  static ReplaySettings gathering(std::uint32_t samples) {
     ReplaySettings settings;
     settings.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
-    settings.quality = quality;
-    settings.translucency.gatherSamples = PELLUCID_GATHER_BY_QUALITY;
+    settings.translucency.gatherSamples = samples;
     return settings;
   }
   static Image run(const Capture& c, const ReplaySettings& settings) {

@@ -45,11 +45,11 @@ TEST_F(ThinWall, LightFromBehindIsTransmittanceTimesTheIrradianceOfTheOtherFace)
         if (skin) addSkin(model, {0, 8, 0}, 1.5);
         model.lights = {directional(direction, kE)};
         const Capture c = draw(model, shadowSize);
-        for (const std::uint32_t q : {0u, 1u, 2u}) {
-          SCOPED_TRACE(testing::Message() << "quality " << q << ", map " << shadowSize << ", skin " << skin
+        for (const std::uint32_t samples : {0u, 8u, 16u}) {
+          SCOPED_TRACE(testing::Message() << samples << " samples" << ", map " << shadowSize << ", skin " << skin
                                           << ", light " << direction[0] << " " << direction[1]);
           // The sphere shadows the edge of the sheet.
-          expectPixels(c, run(c, quality(q)), 1, [&](double, double y, std::size_t k) {
+          expectPixels(c, run(c, gathering(samples)), 1, [&](double, double y, std::size_t k) {
             return skin && y > 2 && shadowSize > 0 ? -1 : kTransmittance[k] * kE * cosineOf(direction);
           });
         }
@@ -61,8 +61,8 @@ TEST_F(ThinWall, LightFromTheFrontIsReflectedAlone) {
   addSkin(model, {0, 8, 0}, 1.5);
   model.lights = {directional({0.5, 0, -1}, kE)};
   const Capture c = draw(model);
-  for (const std::uint32_t q : {0u, 1u, 2u})
-    expectPixels(c, run(c, quality(q)), 1, [&](double, double y, std::size_t k) {
+  for (const std::uint32_t samples : {0u, 8u, 16u})
+    expectPixels(c, run(c, gathering(samples)), 1, [&](double, double y, std::size_t k) {
       return y > 2 ? -1 : kReflectance[k] * kE / std::hypot(0.5, 1);
     });
 }
@@ -73,8 +73,8 @@ TEST_F(ThinWall, WhatStandsBetweenHoldsLightBack) {
   addSkin(model, {0, 8, 0}, 1.5);
   model.lights = {directional({0, 0, 1}, kE)};
   const Capture c = draw(model, 512);
-  for (const std::uint32_t q : {0u, 1u, 2u})
-    expectPixels(c, run(c, quality(q)), 1, [&](double x, double y, std::size_t k) {
+  for (const std::uint32_t samples : {0u, 8u, 16u})
+    expectPixels(c, run(c, gathering(samples)), 1, [&](double x, double y, std::size_t k) {
       const double off = std::max(std::abs(x), std::abs(y)) - 2;
       // A texel is some .04 mm.
       return std::abs(off) < 0.2 || y > 4 ? -1 : off < 0 ? 0 : kTransmittance[k] * kE;
@@ -91,7 +91,7 @@ TEST_F(ThinWall, WhatLiesBeyondTheSheetHoldsNothingBack) {
   for (const float stored : {0.0f, 0.01f}) {
     std::fill(c.lights[0].shadowMaps[0].depth.image.data.begin(),
               c.lights[0].shadowMaps[0].depth.image.data.end(), stored);
-    expectPixels(c, run(c, quality(0)), 1, [&](double, double, std::size_t k) {
+    expectPixels(c, run(c, gathering(0)), 1, [&](double, double, std::size_t k) {
       return kTransmittance[k] * kE * cosineOf({0.3, 0, 1});
     });
   }
@@ -114,7 +114,7 @@ TEST_F(ThinWall, ALanternShinesByTheLightWithin) {
     const Capture c = draw(model, shadowSize, PointMaps::Six);
     // Facets of 64 rings, whose normals are interpolated, lie up to .1 % nearer to the light.
     expectPixels(
-        c, run(c, quality(1)), 1, [&](double, double, std::size_t k) { return kTransmittance[k] * 50 / 25; },
+        c, run(c, gathering(8)), 1, [&](double, double, std::size_t k) { return kTransmittance[k] * 50 / 25; },
         4e-3);
   }
 }
@@ -123,7 +123,7 @@ TEST_F(ThinWall, TheFarWallOfALanternHoldsLightFromOutsideBack) {
   Model model = lantern();
   model.lights = {directional({0, 0, 1}, kE)};
   const Capture c = draw(model);
-  expectPixels(c, run(c, quality(1)), 1, [&](double x, double y, std::size_t) {
+  expectPixels(c, run(c, gathering(8)), 1, [&](double x, double y, std::size_t) {
     return std::hypot(x, y) < 4.5 ? 0 : -1;  // the walls meet at the rim
   });
 }
@@ -137,7 +137,7 @@ TEST_F(ThinWall, NormalsThatBendDoNotLightALitFace) {
     c.normal.data[3 * i] = 0.9f;
     c.normal.data[3 * i + 2] = 0.43589f;
   }
-  expectPixels(c, run(c, quality(0)), 1, [&](double x, double y, std::size_t k) {
+  expectPixels(c, run(c, gathering(0)), 1, [&](double x, double y, std::size_t k) {
     // Beyond the edge there are no depths to take a normal from.
     const double e = static_cast<double>(c.irradiance.at(32, 32)[k]);
     return std::max(std::abs(x), std::abs(y)) > 4.5 ? -1 : kReflectance[k] * e;
@@ -152,8 +152,8 @@ TEST_F(ThinWall, WithoutNormalsThoseOfTheDepthsCount) {
     Capture c = draw(model);
     c.normal = {};
     c.backDepth = {};
-    for (const std::uint32_t q : {0u, 1u})
-      expectPixels(c, run(c, quality(q)), 1, [&](double, double y, std::size_t k) {
+    for (const std::uint32_t samples : {0u, 8u})
+      expectPixels(c, run(c, gathering(samples)), 1, [&](double, double y, std::size_t k) {
         return y > 2 ? -1 : kTransmittance[k] * kE * cosineOf(direction);
       });
   }
@@ -169,32 +169,32 @@ TEST_F(ThinWall, SolidsOfTheFrameDoNotSeeThatSheetsAreThin) {
   std::vector<PellucidMaterial> opaque = materials;
   opaque[0].thinWalled = 0;
   for (float(&t)[5] : opaque[0].transmittance) t[0] = 1e-9f, t[1] = 1;
-  for (const std::uint32_t q : {0u, 1u, 2u}) {
-    const Image with = replayer().run(c, materials, quality(q)).output,
-                alone = replayer().run(c, opaque, quality(q)).output;
+  for (const std::uint32_t samples : {0u, 8u, 16u}) {
+    const Image with = replayer().run(c, materials, gathering(samples)).output,
+                alone = replayer().run(c, opaque, gathering(samples)).output;
     double worst = 0;
     for (std::size_t i = 0; i < c.material.size(); ++i)
       for (std::size_t k = 0; k < 3 && c.material[i] == 2; ++k)
         worst = std::max(worst, std::abs(static_cast<double>(with.data[4 * i + k] - alone.data[4 * i + k])));
-    EXPECT_LT(worst, 1e-3) << q;
+    EXPECT_LT(worst, 1e-3) << samples;
   }
 }
 
-// Light spreads within a sheet if its material says so, and equally at every quality.
+// Light spreads within a sheet if its material says so, and equally with any gather.
 TEST_F(ThinWall, LightSpreadsWithinASheetIfItsMaterialSaysSo) {
-  const auto atEdge = [&](std::uint32_t q, bool spreads) {
+  const auto atEdge = [&](std::uint32_t samples, bool spreads) {
     Model model = sheet();
     if (spreads) model.materials[0] = ThinWallMaterial{kReflectance, kTransmittance, {{1, 1, 1}}};
     addOccluder(model, 2, -1);
     addSkin(model, {0, 8, 0}, 1);
     model.lights = {directional({0, 0, 1}, kE)};
     const Capture c = draw(model, 512);
-    return static_cast<double>(run(c, quality(q)).at(32 + 5, 32)[0]);  // 1.5 of 2 mm
+    return static_cast<double>(run(c, gathering(samples)).at(32 + 5, 32)[0]);  // 1.5 of 2 mm
   };
-  for (const std::uint32_t q : {0u, 1u, 2u}) {
-    EXPECT_LT(atEdge(q, false), 1e-3) << q;
-    EXPECT_GT(atEdge(q, true), 0.1) << q;
-    EXPECT_NEAR(atEdge(q, true), atEdge(0, true), 0.03) << q;
+  for (const std::uint32_t samples : {0u, 8u, 16u}) {
+    EXPECT_LT(atEdge(samples, false), 1e-3) << samples;
+    EXPECT_GT(atEdge(samples, true), 0.1) << samples;
+    EXPECT_NEAR(atEdge(samples, true), atEdge(0, true), 0.03) << samples;
   }
 }
 
@@ -205,8 +205,8 @@ TEST_F(ThinWall, FramesThatReuseKeepTheSheetsLight) {
   Capture c = draw(model);
   c.lights[1].shadowMaps.clear();
   const std::vector<PellucidMaterial> materials = compileMaterials(c);
-  for (const std::uint32_t q : {0u, 1u}) {
-    ReplaySettings settings = quality(q);
+  for (const std::uint32_t samples : {0u, 8u}) {
+    ReplaySettings settings = gathering(samples);
     const Image plain = replayer().run(c, materials, settings).output;
     settings.reuse = PELLUCID_REUSE_ALTERNATE;
     std::unique_ptr<FrameRun> last;
@@ -218,24 +218,23 @@ TEST_F(ThinWall, FramesThatReuseKeepTheSheetsLight) {
       const Image output = frame->output();
       for (std::size_t i = 0; i < plain.pixels(); ++i)
         for (std::size_t k = 0; k < 3 && c.material[i] == 1; ++k)
-          ASSERT_NEAR(output.data[4 * i + k], plain.data[4 * i + k], 1e-3) << q << " age " << age;
+          ASSERT_NEAR(output.data[4 * i + k], plain.data[4 * i + k], 1e-3) << samples << " age " << age;
       last = std::move(frame);
     }
   }
 }
 
-// Gathered light is added by the diffusion or by a dispatch of its own, where the GPU finds material or
-// light.
+// Wherever the passes run, with a gather and without.
 TEST_F(ThinWall, EveryOrderOfDispatchesHasTheSameLight) {
   Model model = sheet();
   addSkin(model, {0, 8, 0}, 1.5);
   model.lights = {directional({1, 0.5, 1}, kE)};
   const Capture c = draw(model);
   for (const std::uint32_t spacing : {1u, 4u})
-    for (const auto indirect : {PELLUCID_INDIRECT_MATERIAL, PELLUCID_INDIRECT_LIGHT})
+    for (const auto indirect : {PELLUCID_INDIRECT_MATERIAL, PELLUCID_INDIRECT_NONE})
       for (const std::uint32_t features : {1u, 3u}) {
         SCOPED_TRACE(testing::Message() << spacing << " " << indirect << " " << features);
-        ReplaySettings settings = quality(1);
+        ReplaySettings settings = gathering(8);
         settings.translucency.gatherSpacing = spacing;
         settings.indirectDispatches = indirect;
         settings.features = features;

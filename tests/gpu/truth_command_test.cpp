@@ -54,8 +54,8 @@ TEST_F(Cli, TruthTracesThinWalls) {
   expect(3, scene + " --material paper=thin:0.5,0.25", "\"thin:0.5,0.25\" is not thin:R,G,B");
   expect(0, scene + " --material paper=thin:0.5,0.25,0", "paths a second");
   expect(0, "info " + file, "thin wall");
-  for (const char* quality : {"0", "1"}) {
-    expect(0, "replay " + file + " --repeat 0 --set quality=" + quality + " -o " + out, "");
+  for (const char* samples : {"0", "8"}) {
+    expect(0, "replay " + file + " --repeat 0 --set gather=" + samples + " -o " + out, "");
     expect(0, "compare " + out + " " + file + " --limit rel_rmse=0.001 --limit max=0.001", "");
   }
   expect(3, scene + " --overwrite --material paper=thin:0.5,0.25,0 --entry refracted", "--entry lambert");

@@ -32,7 +32,7 @@ protected:
 
 TEST_F(View, SavesWhatReplaysToTheSameBits) {
   const std::string input = script(
-      "1 move 300 300\n1 press left\n2 move 380 260\n3 release left\n3 set quality=2\n4 set filter=.5,.7,.9\n"
+      "1 move 300 300\n1 press left\n2 move 380 260\n3 release left\n3 set gather=16\n4 set filter=.5,.7,.9\n"
       "4 split before .5\n5 press d\n7 release d\n");
   expect(0, kScene + "--no-window --frames 8 " + input + "--save " + path("a.exr"),
          "8 frames of the screen, 6 of");

@@ -83,7 +83,7 @@ TEST_F(ViewFramesTest, AreReplaysOfTheirCaptures) {
   state_.materials[0] = CoefficientMaterial{{2, 2, 2}, {0.01, 0.05, 0.1}, 0, 1.3};
   frames_->update(state_, {.materials = true});
   expectReplays("another material");
-  state_.settings.quality = 2;
+  state_.settings.translucency.gatherSamples = 16;
   state_.settings.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
   frames_->update(state_, {.frame = true});
   expectReplays("other settings");

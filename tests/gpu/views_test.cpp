@@ -81,8 +81,7 @@ protected:
 };
 
 TEST_F(ViewsTest, EyesHaveTheSameBitsTogether) {
-  for (const PellucidIndirect indirect :
-       {PELLUCID_INDIRECT_NONE, PELLUCID_INDIRECT_MATERIAL, PELLUCID_INDIRECT_CELLS}) {
+  for (const PellucidIndirect indirect : {PELLUCID_INDIRECT_NONE, PELLUCID_INDIRECT_MATERIAL}) {
     ReplaySettings s = gathered();
     s.indirectDispatches = indirect;
     const auto left = make(eye(0), s), right = make(eye(1), s);
@@ -115,7 +114,7 @@ struct Kind {
 
 constexpr Kind kKinds[] = {
     {"whole", left, [](ReplaySettings&) {}},
-    {"no gather", right, [](ReplaySettings& s) { s.quality = 0, s.translucency.gatherSamples = 0; }},
+    {"no gather", right, [](ReplaySettings& s) { s.translucency.gatherSamples = 0; }},
     {"rect in place, no lists", right,
      [](ReplaySettings& s) {
        s.aliasOutput = true;
@@ -125,8 +124,6 @@ constexpr Kind kKinds[] = {
     {"reuse", left, [](ReplaySettings& s) { s.reuse = PELLUCID_REUSE_ALTERNATE; }, true},
     {"reuse without a gather", right,
      [](ReplaySettings& s) { s.reuse = PELLUCID_REUSE_ALTERNATE, s.translucency.gatherSamples = 0; }, true},
-    {"cells of the engine's", left,
-     [](ReplaySettings& s) { s.indirectDispatches = PELLUCID_INDIRECT_CELLS; }},
     {"slab", slab, [](ReplaySettings&) {}},
     {"nothing to do", slab, [](ReplaySettings& s) { s.features = 0, s.aliasOutput = true; }, false, true}};
 

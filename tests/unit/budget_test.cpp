@@ -2,6 +2,7 @@
 // and must not swing between two.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <functional>
@@ -13,13 +14,16 @@
 namespace {
 
 constexpr float kBudget = 2;
-// Three reductions, each after 3 frames over the budget and 2 that are not looked at.
-constexpr int kLongestOver = 3 * (3 + 2);
+constexpr uint32_t kMost = 16, kSamples[] = {kMost, 8, 4, 0};
+// Reuse and three fewer samples, each after 3 frames over the budget and 2 that are not looked at.
+constexpr int kReductions = static_cast<int>(std::size(kSamples)), kLongestOver = kReductions * (3 + 2);
 
 // What a setting costs of the best one's time.
 float share(const PellucidBudgetState& s) {
-  const float quality[] = {0.3f, 0.6f, 1};
-  return quality[s.quality] * (s.reuse ? 0.7f : 1.0f);
+  const float shares[] = {1, 0.6f, 0.5f, 0.3f};
+  const uint32_t* found = std::find(std::begin(kSamples), std::end(kSamples), s.gatherSamples);
+  EXPECT_NE(found, std::end(kSamples)) << s.gatherSamples;
+  return shares[found - kSamples] * (s.reuse ? 0.7f : 1.0f);
 }
 
 struct Series {
@@ -39,7 +43,7 @@ Series simulate(int frames, const std::function<float(int)>& load) {
     over = measured > kBudget ? over + 1 : 0;
     run.longestOver = std::max(run.longestOver, over);
     pellucidStepBudget(&run.last, measured, kBudget);
-    run.changes += run.last.quality != before.quality || run.last.reuse != before.reuse;
+    run.changes += run.last.gatherSamples != before.gatherSamples || run.last.reuse != before.reuse;
   }
   return run;
 }
@@ -47,14 +51,14 @@ Series simulate(int frames, const std::function<float(int)>& load) {
 TEST(Budget, StaysBestWhenItFits) {
   const Series run = simulate(1000, [](int) { return 1.9f; });
   EXPECT_EQ(run.changes, 0);
-  EXPECT_EQ(run.last.quality, 2u);
+  EXPECT_EQ(run.last.gatherSamples, kMost);
   EXPECT_EQ(run.last.reuse, 0u);
 }
 
 TEST(Budget, StepDownAndBack) {
   const Series run = simulate(3000, [](int i) { return i >= 500 && i < 1500 ? 8.0f : 1.0f; });
   EXPECT_LE(run.longestOver, kLongestOver);
-  EXPECT_EQ(run.last.quality, 2u) << "back at the best when the load is gone";
+  EXPECT_EQ(run.last.gatherSamples, kMost) << "back at the best when the load is gone";
   EXPECT_EQ(run.last.reuse, 0u);
   EXPECT_LE(run.changes, 20);
 }
@@ -68,8 +72,8 @@ TEST(Budget, SpikesChangeNothing) {
 TEST(Budget, NoOscillationUnderConstantLoad) {
   for (float load = 0.5f; load < 9; load *= 1.01f) {
     const Series run = simulate(20000, [&](int) { return load; });
-    // 4 reductions, and failed raises at waits of 30, 60, .. 4096 frames: fewer than 10 pairs.
-    EXPECT_LE(run.changes, 4 + 20) << load;
+    // The reductions, and failed raises at waits of 30, 60, .. 4096 frames: fewer than 10 pairs.
+    EXPECT_LE(run.changes, kReductions + 20) << load;
     EXPECT_LE(run.longestOver, kLongestOver) << load;
   }
 }
@@ -96,9 +100,9 @@ TEST(Budget, DamagedStatesRecover) {
     }
     PellucidBudgetState best;
     pellucidInitBudgetState(&best);
-    EXPECT_EQ(light.quality, best.quality) << bits;
+    EXPECT_EQ(light.gatherSamples, best.gatherSamples) << bits;
     EXPECT_EQ(light.reuse, 0u) << bits;
-    EXPECT_EQ(heavy.quality, 0u) << bits;
+    EXPECT_EQ(heavy.gatherSamples, 0u) << bits;
   }
 }
 
@@ -119,10 +123,11 @@ TEST(Budget, RandomStatesRecover) {
     }
     PellucidBudgetState heavy = light;
     int lightFrames = 0, heavyFrames = 0;
-    // Two waits of 4096 frames at most, one for each quality, and one for the reuse.
-    for (; lightFrames < 20000 && !(light.quality == 2 && light.reuse == 0); ++lightFrames)
+    // Waits of 4096 frames at most: three for the samples, and one for the reuse.
+    for (; lightFrames < 20000 && !(light.gatherSamples == kMost && light.reuse == 0); ++lightFrames)
       pellucidStepBudget(&light, 0.5f, kBudget);
-    for (; heavyFrames < 100 && heavy.quality != 0; ++heavyFrames) pellucidStepBudget(&heavy, 100, kBudget);
+    for (; heavyFrames < 100 && heavy.gatherSamples != 0; ++heavyFrames)
+      pellucidStepBudget(&heavy, 100, kBudget);
     EXPECT_LT(lightFrames, 20000);
     EXPECT_LE(heavyFrames, kLongestOver + 2) << "as from a state that is whole, after what it lets settle";
   }
@@ -137,8 +142,8 @@ TEST(Budget, SlowRamps) {
 
 TEST(Budget, WhatNeverFitsStaysCheapest) {
   const Series run = simulate(1000, [](int) { return 100.0f; });
-  EXPECT_EQ(run.changes, 3);  // reuse, and two qualities
-  EXPECT_EQ(run.last.quality, 0u);
+  EXPECT_EQ(run.changes, kReductions);
+  EXPECT_EQ(run.last.gatherSamples, 0u);
 }
 
 TEST(Budget, BadTimesAreIgnored) {
@@ -148,7 +153,7 @@ TEST(Budget, BadTimesAreIgnored) {
     for (int i = 0; i < 10; ++i) pellucidStepBudget(&state, bad, kBudget);
   for (const float bad : {NAN, 0.0f, -1.0f})
     for (int i = 0; i < 10; ++i) pellucidStepBudget(&state, 100, bad);
-  EXPECT_EQ(state.quality, 2u);
+  EXPECT_EQ(state.gatherSamples, kMost);
   EXPECT_EQ(state.overFrames, 0u);
 }
 

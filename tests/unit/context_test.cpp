@@ -138,8 +138,8 @@ TEST(ContextLimits, AreNamedWithBothNumbers) {
               {"maxUniformBufferRange", &Limits::maxUniformBufferRange, 16128},
               {"maxPerStageDescriptorUniformBuffers", &Limits::maxPerStageDescriptorUniformBuffers, 3},
               {"maxPerStageDescriptorStorageBuffers", &Limits::maxPerStageDescriptorStorageBuffers, 2},
-              {"maxPerStageDescriptorStorageImages", &Limits::maxPerStageDescriptorStorageImages, 2},
-              {"maxPerStageDescriptorSampledImages", &Limits::maxPerStageDescriptorSampledImages, 16},
+              {"maxPerStageDescriptorStorageImages", &Limits::maxPerStageDescriptorStorageImages, 3},
+              {"maxPerStageDescriptorSampledImages", &Limits::maxPerStageDescriptorSampledImages, 15},
               {"maxPerStageResources", &Limits::maxPerStageResources, 23}};
   for (const auto& [name, limit, needed] : rows)
     for (const uint32_t less : {0u, 1u}) {
@@ -307,10 +307,9 @@ TEST(ContextPipelines, AreMadeForPlans) {
 void shape(Frame& f, uint32_t kind) {
   for (PellucidImage& image : f.frame.transients) image = Frame::view();
   f.frame.imageExtent[0] = 64 + 100 * (kind % 7);
-  if (kind % 3 == 1) f.frame.gatherSamples = PELLUCID_GATHER_BY_QUALITY;
+  if (kind % 3 == 1) f.frame.gatherSamples = 8;
   if (kind % 3 == 2) f.frame.features = PELLUCID_FEATURE_DIFFUSION;
   if (kind % 4 == 1) f.frame.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
-  f.frame.quality = kind % 3;
   if (kind % 5 == 1) f.frame.normal = Frame::view();
 }
 

@@ -234,6 +234,8 @@ TEST(Cull, FrontLightsAreDropped) {
 
   // What is gathered comes from around, whatever the angle.
   s.debugView = PELLUCID_DEBUG_NONE;
+  s.translucency.angleModel = PELLUCID_ANGLE_NORMAL;
+  view.capture.normal = {};
   s.translucency.gatherSamples = 8;
   EXPECT_NE(reasonOf(view.capture, s), "") << "nothing is gathered without a map";
   ShadowMap map;

@@ -276,7 +276,7 @@ const std::vector<IntegerRule> kIntegerRules = {
      "gatherSamples",
      "gatherSamples",
      [](Frame& f, uint32_t v) { f.frame.gatherSamples = v; },
-     {1, 3, 66, 68, 0x80000000, 0xFFFFFFFE}},
+     {1, 3, 66, 68, 0x80000000, 0xFFFFFFFF}},
     {"PellucidFrame",
      "gatherSpacing",
      "gatherSpacing",

@@ -1,5 +1,4 @@
-// What a plan costs, for every feature, output, kind of lights and quality, against a file that says what it
-// should.
+// What a plan is made of, for every feature, output, kind of lights and gather, against a file that says it.
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -17,10 +16,11 @@ struct Choice {
   const char* name;
   uint32_t value;
 };
+constexpr uint32_t kBoth = PELLUCID_FEATURE_TRANSLUCENCY | PELLUCID_FEATURE_DIFFUSION;
 const Choice kFeatures[] = {{"none", 0},
                             {"translucency", PELLUCID_FEATURE_TRANSLUCENCY},
                             {"diffusion", PELLUCID_FEATURE_DIFFUSION},
-                            {"both", PELLUCID_FEATURE_TRANSLUCENCY | PELLUCID_FEATURE_DIFFUSION}};
+                            {"both", kBoth}};
 const Choice kOutputs[] = {{"rgba16f", VK_FORMAT_R16G16B16A16_SFLOAT},
                            {"rgba32f", VK_FORMAT_R32G32B32A32_SFLOAT}};
 struct Way {
@@ -30,34 +30,23 @@ struct Way {
 const Way kWays[] = {{"", PELLUCID_DEBUG_NONE, 0, 0},
                      {" debug view", PELLUCID_DEBUG_THICKNESS, 0, 0},
                      {" gather", PELLUCID_DEBUG_NONE, 8, 0},
-                     {" gather, indirect", PELLUCID_DEBUG_NONE, 8, 1},
-                     {" gather, cells", PELLUCID_DEBUG_NONE, 8, 3}};
+                     {" gather, indirect", PELLUCID_DEBUG_NONE, 8, 1}};
 // value: lights with a shadow map each; 0: one without.
 const Choice kLights[] = {
     {"1 light without a map", 0}, {"1 light", 1}, {"8 lights", 8}, {"9 lights", 9}, {"20 lights", 20}};
 // nearestDistance: at the far one all radii are small.
 struct Detail {
   const char* name;
-  uint32_t quality;
   float nearestDistance;
   bool normals = false;
 };
-const Detail kDetails[] = {{"", 1, 0},
-                           {", quality 0", 0, 0},
-                           {", normals", 1, 0, true},
-                           {", far away", 1, 1000},
-                           {", quality 0, far away", 0, 1000}};
+const Detail kDetails[] = {{"", 0}, {", normals", 0, true}, {", far away", 1000}};
 
 nlohmann::json countsOf(const Frame& f) {
   const PellucidPlan plan = f.plan();
   uint32_t transients = 0;
   EXPECT_EQ(pellucidGetImageNeeds(&f.frame, &transients, nullptr), PELLUCID_OK);
-  uint64_t bytes = 0;
-  for (uint32_t i = 0; i < plan.dispatchCount; ++i) bytes += plan.dispatches[i].modeledBytes;
-  return {{"dispatches", plan.dispatchCount},
-          {"barriers", plan.barrierCount},
-          {"transients", transients},
-          {"bytesPerPixel", bytes / (f.frame.imageExtent[0] * f.frame.imageExtent[1])}};
+  return {{"dispatches", plan.dispatchCount}, {"barriers", plan.barrierCount}, {"transients", transients}};
 }
 
 nlohmann::json allCounts() {
@@ -69,14 +58,13 @@ nlohmann::json allCounts() {
         for (const Way& way : kWays) {
           // Debug views need all lights in one dispatch, which binds eight maps.
           if (way.debugView != PELLUCID_DEBUG_NONE && lights.value > 8) continue;
-          if (way.gatherSamples > 0 && !(features.value & PELLUCID_FEATURE_TRANSLUCENCY)) continue;
+          if (way.gatherSamples > 0 && features.value != kBoth) continue;
           f.frame.features = features.value;
           f.frame.outputFormat = static_cast<VkFormat>(output.value);
           f.frame.debugView = way.debugView;
           f.frame.gatherSamples = way.gatherSamples;
           f.frame.indirectDispatches = way.indirectDispatches;
           for (const Detail& detail : kDetails) {
-            f.frame.quality = detail.quality;
             f.frame.nearestDistance = detail.nearestDistance;
             f.frame.normal = detail.normals ? Frame::view() : PellucidImage{};
             all[std::string(features.name) + ", " + output.name + way.name + ", " + lights.name +

@@ -143,7 +143,8 @@ TEST(Reuse, ImageNeedsCoverBothKindsOfFrame) {
       PellucidImageNeed needs[PELLUCID_MAX_TRANSIENTS];
       uint32_t count = PELLUCID_MAX_TRANSIENTS;
       ASSERT_EQ(pellucidGetImageNeeds(&s.frame, &count, needs), PELLUCID_OK);
-      ASSERT_EQ(count, features == 3 ? 5u : 1u);  // a color, the pyramid in three, the history
+      ASSERT_EQ(count,
+                features == 3 ? 6u : 1u);  // a color, the pyramid in three, words of blocks, the history
       for (uint32_t i = 0; i < count; ++i) EXPECT_EQ(needs[i].persistent, i + 1 == count);
       for (int frame = 0; frame < 2; ++frame) {
         s.refreshes();

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -23,35 +22,23 @@ std::vector<fs::path> files(const fs::path& folder) {
   return found;
 }
 
-// Compiles a compute shader that includes files of `folder`.
-bool compiles(const fs::path& folder, const std::string& shader) {
+// `file` of `folder`, as a compute shader with nothing defined before it.
+bool compilesAlone(const fs::path& folder, const std::string& file) {
   const std::string command = std::string("\"") + PELLUCID_GLSLANG +
                               "\" --quiet -V --target-env vulkan1.1 -I\"" + folder.string() +
                               "\" --stdin -S comp -o /dev/null";
   FILE* glslang = popen(command.c_str(), "w");
   if (!glslang) return false;
+  const std::string shader = "#version 460\n#extension GL_GOOGLE_include_directive : require\n#include \"" +
+                             file + "\"\nvoid main() {}\n";
   std::fputs(shader.c_str(), glslang);
   return pclose(glslang) == 0;
-}
-
-// `file` of `folder`, with nothing defined before it.
-bool compilesAlone(const fs::path& folder, const std::string& file) {
-  return compiles(folder, "#version 460\n#extension GL_GOOGLE_include_directive : require\n#include \"" +
-                              file + "\"\nvoid main() {}\n");
 }
 
 TEST(ShaderLibrary, EachFileCompilesAlone) {
   for (const fs::path& file : files(kCompute / "lib"))
     EXPECT_TRUE(compilesAlone(kCompute, "lib/" + file.filename().string()))
         << file << " uses a name that it neither defines nor includes";
-}
-
-TEST(ShaderLibrary, TheDocumentedPassCompiles) {
-  std::ifstream in(fs::path(PELLUCID_SOURCE_DIR) / "docs/integration.md");
-  const std::string text{std::istreambuf_iterator<char>(in), {}}, mark = "<!-- snippet: cells -->\n```glsl\n";
-  const size_t found = text.find(mark), first = found + mark.size();
-  ASSERT_NE(found, std::string::npos);
-  EXPECT_TRUE(compiles(kCompute, text.substr(first, text.find("```", first) - first)));
 }
 
 TEST(ShaderLibrary, UndefinedNamesAreFound) {

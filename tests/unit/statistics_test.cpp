@@ -45,11 +45,12 @@ struct Slice {
   }
 };
 
-// All of its light is gathered, so that the device decides about the passes after the probes.
+// 200 x 100 pixels, 4 x 2 blocks.
 struct Gathered : Frame {
   explicit Gathered(PellucidIndirect indirect = PELLUCID_INDIRECT_MATERIAL) {
+    frame.imageExtent[0] = 200;
+    frame.imageExtent[1] = 100;
     frame.gatherSamples = 8;
-    frame.gatherSpacing = 4;
     frame.indirectDispatches = indirect;
   }
 };
@@ -59,65 +60,62 @@ void expectGroups(const PellucidGroups& groups, uint64_t run, uint64_t most, con
   EXPECT_EQ(groups.most, most) << what;
 }
 
-// The image is 100 x 50: 7 x 4 tiles of 16 pixels, 25 x 13 cells of 4 in groups of 8, and a map of 64 texels
-// a side.
+// Several dispatches may go by one command.
 TEST(Statistics, AreTheSlicesCommands) {
   Slice s{Gathered()};
-  std::map<std::string, uint32_t> ran = {{"base level", 5}, {"entry points", 3}, {"probes", 2},
-                                         {"upsample", 1},   {"downsample", 1},   {"filter probes", 1},
-                                         {"diffuse", 2}};
-  for (const auto& [name, groups] : ran) s.run(s.indexOf(name), groups);
-  ASSERT_EQ(s.read(), PELLUCID_OK) << s.sentences;
-  ASSERT_EQ(s.statistics.dispatchCount, s.plan.dispatchCount);
-  std::map<std::string, bool> seen;
+  std::map<VkDeviceSize, uint32_t> columns;
   for (uint32_t i = 0; i < s.plan.dispatchCount; ++i) {
     const PellucidDispatch& d = s.plan.dispatches[i];
-    const uint64_t most = uint64_t{d.groups[0]} * d.groups[1] * d.groups[2];
-    const bool first = !std::exchange(seen[d.name], true);
-    expectGroups(s.statistics.dispatches[i], !d.indirect ? most : first ? ran[d.name] : 0, most, d.name);
+    if (!d.indirect) continue;
+    const auto some = static_cast<uint32_t>(columns.size()) % d.groups[0];
+    s.run(i, columns.try_emplace(d.indirectOffset, some + 1).first->second, d.groups[1], d.groups[2]);
   }
-  expectGroups(s.statistics.tiles, 5, 7 * 4, "tiles");
-  expectGroups(s.statistics.probes, 2, 4 * 2, "probes");
-  expectGroups(s.statistics.entryPoints, 3, s.statistics.dispatches[s.indexOf("entry points")].most,
-               "entry points");
-  expectGroups(s.statistics.diffusion, 2, s.statistics.dispatches[s.indexOf("diffuse")].most, "diffusion");
-  EXPECT_EQ(s.statistics.tileLists, 1u);
-  EXPECT_EQ(s.statistics.gatheredLight, uint32_t{PELLUCID_GATHERED_SOME});
-  EXPECT_EQ(s.statistics.activeLights, 1u);
-}
-
-TEST(Statistics, SayThatNoLightWasGathered) {
-  Slice s{Gathered()};
-  s.run(s.indexOf("diffuse, none gathered"), 4);
+  EXPECT_GE(columns.size(), 5u) << "near material, of material, two coarse ones and entry points";
   ASSERT_EQ(s.read(), PELLUCID_OK) << s.sentences;
-  EXPECT_EQ(s.statistics.gatheredLight, uint32_t{PELLUCID_GATHERED_NONE});
-  EXPECT_EQ(s.statistics.diffusion.run, 4u);
+  ASSERT_EQ(s.statistics.dispatchCount, s.plan.dispatchCount);
+  for (uint32_t i = 0; i < s.plan.dispatchCount; ++i) {
+    const PellucidDispatch& d = s.plan.dispatches[i];
+    const uint32_t ran = d.indirect ? columns[d.indirectOffset] : d.groups[0];
+    const uint64_t others = uint64_t{d.groups[1]} * d.groups[2];
+    expectGroups(s.statistics.dispatches[i], ran * others, d.groups[0] * others, d.name);
+  }
+  const uint32_t diffuse = s.indexOf("diffuse"), probes = s.indexOf("probes"),
+                 entry = s.indexOf("entry points");
+  expectGroups(s.statistics.blocks, columns[s.plan.dispatches[diffuse].indirectOffset], 4 * 2, "blocks");
+  for (const auto& [groups, index] :
+       {std::pair(s.statistics.probes, probes), {s.statistics.entryPoints, entry}}) {
+    const PellucidGroups& own = s.statistics.dispatches[index];
+    expectGroups(groups, own.run, own.most, s.plan.dispatches[index].name);
+  }
+  EXPECT_EQ(s.statistics.lists, 1u);
+  EXPECT_EQ(s.statistics.activeLights, 1u);
 }
 
 TEST(Statistics, OfNothingAreZero) {
   Slice s{Gathered()};
   ASSERT_EQ(s.read(), PELLUCID_OK) << s.sentences;
   for (const PellucidGroups* groups :
-       {&s.statistics.tiles, &s.statistics.diffusion, &s.statistics.entryPoints, &s.statistics.probes}) {
+       {&s.statistics.blocks, &s.statistics.entryPoints, &s.statistics.probes}) {
     EXPECT_EQ(groups->run, 0u);
     EXPECT_GT(groups->most, 0u);
   }
-  EXPECT_EQ(s.statistics.gatheredLight, uint32_t{PELLUCID_GATHERED_NONE});
 }
 
-// With PELLUCID_INDIRECT_LIGHT the commands start as those of a frame without gathered light.
-TEST(Statistics, WithoutTileListsOnlyLightDecides) {
-  Slice s{Gathered(PELLUCID_INDIRECT_LIGHT)};
-  ASSERT_EQ(s.read(), PELLUCID_OK) << s.sentences;
-  EXPECT_EQ(s.statistics.tileLists, 0u);
-  expectGroups(s.statistics.tiles, 7 * 4, 7 * 4, "tiles");
-  EXPECT_EQ(s.statistics.gatheredLight, uint32_t{PELLUCID_GATHERED_NONE});
-  EXPECT_EQ(s.statistics.diffusion.run, s.statistics.diffusion.most);
-  EXPECT_EQ(s.statistics.dispatches[s.indexOf("filter probes")].run, 0u);
+// Blocks lie at multiples of 64, wherever the rect begins.
+TEST(Statistics, CountTheBlocksThatTheRectTouches) {
+  for (const auto indirect : {PELLUCID_INDIRECT_NONE, PELLUCID_INDIRECT_MATERIAL}) {
+    Gathered f(indirect);
+    const uint32_t rect[] = {63, 65, 66, 10};
+    std::copy(rect, rect + 4, f.frame.renderRect);
+    Slice s{f};
+    ASSERT_EQ(s.read(), PELLUCID_OK) << s.sentences;
+    // Without lists all run, and so do those that the pyramid's border touches: rows 0 and 1.
+    EXPECT_EQ(s.statistics.blocks.most, indirect == PELLUCID_INDIRECT_NONE ? 6u : 3u) << "columns 63 to 128";
+  }
 }
 
 // The slice's content does not matter where no dispatch is indirect.
-TEST(Statistics, WithoutIndirectDispatchesAllRuns) {
+TEST(Statistics, WithoutListsAllRuns) {
   Slice s{Gathered(PELLUCID_INDIRECT_NONE)};
   std::fill(s.bytes.begin(), s.bytes.end(), static_cast<unsigned char>(0xFF));
   ASSERT_EQ(s.read(), PELLUCID_OK) << s.sentences;
@@ -125,7 +123,8 @@ TEST(Statistics, WithoutIndirectDispatchesAllRuns) {
     EXPECT_GT(s.statistics.dispatches[i].most, 0u) << i;
     EXPECT_EQ(s.statistics.dispatches[i].run, s.statistics.dispatches[i].most) << i;
   }
-  EXPECT_EQ(s.statistics.gatheredLight, uint32_t{PELLUCID_GATHERED_UNKNOWN});
+  expectGroups(s.statistics.blocks, 5 * 3, 5 * 3, "blocks, with those that the pyramid's border touches");
+  EXPECT_EQ(s.statistics.lists, 0u);
 }
 
 TEST(Statistics, OfAPlanOfNothingAreEmpty) {
@@ -135,7 +134,7 @@ TEST(Statistics, OfAPlanOfNothingAreEmpty) {
   ASSERT_EQ(s.plan.dispatchCount, 0u);
   ASSERT_EQ(s.read(), PELLUCID_OK) << s.sentences;
   EXPECT_EQ(s.statistics.dispatchCount, 0u);
-  expectGroups(s.statistics.tiles, 0, 0, "tiles");
+  expectGroups(s.statistics.blocks, 0, 0, "blocks");
 }
 
 TEST(Statistics, ErrorsNameFieldAndValue) {
@@ -151,10 +150,10 @@ TEST(Statistics, ErrorsNameFieldAndValue) {
        "constants.mapped is NULL"},
       {[](Slice& s) { --s.constants.size; }, PELLUCID_ERROR_BUFFER_TOO_SMALL,
        "constants.size is " + std::to_string(whole.plan.constantsSize - 1) + "; the plan has " + bytes},
-      {[](Slice& s) { s.run(s.indexOf("base level"), 29); }, PELLUCID_ERROR_INVALID_ARGUMENT,
-       "constants.mapped has 29 x 1 x 1 groups of \"base level\", which are at most 28 x 1 x 1"},
-      {[](Slice& s) { s.run(s.indexOf("probes"), 1, 2, 1); }, PELLUCID_ERROR_INVALID_ARGUMENT,
-       "constants.mapped has 1 x 2 x 1 groups of \"probes\""},
+      {[](Slice& s) { s.run(s.indexOf("diffuse"), 9); }, PELLUCID_ERROR_INVALID_ARGUMENT,
+       "constants.mapped has 9 x 1 x 1 groups of \"diffuse\", which are at most 8 x "},
+      {[](Slice& s) { s.run(s.indexOf("entry points"), 1, 2, 1); }, PELLUCID_ERROR_INVALID_ARGUMENT,
+       "constants.mapped has 1 x 2 x 1 groups of \"entry points\""},
       {[](Slice& s) { s.plan.dispatches[s.indexOf("diffuse")].indirectOffset = s.plan.constantsSize - 8; },
        PELLUCID_ERROR_INVALID_ARGUMENT,
        "].indirectOffset is " + std::to_string(whole.plan.constantsSize - 8)},
@@ -168,10 +167,10 @@ TEST(Statistics, ErrorsNameFieldAndValue) {
   for (const Case& c : cases) {
     Slice s{Gathered()};
     c.change(s);
-    s.statistics.tiles.run = 77;
+    s.statistics.blocks.run = 77;
     EXPECT_EQ(s.read(), c.result) << c.sentence;
     EXPECT_NE(s.sentences.find(c.sentence), std::string::npos) << s.sentences << "is not " << c.sentence;
-    EXPECT_EQ(s.statistics.tiles.run, 77u) << c.sentence << ": written all the same";
+    EXPECT_EQ(s.statistics.blocks.run, 77u) << c.sentence << ": written all the same";
     // A caller need not listen.
     EXPECT_EQ(pellucidReadStatistics(&s.plan, &s.constants, &s.statistics, nullptr, nullptr), c.result);
   }
@@ -195,8 +194,7 @@ TEST(Statistics, LongerStructsAreFilled) {
   const Slice s{Gathered()};
   ASSERT_EQ(pellucidReadStatistics(&s.plan, &s.constants, &newer.known, nullptr, nullptr), PELLUCID_OK);
   EXPECT_EQ(newer.known.structSize, sizeof newer);
-  EXPECT_EQ(newer.known.tiles.most, 28u);
-  EXPECT_EQ(newer.known.reserved, 0u);
+  EXPECT_EQ(newer.known.blocks.most, 8u);
   EXPECT_EQ(newer.more[0], 0u);
   EXPECT_EQ(newer.more[1], 0u);
 }

@@ -76,7 +76,7 @@ struct Unusual : Frame {
     thesis.transmittanceFilter[1] = 0.25f;
     frame.gatherSamples = 0;
     frame.reuse = PELLUCID_REUSE_ALTERNATE;
-    frame.quality = 2;
+    frame.targetError = 0.1f;
     frame.nearestDistance = 13;
     frame.separateOutput = 1;
     frame.indirectDispatches = 1;

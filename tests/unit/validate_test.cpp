@@ -59,7 +59,7 @@ const std::vector<Violation> kViolations = {
     {"CoherenceThreshold", "coherenceThreshold", "nan", [](Frame& f) { f.frame.coherenceThreshold = NAN; }},
     {"PrescaleAngle", "thesis.prescaleAngle", "2", [](Frame& f) { f.thesis.prescaleAngle = 2; }},
     {"SeparateOutput", "separateOutput", "2", [](Frame& f) { f.frame.separateOutput = 2; }},
-    {"IndirectDispatches", "indirectDispatches", "4", [](Frame& f) { f.frame.indirectDispatches = 4; }},
+    {"IndirectDispatches", "indirectDispatches", "2", [](Frame& f) { f.frame.indirectDispatches = 2; }},
     {"MaterialShift", "materialShift", "32", [](Frame& f) { f.frame.materialShift = 32; }},
     {"MaterialMaskBelowShift", "materialMask", "whose last bits materialShift 4 drops",
      [](Frame& f) {
@@ -89,7 +89,6 @@ const std::vector<Violation> kViolations = {
      }},
     {"PreExposure", "preExposure", "0", [](Frame& f) { f.frame.preExposure = 0; }},
     {"FrameLoad", "frameLoad", "-1", [](Frame& f) { f.frame.frameLoad = -1; }},
-    {"Quality", "quality", "3, outside 0..2", [](Frame& f) { f.frame.quality = 3; }},
     {"TargetError", "targetError", "inf", [](Frame& f) { f.frame.targetError = INFINITY; }},
     {"NearestDistance", "nearestDistance", "-1", [](Frame& f) { f.frame.nearestDistance = -1; }},
     {"NoMinimumDots", "thesis.minimumDotTable", "NULL",

@@ -281,7 +281,6 @@ TEST(ViewParameters, ReachTheirFields) {
   const auto set = [&](const std::string& text) {
     EXPECT_TRUE(applyToState({1, "set", {text}, "here"}, state, changes)) << text;
   };
-  set("quality=2");
   set("gather=16");
   set("thickness=camera");
   set("filter=0.55,0.29,0.28");
@@ -290,7 +289,6 @@ TEST(ViewParameters, ReachTheirFields) {
   set("diffusion=0");
   set("reuse=coherence");
   const ReplaySettings& s = state.settings;
-  EXPECT_EQ(s.quality, 2u);
   EXPECT_EQ(s.translucency.gatherSamples, 16u);
   EXPECT_EQ(s.translucency.thicknessSource, PELLUCID_THICKNESS_CAMERA);
   EXPECT_EQ(s.translucency.transmittanceFilter, (std::array<float, 3>{0.55f, 0.29f, 0.28f}));
@@ -405,8 +403,8 @@ TEST_F(ViewFiles, ScriptsAreRefusedByLine) {
       for (const ScriptLine& line : readScript(file)) applyToState(line, state, changes);
     });
   };
-  for (const char* text : {"1 jump 3", "1 move 3", "0 wheel 1", "x wheel 1", "1 press elbow", "1 set quality",
-                           "1 set quality=9", "1 set speed=1", "1 set filter=1,1,1,1,1", "1 show soul",
+  for (const char* text : {"1 jump 3", "1 move 3", "0 wheel 1", "x wheel 1", "1 press elbow", "1 set gather",
+                           "1 set gather=99", "1 set speed=1", "1 set filter=1,1,1,1,1", "1 show soul",
                            "1 exposure much", "2 wheel 1\n1 wheel 1"}) {
     const std::string sentence = refused(std::string("# first\n") + text);
     EXPECT_NE(sentence.find("bad.txt:"), std::string::npos) << text << " gives: " << sentence;
@@ -457,7 +455,7 @@ TEST(ViewCost, BudgetGoesDownAboveIt) {
   budget.on = true;
   budget.milliseconds = 2;
   for (int i = 0; i < 20; ++i) budget.step(10, settings);
-  EXPECT_EQ(settings.quality, 0u);
+  EXPECT_EQ(settings.translucency.gatherSamples, 0u);
   EXPECT_EQ(settings.reuse, PELLUCID_REUSE_COHERENCE);
 }
 

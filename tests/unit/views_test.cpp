@@ -80,12 +80,12 @@ protected:
   std::string said_;
 };
 
-void noLists(Frame& f) { f.frame.gatherSamples = PELLUCID_GATHER_BY_QUALITY; }
+void noLists(Frame& f) { f.frame.gatherSamples = 8; }
 void wholeFrame(Frame& f) {
   noLists(f);
   f.frame.indirectDispatches = PELLUCID_INDIRECT_MATERIAL;
 }
-void noGather(Frame& f) { f.frame.quality = 0; }
+void noGather(Frame& f) { f.frame.gatherSamples = 0; }
 void translucencyAlone(Frame& f) { f.frame.features = PELLUCID_FEATURE_TRANSLUCENCY; }
 void nothing(Frame& f) {
   f.frame.features = 0;
@@ -269,7 +269,7 @@ const Refusal kRefusals[] = {
      "views[1].constants.size is 256; the plan needs", PELLUCID_ERROR_BUFFER_TOO_SMALL},
     {"PlanOfTheOtherView",
      [](View& a, View& b, auto& views) {
-       a.f.frame.quality = 0;
+       a.f.frame.gatherSamples = 0;
        a.makePlan(nullptr);
        views[1].plan = &a.plan;
        b.slice.size = View::kSliceBytes;

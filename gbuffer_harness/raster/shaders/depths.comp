@@ -1,9 +1,7 @@
 #version 450
 // Front and back depth as a capture stores them, and how many pixels have them.
-#extension GL_GOOGLE_include_directive : require
-#include "shared/pellucid_shared.h"
 
-layout(local_size_x = PELLUCID_GROUP_X, local_size_y = PELLUCID_GROUP_Y) in;
+layout(local_size_x = 8, local_size_y = 8) in; // kGroup of common/pixel_pass.cpp
 
 layout(push_constant) uniform Push {
   float nothing;       // stored where nothing is

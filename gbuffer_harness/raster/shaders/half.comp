@@ -1,9 +1,7 @@
 #version 450
 // An image in halves that are the bits of an upload, which rounds a half's half up; devices round as they like.
-#extension GL_GOOGLE_include_directive : require
-#include "shared/pellucid_shared.h"
 
-layout(local_size_x = PELLUCID_GROUP_X, local_size_y = PELLUCID_GROUP_Y) in;
+layout(local_size_x = 8, local_size_y = 8) in; // kGroup of common/pixel_pass.cpp
 
 layout(set = 0, binding = 0) uniform sampler2D from;
 layout(set = 0, binding = 1, rgba16f) uniform writeonly image2D to;

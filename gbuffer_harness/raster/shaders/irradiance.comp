@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "lib/light.glsl"
 
-layout(local_size_x = PELLUCID_GROUP_X, local_size_y = PELLUCID_GROUP_Y) in;
+layout(local_size_x = 8, local_size_y = 8) in; // kGroup of common/pixel_pass.cpp
 
 #define SHADOW_MAPS 6
 layout(constant_id = 0) const uint kMaps = SHADOW_MAPS; // at most

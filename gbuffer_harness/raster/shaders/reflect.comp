@@ -1,9 +1,7 @@
 #version 450
 // Irradiance times the share of it that surfaces with lobes apart reflect.
-#extension GL_GOOGLE_include_directive : require
-#include "shared/pellucid_shared.h"
 
-layout(local_size_x = PELLUCID_GROUP_X, local_size_y = PELLUCID_GROUP_Y) in;
+layout(local_size_x = 8, local_size_y = 8) in; // kGroup of common/pixel_pass.cpp
 
 layout(set = 0, binding = 0, rgba32f) uniform image2D irradiance;
 layout(set = 0, binding = 1) uniform sampler2D share; // of reflected.frag

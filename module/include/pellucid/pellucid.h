@@ -99,7 +99,7 @@ typedef enum PellucidDepthEncoding {
 /* A fused dispatch binds 8 shadow images and takes 128 lights and 112 shadow maps; a frame with more gets several. Exit
  * depths and caster materials count; the images of one light must fit into one dispatch. Where those of all lights are
  * more than a plan's dispatches can bind, all exit depths and caster materials are left out, which a skip says. */
-enum { PELLUCID_MAX_LIGHT_SHADOW_MAPS = 8, PELLUCID_MAX_TRANSIENTS = 7 };
+enum { PELLUCID_MAX_LIGHT_SHADOW_MAPS = 8, PELLUCID_MAX_TRANSIENTS = 8 };
 
 /* Parts of a frame. */
 typedef enum PellucidFeatureBits {
@@ -141,19 +141,14 @@ typedef enum PellucidOutputMode {
                                   without a pass that composites; see docs/integration.md */
 } PellucidOutputMode;
 
-/* The GPU decides how many workgroups run: */
+/* Who decides how many workgroups run: */
 typedef enum PellucidIndirect {
-  PELLUCID_INDIRECT_NONE = 0,     /* nowhere: all passes run over the whole rect */
-  PELLUCID_INDIRECT_MATERIAL = 1, /* where it finds material, and passes of a gather where it finds light, too */
-  PELLUCID_INDIRECT_LIGHT = 2,    /* the latter alone: where materials cover most of the rect, finding them costs more */
-  PELLUCID_INDIRECT_CELLS = 3     /* as MATERIAL, where the caller has found material; see pellucid_cells.h */
+  PELLUCID_INDIRECT_NONE = 0,    /* the plan: passes run over the whole rect */
+  PELLUCID_INDIRECT_MATERIAL = 1 /* the GPU: the diffusion and the gather run where it finds material */
 } PellucidIndirect;
 
 /* Options of Whelan 2009, pellucid_thesis.h. */
 typedef struct PellucidThesisOptions PellucidThesisOptions;
-
-/* PellucidFrame::gatherSamples: frame.quality chooses. */
-#define PELLUCID_GATHER_BY_QUALITY 0xFFFFFFFFu
 
 /* All that one recording reads and writes. */
 typedef struct PellucidFrame {
@@ -196,11 +191,11 @@ typedef struct PellucidFrame {
   uint32_t thicknessSource; /* PellucidThicknessSource */
   uint32_t debugView;       /* PellucidDebugView */
   const PellucidThesisOptions* thesis; /* NULL (default): none */
-  uint32_t gatherSamples;   /* entry points of the shadow map that each probe gathers light from, for lights with a
-                               map: a multiple of 4, at most 64; needs materials of EXP2 or SINH_EXP. 0: one
-                               light-space thickness. PELLUCID_GATHER_BY_QUALITY (default): 0, 8 or 16 at quality
-                               0, 1 or 2; 0, which the plan's skips say, with a solid of another model,
-                               thickness from the camera, and thesis options of one thickness a pixel */
+  uint32_t gatherSamples;   /* samples of the shadow map that each probe gathers light from, for lights with a map: a
+                               multiple of 4, at most 64; default 8. More lower the noise of thin parts. 0: one light-space
+                               thickness a pixel; so it is, as the plan's skips say, with a solid that is
+                               not of EXP2 or SINH_EXP, thickness from the camera, a material mark bit, and thesis
+                               options of one thickness a pixel */
   uint32_t reuse;           /* PellucidReuse. Kept light is looked up at the same pixel: pass no previous plan
                                after a cut, and expect a lag of the frames in between where things move.
                                Point and spot lights are seen from thesis->objectCenter */
@@ -208,18 +203,15 @@ typedef struct PellucidFrame {
   float frameLoad;          /* frame time / its budget, >= 0; above 1 it multiplies the threshold, so that frames
                                that are late refresh less often; 0: not known */
   PellucidImage history;    /* with reuse; the persistent one of pellucidGetImageNeeds, GENERAL, the same in all frames */
-  uint32_t quality;       /* 0: one thickness a pixel, and no filter of each pixel's neighbors; 1 (default): gathered
-                             light, and that filter; 2: twice the samples, at twice the probes along each side.
-                             gatherSamples and gatherSpacing override it */
-  float targetError;      /* > 0: in place of quality, the least one whose measured error, a relative RMSE, stays below it:
-                             with lights that of the worst frame against path tracing, else that of the diffusion from
-                             brute force at the frame's radii; the best and a skip if none does; 0 (default): off */
+  float targetError;      /* > 0: in place of gatherSamples, the least of 0, 8 and 16 whose measured error, a relative RMSE,
+                             stays below it: with lights that of the worst frame against path tracing, else that of the
+                             diffusion from brute force at the frame's radii; 16 and a skip if none does; 0 (default): off */
   float nearestDistance;  /* planar distance of the nearest surface that diffuses, scene units, or less: it leaves out
                              levels for radii that are small in pixels; nearer surfaces are then diffused too little.
                              Orthographic cameras need none. 0 (default): not known, radii count as the largest */
-  uint32_t gatherSpacing;   /* pixels a side that one probe gathers for: 1, 2 or 4; 0 (default): 4 in images of more
-                               than 2^20 pixels, 2 in those of more than 2^19, else 1, and half of that at quality 2.
-                               Each step costs a quarter of the one before; 4 needs pixels far below a mean free path */
+  uint32_t gatherSpacing;   /* pixels a side of the cell that one probe gathers for: 1, 2 or 4; 0 (default): 4 in images of
+                               more than 2^20 pixels, 2 in those of more than 2^19, else 1. Each step costs a quarter of the
+                               one before; 4 needs pixels far below a mean free path */
   uint32_t separateOutput;  /* 1: the output shares no memory with the irradiance, of which diffusion without a fused
                                dispatch before it then needs no copy; 0 (default): it may be the same image */
   uint32_t indirectDispatches; /* PellucidIndirect; but for NONE the constants' buffer has usage INDIRECT_BUFFER, too */
@@ -250,8 +242,7 @@ typedef struct PellucidFrame {
 typedef struct PellucidPlan PellucidPlan;
 
 /* One transient the caller creates: 2D, one mip, of this format and extent (for any render rect), usage SAMPLED |
- * STORAGE. It holds nothing between frames: it may alias memory not used during dispatches first..last. With
- * PELLUCID_INDIRECT_CELLS one of them is in use from the caller's writes on. */
+ * STORAGE. It holds nothing between frames: it may alias memory not used during dispatches first..last. */
 typedef struct PellucidImageNeed {
   VkFormat format;    /* of the image and its view */
   uint32_t extent[2]; /* pixels */

@@ -18,12 +18,11 @@ typedef struct PellucidContext PellucidContext;
 /* Uses that frames ask of a context. A pipeline is made if all that it is for is asked for; recording refuses a plan that
  * needs one of the others. */
 typedef enum PellucidUse {
-  PELLUCID_USE_TRANSLUCENCY = 1 << 0, /* lights that are not gathered from, thin walls, and frames without diffusion */
+  PELLUCID_USE_TRANSLUCENCY = 1 << 0, /* lights that are not gathered from, and thin walls */
   PELLUCID_USE_GATHER = 1 << 1,       /* gathered light */
   PELLUCID_USE_DIFFUSION = 1 << 2,    /* light that spreads under the surface */
-  PELLUCID_USE_QUALITY_0 = 1 << 3,    /* besides qualities 1 and 2, which take the same pipelines */
-  PELLUCID_USE_REUSE = 1 << 4,        /* frame.reuse without a gather */
-  PELLUCID_USE_DEBUG_VIEWS = 1 << 5   /* frame.debugView */
+  PELLUCID_USE_REUSE = 1 << 3,        /* frame.reuse without a gather */
+  PELLUCID_USE_DEBUG_VIEWS = 1 << 4   /* frame.debugView */
 } PellucidUse;
 
 /* Calls job(data, i) for each i below count, on any threads and in any order, and returns when all have returned. */

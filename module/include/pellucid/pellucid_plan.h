@@ -25,8 +25,8 @@ typedef enum PellucidResource {
   PELLUCID_RESOURCE_OUTPUT = 6,
   PELLUCID_RESOURCE_CONSTANTS = 7, /* a range of the constants slice */
   PELLUCID_RESOURCE_TRANSIENT0 = 8,
-  PELLUCID_RESOURCE_HISTORY = 15,
-  PELLUCID_RESOURCE_SHADOW0 = 16
+  PELLUCID_RESOURCE_HISTORY = 16,
+  PELLUCID_RESOURCE_SHADOW0 = 17
 } PellucidResource;
 
 enum {
@@ -84,10 +84,8 @@ struct PellucidPlan {
   PellucidSkip skips[PELLUCID_MAX_SKIPS]; /* what is left out, and why */
   float largestRadius; /* pixels within which 99.9 % of the diffused energy lies, of the widest channel of all
                           materials at frame.nearestDistance; 0: not known, or nothing diffuses */
-  uint32_t quality;    /* that the diffusion runs at: frame.quality, or what frame.targetError chose; 0 where
-                          nothing diffuses */
-  uint32_t gatherSamples; /* of each probe: frame.gatherSamples, or what frame.quality chose; 0: lights
-                             with a shadow map have one thickness a pixel */
+  uint32_t gatherSamples; /* of each probe: frame.gatherSamples, or as frame.targetError chose; 0: lights with a shadow map
+                             have one thickness a pixel */
   uint32_t historyAge;    /* frames since frame.history was written, by the last frame that computed the light that
                              comes through; 0: this frame computes it */
   PellucidPlanState state; /* not for callers */

@@ -1,5 +1,4 @@
-/* The decisions of the device in a frame that it has finished: groups that ran, tiles with material, gathered
- * light.
+/* The decisions of the device in a frame that it has finished: groups that ran, blocks with material.
  *
  * The indirect commands of a plan lie in the caller's constants slice, where the device counted. Reading them
  * costs the device nothing, and needs neither a buffer nor a stall:
@@ -17,14 +16,7 @@
 extern "C" {
 #endif
 
-enum { PELLUCID_STATISTICS_TILE = 16 }; /* pixels a side of a tile */
-
-/* The gather of a frame as the device decided about it. */
-typedef enum PellucidGatheredLight {
-  PELLUCID_GATHERED_UNKNOWN = 0, /* nothing is gathered, or the passes after the probes run in any case */
-  PELLUCID_GATHERED_NONE = 1,    /* no probe found light: spatial filter and addition did not run */
-  PELLUCID_GATHERED_SOME = 2     /* a probe found light */
-} PellucidGatheredLight;
+enum { PELLUCID_STATISTICS_BLOCK = 64 }; /* pixels a side of a block */
 
 /* Workgroups of a dispatch, or of several. */
 typedef struct PellucidGroups {
@@ -37,15 +29,14 @@ typedef struct PellucidStatistics {
   uint32_t structSize;    /* sizeof(PellucidStatistics), written by pellucidInitStatistics */
   uint32_t dispatchCount; /* of dispatches, 0..PELLUCID_MAX_DISPATCHES */
   PellucidGroups dispatches[PELLUCID_MAX_DISPATCHES]; /* those of the plan, in its order */
-  PellucidGroups tiles;       /* of PELLUCID_STATISTICS_TILE pixels a side, from an even pixel on: those with material, of
-                                 those that the rect touches. Without tileLists all; 0 of 0 where nothing diffuses */
-  PellucidGroups diffusion;   /* groups of the diffusion's last dispatch, with gathered light or without */
+  PellucidGroups blocks;      /* of PELLUCID_STATISTICS_BLOCK pixels a side, at multiples of that: those with material, of those
+                                 that the rect touches. Without lists all, and those within 8 pixels of the rect; 0 of 0
+                                 where nothing diffuses or is gathered */
   PellucidGroups entryPoints; /* groups of 16 x 16 entry points, of all maps; 0 of 0 without a gather */
   PellucidGroups probes;      /* groups of 8 x 8 cells of the gather; 0 of 0 without a gather */
-  uint32_t tileLists;     /* 1: the device listed where material is; 0: passes ran over the whole rect */
-  uint32_t gatheredLight; /* PellucidGatheredLight */
+  uint32_t lists;         /* 1: the device listed where material is; 0: passes ran over the whole rect */
   uint32_t activeLights;  /* PellucidPlan::activeLights: lights that can contribute */
-  uint32_t reserved;      /* 0 */
+
 } PellucidStatistics;
 
 /* Zeros and the size, written into a struct of that many bytes. */

@@ -1,17 +1,26 @@
-// Groups of entry points that the surfaces of a block need.
-#ifndef PELLUCID_BLOCK_ENTRIES_GLSL
-#define PELLUCID_BLOCK_ENTRIES_GLSL
+// Lists the blocks that later passes do, and the groups of entry points within reach of the surfaces that blocks show: an
+// invocation looks at a block, or for one block at a row of the groups of a map.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+
+#define GROUP_SIDE PELLUCID_LIST_GROUP
+#define GROUP_ROWS 1
+#include "frame/blocks.glsl"
 
 layout(set = 0, binding = PELLUCID_BINDING_GATHER_MAPS) uniform GatherMaps { GatherMapConstants maps[PELLUCID_DISPATCH_SHADOWS]; };
+layout(set = 0, binding = PELLUCID_BINDING_LISTS) buffer Lists {
+  BlockLists lists;
+  uint entryGroups[]; // a bit for each group of a map's entry points that is listed
+};
 
 const uint kEntryGroupRowWords = 2u, kEntryGroupRows = 64u; // a row has 64 groups
 const uint kEntryGroupWords = uint(PELLUCID_ENTRY_GROUP_WORDS);
 
 // Entry points [xy, zw] of a map that lie within reach of what a block shows between two planar distances.
-vec4 entriesInReach(uint map, ivec2 block, float nearest, float farthest) {
-  ivec2 first = firstBlockPixel() + (block << kBlockShift);
+vec4 entriesInReach(uint map, uint block, float nearest, float farthest) {
+  ivec2 first = firstPixel(block);
   bool perspective = maps[map].stepX.w != 0.0;
-  float reach = tiles.reach.x;
+  float reach = lists.reach.x;
   vec3 least = vec3(3.0e38), most = vec3(-3.0e38);
   vec4 at = vec4(3.0e38, 3.0e38, -3.0e38, -3.0e38);
   for (int i = 0; i < 8; ++i) {
@@ -46,12 +55,11 @@ uint bitsWithin(int first, int last, int begin) {
 }
 
 // Lists the groups in a row of a map that a block needs and that no other has listed.
-void listEntryGroups(uint map, uint blockIndex, int row) {
-  uvec2 block = uvec2(blockIndex % frame.blocks.x, blockIndex / frame.blocks.x);
-  uint word = blockWord(block);
-  float nearest = uintBitsToFloat(readTileWord(word + 2u)), farthest = uintBitsToFloat(readTileWord(word + 3u));
+void listEntryGroups(uint map, uint block, int row) {
+  float nearest = uintBitsToFloat(readWord(blockWord(block, kNearestWord)));
+  float farthest = uintBitsToFloat(readWord(blockWord(block, kFarthestWord)));
   if (!(farthest > 0.0)) return;
-  vec4 entries = entriesInReach(map, ivec2(block), nearest, farthest);
+  vec4 entries = entriesInReach(map, block, nearest, farthest);
   ivec2 last = maps[map].place.zw - 1;
   if (any(isnan(entries))) entries = vec4(vec2(0.0), vec2(last));
   // Far outside stays outside after the conversion. Below, groups are within the map whatever a NaN would convert to.
@@ -66,10 +74,48 @@ void listEntryGroups(uint map, uint blockIndex, int row) {
     uint added = bits & ~entryGroups[at];
     if (added != 0u) added &= ~atomicOr(entryGroups[at], added);
     if (added == 0u) continue;
-    uint place = listPlace(PELLUCID_LIST_ENTRY_POINTS) + addToList(PELLUCID_LIST_ENTRY_POINTS, bitCount(added));
+    uint place = entryList() + atomicAdd(lists.commands[PELLUCID_LIST_ENTRIES].x, bitCount(added));
     for (; added != 0u; added &= added - 1u, ++place)
-      writeTileWord(place, packEntryGroup(uvec3(32u * i + uint(findLSB(added)), uint(row), map)));
+      writeWord(place, packEntryGroup(uvec3(32u * i + uint(findLSB(added)), uint(row), map)));
   }
 }
 
-#endif
+uvec2 cellsOfBlock(ivec2 at) {
+  if (!contains(ivec4(0, 0, frame.blocks.xy), at)) return uvec2(0u);
+  uint block = uint(at.y) * frame.blocks.x + uint(at.x);
+  return uvec2(readWord(blockWord(block, kCellWord)), readWord(blockWord(block, kCellWord + 1u)));
+}
+
+void listBlock(uint block) {
+  ivec2 at = ivec2(block % frame.blocks.x, block / frame.blocks.x);
+  uvec2 some = uvec2(0u), all = uvec2(~0u);
+  for (int i = 0; i < 9; ++i) { // no early exit: it would wait for each word
+    uvec2 cells = cellsOfBlock(at + ivec2(i % 3, i / 3) - 1);
+    some |= cells;
+    all &= cells;
+  }
+  bool near = some != uvec2(0u);
+  writeWord(blockWord(block, kNearWord), near ? 1u : 0u);
+  if (!near) return;
+  bool holds = cellsOfBlock(at) != uvec2(0u);
+  if (all == uvec2(~0u)) block |= kWholeBlock;
+  writeWord(nearList() + atomicAdd(lists.commands[PELLUCID_LIST_DOWNSAMPLE].x, 1u), block);
+  atomicAdd(lists.commands[PELLUCID_LIST_UPSAMPLE].x, 1u);
+  if (!holds) return;
+  uint place = atomicAdd(lists.commands[PELLUCID_LIST_DIFFUSE].x, 1u);
+  writeWord(materialList() + place, block);
+  atomicAdd(lists.commands[PELLUCID_LIST_PROBES].x, 1u);
+  atomicAdd(lists.commands[PELLUCID_LIST_FILTER].x, 1u);
+  atomicMax(lists.commands[PELLUCID_LIST_COARSE].x, lists.commands[PELLUCID_LIST_COARSE].w);
+  atomicMax(lists.commands[PELLUCID_LIST_COARSEST].x, lists.commands[PELLUCID_LIST_COARSEST].w);
+}
+
+void main() {
+  uint index = gl_GlobalInvocationID.x, blocks = blockCount();
+  if (index < blocks) {
+    listBlock(index);
+  } else if (index < blocks * (1u + kEntryGroupRows * lists.maps.x)) {
+    uint row = (index - blocks) % kEntryGroupRows, rest = (index - blocks) / kEntryGroupRows;
+    listEntryGroups(rest / blocks, rest % blocks, int(row));
+  }
+}

@@ -1,6 +1,7 @@
-// Set 0 of every pass, and the few functions that read it. An entry point includes this file first.
-#ifndef PELLUCID_BINDINGS_GLSL
-#define PELLUCID_BINDINGS_GLSL
+// Bindings that passes share, and the functions that read the G-buffer through them. A pass defines GROUP_SIDE and, for groups
+// that are not square, GROUP_ROWS before it includes this file.
+#ifndef PELLUCID_FRAME_GLSL
+#define PELLUCID_FRAME_GLSL
 
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require

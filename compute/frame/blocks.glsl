@@ -1,0 +1,87 @@
+// Blocks of 64 x 64 pixels of the image. base_level.comp finds which of them hold material, list_blocks.comp lists these, and
+// later passes do one listed block, or a part of it, a group.
+//
+// The image of words holds PELLUCID_BLOCK_WORDS a block, row by row, and then three lists of words: blocks with material or
+// beside one, blocks with material, and groups of entry points.
+#ifndef PELLUCID_BLOCKS_GLSL
+#define PELLUCID_BLOCKS_GLSL
+
+#include "frame/frame.glsl"
+
+layout(set = 0, binding = PELLUCID_BINDING_BLOCKS, r32ui) uniform uimage2D blocksImage;
+
+const int kBlockShift = 6, kCellShift = 3; // of PELLUCID_BLOCK and PELLUCID_CELL
+// Words of a block: two with a bit for each cell of 8 x 8 pixels, rows 0 to 3 and 4 to 7; the bits of the nearest and of the
+// farthest planar distance of its surfaces; 1 if the block or one beside it has material.
+const uint kCellWord = 0u, kNearestWord = 2u, kFarthestWord = 3u, kNearWord = 4u;
+
+ivec2 wordPlace(uint word) {
+  return ivec2(word & ((1u << PELLUCID_BLOCK_WORDS_SHIFT) - 1u), word >> PELLUCID_BLOCK_WORDS_SHIFT);
+}
+uint readWord(uint word) { return imageLoad(blocksImage, wordPlace(word)).x; }
+void writeWord(uint word, uint value) { imageStore(blocksImage, wordPlace(word), uvec4(value)); }
+
+uint blockCount() { return frame.blocks.x * frame.blocks.y; }
+uint blockWord(uint block, uint word) { return uint(PELLUCID_BLOCK_WORDS) * block + word; }
+// Blocks reach as far as texels of levels 2 and 3 that the rect needs: their border holds what filters carry over the rect's edge.
+ivec2 firstBlock() { return (ivec2(frame.rect.xy) - PELLUCID_BLOCK_BORDER) >> kBlockShift; }
+ivec2 firstPixel(uint block) {
+  return (firstBlock() + ivec2(block % frame.blocks.x, block / frame.blocks.x)) << kBlockShift;
+}
+
+// First words of the lists of blocks with material or beside one, of blocks with material, and of groups of entry points.
+uint nearList() { return frame.blocks.z; }
+uint materialList() { return frame.blocks.z + blockCount(); }
+uint entryList() { return frame.blocks.z + 2u * blockCount(); }
+
+// Without lists all groups run.
+bool goesByLists() { return frame.blocks.w != 0u; }
+
+// The word of the work group's block, whose x counts blocks. `list`: its first word. Lists are read as far as their commands
+// count, so that words hold what list_blocks.comp wrote.
+uint listedBlock(uint list) { return goesByLists() ? readWord(list + gl_WorkGroupID.x) : gl_WorkGroupID.x; }
+
+// A bit of that word says that all cells of the block and of those around hold material: all that passes read has been written.
+const uint kWholeBlock = 0x80000000u;
+bool isWhole(uint word) { return (word & kWholeBlock) != 0u; }
+uint blockOf(uint word) { return word & ~kWholeBlock; }
+
+// A group's part of its block, of which y of the work group counts `columns` in a row.
+ivec2 partOfBlock(int columns, ivec2 pixels) { return pixels * ivec2(int(gl_WorkGroupID.y) % columns, int(gl_WorkGroupID.y) / columns); }
+
+// A listed group of entry points: its column and row among the groups of its map, which are at most 64 x 64.
+uint packEntryGroup(uvec3 group) { return group.x | group.y << 8 | group.z << 16; }
+uvec3 unpackEntryGroup(uint word) { return uvec3(word & 0xFFu, word >> 8 & 0xFFu, word >> 16); }
+
+uint cellWord(ivec2 cell) { return kCellWord + uint(cell.y >> 2); }
+uint cellBit(ivec2 cell) { return 1u << (8 * (cell.y & 3) + cell.x); }
+
+// True where the pixel's cell holds material: what earlier passes wrote for the pixel holds something.
+bool cellHoldsMaterial(ivec2 pixel) {
+  ivec2 block = (pixel >> kBlockShift) - firstBlock(), cell = (pixel & (PELLUCID_BLOCK - 1)) >> kCellShift;
+  if (!contains(ivec4(0, 0, frame.blocks.xy), block)) return false;
+  return (readWord(blockWord(uint(block.y) * frame.blocks.x + uint(block.x), cellWord(cell))) & cellBit(cell)) != 0u;
+}
+
+// True where the pixel's block or one beside it holds material: levels 2 and 3 of the pyramid hold something. `pixel`: of the rect
+// or at most PELLUCID_BLOCK_BORDER from it.
+bool isNearMaterial(ivec2 pixel) {
+  if (!goesByLists()) return true;
+  ivec2 block = (pixel >> kBlockShift) - firstBlock();
+  return readWord(blockWord(uint(block.y) * frame.blocks.x + uint(block.x), kNearWord)) != 0u;
+}
+
+// Bits [first, end) of a row of eight cells.
+uint cellColumns(int first, int end) { return (1u << end) - (1u << first); }
+
+// True where a part of a listed block holds material: cells [first, first + size), size 1 to 8 each.
+bool partHoldsMaterial(uint word, ivec2 first, ivec2 size) {
+  if (isWhole(word)) return true;
+  uint block = blockOf(word);
+  uint columns = cellColumns(first.x, first.x + size.x) * 0x01010101u, some = 0u;
+  for (int row = first.y; row < first.y + size.y; ++row)
+    some |= readWord(blockWord(block, cellWord(ivec2(0, row)))) & columns & 255u << 8 * (row & 3);
+  return some != 0u;
+}
+
+#endif

@@ -1,0 +1,132 @@
+// Lists of blocks change where passes run and no pixel.
+#include "gpu_fixture.h"
+
+#include <random>
+
+namespace {
+
+using namespace pellucid::test;
+
+using Lists = GpuTest;
+
+// Islands of material, some of one pixel, on a plane that is lit from behind; most of the image is empty.
+Capture islands(int width, int height, unsigned seed) {
+  Capture c = flatCapture(width, height);
+  c.lights = {backLight()};
+  c.lights[0].shadowMaps = {flatShadowMap(-11, PELLUCID_DEPTH_VIEW_Z, 256)};
+  std::mt19937 random(seed);
+  const auto below = [&](int end) { return std::uniform_int_distribution<int>(0, end - 1)(random); };
+  c.material.assign(c.material.size(), 0);
+  for (int i = 0; i < 5; ++i) {
+    const int side = i < 2 ? 1 : 1 + below(40), x0 = below(width), y0 = below(height);
+    for (int y = y0; y < std::min(y0 + side, height); ++y)
+      for (int x = x0; x < std::min(x0 + side, width); ++x)
+        c.material[static_cast<size_t>(y * width + x)] = 1;
+  }
+  for (float& value : c.irradiance.data) value = static_cast<float>(below(1000)) / 1000;
+  return c;
+}
+
+// Device depths of the capture's camera in place of planar distances.
+Capture withDeviceDepth(Capture c) {
+  c.frontDepth.encoding = PELLUCID_DEPTH_DEVICE;
+  const Matrix& m = c.clipFromView;  // view z is negative in front of the eye
+  for (float& depth : c.frontDepth.image.data) {
+    const double z = -static_cast<double>(depth);
+    depth = static_cast<float>((m[10] * z + m[14]) / (m[11] * z + m[15]));
+  }
+  return c;
+}
+
+Capture inPerspective(Capture c) {
+  const Capture other = perspectiveCapture(std::max(c.width, c.height));
+  c.clipFromView = other.clipFromView;
+  return c;
+}
+
+struct Way {
+  const char* name;
+  void (*change)(ReplaySettings&);
+};
+
+constexpr Way kWays[] = {
+    {"one thickness", [](ReplaySettings& s) { s.translucency.gatherSamples = 0; }},
+    {"8 samples", [](ReplaySettings&) {}},
+    {"cells of 4 pixels", [](ReplaySettings& s) { s.translucency.gatherSpacing = 4; }},
+    {"cells of 2 pixels, 16 samples",
+     [](ReplaySettings& s) {
+       s.translucency.gatherSamples = 16;
+       s.translucency.gatherSpacing = 2;
+     }},
+    {"a rect from odd pixels",
+     [](ReplaySettings& s) {
+       s.renderRect = {67, 33, 131, 90};
+     }},
+    {"32 bits", [](ReplaySettings& s) { s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT; }},
+    // Indices with noise around them.
+    {"a material mask",
+     [](ReplaySettings& s) {
+       s.materialShift = 4;
+       s.materialMask = 0xFF0;
+     }},
+    {"a distance that is known", [](ReplaySettings& s) { s.nearestDistance = 10; }},
+};
+
+// The transients hold NaN before each recording, so that a texel that no group wrote shows.
+TEST_F(Lists, ChangeNoPixel) {
+  for (unsigned seed = 1; seed <= 3; ++seed)
+    for (const Way& way : kWays) {
+      Capture c = islands(260 + 3 * static_cast<int>(seed), 190, seed);
+      if (seed == 2) c = inPerspective(std::move(c));
+      if (seed > 1) c = withDeviceDepth(std::move(c));
+      ReplaySettings s;
+      s.translucency.gatherSamples = 8;
+      way.change(s);
+      s.indirectDispatches = PELLUCID_INDIRECT_NONE;
+      const Image whole = replayer().run(c, {testMaterial()}, s).output;
+      s.indirectDispatches = PELLUCID_INDIRECT_MATERIAL;
+      const FrameRun run(device(), replayer().contextFor(c), c, {testMaterial()}, s);
+      // A recording may run more than once.
+      for (int times = 0; times < 2; ++times) {
+        device().run([&](VkCommandBuffer commands) { run.record(commands); });
+        EXPECT_TRUE(sameBits(run.output(), whole)) << way.name << ", seed " << seed << ", run " << times;
+      }
+    }
+}
+
+TEST_F(Lists, GroupsFollowTheMaterial) {
+  const Context context(device());
+  ReplaySettings s;
+  s.translucency.gatherSamples = 8;
+  Capture c = islands(256, 256, 1);
+  // Of a dispatch: how many of its groups ran.
+  const auto groups = [&](const char* name) {
+    const FrameRun run(device(), context, c, {testMaterial()}, s);
+    device().run([&](VkCommandBuffer commands) { run.record(commands); });
+    const PellucidStatistics statistics = run.statistics();
+    for (uint32_t i = 0; i < statistics.dispatchCount; ++i)
+      if (run.plan().dispatches[i].name == std::string(name)) return statistics.dispatches[i];
+    ADD_FAILURE() << name;
+    return PellucidGroups{};
+  };
+  constexpr const char* kListed[] = {"downsample",   "upsample", "diffuse",
+                                     "entry points", "probes",   "filter probes"};
+  c.material.assign(c.material.size(), 0);
+  for (const char* name : kListed) EXPECT_EQ(groups(name).run, 0u) << name << " of nothing";
+  c.material[128 * 256 + 128] = 1;  // the first pixel of one of 16 blocks
+  // The pyramid's border touches one more block on each side.
+  for (const auto& [name, blocks, most] :
+       {std::tuple("downsample", 9u, 36u), {"upsample", 9u, 36u}, {"diffuse", 1u, 16u}}) {
+    const PellucidGroups found = groups(name);
+    EXPECT_EQ(most * found.run, blocks * found.most) << name;
+  }
+  // 2 reaches of 2 mm around a pixel are 8 of 256 texels of the map's 200 mm, and groups have 16 entry
+  // points.
+  const uint64_t entries = groups("entry points").run;
+  EXPECT_GT(entries, 0u);
+  EXPECT_LT(entries, 64u);
+  s.indirectDispatches = PELLUCID_INDIRECT_NONE;
+  for (const char* name : kListed) EXPECT_EQ(groups(name).run, groups(name).most) << name;
+}
+
+}  // namespace
