@@ -150,7 +150,7 @@ void diffusePlane(ivec2 first, ivec2 local, int texel) {
   [[unroll]] for (int i = 0; i < 4; ++i) {
     vec3 along = spline(0.25 * (float(i) - 1.5));
     vec3 coarser = along.x * level2[0] + along.y * level2[1] + along.z * level2[2];
-    result[i] = mix(coarser, mix(result[i], fine[i], share.fine), share.rest);
+    result[i] = share.rest * mix(result[i], fine[i], share.fine) + (1.0 - share.rest) * coarser; // mix may round
   }
   if (pass.value.x != 0u) addProbesToPlane(first + local, int(pass.value.x), result);
   // All pixels share a branch, so that the latencies of their loads overlap.
@@ -175,7 +175,7 @@ void diffusePlane(ivec2 first, ivec2 local, int texel) {
 // Sums over the texels around a pixel.
 struct Around {
   vec3 coarser, found;  // colors of level 2 and coarser ones, and how much of the kernel they fill
-  vec3 rest, fine;      // mean shares
+  vec3 share, fine;     // mean shares: of level 2 and coarser ones, and of the rest the fine filter's
   vec2 slope;
 };
 
@@ -198,13 +198,13 @@ Around aroundPixel(int center, vec2 from, float depth, uint material, vec2 size)
     w *= min(t.area, 1.0);
     a.slope += w * t.slope;
     PixelShares s = unpackShares(shares[index].xyz);
-    a.rest += w * s.rest;
+    a.share += w * (1.0 - s.rest); // exactly 0 without diffusion
     a.fine += w * s.fine;
     weights += w;
   }
   float inverse = weights > 0.0 ? 1.0 / weights : 0.0;
   a.slope *= inverse;
-  a.rest = weights > 0.0 ? a.rest * inverse : vec3(1.0);
+  a.share *= inverse;
   a.fine *= inverse;
   return a;
 }
@@ -242,9 +242,9 @@ void diffuseEdge(ivec2 first, ivec2 local) {
     vec4 fine = fineOfEdge(place, a.slope, size);
     // Kernel coverage weights the shares. The pixel itself counts in the first and the second, so the divisor is 0 only where
     // the coarser levels have all of the share and none of it is there.
-    vec3 coarserShare = 1.0 - a.rest, fineShare = a.rest * a.fine, ownShare = a.rest - fineShare;
-    vec3 sum = ownShare * own + fineShare * fine.rgb + coarserShare * a.coarser;
-    vec3 divisor = ownShare + fineShare * fine.a + coarserShare * a.found;
+    vec3 rest = 1.0 - a.share, fineShare = rest * a.fine, ownShare = rest - fineShare;
+    vec3 sum = ownShare * own + fineShare * fine.rgb + a.share * a.coarser;
+    vec3 divisor = ownShare + fineShare * fine.a + a.share * a.found;
     color = mix(own, max(sum, vec3(0.0)) / max(divisor, vec3(1.0e-6)), greaterThan(divisor, vec3(1.0e-6)));
     if (pass.value.x != 0u) color = withProbes(color, pixel, int(pass.value.x), depth, material);
   }
