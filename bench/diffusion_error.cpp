@@ -107,7 +107,7 @@ void printTable(Bench& bench, const std::vector<double>& radii) {
   std::printf("};\n\n}  // namespace pellucid\n");
 }
 
-// Whether errors at these radii are at most a tenth above the module's table.
+// True if the errors at these radii are at most a tenth above the module's table.
 bool holdsTable(Bench& bench, const std::vector<double>& radii) {
   bool holds = true;
   for (const double radius : radii) {

@@ -20,7 +20,7 @@ std::vector<double> gatherErrors(const Site& site, const std::vector<uint32_t>& 
   Capture capture = makeScene(p);
   capture.albedo = {};
   capture.lights.resize(1);
-  // Light that comes through alone: where surfaces are lit, more of what is gathered comes back from them.
+  // The scene measures transmitted light alone. Lit surfaces also return gathered light, so their pixels do not count.
   const std::vector<std::uint8_t> unlit = comparisonMask(capture.material, capture.irradiance, Subset::Unlit);
   std::fill(capture.irradiance.data.begin(), capture.irradiance.data.end(), 0.0f);
   ReplaySettings settings;

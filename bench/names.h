@@ -8,7 +8,7 @@ namespace pellucid::bench {
 
 inline const std::string kModule = "Pellucid";
 
-// Of the module's whole frames; the second is the default.
+// The samples of the module's whole frames; the second number is the default.
 inline constexpr std::uint32_t kSamples[] = {0, 8, 16};
 
 inline std::string nameOf(std::uint32_t samples) {

@@ -66,8 +66,8 @@ uvec4 wholeQuadTexel(uvec2 packed[4], float depth[4], float area) {
   return packTexel(Texel(0.25 * color, area, packed[0].y >> 16, 0.25 * sum, vec2(0.0)), kPlane);
 }
 
-// The texel takes the nearest surface and what lies behind it by no more than its own slope over a pixel, or within what a
-// surface 83 degrees from facing the camera has.
+// The texel takes the nearest pixel's surface. A pixel behind it counts if its depth is within a pixel's step of a surface as steep
+// as its own, or as one 83 degrees from facing the camera.
 uvec4 edgeQuadTexel(ivec2 quad, uvec2 packed[4], float depth[4]) {
   vec4 area;
   for (int i = 0; i < 4; ++i) {

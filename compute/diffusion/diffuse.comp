@@ -67,14 +67,6 @@ void addProbesToPlane(ivec2 top, int side, inout vec3 column[4]) {
   }
 }
 
-// The probe of a cell; none where the cell's pixels have no material. Neither load waits for the other, and nothing branches.
-uvec4 probeOf(ivec2 cell, int side) {
-  ivec4 cells = cellsOf(frame.rect, side);
-  ivec2 within = clamp(cell, cells.xy, cells.zw - 1);
-  uvec4 bits = texelFetch(probesImage, within, 0);
-  return cellHoldsMaterial(side * within) && within == cell ? bits : kNoProbe;
-}
-
 // A pixel that is a quarter of its side off a probe's tangent plane is not of its surface. Half and a tenth of the side err
 // more on heads.
 const float kPerPixelOff = 4.0;
@@ -97,7 +89,7 @@ vec3 withProbes(vec3 diffused, ivec2 pixel, int side, float front, uint material
   vec3 added = vec3(0.0), convexity = vec3(0.0);
   vec2 fraction = vec2(pixel & (side - 1)) / float(side);
   uvec4 probes[4];
-  [[unroll]] for (int i = 0; i < 4; ++i) probes[i] = probeOf((pixel >> shiftOf(side)) + ivec2(i & 1, i >> 1), side);
+  [[unroll]] for (int i = 0; i < 4; ++i) probes[i] = probeOf(probesImage, (pixel >> shiftOf(side)) + ivec2(i & 1, i >> 1), side);
   [[unroll]] for (int i = 0; i < 4; ++i) {
     ivec2 corner = ivec2(i & 1, i >> 1), cell = (pixel >> shiftOf(side)) + corner;
     vec2 linear = mix(1.0 - fraction, fraction, vec2(corner));
@@ -311,9 +303,6 @@ void diffuse(ivec2 first) {
 }
 
 void main() {
-  const ivec2 kPart = ivec2(kPixelsX, kPixelsY);
-  uint word = listedBlock(materialList());
-  ivec2 part = partOfBlock(PELLUCID_BLOCK / kPixelsX, kPart);
-  // Alike in all invocations.
-  if (partHoldsMaterial(word, part >> kCellShift, kPart >> kCellShift)) diffuse(firstPixel(blockOf(word)) + part);
+  ivec2 first;
+  if (materialPart(ivec2(kPixelsX, kPixelsY), first)) diffuse(first);
 }

@@ -55,8 +55,8 @@ Foreshortening foreshortening(ivec2 texel, uint level, float depth, vec2 slope) 
   return Foreshortening(sqrt(middle + root) * c.range.w, (middle + root) / max(least, 1.0e-30) - 1.0, axis);
 }
 
-// Shares of pixels of a texel of level 2. The octaves between the kernel's sides count by factors of pellucid_filters.h, and not at
-// silhouettes, where surfaces leave their tangent planes.
+// Shares of pixels of a texel of level 2. Octaves between the kernel's sides count by factors of pellucid_filters.h: one octave is 60
+// degrees from facing the camera. From 69 to 80 degrees, 1.5 to 2.5 octaves, they fade, as surfaces leave their tangent planes there.
 PixelShares pixelShares(uint m, Foreshortening f) {
   // The stretch is >= 0 but for rounding.
   float longer = 0.5 * log2(1.0 + max(f.stretch, 0.0)), octaves = clamp(2.5 - longer, 0.0, min(longer, 1.0));

@@ -10,7 +10,7 @@
 layout(set = 0, binding = PELLUCID_BINDING_COARSER_LEVELS) uniform utexture2D coarserLevelsImage; // 4 and 5; pyramidImage has all others
 
 uvec4 levelTexel(uint level, ivec2 texel) {
-  if (level != 4u && level != 5u) return writtenTexel(level, texel, false);
+  if (level != 4u && level != 5u) return writtenTexel(level, texel);
   return contains(levelRect(level), texel) ? texelFetch(coarserLevelsImage, inAtlas(level, texel), 0) : uvec4(0u);
 }
 
@@ -23,16 +23,22 @@ struct Window {
   int first;    // in upsampled[]
 };
 
-const int kUpsampled = 100 + 36 + 16 + 9 + 9;
+// A block has 8 x 8 texels of level 3, 4 x 4 of level 4 and so on, and its windows one more on each side.
+const int kFirst4 = 10 * 10, kFirst5 = kFirst4 + 6 * 6, kFirst6 = kFirst5 + 4 * 4, kFirst7 = kFirst6 + 3 * 3, kUpsampled = kFirst7 + 3 * 3;
 shared uvec4 upsampled[kUpsampled];
 
 // `k`: the block. A texel takes the two nearest coarser ones along each axis.
 Window windowOf(uint level, ivec2 k) {
   if (level == 3u) return Window(8 * k - 1, 10, 0);
-  if (level == 4u) return Window(4 * k - 1, 6, 100);
-  if (level == 5u) return Window(2 * k - 1, 4, 136);
-  if (level == 6u) return Window(k - 1, 3, 152);
-  return Window((k >> 1) - 1, 3, 161);
+  if (level == 4u) return Window(4 * k - 1, 6, kFirst4);
+  if (level == 5u) return Window(2 * k - 1, 4, kFirst5);
+  if (level == 6u) return Window(k - 1, 3, kFirst6);
+  return Window((k >> 1) - 1, 3, kFirst7);
+}
+
+// Level of a place in upsampled[].
+uint levelOf(int place) {
+  return 3u + uint(place >= kFirst4) + uint(place >= kFirst5) + uint(place >= kFirst6) + uint(place >= kFirst7);
 }
 
 int indexOf(Window window, ivec2 texel) {
@@ -172,8 +178,8 @@ void upsampleFine(ivec2 texel, ivec2 k, uvec4 bits) {
 
 void main() {
   int invocation = int(gl_LocalInvocationIndex);
-  uint coarsest = pass.value.x, level = 3u + uint(invocation >= 100) + uint(invocation >= 136) + uint(invocation >= 152) + uint(invocation >= 161);
-  ivec2 k = firstPixel(blockOf(listedBlock(nearList()))) >> kBlockShift, fine = 16 * k + ivec2(gl_LocalInvocationID.xy);
+  uint coarsest = pass.value.x, level = levelOf(invocation);
+  ivec2 k = firstPixel(listedBlock(nearList())) >> kBlockShift, fine = 16 * k + ivec2(gl_LocalInvocationID.xy);
   // An invocation does a texel of level 2 and, before it, one of a coarser level.
   Window window = windowOf(level, k);
   int place = invocation - window.first;

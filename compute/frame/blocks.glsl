@@ -37,17 +37,9 @@ uint entryList() { return frame.blocks.z + 2u * blockCount(); }
 // Without lists all groups run.
 bool goesByLists() { return frame.blocks.w != 0u; }
 
-// The word of the work group's block, whose x counts blocks. `list`: its first word. Lists are read as far as their commands
+// The work group's block, whose x counts blocks. `list`: its first word. Lists are read as far as their commands
 // count, so that words hold what list_blocks.comp wrote.
 uint listedBlock(uint list) { return goesByLists() ? readWord(list + gl_WorkGroupID.x) : gl_WorkGroupID.x; }
-
-// A bit of that word says that all cells of the block and of those around hold material: all that passes read has been written.
-const uint kWholeBlock = 0x80000000u;
-bool isWhole(uint word) { return (word & kWholeBlock) != 0u; }
-uint blockOf(uint word) { return word & ~kWholeBlock; }
-
-// A group's part of its block, of which y of the work group counts `columns` in a row.
-ivec2 partOfBlock(int columns, ivec2 pixels) { return pixels * ivec2(int(gl_WorkGroupID.y) % columns, int(gl_WorkGroupID.y) / columns); }
 
 // A listed group of entry points: its column and row among the groups of its map, which are at most 64 x 64.
 uint packEntryGroup(uvec3 group) { return group.x | group.y << 8 | group.z << 16; }
@@ -71,16 +63,16 @@ bool isNearMaterial(ivec2 pixel) {
   return readWord(blockWord(uint(block.y) * frame.blocks.x + uint(block.x), kNearWord)) != 0u;
 }
 
-// Bits [first, end) of a row of eight cells.
-uint cellColumns(int first, int end) { return (1u << end) - (1u << first); }
-
-// True where a part of a listed block holds material: cells [first, first + size), size 1 to 8 each.
-bool partHoldsMaterial(uint word, ivec2 first, ivec2 size) {
-  if (isWhole(word)) return true;
-  uint block = blockOf(word);
-  uint columns = cellColumns(first.x, first.x + size.x) * 0x01010101u, some = 0u;
-  for (int row = first.y; row < first.y + size.y; ++row)
-    some |= readWord(blockWord(block, cellWord(ivec2(0, row)))) & columns & 255u << 8 * (row & 3);
+// The first pixel of the group's part of its block with material: y of the work group counts the parts, of `pixels` each. False, alike
+// in all invocations, where no cell of the part holds material.
+bool materialPart(ivec2 pixels, out ivec2 first) {
+  uint block = listedBlock(materialList());
+  int columns = PELLUCID_BLOCK / pixels.x, index = int(gl_WorkGroupID.y);
+  ivec2 part = pixels * ivec2(index % columns, index / columns), cell = part >> kCellShift, end = cell + (pixels >> kCellShift);
+  first = firstPixel(block) + part;
+  uint inRows = ((1u << end.x) - (1u << cell.x)) * 0x01010101u, some = 0u; // columns [cell.x, end.x) of four rows
+  for (int row = cell.y; row < end.y; ++row)
+    some |= readWord(blockWord(block, cellWord(ivec2(0, row)))) & inRows & 255u << 8 * (row & 3);
   return some != 0u;
 }
 

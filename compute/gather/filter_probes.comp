@@ -61,18 +61,12 @@ uvec4 filtered(ivec2 local, uvec4 own, float perSquare) {
   return replaceLight(own, added / total, convexity / total);
 }
 
-// The probe of a cell; none where the cell's pixels have no material. `whole`: all around have one.
-uvec4 probeAt(ivec2 cell, int side, bool whole) {
-  bool holds = contains(cellsOf(frame.rect, side), cell) && (whole || cellHoldsMaterial(side * cell));
-  return holds ? texelFetch(foundImage, cell, 0) : kNoProbe;
-}
-
 // Filters the cells from `first` on, for all invocations, as they wait for each other.
-void filterCells(ivec2 first, int side, bool whole) {
+void filterCells(ivec2 first, int side) {
   int index = int(gl_LocalInvocationIndex);
   ivec2 local = ivec2(gl_LocalInvocationID.xy), cell = first + local, border = borderCell(index);
   bool hasBorder = index < kBorder;
-  uvec4 own = probeAt(cell, side, whole), beside = hasBorder ? probeAt(first + border, side, whole) : kNoProbe;
+  uvec4 own = probeOf(foundImage, cell, side), beside = hasBorder ? probeOf(foundImage, first + border, side) : kNoProbe;
   if (index == 0) someLight = someConvexity = 0u;
   barrier();
   if (hasLight(own) || hasLight(beside)) someLight = 1u; // whoever writes, writes this
@@ -94,9 +88,7 @@ void filterCells(ivec2 first, int side, bool whole) {
 }
 
 void main() {
-  int side = int(pass.value.x), pixels = side * PELLUCID_FILTER_GROUP;
-  uint word = listedBlock(materialList());
-  ivec2 part = partOfBlock(PELLUCID_BLOCK / pixels, ivec2(pixels));
-  // Alike in all invocations.
-  if (partHoldsMaterial(word, part >> kCellShift, ivec2(pixels >> kCellShift))) filterCells((firstPixel(blockOf(word)) + part) / side, side, isWhole(word));
+  int side = int(pass.value.x);
+  ivec2 first;
+  if (materialPart(ivec2(side * PELLUCID_FILTER_GROUP), first)) filterCells(first / side, side);
 }

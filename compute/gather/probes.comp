@@ -115,9 +115,7 @@ void makeProbes(ivec2 firstCell, int side) {
 }
 
 void main() {
-  int side = int(pass.value.x), pixels = side * PELLUCID_PROBES_GROUP;
-  uint word = listedBlock(materialList());
-  ivec2 part = partOfBlock(PELLUCID_BLOCK / pixels, ivec2(pixels));
-  // Alike in all invocations.
-  if (partHoldsMaterial(word, part >> kCellShift, ivec2(pixels >> kCellShift))) makeProbes((firstPixel(blockOf(word)) + part) / side, side);
+  int side = int(pass.value.x);
+  ivec2 first;
+  if (materialPart(ivec2(side * PELLUCID_PROBES_GROUP), first)) makeProbes(first / side, side);
 }

@@ -308,7 +308,7 @@ void resolveGather(ReplaySettings& settings, const Capture& capture,
                    const std::vector<PellucidMaterial>& materials) {
   FrameData data;
   makeFrame(capture, materials, settings, data);
-  // One light that is gathered from stands for all: a plan has no room for any number of them.
+  // The plan that chooses samples has one light with a shadow map, because a plan has no room for any number of lights.
   const auto mapped = std::find_if(data.lights.begin(), data.lights.end(),
                                    [](const PellucidLight& light) { return light.shadowMapCount > 0; });
   data.frame.lightCount = mapped != data.lights.end();

@@ -14,8 +14,8 @@ namespace {
 
 constexpr int kBlock = PELLUCID_STATISTICS_BLOCK;
 
-// Of a block's words, as compute/frame/blocks.glsl has them: bits of cells with material, and whether the
-// block or one beside it has material.
+// Words of a block, as compute/frame/blocks.glsl has them. The first two have bits of cells with material.
+// The last one is 1 if the block or a block beside it has material.
 constexpr std::size_t kCellWords[] = {0, 1}, kNearWord = 4;
 
 BlockClass classOf(std::span<const std::uint32_t> words) {
@@ -64,12 +64,11 @@ BlockMap readBlockMap(const FrameRun& run) {
   map.columns = (map.rect[2] - map.x + kBlock - 1) / kBlock;
   map.rows = (map.rect[3] - map.y + kBlock - 1) / kBlock;
   // The words have blocks beyond the rect, too, where the pyramid's border touches them.
-  const auto withBorder = [](int pixel) {
-    return (pixel + kBlock) / kBlock - 1;
-  };  // rounds down from -kBlock on
-  const int left = withBorder(map.rect[0] - PELLUCID_BLOCK_BORDER),
-            top = withBorder(map.rect[1] - PELLUCID_BLOCK_BORDER);
-  const int pitch = withBorder(map.rect[2] - 1 + PELLUCID_BLOCK_BORDER) - left + 1;
+  // Rounds down, from -kBlock on.
+  const auto blockOf = [](int pixel) { return (pixel + kBlock) / kBlock - 1; };
+  const int left = blockOf(map.rect[0] - PELLUCID_BLOCK_BORDER),
+            top = blockOf(map.rect[1] - PELLUCID_BLOCK_BORDER);
+  const int pitch = blockOf(map.rect[2] - 1 + PELLUCID_BLOCK_BORDER) - left + 1;
   const std::vector<std::uint32_t> words = run.blockWords();
   for (int y = 0; y < map.rows; ++y)
     for (int x = 0; x < map.columns; ++x) {

@@ -13,11 +13,11 @@ namespace pellucid::harness {
 // Why a plan has no lists of blocks, in the words of its skips.
 std::string whyNoLists(const PellucidPlan& plan);
 
-// What the device found in a block, by which passes go.
+// The material that the device found in a block, which decides which passes run there.
 enum class BlockClass : std::uint8_t {
-  Empty,    // no pass but the one that looks
-  Near,     // one beside it has material: the diffusion's pyramid
-  Material  // all passes
+  Empty,    // none: only the base level and the pass of the lists run
+  Near,     // none, but a block beside it has material: the pyramid's passes run
+  Material  // some: all passes run
 };
 inline constexpr std::size_t kBlockClasses = 3;
 

@@ -14,15 +14,15 @@ struct FrameFacts;
 
 struct Blocks {
   uint32_t columns = 0, rows = 0;  // that the rect and PELLUCID_BLOCK_BORDER pixels around touch
-  uint32_t touched = 0;            // that the rect touches: no others hold material
+  uint32_t touched = 0;            // that the rect touches: no other block holds material
   uint32_t maps = 0;               // shadow maps whose entry points are listed
-  uint32_t entryGroups = 0;        // at most, of the list
+  uint32_t entryGroups = 0;        // at most, in the list of groups of entry points
 
   Blocks() = default;
   Blocks(const FrameFacts& facts, const Rect& rect);
 
   uint32_t count() const { return columns * rows; }
-  // Of the image that holds the blocks' words and lists.
+  // Where the lists begin in the image of words, and how many words it has.
   uint32_t listWord() const { return PELLUCID_BLOCK_WORDS * count(); }
   uint32_t words() const { return listWord() + 2 * count() + entryGroups; }
   static constexpr uint32_t kColumns = 1u << PELLUCID_BLOCK_WORDS_SHIFT;

@@ -60,7 +60,8 @@ void addDownsample(PlanBuilder& b, uint32_t finer) {
   PellucidDispatch* d = b.dispatch("downsample", Pipeline::Downsample);
   d->pushConstants[0] = finer;
   if (finer == kFirstLevel) {
-    b.byBlock(d, PELLUCID_LIST_DOWNSAMPLE, 8 / PELLUCID_DOWNSAMPLE_ROWS);
+    constexpr uint32_t kRowsOfLevel3 = PELLUCID_BLOCK / 8;  // in a block
+    b.byBlock(d, PELLUCID_LIST_DOWNSAMPLE, kRowsOfLevel3 / PELLUCID_DOWNSAMPLE_ROWS);
   } else {
     // Shifts round down, as the border's texels begin below 0.
     const auto groups = [&](int32_t first, int32_t size, uint32_t side) {

@@ -99,7 +99,7 @@ TEST_F(Lists, GroupsFollowTheMaterial) {
   ReplaySettings s;
   s.translucency.gatherSamples = 8;
   Capture c = islands(256, 256, 1);
-  // Of a dispatch: how many of its groups ran.
+  // How many groups of a dispatch ran.
   const auto groups = [&](const char* name) {
     const FrameRun run(device(), context, c, {testMaterial()}, s);
     device().run([&](VkCommandBuffer commands) { run.record(commands); });

@@ -1,4 +1,4 @@
-// What a plan does with frame.gatherSamples, targetError and nearestDistance.
+// Plans by frame.gatherSamples, targetError and nearestDistance.
 #include <algorithm>
 #include <cmath>
 #include <iterator>

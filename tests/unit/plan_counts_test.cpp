@@ -1,4 +1,4 @@
-// What a plan is made of, for every feature, output, kind of lights and gather, against a file that says it.
+// Counts of dispatches, barriers and images of plans, for every feature, output, kind of lights and gather, against a golden file.
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
