@@ -191,10 +191,10 @@ ivec2 placeInFirst(int i) {
 
 void main() {
   int invocation = int(gl_LocalInvocationIndex);
-  uint finer = pass.value.x, columns = pass.value.y;
+  uint finer = pass.value.x, columns = pass.value.y, word = finer == 1u ? listedBlock(nearList()) : 0u;
   const ivec2 kPart = ivec2(kSecond, kSecondRows), kPartShift = ivec2(findMSB(kSecond), findMSB(kSecondRows));
   // Levels 2 and 3 are made in blocks, all others everywhere.
-  ivec2 own = finer == 1u ? (firstPixel(listedBlock(nearList())) >> 3) + ivec2(0, int(gl_WorkGroupID.y) * kSecondRows)
+  ivec2 own = finer == 1u ? (firstPixel(blockOf(word)) >> 3) + ivec2(0, int(gl_WorkGroupID.y) * kSecondRows)
                           : ((levelRect(finer + 2u).xy >> kPartShift) + ivec2(gl_WorkGroupID.x % columns, gl_WorkGroupID.x / columns)) * kPart;
   ivec2 start = 2 * own - 1, inputStart = 2 * start - 1;
   if (invocation == 0) anySurface = 0u;
@@ -203,7 +203,7 @@ void main() {
   uvec4 loaded[kLoads];
   [[unroll]] for (int i = 0; i < kLoads; ++i) {
     int at = invocation + i * kInvocations;
-    loaded[i] = at < kInput * kInputRows ? writtenTexel(finer, inputStart + ivec2(at % kInput, at / kInput)) : uvec4(0u);
+    loaded[i] = at < kInput * kInputRows ? writtenTexel(finer, inputStart + ivec2(at % kInput, at / kInput), isWhole(word)) : uvec4(0u);
   }
   [[unroll]] for (int i = 0; i < kLoads; ++i) {
     int at = invocation + i * kInvocations;

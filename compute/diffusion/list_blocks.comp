@@ -88,12 +88,17 @@ uvec2 cellsOfBlock(ivec2 at) {
 
 void listBlock(uint block) {
   ivec2 at = ivec2(block % frame.blocks.x, block / frame.blocks.x);
-  uvec2 some = uvec2(0u);
-  for (int i = 0; i < 9; ++i) some |= cellsOfBlock(at + ivec2(i % 3, i / 3) - 1); // no early exit: it would wait for each word
+  uvec2 some = uvec2(0u), all = uvec2(~0u);
+  for (int i = 0; i < 9; ++i) { // no early exit: it would wait for each word
+    uvec2 cells = cellsOfBlock(at + ivec2(i % 3, i / 3) - 1);
+    some |= cells;
+    all &= cells;
+  }
   bool near = some != uvec2(0u);
   writeWord(blockWord(block, kNearWord), near ? 1u : 0u);
   if (!near) return;
   bool holds = cellsOfBlock(at) != uvec2(0u);
+  if (all == uvec2(~0u)) block |= kWholeBlock;
   writeWord(nearList() + atomicAdd(lists.commands[PELLUCID_LIST_DOWNSAMPLE].x, 1u), block);
   atomicAdd(lists.commands[PELLUCID_LIST_UPSAMPLE].x, 1u);
   if (!holds) return;

@@ -74,10 +74,10 @@ ivec2 inAtlas(uint level, ivec2 texel) { return frame.level[level].xy + texel; }
 void writeLevel(uint level, ivec2 texel, uvec4 value) { imageStore(levelsDestination, inAtlas(level, texel), value); }
 
 // A texel of the level that pyramidImage holds, nothing where none was written: level 1 is written where cells hold material, and
-// levels 2 and 3 in blocks with material and those beside.
-uvec4 writtenTexel(uint level, ivec2 texel) {
+// levels 2 and 3 in blocks with material and the blocks beside. `whole`: isWhole of the group's block.
+uvec4 writtenTexel(uint level, ivec2 texel, bool whole) {
   if (!contains(levelRect(level), texel)) return uvec4(0u);
-  if (level == 1u && !cellHoldsMaterial(texel << 1)) return uvec4(0u);
+  if (level == 1u && !whole && !cellHoldsMaterial(texel << 1)) return uvec4(0u);
   if ((level == 2u || level == 3u) && !isNearMaterial(texel << level)) return uvec4(0u);
   return texelFetch(pyramidImage, inAtlas(level, texel), 0);
 }

@@ -10,7 +10,7 @@
 layout(set = 0, binding = PELLUCID_BINDING_COARSER_LEVELS) uniform utexture2D coarserLevelsImage; // 4 and 5; pyramidImage has all others
 
 uvec4 levelTexel(uint level, ivec2 texel) {
-  if (level != 4u && level != 5u) return writtenTexel(level, texel);
+  if (level != 4u && level != 5u) return writtenTexel(level, texel, false);
   return contains(levelRect(level), texel) ? texelFetch(coarserLevelsImage, inAtlas(level, texel), 0) : uvec4(0u);
 }
 
@@ -179,7 +179,7 @@ void upsampleFine(ivec2 texel, ivec2 k, uvec4 bits) {
 void main() {
   int invocation = int(gl_LocalInvocationIndex);
   uint coarsest = pass.value.x, level = levelOf(invocation);
-  ivec2 k = firstPixel(listedBlock(nearList())) >> kBlockShift, fine = 16 * k + ivec2(gl_LocalInvocationID.xy);
+  ivec2 k = firstPixel(blockOf(listedBlock(nearList()))) >> kBlockShift, fine = 16 * k + ivec2(gl_LocalInvocationID.xy);
   // An invocation does a texel of level 2 and, before it, one of a coarser level.
   Window window = windowOf(level, k);
   int place = invocation - window.first;

@@ -37,7 +37,7 @@ uint entryList() { return frame.blocks.z + 2u * blockCount(); }
 // Without lists all groups run.
 bool goesByLists() { return frame.blocks.w != 0u; }
 
-// The work group's block, whose x counts blocks. `list`: its first word. Lists are read as far as their commands
+// The word of the work group's block, whose x counts blocks. `list`: its first word. Lists are read as far as their commands
 // count, so that words hold what list_blocks.comp wrote.
 uint listedBlock(uint list) { return goesByLists() ? readWord(list + gl_WorkGroupID.x) : gl_WorkGroupID.x; }
 
@@ -63,13 +63,20 @@ bool isNearMaterial(ivec2 pixel) {
   return readWord(blockWord(uint(block.y) * frame.blocks.x + uint(block.x), kNearWord)) != 0u;
 }
 
+// A bit of a listed block's word: all cells of the block and of the blocks around hold material, so that everything that passes
+// read there has been written. Without the bit close-ups take up to 4 % longer.
+const uint kWholeBlock = 0x80000000u;
+bool isWhole(uint word) { return (word & kWholeBlock) != 0u; }
+uint blockOf(uint word) { return word & ~kWholeBlock; }
+
 // The first pixel of the group's part of its block with material: y of the work group counts the parts, of `pixels` each. False, alike
 // in all invocations, where no cell of the part holds material.
 bool materialPart(ivec2 pixels, out ivec2 first) {
-  uint block = listedBlock(materialList());
+  uint word = listedBlock(materialList()), block = blockOf(word);
   int columns = PELLUCID_BLOCK / pixels.x, index = int(gl_WorkGroupID.y);
   ivec2 part = pixels * ivec2(index % columns, index / columns), cell = part >> kCellShift, end = cell + (pixels >> kCellShift);
   first = firstPixel(block) + part;
+  if (isWhole(word)) return true;
   uint inRows = ((1u << end.x) - (1u << cell.x)) * 0x01010101u, some = 0u; // columns [cell.x, end.x) of four rows
   for (int row = cell.y; row < end.y; ++row)
     some |= readWord(blockWord(block, cellWord(ivec2(0, row)))) & inRows & 255u << 8 * (row & 3);
