@@ -148,7 +148,7 @@ const std::map<std::string, Key> kKeys = {
         s.translucency.gatherSamples = number(key, value);
       }}},
     {"gather-spacing",
-     {"pixels a side of what a point of the gather stands for: 2, 4, or 0: by the image's size",
+     {"pixels a side of a probe's cell: 1, 2, 4, or 0: by the image's size",
       [](const auto& key, const auto& value, ReplaySettings& s) {
         s.translucency.gatherSpacing = number(key, value);
       }}},
