@@ -65,7 +65,7 @@ bool thicknessAt(LightConstants light, Incident incident, vec3 position, out flo
     if (!r.inside) continue;
     float stored = shadowTexel(shadow.meta.x, r.texel);
     if (!shadowHolds(shadow.meta, stored)) return false;
-    thickness = lightThickness(shadow, r, position, incident, stored) * frame.camera.range.w;
+    thickness = lightThickness(storedRay(shadow, r, position, incident), stored) * frame.camera.range.w;
     return true;
   }
   return false;

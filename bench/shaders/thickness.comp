@@ -4,7 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #include "steps.glsl"
-#include "lib/thickness.glsl"
+#include "lib/camera.glsl"
 
 layout(set = 0, binding = 1) uniform texture2D frontImage;
 layout(set = 0, binding = 2) uniform texture2D backImage;

@@ -6,7 +6,6 @@
 #extension GL_GOOGLE_include_directive : require
 
 #include "frame/gbuffer_decode.glsl"
-#include "lib/rect.glsl"
 #include "lib/surface.glsl"
 #include "steps.glsl"
 
@@ -22,21 +21,12 @@ layout(set = 0, binding = 8) uniform texture2D shadowImage;
 layout(set = 0, binding = 9, rgba16f) uniform writeonly image2D transmittedImage;
 
 float shadowTexel(uint image, ivec2 texel) { return texelFetch(shadowImage, texel, 0).x; }
-struct ShadowTexels {
-  float own;
-  vec4 beside;
-};
-ShadowTexels shadowTexels(uint image, ivec2 texel, ivec2 first, ivec2 last) {
-  ivec2 low = max(texel - 1, first), high = min(texel + 1, last);
-  return ShadowTexels(shadowTexel(image, texel), vec4(shadowTexel(image, ivec2(high.x, texel.y)), shadowTexel(image, ivec2(low.x, texel.y)),
-                                                      shadowTexel(image, ivec2(texel.x, high.y)), shadowTexel(image, ivec2(texel.x, low.y))));
-}
-vec4 shadowQuad(uint image, ivec2 low, ivec2 high) {
-  return vec4(shadowTexel(image, low), shadowTexel(image, ivec2(high.x, low.y)), shadowTexel(image, ivec2(low.x, high.y)),
-              shadowTexel(image, high));
+vec4 shadowTexels(uint image, ivec2 a, ivec2 b, ivec2 c, ivec2 d) {
+  return vec4(shadowTexel(image, a), shadowTexel(image, b), shadowTexel(image, c), shadowTexel(image, d));
 }
 float distanceOf(ivec2 pixel, uint material, bool back) {
-  if (!contains(ivec4(frame.rect), pixel) || decodeMaterial(texelFetch(materialImage, pixel, 0)) != material) return -1.0;
+  bool inside = all(greaterThanEqual(pixel, ivec2(frame.rect.xy))) && all(lessThan(pixel, ivec2(frame.rect.zw)));
+  if (!inside || decodeMaterial(texelFetch(materialImage, pixel, 0)) != material) return -1.0;
   float front = texelFetch(frontImage, pixel, 0).x;
   if (!back) return front;
   float through = texelFetch(thicknessOrBackImage, pixel, 0).x;
@@ -46,6 +36,7 @@ float distanceOf(ivec2 pixel, uint material, bool back) {
   return through;
 }
 
+#define PELLUCID_OWN_INPUTS
 #include "translucency/transmission.glsl"
 
 void main() {

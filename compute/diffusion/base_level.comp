@@ -39,8 +39,7 @@ float areaOf(vec2 pixel, vec3 normal) {
   // The ray is in the normal's space.
   vec3 ray = frame.normalRay[0].xyz + pixel.x * frame.normalRay[1].xyz + pixel.y * frame.normalRay[2].xyz;
   float squared = dot(normal, normal), along = dot(normal, ray);
-  // The comparison is false for NaN, too.
-  return squared > 1.0e-8 ? inversesqrt(max(along * along * (1.0 / squared), kLeastCosine * kLeastCosine)) : 0.0;
+  return isWithin(squared, 1.0e-8, kMostFloat) ? inversesqrt(max(along * along * (1.0 / squared), kLeastCosine * kLeastCosine)) : 0.0;
 }
 
 // Projected-area weight of a quad that is one surface, as its depths say.

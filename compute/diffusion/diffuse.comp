@@ -72,7 +72,7 @@ void addProbesToPlane(ivec2 top, int side, inout vec3 column[4]) {
 const float kPerPixelOff = 4.0;
 
 // Quarters of a pixel from a probe's tangent plane to a surface at `front` in a pixel.
-float offPlane(Probe p, ivec2 probePixel, ivec2 pixel, float front) {
+float offPlane(ProbePlace p, ivec2 probePixel, ivec2 pixel, float front) {
   Camera c = frame.camera;
   vec2 sideX = c.rayX.zw + p.front * c.rayX.xy, sideY = c.rayY.zw + p.front * c.rayY.xy;
   // The limit gives planes that are seen edge-on a slope.
@@ -93,13 +93,13 @@ vec3 withProbes(vec3 diffused, ivec2 pixel, int side, float front, uint material
   [[unroll]] for (int i = 0; i < 4; ++i) {
     ivec2 corner = ivec2(i & 1, i >> 1), cell = (pixel >> shiftOf(side)) + corner;
     vec2 linear = mix(1.0 - fraction, fraction, vec2(corner));
-    Probe p = unpackProbe(probes[i]);
+    ProbePlace p = unpackPlace(probes[i]);
     if (p.material != material) continue;
     float off = offPlane(p, pixelInCell(cell, side, p.index), pixel, front);
     // The floors leave a pixel without a like neighbor the most alike.
     float weight = (exp2(-off * off) + 1.0e-4) * (linear.x * linear.y + 1.0e-4);
-    added += weight * p.added;
-    convexity += weight * p.convexity;
+    added += weight * addedOf(probes[i]);
+    convexity += weight * convexityOf(probes[i]);
     total += weight;
   }
   // The cell's own probe is of its material, unless the cell has several.

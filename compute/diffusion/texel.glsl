@@ -4,7 +4,7 @@
 #define PELLUCID_TEXEL_GLSL
 
 #include "frame/blocks.glsl"
-#include "lib/halves.glsl"
+#include "lib/packing.glsl"
 #include "shared/pellucid_filters.h"
 
 layout(set = 0, binding = PELLUCID_BINDING_PYRAMID) uniform utexture2D pyramidImage; // levels that the pass reads

@@ -8,8 +8,6 @@
 
 #include "frame/gbuffer_decode.glsl"
 #include "lib/camera.glsl"
-#include "lib/rect.glsl"
-#include "lib/sanitize.glsl"
 #include "shared/pellucid_shared.h"
 
 #ifndef GROUP_SIDE
@@ -31,7 +29,13 @@ layout(set = 0, binding = PELLUCID_BINDING_DESTINATION) uniform writeonly image2
 // The output's content, if the frame adds to it. An invocation reads its pixel before it writes it.
 layout(set = 0, binding = PELLUCID_BINDING_HELD) uniform texture2D heldImage;
 
-#include "frame/flags.glsl"
+// Frame-wide switches.
+bool hasFlag(uint flag) { return (frame.flags.x & flag) != 0u; }
+
+// `rect`: [xy, zw).
+bool contains(ivec4 rect, ivec2 at) {
+  return all(greaterThanEqual(at, rect.xy)) && all(lessThan(at, rect.zw));
+}
 
 ivec2 invocationPixel() { return ivec2(frame.rect.xy) + ivec2(gl_GlobalInvocationID.xy); }
 
@@ -58,6 +62,39 @@ float frontDistanceOf(float stored) {
 }
 
 float frontDistance(ivec2 pixel) { return frontDistanceOf(texelFetch(frontDepthImage, pixel, 0).x); }
+
+// Planar distance of the back surface, -1 where there is none.
+float backDistanceOf(float stored) {
+  stored = decodeDepth(stored);
+  return hasFlag(PELLUCID_FLAG_BACK_VIEW_Z) ? planarDistanceViewZ(stored) : planarDistance(frame.camera, stored);
+}
+
+// Scene units along the view ray; -1 where no back face is behind the front one. `front`: planar distance of
+// `frontStored`.
+float chordOf(ViewRay ray, float front, float frontStored, float backStored) {
+  float back = backDistanceOf(backStored);
+  bool device = !hasFlag(PELLUCID_FLAG_BACK_VIEW_Z) && !hasFlag(PELLUCID_FLAG_FRONT_VIEW_Z);
+  float difference =
+      device ? planarDifference(frame.camera, decodeDepth(backStored), decodeDepth(frontStored)) : back - front;
+  return back > 0.0 ? chord(difference, ray) : -1.0;
+}
+
+// ---- Colors
+
+const float kLargestHalf = 65504.0;
+
+// Finite and >= 0. Bits say what is above 0 and no NaN, because compilers may take for granted that floats are none. No
+// function loops over components: compilers keep dynamically indexed vectors in memory.
+vec3 sanitize(vec3 v) {
+  const uint kInfinity = 0x7F800000u;
+  return mix(vec3(0.0), min(v, vec3(kLargestHalf)), lessThan(floatBitsToUint(v) - 1u, uvec3(kInfinity)));
+}
+
+// v rounded to the nearest half, ties up; v >= 0. Image stores may truncate (Vulkan leaves it open), which darkens by up
+// to 1e-3 a pass. Every device stores a half as it is.
+vec3 roundToHalf(vec3 v) {
+  return uintBitsToFloat((floatBitsToUint(v) + 0x1000u) & 0xFFFFE000u); // halves keep 10 of 23 mantissa bits
+}
 
 // `color`: >= 0. Halves are rounded here, because image stores may truncate.
 vec3 asStored(vec3 color) { return hasFlag(PELLUCID_FLAG_WIDE_OUTPUT) ? color : roundToHalf(color); }

@@ -3,7 +3,7 @@
 #ifndef PELLUCID_GBUFFER_DECODE_GLSL
 #define PELLUCID_GBUFFER_DECODE_GLSL
 
-#include "lib/octahedral.glsl"
+#include "lib/packing.glsl"
 #include "shared/pellucid_shared.h"
 
 // PellucidContextDesc::normalEncoding

@@ -1,7 +1,10 @@
-// A light at a point, with its own falloff. Include it where FrameConstants frame is in scope.
+// A light at a point, with its own falloff. PELLUCID_OWN_INPUTS as in translucency/transmission.glsl.
 #ifndef PELLUCID_LIGHT_TABLES_GLSL
 #define PELLUCID_LIGHT_TABLES_GLSL
 
+#ifndef PELLUCID_OWN_INPUTS
+#include "frame/frame.glsl"
+#endif
 #include "lib/light.glsl"
 
 // False in pipelines of contexts whose frames have no tables.

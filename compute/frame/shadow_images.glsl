@@ -78,16 +78,14 @@ ShadowTexels shadowTexels(uint image, ivec2 texel, ivec2 first, ivec2 last) {
   PELLUCID_RETURN_OF_SLOT(PELLUCID_CROSS)
 }
 
-#define PELLUCID_QUAD(slot)                                                   \
-  vec4(PELLUCID_TEXEL(slot, low), PELLUCID_TEXEL(slot, ivec2(high.x, low.y)), \
-       PELLUCID_TEXEL(slot, ivec2(low.x, high.y)), PELLUCID_TEXEL(slot, high))
+#define PELLUCID_FOUR(slot) \
+  vec4(PELLUCID_TEXEL(slot, a), PELLUCID_TEXEL(slot, b), PELLUCID_TEXEL(slot, c), PELLUCID_TEXEL(slot, d))
 
-// Texels at low, (high.x, low.y), (low.x, high.y) and high.
-vec4 shadowQuad(uint image, ivec2 low, ivec2 high) { PELLUCID_RETURN_OF_SLOT(PELLUCID_QUAD) }
+vec4 shadowTexels(uint image, ivec2 a, ivec2 b, ivec2 c, ivec2 d) { PELLUCID_RETURN_OF_SLOT(PELLUCID_FOUR) }
 
 #undef PELLUCID_ONE
 #undef PELLUCID_CROSS
-#undef PELLUCID_QUAD
+#undef PELLUCID_FOUR
 #undef PELLUCID_RETURN_OF_SLOT
 #undef PELLUCID_MORE_SLOTS
 #undef PELLUCID_TEXEL

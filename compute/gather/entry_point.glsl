@@ -5,7 +5,7 @@
 
 #include "frame/frame.glsl"
 #include "frame/light_tables.glsl"
-#include "lib/octahedral.glsl"
+#include "lib/packing.glsl"
 
 layout(set = 0, binding = PELLUCID_BINDING_LIGHTS) uniform Lights { LightConstants lights[PELLUCID_DISPATCH_LIGHTS]; };
 layout(set = 0, binding = PELLUCID_BINDING_GATHER_MAPS) uniform GatherMaps {

@@ -22,7 +22,7 @@ int placeOf(ivec2 local) { return (local.y + kReach) * kRow + local.x + kReach; 
 
 void keepProbe(ivec2 local, ivec2 cell, int side, uvec4 bits) {
   vec3 normal = normalOf(bits);
-  places[placeOf(local)] = vec4(viewPosition(cell, side, unpackProbe(bits)), uintBitsToFloat(bits.z & 0xFFu));
+  places[placeOf(local)] = vec4(viewPosition(cell, side, unpackPlace(bits)), uintBitsToFloat(bits.z & 0xFFu));
   found[placeOf(local)] = uvec4(bits.x, (bits.y & 0xFFFFu) | packHalf2x16(vec2(0.0, normal.x)), packHalf2x16(normal.yz),
                                 bits.w);
 }
@@ -58,7 +58,7 @@ uvec4 filtered(ivec2 local, uvec4 own, float perSquare) {
     total += weight;
   }
   // The probe itself is among them.
-  return replaceLight(own, added / total, convexity / total);
+  return withConvexity(withAdded(own, added / total), convexity / total);
 }
 
 // Filters the cells from `first` on, for all invocations, as they wait for each other.

@@ -3,38 +3,38 @@
 #define PELLUCID_PROBE_GLSL
 
 #include "frame/blocks.glsl"
-#include "lib/halves.glsl"
-#include "lib/octahedral.glsl"
+#include "lib/packing.glsl"
 
-struct Probe {
-  vec3 added;     // irradiance that the lights bring beyond their diffused one; below 0 where they bring less
-  vec3 convexity; // part of the diffused irradiance that comes back besides, -0.1 to 0.1
-  vec3 normal;    // unit
-  float front;    // planar distance
-  uint material;  // index + 1; 0: nothing there
-  int index;      // of its pixel in the cell, rows first
+// 128 bits: the light that a probe adds, the convexity of its surface, and the place of the surface.
+//   x, y: `added`, irradiance that the lights bring beyond their diffused one, below 0 where they bring less; the normal
+//   z: planar distance without its 8 lowest bits, which hold the material
+//   w: `convexity`, the part of the diffused irradiance that comes back besides, 9 bits a channel; index of the pixel
+struct ProbePlace {
+  vec3 normal;   // unit; 16 bits hold it to a degree
+  float front;   // planar distance
+  uint material; // index + 1; 0: nothing there
+  int index;     // of its pixel in the cell, rows first
 };
 
 const uvec4 kNoProbe = uvec4(0u);
 
-// Convexity takes 9 bits a channel; 0 is exact.
-const float kMostConvexity = 0.1, kConvexitySteps = 255.0;
+const float kMostConvexity = 0.1, kConvexitySteps = 255.0; // 0 is exact
 
-// The probe with other light.
-uvec4 replaceLight(uvec4 bits, vec3 added, vec3 convexity) {
+uvec4 withAdded(uvec4 bits, vec3 added) {
   // Next to nothing counts as nothing, so that bits say which probes have no light.
   added = mix(vec3(0.0), clamp(added, vec3(-kLargestHalf), vec3(kLargestHalf)), greaterThan(abs(added), vec3(1.0e-7)));
-  vec3 steps = clamp(convexity / kMostConvexity, vec3(-1.0), vec3(1.0)) * kConvexitySteps;
-  uvec3 parts = uvec3(ivec3(floor(steps + 0.5))) & 511u;
-  return uvec4(packHalves(added, bits.y >> 16), bits.z,
-               parts.r | parts.g << 9 | parts.b << 18 | (bits.w & 0xF8000000u));
+  return uvec4(packHalves(added, bits.y >> 16), bits.zw);
 }
 
-// 16 bits hold a direction to a degree; the depth leaves its 8 lowest bits to the material.
-uvec4 packProbe(Probe p) {
-  uvec4 bits = uvec4(0u, packSnorm4x8(vec4(octahedral(p.normal), 0.0, 0.0)) << 16,
-                     (floatBitsToUint(p.front) & 0xFFFFFF00u) | p.material, uint(p.index) << 27);
-  return replaceLight(bits, p.added, p.convexity);
+uvec4 withConvexity(uvec4 bits, vec3 convexity) {
+  vec3 steps = clamp(convexity / kMostConvexity, vec3(-1.0), vec3(1.0)) * kConvexitySteps;
+  uvec3 parts = uvec3(ivec3(floor(steps + 0.5))) & 511u;
+  return uvec4(bits.xyz, parts.r | parts.g << 9 | parts.b << 18 | (bits.w & 0xF8000000u));
+}
+
+uvec4 packPlace(ProbePlace p) {
+  return uvec4(0u, packSnorm4x8(vec4(octahedral(p.normal), 0.0, 0.0)) << 16, (floatBitsToUint(p.front) & 0xFFFFFF00u) | p.material,
+               uint(p.index) << 27);
 }
 
 vec3 addedOf(uvec4 bits) { return unpackHalves(bits.xy); }
@@ -52,9 +52,8 @@ bool hasLight(uvec4 bits) { return (bits.x | bits.y & 0xFFFFu) != 0u || hasConve
 
 vec3 normalOf(uvec4 bits) { return fromOctahedral(unpackSnorm4x8(bits.y >> 16).xy); }
 
-Probe unpackProbe(uvec4 bits) {
-  return Probe(addedOf(bits), convexityOf(bits), normalOf(bits), uintBitsToFloat(bits.z & 0xFFFFFF00u), bits.z & 0xFFu,
-               int(bits.w >> 27));
+ProbePlace unpackPlace(uvec4 bits) {
+  return ProbePlace(normalOf(bits), uintBitsToFloat(bits.z & 0xFFFFFF00u), bits.z & 0xFFu, int(bits.w >> 27));
 }
 
 // Cells have 1, 2 or 4 pixels a side, so that a shift replaces divisions, which take as long as the rest.
@@ -64,7 +63,7 @@ ivec2 pixelInCell(ivec2 cell, int side, int index) {
   return side * cell + ivec2(index & (side - 1), index >> shiftOf(side));
 }
 
-vec3 viewPosition(ivec2 cell, int side, Probe p) {
+vec3 viewPosition(ivec2 cell, int side, ProbePlace p) {
   ViewRay ray = viewRay(frame.camera, pixelInCell(cell, side, p.index));
   return ray.origin + p.front * ray.direction;
 }

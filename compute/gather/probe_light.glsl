@@ -3,12 +3,57 @@
 #define PELLUCID_PROBE_LIGHT_GLSL
 
 #include "gather/entry_point.glsl"
-#include "lib/gather.glsl"
-#include "lib/occluder.glsl"
+#include "lib/shadow.glsl"
 #include "lib/surface.glsl"
 
 layout(set = 0, binding = PELLUCID_BINDING_MATERIALS) readonly buffer Materials { MaterialConstants materials[]; };
 layout(set = 0, binding = PELLUCID_BINDING_ENTRY_POINTS) uniform utexture2D entriesImage;
+
+// ---- The kernel. Light that enters the lit surface at y with flux F leaves x with exitance F (1 - m) K(r, h) and comes
+// back as diffused irradiance F m R(r), r = |x - y| in mm; docs/how-it-works.md derives K.
+
+// A slab of thickness h: log2 of T(h) e^{q h}, and q in powers of 2 per mm. T(h) itself has no bound in its logarithm.
+struct GatherSlab {
+  vec3 logarithm, decay;
+};
+
+// Place of a thickness among the entries, which are at equal steps of h / (h + scale).
+float gatherPlace(vec4 lengths, float h) {
+  return h / (h + lengths.w) * float(PELLUCID_GATHER_ENTRIES - 1); // scale > 0
+}
+
+// Interpolates between an entry of GatherConstants and the next. a, b, c: the logarithm and its step, the decay and its
+// step.
+GatherSlab gatherSlab(vec4 a, vec4 b, vec4 c, float fraction) {
+  return GatherSlab(a.rgb + fraction * vec3(a.w, b.rg), vec3(b.zw, c.x) + fraction * c.yzw);
+}
+
+// Integral of K(r, h) over the ring between the distances `near` and `far` from x: T [e^{-q (near - h)} - e^{-q (far - h)}] is
+// exact for slabs. Where h grows with r, as on spheres, K falls like T(r), with a slope that is within 14 % a line in q, for q
+// up to 5 kappa: before h, to second order, and beyond h by the part `curved`, 0 to 1. The channel that spreads furthest
+// decides the slope, because light of the others comes from rings that are small beside it.
+vec3 gatherTransmitted(vec4 lengths, GatherSlab slab, float curved, float h, float near, float far) {
+  float begins = max(near, h), before = 0.69314718 * (begins - near);
+  vec3 q = slab.decay;
+  float kappa = 2.0 / 0.69314718 / lengths.z; // of that channel, in powers of 2: at most the least q, above 0
+  float slope = 0.2 + 0.8 * kappa / min(min(q.r, q.g), q.b), decay = mix(1.0, slope, curved);
+  vec3 logarithm = slab.logarithm - q * h;
+  vec3 begin = exp2(logarithm - q * (decay * (begins - h))), end = exp2(logarithm - q * (decay * (far - h)));
+  return (begin - end) / decay + begin * q * (before + 0.5 * before * before * slope * q);
+}
+
+// Integral of Burley's profile over the ring, 1 - cdf = e^{-r / d} / 4 + 3/4 e^{-r / 3d}; inverse3d = 0: no profile.
+vec3 gatherReflected(vec3 inverse3d, float near, float far) {
+  vec3 a = exp(-inverse3d * near), b = exp(-inverse3d * far);
+  return 0.25 * (a * a * a - b * b * b) + 0.75 * (a - b);
+}
+
+// How much further than the nearest point of the lit surface the share u of the samples lies, at most:
+// exponential, of a length that grows with u from the material's shortest to its longest. u < 1.
+float gatherSpread(vec4 lengths, float u) { return -log(1.0 - u) * lengths.x * exp2(lengths.y * u); }
+
+// Square of the radius around a foot at distance t where the distance is t + spread.
+float gatherSquaredRadius(float t, float spread) { return spread * (spread + 2.0 * t); }
 
 // ---- Rings around the probe, and the entry points that a light has for them
 
@@ -19,9 +64,24 @@ vec3 mapPoint(uint map, vec4 position) {
   return vec3(dot(maps[map].column, position), dot(maps[map].row, position), dot(maps[map].depth, position));
 }
 
+// The point's place among the map's entry points; outside of any map where the point lies behind a light.
+vec2 placeInMap(bool parallel, vec3 point) {
+  if (parallel) return point.xy;
+  return point.z > 0.0 ? point.xy / point.z : vec2(-1.0);
+}
+
 // Floats keep outside what is far outside.
-bool isInMap(uint map, vec2 at) {
-  return all(greaterThanEqual(at, vec2(0.0))) && all(lessThan(at, vec2(maps[map].place.zw)));
+bool isInMap(uint map, vec2 place) {
+  return all(greaterThanEqual(place, vec2(0.0))) && all(lessThan(place, vec2(maps[map].place.zw)));
+}
+
+// Finds the first of the light's maps that contains the position. false: none does.
+bool findMap(LightConstants light, vec3 position, out uint map, out vec3 point) {
+  for (map = light.meta.y; map < light.meta.y + light.meta.z; ++map) {
+    point = mapPoint(map, vec4(position, 1.0));
+    if (isInMap(map, placeInMap(directional(light), point))) return true;
+  }
+  return false;
 }
 
 uvec4 entryAt(uint map, ivec2 entry, int level) {
@@ -29,32 +89,16 @@ uvec4 entryAt(uint map, ivec2 entry, int level) {
   return texelFetch(entriesImage, entryPlace(maps[map].place.xy + entry, level, size), 0);
 }
 
-// Fetches the entry of a point of the map from a level or, where that has several surfaces, from the first. false: the map
-// does not contain the point. `off`: from the point to the middle of what the entry stands for, in entry points.
-bool fetchEntry(uint map, bool parallel, vec3 point, int level, out uvec4 bits, out vec2 off) {
-  bits = kNoEntry;
-  off = vec2(0.0);
-  if (!parallel && !(point.z > 0.0)) return false;
-  vec2 at = parallel ? point.xy : point.xy / point.z;
-  if (!isInMap(map, at)) return false;
-  bits = entryAt(map, ivec2(at), level);
+// The entry of a place in the map from a level or, where that has several surfaces, from the first. `off`: from the place to the
+// middle of what the entry stands for, in entry points.
+uvec4 fetchEntry(uint map, vec2 place, int level, out vec2 off) {
+  uvec4 bits = entryAt(map, ivec2(place), level);
   if (bits == kSeveralSurfaces) {
     level = 0;
-    bits = entryAt(map, ivec2(at), 0);
+    bits = entryAt(map, ivec2(place), 0);
   }
-  off = (vec2(ivec2(at) >> level) + 0.5) * float(1 << level) - at;
-  return true;
-}
-
-// Fetches from the first of the light's maps that contains the position.
-bool fetchEntry(LightConstants light, vec3 position, int level, out uint map, out vec3 point, out uvec4 bits,
-                out vec2 off) {
-  for (map = light.meta.y; map < light.meta.y + light.meta.z; ++map) {
-    point = mapPoint(map, vec4(position, 1.0));
-    if (fetchEntry(map, directional(light), point, level, bits, off)) return true;
-  }
-  bits = kNoEntry;
-  return false;
+  off = (vec2(ivec2(place) >> level) + 0.5) * float(1 << level) - place;
+  return bits;
 }
 
 // How far the lit surface is from a point along its light ray: scene units, or a fraction of the way to the light.
@@ -84,9 +128,9 @@ bool gatherRings(LightConstants light, Surface x, vec3 toLight, float distanceTo
   rings.axisCosine = dot(rings.axis, toLight);
   rings.t = rings.ahead = rings.shadowed = 0.0;
   vec3 point;
+  if (!findMap(light, x.position, rings.map, point)) return false;
   vec2 off;
-  uvec4 bits;
-  if (!fetchEntry(light, x.position, 0, rings.map, point, bits, off)) return false;
+  uvec4 bits = fetchEntry(rings.map, placeInMap(parallel, point), 0, off);
   rings.entrySide = length(maps[rings.map].stepX.xyz) * mm * (parallel ? 1.0 : point.z);
   // The slope of the surface counts within an entry point, and one entry point stands for its curvature.
   rings.tolerance = rings.entrySide * (2.0 + min(slopeOf(x.hasNormal ? dot(x.normal, toLight) : 0.0), kSteepestOwn));
@@ -98,7 +142,8 @@ bool gatherRings(LightConstants light, Surface x, vec3 toLight, float distanceTo
   float t = clamp(rings.ahead, 0.0, longest) / mm;
   vec3 guess = x.position + t * rings.axis;
   uint map;
-  if (fetchEntry(light, guess, 0, map, point, bits, off) && holdsSurface(bits)) {
+  bits = findMap(light, guess, map, point) ? fetchEntry(map, placeInMap(parallel, point), 0, off) : kNoEntry;
+  if (holdsSurface(bits)) {
     vec3 y = guess + distanceAhead(parallel, unpackEntry(bits).depth, point.z) *
                          (parallel ? toLight : light.position.xyz - guess);
     t = clamp(dot(y - x.position, rings.axis), 0.0, longest / mm);
@@ -190,7 +235,7 @@ void addSample(inout Gathered sum, Surface x, uint m, vec4 lengths, EntryPoint e
   sum.seen += area * entry.seen * alike;
 }
 
-Gathered gatherSamples(uint m, LightConstants light, Surface x, Pattern pattern, Incident incident, GatherRings rings) {
+Gathered gatherSamples(uint m, LightConstants light, Surface x, Pattern pattern, vec3 lightRay, GatherRings rings) {
   Gathered sum = Gathered(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
   float mm = frame.camera.range.w;
   bool parallel = directional(light);
@@ -212,20 +257,20 @@ Gathered gatherSamples(uint m, LightConstants light, Surface x, Pattern pattern,
     direction = mat2(-0.73736888, 0.67549029, -0.67549029, -0.73736888) * direction; // the golden angle
     int level = clamp(int(log2(max(kSampleSide * radius / rings.entrySide, 1.0))), 0, kLastEntryLevel);
     vec3 at = point + offset.x * pointAcross + offset.y * pointAlong;
-    uvec4 bits;
-    vec2 off;
+    vec3 s = onRing(center, across, along, offset);
     uint map = rings.map;
+    bool inside = isInMap(map, placeInMap(parallel, at));
     // A cube's seams are no borders.
-    if (!fetchEntry(map, parallel, at, level, bits, off) && light.meta.z > 1u)
-      fetchEntry(light, x.position + onRing(center, across, along, offset) / mm, level, map, at, bits, off);
+    if (!inside && light.meta.z > 1u) inside = findMap(light, x.position + s / mm, map, at);
+    vec2 off;
+    uvec4 bits = inside ? fetchEntry(map, placeInMap(parallel, at), level, off) : kNoEntry;
     float from = inner;
     spread = gatherSpread(lengths, float(i + 1u) * perSample);
     inner = i + 1u == samples ? kLastRing : gatherSquaredRadius(rings.t, spread);
     if (!lightEnters(bits)) continue;
     EntryPoint entry = unpackEntry(bits);
     if (entry.material != 0u && entry.material != m + 1u) continue;
-    vec3 s = onRing(center, across, along, offset);
-    vec3 toLight = parallel ? incident.toLight * mm : (light.position.xyz - x.position) * mm - s;
+    vec3 toLight = parallel ? lightRay * mm : (light.position.xyz - x.position) * mm - s;
     float ahead = distanceAhead(parallel, entry.depth, at.z);
     // The entry point's plane goes on to the sample's own ray, if the plane faces the light: a shown normal may turn away.
     vec3 middle = (off.x * maps[map].stepX.xyz + off.y * maps[map].stepY.xyz) * mm * (parallel ? 1.0 : entry.depth);
@@ -237,9 +282,9 @@ Gathered gatherSamples(uint m, LightConstants light, Surface x, Pattern pattern,
     float flux = rings.axisCosine;
     // A point light's flux is its intensity per square scene unit at s. At the light itself any finite value will do.
     if (!parallel) flux *= mm * mm / max(dot(toLight, toLight), 1.0e-12 * mm * mm);
-    float inside = staysInside(rings, entry, to, parallel ? incident.toLight : normalize(toLight));
-    entry.hidden *= inside;
-    entry.seen *= inside;
+    float stays = staysInside(rings, entry, to, parallel ? lightRay : normalize(toLight));
+    entry.hidden *= stays;
+    entry.seen *= stays;
     addSample(sum, x, m, lengths, entry, to, sqrt(plane + from), sqrt(plane + inner), flux, rings.axisCosine);
   }
   return sum;
@@ -255,14 +300,13 @@ vec3 gatherLight(uint m, LightConstants light, Surface x, Pattern pattern, vec3 
   float cosine = x.hasNormal ? max(dot(x.normal, incident.toLight), 0.0) : 0.0;
   // The sums have the light's cone and range.
   float falloff = directional(light) ? 1.0 : 1.0 / max(incident.distanceTo * incident.distanceTo, 1.0e-12);
-  float own = falloff * cosine * arrivesAt(rings, cosine);
+  float own = falloff * cosine * arrivesAt(rings, cosine), share = shareOfLight(light, incident.toLight, incident.distanceTo);
   if (own == 0.0 && rings.ahead > kFarthestLit * materials[m].gather.lengths.z) return vec3(0.0);
-  Gathered g = gatherSamples(m, light, x, pattern, incident, rings);
+  Gathered g = gatherSamples(m, light, x, pattern, incident.toLight, rings);
   vec3 through = g.through * frame.filterAndLimit.rgb * materials[m].inverseReflectance.rgb;
   vec3 hidden = min(g.hidden, vec3(1.0)), seen = g.seenLight / max(g.seen, vec3(1.0e-12)), around = 0.5 * (own + seen);
   // Diffused light is no more than what lies around, and a dark point has next to none of its own to lose.
-  vec3 opposite = min(g.opposite, through + own);
-  vec3 lost = min(seen, vec3(2.0 * own)) * shareOfLight(light, incident.toLight, incident.distanceTo);
+  vec3 opposite = min(g.opposite, through + own), lost = min(seen, vec3(2.0 * own)) * share;
   return through + g.entering - opposite - hidden * around - (1.0 - hidden) * loss * lost;
 }
 

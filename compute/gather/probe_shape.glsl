@@ -2,7 +2,7 @@
 #ifndef PELLUCID_PROBE_SHAPE_GLSL
 #define PELLUCID_PROBE_SHAPE_GLSL
 
-#include "frame/chord.glsl"
+#include "frame/frame.glsl"
 #include "gather/probe.glsl"
 #include "gather/probe_light.glsl"
 
@@ -59,8 +59,9 @@ float meanCurvature(ivec2 pixel, Surface x, ViewRay ray, float front, float reac
 vec3 convexityAt(ivec2 pixel, Surface x, ViewRay ray, float front, uint m) {
   vec4 perCurvature = materials[m].gather.convexity;
   vec3 more = perCurvature.rgb * meanCurvature(pixel, x, ray, front, perCurvature.w);
-  // NaN becomes 0: its conversion to steps may be anything.
-  return mix(vec3(0.0), clamp(more, vec3(-kMostConvexity), vec3(kMostConvexity)), lessThan(abs(more), vec3(1.0e30)));
+  // NaN, whose conversion to steps may be anything, becomes 0.
+  bvec3 known = lessThan(floatBitsToUint(abs(more)), uvec3(floatBitsToUint(1.0e30)));
+  return mix(vec3(0.0), clamp(more, vec3(-kMostConvexity), vec3(kMostConvexity)), known);
 }
 
 // Position of the pixel's back face, view space; false where there is none.

@@ -5,7 +5,6 @@
 #define MORE_SHADOW_IMAGES
 #include "gather/entry_point.glsl"
 #include "frame/shadow_images.glsl"
-#include "lib/occluder.glsl"
 #include "lib/shadow.glsl"
 #include "lib/surface.glsl"
 
@@ -62,7 +61,7 @@ vec3 shownNormal(ivec2 pixel, float front) {
   if (hasFlag(PELLUCID_FLAG_NORMAL)) {
     vec3 normal = mat3(frame.viewFromNormal) * decodeNormal(texelFetch(normalImage, withinRect(pixel), 0));
     float squared = dot(normal, normal);
-    return squared > 1.0e-8 && squared < 1.0e8 ? normal * inversesqrt(squared) : vec3(0.0); // false for NaN
+    return isWithin(squared, 1.0e-8, 1.0e8) ? normal * inversesqrt(squared) : vec3(0.0);
   }
   vec4 beside = vec4(frontAround(pixel + ivec2(1, 0)), frontAround(pixel - ivec2(1, 0)), frontAround(pixel + ivec2(0, 1)),
                      frontAround(pixel - ivec2(0, 1)));
@@ -265,7 +264,7 @@ uvec4 entryOf(EntryMapConstants map, ivec2 texel) {
   uint material = 0u;
   if (map.occluder.y != 0u) {
     float index = shadowTexel(map.occluder.y - 1u, inImage) * uintBitsToFloat(map.occluder.z);
-    material = index >= 0.5 && index < 255.5 ? uint(index + 0.5) : 0u;
+    material = isWithin(index, 0.5, 255.5) ? uint(index + 0.5) : 0u;
     if (material == 0u) share = 0.0; // opaque, as is NaN
   }
   float exit = kNoExit;

@@ -7,6 +7,16 @@
 // Larger planar distances, and all values <= 0, mean "nothing there" (capture manifest, section 5).
 const float kNoDepth = 1.0e9;
 
+// True of low <= v < high, where low >= 0. Bits say so, because compilers may take for granted that floats are no NaN: they need
+// not compile comparisons of floats to be false for NaN. Bits of floats from 0 on have the floats' order; those of negative floats
+// and NaN are greater.
+bool isWithin(float v, float low, float high) {
+  return floatBitsToUint(v) - floatBitsToUint(low) < floatBitsToUint(high) - floatBitsToUint(low);
+}
+
+const float kAboveOne = 1.00000012; // the next float
+const float kMostFloat = 3.4e38;
+
 struct ViewRay {
   vec3 origin, direction; // direction has planar length 1
 };
@@ -24,8 +34,8 @@ float depthDenominator(Camera camera, float depth) {
 // Planar distance of a device depth; -1 where it holds nothing.
 float planarDistance(Camera camera, float depth) {
   float denominator = depthDenominator(camera, depth);
-  // Comparisons are false for NaN. 0/0 of an infinite far plane stays out.
-  bool something = abs(denominator) > 0.0 && depth >= 0.0 && depth <= 1.0 && depth != camera.range.z;
+  // 0/0 of an infinite far plane stays out.
+  bool something = isWithin(depth, 0.0, kAboveOne) && abs(denominator) > 0.0 && depth != camera.range.z;
   float distance = something ? (camera.depth.y - depth * camera.depth.w) / denominator : -1.0;
   // Depths next to an infinite far plane end beyond any scene. Orthographic cameras see surfaces behind the eye.
   return abs(distance) > 0.0 && abs(distance) < kNoDepth ? distance : -1.0;
@@ -33,7 +43,7 @@ float planarDistance(Camera camera, float depth) {
 
 // Planar distance of a viewZ value; -1 where it holds nothing.
 float planarDistanceViewZ(float viewZ) {
-  return viewZ > 0.0 && viewZ < kNoDepth ? viewZ : -1.0;
+  return isWithin(viewZ, 0.0, kNoDepth) && viewZ != 0.0 ? viewZ : -1.0;
 }
 
 // Finds the pixel that a view-space point falls on; false behind the eye.
@@ -59,5 +69,20 @@ vec2 squaredPixelSize(Camera camera, float p) {
 
 // These lengths in mm.
 vec2 pixelSize(Camera camera, float p) { return sqrt(squaredPixelSize(camera, p)) * camera.range.w; }
+
+// ---- Camera-space thickness: how far the view ray runs inside the object. Scene units; -1: unknown
+
+// Planar difference of two device depths. Subtracting in depth space first keeps every bit the depth
+// buffer has: p1 - p2 = (d1 - d2) (AD - BC) / ((C d1 - A)(C d2 - A)).
+float planarDifference(Camera camera, float back, float front) {
+  float denominator = depthDenominator(camera, back) * depthDenominator(camera, front);
+  // Denominators of two surfaces in front of the eye have one sign; 0 only at infinity.
+  return denominator > 0.0 ? (back - front) * camera.range.y / denominator : -1.0;
+}
+
+// From planar difference to chord along the ray; a back face that is not behind the front is none.
+float chord(float difference, ViewRay ray) {
+  return difference > 0.0 && difference < kNoDepth ? difference * length(ray.direction) : -1.0;
+}
 
 #endif

@@ -41,11 +41,11 @@ ShadowFootprint footprintOf(ShadowConstants shadow, ShadowReceiver receiver) {
                          vec4(x * (1.0 - part.y), x * part.y));
 }
 
-// True where the texel holds a surface; false for NaN. meta: ShadowConstants::meta.
+// True where the texel holds a surface. meta: ShadowConstants::meta.
 bool shadowHolds(uvec4 meta, float stored) {
   if (meta.y == PELLUCID_SHADER_DEPTH_DEVICE)
-    return stored >= 0.0 && stored <= 1.0 && stored != uintBitsToFloat(meta.w);
-  return stored > 0.0 && stored < kNoDepth;
+    return isWithin(stored, 0.0, kAboveOne) && stored != uintBitsToFloat(meta.w);
+  return isWithin(stored, 0.0, kNoDepth) && stored != 0.0;
 }
 
 // The depth of the surface that was drawn, without the biases that the drawing added; in units of the stored depth.
@@ -88,38 +88,67 @@ DrawnDepth drawnDepth(vec4 offsets, float own, vec4 beside, bvec4 holds) {
                     0.5 * offsets.w + abs(offsets.y) * (offsets.w + max(x.y, y.y)));
 }
 
-// Scene units along the light ray from the stored surface to the receiver x; negative: the surface is
-// beyond x. Each form subtracts before it scales, so equal depths give exactly 0.
-float lightThickness(ShadowConstants shadow, ShadowReceiver receiver, vec3 x, Incident light, float stored) {
+// A receiver's light ray, along which a map's depths tell how far a stored surface lies before the receiver. With g = scale *
+// stored + offset, which is 0 at the receiver itself, that is g * perGap, or of perspective device depths g / (lightZ + g) *
+// perGap.
+struct StoredRay {
+  float scale, offset;
+  float lightZ; // clip z of a perspective device map's light; 0: of other maps
+  float perGap; // scene units
+};
+
+// Each g subtracts before it scales, so that equal depths give exactly 0.
+StoredRay storedRay(ShadowConstants shadow, ShadowReceiver receiver, vec3 x, Incident light) {
   bool perspective = shadow.meta.z != 0u;
-  if (shadow.meta.y == PELLUCID_SHADER_DEPTH_DEVICE) {
-    float gap = stored * receiver.clip.w - receiver.clip.z;
-    if (!perspective) return -gap * shadow.depth.x;
-    // On the ray from the light, clip = (0,0,zL,0) + t (clip(x) - (0,0,zL,0)); the stored depth is at
-    // t = zL / (zL + gap). zL + gap = zL / t has zL's sign for every t > 0.
-    float total = shadow.depth.x + gap;
-    return total * shadow.depth.x > 0.0 ? gap / total * light.distanceTo : -1.0;
-  }
-  if (shadow.meta.y == PELLUCID_SHADER_DEPTH_VIEW_Z) {
-    float planar = dot(shadow.planar, vec4(x, 1.0));
-    if (!perspective) return (planar - stored) * shadow.depth.x;
-    // inside the map: planar > 0
-    return (planar - stored) / max(planar, 1.0e-12) * light.distanceTo;
-  }
-  return light.distanceTo - stored;
+  if (shadow.meta.y == PELLUCID_SHADER_DEPTH_DEVICE) // on the ray, clip = (0, 0, lightZ, 0) + t (clip(x) - (0, 0, lightZ, 0))
+    return StoredRay(receiver.clip.w, -receiver.clip.z, perspective ? shadow.depth.x : 0.0, perspective ? light.distanceTo : -shadow.depth.x);
+  if (shadow.meta.y != PELLUCID_SHADER_DEPTH_VIEW_Z) return StoredRay(-1.0, light.distanceTo, 0.0, 1.0);
+  float planar = dot(shadow.planar, vec4(x, 1.0)); // inside of a perspective map: above 0
+  return StoredRay(-1.0, planar, 0.0, perspective ? light.distanceTo / max(planar, 1.0e-12) : shadow.depth.x);
 }
 
-// Scene units along the receiver's light ray per unit of the stored depth, at that depth: the derivative of lightThickness.
-float lengthPerDepth(ShadowConstants shadow, ShadowReceiver receiver, vec3 x, Incident light, float stored) {
-  bool perspective = shadow.meta.z != 0u;
-  if (shadow.meta.y == PELLUCID_SHADER_DEPTH_DEVICE) {
-    if (!perspective) return abs(shadow.depth.x);
-    float total = shadow.depth.x + stored * receiver.clip.w - receiver.clip.z;
-    return total * shadow.depth.x > 0.0 ? abs(receiver.clip.w * shadow.depth.x) / (total * total) * light.distanceTo : 0.0;
-  }
-  if (shadow.meta.y != PELLUCID_SHADER_DEPTH_VIEW_Z) return 1.0;
-  if (!perspective) return abs(shadow.depth.x);
-  return light.distanceTo / max(dot(shadow.planar, vec4(x, 1.0)), 1.0e-12); // inside the map: above 0
+// Scene units along the light ray from the stored surface to the receiver; negative: the surface is beyond the receiver.
+float lightThickness(StoredRay ray, float stored) {
+  float gap = ray.scale * stored + ray.offset, total = ray.lightZ + gap;
+  if (ray.lightZ == 0.0) return gap * ray.perGap;
+  // The stored depth is at t = lightZ / total: total has the sign of lightZ for every t > 0.
+  return total * ray.lightZ > 0.0 ? gap / total * ray.perGap : -1.0;
 }
+
+// Scene units along the light ray per unit of the stored depth, at that depth: the derivative of lightThickness.
+float lengthPerDepth(StoredRay ray, float stored) {
+  float total = ray.lightZ + ray.scale * stored + ray.offset;
+  if (ray.lightZ == 0.0) return abs(ray.scale * ray.perGap);
+  // A surface at the light itself has no bound.
+  return total * ray.lightZ > 0.0 ? min(abs(ray.scale * ray.lightZ) / max(total * total, 1.0e-30), kNoDepth) * ray.perGap : 0.0;
+}
+
+// ---- What lies behind the surface that a map stores: the receiver's own medium, another body, or air. Functions take texels of
+// the optional images beside the map; see PellucidShadowMap.
+
+// depthTolerance ends here. Only light that grazes a face reaches it, at a cosine of .14, and only below .09 a receiver's
+// own exit can be farther off than this. More would hide gaps: 8 texels of a head's map of 1024 texels are 1.8 mm.
+const float kMostTexels = 8.0;
+
+// Slope of a surface across a light's rays, from the cosine between them and its normal; at most 1000.
+float slopeOf(float cosine) { return sqrt(max(1.0 - cosine * cosine, 0.0)) / max(abs(cosine), 1.0e-3); }
+
+// True where light that meets the stored surface enters the receiver's material. `stored`: texel of the caster's image;
+// `scale`: as ShadowConstants::occluder.z; `material`: index + 1.
+bool casterIsMedium(float stored, float scale, uint material) {
+  return isWithin(abs(stored * scale - float(material)), 0.0, 0.5);
+}
+
+// Side of a texel, scene units across the light's ray, where a point is. `distanceTo`: of the light.
+float texelSideAt(ShadowConstants shadow, float distanceTo) { return shadow.depth.y * (shadow.meta.z != 0u ? distanceTo : 1.0); }
+
+// Scene units along the light ray that a point of a stored surface may lie off the depth of its own texel: that surface's
+// slope between the point and the texel's center, half a texel's diagonal away; one texel more stands for curvature.
+// `side`: of a texel; `cosine`: between the point's normal and the light; 0: not known.
+float depthTolerance(float side, float cosine) { return side * min(1.0 + slopeOf(cosine), kMostTexels); }
+
+// True where air or another body lies between a receiver and the stored surface. `fromExit`: from the exit to the receiver,
+// scene units along the light ray.
+bool liesBeyondExit(float fromExit, float tolerance) { return fromExit > tolerance; }
 
 #endif

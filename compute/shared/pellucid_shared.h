@@ -17,7 +17,6 @@ using glm::vec4;
 
 // Sides of workgroups and of what a group does.
 #define PELLUCID_GROUP_X 8
-#define PELLUCID_TILE 16          // pixels of a group that does two each: one thickness a pixel
 #define PELLUCID_BLOCK 64         // pixels of a block, in which the image is divided from its first pixel on
 #define PELLUCID_BLOCK_BORDER 8   // pixels beyond the rect that blocks reach: a texel of level 3
 #define PELLUCID_CELL 8           // pixels of a cell: a block has a bit for each of its 8 x 8
@@ -89,8 +88,7 @@ using glm::vec4;
 // Specialization constants
 #define PELLUCID_CONSTANT_DEBUG_VIEWS 0
 #define PELLUCID_CONSTANT_NORMALS 4
-#define PELLUCID_CONSTANT_SHARERS 5 // invocations that share a probe, 1 or 2
-#define PELLUCID_CONSTANT_LIGHT_TABLES 6
+#define PELLUCID_CONSTANT_LIGHT_TABLES 5
 
 // Values of the public enums the shaders branch on; constants.cpp asserts that they agree.
 #define PELLUCID_SHADER_LIGHT_DIRECTIONAL 0u

@@ -1,161 +1,63 @@
-// Light through one surface point, for any shader stage. Include it after declaring, from whatever bindings
-// the shader has: FrameConstants frame, ShadowConstants shadows[], MaterialConstants materials[], and
-//   ShadowTexels shadowTexels(uint image, ivec2 texel, ivec2 first, ivec2 last); // of the image and layer in
-//   ShadowConstants::meta.x, as frame/shadow_images.glsl has it
-//   vec4 shadowQuad(uint image, ivec2 low, ivec2 high); // as frame/shadow_images.glsl has it
+// Light through one surface point: one thickness for each light. Engines include this file in shaders of any stage.
+//
+// A shader that binds its inputs its own way defines PELLUCID_OWN_INPUTS and declares, before it includes this file,
+// FrameConstants frame, ShadowConstants shadows[] and MaterialConstants materials[] (names, as a buffer's array cannot be passed
+// without a copy), and the functions
+//   vec4 shadowTexels(uint image, ivec2 a, ivec2 b, ivec2 c, ivec2 d); // four texels of the image and layer that
+//                                                                      // ShadowConstants::meta.x names
 //   float distanceOf(ivec2 pixel, uint material, bool back); // planar distance of the front or back depth of a pixel that has
-//   the material (index + 1); <= 0 of others
+//                                                            // the material (index + 1); <= 0 of others
 // The shader requires GL_EXT_control_flow_attributes.
-// They are names and not parameters because a buffer's array cannot be passed without a copy.
 #ifndef PELLUCID_TRANSMISSION_GLSL
 #define PELLUCID_TRANSMISSION_GLSL
 
-#include "frame/flags.glsl"
-#include "lib/angle.glsl"
 #include "frame/light_tables.glsl"
-#include "lib/surface.glsl"
-#include "lib/thickness.glsl"
-#include "lib/transmittance.glsl"
-#include "lib/occluder.glsl"
+#include "lib/camera.glsl"
 #include "lib/shadow.glsl"
+#include "lib/surface.glsl"
+
+#ifdef PELLUCID_OWN_INPUTS
+bool hasFlag(uint flag) { return (frame.flags.x & flag) != 0u; }
+#else
+#include "frame/frame.glsl"
+#include "frame/shadow_images.glsl"
+layout(set = 0, binding = PELLUCID_BINDING_SHADOWS) uniform Shadows { ShadowConstants shadows[PELLUCID_DISPATCH_SHADOWS]; };
+layout(set = 0, binding = PELLUCID_BINDING_MATERIALS) readonly buffer Materials { MaterialConstants materials[]; };
+layout(set = 0, binding = PELLUCID_BINDING_BACK_DEPTH) uniform texture2D backDepthImage;
+
+float distanceOf(ivec2 pixel, uint material, bool back) {
+  if (!insideRect(pixel) || materialAt(pixel) != material) return -1.0;
+  return back ? backDistanceOf(texelFetch(backDepthImage, pixel, 0).x) : frontDistance(pixel);
+}
+#endif
 
 // material: index + 1, as materialIndex has it and not 0. Frames without thin walls read nothing.
 bool isThinWalled(uint material) { return hasFlag(PELLUCID_FLAG_THIN_WALLS) && materials[material - 1u].meta.z != 0u; }
 
-// ---- The four texels of a light's shadow map around a point: how far the light that they store would go through the medium, and
-// which of them let light come there
+// ---- T(d): fraction of the flux entering one face of a slab that leaves the other. d in mm, >= 0.
 
-// `texel`: of the image, which holds `stored`. Neighbors are read for maps with a slope bias alone.
-DrawnDepth drawnDepth(ShadowConstants shadow, ivec2 texel, float stored) {
-  if (shadow.offsets.y == 0.0) return drawnDepth(shadow.offsets, stored, vec4(stored), bvec4(false));
-  uint image = shadow.meta.x;
-  ivec2 first = firstTexel(shadow.occluder), last = first + ivec2(shadow.depth.zw) - 1;
-  ivec2 low = max(texel - 1, first), high = min(texel + 1, last);
-  vec4 beside = shadowTexels(image, texel, first, last).beside;
-  bvec4 holds = bvec4(high.x > texel.x && shadowHolds(shadow.meta, beside.x), low.x < texel.x && shadowHolds(shadow.meta, beside.y),
-                      high.y > texel.y && shadowHolds(shadow.meta, beside.z), low.y < texel.y && shadowHolds(shadow.meta, beside.w));
-  return drawnDepth(shadow.offsets, stored, beside, holds);
+// a1 e^{-k1 d} + a2 e^{-k2 d}
+float transmittanceExp2(vec4 p, float d) {
+  const float kLog2E = 1.44269504;
+  float e = kLog2E * d; // once for all channels
+  return p.x * exp2(-p.y * e) + p.z * exp2(-p.w * e);
 }
 
-// The four texels around a point in the first of the light's maps that contains it.
-struct LightTexels {
-  vec4 held;      // bilinear weights of the texels that have a surface; 0 of others
-  vec4 entering;  // of those where light enters the point's own medium
-  vec4 thickness; // scene units along the light ray; negative: the surface is beyond the point
-  float side;      // of a texel, scene units
-  float uncertain; // scene units that the thickness may be off by, besides what depthTolerance says
-};
-
-const float kEverywhere = 3.0e38;
-
-float receiverCosine(Surface s, Incident incident) { return s.hasNormal ? dot(s.normal, incident.toLight) : 0.0; }
-
-// True of each texel where light enters the receiver's medium and has not left the medium before the receiver.
-bvec4 entersMedium(ShadowConstants shadow, ShadowReceiver receiver, ShadowFootprint footprint, Incident incident, Surface s,
-                   vec3 x, float tolerance) {
-  vec4 caster = vec4(0.0), exits = vec4(0.0);
-  if (hasCasterImage(shadow)) caster = shadowQuad(shadow.occluder.y - 1u, footprint.low, footprint.high);
-  if (hasExitImage(shadow)) exits = shadowQuad(shadow.occluder.x - 1u, footprint.low, footprint.high);
-  bvec4 enters = bvec4(true);
-  [[unroll]] for (int i = 0; i < 4; ++i) {
-    if (hasCasterImage(shadow)) enters[i] = casterIsMedium(caster[i], uintBitsToFloat(shadow.occluder.z), s.material);
-    if (!hasExitImage(shadow) || !enters[i] || !shadowHolds(shadow.meta, exits[i])) continue;
-    float step = shadow.offsets.w > 0.0 ? shadow.offsets.w * lengthPerDepth(shadow, receiver, x, incident, exits[i]) : 0.0;
-    enters[i] = !liesBeyondExit(lightThickness(shadow, receiver, x, incident, exits[i]), tolerance + step);
-  }
-  return enters;
+// a / sinh(kappa d + z) + b e^{-c d}; z > 0 by construction. Written with e^{-y} so that a thick slab
+// gives 0 and not 1/inf: 1/sinh y = 2 e^{-y} / (1 - e^{-2y}).
+float transmittanceSinhExp(vec4 p, float c, float d) {
+  float y = max(p.y * d + p.z, 1.0e-6);
+  float e = exp(-y);
+  // 1 - e^2 loses its bits where y is small; its series there is off by 2/15 y^4 < 1e-6.
+  float denominator = y < 0.05 ? 2.0 * y * (1.0 - y * (1.0 - y * (2.0 / 3.0 - y / 3.0))) : 1.0 - e * e;
+  return p.x * 2.0 * e / denominator + p.w * exp(-c * d);
 }
 
-// `farthest`: texels further ahead count as if no light entered there.
-LightTexels lightTexels(ShadowConstants shadow, ShadowReceiver receiver, Incident incident, Surface s, vec3 x, float cosine,
-                        float farthest) {
-  ShadowFootprint footprint = footprintOf(shadow, receiver);
-  vec4 stored = shadowQuad(shadow.meta.x, footprint.low, footprint.high);
-  vec2 row = footprint.part.y < 0.5 ? stored.xy : stored.zw;
-  float nearest = footprint.part.x < 0.5 ? row.x : row.y;
-  // All texels were moved as far as the nearest one, or by the constant alone where that has no surface.
-  DrawnDepth drawn = DrawnDepth(-shadow.offsets.x, 0.5 * shadow.offsets.w);
-  if (shadowHolds(shadow.meta, nearest)) {
-    drawn = drawnDepth(shadow, receiver.texel, nearest);
-    drawn.depth -= nearest;
-  }
-  LightTexels l = LightTexels(vec4(0.0), vec4(0.0), vec4(0.0), texelSideAt(shadow, incident.distanceTo), 0.0);
-  bvec4 counts = bvec4(false);
-  [[unroll]] for (int i = 0; i < 4; ++i) {
-    if (!shadowHolds(shadow.meta, stored[i])) continue;
-    l.held[i] = footprint.weight[i];
-    l.thickness[i] = lightThickness(shadow, receiver, x, incident, stored[i] + drawn.depth) + shadow.offsets.z;
-    counts[i] = l.thickness[i] < farthest;
-    if (drawn.uncertain > 0.0)
-      l.uncertain = max(l.uncertain, drawn.uncertain * lengthPerDepth(shadow, receiver, x, incident, stored[i]));
-  }
-  if (!any(counts)) return l;
-  bvec4 enters = entersMedium(shadow, receiver, footprint, incident, s, x, depthTolerance(l.side, cosine));
-  l.entering = l.held * vec4(enters) * vec4(counts);
-  return l;
+// One term w e^{-d^2 / (2 v)} of d'Eon & Luebke 2007: R(sqrt(r^2 + d^2)) of a Gaussian sum,
+// integrated over the plane.
+vec3 transmittanceGaussian(vec3 weight, vec3 falloff, float d) {
+  return weight * exp(-d * d * falloff);
 }
-
-// x: a point on or behind the surface s; cosine: between its normal and the light; 0: not known.
-LightTexels lightTexels(LightConstants light, Incident incident, Surface s, vec3 x, float cosine, float farthest) {
-  for (uint i = 0u; i < light.meta.z; ++i) {
-    ShadowConstants shadow = shadows[light.meta.y + i];
-    ShadowReceiver receiver = projectReceiver(shadow, x);
-    if (receiver.inside) return lightTexels(shadow, receiver, incident, s, x, cosine, farthest);
-  }
-  return LightTexels(vec4(0.0), vec4(0.0), vec4(0.0), 0.0, 0.0);
-}
-
-// Unit normal of the front or back depths, towards the eye; 0: not known.
-vec3 facetAt(ivec2 pixel, uint material, bool back) {
-  vec4 beside = vec4(distanceOf(pixel + ivec2(1, 0), material, back), distanceOf(pixel - ivec2(1, 0), material, back),
-                     distanceOf(pixel + ivec2(0, 1), material, back), distanceOf(pixel - ivec2(0, 1), material, back));
-  return normalOfDepths(frame.camera, pixel, distanceOf(pixel, material, back), beside);
-}
-
-// Beyond this cosine a face that turns away from the light is not the one that a map stores, whose texels would have to
-// reach around 30 degrees of curvature.
-const float kLeastTurnedCosine = 0.5;
-
-// The least value of texels that count.
-float leastEntering(LightTexels l, vec4 values) {
-  vec4 counted = mix(vec4(3.0e38), values, greaterThan(l.entering, vec4(0.0)));
-  return min(min(counted.x, counted.y), min(counted.z, counted.w));
-}
-
-// True where a texel may store the receiver itself. Depths of pixels are read only where they may decide, here and below.
-bool mayStoreReceiver(LightTexels l) { return leastEntering(l, l.thickness) < 2.0 * (kMostTexels * l.side + l.uncertain); }
-
-// Weights of texels that do not store the receiver itself: there, light lies on it or is blocked, but does not come through.
-// `cosine`: between the normal of the front depths and the light; 0: not known.
-vec4 throughWeights(LightTexels l, float cosine) {
-  float tolerance = (depthTolerance(l.side, cosine) + l.uncertain) * clamp(1.0 + cosine / kLeastTurnedCosine, 0.0, 1.0);
-  return tolerance > 0.0 ? l.entering * clamp(l.thickness / tolerance - 1.0, 0.0, 1.0) : l.entering;
-}
-
-// Part of the texels that let light come to a hidden face, whose map holds it or the face that light leaves by. It fades over
-// one tolerance.
-float litPart(LightTexels l, ivec2 pixel, uint material, vec3 toLight, bool holdsExits) {
-  float tolerance = kMostTexels * l.side;
-  if (leastEntering(l, abs(l.thickness)) <= 2.0 * (tolerance + l.uncertain))
-    tolerance = depthTolerance(l.side, dot(facetAt(pixel, material, true), toLight));
-  tolerance = max(tolerance + l.uncertain, 1.0e-30);
-  return dot(l.entering, clamp((holdsExits ? 0.0 : 2.0) - l.thickness / tolerance, 0.0, 1.0));
-}
-
-// Mean of thicknesses as an exponential has it that halves at the same depth as T. Scene units; 0 without weights.
-float meanThickness(vec4 weight, vec4 thickness, uint m) {
-  float total = dot(weight, vec4(1.0));
-  if (total <= 0.0) return 0.0;
-  float rate = materials[m].inverseReflectance.w * frame.camera.range.w;
-  thickness = max(thickness, 0.0);
-  vec4 counted = mix(vec4(3.0e38), thickness, greaterThan(weight, vec4(0.0)));
-  float least = min(min(counted.x, counted.y), min(counted.z, counted.w));
-  // 0 < sum <= total: the least thickness has a weight above 0. rate > 0: no material's T takes more than 1000 mm to halve.
-  float sum = dot(weight, exp2(rate * min(least - thickness, 0.0)));
-  return least - log2(sum / total) / rate;
-}
-
-// ---- Light through solids
 
 vec3 materialTransmittance(uint m, float d) {
   vec3 t = vec3(0.0);
@@ -176,17 +78,177 @@ vec3 materialTransmittance(uint m, float d) {
   return d <= frame.filterAndLimit.w ? clamp(t, vec3(0.0), vec3(1.0)) * frame.filterAndLimit.rgb : vec3(0.0);
 }
 
+// ---- The four texels of a light's shadow map around a point: how far the light that they store would go through the medium, and
+// which of them let light come there
+
+// Texels of a footprint.
+vec4 shadowTexels(uint image, ShadowFootprint f) {
+  return shadowTexels(image, f.low, ivec2(f.high.x, f.low.y), ivec2(f.low.x, f.high.y), f.high);
+}
+
+// 1 of each texel where light enters the receiver's medium and has not left the medium before the receiver, 0 of others.
+// `material`: the receiver's; `tolerance`: of its own exit.
+vec4 entersMedium(ShadowConstants shadow, ShadowFootprint footprint, StoredRay ray, uint material, float tolerance) {
+  vec4 enters = vec4(1.0);
+  // One loop, as every read has a copy of the switch over images.
+  [[dont_unroll]] for (int i = 0; i < 2; ++i) {
+    uint image = i == 0 ? shadow.occluder.x : shadow.occluder.y; // + 1; 0: none
+    if (image == 0u) continue;
+    vec4 texels = shadowTexels(image - 1u, footprint);
+    [[unroll]] for (int k = 0; k < 4; ++k) {
+      bool left = i == 0 && shadowHolds(shadow.meta, texels[k]) &&
+                  liesBeyondExit(lightThickness(ray, texels[k]), tolerance + shadow.offsets.w * lengthPerDepth(ray, texels[k]));
+      bool other = i == 1 && !casterIsMedium(texels[k], uintBitsToFloat(shadow.occluder.z), material);
+      if (left || other) enters[k] = 0.0;
+    }
+  }
+  return enters;
+}
+
+// `texel`: of the image, which holds `stored`. Neighbors are read for maps with a slope bias alone.
+DrawnDepth drawnDepth(ShadowConstants shadow, ivec2 texel, float stored) {
+  if (shadow.offsets.y == 0.0) return drawnDepth(shadow.offsets, stored, vec4(stored), bvec4(false));
+  ivec2 first = firstTexel(shadow.occluder), last = first + ivec2(shadow.depth.zw) - 1;
+  ivec2 low = max(texel - 1, first), high = min(texel + 1, last);
+  vec4 beside = shadowTexels(shadow.meta.x, ivec2(high.x, texel.y), ivec2(low.x, texel.y), ivec2(texel.x, high.y), ivec2(texel.x, low.y));
+  bvec4 holds = bvec4(high.x > texel.x && shadowHolds(shadow.meta, beside.x), low.x < texel.x && shadowHolds(shadow.meta, beside.y),
+                      high.y > texel.y && shadowHolds(shadow.meta, beside.z), low.y < texel.y && shadowHolds(shadow.meta, beside.w));
+  return drawnDepth(shadow.offsets, stored, beside, holds);
+}
+
+// The four texels around a point in the first of the light's maps that contains it.
+struct LightTexels {
+  vec4 weight;    // bilinear, of texels that have a surface where light enters the medium asked for; 0 of others
+  vec4 thickness; // scene units along the light ray; negative: the surface is beyond the point
+  float side;      // of a texel, scene units
+  float uncertain; // scene units that the thickness may be off by, besides what depthTolerance says
+};
+
+const float kEverywhere = 3.0e38;
+
+float receiverCosine(Surface s, Incident incident) { return s.hasNormal ? dot(s.normal, incident.toLight) : 0.0; }
+
+// `material`: index + 1 of the medium, in which x lies; 0: all surfaces count. `farthest`: texels further ahead have no weight.
+LightTexels lightTexels(ShadowConstants shadow, ShadowReceiver receiver, Incident incident, uint material, vec3 x, float cosine,
+                        float farthest) {
+  ShadowFootprint footprint = footprintOf(shadow, receiver);
+  StoredRay ray = storedRay(shadow, receiver, x, incident);
+  vec4 texels = shadowTexels(shadow.meta.x, footprint);
+  vec2 row = footprint.part.y < 0.5 ? texels.xy : texels.zw;
+  float nearest = footprint.part.x < 0.5 ? row.x : row.y;
+  // All texels were moved as far as the nearest one, or by the constant alone where that has no surface.
+  DrawnDepth drawn = DrawnDepth(-shadow.offsets.x, 0.5 * shadow.offsets.w);
+  if (shadowHolds(shadow.meta, nearest)) {
+    drawn = drawnDepth(shadow, receiver.texel, nearest);
+    drawn.depth -= nearest;
+  }
+  LightTexels l = LightTexels(vec4(0.0), vec4(0.0), texelSideAt(shadow, incident.distanceTo), 0.0);
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    float stored = texels[i];
+    if (!shadowHolds(shadow.meta, stored)) continue;
+    l.thickness[i] = lightThickness(ray, stored + drawn.depth) + shadow.offsets.z;
+    if (l.thickness[i] < farthest) l.weight[i] = footprint.weight[i];
+    l.uncertain = max(l.uncertain, drawn.uncertain * lengthPerDepth(ray, stored));
+  }
+  if (material != 0u && l.weight != vec4(0.0)) l.weight *= entersMedium(shadow, footprint, ray, material, depthTolerance(l.side, cosine));
+  return l;
+}
+
+// x: a point on or behind a surface; cosine: between its normal and the light; 0: not known.
+LightTexels lightTexels(LightConstants light, Incident incident, uint material, vec3 x, float cosine, float farthest) {
+  for (uint i = 0u; i < light.meta.z; ++i) {
+    ShadowConstants shadow = shadows[light.meta.y + i];
+    ShadowReceiver receiver = projectReceiver(shadow, x);
+    if (receiver.inside) return lightTexels(shadow, receiver, incident, material, x, cosine, farthest);
+  }
+  return LightTexels(vec4(0.0), vec4(0.0), 0.0, 0.0);
+}
+
+// Unit normal of the front or back depths, towards the eye; 0: not known.
+vec3 facetAt(ivec2 pixel, uint material, bool back) {
+  vec4 beside;
+  [[dont_unroll]] for (int i = 0; i < 4; ++i) {
+    int side = 1 - 2 * (i & 1);
+    beside[i] = distanceOf(pixel + (i < 2 ? ivec2(side, 0) : ivec2(0, side)), material, back);
+  }
+  return normalOfDepths(frame.camera, pixel, distanceOf(pixel, material, back), beside);
+}
+
+// Beyond this cosine a face that turns away from the light is not the one that a map stores, whose texels would have to
+// reach around 30 degrees of curvature.
+const float kLeastTurnedCosine = 0.5;
+
+// Weights of texels that do not store the receiver itself: there, light lies on it or is blocked, but does not come through.
+// `cosine`: between the normal of the front depths and the light; 0: not known.
+vec4 throughWeights(LightTexels l, float cosine) {
+  float tolerance = (depthTolerance(l.side, cosine) + l.uncertain) * clamp(1.0 + cosine / kLeastTurnedCosine, 0.0, 1.0);
+  return tolerance > 0.0 ? l.weight * clamp(l.thickness / tolerance - 1.0, 0.0, 1.0) : l.weight;
+}
+
+// Part of the texels that let light come to a hidden face, whose map holds it or the face that light leaves by. It fades over
+// one tolerance. `cosine`: between the normal of the back depths and the light; 0: not known.
+float litPart(LightTexels l, float cosine, bool holdsExits) {
+  float tolerance = max(depthTolerance(l.side, cosine) + l.uncertain, 1.0e-30);
+  return dot(l.weight, clamp((holdsExits ? 0.0 : 2.0) - l.thickness / tolerance, 0.0, 1.0));
+}
+
+// Mean of thicknesses as an exponential has it that halves at the same depth as T. Scene units; 0 without weights.
+float meanThickness(vec4 weight, vec4 thickness, uint m) {
+  float total = dot(weight, vec4(1.0));
+  if (total <= 0.0) return 0.0;
+  float rate = materials[m].inverseReflectance.w * frame.camera.range.w;
+  thickness = max(thickness, 0.0);
+  vec4 counted = mix(vec4(3.0e38), thickness, greaterThan(weight, vec4(0.0)));
+  float least = min(min(counted.x, counted.y), min(counted.z, counted.w));
+  // 0 < sum <= total: the least thickness has a weight above 0. rate > 0: no material's T takes more than 1000 mm to halve.
+  float sum = dot(weight, exp2(rate * min(least - thickness, 0.0)));
+  return least - log2(sum / total) / rate;
+}
+
+// ---- Light through solids
+
 struct Transmitted {
   float thickness; // scene units; -1: no light comes through
   vec3 arriving;   // irradiance of the hidden face before occlusion
-  float visible;
+  float visible;   // part that nothing holds back
+  vec3 front;      // irradiance of the visible face, of which a thin body returns less than a half-space does; 0: returns all
 };
 
-// Exitance of what arrives at material m's hidden face. Most pixels face some lights; T is the expensive part.
+const Transmitted kNothingTransmitted = Transmitted(-1.0, vec3(0.0), 0.0, vec3(0.0));
+
+// R(h) / rho of a slab that transmits t: the part of a half-space's reflectance that is left.
+vec3 keptReflectance(uint m, vec3 t) {
+  vec3 kept;
+  for (int c = 0; c < 3; ++c) {
+    vec4 r = materials[m].gather.reflectance[c];
+    kept[c] = clamp(r.x - sqrt(max(r.y * t[c] * t[c] + r.z, 0.0)), 0.0, 1.0);
+  }
+  return kept;
+}
+
+// Exitance of material m, besides what the irradiance image has. Most pixels face some lights; T is the expensive part.
 vec3 exitanceOf(Transmitted t, uint m) {
-  vec3 entering = t.arriving * t.visible;
-  if (!(t.thickness >= 0.0 && max(entering.r, max(entering.g, entering.b)) > 0.0)) return vec3(0.0); // false for NaN
-  return entering * materialTransmittance(m, t.thickness * frame.camera.range.w);
+  vec3 entering = t.arriving * t.visible, any = max(entering, t.front);
+  if (!(isWithin(t.thickness, 0.0, kMostFloat) && max(any.r, max(any.g, any.b)) > 0.0)) return vec3(0.0);
+  vec3 through = materialTransmittance(m, t.thickness * frame.camera.range.w), exitance = entering * through;
+  if (t.front != vec3(0.0)) exitance -= (1.0 - keptReflectance(m, through)) * t.front / materials[m].inverseReflectance.rgb;
+  return exitance;
+}
+
+// ---- Factors that stand for the cosine of the light on the hidden face, which the camera does not see. x is the cosine
+// between the view ray and the direction to the light. See PellucidAngleModel.
+
+// Whelan 2009, 4.4. The clamp keeps rounding from leaving the domain of acos.
+float angleInverseCosine(float x) {
+  const float kTwoOverPi = 0.63661977;
+  return clamp(1.0 - kTwoOverPi * acos(clamp(x, -1.0, 1.0)), 0.0, 1.0);
+}
+
+// A polynomial of the angle between eye and light: Whelan 2009, eqs. 4.4 and 4.5. The outer clamp matters: the
+// quadratic is negative from 96 to 123 degrees.
+float anglePolynomial(vec4 c, float x) {
+  float angle = 3.14159265 - acos(clamp(x, -1.0, 1.0));
+  return x > 0.0 ? clamp(c.x + angle * (c.y + angle * (c.z + angle * c.w)), 0.0, 1.0) : 0.0;
 }
 
 float hiddenCosine(LightConstants light, Surface s, vec3 toLight) {
@@ -197,16 +259,6 @@ float hiddenCosine(LightConstants light, Surface s, vec3 toLight) {
   if (model == PELLUCID_SHADER_ANGLE_INVERSE_COSINE) return angleInverseCosine(x);
   if (model == PELLUCID_SHADER_ANGLE_POLYNOMIAL) return anglePolynomial(frame.anglePolynomial, x);
   return clamp(x, 0.0, 1.0);
-}
-
-// Light along the chord, of a light without shadow maps.
-Transmitted chordTransmission(LightConstants light, Surface s) {
-  if (s.chord < 0.0) return Transmitted(-1.0, vec3(0.0), 0.0);
-  Incident incident = lightAt(light, s.position + s.chord * s.view);
-  // A slab's thickness along its normal, from the chord along the view ray.
-  bool alongNormal = s.hasNormal && !hasFlag(PELLUCID_FLAG_CHORD_THICKNESS);
-  float thickness = alongNormal ? s.chord * abs(dot(s.normal, s.view)) : s.chord;
-  return Transmitted(thickness, incident.irradiance * hiddenCosine(light, s, incident.toLight), 1.0);
 }
 
 // ---- Light through a sheet without thickness, from the face that is not seen
@@ -226,44 +278,83 @@ float unblockedPart(LightConstants light, LightTexels l, float facing) {
   if (light.meta.z == 0u) return 1.0;
   if (l.side <= 0.0) return 0.0; // no map contains the point
   float tolerance = l.side * min(1.0 + kDiagonal * slopeOf(facing), kMostWallTexels) + l.uncertain;
-  return 1.0 - dot(l.held, clamp(l.thickness / tolerance - 1.0, 0.0, 1.0));
+  return 1.0 - dot(l.weight, clamp(l.thickness / tolerance - 1.0, 0.0, 1.0));
 }
 
-// `facet`: normal of the front depths, 0: not known; `cosine`: of the hidden face without it.
-Transmitted wallTransmission(LightConstants light, Incident incident, Surface s, LightTexels l, vec3 facet, float cosine) {
-  bool hasFacet = facet != vec3(0.0);
-  float facing = hasFacet ? dot(facet, incident.toLight) : receiverCosine(s, incident);
-  if (hasFacet && takesDepthsNormal(s)) cosine = max(-facing, 0.0);
-  float behind = clamp(1.0 - facing / kTurnedCosine, 0.0, 1.0);
-  return Transmitted(0.0, incident.irradiance * cosine, behind * unblockedPart(light, l, facing));
+// ---- Light from all around. A thin body sends on what comes from behind, and returns less of what lies on it than a half-space
+// does; docs/integration.md says why both count
+
+// Irradiance of a face, in the units of the irradiance image. `normal`: unit, view space.
+vec3 ambientIrradiance(vec3 normal) {
+  vec4 n = vec4(normal, 1.0);
+  return max(vec3(dot(n, frame.ambient[0] * n), dot(n, frame.ambient[1] * n), dot(n, frame.ambient[2] * n)), vec3(0.0));
+}
+
+vec3 frontNormal(Surface s) { return s.hasNormal ? s.normal : -s.view; }
+
+// Most bodies are thick, whatever their back.
+bool passesAmbient(Surface s) {
+  float least = 0.5 * s.chord * abs(dot(frontNormal(s), s.view)) * frame.camera.range.w;
+  return s.chord >= 0.0 && least <= materials[s.material - 1u].transmittance4.w;
+}
+
+// `facet`: normal of the back depths, towards the eye; 0: not known.
+Transmitted ambientTransmission(Surface s, vec3 facet) {
+  vec3 front = frontNormal(s), back = facet == vec3(0.0) ? -front : -facet;
+  float thickness = 0.5 * s.chord * (abs(dot(front, s.view)) + abs(dot(back, s.view)));
+  // A rim has all of the medium behind it.
+  float opposite = 0.5 - 0.5 * dot(front, back);
+  return Transmitted(thickness, ambientIrradiance(back), opposite, opposite * ambientIrradiance(front));
+}
+
+// ---- Light through any surface
+
+// A slab's thickness along its normal, from the chord along the view ray.
+float chordThickness(Surface s) {
+  bool alongNormal = s.hasNormal && !hasFlag(PELLUCID_FLAG_CHORD_THICKNESS);
+  return alongNormal ? s.chord * abs(dot(s.normal, s.view)) : s.chord;
 }
 
 // docs/integration.md says why each source is what it is. `pixel`: of the surface.
 Transmitted lightTransmission(LightConstants light, Surface s, ivec2 pixel) {
-  bool wall = isThinWalled(s.material);
-  bool holdsExits = light.meta.w != 0u; // which do not say where light enters
-  if (!wall && (light.meta.z == 0u || holdsExits || hasFlag(PELLUCID_FLAG_CAMERA_THICKNESS))) {
-    Transmitted t = chordTransmission(light, s);
-    if (light.meta.z == 0u || t.thickness < 0.0) return t;
-    vec3 back = s.position + s.chord * s.view;
-    Incident incident = lightAt(light, back);
-    LightTexels l = lightTexels(light, incident, s, back, 0.0, kEverywhere);
-    t.visible = litPart(l, pixel, s.material, incident.toLight, holdsExits);
-    return t;
-  }
-  Incident incident = lightAt(light, s.position);
-  float cosine = hiddenCosine(light, s, incident.toLight);
-  vec3 arriving = incident.irradiance * cosine;
+  bool wall = isThinWalled(s.material), mapped = light.meta.z != 0u;
+  bool holdsExits = light.meta.w != 0u, ambient = light.meta.x == PELLUCID_SHADER_LIGHT_AMBIENT;
+  // A sheet's T is the same at any thickness, and its reflectance is its own.
+  if (ambient && wall) return Transmitted(0.0, ambientIrradiance(-frontNormal(s)), 1.0, vec3(0.0));
+  if (ambient && !passesAmbient(s)) return kNothingTransmitted;
+  // Exit depths do not say where light enters. Then the hidden face lies where the chord ends, and the map says alone which light gets there.
+  bool byChord = !wall && (!mapped || holdsExits || hasFlag(PELLUCID_FLAG_CAMERA_THICKNESS));
+  Transmitted t = kNothingTransmitted;
+  if (byChord && s.chord < 0.0) return t;
+  vec3 x = byChord ? s.position + s.chord * s.view : s.position;
+  Incident incident = lightAt(light, x);
+  t.arriving = incident.irradiance * hiddenCosine(light, s, incident.toLight);
+  if (byChord) t = Transmitted(chordThickness(s), t.arriving, 1.0, vec3(0.0));
+  if (byChord && !mapped && !ambient) return t;
   // Most pixels face some lights, whose maps need no reading.
-  if (arriving == vec3(0.0) && !(wall && takesDepthsNormal(s))) return Transmitted(-1.0, arriving, 0.0);
-  // Media do not count where the receiver has none.
-  float farthest = wall ? -kEverywhere : materials[s.material - 1u].transmittance4.w / frame.camera.range.w;
-  LightTexels l = lightTexels(light, incident, s, s.position, receiverCosine(s, incident), farthest);
-  bool byDepths = wall || mayStoreReceiver(l);
-  vec3 facet = byDepths ? facetAt(pixel, s.material, false) : vec3(0.0);
-  if (wall) return wallTransmission(light, incident, s, l, facet, cosine);
-  vec4 weight = byDepths ? throughWeights(l, dot(facet, incident.toLight)) : l.entering;
-  return Transmitted(meanThickness(weight, l.thickness, s.material - 1u), arriving, dot(weight, vec4(1.0)));
+  if (t.arriving == vec3(0.0) && !ambient && !(wall && takesDepthsNormal(s))) return t;
+  float farthest = byChord || wall ? kEverywhere : materials[s.material - 1u].transmittance4.w / frame.camera.range.w;
+  LightTexels l = LightTexels(vec4(0.0), vec4(0.0), 0.0, 0.0);
+  if (!ambient) l = lightTexels(light, incident, wall ? 0u : s.material, x, byChord ? 0.0 : receiverCosine(s, incident), farthest);
+  // Depths of pixels are read only where they may decide: where a texel may store the receiver itself.
+  vec4 apart = mix(vec4(kEverywhere), byChord ? abs(l.thickness) : l.thickness, greaterThan(l.weight, vec4(0.0)));
+  bool byDepths = ambient || wall || min(min(apart.x, apart.y), min(apart.z, apart.w)) < 2.0 * (kMostTexels * l.side + l.uncertain);
+  vec3 facet = byDepths ? facetAt(pixel, s.material, byChord) : vec3(0.0);
+  if (ambient) return ambientTransmission(s, facet);
+  float facing = dot(facet, incident.toLight);
+  if (wall) {
+    if (facet == vec3(0.0)) facing = receiverCosine(s, incident);
+    else if (takesDepthsNormal(s)) t.arriving = incident.irradiance * max(-facing, 0.0);
+    t.thickness = 0.0;
+    t.visible = clamp(1.0 - facing / kTurnedCosine, 0.0, 1.0) * unblockedPart(light, l, facing);
+  } else if (byChord) {
+    t.visible = litPart(l, facing, holdsExits);
+  } else {
+    vec4 weight = throughWeights(l, facing);
+    t.thickness = meanThickness(weight, l.thickness, s.material - 1u);
+    t.visible = dot(weight, vec4(1.0));
+  }
+  return t;
 }
 
 #endif

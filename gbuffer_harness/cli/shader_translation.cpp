@@ -18,7 +18,7 @@ using spirv_cross::Resource;
 
 // Names by the id of a specialization constant; the shaders hold none.
 constexpr std::pair<uint32_t, const char*> kConstantNames[] = {
-    {0, "debugViews"}, {4, "normalEncoding"}, {5, "sharers"}, {6, "lightTables"}};
+    {0, "debugViews"}, {4, "normalEncoding"}, {5, "lightTables"}};
 
 // Names of what pipelines bind, as in the sources of the shaders: the first row of the binding whose pipeline
 // begins a name holds.
@@ -105,12 +105,9 @@ Json specialize(Compiler& compiler, const PipelineShader& pipeline) {
 }
 
 Json workgroupSize(const Compiler& compiler) {
-  spirv_cross::SpecializationConstant constants[3];
-  compiler.get_work_group_size_specialization_constants(constants[0], constants[1], constants[2]);
   Json size = Json::array();
   for (uint32_t i = 0; i < 3; ++i)
-    size.push_back(constants[i].id ? compiler.get_constant(constants[i].id).scalar()
-                                   : compiler.get_execution_mode_argument(spv::ExecutionModeLocalSize, i));
+    size.push_back(compiler.get_execution_mode_argument(spv::ExecutionModeLocalSize, i));
   return size;
 }
 

@@ -35,7 +35,7 @@ Image composited(const Capture& capture, VkFormat format) {
 }
 
 Image coveredTiles(int width, int height, const std::vector<std::uint8_t>& material) {
-  constexpr int kTile = PELLUCID_TILE;
+  constexpr int kTile = 16;  // pixels: fine enough for an outline, coarse enough to read
   Image result(width, height, 1);
   for (int top = 0; top < height; top += kTile)
     for (int left = 0; left < width; left += kTile) {

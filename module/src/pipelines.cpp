@@ -26,7 +26,6 @@ constexpr PipelineDesc desc(const char* name, const uint32_t (&words)[N], uint32
 }
 
 constexpr PellucidSpecialization kDebugViews{PELLUCID_CONSTANT_DEBUG_VIEWS, 1};
-constexpr PellucidSpecialization kShared{PELLUCID_CONSTANT_SHARERS, 2};
 
 constexpr uint32_t kGather = PELLUCID_USE_GATHER, kDiffusion = PELLUCID_USE_DIFFUSION;
 
@@ -42,7 +41,6 @@ const std::array<PipelineDesc, kPipelineCount> kPipelines = {
     desc("diffuse", kDiffuse, kDiffusion),
     desc("entry_points", kEntryPoints, kGather),
     desc("probes", kProbes, kGather),
-    desc("probes_shared", kProbes, kGather, kShared),
     desc("filter_probes", kFilterProbes, kGather)};
 
 }  // namespace

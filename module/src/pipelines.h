@@ -21,7 +21,6 @@ enum class Pipeline : uint32_t {
   Diffuse,
   EntryPoints,
   Probes,
-  ProbesShared,  // two invocations each, for two lights and more
   FilterProbes,
   Count
 };

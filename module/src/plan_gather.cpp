@@ -53,7 +53,7 @@ void addEntryPoints(PlanBuilder& b, const LightGroup& group) {
 
 void addProbes(PlanBuilder& b, const LightGroup& group, bool adds) {
   const FrameFacts& f = b.facts;
-  PellucidDispatch* d = b.dispatch("probes", group.gathered > 1 ? Pipeline::ProbesShared : Pipeline::Probes);
+  PellucidDispatch* d = b.dispatch("probes", Pipeline::Probes);
   const Cells cells(f);
   b.byBlock(d, PELLUCID_LIST_PROBES, partsOfBlock(f, PELLUCID_PROBES_GROUP));
   d->pushConstants[0] = f.gatherSpacing;

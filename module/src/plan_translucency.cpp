@@ -8,7 +8,6 @@ namespace {
 void addLights(PlanBuilder& b, PellucidDispatch* d, const LightGroup& group, uint32_t source,
                uint32_t destination) {
   const FrameFacts& f = b.facts;
-  b.groups(d, f.rect.width, f.rect.height, PELLUCID_TILE);
   d->pushConstants[1] = group.lightCount;
   d->pushConstants[2] = destination == PELLUCID_RESOURCE_OUTPUT;
   b.common(d, source, destination);

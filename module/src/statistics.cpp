@@ -53,7 +53,6 @@ void count(const PellucidDispatch& d, const PellucidGroups& groups, PellucidStat
       add(&s->entryPoints, groups);
       break;
     case Pipeline::Probes:
-    case Pipeline::ProbesShared:
       add(&s->probes, groups);
       break;
     default:

@@ -7,7 +7,6 @@
 #extension GL_GOOGLE_include_directive : require
 #include "draw.glsl"
 #include "frame/gbuffer_decode.glsl"
-#include "lib/rect.glsl"
 #include "lib/surface.glsl"
 #include "shared/pellucid_shared.h"
 
@@ -35,11 +34,13 @@ layout(set = 0, binding = PLANNED_BINDINGS + PELLUCID_BINDING_MATERIAL) uniform 
 vec2 slope; // of the device depth of the triangle that is drawn, which is affine over pixels
 
 float distanceOf(ivec2 pixel, uint material, bool back) {
-  if (!contains(ivec4(frame.rect), pixel) || decodeMaterial(texelFetch(materialImage, pixel, 0)) != material) return -1.0;
+  bool inside = all(greaterThanEqual(pixel, ivec2(frame.rect.xy))) && all(lessThan(pixel, ivec2(frame.rect.zw)));
+  if (!inside || decodeMaterial(texelFetch(materialImage, pixel, 0)) != material) return -1.0;
   vec2 steps = vec2(pixel) + 0.5 - gl_FragCoord.xy;
   return planarDistance(frame.camera, back ? gl_FragCoord.z + dot(slope, steps) : texelFetch(earlierDepth, pixel, 0).r);
 }
 
+#define PELLUCID_OWN_INPUTS
 #include "translucency/transmission.glsl"
 
 void main() {

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "../../common/shaders/srgb.glsl"
 #include "frame.glsl"
-#include "lib/octahedral.glsl"
+#include "lib/packing.glsl"
 
 layout(set = 0, binding = 1) uniform sampler2D baseColorTexture;
 layout(set = 0, binding = 2) uniform sampler2D normalMap; // vectors

@@ -2,7 +2,7 @@
 // All lights at once: irradiance for Pellucid, and the color of everything else.
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"
-#include "lib/octahedral.glsl"
+#include "lib/packing.glsl"
 
 layout(set = 0, binding = 1) uniform sampler2D normalImage;
 layout(set = 0, binding = 2) uniform sampler2D albedoImage;

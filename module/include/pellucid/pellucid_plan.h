@@ -107,7 +107,7 @@ typedef struct PellucidShader {
 
 /* Ids of the specialization constants of all shaders that hold PellucidContextDesc::normalEncoding and lightTables, which are
  * not among PellucidShader::constants. */
-enum { PELLUCID_SPECIALIZATION_NORMALS = 4, PELLUCID_SPECIALIZATION_LIGHT_TABLES = 6 };
+enum { PELLUCID_SPECIALIZATION_NORMALS = 4, PELLUCID_SPECIALIZATION_LIGHT_TABLES = 5 };
 
 /* The constants that pellucidRecordPlan would write, and what each pipeline is made of; shadowViewType as in
  * PellucidContextDesc. */
