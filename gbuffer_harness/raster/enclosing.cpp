@@ -1,23 +1,12 @@
 #include "raster/enclosing.h"
 
-#include <cmath>
 #include <map>
-#include <numbers>
 
 #include "common/error.h"
+#include "raster/places.h"
 #include "scene/vector.h"
 
 namespace pellucid::harness {
-namespace {
-
-// Van Oosterom & Strackee 1983, "The solid angle of a plane triangle". a, b, c: from the point.
-double solidAngle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
-  const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
-  const double divisor = la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb;
-  return 2 * std::atan2(glm::dot(a, glm::cross(b, c)), divisor);
-}
-
-}  // namespace
 
 std::optional<std::string> enclosingBody(const Model& model, const std::array<double, 3>& point) {
   struct Body {
@@ -38,11 +27,7 @@ std::optional<std::string> enclosingBody(const Model& model, const std::array<do
       body.angle += solidAngle(corner(i), corner(i + 1), corner(i + 2));
   }
   for (const auto& [object, body] : bodies) {
-    // A closed surface spans 4 pi from each point inside and 0 from outside or from a hollow. A bowl spans up
-    // to half of it where nothing encloses a point; the eighth that may be missing is that of meshes with
-    // small holes.
-    constexpr double kLeast = 0.875 * 4 * std::numbers::pi;
-    if (body.surface && body.angle > kLeast) return body.surface;
+    if (body.surface && body.angle > kEnclosed) return body.surface;
   }
   return std::nullopt;
 }
