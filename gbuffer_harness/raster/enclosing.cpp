@@ -1,6 +1,8 @@
 #include "raster/enclosing.h"
 
+#include <limits>
 #include <map>
+#include <set>
 
 #include "common/error.h"
 #include "raster/places.h"
@@ -30,6 +32,46 @@ std::optional<std::string> enclosingBody(const Model& model, const std::array<do
     if (body.surface && body.angle > kEnclosed) return body.surface;
   }
   return std::nullopt;
+}
+
+std::vector<std::string> opaqueInside(const Model& model) {
+  struct Shell {
+    glm::dvec3 low = glm::dvec3(std::numeric_limits<double>::infinity()), high = -low;
+    std::vector<const Part*> parts;
+  };
+  const auto position = [&](std::uint32_t index) {
+    const std::array<float, 3>& p = model.vertices[model.indices[index]].position;
+    return glm::dvec3(p[0], p[1], p[2]);
+  };
+  std::map<std::uint32_t, Shell> shells;
+  for (const Part& part : model.parts) {
+    if (model.surfaces[part.surface].material == 0) continue;
+    Shell& shell = shells[part.object];
+    shell.parts.push_back(&part);
+    for (std::uint32_t i = part.firstIndex; i < part.firstIndex + part.indexCount; ++i) {
+      shell.low = glm::min(shell.low, position(i));
+      shell.high = glm::max(shell.high, position(i));
+    }
+  }
+  std::set<std::string> sentences;
+  for (const Part& part : model.parts) {
+    const Surface& opaque = model.surfaces[part.surface];
+    if (opaque.material != 0 || part.indexCount == 0) continue;
+    const glm::dvec3 from = position(part.firstIndex);
+    for (const auto& [object, shell] : shells) {
+      if (!glm::all(glm::lessThan(shell.low, from)) || !glm::all(glm::lessThan(from, shell.high))) continue;
+      double angle = 0;
+      for (const Part* around : shell.parts)
+        for (std::uint32_t i = around->firstIndex; i < around->firstIndex + around->indexCount; i += 3)
+          angle += solidAngle(position(i) - from, position(i + 1) - from, position(i + 2) - from);
+      if (angle > kEnclosed)
+        sentences.insert("opaque \"" + opaque.name + "\" lies inside \"" +
+                         model.surfaces[shell.parts.front()->surface].name +
+                         "\": its edges let too much light around it, up to a twelfth of what comes through "
+                         "without it; `pellucid truth` has the right light");
+    }
+  }
+  return {sentences.begin(), sentences.end()};
 }
 
 void refuseEnclosedLights(const Model& model) {
