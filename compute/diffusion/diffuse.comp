@@ -172,7 +172,7 @@ struct Around {
 };
 
 // `from`: the pixel from the center of its texel, pixels; `center`: that texel in the window.
-Around aroundPixel(int center, vec2 from, float depth, uint material, vec2 size) {
+Around aroundPixel(int center, vec2 from, float depth, uint material, vec2 size, vec2 ray) {
   Around a = Around(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec2(0.0));
   vec3 splineX = spline(0.25 * from.x), splineY = spline(0.25 * from.y);
   float weights = 0.0;
@@ -180,8 +180,8 @@ Around aroundPixel(int center, vec2 from, float depth, uint material, vec2 size)
     ivec2 at = ivec2(i % 3, i / 3) - 1;
     int index = center + at.y * kWindowX + at.x;
     Texel t = unpackTexel(upsampled[index]);
-    float along = dot(t.slope, (from - 4.0 * vec2(at)) * size);
-    float w = tangentPlaneWeight(depth - t.depth - along, along, spreads[index], kPixelFalloff);
+    vec2 x = (from - 4.0 * vec2(at)) * size;
+    float w = tangentPlaneWeight(tangentPlane(t.slope, ray, spreads[index]), depth - t.depth - dot(t.slope, x), x, kPixelFalloff);
     w *= (at.y < 0 ? splineY.x : at.y > 0 ? splineY.z : splineY.y) * (at.x < 0 ? splineX.x : at.x > 0 ? splineX.z : splineX.y);
     w = t.area != 0.0 && t.material == material ? w : 0.0;
     vec3 coverage = w * (1.0 / kCoverageOne) * unpackCoverage(shares[index].w);
@@ -203,18 +203,18 @@ Around aroundPixel(int center, vec2 from, float depth, uint material, vec2 size)
 
 // The fine filter of a pixel on a surface of that slope; w: the part of its weight that lies on the surface. `place`: of the pixel
 // in colors[].
-vec4 fineOfEdge(int place, vec2 slope, vec2 size) {
+vec4 fineOfEdge(int place, vec2 slope, vec2 size, vec2 ray) {
   uint material = surfaces[place].y;
   float own = depthAt(place);
-  vec2 depthStep = slope * size;
-  float spread2 = inverseSpread(slope, 2.0 * size);
+  TangentPlane plane = tangentPlane(slope, ray, inverseSpread(slope, ray, 2.0 * size));
   vec4 fine = vec4(0.0);
   [[dont_unroll]] for (int y = -2; y <= 2; ++y)
     // A row has no branch, so that latencies overlap.
     [[unroll]] for (int x = -2; x <= 2; ++x) {
       int at = place + y * kColumns + x;
-      float theirs = depthAt(at), along = dot(depthStep, vec2(x, y));
-      float w = tangentPlaneWeight(theirs - own - along, along, spread2, kPixelFalloff) * fineWeight(x) * fineWeight(y);
+      vec2 step = vec2(x, y) * size;
+      float theirs = depthAt(at);
+      float w = tangentPlaneWeight(plane, theirs - own - dot(slope, step), step, kPixelFalloff) * fineWeight(x) * fineWeight(y);
       bool counts = surfaces[at].y == material && theirs > 0.0;
       fine += (counts ? w : 0.0) * vec4(unpackHalves(colors[at]), 1.0);
     }
@@ -229,9 +229,9 @@ void diffuseEdge(ivec2 first, ivec2 local) {
   float depth = depthAt(place);
   vec3 own = unpackHalves(colors[place]), color = own;
   if (depth > 0.0) {
-    vec2 size = texelSize(depth, 0u);
-    Around a = aroundPixel((local.y / 4 + 1) * kWindowX + local.x / 4 + 1, vec2(local & 3) - 1.5, depth, material, size);
-    vec4 fine = fineOfEdge(place, a.slope, size);
+    vec2 size = texelSize(depth, 0u), ray = facingRayAt(vec2(pixel));
+    Around a = aroundPixel((local.y / 4 + 1) * kWindowX + local.x / 4 + 1, vec2(local & 3) - 1.5, depth, material, size, ray);
+    vec4 fine = fineOfEdge(place, a.slope, size, ray);
     // Kernel coverage weights the shares. The pixel itself counts in the first and the second, so the divisor is 0 only where
     // the coarser levels have all of the share and none of it is there.
     vec3 rest = 1.0 - a.share, fineShare = rest * a.fine, ownShare = rest - fineShare;
@@ -282,7 +282,7 @@ void diffuse(ivec2 first) {
   if (inWindow.y < kWindowY) {
     upsampled[invocation] = bits;
     shares[invocation] = texelShares;
-    spreads[invocation] = inverseSpread(unpackHalf2x16(bits.w), texelSize(uintBitsToFloat(bits.z), 2u));
+    spreads[invocation] = inverseSpread(unpackHalf2x16(bits.w), facingRayAt(pixelOf(2u, texel)), texelSize(uintBitsToFloat(bits.z), 2u));
     ivec2 inside = inWindow - 1;
     if (contains(ivec4(0, 0, kTexelsX, kTexelsY), inside) && contains(touched, (first >> 2) + inside) && bits.y >> 16 != 0u && !isPlane(bits))
       edges[atomicAdd(edgeCount, 1u)] = uint(inside.x | inside.y << 8);

@@ -88,7 +88,7 @@ float depthStep(int first, int stride, Source center, ivec2 at, ivec2 direction)
 }
 
 // Texel from 4 x 4 texels that are not one plane.
-uvec4 downsampledEdge(uint finer, int first, int stride) {
+uvec4 downsampledEdge(uint finer, int first, int stride, vec2 ray) {
   int chosen = surfaceOf(first, stride);
   if (chosen < 0) {
     uint orphans = 0u;
@@ -101,7 +101,7 @@ uvec4 downsampledEdge(uint finer, int first, int stride) {
   vec2 size = texelSize(surface.depth, finer);
   vec2 slope = vec2(depthStep(first, stride, surface, nearest, ivec2(1, 0)),
                     depthStep(first, stride, surface, nearest, ivec2(0, 1))) / max(size, vec2(1.0e-30));
-  float spread2 = inverseSpread(slope, 2.0 * size);
+  TangentPlane plane = tangentPlane(slope, ray, inverseSpread(slope, ray, 2.0 * size));
   vec3 color = vec3(0.0);
   float area = 0.0, weights = 0.0, off = 0.0;
   vec2 tilt = vec2(0.0), spread = vec2(0.0);
@@ -115,7 +115,7 @@ uvec4 downsampledEdge(uint finer, int first, int stride) {
       vec2 offset = (vec2(at) - 1.5) * size;
       float difference = t.depth - surface.depth - dot(slope, vec2(at - nearest) * size);
       float w = weight(at.x) * weight(at.y);
-      w = counts ? w * tangentPlaneWeight(difference, dot(slope, offset), spread2, kDownsampleFalloff) : 0.0;
+      w = counts ? w * tangentPlaneWeight(plane, difference, offset, kDownsampleFalloff) : 0.0;
       color += w * t.area * unpackHalves(colors[index]);
       area += w * t.area;
       // A surface that is seen edge-on says no more about its depth than elsewhere.
@@ -154,18 +154,18 @@ uvec4 downsampled(uint finer, ivec2 texel, int first, int stride) {
   // The plane of least squares: its slope is the covariance over the filter's variance.
   vec2 size = texelSize(base, finer), rise = tilt / PELLUCID_DOWNSAMPLE_VARIANCE;
   float residual = square - off * off - dot(tilt, rise);
-  vec2 slope = rise / max(size, vec2(1.0e-30));
+  vec2 slope = rise / max(size, vec2(1.0e-30)), ray = facingRayAt(pixelOf(finer + 1u, texel));
   bool plane = (different & kSamePlane) == 0u && (bits & kPlane) != 0u &&
-               residual * inverseSpread(slope, 2.0 * size) < kPlaneResidual;
+               residual * inverseSpread(slope, ray, 2.0 * size) < kPlaneResidual;
   uvec4 result = packTexel(Texel(color, areaOf(finer + 1u, texel, slope), bits >> 24, base + off, slope), kPlane);
   // Empty texels are too rare for a branch of their own.
-  if (!plane) result = (bits | different) >> 16 == 0u ? uvec4(0u) : downsampledEdge(finer, first, stride);
+  if (!plane) result = (bits | different) >> 16 == 0u ? uvec4(0u) : downsampledEdge(finer, first, stride, ray);
   return result;
 }
 
 // True where a texel and all around it are full and lie on one plane. `at`: the texel in colors[] and depths[] of `width`
 // columns, not in the outermost rows and columns.
-bool isFlatAround(uvec4 bits, ivec2 at, int width, uint level) {
+bool isFlatAround(uvec4 bits, ivec2 at, int width, uint level, vec2 ray) {
   float depth = uintBitsToFloat(bits.z), most = 0.0;
   vec2 size = texelSize(depth, level), slope = unpackHalf2x16(bits.w);
   uint different = 0u;
@@ -176,7 +176,7 @@ bool isFlatAround(uvec4 bits, ivec2 at, int width, uint level) {
       most = max(most, abs(depths[index] - depth - dot(slope, vec2(x, y) * size)));
       different |= colors[index].y ^ bits.y;
     }
-  return isPlane(bits) && (different & kSamePlane) == 0u && most * most < kPlaneOffset / inverseSpread(slope, size);
+  return isPlane(bits) && (different & kSamePlane) == 0u && most * most < kPlaneOffset / inverseSpread(slope, ray, size);
 }
 
 // The i-th place in the part of the first level: the inner ones first, row by row, which are what the group writes.
@@ -226,7 +226,7 @@ void main() {
   barrier();
   ivec2 at = placeInFirst(invocation); // one of the inner ones
   if (contains(levelRect(finer + 1u), start + at)) {
-    if (finer == 1u && isFlatAround(bits[0], at, kFirst, 2u)) bits[0].x |= kFlat;
+    if (finer == 1u && isFlatAround(bits[0], at, kFirst, 2u, facingRayAt(pixelOf(2u, start + at)))) bits[0].x |= kFlat;
     writeLevel(finer + 1u, start + at, bits[0]);
   }
   at = ivec2(invocation % kSecond, invocation / kSecond);

@@ -87,18 +87,40 @@ vec2 texelSize(float p, uint level) {
   return pixelSize(frame.camera, p) * (exp2(float(level)) / frame.camera.range.w);
 }
 
-// 1 / s^2 for tangentPlaneWeight: s is the longest side of a texel of facing sides `size` on a surface of that slope.
-float inverseSpread(vec2 slope, vec2 size) {
-  // Sides are positive in front of the eye; the floor keeps their product normal.
-  return 1.0 / max((1.0 + dot(slope, slope)) * size.x * size.y, 1.0e-30);
+// Along pixels' columns and rows: what the view ray of a pixel is off from facing, per depth. 0 in the middle of a symmetric camera.
+vec2 facingRayAt(vec2 pixel) {
+  return frame.facingRay[0].xy + pixel.x * frame.facingRay[0].zw + pixel.y * frame.facingRay[1].xy;
 }
 
-// Tangent-plane weight of what lies `off` in depth from a texel's tangent plane and, on that plane, `along` in depth from
-// the texel's center. With d = along + off, the squared distance differs by d^2 - along^2 = off (off + 2 along). The two
-// terms have factors of their own, x and y of `falloff`: the first says how far a kernel bridges gaps, the second how it
-// shifts on curved surfaces, where filters of few taps shift less than Gaussians.
-float tangentPlaneWeight(float off, float along, float inverseSpread2, vec2 falloff) {
-  float rest = clamp(1.0 - off * (falloff.x * off + falloff.y * along) * inverseSpread2, 0.0, 1.4);
+// A surface's tangent plane, as a view ray meets it. For a step x at one depth, the plane's point lies dot(x, along) / sqrt(ray2)
+// along the ray.
+struct TangentPlane {
+  vec2 along;
+  float ray2;     // squared length of the ray per depth, 1 in the middle of a symmetric camera
+  float inverse2; // 1 / s^2, s the longest side of a texel on the plane
+};
+
+// 1 / s^2 of a texel of facing sides `size`. `ray`: of facingRayAt.
+float inverseSpread(vec2 slope, vec2 ray, vec2 size) {
+  // The larger eigenvalue of the first fundamental form of unit steps at one depth.
+  float facing = 1.0 + dot(slope, ray), middle = facing + 0.5 * dot(slope, slope) * (1.0 + dot(ray, ray));
+  float squaredArea = dot(slope, slope) + facing * facing;
+  float longest2 = middle + sqrt(max(middle * middle - squaredArea, 0.0));
+  // Sides are positive in front of the eye; the floor keeps their product normal.
+  return 1.0 / max(longest2 * size.x * size.y, 1.0e-30);
+}
+
+TangentPlane tangentPlane(vec2 slope, vec2 ray, float inverse2) {
+  float ray2 = 1.0 + dot(ray, ray);
+  return TangentPlane(ray2 * slope + ray, ray2, inverse2);
+}
+
+// Weight of what lies `off` in depth from a tangent plane whose point there is the step `x` away. With o and a their lengths along
+// the ray, the squared distance differs by (a + o)^2 - a^2 = o (o + 2 a). The two terms have factors of their own, x and y of
+// `falloff`: the first says how far a kernel bridges gaps, the second how it shifts on curved surfaces, where filters of few
+// taps shift less than Gaussians.
+float tangentPlaneWeight(TangentPlane plane, float off, vec2 x, vec2 falloff) {
+  float rest = clamp(1.0 - off * (falloff.x * plane.ray2 * off + falloff.y * dot(plane.along, x)) * plane.inverse2, 0.0, 1.4);
   return rest * rest;
 }
 
@@ -115,9 +137,7 @@ vec2 pixelOf(uint level, ivec2 texel) { return (vec2(texel) + 0.5) * exp2(float(
 
 // Projected-area weight of a texel: the normal is (-slope, 1 + slope . ray) of a pixel's columns, its rows and the depth.
 float areaOf(uint level, ivec2 texel, vec2 slope) {
-  vec2 pixel = pixelOf(level, texel);
-  vec2 ray = frame.facingRay[0].xy + pixel.x * frame.facingRay[0].zw + pixel.y * frame.facingRay[1].xy;
-  float facing = 1.0 + dot(slope, ray);
+  float facing = 1.0 + dot(slope, facingRayAt(pixelOf(level, texel)));
   return min(sqrt(dot(slope, slope) + facing * facing), kMostArea);
 }
 

@@ -62,7 +62,8 @@ vec4 stretched(ivec2 texel, uint level, Texel own, Foreshortening f) {
   if (own.area == 0.0 || variance < 0.02) return sum;
   float weights = 1.0;
   vec2 size = texelSize(own.depth, level);
-  float spread2 = inverseSpread(own.slope, size);
+  vec2 ray = facingRayAt(pixelOf(level, texel));
+  TangentPlane plane = tangentPlane(own.slope, ray, inverseSpread(own.slope, ray, size));
   // The weight of the next texels. A narrow Gaussian at texels' centers alone has next to none of its variance; two taps
   // beside one have all of it, up to where both are alike.
   float next = max(exp(-0.5 / variance), min(0.5 * variance / (1.0 - min(variance, 0.5)), 0.17));
@@ -80,8 +81,8 @@ vec4 stretched(ivec2 texel, uint level, Texel own, Foreshortening f) {
     }
     [[unroll]] for (int side = 0; side < 2; ++side) {
       Texel t = unpackTexel(bits[side]);
-      float along = dot(own.slope, vec2((1 - 2 * side) * offset) * size);
-      float w = weight * t.area * tangentPlaneWeight(t.depth - own.depth - along, along, spread2, kStretchFalloff);
+      vec2 x = vec2((1 - 2 * side) * offset) * size;
+      float w = weight * t.area * tangentPlaneWeight(plane, t.depth - own.depth - dot(own.slope, x), x, kStretchFalloff);
       sum += (t.area != 0.0 && t.material == own.material ? w : 0.0) * vec4(t.color, 1.0);
     }
   }
@@ -129,15 +130,15 @@ Level withCoarser(Own own, uint level, ivec2 texel, Window window) {
   const float kNear = PELLUCID_REFINEMENT_NEAR, kFar = PELLUCID_REFINEMENT_FAR;
   ivec2 nearest = texel >> 1, toward = 2 * (texel & 1) - 1;
   vec2 size = texelSize(own.texel.depth, level + 1u);
-  float spread2 = inverseSpread(own.texel.slope, size);
+  vec2 slope = own.texel.slope, ray = facingRayAt(pixelOf(level, texel));
+  TangentPlane plane = tangentPlane(slope, ray, inverseSpread(slope, ray, size));
   vec3 coarser = vec3(0.0), found = vec3(0.0);
   [[unroll]] for (int i = 0; i < 4; ++i) {
     ivec2 at = nearest + toward * ivec2(i & 1, i >> 1);
     uvec4 theirs = upsampled[indexOf(window, at)];
-    vec2 off = vec2(at) + 0.5 - 0.5 * (vec2(texel) + 0.5);
+    vec2 x = (vec2(at) + 0.5 - 0.5 * (vec2(texel) + 0.5)) * size;
     float w = (i == 0 ? kNear * kNear : i == 3 ? kFar * kFar : kNear * kFar) / kCoverageOne;
-    float along = dot(own.texel.slope, off * size);
-    w *= tangentPlaneWeight(uintBitsToFloat(theirs.z) - own.texel.depth - along, along, spread2, kUpsampleFalloff);
+    w *= tangentPlaneWeight(plane, uintBitsToFloat(theirs.z) - own.texel.depth - dot(slope, x), x, kUpsampleFalloff);
     w = materialBits(theirs) == own.texel.material ? w : 0.0;
     vec3 coverage = w * unpackCoverage(theirs.w);
     coarser += coverage * unpackHalves(theirs.xy);

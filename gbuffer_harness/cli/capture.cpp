@@ -19,6 +19,7 @@
 #include "common/error.h"
 #include "common/progress.h"
 #include "common/whole_file.h"
+#include "raster/enclosing.h"
 #include "raster/framing.h"
 #include "scene/scene.h"
 #include "scene/turn.h"
@@ -114,6 +115,8 @@ void captureGltf(const Options& options) {
   std::vector<double> angles = {0};
   for (int i = 1; i < turns; ++i) angles.push_back(2 * std::numbers::pi * i / turns);
   CaptureModel scene = captureModel(options.scene, angles);
+  separateBodies(scene);
+  for (std::string& sentence : opaqueInside(scene.model)) scene.warnings.push_back(std::move(sentence));
   say(scene);
   requireTranslucent(scene);
 

@@ -12,6 +12,7 @@
 #include "cli/light_option.h"
 #include "cli/numbers.h"
 #include "common/error.h"
+#include "raster/bodies.h"
 #include "raster/close_mesh.h"
 #include "raster/framing.h"
 
@@ -305,6 +306,20 @@ void warn(const std::vector<std::string>& warnings) {
 void say(const CaptureModel& model) {
   for (const std::string& note : model.notes) std::fprintf(stderr, "note: %s\n", note.c_str());
   warn(model.warnings);
+}
+
+void separateBodies(CaptureModel& model) {
+  std::vector<double> reach;
+  for (std::size_t i = 0; i < model.model.materials.size(); ++i) {
+    const PellucidMaterial compiled = compileMaterial(
+        model.model.materials[i], model.model.name + ": materials[" + std::to_string(i) + "]");
+    reach.push_back(static_cast<double>(*std::max_element(compiled.radius, compiled.radius + 3)));
+  }
+  const BodySeparation separated = separateBodies(model.model, reach);
+  if (separated.added > 0)
+    model.notes.push_back(
+        "of " + std::to_string(separated.bodies) + " bodies some of one medium are near each other: " +
+        std::to_string(separated.added) + " more materials keep light from crossing the air between them");
 }
 
 void requireTranslucent(const CaptureModel& model) {

@@ -60,6 +60,9 @@ void warn(const std::vector<std::string>& warnings);
 // Prints notes and warnings on stderr.
 void say(const CaptureModel& model);
 
+// raster/bodies.h, with a note. Throws InputError.
+void separateBodies(CaptureModel& model);
+
 // Throws InputError, which names --material, for a model without a translucent material: its capture would
 // have none.
 void requireTranslucent(const CaptureModel& model);

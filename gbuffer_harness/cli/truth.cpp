@@ -84,6 +84,7 @@ void makeTranslucent(Model& model, bool close) {
 Scene modelScene(const Options& options, SceneHash& hash) {
   CaptureModel model = captureModel(options.scene);
   if (options.like.empty()) {
+    separateBodies(model);
     say(model);
     requireTranslucent(model);
   } else {
@@ -104,6 +105,7 @@ Scene modelScene(const Options& options, SceneHash& hash) {
   Scene scene;
   if (!options.like.empty()) {
     scene.capture = readCapture(options.like);
+    if (scene.capture.materials.size() > model.model.materials.size()) separateBodies(model);
     scaleTo(scene.capture.metersPerUnit, model.model);
     hash.add(model.model);
     scene.traced = reference::makeMeshScene(model.model);

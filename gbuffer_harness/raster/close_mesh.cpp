@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "raster/places.h"
 #include "scene/vector.h"
 
 namespace pellucid::harness {
@@ -35,18 +36,6 @@ struct ObjectEdges {
   std::vector<std::vector<LooseEdge>> loops;
   std::size_t loose = 0;  // edges on no loop
 };
-
-// One number for all vertices at one position, so that seams of texture coordinates do not cut a mesh.
-std::vector<std::uint32_t> placesOf(const Model& model) {
-  std::map<std::array<float, 3>, std::uint32_t> numbers;
-  std::vector<std::uint32_t> places;
-  for (const Vertex& vertex : model.vertices) {
-    std::array<float, 3> position = vertex.position;
-    for (float& x : position) x += 0.0f;  // -0 is 0
-    places.push_back(numbers.emplace(position, static_cast<std::uint32_t>(numbers.size())).first->second);
-  }
-  return places;
-}
 
 // Follows loose edges from one to the next until they come back.
 void findLoops(std::vector<LooseEdge> edges, ObjectEdges& result) {

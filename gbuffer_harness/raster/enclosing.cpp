@@ -1,23 +1,14 @@
 #include "raster/enclosing.h"
 
-#include <cmath>
+#include <limits>
 #include <map>
-#include <numbers>
+#include <set>
 
 #include "common/error.h"
+#include "raster/places.h"
 #include "scene/vector.h"
 
 namespace pellucid::harness {
-namespace {
-
-// Van Oosterom & Strackee 1983, "The solid angle of a plane triangle". a, b, c: from the point.
-double solidAngle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
-  const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
-  const double divisor = la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb;
-  return 2 * std::atan2(glm::dot(a, glm::cross(b, c)), divisor);
-}
-
-}  // namespace
 
 std::optional<std::string> enclosingBody(const Model& model, const std::array<double, 3>& point) {
   struct Body {
@@ -38,13 +29,49 @@ std::optional<std::string> enclosingBody(const Model& model, const std::array<do
       body.angle += solidAngle(corner(i), corner(i + 1), corner(i + 2));
   }
   for (const auto& [object, body] : bodies) {
-    // A closed surface spans 4 pi from each point inside and 0 from outside or from a hollow. A bowl spans up
-    // to half of it where nothing encloses a point; the eighth that may be missing is that of meshes with
-    // small holes.
-    constexpr double kLeast = 0.875 * 4 * std::numbers::pi;
-    if (body.surface && body.angle > kLeast) return body.surface;
+    if (body.surface && body.angle > kEnclosed) return body.surface;
   }
   return std::nullopt;
+}
+
+std::vector<std::string> opaqueInside(const Model& model) {
+  struct Shell {
+    glm::dvec3 low = glm::dvec3(std::numeric_limits<double>::infinity()), high = -low;
+    std::vector<const Part*> parts;
+  };
+  const auto position = [&](std::uint32_t index) {
+    const std::array<float, 3>& p = model.vertices[model.indices[index]].position;
+    return glm::dvec3(p[0], p[1], p[2]);
+  };
+  std::map<std::uint32_t, Shell> shells;
+  for (const Part& part : model.parts) {
+    if (model.surfaces[part.surface].material == 0) continue;
+    Shell& shell = shells[part.object];
+    shell.parts.push_back(&part);
+    for (std::uint32_t i = part.firstIndex; i < part.firstIndex + part.indexCount; ++i) {
+      shell.low = glm::min(shell.low, position(i));
+      shell.high = glm::max(shell.high, position(i));
+    }
+  }
+  std::set<std::string> sentences;
+  for (const Part& part : model.parts) {
+    const Surface& opaque = model.surfaces[part.surface];
+    if (opaque.material != 0 || part.indexCount == 0) continue;
+    const glm::dvec3 from = position(part.firstIndex);
+    for (const auto& [object, shell] : shells) {
+      if (!glm::all(glm::lessThan(shell.low, from)) || !glm::all(glm::lessThan(from, shell.high))) continue;
+      double angle = 0;
+      for (const Part* around : shell.parts)
+        for (std::uint32_t i = around->firstIndex; i < around->firstIndex + around->indexCount; i += 3)
+          angle += solidAngle(position(i) - from, position(i + 1) - from, position(i + 2) - from);
+      if (angle > kEnclosed)
+        sentences.insert("opaque \"" + opaque.name + "\" lies inside \"" +
+                         model.surfaces[shell.parts.front()->surface].name +
+                         "\": its edges let too much light around it, up to a twelfth of what comes through "
+                         "without it; `pellucid truth` has the right light");
+    }
+  }
+  return {sentences.begin(), sentences.end()};
 }
 
 void refuseEnclosedLights(const Model& model) {

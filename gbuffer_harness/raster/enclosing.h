@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "raster/model.h"
 
@@ -12,6 +13,11 @@ namespace pellucid::harness {
 // Name of the first surface with a material of a closed object that the point lies in, not in a hollow of it.
 // Open meshes enclose nothing. Objects of surfaces without a material are not looked at. point: world.
 std::optional<std::string> enclosingBody(const Model& model, const std::array<double, 3>& point);
+
+// A sentence for each opaque surface that begins inside a closed translucent object: a shadow map says where
+// the surface begins and not where it ends, so a gather lets light around it that the medium behind it does
+// not carry.
+std::vector<std::string> opaqueInside(const Model& model);
 
 // Throws InputError naming the model and the light: a point or spot light inside a translucent body, whose
 // light enters through no face that a shadow map could hold.

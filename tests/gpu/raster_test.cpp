@@ -15,6 +15,7 @@
 #include "gltf_builder.h"
 #include "gpu/gpu_fixture.h"
 #include "gpu/model_builder.h"
+#include "raster/bodies.h"
 #include "raster/framing.h"
 #include "raster/raster.h"
 #include "scene/vector.h"
@@ -679,6 +680,33 @@ TEST_F(Raster, WrittenCaptureReplaysBitIdentically) {
 }
 
 // A file on disk to a capture on disk, with the light that the command adds.
+// The left one of two balls that are 1 mm apart is lit, and the right one lies in its shadow.
+TEST_F(Raster, NoLightCrossesTheAirBetweenBodies) {
+  Model model = emptyModel();
+  addSphere(model, {-6.5, 0, 0}, 6, 32);
+  addSphere(model, {4.5, 0, 0}, 4, 32);
+  endPart(model, 0);
+  model.lights = {directional({1, 0, 0}, 3)};
+  RasterOptions options = smallRaster(48);
+  options.shadowSize = 512;
+  ModelCamera camera = frontCamera(true);
+  camera.height = 28;
+  double most[2] = {};
+  for (const bool separated : {false, true}) {
+    if (separated) {
+      const PellucidMaterial skin = compileMaterial(model.materials[0], "skin1");
+      ASSERT_EQ(separateBodies(model, {static_cast<double>(skin.radius[0])}).added, 1u);
+    }
+    const Capture c = rasterize(model, camera, options).capture;
+    const Image result = replayer().run(c, compileMaterials(c), {}).output;
+    for (int y = 0; y < 48; ++y)
+      for (int x = 24; x < 48; ++x) most[separated] = std::max(most[separated], double(result.at(x, y)[0]));
+    EXPECT_GT(result.at(6, 24)[0], 0.1f) << "the lit one";
+  }
+  EXPECT_GT(most[0], 0.02) << "one number says that it is one body";
+  EXPECT_EQ(most[1], 0);
+}
+
 TEST_F(Raster, OptionsMakeACaptureOfAFile) {
   const std::filesystem::path folder =
       std::filesystem::temp_directory_path() / ("pellucid_command_" + std::to_string(::getpid()));

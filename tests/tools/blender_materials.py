@@ -3,6 +3,7 @@
     blender -b -P blender_materials.py -- materials FILE.blend    pairs of one medium: by nodes, and by plain numbers
     blender -b -P blender_materials.py -- occluders FILE.blend    opaque bodies before, inside and behind a slab
     blender -b -P blender_materials.py -- mixed FILE.blend        a slab of which a part alone scatters
+    blender -b -P blender_materials.py -- anisotropic FILE.blend  a slab that scatters forwards
 """
 import math
 import sys
@@ -125,6 +126,11 @@ if what == "materials":
     sun((0.2, 0.1, -1), 3)
     sun((0, 0, 1), 6)
     camera(24)
+elif what == "anisotropic":
+    wax.node_tree.nodes["Principled BSDF"].inputs["Subsurface Anisotropy"].default_value = 0.8
+    box("slab", wax, (0, 0, 0), (40, 40, 2))
+    sun((0, 0, 1), 6)
+    camera(20)
 elif what == "occluders":
     stone = principled("stone", Base_Color=(0.2, 0.2, 0.2, 1))[0]
     box("slab", wax, (0, 0, 0), (30, 30, 3))

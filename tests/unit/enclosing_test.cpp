@@ -52,6 +52,27 @@ TEST(Enclosing, OpaqueBodiesAreNotLookedAt) {
   EXPECT_FALSE(enclosingBody(model, {0, 0, 0}));
 }
 
+// As an object of its own or as a part of the body's; outside, and where the body is open, there is nothing
+// to say.
+TEST(Enclosing, OpaqueSurfacesInsideAreNamed) {
+  for (const std::uint32_t object : {0u, 1u})
+    for (const double z : {0.0, 30.0}) {
+      Model model = sphere(10);
+      model.surfaces.resize(2);
+      model.surfaces[1].name = "bone";
+      addSquare(model, 0, 0, z, 2);
+      endPart(model, object, 1);
+      const std::vector<std::string> said = opaqueInside(model);
+      ASSERT_EQ(said.size(), z == 0 ? 1u : 0u) << object;
+      for (const char* name : {"\"bone\"", "\"wax\""})
+        if (z == 0) {
+          EXPECT_NE(said[0].find(name), std::string::npos) << said[0];
+        }
+      model.parts[0].indexCount /= 2;
+      EXPECT_TRUE(opaqueInside(model).empty()) << "half a ball";
+    }
+}
+
 TEST(Enclosing, LightsInsideAreRefusedByName) {
   Model model = sphere(10);
   model.lights = {directional({0, 0, -1}), pointLight({0, 0, 20})};

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "capture/capture.h"
+#include "reference/camera.h"
 #include "reference/diffusion.h"
 #include "reference/surface.h"
 
@@ -69,6 +70,55 @@ inline double halfPlaneCoverage(glm::dvec2 corner, double pixel, glm::dvec2 dire
     covered += direction.y > 0 ? 1 - edge : edge;
   }
   return covered / kColumns;
+}
+
+// A ball of 8 mm seen along (.4, -.3, -1), by a camera that looks along -z and is sheared, or by one that
+// looks that way. Gets the cosines between the pixels' normals and rays, 0 beside the ball.
+inline Capture obliqueBall(bool sheared, double* cosines) {
+  constexpr int kSide = 80;
+  constexpr double kRadius = 8, kPixel = 0.25;
+  const glm::dvec3 along(0.4, -0.3, -1), direction = glm::normalize(along);
+  Capture c = facingPlane(kSide, kSide, kPixel);
+  c.viewFromWorld[14] = -40;
+  if (sheared) {  // x + .4 z, y - .3 z: all points of a ray have one place in the image
+    c.clipFromView[8] = 0.4 * c.clipFromView[0];
+    c.clipFromView[9] = -0.3 * c.clipFromView[5];
+    c.clipFromView[12] = 40 * c.clipFromView[8];
+    c.clipFromView[13] = 40 * c.clipFromView[9];
+  } else {
+    const glm::dvec3 x = glm::normalize(glm::cross(direction, glm::dvec3(0, 1, 0))),
+                     y = glm::cross(x, direction);
+    for (std::size_t i = 0; i < 3; ++i) {
+      c.viewFromWorld[4 * i] = x[static_cast<int>(i)];
+      c.viewFromWorld[4 * i + 1] = y[static_cast<int>(i)];
+      c.viewFromWorld[4 * i + 2] = -direction[static_cast<int>(i)];
+    }
+  }
+  c.normalsInViewSpace = false;
+  const glm::dmat4 viewFromWorld = toMatrix(c.viewFromWorld), worldFromView = glm::inverse(viewFromWorld);
+  const Camera camera(c.clipFromView, kSide, kSide);
+  for (int py = 0; py < kSide; ++py)
+    for (int px = 0; px < kSide; ++px) {
+      const std::size_t pixel = static_cast<std::size_t>(py) * kSide + static_cast<std::size_t>(px);
+      const glm::dvec3 origin(worldFromView * glm::dvec4(camera.position({px + 0.5, py + 0.5}, 1), 1));
+      const double b = glm::dot(origin, direction),
+                   inside = b * b - glm::dot(origin, origin) + kRadius * kRadius;
+      c.material[pixel] = inside > 0;
+      cosines[pixel] = 0;
+      if (!(inside > 0)) {
+        c.frontDepth.image.data[pixel] = kNoDepth;
+        continue;
+      }
+      const glm::dvec3 p = origin - (b + std::sqrt(inside)) * direction, n = p / kRadius;
+      c.frontDepth.image.data[pixel] = static_cast<float>(-(viewFromWorld * glm::dvec4(p, 1)).z);
+      cosines[pixel] = -glm::dot(n, direction);
+      for (int i = 0; i < 3; ++i) {
+        c.normal.data[3 * pixel + static_cast<std::size_t>(i)] = static_cast<float>(n[i]);
+        c.irradiance.data[3 * pixel + static_cast<std::size_t>(i)] =
+            static_cast<float>(1 + 0.9 * std::sin(2 * p.x));
+      }
+    }
+  return c;
 }
 
 // T(d) = e^{-2d}, rho = 1/2, profile Burley of distance d in every channel.

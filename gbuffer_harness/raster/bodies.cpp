@@ -1,0 +1,346 @@
+#include "raster/bodies.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "raster/places.h"
+#include "scene/vector.h"
+
+namespace pellucid::harness {
+
+namespace {
+
+// Parts that are closer than this share of the smaller one's diagonal touch: seams err by what their meshes
+// miss of one curve.
+constexpr double kTouching = 1e-3;
+
+// Numbers of one medium. Each takes constants; the far bodies of a crowd share numbers.
+constexpr std::size_t kMostNumbers = 16;
+constexpr std::size_t kMostMaterials = 255;  // 8 bits, 0 is none
+
+struct Box {
+  glm::dvec3 low = glm::dvec3(std::numeric_limits<double>::infinity()), high = -low;
+
+  void add(const glm::dvec3& point) {
+    low = glm::min(low, point);
+    high = glm::max(high, point);
+  }
+  void add(const Box& box) {
+    low = glm::min(low, box.low);
+    high = glm::max(high, box.high);
+  }
+  Box grown(double by) const { return {low - by, high + by}; }
+  bool meets(const Box& box) const {
+    return glm::all(glm::lessThanEqual(low, box.high)) && glm::all(glm::lessThanEqual(box.low, high));
+  }
+  bool contains(const Box& box) const {
+    return glm::all(glm::lessThanEqual(low, box.low)) && glm::all(glm::lessThanEqual(box.high, high));
+  }
+  double diagonal() const { return glm::length(high - low); }
+};
+
+double distance(const Box& a, const Box& b) {
+  return glm::length(glm::max(glm::max(a.low - b.high, b.low - a.high), glm::dvec3(0)));
+}
+
+class Sets {
+public:
+  explicit Sets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
+
+  std::uint32_t of(std::uint32_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void join(std::uint32_t a, std::uint32_t b) { parent_[of(a)] = of(b); }
+
+private:
+  std::vector<std::uint32_t> parent_;
+};
+
+using Triangle = std::array<glm::dvec3, 3>;
+
+Box boxOf(const Triangle& t) {
+  Box box;
+  for (const glm::dvec3& corner : t) box.add(corner);
+  return box;
+}
+
+// Ericson, "Real-Time Collision Detection", 5.1.5.
+glm::dvec3 closestPoint(const glm::dvec3& p, const Triangle& t) {
+  const glm::dvec3 ab = t[1] - t[0], ac = t[2] - t[0], ap = p - t[0], bp = p - t[1], cp = p - t[2];
+  const double d1 = glm::dot(ab, ap), d2 = glm::dot(ac, ap);
+  if (d1 <= 0 && d2 <= 0) return t[0];
+  const double d3 = glm::dot(ab, bp), d4 = glm::dot(ac, bp);
+  if (d3 >= 0 && d4 <= d3) return t[1];
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return d1 > d3 ? t[0] + d1 / (d1 - d3) * ab : t[0];
+  const double d5 = glm::dot(ab, cp), d6 = glm::dot(ac, cp);
+  if (d6 >= 0 && d5 <= d6) return t[2];
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return d2 > d6 ? t[0] + d2 / (d2 - d6) * ac : t[0];
+  const double va = d3 * d6 - d5 * d4, toC = d4 - d3, toB = d5 - d6;
+  if (va <= 0 && toC >= 0 && toB >= 0) return toC + toB > 0 ? t[1] + toC / (toC + toB) * (t[2] - t[1]) : t[1];
+  const double sum = va + vb + vc;
+  return sum > 0 ? t[0] + vb / sum * ab + vc / sum * ac : t[0];
+}
+
+// True where the segment runs through the triangle.
+bool pierces(const glm::dvec3& from, const glm::dvec3& to, const Triangle& t) {
+  const glm::dvec3 along = to - from, ab = t[1] - t[0], ac = t[2] - t[0], cross = glm::cross(along, ac);
+  const double determinant = glm::dot(ab, cross);
+  if (determinant == 0) return false;
+  const glm::dvec3 off = from - t[0], other = glm::cross(off, ab);
+  const double u = glm::dot(off, cross) / determinant, v = glm::dot(along, other) / determinant,
+               at = glm::dot(ac, other) / determinant;
+  return u >= 0 && v >= 0 && u + v <= 1 && at >= 0 && at <= 1;
+}
+
+bool touch(const Triangle& a, const Triangle& b, double tolerance) {
+  for (const auto& [one, other] : {std::pair(&a, &b), std::pair(&b, &a)})
+    for (std::size_t i = 0; i < 3; ++i) {
+      const glm::dvec3& corner = (*one)[i];
+      if (glm::distance(corner, closestPoint(corner, *other)) <= tolerance) return true;
+      if (pierces(corner, (*one)[(i + 1) % 3], *other)) return true;
+    }
+  return false;
+}
+
+// Triangles that share corners, of one medium.
+struct Piece {
+  std::uint8_t material = 0;
+  Box box;
+  std::vector<std::uint32_t> triangles;  // first places in Model::indices
+};
+
+class Bodies {
+public:
+  explicit Bodies(const Model& model) : model_(model) {
+    std::vector<std::uint32_t> triangles;
+    std::vector<std::uint8_t> materials;
+    for (const Part& part : model.parts) {
+      const std::uint8_t material = model.surfaces[part.surface].material;
+      if (material == 0) continue;
+      for (std::uint32_t i = 0; i + 2 < part.indexCount; i += 3) {
+        triangles.push_back(part.firstIndex + i);
+        materials.push_back(material);
+      }
+    }
+    findPieces(triangles, materials);
+  }
+
+  const std::vector<Piece>& pieces() const { return pieces_; }
+
+  // The body of each piece, numbered in the order of their first triangles.
+  std::vector<std::uint32_t> bodies() {
+    Sets sets(pieces_.size());
+    std::vector<std::uint32_t> byX(pieces_.size());
+    std::iota(byX.begin(), byX.end(), 0u);
+    std::sort(byX.begin(), byX.end(),
+              [&](std::uint32_t a, std::uint32_t b) { return pieces_[a].box.low.x < pieces_[b].box.low.x; });
+    for (std::size_t i = 0; i < byX.size(); ++i)
+      for (std::size_t k = i + 1; k < byX.size(); ++k) {
+        const Piece &a = pieces_[byX[i]], &b = pieces_[byX[k]];
+        const double tolerance = kTouching * std::min(a.box.diagonal(), b.box.diagonal());
+        if (b.box.low.x > a.box.high.x + kTouching * a.box.diagonal()) break;
+        if (a.material != b.material || sets.of(byX[i]) == sets.of(byX[k])) continue;
+        if (hangTogether(a, b, tolerance)) sets.join(byX[i], byX[k]);
+      }
+    std::map<std::uint32_t, std::uint32_t> numbers;
+    std::vector<std::uint32_t> result;
+    for (std::uint32_t i = 0; i < pieces_.size(); ++i)
+      result.push_back(numbers.emplace(sets.of(i), static_cast<std::uint32_t>(numbers.size())).first->second);
+    return result;
+  }
+
+private:
+  glm::dvec3 corner(std::uint32_t index) const {
+    const std::array<float, 3>& p = model_.vertices[model_.indices[index]].position;
+    return {p[0], p[1], p[2]};
+  }
+  Triangle triangle(std::uint32_t first) const {
+    return {corner(first), corner(first + 1), corner(first + 2)};
+  }
+
+  void findPieces(const std::vector<std::uint32_t>& triangles, const std::vector<std::uint8_t>& materials) {
+    const std::vector<std::uint32_t> places = placesOf(model_);
+    Sets sets(triangles.size());
+    std::map<std::uint8_t, std::vector<std::uint32_t>> firstAt;  // of a medium, by place: a triangle + 1
+    for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+      std::vector<std::uint32_t>& first = firstAt[materials[i]];
+      if (first.empty()) first.resize(model_.vertices.size());
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        std::uint32_t& known = first[places[model_.indices[triangles[i] + k]]];
+        if (known == 0)
+          known = i + 1;
+        else
+          sets.join(i, known - 1);
+      }
+    }
+    std::vector<std::uint32_t> pieceOf(triangles.size());  // + 1
+    for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+      std::uint32_t& piece = pieceOf[sets.of(i)];
+      if (piece == 0) {
+        pieces_.push_back({materials[i], {}, {}});
+        piece = static_cast<std::uint32_t>(pieces_.size());
+      }
+      pieces_[piece - 1].triangles.push_back(triangles[i]);
+      pieces_[piece - 1].box.add(boxOf(triangle(triangles[i])));
+    }
+  }
+
+  bool hangTogether(const Piece& a, const Piece& b, double tolerance) const {
+    if (!a.box.grown(tolerance).meets(b.box)) return false;
+    return isInside(a, b) || isInside(b, a) || touchEachOther(a, b, tolerance);
+  }
+
+  // The hollow of a body is a piece of its own.
+  bool isInside(const Piece& inner, const Piece& outer) const {
+    if (!outer.box.contains(inner.box)) return false;
+    const glm::dvec3 point = corner(inner.triangles.front());
+    double angle = 0;
+    for (const std::uint32_t first : outer.triangles) {
+      const Triangle t = triangle(first);
+      angle += solidAngle(t[0] - point, t[1] - point, t[2] - point);
+    }
+    return std::abs(angle) > kEnclosed;
+  }
+
+  // Sweeps along x over the triangles that lie where both pieces are.
+  bool touchEachOther(const Piece& a, const Piece& b, double tolerance) const {
+    struct Entry {
+      Box box;
+      Triangle triangle;
+    };
+    std::array<std::vector<Entry>, 2> near;
+    for (const std::size_t side : {0u, 1u}) {
+      const Box other = (side == 0 ? b : a).box.grown(tolerance);
+      for (const std::uint32_t first : (side == 0 ? a : b).triangles) {
+        const Triangle t = triangle(first);
+        const Box box = boxOf(t);
+        if (box.meets(other)) near[side].push_back({box.grown(0.5 * tolerance), t});
+      }
+      std::sort(near[side].begin(), near[side].end(),
+                [](const Entry& x, const Entry& y) { return x.box.low.x < y.box.low.x; });
+    }
+    for (const std::size_t side : {0u, 1u}) {
+      // Each pair comes up once: where the second triangle begins within the first.
+      auto next = near[1 - side].begin();
+      for (const Entry& entry : near[side]) {
+        while (next != near[1 - side].end() && next->box.low.x < entry.box.low.x) ++next;
+        for (auto other = next; other != near[1 - side].end() && other->box.low.x <= entry.box.high.x;
+             ++other)
+          if (entry.box.meets(other->box) && touch(entry.triangle, other->triangle, tolerance)) return true;
+      }
+    }
+    return false;
+  }
+
+  const Model& model_;
+  std::vector<Piece> pieces_;
+};
+
+// Numbers of bodies: those within `reach` of another body have another number where there are enough.
+class Numbers {
+public:
+  Numbers(Model& model, const std::vector<double>& reach)
+      : model_(model), reach_(reach), numbers_(model.materials.size()), holders_(model.materials.size()) {
+    for (std::size_t i = 0; i < numbers_.size(); ++i) numbers_[i] = {static_cast<std::uint8_t>(i + 1)};
+  }
+
+  std::uint8_t of(std::uint8_t material, const Box& box) {
+    std::vector<std::uint8_t>& numbers = numbers_[material - 1u];
+    const double reach = reach_.at(material - 1u) / (1000 * model_.metersPerUnit);
+    std::uint8_t best = material;
+    double farthest = -1;
+    for (const std::uint8_t number : numbers) {
+      double nearest = std::numeric_limits<double>::infinity();
+      for (const Box& held : holders_[number - 1u]) nearest = std::min(nearest, distance(held, box));
+      if (nearest > farthest) {
+        farthest = nearest;
+        best = number;
+      }
+      if (nearest > reach) break;  // the first that will do
+    }
+    if (farthest <= reach && numbers.size() < kMostNumbers && model_.materials.size() < kMostMaterials) {
+      model_.materials.push_back(MaterialSource(model_.materials[material - 1u]));
+      holders_.emplace_back();
+      best = static_cast<std::uint8_t>(model_.materials.size());
+      numbers.push_back(best);
+    }
+    holders_[best - 1u].push_back(box);
+    return best;
+  }
+
+private:
+  Model& model_;
+  const std::vector<double>& reach_;
+  std::vector<std::vector<std::uint8_t>> numbers_;  // by medium
+  std::vector<std::vector<Box>> holders_;           // by number
+};
+
+// Cuts parts where their triangles have other numbers. `numberOf`: of triangles, by their first places; 0:
+// their own.
+void renumber(Model& model, const std::vector<std::uint8_t>& numberOf) {
+  std::map<std::pair<std::uint32_t, std::uint8_t>, std::uint32_t> copies;
+  std::vector<Part> parts;
+  for (const Part& part : model.parts) {
+    const std::uint8_t material = model.surfaces[part.surface].material;
+    std::map<std::uint8_t, std::vector<std::uint32_t>> byNumber;
+    for (std::uint32_t i = part.firstIndex; i + 2 < part.firstIndex + part.indexCount; i += 3) {
+      const std::uint8_t number = numberOf[i] == 0 ? material : numberOf[i];
+      for (std::uint32_t k = 0; k < 3; ++k) byNumber[number].push_back(model.indices[i + k]);
+    }
+    std::uint32_t first = part.firstIndex;
+    for (const auto& [number, indices] : byNumber) {
+      Part cut = part;
+      cut.firstIndex = first;
+      cut.indexCount = static_cast<std::uint32_t>(indices.size());
+      if (number != material) {
+        const auto [copy, isNew] =
+            copies.try_emplace({part.surface, number}, static_cast<std::uint32_t>(model.surfaces.size()));
+        if (isNew) {
+          model.surfaces.push_back(Surface(model.surfaces[part.surface]));
+          model.surfaces.back().material = number;
+        }
+        cut.surface = copy->second;
+      }
+      std::copy(indices.begin(), indices.end(), model.indices.begin() + first);
+      first += cut.indexCount;
+      parts.push_back(cut);
+    }
+  }
+  model.parts = std::move(parts);
+}
+
+}  // namespace
+
+BodySeparation separateBodies(Model& model, const std::vector<double>& reach) {
+  Bodies found(model);
+  const std::vector<std::uint32_t> bodyOf = found.bodies();
+  BodySeparation result;
+  for (const std::uint32_t body : bodyOf) result.bodies = std::max<std::size_t>(result.bodies, body + 1u);
+  std::vector<Box> boxes(result.bodies);
+  std::vector<std::uint8_t> numbers(result.bodies);
+  for (std::size_t i = 0; i < bodyOf.size(); ++i) {
+    boxes[bodyOf[i]].add(found.pieces()[i].box);
+    numbers[bodyOf[i]] = found.pieces()[i].material;
+  }
+  const std::size_t before = model.materials.size();
+  Numbers chosen(model, reach);
+  for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = chosen.of(numbers[i], boxes[i]);
+  result.added = model.materials.size() - before;
+  if (result.added == 0) return result;
+  std::vector<std::uint8_t> numberOf(model.indices.size());
+  for (std::size_t i = 0; i < bodyOf.size(); ++i)
+    for (const std::uint32_t first : found.pieces()[i].triangles) numberOf[first] = numbers[bodyOf[i]];
+  renumber(model, numberOf);
+  return result;
+}
+
+}  // namespace pellucid::harness

@@ -1,0 +1,128 @@
+// Which parts of a model are one body, and which bodies get numbers of their own.
+#include "raster/bodies.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+
+#include "gpu/model_builder.h"
+
+namespace pellucid::test {
+namespace {
+
+constexpr double kReach = 20;  // mm
+
+// Numbers of the materials of all triangles that begin at x < 0, and of all others.
+struct Sides {
+  std::set<int> left, right;
+};
+Sides sidesOf(const Model& model) {
+  Sides sides;
+  for (const Part& part : model.parts)
+    for (std::uint32_t i = part.firstIndex; i < part.firstIndex + part.indexCount; i += 3) {
+      const float x = model.vertices[model.indices[i]].position[0];
+      (x < 0 ? sides.left : sides.right).insert(model.surfaces[part.surface].material);
+    }
+  return sides;
+}
+
+// Balls of 6 mm whose gap is that wide, as one object or two.
+Model twoBalls(double gap, bool oneObject) {
+  Model model = emptyModel();
+  addSphere(model, {-6 - gap / 2, 0, 0}, 6, 16);
+  if (!oneObject) endPart(model, 0);
+  addSphere(model, {6 + gap / 2, 0, 0}, 6, 16);
+  endPart(model, 1);
+  return model;
+}
+
+std::size_t added(Model model) {
+  return separateBodies(model, std::vector<double>(model.materials.size(), kReach)).added;
+}
+
+TEST(Bodies, NearOnesHaveNumbersOfTheirOwn) {
+  for (const bool oneObject : {false, true})
+    for (const double gap : {0.1, 3.0, 19.0}) {
+      Model model = twoBalls(gap, oneObject);
+      const std::multiset<std::uint32_t> before(model.indices.begin(), model.indices.end());
+      const BodySeparation separated = separateBodies(model, {kReach});
+      EXPECT_EQ(separated.bodies, 2u);
+      EXPECT_EQ(separated.added, 1u) << gap;
+      ASSERT_EQ(model.materials.size(), 2u);
+      const Sides sides = sidesOf(model);
+      EXPECT_EQ(sides.left, std::set<int>{1});
+      EXPECT_EQ(sides.right, std::set<int>{2});
+      EXPECT_EQ(std::multiset<std::uint32_t>(model.indices.begin(), model.indices.end()), before);
+    }
+}
+
+TEST(Bodies, FarOnesShareANumber) {
+  EXPECT_EQ(added(twoBalls(21, true)), 0u);
+  // Of five in a row each reaches the next alone.
+  Model row = emptyModel();
+  for (int i = 0; i < 5; ++i) addSphere(row, {25.0 * i, 0, 0}, 6, 8);
+  endPart(row, 0);
+  EXPECT_EQ(separateBodies(row, {kReach}).bodies, 5u);
+  EXPECT_EQ(row.materials.size(), 2u);
+}
+
+TEST(Bodies, MetersPerUnitScalesTheReach) {
+  Model model = twoBalls(3, true);
+  model.metersPerUnit = 1;  // 3 m apart
+  EXPECT_EQ(added(model), 0u);
+}
+
+TEST(Bodies, WhatTouchesIsOne) {
+  EXPECT_EQ(added(twoBalls(0, false)), 0u) << "at a point";
+  EXPECT_EQ(added(twoBalls(-2, false)), 0u) << "they cut each other";
+  // Sheets that share an edge whose corners differ: 3 squares on one side, 1 on the other.
+  Model seam = emptyModel();
+  for (const double y : {-10.0, 0.0, 10.0}) addSquare(seam, -5, y, 0, 5);
+  endPart(seam, 0);
+  addSquare(seam, 15 + 1e-5, 0, 0, 15);
+  endPart(seam, 1);
+  EXPECT_EQ(added(seam), 0u);
+}
+
+TEST(Bodies, AHollowIsPartOfItsBody) {
+  Model shell = emptyModel();
+  addSphere(shell, {0, 0, 0}, 10, 16);
+  const std::size_t inner = shell.indices.size();
+  addSphere(shell, {0, 0, 0}, 8, 16);
+  for (std::size_t i = inner; i < shell.indices.size(); i += 3)
+    std::swap(shell.indices[i], shell.indices[i + 1]);
+  endPart(shell, 0);
+  EXPECT_EQ(separateBodies(shell, {kReach}).bodies, 1u);
+}
+
+TEST(Bodies, OtherMediaAndOpaqueSurfacesKeepTheirNumbers) {
+  Model model = twoBalls(3, false);
+  model.surfaces.resize(2, model.surfaces[0]);
+  model.parts[1].surface = 1;
+  model.surfaces[1].material = 0;
+  EXPECT_EQ(added(model), 0u);
+  model.surfaces[1].material = 2;
+  model.materials.resize(2);
+  EXPECT_EQ(added(model), 0u);
+}
+
+TEST(Bodies, CrowdsHaveSixteenNumbersAtMost) {
+  Model crowd = emptyModel();
+  for (int i = 0; i < 40; ++i) addSquare(crowd, 0, 0, 0.1 * i, 5);
+  endPart(crowd, 0);
+  EXPECT_EQ(separateBodies(crowd, {kReach}).bodies, 40u);
+  EXPECT_EQ(crowd.materials.size(), 16u);
+  // Numbers come again as far away as they can: no sheet has that of the next.
+  std::map<float, int> numbers;
+  for (const Part& part : crowd.parts)
+    for (std::uint32_t i = 0; i < part.indexCount; i += 3)
+      numbers[crowd.vertices[crowd.indices[part.firstIndex + i]].position[2]] =
+          crowd.surfaces[part.surface].material;
+  ASSERT_EQ(numbers.size(), 40u);
+  for (auto next = std::next(numbers.begin()); next != numbers.end(); ++next)
+    EXPECT_NE(next->second, std::prev(next)->second) << next->first;
+}
+
+}  // namespace
+}  // namespace pellucid::test
