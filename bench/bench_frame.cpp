@@ -1,6 +1,8 @@
 #include "bench_frame.h"
 
 #include <algorithm>
+#include <set>
+#include <utility>
 
 #include "common/error.h"
 
@@ -38,6 +40,30 @@ const PellucidBinding* BenchFrame::find(uint32_t binding) const {
   return found == end ? nullptr : found;
 }
 
+uint64_t BenchFrame::modeledBytes(uint32_t dispatch) const {
+  const PellucidFrame& frame = run_.frame();
+  PellucidImageNeed needs[PELLUCID_MAX_TRANSIENTS];  // no frame of the bench has a history
+  uint32_t count = PELLUCID_MAX_TRANSIENTS;
+  requireOk(pellucidGetImageNeeds(&frame, &count, needs), frame, "needs");
+  const uint64_t pixels = static_cast<uint64_t>(width_) * static_cast<uint64_t>(height_);
+  const auto bytesOf = [&](uint32_t resource) -> uint64_t {
+    const uint32_t transient = resource - PELLUCID_RESOURCE_TRANSIENT0;
+    if (transient < count) return needs[transient].bytes;
+    if (resource == PELLUCID_RESOURCE_MATERIAL) return pixels;
+    if (resource == PELLUCID_RESOURCE_IRRADIANCE || resource == PELLUCID_RESOURCE_OUTPUT)
+      return pixels * (frame.outputFormat == VK_FORMAT_R32G32B32A32_SFLOAT ? 16 : 8);
+    return 4 * pixels;  // depths, maps as large as the image, normals, albedo
+  };
+  const PellucidDispatch& d = run_.plan().dispatches[dispatch];
+  std::set<std::pair<uint32_t, VkDescriptorType>> images;
+  for (uint32_t i = 0; i < d.bindingCount; ++i)
+    if (d.bindings[i].resource != PELLUCID_RESOURCE_CONSTANTS)
+      images.insert({d.bindings[i].resource, d.bindings[i].type});
+  uint64_t bytes = 0;
+  for (const auto& [resource, type] : images) bytes += bytesOf(resource);
+  return bytes;
+}
+
 bool BenchFrame::isPlanned(uint32_t binding) const { return find(binding) != nullptr; }
 
 Resource BenchFrame::planned(uint32_t binding) const {
@@ -63,7 +89,7 @@ Variant moduleVariant(const std::shared_ptr<const BenchFrame>& frame, const std:
   uint64_t transients = 0;
   for (uint32_t i = 0; i < count; ++i) transients += needs[i].bytes;
   for (uint32_t i = 0; i < plan.dispatchCount; ++i)
-    bytes += static_cast<double>(plan.dispatches[i].modeledBytes);
+    bytes += static_cast<double>(frame->modeledBytes(i));
   return {name,
           plan.dispatchCount,
           plan.barrierCount,

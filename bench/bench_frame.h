@@ -29,6 +29,10 @@ public:
   Resource planned(uint32_t binding) const;
   bool isPlanned(uint32_t binding) const;
 
+  // Least device-memory traffic of a dispatch of the plan: each image that it binds is read or written once. Formats that
+  // the module does not know are the common ones.
+  uint64_t modeledBytes(uint32_t dispatch) const;
+
   // What RecordPlan does to the constants.
   void writeConstants() const;
 

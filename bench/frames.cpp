@@ -172,7 +172,7 @@ private:
     for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
       const PellucidDispatch& d = plan.dispatches[i];
       const double bytes =
-          static_cast<double>(d.modeledBytes) / static_cast<double>(capture_.material.size());
+          static_cast<double>(f.modeledBytes(i)) / static_cast<double>(capture_.material.size());
       report_.add({"  " + std::to_string(i) + " " + d.name,
                    1,
                    d.barrierBefore,

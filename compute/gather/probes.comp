@@ -8,7 +8,7 @@
 #include "gather/probe_light.glsl"
 #include "gather/probe_shape.glsl"
 
-layout(set = 0, binding = PELLUCID_BINDING_PROBES, rgba32ui) uniform uimage2D probesImage;
+layout(set = 0, binding = PELLUCID_BINDING_PROBES_DESTINATION, rgba32ui) uniform uimage2D probesImage;
 layout(local_size_z_id = PELLUCID_CONSTANT_SHARERS) in; // invocations of a cell: they share its lights
 
 const uint kAdds = 1u << 31; // of pass.value.z

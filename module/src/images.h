@@ -1,5 +1,5 @@
-// The images of a frame that have a field of their own. Adding one: a row here, and its binding where a
-// dispatch reads it.
+// The images of a frame that have a field of their own. Adding one: a row here, and its binding in the passes
+// that read it.
 #pragma once
 
 #include <array>
@@ -14,18 +14,19 @@ struct ImageField {
   const char* name;   // as in the API, plans and messages
   PellucidImage PellucidFrame::*field;
   bool required;
-  uint32_t flag;  // tells shaders that an optional image is there
+  uint32_t binding;
+  uint32_t flag;  // tells shaders that an optional image is there; 0: required
 };
 
 constexpr std::array kImageFields = {
-    ImageField{PELLUCID_RESOURCE_FRONT_DEPTH, "frontDepth", &PellucidFrame::frontDepth, true, 0},
+    ImageField{PELLUCID_RESOURCE_FRONT_DEPTH, "frontDepth", &PellucidFrame::frontDepth, true, PELLUCID_BINDING_FRONT_DEPTH, 0},
     ImageField{PELLUCID_RESOURCE_BACK_DEPTH, "backDepth", &PellucidFrame::backDepth, false,
-               PELLUCID_FLAG_BACK_DEPTH},
-    ImageField{PELLUCID_RESOURCE_IRRADIANCE, "irradiance", &PellucidFrame::irradiance, true, 0},
-    ImageField{PELLUCID_RESOURCE_NORMAL, "normal", &PellucidFrame::normal, false, PELLUCID_FLAG_NORMAL},
-    ImageField{PELLUCID_RESOURCE_ALBEDO, "albedo", &PellucidFrame::albedo, false, PELLUCID_FLAG_ALBEDO},
-    ImageField{PELLUCID_RESOURCE_MATERIAL, "material", &PellucidFrame::material, true, 0},
-    ImageField{PELLUCID_RESOURCE_OUTPUT, "output", &PellucidFrame::output, true, 0},
+               PELLUCID_BINDING_BACK_DEPTH, PELLUCID_FLAG_BACK_DEPTH},
+    ImageField{PELLUCID_RESOURCE_IRRADIANCE, "irradiance", &PellucidFrame::irradiance, true, PELLUCID_BINDING_SOURCE, 0},
+    ImageField{PELLUCID_RESOURCE_NORMAL, "normal", &PellucidFrame::normal, false, PELLUCID_BINDING_NORMAL, PELLUCID_FLAG_NORMAL},
+    ImageField{PELLUCID_RESOURCE_ALBEDO, "albedo", &PellucidFrame::albedo, false, PELLUCID_BINDING_ALBEDO, PELLUCID_FLAG_ALBEDO},
+    ImageField{PELLUCID_RESOURCE_MATERIAL, "material", &PellucidFrame::material, true, PELLUCID_BINDING_MATERIAL, 0},
+    ImageField{PELLUCID_RESOURCE_OUTPUT, "output", &PellucidFrame::output, true, PELLUCID_BINDING_DESTINATION, 0},
 };
 
 inline bool given(const PellucidImage& image) { return image.view != VK_NULL_HANDLE; }

@@ -3,7 +3,7 @@
 
 #include "entry_points.h"
 #include "plan.h"
-#include "plan_builder.h"
+#include "planner.h"
 
 namespace pellucid {
 namespace {
@@ -75,7 +75,7 @@ PellucidResult imageNeeds(const FrameFacts& f, uint32_t* count, PellucidImageNee
     need.format = blocks ? VK_FORMAT_R32_UINT : texels ? VK_FORMAT_R32G32B32A32_UINT : f.colorFormat;
     need.extent[0] = size.width;
     need.extent[1] = size.height;
-    need.bytes = (blocks ? 4 : texels ? kTexelBytes : f.wide ? 16 : 8) * size.width * size.height;
+    need.bytes = (blocks ? 4ull : texels || f.wide ? 16ull : 8ull) * size.width * size.height;
     need.persistent = persistent;
     addUse(plan, persistent ? static_cast<uint32_t>(PELLUCID_RESOURCE_HISTORY) : kTransient0 + i, need);
     need.firstDispatch -= std::min(need.firstDispatch, refreshing);

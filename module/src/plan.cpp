@@ -1,16 +1,14 @@
 // Frame -> plan. Pure: no device, no allocation.
 #include "plan.h"
 
-#include "plan_diffusion.h"
-#include "plan_gather.h"
+#include "passes.h"
 #include "plan_state.h"
-#include "plan_translucency.h"
 
 namespace pellucid {
 namespace {
 
 // Images that the maps of contributing lights lack.
-void skipBeside(PlanBuilder& b) {
+void skipBeside(Planner& b) {
   const FrameFacts& f = b.facts;
   if (!f.lights.beside)
     b.skip("exit depth and caster material", "more lights have them than the dispatches of a plan can bind");
@@ -39,7 +37,7 @@ void skipBeside(PlanBuilder& b) {
 }
 
 // Skips: all that does not run, and why.
-void addSkips(PlanBuilder& b) {
+void addSkips(Planner& b) {
   const FrameFacts& f = b.facts;
   const auto skipLight = [&](const PellucidLight& light, const char* what) {
     if (const char* reason = f.whySkipped(light))
@@ -73,17 +71,17 @@ void addSkips(PlanBuilder& b) {
       b.skip("diffusion radius", "wider than the pyramid holds");
 }
 
-// Asks for the dispatches of all stages in their order. Images alternate between the two color transients;
-// the last write goes to the output.
-class Stager {
+// Adds the passes of a frame along the data flow. Colors alternate between the two color transients; the last write
+// goes to the output.
+class Flow {
 public:
-  Stager(PlanBuilder& builder, bool reuses)
-      : b_(builder), stages_(builder.facts.stages), reused_(reuses), remaining_(stages_.writers()) {}
+  Flow(Planner& planner, bool reuses)
+      : p_(planner), stages_(planner.facts.stages), reused_(reuses), remaining_(stages_.writers()) {}
 
   void addAll() {
     if (stages_.nothing) return;
     // Gathered light has already spread on its way through; diffusing it again would spread it twice.
-    if (b_.facts.gathers) {
+    if (p_.facts.gathers) {
       thinWalls();
       diffusion();
       translucency();
@@ -94,92 +92,65 @@ public:
   }
 
 private:
-  uint32_t destination() {
-    if (--remaining_ == 0) return PELLUCID_RESOURCE_OUTPUT;
-    const uint32_t transient = kTransient0 + next_;
-    next_ ^= 1;
-    return transient;
-  }
-
-  // Entry points and probes of each group, and what the groups share: all lights that are gathered from.
-  void gather() {
-    if (stages_.gathered == 0 || stages_.overlaps || reused_) return;
-    for (uint32_t i = 0; i < stages_.gathered; ++i) {
-      const LightGroup& group = b_.facts.lights.list()[i];
-      addEntryPoints(b_, group);
-      addProbes(b_, group, i > 0);
+  // Calls add(source, destination) for a pass that goes over pixels.
+  template <class Add>
+  void pixels(Add&& add) {
+    uint32_t destination = PELLUCID_RESOURCE_OUTPUT;
+    if (--remaining_ > 0) {
+      destination = kTransient0 + next_;
+      next_ ^= 1;
     }
-    addSpatialFilter(b_);
+    add(source_, destination);
+    source_ = destination;
   }
 
   // Before the diffusion, as without a gather: materials say whether light spreads within a sheet.
   void thinWalls() {
     if (stages_.walls == 0) return;
-    for (const LightGroup& group : b_.facts.lights.list()) {
-      if (group.lightCount == 0) continue;
-      const uint32_t to = destination();
-      addThinWalls(b_, group, source_, to);
-      source_ = to;
-    }
-  }
-
-  void fused(const LightGroup& group) {
-    const uint32_t to = destination();
-    addTranslucency(b_, group, source_, to);
-    source_ = to;
+    for (const LightGroup& group : p_.facts.lights.list())
+      if (group.lightCount > 0)
+        pixels([&](uint32_t from, uint32_t to) { addThinWalls(p_, group, from, to); });
   }
 
   void translucency() {
-    const auto each = [&](auto&& add) {
-      for (const LightGroup& group : b_.facts.lights.list().subspan(stages_.gathered)) add(group);
-    };
+    const auto groups = p_.facts.lights.list().subspan(stages_.gathered);
     if (stages_.history) {
-      if (!reused_)
-        each([&](const LightGroup& group) {
-          addTranslucency(b_, group, PELLUCID_RESOURCE_HISTORY, PELLUCID_RESOURCE_HISTORY);
-        });
-      const uint32_t to = destination();
-      addHistory(b_, source_, to);
-      source_ = to;
+      for (const LightGroup& group : groups)
+        if (!reused_) addTranslucency(p_, group, PELLUCID_RESOURCE_HISTORY, PELLUCID_RESOURCE_HISTORY);
+      pixels([&](uint32_t from, uint32_t to) { addHistory(p_, from, to); });
     } else if (stages_.lights) {
-      each([&](const LightGroup& group) { fused(group); });
+      for (const LightGroup& group : groups)
+        pixels([&](uint32_t from, uint32_t to) { addTranslucency(p_, group, from, to); });
     } else if (stages_.fused > 0) {
-      fused(LightGroup{});
+      pixels([&](uint32_t from, uint32_t to) { addTranslucency(p_, LightGroup{}, from, to); });
     }
   }
 
   void diffusion() {
     if (!stages_.diffusion) return;
-    const uint32_t copy = stages_.copies ? destination() : source_;
-    addBaseLevel(b_, source_, copy);
-    if (stages_.lists) addListBlocks(b_);
-    source_ = copy;
+    if (stages_.copies)
+      pixels([&](uint32_t from, uint32_t to) { addBaseLevel(p_, from, to); });
+    else
+      addBaseLevel(p_, source_, source_);
+    if (stages_.lists) addListBlocks(p_);
+    for (uint32_t finer = kFirstLevel; finer < p_.facts.coarsestLevel; finer += 2) addDownsample(p_, finer);
+    addUpsample(p_, p_.facts.coarsestLevel);
     gather();
-    // Entry points, probes and the spatial filter run beside one of the next dispatches each.
-    uint32_t step = stages_.overlaps && !reused_ ? 0 : 3;
-    const auto alongside = [&](bool beside) {
-      const LightGroup& group = b_.facts.lights.list().front();
-      if (step == 0 && group.gathered == 0) ++step;
-      b_.alongside = beside;
-      if (step == 0) addEntryPoints(b_, group);
-      if (step == 1) addProbes(b_, group, false);
-      if (step == 2) addSpatialFilter(b_);
-      b_.alongside = false;
-      ++step;
-    };
-    for (uint32_t finer = kFirstLevel; finer < b_.facts.coarsestLevel; finer += 2) {
-      addDownsample(b_, finer);
-      if (step < 3) alongside(true);
-    }
-    addUpsample(b_, b_.facts.coarsestLevel);
-    if (step < 3) alongside(true);
-    while (step < 3) alongside(false);
-    const uint32_t to = destination();
-    addDiffuse(b_, source_, to);
-    source_ = to;
+    pixels([&](uint32_t from, uint32_t to) { addDiffuse(p_, from, to); });
   }
 
-  PlanBuilder& b_;
+  // Entry points and probes of each group, and the filter that they share.
+  void gather() {
+    if (stages_.gathered == 0 || reused_) return;
+    for (uint32_t i = 0; i < stages_.gathered; ++i) {
+      const LightGroup& group = p_.facts.lights.list()[i];
+      if (group.gathered > 0) addEntryPoints(p_, group);
+      addProbes(p_, group, i > 0);
+    }
+    addProbeFilter(p_);
+  }
+
+  Planner& p_;
   const Stages& stages_;
   const bool reused_;  // an earlier frame's light stands in for this frame's
   uint32_t source_ = PELLUCID_RESOURCE_IRRADIANCE, next_ = 0, remaining_;
@@ -189,7 +160,7 @@ private:
 
 PellucidResult buildPlan(const FrameFacts& f, const History& kept, PellucidPlan* plan) {
   *plan = PellucidPlan{};
-  PlanBuilder b(f, *plan);
+  Planner b(f, *plan);
   plan->activeLights = f.lights.lightCount;
   plan->constantsSize = f.constants.size;
   plan->gatherSamples = f.gatherSamples;
@@ -199,8 +170,8 @@ PellucidResult buildPlan(const FrameFacts& f, const History& kept, PellucidPlan*
   const bool reused = f.stages.keepsHistory && decideReuse(f, kept, &state.history);
   if (reused) b.skip(f.stages.keepsProbes ? "gather" : "translucency", "reused from an earlier frame");
   plan->historyAge = state.history.age;
-  Stager(b, reused).addAll();
-  if (!b.fits || !f.lights.fitPlan()) {
+  Flow(b, reused).addAll();
+  if (!b.finish() || !f.lights.fitPlan()) {
     *plan = PellucidPlan{};
     return PELLUCID_ERROR_CAPACITY;
   }

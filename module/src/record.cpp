@@ -15,7 +15,7 @@ VkResult bind(const PellucidContext& c, VkCommandBuffer commandBuffer, const Pel
     VkDescriptorSetAllocateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO};
     info.descriptorPool = f.descriptorPool;
     info.descriptorSetCount = 1;
-    info.pSetLayouts = &c.setLayout;
+    info.pSetLayouts = &c.setLayouts[d.pipeline];
     const VkResult result = c.vk.vkAllocateDescriptorSets(c.device, &info, &set);
     if (result != VK_SUCCESS) return result;
   }
@@ -40,10 +40,10 @@ VkResult bind(const PellucidContext& c, VkCommandBuffer commandBuffer, const Pel
   }
   if (c.desc.descriptorPools) {
     c.vk.vkUpdateDescriptorSets(c.device, d.bindingCount, writes, 0, nullptr);
-    c.vk.vkCmdBindDescriptorSets(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, c.pipelineLayout, 0, 1, &set,
+    c.vk.vkCmdBindDescriptorSets(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, c.pipelineLayouts[d.pipeline], 0, 1, &set,
                                  0, nullptr);
   } else {
-    c.vk.pushDescriptorSet(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, c.pipelineLayout, 0, d.bindingCount,
+    c.vk.pushDescriptorSet(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, c.pipelineLayouts[d.pipeline], 0, d.bindingCount,
                            writes);
   }
   return VK_SUCCESS;
@@ -54,7 +54,7 @@ VkResult recordDispatch(const PellucidContext& c, VkCommandBuffer commandBuffer,
   c.vk.vkCmdBindPipeline(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, c.pipelines[d.pipeline]);
   const VkResult result = bind(c, commandBuffer, d, *view.frame, *view.constants);
   if (result != VK_SUCCESS) return result;
-  c.vk.vkCmdPushConstants(commandBuffer, c.pipelineLayout, VK_SHADER_STAGE_COMPUTE_BIT, 0,
+  c.vk.vkCmdPushConstants(commandBuffer, c.pipelineLayouts[d.pipeline], VK_SHADER_STAGE_COMPUTE_BIT, 0,
                           PELLUCID_PUSH_CONSTANT_BYTES, d.pushConstants);
   if (d.indirect)
     c.vk.vkCmdDispatchIndirect(commandBuffer, view.constants->buffer,

@@ -23,7 +23,6 @@ Stages::Stages(const FrameFacts& facts) {
       frame.reuse != PELLUCID_REUSE_NONE && !facts.debug() && translucency && facts.lights.lightCount > 0;
   keepsProbes = keepsHistory && facts.lights.gathered > 0;
   history = keepsHistory && !keepsProbes;
-  overlaps = gathered == 1;
   lists = diffusion && whyNoLists(facts) == nullptr;
 }
 

@@ -22,7 +22,6 @@ struct Stages {
   bool history = false;       // that of pixels: the fused dispatches write it, and one more adds it
   bool copies = false;    // the diffusion alone reads the irradiance and writes the output, which may be one
                           // image and whose pixels read their neighbors: it copies the irradiance first
-  bool overlaps = false;  // the gather runs beside the diffusion, which it does not wait for
   bool lists = false;     // groups run where the GPU finds material
 
   Stages() = default;

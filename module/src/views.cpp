@@ -42,7 +42,7 @@ void checkPlan(const PellucidContext& c, const PellucidPlan& plan, const FrameFa
                        ", but PellucidContextDesc::shadowViewType is 2D");
   for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
     const PellucidDispatch& d = plan.dispatches[i];
-    if (d.pipeline >= kPipelineCount || c.pipelines[d.pipeline] == VK_NULL_HANDLE)
+    if (d.pipeline >= allPasses().size() || c.pipelines[d.pipeline] == VK_NULL_HANDLE)
       return out.error(
           "plan", "needs pipeline ", pellucidPipelineName(d.pipeline),
           c.desc.deferPipelines
@@ -50,8 +50,8 @@ void checkPlan(const PellucidContext& c, const PellucidPlan& plan, const FrameFa
               : ", which PellucidContextDesc::uses leaves out");
     for (uint32_t b = 0; b < d.bindingCount; ++b) {
       const uint32_t resource = d.bindings[b].resource;
-      const uint32_t slot = d.bindings[b].binding - PELLUCID_BINDING_SHADOW_IMAGES;  // huge before the first
-      if (resource == PELLUCID_RESOURCE_FRONT_DEPTH && slot < PELLUCID_SHADOW_IMAGE_COUNT &&
+      const bool shadow = d.bindings[b].binding >= PELLUCID_BINDING_SHADOW_IMAGES;
+      if (resource == PELLUCID_RESOURCE_FRONT_DEPTH && shadow &&
           c.desc.shadowViewType == VK_IMAGE_VIEW_TYPE_2D_ARRAY)
         return out.error("shadowImages",
                          "has no view, but PellucidContextDesc::shadowViewType is 2D_ARRAY, and passes bind "

@@ -39,7 +39,7 @@ enum {
 
 /* One binding of a dispatch. */
 typedef struct PellucidBinding {
-  uint32_t binding;            /* of set 0 */
+  uint32_t binding;            /* of set 0; pellucidBindingName() reads it. A number is one binding in all pipelines */
   VkDescriptorType type;       /* of the binding */
   uint32_t resource;           /* PellucidResource */
   uint32_t level;              /* mip or pyramid level; 0 for a plain image */
@@ -60,7 +60,6 @@ typedef struct PellucidDispatch {
   uint32_t pushConstants[PELLUCID_PUSH_CONSTANT_BYTES / 4]; /* from offset 0 on */
   uint32_t bindingCount;        /* of bindings */
   PellucidBinding bindings[PELLUCID_MAX_BINDINGS]; /* of set 0 */
-  uint64_t modeledBytes;        /* least device-memory traffic: each image read once, written once */
 } PellucidDispatch;
 
 /* Something that a plan leaves out. */
@@ -126,6 +125,7 @@ PELLUCID_API PellucidResult pellucidPlanToJson(const PellucidPlan* plan, char* t
 
 PELLUCID_API const char* pellucidResourceName(uint32_t resource); /* "frontDepth", ... */
 PELLUCID_API const char* pellucidPipelineName(uint32_t pipeline); /* "unknown pipeline" beyond the last */
+PELLUCID_API const char* pellucidBindingName(uint32_t binding); /* as in the shaders' sources, "frontDepthImage"; "unknown binding" */
 
 #ifdef __cplusplus
 }
