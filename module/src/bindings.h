@@ -1,4 +1,5 @@
-// Names and types of the shaders' bindings. A number of compute/shared/pellucid_shared.h is one binding in all passes.
+// Names and types of the shaders' bindings. A number of compute/shared/pellucid_shared.h is one binding in
+// all passes.
 #pragma once
 
 #include <array>

@@ -46,8 +46,7 @@ glm::vec4 rgb(const float (&v)[3], float w = 0) { return {v[0], v[1], v[2], w}; 
 shared::FrameConstants frameConstants(const FrameFacts& facts) {
   const PellucidFrame& f = facts.frame;
   shared::FrameConstants c{};
-  c.camera =
-      makeCamera(facts.clipFromView, facts.depthRange, {f.imageExtent[0], f.imageExtent[1]}, f.metersPerUnit);
+  c.camera = facts.camera;
   c.viewFromNormal = f.normalsInViewSpace ? glm::mat4(1) : glm::mat4(glm::mat3(facts.viewFromWorld));
   const glm::mat3 normalFromView = glm::transpose(glm::mat3(c.viewFromNormal));
   const shared::Camera& camera = c.camera;
@@ -64,7 +63,7 @@ shared::FrameConstants frameConstants(const FrameFacts& facts) {
   };
   c.facingRay[0] = {facing(camera.rayBase), facing(camera.rayX)};
   c.facingRay[1] = {facing(camera.rayY), 0, 0};
-  const std::array<glm::mat4, 3> ambient = ambientIrradiance(facts);
+  const std::array<glm::mat4, 3> ambient = ambientIrradiance(facts, facts);
   std::copy(ambient.begin(), ambient.end(), c.ambient);
   const Rect& r = facts.rect;
   c.rect = {r.x, r.y, r.x + r.width, r.y + r.height};
@@ -77,7 +76,7 @@ shared::FrameConstants frameConstants(const FrameFacts& facts) {
   if (f.thicknessSource == PELLUCID_THICKNESS_CAMERA) flags |= PELLUCID_FLAG_CAMERA_THICKNESS;
   if (t.constantViewDirection) flags |= PELLUCID_FLAG_CONSTANT_VIEW;
   if (t.chordThickness) flags |= PELLUCID_FLAG_CHORD_THICKNESS;
-  if (facts.needsChord) flags |= PELLUCID_FLAG_CHORD;
+  if (facts.lights.needsChord) flags |= PELLUCID_FLAG_CHORD;
   if (facts.diffuses) flags |= PELLUCID_FLAG_DIFFUSED;
   if (facts.wide) flags |= PELLUCID_FLAG_WIDE_OUTPUT;
   if (f.outputMode == PELLUCID_OUTPUT_ADD) flags |= PELLUCID_FLAG_ADDS;
@@ -85,7 +84,7 @@ shared::FrameConstants frameConstants(const FrameFacts& facts) {
   c.flags = {flags, f.materialCount, f.debugView, t.angleModel};
   const float* p = t.anglePolynomial;
   c.anglePolynomial = {p[0], p[1], p[2], p[3]};
-  c.marks = {t.materialMarkBit, f.materialShift, materialBits(f) & ~t.materialMarkBit, 0};
+  c.marks = {t.materialMarkBit, f.materialShift, facts.materialBits() & ~t.materialMarkBit, 0};
   c.filterAndLimit = rgb(t.transmittanceFilter, t.maximumThickness > 0 ? t.maximumThickness : INFINITY);
   for (uint32_t level = kFirstLevel; level <= PELLUCID_LAST_LEVEL; ++level) {
     const PyramidPlace& place = facts.pyramid.levels[level];
@@ -147,7 +146,7 @@ uint32_t placeOf(const LightGroup& group, const PellucidShadowMap& map, uint32_t
 glm::uvec4 occluderConstants(const FrameFacts& f, const PellucidShadowMap& s, const PellucidLight& l,
                              const LightGroup& group) {
   const float scale = s.casterMaterialScale == 0 ? 255.0f : s.casterMaterialScale;
-  return {group.readsExit(f, l, s) ? placeOf(group, s, s.exitImage - 1) + 1 : 0,
+  return {group.readsExit(f, f, l, s) ? placeOf(group, s, s.exitImage - 1) + 1 : 0,
           group.readsCaster(s) ? placeOf(group, s, s.casterMaterialImage - 1) + 1 : 0, bitsOf(scale),
           s.offset[0] | s.offset[1] << 16};
 }
@@ -194,7 +193,8 @@ shared::MaterialConstants materialConstants(const FrameFacts& f, uint32_t index)
   const float exponent = m.transmittanceModel == PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED ? 1.0f : 0.5f;
   const bool canGather = canBeGathered(m.transmittanceModel) && m.thinWalled == 0;
   // Without diffusion nothing of it is corrected.
-  if ((f.gathers || f.ambient.intensity > 0) && canGather) c.gather = gatherConstants(f.diffused(index));
+  if ((f.gathers || f.lights.ambient.intensity > 0) && canGather)
+    c.gather = gatherConstants(f.diffused(index));
   // From other models the ambient light takes nothing from visible faces.
   for (glm::vec4& reflectance : c.gather.reflectance)
     if (!canGather) reflectance.x = 1;
@@ -238,28 +238,26 @@ void putLightTables(const FrameFacts& f, void* mapped) {
 void putLights(const FrameFacts& f, void* mapped) {
   const ConstantsLayout& layout = f.constants;
   const glm::dmat4 worldFromView = glm::inverse(f.viewFromWorld);
-  f.forEachLight([&](const LightGroup& group, const PellucidLight& l) {
-    uint32_t shadow = group.shadowCount - l.shadowMapCount, row = group.entryRows;
-    const bool gathered = f.isGathered(l);
-    for (uint32_t i = 0; gathered && i < l.shadowMapCount; ++i)
-      row -= entryGroups(entryExtent(f, l, i).height);
-    put(mapped,
-        layout.lights.offset + group.lightBytes + (group.lightCount - 1) * sizeof(shared::LightConstants),
-        lightConstants(f, l, shadow));
-    for (uint32_t i = 0; i < l.shadowMapCount; ++i, ++shadow) {
-      const PellucidShadowMap& s = f.frame.shadowMaps[l.firstShadowMap + i];
-      const shared::ShadowConstants constants = shadowConstants(f, s, l, worldFromView, group);
-      put(mapped, layout.shadows.offset + group.shadowBytes + shadow * sizeof constants, constants);
-      if (!gathered) continue;
-      const EntryExtent extent = entryExtent(f, l, i);
-      const EntryConstants entry =
-          entryConstants(s, l, constants, f.viewFromWorld, extent, row, group.lightCount - 1);
-      row += entryGroups(extent.height);
-      put(mapped, layout.gatherMaps.offset + group.gatherMapBytes + shadow * sizeof entry.gather,
-          entry.gather);
-      put(mapped, layout.entryMaps.offset + group.entryMapBytes + shadow * sizeof entry.map, entry.map);
+  for (const LightGroup& group : f.lights.list()) {
+    uint32_t shadow = 0, row = 0;  // of the group, so far
+    for (uint32_t i = 0; i < group.lightCount; ++i) {
+      const PellucidLight& l = f.light(group.firstLight + i);
+      put(mapped, layout.lights.offset + group.lightBytes + i * sizeof(shared::LightConstants),
+          lightConstants(f, l, shadow));
+      for (uint32_t k = 0; k < l.shadowMapCount; ++k, ++shadow) {
+        const PellucidShadowMap& s = f.frame.shadowMaps[l.firstShadowMap + k];
+        const shared::ShadowConstants constants = shadowConstants(f, s, l, worldFromView, group);
+        put(mapped, layout.shadows.offset + group.shadowBytes + shadow * sizeof constants, constants);
+        if (!f.isGathered(l)) continue;
+        const EntryExtent extent = entryExtent(f, f, l, k);
+        const EntryConstants entry = entryConstants(s, l, constants, f.viewFromWorld, extent, row, i);
+        row += entryGroups(extent.height);
+        put(mapped, layout.gatherMaps.offset + group.gatherMapBytes + shadow * sizeof entry.gather,
+            entry.gather);
+        put(mapped, layout.entryMaps.offset + group.entryMapBytes + shadow * sizeof entry.map, entry.map);
+      }
     }
-  });
+  }
 }
 
 // The lists are empty, and their commands have the groups of the plan's dispatches.
@@ -308,7 +306,6 @@ extern "C" PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const
                                                  void* mapped, size_t size) {
   if (!plan || !mapped) return PELLUCID_ERROR_INVALID_ARGUMENT;
   Findings silent(nullptr, nullptr);
-  FrameFacts facts;
-  const PellucidResult result = readFrame(frame, silent, &facts);
-  return result == PELLUCID_OK ? writeConstants(facts, *plan, mapped, size) : result;
+  return readFrame(frame, silent,
+                   [&](const FrameFacts& facts) { return writeConstants(facts, *plan, mapped, size); });
 }

@@ -1,7 +1,7 @@
 // Byte ranges of the constants slice.
 #pragma once
 
-#include "light_groups.h"
+#include "stages.h"
 
 namespace pellucid {
 
@@ -24,8 +24,8 @@ struct ConstantsLayout {
   Range lists{};                    // of frames that diffuse: BlockLists
   VkDeviceSize size = 0;
 
-  ConstantsLayout() = default;
-  explicit ConstantsLayout(const FrameFacts& facts);
+  ConstantsLayout(const Inputs& inputs, const GatherChoice& gather, const Lights& all, const Stages& stages,
+                  const Blocks& blocks);
 };
 
 }  // namespace pellucid

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <bitset>
-#include <memory>
 #include <iterator>
+#include <memory>
 #include <new>
 
 #include "defaults.h"
@@ -109,7 +109,8 @@ VkResult createLayout(PellucidContext& c, uint32_t index, const char** call) {
   });
   set.pBindings = bindings;
   *call = "vkCreateDescriptorSetLayout";
-  const VkResult result = c.vk.vkCreateDescriptorSetLayout(c.device, &set, c.callbacks(), &c.setLayouts[index]);
+  const VkResult result =
+      c.vk.vkCreateDescriptorSetLayout(c.device, &set, c.callbacks(), &c.setLayouts[index]);
   if (result != VK_SUCCESS) return result;
 
   const VkPushConstantRange push{VK_SHADER_STAGE_COMPUTE_BIT, 0, PELLUCID_PUSH_CONSTANT_BYTES};

@@ -3,8 +3,8 @@
 #include <array>
 
 #include "findings.h"
-#include "pellucid/pellucid.h"
 #include "pass.h"
+#include "pellucid/pellucid.h"
 #include "vk_table.h"
 
 // Immutable once pellucidCreateContext has returned, but for the pipelines that pellucidCreatePipelines adds.

@@ -19,14 +19,20 @@ struct ImageField {
 };
 
 constexpr std::array kImageFields = {
-    ImageField{PELLUCID_RESOURCE_FRONT_DEPTH, "frontDepth", &PellucidFrame::frontDepth, true, PELLUCID_BINDING_FRONT_DEPTH, 0},
+    ImageField{PELLUCID_RESOURCE_FRONT_DEPTH, "frontDepth", &PellucidFrame::frontDepth, true,
+               PELLUCID_BINDING_FRONT_DEPTH, 0},
     ImageField{PELLUCID_RESOURCE_BACK_DEPTH, "backDepth", &PellucidFrame::backDepth, false,
                PELLUCID_BINDING_BACK_DEPTH, PELLUCID_FLAG_BACK_DEPTH},
-    ImageField{PELLUCID_RESOURCE_IRRADIANCE, "irradiance", &PellucidFrame::irradiance, true, PELLUCID_BINDING_SOURCE, 0},
-    ImageField{PELLUCID_RESOURCE_NORMAL, "normal", &PellucidFrame::normal, false, PELLUCID_BINDING_NORMAL, PELLUCID_FLAG_NORMAL},
-    ImageField{PELLUCID_RESOURCE_ALBEDO, "albedo", &PellucidFrame::albedo, false, PELLUCID_BINDING_ALBEDO, PELLUCID_FLAG_ALBEDO},
-    ImageField{PELLUCID_RESOURCE_MATERIAL, "material", &PellucidFrame::material, true, PELLUCID_BINDING_MATERIAL, 0},
-    ImageField{PELLUCID_RESOURCE_OUTPUT, "output", &PellucidFrame::output, true, PELLUCID_BINDING_DESTINATION, 0},
+    ImageField{PELLUCID_RESOURCE_IRRADIANCE, "irradiance", &PellucidFrame::irradiance, true,
+               PELLUCID_BINDING_SOURCE, 0},
+    ImageField{PELLUCID_RESOURCE_NORMAL, "normal", &PellucidFrame::normal, false, PELLUCID_BINDING_NORMAL,
+               PELLUCID_FLAG_NORMAL},
+    ImageField{PELLUCID_RESOURCE_ALBEDO, "albedo", &PellucidFrame::albedo, false, PELLUCID_BINDING_ALBEDO,
+               PELLUCID_FLAG_ALBEDO},
+    ImageField{PELLUCID_RESOURCE_MATERIAL, "material", &PellucidFrame::material, true,
+               PELLUCID_BINDING_MATERIAL, 0},
+    ImageField{PELLUCID_RESOURCE_OUTPUT, "output", &PellucidFrame::output, true, PELLUCID_BINDING_DESTINATION,
+               0},
 };
 
 inline bool given(const PellucidImage& image) { return image.view != VK_NULL_HANDLE; }

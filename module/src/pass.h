@@ -15,7 +15,7 @@ struct Pass {
   const char* pipeline;  // name
   std::span<const uint32_t> words;
   std::span<const uint32_t> wordsOfArrays = {};  // where shadow images are layers of arrays; empty: the same
-  uint32_t uses;                            // PellucidUse bits, all of which it takes to make it
+  uint32_t uses;                                 // PellucidUse bits, all of which it takes to make it
   BindingSet reads, writes;
   std::span<const PellucidSpecialization> constants = {};
   Counted counted = Counted::Nothing;

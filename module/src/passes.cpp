@@ -54,7 +54,11 @@ constexpr Pass kDebugViewPass{.pipeline = "debug_view",
 void addLights(Planner& p, const Pass& pass, const char* name, const LightGroup& group, uint32_t through,
                uint32_t source, uint32_t destination) {
   Step step = p.add(pass, name);
-  step.tiles(PELLUCID_TILE).lights(group).colors(source, destination).push(0, through).push(1, group.lightCount);
+  step.tiles(PELLUCID_TILE)
+      .lights(group)
+      .colors(source, destination)
+      .push(0, through)
+      .push(1, group.lightCount);
   if (destination == PELLUCID_RESOURCE_HISTORY && group.firstLight == 0) step.push(2, PELLUCID_WRITE_STARTS);
 }
 
@@ -134,7 +138,8 @@ constexpr Pass kDownsamplePass{
     .reads = bindings(PELLUCID_BINDING_FRAME, PELLUCID_BINDING_PYRAMID, PELLUCID_BINDING_BLOCKS),
     .writes = bindings(PELLUCID_BINDING_LEVELS)};
 
-// Groups of `side` texels that [first, first + size) touches. Shifts round down, as the border's texels begin below 0.
+// Groups of `side` texels that [first, first + size) touches. Shifts round down, as the border's texels begin
+// below 0.
 uint32_t groupsAlong(int32_t first, int32_t size, uint32_t side) {
   const int shift = std::countr_zero(side);
   return static_cast<uint32_t>(((first + size - 1) >> shift) - (first >> shift) + 1);
@@ -182,14 +187,14 @@ void addUpsample(Planner& p, uint32_t coarsest) {
 // ---- Diffusion of pixels ------------------------------------------------------------------------------
 
 namespace {
-constexpr Pass kDiffusePass{.pipeline = "diffuse",
-                            .words = kDiffuse,
-                            .uses = kDiffusion,
-                            .reads = kColorReads | bindings(PELLUCID_BINDING_PYRAMID,
-                                                            PELLUCID_BINDING_FILTERED_PROBES,
-                                                            PELLUCID_BINDING_BLOCKS),
-                            .writes = kColorWrites,
-                            .counted = Counted::Blocks};
+constexpr Pass kDiffusePass{
+    .pipeline = "diffuse",
+    .words = kDiffuse,
+    .uses = kDiffusion,
+    .reads = kColorReads |
+             bindings(PELLUCID_BINDING_PYRAMID, PELLUCID_BINDING_FILTERED_PROBES, PELLUCID_BINDING_BLOCKS),
+    .writes = kColorWrites,
+    .counted = Counted::Blocks};
 }
 
 void addDiffuse(Planner& p, uint32_t source, uint32_t destination) {
@@ -236,11 +241,10 @@ void addEntryPoints(Planner& p, const LightGroup& group) {
 // ---- Probes -------------------------------------------------------------------------------------------
 
 namespace {
-constexpr BindingSet kProbeReads =
-    bindings(PELLUCID_BINDING_FRAME, PELLUCID_BINDING_LIGHTS, PELLUCID_BINDING_GATHER_MAPS,
-             PELLUCID_BINDING_MATERIALS, PELLUCID_BINDING_FRONT_DEPTH, PELLUCID_BINDING_BACK_DEPTH,
-             PELLUCID_BINDING_NORMAL, PELLUCID_BINDING_MATERIAL, PELLUCID_BINDING_ENTRY_POINTS,
-             PELLUCID_BINDING_BLOCKS);
+constexpr BindingSet kProbeReads = bindings(
+    PELLUCID_BINDING_FRAME, PELLUCID_BINDING_LIGHTS, PELLUCID_BINDING_GATHER_MAPS, PELLUCID_BINDING_MATERIALS,
+    PELLUCID_BINDING_FRONT_DEPTH, PELLUCID_BINDING_BACK_DEPTH, PELLUCID_BINDING_NORMAL,
+    PELLUCID_BINDING_MATERIAL, PELLUCID_BINDING_ENTRY_POINTS, PELLUCID_BINDING_BLOCKS);
 constexpr BindingSet kProbeWrites = bindings(PELLUCID_BINDING_PROBES_DESTINATION);
 
 constexpr Pass kProbesPass{.pipeline = "probes",
@@ -296,9 +300,10 @@ void addProbeFilter(Planner& p) {
 // ---- All ----------------------------------------------------------------------------------------------
 
 namespace {
-constexpr const Pass* kPasses[] = {
-    &kTranslucencyPass, &kDebugViewPass, &kAddHistoryPass,  &kBaseLevelPass, &kListBlocksPass,   &kDownsamplePass,
-    &kUpsamplePass,     &kDiffusePass,   &kEntryPointsPass, &kProbesPass,    &kProbesSharedPass, &kFilterProbesPass};
+constexpr const Pass* kPasses[] = {&kTranslucencyPass, &kDebugViewPass,    &kAddHistoryPass,
+                                   &kBaseLevelPass,    &kListBlocksPass,   &kDownsamplePass,
+                                   &kUpsamplePass,     &kDiffusePass,      &kEntryPointsPass,
+                                   &kProbesPass,       &kProbesSharedPass, &kFilterProbesPass};
 static_assert(std::size(kPasses) <= kMostPasses);
 }  // namespace
 

@@ -1,5 +1,5 @@
-// Adds passes to a frame's plan, with the images and grids that they have there. Passes of one kind are told in
-// docs/how-it-works.md.
+// Adds passes to a frame's plan, with the images and grids that they have there. Passes of one kind are told
+// in docs/how-it-works.md.
 #pragma once
 
 #include "planner.h"
@@ -13,8 +13,8 @@ void addThinWalls(Planner& p, const LightGroup& group, uint32_t source, uint32_t
 // The light that an earlier dispatch or frame left in frame.history.
 void addHistory(Planner& p, uint32_t source, uint32_t destination);
 
-// Level 1 of the pyramid and the blocks' words. `copy`: where pixels go that the last dispatch reads; `source`
-// itself: nowhere.
+// Level 1 of the pyramid and the blocks' words. `copy`: where pixels go that the last dispatch reads;
+// `source` itself: nowhere.
 void addBaseLevel(Planner& p, uint32_t source, uint32_t copy);
 void addListBlocks(Planner& p);
 // Two levels from `finer`.

@@ -1,78 +1,63 @@
 // Frame -> plan. Pure: no device, no allocation.
 #include "plan.h"
 
+#include <algorithm>
+
 #include "passes.h"
 #include "plan_state.h"
+#include "pyramid_energy.h"
 
 namespace pellucid {
 namespace {
 
 // Images that the maps of contributing lights lack.
-void skipBeside(Planner& b) {
-  const FrameFacts& f = b.facts;
+void skipBeside(const FrameFacts& f, Skips& skips) {
   if (!f.lights.beside)
-    b.skip("exit depth and caster material", "more lights have them than the dispatches of a plan can bind");
-  bool noExit = false, noCaster = false;
-  uint32_t backFaces = 0;
-  f.forEachLight([&](const LightGroup&, const PellucidLight& light) {
-    if (f.holdsBackFaces(light)) {
-      ++backFaces;
-      return;
-    }
-    for (uint32_t k = 0; k < light.shadowMapCount; ++k) {
-      const PellucidShadowMap& map = f.frame.shadowMaps[light.firstShadowMap + k];
-      noExit = noExit || (map.exitImage == 0 && f.frame.thicknessSource == PELLUCID_THICKNESS_LIGHT);
-      noCaster = noCaster || map.casterMaterialImage == 0;
-    }
-  });
-  for (uint32_t i = 0; i < backFaces; ++i) {
+    skips.add("exit depth and caster material",
+              "more lights have them than the dispatches of a plan can bind");
+  for (uint32_t i = 0; i < f.lights.holdBackFaces; ++i) {
     constexpr const char* kWhy = "a light's shadow map holds back faces, which do not say where light enters";
-    if (f.frame.thicknessSource == PELLUCID_THICKNESS_LIGHT) b.skip("light-space thickness", kWhy);
-    if (f.gathers) b.skip("gather", kWhy);
+    if (f.frame.thicknessSource == PELLUCID_THICKNESS_LIGHT) skips.add("light-space thickness", kWhy);
+    if (f.gathers) skips.add("gather", kWhy);
   }
-  if (noExit) b.skip("exit depth", "a shadow map has none: air behind an occluder counts as medium");
-  if (noCaster)
-    b.skip("caster material",
-           "a shadow map has none: light enters through opaque bodies and other materials");
+  if (f.lights.lackExit)
+    skips.add("exit depth", "a shadow map has none: air behind an occluder counts as medium");
+  if (f.lights.lackCaster)
+    skips.add("caster material",
+              "a shadow map has none: light enters through opaque bodies and other materials");
 }
 
-// Skips: all that does not run, and why.
-void addSkips(Planner& b) {
-  const FrameFacts& f = b.facts;
-  const auto skipLight = [&](const PellucidLight& light, const char* what) {
-    if (const char* reason = f.whySkipped(light))
-      b.skip(what, reason);
-    else if (f.lacksChord(light) && f.solids)
-      b.skip("light in solids", "no back depth to take a thickness from: thin walls alone let it through");
-  };
-  for (uint32_t i = 0; i < f.frame.lightCount; ++i) skipLight(f.frame.lights[i], "light");
-  if (f.ambient.intensity > 0) skipLight(f.ambient, "ambient light");
-  if (!(f.frame.features & PELLUCID_FEATURE_TRANSLUCENCY))
-    b.skip("translucency", "not among the features");
+// All that does not run, and why.
+Skips skipsOf(const FrameFacts& f) {
+  Skips skips = f.lights.skips;
+  if (!f.translucency())
+    skips.add("translucency", "not among the features");
   else if (f.lights.lightCount == 0)
-    b.skip("translucency", "no light can contribute");
+    skips.add("translucency", "no light can contribute");
   else
-    skipBeside(b);
-  if (f.frame.gatherSamples > 0 && f.whyNotGathered) b.skip("gather", f.whyNotGathered);
+    skipBeside(f, skips);
+  if (f.askedSamples > 0 && f.whyNotGathered) skips.add("gather", f.whyNotGathered);
   if (!(f.frame.features & PELLUCID_FEATURE_DIFFUSION))
-    b.skip("diffusion", "not among the features");
+    skips.add("diffusion", "not among the features");
   else if (f.debug())
-    b.skip("diffusion", "a debug view is written instead");
+    skips.add("diffusion", "a debug view is written instead");
   else if (!f.diffuses)
-    b.skip("diffusion", "no material diffuses");
+    skips.add("diffusion", "no material diffuses");
   if (f.stages.nothing)
-    b.skip("all dispatches",
-           "no light comes through, nothing diffuses, and the output is the irradiance image");
-  if (f.missesTarget) b.skip("targetError", "no number of samples is that exact");
-  if (!f.stages.diffusion) return;
-  if (f.frame.indirectDispatches != PELLUCID_INDIRECT_NONE && !f.stages.lists) b.skip("lists", whyNoLists(f));
+    skips.add("all dispatches",
+              "no light comes through, nothing diffuses, and the output is the irradiance image");
+  if (f.missesTarget) skips.add("targetError", "no number of samples is that exact");
+  if (!f.stages.diffusion) return skips;
+  if (f.frame.indirectDispatches != PELLUCID_INDIRECT_NONE && !f.stages.lists)
+    skips.add("lists", whyNoLists(f, f.lights, f.blocks));
   for (uint32_t i = 0; i < f.frame.materialCount; ++i)
     if (f.reach.pixelsPerMm * widestDeviation(f.diffused(i)) > levelDeviation(f.pyramid.coarsest))
-      b.skip("diffusion radius", "wider than the pyramid holds");
+      skips.add("diffusion radius", "wider than the pyramid holds");
+  return skips;
 }
 
-// Adds the passes of a frame along the data flow. Colors alternate between the two color transients; the last write
-// goes to the output.
+// Adds the passes of a frame along the data flow. Colors alternate between the two color transients; the last
+// write goes to the output.
 class Flow {
 public:
   Flow(Planner& planner, bool reuses)
@@ -158,20 +143,26 @@ private:
 
 }  // namespace
 
+bool addPasses(const FrameFacts& f, bool reused, PellucidPlan* plan) {
+  Planner planner(f, *plan);
+  Flow(planner, reused).addAll();
+  return planner.finish() && f.lights.fitPlan();
+}
+
 PellucidResult buildPlan(const FrameFacts& f, const History& kept, PellucidPlan* plan) {
   *plan = PellucidPlan{};
-  Planner b(f, *plan);
   plan->activeLights = f.lights.lightCount;
   plan->constantsSize = f.constants.size;
   plan->gatherSamples = f.gatherSamples;
   if (f.stages.diffusion) plan->largestRadius = static_cast<float>(f.reach.radius);
-  addSkips(b);
+  Skips skips = skipsOf(f);
   PlanState state;
   const bool reused = f.stages.keepsHistory && decideReuse(f, kept, &state.history);
-  if (reused) b.skip(f.stages.keepsProbes ? "gather" : "translucency", "reused from an earlier frame");
+  if (reused) skips.add(f.stages.keepsProbes ? "gather" : "translucency", "reused from an earlier frame");
+  plan->skipCount = skips.size;
+  std::copy(skips.list.begin(), skips.list.end(), plan->skips);
   plan->historyAge = state.history.age;
-  Flow(b, reused).addAll();
-  if (!b.finish() || !f.lights.fitPlan()) {
+  if (!addPasses(f, reused, plan)) {
     *plan = PellucidPlan{};
     return PELLUCID_ERROR_CAPACITY;
   }

@@ -12,8 +12,12 @@ Step::Step(Planner& planner, const Pass& pass, PellucidDispatch& d) : planner_(p
   forEach(pass.bindings(), [&](const Binding& b) {
     const bool buffer = b.type == kUniforms || b.type == kStorage;
     d.bindings[d.bindingCount++] = {
-        b.number, b.type,
-        buffer ? static_cast<uint32_t>(PELLUCID_RESOURCE_CONSTANTS) : planner.resourceOf(b.number), 0, 0, 0};
+        b.number,
+        b.type,
+        buffer ? static_cast<uint32_t>(PELLUCID_RESOURCE_CONSTANTS) : planner.resourceOf(b.number),
+        0,
+        0,
+        0};
   });
   range(PELLUCID_BINDING_FRAME, layout.frame);
   range(PELLUCID_BINDING_MATERIALS, layout.materials);
@@ -55,7 +59,9 @@ Step& Step::colors(uint32_t source, uint32_t destination) {
   const bool last = destination == PELLUCID_RESOURCE_OUTPUT;
   if (last && planner_.facts.frame.outputMode == PELLUCID_OUTPUT_ADD)
     image(PELLUCID_BINDING_HELD, PELLUCID_RESOURCE_OUTPUT);
-  return image(PELLUCID_BINDING_SOURCE, source).image(PELLUCID_BINDING_DESTINATION, destination).push(2, last);
+  return image(PELLUCID_BINDING_SOURCE, source)
+      .image(PELLUCID_BINDING_DESTINATION, destination)
+      .push(2, last);
 }
 
 Step& Step::lights(const LightGroup& group) {
@@ -65,7 +71,8 @@ Step& Step::lights(const LightGroup& group) {
   range(PELLUCID_BINDING_SHADOWS, {layout.shadows.offset + group.shadowBytes, kShadowWindow});
   // A frame without a gather has no such maps, and a window of as many bytes.
   range(PELLUCID_BINDING_GATHER_MAPS,
-        {f.gathers ? layout.gatherMaps.offset + group.gatherMapBytes : layout.shadows.offset, kGatherMapWindow});
+        {f.gathers ? layout.gatherMaps.offset + group.gatherMapBytes : layout.shadows.offset,
+         kGatherMapWindow});
   range(PELLUCID_BINDING_ENTRY_MAPS, {layout.entryMaps.offset + group.entryMapBytes,
                                       group.shadowCount * sizeof(shared::EntryMapConstants)});
   // Slots that are not read hold a view of the type that shadow images have, as far as the frame has one.
@@ -109,20 +116,12 @@ Step& Step::list(uint32_t which) {
 
 // ---- The plan
 
-void Planner::skip(const char* what, const char* reason) {
-  for (uint32_t i = 0; i < plan_.skipCount; ++i)
-    if (plan_.skips[i].what == what && plan_.skips[i].reason == reason) {
-      ++plan_.skips[i].count;
-      return;
-    }
-  if (plan_.skipCount < PELLUCID_MAX_SKIPS) plan_.skips[plan_.skipCount++] = {what, reason, 1};
-}
-
 // Image of a binding of that name.
 uint32_t Planner::resourceOf(uint32_t binding) const {
   // A flag keeps inputs unread that the frame lacks, but bindings hold a view: the front depth stands in.
   for (const ImageField& image : kImageFields)
-    if (image.binding == binding && (image.required || given(facts.frame.*image.field))) return image.resource;
+    if (image.binding == binding && (image.required || given(facts.frame.*image.field)))
+      return image.resource;
   switch (binding) {
     case PELLUCID_BINDING_HISTORY:
       return PELLUCID_RESOURCE_HISTORY;

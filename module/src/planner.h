@@ -1,6 +1,6 @@
-// Puts passes into the order in which they run. Passes are added along the data flow; each goes into the earliest
-// wave after all passes with which it shares an image or buffer that one of the two writes. Waves are parted by
-// barriers, and the dispatches of one run side by side.
+// Puts passes into the order in which they run. Passes are added along the data flow; each goes into the
+// earliest wave after all passes with which it shares an image or buffer that one of the two writes. Waves
+// are parted by barriers, and the dispatches of one run side by side.
 #pragma once
 
 #include <array>
@@ -15,8 +15,8 @@ inline constexpr uint32_t kShadow0 = PELLUCID_RESOURCE_SHADOW0;
 
 class Planner;
 
-// A dispatch that was added to a plan, until the next one is. Its bindings hold the frame's images, constants and
-// transients of those names; a step sets what varies.
+// A dispatch that was added to a plan, until the next one is. Its bindings hold the frame's images, constants
+// and transients of those names; a step sets what varies.
 class Step {
 public:
   Step& push(uint32_t index, uint32_t value);
@@ -55,7 +55,6 @@ public:
   const FrameFacts& facts;
 
   Step add(const Pass& pass, const char* name);
-  void skip(const char* what, const char* reason);
 
   // Image of a level of the pyramid. The first holds level 2 after upsampling, too.
   uint32_t level(uint32_t level) const {

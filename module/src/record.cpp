@@ -40,11 +40,11 @@ VkResult bind(const PellucidContext& c, VkCommandBuffer commandBuffer, const Pel
   }
   if (c.desc.descriptorPools) {
     c.vk.vkUpdateDescriptorSets(c.device, d.bindingCount, writes, 0, nullptr);
-    c.vk.vkCmdBindDescriptorSets(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, c.pipelineLayouts[d.pipeline], 0, 1, &set,
-                                 0, nullptr);
+    c.vk.vkCmdBindDescriptorSets(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, c.pipelineLayouts[d.pipeline],
+                                 0, 1, &set, 0, nullptr);
   } else {
-    c.vk.pushDescriptorSet(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, c.pipelineLayouts[d.pipeline], 0, d.bindingCount,
-                           writes);
+    c.vk.pushDescriptorSet(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, c.pipelineLayouts[d.pipeline], 0,
+                           d.bindingCount, writes);
   }
   return VK_SUCCESS;
 }

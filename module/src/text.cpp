@@ -90,14 +90,13 @@ void dispatch(Text& out, const PellucidDispatch& d) {
     out << "\"groups\":[" << d.groups[0] << "," << d.groups[1] << "," << d.groups[2] << "],";
   }
   if (d.barrierIndirect) out << "\"barrierIndirect\":true,";
-  out << "\"barrierBefore\":" << (d.barrierBefore ? "true" : "false")
-      << ",\"pushConstants\":[";
+  out << "\"barrierBefore\":" << (d.barrierBefore ? "true" : "false") << ",\"pushConstants\":[";
   for (std::size_t i = 0; i < std::size(d.pushConstants); ++i) out << (i ? "," : "") << d.pushConstants[i];
   out << "],\"bindings\":[";
   for (uint32_t i = 0; i < d.bindingCount; ++i) {
     const PellucidBinding& b = d.bindings[i];
-    out << (i ? "," : "") << "{\"binding\":" << b.binding << ",\"name\":\"" << pellucidBindingName(b.binding) << "\",\"type\":\"" << descriptorName(b.type)
-        << "\",\"resource\":";
+    out << (i ? "," : "") << "{\"binding\":" << b.binding << ",\"name\":\"" << pellucidBindingName(b.binding)
+        << "\",\"type\":\"" << descriptorName(b.type) << "\",\"resource\":";
     resource(out, b.resource);
     if (b.size > 0) out << ",\"offset\":" << b.offset << ",\"size\":" << b.size;
     if (b.level > 0) out << ",\"level\":" << b.level;

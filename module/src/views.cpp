@@ -134,30 +134,29 @@ PellucidResult prepareView(const PellucidContext& c, std::span<const PellucidVie
   else if (view.constants->offset % 256 != 0 || !view.constants->buffer)
     out.error("constants", "needs a buffer and an offset that is a multiple of 256");
   if (out.result() != PELLUCID_OK) return out.result();
-  FrameFacts facts;
-  const PellucidResult read = readFrame(view.frame, out, &facts);
-  if (read != PELLUCID_OK) return read;
-  checkViews(facts, out);
-  if (out.result() == PELLUCID_OK) checkPlan(c, *view.plan, facts, out);
-  const PellucidConstantsSlice& slice = *view.constants;
-  if (out.result() != PELLUCID_OK) return out.result();
-  if (c.desc.descriptorPools && !facts.frame.descriptorPool)
-    out.error("descriptorPool", "is NULL, but PellucidContextDesc::descriptorPools is 1");
-  else if (slice.size < view.plan->constantsSize)
-    out.fail(PELLUCID_ERROR_BUFFER_TOO_SMALL, "constants.size", "is ", slice.size, "; the plan needs ",
-             view.plan->constantsSize);
-  else if (!slice.mapped)
-    out.error("constants.mapped", "is NULL");
-  for (uint32_t other = 0; other < index && out.result() == PELLUCID_OK; ++other) {
-    checkImages(view, views[other], other, out);
-    checkSlices(view, views[other], other, out);
-    // Frames of views before this one were read, so that they have the field.
-    if (c.desc.descriptorPools && views[other].frame->descriptorPool == facts.frame.descriptorPool)
-      out.error("descriptorPool", "is views[", other, "].descriptorPool, too");
-  }
-  if (out.result() != PELLUCID_OK) return out.result();
-  if (c.desc.descriptorPools) c.vk.vkResetDescriptorPool(c.device, facts.frame.descriptorPool, 0);
-  return writeConstants(facts, *view.plan, slice.mapped, static_cast<size_t>(slice.size));
+  return readFrame(view.frame, out, [&](const FrameFacts& facts) {
+    checkViews(facts, out);
+    if (out.result() == PELLUCID_OK) checkPlan(c, *view.plan, facts, out);
+    const PellucidConstantsSlice& slice = *view.constants;
+    if (out.result() != PELLUCID_OK) return out.result();
+    if (c.desc.descriptorPools && !facts.frame.descriptorPool)
+      out.error("descriptorPool", "is NULL, but PellucidContextDesc::descriptorPools is 1");
+    else if (slice.size < view.plan->constantsSize)
+      out.fail(PELLUCID_ERROR_BUFFER_TOO_SMALL, "constants.size", "is ", slice.size, "; the plan needs ",
+               view.plan->constantsSize);
+    else if (!slice.mapped)
+      out.error("constants.mapped", "is NULL");
+    for (uint32_t other = 0; other < index && out.result() == PELLUCID_OK; ++other) {
+      checkImages(view, views[other], other, out);
+      checkSlices(view, views[other], other, out);
+      // Frames of views before this one were read, so that they have the field.
+      if (c.desc.descriptorPools && views[other].frame->descriptorPool == facts.frame.descriptorPool)
+        out.error("descriptorPool", "is views[", other, "].descriptorPool, too");
+    }
+    if (out.result() != PELLUCID_OK) return out.result();
+    if (c.desc.descriptorPools) c.vk.vkResetDescriptorPool(c.device, facts.frame.descriptorPool, 0);
+    return writeConstants(facts, *view.plan, slice.mapped, static_cast<size_t>(slice.size));
+  });
 }
 
 }  // namespace
