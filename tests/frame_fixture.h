@@ -116,6 +116,13 @@ struct Frame {
   }
 };
 
+// What a dispatch of the plan binds.
+inline std::vector<PellucidBinding> bindingsOf(const PellucidPlan& plan, const PellucidDispatch& dispatch) {
+  std::vector<PellucidBinding> all(PELLUCID_MAX_BINDINGS);
+  all.resize(pellucidGetBindings(&plan, static_cast<uint32_t>(&dispatch - plan.dispatches), all.data()));
+  return all;
+}
+
 // Names of the plan's dispatches, in their order.
 inline std::vector<std::string> names(const PellucidPlan& plan) {
   std::vector<std::string> result;

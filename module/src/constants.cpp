@@ -4,13 +4,12 @@
 #include <cstring>
 
 #include "constants.h"
-#include "diffusion_profile.h"
 #include "domains.h"
 #include "entry_points.h"
 #include "gather.h"
+#include "material_tables.h"
 #include "minimum_dot.h"
 #include "shadow_map.h"
-#include "transmittance.h"
 
 namespace pellucid {
 namespace {
@@ -186,21 +185,24 @@ shared::ShadowConstants shadowConstants(const FrameFacts& f, const PellucidShado
   return c;
 }
 
-shared::MaterialConstants materialConstants(const FrameFacts& f, uint32_t index) {
-  const PellucidMaterial m = f.material(index);
+shared::MaterialConstants materialConstants(const FrameFacts& f, const MaterialTables& tables) {
+  const PellucidMaterial& m = tables.material;
   shared::MaterialConstants c{};
   c.meta = {m.transmittanceModel, m.gaussianCount, m.thinWalled, 0};
   const float exponent = m.transmittanceModel == PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED ? 1.0f : 0.5f;
   const bool canGather = canBeGathered(m.transmittanceModel) && m.thinWalled == 0;
+  if (f.gathers || f.lights.ambient.intensity > 0) c.gather = tables.gather;
   // Without diffusion nothing of it is corrected.
-  if ((f.gathers || f.lights.ambient.intensity > 0) && canGather)
-    c.gather = gatherConstants(f.diffused(index));
+  if (f.diffusedCount(m) == 0) {
+    c.gather.convexity = glm::vec4(0);
+    c.gather.profile = glm::vec4(0, 0, 0, c.gather.profile.w);
+  }
   // From other models the ambient light takes nothing from visible faces.
   for (glm::vec4& reflectance : c.gather.reflectance)
     if (!canGather) reflectance.x = 1;
   if (f.stages.lights) {  // one thickness a pixel
-    c.inverseReflectance.w = static_cast<float>(1 / halfThickness(m));
-    c.transmittance4.w = static_cast<float>(opaqueThickness(m));
+    c.inverseReflectance.w = static_cast<float>(1 / static_cast<double>(tables.halfThickness));
+    c.transmittance4.w = tables.opaqueThickness;
   }
   for (int channel = 0; channel < 3; ++channel) {
     const float* t = m.transmittance[channel];
@@ -260,20 +262,17 @@ void putLights(const FrameFacts& f, void* mapped) {
   }
 }
 
-// The lists are empty, and their commands have the groups of the plan's dispatches.
-shared::BlockLists blockLists(const FrameFacts& f, const PellucidPlan& plan) {
+// The lists are empty, and their commands have the groups of the plan's dispatches. `reach`: of probes, mm.
+shared::BlockLists blockLists(const FrameFacts& f, const PellucidPlan& plan, float reach) {
   shared::BlockLists c{};
   c.maps.x = f.blocks.maps;
-  float reach = 0;
-  for (uint32_t i = 0; f.gathers && i < f.frame.materialCount; ++i)
-    if (const PellucidMaterial m = f.material(i); m.thinWalled == 0)
-      reach = std::max(reach, gatherReach(m, f.gatherSamples));
   c.reach.x = reach / (1000 * f.frame.metersPerUnit);
   for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
     const PellucidDispatch& d = plan.dispatches[i];
     if (!d.indirect) continue;
     const VkDeviceSize list = (d.indirectOffset - f.constants.lists.offset) / sizeof(glm::uvec4);
-    c.commands[list] = {0, d.groups[1], d.groups[2], d.groups[0]};
+    // A plan of another frame may have them anywhere.
+    if (list < PELLUCID_LISTS) c.commands[list] = {0, d.groups[1], d.groups[2], d.groups[0]};
   }
   return c;
 }
@@ -286,15 +285,25 @@ PellucidResult writeConstants(const FrameFacts& f, const PellucidPlan& plan, voi
     return PELLUCID_ERROR_INVALID_ARGUMENT;
   if (size < layout.size) return PELLUCID_ERROR_BUFFER_TOO_SMALL;
 
-  std::memset(mapped, 0, static_cast<size_t>(layout.size));
+  // Windows and lists are longer than what the shaders read of them, which is written.
   put(mapped, layout.frame.offset, frameConstants(f));
   putLightTables(f, mapped);
   putLights(f, mapped);
-  if (f.stages.diffusion) put(mapped, layout.lists.offset, blockLists(f, plan));
+  float reach = 0;
   for (uint32_t i = 0; i < f.frame.materialCount; ++i) {
-    put(mapped, layout.materials.offset + i * sizeof(shared::MaterialConstants), materialConstants(f, i));
-    put(mapped, layout.kernels.offset + i * sizeof(shared::KernelConstants), kernelConstants(f.diffused(i)));
+    MaterialTables tables;
+    if (f.frame.materialTables)
+      std::memcpy(&tables, f.frame.materialTables[i].words, sizeof tables);
+    else
+      makeTables(f.material(i), &tables);
+    put(mapped, layout.materials.offset + i * sizeof(shared::MaterialConstants),
+        materialConstants(f, tables));
+    if (f.diffusedCount(tables.material) == 0) tables.kernel = {};
+    put(mapped, layout.kernels.offset + i * sizeof(shared::KernelConstants), tables.kernel);
+    if (f.gathers && tables.material.thinWalled == 0)
+      reach = std::max(reach, gatherReach(tables.gather, f.gatherSamples));
   }
+  if (f.stages.diffusion) put(mapped, layout.lists.offset, blockLists(f, plan, reach));
   return PELLUCID_OK;
 }
 

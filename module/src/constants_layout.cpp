@@ -19,7 +19,7 @@ ConstantsLayout::ConstantsLayout(const Inputs& inputs, const GatherChoice& gathe
   place(&kernels, inputs.frame.materialCount * sizeof(shared::KernelConstants));
   if (gather.gathers) {
     place(&gatherMaps, last.gatherMapBytes + kGatherMapWindow);
-    place(&entryMaps, last.entryMapBytes + PELLUCID_DISPATCH_SHADOWS * sizeof(shared::EntryMapConstants));
+    place(&entryMaps, last.entryMapBytes + kEntryMapWindow);
   }
   if (stages.diffusion)
     place(&lists, sizeof(shared::BlockLists) + blocks.maps * PELLUCID_ENTRY_GROUP_WORDS * sizeof(uint32_t));
@@ -40,8 +40,7 @@ VkDeviceSize mostConstants(VkDeviceSize materials, VkDeviceSize lights, VkDevice
          grouped(lights * sizeof(shared::LightConstants), kLightWindow) +
          grouped(maps * sizeof(shared::ShadowConstants), kShadowWindow) +
          grouped(maps * sizeof(shared::GatherMapConstants), kGatherMapWindow) +
-         grouped(maps * sizeof(shared::EntryMapConstants),
-                 PELLUCID_DISPATCH_SHADOWS * sizeof(shared::EntryMapConstants)) +
+         grouped(maps * sizeof(shared::EntryMapConstants), kEntryMapWindow) +
          aligned(sizeof(shared::BlockLists) + maps * PELLUCID_ENTRY_GROUP_WORDS * sizeof(uint32_t));
 }
 

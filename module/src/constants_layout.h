@@ -11,6 +11,7 @@ constexpr VkDeviceSize aligned(VkDeviceSize bytes) { return (bytes + 255) / 256 
 constexpr VkDeviceSize kLightWindow = PELLUCID_DISPATCH_LIGHTS * sizeof(shared::LightConstants);
 constexpr VkDeviceSize kShadowWindow = PELLUCID_DISPATCH_SHADOWS * sizeof(shared::ShadowConstants);
 constexpr VkDeviceSize kGatherMapWindow = PELLUCID_DISPATCH_SHADOWS * sizeof(shared::GatherMapConstants);
+constexpr VkDeviceSize kEntryMapWindow = PELLUCID_DISPATCH_SHADOWS * sizeof(shared::EntryMapConstants);
 static_assert(kLightWindow <= 16384 && kShadowWindow <= 16384 &&
               kGatherMapWindow <= kShadowWindow);  // least maxUniformBufferRange
 

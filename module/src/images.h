@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 #include "pellucid/pellucid.h"
 #include "shared/pellucid_shared.h"
@@ -37,10 +38,19 @@ constexpr std::array kImageFields = {
 
 inline bool given(const PellucidImage& image) { return image.view != VK_NULL_HANDLE; }
 
+// Fields that frames of older headers lack.
+inline VkDescriptorPool poolOf(const PellucidFrame& frame) {
+  return frame.structSize > offsetof(PellucidFrame, descriptorPool) ? frame.descriptorPool : VK_NULL_HANDLE;
+}
+inline const PellucidImage& historyOf(const PellucidFrame& frame) {
+  static constexpr PellucidImage kNone{};
+  return frame.structSize > offsetof(PellucidFrame, history) ? frame.history : kNone;
+}
+
 // The image of any image resource; a transient's and shadow image's by their index.
 inline const PellucidImage& imageOf(const PellucidFrame& frame, uint32_t resource) {
   if (resource >= PELLUCID_RESOURCE_SHADOW0) return frame.shadowImages[resource - PELLUCID_RESOURCE_SHADOW0];
-  if (resource == PELLUCID_RESOURCE_HISTORY) return frame.history;
+  if (resource == PELLUCID_RESOURCE_HISTORY) return historyOf(frame);
   for (const ImageField& image : kImageFields)
     if (image.resource == resource) return frame.*image.field;
   return frame.transients[resource - PELLUCID_RESOURCE_TRANSIENT0];

@@ -23,7 +23,7 @@ PellucidMaterial Inputs::material(uint32_t index) const {
 
 PellucidMaterial Inputs::diffused(uint32_t index) const {
   PellucidMaterial m = material(index);
-  if (!(frame.features & PELLUCID_FEATURE_DIFFUSION)) m.gaussianCount = 0;
+  m.gaussianCount = diffusedCount(m);
   return m;
 }
 

@@ -29,6 +29,9 @@ struct Inputs {
   // As the diffusion takes it: without a profile where the diffusion is not among the features. Its passes
   // add gathered light there, too.
   PellucidMaterial diffused(uint32_t index) const;
+  uint32_t diffusedCount(const PellucidMaterial& material) const {
+    return (frame.features & PELLUCID_FEATURE_DIFFUSION) != 0 ? material.gaussianCount : 0;
+  }
 
   // All maps of a light hold the same faces.
   bool holdsBackFaces(const PellucidLight& light) const {

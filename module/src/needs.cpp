@@ -38,8 +38,8 @@ Extent blocksExtent(const FrameFacts& f) {
 // Grows a need to the waves of the plan whose dispatches bind the image: no barrier lies within a wave.
 void addUse(const PellucidPlan& plan, uint32_t resource, PellucidImageNeed& need) {
   for (uint32_t d = 0; d < plan.dispatchCount; ++d) {
-    const PellucidBinding* bindings = plan.dispatches[d].bindings;
-    if (std::none_of(bindings, bindings + plan.dispatches[d].bindingCount,
+    const BoundList bound = boundBy(plan, plan.dispatches[d]);
+    if (std::none_of(bound.begin(), bound.end(),
                      [&](const PellucidBinding& b) { return b.resource == resource; }))
       continue;
     uint32_t first = d, last = d;

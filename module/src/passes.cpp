@@ -1,5 +1,6 @@
-// Every pass, one block each: its pipeline with what it binds, and its dispatches in a frame.
-#include "passes.h"
+// Every pass, one block each: its pipeline with what it binds, and its dispatches in a frame. At the end, the
+// data flow of a frame through them. docs/how-it-works.md tells what each pass does.
+#include "plan.h"
 
 #include <algorithm>
 #include <bit>
@@ -16,6 +17,7 @@
 #include "kTranslucency.h"
 #include "kTranslucencyArray.h"
 #include "kUpsample.h"
+#include "planner.h"
 
 namespace pellucid {
 namespace {
@@ -62,35 +64,33 @@ void addLights(Planner& p, const Pass& pass, const char* name, const LightGroup&
   if (destination == PELLUCID_RESOURCE_HISTORY && group.firstLight == 0) step.push(2, PELLUCID_WRITE_STARTS);
 }
 
-}  // namespace
-
+// The lights of a group with one thickness a pixel, and debug views.
 void addTranslucency(Planner& p, const LightGroup& group, uint32_t source, uint32_t destination) {
   const bool debug = p.facts.debug();
   addLights(p, debug ? kDebugViewPass : kTranslucencyPass, debug ? "debug view" : "translucency", group,
             p.facts.stages.walls > 0 ? PELLUCID_LIGHT_SOLIDS : PELLUCID_LIGHT_ALL, source, destination);
 }
 
+// All lights of a group that thin walls let through, in a frame that gathers.
 void addThinWalls(Planner& p, const LightGroup& group, uint32_t source, uint32_t destination) {
   addLights(p, kTranslucencyPass, "thin walls", group, PELLUCID_LIGHT_WALLS, source, destination);
 }
 
 // ---- Light of an earlier frame ----------------------------------------------------------------------
 
-namespace {
 constexpr Pass kAddHistoryPass{.pipeline = "add_history",
                                .words = kAddHistory,
                                .uses = PELLUCID_USE_REUSE,
                                .reads = kColorReads | bindings(PELLUCID_BINDING_HISTORY),
                                .writes = kColorWrites};
-}
 
+// The light that an earlier dispatch or frame left in frame.history.
 void addHistory(Planner& p, uint32_t source, uint32_t destination) {
   p.add(kAddHistoryPass, "add history").tiles(PELLUCID_GROUP_X).colors(source, destination);
 }
 
 // ---- Level 1 of the pyramid and the blocks' words -----------------------------------------------------
 
-namespace {
 constexpr Pass kBaseLevelPass{
     .pipeline = "base_level",
     .words = kBaseLevel,
@@ -99,8 +99,8 @@ constexpr Pass kBaseLevelPass{
                       PELLUCID_BINDING_SOURCE, PELLUCID_BINDING_NORMAL),
     .writes = bindings(PELLUCID_BINDING_LEVELS, PELLUCID_BINDING_BLOCKS, PELLUCID_BINDING_LISTS,
                        PELLUCID_BINDING_DESTINATION)};
-}
 
+// `copy`: where pixels go that the last dispatch reads; `source` itself: nowhere.
 void addBaseLevel(Planner& p, uint32_t source, uint32_t copy) {
   const bool copies = copy != source;
   Step step = p.add(kBaseLevelPass, "base level");
@@ -116,13 +116,11 @@ void addBaseLevel(Planner& p, uint32_t source, uint32_t copy) {
 
 // ---- Lists of blocks ----------------------------------------------------------------------------------
 
-namespace {
 constexpr Pass kListBlocksPass{.pipeline = "list_blocks",
                                .words = kListBlocks,
                                .uses = kDiffusion,
                                .reads = bindings(PELLUCID_BINDING_FRAME, PELLUCID_BINDING_GATHER_MAPS),
                                .writes = bindings(PELLUCID_BINDING_BLOCKS, PELLUCID_BINDING_LISTS)};
-}
 
 void addListBlocks(Planner& p) {
   p.add(kListBlocksPass, "list blocks").groups(p.facts.blocks.listGroups()).lights(LightGroup{});
@@ -130,7 +128,6 @@ void addListBlocks(Planner& p) {
 
 // ---- Downsampling -------------------------------------------------------------------------------------
 
-namespace {
 constexpr Pass kDownsamplePass{
     .pipeline = "downsample",
     .words = kDownsample,
@@ -144,8 +141,7 @@ uint32_t groupsAlong(int32_t first, int32_t size, uint32_t side) {
   const int shift = std::countr_zero(side);
   return static_cast<uint32_t>(((first + size - 1) >> shift) - (first >> shift) + 1);
 }
-}  // namespace
-
+// Two levels from `finer`.
 void addDownsample(Planner& p, uint32_t finer) {
   Step step = p.add(kDownsamplePass, "downsample");
   step.image(PELLUCID_BINDING_PYRAMID, p.level(finer))
@@ -165,7 +161,6 @@ void addDownsample(Planner& p, uint32_t finer) {
 
 // ---- Upsampling ---------------------------------------------------------------------------------------
 
-namespace {
 constexpr Pass kUpsamplePass{
     .pipeline = "upsample",
     .words = kUpsample,
@@ -173,7 +168,6 @@ constexpr Pass kUpsamplePass{
     .reads = bindings(PELLUCID_BINDING_FRAME, PELLUCID_BINDING_KERNELS, PELLUCID_BINDING_PYRAMID,
                       PELLUCID_BINDING_COARSER_LEVELS, PELLUCID_BINDING_BLOCKS),
     .writes = bindings(PELLUCID_BINDING_LEVELS)};
-}
 
 void addUpsample(Planner& p, uint32_t coarsest) {
   p.add(kUpsamplePass, "upsample")
@@ -186,7 +180,6 @@ void addUpsample(Planner& p, uint32_t coarsest) {
 
 // ---- Diffusion of pixels ------------------------------------------------------------------------------
 
-namespace {
 constexpr Pass kDiffusePass{
     .pipeline = "diffuse",
     .words = kDiffuse,
@@ -195,8 +188,8 @@ constexpr Pass kDiffusePass{
              bindings(PELLUCID_BINDING_PYRAMID, PELLUCID_BINDING_FILTERED_PROBES, PELLUCID_BINDING_BLOCKS),
     .writes = kColorWrites,
     .counted = Counted::Blocks};
-}
 
+// With the light of the probes, if the frame has some.
 void addDiffuse(Planner& p, uint32_t source, uint32_t destination) {
   const bool probes = p.facts.stages.gathered > 0;
   Step step = p.add(kDiffusePass, "diffuse");
@@ -210,7 +203,6 @@ void addDiffuse(Planner& p, uint32_t source, uint32_t destination) {
 
 // ---- Entry points of the gather -----------------------------------------------------------------------
 
-namespace {
 constexpr Pass kEntryPointsPass{
     .pipeline = "entry_points",
     .words = kEntryPoints,
@@ -225,8 +217,6 @@ constexpr Pass kEntryPointsPass{
 
 // Columns and, from bit 16 on, rows of a group's entry points.
 uint32_t entriesOf(const LightGroup& group) { return group.entryColumns | group.entryRows << 16; }
-}  // namespace
-
 void addEntryPoints(Planner& p, const LightGroup& group) {
   const uint32_t columns = parts(group.entryWidth, PELLUCID_ENTRY_POINTS_GROUP),
                  rows = parts(group.entryHeight, PELLUCID_ENTRY_POINTS_GROUP);
@@ -240,7 +230,6 @@ void addEntryPoints(Planner& p, const LightGroup& group) {
 
 // ---- Probes -------------------------------------------------------------------------------------------
 
-namespace {
 constexpr BindingSet kProbeReads = bindings(
     PELLUCID_BINDING_FRAME, PELLUCID_BINDING_LIGHTS, PELLUCID_BINDING_GATHER_MAPS, PELLUCID_BINDING_MATERIALS,
     PELLUCID_BINDING_FRONT_DEPTH, PELLUCID_BINDING_BACK_DEPTH, PELLUCID_BINDING_NORMAL,
@@ -268,8 +257,7 @@ uint32_t partsOfBlock(const FrameFacts& f, uint32_t side) {
   const uint32_t along = PELLUCID_BLOCK / (side * f.gatherSpacing);
   return along * along;
 }
-}  // namespace
-
+// `adds`: to what probes found in an earlier dispatch.
 void addProbes(Planner& p, const LightGroup& group, bool adds) {
   p.add(group.gathered > 1 ? kProbesSharedPass : kProbesPass, "probes")
       .blocks(PELLUCID_LIST_PROBES, partsOfBlock(p.facts, PELLUCID_PROBES_GROUP))
@@ -282,14 +270,12 @@ void addProbes(Planner& p, const LightGroup& group, bool adds) {
 
 // ---- Filter of probes ---------------------------------------------------------------------------------
 
-namespace {
 constexpr Pass kFilterProbesPass{.pipeline = "filter_probes",
                                  .words = kFilterProbes,
                                  .uses = kGather,
                                  .reads = bindings(PELLUCID_BINDING_FRAME, PELLUCID_BINDING_MATERIALS,
                                                    PELLUCID_BINDING_FOUND_PROBES, PELLUCID_BINDING_BLOCKS),
                                  .writes = bindings(PELLUCID_BINDING_FILTERED_DESTINATION)};
-}
 
 void addProbeFilter(Planner& p) {
   p.add(kFilterProbesPass, "filter probes")
@@ -299,13 +285,111 @@ void addProbeFilter(Planner& p) {
 
 // ---- All ----------------------------------------------------------------------------------------------
 
-namespace {
 constexpr const Pass* kPasses[] = {&kTranslucencyPass, &kDebugViewPass,    &kAddHistoryPass,
                                    &kBaseLevelPass,    &kListBlocksPass,   &kDownsamplePass,
                                    &kUpsamplePass,     &kDiffusePass,      &kEntryPointsPass,
                                    &kProbesPass,       &kProbesSharedPass, &kFilterProbesPass};
-static_assert(std::size(kPasses) <= kMostPasses);
+constexpr bool fitSlots() {
+  for (const Pass* pass : kPasses)
+    if (slotOf(*pass, PELLUCID_BINDING_SHADOW_IMAGES) > PELLUCID_PLAN_SLOTS) return false;
+  return true;
+}
+static_assert(std::size(kPasses) <= kMostPasses && fitSlots());
+
+// ---- A frame -----------------------------------------------------------------------------------------
+
+// Adds the passes of a frame along the data flow. Colors alternate between the two color transients; the last
+// write goes to the output.
+class Flow {
+public:
+  Flow(Planner& planner, bool reuses)
+      : p_(planner), stages_(planner.facts.stages), reused_(reuses), remaining_(stages_.writers()) {}
+
+  void addAll() {
+    if (stages_.nothing) return;
+    // Gathered light has already spread on its way through; diffusing it again would spread it twice.
+    if (p_.facts.gathers) {
+      thinWalls();
+      diffusion();
+      translucency();
+    } else {
+      translucency();
+      diffusion();
+    }
+  }
+
+private:
+  // Calls add(source, destination) for a pass that goes over pixels.
+  template <class Add>
+  void pixels(Add&& add) {
+    uint32_t destination = PELLUCID_RESOURCE_OUTPUT;
+    if (--remaining_ > 0) {
+      destination = kTransient0 + next_;
+      next_ ^= 1;
+    }
+    add(source_, destination);
+    source_ = destination;
+  }
+
+  // Before the diffusion, as without a gather: materials say whether light spreads within a sheet.
+  void thinWalls() {
+    if (stages_.walls == 0) return;
+    for (const LightGroup& group : p_.facts.lights.list())
+      if (group.lightCount > 0)
+        pixels([&](uint32_t from, uint32_t to) { addThinWalls(p_, group, from, to); });
+  }
+
+  void translucency() {
+    const auto groups = p_.facts.lights.list().subspan(stages_.gathered);
+    if (stages_.history) {
+      for (const LightGroup& group : groups)
+        if (!reused_) addTranslucency(p_, group, PELLUCID_RESOURCE_HISTORY, PELLUCID_RESOURCE_HISTORY);
+      pixels([&](uint32_t from, uint32_t to) { addHistory(p_, from, to); });
+    } else if (stages_.lights) {
+      for (const LightGroup& group : groups)
+        pixels([&](uint32_t from, uint32_t to) { addTranslucency(p_, group, from, to); });
+    } else if (stages_.fused > 0) {
+      pixels([&](uint32_t from, uint32_t to) { addTranslucency(p_, LightGroup{}, from, to); });
+    }
+  }
+
+  void diffusion() {
+    if (!stages_.diffusion) return;
+    if (stages_.copies)
+      pixels([&](uint32_t from, uint32_t to) { addBaseLevel(p_, from, to); });
+    else
+      addBaseLevel(p_, source_, source_);
+    if (stages_.lists) addListBlocks(p_);
+    for (uint32_t finer = kFirstLevel; finer < p_.facts.coarsestLevel; finer += 2) addDownsample(p_, finer);
+    addUpsample(p_, p_.facts.coarsestLevel);
+    gather();
+    pixels([&](uint32_t from, uint32_t to) { addDiffuse(p_, from, to); });
+  }
+
+  // Entry points and probes of each group, and the filter that they share.
+  void gather() {
+    if (stages_.gathered == 0 || reused_) return;
+    for (uint32_t i = 0; i < stages_.gathered; ++i) {
+      const LightGroup& group = p_.facts.lights.list()[i];
+      if (group.gathered > 0) addEntryPoints(p_, group);
+      addProbes(p_, group, i > 0);
+    }
+    addProbeFilter(p_);
+  }
+
+  Planner& p_;
+  const Stages& stages_;
+  const bool reused_;  // an earlier frame's light stands in for this frame's
+  uint32_t source_ = PELLUCID_RESOURCE_IRRADIANCE, next_ = 0, remaining_;
+};
+
 }  // namespace
+
+bool addPasses(const FrameFacts& f, bool reused, PellucidPlan* plan) {
+  Planner planner(f, *plan);
+  Flow(planner, reused).addAll();
+  return planner.finish() && f.lights.fitPlan();
+}
 
 std::span<const Pass* const> allPasses() { return kPasses; }
 

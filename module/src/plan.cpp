@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "passes.h"
 #include "plan_state.h"
 #include "pyramid_energy.h"
 
@@ -56,98 +55,7 @@ Skips skipsOf(const FrameFacts& f) {
   return skips;
 }
 
-// Adds the passes of a frame along the data flow. Colors alternate between the two color transients; the last
-// write goes to the output.
-class Flow {
-public:
-  Flow(Planner& planner, bool reuses)
-      : p_(planner), stages_(planner.facts.stages), reused_(reuses), remaining_(stages_.writers()) {}
-
-  void addAll() {
-    if (stages_.nothing) return;
-    // Gathered light has already spread on its way through; diffusing it again would spread it twice.
-    if (p_.facts.gathers) {
-      thinWalls();
-      diffusion();
-      translucency();
-    } else {
-      translucency();
-      diffusion();
-    }
-  }
-
-private:
-  // Calls add(source, destination) for a pass that goes over pixels.
-  template <class Add>
-  void pixels(Add&& add) {
-    uint32_t destination = PELLUCID_RESOURCE_OUTPUT;
-    if (--remaining_ > 0) {
-      destination = kTransient0 + next_;
-      next_ ^= 1;
-    }
-    add(source_, destination);
-    source_ = destination;
-  }
-
-  // Before the diffusion, as without a gather: materials say whether light spreads within a sheet.
-  void thinWalls() {
-    if (stages_.walls == 0) return;
-    for (const LightGroup& group : p_.facts.lights.list())
-      if (group.lightCount > 0)
-        pixels([&](uint32_t from, uint32_t to) { addThinWalls(p_, group, from, to); });
-  }
-
-  void translucency() {
-    const auto groups = p_.facts.lights.list().subspan(stages_.gathered);
-    if (stages_.history) {
-      for (const LightGroup& group : groups)
-        if (!reused_) addTranslucency(p_, group, PELLUCID_RESOURCE_HISTORY, PELLUCID_RESOURCE_HISTORY);
-      pixels([&](uint32_t from, uint32_t to) { addHistory(p_, from, to); });
-    } else if (stages_.lights) {
-      for (const LightGroup& group : groups)
-        pixels([&](uint32_t from, uint32_t to) { addTranslucency(p_, group, from, to); });
-    } else if (stages_.fused > 0) {
-      pixels([&](uint32_t from, uint32_t to) { addTranslucency(p_, LightGroup{}, from, to); });
-    }
-  }
-
-  void diffusion() {
-    if (!stages_.diffusion) return;
-    if (stages_.copies)
-      pixels([&](uint32_t from, uint32_t to) { addBaseLevel(p_, from, to); });
-    else
-      addBaseLevel(p_, source_, source_);
-    if (stages_.lists) addListBlocks(p_);
-    for (uint32_t finer = kFirstLevel; finer < p_.facts.coarsestLevel; finer += 2) addDownsample(p_, finer);
-    addUpsample(p_, p_.facts.coarsestLevel);
-    gather();
-    pixels([&](uint32_t from, uint32_t to) { addDiffuse(p_, from, to); });
-  }
-
-  // Entry points and probes of each group, and the filter that they share.
-  void gather() {
-    if (stages_.gathered == 0 || reused_) return;
-    for (uint32_t i = 0; i < stages_.gathered; ++i) {
-      const LightGroup& group = p_.facts.lights.list()[i];
-      if (group.gathered > 0) addEntryPoints(p_, group);
-      addProbes(p_, group, i > 0);
-    }
-    addProbeFilter(p_);
-  }
-
-  Planner& p_;
-  const Stages& stages_;
-  const bool reused_;  // an earlier frame's light stands in for this frame's
-  uint32_t source_ = PELLUCID_RESOURCE_IRRADIANCE, next_ = 0, remaining_;
-};
-
 }  // namespace
-
-bool addPasses(const FrameFacts& f, bool reused, PellucidPlan* plan) {
-  Planner planner(f, *plan);
-  Flow(planner, reused).addAll();
-  return planner.finish() && f.lights.fitPlan();
-}
 
 PellucidResult buildPlan(const FrameFacts& f, const History& kept, PellucidPlan* plan) {
   *plan = PellucidPlan{};
@@ -166,7 +74,17 @@ PellucidResult buildPlan(const FrameFacts& f, const History& kept, PellucidPlan*
     *plan = PellucidPlan{};
     return PELLUCID_ERROR_CAPACITY;
   }
-  state.frame = hashOf(f);
+  state.materials = f.frame.materialCount;
+  state.rect = f.rect;
+  state.outputFormat = f.frame.outputFormat;
+  state.lightTables = f.frame.lightTableCount;
+  const PellucidShadowMap* end = f.frame.shadowMaps + f.frame.shadowMapCount;
+  const PellucidShadowMap* layered =
+      std::find_if(f.frame.shadowMaps, end, [](const PellucidShadowMap& map) { return map.layer > 0; });
+  if (layered != end) {
+    state.layeredMap = static_cast<uint32_t>(layered - f.frame.shadowMaps) + 1;
+    state.layer = layered->layer;
+  }
   keep(state, plan);
   return PELLUCID_OK;
 }

@@ -8,35 +8,19 @@ namespace pellucid {
 // ---- A step
 
 Step::Step(Planner& planner, const Pass& pass, PellucidDispatch& d) : planner_(planner), pass_(pass), d_(d) {
-  const ConstantsLayout& layout = planner.facts.constants;
   forEach(pass.bindings(), [&](const Binding& b) {
-    const bool buffer = b.type == kUniforms || b.type == kStorage;
-    d.bindings[d.bindingCount++] = {
-        b.number,
-        b.type,
-        buffer ? static_cast<uint32_t>(PELLUCID_RESOURCE_CONSTANTS) : planner.resourceOf(b.number),
-        0,
-        0,
-        0};
+    if (b.type == kSampled || b.type == kStored) image(b.number, planner.resourceOf(b.number));
   });
-  range(PELLUCID_BINDING_FRAME, layout.frame);
-  range(PELLUCID_BINDING_MATERIALS, layout.materials);
-  range(PELLUCID_BINDING_KERNELS, layout.kernels);
-  range(PELLUCID_BINDING_LISTS, layout.lists);
+  const ConstantsLayout& layout = planner.facts.constants;
+  constants(PELLUCID_BINDING_FRAME, layout.frame.offset);
+  constants(PELLUCID_BINDING_MATERIALS, layout.materials.offset);
+  constants(PELLUCID_BINDING_KERNELS, layout.kernels.offset);
+  constants(PELLUCID_BINDING_LISTS, layout.lists.offset);
 }
 
-PellucidBinding* Step::find(uint32_t binding) {
-  PellucidBinding* end = d_.bindings + d_.bindingCount;
-  PellucidBinding* found =
-      std::find_if(d_.bindings, end, [&](const PellucidBinding& b) { return b.binding == binding; });
-  return found == end ? nullptr : found;
-}
-
-void Step::range(uint32_t binding, const ConstantsLayout::Range& range) {
-  if (PellucidBinding* b = find(binding)) {
-    b->offset = range.offset;
-    b->size = range.size;
-  }
+void Step::constants(uint32_t binding, VkDeviceSize offset) {
+  if (has(pass_.bindings(), binding))
+    d_.slots[slotOf(pass_, binding)] = static_cast<uint16_t>(offset / kSlotBytes);
 }
 
 Step& Step::push(uint32_t index, uint32_t value) {
@@ -45,7 +29,8 @@ Step& Step::push(uint32_t index, uint32_t value) {
 }
 
 Step& Step::image(uint32_t binding, uint32_t resource) {
-  if (PellucidBinding* b = find(binding)) b->resource = resource;
+  if (binding < PELLUCID_BINDING_SHADOW_IMAGES && has(pass_.bindings(), binding))
+    d_.slots[slotOf(pass_, binding)] = static_cast<uint16_t>(resource);
   return *this;
 }
 
@@ -67,22 +52,17 @@ Step& Step::colors(uint32_t source, uint32_t destination) {
 Step& Step::lights(const LightGroup& group) {
   const FrameFacts& f = planner_.facts;
   const ConstantsLayout& layout = f.constants;
-  range(PELLUCID_BINDING_LIGHTS, {layout.lights.offset + group.lightBytes, kLightWindow});
-  range(PELLUCID_BINDING_SHADOWS, {layout.shadows.offset + group.shadowBytes, kShadowWindow});
+  constants(PELLUCID_BINDING_LIGHTS, layout.lights.offset + group.lightBytes);
+  constants(PELLUCID_BINDING_SHADOWS, layout.shadows.offset + group.shadowBytes);
   // A frame without a gather has no such maps, and a window of as many bytes.
-  range(PELLUCID_BINDING_GATHER_MAPS,
-        {f.gathers ? layout.gatherMaps.offset + group.gatherMapBytes : layout.shadows.offset,
-         kGatherMapWindow});
-  range(PELLUCID_BINDING_ENTRY_MAPS, {layout.entryMaps.offset + group.entryMapBytes,
-                                      group.shadowCount * sizeof(shared::EntryMapConstants)});
-  // Slots that are not read hold a view of the type that shadow images have, as far as the frame has one.
+  constants(PELLUCID_BINDING_GATHER_MAPS,
+            f.gathers ? layout.gatherMaps.offset + group.gatherMapBytes : layout.shadows.offset);
+  constants(PELLUCID_BINDING_ENTRY_MAPS, layout.entryMaps.offset + group.entryMapBytes);
+  if (!has(pass_.bindings(), PELLUCID_BINDING_SHADOW_IMAGES)) return *this;
+  // The first image stands in where the group has none.
   const bool some = f.frame.shadowImageCount > 0 && given(f.frame.shadowImages[0]);
-  const uint32_t unused = group.imageCount > 0 ? kShadow0 + group.images[0]
-                          : some               ? kShadow0
-                                               : static_cast<uint32_t>(PELLUCID_RESOURCE_FRONT_DEPTH);
-  for (uint32_t slot = 0; slot < PELLUCID_ENTRY_IMAGE_COUNT; ++slot)
-    image(PELLUCID_BINDING_SHADOW_IMAGES + slot,
-          slot < group.imageCount ? kShadow0 + group.images[slot] : unused);
+  planner_.addShadowImages(d_, group.imageCount > 0 ? std::span(group.images.data(), group.imageCount)
+                                                    : std::span(group.images.data(), some ? 1 : 0));
   return *this;
 }
 
@@ -108,9 +88,9 @@ Step& Step::blocks(uint32_t which, uint32_t parts) {
 Step& Step::list(uint32_t which) {
   if (!planner_.facts.stages.lists) return *this;
   d_.indirect = 1;
-  d_.indirectResource = PELLUCID_RESOURCE_CONSTANTS;
-  d_.indirectOffset = planner_.facts.constants.lists.offset + offsetof(shared::BlockLists, commands) +
-                      which * sizeof(glm::uvec4);
+  d_.indirectOffset =
+      static_cast<uint32_t>(planner_.facts.constants.lists.offset + offsetof(shared::BlockLists, commands) +
+                            which * sizeof(glm::uvec4));
   return *this;
 }
 
@@ -151,25 +131,35 @@ Step Planner::add(const Pass& pass, const char* name) {
   }
   d->name = name;
   const auto passes = allPasses();
-  d->pipeline = static_cast<uint32_t>(std::find(passes.begin(), passes.end(), &pass) - passes.begin());
+  d->pipeline = static_cast<uint8_t>(std::find(passes.begin(), passes.end(), &pass) - passes.begin());
   return {*this, pass, *d};
+}
+
+void Planner::addShadowImages(PellucidDispatch& d, std::span<const uint32_t> images) {
+  // At most 8 a dispatch: that of entry points, with 12, comes with one of probes, which has none.
+  if (shadowImages_ + images.size() > PELLUCID_PLAN_SHADOW_IMAGES) {
+    fits_ = false;
+    return;
+  }
+  d.firstShadowImage = static_cast<uint16_t>(shadowImages_);
+  d.shadowImageCount = static_cast<uint16_t>(images.size());
+  std::copy(images.begin(), images.end(), plan_.shadowImages + shadowImages_);
+  shadowImages_ += d.shadowImageCount;
 }
 
 Planner::Access Planner::accessOf(const Pass& pass, const PellucidDispatch& d, BindingSet unused) const {
   constexpr uint32_t kLists = 1u << PELLUCID_RESOURCE_CONSTANTS;
   Access access;
   if (d.indirect) access.reads = kLists;
-  for (uint32_t i = 0; i < d.bindingCount; ++i) {
-    const PellucidBinding& b = d.bindings[i];
-    const bool lists = b.binding == PELLUCID_BINDING_LISTS;
-    if (b.resource >= kShadow0 || has(unused, b.binding)) continue;
-    if (b.resource == PELLUCID_RESOURCE_CONSTANTS && !lists) continue;
-    uint32_t bits = 1u << b.resource;
+  forEach(pass.bindings() & ~unused, [&](const Binding& b) {
+    const bool image = b.type == kSampled || b.type == kStored;
+    if (b.number >= PELLUCID_BINDING_SHADOW_IMAGES || (!image && b.number != PELLUCID_BINDING_LISTS)) return;
+    uint32_t bits = image ? 1u << d.slots[slotOf(pass, b.number)] : kLists;
     // The two may be one image.
     constexpr uint32_t kInPlace = 1u << PELLUCID_RESOURCE_OUTPUT | 1u << PELLUCID_RESOURCE_IRRADIANCE;
     if ((bits & kInPlace) != 0 && !facts.separate()) bits = kInPlace;
-    (has(pass.writes, b.binding) ? access.writes : access.reads) |= bits;
-  }
+    (has(pass.writes, b.number) ? access.writes : access.reads) |= bits;
+  });
   return access;
 }
 

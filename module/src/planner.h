@@ -6,12 +6,9 @@
 #include <array>
 
 #include "frame.h"
-#include "pass.h"
+#include "plan_bindings.h"
 
 namespace pellucid {
-
-inline constexpr uint32_t kTransient0 = PELLUCID_RESOURCE_TRANSIENT0;
-inline constexpr uint32_t kShadow0 = PELLUCID_RESOURCE_SHADOW0;
 
 class Planner;
 
@@ -40,8 +37,7 @@ public:
 private:
   friend class Planner;
   Step(Planner& planner, const Pass& pass, PellucidDispatch& dispatch);
-  PellucidBinding* find(uint32_t binding);
-  void range(uint32_t binding, const ConstantsLayout::Range& range);
+  void constants(uint32_t binding, VkDeviceSize offset);
 
   Planner& planner_;
   const Pass& pass_;
@@ -83,11 +79,13 @@ private:
       return (writes & (other.reads | other.writes)) != 0 || (reads & other.writes) != 0;
     }
   };
+  void addShadowImages(PellucidDispatch& d, std::span<const uint32_t> images);
   Access accessOf(const Pass& pass, const PellucidDispatch& d, BindingSet unused) const;
   uint32_t resourceOf(uint32_t binding) const;
 
   PellucidPlan& plan_;
   bool fits_ = true;
+  uint32_t shadowImages_ = 0;  // of the plan, so far
   PellucidDispatch beyond_{};  // what does not fit
   std::array<BindingSet, PELLUCID_MAX_DISPATCHES> standIns_{};
 };

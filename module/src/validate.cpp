@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "defaults.h"
 #include "domains.h"
@@ -252,6 +253,9 @@ void checkMaterials(const Inputs& inputs, Findings& out) {
   for (uint32_t i = 0; i < f.materialCount; ++i) {
     const PellucidMaterial material = inputs.material(i);
     checkMaterial(material, i, out);
+    if (f.materialTables && std::memcmp(f.materialTables[i].words, &material, sizeof material) != 0)
+      out.error(Field("materialTables[", i, "]"), "is of another material than materials[", i,
+                "] (call pellucidMakeMaterialTables)");
   }
 }
 

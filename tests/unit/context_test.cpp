@@ -57,7 +57,9 @@ PellucidResult recordOnNull(const PellucidContext* context, NullCommands& comman
   commands.sliceSize = plan.constantsSize;
   const PellucidConstantsSlice slice{reinterpret_cast<VkBuffer>(uintptr_t{1}), 0, plan.constantsSize,
                                      constants.data()};
-  return pellucidRecordPlan(context, commands.handle(), &plan, &frame, &slice);
+  const PellucidResult written = pellucidWriteConstants(&plan, &frame, constants.data(), constants.size());
+  return written == PELLUCID_OK ? pellucidRecordPlan(context, commands.handle(), &plan, &frame, &slice)
+                                : written;
 }
 
 TEST(ContextMemory, EveryFailingAllocationIsReportedAndNothingLeaks) {
@@ -228,13 +230,9 @@ TEST(ContextRecording, SetsComeFromTheFramesPool) {
   pellucidDestroyContext(context);
 }
 
-// A plan of a valid frame and a frame that is not: recording refuses it before it reads what is not there.
-TEST(ContextRecording, FramesThatAreNotValidAreRefused) {
-  NullDevice device;
-  Sentences sentences;
-  const PellucidContextDesc desc = descOf(device, sentences);
-  PellucidContext* context = nullptr;
-  ASSERT_EQ(pellucidCreateContext(&desc, &context), PELLUCID_OK);
+// A plan of a valid frame and a frame that is not: its constants are refused before what is not there is
+// read.
+TEST(ContextRecording, ConstantsOfFramesThatAreNotValidAreRefused) {
   static const float table[9] = {};
   const std::pair<const char*, void (*)(Frame&)> damages[] = {
       {"NULL", [](Frame& f) { f.frame.materials = nullptr; }},
@@ -259,13 +257,13 @@ TEST(ContextRecording, FramesThatAreNotValidAreRefused) {
     ASSERT_EQ(f.problems(), "");
     const PellucidPlan plan = f.plan();
     damage(f);
-    std::vector<unsigned char> constants;
-    NullCommands commands;
-    EXPECT_EQ(recordOnNull(context, commands, plan, f.frame, constants), PELLUCID_ERROR_INVALID_ARGUMENT);
-    EXPECT_NE(sentences.last.find(words), std::string::npos) << sentences.last;
-    EXPECT_EQ(commands.dispatches, 0u);
+    std::vector<unsigned char> constants(plan.constantsSize, 0xAB);
+    EXPECT_EQ(pellucidWriteConstants(&plan, &f.frame, constants.data(), constants.size()),
+              PELLUCID_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(std::count(constants.begin(), constants.end(), 0xAB),
+              static_cast<std::ptrdiff_t>(constants.size()));
+    EXPECT_NE(f.problems().find(words), std::string::npos) << f.problems();
   }
-  pellucidDestroyContext(context);
 }
 
 // A context that defers has the pipelines of the plans that it was asked for, once each.
