@@ -1,6 +1,7 @@
 #include "bench_frame.h"
 
-#include <algorithm>
+#include <set>
+#include <utility>
 
 #include "common/error.h"
 
@@ -28,20 +29,44 @@ void BenchFrame::writeConstants() const {
             run_.frame(), "constants");
 }
 
-const PellucidBinding* BenchFrame::find(uint32_t binding) const {
-  const PellucidPlan& plan = run_.plan();
-  if (plan.dispatchCount == 0) return nullptr;
-  const PellucidBinding* first = plan.dispatches[0].bindings;
-  const PellucidBinding* end = first + plan.dispatches[0].bindingCount;
-  const PellucidBinding* found =
-      std::find_if(first, end, [&](const PellucidBinding& b) { return b.binding == binding; });
-  return found == end ? nullptr : found;
+std::vector<PellucidBinding> BenchFrame::bindings(uint32_t dispatch) const {
+  std::vector<PellucidBinding> all(PELLUCID_MAX_BINDINGS);
+  all.resize(pellucidGetBindings(&run_.plan(), dispatch, all.data()));
+  return all;
 }
 
-bool BenchFrame::isPlanned(uint32_t binding) const { return find(binding) != nullptr; }
+std::optional<PellucidBinding> BenchFrame::find(uint32_t binding) const {
+  for (const PellucidBinding& b : bindings(0))
+    if (b.binding == binding) return b;
+  return std::nullopt;
+}
+
+uint64_t BenchFrame::modeledBytes(uint32_t dispatch) const {
+  const PellucidFrame& frame = run_.frame();
+  PellucidImageNeed needs[PELLUCID_MAX_TRANSIENTS];  // no frame of the bench has a history
+  uint32_t count = PELLUCID_MAX_TRANSIENTS;
+  requireOk(pellucidGetImageNeeds(&frame, &count, needs), frame, "needs");
+  const uint64_t pixels = static_cast<uint64_t>(width_) * static_cast<uint64_t>(height_);
+  const auto bytesOf = [&](uint32_t resource) -> uint64_t {
+    const uint32_t transient = resource - PELLUCID_RESOURCE_TRANSIENT0;
+    if (transient < count) return needs[transient].bytes;
+    if (resource == PELLUCID_RESOURCE_MATERIAL) return pixels;
+    if (resource == PELLUCID_RESOURCE_IRRADIANCE || resource == PELLUCID_RESOURCE_OUTPUT)
+      return pixels * (frame.outputFormat == VK_FORMAT_R32G32B32A32_SFLOAT ? 16 : 8);
+    return 4 * pixels;  // depths, maps as large as the image, normals, albedo
+  };
+  std::set<std::pair<uint32_t, VkDescriptorType>> images;
+  for (const PellucidBinding& b : bindings(dispatch))
+    if (b.resource != PELLUCID_RESOURCE_CONSTANTS) images.insert({b.resource, b.type});
+  uint64_t bytes = 0;
+  for (const auto& [resource, type] : images) bytes += bytesOf(resource);
+  return bytes;
+}
+
+bool BenchFrame::isPlanned(uint32_t binding) const { return find(binding).has_value(); }
 
 Resource BenchFrame::planned(uint32_t binding) const {
-  const PellucidBinding* b = find(binding);
+  const std::optional<PellucidBinding> b = find(binding);
   if (!b) throw DeviceError("the plan's first dispatch has no binding " + std::to_string(binding));
   if (b->resource == PELLUCID_RESOURCE_CONSTANTS)
     return VkDescriptorBufferInfo{constants_.handle(), b->offset, b->size};
@@ -62,8 +87,7 @@ Variant moduleVariant(const std::shared_ptr<const BenchFrame>& frame, const std:
   requireOk(pellucidGetImageNeeds(&frame->images(), &count, needs), frame->images(), name);
   uint64_t transients = 0;
   for (uint32_t i = 0; i < count; ++i) transients += needs[i].bytes;
-  for (uint32_t i = 0; i < plan.dispatchCount; ++i)
-    bytes += static_cast<double>(plan.dispatches[i].modeledBytes);
+  for (uint32_t i = 0; i < plan.dispatchCount; ++i) bytes += static_cast<double>(frame->modeledBytes(i));
   return {name,
           plan.dispatchCount,
           plan.barrierCount,

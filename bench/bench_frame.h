@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "common/gpu_image.h"
@@ -29,7 +30,11 @@ public:
   Resource planned(uint32_t binding) const;
   bool isPlanned(uint32_t binding) const;
 
-  // What RecordPlan does to the constants.
+  // Least device-memory traffic of a dispatch of the plan: each image that it binds is read or written once.
+  // Formats that the module does not know are the common ones.
+  uint64_t modeledBytes(uint32_t dispatch) const;
+
+  // The plan's constants, anew.
   void writeConstants() const;
 
   const harness::FrameRun& run() const { return run_; }
@@ -38,7 +43,8 @@ public:
   std::shared_ptr<harness::GpuImage> image(VkFormat format) const;
 
 private:
-  const PellucidBinding* find(uint32_t binding) const;
+  std::vector<PellucidBinding> bindings(uint32_t dispatch) const;
+  std::optional<PellucidBinding> find(uint32_t binding) const;
 
   harness::Device& device_;
   int width_, height_;

@@ -260,9 +260,8 @@ std::string frameHostTable(const Json& results) {
   const Frames all(results);
   const std::string& frame = all.frames().front();
   const std::string& size = all.sizes().back();
-  std::string text =
-      runOf(results) + "; " + frame + " at " + size + ", CPU times in microseconds:\n\n" +
-      header("", {"dispatches", "barriers", "transients, MB", "plan", "constants", "record, with constants"});
+  std::string text = runOf(results) + "; " + frame + " at " + size + ", CPU times in microseconds:\n\n" +
+                     header("", {"dispatches", "barriers", "transients, MB", "plan", "constants", "record"});
   for (const std::string& name : all.names("whole")) {
     const Json* row = all.find(frame, size, "whole", name);
     if (!row) continue;

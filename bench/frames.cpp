@@ -172,7 +172,7 @@ private:
     for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
       const PellucidDispatch& d = plan.dispatches[i];
       const double bytes =
-          static_cast<double>(d.modeledBytes) / static_cast<double>(capture_.material.size());
+          static_cast<double>(f.modeledBytes(i)) / static_cast<double>(capture_.material.size());
       report_.add({"  " + std::to_string(i) + " " + d.name,
                    1,
                    d.barrierBefore,
@@ -209,12 +209,11 @@ private:
     if (turned_) more.update(flickerOf(v, whole));
     add("whole", v, time, kModule, more);
     char text[160];
-    std::snprintf(
-        text, sizeof text,
-        "    transients %.1f bytes/pixel; CPU: plan %.1f us, constants %.1f us, record with them %.1f us",
-        static_cast<double>(v.transientBytes) / static_cast<double>(capture_.material.size()),
-        host["cpu_plan_us"].get<double>(), host["cpu_constants_us"].get<double>(),
-        host["cpu_record_us"].get<double>());
+    std::snprintf(text, sizeof text,
+                  "    transients %.1f bytes/pixel; CPU: plan %.1f us, constants %.1f us, record %.1f us",
+                  static_cast<double>(v.transientBytes) / static_cast<double>(capture_.material.size()),
+                  host["cpu_plan_us"].get<double>(), host["cpu_constants_us"].get<double>(),
+                  host["cpu_record_us"].get<double>());
     report_.note(text);
     dispatches(*f, v.name);
   }

@@ -69,7 +69,7 @@ void dispatches(const Bench& bench, const BenchFrame& frame) {
   for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
     const PellucidDispatch& d = plan.dispatches[i];
     const double bytes =
-        static_cast<double>(d.modeledBytes) / (static_cast<double>(frame.width()) * frame.height());
+        static_cast<double>(frame.modeledBytes(i)) / (static_cast<double>(frame.width()) * frame.height());
     bench.report.add({d.name, 1, d.barrierBefore, bytes, {}},
                      bench.time([&](VkCommandBuffer c) { frame.run().recordAlone(c, i); }));
   }

@@ -242,7 +242,7 @@ private:
     const RenderTarget target(device_, raster_.width, raster_.height,
                               {{VK_FORMAT_R32G32B32A32_SFLOAT, clearTo(0)}}, farDepth(keepGreater));
     const auto constants = std::get<VkDescriptorBufferInfo>(frame->planned(PELLUCID_BINDING_FRAME)).buffer;
-    const PlannedInputs planned{frame->run().plan().dispatches[0], frame->images(), constants};
+    const PlannedInputs planned{frame->run().plan(), frame->images(), constants};
     sum.backFace += draw(rasterizer_.uploaded(), target, view,
                          {FragmentShader::Transmit, VK_CULL_MODE_FRONT_BIT, nearer(keepGreater), false},
                          {&front.depthNormal(), &front.albedoObject(), &planned});

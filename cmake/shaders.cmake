@@ -58,7 +58,7 @@ function(pellucid_shader target array source)
   target_include_directories(${target} PRIVATE ${directory})
 endfunction()
 
-# One SPIR-V module a pass, two of those that read shadow images; module/src/pipelines.cpp lists what is made of them.
+# One SPIR-V module a pass, two of those that read shadow images; module/src/passes.cpp says what is made of them.
 function(pellucid_embed_shaders target)
   set(compute ${PROJECT_SOURCE_DIR}/compute)
   # The translucency runs a fifth longer when optimized: 96 registers in place of 72 on an NVIDIA H100.

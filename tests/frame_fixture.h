@@ -41,6 +41,7 @@ struct Frame {
   // One directional light per shadow image; without images one light without a map.
   explicit Frame(uint32_t shadowImages = 1) {
     pellucidInitFrame(&frame);
+    frame.indirectDispatches = PELLUCID_INDIRECT_NONE;  // tests of lists ask for them
     pellucidInitThesisOptions(&thesis);
     frame.thesis = &thesis;
     frame.gatherSamples = 0;  // tests of the gather say so
@@ -115,6 +116,13 @@ struct Frame {
     return l;
   }
 };
+
+// What a dispatch of the plan binds.
+inline std::vector<PellucidBinding> bindingsOf(const PellucidPlan& plan, const PellucidDispatch& dispatch) {
+  std::vector<PellucidBinding> all(PELLUCID_MAX_BINDINGS);
+  all.resize(pellucidGetBindings(&plan, static_cast<uint32_t>(&dispatch - plan.dispatches), all.data()));
+  return all;
+}
 
 // Names of the plan's dispatches, in their order.
 inline std::vector<std::string> names(const PellucidPlan& plan) {

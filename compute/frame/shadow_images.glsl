@@ -28,10 +28,10 @@ layout(set = 0, binding = SHADOW_BINDING + 5) uniform PELLUCID_SHADOW_TEXTURE sh
 layout(set = 0, binding = SHADOW_BINDING + 6) uniform PELLUCID_SHADOW_TEXTURE shadowImage6;
 layout(set = 0, binding = SHADOW_BINDING + 7) uniform PELLUCID_SHADOW_TEXTURE shadowImage7;
 #ifdef MORE_SHADOW_IMAGES
-layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGE_8) uniform PELLUCID_SHADOW_TEXTURE shadowImage8;
-layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGE_9) uniform PELLUCID_SHADOW_TEXTURE shadowImage9;
-layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGE_10) uniform PELLUCID_SHADOW_TEXTURE shadowImage10;
-layout(set = 0, binding = PELLUCID_BINDING_SHADOW_IMAGE_11) uniform PELLUCID_SHADOW_TEXTURE shadowImage11;
+layout(set = 0, binding = SHADOW_BINDING + 8) uniform PELLUCID_SHADOW_TEXTURE shadowImage8;
+layout(set = 0, binding = SHADOW_BINDING + 9) uniform PELLUCID_SHADOW_TEXTURE shadowImage9;
+layout(set = 0, binding = SHADOW_BINDING + 10) uniform PELLUCID_SHADOW_TEXTURE shadowImage10;
+layout(set = 0, binding = SHADOW_BINDING + 11) uniform PELLUCID_SHADOW_TEXTURE shadowImage11;
 #define PELLUCID_MORE_SLOTS(fetch)           \
     case 8u: return fetch(shadowImage8);     \
     case 9u: return fetch(shadowImage9);     \

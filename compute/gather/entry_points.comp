@@ -8,7 +8,7 @@
 #include "gather/texel_entry.glsl"
 
 layout(set = 0, binding = PELLUCID_BINDING_ENTRY_MAPS) readonly buffer EntryMaps { EntryMapConstants entryMaps[]; };
-layout(set = 0, binding = PELLUCID_BINDING_LEVELS, rgba32ui) uniform writeonly uimage2D entriesDestination;
+layout(set = 0, binding = PELLUCID_BINDING_ENTRIES_DESTINATION, rgba32ui) uniform writeonly uimage2D entriesDestination;
 
 shared uint someSurface;
 // A group's entry points. Each level is made from one array in the first part of the other, by turns.

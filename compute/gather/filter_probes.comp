@@ -6,8 +6,8 @@
 #include "gather/probe.glsl"
 
 layout(set = 0, binding = PELLUCID_BINDING_MATERIALS) readonly buffer Materials { MaterialConstants materials[]; };
-layout(set = 0, binding = PELLUCID_BINDING_ENTRY_POINTS) uniform utexture2D foundImage;
-layout(set = 0, binding = PELLUCID_BINDING_PROBES, rgba32ui) uniform writeonly uimage2D sharedImage;
+layout(set = 0, binding = PELLUCID_BINDING_FOUND_PROBES) uniform utexture2D foundImage;
+layout(set = 0, binding = PELLUCID_BINDING_FILTERED_DESTINATION, rgba32ui) uniform writeonly uimage2D sharedImage;
 
 const int kReach = 3; // cells, across and along together
 const int kSquare = 2 * kReach + 1, kRow = PELLUCID_FILTER_GROUP + 2 * kReach;

@@ -8,7 +8,8 @@
 #include "gather/probe_light.glsl"
 #include "gather/probe_shape.glsl"
 
-layout(set = 0, binding = PELLUCID_BINDING_PROBES, rgba32ui) uniform uimage2D probesImage;
+layout(set = 0, binding = PELLUCID_BINDING_PROBES_DESTINATION, rgba32ui) uniform uimage2D probesImage;
+
 const uint kAdds = 1u << 31; // of pass.value.z
 
 // Finds the first pixel of the cell with a solid's surface: all of the place but its normal, and the texel of the normal image.
@@ -20,7 +21,8 @@ bool findSurface(ivec2 cell, int side, out ProbePlace place, out vec4 normal) {
     place.front = frontDistance(within);
     normal = texelFetch(normalImage, within, 0);
     place.material = within == pixel ? materialIndex(value) : 0u;
-    bool thin = place.material != 0u && hasFlag(PELLUCID_FLAG_THIN_WALLS) && materials[place.material - 1u].meta.z != 0u;
+    bool mayBeThin = mayUse(PELLUCID_SHADER_USE_THIN_WALLS) && hasFlag(PELLUCID_FLAG_THIN_WALLS);
+    bool thin = place.material != 0u && mayBeThin && materials[place.material - 1u].meta.z != 0u;
     if (place.material != 0u && place.front > 0.0 && !thin) return true;
     if (place.index == 0 && !cellHoldsMaterial(side * cell)) return false;
   }

@@ -30,40 +30,39 @@ using glm::vec4;
 #define PELLUCID_FILTER_GROUP 16  // cells of the gather
 #define PELLUCID_LIST_GROUP 256   // invocations of the pass that lists blocks, in a row
 
+// Bindings of set 0. A number is one binding in all passes, each of which declares those that it reads or writes
+// (module/src/passes.cpp); module/src/bindings.h has their types.
 #define PELLUCID_BINDING_FRAME 0
 #define PELLUCID_BINDING_LIGHTS 1
 #define PELLUCID_BINDING_SHADOWS 2
-#define PELLUCID_BINDING_MATERIALS 3
-#define PELLUCID_BINDING_KERNELS 4
-#define PELLUCID_BINDING_FRONT_DEPTH 5
-#define PELLUCID_BINDING_BACK_DEPTH 6
-#define PELLUCID_BINDING_SOURCE 7
-#define PELLUCID_BINDING_NORMAL 8
-#define PELLUCID_BINDING_HISTORY PELLUCID_BINDING_NORMAL // of the add pass, which reads no normals
-#define PELLUCID_BINDING_ALBEDO 9
-#define PELLUCID_BINDING_MATERIAL 10
-#define PELLUCID_BINDING_DESTINATION 11
-#define PELLUCID_BINDING_SHADOW_IMAGES 12 // and the next SHADOW_IMAGE_COUNT - 1
+#define PELLUCID_BINDING_GATHER_MAPS 3
+#define PELLUCID_BINDING_MATERIALS 4
+#define PELLUCID_BINDING_KERNELS 5
+#define PELLUCID_BINDING_ENTRY_MAPS 6
+#define PELLUCID_BINDING_LISTS 7 // BlockLists
+#define PELLUCID_BINDING_FRONT_DEPTH 8
+#define PELLUCID_BINDING_BACK_DEPTH 9
+#define PELLUCID_BINDING_NORMAL 10
+#define PELLUCID_BINDING_ALBEDO 11
+#define PELLUCID_BINDING_MATERIAL 12
+#define PELLUCID_BINDING_SOURCE 13
+#define PELLUCID_BINDING_HELD 14 // the output's content before the frame
+#define PELLUCID_BINDING_HISTORY 15
+#define PELLUCID_BINDING_PYRAMID 16 // the level or levels that are read
+#define PELLUCID_BINDING_COARSER_LEVELS 17 // of upsampling: levels 4 and 5
+#define PELLUCID_BINDING_ENTRY_POINTS 18
+#define PELLUCID_BINDING_FOUND_PROBES 19
+#define PELLUCID_BINDING_FILTERED_PROBES 20
+#define PELLUCID_BINDING_DESTINATION 21
+#define PELLUCID_BINDING_LEVELS 22 // of the pyramid, written
+#define PELLUCID_BINDING_ENTRIES_DESTINATION 23
+#define PELLUCID_BINDING_PROBES_DESTINATION 24
+#define PELLUCID_BINDING_FILTERED_DESTINATION 25
+#define PELLUCID_BINDING_BLOCKS 26 // words of the blocks and lists of them; see compute/frame/blocks.glsl
+#define PELLUCID_BINDING_SHADOW_IMAGES 27 // the last ones: one each for as many shadow images as a pass has
 #define PELLUCID_SHADOW_IMAGE_COUNT 8     // 16 sampled images in all, which every device has
-// The last four of the entry points, which read none of these images:
-#define PELLUCID_BINDING_SHADOW_IMAGE_8 PELLUCID_BINDING_BACK_DEPTH
-#define PELLUCID_BINDING_SHADOW_IMAGE_9 PELLUCID_BINDING_SOURCE
-#define PELLUCID_BINDING_SHADOW_IMAGE_10 PELLUCID_BINDING_ALBEDO
-#define PELLUCID_BINDING_SHADOW_IMAGE_11 PELLUCID_BINDING_HELD
-#define PELLUCID_ENTRY_IMAGE_COUNT (PELLUCID_SHADOW_IMAGE_COUNT + 4) // four maps with exit depth and caster material
-#define PELLUCID_BINDING_LEVELS 20        // written by the diffusion's passes, which read no shadow images:
-#define PELLUCID_BINDING_PYRAMID PELLUCID_BINDING_SHADOW_IMAGES // the level or levels that are read
-#define PELLUCID_BINDING_COARSER_LEVELS (PELLUCID_BINDING_SHADOW_IMAGES + 1) // of upsampling: levels 4 and 5
-// The gather's passes know lights, maps and materials, and no kernels:
-#define PELLUCID_BINDING_GATHER_MAPS PELLUCID_BINDING_SHADOWS
-#define PELLUCID_BINDING_ENTRY_MAPS PELLUCID_BINDING_KERNELS
-#define PELLUCID_BINDING_ENTRY_POINTS PELLUCID_BINDING_SHADOW_IMAGES
-#define PELLUCID_BINDING_PROBES PELLUCID_BINDING_LEVELS
-#define PELLUCID_BINDING_FILTERED_PROBES (PELLUCID_BINDING_SHADOW_IMAGES + 1) // of the diffusion, beside the pyramid
-#define PELLUCID_BINDING_BLOCKS 21 // words of the blocks and lists of them; see compute/frame/blocks.glsl
-#define PELLUCID_BINDING_LISTS PELLUCID_BINDING_KERNELS // BlockLists, of the passes that make them
-#define PELLUCID_BINDING_HELD 22 // the output's content before the frame
-#define PELLUCID_BINDING_COUNT 23
+#define PELLUCID_ENTRY_IMAGE_COUNT 12     // of the entry points: four maps with exit depth and caster material
+#define PELLUCID_BINDING_COUNT (PELLUCID_BINDING_SHADOW_IMAGES + PELLUCID_ENTRY_IMAGE_COUNT)
 
 // Lights and shadow maps of one dispatch are uniform buffers, which are cached apart from what images pass
 // through. 16 KiB is what every device binds.
@@ -89,6 +88,10 @@ using glm::vec4;
 #define PELLUCID_CONSTANT_DEBUG_VIEWS 0
 #define PELLUCID_CONSTANT_NORMALS 4
 #define PELLUCID_CONSTANT_LIGHT_TABLES 5
+#define PELLUCID_CONSTANT_USES 6 // PellucidUse bits that frames may ask of the pipeline, among them:
+#define PELLUCID_SHADER_USE_THIN_WALLS 32u
+#define PELLUCID_SHADER_USE_AMBIENT 64u
+#define PELLUCID_SHADER_USE_THESIS 128u
 
 // Values of the public enums the shaders branch on; constants.cpp asserts that they agree.
 #define PELLUCID_SHADER_LIGHT_DIRECTIONAL 0u

@@ -39,7 +39,7 @@ vec4 resultAt(ivec2 pixel, uint value, uint m, bool starts) {
     for (uint i = 0u; i < pass.value.y; ++i) {
       LightConstants light = lights[i];
       // Debug views of light show lights with a direction.
-      bool ambient = light.meta.x == PELLUCID_SHADER_LIGHT_AMBIENT;
+      bool ambient = isAmbient(light);
       if (kDebugViews && ambient && frame.flags.z <= PELLUCID_SHADER_DEBUG_OCCLUSION) continue;
       Transmitted through = lightTransmission(light, s, pixel);
       transmitted += exitanceOf(through, m);

@@ -18,6 +18,7 @@
 
 #ifdef PELLUCID_OWN_INPUTS
 bool hasFlag(uint flag) { return (frame.flags.x & flag) != 0u; }
+bool mayUse(uint use) { return true; }
 #else
 #include "frame/frame.glsl"
 #include "frame/shadow_images.glsl"
@@ -32,7 +33,9 @@ float distanceOf(ivec2 pixel, uint material, bool back) {
 #endif
 
 // material: index + 1, as materialIndex has it and not 0. Frames without thin walls read nothing.
-bool isThinWalled(uint material) { return hasFlag(PELLUCID_FLAG_THIN_WALLS) && materials[material - 1u].meta.z != 0u; }
+bool isThinWalled(uint material) {
+  return mayUse(PELLUCID_SHADER_USE_THIN_WALLS) && hasFlag(PELLUCID_FLAG_THIN_WALLS) && materials[material - 1u].meta.z != 0u;
+}
 
 // ---- T(d): fraction of the flux entering one face of a slab that leaves the other. d in mm, >= 0.
 
@@ -64,7 +67,7 @@ vec3 materialTransmittance(uint m, float d) {
   if (materials[m].meta.x == PELLUCID_SHADER_TRANSMITTANCE_EXP2) {
     t = vec3(transmittanceExp2(materials[m].transmittance[0], d), transmittanceExp2(materials[m].transmittance[1], d),
              transmittanceExp2(materials[m].transmittance[2], d));
-  } else if (materials[m].meta.x == PELLUCID_SHADER_TRANSMITTANCE_SINH_EXP) {
+  } else if (!mayUse(PELLUCID_SHADER_USE_THESIS) || materials[m].meta.x == PELLUCID_SHADER_TRANSMITTANCE_SINH_EXP) {
     vec3 c = materials[m].transmittance4.rgb;
     t = vec3(transmittanceSinhExp(materials[m].transmittance[0], c.r, d),
              transmittanceSinhExp(materials[m].transmittance[1], c.g, d),
@@ -251,8 +254,10 @@ float anglePolynomial(vec4 c, float x) {
   return x > 0.0 ? clamp(c.x + angle * (c.y + angle * (c.z + angle * c.w)), 0.0, 1.0) : 0.0;
 }
 
+uint angleModel() { return mayUse(PELLUCID_SHADER_USE_THESIS) ? frame.flags.w : PELLUCID_SHADER_ANGLE_NORMAL; }
+
 float hiddenCosine(LightConstants light, Surface s, vec3 toLight) {
-  uint model = frame.flags.w;
+  uint model = angleModel();
   if (model == PELLUCID_SHADER_ANGLE_NORMAL && s.hasNormal) return max(-dot(s.normal, toLight), 0.0);
   vec3 view = hasFlag(PELLUCID_FLAG_CONSTANT_VIEW) ? vec3(0.0, 0.0, frame.camera.range.x) : s.view;
   float x = dot(view, toLight) * light.cone.z + light.cone.w; // from the minimum dot on, if the model has one
@@ -270,7 +275,7 @@ const float kDiagonal = 1.41421356; // to the farthest of four texels
 const float kTurnedCosine = 0.1;
 
 // Without normals the sheet has those of its depths, which other angle models do not know.
-bool takesDepthsNormal(Surface s) { return frame.flags.w == PELLUCID_SHADER_ANGLE_NORMAL && !s.hasNormal; }
+bool takesDepthsNormal(Surface s) { return angleModel() == PELLUCID_SHADER_ANGLE_NORMAL && !s.hasNormal; }
 
 // Part of the light that no other surface holds back. A texel that stores the sheet itself, what lies behind it, or nothing
 // lets light by. `l`: around the sheet; `facing`: cosine between the sheet's geometry and the light.
@@ -288,6 +293,10 @@ float unblockedPart(LightConstants light, LightTexels l, float facing) {
 vec3 ambientIrradiance(vec3 normal) {
   vec4 n = vec4(normal, 1.0);
   return max(vec3(dot(n, frame.ambient[0] * n), dot(n, frame.ambient[1] * n), dot(n, frame.ambient[2] * n)), vec3(0.0));
+}
+
+bool isAmbient(LightConstants light) {
+  return mayUse(PELLUCID_SHADER_USE_AMBIENT) && light.meta.x == PELLUCID_SHADER_LIGHT_AMBIENT;
 }
 
 vec3 frontNormal(Surface s) { return s.hasNormal ? s.normal : -s.view; }
@@ -318,7 +327,7 @@ float chordThickness(Surface s) {
 // docs/integration.md says why each source is what it is. `pixel`: of the surface.
 Transmitted lightTransmission(LightConstants light, Surface s, ivec2 pixel) {
   bool wall = isThinWalled(s.material), mapped = light.meta.z != 0u;
-  bool holdsExits = light.meta.w != 0u, ambient = light.meta.x == PELLUCID_SHADER_LIGHT_AMBIENT;
+  bool holdsExits = light.meta.w != 0u, ambient = isAmbient(light);
   // A sheet's T is the same at any thickness, and its reflectance is its own.
   if (ambient && wall) return Transmitted(0.0, ambientIrradiance(-frontNormal(s)), 1.0, vec3(0.0));
   if (ambient && !passesAmbient(s)) return kNothingTransmitted;

@@ -56,22 +56,21 @@ void multiply(Image& image, const Image& by) {
 }
 
 void print(const Device& device, const ReplayResult& result, uint32_t repeat) {
-  std::printf("%s\n%-22s %-22s %12s %10s %14s %10s\n", device.description().c_str(), "dispatch", "pipeline",
-              "groups", "ran", "modeled bytes", repeat > 0 ? "time us" : "");
+  std::printf("%s\n%-22s %-22s %12s %10s %10s\n", device.description().c_str(), "dispatch", "pipeline",
+              "groups", "ran", repeat > 0 ? "time us" : "");
   double sum = 0;
   for (uint32_t i = 0; i < result.plan.dispatchCount; ++i) {
     const PellucidDispatch& d = result.plan.dispatches[i];
     const std::string groups =
         std::to_string(d.groups[0]) + "x" + std::to_string(d.groups[1]) + "x" + std::to_string(d.groups[2]);
-    std::printf("%-22s %-22s %12s %10llu %14llu", d.name, pellucidPipelineName(d.pipeline), groups.c_str(),
-                static_cast<unsigned long long>(result.statistics.dispatches[i].run),
-                static_cast<unsigned long long>(d.modeledBytes));
+    std::printf("%-22s %-22s %12s %10llu", d.name, pellucidPipelineName(d.pipeline), groups.c_str(),
+                static_cast<unsigned long long>(result.statistics.dispatches[i].run));
     if (repeat > 0) std::printf(" %10.1f", result.times[i].microseconds);
     std::printf("\n");
     if (repeat > 0) sum += result.times[i].microseconds;
   }
   if (repeat > 0)
-    std::printf("%-22s %72.1f\ntimes: median of %u %s after a first one, which compiles shaders\n", "all",
+    std::printf("%-22s %57.1f\ntimes: median of %u %s after a first one, which compiles shaders\n", "all",
                 sum, repeat, repeat == 1 ? "frame" : "frames");
   for (uint32_t i = 0; i < result.plan.skipCount; ++i)
     std::printf("skipped: %u x %s (%s)\n", result.plan.skips[i].count, result.plan.skips[i].what,

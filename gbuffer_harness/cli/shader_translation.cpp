@@ -18,64 +18,7 @@ using spirv_cross::Resource;
 
 // Names by the id of a specialization constant; the shaders hold none.
 constexpr std::pair<uint32_t, const char*> kConstantNames[] = {
-    {0, "debugViews"}, {4, "normalEncoding"}, {5, "lightTables"}};
-
-// Names of what pipelines bind, as in the sources of the shaders: the first row of the binding whose pipeline
-// begins a name holds.
-struct BindingName {
-  uint32_t binding;
-  std::string_view pipeline, name;
-};
-constexpr BindingName kBindingNames[] = {{0, "", "frame"},
-                                         {1, "", "lights"},
-                                         {2, "list_blocks", "gatherMaps"},
-                                         {2, "entry_points", "gatherMaps"},
-                                         {2, "probes", "gatherMaps"},
-                                         {2, "", "shadows"},
-                                         {3, "", "materials"},
-                                         {4, "base_level", "lists"},
-                                         {4, "list_blocks", "lists"},
-                                         {4, "entry_points", "entryMaps"},
-                                         {4, "", "kernels"},
-                                         {5, "", "frontDepthImage"},
-                                         {6, "entry_points", "shadowImage8"},
-                                         {6, "", "backDepthImage"},
-                                         {7, "entry_points", "shadowImage9"},
-                                         {7, "", "sourceImage"},
-                                         {8, "add_history", "historyImage"},
-                                         {8, "", "normalImage"},
-                                         {9, "entry_points", "shadowImage10"},
-                                         {9, "", "albedoImage"},
-                                         {10, "", "materialImage"},
-                                         {11, "", "destinationImage"},
-                                         {12, "probes", "entriesImage"},
-                                         {12, "filter_probes", "foundImage"},
-                                         {12, "downsample", "pyramidImage"},
-                                         {12, "upsample", "pyramidImage"},
-                                         {12, "diffuse", "pyramidImage"},
-                                         {12, "", "shadowImage0"},
-                                         {13, "upsample", "coarserLevelsImage"},
-                                         {13, "diffuse", "probesImage"},
-                                         {13, "", "shadowImage1"},
-                                         {14, "", "shadowImage2"},
-                                         {15, "", "shadowImage3"},
-                                         {16, "", "shadowImage4"},
-                                         {17, "", "shadowImage5"},
-                                         {18, "", "shadowImage6"},
-                                         {19, "", "shadowImage7"},
-                                         {20, "entry_points", "entriesDestination"},
-                                         {20, "probes", "probesImage"},
-                                         {20, "filter_probes", "sharedImage"},
-                                         {20, "", "levelsDestination"},
-                                         {21, "", "blocksImage"},
-                                         {22, "entry_points", "shadowImage11"},
-                                         {22, "", "heldImage"}};
-
-std::string bindingName(const std::string& pipeline, uint32_t binding) {
-  for (const BindingName& row : kBindingNames)
-    if (row.binding == binding && pipeline.starts_with(row.pipeline)) return std::string(row.name);
-  throw InputError(pipeline, "binding", std::to_string(binding) + " has no name");
-}
+    {0, "debugViews"}, {4, "normalEncoding"}, {5, "lightTables"}, {6, "uses"}};
 
 std::string constantName(const std::string& pipeline, uint32_t id) {
   for (const auto& [named, name] : kConstantNames)
@@ -116,10 +59,10 @@ struct BindingType {
   bool isBuffer, isWritten;
 };
 
-Json describeBinding(Compiler& compiler, const std::string& pipeline, const Resource& resource,
+Json describeBinding(Compiler& compiler, const Resource& resource,
                      const BindingType& type, ShaderLanguage language) {
   const uint32_t binding = compiler.get_decoration(resource.id, spv::DecorationBinding);
-  const std::string name = bindingName(pipeline, binding), number = std::to_string(binding);
+  const std::string name = pellucidBindingName(binding), number = std::to_string(binding);
   compiler.set_name(resource.id, name);
   if (type.isBuffer) compiler.set_name(resource.base_type_id, name + "Block");
   Json json = {{"binding", binding}, {"type", type.name}, {"name", name}};
@@ -133,13 +76,13 @@ Json describeBinding(Compiler& compiler, const std::string& pipeline, const Reso
   return json;
 }
 
-// Bindings that the shader accesses, by number. Unused bindings of other passes share numbers with these.
-Json describeBindings(Compiler& compiler, const std::string& pipeline, ShaderLanguage language) {
+// Bindings that the shader accesses, by number.
+Json describeBindings(Compiler& compiler, ShaderLanguage language) {
   const spirv_cross::ShaderResources all =
       compiler.get_shader_resources(compiler.get_active_interface_variables());
   Json bindings = Json::array();
   const auto add = [&](const Resource& resource, const BindingType& type) {
-    bindings.push_back(describeBinding(compiler, pipeline, resource, type, language));
+    bindings.push_back(describeBinding(compiler, resource, type, language));
   };
   for (const Resource& r : all.uniform_buffers) add(r, {"uniformBuffer", true, false});
   for (const Resource& r : all.storage_buffers) {
@@ -168,7 +111,7 @@ Json describe(Compiler& compiler, const PipelineShader& shader, ShaderLanguage l
           {"workgroupSize", workgroupSize(compiler)},
           {"specializationConstants", constants},
           {"pushConstantBytes", pushes ? PELLUCID_PUSH_CONSTANT_BYTES : 0},
-          {"bindings", describeBindings(compiler, pellucidPipelineName(shader.pipeline), language)}};
+          {"bindings", describeBindings(compiler, language)}};
 }
 
 const char* languageName(ShaderLanguage language) {

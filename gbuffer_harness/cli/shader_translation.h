@@ -15,7 +15,7 @@ enum class ShaderLanguage { Hlsl, Msl, Spirv };  // Shader Model 6.0, Metal 2.3,
 // Bindings have registers and arguments of their numbers, in HLSL of space 0. These are beside them.
 constexpr uint32_t kHlslConstantSpace =
     1;  // b0: push constants; b1: PellucidDispatch::groups, which HLSL cannot ask for
-constexpr uint32_t kMslPushConstantBuffer = 23;  // above all bindings
+constexpr uint32_t kMslPushConstantBuffer = 23;  // above all bindings of buffers
 
 // A pipeline of the module with one of the types of shadow views.
 struct PipelineShader {

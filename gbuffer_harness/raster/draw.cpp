@@ -86,9 +86,11 @@ std::vector<VkDescriptorSetLayoutBinding> layoutBindings() {
 }
 
 void addPlanned(const PlannedInputs& planned, DescriptorWrites& writes) {
+  PellucidBinding bindings[PELLUCID_MAX_BINDINGS];
+  const std::uint32_t count = pellucidGetBindings(&planned.plan, 0, bindings);
   for (const PlannedBinding& wanted : plannedBindings())
-    for (std::uint32_t i = 0; i < planned.dispatch.bindingCount; ++i) {
-      const PellucidBinding& b = planned.dispatch.bindings[i];
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const PellucidBinding& b = bindings[i];
       if (b.binding != wanted.binding) continue;
       const std::uint32_t to = kOwnBindings + b.binding;
       if (b.resource == PELLUCID_RESOURCE_CONSTANTS)
@@ -187,7 +189,7 @@ void UploadedModel::record(VkCommandBuffer commandBuffer, const RenderTarget& ta
         surface.material | apart | highHalf(surface.displaced),
         view.reversedDepth | (view.normalOffset != 0 ? kIsOffset : 0) | highHalf(surface.backscatter),
         behind | has,
-        earlier.planned ? earlier.planned->dispatch.pushConstants[1]
+        earlier.planned ? earlier.planned->plan.dispatches[0].pushConstants[1]
                         : std::bit_cast<std::uint32_t>(
                               view.normalOffset != 0 ? static_cast<float>(view.normalOffset) : normalScale)};
     vkCmdPushConstants(commandBuffer, pipelines_.layout(), kStages, 0, sizeof constants, &constants);

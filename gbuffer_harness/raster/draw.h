@@ -48,9 +48,9 @@ struct DrawView {
   double normalOffset = 0;
 };
 
-// The bindings of a fused dispatch of the module, for FragmentShader::Transmit.
+// The first dispatch of a plan of the module, a fused one, for FragmentShader::Transmit.
 struct PlannedInputs {
-  const PellucidDispatch& dispatch;
+  const PellucidPlan& plan;
   const PellucidFrame& frame;  // with its views
   VkBuffer constants;          // the slice that pellucidWriteConstants filled, from offset 0
 };

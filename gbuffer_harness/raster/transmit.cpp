@@ -8,8 +8,8 @@ namespace pellucid::harness {
 
 namespace {
 
-// The one fused dispatch of the run.
-const PellucidDispatch& fusedDispatch(const FrameRun& run, const std::string& name) {
+// The plan of the run, whose first dispatch is the one fused dispatch.
+const PellucidPlan& fusedPlan(const FrameRun& run, const std::string& name) {
   const PellucidPlan& plan = run.plan();
   if (run.frame().thicknessSource != PELLUCID_THICKNESS_CAMERA)
     throw InputError(name, "thicknessSource", "light-space thickness does not need the back faces");
@@ -20,7 +20,7 @@ const PellucidDispatch& fusedDispatch(const FrameRun& run, const std::string& na
   // Lights are read from the first dispatch on, so all are in it when it has as many as are active.
   if (plan.dispatches[0].pushConstants[1] != plan.activeLights)
     throw InputError(name, "lights", "have more shadow images than one dispatch binds");
-  return plan.dispatches[0];
+  return plan;
 }
 
 }  // namespace
@@ -28,12 +28,12 @@ const PellucidDispatch& fusedDispatch(const FrameRun& run, const std::string& na
 Image rasterizeTransmitted(Device& device, const Model& model, const Capture& capture, const FrameRun& run,
                            const RasterOptions& options) {
   const PellucidFrame& frame = run.frame();
-  const PellucidDispatch& dispatch = fusedDispatch(run, model.name);
-  const HostBuffer constants(device, run.plan().constantsSize,
+  const PellucidPlan& plan = fusedPlan(run, model.name);
+  const HostBuffer constants(device, plan.constantsSize,
                              VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
-  requireOk(pellucidWriteConstants(&run.plan(), &frame, constants.mapped(),
-                                   static_cast<std::size_t>(constants.size())),
-            frame, model.name);
+  requireOk(
+      pellucidWriteConstants(&plan, &frame, constants.mapped(), static_cast<std::size_t>(constants.size())),
+      frame, model.name);
 
   const UploadedModel uploaded(device, model);
   const DrawView view{capture.clipFromView, capture.viewFromWorld, options.reversedZ};
@@ -42,7 +42,7 @@ Image rasterizeTransmitted(Device& device, const Model& model, const Capture& ca
   const bool keepGreater = options.reversedZ != (options.backFace == BackFace::Farthest);
   const RenderTarget target(device, options.width, options.height,
                             {{VK_FORMAT_R32G32B32A32_SFLOAT, clearTo(0)}}, farDepth(keepGreater));
-  const PlannedInputs planned{dispatch, frame, constants.handle()};
+  const PlannedInputs planned{plan, frame, constants.handle()};
   device.run([&](VkCommandBuffer commands) {
     front.record(commands, uploaded, view);
     uploaded.record(commands, target, view,

@@ -234,6 +234,12 @@ void makeFrame(const Capture& capture, const FrameShape& shape,
   f.normalsInViewSpace = capture.normalsInViewSpace;
   f.materialCount = static_cast<uint32_t>(data.materials.size());
   f.materials = data.materials.data();
+  data.materialTables.resize(data.materials.size());
+  bool valid = true;  // validation says what is not
+  for (size_t i = 0; i < data.materials.size(); ++i)
+    valid = valid && pellucidMakeMaterialTables(&data.materials[i], &data.materialTables[i]) == PELLUCID_OK;
+  if (!valid) data.materialTables.clear();
+  f.materialTables = valid ? data.materialTables.data() : nullptr;
   f.lightCount = static_cast<uint32_t>(data.lights.size());
   f.lights = data.lights.data();
   f.lightTableCount = static_cast<uint32_t>(data.lightTables.size());

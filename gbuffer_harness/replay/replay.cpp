@@ -219,6 +219,13 @@ void FrameRun::plan(const PellucidPlan* previous) {
       std::make_unique<HostBuffer>(device_, plan_->constantsSize,
                                    VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
                                        VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
+  writeConstants();
+}
+
+void FrameRun::writeConstants() const {
+  requireOk(pellucidWriteConstants(plan_.get(), &data_.frame, constants_->mapped(),
+                                   static_cast<size_t>(constants_->size())),
+            data_.frame, name_);
 }
 
 FrameRun::~FrameRun() = default;
@@ -270,10 +277,6 @@ PellucidPlan FrameRun::only(uint32_t dispatch) const {
 
 void FrameRun::record(VkCommandBuffer commandBuffer, uint32_t dispatch) const {
   record(commandBuffer, only(dispatch), dispatch);
-  // Of all dispatches, that the GPU decides by.
-  requireOk(pellucidWriteConstants(plan_.get(), &data_.frame, constants_->mapped(),
-                                   static_cast<size_t>(constants_->size())),
-            data_.frame, name_);
 }
 
 void FrameRun::recordAlone(VkCommandBuffer commandBuffer, uint32_t dispatch) const {
@@ -308,6 +311,7 @@ void FrameRun::fillGarbage(std::uint64_t seed) const {
   else
     images_->fillGarbage(seed);
   std::memset(constants_->mapped(), static_cast<int>(seed & 0xFF), static_cast<size_t>(constants_->size()));
+  writeConstants();
 }
 
 void FrameRun::uploadOutput(const Image& content) const { images_->uploadOutput(content); }

@@ -99,9 +99,9 @@ public:
   // Gives an irradiance image that is the output, too, its content before the first recording again.
   void restoreIrradiance(const Capture& capture) const;
 
-  // Other bits where a recording must not depend on them: in transients, the constants' memory, and an output
-  // that is not the irradiance, which becomes 0xFF bytes: NaN in both formats. On guarded devices transients
-  // hold 0xFF bytes or what looks like indices, by turns.
+  // Other bits where a recording must not depend on them: in transients, the constants' memory between
+  // constants, and an output that is not the irradiance, which becomes 0xFF bytes: NaN in both formats. On
+  // guarded devices transients hold 0xFF bytes or what looks like indices, by turns.
   void fillGarbage(std::uint64_t seed) const;
 
   // Content of an output that is not the irradiance before the first recording.
@@ -118,6 +118,7 @@ private:
   class Images;
 
   void plan(const PellucidPlan* previous);
+  void writeConstants() const;
   PellucidConstantsSlice slice() const;
   // The frame with a pool for descriptors, where they are not pushed. `recording`: of those in one command
   // buffer, which share the slice and need pools of their own.
@@ -134,7 +135,7 @@ private:
   FrameData data_;
   mutable std::map<std::uint32_t, DescriptorPool> pools_;  // by recording, made when first asked for
   std::unique_ptr<Images> images_;
-  std::unique_ptr<PellucidPlan> plan_;  // 28 KB
+  std::unique_ptr<PellucidPlan> plan_;
   std::unique_ptr<HostBuffer> constants_;
 };
 

@@ -6,7 +6,9 @@ namespace pellucid::sample {
 class PellucidPass {
 public:
   PellucidPass(Device& device, const std::vector<PellucidMaterial>& materials)
-      : materials_(materials), ring_(device, kFramesInFlight * slice_, kConstantsUsage) {
+      : materials_(materials),
+        tables_(materials.size()),
+        ring_(device, kFramesInFlight * slice_, kConstantsUsage) {
     PellucidContextDesc desc;
     pellucidInitContextDesc(&desc);
     desc.instance = device.instance(), desc.physicalDevice = device.physicalDevice();
@@ -15,6 +17,8 @@ public:
     desc.shadowViewType = VK_IMAGE_VIEW_TYPE_2D_ARRAY;  // cascades, atlas and cube are arrays
     desc.normalEncoding = PELLUCID_NORMALS_OCTAHEDRAL_UNORM;
     require(pellucidCreateContext(&desc, &context_));
+    for (size_t i = 0; i < tables_.size(); ++i)
+      require(pellucidMakeMaterialTables(&materials_[i], &tables_[i]));
   }
   ~PellucidPass() { pellucidDestroyContext(context_); }
 
@@ -35,6 +39,7 @@ public:
     frame.material = f.surface, frame.materialMask = 0xFF0000, frame.materialShift = 16;  // beside roughness
     frame.output = f.color, frame.outputMode = PELLUCID_OUTPUT_ADD;                       // to specular light
     frame.materialCount = static_cast<uint32_t>(materials_.size()), frame.materials = materials_.data();
+    frame.materialTables = tables_.data();
     frame.ambient = f.hasAmbient ? &f.ambient[0][0] : nullptr;
     frame.gatherSamples = f.gatherSamples, frame.indirectDispatches = PELLUCID_INDIRECT_MATERIAL;
     frame.lightCount = static_cast<uint32_t>(f.lights.size()), frame.lights = f.lights.data();
@@ -53,11 +58,13 @@ public:
     require(pellucidGetImageNeeds(&frame, &count, needs));
     for (uint32_t i = 0; i < count; ++i) frame.transients[i] = f.transient(needs[i]);
     if (f.index == 0) require(pellucidValidateFrame(&frame, report, nullptr));
-    require(pellucidBuildPlan(&frame, nullptr, &plan_));
+    PellucidPlan plan;
+    require(pellucidBuildPlan(&frame, nullptr, &plan));
     const VkDeviceSize at = f.index % kFramesInFlight * slice_;  // the GPU still reads the other slices
     if (!f.ownQueue) barrier(commands, kDrawing, kScope);
     const PellucidConstantsSlice slice{ring_.handle(), at, slice_, static_cast<char*>(ring_.mapped()) + at};
-    require(pellucidRecordPlan(context_, commands, &plan_, &frame, &slice));
+    require(pellucidWriteConstants(&plan, &frame, slice.mapped, slice_));
+    require(pellucidRecordPlan(context_, commands, &plan, &frame, &slice));
     if (!f.ownQueue) barrier(commands, kScope, kDrawing);
   }
 
@@ -71,9 +78,9 @@ private:
   }
   static void put(const glm::dmat4& m, float (&to)[16]) { std::copy_n(&glm::mat4(m)[0][0], 16, to); }
   std::vector<PellucidMaterial> materials_;
+  std::vector<PellucidMaterialTables> tables_;
   VkDeviceSize slice_ = pellucidGetConstantsSize(kMostMaterials, kMostLights, kMostTiles);
   HostBuffer ring_;
   PellucidContext* context_ = nullptr;
-  PellucidPlan plan_;  // 28 KB: a member, as jobs have small stacks
 };
 }  // namespace pellucid::sample

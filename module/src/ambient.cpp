@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "frame.h"
-
 namespace pellucid {
 
 PellucidLight ambientLight(const PellucidFrame& frame) {
@@ -17,16 +15,17 @@ PellucidLight ambientLight(const PellucidFrame& frame) {
 }
 
 // Ramamoorthi & Hanrahan 2001, equations 11 and 12.
-std::array<glm::mat4, 3> ambientIrradiance(const FrameFacts& f) {
+std::array<glm::mat4, 3> ambientIrradiance(const Inputs& inputs, const Screen& screen) {
   std::array<glm::mat4, 3> result{};
-  if (!f.frame.ambient) return result;
+  if (!inputs.frame.ambient) return result;
   constexpr double c1 = 0.42904276540489, c2 = 0.51166335397324, c3 = 0.74312386836844, c4 = 0.88622692545276,
                    c5 = 0.24770795612281;
-  const glm::dmat4 rotation(glm::dmat3(f.viewFromWorld));
+  const glm::dmat4 rotation(glm::dmat3(screen.viewFromWorld));
   for (size_t c = 0; c < 3; ++c) {
     double l[9];
     for (size_t i = 0; i < 9; ++i)
-      l[i] = static_cast<double>(f.frame.ambient[3 * i + c]) * static_cast<double>(f.frame.preExposure);
+      l[i] = static_cast<double>(inputs.frame.ambient[3 * i + c]) *
+             static_cast<double>(inputs.frame.preExposure);
     const glm::dmat4 world(c1 * l[8], c1 * l[4], c1 * l[7], c2 * l[3],   //
                            c1 * l[4], -c1 * l[8], c1 * l[5], c2 * l[1],  //
                            c1 * l[7], c1 * l[5], c3 * l[6], c2 * l[2],   //

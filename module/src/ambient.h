@@ -4,12 +4,9 @@
 #include <array>
 #include <glm/glm.hpp>
 
-#include "pellucid/pellucid.h"
-#include "shared/pellucid_shared.h"
+#include "screen.h"
 
 namespace pellucid {
-
-struct FrameFacts;
 
 constexpr uint32_t kAmbientCoefficients = 27;  // of PellucidFrame::ambient
 
@@ -20,6 +17,6 @@ inline bool isAmbient(const PellucidLight& light) { return light.type == PELLUCI
 
 // Per channel the form whose value at (n, 1) is the irradiance, times pre-exposure, of a face of normal n in
 // view space.
-std::array<glm::mat4, 3> ambientIrradiance(const FrameFacts& facts);
+std::array<glm::mat4, 3> ambientIrradiance(const Inputs& inputs, const Screen& screen);
 
 }  // namespace pellucid

@@ -3,7 +3,6 @@
 #include <bit>
 
 #include "entry_points.h"
-#include "frame.h"
 
 namespace pellucid {
 namespace {
@@ -24,22 +23,23 @@ uint32_t blocksAlong(uint32_t first, uint32_t size, int border) {
 
 }  // namespace
 
-Blocks::Blocks(const FrameFacts& f, const Rect& rect)
+Blocks::Blocks(const Lights& lights, const Rect& rect)
     : columns(blocksAlong(rect.x, rect.width, PELLUCID_BLOCK_BORDER)),
       rows(blocksAlong(rect.y, rect.height, PELLUCID_BLOCK_BORDER)),
       touched(blocksAlong(rect.x, rect.width, 0) * blocksAlong(rect.y, rect.height, 0)),
-      maps(f.lights.gathered > 0 ? f.lights.list().front().shadowCount : 0),
-      entryGroups(f.lights.entryColumns * f.lights.entryRows /
+      maps(lights.gathered > 0 ? lights.list().front().shadowCount : 0),
+      entryGroups(lights.entryColumns * lights.entryRows /
                   (PELLUCID_ENTRY_POINTS_GROUP * PELLUCID_ENTRY_POINTS_GROUP)) {}
 
 uint32_t Blocks::listGroups() const {
   return parts(count() * (1 + kEntryGroups * maps), PELLUCID_LIST_GROUP);
 }
 
-const char* whyNoLists(const FrameFacts& f) {
-  if (f.frame.indirectDispatches == PELLUCID_INDIRECT_NONE) return "frame.indirectDispatches asks for none";
-  if (f.lights.gathered > 1) return "lights need several dispatches";
-  if (f.blocks.listGroups() > kMostGroups) return "the image has more blocks than lists can hold";
+const char* whyNoLists(const Inputs& inputs, const Lights& lights, const Blocks& blocks) {
+  if (inputs.frame.indirectDispatches == PELLUCID_INDIRECT_NONE)
+    return "frame.indirectDispatches asks for none";
+  if (lights.gathered > 1) return "lights need several dispatches";
+  if (blocks.listGroups() > kMostGroups) return "the image has more blocks than lists can hold";
   return nullptr;
 }
 

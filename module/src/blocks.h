@@ -4,13 +4,10 @@
 
 #include <cstdint>
 
-#include "pellucid/pellucid.h"
-#include "rect.h"
+#include "lights.h"
 #include "shared/pellucid_shared.h"
 
 namespace pellucid {
-
-struct FrameFacts;
 
 struct Blocks {
   uint32_t columns = 0, rows = 0;  // that the rect and PELLUCID_BLOCK_BORDER pixels around touch
@@ -18,8 +15,7 @@ struct Blocks {
   uint32_t maps = 0;               // shadow maps whose entry points are listed
   uint32_t entryGroups = 0;        // at most, in the list of groups of entry points
 
-  Blocks() = default;
-  Blocks(const FrameFacts& facts, const Rect& rect);
+  Blocks(const Lights& lights, const Rect& rect);
 
   uint32_t count() const { return columns * rows; }
   // Where the lists begin in the image of words, and how many words it has.
@@ -32,6 +28,6 @@ struct Blocks {
 };
 
 // Why the frame's passes run over all blocks in place of lists, or nullptr. Static string.
-const char* whyNoLists(const FrameFacts& facts);
+const char* whyNoLists(const Inputs& inputs, const Lights& lights, const Blocks& blocks);
 
 }  // namespace pellucid

@@ -23,6 +23,10 @@ const char* readDepthRange(const glm::dmat4& clipFromView, DepthRange* range);
 shared::Camera makeCamera(const glm::dmat4& clipFromView, const DepthRange& range, glm::uvec2 extent,
                           double metersPerUnit);
 
+// Shorter side of a pixel on a facing surface at a planar distance, scene units. All that is farther or
+// tilted has a longer one. 0: a perspective camera, and no distance.
+double pixelSide(const glm::dmat4& clipFromView, const DepthRange& range, glm::uvec2 extent, double distance);
+
 glm::dmat4 toMatrix(const float (&columns)[16]);
 
 }  // namespace pellucid

@@ -4,13 +4,12 @@
 #include <cstring>
 
 #include "constants.h"
-#include "diffusion_profile.h"
 #include "domains.h"
 #include "entry_points.h"
 #include "gather.h"
+#include "material_tables.h"
 #include "minimum_dot.h"
 #include "shadow_map.h"
-#include "transmittance.h"
 
 namespace pellucid {
 namespace {
@@ -36,6 +35,10 @@ static_assert(PELLUCID_SHADER_NORMALS_OCTAHEDRAL == PELLUCID_NORMALS_OCTAHEDRAL)
 static_assert(PELLUCID_SHADER_NORMALS_OCTAHEDRAL_UNORM == PELLUCID_NORMALS_OCTAHEDRAL_UNORM);
 static_assert(PELLUCID_CONSTANT_NORMALS == PELLUCID_SPECIALIZATION_NORMALS);
 static_assert(PELLUCID_CONSTANT_LIGHT_TABLES == PELLUCID_SPECIALIZATION_LIGHT_TABLES);
+static_assert(PELLUCID_CONSTANT_USES == PELLUCID_SPECIALIZATION_USES);
+static_assert(PELLUCID_SHADER_USE_THIN_WALLS == PELLUCID_USE_THIN_WALLS);
+static_assert(PELLUCID_SHADER_USE_AMBIENT == PELLUCID_USE_AMBIENT);
+static_assert(PELLUCID_SHADER_USE_THESIS == PELLUCID_USE_THESIS);
 static_assert(PELLUCID_LIGHT_TABLES == PELLUCID_MAX_LIGHT_TABLES);
 static_assert(PELLUCID_LIGHT_ENTRIES == PELLUCID_LIGHT_TABLE_ENTRIES);
 static_assert(PELLUCID_GAUSSIANS == PELLUCID_MAX_GAUSSIANS);
@@ -46,8 +49,7 @@ glm::vec4 rgb(const float (&v)[3], float w = 0) { return {v[0], v[1], v[2], w}; 
 shared::FrameConstants frameConstants(const FrameFacts& facts) {
   const PellucidFrame& f = facts.frame;
   shared::FrameConstants c{};
-  c.camera =
-      makeCamera(facts.clipFromView, facts.depthRange, {f.imageExtent[0], f.imageExtent[1]}, f.metersPerUnit);
+  c.camera = facts.camera;
   c.viewFromNormal = f.normalsInViewSpace ? glm::mat4(1) : glm::mat4(glm::mat3(facts.viewFromWorld));
   const glm::mat3 normalFromView = glm::transpose(glm::mat3(c.viewFromNormal));
   const shared::Camera& camera = c.camera;
@@ -64,7 +66,7 @@ shared::FrameConstants frameConstants(const FrameFacts& facts) {
   };
   c.facingRay[0] = {facing(camera.rayBase), facing(camera.rayX)};
   c.facingRay[1] = {facing(camera.rayY), 0, 0};
-  const std::array<glm::mat4, 3> ambient = ambientIrradiance(facts);
+  const std::array<glm::mat4, 3> ambient = ambientIrradiance(facts, facts);
   std::copy(ambient.begin(), ambient.end(), c.ambient);
   const Rect& r = facts.rect;
   c.rect = {r.x, r.y, r.x + r.width, r.y + r.height};
@@ -77,7 +79,7 @@ shared::FrameConstants frameConstants(const FrameFacts& facts) {
   if (f.thicknessSource == PELLUCID_THICKNESS_CAMERA) flags |= PELLUCID_FLAG_CAMERA_THICKNESS;
   if (t.constantViewDirection) flags |= PELLUCID_FLAG_CONSTANT_VIEW;
   if (t.chordThickness) flags |= PELLUCID_FLAG_CHORD_THICKNESS;
-  if (facts.needsChord) flags |= PELLUCID_FLAG_CHORD;
+  if (facts.lights.needsChord) flags |= PELLUCID_FLAG_CHORD;
   if (facts.diffuses) flags |= PELLUCID_FLAG_DIFFUSED;
   if (facts.wide) flags |= PELLUCID_FLAG_WIDE_OUTPUT;
   if (f.outputMode == PELLUCID_OUTPUT_ADD) flags |= PELLUCID_FLAG_ADDS;
@@ -85,7 +87,7 @@ shared::FrameConstants frameConstants(const FrameFacts& facts) {
   c.flags = {flags, f.materialCount, f.debugView, t.angleModel};
   const float* p = t.anglePolynomial;
   c.anglePolynomial = {p[0], p[1], p[2], p[3]};
-  c.marks = {t.materialMarkBit, f.materialShift, materialBits(f) & ~t.materialMarkBit, 0};
+  c.marks = {t.materialMarkBit, f.materialShift, facts.materialBits() & ~t.materialMarkBit, 0};
   c.filterAndLimit = rgb(t.transmittanceFilter, t.maximumThickness > 0 ? t.maximumThickness : INFINITY);
   for (uint32_t level = kFirstLevel; level <= PELLUCID_LAST_LEVEL; ++level) {
     const PyramidPlace& place = facts.pyramid.levels[level];
@@ -147,7 +149,7 @@ uint32_t placeOf(const LightGroup& group, const PellucidShadowMap& map, uint32_t
 glm::uvec4 occluderConstants(const FrameFacts& f, const PellucidShadowMap& s, const PellucidLight& l,
                              const LightGroup& group) {
   const float scale = s.casterMaterialScale == 0 ? 255.0f : s.casterMaterialScale;
-  return {group.readsExit(f, l, s) ? placeOf(group, s, s.exitImage - 1) + 1 : 0,
+  return {group.readsExit(f, f, l, s) ? placeOf(group, s, s.exitImage - 1) + 1 : 0,
           group.readsCaster(s) ? placeOf(group, s, s.casterMaterialImage - 1) + 1 : 0, bitsOf(scale),
           s.offset[0] | s.offset[1] << 16};
 }
@@ -187,20 +189,24 @@ shared::ShadowConstants shadowConstants(const FrameFacts& f, const PellucidShado
   return c;
 }
 
-shared::MaterialConstants materialConstants(const FrameFacts& f, uint32_t index) {
-  const PellucidMaterial m = f.material(index);
+shared::MaterialConstants materialConstants(const FrameFacts& f, const MaterialTables& tables) {
+  const PellucidMaterial& m = tables.material;
   shared::MaterialConstants c{};
   c.meta = {m.transmittanceModel, m.gaussianCount, m.thinWalled, 0};
   const float exponent = m.transmittanceModel == PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED ? 1.0f : 0.5f;
   const bool canGather = canBeGathered(m.transmittanceModel) && m.thinWalled == 0;
+  if (f.gathers || f.lights.ambient.intensity > 0) c.gather = tables.gather;
   // Without diffusion nothing of it is corrected.
-  if ((f.gathers || f.ambient.intensity > 0) && canGather) c.gather = gatherConstants(f.diffused(index));
+  if (f.diffusedCount(m) == 0) {
+    c.gather.convexity = glm::vec4(0);
+    c.gather.profile = glm::vec4(0, 0, 0, c.gather.profile.w);
+  }
   // From other models the ambient light takes nothing from visible faces.
   for (glm::vec4& reflectance : c.gather.reflectance)
     if (!canGather) reflectance.x = 1;
   if (f.stages.lights) {  // one thickness a pixel
-    c.inverseReflectance.w = static_cast<float>(1 / halfThickness(m));
-    c.transmittance4.w = static_cast<float>(opaqueThickness(m));
+    c.inverseReflectance.w = static_cast<float>(1 / static_cast<double>(tables.halfThickness));
+    c.transmittance4.w = tables.opaqueThickness;
   }
   for (int channel = 0; channel < 3; ++channel) {
     const float* t = m.transmittance[channel];
@@ -238,44 +244,39 @@ void putLightTables(const FrameFacts& f, void* mapped) {
 void putLights(const FrameFacts& f, void* mapped) {
   const ConstantsLayout& layout = f.constants;
   const glm::dmat4 worldFromView = glm::inverse(f.viewFromWorld);
-  f.forEachLight([&](const LightGroup& group, const PellucidLight& l) {
-    uint32_t shadow = group.shadowCount - l.shadowMapCount, row = group.entryRows;
-    const bool gathered = f.isGathered(l);
-    for (uint32_t i = 0; gathered && i < l.shadowMapCount; ++i)
-      row -= entryGroups(entryExtent(f, l, i).height);
-    put(mapped,
-        layout.lights.offset + group.lightBytes + (group.lightCount - 1) * sizeof(shared::LightConstants),
-        lightConstants(f, l, shadow));
-    for (uint32_t i = 0; i < l.shadowMapCount; ++i, ++shadow) {
-      const PellucidShadowMap& s = f.frame.shadowMaps[l.firstShadowMap + i];
-      const shared::ShadowConstants constants = shadowConstants(f, s, l, worldFromView, group);
-      put(mapped, layout.shadows.offset + group.shadowBytes + shadow * sizeof constants, constants);
-      if (!gathered) continue;
-      const EntryExtent extent = entryExtent(f, l, i);
-      const EntryConstants entry =
-          entryConstants(s, l, constants, f.viewFromWorld, extent, row, group.lightCount - 1);
-      row += entryGroups(extent.height);
-      put(mapped, layout.gatherMaps.offset + group.gatherMapBytes + shadow * sizeof entry.gather,
-          entry.gather);
-      put(mapped, layout.entryMaps.offset + group.entryMapBytes + shadow * sizeof entry.map, entry.map);
+  for (const LightGroup& group : f.lights.list()) {
+    uint32_t shadow = 0, row = 0;  // of the group, so far
+    for (uint32_t i = 0; i < group.lightCount; ++i) {
+      const PellucidLight& l = f.light(group.firstLight + i);
+      put(mapped, layout.lights.offset + group.lightBytes + i * sizeof(shared::LightConstants),
+          lightConstants(f, l, shadow));
+      for (uint32_t k = 0; k < l.shadowMapCount; ++k, ++shadow) {
+        const PellucidShadowMap& s = f.frame.shadowMaps[l.firstShadowMap + k];
+        const shared::ShadowConstants constants = shadowConstants(f, s, l, worldFromView, group);
+        put(mapped, layout.shadows.offset + group.shadowBytes + shadow * sizeof constants, constants);
+        if (!f.isGathered(l)) continue;
+        const EntryExtent extent = entryExtent(f, f, l, k);
+        const EntryConstants entry = entryConstants(s, l, constants, f.viewFromWorld, extent, row, i);
+        row += entryGroups(extent.height);
+        put(mapped, layout.gatherMaps.offset + group.gatherMapBytes + shadow * sizeof entry.gather,
+            entry.gather);
+        put(mapped, layout.entryMaps.offset + group.entryMapBytes + shadow * sizeof entry.map, entry.map);
+      }
     }
-  });
+  }
 }
 
-// The lists are empty, and their commands have the groups of the plan's dispatches.
-shared::BlockLists blockLists(const FrameFacts& f, const PellucidPlan& plan) {
+// The lists are empty, and their commands have the groups of the plan's dispatches. `reach`: of probes, mm.
+shared::BlockLists blockLists(const FrameFacts& f, const PellucidPlan& plan, float reach) {
   shared::BlockLists c{};
   c.maps.x = f.blocks.maps;
-  float reach = 0;
-  for (uint32_t i = 0; f.gathers && i < f.frame.materialCount; ++i)
-    if (const PellucidMaterial m = f.material(i); m.thinWalled == 0)
-      reach = std::max(reach, gatherReach(m, f.gatherSamples));
   c.reach.x = reach / (1000 * f.frame.metersPerUnit);
   for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
     const PellucidDispatch& d = plan.dispatches[i];
     if (!d.indirect) continue;
     const VkDeviceSize list = (d.indirectOffset - f.constants.lists.offset) / sizeof(glm::uvec4);
-    c.commands[list] = {0, d.groups[1], d.groups[2], d.groups[0]};
+    // A plan of another frame may have them anywhere.
+    if (list < PELLUCID_LISTS) c.commands[list] = {0, d.groups[1], d.groups[2], d.groups[0]};
   }
   return c;
 }
@@ -288,15 +289,25 @@ PellucidResult writeConstants(const FrameFacts& f, const PellucidPlan& plan, voi
     return PELLUCID_ERROR_INVALID_ARGUMENT;
   if (size < layout.size) return PELLUCID_ERROR_BUFFER_TOO_SMALL;
 
-  std::memset(mapped, 0, static_cast<size_t>(layout.size));
+  // Windows and lists are longer than what the shaders read of them, which is written.
   put(mapped, layout.frame.offset, frameConstants(f));
   putLightTables(f, mapped);
   putLights(f, mapped);
-  if (f.stages.diffusion) put(mapped, layout.lists.offset, blockLists(f, plan));
+  float reach = 0;
   for (uint32_t i = 0; i < f.frame.materialCount; ++i) {
-    put(mapped, layout.materials.offset + i * sizeof(shared::MaterialConstants), materialConstants(f, i));
-    put(mapped, layout.kernels.offset + i * sizeof(shared::KernelConstants), kernelConstants(f.diffused(i)));
+    MaterialTables tables;
+    if (f.frame.materialTables)
+      std::memcpy(&tables, f.frame.materialTables[i].words, sizeof tables);
+    else
+      makeTables(f.material(i), &tables);
+    put(mapped, layout.materials.offset + i * sizeof(shared::MaterialConstants),
+        materialConstants(f, tables));
+    if (f.diffusedCount(tables.material) == 0) tables.kernel = {};
+    put(mapped, layout.kernels.offset + i * sizeof(shared::KernelConstants), tables.kernel);
+    if (f.gathers && tables.material.thinWalled == 0)
+      reach = std::max(reach, gatherReach(tables.gather, f.gatherSamples));
   }
+  if (f.stages.diffusion) put(mapped, layout.lists.offset, blockLists(f, plan, reach));
   return PELLUCID_OK;
 }
 
@@ -308,7 +319,6 @@ extern "C" PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const
                                                  void* mapped, size_t size) {
   if (!plan || !mapped) return PELLUCID_ERROR_INVALID_ARGUMENT;
   Findings silent(nullptr, nullptr);
-  FrameFacts facts;
-  const PellucidResult result = readFrame(frame, silent, &facts);
-  return result == PELLUCID_OK ? writeConstants(facts, *plan, mapped, size) : result;
+  return readFrame(frame, silent,
+                   [&](const FrameFacts& facts) { return writeConstants(facts, *plan, mapped, size); });
 }

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 
-#include "frame.h"
-
 namespace pellucid {
 
-ConstantsLayout::ConstantsLayout(const FrameFacts& facts) {
-  const LightGroup& last = facts.lights.last;
+ConstantsLayout::ConstantsLayout(const Inputs& inputs, const GatherChoice& gather, const Lights& all,
+                                 const Stages& stages, const Blocks& blocks) {
+  const LightGroup& last = all.last;
   const auto place = [this](Range* range, VkDeviceSize bytes) {
     *range = {size, bytes};
     size += aligned(bytes);
@@ -16,15 +15,14 @@ ConstantsLayout::ConstantsLayout(const FrameFacts& facts) {
   // The last group's window reaches as far as the first one's.
   place(&lights, last.lightBytes + kLightWindow);
   place(&shadows, last.shadowBytes + kShadowWindow);
-  place(&materials, facts.frame.materialCount * sizeof(shared::MaterialConstants));
-  place(&kernels, facts.frame.materialCount * sizeof(shared::KernelConstants));
-  if (facts.gathers) {
+  place(&materials, inputs.frame.materialCount * sizeof(shared::MaterialConstants));
+  place(&kernels, inputs.frame.materialCount * sizeof(shared::KernelConstants));
+  if (gather.gathers) {
     place(&gatherMaps, last.gatherMapBytes + kGatherMapWindow);
-    place(&entryMaps, last.entryMapBytes + PELLUCID_DISPATCH_SHADOWS * sizeof(shared::EntryMapConstants));
+    place(&entryMaps, last.entryMapBytes + kEntryMapWindow);
   }
-  if (facts.stages.diffusion)
-    place(&lists,
-          sizeof(shared::BlockLists) + facts.blocks.maps * PELLUCID_ENTRY_GROUP_WORDS * sizeof(uint32_t));
+  if (stages.diffusion)
+    place(&lists, sizeof(shared::BlockLists) + blocks.maps * PELLUCID_ENTRY_GROUP_WORDS * sizeof(uint32_t));
 }
 
 namespace {
@@ -32,7 +30,8 @@ namespace {
 // A plan holds no more groups of lights than dispatches.
 VkDeviceSize mostConstants(VkDeviceSize materials, VkDeviceSize lights, VkDeviceSize maps) {
   const VkDeviceSize groups = std::clamp(lights, VkDeviceSize{1}, VkDeviceSize{PELLUCID_MAX_DISPATCHES});
-  // The bytes that a range holds of the groups before the last one, each rounded up, and the last one's window.
+  // The bytes that a range holds of the groups before the last one, each rounded up, and the last one's
+  // window.
   const auto grouped = [groups](VkDeviceSize bytes, VkDeviceSize window) {
     return aligned(bytes + (groups - 1) * (aligned(1) - 1) + window);
   };
@@ -41,8 +40,7 @@ VkDeviceSize mostConstants(VkDeviceSize materials, VkDeviceSize lights, VkDevice
          grouped(lights * sizeof(shared::LightConstants), kLightWindow) +
          grouped(maps * sizeof(shared::ShadowConstants), kShadowWindow) +
          grouped(maps * sizeof(shared::GatherMapConstants), kGatherMapWindow) +
-         grouped(maps * sizeof(shared::EntryMapConstants),
-                 PELLUCID_DISPATCH_SHADOWS * sizeof(shared::EntryMapConstants)) +
+         grouped(maps * sizeof(shared::EntryMapConstants), kEntryMapWindow) +
          aligned(sizeof(shared::BlockLists) + maps * PELLUCID_ENTRY_GROUP_WORDS * sizeof(uint32_t));
 }
 

@@ -1,7 +1,7 @@
 // Byte ranges of the constants slice.
 #pragma once
 
-#include "light_groups.h"
+#include "stages.h"
 
 namespace pellucid {
 
@@ -11,6 +11,7 @@ constexpr VkDeviceSize aligned(VkDeviceSize bytes) { return (bytes + 255) / 256 
 constexpr VkDeviceSize kLightWindow = PELLUCID_DISPATCH_LIGHTS * sizeof(shared::LightConstants);
 constexpr VkDeviceSize kShadowWindow = PELLUCID_DISPATCH_SHADOWS * sizeof(shared::ShadowConstants);
 constexpr VkDeviceSize kGatherMapWindow = PELLUCID_DISPATCH_SHADOWS * sizeof(shared::GatherMapConstants);
+constexpr VkDeviceSize kEntryMapWindow = PELLUCID_DISPATCH_SHADOWS * sizeof(shared::EntryMapConstants);
 static_assert(kLightWindow <= 16384 && kShadowWindow <= 16384 &&
               kGatherMapWindow <= kShadowWindow);  // least maxUniformBufferRange
 
@@ -24,8 +25,8 @@ struct ConstantsLayout {
   Range lists{};                    // of frames that diffuse: BlockLists
   VkDeviceSize size = 0;
 
-  ConstantsLayout() = default;
-  explicit ConstantsLayout(const FrameFacts& facts);
+  ConstantsLayout(const Inputs& inputs, const GatherChoice& gather, const Lights& all, const Stages& stages,
+                  const Blocks& blocks);
 };
 
 }  // namespace pellucid

@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <bitset>
+#include <iterator>
 #include <memory>
 #include <new>
 
 #include "defaults.h"
 #include "device_limits.h"
 #include "output_format.h"
-#include "pipelines.h"
 #include "shared/pellucid_shared.h"
 #include "text.h"
 
@@ -25,25 +25,8 @@ PellucidResult vulkanError(Findings& out, const char* call, VkResult result) {
 namespace {
 
 constexpr uint32_t kAllUses = PELLUCID_USE_TRANSLUCENCY | PELLUCID_USE_GATHER | PELLUCID_USE_DIFFUSION |
-                              PELLUCID_USE_REUSE | PELLUCID_USE_DEBUG_VIEWS;
-
-VkDescriptorType descriptorType(uint32_t binding) {
-  switch (binding) {
-    case PELLUCID_BINDING_FRAME:
-    case PELLUCID_BINDING_LIGHTS:
-    case PELLUCID_BINDING_SHADOWS:
-      return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
-    case PELLUCID_BINDING_MATERIALS:
-    case PELLUCID_BINDING_KERNELS:
-      return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-    case PELLUCID_BINDING_DESTINATION:
-    case PELLUCID_BINDING_LEVELS:
-    case PELLUCID_BINDING_BLOCKS:
-      return VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
-    default:
-      return VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
-  }
-}
+                              PELLUCID_USE_REUSE | PELLUCID_USE_DEBUG_VIEWS | PELLUCID_USE_THIN_WALLS |
+                              PELLUCID_USE_AMBIENT | PELLUCID_USE_THESIS;
 
 PellucidResult checkDesc(const PellucidContextDesc& desc, Findings& out) {
   if (desc.headerVersion != PELLUCID_HEADER_VERSION) {
@@ -117,56 +100,72 @@ PellucidResult checkDesc(const PellucidContextDesc& desc, Findings& out) {
   return out.result();
 }
 
-PellucidResult createLayouts(PellucidContext& c, Findings& out) {
+// The set and the layout of a pass.
+VkResult createLayout(PellucidContext& c, uint32_t index, const char** call) {
   VkDescriptorSetLayoutBinding bindings[PELLUCID_BINDING_COUNT];
-  for (uint32_t i = 0; i < PELLUCID_BINDING_COUNT; ++i)
-    bindings[i] = {i, descriptorType(i), 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr};
   VkDescriptorSetLayoutCreateInfo set{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
   if (!c.desc.descriptorPools) set.flags = VK_DESCRIPTOR_SET_LAYOUT_CREATE_PUSH_DESCRIPTOR_BIT_KHR;
-  set.bindingCount = PELLUCID_BINDING_COUNT;
+  forEach(allPasses()[index]->bindings(), [&](const Binding& b) {
+    bindings[set.bindingCount++] = {b.number, b.type, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr};
+  });
   set.pBindings = bindings;
-  VkResult result = c.vk.vkCreateDescriptorSetLayout(c.device, &set, c.callbacks(), &c.setLayout);
-  if (result != VK_SUCCESS) return vulkanError(out, "vkCreateDescriptorSetLayout", result);
+  *call = "vkCreateDescriptorSetLayout";
+  const VkResult result =
+      c.vk.vkCreateDescriptorSetLayout(c.device, &set, c.callbacks(), &c.setLayouts[index]);
+  if (result != VK_SUCCESS) return result;
 
   const VkPushConstantRange push{VK_SHADER_STAGE_COMPUTE_BIT, 0, PELLUCID_PUSH_CONSTANT_BYTES};
   VkPipelineLayoutCreateInfo layout{VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO};
   layout.setLayoutCount = 1;
-  layout.pSetLayouts = &c.setLayout;
+  layout.pSetLayouts = &c.setLayouts[index];
   layout.pushConstantRangeCount = 1;
   layout.pPushConstantRanges = &push;
-  result = c.vk.vkCreatePipelineLayout(c.device, &layout, c.callbacks(), &c.pipelineLayout);
-  return result == VK_SUCCESS ? PELLUCID_OK : vulkanError(out, "vkCreatePipelineLayout", result);
+  *call = "vkCreatePipelineLayout";
+  return c.vk.vkCreatePipelineLayout(c.device, &layout, c.callbacks(), &c.pipelineLayouts[index]);
+}
+
+PellucidResult createLayouts(PellucidContext& c, Findings& out) {
+  const char* call = nullptr;
+  for (uint32_t i = 0; i < allPasses().size(); ++i)
+    if (const VkResult result = createLayout(c, i, &call); result != VK_SUCCESS)
+      return vulkanError(out, call, result);
+  return PELLUCID_OK;
 }
 
 // One pipeline for each thread that the caller lends.
 struct PipelineJobs {
   PellucidContext& context;
-  std::array<uint32_t, kPipelineCount> pipelines{};  // to make
-  std::array<VkResult, kPipelineCount> results{};
+  std::array<uint32_t, kMostPasses> pipelines{};  // to make
+  std::array<VkResult, kMostPasses> results{};
 };
 
-VkResult createPipeline(const PellucidContext& c, const PipelineDesc& p, VkPipeline* pipeline) {
+VkResult createPipeline(const PellucidContext& c, uint32_t index, VkPipeline* pipeline) {
   const PellucidContextDesc& desc = c.desc;
+  const Pass& pass = *allPasses()[index];
+  std::span<const uint32_t> words = pass.wordsFor(desc.shadowViewType);
   std::unique_ptr<uint32_t[]> patched;
   if (desc.outputFormat != VK_FORMAT_UNDEFINED) {
-    patched.reset(new (std::nothrow) uint32_t[p.wordCount]);
+    patched.reset(new (std::nothrow) uint32_t[words.size()]);
     if (!patched) return VK_ERROR_OUT_OF_HOST_MEMORY;
-    std::copy_n(p.words, p.wordCount, patched.get());
-    fixOutputFormat(patched.get(), p.wordCount, desc.outputFormat == VK_FORMAT_R32G32B32A32_SFLOAT);
+    std::copy(words.begin(), words.end(), patched.get());
+    fixOutputFormat(patched.get(), words.size(), desc.outputFormat == VK_FORMAT_R32G32B32A32_SFLOAT);
+    words = {patched.get(), words.size()};
   }
   VkShaderModuleCreateInfo moduleInfo{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
-  moduleInfo.codeSize = p.wordCount * sizeof(uint32_t);
-  moduleInfo.pCode = patched ? patched.get() : p.words;
+  moduleInfo.codeSize = words.size_bytes();
+  moduleInfo.pCode = words.data();
   VkShaderModule module = VK_NULL_HANDLE;
   VkResult result = c.vk.vkCreateShaderModule(c.device, &moduleInfo, c.callbacks(), &module);
   if (result != VK_SUCCESS) return result;
 
-  std::array<PellucidSpecialization, std::tuple_size_v<decltype(p.constants)> + 2> constants;
-  auto* own = std::copy_n(p.constants.begin(), p.constantCount, constants.begin());
-  own[0] = {PELLUCID_SPECIALIZATION_NORMALS, desc.normalEncoding};
-  own[1] = {PELLUCID_SPECIALIZATION_LIGHT_TABLES, desc.lightTables};
-  const uint32_t count = p.constantCount + 2;
-  std::array<VkSpecializationMapEntry, std::tuple_size_v<decltype(constants)>> entries;
+  constexpr size_t kMostConstants = 5;
+  std::array<PellucidSpecialization, kMostConstants> constants;
+  PellucidSpecialization* end = std::copy(pass.constants.begin(), pass.constants.end(), constants.begin());
+  *end++ = {PELLUCID_SPECIALIZATION_NORMALS, desc.normalEncoding};
+  *end++ = {PELLUCID_SPECIALIZATION_LIGHT_TABLES, desc.lightTables};
+  *end++ = {PELLUCID_SPECIALIZATION_USES, desc.uses != 0 ? desc.uses : UINT32_MAX};
+  const auto count = static_cast<uint32_t>(end - constants.data());
+  std::array<VkSpecializationMapEntry, kMostConstants> entries;
   for (uint32_t i = 0; i < count; ++i)
     entries[i] = {constants[i].id,
                   static_cast<uint32_t>(i * sizeof constants[0] + offsetof(PellucidSpecialization, value)),
@@ -179,26 +178,25 @@ VkResult createPipeline(const PellucidContext& c, const PipelineDesc& p, VkPipel
   info.stage.module = module;
   info.stage.pName = "main";
   info.stage.pSpecializationInfo = &specialization;
-  info.layout = c.pipelineLayout;
+  info.layout = c.pipelineLayouts[index];
   result = c.vk.vkCreateComputePipelines(c.device, desc.pipelineCache, 1, &info, c.callbacks(), pipeline);
   c.vk.vkDestroyShaderModule(c.device, module, c.callbacks());
   return result;
 }
 
 // Makes the pipelines among `wanted`, bits by index, that are of the context's uses and not there.
-PellucidResult createPipelines(PellucidContext& c, std::bitset<kPipelineCount> wanted, Findings& out) {
+PellucidResult createPipelines(PellucidContext& c, std::bitset<kMostPasses> wanted, Findings& out) {
   const PellucidContextDesc& desc = c.desc;
   PipelineJobs jobs{c};
   uint32_t count = 0;
-  for (uint32_t i = 0; i < kPipelineCount; ++i)
-    if (wanted[i] && !c.pipelines[i] && (desc.uses == 0 || (pipelineDesc(i).uses & ~desc.uses) == 0))
+  for (uint32_t i = 0; i < allPasses().size(); ++i)
+    if (wanted[i] && !c.pipelines[i] && (desc.uses == 0 || (allPasses()[i]->uses & ~desc.uses) == 0))
       jobs.pipelines[count++] = i;
   if (count == 0) return PELLUCID_OK;
   const auto job = [](void* data, uint32_t i) {
     auto& all = *static_cast<PipelineJobs*>(data);
     const uint32_t pipeline = all.pipelines[i];
-    all.results[i] = createPipeline(all.context, pipelineDesc(pipeline, all.context.desc.shadowViewType),
-                                    &all.context.pipelines[pipeline]);
+    all.results[i] = createPipeline(all.context, pipeline, &all.context.pipelines[pipeline]);
   };
   if (desc.parallelFor)
     desc.parallelFor(desc.parallelUser, count, job, &jobs);
@@ -207,7 +205,7 @@ PellucidResult createPipelines(PellucidContext& c, std::bitset<kPipelineCount> w
   for (uint32_t i = 0; i < count; ++i)
     if (jobs.results[i] != VK_SUCCESS) {
       char call[64];
-      Text(call, sizeof call) << "creating pipeline " << pipelineDesc(jobs.pipelines[i]).name;
+      Text(call, sizeof call) << "creating pipeline " << allPasses()[jobs.pipelines[i]]->pipeline;
       return vulkanError(out, call, jobs.results[i]);
     }
   return PELLUCID_OK;
@@ -264,7 +262,7 @@ extern "C" PellucidResult pellucidCreateContext(const PellucidContextDesc* given
   }
   result = createLayouts(*c, out);
   if (result == PELLUCID_OK && !desc->deferPipelines)
-    result = createPipelines(*c, std::bitset<kPipelineCount>().set(), out);
+    result = createPipelines(*c, std::bitset<kMostPasses>().set(), out);
   if (result != PELLUCID_OK) {
     pellucidDestroyContext(c);
     return result;
@@ -275,9 +273,9 @@ extern "C" PellucidResult pellucidCreateContext(const PellucidContextDesc* given
 
 extern "C" PellucidResult pellucidCreatePipelines(PellucidContext* c, const PellucidPlan* plan) {
   if (!c || !plan) return PELLUCID_ERROR_INVALID_ARGUMENT;
-  std::bitset<kPipelineCount> wanted;
+  std::bitset<kMostPasses> wanted;
   for (uint32_t i = 0; i < plan->dispatchCount; ++i)
-    if (plan->dispatches[i].pipeline < kPipelineCount) wanted.set(plan->dispatches[i].pipeline);
+    if (plan->dispatches[i].pipeline < allPasses().size()) wanted.set(plan->dispatches[i].pipeline);
   Findings out(c->desc.message, c->desc.messageUser);
   return createPipelines(*c, wanted, out);
 }
@@ -286,12 +284,12 @@ extern "C" PellucidResult pellucidCreateDescriptorPool(const PellucidContext* c,
   if (!c || !pool) return PELLUCID_ERROR_INVALID_ARGUMENT;
   *pool = VK_NULL_HANDLE;
   Findings out(c->desc.message, c->desc.messageUser);
-  VkDescriptorPoolSize sizes[PELLUCID_BINDING_COUNT];
-  for (uint32_t i = 0; i < PELLUCID_BINDING_COUNT; ++i)
-    sizes[i] = {descriptorType(i), PELLUCID_MAX_DISPATCHES};
+  VkDescriptorPoolSize sizes[] = {{kUniforms, 0}, {kStorage, 0}, {kSampled, 0}, {kStored, 0}};
+  for (VkDescriptorPoolSize& size : sizes)
+    size.descriptorCount = PELLUCID_MAX_DISPATCHES * mostBindings(size.type);
   VkDescriptorPoolCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
   info.maxSets = PELLUCID_MAX_DISPATCHES;
-  info.poolSizeCount = PELLUCID_BINDING_COUNT;
+  info.poolSizeCount = static_cast<uint32_t>(std::size(sizes));
   info.pPoolSizes = sizes;
   const VkResult result = c->vk.vkCreateDescriptorPool(c->device, &info, c->callbacks(), pool);
   return result == VK_SUCCESS ? PELLUCID_OK : vulkanError(out, "vkCreateDescriptorPool", result);
@@ -300,7 +298,9 @@ extern "C" PellucidResult pellucidCreateDescriptorPool(const PellucidContext* c,
 extern "C" void pellucidDestroyContext(PellucidContext* c) {
   if (!c) return;
   for (VkPipeline pipeline : c->pipelines) c->vk.vkDestroyPipeline(c->device, pipeline, c->callbacks());
-  c->vk.vkDestroyPipelineLayout(c->device, c->pipelineLayout, c->callbacks());
-  c->vk.vkDestroyDescriptorSetLayout(c->device, c->setLayout, c->callbacks());
+  for (VkPipelineLayout layout : c->pipelineLayouts)
+    c->vk.vkDestroyPipelineLayout(c->device, layout, c->callbacks());
+  for (VkDescriptorSetLayout layout : c->setLayouts)
+    c->vk.vkDestroyDescriptorSetLayout(c->device, layout, c->callbacks());
   delete c;
 }

@@ -3,8 +3,8 @@
 #include <array>
 
 #include "findings.h"
+#include "pass.h"
 #include "pellucid/pellucid.h"
-#include "pipelines.h"
 #include "vk_table.h"
 
 // Immutable once pellucidCreateContext has returned, but for the pipelines that pellucidCreatePipelines adds.
@@ -14,9 +14,10 @@ struct PellucidContext {
   bool hasAllocator = false;
   pellucid::VkTable vk;
   PellucidContextDesc desc{};  // its `allocator` may be gone
-  VkDescriptorSetLayout setLayout = VK_NULL_HANDLE;
-  VkPipelineLayout pipelineLayout = VK_NULL_HANDLE;
-  std::array<VkPipeline, pellucid::kPipelineCount> pipelines{};  // NULL: not among desc.uses, or not made yet
+  // By pass. A pipeline is NULL that is not among desc.uses, or not made yet.
+  std::array<VkDescriptorSetLayout, pellucid::kMostPasses> setLayouts{};
+  std::array<VkPipelineLayout, pellucid::kMostPasses> pipelineLayouts{};
+  std::array<VkPipeline, pellucid::kMostPasses> pipelines{};
 
   const VkAllocationCallbacks* callbacks() const { return hasAllocator ? &allocator : nullptr; }
 };

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "camera.h"
-#include "frame.h"
+#include "ambient.h"
 #include "minimum_dot.h"
 
 namespace pellucid {
@@ -22,17 +21,15 @@ double angleBetween(const glm::dvec3& a, const glm::dvec3& b) {
 
 }  // namespace
 
-ViewBounds::ViewBounds(const FrameFacts& facts) : viewFromWorld_(facts.viewFromWorld) {
-  const PellucidFrame& frame = facts.frame;
-  const DepthRange& range = facts.depthRange;
-  const shared::Camera camera = makeCamera(facts.clipFromView, range,
-                                           {frame.imageExtent[0], frame.imageExtent[1]}, frame.metersPerUnit);
+ViewBounds::ViewBounds(const Inputs& inputs, const Screen& screen) : viewFromWorld_(screen.viewFromWorld) {
+  const DepthRange& range = screen.depthRange;
+  const shared::Camera& camera = screen.camera;
   parallel_ = !range.perspective;
   bounded_ = parallel_ || range.d == 0;
   forward_ = range.forward;
 
   // The rect's corners, half a pixel outside of the centers that the shaders use.
-  const Rect& r = facts.rect;
+  const Rect& r = screen.rect;
   const double left = r.x - 0.5, top = r.y - 0.5, right = left + r.width, bottom = top + r.height;
   const glm::dvec2 corners[4] = {{left, top}, {right, top}, {right, bottom}, {left, bottom}};
   std::array<glm::dvec3, 4> directions;
@@ -48,7 +45,7 @@ ViewBounds::ViewBounds(const FrameFacts& facts) : viewFromWorld_(facts.viewFromW
   for (const glm::dvec3& d : directions) halfAngle_ = std::max(halfAngle_, angleBetween(axis_, d));
   // A cone is convex, and so holds what lies between the corners, up to a right angle.
   if (!(halfAngle_ < 1.57)) halfAngle_ = INFINITY;
-  if (facts.thesis.constantViewDirection) {
+  if (inputs.thesis.constantViewDirection) {
     axis_ = {0, 0, forward_};
     halfAngle_ = 0;
   }
@@ -67,19 +64,20 @@ ViewBounds::ViewBounds(const FrameFacts& facts) : viewFromWorld_(facts.viewFromW
 // Every factor but -N.L needs the cosine between the view ray and the direction to the light to be above
 // -minimumDot (0 for models without). Walking along a ray turns a light from ahead to behind, so for a
 // light at a point that cosine is largest where the ray starts.
-bool ViewBounds::angleStops(const FrameFacts& facts, const PellucidLight& light) const {
+bool ViewBounds::angleStops(const Inputs& inputs, const Materials& materials,
+                            const PellucidLight& light) const {
   // Thin walls without normals take those of their depths.
-  if (facts.thesis.angleModel == PELLUCID_ANGLE_NORMAL &&
-      (facts.has(PELLUCID_RESOURCE_NORMAL) || facts.thinWalls))
+  if (inputs.thesis.angleModel == PELLUCID_ANGLE_NORMAL &&
+      (inputs.has(PELLUCID_RESOURCE_NORMAL) || materials.thinWalls))
     return false;
-  const double least = -minimumDotOf(facts.thesis, light);
+  const double least = -minimumDotOf(inputs.thesis, light);
   if (least >= 1) return true;
   if (light.type == PELLUCID_LIGHT_DIRECTIONAL) {
     const glm::dvec3 toLight = -(glm::dmat3(viewFromWorld_) * vec(light.direction));
     return angleBetween(axis_, toLight) - halfAngle_ > std::acos(least) + kMargin;
   }
   const glm::dvec3 position(viewFromWorld_ * glm::dvec4(vec(light.position), 1));
-  if (facts.thesis.constantViewDirection || parallel_) {
+  if (inputs.thesis.constantViewDirection || parallel_) {
     const glm::dvec3 direction = glm::normalize(axis_);
     return std::all_of(starts_.begin(), starts_.end(), [&](const glm::dvec3& start) {
       return glm::dot(direction, position - start) < -kMargin * glm::length(position - start);
@@ -109,18 +107,19 @@ bool ViewBounds::coneMisses(const PellucidLight& light) const {
   });
 }
 
-const char* ViewBounds::whySkipped(const FrameFacts& facts, const PellucidLight& light) const {
+const char* ViewBounds::whySkipped(const Inputs& inputs, const Materials& materials,
+                                   const GatherChoice& gather, const PellucidLight& light) const {
   if (light.intensity <= 0 || (light.color[0] <= 0 && light.color[1] <= 0 && light.color[2] <= 0))
     return "no intensity";
-  if (facts.lacksChord(light) && !facts.thinWalls)
-    return facts.holdsBackFaces(light)
+  if (inputs.lacksChord(light) && !materials.thinWalls)
+    return inputs.holdsBackFaces(light)
                ? "no back depth to take a thickness from, and its map holds back faces"
                : "no back depth to take a thickness from";
   // Gathered and ambient light come from around, whatever the angle, and from beyond the view.
-  if (facts.isGathered(light) || isAmbient(light)) return nullptr;
+  if (gather.isGathered(inputs, light) || isAmbient(light)) return nullptr;
   // That view shows thicknesses whether light comes through or not.
-  if (!bounded_ || facts.frame.debugView == PELLUCID_DEBUG_THICKNESS) return nullptr;
-  if (angleStops(facts, light)) return "no pixel's view ray passes its angle test";
+  if (!bounded_ || inputs.frame.debugView == PELLUCID_DEBUG_THICKNESS) return nullptr;
+  if (angleStops(inputs, materials, light)) return "no pixel's view ray passes its angle test";
   if (rangeMisses(light)) return "its range does not reach the view";
   if (coneMisses(light)) return "its cone points away from the view";
   return nullptr;

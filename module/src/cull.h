@@ -4,25 +4,23 @@
 #include <array>
 #include <glm/glm.hpp>
 
-#include "pellucid/pellucid.h"
+#include "gather_choice.h"
 
 namespace pellucid {
-
-struct FrameFacts;
 
 // The part of space that the render rect can show: every surface lies on a ray start + p direction, p > 0.
 // View space.
 class ViewBounds {
 public:
-  ViewBounds() = default;
-  explicit ViewBounds(const FrameFacts& facts);  // reads what they have of the view
+  ViewBounds(const Inputs& inputs, const Screen& screen);
 
   // Why a light adds nothing to the frame, or nullptr. Static string. Everything is conservative: a light
   // that could add to one pixel stays.
-  const char* whySkipped(const FrameFacts& facts, const PellucidLight& light) const;
+  const char* whySkipped(const Inputs& inputs, const Materials& materials, const GatherChoice& gather,
+                         const PellucidLight& light) const;
 
 private:
-  bool angleStops(const FrameFacts& facts, const PellucidLight& light) const;
+  bool angleStops(const Inputs& inputs, const Materials& materials, const PellucidLight& light) const;
   bool rangeMisses(const PellucidLight& light) const;
   bool coneMisses(const PellucidLight& light) const;
 

@@ -5,7 +5,7 @@ namespace {
 
 // A field that is appended must not land in bytes that older headers left undefined.
 #define ENDS_WITH(Struct, field) (offsetof(Struct, field) + sizeof(Struct::field) == sizeof(Struct))
-static_assert(ENDS_WITH(PellucidFrame, descriptorPool));
+static_assert(ENDS_WITH(PellucidFrame, materialTables));
 static_assert(ENDS_WITH(PellucidMaterial, wallTransmittance));
 static_assert(ENDS_WITH(PellucidThesisOptions, minimumDotTable));
 static_assert(ENDS_WITH(PellucidContextDesc, reserved));
@@ -22,6 +22,7 @@ PellucidFrame defaultFrame() {
   frame.outputFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
   frame.coherenceThreshold = 0.005f;
   frame.gatherSamples = 8;
+  frame.indirectDispatches = PELLUCID_INDIRECT_MATERIAL;
   frame.preExposure = 1;
   return frame;
 }

@@ -1,6 +1,7 @@
 #include "device_limits.h"
 
 #include "constants_layout.h"
+#include "pass.h"
 #include "shared/pellucid_shared.h"
 
 namespace pellucid {
@@ -13,11 +14,6 @@ static_assert(kInvocations == PELLUCID_BLOCK_GROUP * PELLUCID_BLOCK_GROUP &&
               kInvocations == PELLUCID_LIST_GROUP);
 // Of the spatial filter, the pass with most; shader_files_test holds that all have less.
 constexpr uint32_t kSharedBytes = 16384;
-
-// Descriptors of a type in the one set that every pass has; see descriptorType in context.cpp.
-constexpr uint32_t kUniformBuffers = 3, kStorageBuffers = 2, kStorageImages = 3;
-constexpr uint32_t kSampledImages =
-    PELLUCID_BINDING_COUNT - kUniformBuffers - kStorageBuffers - kStorageImages;
 
 struct Limit {
   const char* name;
@@ -81,16 +77,16 @@ void checkLimits(const PellucidContextDesc& desc, const VkPhysicalDeviceProperti
       {"maxComputeSharedMemorySize", kSharedBytes, l.maxComputeSharedMemorySize},
       {"maxPushConstantsSize", PELLUCID_PUSH_CONSTANT_BYTES, l.maxPushConstantsSize},
       {"maxUniformBufferRange", kShadowWindow, l.maxUniformBufferRange},
-      {"maxPerStageDescriptorUniformBuffers", kUniformBuffers, l.maxPerStageDescriptorUniformBuffers},
-      {"maxPerStageDescriptorStorageBuffers", kStorageBuffers, l.maxPerStageDescriptorStorageBuffers},
-      {"maxPerStageDescriptorStorageImages", kStorageImages, l.maxPerStageDescriptorStorageImages},
-      {"maxPerStageDescriptorSampledImages", kSampledImages, l.maxPerStageDescriptorSampledImages},
-      {"maxPerStageResources", PELLUCID_BINDING_COUNT, l.maxPerStageResources}};
+      {"maxPerStageDescriptorUniformBuffers", mostBindings(kUniforms), l.maxPerStageDescriptorUniformBuffers},
+      {"maxPerStageDescriptorStorageBuffers", mostBindings(kStorage), l.maxPerStageDescriptorStorageBuffers},
+      {"maxPerStageDescriptorStorageImages", mostBindings(kStored), l.maxPerStageDescriptorStorageImages},
+      {"maxPerStageDescriptorSampledImages", mostBindings(kSampled), l.maxPerStageDescriptorSampledImages},
+      {"maxPerStageResources", mostBindings(), l.maxPerStageResources}};
   for (const Limit& limit : limits)
     if (limit.has < limit.needed) return refuse(limit.name, limit.has, limit.needed);
   if (!desc.descriptorPools)
-    if (const uint32_t most = mostPushed(desc, get); most > 0 && most < PELLUCID_BINDING_COUNT)
-      return refuse("maxPushDescriptors", most, PELLUCID_BINDING_COUNT);
+    if (const uint32_t most = mostPushed(desc, get); most > 0 && most < mostBindings())
+      return refuse("maxPushDescriptors", most, mostBindings());
   // The diffusion's texels, words of blocks, and the output where its format is known.
   for (const VkFormat format : {VK_FORMAT_R32G32B32A32_UINT, VK_FORMAT_R32_UINT, desc.outputFormat})
     if (format != VK_FORMAT_UNDEFINED && !isStorage(desc, get, format))

@@ -1,5 +1,6 @@
-// Relative RMSE of the diffusion from brute force at each radius (pixels within which 99.9 % of the energy lies), the worst of
-// the scenes of docs/accuracy.md. Written by build/bin/pellucid_diffusion_error --table, which --check measures again.
+// Relative RMSE of the diffusion from brute force at each radius (pixels within which 99.9 % of the energy
+// lies), the worst of the scenes of docs/accuracy.md. Written by build/bin/pellucid_diffusion_error --table,
+// which --check measures again.
 #pragma once
 
 namespace pellucid {

@@ -34,8 +34,8 @@ struct Energy {
   }
 };
 
-// One Gaussian can ask for a negative weight of an element, which counts as 0. Where a level and coarser ones have nothing, the
-// level itself has what others give it.
+// One Gaussian can ask for a negative weight of an element, which counts as 0. Where a level and coarser ones
+// have nothing, the level itself has what others give it.
 double shareOf(double coarser, double all) { return all > 1e-9 ? std::clamp(coarser / all, 0.0, 1.0) : 0; }
 
 }  // namespace

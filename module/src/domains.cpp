@@ -2,8 +2,6 @@
 
 #include <array>
 
-#include "quality.h"
-
 namespace pellucid {
 namespace {
 

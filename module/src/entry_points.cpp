@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "camera.h"
 #include "shadow_map.h"
@@ -15,17 +14,9 @@ glm::dvec3 linear(const glm::dmat4& m, int row) { return {m[0][row], m[1][row], 
 
 }  // namespace
 
-float longestEntrySide(const FrameFacts& facts) {
-  constexpr float kPerPath = 2;
-  float shortest = std::numeric_limits<float>::infinity();
-  for (uint32_t i = 0; i < facts.frame.materialCount; ++i)
-    if (const PellucidMaterial m = facts.material(i); m.thinWalled == 0)
-      shortest = std::min(shortest, meanFreePath(m));
-  return shortest / (kPerPath * 1000 * facts.frame.metersPerUnit);
-}
-
-EntryExtent entryExtent(const FrameFacts& facts, const PellucidLight& light, uint32_t map) {
-  const PellucidShadowMap* maps = facts.frame.shadowMaps + light.firstShadowMap;
+EntryExtent entryExtent(const Inputs& inputs, const GatherChoice& gather, const PellucidLight& light,
+                        uint32_t map) {
+  const PellucidShadowMap* maps = inputs.frame.shadowMaps + light.firstShadowMap;
   const PellucidShadowMap* end = maps + light.shadowMapCount;
   const auto fits = [&](uint32_t side) {
     uint64_t rows = 0;
@@ -39,7 +30,7 @@ EntryExtent entryExtent(const FrameFacts& facts, const PellucidLight& light, uin
   const auto isFineEnough = [&](uint32_t side) {
     return std::all_of(maps, end, [&](const PellucidShadowMap& m) {
       return !isPerspective(m) && std::min(m.extent[0], m.extent[1]) / side >= kLeastEntries &&
-             side * texelSide(m) <= static_cast<double>(facts.longestEntrySide);
+             side * texelSide(m) <= static_cast<double>(gather.longestEntrySide);
     });
   };
   uint32_t side = 1;

@@ -2,7 +2,7 @@
 // their maps. Pure.
 #pragma once
 
-#include "frame.h"
+#include "gather_choice.h"
 
 namespace pellucid {
 
@@ -27,14 +27,10 @@ struct EntryExtent {
   uint32_t side;  // texels of the map that an entry point stands for, a side
 };
 
-// Longest side of an entry point across the light, scene units: of a frame's shortest mean free path a half.
-// A half costs heads 3 % of the gather's error, twice as much 60 %
-// (docs/lab.md).
-float longestEntrySide(const FrameFacts& facts);
-
 // Extent of one of the light's maps: a power of two of texels a side, so that all of them fit. Orthographic
-// maps take no more entry points than longestEntrySide() asks for.
-EntryExtent entryExtent(const FrameFacts& facts, const PellucidLight& light, uint32_t map);
+// maps take no more entry points than GatherChoice::longestEntrySide asks for.
+EntryExtent entryExtent(const Inputs& inputs, const GatherChoice& gather, const PellucidLight& light,
+                        uint32_t map);
 
 // `row`: of the map's first entry point. `light`: its place among the dispatch's.
 struct EntryConstants {

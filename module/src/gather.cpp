@@ -132,8 +132,8 @@ shared::GatherConstants gatherConstants(const PellucidMaterial& m) {
   return g;
 }
 
-float gatherReach(const PellucidMaterial& m, uint32_t samples) {
-  const glm::vec4 lengths = gatherConstants(m).lengths;
+float gatherReach(const shared::GatherConstants& gather, uint32_t samples) {
+  const glm::vec4& lengths = gather.lengths;
   // Entry points lie t + s away, t <= lengths.z along the axis and s the spread of the last sample, which is
   // within the last 1 / samples by at most 25/26 of it (patternOf and gatherSpread of
   // compute/gather/probe_light.glsl and compute/lib/gather.glsl).

@@ -16,6 +16,6 @@ inline bool canBeGathered(uint32_t transmittanceModel) {
 shared::GatherConstants gatherConstants(const PellucidMaterial& material);
 
 // How far from a surface its probes look for entry points, mm.
-float gatherReach(const PellucidMaterial& material, uint32_t samples);
+float gatherReach(const shared::GatherConstants& gather, uint32_t samples);
 
 }  // namespace pellucid

@@ -1,8 +1,9 @@
-// The images of a frame that have a field of their own. Adding one: a row here, and its binding where a
-// dispatch reads it.
+// The images of a frame that have a field of their own. Adding one: a row here, and its binding in the passes
+// that read it.
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 #include "pellucid/pellucid.h"
 #include "shared/pellucid_shared.h"
@@ -14,26 +15,42 @@ struct ImageField {
   const char* name;   // as in the API, plans and messages
   PellucidImage PellucidFrame::*field;
   bool required;
-  uint32_t flag;  // tells shaders that an optional image is there
+  uint32_t binding;
+  uint32_t flag;  // tells shaders that an optional image is there; 0: required
 };
 
 constexpr std::array kImageFields = {
-    ImageField{PELLUCID_RESOURCE_FRONT_DEPTH, "frontDepth", &PellucidFrame::frontDepth, true, 0},
+    ImageField{PELLUCID_RESOURCE_FRONT_DEPTH, "frontDepth", &PellucidFrame::frontDepth, true,
+               PELLUCID_BINDING_FRONT_DEPTH, 0},
     ImageField{PELLUCID_RESOURCE_BACK_DEPTH, "backDepth", &PellucidFrame::backDepth, false,
-               PELLUCID_FLAG_BACK_DEPTH},
-    ImageField{PELLUCID_RESOURCE_IRRADIANCE, "irradiance", &PellucidFrame::irradiance, true, 0},
-    ImageField{PELLUCID_RESOURCE_NORMAL, "normal", &PellucidFrame::normal, false, PELLUCID_FLAG_NORMAL},
-    ImageField{PELLUCID_RESOURCE_ALBEDO, "albedo", &PellucidFrame::albedo, false, PELLUCID_FLAG_ALBEDO},
-    ImageField{PELLUCID_RESOURCE_MATERIAL, "material", &PellucidFrame::material, true, 0},
-    ImageField{PELLUCID_RESOURCE_OUTPUT, "output", &PellucidFrame::output, true, 0},
+               PELLUCID_BINDING_BACK_DEPTH, PELLUCID_FLAG_BACK_DEPTH},
+    ImageField{PELLUCID_RESOURCE_IRRADIANCE, "irradiance", &PellucidFrame::irradiance, true,
+               PELLUCID_BINDING_SOURCE, 0},
+    ImageField{PELLUCID_RESOURCE_NORMAL, "normal", &PellucidFrame::normal, false, PELLUCID_BINDING_NORMAL,
+               PELLUCID_FLAG_NORMAL},
+    ImageField{PELLUCID_RESOURCE_ALBEDO, "albedo", &PellucidFrame::albedo, false, PELLUCID_BINDING_ALBEDO,
+               PELLUCID_FLAG_ALBEDO},
+    ImageField{PELLUCID_RESOURCE_MATERIAL, "material", &PellucidFrame::material, true,
+               PELLUCID_BINDING_MATERIAL, 0},
+    ImageField{PELLUCID_RESOURCE_OUTPUT, "output", &PellucidFrame::output, true, PELLUCID_BINDING_DESTINATION,
+               0},
 };
 
 inline bool given(const PellucidImage& image) { return image.view != VK_NULL_HANDLE; }
 
+// Fields that frames of older headers lack.
+inline VkDescriptorPool poolOf(const PellucidFrame& frame) {
+  return frame.structSize > offsetof(PellucidFrame, descriptorPool) ? frame.descriptorPool : VK_NULL_HANDLE;
+}
+inline const PellucidImage& historyOf(const PellucidFrame& frame) {
+  static constexpr PellucidImage kNone{};
+  return frame.structSize > offsetof(PellucidFrame, history) ? frame.history : kNone;
+}
+
 // The image of any image resource; a transient's and shadow image's by their index.
 inline const PellucidImage& imageOf(const PellucidFrame& frame, uint32_t resource) {
   if (resource >= PELLUCID_RESOURCE_SHADOW0) return frame.shadowImages[resource - PELLUCID_RESOURCE_SHADOW0];
-  if (resource == PELLUCID_RESOURCE_HISTORY) return frame.history;
+  if (resource == PELLUCID_RESOURCE_HISTORY) return historyOf(frame);
   for (const ImageField& image : kImageFields)
     if (image.resource == resource) return frame.*image.field;
   return frame.transients[resource - PELLUCID_RESOURCE_TRANSIENT0];

@@ -1,9 +1,11 @@
 // The images that a frame's dispatches need besides the caller's own.
 #include "needs.h"
 
+#include <algorithm>
+
 #include "entry_points.h"
 #include "plan.h"
-#include "plan_builder.h"
+#include "planner.h"
 
 namespace pellucid {
 namespace {
@@ -29,23 +31,23 @@ Extent texelExtent(const FrameFacts& f, uint32_t index) {
 
 // For any render rect: none has more blocks than the whole image.
 Extent blocksExtent(const FrameFacts& f) {
-  const Blocks blocks(f, {0, 0, f.frame.imageExtent[0], f.frame.imageExtent[1]});
+  const Blocks blocks(f.lights, {0, 0, f.frame.imageExtent[0], f.frame.imageExtent[1]});
   return {Blocks::kColumns, parts(blocks.words(), Blocks::kColumns)};
 }
 
-// The dispatches of the plan that bind the image, with those that run beside them: no barrier lies between.
+// Grows a need to the waves of the plan whose dispatches bind the image: no barrier lies within a wave.
 void addUse(const PellucidPlan& plan, uint32_t resource, PellucidImageNeed& need) {
-  need.firstDispatch = UINT32_MAX;
-  for (uint32_t d = 0; d < plan.dispatchCount; ++d)
-    for (uint32_t b = 0; b < plan.dispatches[d].bindingCount; ++b)
-      if (plan.dispatches[d].bindings[b].resource == resource) {
-        need.firstDispatch = std::min(need.firstDispatch, d);
-        need.lastDispatch = d;
-      }
-  if (need.firstDispatch > need.lastDispatch) return;  // not in use
-  while (need.firstDispatch > 0 && !plan.dispatches[need.firstDispatch].barrierBefore) --need.firstDispatch;
-  while (need.lastDispatch + 1 < plan.dispatchCount && !plan.dispatches[need.lastDispatch + 1].barrierBefore)
-    ++need.lastDispatch;
+  for (uint32_t d = 0; d < plan.dispatchCount; ++d) {
+    const BoundList bound = boundBy(plan, plan.dispatches[d]);
+    if (std::none_of(bound.begin(), bound.end(),
+                     [&](const PellucidBinding& b) { return b.resource == resource; }))
+      continue;
+    uint32_t first = d, last = d;
+    while (first > 0 && !plan.dispatches[first].barrierBefore) --first;
+    while (last + 1 < plan.dispatchCount && !plan.dispatches[last + 1].barrierBefore) ++last;
+    need.firstDispatch = std::min(need.firstDispatch, first);
+    need.lastDispatch = std::max(need.lastDispatch, last);
+  }
 }
 
 }  // namespace
@@ -55,15 +57,8 @@ PellucidResult imageNeeds(const FrameFacts& f, uint32_t* count, PellucidImageNee
   const uint32_t colors = stages.colorTransients(), transients = stages.transients(), room = *count;
   *count = transients + (stages.keepsHistory ? 1 : 0);
   if (!needs) return PELLUCID_OK;
-  // Without a plan before it, that of a frame that refreshes a history: every image is in use.
-  PellucidPlan plan;
-  const PellucidResult result = buildPlan(f, {}, &plan);
-  if (result != PELLUCID_OK) return result;
-  // Frames that reuse the history lack the dispatches that refresh it.
-  const uint32_t refreshing = stages.keepsProbes ? f.lights.gatherDispatches()
-                              : stages.history   ? stages.fused
-                                                 : 0;
-  for (uint32_t i = 0; i < *count && i < room; ++i) {
+  const uint32_t written = std::min(*count, room);
+  for (uint32_t i = 0; i < written; ++i) {
     const bool persistent = i == transients;
     const bool blocks = stages.diffusion && i == stages.blocksTransient();
     const bool texels = persistent ? stages.keepsProbes : i >= colors && !blocks;
@@ -75,10 +70,18 @@ PellucidResult imageNeeds(const FrameFacts& f, uint32_t* count, PellucidImageNee
     need.format = blocks ? VK_FORMAT_R32_UINT : texels ? VK_FORMAT_R32G32B32A32_UINT : f.colorFormat;
     need.extent[0] = size.width;
     need.extent[1] = size.height;
-    need.bytes = (blocks ? 4 : texels ? kTexelBytes : f.wide ? 16 : 8) * size.width * size.height;
+    need.bytes = (blocks ? 4ull : texels || f.wide ? 16ull : 8ull) * size.width * size.height;
     need.persistent = persistent;
-    addUse(plan, persistent ? static_cast<uint32_t>(PELLUCID_RESOURCE_HISTORY) : kTransient0 + i, need);
-    need.firstDispatch -= std::min(need.firstDispatch, refreshing);
+    need.firstDispatch = UINT32_MAX;
+  }
+  // With reuse there are frames of two kinds.
+  for (const bool reused : {false, true}) {
+    if (reused && !stages.keepsHistory) continue;
+    PellucidPlan plan{};
+    if (!addPasses(f, reused, &plan)) return PELLUCID_ERROR_CAPACITY;
+    for (uint32_t i = 0; i < written; ++i)
+      addUse(plan, needs[i].persistent ? static_cast<uint32_t>(PELLUCID_RESOURCE_HISTORY) : kTransient0 + i,
+             needs[i]);
   }
   return PELLUCID_OK;
 }

@@ -1,79 +1,48 @@
-#include "pipelines.h"
+// Passes as the API describes their pipelines.
+#include <algorithm>
+#include <bit>
 
-#include <iterator>
-
-#include "kAddHistory.h"
-#include "kBaseLevel.h"
-#include "kDiffuse.h"
-#include "kDownsample.h"
-#include "kEntryPoints.h"
-#include "kEntryPointsArray.h"
-#include "kFilterProbes.h"
-#include "kListBlocks.h"
-#include "kProbes.h"
-#include "kTranslucency.h"
-#include "kTranslucencyArray.h"
-#include "kUpsample.h"
-#include "shared/pellucid_shared.h"
+#include "pass.h"
 
 namespace pellucid {
-namespace {
 
-template <class... Constants, std::size_t N>
-constexpr PipelineDesc desc(const char* name, const uint32_t (&words)[N], uint32_t uses,
-                            Constants... constants) {
-  return {name, words, N, uses, sizeof...(constants), {constants...}};
+uint32_t mostBindings(VkDescriptorType type) {
+  uint32_t most = 0;
+  for (const Pass* pass : allPasses()) {
+    uint32_t count = 0;
+    forEach(pass->bindings(), [&](const Binding& b) { count += b.type == type; });
+    most = std::max(most, count);
+  }
+  return most;
 }
 
-constexpr PellucidSpecialization kDebugViews{PELLUCID_CONSTANT_DEBUG_VIEWS, 1};
-
-constexpr uint32_t kGather = PELLUCID_USE_GATHER, kDiffusion = PELLUCID_USE_DIFFUSION;
-
-// In the order of Pipeline.
-const std::array<PipelineDesc, kPipelineCount> kPipelines = {
-    desc("translucency", kTranslucency, PELLUCID_USE_TRANSLUCENCY),
-    desc("debug_view", kTranslucency, PELLUCID_USE_DEBUG_VIEWS, kDebugViews),
-    desc("add_history", kAddHistory, PELLUCID_USE_REUSE),
-    desc("base_level", kBaseLevel, kDiffusion),
-    desc("list_blocks", kListBlocks, kDiffusion),
-    desc("downsample", kDownsample, kDiffusion),
-    desc("upsample", kUpsample, kDiffusion),
-    desc("diffuse", kDiffuse, kDiffusion),
-    desc("entry_points", kEntryPoints, kGather),
-    desc("probes", kProbes, kGather),
-    desc("filter_probes", kFilterProbes, kGather)};
-
-}  // namespace
-
-PipelineDesc pipelineDesc(uint32_t index, VkImageViewType shadowViewType) {
-  PipelineDesc desc = kPipelines[index];
-  if (shadowViewType != VK_IMAGE_VIEW_TYPE_2D_ARRAY) return desc;
-  // Passes that read shadow images.
-  if (desc.words == kTranslucency) {
-    desc.words = kTranslucencyArray;
-    desc.wordCount = std::size(kTranslucencyArray);
-  } else if (desc.words == kEntryPoints) {
-    desc.words = kEntryPointsArray;
-    desc.wordCount = std::size(kEntryPointsArray);
-  }
-  return desc;
+uint32_t mostBindings() {
+  uint32_t most = 0;
+  for (const Pass* pass : allPasses())
+    most = std::max(most, static_cast<uint32_t>(std::popcount(pass->bindings())));
+  return most;
 }
 
 }  // namespace pellucid
 
 using namespace pellucid;
 
-extern "C" uint32_t pellucidGetPipelineCount(void) { return kPipelineCount; }
+extern "C" uint32_t pellucidGetPipelineCount(void) { return static_cast<uint32_t>(allPasses().size()); }
 
 extern "C" const char* pellucidPipelineName(uint32_t pipeline) {
-  return pipeline < kPipelineCount ? pipelineDesc(pipeline).name : "unknown pipeline";
+  return pipeline < allPasses().size() ? allPasses()[pipeline]->pipeline : "unknown pipeline";
+}
+
+extern "C" const char* pellucidBindingName(uint32_t binding) {
+  return binding < kBindings.size() ? kBindings[binding].name : "unknown binding";
 }
 
 extern "C" PellucidResult pellucidGetShader(uint32_t pipeline, VkImageViewType shadowViewType,
                                             PellucidShader* shader) {
   const bool known = shadowViewType == VK_IMAGE_VIEW_TYPE_2D || shadowViewType == VK_IMAGE_VIEW_TYPE_2D_ARRAY;
-  if (pipeline >= kPipelineCount || !known || !shader) return PELLUCID_ERROR_INVALID_ARGUMENT;
-  const PipelineDesc p = pipelineDesc(pipeline, shadowViewType);
-  *shader = {p.words, p.wordCount, p.constantCount, kPipelines[pipeline].constants.data()};
+  if (pipeline >= allPasses().size() || !known || !shader) return PELLUCID_ERROR_INVALID_ARGUMENT;
+  const Pass& pass = *allPasses()[pipeline];
+  const std::span<const uint32_t> words = pass.wordsFor(shadowViewType);
+  *shader = {words.data(), words.size(), static_cast<uint32_t>(pass.constants.size()), pass.constants.data()};
   return PELLUCID_OK;
 }

@@ -4,15 +4,21 @@
 #include <cstring>
 #include <type_traits>
 
-#include "frame_hash.h"
 #include "pellucid/pellucid.h"
+#include "rect.h"
 #include "reuse.h"
 
 namespace pellucid {
 
 struct PlanState {
   History history{};
-  FrameHash frame{};  // of the frame that made the plan
+  // Of the frame that made the plan.
+  uint32_t materials = 0;
+  Rect rect{};
+  VkFormat outputFormat = VK_FORMAT_UNDEFINED;
+  uint32_t lightTables = 0;
+  uint32_t options = 0;                  // PellucidUse bits that pipelines must look for
+  uint32_t layeredMap = 0, layer = 0;  // the first map in a layer above 0, plus 1; 0: none
 };
 static_assert(sizeof(PlanState) <= sizeof(PellucidPlanState) && std::is_trivially_copyable_v<PlanState>);
 

@@ -13,18 +13,14 @@ extern "C" PellucidResult pellucidBuildPlan(const PellucidFrame* frame, const Pe
   const History kept = previous ? stateOf(*previous).history : History{};
   *plan = PellucidPlan{};
   Findings silent(nullptr, nullptr);
-  FrameFacts facts;
-  const PellucidResult result = readFrame(frame, silent, &facts);
-  return result == PELLUCID_OK ? buildPlan(facts, kept, plan) : result;
+  return readFrame(frame, silent, [&](const FrameFacts& facts) { return buildPlan(facts, kept, plan); });
 }
 
 extern "C" PellucidResult pellucidGetImageNeeds(const PellucidFrame* frame, uint32_t* count,
                                                 PellucidImageNeed* needs) {
   if (!count) return PELLUCID_ERROR_INVALID_ARGUMENT;
   Findings silent(nullptr, nullptr);
-  FrameFacts facts;
-  const PellucidResult result = readFrame(frame, silent, &facts);
-  return result == PELLUCID_OK ? imageNeeds(facts, count, needs) : result;
+  return readFrame(frame, silent, [&](const FrameFacts& facts) { return imageNeeds(facts, count, needs); });
 }
 
 extern "C" uint32_t pellucidGetRequiredInputs(uint32_t features) {
@@ -55,17 +51,15 @@ uint32_t lightsThatFit(PellucidFrame frame) {
 extern "C" PellucidResult pellucidValidateFrame(const PellucidFrame* frame, PellucidMessageFn fn,
                                                 void* user) {
   Findings out(fn, user);
-  FrameFacts facts;
-  PellucidResult result = readFrame(frame, out, &facts);
-  if (result != PELLUCID_OK) return result;
-  // The plan says what fits into it.
-  PellucidPlan plan;
-  result = buildPlan(facts, {}, &plan);
-  if (result == PELLUCID_ERROR_CAPACITY)
-    out.fail(result, "shadowImages", "of all ", facts.frame.lightCount, " lights are more than the plan's ",
-             static_cast<int>(PELLUCID_MAX_DISPATCHES), " dispatches can bind; those of the first ",
-             lightsThatFit(facts.frame), " lights fit");
-  else
-    checkViews(facts, out);
-  return out.result();
+  return readFrame(frame, out, [&](const FrameFacts& facts) {
+    // The plan says what fits into it.
+    PellucidPlan plan{};
+    if (!addPasses(facts, false, &plan))
+      out.fail(PELLUCID_ERROR_CAPACITY, "shadowImages", "of all ", facts.frame.lightCount,
+               " lights are more than the plan's ", static_cast<int>(PELLUCID_MAX_DISPATCHES),
+               " dispatches can bind; those of the first ", lightsThatFit(facts.frame), " lights fit");
+    else
+      checkViews(facts, out);
+    return out.result();
+  });
 }

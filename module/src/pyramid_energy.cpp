@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "pyramid_energy_table.h"
+#include "shared/pellucid_filters.h"
 
 namespace pellucid {
 namespace {
@@ -42,6 +43,12 @@ Mixture mixtureOf(const GaussianEnergy& gaussian) {
 }
 
 }  // namespace
+
+double levelDeviation(uint32_t level) {
+  return std::sqrt(PELLUCID_LEVEL_VARIANCE_SCALE * std::exp2(2.0 * level) + PELLUCID_LEVEL_VARIANCE_REST);
+}
+
+double deviationWithin(uint32_t level) { return std::exp2(level + 1 + kCoarserBegins); }
 
 EnergyFrom gaussianEnergy(Element element) {
   return {kGaussianEnergy[element].first, kGaussianEnergy[element].samples};

@@ -1,5 +1,6 @@
-// Cumulative weights of the pyramid's elements over the deviation of a Gaussian, fitted and written by `./run fit`;
-// docs/how-it-works.md, "Fitted tables". Each row: log2 of the first deviation, and samples EnergyFrom::kStep apart.
+// Cumulative weights of the pyramid's elements over the deviation of a Gaussian, fitted and written by `./run
+// fit`; docs/how-it-works.md, "Fitted tables". Each row: log2 of the first deviation, and samples
+// EnergyFrom::kStep apart.
 #pragma once
 
 namespace pellucid {

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "images.h"
+#include "plan_bindings.h"
 #include "views.h"
 
 namespace pellucid {
@@ -9,21 +10,23 @@ namespace {
 
 // Pushes the dispatch's bindings, or binds a set of the frame's pool.
 VkResult bind(const PellucidContext& c, VkCommandBuffer commandBuffer, const PellucidDispatch& d,
-              const PellucidFrame& f, const PellucidConstantsSlice& slice) {
+              const PellucidView& view) {
+  const BoundList bound = boundBy(*view.plan, d);
+  const PellucidConstantsSlice& slice = *view.constants;
   VkDescriptorSet set = VK_NULL_HANDLE;
   if (c.desc.descriptorPools) {
     VkDescriptorSetAllocateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO};
-    info.descriptorPool = f.descriptorPool;
+    info.descriptorPool = poolOf(*view.frame);
     info.descriptorSetCount = 1;
-    info.pSetLayouts = &c.setLayout;
+    info.pSetLayouts = &c.setLayouts[d.pipeline];
     const VkResult result = c.vk.vkAllocateDescriptorSets(c.device, &info, &set);
     if (result != VK_SUCCESS) return result;
   }
   VkWriteDescriptorSet writes[PELLUCID_MAX_BINDINGS];
   VkDescriptorImageInfo images[PELLUCID_MAX_BINDINGS];
   VkDescriptorBufferInfo buffers[PELLUCID_MAX_BINDINGS];
-  for (uint32_t i = 0; i < d.bindingCount; ++i) {
-    const PellucidBinding& b = d.bindings[i];
+  for (uint32_t i = 0; i < bound.count; ++i) {
+    const PellucidBinding& b = bound.list[i];
     writes[i] = VkWriteDescriptorSet{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
     writes[i].dstSet = set;  // unused where they are pushed
     writes[i].dstBinding = b.binding;
@@ -33,18 +36,18 @@ VkResult bind(const PellucidContext& c, VkCommandBuffer commandBuffer, const Pel
       buffers[i] = {slice.buffer, slice.offset + b.offset, b.size};
       writes[i].pBufferInfo = &buffers[i];
     } else {
-      const PellucidImage& image = imageOf(f, b.resource);
+      const PellucidImage& image = imageOf(*view.frame, b.resource);
       images[i] = {VK_NULL_HANDLE, image.view, image.layout};
       writes[i].pImageInfo = &images[i];
     }
   }
   if (c.desc.descriptorPools) {
-    c.vk.vkUpdateDescriptorSets(c.device, d.bindingCount, writes, 0, nullptr);
-    c.vk.vkCmdBindDescriptorSets(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, c.pipelineLayout, 0, 1, &set,
-                                 0, nullptr);
+    c.vk.vkUpdateDescriptorSets(c.device, bound.count, writes, 0, nullptr);
+    c.vk.vkCmdBindDescriptorSets(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, c.pipelineLayouts[d.pipeline],
+                                 0, 1, &set, 0, nullptr);
   } else {
-    c.vk.pushDescriptorSet(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, c.pipelineLayout, 0, d.bindingCount,
-                           writes);
+    c.vk.pushDescriptorSet(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, c.pipelineLayouts[d.pipeline], 0,
+                           bound.count, writes);
   }
   return VK_SUCCESS;
 }
@@ -52,9 +55,9 @@ VkResult bind(const PellucidContext& c, VkCommandBuffer commandBuffer, const Pel
 VkResult recordDispatch(const PellucidContext& c, VkCommandBuffer commandBuffer, const PellucidDispatch& d,
                         const PellucidView& view) {
   c.vk.vkCmdBindPipeline(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, c.pipelines[d.pipeline]);
-  const VkResult result = bind(c, commandBuffer, d, *view.frame, *view.constants);
+  const VkResult result = bind(c, commandBuffer, d, view);
   if (result != VK_SUCCESS) return result;
-  c.vk.vkCmdPushConstants(commandBuffer, c.pipelineLayout, VK_SHADER_STAGE_COMPUTE_BIT, 0,
+  c.vk.vkCmdPushConstants(commandBuffer, c.pipelineLayouts[d.pipeline], VK_SHADER_STAGE_COMPUTE_BIT, 0,
                           PELLUCID_PUSH_CONSTANT_BYTES, d.pushConstants);
   if (d.indirect)
     c.vk.vkCmdDispatchIndirect(commandBuffer, view.constants->buffer,
@@ -95,7 +98,9 @@ uint32_t barriersOf(const PellucidPlan& plan) {
 
 PellucidResult record(const PellucidContext& c, VkCommandBuffer commandBuffer,
                       std::span<const PellucidView> views, bool named) {
-  if (const PellucidResult result = prepareViews(c, views, named); result != PELLUCID_OK) return result;
+  if (const PellucidResult result = checkViews(c, views, named); result != PELLUCID_OK) return result;
+  if (c.desc.descriptorPools)
+    for (const PellucidView& view : views) c.vk.vkResetDescriptorPool(c.device, poolOf(*view.frame), 0);
   uint32_t barriers = 0;
   for (const PellucidView& view : views) barriers = std::max(barriers, barriersOf(*view.plan));
   for (uint32_t segment = 0; segment <= barriers; ++segment) {

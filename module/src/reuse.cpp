@@ -50,10 +50,9 @@ bool decideReuse(const FrameFacts& f, const History& kept, History* result) {
   const uint32_t rect[4] = {f.rect.x, f.rect.y, f.rect.width, f.rect.height};
   std::copy(f.frame.imageExtent, f.frame.imageExtent + 2, now.extent);
   std::copy(rect, rect + 4, now.rect);
-  f.forEachLight([&](const LightGroup&, const PellucidLight& light) {
-    if (now.lightCount < kCoherentLights) now.lightDots[now.lightCount] = cameraLightDot(f, light);
-    ++now.lightCount;
-  });
+  now.lightCount = f.lights.lightCount;
+  for (uint32_t i = 0; i < std::min(now.lightCount, kCoherentLights); ++i)
+    now.lightDots[i] = cameraLightDot(f, f.light(i));
   if (!fits(kept, now)) return false;
   const bool reused =
       f.frame.reuse == PELLUCID_REUSE_ALTERNATE ? kept.age == 0 : coherent(f.frame, kept, now);

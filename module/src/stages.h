@@ -4,11 +4,9 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "pyramid.h"
+#include "blocks.h"
 
 namespace pellucid {
-
-struct FrameFacts;
 
 struct Stages {
   bool nothing = false;  // the output is the irradiance image, and nothing is added to it
@@ -20,13 +18,12 @@ struct Stages {
   bool keepsHistory = false;  // the frame keeps its transmitted light in frame.history:
   bool keepsProbes = false;   // the gather's filtered probes, which the diffusion reads, or
   bool history = false;       // that of pixels: the fused dispatches write it, and one more adds it
-  bool copies = false;    // the diffusion alone reads the irradiance and writes the output, which may be one
-                          // image and whose pixels read their neighbors: it copies the irradiance first
-  bool overlaps = false;  // the gather runs beside the diffusion, which it does not wait for
-  bool lists = false;     // groups run where the GPU finds material
+  bool copies = false;  // the diffusion alone reads the irradiance and writes the output, which may be one
+                        // image and whose pixels read their neighbors: it copies the irradiance first
+  bool lists = false;   // groups run where the GPU finds material
 
-  Stages() = default;
-  explicit Stages(const FrameFacts& facts);
+  Stages(const Inputs& inputs, const Materials& materials, const GatherChoice& gather, const Lights& all,
+         const Blocks& blocks);
 
   // Dispatches that write a color transient or the output.
   uint32_t writers() const { return walls + (history ? 1 : fused) + (diffusion ? 1 : 0) + (copies ? 1 : 0); }

@@ -2,7 +2,7 @@
 #include "pellucid/pellucid_statistics.h"
 
 #include "findings.h"
-#include "pipelines.h"
+#include "pass.h"
 #include "shared/pellucid_shared.h"
 #include "struct_size.h"
 
@@ -42,20 +42,21 @@ PellucidGroups groupsOf(const PellucidPlan& plan, uint32_t index, const Pellucid
 
 // Adds a dispatch to the totals of its pass.
 void count(const PellucidDispatch& d, const PellucidGroups& groups, PellucidStatistics* s) {
-  switch (static_cast<Pipeline>(d.pipeline)) {
-    case Pipeline::Diffuse: {
+  if (d.pipeline >= allPasses().size()) return;
+  switch (allPasses()[d.pipeline]->counted) {
+    case Counted::Blocks: {
       const uint64_t parts = d.groups[1];
       s->blocks = {groups.run / parts, groups.most / parts};
       s->lists = d.indirect;
       break;
     }
-    case Pipeline::EntryPoints:
+    case Counted::EntryPoints:
       add(&s->entryPoints, groups);
       break;
-    case Pipeline::Probes:
+    case Counted::Probes:
       add(&s->probes, groups);
       break;
-    default:
+    case Counted::Nothing:
       break;
   }
 }

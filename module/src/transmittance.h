@@ -63,7 +63,8 @@ inline double halfThickness(const PellucidMaterial& m) {
   return std::max(depthOf(sum, 0.5 * sum(0), kMostThickness), 1e-3);
 }
 
-// mm beyond which each channel's T is below 2e-5, the twentieth of a half's rounding; INFINITY where it never is.
+// mm beyond which each channel's T is below 2e-5, the twentieth of a half's rounding; INFINITY where it never
+// is.
 inline double opaqueThickness(const PellucidMaterial& m) {
   const auto most = [&](double d) {
     return std::max({transmittance(m, 0, d), transmittance(m, 1, d), transmittance(m, 2, d)});

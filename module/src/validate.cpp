@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "defaults.h"
 #include "domains.h"
@@ -28,7 +29,8 @@ void checkImageSize(const PellucidFrame& f, Findings& out) {
 }
 
 // All indices must come through the mask.
-void checkMaterialBits(const PellucidFrame& f, Findings& out) {
+void checkMaterialBits(const Inputs& inputs, Findings& out) {
+  const PellucidFrame& f = inputs.frame;
   if (f.materialShift > 31) return;  // its domain says so
   const uint32_t below = (1u << f.materialShift) - 1;
   if ((f.materialMask & below) != 0)
@@ -36,10 +38,10 @@ void checkMaterialBits(const PellucidFrame& f, Findings& out) {
               " drops");
   uint32_t indices = 0;
   while (indices < f.materialCount && indices < 255) indices = indices << 1 | 1;
-  if ((indices & ~materialBits(f)) != 0)
+  if ((indices & ~inputs.materialBits()) != 0)
     out.error("materialMask", "is ", f.materialMask, " with materialShift ", f.materialShift,
-              ", which leave ", materialBits(f), "; the indices of ", f.materialCount, " materials take ",
-              indices);
+              ", which leave ", inputs.materialBits(), "; the indices of ", f.materialCount,
+              " materials take ", indices);
 }
 
 void checkMinimumDotTable(const PellucidThesisOptions& t, Findings& out) {
@@ -132,8 +134,8 @@ void checkFalloff(const PellucidFrame& f, uint32_t index, Findings& out) {
     out.error(Field("lights[", index, "].range"), "is 0, but distanceTable is ", l.distanceTable);
 }
 
-void checkLight(const FrameFacts& facts, uint32_t index, Findings& out) {
-  const PellucidFrame& f = facts.frame;
+void checkLight(const Inputs& inputs, const GatherChoice& gather, uint32_t index, Findings& out) {
+  const PellucidFrame& f = inputs.frame;
   const PellucidLight& l = f.lights[index];
   const auto field = [index](const char* name) { return Field("lights[", index, "].", name); };
   checkDomains(l, field(""), out);
@@ -153,12 +155,12 @@ void checkLight(const FrameFacts& facts, uint32_t index, Findings& out) {
               static_cast<int>(PELLUCID_MAX_LIGHT_SHADOW_MAPS));
     return;
   }
-  checkFaces(facts, index, out);
+  checkFaces(inputs, index, out);
   LightGroup images;
   bool fits = true;
   for (uint32_t i = 0; i < l.shadowMapCount; ++i) {
     const PellucidShadowMap& s = f.shadowMaps[l.firstShadowMap + i];
-    fits = fits && images.addImages(facts, l, s);
+    fits = fits && images.addImages(inputs, gather, l, s);
     const glm::dmat4 clip = toMatrix(s.clipFromWorld);
     const bool perspective = clip[0][3] != 0 || clip[1][3] != 0 || clip[2][3] != 0;
     if (perspective == (l.type == PELLUCID_LIGHT_DIRECTIONAL))
@@ -183,13 +185,13 @@ void checkLight(const FrameFacts& facts, uint32_t index, Findings& out) {
 
 }  // namespace
 
-void checkFields(const FrameFacts& facts, Findings& out) {
-  const PellucidFrame& f = facts.frame;
+void checkFields(const Inputs& inputs, Findings& out) {
+  const PellucidFrame& f = inputs.frame;
   constexpr uint32_t known = PELLUCID_FEATURE_TRANSLUCENCY | PELLUCID_FEATURE_DIFFUSION;
   if (f.features & ~known) out.error("features", "has unknown bits: ", f.features);
   checkImageSize(f, out);
   checkDomains(f, "", out);
-  checkDomains(facts.thesis, "thesis.", out);
+  checkDomains(inputs.thesis, "thesis.", out);
   DepthRange range;
   if (const char* wrong = readDepthRange(toMatrix(f.clipFromView), &range)) out.error("clipFromView", wrong);
   if (!finite(f.viewFromWorld, 16) || !rigid(toMatrix(f.viewFromWorld)))
@@ -198,7 +200,7 @@ void checkFields(const FrameFacts& facts, Findings& out) {
       f.outputFormat != VK_FORMAT_B10G11R11_UFLOAT_PACK32)
     out.error("outputFormat", "is VkFormat ", static_cast<int>(f.outputFormat),
               "; use R16G16B16A16_SFLOAT, R32G32B32A32_SFLOAT or B10G11R11_UFLOAT_PACK32");
-  checkMinimumDotTable(facts.thesis, out);
+  checkMinimumDotTable(inputs.thesis, out);
 
   if (f.gatherSpacing != 0 && f.gatherSpacing != 1 && f.gatherSpacing != 2 && f.gatherSpacing != 4)
     out.error("gatherSpacing", "is ", f.gatherSpacing, "; use 1, 2 or 4, or 0 to choose by the image's size");
@@ -208,12 +210,12 @@ void checkFields(const FrameFacts& facts, Findings& out) {
   // 255: the material image is r8ui and 0 means none.
   if (f.materialCount == 0 || f.materialCount > 255 || !f.materials)
     out.error("materials", "has ", f.materialCount, f.materials ? "" : " at NULL", "; needs 1..255");
-  checkMaterialBits(f, out);
-  const uint32_t mark = facts.thesis.materialMarkBit;
+  checkMaterialBits(inputs, out);
+  const uint32_t mark = inputs.thesis.materialMarkBit;
   if (mark != 0 && ((mark & (mark - 1)) != 0 || mark <= f.materialCount))
     out.error("thesis.materialMarkBit", "is ", mark, "; must be 0 or a power of two above the ",
               f.materialCount, " materials");
-  else if (mark != 0 && f.materialShift < 32 && (mark & materialBits(f)) == 0)
+  else if (mark != 0 && f.materialShift < 32 && (mark & inputs.materialBits()) == 0)
     out.error("thesis.materialMarkBit", "is ", mark, ", which materialMask ", f.materialMask,
               " and materialShift ", f.materialShift, " leave out");
   for (uint32_t i = 0; f.ambient && i < kAmbientCoefficients; ++i)
@@ -231,8 +233,8 @@ void checkFields(const FrameFacts& facts, Findings& out) {
     out.error("reuse", "is ", f.reuse, ", not a PellucidReuse");
 }
 
-void checkMaterials(const FrameFacts& facts, Findings& out) {
-  const PellucidFrame& f = facts.frame;
+void checkMaterials(const Inputs& inputs, Findings& out) {
+  const PellucidFrame& f = inputs.frame;
   // All before any is read, as the first one's size says where the others are.
   const uint32_t size = f.materials->structSize;
   if (!canReadStruct(f.materials, kLeastMaterial)) {
@@ -249,15 +251,18 @@ void checkMaterials(const FrameFacts& facts, Findings& out) {
     return;
   }
   for (uint32_t i = 0; i < f.materialCount; ++i) {
-    const PellucidMaterial material = facts.material(i);
+    const PellucidMaterial material = inputs.material(i);
     checkMaterial(material, i, out);
+    if (f.materialTables && std::memcmp(f.materialTables[i].words, &material, sizeof material) != 0)
+      out.error(Field("materialTables[", i, "]"), "is of another material than materials[", i,
+                "] (call pellucidMakeMaterialTables)");
   }
 }
 
-void checkLights(const FrameFacts& facts, Findings& out) {
-  const PellucidFrame& f = facts.frame;
+void checkLights(const Inputs& inputs, const GatherChoice& gather, Findings& out) {
+  const PellucidFrame& f = inputs.frame;
   for (uint32_t i = 0; i < f.lightCount; ++i) {
-    checkLight(facts, i, out);
+    checkLight(inputs, gather, i, out);
     const PellucidLight& l = f.lights[i];
     constexpr float kLargestHalf = 65504;
     const float arrives = l.intensity * std::max({l.color[0], l.color[1], l.color[2]}) * f.preExposure;
@@ -269,12 +274,6 @@ void checkLights(const FrameFacts& facts, Findings& out) {
 
 void checkGroups(const FrameFacts& facts, Findings& out) {
   const PellucidFrame& f = facts.frame;
-  for (uint32_t i = 0; i < f.lightCount; ++i)
-    if (const char* reason = facts.whySkipped(f.lights[i]))
-      out.warning(Field("lights[", i, "]"), "adds nothing: ", reason);
-  if (facts.ambient.intensity > 0)
-    if (const char* reason = facts.whySkipped(facts.ambient))
-      out.warning("ambient", "adds nothing: ", reason);
   warnOfShadowMaps(facts, out);
   if (facts.lights.count > 1 && facts.debug() && f.debugView != PELLUCID_DEBUG_IRRADIANCE)
     out.error("debugView", "is ", f.debugView, ", which needs all lights in one dispatch; they use ",

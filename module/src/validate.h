@@ -2,18 +2,18 @@
 // before it, and on what readFrame has put into the facts between them.
 #pragma once
 
-#include "findings.h"
+#include "gather_choice.h"
 
 namespace pellucid {
 
 struct FrameFacts;
 
-void checkFields(const FrameFacts& facts, Findings& out);
-void checkMaterials(const FrameFacts& facts, Findings& out);
-void checkShadowMaps(const FrameFacts& facts, Findings& out);
-void checkLights(const FrameFacts& facts, Findings& out);
+void checkFields(const Inputs& inputs, Findings& out);
+void checkMaterials(const Inputs& inputs, Findings& out);
+void checkShadowMaps(const Inputs& inputs, Findings& out);
+void checkLights(const Inputs& inputs, const GatherChoice& gather, Findings& out);
 // Checks one light, whose maps there are.
-void checkFaces(const FrameFacts& facts, uint32_t light, Findings& out);
+void checkFaces(const Inputs& inputs, uint32_t light, Findings& out);
 void checkGroups(const FrameFacts& facts, Findings& out);
 // Warnings, once nothing is wrong.
 void warnOfShadowMaps(const FrameFacts& facts, Findings& out);

@@ -80,13 +80,13 @@ void warnOfTexels(const FrameFacts& facts, uint32_t index, Findings& out) {
 
 }  // namespace
 
-void checkShadowMaps(const FrameFacts& facts, Findings& out) {
-  for (uint32_t i = 0; i < facts.frame.shadowMapCount; ++i) checkShadowMap(facts.frame, i, out);
+void checkShadowMaps(const Inputs& inputs, Findings& out) {
+  for (uint32_t i = 0; i < inputs.frame.shadowMapCount; ++i) checkShadowMap(inputs.frame, i, out);
 }
 
-void checkFaces(const FrameFacts& facts, uint32_t light, Findings& out) {
-  const PellucidLight& l = facts.frame.lights[light];
-  const PellucidShadowMap* maps = facts.frame.shadowMaps + l.firstShadowMap;
+void checkFaces(const Inputs& inputs, uint32_t light, Findings& out) {
+  const PellucidLight& l = inputs.frame.lights[light];
+  const PellucidShadowMap* maps = inputs.frame.shadowMaps + l.firstShadowMap;
   for (uint32_t i = 1; i < l.shadowMapCount; ++i)
     if (maps[i].faces != maps[0].faces)
       out.error(Field("shadowMaps[", l.firstShadowMap + i, "].faces"), "is ", maps[i].faces,
@@ -96,12 +96,11 @@ void checkFaces(const FrameFacts& facts, uint32_t light, Findings& out) {
 void warnOfShadowMaps(const FrameFacts& facts, Findings& out) {
   const PellucidFrame& f = facts.frame;
   warnOfTiles(f, out);
-  for (uint32_t i = 0; i < f.lightCount; ++i) {
-    const PellucidLight& l = f.lights[i];
-    if (facts.whySkipped(l)) continue;
+  for (uint32_t i = 0; i < std::min(facts.lights.lightCount, Lights::kMost); ++i) {
+    const PellucidLight& l = facts.light(i);
     if (facts.holdsBackFaces(l))
-      out.warning(Field("shadowMaps[", l.firstShadowMap, "].faces"), "is BACK: lights[", i,
-                  "] takes its thickness from backDepth and is not gathered");
+      out.warning(Field("shadowMaps[", l.firstShadowMap, "].faces"), "is BACK: lights[",
+                  facts.lights.active[i], "] takes its thickness from backDepth and is not gathered");
     for (uint32_t k = 0; k < l.shadowMapCount; ++k) {
       const uint32_t map = l.firstShadowMap + k;
       const PellucidShadowMap& s = f.shadowMaps[map];

@@ -1,9 +1,10 @@
 #include "views.h"
 
-#include "constants.h"
+#include "defaults.h"
+#include "images.h"
+#include "plan_bindings.h"
 #include "plan_state.h"
 #include "rect.h"
-#include "validate.h"
 
 namespace pellucid {
 namespace {
@@ -21,46 +22,61 @@ struct ViewErrors {
   }
 };
 
-// Refuses frames without what the plan uses, as a plan of another frame has it.
-void checkPlan(const PellucidContext& c, const PellucidPlan& plan, const FrameFacts& facts, Findings& out) {
-  const FrameHash now = hashOf(facts), then = stateOf(plan).frame;
-  for (size_t i = 0; i < now.size(); ++i)
-    if (now[i] != then[i])
-      return out.error("plan", "was made from another frame, whose ", nameOf(static_cast<FramePart>(i)),
-                       " differs");
-  if (c.desc.outputFormat != VK_FORMAT_UNDEFINED && c.desc.outputFormat != facts.frame.outputFormat)
+Field fieldOf(uint32_t resource) {
+  const uint32_t transient = resource - PELLUCID_RESOURCE_TRANSIENT0;
+  if (transient < PELLUCID_MAX_TRANSIENTS) return Field("transients[", transient, "]");
+  if (resource >= kShadow0) return Field("shadowImages[", resource - kShadow0, "]");
+  return Field(pellucidResourceName(resource));
+}
+
+// Refuses plans that ask for another context.
+void checkContext(const PellucidContext& c, const PellucidPlan& plan, Findings& out) {
+  const PlanState state = stateOf(plan);
+  if (c.desc.outputFormat != VK_FORMAT_UNDEFINED && c.desc.outputFormat != state.outputFormat)
     return out.error("outputFormat",
                      "is not PellucidContextDesc::outputFormat, which the context writes alone");
-  if (facts.frame.lightTableCount > 0 && !c.desc.lightTables)
+  if (state.lightTables > 0 && !c.desc.lightTables)
     return out.error(
         "lightTableCount",
         "is above 0, but PellucidContextDesc::lightTables is 0: the pipelines do not look for any");
-  for (uint32_t i = 0; i < facts.frame.shadowMapCount; ++i)
-    if (const uint32_t layer = facts.frame.shadowMaps[i].layer;
-        layer != 0 && c.desc.shadowViewType != VK_IMAGE_VIEW_TYPE_2D_ARRAY)
-      return out.error(Field("shadowMaps[", i, "].layer"), "is ", layer,
-                       ", but PellucidContextDesc::shadowViewType is 2D");
+  constexpr std::pair<uint32_t, const char*> kOptions[] = {
+      {PELLUCID_USE_THIN_WALLS, "PELLUCID_USE_THIN_WALLS: a material is thin-walled"},
+      {PELLUCID_USE_AMBIENT, "PELLUCID_USE_AMBIENT: frame.ambient holds light"},
+      {PELLUCID_USE_THESIS, "PELLUCID_USE_THESIS: an angle or transmittance model is one of Whelan 2009"}};
+  for (const auto& [use, why] : kOptions)
+    if (c.desc.uses != 0 && (state.options & use & ~c.desc.uses) != 0)
+      return out.error("plan", "needs PellucidContextDesc::uses with ", why);
+  if (state.layeredMap > 0 && c.desc.shadowViewType != VK_IMAGE_VIEW_TYPE_2D_ARRAY)
+    return out.error(Field("shadowMaps[", state.layeredMap - 1, "].layer"), "is ", state.layer,
+                     ", but PellucidContextDesc::shadowViewType is 2D");
   for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
-    const PellucidDispatch& d = plan.dispatches[i];
-    if (d.pipeline >= kPipelineCount || c.pipelines[d.pipeline] == VK_NULL_HANDLE)
+    const uint32_t pipeline = plan.dispatches[i].pipeline;
+    if (pipeline >= allPasses().size() || c.pipelines[pipeline] == VK_NULL_HANDLE)
       return out.error(
-          "plan", "needs pipeline ", pellucidPipelineName(d.pipeline),
+          "plan", "needs pipeline ", pellucidPipelineName(pipeline),
           c.desc.deferPipelines
               ? ", which pellucidCreatePipelines has not made or PellucidContextDesc::uses leaves out"
               : ", which PellucidContextDesc::uses leaves out");
-    for (uint32_t b = 0; b < d.bindingCount; ++b) {
-      const uint32_t resource = d.bindings[b].resource;
-      const uint32_t slot = d.bindings[b].binding - PELLUCID_BINDING_SHADOW_IMAGES;  // huge before the first
-      if (resource == PELLUCID_RESOURCE_FRONT_DEPTH && slot < PELLUCID_SHADOW_IMAGE_COUNT &&
+  }
+}
+
+// Refuses frames that lack an image of the plan's.
+void checkBound(const PellucidContext& c, const PellucidPlan& plan, const PellucidFrame& frame,
+                Findings& out) {
+  for (uint32_t i = 0; i < plan.dispatchCount; ++i)
+    for (const PellucidBinding& b : boundBy(plan, plan.dispatches[i])) {
+      const uint32_t resource = b.resource;
+      if (resource == PELLUCID_RESOURCE_FRONT_DEPTH && b.binding >= PELLUCID_BINDING_SHADOW_IMAGES &&
           c.desc.shadowViewType == VK_IMAGE_VIEW_TYPE_2D_ARRAY)
         return out.error("shadowImages",
                          "has no view, but PellucidContextDesc::shadowViewType is 2D_ARRAY, and passes bind "
                          "one such view even where no light has a map");
-      if (resource != PELLUCID_RESOURCE_CONSTANTS && !given(imageOf(facts.frame, resource)))
-        return out.error("plan",
-                         "uses an image that the frame has no view of: it was made from another frame");
+      if (resource == PELLUCID_RESOURCE_CONSTANTS) continue;
+      const bool isThere =
+          resource < kShadow0 || (frame.shadowImages && resource - kShadow0 < frame.shadowImageCount);
+      if (!isThere || !given(imageOf(frame, resource)))
+        return out.error(fieldOf(resource), "has no view, but the plan binds it");
     }
-  }
 }
 
 // Bits 1 << PellucidResource of the images that a plan binds, without shadow images, which nothing writes.
@@ -69,28 +85,19 @@ struct BoundImages {
 
   explicit BoundImages(const PellucidPlan& plan) {
     for (uint32_t i = 0; i < plan.dispatchCount; ++i)
-      for (uint32_t b = 0; b < plan.dispatches[i].bindingCount; ++b) {
-        const PellucidBinding& binding = plan.dispatches[i].bindings[b];
-        if (binding.resource >= PELLUCID_RESOURCE_SHADOW0 || binding.resource == PELLUCID_RESOURCE_CONSTANTS)
-          continue;
+      for (const PellucidBinding& binding : boundBy(plan, plan.dispatches[i])) {
+        if (binding.resource >= kShadow0 || binding.resource == PELLUCID_RESOURCE_CONSTANTS) continue;
         all |= 1u << binding.resource;
         if (binding.type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE) written |= 1u << binding.resource;
       }
   }
 };
 
-// The frame's field of a resource below PELLUCID_RESOURCE_SHADOW0.
-Field fieldOf(uint32_t resource) {
-  const uint32_t transient = resource - PELLUCID_RESOURCE_TRANSIENT0;
-  return transient < PELLUCID_MAX_TRANSIENTS ? Field("transients[", transient, "]")
-                                             : Field(pellucidResourceName(resource));
-}
-
 bool isOfScreen(uint32_t resource) { return resource <= PELLUCID_RESOURCE_OUTPUT; }
 
 // Pixels of screen-sized images outside the rect are neither read nor written.
-bool rectsMeet(const PellucidFrame& a, const PellucidFrame& b) {
-  const Rect r = renderRect(a), s = renderRect(b);
+bool rectsMeet(const PellucidPlan& a, const PellucidPlan& b) {
+  const Rect r = stateOf(a).rect, s = stateOf(b).rect;
   return r.x < s.x + s.width && s.x < r.x + r.width && r.y < s.y + s.height && s.y < r.y + r.height;
 }
 
@@ -98,7 +105,7 @@ bool rectsMeet(const PellucidFrame& a, const PellucidFrame& b) {
 // frames have all images that plans bind.
 void checkImages(const PellucidView& view, const PellucidView& other, uint32_t otherIndex, Findings& out) {
   const BoundImages bound(*view.plan), otherBound(*other.plan);
-  const bool meet = rectsMeet(*view.frame, *other.frame);
+  const bool meet = rectsMeet(*view.plan, *other.plan);
   for (uint32_t a = 0; bound.all >> a != 0; ++a)
     for (uint32_t b = 0; bound.all >> a & 1 && otherBound.all >> b != 0; ++b) {
       const bool written = (bound.written >> a | otherBound.written >> b) & 1;
@@ -119,55 +126,48 @@ void checkSlices(const PellucidView& view, const PellucidView& other, uint32_t o
   if (a.buffer == b.buffer && overlap(a.offset, aSize, b.offset, bSize))
     out.error("constants.offset", "is ", a.offset, " for ", aSize, " bytes, which overlap those of views[",
               otherIndex, "], ", bSize, " from ", b.offset, " of the same buffer");
-  else if (overlap(reinterpret_cast<uintptr_t>(a.mapped), aSize, reinterpret_cast<uintptr_t>(b.mapped),
+  else if (a.mapped && b.mapped &&
+           overlap(reinterpret_cast<uintptr_t>(a.mapped), aSize, reinterpret_cast<uintptr_t>(b.mapped),
                    bSize))
     out.error("constants.mapped", "overlaps the bytes of views[", otherIndex, "].constants.mapped");
 }
 
-PellucidResult prepareView(const PellucidContext& c, std::span<const PellucidView> views, uint32_t index,
-                           Findings& out) {
+void checkView(const PellucidContext& c, std::span<const PellucidView> views, uint32_t index, Findings& out) {
   const PellucidView& view = views[index];
   if (!view.plan) out.error("plan", "is NULL");
   if (!view.frame) out.error("frame", "is NULL");
   if (!view.constants)
     out.error("constants", "is NULL");
-  else if (view.constants->offset % 256 != 0 || !view.constants->buffer)
+  else if (view.constants->offset % kSlotBytes != 0 || !view.constants->buffer)
     out.error("constants", "needs a buffer and an offset that is a multiple of 256");
-  if (out.result() != PELLUCID_OK) return out.result();
-  FrameFacts facts;
-  const PellucidResult read = readFrame(view.frame, out, &facts);
-  if (read != PELLUCID_OK) return read;
-  checkViews(facts, out);
-  if (out.result() == PELLUCID_OK) checkPlan(c, *view.plan, facts, out);
-  const PellucidConstantsSlice& slice = *view.constants;
-  if (out.result() != PELLUCID_OK) return out.result();
-  if (c.desc.descriptorPools && !facts.frame.descriptorPool)
+  if (out.result() != PELLUCID_OK) return;
+  if (!canReadStruct(view.frame, kLeastFrame))
+    return out.fail(PELLUCID_ERROR_VERSION, "structSize", "is ", view.frame->structSize,
+                    " (call pellucidInitFrame)");
+  checkContext(c, *view.plan, out);
+  if (out.result() == PELLUCID_OK) checkBound(c, *view.plan, *view.frame, out);
+  if (out.result() != PELLUCID_OK) return;
+  if (c.desc.descriptorPools && !poolOf(*view.frame))
     out.error("descriptorPool", "is NULL, but PellucidContextDesc::descriptorPools is 1");
-  else if (slice.size < view.plan->constantsSize)
-    out.fail(PELLUCID_ERROR_BUFFER_TOO_SMALL, "constants.size", "is ", slice.size, "; the plan needs ",
-             view.plan->constantsSize);
-  else if (!slice.mapped)
-    out.error("constants.mapped", "is NULL");
+  else if (view.constants->size < view.plan->constantsSize)
+    out.fail(PELLUCID_ERROR_BUFFER_TOO_SMALL, "constants.size", "is ", view.constants->size,
+             "; the plan needs ", view.plan->constantsSize);
   for (uint32_t other = 0; other < index && out.result() == PELLUCID_OK; ++other) {
     checkImages(view, views[other], other, out);
     checkSlices(view, views[other], other, out);
-    // Frames of views before this one were read, so that they have the field.
-    if (c.desc.descriptorPools && views[other].frame->descriptorPool == facts.frame.descriptorPool)
+    if (c.desc.descriptorPools && poolOf(*views[other].frame) == poolOf(*view.frame))
       out.error("descriptorPool", "is views[", other, "].descriptorPool, too");
   }
-  if (out.result() != PELLUCID_OK) return out.result();
-  if (c.desc.descriptorPools) c.vk.vkResetDescriptorPool(c.device, facts.frame.descriptorPool, 0);
-  return writeConstants(facts, *view.plan, slice.mapped, static_cast<size_t>(slice.size));
 }
 
 }  // namespace
 
-PellucidResult prepareViews(const PellucidContext& context, std::span<const PellucidView> views, bool named) {
+PellucidResult checkViews(const PellucidContext& context, std::span<const PellucidView> views, bool named) {
   for (uint32_t i = 0; i < views.size(); ++i) {
     ViewErrors errors{context, named ? Field("views[", i, "].") : Field("")};
     Findings out(&ViewErrors::pass, &errors);
-    if (const PellucidResult result = prepareView(context, views, i, out); result != PELLUCID_OK)
-      return result;
+    checkView(context, views, i, out);
+    if (out.result() != PELLUCID_OK) return out.result();
   }
   return PELLUCID_OK;
 }

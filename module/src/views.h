@@ -1,4 +1,4 @@
-// Views before they are recorded: what is refused, and their constants.
+// Views before they are recorded: what is refused.
 #pragma once
 
 #include <span>
@@ -8,8 +8,7 @@
 
 namespace pellucid {
 
-// Checks the views and writes their constants. Errors go to the context's message; `named`: with the view's
-// index before the field.
-PellucidResult prepareViews(const PellucidContext& context, std::span<const PellucidView> views, bool named);
+// Errors go to the context's message; `named`: with the view's index before the field.
+PellucidResult checkViews(const PellucidContext& context, std::span<const PellucidView> views, bool named);
 
 }  // namespace pellucid

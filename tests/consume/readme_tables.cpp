@@ -92,8 +92,7 @@ std::string featuresTable() {
       {"diffusion", PELLUCID_FEATURE_DIFFUSION, 1},
       {"both, no light that contributes", PELLUCID_FEATURE_TRANSLUCENCY | PELLUCID_FEATURE_DIFFUSION, 0}};
   std::string table =
-      "| features | dispatches | barriers | transients, bytes a pixel | modeled traffic, bytes a pixel "
-      "|\n|-|-|-|-|-|\n";
+      "| features | dispatches | barriers | transients, bytes a pixel |\n|-|-|-|-|\n";
   for (const Row& row : rows) {
     f.features = row.features;
     f.lightCount = row.lights;
@@ -105,12 +104,9 @@ std::string featuresTable() {
       return "the example frame is not valid\n";
     uint64_t scratch = 0;
     for (uint32_t i = 0; i < transients; ++i) scratch += needs[i].bytes;
-    uint64_t bytes = 0;
-    for (uint32_t i = 0; i < plan.dispatchCount; ++i) bytes += plan.dispatches[i].modeledBytes;
     table += std::string("| ") + row.name + " | " + std::to_string(plan.dispatchCount) + " | " +
              std::to_string(plan.barrierCount) + " | " +
-             std::to_string((scratch + 3840u * 2160u / 2) / (3840u * 2160u)) + " | " +
-             std::to_string(bytes / (3840u * 2160u)) + " |\n";
+             std::to_string((scratch + 3840u * 2160u / 2) / (3840u * 2160u)) + " |\n";
   }
   return table;
 }

@@ -150,6 +150,16 @@ FrameInput::FrameInput(std::span<const uint8_t> bytes, size_t edits) {
   ambient_.assign(27, header[7] < 200 ? 0.25f : -1e30f);
   frame.ambient = header[6] & 64 ? ambient_.data() : nullptr;
   frame.thesis = header[6] & 32 ? nullptr : &thesis_;
+  // More light tables than there may be are refused before they are read.
+  lightTables_.resize(PELLUCID_MAX_LIGHT_TABLES);
+  frame.lightTables = lightTables_.data();
+  // Those of materials that are not valid, or shorter than the first, are another material's.
+  if (header[4] & 64) {
+    materialTables_.resize(materials_.size());
+    for (size_t i = 0; i < materials_.size(); ++i)
+      pellucidMakeMaterialTables(&materials_[i], &materialTables_[i]);
+  }
+  frame.materialTables = header[4] & 64 ? materialTables_.data() : nullptr;
 }
 
 }  // namespace pellucid::fuzz

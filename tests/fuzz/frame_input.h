@@ -31,6 +31,8 @@ private:
   std::vector<PellucidShadowMap> maps_;
   std::vector<PellucidImage> images_;
   std::vector<float> table_, ambient_;
+  std::vector<PellucidMaterialTables> materialTables_;
+  std::vector<PellucidLightTable> lightTables_;
 };
 
 }  // namespace pellucid::fuzz

@@ -109,6 +109,40 @@ TEST_F(ContextTest, MakesThePipelinesOfItsUsesOnLentThreads) {
   EXPECT_THROW(Context(device(), unknown, Compile::AtCreation), DeviceError);
 }
 
+// Pipelines that do not look for an option change no frame without it, and frames with it are refused by its name.
+TEST_F(ContextTest, OptionsThatUsesLeaveOut) {
+  const Context lean(device(), [](PellucidContextDesc& desc) {
+    desc.uses = PELLUCID_USE_TRANSLUCENCY | PELLUCID_USE_DIFFUSION | PELLUCID_USE_GATHER;
+  });
+  Capture c = litSlab();
+  for (const uint32_t samples : {0u, 8u}) {
+    ReplaySettings s;
+    s.translucency.gatherSamples = samples;
+    const FrameRun run(device(), lean, c, {testMaterial()}, s);
+    device().run([&](VkCommandBuffer commandBuffer) { run.record(commandBuffer); });
+    EXPECT_TRUE(sameBits(run.output(), replay(c, testMaterial(), s))) << samples << " samples";
+  }
+
+  const auto refuses = [&](const Capture& capture, const PellucidMaterial& material, const ReplaySettings& s,
+                           const char* why) {
+    const FrameRun run(device(), lean, capture, {material}, s);
+    device().run([&](VkCommandBuffer commandBuffer) { EXPECT_ANY_THROW(run.record(commandBuffer)); });
+    EXPECT_NE(lean.message().find(why), std::string::npos) << lean.message();
+  };
+  PellucidMaterial wall = testMaterial();
+  wall.thinWalled = 1;
+  refuses(c, wall, {}, "PELLUCID_USE_THIN_WALLS");
+  PellucidMaterial gaussians = testMaterial();
+  gaussians.transmittanceModel = PELLUCID_TRANSMITTANCE_GAUSSIANS;
+  refuses(c, gaussians, {}, "PELLUCID_USE_THESIS");
+  ReplaySettings angles;
+  angles.translucency.thesis.angleModel = PELLUCID_ANGLE_INVERSE_COSINE;
+  refuses(c, testMaterial(), angles, "PELLUCID_USE_THESIS");
+  c.environment = Harmonics{};
+  for (double& e : (*c.environment)[0]) e = 1;
+  refuses(c, testMaterial(), {}, "PELLUCID_USE_AMBIENT");
+}
+
 // Not as far as halves keep it.
 TEST_F(ContextTest, WideOutputsKeepAlphaToTheBit) {
   Capture c = litSlab();

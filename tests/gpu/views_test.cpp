@@ -69,6 +69,9 @@ protected:
     for (size_t i = 0; i < frames.size(); ++i) {
       const VkDeviceSize offset = i * sliceBytes;
       slices[i] = {constants.handle(), offset, sliceBytes, static_cast<char*>(constants.mapped()) + offset};
+      ASSERT_EQ(
+          pellucidWriteConstants(&plans[i], frames[i], slices[i].mapped, static_cast<size_t>(sliceBytes)),
+          PELLUCID_OK);
       views.push_back({&plans[i], frames[i], &slices[i]});
     }
     device().run([&](VkCommandBuffer commands) {

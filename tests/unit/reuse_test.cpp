@@ -150,8 +150,8 @@ TEST(Reuse, ImageNeedsCoverBothKindsOfFrame) {
         s.refreshes();
         EXPECT_EQ(s.last.dispatches[0].barrierBefore, 1u) << "after the last frame's use of the history";
         for (uint32_t d = 0; d < s.last.dispatchCount; ++d)
-          for (uint32_t b = 0; b < s.last.dispatches[d].bindingCount; ++b) {
-            const uint32_t resource = s.last.dispatches[d].bindings[b].resource;
+          for (const PellucidBinding& b : pellucid::test::bindingsOf(s.last, s.last.dispatches[d])) {
+            const uint32_t resource = b.resource;
             if (resource < PELLUCID_RESOURCE_TRANSIENT0 || resource >= PELLUCID_RESOURCE_HISTORY) continue;
             const uint32_t transient = resource - PELLUCID_RESOURCE_TRANSIENT0;
             ASSERT_LT(transient + 1, count);

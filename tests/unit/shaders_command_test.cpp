@@ -289,7 +289,8 @@ TEST(ShadersCommand, PlansBindWhatIsDescribed) {
         SCOPED_TRACE(d.name);
         seen.insert(d.pipeline);
         std::map<uint32_t, const PellucidBinding*> bound;
-        for (uint32_t b = 0; b < d.bindingCount; ++b) bound[d.bindings[b].binding] = &d.bindings[b];
+        const std::vector<PellucidBinding> all = pellucid::test::bindingsOf(plan, d);
+        for (const PellucidBinding& b : all) bound[b.binding] = &b;
         for (const Json& shader : written().hlsl["shaders"]) {
           if (shader["pipeline"] != d.pipeline) continue;
           for (const Json& binding : shader["bindings"]) {

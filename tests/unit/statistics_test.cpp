@@ -154,7 +154,10 @@ TEST(Statistics, ErrorsNameFieldAndValue) {
        "constants.mapped has 9 x 1 x 1 groups of \"diffuse\", which are at most 8 x "},
       {[](Slice& s) { s.run(s.indexOf("entry points"), 1, 2, 1); }, PELLUCID_ERROR_INVALID_ARGUMENT,
        "constants.mapped has 1 x 2 x 1 groups of \"entry points\""},
-      {[](Slice& s) { s.plan.dispatches[s.indexOf("diffuse")].indirectOffset = s.plan.constantsSize - 8; },
+      {[](Slice& s) {
+         s.plan.dispatches[s.indexOf("diffuse")].indirectOffset =
+             static_cast<uint32_t>(s.plan.constantsSize - 8);
+       },
        PELLUCID_ERROR_INVALID_ARGUMENT,
        "].indirectOffset is " + std::to_string(whole.plan.constantsSize - 8)},
       {[](Slice& s) { s.plan.dispatchCount = PELLUCID_MAX_DISPATCHES + 1; }, PELLUCID_ERROR_INVALID_ARGUMENT,

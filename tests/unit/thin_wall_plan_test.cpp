@@ -29,10 +29,11 @@ std::string reasonOf(const PellucidPlan& plan, const std::string& what) {
   return "";
 }
 
-uint32_t imagesBound(const PellucidDispatch& d) {
-  return static_cast<uint32_t>(
-      std::count_if(d.bindings, d.bindings + d.bindingCount,
-                    [](const PellucidBinding& b) { return b.resource >= PELLUCID_RESOURCE_SHADOW0; }));
+uint32_t imagesBound(const PellucidPlan& plan, const PellucidDispatch& d) {
+  const std::vector<PellucidBinding> all = pellucid::test::bindingsOf(plan, d);
+  return static_cast<uint32_t>(std::count_if(all.begin(), all.end(), [](const PellucidBinding& b) {
+    return b.resource >= PELLUCID_RESOURCE_SHADOW0;
+  }));
 }
 
 // A solid and a sheet, gathered.
@@ -54,7 +55,7 @@ TEST(ThinWall, GatheredFramesHaveADispatchMoreBeforeTheDiffusion) {
   EXPECT_EQ(names(plan)[1], "base level");
   EXPECT_EQ(plan.dispatches[0].pushConstants[0], PELLUCID_LIGHT_WALLS);
   EXPECT_EQ(plan.dispatches[0].pushConstants[1], 1u);
-  EXPECT_GT(imagesBound(plan.dispatches[0]), 0u);
+  EXPECT_GT(imagesBound(plan, plan.dispatches[0]), 0u);
   f.frame.materialCount = 1;
   const std::vector<std::string> solids = names(f.plan());
   EXPECT_EQ(solids.size() + 1, plan.dispatchCount);

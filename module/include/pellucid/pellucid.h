@@ -40,7 +40,7 @@ extern "C" {
 #define PELLUCID_VERSION "0.2.0" /* of the release */
 
 /* Passed in PellucidContextDesc; the library refuses a header it does not know. */
-#define PELLUCID_HEADER_VERSION 4u
+#define PELLUCID_HEADER_VERSION 5u
 
 /* ---- Materials ------------------------------------------------------------------------------- */
 
@@ -77,6 +77,17 @@ typedef struct PellucidMaterial {
                                  say whether something else blocks the light. Not gathered. 0 (default): a solid */
   float wallTransmittance[3]; /* of the irradiance of the other face, [0, 1]; with `reflectance` at most 1 */
 } PellucidMaterial;
+
+/* Tables that recordings take from a material: its profile over the pyramid's levels, and what the gather knows of it. They
+ * depend on the material alone, so that they are made with it, once, and not for each frame. Plain data. */
+enum { PELLUCID_MATERIAL_TABLE_WORDS = 3440 };
+typedef struct PellucidMaterialTables {
+  uint32_t words[PELLUCID_MATERIAL_TABLE_WORDS]; /* not for callers */
+} PellucidMaterialTables;
+
+/* Writes the tables of a material, compiled or by hand. INVALID_ARGUMENT: a null pointer, or a material that
+ * pellucidValidateFrame refuses. */
+PELLUCID_API PellucidResult pellucidMakeMaterialTables(const PellucidMaterial* material, PellucidMaterialTables* tables);
 
 /* ---- Frame ----------------------------------------------------------------------------------- */
 
@@ -214,7 +225,8 @@ typedef struct PellucidFrame {
                                one before; 4 needs pixels far below a mean free path */
   uint32_t separateOutput;  /* 1: the output shares no memory with the irradiance, of which diffusion without a fused
                                dispatch before it then needs no copy; 0 (default): it may be the same image */
-  uint32_t indirectDispatches; /* PellucidIndirect; but for NONE the constants' buffer has usage INDIRECT_BUFFER, too */
+  uint32_t indirectDispatches; /* PellucidIndirect; default MATERIAL: the constants' buffer has usage INDIRECT_BUFFER, too, unless
+                                  NONE */
   uint32_t materialShift, materialMask; /* the index is (R of the material image & mask) >> shift, so that other bits may
                                            hold anything; shift 0..31, and the mask has the bits of all indices; mask 0
                                            (default): all bits. thesis->materialMarkBit is a bit of the shifted value */
@@ -233,12 +245,14 @@ typedef struct PellucidFrame {
   VkDescriptorPool descriptorPool; /* with PellucidContextDesc::descriptorPools: by pellucidCreateDescriptorPool. Recording resets
                                       it, so each recording that the device has not finished needs one of its own, as of
                                       constants slices. Else unused; default NULL */
+  const PellucidMaterialTables* materialTables; /* materialCount of them, each of the material of its index; NULL (default):
+                                                   made anew for each frame, which takes 20 us of CPU time a material */
 } PellucidFrame;
 
 /* ---- Plan ------------------------------------------------------------------------------------ */
 
-/* The dispatches of a frame. A complete type of pellucid_plan.h, 28 KB, that the caller allocates: with the object that
- * records, and not on the stack of a job. Read while it is recorded, and by the next plan as `previous`. */
+/* The dispatches of a frame: a complete type of pellucid_plan.h, at most 4096 bytes. Read while constants are written and
+ * commands are recorded, and by the next plan as `previous`. */
 typedef struct PellucidPlan PellucidPlan;
 
 /* One transient the caller creates: 2D, one mip, of this format and extent (for any render rect), usage SAMPLED |
@@ -280,12 +294,12 @@ PELLUCID_API PellucidResult pellucidBuildPlan(const PellucidFrame* frame, const 
 
 /* ---- Recording ------------------------------------------------------------------------------- */
 
-/* Host-visible, host-coherent memory for one recording, usage STORAGE_BUFFER | UNIFORM_BUFFER, with
- * frame.indirectDispatches INDIRECT_BUFFER, too: then the device writes there what it decides, which holds until the
+/* Host-visible, host-coherent memory for one recording, usage STORAGE_BUFFER | UNIFORM_BUFFER |
+ * INDIRECT_BUFFER, the last unless frame.indirectDispatches is NONE: the device writes there what it decides, which holds until the
  * constants are written again. All passes read it, so it should be device-local, too, where there is such memory.
- * Recording writes the slice at once, and the device reads it when the commands run. Each recording that the device has
- * not finished needs a slice of its own: a ring of as many as there are frames in flight. Neither this library nor
- * Vulkan's validation sees one that is written too early; the earlier frame then has the later one's camera and lights. */
+ * pellucidWriteConstants writes the slice at once, and the device reads it when the commands run. Each recording that the
+ * device has not finished needs a slice of its own: a ring of as many as there are frames in flight. Neither this library
+ * nor Vulkan's validation sees one that is written too early; the earlier frame then has the later one's camera and lights. */
 typedef struct PellucidConstantsSlice {
   VkBuffer buffer;     /* of the caller */
   VkDeviceSize offset; /* multiple of 256, the largest alignment Vulkan lets a device ask for */
@@ -306,17 +320,25 @@ enum {
  * same time. On failure the message callback has the sentence, and pipelines made so far stay. */
 PELLUCID_API PellucidResult pellucidCreatePipelines(PellucidContext* context, const PellucidPlan* plan);
 
-/* Writes the slice and records every dispatch and the barriers between them. Before: what wrote the inputs is visible to
+/* Writes the constants of a plan, made from this frame, to the slice's `mapped`. The plan may then be recorded any number of
+ * times. Image views are not looked at. `size`: bytes there. INVALID_ARGUMENT: a null pointer, a frame that
+ * pellucidValidateFrame refuses, or a plan of another one; BUFFER_TOO_SMALL: size is below plan.constantsSize. */
+PELLUCID_API PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const PellucidFrame* frame, void* mapped,
+                                                   size_t size);
+
+/* Records every dispatch and the barriers between them. Before: what wrote the inputs is visible to
  * PELLUCID_STAGES / PELLUCID_READS, and the output and transients are free for PELLUCID_WRITES. After: `output` was written
- * by PELLUCID_STAGES / PELLUCID_WRITES.
+ * by PELLUCID_STAGES / PELLUCID_WRITES. When the commands run, the slice holds what pellucidWriteConstants wrote.
  * Outside of render passes. Left changed: pipeline and sets of the compute bind point, and 16 bytes of push constants of all
- * bind points (docs/integration.md). `frame` is the one that made the plan, with its views
- * filled in. One that differs in anything else, or lacks an image of the plan's, is PELLUCID_ERROR_INVALID_ARGUMENT;
- * the message names the part that differs. */
+ * bind points (docs/integration.md). Of `frame` alone the images and the descriptor pool are read, which may be others than
+ * when the plan was made. Errors, of which the message names the field:
+ * - INVALID_ARGUMENT: an image that the plan binds has no view; a pipeline or an option of PellucidContextDesc that the plan
+ * needs is not the context's; a slice without a buffer or with an offset that is no multiple of 256;
+ * - BUFFER_TOO_SMALL: constants->size is below plan.constantsSize.
+ * Everything else, layouts among it, is pellucidValidateFrame's. */
 PELLUCID_API PellucidResult pellucidRecordPlan(const PellucidContext* context, VkCommandBuffer commandBuffer,
                                                const PellucidPlan* plan, const PellucidFrame* frame,
                                                const PellucidConstantsSlice* constants);
-
 
 #ifdef __cplusplus
 }

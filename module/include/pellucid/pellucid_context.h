@@ -22,7 +22,11 @@ typedef enum PellucidUse {
   PELLUCID_USE_GATHER = 1 << 1,       /* gathered light */
   PELLUCID_USE_DIFFUSION = 1 << 2,    /* light that spreads under the surface */
   PELLUCID_USE_REUSE = 1 << 3,        /* frame.reuse without a gather */
-  PELLUCID_USE_DEBUG_VIEWS = 1 << 4   /* frame.debugView */
+  PELLUCID_USE_DEBUG_VIEWS = 1 << 4,  /* frame.debugView */
+  /* Options that pipelines look for, unless the context's uses leave them out: */
+  PELLUCID_USE_THIN_WALLS = 1 << 5, /* materials with thinWalled */
+  PELLUCID_USE_AMBIENT = 1 << 6,    /* frame.ambient */
+  PELLUCID_USE_THESIS = 1 << 7      /* thesis->angleModel other than NORMAL, and transmittance models but EXP2 and SINH_EXP */
 } PellucidUse;
 
 /* Calls job(data, i) for each i below count, on any threads and in any order, and returns when all have returned. */

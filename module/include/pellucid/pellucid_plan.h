@@ -1,8 +1,8 @@
 /* Contents of a plan, for engines that record plans themselves, and its text.
  *
  * A plan is plain data without pointers but to static strings: it may be copied, and it outlives the frame
- * that it was made from. pellucid.h includes this header, so that callers of pellucidRecordPlan can
- * allocate plans; they need not read it.
+ * that it was made from. pellucid.h includes this header, so that callers of pellucidRecordPlan can have plans
+ * on their stacks; they need not read it.
  */
 #ifndef PELLUCID_PLAN_H
 #define PELLUCID_PLAN_H
@@ -34,33 +34,32 @@ enum {
   PELLUCID_MAX_BINDINGS = 24,
   PELLUCID_MAX_SKIPS = 16,
   PELLUCID_PUSH_CONSTANT_BYTES = 16,
-  PELLUCID_PLAN_STATE_WORDS = 40
+  PELLUCID_PLAN_SLOTS = 12,
+  PELLUCID_PLAN_SHADOW_IMAGES = 256,
+  PELLUCID_PLAN_STATE_WORDS = 48
 };
 
-/* One binding of a dispatch. */
+/* One binding of a dispatch, by pellucidGetBindings. */
 typedef struct PellucidBinding {
-  uint32_t binding;            /* of set 0 */
+  uint32_t binding;            /* of set 0; pellucidBindingName() reads it. A number is one binding in all pipelines */
   VkDescriptorType type;       /* of the binding */
   uint32_t resource;           /* PellucidResource */
-  uint32_t level;              /* mip or pyramid level; 0 for a plain image */
   VkDeviceSize offset, size;   /* bytes in the constants slice; buffers only */
 } PellucidBinding;
 
 /* One dispatch of a plan. */
 typedef struct PellucidDispatch {
   const char* name;             /* static string */
-  uint32_t pipeline;            /* index below pellucidGetPipelineCount(); pellucidPipelineName() reads it */
   uint32_t groups[3];           /* workgroups; the most there may be when indirect */
-  uint32_t indirect;            /* 1: VkDispatchIndirectCommand at indirectOffset of indirectResource, which earlier
-                                   dispatches decide */
-  uint32_t indirectResource;    /* PellucidResource; CONSTANTS when indirect */
-  VkDeviceSize indirectOffset;  /* bytes from the slice's offset */
-  uint32_t barrierBefore;       /* 1: a compute-to-compute memory barrier precedes the dispatch */
-  uint32_t barrierIndirect;     /* 1: DRAW_INDIRECT / INDIRECT_COMMAND_READ waits for that barrier, too */
   uint32_t pushConstants[PELLUCID_PUSH_CONSTANT_BYTES / 4]; /* from offset 0 on */
-  uint32_t bindingCount;        /* of bindings */
-  PellucidBinding bindings[PELLUCID_MAX_BINDINGS]; /* of set 0 */
-  uint64_t modeledBytes;        /* least device-memory traffic: each image read once, written once */
+  uint32_t indirectOffset;      /* bytes from the slice's offset */
+  uint8_t pipeline;             /* index below pellucidGetPipelineCount(); pellucidPipelineName() reads it */
+  uint8_t indirect;             /* 1: VkDispatchIndirectCommand at indirectOffset of the constants slice, which earlier
+                                   dispatches decide */
+  uint8_t barrierBefore;        /* 1: a compute-to-compute memory barrier precedes the dispatch */
+  uint8_t barrierIndirect;      /* 1: DRAW_INDIRECT / INDIRECT_COMMAND_READ waits for that barrier, too */
+  uint16_t slots[PELLUCID_PLAN_SLOTS]; /* what it binds, for pellucidGetBindings */
+  uint16_t firstShadowImage, shadowImageCount; /* of plan.shadowImages, for pellucidGetBindings */
 } PellucidDispatch;
 
 /* Something that a plan leaves out. */
@@ -70,16 +69,17 @@ typedef struct PellucidSkip {
   uint32_t count;     /* how many (lights, say) */
 } PellucidSkip;
 
-/* The module's own part of a plan: how the next plan decides about reuse, and what recording compares frames by. */
+/* The module's own part of a plan: how the next plan decides about reuse, and what recording asks of a context. */
 typedef struct PellucidPlanState {
   uint32_t words[PELLUCID_PLAN_STATE_WORDS]; /* not for callers */
 } PellucidPlanState;
 
+/* At most 4096 bytes. */
 struct PellucidPlan {
   uint32_t dispatchCount, barrierCount; /* of dispatches, and how many have a barrier before */
   uint32_t skipCount;         /* of skips */
   uint32_t activeLights;      /* lights that can contribute; the others are in skips */
-  VkDeviceSize constantsSize; /* bytes RecordPlan writes into the constants slice */
+  VkDeviceSize constantsSize; /* bytes pellucidWriteConstants writes */
   PellucidDispatch dispatches[PELLUCID_MAX_DISPATCHES]; /* in order */
   PellucidSkip skips[PELLUCID_MAX_SKIPS]; /* what is left out, and why */
   float largestRadius; /* pixels within which 99.9 % of the diffused energy lies, of the widest channel of all
@@ -88,8 +88,13 @@ struct PellucidPlan {
                              have one thickness a pixel */
   uint32_t historyAge;    /* frames since frame.history was written, by the last frame that computed the light that
                              comes through; 0: this frame computes it */
+  uint32_t shadowImages[PELLUCID_PLAN_SHADOW_IMAGES]; /* that dispatches bind, for pellucidGetBindings */
   PellucidPlanState state; /* not for callers */
 };
+
+/* What a dispatch binds, in the order of binding numbers: writes at most PELLUCID_MAX_BINDINGS, returns how many. 0 for a
+ * dispatch that the plan does not have. */
+PELLUCID_API uint32_t pellucidGetBindings(const PellucidPlan* plan, uint32_t dispatch, PellucidBinding* bindings);
 
 /* One specialization constant. */
 typedef struct PellucidSpecialization {
@@ -105,14 +110,11 @@ typedef struct PellucidShader {
   const PellucidSpecialization* constants; /* of the pipeline */
 } PellucidShader;
 
-/* Ids of the specialization constants of all shaders that hold PellucidContextDesc::normalEncoding and lightTables, which are
- * not among PellucidShader::constants. */
-enum { PELLUCID_SPECIALIZATION_NORMALS = 4, PELLUCID_SPECIALIZATION_LIGHT_TABLES = 5 };
+/* Ids of the specialization constants of all shaders that hold PellucidContextDesc::normalEncoding, lightTables, and uses with all
+ * bits in place of 0. They are not among PellucidShader::constants. */
+enum { PELLUCID_SPECIALIZATION_NORMALS = 4, PELLUCID_SPECIALIZATION_LIGHT_TABLES = 5, PELLUCID_SPECIALIZATION_USES = 6 };
 
-/* The constants that pellucidRecordPlan would write, and what each pipeline is made of; shadowViewType as in
- * PellucidContextDesc. */
-PELLUCID_API PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const PellucidFrame* frame,
-                                                   void* mapped, size_t size);
+/* What each pipeline is made of; shadowViewType as in PellucidContextDesc. */
 PELLUCID_API uint32_t pellucidGetPipelineCount(void); /* pipelines have the indices below it */
 PELLUCID_API PellucidResult pellucidGetShader(uint32_t pipeline, VkImageViewType shadowViewType,
                                               PellucidShader* shader); /* INVALID_ARGUMENT: no such pipeline or type */
@@ -126,6 +128,7 @@ PELLUCID_API PellucidResult pellucidPlanToJson(const PellucidPlan* plan, char* t
 
 PELLUCID_API const char* pellucidResourceName(uint32_t resource); /* "frontDepth", ... */
 PELLUCID_API const char* pellucidPipelineName(uint32_t pipeline); /* "unknown pipeline" beyond the last */
+PELLUCID_API const char* pellucidBindingName(uint32_t binding); /* as in the shaders' sources, "frontDepthImage"; "unknown binding" */
 
 #ifdef __cplusplus
 }

@@ -5,7 +5,7 @@
  * - after pellucidRecordPlan, a barrier from PELLUCID_STAGES / PELLUCID_WRITES to VK_PIPELINE_STAGE_HOST_BIT
  * / VK_ACCESS_HOST_READ_BIT goes into the command buffer;
  * - the slice is read once the fence of that submission has signaled, which a ring of slices waits for
- * anyway, and before the slice is recorded again. pellucid.h does not include this header.
+ * anyway, and before constants are written to the slice again. pellucid.h does not include this header.
  */
 #ifndef PELLUCID_STATISTICS_H
 #define PELLUCID_STATISTICS_H

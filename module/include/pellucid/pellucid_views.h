@@ -20,11 +20,11 @@ extern "C" {
 typedef struct PellucidView {
   const PellucidPlan* plan;   /* made from `frame`; with reuse, from this view's previous plan */
   const PellucidFrame* frame; /* with image views; a layer of an array is a 2D view of that layer alone */
-  const PellucidConstantsSlice* constants; /* of this view, for this recording */
+  const PellucidConstantsSlice* constants; /* of this view, with the constants of its plan */
 } PellucidView;
 
-/* pellucidRecordPlan for several views at once: writes every slice, and records the dispatches of all plans
- * with as many barriers as the plan with the most has. Stages, accesses and what is left changed are those of
+/* pellucidRecordPlan for several views at once: records the dispatches of all plans with as many barriers as the
+ * plan with the most has. Stages, accesses and what is left changed are those of
  * pellucidRecordPlan. 0 views: nothing is recorded.
  *
  * No other view of the recording uses an image that one view writes: each has transients, a history and a
@@ -35,8 +35,7 @@ typedef struct PellucidView {
  * PELLUCID_ERROR_INVALID_ARGUMENT for one image view that breaks this rule, and for slices of one buffer, or
  * mapped addresses, that overlap in what the plans need of them. Handles are compared: two image views of one
  * image, and memory that aliases, go unnoticed. Every other error is one of pellucidRecordPlan. The message's
- * field names the view: "views[1].output". After an error nothing is recorded; the slices of the views before
- * that one may have been written. */
+ * field names the view: "views[1].output". After an error nothing is recorded. */
 PELLUCID_API PellucidResult pellucidRecordViews(const PellucidContext* context, VkCommandBuffer commandBuffer,
                                                 uint32_t viewCount, const PellucidView* views);
 

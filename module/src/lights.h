@@ -4,18 +4,17 @@
 #include <array>
 #include <span>
 
-#include "pellucid/pellucid.h"
-#include "shared/pellucid_shared.h"
+#include "ambient.h"
+#include "gather_choice.h"
+#include "skips.h"
 
 namespace pellucid {
-
-struct FrameFacts;
 
 // One dispatch binds a number of shadow images (see mostImages) and windows of fixed size on the constants of
 // lights and shadow maps, so lights are taken in order into groups that need no more. Constants are laid out
 // light by light within the groups.
 struct LightGroup {
-  uint32_t firstLight = 0, lightCount = 0;       // among the lights that are not skipped
+  uint32_t firstLight = 0, lightCount = 0;       // of Lights::active
   uint32_t shadowCount = 0;                      // shadow maps
   VkDeviceSize lightBytes = 0, shadowBytes = 0;  // of the groups before, in the constants
   VkDeviceSize gatherMapBytes = 0, entryMapBytes = 0;
@@ -32,38 +31,57 @@ struct LightGroup {
   // Slot of an image, or mostImages.
   uint32_t slot(uint32_t image) const;
   // Gives the images of a light's map slots; false if there are not enough.
-  bool addImages(const FrameFacts& facts, const PellucidLight& light, const PellucidShadowMap& map);
+  bool addImages(const Inputs& inputs, const GatherChoice& gather, const PellucidLight& light,
+                 const PellucidShadowMap& map);
   // Adds the light, its maps and their images; false (and no change) if they do not fit.
-  bool addLight(const FrameFacts& facts, const PellucidLight& light);
+  bool addLight(const Inputs& inputs, const Materials& materials, const GatherChoice& gather,
+                const PellucidLight& light);
   // Probes find the light that comes through, and shapes where the frame has no such light.
   bool hasProbes() const { return gathered > 0 || shapes; }
   // An empty group whose constants follow this one's.
   LightGroup next() const;
-  // True where what lies beside the light's map is read. Thickness from the camera knows nothing of the
+  // True where the exit depth beside the light's map is read. Thickness from the camera knows nothing of the
   // light's way and its exit.
-  bool readsExit(const FrameFacts& facts, const PellucidLight& light, const PellucidShadowMap& map) const;
+  bool readsExit(const Inputs& inputs, const GatherChoice& gather, const PellucidLight& light,
+                 const PellucidShadowMap& map) const;
   bool readsCaster(const PellucidShadowMap& map) const { return beside && map.casterMaterialImage != 0; }
 
 private:
   bool addImage(uint32_t image);
 };
 
-// All groups of a frame. Lights that are gathered from come first: all of them are added to the pixels at
-// once. What a curved surface returns does not depend on lights: a frame without gathered lights has a first
-// group without them where surfaces have shapes.
-struct LightGroups {
-  // With exit depths and caster materials, unless those need more dispatches than a plan has: then they are
-  // left out as if the frame had only the maps.
-  static LightGroups of(const FrameFacts& facts);
+struct Lights {
+  // Each light is looked at once: `out` is warned of those that add nothing, and `skips` counts them.
+  Lights(const Inputs& inputs, const Screen& screen, const Materials& materials, const GatherChoice& gather,
+         Findings& out);
 
+  PellucidLight ambient;  // see ambient.h
+  bool needsChord;        // thickness along view rays is asked for
+  Skips skips;            // lights that add nothing, and what they lack
+
+  uint32_t lightCount = 0;                    // lights that contribute
+  bool lackExit = false, lackCaster = false;  // a map of theirs has no such image
+  uint32_t holdBackFaces = 0;                 // as many of them have such maps
+  // Those that are gathered from come first, as all of them are added to the pixels at once.
+  static constexpr uint32_t kMost = PELLUCID_MAX_DISPATCHES * PELLUCID_DISPATCH_LIGHTS;
+  static constexpr uint32_t kAmbient = UINT32_MAX;
+  std::array<uint32_t, kMost> active;  // lightCount of them, into frame.lights, or kAmbient
+
+  const PellucidLight& light(const Inputs& inputs, uint32_t index) const {
+    return active[index] == kAmbient ? ambient : inputs.frame.lights[active[index]];
+  }
+
+  // Groups. What a curved surface returns does not depend on lights: a frame without gathered lights has a
+  // first group without lights where surfaces have shapes.
   uint32_t count = 0, gathered = 0;          // gathered: with probes
-  uint32_t lightCount = 0;                   // lights that are not skipped
   uint32_t entryColumns = 0, entryRows = 0;  // the most of a group
-  bool beside = true;                        // see LightGroup
+  // False where exit depths and caster materials need more dispatches than a plan has: then they are left out
+  // as if the frame had only the maps.
+  bool beside = true;
   LightGroup last;
   std::array<LightGroup, PELLUCID_MAX_DISPATCHES> first{};  // a frame with more has no plan
 
-  bool fitPlan() const { return count <= first.size(); }
+  bool fitPlan() const { return count <= first.size() && lightCount <= kMost; }
   std::span<const LightGroup> list() const { return {first.data(), fitPlan() ? count : first.size()}; }
   // Dispatches besides those over all pixels: probes, entry points where lights are gathered, and one filter.
   uint32_t gatherDispatches() const {
@@ -71,14 +89,11 @@ struct LightGroups {
   }
   // Dispatches over all pixels, of one thickness a pixel.
   uint32_t fused() const { return count - gathered; }
-
   // Dispatches of thin walls' light beside a gather. Without one, the pass of solids' light adds it.
-  uint32_t walls(const FrameFacts& facts) const;
+  uint32_t walls(const Materials& materials, const GatherChoice& gather) const;
 
 private:
-  LightGroups(const FrameFacts& facts, bool withBeside);
-  friend struct FrameFacts;
-  LightGroups() = default;
+  void group(const Inputs& inputs, const Materials& materials, const GatherChoice& gather, bool withBeside);
 };
 
 }  // namespace pellucid

@@ -1,0 +1,54 @@
+// The caller's structs, with the defaults of fields that they lack. The first of a frame's facts.
+#pragma once
+
+#include "findings.h"
+#include "images.h"
+#include "pellucid/pellucid_thesis.h"
+
+namespace pellucid {
+
+struct Inputs {
+  PellucidFrame frame{};
+  PellucidThesisOptions thesis{};
+  uint32_t images = 0;   // bit (1 << PellucidResource) of each image field that has a view
+  bool inPlace = false;  // the output is the irradiance's view
+
+  bool has(PellucidResource image) const { return (images & 1u << image) != 0; }
+  bool debug() const { return frame.debugView != PELLUCID_DEBUG_NONE; }
+  bool translucency() const { return (frame.features & PELLUCID_FEATURE_TRANSLUCENCY) != 0; }
+  // The output shares no memory with the irradiance.
+  bool separate() const { return frame.separateOutput != 0 || frame.outputMode == PELLUCID_OUTPUT_ADD; }
+  // Bits of a material value that may hold the index.
+  uint32_t materialBits() const {
+    return (frame.materialMask == 0 ? UINT32_MAX : frame.materialMask) >> frame.materialShift;
+  }
+
+  // frame.materials[index] with the defaults of fields that the caller's lacks. A thin wall's T(d) is
+  // constant.
+  PellucidMaterial material(uint32_t index) const;
+  // As the diffusion takes it: without a profile where the diffusion is not among the features. Its passes
+  // add gathered light there, too.
+  PellucidMaterial diffused(uint32_t index) const;
+  uint32_t diffusedCount(const PellucidMaterial& material) const {
+    return (frame.features & PELLUCID_FEATURE_DIFFUSION) != 0 ? material.gaussianCount : 0;
+  }
+
+  // All maps of a light hold the same faces.
+  bool holdsBackFaces(const PellucidLight& light) const {
+    return light.shadowMapCount > 0 && frame.shadowMaps[light.firstShadowMap].faces == PELLUCID_FACES_BACK;
+  }
+  // True where the light's thickness is the camera's.
+  bool takesChord(const PellucidLight& light) const {
+    return light.shadowMapCount == 0 || frame.thicknessSource == PELLUCID_THICKNESS_CAMERA ||
+           holdsBackFaces(light);
+  }
+  // True where solids have no thickness for the light.
+  bool lacksChord(const PellucidLight& light) const {
+    return takesChord(light) && !has(PELLUCID_RESOURCE_BACK_DEPTH);
+  }
+};
+
+// Sizes of the caller's structs are checked before anything else of them is read; false: an error.
+bool readInputs(const PellucidFrame* frame, Findings& out, Inputs* inputs);
+
+}  // namespace pellucid

@@ -1,0 +1,171 @@
+#include "lights.h"
+
+#include <algorithm>
+
+#include "constants_layout.h"
+#include "cull.h"
+#include "entry_points.h"
+
+namespace pellucid {
+
+// ---- A group
+
+uint32_t LightGroup::slot(uint32_t image) const {
+  for (uint32_t i = 0; i < imageCount; ++i)
+    if (images[i] == image) return i;
+  return mostImages;
+}
+
+bool LightGroup::addImage(uint32_t image) {
+  if (slot(image) < mostImages) return true;
+  if (imageCount == mostImages) return false;
+  images[imageCount++] = image;
+  return true;
+}
+
+bool LightGroup::addImages(const Inputs& inputs, const GatherChoice& gather, const PellucidLight& light,
+                           const PellucidShadowMap& map) {
+  return addImage(map.image) && (!readsExit(inputs, gather, light, map) || addImage(map.exitImage - 1)) &&
+         (!readsCaster(map) || addImage(map.casterMaterialImage - 1));
+}
+
+bool LightGroup::readsExit(const Inputs& inputs, const GatherChoice& gather, const PellucidLight& light,
+                           const PellucidShadowMap& map) const {
+  return beside && map.exitImage != 0 && map.faces == PELLUCID_FACES_FRONT &&
+         (inputs.frame.thicknessSource == PELLUCID_THICKNESS_LIGHT || gather.isGathered(inputs, light));
+}
+
+bool LightGroup::addLight(const Inputs& inputs, const Materials& materials, const GatherChoice& gather,
+                          const PellucidLight& light) {
+  const bool isGathered = gather.isGathered(inputs, light);
+  // Probes and the pass of one thickness a pixel take groups of their own.
+  if (hasProbes() && !isGathered) return false;
+  LightGroup grown = *this;
+  // Dispatches of thin walls' light would read the images, too.
+  if (isGathered && !materials.thinWalls) grown.mostImages = PELLUCID_ENTRY_IMAGE_COUNT;
+  grown.shadowCount += light.shadowMapCount;
+  if (lightCount == PELLUCID_DISPATCH_LIGHTS || grown.shadowCount > PELLUCID_DISPATCH_SHADOWS) return false;
+  for (uint32_t i = 0; i < light.shadowMapCount; ++i)
+    if (!grown.addImages(inputs, gather, light, inputs.frame.shadowMaps[light.firstShadowMap + i]))
+      return false;
+  if (isGathered) {
+    for (uint32_t i = 0; i < light.shadowMapCount; ++i) {
+      const EntryExtent extent = entryExtent(inputs, gather, light, i);
+      grown.entryColumns = std::max(grown.entryColumns, entryGroups(extent.width));
+      grown.entryRows += entryGroups(extent.height);
+      grown.entryWidth = std::max(grown.entryWidth, extent.width);
+      grown.entryHeight = std::max(grown.entryHeight, extent.height);
+    }
+    if (grown.entryRows > kEntryRows) return false;
+    ++grown.gathered;
+  }
+  ++grown.lightCount;
+  *this = grown;
+  return true;
+}
+
+LightGroup LightGroup::next() const {
+  LightGroup next;
+  next.beside = beside;
+  next.firstLight = firstLight + lightCount;
+  next.lightBytes = lightBytes + aligned(lightCount * sizeof(shared::LightConstants));
+  next.shadowBytes = shadowBytes + aligned(shadowCount * sizeof(shared::ShadowConstants));
+  next.gatherMapBytes = gatherMapBytes + aligned(shadowCount * sizeof(shared::GatherMapConstants));
+  next.entryMapBytes = entryMapBytes + aligned(shadowCount * sizeof(shared::EntryMapConstants));
+  return next;
+}
+
+// ---- All lights
+
+Lights::Lights(const Inputs& inputs, const Screen& screen, const Materials& materials,
+               const GatherChoice& gather, Findings& out)
+    : ambient(ambientLight(inputs.frame)) {
+  const PellucidFrame& frame = inputs.frame;
+  // The debug view of thickness shows the chord, too.
+  needsChord = frame.thicknessSource == PELLUCID_THICKNESS_CAMERA || ambient.intensity > 0 ||
+               frame.debugView == PELLUCID_DEBUG_THICKNESS;
+  const ViewBounds view(inputs, screen);
+  // True where the light contributes.
+  const auto look = [&](const PellucidLight& light, const char* what, const char* field) {
+    if (const char* reason = view.whySkipped(inputs, materials, gather, light)) {
+      out.warning(field, "adds nothing: ", reason);
+      skips.add(what, reason);
+      return false;
+    }
+    if (inputs.lacksChord(light) && materials.solids)
+      skips.add("light in solids", "no back depth to take a thickness from: thin walls alone let it through");
+    return true;
+  };
+  uint32_t others = kMost;  // those that are not gathered from, from the end on
+  for (uint32_t i = 0; i < frame.lightCount; ++i) {
+    const PellucidLight& light = frame.lights[i];
+    needsChord = needsChord || inputs.takesChord(light);
+    if (!look(light, "light", Field("lights[", i, "]"))) continue;
+    if (inputs.holdsBackFaces(light)) ++holdBackFaces;
+    for (uint32_t k = 0; k < light.shadowMapCount && !inputs.holdsBackFaces(light); ++k) {
+      const PellucidShadowMap& map = frame.shadowMaps[light.firstShadowMap + k];
+      lackExit = lackExit || (map.exitImage == 0 && frame.thicknessSource == PELLUCID_THICKNESS_LIGHT);
+      lackCaster = lackCaster || map.casterMaterialImage == 0;
+    }
+    const uint32_t gatheredSoFar = lightCount - (kMost - others);
+    ++lightCount;
+    if (lightCount > kMost) continue;
+    if (gather.isGathered(inputs, light))
+      active[gatheredSoFar] = i;
+    else
+      active[--others] = i;
+  }
+  if (lightCount <= kMost) {
+    std::reverse(active.begin() + others, active.end());
+    std::copy(active.begin() + others, active.end(), active.begin() + (lightCount - (kMost - others)));
+  }
+  if (ambient.intensity > 0 && look(ambient, "ambient light", "ambient")) {
+    if (lightCount < kMost) active[lightCount] = kAmbient;
+    ++lightCount;
+  }
+
+  group(inputs, materials, gather, true);
+  const auto hasNothing = [](const PellucidShadowMap& map) {
+    return map.exitImage == 0 && map.casterMaterialImage == 0;
+  };
+  if (std::all_of(frame.shadowMaps, frame.shadowMaps + frame.shadowMapCount, hasNothing)) return;
+  // At most: three dispatches that downsample, base level, upsample, two that diffuse, history.
+  constexpr uint32_t kOthers = 8;
+  // Debug views of light need all lights in one dispatch.
+  const bool binds =
+      inputs.debug() && frame.debugView != PELLUCID_DEBUG_IRRADIANCE
+          ? count <= 1
+          : fused() + gatherDispatches() + walls(materials, gather) + kOthers <= PELLUCID_MAX_DISPATCHES;
+  if (!binds) group(inputs, materials, gather, false);
+}
+
+void Lights::group(const Inputs& inputs, const Materials& materials, const GatherChoice& gather,
+                   bool withBeside) {
+  beside = withBeside;
+  count = gathered = entryColumns = entryRows = 0;
+  LightGroup current;
+  current.beside = beside;
+  current.shapes = gather.shapes;
+  const auto put = [&] {
+    if (count < first.size()) first[count] = current;
+    last = current;
+    ++count;
+    if (current.hasProbes()) ++gathered;
+    entryColumns = std::max(entryColumns, current.entryColumns);
+    entryRows = std::max(entryRows, current.entryRows);
+  };
+  for (uint32_t i = 0; i < std::min(lightCount, kMost); ++i) {
+    if (current.addLight(inputs, materials, gather, light(inputs, i))) continue;
+    put();
+    current = current.next();
+    current.addLight(inputs, materials, gather, light(inputs, i));
+  }
+  if (current.lightCount > 0 || current.shapes) put();
+}
+
+uint32_t Lights::walls(const Materials& materials, const GatherChoice& gather) const {
+  if (!gather.gathers || !materials.thinWalls || lightCount == 0) return 0;
+  return count - (first[0].lightCount == 0 ? 1 : 0);
+}
+
+}  // namespace pellucid

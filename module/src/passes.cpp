@@ -1,0 +1,386 @@
+// Every pass, one block each: its pipeline with what it binds, and its dispatches in a frame. At the end, the
+// data flow of a frame through them. docs/how-it-works.md tells what each pass does.
+#include "plan.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "kAddHistory.h"
+#include "kBaseLevel.h"
+#include "kDiffuse.h"
+#include "kDownsample.h"
+#include "kEntryPoints.h"
+#include "kEntryPointsArray.h"
+#include "kFilterProbes.h"
+#include "kListBlocks.h"
+#include "kProbes.h"
+#include "kTranslucency.h"
+#include "kTranslucencyArray.h"
+#include "kUpsample.h"
+#include "planner.h"
+
+namespace pellucid {
+namespace {
+
+constexpr uint32_t kGather = PELLUCID_USE_GATHER, kDiffusion = PELLUCID_USE_DIFFUSION;
+
+// Bindings of every pass that goes over pixels and writes colors.
+constexpr BindingSet kColorReads =
+    bindings(PELLUCID_BINDING_FRAME, PELLUCID_BINDING_FRONT_DEPTH, PELLUCID_BINDING_MATERIAL,
+             PELLUCID_BINDING_SOURCE, PELLUCID_BINDING_ALBEDO, PELLUCID_BINDING_HELD);
+constexpr BindingSet kColorWrites = bindings(PELLUCID_BINDING_DESTINATION);
+
+// ---- Translucency, thin walls, debug views --------------------------------------------------------
+
+constexpr BindingSet kLightReads =
+    kColorReads | shadowImages(PELLUCID_SHADOW_IMAGE_COUNT) |
+    bindings(PELLUCID_BINDING_LIGHTS, PELLUCID_BINDING_SHADOWS, PELLUCID_BINDING_MATERIALS,
+             PELLUCID_BINDING_NORMAL, PELLUCID_BINDING_BACK_DEPTH);
+constexpr PellucidSpecialization kDebugViews[] = {{PELLUCID_CONSTANT_DEBUG_VIEWS, 1}};
+
+constexpr Pass kTranslucencyPass{.pipeline = "translucency",
+                                 .words = kTranslucency,
+                                 .wordsOfArrays = kTranslucencyArray,
+                                 .uses = PELLUCID_USE_TRANSLUCENCY,
+                                 .reads = kLightReads,
+                                 .writes = kColorWrites};
+constexpr Pass kDebugViewPass{.pipeline = "debug_view",
+                              .words = kTranslucency,
+                              .wordsOfArrays = kTranslucencyArray,
+                              .uses = PELLUCID_USE_DEBUG_VIEWS,
+                              .reads = kLightReads,
+                              .writes = kColorWrites,
+                              .constants = kDebugViews};
+
+// `through`: PELLUCID_LIGHT_* of materials.
+void addLights(Planner& p, const Pass& pass, const char* name, const LightGroup& group, uint32_t through,
+               uint32_t source, uint32_t destination) {
+  Step step = p.add(pass, name);
+  step.tiles(PELLUCID_GROUP_X)
+      .lights(group)
+      .colors(source, destination)
+      .push(0, through)
+      .push(1, group.lightCount);
+  if (destination == PELLUCID_RESOURCE_HISTORY && group.firstLight == 0) step.push(2, PELLUCID_WRITE_STARTS);
+}
+
+// The lights of a group with one thickness a pixel, and debug views.
+void addTranslucency(Planner& p, const LightGroup& group, uint32_t source, uint32_t destination) {
+  const bool debug = p.facts.debug();
+  addLights(p, debug ? kDebugViewPass : kTranslucencyPass, debug ? "debug view" : "translucency", group,
+            p.facts.stages.walls > 0 ? PELLUCID_LIGHT_SOLIDS : PELLUCID_LIGHT_ALL, source, destination);
+}
+
+// All lights of a group that thin walls let through, in a frame that gathers.
+void addThinWalls(Planner& p, const LightGroup& group, uint32_t source, uint32_t destination) {
+  addLights(p, kTranslucencyPass, "thin walls", group, PELLUCID_LIGHT_WALLS, source, destination);
+}
+
+// ---- Light of an earlier frame ----------------------------------------------------------------------
+
+constexpr Pass kAddHistoryPass{.pipeline = "add_history",
+                               .words = kAddHistory,
+                               .uses = PELLUCID_USE_REUSE,
+                               .reads = kColorReads | bindings(PELLUCID_BINDING_HISTORY),
+                               .writes = kColorWrites};
+
+// The light that an earlier dispatch or frame left in frame.history.
+void addHistory(Planner& p, uint32_t source, uint32_t destination) {
+  p.add(kAddHistoryPass, "add history").tiles(PELLUCID_GROUP_X).colors(source, destination);
+}
+
+// ---- Level 1 of the pyramid and the blocks' words -----------------------------------------------------
+
+constexpr Pass kBaseLevelPass{
+    .pipeline = "base_level",
+    .words = kBaseLevel,
+    .uses = kDiffusion,
+    .reads = bindings(PELLUCID_BINDING_FRAME, PELLUCID_BINDING_FRONT_DEPTH, PELLUCID_BINDING_MATERIAL,
+                      PELLUCID_BINDING_SOURCE, PELLUCID_BINDING_NORMAL),
+    .writes = bindings(PELLUCID_BINDING_LEVELS, PELLUCID_BINDING_BLOCKS, PELLUCID_BINDING_LISTS,
+                       PELLUCID_BINDING_DESTINATION)};
+
+// `copy`: where pixels go that the last dispatch reads; `source` itself: nowhere.
+void addBaseLevel(Planner& p, uint32_t source, uint32_t copy) {
+  const bool copies = copy != source;
+  Step step = p.add(kBaseLevelPass, "base level");
+  step.groups(p.facts.blocks.count())
+      .image(PELLUCID_BINDING_SOURCE, source)
+      .image(PELLUCID_BINDING_LEVELS, p.level(kFirstLevel))
+      .push(0, copies);
+  if (copies)
+    step.image(PELLUCID_BINDING_DESTINATION, copy);
+  else
+    step.standIn(PELLUCID_BINDING_DESTINATION, PELLUCID_RESOURCE_OUTPUT);
+}
+
+// ---- Lists of blocks ----------------------------------------------------------------------------------
+
+constexpr Pass kListBlocksPass{.pipeline = "list_blocks",
+                               .words = kListBlocks,
+                               .uses = kDiffusion,
+                               .reads = bindings(PELLUCID_BINDING_FRAME, PELLUCID_BINDING_GATHER_MAPS),
+                               .writes = bindings(PELLUCID_BINDING_BLOCKS, PELLUCID_BINDING_LISTS)};
+
+void addListBlocks(Planner& p) {
+  p.add(kListBlocksPass, "list blocks").groups(p.facts.blocks.listGroups()).lights(LightGroup{});
+}
+
+// ---- Downsampling -------------------------------------------------------------------------------------
+
+constexpr Pass kDownsamplePass{
+    .pipeline = "downsample",
+    .words = kDownsample,
+    .uses = kDiffusion,
+    .reads = bindings(PELLUCID_BINDING_FRAME, PELLUCID_BINDING_PYRAMID, PELLUCID_BINDING_BLOCKS),
+    .writes = bindings(PELLUCID_BINDING_LEVELS)};
+
+// Groups of `side` texels that [first, first + size) touches. Shifts round down, as the border's texels begin
+// below 0.
+uint32_t groupsAlong(int32_t first, int32_t size, uint32_t side) {
+  const int shift = std::countr_zero(side);
+  return static_cast<uint32_t>(((first + size - 1) >> shift) - (first >> shift) + 1);
+}
+// Two levels from `finer`.
+void addDownsample(Planner& p, uint32_t finer) {
+  Step step = p.add(kDownsamplePass, "downsample");
+  step.image(PELLUCID_BINDING_PYRAMID, p.level(finer))
+      .image(PELLUCID_BINDING_LEVELS, p.level(finer + 1))
+      .push(0, finer);
+  if (finer == kFirstLevel) {
+    constexpr uint32_t kRowsOfLevel3 = PELLUCID_BLOCK / 8;  // in a block
+    step.blocks(PELLUCID_LIST_DOWNSAMPLE, kRowsOfLevel3 / PELLUCID_DOWNSAMPLE_ROWS);
+    return;
+  }
+  const auto& rect = p.facts.pyramid.levels[finer + 2].rect;
+  const uint32_t columns = groupsAlong(rect.x, rect.width, PELLUCID_DOWNSAMPLE_COLUMNS);
+  step.groups(columns * groupsAlong(rect.y, rect.height, PELLUCID_DOWNSAMPLE_ROWS))
+      .push(1, columns)
+      .list(finer == kFirstLevel + 2 ? PELLUCID_LIST_COARSE : PELLUCID_LIST_COARSEST);
+}
+
+// ---- Upsampling ---------------------------------------------------------------------------------------
+
+constexpr Pass kUpsamplePass{
+    .pipeline = "upsample",
+    .words = kUpsample,
+    .uses = kDiffusion,
+    .reads = bindings(PELLUCID_BINDING_FRAME, PELLUCID_BINDING_KERNELS, PELLUCID_BINDING_PYRAMID,
+                      PELLUCID_BINDING_COARSER_LEVELS, PELLUCID_BINDING_BLOCKS),
+    .writes = bindings(PELLUCID_BINDING_LEVELS)};
+
+void addUpsample(Planner& p, uint32_t coarsest) {
+  p.add(kUpsamplePass, "upsample")
+      .blocks(PELLUCID_LIST_UPSAMPLE, 1)
+      .image(PELLUCID_BINDING_LEVELS, p.level(kFirstLevel))
+      .image(PELLUCID_BINDING_PYRAMID, p.level(2))
+      .image(PELLUCID_BINDING_COARSER_LEVELS, p.level(4))
+      .push(0, coarsest);
+}
+
+// ---- Diffusion of pixels ------------------------------------------------------------------------------
+
+constexpr Pass kDiffusePass{
+    .pipeline = "diffuse",
+    .words = kDiffuse,
+    .uses = kDiffusion,
+    .reads = kColorReads |
+             bindings(PELLUCID_BINDING_PYRAMID, PELLUCID_BINDING_FILTERED_PROBES, PELLUCID_BINDING_BLOCKS),
+    .writes = kColorWrites,
+    .counted = Counted::Blocks};
+
+// With the light of the probes, if the frame has some.
+void addDiffuse(Planner& p, uint32_t source, uint32_t destination) {
+  const bool probes = p.facts.stages.gathered > 0;
+  Step step = p.add(kDiffusePass, "diffuse");
+  step.blocks(PELLUCID_LIST_DIFFUSE,
+              PELLUCID_BLOCK / PELLUCID_DIFFUSE_COLUMNS * (PELLUCID_BLOCK / PELLUCID_DIFFUSE_ROWS))
+      .colors(source, destination)
+      .image(PELLUCID_BINDING_PYRAMID, p.level(kFirstLevel))
+      .push(0, probes ? p.facts.gatherSpacing : 0);
+  if (!probes) step.standIn(PELLUCID_BINDING_FILTERED_PROBES, p.level(kFirstLevel));
+}
+
+// ---- Entry points of the gather -----------------------------------------------------------------------
+
+constexpr Pass kEntryPointsPass{
+    .pipeline = "entry_points",
+    .words = kEntryPoints,
+    .wordsOfArrays = kEntryPointsArray,
+    .uses = kGather,
+    .reads = shadowImages(PELLUCID_ENTRY_IMAGE_COUNT) |
+             bindings(PELLUCID_BINDING_FRAME, PELLUCID_BINDING_LIGHTS, PELLUCID_BINDING_GATHER_MAPS,
+                      PELLUCID_BINDING_ENTRY_MAPS, PELLUCID_BINDING_FRONT_DEPTH, PELLUCID_BINDING_NORMAL,
+                      PELLUCID_BINDING_MATERIAL, PELLUCID_BINDING_BLOCKS),
+    .writes = bindings(PELLUCID_BINDING_ENTRIES_DESTINATION),
+    .counted = Counted::EntryPoints};
+
+// Columns and, from bit 16 on, rows of a group's entry points.
+uint32_t entriesOf(const LightGroup& group) { return group.entryColumns | group.entryRows << 16; }
+void addEntryPoints(Planner& p, const LightGroup& group) {
+  const uint32_t columns = parts(group.entryWidth, PELLUCID_ENTRY_POINTS_GROUP),
+                 rows = parts(group.entryHeight, PELLUCID_ENTRY_POINTS_GROUP);
+  Step step = p.add(kEntryPointsPass, "entry points");
+  step.lights(group).push(1, entriesOf(group));
+  if (p.facts.stages.lists)
+    step.groups(columns * rows * group.shadowCount).list(PELLUCID_LIST_ENTRIES);
+  else
+    step.groups(columns, rows, group.shadowCount);
+}
+
+// ---- Probes -------------------------------------------------------------------------------------------
+
+constexpr BindingSet kProbeReads = bindings(
+    PELLUCID_BINDING_FRAME, PELLUCID_BINDING_LIGHTS, PELLUCID_BINDING_GATHER_MAPS, PELLUCID_BINDING_MATERIALS,
+    PELLUCID_BINDING_FRONT_DEPTH, PELLUCID_BINDING_BACK_DEPTH, PELLUCID_BINDING_NORMAL,
+    PELLUCID_BINDING_MATERIAL, PELLUCID_BINDING_ENTRY_POINTS, PELLUCID_BINDING_BLOCKS);
+constexpr BindingSet kProbeWrites = bindings(PELLUCID_BINDING_PROBES_DESTINATION);
+
+constexpr Pass kProbesPass{.pipeline = "probes",
+                           .words = kProbes,
+                           .uses = kGather,
+                           .reads = kProbeReads,
+                           .writes = kProbeWrites,
+                           .counted = Counted::Probes};
+
+// Groups of `side` x `side` cells in a block.
+uint32_t partsOfBlock(const FrameFacts& f, uint32_t side) {
+  const uint32_t along = PELLUCID_BLOCK / (side * f.gatherSpacing);
+  return along * along;
+}
+// `adds`: to what probes found in an earlier dispatch.
+void addProbes(Planner& p, const LightGroup& group, bool adds) {
+  p.add(kProbesPass, "probes")
+      .blocks(PELLUCID_LIST_PROBES, partsOfBlock(p.facts, PELLUCID_PROBES_GROUP))
+      .lights(group)
+      .push(0, p.facts.gatherSpacing)
+      .push(1, group.gathered)
+      .push(2, entriesOf(group) | (adds ? 1u << 31 : 0))
+      .push(3, p.facts.gatherSamples);
+}
+
+// ---- Filter of probes ---------------------------------------------------------------------------------
+
+constexpr Pass kFilterProbesPass{.pipeline = "filter_probes",
+                                 .words = kFilterProbes,
+                                 .uses = kGather,
+                                 .reads = bindings(PELLUCID_BINDING_FRAME, PELLUCID_BINDING_MATERIALS,
+                                                   PELLUCID_BINDING_FOUND_PROBES, PELLUCID_BINDING_BLOCKS),
+                                 .writes = bindings(PELLUCID_BINDING_FILTERED_DESTINATION)};
+
+void addProbeFilter(Planner& p) {
+  p.add(kFilterProbesPass, "filter probes")
+      .blocks(PELLUCID_LIST_FILTER, partsOfBlock(p.facts, PELLUCID_FILTER_GROUP))
+      .push(0, p.facts.gatherSpacing);
+}
+
+// ---- All ----------------------------------------------------------------------------------------------
+
+constexpr const Pass* kPasses[] = {&kTranslucencyPass, &kDebugViewPass,  &kAddHistoryPass,  &kBaseLevelPass,
+                                   &kListBlocksPass,   &kDownsamplePass, &kUpsamplePass,    &kDiffusePass,
+                                   &kEntryPointsPass,  &kProbesPass,     &kFilterProbesPass};
+constexpr bool fitSlots() {
+  for (const Pass* pass : kPasses)
+    if (slotOf(*pass, PELLUCID_BINDING_SHADOW_IMAGES) > PELLUCID_PLAN_SLOTS) return false;
+  return true;
+}
+static_assert(std::size(kPasses) <= kMostPasses && fitSlots());
+
+// ---- A frame -----------------------------------------------------------------------------------------
+
+// Adds the passes of a frame along the data flow. Colors alternate between the two color transients; the last
+// write goes to the output.
+class Flow {
+public:
+  Flow(Planner& planner, bool reuses)
+      : p_(planner), stages_(planner.facts.stages), reused_(reuses), remaining_(stages_.writers()) {}
+
+  void addAll() {
+    if (stages_.nothing) return;
+    // Gathered light has already spread on its way through; diffusing it again would spread it twice.
+    if (p_.facts.gathers) {
+      thinWalls();
+      diffusion();
+      translucency();
+    } else {
+      translucency();
+      diffusion();
+    }
+  }
+
+private:
+  // Calls add(source, destination) for a pass that goes over pixels.
+  template <class Add>
+  void pixels(Add&& add) {
+    uint32_t destination = PELLUCID_RESOURCE_OUTPUT;
+    if (--remaining_ > 0) {
+      destination = kTransient0 + next_;
+      next_ ^= 1;
+    }
+    add(source_, destination);
+    source_ = destination;
+  }
+
+  // Before the diffusion, as without a gather: materials say whether light spreads within a sheet.
+  void thinWalls() {
+    if (stages_.walls == 0) return;
+    for (const LightGroup& group : p_.facts.lights.list())
+      if (group.lightCount > 0)
+        pixels([&](uint32_t from, uint32_t to) { addThinWalls(p_, group, from, to); });
+  }
+
+  void translucency() {
+    const auto groups = p_.facts.lights.list().subspan(stages_.gathered);
+    if (stages_.history) {
+      for (const LightGroup& group : groups)
+        if (!reused_) addTranslucency(p_, group, PELLUCID_RESOURCE_HISTORY, PELLUCID_RESOURCE_HISTORY);
+      pixels([&](uint32_t from, uint32_t to) { addHistory(p_, from, to); });
+    } else if (stages_.lights) {
+      for (const LightGroup& group : groups)
+        pixels([&](uint32_t from, uint32_t to) { addTranslucency(p_, group, from, to); });
+    } else if (stages_.fused > 0) {
+      pixels([&](uint32_t from, uint32_t to) { addTranslucency(p_, LightGroup{}, from, to); });
+    }
+  }
+
+  void diffusion() {
+    if (!stages_.diffusion) return;
+    if (stages_.copies)
+      pixels([&](uint32_t from, uint32_t to) { addBaseLevel(p_, from, to); });
+    else
+      addBaseLevel(p_, source_, source_);
+    if (stages_.lists) addListBlocks(p_);
+    for (uint32_t finer = kFirstLevel; finer < p_.facts.coarsestLevel; finer += 2) addDownsample(p_, finer);
+    addUpsample(p_, p_.facts.coarsestLevel);
+    gather();
+    pixels([&](uint32_t from, uint32_t to) { addDiffuse(p_, from, to); });
+  }
+
+  // Entry points and probes of each group, and the filter that they share.
+  void gather() {
+    if (stages_.gathered == 0 || reused_) return;
+    for (uint32_t i = 0; i < stages_.gathered; ++i) {
+      const LightGroup& group = p_.facts.lights.list()[i];
+      if (group.gathered > 0) addEntryPoints(p_, group);
+      addProbes(p_, group, i > 0);
+    }
+    addProbeFilter(p_);
+  }
+
+  Planner& p_;
+  const Stages& stages_;
+  const bool reused_;  // an earlier frame's light stands in for this frame's
+  uint32_t source_ = PELLUCID_RESOURCE_IRRADIANCE, next_ = 0, remaining_;
+};
+
+}  // namespace
+
+bool addPasses(const FrameFacts& f, bool reused, PellucidPlan* plan) {
+  Planner planner(f, *plan);
+  Flow(planner, reused).addAll();
+  return planner.finish() && f.lights.fitPlan();
+}
+
+std::span<const Pass* const> allPasses() { return kPasses; }
+
+}  // namespace pellucid

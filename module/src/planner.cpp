@@ -1,0 +1,197 @@
+#include "planner.h"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace pellucid {
+
+// ---- A step
+
+Step::Step(Planner& planner, const Pass& pass, PellucidDispatch& d) : planner_(planner), pass_(pass), d_(d) {
+  forEach(pass.bindings(), [&](const Binding& b) {
+    if (b.type == kSampled || b.type == kStored) image(b.number, planner.resourceOf(b.number));
+  });
+  const ConstantsLayout& layout = planner.facts.constants;
+  constants(PELLUCID_BINDING_FRAME, layout.frame.offset);
+  constants(PELLUCID_BINDING_MATERIALS, layout.materials.offset);
+  constants(PELLUCID_BINDING_KERNELS, layout.kernels.offset);
+  constants(PELLUCID_BINDING_LISTS, layout.lists.offset);
+}
+
+void Step::constants(uint32_t binding, VkDeviceSize offset) {
+  if (has(pass_.bindings(), binding))
+    d_.slots[slotOf(pass_, binding)] = static_cast<uint16_t>(offset / kSlotBytes);
+}
+
+Step& Step::push(uint32_t index, uint32_t value) {
+  d_.pushConstants[index] = value;
+  return *this;
+}
+
+Step& Step::image(uint32_t binding, uint32_t resource) {
+  if (binding < PELLUCID_BINDING_SHADOW_IMAGES && has(pass_.bindings(), binding))
+    d_.slots[slotOf(pass_, binding)] = static_cast<uint16_t>(resource);
+  return *this;
+}
+
+Step& Step::standIn(uint32_t binding, uint32_t resource) {
+  if (&d_ != &planner_.beyond_)
+    planner_.standIns_[static_cast<size_t>(&d_ - planner_.plan_.dispatches)] |= bindings(binding);
+  return image(binding, resource);
+}
+
+Step& Step::colors(uint32_t source, uint32_t destination) {
+  const bool last = destination == PELLUCID_RESOURCE_OUTPUT;
+  if (last && planner_.facts.frame.outputMode == PELLUCID_OUTPUT_ADD)
+    image(PELLUCID_BINDING_HELD, PELLUCID_RESOURCE_OUTPUT);
+  return image(PELLUCID_BINDING_SOURCE, source)
+      .image(PELLUCID_BINDING_DESTINATION, destination)
+      .push(2, last);
+}
+
+Step& Step::lights(const LightGroup& group) {
+  const FrameFacts& f = planner_.facts;
+  const ConstantsLayout& layout = f.constants;
+  constants(PELLUCID_BINDING_LIGHTS, layout.lights.offset + group.lightBytes);
+  constants(PELLUCID_BINDING_SHADOWS, layout.shadows.offset + group.shadowBytes);
+  // A frame without a gather has no such maps, and a window of as many bytes.
+  constants(PELLUCID_BINDING_GATHER_MAPS,
+            f.gathers ? layout.gatherMaps.offset + group.gatherMapBytes : layout.shadows.offset);
+  constants(PELLUCID_BINDING_ENTRY_MAPS, layout.entryMaps.offset + group.entryMapBytes);
+  if (!has(pass_.bindings(), PELLUCID_BINDING_SHADOW_IMAGES)) return *this;
+  // The first image stands in where the group has none.
+  const bool some = f.frame.shadowImageCount > 0 && given(f.frame.shadowImages[0]);
+  planner_.addShadowImages(d_, group.imageCount > 0 ? std::span(group.images.data(), group.imageCount)
+                                                    : std::span(group.images.data(), some ? 1 : 0));
+  return *this;
+}
+
+Step& Step::groups(uint32_t x, uint32_t y, uint32_t z) {
+  d_.groups[0] = x;
+  d_.groups[1] = y;
+  d_.groups[2] = z;
+  return *this;
+}
+
+Step& Step::tiles(uint32_t side) {
+  const Rect& rect = planner_.facts.rect;
+  return groups(parts(rect.width, side), parts(rect.height, side));
+}
+
+Step& Step::blocks(uint32_t which, uint32_t parts) {
+  const FrameFacts& f = planner_.facts;
+  const bool holdsMaterial =
+      which == PELLUCID_LIST_PROBES || which == PELLUCID_LIST_FILTER || which == PELLUCID_LIST_DIFFUSE;
+  return groups(f.stages.lists && holdsMaterial ? f.blocks.touched : f.blocks.count(), parts).list(which);
+}
+
+Step& Step::list(uint32_t which) {
+  if (!planner_.facts.stages.lists) return *this;
+  d_.indirect = 1;
+  d_.indirectOffset =
+      static_cast<uint32_t>(planner_.facts.constants.lists.offset + offsetof(shared::BlockLists, commands) +
+                            which * sizeof(glm::uvec4));
+  return *this;
+}
+
+// ---- The plan
+
+// Image of a binding of that name.
+uint32_t Planner::resourceOf(uint32_t binding) const {
+  // A flag keeps inputs unread that the frame lacks, but bindings hold a view: the front depth stands in.
+  for (const ImageField& image : kImageFields)
+    if (image.binding == binding && (image.required || given(facts.frame.*image.field)))
+      return image.resource;
+  switch (binding) {
+    case PELLUCID_BINDING_HISTORY:
+      return PELLUCID_RESOURCE_HISTORY;
+    case PELLUCID_BINDING_ENTRY_POINTS:
+    case PELLUCID_BINDING_ENTRIES_DESTINATION:
+      return entryPoints();
+    case PELLUCID_BINDING_FOUND_PROBES:
+    case PELLUCID_BINDING_PROBES_DESTINATION:
+      return probes();
+    case PELLUCID_BINDING_FILTERED_PROBES:
+    case PELLUCID_BINDING_FILTERED_DESTINATION:
+      return filteredProbes();
+    case PELLUCID_BINDING_BLOCKS:
+      return blocks();
+    default:
+      return PELLUCID_RESOURCE_FRONT_DEPTH;
+  }
+}
+
+Step Planner::add(const Pass& pass, const char* name) {
+  PellucidDispatch* d = &beyond_;
+  if (plan_.dispatchCount == PELLUCID_MAX_DISPATCHES) {
+    fits_ = false;
+    beyond_ = {};
+  } else {
+    d = &plan_.dispatches[plan_.dispatchCount++];
+  }
+  d->name = name;
+  const auto passes = allPasses();
+  d->pipeline = static_cast<uint8_t>(std::find(passes.begin(), passes.end(), &pass) - passes.begin());
+  return {*this, pass, *d};
+}
+
+void Planner::addShadowImages(PellucidDispatch& d, std::span<const uint32_t> images) {
+  // At most 8 a dispatch: that of entry points, with 12, comes with one of probes, which has none.
+  if (shadowImages_ + images.size() > PELLUCID_PLAN_SHADOW_IMAGES) {
+    fits_ = false;
+    return;
+  }
+  d.firstShadowImage = static_cast<uint16_t>(shadowImages_);
+  d.shadowImageCount = static_cast<uint16_t>(images.size());
+  std::copy(images.begin(), images.end(), plan_.shadowImages + shadowImages_);
+  shadowImages_ += d.shadowImageCount;
+}
+
+Planner::Access Planner::accessOf(const Pass& pass, const PellucidDispatch& d, BindingSet unused) const {
+  constexpr uint32_t kLists = 1u << PELLUCID_RESOURCE_CONSTANTS;
+  Access access;
+  if (d.indirect) access.reads = kLists;
+  forEach(pass.bindings() & ~unused, [&](const Binding& b) {
+    const bool image = b.type == kSampled || b.type == kStored;
+    if (b.number >= PELLUCID_BINDING_SHADOW_IMAGES || (!image && b.number != PELLUCID_BINDING_LISTS)) return;
+    uint32_t bits = image ? 1u << d.slots[slotOf(pass, b.number)] : kLists;
+    // The two may be one image.
+    constexpr uint32_t kInPlace = 1u << PELLUCID_RESOURCE_OUTPUT | 1u << PELLUCID_RESOURCE_IRRADIANCE;
+    if ((bits & kInPlace) != 0 && !facts.separate()) bits = kInPlace;
+    (has(pass.writes, b.number) ? access.writes : access.reads) |= bits;
+  });
+  return access;
+}
+
+bool Planner::finish() {
+  if (!fits_) return false;
+  const uint32_t count = plan_.dispatchCount;
+  std::array<Access, PELLUCID_MAX_DISPATCHES> access;
+  std::array<uint32_t, PELLUCID_MAX_DISPATCHES> wave{};
+  // Wave that the commands of later dispatches are read in first.
+  uint32_t commands = 0;
+  for (uint32_t i = 0; i < count; ++i) {
+    const PellucidDispatch& d = plan_.dispatches[i];
+    access[i] = accessOf(*allPasses()[d.pipeline], d, standIns_[i]);
+    for (uint32_t k = 0; k < i; ++k)
+      if (access[i].conflicts(access[k])) wave[i] = std::max(wave[i], wave[k] + 1);
+    if ((access[i].writes & 1u << PELLUCID_RESOURCE_CONSTANTS) != 0) commands = wave[i] + 1;
+  }
+  // Stable, so that the dispatches of a wave keep the order of the data flow.
+  for (uint32_t i = 1; i < count; ++i)
+    for (uint32_t k = i; k > 0 && wave[k] < wave[k - 1]; --k) {
+      std::swap(wave[k], wave[k - 1]);
+      std::swap(plan_.dispatches[k], plan_.dispatches[k - 1]);
+    }
+  for (uint32_t i = 0; i < count; ++i) {
+    PellucidDispatch& d = plan_.dispatches[i];
+    // The first wave of a frame that reuses comes after the last frame's use of the history.
+    d.barrierBefore = i == 0 ? facts.stages.keepsHistory : wave[i] > wave[i - 1];
+    // One barrier makes commands visible to all dispatches that follow; more would cost 2 us each.
+    d.barrierIndirect = d.barrierBefore && facts.stages.lists && wave[i] == commands;
+    plan_.barrierCount += d.barrierBefore;
+  }
+  return true;
+}
+
+}  // namespace pellucid
