@@ -136,7 +136,7 @@ TEST_F(ContextTest, OptionsThatUsesLeaveOut) {
   gaussians.transmittanceModel = PELLUCID_TRANSMITTANCE_GAUSSIANS;
   refuses(c, gaussians, {}, "PELLUCID_USE_THESIS");
   ReplaySettings angles;
-  angles.translucency.thesis.angleModel = PELLUCID_ANGLE_INVERSE_COSINE;
+  angles.translucency.angleModel = PELLUCID_ANGLE_INVERSE_COSINE;
   refuses(c, testMaterial(), angles, "PELLUCID_USE_THESIS");
   c.environment = Harmonics{};
   for (double& e : (*c.environment)[0]) e = 1;
