@@ -39,9 +39,8 @@ public:
     frame.material = f.surface, frame.materialMask = 0xFF0000, frame.materialShift = 16;  // beside roughness
     frame.output = f.color, frame.outputMode = PELLUCID_OUTPUT_ADD;                       // to specular light
     frame.materialCount = static_cast<uint32_t>(materials_.size()), frame.materials = materials_.data();
-    frame.materialTables = tables_.data();
+    frame.materialTables = tables_.data(), frame.gatherSamples = f.gatherSamples;
     frame.ambient = f.hasAmbient ? &f.ambient[0][0] : nullptr;
-    frame.gatherSamples = f.gatherSamples, frame.indirectDispatches = PELLUCID_INDIRECT_MATERIAL;
     frame.lightCount = static_cast<uint32_t>(f.lights.size()), frame.lights = f.lights.data();
     std::vector<PellucidShadowMap> maps;
     for (const ShadowTile& t : f.tiles) {

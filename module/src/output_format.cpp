@@ -6,7 +6,7 @@ namespace {
 // SPIR-V 1.3, sections 3.11, 3.31 and 3.32.
 constexpr uint32_t kHeaderWords = 5, kOpTypeImage = 25, kOpCapability = 17;
 constexpr uint32_t kCapabilityShader = 1, kCapabilityWriteWithoutFormat = 56;
-constexpr uint32_t kUnknown = 0, kRgba32f = 1, kRgba16f = 2, kStorage = 2;
+constexpr uint32_t kUnknown = 0, kRgba32f = 1, kRgba16f = 2, kStorageImage = 2;
 
 }  // namespace
 
@@ -19,7 +19,7 @@ void fixOutputFormat(uint32_t* words, std::size_t wordCount, bool wide) {
     if (opcode == kOpCapability && operands[0] == kCapabilityWriteWithoutFormat)
       operands[0] = kCapabilityShader;
     // result, sampled type, dim, depth, arrayed, multisampled, sampled, format
-    if (opcode == kOpTypeImage && operands[6] == kStorage && operands[7] == kUnknown)
+    if (opcode == kOpTypeImage && operands[6] == kStorageImage && operands[7] == kUnknown)
       operands[7] = wide ? kRgba32f : kRgba16f;
     at += count;
   }

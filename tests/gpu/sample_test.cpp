@@ -246,7 +246,7 @@ TEST(SampleLines, AreFew) {
     return std::count(std::istreambuf_iterator<char>(in), {}, '\n');
   };
   const std::filesystem::path folder = PELLUCID_SOURCE_DIR "/gbuffer_harness/sample";
-  EXPECT_LE(lines(folder / "pellucid_pass.h"), 80);
+  EXPECT_LE(lines(folder / "pellucid_pass.h"), 85);
 }
 
 }  // namespace
