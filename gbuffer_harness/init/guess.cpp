@@ -34,6 +34,16 @@ constexpr const char* kIsPicture =
 constexpr Name raw(const char* text, const char* what) {
   return {Role::Irradiance, Match::Holds, text, what, "", kPi};
 }
+// Blender 5 names its pass as Arnold does, but keeps the color in a pass of another name.
+constexpr Name kBlendersDirect = {Role::Irradiance,
+                                  Match::Holds,
+                                  "diffusedirect",
+                                  "Blender's Diffuse Direct, which is E / pi",
+                                  "",
+                                  kPi,
+                                  0,
+                                  false,
+                                  "diffusecolor"};
 constexpr Name product(Match match, const char* text, const char* what, const char* beside = "") {
   return {Role::Irradiance, match, text, what, "", kPi, 0, true, beside};
 }
@@ -57,6 +67,7 @@ const Name kNames[] = {
     {Role::FrontDepth, Match::Ends, "z", "OpenEXR's own channel of depths"},
     {Role::Irradiance, Match::Holds, "irradiance", "Pellucid's irradiance"},
     {Role::Irradiance, Match::Holds, "diffdir", "Blender's Diffuse Direct, which is E / pi", "", kPi},
+    kBlendersDirect,
     raw("rawtotallight", "V-Ray's raw light, direct and indirect, which is E / pi"),
     raw("rawlight", "V-Ray's raw direct light, which is E / pi"),
     raw("totaldiffuselightingraw", "Redshift's raw diffuse light, direct and indirect, which is E / pi"),
@@ -81,11 +92,13 @@ const Name kNames[] = {
     {Role::Albedo, Match::Holds, "diffusecolor", "a diffuse color"},
     {Role::Albedo, Match::Is, "diffuse", "V-Ray's diffuse color"},
     {Role::Normal, Match::Is, "n", "a pass of normals"},
+    {Role::Normal, Match::Is, "nn", "RenderMan's normals"},
     {Role::Normal, Match::Ends, "normal", "a pass of normals"},
     {Role::Normal, Match::Ends, "normals", "a pass of normals"},
     {Role::Normal, Match::Holds, "gbuffera", "Unreal's normals"},
     {Role::Normal, Match::Holds, "normal", "normals"},
     {Role::Material, Match::Holds, "indexma", "Blender's Material Index"},
+    {Role::Material, Match::Holds, "materialindex", "Blender's Material Index"},
     {Role::Material, Match::Holds, "materialid", "a material's number"},
     {Role::Material, Match::Holds, "matid", "a material's number"},
     {Role::Material, Match::Holds, "mtlid", "V-Ray's number of a material"},
@@ -93,6 +106,7 @@ const Name kNames[] = {
     {Role::Material, Match::Holds, "shadingmodel", "Unreal's shading model"},
     {Role::Material, Match::Holds, "customstencil", "Unreal's custom stencil"},
     {Role::Material, Match::Holds, "indexob", "Blender's Object Index"},
+    {Role::Material, Match::Holds, "objectindex", "Blender's Object Index"},
     {Role::Material, Match::Holds, "objectid", "an object's number"},
     {Role::Material, Match::Holds, "stencil", "a stencil"},
     {Role::Material, Match::Is, "id", "a number"},

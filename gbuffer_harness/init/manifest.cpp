@@ -42,6 +42,7 @@ private:
   void addIrradiance();
   void addNormal();
   void addMaterial();
+  void addBlackness();
   void addCamera();
   void addMissing();
   Image read(Role role);
@@ -52,7 +53,8 @@ private:
   const std::filesystem::path& folder_;
   const InitWords& words_;
   std::map<Role, Guess> guesses_;
-  Image front_;
+  Image front_, irradiance_;
+  std::vector<bool> isTranslucent_;  // of each pixel
   DepthFacts depth_;
   GuessedCamera camera_;
   int width_ = 0, height_ = 0;
@@ -146,7 +148,7 @@ void Builder::addDepths() {
 void Builder::addIrradiance() {
   Guess& guess = guesses_.at(Role::Irradiance);
   const bool hasAlbedo = guesses_.count(Role::Albedo) > 0;
-  read(Role::Irradiance);
+  irradiance_ = read(Role::Irradiance);
   Json json = sourceOf(Role::Irradiance);
   const double scale = words_.irradianceScale.value_or(guess.scale);
   if (scale != 1) json["scale"] = scale;
@@ -210,11 +212,13 @@ void Builder::addNormal() {
 void Builder::addMaterial() {
   Json& json = result_.json["buffers"]["material"];
   json = {{"constant", {1}}};
+  isTranslucent_.assign(front_.pixels(), true);
   std::string doubt = "no channel says what is translucent: everything is";
   if (guesses_.count(Role::Material)) {
     std::map<long, std::size_t> stored;
     bool isWhole = true;
-    for (const float value : read(Role::Material).data) {
+    const Image image = read(Role::Material);
+    for (const float value : image.data) {
       isWhole = isWhole && value >= 0 && value <= static_cast<float>(kMaxStoredMaterial) &&
                 std::round(value) == value;
       if (!isWhole || stored.size() > kMostMaterials) break;
@@ -232,6 +236,8 @@ void Builder::addMaterial() {
         values +=
             (values.empty() ? "" : ", ") + std::to_string(value) + " (" + std::to_string(pixels) + " pixels)";
       }
+      for (std::size_t i = 0; i < image.data.size(); ++i)
+        isTranslucent_[i] = json["map"][std::to_string(std::lround(image.data[i]))] == 1;
       say(Role::Material, "values " + values);
       if (words_.materialIds.empty())
         doubt =
@@ -243,6 +249,17 @@ void Builder::addMaterial() {
   if (doubt.empty()) return;
   result_.json["// material"] = doubt;
   result_.missing.push_back("material: " + doubt);
+}
+
+// Renderers keep the light of subsurface shaders apart from that of diffuse ones.
+void Builder::addBlackness() {
+  for (std::size_t i = 0; i < irradiance_.data.size(); ++i)
+    if (isTranslucent_[i / 3] && irradiance_.data[i] != 0) return;
+  const std::string doubt =
+      "the pass is black wherever something is translucent: a renderer keeps the light of subsurface shaders "
+      "in a pass of their own, which has diffused already; render the irradiance with diffuse shaders";
+  result_.json["// irradiance"] = doubt;
+  result_.missing.push_back("irradiance: " + doubt);
 }
 
 void Builder::addCamera() {
@@ -301,6 +318,7 @@ GuessedManifest Builder::build() {
   addIrradiance();
   addNormal();
   addMaterial();
+  addBlackness();
   result_.json["lights"] = words_.lights;
   result_.json["materials"] = Json::array({materialJson(parseMaterial("--material", words_.material))});
   addMissing();

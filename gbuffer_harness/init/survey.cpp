@@ -20,14 +20,23 @@ std::vector<std::string> take(std::map<std::string, std::string>& components, co
   return result;
 }
 
+// Some programs write the components of colors out.
+std::string componentOf(const std::string& name) {
+  const std::string component = lower(name);
+  for (const char* color : {"red", "green", "blue", "alpha"})
+    if (component == color) return component.substr(0, 1);
+  return component;
+}
+
 void addPart(const std::filesystem::path& path, const ExrFile& file, int part,
              std::vector<ChannelGroup>& groups) {
+  if (lower(file.partName(part)).find("crypto") != std::string::npos) return;
   std::map<std::string, std::map<std::string, std::string>> layers;  // component, in lower case -> channel
   for (const std::string& channel : file.channels(part)) {
     const std::size_t dot = channel.rfind('.');
     const std::string layer = dot == std::string::npos ? "" : channel.substr(0, dot);
     if (lower(layer).find("crypto") != std::string::npos) continue;
-    layers[layer][lower(channel.substr(dot + 1))] = channel;
+    layers[layer][componentOf(channel.substr(dot + 1))] = channel;
   }
   for (auto& [layer, components] : layers) {
     ChannelGroup group{path, part, layer, !layer.empty(), {}};
