@@ -105,7 +105,9 @@ Scene modelScene(const Options& options, SceneHash& hash) {
   Scene scene;
   if (!options.like.empty()) {
     scene.capture = readCapture(options.like);
-    if (scene.capture.materials.size() > model.model.materials.size()) separateBodies(model);
+    // A model without media has one, whose bodies have the same constants whatever their numbers.
+    const std::size_t own = model.model.materials.size();
+    if (own > 0 && scene.capture.materials.size() > own) separateBodies(model);
     scaleTo(scene.capture.metersPerUnit, model.model);
     hash.add(model.model);
     scene.traced = reference::makeMeshScene(model.model);

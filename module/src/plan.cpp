@@ -59,7 +59,9 @@ Skips skipsOf(const FrameFacts& f) {
 // PellucidUse bits of what pipelines must look for.
 uint32_t optionsOf(const FrameFacts& f) {
   uint32_t options = f.thinWalls ? PELLUCID_USE_THIN_WALLS : 0;
-  if (f.lights.ambient.intensity > 0) options |= PELLUCID_USE_AMBIENT;
+  const uint32_t count = f.lights.lightCount;  // ambient light is the last one
+  if (count > 0 && count <= Lights::kMost && f.lights.active[count - 1] == Lights::kAmbient)
+    options |= PELLUCID_USE_AMBIENT;
   bool thesis = f.thesis.angleModel != PELLUCID_ANGLE_NORMAL;
   for (uint32_t i = 0; i < f.frame.materialCount; ++i)
     thesis = thesis || !canBeGathered(f.material(i).transmittanceModel);

@@ -61,7 +61,8 @@ std::array<std::array<double, 3>, 2> exitances(uint32_t slices) {
   GpuImage material(device, kSize, kSize, VK_FORMAT_R8_UINT);
   material.upload(std::vector<std::uint8_t>(kSize * kSize, 1));
   HostBuffer ring(device, slices * t.sliceSize,
-                  VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+                  VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
+                      VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
 
   PellucidLight light{};
   light.direction[2] = 1;

@@ -109,7 +109,8 @@ TEST_F(ContextTest, MakesThePipelinesOfItsUsesOnLentThreads) {
   EXPECT_THROW(Context(device(), unknown, Compile::AtCreation), DeviceError);
 }
 
-// Pipelines that do not look for an option change no frame without it, and frames with it are refused by its name.
+// Pipelines that do not look for an option change no frame without it, and frames with it are refused by its
+// name.
 TEST_F(ContextTest, OptionsThatUsesLeaveOut) {
   const Context lean(device(), [](PellucidContextDesc& desc) {
     desc.uses = PELLUCID_USE_TRANSLUCENCY | PELLUCID_USE_DIFFUSION | PELLUCID_USE_GATHER;
@@ -140,7 +141,9 @@ TEST_F(ContextTest, OptionsThatUsesLeaveOut) {
   refuses(c, testMaterial(), angles, "PELLUCID_USE_THESIS");
   c.environment = Harmonics{};
   for (double& e : (*c.environment)[0]) e = 1;
-  refuses(c, testMaterial(), {}, "PELLUCID_USE_AMBIENT");
+  ReplaySettings ambient;
+  ambient.ambient = true;
+  refuses(c, testMaterial(), ambient, "PELLUCID_USE_AMBIENT");
 }
 
 // Not as far as halves keep it.
