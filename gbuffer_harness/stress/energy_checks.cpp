@@ -131,6 +131,8 @@ std::optional<Worst> fartherBacks(Subject& s) {
 std::optional<Worst> reuse(Subject& s) {
   if (s.frame.settings.reuse == PELLUCID_REUSE_NONE || s.frame.settings.debugView != PELLUCID_DEBUG_NONE)
     return {};
+  // In place, a frame with nothing to do keeps irradiance that is no number.
+  if (s.run->plan().dispatchCount == 0) return {};
   const std::unique_ptr<FrameRun> next = s.renderer.prepare(s.frame, s.run.get());
   return apart(s.renderer.render(s.frame, *next, s.frame.index + 2), s.output, s.owned);
 }
