@@ -25,8 +25,7 @@ vec4 shadowTexels(uint image, ivec2 a, ivec2 b, ivec2 c, ivec2 d) {
   return vec4(shadowTexel(image, a), shadowTexel(image, b), shadowTexel(image, c), shadowTexel(image, d));
 }
 float distanceOf(ivec2 pixel, uint material, bool back) {
-  bool inside = all(greaterThanEqual(pixel, ivec2(frame.rect.xy))) && all(lessThan(pixel, ivec2(frame.rect.zw)));
-  if (!inside || decodeMaterial(texelFetch(materialImage, pixel, 0)) != material) return -1.0;
+  if (!contains(ivec4(frame.rect), pixel) || decodeMaterial(texelFetch(materialImage, pixel, 0)) != material) return -1.0;
   float front = texelFetch(frontImage, pixel, 0).x;
   if (!back) return front;
   float through = texelFetch(thicknessOrBackImage, pixel, 0).x;

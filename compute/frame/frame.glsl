@@ -29,17 +29,8 @@ layout(set = 0, binding = PELLUCID_BINDING_DESTINATION) uniform writeonly image2
 // The output's content, if the frame adds to it. An invocation reads its pixel before it writes it.
 layout(set = 0, binding = PELLUCID_BINDING_HELD) uniform texture2D heldImage;
 
-// False of options that no frame of the context has.
-layout(constant_id = PELLUCID_CONSTANT_USES) const uint kUses = 0xFFFFFFFFu;
-bool mayUse(uint use) { return (kUses & use) != 0u; }
-
 // Frame-wide switches.
 bool hasFlag(uint flag) { return (frame.flags.x & flag) != 0u; }
-
-// `rect`: [xy, zw).
-bool contains(ivec4 rect, ivec2 at) {
-  return all(greaterThanEqual(at, rect.xy)) && all(lessThan(at, rect.zw));
-}
 
 ivec2 invocationPixel() { return ivec2(frame.rect.xy) + ivec2(gl_GlobalInvocationID.xy); }
 

@@ -3,7 +3,7 @@
 #ifndef PELLUCID_SHADOW_IMAGES_GLSL
 #define PELLUCID_SHADOW_IMAGES_GLSL
 
-#include "shared/pellucid_shared.h"
+#include "lib/shadow.glsl"
 
 #ifdef PELLUCID_SHADOW_ARRAY
 #define PELLUCID_SHADOW_TEXTURE texture2DArray
@@ -73,8 +73,8 @@ struct ShadowTexels {
 
 // `first`, `last`: texels of the tile, beyond which its border is read again.
 ShadowTexels shadowTexels(uint image, ivec2 texel, ivec2 first, ivec2 last) {
-  ivec2 right = ivec2(min(texel.x + 1, last.x), texel.y), left = ivec2(max(texel.x - 1, first.x), texel.y);
-  ivec2 below = ivec2(texel.x, min(texel.y + 1, last.y)), above = ivec2(texel.x, max(texel.y - 1, first.y));
+  ivec4 at = besideTexel(texel, first, last);
+  ivec2 right = ivec2(at.x, texel.y), left = ivec2(at.y, texel.y), below = ivec2(texel.x, at.z), above = ivec2(texel.x, at.w);
   PELLUCID_RETURN_OF_SLOT(PELLUCID_CROSS)
 }
 

@@ -21,8 +21,7 @@ bool findSurface(ivec2 cell, int side, out ProbePlace place, out vec4 normal) {
     place.front = frontDistance(within);
     normal = texelFetch(normalImage, within, 0);
     place.material = within == pixel ? materialIndex(value) : 0u;
-    bool mayBeThin = mayUse(PELLUCID_SHADER_USE_THIN_WALLS) && hasFlag(PELLUCID_FLAG_THIN_WALLS);
-    bool thin = place.material != 0u && mayBeThin && materials[place.material - 1u].meta.z != 0u;
+    bool thin = place.material != 0u && hasFlag(PELLUCID_FLAG_THIN_WALLS) && materials[place.material - 1u].meta.z != 0u;
     if (place.material != 0u && place.front > 0.0 && !thin) return true;
     if (place.index == 0 && !cellHoldsMaterial(side * cell)) return false;
   }

@@ -186,7 +186,7 @@ float agreedStep(EntryMapConstants map, ivec2 texel, ivec2 axis, float own, vec2
 // The neighbors of the tile's border are within it: the border itself takes the place of others, and does not count.
 ShadowTexels drawnTexels(EntryMapConstants map, ivec2 texel, ShadowTexels stored, out float uncertain) {
   ivec2 last = ivec2(map.map.xy) - 1;
-  bvec4 within = bvec4(texel.x < last.x, texel.x > 0, texel.y < last.y, texel.y > 0);
+  bvec4 within = notEqual(besideTexel(texel, ivec2(0), last), texel.xxyy);
   bvec4 stores = neighborsHold(map, stored.beside), holds = bvec4(uvec4(stores) & uvec4(within));
   DrawnDepth drawn = drawnDepth(map.offsets, stored.own, stored.beside, holds);
   uncertain = drawn.uncertain;

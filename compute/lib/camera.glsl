@@ -17,6 +17,11 @@ bool isWithin(float v, float low, float high) {
 const float kAboveOne = 1.00000012; // the next float
 const float kMostFloat = 3.4e38;
 
+// `rect`: [xy, zw).
+bool contains(ivec4 rect, ivec2 at) {
+  return all(greaterThanEqual(at, rect.xy)) && all(lessThan(at, rect.zw));
+}
+
 struct ViewRay {
   vec3 origin, direction; // direction has planar length 1
 };

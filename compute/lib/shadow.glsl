@@ -15,6 +15,12 @@ struct ShadowReceiver {
 // The first texel of the map's tile in the image. occluder: ShadowConstants::occluder.
 ivec2 firstTexel(uvec4 occluder) { return ivec2(occluder.w & 0xFFFFu, occluder.w >> 16); }
 
+// Columns of the texels to the right and to the left of a texel, rows of the texels below and above. Beyond the tile [first, last]
+// its border is read again: then the column or row is the texel's own.
+ivec4 besideTexel(ivec2 texel, ivec2 first, ivec2 last) {
+  return ivec4(min(texel.x + 1, last.x), max(texel.x - 1, first.x), min(texel.y + 1, last.y), max(texel.y - 1, first.y));
+}
+
 ShadowReceiver projectReceiver(ShadowConstants shadow, vec3 x) {
   vec4 clip = shadow.clipFromView * vec4(x, 1.0);
   bool inFront = clip.w > 0.0;

@@ -26,6 +26,10 @@ layout(set = 0, binding = PELLUCID_BINDING_SHADOWS) uniform Shadows { ShadowCons
 layout(set = 0, binding = PELLUCID_BINDING_MATERIALS) readonly buffer Materials { MaterialConstants materials[]; };
 layout(set = 0, binding = PELLUCID_BINDING_BACK_DEPTH) uniform texture2D backDepthImage;
 
+// False of options that no frame of the context has.
+layout(constant_id = PELLUCID_CONSTANT_USES) const uint kUses = 0xFFFFFFFFu;
+bool mayUse(uint use) { return (kUses & use) != 0u; }
+
 float distanceOf(ivec2 pixel, uint material, bool back) {
   if (!insideRect(pixel) || materialAt(pixel) != material) return -1.0;
   return back ? backDistanceOf(texelFetch(backDepthImage, pixel, 0).x) : frontDistance(pixel);
@@ -112,10 +116,10 @@ vec4 entersMedium(ShadowConstants shadow, ShadowFootprint footprint, StoredRay r
 DrawnDepth drawnDepth(ShadowConstants shadow, ivec2 texel, float stored) {
   if (shadow.offsets.y == 0.0) return drawnDepth(shadow.offsets, stored, vec4(stored), bvec4(false));
   ivec2 first = firstTexel(shadow.occluder), last = first + ivec2(shadow.depth.zw) - 1;
-  ivec2 low = max(texel - 1, first), high = min(texel + 1, last);
-  vec4 beside = shadowTexels(shadow.meta.x, ivec2(high.x, texel.y), ivec2(low.x, texel.y), ivec2(texel.x, high.y), ivec2(texel.x, low.y));
-  bvec4 holds = bvec4(high.x > texel.x && shadowHolds(shadow.meta, beside.x), low.x < texel.x && shadowHolds(shadow.meta, beside.y),
-                      high.y > texel.y && shadowHolds(shadow.meta, beside.z), low.y < texel.y && shadowHolds(shadow.meta, beside.w));
+  ivec4 at = besideTexel(texel, first, last);
+  vec4 beside = shadowTexels(shadow.meta.x, ivec2(at.x, texel.y), ivec2(at.y, texel.y), ivec2(texel.x, at.z), ivec2(texel.x, at.w));
+  bvec4 within = notEqual(at, texel.xxyy), holds;
+  for (int i = 0; i < 4; ++i) holds[i] = within[i] && shadowHolds(shadow.meta, beside[i]);
   return drawnDepth(shadow.offsets, stored, beside, holds);
 }
 

@@ -1,4 +1,4 @@
-// What several parts of a mesh need to know about its places.
+// Positions of a mesh: shared vertices, and solid angles of its triangles.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace pellucid::harness {
 // One number for all vertices at one position, so that seams of texture coordinates do not cut a mesh.
 std::vector<std::uint32_t> placesOf(const Model& model);
 
-// Of a triangle, signed, from the point that a, b, c are relative to. Van Oosterom & Strackee 1983, "The
+// Signed solid angle of a triangle as seen from the origin of a, b and c. Van Oosterom & Strackee 1983, "The
 // solid angle of a plane triangle".
 double solidAngle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c);
 

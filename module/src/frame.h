@@ -21,7 +21,7 @@ struct FrameFacts : Inputs, Screen, Materials, GatherChoice {
   uint32_t coarsestLevel;  // of the pyramid that the diffusion needs
   ConstantsLayout constants;
 
-  // Of those that contribute.
+  // `active`: index among the lights that contribute.
   const PellucidLight& light(uint32_t active) const { return lights.light(*this, active); }
   bool isGathered(const PellucidLight& light) const { return GatherChoice::isGathered(*this, light); }
 };

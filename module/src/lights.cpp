@@ -96,7 +96,7 @@ Lights::Lights(const Inputs& inputs, const Screen& screen, const Materials& mate
       skips.add("light in solids", "no back depth to take a thickness from: thin walls alone let it through");
     return true;
   };
-  uint32_t others = kMost;  // those that are not gathered from, from the end on
+  uint32_t gatheredFirst = 0;
   for (uint32_t i = 0; i < frame.lightCount; ++i) {
     const PellucidLight& light = frame.lights[i];
     needsChord = needsChord || inputs.takesChord(light);
@@ -107,17 +107,11 @@ Lights::Lights(const Inputs& inputs, const Screen& screen, const Materials& mate
       lackExit = lackExit || (map.exitImage == 0 && frame.thicknessSource == PELLUCID_THICKNESS_LIGHT);
       lackCaster = lackCaster || map.casterMaterialImage == 0;
     }
-    const uint32_t gatheredSoFar = lightCount - (kMost - others);
-    ++lightCount;
-    if (lightCount > kMost) continue;
+    if (++lightCount > kMost) continue;
+    active[lightCount - 1] = i;
     if (gather.isGathered(inputs, light))
-      active[gatheredSoFar] = i;
-    else
-      active[--others] = i;
-  }
-  if (lightCount <= kMost) {
-    std::reverse(active.begin() + others, active.end());
-    std::copy(active.begin() + others, active.end(), active.begin() + (lightCount - (kMost - others)));
+      std::rotate(active.begin() + gatheredFirst++, active.begin() + (lightCount - 1),
+                  active.begin() + lightCount);
   }
   if (ambient.intensity > 0 && look(ambient, "ambient light", "ambient")) {
     if (lightCount < kMost) active[lightCount] = kAmbient;

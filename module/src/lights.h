@@ -62,7 +62,7 @@ struct Lights {
   uint32_t lightCount = 0;                    // lights that contribute
   bool lackExit = false, lackCaster = false;  // a map of theirs has no such image
   uint32_t holdBackFaces = 0;                 // as many of them have such maps
-  // Those that are gathered from come first, as all of them are added to the pixels at once.
+  // Lights that are gathered from come first, because one dispatch adds all of these lights to the pixels.
   static constexpr uint32_t kMost = PELLUCID_MAX_DISPATCHES * PELLUCID_DISPATCH_LIGHTS;
   static constexpr uint32_t kAmbient = UINT32_MAX;
   std::array<uint32_t, kMost> active;  // lightCount of them, into frame.lights, or kAmbient
@@ -71,7 +71,7 @@ struct Lights {
     return active[index] == kAmbient ? ambient : inputs.frame.lights[active[index]];
   }
 
-  // Groups. What a curved surface returns does not depend on lights: a frame without gathered lights has a
+  // Groups. A curved surface returns the same share under any light: a frame without gathered lights has a
   // first group without lights where surfaces have shapes.
   uint32_t count = 0, gathered = 0;          // gathered: with probes
   uint32_t entryColumns = 0, entryRows = 0;  // the most of a group

@@ -15,7 +15,7 @@ struct MaterialTables {
 };
 static_assert(sizeof(MaterialTables) <= sizeof(PellucidMaterialTables));
 
-// Of a material that was checked.
+// The material has passed checkMaterials.
 void makeTables(const PellucidMaterial& material, MaterialTables* tables);
 
 }  // namespace pellucid

@@ -12,7 +12,7 @@ namespace pellucid {
 
 struct PlanState {
   History history{};
-  // Of the frame that made the plan.
+  // Facts of the frame that made the plan:
   uint32_t materials = 0;
   Rect rect{};
   VkFormat outputFormat = VK_FORMAT_UNDEFINED;

@@ -34,8 +34,7 @@ layout(set = 0, binding = PLANNED_BINDINGS + PELLUCID_BINDING_MATERIAL) uniform 
 vec2 slope; // of the device depth of the triangle that is drawn, which is affine over pixels
 
 float distanceOf(ivec2 pixel, uint material, bool back) {
-  bool inside = all(greaterThanEqual(pixel, ivec2(frame.rect.xy))) && all(lessThan(pixel, ivec2(frame.rect.zw)));
-  if (!inside || decodeMaterial(texelFetch(materialImage, pixel, 0)) != material) return -1.0;
+  if (!contains(ivec4(frame.rect), pixel) || decodeMaterial(texelFetch(materialImage, pixel, 0)) != material) return -1.0;
   vec2 steps = vec2(pixel) + 0.5 - gl_FragCoord.xy;
   return planarDistance(frame.camera, back ? gl_FragCoord.z + dot(slope, steps) : texelFetch(earlierDepth, pixel, 0).r);
 }
