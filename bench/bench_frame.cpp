@@ -52,7 +52,7 @@ uint64_t BenchFrame::modeledBytes(uint32_t dispatch) const {
     if (transient < count) return needs[transient].bytes;
     if (resource == PELLUCID_RESOURCE_MATERIAL) return pixels;
     if (resource == PELLUCID_RESOURCE_IRRADIANCE || resource == PELLUCID_RESOURCE_OUTPUT)
-      return pixels * (frame.outputFormat == VK_FORMAT_R32G32B32A32_SFLOAT ? 16 : 8);
+      return pixels * (frame.options.outputFormat == VK_FORMAT_R32G32B32A32_SFLOAT ? 16 : 8);
     return 4 * pixels;  // depths, maps as large as the image, normals, albedo
   };
   std::set<std::pair<uint32_t, VkDescriptorType>> images;

@@ -15,7 +15,6 @@
 #include "capture/write.h"
 #include "common/error.h"
 #include "compare_runs.h"
-#include "frame_error_table.h"
 #include "frame_errors.h"
 #include "names.h"
 #include "reference/reference.h"
@@ -143,24 +142,6 @@ TEST(CompareRuns, TimesOfTwoDevicesAreRefused) {
 TEST(CompareRuns, WhatIsNoRunIsRefused) { EXPECT_THROW(grew(Json::object(), run()), InputError); }
 
 // ---- Shares of a turntable
-
-// The frames that bench/baselines keeps err less than what frame.targetError goes by.
-TEST(FrameErrorTable, HoldsForTheFramesOfTheBaseline) {
-  std::ifstream file(PELLUCID_SOURCE_DIR "/bench/baselines/nvidia-h100-truth.json");
-  const Json results = Json::parse(file).at("results");
-  static_assert(std::size(kFrameError) == std::size(kSamples));
-  for (size_t i = 0; i < std::size(kSamples); ++i) {
-    const std::string name = nameOf(kSamples[i]);
-    size_t frames = 0;
-    for (const Json& r : results) {
-      if (r.value("kind", "") != "whole" || r.at("name") != name) continue;
-      ++frames;
-      for (const double channel : r.at("truth_relative_rmse_rgb"))
-        EXPECT_LT(channel, static_cast<double>(kFrameError[i])) << r.at("frame") << ", " << name;
-    }
-    EXPECT_EQ(frames, 4u) << name;
-  }
-}
 
 TEST(TurntableShares, AreThoseOfALinearCosine) {
   // By .0026 a frame: .005 and .01 are exceeded by every second and fourth frame.

@@ -153,8 +153,8 @@ int createContext(const Options& options) {
     const Context context(
         device,
         [&](PellucidContextDesc& desc) {
-          desc.pipelineCache = cache;
-          desc.uses = options.uses;
+          desc.options.pipelineCache = cache;
+          desc.options.uses = options.uses;
         },
         Compile::AtCreation);
     const double cpu = 1e6 * static_cast<double>(std::clock() - cpuStart) / CLOCKS_PER_SEC;

@@ -1,5 +1,5 @@
 // pellucid_diffusion_error: the module's diffusion against the float64 reference, every pixel against every
-// other, over radii and scenes: the tables of docs/accuracy.md and of module/src/diffusion_error_table.h.
+// other, over radii and scenes: the tables of docs/accuracy.md and of bench/diffusion_error_table.h.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -90,7 +90,7 @@ void printMeans(Bench& bench, const std::vector<double>& radii) {
   std::printf("\n");
 }
 
-// module/src/diffusion_error_table.h.
+// bench/diffusion_error_table.h.
 void printTable(Bench& bench, const std::vector<double>& radii) {
   std::vector<double> errors;
   for (const double radius : radii) errors.push_back(bench.worst(radius));
@@ -138,7 +138,7 @@ int main(int argc, char** argv) {
   app.add_option("--error-pixels", pixels,
                  "of a scene, at most, where brute force says the error; default all")
       ->check(CLI::Range(16, 1000000));
-  app.add_flag("--table", table, "print module/src/diffusion_error_table.h instead");
+  app.add_flag("--table", table, "print bench/diffusion_error_table.h instead");
   app.add_flag("--check", check, "compare with it instead; 1 if an error is exceeded by a tenth");
   app.add_flag("--mean", means, "print the root mean squares over the scenes instead");
   app.add_option("--radius", radii, "pixels within which 99.9 % of the energy lies; several with commas")

@@ -149,7 +149,7 @@ void separateSteps(const Bench& bench) {
   bench.report.section("translucency; error: from one dispatch");
   ReplaySettings settings;
   settings.features = PELLUCID_FEATURE_TRANSLUCENCY;
-  settings.translucency.thicknessSource = PELLUCID_THICKNESS_CAMERA;
+  settings.translucency.cameraThickness = 1;
   SceneParameters p;
   p.name = "ear";
   p.width = p.height = 128;

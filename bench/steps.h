@@ -11,7 +11,7 @@ namespace pellucid::bench {
 
 // Linearize front and back depth, thickness, transmittance, addition; the same with thickness and
 // transmittance in one; and the module's one dispatch. The frame: device depths, normals, back depth, at most
-// one shadow image, translucency alone with PELLUCID_THICKNESS_CAMERA.
+// one shadow image, translucency alone with 1.
 std::vector<Variant> translucencyVariants(const std::shared_ptr<const BenchFrame>& frame);
 
 // The steps of the first two one by one, without the linearization, which a raster pass of planar distances

@@ -41,10 +41,10 @@ struct Frame {
   // One directional light per shadow image; without images one light without a map.
   explicit Frame(uint32_t shadowImages = 1) {
     pellucidInitFrame(&frame);
-    frame.indirectDispatches = PELLUCID_INDIRECT_NONE;  // tests of lists ask for them
+    frame.options.indirectDispatches = 0;  // tests of lists ask for them
     pellucidInitThesisOptions(&thesis);
-    frame.thesis = &thesis;
-    frame.gatherSamples = 0;  // tests of the gather say so
+    frame.options.thesis = &thesis;
+    frame.options.gatherSamples = 0;  // tests of the gather say so
     frame.imageExtent[0] = 100;
     frame.imageExtent[1] = 50;
     frame.metersPerUnit = 0.001f;

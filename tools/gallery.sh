@@ -48,7 +48,7 @@ scene marble Marble "A ring of marble, 5 mm thick, lit from behind." -- --proced
 scene wax Wax "A carved sheet of wax before a lamp, described by OpenPBR's color and radius." -- --procedural noise --material "*=$wax"
 scene milk Milk "Drops of whole milk." -- --procedural spheres --material '*=whole_milk'
 scene leaf Leaves "Blades of grass, 0.4 mm thick." -- --procedural blades --material "*=$leaf"
-scene sky "Sky only" "No light but a sky. Its light on visible faces spreads; \`--set ambient=1\` would let it through thin parts, too." -- "${sky[@]}" --environment gradient:0.6,0.8,1.2:0.4,0.3,0.2
+scene sky "Sky only" "No light but a sky. Its light spreads, and that of hidden faces comes through." -- "${sky[@]}" --environment gradient:0.6,0.8,1.2:0.4,0.3,0.2
 scene lights "Many lights" "Twelve lights of all hues around a head, each with a shadow map." -- --procedural head --set view=1 --set keyLight=0 --set rimLight=0 \
   --set lights=12
 

@@ -99,7 +99,7 @@ ReplaySettings transmittanceSettings() {
   settings.features = PELLUCID_FEATURE_TRANSLUCENCY;
   settings.normalFormat = VK_FORMAT_R8G8B8A8_SNORM;
   // With camera thickness the plan keeps lights and maps apart, whatever kinds they are.
-  settings.translucency.thicknessSource = PELLUCID_THICKNESS_CAMERA;
+  settings.translucency.cameraThickness = 1;
   return settings;
 }
 

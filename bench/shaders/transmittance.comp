@@ -35,6 +35,9 @@ float distanceOf(ivec2 pixel, uint material, bool back) {
   return through;
 }
 
+// The frames have none.
+vec3 hiddenIrradianceOf(ivec2 pixel) { return vec3(0.0); }
+
 #define PELLUCID_OWN_INPUTS
 #include "translucency/transmission.glsl"
 

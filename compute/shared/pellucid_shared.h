@@ -59,7 +59,8 @@ using glm::vec4;
 #define PELLUCID_BINDING_PROBES_DESTINATION 24
 #define PELLUCID_BINDING_FILTERED_DESTINATION 25
 #define PELLUCID_BINDING_BLOCKS 26 // words of the blocks and lists of them; see compute/frame/blocks.glsl
-#define PELLUCID_BINDING_SHADOW_IMAGES 27 // the last ones: one each for as many shadow images as a pass has
+#define PELLUCID_BINDING_HIDDEN_IRRADIANCE 27
+#define PELLUCID_BINDING_SHADOW_IMAGES 28 // the last ones: one each for as many shadow images as a pass has
 #define PELLUCID_SHADOW_IMAGE_COUNT 8     // 16 sampled images in all, which every device has
 #define PELLUCID_ENTRY_IMAGE_COUNT 12     // of the entry points: four maps with exit depth and caster material
 #define PELLUCID_BINDING_COUNT (PELLUCID_BINDING_SHADOW_IMAGES + PELLUCID_ENTRY_IMAGE_COUNT)
@@ -82,6 +83,7 @@ using glm::vec4;
 #define PELLUCID_FLAG_DIFFUSED 512u // the diffusion spreads the light that the camera sees
 #define PELLUCID_FLAG_WIDE_OUTPUT 1024u // 32 bits a channel, which keep what halves round
 #define PELLUCID_FLAG_THIN_WALLS 2048u // some material is thin-walled
+#define PELLUCID_FLAG_HIDDEN_IRRADIANCE 8192u
 #define PELLUCID_FLAG_ADDS 4096u // the result is added to what the output holds
 
 // Specialization constants

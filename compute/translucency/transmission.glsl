@@ -7,6 +7,7 @@
 //                                                                      // ShadowConstants::meta.x names
 //   float distanceOf(ivec2 pixel, uint material, bool back); // planar distance of the front or back depth of a pixel that has
 //                                                            // the material (index + 1); <= 0 of others
+//   vec3 hiddenIrradianceOf(ivec2 pixel); // what the image of that name holds, in a frame that has one
 // The shader requires GL_EXT_control_flow_attributes.
 #ifndef PELLUCID_TRANSMISSION_GLSL
 #define PELLUCID_TRANSMISSION_GLSL
@@ -25,6 +26,7 @@ bool mayUse(uint use) { return true; }
 layout(set = 0, binding = PELLUCID_BINDING_SHADOWS) uniform Shadows { ShadowConstants shadows[PELLUCID_DISPATCH_SHADOWS]; };
 layout(set = 0, binding = PELLUCID_BINDING_MATERIALS) readonly buffer Materials { MaterialConstants materials[]; };
 layout(set = 0, binding = PELLUCID_BINDING_BACK_DEPTH) uniform texture2D backDepthImage;
+layout(set = 0, binding = PELLUCID_BINDING_HIDDEN_IRRADIANCE) uniform texture2D hiddenIrradianceImage;
 
 // False of options that no frame of the context has.
 layout(constant_id = PELLUCID_CONSTANT_USES) const uint kUses = 0xFFFFFFFFu;
@@ -34,6 +36,8 @@ float distanceOf(ivec2 pixel, uint material, bool back) {
   if (!insideRect(pixel) || materialAt(pixel) != material) return -1.0;
   return back ? backDistanceOf(texelFetch(backDepthImage, pixel, 0).x) : frontDistance(pixel);
 }
+
+vec3 hiddenIrradianceOf(ivec2 pixel) { return sanitize(texelFetch(hiddenIrradianceImage, pixel, 0).rgb); }
 #endif
 
 // material: index + 1, as materialIndex has it and not 0. Frames without thin walls read nothing.
@@ -299,6 +303,11 @@ vec3 ambientIrradiance(vec3 normal) {
   return max(vec3(dot(n, frame.ambient[0] * n), dot(n, frame.ambient[1] * n), dot(n, frame.ambient[2] * n)), vec3(0.0));
 }
 
+// Of the face that the pixel hides, whose normal is `back`.
+vec3 hiddenIrradiance(ivec2 pixel, vec3 back) {
+  return hasFlag(PELLUCID_FLAG_HIDDEN_IRRADIANCE) ? hiddenIrradianceOf(pixel) : ambientIrradiance(back);
+}
+
 bool isAmbient(LightConstants light) {
   return mayUse(PELLUCID_SHADER_USE_AMBIENT) && light.meta.x == PELLUCID_SHADER_LIGHT_AMBIENT;
 }
@@ -311,13 +320,28 @@ bool passesAmbient(Surface s) {
   return s.chord >= 0.0 && least <= materials[s.material - 1u].transmittance4.w;
 }
 
+// The pixel's chord, unless it is shorter than all chords beside: a silhouette that crosses one pixel is no thin part.
+float chordBeside(Surface s, ivec2 pixel) {
+  float least = kEverywhere;
+  [[dont_unroll]] for (int i = 0; i < 4; ++i) {
+    int side = 1 - 2 * (i & 1);
+    ivec2 beside = pixel + (i < 2 ? ivec2(side, 0) : ivec2(0, side));
+    float front = distanceOf(beside, s.material, false), back = distanceOf(beside, s.material, true);
+    if (front > 0.0 && back > front) least = min(least, back - front);
+  }
+  // Rays meet the plane of depths at less than 90 degrees.
+  return least < kEverywhere ? max(s.chord, least / max(abs(s.view.z), 1.0e-3)) : s.chord;
+}
+
 // `facet`: normal of the back depths, towards the eye; 0: not known.
-Transmitted ambientTransmission(Surface s, vec3 facet) {
+Transmitted ambientTransmission(Surface s, ivec2 pixel, vec3 facet) {
   vec3 front = frontNormal(s), back = facet == vec3(0.0) ? -front : -facet;
-  float thickness = 0.5 * s.chord * (abs(dot(front, s.view)) + abs(dot(back, s.view)));
-  // A rim has all of the medium behind it.
-  float opposite = 0.5 - 0.5 * dot(front, back);
-  return Transmitted(thickness, ambientIrradiance(back), opposite, opposite * ambientIrradiance(front));
+  float thickness = 0.5 * chordBeside(s, pixel) * (abs(dot(front, s.view)) + abs(dot(back, s.view)));
+  // A rim has all of the medium behind it. Of faces seen at less than some 20 degrees depths do not tell how they are turned.
+  const float kPerCosine = 3.0;
+  float seen = min(kPerCosine * min(abs(dot(front, s.view)), abs(dot(back, s.view))), 1.0);
+  float opposite = seen * (0.5 - 0.5 * dot(front, back));
+  return Transmitted(thickness, hiddenIrradiance(pixel, back), opposite, opposite * ambientIrradiance(front));
 }
 
 // ---- Light through any surface
@@ -333,7 +357,7 @@ Transmitted lightTransmission(LightConstants light, Surface s, ivec2 pixel) {
   bool wall = isThinWalled(s.material), mapped = light.meta.z != 0u;
   bool holdsExits = light.meta.w != 0u, ambient = isAmbient(light);
   // A sheet's T is the same at any thickness, and its reflectance is its own.
-  if (ambient && wall) return Transmitted(0.0, ambientIrradiance(-frontNormal(s)), 1.0, vec3(0.0));
+  if (ambient && wall) return Transmitted(0.0, hiddenIrradiance(pixel, -frontNormal(s)), 1.0, vec3(0.0));
   if (ambient && !passesAmbient(s)) return kNothingTransmitted;
   // Exit depths do not say where light enters. Then the hidden face lies where the chord ends, and the map says alone which light gets there.
   bool byChord = !wall && (!mapped || holdsExits || hasFlag(PELLUCID_FLAG_CAMERA_THICKNESS));
@@ -353,7 +377,7 @@ Transmitted lightTransmission(LightConstants light, Surface s, ivec2 pixel) {
   vec4 apart = mix(vec4(kEverywhere), byChord ? abs(l.thickness) : l.thickness, greaterThan(l.weight, vec4(0.0)));
   bool byDepths = ambient || wall || min(min(apart.x, apart.y), min(apart.z, apart.w)) < 2.0 * (kMostTexels * l.side + l.uncertain);
   vec3 facet = byDepths ? facetAt(pixel, s.material, byChord) : vec3(0.0);
-  if (ambient) return ambientTransmission(s, facet);
+  if (ambient) return ambientTransmission(s, pixel, facet);
   float facing = dot(facet, incident.toLight);
   if (wall) {
     if (facet == vec3(0.0)) facing = receiverCosine(s, incident);

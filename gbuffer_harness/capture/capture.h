@@ -34,7 +34,7 @@ struct ShadowMap {
   // Of depth's size, or empty: not given. What the fields of PellucidShadowMap are.
   Image exitDepth;                           // one channel, in depth's encoding
   std::vector<std::uint8_t> casterMaterial;  // index; 0: opaque, or nothing there
-  PellucidMapFaces faces = PELLUCID_FACES_FRONT;
+  bool backFaces = false;
   double depthBiasConstant = 0, depthBiasSlope = 0, offsetLength = 0, depthStep = 0;
   // Maps of one number are tiles and layers of one image; -1: an image of its own.
   int sharedImage = -1;
@@ -120,7 +120,8 @@ struct Capture {
 
   DepthImage frontDepth;  // required
   DepthImage backDepth;
-  Image irradiance;  // RGB; required
+  Image irradiance;        // RGB; required
+  Image hiddenIrradiance;  // RGB; of light from all around where backDepth lies
   Image normal;      // XYZ
   bool normalsInViewSpace = false;
   Image albedo;                        // RGB

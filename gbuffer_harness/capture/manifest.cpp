@@ -117,8 +117,7 @@ ShadowMap readShadowMap(const Field& field) {
   map.clipFromWorld = invertible(field["clipFromWorld"]);
   if (field.has("viewFromWorld") || map.depth.encoding != PELLUCID_DEPTH_DEVICE)
     map.viewFromWorld = rigid(field["viewFromWorld"]);
-  if (const auto faces = field.find("faces"))
-    map.faces = faces->choice({"front", "back"}) == 1 ? PELLUCID_FACES_BACK : PELLUCID_FACES_FRONT;
+  if (const auto faces = field.find("faces")) map.backFaces = faces->choice({"front", "back"}) == 1;
   constexpr double kMost = 1e15, kMostSlope = 1e6;  // of the module
   if (const auto bias = field.find("depthBiasConstant")) map.depthBiasConstant = bias->number(-kMost, kMost);
   if (const auto bias = field.find("depthBiasSlope"))
@@ -212,7 +211,8 @@ std::optional<BufferSource> readTimes(const Field& light, const BufferReader& re
 }
 
 void readBuffers(const Field& buffers, const BufferReader& read, Manifest& manifest) {
-  buffers.allowKeys({"frontDepth", "backDepth", "irradiance", "normal", "albedo", "material"});
+  buffers.allowKeys(
+      {"frontDepth", "backDepth", "irradiance", "hiddenIrradiance", "normal", "albedo", "material"});
   const auto depth = [&](const Field& field, DepthImage& image) {
     field.allowKeys({"file", "part", "channel", "encoding", "constant", "scale"});
     image.encoding = screenEncoding(field);
@@ -231,6 +231,11 @@ void readBuffers(const Field& buffers, const BufferReader& read, Manifest& manif
     manifest.irradianceIncludesAlbedo = includes->boolean();
     if (manifest.irradianceIncludesAlbedo && !buffers.has("albedo"))
       includes->fail("needs the buffer \"albedo\", by which the irradiance is divided");
+  }
+  if (const auto field = buffers.find("hiddenIrradiance")) {
+    field->allowKeys({"file", "part", "channels", "constant", "scale"});
+    if (!manifest.backDepth) field->fail("needs the buffer \"backDepth\", where the light arrives");
+    manifest.hiddenIrradiance = read(*field, 3);
   }
   if (const auto field = buffers.find("albedo")) {
     field->allowKeys({"file", "part", "channels", "constant", "scale"});

@@ -49,7 +49,7 @@ struct Manifest {
   Capture capture;  // everything but the images and the size
 
   BufferSource frontDepth, irradiance, material;
-  std::optional<BufferSource> backDepth, normal, albedo, truth, truthStandardError;
+  std::optional<BufferSource> backDepth, hiddenIrradiance, normal, albedo, truth, truthStandardError;
   std::optional<BufferSource> irradianceTimes, truthTimes;  // by which reading multiplies the other
   std::vector<std::vector<ShadowSources>> shadowMaps;       // per light, as Light::shadowMaps
   MaterialMap materialMap;

@@ -207,6 +207,8 @@ Capture readImages(const Manifest& manifest) {
   loader.wantDepth(manifest.frontDepth, capture.frontDepth, true);
   if (manifest.backDepth) loader.wantDepth(*manifest.backDepth, capture.backDepth, true);
   loader.want(manifest.irradiance, capture.irradiance, 3, 0, true);
+  if (manifest.hiddenIrradiance)
+    loader.want(*manifest.hiddenIrradiance, capture.hiddenIrradiance, 3, 0, true);
   if (manifest.normal) loader.want(*manifest.normal, capture.normal, 3, 0, true);
   if (manifest.albedo) loader.want(*manifest.albedo, capture.albedo, 3, 0, true);
   loader.want(manifest.material, material, 1, kOutside, true);

@@ -159,7 +159,7 @@ public:
     entry["encoding"] = encodingName(map.depth.encoding);
     entry["clipFromWorld"] = map.clipFromWorld;
     if (map.viewFromWorld) entry["viewFromWorld"] = *map.viewFromWorld;
-    if (map.faces == PELLUCID_FACES_BACK) entry["faces"] = "back";
+    if (map.backFaces) entry["faces"] = "back";
     const std::pair<const char*, double> offsets[] = {{"depthBiasConstant", map.depthBiasConstant},
                                                       {"depthBiasSlope", map.depthBiasSlope},
                                                       {"offsetLength", map.offsetLength},
@@ -224,6 +224,8 @@ void writeCapture(const Capture& capture, const std::filesystem::path& exr, Colo
   buffers["frontDepth"] = screen.addDepth(capture.frontDepth, "front");
   if (!capture.backDepth.image.empty()) buffers["backDepth"] = screen.addDepth(capture.backDepth, "back");
   buffers["irradiance"] = screen.add(capture.irradiance, "irradiance", "RGB", format);
+  if (!capture.hiddenIrradiance.empty())
+    buffers["hiddenIrradiance"] = screen.add(capture.hiddenIrradiance, "hidden", "RGB", format);
   if (!capture.normal.empty()) {
     buffers["normal"] = screen.add(capture.normal, "normal", "XYZ", format);
     buffers["normal"]["space"] = capture.normalsInViewSpace ? "view" : "world";

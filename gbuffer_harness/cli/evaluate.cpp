@@ -39,7 +39,7 @@ ReplaySettings gather(std::uint32_t samples) {
 std::vector<Model> models() {
   ReplaySettings none, light, camera;
   none.features = PELLUCID_FEATURE_DIFFUSION;
-  camera.translucency.thicknessSource = PELLUCID_THICKNESS_CAMERA;
+  camera.translucency.cameraThickness = true;
   return {{"no translucency", none},          {"thesis", thesisSettings()},
           {"camera-space thickness", camera}, {"light-space thickness", light},
           {"gather, 8 samples", gather(8)},   {"gather, 16 samples", gather(16)},

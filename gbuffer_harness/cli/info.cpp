@@ -265,6 +265,8 @@ Json describe(const std::filesystem::path& path, ManifestPreset preset) {
   buffers["frontDepth"] = depthJson(manifest.frontDepth, capture.frontDepth, camera);
   if (manifest.backDepth) buffers["backDepth"] = depthJson(*manifest.backDepth, capture.backDepth, camera);
   buffers["irradiance"] = imageJson(manifest.irradiance, capture.irradiance);
+  if (manifest.hiddenIrradiance)
+    buffers["hiddenIrradiance"] = imageJson(*manifest.hiddenIrradiance, capture.hiddenIrradiance);
   if (manifest.normal) {
     buffers["normal"] = imageJson(*manifest.normal, capture.normal);
     buffers["normal"]["space"] = capture.normalsInViewSpace ? "view" : "world";

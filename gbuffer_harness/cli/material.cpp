@@ -123,8 +123,10 @@ PellucidMaterialDesc describe(const Options& options, MaterialSource& named, Spe
   } else if (!options.spectral.empty()) {
     spectrum = readSpectrum(options.spectral);
     desc.kind = PELLUCID_MATERIAL_SPECTRAL;
-    desc.spectrum = {static_cast<std::uint32_t>(spectrum.wavelength.size()), spectrum.wavelength.data(),
-                     spectrum.scattering.data(), spectrum.absorption.data()};
+    desc.wavelengthCount = static_cast<std::uint32_t>(spectrum.wavelength.size());
+    desc.wavelength = spectrum.wavelength.data();
+    desc.spectralScattering = spectrum.scattering.data();
+    desc.spectralAbsorption = spectrum.absorption.data();
   }
   return desc;
 }

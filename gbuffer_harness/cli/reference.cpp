@@ -39,7 +39,6 @@ reference::Settings toSettings(const Options& options, const ReplaySettings& rep
   reference::Settings settings;
   settings.features = replay.features;
   settings.translucency = replay.translucency;
-  settings.ambient = replay.ambient;
   settings.debugView = replay.debugView;
   settings.diffusion.source = options.profile;
   settings.diffusion.discardedEnergy = options.discardedEnergy;
@@ -56,6 +55,7 @@ void runReference(const Options& options) {
   resolveGather(replay, capture, compiled);
   const std::vector<PellucidMaterial> materials = withTransmittance(compiled, replay.transmittance);
   reference::Settings settings = toSettings(options, replay);
+  settings.ambient = replay.ambient.value_or(!capture.hiddenIrradiance.empty());
   settings.brightest /= static_cast<double>(preExposureFor(capture));  // as `pellucid replay` has it
   const auto start = std::chrono::steady_clock::now();
   const reference::Result result = reference::compute(capture, materials, settings);

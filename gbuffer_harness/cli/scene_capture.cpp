@@ -15,6 +15,8 @@ namespace {
 
 // Noise of some 2 % in half shadow, which diffusion averages further.
 constexpr int kSamples = 512;
+// Transmission blurs them.
+constexpr int kHiddenSamples = 128;
 
 bool hasRadius(const Light& light) { return light.radius > 0; }
 
@@ -56,9 +58,13 @@ void addTracedLight(Capture& capture, const reference::TraceScene& scene,
   emitters.environment = environment;
   std::copy_if(capture.lights.begin(), capture.lights.end(), std::back_inserter(emitters.lights), hasRadius);
   for (Light& light : emitters.lights) light.shadowMaps.clear();
-  const Image added =
-      reference::tracedIrradiance(reference::visibleSurface(capture, scene), scene, emitters, kSamples);
+  const reference::VisibleSurface visible = reference::visibleSurface(capture, scene);
+  const Image added = reference::tracedIrradiance(visible, scene, emitters, kSamples);
   for (std::size_t i = 0; i < added.data.size(); ++i) capture.irradiance.data[i] += added.data[i];
+  if (!environment || capture.backDepth.image.empty()) return;
+  emitters.lights.clear();  // they come through by their maps
+  capture.hiddenIrradiance = reference::tracedIrradiance(reference::hiddenSurface(capture, scene, visible),
+                                                         scene, emitters, kHiddenSamples);
 }
 
 }  // namespace pellucid::harness

@@ -92,6 +92,7 @@ void SceneHash::add(const reference::Emitters& emitters, const Capture& capture)
 
 void SceneHash::addImages(const Capture& capture) {
   bytes(capture.material.data(), capture.material.size());
+  bytes(capture.hiddenIrradiance.data.data(), capture.hiddenIrradiance.data.size() * sizeof(float));
   bytes(capture.albedo.data.data(), capture.albedo.data.size() * sizeof(float));
 }
 

@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "capture/json_field.h"
 #include "common/error.h"
@@ -23,8 +24,7 @@ const Names<PellucidDebugView> kDebugViews = {{"thickness", PELLUCID_DEBUG_THICK
                                               {"irradiance", PELLUCID_DEBUG_IRRADIANCE}};
 const Names<uint32_t> kFeatures = {
     {"none", 0}, {"translucency", PELLUCID_FEATURE_TRANSLUCENCY}, {"diffusion", PELLUCID_FEATURE_DIFFUSION}};
-const Names<PellucidThicknessSource> kThickness = {{"light", PELLUCID_THICKNESS_LIGHT},
-                                                   {"camera", PELLUCID_THICKNESS_CAMERA}};
+const Names<bool> kThickness = {{"light", false}, {"camera", true}};
 const Names<VkFormat> kFormats = {{"rgba16f", VK_FORMAT_R16G16B16A16_SFLOAT},
                                   {"rgba32f", VK_FORMAT_R32G32B32A32_SFLOAT},
                                   {"rg11b10f", VK_FORMAT_B10G11R11_UFLOAT_PACK32}};
@@ -43,12 +43,12 @@ const Names<PellucidAngleModel> kAngles = {{"normal", PELLUCID_ANGLE_NORMAL},
 const Names<PellucidReuse> kReuse = {{"none", PELLUCID_REUSE_NONE},
                                      {"alternate", PELLUCID_REUSE_ALTERNATE},
                                      {"coherence", PELLUCID_REUSE_COHERENCE}};
-const Names<PellucidIndirect> kIndirect = {{"none", PELLUCID_INDIRECT_NONE},
-                                           {"material", PELLUCID_INDIRECT_MATERIAL}};
+const Names<bool> kIndirect = {{"none", false}, {"material", true}};
 // Whelan 2009, eqs. 4.4 and 4.5.
 const Names<std::array<float, 4>> kPolynomials = {{"quadratic", {2.14506f, -2.27844f, 0.595752f, 0}},
                                                   {"cubic", {-5.07621f, 7.75534f, -3.9017f, 0.650897f}}};
 const Names<bool> kViews = {{"pixel", false}, {"constant", true}};
+const Names<std::optional<bool>> kAmbient = {{"0", false}, {"1", true}, {"auto", std::nullopt}};
 const Names<bool> kBooleans = {{"0", false}, {"1", true}};
 
 template <class T>
@@ -96,7 +96,7 @@ const std::map<std::string, Key> kKeys = {
     {"thickness",
      {"light|camera, of lights with a shadow map",
       [](const auto& key, const auto& value, ReplaySettings& s) {
-        s.translucency.thicknessSource = lookUp(kThickness, key, value);
+        s.translucency.cameraThickness = lookUp(kThickness, key, value);
       }}},
     {"transmittance",
      {"material|linear|gaussians|gaussians-as-printed",
@@ -185,12 +185,6 @@ const std::map<std::string, Key> kKeys = {
       [](const auto& key, const auto& value, ReplaySettings& s) {
         s.coherenceThreshold = real(key, value);
       }}},
-    {"frame-load",
-     {"frame time / budget, multiplies the coherence threshold above 1",
-      [](const auto& key, const auto& value, ReplaySettings& s) { s.frameLoad = real(key, value); }}},
-    {"target-error",
-     {"relative RMSE that chooses 0, 8 or 16 samples, 0 for none",
-      [](const auto& key, const auto& value, ReplaySettings& s) { s.targetError = real(key, value); }}},
     {"nearest-distance",
      {"of what diffuses from the camera's plane, scene units, 0 for not known",
       [](const auto& key, const auto& value, ReplaySettings& s) { s.nearestDistance = real(key, value); }}},
@@ -198,9 +192,10 @@ const std::map<std::string, Key> kKeys = {
      {"rgba16f|rgba32f|rg11b10f", [](const auto& key, const auto& value,
                                      ReplaySettings& s) { s.outputFormat = lookUp(kFormats, key, value); }}},
     {"ambient",
-     {"0|1: the capture's environment comes through thin parts; default 0",
+     {"0|1|auto: light from all around comes through thin parts; auto (default): where the capture has "
+      "hidden irradiance",
       [](const auto& key, const auto& value, ReplaySettings& s) {
-        s.ambient = lookUp(kBooleans, key, value);
+        s.ambient = lookUp(kAmbient, key, value);
       }}},
     {"alias",
      {"0|1: output is the irradiance image",
@@ -308,7 +303,8 @@ void resolveGather(ReplaySettings& settings, const Capture& capture,
                    const std::vector<PellucidMaterial>& materials) {
   FrameData data;
   makeFrame(capture, materials, settings, data);
-  // The plan that chooses samples has one light with a shadow map, because a plan has no room for any number of lights.
+  // The plan that chooses samples has one light with a shadow map, because a plan has no room for any number
+  // of lights.
   const auto mapped = std::find_if(data.lights.begin(), data.lights.end(),
                                    [](const PellucidLight& light) { return light.shadowMapCount > 0; });
   data.frame.lightCount = mapped != data.lights.end();
@@ -324,7 +320,7 @@ std::string settingsJson(const ReplaySettings& s) {
   for (const auto& [name, bit] : kFeatures)
     if (s.features & bit) features += (features.empty() ? "" : ",") + name;
   nlohmann::ordered_json json = {{"features", features.empty() ? "none" : features},
-                                 {"thickness", nameOf(kThickness, t.thicknessSource)},
+                                 {"thickness", nameOf(kThickness, t.cameraThickness)},
                                  {"transmittance", nameOf(kTransmittance, s.transmittance)},
                                  {"angle", nameOf(kAngles, t.angleModel)},
                                  {"polynomial", t.anglePolynomial},
@@ -342,11 +338,9 @@ std::string settingsJson(const ReplaySettings& s) {
                                  {"mark-bit", t.materialMarkBit},
                                  {"reuse", nameOf(kReuse, s.reuse)},
                                  {"coherence-threshold", s.coherenceThreshold},
-                                 {"frame-load", s.frameLoad},
-                                 {"target-error", s.targetError},
                                  {"nearest-distance", s.nearestDistance},
                                  {"format", nameOf(kFormats, s.outputFormat)},
-                                 {"ambient", s.ambient ? "1" : "0"},
+                                 {"ambient", nameOf(kAmbient, s.ambient)},
                                  {"alias", s.aliasOutput ? "1" : "0"},
                                  {"indirect", nameOf(kIndirect, s.indirectDispatches)},
                                  {"rect", s.renderRect}};

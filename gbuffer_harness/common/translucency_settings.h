@@ -14,7 +14,7 @@ namespace pellucid::harness {
 inline constexpr std::uint32_t kDefaultGatherSamples = 8;
 
 struct TranslucencySettings {
-  PellucidThicknessSource thicknessSource = PELLUCID_THICKNESS_LIGHT;
+  bool cameraThickness = false;
   PellucidAngleModel angleModel = PELLUCID_ANGLE_NORMAL;
   std::array<float, 4> anglePolynomial = {-1, 0.63661977f, 0, 0};  // linear in the angle
   float minimumDot = 0;

@@ -108,7 +108,7 @@ ShadowMap outlineOf(const LightView& view, const RasterOptions& options) {
   map.viewFromWorld = view.viewFromWorld;
   if (isPlain(options.shadow)) return map;
   const ShadowDrawing& drawing = options.shadow;
-  map.faces = drawing.cull == MapCull::Front ? PELLUCID_FACES_BACK : PELLUCID_FACES_FRONT;
+  map.backFaces = drawing.cull == MapCull::Front;
   map.depthBiasConstant = -drawing.depthBiasConstant * depthUnit(drawing);
   map.depthBiasSlope = -drawing.depthBiasSlope;
   map.offsetLength = offsetOf(view, options);

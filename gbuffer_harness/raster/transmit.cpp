@@ -11,10 +11,10 @@ namespace {
 // The plan of the run, whose first dispatch is the one fused dispatch.
 const PellucidPlan& fusedPlan(const FrameRun& run, const std::string& name) {
   const PellucidPlan& plan = run.plan();
-  if (run.frame().thicknessSource != PELLUCID_THICKNESS_CAMERA)
-    throw InputError(name, "thicknessSource", "light-space thickness does not need the back faces");
+  if (run.frame().options.cameraThickness == 0)
+    throw InputError(name, "cameraThickness", "light-space thickness does not need the back faces");
   for (std::uint32_t i = 0; i < run.frame().shadowMapCount; ++i)
-    if (run.frame().shadowMaps[i].layer > 0)
+    if (run.frame().shadowMaps[i].options.layer > 0)
       throw InputError(name, "lights", "have shadow maps in layers; the back-face pass reads 2D images");
   if (plan.activeLights == 0) throw InputError(name, "lights", "none can contribute");
   // Lights are read from the first dispatch on, so all are in it when it has as many as are active.

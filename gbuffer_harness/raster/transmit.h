@@ -8,7 +8,7 @@ namespace pellucid::harness {
 
 // Camera-space thickness, transmittance and lighting while rasterizing back faces (Whelan 2009, 6.2.4),
 // with compute/lib included in a fragment shader. `capture` is what rasterize() made of the same model and
-// options, `run` that capture with PELLUCID_THICKNESS_CAMERA and lights that fit one fused dispatch. Returns
+// options, `run` that capture with 1 and lights that fit one fused dispatch. Returns
 // transmitted / rho, RGB: what the dispatch adds to the irradiance where the model is closed (an open one has
 // no back depth in the capture, but is drawn here). Throws InputError for a run that is not so, and
 // DeviceError as rasterize() does.

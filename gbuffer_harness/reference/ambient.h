@@ -18,13 +18,15 @@ public:
           const std::vector<PellucidMaterial>& materials);
 
   // Exitance besides what the irradiance image makes: T(h) of what arrives at the hidden face, less what the
-  // visible face does not return of its own. 0 without an environment or a back depth. `material`: from 0.
+  // visible face does not return of its own. 0 without a back depth, and without an environment and hidden irradiance. `material`: from 0.
   glm::dvec3 at(const Surface& surface, std::size_t material) const;
 
   // Irradiance of a face with a unit normal in world space.
   static glm::dvec3 irradiance(const Harmonics& environment, const glm::dvec3& normal);
 
 private:
+  double chordBeside(const Surface& surface) const;
+
   const Capture& capture_;
   const SurfaceReader& surfaces_;
   const std::vector<PellucidMaterial>& materials_;

@@ -60,7 +60,7 @@ Arrival arrivalAt(const Light& light, const glm::dvec3& point) {
 }
 
 bool holdsBackFaces(const Light& light) {
-  return !light.shadowMaps.empty() && light.shadowMaps.front().faces == PELLUCID_FACES_BACK;
+  return !light.shadowMaps.empty() && light.shadowMaps.front().backFaces;
 }
 
 ShadowView::ShadowView(const Light& light, const ShadowMap& map)

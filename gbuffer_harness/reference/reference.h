@@ -15,7 +15,7 @@ namespace pellucid::harness::reference {
 struct Settings {
   std::uint32_t features = PELLUCID_FEATURE_TRANSLUCENCY | PELLUCID_FEATURE_DIFFUSION;
   TranslucencySettings translucency;
-  bool ambient = false;  // the capture's environment comes through thin parts
+  bool ambient = false;  // light from all around comes through thin parts
   PellucidDebugView debugView = PELLUCID_DEBUG_NONE;
   DiffusionSettings diffusion;
   double brightest =

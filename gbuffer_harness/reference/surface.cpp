@@ -30,6 +30,7 @@ SurfaceReader::SurfaceReader(const Capture& capture)
   requireImage(capture, capture.backDepth.image, "backDepth", 1, true);
   requireImage(capture, capture.irradiance, "irradiance", 3, false);
   requireImage(capture, capture.normal, "normal", 3, true);
+  requireImage(capture, capture.hiddenIrradiance, "hiddenIrradiance", 3, true);
   requireImage(capture, capture.albedo, "albedo", 3, true);
   const std::size_t pixels =
       static_cast<std::size_t>(capture.width) * static_cast<std::size_t>(capture.height);

@@ -70,8 +70,7 @@ double Translucency::hiddenCosine(const Receiver& r, std::size_t light, const gl
 }
 
 bool Translucency::usesLightSpace(std::size_t light) const {
-  return !shadows_[light].empty() && settings_.thicknessSource == PELLUCID_THICKNESS_LIGHT &&
-         !holdsBackFaces(capture_.lights[light]);
+  return !shadows_[light].empty() && !settings_.cameraThickness && !holdsBackFaces(capture_.lights[light]);
 }
 
 std::optional<Translucency::Taps> Translucency::texelsAround(std::size_t light,

@@ -54,10 +54,10 @@ BlockMap readBlockMap(const FrameRun& run) {
   const std::array<int, 2> extent = {static_cast<int>(frame.imageExtent[0]),
                                      static_cast<int>(frame.imageExtent[1])};
   map.rect = {0, 0, extent[0], extent[1]};
-  if (frame.renderRect[2] > 0)
+  if (frame.options.renderRect[2] > 0)
     for (std::size_t i = 0; i < 2; ++i) {
-      map.rect[i] = static_cast<int>(frame.renderRect[i]);
-      map.rect[2 + i] = map.rect[i] + static_cast<int>(frame.renderRect[2 + i]);
+      map.rect[i] = static_cast<int>(frame.options.renderRect[i]);
+      map.rect[2 + i] = map.rect[i] + static_cast<int>(frame.options.renderRect[2 + i]);
     }
   map.x = map.rect[0] / kBlock * kBlock;
   map.y = map.rect[1] / kBlock * kBlock;

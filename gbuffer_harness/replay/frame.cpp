@@ -56,19 +56,19 @@ void addLight(const Light& light, const Origin& origin, const FrameShape& shape,
     const auto& [images, extent] = shape.maps[data.shadowMaps.size()];
     const auto& [depth, exit, caster] = images;
     s.image = static_cast<uint32_t>(depth);
-    s.exitImage = static_cast<uint32_t>(exit + 1);
-    s.casterMaterialImage = static_cast<uint32_t>(caster + 1);
-    for (std::size_t i = 0; i < 2; ++i) s.offset[i] = static_cast<uint32_t>(map.offset[i]);
-    s.layer = static_cast<uint32_t>(map.layer);
-    s.faces = map.faces;
-    s.depthBiasConstant = static_cast<float>(map.depthBiasConstant);
-    s.depthBiasSlope = static_cast<float>(map.depthBiasSlope);
-    s.offsetLength = static_cast<float>(map.offsetLength);
-    s.depthStep = static_cast<float>(map.depthStep);
+    s.options.exitImage = static_cast<uint32_t>(exit + 1);
+    s.options.casterMaterialImage = static_cast<uint32_t>(caster + 1);
+    for (std::size_t i = 0; i < 2; ++i) s.options.offset[i] = static_cast<uint32_t>(map.offset[i]);
+    s.options.layer = static_cast<uint32_t>(map.layer);
+    s.options.backFaces = map.backFaces;
+    s.options.depthBiasConstant = static_cast<float>(map.depthBiasConstant);
+    s.options.depthBiasSlope = static_cast<float>(map.depthBiasSlope);
+    s.options.offsetLength = static_cast<float>(map.offsetLength);
+    s.options.depthStep = static_cast<float>(map.depthStep);
     for (std::size_t i = 0; i < 2; ++i) s.extent[i] = static_cast<uint32_t>(extent[i]);
     s.encoding = map.depth.encoding;
     copy(fromOrigin(map.clipFromWorld, origin), s.clipFromWorld);
-    copy(fromOrigin(map.viewFromWorld.value_or(kIdentity), origin), s.viewFromWorld);
+    copy(fromOrigin(map.viewFromWorld.value_or(kIdentity), origin), s.options.viewFromWorld);
     data.shadowMaps.push_back(s);
   }
   data.lights.push_back(l);
@@ -115,7 +115,7 @@ void addThesisOptions(const TranslucencySettings& t, const Origin& origin, Frame
   std::copy(t.faceVector.begin(), t.faceVector.end(), o.faceVector);
   std::copy(t.upAxis.begin(), t.upAxis.end(), o.upAxis);
   for (std::size_t i = 0; i < 3; ++i) o.objectCenter[i] = static_cast<float>(t.objectCenter[i] - origin[i]);
-  data.frame.thesis = &o;
+  data.frame.options.thesis = &o;
 }
 
 // Views of different images that are never dereferenced: planning and validation only ask whether a view is
@@ -128,22 +128,23 @@ private:
   std::uintptr_t count_ = 0;
 };
 
-void fillPlaceholders(const FrameShape& shape, FrameData& data) {
+void fillPlaceholders(const FrameShape& shape, bool hidden, FrameData& data) {
   PellucidFrame& f = data.frame;
   Placeholders next;
   for (PellucidImage& map : data.shadowImages) map = next();
   f.frontDepth = next();
   if (shape.backDepth) f.backDepth = next();
   f.irradiance = next();
+  if (hidden) f.hiddenIrradiance = next();
   if (shape.normal) f.normal = next();
   if (shape.albedo) f.albedo = next();
   f.material = next();
-  f.output = f.separateOutput ? next() : f.irradiance;
+  f.output = f.options.separateOutput ? next() : f.irradiance;
   PellucidImageNeed needs[kMaxImageNeeds];
   uint32_t count = kMaxImageNeeds;
   // Where the frame is wrong there are none, and validation says what is.
   if (pellucidGetImageNeeds(&f, &count, needs) != PELLUCID_OK) return;
-  for (uint32_t i = 0; i < count; ++i) (needs[i].persistent ? f.history : f.transients[i]) = next();
+  for (uint32_t i = 0; i < count; ++i) (needs[i].persistent ? f.options.history : f.transients[i]) = next();
 }
 
 }  // namespace
@@ -164,7 +165,7 @@ PellucidLight pellucidLight(const Light& light) {
 ReplaySettings thesisSettings() {
   ReplaySettings s;
   s.transmittance = TransmittanceChoice::Linear;
-  s.translucency.thicknessSource = PELLUCID_THICKNESS_CAMERA;
+  s.translucency.cameraThickness = true;
   s.translucency.angleModel = PELLUCID_ANGLE_INVERSE_COSINE;
   s.translucency.chordThickness = true;
   return s;
@@ -195,6 +196,7 @@ std::vector<PellucidMaterial> withTransmittance(std::vector<PellucidMaterial> ma
 FrameShape shapeOf(const Capture& capture) {
   FrameShape shape;
   shape.backDepth = !capture.backDepth.image.empty();
+  shape.hiddenIrradiance = !capture.hiddenIrradiance.empty();
   shape.normal = !capture.normal.empty();
   shape.albedo = !capture.albedo.empty();
   const ShadowImages images = shadowImages(capture.lights);
@@ -221,17 +223,17 @@ void makeFrame(const Capture& capture, const FrameShape& shape,
 
   PellucidFrame& f = data.frame;
   pellucidInitFrame(&f);
-  f.features = settings.features;
+  f.options.features = settings.features;
   f.imageExtent[0] = static_cast<uint32_t>(capture.width);
   f.imageExtent[1] = static_cast<uint32_t>(capture.height);
-  std::copy(settings.renderRect.begin(), settings.renderRect.end(), f.renderRect);
+  std::copy(settings.renderRect.begin(), settings.renderRect.end(), f.options.renderRect);
   f.metersPerUnit = static_cast<float>(capture.metersPerUnit);
   copy(capture.clipFromView, f.clipFromView);
   copy(fromOrigin(capture.viewFromWorld, origin), f.viewFromWorld);
-  f.outputFormat = settings.outputFormat;
-  f.frontDepthEncoding = capture.frontDepth.encoding;
-  f.backDepthEncoding = capture.backDepth.encoding;
-  f.normalsInViewSpace = capture.normalsInViewSpace;
+  f.options.outputFormat = settings.outputFormat;
+  f.options.frontDepthEncoding = capture.frontDepth.encoding;
+  f.options.backDepthEncoding = capture.backDepth.encoding;
+  f.options.normalsInViewSpace = capture.normalsInViewSpace;
   f.materialCount = static_cast<uint32_t>(data.materials.size());
   f.materials = data.materials.data();
   data.materialTables.resize(data.materials.size());
@@ -239,45 +241,48 @@ void makeFrame(const Capture& capture, const FrameShape& shape,
   for (size_t i = 0; i < data.materials.size(); ++i)
     valid = valid && pellucidMakeMaterialTables(&data.materials[i], &data.materialTables[i]) == PELLUCID_OK;
   if (!valid) data.materialTables.clear();
-  f.materialTables = valid ? data.materialTables.data() : nullptr;
+  f.options.materialTables = valid ? data.materialTables.data() : nullptr;
   f.lightCount = static_cast<uint32_t>(data.lights.size());
   f.lights = data.lights.data();
-  f.lightTableCount = static_cast<uint32_t>(data.lightTables.size());
-  f.lightTables = data.lightTables.data();
+  f.options.lightTableCount = static_cast<uint32_t>(data.lightTables.size());
+  f.options.lightTables = data.lightTables.data();
   f.shadowMapCount = static_cast<uint32_t>(data.shadowMaps.size());
   f.shadowMaps = data.shadowMaps.data();
   f.shadowImageCount = static_cast<uint32_t>(data.shadowImages.size());
   f.shadowImages = data.shadowImages.data();
-  if (capture.environment && settings.ambient) {
+  const bool ambient = settings.ambient.value_or(shape.hiddenIrradiance);
+  if (capture.environment && ambient) {
     for (const std::array<double, 3>& coefficient : *capture.environment)
       for (const double channel : coefficient) data.ambient.push_back(static_cast<float>(channel));
-    f.ambient = data.ambient.data();
+    f.options.ambient = data.ambient.data();
   }
   const TranslucencySettings& t = settings.translucency;
-  f.thicknessSource = t.thicknessSource;
-  f.gatherSamples = t.gatherSamples;
-  f.gatherSpacing = t.gatherSpacing;
+  f.options.cameraThickness = t.cameraThickness;
+  f.options.gatherSamples = t.gatherSamples;
+  f.options.gatherSpacing = t.gatherSpacing;
   addThesisOptions(t, origin, data);
-  f.reuse = settings.reuse;
-  f.coherenceThreshold = settings.coherenceThreshold;
-  f.frameLoad = settings.frameLoad;
-  f.targetError = settings.targetError;
-  f.nearestDistance = settings.nearestDistance;
-  f.separateOutput = !settings.aliasOutput || settings.debugView != PELLUCID_DEBUG_NONE;
-  f.indirectDispatches = settings.indirectDispatches;
-  f.materialShift = settings.materialShift;
-  f.materialMask = settings.materialMask;
-  f.outputMode = settings.outputMode;
+  f.options.reuse = settings.reuse;
+  f.options.coherenceThreshold = settings.coherenceThreshold;
+  f.options.nearestDistance = settings.nearestDistance;
+  f.options.separateOutput = !settings.aliasOutput || settings.debugView != PELLUCID_DEBUG_NONE;
+  f.options.indirectDispatches = settings.indirectDispatches;
+  f.options.materialShift = settings.materialShift;
+  f.options.materialMask = settings.materialMask;
+  f.options.addToOutput = settings.addToOutput;
   f.preExposure = preExposureOf(settings);
-  f.debugView = settings.debugView;
-  fillPlaceholders(shape, data);
+  f.options.debugView = settings.debugView;
+  fillPlaceholders(shape, ambient && shape.hiddenIrradiance, data);
 }
 
 const PellucidImage& imageOf(const PellucidFrame& frame, uint32_t resource) {
   const std::pair<uint32_t, const PellucidImage*> named[] = {
-      {PELLUCID_RESOURCE_FRONT_DEPTH, &frame.frontDepth}, {PELLUCID_RESOURCE_BACK_DEPTH, &frame.backDepth},
-      {PELLUCID_RESOURCE_IRRADIANCE, &frame.irradiance},  {PELLUCID_RESOURCE_NORMAL, &frame.normal},
-      {PELLUCID_RESOURCE_ALBEDO, &frame.albedo},          {PELLUCID_RESOURCE_MATERIAL, &frame.material},
+      {PELLUCID_RESOURCE_FRONT_DEPTH, &frame.frontDepth},
+      {PELLUCID_RESOURCE_BACK_DEPTH, &frame.backDepth},
+      {PELLUCID_RESOURCE_IRRADIANCE, &frame.irradiance},
+      {PELLUCID_RESOURCE_HIDDEN_IRRADIANCE, &frame.hiddenIrradiance},
+      {PELLUCID_RESOURCE_NORMAL, &frame.normal},
+      {PELLUCID_RESOURCE_ALBEDO, &frame.albedo},
+      {PELLUCID_RESOURCE_MATERIAL, &frame.material},
       {PELLUCID_RESOURCE_OUTPUT, &frame.output}};
   for (const auto& [name, image] : named)
     if (name == resource) return *image;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "capture/capture.h"
@@ -29,17 +30,17 @@ struct ReplaySettings {
   VkFormat normalFormat = VK_FORMAT_R32G32B32A32_SFLOAT;  // of the image that normals are uploaded to
   // See PellucidFrame. With a mask, the other bits of the 32 of the uploaded material image hold noise.
   uint32_t materialShift = 0, materialMask = 0;
-  bool ambient = false;  // the capture's environment comes through thin parts
-  PellucidOutputMode outputMode = PELLUCID_OUTPUT_REPLACE;  // ADD: FrameRun::uploadOutput says to what
+  // Light from all around comes through thin parts; not given: where the capture has hidden irradiance.
+  std::optional<bool> ambient;
+  bool addToOutput = false;  // FrameRun::uploadOutput says to what
   // The uploaded irradiance is the capture's times this. 0: of Replayer::run preExposureFor() the capture, by
   // which its output is divided again; elsewhere 1.
   float preExposure = 1;
   PellucidReuse reuse = PELLUCID_REUSE_NONE;
   float coherenceThreshold = 0.005f;
-  float frameLoad = 0;
-  float targetError = 0, nearestDistance = 0;  // see PellucidFrame
-  bool aliasOutput = false;                    // output is the irradiance image; ignored for debug views
-  PellucidIndirect indirectDispatches = PELLUCID_INDIRECT_MATERIAL;
+  float nearestDistance = 0;
+  bool aliasOutput = false;  // output is the irradiance image; ignored for debug views
+  bool indirectDispatches = true;
   std::array<uint32_t, 4> renderRect = {0, 0, 0, 0};  // width 0: everything
 };
 
@@ -81,7 +82,7 @@ struct FrameShape {
     std::array<int, 2> extent = {0, 0};  // texels, of the map's tile
   };
 
-  bool backDepth = false, normal = false, albedo = false;
+  bool backDepth = false, hiddenIrradiance = false, normal = false, albedo = false;
   std::vector<Map> maps;  // of all lights, in their order
   std::size_t shadowImages = 0;
 };

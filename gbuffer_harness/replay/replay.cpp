@@ -37,7 +37,7 @@ public:
     if (!shared) inputs_ = std::make_shared<InputImages>(device, capture, settings);
     inputs_->bind(data);
     PellucidFrame& f = data.frame;
-    outputIsIrradiance_ = f.separateOutput == 0;
+    outputIsIrradiance_ = f.options.separateOutput == 0;
     if (outputIsIrradiance_) {
       f.output = f.irradiance;
       output_ = &inputs_->irradiance();
@@ -61,7 +61,7 @@ public:
                                                 static_cast<int>(needs[i].extent[1]), needs[i].format);
           history_->clear();
         }
-        f.history = history_->use();
+        f.options.history = history_->use();
         continue;
       }
       GpuImage& image =
@@ -146,7 +146,7 @@ PellucidContextDesc contextDesc(const Device& device) {
   desc.physicalDevice = device.physicalDevice();
   desc.device = device.handle();
   desc.getInstanceProcAddr = &vkGetInstanceProcAddr;
-  desc.descriptorPools = !device.pushes();
+  desc.options.descriptorPools = !device.pushes();
   return desc;
 }
 
@@ -154,14 +154,14 @@ Context::Context(Device& device, const std::function<void(PellucidContextDesc&)>
   PellucidContextDesc desc = contextDesc(device);
   desc.message = &appendError;
   desc.messageUser = &message_;
-  if (device.writesWithoutFormat()) desc.outputFormat = VK_FORMAT_UNDEFINED;
+  if (device.writesWithoutFormat()) desc.options.outputFormat = VK_FORMAT_UNDEFINED;
   // Called where there are pipelines to make.
-  desc.parallelFor = [](void*, uint32_t count, void (*job)(void*, uint32_t), void* data) {
+  desc.options.parallelFor = [](void*, uint32_t count, void (*job)(void*, uint32_t), void* data) {
     const ProgressLine progress("compiling shaders");
     parallelRows(static_cast<int>(count), 0, [&](int i) { job(data, static_cast<uint32_t>(i)); });
   };
   if (change) change(desc);
-  desc.deferPipelines = compile == Compile::WhenPlanned;
+  desc.options.deferPipelines = compile == Compile::WhenPlanned;
   const PellucidResult result = pellucidCreateContext(&desc, &context_);
   if (result != PELLUCID_OK) throw DeviceError(std::string(pellucidResultName(result)) + ": " + message_);
 }
@@ -182,8 +182,8 @@ const Context& Contexts::of(const Capture& capture) {
   std::unique_ptr<Context>& context = contexts_[2 * arrays + tables];
   if (!context)
     context = std::make_unique<Context>(device_, [&](PellucidContextDesc& desc) {
-      if (arrays) desc.shadowViewType = VK_IMAGE_VIEW_TYPE_2D_ARRAY;
-      desc.lightTables = tables;
+      if (arrays) desc.options.shadowViewType = VK_IMAGE_VIEW_TYPE_2D_ARRAY;
+      desc.options.lightTables = tables;
     });
   return *context;
 }
@@ -203,7 +203,7 @@ FrameRun::FrameRun(Device& device, const Context& context, const Capture& captur
                    std::shared_ptr<const InputImages> inputs, const FrameRun* previous, ImagePool* pool)
     : device_(device), context_(context), name_(capture.name), plan_(std::make_unique<PellucidPlan>()) {
   makeFrame(capture, inputs->shape(), materials, settings, data_);
-  if (!data_.frame.separateOutput)
+  if (!data_.frame.options.separateOutput)
     throw InputError(name_, "aliasOutput", "the inputs are other frames', too");
   images_ = std::make_unique<Images>(device, capture, settings, data_, std::move(inputs),
                                      previous ? previous->images_.get() : nullptr, pool);
@@ -244,7 +244,7 @@ PellucidFrame FrameRun::frameFor(std::uint32_t recording) const {
   if (device_.pushes()) return frame;
   const auto [pool, isNew] = pools_.try_emplace(recording, device_);
   if (isNew) requireRecorded(pellucidCreateDescriptorPool(context_.handle(), pool->second.receive()));
-  frame.descriptorPool = pool->second;
+  frame.options.descriptorPool = pool->second;
   return frame;
 }
 

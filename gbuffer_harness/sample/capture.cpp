@@ -60,7 +60,7 @@ Capture Renderer::capture() {
       const int size = static_cast<int>(t.size);
       map.depth = {cropped(layer, map.offset[0], map.offset[1], size, size), PELLUCID_DEPTH_DEVICE};
       map.clipFromWorld = fromGlm(t.clipFromWorld);
-      map.faces = t.frontsCulled ? PELLUCID_FACES_BACK : PELLUCID_FACES_FRONT;
+      map.backFaces = t.frontsCulled;
       map.depthBiasConstant = static_cast<double>(t.biasConstant * t.depthStep);
       map.depthBiasSlope = static_cast<double>(t.biasSlope);
       map.depthStep = static_cast<double>(t.depthStep);

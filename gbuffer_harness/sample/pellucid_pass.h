@@ -12,13 +12,12 @@ public:
     PellucidContextDesc desc;
     pellucidInitContextDesc(&desc);
     desc.instance = device.instance(), desc.physicalDevice = device.physicalDevice();
-    desc.device = device.handle(), desc.getInstanceProcAddr = vkGetInstanceProcAddr;
-    desc.message = report;
-    desc.shadowViewType = VK_IMAGE_VIEW_TYPE_2D_ARRAY;  // cascades, atlas and cube are arrays
-    desc.normalEncoding = PELLUCID_NORMALS_OCTAHEDRAL_UNORM;
+    desc.device = device.handle(), desc.getInstanceProcAddr = vkGetInstanceProcAddr, desc.message = report;
+    desc.options.shadowViewType = VK_IMAGE_VIEW_TYPE_2D_ARRAY;  // cascades, atlas and cube are arrays
+    desc.options.normalEncoding = PELLUCID_NORMALS_OCTAHEDRAL_UNORM;
     require(pellucidCreateContext(&desc, &context_));
-    for (size_t i = 0; i < tables_.size(); ++i)
-      require(pellucidMakeMaterialTables(&materials_[i], &tables_[i]));
+    size_t i = 0;
+    for (PellucidMaterialTables& t : tables_) require(pellucidMakeMaterialTables(&materials_[i++], &t));
   }
   ~PellucidPass() { pellucidDestroyContext(context_); }
 
@@ -27,7 +26,7 @@ public:
     PellucidFrame frame;
     pellucidInitFrame(&frame);
     std::copy_n(&f.extent.width, 2, frame.imageExtent);
-    std::copy_n(&f.rect.width, 2, frame.renderRect + 2);
+    std::copy_n(&f.rect.width, 2, frame.options.renderRect + 2);
     // The rendered rect has a projection of its own; clipFromView is that of the whole image.
     const double x = 1.0 * f.rect.width / f.extent.width, y = 1.0 * f.rect.height / f.extent.height;
     const glm::dmat4 whole(x, 0, 0, 0, 0, y, 0, 0, 0, 0, 1, 0, x - 1, y - 1, 0, 1);
@@ -36,19 +35,20 @@ public:
     frame.metersPerUnit = f.metersPerUnit, frame.preExposure = f.preExposure;
     frame.frontDepth = f.depth, frame.backDepth = f.backDepth;
     frame.normal = f.normal, frame.albedo = f.albedo, frame.irradiance = f.irradiance;
-    frame.material = f.surface, frame.materialMask = 0xFF0000, frame.materialShift = 16;  // beside roughness
-    frame.output = f.color, frame.outputMode = PELLUCID_OUTPUT_ADD;                       // to specular light
+    frame.material = f.surface, frame.output = f.color;
+    frame.options.materialMask = 0xFF0000, frame.options.materialShift = 16;  // beside roughness
+    frame.options.addToOutput = 1;                                            // to specular light
     frame.materialCount = static_cast<uint32_t>(materials_.size()), frame.materials = materials_.data();
-    frame.materialTables = tables_.data(), frame.gatherSamples = f.gatherSamples;
-    frame.ambient = f.hasAmbient ? &f.ambient[0][0] : nullptr;
+    frame.options.materialTables = tables_.data(), frame.options.gatherSamples = f.gatherSamples;
+    frame.options.ambient = f.hasAmbient ? &f.ambient[0][0] : nullptr;
     frame.lightCount = static_cast<uint32_t>(f.lights.size()), frame.lights = f.lights.data();
     std::vector<PellucidShadowMap> maps;
     for (const ShadowTile& t : f.tiles) {
-      maps.push_back({t.image, {t.x, t.y}, {t.size, t.size}, t.layer, PELLUCID_DEPTH_DEVICE});
+      maps.push_back({t.image, {t.size, t.size}, PELLUCID_DEPTH_DEVICE});
       put(t.clipFromWorld, maps.back().clipFromWorld);
-      maps.back().faces = t.frontsCulled ? PELLUCID_FACES_BACK : PELLUCID_FACES_FRONT;
-      maps.back().depthBiasConstant = t.biasConstant * t.depthStep;  // factors of vkCmdSetDepthBias
-      maps.back().depthBiasSlope = t.biasSlope, maps.back().depthStep = t.depthStep;
+      maps.back().options = {.offset = {t.x, t.y}, .layer = t.layer, .backFaces = t.frontsCulled};
+      maps.back().options.depthBiasConstant = t.biasConstant * t.depthStep;  // factors of vkCmdSetDepthBias
+      maps.back().options.depthBiasSlope = t.biasSlope, maps.back().options.depthStep = t.depthStep;
     }
     frame.shadowMapCount = static_cast<uint32_t>(maps.size()), frame.shadowMaps = maps.data();
     frame.shadowImageCount = kShadowImages, frame.shadowImages = f.shadows.data();

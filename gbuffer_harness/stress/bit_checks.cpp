@@ -57,8 +57,8 @@ std::optional<Worst> alias(Subject& s) {
 
 std::optional<Worst> lists(Subject& s) {
   StressFrame other = s.frame;
-  const bool asks = s.frame.settings.indirectDispatches == PELLUCID_INDIRECT_MATERIAL;
-  other.settings.indirectDispatches = asks ? PELLUCID_INDIRECT_NONE : PELLUCID_INDIRECT_MATERIAL;
+  const bool asks = s.frame.settings.indirectDispatches == 1;
+  other.settings.indirectDispatches = asks ? 0 : 1;
   const std::unique_ptr<FrameRun> run = s.renderer.prepare(other);
   if (!hasLists(*s.run) && !hasLists(*run)) return {};
   return differentBits(s.output, s.renderer.render(other, *run, other.index), s.owned);

@@ -81,7 +81,6 @@ const StressFrame* ungathered(Subject& s, StressFrame& frame) {
   if (!s.translucent()) return nullptr;
   frame = s.plain();
   frame.settings.translucency.gatherSamples = 0;
-  frame.settings.targetError = 0;  // would choose samples
   return &frame;
 }
 

@@ -42,7 +42,7 @@ void randomAngles(Random& random, TranslucencySettings& t) {
 }
 
 void randomTranslucency(Random& random, bool wild, const StressFrame& frame, TranslucencySettings& t) {
-  if (random.chance(0.2)) t.thicknessSource = PELLUCID_THICKNESS_CAMERA;
+  if (random.chance(0.2)) t.cameraThickness = true;
   if (random.chance(0.25)) randomAngles(random, t);
   t.chordThickness = random.chance(0.2);
   if (random.chance(0.15)) t.maximumThickness = static_cast<float>(random.magnitude(0.1, wild ? 1e9 : 100));
@@ -81,10 +81,9 @@ void randomSettings(Random& random, const View& view, const FrameLimits& limits,
   randomTranslucency(random, frame.wild, frame, s.translucency);
   s.outputFormat = random.of({VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT});
   if (limits.gatherSamples) s.translucency.gatherSamples = *limits.gatherSamples;
-  if (random.chance(0.1)) s.targetError = static_cast<float>(random.magnitude(0.001, 1));
   if (random.chance(0.3)) s.nearestDistance = nearestDistance(frame, view);
   s.aliasOutput = random.chance(0.3);
-  s.indirectDispatches = random.chance(0.6) ? PELLUCID_INDIRECT_MATERIAL : PELLUCID_INDIRECT_NONE;
+  s.indirectDispatches = random.chance(0.6);
   if (random.chance(0.1)) s.reuse = random.of({PELLUCID_REUSE_ALTERNATE, PELLUCID_REUSE_COHERENCE});
   // Views of lights need all in one dispatch.
   if (random.chance(0.08))

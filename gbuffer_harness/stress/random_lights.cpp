@@ -207,7 +207,7 @@ Light randomLight(Random& random, bool wild, const Target& target, const glm::dv
   // No camera looks from where it looks to.
   if (random.chance(0.75) && glm::length(target.center - position) > 0) addMaps(random, wild, target, light);
   if (random.chance(0.1))
-    for (ShadowMap& map : light.shadowMaps) map.faces = PELLUCID_FACES_BACK;
+    for (ShadowMap& map : light.shadowMaps) map.backFaces = true;
   if (wild && random.chance(0.2))
     for (double& d : light.direction) d *= random.magnitude(1e-10, 1e10);
   return light;

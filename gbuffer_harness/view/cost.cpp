@@ -58,11 +58,9 @@ double CostHistory::lastSum() const {
   return sum;
 }
 
-Budget::Budget() { pellucidInitBudgetState(&state); }
-
 bool Budget::step(double frameMilliseconds, ReplaySettings& settings) {
   if (!on) return false;
-  pellucidStepBudget(&state, static_cast<float>(frameMilliseconds), milliseconds);
+  stepBudget(state, static_cast<float>(frameMilliseconds), milliseconds);
   const PellucidReuse reuse = state.reuse ? PELLUCID_REUSE_COHERENCE : PELLUCID_REUSE_NONE;
   std::uint32_t& samples = settings.translucency.gatherSamples;
   const bool changed = samples != state.gatherSamples || settings.reuse != reuse;

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "pellucid/pellucid_budget.h"
 #include "replay/replay.h"
+#include "view/frame_budget.h"
 #include "view/state.h"
 
 namespace pellucid::harness {
@@ -36,13 +36,12 @@ private:
   std::uint64_t last_ = 0;
 };
 
-// Whelan 2009, 6.2.5, by pellucidStepBudget.
+// Whelan 2009, 6.2.5, by stepBudget.
 struct Budget {
   bool on = false;
   float milliseconds = 2;
-  PellucidBudgetState state{};
+  BudgetState state;
 
-  Budget();
   // After one frame of that time: true where the samples or the reuse changed.
   bool step(double frameMilliseconds, ReplaySettings& settings);
 };

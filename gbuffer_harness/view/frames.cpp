@@ -262,7 +262,7 @@ Image ViewFrames::pixels(Shown shown, const Capture& surfaces, const VkRect2D& r
     case Shown::After: {
       const FrameRun& frame = run(shown);
       const Image output = rgb(frame.output(rect));
-      Image result = composited(surfaces, frame.frame().outputFormat);
+      Image result = composited(surfaces, frame.frame().options.outputFormat);
       for (std::size_t i = 0; i < result.pixels(); ++i)
         if (material[i] != 0) std::copy_n(&output.data[3 * i], 3, &result.data[3 * i]);
       return result;

@@ -65,8 +65,7 @@ Parameter usedWhere(Parameter parameter, std::function<bool(const ReplaySettings
 bool hasTranslucency(const ReplaySettings& s) { return s.features & PELLUCID_FEATURE_TRANSLUCENCY; }
 // Other settings of the frame may still keep light from being gathered; the plan's skips say so.
 bool gathers(const ReplaySettings& s) {
-  return hasTranslucency(s) && s.features & PELLUCID_FEATURE_DIFFUSION &&
-         s.translucency.thicknessSource == PELLUCID_THICKNESS_LIGHT;
+  return hasTranslucency(s) && s.features & PELLUCID_FEATURE_DIFFUSION && !s.translucency.cameraThickness;
 }
 bool angleIs(const ReplaySettings& s, PellucidAngleModel model) { return s.translucency.angleModel == model; }
 
@@ -107,20 +106,14 @@ Parameter gatherSpacing() {
 }
 
 ParameterGroup quality() {
-  return {
-      "Quality",
-      true,
-      {usedWhere(gatherSamples(), [](const ReplaySettings& s) { return gathers(s) && s.targetError == 0; }),
-       usedWhere(gatherSpacing(), gathers),
-       feature("translucency", "Light that comes through.", PELLUCID_FEATURE_TRANSLUCENCY),
-       feature("diffusion", "Light that leaves beside where it enters.", PELLUCID_FEATURE_DIFFUSION),
-       bound(real("target-error", "target error",
-                  "Above 0: in place of samples, the least of 0, 8 and 16 whose relative RMSE stays below.",
-                  0, 0.2f),
-             FIELD(targetError)),
-       bound(choice("indirect", "indirect", "Passes run everywhere, or where the GPU finds material.",
-                    {"none", "material"}),
-             FIELD(indirectDispatches))}};
+  return {"Quality",
+          true,
+          {usedWhere(gatherSamples(), gathers), usedWhere(gatherSpacing(), gathers),
+           feature("translucency", "Light that comes through.", PELLUCID_FEATURE_TRANSLUCENCY),
+           feature("diffusion", "Light that leaves beside where it enters.", PELLUCID_FEATURE_DIFFUSION),
+           bound(choice("indirect", "indirect", "Passes run everywhere, or where the GPU finds material.",
+                        {"none", "material"}),
+                 FIELD(indirectDispatches))}};
 }
 
 ParameterGroup thickness() {
@@ -128,7 +121,7 @@ ParameterGroup thickness() {
           false,
           {usedWhere(bound(choice("thickness", "thickness", "Its source for lights with a shadow map.",
                                   {"light", "camera"}),
-                           FIELD(translucency.thicknessSource)),
+                           FIELD(translucency.cameraThickness)),
                      hasTranslucency),
            usedWhere(bound(choice("transmittance", "T(d)", "What stands for the material's own.",
                                   {"material", "linear", "Gaussians", "Gaussians as printed"}),
@@ -144,8 +137,7 @@ ParameterGroup thickness() {
            usedWhere(bound(flag("chord", "chord", "Camera thickness without the cosine correction."),
                            FIELD(translucency.chordThickness)),
                      [](const ReplaySettings& s) {
-                       return hasTranslucency(s) &&
-                              s.translucency.thicknessSource == PELLUCID_THICKNESS_CAMERA;
+                       return hasTranslucency(s) && s.translucency.cameraThickness;
                      })}};
 }
 
@@ -191,10 +183,6 @@ ParameterGroup reuse() {
            usedWhere(bound(real("coherence-threshold", "threshold",
                                 "Change of the cosine between camera and light.", 0, 0.1f),
                            FIELD(coherenceThreshold)),
-                     [](const ReplaySettings& s) { return s.reuse == PELLUCID_REUSE_COHERENCE; }),
-           usedWhere(bound(real("frame-load", "frame load",
-                                "Frame time over its budget; above 1 it multiplies the threshold.", 0, 4),
-                           FIELD(frameLoad)),
                      [](const ReplaySettings& s) { return s.reuse == PELLUCID_REUSE_COHERENCE; })}};
 }
 

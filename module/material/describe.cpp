@@ -76,30 +76,29 @@ Description describePreset(const PellucidMaterialDesc& desc) {
 
 Description describeSpectrum(const PellucidMaterialDesc& desc) {
   checkMedium(desc);
-  const PellucidSpectrum& spectrum = desc.spectrum;
-  requireCount("spectrum.count", spectrum.count, 2, PELLUCID_MAX_WAVELENGTHS);
-  if (spectrum.wavelength == nullptr) throw Refusal("spectrum.wavelength", "no array is given");
-  if (spectrum.scattering == nullptr) throw Refusal("spectrum.scattering", "no array is given");
-  if (spectrum.absorption == nullptr) throw Refusal("spectrum.absorption", "no array is given");
-  const std::span wavelength(spectrum.wavelength, spectrum.count);
-  const std::span scattering(spectrum.scattering, spectrum.count);
-  const std::span absorption(spectrum.absorption, spectrum.count);
+  requireCount("wavelengthCount", desc.wavelengthCount, 2, PELLUCID_MAX_WAVELENGTHS);
+  if (desc.wavelength == nullptr) throw Refusal("wavelength", "no array is given");
+  if (desc.spectralScattering == nullptr) throw Refusal("spectralScattering", "no array is given");
+  if (desc.spectralAbsorption == nullptr) throw Refusal("spectralAbsorption", "no array is given");
+  const std::span wavelength(desc.wavelength, desc.wavelengthCount);
+  const std::span scattering(desc.spectralScattering, desc.wavelengthCount);
+  const std::span absorption(desc.spectralAbsorption, desc.wavelengthCount);
   for (std::size_t i = 0; i < wavelength.size(); ++i) {
-    requireRange(indexed("spectrum.wavelength", i), wavelength[i], 1, 1e6);
+    requireRange(indexed("wavelength", i), wavelength[i], 1, 1e6);
     if (i > 0 && !(wavelength[i] > wavelength[i - 1]))
-      throw Refusal(indexed("spectrum.wavelength", i), number(wavelength[i]) + " does not increase");
-    checkedCoefficients(desc, indexed("spectrum.scattering", i), indexed("spectrum.absorption", i),
+      throw Refusal(indexed("wavelength", i), number(wavelength[i]) + " does not increase");
+    checkedCoefficients(desc, indexed("spectralScattering", i), indexed("spectralAbsorption", i),
                         scattering[i], absorption[i]);
   }
   if (wavelength.front() > wavelengthAt(kWavelengthCount - 1) || wavelength.back() < wavelengthAt(0))
-    throw Refusal("spectrum.wavelength", number(wavelength.front()) + " to " + number(wavelength.back()) +
-                                             " nm has no part in 380 to 780");
+    throw Refusal("wavelength", number(wavelength.front()) + " to " + number(wavelength.back()) +
+                                    " nm has no part in 380 to 780");
   Description description{
       checkedIor(desc.ior, kDefaultIor), {}, rec709Weights(checkedIlluminant(desc.illuminant))};
   for (int i = 0; i < kWavelengthCount; ++i) {
     const double nm = wavelengthAt(i);
     description.stacks.push_back({{},
-                                  checkedCoefficients(desc, "spectrum.scattering", "spectrum.absorption",
+                                  checkedCoefficients(desc, "spectralScattering", "spectralAbsorption",
                                                       interpolate(wavelength, scattering, nm),
                                                       interpolate(wavelength, absorption, nm))});
   }

@@ -49,6 +49,7 @@ inline constexpr std::array<Binding, PELLUCID_BINDING_COUNT> kBindings = {{
     {PELLUCID_BINDING_PROBES_DESTINATION, "probesImage", kStored},
     {PELLUCID_BINDING_FILTERED_DESTINATION, "sharedImage", kStored},
     {PELLUCID_BINDING_BLOCKS, "blocksImage", kStored},
+    {PELLUCID_BINDING_HIDDEN_IRRADIANCE, "hiddenIrradianceImage", kSampled},
     {PELLUCID_BINDING_SHADOW_IMAGES, "shadowImage0", kSampled},
     {PELLUCID_BINDING_SHADOW_IMAGES + 1, "shadowImage1", kSampled},
     {PELLUCID_BINDING_SHADOW_IMAGES + 2, "shadowImage2", kSampled},

@@ -50,7 +50,7 @@ shared::FrameConstants frameConstants(const FrameFacts& facts) {
   const PellucidFrame& f = facts.frame;
   shared::FrameConstants c{};
   c.camera = facts.camera;
-  c.viewFromNormal = f.normalsInViewSpace ? glm::mat4(1) : glm::mat4(glm::mat3(facts.viewFromWorld));
+  c.viewFromNormal = f.options.normalsInViewSpace ? glm::mat4(1) : glm::mat4(glm::mat3(facts.viewFromWorld));
   const glm::mat3 normalFromView = glm::transpose(glm::mat3(c.viewFromNormal));
   const shared::Camera& camera = c.camera;
   c.normalRay[0] = {normalFromView * glm::vec3(camera.rayBase.x, camera.rayBase.y, camera.range.x), 0};
@@ -74,20 +74,20 @@ shared::FrameConstants frameConstants(const FrameFacts& facts) {
   uint32_t flags = 0;
   for (const ImageField& image : kImageFields)
     if (given(f.*image.field)) flags |= image.flag;
-  if (f.frontDepthEncoding == PELLUCID_DEPTH_VIEW_Z) flags |= PELLUCID_FLAG_FRONT_VIEW_Z;
-  if (f.backDepthEncoding == PELLUCID_DEPTH_VIEW_Z) flags |= PELLUCID_FLAG_BACK_VIEW_Z;
-  if (f.thicknessSource == PELLUCID_THICKNESS_CAMERA) flags |= PELLUCID_FLAG_CAMERA_THICKNESS;
+  if (f.options.frontDepthEncoding == PELLUCID_DEPTH_VIEW_Z) flags |= PELLUCID_FLAG_FRONT_VIEW_Z;
+  if (f.options.backDepthEncoding == PELLUCID_DEPTH_VIEW_Z) flags |= PELLUCID_FLAG_BACK_VIEW_Z;
+  if (f.options.cameraThickness == 1) flags |= PELLUCID_FLAG_CAMERA_THICKNESS;
   if (t.constantViewDirection) flags |= PELLUCID_FLAG_CONSTANT_VIEW;
   if (t.chordThickness) flags |= PELLUCID_FLAG_CHORD_THICKNESS;
   if (facts.lights.needsChord) flags |= PELLUCID_FLAG_CHORD;
   if (facts.diffuses) flags |= PELLUCID_FLAG_DIFFUSED;
   if (facts.wide) flags |= PELLUCID_FLAG_WIDE_OUTPUT;
-  if (f.outputMode == PELLUCID_OUTPUT_ADD) flags |= PELLUCID_FLAG_ADDS;
+  if (f.options.addToOutput == 1) flags |= PELLUCID_FLAG_ADDS;
   if (facts.thinWalls) flags |= PELLUCID_FLAG_THIN_WALLS;
-  c.flags = {flags, f.materialCount, f.debugView, t.angleModel};
+  c.flags = {flags, f.materialCount, f.options.debugView, t.angleModel};
   const float* p = t.anglePolynomial;
   c.anglePolynomial = {p[0], p[1], p[2], p[3]};
-  c.marks = {t.materialMarkBit, f.materialShift, facts.materialBits() & ~t.materialMarkBit, 0};
+  c.marks = {t.materialMarkBit, f.options.materialShift, facts.materialBits() & ~t.materialMarkBit, 0};
   c.filterAndLimit = rgb(t.transmittanceFilter, t.maximumThickness > 0 ? t.maximumThickness : INFINITY);
   for (uint32_t level = kFirstLevel; level <= PELLUCID_LAST_LEVEL; ++level) {
     const PyramidPlace& place = facts.pyramid.levels[level];
@@ -143,15 +143,15 @@ uint32_t bitsOf(float value) {
 
 // The map's layer of an image, as the shaders' shadowTexel takes them.
 uint32_t placeOf(const LightGroup& group, const PellucidShadowMap& map, uint32_t image) {
-  return group.slot(image) | map.layer << 8;
+  return group.slot(image) | map.options.layer << 8;
 }
 
 glm::uvec4 occluderConstants(const FrameFacts& f, const PellucidShadowMap& s, const PellucidLight& l,
                              const LightGroup& group) {
-  const float scale = s.casterMaterialScale == 0 ? 255.0f : s.casterMaterialScale;
-  return {group.readsExit(f, f, l, s) ? placeOf(group, s, s.exitImage - 1) + 1 : 0,
-          group.readsCaster(s) ? placeOf(group, s, s.casterMaterialImage - 1) + 1 : 0, bitsOf(scale),
-          s.offset[0] | s.offset[1] << 16};
+  const float scale = s.options.casterMaterialScale == 0 ? 255.0f : s.options.casterMaterialScale;
+  return {group.readsExit(f, f, l, s) ? placeOf(group, s, s.options.exitImage - 1) + 1 : 0,
+          group.readsCaster(s) ? placeOf(group, s, s.options.casterMaterialImage - 1) + 1 : 0, bitsOf(scale),
+          s.options.offset[0] | s.options.offset[1] << 16};
 }
 
 shared::ShadowConstants shadowConstants(const FrameFacts& f, const PellucidShadowMap& s,
@@ -168,10 +168,10 @@ shared::ShadowConstants shadowConstants(const FrameFacts& f, const PellucidShado
   const glm::dvec4 zRow(clipFromWorld[0][2], clipFromWorld[1][2], clipFromWorld[2][2], clipFromWorld[3][2]);
   double depthScale = 1;
   if (encoding == PELLUCID_DEPTH_VIEW_Z) {
-    const glm::dmat4 planar = toMatrix(s.viewFromWorld) * worldFromView;
+    const glm::dmat4 planar = toMatrix(s.options.viewFromWorld) * worldFromView;
     c.planar = -glm::vec4(planar[0][2], planar[1][2], planar[2][2], planar[3][2]);
     if (!perspective) {
-      const glm::dmat4 view = toMatrix(s.viewFromWorld);
+      const glm::dmat4 view = toMatrix(s.options.viewFromWorld);
       depthScale = 1 / -glm::dot(glm::dvec3(view[0][2], view[1][2], view[2][2]), travel(l));
     }
   } else if (perspective) {
@@ -181,7 +181,8 @@ shared::ShadowConstants shadowConstants(const FrameFacts& f, const PellucidShado
   }
   c.depth = {static_cast<float>(depthScale), static_cast<float>(texelSide(s)),
              static_cast<float>(s.extent[0]), static_cast<float>(s.extent[1])};
-  c.offsets = {s.depthBiasConstant, s.depthBiasSlope, s.offsetLength, s.depthStep};
+  c.offsets = {s.options.depthBiasConstant, s.options.depthBiasSlope, s.options.offsetLength,
+               s.options.depthStep};
   // A cleared device-depth map holds its far plane: depth grows away from the light, or is reversed.
   const bool forward = perspective ? depthScale < 0 : depthScale > 0;
   c.meta = {placeOf(group, s, s.image), encoding, perspective ? 1u : 0u, bitsOf(forward ? 1.0f : 0.0f)};
@@ -229,9 +230,9 @@ void put(void* slice, VkDeviceSize offset, const T& value) {
 }
 
 void putLightTables(const FrameFacts& f, void* mapped) {
-  for (uint32_t table = 0; table < f.frame.lightTableCount; ++table) {
+  for (uint32_t table = 0; table < f.frame.options.lightTableCount; ++table) {
     std::array<uint32_t, PELLUCID_LIGHT_ENTRIES / 2> halves;
-    const float* factor = f.frame.lightTables[table].factor;
+    const float* factor = f.frame.options.lightTables[table].factor;
     for (size_t i = 0; i < halves.size(); ++i)
       halves[i] = glm::packHalf2x16({factor[2 * i], factor[2 * i + 1]});
     put(mapped,
@@ -296,8 +297,8 @@ PellucidResult writeConstants(const FrameFacts& f, const PellucidPlan& plan, voi
   float reach = 0;
   for (uint32_t i = 0; i < f.frame.materialCount; ++i) {
     MaterialTables tables;
-    if (f.frame.materialTables)
-      std::memcpy(&tables, f.frame.materialTables[i].words, sizeof tables);
+    if (f.frame.options.materialTables)
+      std::memcpy(&tables, f.frame.options.materialTables[i].words, sizeof tables);
     else
       makeTables(f.material(i), &tables);
     put(mapped, layout.materials.offset + i * sizeof(shared::MaterialConstants),

@@ -43,37 +43,43 @@ PellucidResult checkDesc(const PellucidContextDesc& desc, Findings& out) {
              "is NULL");
     return out.result();
   }
-  if (desc.outputFormat != VK_FORMAT_UNDEFINED && desc.outputFormat != VK_FORMAT_R16G16B16A16_SFLOAT &&
-      desc.outputFormat != VK_FORMAT_R32G32B32A32_SFLOAT) {
-    out.fail(PELLUCID_ERROR_INVALID_ARGUMENT, "outputFormat", "is VkFormat ",
-             static_cast<int>(desc.outputFormat),
+  if (desc.options.outputFormat != VK_FORMAT_UNDEFINED &&
+      desc.options.outputFormat != VK_FORMAT_R16G16B16A16_SFLOAT &&
+      desc.options.outputFormat != VK_FORMAT_R32G32B32A32_SFLOAT) {
+    out.fail(PELLUCID_ERROR_INVALID_ARGUMENT, "options.outputFormat", "is VkFormat ",
+             static_cast<int>(desc.options.outputFormat),
              "; R16G16B16A16_SFLOAT, R32G32B32A32_SFLOAT and UNDEFINED are possible");
     return out.result();
   }
-  if (desc.shadowViewType != VK_IMAGE_VIEW_TYPE_2D && desc.shadowViewType != VK_IMAGE_VIEW_TYPE_2D_ARRAY) {
-    out.fail(PELLUCID_ERROR_INVALID_ARGUMENT, "shadowViewType", "is VkImageViewType ",
-             static_cast<int>(desc.shadowViewType), "; 2D and 2D_ARRAY are possible");
+  if (desc.options.shadowViewType != VK_IMAGE_VIEW_TYPE_2D &&
+      desc.options.shadowViewType != VK_IMAGE_VIEW_TYPE_2D_ARRAY) {
+    out.fail(PELLUCID_ERROR_INVALID_ARGUMENT, "options.shadowViewType", "is VkImageViewType ",
+             static_cast<int>(desc.options.shadowViewType), "; 2D and 2D_ARRAY are possible");
     return out.result();
   }
-  if (desc.normalEncoding > PELLUCID_NORMALS_OCTAHEDRAL_UNORM) {
-    out.fail(PELLUCID_ERROR_INVALID_ARGUMENT, "normalEncoding", "is ", desc.normalEncoding,
+  if (desc.options.normalEncoding > PELLUCID_NORMALS_OCTAHEDRAL_UNORM) {
+    out.fail(PELLUCID_ERROR_INVALID_ARGUMENT, "options.normalEncoding", "is ", desc.options.normalEncoding,
              ", not a PellucidNormalEncoding");
     return out.result();
   }
-  if (desc.deferPipelines > 1) {
-    out.fail(PELLUCID_ERROR_INVALID_ARGUMENT, "deferPipelines", "is ", desc.deferPipelines, ", not 0 or 1");
+  if (desc.options.deferPipelines > 1) {
+    out.fail(PELLUCID_ERROR_INVALID_ARGUMENT, "options.deferPipelines", "is ", desc.options.deferPipelines,
+             ", not 0 or 1");
     return out.result();
   }
-  if (desc.lightTables > 1) {
-    out.fail(PELLUCID_ERROR_INVALID_ARGUMENT, "lightTables", "is ", desc.lightTables, ", not 0 or 1");
+  if (desc.options.lightTables > 1) {
+    out.fail(PELLUCID_ERROR_INVALID_ARGUMENT, "options.lightTables", "is ", desc.options.lightTables,
+             ", not 0 or 1");
     return out.result();
   }
-  if (desc.descriptorPools > 1) {
-    out.fail(PELLUCID_ERROR_INVALID_ARGUMENT, "descriptorPools", "is ", desc.descriptorPools, ", not 0 or 1");
+  if (desc.options.descriptorPools > 1) {
+    out.fail(PELLUCID_ERROR_INVALID_ARGUMENT, "options.descriptorPools", "is ", desc.options.descriptorPools,
+             ", not 0 or 1");
     return out.result();
   }
-  if (desc.uses & ~kAllUses) {
-    out.fail(PELLUCID_ERROR_INVALID_ARGUMENT, "uses", "has unknown bits ", desc.uses & ~kAllUses);
+  if (desc.options.uses & ~kAllUses) {
+    out.fail(PELLUCID_ERROR_INVALID_ARGUMENT, "options.uses", "has unknown bits ",
+             desc.options.uses & ~kAllUses);
     return out.result();
   }
   if (desc.apiVersion < VK_API_VERSION_1_1) {
@@ -104,7 +110,7 @@ PellucidResult checkDesc(const PellucidContextDesc& desc, Findings& out) {
 VkResult createLayout(PellucidContext& c, uint32_t index, const char** call) {
   VkDescriptorSetLayoutBinding bindings[PELLUCID_BINDING_COUNT];
   VkDescriptorSetLayoutCreateInfo set{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
-  if (!c.desc.descriptorPools) set.flags = VK_DESCRIPTOR_SET_LAYOUT_CREATE_PUSH_DESCRIPTOR_BIT_KHR;
+  if (!c.desc.options.descriptorPools) set.flags = VK_DESCRIPTOR_SET_LAYOUT_CREATE_PUSH_DESCRIPTOR_BIT_KHR;
   forEach(allPasses()[index]->bindings(), [&](const Binding& b) {
     bindings[set.bindingCount++] = {b.number, b.type, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr};
   });
@@ -142,13 +148,13 @@ struct PipelineJobs {
 VkResult createPipeline(const PellucidContext& c, uint32_t index, VkPipeline* pipeline) {
   const PellucidContextDesc& desc = c.desc;
   const Pass& pass = *allPasses()[index];
-  std::span<const uint32_t> words = pass.wordsFor(desc.shadowViewType);
+  std::span<const uint32_t> words = pass.wordsFor(desc.options.shadowViewType);
   std::unique_ptr<uint32_t[]> patched;
-  if (desc.outputFormat != VK_FORMAT_UNDEFINED) {
+  if (desc.options.outputFormat != VK_FORMAT_UNDEFINED) {
     patched.reset(new (std::nothrow) uint32_t[words.size()]);
     if (!patched) return VK_ERROR_OUT_OF_HOST_MEMORY;
     std::copy(words.begin(), words.end(), patched.get());
-    fixOutputFormat(patched.get(), words.size(), desc.outputFormat == VK_FORMAT_R32G32B32A32_SFLOAT);
+    fixOutputFormat(patched.get(), words.size(), desc.options.outputFormat == VK_FORMAT_R32G32B32A32_SFLOAT);
     words = {patched.get(), words.size()};
   }
   VkShaderModuleCreateInfo moduleInfo{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
@@ -161,9 +167,9 @@ VkResult createPipeline(const PellucidContext& c, uint32_t index, VkPipeline* pi
   constexpr size_t kMostConstants = 5;
   std::array<PellucidSpecialization, kMostConstants> constants;
   PellucidSpecialization* end = std::copy(pass.constants.begin(), pass.constants.end(), constants.begin());
-  *end++ = {PELLUCID_SPECIALIZATION_NORMALS, desc.normalEncoding};
-  *end++ = {PELLUCID_SPECIALIZATION_LIGHT_TABLES, desc.lightTables};
-  *end++ = {PELLUCID_SPECIALIZATION_USES, desc.uses != 0 ? desc.uses : UINT32_MAX};
+  *end++ = {PELLUCID_SPECIALIZATION_NORMALS, desc.options.normalEncoding};
+  *end++ = {PELLUCID_SPECIALIZATION_LIGHT_TABLES, desc.options.lightTables};
+  *end++ = {PELLUCID_SPECIALIZATION_USES, desc.options.uses != 0 ? desc.options.uses : UINT32_MAX};
   const auto count = static_cast<uint32_t>(end - constants.data());
   std::array<VkSpecializationMapEntry, kMostConstants> entries;
   for (uint32_t i = 0; i < count; ++i)
@@ -179,7 +185,8 @@ VkResult createPipeline(const PellucidContext& c, uint32_t index, VkPipeline* pi
   info.stage.pName = "main";
   info.stage.pSpecializationInfo = &specialization;
   info.layout = c.pipelineLayouts[index];
-  result = c.vk.vkCreateComputePipelines(c.device, desc.pipelineCache, 1, &info, c.callbacks(), pipeline);
+  result =
+      c.vk.vkCreateComputePipelines(c.device, desc.options.pipelineCache, 1, &info, c.callbacks(), pipeline);
   c.vk.vkDestroyShaderModule(c.device, module, c.callbacks());
   return result;
 }
@@ -190,7 +197,8 @@ PellucidResult createPipelines(PellucidContext& c, std::bitset<kMostPasses> want
   PipelineJobs jobs{c};
   uint32_t count = 0;
   for (uint32_t i = 0; i < allPasses().size(); ++i)
-    if (wanted[i] && !c.pipelines[i] && (desc.uses == 0 || (allPasses()[i]->uses & ~desc.uses) == 0))
+    if (wanted[i] && !c.pipelines[i] &&
+        (desc.options.uses == 0 || (allPasses()[i]->uses & ~desc.options.uses) == 0))
       jobs.pipelines[count++] = i;
   if (count == 0) return PELLUCID_OK;
   const auto job = [](void* data, uint32_t i) {
@@ -198,8 +206,8 @@ PellucidResult createPipelines(PellucidContext& c, std::bitset<kMostPasses> want
     const uint32_t pipeline = all.pipelines[i];
     all.results[i] = createPipeline(all.context, pipeline, &all.context.pipelines[pipeline]);
   };
-  if (desc.parallelFor)
-    desc.parallelFor(desc.parallelUser, count, job, &jobs);
+  if (desc.options.parallelFor)
+    desc.options.parallelFor(desc.options.parallelUser, count, job, &jobs);
   else
     for (uint32_t i = 0; i < count; ++i) job(&jobs, i);
   for (uint32_t i = 0; i < count; ++i)
@@ -239,8 +247,8 @@ extern "C" PellucidResult pellucidCreateContext(const PellucidContextDesc* given
   auto* c = new (std::nothrow) PellucidContext;
   if (!c) return PELLUCID_ERROR_OUT_OF_MEMORY;
   c->device = desc->device;
-  if (desc->allocator) {
-    c->allocator = *desc->allocator;
+  if (desc->options.allocator) {
+    c->allocator = *desc->options.allocator;
     c->hasAllocator = true;
   }
   c->desc = *desc;
@@ -253,7 +261,7 @@ extern "C" PellucidResult pellucidCreateContext(const PellucidContextDesc* given
     delete c;
     return out.result();
   }
-  if (!desc->descriptorPools && !c->vk.pushDescriptorSet) {
+  if (!desc->options.descriptorPools && !c->vk.pushDescriptorSet) {
     out.fail(PELLUCID_ERROR_MISSING_FEATURE, "device",
              "has no vkCmdPushDescriptorSetKHR; is VK_KHR_push_descriptor enabled? Devices without it need "
              "descriptorPools = 1");
@@ -261,7 +269,7 @@ extern "C" PellucidResult pellucidCreateContext(const PellucidContextDesc* given
     return out.result();
   }
   result = createLayouts(*c, out);
-  if (result == PELLUCID_OK && !desc->deferPipelines)
+  if (result == PELLUCID_OK && !desc->options.deferPipelines)
     result = createPipelines(*c, std::bitset<kMostPasses>().set(), out);
   if (result != PELLUCID_OK) {
     pellucidDestroyContext(c);

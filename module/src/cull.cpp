@@ -118,7 +118,7 @@ const char* ViewBounds::whySkipped(const Inputs& inputs, const Materials& materi
   // Gathered and ambient light come from around, whatever the angle, and from beyond the view.
   if (gather.isGathered(inputs, light) || isAmbient(light)) return nullptr;
   // That view shows thicknesses whether light comes through or not.
-  if (!bounded_ || inputs.frame.debugView == PELLUCID_DEBUG_THICKNESS) return nullptr;
+  if (!bounded_ || inputs.frame.options.debugView == PELLUCID_DEBUG_THICKNESS) return nullptr;
   if (angleStops(inputs, materials, light)) return "no pixel's view ray passes its angle test";
   if (rangeMisses(light)) return "its range does not reach the view";
   if (coneMisses(light)) return "its cone points away from the view";

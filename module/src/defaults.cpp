@@ -4,11 +4,12 @@ namespace pellucid {
 namespace {
 
 // A field that is appended must not land in bytes that older headers left undefined.
-#define ENDS_WITH(Struct, field) (offsetof(Struct, field) + sizeof(Struct::field) == sizeof(Struct))
-static_assert(ENDS_WITH(PellucidFrame, materialTables));
+#define ENDS_WITH(Struct, field) \
+  (offsetof(Struct, field) + sizeof(static_cast<Struct*>(nullptr)->field) == sizeof(Struct))
+static_assert(ENDS_WITH(PellucidFrame, options.thesis));
 static_assert(ENDS_WITH(PellucidMaterial, wallTransmittance));
 static_assert(ENDS_WITH(PellucidThesisOptions, minimumDotTable));
-static_assert(ENDS_WITH(PellucidContextDesc, reserved));
+static_assert(ENDS_WITH(PellucidContextDesc, options.parallelUser));
 #undef ENDS_WITH
 
 }  // namespace
@@ -16,13 +17,13 @@ static_assert(ENDS_WITH(PellucidContextDesc, reserved));
 PellucidFrame defaultFrame() {
   PellucidFrame frame{};
   frame.structSize = sizeof frame;
-  frame.features = PELLUCID_FEATURE_TRANSLUCENCY | PELLUCID_FEATURE_DIFFUSION;
+  frame.options.features = PELLUCID_FEATURE_TRANSLUCENCY | PELLUCID_FEATURE_DIFFUSION;
   frame.metersPerUnit = 1;
   for (int i = 0; i < 4; ++i) frame.viewFromWorld[i * 5] = 1;
-  frame.outputFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
-  frame.coherenceThreshold = 0.005f;
-  frame.gatherSamples = 8;
-  frame.indirectDispatches = PELLUCID_INDIRECT_MATERIAL;
+  frame.options.outputFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
+  frame.options.coherenceThreshold = 0.005f;
+  frame.options.gatherSamples = 8;
+  frame.options.indirectDispatches = 1;
   frame.preExposure = 1;
   return frame;
 }
@@ -41,8 +42,8 @@ PellucidContextDesc defaultContextDesc() {
   desc.structSize = sizeof desc;
   desc.headerVersion = PELLUCID_HEADER_VERSION;
   desc.apiVersion = VK_API_VERSION_1_1;
-  desc.outputFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
-  desc.shadowViewType = VK_IMAGE_VIEW_TYPE_2D;
+  desc.options.outputFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
+  desc.options.shadowViewType = VK_IMAGE_VIEW_TYPE_2D;
   return desc;
 }
 

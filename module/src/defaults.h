@@ -7,10 +7,10 @@
 
 namespace pellucid {
 
-constexpr size_t kLeastFrame = PELLUCID_LEAST_SIZE(PellucidFrame, thicknessSource);
+constexpr size_t kLeastFrame = PELLUCID_LEAST_SIZE(PellucidFrame, options);
 constexpr size_t kLeastMaterial = PELLUCID_LEAST_SIZE(PellucidMaterial, burleyDistance);
 constexpr size_t kLeastThesisOptions = PELLUCID_LEAST_SIZE(PellucidThesisOptions, angleModel);
-constexpr size_t kLeastContextDesc = PELLUCID_LEAST_SIZE(PellucidContextDesc, pipelineCache);
+constexpr size_t kLeastContextDesc = PELLUCID_LEAST_SIZE(PellucidContextDesc, options);
 
 PellucidFrame defaultFrame();
 PellucidThesisOptions defaultThesisOptions();

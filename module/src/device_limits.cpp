@@ -84,15 +84,15 @@ void checkLimits(const PellucidContextDesc& desc, const VkPhysicalDeviceProperti
       {"maxPerStageResources", mostBindings(), l.maxPerStageResources}};
   for (const Limit& limit : limits)
     if (limit.has < limit.needed) return refuse(limit.name, limit.has, limit.needed);
-  if (!desc.descriptorPools)
+  if (!desc.options.descriptorPools)
     if (const uint32_t most = mostPushed(desc, get); most > 0 && most < mostBindings())
       return refuse("maxPushDescriptors", most, mostBindings());
   // The diffusion's texels, words of blocks, and the output where its format is known.
-  for (const VkFormat format : {VK_FORMAT_R32G32B32A32_UINT, VK_FORMAT_R32_UINT, desc.outputFormat})
+  for (const VkFormat format : {VK_FORMAT_R32G32B32A32_UINT, VK_FORMAT_R32_UINT, desc.options.outputFormat})
     if (format != VK_FORMAT_UNDEFINED && !isStorage(desc, get, format))
       return out.fail(PELLUCID_ERROR_MISSING_FEATURE, "physicalDevice", properties.deviceName,
                       " has no storage images of VkFormat ", static_cast<int>(format));
-  if (desc.outputFormat == VK_FORMAT_UNDEFINED && !writesWithoutFormat(desc, get))
+  if (desc.options.outputFormat == VK_FORMAT_UNDEFINED && !writesWithoutFormat(desc, get))
     out.fail(PELLUCID_ERROR_MISSING_FEATURE, "physicalDevice", properties.deviceName,
              " has no shaderStorageImageWriteWithoutFormat, which outputFormat = UNDEFINED asks for; set the "
              "format of all frames");

@@ -36,31 +36,29 @@ bool isGaussian(const void* object, uint32_t index) {
   return index % PELLUCID_MAX_GAUSSIANS < as<PellucidMaterial>(object).gaussianCount;
 }
 
-#define FIELD(Struct, name) #name, offsetof(Struct, name), sizeof(Struct::name) / 4
+#define FIELD(Struct, name) #name, offsetof(Struct, name), sizeof(static_cast <Struct*>(nullptr)->name) / 4
 constexpr const char* kMinimumDots = "`angleModel` MINIMUM_DOT_AZIMUTH or _SPHERE";
 
 constexpr auto kFrameFloats = std::to_array<FloatDomain>({
     {FIELD(PellucidFrame, metersPerUnit), 0, 1e-9F, 1e9F, false, nullptr, nullptr},
     {FIELD(PellucidFrame, clipFromView), 0, -kLongest, kLongest, false, nullptr, nullptr},
     {FIELD(PellucidFrame, viewFromWorld), 0, -kLongest, kLongest, false, nullptr, nullptr},
-    {FIELD(PellucidFrame, coherenceThreshold), 0, 0, 2, false, nullptr, nullptr},
-    {FIELD(PellucidFrame, frameLoad), 0, 0, 1e9F, false, nullptr, nullptr},
-    {FIELD(PellucidFrame, targetError), 0, 0, 1e9F, false, nullptr, nullptr},
-    {FIELD(PellucidFrame, nearestDistance), 0, 0, kLongest, false, nullptr, nullptr},
+    {FIELD(PellucidFrame, options.coherenceThreshold), 0, 0, 2, false, nullptr, nullptr},
+    {FIELD(PellucidFrame, options.nearestDistance), 0, 0, kLongest, false, nullptr, nullptr},
     {FIELD(PellucidFrame, preExposure), 0, 1e-9F, 1e9F, false, nullptr, nullptr},
 });
 
 constexpr auto kFrameIntegers = std::to_array<IntegerDomain>({
-    {FIELD(PellucidFrame, frontDepthEncoding), 0, PELLUCID_DEPTH_VIEW_Z},
-    {FIELD(PellucidFrame, backDepthEncoding), 0, PELLUCID_DEPTH_VIEW_Z},
-    {FIELD(PellucidFrame, normalsInViewSpace), 0, 1},
-    {FIELD(PellucidFrame, thicknessSource), 0, PELLUCID_THICKNESS_CAMERA},
-    {FIELD(PellucidFrame, debugView), 0, PELLUCID_DEBUG_IRRADIANCE},
-    {FIELD(PellucidFrame, separateOutput), 0, 1},
-    {FIELD(PellucidFrame, indirectDispatches), 0, PELLUCID_INDIRECT_MATERIAL},
-    {FIELD(PellucidFrame, materialShift), 0, 31},
-    {FIELD(PellucidFrame, outputMode), 0, PELLUCID_OUTPUT_ADD},
-    {FIELD(PellucidFrame, lightTableCount), 0, PELLUCID_MAX_LIGHT_TABLES},
+    {FIELD(PellucidFrame, options.frontDepthEncoding), 0, PELLUCID_DEPTH_VIEW_Z},
+    {FIELD(PellucidFrame, options.backDepthEncoding), 0, PELLUCID_DEPTH_VIEW_Z},
+    {FIELD(PellucidFrame, options.normalsInViewSpace), 0, 1},
+    {FIELD(PellucidFrame, options.cameraThickness), 0, 1},
+    {FIELD(PellucidFrame, options.debugView), 0, PELLUCID_DEBUG_IRRADIANCE},
+    {FIELD(PellucidFrame, options.separateOutput), 0, 1},
+    {FIELD(PellucidFrame, options.indirectDispatches), 0, 1},
+    {FIELD(PellucidFrame, options.materialShift), 0, 31},
+    {FIELD(PellucidFrame, options.addToOutput), 0, 1},
+    {FIELD(PellucidFrame, options.lightTableCount), 0, PELLUCID_MAX_LIGHT_TABLES},
 });
 
 constexpr auto kThesisFloats = std::to_array<FloatDomain>({
@@ -120,21 +118,21 @@ constexpr auto kLightTableFloats =
 
 constexpr auto kMapFloats = std::to_array<FloatDomain>({
     {FIELD(PellucidShadowMap, clipFromWorld), 0, -kLongest, kLongest, false, nullptr, nullptr},
-    {FIELD(PellucidShadowMap, viewFromWorld), 0, -kLongest, kLongest, false, readsView,
+    {FIELD(PellucidShadowMap, options.viewFromWorld), 0, -kLongest, kLongest, false, readsView,
      "VIEW_Z and DISTANCE"},
-    {FIELD(PellucidShadowMap, depthBiasConstant), 0, -kLongest, kLongest, false, nullptr, nullptr},
-    {FIELD(PellucidShadowMap, depthBiasSlope), 0, -1e6F, 1e6F, false, nullptr, nullptr},
-    {FIELD(PellucidShadowMap, offsetLength), 0, 0, kLongest, false, nullptr, nullptr},
-    {FIELD(PellucidShadowMap, depthStep), 0, 0, kLongest, false, nullptr, nullptr},
-    {FIELD(PellucidShadowMap, casterMaterialScale), 0, 0, 65536, false, nullptr, nullptr},
+    {FIELD(PellucidShadowMap, options.depthBiasConstant), 0, -kLongest, kLongest, false, nullptr, nullptr},
+    {FIELD(PellucidShadowMap, options.depthBiasSlope), 0, -1e6F, 1e6F, false, nullptr, nullptr},
+    {FIELD(PellucidShadowMap, options.offsetLength), 0, 0, kLongest, false, nullptr, nullptr},
+    {FIELD(PellucidShadowMap, options.depthStep), 0, 0, kLongest, false, nullptr, nullptr},
+    {FIELD(PellucidShadowMap, options.casterMaterialScale), 0, 0, 65536, false, nullptr, nullptr},
 });
 
 constexpr auto kMapIntegers = std::to_array<IntegerDomain>({
-    {FIELD(PellucidShadowMap, offset), 0, 65535},
+    {FIELD(PellucidShadowMap, options.offset), 0, 65535},
     {FIELD(PellucidShadowMap, extent), 1, 65536},
-    {FIELD(PellucidShadowMap, layer), 0, 65535},
+    {FIELD(PellucidShadowMap, options.layer), 0, 65535},
     {FIELD(PellucidShadowMap, encoding), 0, PELLUCID_DEPTH_DISTANCE},
-    {FIELD(PellucidShadowMap, faces), 0, PELLUCID_FACES_BACK},
+    {FIELD(PellucidShadowMap, options.backFaces), 0, 1},
 });
 #undef FIELD
 

@@ -5,15 +5,10 @@
 
 namespace pellucid {
 
-// Samples of each probe that frame.targetError chooses among.
-constexpr uint32_t kTargetSamples[] = {0, 8, 16};
-
 struct GatherChoice {
   GatherChoice(const Inputs& inputs, const Materials& materials);
 
   const char* whyNotGathered;  // NULL: lights with a map can be. Static string
-  uint32_t askedSamples;       // of each probe: frame.gatherSamples, or those that frame.targetError chose
-  bool missesTarget = false;   // no number of samples has frame.targetError
   uint32_t gatherSamples;      // of each probe, 0 where no light can be gathered
   uint32_t gatherSpacing;      // pixels a side of what one probe stands for
   bool gathers;                // lights with a map are gathered from

@@ -24,6 +24,8 @@ constexpr std::array kImageFields = {
                PELLUCID_BINDING_FRONT_DEPTH, 0},
     ImageField{PELLUCID_RESOURCE_BACK_DEPTH, "backDepth", &PellucidFrame::backDepth, false,
                PELLUCID_BINDING_BACK_DEPTH, PELLUCID_FLAG_BACK_DEPTH},
+    ImageField{PELLUCID_RESOURCE_HIDDEN_IRRADIANCE, "hiddenIrradiance", &PellucidFrame::hiddenIrradiance, false,
+               PELLUCID_BINDING_HIDDEN_IRRADIANCE, PELLUCID_FLAG_HIDDEN_IRRADIANCE},
     ImageField{PELLUCID_RESOURCE_IRRADIANCE, "irradiance", &PellucidFrame::irradiance, true,
                PELLUCID_BINDING_SOURCE, 0},
     ImageField{PELLUCID_RESOURCE_NORMAL, "normal", &PellucidFrame::normal, false, PELLUCID_BINDING_NORMAL,
@@ -40,11 +42,11 @@ inline bool given(const PellucidImage& image) { return image.view != VK_NULL_HAN
 
 // Fields that frames of older headers lack.
 inline VkDescriptorPool poolOf(const PellucidFrame& frame) {
-  return frame.structSize > offsetof(PellucidFrame, descriptorPool) ? frame.descriptorPool : VK_NULL_HANDLE;
+  return frame.structSize > offsetof(PellucidFrame, options.descriptorPool) ? frame.options.descriptorPool : VK_NULL_HANDLE;
 }
 inline const PellucidImage& historyOf(const PellucidFrame& frame) {
   static constexpr PellucidImage kNone{};
-  return frame.structSize > offsetof(PellucidFrame, history) ? frame.history : kNone;
+  return frame.structSize > offsetof(PellucidFrame, options.history) ? frame.options.history : kNone;
 }
 
 // The image of any image resource; a transient's and shadow image's by their index.

@@ -39,7 +39,7 @@ bool readInputs(const PellucidFrame* frame, Findings& out, Inputs* inputs) {
     return false;
   }
   inputs->frame = readStruct(frame, defaultFrame());
-  const PellucidThesisOptions* thesis = inputs->frame.thesis;
+  const PellucidThesisOptions* thesis = inputs->frame.options.thesis;
   if (thesis && !canReadStruct(thesis, kLeastThesisOptions)) {
     out.fail(PELLUCID_ERROR_VERSION, "thesis.structSize", "is ", thesis->structSize, "; this library reads ",
              kLeastThesisOptions, " to ", sizeof(PellucidThesisOptions),

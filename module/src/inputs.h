@@ -14,13 +14,13 @@ struct Inputs {
   bool inPlace = false;  // the output is the irradiance's view
 
   bool has(PellucidResource image) const { return (images & 1u << image) != 0; }
-  bool debug() const { return frame.debugView != PELLUCID_DEBUG_NONE; }
-  bool translucency() const { return (frame.features & PELLUCID_FEATURE_TRANSLUCENCY) != 0; }
+  bool debug() const { return frame.options.debugView != PELLUCID_DEBUG_NONE; }
+  bool translucency() const { return (frame.options.features & PELLUCID_FEATURE_TRANSLUCENCY) != 0; }
   // The output shares no memory with the irradiance.
-  bool separate() const { return frame.separateOutput != 0 || frame.outputMode == PELLUCID_OUTPUT_ADD; }
+  bool separate() const { return frame.options.separateOutput != 0 || frame.options.addToOutput == 1; }
   // Bits of a material value that may hold the index.
   uint32_t materialBits() const {
-    return (frame.materialMask == 0 ? UINT32_MAX : frame.materialMask) >> frame.materialShift;
+    return (frame.options.materialMask == 0 ? UINT32_MAX : frame.options.materialMask) >> frame.options.materialShift;
   }
 
   // frame.materials[index] with the defaults of fields that the caller's lacks. A thin wall's T(d) is
@@ -30,16 +30,16 @@ struct Inputs {
   // add gathered light there, too.
   PellucidMaterial diffused(uint32_t index) const;
   uint32_t diffusedCount(const PellucidMaterial& material) const {
-    return (frame.features & PELLUCID_FEATURE_DIFFUSION) != 0 ? material.gaussianCount : 0;
+    return (frame.options.features & PELLUCID_FEATURE_DIFFUSION) != 0 ? material.gaussianCount : 0;
   }
 
   // All maps of a light hold the same faces.
   bool holdsBackFaces(const PellucidLight& light) const {
-    return light.shadowMapCount > 0 && frame.shadowMaps[light.firstShadowMap].faces == PELLUCID_FACES_BACK;
+    return light.shadowMapCount > 0 && frame.shadowMaps[light.firstShadowMap].options.backFaces == 1;
   }
   // True where the light's thickness is the camera's.
   bool takesChord(const PellucidLight& light) const {
-    return light.shadowMapCount == 0 || frame.thicknessSource == PELLUCID_THICKNESS_CAMERA ||
+    return light.shadowMapCount == 0 || frame.options.cameraThickness == 1 ||
            holdsBackFaces(light);
   }
   // True where solids have no thickness for the light.

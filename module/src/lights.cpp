@@ -25,14 +25,15 @@ bool LightGroup::addImage(uint32_t image) {
 
 bool LightGroup::addImages(const Inputs& inputs, const GatherChoice& gather, const PellucidLight& light,
                            const PellucidShadowMap& map) {
-  return addImage(map.image) && (!readsExit(inputs, gather, light, map) || addImage(map.exitImage - 1)) &&
-         (!readsCaster(map) || addImage(map.casterMaterialImage - 1));
+  return addImage(map.image) &&
+         (!readsExit(inputs, gather, light, map) || addImage(map.options.exitImage - 1)) &&
+         (!readsCaster(map) || addImage(map.options.casterMaterialImage - 1));
 }
 
 bool LightGroup::readsExit(const Inputs& inputs, const GatherChoice& gather, const PellucidLight& light,
                            const PellucidShadowMap& map) const {
-  return beside && map.exitImage != 0 && map.faces == PELLUCID_FACES_FRONT &&
-         (inputs.frame.thicknessSource == PELLUCID_THICKNESS_LIGHT || gather.isGathered(inputs, light));
+  return beside && map.options.exitImage != 0 && map.options.backFaces == 0 &&
+         (inputs.frame.options.cameraThickness == 0 || gather.isGathered(inputs, light));
 }
 
 bool LightGroup::addLight(const Inputs& inputs, const Materials& materials, const GatherChoice& gather,
@@ -82,8 +83,8 @@ Lights::Lights(const Inputs& inputs, const Screen& screen, const Materials& mate
     : ambient(ambientLight(inputs.frame)) {
   const PellucidFrame& frame = inputs.frame;
   // The debug view of thickness shows the chord, too.
-  needsChord = frame.thicknessSource == PELLUCID_THICKNESS_CAMERA || ambient.intensity > 0 ||
-               frame.debugView == PELLUCID_DEBUG_THICKNESS;
+  needsChord = frame.options.cameraThickness == 1 || ambient.intensity > 0 ||
+               frame.options.debugView == PELLUCID_DEBUG_THICKNESS;
   const ViewBounds view(inputs, screen);
   // True where the light contributes.
   const auto look = [&](const PellucidLight& light, const char* what, const char* field) {
@@ -104,8 +105,8 @@ Lights::Lights(const Inputs& inputs, const Screen& screen, const Materials& mate
     if (inputs.holdsBackFaces(light)) ++holdBackFaces;
     for (uint32_t k = 0; k < light.shadowMapCount && !inputs.holdsBackFaces(light); ++k) {
       const PellucidShadowMap& map = frame.shadowMaps[light.firstShadowMap + k];
-      lackExit = lackExit || (map.exitImage == 0 && frame.thicknessSource == PELLUCID_THICKNESS_LIGHT);
-      lackCaster = lackCaster || map.casterMaterialImage == 0;
+      lackExit = lackExit || (map.options.exitImage == 0 && frame.options.cameraThickness == 0);
+      lackCaster = lackCaster || map.options.casterMaterialImage == 0;
     }
     if (++lightCount > kMost) continue;
     active[lightCount - 1] = i;
@@ -113,21 +114,22 @@ Lights::Lights(const Inputs& inputs, const Screen& screen, const Materials& mate
       std::rotate(active.begin() + gatheredFirst++, active.begin() + (lightCount - 1),
                   active.begin() + lightCount);
   }
-  if (ambient.intensity > 0 && look(ambient, "ambient light", "ambient")) {
+  if (ambient.intensity > 0 &&
+      look(ambient, "ambient light", frame.options.ambient ? "options.ambient" : "hiddenIrradiance")) {
     if (lightCount < kMost) active[lightCount] = kAmbient;
     ++lightCount;
   }
 
   group(inputs, materials, gather, true);
   const auto hasNothing = [](const PellucidShadowMap& map) {
-    return map.exitImage == 0 && map.casterMaterialImage == 0;
+    return map.options.exitImage == 0 && map.options.casterMaterialImage == 0;
   };
   if (std::all_of(frame.shadowMaps, frame.shadowMaps + frame.shadowMapCount, hasNothing)) return;
   // At most: three dispatches that downsample, base level, upsample, two that diffuse, history.
   constexpr uint32_t kOthers = 8;
   // Debug views of light need all lights in one dispatch.
   const bool binds =
-      inputs.debug() && frame.debugView != PELLUCID_DEBUG_IRRADIANCE
+      inputs.debug() && frame.options.debugView != PELLUCID_DEBUG_IRRADIANCE
           ? count <= 1
           : fused() + gatherDispatches() + walls(materials, gather) + kOthers <= PELLUCID_MAX_DISPATCHES;
   if (!binds) group(inputs, materials, gather, false);

@@ -44,7 +44,7 @@ struct LightGroup {
   // light's way and its exit.
   bool readsExit(const Inputs& inputs, const GatherChoice& gather, const PellucidLight& light,
                  const PellucidShadowMap& map) const;
-  bool readsCaster(const PellucidShadowMap& map) const { return beside && map.casterMaterialImage != 0; }
+  bool readsCaster(const PellucidShadowMap& map) const { return beside && map.options.casterMaterialImage != 0; }
 
 private:
   bool addImage(uint32_t image);

@@ -18,7 +18,7 @@ Materials::Materials(const Inputs& inputs, const Screen& screen) {
   const PellucidFrame& frame = inputs.frame;
   const double mmPerPixel =
       pixelSide(screen.clipFromView, screen.depthRange, {frame.imageExtent[0], frame.imageExtent[1]},
-                static_cast<double>(frame.nearestDistance)) *
+                static_cast<double>(frame.options.nearestDistance)) *
       static_cast<double>(frame.metersPerUnit) * 1000;
   // No infinity may reach the plan's text.
   reach.pixelsPerMm = mmPerPixel > 0 ? std::min(1 / mmPerPixel, 1e30) : 0;

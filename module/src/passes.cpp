@@ -35,7 +35,7 @@ constexpr BindingSet kColorWrites = bindings(PELLUCID_BINDING_DESTINATION);
 constexpr BindingSet kLightReads =
     kColorReads | shadowImages(PELLUCID_SHADOW_IMAGE_COUNT) |
     bindings(PELLUCID_BINDING_LIGHTS, PELLUCID_BINDING_SHADOWS, PELLUCID_BINDING_MATERIALS,
-             PELLUCID_BINDING_NORMAL, PELLUCID_BINDING_BACK_DEPTH);
+             PELLUCID_BINDING_NORMAL, PELLUCID_BINDING_BACK_DEPTH, PELLUCID_BINDING_HIDDEN_IRRADIANCE);
 constexpr PellucidSpecialization kDebugViews[] = {{PELLUCID_CONSTANT_DEBUG_VIEWS, 1}};
 
 constexpr Pass kTranslucencyPass{.pipeline = "translucency",

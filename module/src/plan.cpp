@@ -17,7 +17,7 @@ void skipBeside(const FrameFacts& f, Skips& skips) {
               "more lights have them than the dispatches of a plan can bind");
   for (uint32_t i = 0; i < f.lights.holdBackFaces; ++i) {
     constexpr const char* kWhy = "a light's shadow map holds back faces, which do not say where light enters";
-    if (f.frame.thicknessSource == PELLUCID_THICKNESS_LIGHT) skips.add("light-space thickness", kWhy);
+    if (f.frame.options.cameraThickness == 0) skips.add("light-space thickness", kWhy);
     if (f.gathers) skips.add("gather", kWhy);
   }
   if (f.lights.lackExit)
@@ -36,8 +36,8 @@ Skips skipsOf(const FrameFacts& f) {
     skips.add("translucency", "no light can contribute");
   else
     skipBeside(f, skips);
-  if (f.askedSamples > 0 && f.whyNotGathered) skips.add("gather", f.whyNotGathered);
-  if (!(f.frame.features & PELLUCID_FEATURE_DIFFUSION))
+  if (f.frame.options.gatherSamples > 0 && f.whyNotGathered) skips.add("gather", f.whyNotGathered);
+  if (!(f.frame.options.features & PELLUCID_FEATURE_DIFFUSION))
     skips.add("diffusion", "not among the features");
   else if (f.debug())
     skips.add("diffusion", "a debug view is written instead");
@@ -46,9 +46,8 @@ Skips skipsOf(const FrameFacts& f) {
   if (f.stages.nothing)
     skips.add("all dispatches",
               "no light comes through, nothing diffuses, and the output is the irradiance image");
-  if (f.missesTarget) skips.add("targetError", "no number of samples is that exact");
   if (!f.stages.diffusion) return skips;
-  if (f.frame.indirectDispatches != PELLUCID_INDIRECT_NONE && !f.stages.lists)
+  if (f.frame.options.indirectDispatches != 0 && !f.stages.lists)
     skips.add("lists", whyNoLists(f, f.lights, f.blocks));
   for (uint32_t i = 0; i < f.frame.materialCount; ++i)
     if (f.reach.pixelsPerMm * widestDeviation(f.diffused(i)) > levelDeviation(f.pyramid.coarsest))
@@ -89,15 +88,15 @@ PellucidResult buildPlan(const FrameFacts& f, const History& kept, PellucidPlan*
   }
   state.materials = f.frame.materialCount;
   state.rect = f.rect;
-  state.outputFormat = f.frame.outputFormat;
-  state.lightTables = f.frame.lightTableCount;
+  state.outputFormat = f.frame.options.outputFormat;
+  state.lightTables = f.frame.options.lightTableCount;
   state.options = optionsOf(f);
   const PellucidShadowMap* end = f.frame.shadowMaps + f.frame.shadowMapCount;
-  const PellucidShadowMap* layered =
-      std::find_if(f.frame.shadowMaps, end, [](const PellucidShadowMap& map) { return map.layer > 0; });
+  const PellucidShadowMap* layered = std::find_if(
+      f.frame.shadowMaps, end, [](const PellucidShadowMap& map) { return map.options.layer > 0; });
   if (layered != end) {
     state.layeredMap = static_cast<uint32_t>(layered - f.frame.shadowMaps) + 1;
-    state.layer = layered->layer;
+    state.layer = layered->options.layer;
   }
   keep(state, plan);
   return PELLUCID_OK;

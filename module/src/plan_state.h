@@ -20,16 +20,16 @@ struct PlanState {
   uint32_t options = 0;                  // PellucidUse bits that pipelines must look for
   uint32_t layeredMap = 0, layer = 0;  // the first map in a layer above 0, plus 1; 0: none
 };
-static_assert(sizeof(PlanState) <= sizeof(PellucidPlanState) && std::is_trivially_copyable_v<PlanState>);
+static_assert(sizeof(PlanState) <= sizeof(PellucidPlan::state) && std::is_trivially_copyable_v<PlanState>);
 
 inline PlanState stateOf(const PellucidPlan& plan) {
   PlanState state;
-  std::memcpy(static_cast<void*>(&state), plan.state.words, sizeof state);
+  std::memcpy(static_cast<void*>(&state), plan.state, sizeof state);
   return state;
 }
 
 inline void keep(const PlanState& state, PellucidPlan* plan) {
-  std::memcpy(plan->state.words, &state, sizeof state);
+  std::memcpy(plan->state, &state, sizeof state);
 }
 
 }  // namespace pellucid

@@ -42,7 +42,7 @@ Step& Step::standIn(uint32_t binding, uint32_t resource) {
 
 Step& Step::colors(uint32_t source, uint32_t destination) {
   const bool last = destination == PELLUCID_RESOURCE_OUTPUT;
-  if (last && planner_.facts.frame.outputMode == PELLUCID_OUTPUT_ADD)
+  if (last && planner_.facts.frame.options.addToOutput == 1)
     image(PELLUCID_BINDING_HELD, PELLUCID_RESOURCE_OUTPUT);
   return image(PELLUCID_BINDING_SOURCE, source)
       .image(PELLUCID_BINDING_DESTINATION, destination)
@@ -141,8 +141,8 @@ void Planner::addShadowImages(PellucidDispatch& d, std::span<const uint32_t> ima
     fits_ = false;
     return;
   }
-  d.firstShadowImage = static_cast<uint16_t>(shadowImages_);
-  d.shadowImageCount = static_cast<uint16_t>(images.size());
+  d.firstShadowImage = static_cast<uint8_t>(shadowImages_);
+  d.shadowImageCount = static_cast<uint8_t>(images.size());
   std::copy(images.begin(), images.end(), plan_.shadowImages + shadowImages_);
   shadowImages_ += d.shadowImageCount;
 }

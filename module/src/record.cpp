@@ -14,7 +14,7 @@ VkResult bind(const PellucidContext& c, VkCommandBuffer commandBuffer, const Pel
   const BoundList bound = boundBy(*view.plan, d);
   const PellucidConstantsSlice& slice = *view.constants;
   VkDescriptorSet set = VK_NULL_HANDLE;
-  if (c.desc.descriptorPools) {
+  if (c.desc.options.descriptorPools) {
     VkDescriptorSetAllocateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO};
     info.descriptorPool = poolOf(*view.frame);
     info.descriptorSetCount = 1;
@@ -41,7 +41,7 @@ VkResult bind(const PellucidContext& c, VkCommandBuffer commandBuffer, const Pel
       writes[i].pImageInfo = &images[i];
     }
   }
-  if (c.desc.descriptorPools) {
+  if (c.desc.options.descriptorPools) {
     c.vk.vkUpdateDescriptorSets(c.device, bound.count, writes, 0, nullptr);
     c.vk.vkCmdBindDescriptorSets(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, c.pipelineLayouts[d.pipeline],
                                  0, 1, &set, 0, nullptr);
@@ -99,7 +99,7 @@ uint32_t barriersOf(const PellucidPlan& plan) {
 PellucidResult record(const PellucidContext& c, VkCommandBuffer commandBuffer,
                       std::span<const PellucidView> views, bool named) {
   if (const PellucidResult result = checkViews(c, views, named); result != PELLUCID_OK) return result;
-  if (c.desc.descriptorPools)
+  if (c.desc.options.descriptorPools)
     for (const PellucidView& view : views) c.vk.vkResetDescriptorPool(c.device, poolOf(*view.frame), 0);
   uint32_t barriers = 0;
   for (const PellucidView& view : views) barriers = std::max(barriers, barriersOf(*view.plan));

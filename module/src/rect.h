@@ -13,8 +13,8 @@ struct Rect {
 
 // The part of the image that is rendered.
 inline Rect renderRect(const PellucidFrame& frame) {
-  if (frame.renderRect[2] == 0) return {0, 0, frame.imageExtent[0], frame.imageExtent[1]};
-  return {frame.renderRect[0], frame.renderRect[1], frame.renderRect[2], frame.renderRect[3]};
+  if (frame.options.renderRect[2] == 0) return {0, 0, frame.imageExtent[0], frame.imageExtent[1]};
+  return {frame.options.renderRect[0], frame.options.renderRect[1], frame.options.renderRect[2], frame.options.renderRect[3]};
 }
 
 // Parts that cover a length, the last of them perhaps cut short.

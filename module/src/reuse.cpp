@@ -32,7 +32,7 @@ bool fits(const History& kept, const History& now) {
 
 bool coherent(const PellucidFrame& f, const History& kept, const History& now) {
   if (now.lightCount > kCoherentLights) return false;
-  const float threshold = f.coherenceThreshold * std::max(1.0f, f.frameLoad);
+  const float threshold = f.options.coherenceThreshold;
   for (uint32_t i = 0; i < now.lightCount; ++i)
     if (!(std::abs(now.lightDots[i] - kept.lightDots[i]) <= threshold)) return false;
   return true;
@@ -55,7 +55,7 @@ bool decideReuse(const FrameFacts& f, const History& kept, History* result) {
     now.lightDots[i] = cameraLightDot(f, f.light(i));
   if (!fits(kept, now)) return false;
   const bool reused =
-      f.frame.reuse == PELLUCID_REUSE_ALTERNATE ? kept.age == 0 : coherent(f.frame, kept, now);
+      f.frame.options.reuse == PELLUCID_REUSE_ALTERNATE ? kept.age == 0 : coherent(f.frame, kept, now);
   if (reused) {
     now = kept;
     ++now.age;

@@ -4,7 +4,7 @@ namespace pellucid {
 
 Screen::Screen(const Inputs& inputs)
     : rect(renderRect(inputs.frame)),
-      wide(inputs.frame.outputFormat == VK_FORMAT_R32G32B32A32_SFLOAT),
+      wide(inputs.frame.options.outputFormat == VK_FORMAT_R32G32B32A32_SFLOAT),
       colorFormat(wide ? VK_FORMAT_R32G32B32A32_SFLOAT : VK_FORMAT_R16G16B16A16_SFLOAT),
       clipFromView(toMatrix(inputs.frame.clipFromView)),
       viewFromWorld(toMatrix(inputs.frame.viewFromWorld)),

@@ -17,7 +17,8 @@ Stages::Stages(const Inputs& inputs, const Materials& materials, const GatherCho
   // is what it is.
   nothing = writers() == 0 && inputs.inPlace && !inputs.has(PELLUCID_RESOURCE_ALBEDO);
   if (writers() == 0 && !nothing) fused = 1;
-  keepsHistory = inputs.frame.reuse != PELLUCID_REUSE_NONE && !debug && translucency && all.lightCount > 0;
+  keepsHistory =
+      inputs.frame.options.reuse != PELLUCID_REUSE_NONE && !debug && translucency && all.lightCount > 0;
   keepsProbes = keepsHistory && all.gathered > 0;
   history = keepsHistory && !keepsProbes;
   lists = diffusion && whyNoLists(inputs, all, blocks) == nullptr;

@@ -20,28 +20,29 @@ void checkImageSize(const PellucidFrame& f, Findings& out) {
     out.error("imageExtent", "is ", w, " x ", h, "; both must be 1..65536");
     return;
   }
-  const uint32_t* r = f.renderRect;
+  const uint32_t* r = f.options.renderRect;
   if (r[2] == 0 && (r[0] || r[1] || r[3]))
-    out.error("renderRect", "has width 0 (the whole image) but x ", r[0], ", y ", r[1], ", height ", r[3]);
+    out.error("options.renderRect", "has width 0 (the whole image) but x ", r[0], ", y ", r[1], ", height ",
+              r[3]);
   else if (r[2] > 0 && (r[3] == 0 || r[0] >= w || r[2] > w - r[0] || r[1] >= h || r[3] > h - r[1]))
-    out.error("renderRect", "is ", r[0], ", ", r[1], " + ", r[2], " x ", r[3], ", outside the ", w, " x ", h,
-              " image");
+    out.error("options.renderRect", "is ", r[0], ", ", r[1], " + ", r[2], " x ", r[3], ", outside the ", w,
+              " x ", h, " image");
 }
 
 // All indices must come through the mask.
 void checkMaterialBits(const Inputs& inputs, Findings& out) {
   const PellucidFrame& f = inputs.frame;
-  if (f.materialShift > 31) return;  // its domain says so
-  const uint32_t below = (1u << f.materialShift) - 1;
-  if ((f.materialMask & below) != 0)
-    out.error("materialMask", "is ", f.materialMask, ", whose last bits materialShift ", f.materialShift,
-              " drops");
+  if (f.options.materialShift > 31) return;  // its domain says so
+  const uint32_t below = (1u << f.options.materialShift) - 1;
+  if ((f.options.materialMask & below) != 0)
+    out.error("options.materialMask", "is ", f.options.materialMask, ", whose last bits materialShift ",
+              f.options.materialShift, " drops");
   uint32_t indices = 0;
   while (indices < f.materialCount && indices < 255) indices = indices << 1 | 1;
   if ((indices & ~inputs.materialBits()) != 0)
-    out.error("materialMask", "is ", f.materialMask, " with materialShift ", f.materialShift,
-              ", which leave ", inputs.materialBits(), "; the indices of ", f.materialCount,
-              " materials take ", indices);
+    out.error("options.materialMask", "is ", f.options.materialMask, " with materialShift ",
+              f.options.materialShift, ", which leave ", inputs.materialBits(), "; the indices of ",
+              f.materialCount, " materials take ", indices);
 }
 
 void checkMinimumDotTable(const PellucidThesisOptions& t, Findings& out) {
@@ -111,11 +112,11 @@ void checkMaterial(const PellucidMaterial& m, uint32_t index, Findings& out) {
 }
 
 void checkLightTables(const PellucidFrame& f, Findings& out) {
-  if (f.lightTableCount > PELLUCID_MAX_LIGHT_TABLES) return;  // its domain says so
-  if (f.lightTableCount > 0 && !f.lightTables)
-    out.error("lightTables", "is NULL, but lightTableCount is ", f.lightTableCount);
-  for (uint32_t i = 0; f.lightTables && i < f.lightTableCount; ++i)
-    checkDomains(f.lightTables[i], Field("lightTables[", i, "]."), out);
+  if (f.options.lightTableCount > PELLUCID_MAX_LIGHT_TABLES) return;  // its domain says so
+  if (f.options.lightTableCount > 0 && !f.options.lightTables)
+    out.error("options.lightTables", "is NULL, but lightTableCount is ", f.options.lightTableCount);
+  for (uint32_t i = 0; f.options.lightTables && i < f.options.lightTableCount; ++i)
+    checkDomains(f.options.lightTables[i], Field("options.lightTables[", i, "]."), out);
 }
 
 // A light's own falloff.
@@ -123,8 +124,9 @@ void checkFalloff(const PellucidFrame& f, uint32_t index, Findings& out) {
   const PellucidLight& l = f.lights[index];
   const auto checkTable = [&](const char* name, uint32_t table) {
     const Field field("lights[", index, "].", name);
-    if (table > f.lightTableCount)
-      out.error(field, "is ", table, " (an index plus 1), but there are ", f.lightTableCount, " lightTables");
+    if (table > f.options.lightTableCount)
+      out.error(field, "is ", table, " (an index plus 1), but there are ", f.options.lightTableCount,
+                " lightTables");
     else if (table > 0 && l.type == PELLUCID_LIGHT_DIRECTIONAL)
       out.error(field, "is ", table, ", but the light is directional");
   };
@@ -188,7 +190,7 @@ void checkLight(const Inputs& inputs, const GatherChoice& gather, uint32_t index
 void checkFields(const Inputs& inputs, Findings& out) {
   const PellucidFrame& f = inputs.frame;
   constexpr uint32_t known = PELLUCID_FEATURE_TRANSLUCENCY | PELLUCID_FEATURE_DIFFUSION;
-  if (f.features & ~known) out.error("features", "has unknown bits: ", f.features);
+  if (f.options.features & ~known) out.error("options.features", "has unknown bits: ", f.options.features);
   checkImageSize(f, out);
   checkDomains(f, "", out);
   checkDomains(inputs.thesis, "thesis.", out);
@@ -196,16 +198,19 @@ void checkFields(const Inputs& inputs, Findings& out) {
   if (const char* wrong = readDepthRange(toMatrix(f.clipFromView), &range)) out.error("clipFromView", wrong);
   if (!finite(f.viewFromWorld, 16) || !rigid(toMatrix(f.viewFromWorld)))
     out.error("viewFromWorld", "is not a rotation and translation");
-  if (f.outputFormat != VK_FORMAT_R16G16B16A16_SFLOAT && f.outputFormat != VK_FORMAT_R32G32B32A32_SFLOAT &&
-      f.outputFormat != VK_FORMAT_B10G11R11_UFLOAT_PACK32)
-    out.error("outputFormat", "is VkFormat ", static_cast<int>(f.outputFormat),
+  if (f.options.outputFormat != VK_FORMAT_R16G16B16A16_SFLOAT &&
+      f.options.outputFormat != VK_FORMAT_R32G32B32A32_SFLOAT &&
+      f.options.outputFormat != VK_FORMAT_B10G11R11_UFLOAT_PACK32)
+    out.error("options.outputFormat", "is VkFormat ", static_cast<int>(f.options.outputFormat),
               "; use R16G16B16A16_SFLOAT, R32G32B32A32_SFLOAT or B10G11R11_UFLOAT_PACK32");
   checkMinimumDotTable(inputs.thesis, out);
 
-  if (f.gatherSpacing != 0 && f.gatherSpacing != 1 && f.gatherSpacing != 2 && f.gatherSpacing != 4)
-    out.error("gatherSpacing", "is ", f.gatherSpacing, "; use 1, 2 or 4, or 0 to choose by the image's size");
-  if (f.gatherSamples > 64 || f.gatherSamples % 4 != 0)
-    out.error("gatherSamples", "is ", f.gatherSamples, "; needs a multiple of 4, at most 64");
+  if (f.options.gatherSpacing != 0 && f.options.gatherSpacing != 1 && f.options.gatherSpacing != 2 &&
+      f.options.gatherSpacing != 4)
+    out.error("options.gatherSpacing", "is ", f.options.gatherSpacing,
+              "; use 1, 2 or 4, or 0 to choose by the image's size");
+  if (f.options.gatherSamples > 64 || f.options.gatherSamples % 4 != 0)
+    out.error("options.gatherSamples", "is ", f.options.gatherSamples, "; needs a multiple of 4, at most 64");
 
   // 255: the material image is r8ui and 0 means none.
   if (f.materialCount == 0 || f.materialCount > 255 || !f.materials)
@@ -215,22 +220,23 @@ void checkFields(const Inputs& inputs, Findings& out) {
   if (mark != 0 && ((mark & (mark - 1)) != 0 || mark <= f.materialCount))
     out.error("thesis.materialMarkBit", "is ", mark, "; must be 0 or a power of two above the ",
               f.materialCount, " materials");
-  else if (mark != 0 && f.materialShift < 32 && (mark & inputs.materialBits()) == 0)
-    out.error("thesis.materialMarkBit", "is ", mark, ", which materialMask ", f.materialMask,
-              " and materialShift ", f.materialShift, " leave out");
-  for (uint32_t i = 0; f.ambient && i < kAmbientCoefficients; ++i)
-    if (!(std::abs(f.ambient[i]) <= 1e15f))
-      out.error("ambient", "[", i, "] is ", f.ambient[i], ", outside [-1e+15, 1e+15]");
+  else if (mark != 0 && f.options.materialShift < 32 && (mark & inputs.materialBits()) == 0)
+    out.error("thesis.materialMarkBit", "is ", mark, ", which materialMask ", f.options.materialMask,
+              " and materialShift ", f.options.materialShift, " leave out");
+  for (uint32_t i = 0; f.options.ambient && i < kAmbientCoefficients; ++i)
+    if (!(std::abs(f.options.ambient[i]) <= 1e15f))
+      out.error("options.ambient", "[", i, "] is ", f.options.ambient[i], ", outside [-1e+15, 1e+15]");
   checkLightTables(f, out);
   if (f.lightCount > 0 && !f.lights) out.error("lights", "is NULL, but lightCount is ", f.lightCount);
   if (f.shadowMapCount > 0 && !f.shadowMaps)
     out.error("shadowMaps", "is NULL, but shadowMapCount is ", f.shadowMapCount);
   if (f.shadowImageCount > 0 && !f.shadowImages)
     out.error("shadowImages", "is NULL, but shadowImageCount is ", f.shadowImageCount);
-  if (f.reuse == (PELLUCID_REUSE_ALTERNATE | PELLUCID_REUSE_COHERENCE))
-    out.error("reuse", "is both; alternating would skip frames in which coherence asks for a refresh");
-  else if (f.reuse > PELLUCID_REUSE_COHERENCE)
-    out.error("reuse", "is ", f.reuse, ", not a PellucidReuse");
+  if (f.options.reuse == (PELLUCID_REUSE_ALTERNATE | PELLUCID_REUSE_COHERENCE))
+    out.error("options.reuse",
+              "is both; alternating would skip frames in which coherence asks for a refresh");
+  else if (f.options.reuse > PELLUCID_REUSE_COHERENCE)
+    out.error("options.reuse", "is ", f.options.reuse, ", not a PellucidReuse");
 }
 
 void checkMaterials(const Inputs& inputs, Findings& out) {
@@ -253,8 +259,9 @@ void checkMaterials(const Inputs& inputs, Findings& out) {
   for (uint32_t i = 0; i < f.materialCount; ++i) {
     const PellucidMaterial material = inputs.material(i);
     checkMaterial(material, i, out);
-    if (f.materialTables && std::memcmp(f.materialTables[i].words, &material, sizeof material) != 0)
-      out.error(Field("materialTables[", i, "]"), "is of another material than materials[", i,
+    if (f.options.materialTables &&
+        std::memcmp(f.options.materialTables[i].words, &material, sizeof material) != 0)
+      out.error(Field("options.materialTables[", i, "]"), "is of another material than materials[", i,
                 "] (call pellucidMakeMaterialTables)");
   }
 }
@@ -275,9 +282,9 @@ void checkLights(const Inputs& inputs, const GatherChoice& gather, Findings& out
 void checkGroups(const FrameFacts& facts, Findings& out) {
   const PellucidFrame& f = facts.frame;
   warnOfShadowMaps(facts, out);
-  if (facts.lights.count > 1 && facts.debug() && f.debugView != PELLUCID_DEBUG_IRRADIANCE)
-    out.error("debugView", "is ", f.debugView, ", which needs all lights in one dispatch; they use ",
-              facts.lights.count);
+  if (facts.lights.count > 1 && facts.debug() && f.options.debugView != PELLUCID_DEBUG_IRRADIANCE)
+    out.error("options.debugView", "is ", f.options.debugView,
+              ", which needs all lights in one dispatch; they use ", facts.lights.count);
 }
 
 namespace {
@@ -311,18 +318,19 @@ void checkViews(const FrameFacts& facts, Findings& out) {
   }
   const uint32_t needed = facts.stages.transients();
   if (facts.stages.keepsHistory) {
-    if (!given(f.history))
-      out.error("history", "has no view, but reuse needs it; see pellucidGetImageNeeds");
-    else if (f.history.layout != VK_IMAGE_LAYOUT_GENERAL)
-      out.error("history", "is in VkImageLayout ", static_cast<int>(f.history.layout), "; must be GENERAL");
+    if (!given(f.options.history))
+      out.error("options.history", "has no view, but reuse needs it; see pellucidGetImageNeeds");
+    else if (f.options.history.layout != VK_IMAGE_LAYOUT_GENERAL)
+      out.error("options.history", "is in VkImageLayout ", static_cast<int>(f.options.history.layout),
+                "; must be GENERAL");
   }
   for (uint32_t i = 0; i < needed; ++i)
     if (!given(f.transients[i]))
       out.error(Field("transients[", i, "]"), "has no view; see pellucidGetImageNeeds");
-  if (f.separateOutput && given(f.output) && f.output.view == f.irradiance.view)
-    out.error("separateOutput", "is 1, but the output is the irradiance's view");
-  if (f.outputMode == PELLUCID_OUTPUT_ADD && given(f.output) && f.output.view == f.irradiance.view)
-    out.error("outputMode", "is ADD, but the output is the irradiance's view");
+  if (f.options.separateOutput && given(f.output) && f.output.view == f.irradiance.view)
+    out.error("options.separateOutput", "is 1, but the output is the irradiance's view");
+  if (f.options.addToOutput == 1 && given(f.output) && f.output.view == f.irradiance.view)
+    out.error("options.addToOutput", "is 1, but the output is the irradiance's view");
   if (f.output.layout != VK_IMAGE_LAYOUT_GENERAL && given(f.output))
     out.error("output", "is in VkImageLayout ", static_cast<int>(f.output.layout),
               "; storage writes need GENERAL");

@@ -26,37 +26,38 @@ Field fieldOf(uint32_t resource) {
   const uint32_t transient = resource - PELLUCID_RESOURCE_TRANSIENT0;
   if (transient < PELLUCID_MAX_TRANSIENTS) return Field("transients[", transient, "]");
   if (resource >= kShadow0) return Field("shadowImages[", resource - kShadow0, "]");
+  if (resource == PELLUCID_RESOURCE_HISTORY) return Field("options.history");
   return Field(pellucidResourceName(resource));
 }
 
 // Refuses plans that ask for another context.
 void checkContext(const PellucidContext& c, const PellucidPlan& plan, Findings& out) {
   const PlanState state = stateOf(plan);
-  if (c.desc.outputFormat != VK_FORMAT_UNDEFINED && c.desc.outputFormat != state.outputFormat)
-    return out.error("outputFormat",
-                     "is not PellucidContextDesc::outputFormat, which the context writes alone");
-  if (state.lightTables > 0 && !c.desc.lightTables)
+  if (c.desc.options.outputFormat != VK_FORMAT_UNDEFINED && c.desc.options.outputFormat != state.outputFormat)
+    return out.error("options.outputFormat",
+                     "is not PellucidContextOptions::outputFormat, which the context writes alone");
+  if (state.lightTables > 0 && !c.desc.options.lightTables)
     return out.error(
-        "lightTableCount",
-        "is above 0, but PellucidContextDesc::lightTables is 0: the pipelines do not look for any");
+        "options.lightTableCount",
+        "is above 0, but PellucidContextOptions::lightTables is 0: the pipelines do not look for any");
   constexpr std::pair<uint32_t, const char*> kOptions[] = {
       {PELLUCID_USE_THIN_WALLS, "PELLUCID_USE_THIN_WALLS: a material is thin-walled"},
       {PELLUCID_USE_AMBIENT, "PELLUCID_USE_AMBIENT: frame.ambient holds light"},
       {PELLUCID_USE_THESIS, "PELLUCID_USE_THESIS: an angle or transmittance model is one of Whelan 2009"}};
   for (const auto& [use, why] : kOptions)
-    if (c.desc.uses != 0 && (state.options & use & ~c.desc.uses) != 0)
-      return out.error("plan", "needs PellucidContextDesc::uses with ", why);
-  if (state.layeredMap > 0 && c.desc.shadowViewType != VK_IMAGE_VIEW_TYPE_2D_ARRAY)
-    return out.error(Field("shadowMaps[", state.layeredMap - 1, "].layer"), "is ", state.layer,
-                     ", but PellucidContextDesc::shadowViewType is 2D");
+    if (c.desc.options.uses != 0 && (state.options & use & ~c.desc.options.uses) != 0)
+      return out.error("plan", "needs PellucidContextOptions::uses with ", why);
+  if (state.layeredMap > 0 && c.desc.options.shadowViewType != VK_IMAGE_VIEW_TYPE_2D_ARRAY)
+    return out.error(Field("shadowMaps[", state.layeredMap - 1, "].options.layer"), "is ", state.layer,
+                     ", but PellucidContextOptions::shadowViewType is 2D");
   for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
     const uint32_t pipeline = plan.dispatches[i].pipeline;
     if (pipeline >= allPasses().size() || c.pipelines[pipeline] == VK_NULL_HANDLE)
       return out.error(
           "plan", "needs pipeline ", pellucidPipelineName(pipeline),
-          c.desc.deferPipelines
-              ? ", which pellucidCreatePipelines has not made or PellucidContextDesc::uses leaves out"
-              : ", which PellucidContextDesc::uses leaves out");
+          c.desc.options.deferPipelines
+              ? ", which pellucidCreatePipelines has not made or PellucidContextOptions::uses leaves out"
+              : ", which PellucidContextOptions::uses leaves out");
   }
 }
 
@@ -67,10 +68,11 @@ void checkBound(const PellucidContext& c, const PellucidPlan& plan, const Pelluc
     for (const PellucidBinding& b : boundBy(plan, plan.dispatches[i])) {
       const uint32_t resource = b.resource;
       if (resource == PELLUCID_RESOURCE_FRONT_DEPTH && b.binding >= PELLUCID_BINDING_SHADOW_IMAGES &&
-          c.desc.shadowViewType == VK_IMAGE_VIEW_TYPE_2D_ARRAY)
-        return out.error("shadowImages",
-                         "has no view, but PellucidContextDesc::shadowViewType is 2D_ARRAY, and passes bind "
-                         "one such view even where no light has a map");
+          c.desc.options.shadowViewType == VK_IMAGE_VIEW_TYPE_2D_ARRAY)
+        return out.error(
+            "shadowImages",
+            "has no view, but PellucidContextOptions::shadowViewType is 2D_ARRAY, and passes bind "
+            "one such view even where no light has a map");
       if (resource == PELLUCID_RESOURCE_CONSTANTS) continue;
       const bool isThere =
           resource < kShadow0 || (frame.shadowImages && resource - kShadow0 < frame.shadowImageCount);
@@ -147,16 +149,16 @@ void checkView(const PellucidContext& c, std::span<const PellucidView> views, ui
   checkContext(c, *view.plan, out);
   if (out.result() == PELLUCID_OK) checkBound(c, *view.plan, *view.frame, out);
   if (out.result() != PELLUCID_OK) return;
-  if (c.desc.descriptorPools && !poolOf(*view.frame))
-    out.error("descriptorPool", "is NULL, but PellucidContextDesc::descriptorPools is 1");
+  if (c.desc.options.descriptorPools && !poolOf(*view.frame))
+    out.error("options.descriptorPool", "is NULL, but PellucidContextOptions::descriptorPools is 1");
   else if (view.constants->size < view.plan->constantsSize)
     out.fail(PELLUCID_ERROR_BUFFER_TOO_SMALL, "constants.size", "is ", view.constants->size,
              "; the plan needs ", view.plan->constantsSize);
   for (uint32_t other = 0; other < index && out.result() == PELLUCID_OK; ++other) {
     checkImages(view, views[other], other, out);
     checkSlices(view, views[other], other, out);
-    if (c.desc.descriptorPools && poolOf(*views[other].frame) == poolOf(*view.frame))
-      out.error("descriptorPool", "is views[", other, "].descriptorPool, too");
+    if (c.desc.options.descriptorPools && poolOf(*views[other].frame) == poolOf(*view.frame))
+      out.error("options.descriptorPool", "is views[", other, "].options.descriptorPool, too");
   }
 }
 

@@ -1,6 +1,5 @@
 /* The headers are C: compiled as such, linked without any Vulkan loader. */
 #include <pellucid/pellucid.h>
-#include <pellucid/pellucid_budget.h>
 #include <pellucid/pellucid_material.h>
 #include <pellucid/pellucid_plan.h>
 #include <pellucid/pellucid_statistics.h>
@@ -13,7 +12,6 @@ int main(void) {
   PellucidMaterial material;
   PellucidFrame frame;
   PellucidThesisOptions thesis;
-  PellucidBudgetState budget;
   PellucidContextDesc context;
   PellucidContext* none;
   PellucidStatistics statistics;
@@ -23,11 +21,10 @@ int main(void) {
   desc.kind = PELLUCID_MATERIAL_PRESET;
   desc.preset = "skin1";
   if (pellucidCompileMaterial(&desc, &material, NULL, NULL, NULL) != PELLUCID_OK) return 1;
-  pellucidInitBudgetState(&budget);
   pellucidInitThesisOptions(&thesis);
   pellucidInitFrame(&frame);
-  frame.gatherSamples = budget.gatherSamples;
-  frame.thesis = &thesis;
+  frame.options.gatherSamples = 16;
+  frame.options.thesis = &thesis;
   frame.materialCount = 1;
   frame.materials = &material;
   /* No extent and no projection yet: refused. */

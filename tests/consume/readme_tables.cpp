@@ -29,6 +29,9 @@ std::string imagesTable() {
        "a gather thin parts return as much light as thick ones"},
       {PELLUCID_RESOURCE_IRRADIANCE,
        "linear irradiance E times `frame.preExposure`, which is 1 / pi for E / pi", ""},
+      {PELLUCID_RESOURCE_HIDDEN_IRRADIANCE,
+       "irradiance from all around of the hidden face, where `backDepth` lies",
+       "no light of a sky comes through, or that of `options.ambient`"},
       {PELLUCID_RESOURCE_NORMAL, "outward normal, world or view space",
        "the angle between view and light replaces -N.L, depths say how large surfaces are"},
       {PELLUCID_RESOURCE_ALBEDO, "post-scatter albedo", "the output is not multiplied"},
@@ -91,10 +94,9 @@ std::string featuresTable() {
       {"translucency", PELLUCID_FEATURE_TRANSLUCENCY, 1},
       {"diffusion", PELLUCID_FEATURE_DIFFUSION, 1},
       {"both, no light that contributes", PELLUCID_FEATURE_TRANSLUCENCY | PELLUCID_FEATURE_DIFFUSION, 0}};
-  std::string table =
-      "| features | dispatches | barriers | transients, bytes a pixel |\n|-|-|-|-|\n";
+  std::string table = "| features | dispatches | barriers | transients, bytes a pixel |\n|-|-|-|-|\n";
   for (const Row& row : rows) {
-    f.features = row.features;
+    f.options.features = row.features;
     f.lightCount = row.lights;
     static PellucidPlan plan;
     PellucidImageNeed needs[PELLUCID_MAX_TRANSIENTS];

@@ -79,9 +79,10 @@ FrameInput::FrameInput(std::span<const uint8_t> bytes, size_t edits) {
     if (header[4] & 1) image = test::Frame::view();
   if (header[4] & 2) frame.normal = test::Frame::view();
   if (header[4] & 4) frame.albedo = test::Frame::view();
+  if (header[4] & 64) frame.hiddenIrradiance = test::Frame::view();
   if (header[4] & 8) frame.backDepth = {};
-  if (header[4] & 16) frame.history = test::Frame::view();
-  if (header[4] & 32) frame.gatherSamples = 8;
+  if (header[4] & 16) frame.options.history = test::Frame::view();
+  if (header[4] & 32) frame.options.gatherSamples = 8;
   choice = header[5];
 
   PellucidFrame edited = frame;
@@ -123,9 +124,10 @@ FrameInput::FrameInput(std::span<const uint8_t> bytes, size_t edits) {
   shorten(thesis);
   for (PellucidMaterial& material : materials_) shorten(material);
   frame = edited;
-  bound(frame.outputFormat);
-  for (PellucidImage* image : {&frame.frontDepth, &frame.backDepth, &frame.irradiance, &frame.normal,
-                               &frame.albedo, &frame.material, &frame.output, &frame.history})
+  bound(frame.options.outputFormat);
+  for (PellucidImage* image :
+       {&frame.frontDepth, &frame.backDepth, &frame.irradiance, &frame.hiddenIrradiance, &frame.normal,
+        &frame.albedo, &frame.material, &frame.output, &frame.options.history})
     bound(image->layout);
   for (PellucidImage& image : frame.transients) bound(image.layout);
   for (PellucidImage& image : images_) bound(image.layout);
@@ -148,18 +150,18 @@ FrameInput::FrameInput(std::span<const uint8_t> bytes, size_t edits) {
   table_.shrink_to_fit();
   thesis_.minimumDotTable = header[6] & 16 ? nullptr : table_.data();
   ambient_.assign(27, header[7] < 200 ? 0.25f : -1e30f);
-  frame.ambient = header[6] & 64 ? ambient_.data() : nullptr;
-  frame.thesis = header[6] & 32 ? nullptr : &thesis_;
+  frame.options.ambient = header[6] & 64 ? ambient_.data() : nullptr;
+  frame.options.thesis = header[6] & 32 ? nullptr : &thesis_;
   // More light tables than there may be are refused before they are read.
   lightTables_.resize(PELLUCID_MAX_LIGHT_TABLES);
-  frame.lightTables = lightTables_.data();
+  frame.options.lightTables = lightTables_.data();
   // Those of materials that are not valid, or shorter than the first, are another material's.
   if (header[4] & 64) {
     materialTables_.resize(materials_.size());
     for (size_t i = 0; i < materials_.size(); ++i)
       pellucidMakeMaterialTables(&materials_[i], &materialTables_[i]);
   }
-  frame.materialTables = header[4] & 64 ? materialTables_.data() : nullptr;
+  frame.options.materialTables = header[4] & 64 ? materialTables_.data() : nullptr;
 }
 
 }  // namespace pellucid::fuzz

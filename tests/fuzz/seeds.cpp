@@ -172,11 +172,10 @@ void frameSeeds(Damage& damage, const Use& use) {
   const std::string header("\1\1\1\1\1\0\0\0", FrameInput::kHeaderBytes);
   use(header);
   // Lists, with a gather and without.
-  constexpr std::size_t kIndirect = offsetof(PellucidFrame, indirectDispatches) / 4;
+  constexpr std::size_t kIndirect = offsetof(PellucidFrame, options.indirectDispatches) / 4;
   for (const char gathers : {'\1', '\41'}) {
     const char edit[FrameInput::kEditBytes] = {0, 0, static_cast<char>(kIndirect % 256),
-                                               static_cast<char>(kIndirect / 256),
-                                               PELLUCID_INDIRECT_MATERIAL};
+                                               static_cast<char>(kIndirect / 256), 1};
     std::string bytes = header;
     bytes[4] = gathers;
     use(bytes.append(edit, sizeof edit));

@@ -87,6 +87,37 @@ TEST_F(AmbientLight, ThinWallsSendOnTheirPart) {
         << k;
 }
 
+// Of the image, pixel by pixel, and in place of the environment's; without one the visible face loses
+// nothing.
+TEST_F(AmbientLight, HiddenIrradianceComesThrough) {
+  const PellucidMaterial m = testMaterial();
+  Capture c = flatCapture(16, 12);
+  c.hiddenIrradiance = Image(16, 12, 3);
+  for (size_t i = 0; i < c.hiddenIrradiance.data.size(); ++i)
+    c.hiddenIrradiance.data[i] = 0.01f * static_cast<float>(i % 97);
+  const double t[3] = {std::exp(-0.5), std::exp(-1.0), 0.7 * std::exp(-2.0) + 0.3 * std::exp(-0.25)};
+  for (const float exposure : {1.0f, 0.25f}) {
+    ReplaySettings s = through();
+    s.ambient.reset();  // a capture with hidden irradiance uses it
+    s.preExposure = exposure;
+    const Image out = replay(c, m, s);
+    for (const auto& [x, y] : {std::pair(8, 6), {3, 9}})
+      for (size_t k = 0; k < 3; ++k) {
+        const double hidden = double(c.hiddenIrradiance.at(x, y)[k]);
+        EXPECT_NEAR(
+            double(out.at(x, y)[k]),
+            double(exposure) * (double(c.irradiance.at(x, y)[k]) + t[k] * hidden / double(m.reflectance[k])),
+            2e-5)
+            << x << ", " << y << ", channel " << k;
+      }
+  }
+  ReplaySettings off = through();
+  off.ambient = false;
+  const Image without = replay(c, m, off);
+  c.hiddenIrradiance = {};
+  EXPECT_TRUE(sameBits(without, replay(c, m, off)));
+}
+
 // Exposed irradiance takes ambient light of its units.
 TEST_F(AmbientLight, PreExposureScalesAmbientLight) {
   Capture c = flatCapture(16, 12);
@@ -99,7 +130,7 @@ TEST_F(AmbientLight, PreExposureScalesAmbientLight) {
 }
 
 // Seven of nine coefficients at once, of either sign, under a turned camera; one thickness a pixel, and
-// gathered lights beside.
+// gathered lights beside. The head has hidden irradiance, too.
 TEST_F(AmbientLight, AgreesWithTheReference) {
   for (const char* name : {"ear", "head"}) {
     SceneParameters p;
@@ -117,12 +148,17 @@ TEST_F(AmbientLight, AgreesWithTheReference) {
                                {0.2, -0.2, 0.2},
                                {-0.1, 0.3, 0.5},
                                {0.25, 0.5, -0.75}}};
+    if (p.name == "head") {
+      c.hiddenIrradiance = Image(p.width, p.height, 3);
+      for (size_t i = 0; i < c.hiddenIrradiance.data.size(); ++i)
+        c.hiddenIrradiance.data[i] = 0.02f * static_cast<float>(i % 89);
+    }
     const std::vector<PellucidMaterial> materials(c.materials.size(), skin());
     const ReplaySettings s = through();
     pellucid::harness::reference::Settings r;
     r.features = s.features;
     r.translucency = s.translucency;
-    r.ambient = s.ambient;
+    r.ambient = s.ambient.value_or(false);
     const Image ref = pellucid::harness::reference::compute(c, materials, r).image;
     const Image gpu = replayer().run(c, materials, s).output;
     ReplaySettings off = s;

@@ -158,7 +158,7 @@ TEST_F(BlockMaps, SayWhyThereAreNone) {
     }
     return std::string();
   };
-  EXPECT_EQ(why([](ReplaySettings& s) { s.indirectDispatches = PELLUCID_INDIRECT_NONE; }),
+  EXPECT_EQ(why([](ReplaySettings& s) { s.indirectDispatches = 0; }),
             "flat: has no lists of blocks to draw: frame.indirectDispatches asks for none");
   EXPECT_EQ(why([](ReplaySettings& s) {
               s.features = PELLUCID_FEATURE_TRANSLUCENCY;

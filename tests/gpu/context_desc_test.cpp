@@ -23,7 +23,8 @@ TEST_F(ContextTest, FormatsPatchedIntoShadersWriteTheSameBits) {
     const Capture c = litSlab();
     const Image expected = replay(c, testMaterial(), s);
     const Context fixed(
-        device(), [&](PellucidContextDesc& desc) { desc.outputFormat = format; }, Compile::AtCreation);
+        device(), [&](PellucidContextDesc& desc) { desc.options.outputFormat = format; },
+        Compile::AtCreation);
     const FrameRun run(device(), fixed, c, {testMaterial()}, s);
     device().run([&](VkCommandBuffer commandBuffer) { run.record(commandBuffer); });
     EXPECT_TRUE(sameBits(run.output(), expected)) << format;
@@ -45,15 +46,16 @@ std::string refusal(Device& device, const Context& context, const ReplaySettings
 }
 
 TEST_F(ContextTest, RefusesOtherFormatsThanItsOwn) {
-  const Context half(device(),
-                     [](PellucidContextDesc& desc) { desc.outputFormat = VK_FORMAT_R16G16B16A16_SFLOAT; });
+  const Context half(
+      device(), [](PellucidContextDesc& desc) { desc.options.outputFormat = VK_FORMAT_R16G16B16A16_SFLOAT; });
   ReplaySettings s;
   s.features = PELLUCID_FEATURE_TRANSLUCENCY;
   s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
   EXPECT_NE(refusal(device(), half, s).find("outputFormat is not"), std::string::npos) << half.message();
 
   try {
-    const Context other(device(), [](PellucidContextDesc& d) { d.outputFormat = VK_FORMAT_R8G8B8A8_UNORM; });
+    const Context other(device(),
+                        [](PellucidContextDesc& d) { d.options.outputFormat = VK_FORMAT_R8G8B8A8_UNORM; });
     ADD_FAILURE() << "no exception";
   } catch (const DeviceError& e) {
     EXPECT_NE(std::string(e.what()).find("outputFormat is VkFormat 37"), std::string::npos) << e.what();
@@ -83,9 +85,9 @@ TEST_F(ContextTest, MakesThePipelinesOfItsUsesOnLentThreads) {
     uint32_t count = 0;
   } lent;
   const auto change = [&](PellucidContextDesc& desc) {
-    desc.uses = PELLUCID_USE_DIFFUSION;
-    desc.parallelUser = &lent;
-    desc.parallelFor = [](void* user, uint32_t count, void (*job)(void*, uint32_t), void* data) {
+    desc.options.uses = PELLUCID_USE_DIFFUSION;
+    desc.options.parallelUser = &lent;
+    desc.options.parallelFor = [](void* user, uint32_t count, void (*job)(void*, uint32_t), void* data) {
       auto& l = *static_cast<Lent*>(user);
       l.count = count;
       for (uint32_t i = count; i-- > 0;) {
@@ -105,7 +107,7 @@ TEST_F(ContextTest, MakesThePipelinesOfItsUsesOnLentThreads) {
   EXPECT_TRUE(sameBits(alone.output(), replay(litSlab(), testMaterial(), s)));
 
   EXPECT_NE(refusal(device(), diffusion, {}).find("plan needs pipeline translucency"), std::string::npos);
-  const auto unknown = [](PellucidContextDesc& desc) { desc.uses = 1u << 20; };
+  const auto unknown = [](PellucidContextDesc& desc) { desc.options.uses = 1u << 20; };
   EXPECT_THROW(Context(device(), unknown, Compile::AtCreation), DeviceError);
 }
 
@@ -113,7 +115,7 @@ TEST_F(ContextTest, MakesThePipelinesOfItsUsesOnLentThreads) {
 // name.
 TEST_F(ContextTest, OptionsThatUsesLeaveOut) {
   const Context lean(device(), [](PellucidContextDesc& desc) {
-    desc.uses = PELLUCID_USE_TRANSLUCENCY | PELLUCID_USE_DIFFUSION | PELLUCID_USE_GATHER;
+    desc.options.uses = PELLUCID_USE_TRANSLUCENCY | PELLUCID_USE_DIFFUSION | PELLUCID_USE_GATHER;
   });
   Capture c = litSlab();
   for (const uint32_t samples : {0u, 8u}) {

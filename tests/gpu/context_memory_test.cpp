@@ -21,9 +21,9 @@ Attempt attempt(Device& device, VkPipelineCache cache, int failing) {
   allocator.failing = failing;
   const VkAllocationCallbacks callbacks = allocator.callbacks();
   PellucidContextDesc desc = contextDesc(device);
-  desc.pipelineCache = cache;
-  desc.uses = PELLUCID_USE_DIFFUSION;  // six pipelines: the others are created by the same code
-  desc.allocator = &callbacks;
+  desc.options.pipelineCache = cache;
+  desc.options.uses = PELLUCID_USE_DIFFUSION;  // six pipelines: the others are created by the same code
+  desc.options.allocator = &callbacks;
   desc.message = [](void* user, PellucidSeverity, const char* field, const char* message) {
     *static_cast<std::string*>(user) += std::string(field) + " " + message + "\n";
   };

@@ -1,5 +1,6 @@
-// Another driver against the one that all other tests run on: every option at each number of samples, on captures of
-// some thousand pixels. `./run driver` names the other one; without a name there is nothing to compare.
+// Another driver against the one that all other tests run on: every option at each number of samples, on
+// captures of some thousand pixels. `./run driver` names the other one; without a name there is nothing to
+// compare.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -28,12 +29,11 @@ constexpr Option kOptions[] = {
     {"32 bits", [](ReplaySettings& s, Capture&) { s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT; }},
     {"packed floats", [](ReplaySettings& s, Capture&) { s.outputFormat = VK_FORMAT_B10G11R11_UFLOAT_PACK32; },
      0.04},  // blue keeps 5 bits
-    {"no lists", [](ReplaySettings& s, Capture&) { s.indirectDispatches = PELLUCID_INDIRECT_NONE; }},
+    {"no lists", [](ReplaySettings& s, Capture&) { s.indirectDispatches = 0; }},
     {"cells of 2 pixels", [](ReplaySettings& s, Capture&) { s.translucency.gatherSpacing = 2; }},
     {"cells of 4 pixels", [](ReplaySettings& s, Capture&) { s.translucency.gatherSpacing = 4; }},
     {"64 samples", [](ReplaySettings& s, Capture&) { s.translucency.gatherSamples = 64; }},
-    {"camera thickness",
-     [](ReplaySettings& s, Capture&) { s.translucency.thicknessSource = PELLUCID_THICKNESS_CAMERA; }},
+    {"camera thickness", [](ReplaySettings& s, Capture&) { s.translucency.cameraThickness = 1; }},
     {"translucency alone", [](ReplaySettings& s, Capture&) { s.features = PELLUCID_FEATURE_TRANSLUCENCY; }},
     {"diffusion alone", [](ReplaySettings& s, Capture&) { s.features = PELLUCID_FEATURE_DIFFUSION; }},
     {"in place", [](ReplaySettings& s, Capture&) { s.aliasOutput = true; }},
@@ -111,8 +111,8 @@ TEST(Drivers, AgreeOnEveryOptionAndRepeatEachBit) {
     const std::vector<PellucidMaterial> materials = compileMaterials(whole);
     for (const Option& option : kOptions)
       for (const uint32_t samples : {0u, 8u, 16u}) {
-        SCOPED_TRACE(std::string(option.name) + (light ? ", spot light" : ", directional light") +
-                     ", " + std::to_string(samples) + " samples");
+        SCOPED_TRACE(std::string(option.name) + (light ? ", spot light" : ", directional light") + ", " +
+                     std::to_string(samples) + " samples");
         ReplaySettings settings;
         settings.translucency.gatherSamples = samples;
         Capture c = whole;

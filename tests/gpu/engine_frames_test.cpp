@@ -120,7 +120,7 @@ TEST_F(EngineFrames, EncodedNormalsGiveThePictureOfPlainOnes) {
   ReplaySettings chord = wide();
   chord.features = PELLUCID_FEATURE_TRANSLUCENCY;
   chord.translucency.gatherSamples = 0;
-  chord.translucency.thicknessSource = PELLUCID_THICKNESS_CAMERA;
+  chord.translucency.cameraThickness = 1;
   const Image whole = replayer().run(head(), materialsOf(head()), wide()).output;
   const Image through = replayer().run(head(), materialsOf(head()), chord).output;
   std::map<PellucidNormalEncoding, std::unique_ptr<Context>> contexts;
@@ -128,8 +128,9 @@ TEST_F(EngineFrames, EncodedNormalsGiveThePictureOfPlainOnes) {
     std::unique_ptr<Context>& context = contexts[e.encoding];
     if (!context)
       context = std::make_unique<Context>(device(), [&](PellucidContextDesc& desc) {
-        desc.uses = e.whole ? PELLUCID_USE_DIFFUSION | PELLUCID_USE_GATHER : PELLUCID_USE_TRANSLUCENCY;
-        desc.normalEncoding = e.encoding;
+        desc.options.uses =
+            e.whole ? PELLUCID_USE_DIFFUSION | PELLUCID_USE_GATHER : PELLUCID_USE_TRANSLUCENCY;
+        desc.options.normalEncoding = e.encoding;
       });
     for (const bool view : {false, true}) {
       const Capture c = view ? inViewSpace(head()) : head();
@@ -150,7 +151,7 @@ TEST_F(EngineFrames, EncodedNormalsGiveThePictureOfPlainOnes) {
 
 TEST_F(EngineFrames, UnknownNormalEncodingIsRefused) {
   try {
-    const Context context(device(), [](PellucidContextDesc& desc) { desc.normalEncoding = 4; });
+    const Context context(device(), [](PellucidContextDesc& desc) { desc.options.normalEncoding = 4; });
     ADD_FAILURE() << "no exception";
   } catch (const std::exception& e) {
     EXPECT_NE(std::string(e.what()).find("normalEncoding is 4"), std::string::npos) << e.what();
@@ -221,7 +222,7 @@ TEST_F(EngineFrames, ResultIsAddedToWhatTheOutputHolds) {
       };
       const Context& context = replayer().contextFor(c);
       const Image result = render(FrameRun(device(), context, c, materialsOf(c), s));
-      s.outputMode = PELLUCID_OUTPUT_ADD;
+      s.addToOutput = 1;
       const FrameRun run(device(), context, c, materialsOf(c), s);
       run.uploadOutput(held);
       const Image before = run.output();

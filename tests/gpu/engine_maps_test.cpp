@@ -60,10 +60,9 @@ protected:
     options.shadow = shadow;
     return rasterize(device(), model, frontCamera(false), options).capture;
   }
-  static Image render(const Capture& c, uint32_t samples,
-                      PellucidThicknessSource source = PELLUCID_THICKNESS_LIGHT) {
+  static Image render(const Capture& c, uint32_t samples, bool source = 0) {
     ReplaySettings s = gathering(samples);
-    s.translucency.thicknessSource = source;
+    s.translucency.cameraThickness = source;
     return replayer().run(c, compileMaterials(c), s).output;
   }
   // In red, green and blue: of pixels that some light reaches.
@@ -123,12 +122,12 @@ TEST_F(EngineMaps, FrontFacesCulled) {
   ShadowDrawing culled;
   culled.cull = MapCull::Front;
   const Capture c = draw(model, culled);
-  EXPECT_EQ(c.lights[0].shadowMaps[0].faces, PELLUCID_FACES_BACK);
+  EXPECT_TRUE(c.lights[0].shadowMaps[0].backFaces);
   Capture none = c;
   none.lights.clear();
   for (const uint32_t samples : {0u, 8u}) {
     SCOPED_TRACE(samples);
-    const Image image = render(c, samples), expected = render(plain, 0, PELLUCID_THICKNESS_CAMERA);
+    const Image image = render(c, samples), expected = render(plain, 0, 1);
     // On so small a ball points within a tolerance of the face that light leaves by are 2 % of the light. In
     // a frame that may gather, light that comes through is not diffused, and curved surfaces return up to a
     // tenth more than in the frame without a gather.
@@ -202,7 +201,7 @@ TEST_F(EngineMaps, LayersNeedAnArrayContext) {
       run.record(commandBuffer);
       ADD_FAILURE() << "not refused";
     } catch (const InputError& error) {
-      EXPECT_NE(std::string(error.what()).find("shadowMaps[0].layer is 3"), std::string::npos)
+      EXPECT_NE(std::string(error.what()).find("shadowMaps[0].options.layer is 3"), std::string::npos)
           << error.what();
     }
   });
@@ -211,8 +210,8 @@ TEST_F(EngineMaps, LayersNeedAnArrayContext) {
 // Passes of an array context bind array views, those without lights and those after a gather among them.
 TEST_F(EngineMaps, ArrayContextsBindArrayViewsAlone) {
   Capture c = flatCapture(8, 8);
-  const Context arrays(device(),
-                       [](PellucidContextDesc& desc) { desc.shadowViewType = VK_IMAGE_VIEW_TYPE_2D_ARRAY; });
+  const Context arrays(
+      device(), [](PellucidContextDesc& desc) { desc.options.shadowViewType = VK_IMAGE_VIEW_TYPE_2D_ARRAY; });
   ReplaySettings s;
   s.features = 0;
   const FrameRun none(device(), arrays, c, {testMaterial()}, s);

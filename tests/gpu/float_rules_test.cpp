@@ -89,7 +89,7 @@ TEST_F(GpuTest, NoGuardReliesOnComparisonsThatAreFalseForNan) {
         if (!normals) c.normal = {};
         ReplaySettings s;
         s.translucency.gatherSamples = samples;
-        s.indirectDispatches = PELLUCID_INDIRECT_MATERIAL;
+        s.indirectDispatches = 1;
         const auto output = [&](const Context& context) {
           const FrameRun run(device(), context, c, {testMaterial()}, s);
           device().run([&](VkCommandBuffer commands) { run.record(commands); });

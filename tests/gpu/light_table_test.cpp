@@ -147,12 +147,12 @@ TEST_F(LightTables, AgreeWithTheReference) {
     light.distanceTable = table(square);
     light.angleTable = table(lobes);
     for (size_t i = 0; i < 3; ++i) light.direction[i] = (center[i] - light.position[i]) / std::sqrt(away);
-    for (const auto source : {PELLUCID_THICKNESS_LIGHT, PELLUCID_THICKNESS_CAMERA}) {
+    for (const auto source : {0, 1}) {
       ReplaySettings s = translucency();
-      s.translucency.thicknessSource = source;
+      s.translucency.cameraThickness = source;
       reference::Settings r;
       r.features = PELLUCID_FEATURE_TRANSLUCENCY;
-      r.translucency.thicknessSource = source;
+      r.translucency.cameraThickness = source;
       const Image gpu = rgb(replayer().run(c, materials, s).output),
                   truth = reference::compute(c, materials, r).image;
       const auto metrics =
@@ -211,10 +211,11 @@ TEST_F(LightTables, ContextsWithoutRefuseThem) {
   const Context plain(device());
   const FrameRun run(device(), plain, c, {testMaterial()}, translucency());
   device().run([&](VkCommandBuffer commandBuffer) { EXPECT_ANY_THROW(run.record(commandBuffer)); });
-  EXPECT_NE(plain.message().find("lightTableCount is above 0, but PellucidContextDesc::lightTables is 0"),
+  EXPECT_NE(plain.message().find("lightTableCount is above 0, but PellucidContextOptions::lightTables is 0"),
             std::string::npos)
       << plain.message();
-  EXPECT_THROW(Context(device(), [](PellucidContextDesc& desc) { desc.lightTables = 2; }), DeviceError);
+  EXPECT_THROW(Context(device(), [](PellucidContextDesc& desc) { desc.options.lightTables = 2; }),
+               DeviceError);
 }
 
 }  // namespace

@@ -82,9 +82,9 @@ TEST_F(Lists, ChangeNoPixel) {
       ReplaySettings s;
       s.translucency.gatherSamples = 8;
       way.change(s);
-      s.indirectDispatches = PELLUCID_INDIRECT_NONE;
+      s.indirectDispatches = 0;
       const Image whole = replayer().run(c, {testMaterial()}, s).output;
-      s.indirectDispatches = PELLUCID_INDIRECT_MATERIAL;
+      s.indirectDispatches = 1;
       const FrameRun run(device(), replayer().contextFor(c), c, {testMaterial()}, s);
       // A recording may run more than once.
       for (int times = 0; times < 2; ++times) {
@@ -125,7 +125,7 @@ TEST_F(Lists, GroupsFollowTheMaterial) {
   const uint64_t entries = groups("entry points").run;
   EXPECT_GT(entries, 0u);
   EXPECT_LT(entries, 64u);
-  s.indirectDispatches = PELLUCID_INDIRECT_NONE;
+  s.indirectDispatches = 0;
   for (const char* name : kListed) EXPECT_EQ(groups(name).run, groups(name).most) << name;
 }
 

@@ -87,7 +87,7 @@ TEST_F(FlatOccluder, LightEntersThroughTheReceiversMaterialOnly) {
   }
   // The camera's thickness of 1 mm: the map lies at the back face and only occludes.
   TranslucencySettings camera;
-  camera.thicknessSource = PELLUCID_THICKNESS_CAMERA;
+  camera.cameraThickness = 1;
   mapOf(c).depth = narrowMap(-11, PELLUCID_DEPTH_DEVICE).depth;
   setCaster(c, 1);
   EXPECT_NEAR(through(c, camera), std::exp(-0.5f), 1e-5);

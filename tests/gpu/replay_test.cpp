@@ -75,18 +75,18 @@ TEST_F(Replay, OccludedBackIsDark) {
   ReplaySettings s;
   s.features = PELLUCID_FEATURE_TRANSLUCENCY;  // the diffusion's pyramid holds halves
   s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
-  s.translucency.thicknessSource = PELLUCID_THICKNESS_CAMERA;
+  s.translucency.cameraThickness = 1;
   expectPixel(replay(c, testMaterial(), s), 5, 5, 1, 0.5, 0.25, 1e-5);
   // Light space: 32 mm of thickness, e^{-16} of the light in red and e^{-8} in blue's slow part.
-  s.translucency.thicknessSource = PELLUCID_THICKNESS_LIGHT;
+  s.translucency.cameraThickness = 0;
   expectPixel(replay(c, testMaterial(), s), 5, 5, 1 + 6 * std::exp(-16.0), 0.5, 0.25 + 1.8 * std::exp(-8.0),
               1e-5);
 }
 
 TEST_F(Replay, OutsideTheMapAndEmptyTexelsGiveNoLight) {
-  for (const auto source : {PELLUCID_THICKNESS_LIGHT, PELLUCID_THICKNESS_CAMERA}) {
+  for (const auto source : {0, 1}) {
     ReplaySettings s;
-    s.translucency.thicknessSource = source;
+    s.translucency.cameraThickness = source;
     Capture c = flatCapture(8, 8, 2);
     c.lights = {backLight()};
     c.lights[0].shadowMaps = {flatShadowMap(-12, PELLUCID_DEPTH_VIEW_Z)};
@@ -358,9 +358,9 @@ TEST_F(Replay, BadValuesAtMaterialPixelsStayFinite) {
       c.lights[1].shadowMaps[0].depth.image.at(x, y)[0] = next();
     }
   ReplaySettings s;
-  for (const auto source : {PELLUCID_THICKNESS_LIGHT, PELLUCID_THICKNESS_CAMERA})
+  for (const auto source : {0, 1})
     for (const uint32_t samples : {0u, 8u}) {
-      s.translucency.thicknessSource = source;
+      s.translucency.cameraThickness = source;
       s.translucency.gatherSamples = samples;
       const Image out = replay(c, testMaterial(), s);
       for (int y = 0; y < 32; ++y)

@@ -17,19 +17,15 @@ TEST_F(ThinWall, AgreesWithTheReference) {
     const char* scene;
     PellucidLightType light;
     PellucidDepthEncoding shadow;
-    PellucidThicknessSource source;
+    bool source;
     bool normals, back, maps;
   };
   for (const Row& row :
-       {Row{"ear", PELLUCID_LIGHT_DIRECTIONAL, PELLUCID_DEPTH_DEVICE, PELLUCID_THICKNESS_LIGHT, true, true,
-            true},
-        Row{"ear", PELLUCID_LIGHT_POINT, PELLUCID_DEPTH_VIEW_Z, PELLUCID_THICKNESS_LIGHT, false, true, true},
-        Row{"torus", PELLUCID_LIGHT_SPOT, PELLUCID_DEPTH_DISTANCE, PELLUCID_THICKNESS_CAMERA, true, false,
-            true},
-        Row{"blades", PELLUCID_LIGHT_DIRECTIONAL, PELLUCID_DEPTH_VIEW_Z, PELLUCID_THICKNESS_CAMERA, true,
-            true, true},
-        Row{"sphere", PELLUCID_LIGHT_POINT, PELLUCID_DEPTH_DEVICE, PELLUCID_THICKNESS_LIGHT, true, false,
-            false}})
+       {Row{"ear", PELLUCID_LIGHT_DIRECTIONAL, PELLUCID_DEPTH_DEVICE, 0, true, true, true},
+        Row{"ear", PELLUCID_LIGHT_POINT, PELLUCID_DEPTH_VIEW_Z, 0, false, true, true},
+        Row{"torus", PELLUCID_LIGHT_SPOT, PELLUCID_DEPTH_DISTANCE, 1, true, false, true},
+        Row{"blades", PELLUCID_LIGHT_DIRECTIONAL, PELLUCID_DEPTH_VIEW_Z, 1, true, true, true},
+        Row{"sphere", PELLUCID_LIGHT_POINT, PELLUCID_DEPTH_DEVICE, 0, true, false, false}})
     for (const bool solid : {false, true}) {
       SCOPED_TRACE(testing::Message() << row.scene << " solid " << solid);
       SceneParameters p;
@@ -53,7 +49,7 @@ TEST_F(ThinWall, AgreesWithTheReference) {
       }
       ReplaySettings s = gathering(0);
       s.features = PELLUCID_FEATURE_TRANSLUCENCY;
-      s.translucency.thicknessSource = row.source;
+      s.translucency.cameraThickness = row.source;
       reference::Settings r;
       r.features = s.features;
       r.translucency = s.translucency;

@@ -84,7 +84,7 @@ protected:
     capture.albedo = {};  // would multiply the sum
     settings.features = PELLUCID_FEATURE_TRANSLUCENCY;
     settings.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
-    settings.translucency.thicknessSource = PELLUCID_THICKNESS_CAMERA;
+    settings.translucency.cameraThickness = 1;
     const Context& context = replayer().contextFor(capture);
     const FrameRun run(device(), context, capture, {testMaterial()}, settings);
     device().run([&](VkCommandBuffer commandBuffer) { run.record(commandBuffer); });

@@ -113,7 +113,7 @@ std::vector<Way> ways() {
   add("NoMaps", true).raster.shadowSize = 0;
   add("Simplified", true).raster.simplify = 0.3;
   add("Floats", true).settings.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
-  add("CameraThickness", true).settings.translucency.thicknessSource = PELLUCID_THICKNESS_CAMERA;
+  add("CameraThickness", true).settings.translucency.cameraThickness = 1;
   Way& atlas = add("Atlas", false);
   atlas.raster.shadow.placement = MapPlacement::Atlas;
   atlas.raster.shadow.bits = 16;

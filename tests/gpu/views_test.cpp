@@ -84,7 +84,7 @@ protected:
 };
 
 TEST_F(ViewsTest, EyesHaveTheSameBitsTogether) {
-  for (const PellucidIndirect indirect : {PELLUCID_INDIRECT_NONE, PELLUCID_INDIRECT_MATERIAL}) {
+  for (const bool indirect : {0, 1}) {
     ReplaySettings s = gathered();
     s.indirectDispatches = indirect;
     const auto left = make(eye(0), s), right = make(eye(1), s);
@@ -122,7 +122,7 @@ constexpr Kind kKinds[] = {
      [](ReplaySettings& s) {
        s.aliasOutput = true;
        s.renderRect = {13, 9, 50, 61};
-       s.indirectDispatches = PELLUCID_INDIRECT_NONE;
+       s.indirectDispatches = 0;
      }},
     {"reuse", left, [](ReplaySettings& s) { s.reuse = PELLUCID_REUSE_ALTERNATE; }, true},
     {"reuse without a gather", right,

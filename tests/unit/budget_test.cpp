@@ -1,4 +1,4 @@
-// pellucidStepBudget over time series: it must reach a setting that fits within a bounded number of frames
+// stepBudget over time series: it must reach a setting that fits within a bounded number of frames
 // and must not swing between two.
 #include <gtest/gtest.h>
 
@@ -9,9 +9,12 @@
 #include <iterator>
 #include <random>
 
-#include "pellucid/pellucid_budget.h"
+#include "view/frame_budget.h"
 
 namespace {
+
+using pellucid::harness::BudgetState;
+using pellucid::harness::stepBudget;
 
 constexpr float kBudget = 2;
 constexpr uint32_t kMost = 16, kSamples[] = {kMost, 8, 4, 0};
@@ -19,7 +22,7 @@ constexpr uint32_t kMost = 16, kSamples[] = {kMost, 8, 4, 0};
 constexpr int kReductions = static_cast<int>(std::size(kSamples)), kLongestOver = kReductions * (3 + 2);
 
 // What a setting costs of the best one's time.
-float share(const PellucidBudgetState& s) {
+float share(const BudgetState& s) {
   const float shares[] = {1, 0.6f, 0.5f, 0.3f};
   const uint32_t* found = std::find(std::begin(kSamples), std::end(kSamples), s.gatherSamples);
   EXPECT_NE(found, std::end(kSamples)) << s.gatherSamples;
@@ -29,20 +32,19 @@ float share(const PellucidBudgetState& s) {
 struct Series {
   int changes = 0;
   int longestOver = 0;  // frames on end above the budget
-  PellucidBudgetState last;
+  BudgetState last;
 };
 
 // `load(frame)`: the time of the best setting, ms.
 Series simulate(int frames, const std::function<float(int)>& load) {
   Series run;
-  pellucidInitBudgetState(&run.last);
   int over = 0;
   for (int i = 0; i < frames; ++i) {
-    const PellucidBudgetState before = run.last;
+    const BudgetState before = run.last;
     const float measured = load(i) * share(before);
     over = measured > kBudget ? over + 1 : 0;
     run.longestOver = std::max(run.longestOver, over);
-    pellucidStepBudget(&run.last, measured, kBudget);
+    stepBudget(run.last, measured, kBudget);
     run.changes += run.last.gatherSamples != before.gatherSamples || run.last.reuse != before.reuse;
   }
   return run;
@@ -90,16 +92,15 @@ TEST(Budget, NoiseDoesNotSwing) {
 // Whatever the state holds, a light load reaches the best setting and a heavy one the cheapest.
 TEST(Budget, DamagedStatesRecover) {
   for (const uint32_t bits : {0u, 1u, 0x7FC00000u, 0x7F800000u, 0xFFFFFFFFu, 0x80000000u}) {
-    PellucidBudgetState light, heavy;
+    BudgetState light, heavy;
     for (size_t i = 0; i < sizeof light / 4; ++i)
       std::memcpy(reinterpret_cast<char*>(&light) + 4 * i, &bits, 4);
     heavy = light;
     for (int i = 0; i < 40000; ++i) {
-      pellucidStepBudget(&light, 0.5f, 2);
-      pellucidStepBudget(&heavy, 100, 2);
+      stepBudget(light, 0.5f, 2);
+      stepBudget(heavy, 100, 2);
     }
-    PellucidBudgetState best;
-    pellucidInitBudgetState(&best);
+    BudgetState best;
     EXPECT_EQ(light.gatherSamples, best.gatherSamples) << bits;
     EXPECT_EQ(light.reuse, 0u) << bits;
     EXPECT_EQ(heavy.gatherSamples, 0u) << bits;
@@ -113,21 +114,19 @@ TEST(Budget, RandomStatesRecover) {
                             0x7FC00000u, 0x7F800000u, 0x3F800000u, 0x80000000u, 0xFFFFFFFFu};
   for (int state = 0; state < 300; ++state) {
     SCOPED_TRACE(state);
-    PellucidBudgetState light;
-    pellucidInitBudgetState(&light);
+    BudgetState light;
     for (size_t i = 0; i < sizeof light / 4; ++i) {
       const uint32_t kind = static_cast<uint32_t>(random()) % 4;
       if (kind == 0) continue;
       const uint32_t word = kind == 1 ? static_cast<uint32_t>(random()) : words[random() % std::size(words)];
       std::memcpy(reinterpret_cast<char*>(&light) + 4 * i, &word, 4);
     }
-    PellucidBudgetState heavy = light;
+    BudgetState heavy = light;
     int lightFrames = 0, heavyFrames = 0;
     // Waits of 4096 frames at most: three for the samples, and one for the reuse.
     for (; lightFrames < 20000 && !(light.gatherSamples == kMost && light.reuse == 0); ++lightFrames)
-      pellucidStepBudget(&light, 0.5f, kBudget);
-    for (; heavyFrames < 100 && heavy.gatherSamples != 0; ++heavyFrames)
-      pellucidStepBudget(&heavy, 100, kBudget);
+      stepBudget(light, 0.5f, kBudget);
+    for (; heavyFrames < 100 && heavy.gatherSamples != 0; ++heavyFrames) stepBudget(heavy, 100, kBudget);
     EXPECT_LT(lightFrames, 20000);
     EXPECT_LE(heavyFrames, kLongestOver + 2) << "as from a state that is whole, after what it lets settle";
   }
@@ -147,12 +146,11 @@ TEST(Budget, WhatNeverFitsStaysCheapest) {
 }
 
 TEST(Budget, BadTimesAreIgnored) {
-  PellucidBudgetState state;
-  pellucidInitBudgetState(&state);
+  BudgetState state;
   for (const float bad : {NAN, INFINITY, -1.0f})
-    for (int i = 0; i < 10; ++i) pellucidStepBudget(&state, bad, kBudget);
+    for (int i = 0; i < 10; ++i) stepBudget(state, bad, kBudget);
   for (const float bad : {NAN, 0.0f, -1.0f})
-    for (int i = 0; i < 10; ++i) pellucidStepBudget(&state, 100, bad);
+    for (int i = 0; i < 10; ++i) stepBudget(state, 100, bad);
   EXPECT_EQ(state.gatherSamples, kMost);
   EXPECT_EQ(state.overFrames, 0u);
 }

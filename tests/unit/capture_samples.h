@@ -50,6 +50,7 @@ inline Capture sampleCapture() {
   capture.frontDepth.image.data[1] = std::numeric_limits<float>::infinity();
   capture.backDepth = {screen(1, 0.125f), PELLUCID_DEPTH_DEVICE};
   capture.irradiance = screen(3, 0.1f);
+  capture.hiddenIrradiance = screen(3, 0.2f);
   capture.normal = screen(3, -0.7f);
   capture.normalsInViewSpace = true;
   capture.albedo = screen(3, 0.3f);
@@ -96,7 +97,7 @@ inline Capture sampleCapture() {
                        {{sampleImage(3, 2, 1, 7.0f), PELLUCID_DEPTH_VIEW_Z},
                         {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0, 0, -0.1, 0},
                         kIdentity}};
-  for (ShadowMap& map : around.shadowMaps) map.faces = PELLUCID_FACES_BACK;
+  for (ShadowMap& map : around.shadowMaps) map.backFaces = true;
   Light tiled =
       lamp;  // two tiles of an atlas, of which one alone has an exit depth, and two layers of an array
   tiled.shadowMaps = around.shadowMaps;

@@ -36,6 +36,7 @@ TEST(CaptureRoundTrip, IsBitExactWithFloat) {
   expectSame(read.frontDepth, written.frontDepth);
   expectSame(read.backDepth, written.backDepth);
   EXPECT_TRUE(sameBits(read.irradiance, written.irradiance));
+  EXPECT_TRUE(sameBits(read.hiddenIrradiance, written.hiddenIrradiance));
   EXPECT_TRUE(sameBits(read.normal, written.normal));
   EXPECT_EQ(read.normalsInViewSpace, written.normalsInViewSpace);
   EXPECT_TRUE(sameBits(read.albedo, written.albedo));
@@ -69,7 +70,7 @@ TEST(CaptureRoundTrip, IsBitExactWithFloat) {
       EXPECT_TRUE(sameBits(a.shadowMaps[k].exitDepth, b.shadowMaps[k].exitDepth));
       EXPECT_EQ(a.shadowMaps[k].casterMaterial, b.shadowMaps[k].casterMaterial);
       EXPECT_EQ(a.shadowMaps[k].clipFromWorld, b.shadowMaps[k].clipFromWorld);
-      EXPECT_EQ(a.shadowMaps[k].faces, b.shadowMaps[k].faces);
+      EXPECT_EQ(a.shadowMaps[k].backFaces, b.shadowMaps[k].backFaces);
       EXPECT_EQ(a.shadowMaps[k].depthBiasConstant, b.shadowMaps[k].depthBiasConstant);
       EXPECT_EQ(a.shadowMaps[k].depthBiasSlope, b.shadowMaps[k].depthBiasSlope);
       EXPECT_EQ(a.shadowMaps[k].offsetLength, b.shadowMaps[k].offsetLength);
@@ -110,12 +111,13 @@ TEST(CaptureRoundTrip, MinimalCaptureHasNoOptionalParts) {
   const TemporaryDirectory directory;
   Capture written = sampleCapture();
   written.backDepth = {};
-  written.normal = written.albedo = {};
+  written.hiddenIrradiance = written.normal = written.albedo = {};
   written.truth.reset();
   written.lights.clear();
   writeCapture(written, directory / "c.exr");
   const Capture read = readCapture(directory / "c.exr");
   EXPECT_TRUE(read.backDepth.image.empty());
+  EXPECT_TRUE(read.hiddenIrradiance.empty());
   EXPECT_TRUE(read.normal.empty());
   EXPECT_TRUE(read.albedo.empty());
   EXPECT_FALSE(read.truth.has_value());

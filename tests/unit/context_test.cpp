@@ -72,7 +72,7 @@ TEST(ContextMemory, EveryFailingAllocationIsReportedAndNothingLeaks) {
     const VkAllocationCallbacks callbacks = allocator.callbacks();
     Sentences sentences;
     PellucidContextDesc desc = descOf(device, sentences);
-    desc.allocator = &callbacks;
+    desc.options.allocator = &callbacks;
     auto* context = reinterpret_cast<PellucidContext*>(&device);  // to be overwritten
     const PellucidResult result = pellucidCreateContext(&desc, &context);
     if (result == PELLUCID_OK) {
@@ -141,8 +141,8 @@ TEST(ContextLimits, AreNamedWithBothNumbers) {
               {"maxPerStageDescriptorUniformBuffers", &Limits::maxPerStageDescriptorUniformBuffers, 3},
               {"maxPerStageDescriptorStorageBuffers", &Limits::maxPerStageDescriptorStorageBuffers, 1},
               {"maxPerStageDescriptorStorageImages", &Limits::maxPerStageDescriptorStorageImages, 3},
-              {"maxPerStageDescriptorSampledImages", &Limits::maxPerStageDescriptorSampledImages, 15},
-              {"maxPerStageResources", &Limits::maxPerStageResources, 21}};
+              {"maxPerStageDescriptorSampledImages", &Limits::maxPerStageDescriptorSampledImages, 16},
+              {"maxPerStageResources", &Limits::maxPerStageResources, 22}};
   for (const auto& [name, limit, needed] : rows)
     for (const uint32_t less : {0u, 1u}) {
       NullDevice device;
@@ -177,10 +177,10 @@ TEST(ContextLimits, DescriptorsThatArePushedAndFormatsAreNamed) {
   NullDevice few;
   few.mostPushed = 20;
   EXPECT_NE(sentenceOf(few, {}).find("maxPushDescriptors 20; 21 is required"), std::string::npos);
-  EXPECT_EQ(sentenceOf(few, [](PellucidContextDesc& d) { d.descriptorPools = 1; }), "");
+  EXPECT_EQ(sentenceOf(few, [](PellucidContextDesc& d) { d.options.descriptorPools = 1; }), "");
   NullDevice fixed;
   fixed.writesWithoutFormat = false;
-  const auto anyFormat = [](PellucidContextDesc& d) { d.outputFormat = VK_FORMAT_UNDEFINED; };
+  const auto anyFormat = [](PellucidContextDesc& d) { d.options.outputFormat = VK_FORMAT_UNDEFINED; };
   EXPECT_NE(sentenceOf(fixed, anyFormat).find("shaderStorageImageWriteWithoutFormat"), std::string::npos);
   EXPECT_EQ(sentenceOf(fixed, {}), "") << "formats that are fixed need no such feature";
   fixed.writesWithoutFormat = true;
@@ -203,10 +203,10 @@ TEST(ContextRecording, SetsComeFromTheFramesPool) {
   PellucidContext* context = nullptr;
   EXPECT_EQ(pellucidCreateContext(&desc, &context), PELLUCID_ERROR_MISSING_FEATURE);
   EXPECT_NE(sentences.last.find("descriptorPools"), std::string::npos) << sentences.last;
-  desc.descriptorPools = 2;
+  desc.options.descriptorPools = 2;
   EXPECT_EQ(pellucidCreateContext(&desc, &context), PELLUCID_ERROR_INVALID_ARGUMENT);
   EXPECT_NE(sentences.last.find("descriptorPools is 2"), std::string::npos) << sentences.last;
-  desc.descriptorPools = 1;
+  desc.options.descriptorPools = 1;
   ASSERT_EQ(pellucidCreateContext(&desc, &context), PELLUCID_OK) << sentences.last;
   Frame f;
   for (PellucidImage& image : f.frame.transients) image = Frame::view();
@@ -215,7 +215,7 @@ TEST(ContextRecording, SetsComeFromTheFramesPool) {
   NullCommands refused;
   EXPECT_EQ(recordOnNull(context, refused, plan, f.frame, constants), PELLUCID_ERROR_INVALID_ARGUMENT);
   EXPECT_NE(sentences.last.find("descriptorPool is NULL"), std::string::npos) << sentences.last;
-  ASSERT_EQ(pellucidCreateDescriptorPool(context, &f.frame.descriptorPool), PELLUCID_OK);
+  ASSERT_EQ(pellucidCreateDescriptorPool(context, &f.frame.options.descriptorPool), PELLUCID_OK);
   for (int times = 0; times < 3; ++times) {
     NullCommands commands;
     ASSERT_EQ(recordOnNull(context, commands, plan, f.frame, constants), PELLUCID_OK) << sentences.last;
@@ -224,9 +224,10 @@ TEST(ContextRecording, SetsComeFromTheFramesPool) {
     EXPECT_EQ(commands.sets.size(), plan.dispatchCount);
   }
   EXPECT_EQ(pellucidCreateDescriptorPool(context, nullptr), PELLUCID_ERROR_INVALID_ARGUMENT);
-  EXPECT_EQ(pellucidCreateDescriptorPool(nullptr, &f.frame.descriptorPool), PELLUCID_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(pellucidCreateDescriptorPool(nullptr, &f.frame.options.descriptorPool),
+            PELLUCID_ERROR_INVALID_ARGUMENT);
   reinterpret_cast<PFN_vkDestroyDescriptorPool>(device.function("vkDestroyDescriptorPool"))(
-      desc.device, f.frame.descriptorPool, nullptr);
+      desc.device, f.frame.options.descriptorPool, nullptr);
   pellucidDestroyContext(context);
 }
 
@@ -242,7 +243,7 @@ TEST(ContextRecording, ConstantsOfFramesThatAreNotValidAreRefused) {
       // The transients of such a frame cannot be counted.
       {"imageExtent",
        [](Frame& f) {
-         f.frame.reuse = PELLUCID_REUSE_ALTERNATE;
+         f.frame.options.reuse = PELLUCID_REUSE_ALTERNATE;
          f.frame.imageExtent[0] = 0;
        }},
       // More entries than there are, or than 32 bits count.
@@ -271,13 +272,13 @@ TEST(ContextPipelines, AreMadeForPlans) {
   NullDevice device;
   Sentences sentences;
   PellucidContextDesc desc = descOf(device, sentences);
-  desc.deferPipelines = 1;
+  desc.options.deferPipelines = 1;
   PellucidContext* context = nullptr;
   ASSERT_EQ(pellucidCreateContext(&desc, &context), PELLUCID_OK);
   const int layouts = device.live;
   Frame f;
   for (PellucidImage& image : f.frame.transients) image = Frame::view();
-  f.frame.features = PELLUCID_FEATURE_DIFFUSION;
+  f.frame.options.features = PELLUCID_FEATURE_DIFFUSION;
   const PellucidPlan plan = f.plan();
   std::vector<unsigned char> constants;
   NullCommands commands;
@@ -296,7 +297,7 @@ TEST(ContextPipelines, AreMadeForPlans) {
   EXPECT_EQ(pellucidCreatePipelines(nullptr, &plan), PELLUCID_ERROR_INVALID_ARGUMENT);
   EXPECT_EQ(pellucidCreatePipelines(context, nullptr), PELLUCID_ERROR_INVALID_ARGUMENT);
   pellucidDestroyContext(context);
-  desc.deferPipelines = 2;
+  desc.options.deferPipelines = 2;
   EXPECT_EQ(pellucidCreateContext(&desc, &context), PELLUCID_ERROR_INVALID_ARGUMENT);
   EXPECT_NE(sentences.last.find("deferPipelines is 2"), std::string::npos) << sentences.last;
 }
@@ -305,9 +306,9 @@ TEST(ContextPipelines, AreMadeForPlans) {
 void shape(Frame& f, uint32_t kind) {
   for (PellucidImage& image : f.frame.transients) image = Frame::view();
   f.frame.imageExtent[0] = 64 + 100 * (kind % 7);
-  if (kind % 3 == 1) f.frame.gatherSamples = 8;
-  if (kind % 3 == 2) f.frame.features = PELLUCID_FEATURE_DIFFUSION;
-  if (kind % 4 == 1) f.frame.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  if (kind % 3 == 1) f.frame.options.gatherSamples = 8;
+  if (kind % 3 == 2) f.frame.options.features = PELLUCID_FEATURE_DIFFUSION;
+  if (kind % 4 == 1) f.frame.options.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
   if (kind % 5 == 1) f.frame.normal = Frame::view();
 }
 
@@ -343,7 +344,7 @@ TEST(ContextThreads, RecordTheSameAsOne) {
   constexpr uint32_t kKinds = 60, kThreads = 8, kRounds = 10;
   NullDevice device;
   PellucidContextDesc desc = device.desc();
-  desc.outputFormat = VK_FORMAT_UNDEFINED;  // frames have several
+  desc.options.outputFormat = VK_FORMAT_UNDEFINED;  // frames have several
   PellucidContext* context = nullptr;
   ASSERT_EQ(pellucidCreateContext(&desc, &context), PELLUCID_OK);
   std::vector<Recorded> expected(kKinds);
@@ -379,7 +380,7 @@ TEST(ContextThreads, EachMakesItsOwnContext) {
       threads.emplace_back([&] {
         for (int i = 0; i < 20 && problem.empty(); ++i) {
           PellucidContextDesc desc = device.desc();
-          desc.outputFormat = VK_FORMAT_UNDEFINED;
+          desc.options.outputFormat = VK_FORMAT_UNDEFINED;
           PellucidContext* context = nullptr;
           if (pellucidCreateContext(&desc, &context) != PELLUCID_OK) problem = "no context";
           Recorded recorded;

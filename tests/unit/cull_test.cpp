@@ -61,7 +61,7 @@ struct View {
     s.translucency.minimumDot = static_cast<float>(uniform(-1, 0));
     s.translucency.prescaleAngle = random() % 2;
     s.translucency.constantViewDirection = random() % 4 == 0;
-    if (random() % 2) s.translucency.thicknessSource = PELLUCID_THICKNESS_CAMERA;
+    if (random() % 2) s.translucency.cameraThickness = 1;
     s.renderRect = rect;
     return s;
   }

@@ -25,8 +25,8 @@ struct Whole : Frame {
 
   Whole() {
     for (PellucidImage& image : frame.transients) image = view();
-    frame.lightTableCount = 1;
-    frame.lightTables = &table;
+    frame.options.lightTableCount = 1;
+    frame.options.lightTables = &table;
   }
 };
 
@@ -52,7 +52,7 @@ const std::vector<std::function<void(Frame&)>> kFrames = {
     [](Frame& f) {
       PellucidShadowMap& map = f.maps[0];
       map.encoding = PELLUCID_DEPTH_VIEW_Z;
-      for (int i = 0; i < 4; ++i) map.viewFromWorld[5 * i] = 1;
+      for (int i = 0; i < 4; ++i) map.options.viewFromWorld[5 * i] = 1;
       PellucidLight spot = Frame::light(0, 0);
       spot.type = PELLUCID_LIGHT_SPOT;
       spot.outerConeAngle = 0.5f;
@@ -103,7 +103,7 @@ const char* prefix() {
   if constexpr (std::is_same_v<Struct, PellucidThesisOptions>) return "thesis.";
   if constexpr (std::is_same_v<Struct, PellucidMaterial>) return "materials[0].";
   if constexpr (std::is_same_v<Struct, PellucidLight>) return "lights[0].";
-  if constexpr (std::is_same_v<Struct, PellucidLightTable>) return "lightTables[0].";
+  if constexpr (std::is_same_v<Struct, PellucidLightTable>) return "options.lightTables[0].";
   if constexpr (std::is_same_v<Struct, PellucidShadowMap>) return "shadowMaps[0].";
   return "";
 }
@@ -158,15 +158,11 @@ TYPED_TEST(Domains, IntegersOutsideAreNamed) {
       }
 }
 
-// Names of the fields of a type that the headers declare in a struct.
+// Names of the fields of a type that the headers declare in a struct and its options.
 std::set<std::string> declared(const std::string& type, const std::string& name) {
-  const char* const header = name == "PellucidThesisOptions"     ? "pellucid_thesis.h"
-                             : name.starts_with("PellucidLight") ? "pellucid_light.h"
-                             : name == "PellucidShadowMap"       ? "pellucid_shadow_map.h"
-                                                                 : "pellucid.h";
-  std::ifstream file(std::string(PELLUCID_SOURCE_DIR) + "/module/include/pellucid/" + header);
   std::stringstream text;
-  text << file.rdbuf();
+  for (const char* header : {"pellucid.h", "pellucid_options.h", "pellucid_material.h", "pellucid_thesis.h"})
+    text << std::ifstream(std::string(PELLUCID_SOURCE_DIR) + "/module/include/pellucid/" + header).rdbuf();
   const std::string declarations = std::regex_replace(text.str(), std::regex(R"(/\*[\s\S]*?\*/)"), "");
   const size_t first = declarations.find("struct " + name + " {"), last = declarations.find("}", first);
   std::set<std::string> fields;
@@ -179,6 +175,8 @@ std::set<std::string> declared(const std::string& type, const std::string& name)
       if (std::regex_search(one, match, field)) fields.insert(match[1].str());
     }
   }
+  if (body.find(name + "Options options;") != std::string::npos)
+    for (const std::string& option : declared(type, name + "Options")) fields.insert("options." + option);
   return fields;
 }
 
@@ -216,9 +214,9 @@ const std::vector<IntegerRule> kIntegerRules = {
      [](Frame& f, uint32_t v) { f.frame.structSize = v; },
      {0, 4, 0xFFFFFFFF}},
     {"PellucidFrame",
-     "features",
-     "features",
-     [](Frame& f, uint32_t v) { f.frame.features = v; },
+     "options.features",
+     "options.features",
+     [](Frame& f, uint32_t v) { f.frame.options.features = v; },
      {4, 7, 0x80000000, 0xFFFFFFFF}},
     {"PellucidFrame",
      "imageExtent",
@@ -226,21 +224,21 @@ const std::vector<IntegerRule> kIntegerRules = {
      [](Frame& f, uint32_t v) { f.frame.imageExtent[1] = v; },
      {0, 65537, 0x80000000, 0xFFFFFFFF}},
     {"PellucidFrame",
-     "renderRect",
-     "renderRect",
-     [](Frame& f, uint32_t v) { f.frame.renderRect[0] = v; },
+     "options.renderRect",
+     "options.renderRect",
+     [](Frame& f, uint32_t v) { f.frame.options.renderRect[0] = v; },
      {1, 65537, 0x80000000, 0xFFFFFFFF}},
     {"PellucidFrame",
-     "renderRect",
-     "renderRect",
-     [](Frame& f, uint32_t v) { f.frame.renderRect[2] = v; },
+     "options.renderRect",
+     "options.renderRect",
+     [](Frame& f, uint32_t v) { f.frame.options.renderRect[2] = v; },
      {1, 0x80000000, 0xFFFFFFFF}},  // of height 0
     {"PellucidFrame",
-     "renderRect",
-     "renderRect",
+     "options.renderRect",
+     "options.renderRect",
      [](Frame& f, uint32_t v) {
-       f.frame.renderRect[1] = f.frame.renderRect[2] = 1;
-       f.frame.renderRect[3] = v;
+       f.frame.options.renderRect[1] = f.frame.options.renderRect[2] = 1;
+       f.frame.options.renderRect[3] = v;
      },
      {0, 50, 0x80000000, 0xFFFFFFFF}},
     {"PellucidFrame",
@@ -273,14 +271,14 @@ const std::vector<IntegerRule> kIntegerRules = {
      },
      {1, 0xFFFFFFFF}},
     {"PellucidFrame",
-     "gatherSamples",
-     "gatherSamples",
-     [](Frame& f, uint32_t v) { f.frame.gatherSamples = v; },
+     "options.gatherSamples",
+     "options.gatherSamples",
+     [](Frame& f, uint32_t v) { f.frame.options.gatherSamples = v; },
      {1, 3, 66, 68, 0x80000000, 0xFFFFFFFF}},
     {"PellucidFrame",
-     "gatherSpacing",
-     "gatherSpacing",
-     [](Frame& f, uint32_t v) { f.frame.gatherSpacing = v; },
+     "options.gatherSpacing",
+     "options.gatherSpacing",
+     [](Frame& f, uint32_t v) { f.frame.options.gatherSpacing = v; },
      {3, 5, 8, 0x80000000, 0xFFFFFFFF}},
     {"PellucidThesisOptions",
      "minimumDotTableSize",
@@ -304,14 +302,14 @@ const std::vector<IntegerRule> kIntegerRules = {
      [](Frame& f, uint32_t v) { f.thesis.materialMarkBit = v; },
      {1, 3, 192, 0xFFFFFFFF}},
     {"PellucidFrame",
-     "materialMask",
-     "materialMask",
-     [](Frame& f, uint32_t v) { f.frame.materialMask = v; },
+     "options.materialMask",
+     "options.materialMask",
+     [](Frame& f, uint32_t v) { f.frame.options.materialMask = v; },
      {2, 0x80000000, 0xFFFFFFFE}},
     {"PellucidFrame",
-     "reuse",
-     "reuse",
-     [](Frame& f, uint32_t v) { f.frame.reuse = v; },
+     "options.reuse",
+     "options.reuse",
+     [](Frame& f, uint32_t v) { f.frame.options.reuse = v; },
      {3, 4, 0x80000000, 0xFFFFFFFF}},
     {"PellucidMaterial",
      "structSize",
@@ -349,14 +347,14 @@ const std::vector<IntegerRule> kIntegerRules = {
      [](Frame& f, uint32_t v) { f.maps[0].image = v; },
      {1, 0x80000000, 0xFFFFFFFF}},
     {"PellucidShadowMap",
-     "exitImage",
-     "shadowMaps[0].exitImage",
-     [](Frame& f, uint32_t v) { f.maps[0].exitImage = v; },
+     "options.exitImage",
+     "shadowMaps[0].options.exitImage",
+     [](Frame& f, uint32_t v) { f.maps[0].options.exitImage = v; },
      {1, 2, 0x80000000, 0xFFFFFFFF}},
     {"PellucidShadowMap",
-     "casterMaterialImage",
-     "shadowMaps[0].casterMaterialImage",
-     [](Frame& f, uint32_t v) { f.maps[0].casterMaterialImage = v; },
+     "options.casterMaterialImage",
+     "shadowMaps[0].options.casterMaterialImage",
+     [](Frame& f, uint32_t v) { f.maps[0].options.casterMaterialImage = v; },
      {1, 2, 0x80000000, 0xFFFFFFFF}}};
 
 TEST(Domains, IntegersAgainstTheirRulesAreNamed) {
@@ -385,13 +383,14 @@ TEST(Domains, LayoutsThatDoNotFitAreNamed) {
       {"frontDepth", [](Frame& f) -> PellucidImage& { return f.frame.frontDepth; }},
       {"backDepth", [](Frame& f) -> PellucidImage& { return f.frame.backDepth; }},
       {"irradiance", [](Frame& f) -> PellucidImage& { return f.frame.irradiance; }},
+      {"hiddenIrradiance", [](Frame& f) -> PellucidImage& { return f.frame.hiddenIrradiance; }},
       {"normal", [](Frame& f) -> PellucidImage& { return f.frame.normal; }},
       {"albedo", [](Frame& f) -> PellucidImage& { return f.frame.albedo; }},
       {"material", [](Frame& f) -> PellucidImage& { return f.frame.material; }},
       {"shadowImages[0]", [](Frame& f) -> PellucidImage& { return f.images[0]; }},
       {"output", [](Frame& f) -> PellucidImage& { return f.frame.output; }},
       {"transients[0]", [](Frame& f) -> PellucidImage& { return f.frame.transients[0]; }},
-      {"history", [](Frame& f) -> PellucidImage& { return f.frame.history; }}};
+      {"options.history", [](Frame& f) -> PellucidImage& { return f.frame.options.history; }}};
   const VkImageLayout readable[] = {
       VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL,
       VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_STENCIL_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL,
@@ -409,13 +408,13 @@ TEST(Domains, LayoutsThatDoNotFitAreNamed) {
                                   VK_IMAGE_LAYOUT_MAX_ENUM};
   const auto problemsWith = [](const auto& image, VkImageLayout layout) {
     Whole f;
-    f.frame.normal = f.frame.albedo = f.frame.history = Frame::view();
-    f.frame.reuse = PELLUCID_REUSE_ALTERNATE;
+    f.frame.normal = f.frame.albedo = f.frame.hiddenIrradiance = f.frame.options.history = Frame::view();
+    f.frame.options.reuse = PELLUCID_REUSE_ALTERNATE;
     image(f).layout = layout;
     return f.problems();
   };
   for (const auto& [name, image] : images) {
-    const bool written = name == "output" || name == "transients[0]" || name == "history";
+    const bool written = name == "output" || name == "transients[0]" || name == "options.history";
     EXPECT_EQ(problemsWith(image, VK_IMAGE_LAYOUT_GENERAL), "") << name;
     for (const VkImageLayout layout : readable)
       EXPECT_EQ(problemsWith(image, layout).find(name + " is in VkImageLayout"),

@@ -119,9 +119,9 @@ TEST(MaterialCommand, SpectrumFromFile) {
   EXPECT_EQ(refusal("--spectral " + path.string()),
             path.string() + ": line 2: \"700,2\" is not three numbers");
   std::ofstream(path) << "400,2,0.5\n700,2,-1\n";
-  EXPECT_NE(refusal("--spectral " + path.string()).find("spectrum.absorption[1]: -1"), std::string::npos);
+  EXPECT_NE(refusal("--spectral " + path.string()).find("spectralAbsorption[1]: -1"), std::string::npos);
   std::ofstream(path) << "";
-  EXPECT_NE(refusal("--spectral " + path.string()).find("spectrum.count: 0"), std::string::npos);
+  EXPECT_NE(refusal("--spectral " + path.string()).find("wavelengthCount: 0"), std::string::npos);
   std::filesystem::remove(path);
 }
 

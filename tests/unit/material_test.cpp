@@ -300,6 +300,14 @@ TEST(Material, SkinByPhysiology) {
   expectTransmittance(dark.material);
 }
 
+void setSpectrum(PellucidMaterialDesc& desc, uint32_t count, const double* wavelength,
+                 const double* scattering, const double* absorption) {
+  desc.wavelengthCount = count;
+  desc.wavelength = wavelength;
+  desc.spectralScattering = scattering;
+  desc.spectralAbsorption = absorption;
+}
+
 TEST(Material, FlatSpectrumIsRgb) {
   const double wavelength[] = {400, 700}, scattering[] = {2, 2}, absorption[] = {0.05, 0.05};
   const Compiled rgb = compile(described(2, 0.05, 1.4));
@@ -307,7 +315,7 @@ TEST(Material, FlatSpectrumIsRgb) {
     PellucidMaterialDesc desc;
     pellucidInitMaterialDesc(&desc);
     desc.kind = PELLUCID_MATERIAL_SPECTRAL;
-    desc.spectrum = {2, wavelength, scattering, absorption};
+    setSpectrum(desc, 2, wavelength, scattering, absorption);
     desc.illuminant = illuminant;
     const Compiled spectral = compile(desc);
     for (std::size_t c = 0; c < 3; ++c) {
@@ -325,7 +333,7 @@ TEST(Material, SpectrumIsIntegratedNotAveraged) {
   PellucidMaterialDesc desc;
   pellucidInitMaterialDesc(&desc);
   desc.kind = PELLUCID_MATERIAL_SPECTRAL;
-  desc.spectrum = {4, wavelength, scattering, absorption};
+  setSpectrum(desc, 4, wavelength, scattering, absorption);
   const std::vector<PellucidSlab> exact = slabs(desc, {1.0});
   PellucidSlab clear;
   ASSERT_EQ(pellucidSlabTransport(1, 0.01, 1.4, 1, &clear, nullptr, nullptr), PELLUCID_OK);
@@ -431,22 +439,22 @@ TEST(Material, BadInputNamesTheField) {
        }},
       {"burleyDistance[1]",
        [](PellucidMaterialDesc& d) { d.kind = PELLUCID_MATERIAL_THIN_WALL, d.burleyDistance[0] = 1; }},
-      {"spectrum.count", [](PellucidMaterialDesc& d) { d.kind = PELLUCID_MATERIAL_SPECTRAL; }},
-      {"spectrum.wavelength[1]",
+      {"wavelengthCount", [](PellucidMaterialDesc& d) { d.kind = PELLUCID_MATERIAL_SPECTRAL; }},
+      {"wavelength[1]",
        [](PellucidMaterialDesc& d) {
-         d.kind = PELLUCID_MATERIAL_SPECTRAL, d.spectrum = {2, falling, ones, ones};
+         d.kind = PELLUCID_MATERIAL_SPECTRAL, setSpectrum(d, 2, falling, ones, ones);
        }},
-      {"spectrum.wavelength",
+      {"wavelength",
        [](PellucidMaterialDesc& d) {
-         d.kind = PELLUCID_MATERIAL_SPECTRAL, d.spectrum = {2, ultraviolet, ones, ones};
+         d.kind = PELLUCID_MATERIAL_SPECTRAL, setSpectrum(d, 2, ultraviolet, ones, ones);
        }},
-      {"spectrum.absorption[1]",
+      {"spectralAbsorption[1]",
        [](PellucidMaterialDesc& d) {
-         d.kind = PELLUCID_MATERIAL_SPECTRAL, d.spectrum = {2, rising, ones, negative};
+         d.kind = PELLUCID_MATERIAL_SPECTRAL, setSpectrum(d, 2, rising, ones, negative);
        }},
       {"illuminant",
        [](PellucidMaterialDesc& d) {
-         d.kind = PELLUCID_MATERIAL_SPECTRAL, d.spectrum = {2, rising, ones, ones}, d.illuminant = 3;
+         d.kind = PELLUCID_MATERIAL_SPECTRAL, setSpectrum(d, 2, rising, ones, ones), d.illuminant = 3;
        }},
       {"melanin", [](PellucidMaterialDesc& d) { d.kind = PELLUCID_MATERIAL_SKIN, d.melanin = 1.5; }},
       {"hemoglobin", [](PellucidMaterialDesc& d) { d.kind = PELLUCID_MATERIAL_SKIN, d.hemoglobin = -1; }},

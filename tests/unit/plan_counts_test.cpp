@@ -1,4 +1,5 @@
-// Counts of dispatches, barriers and images of plans, for every feature, output, kind of lights and gather, against a golden file.
+// Counts of dispatches, barriers and images of plans, for every feature, output, kind of lights and gather,
+// against a golden file.
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -59,13 +60,13 @@ nlohmann::json allCounts() {
           // Debug views need all lights in one dispatch, which binds eight maps.
           if (way.debugView != PELLUCID_DEBUG_NONE && lights.value > 8) continue;
           if (way.gatherSamples > 0 && features.value != kBoth) continue;
-          f.frame.features = features.value;
-          f.frame.outputFormat = static_cast<VkFormat>(output.value);
-          f.frame.debugView = way.debugView;
-          f.frame.gatherSamples = way.gatherSamples;
-          f.frame.indirectDispatches = way.indirectDispatches;
+          f.frame.options.features = features.value;
+          f.frame.options.outputFormat = static_cast<VkFormat>(output.value);
+          f.frame.options.debugView = way.debugView;
+          f.frame.options.gatherSamples = way.gatherSamples;
+          f.frame.options.indirectDispatches = way.indirectDispatches;
           for (const Detail& detail : kDetails) {
-            f.frame.nearestDistance = detail.nearestDistance;
+            f.frame.options.nearestDistance = detail.nearestDistance;
             f.frame.normal = detail.normals ? Frame::view() : PellucidImage{};
             all[std::string(features.name) + ", " + output.name + way.name + ", " + lights.name +
                 detail.name] = countsOf(f);

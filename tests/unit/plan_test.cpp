@@ -45,8 +45,8 @@ TEST(Plan, ConstantsSizeBoundsThatOfFrames) {
       for (const uint32_t mapsOfALight : {0u, 1u, 6u})
         for (const uint32_t indirect : {0u, 1u}) {
           Frame f(0);
-          f.frame.gatherSamples = samples;
-          f.frame.indirectDispatches = indirect;
+          f.frame.options.gatherSamples = samples;
+          f.frame.options.indirectDispatches = indirect;
           f.lights.clear();
           const Frame one(1);
           for (uint32_t i = 0; i < lights; ++i) {
@@ -97,7 +97,7 @@ TEST(Plan, EveryReadIsOfSomethingWritten) {
   for (uint32_t features : {0u, 1u, 2u, 3u})
     for (uint32_t images : {0u, 1u, 9u, 20u}) {
       Frame f(images);
-      f.frame.features = features;
+      f.frame.options.features = features;
       const PellucidPlan plan = f.plan();
       // Nothing to do where the irradiance is the output already.
       const bool nothing = features == 0 && f.frame.output.view == f.frame.irradiance.view;
@@ -142,8 +142,8 @@ TEST(Plan, NoLightNoTranslucency) {
 TEST(Plan, DiffusionAloneCopiesTheIrradianceUnlessTheOutputIsSeparate) {
   for (const uint32_t gatherSamples : {0u, 8u}) {
     Frame f;
-    f.frame.gatherSamples = gatherSamples;
-    f.frame.gatherSpacing = 4;
+    f.frame.options.gatherSamples = gatherSamples;
+    f.frame.options.gatherSpacing = 4;
     if (gatherSamples == 0) f.frame.lightCount = 0;
     const auto lastReads = [](const PellucidPlan& plan, uint32_t resource) {
       const auto bindings = bindingsOf(plan, plan.dispatches[plan.dispatchCount - 1]);
@@ -159,7 +159,7 @@ TEST(Plan, DiffusionAloneCopiesTheIrradianceUnlessTheOutputIsSeparate) {
     const uint32_t before = needs();
     EXPECT_EQ(copying.dispatches[0].pushConstants[0], 1u);
     EXPECT_FALSE(lastReads(copying, PELLUCID_RESOURCE_IRRADIANCE));
-    f.frame.separateOutput = 1;
+    f.frame.options.separateOutput = 1;
     const PellucidPlan separate = f.plan();
     EXPECT_EQ(separate.dispatches[0].pushConstants[0], 0u);
     EXPECT_TRUE(lastReads(separate, PELLUCID_RESOURCE_IRRADIANCE));
@@ -209,8 +209,8 @@ TEST(Plan, ImagesBesideMapsCount) {
   Frame f(4);
   for (uint32_t i = 0; i < 4; ++i) {
     f.images.resize(f.images.size() + 2, Frame::view());
-    f.maps[i].exitImage = 4 + 2 * i + 1;
-    f.maps[i].casterMaterialImage = 4 + 2 * i + 2;
+    f.maps[i].options.exitImage = 4 + 2 * i + 1;
+    f.maps[i].options.casterMaterialImage = 4 + 2 * i + 2;
   }
   f.use();
   const PellucidPlan plan = f.plan();
@@ -237,11 +237,11 @@ TEST(Plan, FourGatheredLightsWithAllImagesShareADispatch) {
     Frame f(lights);
     f.images.resize(3 * lights, Frame::view());
     for (uint32_t i = 0; i < lights; ++i) {
-      f.maps[i].exitImage = lights + 2 * i + 1;
-      f.maps[i].casterMaterialImage = lights + 2 * i + 2;
+      f.maps[i].options.exitImage = lights + 2 * i + 1;
+      f.maps[i].options.casterMaterialImage = lights + 2 * i + 2;
     }
     f.use();
-    f.frame.gatherSamples = 8;
+    f.frame.options.gatherSamples = 8;
     const PellucidPlan plan = f.plan();
     std::vector<uint32_t> bound;
     uint32_t dispatches = 0;
@@ -267,12 +267,12 @@ TEST(Plan, ImagesBesideMapsAreLeftOutWhereTheyAreTooMany) {
     Frame plain(64), beside(64);
     beside.images.resize(3 * 64, Frame::view());
     for (uint32_t i = 0; i < 64; ++i) {
-      beside.maps[i].exitImage = 64 + i + 1;
-      beside.maps[i].casterMaterialImage = 2 * 64 + i + 1;
+      beside.maps[i].options.exitImage = 64 + i + 1;
+      beside.maps[i].options.casterMaterialImage = 2 * 64 + i + 1;
     }
     for (Frame* f : {&plain, &beside}) {
       f->use();
-      f->frame.gatherSamples = gather;
+      f->frame.options.gatherSamples = gather;
     }
     const PellucidPlan with = beside.plan();
     EXPECT_EQ(names(with), names(plain.plan()));
@@ -288,7 +288,7 @@ TEST(Plan, ManyLightsBecomeSeveralDispatches) {
   Frame f(0);
   f.lights.resize(300, f.lights[0]);
   f.use();
-  f.frame.features = PELLUCID_FEATURE_TRANSLUCENCY;
+  f.frame.options.features = PELLUCID_FEATURE_TRANSLUCENCY;
   const PellucidPlan plan = f.plan();
   ASSERT_EQ(plan.dispatchCount, 3u);
   VkDeviceSize end = 0;
@@ -321,7 +321,7 @@ std::array<uint32_t, 2> workgroupOf(uint32_t pipeline) {
 TEST(Plan, AmbientLightIsALightOfItsOwn) {
   std::array<float, 27> sky{};
   Frame f;
-  f.frame.ambient = sky.data();
+  f.frame.options.ambient = sky.data();
   EXPECT_EQ(f.plan().activeLights, 1u) << "all coefficients are 0";
   sky[4] = -1;
   EXPECT_EQ(f.plan().activeLights, 2u);
@@ -335,9 +335,9 @@ TEST(Plan, AmbientLightIsALightOfItsOwn) {
             std::string::npos);
 
   Frame gathered;
-  gathered.frame.gatherSamples = 8;
+  gathered.frame.options.gatherSamples = 8;
   EXPECT_EQ(names(gathered.plan()).back(), "diffuse");
-  gathered.frame.ambient = sky.data();
+  gathered.frame.options.ambient = sky.data();
   EXPECT_EQ(names(gathered.plan()).back(), "translucency");
 }
 
@@ -350,8 +350,8 @@ TEST(Plan, AnAtlasHoldsTheMapsOfManyLights) {
     f.maps.clear();
     for (uint32_t i = 0; i < lights; ++i) {
       f.maps.push_back(map);
-      f.maps.back().offset[0] = i % 20 * map.extent[0];
-      f.maps.back().offset[1] = i / 20 * map.extent[1];
+      f.maps.back().options.offset[0] = i % 20 * map.extent[0];
+      f.maps.back().options.offset[1] = i / 20 * map.extent[1];
       f.lights.push_back(Frame::light(i, 1));
     }
     f.use();
@@ -378,7 +378,7 @@ TEST(Plan, EntryPointsOfManyMapsBindNoMoreThanDevicesDo) {
   for (const size_t lights : {size_t{1}, size_t{65}, size_t{128}}) {
     Frame f;
     f.frame.normal = Frame::view();
-    f.frame.gatherSamples = 8;
+    f.frame.options.gatherSamples = 8;
     f.maps[0].extent[0] = f.maps[0].extent[1] = 16;
     f.lights.resize(lights, f.lights[0]);
     f.use();
@@ -400,8 +400,8 @@ TEST(Plan, EntryPointsOfManyMapsBindNoMoreThanDevicesDo) {
 // A light whose map holds back faces is not gathered: its map is bound by a dispatch after the diffusion.
 TEST(Plan, LightsOfBackFacesComeAfterTheDiffusion) {
   Frame f(2);
-  f.maps[0].faces = PELLUCID_FACES_BACK;
-  f.frame.gatherSamples = 8;
+  f.maps[0].options.backFaces = 1;
+  f.frame.options.gatherSamples = 8;
   const PellucidPlan plan = f.plan();
   EXPECT_EQ(plan.activeLights, 2u);
   EXPECT_TRUE(
@@ -420,7 +420,7 @@ TEST(Plan, LightsOfBackFacesComeAfterTheDiffusion) {
 TEST(Plan, ImageNeedsCoverThePlan) {
   Frame f;
   for (uint32_t features : {1u, 2u, 3u}) {
-    f.frame.features = features;
+    f.frame.options.features = features;
     PellucidImageNeed needs[PELLUCID_MAX_TRANSIENTS];
     uint32_t count = PELLUCID_MAX_TRANSIENTS;
     ASSERT_EQ(pellucidGetImageNeeds(&f.frame, &count, needs), PELLUCID_OK);
@@ -450,10 +450,10 @@ TEST(Plan, ImageNeedsCoverThePlan) {
 
 // Memory of an image may serve another from the next barrier on, not from the next dispatch.
 TEST(Plan, ImagesAreInUseFromBarrierToBarrier) {
-  for (const uint32_t indirect : {PELLUCID_INDIRECT_NONE, PELLUCID_INDIRECT_MATERIAL}) {
+  for (const uint32_t indirect : {0, 1}) {
     Frame f;
-    f.frame.indirectDispatches = indirect;
-    f.frame.gatherSamples = 8;
+    f.frame.options.indirectDispatches = indirect;
+    f.frame.options.gatherSamples = 8;
     PellucidImageNeed needs[PELLUCID_MAX_TRANSIENTS];
     uint32_t count = PELLUCID_MAX_TRANSIENTS;
     ASSERT_EQ(pellucidGetImageNeeds(&f.frame, &count, needs), PELLUCID_OK);
@@ -474,8 +474,8 @@ TEST(Plan, NoDispatchReadsAndWritesATransient) {
     for (const uint32_t samples : {0u, 8u})
       for (const uint32_t lights : {0u, 1u, 9u}) {
         Frame f(lights);
-        f.frame.features = features;
-        f.frame.gatherSamples = samples;
+        f.frame.options.features = features;
+        f.frame.options.gatherSamples = samples;
         const PellucidPlan plan = f.plan();
         for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
           const PellucidDispatch& d = plan.dispatches[i];
@@ -498,9 +498,9 @@ TEST(Plan, LargeImagesKeepTheirLists) {
       Frame f;
       f.frame.imageExtent[0] = width;
       f.frame.imageExtent[1] = height;
-      f.frame.gatherSamples = 8;
-      f.frame.gatherSpacing = spacing;
-      f.frame.indirectDispatches = PELLUCID_INDIRECT_MATERIAL;
+      f.frame.options.gatherSamples = 8;
+      f.frame.options.gatherSpacing = spacing;
+      f.frame.options.indirectDispatches = 1;
       const PellucidPlan plan = f.plan();
       uint32_t listed = 0;
       for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
@@ -517,16 +517,16 @@ TEST(Plan, GathersBesideTheDiffusion) {
   const std::vector<std::string> all = {"base level", "list blocks", "downsample", "entry points",
                                         "downsample", "probes",      "downsample", "filter probes",
                                         "upsample",   "diffuse"};
-  for (const auto indirect : {PELLUCID_INDIRECT_MATERIAL, PELLUCID_INDIRECT_NONE}) {
+  for (const auto indirect : {1, 0}) {
     Frame f;
-    f.frame.gatherSamples = 8;
-    f.frame.indirectDispatches = indirect;
+    f.frame.options.gatherSamples = 8;
+    f.frame.options.indirectDispatches = indirect;
     const PellucidPlan plan = f.plan();
     std::vector<std::string> expected = all, found = names(plan);
-    if (indirect == PELLUCID_INDIRECT_NONE) expected.erase(expected.begin() + 1);
+    if (indirect == 0) expected.erase(expected.begin() + 1);
     EXPECT_EQ(std::multiset<std::string>(found.begin(), found.end()),
               std::multiset<std::string>(expected.begin(), expected.end()));
-    EXPECT_EQ(plan.barrierCount, indirect == PELLUCID_INDIRECT_NONE ? 5u : 6u);
+    EXPECT_EQ(plan.barrierCount, indirect == 0 ? 5u : 6u);
     // Steps between barriers: which passes run side by side.
     std::map<std::string, std::set<uint32_t>> steps;
     uint32_t step = 0;
@@ -553,15 +553,15 @@ TEST(Plan, TablesOfMaterialsHoldWhatFramesFindWithoutThem) {
       for (const uint32_t samples : {0u, 8u})
         for (const uint32_t thinWalled : {0u, 1u}) {
           Frame f;
-          f.frame.features = features;
-          f.frame.gatherSamples = samples;
+          f.frame.options.features = features;
+          f.frame.options.gatherSamples = samples;
           f.material.transmittanceModel = model;
           f.material.thinWalled = thinWalled;
           for (float(&t)[5] : f.material.transmittance) t[4] = 1;
           const std::vector<unsigned char> without = constantsOf(f);
           PellucidMaterialTables tables;
           ASSERT_EQ(pellucidMakeMaterialTables(&f.material, &tables), PELLUCID_OK);
-          f.frame.materialTables = &tables;
+          f.frame.options.materialTables = &tables;
           EXPECT_EQ(constantsOf(f), without) << model << " " << features << " " << samples;
         }
 }
@@ -571,7 +571,7 @@ TEST(Plan, TablesOfAnotherMaterialAreRefused) {
   for (PellucidImage& image : f.frame.transients) image = Frame::view();
   PellucidMaterialTables tables;
   ASSERT_EQ(pellucidMakeMaterialTables(&f.material, &tables), PELLUCID_OK);
-  f.frame.materialTables = &tables;
+  f.frame.options.materialTables = &tables;
   EXPECT_EQ(f.problems(), "");
   f.material.reflectance[1] = 0.25f;
   EXPECT_NE(f.problems().find("materialTables[0] is of another material"), std::string::npos) << f.problems();
@@ -588,9 +588,9 @@ TEST(Plan, BarriersPartAllThatShareAnImage) {
       for (const uint32_t indirect : {0u, 1u})
         for (const uint32_t reuse : {0u, 1u}) {
           Frame f(lights);
-          f.frame.gatherSamples = samples;
-          f.frame.indirectDispatches = indirect;
-          f.frame.reuse = reuse;
+          f.frame.options.gatherSamples = samples;
+          f.frame.options.indirectDispatches = indirect;
+          f.frame.options.reuse = reuse;
           f.frame.normal = Frame::view();
           const PellucidPlan plan = f.plan();
           // Images of the wave so far.

@@ -17,12 +17,11 @@
 namespace pellucid::harness::reference {
 namespace {
 
-Image debugView(const Capture& c, PellucidDebugView view,
-                PellucidThicknessSource source = PELLUCID_THICKNESS_LIGHT) {
+Image debugView(const Capture& c, PellucidDebugView view, bool source = 0) {
   Settings s;
   s.features = PELLUCID_FEATURE_TRANSLUCENCY;
   s.debugView = view;
-  s.translucency.thicknessSource = source;
+  s.translucency.cameraThickness = source;
   return compute(c, {burleyMaterial(1)}, s).image;
 }
 
@@ -338,7 +337,7 @@ TEST(Reference, ObliqueLightGoesTheLongWay) {
   EXPECT_NEAR(debugView(c, PELLUCID_DEBUG_THICKNESS).at(1, 1)[1], 4 / std::cos(angle), 1e-5);
   const double expected = 3 * std::cos(angle) * std::exp(-2 * 4 / std::cos(angle)) / 0.5;
   EXPECT_NEAR(debugView(c, PELLUCID_DEBUG_IRRADIANCE).at(1, 1)[0], expected, 1e-7);
-  EXPECT_NEAR(debugView(c, PELLUCID_DEBUG_THICKNESS, PELLUCID_THICKNESS_CAMERA).at(1, 1)[2], 4, 1e-5);
+  EXPECT_NEAR(debugView(c, PELLUCID_DEBUG_THICKNESS, 1).at(1, 1)[2], 4, 1e-5);
 }
 
 TEST(Reference, CameraThicknessIsTurnedToTheNormal) {
@@ -356,7 +355,7 @@ TEST(Reference, CameraThicknessIsTurnedToTheNormal) {
 
 TEST(Reference, EmptyOutsideOrBehindTheMapMeansNoLight) {
   Capture c = backLitSlab();
-  for (const PellucidThicknessSource source : {PELLUCID_THICKNESS_LIGHT, PELLUCID_THICKNESS_CAMERA}) {
+  for (const bool source : {0, 1}) {
     c.lights[0].shadowMaps = {mapBehindSlab()};
     c.lights[0].shadowMaps[0].depth.image = Image(8, 8, 1, kNoDepth);
     EXPECT_EQ(debugView(c, PELLUCID_DEBUG_IRRADIANCE, source).at(1, 1)[0], 0);
@@ -384,7 +383,7 @@ TEST(Reference, OccluderInFrontOfTheBackFace) {
     for (const int y : {2, 3, 4}) *c.lights[0].shadowMaps[0].depth.image.at(x, y) = 90;
   const Image light = debugView(c, PELLUCID_DEBUG_THICKNESS);
   EXPECT_NEAR(light.at(2, 2)[1], 14, 1e-4);
-  const Image camera = debugView(c, PELLUCID_DEBUG_OCCLUSION, PELLUCID_THICKNESS_CAMERA);
+  const Image camera = debugView(c, PELLUCID_DEBUG_OCCLUSION, 1);
   EXPECT_EQ(camera.at(2, 2)[0], 0);
   EXPECT_NEAR(camera.at(0, 0)[0], 1 - 0.9 * 0.9, 1e-6)
       << "texels beside the occluder have a tenth along each axis";

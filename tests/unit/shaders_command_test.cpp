@@ -281,8 +281,8 @@ TEST(ShadersCommand, PlansBindWhatIsDescribed) {
       pellucid::test::Frame f(lights);
       f.frame.normal = f.frame.albedo = f.view();
       for (PellucidImage& transient : f.frame.transients) transient = f.view();
-      f.frame.gatherSamples = samples;
-      f.frame.indirectDispatches = indirect;
+      f.frame.options.gatherSamples = samples;
+      f.frame.options.indirectDispatches = indirect;
       const PellucidPlan plan = f.plan();
       for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
         const PellucidDispatch& d = plan.dispatches[i];

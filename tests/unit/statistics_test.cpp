@@ -47,11 +47,11 @@ struct Slice {
 
 // 200 x 100 pixels, 4 x 2 blocks.
 struct Gathered : Frame {
-  explicit Gathered(PellucidIndirect indirect = PELLUCID_INDIRECT_MATERIAL) {
+  explicit Gathered(bool indirect = 1) {
     frame.imageExtent[0] = 200;
     frame.imageExtent[1] = 100;
-    frame.gatherSamples = 8;
-    frame.indirectDispatches = indirect;
+    frame.options.gatherSamples = 8;
+    frame.options.indirectDispatches = indirect;
   }
 };
 
@@ -103,20 +103,20 @@ TEST(Statistics, OfNothingAreZero) {
 
 // Blocks lie at multiples of 64, wherever the rect begins.
 TEST(Statistics, CountTheBlocksThatTheRectTouches) {
-  for (const auto indirect : {PELLUCID_INDIRECT_NONE, PELLUCID_INDIRECT_MATERIAL}) {
+  for (const auto indirect : {0, 1}) {
     Gathered f(indirect);
     const uint32_t rect[] = {63, 65, 66, 10};
-    std::copy(rect, rect + 4, f.frame.renderRect);
+    std::copy(rect, rect + 4, f.frame.options.renderRect);
     Slice s{f};
     ASSERT_EQ(s.read(), PELLUCID_OK) << s.sentences;
     // Without lists all run, and so do those that the pyramid's border touches: rows 0 and 1.
-    EXPECT_EQ(s.statistics.blocks.most, indirect == PELLUCID_INDIRECT_NONE ? 6u : 3u) << "columns 63 to 128";
+    EXPECT_EQ(s.statistics.blocks.most, indirect == 0 ? 6u : 3u) << "columns 63 to 128";
   }
 }
 
 // The slice's content does not matter where no dispatch is indirect.
 TEST(Statistics, WithoutListsAllRuns) {
-  Slice s{Gathered(PELLUCID_INDIRECT_NONE)};
+  Slice s{Gathered(0)};
   std::fill(s.bytes.begin(), s.bytes.end(), static_cast<unsigned char>(0xFF));
   ASSERT_EQ(s.read(), PELLUCID_OK) << s.sentences;
   for (uint32_t i = 0; i < s.statistics.dispatchCount; ++i) {
@@ -129,7 +129,7 @@ TEST(Statistics, WithoutListsAllRuns) {
 
 TEST(Statistics, OfAPlanOfNothingAreEmpty) {
   Frame f(0);
-  f.frame.features = 0;
+  f.frame.options.features = 0;
   Slice s{f};
   ASSERT_EQ(s.plan.dispatchCount, 0u);
   ASSERT_EQ(s.read(), PELLUCID_OK) << s.sentences;

@@ -61,28 +61,27 @@ std::string errorsOf(const PellucidFrame& frame) {
 }
 
 // Where the fields begin that may be missing, as the headers say.
-constexpr size_t kLeastFrame = offsetof(PellucidFrame, thicknessSource);
+constexpr size_t kLeastFrame = offsetof(PellucidFrame, options);
 constexpr size_t kLeastThesis = 2 * sizeof(uint32_t);  // no struct that holds a pointer is shorter
 constexpr size_t kLeastMaterial = offsetof(PellucidMaterial, burleyDistance);
-constexpr size_t kLeastDesc = offsetof(PellucidContextDesc, pipelineCache);
+constexpr size_t kLeastDesc = offsetof(PellucidContextDesc, options);
 
 // Nothing at its default.
 struct Unusual : Frame {
   Unusual() : Frame(2) {
-    frame.debugView = PELLUCID_DEBUG_NONE;
+    frame.options.debugView = PELLUCID_DEBUG_NONE;
     thesis.angleModel = PELLUCID_ANGLE_MINIMUM_DOT;
     thesis.minimumDot = -0.5f;
     thesis.maximumThickness = 3;
     thesis.transmittanceFilter[1] = 0.25f;
-    frame.gatherSamples = 0;
-    frame.reuse = PELLUCID_REUSE_ALTERNATE;
-    frame.targetError = 0.1f;
-    frame.nearestDistance = 13;
-    frame.separateOutput = 1;
-    frame.indirectDispatches = 1;
-    frame.materialShift = 1;
-    frame.materialMask = 0x1FE;
-    frame.outputMode = PELLUCID_OUTPUT_ADD;
+    frame.options.gatherSamples = 0;
+    frame.options.reuse = PELLUCID_REUSE_ALTERNATE;
+    frame.options.nearestDistance = 13;
+    frame.options.separateOutput = 1;
+    frame.options.indirectDispatches = 1;
+    frame.options.materialShift = 1;
+    frame.options.materialMask = 0x1FE;
+    frame.options.addToOutput = 1;
     frame.preExposure = 0.5f;
   }
 };
@@ -114,12 +113,12 @@ TEST(StructSize, ThesisOptionsCutShortHaveDefaults) {
     std::memcpy(&expected, &f.thesis, size);
     expected.structSize = sizeof expected;
     Sized<PellucidThesisOptions> cut(f.thesis, size);
-    f.frame.thesis = &expected;
+    f.frame.options.thesis = &expected;
     const std::string result = resultOf(f.frame);
     results.insert(result);
-    f.frame.thesis = cut.get();
+    f.frame.options.thesis = cut.get();
     EXPECT_EQ(resultOf(f.frame), result) << size;
-    f.frame.thesis = &f.thesis;
+    f.frame.options.thesis = &f.thesis;
   }
   EXPECT_GT(results.size(), 3u) << "the fields that are cut off decide nothing";
 }
@@ -127,7 +126,7 @@ TEST(StructSize, ThesisOptionsCutShortHaveDefaults) {
 TEST(StructSize, NoThesisOptionsAreTheirDefaults) {
   Frame f;
   const std::string result = resultOf(f.frame);
-  f.frame.thesis = nullptr;
+  f.frame.options.thesis = nullptr;
   EXPECT_EQ(resultOf(f.frame), result);
 }
 
@@ -182,7 +181,7 @@ TEST(StructSize, SizesOfNoVersionAreRefused) {
   pellucidInitThesisOptions(&thesis);
   thesis.structSize = 4;
   PellucidFrame frame = f.frame;
-  frame.thesis = &thesis;
+  frame.options.thesis = &thesis;
   EXPECT_EQ(resultOf(frame), "PELLUCID_ERROR_VERSION");
   EXPECT_NE(errorsOf(frame).find("thesis.structSize is 4"), std::string::npos) << errorsOf(frame);
 }
@@ -194,12 +193,12 @@ TEST(StructSize, InitStaysInTheCallersStruct) {
   pellucidInitFrameSized(&frame, kLeastFrame);
   EXPECT_EQ(frame.structSize, kLeastFrame);
   EXPECT_EQ(frame.metersPerUnit, 1);
-  EXPECT_EQ(frame.thicknessSource, 0xABABABABu);
+  EXPECT_EQ(frame.options.cameraThickness, 0xABABABABu);
   PellucidContextDesc desc;
   std::memset(static_cast<void*>(&desc), 0xAB, sizeof desc);
   pellucidInitContextDescSized(&desc, kLeastDesc);
   EXPECT_EQ(desc.headerVersion, PELLUCID_HEADER_VERSION);
-  EXPECT_EQ(desc.messageUser, reinterpret_cast<void*>(0xABABABABABABABAB));
+  EXPECT_EQ(desc.options.parallelUser, reinterpret_cast<void*>(0xABABABABABABABAB));
 }
 
 // Without a device: what is checked next is that a driver's functions are found.

@@ -40,7 +40,7 @@ uint32_t imagesBound(const PellucidPlan& plan, const PellucidDispatch& d) {
 struct Mixed : Frame {
   PellucidMaterial materials[2] = {plainMaterial(), paper()};
   explicit Mixed(uint32_t count = 1) : Frame(count) {
-    frame.gatherSamples = 8;
+    frame.options.gatherSamples = 8;
     frame.materialCount = 2;
     frame.materials = materials;
     for (PellucidImage& image : frame.transients) image = view();
@@ -64,7 +64,7 @@ TEST(ThinWall, GatheredFramesHaveADispatchMoreBeforeTheDiffusion) {
 
 TEST(ThinWall, FramesWithoutAGatherHaveNoOtherDispatches) {
   Mixed f;
-  f.frame.gatherSamples = 0;
+  f.frame.options.gatherSamples = 0;
   const PellucidPlan mixed = f.plan();
   EXPECT_EQ(mixed.dispatches[0].pushConstants[0], PELLUCID_LIGHT_ALL);
   f.frame.materialCount = 1;
@@ -75,7 +75,7 @@ TEST(ThinWall, LightsThatAreNotGatheredAddToEachMaterialOnce) {
   Mixed f;
   f.lights.push_back(Frame::light(0, 0));
   PellucidShadowMap back = f.maps[0];
-  back.faces = PELLUCID_FACES_BACK;
+  back.options.backFaces = 1;
   f.maps.push_back(back);
   f.lights.push_back(Frame::light(1, 1));
   f.use();

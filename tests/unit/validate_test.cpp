@@ -26,8 +26,8 @@ void addTable(Frame& f, float entry) {
   static PellucidLightTable table;
   std::fill_n(table.factor, PELLUCID_LIGHT_TABLE_ENTRIES, 1.0f);
   table.factor[5] = entry;
-  f.frame.lightTableCount = 1;
-  f.frame.lightTables = &table;
+  f.frame.options.lightTableCount = 1;
+  f.frame.options.lightTables = &table;
 }
 
 PellucidLight& makePoint(Frame& f) {
@@ -38,59 +38,60 @@ PellucidLight& makePoint(Frame& f) {
 
 const std::vector<Violation> kViolations = {
     {"StructSize", "structSize", "pellucidInitFrame", [](Frame& f) { f.frame.structSize = 7; }},
-    {"Features", "features", "unknown bits: 64", [](Frame& f) { f.frame.features = 64; }},
+    {"Features", "options.features", "unknown bits: 64", [](Frame& f) { f.frame.options.features = 64; }},
     {"Extent", "imageExtent", "0 x 50", [](Frame& f) { f.frame.imageExtent[0] = 0; }},
-    {"RectOutside", "renderRect", "90, 0 + 20 x 5",
+    {"RectOutside", "options.renderRect", "90, 0 + 20 x 5",
      [](Frame& f) {
-       f.frame.renderRect[0] = 90;
-       f.frame.renderRect[2] = 20;
-       f.frame.renderRect[3] = 5;
+       f.frame.options.renderRect[0] = 90;
+       f.frame.options.renderRect[2] = 20;
+       f.frame.options.renderRect[3] = 5;
      }},
-    {"RectOverflow", "renderRect", "outside",
+    {"RectOverflow", "options.renderRect", "outside",
      [](Frame& f) {
-       f.frame.renderRect[0] = 0xFFFFFFFF;
-       f.frame.renderRect[2] = 2;
-       f.frame.renderRect[3] = 2;
+       f.frame.options.renderRect[0] = 0xFFFFFFFF;
+       f.frame.options.renderRect[2] = 2;
+       f.frame.options.renderRect[3] = 2;
      }},
     {"MarkBitOfTwoBits", "thesis.materialMarkBit", "192", [](Frame& f) { f.thesis.materialMarkBit = 192; }},
     {"MarkBitInTheIndex", "thesis.materialMarkBit", "above the 1 materials",
      [](Frame& f) { f.thesis.materialMarkBit = 1; }},
-    {"BothReuses", "reuse", "is both", [](Frame& f) { f.frame.reuse = 3; }},
-    {"CoherenceThreshold", "coherenceThreshold", "nan", [](Frame& f) { f.frame.coherenceThreshold = NAN; }},
+    {"BothReuses", "options.reuse", "is both", [](Frame& f) { f.frame.options.reuse = 3; }},
+    {"CoherenceThreshold", "options.coherenceThreshold", "nan",
+     [](Frame& f) { f.frame.options.coherenceThreshold = NAN; }},
     {"PrescaleAngle", "thesis.prescaleAngle", "2", [](Frame& f) { f.thesis.prescaleAngle = 2; }},
-    {"SeparateOutput", "separateOutput", "2", [](Frame& f) { f.frame.separateOutput = 2; }},
-    {"IndirectDispatches", "indirectDispatches", "2", [](Frame& f) { f.frame.indirectDispatches = 2; }},
-    {"MaterialShift", "materialShift", "32", [](Frame& f) { f.frame.materialShift = 32; }},
-    {"MaterialMaskBelowShift", "materialMask", "whose last bits materialShift 4 drops",
+    {"SeparateOutput", "options.separateOutput", "2", [](Frame& f) { f.frame.options.separateOutput = 2; }},
+    {"IndirectDispatches", "options.indirectDispatches", "2",
+     [](Frame& f) { f.frame.options.indirectDispatches = 2; }},
+    {"MaterialShift", "options.materialShift", "32", [](Frame& f) { f.frame.options.materialShift = 32; }},
+    {"MaterialMaskBelowShift", "options.materialMask", "whose last bits materialShift 4 drops",
      [](Frame& f) {
-       f.frame.materialShift = 4;
-       f.frame.materialMask = 0xFF;
+       f.frame.options.materialShift = 4;
+       f.frame.options.materialMask = 0xFF;
      }},
-    {"MaterialMaskWithoutIndices", "materialMask", "leave 14; the indices of 1 materials take 1",
+    {"MaterialMaskWithoutIndices", "options.materialMask", "leave 14; the indices of 1 materials take 1",
      [](Frame& f) {
-       f.frame.materialShift = 4;
-       f.frame.materialMask = 0xE0;
+       f.frame.options.materialShift = 4;
+       f.frame.options.materialMask = 0xE0;
      }},
     {"MarkBitOutsideTheMask", "thesis.materialMarkBit", "which materialMask 112 and materialShift 4",
      [](Frame& f) {
-       f.frame.materialShift = 4;
-       f.frame.materialMask = 0x70;
+       f.frame.options.materialShift = 4;
+       f.frame.options.materialMask = 0x70;
        f.thesis.materialMarkBit = 8;
      }},
-    {"OutputMode", "outputMode", "2", [](Frame& f) { f.frame.outputMode = 2; }},
-    {"Ambient", "ambient", "[26] is nan",
+    {"OutputMode", "options.addToOutput", "2", [](Frame& f) { f.frame.options.addToOutput = 2; }},
+    {"Ambient", "options.ambient", "[26] is nan",
      [](Frame& f) {
        static const auto sky = [] {
          std::array<float, 27> s{};
          s[26] = NAN;
          return s;
        }();
-       f.frame.ambient = sky.data();
+       f.frame.options.ambient = sky.data();
      }},
     {"PreExposure", "preExposure", "0", [](Frame& f) { f.frame.preExposure = 0; }},
-    {"FrameLoad", "frameLoad", "-1", [](Frame& f) { f.frame.frameLoad = -1; }},
-    {"TargetError", "targetError", "inf", [](Frame& f) { f.frame.targetError = INFINITY; }},
-    {"NearestDistance", "nearestDistance", "-1", [](Frame& f) { f.frame.nearestDistance = -1; }},
+    {"NearestDistance", "options.nearestDistance", "-1",
+     [](Frame& f) { f.frame.options.nearestDistance = -1; }},
     {"NoMinimumDots", "thesis.minimumDotTable", "NULL",
      [](Frame& f) {
        f.thesis.angleModel = PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH;
@@ -120,11 +121,11 @@ const std::vector<Violation> kViolations = {
     {"MetersPerUnit", "metersPerUnit", "0", [](Frame& f) { f.frame.metersPerUnit = 0; }},
     {"ProjectionNan", "clipFromView", "not finite", [](Frame& f) { f.frame.clipFromView[0] = NAN; }},
     {"ViewScale", "viewFromWorld", "rotation", [](Frame& f) { f.frame.viewFromWorld[0] = 2; }},
-    {"OutputFormat", "outputFormat", "VkFormat 37",
-     [](Frame& f) { f.frame.outputFormat = VK_FORMAT_R8G8B8A8_UNORM; }},
-    {"DepthEncoding", "backDepthEncoding", "2",
-     [](Frame& f) { f.frame.backDepthEncoding = PELLUCID_DEPTH_DISTANCE; }},
-    {"DebugView", "debugView", "99", [](Frame& f) { f.frame.debugView = 99; }},
+    {"OutputFormat", "options.outputFormat", "VkFormat 37",
+     [](Frame& f) { f.frame.options.outputFormat = VK_FORMAT_R8G8B8A8_UNORM; }},
+    {"DepthEncoding", "options.backDepthEncoding", "2",
+     [](Frame& f) { f.frame.options.backDepthEncoding = PELLUCID_DEPTH_DISTANCE; }},
+    {"DebugView", "options.debugView", "99", [](Frame& f) { f.frame.options.debugView = 99; }},
     {"NoMaterials", "materials", "has 0", [](Frame& f) { f.frame.materialCount = 0; }},
     {"MaterialSize", "materials[0].structSize", "1", [](Frame& f) { f.material.structSize = 1; }},
     {"GrowingTransmittance", "materials[0].transmittance", "grows",
@@ -144,48 +145,52 @@ const std::vector<Violation> kViolations = {
     {"ShadowImage", "shadowMaps[0].image", "is 5", [](Frame& f) { f.maps[0].image = 5; }},
     {"ShadowSingular", "shadowMaps[0].clipFromWorld", "inverted",
      [](Frame& f) { f.maps[0].clipFromWorld[0] = 0; }},
-    {"ShadowOffsetLength", "shadowMaps[0].offsetLength", "-1", [](Frame& f) { f.maps[0].offsetLength = -1; }},
-    {"ShadowDepthStep", "shadowMaps[0].depthStep", "-1", [](Frame& f) { f.maps[0].depthStep = -1; }},
-    {"ShadowDepthBias", "shadowMaps[0].depthBiasConstant", "nan",
-     [](Frame& f) { f.maps[0].depthBiasConstant = NAN; }},
-    {"ShadowSlopeBias", "shadowMaps[0].depthBiasSlope", "inf",
-     [](Frame& f) { f.maps[0].depthBiasSlope = INFINITY; }},
-    {"ShadowFaces", "shadowMaps[0].faces", "is 2, outside 0..1", [](Frame& f) { f.maps[0].faces = 2; }},
-    {"ShadowTile", "shadowMaps[0].offset", "[1] is 65500 with an extent of 64",
-     [](Frame& f) { f.maps[0].offset[1] = 65500; }},
-    {"FacesOfOneLight", "shadowMaps[1].faces", "is 1, but that of the first map of lights[0] is 0",
+    {"ShadowOffsetLength", "shadowMaps[0].options.offsetLength", "-1",
+     [](Frame& f) { f.maps[0].options.offsetLength = -1; }},
+    {"ShadowDepthStep", "shadowMaps[0].options.depthStep", "-1",
+     [](Frame& f) { f.maps[0].options.depthStep = -1; }},
+    {"ShadowDepthBias", "shadowMaps[0].options.depthBiasConstant", "nan",
+     [](Frame& f) { f.maps[0].options.depthBiasConstant = NAN; }},
+    {"ShadowSlopeBias", "shadowMaps[0].options.depthBiasSlope", "inf",
+     [](Frame& f) { f.maps[0].options.depthBiasSlope = INFINITY; }},
+    {"ShadowFaces", "shadowMaps[0].options.backFaces", "is 2, outside 0..1",
+     [](Frame& f) { f.maps[0].options.backFaces = 2; }},
+    {"ShadowTile", "shadowMaps[0].options.offset", "[1] is 65500 with an extent of 64",
+     [](Frame& f) { f.maps[0].options.offset[1] = 65500; }},
+    {"FacesOfOneLight", "shadowMaps[1].options.backFaces",
+     "is 1, but that of the first map of lights[0] is 0",
      [](Frame& f) {
        f.maps.push_back(f.maps[0]);
-       f.maps[1].faces = PELLUCID_FACES_BACK;
+       f.maps[1].options.backFaces = 1;
        f.lights[0].shadowMapCount = 2;
        f.use();
      }},
-    {"ShadowView", "shadowMaps[0].viewFromWorld", "encoding",
+    {"ShadowView", "shadowMaps[0].options.viewFromWorld", "encoding",
      [](Frame& f) { f.maps[0].encoding = PELLUCID_DEPTH_VIEW_Z; }},
-    {"ExitImage", "shadowMaps[0].exitImage", "is 2 (an index plus 1), but there are 1",
-     [](Frame& f) { f.maps[0].exitImage = 2; }},
-    {"ExitIsTheMap", "shadowMaps[0].exitImage", "the map's own image",
-     [](Frame& f) { f.maps[0].exitImage = 1; }},
-    {"CasterImage", "shadowMaps[0].casterMaterialImage", "is 7",
-     [](Frame& f) { f.maps[0].casterMaterialImage = 7; }},
-    {"CasterIsTheExit", "shadowMaps[0].casterMaterialImage", "the exitImage",
+    {"ExitImage", "shadowMaps[0].options.exitImage", "is 2 (an index plus 1), but there are 1",
+     [](Frame& f) { f.maps[0].options.exitImage = 2; }},
+    {"ExitIsTheMap", "shadowMaps[0].options.exitImage", "the map's own image",
+     [](Frame& f) { f.maps[0].options.exitImage = 1; }},
+    {"CasterImage", "shadowMaps[0].options.casterMaterialImage", "is 7",
+     [](Frame& f) { f.maps[0].options.casterMaterialImage = 7; }},
+    {"CasterIsTheExit", "shadowMaps[0].options.casterMaterialImage", "the exitImage",
      [](Frame& f) {
        f.images.push_back(Frame::view());
-       f.maps[0].exitImage = f.maps[0].casterMaterialImage = 2;
+       f.maps[0].options.exitImage = f.maps[0].options.casterMaterialImage = 2;
        f.use();
      }},
-    {"CasterScale", "shadowMaps[0].casterMaterialScale", "nan",
-     [](Frame& f) { f.maps[0].casterMaterialScale = NAN; }},
-    {"CasterScaleNegative", "shadowMaps[0].casterMaterialScale", "-1",
-     [](Frame& f) { f.maps[0].casterMaterialScale = -1; }},
+    {"CasterScale", "shadowMaps[0].options.casterMaterialScale", "nan",
+     [](Frame& f) { f.maps[0].options.casterMaterialScale = NAN; }},
+    {"CasterScaleNegative", "shadowMaps[0].options.casterMaterialScale", "-1",
+     [](Frame& f) { f.maps[0].options.casterMaterialScale = -1; }},
     {"LightImages", "lights[0].shadowMapCount", "more than the 8 images",
      [](Frame& f) {
        f.images.assign(9, Frame::view());
        f.maps.assign(3, f.maps[0]);
        for (uint32_t i = 0; i < 3; ++i) {
          f.maps[i].image = 3 * i;
-         f.maps[i].exitImage = 3 * i + 2;
-         f.maps[i].casterMaterialImage = 3 * i + 3;
+         f.maps[i].options.exitImage = 3 * i + 2;
+         f.maps[i].options.casterMaterialImage = 3 * i + 3;
        }
        f.lights[0].shadowMapCount = 3;
        f.use();
@@ -195,9 +200,9 @@ const std::vector<Violation> kViolations = {
     {"LightDirection", "lights[0].direction", "length 0", [](Frame& f) { f.lights[0].direction[2] = 0; }},
     {"SpotCone", "lights[0].outerConeAngle", "inner",
      [](Frame& f) { f.lights[0].type = PELLUCID_LIGHT_SPOT; }},
-    {"LightTablesMissing", "lightTables", "is NULL, but lightTableCount is 1",
-     [](Frame& f) { f.frame.lightTableCount = 1; }},
-    {"LightTableFactor", "lightTables[0].factor", "[5] is 1.5", [](Frame& f) { addTable(f, 1.5f); }},
+    {"LightTablesMissing", "options.lightTables", "is NULL, but lightTableCount is 1",
+     [](Frame& f) { f.frame.options.lightTableCount = 1; }},
+    {"LightTableFactor", "options.lightTables[0].factor", "[5] is 1.5", [](Frame& f) { addTable(f, 1.5f); }},
     {"LightTableIndex", "lights[0].angleTable", "is 2 (an index plus 1), but there are 1 lightTables",
      [](Frame& f) {
        addTable(f, 1);
@@ -246,7 +251,7 @@ TEST(Validate, CapacityIsThePlans) {
     bool refused = false;
     for (uint32_t lights = 8; lights <= 320 && !refused; lights += 8) {
       Frame f(lights);
-      f.frame.gatherSamples = samples;
+      f.frame.options.gatherSamples = samples;
       const std::string problems = f.problems();
       PellucidPlan plan;
       const PellucidResult result = pellucidBuildPlan(&f.frame, nullptr, &plan);
@@ -256,7 +261,7 @@ TEST(Validate, CapacityIsThePlans) {
       if (!refused) continue;
       const size_t first = problems.find("first ") + 6;
       Frame fits(static_cast<uint32_t>(std::stoul(problems.substr(first))));
-      fits.frame.gatherSamples = samples;
+      fits.frame.options.gatherSamples = samples;
       EXPECT_EQ(pellucidBuildPlan(&fits.frame, nullptr, &plan), PELLUCID_OK);
     }
     EXPECT_TRUE(refused) << samples << " samples: no number of lights was too many";
@@ -308,24 +313,24 @@ const std::vector<Warned> kWarned = {
      "shadowMaps[0].extent makes a texel 20 mm long, more than 4 mean free paths of materials[0], which are "
      "8 mm",
      [](Frame& f) { f.maps[0].extent[0] = 1; }},
-    {"Overlap", "shadowMaps[1].offset is 32, 63: the tile overlaps that of shadowMaps[0]",
+    {"Overlap", "shadowMaps[1].options.offset is 32, 63: the tile overlaps that of shadowMaps[0]",
      [](Frame& f) {
        f.maps.push_back(f.maps[0]);
-       f.maps[1].offset[0] = 32;
-       f.maps[1].offset[1] = 63;
+       f.maps[1].options.offset[0] = 32;
+       f.maps[1].options.offset[1] = 63;
        f.use();
      }},
-    {"BackFaces", "shadowMaps[0].faces is BACK: lights[0] takes its thickness from backDepth",
-     [](Frame& f) { f.maps[0].faces = PELLUCID_FACES_BACK; }},
+    {"BackFaces", "shadowMaps[0].options.backFaces is 1: lights[0] takes its thickness from backDepth",
+     [](Frame& f) { f.maps[0].options.backFaces = 1; }},
     {"BackFacesAlone",
      "lights[0] adds nothing: no back depth to take a thickness from, and its map holds back",
      [](Frame& f) {
-       f.maps[0].faces = PELLUCID_FACES_BACK;
+       f.maps[0].options.backFaces = 1;
        f.frame.backDepth = {};
      }},
-    {"SlopeWithoutNeighbors", "shadowMaps[0].depthBiasSlope is 1.75, but a tile of 64 x 1 texels",
+    {"SlopeWithoutNeighbors", "shadowMaps[0].options.depthBiasSlope is 1.75, but a tile of 64 x 1 texels",
      [](Frame& f) {
-       f.maps[0].depthBiasSlope = 1.75f;
+       f.maps[0].options.depthBiasSlope = 1.75f;
        f.maps[0].extent[1] = 1;
      }},
 };
@@ -362,10 +367,11 @@ TEST(Validate, WarnsOfLightThatHalvesCut) {
 // Tiles that meet, other layers and one map of two lights are no overlap.
 TEST(Validate, TilesMayMeet) {
   const std::vector<std::function<void(PellucidShadowMap&)>> changes = {
-      [](PellucidShadowMap& m) { m.offset[0] = 64; }, [](PellucidShadowMap& m) { m.offset[1] = 64; },
+      [](PellucidShadowMap& m) { m.options.offset[0] = 64; },
+      [](PellucidShadowMap& m) { m.options.offset[1] = 64; },
       [](PellucidShadowMap& m) {
-        m.layer = 1;
-        m.offset[0] = 3;
+        m.options.layer = 1;
+        m.options.offset[0] = 3;
       },
       [](PellucidShadowMap&) {}};
   for (const auto& change : changes) {
@@ -381,9 +387,8 @@ TEST(Validate, TilesMayMeet) {
 TEST(Validate, NothingIsAddedToTheIrradiance) {
   Frame f;
   for (PellucidImage& image : f.frame.transients) image = Frame::view();
-  f.frame.outputMode = PELLUCID_OUTPUT_ADD;
-  EXPECT_NE(f.problems().find("outputMode is ADD, but the output is the irradiance's view"),
-            std::string::npos)
+  f.frame.options.addToOutput = 1;
+  EXPECT_NE(f.problems().find("addToOutput is 1, but the output is the irradiance's view"), std::string::npos)
       << f.problems();
   f.frame.output.view = reinterpret_cast<VkImageView>(uintptr_t{2});
   EXPECT_EQ(f.problems(), "");
@@ -392,7 +397,7 @@ TEST(Validate, NothingIsAddedToTheIrradiance) {
 TEST(Validate, SeparateOutputIsNotTheIrradiance) {
   Frame f;
   for (PellucidImage& image : f.frame.transients) image = Frame::view();
-  f.frame.separateOutput = 1;
+  f.frame.options.separateOutput = 1;
   f.frame.output.view = f.frame.irradiance.view;
   EXPECT_NE(f.problems().find("separateOutput is 1, but the output is the irradiance's view"),
             std::string::npos)

@@ -290,7 +290,7 @@ TEST(ViewParameters, ReachTheirFields) {
   set("reuse=coherence");
   const ReplaySettings& s = state.settings;
   EXPECT_EQ(s.translucency.gatherSamples, 16u);
-  EXPECT_EQ(s.translucency.thicknessSource, PELLUCID_THICKNESS_CAMERA);
+  EXPECT_EQ(s.translucency.cameraThickness, 1);
   EXPECT_EQ(s.translucency.transmittanceFilter, (std::array<float, 3>{0.55f, 0.29f, 0.28f}));
   EXPECT_EQ(s.translucency.angleModel, PELLUCID_ANGLE_POLYNOMIAL);
   EXPECT_EQ(s.translucency.anglePolynomial, (std::array<float, 4>{1, 2, 3, 4}));

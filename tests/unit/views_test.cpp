@@ -29,7 +29,7 @@ struct View {
     for (PellucidImage* image : {&p.frontDepth, &p.backDepth, &p.irradiance, &p.material, &p.output})
       image->view = handle(++next);
     for (PellucidImage& image : p.transients) image = {handle(++next), VK_IMAGE_LAYOUT_GENERAL};
-    p.history = {handle(++next), VK_IMAGE_LAYOUT_GENERAL};
+    p.options.history = {handle(++next), VK_IMAGE_LAYOUT_GENERAL};
     change(f);
     makePlan(nullptr);
   }
@@ -80,20 +80,20 @@ protected:
   std::string said_;
 };
 
-void noLists(Frame& f) { f.frame.gatherSamples = 8; }
+void noLists(Frame& f) { f.frame.options.gatherSamples = 8; }
 void wholeFrame(Frame& f) {
   noLists(f);
-  f.frame.indirectDispatches = PELLUCID_INDIRECT_MATERIAL;
+  f.frame.options.indirectDispatches = 1;
 }
-void noGather(Frame& f) { f.frame.gatherSamples = 0; }
-void translucencyAlone(Frame& f) { f.frame.features = PELLUCID_FEATURE_TRANSLUCENCY; }
+void noGather(Frame& f) { f.frame.options.gatherSamples = 0; }
+void translucencyAlone(Frame& f) { f.frame.options.features = PELLUCID_FEATURE_TRANSLUCENCY; }
 void nothing(Frame& f) {
-  f.frame.features = 0;
+  f.frame.options.features = 0;
   f.frame.output = f.frame.irradiance;
 }
 void reusing(Frame& f) {
   wholeFrame(f);
-  f.frame.reuse = PELLUCID_REUSE_ALTERNATE;
+  f.frame.options.reuse = PELLUCID_REUSE_ALTERNATE;
 }
 void smaller(Frame& f) {
   wholeFrame(f);
@@ -212,8 +212,8 @@ void PrintTo(const Refusal& value, std::ostream* out) { *out << value.name; }
 
 void halves(View& a, View& b) {
   const uint32_t left[4] = {0, 0, 50, 50}, right[4] = {50, 0, 50, 50};
-  std::copy(left, left + 4, a.f.frame.renderRect);
-  std::copy(right, right + 4, b.f.frame.renderRect);
+  std::copy(left, left + 4, a.f.frame.options.renderRect);
+  std::copy(right, right + 4, b.f.frame.options.renderRect);
   a.makePlan(nullptr);
   b.makePlan(nullptr);
 }
@@ -232,7 +232,7 @@ const Refusal kRefusals[] = {
     {"OneOutputWithRectsThatMeet",
      [](View& a, View& b, auto&) {
        halves(a, b);
-       ++a.f.frame.renderRect[2];
+       ++a.f.frame.options.renderRect[2];
        a.makePlan(nullptr);
        b.f.frame.output = a.f.frame.output;
      },
@@ -244,12 +244,12 @@ const Refusal kRefusals[] = {
     {"OneHistory",
      [](View& a, View& b, auto&) {
        for (View* v : {&a, &b}) {
-         v->f.frame.reuse = PELLUCID_REUSE_ALTERNATE;
+         v->f.frame.options.reuse = PELLUCID_REUSE_ALTERNATE;
          v->makePlan(nullptr);
        }
-       b.f.frame.history = a.f.frame.history;
+       b.f.frame.options.history = a.f.frame.options.history;
      },
-     "views[1].history is views[0].history, too"},
+     "views[1].options.history is views[0].options.history, too"},
     {"OneSlice", [](View& a, View&, auto& views) { views[1].constants = &a.slice; },
      "views[1].constants.offset is 0 for"},
     {"SlicesThatOverlap", [](View&, View& b, auto&) { b.slice.offset = 256; },
@@ -312,7 +312,7 @@ TEST_F(Views, ShareInputsAndDisjointPartsOfOutputs) {
 TEST_F(Views, WhatPlansDoNotUseMayBeEqual) {
   View a(0, translucencyAlone), b(1, translucencyAlone);
   std::copy(std::begin(a.f.frame.transients), std::end(a.f.frame.transients), b.f.frame.transients);
-  b.f.frame.history = a.f.frame.history;
+  b.f.frame.options.history = a.f.frame.options.history;
   a.slice.size = 2 * View::kSliceBytes;
   NullCommands commands = commandsFor(2);
   EXPECT_EQ(record(commands, {a.get(), b.get()}), PELLUCID_OK) << said_;

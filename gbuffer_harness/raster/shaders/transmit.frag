@@ -39,6 +39,9 @@ float distanceOf(ivec2 pixel, uint material, bool back) {
   return planarDistance(frame.camera, back ? gl_FragCoord.z + dot(slope, steps) : texelFetch(earlierDepth, pixel, 0).r);
 }
 
+// The pass draws for one light with a direction.
+vec3 hiddenIrradianceOf(ivec2 pixel) { return vec3(0.0); }
+
 #define PELLUCID_OWN_INPUTS
 #include "translucency/transmission.glsl"
 

@@ -1,5 +1,7 @@
 #include "reference/path_tracer/visible_surface.h"
 
+#include <limits>
+
 #include "common/error.h"
 #include "common/parallel.h"
 #include "common/progress.h"
@@ -24,15 +26,20 @@ std::optional<SurfacePoint> find(const Camera& camera, const Capture& capture, c
   return std::nullopt;
 }
 
+Camera cameraOf(const Capture& capture) {
+  Camera camera;
+  camera.clipFromView = capture.clipFromView;
+  camera.viewFromWorld = capture.viewFromWorld;
+  camera.orthographic = capture.clipFromView[11] == 0;  // w does not go by z
+  return camera;
+}
+
 }  // namespace
 
 VisibleSurface visibleSurface(const Capture& capture, const TraceScene& scene) {
   if (capture.clipFromView[11] > 0)
     throw InputError(capture.name, "camera.clipFromView", "looks along +z; rays are cast along -z");
-  Camera camera;
-  camera.clipFromView = capture.clipFromView;
-  camera.viewFromWorld = capture.viewFromWorld;
-  camera.orthographic = capture.clipFromView[11] == 0;  // w does not go by z
+  const Camera camera = cameraOf(capture);
   VisibleSurface surface{capture.width, capture.height, {}, 0};
   surface.points.resize(capture.material.size());
   std::vector<std::size_t> missed(static_cast<std::size_t>(capture.height));
@@ -46,6 +53,24 @@ VisibleSurface visibleSurface(const Capture& capture, const TraceScene& scene) {
   });
   for (const std::size_t count : missed) surface.missed += count;
   return surface;
+}
+
+VisibleSurface hiddenSurface(const Capture& capture, const TraceScene& scene, const VisibleSurface& visible) {
+  const Camera camera = cameraOf(capture);
+  VisibleSurface hidden{visible.width, visible.height, {}, 0};
+  hidden.points.resize(visible.points.size());
+  parallelRows(visible.height, 0, [&](int y) {
+    std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(visible.width);
+    for (int x = 0; x < visible.width; ++x, ++i) {
+      if (!visible.points[i]) continue;
+      const SurfacePoint& front = *visible.points[i];
+      const glm::dvec3 direction = camera.ray(x + 0.5, y + 0.5, visible.width, visible.height).direction;
+      const auto exit = scene.exit(front.body, {front.position - scene.offset() * front.face, direction},
+                                   std::numeric_limits<double>::infinity());
+      if (exit && exit->material != 0) hidden.points[i] = exit;
+    }
+  });
+  return hidden;
 }
 
 Image tracedIrradiance(const VisibleSurface& surface, const TraceScene& scene, const Emitters& emitters,

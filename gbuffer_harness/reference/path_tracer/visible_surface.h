@@ -1,4 +1,4 @@
-// The surface points that a capture's pixels show.
+// The surface points that a capture's pixels show, and those that they hide.
 #pragma once
 
 #include <cstddef>
@@ -21,6 +21,9 @@ struct VisibleSurface {
 // ray that misses at a silhouette is moved by less than half a pixel. Throws InputError for a left-handed
 // camera.
 VisibleSurface visibleSurface(const Capture& capture, const TraceScene& scene);
+
+// Where the rays to those points leave the bodies that they enter there. Absent where that is an opaque surface.
+VisibleSurface hiddenSurface(const Capture& capture, const TraceScene& scene, const VisibleSurface& visible);
 
 // Irradiance (R, G, B) at each pixel, the mean of `count` samples: for lights that a rasterizer cannot draw.
 // 0 where there is no point. Same input, same bits.

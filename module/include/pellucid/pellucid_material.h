@@ -1,6 +1,6 @@
-/* Pellucid material compiler: physical scattering coefficients -> what the shaders evaluate.
+/* Materials: the constants that shaders evaluate, and the compiler that makes them from physical scattering coefficients.
  *
- * C ABI, target pellucid::material. Pure functions on the CPU, double inside, no global state: same
+ * C ABI. The compiler is of target pellucid::material. Pure functions on the CPU, double inside, no global state: same
  * input, same output, callable from any thread. Lengths in mm, coefficients in 1/mm.
  *
  * Physics: radiative transport with isotropic scattering by similarity, sigma_s' = (1 - g) sigma_s,
@@ -10,11 +10,60 @@
 #ifndef PELLUCID_MATERIAL_H
 #define PELLUCID_MATERIAL_H
 
-#include "pellucid/pellucid.h"
+#include "pellucid_base.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* ---- What shaders evaluate ----------------------------------------------------------------- */
+
+enum { PELLUCID_MAX_GAUSSIANS = 8 };
+
+/* T(d): fraction of the flux entering one face of a slab of thickness d (mm) that leaves the other.
+ * The parameters are PellucidMaterial::transmittance[channel], in the order given here. */
+typedef enum PellucidTransmittanceModel {
+  /* a1, k1, a2, k2: a1 e^{-k1 d} + a2 e^{-k2 d}. */
+  PELLUCID_TRANSMITTANCE_EXP2 = 0,
+  /* a, kappa, z, b, c: a / sinh(kappa d + z) + b e^{-c d}. */
+  PELLUCID_TRANSMITTANCE_SINH_EXP = 1,
+  /* None: sum w_i e^{-d^2 / (2 v_i)} over the profile's own Gaussians (d'Eon 2007; R(sqrt(r^2+d^2)) integrated). */
+  PELLUCID_TRANSMITTANCE_GAUSSIANS = 2,
+  /* None: e^{-d^2 / v_i}, as Whelan 2009 eq. 2.11 prints it; twice the exponent that the integral gives. */
+  PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED = 3,
+  /* dmax (mm, > 0): 1 - d/dmax, 0 beyond (Whelan 2009, 4.1). */
+  PELLUCID_TRANSMITTANCE_LINEAR = 4
+} PellucidTransmittanceModel;
+
+/* Constants that the shaders evaluate. pellucidCompileMaterial fills them from physical coefficients or a preset, or you do. */
+typedef struct PellucidMaterial {
+  /* sizeof(PellucidMaterial); one size for all of a frame. */
+  uint32_t structSize;
+  /* PellucidTransmittanceModel. */
+  uint32_t transmittanceModel;
+  /* 1/mm for rates, 1 for amplitudes; see the model. */
+  float transmittance[3][5];
+  /* rho, semi-infinite diffuse reflectance, (0, 1]. */
+  float reflectance[3];
+  /* 1..PELLUCID_MAX_GAUSSIANS; 0: the material does not diffuse. */
+  uint32_t gaussianCount;
+  /* mm^2, > 0, of one axis: w/(2 pi v) e^{-r^2/2v}. */
+  float gaussianVariance[3][PELLUCID_MAX_GAUSSIANS];
+  /* Each channel sums to 1. */
+  float gaussianWeight[3][PELLUCID_MAX_GAUSSIANS];
+  /* mm, within which 99.9 % of the diffused energy lies. */
+  float radius[3];
+  /* ---- fields that may be missing ---- */
+  /* mm; d of Christensen & Burley 2015 eq. 3 that the Gaussians fit. The diffusion takes it in their place; 0 (default): the Gaussians. */
+  float burleyDistance[3];
+  /* 1: a sheet without thickness, like leaves and paper. Light that arrives at one face leaves by the other times wallTransmittance, and
+   * `transmittance` is not read. Shadow maps only say whether something else blocks the light. Not gathered. 0 (default): a solid. */
+  uint32_t thinWalled;
+  /* Of the irradiance of the other face, [0, 1]; with `reflectance` at most 1. */
+  float wallTransmittance[3];
+} PellucidMaterial;
+
+/* ---- Compiler ---------------------------------------------------------------------------------- */
 
 /* How a material is described; each kind reads the fields of PellucidMaterialDesc listed with it,
  * besides `gaussianCount` (all but GAUSSIANS fit that many). */
@@ -23,7 +72,7 @@ typedef enum PellucidMaterialKind {
   PELLUCID_MATERIAL_PRESET = 1,       /* preset, ior; see pellucidPresetName */
   PELLUCID_MATERIAL_BURLEY = 2,       /* burleyDistance, transmittance */
   PELLUCID_MATERIAL_GAUSSIANS = 3,    /* gaussianCount, gaussianVariance, gaussianWeight */
-  PELLUCID_MATERIAL_SPECTRAL = 4,     /* spectrum, illuminant, g, ior, millimetersPerUnit */
+  PELLUCID_MATERIAL_SPECTRAL = 4,     /* the spectrum, illuminant, g, ior, millimetersPerUnit */
   PELLUCID_MATERIAL_SKIN = 5,         /* melanin, melaninType, hemoglobin, illuminant, ior */
   PELLUCID_MATERIAL_THIN_WALL = 6     /* wallReflectance, wallTransmittance, burleyDistance */
 } PellucidMaterialKind;
@@ -38,14 +87,6 @@ typedef enum PellucidIlluminant {
 } PellucidIlluminant;
 
 enum { PELLUCID_MAX_WAVELENGTHS = 1024 };
-
-/* Coefficients sampled over the visible range; linear in between, constant beyond the ends. */
-typedef struct PellucidSpectrum {
-  uint32_t count;           /* 2..PELLUCID_MAX_WAVELENGTHS */
-  const double* wavelength; /* nm, strictly increasing, the range must meet 380..780 */
-  const double* scattering; /* sigma_s, >= 0 */
-  const double* absorption; /* sigma_a, >= 0 */
-} PellucidSpectrum;
 
 /* A material as people describe it. */
 typedef struct PellucidMaterialDesc {
@@ -69,7 +110,11 @@ typedef struct PellucidMaterialDesc {
   double gaussianVariance[PELLUCID_MAX_GAUSSIANS];  /* mm^2, > 0, of one axis */
   double gaussianWeight[3][PELLUCID_MAX_GAUSSIANS]; /* >= 0; normalized to sum 1 per channel */
 
-  PellucidSpectrum spectrum; /* of SPECTRAL */
+  /* Coefficients sampled over the visible range; linear in between, constant beyond the ends. */
+  uint32_t wavelengthCount;         /* 2..PELLUCID_MAX_WAVELENGTHS */
+  const double* wavelength;         /* nm, strictly increasing, the range must meet 380..780 */
+  const double* spectralScattering; /* sigma_s, >= 0 */
+  const double* spectralAbsorption; /* sigma_a, >= 0 */
 
   /* Skin by physiology, Donner & Jensen 2006 */
   double melanin;     /* C_m, volume fraction in the epidermis, [0, 1]; fair .002, dark .3; default .005 */

@@ -26,7 +26,8 @@ typedef enum PellucidResource {
   PELLUCID_RESOURCE_CONSTANTS = 7, /* a range of the constants slice */
   PELLUCID_RESOURCE_TRANSIENT0 = 8,
   PELLUCID_RESOURCE_HISTORY = 16,
-  PELLUCID_RESOURCE_SHADOW0 = 17
+  PELLUCID_RESOURCE_HIDDEN_IRRADIANCE = 17,
+  PELLUCID_RESOURCE_SHADOW0 = 18
 } PellucidResource;
 
 enum {
@@ -34,7 +35,7 @@ enum {
   PELLUCID_MAX_BINDINGS = 24,
   PELLUCID_MAX_SKIPS = 16,
   PELLUCID_PUSH_CONSTANT_BYTES = 16,
-  PELLUCID_PLAN_SLOTS = 12,
+  PELLUCID_PLAN_SLOTS = 13,
   PELLUCID_PLAN_SHADOW_IMAGES = 256,
   PELLUCID_PLAN_STATE_WORDS = 48
 };
@@ -59,7 +60,7 @@ typedef struct PellucidDispatch {
   uint8_t barrierBefore;        /* 1: a compute-to-compute memory barrier precedes the dispatch */
   uint8_t barrierIndirect;      /* 1: DRAW_INDIRECT / INDIRECT_COMMAND_READ waits for that barrier, too */
   uint16_t slots[PELLUCID_PLAN_SLOTS]; /* what it binds, for pellucidGetBindings */
-  uint16_t firstShadowImage, shadowImageCount; /* of plan.shadowImages, for pellucidGetBindings */
+  uint8_t firstShadowImage, shadowImageCount;  /* of plan.shadowImages, for pellucidGetBindings */
 } PellucidDispatch;
 
 /* Something that a plan leaves out. */
@@ -68,11 +69,6 @@ typedef struct PellucidSkip {
   const char* reason; /* static string */
   uint32_t count;     /* how many (lights, say) */
 } PellucidSkip;
-
-/* The module's own part of a plan: how the next plan decides about reuse, and what recording asks of a context. */
-typedef struct PellucidPlanState {
-  uint32_t words[PELLUCID_PLAN_STATE_WORDS]; /* not for callers */
-} PellucidPlanState;
 
 /* At most 4096 bytes. */
 struct PellucidPlan {
@@ -83,18 +79,28 @@ struct PellucidPlan {
   PellucidDispatch dispatches[PELLUCID_MAX_DISPATCHES]; /* in order */
   PellucidSkip skips[PELLUCID_MAX_SKIPS]; /* what is left out, and why */
   float largestRadius; /* pixels within which 99.9 % of the diffused energy lies, of the widest channel of all
-                          materials at frame.nearestDistance; 0: not known, or nothing diffuses */
-  uint32_t gatherSamples; /* of each probe: frame.gatherSamples, or as frame.targetError chose; 0: lights with a shadow map
+                          materials at options.nearestDistance; 0: not known, or nothing diffuses */
+  uint32_t gatherSamples; /* of each probe: options.gatherSamples; 0: lights with a shadow map
                              have one thickness a pixel */
-  uint32_t historyAge;    /* frames since frame.history was written, by the last frame that computed the light that
+  uint32_t historyAge;    /* frames since options.history was written, by the last frame that computed the light that
                              comes through; 0: this frame computes it */
   uint32_t shadowImages[PELLUCID_PLAN_SHADOW_IMAGES]; /* that dispatches bind, for pellucidGetBindings */
-  PellucidPlanState state; /* not for callers */
+  uint32_t state[PELLUCID_PLAN_STATE_WORDS]; /* not for callers: how the next plan decides about reuse, and what recording asks of a
+                                                context */
 };
 
 /* What a dispatch binds, in the order of binding numbers: writes at most PELLUCID_MAX_BINDINGS, returns how many. 0 for a
  * dispatch that the plan does not have. */
 PELLUCID_API uint32_t pellucidGetBindings(const PellucidPlan* plan, uint32_t dispatch, PellucidBinding* bindings);
+
+/* Makes those pipelines that the plan dispatches and a context with options.deferPipelines lacks, of those of options.uses: for tools,
+ * which render few frames. options.pipelineCache and parallelFor must be alive still. No other thread uses the context at the
+ * same time. On failure the message callback has the sentence, and pipelines made so far stay. */
+PELLUCID_API PellucidResult pellucidCreatePipelines(PellucidContext* context, const PellucidPlan* plan);
+
+/* Makes an options.descriptorPool of a frame, with room for any plan's recording. vkDestroyDescriptorPool with options.allocator
+ * destroys it. On failure *pool is NULL and the message callback has the sentence. */
+PELLUCID_API PellucidResult pellucidCreateDescriptorPool(const PellucidContext* context, VkDescriptorPool* pool);
 
 /* One specialization constant. */
 typedef struct PellucidSpecialization {
@@ -110,11 +116,11 @@ typedef struct PellucidShader {
   const PellucidSpecialization* constants; /* of the pipeline */
 } PellucidShader;
 
-/* Ids of the specialization constants of all shaders that hold PellucidContextDesc::normalEncoding, lightTables, and uses with all
+/* Ids of the specialization constants of all shaders that hold PellucidContextOptions::normalEncoding, lightTables, and uses with all
  * bits in place of 0. They are not among PellucidShader::constants. */
 enum { PELLUCID_SPECIALIZATION_NORMALS = 4, PELLUCID_SPECIALIZATION_LIGHT_TABLES = 5, PELLUCID_SPECIALIZATION_USES = 6 };
 
-/* What each pipeline is made of; shadowViewType as in PellucidContextDesc. */
+/* What each pipeline is made of; shadowViewType as in PellucidContextOptions. */
 PELLUCID_API uint32_t pellucidGetPipelineCount(void); /* pipelines have the indices below it */
 PELLUCID_API PellucidResult pellucidGetShader(uint32_t pipeline, VkImageViewType shadowViewType,
                                               PellucidShader* shader); /* INVALID_ARGUMENT: no such pipeline or type */

@@ -1,8 +1,10 @@
-/* Results of all functions, and the sentences that go with errors. */
-#ifndef PELLUCID_RESULT_H
-#define PELLUCID_RESULT_H
+/* What all headers share: results, messages, images. pellucid.h includes this header. */
+#ifndef PELLUCID_BASE_H
+#define PELLUCID_BASE_H
 
+#include <stddef.h>
 #include <stdint.h>
+#include <vulkan/vulkan_core.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -40,6 +42,14 @@ typedef enum PellucidSeverity { PELLUCID_SEVERITY_WARNING = 0, PELLUCID_SEVERITY
 /* `field` is the API field at fault ("lights[2].color"), `message` a UTF-8 sentence. Both are valid
  * during the call only. Called on the thread that made the API call. */
 typedef void (*PellucidMessageFn)(void* user, PellucidSeverity severity, const char* field, const char* message);
+
+/* An image of the caller: 2D, one layer, one mip. It is in `layout` while the recorded commands run, which never change that
+ * layout: GENERAL, or a READ_ONLY one of images that are only read. */
+typedef struct PellucidImage {
+  /* A null handle (default): not given. */
+  VkImageView view;
+  VkImageLayout layout;
+} PellucidImage;
 
 PELLUCID_API const char* pellucidResultName(PellucidResult result); /* "PELLUCID_OK", ... */
 

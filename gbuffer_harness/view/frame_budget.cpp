@@ -1,32 +1,33 @@
 // Holds a frame time. Whelan 2009, 6.2.5.
+#include "view/frame_budget.h"
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 
-#include "pellucid/pellucid_budget.h"
-
+namespace pellucid::harness {
 namespace {
 
-constexpr uint32_t kSamples[] = {0, 4, 8, 16};  // of a probe, from the cheapest on
-constexpr uint32_t kBest = kSamples[3];
-constexpr uint32_t kOverFrames = 3;    // a single spike changes nothing
-constexpr uint32_t kSettleFrames = 2;  // GPU times arrive a frame or two late
-constexpr uint32_t kFirstWait = 30;    // frames of room before a better setting is tried
-constexpr uint32_t kLongestWait = 4096;
+constexpr std::uint32_t kSamples[] = {0, 4, 8, 16};  // of a probe, from the cheapest on
+constexpr std::uint32_t kBest = kSamples[3];
+constexpr std::uint32_t kOverFrames = 3;    // a single spike changes nothing
+constexpr std::uint32_t kSettleFrames = 2;  // GPU times arrive a frame or two late
+constexpr std::uint32_t kFirstWait = 30;    // frames of room before a better setting is tried
+constexpr std::uint32_t kLongestWait = 4096;
 constexpr float kRoom = 0.7f;  // of the budget; the next setting may cost as much again as it frees
 
-bool best(const PellucidBudgetState& s) { return s.gatherSamples == kBest && s.reuse == 0; }
-bool cheapest(const PellucidBudgetState& s) { return s.gatherSamples == 0; }
+bool best(const BudgetState& s) { return s.gatherSamples == kBest && s.reuse == 0; }
+bool cheapest(const BudgetState& s) { return s.gatherSamples == 0; }
 
-void changed(PellucidBudgetState& s) {
+void changed(BudgetState& s) {
   s.overFrames = s.underFrames = s.easierFrames = 0;
   s.settleFrames = kSettleFrames;
 }
 
-// A state that was never initialized or got damaged goes on from the nearest valid one.
-void mend(PellucidBudgetState& s) {
+// A damaged state goes on from the nearest valid one.
+void mend(BudgetState& s) {
   s.gatherSamples = *std::find_if(std::begin(kSamples), std::end(kSamples) - 1,
-                                  [&](uint32_t samples) { return samples >= s.gatherSamples; });
+                                  [&](std::uint32_t samples) { return samples >= s.gatherSamples; });
   s.reuse = std::min(s.reuse, 1u);
   s.settleFrames = std::min(s.settleFrames, kSettleFrames);
   s.overFrames = std::min(s.overFrames, kOverFrames);
@@ -38,7 +39,7 @@ void mend(PellucidBudgetState& s) {
 }
 
 // Reuse goes first: it costs a lag in the light, fewer samples cost dots.
-void lower(PellucidBudgetState& s) {
+void lower(BudgetState& s) {
   if (s.reuse == 0)
     s.reuse = 1;
   else
@@ -46,7 +47,7 @@ void lower(PellucidBudgetState& s) {
   changed(s);
 }
 
-void raise(PellucidBudgetState& s) {
+void raise(BudgetState& s) {
   if (s.gatherSamples < kBest)
     s.gatherSamples = *(std::find(std::begin(kSamples), std::end(kSamples), s.gatherSamples) + 1);
   else
@@ -56,16 +57,8 @@ void raise(PellucidBudgetState& s) {
 
 }  // namespace
 
-extern "C" void pellucidInitBudgetState(PellucidBudgetState* state) {
-  if (!state) return;
-  *state = {};
-  state->gatherSamples = kBest;
-  state->waitFrames = kFirstWait;
-}
-
-extern "C" void pellucidStepBudget(PellucidBudgetState* state, float measuredMs, float budgetMs) {
-  if (!state || !(budgetMs > 0) || !(measuredMs >= 0) || !std::isfinite(measuredMs)) return;
-  PellucidBudgetState& s = *state;
+void stepBudget(BudgetState& s, float measuredMs, float budgetMs) {
+  if (!(budgetMs > 0) || !(measuredMs >= 0) || !std::isfinite(measuredMs)) return;
   mend(s);
   if (s.settleFrames > 0) {
     --s.settleFrames;
@@ -102,3 +95,5 @@ extern "C" void pellucidStepBudget(PellucidBudgetState* state, float measuredMs,
   }
   s.overFrames = std::min(s.overFrames, kOverFrames);
 }
+
+}  // namespace pellucid::harness
