@@ -111,7 +111,8 @@ struct GatherRings {
   float entrySide;     // side of an entry point of the first level
   float ahead;         // along the light's ray from x to the lit surface
   float tolerance;     // how far a receiver's own exit may be off
-  float shadowed;      // 1: x lies beyond the exit of its own ray, with air before it, 0: it does not
+  float behindExit;    // along the light's ray from where x's own ray has left the medium to x; 0: it has not
+  float shadowed;      // 1: that ray has left the medium before x, for air or an opaque body in it, 0: it has not
   uint map;            // contains x
 };
 
@@ -126,19 +127,20 @@ bool gatherRings(LightConstants light, Surface x, vec3 toLight, float distanceTo
   float facing = x.hasNormal ? max(-dot(x.normal, toLight), 0.0) : 0.0;
   rings.axis = normalize(toLight - facing * x.normal); // the two are within 90 degrees
   rings.axisCosine = dot(rings.axis, toLight);
-  rings.t = rings.ahead = rings.shadowed = 0.0;
+  rings.t = rings.ahead = rings.behindExit = rings.shadowed = 0.0;
   vec3 point;
   if (!findMap(light, x.position, rings.map, point)) return false;
   vec2 off;
   uvec4 bits = fetchEntry(rings.map, placeInMap(parallel, point), 0, off);
   rings.entrySide = length(maps[rings.map].stepX.xyz) * mm * (parallel ? 1.0 : point.z);
   // The slope of the surface counts within an entry point, and one entry point stands for its curvature.
-  rings.tolerance = rings.entrySide * (2.0 + min(slopeOf(x.hasNormal ? dot(x.normal, toLight) : 0.0), kSteepestOwn));
+  rings.tolerance = max(rings.entrySide * (2.0 + min(slopeOf(x.hasNormal ? dot(x.normal, toLight) : 0.0), kSteepestOwn)), 1.0e-12);
   if (!holdsSurface(bits)) return true;
   float perAhead = parallel ? 1.0 : distanceTo;
   EntryPoint own = unpackEntry(bits);
   rings.ahead = distanceAhead(parallel, own.depth, point.z) * perAhead * mm;
-  if (own.exit < kNoExit) rings.shadowed = clamp((rings.ahead - own.exit * mm) / rings.tolerance - 1.0, 0.0, 1.0);
+  if (own.exit < kNoExit) rings.behindExit = max(rings.ahead - own.exit * mm, 0.0);
+  rings.shadowed = clamp(rings.behindExit / rings.tolerance - 1.0, 0.0, 1.0);
   float t = clamp(rings.ahead, 0.0, longest) / mm;
   vec3 guess = x.position + t * rings.axis;
   uint map;
@@ -184,7 +186,23 @@ float staysInside(GatherRings rings, EntryPoint entry, vec3 to, vec3 toLight) {
   float along = -dot(to, toLight), aside = sqrt(max(dot(to, to) - along * along, 0.0));
   const float kSteepest = 2.0; // slope of far sides: 63 degrees
   float beyond = along - entry.exit * frame.camera.range.w - kSteepest * (1.0 - rings.shadowed) * aside;
-  return clamp(2.0 - beyond / max(rings.tolerance, 1.0e-12), 0.0, 1.0);
+  return clamp(2.0 - beyond / rings.tolerance, 0.0, 1.0);
+}
+
+// The part of that light that misses what stands before x on its own ray, as a plate in the body. The straight path must miss it
+// halfway from x to the depth along the axis at which x's own ray has left the medium; paths from beyond do not cross it.
+float missesOccluder(GatherRings rings, LightConstants light, Surface x, uint map, vec3 to) {
+  float mm = frame.camera.range.w, behind = rings.behindExit * rings.axisCosine, along = max(-dot(to, rings.axis), 1.0e-12);
+  float crosses = rings.shadowed * clamp((along - behind) / rings.tolerance, 0.0, 1.0);
+  if (!(crosses > 0.0)) return 1.0; // else behind < along
+  vec3 halfway = x.position - 0.5 * behind / along / mm * to, point = mapPoint(map, vec4(halfway, 1.0));
+  vec2 off, place = placeInMap(directional(light), point);
+  uvec4 bits = isInMap(map, place) ? fetchEntry(map, place, 0, off) : kNoEntry;
+  if (!lightEnters(bits)) return 1.0;
+  EntryPoint entry = unpackEntry(bits); // without an exit, kNoExit is beyond all
+  float perAhead = directional(light) ? 1.0 : distance(light.position.xyz, halfway);
+  float beyond = (distanceAhead(directional(light), entry.depth, point.z) * perAhead - entry.exit) * mm;
+  return 1.0 - crosses * clamp(beyond / rings.tolerance, 0.0, 1.0);
 }
 
 // A sample's place from x, mm.
@@ -283,6 +301,7 @@ Gathered gatherSamples(uint m, LightConstants light, Surface x, Pattern pattern,
     // A point light's flux is its intensity per square scene unit at s. At the light itself any finite value will do.
     if (!parallel) flux *= mm * mm / max(dot(toLight, toLight), 1.0e-12 * mm * mm);
     float stays = staysInside(rings, entry, to, parallel ? lightRay : normalize(toLight));
+    if (rings.shadowed > 0.0) stays *= missesOccluder(rings, light, x, map, to);
     entry.hidden *= stays;
     entry.seen *= stays;
     addSample(sum, x, m, lengths, entry, to, sqrt(plane + from), sqrt(plane + inner), flux, rings.axisCosine);

@@ -65,10 +65,11 @@ std::vector<std::string> opaqueInside(const Model& model) {
         for (std::uint32_t i = around->firstIndex; i < around->firstIndex + around->indexCount; i += 3)
           angle += solidAngle(position(i) - from, position(i + 1) - from, position(i + 2) - from);
       if (angle > kEnclosed)
-        sentences.insert("opaque \"" + opaque.name + "\" lies inside \"" +
-                         model.surfaces[shell.parts.front()->surface].name +
-                         "\": its edges let too much light around it, up to a twelfth of what comes through "
-                         "without it; `pellucid truth` has the right light");
+        sentences.insert(
+            model.name + ": opaque \"" + opaque.name + "\" lies inside \"" +
+            model.surfaces[shell.parts.front()->surface].name +
+            "\": what is narrower than 4 times the body's thickness there blocks too little light in a "
+            "replay, up to 14 % of what comes through without it; `pellucid truth` has the right light");
     }
   }
   return {sentences.begin(), sentences.end()};

@@ -14,9 +14,8 @@ namespace pellucid::harness {
 // Open meshes enclose nothing. Objects of surfaces without a material are not looked at. point: world.
 std::optional<std::string> enclosingBody(const Model& model, const std::array<double, 3>& point);
 
-// A sentence for each opaque surface that begins inside a closed translucent object: a shadow map says where
-// the surface begins and not where it ends, so a gather lets light around it that the medium behind it does
-// not carry.
+// A sentence, which begins with the model's name, for each opaque surface that begins inside a closed
+// translucent object: a gather's paths are straight, and small surfaces also block paths that bend.
 std::vector<std::string> opaqueInside(const Model& model);
 
 // Throws InputError naming the model and the light: a point or spot light inside a translucent body, whose

@@ -278,15 +278,19 @@ Gather::Place Gather::placeOf(std::size_t light, const Exit& exit) const {
       std::sqrt(std::max(1 - cosine * cosine, 0.0)) / std::max(std::abs(cosine), 1e-3), kSteepestOwn);
   Place place;
   place.toLight = arrival.toLight;
+  place.axis = glm::normalize(arrival.toLight + std::min(cosine, 0.0) * exit.normal.value_or(glm::dvec3(0)));
+  place.views = &views_[light];
   for (const ShadowView& view : views_[light]) {
     const ShadowView::Lookup found = view.at(world);
     if (found.kind == ShadowView::Kind::Outside) continue;
-    place.tolerance = mm_ * found.texel * (2 + slope);
+    place.tolerance = std::max(mm_ * found.texel * (2 + slope), 1e-12);
     double arrives = 1;
     if (found.kind == ShadowView::Kind::Surface) {
       // None where the lit surface is further ahead than a texel's side makes of the slope.
       arrives = std::clamp(2 - found.distance / (found.texel * (1 + slope)), 0.0, 1.0);
-      if (found.fromExit) place.shadowed = std::clamp(mm_ * *found.fromExit / place.tolerance - 1, 0.0, 1.0);
+      const double behind = mm_ * std::max(found.fromExit.value_or(0), 0.0);
+      place.shadowed = std::clamp(behind / place.tolerance - 1, 0.0, 1.0);
+      place.behind = behind * glm::dot(place.axis, place.toLight);
     }
     place.ownIrradiance = std::max(cosine, 0.0) * arrives * arrival.irradiance;
     break;
@@ -296,13 +300,29 @@ Gather::Place Gather::placeOf(std::size_t light, const Exit& exit) const {
 
 // An exit beyond a texel's back face has air before it. Far sides of one body slope by up to 63 degrees; only
 // where the exit's own ray has air, too, is that no excuse.
-double Gather::inside(const Texel& texel, const Exit& exit, const Place& place) {
+double Gather::inside(const Texel& texel, const Exit& exit, const Place& place) const {
   if (!(texel.exit < INFINITY)) return 1;
   const glm::dvec3 to = exit.position - texel.position;
   const double along = -glm::dot(to, place.toLight);
   const double aside = std::sqrt(std::max(glm::dot(to, to) - along * along, 0.0));
   const double beyond = along - texel.exit - 2 * (1 - place.shadowed) * aside;
-  return std::clamp(2 - beyond / std::max(place.tolerance, 1e-12), 0.0, 1.0);
+  return std::clamp(2 - beyond / place.tolerance, 0.0, 1.0) * missesOccluder(to, exit, place);
+}
+
+// The straight path must miss it halfway from the exit to where its own light ray has left the medium; paths
+// from beyond that depth do not cross it.
+double Gather::missesOccluder(const glm::dvec3& to, const Exit& exit, const Place& place) const {
+  const double along = -glm::dot(to, place.axis);
+  const double crosses = place.shadowed * std::clamp((along - place.behind) / place.tolerance, 0.0, 1.0);
+  if (!(crosses > 0)) return 1;
+  const glm::dvec3 halfway = (exit.position - 0.5 * place.behind / along * to) / mm_;
+  for (const ShadowView& view : *place.views) {
+    const ShadowView::Lookup found = view.at(halfway);
+    if (found.kind == ShadowView::Kind::Outside) continue;
+    if (found.kind != ShadowView::Kind::Surface || !found.fromExit || found.casterMaterial == 0) return 1;
+    return 1 - crosses * std::clamp(mm_ * *found.fromExit / place.tolerance, 0.0, 1.0);
+  }
+  return 1;
 }
 
 Gather::Sums Gather::sums(const Blocks& blocks, const Exit& exit, const Place& place) const {

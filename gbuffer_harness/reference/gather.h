@@ -1,5 +1,5 @@
-// Light-space gather over every texel of the shadow maps (docs/how-it-works.md): what the GPU's samples converge
-// to.
+// Light-space gather over every texel of the shadow maps (docs/how-it-works.md): what the GPU's samples
+// converge to.
 #pragma once
 
 #include <cstdint>
@@ -65,8 +65,11 @@ private:
   struct Place {
     glm::dvec3 toLight{0, 0, 1};
     glm::dvec3 ownIrradiance{0};  // that the light itself brings to the exit
-    double tolerance = 0;         // mm that an exit depth of its own may be off by
-    double shadowed = 0;          // 1: air lies before the exit on its own light ray, 0: it does not
+    double tolerance = 1e-12;     // mm that an exit depth of its own may be off by
+    double shadowed = 0;          // 1: its own light ray has left the medium before the exit, 0: it has not
+    glm::dvec3 axis{0, 0, 1};     // between toLight and the inward normal
+    double behind = 0;            // mm along the axis from where that ray has left the medium to the exit
+    const std::vector<ShadowView>* views = nullptr;  // of the light's maps
   };
 
   // Of one of the light's maps; a texel that an earlier one contains counts there.
@@ -74,7 +77,9 @@ private:
   Sums sums(const Blocks& blocks, const Exit& exit, const Place& place) const;
   Place placeOf(std::size_t light, const Exit& exit) const;
   // Part of what enters at a texel that reaches the exit through the medium.
-  static double inside(const Texel& texel, const Exit& exit, const Place& place);
+  double inside(const Texel& texel, const Exit& exit, const Place& place) const;
+  // Part of that light that misses what stands before the exit on its own light ray.
+  double missesOccluder(const glm::dvec3& to, const Exit& exit, const Place& place) const;
   // Around a surface with a normal, 1/mm, positive where convex: from what lies `reach` mm to both sides in
   // the image. 0 where it does not go on.
   double meanCurvature(const Surface& surface, double reach) const;
