@@ -142,7 +142,7 @@ TEST(ContextLimits, AreNamedWithBothNumbers) {
               {"maxPerStageDescriptorStorageBuffers", &Limits::maxPerStageDescriptorStorageBuffers, 1},
               {"maxPerStageDescriptorStorageImages", &Limits::maxPerStageDescriptorStorageImages, 3},
               {"maxPerStageDescriptorSampledImages", &Limits::maxPerStageDescriptorSampledImages, 16},
-              {"maxPerStageResources", &Limits::maxPerStageResources, 22}};
+              {"maxPerStageResources", &Limits::maxPerStageResources, 21}};
   for (const auto& [name, limit, needed] : rows)
     for (const uint32_t less : {0u, 1u}) {
       NullDevice device;
