@@ -1,5 +1,6 @@
 #include "capture/light_bounds.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <sstream>
@@ -28,6 +29,7 @@ void fitLight(Light& light, const std::function<void(const char* key, const std:
   };
   for (double& component : light.color) fit("color", component, kMost);
   fit("intensity", light.intensity, kMost);
+  light.range = std::min(light.range, kMost);  // exporters write up to FLT_MAX for unlimited lights
   fit("range", light.range, kMost);
   fit("radius", light.radius, kMost);
   if (light.radius > 0 && light.type != PELLUCID_LIGHT_POINT)

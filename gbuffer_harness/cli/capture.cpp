@@ -115,7 +115,6 @@ void captureGltf(const Options& options) {
   std::vector<double> angles = {0};
   for (int i = 1; i < turns; ++i) angles.push_back(2 * std::numbers::pi * i / turns);
   CaptureModel scene = captureModel(options.scene, angles);
-  separateBodies(scene);
   for (std::string& sentence : opaqueInside(scene.model)) scene.warnings.push_back(std::move(sentence));
   say(scene);
   requireTranslucent(scene);

@@ -308,20 +308,6 @@ void say(const CaptureModel& model) {
   warn(model.warnings);
 }
 
-void separateBodies(CaptureModel& model) {
-  std::vector<double> reach;
-  for (std::size_t i = 0; i < model.model.materials.size(); ++i) {
-    const PellucidMaterial compiled = compileMaterial(
-        model.model.materials[i], model.model.name + ": materials[" + std::to_string(i) + "]");
-    reach.push_back(static_cast<double>(*std::max_element(compiled.radius, compiled.radius + 3)));
-  }
-  const BodySeparation separated = separateBodies(model.model, reach);
-  if (separated.added > 0)
-    model.notes.push_back(
-        "of " + std::to_string(separated.bodies) + " bodies some of one medium are near each other: " +
-        std::to_string(separated.added) + " more materials keep light from crossing the air between them");
-}
-
 void requireTranslucent(const CaptureModel& model) {
   if (!model.model.materials.empty()) return;
   std::string names;
@@ -360,6 +346,25 @@ std::optional<Environment> environment(const CaptureOptions& options) {
   return Environment{color(parts[1]), color(parts[2])};
 }
 
+namespace {
+
+// raster/bodies.h, with a note.
+void separateBodies(CaptureModel& model) {
+  std::vector<double> reach;
+  for (std::size_t i = 0; i < model.model.materials.size(); ++i) {
+    const PellucidMaterial compiled = compileMaterial(
+        model.model.materials[i], model.model.name + ": materials[" + std::to_string(i) + "]");
+    reach.push_back(static_cast<double>(*std::max_element(compiled.radius, compiled.radius + 3)));
+  }
+  const BodySeparation separated = separateBodies(model.model, reach);
+  if (separated.added > 0)
+    model.notes.push_back(
+        "of " + std::to_string(separated.bodies) + " bodies some of one medium are near each other: " +
+        std::to_string(separated.added) + " more numbers keep light from crossing the air between them");
+}
+
+}  // namespace
+
 CaptureModel captureModel(const CaptureOptions& options, const std::vector<double>& turns,
                           const std::vector<std::string>& lightsOfNone) {
   CaptureModel result;
@@ -390,6 +395,7 @@ CaptureModel captureModel(const CaptureOptions& options, const std::vector<doubl
     const std::size_t filled = fillHoles(result.model);
     result.warnings.push_back("--fill-holes: " + std::to_string(filled) + " holes filled");
   }
+  separateBodies(result);
   result.camera = chooseCamera(options, result.model, result.raster, turns);
   if (options.size.empty() && result.camera.aspect > 0)
     result.raster.width = static_cast<int>(

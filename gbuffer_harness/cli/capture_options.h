@@ -60,9 +60,6 @@ void warn(const std::vector<std::string>& warnings);
 // Prints notes and warnings on stderr.
 void say(const CaptureModel& model);
 
-// raster/bodies.h, with a note. Throws InputError.
-void separateBodies(CaptureModel& model);
-
 // Throws InputError, which names --material, for a model without a translucent material: its capture would
 // have none.
 void requireTranslucent(const CaptureModel& model);
@@ -89,7 +86,7 @@ inline constexpr const char* kEnvironmentSyntax = "uniform:R,G,B or gradient:R,G
 // Throws UsageError.
 std::optional<Environment> environment(const CaptureOptions& options);
 
-// Reads the file. `turns` (radians): of the turntable's cameras, all of which the auto camera fits. Throws
+// Reads the file and gives its bodies numbers. `turns` (radians): of the turntable's cameras, all of which the auto camera fits. Throws
 // UsageError and InputError. lightsOfNone: kLightSyntax, of a file without lights.
 CaptureModel captureModel(const CaptureOptions& options, const std::vector<double>& turns = {0},
                           const std::vector<std::string>& lightsOfNone = {kBackLight});

@@ -95,7 +95,6 @@ Frames proceduralFrames(const Options& options) {
 
 Frames modelFrames(const Options& options, Device& device) {
   CaptureModel scene = captureModel(options.scene);
-  separateBodies(scene);
   requireTranslucent(scene);
   const std::optional<Environment> sky = environment(options.scene);
   const RasterResult still = captureScene(device, scene.model, scene.camera, scene.raster, sky);

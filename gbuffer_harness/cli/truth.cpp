@@ -17,6 +17,7 @@
 #include "common/error.h"
 #include "common/progress.h"
 #include "common/whole_file.h"
+#include "raster/bodies.h"
 #include "raster/close_mesh.h"
 #include "reference/path_tracer/light_paths.h"
 #include "reference/path_tracer/mesh_scene.h"
@@ -84,7 +85,6 @@ void makeTranslucent(Model& model, bool close) {
 Scene modelScene(const Options& options, SceneHash& hash) {
   CaptureModel model = captureModel(options.scene);
   if (options.like.empty()) {
-    separateBodies(model);
     say(model);
     requireTranslucent(model);
   } else {
@@ -105,9 +105,9 @@ Scene modelScene(const Options& options, SceneHash& hash) {
   Scene scene;
   if (!options.like.empty()) {
     scene.capture = readCapture(options.like);
-    // A model without media has one, whose bodies have the same constants whatever their numbers.
-    const std::size_t own = model.model.materials.size();
-    if (own > 0 && scene.capture.materials.size() > own) separateBodies(model);
+    // The capture's bodies may have one number.
+    if (scene.capture.materials.size() < model.model.materials.size() + model.model.bodies.size())
+      joinBodies(model.model);
     scaleTo(scene.capture.metersPerUnit, model.model);
     hash.add(model.model);
     scene.traced = reference::makeMeshScene(model.model);

@@ -36,16 +36,17 @@ const std::set<std::string> kHarmless = {
 };
 
 enum class Type { Object, Array, String, Number, Index, Boolean };
+enum class Need { None, Always, OfType };  // OfType: where the object's "type" is the path's last key
 
 // A path that tinygltf needs to be there, or to be of a type; in it, * is every element of an array or
 // object.
 struct Rule {
   const char* path;
   Type type;
-  bool required = false;
+  Need need = Need::None;
 };
 
-constexpr bool kRequired = true;
+constexpr Need kRequired = Need::Always;
 
 const Rule kRules[] = {
     {"asset", Type::Object, kRequired},
@@ -112,12 +113,12 @@ const Rule kRules[] = {
     {"cameras", Type::Array},
     {"cameras.*", Type::Object},
     {"cameras.*.type", Type::String, kRequired},
-    {"cameras.*.perspective", Type::Object},
+    {"cameras.*.perspective", Type::Object, Need::OfType},
     {"cameras.*.perspective.yfov", Type::Number, kRequired},
     {"cameras.*.perspective.znear", Type::Number, kRequired},
     {"cameras.*.perspective.zfar", Type::Number},
     {"cameras.*.perspective.aspectRatio", Type::Number},
-    {"cameras.*.orthographic", Type::Object},
+    {"cameras.*.orthographic", Type::Object, Need::OfType},
     {"cameras.*.orthographic.xmag", Type::Number, kRequired},
     {"cameras.*.orthographic.ymag", Type::Number, kRequired},
     {"cameras.*.orthographic.zfar", Type::Number, kRequired},
@@ -153,6 +154,7 @@ const Rule kRules[] = {
     {"extensions.KHR_lights_punctual.lights", Type::Array},
     {"extensions.KHR_lights_punctual.lights.*", Type::Object},
     {"extensions.KHR_lights_punctual.lights.*.type", Type::String, kRequired},
+    {"extensions.KHR_lights_punctual.lights.*.spot", Type::Object, Need::OfType},
 };
 
 bool isOf(const GltfJson& value, Type type) {
@@ -222,7 +224,8 @@ void apply(const std::string& file, const Rule& rule, const GltfJson& value, std
   const auto found = value.find(key);
   if (found != value.end())
     apply(file, rule, *found, below, path);
-  else if (below.empty() && rule.required)
+  else if (below.empty() &&
+           (rule.need == Need::Always || (rule.need == Need::OfType && value["type"] == key)))
     throw InputError(file, path, "is missing");
 }
 

@@ -249,13 +249,14 @@ private:
 class Numbers {
 public:
   Numbers(Model& model, const std::vector<double>& reach)
-      : model_(model), reach_(reach), numbers_(model.materials.size()), holders_(model.materials.size()) {
+      : model_(model), reach_(reach), numbers_(reach.size()), holders_(reach.size()) {
     for (std::size_t i = 0; i < numbers_.size(); ++i) numbers_[i] = {static_cast<std::uint8_t>(i + 1)};
   }
 
   std::uint8_t of(std::uint8_t material, const Box& box) {
     std::vector<std::uint8_t>& numbers = numbers_[material - 1u];
     const double reach = reach_.at(material - 1u) / (1000 * model_.metersPerUnit);
+    if (!(reach > 0)) return material;
     std::uint8_t best = material;
     double farthest = -1;
     for (const std::uint8_t number : numbers) {
@@ -267,10 +268,10 @@ public:
       }
       if (nearest > reach) break;  // the first that will do
     }
-    if (farthest <= reach && numbers.size() < kMostNumbers && model_.materials.size() < kMostMaterials) {
-      model_.materials.push_back(MaterialSource(model_.materials[material - 1u]));
+    if (farthest <= reach && numbers.size() < kMostNumbers && holders_.size() < kMostMaterials) {
+      model_.bodies.push_back(static_cast<std::uint8_t>(material - 1));
       holders_.emplace_back();
-      best = static_cast<std::uint8_t>(model_.materials.size());
+      best = static_cast<std::uint8_t>(holders_.size());
       numbers.push_back(best);
     }
     holders_[best - 1u].push_back(box);
@@ -331,16 +332,29 @@ BodySeparation separateBodies(Model& model, const std::vector<double>& reach) {
     boxes[bodyOf[i]].add(found.pieces()[i].box);
     numbers[bodyOf[i]] = found.pieces()[i].material;
   }
-  const std::size_t before = model.materials.size();
   Numbers chosen(model, reach);
   for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = chosen.of(numbers[i], boxes[i]);
-  result.added = model.materials.size() - before;
+  result.added = model.bodies.size();
   if (result.added == 0) return result;
   std::vector<std::uint8_t> numberOf(model.indices.size());
   for (std::size_t i = 0; i < bodyOf.size(); ++i)
     for (const std::uint32_t first : found.pieces()[i].triangles) numberOf[first] = numbers[bodyOf[i]];
   renumber(model, numberOf);
   return result;
+}
+
+void joinBodies(Model& model) {
+  const std::size_t media = model.materials.size();
+  for (Surface& surface : model.surfaces)
+    if (surface.material > media)
+      surface.material = static_cast<std::uint8_t>(model.bodies.at(surface.material - media - 1) + 1);
+  model.bodies.clear();
+}
+
+std::vector<MaterialSource> withBodies(std::vector<MaterialSource> materials,
+                                       const std::vector<std::uint8_t>& bodies) {
+  for (const std::uint8_t of : bodies) materials.push_back(MaterialSource(materials.at(of)));
+  return materials;
 }
 
 }  // namespace pellucid::harness

@@ -14,6 +14,7 @@ namespace pellucid::harness {
 
 namespace {
 
+// Bodies whose numbers follow the materials are no thin walls.
 bool holdsMedium(const Model& model, const Surface& surface) {
   if (surface.material == 0) return false;
   const std::size_t index = surface.material - 1u;

@@ -51,7 +51,7 @@ struct Surface {
   int texture = -1;                              // into Model::textures; -1: white
   double alphaCutoff = 0;                        // where alpha is less there is a hole; 0: nowhere
   bool doubleSided = false;                      // drawn from behind too, with the normal turned round
-  std::uint8_t material = 0;                     // index in the material image; 0: not translucent
+  std::uint8_t material = 0;                     // value in the material image; 0: not translucent
   int normalMap = -1;                            // into Model::textures; -1: none
   double normalScale = 1;                        // of the map's x and y
   int lobeMap = -1;                              // into Model::textures; -1: white
@@ -88,6 +88,8 @@ struct Model {
   std::vector<Surface> surfaces;
   std::vector<Texture> textures;
   std::vector<MaterialSource> materials;
+  // Of numbers of bodies (bodies.h), which follow those of materials: the index in `materials` of each.
+  std::vector<std::uint8_t> bodies;
   std::vector<ModelCamera> cameras;
   std::vector<Light> lights;  // without shadow maps
 };

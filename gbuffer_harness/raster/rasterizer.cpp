@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/error.h"
+#include "raster/bodies.h"
 #include "raster/simplify.h"
 #include "scene/vector.h"
 
@@ -149,7 +150,7 @@ std::shared_ptr<const DrawnFrame> Rasterizer::draw(const ModelCamera& camera, co
   outline.viewFromWorld = camera.viewFromWorld;
   outline.normalsInViewSpace = options.normalsInViewSpace;
   outline.frontDepth.encoding = outline.backDepth.encoding = options.depthEncoding;
-  outline.materials = model_.materials;
+  outline.materials = withBodies(model_.materials, model_.bodies);
   outline.lights = model_.lights;
 
   const DrawView view{outline.clipFromView, outline.viewFromWorld, options.reversedZ};

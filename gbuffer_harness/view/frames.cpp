@@ -130,11 +130,12 @@ void ViewFrames::update(const ViewState& state, const Changes& changes) {
                    : std::make_shared<const InputImages>(device_, seen.capture, state.settings);
   const double milliseconds =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  const std::vector<MaterialSource> sources = source_.materials(state);
   std::vector<PellucidMaterial> materials = materials_;
   if (compile) {
     materials.clear();
-    for (std::size_t i = 0; i < state.materials.size(); ++i)
-      materials.push_back(compileMaterial(state.materials[i], "materials[" + std::to_string(i) + "]"));
+    for (std::size_t i = 0; i < sources.size(); ++i)
+      materials.push_back(compileMaterial(sources[i], "materials[" + std::to_string(i) + "]"));
   }
   std::map<Shown, Frame> made;
   const auto need = [&](Shown shown) {
@@ -166,7 +167,7 @@ void ViewFrames::update(const ViewState& state, const Changes& changes) {
     coveredPart_ = coveredPartOf(scene_);
     sceneMilliseconds_ = milliseconds;
   }
-  scene_.capture.materials = state.materials;
+  scene_.capture.materials = sources;
   inputs_ = inputs;
   format_ = state.settings.outputFormat;
   uploadHostImage(state.display.shown);

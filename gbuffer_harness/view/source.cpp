@@ -12,6 +12,7 @@
 #include "capture/manifest_parts.h"
 #include "capture/material.h"
 #include "metrics/masked_image.h"
+#include "raster/bodies.h"
 #include "raster/rasterizer.h"
 #include "reference/camera.h"
 #include "scene/model.h"
@@ -52,6 +53,9 @@ public:
     return std::any_of(model_.surfaces.begin(), model_.surfaces.end(),
                        [](const Surface& surface) { return surface.hasReflectance; });
   }
+  std::vector<MaterialSource> materials(const ViewState& state) const override {
+    return withBodies(state.materials, model_.bodies);
+  }
   Vector3 center() const override { return bounds_.center; }
   double radius() const override { return bounds_.radius; }
 
@@ -69,10 +73,11 @@ public:
 private:
   // Colors of surfaces that have none of their own.
   void takeReflectances() {
+    const std::vector<MaterialSource> materials = withBodies(model_.materials, model_.bodies);
     for (Surface& surface : model_.surfaces) {
       if (!surface.hasReflectance) continue;
       const std::size_t i = surface.material - 1u;
-      const MaterialSource& source = model_.materials.at(i);
+      const MaterialSource& source = materials.at(i);
       const std::string key = materialJson(source).dump();
       const auto [entry, isNew] = reflectances_.try_emplace(key);
       if (isNew) {

@@ -29,6 +29,9 @@ public:
   // Throws what the maker of captures throws.
   virtual Scene render(const ViewState& state) = 0;
 
+  // What the values of the scene's material image stand for: bodies may have several values of one material.
+  virtual std::vector<MaterialSource> materials(const ViewState& state) const { return state.materials; }
+
   // True where the scene's colors are those of its materials, which have to be drawn anew with them.
   virtual bool drawsMaterials() const { return false; }
 

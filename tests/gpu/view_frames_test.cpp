@@ -7,6 +7,7 @@
 #include "common/png.h"
 #include "gpu_fixture.h"
 #include "model_builder.h"
+#include "raster/bodies.h"
 #include "raster/framing.h"
 #include "view/display.h"
 #include "view/frames.h"
@@ -34,6 +35,9 @@ public:
     ++renders;
     return source_->render(state);
   }
+  std::vector<MaterialSource> materials(const ViewState& state) const override {
+    return source_->materials(state);
+  }
   Vector3 center() const override { return source_->center(); }
   double radius() const override { return source_->radius(); }
   int renders = 0;
@@ -46,8 +50,13 @@ class ViewFramesTest : public GpuTest {
 protected:
   void SetUp() override {
     GpuTest::SetUp();
+    open(litSphere());
+  }
+
+  void open(Model model) {
+    frames_.reset();
     source_ = std::make_unique<CountingSource>(
-        modelSource(device(), litSphere(), frontCamera(false), smallRaster(kSize)));
+        modelSource(device(), std::move(model), frontCamera(false), smallRaster(kSize)));
     state_ = source_->start();
     static Contexts contexts(device());  // a second of pipelines, once
     frames_ = std::make_unique<ViewFrames>(device(), contexts, *source_);
@@ -67,6 +76,29 @@ protected:
   ViewState state_;
   std::unique_ptr<ViewFrames> frames_;
 };
+
+// The left ball is lit and the right one is not; the panel has their one material.
+TEST_F(ViewFramesTest, BodiesOfOneMaterialKeepTheirLight) {
+  Model model = emptyModel();
+  addSphere(model, {-6.5, 0, 0}, 6, 24);
+  addSphere(model, {4.5, 0, 0}, 4, 24);
+  endPart(model, 0);
+  model.lights = {directional({1, 0, 0}, 3)};
+  ASSERT_EQ(separateBodies(model, {20}).added, 1u);
+  open(std::move(model));
+  ASSERT_EQ(state_.materials.size(), 1u);
+  for (const char* preset : {"skin1", "marble"}) {
+    state_.materials[0] = PresetMaterial{preset};
+    frames_->update(state_, {.materials = true});
+    expectReplays(preset);
+    EXPECT_EQ(frames_->capture().materials.size(), 2u);
+    const Image& result = frames_->image(Shown::After);
+    for (int i = 0; i < kSize * kSize; ++i)
+      if (frames_->capture().material[static_cast<std::size_t>(i)] == 2) {
+        ASSERT_EQ(result.data[static_cast<std::size_t>(3 * i)], 0) << preset << " " << i;
+      }
+  }
+}
 
 TEST_F(ViewFramesTest, AreReplaysOfTheirCaptures) {
   expectReplays("as opened");

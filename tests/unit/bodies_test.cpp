@@ -49,11 +49,16 @@ TEST(Bodies, NearOnesHaveNumbersOfTheirOwn) {
       const BodySeparation separated = separateBodies(model, {kReach});
       EXPECT_EQ(separated.bodies, 2u);
       EXPECT_EQ(separated.added, 1u) << gap;
-      ASSERT_EQ(model.materials.size(), 2u);
+      EXPECT_EQ(model.materials.size(), 1u);
+      ASSERT_EQ(model.bodies, std::vector<std::uint8_t>{0});
+      EXPECT_EQ(withBodies(model.materials, model.bodies).size(), 2u);
       const Sides sides = sidesOf(model);
       EXPECT_EQ(sides.left, std::set<int>{1});
       EXPECT_EQ(sides.right, std::set<int>{2});
       EXPECT_EQ(std::multiset<std::uint32_t>(model.indices.begin(), model.indices.end()), before);
+      joinBodies(model);
+      EXPECT_EQ(sidesOf(model).right, std::set<int>{1});
+      EXPECT_TRUE(model.bodies.empty());
     }
 }
 
@@ -64,7 +69,7 @@ TEST(Bodies, FarOnesShareANumber) {
   for (int i = 0; i < 5; ++i) addSphere(row, {25.0 * i, 0, 0}, 6, 8);
   endPart(row, 0);
   EXPECT_EQ(separateBodies(row, {kReach}).bodies, 5u);
-  EXPECT_EQ(row.materials.size(), 2u);
+  EXPECT_EQ(row.bodies.size(), 1u);
 }
 
 TEST(Bodies, MetersPerUnitScalesTheReach) {
@@ -96,6 +101,11 @@ TEST(Bodies, AHollowIsPartOfItsBody) {
   EXPECT_EQ(separateBodies(shell, {kReach}).bodies, 1u);
 }
 
+TEST(Bodies, ThinWallsNeedNoNumbers) {
+  Model model = twoBalls(3, false);
+  EXPECT_EQ(separateBodies(model, {0}).added, 0u) << "no light goes aside in them";
+}
+
 TEST(Bodies, OtherMediaAndOpaqueSurfacesKeepTheirNumbers) {
   Model model = twoBalls(3, false);
   model.surfaces.resize(2, model.surfaces[0]);
@@ -112,7 +122,7 @@ TEST(Bodies, CrowdsHaveSixteenNumbersAtMost) {
   for (int i = 0; i < 40; ++i) addSquare(crowd, 0, 0, 0.1 * i, 5);
   endPart(crowd, 0);
   EXPECT_EQ(separateBodies(crowd, {kReach}).bodies, 40u);
-  EXPECT_EQ(crowd.materials.size(), 16u);
+  EXPECT_EQ(crowd.bodies.size(), 15u);
   // Numbers come again as far away as they can: no sheet has that of the next.
   std::map<float, int> numbers;
   for (const Part& part : crowd.parts)

@@ -231,10 +231,12 @@ TEST_F(Manifests, ValuesWithinARoundingOfABoundAreTheBound) {
   manifest["lights"][0]["innerConeAngle"] = 0.1;
   manifest["lights"][0]["color"] = {1, -1e-8, 1};
   manifest["lights"][0]["intensity"] = -1e-7;
+  manifest["lights"][0]["range"] = 3.4e38;  // as exporters write "unlimited"
   manifest["materials"][0] = {{"subsurface_color", {1.0000001, 0.5, -1e-9}}, {"specular_ior", 0.9999999}};
   const Capture capture = read();
   EXPECT_EQ(capture.lights[0].color[1], 0);
   EXPECT_EQ(capture.lights[0].intensity, 0);
+  EXPECT_EQ(capture.lights[0].range, 1e15);
   const auto& medium = std::get<OpenPbrMaterial>(capture.materials[0]);
   EXPECT_EQ(medium.color, (std::array<double, 3>{1, 0.5, 0}));
   EXPECT_EQ(medium.ior, 1);

@@ -588,6 +588,16 @@ TEST_F(Gltf, BrokenFilesAreRefusedWithASentence) {
       {"NaN position",
        [=](GltfBuilder& b) { std::memcpy(b.buffer.data() + 16, &nan, 4); },
        {"accessors[0]", "element 1", "finite"}},
+      {"spot light without cones",
+       [](GltfBuilder& b) {
+         b.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}}, {{"type", "spot"}}};
+       },
+       {"extensions.KHR_lights_punctual.lights[1].spot: is missing"}},
+      {"camera without projection",
+       [](GltfBuilder& b) {
+         b.json["cameras"] = {{{"type", "orthographic"}}};
+       },
+       {"cameras[0].orthographic: is missing"}},
       {"cycle",
        [](GltfBuilder& b) {
          b.json["nodes"] = {{{"children", {1}}}, {{"children", {0}}}};
