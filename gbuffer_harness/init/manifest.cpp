@@ -134,7 +134,13 @@ void Builder::addDepths() {
   const char* const encoding = depth_.isDevice ? "device" : "viewZ";
   for (const Role role : {Role::FrontDepth, Role::BackDepth}) {
     if (!guesses_.count(role)) continue;
-    if (role == Role::BackDepth) read(role);
+    // RenderMan's zback is the far end of a sample: of a surface that is the surface again.
+    if (role == Role::BackDepth && read(role).data == front_.data) {
+      result_.found.push_back("backDepth: " + guesses_.at(role).group.name +
+                              " is the front depth again: not taken");
+      guesses_.erase(role);
+      continue;
+    }
     Json json = sourceOf(role);
     json["encoding"] = encoding;
     result_.json["buffers"][roleName(role)] = json;

@@ -322,6 +322,21 @@ TEST_F(Init, APassThatIsBlackOnTheMaterialIsNamed) {
   EXPECT_FALSE(lit.json.contains("// irradiance"));
 }
 
+// RenderMan's zback of surfaces: thickness 0 everywhere would be taken for a thin body.
+TEST_F(Init, ABackDepthThatIsTheFrontAgainIsNotTaken) {
+  const Image id = materialImage(1);
+  std::vector<Channel> channels = {
+      {"z", &frame_.frontDepth.image, 0}, {"zback", &frame_.frontDepth.image, 0}, {"id", &id, 0}};
+  for (const Channel& c : triple("irradiance.", "RGB", frame_.irradiance)) channels.push_back(c);
+  write("again.exr", channels);
+  InitWords words;
+  words.camera.verticalFov = fov_;
+  words.lights = {{{"type", "directional"}, {"direction", {0, 0, 1}}}};
+  const GuessedManifest guessed = guess({"again.exr"}, words);
+  EXPECT_FALSE(guessed.json["buffers"].contains("backDepth"));
+  EXPECT_NE(guessed.missing[0].find("backDepth: without"), std::string::npos) << guessed.missing[0];
+}
+
 // Colors as red, green and blue, RenderMan's normals, Blender 5's numbers; a picture of hashes is no number.
 TEST_F(Init, OtherNamesOfComponentsAndPassesAreKnown) {
   const Image id = materialImage(3), hash = materialImage(7);
