@@ -183,6 +183,24 @@ SceneModel buildTwoMaterials(const SceneParameters& parameters, const OptionValu
   return model;
 }
 
+SceneModel buildBodies(const SceneParameters& parameters, const OptionValues& options) {
+  SceneModel model = backLit(parameters, options);
+  const double unit = options["extent"] / 40, gap = options["gap"], numbers = options["numbers"];
+  const auto ball = [&](double x, double y, double radius) {
+    addObject(model, std::make_unique<Ellipsoid>(unit * glm::dvec3(x, y, 0), glm::dvec3(unit * radius)));
+  };
+  ball(-7.5, 8, 7.5);
+  ball(gap / unit + 5, 8, 5);
+  ball(0, -9, 8);
+  model.materials = {PresetMaterial{"skin1"}, PresetMaterial{"skin1"}};
+  model.objects[1].material = numbers == 1 ? 1 : 2;
+  if (numbers == 2)
+    model.objects[2].materialAt = [](const glm::dvec3& p) {
+      return static_cast<std::uint8_t>(p.x < 0 ? 1 : 2);
+    };
+  return model;
+}
+
 SceneModel buildNearFar(const SceneParameters& parameters, const OptionValues& options) {
   SceneModel model = backLit(parameters, options);
   const double extent = options["extent"];
@@ -250,6 +268,13 @@ std::vector<SceneDefinition> solidScenes() {
         "One body of two materials, border at x = 0, lit from both sides",
         {kLightAngle, kExtent}},
        buildTwoMaterials},
+      {{"bodies",
+        "Ball in the shadow of another of its medium, and a ball of two parts, lit from the left",
+        {{"gap", 3, 1e-3, 1e3, "between the balls, mm"},
+         {"numbers", 0, 0, 2, "of the medium: 0: one a body, 1: one, 2: one a part"},
+         withDefault(kLightAngle, -90),
+         kExtent}},
+       buildBodies},
       {{"near_far",
         "Thin sheet that leaves the frustum through the near and the far plane",
         {thin, {"tilt", 70, 65, 85, "rotation about the horizontal axis, degrees"}, kLightAngle, kExtent}},

@@ -521,6 +521,20 @@ TEST(Scene, GapIsTheStatedDepth) {
   EXPECT_EQ(*capture.irradiance.at(20, 5), 0);
 }
 
+TEST(Scene, BodiesHaveNumbersByBodyByMediumOrByPart) {
+  for (const int numbers : {0, 1, 2}) {
+    SceneParameters p = sized("bodies", 40);
+    p.options = {{"numbers", numbers}};
+    const Capture c = makeScene(p);
+    const auto at = [&](int x, int y) { return int(c.material[static_cast<std::size_t>(40 * y + x)]); };
+    // 1 mm a pixel.
+    EXPECT_EQ(at(12, 12), 1) << numbers;
+    EXPECT_EQ(at(28, 12), numbers == 1 ? 1 : 2) << numbers;
+    EXPECT_EQ(at(17, 29), 1) << numbers;
+    EXPECT_EQ(at(23, 29), numbers == 2 ? 2 : 1) << numbers;
+  }
+}
+
 // ---- All scenes
 
 TEST(Scene, EverySceneIsAConsistentCapture) {
