@@ -146,7 +146,7 @@ typedef struct PellucidFrame {
   /* E from all around that arrives where backDepth lies, which nothing else tells: of light probes, say, in the units of `irradiance`.
    * T of it comes through, in place of options.ambient's. docs/integration.md, "Ambient light". */
   PellucidImage hiddenIrradiance;
-  /* Required. E that arrives outside of the surface: not divided by pi, without 1 - F, not multiplied by albedo. */
+  /* Required. E that arrives outside of the surface, times preExposure, which has 1 / pi or 1 - F if the image has them. Without albedo. */
   PellucidImage irradiance;
   /* Outward unit vectors, as PellucidContextOptions::normalEncoding says. */
   PellucidImage normal;
@@ -161,7 +161,7 @@ typedef struct PellucidFrame {
 
   const PellucidMaterial* materials;
   uint32_t materialCount; /* 1..255 */
-  /* Any number; 0: no translucency. */
+  /* Any number. */
   uint32_t lightCount;
   const PellucidLight* lights;
   const PellucidShadowMap* shadowMaps;

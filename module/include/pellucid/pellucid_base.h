@@ -43,8 +43,8 @@ typedef enum PellucidSeverity { PELLUCID_SEVERITY_WARNING = 0, PELLUCID_SEVERITY
  * during the call only. Called on the thread that made the API call. */
 typedef void (*PellucidMessageFn)(void* user, PellucidSeverity severity, const char* field, const char* message);
 
-/* An image of the caller: 2D, one layer, one mip. It is in `layout` while the recorded commands run, which never change that
- * layout: GENERAL, or a READ_ONLY one of images that are only read. */
+/* An image of the caller: 2D, one mip, one layer, or all layers of shadow images by PellucidContextOptions::shadowViewType. It is in
+ * `layout` while the recorded commands run, which never change that layout: GENERAL, or a READ_ONLY one of images that are only read. */
 typedef struct PellucidImage {
   /* A null handle (default): not given. */
   VkImageView view;

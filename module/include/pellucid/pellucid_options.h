@@ -1,5 +1,5 @@
-/* Options of the context, the frame and a shadow map. pellucid.h includes this header; zero-initialized options, or those of
- * pellucidInitContextDesc and pellucidInitFrame, are the defaults, and a reader of pellucid.h may stop there.
+/* Options of the context, the frame and a shadow map. pellucid.h includes this header, and its reader may stop there:
+ * pellucidInitContextDesc and pellucidInitFrame write the defaults. Options of a shadow map are 0 by default.
  */
 #ifndef PELLUCID_OPTIONS_H
 #define PELLUCID_OPTIONS_H
@@ -53,7 +53,7 @@ typedef enum PellucidNormalEncoding {
 typedef struct PellucidContextOptions {
   /* PellucidUse bits; 0 (default): all. */
   uint32_t uses;
-  /* Of all frames: R16G16B16A16_SFLOAT (default) or R32G32B32A32_SFLOAT. UNDEFINED: any, on a device with
+  /* That of PellucidFrameOptions of all frames: R16G16B16A16_SFLOAT (default) or R32G32B32A32_SFLOAT. UNDEFINED: any, on a device with
    * shaderStorageImageWriteWithoutFormat enabled. */
   VkFormat outputFormat;
   /* PellucidNormalEncoding of all frames; default SNORM. A library built with PELLUCID_GBUFFER_DECODE decodes by itself. */
@@ -181,8 +181,8 @@ typedef struct PellucidFrameOptions {
 
   /* ---- other light ---- */
 
-  /* Light from all around that comes through thin parts, or NULL (default): 9 x RGB coefficients of radiance, -1e15..1e15, of the
-   * real orthonormal spherical harmonics of the world direction that light comes from, in the order 1, y, z, x, xy, yz, 3 z^2 - 1,
+  /* Light from all around that comes through thin parts, or NULL (default): 9 x RGB coefficients of radiance without
+   * preExposure, -1e15..1e15, of the real orthonormal spherical harmonics of the world direction that light comes from, in the order 1, y, z, x, xy, yz, 3 z^2 - 1,
    * xz, x^2 - y^2. The irradiance image has the light of visible faces. Needs backDepth. Nothing shadows hidden faces, unless
    * frame.hiddenIrradiance has their light. */
   const float* ambient;
@@ -218,7 +218,8 @@ typedef struct PellucidFrameOptions {
 
 /* ---- Shadow map ------------------------------------------------------------------------------------ */
 
-/* docs/integration.md, "Shadow maps as engines draw them", says which option an engine's habit asks for. All default to 0. */
+/* docs/integration.md, "Shadow maps as engines draw them", says which option an engine's habit asks for. All but a matrix that is
+ * read default to 0. */
 typedef struct PellucidShadowMapOptions {
   /* Texels, 0..65535: the map's first texel in the image, an atlas. offset + extent <= 65536. Nothing beyond is read. */
   uint32_t offset[2];
@@ -227,7 +228,8 @@ typedef struct PellucidShadowMapOptions {
   /* 1: the map holds the faces by which light leaves, drawn with front faces culled. Its light has the camera's thickness, is not gathered,
    * and needs frame.backDepth; receivers beyond the stored face are in shadow. All maps of a light hold the same faces. */
   uint32_t backFaces;
-  /* Right-handed, -z forward. Not read for DEVICE, nor for DISTANCE of point and spot lights. */
+  /* The light's rigid view matrix: right-handed, -z forward. Required for VIEW_Z, and for DISTANCE of directional lights. Not read
+   * for DEVICE, nor for DISTANCE of point and spot lights. */
   float viewFromWorld[16];
 
   /* How far stored depths lie from the surface; subtracted before a depth is used. Biases have the sign with which they were added, so
