@@ -17,7 +17,7 @@ vec3 decodeNormal(vec4 texel) {
   return texel.xyz;
 }
 
-// The word that frame.materialShift and materialMask take the index from; `texel`: of the material image.
+// The word that options.materialShift and materialMask take the index from; `texel`: of the material image.
 uint decodeMaterial(uvec4 texel) { return texel.x; }
 
 // Depth in the encoding of the frame, from the first channel of the front or back depth.

@@ -189,8 +189,9 @@ float staysInside(GatherRings rings, EntryPoint entry, vec3 to, vec3 toLight) {
   return clamp(2.0 - beyond / rings.tolerance, 0.0, 1.0);
 }
 
-// The part of that light that misses what stands before x on its own ray, as a plate in the body. The straight path must miss it
-// halfway from x to the depth along the axis at which x's own ray has left the medium; paths from beyond do not cross it.
+// The part of an entry point's light that misses the occluder on x's own light ray, an opaque plate in the body, say. The straight
+// path from the entry point to x must miss the occluder halfway from x to the depth, along the axis, at which x's own ray has left
+// the medium. A path that begins before that depth does not cross the occluder.
 float missesOccluder(GatherRings rings, LightConstants light, Surface x, uint map, vec3 to) {
   float mm = frame.camera.range.w, behind = rings.behindExit * rings.axisCosine, along = max(-dot(to, rings.axis), 1.0e-12);
   float crosses = rings.shadowed * clamp((along - behind) / rings.tolerance, 0.0, 1.0);

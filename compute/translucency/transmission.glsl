@@ -175,13 +175,16 @@ LightTexels lightTexels(LightConstants light, Incident incident, uint material, 
   return LightTexels(vec4(0.0), vec4(0.0), 0.0, 0.0);
 }
 
+// The i-th of the four pixels beside a pixel: right, left, below, above.
+ivec2 pixelBeside(ivec2 pixel, int i) {
+  int side = 1 - 2 * (i & 1);
+  return pixel + (i < 2 ? ivec2(side, 0) : ivec2(0, side));
+}
+
 // Unit normal of the front or back depths, towards the eye; 0: not known.
 vec3 facetAt(ivec2 pixel, uint material, bool back) {
   vec4 beside;
-  [[dont_unroll]] for (int i = 0; i < 4; ++i) {
-    int side = 1 - 2 * (i & 1);
-    beside[i] = distanceOf(pixel + (i < 2 ? ivec2(side, 0) : ivec2(0, side)), material, back);
-  }
+  [[dont_unroll]] for (int i = 0; i < 4; ++i) beside[i] = distanceOf(pixelBeside(pixel, i), material, back);
   return normalOfDepths(frame.camera, pixel, distanceOf(pixel, material, back), beside);
 }
 
@@ -303,7 +306,7 @@ vec3 ambientIrradiance(vec3 normal) {
   return max(vec3(dot(n, frame.ambient[0] * n), dot(n, frame.ambient[1] * n), dot(n, frame.ambient[2] * n)), vec3(0.0));
 }
 
-// Of the face that the pixel hides, whose normal is `back`.
+// Irradiance of the face that the pixel hides; `back`: its normal.
 vec3 hiddenIrradiance(ivec2 pixel, vec3 back) {
   return hasFlag(PELLUCID_FLAG_HIDDEN_IRRADIANCE) ? hiddenIrradianceOf(pixel) : ambientIrradiance(back);
 }
@@ -324,8 +327,7 @@ bool passesAmbient(Surface s) {
 float chordBeside(Surface s, ivec2 pixel) {
   float least = kEverywhere;
   [[dont_unroll]] for (int i = 0; i < 4; ++i) {
-    int side = 1 - 2 * (i & 1);
-    ivec2 beside = pixel + (i < 2 ? ivec2(side, 0) : ivec2(0, side));
+    ivec2 beside = pixelBeside(pixel, i);
     float front = distanceOf(beside, s.material, false), back = distanceOf(beside, s.material, true);
     if (front > 0.0 && back > front) least = min(least, back - front);
   }
@@ -337,7 +339,7 @@ float chordBeside(Surface s, ivec2 pixel) {
 Transmitted ambientTransmission(Surface s, ivec2 pixel, vec3 facet) {
   vec3 front = frontNormal(s), back = facet == vec3(0.0) ? -front : -facet;
   float thickness = 0.5 * chordBeside(s, pixel) * (abs(dot(front, s.view)) + abs(dot(back, s.view)));
-  // A rim has all of the medium behind it. Of faces seen at less than some 20 degrees depths do not tell how they are turned.
+  // A rim has all of the medium behind it. Depths do not tell the normal of a face that is seen at less than some 20 degrees.
   const float kPerCosine = 3.0;
   float seen = min(kPerCosine * min(abs(dot(front, s.view)), abs(dot(back, s.view))), 1.0);
   float opposite = seen * (0.5 - 0.5 * dot(front, back));

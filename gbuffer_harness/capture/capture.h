@@ -109,7 +109,7 @@ struct Truth {
   std::string scene;  // empty: made elsewhere
 };
 
-// RGB of the coefficients of PellucidFrame::ambient.
+// RGB of the coefficients of PellucidFrameOptions::ambient.
 using Harmonics = std::array<std::array<double, 3>, 9>;
 
 struct Capture {

@@ -86,8 +86,8 @@ inline constexpr const char* kEnvironmentSyntax = "uniform:R,G,B or gradient:R,G
 // Throws UsageError.
 std::optional<Environment> environment(const CaptureOptions& options);
 
-// Reads the file and gives its bodies numbers. `turns` (radians): of the turntable's cameras, all of which the auto camera fits. Throws
-// UsageError and InputError. lightsOfNone: kLightSyntax, of a file without lights.
+// Reads the file and gives its bodies numbers. `turns` (radians): of the turntable's cameras, all of which the
+// auto camera fits. lightsOfNone: kLightSyntax, of a file without lights. Throws UsageError and InputError.
 CaptureModel captureModel(const CaptureOptions& options, const std::vector<double>& turns = {0},
                           const std::vector<std::string>& lightsOfNone = {kBackLight});
 

@@ -10,7 +10,7 @@
 
 namespace pellucid::harness {
 
-// PellucidFrame::gatherSamples, as pellucidInitFrame has it.
+// PellucidFrameOptions::gatherSamples, as pellucidInitFrame has it.
 inline constexpr std::uint32_t kDefaultGatherSamples = 8;
 
 struct TranslucencySettings {

@@ -88,7 +88,7 @@ struct Model {
   std::vector<Surface> surfaces;
   std::vector<Texture> textures;
   std::vector<MaterialSource> materials;
-  // Of numbers of bodies (bodies.h), which follow those of materials: the index in `materials` of each.
+  // For each number of a body (bodies.h) the index in `materials`. These numbers follow those of materials.
   std::vector<std::uint8_t> bodies;
   std::vector<ModelCamera> cameras;
   std::vector<Light> lights;  // without shadow maps

@@ -309,8 +309,8 @@ double Gather::inside(const Texel& texel, const Exit& exit, const Place& place) 
   return std::clamp(2 - beyond / place.tolerance, 0.0, 1.0) * missesOccluder(to, exit, place);
 }
 
-// The straight path must miss it halfway from the exit to where its own light ray has left the medium; paths
-// from beyond that depth do not cross it.
+// The straight path must miss the occluder halfway from the exit to the depth at which the exit's own light
+// ray has left the medium. A path that begins before that depth does not cross the occluder.
 double Gather::missesOccluder(const glm::dvec3& to, const Exit& exit, const Place& place) const {
   const double along = -glm::dot(to, place.axis);
   const double crosses = place.shadowed * std::clamp((along - place.behind) / place.tolerance, 0.0, 1.0);

@@ -78,7 +78,7 @@ private:
   Place placeOf(std::size_t light, const Exit& exit) const;
   // Part of what enters at a texel that reaches the exit through the medium.
   double inside(const Texel& texel, const Exit& exit, const Place& place) const;
-  // Part of that light that misses what stands before the exit on its own light ray.
+  // Part of a texel's light that misses the occluder on the exit's own light ray.
   double missesOccluder(const glm::dvec3& to, const Exit& exit, const Place& place) const;
   // Around a surface with a normal, 1/mm, positive where convex: from what lies `reach` mm to both sides in
   // the image. 0 where it does not go on.

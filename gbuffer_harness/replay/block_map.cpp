@@ -29,7 +29,7 @@ std::string whyNoLists(const PellucidPlan& plan) {
   for (const auto& [what, before] : {std::pair{"lists", ""}, {"diffusion", "nothing diffuses: "}})
     for (std::uint32_t i = 0; i < plan.skipCount; ++i)
       if (std::strcmp(plan.skips[i].what, what) == 0) return std::string(before) + plan.skips[i].reason;
-  return "frame.indirectDispatches asks for none";
+  return "frame.options.indirectDispatches asks for none";
 }
 
 const BlockClassText& textOf(BlockClass block) {

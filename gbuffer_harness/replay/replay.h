@@ -20,7 +20,7 @@ namespace pellucid::harness {
 // The module's defaults for a context on the device.
 PellucidContextDesc contextDesc(const Device& device);
 
-// When drivers compile a context's pipelines: those of a plan when a frame is planned, or those of desc.uses
+// When drivers compile a context's pipelines: those of a plan when a frame is planned, or those of desc.options.uses
 // when the context is made, as engines have it.
 enum class Compile { WhenPlanned, AtCreation };
 

@@ -19,7 +19,7 @@ struct Environment {
     return result;
   }
 
-  // In the order of PellucidFrame::ambient; of a linear function the first two of nine say all.
+  // In the order of PellucidFrameOptions::ambient; of a linear function the first two of nine say all.
   std::array<std::array<double, 3>, 9> harmonics() const {
     std::array<std::array<double, 3>, 9> result{};
     for (std::size_t c = 0; c < 3; ++c) {

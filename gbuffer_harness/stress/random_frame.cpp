@@ -56,7 +56,7 @@ void randomTranslucency(Random& random, bool wild, const StressFrame& frame, Tra
   if (random.chance(0.1)) t.materialMarkBit = mark << random.whole(0, 3);
 }
 
-// The nearest planar distance of pixels with a material, as frame.nearestDistance asks for.
+// The nearest planar distance of pixels with a material, as options.nearestDistance asks for.
 float nearestDistance(const StressFrame& frame, const View& view) {
   const Capture& c = frame.capture;
   double nearest = INFINITY;

@@ -11,7 +11,7 @@ namespace pellucid::harness {
 // A row of the answers' file: participant,scene,red,green,blue,seconds.
 struct PerceptionAnswer {
   std::string participant, scene;
-  std::array<double, 3> color;  // of frame.thesis->transmittanceFilter, 0..1
+  std::array<double, 3> color;  // of options.thesis->transmittanceFilter, 0..1
   double seconds = 0;           // from the scene's first frame on
 };
 

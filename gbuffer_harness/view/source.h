@@ -29,7 +29,7 @@ public:
   // Throws what the maker of captures throws.
   virtual Scene render(const ViewState& state) = 0;
 
-  // What the values of the scene's material image stand for: bodies may have several values of one material.
+  // The material of each value of the scene's material image. Bodies of one material may have several values.
   virtual std::vector<MaterialSource> materials(const ViewState& state) const { return state.materials; }
 
   // True where the scene's colors are those of its materials, which have to be drawn anew with them.

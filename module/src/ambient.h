@@ -8,7 +8,7 @@
 
 namespace pellucid {
 
-constexpr uint32_t kAmbientCoefficients = 27;  // of PellucidFrame::ambient
+constexpr uint32_t kAmbientCoefficients = 27;  // of PellucidFrameOptions::ambient
 
 // Ambient light takes a place among the lights of dispatches: one of this type, which no caller can name. Its
 // intensity is 0 where the frame has none.

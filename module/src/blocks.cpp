@@ -36,7 +36,7 @@ uint32_t Blocks::listGroups() const {
 }
 
 const char* whyNoLists(const Inputs& inputs, const Lights& lights, const Blocks& blocks) {
-  if (inputs.frame.options.indirectDispatches == 0) return "frame.indirectDispatches asks for none";
+  if (inputs.frame.options.indirectDispatches == 0) return "frame.options.indirectDispatches asks for none";
   if (lights.gathered > 1) return "lights need several dispatches";
   if (blocks.listGroups() > kMostGroups) return "the image has more blocks than lists can hold";
   return nullptr;

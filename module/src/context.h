@@ -14,7 +14,7 @@ struct PellucidContext {
   bool hasAllocator = false;
   pellucid::VkTable vk;
   PellucidContextDesc desc{};  // its `allocator` may be gone
-  // By pass. A pipeline is NULL that is not among desc.uses, or not made yet.
+  // By pass. A pipeline is NULL that is not among desc.options.uses, or not made yet.
   std::array<VkDescriptorSetLayout, pellucid::kMostPasses> setLayouts{};
   std::array<VkPipelineLayout, pellucid::kMostPasses> pipelineLayouts{};
   std::array<VkPipeline, pellucid::kMostPasses> pipelines{};

@@ -5,7 +5,7 @@
 
 namespace pellucid {
 
-// Reach of all materials that diffuse, at frame.nearestDistance; all 0 where that does not say how large a
+// Reach of all materials that diffuse, at options.nearestDistance; all 0 where that does not say how large a
 // pixel is.
 struct DiffusionReach {
   double pixelsPerMm = 0;

@@ -84,7 +84,7 @@ constexpr Pass kAddHistoryPass{.pipeline = "add_history",
                                .reads = kColorReads | bindings(PELLUCID_BINDING_HISTORY),
                                .writes = kColorWrites};
 
-// The light that an earlier dispatch or frame left in frame.history.
+// The light that an earlier dispatch or frame left in options.history.
 void addHistory(Planner& p, uint32_t source, uint32_t destination) {
   p.add(kAddHistoryPass, "add history").tiles(PELLUCID_GROUP_X).colors(source, destination);
 }

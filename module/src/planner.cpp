@@ -141,6 +141,8 @@ void Planner::addShadowImages(PellucidDispatch& d, std::span<const uint32_t> ima
     fits_ = false;
     return;
   }
+  // The last first image is 255: an empty list may begin behind it, and is not read.
+  static_assert(PELLUCID_PLAN_SHADOW_IMAGES <= 256);
   d.firstShadowImage = static_cast<uint8_t>(shadowImages_);
   d.shadowImageCount = static_cast<uint8_t>(images.size());
   std::copy(images.begin(), images.end(), plan_.shadowImages + shadowImages_);

@@ -9,7 +9,7 @@ struct FrameFacts;
 
 constexpr uint32_t kCoherentLights = 16;
 
-// Content of frame.history after a plan has run.
+// Content of options.history after a plan has run.
 struct History {
   uint32_t valid;  // 0: nothing
   uint32_t age;    // frames since it was written

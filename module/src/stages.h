@@ -15,7 +15,7 @@ struct Stages {
   uint32_t fused = 0;         // fused dispatches
   uint32_t walls = 0;         // beside a gather: dispatches of thin walls' light, before what is diffused
   uint32_t gathered = 0;      // groups of lights that are gathered from
-  bool keepsHistory = false;  // the frame keeps its transmitted light in frame.history:
+  bool keepsHistory = false;  // the frame keeps its transmitted light in options.history:
   bool keepsProbes = false;   // the gather's filtered probes, which the diffusion reads, or
   bool history = false;       // that of pixels: the fused dispatches write it, and one more adds it
   bool copies = false;  // the diffusion alone reads the irradiance and writes the output, which may be one

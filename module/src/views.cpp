@@ -42,7 +42,7 @@ void checkContext(const PellucidContext& c, const PellucidPlan& plan, Findings& 
         "is above 0, but PellucidContextOptions::lightTables is 0: the pipelines do not look for any");
   constexpr std::pair<uint32_t, const char*> kOptions[] = {
       {PELLUCID_USE_THIN_WALLS, "PELLUCID_USE_THIN_WALLS: a material is thin-walled"},
-      {PELLUCID_USE_AMBIENT, "PELLUCID_USE_AMBIENT: frame.ambient holds light"},
+      {PELLUCID_USE_AMBIENT, "PELLUCID_USE_AMBIENT: hiddenIrradiance or options.ambient holds light"},
       {PELLUCID_USE_THESIS, "PELLUCID_USE_THESIS: an angle or transmittance model is one of Whelan 2009"}};
   for (const auto& [use, why] : kOptions)
     if (c.desc.options.uses != 0 && (state.options & use & ~c.desc.options.uses) != 0)

@@ -25,13 +25,14 @@ std::string imagesTable() {
   const Row rows[] = {
       {PELLUCID_RESOURCE_FRONT_DEPTH, "device depth or view z of the visible surface", ""},
       {PELLUCID_RESOURCE_BACK_DEPTH, "the same of the nearest back face behind it",
-       "no light comes through of lights without a shadow map, of maps of back faces and of `ambient`; with "
+       "no light comes through of lights without a shadow map, of maps of back faces, of `options.ambient` "
+       "and of `hiddenIrradiance`; with "
        "a gather thin parts return as much light as thick ones"},
       {PELLUCID_RESOURCE_IRRADIANCE,
        "linear irradiance E times `frame.preExposure`, which is 1 / pi for E / pi", ""},
       {PELLUCID_RESOURCE_HIDDEN_IRRADIANCE,
        "irradiance from all around of the hidden face, where `backDepth` lies",
-       "no light of a sky comes through, or that of `options.ambient`"},
+       "the light of `options.ambient` comes through in its place, which nothing shadows"},
       {PELLUCID_RESOURCE_NORMAL, "outward normal, world or view space",
        "the angle between view and light replaces -N.L, depths say how large surfaces are"},
       {PELLUCID_RESOURCE_ALBEDO, "post-scatter albedo", "the output is not multiplied"},

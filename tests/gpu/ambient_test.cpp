@@ -87,8 +87,8 @@ TEST_F(AmbientLight, ThinWallsSendOnTheirPart) {
         << k;
 }
 
-// Of the image, pixel by pixel, and in place of the environment's; without one the visible face loses
-// nothing.
+// Light of the image comes through pixel by pixel. Without an environment the visible face
+// loses nothing.
 TEST_F(AmbientLight, HiddenIrradianceComesThrough) {
   const PellucidMaterial m = testMaterial();
   Capture c = flatCapture(16, 12);

@@ -159,7 +159,7 @@ TEST_F(BlockMaps, SayWhyThereAreNone) {
     return std::string();
   };
   EXPECT_EQ(why([](ReplaySettings& s) { s.indirectDispatches = 0; }),
-            "flat: has no lists of blocks to draw: frame.indirectDispatches asks for none");
+            "flat: has no lists of blocks to draw: frame.options.indirectDispatches asks for none");
   EXPECT_EQ(why([](ReplaySettings& s) {
               s.features = PELLUCID_FEATURE_TRANSLUCENCY;
               s.translucency.gatherSamples = 0;

@@ -117,6 +117,16 @@ inline Light directional(const Vector3& direction, double intensity = 1) {
   return light;
 }
 
+// A lit ball, and a ball 1 mm behind it that lies in its shadow; the light travels along +x.
+inline Model ballInShadow(std::uint32_t rings) {
+  Model model = emptyModel();
+  addSphere(model, {-6.5, 0, 0}, 6, rings);
+  addSphere(model, {4.5, 0, 0}, 4, rings);
+  endPart(model, 0);
+  model.lights = {directional({1, 0, 0}, 3)};
+  return model;
+}
+
 inline Light pointLight(const Vector3& position, double intensity = 1) {
   Light light;
   light.type = PELLUCID_LIGHT_POINT;

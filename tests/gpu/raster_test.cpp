@@ -682,11 +682,7 @@ TEST_F(Raster, WrittenCaptureReplaysBitIdentically) {
 
 // The left one of two balls that are 1 mm apart is lit, and the right one lies in its shadow.
 TEST_F(Raster, NoLightCrossesTheAirBetweenBodies) {
-  Model model = emptyModel();
-  addSphere(model, {-6.5, 0, 0}, 6, 32);
-  addSphere(model, {4.5, 0, 0}, 4, 32);
-  endPart(model, 0);
-  model.lights = {directional({1, 0, 0}, 3)};
+  Model model = ballInShadow(32);
   RasterOptions options = smallRaster(48);
   options.shadowSize = 512;
   ModelCamera camera = frontCamera(true);

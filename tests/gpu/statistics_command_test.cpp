@@ -66,9 +66,9 @@ TEST_F(StatisticsCommand, AreATableAndAPicture) {
 TEST_F(StatisticsCommand, SayWhatIsMissing) {
   capture("96x64");
   const std::string everywhere = replay("--set indirect=none ");
-  expect(0, everywhere + "--stats", "no lists of blocks: frame.indirectDispatches asks for none");
+  expect(0, everywhere + "--stats", "no lists of blocks: frame.options.indirectDispatches asks for none");
   expect(3, everywhere + "--debug blocks",
-         "has no lists of blocks to draw: frame.indirectDispatches asks for none");
+         "has no lists of blocks to draw: frame.options.indirectDispatches asks for none");
   expect(2, "plan " + capture_ + " --debug blocks", "\"blocks\" is not one of");
   expect(2, "replay x.exr --debug soul", "\"soul\" is not one of blocks, irradiance, occlusion, thickness");
 }

@@ -79,11 +79,7 @@ protected:
 
 // The left ball is lit and the right one is not; the panel has their one material.
 TEST_F(ViewFramesTest, BodiesOfOneMaterialKeepTheirLight) {
-  Model model = emptyModel();
-  addSphere(model, {-6.5, 0, 0}, 6, 24);
-  addSphere(model, {4.5, 0, 0}, 4, 24);
-  endPart(model, 0);
-  model.lights = {directional({1, 0, 0}, 3)};
+  Model model = ballInShadow(24);
   ASSERT_EQ(separateBodies(model, {20}).added, 1u);
   open(std::move(model));
   ASSERT_EQ(state_.materials.size(), 1u);

@@ -22,7 +22,8 @@ struct VisibleSurface {
 // camera.
 VisibleSurface visibleSurface(const Capture& capture, const TraceScene& scene);
 
-// Where the rays to those points leave the bodies that they enter there. Absent where that is an opaque surface.
+// The points at which the rays to the visible points leave the bodies again. Absent where the ray meets an
+// opaque surface first.
 VisibleSurface hiddenSurface(const Capture& capture, const TraceScene& scene, const VisibleSurface& visible);
 
 // Irradiance (R, G, B) at each pixel, the mean of `count` samples: for lights that a rasterizer cannot draw.

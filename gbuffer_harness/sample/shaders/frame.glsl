@@ -23,7 +23,7 @@ layout(set = 0, binding = 0, std140) uniform Frame {
   vec4 jitter;  // xy: pixels that the rect's picture is moved by; z: weight of this frame in the history
   vec4 scale;   // x: exposure; y: pre-exposure of irradiance; z: of specular light, 0 or 1
   uvec4 flags;  // x: lights; y: MISTAKE_*; z: 1: Pellucid adds the diffuse light of pixels with a material
-  vec4 ambient[9]; // coefficients of radiance, in the order of PellucidFrame::ambient
+  vec4 ambient[9]; // coefficients of radiance, in the order of PellucidFrameOptions::ambient
   Light lights[6];
   Tile tiles[16];
 } frame;

@@ -101,7 +101,7 @@ enum { PELLUCID_MAX_LIGHT_SHADOW_MAPS = 8 };
 
 /* Content of a depth image. */
 typedef enum PellucidDepthEncoding {
-  /* The 0..1 value of the matrix that rendered it. Of the camera, other values, NaN, and distances of 1e9 and more hold nothing. */
+  /* The 0..1 value of the matrix that rendered it. Camera depths hold no surface beyond 0..1, at NaN, and 1e9 or more away. */
   PELLUCID_DEPTH_DEVICE = 0,
   /* Positive planar distance in front of the eye, scene units; <= 0, >= 1e9, infinity and NaN hold nothing. */
   PELLUCID_DEPTH_VIEW_Z = 1,

@@ -87,7 +87,7 @@ typedef enum PellucidFeatureBits {
 } PellucidFeatureBits;
 
 /* Frames that take the light that comes through from an earlier one. Irradiance and diffusion are always the frame's own. Kept light
- * is looked up at the same pixel: pass no previous plan after a cut. What moves lags by the frames in between. */
+ * is looked up at the same pixel: pass no previous plan after a cut. Moving surfaces lag by the frames in between. */
 typedef enum PellucidReuse {
   PELLUCID_REUSE_NONE = 0,
   /* Every second frame (Whelan 2009, 4.7.4). */
