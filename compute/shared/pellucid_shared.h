@@ -7,12 +7,6 @@
 #ifdef __cplusplus
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
-namespace pellucid::shared {
-using glm::ivec4;
-using glm::mat4;
-using glm::uvec2;
-using glm::uvec4;
-using glm::vec4;
 #endif
 
 // Sides of workgroups and of what a group does.
@@ -30,37 +24,45 @@ using glm::vec4;
 #define PELLUCID_FILTER_GROUP 16  // cells of the gather
 #define PELLUCID_LIST_GROUP 256   // invocations of the pass that lists blocks, in a row
 
-// Bindings of set 0. A number is one binding in all passes, each of which declares those that it reads or writes
-// (module/src/passes.cpp); module/src/bindings.h has their types.
-#define PELLUCID_BINDING_FRAME 0
-#define PELLUCID_BINDING_LIGHTS 1
-#define PELLUCID_BINDING_SHADOWS 2
-#define PELLUCID_BINDING_GATHER_MAPS 3
-#define PELLUCID_BINDING_MATERIALS 4
-#define PELLUCID_BINDING_KERNELS 5
-#define PELLUCID_BINDING_ENTRY_MAPS 6
-#define PELLUCID_BINDING_LISTS 7 // BlockLists
-#define PELLUCID_BINDING_FRONT_DEPTH 8
-#define PELLUCID_BINDING_BACK_DEPTH 9
-#define PELLUCID_BINDING_NORMAL 10
-#define PELLUCID_BINDING_ALBEDO 11
-#define PELLUCID_BINDING_MATERIAL 12
-#define PELLUCID_BINDING_SOURCE 13
-#define PELLUCID_BINDING_HELD 14 // the output's content before the frame
-#define PELLUCID_BINDING_HISTORY 15
-#define PELLUCID_BINDING_PYRAMID 16 // the level or levels that are read
-#define PELLUCID_BINDING_COARSER_LEVELS 17 // of upsampling: levels 4 and 5
-#define PELLUCID_BINDING_ENTRY_POINTS 18
-#define PELLUCID_BINDING_FOUND_PROBES 19
-#define PELLUCID_BINDING_FILTERED_PROBES 20
-#define PELLUCID_BINDING_DESTINATION 21
-#define PELLUCID_BINDING_LEVELS 22 // of the pyramid, written
-#define PELLUCID_BINDING_ENTRIES_DESTINATION 23
-#define PELLUCID_BINDING_PROBES_DESTINATION 24
-#define PELLUCID_BINDING_FILTERED_DESTINATION 25
-#define PELLUCID_BINDING_BLOCKS 26 // words of the blocks and lists of them; see compute/frame/blocks.glsl
-#define PELLUCID_BINDING_HIDDEN_IRRADIANCE 27
-#define PELLUCID_BINDING_SHADOW_IMAGES 28 // the last ones: one each for as many shadow images as a pass has
+// Bindings of set 0: number, name in the shaders' sources, type. A number is one binding in all passes, each of which declares
+// those that it reads or writes (module/src/passes.cpp).
+#define PELLUCID_BINDINGS(X) \
+  X(PELLUCID_BINDING_FRAME, 0, frame, kUniforms) \
+  X(PELLUCID_BINDING_LIGHTS, 1, lights, kUniforms) \
+  X(PELLUCID_BINDING_SHADOWS, 2, shadows, kUniforms) \
+  X(PELLUCID_BINDING_GATHER_MAPS, 3, gatherMaps, kUniforms) \
+  X(PELLUCID_BINDING_MATERIALS, 4, materials, kStorage) \
+  X(PELLUCID_BINDING_KERNELS, 5, kernels, kStorage) \
+  X(PELLUCID_BINDING_ENTRY_MAPS, 6, entryMaps, kStorage) \
+  X(PELLUCID_BINDING_LISTS, 7, lists, kStorage) /* BlockLists */ \
+  X(PELLUCID_BINDING_FRONT_DEPTH, 8, frontDepthImage, kSampled) \
+  X(PELLUCID_BINDING_BACK_DEPTH, 9, backDepthImage, kSampled) \
+  X(PELLUCID_BINDING_NORMAL, 10, normalImage, kSampled) \
+  X(PELLUCID_BINDING_ALBEDO, 11, albedoImage, kSampled) \
+  X(PELLUCID_BINDING_MATERIAL, 12, materialImage, kSampled) \
+  X(PELLUCID_BINDING_SOURCE, 13, sourceImage, kSampled) \
+  X(PELLUCID_BINDING_HELD, 14, heldImage, kSampled) /* the output's content before the frame */ \
+  X(PELLUCID_BINDING_HISTORY, 15, historyImage, kSampled) \
+  X(PELLUCID_BINDING_PYRAMID, 16, pyramidImage, kSampled) /* the level or levels that are read */ \
+  X(PELLUCID_BINDING_COARSER_LEVELS, 17, coarserLevelsImage, kSampled) /* of upsampling: levels 4 and 5 */ \
+  X(PELLUCID_BINDING_ENTRY_POINTS, 18, entriesImage, kSampled) \
+  X(PELLUCID_BINDING_FOUND_PROBES, 19, foundImage, kSampled) \
+  X(PELLUCID_BINDING_FILTERED_PROBES, 20, filteredProbesImage, kSampled) \
+  X(PELLUCID_BINDING_DESTINATION, 21, destinationImage, kStored) \
+  X(PELLUCID_BINDING_LEVELS, 22, levelsDestination, kStored) /* of the pyramid, written */ \
+  X(PELLUCID_BINDING_ENTRIES_DESTINATION, 23, entriesDestination, kStored) \
+  X(PELLUCID_BINDING_PROBES_DESTINATION, 24, probesImage, kStored) \
+  X(PELLUCID_BINDING_FILTERED_DESTINATION, 25, sharedImage, kStored) \
+  X(PELLUCID_BINDING_BLOCKS, 26, blocksImage, kStored) /* words of the blocks and lists of them */ \
+  X(PELLUCID_BINDING_HIDDEN_IRRADIANCE, 27, hiddenIrradianceImage, kSampled) \
+  X(PELLUCID_BINDING_SHADOW_IMAGES, 28, shadowImage0, kSampled) /* the last ones: one each for as many shadow images as a pass has */
+#ifdef __cplusplus
+#define PELLUCID_BINDING_NUMBER(number, value, name, type) number = value,
+enum PellucidBindingNumber : unsigned { PELLUCID_BINDINGS(PELLUCID_BINDING_NUMBER) };
+#else
+#define PELLUCID_BINDING_NUMBER(number, value, name, type) const uint number = value;
+PELLUCID_BINDINGS(PELLUCID_BINDING_NUMBER)
+#endif
 #define PELLUCID_SHADOW_IMAGE_COUNT 8     // 16 sampled images in all, which every device has
 #define PELLUCID_ENTRY_IMAGE_COUNT 12     // of the entry points: four maps with exit depth and caster material
 #define PELLUCID_BINDING_COUNT (PELLUCID_BINDING_SHADOW_IMAGES + PELLUCID_ENTRY_IMAGE_COUNT)
@@ -138,6 +140,15 @@ using glm::vec4;
 #define PELLUCID_SHARE_TABLES 3
 #define PELLUCID_SHARE_ENTRIES 128
 #define PELLUCID_PIXEL_SHARES 2
+
+#ifdef __cplusplus
+namespace pellucid::shared {
+using glm::ivec4;
+using glm::mat4;
+using glm::uvec2;
+using glm::uvec4;
+using glm::vec4;
+#endif
 
 // The camera as the shaders use it. With s = +1 or -1 the sign of view z in front of the eye, p = s z
 // is the planar distance and a pixel's view ray is point(p) = origin + p direction.

@@ -1,5 +1,4 @@
-// Names and types of the shaders' bindings. A number of compute/shared/pellucid_shared.h is one binding in
-// all passes.
+// The bindings of compute/shared/pellucid_shared.h, and sets of them.
 #pragma once
 
 #include <array>
@@ -20,56 +19,26 @@ inline constexpr VkDescriptorType kUniforms = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,
                                   kSampled = VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE,
                                   kStored = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
 
-// By number.
-inline constexpr std::array<Binding, PELLUCID_BINDING_COUNT> kBindings = {{
-    {PELLUCID_BINDING_FRAME, "frame", kUniforms},
-    {PELLUCID_BINDING_LIGHTS, "lights", kUniforms},
-    {PELLUCID_BINDING_SHADOWS, "shadows", kUniforms},
-    {PELLUCID_BINDING_GATHER_MAPS, "gatherMaps", kUniforms},
-    {PELLUCID_BINDING_MATERIALS, "materials", kStorage},
-    {PELLUCID_BINDING_KERNELS, "kernels", kStorage},
-    {PELLUCID_BINDING_ENTRY_MAPS, "entryMaps", kStorage},
-    {PELLUCID_BINDING_LISTS, "lists", kStorage},
-    {PELLUCID_BINDING_FRONT_DEPTH, "frontDepthImage", kSampled},
-    {PELLUCID_BINDING_BACK_DEPTH, "backDepthImage", kSampled},
-    {PELLUCID_BINDING_NORMAL, "normalImage", kSampled},
-    {PELLUCID_BINDING_ALBEDO, "albedoImage", kSampled},
-    {PELLUCID_BINDING_MATERIAL, "materialImage", kSampled},
-    {PELLUCID_BINDING_SOURCE, "sourceImage", kSampled},
-    {PELLUCID_BINDING_HELD, "heldImage", kSampled},
-    {PELLUCID_BINDING_HISTORY, "historyImage", kSampled},
-    {PELLUCID_BINDING_PYRAMID, "pyramidImage", kSampled},
-    {PELLUCID_BINDING_COARSER_LEVELS, "coarserLevelsImage", kSampled},
-    {PELLUCID_BINDING_ENTRY_POINTS, "entriesImage", kSampled},
-    {PELLUCID_BINDING_FOUND_PROBES, "foundImage", kSampled},
-    {PELLUCID_BINDING_FILTERED_PROBES, "filteredProbesImage", kSampled},
-    {PELLUCID_BINDING_DESTINATION, "destinationImage", kStored},
-    {PELLUCID_BINDING_LEVELS, "levelsDestination", kStored},
-    {PELLUCID_BINDING_ENTRIES_DESTINATION, "entriesDestination", kStored},
-    {PELLUCID_BINDING_PROBES_DESTINATION, "probesImage", kStored},
-    {PELLUCID_BINDING_FILTERED_DESTINATION, "sharedImage", kStored},
-    {PELLUCID_BINDING_BLOCKS, "blocksImage", kStored},
-    {PELLUCID_BINDING_HIDDEN_IRRADIANCE, "hiddenIrradianceImage", kSampled},
-    {PELLUCID_BINDING_SHADOW_IMAGES, "shadowImage0", kSampled},
-    {PELLUCID_BINDING_SHADOW_IMAGES + 1, "shadowImage1", kSampled},
-    {PELLUCID_BINDING_SHADOW_IMAGES + 2, "shadowImage2", kSampled},
-    {PELLUCID_BINDING_SHADOW_IMAGES + 3, "shadowImage3", kSampled},
-    {PELLUCID_BINDING_SHADOW_IMAGES + 4, "shadowImage4", kSampled},
-    {PELLUCID_BINDING_SHADOW_IMAGES + 5, "shadowImage5", kSampled},
-    {PELLUCID_BINDING_SHADOW_IMAGES + 6, "shadowImage6", kSampled},
-    {PELLUCID_BINDING_SHADOW_IMAGES + 7, "shadowImage7", kSampled},
-    {PELLUCID_BINDING_SHADOW_IMAGES + 8, "shadowImage8", kSampled},
-    {PELLUCID_BINDING_SHADOW_IMAGES + 9, "shadowImage9", kSampled},
-    {PELLUCID_BINDING_SHADOW_IMAGES + 10, "shadowImage10", kSampled},
-    {PELLUCID_BINDING_SHADOW_IMAGES + 11, "shadowImage11", kSampled},
-}};
+// By number. The list names the first shadow image.
+inline constexpr std::array<Binding, PELLUCID_BINDING_COUNT> kBindings = [] {
+  std::array<Binding, PELLUCID_BINDING_COUNT> all{};
+#define PELLUCID_BINDING_ROW(number, value, name, type) all[value] = {value, #name, type};
+  PELLUCID_BINDINGS(PELLUCID_BINDING_ROW)
+#undef PELLUCID_BINDING_ROW
+  constexpr const char* kShadowImages[] = {"shadowImage0", "shadowImage1",  "shadowImage2", "shadowImage3",
+                                           "shadowImage4", "shadowImage5",  "shadowImage6", "shadowImage7",
+                                           "shadowImage8", "shadowImage9", "shadowImage10", "shadowImage11"};
+  for (uint32_t i = 0; i < PELLUCID_ENTRY_IMAGE_COUNT; ++i)
+    all[PELLUCID_BINDING_SHADOW_IMAGES + i] = {PELLUCID_BINDING_SHADOW_IMAGES + i, kShadowImages[i], kSampled};
+  return all;
+}();
 
-constexpr bool isInOrder() {
-  for (uint32_t i = 0; i < kBindings.size(); ++i)
-    if (kBindings[i].number != i) return false;
+constexpr bool isComplete() {
+  for (const Binding& binding : kBindings)
+    if (binding.name == nullptr) return false;
   return true;
 }
-static_assert(isInOrder());
+static_assert(isComplete());
 
 // Bits by number.
 using BindingSet = uint64_t;

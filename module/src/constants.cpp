@@ -10,6 +10,7 @@
 #include "material_tables.h"
 #include "minimum_dot.h"
 #include "shadow_map.h"
+#include "transmittance.h"
 
 namespace pellucid {
 namespace {
@@ -19,9 +20,6 @@ static_assert(PELLUCID_SHADER_LIGHT_SPOT == PELLUCID_LIGHT_SPOT);
 static_assert(PELLUCID_SHADER_DEPTH_DEVICE == PELLUCID_DEPTH_DEVICE);
 static_assert(PELLUCID_SHADER_DEPTH_VIEW_Z == PELLUCID_DEPTH_VIEW_Z);
 static_assert(PELLUCID_SHADER_DEPTH_DISTANCE == PELLUCID_DEPTH_DISTANCE);
-static_assert(PELLUCID_SHADER_TRANSMITTANCE_EXP2 == PELLUCID_TRANSMITTANCE_EXP2);
-static_assert(PELLUCID_SHADER_TRANSMITTANCE_SINH_EXP == PELLUCID_TRANSMITTANCE_SINH_EXP);
-static_assert(PELLUCID_SHADER_TRANSMITTANCE_LINEAR == PELLUCID_TRANSMITTANCE_LINEAR);
 static_assert(PELLUCID_SHADER_ANGLE_NORMAL == PELLUCID_ANGLE_NORMAL);
 static_assert(PELLUCID_SHADER_ANGLE_COSINE == PELLUCID_ANGLE_COSINE);
 static_assert(PELLUCID_SHADER_ANGLE_INVERSE_COSINE == PELLUCID_ANGLE_INVERSE_COSINE);
@@ -194,7 +192,7 @@ shared::MaterialConstants materialConstants(const FrameFacts& f, const MaterialT
   const PellucidMaterial& m = tables.material;
   shared::MaterialConstants c{};
   c.meta = {m.transmittanceModel, m.gaussianCount, m.thinWalled, 0};
-  const float exponent = m.transmittanceModel == PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED ? 1.0f : 0.5f;
+  const auto exponent = static_cast<float>(gaussianExponent(m.transmittanceModel));
   const bool canGather = canBeGathered(m.transmittanceModel) && m.thinWalled == 0;
   if (f.gathers || f.lights.ambient.intensity > 0) c.gather = tables.gather;
   // Without diffusion nothing of it is corrected.
@@ -210,10 +208,8 @@ shared::MaterialConstants materialConstants(const FrameFacts& f, const MaterialT
     c.transmittance4.w = tables.opaqueThickness;
   }
   for (int channel = 0; channel < 3; ++channel) {
-    const float* t = m.transmittance[channel];
-    // The shader reads a, kappa, z, b and c of SINH_EXP as xyzw and the fifth.
+    const std::array<float, 5> t = shaderParameters(m, channel);
     c.transmittance[channel] = {t[0], t[1], t[2], t[3]};
-    if (m.transmittanceModel == PELLUCID_TRANSMITTANCE_LINEAR) c.transmittance[channel].x = 1 / t[0];
     c.transmittance4[channel] = t[4];
     c.inverseReflectance[channel] = 1 / m.reflectance[channel];
     for (uint32_t i = 0; i < m.gaussianCount; ++i) {

@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "transmittance.h"
+
 namespace pellucid {
 namespace {
 
@@ -93,7 +95,7 @@ constexpr auto kMaterialFloats = std::to_array<FloatDomain>({
 });
 
 constexpr auto kMaterialIntegers = std::to_array<IntegerDomain>({
-    {FIELD(PellucidMaterial, transmittanceModel), 0, PELLUCID_TRANSMITTANCE_LINEAR},
+    {FIELD(PellucidMaterial, transmittanceModel), 0, kLastTransmittanceModel},
     {FIELD(PellucidMaterial, gaussianCount), 0, PELLUCID_MAX_GAUSSIANS},
     {FIELD(PellucidMaterial, thinWalled), 0, 1},
 });

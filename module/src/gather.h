@@ -6,13 +6,7 @@
 
 namespace pellucid {
 
-// True for transmittance models that the gather's kernel follows from.
-inline bool canBeGathered(uint32_t transmittanceModel) {
-  return transmittanceModel == PELLUCID_TRANSMITTANCE_EXP2 ||
-         transmittanceModel == PELLUCID_TRANSMITTANCE_SINH_EXP;
-}
-
-// Of a material of such a model.
+// Of a material whose model canBeGathered.
 shared::GatherConstants gatherConstants(const PellucidMaterial& material);
 
 // How far from a surface its probes look for entry points, mm.

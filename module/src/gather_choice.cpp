@@ -5,6 +5,7 @@
 
 #include "gather.h"
 #include "shadow_map.h"
+#include "transmittance.h"
 
 namespace pellucid {
 namespace {

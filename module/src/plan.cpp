@@ -6,6 +6,7 @@
 #include "gather.h"
 #include "plan_state.h"
 #include "pyramid_energy.h"
+#include "transmittance.h"
 
 namespace pellucid {
 namespace {

@@ -1,14 +1,73 @@
-// T(d) of a material's channel, as compute/lib/transmittance.glsl evaluates it: once for all of the CPU's
-// code but gbuffer_harness/reference, which checks it.
+// The transmittance models: their parameters, and T(d) of a material's channel as compute/translucency/transmission.glsl evaluates
+// it. All CPU code takes them from here but gbuffer_harness/reference, which checks them.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
+#include "findings.h"
 #include "pellucid/pellucid.h"
+#include "shared/pellucid_shared.h"
 
 namespace pellucid {
+
+constexpr uint32_t kLastTransmittanceModel = PELLUCID_TRANSMITTANCE_LINEAR;
+static_assert(PELLUCID_SHADER_TRANSMITTANCE_EXP2 == PELLUCID_TRANSMITTANCE_EXP2 &&
+              PELLUCID_SHADER_TRANSMITTANCE_SINH_EXP == PELLUCID_TRANSMITTANCE_SINH_EXP &&
+              PELLUCID_SHADER_TRANSMITTANCE_LINEAR == PELLUCID_TRANSMITTANCE_LINEAR);
+
+// True for models that the gather's kernel follows from.
+inline bool canBeGathered(uint32_t model) {
+  return model == PELLUCID_TRANSMITTANCE_EXP2 || model == PELLUCID_TRANSMITTANCE_SINH_EXP;
+}
+
+// Whether a1 e^(-k1 d) + a2 e^(-k2 d) is positive and falls with d: its slope has one zero at most, so its
+// signs at 0 and where the slower term is left say all. The tolerance is what fits in floats miss.
+inline bool falls(const float (&t)[5]) {
+  const double a1 = static_cast<double>(t[0]), k1 = static_cast<double>(t[1]);
+  const double a2 = static_cast<double>(t[2]), k2 = static_cast<double>(t[3]);
+  if (!(k1 >= 0 && k2 >= 0)) return false;
+  const double most = std::abs(a1) + std::abs(a2), tolerance = 1e-4 * most;
+  const double slower = k1 < k2 ? a1 : k1 > k2 ? a2 : a1 + a2;
+  return a1 + a2 >= -tolerance && slower >= -tolerance &&
+         a1 * k1 + a2 * k2 >= -1e-4 * most * std::max(k1, k2);
+}
+
+// Refuses parameters that the model of materials[index] cannot have.
+inline void checkTransmittance(const PellucidMaterial& m, uint32_t index, Findings& out) {
+  const bool gaussians = m.transmittanceModel == PELLUCID_TRANSMITTANCE_GAUSSIANS ||
+                         m.transmittanceModel == PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED;
+  if (gaussians && m.gaussianCount == 0)
+    out.error(Field("materials[", index, "].gaussianCount"),
+              "is 0, but the transmittance model needs Gaussians");
+  const Field field("materials[", index, "].transmittance");
+  for (int c = 0; c < 3; ++c) {
+    const float(&t)[5] = m.transmittance[c];
+    if (m.transmittanceModel == PELLUCID_TRANSMITTANCE_EXP2 && !falls(t))
+      out.error(field, "of channel ", c, " grows with thickness: a1 ", t[0], ", k1 ", t[1], ", a2 ", t[2],
+                ", k2 ", t[3]);
+    if (m.transmittanceModel == PELLUCID_TRANSMITTANCE_SINH_EXP && !(t[1] >= 0 && t[2] > 0 && t[4] >= 0))
+      out.error(field, "of channel ", c, " needs kappa >= 0, z > 0, c >= 0; they are ", t[1], ", ", t[2],
+                ", ", t[4]);
+    if (m.transmittanceModel == PELLUCID_TRANSMITTANCE_LINEAR && !(t[0] > 0))
+      out.error(field, "of channel ", c, " has dmax ", t[0], "; must be > 0");
+  }
+}
+
+// The parameters as shaders read them: LINEAR has 1 / dmax, so that they do not divide.
+inline std::array<float, 5> shaderParameters(const PellucidMaterial& m, int channel) {
+  const float(&t)[5] = m.transmittance[channel];
+  // 1e-30: the inverse is finite.
+  const bool linear = m.transmittanceModel == PELLUCID_TRANSMITTANCE_LINEAR;
+  return {linear ? 1 / std::max(t[0], 1e-30f) : t[0], t[1], t[2], t[3], t[4]};
+}
+
+// c of e^{-c d^2 / v} of the models that take the profile's Gaussians, of variance v.
+inline double gaussianExponent(uint32_t model) {
+  return model == PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED ? 1 : 0.5;
+}
 
 // Of EXP2 and SINH_EXP, which 5 parameters alone define; d >= 0 mm.
 inline double transmittance(uint32_t model, const float* parameters, double d) {
@@ -28,11 +87,11 @@ inline double transmittance(const PellucidMaterial& m, size_t channel, double d)
       return transmittance(m.transmittanceModel, m.transmittance[channel], d);
     case PELLUCID_TRANSMITTANCE_GAUSSIANS:
     case PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED: {
-      const double twice = m.transmittanceModel == PELLUCID_TRANSMITTANCE_GAUSSIANS ? 2 : 1;
+      const double c = gaussianExponent(m.transmittanceModel);
       double sum = 0;
       for (uint32_t i = 0; i < std::min<uint32_t>(m.gaussianCount, PELLUCID_MAX_GAUSSIANS); ++i)
         sum += static_cast<double>(m.gaussianWeight[channel][i]) *
-               std::exp(-d * d / (twice * static_cast<double>(m.gaussianVariance[channel][i])));
+               std::exp(-c * d * d / static_cast<double>(m.gaussianVariance[channel][i]));
       return sum;
     }
     case PELLUCID_TRANSMITTANCE_LINEAR:

@@ -9,6 +9,7 @@
 #include "frame.h"
 #include "gather.h"
 #include "minimum_dot.h"
+#include "transmittance.h"
 #include "validate_shared.h"
 
 namespace pellucid {
@@ -69,36 +70,12 @@ void checkMinimumDotTable(const PellucidThesisOptions& t, Findings& out) {
               "; must be finite, longer than 0 and not parallel");
 }
 
-// Whether a1 e^(-k1 d) + a2 e^(-k2 d) is positive and falls with d: its slope has one zero at most, so its
-// signs at 0 and where the slower term is left say all. The tolerance is what fits in floats miss.
-bool falls(const float (&t)[5]) {
-  const double a1 = static_cast<double>(t[0]), k1 = static_cast<double>(t[1]);
-  const double a2 = static_cast<double>(t[2]), k2 = static_cast<double>(t[3]);
-  if (!(k1 >= 0 && k2 >= 0)) return false;
-  const double most = std::abs(a1) + std::abs(a2), tolerance = 1e-4 * most;
-  const double slower = k1 < k2 ? a1 : k1 > k2 ? a2 : a1 + a2;
-  return a1 + a2 >= -tolerance && slower >= -tolerance &&
-         a1 * k1 + a2 * k2 >= -1e-4 * most * std::max(k1, k2);
-}
-
 void checkMaterial(const PellucidMaterial& m, uint32_t index, Findings& out) {
   const auto field = [index](const char* name) { return Field("materials[", index, "].", name); };
   checkDomains(m, field(""), out);
   if (m.gaussianCount > PELLUCID_MAX_GAUSSIANS) return;
-  const bool fromGaussians = m.transmittanceModel == PELLUCID_TRANSMITTANCE_GAUSSIANS ||
-                             m.transmittanceModel == PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED;
-  if (fromGaussians && m.gaussianCount == 0)
-    out.error(field("gaussianCount"), "is 0, but the transmittance model needs Gaussians");
+  checkTransmittance(m, index, out);
   for (int c = 0; c < 3; ++c) {
-    const float(&t)[5] = m.transmittance[c];
-    if (m.transmittanceModel == PELLUCID_TRANSMITTANCE_EXP2 && !falls(t))
-      out.error(field("transmittance"), "of channel ", c, " grows with thickness: a1 ", t[0], ", k1 ", t[1],
-                ", a2 ", t[2], ", k2 ", t[3]);
-    if (m.transmittanceModel == PELLUCID_TRANSMITTANCE_SINH_EXP && !(t[1] >= 0 && t[2] > 0 && t[4] >= 0))
-      out.error(field("transmittance"), "of channel ", c, " needs kappa >= 0, z > 0, c >= 0; they are ", t[1],
-                ", ", t[2], ", ", t[4]);
-    if (m.transmittanceModel == PELLUCID_TRANSMITTANCE_LINEAR && !(t[0] > 0))
-      out.error(field("transmittance"), "of channel ", c, " has dmax ", t[0], "; must be > 0");
     // Rounding of floats.
     if (m.thinWalled != 0 && !(m.reflectance[c] + m.wallTransmittance[c] <= 1 + 1e-6f))
       out.error(field("wallTransmittance"), "of channel ", c, " is ", m.wallTransmittance[c],
