@@ -29,7 +29,7 @@ std::vector<PipelineShader> pipelineShaders();  // in the order of pipelines
 struct TranslatedShader {
   std::string text;  // SPIR-V: its bytes
   nlohmann::ordered_json
-      description;  // entry point, workgroup size, constants and bindings; docs/integration.md
+      description;  // entry point, workgroup size, constants and bindings; packaging/README.md
 };
 
 // Specialization constants have the pipeline's values as defaults. Throws InputError, naming pipeline and

@@ -85,7 +85,7 @@ typedef struct PellucidLight {
   float color[3];
   /* Irradiance at normal incidence of a directional light; else I of E = I cos/r^2, with r in scene units. >= 0. */
   float intensity;
-  /* Scene units, beyond which there is no light; 0 (default): unlimited. */
+  /* Of point and spot lights, scene units: the light has the factor max(0, 1 - (r / range)^4); 0 (default): none. */
   float range;
   /* Radians from the axis of a spot, 0 <= inner < outer <= pi/2. */
   float innerConeAngle, outerConeAngle;
@@ -114,7 +114,7 @@ typedef struct PellucidShadowMap {
   uint32_t image;     /* index into frame.shadowImages */
   uint32_t extent[2]; /* texels, 1..65536 */
   uint32_t encoding;  /* PellucidDepthEncoding */
-  /* Clip -1..1 is the map. */
+  /* Clip (-1, -1) is the outer corner of the map's first texel, and (1, 1) that of its last. */
   float clipFromWorld[16];
   PellucidShadowMapOptions options;
 } PellucidShadowMap;
@@ -150,11 +150,12 @@ typedef struct PellucidFrame {
   PellucidImage irradiance;
   /* Outward unit vectors, as PellucidContextOptions::normalEncoding says. */
   PellucidImage normal;
-  /* Multiplied after scattering. */
+  /* Multiplies the light after scattering. Without it the output is that of a white surface. */
   PellucidImage albedo;
   /* Required; unsigned integer: 0 none, i: materials[i - 1]. */
   PellucidImage material;
-  /* Required; storage image, which may be the irradiance's. Pixels of material 0 are not written; alpha is the irradiance's. */
+  /* Required; storage image, which may be the irradiance's. It takes the place of a diffuse term: the irradiance after scattering, times
+   * preExposure and albedo. Pixels of material 0 are not written; alpha is the irradiance's. */
   PellucidImage output;
   /* As pellucidGetImageNeeds lists them. */
   PellucidImage transients[PELLUCID_MAX_TRANSIENTS];
