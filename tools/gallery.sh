@@ -47,7 +47,7 @@ scene shell "Hollow shell" "A ball of skin with a wall of 2 mm, lit from behind.
 scene marble Marble "A ring of marble, 5 mm thick, lit from behind." -- --procedural torus --material '*=marble' --set tube=0.2
 scene wax Wax "A carved sheet of wax before a lamp, described by OpenPBR's color and radius." -- --procedural noise --material "*=$wax"
 scene milk Milk "Drops of whole milk." -- --procedural spheres --material '*=whole_milk'
-scene leaf Leaves "Blades of grass, 0.4 mm thick." -- --procedural blades --material "*=$leaf"
+scene leaf Leaves "Blades of grass, 0.4 mm thick." -- --procedural blades --material "*=$leaf" --shadow-size 2048
 scene sky "Sky only" "No light but a sky. Its light spreads, and that of hidden faces comes through." -- "${sky[@]}" --environment gradient:0.6,0.8,1.2:0.4,0.3,0.2
 scene lights "Many lights" "Twelve lights of all hues around a head, each with a shadow map." -- --procedural head --set view=1 --set keyLight=0 --set rimLight=0 \
   --set lights=12

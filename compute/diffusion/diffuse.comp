@@ -45,13 +45,13 @@ float fineWeight(int i) { return i == 0 ? PELLUCID_FINE_OWN : abs(i) == 1 ? PELL
 // ---- Light of the probes
 
 // The diffused irradiance with the light that probes found.
-vec3 withLight(vec3 diffused, vec3 added, vec3 convexity) { return sanitize(diffused + diffused * convexity + added); }
+vec3 withLight(vec3 diffused, vec3 added, vec3 returned) { return sanitize(diffused + diffused * returned + added); }
 
 // Adds light to a column of four pixels, linear between the probes around each. All around is one surface, so that probes need no
 // test. `side`: pixels of a cell.
 void addProbesToPlane(ivec2 top, int side, inout vec3 column[4]) {
   float perSide = 1.0 / float(side), across = perSide * float(top.x & (side - 1));
-  vec3 added, addedStep, convexity, convexityStep;
+  vec3 added, addedStep, returned, returnedStep;
   [[unroll]] for (int i = 0; i < 4; ++i) {
     int row = i & (side - 1);
     if (row == 0) { // a cell begins
@@ -60,10 +60,10 @@ void addProbesToPlane(ivec2 top, int side, inout vec3 column[4]) {
       uvec4 c = texelFetch(probesImage, cell + ivec2(0, 1), 0), d = texelFetch(probesImage, cell + ivec2(1, 1), 0);
       added = mix(addedOf(a), addedOf(b), across);
       addedStep = perSide * (mix(addedOf(c), addedOf(d), across) - added);
-      convexity = mix(convexityOf(a), convexityOf(b), across);
-      convexityStep = perSide * (mix(convexityOf(c), convexityOf(d), across) - convexity);
+      returned = mix(returnedOf(a), returnedOf(b), across);
+      returnedStep = perSide * (mix(returnedOf(c), returnedOf(d), across) - returned);
     }
-    column[i] = withLight(column[i], added + float(row) * addedStep, convexity + float(row) * convexityStep);
+    column[i] = withLight(column[i], added + float(row) * addedStep, returned + float(row) * returnedStep);
   }
 }
 
@@ -86,7 +86,7 @@ float offPlane(ProbePlace p, ivec2 probePixel, ivec2 pixel, float front) {
 // Adds what is linear between the four probes around the pixel, as far as they are of its material and it lies on their planes.
 vec3 withProbes(vec3 diffused, ivec2 pixel, int side, float front, uint material) {
   float total = 0.0;
-  vec3 added = vec3(0.0), convexity = vec3(0.0);
+  vec3 added = vec3(0.0), returned = vec3(0.0);
   vec2 fraction = vec2(pixel & (side - 1)) / float(side);
   uvec4 probes[4];
   [[unroll]] for (int i = 0; i < 4; ++i) probes[i] = probeOf(probesImage, (pixel >> shiftOf(side)) + ivec2(i & 1, i >> 1), side);
@@ -99,11 +99,11 @@ vec3 withProbes(vec3 diffused, ivec2 pixel, int side, float front, uint material
     // The floors leave a pixel without a like neighbor the most alike.
     float weight = (exp2(-off * off) + 1.0e-4) * (linear.x * linear.y + 1.0e-4);
     added += weight * addedOf(probes[i]);
-    convexity += weight * convexityOf(probes[i]);
+    returned += weight * returnedOf(probes[i]);
     total += weight;
   }
   // The cell's own probe is of its material, unless the cell has several.
-  return total > 0.0 ? withLight(diffused, added / total, convexity / total) : diffused;
+  return total > 0.0 ? withLight(diffused, added / total, returned / total) : diffused;
 }
 
 // ---- Planes

@@ -15,7 +15,7 @@ const int kBorder = kRow * kRow - PELLUCID_FILTER_GROUP * PELLUCID_FILTER_GROUP;
 
 shared vec4 places[kRow * kRow];  // position; w: bits of the material, 0: nothing there
 shared uvec4 found[kRow * kRow];  // as probes have light; the normal in halves, in place of the probes' own
-shared uint someLight, someConvexity;
+shared uint someLight, someReturned;
 
 // The cell's place in the shared arrays; `local`: the cell from the group's first one.
 int placeOf(ivec2 local) { return (local.y + kReach) * kRow + local.x + kReach; }
@@ -41,7 +41,7 @@ uvec4 filtered(ivec2 local, uvec4 own, float perSquare) {
   int center = placeOf(local);
   vec3 place = places[center].xyz, normal = vec3(unpackHalf2x16(found[center].y).y, unpackHalf2x16(found[center].z));
   float total = 0.0;
-  vec3 added = vec3(0.0), convexity = vec3(0.0);
+  vec3 added = vec3(0.0), returned = vec3(0.0);
   [[unroll]] for (int i = 0; i < kSquare * kSquare; ++i) {
     ivec2 away = ivec2(i % kSquare, i / kSquare) - kReach;
     if (abs(away.x) + abs(away.y) > kReach) continue; // known when compiled
@@ -54,11 +54,11 @@ uvec4 filtered(ivec2 local, uvec4 own, float perSquare) {
     facing *= facing;
     float weight = floatBitsToUint(theirs.w) == (own.z & 0xFFu) ? exp2(-dot(apart, apart) * perSquare) * facing * facing : 0.0;
     added += weight * vec3(unpackHalf2x16(bits.x), middle.x);
-    if (someConvexity != 0u) convexity += weight * convexityOf(bits);
+    if (someReturned != 0u) returned += weight * returnedOf(bits);
     total += weight;
   }
   // The probe itself is among them.
-  return withConvexity(withAdded(own, added / total), convexity / total);
+  return withReturned(withAdded(own, added / total), returned / total);
 }
 
 // Filters the cells from `first` on, for all invocations, as they wait for each other.
@@ -67,10 +67,10 @@ void filterCells(ivec2 first, int side) {
   ivec2 local = ivec2(gl_LocalInvocationID.xy), cell = first + local, border = borderCell(index);
   bool hasBorder = index < kBorder;
   uvec4 own = probeOf(foundImage, cell, side), beside = hasBorder ? probeOf(foundImage, first + border, side) : kNoProbe;
-  if (index == 0) someLight = someConvexity = 0u;
+  if (index == 0) someLight = someReturned = 0u;
   barrier();
   if (hasLight(own) || hasLight(beside)) someLight = 1u; // whoever writes, writes this
-  if (hasConvexity(own) || hasConvexity(beside)) someConvexity = 1u;
+  if (hasReturned(own) || hasReturned(beside)) someReturned = 1u;
   barrier();
   bool shares = someLight != 0u;
   if (shares) {

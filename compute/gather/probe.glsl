@@ -5,10 +5,11 @@
 #include "frame/blocks.glsl"
 #include "lib/packing.glsl"
 
-// 128 bits: the light that a probe adds, the convexity of its surface, and the place of the surface.
+// 128 bits: the light that a probe adds, what its body returns, and the place of the surface.
 //   x, y: `added`, irradiance that the lights bring beyond their diffused one, below 0 where they bring less; the normal
 //   z: planar distance without its 8 lowest bits, which hold the material
-//   w: `convexity`, the part of the diffused irradiance that comes back besides, 9 bits a channel; index of the pixel
+//   w: `returned`, the part of the diffused irradiance that comes back beyond a half-space's, below 0 where less does, 9 bits a
+//      channel; index of the pixel
 struct ProbePlace {
   vec3 normal;   // unit; 16 bits hold it to a degree
   float front;   // planar distance
@@ -18,7 +19,7 @@ struct ProbePlace {
 
 const uvec4 kNoProbe = uvec4(0u);
 
-const float kMostConvexity = 0.1, kConvexitySteps = 255.0; // 0 is exact
+const float kMostReturned = 1.0, kReturnedSteps = 255.0; // 0 is exact
 
 uvec4 withAdded(uvec4 bits, vec3 added) {
   // Next to nothing counts as nothing, so that bits say which probes have no light.
@@ -26,8 +27,8 @@ uvec4 withAdded(uvec4 bits, vec3 added) {
   return uvec4(packHalves(added, bits.y >> 16), bits.zw);
 }
 
-uvec4 withConvexity(uvec4 bits, vec3 convexity) {
-  vec3 steps = clamp(convexity / kMostConvexity, vec3(-1.0), vec3(1.0)) * kConvexitySteps;
+uvec4 withReturned(uvec4 bits, vec3 returned) {
+  vec3 steps = clamp(returned / kMostReturned, vec3(-1.0), vec3(1.0)) * kReturnedSteps;
   uvec3 parts = uvec3(ivec3(floor(steps + 0.5))) & 511u;
   return uvec4(bits.xyz, parts.r | parts.g << 9 | parts.b << 18 | (bits.w & 0xF8000000u));
 }
@@ -39,16 +40,16 @@ uvec4 packPlace(ProbePlace p) {
 
 vec3 addedOf(uvec4 bits) { return unpackHalves(bits.xy); }
 
-vec3 convexityOf(uvec4 bits) {
+vec3 returnedOf(uvec4 bits) {
   int w = int(bits.w);
   return vec3(bitfieldExtract(w, 0, 9), bitfieldExtract(w, 9, 9), bitfieldExtract(w, 18, 9)) *
-         (kMostConvexity / kConvexitySteps);
+         (kMostReturned / kReturnedSteps);
 }
 
-bool hasConvexity(uvec4 bits) { return (bits.w & 0x7FFFFFFu) != 0u; }
+bool hasReturned(uvec4 bits) { return (bits.w & 0x7FFFFFFu) != 0u; }
 
 // True where light is added, or more or less of the diffused light comes back.
-bool hasLight(uvec4 bits) { return (bits.x | bits.y & 0xFFFFu) != 0u || hasConvexity(bits); }
+bool hasLight(uvec4 bits) { return (bits.x | bits.y & 0xFFFFu) != 0u || hasReturned(bits); }
 
 vec3 normalOf(uvec4 bits) { return fromOctahedral(unpackSnorm4x8(bits.y >> 16).xy); }
 

@@ -310,24 +310,29 @@ Gathered gatherSamples(uint m, LightConstants light, Surface x, Pattern pattern,
   return sum;
 }
 
+// Factors of the diffused irradiance and of what comes through.
+struct BodyFactors {
+  vec3 returned, through;
+};
+
 // Irradiance that a light of radiance 1 brings to x beyond its diffused irradiance, for albedo = rho to turn into exitance.
 // The diffusion is normalized over what the camera sees: what enters hidden displaces its part of what the light itself brings
-// to x and to the surroundings. `loss`: see thinLoss.
-vec3 gatherLight(uint m, LightConstants light, Surface x, Pattern pattern, vec3 loss) {
+// to x and to the surroundings. `body`: see bodyAt.
+vec3 gatherLight(uint m, LightConstants light, Surface x, Pattern pattern, BodyFactors body) {
   Incident incident = lightAt(light, x.position);
   GatherRings rings;
   if (!gatherRings(light, x, incident.toLight, incident.distanceTo, materials[m].gather.lengths.z, rings)) return vec3(0.0);
   float cosine = x.hasNormal ? max(dot(x.normal, incident.toLight), 0.0) : 0.0;
   // The sums have the light's cone and range.
   float falloff = directional(light) ? 1.0 : 1.0 / max(incident.distanceTo * incident.distanceTo, 1.0e-12);
-  float own = falloff * cosine * arrivesAt(rings, cosine), share = shareOfLight(light, incident.toLight, incident.distanceTo);
+  float own = falloff * cosine * arrivesAt(rings, cosine);
   if (own == 0.0 && rings.ahead > kFarthestLit * materials[m].gather.lengths.z) return vec3(0.0);
   Gathered g = gatherSamples(m, light, x, pattern, incident.toLight, rings);
-  vec3 through = g.through * frame.filterAndLimit.rgb * materials[m].inverseReflectance.rgb;
+  vec3 through = g.through * frame.filterAndLimit.rgb * materials[m].inverseReflectance.rgb * body.through;
   vec3 hidden = min(g.hidden, vec3(1.0)), seen = g.seenLight / max(g.seen, vec3(1.0e-12)), around = 0.5 * (own + seen);
-  // Diffused light is no more than what lies around, and a dark point has next to none of its own to lose.
-  vec3 opposite = min(g.opposite, through + own), lost = min(seen, vec3(2.0 * own)) * share;
-  return through + g.entering - opposite - hidden * around - (1.0 - hidden) * loss * lost;
+  // Diffused light is no more than what lies around.
+  vec3 opposite = min(g.opposite, through + own);
+  return through - opposite + body.returned * (g.entering - hidden * around);
 }
 
 #endif

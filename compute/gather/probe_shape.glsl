@@ -55,15 +55,6 @@ float meanCurvature(ivec2 pixel, Surface x, ViewRay ray, float front, float reac
   return abs(area) > least ? a.apart.w * b.apart.w * 0.5 * trace / area : 0.0;
 }
 
-// Part of the diffused light that comes back besides.
-vec3 convexityAt(ivec2 pixel, Surface x, ViewRay ray, float front, uint m) {
-  vec4 perCurvature = materials[m].gather.convexity;
-  vec3 more = perCurvature.rgb * meanCurvature(pixel, x, ray, front, perCurvature.w);
-  // NaN, whose conversion to steps may be anything, becomes 0.
-  bvec3 known = lessThan(floatBitsToUint(abs(more)), uvec3(floatBitsToUint(1.0e30)));
-  return mix(vec3(0.0), clamp(more, vec3(-kMostConvexity), vec3(kMostConvexity)), known);
-}
-
 // Position of the pixel's back face, view space; false where there is none.
 bool backAt(ivec2 pixel, out vec3 back) {
   ivec2 at = withinRect(pixel);
@@ -84,32 +75,73 @@ bool backSlope(ivec2 pixel, ivec2 axis, vec3 back, out vec3 slope) {
   return hasForward || hasBackward;
 }
 
-// The part of the light that enters at x which a half-space sends back and the body does not, as the light leaves by the
-// other face: 1 - R(h) / rho of a slab, weighted with how opposite the faces are, as a rim has all of the medium behind it.
-vec3 thinLoss(ivec2 pixel, Surface x, uint m) {
-  if (!hasFlag(PELLUCID_FLAG_BACK_DEPTH)) return vec3(0.0);
+const float kThick = 1.0e6;          // mm
+const float kMostCurvature = 1.0e3;  // 1/mm
+const float kMostOfEdges = 0.1;      // of the diffused irradiance
+const float kCurvatureReach = 0.25;  // of the thickness: a ball of 4 mm that is measured 3 mm to both sides ends there
+
+// Thickness of the body at x, mm: of a slab seen at any angle, of a ball its diameter. kThick: not known, or the body is as good as
+// a half-space.
+float thicknessAt(ivec2 pixel, Surface x) {
   vec3 back, across, along;
-  if (!backAt(pixel, back)) return vec3(0.0);
+  if (!hasFlag(PELLUCID_FLAG_BACK_DEPTH) || !backAt(pixel, back)) return kThick;
   vec3 chord = (back - x.position) * frame.camera.range.w;
-  // Beyond this the body is a half-space: T(h) is below 1 %, and its square counts.
-  if (dot(chord, chord) > materials[m].gather.lengths.z * materials[m].gather.lengths.z * 6.25) return vec3(0.0);
   vec3 normal = -x.normal;
   if (backSlope(pixel, ivec2(1, 0), back, across) && backSlope(pixel, ivec2(0, 1), back, along)) {
     vec3 n = cross(across, along);
     float squared = dot(n, n);
     if (squared > 0.0) normal = n * (dot(n, x.view) < 0.0 ? -inversesqrt(squared) : inversesqrt(squared));
   }
-  // A slab's thickness comes from the mean of the two faces' cosines.
-  float h = 0.5 * (abs(dot(chord, x.normal)) + abs(dot(chord, normal)));
-  GatherSlab slab = slabOf(m, materials[m].gather.lengths, h);
-  vec3 t = exp2(slab.logarithm - slab.decay * h);
-  vec3 sent;
-  [[unroll]] for (int c = 0; c < 3; ++c) {
-    vec4 r = materials[m].gather.reflectance[c];
-    sent[c] = r.x - sqrt(max(r.y * t[c] * t[c] + r.z, 0.0));
-  }
   float opposite = 0.5 - 0.5 * dot(x.normal, normal);
-  return opposite * clamp(1.0 - sent, vec3(0.0), vec3(1.0));
+  float h = 0.5 * (abs(dot(chord, x.normal)) + abs(dot(chord, normal))) / max(opposite, 0.01);
+  return isWithin(h, 0.0, kThick) ? h : kThick;
+}
+
+// As GatherConstants::ball has them.
+struct Ball {
+  vec3 returned, through, instead;
+};
+
+Ball unpackBall(uvec4 bits) {
+  vec2 middle = unpackHalf2x16(bits.y);
+  return Ball(vec3(unpackHalf2x16(bits.x), middle.x), vec3(middle.y, unpackHalf2x16(bits.z)), unpackUnorm4x8(bits.w).rgb);
+}
+
+Ball ballAt(uint m, float diameter) {
+  float place = gatherPlace(materials[m].gather.lengths, diameter);
+  uint i = min(uint(place), uint(PELLUCID_GATHER_ENTRIES - 2));
+  Ball a = unpackBall(materials[m].gather.ball[i]), b = unpackBall(materials[m].gather.ball[i + 1u]);
+  float f = place - float(i);
+  return Ball(mix(a.returned, b.returned, f), mix(a.through, b.through, f), mix(a.instead, b.instead, f));
+}
+
+// Of the body at x: R(h) / rho of a slab of its thickness, and what a ball of its curvature has besides. How much of a ball it is
+// decides what comes through: all of K through a slab.
+BodyFactors bodyAt(ivec2 pixel, Surface x, ViewRay ray, float front, uint m) {
+  vec4 lengths = materials[m].gather.lengths;
+  float reach = materials[m].gather.body.x;
+  BodyFactors body = BodyFactors(vec3(1.0), vec3(1.0));
+  if (reach == 0.0) return body;
+  float h = thicknessAt(pixel, x), curvature = meanCurvature(pixel, x, ray, front, min(reach, kCurvatureReach * h));
+  // Whatever depths and normals hold, the factors are finite.
+  if (!isWithin(abs(curvature), 0.0, kMostCurvature)) curvature = 0.0;
+  if (h < 2.5 * lengths.z) {
+    GatherSlab s = slabOf(m, lengths, h);
+    vec3 t = exp2(s.logarithm - s.decay * h);
+    [[unroll]] for (int c = 0; c < 3; ++c) {
+      vec4 r = materials[m].gather.reflectance[c];
+      body.returned[c] = clamp(r.x - sqrt(max(r.y * t[c] * t[c] + r.z, 0.0)), 0.0, 1.0);
+    }
+  }
+  Ball ball = ballAt(m, 2.0 / max(abs(curvature), 1.0 / kThick));
+  // 1 where curvature and thickness are those of one ball; 1e-6: the inverse is finite.
+  float diameters = max(0.5 * h * curvature, 1.0e-6), round = min(diameters, 1.0 / diameters), square = round * round;
+  // Lids, lips and other edges of a large body have no more than a half-space's surroundings.
+  vec3 more = min(ball.returned + round * ball.instead, vec3(max(kMostOfEdges, square * square)));
+  // Concave surfaces return less, by as much as convex ones return more; where they curve strongly, other walls are near.
+  body.returned += curvature < 0.0 ? -clamp(ball.returned, vec3(0.0), vec3(kMostOfEdges)) : more;
+  body.through += round * ball.through;
+  return body;
 }
 
 #endif

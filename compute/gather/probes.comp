@@ -38,15 +38,16 @@ uvec4 probeAt(ivec2 cell, int side, ProbePlace place, vec4 normalTexel) {
   place.normal = x.hasNormal ? x.normal : -x.view;
   // Packed before lights are gathered, whose sums need the registers.
   uvec4 bits = packPlace(place);
-  vec3 loss = vec3(0.0), added = vec3(0.0);
+  BodyFactors body = BodyFactors(vec3(1.0), vec3(1.0));
+  vec3 added = vec3(0.0);
   if (x.hasNormal) {
-    bits = withConvexity(bits, convexityAt(pixel, x, ray, place.front, m));
-    loss = thinLoss(pixel, x, m);
+    body = bodyAt(pixel, x, ray, place.front, m);
+    bits = withReturned(bits, body.returned - 1.0);
   }
   Pattern pattern = patternOf(cell, m, place.front);
   for (uint i = 0u; i < pass.value.y; ++i) {
     LightConstants light = lights[i];
-    added += light.radiance.rgb * gatherLight(m, light, x, pattern, loss);
+    added += light.radiance.rgb * gatherLight(m, light, x, pattern, body);
   }
   if ((pass.value.z & kAdds) != 0u) added += addedOf(imageLoad(probesImage, cell));
   return withAdded(bits, added);

@@ -10,11 +10,13 @@ namespace pellucid::shared {
 struct GatherConstants {
   vec4 lengths; // mm; x: shortest; y: log2(longest / shortest); z: largest distance looked for, 2 / kappa; w: depth scale
   vec4 profile; // rgb: 1/(3 d) of Burley's profile, 0: none, 1/mm; w: of the spatial filter between probes, 1/mm^2
-  vec4 convexity; // rgb: how much more of the light comes back, per mean curvature, mm; w: how far to both sides that
-                  // is measured, mm
+  vec4 body;    // x: how far to both sides of a probe its curvature is measured, mm; 0: nothing is diffused
   // A slab of thickness h sends back R(h) = x - sqrt(y T(h)^2 + z) of a half-space's light, x, y, z of each channel.
   vec4 reflectance[3];
   vec4 entries[3 * PELLUCID_GATHER_ENTRIES]; // see gatherSlab
+  // Factors of a ball of diameter h, as halves: rgb of its diffused irradiance beyond a slab's R(h) / rho, rgb of what comes through
+  // it beyond 1. w: in bytes, rgb of the diffused irradiance that takes the place of what comes through no more.
+  uvec4 ball[PELLUCID_GATHER_ENTRIES];
 };
 
 // Places and depths of a map's entry points (compute/gather/entry_point.glsl), from a view-space point (x, 1):

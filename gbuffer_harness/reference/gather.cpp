@@ -20,7 +20,6 @@ constexpr double kLeastCosine = 0.2;
 // Slope of an exit's own surface across the light within a texel, at most: as of 76 degrees.
 constexpr double kSteepestOwn = 4;
 // What curvature adds to the diffusion, or takes from it, at most.
-constexpr double kMostConvexity = 0.1;
 // Texels: a point on a surface and the pixel that shows it are apart by the slope within them.
 constexpr double kSeenTolerance = 0.5;
 // A face that turns away from the light by more than 30 degrees is the other face of a thin part.
@@ -230,8 +229,8 @@ double Gather::meanCurvature(const Surface& surface, double reach) const {
   return a.weight * b.weight * 0.5 * trace / area;
 }
 
-glm::dvec3 Gather::thinLoss(const Surface& surface, std::size_t material) const {
-  if (!surface.chord || !surface.normal) return glm::dvec3(0);
+double Gather::thickness(const Surface& surface) const {
+  if (!surface.chord || !surface.normal) return INFINITY;
   const glm::dvec2 pixel = glm::floor(surfaces_.camera().project(surface.position));
   const auto back = [&](glm::dvec2 at) -> std::optional<glm::dvec3> {
     if (!(at.x >= 0 && at.y >= 0 && at.x < capture_.width && at.y < capture_.height)) return std::nullopt;
@@ -255,11 +254,18 @@ glm::dvec3 Gather::thinLoss(const Surface& surface, std::size_t material) const 
     if (glm::length(n) > 0) outward = glm::normalize(glm::dot(n, surface.ray) < 0 ? -n : n);
   }
   const double chord = *surface.chord * mm_;
-  const double depth =
-      0.5 * chord *
-      (std::abs(glm::dot(surface.ray, *surface.normal)) + std::abs(glm::dot(surface.ray, outward)));
   const double opposite = 0.5 - 0.5 * glm::dot(*surface.normal, outward);
-  return opposite * (1.0 - kernels_[material]->slabReflectance(depth));
+  return 0.5 * chord *
+         (std::abs(glm::dot(surface.ray, *surface.normal)) + std::abs(glm::dot(surface.ray, outward))) /
+         std::max(opposite, 0.01);
+}
+
+BodyFactors Gather::bodyAt(const Surface& surface, std::size_t material) const {
+  const GatherKernel& kernel = *kernels_[material];
+  const double reach = kernel.bodyReach();
+  if (!diffused_ || !surface.normal || !(reach > 0)) return {};
+  const double h = thickness(surface);
+  return kernel.body(h, meanCurvature(surface, std::min(reach, h / 4)));
 }
 
 // Over the texels of a light's maps.
@@ -365,28 +371,25 @@ Gathered Gather::at(const Surface& surface, std::size_t material) const {
   const glm::dmat4& worldFromView = surfaces_.worldFromView();
   Exit exit{mm_ * glm::dvec3(worldFromView * glm::dvec4(surface.position, 1)), std::nullopt, material};
   if (surface.normal) exit.normal = glm::dmat3(worldFromView) * *surface.normal;
-  const glm::dvec3 loss = diffused_ ? thinLoss(surface, material) : glm::dvec3(0);
+  const BodyFactors body = bodyAt(surface, material);
   const glm::dvec3 rho = kernel.reflectance();
   Gathered result;
   for (std::size_t i = 0; i < lights_.size(); ++i) {
     if (lights_[i].empty()) continue;
     const Place place = placeOf(i, exit);
-    const Sums s = sums(lights_[i], exit, place);
+    Sums s = sums(lights_[i], exit, place);
+    s.transmitted *= body.through;
     result.transmitted += s.transmitted;
     if (!diffused_) continue;
     // What is displaced is the light's own: half of what it brings to the exit and half of what it brings
     // around.
     const glm::dvec3 own = place.ownIrradiance, seen = s.seenEntering / glm::max(s.seen, glm::dvec3(1e-12));
     const glm::dvec3 around = 0.5 * (own + seen), hidden = glm::min(s.hidden, glm::dvec3(1));
-    // Diffused light is no more than what lies around, and a dark point has next to none of its own to lose.
-    const glm::dvec3 lost = loss * glm::min(seen, 2.0 * own);
+    // Diffused light is no more than what lies around.
     const glm::dvec3 opposite = glm::min(s.opposite, s.transmitted / rho + own);
-    result.returned += s.entering - opposite - hidden * around - (1.0 - hidden) * lost;
+    result.returned += body.returned * (s.entering - hidden * around) - opposite;
   }
-  const glm::dvec3 convexity = kernel.convexity();
-  const double reach = std::max({convexity.r, convexity.g, convexity.b});
-  if (diffused_ && surface.normal && reach > 0)
-    result.convexity = glm::clamp(convexity * meanCurvature(surface, reach), -kMostConvexity, kMostConvexity);
+  result.factor = glm::clamp(body.returned, glm::dvec3(0), glm::dvec3(2));
   return result;
 }
 

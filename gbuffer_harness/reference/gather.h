@@ -20,7 +20,7 @@ struct Gathered {
   // Irradiance that enters hidden from the camera and faces the way the pixel does, less what the lights'
   // diffused irradiance stands for in its place: in each light alone, so that lights add up.
   glm::dvec3 returned{0};
-  glm::dvec3 convexity{0};  // part of the diffused irradiance that comes back besides, -1/10..1/10
+  glm::dvec3 factor{1};  // of the diffused irradiance, 0..2: what comes back of the body over a half-space's
 };
 
 class Gather {
@@ -83,8 +83,9 @@ private:
   // Around a surface with a normal, 1/mm, positive where convex: from what lies `reach` mm to both sides in
   // the image. 0 where it does not go on.
   double meanCurvature(const Surface& surface, double reach) const;
-  // 1 - R(h) / rho of the body there, weighted with how opposite its faces are.
-  glm::dvec3 thinLoss(const Surface& surface, std::size_t material) const;
+  // Of a slab at any angle, of a ball its diameter; mm, INFINITY: not known.
+  double thickness(const Surface& surface) const;
+  BodyFactors bodyAt(const Surface& surface, std::size_t material) const;
   // Normal of what the camera shows at a lit point of a map, world; nothing where it shows something else
   // there. `tolerance`: half a texel; `uncertain`: along the light; `offset`: along normals; scene units.
   // `biased`: a slope bias or an offset moved the map.

@@ -19,6 +19,11 @@ struct GatherPath {
 // to: x - y. Normals are unit.
 GatherPath gatherPath(const glm::dvec3& to, const glm::dvec3& exitNormal, const glm::dvec3& entryNormal);
 
+// Of the diffused irradiance and of what comes through.
+struct BodyFactors {
+  glm::dvec3 returned{1}, through{1};
+};
+
 class GatherKernel {
 public:
   // Throws InputError when T(d) is not one of the models the gather takes.
@@ -43,10 +48,17 @@ public:
   // a = (1 / rho + rho) / 2, and s such that a slab without medium sends back what its boundary does.
   glm::dvec3 slabReflectance(double depth) const;
 
-  // How much more of the diffused light comes back per mean curvature, mm: -d ln rho / d kappa of small
-  // losses, as the light under a convex surface decays with kappa - H. From (1 - rho) / (1 + rho) ~ kappa,
-  // less what the boundary reflects, which T(0) = (1 - F) / (1 + F) gives.
-  glm::dvec3 convexity() const;
+  // Factors at a surface of that thickness (mm; INFINITY: not known) and mean curvature (1/mm, positive where
+  // convex).
+  BodyFactors body(double thickness, double curvature) const;
+
+  // Part of even light from all around on a ball of that radius (mm) that leaves it: diffusion with an
+  // extrapolated boundary, fitted to rho and T.
+  glm::dvec3 leavesBall(double radius) const;
+
+  // How far to both sides of a point its curvature is measured, mm: the depth from which light comes back. 0
+  // without diffusion.
+  double bodyReach() const;
 
   // Distance beyond which `transmitted` of every channel integrates to less than `share` of T(0) over a
   // plane.
@@ -58,6 +70,16 @@ private:
     glm::dvec3 weight, decay;
   };
 
+  // Diffusion in balls, mm.
+  struct Diffusion {
+    double rho, entering, source, beyond;
+  };
+  // Of a ball in light that has the spherical harmonic of that order, 0 or 1.
+  double leaves(int channel, int order, double radius) const;
+  // Of a whole ball in one channel: what its slab of that thickness lacks, what comes through beyond 1, and
+  // what comes back instead.
+  glm::dvec3 ball(int channel, double radius) const;
+  Diffusion diffusion(int channel) const;
   double transmittance(int channel, double depth) const;
 
   PellucidMaterial material_;

@@ -152,7 +152,7 @@ private:
       if (!surface || marks_.count(i) != 0 || material(i).thinWalled) return;
       const Gathered g = all.at(*surface, capture_.material[i] - 1u);
       const float* rho = material(i).reflectance;
-      output[i] = (1.0 + g.convexity) * output[i] + g.returned;
+      output[i] = g.factor * output[i] + g.returned;
       output[i] += g.transmitted * glm::dvec3(f[0], f[1], f[2]) / glm::dvec3(rho[0], rho[1], rho[2]) +
                    transmitted(x, y, i);
       output[i] = glm::max(output[i], glm::dvec3(0));

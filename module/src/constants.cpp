@@ -197,7 +197,7 @@ shared::MaterialConstants materialConstants(const FrameFacts& f, const MaterialT
   if (f.gathers || f.lights.ambient.intensity > 0) c.gather = tables.gather;
   // Without diffusion nothing of it is corrected.
   if (f.diffusedCount(m) == 0) {
-    c.gather.convexity = glm::vec4(0);
+    c.gather.body = glm::vec4(0);
     c.gather.profile = glm::vec4(0, 0, 0, c.gather.profile.w);
   }
   // From other models the ambient light takes nothing from visible faces.

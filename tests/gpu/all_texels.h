@@ -26,7 +26,7 @@ inline harness::Image allTexels(const harness::Capture& c, const std::vector<Pel
       const harness::reference::Gathered g = gather.at(*surface, c.material[i] - 1u);
       for (int k = 0; k < 3; ++k)
         out.at(x, y)[k] = static_cast<float>(
-            std::max(0.0, (1 + g.convexity[k]) * double(diffused.at(x, y)[k]) + g.returned[k] +
+            std::max(0.0, g.factor[k] * double(diffused.at(x, y)[k]) + g.returned[k] +
                               g.transmitted[k] / double(materials[c.material[i] - 1u].reflectance[k])));
     }
   });

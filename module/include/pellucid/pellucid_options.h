@@ -123,7 +123,7 @@ typedef struct PellucidLightTable {
   float factor[PELLUCID_LIGHT_TABLE_ENTRIES];
 } PellucidLightTable;
 
-enum { PELLUCID_MATERIAL_TABLE_WORDS = 3440 };
+enum { PELLUCID_MATERIAL_TABLE_WORDS = 3712 };
 
 /* Tables of a material, made once with it: its profile over the pyramid's levels, and numbers of the gather. Plain data. */
 typedef struct PellucidMaterialTables {
