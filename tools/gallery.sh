@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # gallery.sh PELLUCID WORK PICTURES PAGE [MODELS]: scenes of all kinds before, after and path traced. WORK keeps captures, to which a
 # second run adds samples; PICTURES gets a PNG of each scene, and the Markdown file PAGE has the table of them between its markers. MODELS: folder of
-# head_views.glb of the head scan, which stands in for the procedural head and ear. SECONDS_EACH: of path tracing, default 30.
+# head_views.glb of the head scan, which stands in for the procedural head and ear. SECONDS_EACH: of path tracing, default 30. COMMIT: named in the
+# table where there is no repository.
 set -euo pipefail
 pellucid=$1 work=$2 pictures=$3 page=$4 models=${5:-}
 seconds=${SECONDS_EACH:-30} size=${SIZE:-256x192}
@@ -54,8 +55,8 @@ scene lights "Many lights" "Twelve lights of all hues around a head, each with a
 
 cat >"$work/table.md" <<EOF
 $start
-Each picture is under one exposure: without Pellucid | quality 1 | path traced for $seconds seconds. The error is the relative RMSE of R, G and B against path
-tracing, over averages of 4x4 pixels, noise included. Device: $device; commit $(git describe --always --dirty --abbrev=12).$credit
+Each picture is under one exposure: without Pellucid | with Pellucid | path traced for $seconds seconds by $(nproc) cores. The error is the relative RMSE of R, G and B against path
+tracing, over averages of 4x4 pixels, noise included. Device: $device; commit ${COMMIT:-$(git describe --always --dirty --abbrev=12)}.$credit
 
 | scene | picture | error |
 |-|-|-|
