@@ -22,7 +22,7 @@ std::string valueText(const Field& field) {
   std::string text;
   for (const Field& item : field.items()) {
     item.number();
-    text += (text.empty() ? "" : ",") + item.value().dump();
+    text.append(text.empty() ? "" : ",").append(item.value().dump());
   }
   return text;
 }
@@ -56,15 +56,14 @@ std::vector<std::string> SettingsOptions::assignments() const {
   return all;
 }
 
-void SettingsOptions::addTo(CLI::App& command) {
+void SettingsOptions::addTo(const Command& command) {
   std::string help = "key=value, or @FILE with a JSON object of them, repeatable:";
-  for (const Setting& setting : settingsTable()) help += " " + syntaxOf(setting) + ";";
-  command.add_option("--mode", mode, "physical (default) or thesis: Whelan 2009's; --set changes either");
-  command.add_option("--set", set, help);
-  command.add_option(
-      "--debug", debug,
-      std::string("write an intermediate: thickness (mm), transmittance, occlusion, irradiance") +
-          (blocks ? "; blocks: the result, and a PNG of it under the blocks by what ran" : ""));
+  for (const Setting& setting : settingsTable()) help.append(" ").append(syntaxOf(setting)).append(";");
+  command.option("--mode", mode, "physical (default) or thesis: Whelan 2009's; --set changes either");
+  command.option("--set", set, help);
+  command.option("--debug", debug,
+                 std::string("write an intermediate: thickness (mm), transmittance, occlusion, irradiance") +
+                     (blocks ? "; blocks: the result, and a PNG of it under the blocks by what ran" : ""));
 }
 
 ReplaySettings SettingsOptions::parse() const {

@@ -245,22 +245,6 @@ void makeFrame(const Capture& capture, const FrameShape& shape,
   fillPlaceholders(shape, ambient && shape.hiddenIrradiance, data);
 }
 
-const PellucidImage& imageOf(const PellucidFrame& frame, uint32_t resource) {
-  const std::pair<uint32_t, const PellucidImage*> named[] = {
-      {PELLUCID_RESOURCE_FRONT_DEPTH, &frame.frontDepth},
-      {PELLUCID_RESOURCE_BACK_DEPTH, &frame.backDepth},
-      {PELLUCID_RESOURCE_IRRADIANCE, &frame.irradiance},
-      {PELLUCID_RESOURCE_HIDDEN_IRRADIANCE, &frame.hiddenIrradiance},
-      {PELLUCID_RESOURCE_NORMAL, &frame.normal},
-      {PELLUCID_RESOURCE_ALBEDO, &frame.albedo},
-      {PELLUCID_RESOURCE_MATERIAL, &frame.material},
-      {PELLUCID_RESOURCE_OUTPUT, &frame.output}};
-  for (const auto& [name, image] : named)
-    if (name == resource) return *image;
-  return resource >= PELLUCID_RESOURCE_SHADOW0 ? frame.shadowImages[resource - PELLUCID_RESOURCE_SHADOW0]
-                                               : frame.transients[resource - PELLUCID_RESOURCE_TRANSIENT0];
-}
-
 void appendError(void* user, PellucidSeverity severity, const char* field, const char* message) {
   if (severity != PELLUCID_SEVERITY_ERROR) return;
   auto& all = *static_cast<std::string*>(user);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "capture/capture.h"
+#include "common/frame_image.h"
 #include "replay/settings.h"
 
 namespace pellucid::harness {
@@ -66,9 +67,6 @@ void makeFrame(const Capture& capture, const FrameShape& shape,
 
 // Without shadow maps and tables.
 PellucidLight pellucidLight(const Light& light);
-
-// The image that a PellucidBinding of an image resource means, for passes that bind what a plan does.
-const PellucidImage& imageOf(const PellucidFrame& frame, uint32_t resource);
 
 // A PellucidMessageFn that collects errors. `user`: the std::string that they are added to.
 void appendError(void* user, PellucidSeverity severity, const char* field, const char* message);
