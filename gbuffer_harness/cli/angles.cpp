@@ -1,5 +1,4 @@
 // `pellucid angles`: the curves by which Whelan 2009 weighs the angle between view and light.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -98,12 +97,12 @@ void print() {
 
 }  // namespace
 
-void addAnglesCommand(CLI::App& app) {
+void addAnglesCommand(const Command& app) {
   const auto output = std::make_shared<std::string>();
-  CLI::App* command = app.add_subcommand(
+  const Command command = app.subcommand(
       "angles", "Print the curves of the angle between view and light in Whelan 2009, figures 4.7 and 4.8");
-  command->add_option("-o,--output", *output, "PNG of both figures, in place of the table");
-  command->callback([output] { output->empty() ? print() : plot(*output); });
+  command.option("-o,--output", *output, "PNG of both figures, in place of the table");
+  command.run([output] { output->empty() ? print() : plot(*output); });
 }
 
 }  // namespace pellucid::harness

@@ -1,5 +1,4 @@
 // `pellucid capture`: a capture of a procedural scene, or of a glTF file.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <iomanip>
@@ -144,7 +143,7 @@ void captureGltf(const Options& options) {
               frames.size() > 1 ? (" .. " + frames.back().output.string()).c_str() : "");
 }
 
-void capture(const CLI::App& command, const Options& options) {
+void capture(const Command& command, const Options& options) {
   if (options.scene.scene.name == "list") return printScenes();
   const bool procedural = isProcedural(command, options.scene);
   if (options.output.empty()) throw UsageError("capture: -o is required");
@@ -152,33 +151,28 @@ void capture(const CLI::App& command, const Options& options) {
   return procedural ? captureProcedural(options) : captureGltf(options);
 }
 
-void addTurntableOptions(CLI::App& command, Turntable& options) {
-  const char* const group = "Turntables";
-  const CLI::Range turns(1, 1000000);
-  command
-      .add_option("--turntable", options.turntable,
-                  "frames in which the model turns once about the vertical; -o is name.####.exr")
-      ->check(turns)
-      ->group(group);
-  command.add_option("--light-turntable", options.lightTurntable, "frames in which the lights turn once")
-      ->check(turns)
-      ->group(group);
-  command.add_flag("--orbit", options.orbit, "the camera goes round the model instead")->group(group);
-  command
-      .add_option("--frames", options.frames,
-                  "only these frames: FIRST-LAST or a list like 1-10,20 (default: one turn)")
-      ->group(group);
+void addTurntableOptions(const Command& command, Turntable& options) {
+  const Command turns = command.group("Turntables");
+  turns
+      .option("--turntable", options.turntable,
+              "frames in which the model turns once about the vertical; -o is name.####.exr")
+      .range(1, 1000000);
+  turns.option("--light-turntable", options.lightTurntable, "frames in which the lights turn once")
+      .range(1, 1000000);
+  turns.flag("--orbit", options.orbit, "the camera goes round the model instead");
+  turns.option("--frames", options.frames,
+               "only these frames: FIRST-LAST or a list like 1-10,20 (default: one turn)");
 }
 
 }  // namespace
 
-void addCaptureCommand(CLI::App& app) {
+void addCaptureCommand(const Command& app) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("capture", "Make a capture of a glTF model or a procedural scene");
-  command->add_option("-o,--output", options->output, "EXR to write, the manifest embedded");
-  addCaptureOptions(*command, options->scene);
-  addTurntableOptions(*command, options->turntable);
-  command->callback([options, command] { capture(*command, *options); });
+  const Command command = app.subcommand("capture", "Make a capture of a glTF model or a procedural scene");
+  command.option("-o,--output", options->output, "EXR to write, the manifest embedded");
+  addCaptureOptions(command, options->scene);
+  addTurntableOptions(command, options->turntable);
+  command.run([options, command] { capture(command, *options); });
 }
 
 }  // namespace pellucid::harness

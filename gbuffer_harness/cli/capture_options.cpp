@@ -73,10 +73,9 @@ ModelCamera chooseCamera(const CaptureOptions& options, const Model& model, cons
   throw UsageError("--camera: there is no \"" + options.camera + "\" but " + names);
 }
 
-void refuseOptionsOf(const CLI::App& command, const char* group, const char* needs) {
-  for (const CLI::Option* option : command.get_options())
-    if (option->get_group() == group && option->count() > 0)
-      throw UsageError(option->get_name() + ": needs " + needs);
+void refuseOptionsOf(const Command& command, const char* group, const char* needs) {
+  for (const GivenOption& option : command.given())
+    if (option.group == group) throw UsageError(option.name + ": needs " + needs);
 }
 
 std::array<double, 2> parsePair(const char* option, const std::string& text, const char* syntax) {
@@ -102,166 +101,114 @@ ShadowDrawing shadowDrawing(const CaptureOptions& options) {
   return drawing;
 }
 
-void addCommonOptions(CLI::App& command, CaptureOptions& options) {
-  command.add_option(
+void addCommonOptions(const Command& command, CaptureOptions& options) {
+  command.option(
       "--size", options.size,
       "WIDTHxHEIGHT in pixels (default: 512x512, and 512 high for a file's camera with an aspect)");
-  const std::map<std::string, bool> projections = {{"perspective", false}, {"orthographic", true}};
-  command
-      .add_option("--projection", options.orthographic,
-                  "perspective or orthographic (default: the scene's; of a model's auto camera: perspective)")
-      ->transform(CLI::CheckedTransformer(projections, CLI::ignore_case));
-  command.add_flag("--reversed-z,!--forward-z", options.reversedZ,
-                   "device depth 1 at the near plane (default: a model yes, a scene no)");
-  command.add_flag("--infinite-far", options.infiniteFar, "no far plane (perspective only)");
-  command.add_flag("--view-normals", options.viewNormals, "normals in view instead of world space");
-  const std::map<std::string, PellucidDepthEncoding> encodings = {{"viewz", PELLUCID_DEPTH_VIEW_Z},
-                                                                  {"device", PELLUCID_DEPTH_DEVICE}};
-  command.add_option("--depth", options.depth, "viewz or device (default: a model device, a scene viewz)")
-      ->transform(CLI::CheckedTransformer(encodings, CLI::ignore_case));
-  std::map<std::string, PellucidDepthEncoding> shadowEncodings = encodings;
-  shadowEncodings["distance"] = PELLUCID_DEPTH_DISTANCE;
-  command
-      .add_option("--shadow-depth", options.shadowDepth,
-                  "viewz, device or distance (default: a model device, a scene viewz)")
-      ->transform(CLI::CheckedTransformer(shadowEncodings, CLI::ignore_case));
-  command.add_option("--ior", options.ior, "index of refraction of all materials, in place of their own")
-      ->check(CLI::Range(1.0, 3.0));
-  command.add_option("--environment", options.environment,
-                     std::string("radiance from all around: ") + kEnvironmentSyntax);
-  command.add_option("--shadow-size", options.shadowSize,
-                     "texels across a shadow map; 0: none (default: a model 1024, a scene 512)");
-  command
-      .add_option(
-          "--material", options.presets,
-          "of a scene: *=PRESET or *={a manifest's material}, for all objects; of a model, repeatable: "
-          "NAME=PRESET, NAME={...} or NAME=thin:R,G,B, a thin wall's transmittance; NAME * means all others")
-      ->take_all();
-  command
-      .add_option(
-          "--light", options.lights,
-          std::string("of a scene: directional, point or spot; of a model, repeatable: ") + kLightSyntax)
-      ->take_all();
+  command.choice("--projection", options.orthographic, {{"perspective", false}, {"orthographic", true}},
+                 "perspective or orthographic (default: the scene's; of a model's auto camera: perspective)");
+  command.flag("--reversed-z,!--forward-z", options.reversedZ,
+               "device depth 1 at the near plane (default: a model yes, a scene no)");
+  command.flag("--infinite-far", options.infiniteFar, "no far plane (perspective only)");
+  command.flag("--view-normals", options.viewNormals, "normals in view instead of world space");
+  command.choice("--depth", options.depth,
+                 {{"viewz", PELLUCID_DEPTH_VIEW_Z}, {"device", PELLUCID_DEPTH_DEVICE}},
+                 "viewz or device (default: a model device, a scene viewz)");
+  command.choice("--shadow-depth", options.shadowDepth,
+                 {{"viewz", PELLUCID_DEPTH_VIEW_Z},
+                  {"device", PELLUCID_DEPTH_DEVICE},
+                  {"distance", PELLUCID_DEPTH_DISTANCE}},
+                 "viewz, device or distance (default: a model device, a scene viewz)");
+  command.option("--ior", options.ior, "index of refraction of all materials, in place of their own")
+      .range(1.0, 3.0);
+  command.option("--environment", options.environment,
+                 std::string("radiance from all around: ") + kEnvironmentSyntax);
+  command.option("--shadow-size", options.shadowSize,
+                 "texels across a shadow map; 0: none (default: a model 1024, a scene 512)");
+  command.option(
+      "--material", options.presets,
+      "of a scene: *=PRESET or *={a manifest's material}, for all objects; of a model, repeatable: "
+      "NAME=PRESET, NAME={...} or NAME=thin:R,G,B, a thin wall's transmittance; NAME * means all others");
+  command.option(
+      "--light", options.lights,
+      std::string("of a scene: directional, point or spot; of a model, repeatable: ") + kLightSyntax);
 }
 
-void addModelOptions(CLI::App& command, CaptureOptions& options, SceneUse use) {
-  const char* const group = kModelGroup;
-  command.add_option("model", options.model, "glTF file, .glb or .gltf");
-  command
-      .add_option("--unit", options.unit, "mm, cm, m or a number of meters: the length of the file's unit")
-      ->capture_default_str()
-      ->group(group);
-  CLI::Option* time = command
-                          .add_option("--time", options.time,
-                                      "seconds into the file's animation (default: nodes as they stand)")
-                          ->check(CLI::NonNegativeNumber)
-                          ->group(group);
-  command.add_option("--animation", options.animation, "name or number from 0 (default: the first)")
-      ->needs(time)
-      ->group(group);
-  command.add_flag("--fill-holes", options.fillHoles, "close the holes of bodies that have a material")
-      ->group(group);
-  command.add_option("--camera", options.camera, "name of one of the file's cameras, or auto")->group(group);
-  command.add_option("--view", options.view, "X,Y,Z: direction from the center to the auto camera")
-      ->group(group);
-  command.add_option("--fov", options.verticalFov, "vertical field of view of the auto camera, degrees")
-      ->check(CLI::Range(1.0, 170.0))
-      ->capture_default_str()
-      ->group(group);
-  const std::map<std::string, BackFace> faces = {{"nearest", BackFace::Nearest},
-                                                 {"farthest", BackFace::Farthest}};
-  command.add_option("--back", options.backFace, "which back face behind the front: nearest or farthest")
-      ->transform(CLI::CheckedTransformer(faces, CLI::ignore_case))
-      ->group(group);
-  command
-      .add_option("--point-maps", options.pointMaps,
-                  "shadow maps of a point light: 1, 6 or auto, 6 where 1 cannot see the whole model")
-      ->check(CLI::IsMember({"auto", "1", "6"}))
-      ->capture_default_str()
-      ->group(group);
-  const std::map<std::string, MapCull> culls = {
-      {"none", MapCull::None}, {"back", MapCull::Back}, {"front", MapCull::Front}};
-  command
-      .add_option(
-          "--simplify", options.simplify,
-          "share of the triangles that back depth and shadow maps are drawn with, above 0 (default 1)")
-      ->group(group);
-  command
-      .add_option("--shadow-cull", options.shadowCull,
-                  "faces that shadow maps leave out: none (default), back or front")
-      ->transform(CLI::CheckedTransformer(culls, CLI::ignore_case))
-      ->group(group);
-  command
-      .add_option("--shadow-depth-bias", options.shadowDepthBias,
-                  "CONSTANT,SLOPE: factors of vkCmdSetDepthBias, away from the light")
-      ->group(group);
-  command.add_option("--shadow-bits", options.shadowBits, "of a shadow map's depth: 16, 24 or 32, a float")
-      ->check(CLI::IsMember({16, 24, 32}))
-      ->capture_default_str()
-      ->group(group);
-  command
-      .add_option(
+void addModelOptions(const Command& command, CaptureOptions& options, SceneUse use) {
+  const Command models = command.group(kModelGroup);
+  command.option("model", options.model, "glTF file, .glb or .gltf");
+  models.option("--unit", options.unit, "mm, cm, m or a number of meters: the length of the file's unit");
+  const CommandOption time =
+      models
+          .option("--time", options.time, "seconds into the file's animation (default: nodes as they stand)")
+          .notNegative();
+  models.option("--animation", options.animation, "name or number from 0 (default: the first)").needs(time);
+  models.flag("--fill-holes", options.fillHoles, "close the holes of bodies that have a material");
+  models.option("--camera", options.camera, "name of one of the file's cameras, or auto");
+  models.option("--view", options.view, "X,Y,Z: direction from the center to the auto camera");
+  models.option("--fov", options.verticalFov, "vertical field of view of the auto camera, degrees")
+      .range(1.0, 170.0);
+  models.choice("--back", options.backFace,
+                {{"nearest", BackFace::Nearest}, {"farthest", BackFace::Farthest}},
+                "which back face behind the front: nearest or farthest");
+  models
+      .option("--point-maps", options.pointMaps,
+              "shadow maps of a point light: 1, 6 or auto, 6 where 1 cannot see the whole model")
+      .oneOf({"auto", "1", "6"});
+  models.option("--simplify", options.simplify,
+                "share of the triangles that back depth and shadow maps are drawn with, above 0 (default 1)");
+  models.choice("--shadow-cull", options.shadowCull,
+                {{"none", MapCull::None}, {"back", MapCull::Back}, {"front", MapCull::Front}},
+                "faces that shadow maps leave out: none (default), back or front");
+  models.option("--shadow-depth-bias", options.shadowDepthBias,
+                "CONSTANT,SLOPE: factors of vkCmdSetDepthBias, away from the light");
+  models.option("--shadow-bits", options.shadowBits, "of a shadow map's depth: 16, 24 or 32, a float")
+      .oneOf({16, 24, 32});
+  models
+      .option(
           "--shadow-normal-offset", options.shadowNormalOffset,
           "texels times 1 - cosine to the light by which a map's vertices move inward along their normals")
-      ->check(CLI::Range(0.0, 100.0))
-      ->capture_default_str()
-      ->group(group);
-  command
-      .add_option("--shadow-cascades", options.shadowCascades,
-                  "maps of a directional light that follow the camera; 0: one around the model")
-      ->check(CLI::Range(0, 6))
-      ->capture_default_str()
-      ->group(group);
-  command
-      .add_option(
+      .range(0.0, 100.0);
+  models
+      .option("--shadow-cascades", options.shadowCascades,
+              "maps of a directional light that follow the camera; 0: one around the model")
+      .range(0, 6);
+  models
+      .option(
           "--shadow-filter", options.shadowFilter,
           "taps across, odd, with which the irradiance filters these maps; 0: it has plain maps of its own")
-      ->check(CLI::IsMember({0, 1, 3, 5, 7, 9, 11, 13, 15}))
-      ->capture_default_str()
-      ->group(group);
-  command
-      .add_option(
-          "--jitter", options.jitter,
-          "X,Y in pixels, -1 .. 1, by which the projection moves the picture, as for temporal antialiasing")
-      ->group(group);
-  CLI::Option* atlas =
-      command.add_flag("--shadow-atlas", options.shadowAtlas, "all shadow maps as tiles of one image")
-          ->group(group);
-  command.add_flag("--shadow-array", options.shadowArray, "all shadow maps as layers of one image")
-      ->excludes(atlas)
-      ->group(group);
-  CLI::Option* device = command.add_option("--device", options.device,
-                                           "part of the Vulkan device's name; default: the fastest kind");
-  if (use == SceneUse::Capture) device->group(group);
+      .oneOf({0, 1, 3, 5, 7, 9, 11, 13, 15});
+  models.option(
+      "--jitter", options.jitter,
+      "X,Y in pixels, -1 .. 1, by which the projection moves the picture, as for temporal antialiasing");
+  const CommandOption atlas =
+      models.flag("--shadow-atlas", options.shadowAtlas, "all shadow maps as tiles of one image");
+  models.flag("--shadow-array", options.shadowArray, "all shadow maps as layers of one image")
+      .excludes(atlas);
+  (use == SceneUse::Capture ? models : command)
+      .option("--device", options.device, "part of the Vulkan device's name; default: the fastest kind");
 }
 
-void addSceneOptions(CLI::App& command, CaptureOptions& options, SceneUse use) {
-  const char* const group = kSceneGroup;
-  command
-      .add_option("--procedural", options.scene.name,
-                  "name of the scene; list: print all scenes with their options")
-      ->group(group);
-  command.add_option("--seed", options.scene.seed, "seed of scenes that scatter objects")
-      ->capture_default_str()
-      ->group(group);
-  command
-      .add_option(use == SceneUse::Capture ? "--set" : "--scene-set", options.set,
-                  "key=value, repeatable: an option of the scene")
-      ->take_all()
-      ->group(group);
+void addSceneOptions(const Command& command, CaptureOptions& options, SceneUse use) {
+  const Command scenes = command.group(kSceneGroup);
+  scenes.option("--procedural", options.scene.name,
+                "name of the scene; list: print all scenes with their options");
+  scenes.option("--seed", options.scene.seed, "seed of scenes that scatter objects");
+  scenes.option(use == SceneUse::Capture ? "--set" : "--scene-set", options.set,
+                "key=value, repeatable: an option of the scene");
 }
 
 }  // namespace
 
-void addCaptureOptions(CLI::App& command, CaptureOptions& options, SceneUse use) {
+void addCaptureOptions(const Command& command, CaptureOptions& options, SceneUse use) {
   addCommonOptions(command, options);
   addModelOptions(command, options, use);
   addSceneOptions(command, options, use);
 }
 
-bool isProcedural(const CLI::App& command, const CaptureOptions& options) {
+bool isProcedural(const Command& command, const CaptureOptions& options) {
   if (options.scene.name.empty() == options.model.empty())
-    throw UsageError(command.get_name() + ": either a model or --procedural is required");
+    throw UsageError(command.name() + ": either a model or --procedural is required");
   const bool procedural = options.model.empty();
   if (procedural)
     refuseOptionsOf(command, kModelGroup, "a model");

@@ -2,11 +2,11 @@
 // scene.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "cli/command.h"
 #include "cli/light_option.h"
 #include "gltf/gltf.h"
 #include "raster/raster.h"
@@ -69,11 +69,11 @@ void requireTranslucent(const CaptureModel& model);
 enum class SceneUse { Capture, Replay };
 
 // Adds all of them to a command, but for its output.
-void addCaptureOptions(CLI::App& command, CaptureOptions& options, SceneUse use = SceneUse::Capture);
+void addCaptureOptions(const Command& command, CaptureOptions& options, SceneUse use = SceneUse::Capture);
 
 // True when they name a procedural scene; else they name a model. Throws UsageError when they name both or
 // neither, and for an option of the other kind: one without effect is a mistake of who gave it.
-bool isProcedural(const CLI::App& command, const CaptureOptions& options);
+bool isProcedural(const Command& command, const CaptureOptions& options);
 
 // Throws UsageError.
 SceneParameters procedural(const CaptureOptions& options);
@@ -86,8 +86,9 @@ inline constexpr const char* kEnvironmentSyntax = "uniform:R,G,B or gradient:R,G
 // Throws UsageError.
 std::optional<Environment> environment(const CaptureOptions& options);
 
-// Reads the file and gives its bodies numbers. `turns` (radians): of the turntable's cameras, all of which the
-// auto camera fits. lightsOfNone: kLightSyntax, of a file without lights. Throws UsageError and InputError.
+// Reads the file and gives its bodies numbers. `turns` (radians): of the turntable's cameras, all of which
+// the auto camera fits. lightsOfNone: kLightSyntax, of a file without lights. Throws UsageError and
+// InputError.
 CaptureModel captureModel(const CaptureOptions& options, const std::vector<double>& turns = {0},
                           const std::vector<std::string>& lightsOfNone = {kBackLight});
 

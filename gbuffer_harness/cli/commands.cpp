@@ -2,7 +2,7 @@
 
 namespace pellucid::harness {
 
-void addCommands(CLI::App& app) {
+void addCommands(const Command& app) {
   addInfoCommand(app);
   addInitCommand(app);
   addReplayCommand(app);

@@ -2,31 +2,29 @@
 // into an exit code.
 #pragma once
 
-namespace CLI {
-class App;
-}
+#include "cli/command.h"
 
 namespace pellucid::harness {
 
-void addCommands(CLI::App& app);  // all of them, in the help's order
+void addCommands(const Command& app);  // all that the program has, in the help's order
 
-void addAnglesCommand(CLI::App& app);
-void addInfoCommand(CLI::App& app);
-void addInitCommand(CLI::App& app);
-void addReplayCommand(CLI::App& app);
-void addPlanCommand(CLI::App& app);
-void addMaterialCommand(CLI::App& app);
-void addReferenceCommand(CLI::App& app);
-void addCompareCommand(CLI::App& app);
-void addTruthCommand(CLI::App& app);
-void addEvaluateCommand(CLI::App& app);
-void addFlickerCommand(CLI::App& app);
-void addCaptureCommand(CLI::App& app);
-void addSheetCommand(CLI::App& app);
-void addMeasureDotsCommand(CLI::App& app);
-void addStressCommand(CLI::App& app);
-void addViewCommand(CLI::App& app);
-void addPerceptionCommand(CLI::App& app);
-void addShadersCommand(CLI::App& app);
+void addAnglesCommand(const Command& app);
+void addInfoCommand(const Command& app);
+void addInitCommand(const Command& app);
+void addReplayCommand(const Command& app);
+void addPlanCommand(const Command& app);
+void addMaterialCommand(const Command& app);
+void addReferenceCommand(const Command& app);
+void addCompareCommand(const Command& app);
+void addTruthCommand(const Command& app);
+void addEvaluateCommand(const Command& app);
+void addFlickerCommand(const Command& app);
+void addCaptureCommand(const Command& app);
+void addSheetCommand(const Command& app);
+void addMeasureDotsCommand(const Command& app);
+void addStressCommand(const Command& app);
+void addViewCommand(const Command& app);
+void addPerceptionCommand(const Command& app);
+void addShadersCommand(const Command& app);
 
 }  // namespace pellucid::harness

@@ -1,6 +1,5 @@
 #include "common/compare.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -266,53 +265,43 @@ void compare(const Options& options) {
 
 }  // namespace
 
-void addCompareCommand(CLI::App& app) {
+void addCompareCommand(const Command& app) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("compare", "Say how far image A is from image B, per channel");
-  command->add_option("A", options->a, "EXR image, or a capture: its truth")->required();
-  command->add_option("B", options->b, "EXR image, or a capture: its truth, over its material pixels")
-      ->required();
-  command->add_option("--mask", options->mask,
-                      "capture whose material pixels count (default: B's, else all pixels)");
-  addPresetOption(*command, options->preset);
-  command->add_option("--layer", options->layer,
-                      "layer of B whose R, G, B are compared; B then counts as an image");
-  command->add_option("--scale", options->scale, "factor of B, as pi for a pass that holds E / pi")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  command->add_option("--box", options->box, "average blocks of NxN pixels first")
-      ->check(CLI::Range(1, 4096))
-      ->capture_default_str();
+  const Command command = app.subcommand("compare", "Say how far image A is from image B, per channel");
+  command.option("A", options->a, "EXR image, or a capture: its truth").required();
+  command.option("B", options->b, "EXR image, or a capture: its truth, over its material pixels").required();
+  command.option("--mask", options->mask,
+                 "capture whose material pixels count (default: B's, else all pixels)");
+  addPresetOption(command, options->preset);
+  command.option("--layer", options->layer,
+                 "layer of B whose R, G, B are compared; B then counts as an image");
+  command.option("--scale", options->scale, "factor of B, as pi for a pass that holds E / pi").positive();
+  command.option("--box", options->box, "average blocks of NxN pixels first").range(1, 4096);
   command
-      ->add_option("--box-coverage", options->boxCoverage,
-                   "part of a block's pixels that must count, else it is left out")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
+      .option("--box-coverage", options->boxCoverage,
+              "part of a block's pixels that must count, else it is left out")
+      .range(0.0, 1.0);
+  command.option("--subset", options->subset, "pixels that count: all, or those lit or unlit from the front")
+      .oneOf({"all", "lit", "unlit"});
   command
-      ->add_option("--subset", options->subset,
-                   "pixels that count: all, or those lit or unlit from the front")
-      ->check(CLI::IsMember({"all", "lit", "unlit"}))
-      ->capture_default_str();
-  command
-      ->add_option(
+      .option(
           "--limit", options->limits,
           "exit with 1 when a channel exceeds it: rel_rmse=, p999=, max=, bias=, tint= (at most), psnr= (at "
           "least); or the whole: isolated=, isolated_alone=, spots=, spots_alone=, flip=, "
           "flip_p99= (at most)")
-      ->delimiter(',')
-      ->take_all();
-  command->add_option("--diff", options->diff, "write a PNG: A, B, 4 |A-B|");
-  command->add_option("--ratio", options->ratio,
-                      "write a PNG of A / B over 4x4 averages: gray where right, full color at 10 % off");
-  command->add_option("--isolated", options->isolated,
-                      "write a PNG of A with its isolated pixels and its spots framed");
+      .separatedBy(',');
+  command.option("--diff", options->diff, "write a PNG: A, B, 4 |A-B|");
+  command.option("--ratio", options->ratio,
+                 "write a PNG of A / B over 4x4 averages: gray where right, full color at 10 % off");
+  command.option("--isolated", options->isolated,
+                 "write a PNG of A with its isolated pixels and its spots framed");
   command
-      ->add_option("--exposure", options->exposure,
-                   "factor for flip and --isolated; default: B's 99th percentile to 0.8")
-      ->check(CLI::PositiveNumber);
-  command->add_flag("--json", options->json, "print JSON; infinity is null");
-  command->footer(kDefinitions);
-  command->callback([options] { compare(*options); });
+      .option("--exposure", options->exposure,
+              "factor for flip and --isolated; default: B's 99th percentile to 0.8")
+      .positive();
+  command.flag("--json", options->json, "print JSON; infinity is null");
+  command.footer(kDefinitions);
+  command.run([options] { compare(*options); });
 }
 
 }  // namespace pellucid::harness

@@ -1,5 +1,4 @@
 // `pellucid evaluate`: models, or numbers of samples, against the path-traced truth of captures.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fstream>
 
@@ -148,36 +147,31 @@ void run(const Options& options) {
 
 }  // namespace
 
-void addEvaluateCommand(CLI::App& app) {
+void addEvaluateCommand(const Command& app) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand(
-      "evaluate", "Compare translucency models or numbers of samples with captures' truth");
-  command->add_option("captures", options->captures, "captures with truth")->required();
-  command->add_option("-o,--output", options->output,
-                      "file to write the tables to; default: standard output");
-  command->add_option("--rows", options->rows, "models, or samples: 0, 8 and 16 of the gather")
-      ->check(CLI::IsMember({"models", "samples"}))
-      ->capture_default_str();
-  command->add_flag("--json", options->json, "JSON instead of Markdown tables");
+  const Command command =
+      app.subcommand("evaluate", "Compare translucency models or numbers of samples with captures' truth");
+  command.option("captures", options->captures, "captures with truth").required();
+  command.option("-o,--output", options->output, "file to write the tables to; default: standard output");
+  command.option("--rows", options->rows, "models, or samples: 0, 8 and 16 of the gather")
+      .oneOf({"models", "samples"});
+  command.flag("--json", options->json, "JSON instead of Markdown tables");
   command
-      ->add_option("--exposure", options->exposure,
-                   "factor for FLIP; default: brings the truth's 99th percentile to 0.8")
-      ->check(CLI::PositiveNumber);
-  command->add_option("--box", options->boxes.side, "average NxN pixels first")
-      ->check(CLI::Range(1, 64))
-      ->capture_default_str();
+      .option("--exposure", options->exposure,
+              "factor for FLIP; default: brings the truth's 99th percentile to 0.8")
+      .positive();
+  command.option("--box", options->boxes.side, "average NxN pixels first").range(1, 64);
   command
-      ->add_option("--box-coverage", options->boxes.coverage,
-                   "part of an average's pixels that must be surface, else it is left out")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
-  command->add_flag("--reference", options->reference,
-                    "add the float64 gather over all texels with brute-force diffusion; takes minutes");
-  command->add_option("--picture", options->picture,
-                      "PNG of the first capture: thesis, light-space thickness, the default, truth");
-  command->add_option("--plot", options->plot, "PNG of the error against the samples of the gather");
-  command->add_option("--device", options->device, "part of the Vulkan device's name");
-  command->callback([options] { run(*options); });
+      .option("--box-coverage", options->boxes.coverage,
+              "part of an average's pixels that must be surface, else it is left out")
+      .range(0.0, 1.0);
+  command.flag("--reference", options->reference,
+               "add the float64 gather over all texels with brute-force diffusion; takes minutes");
+  command.option("--picture", options->picture,
+                 "PNG of the first capture: thesis, light-space thickness, the default, truth");
+  command.option("--plot", options->plot, "PNG of the error against the samples of the gather");
+  command.option("--device", options->device, "part of the Vulkan device's name");
+  command.run([options] { run(*options); });
 }
 
 }  // namespace pellucid::harness

@@ -1,5 +1,4 @@
 // `pellucid flicker`: what changes in a result when the camera moves by whole pixels or lights turn a little.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -111,10 +110,10 @@ Frames modelFrames(const Options& options, Device& device) {
 }
 
 // The options of a scene have no meaning for a capture.
-void refuseSceneOptions(const std::vector<const CLI::Option*>& sceneOptions) {
-  for (const CLI::Option* option : sceneOptions)
-    if (option->count() > 0 && option->get_name() != "model" && option->get_name() != "--device")
-      throw UsageError(option->get_name() + ": needs a model or --procedural, and not a capture");
+void refuseSceneOptions(const Command& command, const std::vector<std::string>& sceneOptions) {
+  for (const std::string& option : sceneOptions)
+    if (command.isGiven(option) && option != "model" && option != "--device")
+      throw UsageError(option + ": needs a model or --procedural, and not a capture");
 }
 
 std::vector<Row> measure(const Options& options, const std::vector<int>& pixels, const Frames& frames,
@@ -178,8 +177,7 @@ std::string toMarkdown(const std::vector<Row>& rows) {
   return text;
 }
 
-void flicker(const CLI::App& command, const std::vector<const CLI::Option*>& sceneOptions,
-             const Options& options) {
+void flicker(const Command& command, const std::vector<std::string>& sceneOptions, const Options& options) {
   const Limits limits(kLimitKinds, options.limits);
   const ReplaySettings settings = options.settings.parse();
   if (settings.debugView != PELLUCID_DEBUG_NONE)
@@ -188,7 +186,7 @@ void flicker(const CLI::App& command, const std::vector<const CLI::Option*>& sce
   Device device({options.scene.device, false});
   Frames frames;
   if (isCaptureFile(options.scene.model)) {
-    refuseSceneOptions(sceneOptions);
+    refuseSceneOptions(command, sceneOptions);
     frames.still = readCapture(options.scene.model);
   } else {
     frames = isProcedural(command, options.scene) ? proceduralFrames(options) : modelFrames(options, device);
@@ -233,32 +231,28 @@ void flicker(const CLI::App& command, const std::vector<const CLI::Option*>& sce
 
 }  // namespace
 
-void addFlickerCommand(CLI::App& app) {
+void addFlickerCommand(const Command& app) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand(
+  const Command command = app.subcommand(
       "flicker",
       "Say what changes in a model, a capture or a scene when the camera moves by pixels or lights turn");
-  addCaptureOptions(*command, options->scene, SceneUse::Replay);
-  std::vector<const CLI::Option*> sceneOptions;
-  for (const CLI::Option* option : std::as_const(*command).get_options()) sceneOptions.push_back(option);
-  options->settings.addTo(*command);
-  command->add_option("--pixels", options->pixels, "moves to the right, whole pixels; negative: to the left")
-      ->capture_default_str();
+  addCaptureOptions(command, options->scene, SceneUse::Replay);
+  const std::vector<std::string> sceneOptions = command.options();
+  options->settings.addTo(command);
+  command.option("--pixels", options->pixels, "moves to the right, whole pixels; negative: to the left");
   command
-      ->add_option("--light-degrees", options->lightDegrees,
-                   "degrees by which lights turn; 0: none; a capture's lights stand still")
-      ->check(CLI::Range(-10.0, 10.0))
-      ->capture_default_str();
+      .option("--light-degrees", options->lightDegrees,
+              "degrees by which lights turn; 0: none; a capture's lights stand still")
+      .range(-10.0, 10.0);
   command
-      ->add_option("--limit", options->limits,
-                   "exit with 1 when any channel of any change exceeds it: rel_rmse=, p999=, worst=; or when "
-                   "more spots "
-                   "appear and vanish: spots=")
-      ->delimiter(',')
-      ->take_all();
-  command->add_flag("--json", options->json, "print JSON");
-  command->footer(kDefinitions);
-  command->callback([options, command, sceneOptions] { flicker(*command, sceneOptions, *options); });
+      .option("--limit", options->limits,
+              "exit with 1 when any channel of any change exceeds it: rel_rmse=, p999=, worst=; or when "
+              "more spots "
+              "appear and vanish: spots=")
+      .separatedBy(',');
+  command.flag("--json", options->json, "print JSON");
+  command.footer(kDefinitions);
+  command.run([options, command, sceneOptions] { flicker(command, sceneOptions, *options); });
 }
 
 }  // namespace pellucid::harness

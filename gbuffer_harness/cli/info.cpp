@@ -1,5 +1,4 @@
 // `pellucid info`: what a capture holds, what its missing parts switch off, what looks wrong.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <iostream>
@@ -358,19 +357,19 @@ std::string toText(const Json& json) {
 
 }  // namespace
 
-void addInfoCommand(CLI::App& app) {
+void addInfoCommand(const Command& app) {
   struct Options {
     std::string input;
     bool json = false;
     ManifestPreset preset = ManifestPreset::None;
   };
   const auto options = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("info", "Say what a capture holds, lacks, and what looks wrong in it");
-  command->add_option("capture", options->input, "manifest (.json) or EXR with an embedded one")->required();
-  addPresetOption(*command, options->preset);
-  command->add_flag("--json", options->json, "print JSON");
-  command->callback([options] {
+  const Command command =
+      app.subcommand("info", "Say what a capture holds, lacks, and what looks wrong in it");
+  command.option("capture", options->input, "manifest (.json) or EXR with an embedded one").required();
+  addPresetOption(command, options->preset);
+  command.flag("--json", options->json, "print JSON");
+  command.run([options] {
     const Json json = describe(options->input, options->preset);
     std::cout << (options->json ? json.dump(2) + "\n" : toText(json));
   });

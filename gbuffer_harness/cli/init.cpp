@@ -1,5 +1,4 @@
 // `pellucid init`: a manifest for EXR files of other programs.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 
@@ -78,69 +77,45 @@ void init(const Options& options) {
 
 }  // namespace
 
-void addInitCommand(CLI::App& app) {
+void addInitCommand(const Command& app) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("init", "Write a manifest for EXR files of another program");
-  command
-      ->add_option("files", options->files,
-                   "EXR files of one frame: layers of one, or a file for each buffer")
-      ->required();
-  command->add_option("-o,--output", options->output, "manifest to write")->capture_default_str();
+  const Command command = app.subcommand("init", "Write a manifest for EXR files of another program");
+  command.option("files", options->files, "EXR files of one frame: layers of one, or a file for each buffer")
+      .required();
+  command.option("-o,--output", options->output, "manifest to write");
   InitWords& words = options->words;
   CameraWords& camera = words.camera;
-  const char* group = "Camera";
-  command->add_option("--fov", camera.verticalFov, "vertical field of view, degrees")
-      ->check(CLI::Range(0.01, 179.0))
-      ->group(group);
-  command->add_option("--ortho-height", camera.orthographicHeight, "of an orthographic camera, scene units")
-      ->check(CLI::PositiveNumber)
-      ->group(group);
-  command->add_option("--near", camera.nearPlane, "near plane, scene units")
-      ->check(CLI::PositiveNumber)
-      ->group(group);
-  command->add_option("--far", camera.farPlane, "far plane, scene units (default: infinitely far)")
-      ->check(CLI::PositiveNumber)
-      ->group(group);
-  command
-      ->add_flag("--reversed-z,!--forward-z", camera.reversedZ,
-                 "device depth 1 at the near plane (default: what the background says)")
-      ->group(group);
-  command->add_option("--eye", options->eye, "X,Y,Z: where the camera is")->group(group);
-  command->add_option("--target", options->target, "X,Y,Z: what it looks at")->group(group);
-  command->add_option("--up", options->up, "X,Y,Z: up in the world (default: 0,1,0)")->group(group);
-  group = "Buffers: a layer, a channel, or a file without extension, in place of the guess";
+  const Command cameras = command.group("Camera");
+  cameras.option("--fov", camera.verticalFov, "vertical field of view, degrees").range(0.01, 179.0);
+  cameras.option("--ortho-height", camera.orthographicHeight, "of an orthographic camera, scene units")
+      .positive();
+  cameras.option("--near", camera.nearPlane, "near plane, scene units").positive();
+  cameras.option("--far", camera.farPlane, "far plane, scene units (default: infinitely far)").positive();
+  cameras.flag("--reversed-z,!--forward-z", camera.reversedZ,
+               "device depth 1 at the near plane (default: what the background says)");
+  cameras.option("--eye", options->eye, "X,Y,Z: where the camera is");
+  cameras.option("--target", options->target, "X,Y,Z: what it looks at");
+  cameras.option("--up", options->up, "X,Y,Z: up in the world (default: 0,1,0)");
+  const Command buffers =
+      command.group("Buffers: a layer, a channel, or a file without extension, in place of the guess");
   const std::pair<const char*, Role> roles[] = {
       {"--front-depth", Role::FrontDepth}, {"--back-depth", Role::BackDepth},
       {"--irradiance", Role::Irradiance},  {"--normal", Role::Normal},
       {"--albedo", Role::Albedo},          {"--material-index", Role::Material}};
-  for (const auto& [name, role] : roles) command->add_option(name, options->roles[role])->group(group);
-  group = "Meaning";
-  command
-      ->add_option("--depth", options->depth, "viewz or device (default: device where all are within 0 .. 1)")
-      ->check(CLI::IsMember({"viewz", "device"}))
-      ->group(group);
-  command
-      ->add_option("--irradiance-scale", words.irradianceScale, "factor of what is stored, as pi for E / pi")
-      ->check(CLI::PositiveNumber)
-      ->group(group);
-  command
-      ->add_option("--unit", options->unit,
-                   "mm, cm, m or a number of meters (default: what names say, else m)")
-      ->group(group);
-  command
-      ->add_option("--material-id", words.materialIds,
-                   "stored value that is translucent, repeatable (default: all but 0)")
-      ->take_all()
-      ->group(group);
-  command
-      ->add_option("--material", words.material,
-                   "the translucent material: a preset, or a manifest's material in braces")
-      ->capture_default_str()
-      ->group(group);
-  command->add_option("--light", options->lights, std::string("repeatable: ") + kLightWords)
-      ->take_all()
-      ->group(group);
-  command->callback([options] { init(*options); });
+  for (const auto& [name, role] : roles) buffers.option(name, options->roles[role]);
+  const Command meanings = command.group("Meaning");
+  meanings.option("--depth", options->depth, "viewz or device (default: device where all are within 0 .. 1)")
+      .oneOf({"viewz", "device"});
+  meanings.option("--irradiance-scale", words.irradianceScale, "factor of what is stored, as pi for E / pi")
+      .positive();
+  meanings.option("--unit", options->unit,
+                  "mm, cm, m or a number of meters (default: what names say, else m)");
+  meanings.option("--material-id", words.materialIds,
+                  "stored value that is translucent, repeatable (default: all but 0)");
+  meanings.option("--material", words.material,
+                  "the translucent material: a preset, or a manifest's material in braces");
+  meanings.option("--light", options->lights, std::string("repeatable: ") + kLightWords);
+  command.run([options] { init(*options); });
 }
 
 }  // namespace pellucid::harness

@@ -1,4 +1,3 @@
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <new>
 
@@ -29,17 +28,13 @@ int outOfMemory(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Screen-space translucency and subsurface diffusion on captured frames.", "pellucid");
-  app.require_subcommand(1);
-  app.footer(
-      "Exit codes: 0 ok, 1 comparison over its limit or stress violated, 2 usage, 3 bad input, 4 no usable "
-      "device.");
-  addCommands(app);
   try {
-    app.parse(argc, argv);
-    return OK;
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? OK : USAGE;  // --help also ends up here
+    const bool understood = runCommandLine(
+        argc, argv, "Screen-space translucency and subsurface diffusion on captured frames.",
+        "Exit codes: 0 ok, 1 comparison over its limit or stress violated, 2 usage, 3 bad input, 4 no usable "
+        "device.",
+        addCommands);
+    return understood ? OK : USAGE;
   } catch (const LimitExceeded& e) {
     return fail(OVER_LIMIT, e.what());
   } catch (const UsageError& e) {

@@ -1,5 +1,4 @@
 // `pellucid material`: what the material compiler makes of coefficients, a spectrum or a preset.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -339,37 +338,31 @@ void run(const Options& options) {
 
 }  // namespace
 
-void addMaterialCommand(CLI::App& app) {
+void addMaterialCommand(const Command& app) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("material", "Compile a material: its T(d), profile and what the shaders evaluate");
-  command->add_option("NAME", options->name,
-                      "a preset, see --list, or a manifest's material in braces (docs/materials.md)");
-  command->add_flag("--list", options->list, "print the presets' names");
-  command->add_option("--scattering", options->scattering, "sigma_s of R,G,B in 1/mm; reduced when --g is 0")
-      ->delimiter(',')
-      ->expected(3);
-  command->add_option("--absorption", options->absorption, "sigma_a of R,G,B in 1/mm")
-      ->delimiter(',')
-      ->expected(3);
-  command->add_option("--g", options->g, "mean cosine of scattering, between -1 and 1 (default 0)");
-  command->add_option("--ior", options->ior, "index of refraction, 1 to 3 (default: the preset's, else 1.4)");
-  command->add_option("--thickness", options->thickness, "mm, for the table")
-      ->delimiter(',')
-      ->capture_default_str();
-  command->add_option("--gaussians", options->gaussians, "how many Gaussians stand for the profile, 1 to 8")
-      ->capture_default_str();
-  command->add_option("--spectral", options->spectral, "CSV of wavelength (nm), sigma_s, sigma_a (1/mm)");
-  command->add_option("--illuminant", options->illuminant, "for spectra and skin: D65, A or E")
-      ->check(CLI::IsMember({"D65", "A", "E"}))
-      ->capture_default_str();
-  command->add_option("--melanin", options->melanin,
-                      "skin (Donner & Jensen 2006): melanin in the epidermis, 0 to 1");
-  command->add_option("--melanin-type", options->melaninType, "share of eumelanin, 0 to 1");
-  command->add_option("--haemoglobin", options->haemoglobin, "blood in the dermis, 0 to 1");
-  command->add_flag("--json", options->json, "print JSON");
-  command->add_option("--plot", options->plot, "write a PNG of T(d) and the profile");
-  command->callback([options] { run(*options); });
+  const Command command =
+      app.subcommand("material", "Compile a material: its T(d), profile and what the shaders evaluate");
+  command.option("NAME", options->name,
+                 "a preset, see --list, or a manifest's material in braces (docs/materials.md)");
+  command.flag("--list", options->list, "print the presets' names");
+  command.option("--scattering", options->scattering, "sigma_s of R,G,B in 1/mm; reduced when --g is 0")
+      .separatedBy(',')
+      .count(3);
+  command.option("--absorption", options->absorption, "sigma_a of R,G,B in 1/mm").separatedBy(',').count(3);
+  command.option("--g", options->g, "mean cosine of scattering, between -1 and 1 (default 0)");
+  command.option("--ior", options->ior, "index of refraction, 1 to 3 (default: the preset's, else 1.4)");
+  command.option("--thickness", options->thickness, "mm, for the table").separatedBy(',');
+  command.option("--gaussians", options->gaussians, "how many Gaussians stand for the profile, 1 to 8");
+  command.option("--spectral", options->spectral, "CSV of wavelength (nm), sigma_s, sigma_a (1/mm)");
+  command.option("--illuminant", options->illuminant, "for spectra and skin: D65, A or E")
+      .oneOf({"D65", "A", "E"});
+  command.option("--melanin", options->melanin,
+                 "skin (Donner & Jensen 2006): melanin in the epidermis, 0 to 1");
+  command.option("--melanin-type", options->melaninType, "share of eumelanin, 0 to 1");
+  command.option("--haemoglobin", options->haemoglobin, "blood in the dermis, 0 to 1");
+  command.flag("--json", options->json, "print JSON");
+  command.option("--plot", options->plot, "write a PNG of T(d) and the profile");
+  command.run([options] { run(*options); });
 }
 
 }  // namespace pellucid::harness

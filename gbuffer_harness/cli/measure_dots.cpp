@@ -1,5 +1,4 @@
 // `pellucid measure-dots`: a table of minimum dots, from pictures of the object lit from all around.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <functional>
@@ -169,43 +168,31 @@ void measure(const Options& options) {
 
 }  // namespace
 
-void addMeasureDotsCommand(CLI::App& app) {
+void addMeasureDotsCommand(const Command& app) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand(
+  const Command command = app.subcommand(
       "measure-dots", "Measure how far behind an object lights must be before they come through (a table)");
-  command->add_option("model", options->model, "glTF file, .glb or .gltf");
-  command->add_option("--procedural", options->scene.name, "name of a procedural scene instead");
-  command->add_option("--scene-set", options->sceneSet, "key=value, repeatable: an option of that scene")
-      ->take_all();
+  command.option("model", options->model, "glTF file, .glb or .gltf");
+  command.option("--procedural", options->scene.name, "name of a procedural scene instead");
+  command.option("--scene-set", options->sceneSet, "key=value, repeatable: an option of that scene");
+  command.option("--material", options->presets,
+                 "of a model: NAME=PRESET or NAME={a manifest's material}, repeatable; * all others");
+  command.option("--unit", options->unit, "of a model: mm, cm, m or meters");
+  command.option("-o,--output", options->output, "JSON for --set @FILE; default: standard output");
+  command.option("--entries", options->entries, "lights around --up (default 36)").range(1, 360);
+  command.option("--sphere", options->sphere, "side of a map of all directions instead").range(3, 16);
+  command.option("--face", options->face, "X,Y,Z the object looks along, world");
+  command.option("--up", options->up, "X,Y,Z of the object, world");
+  command.option("--steps", options->swing.steps, "of the camera over its quarter turn").range(1, 900);
   command
-      ->add_option("--material", options->presets,
-                   "of a model: NAME=PRESET or NAME={a manifest's material}, repeatable; * all others")
-      ->take_all();
-  command->add_option("--unit", options->unit, "of a model: mm, cm, m or meters")->capture_default_str();
-  command->add_option("-o,--output", options->output, "JSON for --set @FILE; default: standard output");
-  command->add_option("--entries", options->entries, "lights around --up (default 36)")
-      ->check(CLI::Range(1, 360));
-  command->add_option("--sphere", options->sphere, "side of a map of all directions instead")
-      ->check(CLI::Range(3, 16));
-  command->add_option("--face", options->face, "X,Y,Z the object looks along, world")->capture_default_str();
-  command->add_option("--up", options->up, "X,Y,Z of the object, world")->capture_default_str();
-  command->add_option("--steps", options->swing.steps, "of the camera over its quarter turn")
-      ->check(CLI::Range(1, 900))
-      ->capture_default_str();
-  command
-      ->add_option("--threshold", options->swing.threshold,
-                   "what counts as light: this part of the most that any view shows")
-      ->check(CLI::Range(0.0, 0.99))
-      ->capture_default_str();
-  command->add_option("--size", options->size, "pixels across a view")
-      ->check(CLI::Range(8, 2048))
-      ->capture_default_str();
-  command->add_option("--shadow-size", options->shadowSize, "texels across a shadow map")
-      ->check(CLI::Range(8, 8192))
-      ->capture_default_str();
-  command->add_option("--device", options->device, "part of the Vulkan device's name");
-  options->settings.addTo(*command);
-  command->callback([options] { measure(*options); });
+      .option("--threshold", options->swing.threshold,
+              "what counts as light: this part of the most that any view shows")
+      .range(0.0, 0.99);
+  command.option("--size", options->size, "pixels across a view").range(8, 2048);
+  command.option("--shadow-size", options->shadowSize, "texels across a shadow map").range(8, 8192);
+  command.option("--device", options->device, "part of the Vulkan device's name");
+  options->settings.addTo(command);
+  command.run([options] { measure(*options); });
 }
 
 }  // namespace pellucid::harness

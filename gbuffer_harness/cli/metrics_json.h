@@ -26,10 +26,8 @@ inline nlohmann::ordered_json toJson(const Flicker& flicker) {
 }
 
 inline nlohmann::ordered_json toJson(const SpotFlicker& spots) {
-  return {{"still", spots.still},
-          {"turned", spots.turned},
-          {"appear", spots.appear},
-          {"vanish", spots.vanish}};
+  return {
+      {"still", spots.still}, {"turned", spots.turned}, {"appear", spots.appear}, {"vanish", spots.vanish}};
 }
 
 }  // namespace pellucid::harness

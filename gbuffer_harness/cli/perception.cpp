@@ -1,5 +1,4 @@
 // `pellucid perception`: what a perception test's answers say.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -135,14 +134,13 @@ void perception(const Options& options) {
 
 }  // namespace
 
-void addPerceptionCommand(CLI::App& app) {
+void addPerceptionCommand(const Command& app) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand(
+  const Command command = app.subcommand(
       "perception", "Means, analysis of variance and comparisons of the answers of `view --perception`");
-  command->add_option("answers", options->answers, "CSV of participant,scene,red,green,blue,seconds")
-      ->required();
-  command->add_flag("--json", options->json, "for programs");
-  command->callback([options] {
+  command.option("answers", options->answers, "CSV of participant,scene,red,green,blue,seconds").required();
+  command.flag("--json", options->json, "for programs");
+  command.run([options] {
     if (!std::filesystem::exists(options->answers)) throw InputError(options->answers, "", "cannot be read");
     perception(*options);
   });

@@ -22,19 +22,19 @@ std::string planJson(const PellucidPlan& plan) {
   return text;
 }
 
-void addPlanCommand(CLI::App& app) {
+void addPlanCommand(const Command& app) {
   struct Options {
     std::string input;
     ManifestPreset preset = ManifestPreset::None;
     SettingsOptions settings;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("plan", "Print the dispatch plan of a capture as JSON; needs no device");
-  command->add_option("capture", options->input, "manifest (.json) or EXR with an embedded one")->required();
-  addPresetOption(*command, options->preset);
-  options->settings.addTo(*command);
-  command->callback([options] {
+  const Command command =
+      app.subcommand("plan", "Print the dispatch plan of a capture as JSON; needs no device");
+  command.option("capture", options->input, "manifest (.json) or EXR with an embedded one").required();
+  addPresetOption(command, options->preset);
+  options->settings.addTo(command);
+  command.run([options] {
     const Capture capture = readCapture(options->input, options->preset);
     FrameData data;
     const std::vector<PellucidMaterial> materials = compileMaterials(capture);

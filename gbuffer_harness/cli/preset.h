@@ -1,21 +1,15 @@
 // --preset of the commands that read captures.
 #pragma once
 
-#include <CLI/CLI.hpp>
-#include <map>
-#include <string>
-
 #include "capture/manifest.h"
+#include "cli/command.h"
 
 namespace pellucid::harness {
 
-inline void addPresetOption(CLI::App& command, ManifestPreset& preset) {
-  const std::map<std::string, ManifestPreset> presets = {{"blender", ManifestPreset::Blender}};
-  command
-      .add_option(
-          "--preset", preset,
-          "blender: the capture is a multilayer EXR of Cycles with a JSON beside it (docs/captures.md)")
-      ->transform(CLI::CheckedTransformer(presets));
+inline void addPresetOption(const Command& command, ManifestPreset& preset) {
+  command.choice(
+      "--preset", preset, {{"blender", ManifestPreset::Blender}},
+      "blender: the capture is a multilayer EXR of Cycles with a JSON beside it (docs/captures.md)");
 }
 
 }  // namespace pellucid::harness

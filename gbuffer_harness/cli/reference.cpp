@@ -2,7 +2,6 @@
 #include "reference/reference.h"
 #include "replay/exposure.h"
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -76,29 +75,25 @@ void runReference(const Options& options) {
 
 }  // namespace
 
-void addReferenceCommand(CLI::App& app) {
+void addReferenceCommand(const Command& app) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("reference", "Compute a capture's float64 ground truth on the CPU");
-  command->add_option("capture", options->input, "manifest (.json) or EXR with an embedded one")->required();
-  command->add_option("-o,--output", options->output, "EXR to write; default: <capture>.reference.exr here");
-  addPresetOption(*command, options->preset);
-  options->settings.addTo(*command);
-  const std::map<std::string, reference::ProfileSource> profiles = {
-      {"material", reference::ProfileSource::Material},
-      {"burley", reference::ProfileSource::Burley},
-      {"gaussians", reference::ProfileSource::Gaussians}};
+  const Command command = app.subcommand("reference", "Compute a capture's float64 ground truth on the CPU");
+  command.option("capture", options->input, "manifest (.json) or EXR with an embedded one").required();
+  command.option("-o,--output", options->output, "EXR to write; default: <capture>.reference.exr here");
+  addPresetOption(command, options->preset);
+  options->settings.addTo(command);
+  command.choice(
+      "--profile", options->profile,
+      {{"material", reference::ProfileSource::Material},
+       {"burley", reference::ProfileSource::Burley},
+       {"gaussians", reference::ProfileSource::Gaussians}},
+      "material (Burley where the material has a distance, else its Gaussians), burley, gaussians");
   command
-      ->add_option(
-          "--profile", options->profile,
-          "material (Burley where the material has a distance, else its Gaussians), burley, gaussians")
-      ->transform(CLI::CheckedTransformer(profiles));
-  command
-      ->add_option("--radius-cut", options->discardedEnergy,
-                   "profile energy that may lie outside of the diffusion's cut-off radius")
-      ->check(CLI::Range(1e-12, 0.5))
-      ->capture_default_str();
-  command->add_option("--jobs", options->jobs, "threads; default: all")->check(CLI::Range(1, 1024));
-  command->callback([options] { runReference(*options); });
+      .option("--radius-cut", options->discardedEnergy,
+              "profile energy that may lie outside of the diffusion's cut-off radius")
+      .range(1e-12, 0.5);
+  command.option("--jobs", options->jobs, "threads; default: all").range(1, 1024);
+  command.run([options] { runReference(*options); });
 }
 
 }  // namespace pellucid::harness

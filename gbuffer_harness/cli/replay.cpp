@@ -284,49 +284,42 @@ void replay(const Options& options) {
 
 }  // namespace
 
-void addReplayCommand(CLI::App& app) {
+void addReplayCommand(const Command& app) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("replay", "Run captures through the module on a Vulkan device");
+  const Command command = app.subcommand("replay", "Run captures through the module on a Vulkan device");
   command
-      ->add_option("capture", options->input,
-                   "manifest (.json) or EXR with an embedded one; of a sequence name.####.exr")
-      ->required();
-  command->add_option("-o,--output", options->output,
-                      "EXR to write; default: <capture>.pellucid.exr here; of a sequence out.####.exr");
-  command->add_option("--frames", options->frames,
-                      "of a sequence: FIRST-LAST or a list like 1-10,20 (default: all that exist); frames "
-                      "finished before are skipped");
-  command->add_option("--jobs", options->jobs, "threads of a sequence that read and write files")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
-  command->add_flag("--overwrite", options->overwrite, "of a sequence: make finished frames again");
+      .option("capture", options->input,
+              "manifest (.json) or EXR with an embedded one; of a sequence name.####.exr")
+      .required();
+  command.option("-o,--output", options->output,
+                 "EXR to write; default: <capture>.pellucid.exr here; of a sequence out.####.exr");
+  command.option("--frames", options->frames,
+                 "of a sequence: FIRST-LAST or a list like 1-10,20 (default: all that exist); frames "
+                 "finished before are skipped");
+  command.option("--jobs", options->jobs, "threads of a sequence that read and write files").range(1, 1024);
+  command.flag("--overwrite", options->overwrite, "of a sequence: make finished frames again");
   command
-      ->add_option(
-          "--repeat", options->repeat,
-          "frames that are timed, after a first one that compiles shaders: the median is printed; 0: "
-          "no times; default: 3, not of a sequence")
-      ->check(CLI::Range(0, 1000));
+      .option("--repeat", options->repeat,
+              "frames that are timed, after a first one that compiles shaders: the median is printed; 0: "
+              "no times; default: 3, not of a sequence")
+      .range(0, 1000);
   command
-      ->add_option(
-          "--views", options->views,
-          "also time as many copies of the frame, which must have the same bits, in one recording and "
-          "in one each; not of a sequence")
-      ->check(CLI::Range(2, 64));
-  command->add_flag("--stats", options->stats,
-                    "print what the device decided: groups run, blocks with material");
-  command->add_flag("--keep-layers", options->keepLayers,
-                    "also write the alpha and the other channels of the irradiance's file");
-  command->add_flag("--png", options->png, "also write a PNG beside the EXR (--debug always does)");
-  command->add_option("--triptych", options->triptych, "write a PNG of before | translucency | after");
-  command->add_option("--exposure", options->exposure, "factor for PNGs; default: from the picture")
-      ->check(CLI::PositiveNumber);
-  command->add_option("--device", options->device,
-                      "part of the Vulkan device's name; default: the fastest kind");
-  addToneMapOption(*command, options->toneMap);
-  addPresetOption(*command, options->preset);
+      .option("--views", options->views,
+              "also time as many copies of the frame, which must have the same bits, in one recording and "
+              "in one each; not of a sequence")
+      .range(2, 64);
+  command.flag("--stats", options->stats, "print what the device decided: groups run, blocks with material");
+  command.flag("--keep-layers", options->keepLayers,
+               "also write the alpha and the other channels of the irradiance's file");
+  command.flag("--png", options->png, "also write a PNG beside the EXR (--debug always does)");
+  command.option("--triptych", options->triptych, "write a PNG of before | translucency | after");
+  command.option("--exposure", options->exposure, "factor for PNGs; default: from the picture").positive();
+  command.option("--device", options->device, "part of the Vulkan device's name; default: the fastest kind");
+  addToneMapOption(command, options->toneMap);
+  addPresetOption(command, options->preset);
   options->settings.blocks = true;
-  options->settings.addTo(*command);
-  command->callback([options] { replay(*options); });
+  options->settings.addTo(command);
+  command.run([options] { replay(*options); });
 }
 
 }  // namespace pellucid::harness

@@ -1,10 +1,10 @@
 // Options that say how a capture is run; shared by replay and plan.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
+#include "cli/command.h"
 #include "replay/frame.h"
 
 namespace pellucid::harness {
@@ -17,7 +17,7 @@ struct SettingsOptions {
 
   bool showsBlocks() const { return blocks && debug == "blocks"; }
 
-  void addTo(CLI::App& command);
+  void addTo(const Command& command);
 
   // Throws UsageError naming the key and the value, and InputError for a file.
   ReplaySettings parse() const;

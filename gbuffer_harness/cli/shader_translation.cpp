@@ -59,8 +59,8 @@ struct BindingType {
   bool isBuffer, isWritten;
 };
 
-Json describeBinding(Compiler& compiler, const Resource& resource,
-                     const BindingType& type, ShaderLanguage language) {
+Json describeBinding(Compiler& compiler, const Resource& resource, const BindingType& type,
+                     ShaderLanguage language) {
   const uint32_t binding = compiler.get_decoration(resource.id, spv::DecorationBinding);
   const std::string name = pellucidBindingName(binding), number = std::to_string(binding);
   compiler.set_name(resource.id, name);

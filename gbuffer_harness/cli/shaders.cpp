@@ -1,5 +1,4 @@
 // `pellucid shaders`: the module's shaders for other APIs.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -76,13 +75,12 @@ void writeAll(const Options& options) {
 
 }  // namespace
 
-void addShadersCommand(CLI::App& app) {
+void addShadersCommand(const Command& app) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand(
+  const Command command = app.subcommand(
       "shaders", "Write the module's shaders for other APIs, with their bindings as JSON; needs no device");
-  for (Output& output : options->outputs)
-    command->add_option(output.option, output.folder, output.help)->type_name("DIR");
-  command->callback([options] { writeAll(*options); });
+  for (Output& output : options->outputs) command.option(output.option, output.folder, output.help);
+  command.run([options] { writeAll(*options); });
 }
 
 }  // namespace pellucid::harness

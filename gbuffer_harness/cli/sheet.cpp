@@ -1,5 +1,4 @@
 // `pellucid sheet`: results side by side in one picture, under one exposure.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <deque>
@@ -168,35 +167,29 @@ void sheet(const Options& options) {
 
 }  // namespace
 
-void addSheetCommand(CLI::App& app) {
+void addSheetCommand(const Command& app) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand(
+  const Command command = app.subcommand(
       "sheet", "Lay EXR images, or one capture's variants, out in one PNG, under one exposure by default");
   command
-      ->add_option("images", options->inputs,
-                   "EXR files of one size, FILE@LAYER for another layer; with --sweep one capture")
-      ->required();
-  command->add_option("-o,--output", options->output, "PNG to write")->required();
+      .option("images", options->inputs,
+              "EXR files of one size, FILE@LAYER for another layer; with --sweep one capture")
+      .required();
+  command.option("-o,--output", options->output, "PNG to write").required();
+  command.option("--sweep", options->sweeps,
+                 "KEY=VALUE,VALUE,..., repeatable: replays the capture with each value of a key of "
+                 "replay's --set, or of material, a preset in place of all materials; combinations, labeled");
+  command.option("--label", options->labels, "text on an image, repeatable: one for each, in their order");
+  command.option("--columns", options->columns, "images a row (default: the last sweep's values, else 3)")
+      .range(1, 64);
   command
-      ->add_option(
-          "--sweep", options->sweeps,
-          "KEY=VALUE,VALUE,..., repeatable: replays the capture with each value of a key of "
-          "replay's --set, or of material, a preset in place of all materials; combinations, labeled")
-      ->take_all();
-  command
-      ->add_option("--label", options->labels, "text on an image, repeatable: one for each, in their order")
-      ->take_all();
-  command
-      ->add_option("--columns", options->columns, "images a row (default: the last sweep's values, else 3)")
-      ->check(CLI::Range(1, 64));
-  command
-      ->add_option("--exposure", options->exposures,
-                   "factor, or one for each image, separated by commas (default: one from the pictures)")
-      ->delimiter(',')
-      ->check(CLI::PositiveNumber);
-  addToneMapOption(*command, options->toneMap);
-  command->add_option("--device", options->device, "of --sweep: part of the Vulkan device's name");
-  command->callback([options] { sheet(*options); });
+      .option("--exposure", options->exposures,
+              "factor, or one for each image, separated by commas (default: one from the pictures)")
+      .separatedBy(',')
+      .positive();
+  addToneMapOption(command, options->toneMap);
+  command.option("--device", options->device, "of --sweep: part of the Vulkan device's name");
+  command.run([options] { sheet(*options); });
 }
 
 }  // namespace pellucid::harness

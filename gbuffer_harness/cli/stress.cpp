@@ -1,7 +1,6 @@
 // `pellucid stress`: random frames through the module, and what must hold for each.
 #include "stress/stress.h"
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -185,41 +184,34 @@ void run(Options& options) {
 
 }  // namespace
 
-void addStressCommand(CLI::App& app) {
+void addStressCommand(const Command& app) {
   auto options = std::make_shared<Options>();
   StressOptions& s = options->stress;
-  CLI::App* command = app.add_subcommand(
+  const Command command = app.subcommand(
       "stress", "Random frames through the module on a Vulkan device, and what must hold for each");
-  CLI::Option* seconds = command->add_option("--seconds", s.seconds, "how long")
-                             ->check(CLI::Range(0.0, 1e6))
-                             ->capture_default_str();
-  command->add_option("--frames", s.frames, "how many frames, in place of --seconds")
-      ->check(CLI::Range(1, 1000000000))
-      ->excludes(seconds);
-  command->add_option("--seed", s.seed, "of all frames")->capture_default_str();
-  command->add_option("--first", s.first, "index of the first frame; even ones are tame, odd ones wild")
-      ->capture_default_str();
-  command->add_option("--gather", s.limits.gatherSamples, "samples of all frames; default: any")
-      ->check(CLI::IsMember({0, 4, 8, 16, 32, 64}));
-  command->add_option("--pixels", s.limits.pixels, "of the largest frame")
-      ->check(CLI::Range(16, 1 << 26))
-      ->capture_default_str();
-  command->add_option("--only", s.only, "one check by its name; CONTRIBUTING.md has them");
-  command->add_flag("--validate", s.validate,
-                    "with Vulkan's core and synchronization validation, whose messages are violations");
-  command->add_flag(
+  const CommandOption seconds = command.option("--seconds", s.seconds, "how long").range(0.0, 1e6);
+  command.option("--frames", s.frames, "how many frames, in place of --seconds")
+      .range(1, 1000000000)
+      .excludes(seconds);
+  command.option("--seed", s.seed, "of all frames");
+  command.option("--first", s.first, "index of the first frame; even ones are tame, odd ones wild");
+  command.option("--gather", s.limits.gatherSamples, "samples of all frames; default: any")
+      .oneOf({0, 4, 8, 16, 32, 64});
+  command.option("--pixels", s.limits.pixels, "of the largest frame").range(16, 1 << 26);
+  command.option("--only", s.only, "one check by its name; CONTRIBUTING.md has them");
+  command.flag("--validate", s.validate,
+               "with Vulkan's core and synchronization validation, whose messages are violations");
+  command.flag(
       "--guarded", options->guarded,
       "constants in memory that ends at pages without access, and transients that hold 0xFF or what looks "
       "like indices: an access beyond the constants ends the command");
-  command->add_option("-o,--output", options->folder, "folder for captures of frames that violate a check");
-  command->add_option("--json", options->json, "file for the summary");
-  command->add_option("--results", options->results,
-                      "file for the outputs, to compare another device's with");
-  command->add_option("--compare-with", options->compareWith,
-                      "file of --results of the same seed, first frame and limits");
-  command->add_option("--device", options->device,
-                      "part of the Vulkan device's name; default: the fastest kind");
-  command->callback([options] { run(*options); });
+  command.option("-o,--output", options->folder, "folder for captures of frames that violate a check");
+  command.option("--json", options->json, "file for the summary");
+  command.option("--results", options->results, "file for the outputs, to compare another device's with");
+  command.option("--compare-with", options->compareWith,
+                 "file of --results of the same seed, first frame and limits");
+  command.option("--device", options->device, "part of the Vulkan device's name; default: the fastest kind");
+  command.run([options] { run(*options); });
 }
 
 }  // namespace pellucid::harness

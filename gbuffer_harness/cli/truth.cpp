@@ -1,5 +1,4 @@
 // `pellucid truth`: a capture with its path-traced truth.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -141,7 +140,7 @@ Scene proceduralScene(const Options& options, SceneHash& hash) {
   return scene;
 }
 
-Scene makeScene(const CLI::App& command, const Options& options) {
+Scene makeScene(const Command& command, const Options& options) {
   SceneHash hash;
   Scene scene =
       isProcedural(command, options.scene) ? proceduralScene(options, hash) : modelScene(options, hash);
@@ -240,16 +239,16 @@ private:
 };
 
 // Refuses options that a capture given by --like answers itself.
-void refuseScene(const CLI::App& command) {
+void refuseScene(const Command& command) {
   for (const char* name : {"--size", "--camera", "--view", "--fov", "--projection", "--light", "--ior",
                            "--shadow-size", "--shadow-depth", "--jitter", "--depth", "--back", "--point-maps",
                            "--infinite-far", "--view-normals"})
-    if (command.count(name) > 0)
+    if (command.isGiven(name))
       throw UsageError(std::string(name) +
                        ": --like takes camera, size, lights and materials of the capture");
 }
 
-void truth(const CLI::App& command, const Options& options) {
+void truth(const Command& command, const Options& options) {
   if (options.output.empty()) throw UsageError("truth: -o is required");
   requireExr("-o", options.output);
   const std::filesystem::path folder = std::filesystem::absolute(options.output).parent_path();
@@ -291,33 +290,30 @@ void truth(const CLI::App& command, const Options& options) {
 
 }  // namespace
 
-void addTruthCommand(CLI::App& app) {
+void addTruthCommand(const Command& app) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("truth", "Path-trace a scene and write a capture that has this truth and its noise");
-  command->add_option("-o,--output", options->output, "EXR to write; a file that is there gets more samples");
-  const auto samples = command->add_option("--spp", options->samples, "samples to add to each pixel")
-                           ->check(CLI::Range(2, 1 << 24))  // one sample says nothing of its noise
-                           ->capture_default_str();
-  command->add_option("--seconds", options->seconds, "add samples for this many seconds instead of --spp")
-      ->check(CLI::Range(0.001, 1e7))
-      ->excludes(samples);
-  command->add_option("--like", options->like,
-                      "capture of this model or scene, made anywhere, whose camera, G-buffer, lights and "
-                      "materials the output gets");
+  const Command command =
+      app.subcommand("truth", "Path-trace a scene and write a capture that has this truth and its noise");
+  command.option("-o,--output", options->output, "EXR to write; a file that is there gets more samples");
+  const auto samples = command.option("--spp", options->samples, "samples to add to each pixel")
+                           .range(2, 1 << 24);  // one sample says nothing of its noise
+  command.option("--seconds", options->seconds, "add samples for this many seconds instead of --spp")
+      .range(0.001, 1e7)
+      .excludes(samples);
+  command.option("--like", options->like,
+                 "capture of this model or scene, made anywhere, whose camera, G-buffer, lights and "
+                 "materials the output gets");
   command
-      ->add_option("--entry", options->entry,
-                   "lambert: light enters diffusely, as a G-buffer's irradiance has no direction; refracted: "
-                   "light enters in its own direction, by Fresnel's equations")
-      ->check(CLI::IsMember({"lambert", "refracted"}))
-      ->capture_default_str();
-  command->add_option("--truth-seed", options->seed, "seed of the paths' random numbers")
-      ->capture_default_str();
-  command->add_option("--jobs", options->jobs, "threads, on which the result does not depend; 0: all")
-      ->check(CLI::Range(0, 4096));
-  command->add_flag("--overwrite", options->overwrite, "begin anew where the output file is there");
-  addCaptureOptions(*command, options->scene);
-  command->callback([options, command] { truth(*command, *options); });
+      .option("--entry", options->entry,
+              "lambert: light enters diffusely, as a G-buffer's irradiance has no direction; refracted: "
+              "light enters in its own direction, by Fresnel's equations")
+      .oneOf({"lambert", "refracted"});
+  command.option("--truth-seed", options->seed, "seed of the paths' random numbers");
+  command.option("--jobs", options->jobs, "threads, on which the result does not depend; 0: all")
+      .range(0, 4096);
+  command.flag("--overwrite", options->overwrite, "begin anew where the output file is there");
+  addCaptureOptions(command, options->scene);
+  command.run([options, command] { truth(command, *options); });
 }
 
 }  // namespace pellucid::harness

@@ -1,5 +1,4 @@
 // `pellucid view`: the interactive application.
-#include <CLI/CLI.hpp>
 
 #include "cli/commands.h"
 #include "common/error.h"
@@ -8,10 +7,10 @@
 
 namespace pellucid::harness {
 
-void addViewCommand(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("view", "Look at a scene and change it (left out of this build)");
-  command->allow_extras();
-  command->callback([] {
+void addViewCommand(const Command& app) {
+  const Command command = app.subcommand("view", "Look at a scene and change it (left out of this build)");
+  command.allowAnything();
+  command.run([] {
     throw UsageError(
         "view: this build has no viewer, as libglfw3-dev or libimgui-dev was missing; install them and "
         "configure again");
@@ -63,18 +62,17 @@ const std::set<std::string> kNotOfTheScene = {
     "--participant", "--answers", "--save",   "--tonemap",    "--help"};
 
 // The model comes first: behind an option that takes a list, it would be read as one more of its values.
-std::vector<std::string> sceneArguments(const CLI::App& command) {
+std::vector<std::string> sceneArguments(const Command& command) {
   std::vector<std::string> model, options;
-  for (const CLI::Option* option : command.get_options()) {
-    if (option->count() == 0 || kNotOfTheScene.count(option->get_name()) > 0) continue;
-    for (const std::string& value : option->results()) {
-      if (option->get_positional()) {
+  for (const GivenOption& option : command.given()) {
+    if (kNotOfTheScene.count(option.name) > 0) continue;
+    for (const std::string& value : option.values) {
+      if (option.positional) {
         model.push_back(std::filesystem::absolute(value).string());  // sessions are opened from anywhere
         continue;
       }
-      const bool isFlag = option->get_expected_min() == 0;
-      options.push_back(isFlag && value == "false" ? "--forward-z" : option->get_name());
-      if (!isFlag) options.push_back(value);
+      options.push_back(option.flag && value == "false" ? "--forward-z" : option.name);
+      if (!option.flag) options.push_back(value);
     }
   }
   model.insert(model.end(), options.begin(), options.end());
@@ -86,13 +84,13 @@ bool isCapture(const std::string& path) {
   return extension == ".exr" || extension == ".json";
 }
 
-void refuseSceneOptions(const CLI::App& command, const std::string& model, const char* kind) {
+void refuseSceneOptions(const Command& command, const std::string& model, const char* kind) {
   for (const std::string& argument : sceneArguments(command))
     if (argument.rfind("--", 0) == 0)
       throw UsageError(argument + ": " + model + " is a " + kind + ", whose scene is what it holds");
 }
 
-std::function<std::unique_ptr<Source>(Device&)> opener(const CLI::App& command, const CaptureOptions& scene) {
+std::function<std::unique_ptr<Source>(Device&)> opener(const Command& command, const CaptureOptions& scene) {
   if (!scene.environment.empty())
     throw UsageError("--environment: is traced by rays, which takes too long; make a capture and view that");
   if (!scene.model.empty() && isCapture(scene.model)) {
@@ -121,7 +119,7 @@ ReplaySettings parsed(const SettingsOptions& options) {
   return settings;
 }
 
-SceneToView sceneOf(const CLI::App& command, const Options& options) {
+SceneToView sceneOf(const Command& command, const Options& options) {
   const ReplaySettings settings = parsed(options.settings);
   return {opener(command, options.scene),
           [settings, exposure = options.exposure, toneMap = options.toneMap](ViewState& state) {
@@ -133,13 +131,12 @@ SceneToView sceneOf(const CLI::App& command, const Options& options) {
           sceneArguments(command)};
 }
 
-void parseScene(CLI::App& command, CaptureOptions& scene, std::vector<std::string> arguments,
+void parseScene(const Command& command, CaptureOptions& scene, const std::vector<std::string>& arguments,
                 const std::filesystem::path& file) {
   addCaptureOptions(command, scene, SceneUse::Replay);
-  std::reverse(arguments.begin(), arguments.end());
   try {
     command.parse(arguments);
-  } catch (const CLI::ParseError& error) {
+  } catch (const UsageError& error) {
     throw InputError(file.string(), "scene", error.what());
   }
 }
@@ -147,12 +144,12 @@ void parseScene(CLI::App& command, CaptureOptions& scene, std::vector<std::strin
 // A saved view, opened with the options that its scene was first opened with.
 SceneToView savedView(const Options& given, const std::filesystem::path& path) {
   const Session session = readSession(path);
-  CLI::App command("", "view");
+  const DetachedCommand command("view");
   Options options = given;
   options.scene = {};
   parseScene(command, options.scene, session.scene, path);
   std::vector<std::string>& set = options.settings.set;
-  set.insert(set.begin(), "@" + (path.parent_path() / session.settings).string());
+  set.insert(set.begin(), std::string("@").append((path.parent_path() / session.settings).string()));
   SceneToView scene = sceneOf(command, options);
   scene.start = [path, start = scene.start](ViewState& state) {
     state = readSession(path, state).state;
@@ -165,7 +162,7 @@ SceneToView savedView(const Options& given, const std::filesystem::path& path) {
 // options.
 SceneToView loaded(const Options& given, const std::filesystem::path& path) {
   if (isSession(path)) return savedView(given, path);
-  CLI::App command("", "view");
+  const DetachedCommand command("view");
   Options options = given;
   const bool capture = isCapture(path.string());
   const CaptureOptions before = given.scene;
@@ -198,7 +195,7 @@ void parseSize(const std::string& text, ApplicationOptions& options) {
                        std::to_string(kSmallestWindow) + " .. " + std::to_string(kLargestSide));
 }
 
-PerceptionOptions perceptionTest(const CLI::App& command, const Options& options) {
+PerceptionOptions perceptionTest(const Command& command, const Options& options) {
   if (!sceneArguments(command).empty())
     throw UsageError(sceneArguments(command).front() + ": the scenes are those of --perception");
   if (options.participant.empty() || options.answers.empty())
@@ -209,7 +206,7 @@ PerceptionOptions perceptionTest(const CLI::App& command, const Options& options
           parsed(options.settings),          options.exposure,    options.toneMap.value_or(ToneMap::None)};
 }
 
-void view(const CLI::App& command, const Options& options) {
+void view(const Command& command, const Options& options) {
   const std::string& model = options.scene.model;
   if (options.noWindow && options.frames == 0) throw UsageError("--no-window: needs --frames");
   ApplicationOptions application;
@@ -240,35 +237,32 @@ void view(const CLI::App& command, const Options& options) {
 
 }  // namespace
 
-void addViewCommand(CLI::App& app) {
+void addViewCommand(const Command& app) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("view", "Look at a model, a scene, a capture or a saved view, and change it");
-  addCaptureOptions(*command, options->scene, SceneUse::Replay);
-  command->get_option("model")->description(
-      "glTF file (.glb, .gltf), capture (.exr, .json) or saved view (.view.json)");
-  options->settings.addTo(*command);
-  command->add_option("--window-size", options->windowSize, "WIDTHxHEIGHT in pixels")->capture_default_str();
+  const Command command =
+      app.subcommand("view", "Look at a model, a scene, a capture or a saved view, and change it");
+  addCaptureOptions(command, options->scene, SceneUse::Replay);
+  command.describe("model", "glTF file (.glb, .gltf), capture (.exr, .json) or saved view (.view.json)");
+  options->settings.addTo(command);
+  command.option("--window-size", options->windowSize, "WIDTHxHEIGHT in pixels");
   command
-      ->add_option("--frames", options->frames,
-                   "of the screen, after which it ends; default: when the window is closed")
-      ->check(CLI::Range(1, 1000000));
-  command->add_flag("--no-window", options->noWindow, "draws into an image: needs no display");
-  command->add_option("--script", options->script, "input from a file (docs/thesis.md)");
-  command->add_option("--screenshot", options->screenshot, "PNG of the last frame of the screen");
-  command->add_option(
-      "--save", options->save,
-      "NAME.exr: at the end the capture, with settings, session, result and picture beside it");
-  command->add_option("--exposure", options->exposure, "factor; default: from the first picture")
-      ->check(CLI::PositiveNumber);
-  addToneMapOption(*command, options->toneMap);
-  command->add_option("--perception", options->perception,
-                      "perception test: a file that names captures, one a line");
-  command->add_option("--participant", options->participant, "who takes the test");
-  command->add_option("--answers", options->answers, "CSV that the test's answers are added to");
-  command->add_flag("--validate", options->validate,
-                    "with the Vulkan validation layers, whose messages are an error");
-  command->callback([options, command] { view(*command, *options); });
+      .option("--frames", options->frames,
+              "of the screen, after which it ends; default: when the window is closed")
+      .range(1, 1000000);
+  command.flag("--no-window", options->noWindow, "draws into an image: needs no display");
+  command.option("--script", options->script, "input from a file (docs/thesis.md)");
+  command.option("--screenshot", options->screenshot, "PNG of the last frame of the screen");
+  command.option("--save", options->save,
+                 "NAME.exr: at the end the capture, with settings, session, result and picture beside it");
+  command.option("--exposure", options->exposure, "factor; default: from the first picture").positive();
+  addToneMapOption(command, options->toneMap);
+  command.option("--perception", options->perception,
+                 "perception test: a file that names captures, one a line");
+  command.option("--participant", options->participant, "who takes the test");
+  command.option("--answers", options->answers, "CSV that the test's answers are added to");
+  command.flag("--validate", options->validate,
+               "with the Vulkan validation layers, whose messages are an error");
+  command.run([options, command] { view(command, *options); });
 }
 
 }  // namespace pellucid::harness

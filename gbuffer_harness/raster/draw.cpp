@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/error.h"
+#include "common/frame_image.h"
 #include "kRasterCaster.h"
 #include "kRasterCount.h"
 #include "kRasterDepth.h"
@@ -14,7 +15,6 @@
 #include "kRasterReflected.h"
 #include "kRasterSurface.h"
 #include "kRasterTransmit.h"
-#include "replay/frame.h"
 #include "scene/vector.h"
 #include "shared/pellucid_shared.h"
 

@@ -37,39 +37,6 @@ std::vector<std::string> DrawnFrame::warnings() const {
   return warnings;
 }
 
-std::shared_ptr<const InputImages> DrawnFrame::inputs(const ReplaySettings& settings) const {
-  if (!areOnDevice(options_) || options_.normalsInViewSpace || preExposureOf(settings) != 1 ||
-      settings.materialMask != 0 || settings.normalFormat != VK_FORMAT_R32G32B32A32_SFLOAT)
-    return std::make_shared<const InputImages>(device_, capture(), settings);
-  InputImages::Images inputs;
-  inputs.shape.backDepth = hasBackDepth();
-  inputs.shape.normal = inputs.shape.albedo = true;
-  inputs.frontDepth = images_.frontDepth;
-  if (hasBackDepth()) inputs.backDepth = images_.backDepth;
-  const auto& front = images_.front.target;
-  inputs.normal = sharedImage(front, FrontTarget::kNormalPlanar);
-  inputs.albedo = sharedImage(front, FrontTarget::kAlbedoObject);
-  inputs.material = sharedImage(front, FrontTarget::kMaterial);
-  inputs.irradiance = irradianceIn(irradianceFormat(settings));
-  const int size = options_.shadowSize;
-  for (const std::vector<DrawnMap>& maps : images_.maps)
-    for (const DrawnMap& map : maps) {
-      FrameShape::Map& place = inputs.shape.maps.emplace_back();
-      place.extent = {size, size};
-      const DeviceMap images = deviceMap(map, options_);
-      std::size_t i = 0;
-      for (const auto& image : {images.depth, images.exit, images.casterMaterial}) {
-        if (image) {
-          place.images[i] = static_cast<int>(inputs.shadows.size());
-          inputs.shadows.push_back(image);
-        }
-        ++i;
-      }
-    }
-  inputs.shape.shadowImages = inputs.shadows.size();
-  return std::make_shared<const InputImages>(std::move(inputs));
-}
-
 std::shared_ptr<GpuImage> DrawnFrame::irradianceIn(VkFormat format) const {
   if (format == VK_FORMAT_R32G32B32A32_SFLOAT) return images_.irradiance;
   const std::shared_ptr<GpuImage> image = passes_->images.take(options_.width, options_.height, format);

@@ -5,11 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "common/dispatch_time.h"
 #include "raster/passes.h"
 #include "raster/raster.h"
 #include "raster/shadow.h"
-#include "replay/inputs.h"
-#include "replay/replay.h"
 
 namespace pellucid::harness {
 
@@ -33,10 +32,11 @@ public:
   const std::vector<DispatchTime>& times() const { return times_; }  // of drawing, by the GPU's clock
   std::vector<std::string> warnings() const;                         // sentences for a person
 
-  // Images that a frame of these settings reads. Nothing goes to the host, but for what is to be stored in
-  // ways that no engine's images have here: normals in view space, distances in shadow maps, maps drawn as an
-  // engine does or in one image, other formats than floats and halves.
-  std::shared_ptr<const InputImages> inputs(const ReplaySettings& settings) const;
+  Device& device() const { return device_; }
+  const RasterOptions& options() const { return options_; }
+  const Images& images() const { return images_; }
+  bool hasBackDepth() const { return counts_.open == 0 || counts_.back > 0; }
+  std::shared_ptr<GpuImage> irradianceIn(VkFormat format) const;
 
   // The device's images, downloaded anew by each call.
   Capture capture() const;                       // all of it
@@ -47,8 +47,6 @@ public:
 
 private:
   VkRect2D whole() const;
-  std::shared_ptr<GpuImage> irradianceIn(VkFormat format) const;
-  bool hasBackDepth() const { return counts_.open == 0 || counts_.back > 0; }
 
   Device& device_;
   std::shared_ptr<DrawPasses> passes_;

@@ -8,32 +8,30 @@ namespace pellucid::harness {
 
 namespace {
 
-// The plan of the run, whose first dispatch is the one fused dispatch.
-const PellucidPlan& fusedPlan(const FrameRun& run, const std::string& name) {
-  const PellucidPlan& plan = run.plan();
-  if (run.frame().options.cameraThickness == 0)
+// The plan's first dispatch is the one fused dispatch.
+void requireFused(const PellucidFrame& frame, const PellucidPlan& plan, const std::string& name) {
+  if (frame.options.cameraThickness == 0)
     throw InputError(name, "cameraThickness", "light-space thickness does not need the back faces");
-  for (std::uint32_t i = 0; i < run.frame().shadowMapCount; ++i)
-    if (run.frame().shadowMaps[i].options.layer > 0)
+  for (std::uint32_t i = 0; i < frame.shadowMapCount; ++i)
+    if (frame.shadowMaps[i].options.layer > 0)
       throw InputError(name, "lights", "have shadow maps in layers; the back-face pass reads 2D images");
   if (plan.activeLights == 0) throw InputError(name, "lights", "none can contribute");
   // Lights are read from the first dispatch on, so all are in it when it has as many as are active.
   if (plan.dispatches[0].pushConstants[1] != plan.activeLights)
     throw InputError(name, "lights", "have more shadow images than one dispatch binds");
-  return plan;
 }
 
 }  // namespace
 
-Image rasterizeTransmitted(Device& device, const Model& model, const Capture& capture, const FrameRun& run,
+Image rasterizeTransmitted(Device& device, const Model& model, const Capture& capture,
+                           const PellucidFrame& frame, const PellucidPlan& plan,
                            const RasterOptions& options) {
-  const PellucidFrame& frame = run.frame();
-  const PellucidPlan& plan = fusedPlan(run, model.name);
+  requireFused(frame, plan, model.name);
   const HostBuffer constants(device, plan.constantsSize,
                              VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
-  requireOk(
-      pellucidWriteConstants(&plan, &frame, constants.mapped(), static_cast<std::size_t>(constants.size())),
-      frame, model.name);
+  const PellucidResult written =
+      pellucidWriteConstants(&plan, &frame, constants.mapped(), static_cast<std::size_t>(constants.size()));
+  if (written != PELLUCID_OK) throw InputError(model.name, "", pellucidResultName(written));
 
   const UploadedModel uploaded(device, model);
   const DrawView view{capture.clipFromView, capture.viewFromWorld, options.reversedZ};

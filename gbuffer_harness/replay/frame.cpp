@@ -93,18 +93,9 @@ float nearestLine(const PellucidMaterial& m, uint32_t channel) {
   return static_cast<float>(bestLength);
 }
 
+// What the table of settings cannot copy, because the frame holds it relative to its origin or as an array.
 void addThesisOptions(const TranslucencySettings& t, const Origin& origin, FrameData& data) {
   PellucidThesisOptions& o = data.thesis;
-  pellucidInitThesisOptions(&o);
-  o.angleModel = t.angleModel;
-  std::copy(t.anglePolynomial.begin(), t.anglePolynomial.end(), o.anglePolynomial);
-  o.minimumDot = t.minimumDot;
-  o.prescaleAngle = t.prescaleAngle;
-  o.constantViewDirection = t.constantViewDirection;
-  o.chordThickness = t.chordThickness;
-  o.maximumThickness = t.maximumThickness;
-  std::copy(t.transmittanceFilter.begin(), t.transmittanceFilter.end(), o.transmittanceFilter);
-  o.materialMarkBit = t.materialMarkBit;
   data.minimumDotTable = t.minimumDotTable;
   o.minimumDotTable = data.minimumDotTable.data();
   const auto entries = static_cast<uint32_t>(data.minimumDotTable.size());
@@ -112,10 +103,7 @@ void addThesisOptions(const TranslucencySettings& t, const Origin& origin, Frame
   const auto side = static_cast<uint32_t>(std::lround(std::sqrt(entries)));
   const bool sphere = t.angleModel == PELLUCID_ANGLE_MINIMUM_DOT_SPHERE;
   o.minimumDotTableSize = !sphere ? entries : side * side == entries ? side : 0;
-  std::copy(t.faceVector.begin(), t.faceVector.end(), o.faceVector);
-  std::copy(t.upAxis.begin(), t.upAxis.end(), o.upAxis);
   for (std::size_t i = 0; i < 3; ++i) o.objectCenter[i] = static_cast<float>(t.objectCenter[i] - origin[i]);
-  data.frame.options.thesis = &o;
 }
 
 // Views of different images that are never dereferenced: planning and validation only ask whether a view is
@@ -160,15 +148,6 @@ PellucidLight pellucidLight(const Light& light) {
   l.innerConeAngle = static_cast<float>(light.innerConeAngle);
   l.outerConeAngle = static_cast<float>(light.outerConeAngle);
   return l;
-}
-
-ReplaySettings thesisSettings() {
-  ReplaySettings s;
-  s.transmittance = TransmittanceChoice::Linear;
-  s.translucency.cameraThickness = true;
-  s.translucency.angleModel = PELLUCID_ANGLE_INVERSE_COSINE;
-  s.translucency.chordThickness = true;
-  return s;
 }
 
 std::vector<PellucidMaterial> withTransmittance(std::vector<PellucidMaterial> materials,
@@ -223,14 +202,15 @@ void makeFrame(const Capture& capture, const FrameShape& shape,
 
   PellucidFrame& f = data.frame;
   pellucidInitFrame(&f);
-  f.options.features = settings.features;
+  pellucidInitThesisOptions(&data.thesis);
+  setOptions(settings, f.options, data.thesis);
+  addThesisOptions(settings.translucency, origin, data);
+  f.options.thesis = &data.thesis;
   f.imageExtent[0] = static_cast<uint32_t>(capture.width);
   f.imageExtent[1] = static_cast<uint32_t>(capture.height);
-  std::copy(settings.renderRect.begin(), settings.renderRect.end(), f.options.renderRect);
   f.metersPerUnit = static_cast<float>(capture.metersPerUnit);
   copy(capture.clipFromView, f.clipFromView);
   copy(fromOrigin(capture.viewFromWorld, origin), f.viewFromWorld);
-  f.options.outputFormat = settings.outputFormat;
   f.options.frontDepthEncoding = capture.frontDepth.encoding;
   f.options.backDepthEncoding = capture.backDepth.encoding;
   f.options.normalsInViewSpace = capture.normalsInViewSpace;
@@ -256,38 +236,13 @@ void makeFrame(const Capture& capture, const FrameShape& shape,
       for (const double channel : coefficient) data.ambient.push_back(static_cast<float>(channel));
     f.options.ambient = data.ambient.data();
   }
-  const TranslucencySettings& t = settings.translucency;
-  f.options.cameraThickness = t.cameraThickness;
-  f.options.gatherSamples = t.gatherSamples;
-  f.options.gatherSpacing = t.gatherSpacing;
-  addThesisOptions(t, origin, data);
-  f.options.reuse = settings.reuse;
-  f.options.coherenceThreshold = settings.coherenceThreshold;
-  f.options.nearestDistance = settings.nearestDistance;
   f.options.separateOutput = !settings.aliasOutput || settings.debugView != PELLUCID_DEBUG_NONE;
-  f.options.indirectDispatches = settings.indirectDispatches;
   f.options.materialShift = settings.materialShift;
   f.options.materialMask = settings.materialMask;
   f.options.addToOutput = settings.addToOutput;
   f.preExposure = preExposureOf(settings);
   f.options.debugView = settings.debugView;
   fillPlaceholders(shape, ambient && shape.hiddenIrradiance, data);
-}
-
-const PellucidImage& imageOf(const PellucidFrame& frame, uint32_t resource) {
-  const std::pair<uint32_t, const PellucidImage*> named[] = {
-      {PELLUCID_RESOURCE_FRONT_DEPTH, &frame.frontDepth},
-      {PELLUCID_RESOURCE_BACK_DEPTH, &frame.backDepth},
-      {PELLUCID_RESOURCE_IRRADIANCE, &frame.irradiance},
-      {PELLUCID_RESOURCE_HIDDEN_IRRADIANCE, &frame.hiddenIrradiance},
-      {PELLUCID_RESOURCE_NORMAL, &frame.normal},
-      {PELLUCID_RESOURCE_ALBEDO, &frame.albedo},
-      {PELLUCID_RESOURCE_MATERIAL, &frame.material},
-      {PELLUCID_RESOURCE_OUTPUT, &frame.output}};
-  for (const auto& [name, image] : named)
-    if (name == resource) return *image;
-  return resource >= PELLUCID_RESOURCE_SHADOW0 ? frame.shadowImages[resource - PELLUCID_RESOURCE_SHADOW0]
-                                               : frame.transients[resource - PELLUCID_RESOURCE_TRANSIENT0];
 }
 
 void appendError(void* user, PellucidSeverity severity, const char* field, const char* message) {

@@ -3,50 +3,13 @@
 
 #include <array>
 #include <cstddef>
-#include <optional>
 #include <vector>
 
 #include "capture/capture.h"
-#include "common/translucency_settings.h"
-#include "pellucid/pellucid.h"
+#include "common/frame_image.h"
+#include "replay/settings.h"
 
 namespace pellucid::harness {
-
-// Which T(d) stands for the material's own.
-enum class TransmittanceChoice {
-  Material,
-  Linear,  // 1 - d/dmax with the dmax that is nearest to the material's own T over 0..10 mm
-  Gaussians,
-  GaussiansAsPrinted
-};
-
-struct ReplaySettings {
-  uint32_t features = PELLUCID_FEATURE_TRANSLUCENCY | PELLUCID_FEATURE_DIFFUSION;
-  TranslucencySettings translucency;
-  TransmittanceChoice transmittance = TransmittanceChoice::Material;
-  PellucidDebugView debugView = PELLUCID_DEBUG_NONE;
-  VkFormat outputFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
-  VkFormat irradianceFormat = VK_FORMAT_UNDEFINED;        // UNDEFINED: outputFormat
-  VkFormat normalFormat = VK_FORMAT_R32G32B32A32_SFLOAT;  // of the image that normals are uploaded to
-  // See PellucidFrame. With a mask, the other bits of the 32 of the uploaded material image hold noise.
-  uint32_t materialShift = 0, materialMask = 0;
-  // Light from all around comes through thin parts; not given: where the capture has hidden irradiance.
-  std::optional<bool> ambient;
-  bool addToOutput = false;  // FrameRun::uploadOutput says to what
-  // The uploaded irradiance is the capture's times this. 0: of Replayer::run preExposureFor() the capture, by
-  // which its output is divided again; elsewhere 1.
-  float preExposure = 1;
-  PellucidReuse reuse = PELLUCID_REUSE_NONE;
-  float coherenceThreshold = 0.005f;
-  float nearestDistance = 0;
-  bool aliasOutput = false;  // output is the irradiance image; ignored for debug views
-  bool indirectDispatches = true;
-  std::array<uint32_t, 4> renderRect = {0, 0, 0, 0};  // width 0: everything
-};
-
-// Whelan 2009: linear transmittance, camera-space thickness along the view ray, the inverse cosine of the
-// angle between camera and light, rejection by the shadow map.
-ReplaySettings thesisSettings();
 
 // `materials` with T(d) exchanged as `choice` says.
 std::vector<PellucidMaterial> withTransmittance(std::vector<PellucidMaterial> materials,
@@ -104,9 +67,6 @@ void makeFrame(const Capture& capture, const FrameShape& shape,
 
 // Without shadow maps and tables.
 PellucidLight pellucidLight(const Light& light);
-
-// The image that a PellucidBinding of an image resource means, for passes that bind what a plan does.
-const PellucidImage& imageOf(const PellucidFrame& frame, uint32_t resource);
 
 // A PellucidMessageFn that collects errors. `user`: the std::string that they are added to.
 void appendError(void* user, PellucidSeverity severity, const char* field, const char* message);

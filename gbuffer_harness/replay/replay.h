@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/device.h"
+#include "common/dispatch_time.h"
 #include "common/owned.h"
 #include "common/pool.h"
 #include "pellucid/pellucid_statistics.h"
@@ -137,11 +138,6 @@ private:
   std::unique_ptr<Images> images_;
   std::unique_ptr<PellucidPlan> plan_;
   std::unique_ptr<HostBuffer> constants_;
-};
-
-struct DispatchTime {
-  std::string name;
-  double microseconds;
 };
 
 struct ReplayResult {

@@ -9,7 +9,7 @@
 #include "cli/numbers.h"
 #include "common/png.h"
 #include "sample/renderer.h"
-#include "view/window.h"
+#include "window/window.h"
 
 using namespace pellucid::sample;
 

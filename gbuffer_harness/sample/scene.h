@@ -7,8 +7,8 @@
 
 #include "gltf/gltf.h"
 #include "raster/framing.h"
+#include "raster/view_camera.h"
 #include "sample/frame.h"
-#include "view/camera.h"
 
 namespace pellucid::sample {
 

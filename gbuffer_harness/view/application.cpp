@@ -17,7 +17,7 @@
 #include "view/picture.h"
 #include "view/save.h"
 #include "view/scripted_input.h"
-#include "view/window.h"
+#include "window/window.h"
 
 namespace pellucid::harness {
 

@@ -10,6 +10,7 @@
 #include "metrics/isolated.h"
 #include "replay/exposure.h"
 #include "shared/pellucid_shared.h"
+#include "view/drawn_inputs.h"
 
 namespace pellucid::harness {
 
@@ -126,7 +127,7 @@ void ViewFrames::update(const ViewState& state, const Changes& changes) {
   const Scene& seen = rendered ? *rendered : scene_;
   const std::shared_ptr<const InputImages> inputs =
       !upload      ? inputs_
-      : seen.drawn ? seen.drawn->inputs(state.settings)
+      : seen.drawn ? drawnInputs(*seen.drawn, state.settings)
                    : std::make_shared<const InputImages>(device_, seen.capture, state.settings);
   const double milliseconds =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "common/compare.h"
-#include "view/parameters.h"
+#include "replay/settings.h"
 
 namespace pellucid::harness {
 
@@ -37,51 +37,53 @@ bool shownCombo(const char* label, Shown& shown) {
   return changed;
 }
 
-bool drawParameter(const Parameter& parameter, ReplaySettings& settings) {
-  Parameter::Values values = parameter.get(settings);
-  const char* const label = parameter.label.c_str();
+bool drawSetting(const Setting& setting, ReplaySettings& settings) {
+  Setting::Values values = setting.get(settings);
+  const char* const label = setting.label.c_str();
+  const bool isFlag = setting.names == std::vector<std::string>{"0", "1"};
   bool changed = false;
-  switch (parameter.kind) {
-    case ParameterKind::Choice: {
-      int index = static_cast<int>(values[0]);
-      changed = combo(label, index, parameter.choices);
-      values[0] = static_cast<float>(index);
-      break;
-    }
-    case ParameterKind::Flag: {
-      bool on = values[0] != 0;
-      changed = ImGui::Checkbox(label, &on);
-      values[0] = on;
-      break;
-    }
-    case ParameterKind::Whole: {
-      int whole = static_cast<int>(values[0]);
-      changed =
-          ImGui::SliderInt(label, &whole, static_cast<int>(parameter.low), static_cast<int>(parameter.high));
-      values[0] = static_cast<float>(whole);
-      break;
-    }
-    case ParameterKind::Real:
-      changed = ImGui::SliderScalarN(label, ImGuiDataType_Float, values.data(), parameter.components,
-                                     &parameter.low, &parameter.high, "%.3g");
-      break;
+  if (setting.kind == Setting::Kind::Bits) {
+    auto bits = static_cast<unsigned>(values[0]);
+    for (std::size_t i = 0; i < setting.names.size(); ++i)
+      changed |= ImGui::CheckboxFlags(setting.names[i].c_str(), &bits, 1u << i);
+    values[0] = bits;
+  } else if (isFlag) {
+    bool on = values[0] != 0;
+    changed = ImGui::Checkbox(label, &on);
+    values[0] = on;
+  } else if (setting.kind == Setting::Kind::Choice) {
+    int index = static_cast<int>(values[0]);
+    const auto offered = setting.names.begin() + static_cast<std::ptrdiff_t>(setting.high) + 1;
+    changed = combo(label, index, {setting.names.begin(), offered});
+    values[0] = index;
+  } else if (setting.kind == Setting::Kind::Whole) {
+    int whole = static_cast<int>(values[0]);
+    changed = ImGui::SliderInt(label, &whole, static_cast<int>(setting.low), static_cast<int>(setting.high));
+    values[0] = whole;
+  } else {
+    changed = ImGui::SliderScalarN(label, ImGuiDataType_Double, values.data(),
+                                   static_cast<int>(values.size()), &setting.low, &setting.high, "%.3g");
   }
-  hint(parameter.help + " (--set " + parameter.key + ")");
-  if (changed) assign(parameter, settings, values);
+  hint("--set " + syntaxOf(setting));
+  if (changed) assignNearest(setting, settings, values);
   return changed;
 }
 
-bool drawParameters(ReplaySettings& settings) {
-  bool changed = false;
-  for (const ParameterGroup& group : parameterGroups()) {
-    if (!ImGui::CollapsingHeader(group.name.c_str(), group.open ? ImGuiTreeNodeFlags_DefaultOpen : 0))
-      continue;
-    for (const Parameter& parameter : group.parameters) {
-      const bool used = !parameter.used || parameter.used(settings);
-      if (!used) ImGui::BeginDisabled();
-      changed |= drawParameter(parameter, settings);
-      if (!used) ImGui::EndDisabled();
+bool drawSettings(ReplaySettings& settings) {
+  bool changed = false, open = false;
+  std::string group;
+  for (const Setting& setting : settingsTable()) {
+    if (setting.label.empty()) continue;
+    if (setting.group != group) {
+      open =
+          ImGui::CollapsingHeader(setting.group.c_str(), group.empty() ? ImGuiTreeNodeFlags_DefaultOpen : 0);
+      group = setting.group;
     }
+    if (!open) continue;
+    const bool hasEffect = !setting.hasEffect || setting.hasEffect(settings);
+    if (!hasEffect) ImGui::BeginDisabled();
+    changed |= drawSetting(setting, settings);
+    if (!hasEffect) ImGui::EndDisabled();
   }
   return changed;
 }
@@ -185,7 +187,7 @@ Changes drawPanel(ViewState& state, PanelState& panel, const ViewFrames& frames,
     ImGui::PopStyleColor();
   }
   changes.add(drawDisplay(state, panel, frames));
-  changes.frame |= drawParameters(state.settings);
+  changes.frame |= drawSettings(state.settings);
   changes.add(drawMaterials(state));
   if (ImGui::CollapsingHeader("T(d) and profile", ImGuiTreeNodeFlags_DefaultOpen)) drawCurves(state, frames);
   changes.add(drawLights(state, source));

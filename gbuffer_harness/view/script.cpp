@@ -9,7 +9,7 @@
 #include "capture/manifest_material.h"
 #include "common/error.h"
 #include "common/number.h"
-#include "view/parameters.h"
+#include "replay/settings.h"
 
 namespace pellucid::harness {
 
@@ -41,36 +41,22 @@ Shown shownOf(const ScriptLine& line, std::string name) {
   return static_cast<Shown>(found - names.begin());
 }
 
-const Parameter* find(const std::string& name) {
-  for (const bool byLabel : {true, false})
-    for (const ParameterGroup& group : parameterGroups())
-      for (const Parameter& parameter : group.parameters)
-        if ((byLabel ? parameter.label : parameter.key) == name) return &parameter;
-  return nullptr;
-}
-
-void setParameter(const ScriptLine& line, ReplaySettings& settings) {
+void set(const ScriptLine& line, ReplaySettings& settings) {
   const std::string& text = line.arguments[0];
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos) fail(line, "\"" + text + "\" is not NAME=VALUE");
-  std::string name = text.substr(0, equals);
-  const Parameter* parameter = find(name);
-  if (!parameter) fail(line, "there is no parameter \"" + name + "\"");
-  Parameter::Values values = parameter->get(settings);
-  std::istringstream parts(text.substr(equals + 1));
-  std::string part;
-  for (std::size_t i = 0; std::getline(parts, part, ','); ++i) {
-    if (i >= static_cast<std::size_t>(parameter->components))
-      fail(line, "\"" + text + "\" has more values than " + std::to_string(parameter->components));
-    const auto choice = std::find(parameter->choices.begin(), parameter->choices.end(), part);
-    values[i] = choice != parameter->choices.end() ? static_cast<float>(choice - parameter->choices.begin())
-                                                   : parse(line, part);
-    if (values[i] < parameter->low || values[i] > parameter->high)
-      fail(line, "\"" + part + "\" is outside of what " + name + " allows");
-    if (parameter->kind == ParameterKind::Whole && std::fmod(values[i], parameter->step) != 0)
-      fail(line, "\"" + part + "\" is not a multiple of " + std::to_string(std::lround(parameter->step)));
+  try {
+    const std::string key = text.substr(0, equals);
+    const Setting& setting = findSetting("set", key);
+    const Setting::Values values = parseValues(setting, key, text.substr(equals + 1));
+    ReplaySettings nearest = settings;
+    assignNearest(setting, nearest, values);
+    if (!setting.label.empty() && setting.get(nearest) != values)
+      fail(line, "\"" + text + "\" is not what the panel allows");
+    setting.set(settings, values);
+  } catch (const UsageError& error) {
+    fail(line, error.what());
   }
-  assign(*parameter, settings, values);
 }
 
 }  // namespace
@@ -111,7 +97,7 @@ std::vector<ScriptLine> readScript(const std::filesystem::path& path) {
 
 bool applyToState(const ScriptLine& line, ViewState& state, Changes& changes) {
   if (line.command == "set") {
-    setParameter(line, state.settings);
+    set(line, state.settings);
     changes.frame = true;
   } else if (line.command == "material") {
     if (state.materials.empty()) fail(line, "the scene has no material");

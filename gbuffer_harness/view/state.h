@@ -6,8 +6,8 @@
 
 #include "capture/capture.h"
 #include "common/tone_map.h"
+#include "raster/view_camera.h"
 #include "replay/frame.h"
-#include "view/camera.h"
 
 namespace pellucid::harness {
 

@@ -89,7 +89,7 @@ protected:
     const FrameRun run(device(), context, capture, {testMaterial()}, settings);
     device().run([&](VkCommandBuffer commandBuffer) { run.record(commandBuffer); });
     const Image fused = run.output();
-    const Image drawn = rasterizeTransmitted(device(), model, capture, run, options);
+    const Image drawn = rasterizeTransmitted(device(), model, capture, run.frame(), run.plan(), options);
     Difference d;
     for (std::size_t i = 0; i < drawn.data.size(); ++i) {
       const double added = fused.data[i / 3 * 4 + i % 3] - capture.irradiance.data[i];
@@ -141,7 +141,7 @@ TEST_F(Transmit, LightSpaceThicknessIsRefused) {
   const Capture capture = rasterize(device(), model, frontCamera(false, kEye), options).capture;
   const Context& context = replayer().contextFor(capture);
   const FrameRun run(device(), context, capture, {testMaterial()}, {});
-  EXPECT_THROW(rasterizeTransmitted(device(), model, capture, run, options), InputError);
+  EXPECT_THROW(rasterizeTransmitted(device(), model, capture, run.frame(), run.plan(), options), InputError);
 }
 
 }  // namespace

@@ -45,7 +45,8 @@ struct Rule {
 void PrintTo(const Rule& value, std::ostream* out) { *out << value.folder << ": " << value.reason; }
 
 const std::vector<Rule> kRules = {
-    {"compute/shared", R"(#include\s*[<"](?!glm/|pellucid_))", "shared headers include nothing but GLM types and each other", ""},
+    {"compute/shared", R"(#include\s*[<"](?!glm/|pellucid_))",
+     "shared headers include nothing but GLM types and each other", ""},
     {"compute/lib", R"(\blayout\s*\()", "lib is maths: bindings belong to passes", ""},
     {"compute/lib", R"(#include\s*"(?!lib/|shared/))", "lib does not know the passes", ""},
     {"compute", R"(#include\s*"(pellucid/|capture/|replay/|scene/))", "shaders include shaders", ""},
@@ -71,8 +72,11 @@ const std::vector<Rule> kRules = {
      "metrics know captures and images, no files", ""},
     {"gbuffer_harness/scene", R"(#include\s*<(OpenEXR|Imf|nlohmann))", "procedural scenes need no files", ""},
     {"gbuffer_harness/raster",
-     R"(#include\s*(<(OpenEXR|Imf|nlohmann|tiny_gltf)|"(capture/(exr|read|write)|gltf/)))",
-     "the rasterizer knows models and captures, no files", ""},
+     R"(#include\s*(<(OpenEXR|Imf|nlohmann|tiny_gltf)|"(capture/(exr|read|write)|gltf/|replay/|view/)))",
+     "the rasterizer knows models and captures, neither files nor replays", ""},
+    {"gbuffer_harness/sample", R"(#include\s*"view/)", "integrators copy the sample, and not the viewer", ""},
+    {"gbuffer_harness/cli", R"(#include\s*<CLI)", "each source with CLI11 takes many seconds to compile",
+     "command.cpp"},
 };
 
 class Layering : public testing::TestWithParam<Rule> {};

@@ -1,4 +1,4 @@
-// The viewer without a window: camera, lights, input, parameters, sessions, scripts, cost.
+// The viewer without a window: camera, lights, input, settings, sessions, scripts, cost.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,6 +8,7 @@
 #include <set>
 
 #include "common/error.h"
+#include "replay/settings.h"
 #include "scene/turn.h"
 #include "temporary_directory.h"
 #include "view/cost.h"
@@ -15,7 +16,6 @@
 #include "view/frame_times.h"
 #include "view/input.h"
 #include "view/material_kind.h"
-#include "view/parameters.h"
 #include "view/script.h"
 #include "view/session.h"
 
@@ -258,23 +258,23 @@ TEST(ViewState, ShownDecidesTheSettings) {
   EXPECT_EQ(settingsFor(state, Shown::Through).features, std::uint32_t{PELLUCID_FEATURE_TRANSLUCENCY});
 }
 
-TEST(ViewParameters, TakeEveryValueThatTheyAllow) {
-  for (const ParameterGroup& group : parameterGroups())
-    for (const Parameter& p : group.parameters) {
-      ReplaySettings settings;
-      for (const float value : {p.low, p.high}) {
-        assign(p, settings, {value, value, value, value});
-        const Parameter::Values got = p.get(settings);
-        for (int c = 0; c < p.components; ++c) EXPECT_EQ(got[static_cast<std::size_t>(c)], value) << p.label;
-      }
-      assign(p, settings, {p.high + 100, 0, 0, 0});
-      EXPECT_EQ(p.get(settings)[0], p.high) << p.label;
-      assign(p, settings, {NAN, NAN, NAN, NAN});
-      EXPECT_EQ(p.get(settings)[0], p.high) << p.label;
+TEST(ViewSettings, TakeEveryValueThatThePanelAllows) {
+  for (const Setting& s : settingsTable()) {
+    if (s.label.empty()) continue;
+    ReplaySettings settings;
+    const std::size_t count = s.get(settings).size();
+    for (const double value : {s.low, s.high}) {
+      assignNearest(s, settings, Setting::Values(count, value));
+      for (const double got : s.get(settings)) EXPECT_EQ(got, value) << s.key;
     }
+    assignNearest(s, settings, Setting::Values(count, s.high + 100));
+    EXPECT_EQ(s.get(settings)[0], s.high) << s.key;
+    assignNearest(s, settings, Setting::Values(count, NAN));
+    EXPECT_EQ(s.get(settings)[0], s.high) << s.key;
+  }
 }
 
-TEST(ViewParameters, ReachTheirFields) {
+TEST(ViewSettings, ReachTheirFields) {
   ReplaySettings settings;
   Changes changes;
   ViewState state;
@@ -286,7 +286,7 @@ TEST(ViewParameters, ReachTheirFields) {
   set("filter=0.55,0.29,0.28");
   set("angle=polynomial");
   set("polynomial=1,2,3,4");
-  set("diffusion=0");
+  set("features=translucency");
   set("reuse=coherence");
   const ReplaySettings& s = state.settings;
   EXPECT_EQ(s.translucency.gatherSamples, 16u);

@@ -1,5 +1,5 @@
 #define GLFW_INCLUDE_VULKAN
-#include "view/window.h"
+#include "window/window.h"
 
 #include <GLFW/glfw3.h>
 

@@ -1,4 +1,4 @@
-#include "view/camera.h"
+#include "raster/view_camera.h"
 
 #include <algorithm>
 #include <cmath>
