@@ -199,35 +199,6 @@ std::string framesTable(const Json& results) {
          byFrame(all, "whole", sizes);
 }
 
-std::string frameSizesTable(const Json& results) {
-  const Frames all(results);
-  std::string text = all.heading("microseconds (floors)");
-  for (const std::string& frame : all.frames()) {
-    std::vector<std::string> sizes;  // that it was measured at
-    for (const std::string& size : all.sizes())
-      if (all.find(frame, size, "frame", "frame")) sizes.push_back(size);
-    std::vector<std::string> columns = sizes;
-    columns.push_back("error");
-    text += header(all.covered(frame), columns);
-    for (const std::string& name : all.names("whole")) {
-      std::string cells;
-      std::optional<double> error;
-      for (const std::string& size : sizes) {
-        const Json* row = all.find(frame, size, "whole", name);
-        if (row && !error) error = errorOf(*row);
-        cells += " ";
-        if (row) cells += timeOf(*row);
-        if (row && row->contains("us")) cells += format(" (%.1f)", row->at("floor_ratio").get<double>());
-        cells += " |";
-      }
-      text += "| " + name + " |" + cells + (error ? format(" %.2g |", *error) : " |") + "\n";
-    }
-    text += "\n";
-  }
-  text.pop_back();
-  return text;
-}
-
 std::string framePartsTable(const Json& results) {
   const Frames all(results);
   const std::string unit = "microseconds at " + listed(all.sizes()) + ", then the error of the diffusion";

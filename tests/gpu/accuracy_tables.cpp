@@ -1,6 +1,5 @@
-// Measures and prints the tables of docs/accuracy.md about float arithmetic and 16-bit storage, or rewrites
-// them there:
-//   pellucid_accuracy_tables cancellation|halves [--update FILE]
+// Measures and prints the table of docs/accuracy.md about float arithmetic, or rewrites it there:
+//   pellucid_accuracy_tables cancellation [--update FILE]
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -33,19 +32,12 @@ std::string cancellation(harness::Replayer& replayer) {
   return table;
 }
 
-std::string halves(harness::Replayer& replayer) {
-  std::string table = "| irradiance | samples | worst | RMSE |\n|-|-|-|-|\n";
-  for (const test::HalfErrors& e : test::measureHalves(replayer))
-    table += format("| %g | %u | %.1e | %.1e |\n", e.irradiance, e.samples, e.worst, e.rmse);
-  return table;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
   const std::string name = argc > 1 ? argv[1] : "";
-  if (name != "cancellation" && name != "halves") {
-    std::fprintf(stderr, "usage: pellucid_accuracy_tables cancellation|halves [--update FILE]\n");
+  if (name != "cancellation") {
+    std::fprintf(stderr, "usage: pellucid_accuracy_tables cancellation [--update FILE]\n");
     return 2;
   }
   try {
@@ -53,8 +45,7 @@ int main(int argc, char** argv) {
     harness::Replayer replayer(device);
     const std::string heading =
         "Worst relative errors; " + device.description() + "; commit " PELLUCID_COMMIT ":\n\n";
-    return generatedBlock(argc - 2, argv + 2, name,
-                          heading + (name == "halves" ? halves(replayer) : cancellation(replayer)));
+    return generatedBlock(argc - 2, argv + 2, name, heading + cancellation(replayer));
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;
