@@ -11,7 +11,9 @@
 #include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "capture/capture.h"
 #include "capture/exr.h"
@@ -206,6 +208,22 @@ inline std::string errorOf(const std::function<void()>& call) {
 inline void expectNames(const std::string& sentence, const std::vector<std::string>& parts) {
   for (const std::string& part : parts)
     EXPECT_NE(sentence.find(part), std::string::npos) << '"' << part << "\" is not in: " << sentence;
+}
+
+// Rows of a text, with " | " between their cells.
+inline std::vector<std::vector<std::string>> tableOf(const std::string& text) {
+  std::vector<std::vector<std::string>> table;
+  std::istringstream rows(text);
+  for (std::string row; std::getline(rows, row);) {
+    if (row.empty()) continue;
+    std::vector<std::string>& cells = table.emplace_back();
+    for (std::size_t at = 0; at != std::string::npos;) {
+      const std::size_t end = row.find(" | ", at);
+      cells.push_back(row.substr(at, end == std::string::npos ? end : end - at));
+      at = end == std::string::npos ? end : end + 3;
+    }
+  }
+  return table;
 }
 
 // The sample files with a manifest to change.

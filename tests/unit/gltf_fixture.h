@@ -46,6 +46,26 @@ protected:
       EXPECT_NE(sentence.find(word), std::string::npos) << "\"" << word << "\" is not in: " << sentence;
   }
 
+  // Rows of a pointer into the file's JSON, the value that is put there or "removed", and what the error
+  // names.
+  void expectRefusals(const std::function<GltfBuilder()>& good, const char* rows,
+                      const GltfOptions& options = {}) const {
+    for (const std::vector<std::string>& cells : tableOf(rows)) {
+      SCOPED_TRACE(testing::PrintToString(cells));
+      ASSERT_GE(cells.size(), 3u);
+      GltfBuilder b = good();
+      const Json::json_pointer pointer(cells[0]);
+      if (cells[1] == "removed")
+        b.json[pointer.parent_pointer()].erase(pointer.back());
+      else
+        b.json[pointer] = Json::parse(cells[1]);
+      const std::string sentence = refusal(b.glb(), "t.glb", options);
+      EXPECT_NE(sentence.find("t.glb"), std::string::npos) << sentence;
+      for (std::size_t i = 2; i < cells.size(); ++i)
+        EXPECT_NE(sentence.find(cells[i]), std::string::npos) << cells[i] << " is not in: " << sentence;
+    }
+  }
+
   TemporaryDirectory folder_;
 };
 
