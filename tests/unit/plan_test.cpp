@@ -71,28 +71,6 @@ TEST(Plan, ConstantsSizeBoundsThatOfFrames) {
         }
 }
 
-TEST(Plan, SameInputSamePlan) {
-  Frame f;
-  const PellucidPlan a = f.plan(), b = f.plan();
-  EXPECT_EQ(std::memcmp(&a, &b, sizeof a), 0);
-}
-
-TEST(Plan, ThreadsPlanTheSame) {
-  Frame f;
-  const PellucidPlan expected = f.plan();
-  std::vector<std::thread> threads;
-  std::atomic<int> different = 0;
-  for (int t = 0; t < 4; ++t)
-    threads.emplace_back([&] {
-      for (int i = 0; i < 100; ++i) {
-        const PellucidPlan plan = f.plan();
-        different += std::memcmp(&plan, &expected, sizeof plan) != 0;
-      }
-    });
-  for (std::thread& t : threads) t.join();
-  EXPECT_EQ(different, 0);
-}
-
 TEST(Plan, EveryReadIsOfSomethingWritten) {
   for (uint32_t features : {0u, 1u, 2u, 3u})
     for (uint32_t images : {0u, 1u, 9u, 20u}) {
