@@ -240,13 +240,4 @@ TEST_F(SpotMaps, CulledFrontsAndBiasGiveThePlainPictureWhereTheyAreSaid) {
   }
 }
 
-TEST(SampleLines, AreFew) {
-  const auto lines = [](const std::filesystem::path& file) {
-    std::ifstream in(file);
-    return std::count(std::istreambuf_iterator<char>(in), {}, '\n');
-  };
-  const std::filesystem::path folder = PELLUCID_SOURCE_DIR "/gbuffer_harness/sample";
-  EXPECT_LE(lines(folder / "pellucid_pass.h"), 85);
-}
-
 }  // namespace

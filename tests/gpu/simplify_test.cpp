@@ -73,18 +73,4 @@ TEST_F(Simplify, ChangesWhatLightComesThroughAlone) {
   EXPECT_LT(sum / covered, 0.1) << "mm";
 }
 
-TEST_F(Simplify, OtherSharesAreRefused) {
-  const Model model = sphere();
-  for (const double ratio : {0.0, -1.0, 1.5, std::numeric_limits<double>::quiet_NaN()}) {
-    RasterOptions options;
-    options.simplify = ratio;
-    try {
-      rasterize(device(), model, frontCamera(true), options);
-      ADD_FAILURE() << ratio;
-    } catch (const InputError& error) {
-      EXPECT_NE(std::string(error.what()).find("simplify"), std::string::npos) << error.what();
-    }
-  }
-}
-
 }  // namespace

@@ -81,12 +81,6 @@ TEST(Anova, RefusesWhatIsNotBalanced) {
   EXPECT_THROW(twoWayAnova({{{1}, {2}}, {{3}, {4}}}), InputError);
 }
 
-TEST(Anova, AnswersWithoutNoise) {
-  const Anova anova = twoWayAnova({{{1, 1}, {1, 1}}, {{2, 2}, {2, 2}}});
-  EXPECT_EQ(anova.first.p, 0);
-  EXPECT_EQ(anova.second.p, 1);
-}
-
 class Perception : public testing::Test {
 protected:
   std::string refusal() const {

@@ -307,55 +307,6 @@ TEST_F(Init, PassesOfLightOfEachRendererGiveTheIrradiance) {
   }
 }
 
-// Arnold's diffuse passes are black where all of the light goes under the surface.
-TEST_F(Init, APassThatIsBlackOnTheMaterialIsNamed) {
-  const Image albedo = constantImage({0.5f, 0.25f, 0.125f});
-  Image light = frame_.irradiance;
-  for (std::size_t i = 0; i < light.data.size(); ++i)
-    light.data[i] = frame_.material[i / 3] != 0 ? 0.0f : 1.0f;
-  const GuessedManifest black = guessPasses({{"diffuse_albedo", albedo}, {"diffuse_direct", light}});
-  EXPECT_NE(black.json["// irradiance"].get<std::string>().find("black"), std::string::npos);
-  const auto names = [](const std::string& sentence) { return sentence.rfind("irradiance: ", 0) == 0; };
-  EXPECT_EQ(std::count_if(black.missing.begin(), black.missing.end(), names), 1);
-  const GuessedManifest lit =
-      guessPasses({{"diffuse_albedo", albedo}, {"diffuse_direct", frame_.irradiance}});
-  EXPECT_FALSE(lit.json.contains("// irradiance"));
-}
-
-// RenderMan's zback of surfaces: thickness 0 everywhere would be taken for a thin body.
-TEST_F(Init, ABackDepthThatIsTheFrontAgainIsNotTaken) {
-  const Image id = materialImage(1);
-  std::vector<Channel> channels = {
-      {"z", &frame_.frontDepth.image, 0}, {"zback", &frame_.frontDepth.image, 0}, {"id", &id, 0}};
-  for (const Channel& c : triple("irradiance.", "RGB", frame_.irradiance)) channels.push_back(c);
-  write("again.exr", channels);
-  InitWords words;
-  words.camera.verticalFov = fov_;
-  words.lights = {{{"type", "directional"}, {"direction", {0, 0, 1}}}};
-  const GuessedManifest guessed = guess({"again.exr"}, words);
-  EXPECT_FALSE(guessed.json["buffers"].contains("backDepth"));
-  EXPECT_NE(guessed.missing[0].find("backDepth: without"), std::string::npos) << guessed.missing[0];
-}
-
-// Colors as red, green and blue, RenderMan's normals, Blender 5's numbers; a picture of hashes is no number.
-TEST_F(Init, OtherNamesOfComponentsAndPassesAreKnown) {
-  const Image id = materialImage(3), hash = materialImage(7);
-  std::vector<Channel> channels = {
-      {"depth.Z", &frame_.frontDepth.image, 0}, {"crypto_id.red", &hash, 0}, {"Material Index.X", &id, 0}};
-  const char* const colors[] = {"light.red", "light.green", "light.blue"};
-  for (int c = 0; c < 3; ++c)
-    channels.push_back({"irradiance." + std::string(colors[c]), &frame_.irradiance, c});
-  for (const Channel& channel : triple("Nn.", "XYZ", frame_.normal)) channels.push_back(channel);
-  write("names.exr", channels);
-  InitWords words;
-  words.camera.verticalFov = fov_;
-  const GuessedManifest guessed = guess({"names.exr"}, words);
-  const Capture capture = read(guessed);
-  EXPECT_TRUE(sameBits(capture.irradiance, frame_.irradiance));
-  EXPECT_TRUE(sameBits(capture.normal, frame_.normal));
-  EXPECT_EQ(capture.material, frame_.material);
-}
-
 TEST_F(Init, AProductNeedsAnAlbedoAboveZero) {
   Image black = constantImage({0.5f, 0, 0.5f});
   const std::string error = errorOf([&] {

@@ -85,13 +85,6 @@ TEST(MaterialCommand, JsonHoldsEverything) {
   }
 }
 
-TEST(MaterialCommand, TextAndList) {
-  const std::string text = run("skin1 --thickness 1");
-  for (const char* part : {"skin1", "rho", "largest error", "Burley d", "variance 5", "1 mm", "fitted"})
-    EXPECT_NE(text.find(part), std::string::npos) << part;
-  EXPECT_NE(run("--list").find("whole_milk\n"), std::string::npos);
-}
-
 // The manifest's objects: OpenPBR's names, and skin as by the options of its own.
 TEST(MaterialCommand, ManifestMaterialInBraces) {
   const auto json = [](const std::string& arguments) { return Json::parse(run(arguments + " --json")); };
@@ -134,19 +127,6 @@ TEST(MaterialCommand, RefusalsNameTheField) {
   EXPECT_THROW(run("skin1 --melanin 0.1"), UsageError);
   EXPECT_THROW(run(""), UsageError);
   EXPECT_THROW(run("--scattering 1,1 --absorption 1,1,1"), CLI::ParseError);
-}
-
-TEST(MaterialCommand, PlotIsWritten) {
-  const std::filesystem::path path = scratch("plot.png");
-  run("skin1 --thickness 1 --plot " + path.string());
-  std::array<char, 24> head = {};
-  std::ifstream(path, std::ios::binary).read(head.data(), head.size());
-  EXPECT_EQ(std::string(head.data() + 1, 3), "PNG");
-  // IHDR: two panels of 720 x 520.
-  EXPECT_EQ(static_cast<unsigned char>(head[18]) * 256 + static_cast<unsigned char>(head[19]), 1440);
-  EXPECT_EQ(static_cast<unsigned char>(head[22]) * 256 + static_cast<unsigned char>(head[23]), 520);
-  std::filesystem::remove(path);
-  EXPECT_NE(refusal("skin1 --plot /no/such/folder/a.png").find("/no/such/folder/a.png"), std::string::npos);
 }
 
 }  // namespace

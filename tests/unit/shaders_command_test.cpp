@@ -158,19 +158,6 @@ TEST(ShadersCommand, SpirvIsThatOfTheModuleAndDescribedAsItsWordsSay) {
   }
 }
 
-TEST(ShadersCommand, ContextConstantsHaveTheIdsOfTheHeader) {
-  int normals = 0, tables = 0;
-  for (const Json& shader : written().hlsl["shaders"])
-    for (const Json& constant : shader["specializationConstants"]) {
-      EXPECT_EQ(constant["name"] == "normalEncoding", constant["id"] == PELLUCID_SPECIALIZATION_NORMALS);
-      EXPECT_EQ(constant["name"] == "lightTables", constant["id"] == PELLUCID_SPECIALIZATION_LIGHT_TABLES);
-      normals += constant["name"] == "normalEncoding";
-      tables += constant["name"] == "lightTables";
-    }
-  EXPECT_GT(normals, 5);
-  EXPECT_GT(tables, 5);
-}
-
 std::string one(const std::string& text, const std::string& pattern, size_t group = 1) {
   std::smatch match;
   return std::regex_search(text, match, std::regex(pattern)) ? match[group].str() : "nothing like " + pattern;
@@ -319,32 +306,6 @@ std::string refusal(const std::string& arguments) {
     return error.what();
   }
   return "accepted";
-}
-
-TEST(ShadersCommand, MistakesAreNamed) {
-  const TemporaryDirectory folder;
-  const std::string file = (folder / "file").string();
-  std::ofstream(file) << "no folder";
-  EXPECT_EQ(refusal(""), "shaders: there is nothing to write without --hlsl, --msl or --spirv DIR");
-  EXPECT_EQ(refusal("--msl " + file), file + ": --msl: is no folder and cannot be made one: Not a directory");
-  EXPECT_EQ(refusal("--hlsl /proc/shaders"),
-            "/proc/shaders: --hlsl: is no folder and cannot be made one: No such file or directory");
-  EXPECT_NE(refusal("--glsl " + file).find("--glsl"), std::string::npos);
-  fs::create_directories(folder / "taken" / "upsample.hlsl");
-  EXPECT_EQ(refusal("--hlsl " + (folder / "taken").string()),
-            (folder / "taken" / "upsample.hlsl").string() +
-                ": is there and no regular file; nothing is written in its place");
-}
-
-TEST(ShadersCommand, UntranslatableShadersAreNamed) {
-  const uint32_t words[] = {1, 2, 3, 4, 5, 6};
-  const PipelineShader broken{"broken", "any", 0, {words, 6, 0, nullptr}};
-  try {
-    translateShader(broken, ShaderLanguage::Msl);
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_TRUE(std::string(error.what()).starts_with("pipeline broken: MSL: ")) << error.what();
-  }
 }
 
 }  // namespace
