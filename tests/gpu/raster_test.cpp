@@ -1,13 +1,7 @@
-#include <unistd.h>
 
 #include <cmath>
-#include <filesystem>
-#include <numbers>
 
 #include "capture/material.h"
-#include "capture/read.h"
-#include "capture/write.h"
-#include "common/error.h"
 #include "gpu/all_texels.h"
 #include "gpu/gpu_fixture.h"
 #include "gpu/model_builder.h"

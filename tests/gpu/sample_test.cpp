@@ -1,8 +1,6 @@
 // The deferred renderer of gbuffer_harness/sample: what each feature changes, and captures of its frames
 // replayed.
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <numeric>
 
 #include "capture/material.h"

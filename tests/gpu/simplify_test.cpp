@@ -1,9 +1,6 @@
 // Fewer triangles for back depth and shadow maps (Whelan 2009, 4.7.3).
-#include <algorithm>
 #include <cmath>
-#include <limits>
 
-#include "common/error.h"
 #include "gpu_fixture.h"
 #include "model_builder.h"
 #include "raster/raster.h"

@@ -16,8 +16,6 @@
 #include "capture/read.h"
 #include "cli/settings.h"
 #include "cli/stress_failure.h"
-#include "common/error.h"
-#include "stress/results.h"
 
 namespace {
 

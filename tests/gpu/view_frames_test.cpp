@@ -1,9 +1,7 @@
 // The viewer's frames against replays of their captures, and its screen against their images.
 #include <algorithm>
-#include <cmath>
 
 #include "capture/material.h"
-#include "common/error.h"
 #include "common/png.h"
 #include "gpu_fixture.h"
 #include "model_builder.h"

@@ -1,7 +1,6 @@
 // Renders of Blender: a multilayer EXR and the script's JSON, made here as Cycles would make them.
 #include "capture/blender.h"
 
-#include <cstdlib>
 #include <numbers>
 
 #include "capture_samples.h"

@@ -17,7 +17,6 @@ namespace pellucid::harness {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Image filled(int width, int height, std::initializer_list<float> pixel) {
   Image image(width, height, static_cast<int>(pixel.size()));

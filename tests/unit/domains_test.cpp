@@ -2,7 +2,6 @@
 // the field, or the field's domain says why the value is allowed.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <functional>

@@ -4,13 +4,7 @@
 #include <Eigen/LU>
 #include <array>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <limits>
-#include <sstream>
-#include <string>
-#include <vector>
 
 #include "material_monte_carlo.h"
 #include "source.h"

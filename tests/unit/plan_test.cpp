@@ -3,12 +3,9 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cstring>
-#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "frame_fixture.h"
 #include "output_format.h"

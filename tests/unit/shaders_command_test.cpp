@@ -17,7 +17,6 @@
 
 #include "cli/commands.h"
 #include "cli/shader_translation.h"
-#include "common/error.h"
 #include "frame_fixture.h"
 #include "temporary_directory.h"
 
@@ -293,19 +292,6 @@ TEST(ShadersCommand, PlansBindWhatIsDescribed) {
       }
     }
   EXPECT_EQ(seen.size() + 2, pellucidGetPipelineCount()) << "all but the debug view and add history";
-}
-
-std::string refusal(const std::string& arguments) {
-  try {
-    run(arguments);
-  } catch (const InputError& error) {
-    return error.what();
-  } catch (const UsageError& error) {
-    return error.what();
-  } catch (const CLI::ParseError& error) {
-    return error.what();
-  }
-  return "accepted";
 }
 
 }  // namespace

@@ -5,14 +5,10 @@
 #include <filesystem>
 #include <fstream>
 #include <numbers>
-#include <set>
 
 #include "common/error.h"
 #include "scene/turn.h"
 #include "temporary_directory.h"
-#include "view/cost.h"
-#include "view/curves.h"
-#include "view/frame_times.h"
 #include "view/input.h"
 #include "view/material_kind.h"
 #include "view/parameters.h"
