@@ -7,6 +7,7 @@
 
 #include "common/error.h"
 #include "metrics/anova.h"
+#include "refusal.h"
 #include "temporary_directory.h"
 #include "view/perception.h"
 
@@ -84,12 +85,7 @@ TEST(Anova, RefusesWhatIsNotBalanced) {
 class Perception : public testing::Test {
 protected:
   std::string refusal() const {
-    try {
-      readAnswers(file_);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+    return pellucid::test::refusalOf([&] { readAnswers(file_); });
   }
   TemporaryDirectory folder_;
   const std::filesystem::path file_ = folder_ / "answers.csv";

@@ -49,7 +49,7 @@ protected:
     return readCapture(folder / "render.exr", ManifestPreset::Blender);
   }
   std::string error() {
-    return errorOf([&] { read(); });
+    return refusalOf([&] { read(); });
   }
 
   TemporaryDirectory folder;
@@ -146,7 +146,7 @@ TEST_F(Blender, ErrorsNameWhatIsWrong) {
   scene["world"] = 1;
   expectNames(error(), {"render.json", "world", "unknown key"});
   std::filesystem::remove(folder / "render.json");
-  expectNames(errorOf([&] { readCapture(folder / "render.exr", ManifestPreset::Blender); }),
+  expectNames(refusalOf([&] { readCapture(folder / "render.exr", ManifestPreset::Blender); }),
               {"render.json", "blender_export.py"});
 }
 

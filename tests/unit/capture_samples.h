@@ -8,7 +8,6 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -19,6 +18,7 @@
 #include "capture/exr.h"
 #include "capture/read.h"
 #include "common/error.h"
+#include "refusal.h"
 #include "temporary_directory.h"
 
 namespace pellucid::harness {
@@ -196,14 +196,7 @@ inline void expectSame(const DepthImage& a, const DepthImage& b) {
   EXPECT_EQ(a.encoding, b.encoding);
 }
 
-inline std::string errorOf(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no InputError";
-}
+using pellucid::test::refusalOf;
 
 inline void expectNames(const std::string& sentence, const std::vector<std::string>& parts) {
   for (const std::string& part : parts)
@@ -234,7 +227,7 @@ protected:
     return readCapture(directory / "m.json");
   }
   std::string error() {
-    return errorOf([&] { read(); });
+    return refusalOf([&] { read(); });
   }
 
   TemporaryDirectory directory;

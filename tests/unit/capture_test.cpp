@@ -148,7 +148,7 @@ TEST(CaptureRoundTrip, HalfRefusesWhatItCannotHold) {
   const TemporaryDirectory directory;
   Capture capture = sampleCapture();
   capture.irradiance.data[4] = 70000;
-  expectNames(errorOf([&] { writeCapture(capture, directory / "c.exr", ColorFormat::Half); }),
+  expectNames(refusalOf([&] { writeCapture(capture, directory / "c.exr", ColorFormat::Half); }),
               {"c.exr", "irradiance.G", "70000"});
 }
 
@@ -410,10 +410,10 @@ TEST_F(Manifests, LightMayBeAColorsMultipleOrPart) {
   manifest["buffers"]["albedo"] = times;
   EXPECT_TRUE(sameBits(read().irradiance, plain.irradiance)) << "powers of two";
   manifest["buffers"]["irradiance"]["includesAlbedo"] = 1;
-  expectNames(errorOf([&] { read(); }), {"buffers.irradiance.includesAlbedo", "true or false"});
+  expectNames(refusalOf([&] { read(); }), {"buffers.irradiance.includesAlbedo", "true or false"});
   manifest["buffers"]["irradiance"]["includesAlbedo"] = true;
   manifest["buffers"].erase("albedo");
-  expectNames(errorOf([&] { read(); }), {"buffers.irradiance.includesAlbedo", "albedo"});
+  expectNames(refusalOf([&] { read(); }), {"buffers.irradiance.includesAlbedo", "albedo"});
 }
 
 TEST_F(Manifests, OtherLayersOfTheIrradiancesFileAreKept) {
@@ -501,14 +501,14 @@ TEST_F(Manifests, AConstantCaptureHasNoSize) {
 }
 
 TEST_F(Manifests, OtherFilesAreNamed) {
-  expectNames(errorOf([&] { readCapture(directory / "none.json"); }), {"none.json", "no such file"});
+  expectNames(refusalOf([&] { readCapture(directory / "none.json"); }), {"none.json", "no such file"});
   writeText(directory / "m.json", "{\"pellucid\": 1, ");
-  expectNames(errorOf([&] { readCapture(directory / "m.json"); }), {"m.json", "JSON"});
+  expectNames(refusalOf([&] { readCapture(directory / "m.json"); }), {"m.json", "JSON"});
   writeText(directory / "m.json", "{\"pellucid\": 1, \"camera\": {}, \"camera\": {}}");
-  expectNames(errorOf([&] { readCapture(directory / "m.json"); }), {"m.json", "camera", "twice"});
-  expectNames(errorOf([&] { readCapture(directory / "g.exr"); }), {"g.exr", "pellucid.manifest"});
+  expectNames(refusalOf([&] { readCapture(directory / "m.json"); }), {"m.json", "camera", "twice"});
+  expectNames(refusalOf([&] { readCapture(directory / "g.exr"); }), {"g.exr", "pellucid.manifest"});
   std::filesystem::create_directory(directory / "d");
-  expectNames(errorOf([&] { readCapture(directory / "d"); }), {"not a regular file"});
+  expectNames(refusalOf([&] { readCapture(directory / "d"); }), {"not a regular file"});
   writeText(directory / "g.exr", "PNG, really");
   expectNames(error(), {"g.exr", "buffers.frontDepth.file", "not an OpenEXR file"});
 }
@@ -656,7 +656,8 @@ TEST_F(Manifests, WrongValuesAreNamed) {
 TEST_F(Manifests, UnknownPresetIsNamedWhenCompiled) {
   manifest["materials"][0] = {{"preset", "plutonium"}};
   const Capture capture = read();
-  expectNames(errorOf([&] { compileMaterials(capture); }), {"m.json", "materials[0]", "preset", "plutonium"});
+  expectNames(refusalOf([&] { compileMaterials(capture); }),
+              {"m.json", "materials[0]", "preset", "plutonium"});
 }
 
 TEST_F(Manifests, OpenPbrMediaHaveDefaultsAndAUnit) {
@@ -684,7 +685,7 @@ TEST(Materials, OpenPbrMediaKeepTheirColorAtAnotherIndex) {
     EXPECT_LT(there.scattering[c], here.scattering[c]);
   }
   EXPECT_EQ(std::get<SkinMaterial>(withIor(SkinMaterial{}, 1.3, "test")).ior, 1.3);
-  expectNames(errorOf([] { coefficientsOf(SkinMaterial{}, "test"); }), {"test", "layers"});
+  expectNames(refusalOf([] { coefficientsOf(SkinMaterial{}, "test"); }), {"test", "layers"});
 }
 
 TEST(Materials, EveryFormCompiles) {

@@ -199,12 +199,7 @@ TEST_F(CompareCommand, BadInputIsNamed) {
   manifest.erase("truth");
   writeText(directory / "m.json", manifest.dump());
   const auto error = [&](const std::vector<std::string>& arguments) {
-    try {
-      run(arguments);
-    } catch (const InputError& e) {
-      return std::string(e.what());
-    }
-    return std::string("no InputError");
+    return refusalOf([&] { run(arguments); });
   };
   EXPECT_NE(error({path("near.exr"), path("m.json")}).find("truth"), std::string::npos);
   write("small.exr", Image(4, 4, 3));

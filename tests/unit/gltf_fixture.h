@@ -28,15 +28,10 @@ protected:
     writeText(folder_ / name, bytes);
     return folder_ / name;
   }
-  // The error of loadGltf for these bytes; empty: loadGltf accepts the bytes.
+  // The error of loadGltf for these bytes, or "accepted".
   std::string refusal(const std::string& bytes, const std::string& name = "t.glb",
                       const GltfOptions& options = {}) const {
-    try {
-      loadGltf(write(name, bytes), options);
-      return "";
-    } catch (const InputError& e) {
-      return e.what();
-    }
+    return refusalOf([&] { loadGltf(write(name, bytes), options); });
   }
   void expectRefused(const std::string& bytes, std::initializer_list<const char*> words,
                      const std::string& name = "t.glb", const GltfOptions& options = {}) const {

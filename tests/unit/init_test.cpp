@@ -120,14 +120,6 @@ protected:
   static void expectSameView(const Matrix& a, const Matrix& b, double tolerance) {
     for (std::size_t i = 0; i < 16; ++i) EXPECT_NEAR(a[i], b[i], i < 12 ? 1e-5 : tolerance) << i;
   }
-  static std::string errorOf(const std::function<void()>& work) {
-    try {
-      work();
-    } catch (const std::exception& error) {
-      return error.what();
-    }
-    return "";
-  }
 
   TemporaryDirectory folder_;
   Capture frame_;
@@ -194,9 +186,9 @@ TEST_F(Init, TexturesOfADebuggerNeedTheCamerasNumbers) {
   const std::vector<std::string> names = {"SceneDepthZ.exr", "GBufferA.exr", "DiffuseIrradiance.exr",
                                           "MaterialID.exr"};
   InitWords words;
-  EXPECT_NE(errorOf([&] { guess(names, words); }).find("--near: is needed"), std::string::npos);
+  EXPECT_NE(refusalOf([&] { guess(names, words); }).find("--near: is needed"), std::string::npos);
   words.camera.nearPlane = nearPlane;
-  EXPECT_NE(errorOf([&] { guess(names, words); }).find("--fov: is needed"), std::string::npos);
+  EXPECT_NE(refusalOf([&] { guess(names, words); }).find("--fov: is needed"), std::string::npos);
   words.camera.verticalFov = fov_;
   words.camera.eye = eye_;
   words.camera.target = target_;
@@ -244,7 +236,7 @@ TEST_F(Init, BlendersPassesAreKnown) {
   EXPECT_EQ(guess({"render.exr"}, words).json["buffers"]["irradiance"]["channels"][0],
             "ViewLayer.Combined.R");
   words.roles = {{Role::Irradiance, "ViewLayer.None"}};
-  EXPECT_NE(errorOf([&] { guess({"render.exr"}, words); }).find("ViewLayer.Combined"), std::string::npos);
+  EXPECT_NE(refusalOf([&] { guess({"render.exr"}, words); }).find("ViewLayer.Combined"), std::string::npos);
 }
 
 // Renderers store E / pi, the albedo's part of it, or both; all give back E.
@@ -309,7 +301,7 @@ TEST_F(Init, PassesOfLightOfEachRendererGiveTheIrradiance) {
 
 TEST_F(Init, AProductNeedsAnAlbedoAboveZero) {
   Image black = constantImage({0.5f, 0, 0.5f});
-  const std::string error = errorOf([&] {
+  const std::string error = refusalOf([&] {
     read(guessPasses(
         {{"VRayDiffuseFilter", black}, {"VRayLighting", times(frame_.irradiance, black, 1 / kPi)}}));
   });
@@ -333,21 +325,21 @@ TEST_F(Init, WhatCannotBeACaptureIsNamed) {
   InitWords words;
   words.camera.verticalFov = 30;
   write("a.exr", triple("", "RGB", frame_.irradiance));
-  EXPECT_NE(errorOf([&] {
+  EXPECT_NE(refusalOf([&] {
               guess({"a.exr"}, words);
             }).find("--front-depth: no name is that of one; name a layer, a channel or a file of: a (R)"),
             std::string::npos);
   write("z.exr", {{"Z", &frame_.frontDepth.image, 0}});
-  EXPECT_NE(errorOf([&] { guess({"z.exr"}, words); }).find("--irradiance"), std::string::npos);
+  EXPECT_NE(refusalOf([&] { guess({"z.exr"}, words); }).find("--irradiance"), std::string::npos);
   const Image empty(frame_.width, frame_.height, 1, kNoDepth);
   write("z.exr", {{"Z", &empty, 0}});
-  EXPECT_NE(errorOf([&] {
+  EXPECT_NE(refusalOf([&] {
               guess({"a.exr", "z.exr"}, words);
             }).find("z.exr: frontDepth: no pixel holds a surface"),
             std::string::npos);
   write("z.exr", {{"Z", &frame_.frontDepth.image, 0}});
   words.camera.eye = {0, 0, 1};
-  EXPECT_NE(errorOf([&] {
+  EXPECT_NE(refusalOf([&] {
               guess({"a.exr", "z.exr"}, words);
             }).find("--eye: needs --target"),
             std::string::npos);

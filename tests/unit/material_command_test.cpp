@@ -13,6 +13,7 @@
 
 #include "cli/commands.h"
 #include "common/error.h"
+#include "refusal.h"
 
 namespace {
 
@@ -41,12 +42,7 @@ std::string run(const std::string& arguments) {
 }
 
 std::string refusal(const std::string& arguments) {
-  try {
-    run(arguments);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return pellucid::test::refusalOf([&] { run(arguments); });
 }
 
 TEST(MaterialCommand, JsonHoldsEverything) {

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "common/error.h"
+#include "refusal.h"
 #include "scene/model.h"
 #include "scene/polynomial.h"
 #include "scene/render.h"
@@ -605,12 +606,7 @@ TEST(Scene, HeadsCoverAsMuchAsThoseOfAScan) {
 // ---- Errors
 
 std::string messageOf(const SceneParameters& parameters) {
-  try {
-    makeScene(parameters);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
+  return pellucid::test::refusalOf([&] { makeScene(parameters); });
 }
 
 TEST(Scene, ErrorsNameFieldAndValue) {

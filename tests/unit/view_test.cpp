@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "common/error.h"
+#include "refusal.h"
 #include "scene/turn.h"
 #include "temporary_directory.h"
 #include "view/input.h"
@@ -211,15 +212,6 @@ protected:
     std::ofstream(folder_ / name) << text;
     return folder_ / name;
   }
-  template <class Work>
-  static std::string refusal(const Work& work) {
-    try {
-      work();
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
-  }
   TemporaryDirectory folder_;
 };
 
@@ -266,7 +258,7 @@ TEST_F(ViewFiles, SessionsAreRefusedByFieldAndValue) {
     EXPECT_NE(at, std::string::npos) << from;
     text.replace(at, from.size(), to);
     const std::filesystem::path file = write("bad.view.json", text);
-    return refusal([&] { readSession(file); });
+    return pellucid::test::refusalOf([&] { readSession(file); });
   };
   EXPECT_NE(with("\"agx\"", "\"velvia\"").find("display.toneMap"), std::string::npos);
   EXPECT_NE(with("\"near\": 0.11", "\"near\": -1").find("camera.near"), std::string::npos);
@@ -291,7 +283,7 @@ TEST_F(ViewFiles, ScriptsAreReadLineByLine) {
 TEST_F(ViewFiles, ScriptsAreRefusedByLine) {
   const auto refused = [&](const std::string& text) {
     const auto file = write("bad.txt", text);
-    return refusal([&] {
+    return pellucid::test::refusalOf([&] {
       ViewState state;
       Changes changes;
       for (const ScriptLine& line : readScript(file)) applyToState(line, state, changes);
