@@ -85,8 +85,6 @@ struct Table {
 
 constexpr Table kTables[] = {{"measured", ofFirst<measured>},
                              {"frames", ofFirst<framesTable>},
-                             {"frame_parts", ofFirst<framePartsTable>},
-                             {"frame_dispatches", ofFirst<frameDispatchesTable>},
                              {"frame_host", ofFirst<frameHostTable>},
                              {"context", ofFirst<contextTable>},
                              {"truth", ofFirst<truthTable>},
