@@ -648,7 +648,7 @@ TEST_F(Manifests, WrongValuesAreNamed) {
       named[0].erase(0, 1);
     else
       named.push_back(fieldOf(pointer));
-    named.push_back(directory.operator/("").string());
+    named.push_back((directory / "").string());
     expectNames(error(), named);
   }
 }
@@ -701,8 +701,6 @@ TEST(Materials, EveryFormCompiles) {
   EXPECT_GT(materials[6].radius[0], materials[6].radius[2]) << "the scale's order";
   EXPECT_GT(materials[7].reflectance[0], materials[7].reflectance[2]) << "skin is red";
 }
-
-// ---- The path-traced captures, where they are
 
 }  // namespace
 }  // namespace pellucid::harness
