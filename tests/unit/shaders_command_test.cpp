@@ -66,6 +66,7 @@ struct Words {
   std::map<uint32_t, uint32_t> constantValues;  // by result, of integers and booleans
   std::set<uint32_t> used;                      // ids that functions name
   std::array<uint32_t, 3> localSize{};
+  uint32_t sharedBytes = 0;
   std::string entryPoint;
 };
 
@@ -76,6 +77,7 @@ Words readWords(const std::string& bytes) {
   bool inFunction = false;
   std::array<uint32_t, 3> sizeConstants{};
   uint32_t sizeId = 0;
+  std::map<uint32_t, uint32_t> sizes, pointees;  // by type
   for (size_t i = 5; i < words.size(); i += words[i] >> 16) {
     const uint32_t *w = &words[i], count = w[0] >> 16, op = w[0] & 0xFFFF;
     inFunction = inFunction || op == 54;                                          // OpFunction
@@ -88,7 +90,15 @@ Words readWords(const std::string& bytes) {
     if (op == 48 || op == 49) read.constantValues[w[2]] = op == 48;               // OpSpecConstantTrue, False
     if (op == 43 || op == 50) read.constantValues[w[2]] = w[3];  // OpConstant, OpSpecConstant
     if ((op == 44 || op == 51) && w[2] == sizeId)
-      std::copy(w + 3, w + 6, sizeConstants.begin());  // composites
+      std::copy(w + 3, w + 6, sizeConstants.begin());                     // composites
+    if (op == 20) sizes[w[1]] = 4;                                        // OpTypeBool
+    if (op == 21 || op == 22) sizes[w[1]] = w[2] / 8;                     // OpTypeInt, OpTypeFloat
+    if (op == 23 || op == 24) sizes[w[1]] = sizes[w[2]] * w[3];           // OpTypeVector, OpTypeMatrix
+    if (op == 28) sizes[w[1]] = sizes[w[2]] * read.constantValues[w[3]];  // OpTypeArray
+    if (op == 30)                                                         // OpTypeStruct
+      for (uint32_t member = 2; member < count; ++member) sizes[w[1]] += sizes[w[member]];
+    if (op == 32) pointees[w[1]] = w[3];                                   // OpTypePointer
+    if (op == 59 && w[3] == 4) read.sharedBytes += sizes[pointees[w[1]]];  // OpVariable, Workgroup
   }
   for (size_t i = 0; sizeId && i < 3; ++i) read.localSize[i] = read.constantValues[sizeConstants[i]];
   return read;
@@ -119,6 +129,7 @@ TEST(ShadersCommand, DescribesEveryPipelineInEveryLanguage) {
 }
 
 TEST(ShadersCommand, SpirvIsThatOfTheModuleAndDescribedAsItsWordsSay) {
+  uint32_t mostShared = 0;
   for (const Json& shader : written().spirv["shaders"]) {
     SCOPED_TRACE(shader["file"]);
     const std::string bytes = written().text(shader);
@@ -132,6 +143,8 @@ TEST(ShadersCommand, SpirvIsThatOfTheModuleAndDescribedAsItsWordsSay) {
 
     Words words = readWords(bytes);
     EXPECT_EQ(shader["entryPoint"], words.entryPoint);
+    EXPECT_LE(words.sharedBytes, 16384u) << "more than the context asks of the device";
+    mostShared = std::max(mostShared, words.sharedBytes);
     std::map<uint32_t, uint32_t> values;
     for (const auto& [result, id] : words.constantIds) values[id] = words.constantValues.at(result);
     for (uint32_t i = 0; i < module.constantCount; ++i) {
@@ -155,6 +168,7 @@ TEST(ShadersCommand, SpirvIsThatOfTheModuleAndDescribedAsItsWordsSay) {
     EXPECT_TRUE(std::includes(declared.begin(), declared.end(), described.begin(), described.end()));
     EXPECT_GE(described.size() + 2, declared.size());
   }
+  EXPECT_GT(mostShared, 8192u) << "shared memory was not counted";
 }
 
 std::string one(const std::string& text, const std::string& pattern, size_t group = 1) {
