@@ -71,7 +71,7 @@ TEST_F(Gltf, AnimationsThatCannotBeReadAreNamed) {
 /animations/0/samplers/0/input | removed | animations[0].samplers[0].input | is missing
 /animations/0/channels/0/target/path | "color" | channels[0].target.path | color
 /animations/0/samplers/0/interpolation | "SMOOTH" | samplers[0].interpolation | SMOOTH
-/animations/0/samplers/0/output | 3 | samplers[0].output
+/animations/0/samplers/0/output | 3 | animations[0].channels[0].sampler
 /nodes/0/matrix | [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1] | nodes[0].matrix | animations[0].channels[0]
 )",
                  at(0));
