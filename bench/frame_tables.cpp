@@ -199,63 +199,6 @@ std::string framesTable(const Json& results) {
          byFrame(all, "whole", sizes);
 }
 
-std::string frameSizesTable(const Json& results) {
-  const Frames all(results);
-  std::string text = all.heading("microseconds (floors)");
-  for (const std::string& frame : all.frames()) {
-    std::vector<std::string> sizes;  // that it was measured at
-    for (const std::string& size : all.sizes())
-      if (all.find(frame, size, "frame", "frame")) sizes.push_back(size);
-    std::vector<std::string> columns = sizes;
-    columns.push_back("error");
-    text += header(all.covered(frame), columns);
-    for (const std::string& name : all.names("whole")) {
-      std::string cells;
-      std::optional<double> error;
-      for (const std::string& size : sizes) {
-        const Json* row = all.find(frame, size, "whole", name);
-        if (row && !error) error = errorOf(*row);
-        cells += " ";
-        if (row) cells += timeOf(*row);
-        if (row && row->contains("us")) cells += format(" (%.1f)", row->at("floor_ratio").get<double>());
-        cells += " |";
-      }
-      text += "| " + name + " |" + cells + (error ? format(" %.2g |", *error) : " |") + "\n";
-    }
-    text += "\n";
-  }
-  text.pop_back();
-  return text;
-}
-
-std::string framePartsTable(const Json& results) {
-  const Frames all(results);
-  const std::string unit = "microseconds at " + listed(all.sizes()) + ", then the error of the diffusion";
-  return all.heading(unit) + "Translucency alone:\n\n" + byFrame(all, "translucency", all.sizes()) +
-         "\nDiffusion alone:\n\n" + byFrame(all, "diffusion", all.sizes());
-}
-
-std::string frameDispatchesTable(const Json& results) {
-  const Frames all(results);
-  std::string text = all.heading("microseconds at " + listed(all.sizes()));
-  for (const std::string& whole : {kModule, nameOf(0)}) {
-    text += header(whole, all.frames());
-    for (const std::string& name : all.names("dispatch", whole)) {
-      text += "| " + name.substr(name.find_first_not_of(' ')) + " |";
-      for (const std::string& frame : all.frames()) {
-        std::vector<std::string> times;
-        for (const std::string& size : all.sizes())
-          if (const Json* row = all.find(frame, size, "dispatch", name, whole)) times.push_back(timeOf(*row));
-        text += std::string(" ") + listed(times) + " |";
-      }
-      text += "\n";
-    }
-    text += "\n";
-  }
-  text.pop_back();
-  return text;
-}
-
 std::string frameHostTable(const Json& results) {
   const Frames all(results);
   const std::string& frame = all.frames().front();

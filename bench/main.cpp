@@ -16,7 +16,6 @@
 #include "plane.h"
 #include "scene.h"
 #include "submission.h"
-#include "sweep.h"
 #include "thesis.h"
 
 namespace {
@@ -103,7 +102,6 @@ private:
   Json withResults() const {
     Json json = json_;
     json["results"] = report_.rows();
-    json["results"].insert(json["results"].end(), swept_.begin(), swept_.end());
     return json;
   }
 
@@ -132,7 +130,6 @@ private:
           {{"width", width}, {"height", height}, {"radius_pixels", radius}, {"floor_us", planes.floor}});
     }
     if (wanted("thesis")) measureThesis(device_, context, options_.frames, repeat_, report_);
-    if (wanted("sweep")) swept_ = sweep(site, options_.sweep, repeat_, table_, &plots_["sweep"]);
     if (wanted("frames"))
       for (auto& [size, frames] : measureFrames(device_, context, sources, options_.frames, repeat_, report_))
         plots_["frames_" + size] = std::move(frames);
@@ -144,7 +141,7 @@ private:
   int repeat_;
   std::FILE* table_;
   Report report_;
-  Json json_, swept_ = Json::array();
+  Json json_;
   std::map<std::string, std::vector<Plot>> plots_;
 };
 

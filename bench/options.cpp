@@ -25,8 +25,8 @@ int readOptions(int argc, char** argv, Options& options) {
   app.add_option("--device", options.device, "part of the Vulkan device's name");
   app.add_option("--tables", options.tables, "which sections to measure, with commas")
       ->delimiter(',')
-      ->check(CLI::IsMember(std::set<std::string>{"frames", "context", "module", "fused", "gather", "steps",
-                                                  "diffusion", "sweep", "thesis"}))
+      ->check(CLI::IsMember(
+          std::set<std::string>{"frames", "context", "module", "fused", "gather", "diffusion", "thesis"}))
       ->capture_default_str();
   app.add_option("--repeat", options.repeat, "counted runs of each; default 7, on a software device 3")
       ->check(CLI::Range(1, 10000));
@@ -71,15 +71,6 @@ int readOptions(int argc, char** argv, Options& options) {
       ->check(CLI::Range(0.0, 100.0))
       ->capture_default_str();
   app.add_option("--radius", p.radius, "pixels of a plane within which 99.9 % of the diffused energy lies")
-      ->check(CLI::Range(1.0, 1000.0))
-      ->capture_default_str();
-  app.add_option("--sweep-heights", options.sweep.heights,
-                 "of images of 16:9 in the table sweep, with commas")
-      ->delimiter(',')
-      ->check(CLI::Range(9, 8640))
-      ->capture_default_str();
-  app.add_option("--sweep-radii", options.sweep.radii, "like --radius, of the table sweep, with commas")
-      ->delimiter(',')
       ->check(CLI::Range(1.0, 1000.0))
       ->capture_default_str();
 

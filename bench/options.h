@@ -30,11 +30,6 @@ struct FrameOptions {
   std::filesystem::path cache;             // folder; empty: brute force is computed each time
 };
 
-struct SweepOptions {
-  std::vector<int> heights = {720, 1080, 1440, 2160};  // pixels; 16 : 9
-  std::vector<double> radii = {2, 8, 32, 128};         // pixels within which 99.9 % of the energy lies
-};
-
 struct Options {
   std::string device, json;
   std::filesystem::path plot;
@@ -43,7 +38,6 @@ struct Options {
   std::set<std::string> tables = {"frames", "context"};
   PlaneOptions plane;
   FrameOptions frames;
-  SweepOptions sweep;
   std::filesystem::path compare, results;
   std::filesystem::path submit;  // file for a small extract of the results; empty: none
   // Options of the processes that the section context starts.

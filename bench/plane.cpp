@@ -1,5 +1,4 @@
-// Sections on planes, where every pixel may be covered: the module's plans, its steps, and diffusions of
-// others.
+// Sections on planes, where every pixel may be covered: the module's frames, and diffusions of others.
 #include "plane.h"
 
 #include <cmath>
@@ -10,8 +9,6 @@
 #include "gather_error.h"
 #include "pellucid/pellucid_material.h"
 #include "scene.h"
-#include "scene/scene.h"
-#include "steps.h"
 
 namespace pellucid::bench {
 
@@ -40,13 +37,6 @@ struct Bench {
   }
 };
 
-// Of `lights` copies of the slab's light the first `mapped` keep their shadow map.
-Capture litBy(Capture c, int lights, int mapped) {
-  c.lights.assign(static_cast<size_t>(lights), c.lights[0]);
-  for (int i = mapped; i < lights; ++i) c.lights[static_cast<size_t>(i)].shadowMaps.clear();
-  return c;
-}
-
 // The fused dispatch on the slab, where the answer is closed: its T at its thickness.
 void requireRightAnswer(const Bench& bench) {
   ReplaySettings settings;
@@ -63,25 +53,11 @@ void requireRightAnswer(const Bench& bench) {
                       std::to_string(expected));
 }
 
-// One row for each dispatch of the frame's plan.
-void dispatches(const Bench& bench, const BenchFrame& frame) {
-  const PellucidPlan& plan = frame.run().plan();
-  for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
-    const PellucidDispatch& d = plan.dispatches[i];
-    const double bytes =
-        static_cast<double>(frame.modeledBytes(i)) / (static_cast<double>(frame.width()) * frame.height());
-    bench.report.add({d.name, 1, d.barrierBefore, bytes, {}},
-                     bench.time([&](VkCommandBuffer c) { frame.run().recordAlone(c, i); }));
-  }
-}
-
 void modulePlans(const Bench& bench) {
   const auto [width, height] = bench.options.size;
   const auto rows = [&](const std::string& title, const Capture& capture) {
     bench.report.section(title);
-    const auto frame = bench.frame(capture, {});
-    dispatches(bench, *frame);
-    bench.row(moduleVariant(frame, "whole frame"), {});
+    bench.row(moduleVariant(bench.frame(capture, {}), "whole frame"), {});
   };
   for (const double coverage : bench.options.coverage) {
     char title[64];
@@ -91,19 +67,12 @@ void modulePlans(const Bench& bench) {
   rows("module, radii not known", inPerspective(bench.fullSlab()));
 }
 
-// The fused dispatch alone: by lights and by how many of them have a shadow map.
+// The fused dispatch alone.
 void fusedDispatch(const Bench& bench) {
   bench.report.section("fused dispatch");
-  const auto row = [&](const std::string& name, const Capture& capture) {
-    ReplaySettings settings;
-    settings.features = PELLUCID_FEATURE_TRANSLUCENCY;
-    bench.row(moduleVariant(bench.frame(capture, settings), name), {});
-  };
-  for (const int lights : {1, 8, 64})
-    for (const int mapped : {0, 1, 4})
-      if (mapped <= lights)
-        row(std::to_string(lights) + " lights, " + std::to_string(mapped) + " maps",
-            litBy(bench.fullSlab(), lights, mapped));
+  ReplaySettings settings;
+  settings.features = PELLUCID_FEATURE_TRANSLUCENCY;
+  bench.row(moduleVariant(bench.frame(bench.fullSlab(), settings), "1 lights, 1 maps"), {});
 }
 
 // What the gather adds to a frame, in place of the fused dispatch: over a frame without it that is otherwise
@@ -137,32 +106,7 @@ std::vector<TimedError> gathered(const Bench& bench) {
   }
   added("8 samples, a point in 2 x 2 pixels", bench.fullSlab(), 8, 2, {});
   added("8 samples, nothing transmitted", litFromTheFront(bench.fullSlab()), 8, 0, {});
-  bench.report.section("gather, 8 samples");
-  dispatches(bench, *frame(bench.fullSlab(), 8, 0));
-  bench.report.section("gather, 8 samples, nothing transmitted");
-  dispatches(bench, *frame(litFromTheFront(bench.fullSlab()), 8, 0));
   return points;
-}
-
-// Errors against the module, on the ear.
-void separateSteps(const Bench& bench) {
-  bench.report.section("translucency; error: from one dispatch");
-  ReplaySettings settings;
-  settings.features = PELLUCID_FEATURE_TRANSLUCENCY;
-  settings.translucency.cameraThickness = 1;
-  SceneParameters p;
-  p.name = "ear";
-  p.width = p.height = 128;
-  p.depthEncoding = PELLUCID_DEPTH_DEVICE;
-  Capture ear = withMapsAlone(makeScene(p));
-  ear.albedo = {};       // the module would multiply by it
-  ear.lights.resize(1);  // the separate steps bind one image, of one light's shadow map
-  const std::vector<Variant> checked = translucencyVariants(bench.frame(ear, settings));
-  const std::vector<Variant> timed = translucencyVariants(bench.frame(bench.fullSlab(), settings));
-  const Image truth = bench.run(checked.back());
-  for (size_t i = 0; i < timed.size(); ++i)
-    // Half-float intermediate results round by 5e-4 of themselves.
-    bench.row(timed[i], requireNear(checked[i], bench.run(checked[i]), truth, ear, 2e-3));
 }
 
 std::vector<TimedError> diffusion(const Bench& bench) {
@@ -193,7 +137,6 @@ PlanePlots measurePlanes(const Site& site, const std::set<std::string>& tables, 
   if (wanted("fused")) fusedDispatch(b);
   const std::string device = site.device.description();
   if (wanted("gather")) plots.gather = {timeAgainstError("added, " + device, gathered(b), "all texels")};
-  if (wanted("steps")) separateSteps(b);
   if (wanted("diffusion")) plots.diffusion = {timeAgainstError(device, diffusion(b))};
   return plots;
 }

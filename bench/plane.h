@@ -11,7 +11,7 @@
 
 namespace pellucid::bench {
 
-inline constexpr const char* kPlaneTables[] = {"module", "fused", "gather", "steps", "diffusion"};
+inline constexpr const char* kPlaneTables[] = {"module", "fused", "gather", "diffusion"};
 
 struct PlanePlots {
   double floor;  // microseconds

@@ -30,12 +30,9 @@ inline std::string runOf(const Json& results) {
 }
 
 // Tables of the section "frames", and of "context creation". Throw NotMeasured.
-std::string framesTable(const Json& results);           // whole frames at two sizes beside their errors
-std::string frameSizesTable(const Json& results);       // whole frames at all sizes
-std::string framePartsTable(const Json& results);       // translucency and diffusion alone
-std::string frameDispatchesTable(const Json& results);  // of two settings, dispatch by dispatch
-std::string frameHostTable(const Json& results);        // CPU times, memory, dispatches
-std::string truthTable(const Json& results);   // of captures with path-traced truth: error and metrics
+std::string framesTable(const Json& results);     // whole frames at two sizes beside their errors
+std::string frameHostTable(const Json& results);  // CPU times, memory, dispatches
+std::string truthTable(const Json& results);      // of captures with path-traced truth: error and metrics
 std::string engineTable(const Json& results);  // of captures as engines make them, with turned lights beside
 std::string contextTable(const Json& results);
 

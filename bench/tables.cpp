@@ -1,7 +1,8 @@
 // Prints the documentation's tables of measured times from the results of a run, or checks or rewrites them
 // in a file:
 //   pellucid_bench_tables RESULTS.json[,RESULTS.json...] TABLE [--check | --update FILE]
-// Of several files a table takes the first one that has its rows. The tables headline and samples join two files.
+// Of several files a table takes the first one that has its rows. The tables headline and samples join two
+// files.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -66,42 +67,6 @@ std::string measured(const Json& results) {
   return table;
 }
 
-// One row a radius and diffusion, one column a size; of variants of one algorithm the extremes.
-std::string sweep(const Json& results) {
-  const std::vector<std::string> between = {"Separable 2015, 17 taps", "Burley disk 2018, 40 samples"};
-  std::vector<std::string> sizes;
-  struct Row {
-    std::string name;
-    double radius, error;
-    std::vector<std::string> cells;
-  };
-  std::vector<Row> rows;
-  for (const Json& r : results.at("results")) {
-    if (r.at("section") != "sweep") continue;
-    const std::string name = r.at("name"), size = r.at("size");
-    if (std::count(between.begin(), between.end(), name) > 0) continue;
-    if (std::count(sizes.begin(), sizes.end(), size) == 0) sizes.push_back(size);
-    const double radius = r.at("radius");
-    if (rows.empty() || rows.back().name != name || rows.back().radius != radius)
-      rows.push_back({name, radius, r.at("relative_rmse"), {}});
-    rows.back().cells.push_back(
-        format(" %.0f (%.1f) |", r.at("us").get<double>(), r.at("floor_ratio").get<double>()));
-  }
-  if (rows.empty()) throw NotMeasured("no section \"sweep\"");
-  std::string table = runOf(results) + "; us (x):\n\n| radius, px | diffusion | error |", rule = "|-|-|-|";
-  for (const std::string& size : sizes) {
-    table += " " + size + " |";
-    rule += "-|";
-  }
-  table += "\n" + rule + "\n";
-  for (const Row& r : rows) {
-    table += format("| %g | %s | %.2g |", r.radius, r.name.c_str(), r.error);
-    for (const std::string& cell : r.cells) table += cell;
-    table += "\n";
-  }
-  return table;
-}
-
 // The first run that has what the table shows counts.
 template <std::string (*make)(const Json&)>
 std::string ofFirst(const std::vector<Json>& runs) {
@@ -119,11 +84,7 @@ struct Table {
 };
 
 constexpr Table kTables[] = {{"measured", ofFirst<measured>},
-                             {"sweep", ofFirst<sweep>},
                              {"frames", ofFirst<framesTable>},
-                             {"frame_sizes", ofFirst<frameSizesTable>},
-                             {"frame_parts", ofFirst<framePartsTable>},
-                             {"frame_dispatches", ofFirst<frameDispatchesTable>},
                              {"frame_host", ofFirst<frameHostTable>},
                              {"context", ofFirst<contextTable>},
                              {"truth", ofFirst<truthTable>},

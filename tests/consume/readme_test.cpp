@@ -179,13 +179,4 @@ TEST(Readme, NamesWhatTheBuildNeeds) {
   EXPECT_EQ(found.size(), words.size());
 }
 
-TEST(Readme, SnippetIsAtMost45Lines) {
-  std::ifstream snippet(PELLUCID_SNIPPET);
-  std::string line;
-  int lines = 0;
-  while (std::getline(snippet, line)) lines += !line.empty();
-  EXPECT_GT(lines, 20);
-  EXPECT_LE(lines, 45);
-}
-
 }  // namespace

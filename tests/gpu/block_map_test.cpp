@@ -77,15 +77,6 @@ TEST_F(BlockMaps, CountBlocksThatMaterialTouches) {
   EXPECT_EQ(map.counts(), (Counts{2, 1, 1}));
 }
 
-TEST_F(BlockMaps, OfNothingAreEmpty) {
-  const auto frame = run(square(0, 0, 0, 0));
-  const PellucidStatistics s = frame->statistics();
-  EXPECT_EQ(s.blocks.run, 0u);
-  EXPECT_EQ(s.probes.run, 0u);
-  EXPECT_EQ(s.entryPoints.run, 0u);
-  EXPECT_EQ(readBlockMap(*frame).counts(), (Counts{16, 0, 0}));
-}
-
 // Material at random: the statistics, the lists and a look at each pixel agree.
 TEST_F(BlockMaps, AgreeWithTheLists) {
   for (const bool rect : {false, true}) {
@@ -121,50 +112,6 @@ TEST_F(BlockMaps, AgreeWithTheLists) {
     EXPECT_GT(s.entryPoints.run, 0u);
     EXPECT_EQ(s.entryPoints.run % 2, 0u) << "two maps that are alike";
   }
-}
-
-TEST_F(BlockMaps, AreDrawnOverThePicture) {
-  ReplaySettings settings = gathered();
-  settings.renderRect = {33, 17, 128, 96};
-  const BlockMap map = readBlockMap(*run(square(64, 32, 96, 64), settings));
-  std::vector<uint8_t> picture(3 * kSide * kSide, 90);
-  drawBlockMap(map, kSide, kSide, picture);
-  const auto at = [&](int x, int y) {
-    const uint8_t* pixel = &picture[3 * static_cast<size_t>(y * kSide + x)];
-    return std::array<uint8_t, 3>{pixel[0], pixel[1], pixel[2]};
-  };
-  // The first column of pixels of each block, where the rect has it.
-  EXPECT_EQ(at(64, 40), textOf(BlockClass::Material).srgb);
-  EXPECT_EQ(at(128, 40), textOf(BlockClass::Near).srgb);
-  EXPECT_EQ(at(70, 40)[0], (2 * 90 + textOf(BlockClass::Material).srgb[0]) / 3);
-  for (const auto& [x, y] : {std::pair{32, 40}, {161, 40}, {70, 16}, {70, 113}})
-    EXPECT_EQ(at(x, y)[0], 90) << "outside the rect";
-  const std::string legend = blockLegend(map);
-  EXPECT_NE(legend.find(textOf(BlockClass::Material).color), std::string::npos) << legend;
-  EXPECT_EQ(legend.find(textOf(BlockClass::Empty).color), std::string::npos) << legend;
-}
-
-TEST_F(BlockMaps, SayWhyThereAreNone) {
-  const auto why = [&](const auto& change) {
-    ReplaySettings s = gathered();
-    change(s);
-    const auto frame = run(square(64, 32, 96, 64), s);
-    EXPECT_EQ(frame->statistics().lists, 0u);
-    try {
-      readBlockMap(*frame);
-      ADD_FAILURE() << "is drawn";
-    } catch (const std::exception& error) {
-      return std::string(error.what());
-    }
-    return std::string();
-  };
-  EXPECT_EQ(why([](ReplaySettings& s) { s.indirectDispatches = 0; }),
-            "flat: has no lists of blocks to draw: frame.options.indirectDispatches asks for none");
-  EXPECT_EQ(why([](ReplaySettings& s) {
-              s.features = PELLUCID_FEATURE_TRANSLUCENCY;
-              s.translucency.gatherSamples = 0;
-            }),
-            "flat: has no lists of blocks to draw: nothing diffuses: not among the features");
 }
 
 }  // namespace

@@ -43,7 +43,6 @@ TEST_F(Cli, CaptureReplayComparePlan) {
   expect(0, "compare " + out + " " + again + " --mask " + capture + " --limit rel_rmse=0.05", "rel_rmse");
 }
 
-// Whelan 2009, eqs. 4.4 and 4.5 as printed, at both ends.
 // Each output format reads back as the picture that it is.
 TEST_F(Cli, EveryOutputFormatReadsBack) {
   ASSERT_EQ(run("capture --procedural ear --size 64x48 -o " + path("ear.exr")).code, 0);
@@ -62,15 +61,6 @@ TEST_F(Cli, EveryOutputFormatReadsBack) {
                                 " --limit rel_rmse=" + most);
     EXPECT_EQ(outcome.code, 0) << format << "\n" << outcome.text;
   }
-}
-
-TEST_F(Cli, AnglesAreThePrintedEquations) {
-  expect(0, "angles",
-         "90                            0.0000                      0.0000                      0.0361");
-  expect(0, "angles", "0.8670                      0.9616");
-  expect(0, "angles -o " + path("angles.png"), "wrote");
-  EXPECT_EQ(bytes("angles.png").substr(0, 4), "\x89PNG");
-  expect(3, "angles -o " + path("none/angles.png"), "angles.png");
 }
 
 TEST_F(Cli, Sheet) {

@@ -1,18 +1,7 @@
-#include <unistd.h>
 
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <numbers>
 
 #include "capture/material.h"
-#include "capture/read.h"
-#include "capture/write.h"
-#include "cli/capture_options.h"
-#include "common/error.h"
-#include "gltf/gltf.h"
-#include "gltf_builder.h"
 #include "gpu/all_texels.h"
 #include "gpu/gpu_fixture.h"
 #include "gpu/model_builder.h"
@@ -196,21 +185,6 @@ TEST_F(Raster, OpenMeshHasNoThickness) {
   }
 }
 
-TEST_F(Raster, CaptureOfOpenMeshesHasNoBackDepth) {
-  Model model = emptyModel();
-  addSquare(model, 0, 0, 0, 5);
-  endPart(model, 0);
-  for (const auto encoding : {PELLUCID_DEPTH_DEVICE, PELLUCID_DEPTH_VIEW_Z}) {
-    RasterOptions options;
-    options.width = options.height = 16;
-    options.depthEncoding = encoding;
-    const RasterResult result = rasterize(model, frontCamera(true), options);
-    EXPECT_TRUE(result.capture.backDepth.image.empty());
-    ASSERT_EQ(result.warnings.size(), 1u);
-    EXPECT_NE(result.warnings[0].find("the capture no backDepth"), std::string::npos) << result.warnings[0];
-  }
-}
-
 // A cube without its back, and a closed one of the same object behind it: the first back face along the ray
 // belongs to the second cube.
 TEST_F(Raster, HoleIsNotThickness) {
@@ -370,50 +344,6 @@ TEST_F(Raster, ShadowsFallWhereTheyShould) {
   }
 }
 
-// A shadow map's numbers: the distance of a plane from the light in each encoding.
-TEST_F(Raster, ShadowMapEncodings) {
-  Model model = emptyModel();
-  addSquare(model, 0, 0, 0, 9);
-  endPart(model, 0);
-  Light point = pointLight({0, 0, 40});
-  RasterOptions options;
-  options.width = options.height = 16;
-  options.shadowSize = 65;
-  for (const Light& light : {point, directional({0, 0, -1})})
-    for (const auto encoding : {PELLUCID_DEPTH_DEVICE, PELLUCID_DEPTH_VIEW_Z, PELLUCID_DEPTH_DISTANCE}) {
-      options.shadowEncoding = encoding;
-      model.lights = {light};
-      const Capture capture = rasterize(model, frontCamera(true), options).capture;
-      const ShadowMap& map = capture.lights[0].shadowMaps[0];
-      EXPECT_EQ(map.depth.encoding, encoding);
-      // From the texel back to the world through clipFromWorld: the plane is z = 0.
-      const auto clipOf = [&](double x, double y, double z) {
-        std::array<double, 4> clip{};
-        for (std::size_t r = 0; r < 4; ++r)
-          clip[r] = map.clipFromWorld[r] * x + map.clipFromWorld[4 + r] * y + map.clipFromWorld[8 + r] * z +
-                    map.clipFromWorld[12 + r];
-        return clip;
-      };
-      for (const double x : {-5.0, 0.0, 6.5}) {
-        const auto clip = clipOf(x, 2, 0);
-        const int tx = static_cast<int>((clip[0] / clip[3] * 0.5 + 0.5) * 65),
-                  ty = static_cast<int>((clip[1] / clip[3] * 0.5 + 0.5) * 65);
-        const double stored = *map.depth.image.at(tx, ty);
-        const double planarDistance =
-            -((*map.viewFromWorld)[2] * x + (*map.viewFromWorld)[6] * 2 + (*map.viewFromWorld)[14]);
-        if (encoding == PELLUCID_DEPTH_DEVICE)
-          EXPECT_NEAR(stored, clip[2] / clip[3], 1e-5);
-        else if (encoding == PELLUCID_DEPTH_VIEW_Z || light.type == PELLUCID_LIGHT_DIRECTIONAL)
-          EXPECT_NEAR(stored, planarDistance, 1e-5 * planarDistance);
-        else  // a texel is 0.3 mm wide
-          EXPECT_NEAR(stored, std::sqrt(x * x + 4 + 1600), 0.05);
-      }
-      const double corner = *map.depth.image.at(0, 0);
-      EXPECT_EQ(corner, encoding == PELLUCID_DEPTH_DEVICE ? 0 : static_cast<double>(kNoDepth))
-          << "outside the square";
-    }
-}
-
 // Beside the map of a sphere and an opaque square: where the light leaves the sphere, and what it meets.
 TEST_F(Raster, ShadowMapsKnowWhatCastsAndWhereItEnds) {
   Model model = emptyModel();
@@ -487,24 +417,6 @@ TEST_F(Raster, ShadowMapsKnowWhatCastsAndWhereItEnds) {
       EXPECT_GT(chords, 500);
       EXPECT_GT(opaque, 10);
     }
-}
-
-// Their images would be more than a dispatch binds.
-TEST_F(Raster, SixMapsHaveNothingBesideThem) {
-  Model model = emptyModel();
-  addSphere(model, {0, 0, 0}, 8, 16);
-  endPart(model, 0);
-  model.lights = {pointLight({0, 0, 20})};
-  RasterOptions options;
-  options.width = options.height = 16;
-  options.shadowSize = 16;
-  options.pointMaps = PointMaps::Six;
-  const Capture capture = rasterize(model, frontCamera(true), options).capture;
-  ASSERT_EQ(capture.lights[0].shadowMaps.size(), 6u);
-  for (const ShadowMap& map : capture.lights[0].shadowMaps) {
-    EXPECT_TRUE(map.exitDepth.empty());
-    EXPECT_TRUE(map.casterMaterial.empty());
-  }
 }
 
 TEST_F(Raster, PointLightWithinTheModelHasNoMapAndSaysSo) {
@@ -597,34 +509,6 @@ TEST_F(Raster, NormalsInViewSpace) {
   EXPECT_NEAR(c.normal.at(16, 16)[2], 1, 1e-3);
 }
 
-TEST_F(Raster, BadOptionsAreRefusedByName) {
-  Model model = emptyModel();
-  addSquare(model, 0, 0, 0, 8);
-  endPart(model, 0);
-  const auto refusal = [&](const Model& m, const ModelCamera& camera, const RasterOptions& options) {
-    try {
-      rasterize(m, camera, options);
-    } catch (const InputError& e) {
-      return std::string(e.what());
-    }
-    return std::string("accepted");
-  };
-  RasterOptions options;
-  options.width = 0;
-  EXPECT_EQ(refusal(model, frontCamera(true), options), "test: width: 0 is outside 1 .. 8192");
-  options = {};
-  options.shadowSize = 9000;
-  EXPECT_EQ(refusal(model, frontCamera(true), options), "test: shadowSize: 9000 is outside 0 .. 8192");
-  options = {};
-  options.depthEncoding = PELLUCID_DEPTH_DISTANCE;
-  EXPECT_NE(refusal(model, frontCamera(true), options).find("depthEncoding"), std::string::npos);
-  options = {};
-  options.infiniteFar = true;
-  EXPECT_NE(refusal(model, frontCamera(true), options).find("infiniteFar"), std::string::npos);
-  model.parts.clear();
-  EXPECT_NE(refusal(model, frontCamera(true), {}).find("no triangle"), std::string::npos);
-}
-
 TEST(Framing, TheWholeModelIsInView) {
   Model model = emptyModel();
   addCube(model, 5);
@@ -648,36 +532,6 @@ TEST(Framing, TheWholeModelIsInView) {
       }
       EXPECT_NEAR(widest, 1 / 1.05, 1e-6) << "the margin is 5 %, aspect " << aspect;
     }
-}
-
-// The capture on disk and the one in memory are one capture.
-TEST_F(Raster, WrittenCaptureReplaysBitIdentically) {
-  Model model = emptyModel();
-  addSphere(model, {0, 0, 0}, 6, 48);
-  endPart(model, 0);
-  addSquare(model, -7, 0, -12, 4);
-  endPart(model, 1);
-  model.lights = {directional({0.3, 0, 1}, 2), pointLight({10, 5, -60}, 9000)};
-  RasterOptions options;
-  options.width = 96;
-  options.height = 80;
-  options.shadowSize = 256;
-  const std::filesystem::path file =
-      std::filesystem::temp_directory_path() / ("pellucid_raster_" + std::to_string(::getpid()) + ".exr");
-  for (const auto encoding : {PELLUCID_DEPTH_DEVICE, PELLUCID_DEPTH_VIEW_Z}) {
-    options.depthEncoding = options.shadowEncoding = encoding;
-    const Capture direct = rasterize(model, frontCamera(false), options).capture;
-    EXPECT_TRUE(
-        sameBits(direct.irradiance, rasterize(model, frontCamera(false), options).capture.irradiance));
-    writeCapture(direct, file);
-    const Capture read = readCapture(file);
-    const std::vector<PellucidMaterial> materials = compileMaterials(direct);
-    const Image a = replayer().run(direct, materials, {}).output;
-    const Image b = replayer().run(read, compileMaterials(read), {}).output;
-    EXPECT_TRUE(sameBits(a, b));
-    EXPECT_GT(a.at(48, 40)[0], 0) << "light comes through";
-  }
-  std::filesystem::remove(file);
 }
 
 // The left one of two balls that are 1 mm apart is lit, and the right one lies in its shadow.
@@ -746,124 +600,6 @@ TEST_F(Raster, PlatesInABodyBlockLightFromAside) {
         allTexels(c, materials, Image(48, 48, 3), [](int x, int y) { return x == 24 && y == 24; });
     EXPECT_LT(middle(expected) * materials[0].reflectance[0], 0.03f * open) << plate;
   }
-}
-
-// A file on disk to a capture on disk, with the light that the command adds.
-TEST_F(Raster, OptionsMakeACaptureOfAFile) {
-  const std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / ("pellucid_command_" + std::to_string(::getpid()));
-  std::filesystem::create_directory(folder);
-  GltfBuilder b;
-  Model cube;
-  addCube(cube, 0.5);
-  std::vector<float> positions, normals;
-  std::vector<std::uint16_t> indices(cube.indices.begin(), cube.indices.end());
-  for (const Vertex& v : cube.vertices) {
-    positions.insert(positions.end(), v.position.begin(), v.position.end());
-    normals.insert(normals.end(), v.normal.begin(), v.normal.end());
-  }
-  b.json["meshes"] = {
-      {{"primitives",
-        {{{"attributes", {{"POSITION", b.vectors(positions)}, {"NORMAL", b.vectors(normals)}}},
-          {"indices", b.indices(indices)}}}}}};
-  b.json["nodes"] = {{{"mesh", 0}}};
-  CaptureOptions options;
-  options.model = (folder / "cube.glb").string();
-  std::ofstream(options.model, std::ios::binary) << b.glb();
-  options.unit = "cm";
-  options.presets = {"default=skin1"};
-  options.size = "32x32";
-  options.orthographic = true;
-  const CaptureModel scene = captureModel(options);
-  const std::filesystem::path output = folder / "cube.exr";
-  writeCapture(pellucid::harness::rasterize(device(), scene.model, scene.camera, scene.raster).capture,
-               output);
-  const Capture c = readCapture(output);
-  std::filesystem::remove_all(folder);
-  EXPECT_EQ(scene.model.indices.size(), 36u);
-  ASSERT_EQ(scene.warnings.size(), 1u);
-  EXPECT_NE(scene.warnings[0].find("no lights"), std::string::npos) << scene.warnings[0];
-  // skin1's reflectance, half floats.
-  ASSERT_EQ(scene.notes.size(), 1u);
-  EXPECT_NE(scene.notes[0].find("material \"default\" has no color in the file"), std::string::npos);
-  const PellucidMaterial compiled = compileMaterial(PresetMaterial{"skin1"}, "test");
-  for (int i = 0; i < 3; ++i)
-    EXPECT_NEAR(c.albedo.at(16, 16)[i], compiled.reflectance[i], 1e-3 * compiled.reflectance[i]) << i;
-  EXPECT_EQ(c.metersPerUnit, 0.01);
-  EXPECT_NEAR(planar(c, c.backDepth, 16, 16) - planar(c, c.frontDepth, 16, 16), 1, 1e-5);
-  ASSERT_EQ(c.lights.size(), 1u);
-  EXPECT_FALSE(c.lights[0].shadowMaps.empty());
-  EXPECT_EQ(c.irradiance.at(16, 16)[0], 0) << "the light comes from behind";
-  EXPECT_EQ(c.material[16 * 32 + 16], 1);
-}
-
-// The folder of models and path-traced captures, where there is one.
-std::filesystem::path sharedFolder() {
-  const char* const given = std::getenv("PELLUCID_SHARED");
-  return given ? std::filesystem::path(given)
-               : std::filesystem::path(PELLUCID_SOURCE_DIR).parent_path() / "shared";
-}
-
-// The same head through Blender's Cycles: same mesh, camera and light, another renderer.
-TEST_F(Raster, HeadAgreesWithCycles) {
-  const std::filesystem::path file = sharedFolder() / "models" / "LeePerrySmith_70k.glb";
-  const std::filesystem::path manifest = sharedFolder() / "captures" / "head_sidelit" / "manifest.json";
-  if (!std::filesystem::exists(file) || !std::filesystem::exists(manifest))
-    GTEST_SKIP() << "no " << file << " and " << manifest;
-  const Capture cycles = readCapture(manifest);
-  GltfOptions gltf;
-  gltf.presets = {{"*", "skin1"}};
-  Model model = loadGltf(file, gltf).model;
-  model.metersPerUnit = 0.001;
-  for (Vertex& v : model.vertices)
-    for (float& x : v.position) x *= 52;  // the capture's millimeters
-  model.lights = cycles.lights;
-  ModelCamera camera;
-  camera.viewFromWorld = cycles.viewFromWorld;
-  camera.verticalFov = 2 * std::atan(-1 / cycles.clipFromView[5]);
-  camera.range = {100, 2000};
-  RasterOptions options;
-  options.width = cycles.width;
-  options.height = cycles.height;
-  options.depthEncoding = PELLUCID_DEPTH_VIEW_Z;
-  options.shadowSize = 2048;
-  const RasterResult result = rasterize(model, camera, options);
-  const Capture& c = result.capture;
-  // Cycles smoothed the normals anew (0.9 degrees in the median), so light is compared before the cosine.
-  const Light& light = cycles.lights[0];
-  const glm::dmat4 worldFromView = glm::inverse(toGlm(c.viewFromWorld));
-  int covered = 0, coverage = 0, front = 0, back = 0, lit = 0, arriving = 0;
-  for (int y = 0; y < c.height; ++y)
-    for (int x = 0; x < c.width; ++x) {
-      const std::size_t i = static_cast<std::size_t>(y * c.width + x);
-      coverage += (c.material[i] != 0) != (cycles.material[i] != 0);
-      if (c.material[i] == 0 || cycles.material[i] == 0) continue;
-      ++covered;
-      const double z = *c.frontDepth.image.at(x, y);
-      front += std::abs(z - *cycles.frontDepth.image.at(x, y)) > 0.05;
-      back += std::abs(*c.backDepth.image.at(x, y) - *cycles.backDepth.image.at(x, y)) > 0.05;
-      const PixelRay ray = rayOf(c, x, y);
-      const glm::dvec3 position =
-          worldFromView * glm::dvec4(ray.direction[0] * z, ray.direction[1] * z, -z, 1);
-      const glm::dvec3 toLight = glm::normalize(toGlm(light.position) - position);
-      const auto cosine = [&](const Capture& capture) {
-        const float* n = capture.normal.at(x, y);
-        return glm::dot(toLight, glm::dvec3(n[0], n[1], n[2]));
-      };
-      const double ours = cosine(c), theirs = cosine(cycles);
-      if (ours < 0.2 || theirs < 0.2) continue;
-      ++lit;
-      arriving += std::abs(*c.irradiance.at(x, y) / ours - *cycles.irradiance.at(x, y) / theirs) > 0.01;
-    }
-  EXPECT_GT(covered, 70000);
-  EXPECT_GT(lit, 30000);
-  // Pixels where a silhouette or a crease falls on the other side, or, for light, a shadow's edge.
-  EXPECT_LE(coverage, 7);
-  EXPECT_LT(front, covered / 1000);
-  EXPECT_LT(back, covered / 1000);
-  EXPECT_LT(arriving, lit / 50);
-  // The mesh is closed; a sliver's facing may be rounded differently from its coverage.
-  EXPECT_LE(result.openPixels, 3u);
 }
 
 }  // namespace

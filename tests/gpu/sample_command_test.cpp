@@ -51,13 +51,6 @@ TEST_F(SampleCommand, DrawsFiles) {
   expect(0, triangle() + " --material skin=skin1 --headless " + kSmall, "2 frames");
 }
 
-TEST_F(SampleCommand, SaysWhichQueuePellucidRanOn) {
-  const std::string text = run("--headless --queue compute " + kSmall).text;
-  EXPECT_NE(text.find("the device has one queue: Pellucid had submissions of its own on it"),
-            text.find("Pellucid ran on a queue of family "))
-      << text;
-}
-
 TEST_F(SampleCommand, NamesWhatIsWrong) {
   expect(3, path("none.glb") + " --headless", "none.glb");
   expect(3, triangle() + " --headless " + kSmall, "materials: none scatters light; --material");

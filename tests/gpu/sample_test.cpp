@@ -1,8 +1,6 @@
 // The deferred renderer of gbuffer_harness/sample: what each feature changes, and captures of its frames
 // replayed.
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <numeric>
 
 #include "capture/material.h"
@@ -238,15 +236,6 @@ TEST_F(SpotMaps, CulledFrontsAndBiasGiveThePlainPictureWhereTheyAreSaid) {
           << samples << ", bias " << constant;
     }
   }
-}
-
-TEST(SampleLines, AreFew) {
-  const auto lines = [](const std::filesystem::path& file) {
-    std::ifstream in(file);
-    return std::count(std::istreambuf_iterator<char>(in), {}, '\n');
-  };
-  const std::filesystem::path folder = PELLUCID_SOURCE_DIR "/gbuffer_harness/sample";
-  EXPECT_LE(lines(folder / "pellucid_pass.h"), 85);
 }
 
 }  // namespace

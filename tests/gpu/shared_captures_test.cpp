@@ -11,8 +11,12 @@
 #include "capture/material.h"
 #include "capture/read.h"
 #include "common/compare.h"
+#include "gltf/gltf.h"
+#include "gpu/model_builder.h"
+#include "raster/raster.h"
 #include "reference/diffusion.h"
 #include "reference/surface.h"
+#include "scene/vector.h"
 
 namespace {
 
@@ -28,11 +32,10 @@ struct Expectation {
 
 void PrintTo(const Expectation& value, std::ostream* out) { *out << value.name; }
 
-std::filesystem::path sharedCaptures() {
+std::filesystem::path sharedFolder() {
   const char* variable = std::getenv("PELLUCID_SHARED");
-  return (variable ? std::filesystem::path(variable)
-                   : std::filesystem::path(PELLUCID_SOURCE_DIR) / "../shared") /
-         "captures";
+  return variable ? std::filesystem::path(variable)
+                  : std::filesystem::path(PELLUCID_SOURCE_DIR) / "../shared";
 }
 
 // Of the capture with the parameter's name; skipped where there is none.
@@ -41,7 +44,8 @@ class CaptureTest : public GpuTest, public testing::WithParamInterface<Parameter
 protected:
   void SetUp() override {
     GpuTest::SetUp();
-    const std::filesystem::path manifest = sharedCaptures() / this->GetParam().name / "manifest.json";
+    const std::filesystem::path manifest =
+        sharedFolder() / "captures" / this->GetParam().name / "manifest.json";
     if (!std::filesystem::exists(manifest)) GTEST_SKIP() << "no capture at " << manifest;
     capture = readCapture(manifest);
     materials = compileMaterials(capture);
@@ -182,5 +186,67 @@ INSTANTIATE_TEST_SUITE_P(Truth, SharedCapture,
                                          Expectation{"sphere_backlit", {.363, .220, .1340}, {1, 1.18, 1.34}},
                                          Expectation{"two_sheets", {.1484, .159, .214}}),
                          [](const auto& test) { return std::string(test.param.name); });
+
+// The same head through Blender's Cycles: same mesh, camera and light, another renderer.
+TEST_F(GpuTest, HeadAgreesWithCycles) {
+  const std::filesystem::path file = sharedFolder() / "models" / "LeePerrySmith_70k.glb";
+  const std::filesystem::path manifest = sharedFolder() / "captures" / "head_sidelit" / "manifest.json";
+  if (!std::filesystem::exists(file) || !std::filesystem::exists(manifest))
+    GTEST_SKIP() << "no " << file << " and " << manifest;
+  const Capture cycles = readCapture(manifest);
+  GltfOptions gltf;
+  gltf.presets = {{"*", "skin1"}};
+  Model model = loadGltf(file, gltf).model;
+  model.metersPerUnit = 0.001;
+  for (Vertex& v : model.vertices)
+    for (float& x : v.position) x *= 52;  // the capture's millimeters
+  model.lights = cycles.lights;
+  ModelCamera camera;
+  camera.viewFromWorld = cycles.viewFromWorld;
+  camera.verticalFov = 2 * std::atan(-1 / cycles.clipFromView[5]);
+  camera.range = {100, 2000};
+  RasterOptions options;
+  options.width = cycles.width;
+  options.height = cycles.height;
+  options.depthEncoding = PELLUCID_DEPTH_VIEW_Z;
+  options.shadowSize = 2048;
+  const RasterResult result = rasterize(device(), model, camera, options);
+  const Capture& c = result.capture;
+  // Cycles smoothed the normals anew (0.9 degrees in the median), so light is compared before the cosine.
+  const Light& light = cycles.lights[0];
+  const glm::dmat4 worldFromView = glm::inverse(toGlm(c.viewFromWorld));
+  int covered = 0, coverage = 0, front = 0, back = 0, lit = 0, arriving = 0;
+  for (int y = 0; y < c.height; ++y)
+    for (int x = 0; x < c.width; ++x) {
+      const std::size_t i = static_cast<std::size_t>(y * c.width + x);
+      coverage += (c.material[i] != 0) != (cycles.material[i] != 0);
+      if (c.material[i] == 0 || cycles.material[i] == 0) continue;
+      ++covered;
+      const double z = *c.frontDepth.image.at(x, y);
+      front += std::abs(z - *cycles.frontDepth.image.at(x, y)) > 0.05;
+      back += std::abs(*c.backDepth.image.at(x, y) - *cycles.backDepth.image.at(x, y)) > 0.05;
+      const PixelRay ray = rayOf(c, x, y);
+      const glm::dvec3 position =
+          worldFromView * glm::dvec4(ray.direction[0] * z, ray.direction[1] * z, -z, 1);
+      const glm::dvec3 toLight = glm::normalize(toGlm(light.position) - position);
+      const auto cosine = [&](const Capture& capture) {
+        const float* n = capture.normal.at(x, y);
+        return glm::dot(toLight, glm::dvec3(n[0], n[1], n[2]));
+      };
+      const double ours = cosine(c), theirs = cosine(cycles);
+      if (ours < 0.2 || theirs < 0.2) continue;
+      ++lit;
+      arriving += std::abs(*c.irradiance.at(x, y) / ours - *cycles.irradiance.at(x, y) / theirs) > 0.01;
+    }
+  EXPECT_GT(covered, 70000);
+  EXPECT_GT(lit, 30000);
+  // Pixels where a silhouette or a crease falls on the other side, or, for light, a shadow's edge.
+  EXPECT_LE(coverage, 7);
+  EXPECT_LT(front, covered / 1000);
+  EXPECT_LT(back, covered / 1000);
+  EXPECT_LT(arriving, lit / 50);
+  // The mesh is closed; a sliver's facing may be rounded differently from its coverage.
+  EXPECT_LE(result.openPixels, 3u);
+}
 
 }  // namespace

@@ -1,9 +1,6 @@
 // Fewer triangles for back depth and shadow maps (Whelan 2009, 4.7.3).
-#include <algorithm>
 #include <cmath>
-#include <limits>
 
-#include "common/error.h"
 #include "gpu_fixture.h"
 #include "model_builder.h"
 #include "raster/raster.h"
@@ -71,20 +68,6 @@ TEST_F(Simplify, ChangesWhatLightComesThroughAlone) {
   }
   EXPECT_GT(covered, 3000);
   EXPECT_LT(sum / covered, 0.1) << "mm";
-}
-
-TEST_F(Simplify, OtherSharesAreRefused) {
-  const Model model = sphere();
-  for (const double ratio : {0.0, -1.0, 1.5, std::numeric_limits<double>::quiet_NaN()}) {
-    RasterOptions options;
-    options.simplify = ratio;
-    try {
-      rasterize(device(), model, frontCamera(true), options);
-      ADD_FAILURE() << ratio;
-    } catch (const InputError& error) {
-      EXPECT_NE(std::string(error.what()).find("simplify"), std::string::npos) << error.what();
-    }
-  }
 }
 
 }  // namespace

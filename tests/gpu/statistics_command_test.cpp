@@ -63,26 +63,4 @@ TEST_F(StatisticsCommand, AreATableAndAPicture) {
   expect(0, "compare " + out_ + " " + plain + " --mask " + capture_ + " --limit max=0", "rel_rmse");
 }
 
-TEST_F(StatisticsCommand, SayWhatIsMissing) {
-  capture("96x64");
-  const std::string everywhere = replay("--set indirect=none ");
-  expect(0, everywhere + "--stats", "no lists of blocks: frame.options.indirectDispatches asks for none");
-  expect(3, everywhere + "--debug blocks",
-         "has no lists of blocks to draw: frame.options.indirectDispatches asks for none");
-  expect(2, "plan " + capture_ + " --debug blocks", "\"blocks\" is not one of");
-  expect(2, "replay x.exr --debug soul", "\"soul\" is not one of blocks, irradiance, occlusion, thickness");
-}
-
-TEST_F(StatisticsCommand, OfASequence) {
-  capture("96x64");
-  std::filesystem::copy_file(capture_, path("ear.1.exr"));
-  const std::string sequence = "replay " + path("ear.#.exr") + " -o " + path("o.#.exr") + " ";
-  expect(2, sequence + "--stats", "--stats is of one capture, not a sequence");
-  expect(2, sequence + "--debug blocks", "PNGs need --exposure");
-  expect(0, sequence + "--debug blocks --exposure 1", "1 written");
-  const Pixels picture(path("o.1.png"));
-  ASSERT_TRUE(picture.rgb);
-  EXPECT_EQ(colorAt(picture, 64, 32), kYellow);
-}
-
 }  // namespace

@@ -16,8 +16,6 @@
 #include "capture/read.h"
 #include "cli/settings.h"
 #include "cli/stress_failure.h"
-#include "common/error.h"
-#include "stress/results.h"
 
 namespace {
 
@@ -229,33 +227,6 @@ TEST_F(Stress, EveryCheckFindsAFault) {
   for (const std::string& check : missing) ADD_FAILURE() << check << " has no frame, or finds no fault";
 }
 
-TEST(StressMeasures, SayHowFarAndWhere) {
-  const Pixels owned = {1, 1, 0, 1};
-  const Image ones(2, 2, 4, 1);
-  Image other = ones;
-  other.at(1, 1)[2] = 1.01f;
-  const Worst worst = differentBits(ones, other, owned);
-  EXPECT_NEAR(worst.value, 0.01 / 1.01, 1e-6);
-  EXPECT_EQ(worst.x, 1);
-  EXPECT_EQ(worst.y, 1);
-  EXPECT_EQ(worst.channel, 2);
-  EXPECT_EQ(differentBits(ones, ones, owned).value, 0);
-  // Pixels that are not owned, and the sign of 0.
-  other = ones;
-  other.at(0, 1)[0] = 7;
-  EXPECT_EQ(differentBits(ones, other, owned).value, 0);
-  EXPECT_EQ(changedOutside(ones, other, owned).value, 1);
-  EXPECT_GT(differentBits(Image(2, 2, 4, 0.0f), Image(2, 2, 4, -0.0f), owned).value, 0);
-  EXPECT_NEAR(less(Image(2, 2, 4, 2), ones, owned).value, 0.5, 1e-9);
-  EXPECT_EQ(less(ones, Image(2, 2, 4, 2), owned).value, 0);
-  EXPECT_NEAR(notTwice(ones, Image(2, 2, 4, 2.02f), owned).value, 0.01, 1e-3);
-  EXPECT_EQ(notSum(ones, {Image(2, 2, 4, 2), Image(2, 2, 4, 4)}, Image(2, 2, 4, 5), owned).value, 0);
-  EXPECT_NEAR(notSum(ones, {Image(2, 2, 4, 2), Image(2, 2, 4, 4)}, Image(2, 2, 4, 6), owned).value, 1.0 / 6,
-              1e-6);
-  // Outputs end at the largest half.
-  EXPECT_EQ(notTwice(Image(2, 2, 4, 50000), Image(2, 2, 4, 65504), owned).value, 0);
-}
-
 TEST_F(Stress, FailuresReplayToTheSameBits) {
   const std::filesystem::path folder =
       std::filesystem::temp_directory_path() / ("pellucid_stress_" + std::to_string(::getpid()));
@@ -286,47 +257,6 @@ TEST_F(Stress, FailuresReplayToTheSameBits) {
   std::filesystem::remove_all(folder);
 }
 
-class StressResults : public testing::Test {
-protected:
-  static std::filesystem::path path() {
-    return std::filesystem::temp_directory_path() / ("pellucid_stress_results_" + std::to_string(::getpid()));
-  }
-  void TearDown() override { std::filesystem::remove(path()); }
-};
-
-TEST_F(StressResults, SayHowFarDevicesAreApart) {
-  const StressFrame frame = randomFrame(2, 6, pool(), small()), next = randomFrame(2, 7, pool(), small());
-  Image output(frame.capture.width, frame.capture.height, 4, 1), other = output;
-  const std::size_t pixel = firstWith(ownedPixels(frame), true);
-  ASSERT_LT(4 * pixel, output.data.size());
-  other.data[4 * pixel + 1] = 1.005f;
-  {
-    ResultsWriter writer(path());
-    writer.add(frame, output);
-    writer.add(frame, output);
-  }
-  ResultsReader reader(path());
-  reader.add(frame, output);
-  EXPECT_EQ(reader.tame.sameBits, 1u);
-  EXPECT_EQ(reader.tame.worst.value, 0);
-  EXPECT_FALSE(reader.ended());
-  reader.add(frame, other);
-  EXPECT_TRUE(reader.ended());
-  EXPECT_EQ(reader.tame.frames, 2u);
-  EXPECT_EQ(reader.tame.sameBits, 1u);
-  EXPECT_NEAR(reader.tame.worst.value, 0.005, 1e-6);
-  EXPECT_EQ(reader.tame.above3, 1u);
-  EXPECT_EQ(reader.tame.above2, 0u);
-  EXPECT_EQ(reader.wild.frames, 0u);
-  EXPECT_THROW(reader.add(frame, output), InputError);  // there is no more
-  ResultsReader again(path());
-  EXPECT_THROW(again.add(next, Image(next.capture.width, next.capture.height, 4)), InputError);
-  std::filesystem::resize_file(path(), 100);
-  ResultsReader cut(path());
-  EXPECT_THROW(cut.add(frame, output), InputError);
-  EXPECT_THROW(ResultsReader(path().string() + "x"), InputError);
-}
-
 TEST_F(Stress, ShortRunHolds) {
   StressOptions options;
   options.seed = 40;
@@ -344,17 +274,6 @@ TEST_F(Stress, ShortRunHolds) {
   EXPECT_EQ(result.frames, 10u);
   EXPECT_EQ(result.checks.size(), checks().size() + 2);
   EXPECT_EQ(result.checks[1].tame.done, 5u);
-}
-
-TEST(StressRun, NamesTheChecksThatThereAre) {
-  for (const Check& check : checks()) EXPECT_NO_THROW(requireCheck(check.name));
-  try {
-    requireCheck("nothing");
-    FAIL();
-  } catch (const UsageError& error) {
-    EXPECT_NE(std::string(error.what()).find("\"nothing\" is not one of finite, "), std::string::npos)
-        << error.what();
-  }
 }
 
 }  // namespace

@@ -58,25 +58,6 @@ TEST_F(View, SavesWhatReplaysToTheSameBits) {
   EXPECT_EQ(bytes("a.pellucid.exr"), bytes("c.pellucid.exr"));
 }
 
-// OpenPBR media and skin by physiology reach the picture, replay to the same bits and are in the saved view.
-TEST_F(View, MaterialsOfEveryDescriptionAreSavedAndOpened) {
-  const std::pair<const char*, const char*> materials[] = {
-      {"p", R"({"subsurface_color":[0.2,0.8,0.3],"subsurface_radius":3})"},
-      {"s", R"({"melanin":0.2,"hemoglobin":0.1})"}};
-  for (const auto& [name, text] : materials) {
-    const std::string input = script(std::string("2 material ") + text + "\n");
-    expect(0, kScene + "--no-window --frames 4 " + input + "--save " + path(name + std::string(".exr")),
-           "2 of");
-    expectReplays(name);
-    const std::string saved = path(name + std::string(".view.json"));
-    expect(0, "view " + saved + " --no-window --frames 2 --save " + path("again.exr"), "1 of the module");
-    EXPECT_EQ(bytes("again.exr"), bytes(name + std::string(".exr")));
-    EXPECT_EQ(bytes("again.png"), bytes(name + std::string(".png"))) << "the panel, too";
-  }
-  EXPECT_NE(bytes("p.pellucid.exr"), bytes("s.pellucid.exr"));
-  expect(3, kScene + "--no-window --frames 2 " + script("1 material {\"melanin\":2}\n"), "material: melanin");
-}
-
 // A triangle whose material has a name and no color.
 void writeTriangle(const std::string& file) {
   GltfBuilder b;
@@ -100,26 +81,6 @@ TEST_F(View, ASavedViewOfAModelOpensWithItsLightsAndMaterials) {
   expect(0, "view " + path("a.view.json") + " --validate --no-window --frames 1 --save " + path("b.exr"),
          "wrote");
   EXPECT_EQ(bytes("a.exr"), bytes("b.exr"));
-}
-
-// A model that nobody colored has the color of its medium, in the viewer as in a capture.
-TEST_F(View, APresetBringsItsAlbedoToAModelWithoutColor) {
-  writeTriangle(path("t.glb"));
-  const std::string model = path("t.glb") + " --size 32x32 --shadow-size 16 --material 'wax=";
-  expect(0,
-         "view " + model + "skin1' --validate --no-window --frames 4 " + script("2 material marble\n") +
-             "--save " + path("v.exr"),
-         "added: --light back --light front");
-  expectReplays("v");
-  expect(0, "capture " + model + "marble' -o " + path("c.exr"), "added: --light back");
-  const auto viewed = pellucid::harness::readCapture(path("v.exr")),
-             captured = pellucid::harness::readCapture(path("c.exr"));
-  EXPECT_EQ(viewed.material, captured.material);
-  EXPECT_TRUE(sameBits(viewed.albedo, captured.albedo));
-  ASSERT_EQ(viewed.lights.size(), 2u);
-  EXPECT_EQ(captured.lights.size(), 1u);
-  EXPECT_LT(viewed.lights[0].direction[2] * viewed.lights[1].direction[2], 0)
-      << "from behind and from the front";
 }
 
 TEST_F(View, RefusesInASentence) {

@@ -1,9 +1,7 @@
 // The viewer's frames against replays of their captures, and its screen against their images.
 #include <algorithm>
-#include <cmath>
 
 #include "capture/material.h"
-#include "common/error.h"
 #include "common/png.h"
 #include "gpu_fixture.h"
 #include "model_builder.h"
@@ -135,16 +133,6 @@ TEST_F(ViewFramesTest, RenderOnlyWhatChanged) {
   EXPECT_EQ(frames_->times().size(), frames_->run(Shown::After).plan().dispatchCount);
 }
 
-TEST_F(ViewFramesTest, StayWhereAChangeIsRefused) {
-  const Image before = frames_->image(Shown::After);
-  state_.settings.translucency.maximumThickness = -1;
-  EXPECT_THROW(frames_->update(state_, {.frame = true}), InputError);
-  EXPECT_TRUE(sameBits(frames_->image(Shown::After), before));
-  state_.settings.translucency.maximumThickness = 0;
-  frames_->update(state_, {.frame = true});
-  EXPECT_TRUE(sameBits(frames_->image(Shown::After), before));
-}
-
 TEST_F(ViewFramesTest, AlternateReuseTakesWhatCameThroughFromTheFrameBefore) {
   state_.settings.reuse = PELLUCID_REUSE_ALTERNATE;
   frames_->forgetHistory();
@@ -212,67 +200,6 @@ TEST_F(ViewScreen, ShowsItsImagesInSrgb) {
     EXPECT_GT(lit, 50) << int(shown);
     EXPECT_EQ(screen.at(2, 2)[2], 1) << "beside the picture";
   }
-}
-
-TEST_F(ViewScreen, DrawsWithinItsClipAlone) {
-  ScreenRect right = picture_;
-  right.x += 40;
-  right.width -= 40;
-  state_.display.exposure = 1;
-  const Image whole = draw(Shown::Albedo, picture_), half = draw(Shown::Albedo, right);
-  for (int y = 0; y < kSide; ++y)
-    for (int x = 0; x < kSide; ++x) {
-      const bool inside = x >= kMargin + 40;
-      for (int c = 0; c < 3; ++c)
-        ASSERT_EQ(half.at(x, y)[c], inside ? whole.at(x, y)[c] : (c == 2 ? 1.0f : 0.0f)) << x << ", " << y;
-    }
-}
-
-TEST_F(ViewScreen, FalseColorsRiseFromBlackToWhite) {
-  const Image& depth = frames_->image(Shown::FrontDepth);
-  const float nearest = *depth.at(kSize / 2, kSize / 2);
-  const Image white = draw(Shown::FrontDepth, picture_, 0, nearest);
-  const Image black = draw(Shown::FrontDepth, picture_, nearest, 2 * nearest);
-  for (int c = 0; c < 3; ++c) {
-    EXPECT_EQ(pixel(white, kSize / 2, kSize / 2)[c], 1);
-    EXPECT_EQ(pixel(black, kSize / 2, kSize / 2)[c], 0);
-  }
-  device().run([&](VkCommandBuffer commandBuffer) {
-    screen_.begin(commandBuffer);
-    display_.drawLegend(commandBuffer, *frames_, {4, 4, 10, 80});
-    screen_.end(commandBuffer);
-  });
-  const Image legend = screen_.image(0).download();
-  float before = 2;
-  for (int y = 4; y < 84; ++y) {
-    const float* c = legend.at(8, y);
-    const float luminance = 0.2126f * c[0] + 0.7152f * c[1] + 0.0722f * c[2];
-    EXPECT_LE(luminance, before + 0.004f) << y;  // a step of 8 bits
-    before = luminance;
-  }
-}
-
-TEST_F(ViewScreen, TilesSayHowMuchIsCovered) {
-  const Image& tiles = frames_->image(Shown::Tiles);
-  double covered = 0, sum = 0;
-  for (std::size_t i = 0; i < tiles.pixels(); ++i) {
-    covered += frames_->capture().material[i] != 0;
-    sum += static_cast<double>(tiles.data[i]);
-  }
-  EXPECT_NEAR(sum, covered, 1e-3 * covered);  // floats
-  EXPECT_EQ(*tiles.at(kSize / 2, kSize / 2), 1);
-  EXPECT_LT(*tiles.at(0, 0), 0.5f);
-  const Image screen = draw(Shown::Tiles, picture_);
-  for (int c = 0; c < 3; ++c) EXPECT_EQ(pixel(screen, kSize / 2, kSize / 2)[c], 1);
-  EXPECT_LT(pixel(screen, 0, 0)[1], 1);
-}
-
-TEST_F(ViewScreen, IsolatedPixelsAreThoseOfTheMetric) {
-  const Image screen = draw(Shown::Isolated, picture_, 0, 3);
-  const Image& marks = frames_->image(Shown::Isolated);
-  for (int y = 0; y < kSize; ++y)
-    for (int x = 0; x < kSize; ++x)
-      EXPECT_EQ(*marks.at(x, y) != 0, pixel(screen, x, y)[2] != 0) << x << ", " << y;
 }
 
 class ViewSources : public GpuTest {};

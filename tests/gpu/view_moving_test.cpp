@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <ostream>
 #include <random>
 
@@ -195,36 +194,6 @@ TEST_F(Moving, ValuesAreThoseOfTheWholeImages) {
       EXPECT_EQ(values[i++], expected) << static_cast<int>(shown) << " at " << x << ", " << y;
       EXPECT_EQ(frames_->value(shown, x, y), expected);
     }
-}
-
-TEST_F(Moving, CoveredPartAndTimesNeedNoImages) {
-  open(sphereAndSheet());
-  move();
-  const std::uint64_t before = device().transfers().downloaded;
-  const double covered = frames_->coveredPart();
-  EXPECT_EQ(frames_->sceneTimes().size(), 6u);  // surfaces, back faces; maps and irradiance of two lights
-  for (const DispatchTime& time : frames_->sceneTimes()) EXPECT_GT(time.microseconds, 0) << time.name;
-  EXPECT_EQ(device().transfers().downloaded, before);
-  const std::vector<std::uint8_t>& material = frames_->material();
-  EXPECT_EQ(device().transfers().downloaded, before + kSize * kSize) << "the material alone";
-  EXPECT_DOUBLE_EQ(covered, 1 - static_cast<double>(std::count(material.begin(), material.end(), 0)) /
-                                    static_cast<double>(material.size()));
-}
-
-// Two sets of images take turns, so that no frame allocates any.
-TEST_F(Moving, ImagesTakeTurns) {
-  open(sphereAndSheet());
-  std::vector<PellucidFrame> frames;
-  for (int i = 0; i < 6; ++i) {
-    move();
-    frames.push_back(frames_->run(Shown::After).frame());
-  }
-  for (std::size_t i = 4; i < frames.size(); ++i) {
-    EXPECT_EQ(frames[i].output.view, frames[i - 2].output.view);
-    EXPECT_EQ(frames[i].irradiance.view, frames[i - 2].irradiance.view);
-    EXPECT_EQ(frames[i].normal.view, frames[i - 2].normal.view);
-    EXPECT_NE(frames[i].normal.view, frames[i - 1].normal.view) << "a frame must outlive a refused one";
-  }
 }
 
 // Images that were drawn for a refused frame lie beside those that are seen, which can still be saved.

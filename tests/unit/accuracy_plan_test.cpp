@@ -177,16 +177,4 @@ TEST(AccuracyPlan, SaysWhyNothingIsGathered) {
   }
 }
 
-TEST(AccuracyPlan, IsInThePlansText) {
-  Gathered f;
-  f.frame.options.nearestDistance = 50;
-  const PellucidPlan plan = f.plan();
-  char text[65536];
-  size_t size = sizeof text;
-  ASSERT_EQ(pellucidPlanToJson(&plan, text, &size), PELLUCID_OK);
-  const nlohmann::json json = nlohmann::json::parse(text);
-  EXPECT_EQ(json.at("gatherSamples"), 8);
-  EXPECT_NEAR(json.at("largestRadius").get<double>(), 5, 1e-5);
-}
-
 }  // namespace

@@ -8,15 +8,17 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "capture/capture.h"
 #include "capture/exr.h"
 #include "capture/read.h"
 #include "common/error.h"
+#include "refusal.h"
 #include "temporary_directory.h"
 
 namespace pellucid::harness {
@@ -194,18 +196,27 @@ inline void expectSame(const DepthImage& a, const DepthImage& b) {
   EXPECT_EQ(a.encoding, b.encoding);
 }
 
-inline std::string errorOf(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no InputError";
-}
+using pellucid::test::refusalOf;
 
 inline void expectNames(const std::string& sentence, const std::vector<std::string>& parts) {
   for (const std::string& part : parts)
     EXPECT_NE(sentence.find(part), std::string::npos) << '"' << part << "\" is not in: " << sentence;
+}
+
+// Rows of a text, with " | " between their cells.
+inline std::vector<std::vector<std::string>> tableOf(const std::string& text) {
+  std::vector<std::vector<std::string>> table;
+  std::istringstream rows(text);
+  for (std::string row; std::getline(rows, row);) {
+    if (row.empty()) continue;
+    std::vector<std::string>& cells = table.emplace_back();
+    for (std::size_t at = 0; at != std::string::npos;) {
+      const std::size_t end = row.find(" | ", at);
+      cells.push_back(row.substr(at, end == std::string::npos ? end : end - at));
+      at = end == std::string::npos ? end : end + 3;
+    }
+  }
+  return table;
 }
 
 // The sample files with a manifest to change.
@@ -216,7 +227,7 @@ protected:
     return readCapture(directory / "m.json");
   }
   std::string error() {
-    return errorOf([&] { read(); });
+    return refusalOf([&] { read(); });
   }
 
   TemporaryDirectory directory;

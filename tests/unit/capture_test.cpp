@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <numbers>
+#include <sstream>
 
 #include "capture/layers.h"
 #include "capture/light_table.h"
@@ -148,13 +148,8 @@ TEST(CaptureRoundTrip, HalfRefusesWhatItCannotHold) {
   const TemporaryDirectory directory;
   Capture capture = sampleCapture();
   capture.irradiance.data[4] = 70000;
-  expectNames(errorOf([&] { writeCapture(capture, directory / "c.exr", ColorFormat::Half); }),
+  expectNames(refusalOf([&] { writeCapture(capture, directory / "c.exr", ColorFormat::Half); }),
               {"c.exr", "irradiance.G", "70000"});
-}
-
-TEST(CaptureRoundTrip, UnwritablePathIsNamed) {
-  const TemporaryDirectory directory;
-  expectNames(errorOf([&] { writeCapture(sampleCapture(), directory / "none/c.exr"); }), {"none/c.exr"});
 }
 
 // ---- Manifest beside EXR files
@@ -301,16 +296,6 @@ TEST_F(Manifests, LightTablesNeedWhatTheyAreOver) {
             std::string::npos);
 }
 
-TEST_F(Manifests, SeveralShadowMapsKeepTheirOrder) {
-  const Capture capture = read();
-  ASSERT_EQ(capture.lights[1].shadowMaps.size(), 2u);
-  EXPECT_TRUE(
-      sameBits(capture.lights[1].shadowMaps[0].depth.image, sample.lights[0].shadowMaps[0].depth.image));
-  EXPECT_EQ(capture.lights[1].shadowMaps[1].depth.image.data, std::vector<float>{5});
-  EXPECT_EQ(capture.lights[1].shadowMaps[1].depth.encoding, PELLUCID_DEPTH_DEVICE);
-  EXPECT_EQ(capture.lights[1].shadowMaps[1].clipFromWorld[10], 1);
-}
-
 TEST_F(Manifests, WhatLiesBesideAShadowMapArrives) {
   const Capture capture = read();
   const ShadowMap& map = capture.lights[0].shadowMaps[0];
@@ -374,18 +359,6 @@ TEST_F(Manifests, CountOfShadowMapsIsLimited) {
   expectNames(error(), {"lights[1].shadowMaps", "1 to 8", "has 9"});
 }
 
-TEST_F(Manifests, ConstantShadowMapIsOneTexel) {
-  auto& map = manifest["lights"][0]["shadowMap"];
-  map.erase("file");
-  map.erase("channel");
-  map.erase("exit");
-  map.erase("casterMaterial");
-  map["constant"] = {5};
-  const Capture capture = read();
-  EXPECT_EQ(capture.lights[0].shadowMaps[0].depth.image.pixels(), 1u);
-  EXPECT_EQ(capture.lights[0].shadowMaps[0].depth.image.data[0], 5.0f);
-}
-
 TEST_F(Manifests, OneChannelMayServeTwice) {
   manifest["buffers"]["irradiance"]["channels"] = {"E.G", "E.G", "E.B"};
   const Capture capture = read();
@@ -437,10 +410,10 @@ TEST_F(Manifests, LightMayBeAColorsMultipleOrPart) {
   manifest["buffers"]["albedo"] = times;
   EXPECT_TRUE(sameBits(read().irradiance, plain.irradiance)) << "powers of two";
   manifest["buffers"]["irradiance"]["includesAlbedo"] = 1;
-  expectNames(errorOf([&] { read(); }), {"buffers.irradiance.includesAlbedo", "true or false"});
+  expectNames(refusalOf([&] { read(); }), {"buffers.irradiance.includesAlbedo", "true or false"});
   manifest["buffers"]["irradiance"]["includesAlbedo"] = true;
   manifest["buffers"].erase("albedo");
-  expectNames(errorOf([&] { read(); }), {"buffers.irradiance.includesAlbedo", "albedo"});
+  expectNames(refusalOf([&] { read(); }), {"buffers.irradiance.includesAlbedo", "albedo"});
 }
 
 TEST_F(Manifests, OtherLayersOfTheIrradiancesFileAreKept) {
@@ -497,16 +470,6 @@ TEST_F(Manifests, MaterialMayBeConstant) {
   EXPECT_EQ(read().material, std::vector<std::uint8_t>(kSampleWidth * kSampleHeight, 1));
 }
 
-TEST_F(Manifests, EmbeddedTextNeedsNoFileNames) {
-  for (const char* name : {"frontDepth", "backDepth", "irradiance", "material"})
-    manifest["buffers"][name].erase("file");
-  manifest["truth"].erase("file");
-  Image all(kSampleWidth, kSampleHeight, 6, 1.0f);
-  writeExr(directory / "e.exr", all, {"Z", "E.R", "E.G", "E.B", "id", "ZBack"},
-           {{kManifestAttribute, manifest.dump()}});
-  EXPECT_EQ(readCapture(directory / "e.exr").irradiance.data[7], 1.0f);
-}
-
 TEST_F(Manifests, StoredMaterialsOutsideTheListAreNamed) {
   manifest["buffers"]["material"]["map"] = {{"7", 1}};
   expectNames(error(), {"g.exr", "buffers.material", "pixel (1, 0)", "holds 1", "map"});
@@ -538,205 +501,163 @@ TEST_F(Manifests, AConstantCaptureHasNoSize) {
 }
 
 TEST_F(Manifests, OtherFilesAreNamed) {
-  expectNames(errorOf([&] { readCapture(directory / "none.json"); }), {"none.json", "no such file"});
+  expectNames(refusalOf([&] { readCapture(directory / "none.json"); }), {"none.json", "no such file"});
   writeText(directory / "m.json", "{\"pellucid\": 1, ");
-  expectNames(errorOf([&] { readCapture(directory / "m.json"); }), {"m.json", "JSON"});
+  expectNames(refusalOf([&] { readCapture(directory / "m.json"); }), {"m.json", "JSON"});
   writeText(directory / "m.json", "{\"pellucid\": 1, \"camera\": {}, \"camera\": {}}");
-  expectNames(errorOf([&] { readCapture(directory / "m.json"); }), {"m.json", "camera", "twice"});
-  expectNames(errorOf([&] { readCapture(directory / "g.exr"); }), {"g.exr", "pellucid.manifest"});
+  expectNames(refusalOf([&] { readCapture(directory / "m.json"); }), {"m.json", "camera", "twice"});
+  expectNames(refusalOf([&] { readCapture(directory / "g.exr"); }), {"g.exr", "pellucid.manifest"});
   std::filesystem::create_directory(directory / "d");
-  expectNames(errorOf([&] { readCapture(directory / "d"); }), {"not a regular file"});
+  expectNames(refusalOf([&] { readCapture(directory / "d"); }), {"not a regular file"});
   writeText(directory / "g.exr", "PNG, really");
   expectNames(error(), {"g.exr", "buffers.frontDepth.file", "not an OpenEXR file"});
 }
 
-// One value of the manifest changed, and what the error must name besides m.json.
-struct Mistake {
-  const char* pointer;
-  const char* value;  // JSON; "" removes the key
-  std::vector<std::string> named;
-};
-
-class Mistakes : public Manifests, public testing::WithParamInterface<Mistake> {};
-
-TEST_P(Mistakes, AreNamed) {
-  const json::json_pointer pointer(GetParam().pointer);
-  if (GetParam().value[0] == '\0')
-    manifest[pointer.parent_pointer()].erase(pointer.back());
-  else
-    manifest[pointer] = json::parse(GetParam().value);
-  std::vector<std::string> named = GetParam().named;
-  named.push_back(directory.operator/("").string());
-  expectNames(error(), named);
+// "/lights/0/type" is lights[0].type.
+std::string fieldOf(json::json_pointer pointer) {
+  std::string field;
+  for (; !pointer.empty(); pointer.pop_back()) {
+    const std::string key = pointer.back();
+    const bool isIndex = key.find_first_not_of("0123456789") == std::string::npos;
+    field = (isIndex ? "[" + key + "]" : "." + key) + field;
+  }
+  return field.substr(1);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Required, Mistakes,
-    testing::Values(
-        Mistake{"/buffers/irradiance/scale", "0", {"buffers.irradiance.scale", "above 0"}},
-        Mistake{"/buffers/material/scale", "2", {"buffers.material.scale"}},
-        Mistake{"/buffers/backDepth",
-                R"({"constant": [0.5], "encoding": "device", "scale": 2})",
-                {"buffers.backDepth.scale", "no unit"}},
-        Mistake{"/pellucid", "", {"m.json", "pellucid", "missing"}},
-        Mistake{"/camera", "", {"m.json", "camera", "missing"}},
-        Mistake{"/camera/clipFromView", "", {"camera.clipFromView", "missing"}},
-        Mistake{"/camera/viewFromWorld", "", {"camera.viewFromWorld", "missing"}},
-        Mistake{"/buffers", "", {"buffers", "missing"}},
-        Mistake{"/buffers/frontDepth", "", {"buffers.frontDepth", "missing"}},
-        Mistake{"/buffers/irradiance", "", {"buffers.irradiance", "missing"}},
-        Mistake{"/buffers/material", "", {"buffers.material", "missing"}},
-        Mistake{"/buffers/frontDepth/encoding", "", {"buffers.frontDepth.encoding", "missing"}},
-        Mistake{"/buffers/frontDepth/file", "", {"buffers.frontDepth.file", "missing"}},
-        Mistake{"/buffers/frontDepth/channel", "", {"buffers.frontDepth.channel", "missing"}},
-        Mistake{"/buffers/irradiance/channels", "", {"buffers.irradiance.channels", "missing"}},
-        Mistake{"/materials", "", {"materials", "missing"}},
-        Mistake{"/materials/0/absorption", "", {"materials[0].absorption", "missing"}},
-        Mistake{"/lights/0/type", "", {"lights[0].type", "missing"}},
-        Mistake{"/lights/0/position", "", {"lights[0].position", "missing"}},
-        Mistake{"/lights/0/direction", "", {"lights[0].direction", "missing"}},
-        Mistake{"/lights/0/shadowMap/clipFromWorld", "", {"lights[0].shadowMap.clipFromWorld", "missing"}},
-        Mistake{"/lights/0/shadowMap/viewFromWorld", "", {"lights[0].shadowMap.viewFromWorld", "missing"}},
-        Mistake{"/lights/1/shadowMaps/1/clipFromWorld",
-                "",
-                {"lights[1].shadowMaps[1].clipFromWorld", "missing"}}));
+constexpr const char* kRequired = R"(
+/pellucid /camera /camera/clipFromView /camera/viewFromWorld /buffers /buffers/frontDepth
+/buffers/irradiance /buffers/material /buffers/frontDepth/encoding /buffers/frontDepth/file
+/buffers/frontDepth/channel /buffers/irradiance/channels /materials /materials/0/absorption /lights/0/type
+/lights/0/position /lights/0/direction /lights/0/shadowMap/clipFromWorld /lights/0/shadowMap/viewFromWorld
+/lights/1/shadowMaps/1/clipFromWorld
+)";
 
-INSTANTIATE_TEST_SUITE_P(
-    Unknown, Mistakes,
-    testing::Values(
-        Mistake{"/environment", "[[1, 1, 1]]", {"environment", "needs 9 coefficients", "has 1"}},
-        Mistake{"/environment", "[[1, 1], 1, 1, 1, 1, 1, 1, 1, 1]", {"environment[0]", "3"}},
-        Mistake{"/exposure", "1", {"m.json", "exposure", "unknown key"}},
-        Mistake{"/camera/fov", "1", {"camera.fov", "unknown key"}},
-        Mistake{"/buffers/depth", "{}", {"buffers.depth", "unknown key", "frontDepth"}},
-        Mistake{"/buffers/normal/layer", "\"x\"", {"buffers.normal.layer", "unknown key"}},
-        Mistake{"/buffers/material/channels", "[]", {"buffers.material.channels", "unknown key"}},
-        Mistake{"/lights/0/glow", "1", {"lights[0].glow", "unknown key"}},
-        Mistake{"/lights/0/cookie", "{}", {"lights[0].cookie", "unknown key", "angleTable"}},
-        Mistake{"/lights/0/radius", "1", {"lights[0].radius", "only a point light"}},
-        Mistake{"/lights/0/shadowMap/bias", "1", {"lights[0].shadowMap.bias", "unknown key"}},
-        Mistake{"/lights/0/shadowMap/faces", "\"both\"", {"lights[0].shadowMap.faces", "both"}},
-        Mistake{"/lights/0/shadowMap/layer", "-1", {"lights[0].shadowMap.layer", "-1"}},
-        Mistake{"/lights/0/shadowMap/depthStep", "-1", {"lights[0].shadowMap.depthStep", "-1"}},
-        Mistake{"/lights/0/shadowMap/offsetLength", "-1", {"lights[0].shadowMap.offsetLength", "-1"}},
-        Mistake{
-            "/lights/0/shadowMap/depthBiasSlope", "2e6", {"lights[0].shadowMap.depthBiasSlope", "2000000"}},
-        Mistake{"/lights/0/shadowMap/depthBiasConstant",
-                "\"x\"",
-                {"lights[0].shadowMap.depthBiasConstant", "number"}},
-        Mistake{"/lights/0/shadowMap/offset", "[1, 2]", {"lights[0].shadowMap.offset", "size"}},
-        Mistake{"/lights/0/shadowMap/size", "[1]", {"lights[0].shadowMap.size", "2 whole numbers"}},
-        Mistake{"/lights/0/shadowMap/size", "[1, 0]", {"lights[0].shadowMap.size", "0"}},
-        Mistake{"/lights/1/shadowMaps/1/size", "[1, 1]", {"lights[1].shadowMaps[1].size", "constant"}},
-        Mistake{"/lights/0/shadowMap/size",
-                "[100, 2]",
-                {"s.exr", "lights[0].shadowMap", "100x2 texels at (0, 0)", "outside the image"}},
-        Mistake{"/lights/0/shadowMap/exit/encoding",
-                "\"device\"",
-                {"lights[0].shadowMap.exit.encoding", "unknown key"}},
-        Mistake{"/lights/0/shadowMap/casterMaterial/scale",
-                "255",
-                {"lights[0].shadowMap.casterMaterial.scale", "unknown key"}},
-        Mistake{"/lights/1/shadowMaps/0/bias", "1", {"lights[1].shadowMaps[0].bias", "unknown key"}},
-        Mistake{"/materials/0/name", "\"x\"", {"materials[0].name", "unknown key"}},
-        Mistake{"/truth/samples", "\"-1\"", {"truth.samples", "whole number in quotes", "-1"}},
-        Mistake{"/truth/exposure", "1", {"truth.exposure", "unknown key"}}));
+constexpr const char* kUnknown = R"(
+/exposure /camera/fov /buffers/normal/layer /buffers/material/channels /lights/0/glow
+/lights/0/shadowMap/bias /lights/0/shadowMap/exit/encoding /lights/0/shadowMap/casterMaterial/scale
+/lights/1/shadowMaps/0/bias /materials/0/name /truth/exposure
+)";
 
-INSTANTIATE_TEST_SUITE_P(
-    Values, Mistakes,
-    testing::Values(
-        Mistake{"/lights/1/shadowMap", "{}", {"lights[1].shadowMaps", "not both"}},
-        Mistake{"/lights/1/shadowMaps", "[]", {"lights[1].shadowMaps", "has 0"}},
-        Mistake{"/lights/1/shadowMaps", "{}", {"lights[1].shadowMaps", "array"}},
-        Mistake{"/pellucid", "2", {"m.json", "pellucid", "version 2"}},
-        Mistake{"/metersPerUnit", "0", {"metersPerUnit", "at least", "0"}},
-        Mistake{"/metersPerUnit", "\"1\"", {"metersPerUnit", "number", "\"1\""}},
-        Mistake{"/metersPerUnit", "1e300", {"metersPerUnit", "1e+300"}},
-        Mistake{"/camera/clipFromView", "[1,2,3]", {"camera.clipFromView", "16", "3"}},
-        Mistake{
-            "/camera/clipFromView", "[1,0,0,0,0,1,0,0,0,0,0,0,0,0,0,1]", {"camera.clipFromView", "singular"}},
-        Mistake{"/camera/clipFromView/5", "null", {"camera.clipFromView[5]", "null"}},
-        Mistake{
-            "/camera/viewFromWorld", "[2,0,0,0,0,2,0,0,0,0,2,0,0,0,0,1]", {"camera.viewFromWorld", "rigid"}},
-        Mistake{"/camera/viewFromWorld",
-                "[1,0,0,5,0,1,0,6,0,0,1,7,0,0,0,1]",
-                {"camera.viewFromWorld", "column-major"}},
-        Mistake{"/buffers/frontDepth/encoding",
-                "\"distance\"",
-                {"buffers.frontDepth.encoding", "viewZ", "distance"}},
-        Mistake{"/buffers/frontDepth/part", "4", {"g.exr", "buffers.frontDepth.part", "4"}},
-        Mistake{"/buffers/frontDepth/part", "-1", {"buffers.frontDepth.part", "-1"}},
-        Mistake{"/buffers/frontDepth/part", "0.5", {"buffers.frontDepth.part", "0.5"}},
-        Mistake{"/buffers/frontDepth/channel", "\"W\"", {"g.exr", "buffers.frontDepth", "\"W\"", "ZBack"}},
-        Mistake{
-            "/buffers/frontDepth/file", "\"h.exr\"", {"h.exr", "buffers.frontDepth.file", "no such file"}},
-        Mistake{"/buffers/frontDepth/constant", "[1]", {"buffers.frontDepth.file", "constant"}},
-        Mistake{"/buffers/albedo/constant", "[1]", {"buffers.albedo.constant", "3", "1"}},
-        Mistake{"/buffers/normal/space", "\"tangent\"", {"buffers.normal.space", "tangent", "world"}},
-        Mistake{"/buffers/irradiance/channels", "[\"E.R\"]", {"buffers.irradiance.channels", "3", "1"}},
-        Mistake{"/buffers/irradiance/channels/1", "\"\"", {"buffers.irradiance.channels[1]", "empty"}},
-        Mistake{"/buffers/material/map", "{\"1\": 2}", {"buffers.material.map.1", "2", "1 materials"}},
-        Mistake{"/buffers/material/map", "{\"one\": 1}", {"buffers.material.map.one", "whole number"}},
-        Mistake{"/buffers/material/map", "{\"1\": 1, \"01\": 0}", {"buffers.material.map", "twice"}},
-        Mistake{"/lights/0/type", "\"area\"", {"lights[0].type", "area", "spot"}},
-        Mistake{"/lights/0/direction", "[0,0,0]", {"lights[0].direction", "length"}},
-        Mistake{"/lights/0/color", "[1,-1,1]", {"lights[0].color", "negative", "-1"}},
-        Mistake{"/lights/0/intensity", "-2", {"lights[0].intensity", "-2"}},
-        Mistake{"/lights/0/range", "-1", {"lights[0].range", "-1"}},
-        Mistake{"/lights/0/angleTable", "[1]", {"lights[0].angleTable", "two factors", "1"}},
-        Mistake{"/lights/0/angleTable", "[1, 2]", {"lights[0].angleTable[1]", "2"}},
-        Mistake{"/lights/0/outerConeAngle", "1.6", {"lights[0].outerConeAngle", "1.6"}},
-        Mistake{"/lights/0/innerConeAngle", "0.8", {"lights[0].innerConeAngle", "0.8"}},
-        Mistake{"/materials", "[]", {"materials", "0"}},
-        Mistake{"/materials/0/scattering/0", "-1", {"materials[0].scattering", "-1"}},
-        Mistake{"/materials/0/unit", "\"1/inch\"", {"materials[0].unit", "1/inch", "1/cm"}},
-        Mistake{"/materials/0/g", "1", {"materials[0].g", "1"}},
-        Mistake{"/materials/0/ior", "0.9", {"materials[0].ior", "0.9"}},
-        Mistake{"/materials/0", "{}", {"materials[0]", "preset", "subsurface_color"}},
-        Mistake{"/materials/0",
-                R"({"subsurface_color": [0.5, 1.5, 0]})",
-                {"materials[0].subsurface_color[1]", "at most 1", "1.5"}},
-        Mistake{"/materials/0",
-                R"({"subsurface_radius": 0})",
-                {"materials[0].subsurface_radius", "above 0", "0"}},
-        Mistake{"/materials/0",
-                R"({"subsurface_radius_scale": [1, 0, 1]})",
-                {"materials[0].subsurface_radius_scale", "above 0"}},
-        Mistake{"/materials/0",
-                R"({"subsurface_scatter_anisotropy": 1})",
-                {"materials[0].subsurface_scatter_anisotropy", "1"}},
-        Mistake{"/materials/0",
-                R"({"subsurface_radius": 1, "specular_ior": 4})",
-                {"materials[0].specular_ior", "4"}},
-        Mistake{"/materials/0",
-                R"({"subsurface_radius": 1, "unit": "inch"})",
-                {"materials[0].unit", "inch", "mm"}},
-        Mistake{"/materials/0",
-                R"({"subsurface_color": [1, 1, 1], "subsurface_weight": 1})",
-                {"materials[0].subsurface_weight", "unknown key"}},
-        Mistake{"/materials/0", R"({"melanin": 2})", {"materials[0].melanin", "2"}},
-        Mistake{
-            "/materials/0", R"({"melanin": 0, "haemoglobin": 0})", {"materials[0].haemoglobin", "unknown"}},
-        Mistake{"/materials/0",
-                R"({"profile": "burley", "distance": [1, 0, 1]})",
-                {"materials[0].distance", "positive"}},
-        Mistake{
-            "/materials/0", R"({"profile": "sss", "distance": [1, 1, 1]})", {"materials[0].profile", "sss"}},
-        Mistake{"/materials/0",
-                R"({"gaussians": {"variance": [1], "weight": [[1, 1, 0.5]]}})",
-                {"materials[0].gaussians.weight", "sum"}},
-        Mistake{"/materials/0",
-                R"({"thinWalled": {"reflectance": [0.5, 0.5, 0.5], "transmittance": [0.5, 0.6, 0]}})",
-                {"materials[0].thinWalled.transmittance", "1.1"}},
-        Mistake{"/materials/0",
-                R"({"thinWalled": {"reflectance": [0.5, -1, 0.5], "transmittance": [0, 0, 0]}})",
-                {"materials[0].thinWalled.reflectance[1]", "at least 0"}},
-        Mistake{"/truth/scale", "\"pi\"", {"truth.scale", "pi"}}));
+// Of each row: what is changed, to which JSON, and what the error names besides; "@" before a field that is
+// not the changed one.
+constexpr const char* kMistakes = R"(
+/buffers/irradiance/scale | 0 | above 0
+/buffers/material/scale | 2
+/buffers/backDepth | {"constant": [0.5], "encoding": "device", "scale": 2} | buffers.backDepth.scale | no unit
+/environment | [[1, 1, 1]] | needs 9 coefficients | has 1
+/environment | [[1, 1], 1, 1, 1, 1, 1, 1, 1, 1] | environment[0] | 3
+/buffers/depth | {} | unknown key | frontDepth
+/lights/0/cookie | {} | unknown key | angleTable
+/lights/0/radius | 1 | only a point light
+/lights/0/shadowMap/faces | "both" | both
+/lights/0/shadowMap/layer | -1 | -1
+/lights/0/shadowMap/depthStep | -1 | -1
+/lights/0/shadowMap/offsetLength | -1 | -1
+/lights/0/shadowMap/depthBiasSlope | 2e6 | 2000000
+/lights/0/shadowMap/depthBiasConstant | "x" | number
+/lights/0/shadowMap/offset | [1, 2] | size
+/lights/0/shadowMap/size | [1] | 2 whole numbers
+/lights/0/shadowMap/size | [1, 0] | 0
+/lights/1/shadowMaps/1/size | [1, 1] | constant
+/lights/0/shadowMap/size | [100, 2] | @lights[0].shadowMap | s.exr | 100x2 texels at (0, 0) | outside the image
+/truth/samples | "-1" | whole number in quotes | -1
+/lights/1/shadowMap | {} | lights[1].shadowMaps | not both
+/lights/1/shadowMaps | [] | has 0
+/lights/1/shadowMaps | {} | array
+/pellucid | 2 | version 2
+/metersPerUnit | 0 | at least | 0
+/metersPerUnit | "1" | number | "1"
+/metersPerUnit | 1e300 | 1e+300
+/camera/clipFromView | [1,2,3] | 16 | 3
+/camera/clipFromView | [1,0,0,0,0,1,0,0,0,0,0,0,0,0,0,1] | singular
+/camera/clipFromView/5 | null | null
+/camera/viewFromWorld | [2,0,0,0,0,2,0,0,0,0,2,0,0,0,0,1] | rigid
+/camera/viewFromWorld | [1,0,0,5,0,1,0,6,0,0,1,7,0,0,0,1] | column-major
+/buffers/frontDepth/encoding | "distance" | viewZ | distance
+/buffers/frontDepth/part | 4 | g.exr | 4
+/buffers/frontDepth/part | -1 | -1
+/buffers/frontDepth/part | 0.5 | 0.5
+/buffers/frontDepth/channel | "W" | @buffers.frontDepth | g.exr | "W" | ZBack
+/buffers/frontDepth/file | "h.exr" | h.exr | no such file
+/buffers/frontDepth/constant | [1] | @buffers.frontDepth.file | constant
+/buffers/albedo/constant | [1] | 3 | 1
+/buffers/normal/space | "tangent" | tangent | world
+/buffers/irradiance/channels | ["E.R"] | 3 | 1
+/buffers/irradiance/channels/1 | "" | empty
+/buffers/material/map | {"1": 2} | buffers.material.map.1 | 2 | 1 materials
+/buffers/material/map | {"one": 1} | buffers.material.map.one | whole number
+/buffers/material/map | {"1": 1, "01": 0} | twice
+/lights/0/type | "area" | area | spot
+/lights/0/direction | [0,0,0] | length
+/lights/0/color | [1,-1,1] | negative | -1
+/lights/0/intensity | -2 | -2
+/lights/0/range | -1 | -1
+/lights/0/angleTable | [1] | two factors | 1
+/lights/0/angleTable | [1, 2] | lights[0].angleTable[1] | 2
+/lights/0/outerConeAngle | 1.6 | 1.6
+/lights/0/innerConeAngle | 0.8 | 0.8
+/materials | [] | 0
+/materials/0/scattering | [-1, 1, 1] | -1
+/materials/0/unit | "1/inch" | 1/inch | 1/cm
+/materials/0/g | 1 | 1
+/materials/0/ior | 0.9 | 0.9
+/materials/0 | {} | preset | subsurface_color
+/materials/0 | {"subsurface_color": [0.5, 1.5, 0]} | materials[0].subsurface_color[1] | at most 1 | 1.5
+/materials/0 | {"subsurface_radius": 0} | materials[0].subsurface_radius | above 0 | 0
+/materials/0 | {"subsurface_radius_scale": [1, 0, 1]} | materials[0].subsurface_radius_scale | above 0
+/materials/0 | {"subsurface_scatter_anisotropy": 1} | materials[0].subsurface_scatter_anisotropy | 1
+/materials/0 | {"subsurface_radius": 1, "specular_ior": 4} | materials[0].specular_ior | 4
+/materials/0 | {"subsurface_radius": 1, "unit": "inch"} | materials[0].unit | inch | mm
+/materials/0 | {"subsurface_color": [1, 1, 1], "subsurface_weight": 1} | materials[0].subsurface_weight | unknown key
+/materials/0 | {"melanin": 2} | materials[0].melanin | 2
+/materials/0 | {"melanin": 0, "haemoglobin": 0} | materials[0].haemoglobin | unknown
+/materials/0 | {"profile": "burley", "distance": [1, 0, 1]} | materials[0].distance | positive
+/materials/0 | {"profile": "sss", "distance": [1, 1, 1]} | materials[0].profile | sss
+/materials/0 | {"gaussians": {"variance": [1], "weight": [[1, 1, 0.5]]}} | materials[0].gaussians.weight | sum
+/materials/0 | {"thinWalled": {"reflectance": [0.5, 0.5, 0.5], "transmittance": [0.5, 0.6, 0]}} | materials[0].thinWalled.transmittance | 1.1
+/materials/0 | {"thinWalled": {"reflectance": [0.5, -1, 0.5], "transmittance": [0, 0, 0]}} | materials[0].thinWalled.reflectance[1] | at least 0
+/truth/scale | "pi" | pi
+)";
+
+TEST_F(Manifests, WhatIsMissingOrUnknownIsNamed) {
+  const json good = manifest;
+  for (const bool unknown : {false, true}) {
+    std::istringstream pointers(unknown ? kUnknown : kRequired);
+    for (std::string text; pointers >> text;) {
+      SCOPED_TRACE(text);
+      const json::json_pointer pointer(text);
+      manifest = good;
+      if (unknown)
+        manifest[pointer] = 1;
+      else
+        manifest[pointer.parent_pointer()].erase(pointer.back());
+      expectNames(error(), {"m.json", fieldOf(pointer), unknown ? "unknown key" : "missing"});
+    }
+  }
+}
+
+TEST_F(Manifests, WrongValuesAreNamed) {
+  const json good = manifest;
+  for (const std::vector<std::string>& cells : tableOf(kMistakes)) {
+    SCOPED_TRACE(testing::PrintToString(cells));
+    const json::json_pointer pointer(cells[0]);
+    manifest = good;
+    manifest[pointer] = json::parse(cells[1]);
+    std::vector<std::string> named(cells.begin() + 2, cells.end());
+    if (!named.empty() && named[0][0] == '@')
+      named[0].erase(0, 1);
+    else
+      named.push_back(fieldOf(pointer));
+    named.push_back((directory / "").string());
+    expectNames(error(), named);
+  }
+}
 
 TEST_F(Manifests, UnknownPresetIsNamedWhenCompiled) {
   manifest["materials"][0] = {{"preset", "plutonium"}};
   const Capture capture = read();
-  expectNames(errorOf([&] { compileMaterials(capture); }), {"m.json", "materials[0]", "preset", "plutonium"});
+  expectNames(refusalOf([&] { compileMaterials(capture); }),
+              {"m.json", "materials[0]", "preset", "plutonium"});
 }
 
 TEST_F(Manifests, OpenPbrMediaHaveDefaultsAndAUnit) {
@@ -749,13 +670,6 @@ TEST_F(Manifests, OpenPbrMediaHaveDefaultsAndAUnit) {
   EXPECT_EQ(std::get<OpenPbrMaterial>(read().materials[0]), expected);
   manifest["materials"][0] = {{"hemoglobin", 0.1}};
   EXPECT_EQ(std::get<SkinMaterial>(read().materials[0]), (SkinMaterial{0.005, 0.5, 0.1, 1.4}));
-}
-
-TEST(Materials, TheCommandLineTakesAManifestsMaterial) {
-  EXPECT_EQ(std::get<PresetMaterial>(parseMaterial("--material", "skin1")).preset, "skin1");
-  EXPECT_EQ(std::get<SkinMaterial>(parseMaterial("--material", R"({"melanin": 0.1})")).melanin, 0.1);
-  expectNames(errorOf([] { parseMaterial("--material", "{"); }), {"--material"});
-  expectNames(errorOf([] { parseMaterial("--material", R"({"g": 1})"); }), {"--material", "preset"});
 }
 
 // An index given for all media changes the boundary: an OpenPBR medium keeps its color, and gets the albedo
@@ -771,7 +685,7 @@ TEST(Materials, OpenPbrMediaKeepTheirColorAtAnotherIndex) {
     EXPECT_LT(there.scattering[c], here.scattering[c]);
   }
   EXPECT_EQ(std::get<SkinMaterial>(withIor(SkinMaterial{}, 1.3, "test")).ior, 1.3);
-  expectNames(errorOf([] { coefficientsOf(SkinMaterial{}, "test"); }), {"test", "layers"});
+  expectNames(refusalOf([] { coefficientsOf(SkinMaterial{}, "test"); }), {"test", "layers"});
 }
 
 TEST(Materials, EveryFormCompiles) {
@@ -786,37 +700,6 @@ TEST(Materials, EveryFormCompiles) {
   EXPECT_GT(materials[6].reflectance[0], materials[6].reflectance[1]) << "the color's order";
   EXPECT_GT(materials[6].radius[0], materials[6].radius[2]) << "the scale's order";
   EXPECT_GT(materials[7].reflectance[0], materials[7].reflectance[2]) << "skin is red";
-}
-
-// ---- The path-traced captures, where they are
-
-TEST(SharedCaptures, AreReadAndSurviveARoundTrip) {
-  const char* variable = std::getenv("PELLUCID_SHARED");
-  const std::filesystem::path shared = (variable ? std::filesystem::path(variable)
-                                                 : std::filesystem::path(PELLUCID_SOURCE_DIR) / "../shared") /
-                                       "captures";
-  if (!std::filesystem::exists(shared)) GTEST_SKIP() << "no captures at " << shared;
-  const TemporaryDirectory directory;
-  int count = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(shared)) {
-    if (!std::filesystem::exists(entry.path() / "manifest.json")) continue;
-    SCOPED_TRACE(entry.path());
-    ++count;
-    const Capture original = readCapture(entry.path() / "manifest.json");
-    ASSERT_EQ(original.lights.size(), 1u);
-    writeCapture(original, directory / "c.exr");
-    const Capture copy = readCapture(directory / "c.exr");
-    expectSame(copy.frontDepth, original.frontDepth);
-    expectSame(copy.backDepth, original.backDepth);
-    expectSame(copy.lights[0].shadowMaps[0].depth, original.lights[0].shadowMaps[0].depth);
-    EXPECT_TRUE(sameBits(copy.irradiance, original.irradiance));
-    EXPECT_TRUE(sameBits(copy.normal, original.normal));
-    EXPECT_TRUE(sameBits(copy.albedo, original.albedo));
-    EXPECT_TRUE(sameBits(copy.truth->image, original.truth->image));
-    EXPECT_EQ(copy.material, original.material);
-    EXPECT_EQ(copy.lights[0].shadowMaps[0].clipFromWorld, original.lights[0].shadowMaps[0].clipFromWorld);
-  }
-  EXPECT_GT(count, 0);
 }
 
 }  // namespace

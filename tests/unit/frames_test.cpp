@@ -45,14 +45,11 @@ TEST(Frames, ThoseThatExistAreFound) {
 TEST(WholeFile, ErrorsNameTheFileThatWasAskedFor) {
   const TemporaryDirectory folder;
   const auto sentence = [&](const std::filesystem::path& path) {
-    try {
+    return refusalOf([&] {
       writeWhole(path, [](const std::filesystem::path& file) {
         throw InputError(file.string(), "", "the disk is full");
       });
-    } catch (const InputError& error) {
-      return std::string(error.what());
-    }
-    return std::string();
+    });
   };
   EXPECT_EQ(sentence(folder / "o.exr"), (folder / "o.exr").string() + ": the disk is full");
   EXPECT_NE(sentence(folder / "no/o.exr").find("no/o.exr: cannot be written: there is no folder"),

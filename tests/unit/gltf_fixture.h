@@ -28,15 +28,10 @@ protected:
     writeText(folder_ / name, bytes);
     return folder_ / name;
   }
-  // The error of loadGltf for these bytes; empty: loadGltf accepts the bytes.
+  // The error of loadGltf for these bytes, or "accepted".
   std::string refusal(const std::string& bytes, const std::string& name = "t.glb",
                       const GltfOptions& options = {}) const {
-    try {
-      loadGltf(write(name, bytes), options);
-      return "";
-    } catch (const InputError& e) {
-      return e.what();
-    }
+    return refusalOf([&] { loadGltf(write(name, bytes), options); });
   }
   void expectRefused(const std::string& bytes, std::initializer_list<const char*> words,
                      const std::string& name = "t.glb", const GltfOptions& options = {}) const {
@@ -44,6 +39,26 @@ protected:
     EXPECT_NE(sentence.find(name), std::string::npos) << "the file is not named: " << sentence;
     for (const char* word : words)
       EXPECT_NE(sentence.find(word), std::string::npos) << "\"" << word << "\" is not in: " << sentence;
+  }
+
+  // Rows of a pointer into the file's JSON, the value that is put there or "removed", and what the error
+  // names.
+  void expectRefusals(const std::function<GltfBuilder()>& good, const char* rows,
+                      const GltfOptions& options = {}) const {
+    for (const std::vector<std::string>& cells : tableOf(rows)) {
+      SCOPED_TRACE(testing::PrintToString(cells));
+      ASSERT_GE(cells.size(), 3u);
+      GltfBuilder b = good();
+      const Json::json_pointer pointer(cells[0]);
+      if (cells[1] == "removed")
+        b.json[pointer.parent_pointer()].erase(pointer.back());
+      else
+        b.json[pointer] = Json::parse(cells[1]);
+      const std::string sentence = refusal(b.glb(), "t.glb", options);
+      EXPECT_NE(sentence.find("t.glb"), std::string::npos) << sentence;
+      for (std::size_t i = 2; i < cells.size(); ++i)
+        EXPECT_NE(sentence.find(cells[i]), std::string::npos) << cells[i] << " is not in: " << sentence;
+    }
   }
 
   TemporaryDirectory folder_;

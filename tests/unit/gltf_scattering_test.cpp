@@ -115,65 +115,7 @@ TEST_F(Scattering, ScatterSplitsTheLightOfAThinWall) {
   }
 }
 
-TEST_F(Scattering, WhatLeavesAMaterialBlackOrWithoutEffectIsSaid) {
-  const Json scatter = {{"scatterStrengthFactor", 1}, {"multiscatterColorFactor", {0.8, 0.6, 0.4}}};
-  const auto with = [](Json object, const char* key, const Json& value) {
-    object[key] = value;
-    return object;
-  };
-  const auto warned = [&](const Json& extensions, const std::string& words, const Json& base = {1, 1, 1, 1}) {
-    const GltfScene scene = read(extensions, base);
-    EXPECT_TRUE(says(scene.warnings, "material \"m\": " + words)) << words;
-    return !scene.model.materials.empty();
-  };
-  EXPECT_FALSE(warned({{"KHR_materials_scatter", scatter}},
-                      "KHR_materials_scatter has no effect without KHR_materials_transmission"));
-  EXPECT_FALSE(
-      warned({{"KHR_materials_scatter", scatter}, {"KHR_materials_transmission", Json::object()}},
-             "KHR_materials_scatter has no effect: KHR_materials_transmission.transmissionFactor is 0"));
-  EXPECT_FALSE(warned({{"KHR_materials_scatter", Json::object()}, {"KHR_materials_transmission", kAllEnters}},
-                      "KHR_materials_scatter has no effect: scatterStrengthFactor is 0"));
-  EXPECT_FALSE(warned(
-      {{"KHR_materials_scatter", scatter},
-       {"KHR_materials_transmission", kAllEnters},
-       {"KHR_materials_volume", {{"thicknessFactor", 1}}}},
-      "KHR_materials_scatter has no effect: a volume without KHR_materials_volume.attenuationDistance"));
-  EXPECT_FALSE(warned({{"KHR_materials_scatter", with(scatter, "scatterAnisotropy", -1)},
-                       {"KHR_materials_transmission", kAllEnters}},
-                      "KHR_materials_scatter.scatterAnisotropy is -1"));
-  EXPECT_TRUE(warned({{"KHR_materials_scatter", with(scatter, "multiscatterColorFactor", {0, 0, 0})},
-                      {"KHR_materials_transmission", kAllEnters},
-                      {"KHR_materials_volume", kVolume}},
-                     "KHR_materials_scatter.multiscatterColorFactor is black"));
-  EXPECT_TRUE(warned({{"KHR_materials_scatter", scatter},
-                      {"KHR_materials_transmission", kAllEnters},
-                      {"KHR_materials_volume", kVolume}},
-                     "pbrMetallicRoughness.baseColorFactor is black", {0, 0, 0, 1}));
-  EXPECT_TRUE(warned({{"KHR_materials_scatter", scatter},
-                      {"KHR_materials_transmission", kAllEnters},
-                      {"KHR_materials_diffuse_transmission", {{"diffuseTransmissionFactor", 1}}}},
-                     "KHR_materials_scatter excludes"));
-  EXPECT_TRUE(warned({{"KHR_materials_volume", kVolume}, {"KHR_materials_volume_scatter", Json::object()}},
-                     "KHR_materials_volume_scatter.multiscatterColorFactor is black"));
-  EXPECT_FALSE(
-      warned({{"KHR_materials_diffuse_transmission", Json::object()}}, "diffuseTransmissionFactor is 0"));
-  EXPECT_TRUE(warned({{"KHR_materials_diffuse_transmission",
-                       {{"diffuseTransmissionFactor", 1}, {"diffuseTransmissionColorFactor", {0, 0, 0}}}}},
-                     "diffuseTransmissionColorFactor is black"));
-}
-
 // ---- KHR_materials_volume_scatter
-
-TEST_F(Scattering, BothSpellingsOfVolumeScatterAreRead) {
-  for (const char* key : {"multiscatterColor", "multiscatterColorFactor"}) {
-    const Model m =
-        read({{"KHR_materials_volume", kVolume}, {"KHR_materials_volume_scatter", {{key, {0.8, 0.5, 0.2}}}}})
-            .model;
-    const auto& medium = std::get<CoefficientMaterial>(m.materials.at(0));
-    EXPECT_NEAR(medium.scattering[0], printedAlbedo(0.8, 0) * std::log(2) / 2, 1e-12) << key;
-    expectRgb(m.surfaces[0].addedColor, {0.8, 0.5, 0.2});
-  }
-}
 
 // Light that does not enter is reflected with the base color, and has no part in what comes through.
 TEST_F(Scattering, LightThatDoesNotEnterHasItsOwnAlbedo) {
@@ -209,15 +151,6 @@ TEST_F(Scattering, TexturesOfScatteringAreRead) {
   EXPECT_NEAR(medium.scattering[0], printedAlbedo(0.5, 0) * std::log(2) / 2, 1e-9);
   EXPECT_NEAR(medium.scattering[1], std::log(4) / 2, 1e-4) << "white";
   EXPECT_FALSE(says(scene.warnings, "ignored"));
-}
-
-TEST_F(Scattering, TexturesOfTwoSetsOfCoordinatesAreSaid) {
-  const GltfScene scene = readTextured({{"KHR_materials_diffuse_transmission",
-                                         {{"diffuseTransmissionFactor", 1},
-                                          {"diffuseTransmissionColorTexture", {{"index", 0}}},
-                                          {"diffuseTransmissionTexture", {{"index", 0}, {"texCoord", 1}}}}}},
-                                       {255, 0, 0, 255, 0, 0});
-  EXPECT_TRUE(says(scene.warnings, "diffuseTransmissionTexture: has other texture coordinates"));
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "capture/material.h"
 #include "cli/light_option.h"
@@ -181,19 +180,6 @@ TEST_F(Gltf, CamerasAndLights) {
   EXPECT_EQ(scene.warnings, std::vector<std::string>{"extension VENDOR_thing is ignored"});
 }
 
-TEST_F(Gltf, ConesWithinARoundingOfTheirBoundsAreThoseOfAManifest) {
-  GltfBuilder b = square();
-  b.json["extensionsUsed"] = {"KHR_lights_punctual"};
-  b.json["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0;
-  Json& light = b.json["extensions"]["KHR_lights_punctual"]["lights"][0];
-  light = {{"type", "spot"}, {"spot", {{"innerConeAngle", 1.5707963705}, {"outerConeAngle", 1.5707963705}}}};
-  const Light spot = loadGltf(write("t.glb", b.glb())).model.lights[0];
-  EXPECT_EQ(spot.outerConeAngle, std::numbers::pi / 2);
-  EXPECT_LT(static_cast<float>(spot.innerConeAngle), static_cast<float>(spot.outerConeAngle));
-  light["spot"]["outerConeAngle"] = 1.6;
-  expectRefused(b.glb(), {"lights[0].outerConeAngle", "1.6"});
-}
-
 TEST_F(Gltf, TexturesAreDecoded) {
   writePng(folder_ / "c.png", 2, 1, {255, 0, 0, 0, 0, 255});
   std::ifstream in(folder_ / "c.png", std::ios::binary);
@@ -300,20 +286,6 @@ TEST_F(Gltf, VolumeScatterBecomesCoefficients) {
   }
   EXPECT_EQ(medium.g, 0.25);
   EXPECT_EQ(medium.ior, 1) << "a diffuse boundary does not refract";
-}
-
-// The half-space of the compiled material reflects what the artist asked for. The fit of Kulla & Conty is
-// good to about 0.01.
-TEST_F(Gltf, MultiscatterColorIsTheCompiledReflectance) {
-  for (const double color : {0.1, 0.5, 0.9}) {
-    GltfBuilder b = square();
-    b.json["materials"][0]["extensions"] = scatterExtensions();
-    b.json["materials"][0]["extensions"]["KHR_materials_volume_scatter"] = {
-        {"multiscatterColor", {color, color, color}}};
-    const Model m = loadGltf(write("t.glb", b.glb())).model;
-    const PellucidMaterial compiled = compileMaterial(m.materials[0], "test");
-    for (int i = 0; i < 3; ++i) EXPECT_NEAR(compiled.reflectance[i], color, 0.015) << i;
-  }
 }
 
 TEST_F(Gltf, UnitsScaleLengths) {
@@ -450,249 +422,117 @@ TEST_F(Gltf, PresetsGiveAlbedoToWhatHasNoColor) {
   b.json["textures"] = {{{"source", 0}}};
   b.json["materials"][0]["pbrMetallicRoughness"] = {{"baseColorTexture", {{"index", 0}}}};
   EXPECT_EQ(albedoOf(b, skin, 0), (Rgb{1, 1, 1})) << "the texture's";
-
-  // Vertex colors are a color of the file, too, unless they are white; one material may be drawn both ways.
-  const auto withColors = [](float green) {
-    GltfBuilder c = square();
-    const int color = c.vectors({1, 1, 1, 1, green, 1, 1, 1, 1, 1, 1, 1});
-    c.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = color;
-    return c;
-  };
-  EXPECT_EQ(albedoOf(withColors(1), skin, 1), rho);
-  EXPECT_EQ(albedoOf(withColors(0.5f), skin, 0), (Rgb{1, 1, 1}));
-  b = withColors(0.5f);
-  for (int i = 0; i < 2; ++i) {
-    Json plain = b.json["meshes"][0]["primitives"][0];
-    plain["attributes"].erase("COLOR_0");
-    b.json["meshes"][0]["primitives"].push_back(plain);
-  }
-  const GltfScene both = loadGltf(write("t.glb", b.glb()), skin);
-  EXPECT_EQ(both.notes.size(), 1u);
-  ASSERT_EQ(both.model.parts.size(), 3u);
-  EXPECT_EQ(both.model.materials.size(), 1u);
-  EXPECT_EQ(both.model.surfaces.size(), 2u);
-  EXPECT_EQ(both.model.surfaces[both.model.parts[0].surface].baseColor, (Rgb{1, 1, 1}));
-  EXPECT_EQ(both.model.surfaces[both.model.parts[1].surface].baseColor, rho);
-  EXPECT_EQ(both.model.parts[1].surface, both.model.parts[2].surface);
-  for (const Surface& surface : both.model.surfaces) EXPECT_EQ(surface.material, 1);
-}
-
-TEST_F(Gltf, WhatIsNotAMediumIsSaid) {
-  const auto warnings = [&](const Json& extensions) {
-    GltfBuilder b = square();
-    b.json["materials"][0]["extensions"] = extensions;
-    std::string all;
-    const GltfScene scene = loadGltf(write("t.glb", b.glb()));
-    EXPECT_TRUE(scene.model.materials.empty());
-    for (const std::string& warning : scene.warnings) all += warning + "\n";
-    return all;
-  };
-  const Json clear = {{"thicknessFactor", 1}, {"attenuationDistance", 1}};
-  EXPECT_NE(warnings({{"KHR_materials_volume", clear}}).find("clear medium"), std::string::npos);
-  EXPECT_NE(warnings({{"KHR_materials_volume_scatter", Json::object()}}).find("needs KHR_materials_volume"),
-            std::string::npos);
-  EXPECT_NE(warnings({{"KHR_materials_volume", {{"attenuationDistance", 1}}}}).find("thin wall"),
-            std::string::npos);
-  EXPECT_EQ(warnings(Json::object()), "");
 }
 
 TEST_F(Gltf, BadMaterialValuesAreNamed) {
-  const auto refused = [&](const char* extension, const Json& value,
-                           std::initializer_list<const char*> words) {
+  const auto medium = [] {
     GltfBuilder b = square();
     b.json["materials"][0]["extensions"] = scatterExtensions();
-    b.json["materials"][0]["extensions"][extension].update(value);
-    expectRefused(b.glb(), words);
+    return b;
   };
-  refused("KHR_materials_volume", {{"attenuationDistance", -1}},
-          {"materials[0]", "attenuationDistance", "-1"});
-  refused("KHR_materials_volume", {{"attenuationDistance", 0}}, {"attenuationDistance", "is 0"});
-  refused("KHR_materials_volume", {{"attenuationDistance", "far"}}, {"attenuationDistance", "not a number"});
-  refused("KHR_materials_volume", {{"attenuationColor", {1, 2, 3}}}, {"attenuationColor", "2.0"});
-  refused("KHR_materials_volume", {{"attenuationColor", {1, 1}}}, {"attenuationColor", "3 numbers"});
-  refused("KHR_materials_volume_scatter", {{"scatterAnisotropy", 1}}, {"scatterAnisotropy"});
+  expectRefusals(medium, R"(
+/materials/0/extensions/KHR_materials_volume/attenuationDistance | -1 | materials[0] | attenuationDistance | -1
+/materials/0/extensions/KHR_materials_volume/attenuationDistance | 0 | attenuationDistance | is 0
+/materials/0/extensions/KHR_materials_volume/attenuationDistance | "far" | attenuationDistance | not a number
+/materials/0/extensions/KHR_materials_volume/attenuationColor | [1, 2, 3] | attenuationColor | 2.0
+/materials/0/extensions/KHR_materials_volume/attenuationColor | [1, 1] | attenuationColor | 3 numbers
+/materials/0/extensions/KHR_materials_volume_scatter/scatterAnisotropy | 1 | scatterAnisotropy
+)");
 }
 
 // ---- Broken files
 
-TEST_F(Gltf, BrokenFilesAreRefusedWithASentence) {
-  struct Case {
-    const char* what;
-    std::function<void(GltfBuilder&)> breakIt;
-    std::vector<const char*> words;
-  };
-  const auto accessor = [](std::size_t i, const char* key, Json value) {
-    return [=](GltfBuilder& b) { b.json["accessors"][i][key] = value; };
-  };
-  const auto primitive = [](const char* key, Json value) {
-    return [=](GltfBuilder& b) { b.json["meshes"][0]["primitives"][0][key] = value; };
-  };
-  const float nan = std::numeric_limits<float>::quiet_NaN();
-  const std::vector<Case> cases = {
-      {"count beyond the view", accessor(0, "count", 5), {"accessors[0].count", "5 elements", "48 bytes"}},
-      {"count that wraps around", accessor(0, "count", 1537228672809129302LL), {"accessors[0]"}},
-      {"count 0", accessor(0, "count", 0), {"accessors[0].count", "0 elements"}},
-      {"negative count", accessor(0, "count", -4), {"count"}},
-      {"offset beyond the view", accessor(0, "byteOffset", 100), {"accessors[0]", "byteOffset 100"}},
-      {"type", accessor(0, "type", "MAT4"), {"accessors[0]"}},
-      {"position of 2 components", accessor(0, "type", "VEC2"), {"POSITION", "2 components"}},
-      {"component type", accessor(0, "componentType", 5124), {"accessors[0]", "5124"}},
-      {"no buffer view",
-       [](GltfBuilder& b) { b.json["accessors"][0].erase("bufferView"); },
-       {"accessors[0].bufferView"}},
-      {"no such buffer view", accessor(0, "bufferView", 99), {"accessors[0].bufferView", "99"}},
-      {"sparse elements beyond the view",
-       accessor(0, "sparse",
-                {{"count", 9},
-                 {"indices", {{"bufferView", 2}, {"componentType", 5123}}},
-                 {"values", {{"bufferView", 0}}}}),
-       {"accessors[0].sparse.indices.count", "9 elements"}},
-      {"sparse indices of floats",
-       accessor(0, "sparse",
-                {{"count", 1},
-                 {"indices", {{"bufferView", 2}, {"componentType", 5126}}},
-                 {"values", {{"bufferView", 0}}}}),
-       {"accessors[0].sparse.indices.componentType", "unsigned"}},
-      {"view beyond the buffer",
-       [](GltfBuilder& b) { b.json["bufferViews"][0]["byteLength"] = 1 << 20; },
-       {"bufferViews[0]", "1048576"}},
-      {"view of no buffer",
-       [](GltfBuilder& b) { b.json["bufferViews"][0]["buffer"] = 3; },
-       {"bufferViews[0].buffer", "3"}},
-      {"stride",
-       [](GltfBuilder& b) { b.json["bufferViews"][0]["byteStride"] = 4; },
-       {"bufferViews[0].byteStride", "4"}},
-      {"index out of range",
-       [](GltfBuilder& b) {
-         b.json["meshes"][0]["primitives"][0]["indices"] = b.indices({0, 1, 4});
-       },
-       {"index 4", "4 vertices"}},
-      {"float indices", primitive("indices", 0), {"indices", "unsigned"}},
-      {"two indices",
-       [](GltfBuilder& b) {
-         b.json["meshes"][0]["primitives"][0]["indices"] = b.indices({0, 1});
-       },
-       {"multiple of 3"}},
-      {"no such mesh", [](GltfBuilder& b) { b.json["nodes"][0]["mesh"] = 7; }, {"nodes[0].mesh", "7"}},
-      {"negative mesh",
-       [](GltfBuilder& b) { b.json["nodes"][0]["mesh"] = -7; },
-       {"nodes[0].mesh: -7 is not an integer >= 0"}},
-      {"no such material", primitive("material", 4), {"material", "4"}},
-      {"mode", primitive("mode", 9), {"mode", "9"}},
-      {"no position", primitive("attributes", {{"NORMAL", 1}}), {"POSITION", "missing"}},
-      {"counts differ",
-       [](GltfBuilder& b) {
-         b.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = b.vectors({0, 0, 1});
-       },
-       {"attributes", "4 and 1"}},
-      {"NaN position",
-       [=](GltfBuilder& b) { std::memcpy(b.buffer.data() + 16, &nan, 4); },
-       {"accessors[0]", "element 1", "finite"}},
-      {"spot light without cones",
-       [](GltfBuilder& b) {
-         b.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}}, {{"type", "spot"}}};
-       },
-       {"extensions.KHR_lights_punctual.lights[1].spot: is missing"}},
-      {"camera without projection",
-       [](GltfBuilder& b) {
-         b.json["cameras"] = {{{"type", "orthographic"}}};
-       },
-       {"cameras[0].orthographic: is missing"}},
-      {"cycle",
-       [](GltfBuilder& b) {
-         b.json["nodes"] = {{{"children", {1}}}, {{"children", {0}}}};
-       },
-       {"nodes[0]", "twice"}},
-      {"shared child",
-       [](GltfBuilder& b) {
-         b.json["nodes"] = {{{"children", {1, 1}}}, {{"mesh", 0}}};
-       },
-       {"nodes[0].children", "nodes[1]", "twice"}},
-      {"no such child",
-       [](GltfBuilder& b) { b.json["nodes"][0]["children"] = {12}; },
-       {"nodes[0].children", "12"}},
-      {"no such scene", [](GltfBuilder& b) { b.json["scene"] = 3; }, {"scene", "3"}},
-      {"no scene",
-       [](GltfBuilder& b) {
-         b.json.erase("scenes");
-         b.json.erase("scene");
-       },
-       {"scenes: the file has none"}},
-      {"empty scene", [](GltfBuilder& b) { b.json["scenes"][0]["nodes"] = Json::array(); }, {"no triangles"}},
-      {"matrix",
-       [](GltfBuilder& b) {
-         b.json["nodes"][0]["matrix"] = {1, 2, 3};
-       },
-       {"nodes[0].matrix", "16"}},
-      {"huge translation",
-       [](GltfBuilder& b) {
-         b.json["nodes"][0]["translation"] = {1e40, 0, 0};
-       },
-       {"nodes[0].translation"}},
-      {"huge scale",
-       [](GltfBuilder& b) {
-         b.json["nodes"][0]["scale"] = {1e25, 1, 1};
-       },
-       {"POSITION", "1e18"}},
-      {"rotation",
-       [](GltfBuilder& b) {
-         b.json["nodes"][0]["rotation"] = {0, 0, 0, 0};
-       },
-       {"nodes[0].rotation"}},
-      {"no such skin", [](GltfBuilder& b) { b.json["nodes"][0]["skin"] = 0; }, {"nodes[0].skin", "0 skins"}},
-      {"morph target of another size",
-       [](GltfBuilder& b) {
-         const int few = b.vectors({0, 0, 1});
-         b.json["meshes"][0]["weights"] = {0.5};
-         b.json["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", few}}};
-       },
-       {"meshes[0].primitives[0].targets[0].POSITION", "4 and 1"}},
-      {"required extension",
-       [](GltfBuilder& b) {
-         b.json["extensionsRequired"] = {"KHR_materials_unlit", "VENDOR_thing"};
-         b.json["accessors"] = 7;  // what else is wrong comes after
-       },
-       {"extensionsRequired", "\"VENDOR_thing\" is not supported"}},
-      {"missing component type",
-       [](GltfBuilder& b) { b.json["accessors"][1].erase("componentType"); },
-       {"accessors[1].componentType: is missing"}},
-      {"buffer view of text",
-       accessor(2, "bufferView", "first"),
-       {"accessors[2].bufferView: \"first\" is not an integer"}},
-      {"mesh without primitives",
-       [](GltfBuilder& b) { b.json["meshes"][0].erase("primitives"); },
-       {"meshes[0].primitives: is missing"}},
-      {"camera without a type",
-       [](GltfBuilder& b) {
-         b.json["cameras"] = {{{"perspective", Json::object()}}};
-       },
-       {"cameras[0].type: is missing"}},
-      {"version", [](GltfBuilder& b) { b.json["asset"]["version"] = "1.0"; }, {"asset.version", "1.0"}},
-      {"camera",
-       [](GltfBuilder& b) {
-         b.json["nodes"][0]["camera"] = 0;
-         b.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 4}, {"znear", 1}}}}};
-       },
-       {"cameras[0].perspective.yfov", "4.0"}},
-      {"light",
-       [](GltfBuilder& b) {
-         b.json["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0;
-         b.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"intensity", -1}}};
-       },
-       {"lights[0].intensity"}},
-      {"no such light",
-       [](GltfBuilder& b) { b.json["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 2; },
-       {"KHR_lights_punctual.light", "2"}},
-  };
-  for (const Case& c : cases) {
-    SCOPED_TRACE(c.what);
+constexpr const char* kMistakes = R"(
+/accessors/0/count | 5 | accessors[0].count | 5 elements | 48 bytes
+/accessors/0/count | 1537228672809129302 | accessors[0]
+/accessors/0/count | 0 | accessors[0].count | 0 elements
+/accessors/0/count | -4 | count
+/accessors/0/byteOffset | 100 | accessors[0] | byteOffset 100
+/accessors/0/type | "MAT4" | accessors[0]
+/accessors/0/type | "VEC2" | POSITION | 2 components
+/accessors/0/componentType | 5124 | accessors[0] | 5124
+/accessors/0/bufferView | removed | accessors[0].bufferView
+/accessors/0/bufferView | 99 | accessors[0].bufferView | 99
+/accessors/0/sparse | {"count": 9, "indices": {"bufferView": 2, "componentType": 5123}, "values": {"bufferView": 0}} | accessors[0].sparse.indices.count | 9 elements
+/accessors/0/sparse | {"count": 1, "indices": {"bufferView": 2, "componentType": 5126}, "values": {"bufferView": 0}} | accessors[0].sparse.indices.componentType | unsigned
+/accessors/1/componentType | removed | accessors[1].componentType: is missing
+/accessors/2/bufferView | "first" | accessors[2].bufferView: "first" is not an integer
+/bufferViews/0/byteLength | 1048576 | bufferViews[0] | 1048576
+/bufferViews/0/buffer | 3 | bufferViews[0].buffer | 3
+/bufferViews/0/byteStride | 4 | bufferViews[0].byteStride | 4
+/meshes/0/primitives/0/indices | 0 | indices | unsigned
+/meshes/0/primitives/0/material | 4 | material | 4
+/meshes/0/primitives/0/mode | 9 | mode | 9
+/meshes/0/primitives/0/attributes | {"NORMAL": 1} | POSITION | missing
+/meshes/0/primitives | removed | meshes[0].primitives: is missing
+/nodes/0/mesh | 7 | nodes[0].mesh | 7
+/nodes/0/mesh | -7 | nodes[0].mesh: -7 is not an integer >= 0
+/nodes/0/children | [12] | nodes[0].children | 12
+/nodes/0/matrix | [1, 2, 3] | nodes[0].matrix | 16
+/nodes/0/translation | [1e40, 0, 0] | nodes[0].translation
+/nodes/0/scale | [1e25, 1, 1] | POSITION | 1e18
+/nodes/0/rotation | [0, 0, 0, 0] | nodes[0].rotation
+/nodes/0/skin | 0 | nodes[0].skin | 0 skins
+/nodes | [{"children": [1]}, {"children": [0]}] | nodes[0] | twice
+/nodes | [{"children": [1, 1]}, {"mesh": 0}] | nodes[0].children | nodes[1] | twice
+/nodes/0/extensions/KHR_lights_punctual/light | 2 | KHR_lights_punctual.light | 2
+/scene | 3 | scene | 3
+/scenes | removed | scenes: the file has none
+/scenes/0/nodes | [] | no triangles
+/cameras | [{"type": "orthographic"}] | cameras[0].orthographic: is missing
+/cameras | [{"perspective": {}}] | cameras[0].type: is missing
+/cameras | [{"type": "perspective", "perspective": {"yfov": 4, "znear": 1}}] | cameras[0].perspective.yfov | 4.0
+/extensions/KHR_lights_punctual/lights | [{"type": "point"}, {"type": "spot"}] | lights[1].spot: is missing
+/extensions/KHR_lights_punctual/lights | [{"type": "point", "intensity": -1}] | lights[0].intensity
+/extensionsRequired | ["KHR_materials_unlit", "VENDOR_thing"] | extensionsRequired | "VENDOR_thing" is not supported
+/asset/version | "1.0" | asset.version | 1.0
+)";
+
+TEST_F(Gltf, WrongValuesAreNamed) {
+  // Cameras and lights are read where a node has one.
+  const auto seen = [] {
     GltfBuilder b = square();
-    c.breakIt(b);
-    const std::string sentence = refusal(b.glb());
-    EXPECT_NE(sentence.find("t.glb: "), std::string::npos) << sentence;
-    for (const char* word : c.words)
-      EXPECT_NE(sentence.find(word), std::string::npos) << word << " is not in: " << sentence;
-  }
+    b.json["nodes"].push_back({{"camera", 0}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    b.json["scenes"][0]["nodes"] = {0, 1};
+    b.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}}};
+    b.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}}};
+    return b;
+  };
+  expectRefusals(seen, kMistakes);
+}
+
+TEST_F(Gltf, WrongBuffersAreNamed) {
+  const auto refused = [&](const std::function<void(GltfBuilder&)>& breakIt,
+                           std::initializer_list<const char*> words) {
+    GltfBuilder b = square();
+    breakIt(b);
+    expectRefused(b.glb(), words);
+  };
+  const auto primitive = [](GltfBuilder& b) -> Json& { return b.json["meshes"][0]["primitives"][0]; };
+  const auto indices = [&](std::vector<std::uint16_t> values) {
+    return [=](GltfBuilder& b) {
+      const int accessor = b.indices(values);
+      primitive(b)["indices"] = accessor;
+    };
+  };
+  refused(indices({0, 1, 4}), {"index 4", "4 vertices"});
+  refused(indices({0, 1}), {"multiple of 3"});
+  refused(
+      [&](GltfBuilder& b) {
+        const int few = b.vectors({0, 0, 1});
+        primitive(b)["attributes"]["NORMAL"] = few;
+      },
+      {"attributes", "4 and 1"});
+  refused(
+      [&](GltfBuilder& b) {
+        const int few = b.vectors({0, 0, 1});
+        b.json["meshes"][0]["weights"] = {0.5};
+        primitive(b)["targets"] = {{{"POSITION", few}}};
+      },
+      {"meshes[0].primitives[0].targets[0].POSITION", "4 and 1"});
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  refused([&](GltfBuilder& b) { std::memcpy(b.buffer.data() + 16, &nan, 4); },
+          {"accessors[0]", "element 1", "finite"});
 }
 
 TEST_F(Gltf, FilesThatAreNotGltf) {
@@ -752,7 +592,7 @@ TEST_F(Gltf, InstancesCannotExhaustMemory) {
 TEST_F(Gltf, EveryTruncationIsRefused) {
   const std::string whole = square().glb();
   for (std::size_t size = 0; size < whole.size(); size += 7)
-    ASSERT_FALSE(refusal(whole.substr(0, size)).empty()) << size << " of " << whole.size() << " bytes";
+    ASSERT_NE(refusal(whole.substr(0, size)), "accepted") << size << " of " << whole.size() << " bytes";
 }
 
 // ---- The command's own syntax

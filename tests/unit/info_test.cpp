@@ -100,15 +100,6 @@ TEST_F(InfoCommand, WarnsOfBodiesThatAreOpticallyThin) {
   }
 }
 
-TEST_F(InfoCommand, NamesTheTablesOfALight) {
-  manifest["lights"][0]["angleTable"] = {1, 0};
-  manifest["lights"][0]["range"] = 5;
-  manifest["lights"][0]["distanceTable"] = {0, 1};
-  EXPECT_EQ(info()["lights"][0]["tables"], json({"angle", "distance"}));
-  EXPECT_NE(run().find("tables angle distance"), std::string::npos) << run();
-  EXPECT_FALSE(info()["lights"][1].contains("tables"));
-}
-
 TEST_F(InfoCommand, SaysWhatIsMissing) {
   for (const char* buffer : {"backDepth", "normal", "albedo"}) manifest["buffers"].erase(buffer);
   manifest.erase("truth");
@@ -117,37 +108,6 @@ TEST_F(InfoCommand, SaysWhatIsMissing) {
   EXPECT_NE(run().find("missing most: " + missing[0].get<std::string>()), std::string::npos);
   for (const char* part : {"backDepth", "normal", "albedo", "lights", "truth"})
     EXPECT_TRUE(has(missing, part)) << part;
-}
-
-TEST_F(InfoCommand, SaysWhatIsMissingBesideAShadowMap) {
-  json& map = manifest["lights"][0]["shadowMap"];
-  map.erase("exit");
-  map.erase("casterMaterial");
-  const json missing = info()["missing"];
-  EXPECT_TRUE(has(missing, "lights[0] has no exit depth")) << missing;
-  EXPECT_TRUE(has(missing, "lights[0] has no caster material")) << missing;
-  EXPECT_FALSE(has(missing, "lights[1]")) << missing;
-}
-
-// The line has the measured error for solids and no error for sheets. Without back depths the light adds
-// nothing, and there is no line.
-TEST_F(InfoCommand, SaysHowFarALightWithoutAShadowMapIsOff) {
-  EXPECT_FALSE(has(info()["missing"], "no shadow map"));
-  manifest["lights"][0].erase("shadowMap");
-  json missing = info()["missing"];
-  EXPECT_TRUE(has(missing, "lights[0] has no shadow map")) << missing;
-  EXPECT_TRUE(has(missing, "4, 12 and 21 %")) << missing;
-  EXPECT_FALSE(has(missing, "lights[1]")) << missing;
-  json sheets = manifest;
-  std::swap(sheets, manifest);
-  for (json& material : manifest["materials"])
-    material = {{"thinWalled", {{"reflectance", {0.4, 0.4, 0.4}}, {"transmittance", {0.4, 0.4, 0.4}}}}};
-  missing = info()["missing"];
-  EXPECT_TRUE(has(missing, "lights[0] has no shadow map")) << missing;
-  EXPECT_FALSE(has(missing, "%")) << missing;
-  manifest = sheets;
-  manifest["buffers"].erase("backDepth");
-  EXPECT_FALSE(has(info()["missing"], "lights[0] has no shadow map")) << info()["missing"];
 }
 
 TEST_F(InfoCommand, CountsWhatLooksWrong) {
@@ -202,33 +162,6 @@ TEST_F(InfoCommand, GoodCapturesGiveNoWarning) {
     else
       EXPECT_EQ(warnings, json::array()) << scene.name;
   }
-}
-
-TEST_F(InfoCommand, SharedCapturesGiveNoWarning) {
-  const char* const variable = std::getenv("PELLUCID_SHARED");
-  const std::filesystem::path shared =
-      variable ? variable : std::filesystem::path(PELLUCID_SOURCE_DIR).parent_path() / "shared";
-  if (!std::filesystem::exists(shared / "captures")) GTEST_SKIP() << "no captures at " << shared;
-  int count = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(shared / "captures")) {
-    const std::filesystem::path file = entry.path() / "manifest.json";
-    if (!std::filesystem::exists(file)) continue;
-    EXPECT_EQ(warningsOf(file), json::array()) << file;
-    ++count;
-  }
-  EXPECT_GT(count, 0) << "in " << shared;
-}
-
-TEST_F(InfoCommand, PrintsForPeople) {
-  const std::string text = run();
-  for (const char* part : {"7x5 pixels", "frontDepth: file", "lights[0]: type spot", "shadowMap: file",
-                           "material:", "warning: 1 of 15"})
-    EXPECT_NE(text.find(part), std::string::npos) << part << " in " << text;
-}
-
-TEST_F(InfoCommand, BadInputIsThrown) {
-  manifest["materials"][0] = {{"preset", "plutonium"}};
-  EXPECT_THROW(run(), InputError);
 }
 
 }  // namespace

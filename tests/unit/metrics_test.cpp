@@ -57,18 +57,6 @@ TEST(Surfaces, TiltedPlanesAreOneSurface) {
   }
 }
 
-TEST(Surfaces, AStepIsAnEdge) {
-  const Surfaces surfaces(shape(8, 8, [](int x, int) { return x < 4 ? 100 : 105; }));
-  EXPECT_FALSE(surfaces.connected(3, 2, 1, 0));
-  EXPECT_FALSE(surfaces.connected(4, 2, -1, 0));
-  EXPECT_FALSE(surfaces.connected(3, 2, 1, 1));
-  EXPECT_TRUE(surfaces.connected(3, 2, 0, 1));
-  EXPECT_TRUE(surfaces.connected(3, 2, -1, 0));
-  EXPECT_TRUE(surfaces.wholeBlock(0, 0, 4));
-  EXPECT_TRUE(surfaces.wholeBlock(4, 4, 4));
-  EXPECT_FALSE(surfaces.wholeBlock(1, 0, 4));
-}
-
 TEST(Surfaces, ASphereIsOneSurfaceAndEndsBeforeTheWall) {
   // Radius 30.3 pixels, 100 units before a wall.
   constexpr double kRadius = 30.3;
@@ -162,15 +150,6 @@ TEST(Isolated, SaysWhichAreAlone) {
       << "the second, which hardly sticks out, and the last, which sticks out the other way";
 }
 
-TEST(Isolated, PairsAndRampsAreNot) {
-  Image image(16, 16, 3, 1.0f);
-  for (int c = 0; c < 3; ++c) image.at(4, 4)[c] = image.at(5, 4)[c] = 2;
-  for (int y = 8; y < 16; ++y)
-    for (int x = 0; x < 16; ++x)
-      for (int c = 0; c < 3; ++c) image.at(x, y)[c] = static_cast<float>(std::pow(1.4, x));
-  EXPECT_EQ(findIsolated(image, Surfaces(16, 16), everywhere(image)).count, 0u);
-}
-
 TEST(Isolated, NeighborsOfOtherSurfacesDoNotCount) {
   // A strip of surface one pixel wide has two neighbors, a corner three: not judged. Along an edge there
   // are 5.
@@ -255,16 +234,6 @@ TEST(Spots, HaveFivePixelsAtMost) {
   }
 }
 
-TEST(Spots, ContrastDecides) {
-  Image image(32, 32, 3, 1.0f);
-  scale(image, 6, 6, 3, 3, 1.29f);
-  scale(image, 20, 20, 3, 3, 1 / 1.29f);
-  EXPECT_EQ(spotsOf(image).size(), 0u);
-  scale(image, 6, 6, 3, 3, 1.02f);
-  scale(image, 20, 20, 3, 3, 1 / 1.02f);
-  EXPECT_EQ(spotsOf(image).size(), 2u);
-}
-
 // Sixteen passes of a 3x3 mean: what diffusion over some five pixels makes of an image.
 Image softened(Image image) {
   for (int pass = 0; pass < 16; ++pass) {
@@ -323,17 +292,6 @@ TEST(Spots, WhatTheTruthHasIsNotLacked) {
   EXPECT_EQ(a.lackedBy(a, a.find(nullptr)).size(), 0u);
 }
 
-// Noise of 15 % a pixel makes thousands of pixels that are 1.3 times their median, and no spot.
-TEST(Spots, NoiseIsNone) {
-  Image image = slope(96, 96);
-  std::mt19937 random(3);
-  std::normal_distribution<float> noise(1, 0.15f);
-  for (float& value : image.data) value *= noise(random);
-  EXPECT_LE(spotsOf(image).size(), 1u);  // of 27000 values 5 standard deviations off
-  scale(image, 20, 40, 3, 3, 2.5f);
-  EXPECT_GE(spotsOf(image).size(), 1u);
-}
-
 TEST(Spots, OtherSurfacesDarkPartsAndNanAreLeftOut) {
   // The stripe of the second surface is five times as bright; each surface has a spot beside the edge.
   const Capture c = shape(32, 32, [](int x, int) { return x < 16 ? 100 : 150; });
@@ -358,32 +316,6 @@ TEST(Spots, OtherSurfacesDarkPartsAndNanAreLeftOut) {
   EXPECT_EQ(spotsOf(dark).size(), 1u);
   scale(dark, 8, 4, 3, 3, 0.8f);
   EXPECT_EQ(spotsOf(dark).size(), 0u);
-}
-
-TEST(Spots, AreFramed) {
-  Image image(32, 24, 3, 1.0f);
-  scale(image, 10, 10, 2, 3, 1.5f);
-  const std::vector<std::uint8_t> picture =
-      markSpots(std::vector<std::uint8_t>(3 * image.pixels()), image, spotsOf(image), spotsOf(image));
-  std::size_t framed = 0;
-  for (std::size_t i = 0; i < image.pixels(); ++i)
-    framed += picture[3 * i] == 255 && picture[3 * i + 2] == 40;
-  EXPECT_EQ(framed, 2u * 6 + 2u * 5);  // around 6 x 7 pixels
-}
-
-TEST(Spots, ThatJumpWhenLightsTurn) {
-  const Image even(48, 32, 3, 1.0f);
-  Image still = even, turned = even;
-  scale(still, 6, 6, 3, 3, 1.6f);
-  scale(turned, 6, 6, 3, 3, 1.5f);    // stays
-  scale(still, 20, 6, 2, 2, 1.6f);    // vanishes
-  scale(turned, 20, 20, 2, 2, 1.6f);  // appear
-  scale(turned, 30, 20, 2, 2, 0.6f);
-  const SpotFlicker flicker = compareSpots(seen(still), seen(even), seen(turned), seen(even));
-  EXPECT_EQ(flicker.still, 2u);
-  EXPECT_EQ(flicker.turned, 3u);
-  EXPECT_EQ(flicker.appear, 2u);
-  EXPECT_EQ(flicker.vanish, 1u);
 }
 
 // ---- Tint
@@ -424,35 +356,7 @@ TEST(Tint, StandardDeviationOfBlocks) {
   EXPECT_NEAR(tint.redOverGreen, (0.9 / 0.8 - 1.1 / 1.2) / 2, 1e-6);
 }
 
-TEST(Tint, OnlyWholeBlocksThatAreBrightEnough) {
-  Image b(40, 8, 3, 1.0f), a = b;
-  const auto fill = [](Image& image, int left, float value) {
-    for (int y = 0; y < 8; ++y)
-      for (int x = left; x < left + 8; ++x)
-        for (int c = 0; c < 3; ++c) image.at(x, y)[c] = value;
-  };
-  Mask mask = everywhere(b);
-  mask[4 * 40 + 20] = 0;  // a hole in the third block
-  fill(b, 24, 0.05f);     // the fourth is too dark to judge
-  b.at(9, 1)[1] = kNan;   // in the second
-  for (const int left : {8, 16, 24}) fill(a, left, 3);
-  const Tint tint = measureTint(a, b, mask);
-  EXPECT_EQ(tint.blocks, 2u);
-  EXPECT_EQ(tint.channel[0], 0);
-  const Tint none = measureTint(a, b, Mask(mask.size()));
-  EXPECT_EQ(none.blocks, 0u);
-  EXPECT_TRUE(std::isnan(none.channel[2]) && std::isnan(none.redOverGreen));  // no limit allows it
-}
-
 // ---- Ratio map
-
-TEST(RatioMap, GrayWhereRight) {
-  const Image b = varied(10, 9);
-  Mask mask = everywhere(b);
-  mask[3] = 0;
-  const std::vector<std::uint8_t> picture = ratioMap(b, b, mask);
-  for (std::size_t i = 0; i < picture.size(); ++i) EXPECT_EQ(picture[i], i / 3 == 3 ? 0 : 128) << i;
-}
 
 TEST(RatioMap, FullColorAtTenPercent) {
   const Image b(8, 4, 3, 1.0f);
@@ -468,17 +372,6 @@ TEST(RatioMap, FullColorAtTenPercent) {
   EXPECT_EQ(picture[1], 191);  // 127.5 * 1.5
   EXPECT_EQ(picture[2], 0);
   EXPECT_EQ(picture[3 * 4], 128);
-}
-
-TEST(RatioMap, LightInTheDarkShows) {
-  Image b(8, 4, 3, 1.0f);
-  for (int y = 0; y < 4; ++y)
-    for (int x = 0; x < 4; ++x) std::fill_n(b.at(x, y), 3, 0.0f);
-  Image a = b;
-  a.at(0, 0)[0] = 1;
-  const std::vector<std::uint8_t> picture = ratioMap(a, b, everywhere(b));
-  EXPECT_EQ(picture[0], 255);
-  EXPECT_EQ(picture[1], 128);
 }
 
 // ---- Flicker
@@ -510,23 +403,6 @@ TEST(Flicker, OnePixelOfTwoThousand) {
   EXPECT_EQ(flicker.p999[1], 0);  // two of 2000 may be above
   EXPECT_EQ(flicker.worstPixel, (std::array<int, 2>{21, 12}));
   EXPECT_EQ(compareShifted(still, moved, everywhere(still), 1, 0).worstPixel, (std::array<int, 2>{20, 12}));
-}
-
-TEST(Flicker, WorstIsRelativeToItsSurroundings) {
-  // A bright pixel, 26 among 1: its 5x5 mean is 2. Where there is nothing the RMS holds the scale.
-  Image still(40, 10, 3, 1.0f);
-  for (int c = 0; c < 3; ++c) still.at(6, 5)[c] = 26;
-  Image moved = still;
-  moved.at(6, 5)[0] = 27;
-  EXPECT_NEAR(compareShifted(still, moved, everywhere(still), 0, 0).worst[0], 0.5, 1e-12);
-  Mask mask = everywhere(still);
-  mask[5 * 40 + 6] = 0;
-  EXPECT_EQ(compareShifted(still, moved, mask, 0, 0).worst[0], 0);
-  Image dark(40, 10, 3);
-  dark.at(39, 9)[0] = 20;  // RMS 1
-  Image lit = dark;
-  lit.at(3, 3)[0] = 0.01f;
-  EXPECT_NEAR(compareShifted(dark, lit, everywhere(dark), 0, 0).worst[0], 0.5, 1e-6);  // 0.01 / 0.02
 }
 
 TEST(Flicker, EvenChangeOfTurnedLightsIsNone) {

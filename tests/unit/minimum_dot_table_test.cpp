@@ -78,19 +78,4 @@ TEST(MinimumDotTable, FindsWhereLightBegins) {
   }
 }
 
-TEST(MinimumDotTable, EndsOfTheRange) {
-  const DotTable table{false, 2, {0, 0, 1}, {0, 1, 0}};
-  // The second light never comes through, the first always does; compared with the most of all entries.
-  const auto one = [](const Vector3& toLight, const Vector3&) { return toLight[2] > 0 ? 1.0 : 0.1; };
-  EXPECT_EQ(measureMinimumDots(table, {4, 0.25}, one), (std::vector<double>{0, -1}));
-  const auto none = [](const Vector3&, const Vector3&) { return 0.0; };
-  EXPECT_EQ(measureMinimumDots(table, {4, 0.0}, none), (std::vector<double>{-1, -1}));
-  // Either way round is enough.
-  const auto oneWay = [](const Vector3& toLight, const Vector3& toEye) {
-    const bool left = toLight[2] * toEye[0] - toLight[0] * toEye[2] > 0;
-    return left ? std::max(0.0, -dot(toLight, toEye)) : 0.0;
-  };
-  for (const double found : measureMinimumDots(table, {900, 0.5}, oneWay)) EXPECT_NEAR(found, -0.5, 1e-2);
-}
-
 }  // namespace

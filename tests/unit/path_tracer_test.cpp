@@ -13,6 +13,7 @@
 #include "reference/path_tracer/truth.h"
 #include "reference/path_tracer/walk.h"
 #include "reference/random_walk.h"
+#include "refusal.h"
 #include "scene/vector.h"
 
 namespace {
@@ -446,12 +447,7 @@ TEST(PathTracer, LightRefractsIntoABody) {
 
 TEST(PathTracer, MediaThatNoWalkKnowsAreRefusedByName) {
   const auto complaint = [](const MaterialSource& source) {
-    try {
-      traceMedia({source}, "file");
-    } catch (const InputError& error) {
-      return std::string(error.what());
-    }
-    return std::string("accepted");
+    return pellucid::test::refusalOf([&] { traceMedia({source}, "file"); });
   };
   EXPECT_NE(complaint(BurleyMaterial{{1, 1, 1}, {}}).find("file: materials[0]"), std::string::npos);
   EXPECT_NE(complaint(PresetMaterial{"nothing"}).find("\"nothing\""), std::string::npos);

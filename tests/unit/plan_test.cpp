@@ -3,12 +3,9 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cstring>
-#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "frame_fixture.h"
 #include "output_format.h"
@@ -69,28 +66,6 @@ TEST(Plan, ConstantsSizeBoundsThatOfFrames) {
           // A gather takes 512 bytes a map besides, which frames without one lack.
           EXPECT_LT(bound, 4 * plan.constantsSize) << lights << " lights of " << mapsOfALight;
         }
-}
-
-TEST(Plan, SameInputSamePlan) {
-  Frame f;
-  const PellucidPlan a = f.plan(), b = f.plan();
-  EXPECT_EQ(std::memcmp(&a, &b, sizeof a), 0);
-}
-
-TEST(Plan, ThreadsPlanTheSame) {
-  Frame f;
-  const PellucidPlan expected = f.plan();
-  std::vector<std::thread> threads;
-  std::atomic<int> different = 0;
-  for (int t = 0; t < 4; ++t)
-    threads.emplace_back([&] {
-      for (int i = 0; i < 100; ++i) {
-        const PellucidPlan plan = f.plan();
-        different += std::memcmp(&plan, &expected, sizeof plan) != 0;
-      }
-    });
-  for (std::thread& t : threads) t.join();
-  EXPECT_EQ(different, 0);
 }
 
 TEST(Plan, EveryReadIsOfSomethingWritten) {

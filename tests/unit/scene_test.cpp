@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "common/error.h"
+#include "refusal.h"
 #include "scene/model.h"
 #include "scene/polynomial.h"
 #include "scene/render.h"
@@ -586,28 +587,6 @@ TEST(Scene, SameParametersSameBits) {
   EXPECT_NE(a.frontDepth.image.data, makeScene(parameters).frontDepth.image.data);
 }
 
-TEST(Scene, OnePixelWorks) {
-  const Capture capture = makeScene(sized("sphere", 1));
-  EXPECT_EQ(capture.material, std::vector<std::uint8_t>{1});
-}
-
-TEST(Scene, NearFarLeavesTheFrustumThroughBothPlanes) {
-  SceneParameters parameters = sized("near_far", 64);
-  const Capture capture = makeScene(parameters);
-  const SceneModel model = buildModel(parameters);
-  float nearest = kNoDepth;
-  float farthest = 0;
-  for (const float z : capture.frontDepth.image.data) {
-    nearest = std::min(nearest, z);
-    if (z < kNoDepth) farthest = std::max(farthest, z);
-  }
-  const double span = model.camera.range.farPlane - model.camera.range.nearPlane;
-  EXPECT_NEAR(nearest, model.camera.range.nearPlane, 0.05 * span);
-  EXPECT_NEAR(farthest, model.camera.range.farPlane, 0.05 * span);
-  EXPECT_EQ(capture.material.front(), 0);
-  EXPECT_EQ(capture.material.back(), 0);
-}
-
 // What the frames of a head scan cover, at 16:9: the bench's stand-ins are as full and as empty.
 TEST(Scene, HeadsCoverAsMuchAsThoseOfAScan) {
   const double covered[] = {0.139, 0.947, 0.056, 0.003};
@@ -624,60 +603,10 @@ TEST(Scene, HeadsCoverAsMuchAsThoseOfAScan) {
   }
 }
 
-TEST(Scene, AMaterialIsThatOfAllObjects) {
-  SceneParameters parameters{.name = "two_materials", .width = 32, .height = 32, .shadowSize = 16};
-  parameters.material = SceneMaterial{PresetMaterial{"marble"}, {0.7, 0.6, 0.5}};
-  const Capture capture = makeScene(parameters);
-  ASSERT_EQ(capture.materials.size(), 2u);
-  for (const MaterialSource& source : capture.materials) {
-    ASSERT_TRUE(std::holds_alternative<PresetMaterial>(source));
-    EXPECT_EQ(std::get<PresetMaterial>(source).preset, "marble");
-  }
-  int surface = 0;
-  for (int y = 0; y < 32; ++y)
-    for (int x = 0; x < 32; ++x) {
-      if (capture.material[static_cast<size_t>(32 * y + x)] == 0) continue;
-      ++surface;
-      EXPECT_FLOAT_EQ(capture.albedo.at(x, y)[0], 0.7f);
-      EXPECT_FLOAT_EQ(capture.albedo.at(x, y)[2], 0.5f);
-    }
-  EXPECT_GT(surface, 100);
-}
-
-// Hues cancel: lights all around are white together.
-TEST(Scene, AHeadMayHaveManyLights) {
-  const Capture capture =
-      makeScene({.name = "head", .width = 16, .height = 16, .options = {{"lights", 12}}, .shadowSize = 16});
-  ASSERT_EQ(capture.lights.size(), 14u);
-  double sum[3] = {};
-  for (size_t i = 2; i < 14; ++i)
-    for (size_t c = 0; c < 3; ++c) sum[c] += capture.lights[i].color[c] * capture.lights[i].intensity;
-  for (const double channel : sum) EXPECT_NEAR(channel, 6, 1e-9);
-}
-
-TEST(Scene, TheHeadsEarIsASheetOfThreeMillimeters) {
-  SceneParameters parameters = sized("head", 256);
-  parameters.shadowSize = 0;
-  parameters.orthographic = true;
-  parameters.aim = Aim{{std::sqrt(0.75), 0, 0.5}, {0, 0, 1}};  // along the sheet's normal
-  const Capture capture = makeScene(parameters);
-  const glm::dvec4 middle = toGlm(capture.clipFromView) * toGlm(capture.viewFromWorld) *
-                            glm::dvec4(74 + 7, 2, -8 - 14 * std::sqrt(0.75), 1);
-  const int x = static_cast<int>((middle.x / middle.w + 1) * 128),
-            y = static_cast<int>((middle.y / middle.w + 1) * 128);
-  ASSERT_LT(*capture.frontDepth.image.at(x, y), kNoDepth);
-  EXPECT_NEAR(*capture.backDepth.image.at(x, y) - *capture.frontDepth.image.at(x, y), 3, 0.1);
-}
-
 // ---- Errors
 
 std::string messageOf(const SceneParameters& parameters) {
-  try {
-    makeScene(parameters);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
+  return pellucid::test::refusalOf([&] { makeScene(parameters); });
 }
 
 TEST(Scene, ErrorsNameFieldAndValue) {
@@ -741,51 +670,6 @@ TEST(SceneTurn, CarriesCameraAndLightsRoundCounterclockwise) {
   EXPECT_GT(from[2], 100);
   EXPECT_NEAR(turned.lights[0].position[0], -still.lights[0].position[0], 1e-9);
   EXPECT_NEAR(turned.lights[0].position[2], -still.lights[0].position[2], 1e-9);
-}
-
-TEST(SceneTurn, OfASphereWithItsLightChangesNothing) {
-  SceneParameters parameters = sized("sphere", 24);
-  parameters.shadowSize = 16;
-  const Capture still = makeScene(parameters);
-  parameters.turn = {0, 0};
-  const Capture zero = makeScene(parameters);
-  EXPECT_EQ(zero.frontDepth.image.data, still.frontDepth.image.data);
-  EXPECT_EQ(zero.irradiance.data, still.irradiance.data);
-  parameters.turn = {1.1, 1.1};
-  const Capture together = makeScene(parameters);
-  parameters.turn = {1.1, std::nullopt};
-  const Capture apart = makeScene(parameters);
-  double worst = 0, moved = 0;
-  for (std::size_t i = 0; i < still.irradiance.data.size(); ++i) {
-    const double e = static_cast<double>(still.irradiance.data[i]);
-    worst = std::max(worst, std::abs(static_cast<double>(together.irradiance.data[i]) - e));
-    moved = std::max(moved, std::abs(static_cast<double>(apart.irradiance.data[i]) - e));
-  }
-  EXPECT_LT(worst, 1e-6);
-  EXPECT_GT(moved, 0.5);
-}
-
-TEST(SceneTurn, RefusesByName) {
-  const auto refusal = [](const char* name, const Turn& turn) {
-    SceneParameters parameters = sized(name, 4);
-    parameters.turn = turn;
-    try {
-      makeScene(parameters);
-    } catch (const InputError& error) {
-      return std::string(error.what());
-    }
-    return std::string("accepted");
-  };
-  EXPECT_EQ(refusal("slab", {0, std::nullopt}),
-            "scene \"slab\": has no end, so that a camera cannot go round it");
-  EXPECT_EQ(refusal("step", {std::nullopt, 0}),
-            "scene \"step\": has painted irradiance and no lights that could turn");
-  EXPECT_EQ(refusal("slab", {std::nullopt, 2}), "accepted");
-  for (const SceneInfo& scene : listScenes()) {
-    const std::string sentence = refusal(scene.name.c_str(), {1, 2});
-    EXPECT_TRUE(sentence == "accepted" || sentence.find("scene \"" + scene.name + "\": has ") == 0)
-        << sentence;
-  }
 }
 
 }  // namespace

@@ -5,15 +5,12 @@
 #include <filesystem>
 #include <fstream>
 #include <numbers>
-#include <set>
 
 #include "common/error.h"
 #include "replay/settings.h"
+#include "refusal.h"
 #include "scene/turn.h"
 #include "temporary_directory.h"
-#include "view/cost.h"
-#include "view/curves.h"
-#include "view/frame_times.h"
 #include "view/input.h"
 #include "view/material_kind.h"
 #include "view/script.h"
@@ -60,42 +57,6 @@ TEST(ViewCamera, OrbitKeepsTheDistanceAndLooksAtThePivot) {
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(eye[i], 5 * back[i], kRounding);
 }
 
-TEST(ViewCamera, OrbitStopsBelowThePole) {
-  ViewCamera camera = cameraAt({0, 0, 5}, {0, 0, 0});
-  orbit(camera, 0, 3);
-  EXPECT_NEAR(camera.eye()[1], 5 * std::sin(89 * kPi / 180), kRounding);
-  orbit(camera, 0, -9);
-  EXPECT_NEAR(camera.eye()[1], -5 * std::sin(89 * kPi / 180), kRounding);
-}
-
-TEST(ViewCamera, LooksAroundWhereItStands) {
-  ViewCamera camera = cameraAt({0, 0, 5}, {0, 0, 0});
-  look(camera, kPi / 2, 0);  // to the left
-  expectNear(camera.eye(), {0, 0, 5}, kRounding);
-  expectNear(camera.pivot, {-5, 0, 5}, kRounding);
-  look(camera, 0, kPi / 4);
-  EXPECT_NEAR(camera.pivot[1], 5 * std::sin(kPi / 4), kRounding);
-}
-
-TEST(ViewCamera, WalksAlongItsOwnAxes) {
-  ViewCamera camera = cameraAt({5, 0, 0}, {0, 0, 0});  // right is -z
-  walk(camera, {1, 2, 3});
-  expectNear(camera.eye(), {2, 2, -1}, kRounding);
-  expectNear(camera.pivot, {-3, 2, -1}, kRounding);
-}
-
-TEST(ViewCamera, ZoomScalesTheDistanceAndTheOrthographicHeight) {
-  ViewCamera camera = cameraAt({0, 0, 5}, {0, 0, 1});
-  zoom(camera, 0.5);
-  expectNear(camera.eye(), {0, 0, 3}, kRounding);
-  expectNear(camera.pivot, {0, 0, 1}, kRounding);
-  camera.lens.orthographic = true;
-  camera.lens.height = 8;
-  zoom(camera, 0.5);
-  expectNear(camera.eye(), {0, 0, 3}, kRounding);
-  EXPECT_EQ(camera.lens.height, 4);
-}
-
 TEST(ViewCamera, RangeHoldsTheSphereAndStaysInFront) {
   ViewCamera camera = cameraAt({0, 0, 5}, {0, 0, 0});
   fitRange(camera, {0, 0, 0}, 1);
@@ -135,17 +96,6 @@ TEST(ViewLights, DragMovesThemAsTheCameraSeesIt) {
     dragLight(light, camera, {0, 0, 0}, 0, 0.2);
     expectNear(light.position, {0, 3 * std::sin(0.2), 3 * side * std::cos(0.2)}, kRounding);
   }
-}
-
-TEST(ViewLights, TurntablesCarryCameraAndLights) {
-  ViewState state;
-  state.camera = cameraAt({0, 0, 5}, {0, 0, 0});
-  state.lights = {newLight(PELLUCID_LIGHT_POINT, state.camera, {0, 0, 0}, 1)};
-  state.lights[0].light.position = {0, 0, 3};
-  EXPECT_FALSE(turnTable(state, {0, 0, 0}, 0, 0).any());
-  EXPECT_TRUE(turnTable(state, {0, 0, 0}, -kPi / 2, kPi / 2).scene);
-  expectNear(state.camera.eye(), {-5, 0, 0}, kRounding);
-  expectNear(state.lights[0].light.position, {3, 0, 0}, kRounding);
 }
 
 TEST(ViewLights, PullKeepsWhatArrives) {
@@ -200,24 +150,10 @@ TEST(ViewInput, DragOrbitsHalfATurnAPicture) {
   expectNear(d.state.camera.eye(), {-5, 0, 0}, kRounding);  // the model turns right, so the camera goes left
 }
 
-TEST(ViewInput, DragThatBeginsOutsideOfThePictureDoesNothing) {
-  Drag d;
-  EXPECT_FALSE(d.drag(50, 200, 300, 200).any());
-  expectNear(d.state.camera.eye(), {0, 0, 5}, 0);
-}
-
 TEST(ViewInput, FixedCamerasStay) {
   Drag d;
   d.source.fixed = true;
   EXPECT_FALSE(d.drag(200, 200, 400, 200).any());
-}
-
-TEST(ViewInput, DragOnTheSplitMovesIt) {
-  Drag d;
-  d.state.display.split = true;
-  const Changes changes = d.drag(303, 50, 200, 60);
-  EXPECT_TRUE(changes.shown && !changes.scene);
-  EXPECT_FLOAT_EQ(d.state.display.splitAt, 0.25f);
 }
 
 TEST(ViewInput, ShiftDragsTheSelectedLight) {
@@ -227,35 +163,6 @@ TEST(ViewInput, ShiftDragsTheSelectedLight) {
   EXPECT_TRUE(d.drag(200, 200, 300, 200, true).scene);
   expectNear(d.state.lights[0].light.position, {3 * std::sin(kPi / 4), 0, 3 * std::cos(kPi / 4)}, kRounding);
   expectNear(d.state.camera.eye(), {0, 0, 5}, 0);
-}
-
-TEST(ViewInput, KeysWalkARadiusASecond) {
-  Drag d;
-  ViewInput input;
-  input.forward = input.stepRight = true;
-  input.seconds = 0.5f;
-  EXPECT_TRUE(d.controls.apply(d.state, input, d.source, d.picture).scene);
-  expectNear(d.state.camera.eye(), {0.5, 0, 4.5}, kRounding);
-}
-
-TEST(ViewDisplay, PictureFitsAndKnowsItsTexels) {
-  const ScreenRect r = fitted({0, 0, 400, 300}, 200, 100);
-  EXPECT_EQ(r.width, 400);
-  EXPECT_EQ(r.height, 200);
-  EXPECT_EQ(r.y, 50);
-  const auto texel = texelAt(r, 200, 100, 399, 51);
-  ASSERT_TRUE(texel);
-  EXPECT_EQ(texel->x, 199);
-  EXPECT_EQ(texel->y, 0);
-  EXPECT_FALSE(texelAt(r, 200, 100, 10, 49));
-}
-
-TEST(ViewState, ShownDecidesTheSettings) {
-  ViewState state;
-  state.settings.debugView = PELLUCID_DEBUG_OCCLUSION;
-  EXPECT_EQ(settingsFor(state, Shown::After).debugView, PELLUCID_DEBUG_NONE);
-  EXPECT_EQ(settingsFor(state, Shown::Debug).debugView, PELLUCID_DEBUG_OCCLUSION);
-  EXPECT_EQ(settingsFor(state, Shown::Through).features, std::uint32_t{PELLUCID_FEATURE_TRANSLUCENCY});
 }
 
 TEST(ViewSettings, TakeEveryValueThatThePanelAllows) {
@@ -305,15 +212,6 @@ protected:
     std::ofstream(folder_ / name) << text;
     return folder_ / name;
   }
-  template <class Work>
-  static std::string refusal(const Work& work) {
-    try {
-      work();
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
-  }
   TemporaryDirectory folder_;
 };
 
@@ -360,25 +258,13 @@ TEST_F(ViewFiles, SessionsAreRefusedByFieldAndValue) {
     EXPECT_NE(at, std::string::npos) << from;
     text.replace(at, from.size(), to);
     const std::filesystem::path file = write("bad.view.json", text);
-    return refusal([&] { readSession(file); });
+    return pellucid::test::refusalOf([&] { readSession(file); });
   };
   EXPECT_NE(with("\"agx\"", "\"velvia\"").find("display.toneMap"), std::string::npos);
   EXPECT_NE(with("\"near\": 0.11", "\"near\": -1").find("camera.near"), std::string::npos);
   EXPECT_NE(with("321", "0").find("size"), std::string::npos);
   EXPECT_NE(with("\"on\": true", "\"on\": 3").find("lights[0].on"), std::string::npos);
   EXPECT_NE(with("\"display\"", "\"displays\"").find("displays"), std::string::npos);
-}
-
-TEST_F(ViewFiles, OtherFilesAreNoSessions) {
-  EXPECT_FALSE(isSession(write("capture.json", "{\"pellucid\": 1}")));
-  EXPECT_FALSE(isSession(folder_ / "missing.json"));
-}
-
-TEST_F(ViewFiles, SavedFilesLieBesideTheCapture) {
-  const SavedFiles files = savedFiles("out/a.exr");
-  EXPECT_EQ(files.settings, "out/a.settings.json");
-  EXPECT_EQ(files.result, "out/a.pellucid.exr");
-  EXPECT_NE(refusal([] { savedFiles("a.png"); }).find("a.png"), std::string::npos);
 }
 
 TEST_F(ViewFiles, ScriptsAreReadLineByLine) {
@@ -397,7 +283,7 @@ TEST_F(ViewFiles, ScriptsAreReadLineByLine) {
 TEST_F(ViewFiles, ScriptsAreRefusedByLine) {
   const auto refused = [&](const std::string& text) {
     const auto file = write("bad.txt", text);
-    return refusal([&] {
+    return pellucid::test::refusalOf([&] {
       ViewState state;
       Changes changes;
       for (const ScriptLine& line : readScript(file)) applyToState(line, state, changes);
@@ -430,87 +316,6 @@ TEST(ViewMaterials, DescriptionsOfOneMedium) {
   EXPECT_THROW(asKind(SkinMaterial{}, MaterialKind::OpenPbr), InputError);
   EXPECT_THROW(asKind(BurleyMaterial{{1, 1, 1}, {}}, MaterialKind::Coefficients), InputError);
   for (const MaterialKind kind : kOfferedKinds) EXPECT_EQ(kindOf(asKind(medium, kind)), kind);
-}
-
-TEST(ViewCost, SmoothsAndForgets) {
-  CostHistory cost;
-  EXPECT_TRUE(cost.add(1, {{"a", 100}, {"b", 20}, {"a", 50}}));
-  EXPECT_FALSE(cost.add(1, {{"a", 1}}));
-  ASSERT_EQ(cost.dispatches().size(), 2u);
-  EXPECT_EQ(cost.dispatches()[0].smoothed, 150);
-  EXPECT_EQ(cost.lastSum(), 170);
-  for (std::uint64_t frame = 2; frame <= 7; ++frame) cost.add(frame, {{"a", 50}, {"c", 10}});
-  EXPECT_NEAR(cost.dispatches()[0].smoothed, 100, 0.2);  // half of the way in 6 frames; .109 is rounded
-  EXPECT_EQ(cost.size(), 7u);
-  for (const CostHistory::Dispatch& d : cost.dispatches()) EXPECT_EQ(d.history.size(), 7u);
-  for (std::uint64_t frame = 8; frame < 300; ++frame) cost.add(frame, {{"a", 50}});
-  ASSERT_EQ(cost.dispatches().size(), 1u);
-  EXPECT_EQ(cost.size(), CostHistory::kFrames);
-}
-
-TEST(ViewCost, BudgetGoesDownAboveIt) {
-  Budget budget;
-  ReplaySettings settings;
-  EXPECT_FALSE(budget.step(100, settings));
-  budget.on = true;
-  budget.milliseconds = 2;
-  for (int i = 0; i < 20; ++i) budget.step(10, settings);
-  EXPECT_EQ(settings.translucency.gatherSamples, 0u);
-  EXPECT_EQ(settings.reuse, PELLUCID_REUSE_COHERENCE);
-}
-
-TEST(ViewCurves, AngleModelsRunFromTheRightAngleOn) {
-  TranslucencySettings settings;
-  EXPECT_TRUE(angleCurve(settings, 5).values[0].empty());  // -N.L
-  settings.angleModel = PELLUCID_ANGLE_INVERSE_COSINE;     // linear in the angle
-  const Curves linear = angleCurve(settings, 5);
-  for (int i = 0; i < 5; ++i) EXPECT_NEAR(linear.values[0][static_cast<std::size_t>(i)], i / 4.0, 1e-12);
-  settings.angleModel = PELLUCID_ANGLE_MINIMUM_DOT;
-  settings.minimumDot = -0.5f;
-  const Curves dot = angleCurve(settings, 4);  // 0, 30, 60 and 90 degrees beyond 90
-  EXPECT_NEAR(dot.values[0][1], 0, 1e-12);
-  EXPECT_NEAR(dot.values[0][2], std::sqrt(3) - 1, 1e-12);
-  EXPECT_NEAR(dot.values[0][3], 1, 1e-12);
-}
-
-TEST(ViewCurves, AreThoseOfTheMaterial) {
-  PellucidMaterial material{};
-  material.structSize = sizeof material;
-  material.transmittanceModel = PELLUCID_TRANSMITTANCE_LINEAR;
-  for (auto& channel : material.transmittance) channel[0] = 4;
-  const Curves t = transmittanceCurves(material, 3);
-  EXPECT_NEAR(t.values[0][1], 1 - t.end / 2 / 4, 1e-6);  // floats
-  EXPECT_LT(t.values[0][2], 0.011);
-  EXPECT_TRUE(profileCurves(material, 3).values[0].empty());
-  material.gaussianCount = 1;
-  for (int c = 0; c < 3; ++c) {
-    material.gaussianVariance[c][0] = 1;
-    material.gaussianWeight[c][0] = 1;
-  }
-  const Curves r = profileCurves(material, 3);
-  EXPECT_NEAR(r.end, std::sqrt(2 * std::log(20)), 1e-4);  // 95 % of a Gaussian's energy; rounded up
-  EXPECT_NEAR(r.values[1][1], r.end / 2 * std::exp(-r.end * r.end / 8), 1e-6);
-}
-
-TEST(MovingTimes, LeaveOutTheFirstFramesAndAverageTheOthers) {
-  MovingTimes times;
-  for (std::size_t i = 0; i < MovingTimes::kLeftOut; ++i) times.add({1000, 900, 800, 50});
-  EXPECT_EQ(times.count(), 0u);
-  EXPECT_EQ(times.table(), "");
-  times.add({10, 6, 4, 2});
-  times.add({30, 8, 6, 4});
-  times.add({11, 7, 5, 3});
-  EXPECT_EQ(times.count(), 3u);
-  const MovingTimes::Summary frame = times.of(&FrameTime::frame);
-  EXPECT_DOUBLE_EQ(frame.mean, 17);
-  EXPECT_DOUBLE_EQ(frame.median, 11);
-  EXPECT_DOUBLE_EQ(frame.best, 10);
-  EXPECT_EQ(times.table(),
-            "3 moving frames, ms             mean    median      best\n"
-            "whole frame                   17.000    11.000    10.000\n"
-            "scene                          7.000     7.000     6.000\n"
-            "rasterizer, GPU's clock        5.000     5.000     4.000\n"
-            "Pellucid, GPU's clock          3.000     3.000     2.000\n");
 }
 
 }  // namespace
