@@ -12,7 +12,7 @@ constexpr uint32_t kInvocations = 256;
 static_assert(kInvocations == PELLUCID_BLOCK_GROUP * PELLUCID_BLOCK_GROUP &&
               kInvocations == PELLUCID_FILTER_GROUP * PELLUCID_FILTER_GROUP &&
               kInvocations == PELLUCID_LIST_GROUP);
-// Of the spatial filter, the pass with most; shader_files_test holds that all have less.
+// Of the spatial filter, the pass with most; shaders_command_test holds that all have less.
 constexpr uint32_t kSharedBytes = 16384;
 
 struct Limit {
