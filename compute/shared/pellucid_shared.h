@@ -86,6 +86,7 @@ PELLUCID_BINDINGS(PELLUCID_BINDING_NUMBER)
 #define PELLUCID_FLAG_WIDE_OUTPUT 1024u // 32 bits a channel, which keep what halves round
 #define PELLUCID_FLAG_THIN_WALLS 2048u // some material is thin-walled
 #define PELLUCID_FLAG_HIDDEN_IRRADIANCE 8192u
+#define PELLUCID_FLAG_BODIES 16384u // probes say what bodies return of the diffused irradiance
 #define PELLUCID_FLAG_ADDS 4096u // the result is added to what the output holds
 
 // Specialization constants

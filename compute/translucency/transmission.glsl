@@ -343,7 +343,8 @@ Transmitted ambientTransmission(Surface s, ivec2 pixel, vec3 facet) {
   const float kPerCosine = 3.0;
   float seen = min(kPerCosine * min(abs(dot(front, s.view)), abs(dot(back, s.view))), 1.0);
   float opposite = seen * (0.5 - 0.5 * dot(front, back));
-  return Transmitted(thickness, hiddenIrradiance(pixel, back), opposite, opposite * ambientIrradiance(front));
+  vec3 visible = hasFlag(PELLUCID_FLAG_BODIES) ? vec3(0.0) : ambientIrradiance(front);
+  return Transmitted(thickness, hiddenIrradiance(pixel, back), opposite, opposite * visible);
 }
 
 // ---- Light through any surface

@@ -137,7 +137,9 @@ private:
     glm::dvec3 exitance = transmission(x, y, i).transmitted;
     if (const std::optional<Surface> surface = surfaces_.at(x, y);
         ambient_ && surface && marks_.count(i) == 0)
-      exitance += ambient_->at(*surface, capture_.material[i] - 1u);
+      exitance += ambient_->at(*surface, capture_.material[i] - 1u,
+                               settings_.translucency.gatherSamples > 0 &&
+                                   settings_.features & PELLUCID_FEATURE_DIFFUSION);
     return exitance / glm::dvec3(rho[0], rho[1], rho[2]);
   }
 

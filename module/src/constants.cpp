@@ -79,6 +79,7 @@ shared::FrameConstants frameConstants(const FrameFacts& facts) {
   if (t.chordThickness) flags |= PELLUCID_FLAG_CHORD_THICKNESS;
   if (facts.lights.needsChord) flags |= PELLUCID_FLAG_CHORD;
   if (facts.diffuses) flags |= PELLUCID_FLAG_DIFFUSED;
+  if (facts.diffuses && facts.stages.gathered > 0) flags |= PELLUCID_FLAG_BODIES;
   if (facts.wide) flags |= PELLUCID_FLAG_WIDE_OUTPUT;
   if (f.options.addToOutput == 1) flags |= PELLUCID_FLAG_ADDS;
   if (facts.thinWalls) flags |= PELLUCID_FLAG_THIN_WALLS;

@@ -215,7 +215,7 @@ shared::GatherConstants gatherConstants(const PellucidMaterial& m) {
       slab[i][c] = static_cast<float>((std::log(std::max(channels[c].transmittance(h), 1e-300)) + q * h) /
                                       std::numbers::ln2);
       decay[i][c] = static_cast<float>(q / std::numbers::ln2);
-      if (!(d > 0)) continue;
+      if (!(d > 0) || i + 1 == kGatherEntries) continue;  // the last one is a plane
       const BallFactors ball = ballFactors(channels[c], diffusion, d, std::max(h / 2, 1e-3));
       balls[i][c] = static_cast<float>(ball.returned - slabReturns(channels[c], g.reflectance[c], h));
       balls[i][3 + c] = static_cast<float>(ball.through - 1);

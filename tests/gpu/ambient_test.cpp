@@ -178,31 +178,5 @@ TEST_F(AmbientLight, AgreesWithTheReference) {
   }
 }
 
-// Light without a map is not gathered: after the diffusion it adds what it adds without one.
-TEST_F(AmbientLight, IsTheSameBesideGatheredLight) {
-  SceneParameters p;
-  p.name = "ear";
-  p.width = 64;
-  p.height = 48;
-  p.shadowSize = 64;
-  Capture c = makeScene(p);
-  c.albedo = {};
-  const std::vector<PellucidMaterial> materials(c.materials.size(), skin());
-  Capture sky = c;
-  sky.environment = Environment{{1, 2, 3}, {0.5, 0.5, 0.5}}.harmonics();
-  ReplaySettings s = through(), gathered = s;
-  gathered.features |= PELLUCID_FEATURE_DIFFUSION;
-  gathered.translucency.gatherSamples = 8;
-  const Image plain = replayer().run(c, materials, s).output,
-              plainSky = replayer().run(sky, materials, s).output;
-  const Image other = replayer().run(c, materials, gathered).output,
-              otherSky = replayer().run(sky, materials, gathered).output;
-  for (size_t i = 0; i < plain.data.size(); ++i) {
-    // Results below 0 are 0.
-    if (plainSky.data[i] == 0 || otherSky.data[i] == 0) continue;
-    ASSERT_NEAR(otherSky.data[i] - other.data[i], plainSky.data[i] - plain.data[i], 1e-4f) << i;
-  }
-}
-
 }  // namespace
 }  // namespace pellucid::test
