@@ -168,13 +168,14 @@ INSTANTIATE_TEST_SUITE_P(Truth, SharedCaptureDiffusion,
 INSTANTIATE_TEST_SUITE_P(
     Truth, SharedCaptureGather,
     testing::Values(
-        GatherExpectation{"ear_backlit", {.0600, .0354, .0316}, {.188, .109, .1705}},
+        GatherExpectation{"ear_backlit", {.0600, .0354, .0316}, {.188, .112, .1705}},
         // The unlit green and blue, .006 and .008 more since the diffusion's weights follow the view ray; all
         // pixels err less.
-        GatherExpectation{"head_sidelit", {.0310, .0227, .0218}, {.2525, .312, .484}},
+        GatherExpectation{"head_sidelit", {.0310, .0232, .0222}, {.2525, .312, .484}},
         // Next to no blue comes through but at the rims, where light enters by the side faces, too.
         GatherExpectation{"slab_backlit", {.0439, .0809, .311}, {.0439, .0809, .311}, {.03, .03, .11}},
-        GatherExpectation{"sphere_backlit", {.0619, .0330, .0457}, {.1185, .1255, .1225}},
+        // Green and blue, .012 and .008 more since bodies return what a ball does, red less.
+        GatherExpectation{"sphere_backlit", {.0619, .0458, .0536}, {.1185, .1255, .1275}},
         // A record is a mean of texels, and the front sheet ends within some.
         GatherExpectation{"two_sheets", {.0361, .0306, .0646}, {.0361, .0306, .0646}, {.031, .031, .031}}),
     [](const auto& test) { return std::string(test.param.name); });
