@@ -122,7 +122,8 @@ PELLUCID_BINDINGS(PELLUCID_BINDING_NUMBER)
 
 // PassConstants::value.x of the translucency pass: the materials that light comes through
 #define PELLUCID_LIGHT_ALL 0u
-#define PELLUCID_LIGHT_WALLS 1u // thin-walled ones alone
+#define PELLUCID_LIGHT_WALLS 1u  // thin-walled ones alone
+#define PELLUCID_LIGHT_SOLIDS 2u // all others
 
 // PassConstants::value.z of the translucency pass
 #define PELLUCID_WRITE_LAST 1u   // the frame's final write

@@ -29,7 +29,7 @@ Surface surfaceAt(ivec2 pixel, float front, float stored, uint material) {
 vec4 resultAt(ivec2 pixel, uint value, uint m, bool starts) {
   vec3 arriving = vec3(0.0), visible = vec3(0.0), transmitted = vec3(0.0);
   vec3 thickness = vec3(-1.0);
-  bool lets = pass.value.x == PELLUCID_LIGHT_ALL || isThinWalled(m + 1u);
+  bool lets = pass.value.x == PELLUCID_LIGHT_ALL || (pass.value.x == PELLUCID_LIGHT_WALLS) == isThinWalled(m + 1u);
   float stored = texelFetch(frontDepthImage, pixel, 0).x, front = frontDistanceOf(stored);
   // Marked pixels keep their irradiance.
   if (lets && front > 0.0 && (value & frame.marks.x) == 0u) {

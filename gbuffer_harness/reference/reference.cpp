@@ -78,7 +78,7 @@ public:
       case PELLUCID_DEBUG_NONE:
         return diffused();
       case PELLUCID_DEBUG_IRRADIANCE:
-        addIrradiance();
+        addIrradiance([](const PellucidMaterial&) { return true; });
         return {toImage(values_), 0, 0};
       default:
         gatherDebugView();
@@ -121,12 +121,13 @@ private:
     return surface ? translucency_.at(*surface, material(i), capture_.material[i]) : Transmission{};
   }
 
-  // E + transmitted / rho
-  void addIrradiance() {
+  // E, + transmitted / rho where through(material).
+  template <class Through>
+  void addIrradiance(Through&& through) {
     forEachPixel("translucency", [&](int x, int y, std::size_t i) {
       const float* e = capture_.irradiance.at(x, y);
       for (int c = 0; c < 3; ++c) values_[i][c] = sanitized(e[c], settings_.brightest);
-      if (settings_.features & PELLUCID_FEATURE_TRANSLUCENCY)
+      if (settings_.features & PELLUCID_FEATURE_TRANSLUCENCY && through(material(i)))
         values_[i] = glm::max(values_[i] + transmitted(x, y, i), 0.0);
     });
   }
@@ -143,7 +144,7 @@ private:
     return exitance / glm::dvec3(rho[0], rho[1], rho[2]);
   }
 
-  // Adds to the diffused irradiance what all texels of the shadow maps bring.
+  // Adds to the diffused irradiance what all texels of the shadow maps bring, and the lights without one.
   void gather(std::vector<glm::dvec3>& output) const {
     const auto& f = settings_.translucency.transmittanceFilter;
     const bool spreads = settings_.features & PELLUCID_FEATURE_DIFFUSION;
@@ -154,7 +155,8 @@ private:
       const Gathered g = all.at(*surface, capture_.material[i] - 1u);
       const float* rho = material(i).reflectance;
       output[i] = g.factor * output[i] + g.returned;
-      output[i] += g.transmitted * glm::dvec3(f[0], f[1], f[2]) / glm::dvec3(rho[0], rho[1], rho[2]);
+      output[i] += g.transmitted * glm::dvec3(f[0], f[1], f[2]) / glm::dvec3(rho[0], rho[1], rho[2]) +
+                   transmitted(x, y, i);
       output[i] = glm::max(output[i], glm::dvec3(0));
     });
   }
@@ -165,11 +167,12 @@ private:
     });
   }
 
-  // Light that comes through is diffused with the irradiance, but for gathered light, which has already spread.
+  // What comes through is diffused with the irradiance; gathered light has already spread, so it comes after.
+  // Thin walls are not gathered.
   Result diffused() {
     const bool gathers =
         settings_.translucency.gatherSamples > 0 && settings_.features & PELLUCID_FEATURE_TRANSLUCENCY;
-    addIrradiance();
+    addIrradiance([gathers](const PellucidMaterial& m) { return !gathers || m.thinWalled != 0; });
     Result result;
     std::vector<glm::dvec3> output = values_;
     if (settings_.features & PELLUCID_FEATURE_DIFFUSION) {

@@ -160,8 +160,8 @@ void Lights::group(const Inputs& inputs, const Materials& materials, const Gathe
 }
 
 uint32_t Lights::walls(const Materials& materials, const GatherChoice& gather) const {
-  if (!gather.gathers || !materials.thinWalls || gathered == 0) return 0;
-  return gathered - (first[0].lightCount == 0 ? 1 : 0);
+  if (!gather.gathers || !materials.thinWalls || lightCount == 0) return 0;
+  return count - (first[0].lightCount == 0 ? 1 : 0);
 }
 
 }  // namespace pellucid

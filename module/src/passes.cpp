@@ -68,10 +68,10 @@ void addLights(Planner& p, const Pass& pass, const char* name, const LightGroup&
 void addTranslucency(Planner& p, const LightGroup& group, uint32_t source, uint32_t destination) {
   const bool debug = p.facts.debug();
   addLights(p, debug ? kDebugViewPass : kTranslucencyPass, debug ? "debug view" : "translucency", group,
-            PELLUCID_LIGHT_ALL, source, destination);
+            p.facts.stages.walls > 0 ? PELLUCID_LIGHT_SOLIDS : PELLUCID_LIGHT_ALL, source, destination);
 }
 
-// The lights of a gathered group with thin walls alone.
+// All lights of a group that thin walls let through, in a frame that gathers.
 void addThinWalls(Planner& p, const LightGroup& group, uint32_t source, uint32_t destination) {
   addLights(p, kTranslucencyPass, "thin walls", group, PELLUCID_LIGHT_WALLS, source, destination);
 }
@@ -297,9 +297,15 @@ public:
 
   void addAll() {
     if (stages_.nothing) return;
-    thinWalls();
-    translucency();
-    diffusion();
+    // Gathered light has already spread on its way through; diffusing it again would spread it twice.
+    if (p_.facts.gathers) {
+      thinWalls();
+      diffusion();
+      translucency();
+    } else {
+      translucency();
+      diffusion();
+    }
   }
 
 private:
@@ -315,11 +321,10 @@ private:
     source_ = destination;
   }
 
-  // Light of maps that solids get by the gather, whose probes the last pass of the diffusion adds: that light has
-  // already spread on its way through.
+  // Before the diffusion, as without a gather: materials say whether light spreads within a sheet.
   void thinWalls() {
     if (stages_.walls == 0) return;
-    for (const LightGroup& group : p_.facts.lights.list().first(stages_.gathered))
+    for (const LightGroup& group : p_.facts.lights.list())
       if (group.lightCount > 0)
         pixels([&](uint32_t from, uint32_t to) { addThinWalls(p_, group, from, to); });
   }

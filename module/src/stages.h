@@ -13,7 +13,7 @@ struct Stages {
   bool lights = false;   // the fused dispatches carry lights
   bool diffusion = false;
   uint32_t fused = 0;         // fused dispatches
-  uint32_t walls = 0;         // dispatches of gathered lights for thin walls
+  uint32_t walls = 0;         // beside a gather: dispatches of thin walls' light, before what is diffused
   uint32_t gathered = 0;      // groups of lights that are gathered from
   bool keepsHistory = false;  // the frame keeps its transmitted light in options.history:
   bool keepsProbes = false;   // the gather's filtered probes, which the diffusion reads, or
