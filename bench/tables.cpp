@@ -1,7 +1,7 @@
 // Prints the documentation's tables of measured times from the results of a run, or checks or rewrites them
 // in a file:
 //   pellucid_bench_tables RESULTS.json[,RESULTS.json...] TABLE [--check | --update FILE]
-// Of several files a table takes the first one that has its rows. The tables headline and samples join two
+// A table takes the first of several files that has its rows. The tables headline and samples join two
 // files.
 #include <algorithm>
 #include <cmath>

@@ -19,7 +19,7 @@ struct ProbePlace {
 
 const uvec4 kNoProbe = uvec4(0u);
 
-const float kMostReturned = 1.0, kReturnedSteps = 255.0; // 0 is exact
+const float kReturnedSteps = 255.0; // of -1..1; 0 is exact
 
 uvec4 withAdded(uvec4 bits, vec3 added) {
   // Next to nothing counts as nothing, so that bits say which probes have no light.
@@ -28,7 +28,7 @@ uvec4 withAdded(uvec4 bits, vec3 added) {
 }
 
 uvec4 withReturned(uvec4 bits, vec3 returned) {
-  vec3 steps = clamp(returned / kMostReturned, vec3(-1.0), vec3(1.0)) * kReturnedSteps;
+  vec3 steps = clamp(returned, vec3(-1.0), vec3(1.0)) * kReturnedSteps;
   uvec3 parts = uvec3(ivec3(floor(steps + 0.5))) & 511u;
   return uvec4(bits.xyz, parts.r | parts.g << 9 | parts.b << 18 | (bits.w & 0xF8000000u));
 }
@@ -42,8 +42,7 @@ vec3 addedOf(uvec4 bits) { return unpackHalves(bits.xy); }
 
 vec3 returnedOf(uvec4 bits) {
   int w = int(bits.w);
-  return vec3(bitfieldExtract(w, 0, 9), bitfieldExtract(w, 9, 9), bitfieldExtract(w, 18, 9)) *
-         (kMostReturned / kReturnedSteps);
+  return vec3(bitfieldExtract(w, 0, 9), bitfieldExtract(w, 9, 9), bitfieldExtract(w, 18, 9)) / kReturnedSteps;
 }
 
 bool hasReturned(uvec4 bits) { return (bits.w & 0x7FFFFFFu) != 0u; }

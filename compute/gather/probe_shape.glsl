@@ -115,8 +115,8 @@ Ball ballAt(uint m, float diameter) {
   return Ball(mix(a.returned, b.returned, f), mix(a.through, b.through, f), mix(a.instead, b.instead, f));
 }
 
-// Of the body at x: R(h) / rho of a slab of its thickness, and what a ball of its curvature has besides. How much of a ball it is
-// decides what comes through: all of K through a slab.
+// Factors of the body at x: R(h) / rho of a slab of the body's thickness, and besides the excess of a ball of its curvature. All of
+// K comes through a slab; the more the body is a ball, the less comes through.
 BodyFactors bodyAt(ivec2 pixel, Surface x, ViewRay ray, float front, uint m) {
   vec4 lengths = materials[m].gather.lengths;
   float reach = materials[m].gather.body.x;
@@ -128,10 +128,7 @@ BodyFactors bodyAt(ivec2 pixel, Surface x, ViewRay ray, float front, uint m) {
   if (h < 2.5 * lengths.z) {
     GatherSlab s = slabOf(m, lengths, h);
     vec3 t = exp2(s.logarithm - s.decay * h);
-    [[unroll]] for (int c = 0; c < 3; ++c) {
-      vec4 r = materials[m].gather.reflectance[c];
-      body.returned[c] = clamp(r.x - sqrt(max(r.y * t[c] * t[c] + r.z, 0.0)), 0.0, 1.0);
-    }
+    [[unroll]] for (int c = 0; c < 3; ++c) body.returned[c] = keptReflectance(materials[m].gather.reflectance[c], t[c]);
   }
   Ball ball = ballAt(m, 2.0 / max(abs(curvature), 1.0 / kThick));
   // 1 where curvature and thickness are those of one ball; 1e-6: the inverse is finite.

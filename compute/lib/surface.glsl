@@ -11,6 +11,10 @@ struct Surface {
   uint material; // index + 1; 0: not known
 };
 
+// R(h) / rho of a slab that transmits t: the part of a half-space's reflectance that is left. `slab`: one of
+// GatherConstants::reflectance.
+float keptReflectance(vec4 slab, float t) { return clamp(slab.x - sqrt(max(slab.y * t * t + slab.z, 0.0)), 0.0, 1.0); }
+
 // `normal`: any length, view space; (0, 0, 0): none.
 Surface makeSurface(ViewRay ray, float planar, float chord, vec3 normal) {
   float squared = dot(normal, normal);

@@ -230,22 +230,16 @@ struct Transmitted {
 
 const Transmitted kNothingTransmitted = Transmitted(-1.0, vec3(0.0), 0.0, vec3(0.0));
 
-// R(h) / rho of a slab that transmits t: the part of a half-space's reflectance that is left.
-vec3 keptReflectance(uint m, vec3 t) {
-  vec3 kept;
-  for (int c = 0; c < 3; ++c) {
-    vec4 r = materials[m].gather.reflectance[c];
-    kept[c] = clamp(r.x - sqrt(max(r.y * t[c] * t[c] + r.z, 0.0)), 0.0, 1.0);
-  }
-  return kept;
-}
-
 // Exitance of material m, besides what the irradiance image has. Most pixels face some lights; T is the expensive part.
 vec3 exitanceOf(Transmitted t, uint m) {
   vec3 entering = t.arriving * t.visible, any = max(entering, t.front);
   if (!(isWithin(t.thickness, 0.0, kMostFloat) && max(any.r, max(any.g, any.b)) > 0.0)) return vec3(0.0);
   vec3 through = materialTransmittance(m, t.thickness * frame.camera.range.w), exitance = entering * through;
-  if (t.front != vec3(0.0)) exitance -= (1.0 - keptReflectance(m, through)) * t.front / materials[m].inverseReflectance.rgb;
+  if (t.front != vec3(0.0)) {
+    vec3 kept;
+    for (int c = 0; c < 3; ++c) kept[c] = keptReflectance(materials[m].gather.reflectance[c], through[c]);
+    exitance -= (1.0 - kept) * t.front / materials[m].inverseReflectance.rgb;
+  }
   return exitance;
 }
 

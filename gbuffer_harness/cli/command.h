@@ -53,7 +53,7 @@ struct GivenOption {
   bool positional, flag;
 };
 
-// Of an optional, what it holds.
+// The value type of an optional, or T itself.
 template <class T>
 struct ValueIn {
   using type = T;
@@ -74,7 +74,8 @@ public:
   Command group(const char* title) const;
 
   // `to` keeps its value without the option; the help shows it unless it is 0 or empty. Lists take all values
-  // that are given. T: std::string, a number, an optional one, or a vector of those; command.cpp lists them.
+  // that are given. T: std::string, a number, an optional or a vector of a string or number; command.cpp
+  // lists these types.
   template <class T>
   CommandOption option(const std::string& name, T& to, const std::string& help = "") const;
   // "--name", or "--name,!--opposite". Flag: bool or std::optional<bool>.
@@ -100,7 +101,7 @@ public:
   void footer(const std::string& text) const;  // of the help
   void describe(const char* option, const std::string& help) const;
   void allowAnything() const;
-  // What the command does after its options are parsed.
+  // Sets the work of the command, which begins after its options are parsed.
   void run(const std::function<void()>& work) const;
 
   std::string name() const;

@@ -83,7 +83,7 @@ private:
   // Around a surface with a normal, 1/mm, positive where convex: from what lies `reach` mm to both sides in
   // the image. 0 where it does not go on.
   double meanCurvature(const Surface& surface, double reach) const;
-  // Of a slab at any angle, of a ball its diameter; mm, INFINITY: not known.
+  // Thickness of the body, mm: a slab's at any angle, a ball's diameter. INFINITY: not known.
   double thickness(const Surface& surface) const;
   BodyFactors bodyAt(const Surface& surface, std::size_t material) const;
   // Normal of what the camera shows at a lit point of a map, world; nothing where it shows something else

@@ -137,7 +137,7 @@ GatherKernel::Diffusion GatherKernel::diffusion(int c) const {
   const auto i = static_cast<std::size_t>(c);
   Diffusion d{};
   d.rho = std::clamp(double(material_.reflectance[c]), 1e-3, 1.0);
-  // Of an index up to 1.5 the boundary keeps out .6 (1 - T(0)) of light from all around, within .4 %.
+  // The boundary keeps out .6 (1 - T(0)) of light from all around, within .4 % for indices up to 1.5.
   d.entering = 0.4 + 0.6 * std::clamp(transmittance(c, 0), 0.5, 1.0);
   d.beyond = std::min(extrapolation_[i] / 2, 10 / slowest_[i]);
   // rho = entering e^{-k (source + beyond)} cosh(k beyond) / cosh(k source), solved for e^{2 k source}

@@ -19,7 +19,7 @@ struct GatherPath {
 // to: x - y. Normals are unit.
 GatherPath gatherPath(const glm::dvec3& to, const glm::dvec3& exitNormal, const glm::dvec3& entryNormal);
 
-// Of the diffused irradiance and of what comes through.
+// A body's factors of the diffused irradiance and of the light that comes through.
 struct BodyFactors {
   glm::dvec3 returned{1}, through{1};
 };
@@ -74,10 +74,10 @@ private:
   struct Diffusion {
     double rho, entering, source, beyond;
   };
-  // Of a ball in light that has the spherical harmonic of that order, 0 or 1.
+  // Part of the light that leaves a ball, where the light is a spherical harmonic of that order, 0 or 1.
   double leaves(int channel, int order, double radius) const;
-  // Of a whole ball in one channel: what its slab of that thickness lacks, what comes through beyond 1, and
-  // what comes back instead.
+  // Three factors of a whole ball in one channel: light that comes back beyond that of a slab of its
+  // diameter, light that comes through, less 1, and light that comes back in place of light through.
   glm::dvec3 ball(int channel, double radius) const;
   Diffusion diffusion(int channel) const;
   double transmittance(int channel, double depth) const;

@@ -279,12 +279,6 @@ void FrameRun::record(VkCommandBuffer commandBuffer, uint32_t dispatch) const {
   record(commandBuffer, only(dispatch), dispatch);
 }
 
-void FrameRun::recordAlone(VkCommandBuffer commandBuffer, uint32_t dispatch) const {
-  PellucidPlan single = only(dispatch);
-  single.dispatches[0].indirect = 0;
-  record(commandBuffer, single, dispatch);
-}
-
 const void* FrameRun::constants() const { return constants_->mapped(); }
 
 PellucidStatistics FrameRun::statistics() const {

@@ -94,8 +94,6 @@ public:
   // The whole plans of several runs of one context, side by side.
   static void recordTogether(VkCommandBuffer commandBuffer, const std::vector<const FrameRun*>& runs);
   void record(VkCommandBuffer commandBuffer, uint32_t dispatch) const;  // one dispatch of it, in its turn
-  // One dispatch of it, also where the GPU would find nothing to do for it.
-  void recordAlone(VkCommandBuffer commandBuffer, uint32_t dispatch) const;
 
   // Gives an irradiance image that is the output, too, its content before the first recording again.
   void restoreIrradiance(const Capture& capture) const;

@@ -178,5 +178,37 @@ TEST_F(AmbientLight, AgreesWithTheReference) {
   }
 }
 
+// Light from hidden faces is not gathered: after the diffusion it adds what it adds without one. The light
+// that visible faces lose differs, because probes tell it where there are some.
+TEST_F(AmbientLight, IsTheSameBesideGatheredLight) {
+  SceneParameters p;
+  p.name = "ear";
+  p.width = 64;
+  p.height = 48;
+  p.shadowSize = 64;
+  Capture c = makeScene(p);
+  c.albedo = {};
+  const std::vector<PellucidMaterial> materials(c.materials.size(), skin());
+  Capture sky = c;
+  sky.hiddenIrradiance = Image(p.width, p.height, 3);
+  for (size_t i = 0; i < sky.hiddenIrradiance.data.size(); ++i)
+    sky.hiddenIrradiance.data[i] = 0.02f * static_cast<float>(i % 97);
+  ReplaySettings s = through(), gathered = s;
+  gathered.features |= PELLUCID_FEATURE_DIFFUSION;
+  gathered.translucency.gatherSamples = 8;
+  const Image plain = replayer().run(c, materials, s).output,
+              plainSky = replayer().run(sky, materials, s).output;
+  const Image other = replayer().run(c, materials, gathered).output,
+              otherSky = replayer().run(sky, materials, gathered).output;
+  double most = 0;
+  for (size_t i = 0; i < plain.data.size(); ++i) {
+    // Results below 0 are 0.
+    if (plainSky.data[i] == 0 || otherSky.data[i] == 0) continue;
+    ASSERT_NEAR(otherSky.data[i] - other.data[i], plainSky.data[i] - plain.data[i], 1e-4f) << i;
+    most = std::max(most, double(plainSky.data[i] - plain.data[i]));
+  }
+  EXPECT_GT(most, 0.1);
+}
+
 }  // namespace
 }  // namespace pellucid::test
