@@ -55,24 +55,29 @@ float meanCurvature(ivec2 pixel, Surface x, ViewRay ray, float front, float reac
   return abs(area) > least ? a.apart.w * b.apart.w * 0.5 * trace / area : 0.0;
 }
 
-// Position of the pixel's back face, view space; false where there is none.
-bool backAt(ivec2 pixel, out vec3 back) {
+// Back face of a pixel.
+struct BackFace {
+  vec3 position; // view space
+  float chord;   // from the front face to the back face along the view ray; 0: the pixel has none
+};
+
+BackFace backAt(ivec2 pixel) {
   ivec2 at = withinRect(pixel);
   float stored = texelFetch(frontDepthImage, at, 0).x, front = frontDistanceOf(stored);
   ViewRay ray = viewRay(frame.camera, at);
-  float along = chordOf(ray, front, stored, texelFetch(backDepthImage, at, 0).x);
-  back = ray.origin + front * ray.direction + along * normalize(ray.direction);
-  return at == pixel && materialAt(at) != 0u && front > 0.0 && along > 0.0;
+  float chord = chordOf(ray, front, stored, texelFetch(backDepthImage, at, 0).x);
+  bool there = at == pixel && materialAt(at) != 0u && front > 0.0 && chord > 0.0;
+  return BackFace(ray.origin + front * ray.direction + chord * normalize(ray.direction), there ? chord : 0.0);
 }
 
-// Step along an axis of the image on the back face, to the nearer side, because the other may lie across an edge.
-bool backSlope(ivec2 pixel, ivec2 axis, vec3 back, out vec3 slope) {
-  vec3 forward, backward;
-  bool hasForward = backAt(pixel + axis, forward), hasBackward = backAt(pixel - axis, backward);
-  forward -= back;
-  backward = back - backward;
-  slope = hasForward && !(hasBackward && dot(backward, backward) < dot(forward, forward)) ? forward : backward;
-  return hasForward || hasBackward;
+// Step along an axis of the image on the back face, to the nearer side, because the other may lie across an edge. `chord` grows to
+// the lesser of both sides' chords: a crease of a pixel's width, whose back face lies close, is no thin body.
+bool backSlope(ivec2 pixel, ivec2 axis, vec3 back, inout float chord, out vec3 slope) {
+  BackFace f = backAt(pixel + axis), b = backAt(pixel - axis);
+  vec3 forward = f.position - back, backward = back - b.position;
+  slope = f.chord > 0.0 && !(b.chord > 0.0 && dot(backward, backward) < dot(forward, forward)) ? forward : backward;
+  chord = max(chord, min(f.chord, b.chord));
+  return f.chord > 0.0 || b.chord > 0.0;
 }
 
 const float kThick = 1.0e6;          // mm
@@ -83,17 +88,18 @@ const float kCurvatureReach = 0.25;  // of the thickness: a ball of 4 mm that is
 // Thickness of the body at x, mm: of a slab seen at any angle, of a ball its diameter. kThick: not known, or the body is as good as
 // a half-space.
 float thicknessAt(ivec2 pixel, Surface x) {
-  vec3 back, across, along;
-  if (!hasFlag(PELLUCID_FLAG_BACK_DEPTH) || !backAt(pixel, back)) return kThick;
-  vec3 chord = (back - x.position) * frame.camera.range.w;
-  vec3 normal = -x.normal;
-  if (backSlope(pixel, ivec2(1, 0), back, across) && backSlope(pixel, ivec2(0, 1), back, along)) {
-    vec3 n = cross(across, along);
-    float squared = dot(n, n);
-    if (squared > 0.0) normal = n * (dot(n, x.view) < 0.0 ? -inversesqrt(squared) : inversesqrt(squared));
-  }
+  if (!hasFlag(PELLUCID_FLAG_BACK_DEPTH)) return kThick;
+  BackFace back = backAt(pixel);
+  if (!(back.chord > 0.0)) return kThick;
+  float chord = back.chord;
+  vec3 across, along, ray = (back.position - x.position) / back.chord, normal = -x.normal;
+  bool slopes = backSlope(pixel, ivec2(1, 0), back.position, chord, across);
+  slopes = backSlope(pixel, ivec2(0, 1), back.position, chord, along) && slopes;
+  vec3 n = cross(across, along);
+  float squared = dot(n, n);
+  if (slopes && squared > 0.0) normal = n * (dot(n, x.view) < 0.0 ? -inversesqrt(squared) : inversesqrt(squared));
   float opposite = 0.5 - 0.5 * dot(x.normal, normal);
-  float h = 0.5 * (abs(dot(chord, x.normal)) + abs(dot(chord, normal))) / max(opposite, 0.01);
+  float h = 0.5 * chord * frame.camera.range.w * (abs(dot(ray, x.normal)) + abs(dot(ray, normal))) / max(opposite, 0.01);
   return isWithin(h, 0.0, kThick) ? h : kThick;
 }
 

@@ -232,19 +232,28 @@ double Gather::meanCurvature(const Surface& surface, double reach) const {
 double Gather::thickness(const Surface& surface) const {
   if (!surface.chord || !surface.normal) return INFINITY;
   const glm::dvec2 pixel = glm::floor(surfaces_.camera().project(surface.position));
-  const auto back = [&](glm::dvec2 at) -> std::optional<glm::dvec3> {
+  struct BackFace {
+    glm::dvec3 position;
+    double chord;
+  };
+  const auto back = [&](glm::dvec2 at) -> std::optional<BackFace> {
     if (!(at.x >= 0 && at.y >= 0 && at.x < capture_.width && at.y < capture_.height)) return std::nullopt;
     const std::optional<Surface> s = surfaces_.at(static_cast<int>(at.x), static_cast<int>(at.y));
     if (!s || !s->chord) return std::nullopt;
-    return s->position + *s->chord * s->ray;
+    return BackFace{s->position + *s->chord * s->ray, *s->chord};
   };
   const glm::dvec3 here = surface.position + *surface.chord * surface.ray;
-  // To the nearer side: the other may lie across an edge.
+  double chord = *surface.chord;
+  // To the nearer side: the other may lie across an edge. A crease of a pixel's width is no thin body.
   const auto slope = [&](glm::dvec2 axis) -> std::optional<glm::dvec3> {
     const auto f = back(pixel + axis), b = back(pixel - axis);
-    if (f && b) return glm::distance(*b, here) < glm::distance(*f, here) ? here - *b : *f - here;
-    if (f) return *f - here;
-    if (b) return here - *b;
+    if (f && b) {
+      chord = std::max(chord, std::min(f->chord, b->chord));
+      const glm::dvec3 forward = f->position - here, backward = here - b->position;
+      return glm::length(backward) < glm::length(forward) ? backward : forward;
+    }
+    if (f) return f->position - here;
+    if (b) return here - b->position;
     return std::nullopt;
   };
   glm::dvec3 outward = -*surface.normal;
@@ -253,9 +262,8 @@ double Gather::thickness(const Surface& surface) const {
     const glm::dvec3 n = glm::cross(*x, *y);
     if (glm::length(n) > 0) outward = glm::normalize(glm::dot(n, surface.ray) < 0 ? -n : n);
   }
-  const double chord = *surface.chord * mm_;
   const double opposite = 0.5 - 0.5 * glm::dot(*surface.normal, outward);
-  return 0.5 * chord *
+  return 0.5 * chord * mm_ *
          (std::abs(glm::dot(surface.ray, *surface.normal)) + std::abs(glm::dot(surface.ray, outward))) /
          std::max(opposite, 0.01);
 }
