@@ -179,31 +179,34 @@ GatherSlab slabOf(uint m, vec4 lengths, float h) {
                     fract(place));
 }
 
-// The part of an entry point's light that reaches x through the medium: none where x lies beyond the exit, with air between.
-// The slope of the body's far side excuses other exits, unless x's own ray has air, too. `to`: from the lit point to x.
-float staysInside(GatherRings rings, EntryPoint entry, vec3 to, vec3 toLight) {
-  if (entry.exit >= kNoExit) return 1.0;
-  float along = -dot(to, toLight), aside = sqrt(max(dot(to, to) - along * along, 0.0));
-  const float kSteepest = 2.0; // slope of far sides: 63 degrees
-  float beyond = along - entry.exit * frame.camera.range.w - kSteepest * (1.0 - rings.shadowed) * aside;
-  return clamp(2.0 - beyond / rings.tolerance, 0.0, 1.0);
-}
-
-// The part of an entry point's light that misses the occluder on x's own light ray, an opaque plate in the body, say. The straight
-// path from the entry point to x must miss the occluder halfway from x to the depth, along the axis, at which x's own ray has left
-// the medium. A path that begins before that depth does not cross the occluder.
-float missesOccluder(GatherRings rings, LightConstants light, Surface x, uint map, vec3 to) {
-  float mm = frame.camera.range.w, behind = rings.behindExit * rings.axisCosine, along = max(-dot(to, rings.axis), 1.0e-12);
-  float crosses = rings.shadowed * clamp((along - behind) / rings.tolerance, 0.0, 1.0);
-  if (!(crosses > 0.0)) return 1.0; // else behind < along
-  vec3 halfway = x.position - 0.5 * behind / along / mm * to, point = mapPoint(map, vec4(halfway, 1.0));
+// 1 where the straight path from x to a lit point lies in the body, at the part `f` of the path, and 0 where an exit lies before:
+// there is air or an opaque body. `to`: from the lit point to x.
+float insideAt(GatherRings rings, LightConstants light, Surface x, uint map, vec3 to, float f) {
+  float mm = frame.camera.range.w;
+  vec3 on = x.position - f / mm * to, point = mapPoint(map, vec4(on, 1.0));
   vec2 off, place = placeInMap(directional(light), point);
   uvec4 bits = isInMap(map, place) ? fetchEntry(map, place, 0, off) : kNoEntry;
   if (!lightEnters(bits)) return 1.0;
   EntryPoint entry = unpackEntry(bits); // without an exit, kNoExit is beyond all
-  float perAhead = directional(light) ? 1.0 : distance(light.position.xyz, halfway);
+  float perAhead = directional(light) ? 1.0 : distance(light.position.xyz, on);
   float beyond = (distanceAhead(directional(light), entry.depth, point.z) * perAhead - entry.exit) * mm;
-  return 1.0 - crosses * clamp(beyond / rings.tolerance, 0.0, 1.0);
+  return 1.0 - clamp(beyond / rings.tolerance, 0.0, 1.0);
+}
+
+// The part of an entry point's light that reaches x through the medium. Where x lies beyond the entry point's exit, or beyond the exit
+// of x's own ray, the straight path between them must stay in the body.
+float staysInside(GatherRings rings, LightConstants light, Surface x, uint map, EntryPoint entry, vec3 to, vec3 toLight) {
+  float mm = frame.camera.range.w, stays = 1.0;
+  float beyond = clamp((-dot(to, toLight) - entry.exit * mm) / rings.tolerance - 1.0, 0.0, 1.0);
+  if (entry.exit < kNoExit && beyond > 0.0) {
+    float excused = rings.shadowed < 1.0 ? (1.0 - rings.shadowed) * insideAt(rings, light, x, map, to, 0.5) : 0.0;
+    stays = 1.0 - beyond * (1.0 - excused);
+  }
+  // A path that begins before the depth, along the axis, at which x's own ray has left the body does not cross what lies there.
+  float behind = rings.behindExit * rings.axisCosine, along = max(-dot(to, rings.axis), 1.0e-12);
+  float crosses = rings.shadowed * clamp((along - behind) / rings.tolerance, 0.0, 1.0);
+  if (stays > 0.0 && crosses > 0.0) stays *= 1.0 - crosses * (1.0 - insideAt(rings, light, x, map, to, 0.5 * behind / along)); // behind < along
+  return stays;
 }
 
 // A sample's place from x, mm.
@@ -301,8 +304,7 @@ Gathered gatherSamples(uint m, LightConstants light, Surface x, Pattern pattern,
     float flux = rings.axisCosine;
     // A point light's flux is its intensity per square scene unit at s. At the light itself any finite value will do.
     if (!parallel) flux *= mm * mm / max(dot(toLight, toLight), 1.0e-12 * mm * mm);
-    float stays = staysInside(rings, entry, to, parallel ? lightRay : normalize(toLight));
-    if (rings.shadowed > 0.0) stays *= missesOccluder(rings, light, x, map, to);
+    float stays = staysInside(rings, light, x, map, entry, to, parallel ? lightRay : normalize(toLight));
     entry.hidden *= stays;
     entry.seen *= stays;
     addSample(sum, x, m, lengths, entry, to, sqrt(plane + from), sqrt(plane + inner), flux, rings.axisCosine);

@@ -312,29 +312,29 @@ Gather::Place Gather::placeOf(std::size_t light, const Exit& exit) const {
   return place;
 }
 
-// An exit beyond a texel's back face has air before it. Far sides of one body slope by up to 63 degrees; only
-// where the exit's own ray has air, too, is that no excuse.
+// Where the exit lies beyond the texel's own exit, or beyond the one on the exit's light ray, the straight path between
+// them must stay in the body.
 double Gather::inside(const Texel& texel, const Exit& exit, const Place& place) const {
   if (!(texel.exit < INFINITY)) return 1;
   const glm::dvec3 to = exit.position - texel.position;
-  const double along = -glm::dot(to, place.toLight);
-  const double aside = std::sqrt(std::max(glm::dot(to, to) - along * along, 0.0));
-  const double beyond = along - texel.exit - 2 * (1 - place.shadowed) * aside;
-  return std::clamp(2 - beyond / place.tolerance, 0.0, 1.0) * missesOccluder(to, exit, place);
-}
-
-// The straight path must miss the occluder halfway from the exit to the depth at which the exit's own light
-// ray has left the medium. A path that begins before that depth does not cross the occluder.
-double Gather::missesOccluder(const glm::dvec3& to, const Exit& exit, const Place& place) const {
+  const double beyond =
+      std::clamp((-glm::dot(to, place.toLight) - texel.exit) / place.tolerance - 1, 0.0, 1.0);
+  double stays = 1;
+  if (beyond > 0) stays -= beyond * (1 - (1 - place.shadowed) * pathInside(to, exit, place, 0.5));
+  // A path that begins before the depth at which the exit's own light ray has left the medium does not cross what lies there.
   const double along = -glm::dot(to, place.axis);
   const double crosses = place.shadowed * std::clamp((along - place.behind) / place.tolerance, 0.0, 1.0);
-  if (!(crosses > 0)) return 1;
-  const glm::dvec3 halfway = (exit.position - 0.5 * place.behind / along * to) / mm_;
+  if (crosses > 0) stays *= 1 - crosses * (1 - pathInside(to, exit, place, 0.5 * place.behind / along));
+  return stays;
+}
+
+double Gather::pathInside(const glm::dvec3& to, const Exit& exit, const Place& place, double part) const {
+  const glm::dvec3 on = (exit.position - part * to) / mm_;
   for (const ShadowView& view : *place.views) {
-    const ShadowView::Lookup found = view.at(halfway);
+    const ShadowView::Lookup found = view.at(on);
     if (found.kind == ShadowView::Kind::Outside) continue;
     if (found.kind != ShadowView::Kind::Surface || !found.fromExit || found.casterMaterial == 0) return 1;
-    return 1 - crosses * std::clamp(mm_ * *found.fromExit / place.tolerance, 0.0, 1.0);
+    return 1 - std::clamp(mm_ * *found.fromExit / place.tolerance, 0.0, 1.0);
   }
   return 1;
 }
