@@ -1,10 +1,7 @@
-#include "views.h"
-
-#include "defaults.h"
-#include "images.h"
-#include "plan_bindings.h"
-#include "plan_state.h"
-#include "rect.h"
+// Views before they are recorded: what is refused.
+#include "context.h"
+#include "plan.h"
+#include "struct_size.h"
 
 namespace pellucid {
 namespace {
@@ -143,9 +140,7 @@ void checkView(const PellucidContext& c, std::span<const PellucidView> views, ui
   else if (view.constants->offset % kSlotBytes != 0 || !view.constants->buffer)
     out.error("constants", "needs a buffer and an offset that is a multiple of 256");
   if (out.result() != PELLUCID_OK) return;
-  if (!canReadStruct(view.frame, kLeastFrame))
-    return out.fail(PELLUCID_ERROR_VERSION, "structSize", "is ", view.frame->structSize,
-                    " (call pellucidInitFrame)");
+  if (!checkStructSize(view.frame, kLeastFrame, "structSize", "pellucidInitFrame", out)) return;
   checkContext(c, *view.plan, out);
   if (out.result() == PELLUCID_OK) checkBound(c, *view.plan, *view.frame, out);
   if (out.result() != PELLUCID_OK) return;
