@@ -296,8 +296,7 @@ void putLightTables(const FrameFacts& f, void* mapped) {
     const float* factor = f.frame.options.lightTables[table].factor;
     for (size_t i = 0; i < halves.size(); ++i)
       halves[i] = glm::packHalf2x16({factor[2 * i], factor[2 * i + 1]});
-    put(mapped,
-        f.constants.frame + offsetof(shared::FrameConstants, lightTables) + table * sizeof halves,
+    put(mapped, f.constants.frame + offsetof(shared::FrameConstants, lightTables) + table * sizeof halves,
         halves);
   }
 }
@@ -320,8 +319,7 @@ void putLights(const FrameFacts& f, void* mapped) {
         const EntryExtent extent = entryExtent(f, l, k);
         const EntryConstants entry = entryConstants(s, l, constants, f.viewFromWorld, extent, row, i);
         row += entryGroups(extent.height);
-        put(mapped, layout.gatherMaps + group.gatherMapBytes + shadow * sizeof entry.gather,
-            entry.gather);
+        put(mapped, layout.gatherMaps + group.gatherMapBytes + shadow * sizeof entry.gather, entry.gather);
         put(mapped, layout.entryMaps + group.entryMapBytes + shadow * sizeof entry.map, entry.map);
       }
     }
@@ -360,8 +358,7 @@ PellucidResult writeConstants(const FrameFacts& f, const PellucidPlan& plan, voi
       std::memcpy(&tables, f.frame.options.materialTables[i].words, sizeof tables);
     else
       makeTables(f.material(i), &tables);
-    put(mapped, layout.materials + i * sizeof(shared::MaterialConstants),
-        materialConstants(f, tables));
+    put(mapped, layout.materials + i * sizeof(shared::MaterialConstants), materialConstants(f, tables));
     if (f.diffusedCount(tables.material) == 0) tables.kernel = {};
     put(mapped, layout.kernels + i * sizeof(shared::KernelConstants), tables.kernel);
     if (f.gathers && tables.material.thinWalled == 0)

@@ -78,7 +78,7 @@ bool writesWithoutFormat(const PellucidContextDesc& desc, const Queries& get) {
 void checkLimits(const PellucidContextDesc& desc, const VkPhysicalDeviceProperties& properties,
                  Findings& out) {
   const Queries get(desc, out);
-  if (out.result() != PELLUCID_OK) return;
+  if (!out.ok()) return;
   const VkPhysicalDeviceLimits& l = properties.limits;
   const auto refuse = [&](const char* name, uint64_t has, uint64_t needed) {
     out.fail(PELLUCID_ERROR_MISSING_FEATURE, "physicalDevice", properties.deviceName, " has ", name, " ", has,
@@ -115,29 +115,24 @@ constexpr uint32_t kAllUses = PELLUCID_USE_TRANSLUCENCY | PELLUCID_USE_GATHER | 
                               PELLUCID_USE_AMBIENT | PELLUCID_USE_THESIS;
 
 void checkDesc(const PellucidContextDesc& desc, Findings& out) {
-  if (desc.headerVersion != PELLUCID_HEADER_VERSION) {
+  if (desc.headerVersion != PELLUCID_HEADER_VERSION)
     return out.fail(PELLUCID_ERROR_VERSION, "headerVersion", "is ", desc.headerVersion, "; this library has ",
-             PELLUCID_HEADER_VERSION);
-  }
-  if (!desc.instance || !desc.physicalDevice || !desc.device || !desc.getInstanceProcAddr) {
+                    PELLUCID_HEADER_VERSION);
+  if (!desc.instance || !desc.physicalDevice || !desc.device || !desc.getInstanceProcAddr)
     return out.error(!desc.instance         ? "instance"
-             : !desc.physicalDevice ? "physicalDevice"
-             : !desc.device         ? "device"
-                                    : "getInstanceProcAddr",
-             "is NULL");
-  }
+                     : !desc.physicalDevice ? "physicalDevice"
+                     : !desc.device         ? "device"
+                                            : "getInstanceProcAddr",
+                     "is NULL");
   if (desc.options.outputFormat != VK_FORMAT_UNDEFINED &&
       desc.options.outputFormat != VK_FORMAT_R16G16B16A16_SFLOAT &&
-      desc.options.outputFormat != VK_FORMAT_R32G32B32A32_SFLOAT) {
-    return out.error("options.outputFormat", "is VkFormat ",
-             static_cast<int>(desc.options.outputFormat),
-             "; R16G16B16A16_SFLOAT, R32G32B32A32_SFLOAT and UNDEFINED are possible");
-  }
+      desc.options.outputFormat != VK_FORMAT_R32G32B32A32_SFLOAT)
+    return out.error("options.outputFormat", "is VkFormat ", static_cast<int>(desc.options.outputFormat),
+                     "; R16G16B16A16_SFLOAT, R32G32B32A32_SFLOAT and UNDEFINED are possible");
   if (desc.options.shadowViewType != VK_IMAGE_VIEW_TYPE_2D &&
-      desc.options.shadowViewType != VK_IMAGE_VIEW_TYPE_2D_ARRAY) {
+      desc.options.shadowViewType != VK_IMAGE_VIEW_TYPE_2D_ARRAY)
     return out.error("options.shadowViewType", "is VkImageViewType ",
-             static_cast<int>(desc.options.shadowViewType), "; 2D and 2D_ARRAY are possible");
-  }
+                     static_cast<int>(desc.options.shadowViewType), "; 2D and 2D_ARRAY are possible");
   const std::tuple<const char*, uint32_t, uint32_t> mosts[] = {
       {"options.normalEncoding", desc.options.normalEncoding, PELLUCID_NORMALS_OCTAHEDRAL_UNORM},
       {"options.deferPipelines", desc.options.deferPipelines, 1},
@@ -145,27 +140,21 @@ void checkDesc(const PellucidContextDesc& desc, Findings& out) {
       {"options.descriptorPools", desc.options.descriptorPools, 1}};
   for (const auto& [field, value, most] : mosts)
     if (value > most) return out.error(field, "is ", value, ", outside 0..", most);
-  if (desc.options.uses & ~kAllUses) {
-    return out.error("options.uses", "has unknown bits ",
-             desc.options.uses & ~kAllUses);
-  }
-  if (desc.apiVersion < VK_API_VERSION_1_1) {
-    return out.fail(PELLUCID_ERROR_MISSING_FEATURE, "apiVersion", "is ", VK_API_VERSION_MAJOR(desc.apiVersion), ".",
-             VK_API_VERSION_MINOR(desc.apiVersion), "; Vulkan 1.1 is required");
-  }
+  if (desc.options.uses & ~kAllUses)
+    return out.error("options.uses", "has unknown bits ", desc.options.uses & ~kAllUses);
+  if (desc.apiVersion < VK_API_VERSION_1_1)
+    return out.fail(PELLUCID_ERROR_MISSING_FEATURE, "apiVersion", "is ",
+                    VK_API_VERSION_MAJOR(desc.apiVersion), ".", VK_API_VERSION_MINOR(desc.apiVersion),
+                    "; Vulkan 1.1 is required");
   const auto getProperties = reinterpret_cast<PFN_vkGetPhysicalDeviceProperties>(
       desc.getInstanceProcAddr(desc.instance, "vkGetPhysicalDeviceProperties"));
-  if (!getProperties) {
-    return out.error("getInstanceProcAddr",
-             "does not find vkGetPhysicalDeviceProperties");
-  }
+  if (!getProperties) return out.error("getInstanceProcAddr", "does not find vkGetPhysicalDeviceProperties");
   VkPhysicalDeviceProperties properties;
   getProperties(desc.physicalDevice, &properties);
-  if (properties.apiVersion < VK_API_VERSION_1_1) {
+  if (properties.apiVersion < VK_API_VERSION_1_1)
     return out.fail(PELLUCID_ERROR_MISSING_FEATURE, "physicalDevice", properties.deviceName, " has Vulkan ",
-             VK_API_VERSION_MAJOR(properties.apiVersion), ".", VK_API_VERSION_MINOR(properties.apiVersion),
-             "; 1.1 is required");
-  }
+                    VK_API_VERSION_MAJOR(properties.apiVersion), ".",
+                    VK_API_VERSION_MINOR(properties.apiVersion), "; 1.1 is required");
   checkLimits(desc, properties, out);
 }
 

@@ -69,8 +69,7 @@ constexpr auto kThesisFloats = std::to_array<FloatDomain>({
     {FIELD(PellucidThesisOptions, minimumDot), -1, 0},
     {FIELD(PellucidThesisOptions, maximumThickness), 0, kLongestMm},
     {FIELD(PellucidThesisOptions, transmittanceFilter), 0, 1},
-    {FIELD(PellucidThesisOptions, faceVector), -kLongest, kLongest, false, looksMinimumDotsUp,
-     kMinimumDots},
+    {FIELD(PellucidThesisOptions, faceVector), -kLongest, kLongest, false, looksMinimumDotsUp, kMinimumDots},
     {FIELD(PellucidThesisOptions, upAxis), -kLongest, kLongest, false, looksMinimumDotsUp, kMinimumDots},
     {FIELD(PellucidThesisOptions, objectCenter), -kLongest, kLongest, false, looksMinimumDotsUp,
      kMinimumDots},
@@ -86,8 +85,8 @@ constexpr auto kThesisIntegers = std::to_array<IntegerDomain>({
 constexpr auto kMaterialFloats = std::to_array<FloatDomain>({
     {FIELD(PellucidMaterial, transmittance), -kLongestMm, kLongestMm, false, isSolid, "`thinWalled` 0", 5},
     {FIELD(PellucidMaterial, reflectance), 0, 1, true},
-    {FIELD(PellucidMaterial, gaussianVariance), 0, kLongestMm* kLongestMm, true,
-     isGaussian, "the first `gaussianCount` of a row", PELLUCID_MAX_GAUSSIANS},
+    {FIELD(PellucidMaterial, gaussianVariance), 0, kLongestMm* kLongestMm, true, isGaussian,
+     "the first `gaussianCount` of a row", PELLUCID_MAX_GAUSSIANS},
     {FIELD(PellucidMaterial, gaussianWeight), 0, 1.001F, false, isGaussian,
      "the first `gaussianCount` of a row", PELLUCID_MAX_GAUSSIANS},
     {FIELD(PellucidMaterial, radius), 0, kLongestMm, true, diffuses, "`gaussianCount` above 0"},
@@ -116,8 +115,7 @@ constexpr auto kLightFloats = std::to_array<FloatDomain>({
 constexpr auto kLightIntegers =
     std::to_array<IntegerDomain>({{FIELD(PellucidLight, type), 0, PELLUCID_LIGHT_SPOT}});
 
-constexpr auto kLightTableFloats =
-    std::to_array<FloatDomain>({{FIELD(PellucidLightTable, factor), 0, 1}});
+constexpr auto kLightTableFloats = std::to_array<FloatDomain>({{FIELD(PellucidLightTable, factor), 0, 1}});
 
 constexpr auto kMapFloats = std::to_array<FloatDomain>({
     {FIELD(PellucidShadowMap, clipFromWorld), -kLongest, kLongest},

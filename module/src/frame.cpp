@@ -60,8 +60,8 @@ Stages::Stages(const Setup& setup, const Lights& all, const Blocks& blocks) {
   history = keepsHistory && !keepsProbes;
   whyNoLists = setup.frame.options.indirectDispatches == 0 ? "frame.options.indirectDispatches asks for none"
                : all.gathered > 1                          ? "lights need several dispatches"
-               : blocks.listGroups() > kMostGroups ? "the image has more blocks than lists can hold"
-                                                   : nullptr;
+               : blocks.listGroups() > kMostGroups         ? "the image has more blocks than lists can hold"
+                                                           : nullptr;
   lists = diffusion && !whyNoLists;
 }
 

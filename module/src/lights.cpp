@@ -33,8 +33,7 @@ bool LightGroup::addImage(uint32_t image) {
 }
 
 bool LightGroup::addImages(const Setup& setup, const PellucidLight& light, const PellucidShadowMap& map) {
-  return addImage(map.image) &&
-         (!readsExit(setup, light, map) || addImage(map.options.exitImage - 1)) &&
+  return addImage(map.image) && (!readsExit(setup, light, map) || addImage(map.options.exitImage - 1)) &&
          (!readsCaster(map) || addImage(map.options.casterMaterialImage - 1));
 }
 
@@ -138,10 +137,9 @@ Lights::Lights(const Setup& setup, Findings& out) {
   // At most: three dispatches that downsample, base level, upsample, two that diffuse, history.
   constexpr uint32_t kOthers = 8;
   // Debug views of light need all lights in one dispatch.
-  const bool binds =
-      setup.debug() && frame.options.debugView != PELLUCID_DEBUG_IRRADIANCE
-          ? count <= 1
-          : fused() + gatherDispatches() + walls + kOthers <= PELLUCID_MAX_DISPATCHES;
+  const bool binds = setup.debug() && frame.options.debugView != PELLUCID_DEBUG_IRRADIANCE
+                         ? count <= 1
+                         : fused() + gatherDispatches() + walls + kOthers <= PELLUCID_MAX_DISPATCHES;
   if (!binds) group(setup, false);
 }
 

@@ -28,7 +28,7 @@ extern "C" PellucidResult pellucidMakeMaterialTables(const PellucidMaterial* mat
   inputs.frame.materialCount = 1;
   Findings silent;
   checkMaterials(inputs, silent);
-  if (silent.result() != PELLUCID_OK) return silent.result();
+  if (!silent.ok()) return silent.result();
   MaterialTables made;
   makeTables(inputs.material(0), &made);
   *tables = {};

@@ -31,15 +31,17 @@ inline constexpr std::array<Binding, PELLUCID_BINDING_COUNT> kBindings = [] {
 #define PELLUCID_BINDING_ROW(number, value, name, type) all[value] = {value, #name, type};
   PELLUCID_BINDINGS(PELLUCID_BINDING_ROW)
 #undef PELLUCID_BINDING_ROW
-  constexpr const char* kShadowImages[] = {"shadowImage0", "shadowImage1",  "shadowImage2", "shadowImage3",
-                                           "shadowImage4", "shadowImage5",  "shadowImage6", "shadowImage7",
+  constexpr const char* kShadowImages[] = {"shadowImage0", "shadowImage1", "shadowImage2",  "shadowImage3",
+                                           "shadowImage4", "shadowImage5", "shadowImage6",  "shadowImage7",
                                            "shadowImage8", "shadowImage9", "shadowImage10", "shadowImage11"};
   for (uint32_t i = 0; i < PELLUCID_ENTRY_IMAGE_COUNT; ++i)
-    all[PELLUCID_BINDING_SHADOW_IMAGES + i] = {PELLUCID_BINDING_SHADOW_IMAGES + i, kShadowImages[i], kSampled};
+    all[PELLUCID_BINDING_SHADOW_IMAGES + i] = {PELLUCID_BINDING_SHADOW_IMAGES + i, kShadowImages[i],
+                                               kSampled};
   return all;
 }();
 
-static_assert(std::all_of(kBindings.begin(), kBindings.end(), [](const Binding& b) { return b.name != nullptr; }));
+static_assert(std::all_of(kBindings.begin(), kBindings.end(),
+                          [](const Binding& b) { return b.name != nullptr; }));
 
 // Bits by number.
 using BindingSet = uint64_t;

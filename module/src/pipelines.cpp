@@ -14,25 +14,6 @@ constexpr uint32_t kHeaderWords = 5, kOpTypeImage = 25, kOpCapability = 17;
 constexpr uint32_t kCapabilityShader = 1, kCapabilityWriteWithoutFormat = 56;
 constexpr uint32_t kUnknown = 0, kRgba32f = 1, kRgba16f = 2, kStorageImage = 2;
 
-}  // namespace
-
-void fixOutputFormat(uint32_t* words, std::size_t wordCount, bool wide) {
-  for (std::size_t at = kHeaderWords; at < wordCount;) {
-    const uint32_t opcode = words[at] & 0xFFFF, count = words[at] >> 16;
-    if (count == 0 || count > wordCount - at) return;
-    uint32_t* operands = words + at + 1;
-    // A capability may be declared twice.
-    if (opcode == kOpCapability && operands[0] == kCapabilityWriteWithoutFormat)
-      operands[0] = kCapabilityShader;
-    // result, sampled type, dim, depth, arrayed, multisampled, sampled, format
-    if (opcode == kOpTypeImage && operands[6] == kStorageImage && operands[7] == kUnknown)
-      operands[7] = wide ? kRgba32f : kRgba16f;
-    at += count;
-  }
-}
-
-namespace {
-
 // The set and the layout of a pass.
 VkResult createLayout(PellucidContext& c, uint32_t index, const char** call) {
   VkDescriptorSetLayoutBinding bindings[PELLUCID_BINDING_COUNT];
@@ -56,18 +37,6 @@ VkResult createLayout(PellucidContext& c, uint32_t index, const char** call) {
   *call = "vkCreatePipelineLayout";
   return c.vk.vkCreatePipelineLayout(c.device, &layout, c.callbacks(), &c.pipelineLayouts[index]);
 }
-
-}  // namespace
-
-PellucidResult createLayouts(PellucidContext& c, Findings& out) {
-  const char* call = nullptr;
-  for (uint32_t i = 0; i < allPasses().size(); ++i)
-    if (const VkResult result = createLayout(c, i, &call); result != VK_SUCCESS)
-      return vulkanError(out, call, result);
-  return PELLUCID_OK;
-}
-
-namespace {
 
 // One pipeline for each thread that the caller lends.
 struct PipelineJobs {
@@ -123,6 +92,29 @@ VkResult createPipeline(const PellucidContext& c, uint32_t index, VkPipeline* pi
 }
 
 }  // namespace
+
+void fixOutputFormat(uint32_t* words, std::size_t wordCount, bool wide) {
+  for (std::size_t at = kHeaderWords; at < wordCount;) {
+    const uint32_t opcode = words[at] & 0xFFFF, count = words[at] >> 16;
+    if (count == 0 || count > wordCount - at) return;
+    uint32_t* operands = words + at + 1;
+    // A capability may be declared twice.
+    if (opcode == kOpCapability && operands[0] == kCapabilityWriteWithoutFormat)
+      operands[0] = kCapabilityShader;
+    // result, sampled type, dim, depth, arrayed, multisampled, sampled, format
+    if (opcode == kOpTypeImage && operands[6] == kStorageImage && operands[7] == kUnknown)
+      operands[7] = wide ? kRgba32f : kRgba16f;
+    at += count;
+  }
+}
+
+PellucidResult createLayouts(PellucidContext& c, Findings& out) {
+  const char* call = nullptr;
+  for (uint32_t i = 0; i < allPasses().size(); ++i)
+    if (const VkResult result = createLayout(c, i, &call); result != VK_SUCCESS)
+      return vulkanError(out, call, result);
+  return PELLUCID_OK;
+}
 
 PellucidResult createPipelines(PellucidContext& c, std::bitset<kMostPasses> wanted, Findings& out) {
   const PellucidContextDesc& desc = c.desc;

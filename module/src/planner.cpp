@@ -87,9 +87,8 @@ Step& Step::blocks(uint32_t which, uint32_t parts) {
 Step& Step::list(uint32_t which) {
   if (!planner_.facts.stages.lists) return *this;
   d_.indirect = 1;
-  d_.indirectOffset =
-      static_cast<uint32_t>(planner_.facts.constants.lists + offsetof(shared::BlockLists, commands) +
-                            which * sizeof(glm::uvec4));
+  d_.indirectOffset = static_cast<uint32_t>(
+      planner_.facts.constants.lists + offsetof(shared::BlockLists, commands) + which * sizeof(glm::uvec4));
   return *this;
 }
 

@@ -22,11 +22,11 @@ struct Setup : Inputs {
   // ---- All materials together
   bool diffuses = false;                   // a material does
   bool thinWalls = false, solids = false;  // a material is thin-walled; one is not
-  // Reach of the materials that diffuse, at options.nearestDistance; all 0 where that does not say how large a
-  // pixel is.
+  // Reach of the materials that diffuse, at options.nearestDistance; all 0 where that does not say how large
+  // a pixel is.
   double pixelsPerMm;
-  double largestRadius = 0;     // pixels; PellucidMaterial::radius
-  double widestDeviation = 0;   // pixels; standard deviation of a Gaussian
+  double largestRadius = 0;    // pixels; PellucidMaterial::radius
+  double widestDeviation = 0;  // pixels; standard deviation of a Gaussian
 
   // ---- The gather
   const char* whyNotGathered;  // NULL: lights with a map can be. Static string

@@ -58,8 +58,8 @@ void checkMinimumDotTable(const PellucidThesisOptions& t, Findings& out) {
       if (!(t.minimumDotTable[i] >= -1 && t.minimumDotTable[i] <= 0))
         out.error("thesis.minimumDotTable", "[", i, "] is ", t.minimumDotTable[i], ", outside [-1, 0]");
   }
-  const double sine = glm::length(
-      glm::cross(glm::normalize(toVector(t.upAxis)), glm::normalize(toVector(t.faceVector))));
+  const double sine =
+      glm::length(glm::cross(glm::normalize(toVector(t.upAxis)), glm::normalize(toVector(t.faceVector))));
   // Nearer to each other than this, float rounding would decide where the face looks.
   if (!(sine > 1e-4))
     out.error("thesis.faceVector", "is ", t.faceVector[0], ", ", t.faceVector[1], ", ", t.faceVector[2],
@@ -104,8 +104,7 @@ void checkFields(const Inputs& inputs, Findings& out) {
   checkDomains(inputs.thesis, "thesis.", out);
   DepthRange range;
   if (const char* wrong = readDepthRange(toMatrix(f.clipFromView), &range)) out.error("clipFromView", wrong);
-  if (!isRigid(toMatrix(f.viewFromWorld)))
-    out.error("viewFromWorld", "is not a rotation and translation");
+  if (!isRigid(toMatrix(f.viewFromWorld))) out.error("viewFromWorld", "is not a rotation and translation");
   if (f.options.outputFormat != VK_FORMAT_R16G16B16A16_SFLOAT &&
       f.options.outputFormat != VK_FORMAT_R32G32B32A32_SFLOAT &&
       f.options.outputFormat != VK_FORMAT_B10G11R11_UFLOAT_PACK32)
@@ -188,8 +187,7 @@ void checkLayout(const PellucidImage& image, const char* field, Findings& out) {
 
 void checkGeneral(const PellucidImage& image, const char* field, Findings& out) {
   if (given(image) && image.layout != VK_IMAGE_LAYOUT_GENERAL)
-    out.error(field, "is in VkImageLayout ", static_cast<int>(image.layout),
-              "; storage writes need GENERAL");
+    out.error(field, "is in VkImageLayout ", static_cast<int>(image.layout), "; storage writes need GENERAL");
 }
 
 // The views that a recording needs.

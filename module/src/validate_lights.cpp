@@ -25,8 +25,7 @@ void checkShadowMap(const PellucidFrame& f, uint32_t index, Findings& out) {
                 s.extent[i], "; the tile must end within ", kMostTexels, " texels");
   if (glm::determinant(toMatrix(s.clipFromWorld)) == 0)
     out.error(field("clipFromWorld"), "cannot be inverted");
-  if (s.encoding != PELLUCID_DEPTH_DEVICE &&
-      !isRigid(toMatrix(s.options.viewFromWorld)))
+  if (s.encoding != PELLUCID_DEPTH_DEVICE && !isRigid(toMatrix(s.options.viewFromWorld)))
     out.error(field("options.viewFromWorld"), "is not a rotation and translation, which this encoding needs");
   const auto checkBeside = [&](const char* name, uint32_t image) {
     if (image > f.shadowImageCount)
