@@ -101,7 +101,7 @@ PELLUCID_BINDINGS(PELLUCID_BINDING_NUMBER)
 // Values of the public enums the shaders branch on; constants.cpp asserts that they agree.
 #define PELLUCID_SHADER_LIGHT_DIRECTIONAL 0u
 #define PELLUCID_SHADER_LIGHT_SPOT 2u
-#define PELLUCID_SHADER_LIGHT_AMBIENT 3u // no PellucidLightType: module/src/ambient.h
+#define PELLUCID_SHADER_LIGHT_AMBIENT 3u // no PellucidLightType: module/src/lights.h
 #define PELLUCID_SHADER_DEPTH_DEVICE 0u
 #define PELLUCID_SHADER_DEPTH_VIEW_Z 1u
 #define PELLUCID_SHADER_DEPTH_DISTANCE 2u

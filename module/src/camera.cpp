@@ -12,6 +12,15 @@ glm::dmat4 toMatrix(const float (&columns)[16]) {
   return m;
 }
 
+bool isRigid(const glm::dmat4& m) {
+  const glm::dmat3 r(m);
+  const glm::dmat3 shouldBeIdentity = glm::transpose(r) * r;
+  for (int c = 0; c < 3; ++c)
+    for (int i = 0; i < 3; ++i)  // 1e-3 forgives float matrices built in several steps
+      if (!(std::abs(shouldBeIdentity[c][i] - (c == i ? 1.0 : 0.0)) <= 1e-3)) return false;
+  return m[0][3] == 0 && m[1][3] == 0 && m[2][3] == 0 && m[3][3] == 1;
+}
+
 const char* readDepthRange(const glm::dmat4& m, DepthRange* range) {
   for (int c = 0; c < 4; ++c)
     for (int r = 0; r < 4; ++r)

@@ -28,5 +28,9 @@ shared::Camera makeCamera(const glm::dmat4& clipFromView, const DepthRange& rang
 double pixelSide(const glm::dmat4& clipFromView, const DepthRange& range, glm::uvec2 extent, double distance);
 
 glm::dmat4 toMatrix(const float (&columns)[16]);
+inline glm::dvec3 toVector(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
+
+// An affine transform of a rotation, without scale, and a translation; false for NaN.
+bool isRigid(const glm::dmat4& m);
 
 }  // namespace pellucid

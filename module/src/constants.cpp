@@ -1,19 +1,63 @@
-// The bytes of the constants slice: frame, lights, shadow maps, materials, kernels.
+// The constants slice: where parts lie, and the bytes of frame, lights, shadow maps, materials, kernels.
+#include "constants.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <glm/packing.hpp>
 
-#include "constants.h"
 #include "domains.h"
 #include "entry_points.h"
-#include "gather.h"
+#include "frame.h"
 #include "material_tables.h"
 #include "minimum_dot.h"
-#include "shadow_map.h"
 #include "transmittance.h"
 
 namespace pellucid {
+
+// ---- Layout
+
+ConstantsLayout::ConstantsLayout(const Setup& setup, const Lights& all, const Stages& stages,
+                                 const Blocks& blocks) {
+  const LightGroup& last = all.last;
+  const auto place = [this](VkDeviceSize* offset, VkDeviceSize bytes) {
+    *offset = size;
+    size += aligned(bytes);
+  };
+  place(&frame, sizeof(shared::FrameConstants));
+  // The last group's window reaches as far as the first one's.
+  place(&lights, last.lightBytes + kLightWindow);
+  place(&shadows, last.shadowBytes + kShadowWindow);
+  place(&materials, setup.frame.materialCount * sizeof(shared::MaterialConstants));
+  place(&kernels, setup.frame.materialCount * sizeof(shared::KernelConstants));
+  if (setup.gathers) {
+    place(&gatherMaps, last.gatherMapBytes + kGatherMapWindow);
+    place(&entryMaps, last.entryMapBytes + kEntryMapWindow);
+  }
+  if (stages.diffusion)
+    place(&lists, sizeof(shared::BlockLists) + blocks.maps * PELLUCID_ENTRY_GROUP_WORDS * sizeof(uint32_t));
+}
+
 namespace {
+
+// A plan holds no more groups of lights than dispatches.
+VkDeviceSize mostConstants(VkDeviceSize materials, VkDeviceSize lights, VkDeviceSize maps) {
+  const VkDeviceSize groups = std::clamp(lights, VkDeviceSize{1}, VkDeviceSize{PELLUCID_MAX_DISPATCHES});
+  // The bytes that a range holds of the groups before the last one, each rounded up, and the last one's
+  // window.
+  const auto grouped = [groups](VkDeviceSize bytes, VkDeviceSize window) {
+    return aligned(bytes + (groups - 1) * (aligned(1) - 1) + window);
+  };
+  return aligned(sizeof(shared::FrameConstants)) + aligned(materials * sizeof(shared::MaterialConstants)) +
+         aligned(materials * sizeof(shared::KernelConstants)) +
+         grouped(lights * sizeof(shared::LightConstants), kLightWindow) +
+         grouped(maps * sizeof(shared::ShadowConstants), kShadowWindow) +
+         grouped(maps * sizeof(shared::GatherMapConstants), kGatherMapWindow) +
+         grouped(maps * sizeof(shared::EntryMapConstants), kEntryMapWindow) +
+         aligned(sizeof(shared::BlockLists) + maps * PELLUCID_ENTRY_GROUP_WORDS * sizeof(uint32_t));
+}
+
+// ---- Bytes
 
 static_assert(PELLUCID_SHADER_LIGHT_DIRECTIONAL == PELLUCID_LIGHT_DIRECTIONAL);
 static_assert(PELLUCID_SHADER_LIGHT_SPOT == PELLUCID_LIGHT_SPOT);
@@ -44,6 +88,28 @@ static_assert(PELLUCID_MAX_LIGHT_SHADOW_MAPS <= PELLUCID_SHADOW_IMAGE_COUNT);
 
 glm::vec4 rgb(const float (&v)[3], float w = 0) { return {v[0], v[1], v[2], w}; }
 
+// Per channel the form whose value at (n, 1) is the irradiance, times pre-exposure, of a face of normal n in
+// view space. Ramamoorthi & Hanrahan 2001, equations 11 and 12.
+std::array<glm::mat4, 3> ambientIrradiance(const Setup& setup) {
+  std::array<glm::mat4, 3> result{};
+  if (!setup.frame.options.ambient) return result;
+  constexpr double c1 = 0.42904276540489, c2 = 0.51166335397324, c3 = 0.74312386836844, c4 = 0.88622692545276,
+                   c5 = 0.24770795612281;
+  const glm::dmat4 rotation(glm::dmat3(setup.viewFromWorld));
+  for (size_t c = 0; c < 3; ++c) {
+    double l[9];
+    for (size_t i = 0; i < 9; ++i)
+      l[i] = static_cast<double>(setup.frame.options.ambient[3 * i + c]) *
+             static_cast<double>(setup.frame.preExposure);
+    const glm::dmat4 world(c1 * l[8], c1 * l[4], c1 * l[7], c2 * l[3],   //
+                           c1 * l[4], -c1 * l[8], c1 * l[5], c2 * l[1],  //
+                           c1 * l[7], c1 * l[5], c3 * l[6], c2 * l[2],   //
+                           c2 * l[3], c2 * l[1], c2 * l[2], c4 * l[0] - c5 * l[6]);
+    result[c] = glm::mat4(rotation * world * glm::transpose(rotation));
+  }
+  return result;
+}
+
 shared::FrameConstants frameConstants(const FrameFacts& facts) {
   const PellucidFrame& f = facts.frame;
   shared::FrameConstants c{};
@@ -64,7 +130,7 @@ shared::FrameConstants frameConstants(const FrameFacts& facts) {
   };
   c.facingRay[0] = {facing(camera.rayBase), facing(camera.rayX)};
   c.facingRay[1] = {facing(camera.rayY), 0, 0};
-  const std::array<glm::mat4, 3> ambient = ambientIrradiance(facts, facts);
+  const std::array<glm::mat4, 3> ambient = ambientIrradiance(facts);
   std::copy(ambient.begin(), ambient.end(), c.ambient);
   const Rect& r = facts.rect;
   c.rect = {r.x, r.y, r.x + r.width, r.y + r.height};
@@ -99,9 +165,7 @@ shared::FrameConstants frameConstants(const FrameFacts& facts) {
   return c;
 }
 
-glm::dvec3 travel(const PellucidLight& l) {
-  return glm::normalize(glm::dvec3(l.direction[0], l.direction[1], l.direction[2]));
-}
+glm::dvec3 travel(const PellucidLight& l) { return glm::normalize(toVector(l.direction)); }
 
 shared::LightConstants lightConstants(const FrameFacts& f, const PellucidLight& l, uint32_t firstShadow) {
   const glm::dmat4& viewFromWorld = f.viewFromWorld;
@@ -148,7 +212,7 @@ uint32_t placeOf(const LightGroup& group, const PellucidShadowMap& map, uint32_t
 glm::uvec4 occluderConstants(const FrameFacts& f, const PellucidShadowMap& s, const PellucidLight& l,
                              const LightGroup& group) {
   const float scale = s.options.casterMaterialScale == 0 ? 255.0f : s.options.casterMaterialScale;
-  return {group.readsExit(f, f, l, s) ? placeOf(group, s, s.options.exitImage - 1) + 1 : 0,
+  return {group.readsExit(f, l, s) ? placeOf(group, s, s.options.exitImage - 1) + 1 : 0,
           group.readsCaster(s) ? placeOf(group, s, s.options.casterMaterialImage - 1) + 1 : 0, bitsOf(scale),
           s.options.offset[0] | s.options.offset[1] << 16};
 }
@@ -232,8 +296,7 @@ void putLightTables(const FrameFacts& f, void* mapped) {
     const float* factor = f.frame.options.lightTables[table].factor;
     for (size_t i = 0; i < halves.size(); ++i)
       halves[i] = glm::packHalf2x16({factor[2 * i], factor[2 * i + 1]});
-    put(mapped,
-        f.constants.frame.offset + offsetof(shared::FrameConstants, lightTables) + table * sizeof halves,
+    put(mapped, f.constants.frame + offsetof(shared::FrameConstants, lightTables) + table * sizeof halves,
         halves);
   }
 }
@@ -246,19 +309,18 @@ void putLights(const FrameFacts& f, void* mapped) {
     uint32_t shadow = 0, row = 0;  // of the group, so far
     for (uint32_t i = 0; i < group.lightCount; ++i) {
       const PellucidLight& l = f.light(group.firstLight + i);
-      put(mapped, layout.lights.offset + group.lightBytes + i * sizeof(shared::LightConstants),
+      put(mapped, layout.lights + group.lightBytes + i * sizeof(shared::LightConstants),
           lightConstants(f, l, shadow));
       for (uint32_t k = 0; k < l.shadowMapCount; ++k, ++shadow) {
         const PellucidShadowMap& s = f.frame.shadowMaps[l.firstShadowMap + k];
         const shared::ShadowConstants constants = shadowConstants(f, s, l, worldFromView, group);
-        put(mapped, layout.shadows.offset + group.shadowBytes + shadow * sizeof constants, constants);
+        put(mapped, layout.shadows + group.shadowBytes + shadow * sizeof constants, constants);
         if (!f.isGathered(l)) continue;
-        const EntryExtent extent = entryExtent(f, f, l, k);
+        const EntryExtent extent = entryExtent(f, l, k);
         const EntryConstants entry = entryConstants(s, l, constants, f.viewFromWorld, extent, row, i);
         row += entryGroups(extent.height);
-        put(mapped, layout.gatherMaps.offset + group.gatherMapBytes + shadow * sizeof entry.gather,
-            entry.gather);
-        put(mapped, layout.entryMaps.offset + group.entryMapBytes + shadow * sizeof entry.map, entry.map);
+        put(mapped, layout.gatherMaps + group.gatherMapBytes + shadow * sizeof entry.gather, entry.gather);
+        put(mapped, layout.entryMaps + group.entryMapBytes + shadow * sizeof entry.map, entry.map);
       }
     }
   }
@@ -272,14 +334,12 @@ shared::BlockLists blockLists(const FrameFacts& f, const PellucidPlan& plan, flo
   for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
     const PellucidDispatch& d = plan.dispatches[i];
     if (!d.indirect) continue;
-    const VkDeviceSize list = (d.indirectOffset - f.constants.lists.offset) / sizeof(glm::uvec4);
+    const VkDeviceSize list = (d.indirectOffset - f.constants.lists) / sizeof(glm::uvec4);
     // A plan of another frame may have them anywhere.
     if (list < PELLUCID_LISTS) c.commands[list] = {0, d.groups[1], d.groups[2], d.groups[0]};
   }
   return c;
 }
-
-}  // namespace
 
 PellucidResult writeConstants(const FrameFacts& f, const PellucidPlan& plan, void* mapped, size_t size) {
   const ConstantsLayout& layout = f.constants;
@@ -288,7 +348,7 @@ PellucidResult writeConstants(const FrameFacts& f, const PellucidPlan& plan, voi
   if (size < layout.size) return PELLUCID_ERROR_BUFFER_TOO_SMALL;
 
   // Windows and lists are longer than what the shaders read of them, which is written.
-  put(mapped, layout.frame.offset, frameConstants(f));
+  put(mapped, layout.frame, frameConstants(f));
   putLightTables(f, mapped);
   putLights(f, mapped);
   float reach = 0;
@@ -298,17 +358,17 @@ PellucidResult writeConstants(const FrameFacts& f, const PellucidPlan& plan, voi
       std::memcpy(&tables, f.frame.options.materialTables[i].words, sizeof tables);
     else
       makeTables(f.material(i), &tables);
-    put(mapped, layout.materials.offset + i * sizeof(shared::MaterialConstants),
-        materialConstants(f, tables));
+    put(mapped, layout.materials + i * sizeof(shared::MaterialConstants), materialConstants(f, tables));
     if (f.diffusedCount(tables.material) == 0) tables.kernel = {};
-    put(mapped, layout.kernels.offset + i * sizeof(shared::KernelConstants), tables.kernel);
+    put(mapped, layout.kernels + i * sizeof(shared::KernelConstants), tables.kernel);
     if (f.gathers && tables.material.thinWalled == 0)
       reach = std::max(reach, gatherReach(tables.gather, f.gatherSamples));
   }
-  if (f.stages.diffusion) put(mapped, layout.lists.offset, blockLists(f, plan, reach));
+  if (f.stages.diffusion) put(mapped, layout.lists, blockLists(f, plan, reach));
   return PELLUCID_OK;
 }
 
+}  // namespace
 }  // namespace pellucid
 
 using namespace pellucid;
@@ -316,7 +376,13 @@ using namespace pellucid;
 extern "C" PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const PellucidFrame* frame,
                                                  void* mapped, size_t size) {
   if (!plan || !mapped) return PELLUCID_ERROR_INVALID_ARGUMENT;
-  Findings silent(nullptr, nullptr);
-  return readFrame(frame, silent,
-                   [&](const FrameFacts& facts) { return writeConstants(facts, *plan, mapped, size); });
+  Findings silent;
+  const auto facts = readFrame(frame, silent);
+  return facts ? writeConstants(*facts, *plan, mapped, size) : silent.result();
+}
+
+extern "C" VkDeviceSize pellucidGetConstantsSize(uint32_t materialCount, uint32_t lightCount,
+                                                 uint32_t shadowMapCount) {
+  // Ambient light is one more.
+  return mostConstants(materialCount, VkDeviceSize{lightCount} + 1, shadowMapCount);
 }

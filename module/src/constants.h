@@ -1,11 +1,34 @@
+// Offsets in the constants slice.
 #pragma once
 
-#include "frame.h"
+#include "pellucid/pellucid.h"
+#include "shared/pellucid_shared.h"
 
 namespace pellucid {
 
-// The constants of a frame's plan into a slice of `size` bytes. PELLUCID_ERROR_INVALID_ARGUMENT where the
-// plan is of another frame, PELLUCID_ERROR_BUFFER_TOO_SMALL where the slice does not hold them.
-PellucidResult writeConstants(const FrameFacts& facts, const PellucidPlan& plan, void* mapped, size_t size);
+struct Setup;
+struct Lights;
+struct Stages;
+struct Blocks;
+
+// The largest offset alignment that Vulkan allows a device to ask for.
+constexpr VkDeviceSize aligned(VkDeviceSize bytes) { return (bytes + 255) / 256 * 256; }
+
+constexpr VkDeviceSize kLightWindow = PELLUCID_DISPATCH_LIGHTS * sizeof(shared::LightConstants);
+constexpr VkDeviceSize kShadowWindow = PELLUCID_DISPATCH_SHADOWS * sizeof(shared::ShadowConstants);
+constexpr VkDeviceSize kGatherMapWindow = PELLUCID_DISPATCH_SHADOWS * sizeof(shared::GatherMapConstants);
+constexpr VkDeviceSize kEntryMapWindow = PELLUCID_DISPATCH_SHADOWS * sizeof(shared::EntryMapConstants);
+static_assert(kLightWindow <= 16384 && kShadowWindow <= 16384 &&
+              kGatherMapWindow <= kShadowWindow);  // least maxUniformBufferRange
+
+// Bytes from the slice's begin.
+struct ConstantsLayout {
+  VkDeviceSize frame = 0, lights = 0, shadows = 0, materials = 0, kernels = 0;
+  VkDeviceSize gatherMaps = 0, entryMaps = 0;  // of frames that gather
+  VkDeviceSize lists = 0;                      // of frames that diffuse: BlockLists
+  VkDeviceSize size = 0;
+
+  ConstantsLayout(const Setup& setup, const Lights& all, const Stages& stages, const Blocks& blocks);
+};
 
 }  // namespace pellucid

@@ -1,17 +1,13 @@
-// Pipelines, layouts, feature checks.
+// Creation of contexts, and what a device must be able to do.
 #include "context.h"
 
 #include <algorithm>
-#include <bitset>
 #include <iterator>
-#include <memory>
 #include <new>
+#include <tuple>
 
-#include "defaults.h"
-#include "device_limits.h"
-#include "output_format.h"
-#include "shared/pellucid_shared.h"
-#include "text.h"
+#include "constants.h"
+#include "struct_size.h"
 
 namespace pellucid {
 
@@ -24,199 +20,156 @@ PellucidResult vulkanError(Findings& out, const char* call, VkResult result) {
 
 namespace {
 
+// Groups have as many invocations, Vulkan promises 128.
+constexpr uint32_t kInvocations = 256;
+static_assert(kInvocations == PELLUCID_BLOCK_GROUP * PELLUCID_BLOCK_GROUP &&
+              kInvocations == PELLUCID_FILTER_GROUP * PELLUCID_FILTER_GROUP &&
+              kInvocations == PELLUCID_LIST_GROUP);
+// Of the spatial filter, the pass with most; shaders_command_test holds that all have less.
+constexpr uint32_t kSharedBytes = 16384;
+
+struct Limit {
+  const char* name;
+  uint64_t needed, has;
+};
+
+// Functions of the instance that say what the device has.
+struct Queries {
+  PFN_vkGetPhysicalDeviceProperties2 properties;
+  PFN_vkGetPhysicalDeviceFeatures features;
+  PFN_vkGetPhysicalDeviceFormatProperties format;
+
+  Queries(const PellucidContextDesc& desc, Findings& out) {
+    load(desc, "vkGetPhysicalDeviceProperties2", properties, out);
+    load(desc, "vkGetPhysicalDeviceFeatures", features, out);
+    load(desc, "vkGetPhysicalDeviceFormatProperties", format, out);
+  }
+
+private:
+  template <class Function>
+  static void load(const PellucidContextDesc& desc, const char* name, Function& function, Findings& out) {
+    function = reinterpret_cast<Function>(desc.getInstanceProcAddr(desc.instance, name));
+    if (!function) out.error("getInstanceProcAddr", "does not find ", name);
+  }
+};
+
+// Descriptors of a set that are pushed; 0: the device does not say.
+uint32_t mostPushed(const PellucidContextDesc& desc, const Queries& get) {
+  VkPhysicalDevicePushDescriptorPropertiesKHR pushed{
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PUSH_DESCRIPTOR_PROPERTIES_KHR};
+  VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &pushed, {}};
+  get.properties(desc.physicalDevice, &properties);
+  return pushed.maxPushDescriptors;
+}
+
+bool isStorage(const PellucidContextDesc& desc, const Queries& get, VkFormat format) {
+  VkFormatProperties properties{};
+  get.format(desc.physicalDevice, format, &properties);
+  return properties.optimalTilingFeatures & VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT;
+}
+
+bool writesWithoutFormat(const PellucidContextDesc& desc, const Queries& get) {
+  VkPhysicalDeviceFeatures features{};
+  get.features(desc.physicalDevice, &features);
+  return features.shaderStorageImageWriteWithoutFormat;
+}
+
+// Reports the first limit or feature that a context of this description lacks, by its name in Vulkan.
+void checkLimits(const PellucidContextDesc& desc, const VkPhysicalDeviceProperties& properties,
+                 Findings& out) {
+  const Queries get(desc, out);
+  if (!out.ok()) return;
+  const VkPhysicalDeviceLimits& l = properties.limits;
+  const auto refuse = [&](const char* name, uint64_t has, uint64_t needed) {
+    out.fail(PELLUCID_ERROR_MISSING_FEATURE, "physicalDevice", properties.deviceName, " has ", name, " ", has,
+             "; ", needed, " is required");
+  };
+  const Limit limits[] = {
+      {"maxComputeWorkGroupInvocations", kInvocations, l.maxComputeWorkGroupInvocations},
+      {"maxComputeSharedMemorySize", kSharedBytes, l.maxComputeSharedMemorySize},
+      {"maxPushConstantsSize", PELLUCID_PUSH_CONSTANT_BYTES, l.maxPushConstantsSize},
+      {"maxUniformBufferRange", kShadowWindow, l.maxUniformBufferRange},
+      {"maxPerStageDescriptorUniformBuffers", mostBindings(kUniforms), l.maxPerStageDescriptorUniformBuffers},
+      {"maxPerStageDescriptorStorageBuffers", mostBindings(kStorage), l.maxPerStageDescriptorStorageBuffers},
+      {"maxPerStageDescriptorStorageImages", mostBindings(kStored), l.maxPerStageDescriptorStorageImages},
+      {"maxPerStageDescriptorSampledImages", mostBindings(kSampled), l.maxPerStageDescriptorSampledImages},
+      {"maxPerStageResources", mostBindings(), l.maxPerStageResources}};
+  for (const Limit& limit : limits)
+    if (limit.has < limit.needed) return refuse(limit.name, limit.has, limit.needed);
+  if (!desc.options.descriptorPools)
+    if (const uint32_t most = mostPushed(desc, get); most > 0 && most < mostBindings())
+      return refuse("maxPushDescriptors", most, mostBindings());
+  // The diffusion's texels, words of blocks, and the output where its format is known.
+  for (const VkFormat format : {VK_FORMAT_R32G32B32A32_UINT, VK_FORMAT_R32_UINT, desc.options.outputFormat})
+    if (format != VK_FORMAT_UNDEFINED && !isStorage(desc, get, format))
+      return out.fail(PELLUCID_ERROR_MISSING_FEATURE, "physicalDevice", properties.deviceName,
+                      " has no storage images of VkFormat ", static_cast<int>(format));
+  if (desc.options.outputFormat == VK_FORMAT_UNDEFINED && !writesWithoutFormat(desc, get))
+    out.fail(PELLUCID_ERROR_MISSING_FEATURE, "physicalDevice", properties.deviceName,
+             " has no shaderStorageImageWriteWithoutFormat, which outputFormat = UNDEFINED asks for; set the "
+             "format of all frames");
+}
+
 constexpr uint32_t kAllUses = PELLUCID_USE_TRANSLUCENCY | PELLUCID_USE_GATHER | PELLUCID_USE_DIFFUSION |
                               PELLUCID_USE_REUSE | PELLUCID_USE_DEBUG_VIEWS | PELLUCID_USE_THIN_WALLS |
                               PELLUCID_USE_AMBIENT | PELLUCID_USE_THESIS;
 
-PellucidResult checkDesc(const PellucidContextDesc& desc, Findings& out) {
-  if (desc.headerVersion != PELLUCID_HEADER_VERSION) {
-    out.fail(PELLUCID_ERROR_VERSION, "headerVersion", "is ", desc.headerVersion, "; this library has ",
-             PELLUCID_HEADER_VERSION);
-    return out.result();
-  }
-  if (!desc.instance || !desc.physicalDevice || !desc.device || !desc.getInstanceProcAddr) {
-    out.fail(PELLUCID_ERROR_INVALID_ARGUMENT,
-             !desc.instance         ? "instance"
-             : !desc.physicalDevice ? "physicalDevice"
-             : !desc.device         ? "device"
-                                    : "getInstanceProcAddr",
-             "is NULL");
-    return out.result();
-  }
+void checkDesc(const PellucidContextDesc& desc, Findings& out) {
+  if (desc.headerVersion != PELLUCID_HEADER_VERSION)
+    return out.fail(PELLUCID_ERROR_VERSION, "headerVersion", "is ", desc.headerVersion, "; this library has ",
+                    PELLUCID_HEADER_VERSION);
+  if (!desc.instance || !desc.physicalDevice || !desc.device || !desc.getInstanceProcAddr)
+    return out.error(!desc.instance         ? "instance"
+                     : !desc.physicalDevice ? "physicalDevice"
+                     : !desc.device         ? "device"
+                                            : "getInstanceProcAddr",
+                     "is NULL");
   if (desc.options.outputFormat != VK_FORMAT_UNDEFINED &&
       desc.options.outputFormat != VK_FORMAT_R16G16B16A16_SFLOAT &&
-      desc.options.outputFormat != VK_FORMAT_R32G32B32A32_SFLOAT) {
-    out.fail(PELLUCID_ERROR_INVALID_ARGUMENT, "options.outputFormat", "is VkFormat ",
-             static_cast<int>(desc.options.outputFormat),
-             "; R16G16B16A16_SFLOAT, R32G32B32A32_SFLOAT and UNDEFINED are possible");
-    return out.result();
-  }
+      desc.options.outputFormat != VK_FORMAT_R32G32B32A32_SFLOAT)
+    return out.error("options.outputFormat", "is VkFormat ", static_cast<int>(desc.options.outputFormat),
+                     "; R16G16B16A16_SFLOAT, R32G32B32A32_SFLOAT and UNDEFINED are possible");
   if (desc.options.shadowViewType != VK_IMAGE_VIEW_TYPE_2D &&
-      desc.options.shadowViewType != VK_IMAGE_VIEW_TYPE_2D_ARRAY) {
-    out.fail(PELLUCID_ERROR_INVALID_ARGUMENT, "options.shadowViewType", "is VkImageViewType ",
-             static_cast<int>(desc.options.shadowViewType), "; 2D and 2D_ARRAY are possible");
-    return out.result();
-  }
-  if (desc.options.normalEncoding > PELLUCID_NORMALS_OCTAHEDRAL_UNORM) {
-    out.fail(PELLUCID_ERROR_INVALID_ARGUMENT, "options.normalEncoding", "is ", desc.options.normalEncoding,
-             ", not a PellucidNormalEncoding");
-    return out.result();
-  }
-  if (desc.options.deferPipelines > 1) {
-    out.fail(PELLUCID_ERROR_INVALID_ARGUMENT, "options.deferPipelines", "is ", desc.options.deferPipelines,
-             ", not 0 or 1");
-    return out.result();
-  }
-  if (desc.options.lightTables > 1) {
-    out.fail(PELLUCID_ERROR_INVALID_ARGUMENT, "options.lightTables", "is ", desc.options.lightTables,
-             ", not 0 or 1");
-    return out.result();
-  }
-  if (desc.options.descriptorPools > 1) {
-    out.fail(PELLUCID_ERROR_INVALID_ARGUMENT, "options.descriptorPools", "is ", desc.options.descriptorPools,
-             ", not 0 or 1");
-    return out.result();
-  }
-  if (desc.options.uses & ~kAllUses) {
-    out.fail(PELLUCID_ERROR_INVALID_ARGUMENT, "options.uses", "has unknown bits ",
-             desc.options.uses & ~kAllUses);
-    return out.result();
-  }
-  if (desc.apiVersion < VK_API_VERSION_1_1) {
-    out.fail(PELLUCID_ERROR_MISSING_FEATURE, "apiVersion", "is ", VK_API_VERSION_MAJOR(desc.apiVersion), ".",
-             VK_API_VERSION_MINOR(desc.apiVersion), "; Vulkan 1.1 is required");
-    return out.result();
-  }
+      desc.options.shadowViewType != VK_IMAGE_VIEW_TYPE_2D_ARRAY)
+    return out.error("options.shadowViewType", "is VkImageViewType ",
+                     static_cast<int>(desc.options.shadowViewType), "; 2D and 2D_ARRAY are possible");
+  const std::tuple<const char*, uint32_t, uint32_t> mosts[] = {
+      {"options.normalEncoding", desc.options.normalEncoding, PELLUCID_NORMALS_OCTAHEDRAL_UNORM},
+      {"options.deferPipelines", desc.options.deferPipelines, 1},
+      {"options.lightTables", desc.options.lightTables, 1},
+      {"options.descriptorPools", desc.options.descriptorPools, 1}};
+  for (const auto& [field, value, most] : mosts)
+    if (value > most) return out.error(field, "is ", value, ", outside 0..", most);
+  if (desc.options.uses & ~kAllUses)
+    return out.error("options.uses", "has unknown bits ", desc.options.uses & ~kAllUses);
+  if (desc.apiVersion < VK_API_VERSION_1_1)
+    return out.fail(PELLUCID_ERROR_MISSING_FEATURE, "apiVersion", "is ",
+                    VK_API_VERSION_MAJOR(desc.apiVersion), ".", VK_API_VERSION_MINOR(desc.apiVersion),
+                    "; Vulkan 1.1 is required");
   const auto getProperties = reinterpret_cast<PFN_vkGetPhysicalDeviceProperties>(
       desc.getInstanceProcAddr(desc.instance, "vkGetPhysicalDeviceProperties"));
-  if (!getProperties) {
-    out.fail(PELLUCID_ERROR_INVALID_ARGUMENT, "getInstanceProcAddr",
-             "does not find vkGetPhysicalDeviceProperties");
-    return out.result();
-  }
+  if (!getProperties) return out.error("getInstanceProcAddr", "does not find vkGetPhysicalDeviceProperties");
   VkPhysicalDeviceProperties properties;
   getProperties(desc.physicalDevice, &properties);
-  if (properties.apiVersion < VK_API_VERSION_1_1) {
-    out.fail(PELLUCID_ERROR_MISSING_FEATURE, "physicalDevice", properties.deviceName, " has Vulkan ",
-             VK_API_VERSION_MAJOR(properties.apiVersion), ".", VK_API_VERSION_MINOR(properties.apiVersion),
-             "; 1.1 is required");
-    return out.result();
-  }
+  if (properties.apiVersion < VK_API_VERSION_1_1)
+    return out.fail(PELLUCID_ERROR_MISSING_FEATURE, "physicalDevice", properties.deviceName, " has Vulkan ",
+                    VK_API_VERSION_MAJOR(properties.apiVersion), ".",
+                    VK_API_VERSION_MINOR(properties.apiVersion), "; 1.1 is required");
   checkLimits(desc, properties, out);
-  return out.result();
 }
 
-// The set and the layout of a pass.
-VkResult createLayout(PellucidContext& c, uint32_t index, const char** call) {
-  VkDescriptorSetLayoutBinding bindings[PELLUCID_BINDING_COUNT];
-  VkDescriptorSetLayoutCreateInfo set{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
-  if (!c.desc.options.descriptorPools) set.flags = VK_DESCRIPTOR_SET_LAYOUT_CREATE_PUSH_DESCRIPTOR_BIT_KHR;
-  forEach(allPasses()[index]->bindings(), [&](const Binding& b) {
-    bindings[set.bindingCount++] = {b.number, b.type, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr};
-  });
-  set.pBindings = bindings;
-  *call = "vkCreateDescriptorSetLayout";
-  const VkResult result =
-      c.vk.vkCreateDescriptorSetLayout(c.device, &set, c.callbacks(), &c.setLayouts[index]);
-  if (result != VK_SUCCESS) return result;
-
-  const VkPushConstantRange push{VK_SHADER_STAGE_COMPUTE_BIT, 0, PELLUCID_PUSH_CONSTANT_BYTES};
-  VkPipelineLayoutCreateInfo layout{VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO};
-  layout.setLayoutCount = 1;
-  layout.pSetLayouts = &c.setLayouts[index];
-  layout.pushConstantRangeCount = 1;
-  layout.pPushConstantRanges = &push;
-  *call = "vkCreatePipelineLayout";
-  return c.vk.vkCreatePipelineLayout(c.device, &layout, c.callbacks(), &c.pipelineLayouts[index]);
-}
-
-PellucidResult createLayouts(PellucidContext& c, Findings& out) {
-  const char* call = nullptr;
-  for (uint32_t i = 0; i < allPasses().size(); ++i)
-    if (const VkResult result = createLayout(c, i, &call); result != VK_SUCCESS)
-      return vulkanError(out, call, result);
-  return PELLUCID_OK;
-}
-
-// One pipeline for each thread that the caller lends.
-struct PipelineJobs {
-  PellucidContext& context;
-  std::array<uint32_t, kMostPasses> pipelines{};  // to make
-  std::array<VkResult, kMostPasses> results{};
-};
-
-VkResult createPipeline(const PellucidContext& c, uint32_t index, VkPipeline* pipeline) {
-  const PellucidContextDesc& desc = c.desc;
-  const Pass& pass = *allPasses()[index];
-  std::span<const uint32_t> words = pass.wordsFor(desc.options.shadowViewType);
-  std::unique_ptr<uint32_t[]> patched;
-  if (desc.options.outputFormat != VK_FORMAT_UNDEFINED) {
-    patched.reset(new (std::nothrow) uint32_t[words.size()]);
-    if (!patched) return VK_ERROR_OUT_OF_HOST_MEMORY;
-    std::copy(words.begin(), words.end(), patched.get());
-    fixOutputFormat(patched.get(), words.size(), desc.options.outputFormat == VK_FORMAT_R32G32B32A32_SFLOAT);
-    words = {patched.get(), words.size()};
-  }
-  VkShaderModuleCreateInfo moduleInfo{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
-  moduleInfo.codeSize = words.size_bytes();
-  moduleInfo.pCode = words.data();
-  VkShaderModule module = VK_NULL_HANDLE;
-  VkResult result = c.vk.vkCreateShaderModule(c.device, &moduleInfo, c.callbacks(), &module);
-  if (result != VK_SUCCESS) return result;
-
-  constexpr size_t kMostConstants = 5;
-  std::array<PellucidSpecialization, kMostConstants> constants;
-  PellucidSpecialization* end = std::copy(pass.constants.begin(), pass.constants.end(), constants.begin());
-  *end++ = {PELLUCID_SPECIALIZATION_NORMALS, desc.options.normalEncoding};
-  *end++ = {PELLUCID_SPECIALIZATION_LIGHT_TABLES, desc.options.lightTables};
-  *end++ = {PELLUCID_SPECIALIZATION_USES, desc.options.uses != 0 ? desc.options.uses : UINT32_MAX};
-  const auto count = static_cast<uint32_t>(end - constants.data());
-  std::array<VkSpecializationMapEntry, kMostConstants> entries;
-  for (uint32_t i = 0; i < count; ++i)
-    entries[i] = {constants[i].id,
-                  static_cast<uint32_t>(i * sizeof constants[0] + offsetof(PellucidSpecialization, value)),
-                  sizeof(uint32_t)};
-  const VkSpecializationInfo specialization{count, entries.data(), count * sizeof constants[0],
-                                            constants.data()};
-  VkComputePipelineCreateInfo info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
-  info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
-  info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
-  info.stage.module = module;
-  info.stage.pName = "main";
-  info.stage.pSpecializationInfo = &specialization;
-  info.layout = c.pipelineLayouts[index];
-  result =
-      c.vk.vkCreateComputePipelines(c.device, desc.options.pipelineCache, 1, &info, c.callbacks(), pipeline);
-  c.vk.vkDestroyShaderModule(c.device, module, c.callbacks());
-  return result;
-}
-
-// Makes the pipelines among `wanted`, bits by index, that are of the context's uses and not there.
-PellucidResult createPipelines(PellucidContext& c, std::bitset<kMostPasses> wanted, Findings& out) {
-  const PellucidContextDesc& desc = c.desc;
-  PipelineJobs jobs{c};
-  uint32_t count = 0;
-  for (uint32_t i = 0; i < allPasses().size(); ++i)
-    if (wanted[i] && !c.pipelines[i] &&
-        (desc.options.uses == 0 || (allPasses()[i]->uses & ~desc.options.uses) == 0))
-      jobs.pipelines[count++] = i;
-  if (count == 0) return PELLUCID_OK;
-  const auto job = [](void* data, uint32_t i) {
-    auto& all = *static_cast<PipelineJobs*>(data);
-    const uint32_t pipeline = all.pipelines[i];
-    all.results[i] = createPipeline(all.context, pipeline, &all.context.pipelines[pipeline]);
-  };
-  if (desc.options.parallelFor)
-    desc.options.parallelFor(desc.options.parallelUser, count, job, &jobs);
-  else
-    for (uint32_t i = 0; i < count; ++i) job(&jobs, i);
-  for (uint32_t i = 0; i < count; ++i)
-    if (jobs.results[i] != VK_SUCCESS) {
-      char call[64];
-      Text(call, sizeof call) << "creating pipeline " << allPasses()[jobs.pipelines[i]]->pipeline;
-      return vulkanError(out, call, jobs.results[i]);
-    }
-  return PELLUCID_OK;
+// The name of the first function that the device does not have, or nullptr when the table is complete.
+const char* loadVkTable(PFN_vkGetDeviceProcAddr getDeviceProcAddr, VkDevice device, VkTable* table) {
+#define PELLUCID_LOAD(name)                                                     \
+  table->name = reinterpret_cast<PFN_##name>(getDeviceProcAddr(device, #name)); \
+  if (!table->name) return #name;
+  PELLUCID_DEVICE_FUNCTIONS(PELLUCID_LOAD)
+#undef PELLUCID_LOAD
+  for (const char* name : {"vkCmdPushDescriptorSetKHR", "vkCmdPushDescriptorSet"})
+    if (!table->pushDescriptorSet)
+      table->pushDescriptorSet =
+          reinterpret_cast<PFN_vkCmdPushDescriptorSetKHR>(getDeviceProcAddr(device, name));
+  return nullptr;
 }
 
 }  // namespace
@@ -233,16 +186,14 @@ extern "C" PellucidResult pellucidCreateContext(const PellucidContextDesc* given
     constexpr size_t kHasMessage = offsetof(PellucidContextDesc, messageUser) + sizeof given->messageUser;
     const bool tells = given->structSize >= kHasMessage;
     Findings out(tells ? given->message : nullptr, tells ? given->messageUser : nullptr);
-    out.fail(PELLUCID_ERROR_VERSION, "structSize", "is ", given->structSize, "; this library reads ",
-             kLeastContextDesc, " to ", sizeof(PellucidContextDesc),
-             " bytes, and more if they are 0 (call pellucidInitContextDesc)");
+    checkStructSize(given, kLeastContextDesc, "structSize", "pellucidInitContextDesc", out);
     return out.result();
   }
   const PellucidContextDesc whole = readStruct(given, defaultContextDesc());
   const PellucidContextDesc* desc = &whole;
   Findings out(desc->message, desc->messageUser);
-  PellucidResult result = checkDesc(*desc, out);
-  if (result != PELLUCID_OK) return result;
+  checkDesc(*desc, out);
+  if (!out.ok()) return out.result();
 
   auto* c = new (std::nothrow) PellucidContext;
   if (!c) return PELLUCID_ERROR_OUT_OF_MEMORY;
@@ -268,7 +219,7 @@ extern "C" PellucidResult pellucidCreateContext(const PellucidContextDesc* given
     delete c;
     return out.result();
   }
-  result = createLayouts(*c, out);
+  PellucidResult result = createLayouts(*c, out);
   if (result == PELLUCID_OK && !desc->options.deferPipelines)
     result = createPipelines(*c, std::bitset<kMostPasses>().set(), out);
   if (result != PELLUCID_OK) {
@@ -311,4 +262,23 @@ extern "C" void pellucidDestroyContext(PellucidContext* c) {
   for (VkDescriptorSetLayout layout : c->setLayouts)
     c->vk.vkDestroyDescriptorSetLayout(c->device, layout, c->callbacks());
   delete c;
+}
+
+extern "C" const char* pellucidResultName(PellucidResult result) {
+#define PELLUCID_CASE(name) \
+  case name:                \
+    return #name;
+  switch (result) {
+    PELLUCID_CASE(PELLUCID_OK)
+    PELLUCID_CASE(PELLUCID_ERROR_INVALID_ARGUMENT)
+    PELLUCID_CASE(PELLUCID_ERROR_VERSION)
+    PELLUCID_CASE(PELLUCID_ERROR_MISSING_FEATURE)
+    PELLUCID_CASE(PELLUCID_ERROR_OUT_OF_MEMORY)
+    PELLUCID_CASE(PELLUCID_ERROR_VULKAN)
+    PELLUCID_CASE(PELLUCID_ERROR_CAPACITY)
+    PELLUCID_CASE(PELLUCID_ERROR_BUFFER_TOO_SMALL)
+    default:
+      return "unknown result";
+  }
+#undef PELLUCID_CASE
 }

@@ -1,11 +1,44 @@
+// A context: the pipelines of one device, and the Vulkan functions that the module calls.
 #pragma once
 
 #include <array>
+#include <bitset>
+#include <span>
 
 #include "findings.h"
 #include "pass.h"
-#include "pellucid/pellucid.h"
-#include "vk_table.h"
+#include "pellucid/pellucid_views.h"
+
+namespace pellucid {
+
+#define PELLUCID_DEVICE_FUNCTIONS(X) \
+  X(vkCreateDescriptorSetLayout)     \
+  X(vkDestroyDescriptorSetLayout)    \
+  X(vkCreatePipelineLayout)          \
+  X(vkDestroyPipelineLayout)         \
+  X(vkCreateShaderModule)            \
+  X(vkDestroyShaderModule)           \
+  X(vkCreateComputePipelines)        \
+  X(vkDestroyPipeline)               \
+  X(vkCmdBindPipeline)               \
+  X(vkCmdPushConstants)              \
+  X(vkCreateDescriptorPool)          \
+  X(vkResetDescriptorPool)           \
+  X(vkAllocateDescriptorSets)        \
+  X(vkUpdateDescriptorSets)          \
+  X(vkCmdBindDescriptorSets)         \
+  X(vkCmdPipelineBarrier)            \
+  X(vkCmdDispatch)                   \
+  X(vkCmdDispatchIndirect)
+
+struct VkTable {
+#define PELLUCID_MEMBER(name) PFN_##name name = nullptr;
+  PELLUCID_DEVICE_FUNCTIONS(PELLUCID_MEMBER)
+#undef PELLUCID_MEMBER
+  PFN_vkCmdPushDescriptorSetKHR pushDescriptorSet = nullptr;  // of the extension or of Vulkan 1.4; or nullptr
+};
+
+}  // namespace pellucid
 
 // Immutable once pellucidCreateContext has returned, but for the pipelines that pellucidCreatePipelines adds.
 struct PellucidContext {
@@ -26,5 +59,19 @@ namespace pellucid {
 
 // Reports a call that failed; the result of that.
 PellucidResult vulkanError(Findings& out, const char* call, VkResult result);
+
+// Makes the set and the layout of every pass.
+PellucidResult createLayouts(PellucidContext& context, Findings& out);
+
+// Makes the pipelines among `wanted`, bits by index, that are of the context's uses and not there.
+PellucidResult createPipelines(PellucidContext& context, std::bitset<kMostPasses> wanted, Findings& out);
+
+// SPIR-V for devices that write no storage image without a format: gives the storage image that has none one
+// of 16 or 32 bits a channel, in place.
+void fixOutputFormat(uint32_t* words, std::size_t wordCount, bool wide);
+
+// Refuses views that cannot be recorded. Errors go to the context's message; `named`: with the view's index
+// before the field.
+PellucidResult checkViews(const PellucidContext& context, std::span<const PellucidView> views, bool named);
 
 }  // namespace pellucid

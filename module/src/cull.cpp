@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ambient.h"
+#include "lights.h"
 #include "minimum_dot.h"
 
 namespace pellucid {
@@ -13,23 +13,21 @@ namespace {
 // directions are off by in the shaders, and nothing that a picture shows.
 constexpr double kMargin = 1e-4;
 
-glm::dvec3 vec(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
-
 double angleBetween(const glm::dvec3& a, const glm::dvec3& b) {
   return std::acos(std::clamp(glm::dot(a, b) / (glm::length(a) * glm::length(b)), -1.0, 1.0));
 }
 
 }  // namespace
 
-ViewBounds::ViewBounds(const Inputs& inputs, const Screen& screen) : viewFromWorld_(screen.viewFromWorld) {
-  const DepthRange& range = screen.depthRange;
-  const shared::Camera& camera = screen.camera;
+ViewBounds::ViewBounds(const Setup& setup) : setup_(setup) {
+  const DepthRange& range = setup.depthRange;
+  const shared::Camera& camera = setup.camera;
   parallel_ = !range.perspective;
   bounded_ = parallel_ || range.d == 0;
   forward_ = range.forward;
 
   // The rect's corners, half a pixel outside of the centers that the shaders use.
-  const Rect& r = screen.rect;
+  const Rect& r = setup.rect;
   const double left = r.x - 0.5, top = r.y - 0.5, right = left + r.width, bottom = top + r.height;
   const glm::dvec2 corners[4] = {{left, top}, {right, top}, {right, bottom}, {left, bottom}};
   std::array<glm::dvec3, 4> directions;
@@ -45,7 +43,7 @@ ViewBounds::ViewBounds(const Inputs& inputs, const Screen& screen) : viewFromWor
   for (const glm::dvec3& d : directions) halfAngle_ = std::max(halfAngle_, angleBetween(axis_, d));
   // A cone is convex, and so holds what lies between the corners, up to a right angle.
   if (!(halfAngle_ < 1.57)) halfAngle_ = INFINITY;
-  if (inputs.thesis.constantViewDirection) {
+  if (setup.thesis.constantViewDirection) {
     axis_ = {0, 0, forward_};
     halfAngle_ = 0;
   }
@@ -64,20 +62,20 @@ ViewBounds::ViewBounds(const Inputs& inputs, const Screen& screen) : viewFromWor
 // Every factor but -N.L needs the cosine between the view ray and the direction to the light to be above
 // -minimumDot (0 for models without). Walking along a ray turns a light from ahead to behind, so for a
 // light at a point that cosine is largest where the ray starts.
-bool ViewBounds::angleStops(const Inputs& inputs, const Materials& materials,
-                            const PellucidLight& light) const {
+bool ViewBounds::angleStops(const PellucidLight& light) const {
+  const PellucidThesisOptions& thesis = setup_.thesis;
   // Thin walls without normals take those of their depths.
-  if (inputs.thesis.angleModel == PELLUCID_ANGLE_NORMAL &&
-      (inputs.has(PELLUCID_RESOURCE_NORMAL) || materials.thinWalls))
+  if (thesis.angleModel == PELLUCID_ANGLE_NORMAL &&
+      (setup_.has(PELLUCID_RESOURCE_NORMAL) || setup_.thinWalls))
     return false;
-  const double least = -minimumDotOf(inputs.thesis, light);
+  const double least = -minimumDotOf(thesis, light);
   if (least >= 1) return true;
   if (light.type == PELLUCID_LIGHT_DIRECTIONAL) {
-    const glm::dvec3 toLight = -(glm::dmat3(viewFromWorld_) * vec(light.direction));
+    const glm::dvec3 toLight = -(glm::dmat3(setup_.viewFromWorld) * toVector(light.direction));
     return angleBetween(axis_, toLight) - halfAngle_ > std::acos(least) + kMargin;
   }
-  const glm::dvec3 position(viewFromWorld_ * glm::dvec4(vec(light.position), 1));
-  if (inputs.thesis.constantViewDirection || parallel_) {
+  const glm::dvec3 position(setup_.viewFromWorld * glm::dvec4(toVector(light.position), 1));
+  if (thesis.constantViewDirection || parallel_) {
     const glm::dvec3 direction = glm::normalize(axis_);
     return std::all_of(starts_.begin(), starts_.end(), [&](const glm::dvec3& start) {
       return glm::dot(direction, position - start) < -kMargin * glm::length(position - start);
@@ -88,7 +86,7 @@ bool ViewBounds::angleStops(const Inputs& inputs, const Materials& materials,
 
 bool ViewBounds::rangeMisses(const PellucidLight& light) const {
   if (light.type == PELLUCID_LIGHT_DIRECTIONAL || !(light.range > 0)) return false;
-  const glm::dvec3 position(viewFromWorld_ * glm::dvec4(vec(light.position), 1));
+  const glm::dvec3 position(setup_.viewFromWorld * glm::dvec4(toVector(light.position), 1));
   const double reach = light.range + kMargin * (light.range + glm::length(position));
   return std::any_of(planes_.begin(), planes_.end(), [&](const Plane& plane) {
     return glm::dot(plane.normal, position) - plane.offset < -reach;
@@ -98,8 +96,8 @@ bool ViewBounds::rangeMisses(const PellucidLight& light) const {
 // A cone whose tip is outside of a plane and none of whose rays turns towards the inside.
 bool ViewBounds::coneMisses(const PellucidLight& light) const {
   if (light.type != PELLUCID_LIGHT_SPOT) return false;
-  const glm::dvec3 position(viewFromWorld_ * glm::dvec4(vec(light.position), 1));
-  const glm::dvec3 direction = glm::dmat3(viewFromWorld_) * vec(light.direction);
+  const glm::dvec3 position(setup_.viewFromWorld * glm::dvec4(toVector(light.position), 1));
+  const glm::dvec3 direction = glm::dmat3(setup_.viewFromWorld) * toVector(light.direction);
   const double right = std::acos(0.0);
   return std::any_of(planes_.begin(), planes_.end(), [&](const Plane& plane) {
     return glm::dot(plane.normal, position) - plane.offset < -kMargin * glm::length(position) &&
@@ -107,19 +105,18 @@ bool ViewBounds::coneMisses(const PellucidLight& light) const {
   });
 }
 
-const char* ViewBounds::whySkipped(const Inputs& inputs, const Materials& materials,
-                                   const GatherChoice& gather, const PellucidLight& light) const {
+const char* ViewBounds::whySkipped(const PellucidLight& light) const {
   if (light.intensity <= 0 || (light.color[0] <= 0 && light.color[1] <= 0 && light.color[2] <= 0))
     return "no intensity";
-  if (inputs.lacksChord(light) && !materials.thinWalls)
-    return inputs.holdsBackFaces(light)
+  if (setup_.lacksChord(light) && !setup_.thinWalls)
+    return setup_.holdsBackFaces(light)
                ? "no back depth to take a thickness from, and its map holds back faces"
                : "no back depth to take a thickness from";
   // Gathered and ambient light come from around, whatever the angle, and from beyond the view.
-  if (gather.isGathered(inputs, light) || isAmbient(light)) return nullptr;
+  if (setup_.isGathered(light) || isAmbient(light)) return nullptr;
   // That view shows thicknesses whether light comes through or not.
-  if (!bounded_ || inputs.frame.options.debugView == PELLUCID_DEBUG_THICKNESS) return nullptr;
-  if (angleStops(inputs, materials, light)) return "no pixel's view ray passes its angle test";
+  if (!bounded_ || setup_.frame.options.debugView == PELLUCID_DEBUG_THICKNESS) return nullptr;
+  if (angleStops(light)) return "no pixel's view ray passes its angle test";
   if (rangeMisses(light)) return "its range does not reach the view";
   if (coneMisses(light)) return "its cone points away from the view";
   return nullptr;

@@ -4,7 +4,7 @@
 #include <array>
 #include <glm/glm.hpp>
 
-#include "gather_choice.h"
+#include "setup.h"
 
 namespace pellucid {
 
@@ -12,15 +12,14 @@ namespace pellucid {
 // View space.
 class ViewBounds {
 public:
-  ViewBounds(const Inputs& inputs, const Screen& screen);
+  explicit ViewBounds(const Setup& setup);  // which outlives it
 
   // Why a light adds nothing to the frame, or nullptr. Static string. Everything is conservative: a light
   // that could add to one pixel stays.
-  const char* whySkipped(const Inputs& inputs, const Materials& materials, const GatherChoice& gather,
-                         const PellucidLight& light) const;
+  const char* whySkipped(const PellucidLight& light) const;
 
 private:
-  bool angleStops(const Inputs& inputs, const Materials& materials, const PellucidLight& light) const;
+  bool angleStops(const PellucidLight& light) const;
   bool rangeMisses(const PellucidLight& light) const;
   bool coneMisses(const PellucidLight& light) const;
 
@@ -30,7 +29,7 @@ private:
     double offset = 0;
   };
 
-  glm::dmat4 viewFromWorld_{1};
+  const Setup& setup_;
   bool bounded_ = false;  // false: a projection whose rays neither share a start nor a direction
   bool parallel_ = false;
   double forward_ = 0;

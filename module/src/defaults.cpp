@@ -1,7 +1,7 @@
-#include "defaults.h"
+// Values of fields that callers leave alone.
+#include "struct_size.h"
 
 namespace pellucid {
-namespace {
 
 // A field that is appended must not land in bytes that older headers left undefined.
 #define ENDS_WITH(Struct, field) \
@@ -11,8 +11,6 @@ static_assert(ENDS_WITH(PellucidMaterial, wallTransmittance));
 static_assert(ENDS_WITH(PellucidThesisOptions, minimumDotTable));
 static_assert(ENDS_WITH(PellucidContextDesc, options.parallelUser));
 #undef ENDS_WITH
-
-}  // namespace
 
 PellucidFrame defaultFrame() {
   PellucidFrame frame{};

@@ -1,4 +1,5 @@
-#include "diffusion_profile.h"
+// A material's diffusion profile as the pyramid's passes read it.
+#include "material_tables.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,7 @@
 #include "domains.h"
 
 #include <array>
+#include <type_traits>
 
 #include "transmittance.h"
 
@@ -42,12 +43,12 @@ bool isGaussian(const void* object, uint32_t index) {
 constexpr const char* kMinimumDots = "`angleModel` MINIMUM_DOT_AZIMUTH or _SPHERE";
 
 constexpr auto kFrameFloats = std::to_array<FloatDomain>({
-    {FIELD(PellucidFrame, metersPerUnit), 0, 1e-9F, 1e9F, false, nullptr, nullptr},
-    {FIELD(PellucidFrame, clipFromView), 0, -kLongest, kLongest, false, nullptr, nullptr},
-    {FIELD(PellucidFrame, viewFromWorld), 0, -kLongest, kLongest, false, nullptr, nullptr},
-    {FIELD(PellucidFrame, options.coherenceThreshold), 0, 0, 2, false, nullptr, nullptr},
-    {FIELD(PellucidFrame, options.nearestDistance), 0, 0, kLongest, false, nullptr, nullptr},
-    {FIELD(PellucidFrame, preExposure), 0, 1e-9F, 1e9F, false, nullptr, nullptr},
+    {FIELD(PellucidFrame, metersPerUnit), 1e-9F, 1e9F},
+    {FIELD(PellucidFrame, clipFromView), -kLongest, kLongest},
+    {FIELD(PellucidFrame, viewFromWorld), -kLongest, kLongest},
+    {FIELD(PellucidFrame, options.coherenceThreshold), 0, 2},
+    {FIELD(PellucidFrame, options.nearestDistance), 0, kLongest},
+    {FIELD(PellucidFrame, preExposure), 1e-9F, 1e9F},
 });
 
 constexpr auto kFrameIntegers = std::to_array<IntegerDomain>({
@@ -64,14 +65,13 @@ constexpr auto kFrameIntegers = std::to_array<IntegerDomain>({
 });
 
 constexpr auto kThesisFloats = std::to_array<FloatDomain>({
-    {FIELD(PellucidThesisOptions, anglePolynomial), 0, -1e6F, 1e6F, false, nullptr, nullptr},
-    {FIELD(PellucidThesisOptions, minimumDot), 0, -1, 0, false, nullptr, nullptr},
-    {FIELD(PellucidThesisOptions, maximumThickness), 0, 0, kLongestMm, false, nullptr, nullptr},
-    {FIELD(PellucidThesisOptions, transmittanceFilter), 0, 0, 1, false, nullptr, nullptr},
-    {FIELD(PellucidThesisOptions, faceVector), 0, -kLongest, kLongest, false, looksMinimumDotsUp,
-     kMinimumDots},
-    {FIELD(PellucidThesisOptions, upAxis), 0, -kLongest, kLongest, false, looksMinimumDotsUp, kMinimumDots},
-    {FIELD(PellucidThesisOptions, objectCenter), 0, -kLongest, kLongest, false, looksMinimumDotsUp,
+    {FIELD(PellucidThesisOptions, anglePolynomial), -1e6F, 1e6F},
+    {FIELD(PellucidThesisOptions, minimumDot), -1, 0},
+    {FIELD(PellucidThesisOptions, maximumThickness), 0, kLongestMm},
+    {FIELD(PellucidThesisOptions, transmittanceFilter), 0, 1},
+    {FIELD(PellucidThesisOptions, faceVector), -kLongest, kLongest, false, looksMinimumDotsUp, kMinimumDots},
+    {FIELD(PellucidThesisOptions, upAxis), -kLongest, kLongest, false, looksMinimumDotsUp, kMinimumDots},
+    {FIELD(PellucidThesisOptions, objectCenter), -kLongest, kLongest, false, looksMinimumDotsUp,
      kMinimumDots},
 });
 
@@ -83,15 +83,15 @@ constexpr auto kThesisIntegers = std::to_array<IntegerDomain>({
 });
 
 constexpr auto kMaterialFloats = std::to_array<FloatDomain>({
-    {FIELD(PellucidMaterial, transmittance), 5, -kLongestMm, kLongestMm, false, isSolid, "`thinWalled` 0"},
-    {FIELD(PellucidMaterial, reflectance), 0, 0, 1, true, nullptr, nullptr},
-    {FIELD(PellucidMaterial, gaussianVariance), PELLUCID_MAX_GAUSSIANS, 0, kLongestMm* kLongestMm, true,
-     isGaussian, "the first `gaussianCount` of a row"},
-    {FIELD(PellucidMaterial, gaussianWeight), PELLUCID_MAX_GAUSSIANS, 0, 1.001F, false, isGaussian,
-     "the first `gaussianCount` of a row"},
-    {FIELD(PellucidMaterial, radius), 0, 0, kLongestMm, true, diffuses, "`gaussianCount` above 0"},
-    {FIELD(PellucidMaterial, burleyDistance), 0, 0, kLongestMm, false, diffuses, "`gaussianCount` above 0"},
-    {FIELD(PellucidMaterial, wallTransmittance), 0, 0, 1, false, isThinWalled, "`thinWalled` 1"},
+    {FIELD(PellucidMaterial, transmittance), -kLongestMm, kLongestMm, false, isSolid, "`thinWalled` 0", 5},
+    {FIELD(PellucidMaterial, reflectance), 0, 1, true},
+    {FIELD(PellucidMaterial, gaussianVariance), 0, kLongestMm* kLongestMm, true, isGaussian,
+     "the first `gaussianCount` of a row", PELLUCID_MAX_GAUSSIANS},
+    {FIELD(PellucidMaterial, gaussianWeight), 0, 1.001F, false, isGaussian,
+     "the first `gaussianCount` of a row", PELLUCID_MAX_GAUSSIANS},
+    {FIELD(PellucidMaterial, radius), 0, kLongestMm, true, diffuses, "`gaussianCount` above 0"},
+    {FIELD(PellucidMaterial, burleyDistance), 0, kLongestMm, false, diffuses, "`gaussianCount` above 0"},
+    {FIELD(PellucidMaterial, wallTransmittance), 0, 1, false, isThinWalled, "`thinWalled` 1"},
 });
 
 constexpr auto kMaterialIntegers = std::to_array<IntegerDomain>({
@@ -101,32 +101,31 @@ constexpr auto kMaterialIntegers = std::to_array<IntegerDomain>({
 });
 
 constexpr auto kLightFloats = std::to_array<FloatDomain>({
-    {FIELD(PellucidLight, position), 0, -kLongest, kLongest, false, hasPosition, "point and spot lights"},
-    {FIELD(PellucidLight, direction), 0, -kLongest, kLongest, false, readsDirection,
+    {FIELD(PellucidLight, position), -kLongest, kLongest, false, hasPosition, "point and spot lights"},
+    {FIELD(PellucidLight, direction), -kLongest, kLongest, false, readsDirection,
      "directional and spot lights, and with an `angleTable`"},
-    {FIELD(PellucidLight, color), 0, 0, kBrightest, false, nullptr, nullptr},
-    {FIELD(PellucidLight, intensity), 0, 0, kBrightest, false, nullptr, nullptr},
-    {FIELD(PellucidLight, range), 0, 0, kLongest, false, hasPosition, "point and spot lights"},
+    {FIELD(PellucidLight, color), 0, kBrightest},
+    {FIELD(PellucidLight, intensity), 0, kBrightest},
+    {FIELD(PellucidLight, range), 0, kLongest, false, hasPosition, "point and spot lights"},
     // Pi/2 rounds up as a float.
-    {FIELD(PellucidLight, innerConeAngle), 0, 0, 1.5707964F, false, isSpot, "spot lights"},
-    {FIELD(PellucidLight, outerConeAngle), 0, 0, 1.5707964F, true, isSpot, "spot lights"},
+    {FIELD(PellucidLight, innerConeAngle), 0, 1.5707964F, false, isSpot, "spot lights"},
+    {FIELD(PellucidLight, outerConeAngle), 0, 1.5707964F, true, isSpot, "spot lights"},
 });
 
 constexpr auto kLightIntegers =
     std::to_array<IntegerDomain>({{FIELD(PellucidLight, type), 0, PELLUCID_LIGHT_SPOT}});
 
-constexpr auto kLightTableFloats =
-    std::to_array<FloatDomain>({{FIELD(PellucidLightTable, factor), 0, 0, 1, false, nullptr, nullptr}});
+constexpr auto kLightTableFloats = std::to_array<FloatDomain>({{FIELD(PellucidLightTable, factor), 0, 1}});
 
 constexpr auto kMapFloats = std::to_array<FloatDomain>({
-    {FIELD(PellucidShadowMap, clipFromWorld), 0, -kLongest, kLongest, false, nullptr, nullptr},
-    {FIELD(PellucidShadowMap, options.viewFromWorld), 0, -kLongest, kLongest, false, readsView,
+    {FIELD(PellucidShadowMap, clipFromWorld), -kLongest, kLongest},
+    {FIELD(PellucidShadowMap, options.viewFromWorld), -kLongest, kLongest, false, readsView,
      "VIEW_Z and DISTANCE"},
-    {FIELD(PellucidShadowMap, options.depthBiasConstant), 0, -kLongest, kLongest, false, nullptr, nullptr},
-    {FIELD(PellucidShadowMap, options.depthBiasSlope), 0, -1e6F, 1e6F, false, nullptr, nullptr},
-    {FIELD(PellucidShadowMap, options.offsetLength), 0, 0, kLongest, false, nullptr, nullptr},
-    {FIELD(PellucidShadowMap, options.depthStep), 0, 0, kLongest, false, nullptr, nullptr},
-    {FIELD(PellucidShadowMap, options.casterMaterialScale), 0, 0, 65536, false, nullptr, nullptr},
+    {FIELD(PellucidShadowMap, options.depthBiasConstant), -kLongest, kLongest},
+    {FIELD(PellucidShadowMap, options.depthBiasSlope), -1e6F, 1e6F},
+    {FIELD(PellucidShadowMap, options.offsetLength), 0, kLongest},
+    {FIELD(PellucidShadowMap, options.depthStep), 0, kLongest},
+    {FIELD(PellucidShadowMap, options.casterMaterialScale), 0, 65536},
 });
 
 constexpr auto kMapIntegers = std::to_array<IntegerDomain>({
@@ -140,29 +139,20 @@ constexpr auto kMapIntegers = std::to_array<IntegerDomain>({
 
 }  // namespace
 
-template <>
-Domains domainsOf<PellucidFrame>() {
-  return {kFrameFloats, kFrameIntegers};
+template <class Struct>
+Domains domainsOf() {
+  if constexpr (std::is_same_v<Struct, PellucidFrame>) return {kFrameFloats, kFrameIntegers};
+  if constexpr (std::is_same_v<Struct, PellucidThesisOptions>) return {kThesisFloats, kThesisIntegers};
+  if constexpr (std::is_same_v<Struct, PellucidMaterial>) return {kMaterialFloats, kMaterialIntegers};
+  if constexpr (std::is_same_v<Struct, PellucidLight>) return {kLightFloats, kLightIntegers};
+  if constexpr (std::is_same_v<Struct, PellucidLightTable>) return {kLightTableFloats, {}};
+  if constexpr (std::is_same_v<Struct, PellucidShadowMap>) return {kMapFloats, kMapIntegers};
 }
-template <>
-Domains domainsOf<PellucidThesisOptions>() {
-  return {kThesisFloats, kThesisIntegers};
-}
-template <>
-Domains domainsOf<PellucidMaterial>() {
-  return {kMaterialFloats, kMaterialIntegers};
-}
-template <>
-Domains domainsOf<PellucidLight>() {
-  return {kLightFloats, kLightIntegers};
-}
-template <>
-Domains domainsOf<PellucidLightTable>() {
-  return {kLightTableFloats, {}};
-}
-template <>
-Domains domainsOf<PellucidShadowMap>() {
-  return {kMapFloats, kMapIntegers};
-}
+template Domains domainsOf<PellucidFrame>();
+template Domains domainsOf<PellucidThesisOptions>();
+template Domains domainsOf<PellucidMaterial>();
+template Domains domainsOf<PellucidLight>();
+template Domains domainsOf<PellucidLightTable>();
+template Domains domainsOf<PellucidShadowMap>();
 
 }  // namespace pellucid

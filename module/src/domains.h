@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "findings.h"
 #include "pellucid/pellucid_thesis.h"
 
 namespace pellucid {
@@ -13,13 +14,14 @@ namespace pellucid {
 struct FloatDomain {
   const char* field;
   size_t offset;
-  uint32_t count, row;  // floats; of a row, 0: there are no rows
+  uint32_t count;  // floats
   float least, most;
-  bool leastIsOut;
+  bool leastIsOut = false;
   // True where the frame reads element `index` of the field in this struct; NULL: always. A value that is not
   // read may be anything.
-  bool (*isRead)(const void* object, uint32_t index);
-  const char* where;  // the same in words, NULL: always
+  bool (*isRead)(const void* object, uint32_t index) = nullptr;
+  const char* where = nullptr;  // the same in words, NULL: always
+  uint32_t row = 0;             // floats of a row, 0: there are no rows
 };
 
 struct IntegerDomain {
@@ -33,20 +35,10 @@ struct Domains {
   std::span<const IntegerDomain> integers;
 };
 
+// Of PellucidFrame, PellucidThesisOptions, PellucidMaterial, PellucidLight, PellucidLightTable and
+// PellucidShadowMap.
 template <class Struct>
 Domains domainsOf();
-template <>
-Domains domainsOf<PellucidFrame>();
-template <>
-Domains domainsOf<PellucidThesisOptions>();
-template <>
-Domains domainsOf<PellucidMaterial>();
-template <>
-Domains domainsOf<PellucidLight>();
-template <>
-Domains domainsOf<PellucidLightTable>();
-template <>
-Domains domainsOf<PellucidShadowMap>();
 
 // True where the frame reads the light's direction.
 inline bool hasDirection(const PellucidLight& light) {
@@ -67,6 +59,31 @@ inline bool contains(const FloatDomain& d, float value) {
 }
 inline bool isRead(const FloatDomain& d, const void* object, uint32_t index) {
   return !d.isRead || d.isRead(object, index);
+}
+
+// Fields outside their domains, each named behind `prefix`. Integers first, which say what else is read.
+template <class Struct>
+void checkDomains(const Struct& object, const char* prefix, Findings& out) {
+  bool allIntegers = true;
+  for (const IntegerDomain& d : domainsOf<Struct>().integers)
+    for (uint32_t i = 0; i < d.count; ++i) {
+      const uint32_t value = valueOf(d, &object, i);
+      if (value >= d.least && value <= d.most) continue;
+      const Field element = d.count == 1 ? Field("") : Field("[", i, "] ");
+      out.error(Field(prefix, d.field), element, "is ", value, ", outside ", d.least, "..", d.most);
+      allIntegers = false;
+    }
+  if (!allIntegers) return;
+  for (const FloatDomain& d : domainsOf<Struct>().floats)
+    for (uint32_t i = 0; i < d.count; ++i) {
+      const float value = valueOf(d, &object, i);
+      if (!isRead(d, &object, i) || contains(d, value)) continue;
+      const Field element = d.count == 1 ? Field("")
+                            : d.row == 0 ? Field("[", i, "] ")
+                                         : Field("[", i / d.row, "][", i % d.row, "] ");
+      out.error(Field(prefix, d.field), element, "is ", value, ", outside ", d.leastIsOut ? "(" : "[",
+                d.least, ", ", d.most, "]");
+    }
 }
 
 }  // namespace pellucid

@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "camera.h"
-#include "shadow_map.h"
-
 namespace pellucid {
 namespace {
 
@@ -14,9 +11,27 @@ glm::dvec3 linear(const glm::dmat4& m, int row) { return {m[0][row], m[1][row], 
 
 }  // namespace
 
-EntryExtent entryExtent(const Inputs& inputs, const GatherChoice& gather, const PellucidLight& light,
-                        uint32_t map) {
-  const PellucidShadowMap* maps = inputs.frame.shadowMaps + light.firstShadowMap;
+bool isPerspective(const PellucidShadowMap& map) {
+  const float* clip = map.clipFromWorld;
+  return clip[3] != 0 || clip[7] != 0 || clip[11] != 0;
+}
+
+double texelSide(const PellucidShadowMap& map) {
+  const glm::dmat4 clip = toMatrix(map.clipFromWorld);
+  const bool perspective = isPerspective(map);
+  const glm::dvec3 w = linear(clip, 3);
+  double side = 0;
+  for (int i = 0; i < 2; ++i) {
+    // An axis that is off center leans along the view; that does not make texels smaller.
+    const glm::dvec3 row = linear(clip, i),
+                     across = perspective ? row - w * (glm::dot(row, w) / glm::dot(w, w)) : row;
+    side = std::max(side, 2 * (perspective ? glm::length(w) : 1) / (glm::length(across) * map.extent[i]));
+  }
+  return side;
+}
+
+EntryExtent entryExtent(const Setup& setup, const PellucidLight& light, uint32_t map) {
+  const PellucidShadowMap* maps = setup.frame.shadowMaps + light.firstShadowMap;
   const PellucidShadowMap* end = maps + light.shadowMapCount;
   const auto fits = [&](uint32_t side) {
     uint64_t rows = 0;
@@ -30,7 +45,7 @@ EntryExtent entryExtent(const Inputs& inputs, const GatherChoice& gather, const 
   const auto isFineEnough = [&](uint32_t side) {
     return std::all_of(maps, end, [&](const PellucidShadowMap& m) {
       return !isPerspective(m) && std::min(m.extent[0], m.extent[1]) / side >= kLeastEntries &&
-             side * texelSide(m) <= static_cast<double>(gather.longestEntrySide);
+             side * texelSide(m) <= static_cast<double>(setup.longestEntrySide);
     });
   };
   uint32_t side = 1;
@@ -78,8 +93,7 @@ EntryConstants entryConstants(const PellucidShadowMap& s, const PellucidLight& l
     r.ray = glm::vec4(source, glm::dot(z, source) + clip[3][2]);
     c.gather.depth = glm::vec4(w, clip[3][3]);
   } else {
-    const glm::dvec3 travel(l.direction[0], l.direction[1], l.direction[2]);
-    const glm::dvec3 toLight = -glm::dmat3(viewFromWorld) * glm::normalize(travel);
+    const glm::dvec3 toLight = -glm::dmat3(viewFromWorld) * glm::normalize(toVector(l.direction));
     const glm::dmat3 g = glm::inverse(glm::transpose(glm::dmat3(x, y, toLight)));
     stepX = step.x * g[0];
     stepY = step.y * g[1];

@@ -1,10 +1,15 @@
-// Places of the entry points of the gather (compute/gather/entry_point.glsl), and what the shaders know of
-// their maps. Pure.
+// Texels of shadow maps, places of the gather's entry points (compute/gather/entry_point.glsl), and what the
+// shaders know of their maps.
 #pragma once
 
-#include "gather_choice.h"
+#include "setup.h"
 
 namespace pellucid {
+
+bool isPerspective(const PellucidShadowMap& map);
+
+// Longer side of a texel, scene units across the light; perspective: at planar distance 1.
+double texelSide(const PellucidShadowMap& map);
 
 // Entry points of a dispatch's maps, which are below each other: at most. Maps that are wider take fewer
 // entries than texels, as samples are further apart than their texels.
@@ -28,9 +33,8 @@ struct EntryExtent {
 };
 
 // Extent of one of the light's maps: a power of two of texels a side, so that all of them fit. Orthographic
-// maps take no more entry points than GatherChoice::longestEntrySide asks for.
-EntryExtent entryExtent(const Inputs& inputs, const GatherChoice& gather, const PellucidLight& light,
-                        uint32_t map);
+// maps take no more entry points than Setup::longestEntrySide asks for.
+EntryExtent entryExtent(const Setup& setup, const PellucidLight& light, uint32_t map);
 
 // `row`: of the map's first entry point. `light`: its place among the dispatch's.
 struct EntryConstants {

@@ -1,22 +1,64 @@
-// Faults of a frame, in sentences without allocation.
+// Faults of a frame or a context, in sentences without allocation.
 #pragma once
 
+#include <charconv>
+#include <concepts>
+#include <string_view>
+
 #include "pellucid/pellucid.h"
-#include "text.h"
 
 namespace pellucid {
 
+// Appends into a caller's buffer, and counts what did not fit.
+class Text {
+public:
+  Text(char* buffer, std::size_t capacity) : buffer_(buffer), capacity_(buffer ? capacity : 0) {
+    if (capacity_ > 0) buffer_[0] = '\0';
+  }
+
+  Text& operator<<(std::string_view s);
+  Text& operator<<(const char* s) { return *this << std::string_view(s); }
+  template <class Number>
+  requires(std::integral<Number> || std::floating_point<Number>) &&
+      (!std::same_as<Number, char>)Text& operator<<(Number value) {
+    char digits[32];
+    const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
+    return *this << std::string_view(digits, static_cast<std::size_t>(end - digits));
+  }
+
+  // Bytes the whole text needs, terminator included.
+  std::size_t needed() const { return size_ + 1; }
+
+private:
+  char* buffer_;
+  std::size_t capacity_, size_ = 0;
+};
+
+// "lights[3].color" without allocation.
+class Field {
+public:
+  template <class... Parts>
+  explicit Field(const Parts&... parts) {
+    Text text(name_, sizeof name_);
+    (text << ... << parts);
+  }
+  operator const char*() const { return name_; }
+
+private:
+  char name_[64];
+};
+
 class Findings {
 public:
-  Findings(PellucidMessageFn fn, void* user) : fn_(fn), user_(user) {}
+  explicit Findings(PellucidMessageFn fn = nullptr, void* user = nullptr) : fn_(fn), user_(user) {}
 
   // Of the errors so far.
   PellucidResult result() const { return result_; }
+  bool ok() const { return result_ == PELLUCID_OK; }
 
   template <class... Parts>
   void error(const char* field, const Parts&... sentence) {
-    if (result_ == PELLUCID_OK) result_ = PELLUCID_ERROR_INVALID_ARGUMENT;
-    say(PELLUCID_SEVERITY_ERROR, field, sentence...);
+    fail(result_ == PELLUCID_OK ? PELLUCID_ERROR_INVALID_ARGUMENT : result_, field, sentence...);
   }
   // An error with another result than INVALID_ARGUMENT.
   template <class... Parts>
@@ -42,20 +84,6 @@ private:
   PellucidMessageFn fn_;
   void* user_;
   PellucidResult result_ = PELLUCID_OK;
-};
-
-// "lights[3].color" without allocation.
-class Field {
-public:
-  template <class... Parts>
-  explicit Field(const Parts&... parts) {
-    Text text(name_, sizeof name_);
-    (text << ... << parts);
-  }
-  operator const char*() const { return name_; }
-
-private:
-  char name_[64];
 };
 
 }  // namespace pellucid

@@ -2,18 +2,65 @@
 // constants read all of them.
 #pragma once
 
-#include "blocks.h"
-#include "constants_layout.h"
+#include <algorithm>
+#include <optional>
+
+#include "constants.h"
 #include "lights.h"
-#include "stages.h"
-#include "validate.h"
 
 namespace pellucid {
 
-struct FrameFacts : Inputs, Screen, Materials, GatherChoice {
+// Blocks of 64 x 64 pixels, in which the passes of the diffusion and of the gather run where the GPU finds
+// material (compute/frame/blocks.glsl).
+struct Blocks {
+  uint32_t columns, rows;  // that the rect and PELLUCID_BLOCK_BORDER pixels around touch
+  uint32_t touched;        // that the rect touches: no other block holds material
+  uint32_t maps;           // shadow maps whose entry points are listed
+  uint32_t entryGroups;    // at most, in the list of groups of entry points
+
+  Blocks(const Lights& lights, const Rect& rect);
+
+  uint32_t count() const { return columns * rows; }
+  // Where the lists begin in the image of words, and how many words it has.
+  uint32_t listWord() const { return PELLUCID_BLOCK_WORDS * count(); }
+  uint32_t words() const { return listWord() + 2 * count() + entryGroups; }
+  static constexpr uint32_t kColumns = 1u << PELLUCID_BLOCK_WORDS_SHIFT;
+  // Groups of the pass that lists blocks: an invocation for each, then for each map, block and row of the
+  // map's groups.
+  uint32_t listGroups() const;
+};
+
+// The passes that run.
+struct Stages {
+  bool nothing = false;  // the output is the irradiance image, and nothing is added to it
+  bool lights = false;   // the fused dispatches carry lights
+  bool diffusion = false;
+  uint32_t fused = 0;         // fused dispatches
+  uint32_t walls = 0;         // beside a gather: dispatches of thin walls' light, before what is diffused
+  uint32_t gathered = 0;      // groups of lights that are gathered from
+  bool keepsHistory = false;  // the frame keeps its transmitted light in options.history:
+  bool keepsProbes = false;   // the gather's filtered probes, which the diffusion reads, or
+  bool history = false;       // that of pixels: the fused dispatches write it, and one more adds it
+  bool copies = false;  // the diffusion alone reads the irradiance and writes the output, which may be one
+                        // image and whose pixels read their neighbors: it copies the irradiance first
+  bool lists = false;   // groups of the diffusion run where the GPU finds material
+  const char* whyNoLists = nullptr;  // or why over all blocks. Static string
+
+  Stages(const Setup& setup, const Lights& all, const Blocks& blocks);
+
+  // Dispatches that write a color transient or the output.
+  uint32_t writers() const { return walls + (history ? 1 : fused) + (diffusion ? 1 : 0) + (copies ? 1 : 0); }
+  uint32_t colorTransients() const { return nothing ? 0 : std::min(writers() - 1, 2u); }
+  // Images of packed texels: the pyramid's; the gather's probes and entry points.
+  uint32_t pyramidImages() const { return diffusion ? kPyramidImages : 0; }
+  uint32_t texelTransients() const { return pyramidImages() + (gathered > 0 ? 2 : 0); }
+  uint32_t transients() const { return colorTransients() + texelTransients() + (diffusion ? 1 : 0); }
+  uint32_t blocksTransient() const { return transients() - 1; }  // with diffusion
+};
+
+struct FrameFacts : Setup {
   // `out` gets warnings.
-  FrameFacts(const Inputs& inputs, const Screen& screen, const Materials& materials,
-             const GatherChoice& gather, Findings& out);
+  FrameFacts(const Setup& setup, Findings& out);
 
   Lights lights;
   Blocks blocks;
@@ -23,28 +70,16 @@ struct FrameFacts : Inputs, Screen, Materials, GatherChoice {
 
   // `active`: index among the lights that contribute.
   const PellucidLight& light(uint32_t active) const { return lights.light(*this, active); }
-  bool isGathered(const PellucidLight& light) const { return GatherChoice::isGathered(*this, light); }
 };
 
-// use(const FrameFacts&), where nothing is wrong that a plan relies on: image views are not among it. Each
-// check relies on the checks before it.
-template <class Use>
-PellucidResult readFrame(const PellucidFrame* frame, Findings& out, Use&& use) {
-  Inputs inputs;
-  if (!readInputs(frame, out, &inputs)) return out.result();
-  checkFields(inputs, out);
-  if (out.result() != PELLUCID_OK) return out.result();
-  checkMaterials(inputs, out);
-  checkShadowMaps(inputs, out);
-  if (out.result() != PELLUCID_OK) return out.result();
-  const Screen screen(inputs);
-  const Materials materials(inputs, screen);
-  const GatherChoice gather(inputs, materials);
-  checkLights(inputs, gather, out);
-  if (out.result() != PELLUCID_OK) return out.result();
-  const FrameFacts facts(inputs, screen, materials, gather, out);
-  checkGroups(facts, out);
-  return out.result() == PELLUCID_OK ? use(facts) : out.result();
-}
+// The facts where nothing is wrong that a plan relies on: image views are not among it. Else errors.
+std::optional<FrameFacts> readFrame(const PellucidFrame* frame, Findings& out);
+
+// Validation, in the order in which a frame is read: each check relies on those before it.
+void checkFields(const Inputs& inputs, Findings& out);
+void checkMaterials(const Inputs& inputs, Findings& out);
+void checkShadowMaps(const Inputs& inputs, Findings& out);
+void checkLights(const Setup& setup, Findings& out);
+void checkGroups(const FrameFacts& facts, Findings& out);
 
 }  // namespace pellucid

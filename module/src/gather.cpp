@@ -1,4 +1,5 @@
-#include "gather.h"
+// A material's constants for the light-space gather (docs/how-it-works.md). Pure.
+#include "material_tables.h"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,4 @@
-// The images of a frame that have a field of their own. Adding one: a row here, and its binding in the passes
-// that read it.
+// The images of a frame, and the part of them that is rendered.
 #pragma once
 
 #include <array>
@@ -10,6 +9,7 @@
 
 namespace pellucid {
 
+// Images that have a field of their own. Adding one: a row here, and its binding in the passes that read it.
 struct ImageField {
   uint32_t resource;  // PellucidResource
   const char* name;   // as in the API, plans and messages
@@ -48,6 +48,19 @@ inline const PellucidImage& historyOf(const PellucidFrame& frame) {
   static constexpr PellucidImage kNone{};
   return frame.structSize > offsetof(PellucidFrame, options.history) ? frame.options.history : kNone;
 }
+
+struct Rect {  // pixels
+  uint32_t x, y, width, height;
+  bool operator==(const Rect&) const = default;
+};
+
+inline Rect renderRect(const PellucidFrame& frame) {
+  const uint32_t* r = frame.options.renderRect;
+  return r[2] == 0 ? Rect{0, 0, frame.imageExtent[0], frame.imageExtent[1]} : Rect{r[0], r[1], r[2], r[3]};
+}
+
+// Parts that cover a length, the last of them perhaps cut short.
+constexpr uint32_t parts(uint32_t length, uint32_t part) { return (length + part - 1) / part; }
 
 // The image of any image resource; a transient's and shadow image's by their index.
 inline const PellucidImage& imageOf(const PellucidFrame& frame, uint32_t resource) {

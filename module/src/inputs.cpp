@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "defaults.h"
+#include "struct_size.h"
 
 namespace pellucid {
 
@@ -32,24 +32,16 @@ bool readInputs(const PellucidFrame* frame, Findings& out, Inputs* inputs) {
     out.error("frame", "is NULL");
     return false;
   }
-  if (!canReadStruct(frame, kLeastFrame)) {
-    out.fail(PELLUCID_ERROR_VERSION, "structSize", "is ", frame->structSize, "; this library reads ",
-             kLeastFrame, " to ", sizeof(PellucidFrame),
-             " bytes, and more if they are 0 (call pellucidInitFrame)");
-    return false;
-  }
+  if (!checkStructSize(frame, kLeastFrame, "structSize", "pellucidInitFrame", out)) return false;
   inputs->frame = readStruct(frame, defaultFrame());
-  const PellucidThesisOptions* thesis = inputs->frame.options.thesis;
-  if (thesis && !canReadStruct(thesis, kLeastThesisOptions)) {
-    out.fail(PELLUCID_ERROR_VERSION, "thesis.structSize", "is ", thesis->structSize, "; this library reads ",
-             kLeastThesisOptions, " to ", sizeof(PellucidThesisOptions),
-             " bytes, and more if they are 0 (call pellucidInitThesisOptions)");
-    return false;
+  inputs->thesis = defaultThesisOptions();
+  if (const PellucidThesisOptions* thesis = inputs->frame.options.thesis) {
+    if (!checkStructSize(thesis, kLeastThesisOptions, "thesis.structSize", "pellucidInitThesisOptions", out))
+      return false;
+    inputs->thesis = readStruct(thesis, inputs->thesis);
   }
-  inputs->thesis = thesis ? readStruct(thesis, defaultThesisOptions()) : defaultThesisOptions();
   for (const ImageField& image : kImageFields)
     if (given(inputs->frame.*image.field)) inputs->images |= 1u << image.resource;
-  inputs->inPlace = given(inputs->frame.output) && inputs->frame.output.view == inputs->frame.irradiance.view;
   return true;
 }
 

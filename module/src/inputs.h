@@ -10,12 +10,13 @@ namespace pellucid {
 struct Inputs {
   PellucidFrame frame{};
   PellucidThesisOptions thesis{};
-  uint32_t images = 0;   // bit (1 << PellucidResource) of each image field that has a view
-  bool inPlace = false;  // the output is the irradiance's view
+  uint32_t images = 0;  // bit (1 << PellucidResource) of each image field that has a view
 
   bool has(PellucidResource image) const { return (images & 1u << image) != 0; }
   bool debug() const { return frame.options.debugView != PELLUCID_DEBUG_NONE; }
   bool translucency() const { return (frame.options.features & PELLUCID_FEATURE_TRANSLUCENCY) != 0; }
+  // The output is the irradiance's view.
+  bool inPlace() const { return given(frame.output) && frame.output.view == frame.irradiance.view; }
   // The output shares no memory with the irradiance.
   bool separate() const { return frame.options.separateOutput != 0 || frame.options.addToOutput == 1; }
   // Bits of a material value that may hold the index.

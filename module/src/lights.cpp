@@ -2,11 +2,20 @@
 
 #include <algorithm>
 
-#include "constants_layout.h"
+#include "constants.h"
 #include "cull.h"
 #include "entry_points.h"
 
 namespace pellucid {
+
+void Skips::add(const char* what, const char* reason) {
+  for (uint32_t i = 0; i < size; ++i)
+    if (list[i].what == what && list[i].reason == reason) {
+      ++list[i].count;
+      return;
+    }
+  if (size < list.size()) list[size++] = {what, reason, 1};
+}
 
 // ---- A group
 
@@ -23,35 +32,31 @@ bool LightGroup::addImage(uint32_t image) {
   return true;
 }
 
-bool LightGroup::addImages(const Inputs& inputs, const GatherChoice& gather, const PellucidLight& light,
-                           const PellucidShadowMap& map) {
-  return addImage(map.image) &&
-         (!readsExit(inputs, gather, light, map) || addImage(map.options.exitImage - 1)) &&
+bool LightGroup::addImages(const Setup& setup, const PellucidLight& light, const PellucidShadowMap& map) {
+  return addImage(map.image) && (!readsExit(setup, light, map) || addImage(map.options.exitImage - 1)) &&
          (!readsCaster(map) || addImage(map.options.casterMaterialImage - 1));
 }
 
-bool LightGroup::readsExit(const Inputs& inputs, const GatherChoice& gather, const PellucidLight& light,
+bool LightGroup::readsExit(const Setup& setup, const PellucidLight& light,
                            const PellucidShadowMap& map) const {
   return beside && map.options.exitImage != 0 && map.options.backFaces == 0 &&
-         (inputs.frame.options.cameraThickness == 0 || gather.isGathered(inputs, light));
+         (setup.frame.options.cameraThickness == 0 || setup.isGathered(light));
 }
 
-bool LightGroup::addLight(const Inputs& inputs, const Materials& materials, const GatherChoice& gather,
-                          const PellucidLight& light) {
-  const bool isGathered = gather.isGathered(inputs, light);
+bool LightGroup::addLight(const Setup& setup, const PellucidLight& light) {
+  const bool isGathered = setup.isGathered(light);
   // Probes and the pass of one thickness a pixel take groups of their own.
   if (hasProbes() && !isGathered) return false;
   LightGroup grown = *this;
   // Dispatches of thin walls' light would read the images, too.
-  if (isGathered && !materials.thinWalls) grown.mostImages = PELLUCID_ENTRY_IMAGE_COUNT;
+  if (isGathered && !setup.thinWalls) grown.mostImages = PELLUCID_ENTRY_IMAGE_COUNT;
   grown.shadowCount += light.shadowMapCount;
   if (lightCount == PELLUCID_DISPATCH_LIGHTS || grown.shadowCount > PELLUCID_DISPATCH_SHADOWS) return false;
   for (uint32_t i = 0; i < light.shadowMapCount; ++i)
-    if (!grown.addImages(inputs, gather, light, inputs.frame.shadowMaps[light.firstShadowMap + i]))
-      return false;
+    if (!grown.addImages(setup, light, setup.frame.shadowMaps[light.firstShadowMap + i])) return false;
   if (isGathered) {
     for (uint32_t i = 0; i < light.shadowMapCount; ++i) {
-      const EntryExtent extent = entryExtent(inputs, gather, light, i);
+      const EntryExtent extent = entryExtent(setup, light, i);
       grown.entryColumns = std::max(grown.entryColumns, entryGroups(extent.width));
       grown.entryRows += entryGroups(extent.height);
       grown.entryWidth = std::max(grown.entryWidth, extent.width);
@@ -78,39 +83,43 @@ LightGroup LightGroup::next() const {
 
 // ---- All lights
 
-Lights::Lights(const Inputs& inputs, const Screen& screen, const Materials& materials,
-               const GatherChoice& gather, Findings& out)
-    : ambient(ambientLight(inputs.frame)) {
-  const PellucidFrame& frame = inputs.frame;
+Lights::Lights(const Setup& setup, Findings& out) {
+  const PellucidFrame& frame = setup.frame;
+  ambient = {};
+  ambient.type = PELLUCID_SHADER_LIGHT_AMBIENT;
+  std::fill_n(ambient.color, 3, 1.0f);
+  const float* sky = frame.options.ambient;
+  const bool bright = sky && std::any_of(sky, sky + kAmbientCoefficients, [](float c) { return c != 0; });
+  ambient.intensity = bright || given(frame.hiddenIrradiance) ? 1 : 0;
   // The debug view of thickness shows the chord, too.
   needsChord = frame.options.cameraThickness == 1 || ambient.intensity > 0 ||
                frame.options.debugView == PELLUCID_DEBUG_THICKNESS;
-  const ViewBounds view(inputs, screen);
+  const ViewBounds view(setup);
   // True where the light contributes.
   const auto look = [&](const PellucidLight& light, const char* what, const char* field) {
-    if (const char* reason = view.whySkipped(inputs, materials, gather, light)) {
+    if (const char* reason = view.whySkipped(light)) {
       out.warning(field, "adds nothing: ", reason);
       skips.add(what, reason);
       return false;
     }
-    if (inputs.lacksChord(light) && materials.solids)
+    if (setup.lacksChord(light) && setup.solids)
       skips.add("light in solids", "no back depth to take a thickness from: thin walls alone let it through");
     return true;
   };
   uint32_t gatheredFirst = 0;
   for (uint32_t i = 0; i < frame.lightCount; ++i) {
     const PellucidLight& light = frame.lights[i];
-    needsChord = needsChord || inputs.takesChord(light);
+    needsChord = needsChord || setup.takesChord(light);
     if (!look(light, "light", Field("lights[", i, "]"))) continue;
-    if (inputs.holdsBackFaces(light)) ++holdBackFaces;
-    for (uint32_t k = 0; k < light.shadowMapCount && !inputs.holdsBackFaces(light); ++k) {
+    if (setup.holdsBackFaces(light)) ++holdBackFaces;
+    for (uint32_t k = 0; k < light.shadowMapCount && !setup.holdsBackFaces(light); ++k) {
       const PellucidShadowMap& map = frame.shadowMaps[light.firstShadowMap + k];
       lackExit = lackExit || (map.options.exitImage == 0 && frame.options.cameraThickness == 0);
       lackCaster = lackCaster || map.options.casterMaterialImage == 0;
     }
     if (++lightCount > kMost) continue;
     active[lightCount - 1] = i;
-    if (gather.isGathered(inputs, light))
+    if (setup.isGathered(light))
       std::rotate(active.begin() + gatheredFirst++, active.begin() + (lightCount - 1),
                   active.begin() + lightCount);
   }
@@ -120,7 +129,7 @@ Lights::Lights(const Inputs& inputs, const Screen& screen, const Materials& mate
     ++lightCount;
   }
 
-  group(inputs, materials, gather, true);
+  group(setup, true);
   const auto hasNothing = [](const PellucidShadowMap& map) {
     return map.options.exitImage == 0 && map.options.casterMaterialImage == 0;
   };
@@ -128,20 +137,18 @@ Lights::Lights(const Inputs& inputs, const Screen& screen, const Materials& mate
   // At most: three dispatches that downsample, base level, upsample, two that diffuse, history.
   constexpr uint32_t kOthers = 8;
   // Debug views of light need all lights in one dispatch.
-  const bool binds =
-      inputs.debug() && frame.options.debugView != PELLUCID_DEBUG_IRRADIANCE
-          ? count <= 1
-          : fused() + gatherDispatches() + walls(materials, gather) + kOthers <= PELLUCID_MAX_DISPATCHES;
-  if (!binds) group(inputs, materials, gather, false);
+  const bool binds = setup.debug() && frame.options.debugView != PELLUCID_DEBUG_IRRADIANCE
+                         ? count <= 1
+                         : fused() + gatherDispatches() + walls + kOthers <= PELLUCID_MAX_DISPATCHES;
+  if (!binds) group(setup, false);
 }
 
-void Lights::group(const Inputs& inputs, const Materials& materials, const GatherChoice& gather,
-                   bool withBeside) {
+void Lights::group(const Setup& setup, bool withBeside) {
   beside = withBeside;
   count = gathered = entryColumns = entryRows = 0;
   LightGroup current;
   current.beside = beside;
-  current.shapes = gather.shapes;
+  current.shapes = setup.shapes;
   const auto put = [&] {
     if (count < first.size()) first[count] = current;
     last = current;
@@ -151,17 +158,13 @@ void Lights::group(const Inputs& inputs, const Materials& materials, const Gathe
     entryRows = std::max(entryRows, current.entryRows);
   };
   for (uint32_t i = 0; i < std::min(lightCount, kMost); ++i) {
-    if (current.addLight(inputs, materials, gather, light(inputs, i))) continue;
+    if (current.addLight(setup, light(setup, i))) continue;
     put();
     current = current.next();
-    current.addLight(inputs, materials, gather, light(inputs, i));
+    current.addLight(setup, light(setup, i));
   }
   if (current.lightCount > 0 || current.shapes) put();
-}
-
-uint32_t Lights::walls(const Materials& materials, const GatherChoice& gather) const {
-  if (!gather.gathers || !materials.thinWalls || lightCount == 0) return 0;
-  return count - (first[0].lightCount == 0 ? 1 : 0);
+  walls = setup.gathers && setup.thinWalls && lightCount > 0 ? count - (first[0].lightCount == 0 ? 1 : 0) : 0;
 }
 
 }  // namespace pellucid

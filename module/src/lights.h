@@ -4,11 +4,24 @@
 #include <array>
 #include <span>
 
-#include "ambient.h"
-#include "gather_choice.h"
-#include "skips.h"
+#include "setup.h"
 
 namespace pellucid {
+
+constexpr uint32_t kAmbientCoefficients = 27;  // of PellucidFrameOptions::ambient
+
+// Light from all around takes a place among the lights of dispatches: one of this type, which no caller can
+// name.
+inline bool isAmbient(const PellucidLight& light) { return light.type == PELLUCID_SHADER_LIGHT_AMBIENT; }
+
+// All that a plan leaves out, and why.
+struct Skips {
+  std::array<PellucidSkip, PELLUCID_MAX_SKIPS> list{};
+  uint32_t size = 0;
+
+  // Static strings. Equal ones are counted.
+  void add(const char* what, const char* reason);
+};
 
 // One dispatch binds a number of shadow images (see mostImages) and windows of fixed size on the constants of
 // lights and shadow maps, so lights are taken in order into groups that need no more. Constants are laid out
@@ -31,19 +44,16 @@ struct LightGroup {
   // Slot of an image, or mostImages.
   uint32_t slot(uint32_t image) const;
   // Gives the images of a light's map slots; false if there are not enough.
-  bool addImages(const Inputs& inputs, const GatherChoice& gather, const PellucidLight& light,
-                 const PellucidShadowMap& map);
+  bool addImages(const Setup& setup, const PellucidLight& light, const PellucidShadowMap& map);
   // Adds the light, its maps and their images; false (and no change) if they do not fit.
-  bool addLight(const Inputs& inputs, const Materials& materials, const GatherChoice& gather,
-                const PellucidLight& light);
+  bool addLight(const Setup& setup, const PellucidLight& light);
   // Probes find the light that comes through, and shapes where the frame has no such light.
   bool hasProbes() const { return gathered > 0 || shapes; }
   // An empty group whose constants follow this one's.
   LightGroup next() const;
   // True where the exit depth beside the light's map is read. Thickness from the camera knows nothing of the
   // light's way and its exit.
-  bool readsExit(const Inputs& inputs, const GatherChoice& gather, const PellucidLight& light,
-                 const PellucidShadowMap& map) const;
+  bool readsExit(const Setup& setup, const PellucidLight& light, const PellucidShadowMap& map) const;
   bool readsCaster(const PellucidShadowMap& map) const { return beside && map.options.casterMaterialImage != 0; }
 
 private:
@@ -52,10 +62,9 @@ private:
 
 struct Lights {
   // Each light is looked at once: `out` is warned of those that add nothing, and `skips` counts them.
-  Lights(const Inputs& inputs, const Screen& screen, const Materials& materials, const GatherChoice& gather,
-         Findings& out);
+  Lights(const Setup& setup, Findings& out);
 
-  PellucidLight ambient;  // see ambient.h
+  PellucidLight ambient;  // its intensity is 0 where the frame has none
   bool needsChord;        // thickness along view rays is asked for
   Skips skips;            // lights that add nothing, and what they lack
 
@@ -75,6 +84,8 @@ struct Lights {
   // first group without lights where surfaces have shapes.
   uint32_t count = 0, gathered = 0;          // gathered: with probes
   uint32_t entryColumns = 0, entryRows = 0;  // the most of a group
+  // Dispatches of thin walls' light beside a gather. Without one, the pass of solids' light adds it.
+  uint32_t walls = 0;
   // False where exit depths and caster materials need more dispatches than a plan has: then they are left out
   // as if the frame had only the maps.
   bool beside = true;
@@ -89,11 +100,9 @@ struct Lights {
   }
   // Dispatches over all pixels, of one thickness a pixel.
   uint32_t fused() const { return count - gathered; }
-  // Dispatches of thin walls' light beside a gather. Without one, the pass of solids' light adds it.
-  uint32_t walls(const Materials& materials, const GatherChoice& gather) const;
 
 private:
-  void group(const Inputs& inputs, const Materials& materials, const GatherChoice& gather, bool withBeside);
+  void group(const Setup& setup, bool withBeside);
 };
 
 }  // namespace pellucid

@@ -2,11 +2,8 @@
 
 #include <cstring>
 
-#include "diffusion_profile.h"
-#include "gather.h"
-#include "inputs.h"
+#include "frame.h"
 #include "transmittance.h"
-#include "validate.h"
 
 namespace pellucid {
 
@@ -29,9 +26,9 @@ extern "C" PellucidResult pellucidMakeMaterialTables(const PellucidMaterial* mat
   Inputs inputs;  // with nothing but the material
   inputs.frame.materials = material;
   inputs.frame.materialCount = 1;
-  Findings silent(nullptr, nullptr);
+  Findings silent;
   checkMaterials(inputs, silent);
-  if (silent.result() != PELLUCID_OK) return silent.result();
+  if (!silent.ok()) return silent.result();
   MaterialTables made;
   makeTables(inputs.material(0), &made);
   *tables = {};

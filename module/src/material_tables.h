@@ -15,6 +15,16 @@ struct MaterialTables {
 };
 static_assert(sizeof(MaterialTables) <= sizeof(PellucidMaterialTables));
 
+// Of a material whose model canBeGathered (docs/how-it-works.md).
+shared::GatherConstants gatherConstants(const PellucidMaterial& material);
+
+// How far from a surface its probes look for entry points, mm.
+float gatherReach(const shared::GatherConstants& gather, uint32_t samples);
+
+// The diffusion profile as the pyramid's passes read it. All zeros (the pixel keeps everything) for a material
+// without Gaussians.
+shared::KernelConstants kernelConstants(const PellucidMaterial& material);
+
 // The material has passed checkMaterials.
 void makeTables(const PellucidMaterial& material, MaterialTables* tables);
 

@@ -2,21 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/glm.hpp>
 #include <numbers>
+
+#include "camera.h"
 
 namespace pellucid {
 namespace {
-
-glm::dvec3 vec(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
-
-// World direction from the object to the light; 0 for a light at its center.
-glm::dvec3 directionTo(const PellucidThesisOptions& t, const PellucidLight& light) {
-  const glm::dvec3 d = light.type == PELLUCID_LIGHT_DIRECTIONAL ? -vec(light.direction)
-                                                                : vec(light.position) - vec(t.objectCenter);
-  const double length = glm::length(d);
-  return length > 0 ? d / length : d;
-}
 
 double alongAzimuth(const PellucidThesisOptions& t, double side, double front) {
   const double turns = std::atan2(side, front) / (2 * std::numbers::pi);
@@ -45,14 +36,20 @@ double onSphere(const PellucidThesisOptions& t, const glm::dvec3& d) {
 
 }  // namespace
 
+glm::dvec3 fromObject(const PellucidThesisOptions& t, const PellucidLight& light) {
+  return light.type == PELLUCID_LIGHT_DIRECTIONAL ? -toVector(light.direction)
+                                                  : toVector(light.position) - toVector(t.objectCenter);
+}
+
 double minimumDotOf(const PellucidThesisOptions& t, const PellucidLight& light) {
   const bool prescaled =
       t.prescaleAngle && t.angleModel >= PELLUCID_ANGLE_COSINE && t.angleModel <= PELLUCID_ANGLE_POLYNOMIAL;
   if (prescaled || t.angleModel == PELLUCID_ANGLE_MINIMUM_DOT) return t.minimumDot;
   if (minimumDotEntries(t) == 0) return 0;
-  const glm::dvec3 up = glm::normalize(vec(t.upAxis));
-  const glm::dvec3 side = glm::normalize(glm::cross(up, vec(t.faceVector))), front = glm::cross(side, up);
-  const glm::dvec3 d = directionTo(t, light);
+  const glm::dvec3 up = glm::normalize(toVector(t.upAxis));
+  const glm::dvec3 side = glm::normalize(glm::cross(up, toVector(t.faceVector))), front = glm::cross(side, up);
+  glm::dvec3 d = fromObject(t, light);
+  if (const double length = glm::length(d); length > 0) d /= length;
   const glm::dvec3 local(glm::dot(d, side), glm::dot(d, up), glm::dot(d, front));
   return t.angleModel == PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH ? alongAzimuth(t, local.x, local.z)
                                                             : onSphere(t, local);

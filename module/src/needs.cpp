@@ -1,10 +1,7 @@
-// The images that a frame's dispatches need besides the caller's own.
-#include "needs.h"
-
+// The images that a frame's dispatches need, of the caller's and besides.
 #include <algorithm>
 
 #include "entry_points.h"
-#include "plan.h"
 #include "planner.h"
 
 namespace pellucid {
@@ -50,8 +47,6 @@ void addUse(const PellucidPlan& plan, uint32_t resource, PellucidImageNeed& need
   }
 }
 
-}  // namespace
-
 PellucidResult imageNeeds(const FrameFacts& f, uint32_t* count, PellucidImageNeed* needs) {
   const Stages& stages = f.stages;
   const uint32_t colors = stages.colorTransients(), transients = stages.transients(), room = *count;
@@ -86,4 +81,23 @@ PellucidResult imageNeeds(const FrameFacts& f, uint32_t* count, PellucidImageNee
   return PELLUCID_OK;
 }
 
+}  // namespace
 }  // namespace pellucid
+
+using namespace pellucid;
+
+extern "C" PellucidResult pellucidGetImageNeeds(const PellucidFrame* frame, uint32_t* count,
+                                                PellucidImageNeed* needs) {
+  if (!count) return PELLUCID_ERROR_INVALID_ARGUMENT;
+  Findings silent;
+  const auto facts = readFrame(frame, silent);
+  return facts ? imageNeeds(*facts, count, needs) : silent.result();
+}
+
+extern "C" uint32_t pellucidGetRequiredInputs(uint32_t features) {
+  uint32_t images = 0;
+  if ((features & (PELLUCID_FEATURE_TRANSLUCENCY | PELLUCID_FEATURE_DIFFUSION)) == 0) return images;
+  for (const ImageField& image : kImageFields)
+    if (image.required) images |= 1u << image.resource;
+  return images;
+}

@@ -1,8 +1,7 @@
 // Every pass, one block each: its pipeline with what it binds, and its dispatches in a frame. At the end, the
 // data flow of a frame through them. docs/how-it-works.md tells what each pass does.
-#include "plan.h"
+#include "planner.h"
 
-#include <algorithm>
 #include <bit>
 
 #include "kAddHistory.h"
@@ -17,7 +16,6 @@
 #include "kTranslucency.h"
 #include "kTranslucencyArray.h"
 #include "kUpsample.h"
-#include "planner.h"
 
 namespace pellucid {
 namespace {

@@ -1,10 +1,149 @@
-// Passes as the API describes their pipelines.
+// Pipelines of passes as contexts have them, and as the API describes them.
 #include <algorithm>
-#include <bit>
+#include <memory>
+#include <new>
 
-#include "pass.h"
+#include "context.h"
+#include "images.h"
 
 namespace pellucid {
+namespace {
+
+// SPIR-V 1.3, sections 3.11, 3.31 and 3.32.
+constexpr uint32_t kHeaderWords = 5, kOpTypeImage = 25, kOpCapability = 17;
+constexpr uint32_t kCapabilityShader = 1, kCapabilityWriteWithoutFormat = 56;
+constexpr uint32_t kUnknown = 0, kRgba32f = 1, kRgba16f = 2, kStorageImage = 2;
+
+// The set and the layout of a pass.
+VkResult createLayout(PellucidContext& c, uint32_t index, const char** call) {
+  VkDescriptorSetLayoutBinding bindings[PELLUCID_BINDING_COUNT];
+  VkDescriptorSetLayoutCreateInfo set{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
+  if (!c.desc.options.descriptorPools) set.flags = VK_DESCRIPTOR_SET_LAYOUT_CREATE_PUSH_DESCRIPTOR_BIT_KHR;
+  forEach(allPasses()[index]->bindings(), [&](const Binding& b) {
+    bindings[set.bindingCount++] = {b.number, b.type, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr};
+  });
+  set.pBindings = bindings;
+  *call = "vkCreateDescriptorSetLayout";
+  const VkResult result =
+      c.vk.vkCreateDescriptorSetLayout(c.device, &set, c.callbacks(), &c.setLayouts[index]);
+  if (result != VK_SUCCESS) return result;
+
+  const VkPushConstantRange push{VK_SHADER_STAGE_COMPUTE_BIT, 0, PELLUCID_PUSH_CONSTANT_BYTES};
+  VkPipelineLayoutCreateInfo layout{VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO};
+  layout.setLayoutCount = 1;
+  layout.pSetLayouts = &c.setLayouts[index];
+  layout.pushConstantRangeCount = 1;
+  layout.pPushConstantRanges = &push;
+  *call = "vkCreatePipelineLayout";
+  return c.vk.vkCreatePipelineLayout(c.device, &layout, c.callbacks(), &c.pipelineLayouts[index]);
+}
+
+// One pipeline for each thread that the caller lends.
+struct PipelineJobs {
+  PellucidContext& context;
+  std::array<uint32_t, kMostPasses> pipelines{};  // to make
+  std::array<VkResult, kMostPasses> results{};
+};
+
+VkResult createPipeline(const PellucidContext& c, uint32_t index, VkPipeline* pipeline) {
+  const PellucidContextDesc& desc = c.desc;
+  const Pass& pass = *allPasses()[index];
+  std::span<const uint32_t> words = pass.wordsFor(desc.options.shadowViewType);
+  std::unique_ptr<uint32_t[]> patched;
+  if (desc.options.outputFormat != VK_FORMAT_UNDEFINED) {
+    patched.reset(new (std::nothrow) uint32_t[words.size()]);
+    if (!patched) return VK_ERROR_OUT_OF_HOST_MEMORY;
+    std::copy(words.begin(), words.end(), patched.get());
+    fixOutputFormat(patched.get(), words.size(), desc.options.outputFormat == VK_FORMAT_R32G32B32A32_SFLOAT);
+    words = {patched.get(), words.size()};
+  }
+  VkShaderModuleCreateInfo moduleInfo{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
+  moduleInfo.codeSize = words.size_bytes();
+  moduleInfo.pCode = words.data();
+  VkShaderModule module = VK_NULL_HANDLE;
+  VkResult result = c.vk.vkCreateShaderModule(c.device, &moduleInfo, c.callbacks(), &module);
+  if (result != VK_SUCCESS) return result;
+
+  constexpr size_t kMostConstants = 5;
+  std::array<PellucidSpecialization, kMostConstants> constants;
+  PellucidSpecialization* end = std::copy(pass.constants.begin(), pass.constants.end(), constants.begin());
+  *end++ = {PELLUCID_SPECIALIZATION_NORMALS, desc.options.normalEncoding};
+  *end++ = {PELLUCID_SPECIALIZATION_LIGHT_TABLES, desc.options.lightTables};
+  *end++ = {PELLUCID_SPECIALIZATION_USES, desc.options.uses != 0 ? desc.options.uses : UINT32_MAX};
+  const auto count = static_cast<uint32_t>(end - constants.data());
+  std::array<VkSpecializationMapEntry, kMostConstants> entries;
+  for (uint32_t i = 0; i < count; ++i)
+    entries[i] = {constants[i].id,
+                  static_cast<uint32_t>(i * sizeof constants[0] + offsetof(PellucidSpecialization, value)),
+                  sizeof(uint32_t)};
+  const VkSpecializationInfo specialization{count, entries.data(), count * sizeof constants[0],
+                                            constants.data()};
+  VkComputePipelineCreateInfo info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
+  info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+  info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
+  info.stage.module = module;
+  info.stage.pName = "main";
+  info.stage.pSpecializationInfo = &specialization;
+  info.layout = c.pipelineLayouts[index];
+  result =
+      c.vk.vkCreateComputePipelines(c.device, desc.options.pipelineCache, 1, &info, c.callbacks(), pipeline);
+  c.vk.vkDestroyShaderModule(c.device, module, c.callbacks());
+  return result;
+}
+
+}  // namespace
+
+void fixOutputFormat(uint32_t* words, std::size_t wordCount, bool wide) {
+  for (std::size_t at = kHeaderWords; at < wordCount;) {
+    const uint32_t opcode = words[at] & 0xFFFF, count = words[at] >> 16;
+    if (count == 0 || count > wordCount - at) return;
+    uint32_t* operands = words + at + 1;
+    // A capability may be declared twice.
+    if (opcode == kOpCapability && operands[0] == kCapabilityWriteWithoutFormat)
+      operands[0] = kCapabilityShader;
+    // result, sampled type, dim, depth, arrayed, multisampled, sampled, format
+    if (opcode == kOpTypeImage && operands[6] == kStorageImage && operands[7] == kUnknown)
+      operands[7] = wide ? kRgba32f : kRgba16f;
+    at += count;
+  }
+}
+
+PellucidResult createLayouts(PellucidContext& c, Findings& out) {
+  const char* call = nullptr;
+  for (uint32_t i = 0; i < allPasses().size(); ++i)
+    if (const VkResult result = createLayout(c, i, &call); result != VK_SUCCESS)
+      return vulkanError(out, call, result);
+  return PELLUCID_OK;
+}
+
+PellucidResult createPipelines(PellucidContext& c, std::bitset<kMostPasses> wanted, Findings& out) {
+  const PellucidContextDesc& desc = c.desc;
+  PipelineJobs jobs{c};
+  uint32_t count = 0;
+  for (uint32_t i = 0; i < allPasses().size(); ++i)
+    if (wanted[i] && !c.pipelines[i] &&
+        (desc.options.uses == 0 || (allPasses()[i]->uses & ~desc.options.uses) == 0))
+      jobs.pipelines[count++] = i;
+  if (count == 0) return PELLUCID_OK;
+  const auto job = [](void* data, uint32_t i) {
+    auto& all = *static_cast<PipelineJobs*>(data);
+    const uint32_t pipeline = all.pipelines[i];
+    all.results[i] = createPipeline(all.context, pipeline, &all.context.pipelines[pipeline]);
+  };
+  if (desc.options.parallelFor)
+    desc.options.parallelFor(desc.options.parallelUser, count, job, &jobs);
+  else
+    for (uint32_t i = 0; i < count; ++i) job(&jobs, i);
+  for (uint32_t i = 0; i < count; ++i)
+    if (jobs.results[i] != VK_SUCCESS) {
+      char call[64];
+      Text(call, sizeof call) << "creating pipeline " << allPasses()[jobs.pipelines[i]]->pipeline;
+      return vulkanError(out, call, jobs.results[i]);
+    }
+  return PELLUCID_OK;
+}
+
+// ---- The API's descriptions
 
 uint32_t mostBindings(VkDescriptorType type) {
   uint32_t most = 0;
@@ -45,4 +184,17 @@ extern "C" PellucidResult pellucidGetShader(uint32_t pipeline, VkImageViewType s
   const std::span<const uint32_t> words = pass.wordsFor(shadowViewType);
   *shader = {words.data(), words.size(), static_cast<uint32_t>(pass.constants.size()), pass.constants.data()};
   return PELLUCID_OK;
+}
+
+extern "C" const char* pellucidResourceName(uint32_t resource) {
+  for (const ImageField& image : kImageFields)
+    if (image.resource == resource) return image.name;
+  static constexpr const char* kTransients[] = {"transient0", "transient1", "transient2", "transient3",
+                                                "transient4", "transient5", "transient6", "transient7"};
+  static_assert(std::size(kTransients) == PELLUCID_MAX_TRANSIENTS);
+  const uint32_t transient = resource - PELLUCID_RESOURCE_TRANSIENT0;
+  if (transient < PELLUCID_MAX_TRANSIENTS) return kTransients[transient];
+  if (resource == PELLUCID_RESOURCE_CONSTANTS) return "constants";
+  if (resource == PELLUCID_RESOURCE_HISTORY) return "history";
+  return resource >= PELLUCID_RESOURCE_SHADOW0 ? "shadowImage" : "unknown resource";
 }

@@ -1,10 +1,7 @@
 // Frame -> plan. Pure: no device, no allocation.
-#include "plan.h"
-
 #include <algorithm>
 
-#include "gather.h"
-#include "plan_state.h"
+#include "planner.h"
 #include "pyramid_energy.h"
 #include "transmittance.h"
 
@@ -49,9 +46,9 @@ Skips skipsOf(const FrameFacts& f) {
               "no light comes through, nothing diffuses, and the output is the irradiance image");
   if (!f.stages.diffusion) return skips;
   if (f.frame.options.indirectDispatches != 0 && !f.stages.lists)
-    skips.add("lists", whyNoLists(f, f.lights, f.blocks));
+    skips.add("lists", f.stages.whyNoLists);
   for (uint32_t i = 0; i < f.frame.materialCount; ++i)
-    if (f.reach.pixelsPerMm * widestDeviation(f.diffused(i)) > levelDeviation(f.pyramid.coarsest))
+    if (f.pixelsPerMm * deviationOf(f.diffused(i)) > levelDeviation(f.pyramid.coarsest))
       skips.add("diffusion radius", "wider than the pyramid holds");
   return skips;
 }
@@ -68,14 +65,19 @@ uint32_t optionsOf(const FrameFacts& f) {
   return thesis ? options | PELLUCID_USE_THESIS : options;
 }
 
-}  // namespace
+// The first map in a layer above 0, plus 1; 0: none.
+uint32_t layeredMap(const PellucidFrame& frame) {
+  for (uint32_t i = 0; i < frame.shadowMapCount; ++i)
+    if (frame.shadowMaps[i].options.layer > 0) return i + 1;
+  return 0;
+}
 
+// The frame's plan after one that left `kept`, into an empty plan.
 PellucidResult buildPlan(const FrameFacts& f, const History& kept, PellucidPlan* plan) {
-  *plan = PellucidPlan{};
   plan->activeLights = f.lights.lightCount;
   plan->constantsSize = f.constants.size;
   plan->gatherSamples = f.gatherSamples;
-  if (f.stages.diffusion) plan->largestRadius = static_cast<float>(f.reach.radius);
+  if (f.stages.diffusion) plan->largestRadius = static_cast<float>(f.largestRadius);
   Skips skips = skipsOf(f);
   PlanState state;
   const bool reused = f.stages.keepsHistory && decideReuse(f, kept, &state.history);
@@ -92,15 +94,24 @@ PellucidResult buildPlan(const FrameFacts& f, const History& kept, PellucidPlan*
   state.outputFormat = f.frame.options.outputFormat;
   state.lightTables = f.frame.options.lightTableCount;
   state.options = optionsOf(f);
-  const PellucidShadowMap* end = f.frame.shadowMaps + f.frame.shadowMapCount;
-  const PellucidShadowMap* layered = std::find_if(
-      f.frame.shadowMaps, end, [](const PellucidShadowMap& map) { return map.options.layer > 0; });
-  if (layered != end) {
-    state.layeredMap = static_cast<uint32_t>(layered - f.frame.shadowMaps) + 1;
-    state.layer = layered->options.layer;
-  }
-  keep(state, plan);
+  state.layeredMap = layeredMap(f.frame);
+  if (state.layeredMap > 0) state.layer = f.frame.shadowMaps[state.layeredMap - 1].options.layer;
+  std::memcpy(plan->state, &state, sizeof state);
   return PELLUCID_OK;
 }
 
+}  // namespace
 }  // namespace pellucid
+
+using namespace pellucid;
+
+extern "C" PellucidResult pellucidBuildPlan(const PellucidFrame* frame, const PellucidPlan* previous,
+                                            PellucidPlan* plan) {
+  if (!plan) return PELLUCID_ERROR_INVALID_ARGUMENT;
+  // The two plans may be one object.
+  const History kept = previous ? stateOf(*previous).history : History{};
+  *plan = PellucidPlan{};
+  Findings silent;
+  const auto facts = readFrame(frame, silent);
+  return facts ? buildPlan(*facts, kept, plan) : silent.result();
+}

@@ -1,6 +1,6 @@
 // Plan -> JSON.
-#include "plan_bindings.h"
-#include "text.h"
+#include "findings.h"
+#include "plan.h"
 
 using namespace pellucid;
 

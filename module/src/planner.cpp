@@ -12,10 +12,10 @@ Step::Step(Planner& planner, const Pass& pass, PellucidDispatch& d) : planner_(p
     if (b.type == kSampled || b.type == kStored) image(b.number, planner.resourceOf(b.number));
   });
   const ConstantsLayout& layout = planner.facts.constants;
-  constants(PELLUCID_BINDING_FRAME, layout.frame.offset);
-  constants(PELLUCID_BINDING_MATERIALS, layout.materials.offset);
-  constants(PELLUCID_BINDING_KERNELS, layout.kernels.offset);
-  constants(PELLUCID_BINDING_LISTS, layout.lists.offset);
+  constants(PELLUCID_BINDING_FRAME, layout.frame);
+  constants(PELLUCID_BINDING_MATERIALS, layout.materials);
+  constants(PELLUCID_BINDING_KERNELS, layout.kernels);
+  constants(PELLUCID_BINDING_LISTS, layout.lists);
 }
 
 void Step::constants(uint32_t binding, VkDeviceSize offset) {
@@ -35,8 +35,7 @@ Step& Step::image(uint32_t binding, uint32_t resource) {
 }
 
 Step& Step::standIn(uint32_t binding, uint32_t resource) {
-  if (&d_ != &planner_.beyond_)
-    planner_.standIns_[static_cast<size_t>(&d_ - planner_.plan_.dispatches)] |= bindings(binding);
+  planner_.standIns_[static_cast<size_t>(&d_ - planner_.plan_.dispatches)] |= bindings(binding);
   return image(binding, resource);
 }
 
@@ -52,12 +51,12 @@ Step& Step::colors(uint32_t source, uint32_t destination) {
 Step& Step::lights(const LightGroup& group) {
   const FrameFacts& f = planner_.facts;
   const ConstantsLayout& layout = f.constants;
-  constants(PELLUCID_BINDING_LIGHTS, layout.lights.offset + group.lightBytes);
-  constants(PELLUCID_BINDING_SHADOWS, layout.shadows.offset + group.shadowBytes);
+  constants(PELLUCID_BINDING_LIGHTS, layout.lights + group.lightBytes);
+  constants(PELLUCID_BINDING_SHADOWS, layout.shadows + group.shadowBytes);
   // A frame without a gather has no such maps, and a window of as many bytes.
   constants(PELLUCID_BINDING_GATHER_MAPS,
-            f.gathers ? layout.gatherMaps.offset + group.gatherMapBytes : layout.shadows.offset);
-  constants(PELLUCID_BINDING_ENTRY_MAPS, layout.entryMaps.offset + group.entryMapBytes);
+            f.gathers ? layout.gatherMaps + group.gatherMapBytes : layout.shadows);
+  constants(PELLUCID_BINDING_ENTRY_MAPS, layout.entryMaps + group.entryMapBytes);
   if (!has(pass_.bindings(), PELLUCID_BINDING_SHADOW_IMAGES)) return *this;
   // The first image stands in where the group has none.
   const bool some = f.frame.shadowImageCount > 0 && given(f.frame.shadowImages[0]);
@@ -88,9 +87,8 @@ Step& Step::blocks(uint32_t which, uint32_t parts) {
 Step& Step::list(uint32_t which) {
   if (!planner_.facts.stages.lists) return *this;
   d_.indirect = 1;
-  d_.indirectOffset =
-      static_cast<uint32_t>(planner_.facts.constants.lists.offset + offsetof(shared::BlockLists, commands) +
-                            which * sizeof(glm::uvec4));
+  d_.indirectOffset = static_cast<uint32_t>(
+      planner_.facts.constants.lists + offsetof(shared::BlockLists, commands) + which * sizeof(glm::uvec4));
   return *this;
 }
 
@@ -122,17 +120,16 @@ uint32_t Planner::resourceOf(uint32_t binding) const {
 }
 
 Step Planner::add(const Pass& pass, const char* name) {
-  PellucidDispatch* d = &beyond_;
   if (plan_.dispatchCount == PELLUCID_MAX_DISPATCHES) {
-    fits_ = false;
-    beyond_ = {};
-  } else {
-    d = &plan_.dispatches[plan_.dispatchCount++];
+    fits_ = false;  // nobody runs the plan: the last dispatch makes room
+    --plan_.dispatchCount;
   }
-  d->name = name;
+  PellucidDispatch& d = plan_.dispatches[plan_.dispatchCount++];
+  d = {};
+  d.name = name;
   const auto passes = allPasses();
-  d->pipeline = static_cast<uint8_t>(std::find(passes.begin(), passes.end(), &pass) - passes.begin());
-  return {*this, pass, *d};
+  d.pipeline = static_cast<uint8_t>(std::find(passes.begin(), passes.end(), &pass) - passes.begin());
+  return {*this, pass, d};
 }
 
 void Planner::addShadowImages(PellucidDispatch& d, std::span<const uint32_t> images) {
@@ -196,4 +193,69 @@ bool Planner::finish() {
   return true;
 }
 
+// ---- What a step has packed
+
+namespace {
+
+// Bytes that passes see of the constants from a binding's offset on.
+VkDeviceSize windowOf(const PellucidPlan& plan, const PlanState& state, uint32_t binding,
+                      VkDeviceSize offset) {
+  switch (binding) {
+    case PELLUCID_BINDING_FRAME:
+      return sizeof(shared::FrameConstants);
+    case PELLUCID_BINDING_LIGHTS:
+      return kLightWindow;
+    case PELLUCID_BINDING_SHADOWS:
+      return kShadowWindow;
+    case PELLUCID_BINDING_GATHER_MAPS:
+      return kGatherMapWindow;
+    case PELLUCID_BINDING_ENTRY_MAPS:
+      return kEntryMapWindow;
+    case PELLUCID_BINDING_MATERIALS:
+      return state.materials * sizeof(shared::MaterialConstants);
+    case PELLUCID_BINDING_KERNELS:
+      return state.materials * sizeof(shared::KernelConstants);
+    default:  // lists, which are the last of the slice
+      return plan.constantsSize - offset;
+  }
+}
+
+}  // namespace
+
+BoundList boundBy(const PellucidPlan& plan, const PellucidDispatch& d) {
+  BoundList bound;
+  if (d.pipeline >= allPasses().size()) return bound;
+  const PlanState state = stateOf(plan);
+  const uint32_t first = std::min<uint32_t>(d.firstShadowImage, PELLUCID_PLAN_SHADOW_IMAGES);
+  const uint32_t imageCount = std::min<uint32_t>(d.shadowImageCount, PELLUCID_PLAN_SHADOW_IMAGES - first);
+  uint32_t slot = 0;
+  forEach(allPasses()[d.pipeline]->bindings(), [&](const Binding& b) {
+    PellucidBinding& to = bound.list[bound.count++];
+    to = {b.number, b.type, PELLUCID_RESOURCE_FRONT_DEPTH, 0, 0};
+    if (b.number >= PELLUCID_BINDING_SHADOW_IMAGES) {
+      // Slots that are not read hold a view of the type that shadow images have, as far as the frame has one.
+      const uint32_t image = b.number - PELLUCID_BINDING_SHADOW_IMAGES;
+      if (imageCount > 0)
+        to.resource = kShadow0 + plan.shadowImages[first + (image < imageCount ? image : 0)];
+    } else if (b.type == kUniforms || b.type == kStorage) {
+      to.resource = PELLUCID_RESOURCE_CONSTANTS;
+      to.offset = d.slots[slot++] * kSlotBytes;
+      to.size = windowOf(plan, state, b.number, to.offset);
+    } else {
+      to.resource = d.slots[slot++];
+    }
+  });
+  return bound;
+}
+
 }  // namespace pellucid
+
+using namespace pellucid;
+
+extern "C" uint32_t pellucidGetBindings(const PellucidPlan* plan, uint32_t dispatch,
+                                        PellucidBinding* bindings) {
+  if (!plan || !bindings || dispatch >= plan->dispatchCount || dispatch >= PELLUCID_MAX_DISPATCHES) return 0;
+  const BoundList bound = boundBy(*plan, plan->dispatches[dispatch]);
+  std::copy(bound.begin(), bound.end(), bindings);
+  return bound.count;
+}

@@ -6,7 +6,7 @@
 #include <array>
 
 #include "frame.h"
-#include "plan_bindings.h"
+#include "plan.h"
 
 namespace pellucid {
 
@@ -86,8 +86,11 @@ private:
   PellucidPlan& plan_;
   bool fits_ = true;
   uint32_t shadowImages_ = 0;  // of the plan, so far
-  PellucidDispatch beyond_{};  // what does not fit
   std::array<BindingSet, PELLUCID_MAX_DISPATCHES> standIns_{};
 };
+
+// Adds the dispatches of the frame to a plan without any; `reused`: an earlier frame's light stands in for
+// this frame's. False: they are more than a plan holds, which then has some of them.
+bool addPasses(const FrameFacts& facts, bool reused, PellucidPlan* plan);
 
 }  // namespace pellucid

@@ -4,8 +4,7 @@
 
 #include <array>
 
-#include "rect.h"
-#include "shared/pellucid_shared.h"
+#include "images.h"
 
 namespace pellucid {
 
@@ -37,11 +36,6 @@ struct Pyramid {
     uint32_t width, height;
   };
   std::array<Extent, kPyramidImages> images{};
-
-  // Texels of a level that the rect needs.
-  uint64_t texels(uint32_t level) const {
-    return static_cast<uint64_t>(levels[level].rect.width) * static_cast<uint64_t>(levels[level].rect.height);
-  }
 };
 
 }  // namespace pellucid

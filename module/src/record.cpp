@@ -1,9 +1,8 @@
 // Plans -> command buffer. The only file that calls vkCmd*.
 #include <algorithm>
 
-#include "images.h"
-#include "plan_bindings.h"
-#include "views.h"
+#include "context.h"
+#include "plan.h"
 
 namespace pellucid {
 namespace {

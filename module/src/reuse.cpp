@@ -1,23 +1,20 @@
-#include "reuse.h"
-
+// Decides if a frame takes the light that came through from an earlier one.
 #include <algorithm>
 #include <cmath>
 
 #include "frame.h"
+#include "minimum_dot.h"
+#include "plan.h"
 
 namespace pellucid {
 namespace {
-
-glm::dvec3 vec(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 
 // Cosine between the camera's axis and the direction to the light.
 float cameraLightDot(const FrameFacts& f, const PellucidLight& light) {
   if (isAmbient(light)) return 0;  // from everywhere alike
   const glm::dmat4& view = f.viewFromWorld;
   const glm::dvec3 axis = f.depthRange.forward * glm::dvec3(view[0][2], view[1][2], view[2][2]);
-  const glm::dvec3 toLight = light.type == PELLUCID_LIGHT_DIRECTIONAL
-                                 ? -vec(light.direction)
-                                 : vec(light.position) - vec(f.thesis.objectCenter);
+  const glm::dvec3 toLight = fromObject(f.thesis, light);
   const double length = glm::length(toLight);
   return static_cast<float>(length > 0 ? glm::dot(axis, toLight) / length : 0);
 }
@@ -26,8 +23,7 @@ float cameraLightDot(const FrameFacts& f, const PellucidLight& light) {
 bool fits(const History& kept, const History& now) {
   return kept.valid != 0 && kept.lightCount == now.lightCount && kept.format == now.format &&
          kept.gatherSpacing == now.gatherSpacing && kept.preExposure == now.preExposure &&
-         std::equal(kept.extent, kept.extent + 2, now.extent) &&
-         std::equal(kept.rect, kept.rect + 4, now.rect);
+         std::equal(kept.extent, kept.extent + 2, now.extent) && kept.rect == now.rect;
 }
 
 bool coherent(const PellucidFrame& f, const History& kept, const History& now) {
@@ -47,9 +43,8 @@ bool decideReuse(const FrameFacts& f, const History& kept, History* result) {
   now.format = f.stages.keepsProbes ? VK_FORMAT_R32G32B32A32_UINT : f.colorFormat;
   now.gatherSpacing = f.stages.keepsProbes ? f.gatherSpacing : 0;
   now.preExposure = f.frame.preExposure;
-  const uint32_t rect[4] = {f.rect.x, f.rect.y, f.rect.width, f.rect.height};
   std::copy(f.frame.imageExtent, f.frame.imageExtent + 2, now.extent);
-  std::copy(rect, rect + 4, now.rect);
+  now.rect = f.rect;
   now.lightCount = f.lights.lightCount;
   for (uint32_t i = 0; i < std::min(now.lightCount, kCoherentLights); ++i)
     now.lightDots[i] = cameraLightDot(f, f.light(i));

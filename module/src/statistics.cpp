@@ -81,7 +81,7 @@ extern "C" PellucidResult pellucidReadStatistics(const PellucidPlan* plan,
   else if (!constants->mapped)
     out.error("constants.mapped", "is NULL");
   if (!statistics) out.error("statistics", "is NULL");
-  if (out.result() != PELLUCID_OK) return out.result();
+  if (!out.ok()) return out.result();
   if (!isStructSize<PellucidStatistics>(statistics->structSize, kLeastStatistics))
     out.fail(PELLUCID_ERROR_VERSION, "statistics.structSize", "is ", statistics->structSize,
              "; this library writes ", kLeastStatistics, " to ", kLargestStruct,
@@ -92,7 +92,7 @@ extern "C" PellucidResult pellucidReadStatistics(const PellucidPlan* plan,
   else if (constants->size < plan->constantsSize)
     out.fail(PELLUCID_ERROR_BUFFER_TOO_SMALL, "constants.size", "is ", constants->size, "; the plan has ",
              plan->constantsSize, " bytes");
-  if (out.result() != PELLUCID_OK) return out.result();
+  if (!out.ok()) return out.result();
 
   PellucidStatistics s{};
   s.dispatchCount = plan->dispatchCount;
@@ -101,7 +101,7 @@ extern "C" PellucidResult pellucidReadStatistics(const PellucidPlan* plan,
     s.dispatches[i] = groupsOf(*plan, i, *constants, out);
     count(plan->dispatches[i], s.dispatches[i], &s);
   }
-  if (out.result() != PELLUCID_OK) return out.result();
+  if (!out.ok()) return out.result();
   writeStruct(statistics, statistics->structSize, s);
   return PELLUCID_OK;
 }

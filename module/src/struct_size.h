@@ -7,23 +7,32 @@
 #include <cstdint>
 #include <cstring>
 
+#include "findings.h"
+#include "pellucid/pellucid_thesis.h"
+
 namespace pellucid {
+
+// The structs of the API that callers fill: the values of fields that callers leave alone, and the size of a
+// struct that ends before its first field that may be missing.
+PellucidFrame defaultFrame();
+PellucidThesisOptions defaultThesisOptions();
+PellucidContextDesc defaultContextDesc();
+constexpr size_t kLeastFrame = offsetof(PellucidFrame, options);
+constexpr size_t kLeastMaterial = offsetof(PellucidMaterial, burleyDistance);
+constexpr size_t kLeastThesisOptions = offsetof(PellucidThesisOptions, angleModel);
+constexpr size_t kLeastContextDesc = offsetof(PellucidContextDesc, options);
 
 // A structSize above this is taken for garbage and not read from, as Linux's copy_struct_from_user does
 // beyond a page.
 constexpr size_t kLargestStruct = 4096;
 
-// The size of a struct that ends before its first field that may be missing, which is `field`.
-#define PELLUCID_LEAST_SIZE(Struct, field) offsetof(Struct, field)
-
-// True for sizes that some version of the struct may have.
+// True for sizes that some version of the struct may have: whole fields, of which pointers are the widest.
 template <class Struct>
 bool isStructSize(size_t size, size_t least) {
   return size >= least && size <= kLargestStruct && size % alignof(Struct) == 0;
 }
 
-// True where a caller's struct of that size can be read: `least` bytes or more, whole fields (pointers are
-// the widest), and zeros where this library knows no fields.
+// True where a caller's struct can be read, with zeros where this library knows no fields.
 template <class Struct>
 bool canReadStruct(const Struct* given, size_t least) {
   const size_t size = given->structSize;
@@ -31,6 +40,15 @@ bool canReadStruct(const Struct* given, size_t least) {
   const auto* bytes = reinterpret_cast<const unsigned char*>(given);
   return size <= sizeof(Struct) ||
          std::all_of(bytes + sizeof(Struct), bytes + size, [](unsigned char byte) { return byte == 0; });
+}
+
+// The same, with an error. `init`: the function that writes the size.
+template <class Struct>
+bool checkStructSize(const Struct* given, size_t least, const char* field, const char* init, Findings& out) {
+  if (canReadStruct(given, least)) return true;
+  out.fail(PELLUCID_ERROR_VERSION, field, "is ", given->structSize, "; this library reads ", least, " to ",
+           sizeof(Struct), " bytes, and more if they are 0 (call ", init, ")");
+  return false;
 }
 
 // The caller's fields over those of `defaults`.

@@ -131,4 +131,20 @@ inline double opaqueThickness(const PellucidMaterial& m) {
   return most(kMostThickness) > 2e-5 ? INFINITY : depthOf(most, 2e-5, kMostThickness);
 }
 
+// mm that light goes before it falls to 1/e, the mean of the channels; 0 where T's model has no rate.
+inline float meanFreePath(const PellucidMaterial& m) {
+  float sum = 0;
+  for (const float(&t)[5] : m.transmittance) {
+    float rate = 0;
+    if (m.transmittanceModel == PELLUCID_TRANSMITTANCE_SINH_EXP)
+      rate = t[1];
+    else if (m.transmittanceModel == PELLUCID_TRANSMITTANCE_EXP2)
+      // The slower of the two terms that are there reaches farther.
+      rate = t[0] > 0 && t[2] > 0 ? std::min(t[1], t[3]) : t[0] > 0 ? t[1] : t[3];
+    if (!(rate > 0)) return 0;
+    sum += 1 / rate;
+  }
+  return sum / 3;
+}
+
 }  // namespace pellucid

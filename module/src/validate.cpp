@@ -1,16 +1,14 @@
-#include "validate.h"
-
+// Every convention, checked, in a sentence a person understands.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <tuple>
 
-#include "defaults.h"
 #include "domains.h"
-#include "frame.h"
-#include "gather.h"
 #include "minimum_dot.h"
+#include "planner.h"
+#include "struct_size.h"
 #include "transmittance.h"
-#include "validate_shared.h"
 
 namespace pellucid {
 namespace {
@@ -60,9 +58,8 @@ void checkMinimumDotTable(const PellucidThesisOptions& t, Findings& out) {
       if (!(t.minimumDotTable[i] >= -1 && t.minimumDotTable[i] <= 0))
         out.error("thesis.minimumDotTable", "[", i, "] is ", t.minimumDotTable[i], ", outside [-1, 0]");
   }
-  const glm::dvec3 face(t.faceVector[0], t.faceVector[1], t.faceVector[2]);
-  const glm::dvec3 up(t.upAxis[0], t.upAxis[1], t.upAxis[2]);
-  const double sine = glm::length(glm::cross(glm::normalize(up), glm::normalize(face)));
+  const double sine =
+      glm::length(glm::cross(glm::normalize(toVector(t.upAxis)), glm::normalize(toVector(t.faceVector))));
   // Nearer to each other than this, float rounding would decide where the face looks.
   if (!(sine > 1e-4))
     out.error("thesis.faceVector", "is ", t.faceVector[0], ", ", t.faceVector[1], ", ", t.faceVector[2],
@@ -96,72 +93,6 @@ void checkLightTables(const PellucidFrame& f, Findings& out) {
     checkDomains(f.options.lightTables[i], Field("options.lightTables[", i, "]."), out);
 }
 
-// A light's own falloff.
-void checkFalloff(const PellucidFrame& f, uint32_t index, Findings& out) {
-  const PellucidLight& l = f.lights[index];
-  const auto checkTable = [&](const char* name, uint32_t table) {
-    const Field field("lights[", index, "].", name);
-    if (table > f.options.lightTableCount)
-      out.error(field, "is ", table, " (an index plus 1), but there are ", f.options.lightTableCount,
-                " lightTables");
-    else if (table > 0 && l.type == PELLUCID_LIGHT_DIRECTIONAL)
-      out.error(field, "is ", table, ", but the light is directional");
-  };
-  checkTable("angleTable", l.angleTable);
-  checkTable("distanceTable", l.distanceTable);
-  if (l.distanceTable > 0 && l.range == 0)
-    out.error(Field("lights[", index, "].range"), "is 0, but distanceTable is ", l.distanceTable);
-}
-
-void checkLight(const Inputs& inputs, const GatherChoice& gather, uint32_t index, Findings& out) {
-  const PellucidFrame& f = inputs.frame;
-  const PellucidLight& l = f.lights[index];
-  const auto field = [index](const char* name) { return Field("lights[", index, "].", name); };
-  checkDomains(l, field(""), out);
-  if (l.type > PELLUCID_LIGHT_SPOT) return;
-  const float length = std::hypot(l.direction[0], l.direction[1], l.direction[2]);
-  if (hasDirection(l) && !(length > 0 && std::isfinite(length)))
-    out.error(field("direction"), "has length ", length);
-  checkFalloff(f, index, out);
-  if (l.type == PELLUCID_LIGHT_SPOT &&
-      !(l.innerConeAngle >= 0 && l.innerConeAngle < l.outerConeAngle && l.outerConeAngle <= 1.5707964f))
-    out.error(field("outerConeAngle"), "is ", l.outerConeAngle, " with inner ", l.innerConeAngle,
-              "; needs 0 <= inner < outer <= pi/2");
-  if (l.shadowMapCount > PELLUCID_MAX_LIGHT_SHADOW_MAPS || l.firstShadowMap > f.shadowMapCount ||
-      l.shadowMapCount > f.shadowMapCount - l.firstShadowMap) {
-    out.error(field("shadowMapCount"), "is ", l.shadowMapCount, " from ", l.firstShadowMap, "; there are ",
-              f.shadowMapCount, " and a light takes at most ",
-              static_cast<int>(PELLUCID_MAX_LIGHT_SHADOW_MAPS));
-    return;
-  }
-  checkFaces(inputs, index, out);
-  LightGroup images;
-  bool fits = true;
-  for (uint32_t i = 0; i < l.shadowMapCount; ++i) {
-    const PellucidShadowMap& s = f.shadowMaps[l.firstShadowMap + i];
-    fits = fits && images.addImages(inputs, gather, l, s);
-    const glm::dmat4 clip = toMatrix(s.clipFromWorld);
-    const bool perspective = clip[0][3] != 0 || clip[1][3] != 0 || clip[2][3] != 0;
-    if (perspective == (l.type == PELLUCID_LIGHT_DIRECTIONAL))
-      out.error(field("firstShadowMap"), "names a map with ",
-                perspective ? "a perspective" : "an orthographic",
-                " clipFromWorld, which this type of light cannot have");
-    else if (perspective) {
-      const glm::dvec4 atLight = clip * glm::dvec4(l.position[0], l.position[1], l.position[2], 1);
-      const double scale = std::abs(clip[0][3]) + std::abs(clip[1][3]) + std::abs(clip[2][3]);
-      const double size = 1 + std::abs(l.position[0]) + std::abs(l.position[1]) + std::abs(l.position[2]);
-      // 1e-4 of the light's distance from the origin: float matrices, not a different center.
-      if (std::abs(atLight.w) > 1e-4 * scale * size)
-        out.error(field("position"), "is not the center of its shadow map's projection; clip w there is ",
-                  atLight.w);
-    }
-  }
-  if (!fits)
-    out.error(field("shadowMapCount"), "is ", l.shadowMapCount,
-              ": their maps, exit depths and caster materials are more than the ",
-              PELLUCID_SHADOW_IMAGE_COUNT, " images that a dispatch binds");
-}
-
 }  // namespace
 
 void checkFields(const Inputs& inputs, Findings& out) {
@@ -173,8 +104,7 @@ void checkFields(const Inputs& inputs, Findings& out) {
   checkDomains(inputs.thesis, "thesis.", out);
   DepthRange range;
   if (const char* wrong = readDepthRange(toMatrix(f.clipFromView), &range)) out.error("clipFromView", wrong);
-  if (!finite(f.viewFromWorld, 16) || !rigid(toMatrix(f.viewFromWorld)))
-    out.error("viewFromWorld", "is not a rotation and translation");
+  if (!isRigid(toMatrix(f.viewFromWorld))) out.error("viewFromWorld", "is not a rotation and translation");
   if (f.options.outputFormat != VK_FORMAT_R16G16B16A16_SFLOAT &&
       f.options.outputFormat != VK_FORMAT_R32G32B32A32_SFLOAT &&
       f.options.outputFormat != VK_FORMAT_B10G11R11_UFLOAT_PACK32)
@@ -204,11 +134,12 @@ void checkFields(const Inputs& inputs, Findings& out) {
     if (!(std::abs(f.options.ambient[i]) <= 1e15f))
       out.error("options.ambient", "[", i, "] is ", f.options.ambient[i], ", outside [-1e+15, 1e+15]");
   checkLightTables(f, out);
-  if (f.lightCount > 0 && !f.lights) out.error("lights", "is NULL, but lightCount is ", f.lightCount);
-  if (f.shadowMapCount > 0 && !f.shadowMaps)
-    out.error("shadowMaps", "is NULL, but shadowMapCount is ", f.shadowMapCount);
-  if (f.shadowImageCount > 0 && !f.shadowImages)
-    out.error("shadowImages", "is NULL, but shadowImageCount is ", f.shadowImageCount);
+  const std::tuple<const char*, uint32_t, const void*> lists[] = {
+      {"light", f.lightCount, f.lights},
+      {"shadowMap", f.shadowMapCount, f.shadowMaps},
+      {"shadowImage", f.shadowImageCount, f.shadowImages}};
+  for (const auto& [name, count, first] : lists)
+    if (count > 0 && !first) out.error(Field(name, "s"), "is NULL, but ", name, "Count is ", count);
   if (f.options.reuse == (PELLUCID_REUSE_ALTERNATE | PELLUCID_REUSE_COHERENCE))
     out.error("options.reuse",
               "is both; alternating would skip frames in which coherence asks for a refresh");
@@ -220,18 +151,13 @@ void checkMaterials(const Inputs& inputs, Findings& out) {
   const PellucidFrame& f = inputs.frame;
   // All before any is read, as the first one's size says where the others are.
   const uint32_t size = f.materials->structSize;
-  if (!canReadStruct(f.materials, kLeastMaterial)) {
-    out.error("materials[0].structSize", "is ", size, "; this library reads ", kLeastMaterial, " to ",
-              sizeof(PellucidMaterial), " bytes, and more if they are 0");
-    return;
-  }
   const auto* bytes = reinterpret_cast<const unsigned char*>(f.materials);
-  for (uint32_t i = 1; i < f.materialCount; ++i) {
+  for (uint32_t i = 0; i < f.materialCount; ++i) {
     const auto* m = reinterpret_cast<const PellucidMaterial*>(bytes + static_cast<size_t>(i) * size);
     if (m->structSize == size && canReadStruct(m, kLeastMaterial)) continue;
-    out.error(Field("materials[", i, "].structSize"), "is ", m->structSize, "; that of materials[0] is ",
-              size, ", of which those that this library does not know must be 0");
-    return;
+    return out.error(Field("materials[", i, "].structSize"), "is ", m->structSize, "; this library reads ",
+                     kLeastMaterial, " to ", sizeof(PellucidMaterial),
+                     " bytes, and more if they are 0, and all materials have one size");
   }
   for (uint32_t i = 0; i < f.materialCount; ++i) {
     const PellucidMaterial material = inputs.material(i);
@@ -241,27 +167,6 @@ void checkMaterials(const Inputs& inputs, Findings& out) {
       out.error(Field("options.materialTables[", i, "]"), "is of another material than materials[", i,
                 "] (call pellucidMakeMaterialTables)");
   }
-}
-
-void checkLights(const Inputs& inputs, const GatherChoice& gather, Findings& out) {
-  const PellucidFrame& f = inputs.frame;
-  for (uint32_t i = 0; i < f.lightCount; ++i) {
-    checkLight(inputs, gather, i, out);
-    const PellucidLight& l = f.lights[i];
-    constexpr float kLargestHalf = 65504;
-    const float arrives = l.intensity * std::max({l.color[0], l.color[1], l.color[2]}) * f.preExposure;
-    if (l.type == PELLUCID_LIGHT_DIRECTIONAL && arrives > kLargestHalf)
-      out.warning(Field("lights[", i, "].intensity"), "brings an irradiance of ", arrives,
-                  " with preExposure ", f.preExposure, "; light above 65504 is cut");
-  }
-}
-
-void checkGroups(const FrameFacts& facts, Findings& out) {
-  const PellucidFrame& f = facts.frame;
-  warnOfShadowMaps(facts, out);
-  if (facts.lights.count > 1 && facts.debug() && f.options.debugView != PELLUCID_DEBUG_IRRADIANCE)
-    out.error("options.debugView", "is ", f.options.debugView,
-              ", which needs all lights in one dispatch; they use ", facts.lights.count);
 }
 
 namespace {
@@ -280,8 +185,12 @@ void checkLayout(const PellucidImage& image, const char* field, Findings& out) {
               "; shaders read images in GENERAL or a READ_ONLY layout");
 }
 
-}  // namespace
+void checkGeneral(const PellucidImage& image, const char* field, Findings& out) {
+  if (given(image) && image.layout != VK_IMAGE_LAYOUT_GENERAL)
+    out.error(field, "is in VkImageLayout ", static_cast<int>(image.layout), "; storage writes need GENERAL");
+}
 
+// The views that a recording needs.
 void checkViews(const FrameFacts& facts, Findings& out) {
   const PellucidFrame& f = facts.frame;
   for (const ImageField& image : kImageFields)
@@ -293,28 +202,52 @@ void checkViews(const FrameFacts& facts, Findings& out) {
     if (!given(f.shadowImages[i])) out.error(field, "has no view");
     checkLayout(f.shadowImages[i], field, out);
   }
-  const uint32_t needed = facts.stages.transients();
   if (facts.stages.keepsHistory) {
     if (!given(f.options.history))
       out.error("options.history", "has no view, but reuse needs it; see pellucidGetImageNeeds");
-    else if (f.options.history.layout != VK_IMAGE_LAYOUT_GENERAL)
-      out.error("options.history", "is in VkImageLayout ", static_cast<int>(f.options.history.layout),
-                "; must be GENERAL");
+    checkGeneral(f.options.history, "options.history", out);
   }
-  for (uint32_t i = 0; i < needed; ++i)
-    if (!given(f.transients[i]))
-      out.error(Field("transients[", i, "]"), "has no view; see pellucidGetImageNeeds");
-  if (f.options.separateOutput && given(f.output) && f.output.view == f.irradiance.view)
+  for (uint32_t i = 0; i < facts.stages.transients(); ++i) {
+    const Field field("transients[", i, "]");
+    if (!given(f.transients[i])) out.error(field, "has no view; see pellucidGetImageNeeds");
+    checkGeneral(f.transients[i], field, out);
+  }
+  if (f.options.separateOutput && facts.inPlace())
     out.error("options.separateOutput", "is 1, but the output is the irradiance's view");
-  if (f.options.addToOutput == 1 && given(f.output) && f.output.view == f.irradiance.view)
+  if (f.options.addToOutput == 1 && facts.inPlace())
     out.error("options.addToOutput", "is 1, but the output is the irradiance's view");
-  if (f.output.layout != VK_IMAGE_LAYOUT_GENERAL && given(f.output))
-    out.error("output", "is in VkImageLayout ", static_cast<int>(f.output.layout),
-              "; storage writes need GENERAL");
-  for (uint32_t i = 0; i < needed; ++i)
-    if (given(f.transients[i]) && f.transients[i].layout != VK_IMAGE_LAYOUT_GENERAL)
-      out.error(Field("transients[", i, "]"), "is in VkImageLayout ",
-                static_cast<int>(f.transients[i].layout), "; must be GENERAL");
+  checkGeneral(f.output, "output", out);
 }
 
+// Lights, from the first one on, whose shadow images the dispatches of a plan can bind; one more does not
+// fit. Those of all lights do not.
+uint32_t lightsThatFit(PellucidFrame frame) {
+  PellucidPlan plan;
+  uint32_t fit = 0, tooMany = frame.lightCount;
+  while (tooMany - fit > 1) {  // halved: each try costs lights times materials
+    frame.lightCount = fit + (tooMany - fit) / 2;
+    const bool fits = pellucidBuildPlan(&frame, nullptr, &plan) != PELLUCID_ERROR_CAPACITY;
+    (fits ? fit : tooMany) = frame.lightCount;
+  }
+  return fit;
+}
+
+}  // namespace
 }  // namespace pellucid
+
+using namespace pellucid;
+
+extern "C" PellucidResult pellucidValidateFrame(const PellucidFrame* frame, PellucidMessageFn fn,
+                                                void* user) {
+  Findings out(fn, user);
+  const auto facts = readFrame(frame, out);
+  if (!facts) return out.result();
+  PellucidPlan plan{};  // says what fits into it
+  if (!addPasses(*facts, false, &plan))
+    out.fail(PELLUCID_ERROR_CAPACITY, "shadowImages", "of all ", facts->frame.lightCount,
+             " lights are more than the plan's ", static_cast<int>(PELLUCID_MAX_DISPATCHES),
+             " dispatches can bind; those of the first ", lightsThatFit(facts->frame), " lights fit");
+  else
+    checkViews(*facts, out);
+  return out.result();
+}

@@ -1,10 +1,7 @@
-#include "views.h"
-
-#include "defaults.h"
-#include "images.h"
-#include "plan_bindings.h"
-#include "plan_state.h"
-#include "rect.h"
+// Views before they are recorded: what is refused.
+#include "context.h"
+#include "plan.h"
+#include "struct_size.h"
 
 namespace pellucid {
 namespace {
@@ -142,19 +139,17 @@ void checkView(const PellucidContext& c, std::span<const PellucidView> views, ui
     out.error("constants", "is NULL");
   else if (view.constants->offset % kSlotBytes != 0 || !view.constants->buffer)
     out.error("constants", "needs a buffer and an offset that is a multiple of 256");
-  if (out.result() != PELLUCID_OK) return;
-  if (!canReadStruct(view.frame, kLeastFrame))
-    return out.fail(PELLUCID_ERROR_VERSION, "structSize", "is ", view.frame->structSize,
-                    " (call pellucidInitFrame)");
+  if (!out.ok()) return;
+  if (!checkStructSize(view.frame, kLeastFrame, "structSize", "pellucidInitFrame", out)) return;
   checkContext(c, *view.plan, out);
-  if (out.result() == PELLUCID_OK) checkBound(c, *view.plan, *view.frame, out);
-  if (out.result() != PELLUCID_OK) return;
+  if (out.ok()) checkBound(c, *view.plan, *view.frame, out);
+  if (!out.ok()) return;
   if (c.desc.options.descriptorPools && !poolOf(*view.frame))
     out.error("options.descriptorPool", "is NULL, but PellucidContextOptions::descriptorPools is 1");
   else if (view.constants->size < view.plan->constantsSize)
     out.fail(PELLUCID_ERROR_BUFFER_TOO_SMALL, "constants.size", "is ", view.constants->size,
              "; the plan needs ", view.plan->constantsSize);
-  for (uint32_t other = 0; other < index && out.result() == PELLUCID_OK; ++other) {
+  for (uint32_t other = 0; other < index && out.ok(); ++other) {
     checkImages(view, views[other], other, out);
     checkSlices(view, views[other], other, out);
     if (c.desc.options.descriptorPools && poolOf(*views[other].frame) == poolOf(*view.frame))
@@ -169,7 +164,7 @@ PellucidResult checkViews(const PellucidContext& context, std::span<const Pelluc
     ViewErrors errors{context, named ? Field("views[", i, "].") : Field("")};
     Findings out(&ViewErrors::pass, &errors);
     checkView(context, views, i, out);
-    if (out.result() != PELLUCID_OK) return out.result();
+    if (!out.ok()) return out.result();
   }
   return PELLUCID_OK;
 }

@@ -259,7 +259,7 @@ TEST(Documents, TasksExist) {
 
 // What a recording disturbs follows from the commands that it calls.
 TEST(Documents, NameEveryCommandThatIsRecorded) {
-  const std::string table = contents(kRoot / "module/src/vk_table.h");
+  const std::string table = contents(kRoot / "module/src/context.h");
   const std::string page = contents(kRoot / "docs/integration.md");
   const std::regex command(R"(X\((vkCmd\w+)\))");
   int found = 0;

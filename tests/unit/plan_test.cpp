@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "frame_fixture.h"
-#include "output_format.h"
+#include "context.h"
 #include "shared/pellucid_shared.h"
 
 static_assert(sizeof(PellucidPlan) <= 4096);  // as pellucid.h says

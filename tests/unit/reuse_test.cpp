@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "frame_fixture.h"
-#include "plan_state.h"
+#include "plan.h"
 
 namespace {
 

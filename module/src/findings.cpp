@@ -1,4 +1,4 @@
-#include "text.h"
+#include "findings.h"
 
 namespace pellucid {
 

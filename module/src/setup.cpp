@@ -1,0 +1,82 @@
+#include "setup.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "transmittance.h"
+
+namespace pellucid {
+namespace {
+
+const char* whyNot(const Inputs& inputs, bool solids) {
+  const PellucidThesisOptions& t = inputs.thesis;
+  if (inputs.frame.options.cameraThickness == 1) return "thickness comes from the camera";
+  if (t.materialMarkBit != 0) return "materialMarkBit is of one thickness a pixel";
+  if (t.angleModel != PELLUCID_ANGLE_NORMAL || t.constantViewDirection != 0 || t.minimumDot != 0 ||
+      t.maximumThickness > 0)
+    return "angleModel, constantViewDirection, minimumDot and maximumThickness are of one thickness a pixel";
+  if (!solids) return "every material is thin-walled";
+  for (uint32_t i = 0; i < inputs.frame.materialCount; ++i)
+    if (!canBeGathered(inputs.material(i).transmittanceModel))
+      return "a material's transmittance model has no profile";
+  return nullptr;
+}
+
+uint32_t spacingOf(const PellucidFrame& frame) {
+  if (frame.options.gatherSpacing != 0) return frame.options.gatherSpacing;
+  const uint64_t pixels = static_cast<uint64_t>(frame.imageExtent[0]) * frame.imageExtent[1];
+  return pixels > 1u << 20 ? 4 : pixels > 1u << 19 ? 2 : 1;
+}
+
+}  // namespace
+
+double deviationOf(const PellucidMaterial& m) {
+  double variance = 0;
+  for (int c = 0; c < 3; ++c)
+    for (uint32_t i = 0; i < m.gaussianCount; ++i)
+      if (m.gaussianWeight[c][i] > 0)
+        variance = std::max(variance, static_cast<double>(m.gaussianVariance[c][i]));
+  return std::sqrt(variance);
+}
+
+Setup::Setup(const Inputs& inputs)
+    : Inputs(inputs),
+      rect(renderRect(frame)),
+      wide(frame.options.outputFormat == VK_FORMAT_R32G32B32A32_SFLOAT),
+      colorFormat(wide ? VK_FORMAT_R32G32B32A32_SFLOAT : VK_FORMAT_R16G16B16A16_SFLOAT),
+      clipFromView(toMatrix(frame.clipFromView)),
+      viewFromWorld(toMatrix(frame.viewFromWorld)),
+      pyramid(frame.imageExtent, rect) {
+  const glm::uvec2 extent(frame.imageExtent[0], frame.imageExtent[1]);
+  readDepthRange(clipFromView, &depthRange);
+  camera = makeCamera(clipFromView, depthRange, extent, frame.metersPerUnit);
+
+  const double mmPerPixel =
+      pixelSide(clipFromView, depthRange, extent, static_cast<double>(frame.options.nearestDistance)) *
+      static_cast<double>(frame.metersPerUnit) * 1000;
+  // No infinity may reach the plan's text.
+  pixelsPerMm = mmPerPixel > 0 ? std::min(1 / mmPerPixel, 1e30) : 0;
+  const auto pixels = [&](double mm) { return std::min(mm * pixelsPerMm, 1e30); };
+  float shortestPath = std::numeric_limits<float>::infinity();
+  for (uint32_t i = 0; i < frame.materialCount; ++i) {
+    const PellucidMaterial m = diffused(i);
+    (m.thinWalled != 0 ? thinWalls : solids) = true;
+    if (m.thinWalled == 0) shortestPath = std::min(shortestPath, meanFreePath(m));
+    if (m.gaussianCount == 0) continue;
+    diffuses = true;
+    const float radius = *std::max_element(m.radius, m.radius + 3);
+    largestRadius = std::max(largestRadius, pixels(static_cast<double>(radius)));
+    widestDeviation = std::max(widestDeviation, pixels(deviationOf(m)));
+  }
+
+  whyNotGathered = whyNot(inputs, solids);
+  gatherSamples = whyNotGathered ? 0 : frame.options.gatherSamples;
+  gatherSpacing = spacingOf(frame);
+  gathers = translucency() && gatherSamples > 0 && !debug();
+  shapes = gathers && diffuses && has(PELLUCID_RESOURCE_NORMAL);
+  constexpr float kEntriesPerPath = 2;
+  longestEntrySide = shortestPath / (kEntriesPerPath * 1000 * frame.metersPerUnit);
+}
+
+}  // namespace pellucid

@@ -1,0 +1,49 @@
+// What a frame decides before its lights are looked at: the camera, its materials together, and the gather.
+#pragma once
+
+#include "camera.h"
+#include "inputs.h"
+#include "pyramid.h"
+
+namespace pellucid {
+
+struct Setup : Inputs {
+  explicit Setup(const Inputs& inputs);  // whose fields were checked
+
+  // ---- Camera and colors
+  Rect rect;             // the part of the images that is rendered
+  bool wide;             // colors of 32 bits a channel
+  VkFormat colorFormat;  // of transients and histories that hold colors
+  glm::dmat4 clipFromView, viewFromWorld;
+  DepthRange depthRange{};
+  shared::Camera camera;
+  Pyramid pyramid;
+
+  // ---- All materials together
+  bool diffuses = false;                   // a material does
+  bool thinWalls = false, solids = false;  // a material is thin-walled; one is not
+  // Reach of the materials that diffuse, at options.nearestDistance; all 0 where that does not say how large
+  // a pixel is.
+  double pixelsPerMm;
+  double largestRadius = 0;    // pixels; PellucidMaterial::radius
+  double widestDeviation = 0;  // pixels; standard deviation of a Gaussian
+
+  // ---- The gather
+  const char* whyNotGathered;  // NULL: lights with a map can be. Static string
+  uint32_t gatherSamples;      // of each probe, 0 where no light can be gathered
+  uint32_t gatherSpacing;      // pixels a side of what one probe stands for
+  bool gathers;                // lights with a map are gathered from
+  bool shapes;                 // curved surfaces return more or less light than planes, as probes find
+  // Of an entry point across the light, scene units: of the frame's shortest mean free path a half. A half
+  // costs heads 3 % of the gather's error, twice as much 60 % (docs/lab.md).
+  float longestEntrySide;
+
+  bool isGathered(const PellucidLight& light) const {
+    return light.shadowMapCount > 0 && gathers && !holdsBackFaces(light);
+  }
+};
+
+// Standard deviation of a material's widest Gaussian, mm; 0 if it has none.
+double deviationOf(const PellucidMaterial& material);
+
+}  // namespace pellucid
