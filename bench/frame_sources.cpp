@@ -5,8 +5,9 @@
 #include <memory>
 #include <optional>
 
+#include "capture/read.h"
 #include "common/error.h"
-#include "frame_files.h"
+#include "gltf/gltf.h"
 #include "raster/raster.h"
 #include "scene.h"
 #include "scene/scene.h"
@@ -42,7 +43,7 @@ std::shared_ptr<const Capture> turnedOf(const std::filesystem::path& file, const
   std::filesystem::path path = file;
   path.replace_extension(".turned" + file.extension().string());
   if (!std::filesystem::exists(path)) return nullptr;
-  auto turned = std::make_shared<const Capture>(readCaptureFile(path));
+  auto turned = std::make_shared<const Capture>(readCapture(path));
   if (turned->width != capture.width || turned->height != capture.height)
     throw InputError(path.string(), "size", "is not that of " + file.string());
   if (turned->material != capture.material)
@@ -81,7 +82,7 @@ private:
     const std::string file = name == "crowd" ? "crowd.glb" : "head_views.glb";
     const auto [entry, isNew] = loaded_.try_emplace(file);
     if (isNew) {
-      entry->second = readModelFile({models_ / file, 0.052, {{"*", "skin1"}}});
+      entry->second = loadGltf(models_ / file, {0.052, {{"*", "skin1"}}}).model;
       Light key, rim;
       key.direction = {0.6, -0.4, -0.7};
       rim.direction = {0.5, -0.2, 0.85};
@@ -136,7 +137,7 @@ std::vector<FrameSource> frameSources(Device& device, const FrameOptions& option
     const std::string name =
         path.extension() == ".json" ? path.parent_path().filename().string() : path.stem().string();
     // Read at once: what is wrong with a file shows before a run of minutes.
-    const auto capture = std::make_shared<const Capture>(named(readCaptureFile(path), name));
+    const auto capture = std::make_shared<const Capture>(named(readCapture(path), name));
     sources.push_back({name, [=] { return *capture; }, turnedOf(path, *capture)});
   }
   if (!options.captures.empty() && options.models.empty() && options.names.empty()) return sources;

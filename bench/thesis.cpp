@@ -10,7 +10,7 @@
 #include "bench_frame.h"
 #include "capture/material.h"
 #include "common/error.h"
-#include "frame_files.h"
+#include "gltf/gltf.h"
 #include "measure.h"
 #include "names.h"
 #include "raster/draw.h"
@@ -80,7 +80,7 @@ public:
       : device_(device),
         context_(context),
         repeat_(repeat),
-        model_(readModelFile({options.models / "head_views.glb", 0.052, {{"*", "skin1"}}})),
+        model_(loadGltf(options.models / "head_views.glb", {0.052, {{"*", "skin1"}}}).model),
         simple_(simplified(model_, options.simplify)),
         points_(pointsOf(model_)),
         light_(lightAt(points_.bounds)),
