@@ -148,7 +148,8 @@ Summary::Summary(const std::vector<Json>& runs) {
         errors_ = &run;
     }
   if (!times_) throw InputError("", "results", std::string("no times at ") + kSummarySize);
-  if (!errors_) throw InputError("", "results", std::string("no frame \"") + kSummaryTruth + "\" with path-traced truth");
+  if (!errors_)
+    throw InputError("", "results", std::string("no frame \"") + kSummaryTruth + "\" with path-traced truth");
 }
 
 std::string Summary::heading() const {

@@ -26,7 +26,8 @@ inline std::string runOf(const Json& results) {
                 results.at("commit").get<std::string>().c_str(), results.at("repeat").get<int>());
 }
 
-// Tables of the section "frames", and of "context creation". Each throws InputError for a run without its rows.
+// Tables of the section "frames", and of "context creation". Each throws InputError for a run without its
+// rows.
 std::string framesTable(const Json& results);     // whole frames at two sizes beside their errors
 std::string frameHostTable(const Json& results);  // CPU times, memory, dispatches
 std::string truthTable(const Json& results);      // of captures with path-traced truth: error and metrics

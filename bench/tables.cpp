@@ -75,14 +75,10 @@ struct Table {
   std::string (*make)(const std::vector<Json>& runs);
 };
 
-constexpr Table kTables[] = {{"measured", ofOne<measured>},
-                             {"frames", ofOne<framesTable>},
-                             {"frame_host", ofOne<frameHostTable>},
-                             {"context", ofOne<contextTable>},
-                             {"truth", ofOne<truthTable>},
-                             {"engine", ofOne<engineTable>},
-                             {"headline", headlineTable},
-                             {"samples", samplesTable}};
+constexpr Table kTables[] = {{"measured", ofOne<measured>},         {"frames", ofOne<framesTable>},
+                             {"frame_host", ofOne<frameHostTable>}, {"context", ofOne<contextTable>},
+                             {"truth", ofOne<truthTable>},          {"engine", ofOne<engineTable>},
+                             {"headline", headlineTable},           {"samples", samplesTable}};
 
 }  // namespace
 
