@@ -169,7 +169,9 @@ TEST_F(Init, LayersWithOpenExrsCameraNeedNoWords) {
 TEST_F(Init, TexturesOfADebuggerNeedTheCamerasNumbers) {
   const double nearPlane = 5, aspect = static_cast<double>(frame_.width) / frame_.height;
   const Matrix clip = perspective(fov_ * std::numbers::pi / 180, aspect, {nearPlane, INFINITY, true});
-  const Image device = toDeviceDepth(frame_.frontDepth, clip).image;
+  Image device = frame_.frontDepth.image;
+  for (float& depth : device.data)
+    depth = depth < kNoDepth ? static_cast<float>(deviceDepth(clip, depth)) : 0;
   Image normal = frame_.normal;
   for (std::size_t i = 0; i < normal.data.size(); ++i) normal.data[i] = 0.5f * normal.data[i] + 0.5f;
   const Image id = materialImage(7);
