@@ -232,6 +232,7 @@ const Option kOptions[] = {
        t.transmittanceFilter = {0.55f, 0.29f, 0.28f};
      }},
     {"Linear", [](TranslucencySettings&) {}, PELLUCID_TRANSMITTANCE_LINEAR},
+    {"SinhExp", [](TranslucencySettings&) {}, PELLUCID_TRANSMITTANCE_SINH_EXP},
     {"Gaussians", [](TranslucencySettings&) {}, PELLUCID_TRANSMITTANCE_GAUSSIANS},
     {"GaussiansAsPrinted", [](TranslucencySettings&) {}, PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED},
 };
@@ -382,6 +383,11 @@ TEST_P(ThesisOptions, AgreeWithTheReference) {
   material.transmittanceModel = GetParam().model;
   if (material.transmittanceModel == PELLUCID_TRANSMITTANCE_LINEAR)
     for (int k = 0; k < 3; ++k) material.transmittance[k][0] = 4.0f / static_cast<float>(k + 1);
+  if (material.transmittanceModel == PELLUCID_TRANSMITTANCE_SINH_EXP) {
+    const float parameters[3][5] = {
+        {0.5f, 0.3f, 0.8f, 0.1f, 2}, {1e-4f, 1e-4f, 2e-4f, 0.2f, 1}, {0.4f, 3, 1, 0.3f, 0.5f}};
+    std::memcpy(material.transmittance, parameters, sizeof parameters);
+  }
   for (const auto source : {0, 1}) {
     ReplaySettings s;
     s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
