@@ -17,9 +17,7 @@ using AmbientLight = GpuTest;
 PellucidMaterial skin() { return compileMaterial(PresetMaterial{"skin1"}, "skin1"); }
 
 ReplaySettings through() {
-  ReplaySettings s;
-  s.features = PELLUCID_FEATURE_TRANSLUCENCY;
-  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  ReplaySettings s = inFloats(PELLUCID_FEATURE_TRANSLUCENCY);
   s.translucency.gatherSamples = 0;
   s.ambient = true;
   return s;

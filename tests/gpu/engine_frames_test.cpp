@@ -38,8 +38,7 @@ const Capture& head() {
 }
 
 ReplaySettings wide() {
-  ReplaySettings s;
-  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  ReplaySettings s = inFloats();
   s.translucency.gatherSamples = 8;
   return s;
 }

@@ -310,9 +310,7 @@ protected:
     for (float& e : c.irradiance.data) e = 0;
     c.lights = {backLight()};
     c.lights[0].shadowMaps = {m};
-    ReplaySettings s;
-    s.features = PELLUCID_FEATURE_TRANSLUCENCY;
-    s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+    ReplaySettings s = inFloats(PELLUCID_FEATURE_TRANSLUCENCY);
     const Image image = replay(c, testMaterial(), s);
     reference::Settings r;
     r.features = PELLUCID_FEATURE_TRANSLUCENCY;

@@ -42,8 +42,7 @@ TEST_F(FarOrigin, ThePictureIsThatOfTheOrigin) {
   const Capture near = rasterize(device(), model, camera, options).capture;
   EXPECT_EQ(worldOrigin(near), (Vector3{0, 0, 0}));
   const std::vector<PellucidMaterial> materials = compileMaterials(near);
-  ReplaySettings settings;
-  settings.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  ReplaySettings settings = inFloats();
   const Image expected = replayer().run(near, materials, settings).output;
   for (const double distance : {1e6, 6e6}) {
     const Capture far = moved(near, {distance, 0.5 * distance, -distance});

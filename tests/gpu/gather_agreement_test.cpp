@@ -27,8 +27,7 @@ Capture evenlyLit(SceneParameters p, float irradiance = 0.2f) {
 }
 
 Image gpuGather(Replayer& replayer, const Capture& c, uint32_t samples) {
-  ReplaySettings s;
-  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  ReplaySettings s = inFloats();
   s.translucency.gatherSamples = samples;
   return rgb(replayer.run(c, std::vector<PellucidMaterial>(c.materials.size(), skin()), s).output);
 }
@@ -183,8 +182,7 @@ TEST_F(GatherAgreement, KeptPointsDisplaceToo) {
   const Capture c = litSphere();
   const Context& context = replayer().contextFor(c);
   for (const uint32_t spacing : {1u, 4u}) {
-    ReplaySettings s;
-    s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+    ReplaySettings s = inFloats();
     s.translucency.gatherSamples = 8;
     s.translucency.gatherSpacing = spacing;
     const Image expected = rgb(replayer().run(c, {skin()}, s).output);
@@ -219,9 +217,7 @@ TEST_F(GatherAgreement, TerminatorIsContinuous) {
       p.orthographic = true;
       Capture c = makeScene(p);
       c.albedo = {};
-      ReplaySettings spread;
-      spread.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
-      spread.features = PELLUCID_FEATURE_DIFFUSION;
+      ReplaySettings spread = inFloats(PELLUCID_FEATURE_DIFFUSION);
       const Image all =
           gatherOfAllTexels(c, rgb(replay(c, skin(), spread)), [](int, int y) { return y == 48; });
       const Image gpu = gpuGather(replayer(), c, 16);

@@ -22,8 +22,7 @@ const PellucidMaterial& skin() {
 class GatherLinear : public GpuTest {
 protected:
   static Image gathered(const Capture& c, uint32_t spacing = 0) {
-    ReplaySettings s;
-    s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+    ReplaySettings s = inFloats();
     s.translucency.gatherSamples = 8;
     s.translucency.gatherSpacing = spacing;
     return rgb(replayer().run(c, std::vector<PellucidMaterial>(c.materials.size(), skin()), s).output);

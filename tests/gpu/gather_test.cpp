@@ -27,8 +27,7 @@ Capture backlitSlab(double thickness, PellucidDepthEncoding encoding) {
 }
 
 ReplaySettings settings(uint32_t samples) {
-  ReplaySettings s;
-  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  ReplaySettings s = inFloats();
   s.translucency.gatherSamples = samples;
   return s;
 }

@@ -38,9 +38,7 @@ protected:
   }
   // What comes through in red, over the irradiance from behind.
   static float through(const Capture& c, const TranslucencySettings& translucency = {}) {
-    ReplaySettings s;
-    s.features = PELLUCID_FEATURE_TRANSLUCENCY;
-    s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+    ReplaySettings s = inFloats(PELLUCID_FEATURE_TRANSLUCENCY);
     s.translucency = translucency;
     const PellucidMaterial m = testMaterial();
     return replay(c, m, s).at(8, 8)[0] * m.reflectance[0] / 3;
@@ -115,9 +113,7 @@ protected:
   static ShadowMap& mapOf(Capture& c) { return c.lights[0].shadowMaps[0]; }
   // Red in the middle of the shadow, over red beside the shadow, of the GPU; the reference agrees.
   static double shadowed(const Capture& c) {
-    ReplaySettings s;
-    s.features = PELLUCID_FEATURE_TRANSLUCENCY;
-    s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+    ReplaySettings s = inFloats(PELLUCID_FEATURE_TRANSLUCENCY);
     reference::Settings r;
     r.features = PELLUCID_FEATURE_TRANSLUCENCY;
     const std::vector<PellucidMaterial> materials = compileMaterials(c);
@@ -177,9 +173,7 @@ TEST_F(FlatOccluder, ABodyIsNotBeyondItsOwnExit) {
       const Capture c = makeScene(p);
       Capture without = c;
       mapOf(without).exitDepth = {};
-      ReplaySettings s;
-      s.features = PELLUCID_FEATURE_TRANSLUCENCY;
-      s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+      ReplaySettings s = inFloats(PELLUCID_FEATURE_TRANSLUCENCY);
       const Image with = replay(c, testMaterial(), s), open = replay(without, testMaterial(), s);
       double lost = 0, all = 0;
       for (std::size_t i = 0; i < with.data.size(); i += 4) {

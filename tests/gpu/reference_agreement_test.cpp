@@ -106,8 +106,7 @@ protected:
                double tolerance, double outliers) {
     const Capture& c = make(GetParam());
     const std::vector<PellucidMaterial> materials = testMaterials(c);
-    ReplaySettings s;
-    s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+    ReplaySettings s = inFloats();
     s.debugView = view;
     s.translucency.cameraThickness = source;
     s.features = features;
@@ -275,9 +274,7 @@ TEST_F(GpuTest, MinimumDotTablesAgreeForLightsAllAround) {
   Capture c = make({"slab"});
   const Light from = c.lights.at(0);
   for (const auto model : {PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH, PELLUCID_ANGLE_MINIMUM_DOT_SPHERE}) {
-    ReplaySettings s;
-    s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
-    s.features = PELLUCID_FEATURE_TRANSLUCENCY;
+    ReplaySettings s = inFloats(PELLUCID_FEATURE_TRANSLUCENCY);
     s.translucency.angleModel = model;
     s.translucency.objectCenter = {1, 2, 3};
     for (int i = 0; i < 36; ++i)
@@ -324,9 +321,7 @@ TEST_F(GpuTest, ManyLightsAgreeWithTheReference) {
         if (i >= maps) light.shadowMaps.clear();
         c.lights.push_back(light);
       }
-      ReplaySettings s;
-      s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
-      s.features = PELLUCID_FEATURE_TRANSLUCENCY;
+      ReplaySettings s = inFloats(PELLUCID_FEATURE_TRANSLUCENCY);
       reference::Settings r;
       r.features = s.features;
       const std::vector<PellucidMaterial> materials = testMaterials(c);
@@ -351,8 +346,7 @@ TEST_F(GpuTest, MarkedPixelsAgreeWithTheReference) {
       std::uint8_t& m = c.material[static_cast<size_t>(y * c.width + x)];
       if (m != 0) m |= 128;
     }
-  ReplaySettings s;
-  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  ReplaySettings s = inFloats();
   s.translucency.materialMarkBit = 128;
   for (const uint32_t features : {1u, 3u}) {
     s.features = features;
@@ -389,9 +383,7 @@ TEST_P(ThesisOptions, AgreeWithTheReference) {
     std::memcpy(material.transmittance, parameters, sizeof parameters);
   }
   for (const auto source : {0, 1}) {
-    ReplaySettings s;
-    s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
-    s.features = PELLUCID_FEATURE_TRANSLUCENCY;
+    ReplaySettings s = inFloats(PELLUCID_FEATURE_TRANSLUCENCY);
     s.translucency.cameraThickness = source;
     GetParam().set(s.translucency);
     reference::Settings r;

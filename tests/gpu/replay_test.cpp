@@ -44,9 +44,7 @@ INSTANTIATE_TEST_SUITE_P(Replay, Sizes,
 TEST_F(Replay, SlabTransmitsTOfItsThickness) {
   Capture c = flatCapture(16, 16, 2);
   c.lights = {backLight()};
-  ReplaySettings s;
-  s.features = PELLUCID_FEATURE_TRANSLUCENCY;  // the diffusion's pyramid holds halves
-  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  ReplaySettings s = inFloats(PELLUCID_FEATURE_TRANSLUCENCY);
   const Image out = replay(c, testMaterial(), s);
   // E + T(2 mm) E_back / rho, with E_back = 3 and rho = 1/2.
   const double blue = 0.7 * std::exp(-4.0) + 0.3 * std::exp(-0.5);
@@ -59,8 +57,7 @@ TEST_F(Replay, ShadowMapThicknessEqualsCameraThicknessOnASlab) {
     Capture c = flatCapture(16, 16, 2);
     c.lights = {backLight()};
     c.lights[0].shadowMaps = {flatShadowMap(-12, encoding)};
-    ReplaySettings s;
-    s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+    ReplaySettings s = inFloats();
     s.debugView = PELLUCID_DEBUG_THICKNESS;
     const Image thickness = replay(c, testMaterial(), s);
     // Device depth of this map: 2^-24 of 100 mm.
@@ -72,9 +69,7 @@ TEST_F(Replay, OccludedBackIsDark) {
   Capture c = flatCapture(16, 16, 2);
   c.lights = {backLight()};
   c.lights[0].shadowMaps = {flatShadowMap(-42, PELLUCID_DEPTH_VIEW_Z)};  // a body 30 mm behind the slab
-  ReplaySettings s;
-  s.features = PELLUCID_FEATURE_TRANSLUCENCY;  // the diffusion's pyramid holds halves
-  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  ReplaySettings s = inFloats(PELLUCID_FEATURE_TRANSLUCENCY);
   s.translucency.cameraThickness = 1;
   expectPixel(replay(c, testMaterial(), s), 5, 5, 1, 0.5, 0.25, 1e-5);
   // Light space: 32 mm of thickness, e^{-16} of the light in red and e^{-8} in blue's slow part.
@@ -113,9 +108,7 @@ TEST_F(Replay, NoBackDepthAndNoMapIsNeverBright) {
 // Lights with and without maps, of every type, more than one dispatch binds.
 TEST_F(Replay, LightsAddUp) {
   Capture c = flatCapture(8, 8, 2);
-  ReplaySettings s;
-  s.features = PELLUCID_FEATURE_TRANSLUCENCY;  // the diffusion's pyramid holds halves
-  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  ReplaySettings s = inFloats(PELLUCID_FEATURE_TRANSLUCENCY);
   const double through = 6 * std::exp(-1.0);  // of one light, red
   for (const int mapped : {0, 1, 4, 19}) {
     for (const int lights : {1, 8, 64}) {
@@ -136,9 +129,7 @@ TEST_F(Replay, PointAndSpotLightsFollowTheInverseSquare) {
   light.type = PELLUCID_LIGHT_POINT;
   light.position = {0, 0, -32};  // 20 mm behind the back face
   light.intensity = 1200;
-  ReplaySettings s;
-  s.features = PELLUCID_FEATURE_TRANSLUCENCY;  // the diffusion's pyramid holds halves
-  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  ReplaySettings s = inFloats(PELLUCID_FEATURE_TRANSLUCENCY);
   const double red = 2 * std::exp(-1.0) * 1200 / 400;
   c.lights = {light};
   EXPECT_NEAR(replay(c, testMaterial(), s).at(0, 0)[0], 1 + red, 1e-5 * red);
@@ -334,8 +325,7 @@ TEST_F(Replay, EveryDepthConventionGivesTheSamePicture) {
       {"perspective RH reversed infinite", 0, n, -1, 0, -1},
       {"perspective LH", f / (f - n), -f * n / (f - n), 1, 0, 1},
   };
-  ReplaySettings s;
-  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  ReplaySettings s = inFloats();
   Image first;
   for (const Convention& v : conventions) {
     Capture c = flatCapture(32, 32, 2);
@@ -361,8 +351,7 @@ TEST_F(Replay, DebugViews) {
   Capture c = flatCapture(8, 8, 2);
   c.lights = {backLight()};
   c.lights[0].shadowMaps = {flatShadowMap(-12, PELLUCID_DEPTH_VIEW_Z)};
-  ReplaySettings s;
-  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  ReplaySettings s = inFloats();
   s.debugView = PELLUCID_DEBUG_TRANSMITTANCE;
   expectPixel(replay(c, testMaterial(), s), 4, 4, std::exp(-1.0), std::exp(-2.0),
               0.7 * std::exp(-4.0) + 0.3 * std::exp(-0.5), 1e-5);

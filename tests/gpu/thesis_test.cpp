@@ -155,9 +155,7 @@ TEST_F(GpuTest, ReuseOverATurningLight) {
   const Context& context = replayer().contextFor(Capture{});
   for (const auto reuse : {PELLUCID_REUSE_ALTERNATE, PELLUCID_REUSE_COHERENCE})
     for (const int maps : {1, 9}) {  // one fused dispatch, and two
-      ReplaySettings s;
-      s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
-      s.features = PELLUCID_FEATURE_TRANSLUCENCY;
+      ReplaySettings s = inFloats(PELLUCID_FEATURE_TRANSLUCENCY);
       s.reuse = reuse;
       ReplaySettings plain = s;
       plain.reuse = PELLUCID_REUSE_NONE;

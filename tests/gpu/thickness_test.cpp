@@ -45,8 +45,7 @@ TEST_P(ExactThickness, IsTheLengthOfTheViewRayInside) {
   p.shadowSize = 16;
   Image exact;
   const Capture capture = makeScene(p, &exact);
-  ReplaySettings settings;
-  settings.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  ReplaySettings settings = inFloats();
   settings.debugView = PELLUCID_DEBUG_THICKNESS;
   const Image gpu = replay(capture, testMaterial(), settings);
   double worst = 0;

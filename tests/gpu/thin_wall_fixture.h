@@ -53,8 +53,7 @@ protected:
     return rasterize(device(), model, frontCamera(true), options).capture;
   }
   static ReplaySettings gathering(std::uint32_t samples) {
-    ReplaySettings settings;
-    settings.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+    ReplaySettings settings = inFloats();
     settings.translucency.gatherSamples = samples;
     return settings;
   }
