@@ -98,10 +98,7 @@ TEST_F(GatherAgreement, SixteenSamplesAreNearAllTexels) {
 // Texels of 1/4 to 4 mean free paths: what a map of 8 texels a path would give is the truth here.
 TEST_F(GatherAgreement, ErrorGrowsWithTheMapsTexels) {
   const double meanFreePath = 1 / (0.88 + 0.17);  // mm, of skin1 in green
-  SceneParameters p;
-  p.name = "sphere";
-  p.options = {{"radius", 8}, {"extent", 20}};
-  p.width = p.height = 96;
+  SceneParameters p{.name = "sphere", .width = 96, .height = 96, .options = {{"radius", 8}, {"extent", 20}}};
   const double across = 2 * 1.1 * 8;  // mm that the map covers
   const auto render = [&](double texelsPerPath) {
     p.shadowSize = static_cast<int>(std::lround(across / meanFreePath * texelsPerPath));
@@ -124,13 +121,14 @@ TEST_F(GatherAgreement, ErrorGrowsWithTheMapsTexels) {
 TEST_F(GatherAgreement, LitPlanesDoNotGlow) {
   for (const double angle : {120.0, 150.0, 100.0})
     for (const int shadowSize : {64, 512}) {
-      SceneParameters p;
-      p.name = "slab";
-      p.options = {{"thickness", 20}, {"lightAngle", angle}, {"extent", 24}};
-      p.width = p.height = 64;
-      p.shadowSize = shadowSize;
-      p.depthEncoding = p.shadowEncoding = PELLUCID_DEPTH_DEVICE;
-      p.orthographic = true;
+      const SceneParameters p{.name = "slab",
+                              .width = 64,
+                              .height = 64,
+                              .options = {{"thickness", 20}, {"lightAngle", angle}, {"extent", 24}},
+                              .orthographic = true,
+                              .depthEncoding = PELLUCID_DEPTH_DEVICE,
+                              .shadowSize = shadowSize,
+                              .shadowEncoding = PELLUCID_DEPTH_DEVICE};
       Capture c = evenlyLit(p, static_cast<float>(std::cos((180 - angle) * M_PI / 180)));
       for (float& v : c.lights.at(0).shadowMaps.at(0).depth.image.data) v = std::round(v * 65535) / 65535;
       for (float& v : c.frontDepth.image.data) v = std::round(v * 65535) / 65535;
@@ -145,11 +143,11 @@ TEST_F(GatherAgreement, LitPlanesDoNotGlow) {
 // No grain: neighbors take other samples, and flat parts must not show it.
 TEST_F(GatherAgreement, FlatPartsAreSmooth) {
   for (const double tilt : {0.0, 40.0}) {
-    SceneParameters p;
-    p.name = "slab";
-    p.options = {{"thickness", 2}, {"tilt", tilt}, {"extent", 24}};
-    p.width = p.height = 96;
-    p.shadowSize = 512;
+    const SceneParameters p{.name = "slab",
+                            .width = 96,
+                            .height = 96,
+                            .options = {{"thickness", 2}, {"tilt", tilt}, {"extent", 24}},
+                            .shadowSize = 512};
     const Capture c = evenlyLit(p, 0);
     const Image out = gpuGather(replayer(), c, 8);
     for (int k = 0; k < 3; ++k) {
@@ -169,11 +167,11 @@ TEST_F(GatherAgreement, FlatPartsAreSmooth) {
 }
 
 Capture litSphere() {
-  SceneParameters p;
-  p.name = "sphere";
-  p.options = {{"radius", 8}, {"extent", 20}, {"lightAngle", 60}};
-  p.width = p.height = 64;
-  p.shadowSize = 192;
+  const SceneParameters p{.name = "sphere",
+                          .width = 64,
+                          .height = 64,
+                          .options = {{"radius", 8}, {"extent", 20}, {"lightAngle", 60}},
+                          .shadowSize = 192};
   return evenlyLit(p);
 }
 
@@ -204,10 +202,7 @@ TEST_F(GatherAgreement, KeptPointsDisplaceToo) {
 TEST_F(GatherAgreement, TerminatorIsContinuous) {
   for (const char* name : {"sphere", "torus"})
     for (const double angle : {30.0, 60.0, 90.0, 120.0, 150.0}) {
-      SceneParameters p;
-      p.name = name;
-      p.options["extent"] = 24;
-      p.options["lightAngle"] = angle;
+      SceneParameters p{.name = name, .options = {{"extent", 24}, {"lightAngle", angle}}};
       if (p.name == "sphere")
         p.options["radius"] = 8;
       else

@@ -34,9 +34,7 @@ protected:
   // The replayed light in the middle, with the sun travelling along z.
   static std::array<double, 3> middle(Model model, double direction, const char* what) {
     model.lights = {directional({0, 0, direction}, kE)};
-    RasterOptions options;
-    options.width = options.height = 33;
-    options.shadowSize = 256;
+    const RasterOptions options{.width = 33, .height = 33, .shadowSize = 256};
     const Capture capture = rasterize(device(), model, frontCamera(true), options).capture;
     ReplaySettings settings = inFloats();
     const Image output = replayer().run(capture, compileMaterials(capture), settings).output;

@@ -44,10 +44,8 @@ Model shell() {
 }
 
 RasterOptions smallOptions() {
-  RasterOptions options;
-  options.width = options.height = 160;
-  options.depthEncoding = PELLUCID_DEPTH_VIEW_Z;
-  options.shadowSize = 512;
+  const RasterOptions options{
+      .width = 160, .height = 160, .depthEncoding = PELLUCID_DEPTH_VIEW_Z, .shadowSize = 512};
   return options;
 }
 

@@ -38,18 +38,18 @@ void PrintTo(const Scene& value, std::ostream* out) { *out << value.name; }
 const Capture& make(const Scene& scene) {
   static std::map<Scene, Capture> made;
   if (const auto found = made.find(scene); found != made.end()) return found->second;
-  SceneParameters p;
-  p.name = scene.name;
-  p.width = 96;
-  p.height = 80;
-  p.reversedZ = scene.reversedZ;
-  p.infiniteFar = scene.infiniteFar;
-  p.orthographic = scene.orthographic;
-  p.depthEncoding = scene.depth;
-  p.shadowEncoding = scene.shadow;
-  p.lightType = scene.light;
-  p.shadowSize = 128;
-  return made.emplace(scene, makeScene(p)).first->second;
+  return made
+      .emplace(scene, makeScene({.name = scene.name,
+                                 .width = 96,
+                                 .height = 80,
+                                 .orthographic = scene.orthographic,
+                                 .reversedZ = scene.reversedZ,
+                                 .infiniteFar = scene.infiniteFar,
+                                 .depthEncoding = scene.depth,
+                                 .lightType = scene.light,
+                                 .shadowSize = 128,
+                                 .shadowEncoding = scene.shadow}))
+      .first->second;
 }
 
 std::vector<PellucidMaterial> testMaterials(const Capture& c) {
@@ -300,12 +300,11 @@ TEST_F(GpuTest, MinimumDotTablesAgreeForLightsAllAround) {
 TEST_F(GpuTest, ManyLightsAgreeWithTheReference) {
   std::vector<Capture> lit;  // the same view, each with another light's own map
   for (int i = 0; i < 4; ++i) {
-    SceneParameters p;
-    p.name = "ear";
-    p.width = 32;
-    p.height = 24;
-    p.shadowSize = 64;
-    p.lightType = static_cast<PellucidLightType>(i % 3);
+    SceneParameters p{.name = "ear",
+                      .width = 32,
+                      .height = 24,
+                      .lightType = static_cast<PellucidLightType>(i % 3),
+                      .shadowSize = 64};
     p.turn.lights = 0.2 * i;
     lit.push_back(makeScene(p));
   }

@@ -147,13 +147,13 @@ TEST_F(Transmit, BackFacePassEqualsTheFusedDispatch) {
       for (const bool reversed : {false, true}) {
         SCOPED_TRACE(std::string(name) + (orthographic ? " orthographic" : "") +
                      (reversed ? " reversed" : ""));
-        RasterOptions options;
-        options.width = 96;
-        options.height = 80;
-        options.reversedZ = reversed;
-        options.normalsInViewSpace = reversed;
-        options.shadowSize = 256;
-        options.shadowEncoding = orthographic ? PELLUCID_DEPTH_DISTANCE : PELLUCID_DEPTH_DEVICE;
+        const RasterOptions options{
+            .width = 96,
+            .height = 80,
+            .reversedZ = reversed,
+            .normalsInViewSpace = reversed,
+            .shadowSize = 256,
+            .shadowEncoding = orthographic ? PELLUCID_DEPTH_DISTANCE : PELLUCID_DEPTH_DEVICE};
         const Difference d = difference(orthographic, options, settings);
         EXPECT_LE(d.apart, d.lit / 12) << "edges of three lights' shadows are up to 8 % of these few pixels";
         EXPECT_LE(d.difference, 0.012 * d.sum) << "1.1 % is the worst";

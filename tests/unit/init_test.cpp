@@ -24,12 +24,7 @@ namespace {
 class Init : public testing::Test {
 protected:
   Init() {
-    SceneParameters p;
-    p.name = "sphere";
-    p.width = 40;
-    p.height = 24;
-    p.shadowSize = 8;
-    frame_ = makeScene(p);
+    frame_ = makeScene({.name = "sphere", .width = 40, .height = 24, .shadowSize = 8});
     const glm::dmat4 world = glm::inverse(toGlm(frame_.viewFromWorld));
     eye_ = fromGlm(glm::dvec3(world[3]));
     target_ = fromGlm(glm::dvec3(world[3] - 50.0 * world[2]));

@@ -19,10 +19,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 SceneParameters sized(const std::string& name, int size) {
-  SceneParameters parameters;
-  parameters.name = name;
-  parameters.width = parameters.height = size;
-  parameters.shadowSize = 0;
+  const SceneParameters parameters{.name = name, .width = size, .height = size, .shadowSize = 0};
   return parameters;
 }
 
