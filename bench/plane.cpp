@@ -25,9 +25,9 @@ namespace {
 
 using namespace harness;
 
-// For each number of samples, translucency alone on an ear against the float64 reference: relative RMSE of
+// The default number of samples on an ear against all texels in float64, where it is unlit: relative RMSE of
 // 4x4 averages, worst channel.
-std::vector<double> gatherErrors(const Site& site, const std::vector<uint32_t>& samples) {
+double gatherError(const Site& site) {
   SceneParameters p;
   p.name = "ear";
   p.width = p.height = 128;
@@ -40,7 +40,7 @@ std::vector<double> gatherErrors(const Site& site, const std::vector<uint32_t>& 
   const std::vector<std::uint8_t> unlit = comparisonMask(capture.material, capture.irradiance, Subset::Unlit);
   std::fill(capture.irradiance.data.begin(), capture.irradiance.data.end(), 0.0f);
   ReplaySettings settings;
-  settings.translucency.gatherSamples = samples.front();
+  settings.translucency.gatherSamples = kDefaultGatherSamples;
   reference::Settings all;
   all.features = settings.features;
   all.translucency = settings.translucency;
@@ -49,16 +49,11 @@ std::vector<double> gatherErrors(const Site& site, const std::vector<uint32_t>& 
   for (size_t i = 0; i < unlit.size(); ++i) all.wanted[i] &= unlit[i];
   const std::vector<PellucidMaterial> materials(capture.materials.size(), site.material);
   const Image truth = reference::compute(capture, materials, all).image;
-  std::vector<double> errors;
-  for (const uint32_t n : samples) {
-    settings.translucency.gatherSamples = n;
-    const Image image = site.run(moduleVariant(site.frame(capture, settings), ""));
-    double worst = 0;
-    for (const ChannelDifference& channel : compareImages(image, truth, all.wanted, kBox).channels)
-      worst = std::max(worst, channel.relativeRmse);
-    errors.push_back(worst);
-  }
-  return errors;
+  const Image image = site.run(moduleVariant(site.frame(capture, settings), ""));
+  double worst = 0;
+  for (const ChannelDifference& channel : compareImages(image, truth, all.wanted, kBox).channels)
+    worst = std::max(worst, channel.relativeRmse);
+  return worst;
 }
 
 struct Bench {
@@ -122,36 +117,21 @@ void fusedDispatch(const Bench& bench) {
 
 // What the gather adds to a frame, in place of the fused dispatch: over a frame without it that is otherwise
 // the same.
-std::vector<TimedError> gathered(const Bench& bench) {
-  const auto frame = [&](const Capture& capture, uint32_t samples, uint32_t spacing) {
-    ReplaySettings settings;
-    settings.translucency.gatherSamples = samples;
-    settings.translucency.gatherSpacing = spacing;
-    return bench.frame(capture, settings);
-  };
-  const auto added = [&](const std::string& name, const Capture& capture, uint32_t samples, uint32_t spacing,
-                         std::optional<double> error) {
-    const Variant without = moduleVariant(frame(capture, 0, 0), ""),
-                  with = moduleVariant(frame(capture, samples, spacing), "");
+void gathered(const Bench& bench) {
+  const auto added = [&](const std::string& name, const Capture& capture, std::optional<double> error) {
+    ReplaySettings gather;
+    gather.translucency.gatherSamples = kDefaultGatherSamples;
+    const Variant without = moduleVariant(bench.frame(capture, {}), ""),
+                  with = moduleVariant(bench.frame(capture, gather), "");
     const Time a = bench.time(without.record), b = bench.time(with.record);
     bench.report.add(
         {name, int64_t{with.dispatches} - without.dispatches, int64_t{with.barriers} - without.barriers,
          with.bytesPerPixel - without.bytesPerPixel, error},
         {b.median - a.median, b.low - a.high, b.high - a.low});
-    return b.median - a.median;
   };
   bench.report.section("gather, added to the frame; error: from all texels");
-  const std::vector<uint32_t> samples = {4, 8, 16, 32};
-  const std::vector<double> errors = gatherErrors(bench.site, samples);
-  std::vector<TimedError> points;
-  for (size_t i = 0; i < samples.size(); ++i) {
-    const std::string name = std::to_string(samples[i]) + " samples";
-    const double time = added(name, bench.fullSlab(), samples[i], 0, errors[i]);
-    points.push_back({"gather, " + name, errors[i], std::max(time, 1.0)});  // the axis is logarithmic
-  }
-  added("8 samples, a point in 2 x 2 pixels", bench.fullSlab(), 8, 2, {});
-  added("8 samples, nothing transmitted", litFromTheFront(bench.fullSlab()), 8, 0, {});
-  return points;
+  added("8 samples", bench.fullSlab(), gatherError(bench.site));
+  added("8 samples, nothing transmitted", litFromTheFront(bench.fullSlab()), {});
 }
 
 std::vector<TimedError> diffusion(const Bench& bench) {
@@ -180,9 +160,8 @@ PlanePlots measurePlanes(const Site& site, const std::set<std::string>& tables, 
   plots.floor = floors.front().time.median;
   if (wanted("module")) modulePlans(b);
   if (wanted("fused")) fusedDispatch(b);
-  const std::string device = site.device.description();
-  if (wanted("gather")) plots.gather = {timeAgainstError("added, " + device, gathered(b), "all texels")};
-  if (wanted("diffusion")) plots.diffusion = {timeAgainstError(device, diffusion(b))};
+  if (wanted("gather")) gathered(b);
+  if (wanted("diffusion")) plots.diffusion = {timeAgainstError(site.device.description(), diffusion(b))};
   return plots;
 }
 
