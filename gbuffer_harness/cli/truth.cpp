@@ -24,8 +24,6 @@
 #include "raster/model.h"
 #include "reference/path_tracer/emitters.h"
 #include "reference/path_tracer/light_paths.h"
-#include "reference/path_tracer/mesh_scene.h"
-#include "reference/path_tracer/solid_scene.h"
 #include "reference/path_tracer/truth.h"
 #include "scene/model.h"
 #include "scene/render.h"

@@ -1,5 +1,5 @@
 // Sheets without thickness against the float64 reference and path tracing.
-#include "reference/path_tracer/mesh_scene.h"
+#include "reference/path_tracer/trace_scene.h"
 #include "reference/path_tracer/truth.h"
 #include "reference/reference.h"
 #include "scene/scene.h"
