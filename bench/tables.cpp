@@ -11,7 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "common/split.h"
+#include "common/parse.h"
+
 #include "generated_block.h"
 #include "table_text.h"
 

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "common/error.h"
-#include "common/lower.h"
+#include "common/parse.h"
 
 namespace pellucid::harness {
 
