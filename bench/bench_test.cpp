@@ -136,12 +136,7 @@ TEST(TurntableShares, AreComputedAgainAfterDarkness) {
 // ---- Errors of frames
 
 Capture head(int width, int height) {
-  SceneParameters p;
-  p.name = "head";
-  p.width = width;
-  p.height = height;
-  p.shadowSize = 64;
-  return makeScene(p);
+  return makeScene({.name = "head", .width = width, .height = height, .shadowSize = 64});
 }
 
 class FrameErrors : public testing::Test {

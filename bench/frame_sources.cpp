@@ -62,10 +62,7 @@ public:
   void load(const std::string& name) { camera(name); }
 
   Capture make(const std::string& name, int width, int height) {
-    RasterOptions raster;
-    raster.width = width;
-    raster.height = height;
-    raster.shadowSize = shadowSize_;
+    const RasterOptions raster{.width = width, .height = height, .shadowSize = shadowSize_};
     return rasterize(device_, modelOf(name), camera(name), raster).capture;
   }
 
@@ -106,13 +103,13 @@ public:
   Capture make(const std::string& name, int width, int height) {
     const double view = static_cast<double>(std::find(std::begin(kFrameNames), std::end(kFrameNames), name) -
                                             std::begin(kFrameNames));
-    SceneParameters p;
-    p.name = "head";
-    p.width = width;
-    p.height = height;
-    p.options = {{"view", view}};
-    p.depthEncoding = p.shadowEncoding = PELLUCID_DEPTH_DEVICE;
-    p.reversedZ = true;
+    SceneParameters p{.name = "head",
+                      .width = width,
+                      .height = height,
+                      .options = {{"view", view}},
+                      .reversedZ = true,
+                      .depthEncoding = PELLUCID_DEPTH_DEVICE,
+                      .shadowEncoding = PELLUCID_DEPTH_DEVICE};
     // Every view of one head has the same shadow maps, at any size, and casting them takes longer than the
     // image.
     std::vector<Light>& lights = lights_[name == "crowd"];

@@ -28,11 +28,7 @@ using namespace harness;
 // The default number of samples on an ear against all texels in float64, where it is unlit: relative RMSE of
 // 4x4 averages, worst channel.
 double gatherError(const Site& site) {
-  SceneParameters p;
-  p.name = "ear";
-  p.width = p.height = 128;
-  p.shadowSize = 384;
-  Capture capture = makeScene(p);
+  Capture capture = makeScene({.name = "ear", .width = 128, .height = 128, .shadowSize = 384});
   capture.albedo = {};
   capture.lights.resize(1);
   // The scene measures transmitted light alone. Lit surfaces also return gathered light, so their pixels do
