@@ -136,12 +136,7 @@ TEST(TurntableShares, AreComputedAgainAfterDarkness) {
 // ---- Errors of frames
 
 Capture head(int width, int height) {
-  SceneParameters p;
-  p.name = "head";
-  p.width = width;
-  p.height = height;
-  p.shadowSize = 64;
-  return makeScene(p);
+  return makeScene({.name = "head", .width = width, .height = height, .shadowSize = 64});
 }
 
 class FrameErrors : public testing::Test {
@@ -323,17 +318,6 @@ TEST_F(Command, BadInputIsNamed) {
   EXPECT_NE(output().find("\"64\" is not WIDTHxHEIGHT"), std::string::npos) << output();
 }
 
-TEST_F(Command, WithoutItsLibraryOnlyFilesAreRefused) {
-  // A copy stands alone.
-  const std::filesystem::path alone = folder / "pellucid_bench";
-  std::filesystem::copy_file(PELLUCID_BENCH, alone);
-  std::filesystem::permissions(alone, std::filesystem::perms::owner_all);
-  const int status =
-      std::system((alone.string() + " --tables frames --models . >" + out.string() + " 2>&1").c_str());
-  EXPECT_EQ(WEXITSTATUS(status), 3);
-  EXPECT_NE(output().find("pellucid_bench_models.so: cannot be loaded"), std::string::npos) << output();
-}
-
 TEST_F(Command, SubmitsTheFramesOfARun) {
   const std::filesystem::path file = folder / "submission.json";
   ASSERT_EQ(runs("--tables frames --frame-names nothing --frame-sizes 32x32 --shadow-size 16 --error-pixels "
@@ -351,14 +335,6 @@ TEST_F(Command, SubmitsTheFramesOfARun) {
   EXPECT_NE(runs("--tables context --submit " + file.string()), 0);
   EXPECT_NE(output().find("the table frames"), std::string::npos) << output();
   EXPECT_EQ(runs("--results " + file.string() + " --submit " + file.string()), 3);
-}
-
-TEST_F(Command, NeedsNoLibraryOfFiles) {
-  const int status = std::system(("ldd " + std::string(PELLUCID_BENCH) + " >" + out.string()).c_str());
-  if (WEXITSTATUS(status) != 0) GTEST_SKIP() << "ldd is not there or does not know the executable";
-  EXPECT_NE(output().find("libvulkan"), std::string::npos) << output();
-  for (const char* library : {"OpenEXR", "Imath", "tinygltf"})
-    EXPECT_EQ(output().find(library), std::string::npos) << output();
 }
 
 }  // namespace

@@ -5,8 +5,9 @@
 #include <memory>
 #include <optional>
 
+#include "capture/read.h"
 #include "common/error.h"
-#include "frame_files.h"
+#include "gltf/gltf.h"
 #include "raster/raster.h"
 #include "scene.h"
 #include "scene/scene.h"
@@ -42,7 +43,7 @@ std::shared_ptr<const Capture> turnedOf(const std::filesystem::path& file, const
   std::filesystem::path path = file;
   path.replace_extension(".turned" + file.extension().string());
   if (!std::filesystem::exists(path)) return nullptr;
-  auto turned = std::make_shared<const Capture>(readCaptureFile(path));
+  auto turned = std::make_shared<const Capture>(readCapture(path));
   if (turned->width != capture.width || turned->height != capture.height)
     throw InputError(path.string(), "size", "is not that of " + file.string());
   if (turned->material != capture.material)
@@ -61,10 +62,7 @@ public:
   void load(const std::string& name) { camera(name); }
 
   Capture make(const std::string& name, int width, int height) {
-    RasterOptions raster;
-    raster.width = width;
-    raster.height = height;
-    raster.shadowSize = shadowSize_;
+    const RasterOptions raster{.width = width, .height = height, .shadowSize = shadowSize_};
     return rasterize(device_, modelOf(name), camera(name), raster).capture;
   }
 
@@ -81,7 +79,7 @@ private:
     const std::string file = name == "crowd" ? "crowd.glb" : "head_views.glb";
     const auto [entry, isNew] = loaded_.try_emplace(file);
     if (isNew) {
-      entry->second = readModelFile({models_ / file, 0.052, {{"*", "skin1"}}});
+      entry->second = loadGltf(models_ / file, {0.052, {{"*", "skin1"}}}).model;
       Light key, rim;
       key.direction = {0.6, -0.4, -0.7};
       rim.direction = {0.5, -0.2, 0.85};
@@ -105,13 +103,13 @@ public:
   Capture make(const std::string& name, int width, int height) {
     const double view = static_cast<double>(std::find(std::begin(kFrameNames), std::end(kFrameNames), name) -
                                             std::begin(kFrameNames));
-    SceneParameters p;
-    p.name = "head";
-    p.width = width;
-    p.height = height;
-    p.options = {{"view", view}};
-    p.depthEncoding = p.shadowEncoding = PELLUCID_DEPTH_DEVICE;
-    p.reversedZ = true;
+    SceneParameters p{.name = "head",
+                      .width = width,
+                      .height = height,
+                      .options = {{"view", view}},
+                      .reversedZ = true,
+                      .depthEncoding = PELLUCID_DEPTH_DEVICE,
+                      .shadowEncoding = PELLUCID_DEPTH_DEVICE};
     // Every view of one head has the same shadow maps, at any size, and casting them takes longer than the
     // image.
     std::vector<Light>& lights = lights_[name == "crowd"];
@@ -136,7 +134,7 @@ std::vector<FrameSource> frameSources(Device& device, const FrameOptions& option
     const std::string name =
         path.extension() == ".json" ? path.parent_path().filename().string() : path.stem().string();
     // Read at once: what is wrong with a file shows before a run of minutes.
-    const auto capture = std::make_shared<const Capture>(named(readCaptureFile(path), name));
+    const auto capture = std::make_shared<const Capture>(named(readCapture(path), name));
     sources.push_back({name, [=] { return *capture; }, turnedOf(path, *capture)});
   }
   if (!options.captures.empty() && options.models.empty() && options.names.empty()) return sources;

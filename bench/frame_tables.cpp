@@ -31,7 +31,7 @@ public:
       addNew(sizes_, key.size);
       if (key.kind != "frame") addNew(names_[key.kind + key.of], key.name);
     }
-    if (rows_.empty()) throw NotMeasured("no section \"frames\"");
+    if (rows_.empty()) throw InputError("", "results", "no section \"frames\"");
   }
 
   const std::vector<std::string>& frames() const { return frames_; }
@@ -45,10 +45,6 @@ public:
     const auto row = rows_.find({frame, size, kind, name, of});
     return row == rows_.end() ? nullptr : row->second;
   }
-  bool hasTimes() const {
-    return std::any_of(rows_.begin(), rows_.end(),
-                       [](const auto& row) { return row.second->contains("us"); });
-  }
   // "portrait (.139)", by the first size.
   std::string covered(const std::string& frame) const {
     for (const std::string& size : sizes_)
@@ -56,10 +52,7 @@ public:
         return format("%s (%.3f)", frame.c_str(), row->at("covered").get<double>());
     return frame;
   }
-  std::string heading(const std::string& what) const {
-    return runOf(results_) + "; " + (hasTimes() ? what : "times in floors, as a software device only ranks") +
-           ":\n\n";
-  }
+  std::string heading(const std::string& what) const { return runOf(results_) + "; " + what + ":\n\n"; }
 
 private:
   struct Key {
@@ -72,11 +65,7 @@ private:
   std::map<std::string, std::vector<std::string>> names_;
 };
 
-std::string timeOf(const Json& row) {
-  if (row.contains("us")) return format("%.0f", row["us"].get<double>());
-  const double floors = row.at("floor_ratio");
-  return format(floors < 100 ? "%.3gx" : "%.0fx", floors);
-}
+std::string timeOf(const Json& row) { return format("%.0f", row.at("us").get<double>()); }
 
 // Path-traced truth says the error where there is some, else brute force of the diffusion.
 std::optional<double> errorOf(const Json& row) {
@@ -94,18 +83,17 @@ std::string header(const std::string& first, const std::vector<std::string>& col
   return text + "\n" + rule + "\n";
 }
 
-// Throws NotMeasured.
 const Json& whole(const Frames& all, const std::string& frame, const std::string& size,
                   const std::string& name) {
   if (const Json* row = all.find(frame, size, "whole", name)) return *row;
-  throw NotMeasured("no \"" + name + "\" of frame \"" + frame + "\" at " + size);
+  throw InputError("", "results", "no \"" + name + "\" of frame \"" + frame + "\" at " + size);
 }
 
 // The README's tables of two runs: one with times, one with errors against path tracing; either run may have
 // both.
 class Summary {
 public:
-  explicit Summary(const std::vector<Json>& runs);  // throws NotMeasured
+  explicit Summary(const std::vector<Json>& runs);
   std::string heading() const;
   // Cells of a whole frame's row. memory: of transients at the times' size.
   std::string time(const std::string& frame, const std::string& name) const;
@@ -159,8 +147,9 @@ Summary::Summary(const std::vector<Json>& runs) {
       if (!errors_ && r.value("frame", "") == kSummaryTruth && r.contains("truth_relative_rmse_rgb"))
         errors_ = &run;
     }
-  if (!times_) throw NotMeasured(std::string("no times at ") + kSummarySize);
-  if (!errors_) throw NotMeasured(std::string("no frame \"") + kSummaryTruth + "\" with path-traced truth");
+  if (!times_) throw InputError("", "results", std::string("no times at ") + kSummarySize);
+  if (!errors_)
+    throw InputError("", "results", std::string("no frame \"") + kSummaryTruth + "\" with path-traced truth");
 }
 
 std::string Summary::heading() const {
@@ -238,7 +227,7 @@ std::string truthTable(const Json& results) {
                 format(" %.3f | %.3f | %.3f |\n", redGreen.is_null() ? NAN : redGreen.get<double>(),
                        row->at("flip").get<double>(), row->at("flip_p99").get<double>());
       }
-  if (rows.empty()) throw NotMeasured("no frame with path-traced truth");
+  if (rows.empty()) throw InputError("", "results", "no frame with path-traced truth");
   return all.heading("relative RMSE of 4x4 averages (R G B), isolated pixels, tint, FLIP") +
          header("frame", {"whole frame", "relative RMSE", "isolated", "tint", "red/green", "FLIP mean",
                           "99th percentile"}) +
@@ -258,7 +247,7 @@ std::string engineTable(const Json& results) {
                 rgbCell(*row, "flicker_rgb") + rgbCell(*row, "flicker_irradiance_rgb") +
                 format(" %d, %d |\n", row->at("spots_appear").get<int>(), row->at("spots_vanish").get<int>());
       }
-  if (rows.empty()) throw NotMeasured("no frame with path-traced truth and turned lights");
+  if (rows.empty()) throw InputError("", "results", "no frame with path-traced truth and turned lights");
   return results.at("device").get<std::string>() + ", commit `" + results.at("commit").get<std::string>() +
          "`:\n\n" +
          header("frame", {"whole frame", "relative RMSE", "FLIP mean", "spots", "flicker",
@@ -296,7 +285,7 @@ std::string contextTable(const Json& results) {
     if (r.at("section") == "context creation" && r.contains("us"))
       rows += format("| %s | %.2f | %.2f |\n", r.at("name").get<std::string>().c_str(),
                      r["us"].get<double>() / 1e6, r.at("cpu_us").get<double>() / 1e6);
-  if (rows.empty()) throw NotMeasured("no times in section \"context creation\"");
+  if (rows.empty()) throw InputError("", "results", "no times in section \"context creation\"");
   return runOf(results) + "; seconds:\n\n" + header("", {"wall clock", "CPU, all threads"}) + rows;
 }
 

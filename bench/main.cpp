@@ -125,7 +125,6 @@ private:
       std::fprintf(table_, "planes of %d x %d, radius %g pixels\n", width, height, radius);
       PlanePlots planes = measurePlanes(site, options_.tables, options_.plane, repeat_, report_);
       plots_["diffusion"] = std::move(planes.diffusion);
-      plots_["gather"] = std::move(planes.gather);
       json_.update(
           {{"width", width}, {"height", height}, {"radius_pixels", radius}, {"floor_us", planes.floor}});
     }

@@ -53,10 +53,6 @@ int readOptions(int argc, char** argv, Options& options) {
   app.add_option("--shadow-size", f.shadowSize,
                  "texels across a shadow map of frames that are made; default 2048, on a software device 512")
       ->check(CLI::Range(16, 8192));
-  app.add_option(
-         "--simplify", f.simplify,
-         "share of the triangles that the depth maps of the section thesis are drawn with, above 0 to 1")
-      ->capture_default_str();
   app.add_option_function<int>(
          "--error-pixels",
          [&options](int pixels) { options.frames.errorPixels = options.plane.errorPixels = pixels; },

@@ -25,7 +25,6 @@ struct FrameOptions {
   std::vector<std::pair<int, int>> sizes;  // of the made ones; empty: by the kind of device
   std::vector<std::string> names;          // of the made ones; empty: all
   std::optional<int> shadowSize;           // texels a side; absent: by the kind of device
-  double simplify = 1;                     // share of the triangles in the depth passes of section thesis
   int errorPixels = 4096;                  // at most, that brute force is computed at
   std::filesystem::path cache;             // folder; empty: brute force is computed each time
 };

@@ -15,7 +15,7 @@ inline constexpr const char* kPlaneTables[] = {"module", "fused", "gather", "dif
 
 struct PlanePlots {
   double floor;  // microseconds
-  std::vector<harness::Plot> diffusion, gather;
+  std::vector<harness::Plot> diffusion;
 };
 
 // Adds the rows of `tables` to `report`, after those of the floor, which becomes the report's.

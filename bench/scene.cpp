@@ -162,10 +162,7 @@ void paintChecker(Capture& capture, double side) {
 }  // namespace
 
 Capture makeErrorCapture(const ErrorScene& scene, int size, double pixel) {
-  SceneParameters p;
-  p.name = scene.scene;
-  p.width = p.height = size;
-  p.options = scene.options;
+  SceneParameters p{.name = scene.scene, .width = size, .height = size, .options = scene.options};
   if (scene.scene == "checker" || scene.scene == "step" || scene.scene == "tilted") p.options["samples"] = 4;
   p.shadowSize = 0;
   Capture capture = makeScene(p);

@@ -3,18 +3,15 @@
 
 #include <cstdio>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "common/error.h"
 
 namespace pellucid::bench {
 
 using Json = nlohmann::json;
-
-// The run has no rows of that kind.
-struct NotMeasured : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
+using harness::InputError;
 
 template <class... Values>
 std::string format(const char* pattern, Values... values) {
@@ -29,14 +26,15 @@ inline std::string runOf(const Json& results) {
                 results.at("commit").get<std::string>().c_str(), results.at("repeat").get<int>());
 }
 
-// Tables of the section "frames", and of "context creation". Throw NotMeasured.
+// Tables of the section "frames", and of "context creation". Each throws InputError for a run without its
+// rows.
 std::string framesTable(const Json& results);     // whole frames at two sizes beside their errors
 std::string frameHostTable(const Json& results);  // CPU times, memory, dispatches
 std::string truthTable(const Json& results);      // of captures with path-traced truth: error and metrics
 std::string engineTable(const Json& results);  // of captures as engines make them, with turned lights beside
 std::string contextTable(const Json& results);
 
-// The README's tables, of the first run with times and the first with path-traced truth. Throw NotMeasured.
+// The README's tables, of the first run with times and the first with path-traced truth. Both throw likewise.
 std::string headlineTable(const std::vector<Json>& runs);  // times and errors beside others'
 std::string samplesTable(const std::vector<Json>& runs);   // time, error and memory by samples
 

@@ -1,8 +1,7 @@
 // Prints the documentation's tables of measured times from the results of a run, or checks or rewrites them
 // in a file:
 //   pellucid_bench_tables RESULTS.json[,RESULTS.json...] TABLE [--check | --update FILE]
-// A table takes the first of several files that has its rows. The tables headline and samples join two
-// files.
+// The tables headline and samples join two files.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -12,7 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "common/split.h"
+#include "common/parse.h"
+
 #include "generated_block.h"
 #include "table_text.h"
 
@@ -20,11 +20,10 @@ namespace {
 
 using namespace pellucid::bench;
 
-// Throws NotMeasured where the run lacks it.
 const Json& row(const Json& results, const std::string& section, const std::string& name) {
   for (const Json& r : results.at("results"))
     if (r.at("section") == section && r.at("name") == name) return r;
-  throw NotMeasured("no \"" + name + "\" in section \"" + section + "\"");
+  throw InputError("", "results", "no \"" + name + "\" in section \"" + section + "\"");
 }
 
 std::string timesAndError(const Json& r) {
@@ -67,15 +66,9 @@ std::string measured(const Json& results) {
   return table;
 }
 
-// The first run that has what the table shows counts.
 template <std::string (*make)(const Json&)>
-std::string ofFirst(const std::vector<Json>& runs) {
-  for (const Json& run : runs) try {
-      return make(run);
-    } catch (const NotMeasured& e) {
-      std::fprintf(stderr, "%s; run passed over\n", e.what());
-    }
-  throw NotMeasured("nothing to make it of");
+std::string ofOne(const std::vector<Json>& runs) {
+  return make(runs.front());
 }
 
 struct Table {
@@ -83,16 +76,10 @@ struct Table {
   std::string (*make)(const std::vector<Json>& runs);
 };
 
-constexpr Table kTables[] = {{"measured", ofFirst<measured>},
-                             {"frames", ofFirst<framesTable>},
-                             {"frame_host", ofFirst<frameHostTable>},
-                             {"context", ofFirst<contextTable>},
-                             {"truth", ofFirst<truthTable>},
-                             {"engine", ofFirst<engineTable>},
-                             {"headline", headlineTable},
-                             {"samples", samplesTable}};
-
-constexpr int kNothingMeasured = 77;  // CTest's word for a test that was skipped
+constexpr Table kTables[] = {{"measured", ofOne<measured>},         {"frames", ofOne<framesTable>},
+                             {"frame_host", ofOne<frameHostTable>}, {"context", ofOne<contextTable>},
+                             {"truth", ofOne<truthTable>},          {"engine", ofOne<engineTable>},
+                             {"headline", headlineTable},           {"samples", samplesTable}};
 
 }  // namespace
 
@@ -110,25 +97,13 @@ int main(int argc, char** argv) {
                  names.c_str());
     return 2;
   }
-  std::vector<Json> runs;
-  for (const std::string& path : pellucid::harness::split(argv[1], ',')) {
-    std::ifstream file(path);
-    if (!file) {
-      std::fprintf(stderr, "%s: not there; passed over\n", path.c_str());
-      continue;
-    }
-    try {
-      runs.push_back(Json::parse(file));
-    } catch (const std::exception& e) {
-      std::fprintf(stderr, "%s: %s\n", path.c_str(), e.what());
-      return 1;
-    }
-  }
   try {
+    std::vector<Json> runs;
+    for (const std::string& path : pellucid::harness::split(argv[1], ',')) {
+      std::ifstream file(path);
+      runs.push_back(Json::parse(file));
+    }
     return generatedBlock(argc - 3, argv + 3, name, table->make(runs));
-  } catch (const NotMeasured& e) {
-    std::fprintf(stderr, "table %s: %s\n", name.c_str(), e.what());
-    return kNothingMeasured;
   } catch (const std::exception& e) {
     std::fprintf(stderr, "%s: %s\n", argv[1], e.what());
     return 1;

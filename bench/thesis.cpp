@@ -10,7 +10,7 @@
 #include "bench_frame.h"
 #include "capture/material.h"
 #include "common/error.h"
-#include "frame_files.h"
+#include "gltf/gltf.h"
 #include "measure.h"
 #include "names.h"
 #include "raster/draw.h"
@@ -19,7 +19,6 @@
 #include "raster/irradiance.h"
 #include "raster/rasterizer.h"
 #include "raster/shadow.h"
-#include "raster/simplify.h"
 #include "scene.h"
 #include "scene/turn.h"
 #include "scene/vector.h"
@@ -80,12 +79,10 @@ public:
       : device_(device),
         context_(context),
         repeat_(repeat),
-        model_(readModelFile({options.models / "head_views.glb", 0.052, {{"*", "skin1"}}})),
-        simple_(simplified(model_, options.simplify)),
+        model_(loadGltf(options.models / "head_views.glb", {0.052, {{"*", "skin1"}}}).model),
         points_(pointsOf(model_)),
         light_(lightAt(points_.bounds)),
-        rasterizer_(device, model_),
-        simpleUploaded_(device, simple_) {
+        rasterizer_(device, model_) {
     const bool software = device.properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
     const auto [width, height] = options.sizes.empty()
                                      ? (software ? std::pair(256, 144) : std::pair(1280, 720))
@@ -159,11 +156,11 @@ private:
   double time(const std::function<void(VkCommandBuffer)>& record) const {
     return measure(device_, repeat_, record).median;
   }
-  double draw(const UploadedModel& model, const RenderTarget& target, const DrawView& view,
-              const PipelineState& state, const EarlierPass& earlier = {}) const {
+  double draw(const RenderTarget& target, const DrawView& view, const PipelineState& state,
+              const EarlierPass& earlier = {}) const {
     const VkCullModeFlags doubleSided = state.cull & VK_CULL_MODE_FRONT_BIT;
     return time([&](VkCommandBuffer commandBuffer) {
-      model.record(commandBuffer, target, view, state, doubleSided, earlier);
+      rasterizer_.uploaded().record(commandBuffer, target, view, state, doubleSided, earlier);
     });
   }
 
@@ -176,15 +173,14 @@ private:
     TargetPool targets(device_);
     const FrontTarget front(targets, raster_);
     device_.run([&](VkCommandBuffer commands) { front.record(commands, rasterizer_.uploaded(), view); });
-    sum.gbuffer += draw(rasterizer_.uploaded(), *front.target, view,
-                        {FragmentShader::Surface, VK_CULL_MODE_BACK_BIT, nearer(reversed), false});
+    sum.gbuffer +=
+        draw(*front.target, view, {FragmentShader::Surface, VK_CULL_MODE_BACK_BIT, nearer(reversed), false});
     const RenderTarget depth(device_, raster_.width, raster_.height, depthColors(reversed),
                              farDepth(reversed));
-    sum.front += draw(simpleUploaded_, depth, view,
-                      {FragmentShader::Depth, VK_CULL_MODE_BACK_BIT, nearer(reversed), false});
+    sum.front += draw(depth, view, {FragmentShader::Depth, VK_CULL_MODE_BACK_BIT, nearer(reversed), false});
     const EarlierPass behind{&front.depthNormal(), &front.albedoObject()};
-    sum.back += draw(simpleUploaded_, depth, view,
-                     {FragmentShader::Depth, VK_CULL_MODE_FRONT_BIT, nearer(reversed), false}, behind);
+    sum.back +=
+        draw(depth, view, {FragmentShader::Depth, VK_CULL_MODE_FRONT_BIT, nearer(reversed), false}, behind);
     addLight(sum, view, front);
 
     ReplaySettings whole;
@@ -219,8 +215,7 @@ private:
     const DrawView lightView{drawn[0].image.clipFromView, drawn[0].image.viewFromWorld, kReversed};
     const RenderTarget map(device_, raster_.shadowSize, raster_.shadowSize, depthColors(kReversed),
                            farDepth(kReversed));
-    sum.shadow += draw(simpleUploaded_, map, lightView,
-                       {FragmentShader::Depth, VK_CULL_MODE_NONE, nearer(kReversed), false});
+    sum.shadow += draw(map, lightView, {FragmentShader::Depth, VK_CULL_MODE_NONE, nearer(kReversed), false});
     const IrradiancePass pass(device_);
     GpuImage irradiance(device_, raster_.width, raster_.height, VK_FORMAT_R32G32B32A32_SFLOAT);
     irradiance.clear();
@@ -243,9 +238,9 @@ private:
                               {{VK_FORMAT_R32G32B32A32_SFLOAT, clearTo(0)}}, farDepth(keepGreater));
     const auto constants = std::get<VkDescriptorBufferInfo>(frame->planned(PELLUCID_BINDING_FRAME)).buffer;
     const PlannedInputs planned{frame->run().plan(), frame->images(), constants};
-    sum.backFace += draw(rasterizer_.uploaded(), target, view,
-                         {FragmentShader::Transmit, VK_CULL_MODE_FRONT_BIT, nearer(keepGreater), false},
-                         {&front.depthNormal(), &front.albedoObject(), &planned});
+    sum.backFace +=
+        draw(target, view, {FragmentShader::Transmit, VK_CULL_MODE_FRONT_BIT, nearer(keepGreater), false},
+             {&front.depthNormal(), &front.albedoObject(), &planned});
   }
 
   // The timed variants compute the same: the steps are held against the module's dispatch.
@@ -276,11 +271,9 @@ private:
   const Context& context_;
   int repeat_;
   Model model_;
-  Model simple_;
   ModelPoints points_;
   Light light_;
   Rasterizer rasterizer_;
-  UploadedModel simpleUploaded_;  // of the depth maps
   RasterOptions raster_;
   int timed_ = 0;
   ModelCamera camera_, turned_;

@@ -118,11 +118,8 @@ void requireSlab(const Variant& v, const Image& image, const Capture& c, const g
 }
 
 Capture ear() {
-  SceneParameters p;
-  p.name = "ear";
-  p.width = p.height = 128;
-  p.shadowSize = 256;
-  p.depthEncoding = PELLUCID_DEPTH_DEVICE;
+  SceneParameters p{
+      .name = "ear", .width = 128, .height = 128, .depthEncoding = PELLUCID_DEPTH_DEVICE, .shadowSize = 256};
   Capture capture = makeScene(p);
   p.lightType = PELLUCID_LIGHT_DIRECTIONAL;
   p.shadowEncoding = PELLUCID_DEPTH_DEVICE;

@@ -104,9 +104,7 @@ Object modelObject(const Options& options, Device& device) {
     gltf.presets[set.key] = set.value;
   }
   const auto model = std::make_shared<Model>(loadGltf(options.model, gltf).model);
-  RasterOptions raster;
-  raster.width = raster.height = options.size;
-  raster.shadowSize = options.shadowSize;
+  const RasterOptions raster{.width = options.size, .height = options.size, .shadowSize = options.shadowSize};
   return {boundsOf(*model).center, [model, raster, &device](const Vector3& toLight, const Vector3& toEye) {
             Light light;
             for (std::size_t i = 0; i < 3; ++i) light.direction[i] = -toLight[i];

@@ -4,8 +4,7 @@
 #include <string>
 
 #include "common/error.h"
-#include "common/number.h"
-#include "common/split.h"
+#include "common/parse.h"
 
 namespace pellucid::harness {
 

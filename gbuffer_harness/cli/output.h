@@ -5,7 +5,7 @@
 #include <string>
 
 #include "common/error.h"
-#include "common/lower.h"
+#include "common/parse.h"
 
 namespace pellucid::harness {
 

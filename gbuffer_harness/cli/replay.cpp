@@ -6,6 +6,7 @@
 #include <mutex>
 #include <new>
 #include <optional>
+#include <string>
 
 #include "capture/exr.h"
 #include "capture/layers.h"
@@ -21,7 +22,6 @@
 #include "cli/plan_text.h"
 #include "cli/preset.h"
 #include "cli/settings.h"
-#include "cli/statistics.h"
 #include "cli/thin_bodies.h"
 #include "cli/tone_map_option.h"
 #include "common/error.h"
@@ -29,12 +29,41 @@
 #include "common/png.h"
 #include "common/progress.h"
 #include "common/whole_file.h"
+#include "pellucid/pellucid_statistics.h"
 #include "replay/block_map.h"
 #include "replay/exposure.h"
 #include "replay/replay.h"
 
 namespace pellucid::harness {
 namespace {
+
+std::string row(const char* name, const PellucidGroups& groups) {
+  char line[128];
+  const double part =
+      groups.most > 0 ? 100 * static_cast<double>(groups.run) / static_cast<double>(groups.most) : 0;
+  std::snprintf(line, sizeof line, "%-22s %12llu %12llu %6.1f\n", name,
+                static_cast<unsigned long long>(groups.run), static_cast<unsigned long long>(groups.most),
+                part);
+  return line;
+}
+
+std::string heading(const char* first, const char* run) {
+  char line[128];
+  std::snprintf(line, sizeof line, "%-22s %12s %12s %6s\n", first, run, "of most", "%");
+  return line;
+}
+
+// Tables for a person: groups of each dispatch, and totals of the frame. `statistics`: of the plan.
+std::string statisticsText(const PellucidPlan& plan, const PellucidStatistics& s) {
+  std::string text = heading("statistics", "groups run");
+  for (uint32_t i = 0; i < s.dispatchCount; ++i) text += row(plan.dispatches[i].name, s.dispatches[i]);
+  text += heading("total", "run");
+  if (s.lists) text += row("blocks with material", s.blocks);
+  if (s.probes.most > 0) text += row("probe groups", s.probes);
+  if (s.entryPoints.most > 0) text += row("entry point groups", s.entryPoints);
+  if (!s.lists) text += "no lists of blocks: " + whyNoLists(plan) + "\n";
+  return text + "lights that can contribute: " + std::to_string(s.activeLights) + "\n";
+}
 
 constexpr const char* kSettingsAttribute = "pellucid.settings";
 constexpr const char* kDebugAttribute = "pellucid.debug";

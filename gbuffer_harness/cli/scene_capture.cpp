@@ -4,8 +4,6 @@
 #include <iterator>
 
 #include "raster/enclosing.h"
-#include "reference/path_tracer/mesh_scene.h"
-#include "reference/path_tracer/solid_scene.h"
 #include "reference/path_tracer/visible_surface.h"
 #include "scene/model.h"
 

@@ -7,7 +7,7 @@
 
 #include "common/error.h"
 #include "common/guarded_memory.h"
-#include "common/lower.h"
+#include "common/parse.h"
 
 namespace pellucid::harness {
 namespace {

@@ -9,23 +9,151 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "capture/light_bounds.h"
 #include "capture/material.h"
 #include "common/error.h"
+#include "common/far_origin.h"
+#include "gltf/accessor.h"
 #include "gltf/document.h"
 #include "gltf/material.h"
 #include "gltf/mesh.h"
-#include "gltf/node.h"
-#include "gltf/origin.h"
 #include "gltf/pose.h"
 #include "gltf/texture.h"
+#include "raster/model.h"
 #include "scene/vector.h"
 
 namespace pellucid::harness {
 
 namespace {
+
+// A place around which the scene has to be drawn finely, and the distance from the place that counts.
+struct Anchor {
+  glm::dvec3 position;
+  double distance;
+};
+
+Anchor anchorOf(const Model& model, const std::vector<glm::dvec3>& positions, const std::string& camera) {
+  glm::dvec3 low(std::numeric_limits<double>::infinity()), high = -low;
+  for (const std::uint32_t i : model.indices) {
+    low = glm::min(low, positions[i]);
+    high = glm::max(high, positions[i]);
+  }
+  const Anchor center{0.5 * (low + high), 0.5 * glm::length(high - low)};
+  const auto found = std::find_if(model.cameras.begin(), model.cameras.end(),
+                                  [&](const ModelCamera& c) { return camera.empty() || c.name == camera; });
+  if (found == model.cameras.end()) return center;
+  const glm::dvec3 eye = glm::inverse(toGlm(found->viewFromWorld))[3];
+  // An orthographic camera's near plane may lie at its eye.
+  const double seen = found->orthographic ? found->height : kNearPlanes * found->range.nearPlane;
+  return {eye, std::min(center.distance, seen)};
+}
+
+// Gives the model's vertices their positions, of which `positions` has the file's. Far from the file's
+// origin, they, cameras and lights become relative to model.origin, near the camera named so
+// (GltfOptions::camera). Returns whether they did.
+bool moveOrigin(Model& model, const std::vector<glm::dvec3>& positions, const std::string& camera) {
+  const Anchor anchor = anchorOf(model, positions, camera);
+  glm::dvec3 origin(0);
+  if (glm::length(anchor.position) > kFarthest * anchor.distance && anchor.distance > 0)
+    origin = toGlm(originNear(fromGlm(anchor.position), anchor.distance));
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const glm::vec3 p(positions[i] - origin);
+    model.vertices[i].position = {p.x, p.y, p.z};
+  }
+  if (origin == glm::dvec3(0)) return false;
+  model.origin = fromGlm(origin);
+  for (ModelCamera& c : model.cameras) c.viewFromWorld = fromOrigin(c.viewFromWorld, model.origin);
+  for (Light& light : model.lights) light.position = fromGlm(toGlm(light.position) - origin);
+  return true;
+}
+
+// A sentence for a person.
+std::string originNote(const Model& model) {
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "the scene is far from its origin: the capture's world begins at %.9g, %.9g, %.9g",
+                model.origin[0], model.origin[1], model.origin[2]);
+  return text;
+}
+
+struct PlacedNode {
+  std::size_t node;
+  glm::dmat4 world;  // worldFromNode
+};
+
+constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
+
+// Every node of the default scene, as it stands in `pose`, parents before children. Throws InputError when a
+// transform is not made of finite numbers, and when a node is reached twice, as in a cycle.
+std::vector<PlacedNode> placeNodes(const GltfDocument& document, const Pose& pose) {
+  const tinygltf::Model& model = document.model;
+  if (model.scenes.empty()) document.fail("scenes", "the file has none: there is nothing to draw");
+  const std::size_t scene =
+      model.defaultScene < 0 ? 0 : document.index(model.defaultScene, model.scenes.size(), "scene", "scenes");
+  struct Pending {
+    std::size_t node;
+    glm::dmat4 worldFromParent;
+  };
+  std::vector<Pending> pending;
+  std::vector<PlacedNode> placed;
+  std::vector<bool> reached(model.nodes.size(), false);
+  const auto push = [&](const std::vector<int>& nodes, const glm::dmat4& world, const std::string& field) {
+    // Backwards, so that the stack gives them in the file's order.
+    for (auto i = nodes.rbegin(); i != nodes.rend(); ++i) {
+      const std::size_t node = document.index(*i, model.nodes.size(), field, "nodes");
+      if (reached[node])
+        document.fail(field, "nodes[" + std::to_string(*i) + "] is reached twice; nodes have to form a tree");
+      reached[node] = true;
+      pending.push_back({node, world});
+    }
+  };
+  push(model.scenes[scene].nodes, glm::dmat4(1), "scenes[" + std::to_string(scene) + "].nodes");
+  while (!pending.empty()) {
+    const Pending next = pending.back();
+    pending.pop_back();
+    const glm::dmat4 world = next.worldFromParent * parentFromNode(document, pose, next.node);
+    placed.push_back({next.node, world});
+    push(model.nodes[next.node].children, world, "nodes[" + std::to_string(next.node) + "].children");
+  }
+  return placed;
+}
+
+// nodeFromInstance of each instance of the node's mesh (EXT_mesh_gpu_instancing); without instances the
+// identity.
+std::vector<glm::dmat4> readInstances(const GltfDocument& document, std::size_t node) {
+  const GltfJson* extension = extensionOf(document.json["nodes"][node], kInstancing);
+  if (!extension) return {glm::dmat4(1)};
+  const std::string field = "nodes[" + std::to_string(node) + "].extensions." + kInstancing + ".attributes";
+  const auto attributes = extension->find("attributes");
+  if (attributes == extension->end() || !attributes->is_object()) document.fail(field, "is missing");
+  std::optional<std::size_t> count;
+  const auto read = [&](const char* name, int components) -> std::optional<AccessorValues> {
+    if (!attributes->contains(name)) return std::nullopt;
+    const std::string where = field + "." + name;
+    AccessorValues values =
+        readFloats(document, document.reference(*attributes, name, field), components, components, where);
+    if (count && *count != values.count())
+      document.fail(where, std::to_string(values.count()) + " are not the " + std::to_string(*count) +
+                               " of the other attributes");
+    count = values.count();
+    return values;
+  };
+  const auto translation = read("TRANSLATION", 3), rotation = read("ROTATION", 4), scale = read("SCALE", 3);
+  if (!count) document.fail(field, "has none of TRANSLATION, ROTATION and SCALE");
+  std::vector<glm::dmat4> result;
+  for (std::size_t i = 0; i < *count; ++i) {
+    Parts parts;
+    if (translation) parts.translation.assign((*translation)[i], (*translation)[i] + 3);
+    if (rotation) parts.rotation.assign((*rotation)[i], (*rotation)[i] + 4);
+    if (scale) parts.scale.assign((*scale)[i], (*scale)[i] + 3);
+    result.push_back(matrixOf(document, parts, field + ".ROTATION[" + std::to_string(i) + "]"));
+  }
+  return result;
+}
 
 constexpr std::size_t kMaxMaterials = 255;  // 8 bits, 0 is none
 

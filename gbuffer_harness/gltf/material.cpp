@@ -7,8 +7,7 @@
 
 #include "capture/manifest_material.h"
 #include "capture/material.h"
-#include "common/number.h"
-#include "common/split.h"
+#include "common/parse.h"
 #include "pellucid/pellucid_material.h"
 
 namespace pellucid::harness {

@@ -5,8 +5,7 @@
 #include <utility>
 
 #include "common/error.h"
-#include "common/number.h"
-#include "common/split.h"
+#include "common/parse.h"
 
 namespace pellucid::harness {
 namespace {

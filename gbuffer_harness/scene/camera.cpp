@@ -107,19 +107,6 @@ double clearDepth(const Matrix& clipFromView, Handedness handedness) {
   return deviceDepth(clipFromView, 2, handedness) > deviceDepth(clipFromView, 1, handedness) ? 1 : 0;
 }
 
-DepthImage toDeviceDepth(const DepthImage& viewZ, const Matrix& clipFromView, Handedness handedness) {
-  if (viewZ.encoding != PELLUCID_DEPTH_VIEW_Z) {
-    throw InputError("", "depth", "only a viewZ image can be encoded as device depth");
-  }
-  DepthImage device{viewZ.image, PELLUCID_DEPTH_DEVICE};
-  const double nothing = clearDepth(clipFromView, handedness);
-  for (float& value : device.image.data) {
-    const bool present = value > 0 && value < 1e9f;
-    value = static_cast<float>(present ? deviceDepth(clipFromView, value, handedness) : nothing);
-  }
-  return device;
-}
-
 Matrix multiply(const Matrix& a, const Matrix& b) { return fromGlm(toGlm(a) * toGlm(b)); }
 
 }  // namespace pellucid::harness

@@ -36,12 +36,6 @@ Matrix lookAt(const Vector3& eye, const Vector3& target, const Vector3& up,
 // Device depth of a planar distance through clipFromView; not clamped.
 double deviceDepth(const Matrix& clipFromView, double viewZ, Handedness handedness = Handedness::Right);
 
-// A depth buffer as the matrix would have rendered it. Pixels that hold nothing get the value the
-// buffer is cleared to: 1, or 0 when the matrix is reversed. Throws InputError when the image is not
-// PELLUCID_DEPTH_VIEW_Z.
-DepthImage toDeviceDepth(const DepthImage& viewZ, const Matrix& clipFromView,
-                         Handedness handedness = Handedness::Right);
-
 // Device depth of "nothing there": that of the end of the range where distances grow.
 double clearDepth(const Matrix& clipFromView, Handedness handedness = Handedness::Right);
 

@@ -1,27 +1,44 @@
 #include "view/application.h"
 
 #include <imgui.h>
-
 #include <algorithm>
 #include <chrono>
 #include <numbers>
 #include <optional>
 
+#include "capture/exr.h"
 #include "capture/read.h"
+#include "capture/write.h"
 #include "common/error.h"
+#include "common/image.h"
 #include "common/png.h"
+#include "common/whole_file.h"
+#include "view/frames.h"
 #include "view/gui.h"
 #include "view/input.h"
 #include "view/panel.h"
 #include "view/perception.h"
 #include "view/picture.h"
-#include "view/save.h"
 #include "view/scripted_input.h"
+#include "view/session.h"
 #include "window/window.h"
 
 namespace pellucid::harness {
 
 namespace {
+
+// Writes the capture, the settings, the session and the result. `settings`: their text, which --set @FILE
+// reads. Throws InputError for a file that cannot be written.
+void saveView(const SavedFiles& files, const ViewFrames& frames, const std::string& settings,
+              Session session) {
+  writeWhole(files.capture, [&](const auto& file) { writeCapture(frames.capture(), file); });
+  writeWholeText(files.settings, settings);
+  session.settings = files.settings.filename().string();
+  writeWholeText(files.session, sessionJson(session));
+  writeWhole(files.result, [&](const auto& file) {
+    writeExr(file, frames.image(Shown::After), {"R", "G", "B"}, {});
+  });
+}
 
 bool isDown(unsigned char key) { return ImGui::GetIO().KeysDown[key]; }
 

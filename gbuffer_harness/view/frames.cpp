@@ -4,17 +4,57 @@
 #include <chrono>
 #include <cmath>
 #include <glm/gtc/packing.hpp>
+#include <memory>
 #include <utility>
 
 #include "capture/material.h"
 #include "metrics/isolated.h"
+#include "raster/drawn_frame.h"
 #include "replay/exposure.h"
+#include "replay/inputs.h"
 #include "shared/pellucid_shared.h"
-#include "view/drawn_inputs.h"
 
 namespace pellucid::harness {
 
 namespace {
+
+// Images that a frame of these settings reads. Nothing goes to the host, but for what is to be stored in
+// ways that no engine's images have here: normals in view space, distances in shadow maps, maps drawn as an
+// engine does or in one image, other formats than floats and halves.
+std::shared_ptr<const InputImages> drawnInputs(const DrawnFrame& drawn, const ReplaySettings& settings) {
+  const RasterOptions& options = drawn.options();
+  const DrawnFrame::Images& images = drawn.images();
+  if (!areOnDevice(options) || options.normalsInViewSpace || preExposureOf(settings) != 1 ||
+      settings.materialMask != 0 || settings.normalFormat != VK_FORMAT_R32G32B32A32_SFLOAT)
+    return std::make_shared<const InputImages>(drawn.device(), drawn.capture(), settings);
+  InputImages::Images inputs;
+  inputs.shape.backDepth = drawn.hasBackDepth();
+  inputs.shape.normal = inputs.shape.albedo = true;
+  inputs.frontDepth = images.frontDepth;
+  if (drawn.hasBackDepth()) inputs.backDepth = images.backDepth;
+  const auto& front = images.front.target;
+  inputs.normal = sharedImage(front, FrontTarget::kNormalPlanar);
+  inputs.albedo = sharedImage(front, FrontTarget::kAlbedoObject);
+  inputs.material = sharedImage(front, FrontTarget::kMaterial);
+  inputs.irradiance = drawn.irradianceIn(irradianceFormat(settings));
+  const int size = options.shadowSize;
+  for (const std::vector<DrawnMap>& maps : images.maps)
+    for (const DrawnMap& map : maps) {
+      FrameShape::Map& place = inputs.shape.maps.emplace_back();
+      place.extent = {size, size};
+      const DeviceMap mapped = deviceMap(map, options);
+      std::size_t i = 0;
+      for (const auto& image : {mapped.depth, mapped.exit, mapped.casterMaterial}) {
+        if (image) {
+          place.images[i] = static_cast<int>(inputs.shadows.size());
+          inputs.shadows.push_back(image);
+        }
+        ++i;
+      }
+    }
+  inputs.shape.shadowImages = inputs.shadows.size();
+  return std::make_shared<const InputImages>(std::move(inputs));
+}
 
 // Reads an output, which has an alpha in most formats.
 

@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "common/error.h"
-#include "common/number.h"
+#include "common/parse.h"
 
 namespace pellucid::harness {
 

@@ -8,7 +8,7 @@
 
 #include "capture/manifest_material.h"
 #include "common/error.h"
-#include "common/number.h"
+#include "common/parse.h"
 #include "replay/settings.h"
 
 namespace pellucid::harness {

@@ -107,8 +107,7 @@ DepthErrors measureDepth(Replayer& replayer, const Format& format, double n, dou
     c.frontDepth.image.data[i] = store(format, projection.depth(front));
     c.backDepth.image.data[i] = store(format, projection.depth(front + logarithmic(0.0005, 0.03)));
   }
-  ReplaySettings settings;
-  settings.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  ReplaySettings settings = inFloats();
   settings.debugView = PELLUCID_DEBUG_THICKNESS;
   const Image gpu = replayer.run(c, {material()}, settings).output;
 

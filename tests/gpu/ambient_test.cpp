@@ -17,9 +17,7 @@ using AmbientLight = GpuTest;
 PellucidMaterial skin() { return compileMaterial(PresetMaterial{"skin1"}, "skin1"); }
 
 ReplaySettings through() {
-  ReplaySettings s;
-  s.features = PELLUCID_FEATURE_TRANSLUCENCY;
-  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  ReplaySettings s = inFloats(PELLUCID_FEATURE_TRANSLUCENCY);
   s.translucency.gatherSamples = 0;
   s.ambient = true;
   return s;
@@ -133,11 +131,7 @@ TEST_F(AmbientLight, PreExposureScalesAmbientLight) {
 // gathered lights beside. The head has hidden irradiance, too.
 TEST_F(AmbientLight, AgreesWithTheReference) {
   for (const char* name : {"ear", "head"}) {
-    SceneParameters p;
-    p.name = name;
-    p.width = 64;
-    p.height = 48;
-    p.shadowSize = 64;
+    const SceneParameters p{.name = name, .width = 64, .height = 48, .shadowSize = 64};
     Capture c = makeScene(p);
     c.environment = Harmonics{{{3, 2, 1},
                                {0.5, -0.25, 0},
@@ -181,11 +175,7 @@ TEST_F(AmbientLight, AgreesWithTheReference) {
 // Light from hidden faces is not gathered: after the diffusion it adds what it adds without one. The light
 // that visible faces lose differs, because probes tell it where there are some.
 TEST_F(AmbientLight, IsTheSameBesideGatheredLight) {
-  SceneParameters p;
-  p.name = "ear";
-  p.width = 64;
-  p.height = 48;
-  p.shadowSize = 64;
+  const SceneParameters p{.name = "ear", .width = 64, .height = 48, .shadowSize = 64};
   Capture c = makeScene(p);
   c.albedo = {};
   const std::vector<PellucidMaterial> materials(c.materials.size(), skin());

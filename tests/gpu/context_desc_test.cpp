@@ -44,9 +44,7 @@ std::string refusal(Device& device, const Context& context, const ReplaySettings
 TEST_F(ContextTest, RefusesOtherFormatsThanItsOwn) {
   const Context half(
       device(), [](PellucidContextDesc& desc) { desc.options.outputFormat = VK_FORMAT_R16G16B16A16_SFLOAT; });
-  ReplaySettings s;
-  s.features = PELLUCID_FEATURE_TRANSLUCENCY;
-  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  ReplaySettings s = inFloats(PELLUCID_FEATURE_TRANSLUCENCY);
   EXPECT_NE(refusal(device(), half, s).find("outputFormat is not"), std::string::npos) << half.message();
 
   const std::string said = refusalOf([] {
@@ -150,8 +148,7 @@ TEST_F(ContextTest, WideOutputsKeepAlphaToTheBit) {
     rgba.data[4 * i + 3] = i % 2 == 0 ? 0.1234567f : 1e6f;
   }
   c.irradiance = rgba;
-  ReplaySettings s;
-  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  ReplaySettings s = inFloats();
   const Image out = replay(c, testMaterial(), s);
   for (size_t i = 0; i < out.pixels(); ++i) ASSERT_EQ(out.data[4 * i + 3], rgba.data[4 * i + 3]) << i;
 }

@@ -10,12 +10,7 @@ namespace {
 
 using namespace pellucid::test;
 
-ReplaySettings diffusionOnly() {
-  ReplaySettings s;
-  s.features = PELLUCID_FEATURE_DIFFUSION;
-  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
-  return s;
-}
+ReplaySettings diffusionOnly() { return inFloats(PELLUCID_FEATURE_DIFFUSION); }
 
 using Diffusion = GpuTest;
 

@@ -91,12 +91,7 @@ double difference(const Capture& c, const Image& a, const Image& b) {
 }
 
 Capture capture(std::optional<PellucidLightType> light) {
-  SceneParameters p;
-  p.name = "ear";
-  p.width = p.height = 72;
-  p.shadowSize = 128;
-  p.lightType = light;
-  return makeScene(p);
+  return makeScene({.name = "ear", .width = 72, .height = 72, .lightType = light, .shadowSize = 128});
 }
 
 TEST(Drivers, AgreeOnEveryOptionAndRepeatEachBit) {

@@ -27,19 +27,13 @@ const PellucidMaterial& skin() {
 // Made once: the head takes longer than the passes over it.
 const Capture& head() {
   static const Capture made = [] {
-    SceneParameters p;
-    p.name = "head";
-    p.width = 160;
-    p.height = 90;
-    p.shadowSize = 256;
-    return makeScene(p);
+    return makeScene({.name = "head", .width = 160, .height = 90, .shadowSize = 256});
   }();
   return made;
 }
 
 ReplaySettings wide() {
-  ReplaySettings s;
-  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  ReplaySettings s = inFloats();
   s.translucency.gatherSamples = 8;
   return s;
 }

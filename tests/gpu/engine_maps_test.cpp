@@ -52,9 +52,7 @@ Model ballAndEar() {
 class EngineMaps : public GpuTest {
 protected:
   static Capture draw(const Model& model, const ShadowDrawing& shadow, int size = 256) {
-    RasterOptions options;
-    options.width = options.height = 96;
-    options.shadowSize = size;
+    RasterOptions options{.width = 96, .height = 96, .shadowSize = size};
     options.shadow = shadow;
     return rasterize(device(), model, frontCamera(false), options).capture;
   }
@@ -310,9 +308,7 @@ protected:
     for (float& e : c.irradiance.data) e = 0;
     c.lights = {backLight()};
     c.lights[0].shadowMaps = {m};
-    ReplaySettings s;
-    s.features = PELLUCID_FEATURE_TRANSLUCENCY;
-    s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+    ReplaySettings s = inFloats(PELLUCID_FEATURE_TRANSLUCENCY);
     const Image image = replay(c, testMaterial(), s);
     reference::Settings r;
     r.features = PELLUCID_FEATURE_TRANSLUCENCY;
@@ -452,9 +448,7 @@ TEST_F(EngineMaps, NormalOffsetsGrowWithTheAngle) {
 TEST_F(EngineMaps, CascadesFollowTheCamera) {
   Model model = ballAndEar();
   model.lights.resize(1);
-  RasterOptions options;
-  options.width = options.height = 96;
-  options.shadowSize = 256;
+  RasterOptions options{.width = 96, .height = 96, .shadowSize = 256};
   const Capture whole = rasterize(device(), model, frontCamera(false), options).capture;
   options.shadow.cascades = 3;
   options.shadow.placement = MapPlacement::Array;
@@ -477,9 +471,7 @@ TEST_F(EngineMaps, CascadesFollowTheCamera) {
 TEST_F(EngineMaps, JitterMovesThePicture) {
   const Model model = ballAndEar();
   for (const bool orthographic : {false, true}) {
-    RasterOptions options;
-    options.width = options.height = 96;
-    options.shadowSize = 128;
+    RasterOptions options{.width = 96, .height = 96, .shadowSize = 128};
     const Capture still = rasterize(device(), model, frontCamera(orthographic), options).capture;
     options.jitter = {1, -1};
     const Capture moved = rasterize(device(), model, frontCamera(orthographic), options).capture;

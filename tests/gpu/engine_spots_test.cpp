@@ -1,5 +1,6 @@
 // Maps as engines draw them must not put spots on a face that the same maps drawn plainly lack. Light grazes
-// the procedural head. Without a gather one thickness a pixel comes from the map's own slopes and keeps spots.
+// the procedural head. Without a gather one thickness a pixel comes from the map's own slopes and keeps
+// spots.
 #include <algorithm>
 
 #include "capture/material.h"
@@ -41,9 +42,7 @@ protected:
     light.direction = {0.6, -0.75, -0.45};
     light.intensity = 3;
     model.lights = {light};
-    RasterOptions options;
-    options.width = 320;
-    options.height = 180;
+    RasterOptions options{.width = 320, .height = 180};
     frame.draw(options);
     if (plain) {
       ShadowDrawing drawing;

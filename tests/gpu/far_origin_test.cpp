@@ -31,10 +31,8 @@ TEST_F(FarOrigin, ThePictureIsThatOfTheOrigin) {
   addSphere(model, {0, 0, 0}, 5, 32);
   endPart(model, 0);
   model.lights = {directional({0.3, -0.2, 1}, 3), pointLight({20, 5, -60}, 4000)};
-  RasterOptions options;
-  options.width = options.height = 48;
-  options.shadowSize = 128;
-  options.shadowEncoding = PELLUCID_DEPTH_VIEW_Z;
+  const RasterOptions options{
+      .width = 48, .height = 48, .shadowSize = 128, .shadowEncoding = PELLUCID_DEPTH_VIEW_Z};
   // A near plane of 0.5 mm says that things as near are seen, so that the capture counts as far from 1e4 mm
   // on.
   ModelCamera camera = frontCamera(false);
@@ -42,8 +40,7 @@ TEST_F(FarOrigin, ThePictureIsThatOfTheOrigin) {
   const Capture near = rasterize(device(), model, camera, options).capture;
   EXPECT_EQ(worldOrigin(near), (Vector3{0, 0, 0}));
   const std::vector<PellucidMaterial> materials = compileMaterials(near);
-  ReplaySettings settings;
-  settings.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  ReplaySettings settings = inFloats();
   const Image expected = replayer().run(near, materials, settings).output;
   for (const double distance : {1e6, 6e6}) {
     const Capture far = moved(near, {distance, 0.5 * distance, -distance});

@@ -22,8 +22,7 @@ const PellucidMaterial& skin() {
 class GatherLinear : public GpuTest {
 protected:
   static Image gathered(const Capture& c, uint32_t spacing = 0) {
-    ReplaySettings s;
-    s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+    ReplaySettings s = inFloats();
     s.translucency.gatherSamples = 8;
     s.translucency.gatherSpacing = spacing;
     return rgb(replayer().run(c, std::vector<PellucidMaterial>(c.materials.size(), skin()), s).output);
@@ -34,13 +33,7 @@ protected:
 const Capture& head(const std::map<std::string, double>& options) {
   static std::map<std::map<std::string, double>, Capture> made;
   if (const auto found = made.find(options); found != made.end()) return found->second;
-  SceneParameters p;
-  p.name = "head";
-  p.width = 160;
-  p.height = 90;
-  p.shadowSize = 256;
-  p.options = options;
-  Capture c = makeScene(p);
+  Capture c = makeScene({.name = "head", .width = 160, .height = 90, .options = options, .shadowSize = 256});
   c.albedo = {};
   return made.emplace(options, std::move(c)).first->second;
 }
@@ -148,13 +141,12 @@ TEST_F(GatherLinear, AmbientLightStays) {
 // Lit from the front, a slab sends back R(h) and no half-space's rho.
 TEST_F(GatherLinear, ThinSlabsReturnLess) {
   for (const double thickness : {0.5, 1.0, 2.0, 4.0}) {
-    SceneParameters p;
-    p.name = "slab";
-    p.options = {{"thickness", thickness}, {"lightAngle", 180}, {"extent", 12}};
-    p.width = p.height = 48;
-    p.shadowSize = 256;
-    p.orthographic = true;
-    Capture c = makeScene(p);
+    Capture c = makeScene({.name = "slab",
+                           .width = 48,
+                           .height = 48,
+                           .options = {{"thickness", thickness}, {"lightAngle", 180}, {"extent", 12}},
+                           .orthographic = true,
+                           .shadowSize = 256});
     c.albedo = {};
     const Image out = gathered(c);
     PellucidSlab slab, half;

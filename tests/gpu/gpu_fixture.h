@@ -42,6 +42,14 @@ private:
   size_t messagesBefore_ = 0;
 };
 
+// Outputs of 32 bits a channel: halves round by 5e-4.
+inline ReplaySettings inFloats(uint32_t features = ReplaySettings{}.features) {
+  ReplaySettings settings;
+  settings.features = features;
+  settings.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  return settings;
+}
+
 // T = e^{-d / 2 mm} in red, e^{-d} in green, 0.7 e^{-2 d} + 0.3 e^{-d / 4 mm} in blue.
 inline PellucidMaterial testMaterial() {
   PellucidMaterial m{};

@@ -33,12 +33,7 @@ double lobes(double at) {
   return 0.95 * std::pow(std::sin(4 * std::numbers::pi * std::min(at, 0.25)), 2) + 0.05;
 }
 
-ReplaySettings translucency() {
-  ReplaySettings s;
-  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
-  s.features = PELLUCID_FEATURE_TRANSLUCENCY;
-  return s;
-}
+ReplaySettings translucency() { return inFloats(PELLUCID_FEATURE_TRANSLUCENCY); }
 
 class LightTables : public GpuTest {};
 
@@ -118,8 +113,7 @@ TEST_F(LightTables, ATableOfOnesChangesNothing) {
   Capture c = makeScene(
       {.name = "sphere", .width = 64, .height = 64, .lightType = PELLUCID_LIGHT_SPOT, .shadowSize = 128});
   for (const uint32_t samples : {0u, 8u}) {
-    ReplaySettings s;
-    s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+    ReplaySettings s = inFloats();
     s.translucency.gatherSamples = samples;
     const auto rendered = [&] {
       return replayer().run(c, std::vector<PellucidMaterial>(c.materials.size(), testMaterial()), s).output;
@@ -176,8 +170,7 @@ TEST_F(LightTables, GatheredLightIsNearAllTexels) {
   std::fill(c.irradiance.data.begin(), c.irradiance.data.end(), 0.2f);
   c.albedo = {};
   const std::vector<PellucidMaterial> materials(c.materials.size(), skin);
-  ReplaySettings s;
-  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  ReplaySettings s = inFloats();
   s.translucency.gatherSamples = 16;
   const Image plain = rgb(replayer().run(c, materials, s).output);
   c.lights[0].angleTable = table([](double at) { return std::max(0.0, 1 - 8 * at); });

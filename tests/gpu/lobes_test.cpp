@@ -34,12 +34,9 @@ protected:
   // The replayed light in the middle, with the sun travelling along z.
   static std::array<double, 3> middle(Model model, double direction, const char* what) {
     model.lights = {directional({0, 0, direction}, kE)};
-    RasterOptions options;
-    options.width = options.height = 33;
-    options.shadowSize = 256;
+    const RasterOptions options{.width = 33, .height = 33, .shadowSize = 256};
     const Capture capture = rasterize(device(), model, frontCamera(true), options).capture;
-    ReplaySettings settings;
-    settings.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+    ReplaySettings settings = inFloats();
     const Image output = replayer().run(capture, compileMaterials(capture), settings).output;
     std::array<double, 3> rgb;
     for (int c = 0; c < 3; ++c) rgb[static_cast<std::size_t>(c)] = static_cast<double>(output.at(16, 16)[c]);

@@ -24,9 +24,7 @@ inline Vertex vertexAt(const Vector3& position, const Vector3& normal) {
 
 // Square frames of `side` pixels, with maps that cost little.
 inline RasterOptions smallRaster(int side) {
-  RasterOptions options;
-  options.width = options.height = side;
-  options.shadowSize = 64;
+  const RasterOptions options{.width = side, .height = side, .shadowSize = 64};
   return options;
 }
 

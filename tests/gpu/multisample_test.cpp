@@ -215,8 +215,7 @@ TEST_F(Multisample, ThePixelIsItsMostFrequentMaterial) {
 // samples, and one sample without any resolve, are what engines do without the shader.
 TEST_F(Multisample, EdgesAreNearThoseOfFourPixels) {
   const Capture &c = large(), small = resolved();
-  ReplaySettings s;
-  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  ReplaySettings s = inFloats();
   s.aliasOutput = false;
   const auto rendered = [&](const Capture& capture) {
     return replayer().run(capture, compileMaterials(capture), s).output;

@@ -38,9 +38,7 @@ protected:
   }
   // What comes through in red, over the irradiance from behind.
   static float through(const Capture& c, const TranslucencySettings& translucency = {}) {
-    ReplaySettings s;
-    s.features = PELLUCID_FEATURE_TRANSLUCENCY;
-    s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+    ReplaySettings s = inFloats(PELLUCID_FEATURE_TRANSLUCENCY);
     s.translucency = translucency;
     const PellucidMaterial m = testMaterial();
     return replay(c, m, s).at(8, 8)[0] * m.reflectance[0] / 3;
@@ -101,23 +99,19 @@ TEST_F(FlatOccluder, LightEntersThroughTheReceiversMaterialOnly) {
 class TwoSheets : public GpuTest, public testing::WithParamInterface<int> {
 protected:
   static Capture sheets() {
-    SceneParameters p;
-    p.name = "two_sheets";
-    p.options["thickness"] = 2;
-    p.options["gap"] = GetParam();
-    p.width = 64;
-    p.height = 8;
-    p.orthographic = true;
-    p.shadowSize = 256;
-    p.depthEncoding = p.shadowEncoding = PELLUCID_DEPTH_DEVICE;
-    return makeScene(p);
+    return makeScene({.name = "two_sheets",
+                      .width = 64,
+                      .height = 8,
+                      .options = {{"thickness", 2}, {"gap", GetParam()}},
+                      .orthographic = true,
+                      .depthEncoding = PELLUCID_DEPTH_DEVICE,
+                      .shadowSize = 256,
+                      .shadowEncoding = PELLUCID_DEPTH_DEVICE});
   }
   static ShadowMap& mapOf(Capture& c) { return c.lights[0].shadowMaps[0]; }
   // Red in the middle of the shadow, over red beside the shadow, of the GPU; the reference agrees.
   static double shadowed(const Capture& c) {
-    ReplaySettings s;
-    s.features = PELLUCID_FEATURE_TRANSLUCENCY;
-    s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+    ReplaySettings s = inFloats(PELLUCID_FEATURE_TRANSLUCENCY);
     reference::Settings r;
     r.features = PELLUCID_FEATURE_TRANSLUCENCY;
     const std::vector<PellucidMaterial> materials = compileMaterials(c);
@@ -169,17 +163,11 @@ INSTANTIATE_TEST_SUITE_P(Gaps, TwoSheets, testing::Values(3, 8, 15), testing::Pr
 TEST_F(FlatOccluder, ABodyIsNotBeyondItsOwnExit) {
   for (const char* name : {"sphere", "torus"})
     for (const auto light : {PELLUCID_LIGHT_DIRECTIONAL, PELLUCID_LIGHT_POINT}) {
-      SceneParameters p;
-      p.name = name;
-      p.width = p.height = 48;
-      p.shadowSize = 64;
-      p.lightType = light;
-      const Capture c = makeScene(p);
+      const Capture c =
+          makeScene({.name = name, .width = 48, .height = 48, .lightType = light, .shadowSize = 64});
       Capture without = c;
       mapOf(without).exitDepth = {};
-      ReplaySettings s;
-      s.features = PELLUCID_FEATURE_TRANSLUCENCY;
-      s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+      ReplaySettings s = inFloats(PELLUCID_FEATURE_TRANSLUCENCY);
       const Image with = replay(c, testMaterial(), s), open = replay(without, testMaterial(), s);
       double lost = 0, all = 0;
       for (std::size_t i = 0; i < with.data.size(); i += 4) {

@@ -44,10 +44,8 @@ Model shell() {
 }
 
 RasterOptions smallOptions() {
-  RasterOptions options;
-  options.width = options.height = 160;
-  options.depthEncoding = PELLUCID_DEPTH_VIEW_Z;
-  options.shadowSize = 512;
+  const RasterOptions options{
+      .width = 160, .height = 160, .depthEncoding = PELLUCID_DEPTH_VIEW_Z, .shadowSize = 512};
   return options;
 }
 
@@ -115,8 +113,7 @@ TEST_F(PointLights, ThicknessOfAShellAroundTheLight) {
       const Capture& c = result.capture;
       EXPECT_TRUE(result.warnings.empty()) << result.warnings[0];
       ASSERT_EQ(c.lights[0].shadowMaps.size(), 6u);
-      ReplaySettings settings;
-      settings.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+      ReplaySettings settings = inFloats();
       settings.debugView = PELLUCID_DEBUG_THICKNESS;
       const Image thickness = replay(c, testMaterial(), settings);
       double worst = 0;
@@ -191,8 +188,7 @@ TEST_F(PointLights, GatherDoesNotEndAtSeams) {
   RasterOptions options = smallOptions();
   options.shadowSize = 256;
   const Capture c = rasterize(model, cameraAt({60, 50, 40}, {0, 0, 0}, 0.2), options).capture;
-  ReplaySettings settings;
-  settings.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  ReplaySettings settings = inFloats();
   settings.translucency.gatherSamples = 64;
   const Image image = replay(c, testMaterial(), settings);
   double least[2] = {1e30, 1e30}, most[2] = {0, 0};  // away from seams and near them
@@ -221,9 +217,7 @@ TEST_F(PointLights, AgreeWithTheReference) {
   for (const auto encoding : {PELLUCID_DEPTH_DEVICE, PELLUCID_DEPTH_VIEW_Z, PELLUCID_DEPTH_DISTANCE}) {
     options.shadowEncoding = encoding;
     const Capture c = rasterize(model, cameraAt({60, 50, 40}, {0, 0, 0}, 0.2), options).capture;
-    ReplaySettings settings;
-    settings.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
-    settings.features = PELLUCID_FEATURE_TRANSLUCENCY;
+    ReplaySettings settings = inFloats(PELLUCID_FEATURE_TRANSLUCENCY);
     reference::Settings exact;
     exact.features = settings.features;
     const Image gpu = replay(c, testMaterial(), settings);

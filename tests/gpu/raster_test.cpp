@@ -39,11 +39,11 @@ const Convention kConventions[] = {
 };
 
 RasterOptions optionsOf(const Convention& c, int size) {
-  RasterOptions options;
-  options.width = options.height = size;
-  options.reversedZ = c.reversed;
-  options.infiniteFar = c.infinite;
-  options.depthEncoding = c.encoding;
+  const RasterOptions options{.width = size,
+                              .height = size,
+                              .reversedZ = c.reversed,
+                              .infiniteFar = c.infinite,
+                              .depthEncoding = c.encoding};
   return options;
 }
 
@@ -85,9 +85,7 @@ TEST_F(Raster, EdgesOfClosedBodiesAreNotOpen) {
   endPart(model, 1);
   for (const int size : {64, 100, 128, 256}) {
     for (const PellucidDepthEncoding encoding : {PELLUCID_DEPTH_DEVICE, PELLUCID_DEPTH_VIEW_Z}) {
-      RasterOptions options;
-      options.width = options.height = size;
-      options.depthEncoding = encoding;
+      const RasterOptions options{.width = size, .height = size, .depthEncoding = encoding};
       const RasterResult result = rasterize(model, frameModel(model, {0, 0, 1}, 0.5, 1, false), options);
       const Capture& c = result.capture;
       EXPECT_EQ(result.openPixels, 0u) << size;
@@ -358,9 +356,7 @@ TEST_F(Raster, ShadowMapsKnowWhatCastsAndWhereItEnds) {
   spot.position = {0, 0, 60};
   spot.direction = {0, 0, -1};
   spot.outerConeAngle = 0.5;
-  RasterOptions options;
-  options.width = options.height = 16;
-  options.shadowSize = 64;
+  RasterOptions options{.width = 16, .height = 16, .shadowSize = 64};
   for (const Light& light : {directional({0, 0, -1}), spot})
     for (const auto encoding : {PELLUCID_DEPTH_DEVICE, PELLUCID_DEPTH_VIEW_Z, PELLUCID_DEPTH_DISTANCE}) {
       SCOPED_TRACE(testing::Message() << "light " << light.type << ", encoding " << encoding);
@@ -424,10 +420,8 @@ TEST_F(Raster, PointLightWithinTheModelHasNoMapAndSaysSo) {
   addSquare(model, 0, 0, 0, 9);
   endPart(model, 0);
   model.lights = {directional({0, 0, -1}), pointLight({0, 0, 1})};
-  RasterOptions options;
-  options.width = options.height = 17;
-  options.depthEncoding = PELLUCID_DEPTH_VIEW_Z;
-  options.pointMaps = PointMaps::One;
+  const RasterOptions options{
+      .width = 17, .height = 17, .depthEncoding = PELLUCID_DEPTH_VIEW_Z, .pointMaps = PointMaps::One};
   const RasterResult result = rasterize(model, frontCamera(true), options);
   EXPECT_FALSE(result.capture.lights[0].shadowMaps.empty());
   EXPECT_TRUE(result.capture.lights[1].shadowMaps.empty());
@@ -501,9 +495,7 @@ TEST_F(Raster, NormalsInViewSpace) {
   endPart(model, 0);
   ModelCamera camera = frontCamera(false);
   camera.viewFromWorld = lookAt({80, 0, 60}, {0, 0, 0}, {0, 1, 0});
-  RasterOptions options;
-  options.width = options.height = 33;
-  options.normalsInViewSpace = true;
+  const RasterOptions options{.width = 33, .height = 33, .normalsInViewSpace = true};
   const Capture c = rasterize(model, camera, options).capture;
   EXPECT_TRUE(c.normalsInViewSpace);
   EXPECT_NEAR(c.normal.at(16, 16)[2], 1, 1e-3);

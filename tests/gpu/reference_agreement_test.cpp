@@ -38,18 +38,18 @@ void PrintTo(const Scene& value, std::ostream* out) { *out << value.name; }
 const Capture& make(const Scene& scene) {
   static std::map<Scene, Capture> made;
   if (const auto found = made.find(scene); found != made.end()) return found->second;
-  SceneParameters p;
-  p.name = scene.name;
-  p.width = 96;
-  p.height = 80;
-  p.reversedZ = scene.reversedZ;
-  p.infiniteFar = scene.infiniteFar;
-  p.orthographic = scene.orthographic;
-  p.depthEncoding = scene.depth;
-  p.shadowEncoding = scene.shadow;
-  p.lightType = scene.light;
-  p.shadowSize = 128;
-  return made.emplace(scene, makeScene(p)).first->second;
+  return made
+      .emplace(scene, makeScene({.name = scene.name,
+                                 .width = 96,
+                                 .height = 80,
+                                 .orthographic = scene.orthographic,
+                                 .reversedZ = scene.reversedZ,
+                                 .infiniteFar = scene.infiniteFar,
+                                 .depthEncoding = scene.depth,
+                                 .lightType = scene.light,
+                                 .shadowSize = 128,
+                                 .shadowEncoding = scene.shadow}))
+      .first->second;
 }
 
 std::vector<PellucidMaterial> testMaterials(const Capture& c) {
@@ -106,8 +106,7 @@ protected:
                double tolerance, double outliers) {
     const Capture& c = make(GetParam());
     const std::vector<PellucidMaterial> materials = testMaterials(c);
-    ReplaySettings s;
-    s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+    ReplaySettings s = inFloats();
     s.debugView = view;
     s.translucency.cameraThickness = source;
     s.features = features;
@@ -232,6 +231,7 @@ const Option kOptions[] = {
        t.transmittanceFilter = {0.55f, 0.29f, 0.28f};
      }},
     {"Linear", [](TranslucencySettings&) {}, PELLUCID_TRANSMITTANCE_LINEAR},
+    {"SinhExp", [](TranslucencySettings&) {}, PELLUCID_TRANSMITTANCE_SINH_EXP},
     {"Gaussians", [](TranslucencySettings&) {}, PELLUCID_TRANSMITTANCE_GAUSSIANS},
     {"GaussiansAsPrinted", [](TranslucencySettings&) {}, PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED},
 };
@@ -274,9 +274,7 @@ TEST_F(GpuTest, MinimumDotTablesAgreeForLightsAllAround) {
   Capture c = make({"slab"});
   const Light from = c.lights.at(0);
   for (const auto model : {PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH, PELLUCID_ANGLE_MINIMUM_DOT_SPHERE}) {
-    ReplaySettings s;
-    s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
-    s.features = PELLUCID_FEATURE_TRANSLUCENCY;
+    ReplaySettings s = inFloats(PELLUCID_FEATURE_TRANSLUCENCY);
     s.translucency.angleModel = model;
     s.translucency.objectCenter = {1, 2, 3};
     for (int i = 0; i < 36; ++i)
@@ -302,12 +300,11 @@ TEST_F(GpuTest, MinimumDotTablesAgreeForLightsAllAround) {
 TEST_F(GpuTest, ManyLightsAgreeWithTheReference) {
   std::vector<Capture> lit;  // the same view, each with another light's own map
   for (int i = 0; i < 4; ++i) {
-    SceneParameters p;
-    p.name = "ear";
-    p.width = 32;
-    p.height = 24;
-    p.shadowSize = 64;
-    p.lightType = static_cast<PellucidLightType>(i % 3);
+    SceneParameters p{.name = "ear",
+                      .width = 32,
+                      .height = 24,
+                      .lightType = static_cast<PellucidLightType>(i % 3),
+                      .shadowSize = 64};
     p.turn.lights = 0.2 * i;
     lit.push_back(makeScene(p));
   }
@@ -323,9 +320,7 @@ TEST_F(GpuTest, ManyLightsAgreeWithTheReference) {
         if (i >= maps) light.shadowMaps.clear();
         c.lights.push_back(light);
       }
-      ReplaySettings s;
-      s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
-      s.features = PELLUCID_FEATURE_TRANSLUCENCY;
+      ReplaySettings s = inFloats(PELLUCID_FEATURE_TRANSLUCENCY);
       reference::Settings r;
       r.features = s.features;
       const std::vector<PellucidMaterial> materials = testMaterials(c);
@@ -350,8 +345,7 @@ TEST_F(GpuTest, MarkedPixelsAgreeWithTheReference) {
       std::uint8_t& m = c.material[static_cast<size_t>(y * c.width + x)];
       if (m != 0) m |= 128;
     }
-  ReplaySettings s;
-  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  ReplaySettings s = inFloats();
   s.translucency.materialMarkBit = 128;
   for (const uint32_t features : {1u, 3u}) {
     s.features = features;
@@ -382,10 +376,13 @@ TEST_P(ThesisOptions, AgreeWithTheReference) {
   material.transmittanceModel = GetParam().model;
   if (material.transmittanceModel == PELLUCID_TRANSMITTANCE_LINEAR)
     for (int k = 0; k < 3; ++k) material.transmittance[k][0] = 4.0f / static_cast<float>(k + 1);
+  if (material.transmittanceModel == PELLUCID_TRANSMITTANCE_SINH_EXP) {
+    const float parameters[3][5] = {
+        {0.5f, 0.3f, 0.8f, 0.1f, 2}, {1e-4f, 1e-4f, 2e-4f, 0.2f, 1}, {0.4f, 3, 1, 0.3f, 0.5f}};
+    std::memcpy(material.transmittance, parameters, sizeof parameters);
+  }
   for (const auto source : {0, 1}) {
-    ReplaySettings s;
-    s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
-    s.features = PELLUCID_FEATURE_TRANSLUCENCY;
+    ReplaySettings s = inFloats(PELLUCID_FEATURE_TRANSLUCENCY);
     s.translucency.cameraThickness = source;
     GetParam().set(s.translucency);
     reference::Settings r;

@@ -198,12 +198,8 @@ const std::vector<Row> kRows = {
 class Settings : public GpuTest, public testing::WithParamInterface<Row> {
 protected:
   Settings() {
-    SceneParameters p;
-    p.name = "ear";
-    p.width = p.height = 24;
-    p.shadowSize = 32;
-    p.lightType = PELLUCID_LIGHT_POINT;
-    capture_ = makeScene(p);
+    capture_ = makeScene(
+        {.name = "ear", .width = 24, .height = 24, .lightType = PELLUCID_LIGHT_POINT, .shadowSize = 32});
     capture_.environment = Environment{{0.1, 0.1, 0.1}, {0.1, 0.1, 0.1}}.harmonics();
   }
 

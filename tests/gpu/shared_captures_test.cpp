@@ -206,11 +206,10 @@ TEST_F(GpuTest, HeadAgreesWithCycles) {
   camera.viewFromWorld = cycles.viewFromWorld;
   camera.verticalFov = 2 * std::atan(-1 / cycles.clipFromView[5]);
   camera.range = {100, 2000};
-  RasterOptions options;
-  options.width = cycles.width;
-  options.height = cycles.height;
-  options.depthEncoding = PELLUCID_DEPTH_VIEW_Z;
-  options.shadowSize = 2048;
+  const RasterOptions options{.width = cycles.width,
+                              .height = cycles.height,
+                              .depthEncoding = PELLUCID_DEPTH_VIEW_Z,
+                              .shadowSize = 2048};
   const RasterResult result = rasterize(device(), model, camera, options);
   const Capture& c = result.capture;
   // Cycles smoothed the normals anew (0.9 degrees in the median), so light is compared before the cosine.

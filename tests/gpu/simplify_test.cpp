@@ -44,10 +44,7 @@ TEST_F(Simplify, KeepsPartsAndTheirShareOfTriangles) {
 // hundredths of a mm.
 TEST_F(Simplify, ChangesWhatLightComesThroughAlone) {
   const Model model = sphere();
-  RasterOptions options;
-  options.width = options.height = 96;
-  options.shadowSize = 96;
-  options.depthEncoding = PELLUCID_DEPTH_VIEW_Z;
+  RasterOptions options{.width = 96, .height = 96, .depthEncoding = PELLUCID_DEPTH_VIEW_Z, .shadowSize = 96};
   const RasterResult whole = rasterize(device(), model, frontCamera(true), options);
   options.simplify = 0.2;
   const RasterResult simple = rasterize(device(), model, frontCamera(true), options);

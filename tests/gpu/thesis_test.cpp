@@ -20,12 +20,11 @@ constexpr double kAcosUlps = 4096;
 class ThesisFigure : public GpuTest {
 protected:
   static Capture make(const char* name) {
-    SceneParameters p;
-    p.name = name;
-    p.width = p.height = kSide;
-    p.orthographic = true;
-    p.lightType = PELLUCID_LIGHT_DIRECTIONAL;
-    return makeScene(p);
+    return makeScene({.name = name,
+                      .width = kSide,
+                      .height = kSide,
+                      .orthographic = true,
+                      .lightType = PELLUCID_LIGHT_DIRECTIONAL});
   }
 
   // Red light that comes through at a pixel, in the mode of the thesis but for T(d) = e^{-d / 2 mm}.
@@ -109,11 +108,11 @@ TEST_F(ThesisFigure, NearestAndFarthestBackDepth) {
     double nearest, farthest;  // limits of the relative RMSE: above nearest's, below farthest's
   };
   for (const Case& test : {Case{"hollow_sphere", 1e-4, 1}, Case{"two_sheets", 1e-4, 3}}) {
-    SceneParameters p;
-    p.name = test.name;
-    p.width = p.height = kSide;
-    p.orthographic = true;
-    p.lightType = PELLUCID_LIGHT_DIRECTIONAL;
+    SceneParameters p{.name = test.name,
+                      .width = kSide,
+                      .height = kSide,
+                      .orthographic = true,
+                      .lightType = PELLUCID_LIGHT_DIRECTIONAL};
     Image exact;
     const Capture nearest = makeScene(p, &exact);
     Capture farthest = nearest;
@@ -155,9 +154,7 @@ TEST_F(GpuTest, ReuseOverATurningLight) {
   const Context& context = replayer().contextFor(Capture{});
   for (const auto reuse : {PELLUCID_REUSE_ALTERNATE, PELLUCID_REUSE_COHERENCE})
     for (const int maps : {1, 9}) {  // one fused dispatch, and two
-      ReplaySettings s;
-      s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
-      s.features = PELLUCID_FEATURE_TRANSLUCENCY;
+      ReplaySettings s = inFloats(PELLUCID_FEATURE_TRANSLUCENCY);
       s.reuse = reuse;
       ReplaySettings plain = s;
       plain.reuse = PELLUCID_REUSE_NONE;

@@ -36,17 +36,16 @@ bool isAwayFromSilhouettes(const Image& exact, int x, int y) {
 }
 
 TEST_P(ExactThickness, IsTheLengthOfTheViewRayInside) {
-  SceneParameters p;
-  p.name = GetParam().name;
-  p.width = p.height = kSide;
-  p.orthographic = GetParam().orthographic;
-  p.depthEncoding = GetParam().depth;
-  p.reversedZ = GetParam().reversedZ;
-  p.shadowSize = 16;
+  const SceneParameters p{.name = GetParam().name,
+                          .width = kSide,
+                          .height = kSide,
+                          .orthographic = GetParam().orthographic,
+                          .reversedZ = GetParam().reversedZ,
+                          .depthEncoding = GetParam().depth,
+                          .shadowSize = 16};
   Image exact;
   const Capture capture = makeScene(p, &exact);
-  ReplaySettings settings;
-  settings.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  ReplaySettings settings = inFloats();
   settings.debugView = PELLUCID_DEBUG_THICKNESS;
   const Image gpu = replay(capture, testMaterial(), settings);
   double worst = 0;

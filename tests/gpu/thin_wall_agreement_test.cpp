@@ -1,5 +1,5 @@
 // Sheets without thickness against the float64 reference and path tracing.
-#include "reference/path_tracer/mesh_scene.h"
+#include "reference/path_tracer/trace_scene.h"
 #include "reference/path_tracer/truth.h"
 #include "reference/reference.h"
 #include "scene/scene.h"
@@ -28,14 +28,12 @@ TEST_F(ThinWall, AgreesWithTheReference) {
         Row{"sphere", PELLUCID_LIGHT_POINT, PELLUCID_DEPTH_DEVICE, 0, true, false, false}})
     for (const bool solid : {false, true}) {
       SCOPED_TRACE(testing::Message() << row.scene << " solid " << solid);
-      SceneParameters p;
-      p.name = row.scene;
-      p.width = 48;
-      p.height = 40;
-      p.shadowSize = 64;
-      p.lightType = row.light;
-      p.shadowEncoding = row.shadow;
-      Capture c = makeScene(p);
+      Capture c = makeScene({.name = row.scene,
+                             .width = 48,
+                             .height = 40,
+                             .lightType = row.light,
+                             .shadowSize = 64,
+                             .shadowEncoding = row.shadow});
       if (!row.normals) c.normal = {};
       if (!row.back) c.backDepth = {};
       if (!row.maps) c.lights[0].shadowMaps.clear();

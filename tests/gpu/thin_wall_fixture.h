@@ -46,15 +46,11 @@ inline void addSkin(Model& model, const Vector3& center, double radius) {
 class ThinWall : public GpuTest {
 protected:
   static Capture draw(const Model& model, int shadowSize = 256, PointMaps maps = PointMaps::Auto) {
-    RasterOptions options;
-    options.width = options.height = 65;
-    options.shadowSize = shadowSize;
-    options.pointMaps = maps;
+    const RasterOptions options{.width = 65, .height = 65, .shadowSize = shadowSize, .pointMaps = maps};
     return rasterize(device(), model, frontCamera(true), options).capture;
   }
   static ReplaySettings gathering(std::uint32_t samples) {
-    ReplaySettings settings;
-    settings.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+    ReplaySettings settings = inFloats();
     settings.translucency.gatherSamples = samples;
     return settings;
   }

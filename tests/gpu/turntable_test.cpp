@@ -55,9 +55,7 @@ TEST_F(Turntable, TurningBackIsTheModelTurning) {
   const Vector3 center = boundsOf(model).center;
   const std::vector<double> turns = {0, 0.7, 1.9};
   const ModelCamera camera = frameModel(model, {0.3, 0.2, 1}, 0.5, 1, false, turns);
-  RasterOptions options;
-  options.width = options.height = 64;
-  options.shadowSize = 64;
+  const RasterOptions options{.width = 64, .height = 64, .shadowSize = 64};
   for (const double angle : turns) {
     const Capture expected = rasterize(device(), turned(model, center, angle), camera, options).capture;
     Model still = model;

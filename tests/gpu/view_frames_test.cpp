@@ -223,10 +223,7 @@ TEST_F(ViewSources, CapturesKeepTheirCameraAndFindTheirCenter) {
 }
 
 TEST_F(ViewSources, ScenesAreThoseOfCaptures) {
-  SceneParameters parameters;
-  parameters.name = "sphere";
-  parameters.width = parameters.height = 24;
-  parameters.shadowSize = 32;
+  const SceneParameters parameters{.name = "sphere", .width = 24, .height = 24, .shadowSize = 32};
   const Capture expected = makeScene(parameters);
   const std::unique_ptr<Source> source = sceneSource(parameters, expected.materials);
   const Capture seen = source->render(source->start()).capture;

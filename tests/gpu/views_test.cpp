@@ -16,11 +16,7 @@ const Capture& eye(size_t index) {
   static const std::array<Capture, 2> made = [] {
     std::array<Capture, 2> eyes;
     for (size_t i = 0; i < 2; ++i) {
-      SceneParameters p;
-      p.name = "head";
-      p.width = 96;
-      p.height = 80;
-      p.shadowSize = 128;
+      SceneParameters p{.name = "head", .width = 96, .height = 80, .shadowSize = 128};
       p.turn.camera = i == 0 ? -0.05 : 0.05;  // radians
       eyes[i] = makeScene(p);
     }

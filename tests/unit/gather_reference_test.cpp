@@ -160,13 +160,12 @@ class GatherModel : public testing::TestWithParam<std::tuple<Shape, double>> {};
 
 TEST_P(GatherModel, IsNearTheRandomWalk) {
   const auto& [shape, ior] = GetParam();
-  SceneParameters p;
-  p.name = shape.scene;
-  p.width = p.height = 48;
-  p.shadowSize = 384;
-  p.options = shape.options;
-  p.orthographic = true;
-  const Capture c = makeScene(p);
+  const Capture c = makeScene({.name = shape.scene,
+                               .width = 48,
+                               .height = 48,
+                               .options = shape.options,
+                               .orthographic = true,
+                               .shadowSize = 384});
   PellucidMaterialDesc desc;
   pellucidInitMaterialDesc(&desc);
   desc.kind = PELLUCID_MATERIAL_COEFFICIENTS;

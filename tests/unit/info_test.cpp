@@ -82,10 +82,7 @@ TEST_F(InfoCommand, SaysWhatIsThere) {
 
 // A ball of a medium with a mean free path of 1 / (.2 + .01) mm: the model has no sides.
 TEST_F(InfoCommand, WarnsOfBodiesThatAreOpticallyThin) {
-  SceneParameters p;
-  p.name = "sphere";
-  p.width = p.height = 64;
-  p.shadowSize = 8;
+  SceneParameters p{.name = "sphere", .width = 64, .height = 64, .shadowSize = 8};
   for (const double radius : {3.0, 8.0}) {
     p.options["radius"] = radius;
     p.options["extent"] = 3 * radius;
@@ -149,9 +146,7 @@ TEST_F(InfoCommand, GoodCapturesGiveNoWarning) {
   manifest["lights"][0]["position"] = {0, 0, 0};
   EXPECT_EQ(info()["warnings"], json::array());
   for (const SceneInfo& scene : listScenes()) {
-    SceneParameters parameters;
-    parameters.name = scene.name;
-    parameters.width = parameters.height = 24;
+    SceneParameters parameters{.name = scene.name, .width = 24, .height = 24};
     parameters.shadowSize = 128;  // finer than four mean free paths
     const std::filesystem::path file = directory / (scene.name + ".exr");
     writeCapture(makeScene(parameters), file);

@@ -24,12 +24,7 @@ namespace {
 class Init : public testing::Test {
 protected:
   Init() {
-    SceneParameters p;
-    p.name = "sphere";
-    p.width = 40;
-    p.height = 24;
-    p.shadowSize = 8;
-    frame_ = makeScene(p);
+    frame_ = makeScene({.name = "sphere", .width = 40, .height = 24, .shadowSize = 8});
     const glm::dmat4 world = glm::inverse(toGlm(frame_.viewFromWorld));
     eye_ = fromGlm(glm::dvec3(world[3]));
     target_ = fromGlm(glm::dvec3(world[3] - 50.0 * world[2]));
@@ -169,7 +164,9 @@ TEST_F(Init, LayersWithOpenExrsCameraNeedNoWords) {
 TEST_F(Init, TexturesOfADebuggerNeedTheCamerasNumbers) {
   const double nearPlane = 5, aspect = static_cast<double>(frame_.width) / frame_.height;
   const Matrix clip = perspective(fov_ * std::numbers::pi / 180, aspect, {nearPlane, INFINITY, true});
-  const Image device = toDeviceDepth(frame_.frontDepth, clip).image;
+  Image device = frame_.frontDepth.image;
+  for (float& depth : device.data)
+    depth = depth < kNoDepth ? static_cast<float>(deviceDepth(clip, depth)) : 0;
   Image normal = frame_.normal;
   for (std::size_t i = 0; i < normal.data.size(); ++i) normal.data[i] = 0.5f * normal.data[i] + 0.5f;
   const Image id = materialImage(7);

@@ -8,12 +8,11 @@
 #include "pellucid/pellucid_material.h"
 #include "raster/close_mesh.h"
 #include "reference/path_tracer/light_paths.h"
-#include "reference/path_tracer/mesh_scene.h"
-#include "reference/path_tracer/solid_scene.h"
 #include "reference/path_tracer/truth.h"
 #include "reference/path_tracer/walk.h"
 #include "reference/random_walk.h"
 #include "refusal.h"
+#include "scene/model.h"
 #include "scene/vector.h"
 
 namespace {

@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "common/error.h"
-#include "replay/settings.h"
 #include "refusal.h"
+#include "replay/settings.h"
 #include "scene/turn.h"
 #include "temporary_directory.h"
 #include "view/input.h"
@@ -179,31 +179,6 @@ TEST(ViewSettings, TakeEveryValueThatThePanelAllows) {
     assignNearest(s, settings, Setting::Values(count, NAN));
     EXPECT_EQ(s.get(settings)[0], s.high) << s.key;
   }
-}
-
-TEST(ViewSettings, ReachTheirFields) {
-  ReplaySettings settings;
-  Changes changes;
-  ViewState state;
-  const auto set = [&](const std::string& text) {
-    EXPECT_TRUE(applyToState({1, "set", {text}, "here"}, state, changes)) << text;
-  };
-  set("gather=16");
-  set("thickness=camera");
-  set("filter=0.55,0.29,0.28");
-  set("angle=polynomial");
-  set("polynomial=1,2,3,4");
-  set("features=translucency");
-  set("reuse=coherence");
-  const ReplaySettings& s = state.settings;
-  EXPECT_EQ(s.translucency.gatherSamples, 16u);
-  EXPECT_EQ(s.translucency.cameraThickness, 1);
-  EXPECT_EQ(s.translucency.transmittanceFilter, (std::array<float, 3>{0.55f, 0.29f, 0.28f}));
-  EXPECT_EQ(s.translucency.angleModel, PELLUCID_ANGLE_POLYNOMIAL);
-  EXPECT_EQ(s.translucency.anglePolynomial, (std::array<float, 4>{1, 2, 3, 4}));
-  EXPECT_EQ(s.features, std::uint32_t{PELLUCID_FEATURE_TRANSLUCENCY});
-  EXPECT_EQ(s.reuse, PELLUCID_REUSE_COHERENCE);
-  EXPECT_TRUE(changes.frame && !changes.scene);
 }
 
 class ViewFiles : public testing::Test {

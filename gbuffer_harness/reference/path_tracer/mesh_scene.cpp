@@ -1,4 +1,4 @@
-#include "reference/path_tracer/mesh_scene.h"
+#include "reference/path_tracer/trace_scene.h"
 
 #include <embree3/rtcore.h>
 
@@ -10,6 +10,7 @@
 
 #include "common/error.h"
 #include "raster/framing.h"
+#include "raster/model.h"
 #include "scene/vector.h"
 
 namespace pellucid::harness::reference {

@@ -1,8 +1,9 @@
-#include "reference/path_tracer/solid_scene.h"
+#include "reference/path_tracer/trace_scene.h"
 
 #include <algorithm>
 #include <limits>
 
+#include "scene/model.h"
 #include "scene/render.h"
 
 namespace pellucid::harness::reference {

@@ -4,9 +4,15 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <memory>
 #include <optional>
 
 #include "scene/solid.h"
+
+namespace pellucid::harness {
+struct Model;
+struct SceneModel;
+}  // namespace pellucid::harness
 
 namespace pellucid::harness::reference {
 
@@ -55,5 +61,16 @@ private:
   glm::dvec3 center_;
   double millimetersPerUnit_;  // > 0
 };
+
+// A procedural scene, exact. Each object is a body; where objects overlap, a way through one goes on in the
+// other, with the medium it began in. The model must outlive the scene.
+std::unique_ptr<TraceScene> makeSolidScene(const SceneModel& model);
+
+// A triangle mesh, with rays by Embree. Parts of one object are one body; a part's own surface says its
+// material. Bodies with a material must be closed (raster/close_mesh.h). A hit from the wrong side does not
+// end a way through a body: what another translucent body, or a fold of the same one, encloses is medium,
+// too. Faces are culled as the rasterizer does: first() passes back faces unless their surface is
+// double-sided. All of the model is copied.
+std::unique_ptr<TraceScene> makeMeshScene(const Model& model);
 
 }  // namespace pellucid::harness::reference
