@@ -1,5 +1,8 @@
-// For engines with a multisampled G-buffer: a dispatch before the module's, which makes the frame's images of one sample
-// (docs/integration.md). Define PELLUCID_NO_BACK_DEPTH, PELLUCID_NO_NORMAL or PELLUCID_NO_ALBEDO where there is no such image.
+// For engines with a multisampled G-buffer: a dispatch before the module's, which makes the frame's images of one sample. Compile it
+// with -I compute. Define PELLUCID_NO_BACK_DEPTH, PELLUCID_NO_NORMAL or PELLUCID_NO_ALBEDO where there is no such image.
+//
+// The dispatch keeps the samples of a pixel's most frequent material. The irradiance's alpha becomes the part of the samples with
+// any material, and Pellucid's output keeps it. Clear the output to 0, and blend it over specular light with SRC_ALPHA and ONE.
 #version 450
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
