@@ -112,6 +112,9 @@ TEST_F(Cli, UsageErrors) {
   expect(2, "", "subcommand");
   expect(2, "replay", "capture");
   expect(2, "replay x.exr --set colour=red", "unknown key \"colour\"");
+  expect(2, "replay x.exr --set thickness=both", "\"both\" is not one of camera, light");
+  expect(2, "replay x.exr --set rect=1,2,3", "\"1,2,3\" is not 4 numbers");
+  expect(2, "replay x.exr --set filter=1,nan,1", "\"nan\"");
   expect(2, "replay x.exr --debug soul", "\"soul\" is not one of");
   expect(2, "replay x.exr --mode magic", "\"magic\" is not one of");
 }

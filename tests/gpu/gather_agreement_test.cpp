@@ -175,6 +175,35 @@ Capture litSphere() {
   return evenlyLit(p);
 }
 
+// Lights that need several dispatches displace what one of their sum does.
+TEST_F(GatherAgreement, DisplacesOnceForAllLights) {
+  const Capture one = litSphere();
+  Capture nine = one;  // images; a dispatch binds eight
+  nine.lights.assign(9, one.lights.at(0));
+  for (Light& light : nine.lights) light.intensity /= 9;
+  const Image a = gpuGather(replayer(), nine, 8), b = gpuGather(replayer(), one, 8);
+  // Points hold halves and shares of nine bits, in another order.
+  for (size_t i = 0; i < a.data.size(); ++i)
+    ASSERT_NEAR(a.data[i], b.data[i], 3e-3f * (0.2f + b.data[i])) << i;
+}
+
+// What a light of no strength displaces would be missing under a strong one, which grazes other parts of the
+// surface.
+TEST_F(GatherAgreement, WeakLightsChangeNothing) {
+  Capture c = litSphere();
+  const Image alone = gpuGather(replayer(), c, 16);
+  SceneParameters p;
+  p.name = "sphere";
+  p.options = {{"radius", 8}, {"extent", 20}, {"lightAngle", -60}};
+  p.width = p.height = 64;
+  p.shadowSize = 192;
+  c.lights.push_back(makeScene(p).lights.at(0));
+  const Image both = gpuGather(replayer(), c, 16);
+  c.lights.back().intensity *= 1e-4;
+  EXPECT_LT(error(c, gpuGather(replayer(), c, 16), alone), 2e-3);
+  EXPECT_GT(error(c, both, alone), 0.05) << "it reaches nothing";
+}
+
 // With reuse, frames that compute and frames that keep are what frames without it are.
 TEST_F(GatherAgreement, KeptPointsDisplaceToo) {
   const Capture c = litSphere();

@@ -167,6 +167,11 @@ Capture busyCapture(int width, int height) {
   return c;
 }
 
+TEST_F(Replay, SameRunSameBits) {
+  const Capture c = busyCapture(61, 47);
+  EXPECT_TRUE(sameBits(replay(c, testMaterial()), replay(c, testMaterial())));
+}
+
 // The frames that are timed come after the one that is returned, and find its inputs.
 TEST_F(Replay, TimedFramesChangeNothing) {
   Capture c = flatCapture(24, 16, 2);
@@ -191,6 +196,18 @@ TEST_F(Replay, TimedFramesChangeNothing) {
   EXPECT_FALSE(sameBits(record(), first)) << "an output in place is the next input";
   frame.restoreIrradiance(c);
   EXPECT_TRUE(sameBits(record(), first));
+}
+
+TEST_F(Replay, ContextKeepsWhatTheModuleSays) {
+  const Capture capture = flatCapture(8, 8);
+  const Context& context = replayer().contextFor(capture);
+  const FrameRun run(device(), context, capture, {testMaterial()}, {});
+  const PellucidConstantsSlice noBuffer{};
+  const auto unused = reinterpret_cast<VkCommandBuffer>(uintptr_t{1});
+  EXPECT_EQ(pellucidRecordPlan(context.handle(), unused, &run.plan(), &run.frame(), &noBuffer),
+            PELLUCID_ERROR_INVALID_ARGUMENT);
+  EXPECT_TRUE(
+      context.message().ends_with("constants needs a buffer and an offset that is a multiple of 256"));
 }
 
 // A plan knows images by their places in the frame, where another frame may have none.
@@ -230,6 +247,47 @@ TEST_F(Replay, OutputMayBeTheIrradianceImage) {
     }
 }
 
+// Not a number, infinity and below 0 here and there in `bad`, where `good` has 0: inside, and at the borders
+// of the rects that are tested, in quads that these cut and in others.
+void spoilIrradiance(Capture& bad, Capture& good) {
+  const float values[] = {kNan, -INFINITY, -1};
+  int i = 0;
+  const auto spoil = [&](int x, int y, int channel) {
+    bad.irradiance.at(x, y)[channel] = values[static_cast<size_t>(i++) % std::size(values)];
+    good.irradiance.at(x, y)[channel] = 0;
+  };
+  for (int y = 3; y < 48; y += 19)
+    for (int x = 2; x < 64; x += 17) spoil(x, y, i % 3);
+  for (int k = 0; k < 3; ++k)  // a whole quad
+    for (const int y : {30, 31})
+      for (const int x : {40, 41}) spoil(x, y, k);
+  for (int k = 0; k < 3; ++k) {
+    spoil(0, 13, k);
+    spoil(10 + k, 1, k);
+    spoil(62, 30 + k, k);
+    spoil(33, 46, k);
+  }
+}
+
+// One pass reads values that another has looked at.
+TEST_F(Replay, DiffusionCountsBadIrradianceAsNone) {
+  Capture bad = flatCapture(64, 48), good = bad;
+  spoilIrradiance(bad, good);
+  ReplaySettings s;
+  s.features = PELLUCID_FEATURE_DIFFUSION;
+  for (const std::array<uint32_t, 4>& rect : {std::array<uint32_t, 4>{}, {1, 1, 62, 46}}) {
+    s.renderRect = rect;
+    const Image expected = replay(good, testMaterial(), s), out = replay(bad, testMaterial(), s);
+    const int border = rect[0] == 0 ? 0 : 1;
+    for (int y = border; y < 48 - border; ++y)
+      for (int x = border; x < 64 - border; ++x)
+        for (int k = 0; k < 4; ++k)
+          ASSERT_NEAR(out.at(x, y)[k], expected.at(x, y)[k],
+                      2e-3 * static_cast<double>(expected.at(x, y)[k]) + 1e-6)
+              << x << ", " << y;
+  }
+}
+
 TEST_F(Replay, PoisonNeverReachesTheOutput) {
   Capture c = busyCapture(64, 48);
   c.lights[0].shadowMaps = {flatShadowMap(-12, PELLUCID_DEPTH_DEVICE)};
@@ -257,6 +315,36 @@ TEST_F(Replay, PoisonNeverReachesTheOutput) {
         }
       }
   }
+}
+
+TEST_F(Replay, BadValuesAtMaterialPixelsStayFinite) {
+  Capture c = busyCapture(32, 32);
+  c.lights.push_back(backLight());
+  c.lights[1].shadowMaps = {flatShadowMap(-12, PELLUCID_DEPTH_VIEW_Z)};
+  const float bad[] = {kNan, INFINITY, -INFINITY, -1, 0, 1e38f, 1e-38f};
+  int i = 0;
+  const auto next = [&] { return bad[static_cast<size_t>(i++) % std::size(bad)]; };
+  for (int y = 0; y < 32; y += 3)
+    for (int x = 0; x < 32; x += 2) {
+      c.irradiance.at(x, y)[y % 3] = next();
+      c.frontDepth.image.at(x, y)[0] = next();
+      c.backDepth.image.at(31 - x, y)[0] = next();
+      c.normal.at(x, 31 - y)[x % 3] = next();
+      c.lights[1].shadowMaps[0].depth.image.at(x, y)[0] = next();
+    }
+  ReplaySettings s;
+  for (const auto source : {0, 1})
+    for (const uint32_t samples : {0u, 8u}) {
+      s.translucency.cameraThickness = source;
+      s.translucency.gatherSamples = samples;
+      const Image out = replay(c, testMaterial(), s);
+      for (int y = 0; y < 32; ++y)
+        for (int x = 0; x < 32; ++x)
+          for (int k = 0; k < 3; ++k)
+            EXPECT_TRUE(c.material[static_cast<size_t>(y * 32 + x)] == 0 ||
+                        (std::isfinite(out.at(x, y)[k]) && out.at(x, y)[k] >= 0))
+                << x << ", " << y << ", samples " << samples;
+    }
 }
 
 // PEERS.md defect 1: dark skin beside lit skin must not count as "not skin".
@@ -288,6 +376,19 @@ TEST_F(Replay, DepthGapStopsDiffusion) {
       EXPECT_LT(out.at(first, 4)[k], std::exp(-64.0 / 9) * c.irradiance.at(0, 0)[k])
           << first << ", channel " << k;
   }
+}
+
+TEST_F(Replay, MaterialBorderStopsDiffusion) {
+  Capture c = flatCapture(32, 8);
+  c.materials.resize(2);
+  for (int y = 0; y < 8; ++y)
+    for (int x = 16; x < 32; ++x) {
+      c.material[static_cast<size_t>(y * 32 + x)] = 2;
+      for (int k = 0; k < 3; ++k) c.irradiance.at(x, y)[k] = 0;
+    }
+  const Image out = replayer().run(c, {testMaterial(), testMaterial()}, {}).output;
+  expectPixel(out, 15, 4, 1, 0.5, 0.25, kConstant);
+  for (int k = 0; k < 3; ++k) EXPECT_EQ(out.at(16, 4)[k], 0);
 }
 
 TEST_F(Replay, MaterialBeyondTheListIsNone) {
@@ -361,6 +462,36 @@ TEST_F(Replay, DebugViews) {
   EXPECT_NEAR(replay(c, testMaterial(), s).at(4, 4)[0], 1 + 6 * std::exp(-1.0), 1e-4);
   c.material[0] = 0;
   EXPECT_EQ(replay(c, testMaterial(), s).at(0, 0)[0], 0) << "material 0 stays cleared";
+}
+
+TEST_F(Replay, TransmittanceModelsMatchTheirFormulas) {
+  PellucidMaterial sinh = testMaterial(), gauss = testMaterial();
+  sinh.transmittanceModel = PELLUCID_TRANSMITTANCE_SINH_EXP;
+  const float parameters[3][5] = {
+      {0.5f, 0.3f, 0.8f, 0.1f, 2}, {1e-4f, 1e-4f, 2e-4f, 0.2f, 1}, {0.4f, 3, 1, 0.3f, 0.5f}};
+  std::memcpy(sinh.transmittance, parameters, sizeof parameters);
+  gauss.transmittanceModel = PELLUCID_TRANSMITTANCE_GAUSSIANS;
+  ReplaySettings s = inFloats();
+  s.debugView = PELLUCID_DEBUG_TRANSMITTANCE;
+  for (const double d : {0.01, 0.5, 3.0, 12.0}) {
+    Capture c = flatCapture(1, 1, d);
+    c.lights = {backLight()};
+    // The stored depths are floats: the thickness has their rounding.
+    const double t =
+        static_cast<double>(c.backDepth.image.data[0]) - static_cast<double>(c.frontDepth.image.data[0]);
+    const Image s1 = replay(c, sinh, s), g1 = replay(c, gauss, s);
+    for (int k = 0; k < 3; ++k) {
+      const auto p = [&](int i) { return static_cast<double>(parameters[k][i]); };
+      const double expected = p(0) / std::sinh(p(1) * t + p(2)) + p(3) * std::exp(-p(4) * t);
+      EXPECT_NEAR(s1.data[static_cast<size_t>(k)], expected, 1e-5 * expected + 1e-9)
+          << "d " << d << " channel " << k;
+      double sum = 0;
+      for (uint32_t i = 0; i < 2; ++i)
+        sum += static_cast<double>(gauss.gaussianWeight[k][i]) *
+               std::exp(-t * t / (2 * static_cast<double>(gauss.gaussianVariance[k][i])));
+      EXPECT_NEAR(g1.data[static_cast<size_t>(k)], sum, 1e-5 * sum + 1e-9) << "d " << d << " channel " << k;
+    }
+  }
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "common/error.h"
 #include "refusal.h"
 #include "scene/model.h"
+#include "scene/polynomial.h"
 #include "scene/render.h"
 #include "scene/vector.h"
 
@@ -190,6 +191,19 @@ TEST(Scene, OverlappingObjectsEndWhereTheirUnionEnds) {
   EXPECT_DOUBLE_EQ(hit->exit, 9);
 }
 
+TEST(Scene, RealRootsOfAProductOfFactors) {
+  const double a = -2, b = 1, c = 3, d = 3.001;
+  const std::vector<double> found =
+      realRoots({a * b * c * d, -(a * b * c + a * b * d + a * c * d + b * c * d),
+                 a * b + a * c + a * d + b * c + b * d + c * d, -(a + b + c + d), 1},
+                -10, 10);
+  ASSERT_EQ(found.size(), 4u);
+  EXPECT_NEAR(found[0], a, 1e-12);
+  EXPECT_NEAR(found[1], b, 1e-12);
+  EXPECT_NEAR(found[2], c, 1e-9);  // two roots 1e-3 apart are 1e3 times as ill-conditioned
+  EXPECT_NEAR(found[3], d, 1e-9);
+}
+
 // ---- Cameras
 
 struct Convention {
@@ -242,6 +256,29 @@ TEST_P(SceneCamera, MapsKnownPoints) {
   const double farthest = c.infinite ? 1e12 : f;
   EXPECT_NEAR(project(0, 0, farthest).z, c.reversed ? 0 : 1, 1e-11);
   EXPECT_EQ(clearDepth(matrix, c.handedness), c.reversed ? 0 : 1);
+}
+
+TEST_P(SceneCamera, DeviceDepthHoldsWhatViewZHolds) {
+  const Convention& c = GetParam();
+  SceneParameters parameters = sized("sphere", 32);
+  parameters.orthographic = c.orthographic;
+  parameters.reversedZ = c.reversed;
+  parameters.infiniteFar = c.infinite;
+  parameters.handedness = c.handedness;
+  const Capture viewZ = makeScene(parameters);
+  parameters.depthEncoding = PELLUCID_DEPTH_DEVICE;
+  const Capture device = makeScene(parameters);
+  ASSERT_EQ(device.frontDepth.encoding, PELLUCID_DEPTH_DEVICE);
+  ASSERT_EQ(device.clipFromView, viewZ.clipFromView);
+  // Depth falls off as near * viewZ rounded to float / viewZ^2 at most, or span^-1 when parallel.
+  const double slack = 2 * std::ldexp(1, -24);
+  for (std::size_t i = 0; i < viewZ.material.size(); ++i) {
+    const float stored = device.frontDepth.image.data[i];
+    if (viewZ.material[i] == 0)
+      EXPECT_EQ(stored, c.reversed ? 0.0f : 1.0f);
+    else
+      EXPECT_NEAR(stored, deviceDepth(viewZ.clipFromView, viewZ.frontDepth.image.data[i], c.handedness), slack);
+  }
 }
 
 // World position of a pixel through the capture's own matrices, as a replay would find it.

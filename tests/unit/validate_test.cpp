@@ -21,8 +21,11 @@ struct Violation {
 // GoogleTest would print the bytes.
 void PrintTo(const Violation& value, std::ostream* out) { *out << value.name; }
 
-void addTable(Frame& f) {
-  static PellucidLightTable table{};
+// Ones, but for one entry.
+void addTable(Frame& f, float entry) {
+  static PellucidLightTable table;
+  std::fill_n(table.factor, PELLUCID_LIGHT_TABLE_ENTRIES, 1.0f);
+  table.factor[5] = entry;
   f.frame.options.lightTableCount = 1;
   f.frame.options.lightTables = &table;
 }
@@ -34,6 +37,21 @@ PellucidLight& makePoint(Frame& f) {
 }
 
 const std::vector<Violation> kViolations = {
+    {"RectOutside", "options.renderRect", "90, 0 + 20 x 5",
+     [](Frame& f) {
+       f.frame.options.renderRect[0] = 90;
+       f.frame.options.renderRect[2] = 20;
+       f.frame.options.renderRect[3] = 5;
+     }},
+    {"RectOverflow", "options.renderRect", "outside",
+     [](Frame& f) {
+       f.frame.options.renderRect[0] = 0xFFFFFFFF;
+       f.frame.options.renderRect[2] = 2;
+       f.frame.options.renderRect[3] = 2;
+     }},
+    {"MarkBitInTheIndex", "thesis.materialMarkBit", "above the 1 materials",
+     [](Frame& f) { f.thesis.materialMarkBit = 1; }},
+    {"BothReuses", "options.reuse", "is both", [](Frame& f) { f.frame.options.reuse = 3; }},
     {"MaterialMaskBelowShift", "options.materialMask", "whose last bits materialShift 4 drops",
      [](Frame& f) {
        f.frame.options.materialShift = 4;
@@ -83,6 +101,8 @@ const std::vector<Violation> kViolations = {
     {"ViewScale", "viewFromWorld", "rotation", [](Frame& f) { f.frame.viewFromWorld[0] = 2; }},
     {"OutputFormat", "options.outputFormat", "VkFormat 37",
      [](Frame& f) { f.frame.options.outputFormat = VK_FORMAT_R8G8B8A8_UNORM; }},
+    {"GrowingTransmittance", "materials[0].transmittance", "grows",
+     [](Frame& f) { f.material.transmittance[1][1] = -1; }},
     {"SinhPole", "materials[0].transmittance", "z > 0",
      [](Frame& f) {
        f.material.transmittanceModel = PELLUCID_TRANSMITTANCE_SINH_EXP;
@@ -129,19 +149,25 @@ const std::vector<Violation> kViolations = {
      [](Frame& f) { f.lights[0].type = PELLUCID_LIGHT_SPOT; }},
     {"LightTablesMissing", "options.lightTables", "is NULL, but lightTableCount is 1",
      [](Frame& f) { f.frame.options.lightTableCount = 1; }},
+    {"LightTableFactor", "options.lightTables[0].factor", "[5] is 1.5", [](Frame& f) { addTable(f, 1.5f); }},
     {"LightTableIndex", "lights[0].angleTable", "is 2 (an index plus 1), but there are 1 lightTables",
      [](Frame& f) {
-       addTable(f);
+       addTable(f, 1);
        makePoint(f).angleTable = 2;
+     }},
+    {"LightTableOfASun", "lights[0].distanceTable", "is 1, but the light is directional",
+     [](Frame& f) {
+       addTable(f, 1);
+       f.lights[0].distanceTable = 1;
      }},
     {"DistanceTableWithoutRange", "lights[0].range", "is 0, but distanceTable is 1",
      [](Frame& f) {
-       addTable(f);
+       addTable(f, 1);
        makePoint(f).distanceTable = 1;
      }},
     {"AngleTableWithoutDirection", "lights[0].direction", "has length 0",
      [](Frame& f) {
-       addTable(f);
+       addTable(f, 1);
        PellucidLight& point = makePoint(f);
        point.angleTable = 1;
        point.direction[2] = 0;

@@ -181,6 +181,30 @@ TEST(ViewSettings, TakeEveryValueThatThePanelAllows) {
   }
 }
 
+TEST(ViewSettings, ReachTheirFields) {
+  Changes changes;
+  ViewState state;
+  const auto set = [&](const std::string& text) {
+    EXPECT_TRUE(applyToState({1, "set", {text}, "here"}, state, changes)) << text;
+  };
+  set("gather=16");
+  set("thickness=camera");
+  set("filter=0.55,0.29,0.28");
+  set("angle=polynomial");
+  set("polynomial=1,2,3,4");
+  set("features=translucency");
+  set("reuse=coherence");
+  const ReplaySettings& s = state.settings;
+  EXPECT_EQ(s.translucency.gatherSamples, 16u);
+  EXPECT_EQ(s.translucency.cameraThickness, 1);
+  EXPECT_EQ(s.translucency.transmittanceFilter, (std::array<float, 3>{0.55f, 0.29f, 0.28f}));
+  EXPECT_EQ(s.translucency.angleModel, PELLUCID_ANGLE_POLYNOMIAL);
+  EXPECT_EQ(s.translucency.anglePolynomial, (std::array<float, 4>{1, 2, 3, 4}));
+  EXPECT_EQ(s.features, std::uint32_t{PELLUCID_FEATURE_TRANSLUCENCY});
+  EXPECT_EQ(s.reuse, PELLUCID_REUSE_COHERENCE);
+  EXPECT_TRUE(changes.frame && !changes.scene);
+}
+
 class ViewFiles : public testing::Test {
 protected:
   std::filesystem::path write(const std::string& name, const std::string& text) const {
