@@ -179,8 +179,8 @@ GatherSlab slabOf(uint m, vec4 lengths, float h) {
                     fract(place));
 }
 
-// 1 where the straight path from x to a lit point lies in the body, at the part `f` of the path, and 0 where an exit lies before:
-// there is air or an opaque body. `to`: from the lit point to x.
+// 1 where the straight path from x to a lit point lies in the body at the part `f` of its length, and 0 where the map's exit lies
+// before that place: air or an opaque body is there. `to`: from the lit point to x.
 float insideAt(GatherRings rings, LightConstants light, Surface x, uint map, vec3 to, float f) {
   float mm = frame.camera.range.w;
   vec3 on = x.position - f / mm * to, point = mapPoint(map, vec4(on, 1.0));
@@ -193,19 +193,23 @@ float insideAt(GatherRings rings, LightConstants light, Surface x, uint map, vec
   return 1.0 - clamp(beyond / rings.tolerance, 0.0, 1.0);
 }
 
-// The part of an entry point's light that reaches x through the medium. Where x lies beyond the entry point's exit, or beyond the exit
-// of x's own ray, the straight path between them must stay in the body.
+// The part of an entry point's light that reaches x through the medium. The straight path must stay in the body if x lies beyond the
+// entry point's exit, or beyond the exit of x's own light ray.
 float staysInside(GatherRings rings, LightConstants light, Surface x, uint map, EntryPoint entry, vec3 to, vec3 toLight) {
-  float mm = frame.camera.range.w, stays = 1.0;
-  float beyond = clamp((-dot(to, toLight) - entry.exit * mm) / rings.tolerance - 1.0, 0.0, 1.0);
-  if (entry.exit < kNoExit && beyond > 0.0) {
-    float excused = rings.shadowed < 1.0 ? (1.0 - rings.shadowed) * insideAt(rings, light, x, map, to, 0.5) : 0.0;
-    stays = 1.0 - beyond * (1.0 - excused);
+  float stays = 1.0;
+  if (entry.exit < kNoExit) {
+    float beyond = clamp((-dot(to, toLight) - entry.exit * frame.camera.range.w) / rings.tolerance - 1.0, 0.0, 1.0);
+    float excused = 1.0 - rings.shadowed;
+    if (beyond > 0.0 && excused > 0.0) excused *= insideAt(rings, light, x, map, to, 0.5);
+    stays -= beyond * (1.0 - excused);
   }
-  // A path that begins before the depth, along the axis, at which x's own ray has left the body does not cross what lies there.
-  float behind = rings.behindExit * rings.axisCosine, along = max(-dot(to, rings.axis), 1.0e-12);
-  float crosses = rings.shadowed * clamp((along - behind) / rings.tolerance, 0.0, 1.0);
-  if (stays > 0.0 && crosses > 0.0) stays *= 1.0 - crosses * (1.0 - insideAt(rings, light, x, map, to, 0.5 * behind / along)); // behind < along
+  if (rings.shadowed > 0.0 && stays > 0.0) {
+    // A path that begins before the depth, along the axis, at which x's own ray has left the body does not cross the gap behind it.
+    float behind = rings.behindExit * rings.axisCosine, along = max(-dot(to, rings.axis), 1.0e-12);
+    float crosses = rings.shadowed * clamp((along - behind) / rings.tolerance, 0.0, 1.0);
+    // Where it crosses, behind < along: the part is below a half.
+    if (crosses > 0.0) stays *= 1.0 - crosses * (1.0 - insideAt(rings, light, x, map, to, 0.5 * behind / along));
+  }
   return stays;
 }
 

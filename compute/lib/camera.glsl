@@ -4,7 +4,7 @@
 
 #include "shared/pellucid_shared.h"
 
-// Larger planar distances, and all values <= 0, mean "nothing there" (capture manifest, section 5).
+// Larger planar distances, and all values <= 0, mean "nothing there".
 const float kNoDepth = 1.0e9;
 
 // True of low <= v < high, where low >= 0. Bits say so, because compilers may take for granted that floats are no NaN: they need

@@ -6,7 +6,7 @@
 namespace pellucid::shared {
 #endif
 
-// Constants of the light-space gather; see lib/gather.glsl. rgb: per channel.
+// Constants of the light-space gather; see gather/probe_light.glsl. rgb: per channel.
 struct GatherConstants {
   vec4 lengths; // mm; x: shortest; y: log2(longest / shortest); z: largest distance looked for, 2 / kappa; w: depth scale
   vec4 profile; // rgb: 1/(3 d) of Burley's profile, 0: none, 1/mm; w: of the spatial filter between probes, 1/mm^2

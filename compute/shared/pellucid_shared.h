@@ -1,5 +1,5 @@
-// Structs, binding numbers and group sizes, read by C++ and GLSL alike. Only 16-byte members, so
-// std140, std430 and C++ agree without padding rules; in std430 alone, even arrays of 8-byte ones, too. View space is
+// Structs, binding numbers and group sizes, read by C++ and GLSL alike. All members have 16 bytes, so
+// std140, std430 and C++ agree without padding; structs for std430 alone may hold arrays of 8-byte members. View space is
 // the camera's; lengths in scene units unless said otherwise.
 #ifndef PELLUCID_SHARED_H
 #define PELLUCID_SHARED_H
@@ -14,7 +14,7 @@
 #define PELLUCID_BLOCK 64         // pixels of a block, in which the image is divided from its first pixel on
 #define PELLUCID_BLOCK_BORDER 8   // pixels beyond the rect that blocks reach: a texel of level 3
 #define PELLUCID_CELL 8           // pixels of a cell: a block has a bit for each of its 8 x 8
-#define PELLUCID_BLOCK_GROUP 16   // of passes that do a block a group
+#define PELLUCID_BLOCK_GROUP 16   // side of the groups that do one block each
 #define PELLUCID_DOWNSAMPLE_COLUMNS 8 // texels of the second of the two levels that a group makes
 #define PELLUCID_DOWNSAMPLE_ROWS 4
 #define PELLUCID_DIFFUSE_COLUMNS 32 // pixels that a group diffuses

@@ -349,7 +349,7 @@ float chordThickness(Surface s) {
   return alongNormal ? s.chord * abs(dot(s.normal, s.view)) : s.chord;
 }
 
-// docs/integration.md says why each source is what it is. `pixel`: of the surface.
+// docs/integration.md, "Lights and shadow maps", says when each source is used. `pixel`: of the surface.
 Transmitted lightTransmission(LightConstants light, Surface s, ivec2 pixel) {
   bool wall = isThinWalled(s.material), mapped = light.meta.z != 0u;
   bool holdsExits = light.meta.w != 0u, ambient = isAmbient(light);

@@ -432,8 +432,8 @@ Gather::Place Gather::placeOf(std::size_t light, const Exit& exit) const {
   return place;
 }
 
-// Where the exit lies beyond the texel's own exit, or beyond the one on the exit's light ray, the straight path between
-// them must stay in the body.
+// The straight path must stay in the body if the exit lies beyond the map's exit at the texel, or beyond the map's exit
+// on the exit's own light ray.
 double Gather::inside(const Texel& texel, const Exit& exit, const Place& place) const {
   if (!(texel.exit < INFINITY)) return 1;
   const glm::dvec3 to = exit.position - texel.position;
@@ -441,7 +441,8 @@ double Gather::inside(const Texel& texel, const Exit& exit, const Place& place) 
       std::clamp((-glm::dot(to, place.toLight) - texel.exit) / place.tolerance - 1, 0.0, 1.0);
   double stays = 1;
   if (beyond > 0) stays -= beyond * (1 - (1 - place.shadowed) * pathInside(to, exit, place, 0.5));
-  // A path that begins before the depth at which the exit's own light ray has left the medium does not cross what lies there.
+  // A path that begins before the depth at which the exit's own light ray has left the medium does not cross the gap
+  // behind it.
   const double along = -glm::dot(to, place.axis);
   const double crosses = place.shadowed * std::clamp((along - place.behind) / place.tolerance, 0.0, 1.0);
   if (crosses > 0) stays *= 1 - crosses * (1 - pathInside(to, exit, place, 0.5 * place.behind / along));

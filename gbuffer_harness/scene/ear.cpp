@@ -115,7 +115,7 @@ Spline::Nearest Spline::nearest(const glm::dvec2& point) const {
     const glm::dvec2 first = b + u * (2.0 * c + u * 3.0 * d);
     const glm::dvec2 second = 2.0 * c + u * 6.0 * d;
     const double slope = glm::dot(first, first) + glm::dot(apart, second);
-    // Where the distance has no minimum nearby (inside a bend) the Gauss-Newton step still descends.
+    // Inside a bend the distance has no minimum nearby; the Gauss-Newton step still descends.
     const double step = glm::dot(apart, first) / (slope > 0 ? slope : glm::dot(first, first));
     t = std::clamp(t - step, start - kReach, start + kReach);
     // Convergence is quadratic: the next step would be of the order of the square.

@@ -25,7 +25,7 @@ constexpr uint32_t kInvocations = 256;
 static_assert(kInvocations == PELLUCID_BLOCK_GROUP * PELLUCID_BLOCK_GROUP &&
               kInvocations == PELLUCID_FILTER_GROUP * PELLUCID_FILTER_GROUP &&
               kInvocations == PELLUCID_LIST_GROUP);
-// Of the spatial filter, the pass with most; shaders_command_test holds that all have less.
+// The filter of probes needs the most shared memory of all passes; shaders_command_test checks that none exceeds this.
 constexpr uint32_t kSharedBytes = 16384;
 
 struct Limit {

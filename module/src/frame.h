@@ -21,7 +21,7 @@ struct Blocks {
   Blocks(const Lights& lights, const Rect& rect);
 
   uint32_t count() const { return columns * rows; }
-  // Where the lists begin in the image of words, and how many words it has.
+  // Index of the lists' first word in the image of blocks, and the number of words of that image.
   uint32_t listWord() const { return PELLUCID_BLOCK_WORDS * count(); }
   uint32_t words() const { return listWord() + 2 * count() + entryGroups; }
   static constexpr uint32_t kColumns = 1u << PELLUCID_BLOCK_WORDS_SHIFT;

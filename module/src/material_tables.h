@@ -15,7 +15,7 @@ struct MaterialTables {
 };
 static_assert(sizeof(MaterialTables) <= sizeof(PellucidMaterialTables));
 
-// Of a material whose model canBeGathered (docs/how-it-works.md).
+// Constants of the gather for one material, whose transmittance model must be one of canBeGathered (docs/how-it-works.md).
 shared::GatherConstants gatherConstants(const PellucidMaterial& material);
 
 // How far from a surface its probes look for entry points, mm.

@@ -1,4 +1,4 @@
-// What the module keeps in a plan: bindings of dispatches, packed, and its own state.
+// The opaque parts of a plan: packed bindings of its dispatches, and the state that the next frame and records need.
 #pragma once
 
 #include <cstring>

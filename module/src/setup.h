@@ -1,4 +1,4 @@
-// What a frame decides before its lights are looked at: the camera, its materials together, and the gather.
+// Facts of a frame that do not depend on its lights: the camera, its materials together, and the gather.
 #pragma once
 
 #include "camera.h"
