@@ -23,7 +23,7 @@ ivec2 cellOfQuad(ivec2 quad) { return quad >> (kCellShift - 1); }
 
 // Outward normal of any length, in the image's space; 0: none.
 vec3 normalAt(ivec2 pixel) {
-  return hasFlag(PELLUCID_FLAG_NORMAL) ? decodeNormal(texelFetch(normalImage, pixel, 0)) : vec3(0.0);
+  return hasFlag(PELLUCID_FLAG_NORMAL) ? decodeNormal(texelFetch(normalImage, inImage(pixel), 0)) : vec3(0.0);
 }
 
 // ---- A texel from its quad: four pixels, rows first, packed by packHalves(color, material); depth <= 0: none
@@ -121,7 +121,7 @@ void writeQuad(ivec2 quad, uint materials) {
   [[unroll]] for (int i = 0; i < 4; ++i) {
     ivec2 at = withinRect(2 * quad + ivec2(i & 1, i >> 1));
     depth[i] = frontDistance(at);
-    source[i] = texelFetch(sourceImage, at, 0);
+    source[i] = texelFetch(sourceImage, inImage(at), 0);
   }
   float least = kNoDepth, most = 0.0;
   [[unroll]] for (int i = 0; i < 4; ++i) {
@@ -129,7 +129,7 @@ void writeQuad(ivec2 quad, uint materials) {
     vec3 color = sanitize(source[i].rgb);
     packed[i] = packHalves(roundToHalf(color), material);
     if (material == 0u) continue;
-    if (pass.value.x != 0u) imageStore(destinationImage, 2 * quad + ivec2(i & 1, i >> 1), vec4(asStored(color), source[i].a));
+    if (pass.value.x != 0u) imageStore(destinationImage, inImage(2 * quad + ivec2(i & 1, i >> 1)), vec4(asStored(color), source[i].a));
     if (!(depth[i] > 0.0)) continue;
     least = min(least, depth[i]);
     most = max(most, depth[i]);

@@ -154,12 +154,12 @@ void diffusePlane(ivec2 first, ivec2 local, int texel) {
     written[i] = vec4(sanitize(result[i]), unpackHalf2x16(colors[place].y).y);
   }
   if (hasFlag(PELLUCID_FLAG_WIDE_OUTPUT)) // keeps what halves round
-    [[unroll]] for (int i = 0; i < 4; ++i) written[i].a = texelFetch(sourceImage, top + ivec2(0, i), 0).a;
+    [[unroll]] for (int i = 0; i < 4; ++i) written[i].a = texelFetch(sourceImage, inImage(top + ivec2(0, i)), 0).a;
   if (tinted(last))
     [[unroll]] for (int i = 0; i < 4; ++i) written[i].rgb = sanitize(written[i].rgb * albedoAt(top + ivec2(0, i)));
   if (adds(last))
     [[unroll]] for (int i = 0; i < 4; ++i) written[i] = onHeld(top + ivec2(0, i), written[i].rgb);
-  [[unroll]] for (int i = 0; i < 4; ++i) imageStore(destinationImage, top + ivec2(0, i), vec4(asStored(written[i].rgb), written[i].a));
+  [[unroll]] for (int i = 0; i < 4; ++i) imageStore(destinationImage, inImage(top + ivec2(0, i)), vec4(asStored(written[i].rgb), written[i].a));
 }
 
 // ---- Edges: texels of level 2 that are no plane, or whose neighbors are none
@@ -240,7 +240,7 @@ void diffuseEdge(ivec2 first, ivec2 local) {
     color = mix(own, max(sum, vec3(0.0)) / max(divisor, vec3(1.0e-6)), greaterThan(divisor, vec3(1.0e-6)));
     if (pass.value.x != 0u) color = withProbes(color, pixel, int(pass.value.x), depth, material);
   }
-  writeResult(pixel, color, texelFetch(sourceImage, pixel, 0).a, pass.value.z != 0u);
+  writeResult(pixel, color, texelFetch(sourceImage, inImage(pixel), 0).a, pass.value.z != 0u);
 }
 
 // Keeps materials and depths of the group's pixels with their ring.
@@ -271,7 +271,7 @@ void diffuse(ivec2 first) {
     texelShares = texelFetch(pyramidImage, sharesPlace(texel), 0);
   }
   vec4 sources[kLoads];
-  [[unroll]] for (int i = 0; i < kLoads; ++i) sources[i] = texelFetch(sourceImage, withinRect(first + loaded(i) - kRing), 0);
+  [[unroll]] for (int i = 0; i < kLoads; ++i) sources[i] = texelFetch(sourceImage, inImage(withinRect(first + loaded(i) - kRing)), 0);
   if (invocation == 0) edgeCount = 0u;
   [[unroll]] for (int i = 0; i < kLoads; ++i) {
     vec3 color = roundToHalf(sanitize(sources[i].rgb));

@@ -226,7 +226,7 @@ Pattern patternOf(ivec2 cell, uint m, float front) {
   float vary = clamp(2.0 - dot(spacing, spacing) * materials[m].gather.profile.w, 0.0, 1.0);
   // A cell and the 24 that it shares with have one pattern each. A lattice fills the strata, and the turn between a sample and
   // its like; of five lattices this one leaves fewest dots. Turns begin off the axes, along which edges often lie.
-  int turn = (cell.x + 7 * cell.y) % 25, within = turn * 11 % 25;
+  int turn = (cell.x + 7 * cell.y + frame.lattice.z) % 25, within = turn * 11 % 25;
   return Pattern(0.5 + vary * (float(within) - 12.0) / 25.0, vary * (float(turn) / 25.0 + 0.025));
 }
 

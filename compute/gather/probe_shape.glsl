@@ -18,7 +18,7 @@ struct Beside {
 Beside besideAt(ivec2 pixel, Surface x, float reach) {
   ivec2 at = withinRect(pixel);
   float front = materialAt(at) != 0u ? frontDistance(at) : -1.0;
-  vec3 normal = mat3(frame.viewFromNormal) * decodeNormal(texelFetch(normalImage, at, 0));
+  vec3 normal = mat3(frame.viewFromNormal) * decodeNormal(texelFetch(normalImage, inImage(at), 0));
   Surface s = makeSurface(viewRay(frame.camera, at), front, -1.0, normal);
   vec3 apart = (s.position - x.position) * frame.camera.range.w;
   float ratio = dot(apart, apart) / max(reach * reach, 1.0e-30);
@@ -63,9 +63,9 @@ struct BackFace {
 
 BackFace backAt(ivec2 pixel) {
   ivec2 at = withinRect(pixel);
-  float stored = texelFetch(frontDepthImage, at, 0).x, front = frontDistanceOf(stored);
+  float stored = texelFetch(frontDepthImage, inImage(at), 0).x, front = frontDistanceOf(stored);
   ViewRay ray = viewRay(frame.camera, at);
-  float chord = chordOf(ray, front, stored, texelFetch(backDepthImage, at, 0).x);
+  float chord = chordOf(ray, front, stored, texelFetch(backDepthImage, inImage(at), 0).x);
   bool there = at == pixel && materialAt(at) != 0u && front > 0.0 && chord > 0.0;
   return BackFace(ray.origin + front * ray.direction + chord * normalize(ray.direction), there ? chord : 0.0);
 }

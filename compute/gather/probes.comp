@@ -19,7 +19,7 @@ bool findSurface(ivec2 cell, int side, out ProbePlace place, out vec4 normal) {
     ivec2 pixel = pixelInCell(cell, side, place.index), within = withinRect(pixel);
     uint value = materialValueAt(within);
     place.front = frontDistance(within);
-    normal = texelFetch(normalImage, within, 0);
+    normal = texelFetch(normalImage, inImage(within), 0);
     place.material = within == pixel ? materialIndex(value) : 0u;
     bool thin = place.material != 0u && hasFlag(PELLUCID_FLAG_THIN_WALLS) && materials[place.material - 1u].meta.z != 0u;
     if (place.material != 0u && place.front > 0.0 && !thin) return true;

@@ -59,7 +59,7 @@ float frontAround(ivec2 pixel) {
 // From the normal image or the depths around.
 vec3 shownNormal(ivec2 pixel, float front) {
   if (hasFlag(PELLUCID_FLAG_NORMAL)) {
-    vec3 normal = mat3(frame.viewFromNormal) * decodeNormal(texelFetch(normalImage, withinRect(pixel), 0));
+    vec3 normal = mat3(frame.viewFromNormal) * decodeNormal(texelFetch(normalImage, inImage(withinRect(pixel)), 0));
     float squared = dot(normal, normal);
     return isWithin(squared, 1.0e-8, 1.0e8) ? normal * inversesqrt(squared) : vec3(0.0);
   }

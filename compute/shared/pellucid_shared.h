@@ -165,6 +165,7 @@ struct FrameConstants {
   Camera camera;
   mat4 viewFromNormal; // rotation of the normal image's space into view space
   uvec4 rect;          // x, y, end x, end y
+  ivec4 lattice;       // x, y: the image's first pixel, below PELLUCID_BLOCK; z: pattern of samples of cell 0, 0
   uvec4 flags;         // x: PELLUCID_FLAG_*; y: materials; z: debug view; w: angle model
   vec4 anglePolynomial;
   uvec4 marks;         // material values: x: bit without translucency, 0: none; y: their first bit in a word; z: bits of the index

@@ -10,7 +10,7 @@ layout(set = 0, binding = PELLUCID_BINDING_HISTORY) uniform texture2D historyIma
 void main() {
   ivec2 pixel = invocationPixel();
   if (!insideRect(pixel) || materialAt(pixel) == 0u) return;
-  vec4 source = texelFetch(sourceImage, pixel, 0);
-  vec3 through = sanitize(texelFetch(historyImage, pixel, 0).rgb);
+  vec4 source = texelFetch(sourceImage, inImage(pixel), 0);
+  vec3 through = sanitize(texelFetch(historyImage, inImage(pixel), 0).rgb);
   writeResult(pixel, sanitize(source.rgb) + through, source.a, pass.value.z != 0u);
 }

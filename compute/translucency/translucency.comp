@@ -16,9 +16,9 @@ Surface surfaceAt(ivec2 pixel, float front, float stored, uint material) {
   ViewRay ray = viewRay(frame.camera, pixel);
   float along = -1.0;
   if (hasFlag(PELLUCID_FLAG_CHORD) && hasFlag(PELLUCID_FLAG_BACK_DEPTH))
-    along = chordOf(ray, front, stored, texelFetch(backDepthImage, pixel, 0).x);
+    along = chordOf(ray, front, stored, texelFetch(backDepthImage, inImage(pixel), 0).x);
   vec3 normal = vec3(0.0);
-  if (hasFlag(PELLUCID_FLAG_NORMAL)) normal = mat3(frame.viewFromNormal) * decodeNormal(texelFetch(normalImage, pixel, 0));
+  if (hasFlag(PELLUCID_FLAG_NORMAL)) normal = mat3(frame.viewFromNormal) * decodeNormal(texelFetch(normalImage, inImage(pixel), 0));
   Surface s = makeSurface(ray, front, along, normal);
   s.material = material;
   return s;
@@ -30,7 +30,7 @@ vec4 resultAt(ivec2 pixel, uint value, uint m, bool starts) {
   vec3 arriving = vec3(0.0), visible = vec3(0.0), transmitted = vec3(0.0);
   vec3 thickness = vec3(-1.0);
   bool lets = pass.value.x == PELLUCID_LIGHT_ALL || (pass.value.x == PELLUCID_LIGHT_WALLS) == isThinWalled(m + 1u);
-  float stored = texelFetch(frontDepthImage, pixel, 0).x, front = frontDistanceOf(stored);
+  float stored = texelFetch(frontDepthImage, inImage(pixel), 0).x, front = frontDistanceOf(stored);
   // Marked pixels keep their irradiance.
   if (lets && front > 0.0 && (value & frame.marks.x) == 0u) {
     Surface s = surfaceAt(pixel, front, stored, m + 1u);
@@ -53,7 +53,7 @@ vec4 resultAt(ivec2 pixel, uint value, uint m, bool starts) {
     }
   }
   // Read last: until here its registers let more waves run.
-  vec4 source = starts ? vec4(0.0) : texelFetch(sourceImage, pixel, 0);
+  vec4 source = starts ? vec4(0.0) : texelFetch(sourceImage, inImage(pixel), 0);
   vec3 result = sanitize(sanitize(source.rgb) + transmitted * materials[m].inverseReflectance.rgb);
   if (kDebugViews) {
     // The divisors are positive where they are used; nothing arriving shows as 0.
@@ -74,10 +74,10 @@ void main() {
   if (material != 0u) {
     vec4 result = resultAt(pixel, value, material - 1u, starts);
     if (kDebugViews)
-      imageStore(destinationImage, pixel, result);
+      imageStore(destinationImage, inImage(pixel), result);
     else
       writeResult(pixel, result.rgb, result.a, pass.value.z == PELLUCID_WRITE_LAST);
   } else if (starts && inside) {
-    imageStore(destinationImage, pixel, vec4(0.0));
+    imageStore(destinationImage, inImage(pixel), vec4(0.0));
   }
 }

@@ -34,10 +34,10 @@ bool mayUse(uint use) { return (kUses & use) != 0u; }
 
 float distanceOf(ivec2 pixel, uint material, bool back) {
   if (!insideRect(pixel) || materialAt(pixel) != material) return -1.0;
-  return back ? backDistanceOf(texelFetch(backDepthImage, pixel, 0).x) : frontDistance(pixel);
+  return back ? backDistanceOf(texelFetch(backDepthImage, inImage(pixel), 0).x) : frontDistance(pixel);
 }
 
-vec3 hiddenIrradianceOf(ivec2 pixel) { return sanitize(texelFetch(hiddenIrradianceImage, pixel, 0).rgb); }
+vec3 hiddenIrradianceOf(ivec2 pixel) { return sanitize(texelFetch(hiddenIrradianceImage, inImage(pixel), 0).rgb); }
 #endif
 
 // material: index + 1, as materialIndex has it and not 0. Frames without thin walls read nothing.

@@ -23,6 +23,7 @@
 #include "common/progress.h"
 #include "metrics/moved_capture.h"
 #include "raster/framing.h"
+#include "reference/camera.h"
 #include "replay/replay.h"
 
 namespace pellucid::harness {
@@ -109,6 +110,27 @@ Frames modelFrames(const Options& options, Device& device) {
   return frames;
 }
 
+// The middle of the visible surfaces with a material, as an engine passes the place of the body that it looks at.
+std::array<float, 4> middleOf(const Capture& capture) {
+  const reference::Camera camera(capture.clipFromView, capture.width, capture.height);
+  glm::dvec3 sum(0);
+  double count = 0;
+  for (int y = 0; y < capture.height; ++y)
+    for (int x = 0; x < capture.width; ++x) {
+      if (capture.material[static_cast<std::size_t>(y) * static_cast<std::size_t>(capture.width) +
+                           static_cast<std::size_t>(x)] == 0)
+        continue;
+      const std::optional<double> depth =
+          camera.planarDepth(capture.frontDepth.image.at(x, y)[0], capture.frontDepth.encoding);
+      if (!depth) continue;
+      sum += camera.position(glm::dvec2(x, y), *depth);
+      ++count;
+    }
+  if (count == 0) return {0, 0, 0, 0};
+  const glm::dvec4 middle = glm::inverse(reference::toMatrix(capture.viewFromWorld)) * glm::dvec4(sum / count, 1);
+  return {static_cast<float>(middle.x), static_cast<float>(middle.y), static_cast<float>(middle.z), 1};
+}
+
 // The options of a scene have no meaning for a capture.
 void refuseSceneOptions(const Command& command, const std::vector<std::string>& sceneOptions) {
   for (const std::string& option : sceneOptions)
@@ -179,7 +201,7 @@ std::string toMarkdown(const std::vector<Row>& rows) {
 
 void flicker(const Command& command, const std::vector<std::string>& sceneOptions, const Options& options) {
   const Limits limits(kLimitKinds, options.limits);
-  const ReplaySettings settings = options.settings.parse();
+  ReplaySettings settings = options.settings.parse();
   if (settings.debugView != PELLUCID_DEBUG_NONE)
     throw UsageError("--debug: flicker compares results and not intermediates");
   const std::vector<int> pixels = parsePixels(options.pixels);
@@ -191,6 +213,7 @@ void flicker(const Command& command, const std::vector<std::string>& sceneOption
   } else {
     frames = isProcedural(command, options.scene) ? proceduralFrames(options) : modelFrames(options, device);
   }
+  if (settings.anchor[3] == 0 && settings.reuse == PELLUCID_REUSE_NONE) settings.anchor = middleOf(frames.still);
   const std::vector<Row> rows = measure(options, pixels, frames, settings, device);
   if (options.json) {
     Json changes = Json::array();

@@ -274,6 +274,10 @@ std::vector<Setting> makeTable() {
            "of what diffuses from the camera's plane, scene units; 0 (default): not known",
            FIELD(nearestDistance))
           .frame(OPTION(nearestDistance)),
+      real("anchor",
+           "x,y,z,1: point that cells and patterns of samples follow on the screen, world; w 0 (default): none",
+           FIELD(anchor))
+          .frame(OPTION(anchor)),
       choice<VkFormat>("format", "of the output", FIELD(outputFormat),
                        {{"rgba16f", VK_FORMAT_R16G16B16A16_SFLOAT},
                         {"rgba32f", VK_FORMAT_R32G32B32A32_SFLOAT},

@@ -42,6 +42,7 @@ struct ReplaySettings {
   PellucidReuse reuse = PELLUCID_REUSE_NONE;
   float coherenceThreshold = 0.005f;
   float nearestDistance = 0;
+  std::array<float, 4> anchor = {0, 0, 0, 0};
   bool aliasOutput = false;  // output is the irradiance image; ignored for debug views
   bool indirectDispatches = true;
   std::array<uint32_t, 4> renderRect = {0, 0, 0, 0};  // width 0: everything

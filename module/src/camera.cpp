@@ -71,7 +71,7 @@ const char* readDepthRange(const glm::dmat4& m, DepthRange* range) {
 }
 
 shared::Camera makeCamera(const glm::dmat4& m, const DepthRange& range, glm::uvec2 extent,
-                          double metersPerUnit) {
+                          double metersPerUnit, glm::ivec2 firstPixel) {
   // clip.xy = K (x, y) + q p + t with w = C p + D; solving for (x, y) at planar distance p makes every
   // pixel's view ray an affine function of p, and both its coefficients affine in the pixel.
   const glm::dmat2 k(m[0][0], m[0][1], m[1][0], m[1][1]);
@@ -79,7 +79,7 @@ shared::Camera makeCamera(const glm::dmat4& m, const DepthRange& range, glm::uve
   const glm::dvec2 q = glm::dvec2(m[2][0], m[2][1]) * range.forward;
   const glm::dvec2 t(m[3][0], m[3][1]);
   const glm::dvec2 step(2.0 / extent.x, 2.0 / extent.y);
-  const glm::dvec2 first(0.5 * step.x - 1.0, 0.5 * step.y - 1.0);
+  const glm::dvec2 first = (0.5 - glm::dvec2(firstPixel)) * step - 1.0;
 
   const auto pack = [](glm::dvec2 direction, glm::dvec2 origin) { return glm::vec4(direction, origin); };
   shared::Camera camera;

@@ -19,9 +19,9 @@ struct DepthRange {
 // What is wrong with a projection, or nullptr; `range` is written only when nothing is.
 const char* readDepthRange(const glm::dmat4& clipFromView, DepthRange* range);
 
-// `clipFromView` must have passed readDepthRange.
+// `clipFromView` must have passed readDepthRange. `first`: what the image's first pixel is called.
 shared::Camera makeCamera(const glm::dmat4& clipFromView, const DepthRange& range, glm::uvec2 extent,
-                          double metersPerUnit);
+                          double metersPerUnit, glm::ivec2 first = {0, 0});
 
 // Shorter side of a pixel on a facing surface at a planar distance, scene units. All that is farther or
 // tilted has a longer one. 0: a perspective camera, and no distance.

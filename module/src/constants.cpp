@@ -110,6 +110,12 @@ std::array<glm::mat4, 3> ambientIrradiance(const Setup& setup) {
   return result;
 }
 
+// As of probe_light.glsl.
+int patternOfCell(glm::ivec2 cell) {
+  const int pattern = (cell.x % 25 + 7 * (cell.y % 25)) % 25;
+  return pattern < 0 ? pattern + 25 : pattern;
+}
+
 shared::FrameConstants frameConstants(const FrameFacts& facts) {
   const PellucidFrame& f = facts.frame;
   shared::FrameConstants c{};
@@ -134,6 +140,7 @@ shared::FrameConstants frameConstants(const FrameFacts& facts) {
   std::copy(ambient.begin(), ambient.end(), c.ambient);
   const Rect& r = facts.rect;
   c.rect = {r.x, r.y, r.x + r.width, r.y + r.height};
+  c.lattice = {facts.lattice.first, patternOfCell(facts.lattice.period / static_cast<int>(facts.gatherSpacing)), 0};
   const PellucidThesisOptions& t = facts.thesis;
   uint32_t flags = 0;
   for (const ImageField& image : kImageFields)

@@ -6,7 +6,7 @@ namespace pellucid {
 // A field that is appended must not land in bytes that older headers left undefined.
 #define ENDS_WITH(Struct, field) \
   (offsetof(Struct, field) + sizeof(static_cast<Struct*>(nullptr)->field) == sizeof(Struct))
-static_assert(ENDS_WITH(PellucidFrame, options.thesis));
+static_assert(ENDS_WITH(PellucidFrame, options.anchor));
 static_assert(ENDS_WITH(PellucidMaterial, wallTransmittance));
 static_assert(ENDS_WITH(PellucidThesisOptions, minimumDotTable));
 static_assert(ENDS_WITH(PellucidContextDesc, options.parallelUser));

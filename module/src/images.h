@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <glm/glm.hpp>
 
 #include "pellucid/pellucid.h"
 #include "shared/pellucid_shared.h"
@@ -52,6 +53,9 @@ inline const PellucidImage& historyOf(const PellucidFrame& frame) {
 struct Rect {  // pixels
   uint32_t x, y, width, height;
   bool operator==(const Rect&) const = default;
+  Rect movedBy(glm::ivec2 pixels) const {
+    return {x + static_cast<uint32_t>(pixels.x), y + static_cast<uint32_t>(pixels.y), width, height};
+  }
 };
 
 inline Rect renderRect(const PellucidFrame& frame) {

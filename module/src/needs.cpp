@@ -20,7 +20,7 @@ struct Extent {
 Extent texelExtent(const FrameFacts& f, uint32_t index) {
   const uint32_t pyramid = f.stages.pyramidImages();
   if (index < pyramid) return {f.pyramid.images[index].width, f.pyramid.images[index].height};
-  Extent size{parts(f.frame.imageExtent[0], f.gatherSpacing), parts(f.frame.imageExtent[1], f.gatherSpacing)};
+  Extent size{parts(f.lattice.extent.x, f.gatherSpacing), parts(f.lattice.extent.y, f.gatherSpacing)};
   // Filtered probes take the place of entry points.
   if (index > pyramid) size.fit(withCoarserEntries(f.lights.entryColumns), f.lights.entryRows);
   return size;
@@ -28,7 +28,7 @@ Extent texelExtent(const FrameFacts& f, uint32_t index) {
 
 // For any render rect: none has more blocks than the whole image.
 Extent blocksExtent(const FrameFacts& f) {
-  const Blocks blocks(f.lights, {0, 0, f.frame.imageExtent[0], f.frame.imageExtent[1]});
+  const Blocks blocks(f.lights, {0, 0, f.lattice.extent.x, f.lattice.extent.y});
   return {Blocks::kColumns, parts(blocks.words(), Blocks::kColumns)};
 }
 

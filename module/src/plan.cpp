@@ -90,7 +90,7 @@ PellucidResult buildPlan(const FrameFacts& f, const History& kept, PellucidPlan*
     return PELLUCID_ERROR_CAPACITY;
   }
   state.materials = f.frame.materialCount;
-  state.rect = f.rect;
+  state.rect = renderRect(f.frame);
   state.outputFormat = f.frame.options.outputFormat;
   state.lightTables = f.frame.options.lightTableCount;
   state.options = optionsOf(f);

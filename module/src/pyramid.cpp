@@ -13,16 +13,16 @@ uint32_t firstColumns(uint32_t pixels) { return std::max(most(pixels, kFirstLeve
 
 }  // namespace
 
-Pyramid::Pyramid(const uint32_t (&imageExtent)[2], const Rect& r) : coarsest(kFirstLevel + 2) {
-  while (coarsest < PELLUCID_LAST_LEVEL && std::max(imageExtent[0], imageExtent[1]) >> coarsest > 1)
+Pyramid::Pyramid(glm::uvec2 extent, const Rect& r) : coarsest(kFirstLevel + 2) {
+  while (coarsest < PELLUCID_LAST_LEVEL && std::max(extent.x, extent.y) >> coarsest > 1)
     coarsest += 2;
   for (uint32_t level = kFirstLevel; level <= PELLUCID_LAST_LEVEL; ++level) {
     PyramidPlace& place = levels[level];
     // The second level of an image lies beside the first.
     if (level > kFirstLevel && level % 2 != 0)
-      place.x = static_cast<int32_t>(most(imageExtent[0], level - 1));
+      place.x = static_cast<int32_t>(most(extent.x, level - 1));
     // The two coarsest levels lie below levels 2 and 3.
-    if (level > 5) place.y = static_cast<int32_t>(most(imageExtent[1], 2));
+    if (level > 5) place.y = static_cast<int32_t>(most(extent.y, 2));
     const int32_t border = level > kFirstLevel ? 1 : 0;
     const auto first = [&](uint32_t pixel) { return static_cast<int32_t>(pixel >> level) - border; };
     const auto end = [&](uint32_t pixels) {
@@ -31,10 +31,10 @@ Pyramid::Pyramid(const uint32_t (&imageExtent)[2], const Rect& r) : coarsest(kFi
     place.rect = {first(r.x), first(r.y), end(r.x + r.width) - first(r.x), end(r.y + r.height) - first(r.y)};
   }
   sharesColumn = levels[2].rect.width;
-  images[0] = {firstColumns(imageExtent[0]), most(imageExtent[1], kFirstLevel)};
+  images[0] = {firstColumns(extent.x), most(extent.y, kFirstLevel)};
   for (uint32_t i = 1; i < kPyramidImages; ++i)
-    images[i] = {most(imageExtent[0], 2 * i) + most(imageExtent[0], 2 * i + 1), most(imageExtent[1], 2 * i)};
-  images[1].height += most(imageExtent[1], 6);
+    images[i] = {most(extent.x, 2 * i) + most(extent.x, 2 * i + 1), most(extent.y, 2 * i)};
+  images[1].height += most(extent.y, 6);
 }
 
 }  // namespace pellucid

@@ -19,7 +19,7 @@ struct PyramidPlace {
 
 struct Pyramid {
   Pyramid() = default;
-  Pyramid(const uint32_t (&imageExtent)[2], const Rect& rect);
+  Pyramid(glm::uvec2 extent, const Rect& rect);
 
   // The coarsest level in use: odd, because a dispatch that downsamples makes two levels, and no coarser than
   // it takes for the image to lie on 2 x 2 texels.

@@ -29,6 +29,23 @@ uint32_t spacingOf(const PellucidFrame& frame) {
   return pixels > 1u << 20 ? 4 : pixels > 1u << 19 ? 2 : 1;
 }
 
+// The lattice begins a whole number of blocks from the anchor's pixel.
+Lattice latticeOf(const PellucidFrame& f) {
+  Lattice lattice{.extent = {f.imageExtent[0], f.imageExtent[1]}};
+  const glm::dvec4 anchor(glm::vec4(f.options.anchor[0], f.options.anchor[1], f.options.anchor[2], 1));
+  if (f.options.anchor[3] == 0) return lattice;
+  lattice.extent += PELLUCID_BLOCK - 1;
+  const glm::dvec4 clip = toMatrix(f.clipFromView) * (toMatrix(f.viewFromWorld) * anchor);
+  if (!(clip.w > 0)) return lattice;
+  const glm::dvec2 extent(f.imageExtent[0], f.imageExtent[1]);
+  // Far outside of the image any pixel will do.
+  constexpr double kFar = 1 << 24;
+  const glm::ivec2 pixel(glm::clamp(glm::floor((glm::dvec2(clip) / clip.w * 0.5 + 0.5) * extent), -kFar, kFar));
+  lattice.first = -pixel & (PELLUCID_BLOCK - 1);
+  lattice.period = -pixel - lattice.first;
+  return lattice;
+}
+
 }  // namespace
 
 double deviationOf(const PellucidMaterial& m) {
@@ -42,15 +59,16 @@ double deviationOf(const PellucidMaterial& m) {
 
 Setup::Setup(const Inputs& inputs)
     : Inputs(inputs),
-      rect(renderRect(frame)),
+      lattice(latticeOf(frame)),
+      rect(renderRect(frame).movedBy(lattice.first)),
       wide(frame.options.outputFormat == VK_FORMAT_R32G32B32A32_SFLOAT),
       colorFormat(wide ? VK_FORMAT_R32G32B32A32_SFLOAT : VK_FORMAT_R16G16B16A16_SFLOAT),
       clipFromView(toMatrix(frame.clipFromView)),
       viewFromWorld(toMatrix(frame.viewFromWorld)),
-      pyramid(frame.imageExtent, rect) {
+      pyramid(lattice.extent, rect) {
   const glm::uvec2 extent(frame.imageExtent[0], frame.imageExtent[1]);
   readDepthRange(clipFromView, &depthRange);
-  camera = makeCamera(clipFromView, depthRange, extent, frame.metersPerUnit);
+  camera = makeCamera(clipFromView, depthRange, extent, frame.metersPerUnit, lattice.first);
 
   const double mmPerPixel =
       pixelSide(clipFromView, depthRange, extent, static_cast<double>(frame.options.nearestDistance)) *

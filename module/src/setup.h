@@ -7,11 +7,20 @@
 
 namespace pellucid {
 
+// Pixels of passes: the image's, counted from up to 63 before its first one, so that cells and texels lie alike around
+// options.anchor in all frames.
+struct Lattice {
+  glm::ivec2 first{0};            // the image's first pixel
+  glm::uvec2 extent;              // that images of cells and texels cover
+  glm::ivec2 period{0};           // pixels from the first one of the patterns of samples to the lattice's; of whole blocks
+};
+
 struct Setup : Inputs {
   explicit Setup(const Inputs& inputs);  // whose fields were checked
 
   // ---- Camera and colors
-  Rect rect;             // the part of the images that is rendered
+  Lattice lattice;
+  Rect rect;             // of the lattice: the part of the images that is rendered
   bool wide;             // colors of 32 bits a channel
   VkFormat colorFormat;  // of transients and histories that hold colors
   glm::dmat4 clipFromView, viewFromWorld;

@@ -116,6 +116,12 @@ void checkFields(const Inputs& inputs, Findings& out) {
       f.options.gatherSpacing != 4)
     out.error("options.gatherSpacing", "is ", f.options.gatherSpacing,
               "; use 1, 2 or 4, or 0 to choose by the image's size");
+  const float anchored = f.options.anchor[3];
+  if (anchored != 0 && anchored != 1)
+    out.error("options.anchor", "has w ", anchored, "; use 1 for a point and 0 for none");
+  else if (anchored == 1 && f.options.reuse != PELLUCID_REUSE_NONE)
+    out.error("options.anchor", "has w 1 with reuse ", f.options.reuse,
+              "; light of an earlier frame needs cells that stay with the screen");
   if (f.options.gatherSamples > 64 || f.options.gatherSamples % 4 != 0)
     out.error("options.gatherSamples", "is ", f.options.gatherSamples, "; needs a multiple of 4, at most 64");
 

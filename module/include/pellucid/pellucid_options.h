@@ -214,6 +214,13 @@ typedef struct PellucidFrameOptions {
   uint32_t debugView;
   /* NULL (default): none. */
   const PellucidThesisOptions* thesis;
+
+  /* ---- motion ---- */
+
+  /* World-space point x, y, z with w 1 on the body that the camera looks at. Cells, patterns of samples and texels of the pyramid
+   * follow the point's pixel, so that noise moves with the body and not over it. Transients then grow by up to 63 pixels a side. Not
+   * with reuse. w 0 (default): they stay with the screen, as they do while the point is behind the camera. */
+  float anchor[4];
 } PellucidFrameOptions;
 
 /* ---- Shadow map ------------------------------------------------------------------------------------ */
