@@ -12,6 +12,7 @@
 #include "cli/capture_options.h"
 #include "cli/command.h"
 #include "cli/commands.h"
+#include "cli/flicker_path.h"
 #include "cli/limits.h"
 #include "cli/metrics_json.h"
 #include "cli/nearest_distance.h"
@@ -39,6 +40,8 @@ constexpr const char* kDefinitions =
     "moved: the view lies some pixels to the side.\n"
     "lights turned: the lights turn about the vertical through the scene's center. The difference is the\n"
     "change less its mean over 5x5 pixels, as diffused light changes evenly; hard shadows' edges count.\n"
+    "path: frame by frame, each pixel with its place in the frame before; mean over the frames, and the\n"
+    "largest of the rest. The difference is less its mean over 5x5 pixels.\n"
     "irradiance: the input is compared likewise, before any diffusion.\n"
     "spots: regions of up to 5x5 pixels that stand out of their surface, as compare counts them, that only "
     "the\n"
@@ -52,20 +55,24 @@ struct Options {
   SettingsOptions settings;
   std::string pixels = "1,2,3,5";
   double lightDegrees = 0.5;
+  std::string paths;  // "": none
+  int frames = 24;
   std::vector<std::string> limits;
   bool json = false;
 };
 
-// A frame, and the same with turned lights where there are any to turn.
+// A frame, the same with turned lights where there are any to turn, and the model of both, if it is one.
 struct Frames {
   Capture still;
   std::optional<Capture> turned;
+  std::optional<CaptureModel> scene;
 };
 
 struct Row {
   std::string change;
   Flicker flicker;
   std::optional<SpotFlicker> spots;  // of results whose lights turned
+  std::vector<Flicker> steps;        // of a path, frame by frame
 };
 
 bool isCaptureFile(const std::string& path) {
@@ -103,10 +110,13 @@ Frames modelFrames(const Options& options, Device& device) {
   Frames frames{still.capture, std::nullopt};
   if (options.lightDegrees != 0 && !scene.model.lights.empty()) {
     const Vector3 center = boundsOf(scene.model).center;
+    const std::vector<Light> stillLights = scene.model.lights;
     for (Light& light : scene.model.lights)
       light = turnedLight(light, center, options.lightDegrees * std::numbers::pi / 180);
     frames.turned = captureScene(device, scene.model, scene.camera, scene.raster, sky).capture;
+    scene.model.lights = stillLights;
   }
+  frames.scene = std::move(scene);
   return frames;
 }
 
@@ -181,6 +191,44 @@ std::vector<Row> measure(const Options& options, const std::vector<int>& pixels,
   return rows;
 }
 
+// The mean of the frames' RMSE, and the largest of what single pixels change.
+Row rowOf(std::string change, std::vector<Flicker> steps) {
+  Row row{std::move(change), {}, std::nullopt, {}};
+  double largest = -1;
+  for (const Flicker& step : steps)
+    for (std::size_t c = 0; c < 3; ++c) {
+      row.flicker.pixels = std::max(row.flicker.pixels, step.pixels);
+      row.flicker.relativeRmse[c] += step.relativeRmse[c] / static_cast<double>(steps.size());
+      row.flicker.p999[c] = std::max(row.flicker.p999[c], step.p999[c]);
+      row.flicker.worst[c] = std::max(row.flicker.worst[c], step.worst[c]);
+      if (step.worst[c] <= largest) continue;
+      largest = step.worst[c];
+      row.flicker.worstPixel = step.worstPixel;
+    }
+  row.steps = std::move(steps);
+  return row;
+}
+
+void measurePaths(const Options& options, const Frames& frames, const ReplaySettings& settings, Device& device,
+                  std::vector<Row>& rows) {
+  const std::optional<Environment> sky = environment(options.scene);
+  const std::vector<PellucidMaterial> materials = compileMaterials(frames.still);
+  Replayer replayer(device);
+  for (const std::string& path : split(options.paths, ',')) {
+    const std::vector<PathStep> steps =
+        followPath(path, options.frames, *frames.scene, sky, device, [&](const Capture& capture) {
+          return rgb(replayer.run(capture, materials, settings).output);
+        });
+    std::vector<Flicker> results, irradiances;
+    for (const PathStep& step : steps) {
+      results.push_back(step.result);
+      irradiances.push_back(step.irradiance);
+    }
+    rows.push_back(rowOf("path " + path, std::move(results)));
+    rows.push_back(rowOf("path " + path + ", irradiance", std::move(irradiances)));
+  }
+}
+
 std::string toMarkdown(const std::vector<Row>& rows) {
   std::string text = "| change | rel_rmse R G B | p999 R G B | worst R G B | worst at x, y |\n|-|-|-|-|-|\n";
   for (const Row& row : rows) {
@@ -214,13 +262,17 @@ void flicker(const Command& command, const std::vector<std::string>& sceneOption
     frames = isProcedural(command, options.scene) ? proceduralFrames(options) : modelFrames(options, device);
   }
   if (settings.anchor[3] == 0 && settings.reuse == PELLUCID_REUSE_NONE) settings.anchor = middleOf(frames.still);
-  const std::vector<Row> rows = measure(options, pixels, frames, settings, device);
+  if (!options.paths.empty() && !frames.scene)
+    throw UsageError("--path: needs a model, and not a capture or --procedural");
+  std::vector<Row> rows = measure(options, pixels, frames, settings, device);
+  if (!options.paths.empty()) measurePaths(options, frames, settings, device, rows);
   if (options.json) {
     Json changes = Json::array();
     for (const Row& row : rows) {
       Json change = toJson(row.flicker);
       change["change"] = row.change;
       if (row.spots) change["spots"] = toJson(*row.spots);
+      for (const Flicker& step : row.steps) change["steps"].push_back(toJson(step));
       changes.push_back(std::move(change));
     }
     std::cout << Json{{"frame", frames.still.name},
@@ -267,6 +319,12 @@ void addFlickerCommand(const Command& app) {
       .option("--light-degrees", options->lightDegrees,
               "degrees by which lights turn; 0: none; a capture's lights stand still")
       .range(-10.0, 10.0);
+  const auto path = command.option(
+      "--path", options->paths,
+                 std::string("of a model: also follow these paths, with commas: ") + kPathSyntax +
+                     ". Angles change by 0.5 degrees a frame, the distance of a dolly by 1 %, and a blinking "
+                     "light each 6 frames");
+  command.option("--frames", options->frames, "of each path").range(2, 1000).needs(path);
   command
       .option("--limit", options->limits,
               "exit with 1 when any channel of any change exceeds it: rel_rmse=, p999=, worst=; or when "

@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+
+#include "common/compare.h"
+#include "reference/camera.h"
 
 namespace pellucid::harness {
 
@@ -65,24 +69,109 @@ Flicker compareShifted(const Image& still, const Image& moved, const Mask& mask,
   return measure(still, d, mask, differences);
 }
 
-Flicker compareTurned(const Image& still, const Image& turned, const Surfaces& surfaces, const Mask& mask) {
-  requireImage("still frame", still, surfaces.width(), surfaces.height(), mask);
-  requireImage("turned frame", turned, still.width, still.height, mask);
+namespace {
+
+// Statistics of the difference less its mean over the 5x5 pixels around, where all of these are of one surface and of
+// `both`, over `base`, of whose pixels `mask` counts.
+Flicker measureUneven(const Image& before, const Image& after, const Surfaces& surfaces, const Mask& both,
+                      const Image& base, const Mask& mask) {
   constexpr int kSide = 2 * kSurroundings + 1;
-  Image d(still.width, still.height, 3);
+  Image d(base.width, base.height, 3);
   Mask differences(mask.size());
-  for (int y = 0; y < still.height; ++y)
-    for (int x = 0; x < still.width; ++x) {
+  for (int y = 0; y < base.height; ++y)
+    for (int x = 0; x < base.width; ++x) {
       const int left = x - kSurroundings, top = y - kSurroundings;
       if (!surfaces.wholeBlock(left, top, kSide)) continue;
-      const BlockMeans means = blockMeans(turned, still, mask, left, top, kSide);
+      const BlockMeans means = blockMeans(after, before, both, left, top, kSide);
       if (means.pixels < kSide * kSide) continue;
       differences[pixelIndex(d, x, y)] = 1;
       for (std::size_t c = 0; c < 3; ++c)
-        d.at(x, y)[c] = static_cast<float>(static_cast<double>(turned.at(x, y)[c]) - still.at(x, y)[c] -
+        d.at(x, y)[c] = static_cast<float>(static_cast<double>(after.at(x, y)[c]) - before.at(x, y)[c] -
                                            (means.a[c] - means.b[c]));
     }
-  return measure(still, d, mask, differences);
+  return measure(base, d, mask, differences);
+}
+
+}  // namespace
+
+Flicker compareTurned(const Image& still, const Image& turned, const Surfaces& surfaces, const Mask& mask) {
+  requireImage("still frame", still, surfaces.width(), surfaces.height(), mask);
+  requireImage("turned frame", turned, still.width, still.height, mask);
+  return measureUneven(still, turned, surfaces, mask, still, mask);
+}
+
+namespace {
+
+// The later frame's pixels in the earlier one.
+class Reprojection {
+public:
+  Reprojection(const Capture& earlier, const Capture& later)
+      : earlier_(earlier),
+        later_(later),
+        surfaces_(earlier),
+        earlierCamera_(earlier.clipFromView, earlier.width, earlier.height),
+        laterCamera_(later.clipFromView, later.width, later.height),
+        earlierFromLater_(reference::toMatrix(earlier.viewFromWorld) *
+                          glm::inverse(reference::toMatrix(later.viewFromWorld))) {}
+
+  // What the earlier frame's image shows at the place that the later one has at a pixel.
+  std::optional<std::array<double, 3>> read(const Image& image, int x, int y) const {
+    const std::optional<double> depth =
+        laterCamera_.planarDepth(*later_.frontDepth.image.at(x, y), later_.frontDepth.encoding);
+    if (!depth) return std::nullopt;
+    const glm::dvec3 place(earlierFromLater_ *
+                           glm::dvec4(laterCamera_.position({x + 0.5, y + 0.5}, *depth), 1));
+    const double planar = earlierCamera_.planarDepth(place);
+    if (!earlierCamera_.orthographic() && !(planar > 0)) return std::nullopt;
+    const glm::dvec2 at = earlierCamera_.project(place) - 0.5;
+    // Also where `at` is no number.
+    if (!(at.x >= 0 && at.y >= 0 && at.x < image.width - 1 && at.y < image.height - 1)) return std::nullopt;
+    const int left = static_cast<int>(at.x), top = static_cast<int>(at.y);
+    if (!surfaces_.wholeBlock(left, top, 2)) return std::nullopt;
+    const glm::dvec2 part = at - glm::floor(at);
+    std::array<double, 3> sum = {};
+    double shown = 0;
+    for (int i = 0; i < 4; ++i) {
+      const int px = left + i % 2, py = top + i / 2;
+      const double weight = (i % 2 ? part.x : 1 - part.x) * (i / 2 ? part.y : 1 - part.y);
+      // The block is wholly of surface: there is a depth.
+      shown += weight * *earlierCamera_.planarDepth(*earlier_.frontDepth.image.at(px, py),
+                                                    earlier_.frontDepth.encoding);
+      for (std::size_t c = 0; c < 3; ++c) sum[c] += weight * static_cast<double>(image.at(px, py)[c]);
+    }
+    // Of another surface in front.
+    constexpr double kSameDistance = 0.005;
+    if (!(std::abs(shown - planar) <= kSameDistance * std::abs(planar))) return std::nullopt;
+    return sum;
+  }
+
+private:
+  const Capture &earlier_, &later_;
+  Surfaces surfaces_;
+  reference::Camera earlierCamera_, laterCamera_;
+  glm::dmat4 earlierFromLater_;
+};
+
+}  // namespace
+
+Flicker compareAlongPath(const PathFrame& earlier, const PathFrame& later) {
+  const Capture& capture = later.capture;
+  const Mask mask = comparisonMask(capture.material, capture.irradiance, Subset::All);
+  requireImage("later frame", later.image, capture.width, capture.height, mask);
+  requireImage("earlier frame", earlier.image, earlier.capture.width, earlier.capture.height,
+               comparisonMask(earlier.capture.material, earlier.capture.irradiance, Subset::All));
+  const Reprojection reprojection(earlier.capture, capture);
+  Image before(capture.width, capture.height, 3);
+  Mask seen(mask.size());
+  for (int y = 0; y < capture.height; ++y)
+    for (int x = 0; x < capture.width; ++x) {
+      if (!counts(later.image, mask, x, y)) continue;
+      const auto value = reprojection.read(earlier.image, x, y);
+      if (!value) continue;
+      for (std::size_t c = 0; c < 3; ++c) before.at(x, y)[c] = static_cast<float>((*value)[c]);
+      seen[pixelIndex(before, x, y)] = 1;
+    }
+  return measureUneven(before, later.image, Surfaces(capture), seen, later.image, mask);
 }
 
 SpotFlicker compareSpots(const SpotImage& still, const SpotImage& stillInput, const SpotImage& turned,

@@ -31,7 +31,20 @@ Flicker compareShifted(const Image& still, const Image& moved, const Mask& mask,
 // likewise.
 Flicker compareTurned(const Image& still, const Image& turned, const Surfaces& surfaces, const Mask& mask);
 
-// Spots of two such frames (metrics/spots.h). `stillInput`, `turnedInput`: what explains each frame's.
+// A frame of a path: its G-buffer, and an image of three channels to compare.
+struct PathFrame {
+  const Capture& capture;
+  const Image& image;
+};
+
+// Two frames that show the same bodies, each by a camera of its own: d is the difference between the later frame and
+// the earlier one at the same place of the surface, read between pixels, less its mean over the 5x5 pixels around
+// it, since diffused light changes evenly. Left out are places that the earlier frame does not show, and pixels whose
+// surroundings of 5x5 pixels, or of 2x2 in the earlier frame, are not wholly of one surface. Statistics are over
+// the later frame. Throws likewise.
+Flicker compareAlongPath(const PathFrame& earlier, const PathFrame& later);
+
+// Spots of two frames of turned lights (metrics/spots.h). `stillInput`, `turnedInput`: what explains each frame's.
 struct SpotFlicker {
   std::size_t still = 0, turned = 0;  // that the frame has
   std::size_t appear = 0,

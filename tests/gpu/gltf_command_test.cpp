@@ -55,11 +55,11 @@ TEST_F(GltfCommand, WarnsOfBodiesThatAreOpticallyThin) {
     const Outcome outcome =
         run("capture " + file + " --size 64x64 --material wax=skin1 --unit " + unit + " -o " + out);
     EXPECT_EQ(outcome.code, 0) << outcome.text;
-    EXPECT_EQ(outcome.text.find("the mean free path of 1.3 mm in R") != std::string::npos, unit == "mm")
+    EXPECT_EQ(outcome.text.find("mean free paths, which are 1.3 mm each in R") != std::string::npos, unit == "mm")
         << outcome.text;
   }
   const std::string ball = "capture --procedural sphere --set extent=9 --size 32x32 -o " + out;
-  expect(0, ball + " --set radius=1.5", "third of the body's size, ");
+  expect(0, ball + " --set radius=1.5", "is less than 4 mean free paths, which are ");
   EXPECT_EQ(run(ball + " --set radius=4").text, "");
 }
 
