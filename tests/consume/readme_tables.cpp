@@ -23,23 +23,24 @@ std::string imagesTable() {
     const char* without;
   };
   const Row rows[] = {
-      {PELLUCID_RESOURCE_FRONT_DEPTH, "device depth or view z of the visible surface", ""},
-      {PELLUCID_RESOURCE_BACK_DEPTH, "the same of the nearest back face behind it",
-       "no light comes through of lights without a shadow map, of maps of back faces, of `options.ambient` "
-       "and of `hiddenIrradiance`; with "
-       "a gather thin parts return as much light as thick ones"},
+      {PELLUCID_RESOURCE_FRONT_DEPTH, "device depth or view z (planar distance) of the visible surface", ""},
+      {PELLUCID_RESOURCE_BACK_DEPTH, "the same, of the nearest back face behind that surface",
+       "light from lights without a shadow map, from maps of back faces, `options.ambient` and "
+       "`hiddenIrradiance` does not come through; with a gather, thin parts return as much light as "
+       "thick ones"},
       {PELLUCID_RESOURCE_IRRADIANCE,
-       "linear irradiance E times `frame.preExposure`, which is 1 / pi for E / pi", ""},
+       "linear irradiance E times `frame.preExposure`; an image of E / pi has `preExposure` 1 / pi", ""},
       {PELLUCID_RESOURCE_HIDDEN_IRRADIANCE,
-       "irradiance from all around of the hidden face, where `backDepth` lies",
-       "the light of `options.ambient` comes through in its place, which nothing shadows"},
-      {PELLUCID_RESOURCE_NORMAL, "outward normal, world or view space",
-       "the angle between view and light replaces -N.L, depths say how large surfaces are"},
-      {PELLUCID_RESOURCE_ALBEDO, "post-scatter albedo", "the output is not multiplied"},
-      {PELLUCID_RESOURCE_MATERIAL, "unsigned integer: 0 none, i for materials[i - 1]", ""},
+       "irradiance, from light probes, of the hidden face at `backDepth`",
+       "`options.ambient` lights the hidden faces, and nothing shadows it"},
+      {PELLUCID_RESOURCE_NORMAL, "outward unit normal, in world or view space",
+       "the view ray stands in for the inward normal; depths give the area of a pixel's surface"},
+      {PELLUCID_RESOURCE_ALBEDO, "color that multiplies the light after scattering",
+       "the output is not multiplied"},
+      {PELLUCID_RESOURCE_MATERIAL, "unsigned integer: 0 for no material, i for `materials[i - 1]`", ""},
       {PELLUCID_RESOURCE_OUTPUT,
-       "rgba16f, rgba32f or rg11b10f storage image; may be the irradiance image; pixels with a material are "
-       "written",
+       "storage image, rgba16f, rgba32f or rg11b10f; may be the irradiance image; only pixels with "
+       "a material are written",
        ""},
   };
   const uint32_t required =
