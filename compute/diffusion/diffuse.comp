@@ -55,7 +55,7 @@ void addProbesToPlane(ivec2 top, int side, inout vec3 column[4]) {
   [[unroll]] for (int i = 0; i < 4; ++i) {
     int row = i & (side - 1);
     if (row == 0) { // a cell begins
-      ivec2 cell = (top + ivec2(0, i)) >> shiftOf(side);
+      ivec2 cell = ((top + ivec2(0, i)) >> shiftOf(side)) + ivec2(0, frame.lattice.w);
       uvec4 a = texelFetch(probesImage, cell, 0), b = texelFetch(probesImage, cell + ivec2(1, 0), 0);
       uvec4 c = texelFetch(probesImage, cell + ivec2(0, 1), 0), d = texelFetch(probesImage, cell + ivec2(1, 1), 0);
       added = mix(addedOf(a), addedOf(b), across);
@@ -89,7 +89,7 @@ vec3 withProbes(vec3 diffused, ivec2 pixel, int side, float front, uint material
   vec3 added = vec3(0.0), returned = vec3(0.0);
   vec2 fraction = vec2(pixel & (side - 1)) / float(side);
   uvec4 probes[4];
-  [[unroll]] for (int i = 0; i < 4; ++i) probes[i] = probeOf(probesImage, (pixel >> shiftOf(side)) + ivec2(i & 1, i >> 1), side);
+  [[unroll]] for (int i = 0; i < 4; ++i) probes[i] = probeOf(probesImage, (pixel >> shiftOf(side)) + ivec2(i & 1, i >> 1), side, frame.lattice.w);
   [[unroll]] for (int i = 0; i < 4; ++i) {
     ivec2 corner = ivec2(i & 1, i >> 1), cell = (pixel >> shiftOf(side)) + corner;
     vec2 linear = mix(1.0 - fraction, fraction, vec2(corner));

@@ -1,4 +1,5 @@
-// Probes share the light that they found with those that lie near on the same side. A group does 16 x 16 cells.
+// Probes share the light that they found with those that lie near on the same side, and with the earlier frame's. A group does
+// 16 x 16 cells.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -7,7 +8,8 @@
 
 layout(set = 0, binding = PELLUCID_BINDING_MATERIALS) readonly buffer Materials { MaterialConstants materials[]; };
 layout(set = 0, binding = PELLUCID_BINDING_FOUND_PROBES) uniform utexture2D foundImage;
-layout(set = 0, binding = PELLUCID_BINDING_FILTERED_DESTINATION, rgba32ui) uniform writeonly uimage2D sharedImage;
+layout(set = 0, binding = PELLUCID_BINDING_FILTERED_DESTINATION, rgba32ui) uniform uimage2D sharedImage;
+layout(set = 0, binding = PELLUCID_BINDING_MOTION) uniform texture2D motionImage;
 
 const int kReach = 3; // cells, across and along together
 const int kSquare = 2 * kReach + 1, kRow = PELLUCID_FILTER_GROUP + 2 * kReach;
@@ -36,12 +38,53 @@ ivec2 borderCell(int i) {
   return (whole ? ivec2(across, along + skips) : ivec2(across + skips, along + kReach)) - kReach;
 }
 
+// ---- The earlier frame
+
+bool accumulates() { return frame.motion.z > 0.0; }
+
+const float kOwnFrame = 0.1;      // part of the frame's own light: noise falls to sqrt(.1 / 1.9)
+const float kSameFront = 0.02;    // of the distance, that a surface's may change in a frame
+const float kSameFacing = 0.7;    // cosine between normals of both frames
+const float kMostErrors = 5.0;    // standard errors of the mean over 25 probes
+
+// `light`, the mean of the probes around, averaged with the light that the earlier frame had at the probe's place, as far as that is
+// within the mean's error: light that changed does not linger.
+vec3 accumulated(uvec4 own, ivec2 cell, int side, vec3 light, vec3 standardError) {
+  ProbePlace p = unpackPlace(own);
+  ivec2 pixel = inImage(pixelInCell(cell, side, p.index));
+  vec2 moved = texelFetch(motionImage, pixel, 0).xy * frame.motion.xy;
+  const float kFar = 65536.0; // also no place at all
+  if (!isWithin(moved.x + kFar, 0.0, 2.0 * kFar) || !isWithin(moved.y + kFar, 0.0, 2.0 * kFar)) return light;
+  vec2 at = (vec2(pixel + frame.kept.xy) - moved) / float(side);
+  ivec2 base = ivec2(floor(at)), cells = ivec2(imageSize(sharedImage).x, frame.kept.w);
+  vec2 part = at - vec2(base);
+  vec3 kept = vec3(0.0);
+  float total = 0.0;
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    ivec2 corner = ivec2(i & 1, i >> 1), from = base + corner;
+    if (!contains(ivec4(0, 0, cells), from)) continue;
+    uvec4 bits = imageLoad(sharedImage, from + ivec2(0, frame.kept.z));
+    ProbePlace q = unpackPlace(bits);
+    vec2 linear = mix(1.0 - part, part, vec2(corner));
+    bool same = q.material == p.material && abs(q.front - p.front) < kSameFront * abs(p.front) && dot(q.normal, p.normal) > kSameFacing;
+    float weight = same ? linear.x * linear.y : 0.0;
+    kept += weight * addedOf(bits);
+    total += weight;
+  }
+  if (total < 0.01) return light;
+  kept *= frame.motion.z / total;
+  vec3 most = kMostErrors * standardError;
+  return mix(clamp(kept, light - most, light + most), light, kOwnFrame);
+}
+
+// ---- Sharing
+
 // The probe `own` with its filtered light. `perSquare`: falloff by distance, per squared scene unit.
-uvec4 filtered(ivec2 local, uvec4 own, float perSquare) {
+uvec4 filtered(ivec2 local, ivec2 cell, int side, uvec4 own, float perSquare) {
   int center = placeOf(local);
   vec3 place = places[center].xyz, normal = vec3(unpackHalf2x16(found[center].y).y, unpackHalf2x16(found[center].z));
-  float total = 0.0;
-  vec3 added = vec3(0.0), returned = vec3(0.0);
+  float total = 0.0, squaredWeights = 0.0;
+  vec3 added = vec3(0.0), squares = vec3(0.0), returned = vec3(0.0);
   [[unroll]] for (int i = 0; i < kSquare * kSquare; ++i) {
     ivec2 away = ivec2(i % kSquare, i / kSquare) - kReach;
     if (abs(away.x) + abs(away.y) > kReach) continue; // known when compiled
@@ -53,12 +96,20 @@ uvec4 filtered(ivec2 local, uvec4 own, float perSquare) {
     // The fourth power keeps what surfaces turn over from being evened out.
     facing *= facing;
     float weight = floatBitsToUint(theirs.w) == (own.z & 0xFFu) ? exp2(-dot(apart, apart) * perSquare) * facing * facing : 0.0;
-    added += weight * vec3(unpackHalf2x16(bits.x), middle.x);
+    vec3 light = vec3(unpackHalf2x16(bits.x), middle.x);
+    added += weight * light;
+    if (accumulates()) squares += weight * light * light;
     if (someReturned != 0u) returned += weight * returnedOf(bits);
     total += weight;
+    squaredWeights += weight * weight;
   }
   // The probe itself is among them.
-  return withReturned(withAdded(own, added / total), returned / total);
+  added /= total;
+  if (accumulates()) {
+    vec3 variance = max(squares / total - added * added, vec3(0.0)) * (squaredWeights / (total * total));
+    added = accumulated(own, cell, side, added, sqrt(variance));
+  }
+  return withReturned(withAdded(own, added), returned / total);
 }
 
 // Filters the cells from `first` on, for all invocations, as they wait for each other.
@@ -66,7 +117,7 @@ void filterCells(ivec2 first, int side) {
   int index = int(gl_LocalInvocationIndex);
   ivec2 local = ivec2(gl_LocalInvocationID.xy), cell = first + local, border = borderCell(index);
   bool hasBorder = index < kBorder;
-  uvec4 own = probeOf(foundImage, cell, side), beside = hasBorder ? probeOf(foundImage, first + border, side) : kNoProbe;
+  uvec4 own = probeOf(foundImage, cell, side, 0), beside = hasBorder ? probeOf(foundImage, first + border, side, 0) : kNoProbe;
   if (index == 0) someLight = someReturned = 0u;
   barrier();
   if (hasLight(own) || hasLight(beside)) someLight = 1u; // whoever writes, writes this
@@ -82,9 +133,9 @@ void filterCells(ivec2 first, int side) {
   uint material = own.z & 0xFFu;
   if (shares && material != 0u && material <= frame.flags.y) {
     float mm = frame.camera.range.w;
-    own = filtered(local, own, materials[material - 1u].gather.profile.w * mm * mm);
+    own = filtered(local, cell, side, own, materials[material - 1u].gather.profile.w * mm * mm);
   }
-  if (contains(cellsOf(frame.rect, side), cell)) imageStore(sharedImage, cell, own);
+  if (contains(cellsOf(frame.rect, side), cell)) imageStore(sharedImage, cell + ivec2(0, frame.lattice.w), own);
 }
 
 void main() {

@@ -74,12 +74,12 @@ ivec4 cellsOf(uvec4 rect, int side) {
   return ivec4(ivec2(rect.xy) >> shift, ((ivec2(rect.zw) - 1) >> shift) + 1);
 }
 
-// The probe of a cell in an image that a pass wrote; none where the cell's pixels have no material. Neither load waits for the
-// other, and nothing branches.
-uvec4 probeOf(utexture2D image, ivec2 cell, int side) {
+// The probe of a cell in an image that a pass wrote from `row` on; none where the cell's pixels have no material. Neither load waits
+// for the other, and nothing branches.
+uvec4 probeOf(utexture2D image, ivec2 cell, int side, int row) {
   ivec4 cells = cellsOf(frame.rect, side);
   ivec2 within = clamp(cell, cells.xy, cells.zw - 1);
-  uvec4 bits = texelFetch(image, within, 0);
+  uvec4 bits = texelFetch(image, within + ivec2(0, row), 0);
   return cellHoldsMaterial(side * within) && within == cell ? bits : kNoProbe;
 }
 

@@ -55,7 +55,8 @@
   X(PELLUCID_BINDING_FILTERED_DESTINATION, 25, sharedImage, kStored) \
   X(PELLUCID_BINDING_BLOCKS, 26, blocksImage, kStored) /* words of the blocks and lists of them */ \
   X(PELLUCID_BINDING_HIDDEN_IRRADIANCE, 27, hiddenIrradianceImage, kSampled) \
-  X(PELLUCID_BINDING_SHADOW_IMAGES, 28, shadowImage0, kSampled) /* the last ones: one each for as many shadow images as a pass has */
+  X(PELLUCID_BINDING_MOTION, 28, motionImage, kSampled) \
+  X(PELLUCID_BINDING_SHADOW_IMAGES, 29, shadowImage0, kSampled) /* the last ones: one each for as many shadow images as a pass has */
 #ifdef __cplusplus
 #define PELLUCID_BINDING_NUMBER(number, value, name, type) number = value,
 enum PellucidBindingNumber : unsigned { PELLUCID_BINDINGS(PELLUCID_BINDING_NUMBER) };
@@ -165,7 +166,10 @@ struct FrameConstants {
   Camera camera;
   mat4 viewFromNormal; // rotation of the normal image's space into view space
   uvec4 rect;          // x, y, end x, end y
-  ivec4 lattice;       // x, y: the image's first pixel, below PELLUCID_BLOCK; z: pattern of samples of cell 0, 0
+  ivec4 lattice;       // x, y: the image's first pixel, below PELLUCID_BLOCK; z: pattern of samples of cell 0, 0; w: first row of
+                       // the filtered probes in their image
+  ivec4 kept;          // of the earlier frame's probes: x, y: the image's first pixel; z: their first row; w: rows
+  vec4 motion;         // x, y: pixels per unit of the motion image; z: factor of the earlier frame's light, 0: none is kept
   uvec4 flags;         // x: PELLUCID_FLAG_*; y: materials; z: debug view; w: angle model
   vec4 anglePolynomial;
   uvec4 marks;         // material values: x: bit without translucency, 0: none; y: their first bit in a word; z: bits of the index

@@ -122,6 +122,9 @@ struct Capture {
   DepthImage backDepth;
   Image irradiance;        // RGB; required
   Image hiddenIrradiance;  // RGB; of light from all around where backDepth lies
+  // RG: what a surface's place in the image has changed by since an earlier frame, in parts of width and height; empty: nothing
+  // moved. Manifests do not hold it.
+  Image motion;
   Image normal;      // XYZ
   bool normalsInViewSpace = false;
   Image albedo;                        // RGB

@@ -213,11 +213,11 @@ void measurePaths(const Options& options, const Frames& frames, const ReplaySett
                   std::vector<Row>& rows) {
   const std::optional<Environment> sky = environment(options.scene);
   const std::vector<PellucidMaterial> materials = compileMaterials(frames.still);
-  Replayer replayer(device);
   for (const std::string& path : split(options.paths, ',')) {
+    ReplaySequence sequence(device);
     const std::vector<PathStep> steps =
         followPath(path, options.frames, *frames.scene, sky, device, [&](const Capture& capture) {
-          return rgb(replayer.run(capture, materials, settings).output);
+          return rgb(sequence.run(capture, materials, settings));
         });
     std::vector<Flicker> results, irradiances;
     for (const PathStep& step : steps) {
@@ -261,7 +261,7 @@ void flicker(const Command& command, const std::vector<std::string>& sceneOption
   } else {
     frames = isProcedural(command, options.scene) ? proceduralFrames(options) : modelFrames(options, device);
   }
-  if (settings.anchor[3] == 0 && settings.reuse == PELLUCID_REUSE_NONE) settings.anchor = middleOf(frames.still);
+  if (settings.anchor[3] == 0 && (settings.reuse == PELLUCID_REUSE_NONE || settings.reuse == PELLUCID_REUSE_ACCUMULATE)) settings.anchor = middleOf(frames.still);
   if (!options.paths.empty() && !frames.scene)
     throw UsageError("--path: needs a model, and not a capture or --procedural");
   std::vector<Row> rows = measure(options, pixels, frames, settings, device);

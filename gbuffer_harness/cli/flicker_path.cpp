@@ -75,6 +75,7 @@ std::vector<PathStep> followPath(const std::string& path, int frames, const Capt
     const Pose pose = poseAt(path, still, center, frame);
     moving.model.lights = pose.lights;
     Capture capture = captureScene(device, moving.model, pose.camera, moving.raster, sky).capture;
+    if (before) capture.motion = motionSince(*before, capture);
     Image image = replay(capture);
     const bool switches = path == "blink" && frame % kBlinkFrames == 0;
     if (before && !switches)

@@ -18,6 +18,7 @@ inline const PellucidImage& imageOf(const PellucidFrame& frame, uint32_t resourc
       {PELLUCID_RESOURCE_NORMAL, &frame.normal},
       {PELLUCID_RESOURCE_ALBEDO, &frame.albedo},
       {PELLUCID_RESOURCE_MATERIAL, &frame.material},
+      {PELLUCID_RESOURCE_MOTION, &frame.motion},
       {PELLUCID_RESOURCE_OUTPUT, &frame.output}};
   for (const auto& [name, image] : named)
     if (name == resource) return *image;

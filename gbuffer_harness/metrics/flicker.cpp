@@ -114,16 +114,24 @@ public:
         earlierFromLater_(reference::toMatrix(earlier.viewFromWorld) *
                           glm::inverse(reference::toMatrix(later.viewFromWorld))) {}
 
-  // What the earlier frame's image shows at the place that the later one has at a pixel.
-  std::optional<std::array<double, 3>> read(const Image& image, int x, int y) const {
+  // In the earlier camera's view space, the place that the later frame shows at a pixel; none behind the earlier eye.
+  std::optional<glm::dvec3> placeOf(int x, int y) const {
     const std::optional<double> depth =
         laterCamera_.planarDepth(*later_.frontDepth.image.at(x, y), later_.frontDepth.encoding);
     if (!depth) return std::nullopt;
     const glm::dvec3 place(earlierFromLater_ *
                            glm::dvec4(laterCamera_.position({x + 0.5, y + 0.5}, *depth), 1));
-    const double planar = earlierCamera_.planarDepth(place);
-    if (!earlierCamera_.orthographic() && !(planar > 0)) return std::nullopt;
-    const glm::dvec2 at = earlierCamera_.project(place) - 0.5;
+    if (!earlierCamera_.orthographic() && !(earlierCamera_.planarDepth(place) > 0)) return std::nullopt;
+    return place;
+  }
+  glm::dvec2 project(const glm::dvec3& place) const { return earlierCamera_.project(place); }
+
+  // What the earlier frame's image shows at the place that the later one has at a pixel.
+  std::optional<std::array<double, 3>> read(const Image& image, int x, int y) const {
+    const std::optional<glm::dvec3> place = placeOf(x, y);
+    if (!place) return std::nullopt;
+    const double planar = earlierCamera_.planarDepth(*place);
+    const glm::dvec2 at = project(*place) - 0.5;
     // Also where `at` is no number.
     if (!(at.x >= 0 && at.y >= 0 && at.x < image.width - 1 && at.y < image.height - 1)) return std::nullopt;
     const int left = static_cast<int>(at.x), top = static_cast<int>(at.y);
@@ -172,6 +180,21 @@ Flicker compareAlongPath(const PathFrame& earlier, const PathFrame& later) {
       seen[pixelIndex(before, x, y)] = 1;
     }
   return measureUneven(before, later.image, Surfaces(capture), seen, later.image, mask);
+}
+
+Image motionSince(const Capture& earlier, const Capture& later) {
+  const Reprojection reprojection(earlier, later);
+  Image motion(later.width, later.height, 4);
+  const glm::dvec2 extent(later.width, later.height);
+  for (int y = 0; y < later.height; ++y)
+    for (int x = 0; x < later.width; ++x) {
+      const std::optional<glm::dvec3> place = reprojection.placeOf(x, y);
+      if (!place) continue;
+      const glm::dvec2 moved = (glm::dvec2(x + 0.5, y + 0.5) - reprojection.project(*place)) / extent;
+      motion.at(x, y)[0] = static_cast<float>(moved.x);
+      motion.at(x, y)[1] = static_cast<float>(moved.y);
+    }
+  return motion;
 }
 
 SpotFlicker compareSpots(const SpotImage& still, const SpotImage& stillInput, const SpotImage& turned,

@@ -44,6 +44,9 @@ struct PathFrame {
 // the later frame. Throws likewise.
 Flicker compareAlongPath(const PathFrame& earlier, const PathFrame& later);
 
+// RGBA of which RG is Capture::motion of the later capture, where bodies stand still in the world; 0 where nothing is seen.
+Image motionSince(const Capture& earlier, const Capture& later);
+
 // Spots of two frames of turned lights (metrics/spots.h). `stillInput`, `turnedInput`: what explains each frame's.
 struct SpotFlicker {
   std::size_t still = 0, turned = 0;  // that the frame has

@@ -127,6 +127,7 @@ void fillPlaceholders(const FrameShape& shape, bool hidden, FrameData& data) {
   if (shape.normal) f.normal = next();
   if (shape.albedo) f.albedo = next();
   f.material = next();
+  if (f.options.reuse == PELLUCID_REUSE_ACCUMULATE) f.motion = next();
   f.output = f.options.separateOutput ? next() : f.irradiance;
   PellucidImageNeed needs[kMaxImageNeeds];
   uint32_t count = kMaxImageNeeds;

@@ -74,6 +74,9 @@ InputImages::InputImages(Device& device, const Capture& capture, const ReplaySet
   images_.normal = uploaded(device, capture.normal, settings.normalFormat);
   images_.albedo = uploaded(device, capture.albedo, VK_FORMAT_R32G32B32A32_SFLOAT);
   images_.material = uploadedMaterial(device, capture, settings);
+  if (settings.reuse == PELLUCID_REUSE_ACCUMULATE)
+    images_.motion = uploaded(device, capture.motion.empty() ? Image(capture.width, capture.height, 4) : capture.motion,
+                              VK_FORMAT_R32G32B32A32_SFLOAT);
   const bool array = hasLayers(capture.lights);
   for (const ShadowImageSource& source : shadowImages(capture.lights).images)
     images_.shadows.push_back(uploadedShadows(device, source, array));
@@ -92,6 +95,7 @@ void InputImages::bind(FrameData& data) const {
   f.normal = use(images_.normal);
   f.albedo = use(images_.albedo);
   f.material = use(images_.material);
+  f.motion = use(images_.motion);
   std::transform(images_.shadows.begin(), images_.shadows.end(), data.shadowImages.begin(), use);
 }
 

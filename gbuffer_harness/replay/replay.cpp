@@ -312,6 +312,14 @@ void FrameRun::uploadOutput(const Image& content) const { images_->uploadOutput(
 
 void FrameRun::restoreIrradiance(const Capture& capture) const { images_->restoreIrradiance(capture); }
 
+Image ReplaySequence::run(const Capture& capture, const std::vector<PellucidMaterial>& materials,
+                          const ReplaySettings& settings) {
+  auto run = std::make_unique<FrameRun>(device_, contexts_.of(capture), capture, materials, settings, last_.get());
+  device_.run([&](VkCommandBuffer commandBuffer) { run->record(commandBuffer); });
+  last_ = std::move(run);
+  return last_->output();
+}
+
 ReplayResult Replayer::run(const Capture& capture, const std::vector<PellucidMaterial>& materials,
                            const ReplaySettings& given, uint32_t timedFrames,
                            const std::function<void(const FrameRun&)>& look) {

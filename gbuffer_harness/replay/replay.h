@@ -152,6 +152,21 @@ struct ViewTimes {
   double apart;     // in one each, one after the other in one command buffer
 };
 
+// Frames of one size, each of which goes on with the history of the one before, as settings.reuse says.
+class ReplaySequence {
+public:
+  explicit ReplaySequence(Device& device) : device_(device), contexts_(device) {}
+
+  // As FrameRun::output.
+  Image run(const Capture& capture, const std::vector<PellucidMaterial>& materials,
+            const ReplaySettings& settings);
+
+private:
+  Device& device_;
+  Contexts contexts_;
+  std::unique_ptr<FrameRun> last_;
+};
+
 class Replayer {
 public:
   explicit Replayer(Device& device) : device_(device), contexts_(device) {}

@@ -261,7 +261,8 @@ std::vector<Setting> makeTable() {
                             FIELD(reuse),
                             {{"none", PELLUCID_REUSE_NONE},
                              {"alternate", PELLUCID_REUSE_ALTERNATE},
-                             {"coherence", PELLUCID_REUSE_COHERENCE}})
+                             {"coherence", PELLUCID_REUSE_COHERENCE},
+                             {"accumulate", PELLUCID_REUSE_ACCUMULATE}})
           .panel(reuse, "reuse")
           .frame(OPTION(reuse)),
       real("coherence-threshold", "change of the cosine between camera and light, 0..2; default .005",

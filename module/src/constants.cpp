@@ -11,6 +11,7 @@
 #include "frame.h"
 #include "material_tables.h"
 #include "minimum_dot.h"
+#include "plan.h"
 #include "transmittance.h"
 
 namespace pellucid {
@@ -116,7 +117,7 @@ int patternOfCell(glm::ivec2 cell) {
   return pattern < 0 ? pattern + 25 : pattern;
 }
 
-shared::FrameConstants frameConstants(const FrameFacts& facts) {
+shared::FrameConstants frameConstants(const FrameFacts& facts, const PlanState& state) {
   const PellucidFrame& f = facts.frame;
   shared::FrameConstants c{};
   c.camera = facts.camera;
@@ -141,6 +142,18 @@ shared::FrameConstants frameConstants(const FrameFacts& facts) {
   const Rect& r = facts.rect;
   c.rect = {r.x, r.y, r.x + r.width, r.y + r.height};
   c.lattice = {facts.lattice.first, patternOfCell(facts.lattice.period / static_cast<int>(facts.gatherSpacing)), 0};
+  if (facts.stages.accumulates) {
+    // Frames by turns have the upper and the lower half, and each cell takes all patterns in 25 frames.
+    const int half = static_cast<int>(parts(facts.lattice.extent.y, facts.gatherSpacing));
+    const int age = static_cast<int>(state.history.age % 50), odd = age % 2;
+    constexpr int kPatternStep = 9;
+    c.lattice.z = (c.lattice.z + kPatternStep * age) % 25;
+    c.lattice.w = odd * half;
+    c.kept = {state.kept.first[0], state.kept.first[1], (1 - odd) * half, half};
+    c.motion = {f.options.motionScale[0] * static_cast<float>(f.imageExtent[0]),
+                f.options.motionScale[1] * static_cast<float>(f.imageExtent[1]),
+                state.kept.valid != 0 ? f.preExposure / state.kept.preExposure : 0, 0};
+  }
   const PellucidThesisOptions& t = facts.thesis;
   uint32_t flags = 0;
   for (const ImageField& image : kImageFields)
@@ -355,7 +368,7 @@ PellucidResult writeConstants(const FrameFacts& f, const PellucidPlan& plan, voi
   if (size < layout.size) return PELLUCID_ERROR_BUFFER_TOO_SMALL;
 
   // Windows and lists are longer than what the shaders read of them, which is written.
-  put(mapped, layout.frame, frameConstants(f));
+  put(mapped, layout.frame, frameConstants(f, stateOf(plan)));
   putLightTables(f, mapped);
   putLights(f, mapped);
   float reach = 0;

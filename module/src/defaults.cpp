@@ -6,7 +6,7 @@ namespace pellucid {
 // A field that is appended must not land in bytes that older headers left undefined.
 #define ENDS_WITH(Struct, field) \
   (offsetof(Struct, field) + sizeof(static_cast<Struct*>(nullptr)->field) == sizeof(Struct))
-static_assert(ENDS_WITH(PellucidFrame, options.anchor));
+static_assert(ENDS_WITH(PellucidFrame, options.motionScale));
 static_assert(ENDS_WITH(PellucidMaterial, wallTransmittance));
 static_assert(ENDS_WITH(PellucidThesisOptions, minimumDotTable));
 static_assert(ENDS_WITH(PellucidContextDesc, options.parallelUser));
@@ -17,6 +17,7 @@ PellucidFrame defaultFrame() {
   frame.structSize = sizeof frame;
   frame.options.features = PELLUCID_FEATURE_TRANSLUCENCY | PELLUCID_FEATURE_DIFFUSION;
   frame.metersPerUnit = 1;
+  frame.options.motionScale[0] = frame.options.motionScale[1] = 1;
   for (int i = 0; i < 4; ++i) frame.viewFromWorld[i * 5] = 1;
   frame.options.outputFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
   frame.options.coherenceThreshold = 0.005f;

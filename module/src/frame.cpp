@@ -57,6 +57,8 @@ Stages::Stages(const Setup& setup, const Lights& all, const Blocks& blocks) {
   keepsHistory =
       setup.frame.options.reuse != PELLUCID_REUSE_NONE && !debug && translucency && all.lightCount > 0;
   keepsProbes = keepsHistory && all.gathered > 0;
+  accumulates = keepsProbes && setup.frame.options.reuse == PELLUCID_REUSE_ACCUMULATE;
+  if (setup.frame.options.reuse == PELLUCID_REUSE_ACCUMULATE) keepsHistory = keepsProbes;
   history = keepsHistory && !keepsProbes;
   whyNoLists = setup.frame.options.indirectDispatches == 0 ? "frame.options.indirectDispatches asks for none"
                : all.gathered > 1                          ? "lights need several dispatches"

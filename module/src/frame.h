@@ -41,6 +41,7 @@ struct Stages {
   bool keepsHistory = false;  // the frame keeps its transmitted light in options.history:
   bool keepsProbes = false;   // the gather's filtered probes, which the diffusion reads, or
   bool history = false;       // that of pixels: the fused dispatches write it, and one more adds it
+  bool accumulates = false;   // probes are averaged with those of earlier frames: the history holds two frames of them
   bool copies = false;  // the diffusion alone reads the irradiance and writes the output, which may be one
                         // image and whose pixels read their neighbors: it copies the irradiance first
   bool lists = false;   // groups of the diffusion run where the GPU finds material

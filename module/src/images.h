@@ -17,7 +17,7 @@ struct ImageField {
   PellucidImage PellucidFrame::*field;
   bool required;
   uint32_t binding;
-  uint32_t flag;  // tells shaders that an optional image is there; 0: required
+  uint32_t flag;  // tells shaders that an optional image is there; 0: none asks
 };
 
 constexpr std::array kImageFields = {
@@ -35,6 +35,8 @@ constexpr std::array kImageFields = {
                PELLUCID_FLAG_ALBEDO},
     ImageField{PELLUCID_RESOURCE_MATERIAL, "material", &PellucidFrame::material, true,
                PELLUCID_BINDING_MATERIAL, 0},
+    ImageField{PELLUCID_RESOURCE_MOTION, "motion", &PellucidFrame::motion, false, PELLUCID_BINDING_MOTION,
+               0},
     ImageField{PELLUCID_RESOURCE_OUTPUT, "output", &PellucidFrame::output, true, PELLUCID_BINDING_DESTINATION,
                0},
 };

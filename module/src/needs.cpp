@@ -57,9 +57,11 @@ PellucidResult imageNeeds(const FrameFacts& f, uint32_t* count, PellucidImageNee
     const bool persistent = i == transients;
     const bool blocks = stages.diffusion && i == stages.blocksTransient();
     const bool texels = persistent ? stages.keepsProbes : i >= colors && !blocks;
-    const Extent size = blocks   ? blocksExtent(f)
+    Extent size = blocks   ? blocksExtent(f)
                         : texels ? texelExtent(f, persistent ? stages.pyramidImages() : i - colors)
                                  : Extent{f.frame.imageExtent[0], f.frame.imageExtent[1]};
+    // The earlier frame's probes lie above or below this frame's.
+    if (persistent && stages.accumulates) size.height *= 2;
     PellucidImageNeed& need = needs[i];
     need = {};
     need.format = blocks ? VK_FORMAT_R32_UINT : texels ? VK_FORMAT_R32G32B32A32_UINT : f.colorFormat;

@@ -263,7 +263,8 @@ constexpr Pass kFilterProbesPass{.pipeline = "filter_probes",
                                  .words = kFilterProbes,
                                  .uses = kGather,
                                  .reads = bindings(PELLUCID_BINDING_FRAME, PELLUCID_BINDING_MATERIALS,
-                                                   PELLUCID_BINDING_FOUND_PROBES, PELLUCID_BINDING_BLOCKS),
+                                                   PELLUCID_BINDING_FOUND_PROBES, PELLUCID_BINDING_MOTION,
+                                                   PELLUCID_BINDING_BLOCKS),
                                  .writes = bindings(PELLUCID_BINDING_FILTERED_DESTINATION)};
 
 void addProbeFilter(Planner& p) {

@@ -35,6 +35,8 @@ Skips skipsOf(const FrameFacts& f) {
   else
     skipBeside(f, skips);
   if (f.frame.options.gatherSamples > 0 && f.whyNotGathered) skips.add("gather", f.whyNotGathered);
+  if (f.frame.options.reuse == PELLUCID_REUSE_ACCUMULATE && !f.stages.accumulates)
+    skips.add("accumulation", "no light is gathered");
   if (!(f.frame.options.features & PELLUCID_FEATURE_DIFFUSION))
     skips.add("diffusion", "not among the features");
   else if (f.debug())
@@ -81,6 +83,8 @@ PellucidResult buildPlan(const FrameFacts& f, const History& kept, PellucidPlan*
   Skips skips = skipsOf(f);
   PlanState state;
   const bool reused = f.stages.keepsHistory && decideReuse(f, kept, &state.history);
+  if (f.stages.accumulates && state.history.age > 0)
+    state.kept = {1, kept.preExposure, {kept.first[0], kept.first[1]}};
   if (reused) skips.add(f.stages.keepsProbes ? "gather" : "translucency", "reused from an earlier frame");
   plan->skipCount = skips.size;
   std::copy(skips.list.begin(), skips.list.end(), plan->skips);

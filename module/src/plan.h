@@ -44,6 +44,7 @@ struct History {
   float lightDots[kCoherentLights];  // camera axis and direction to the light, when written
   uint32_t gatherSpacing;            // of the probes that it holds; 0: it holds the light of pixels
   float preExposure;                 // of the light that it holds
+  int32_t first[2];                  // of its probes: the image's first pixel
 };
 
 // For a frame that keeps its transmitted light: whether `kept`, of the previous plan, stands in for this
@@ -52,6 +53,12 @@ bool decideReuse(const FrameFacts& facts, const History& kept, History* now);
 
 struct PlanState {
   History history{};
+  // The earlier frame's, whose probes this frame's are averaged with; valid 0: none.
+  struct {
+    uint32_t valid;
+    float preExposure;
+    int32_t first[2];
+  } kept{};
   // Facts of the frame that made the plan:
   uint32_t materials = 0;
   Rect rect{};

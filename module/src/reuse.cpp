@@ -19,11 +19,15 @@ float cameraLightDot(const FrameFacts& f, const PellucidLight& light) {
   return static_cast<float>(length > 0 ? glm::dot(axis, toLight) / length : 0);
 }
 
-// What was kept is of the same pixels and as many lights.
+// What was kept is of the same pixels.
 bool fits(const History& kept, const History& now) {
-  return kept.valid != 0 && kept.lightCount == now.lightCount && kept.format == now.format &&
-         kept.gatherSpacing == now.gatherSpacing && kept.preExposure == now.preExposure &&
+  return kept.valid != 0 && kept.format == now.format && kept.gatherSpacing == now.gatherSpacing &&
          std::equal(kept.extent, kept.extent + 2, now.extent) && kept.rect == now.rect;
+}
+
+// And can stand for them.
+bool isAlike(const History& kept, const History& now) {
+  return fits(kept, now) && kept.lightCount == now.lightCount && kept.preExposure == now.preExposure;
 }
 
 bool coherent(const PellucidFrame& f, const History& kept, const History& now) {
@@ -44,11 +48,16 @@ bool decideReuse(const FrameFacts& f, const History& kept, History* result) {
   now.gatherSpacing = f.stages.keepsProbes ? f.gatherSpacing : 0;
   now.preExposure = f.frame.preExposure;
   std::copy(f.frame.imageExtent, f.frame.imageExtent + 2, now.extent);
-  now.rect = f.rect;
+  now.rect = renderRect(f.frame);
+  now.first[0] = f.lattice.first.x, now.first[1] = f.lattice.first.y;
   now.lightCount = f.lights.lightCount;
   for (uint32_t i = 0; i < std::min(now.lightCount, kCoherentLights); ++i)
     now.lightDots[i] = cameraLightDot(f, f.light(i));
-  if (!fits(kept, now)) return false;
+  if (f.stages.accumulates) {
+    now.age = fits(kept, now) ? kept.age + 1 : 0;
+    return false;
+  }
+  if (!isAlike(kept, now)) return false;
   const bool reused =
       f.frame.options.reuse == PELLUCID_REUSE_ALTERNATE ? kept.age == 0 : coherent(f.frame, kept, now);
   if (reused) {

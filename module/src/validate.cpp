@@ -119,7 +119,7 @@ void checkFields(const Inputs& inputs, Findings& out) {
   const float anchored = f.options.anchor[3];
   if (anchored != 0 && anchored != 1)
     out.error("options.anchor", "has w ", anchored, "; use 1 for a point and 0 for none");
-  else if (anchored == 1 && f.options.reuse != PELLUCID_REUSE_NONE)
+  else if (anchored == 1 && f.options.reuse != PELLUCID_REUSE_NONE && f.options.reuse != PELLUCID_REUSE_ACCUMULATE)
     out.error("options.anchor", "has w 1 with reuse ", f.options.reuse,
               "; light of an earlier frame needs cells that stay with the screen");
   if (f.options.gatherSamples > 64 || f.options.gatherSamples % 4 != 0)
@@ -149,7 +149,7 @@ void checkFields(const Inputs& inputs, Findings& out) {
   if (f.options.reuse == (PELLUCID_REUSE_ALTERNATE | PELLUCID_REUSE_COHERENCE))
     out.error("options.reuse",
               "is both; alternating would skip frames in which coherence asks for a refresh");
-  else if (f.options.reuse > PELLUCID_REUSE_COHERENCE)
+  else if (f.options.reuse > PELLUCID_REUSE_COHERENCE && f.options.reuse != PELLUCID_REUSE_ACCUMULATE)
     out.error("options.reuse", "is ", f.options.reuse, ", not a PellucidReuse");
 }
 
@@ -211,6 +211,8 @@ void checkViews(const FrameFacts& facts, Findings& out) {
   if (facts.stages.keepsHistory) {
     if (!given(f.options.history))
       out.error("options.history", "has no view, but reuse needs it; see pellucidGetImageNeeds");
+    if (facts.stages.accumulates && !given(f.motion))
+      out.error("motion", "has no view, but reuse ACCUMULATE needs it");
     checkGeneral(f.options.history, "options.history", out);
   }
   for (uint32_t i = 0; i < facts.stages.transients(); ++i) {

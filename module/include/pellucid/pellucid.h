@@ -154,6 +154,9 @@ typedef struct PellucidFrame {
   PellucidImage albedo;
   /* Required; unsigned integer: 0 none, i: materials[i - 1]. */
   PellucidImage material;
+  /* Of reuse ACCUMULATE, which requires it; two float channels: the surface's place in the image less its place in the earlier frame,
+   * in parts of width and height, times options.motionScale. Without jitter. */
+  PellucidImage motion;
   /* Required; storage image, which may be the irradiance's. It takes the place of a diffuse term: the irradiance after scattering, times
    * preExposure and albedo. Pixels of material 0 are not written; alpha is the irradiance's. */
   PellucidImage output;

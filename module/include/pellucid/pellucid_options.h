@@ -86,15 +86,18 @@ typedef enum PellucidFeatureBits {
   PELLUCID_FEATURE_DIFFUSION = 1u << 1
 } PellucidFeatureBits;
 
-/* Frames that take the light that comes through from an earlier one. Irradiance and diffusion are always the frame's own. Kept light
- * is looked up at the same pixel: pass no previous plan after a cut. Moving surfaces lag by the frames in between. */
+/* Frames that use the light that came through in earlier ones. Irradiance and diffusion are always the frame's own. Pass no previous
+ * plan after a cut. ALTERNATE and COHERENCE look kept light up at the same pixel: moving surfaces lag by the frames in between. */
 typedef enum PellucidReuse {
   PELLUCID_REUSE_NONE = 0,
   /* Every second frame (Whelan 2009, 4.7.4). */
   PELLUCID_REUSE_ALTERNATE = 1,
   /* Until the cosine between the camera's axis and the direction to a light has changed by more than the threshold (Whelan 2009,
    * 4.7.5). Point and spot lights are seen from thesis->objectCenter. */
-  PELLUCID_REUSE_COHERENCE = 2
+  PELLUCID_REUSE_COHERENCE = 2,
+  /* Probes are averaged over frames, each with the place that frame.motion says it had, and take other samples in each frame. Noise
+   * falls to a quarter, and light that changes arrives within frames. Only of gathered light. */
+  PELLUCID_REUSE_ACCUMULATE = 4
 } PellucidReuse;
 
 /* An intermediate that `output` gets in place of the result. Float values; alpha is kept. */
@@ -219,8 +222,10 @@ typedef struct PellucidFrameOptions {
 
   /* World-space point x, y, z with w 1 on the body that the camera looks at. Cells, patterns of samples and texels of the pyramid
    * follow the point's pixel, so that noise moves with the body and not over it. Transients then grow by up to 63 pixels a side. Not
-   * with reuse. w 0 (default): they stay with the screen, as they do while the point is behind the camera. */
+   * with reuse ALTERNATE or COHERENCE. w 0 (default): they stay with the screen, as they do while the point is behind the camera. */
   float anchor[4];
+  /* Of what frame.motion holds to parts of the image's width and height, -1e6..1e6; default 1, 1. For pixels: 1 over the extent. */
+  float motionScale[2];
 } PellucidFrameOptions;
 
 /* ---- Shadow map ------------------------------------------------------------------------------------ */
