@@ -45,7 +45,7 @@ bool accumulates() { return frame.motion.z > 0.0; }
 const float kOwnFrame = 0.1;      // part of the frame's own light: noise falls to sqrt(.1 / 1.9)
 const float kSameFront = 0.02;    // of the distance, that a surface's may change in a frame
 const float kSameFacing = 0.7;    // cosine between normals of both frames
-const float kMostErrors = 5.0;    // standard errors of the mean over 25 probes
+const float kMostErrors = 3.0;    // standard errors of the mean over 25 probes
 
 // `light`, the mean of the probes around, averaged with the light that the earlier frame had at the probe's place, as far as that is
 // within the mean's error: light that changed does not linger.
