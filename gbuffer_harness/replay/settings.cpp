@@ -264,6 +264,7 @@ std::vector<Setting> makeTable() {
                              {"coherence", PELLUCID_REUSE_COHERENCE},
                              {"accumulate", PELLUCID_REUSE_ACCUMULATE}})
           .panel(reuse, "reuse")
+          .range(0, 2)  // the viewer has no motion vectors
           .frame(OPTION(reuse)),
       real("coherence-threshold", "change of the cosine between camera and light, 0..2; default .005",
            FIELD(coherenceThreshold))

@@ -98,6 +98,10 @@ void randomSettings(Random& random, const View& view, const FrameLimits& limits,
                     static_cast<std::uint32_t>(random.whole(1, width - x)),
                     static_cast<std::uint32_t>(random.whole(1, height - y))};
   }
+  if (s.reuse == PELLUCID_REUSE_NONE && random.chance(0.3)) {
+    const auto place = [&] { return static_cast<float>(random.real(-50, 50)); };
+    s.anchor = {place(), place(), place(), 1};
+  }
 }
 
 void markPixels(Random& random, StressFrame& frame) {

@@ -77,6 +77,8 @@ TEST_F(Cli, FlickerUsage) {
   expect(2, plane + "--set period=3", "unknown key \"period\"");
   expect(3, plane + "--scene-set period=3", "period");
   expect(3, plane + "--pixels 8", "a rim of 8 pixels");
+  expect(2, plane + "--path pan", "--path: needs a model");
+  expect(2, plane + "--frames 5", "--frames");
   expect(3, "flicker " + path("missing.exr"), "missing.exr");
   expect(2, "evaluate " + path("missing.exr") + " --rows all", "--rows");
 }

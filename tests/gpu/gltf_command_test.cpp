@@ -63,6 +63,26 @@ TEST_F(GltfCommand, WarnsOfBodiesThatAreOpticallyThin) {
   EXPECT_EQ(run(ball + " --set radius=4").text, "");
 }
 
+// A triangle that nothing but the camera moves: its light stays where it is on the surface.
+TEST_F(GltfCommand, FlickerFollowsPaths) {
+  const std::string flicker = "flicker " + write("t.glb", triangle()) +
+                              " --size 96x96 --shadow-size 64 --unit cm --material wax=skin1 --light back --pixels 1 ";
+  const Outcome outcome = run(flicker + "--path orbit,blink --frames 3 --json");
+  EXPECT_EQ(outcome.code, 0) << outcome.text;
+  const std::size_t begin = outcome.text.find("{\n"), end = outcome.text.rfind("}\n");
+  const auto changes = nlohmann::json::parse(outcome.text.substr(begin, end + 1 - begin))["changes"];
+  int paths = 0;
+  for (const auto& change : changes) {
+    if (!change.contains("steps")) continue;
+    ++paths;
+    EXPECT_EQ(change["steps"].size(), 2u) << change;
+    EXPECT_GT(change["pixels"], 1000) << change;
+    EXPECT_LT(change["rel_rmse"][0], 0.02) << change;
+  }
+  EXPECT_EQ(paths, 4);
+  expect(2, flicker + "--path walk", "--path: \"walk\" is not pan, dolly, orbit, head, lights or blink");
+}
+
 TEST_F(GltfCommand, TimeChoosesAnAnimationsPose) {
   const std::string file = write("t.glb", triangle());
   // The auto camera follows the model, and the light's irradiance says where that is.

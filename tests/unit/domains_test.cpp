@@ -260,7 +260,7 @@ const std::vector<IntegerRule> kIntegerRules = {
     RULE(PellucidFrame, options.gatherSamples, "options.gatherSamples", 1, 3, 66, 68, 0x80000000, 0xFFFFFFFF),
     RULE(PellucidFrame, options.gatherSpacing, "options.gatherSpacing", 3, 5, 8, 0x80000000, 0xFFFFFFFF),
     RULE(PellucidFrame, options.materialMask, "options.materialMask", 2, 0x80000000, 0xFFFFFFFE),
-    RULE(PellucidFrame, options.reuse, "options.reuse", 3, 4, 0x80000000, 0xFFFFFFFF),
+    RULE(PellucidFrame, options.reuse, "options.reuse", 3, 5, 0x80000000, 0xFFFFFFFF),
     {"PellucidThesisOptions",
      "minimumDotTableSize",
      "thesis.minimumDotTableSize",

@@ -405,6 +405,44 @@ TEST(Flicker, OnePixelOfTwoThousand) {
   EXPECT_EQ(compareShifted(still, moved, everywhere(still), 1, 0).worstPixel, (std::array<int, 2>{20, 12}));
 }
 
+// A wall that an orthographic camera sees, moved by 2.5 pixels: a linear picture is the same between pixels, and a dot is not.
+TEST(Flicker, PathsAreFollowedOnTheSurface) {
+  Capture still;
+  still.name = "wall";
+  still.width = still.height = 32;
+  still.clipFromView = kIdentity;
+  still.clipFromView[0] = still.clipFromView[5] = 2.0 / 32;  // a pixel is a unit
+  still.clipFromView[10] = -1.0 / 100;
+  still.frontDepth.image = Image(32, 32, 1, 10.0f);
+  still.material.assign(32 * 32, 1);
+  still.irradiance = Image(32, 32, 3, 1.0f);
+  Capture moved = still;
+  moved.viewFromWorld[12] = 2.5;
+  const auto picture = [](double shift) {
+    Image image(32, 32, 3);
+    for (int y = 0; y < 32; ++y)
+      for (int x = 0; x < 32; ++x)
+        for (int c = 0; c < 3; ++c) image.at(x, y)[c] = static_cast<float>(5 + 0.1 * (x - shift) + 0.2 * c * y);
+    return image;
+  };
+  const Image before = picture(0);
+  Image after = picture(2.5);
+  Flicker flicker = compareAlongPath({still, before}, {moved, after});
+  EXPECT_GT(flicker.pixels, 500u);
+  for (const double worst : flicker.worst) EXPECT_LT(worst, 1e-5);
+  after.at(20, 11)[1] += 1;
+  flicker = compareAlongPath({still, before}, {moved, after});
+  EXPECT_EQ(flicker.worstPixel, (std::array<int, 2>{20, 11}));
+  EXPECT_LT(flicker.worst[0], 1e-5);
+  const Image motion = motionSince(still, moved);
+  EXPECT_NEAR(motion.at(9, 4)[0], 2.5 / 32, 1e-6);
+  EXPECT_NEAR(motion.at(9, 4)[1], 0, 1e-6);
+  // What the camera did not see before is left out.
+  still.material.assign(32 * 32, 0);
+  still.material[5 * 32 + 5] = 1;
+  EXPECT_EQ(compareAlongPath({still, before}, {moved, after}).pixels, 0u);
+}
+
 TEST(Flicker, EvenChangeOfTurnedLightsIsNone) {
   const Image still(32, 32, 3, 1.0f);
   Image turned = still;

@@ -20,8 +20,7 @@ bool apart(const Box& a, const Box& b) {
 void expectApart(uint32_t width, uint32_t height, Rect rect) {
   SCOPED_TRACE(std::to_string(width) + " x " + std::to_string(height));
   if (rect.width == 0) rect = {0, 0, width, height};
-  const uint32_t extent[2] = {width, height};
-  const Pyramid pyramid(extent, rect);
+  const Pyramid pyramid({width, height}, rect);
   const auto box = [&](uint32_t level) {
     const PyramidPlace& p = pyramid.levels[level];
     return Box{p.x, p.y, p.rect.width, p.rect.height};

@@ -164,6 +164,37 @@ TEST(Reuse, ImageNeedsCoverBothKindsOfFrame) {
     }
 }
 
+// Probes of two frames lie in the history, which takes other exposures and other lights, and no other extent.
+TEST(Reuse, AccumulationNeverReuses) {
+  Sequence s(PELLUCID_REUSE_ACCUMULATE);
+  s.frame.options.gatherSamples = 8;
+  PellucidImageNeed needs[PELLUCID_MAX_TRANSIENTS + 1];
+  uint32_t count = PELLUCID_MAX_TRANSIENTS + 1;
+  ASSERT_EQ(pellucidGetImageNeeds(&s.frame, &count, needs), PELLUCID_OK);
+  ASSERT_TRUE(needs[count - 1].persistent);
+  EXPECT_EQ(needs[count - 1].extent[0], 100u);
+  EXPECT_EQ(needs[count - 1].extent[1], 2 * 50u);
+  for (uint32_t i = 0; i < 5; ++i) {
+    EXPECT_TRUE(s.refreshes());
+    EXPECT_EQ(s.last.historyAge, i);
+    s.frame.preExposure *= 0.5f;
+    s.lights[0].intensity *= 2;
+  }
+  s.frame.imageExtent[0] = 99;
+  EXPECT_TRUE(s.refreshes());
+  EXPECT_EQ(s.last.historyAge, 0u);
+}
+
+// Without a gather there is nothing to average, and the plan says so.
+TEST(Reuse, AccumulationNeedsAGather) {
+  Sequence s(PELLUCID_REUSE_ACCUMULATE);
+  EXPECT_TRUE(s.refreshes());
+  EXPECT_EQ(stateOf(s.last).history.valid, 0u);
+  bool said = false;
+  for (uint32_t i = 0; i < s.last.skipCount; ++i) said = said || s.last.skips[i].what == std::string("accumulation");
+  EXPECT_TRUE(said);
+}
+
 TEST(Reuse, HistoryMustBeGiven) {
   Sequence s(PELLUCID_REUSE_ALTERNATE);
   s.frame.options.features = PELLUCID_FEATURE_TRANSLUCENCY;

@@ -52,6 +52,18 @@ const std::vector<Violation> kViolations = {
     {"MarkBitInTheIndex", "thesis.materialMarkBit", "above the 1 materials",
      [](Frame& f) { f.thesis.materialMarkBit = 1; }},
     {"BothReuses", "options.reuse", "is both", [](Frame& f) { f.frame.options.reuse = 3; }},
+    {"AnchorsWeight", "options.anchor", "has w 0.5", [](Frame& f) { f.frame.options.anchor[3] = 0.5f; }},
+    {"AnchorOfKeptLight", "options.anchor", "has w 1 with reuse 1",
+     [](Frame& f) {
+       f.frame.options.anchor[3] = 1;
+       f.frame.options.reuse = PELLUCID_REUSE_ALTERNATE;
+     }},
+    {"AccumulationWithoutMotion", "motion", "has no view, but reuse ACCUMULATE needs it",
+     [](Frame& f) {
+       f.frame.options.gatherSamples = 8;
+       f.frame.options.reuse = PELLUCID_REUSE_ACCUMULATE;
+       f.frame.options.history = Frame::view();
+     }},
     {"MaterialMaskBelowShift", "options.materialMask", "whose last bits materialShift 4 drops",
      [](Frame& f) {
        f.frame.options.materialShift = 4;

@@ -83,7 +83,7 @@ struct PellucidPlan {
                           materials at options.nearestDistance; 0: not known, or nothing diffuses */
   uint32_t gatherSamples; /* of each probe: options.gatherSamples; 0: lights with a shadow map
                              have one thickness a pixel */
-  uint32_t historyAge;    /* frames since options.history was written, by the last frame that computed the light that
+  uint32_t historyAge;    /* frames since options.history was written (ACCUMULATE: begun), by the last one that computed light that
                              comes through; 0: this frame computes it */
   uint32_t shadowImages[PELLUCID_PLAN_SHADOW_IMAGES]; /* that dispatches bind, for pellucidGetBindings */
   uint32_t state[PELLUCID_PLAN_STATE_WORDS]; /* not for callers: how the next plan decides about reuse, and what recording asks of a
