@@ -32,7 +32,7 @@ layout(set = 0, binding = PELLUCID_BINDING_HELD) uniform texture2D heldImage;
 // Frame-wide switches.
 bool hasFlag(uint flag) { return (frame.flags.x & flag) != 0u; }
 
-// Passes count pixels from up to 63 before the image's first one: cells and texels of the pyramid then follow options.anchor.
+// Passes count pixels from up to 127 before the image's first one: cells and texels of the pyramid then follow options.anchor.
 // The place in images of the frame's extent.
 ivec2 inImage(ivec2 pixel) { return pixel - frame.lattice.xy; }
 

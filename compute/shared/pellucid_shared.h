@@ -166,7 +166,7 @@ struct FrameConstants {
   Camera camera;
   mat4 viewFromNormal; // rotation of the normal image's space into view space
   uvec4 rect;          // x, y, end x, end y
-  ivec4 lattice;       // x, y: the image's first pixel, below PELLUCID_BLOCK; z: pattern of samples of cell 0, 0; w: first row of
+  ivec4 lattice;       // x, y: the image's first pixel, 0..127; z: pattern of samples of cell 0, 0; w: first row of
                        // the filtered probes in their image
   ivec4 kept;          // of the earlier frame's probes: x, y: the image's first pixel; z: their first row; w: rows
   vec4 motion;         // x, y: pixels per unit of the motion image; z: factor of the earlier frame's light, 0: none is kept

@@ -29,19 +29,23 @@ uint32_t spacingOf(const PellucidFrame& frame) {
   return pixels > 1u << 20 ? 4 : pixels > 1u << 19 ? 2 : 1;
 }
 
-// The lattice begins a whole number of blocks from the anchor's pixel.
+// The lattice begins a whole number of the coarsest level's texels from the anchor's pixel.
 Lattice latticeOf(const PellucidFrame& f) {
   Lattice lattice{.extent = {f.imageExtent[0], f.imageExtent[1]}};
   const glm::dvec4 anchor(glm::vec4(f.options.anchor[0], f.options.anchor[1], f.options.anchor[2], 1));
   if (f.options.anchor[3] == 0) return lattice;
-  lattice.extent += PELLUCID_BLOCK - 1;
+  constexpr int kSide = 1 << PELLUCID_LAST_LEVEL;
+  static_assert(kSide % PELLUCID_BLOCK == 0);
+  lattice.extent += kSide - 1;
   const glm::dvec4 clip = toMatrix(f.clipFromView) * (toMatrix(f.viewFromWorld) * anchor);
   if (!(clip.w > 0)) return lattice;
   const glm::dvec2 extent(f.imageExtent[0], f.imageExtent[1]);
-  // Far outside of the image any pixel will do.
-  constexpr double kFar = 1 << 24;
-  const glm::ivec2 pixel(glm::clamp(glm::floor((glm::dvec2(clip) / clip.w * 0.5 + 0.5) * extent), -kFar, kFar));
-  lattice.first = -pixel & (PELLUCID_BLOCK - 1);
+  // Far outside of the image any pixel will do. Cameras often look at the anchor, where the image has a corner or a center of pixels:
+  // neither may decide by its rounding.
+  constexpr double kFar = 1 << 24, kOffCorners = 0.3;
+  const glm::dvec2 at = (glm::dvec2(clip) / clip.w * 0.5 + 0.5) * extent;
+  const glm::ivec2 pixel(glm::clamp(glm::floor(at + kOffCorners), -kFar, kFar));
+  lattice.first = -pixel & (kSide - 1);
   lattice.period = -pixel - lattice.first;
   return lattice;
 }

@@ -7,12 +7,12 @@
 
 namespace pellucid {
 
-// Pixels of passes: the image's, counted from up to 63 before its first one, so that cells and texels lie alike around
+// Pixels of passes: the image's, counted from up to 127 before its first one, so that cells and texels lie alike around
 // options.anchor in all frames.
 struct Lattice {
   glm::ivec2 first{0};            // the image's first pixel
   glm::uvec2 extent;              // that images of cells and texels cover
-  glm::ivec2 period{0};           // pixels from the first one of the patterns of samples to the lattice's; of whole blocks
+  glm::ivec2 period{0};           // pixels from the first one of the patterns of samples to the lattice's
 };
 
 struct Setup : Inputs {

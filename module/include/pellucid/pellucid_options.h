@@ -221,7 +221,7 @@ typedef struct PellucidFrameOptions {
   /* ---- motion ---- */
 
   /* World-space point x, y, z with w 1 on the body that the camera looks at. Cells, patterns of samples and texels of the pyramid
-   * follow the point's pixel, so that noise moves with the body and not over it. Transients then grow by up to 63 pixels a side. Not
+   * follow the point's pixel, so that noise moves with the body and not over it. Transients then grow by up to 127 pixels a side. Not
    * with reuse ALTERNATE or COHERENCE. w 0 (default): they stay with the screen, as they do while the point is behind the camera. */
   float anchor[4];
   /* Of what frame.motion holds to parts of the image's width and height, -1e6..1e6; default 1, 1. For pixels: 1 over the extent. */
