@@ -120,7 +120,7 @@ void writeQuad(ivec2 quad, uint materials) {
   vec3 normal = normalAt(withinRect(pixelOfQuad(quad)));
   [[unroll]] for (int i = 0; i < 4; ++i) {
     ivec2 at = withinRect(2 * quad + ivec2(i & 1, i >> 1));
-    depth[i] = frontDistance(at);
+    depth[i] = frontDistance(inImage(at));
     source[i] = texelFetch(sourceImage, inImage(at), 0);
   }
   float least = kNoDepth, most = 0.0;
@@ -149,7 +149,7 @@ void main() {
     materials[i] = 0u;
     [[unroll]] for (int k = 0; k < 4; ++k) {
       ivec2 pixel = 2 * (first + quadInBlock(i)) + ivec2(k & 1, k >> 1);
-      materials[i] |= (insideRect(pixel) ? materialAt(pixel) : 0u) << 8 * k;
+      materials[i] |= (insideRect(pixel) ? materialAt(inImage(pixel)) : 0u) << 8 * k;
     }
   }
   if (invocation < 2u) cells[invocation] = 0u;

@@ -156,9 +156,9 @@ void diffusePlane(ivec2 first, ivec2 local, int texel) {
   if (hasFlag(PELLUCID_FLAG_WIDE_OUTPUT)) // keeps what halves round
     [[unroll]] for (int i = 0; i < 4; ++i) written[i].a = texelFetch(sourceImage, inImage(top + ivec2(0, i)), 0).a;
   if (tinted(last))
-    [[unroll]] for (int i = 0; i < 4; ++i) written[i].rgb = sanitize(written[i].rgb * albedoAt(top + ivec2(0, i)));
+    [[unroll]] for (int i = 0; i < 4; ++i) written[i].rgb = sanitize(written[i].rgb * albedoAt(inImage(top + ivec2(0, i))));
   if (adds(last))
-    [[unroll]] for (int i = 0; i < 4; ++i) written[i] = onHeld(top + ivec2(0, i), written[i].rgb);
+    [[unroll]] for (int i = 0; i < 4; ++i) written[i] = onHeld(inImage(top + ivec2(0, i)), written[i].rgb);
   [[unroll]] for (int i = 0; i < 4; ++i) imageStore(destinationImage, inImage(top + ivec2(0, i)), vec4(asStored(written[i].rgb), written[i].a));
 }
 
@@ -240,7 +240,7 @@ void diffuseEdge(ivec2 first, ivec2 local) {
     color = mix(own, max(sum, vec3(0.0)) / max(divisor, vec3(1.0e-6)), greaterThan(divisor, vec3(1.0e-6)));
     if (pass.value.x != 0u) color = withProbes(color, pixel, int(pass.value.x), depth, material);
   }
-  writeResult(pixel, color, texelFetch(sourceImage, inImage(pixel), 0).a, pass.value.z != 0u);
+  writeResult(inImage(pixel), color, texelFetch(sourceImage, inImage(pixel), 0).a, pass.value.z != 0u);
 }
 
 // Keeps materials and depths of the group's pixels with their ring.
@@ -250,8 +250,8 @@ void keepEdges(ivec2 first) {
   // All loads come before the first use, so that their latencies overlap.
   [[unroll]] for (int i = 0; i < kLoads; ++i) {
     ivec2 pixel = first + loaded(i) - kRing, at = withinRect(pixel);
-    materials[i] = at == pixel ? materialAt(at) : 0u;
-    fronts[i] = frontDistance(at);
+    materials[i] = at == pixel ? materialAt(inImage(at)) : 0u;
+    fronts[i] = frontDistance(inImage(at));
   }
   [[unroll]] for (int i = 0; i < kLoads; ++i) {
     ivec2 at = loaded(i);

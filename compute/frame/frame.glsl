@@ -32,11 +32,14 @@ layout(set = 0, binding = PELLUCID_BINDING_HELD) uniform texture2D heldImage;
 // Frame-wide switches.
 bool hasFlag(uint flag) { return (frame.flags.x & flag) != 0u; }
 
-// Passes count pixels from up to 127 before the image's first one: cells and texels of the pyramid then follow options.anchor.
-// The place in images of the frame's extent.
+// Passes of cells and blocks, the rect and rays count pixels from up to 127 before the image's first one: cells and texels of the
+// pyramid then follow options.anchor. Images of the frame's extent are read and written `inImage`, as functions below that read
+// them say by `at`.
 ivec2 inImage(ivec2 pixel) { return pixel - frame.lattice.xy; }
+ivec2 inLattice(ivec2 at) { return at + frame.lattice.xy; }
 
-ivec2 invocationPixel() { return ivec2(frame.rect.xy) + ivec2(gl_GlobalInvocationID.xy); }
+// For passes that go over images.
+ivec2 invocationPlace() { return inImage(ivec2(frame.rect.xy)) + ivec2(gl_GlobalInvocationID.xy); }
 
 bool insideRect(ivec2 pixel) { return contains(ivec4(frame.rect), pixel); }
 
@@ -50,9 +53,9 @@ uint materialIndex(uint value) {
   return id <= frame.flags.y ? id : 0u;
 }
 
-uint materialValueAt(ivec2 pixel) { return decodeMaterial(texelFetch(materialImage, inImage(pixel), 0)) >> frame.marks.y; }
+uint materialValueAt(ivec2 at) { return decodeMaterial(texelFetch(materialImage, at, 0)) >> frame.marks.y; }
 
-uint materialAt(ivec2 pixel) { return materialIndex(materialValueAt(pixel)); }
+uint materialAt(ivec2 at) { return materialIndex(materialValueAt(at)); }
 
 // Planar distance of the front surface, -1 where there is none.
 float frontDistanceOf(float stored) {
@@ -60,7 +63,7 @@ float frontDistanceOf(float stored) {
   return hasFlag(PELLUCID_FLAG_FRONT_VIEW_Z) ? planarDistanceViewZ(stored) : planarDistance(frame.camera, stored);
 }
 
-float frontDistance(ivec2 pixel) { return frontDistanceOf(texelFetch(frontDepthImage, inImage(pixel), 0).x); }
+float frontDistance(ivec2 at) { return frontDistanceOf(texelFetch(frontDepthImage, at, 0).x); }
 
 // Planar distance of the back surface, -1 where there is none.
 float backDistanceOf(float stored) {
@@ -101,22 +104,22 @@ vec3 asStored(vec3 color) { return hasFlag(PELLUCID_FLAG_WIDE_OUTPUT) ? color : 
 // True where the post-scatter albedo applies. `last`: this is the frame's final write.
 bool tinted(bool last) { return last && hasFlag(PELLUCID_FLAG_ALBEDO); }
 
-vec3 albedoAt(ivec2 pixel) { return sanitize(texelFetch(albedoImage, inImage(pixel), 0).rgb); }
+vec3 albedoAt(ivec2 at) { return sanitize(texelFetch(albedoImage, at, 0).rgb); }
 
 // True where the result is added to what the output holds.
 bool adds(bool last) { return last && hasFlag(PELLUCID_FLAG_ADDS); }
 
 // `color` with alpha, on top of what the output holds.
-vec4 onHeld(ivec2 pixel, vec3 color) {
-  vec4 held = texelFetch(heldImage, inImage(pixel), 0);
+vec4 onHeld(ivec2 at, vec3 color) {
+  vec4 held = texelFetch(heldImage, at, 0);
   return vec4(sanitize(sanitize(held.rgb) + color), held.a);
 }
 
-void writeResult(ivec2 pixel, vec3 color, float alpha, bool last) {
+void writeResult(ivec2 at, vec3 color, float alpha, bool last) {
   vec4 result = vec4(sanitize(color), alpha);
-  if (tinted(last)) result.rgb = sanitize(result.rgb * albedoAt(pixel));
-  if (adds(last)) result = onHeld(pixel, result.rgb);
-  imageStore(destinationImage, inImage(pixel), vec4(asStored(result.rgb), result.a));
+  if (tinted(last)) result.rgb = sanitize(result.rgb * albedoAt(at));
+  if (adds(last)) result = onHeld(at, result.rgb);
+  imageStore(destinationImage, at, vec4(asStored(result.rgb), result.a));
 }
 
 #endif

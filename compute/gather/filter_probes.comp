@@ -40,7 +40,10 @@ ivec2 borderCell(int i) {
 
 // ---- The earlier frame
 
-bool accumulates() { return frame.motion.z > 0.0; }
+layout(constant_id = PELLUCID_CONSTANT_ACCUMULATES) const bool kAccumulates = false;
+
+// False in the first frame.
+bool accumulates() { return kAccumulates && frame.motion.z > 0.0; }
 
 const float kOwnFrame = 0.1;      // part of the frame's own light: noise falls to sqrt(.1 / 1.9)
 const float kSameFront = 0.02;    // of the distance, that a surface's may change in a frame

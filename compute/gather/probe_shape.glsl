@@ -17,7 +17,7 @@ struct Beside {
 
 Beside besideAt(ivec2 pixel, Surface x, float reach) {
   ivec2 at = withinRect(pixel);
-  float front = materialAt(at) != 0u ? frontDistance(at) : -1.0;
+  float front = materialAt(inImage(at)) != 0u ? frontDistance(inImage(at)) : -1.0;
   vec3 normal = mat3(frame.viewFromNormal) * decodeNormal(texelFetch(normalImage, inImage(at), 0));
   Surface s = makeSurface(viewRay(frame.camera, at), front, -1.0, normal);
   vec3 apart = (s.position - x.position) * frame.camera.range.w;
@@ -66,7 +66,7 @@ BackFace backAt(ivec2 pixel) {
   float stored = texelFetch(frontDepthImage, inImage(at), 0).x, front = frontDistanceOf(stored);
   ViewRay ray = viewRay(frame.camera, at);
   float chord = chordOf(ray, front, stored, texelFetch(backDepthImage, inImage(at), 0).x);
-  bool there = at == pixel && materialAt(at) != 0u && front > 0.0 && chord > 0.0;
+  bool there = at == pixel && materialAt(inImage(at)) != 0u && front > 0.0 && chord > 0.0;
   return BackFace(ray.origin + front * ray.direction + chord * normalize(ray.direction), there ? chord : 0.0);
 }
 

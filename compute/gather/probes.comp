@@ -17,8 +17,8 @@ const uint kAdds = 1u << 31; // of pass.value.z
 bool findSurface(ivec2 cell, int side, out ProbePlace place, out vec4 normal) {
   for (place.index = 0; place.index < side * side; ++place.index) {
     ivec2 pixel = pixelInCell(cell, side, place.index), within = withinRect(pixel);
-    uint value = materialValueAt(within);
-    place.front = frontDistance(within);
+    uint value = materialValueAt(inImage(within));
+    place.front = frontDistance(inImage(within));
     normal = texelFetch(normalImage, inImage(within), 0);
     place.material = within == pixel ? materialIndex(value) : 0u;
     bool thin = place.material != 0u && hasFlag(PELLUCID_FLAG_THIN_WALLS) && materials[place.material - 1u].meta.z != 0u;

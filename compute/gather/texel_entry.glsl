@@ -51,7 +51,7 @@ struct Shown {
 
 // Front of a pixel that has a material; others show nothing, whatever depth they hold, as their light is not diffused.
 float frontAround(ivec2 pixel) {
-  ivec2 at = withinRect(pixel);
+  ivec2 at = inImage(withinRect(pixel));
   float front = frontDistance(at);
   return materialAt(at) != 0u ? front : -1.0;
 }

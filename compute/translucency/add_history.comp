@@ -8,9 +8,9 @@
 layout(set = 0, binding = PELLUCID_BINDING_HISTORY) uniform texture2D historyImage;
 
 void main() {
-  ivec2 pixel = invocationPixel();
-  if (!insideRect(pixel) || materialAt(pixel) == 0u) return;
-  vec4 source = texelFetch(sourceImage, inImage(pixel), 0);
-  vec3 through = sanitize(texelFetch(historyImage, inImage(pixel), 0).rgb);
-  writeResult(pixel, sanitize(source.rgb) + through, source.a, pass.value.z != 0u);
+  ivec2 at = invocationPlace();
+  if (!insideRect(inLattice(at)) || materialAt(at) == 0u) return;
+  vec4 source = texelFetch(sourceImage, at, 0);
+  vec3 through = sanitize(texelFetch(historyImage, at, 0).rgb);
+  writeResult(at, sanitize(source.rgb) + through, source.a, pass.value.z != 0u);
 }

@@ -12,13 +12,13 @@ layout(set = 0, binding = PELLUCID_BINDING_NORMAL) uniform texture2D normalImage
 layout(constant_id = PELLUCID_CONSTANT_DEBUG_VIEWS) const bool kDebugViews = false;
 
 // `front`: planar distance of `stored`.
-Surface surfaceAt(ivec2 pixel, float front, float stored, uint material) {
-  ViewRay ray = viewRay(frame.camera, pixel);
+Surface surfaceAt(ivec2 at, float front, float stored, uint material) {
+  ViewRay ray = viewRay(frame.camera, inLattice(at));
   float along = -1.0;
   if (hasFlag(PELLUCID_FLAG_CHORD) && hasFlag(PELLUCID_FLAG_BACK_DEPTH))
-    along = chordOf(ray, front, stored, texelFetch(backDepthImage, inImage(pixel), 0).x);
+    along = chordOf(ray, front, stored, texelFetch(backDepthImage, at, 0).x);
   vec3 normal = vec3(0.0);
-  if (hasFlag(PELLUCID_FLAG_NORMAL)) normal = mat3(frame.viewFromNormal) * decodeNormal(texelFetch(normalImage, inImage(pixel), 0));
+  if (hasFlag(PELLUCID_FLAG_NORMAL)) normal = mat3(frame.viewFromNormal) * decodeNormal(texelFetch(normalImage, at, 0));
   Surface s = makeSurface(ray, front, along, normal);
   s.material = material;
   return s;
@@ -26,14 +26,14 @@ Surface surfaceAt(ivec2 pixel, float front, float stored, uint material) {
 
 // Irradiance and the light that comes through, or what a debug view shows; alpha of the source. `value`: of the material image;
 // m: material; `starts`: see main.
-vec4 resultAt(ivec2 pixel, uint value, uint m, bool starts) {
+vec4 resultAt(ivec2 at, uint value, uint m, bool starts) {
   vec3 arriving = vec3(0.0), visible = vec3(0.0), transmitted = vec3(0.0);
   vec3 thickness = vec3(-1.0);
   bool lets = pass.value.x == PELLUCID_LIGHT_ALL || (pass.value.x == PELLUCID_LIGHT_WALLS) == isThinWalled(m + 1u);
-  float stored = texelFetch(frontDepthImage, inImage(pixel), 0).x, front = frontDistanceOf(stored);
+  float stored = texelFetch(frontDepthImage, at, 0).x, front = frontDistanceOf(stored);
   // Marked pixels keep their irradiance.
   if (lets && front > 0.0 && (value & frame.marks.x) == 0u) {
-    Surface s = surfaceAt(pixel, front, stored, m + 1u);
+    Surface s = surfaceAt(at, front, stored, m + 1u);
     float mm = frame.camera.range.w;
     if (s.chord >= 0.0) thickness.r = s.chord * mm;
     for (uint i = 0u; i < pass.value.y; ++i) {
@@ -41,7 +41,7 @@ vec4 resultAt(ivec2 pixel, uint value, uint m, bool starts) {
       // Debug views of light show lights with a direction.
       bool ambient = isAmbient(light);
       if (kDebugViews && ambient && frame.flags.z <= PELLUCID_SHADER_DEBUG_OCCLUSION) continue;
-      Transmitted through = lightTransmission(light, s, pixel);
+      Transmitted through = lightTransmission(light, s, at);
       transmitted += exitanceOf(through, m);
       if (kDebugViews && !ambient) {
         arriving += through.arriving;
@@ -53,7 +53,7 @@ vec4 resultAt(ivec2 pixel, uint value, uint m, bool starts) {
     }
   }
   // Read last: until here its registers let more waves run.
-  vec4 source = starts ? vec4(0.0) : texelFetch(sourceImage, inImage(pixel), 0);
+  vec4 source = starts ? vec4(0.0) : texelFetch(sourceImage, at, 0);
   vec3 result = sanitize(sanitize(source.rgb) + transmitted * materials[m].inverseReflectance.rgb);
   if (kDebugViews) {
     // The divisors are positive where they are used; nothing arriving shows as 0.
@@ -66,18 +66,18 @@ vec4 resultAt(ivec2 pixel, uint value, uint m, bool starts) {
 }
 
 void main() {
-  ivec2 pixel = invocationPixel();
-  bool inside = insideRect(pixel);
+  ivec2 at = invocationPlace();
+  bool inside = insideRect(inLattice(at));
   // A history that starts is 0 wherever nothing came through: the next frame's pixels may lie there.
   bool starts = pass.value.z == PELLUCID_WRITE_STARTS;
-  uint value = inside ? materialValueAt(pixel) : 0u, material = materialIndex(value);
+  uint value = inside ? materialValueAt(at) : 0u, material = materialIndex(value);
   if (material != 0u) {
-    vec4 result = resultAt(pixel, value, material - 1u, starts);
+    vec4 result = resultAt(at, value, material - 1u, starts);
     if (kDebugViews)
-      imageStore(destinationImage, inImage(pixel), result);
+      imageStore(destinationImage, at, result);
     else
-      writeResult(pixel, result.rgb, result.a, pass.value.z == PELLUCID_WRITE_LAST);
+      writeResult(at, result.rgb, result.a, pass.value.z == PELLUCID_WRITE_LAST);
   } else if (starts && inside) {
-    imageStore(destinationImage, inImage(pixel), vec4(0.0));
+    imageStore(destinationImage, at, vec4(0.0));
   }
 }

@@ -19,6 +19,7 @@
 
 #ifdef PELLUCID_OWN_INPUTS
 bool hasFlag(uint flag) { return (frame.flags.x & flag) != 0u; }
+ivec2 inLattice(ivec2 at) { return at + frame.lattice.xy; } // where frame.rect and frame.camera count from
 bool mayUse(uint use) { return true; }
 #else
 #include "frame/frame.glsl"
@@ -33,11 +34,11 @@ layout(constant_id = PELLUCID_CONSTANT_USES) const uint kUses = 0xFFFFFFFFu;
 bool mayUse(uint use) { return (kUses & use) != 0u; }
 
 float distanceOf(ivec2 pixel, uint material, bool back) {
-  if (!insideRect(pixel) || materialAt(pixel) != material) return -1.0;
-  return back ? backDistanceOf(texelFetch(backDepthImage, inImage(pixel), 0).x) : frontDistance(pixel);
+  if (!insideRect(inLattice(pixel)) || materialAt(pixel) != material) return -1.0;
+  return back ? backDistanceOf(texelFetch(backDepthImage, pixel, 0).x) : frontDistance(pixel);
 }
 
-vec3 hiddenIrradianceOf(ivec2 pixel) { return sanitize(texelFetch(hiddenIrradianceImage, inImage(pixel), 0).rgb); }
+vec3 hiddenIrradianceOf(ivec2 pixel) { return sanitize(texelFetch(hiddenIrradianceImage, pixel, 0).rgb); }
 #endif
 
 // material: index + 1, as materialIndex has it and not 0. Frames without thin walls read nothing.
@@ -185,7 +186,7 @@ ivec2 pixelBeside(ivec2 pixel, int i) {
 vec3 facetAt(ivec2 pixel, uint material, bool back) {
   vec4 beside;
   [[dont_unroll]] for (int i = 0; i < 4; ++i) beside[i] = distanceOf(pixelBeside(pixel, i), material, back);
-  return normalOfDepths(frame.camera, pixel, distanceOf(pixel, material, back), beside);
+  return normalOfDepths(frame.camera, inLattice(pixel), distanceOf(pixel, material, back), beside);
 }
 
 // Beyond this cosine a face that turns away from the light is not the one that a map stores, whose texels would have to

@@ -267,8 +267,17 @@ constexpr Pass kFilterProbesPass{.pipeline = "filter_probes",
                                                    PELLUCID_BINDING_BLOCKS),
                                  .writes = bindings(PELLUCID_BINDING_FILTERED_DESTINATION)};
 
+// And averages them with the earlier frame's: a variant, as its registers would cost other frames 2 us.
+constexpr PellucidSpecialization kAccumulates[] = {{PELLUCID_CONSTANT_ACCUMULATES, 1}};
+constexpr Pass kAccumulateProbesPass{.pipeline = "accumulate_probes",
+                                     .words = kFilterProbes,
+                                     .uses = kGather,
+                                     .reads = kFilterProbesPass.reads,
+                                     .writes = kFilterProbesPass.writes,
+                                     .constants = kAccumulates};
+
 void addProbeFilter(Planner& p) {
-  p.add(kFilterProbesPass, "filter probes")
+  p.add(p.facts.stages.accumulates ? kAccumulateProbesPass : kFilterProbesPass, "filter probes")
       .blocks(PELLUCID_LIST_FILTER, partsOfBlock(p.facts, PELLUCID_FILTER_GROUP))
       .push(0, p.facts.gatherSpacing);
 }
@@ -277,7 +286,8 @@ void addProbeFilter(Planner& p) {
 
 constexpr const Pass* kPasses[] = {&kTranslucencyPass, &kDebugViewPass,  &kAddHistoryPass,  &kBaseLevelPass,
                                    &kListBlocksPass,   &kDownsamplePass, &kUpsamplePass,    &kDiffusePass,
-                                   &kEntryPointsPass,  &kProbesPass,     &kFilterProbesPass};
+                                   &kEntryPointsPass,  &kProbesPass,     &kFilterProbesPass,
+                                   &kAccumulateProbesPass};
 constexpr bool fitSlots() {
   for (const Pass* pass : kPasses)
     if (slotOf(*pass, PELLUCID_BINDING_SHADOW_IMAGES) > PELLUCID_PLAN_SLOTS) return false;

@@ -34,7 +34,7 @@ layout(set = 0, binding = PLANNED_BINDINGS + PELLUCID_BINDING_MATERIAL) uniform 
 vec2 slope; // of the device depth of the triangle that is drawn, which is affine over pixels
 
 float distanceOf(ivec2 pixel, uint material, bool back) {
-  if (!contains(ivec4(frame.rect), pixel) || decodeMaterial(texelFetch(materialImage, pixel, 0)) != material) return -1.0;
+  if (!contains(ivec4(frame.rect), pixel + frame.lattice.xy) || decodeMaterial(texelFetch(materialImage, pixel, 0)) != material) return -1.0;
   vec2 steps = vec2(pixel) + 0.5 - gl_FragCoord.xy;
   return planarDistance(frame.camera, back ? gl_FragCoord.z + dot(slope, steps) : texelFetch(earlierDepth, pixel, 0).r);
 }
@@ -47,7 +47,7 @@ vec3 hiddenIrradianceOf(ivec2 pixel) { return vec3(0.0); }
 
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
-  ViewRay ray = viewRay(frame.camera, pixel);
+  ViewRay ray = viewRay(frame.camera, inLattice(pixel));
   slope = vec2(dFdx(gl_FragCoord.z), dFdy(gl_FragCoord.z)); // before invocations part
   float front = texelFetch(earlierDepth, pixel, 0).r;
   uint material = decodeMaterial(texelFetch(materialImage, pixel, 0));
