@@ -18,7 +18,7 @@ double variance(int element) {
   return 7.0 / 12 * std::exp2(2 * element) - 13.0 / 12;
 }
 
-// docs/how-it-works.md, "Shares".
+// docs/how-it-works.md, "Fitted tables".
 TEST(PyramidModel, ElementsKeepLightAndPlaceAndHaveTheStatedVariances) {
   for (int e = 0; e < kElementCount; ++e)
     for (int phase = 0; phase < 1 << e; ++phase) {

@@ -1,4 +1,4 @@
-// Computes R_l = (1 - s) E_l + s R_(l+1), s the coarser levels' share of the profile, from the coarsest level of the pyramid to
+// Computes U_l = (1 - s) E_l + s U_(l+1), s the coarser levels' share of the profile, from the coarsest level of the pyramid to
 // level 2, and the shares of level 2's pixels. A group makes the 16 x 16 texels of level 2 of a block and, before them, what
 // they need of each coarser level.
 #version 460

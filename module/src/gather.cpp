@@ -242,7 +242,7 @@ float gatherReach(const shared::GatherConstants& gather, uint32_t samples) {
   const glm::vec4& lengths = gather.lengths;
   // Entry points lie t + s away, t <= lengths.z along the axis and s the spread of the last sample, which is
   // within the last 1 / samples by at most 25/26 of it (patternOf and gatherSpread of
-  // compute/gather/probe_light.glsl and compute/lib/gather.glsl).
+  // compute/gather/probe_light.glsl).
   const float rest = 1.0f / (26 * static_cast<float>(samples)), u = 1 - rest;
   return lengths.z - std::log(rest) * lengths.x * std::exp2(lengths.y * u);
 }

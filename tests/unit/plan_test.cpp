@@ -487,7 +487,7 @@ TEST(Plan, LargeImagesKeepTheirLists) {
     }
 }
 
-// The default frame, as docs/how-it-works.md draws it.
+// The default frame, as docs/how-it-works.md lists it.
 TEST(Plan, GathersBesideTheDiffusion) {
   const std::vector<std::string> all = {"base level", "list blocks", "downsample", "entry points",
                                         "downsample", "probes",      "downsample", "filter probes",
