@@ -119,9 +119,9 @@ void writeQuad(ivec2 quad, uint materials) {
   // All loads come before the first use, so that their latencies overlap.
   vec3 normal = normalAt(withinRect(pixelOfQuad(quad)));
   [[unroll]] for (int i = 0; i < 4; ++i) {
-    ivec2 at = withinRect(2 * quad + ivec2(i & 1, i >> 1));
-    depth[i] = frontDistance(inImage(at));
-    source[i] = texelFetch(sourceImage, inImage(at), 0);
+    ivec2 at = inImage(withinRect(2 * quad + ivec2(i & 1, i >> 1)));
+    depth[i] = frontDistance(at);
+    source[i] = texelFetch(sourceImage, at, 0);
   }
   float least = kNoDepth, most = 0.0;
   [[unroll]] for (int i = 0; i < 4; ++i) {
@@ -144,12 +144,13 @@ void writeQuad(ivec2 quad, uint materials) {
 void main() {
   uint block = gl_WorkGroupID.x, invocation = gl_LocalInvocationIndex;
   ivec2 first = firstPixel(block) / 2; // quad
+  ivec4 rect = ivec4(inImage(ivec2(frame.rect.xy)), inImage(ivec2(frame.rect.zw)));
   uint materials[kQuads * kQuads];
   [[unroll]] for (int i = 0; i < kQuads * kQuads; ++i) {
     materials[i] = 0u;
     [[unroll]] for (int k = 0; k < 4; ++k) {
-      ivec2 pixel = 2 * (first + quadInBlock(i)) + ivec2(k & 1, k >> 1);
-      materials[i] |= (insideRect(pixel) ? materialAt(inImage(pixel)) : 0u) << 8 * k;
+      ivec2 at = inImage(2 * first) + 2 * quadInBlock(i) + ivec2(k & 1, k >> 1);
+      materials[i] |= (contains(rect, at) ? materialAt(at) : 0u) << 8 * k;
     }
   }
   if (invocation < 2u) cells[invocation] = 0u;

@@ -38,6 +38,8 @@ std::string imagesTable() {
       {PELLUCID_RESOURCE_ALBEDO, "color that multiplies the light after scattering",
        "the output is not multiplied"},
       {PELLUCID_RESOURCE_MATERIAL, "unsigned integer: 0 for no material, i for `materials[i - 1]`", ""},
+      {PELLUCID_RESOURCE_MOTION, "motion vectors of `reuse` ACCUMULATE, without jitter",
+       "noise of bodies that move or turn is not averaged over frames"},
       {PELLUCID_RESOURCE_OUTPUT,
        "storage image, rgba16f, rgba32f or rg11b10f; may be the irradiance image; only pixels with "
        "a material are written",

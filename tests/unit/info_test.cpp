@@ -83,14 +83,14 @@ TEST_F(InfoCommand, SaysWhatIsThere) {
 // A ball of a medium with a mean free path of 1 / (.2 + .01) mm: the model has no sides.
 TEST_F(InfoCommand, WarnsOfBodiesThatAreOpticallyThin) {
   SceneParameters p{.name = "sphere", .width = 64, .height = 64, .shadowSize = 8};
-  for (const double radius : {3.0, 8.0}) {
+  for (const double radius : {3.0, 12.0}) {
     p.options["radius"] = radius;
     p.options["extent"] = 3 * radius;
     Capture capture = makeScene(p);
     capture.materials[0] = CoefficientMaterial{{0.2, 0.3, 0.4}, {0.01, 0.01, 0.01}, 0, 1.4};
     writeCapture(capture, directory / "ball.exr");
     const json warnings = warningsOf(directory / "ball.exr");
-    EXPECT_EQ(has(warnings, "materials[0]: the mean free path of 4.76 mm in R"), radius == 3) << warnings;
+    EXPECT_EQ(has(warnings, "is less than 4 mean free paths, which are 4.76 mm each in R"), radius == 3) << warnings;
     // The ball's width, less at most two pixels of 9/64 mm.
     EXPECT_EQ(has(warnings, "the body's size, 5.") || has(warnings, "the body's size, 6 mm"), radius == 3)
         << warnings;

@@ -203,4 +203,16 @@ TEST(Reuse, HistoryMustBeGiven) {
   EXPECT_EQ(s.problems(), "");
 }
 
+TEST(Reuse, AccumulationNeedsMotion) {
+  Sequence s(PELLUCID_REUSE_ACCUMULATE);
+  s.frame.options.gatherSamples = 8;
+  s.frame.options.history = Frame::view();
+  for (PellucidImage& image : s.frame.transients) image = Frame::view();
+  EXPECT_EQ(s.problems(), "motion has no view, but reuse ACCUMULATE needs it\n");
+  s.frame.motion = Frame::view();
+  EXPECT_EQ(s.problems(), "");
+  s.frame.motion.layout = VK_IMAGE_LAYOUT_UNDEFINED;
+  EXPECT_NE(s.problems().find("motion is in VkImageLayout 0"), std::string::npos) << s.problems();
+}
+
 }  // namespace

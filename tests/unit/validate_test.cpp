@@ -58,12 +58,6 @@ const std::vector<Violation> kViolations = {
        f.frame.options.anchor[3] = 1;
        f.frame.options.reuse = PELLUCID_REUSE_ALTERNATE;
      }},
-    {"AccumulationWithoutMotion", "motion", "has no view, but reuse ACCUMULATE needs it",
-     [](Frame& f) {
-       f.frame.options.gatherSamples = 8;
-       f.frame.options.reuse = PELLUCID_REUSE_ACCUMULATE;
-       f.frame.options.history = Frame::view();
-     }},
     {"MaterialMaskBelowShift", "options.materialMask", "whose last bits materialShift 4 drops",
      [](Frame& f) {
        f.frame.options.materialShift = 4;
