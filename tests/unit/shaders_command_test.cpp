@@ -305,7 +305,7 @@ TEST(ShadersCommand, PlansBindWhatIsDescribed) {
         }
       }
     }
-  EXPECT_EQ(seen.size() + 2, pellucidGetPipelineCount()) << "all but the debug view and add history";
+  EXPECT_EQ(seen.size() + 3, pellucidGetPipelineCount()) << "all but debug view, add history and accumulate probes";
 }
 
 }  // namespace
