@@ -109,6 +109,37 @@ TEST_F(Gather, ConstantLightStaysConstant) {
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(out.at(4, 4)[k], 3, 6e-3);
 }
 
+// Cells of 4 pixels are linear between their probes: a slab that gets thicker along x, or along y, is as with a probe a pixel.
+TEST_F(Gather, CellsAreLinearBetweenProbes) {
+  for (const bool alongX : {true, false}) {
+    Capture c = flatCapture(48, 48, 8);
+    c.lights = {backLight()};
+    c.lights[0].shadowMaps = {flatShadowMap(-18, PELLUCID_DEPTH_DEVICE)};
+    cover50mm(c.lights[0].shadowMaps[0]);
+    // By .3 mm a mm: texels have .2 mm.
+    Image& depth = c.lights[0].shadowMaps[0].depth.image;
+    for (int y = 0; y < depth.height; ++y)
+      for (int x = 0; x < depth.width; ++x)
+        depth.at(x, y)[0] += static_cast<float>(((alongX ? x : y) - 128) * 0.2 * 0.3 / 100 + 0.04);
+    std::fill(c.irradiance.data.begin(), c.irradiance.data.end(), 0.0f);
+    ReplaySettings s = settings(32);
+    s.translucency.gatherSpacing = 1;
+    const Image expected = replay(c, testMaterial(), s);
+    s.translucency.gatherSpacing = 4;
+    const Image out = replay(c, testMaterial(), s);
+    double sum = 0, most = 0;
+    for (int y = 8; y < 40; ++y)
+      for (int x = 8; x < 40; ++x) {
+        ASSERT_GT(expected.at(x, y)[0], 1e-3f);
+        const double e = std::abs(static_cast<double>(out.at(x, y)[0]) / static_cast<double>(expected.at(x, y)[0]) - 1);
+        sum += e / (32 * 32);
+        most = std::max(most, e);
+      }
+    EXPECT_LT(sum, 0.02) << alongX;
+    EXPECT_LT(most, 0.06) << alongX;
+  }
+}
+
 TEST_F(Gather, NothingFromOutsideOrEmptyTexels) {
   Capture c = backlitSlab(1, PELLUCID_DEPTH_VIEW_Z);
   c.backDepth = {};  // a thin slab returns less
