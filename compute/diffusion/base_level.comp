@@ -144,6 +144,7 @@ void writeQuad(ivec2 quad, uint materials) {
 void main() {
   uint block = gl_WorkGroupID.x, invocation = gl_LocalInvocationIndex;
   ivec2 first = firstPixel(block) / 2; // quad
+  // The rect in pixels of the image takes 8 registers less than pixels of the lattice for each load.
   ivec4 rect = ivec4(inImage(ivec2(frame.rect.xy)), inImage(ivec2(frame.rect.zw)));
   uint materials[kQuads * kQuads];
   [[unroll]] for (int i = 0; i < kQuads * kQuads; ++i) {

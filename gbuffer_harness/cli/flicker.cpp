@@ -261,7 +261,8 @@ void flicker(const Command& command, const std::vector<std::string>& sceneOption
   } else {
     frames = isProcedural(command, options.scene) ? proceduralFrames(options) : modelFrames(options, device);
   }
-  if (settings.anchor[3] == 0 && (settings.reuse == PELLUCID_REUSE_NONE || settings.reuse == PELLUCID_REUSE_ACCUMULATE)) settings.anchor = middleOf(frames.still);
+  const bool follows = settings.reuse == PELLUCID_REUSE_NONE || settings.reuse == PELLUCID_REUSE_ACCUMULATE;
+  if (settings.anchor[3] == 0 && follows) settings.anchor = middleOf(frames.still);
   if (!options.paths.empty() && !frames.scene)
     throw UsageError("--path: needs a model, and not a capture or --procedural");
   std::vector<Row> rows = measure(options, pixels, frames, settings, device);
@@ -321,9 +322,9 @@ void addFlickerCommand(const Command& app) {
       .range(-10.0, 10.0);
   const auto path = command.option(
       "--path", options->paths,
-                 std::string("of a model: also follow these paths, with commas: ") + kPathSyntax +
-                     ". Angles change by 0.5 degrees a frame, the distance of a dolly by 1 %, and a blinking "
-                     "light each 6 frames");
+      std::string("of a model: also follow these paths, with commas: ") + kPathSyntax +
+          ". Angles change by 0.5 degrees a frame, the distance of a dolly by 1 %, and a blinking light each 6 "
+          "frames");
   command.option("--frames", options->frames, "of each path").range(2, 1000).needs(path);
   command
       .option("--limit", options->limits,

@@ -79,7 +79,7 @@ std::vector<PathStep> followPath(const std::string& path, int frames, const Capt
     Image image = replay(capture);
     const bool switches = path == "blink" && frame % kBlinkFrames == 0;
     if (before && !switches)
-      steps.push_back({frame, compareAlongPath({*before, beforeImage}, {capture, image}),
+      steps.push_back({compareAlongPath({*before, beforeImage}, {capture, image}),
                        compareAlongPath({*before, before->irradiance}, {capture, capture.irradiance})});
     before = std::move(capture);
     beforeImage = std::move(image);

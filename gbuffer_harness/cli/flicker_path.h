@@ -22,7 +22,6 @@ inline constexpr double kPathDegrees = 0.5, kPathDolly = 0.01;
 inline constexpr int kBlinkFrames = 6;
 
 struct PathStep {
-  int frame;  // the later one, from 1 on
   Flicker result, irradiance;
 };
 

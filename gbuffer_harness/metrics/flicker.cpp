@@ -126,7 +126,7 @@ public:
   }
   glm::dvec2 project(const glm::dvec3& place) const { return earlierCamera_.project(place); }
 
-  // What the earlier frame's image shows at the place that the later one has at a pixel.
+  // The earlier image's color at the place of the surface that the later frame shows at a pixel.
   std::optional<std::array<double, 3>> read(const Image& image, int x, int y) const {
     const std::optional<glm::dvec3> place = placeOf(x, y);
     if (!place) return std::nullopt;
@@ -147,7 +147,7 @@ public:
                                                     earlier_.frontDepth.encoding);
       for (std::size_t c = 0; c < 3; ++c) sum[c] += weight * static_cast<double>(image.at(px, py)[c]);
     }
-    // Of another surface in front.
+    // Another surface hides the place from the earlier camera.
     constexpr double kSameDistance = 0.005;
     if (!(std::abs(shown - planar) <= kSameDistance * std::abs(planar))) return std::nullopt;
     return sum;

@@ -212,6 +212,8 @@ void makeFrame(const Capture& capture, const FrameShape& shape,
   f.metersPerUnit = static_cast<float>(capture.metersPerUnit);
   copy(capture.clipFromView, f.clipFromView);
   copy(fromOrigin(capture.viewFromWorld, origin), f.viewFromWorld);
+  for (std::size_t i = 0; i < 3; ++i)
+    f.options.anchor[i] = static_cast<float>(static_cast<double>(settings.anchor[i]) - origin[i]);
   f.options.frontDepthEncoding = capture.frontDepth.encoding;
   f.options.backDepthEncoding = capture.backDepth.encoding;
   f.options.normalsInViewSpace = capture.normalsInViewSpace;

@@ -19,13 +19,13 @@ float cameraLightDot(const FrameFacts& f, const PellucidLight& light) {
   return static_cast<float>(length > 0 ? glm::dot(axis, toLight) / length : 0);
 }
 
-// What was kept is of the same pixels.
+// The kept light is of the same pixels.
 bool fits(const History& kept, const History& now) {
   return kept.valid != 0 && kept.format == now.format && kept.gatherSpacing == now.gatherSpacing &&
          std::equal(kept.extent, kept.extent + 2, now.extent) && kept.rect == now.rect;
 }
 
-// And can stand for them.
+// The kept light can stand for this frame's.
 bool isAlike(const History& kept, const History& now) {
   return fits(kept, now) && kept.lightCount == now.lightCount && kept.preExposure == now.preExposure;
 }
