@@ -24,6 +24,14 @@ constexpr int kShadowSize = 2048, kSoftwareShadowSize = 512;
 
 const std::string kNothing = "nothing";
 
+bool isSoftware(const Device& device) {
+  return device.properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+}
+
+int shadowSizeOf(const Device& device, const FrameOptions& options) {
+  return options.shadowSize.value_or(isSoftware(device) ? kSoftwareShadowSize : kShadowSize);
+}
+
 // Nothing is a portrait without its material.
 std::string drawnAs(const std::string& name) { return name == kNothing ? "portrait" : name; }
 
@@ -52,40 +60,47 @@ std::shared_ptr<const Capture> turnedOf(const std::filesystem::path& file, const
   return turned;
 }
 
-// A scan of a head under a key and a rim light, as the harness's rasterizer draws it.
+// A file of the folder under a key and a rim light.
+Model litModel(const std::filesystem::path& folder, const std::string& file) {
+  Model model = loadGltf(folder / file, {0.052, {{"*", "skin1"}}}).model;
+  Light key, rim;
+  key.direction = {0.6, -0.4, -0.7};
+  rim.direction = {0.5, -0.2, 0.85};
+  key.intensity = rim.intensity = 2;
+  model.lights = {key, rim};
+  return model;
+}
+
+constexpr const char* kHead = "head_views.glb";
+
+// Throws InputError where the file lacks the camera.
+const ModelCamera& cameraOf(const Model& model, const std::string& name) {
+  const auto found = std::find_if(model.cameras.begin(), model.cameras.end(),
+                                  [&](const ModelCamera& c) { return c.name == name; });
+  if (found == model.cameras.end()) throw InputError(model.name, "cameras", "there is no \"" + name + "\"");
+  return *found;
+}
+
+// Frames that the harness's rasterizer draws.
 class DrawnFrames {
 public:
   DrawnFrames(Device& device, const std::filesystem::path& models, int shadowSize)
       : device_(device), models_(models), shadowSize_(shadowSize) {}
 
   // Throws InputError where the files lack the frame.
-  void load(const std::string& name) { camera(name); }
+  void load(const std::string& name) { cameraOf(modelOf(name), name); }
 
   Capture make(const std::string& name, int width, int height) {
     const RasterOptions raster{.width = width, .height = height, .shadowSize = shadowSize_};
-    return rasterize(device_, modelOf(name), camera(name), raster).capture;
+    const Model& model = modelOf(name);
+    return rasterize(device_, model, cameraOf(model, name), raster).capture;
   }
 
 private:
-  const ModelCamera& camera(const std::string& name) {
-    const Model& model = modelOf(name);
-    const auto found = std::find_if(model.cameras.begin(), model.cameras.end(),
-                                    [&](const ModelCamera& c) { return c.name == name; });
-    if (found == model.cameras.end()) throw InputError(model.name, "cameras", "there is no \"" + name + "\"");
-    return *found;
-  }
-
   const Model& modelOf(const std::string& name) {
-    const std::string file = name == "crowd" ? "crowd.glb" : "head_views.glb";
+    const std::string file = name == "crowd" ? "crowd.glb" : kHead;
     const auto [entry, isNew] = loaded_.try_emplace(file);
-    if (isNew) {
-      entry->second = loadGltf(models_ / file, {0.052, {{"*", "skin1"}}}).model;
-      Light key, rim;
-      key.direction = {0.6, -0.4, -0.7};
-      rim.direction = {0.5, -0.2, 0.85};
-      key.intensity = rim.intensity = 2;
-      entry->second.lights = {key, rim};
-    }
+    if (isNew) entry->second = litModel(models_, file);
     return entry->second;
   }
 
@@ -140,10 +155,10 @@ std::vector<FrameSource> frameSources(Device& device, const FrameOptions& option
   if (!options.captures.empty() && options.models.empty() && options.names.empty()) return sources;
 
   std::vector<std::pair<int, int>> sizes = options.sizes;
-  const bool software = device.properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+  const bool software = isSoftware(device);
   if (sizes.empty() && software) sizes.assign(std::begin(kSoftwareSizes), std::end(kSoftwareSizes));
   if (sizes.empty()) sizes.assign(std::begin(kSizes), std::end(kSizes));
-  const int shadowSize = options.shadowSize.value_or(software ? kSoftwareShadowSize : kShadowSize);
+  const int shadowSize = shadowSizeOf(device, options);
   std::vector<std::string> names;
   for (const std::string name : kFrameNames)
     if (options.names.empty() || std::count(options.names.begin(), options.names.end(), name) > 0)
@@ -168,6 +183,16 @@ std::vector<FrameSource> frameSources(Device& device, const FrameOptions& option
                          },
                          nullptr});
   return sources;
+}
+
+DrawnModel portrait(Device& device, const FrameOptions& options, int size) {
+  if (options.models.empty())
+    throw InputError("--models", "", std::string("the table paths needs a folder of ") + kHead);
+  DrawnModel drawn{litModel(options.models, kHead), {}, {}};
+  drawn.camera = cameraOf(drawn.model, "portrait");
+  drawn.raster.width = drawn.raster.height = size;
+  drawn.raster.shadowSize = shadowSizeOf(device, options);
+  return drawn;
 }
 
 }  // namespace pellucid::bench

@@ -9,6 +9,7 @@
 #include "capture/capture.h"
 #include "common/device.h"
 #include "options.h"
+#include "raster/raster.h"
 
 namespace pellucid::bench {
 
@@ -24,5 +25,14 @@ struct FrameSource {
 // Captures of files come first, then every name at each size; only the former where there are some and
 // neither models nor names are given. The device draws models. Throws InputError for what cannot be read.
 std::vector<FrameSource> frameSources(harness::Device& device, const FrameOptions& options);
+
+// A scan of a head under a key and a rim light, as its camera "portrait" sees it.
+struct DrawnModel {
+  harness::Model model;
+  harness::ModelCamera camera;
+  harness::RasterOptions raster;  // `size` pixels a side
+};
+// Throws InputError where FrameOptions::models lacks it.
+DrawnModel portrait(harness::Device& device, const FrameOptions& options, int size);
 
 }  // namespace pellucid::bench

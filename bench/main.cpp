@@ -13,6 +13,7 @@
 #include "context_creation.h"
 #include "frames.h"
 #include "options.h"
+#include "path_flicker.h"
 #include "plane.h"
 #include "scene.h"
 #include "submission.h"
@@ -129,6 +130,9 @@ private:
           {{"width", width}, {"height", height}, {"radius_pixels", radius}, {"floor_us", planes.floor}});
     }
     if (wanted("thesis")) measureThesis(device_, context, options_.frames, repeat_, report_);
+    if (wanted("paths"))
+      for (auto& [name, plots] : measurePaths(device_, context, options_.frames, repeat_, report_))
+        plots_[name] = std::move(plots);
     if (wanted("frames"))
       for (auto& [size, frames] : measureFrames(device_, context, sources, options_.frames, repeat_, report_))
         plots_["frames_" + size] = std::move(frames);

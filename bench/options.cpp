@@ -26,7 +26,7 @@ int readOptions(int argc, char** argv, Options& options) {
   app.add_option("--tables", options.tables, "which sections to measure, with commas")
       ->delimiter(',')
       ->check(CLI::IsMember(
-          std::set<std::string>{"frames", "context", "module", "fused", "gather", "diffusion", "thesis"}))
+          std::set<std::string>{"frames", "paths", "context", "module", "fused", "gather", "diffusion", "thesis"}))
       ->capture_default_str();
   app.add_option("--repeat", options.repeat, "counted runs of each; default 7, on a software device 3")
       ->check(CLI::Range(1, 10000));

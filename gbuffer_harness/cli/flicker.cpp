@@ -12,7 +12,6 @@
 #include "cli/capture_options.h"
 #include "cli/command.h"
 #include "cli/commands.h"
-#include "cli/flicker_path.h"
 #include "cli/limits.h"
 #include "cli/metrics_json.h"
 #include "cli/nearest_distance.h"
@@ -21,10 +20,12 @@
 #include "cli/settings.h"
 #include "common/compare.h"
 #include "common/error.h"
+#include "common/png.h"
 #include "common/progress.h"
+#include "metrics/flicker.h"
 #include "metrics/moved_capture.h"
+#include "raster/camera_path.h"
 #include "raster/framing.h"
-#include "reference/camera.h"
 #include "replay/replay.h"
 
 namespace pellucid::harness {
@@ -57,6 +58,7 @@ struct Options {
   double lightDegrees = 0.5;
   std::string paths;  // "": none
   int frames = 24;
+  std::string picture;  // "": none
   std::vector<std::string> limits;
   bool json = false;
 };
@@ -118,27 +120,6 @@ Frames modelFrames(const Options& options, Device& device) {
   }
   frames.scene = std::move(scene);
   return frames;
-}
-
-// The middle of the visible surfaces with a material, as an engine passes the place of the body that it looks at.
-std::array<float, 4> middleOf(const Capture& capture) {
-  const reference::Camera camera(capture.clipFromView, capture.width, capture.height);
-  glm::dvec3 sum(0);
-  double count = 0;
-  for (int y = 0; y < capture.height; ++y)
-    for (int x = 0; x < capture.width; ++x) {
-      if (capture.material[static_cast<std::size_t>(y) * static_cast<std::size_t>(capture.width) +
-                           static_cast<std::size_t>(x)] == 0)
-        continue;
-      const std::optional<double> depth =
-          camera.planarDepth(capture.frontDepth.image.at(x, y)[0], capture.frontDepth.encoding);
-      if (!depth) continue;
-      sum += camera.position(glm::dvec2(x, y), *depth);
-      ++count;
-    }
-  if (count == 0) return {0, 0, 0, 0};
-  const glm::dvec4 middle = glm::inverse(reference::toMatrix(capture.viewFromWorld)) * glm::dvec4(sum / count, 1);
-  return {static_cast<float>(middle.x), static_cast<float>(middle.y), static_cast<float>(middle.z), 1};
 }
 
 // The options of a scene have no meaning for a capture.
@@ -209,23 +190,76 @@ Row rowOf(std::string change, std::vector<Flicker> steps) {
   return row;
 }
 
+// Frames of a path, and below each how it differs from the frame before.
+class PathPicture {
+public:
+  explicit PathPicture(int frames) : frames_(frames) {}
+
+  bool wants(int frame) const { return frame > 0 && frame * kShown % (frames_ - 1) < kShown; }
+  void add(const Image& result, const Image& difference) {
+    results_.push_back(result);
+    differences_.push_back(difference);
+  }
+  void write(const std::string& file) {
+    std::vector<const Image*> images;
+    for (const Image& result : results_) images.push_back(&result);
+    const Image top = contactSheet(images, kShown);
+    // The 99th percentile is shown as 0.8: a fall by a twentieth of it is black.
+    const float scale = autoExposure(top);
+    images.clear();
+    for (Image& difference : differences_) {
+      for (float& value : difference.data) value = 0.2f + 5 * scale * value;
+      images.push_back(&difference);
+    }
+    std::vector<std::uint8_t> rgb = toSrgb(top, scale);
+    const Image bottom = contactSheet(images, kShown);
+    const std::vector<std::uint8_t> changes = toSrgb(bottom);
+    rgb.insert(rgb.end(), changes.begin(), changes.end());
+    writePng(file, top.width, top.height + bottom.height, rgb);
+  }
+
+private:
+  static constexpr int kShown = 4;
+  int frames_;
+  std::vector<Image> results_, differences_;
+};
+
 void measurePaths(const Options& options, const Frames& frames, const ReplaySettings& settings, Device& device,
                   std::vector<Row>& rows) {
   const std::optional<Environment> sky = environment(options.scene);
   const std::vector<PellucidMaterial> materials = compileMaterials(frames.still);
-  for (const std::string& path : split(options.paths, ',')) {
+  for (const std::string& name : split(options.paths, ',')) {
+    Model model = frames.scene->model;
+    const CameraPath path(name, model, frames.scene->camera);
     ReplaySequence sequence(device);
-    const std::vector<PathStep> steps =
-        followPath(path, options.frames, *frames.scene, sky, device, [&](const Capture& capture) {
-          return rgb(sequence.run(capture, materials, settings));
-        });
     std::vector<Flicker> results, irradiances;
-    for (const PathStep& step : steps) {
-      results.push_back(step.result);
-      irradiances.push_back(step.irradiance);
+    PathPicture picture(options.frames);
+    std::optional<Capture> before;
+    Image imageBefore;
+    Progress progress("path " + name, static_cast<std::size_t>(options.frames));
+    for (int frame = 0; frame < options.frames; ++frame) {
+      const CameraPath::Pose pose = path.at(frame);
+      model.lights = pose.lights;
+      Capture capture = captureScene(device, model, pose.camera, frames.scene->raster, sky).capture;
+      std::optional<Reprojection> reprojection;
+      if (before) {
+        reprojection.emplace(*before, capture);
+        capture.motion = reprojection->motion();
+      }
+      Image image = rgb(sequence.run(capture, materials, settings));
+      if (reprojection && !pose.switches) {
+        Image difference;
+        results.push_back(reprojection->compare(imageBefore, image, &difference));
+        irradiances.push_back(reprojection->compare(before->irradiance, capture.irradiance));
+        if (!options.picture.empty() && picture.wants(frame)) picture.add(image, difference);
+      }
+      before = std::move(capture);
+      imageBefore = std::move(image);
+      progress.advance();
     }
-    rows.push_back(rowOf("path " + path, std::move(results)));
-    rows.push_back(rowOf("path " + path + ", irradiance", std::move(irradiances)));
+    rows.push_back(rowOf("path " + name, std::move(results)));
+    rows.push_back(rowOf("path " + name + ", irradiance", std::move(irradiances)));
+    if (!options.picture.empty()) picture.write(options.picture);
   }
 }
 
@@ -262,9 +296,11 @@ void flicker(const Command& command, const std::vector<std::string>& sceneOption
     frames = isProcedural(command, options.scene) ? proceduralFrames(options) : modelFrames(options, device);
   }
   const bool follows = settings.reuse == PELLUCID_REUSE_NONE || settings.reuse == PELLUCID_REUSE_ACCUMULATE;
-  if (settings.anchor[3] == 0 && follows) settings.anchor = middleOf(frames.still);
+  if (settings.anchor[3] == 0 && follows) settings.anchor = visibleMiddle(frames.still);
   if (!options.paths.empty() && !frames.scene)
     throw UsageError("--path: needs a model, and not a capture or --procedural");
+  if (!options.picture.empty() && split(options.paths, ',').size() != 1)
+    throw UsageError("--picture: shows one path, and --path has more");
   std::vector<Row> rows = measure(options, pixels, frames, settings, device);
   if (!options.paths.empty()) measurePaths(options, frames, settings, device, rows);
   if (options.json) {
@@ -322,10 +358,14 @@ void addFlickerCommand(const Command& app) {
       .range(-10.0, 10.0);
   const auto path = command.option(
       "--path", options->paths,
-      std::string("of a model: also follow these paths, with commas: ") + kPathSyntax +
+      "of a model: also follow these paths, with commas: " + pathSyntax() +
           ". Angles change by 0.5 degrees a frame, the distance of a dolly by 1 %, and a blinking light each 6 "
           "frames");
   command.option("--frames", options->frames, "of each path").range(2, 1000).needs(path);
+  command
+      .option("--picture", options->picture,
+              "PNG to write: four frames of the path, and below each its change since the frame before, on gray")
+      .needs(path);
   command
       .option("--limit", options->limits,
               "exit with 1 when any channel of any change exceeds it: rel_rmse=, p999=, worst=; or when "

@@ -74,7 +74,7 @@ namespace {
 // Statistics of the difference less its mean over the 5x5 pixels around, where all of these are of one surface and of
 // `both`, over `base`, of whose pixels `mask` counts.
 Flicker measureUneven(const Image& before, const Image& after, const Surfaces& surfaces, const Mask& both,
-                      const Image& base, const Mask& mask) {
+                      const Image& base, const Mask& mask, Image* difference = nullptr) {
   constexpr int kSide = 2 * kSurroundings + 1;
   Image d(base.width, base.height, 3);
   Mask differences(mask.size());
@@ -89,6 +89,7 @@ Flicker measureUneven(const Image& before, const Image& after, const Surfaces& s
         d.at(x, y)[c] = static_cast<float>(static_cast<double>(after.at(x, y)[c]) - before.at(x, y)[c] -
                                            (means.a[c] - means.b[c]));
     }
+  if (difference) *difference = d;
   return measure(base, d, mask, differences);
 }
 
@@ -100,97 +101,78 @@ Flicker compareTurned(const Image& still, const Image& turned, const Surfaces& s
   return measureUneven(still, turned, surfaces, mask, still, mask);
 }
 
-namespace {
+Reprojection::Reprojection(const Capture& earlier, const Capture& later)
+    : earlier_(earlier),
+      later_(later),
+      earlierSurfaces_(earlier),
+      laterSurfaces_(later),
+      earlierCamera_(earlier.clipFromView, earlier.width, earlier.height),
+      laterCamera_(later.clipFromView, later.width, later.height),
+      earlierFromLater_(reference::toMatrix(earlier.viewFromWorld) *
+                        glm::inverse(reference::toMatrix(later.viewFromWorld))) {}
 
-// The later frame's pixels in the earlier one.
-class Reprojection {
-public:
-  Reprojection(const Capture& earlier, const Capture& later)
-      : earlier_(earlier),
-        later_(later),
-        surfaces_(earlier),
-        earlierCamera_(earlier.clipFromView, earlier.width, earlier.height),
-        laterCamera_(later.clipFromView, later.width, later.height),
-        earlierFromLater_(reference::toMatrix(earlier.viewFromWorld) *
-                          glm::inverse(reference::toMatrix(later.viewFromWorld))) {}
+// In the earlier camera's view space; none behind the earlier eye.
+std::optional<glm::dvec3> Reprojection::placeOf(int x, int y) const {
+  const std::optional<double> depth =
+      laterCamera_.planarDepth(*later_.frontDepth.image.at(x, y), later_.frontDepth.encoding);
+  if (!depth) return std::nullopt;
+  const glm::dvec3 place(earlierFromLater_ * glm::dvec4(laterCamera_.position({x + 0.5, y + 0.5}, *depth), 1));
+  if (!earlierCamera_.orthographic() && !(earlierCamera_.planarDepth(place) > 0)) return std::nullopt;
+  return place;
+}
 
-  // In the earlier camera's view space, the place that the later frame shows at a pixel; none behind the earlier eye.
-  std::optional<glm::dvec3> placeOf(int x, int y) const {
-    const std::optional<double> depth =
-        laterCamera_.planarDepth(*later_.frontDepth.image.at(x, y), later_.frontDepth.encoding);
-    if (!depth) return std::nullopt;
-    const glm::dvec3 place(earlierFromLater_ *
-                           glm::dvec4(laterCamera_.position({x + 0.5, y + 0.5}, *depth), 1));
-    if (!earlierCamera_.orthographic() && !(earlierCamera_.planarDepth(place) > 0)) return std::nullopt;
-    return place;
+std::optional<std::array<double, 3>> Reprojection::read(const Image& image, int x, int y) const {
+  const std::optional<glm::dvec3> place = placeOf(x, y);
+  if (!place) return std::nullopt;
+  const double planar = earlierCamera_.planarDepth(*place);
+  const glm::dvec2 at = earlierCamera_.project(*place) - 0.5;
+  // Also where `at` is no number.
+  if (!(at.x >= 0 && at.y >= 0 && at.x < image.width - 1 && at.y < image.height - 1)) return std::nullopt;
+  const int left = static_cast<int>(at.x), top = static_cast<int>(at.y);
+  if (!earlierSurfaces_.wholeBlock(left, top, 2)) return std::nullopt;
+  const glm::dvec2 part = at - glm::floor(at);
+  std::array<double, 3> sum = {};
+  double shown = 0;
+  for (int i = 0; i < 4; ++i) {
+    const int px = left + i % 2, py = top + i / 2;
+    const double weight = (i % 2 ? part.x : 1 - part.x) * (i / 2 ? part.y : 1 - part.y);
+    // The block is wholly of surface: there is a depth.
+    shown +=
+        weight * *earlierCamera_.planarDepth(*earlier_.frontDepth.image.at(px, py), earlier_.frontDepth.encoding);
+    for (std::size_t c = 0; c < 3; ++c) sum[c] += weight * static_cast<double>(image.at(px, py)[c]);
   }
-  glm::dvec2 project(const glm::dvec3& place) const { return earlierCamera_.project(place); }
+  // Another surface hides the place from the earlier camera.
+  constexpr double kSameDistance = 0.005;
+  if (!(std::abs(shown - planar) <= kSameDistance * std::abs(planar))) return std::nullopt;
+  return sum;
+}
 
-  // The earlier image's color at the place of the surface that the later frame shows at a pixel.
-  std::optional<std::array<double, 3>> read(const Image& image, int x, int y) const {
-    const std::optional<glm::dvec3> place = placeOf(x, y);
-    if (!place) return std::nullopt;
-    const double planar = earlierCamera_.planarDepth(*place);
-    const glm::dvec2 at = project(*place) - 0.5;
-    // Also where `at` is no number.
-    if (!(at.x >= 0 && at.y >= 0 && at.x < image.width - 1 && at.y < image.height - 1)) return std::nullopt;
-    const int left = static_cast<int>(at.x), top = static_cast<int>(at.y);
-    if (!surfaces_.wholeBlock(left, top, 2)) return std::nullopt;
-    const glm::dvec2 part = at - glm::floor(at);
-    std::array<double, 3> sum = {};
-    double shown = 0;
-    for (int i = 0; i < 4; ++i) {
-      const int px = left + i % 2, py = top + i / 2;
-      const double weight = (i % 2 ? part.x : 1 - part.x) * (i / 2 ? part.y : 1 - part.y);
-      // The block is wholly of surface: there is a depth.
-      shown += weight * *earlierCamera_.planarDepth(*earlier_.frontDepth.image.at(px, py),
-                                                    earlier_.frontDepth.encoding);
-      for (std::size_t c = 0; c < 3; ++c) sum[c] += weight * static_cast<double>(image.at(px, py)[c]);
-    }
-    // Another surface hides the place from the earlier camera.
-    constexpr double kSameDistance = 0.005;
-    if (!(std::abs(shown - planar) <= kSameDistance * std::abs(planar))) return std::nullopt;
-    return sum;
-  }
-
-private:
-  const Capture &earlier_, &later_;
-  Surfaces surfaces_;
-  reference::Camera earlierCamera_, laterCamera_;
-  glm::dmat4 earlierFromLater_;
-};
-
-}  // namespace
-
-Flicker compareAlongPath(const PathFrame& earlier, const PathFrame& later) {
-  const Capture& capture = later.capture;
-  const Mask mask = comparisonMask(capture.material, capture.irradiance, Subset::All);
-  requireImage("later frame", later.image, capture.width, capture.height, mask);
-  requireImage("earlier frame", earlier.image, earlier.capture.width, earlier.capture.height,
-               comparisonMask(earlier.capture.material, earlier.capture.irradiance, Subset::All));
-  const Reprojection reprojection(earlier.capture, capture);
-  Image before(capture.width, capture.height, 3);
+Flicker Reprojection::compare(const Image& earlier, const Image& later, Image* difference) const {
+  const Mask mask = comparisonMask(later_.material, later_.irradiance, Subset::All);
+  requireImage("later frame", later, later_.width, later_.height, mask);
+  requireImage("earlier frame", earlier, earlier_.width, earlier_.height,
+               comparisonMask(earlier_.material, earlier_.irradiance, Subset::All));
+  Image before(later_.width, later_.height, 3);
   Mask seen(mask.size());
-  for (int y = 0; y < capture.height; ++y)
-    for (int x = 0; x < capture.width; ++x) {
-      if (!counts(later.image, mask, x, y)) continue;
-      const auto value = reprojection.read(earlier.image, x, y);
+  for (int y = 0; y < later_.height; ++y)
+    for (int x = 0; x < later_.width; ++x) {
+      if (!counts(later, mask, x, y)) continue;
+      const auto value = read(earlier, x, y);
       if (!value) continue;
       for (std::size_t c = 0; c < 3; ++c) before.at(x, y)[c] = static_cast<float>((*value)[c]);
       seen[pixelIndex(before, x, y)] = 1;
     }
-  return measureUneven(before, later.image, Surfaces(capture), seen, later.image, mask);
+  return measureUneven(before, later, laterSurfaces_, seen, later, mask, difference);
 }
 
-Image motionSince(const Capture& earlier, const Capture& later) {
-  const Reprojection reprojection(earlier, later);
-  Image motion(later.width, later.height, 4);
-  const glm::dvec2 extent(later.width, later.height);
-  for (int y = 0; y < later.height; ++y)
-    for (int x = 0; x < later.width; ++x) {
-      const std::optional<glm::dvec3> place = reprojection.placeOf(x, y);
+Image Reprojection::motion() const {
+  Image motion(later_.width, later_.height, 4);
+  const glm::dvec2 extent(later_.width, later_.height);
+  for (int y = 0; y < later_.height; ++y)
+    for (int x = 0; x < later_.width; ++x) {
+      const std::optional<glm::dvec3> place = placeOf(x, y);
       if (!place) continue;
-      const glm::dvec2 moved = (glm::dvec2(x + 0.5, y + 0.5) - reprojection.project(*place)) / extent;
+      const glm::dvec2 moved = (glm::dvec2(x + 0.5, y + 0.5) - earlierCamera_.project(*place)) / extent;
       motion.at(x, y)[0] = static_cast<float>(moved.x);
       motion.at(x, y)[1] = static_cast<float>(moved.y);
     }

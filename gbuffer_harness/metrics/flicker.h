@@ -2,10 +2,13 @@
 #pragma once
 
 #include <array>
+#include <glm/glm.hpp>
+#include <optional>
 
 #include "metrics/masked_image.h"
 #include "metrics/spots.h"
 #include "metrics/surface.h"
+#include "reference/camera.h"
 
 namespace pellucid::harness {
 
@@ -31,21 +34,33 @@ Flicker compareShifted(const Image& still, const Image& moved, const Mask& mask,
 // likewise.
 Flicker compareTurned(const Image& still, const Image& turned, const Surfaces& surfaces, const Mask& mask);
 
-// A frame of a path: its G-buffer, and an image of three channels to compare.
-struct PathFrame {
-  const Capture& capture;
-  const Image& image;
+// Two frames of a path, each by a camera of its own: the pixels of the later frame in the earlier one. Both captures
+// outlive it.
+class Reprojection {
+public:
+  // Throws InputError for an oblique or singular projection.
+  Reprojection(const Capture& earlier, const Capture& later);
+
+  // RGBA of which RG is Capture::motion of the later capture, where bodies stand still in the world; 0 where nothing is
+  // seen.
+  Image motion() const;
+
+  // d is the difference between the later frame's image and the earlier image at the same place of the surface, read
+  // between pixels, less its mean over the 5x5 pixels around it, since diffused light changes evenly. Left out are
+  // places that the earlier frame does not show, and pixels whose surroundings of 5x5 pixels, or of 2x2 in the earlier
+  // frame, are not wholly of one surface. Statistics are over the later frame. `difference`: gets d, 0 where it is left
+  // out. Throws InputError when an image has not its capture's size with three channels.
+  Flicker compare(const Image& earlier, const Image& later, Image* difference = nullptr) const;
+
+private:
+  std::optional<glm::dvec3> placeOf(int x, int y) const;
+  std::optional<std::array<double, 3>> read(const Image& image, int x, int y) const;
+
+  const Capture &earlier_, &later_;
+  Surfaces earlierSurfaces_, laterSurfaces_;
+  reference::Camera earlierCamera_, laterCamera_;
+  glm::dmat4 earlierFromLater_;
 };
-
-// Two frames that show the same bodies, each by a camera of its own: d is the difference between the later frame and
-// the earlier one at the same place of the surface, read between pixels, less its mean over the 5x5 pixels around
-// it, since diffused light changes evenly. Left out are places that the earlier frame does not show, and pixels whose
-// surroundings of 5x5 pixels, or of 2x2 in the earlier frame, are not wholly of one surface. Statistics are over
-// the later frame. Throws likewise.
-Flicker compareAlongPath(const PathFrame& earlier, const PathFrame& later);
-
-// RGBA of which RG is Capture::motion of the later capture, where bodies stand still in the world; 0 where nothing is seen.
-Image motionSince(const Capture& earlier, const Capture& later);
 
 // Spots of two frames of turned lights (metrics/spots.h). `stillInput`, `turnedInput`: what explains each frame's.
 struct SpotFlicker {

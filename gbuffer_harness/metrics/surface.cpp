@@ -71,4 +71,24 @@ bool Surfaces::wholeBlock(int left, int top, int side) const {
   return true;
 }
 
+std::array<float, 4> visibleMiddle(const Capture& capture) {
+  const reference::Camera camera(capture.clipFromView, capture.width, capture.height);
+  glm::dvec3 sum(0);
+  double count = 0;
+  for (int y = 0; y < capture.height; ++y)
+    for (int x = 0; x < capture.width; ++x) {
+      if (capture.material[static_cast<std::size_t>(y) * static_cast<std::size_t>(capture.width) +
+                           static_cast<std::size_t>(x)] == 0)
+        continue;
+      const std::optional<double> depth =
+          camera.planarDepth(capture.frontDepth.image.at(x, y)[0], capture.frontDepth.encoding);
+      if (!depth) continue;
+      sum += camera.position({x + 0.5, y + 0.5}, *depth);
+      ++count;
+    }
+  if (count == 0) return {0, 0, 0, 0};
+  const glm::dvec4 middle = glm::inverse(reference::toMatrix(capture.viewFromWorld)) * glm::dvec4(sum / count, 1);
+  return {static_cast<float>(middle.x), static_cast<float>(middle.y), static_cast<float>(middle.z), 1};
+}
+
 }  // namespace pellucid::harness

@@ -1,6 +1,7 @@
 // Which neighboring pixels of a frame show one surface.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -44,5 +45,9 @@ private:
   int width_, height_;
   std::vector<Pixel> pixels_;
 };
+
+// In the world, with w 1: the middle of the surfaces with a material that the camera sees, as an engine passes the place of
+// the body that it looks at to options.anchor. w 0 where none is seen.
+std::array<float, 4> visibleMiddle(const Capture& capture);
 
 }  // namespace pellucid::harness

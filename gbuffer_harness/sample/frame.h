@@ -45,6 +45,7 @@ struct Frame {
   std::uint64_t index = 0;
   VkExtent2D extent{}, rect{};  // pixels of the images, and those rendered, from the images' corner
   glm::dmat4 clipFromView, viewFromWorld;  // of the rect; clipFromView with jitter
+  glm::vec4 lookedAt{};  // world point that the camera looks at, w 1
   float metersPerUnit = 1;
   float preExposure = 1;  // the irradiance image holds E times this
   PellucidImage normal{}, albedo{}, surface{}, depth{}, backDepth{}, irradiance{}, color{};

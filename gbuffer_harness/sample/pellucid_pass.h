@@ -32,6 +32,7 @@ public:
     const glm::dmat4 whole(x, 0, 0, 0, 0, y, 0, 0, 0, 0, 1, 0, x - 1, y - 1, 0, 1);
     put(whole * f.clipFromView, frame.clipFromView);
     put(f.viewFromWorld, frame.viewFromWorld);
+    std::copy_n(&f.lookedAt[0], 4, frame.options.anchor);  // noise stays with the body as it moves on the screen
     frame.metersPerUnit = f.metersPerUnit, frame.preExposure = f.preExposure;
     frame.frontDepth = f.depth, frame.backDepth = f.backDepth;
     frame.normal = f.normal, frame.albedo = f.albedo, frame.irradiance = f.irradiance;

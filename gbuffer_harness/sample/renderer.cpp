@@ -160,6 +160,7 @@ void Renderer::makeFrame(const ViewCamera& camera) {
   const ClipRange range{camera.lens.range.nearPlane, std::numeric_limits<double>::infinity(), true};
   const glm::dmat4 still = toGlm(perspective(camera.lens.verticalFov, aspect, range));
   f.viewFromWorld = toGlm(camera.lens.viewFromWorld);
+  f.lookedAt = glm::vec4(toGlm(camera.pivot), 1);
   previous_ = std::exchange(current_, still * f.viewFromWorld);
   // The sequence R2 of Roberts 2018, eight samples in turns.
   const double sample = settings_.taa ? static_cast<double>(next_ % 8) : 0;

@@ -80,6 +80,12 @@ TEST_F(GltfCommand, FlickerFollowsPaths) {
     EXPECT_LT(change["rel_rmse"][0], 0.02) << change;
   }
   EXPECT_EQ(paths, 4);
+  expect(0, flicker + "--path orbit --frames 9 --picture " + path("f.png"), "path orbit");
+  const std::string png = bytes("f.png");
+  ASSERT_GT(png.size(), 24u);
+  // Four frames of 96 pixels with gaps of 4 pixels, and the changes below: width and height of the PNG's header.
+  EXPECT_EQ(png.substr(16, 8), std::string("\0\0\x01\x8c\0\0\0\xc0", 8));
+  expect(2, flicker + "--path orbit,pan --picture x.png", "--picture: shows one path");
   expect(2, flicker + "--path walk", "--path: \"walk\" is not pan, dolly, orbit, head, lights or blink");
 }
 

@@ -3,8 +3,10 @@
 
 #include "capture/material.h"
 #include "common/compare.h"
+#include "common/far_origin.h"
 #include "metrics/flicker.h"
 #include "metrics/moved_capture.h"
+#include "replay/world_origin.h"
 #include "scene/scene.h"
 
 namespace {
@@ -88,6 +90,29 @@ TEST_F(Motion, AnchorKeepsLight) {
   EXPECT_EQ(rgbOf(c, s).data, expected.data) << "behind the camera";
 }
 
+// The whole scene elsewhere in the world, where floats are too coarse: replays move the anchor with the world's origin.
+TEST_F(Motion, AnchorsOfFarScenesAreTheirBodies) {
+  const Capture near = ball();
+  constexpr std::array<double, 3> kOffset = {1 << 20, -(1 << 18), 1 << 19};
+  const auto moved = [&](const Matrix& fromWorld) {
+    return fromOrigin(fromWorld, {-kOffset[0], -kOffset[1], -kOffset[2]});
+  };
+  Capture far = near;
+  far.viewFromWorld = moved(near.viewFromWorld);
+  for (Light& light : far.lights)
+    for (ShadowMap& map : light.shadowMaps) {
+      map.clipFromWorld = moved(map.clipFromWorld);
+      if (map.viewFromWorld) map.viewFromWorld = moved(*map.viewFromWorld);
+    }
+  ASSERT_NE(worldOrigin(far), (std::array<double, 3>{0, 0, 0}));
+  ReplaySettings s = settings();
+  s.anchor = kAnchor;
+  const Image expected = rgbOf(near, s);
+  EXPECT_GT(rmse(near, rgbOf(far, s), expected), 0.004) << "there is no noise to tell anchors apart";
+  for (std::size_t i = 0; i < 3; ++i) s.anchor[i] += static_cast<float>(kOffset[i]);
+  EXPECT_LT(rmse(near, rgbOf(far, s), expected), 5e-4);
+}
+
 // Nothing but the rect is written, and an anchor changes its noise alone.
 TEST_F(Motion, AnchoredRectIsThePart) {
   const Capture c = ball();
@@ -152,7 +177,7 @@ TEST_F(Motion, KeptLightFollowsTheMotion) {
     for (int i = 0; i < 25; ++i) before = rgb(sequence.run(still, {skin()}, kept));
     for (const int x : {4, 8}) {
       Capture moved = movedCapture(still, x / 2, -x / 4, 6);
-      moved.motion = motionSince(last, moved);
+      moved.motion = Reprojection(last, moved).motion();
       const Image now = rgb(sequence.run(moved, {skin()}, kept));
       const Flicker flicker = compareShifted(before, now, maskOf(still), x / 2, -x / 4);
       const Flicker alone = compareShifted(rgbOf(still, alike), rgbOf(moved, alike), maskOf(still), x / 2, -x / 4);

@@ -427,20 +427,20 @@ TEST(Flicker, PathsAreFollowedOnTheSurface) {
   };
   const Image before = picture(0);
   Image after = picture(2.5);
-  Flicker flicker = compareAlongPath({still, before}, {moved, after});
+  Flicker flicker = Reprojection(still, moved).compare(before, after);
   EXPECT_GT(flicker.pixels, 500u);
   for (const double worst : flicker.worst) EXPECT_LT(worst, 1e-5);
   after.at(20, 11)[1] += 1;
-  flicker = compareAlongPath({still, before}, {moved, after});
+  flicker = Reprojection(still, moved).compare(before, after);
   EXPECT_EQ(flicker.worstPixel, (std::array<int, 2>{20, 11}));
   EXPECT_LT(flicker.worst[0], 1e-5);
-  const Image motion = motionSince(still, moved);
+  const Image motion = Reprojection(still, moved).motion();
   EXPECT_NEAR(motion.at(9, 4)[0], 2.5 / 32, 1e-6);
   EXPECT_NEAR(motion.at(9, 4)[1], 0, 1e-6);
   // What the camera did not see before is left out.
   still.material.assign(32 * 32, 0);
   still.material[5 * 32 + 5] = 1;
-  EXPECT_EQ(compareAlongPath({still, before}, {moved, after}).pixels, 0u);
+  EXPECT_EQ(Reprojection(still, moved).compare(before, after).pixels, 0u);
 }
 
 TEST(Flicker, EvenChangeOfTurnedLightsIsNone) {

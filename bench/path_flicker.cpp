@@ -1,0 +1,212 @@
+#include "path_flicker.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <functional>
+#include <memory>
+
+#include "baselines/whole_frames.h"
+#include "bench_frame.h"
+#include "capture/material.h"
+#include "common/compare.h"
+#include "frame_sources.h"
+#include "measure.h"
+#include "metrics/flicker.h"
+#include "metrics/moved_capture.h"
+#include "raster/camera_path.h"
+#include "raster/raster.h"
+#include "replay/replay.h"
+#include "scene.h"
+
+namespace pellucid::bench {
+
+using namespace harness;
+
+namespace {
+
+constexpr int kSize = 512, kFrames = 24;  // as docs/accuracy.md has them
+constexpr int kPixels[] = {1, 5};         // of moves of the whole frame
+constexpr const char* kPaths[] = {"pan", "dolly", "orbit", "head", "lights", "blink"};
+constexpr const char* kPublished[] = {"Jimenez 2010 + 2015, 11 taps", "HDRP, 20 samples"};
+constexpr Color kColors[] = {{0, 0, 0}, {0, 90, 200}, {0, 150, 60}, {130, 130, 130}, {200, 60, 0}, {170, 0, 150}};
+
+// Frames in their order in, images out.
+struct Method {
+  std::string name;
+  std::function<Image(const Capture&)> run;
+};
+
+class PathBench {
+public:
+  PathBench(Device& device, const Context& context, const DrawnModel& drawn, Report& report)
+      : device_(device),
+        context_(context),
+        drawn_(drawn),
+        report_(report),
+        still_(draw(drawn.camera, drawn.model.lights)),
+        materials_(compileMaterials(still_)) {}
+
+  void moved() {
+    const Mask mask = comparisonMask(still_.material, still_.irradiance, Subset::All);
+    const int rim = *std::max_element(std::begin(kPixels), std::end(kPixels));
+    for (const int k : kPixels) {
+      const Capture before = movedCapture(still_, 0, 0, rim);
+      Capture after = movedCapture(still_, k, 0, rim);
+      after.motion = Reprojection(before, after).motion();
+      const std::string name = "moved by " + std::to_string(k) + (k == 1 ? " pixel" : " pixels");
+      report_.note(name);
+      for (const Method& method : methods()) {
+        const Image first = method.run(before);
+        add(name, method.name, {compareShifted(first, method.run(after), mask, k, 0)});
+      }
+    }
+  }
+
+  // RMSE of the frames on the left, the 99.9th percentile on the right.
+  std::vector<Plot> follow(const std::string& name) {
+    report_.note("path " + name);
+    const CameraPath path(name, drawn_.model, drawn_.camera);
+    std::vector<Method> all = methods();
+    all.push_back({"irradiance", [](const Capture& capture) { return capture.irradiance; }});
+    std::vector<std::vector<Flicker>> steps(all.size());
+    std::vector<double> frames;
+    std::vector<Image> before;
+    std::optional<Capture> last;
+    for (int frame = 0; frame < kFrames; ++frame) {
+      const CameraPath::Pose pose = path.at(frame);
+      Capture capture = draw(pose.camera, pose.lights);
+      std::optional<Reprojection> reprojection;
+      if (last) {
+        reprojection.emplace(*last, capture);
+        capture.motion = reprojection->motion();
+      }
+      std::vector<Image> images;
+      for (const Method& method : all) images.push_back(method.run(capture));
+      if (reprojection && !pose.switches) {
+        frames.push_back(frame);
+        for (std::size_t i = 0; i < all.size(); ++i)
+          steps[i].push_back(reprojection->compare(before[i], images[i]));
+      }
+      before = std::move(images);
+      last = std::move(capture);
+    }
+    std::vector<Plot> plots(2);
+    plots[0].title = name + ": change, relative RMSE in red";
+    plots[1].title = name + ": change, 99.9th percentile in red";
+    for (Plot& plot : plots) plot.x.label = "frame";
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      add("path " + name, all[i].name, steps[i]);
+      if (i >= std::size(kColors)) continue;  // the irradiance hides the rest
+      for (Plot& plot : plots) plot.series.push_back({all[i].name, kColors[i], frames, {}});
+      for (const Flicker& step : steps[i]) {
+        plots[0].series.back().y.push_back(step.relativeRmse[0]);
+        plots[1].series.back().y.push_back(step.p999[0]);
+      }
+    }
+    return plots;
+  }
+
+private:
+  Capture draw(const ModelCamera& camera, const std::vector<Light>& lights) const {
+    Model model = drawn_.model;
+    model.lights = lights;
+    Capture capture = withMapsAlone(rasterize(device_, model, camera, drawn_.raster).capture);
+    capture.albedo = {};  // the published passes here write no albedo
+    return capture;
+  }
+
+  Method ours(const std::string& name, const std::function<void(ReplaySettings&)>& change) {
+    ReplaySettings settings;
+    settings.anchor = visibleMiddle(still_);
+    change(settings);
+    const auto sequence = std::make_shared<ReplaySequence>(device_);
+    return {"Pellucid, " + name,
+            [=, this](const Capture& capture) { return rgb(sequence->run(capture, materials_, settings)); }};
+  }
+
+  Method published(const std::string& name) {
+    return {name, [=, this](const Capture& capture) {
+              const auto frame =
+                  std::make_shared<BenchFrame>(device_, context_, capture, materials_, transmittanceSettings());
+              const std::vector<WholeFrame> all = wholeFrames(frame);
+              const auto found =
+                  std::find_if(all.begin(), all.end(), [&](const WholeFrame& w) { return w.variant.name == name; });
+              device_.run(found->variant.record);
+              return found->variant.output();
+            }};
+  }
+
+  // With histories that are empty.
+  std::vector<Method> methods() {
+    std::vector<Method> all = {
+        ours("no anchor", [](ReplaySettings& s) { s.anchor = {}; }),
+        ours("anchor", [](ReplaySettings&) {}),
+        ours("accumulated", [](ReplaySettings& s) { s.reuse = PELLUCID_REUSE_ACCUMULATE; }),
+        ours("64 samples", [](ReplaySettings& s) { s.translucency.gatherSamples = 64; })};
+    for (const char* name : kPublished) all.push_back(published(name));
+    return all;
+  }
+
+  // The mean of the frames' RMSE, and the largest 99.9th percentile.
+  void add(const std::string& change, const std::string& method, const std::vector<Flicker>& steps) {
+    std::array<double, 3> rmse = {}, p999 = {};
+    for (const Flicker& step : steps)
+      for (std::size_t c = 0; c < 3; ++c) {
+        rmse[c] += step.relativeRmse[c] / static_cast<double>(steps.size());
+        p999[c] = std::max(p999[c], step.p999[c]);
+      }
+    char text[120];
+    std::snprintf(text, sizeof text, "  %-34s %.4f %.4f %.4f  %.3f %.3f %.3f", method.c_str(), rmse[0], rmse[1], rmse[2],
+                  p999[0], p999[1], p999[2]);
+    report_.note(text);
+    report_.record({{"kind", "path"}, {"change", change}, {"name", method}, {"flicker_rgb", rmse}, {"p999_rgb", p999}});
+  }
+
+  Device& device_;
+  const Context& context_;
+  const DrawnModel& drawn_;
+  Report& report_;
+  Capture still_;
+  std::vector<PellucidMaterial> materials_;
+};
+
+// A frame that goes on with the history of the one before, which is the same frame, beside one without a history.
+void timeAccumulation(Device& device, const Context& context, const FrameSource& source, int repeat, Report& report) {
+  Capture capture = source.make();
+  capture.albedo = {};
+  capture.motion = Image(capture.width, capture.height, 4);
+  const std::vector<PellucidMaterial> materials = compileMaterials(capture);
+  const std::string frame = source.name + ", " + std::to_string(capture.width) + "x" + std::to_string(capture.height);
+  ReplaySettings settings;
+  settings.normalFormat = VK_FORMAT_R8G8B8A8_SNORM;
+  settings.anchor = visibleMiddle(capture);
+  for (const bool accumulates : {false, true}) {
+    settings.reuse = accumulates ? PELLUCID_REUSE_ACCUMULATE : PELLUCID_REUSE_NONE;
+    const FrameRun first(device, context, capture, materials, settings);
+    device.run([&](VkCommandBuffer commandBuffer) { first.record(commandBuffer); });
+    const FrameRun next(device, context, capture, materials, settings, &first);
+    const Time time = measure(device, repeat, [&](VkCommandBuffer commandBuffer) { next.record(commandBuffer); });
+    report.add({frame + (accumulates ? ", accumulated" : ", anchor"), next.plan().dispatchCount, next.plan().barrierCount, 0,
+                {}, {{"kind", "accumulation"}, {"accumulates", accumulates}, {"frame", source.name},
+                     {"size", std::to_string(capture.width) + "x" + std::to_string(capture.height)}}},
+               time);
+  }
+}
+
+}  // namespace
+
+std::map<std::string, std::vector<Plot>> measurePaths(Device& device, const Context& context, const FrameOptions& options,
+                                                      int repeat, Report& report) {
+  report.section("along paths: RMSE R G B, 99.9 % R G B", "paths");
+  const DrawnModel drawn = portrait(device, options, kSize);
+  PathBench bench(device, context, drawn, report);
+  bench.moved();
+  std::map<std::string, std::vector<Plot>> plots;
+  for (const char* name : kPaths) plots[std::string("path_") + name] = bench.follow(name);
+  report.section("times of accumulation", "paths");
+  for (const FrameSource& source : frameSources(device, options))
+    if (source.name != "nothing") timeAccumulation(device, context, source, repeat, report);
+  return plots;
+}
+
+}  // namespace pellucid::bench
