@@ -13,6 +13,7 @@
 #include "measure.h"
 #include "metrics/flicker.h"
 #include "metrics/moved_capture.h"
+#include "names.h"
 #include "raster/camera_path.h"
 #include "raster/raster.h"
 #include "replay/replay.h"
@@ -28,7 +29,7 @@ constexpr int kSize = 512, kFrames = 24;  // as docs/accuracy.md has them
 constexpr int kPixels[] = {1, 5};         // of moves of the whole frame
 constexpr const char* kPaths[] = {"pan", "dolly", "orbit", "head", "lights", "blink"};
 constexpr const char* kPublished[] = {"Jimenez 2010 + 2015, 11 taps", "HDRP, 20 samples"};
-constexpr Color kColors[] = {{0, 0, 0}, {0, 90, 200}, {0, 150, 60}, {130, 130, 130}, {200, 60, 0}, {170, 0, 150}};
+constexpr Color kColors[] = {{0, 0, 0}, {0, 90, 200}, {0, 150, 60}, {130, 130, 130}, {230, 180, 0}, {200, 60, 0}, {170, 0, 150}};
 
 // Frames in their order in, images out.
 struct Method {
@@ -93,7 +94,10 @@ public:
     std::vector<Plot> plots(2);
     plots[0].title = name + ": change, relative RMSE in red";
     plots[1].title = name + ": change, 99.9th percentile in red";
-    for (Plot& plot : plots) plot.x.label = "frame";
+    for (Plot& plot : plots) {
+      plot.x.label = "frame";
+      plot.y.low = 0;
+    }
     for (std::size_t i = 0; i < all.size(); ++i) {
       add("path " + name, all[i].name, steps[i]);
       if (i >= std::size(kColors)) continue;  // the irradiance hides the rest
@@ -117,6 +121,7 @@ private:
 
   Method ours(const std::string& name, const std::function<void(ReplaySettings&)>& change) {
     ReplaySettings settings;
+    settings.translucency.gatherSamples = kDefaultGatherSamples;
     settings.anchor = visibleMiddle(still_);
     change(settings);
     const auto sequence = std::make_shared<ReplaySequence>(device_);
@@ -142,6 +147,7 @@ private:
         ours("no anchor", [](ReplaySettings& s) { s.anchor = {}; }),
         ours("anchor", [](ReplaySettings&) {}),
         ours("accumulated", [](ReplaySettings& s) { s.reuse = PELLUCID_REUSE_ACCUMULATE; }),
+        ours("no gather", [](ReplaySettings& s) { s.translucency.gatherSamples = 0; }),
         ours("64 samples", [](ReplaySettings& s) { s.translucency.gatherSamples = 64; })};
     for (const char* name : kPublished) all.push_back(published(name));
     return all;
@@ -178,6 +184,7 @@ void timeAccumulation(Device& device, const Context& context, const FrameSource&
   const std::vector<PellucidMaterial> materials = compileMaterials(capture);
   const std::string frame = source.name + ", " + std::to_string(capture.width) + "x" + std::to_string(capture.height);
   ReplaySettings settings;
+  settings.translucency.gatherSamples = kDefaultGatherSamples;
   settings.normalFormat = VK_FORMAT_R8G8B8A8_SNORM;
   settings.anchor = visibleMiddle(capture);
   for (const bool accumulates : {false, true}) {
