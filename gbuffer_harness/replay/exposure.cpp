@@ -8,6 +8,8 @@
 #include <optional>
 #include <vector>
 
+#include "scene/vector.h"
+
 namespace pellucid::harness {
 
 namespace {
@@ -16,12 +18,6 @@ namespace {
 // it.
 constexpr double kDimmest = 1.0 / 64, kBrightest = 4096;
 constexpr float kLeast = 1e-9F, kMost = 1e9F;  // of the module's preExposure
-
-glm::dmat4 toGlm(const Matrix& m) {
-  glm::dmat4 result;
-  for (int i = 0; i < 16; ++i) result[i / 4][i % 4] = m[static_cast<std::size_t>(i)];
-  return result;
-}
 
 // In the world, of the surface that the pixel shows; none where the depth says that there is no surface.
 std::optional<glm::dvec3> surfaceAt(const Capture& capture, const glm::dmat4& viewFromClip,
@@ -66,8 +62,7 @@ double largestLight(const Capture& capture) {
       for (int c = 0; c < 3; ++c) raise(largest, static_cast<double>(light[c]));
       const auto point = surfaceAt(capture, viewFromClip, worldFromView, x, y);
       for (std::size_t i = 0; point && i < nearest.size(); ++i) {
-        const auto& p = capture.lights[i].position;
-        const glm::dvec3 toLight = glm::dvec3(p[0], p[1], p[2]) - *point;
+        const glm::dvec3 toLight = toGlm(capture.lights[i].position) - *point;
         nearest[i] = std::min(nearest[i], glm::dot(toLight, toLight));
       }
     }
