@@ -13,7 +13,6 @@
 #include "cli/numbers.h"
 #include "common/error.h"
 #include "raster/bodies.h"
-#include "raster/close_mesh.h"
 #include "raster/framing.h"
 
 namespace pellucid::harness {

@@ -6,7 +6,7 @@
 #include "capture/capture.h"
 #include "common/error.h"
 #include "pellucid/pellucid_material.h"
-#include "raster/close_mesh.h"
+#include "raster/bodies.h"
 #include "reference/path_tracer/light_paths.h"
 #include "reference/path_tracer/truth.h"
 #include "reference/path_tracer/walk.h"
