@@ -7,7 +7,7 @@
 #include <map>
 #include <numbers>
 
-#include "capture/manifest_material.h"
+#include "capture/manifest_parts.h"
 #include "capture/material.h"
 #include "cli/light_option.h"
 #include "cli/numbers.h"
