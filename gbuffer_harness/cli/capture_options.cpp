@@ -7,13 +7,12 @@
 #include <map>
 #include <numbers>
 
-#include "capture/manifest_material.h"
+#include "capture/manifest_parts.h"
 #include "capture/material.h"
 #include "cli/light_option.h"
 #include "cli/numbers.h"
 #include "common/error.h"
 #include "raster/bodies.h"
-#include "raster/close_mesh.h"
 #include "raster/framing.h"
 
 namespace pellucid::harness {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "capture/light_bounds.h"
+#include "capture/manifest_parts.h"
 #include "cli/numbers.h"
 #include "raster/framing.h"
 

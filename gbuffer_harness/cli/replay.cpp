@@ -9,11 +9,10 @@
 #include <string>
 
 #include "capture/exr.h"
-#include "capture/layers.h"
-#include "capture/light_table.h"
+#include "capture/read.h"
+#include "capture/manifest_parts.h"
 #include "capture/manifest.h"
 #include "capture/material.h"
-#include "capture/read.h"
 #include "cli/capture_options.h"
 #include "cli/commands.h"
 #include "cli/frames.h"

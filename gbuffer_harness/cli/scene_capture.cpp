@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "raster/enclosing.h"
+#include "raster/bodies.h"
 #include "reference/path_tracer/visible_surface.h"
 #include "scene/model.h"
 

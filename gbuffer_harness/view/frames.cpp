@@ -9,7 +9,7 @@
 
 #include "capture/material.h"
 #include "metrics/isolated.h"
-#include "raster/drawn_frame.h"
+#include "raster/rasterizer.h"
 #include "replay/exposure.h"
 #include "replay/inputs.h"
 #include "shared/pellucid_shared.h"

@@ -5,11 +5,9 @@
 #include <numbers>
 #include <sstream>
 
-#include "capture/layers.h"
-#include "capture/light_table.h"
-#include "capture/manifest_material.h"
-#include "capture/material.h"
 #include "capture/read.h"
+#include "capture/manifest_parts.h"
+#include "capture/material.h"
 #include "capture/write.h"
 #include "common/error.h"
 #include "unit/capture_samples.h"

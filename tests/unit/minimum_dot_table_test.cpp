@@ -6,7 +6,7 @@
 #include <cmath>
 #include <glm/glm.hpp>
 
-#include "reference/minimum_dot.h"
+#include "reference/translucency.h"
 #include "scene/vector.h"
 
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "common/error.h"
-#include "reference/minimum_dot.h"
+#include "reference/translucency.h"
 
 namespace {
 

@@ -10,7 +10,7 @@
 #include "common/error.h"
 #include "refusal.h"
 #include "scene/model.h"
-#include "scene/polynomial.h"
+#include "scene/solid.h"
 #include "scene/render.h"
 #include "scene/vector.h"
 
