@@ -29,7 +29,7 @@ constexpr double kWeight[] = {
     0.00387493, 0.0154136, 0.0432322, 0.100446, 0.194117,  0.27667,   0.267858,   0.09838827};
 constexpr double kEdgeError[] = {0.05927, 0.01404, 0.00479, 0.00197, 0.00091, 0.00045, 0.00024, 0.00013};
 
-// d in mean free paths, by Monte Carlo: Lambertian light on a point of a half-space, 2 million photons per
+// d in transport mean free paths, by Monte Carlo: Lambertian light on a point of a half-space, 2 million photons per
 // index, one walk weighted with each albedo; the d of least worst difference between the half-plane steps.
 // Rows: sqrt(1 - albedo). Columns: index of refraction.
 constexpr double kIor[] = {1, 1.05, 1.1, 1.2, 1.3, 1.4, 1.5, 1.7, 2, 2.5, 3};
