@@ -131,8 +131,8 @@ inline double opaqueThickness(const PellucidMaterial& m) {
   return most(kMostThickness) > 2e-5 ? INFINITY : depthOf(most, 2e-5, kMostThickness);
 }
 
-// The diffusion length 1 / kappa in mm: light falls to 1/e over it. The mean of the channels; 0 where T's model has
-// no rate.
+// The diffusion length 1 / kappa, in mm: the depth over which light falls to 1/e. Mean of the channels; 0 where
+// T's model has no rate.
 inline float diffusionLength(const PellucidMaterial& m) {
   float sum = 0;
   for (const float(&t)[5] : m.transmittance) {

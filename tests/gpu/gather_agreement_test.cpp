@@ -187,8 +187,8 @@ TEST_F(GatherAgreement, DisplacesOnceForAllLights) {
     ASSERT_NEAR(a.data[i], b.data[i], 3e-3f * (0.2f + b.data[i])) << i;
 }
 
-// A gathered light displaces light that the diffusion returned. A light of no strength must displace none:
-// the loss would show under a strong light, which grazes other parts of the surface.
+// At rims, gathered light replaces a part of the diffused light. A weak light must replace none of the strong
+// light's part, because the two lights graze different parts of the surface.
 TEST_F(GatherAgreement, WeakLightsChangeNothing) {
   Capture c = litSphere();
   const Image alone = gpuGather(replayer(), c, 16);

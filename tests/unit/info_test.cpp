@@ -90,7 +90,9 @@ TEST_F(InfoCommand, WarnsOfBodiesThatAreOpticallyThin) {
     capture.materials[0] = CoefficientMaterial{{0.2, 0.3, 0.4}, {0.01, 0.01, 0.01}, 0, 1.4};
     writeCapture(capture, directory / "ball.exr");
     const json warnings = warningsOf(directory / "ball.exr");
-    EXPECT_EQ(has(warnings, "is less than 4 transport mean free paths, which are 4.76 mm each in R"), radius == 3) << warnings;
+    EXPECT_EQ(has(warnings, "is less than 4 transport mean free paths, which are 4.76 mm each in R"),
+              radius == 3)
+        << warnings;
     // The ball's width, less at most two pixels of 9/64 mm.
     EXPECT_EQ(has(warnings, "the body's size, 5.") || has(warnings, "the body's size, 6 mm"), radius == 3)
         << warnings;

@@ -249,8 +249,8 @@ struct Warned {
 // The fixture's texels are .3 mm long and its material's diffusion length is 2 mm.
 const std::vector<Warned> kWarned = {
     {"Coarse",
-     "shadowMaps[0].extent makes a texel 20 mm long, more than 4 diffusion lengths of materials[0], which are "
-     "8 mm",
+     "shadowMaps[0].extent makes a texel 20 mm long, more than 4 diffusion lengths of materials[0], which "
+     "are 8 mm",
      [](Frame& f) { f.maps[0].extent[0] = 1; }},
     {"Overlap", "shadowMaps[1].options.offset is 32, 63: the tile overlaps that of shadowMaps[0]",
      [](Frame& f) {

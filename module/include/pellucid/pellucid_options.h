@@ -14,7 +14,7 @@ extern "C" {
 /* ---- Context ----------------------------------------------------------------------------------- */
 
 /* Features that the frames of a context use, as bits. The context makes only the pipelines whose features are all in `uses`. Recording
- * refuses a plan that needs another pipeline. */
+ * refuses a plan that needs another pipeline or feature. */
 typedef enum PellucidUse {
   /* Light with one thickness a pixel, and thin walls. */
   PELLUCID_USE_TRANSLUCENCY = 1 << 0,
